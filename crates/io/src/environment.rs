@@ -1,8 +1,12 @@
 //! Environments and albedo maps.
 
-use super::cube::{self, Picture};
-use super::open::{self, Format};
-use super::{exr, hdr, png};
+mod cube;
+pub mod hdr;
+
+use crate::exr;
+use crate::open::{self, Format};
+use crate::png;
+use cube::Picture;
 use ridgelight::scene::{Albedo, Environment};
 use ridgelight::{Error, Result};
 use std::path::{Path, PathBuf};
@@ -11,28 +15,31 @@ use std::path::{Path, PathBuf};
 const FACES: [[&str; 6]; 2] =
     [["px", "nx", "py", "ny", "pz", "nz"], ["posx", "negx", "posy", "negy", "posz", "negz"]];
 
-/// Reads radiance from infinity out of `.hdr` (or `.pic`) and `.exr` pictures, turned
-/// counter-clockwise by `rotation_rad`; at most 2²⁷ texels (16384 × 8192).
+/// Reads an environment from `.hdr` (or `.pic`) and `.exr` pictures, rotated counter-clockwise by
+/// `rotation_rad`; at most 2²⁷ texels (16384 × 8192).
 ///
-/// | picture | is taken for |
+/// | picture | is read as |
 /// |---|---|
-/// | width = 2 · height | equirectangular, kept texel for texel |
+/// | width = 2 · height | equirectangular, texels unchanged |
 /// | width = height | an angular map (light probe): centre ahead, rim behind |
 /// | 4:3 | a horizontal cube cross, behind at the far right |
 /// | 3:4 | a vertical cube cross, behind upside down at the foot |
-/// | six squares | cube faces: any one of six files whose names differ in the word `px nx py ny pz nz` or `posx negx posy negy posz negz` ("sky_px.hdr"), or one name with `*` in that word's place |
+/// | six squares | cube faces: see below |
 ///
-/// Ahead is +x (east, azimuth 0), up is +z, right is -y (south), all seen from inside and not
+/// Cube faces are any one of six files whose names differ in the word `px nx py ny pz nz` or `posx
+/// negx posy negy posz negz` ("sky_px.hdr"), or one name with `*` in that word's place.
+///
+/// Ahead is +x (east, azimuth 0), up is +z, right is -y (south); the view is from inside and not
 /// mirrored. Cube faces follow OpenGL and Vulkan: +Z ahead, +X right, +Y up, first row on top.
 ///
-/// What is not equirectangular is resampled once, at a resolution no coarser than the source at
-/// its finest (a cube of faces n wide: 10n/3 rows; an angular map: width/2 rows), each texel the
-/// mean of 4 × 4 bilinear lookups. A constant stays exactly constant; the irradiance of a bright
-/// patch stays within 1 %.
+/// Other projections than equirectangular are resampled once, at a resolution no coarser than the
+/// source's finest (a cube of faces n wide: 10n/3 rows; an angular map: width/2 rows). Each texel
+/// is the mean of 4 × 4 bilinear lookups. A constant stays exactly constant; the irradiance of a
+/// bright patch stays within 1 %.
 ///
 /// # Errors
 /// Another shape or format; faces that are missing, not square or unequal; radiance that is
-/// negative or not finite (row and column named; `.exr` channels R, G, B, or Y for grey).
+/// negative or not finite (with row and column). `.exr` channels are R, G, B, or Y for grey.
 pub fn read_environment(path: &Path, rotation_rad: f64) -> Result<Environment> {
     if let Some(paths) = pattern(path) {
         return six_faces(&paths, rotation_rad);
@@ -48,11 +55,11 @@ pub fn read_environment(path: &Path, rotation_rad: f64) -> Result<Environment> {
     parse_environment(path, &bytes, rotation_rad)
 }
 
-/// [`read_environment`] of a single picture from bytes in memory; `name` gives the format and
-/// stands in error messages.
+/// [`read_environment`] for a single picture in memory. `name` sets the format and appears in
+/// messages.
 ///
 /// # Errors
-/// As [`read_environment`], but for those of reading and of six faces.
+/// As [`read_environment`], except file access and cube faces.
 pub fn parse_environment(name: &Path, bytes: &[u8], rotation_rad: f64) -> Result<Environment> {
     let picture = picture(name, bytes)?;
     let (rows, cols) = (picture.rows, picture.cols);
@@ -86,7 +93,7 @@ pub fn parse_environment(name: &Path, bytes: &[u8], rotation_rad: f64) -> Result
     Environment::new(picture.cols, picture.rows, picture.texels, rotation_rad)
 }
 
-/// Decodes a picture without looking at its shape.
+/// Decodes a picture of any shape.
 fn picture(path: &Path, bytes: &[u8]) -> Result<Picture> {
     let (rows, cols, texels) = match open::format(path, bytes, &[Format::Hdr, Format::Exr])? {
         Format::Exr => exr::colour(path, bytes),
@@ -129,7 +136,7 @@ fn pattern(path: &Path) -> Option<Vec<[PathBuf; 6]>> {
     Some(FACES.iter().map(|words| words.map(named)).collect())
 }
 
-/// The six names where this one is one of them: a face's word stands alone in the stem.
+/// The six names of a set that contains this one: the face's word stands alone in the stem.
 fn siblings(path: &Path) -> Option<Vec<[PathBuf; 6]>> {
     let name = path.file_name()?.to_str()?;
     let stem = path.file_stem()?.to_str()?;
@@ -146,14 +153,14 @@ fn siblings(path: &Path) -> Option<Vec<[PathBuf; 6]>> {
                 return Some(vec![words.map(named)]);
             }
         }
-        // The separator may be any character; what follows the word says how long it is.
+        // The separator may be any character; the rest of the name gives the word's length.
         start += word.len();
         start += stem.get(start..)?.chars().next().map_or(0, char::len_utf8);
     }
     None
 }
 
-/// Reads a cube by the first set of names of which the first file is there.
+/// Reads a cube by the first set of names whose first file exists.
 fn six_faces(sets: &[[PathBuf; 6]], rotation_rad: f64) -> Result<Environment> {
     let set = sets.iter().find(|set| set[0].exists()).or(sets.first());
     let mut faces: Vec<Picture> = Vec::new();
@@ -176,13 +183,13 @@ fn six_faces(sets: &[[PathBuf; 6]], rotation_rad: f64) -> Result<Environment> {
     Environment::new(picture.cols, picture.rows, picture.texels, rotation_rad)
 }
 
-/// Reads a map of diffuse reflectance, one texel a sample of a field of `rows` × `cols`.
+/// Reads a map of diffuse reflectance, one texel for each grid point of a field of `rows` × `cols`.
 ///
-/// `.png` (grey, RGB or palette; alpha is passed over) is sRGB-encoded at 8 bits and at 16 and is
-/// decoded to linear light; `.exr` (R, G, B, or Y) is linear already.
+/// `.png` (grey, RGB or palette; alpha is ignored) is sRGB-encoded at 8 and 16 bits and is decoded
+/// to linear light. `.exr` (R, G, B, or Y) is already linear.
 ///
 /// # Errors
-/// Another size than the field's; a channel outside [0..1] (row and column named); a file that
+/// Another size than the field's; a channel outside [0..1] (with row and column); a file that
 /// cannot be read or decoded.
 pub fn read_albedo(path: &Path, rows: usize, cols: usize) -> Result<Albedo> {
     let bytes = open::read(path)?;

@@ -1,8 +1,8 @@
-//! OpenEXR: any channel of any flat file in; one part with f32 channels and ZIP out.
+//! OpenEXR: reads any channel of any flat file; writes one part with f32 channels and ZIP.
 
-use super::atomic::{Temporary, Written};
-use super::heights::Raster;
-use super::open;
+use crate::heights::Raster;
+use crate::open;
+use crate::write::atomic::{Temporary, Written};
 use ::exr::block::{self, UncompressedBlock, reader::ChunksReader, writer::ChunksWriter};
 use ::exr::meta::attribute::{AttributeValue, ChannelDescription, LineOrder, SampleType, Text};
 use ::exr::meta::{BlockDescription, MetaData, header::Header};
@@ -12,11 +12,11 @@ use ridgelight::{Error, Result};
 use std::{collections::HashSet, io::Cursor, path::Path};
 
 /// An opened file: its channels by name, before any pixel is decoded.
-pub(super) struct ExrFile<'a> {
+pub(crate) struct ExrFile<'a> {
     path: &'a Path,
     reader: block::reader::Reader<Cursor<&'a [u8]>>,
-    /// Header (part), channel in it, full name: "direct.sky.R", with the part's name in front
-    /// where there are several parts.
+    /// Header (part), channel in it, full name: "direct.sky.R", prefixed by the part's name where
+    /// there are several parts.
     channels: Vec<(usize, usize, String)>,
 }
 
@@ -67,8 +67,8 @@ impl<'a> ExrFile<'a> {
         self.reader.headers()[part].channels.list[channel].sample_type
     }
 
-    /// Decodes the wanted channels at full resolution: rows, columns and one plane for each.
-    /// Every sample type fits an f64, from which `narrow` makes what the caller keeps.
+    /// Decodes the requested channels at full resolution: rows, columns and one plane each. Every
+    /// sample type fits an f64, which `narrow` converts.
     pub fn planes<T: Copy + Default>(
         self,
         wanted: &[usize],
@@ -144,7 +144,7 @@ impl<'a> ExrFile<'a> {
     }
 }
 
-/// Samples of one line, in the machine's byte order as the decoder leaves them.
+/// Samples of one line, in native byte order as the decoder leaves them.
 fn unpack<T>(bytes: &[u8], kind: SampleType, target: &mut [T], narrow: &impl Fn(f64) -> T) {
     match kind {
         SampleType::F16 => {
@@ -165,7 +165,7 @@ fn unpack<T>(bytes: &[u8], kind: SampleType, target: &mut [T], narrow: &impl Fn(
     }
 }
 
-/// Holds a part's sizes against the file's.
+/// Checks a part's claimed sizes against the file's size.
 fn check_claims(path: &Path, header: &Header, held: usize) -> Result<()> {
     if header.deep {
         return Err(Error::file(path, "header", "deep data", "one sample a pixel"));
@@ -181,7 +181,7 @@ fn check_claims(path: &Path, header: &Header, held: usize) -> Result<()> {
         // PXR24 keeps three bytes of four, then deflates.
         Compression::PXR24 => open::DEFLATE_RATIO * 4 / 3,
         Compression::ZIP1 | Compression::ZIP16 => open::DEFLATE_RATIO,
-        // Wavelets of a constant are nearly nothing: blocks of up to 2 MiB in some 30 bytes.
+        // Wavelets of a constant compress blocks of up to 2 MiB to some 30 bytes.
         _ => 1 << 16,
     };
     let samples = rows as u64 * cols as u64;
@@ -196,8 +196,8 @@ fn check_claims(path: &Path, header: &Header, held: usize) -> Result<()> {
     open::plausible(path, "header", bytes, held, ratio)
 }
 
-/// Heights from the only channel, or from the only one that is called as heights are.
-pub(super) fn heights(path: &Path, bytes: &[u8]) -> Result<Raster> {
+/// Heights from the only channel, or from the only one with a height's name.
+pub(crate) fn heights(path: &Path, bytes: &[u8]) -> Result<Raster> {
     let file = ExrFile::open(path, bytes)?;
     let names = file.names();
     let Some(index) = height_channel(&names) else {
@@ -210,8 +210,8 @@ pub(super) fn heights(path: &Path, bytes: &[u8]) -> Result<Raster> {
     Ok(Raster { single, ..Raster::bare(rows, cols, planes.swap_remove(0)) })
 }
 
-/// R beside G or B is red, Y beside RY or BY the light of a colour, and what is beside X the part of
-/// a vector: none of these is a height.
+/// R beside G or B is red, Y beside RY or BY a luminance, and any name beside X a vector's
+/// component: none of these is a height.
 fn height_channel(names: &[&str]) -> Option<usize> {
     let has = |all: &[&str]| all.iter().any(|n| names.contains(n));
     let is_height = |name: &str| match name {
@@ -228,7 +228,7 @@ fn height_channel(names: &[&str]) -> Option<usize> {
 }
 
 /// Colour in linear light from R, G and B, or grey from Y or the only channel.
-pub(super) fn colour(path: &Path, bytes: &[u8]) -> Result<(usize, usize, Vec<[f32; 3]>)> {
+pub(crate) fn colour(path: &Path, bytes: &[u8]) -> Result<(usize, usize, Vec<[f32; 3]>)> {
     let file = ExrFile::open(path, bytes)?;
     let names = file.names();
     let wanted = match ["R", "G", "B"].map(|n| file.find(n)) {
@@ -248,7 +248,7 @@ pub(super) fn colour(path: &Path, bytes: &[u8]) -> Result<(usize, usize, Vec<[f3
     Ok((rows, cols, (0..rows * cols).map(texel).collect()))
 }
 
-/// What [`write_exr`] was given as `metadata`: the file's string attributes, in no order.
+/// The file's string attributes, in no order: what [`write_exr`] received as `metadata`.
 ///
 /// # Errors
 /// A file that cannot be read or is no OpenEXR file.
@@ -259,10 +259,10 @@ pub fn read_metadata(path: &Path) -> Result<Vec<(String, String)>> {
 /// One layer of a picture to write.
 #[derive(Clone, Debug)]
 pub struct Layer<'a> {
-    /// Stands before the channels' names with a dot, as compositors expect: "direct.sky" gives
-    /// "direct.sky.R". Empty for the main layer, whose channels stand alone.
+    /// Prefix of the channels' names with a dot, as compositors expect: "direct.sky" gives
+    /// "direct.sky.R". Empty for the main layer, whose channels have no prefix.
     pub name: String,
-    /// What is in it.
+    /// The samples.
     pub channels: Channels<'a>,
 }
 
@@ -271,7 +271,7 @@ pub struct Layer<'a> {
 pub enum Channels<'a> {
     /// Linear red, green and blue as R, G and B.
     Rgb(&'a [[f32; 3]]),
-    /// One value a pixel under a name, as "Y" or "Z"; an empty name leaves the layer's alone.
+    /// One value per pixel under a name, as "Y" or "Z". An empty name leaves only the layer's.
     Scalar(&'a str, &'a [f32]),
 }
 
@@ -289,9 +289,9 @@ impl Channels<'_> {
 /// `metadata` becomes string attributes of the file, in UTF-8.
 ///
 /// # Errors
-/// Layers that are not `rows`·`cols`, two channels or attributes of one name, names that OpenEXR
-/// does not take (empty, over 255 bytes, or reserved for another type), a destination that cannot
-/// be written to.
+/// Layers that are not `rows`·`cols`, duplicate channels or attributes, names that OpenEXR does not
+/// allow (empty, over 255 bytes, or reserved for another type), a destination that cannot be
+/// written.
 pub fn write_exr(
     path: &Path,
     rows: usize,
@@ -302,10 +302,10 @@ pub fn write_exr(
     write_exr_aside(path, rows, cols, layers, metadata)?.place()
 }
 
-/// What [`write_exr`] writes, but waiting beside its destination.
+/// [`write_exr`], but the file waits beside its destination.
 ///
 /// # Errors
-/// As there.
+/// As [`write_exr`].
 pub fn write_exr_aside(
     path: &Path,
     rows: usize,
@@ -366,8 +366,8 @@ pub fn write_exr_aside(
         chunks.on_progress(|_| ()).compress_all_blocks_parallel(&meta, blocks)
     })
     .map_err(wrong)?;
-    // An attribute with a reserved name and the wrong type would make the file unreadable: what
-    // cannot be read back is not delivered.
+    // An attribute with a reserved name and the wrong type would make the file unreadable, so the
+    // file is read back first.
     std::io::Write::flush(file.stream()).map_err(|e| Error::io(path, e))?;
     MetaData::read_from_file(file.name(), true).map_err(wrong)?;
     file.close()

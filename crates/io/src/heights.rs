@@ -1,21 +1,30 @@
-//! Height fields from files: the format by name and first bytes, then one common finish.
+//! Height fields from files: format by name and signature, then one common path.
 
-use super::geo::{Cell, metres_a_degree};
-use super::open::{self, Format};
-use super::{asc, exr, hgt, npy, npz, png, tif};
+mod asc;
+pub mod geo;
+pub mod geotiff;
+mod hgt;
+pub mod size;
+pub mod tif;
+
+use crate::exr;
+use crate::heights::geo::{Cell, metres_a_degree};
+use crate::npy;
+use crate::npz;
+use crate::open::{self, Format};
+use crate::png;
 use ridgelight::scene::HeightField;
 use ridgelight::{Error, Result};
 use std::path::Path;
 
-/// What the caller knows better than the file.
+/// Options that override the file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HeightOptions {
     /// Spacing of columns and of rows, metres, each positive; overrides the file's.
     pub cell_m: Option<[f64; 2]>,
-    /// Multiplies every height; any finite number, 1 by default.
+    /// Factor on every height; any finite number, 1 by default.
     pub z_scale: f64,
-    /// The value in the file that means "no data", before `z_scale`; NaN is allowed. Overrides
-    /// the file's own.
+    /// The file's "no data" value, before `z_scale`; NaN is allowed. Overrides the file's own.
     pub nodata: Option<f64>,
 }
 
@@ -25,25 +34,25 @@ impl Default for HeightOptions {
     }
 }
 
-/// A grid as a decoder hands it over: values as stored, nothing interpreted yet.
-pub(super) struct Raster {
+/// A decoded grid, before interpretation.
+pub(crate) struct Raster {
     pub rows: usize,
     pub cols: usize,
     /// Row-major, row 0 in the north, in the file's unit.
     pub values: Vec<f64>,
-    /// Whether the file holds 16- or 32-bit floats: a no-data value printed in decimal is then
-    /// compared after rounding it the same way.
+    /// Whether the file holds 16- or 32-bit floats. A no-data value printed in decimal is then
+    /// rounded to that type before it is compared.
     pub single: bool,
     pub cell: Cell,
     /// Metres in the file's unit of height.
     pub unit_m: f64,
     pub nodata: Option<f64>,
-    /// Samples that the file itself masks, if it can.
+    /// The file's own mask of voids, if any.
     pub voids: Option<Vec<bool>>,
 }
 
 impl Raster {
-    /// Values of which nothing else is known.
+    /// Values without further information.
     pub fn bare(rows: usize, cols: usize, values: Vec<f64>) -> Self {
         Self {
             rows,
@@ -58,11 +67,11 @@ impl Raster {
     }
 }
 
-/// Reads a height field; the format is that of the name, and the first bytes must agree.
+/// Reads a height field. The name sets the format, and the signature must match.
 ///
-/// | name | holds | cell size | no data |
+/// | name | heights | cell size | no data |
 /// |---|---|---|---|
-/// | `.png` | grey, 8 or 16 bits; one count is one metre | 1 × 1 | alpha 0, or the `tRNS` grey |
+/// | `.png` | grey, 8 or 16 bits; values are metres | 1 × 1 | alpha 0, or the `tRNS` grey |
 /// | `.exr` | the only channel, or the only `height`, `elevation`, `Z`, `Y` or `R`; f16, f32, u32 | 1 × 1 | |
 /// | `.tif`, `.tiff` | one band of any integer or float type | GeoTIFF tags | GDAL's tag |
 /// | `.hgt` | SRTM: square, 16-bit big-endian | 1/(n-1)° at the latitude in the name | -32768 |
@@ -70,23 +79,24 @@ impl Raster {
 /// | `.npy` | 2-D, integers or floats of any size, order and endianness | 1 × 1 | |
 /// | `.npz` | `elevation`, `heights`, `height`, `z` or the only 2-D array | `dx`, `dy` | |
 ///
-/// Row 0 is the north. Cells in degrees become metres by the WGS84 ellipsoid at the latitude of
-/// the field's middle (one size for the whole field). A header without a unit (`.asc`, `.npz`, a
-/// TIFF without GeoKeys) is in degrees when its corners fit longitudes and latitudes and its cell
-/// is under 0.1, else in metres. A TIFF whose vertical unit is feet is turned into metres.
+/// Row 0 is the north. Cells in degrees are converted to metres by the WGS84 ellipsoid at the
+/// latitude of the field's centre (one size for the whole field). A header without a unit (`.asc`,
+/// `.npz`, a TIFF without GeoKeys) is in degrees when its corners are longitudes and latitudes and
+/// its cell is below 0.1, else in metres. A TIFF whose vertical unit is feet is converted to
+/// metres.
 ///
 /// # Errors
-/// A file that cannot be read ([`Error::Io`]); options out of range ([`Error::Setting`]);
-/// everything wrong inside the file ([`Error::File`]): more than 65 536 a side or 2³⁰ samples,
-/// truncation, colour, rotation, a height that is not finite and not marked as no data.
+/// A file that cannot be read ([`Error::Io`]); options out of range ([`Error::Setting`]); an
+/// invalid file ([`Error::File`]): more than 65 536 a side or 2³⁰ grid points, truncation, colour,
+/// rotation, a height that is not finite and not marked as no data.
 pub fn read_heights(path: &Path, options: &HeightOptions) -> Result<HeightField> {
     parse_heights(path, &open::read(path)?, options)
 }
 
-/// [`read_heights`] from bytes in memory; `name` gives the format and stands in error messages.
+/// [`read_heights`] from bytes in memory. `name` sets the format and appears in messages.
 ///
 /// # Errors
-/// As [`read_heights`], but for those of reading.
+/// As [`read_heights`], except file access.
 pub fn parse_heights(name: &Path, bytes: &[u8], options: &HeightOptions) -> Result<HeightField> {
     check(options)?;
     const ACCEPTED: [Format; 7] = [
@@ -123,7 +133,7 @@ fn check(options: &HeightOptions) -> Result<()> {
     Ok(())
 }
 
-/// Marks voids, brings heights and cells to metres and makes the field.
+/// Marks voids, converts heights and cells to metres and makes the field.
 fn finish(path: &Path, raster: Raster, options: &HeightOptions) -> Result<HeightField> {
     let Raster { rows, cols, mut values, single, cell, unit_m, nodata, mut voids } = raster;
     if let Some(nodata) = options.nodata.or(nodata) {

@@ -1,16 +1,16 @@
-//! NumPy arrays: a reader of every integer and float type, a writer of streams of f32.
+//! NumPy arrays: a reader of every integer and float type, a streaming writer of f32.
 
-use super::atomic::{Temporary, Written};
-use super::heights::Raster;
-use super::open;
+use crate::heights::Raster;
+use crate::open;
+use crate::write::atomic::{Temporary, Written};
 use half::f16;
 use ridgelight::scene::HeightField;
 use ridgelight::{Error, Result};
 use std::path::Path;
 
-/// An array's header: what the bytes after it are.
+/// An array's header: the type of the bytes after it.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Array<'a> {
+pub(crate) struct Array<'a> {
     pub shape: Vec<usize>,
     kind: u8,
     size: usize,
@@ -20,8 +20,8 @@ pub(super) struct Array<'a> {
 }
 
 impl<'a> Array<'a> {
-    /// Parses a whole `.npy` file of version 1, 2 or 3. `inside` prefixes places, for arrays in an
-    /// archive ("elevation.npy: ").
+    /// Parses a whole `.npy` file of version 1, 2 or 3. `inside` prefixes places in messages, for
+    /// arrays in an archive ("elevation.npy: ").
     pub fn parse(path: &Path, inside: &str, bytes: &'a [u8]) -> Result<Self> {
         let wrong = |place: &str, found: String, expected: &str| {
             Error::file(path, format!("{inside}{place}"), found, expected)
@@ -51,7 +51,7 @@ impl<'a> Array<'a> {
             [order @ (b'<' | b'>' | b'|' | b'='), kind @ (b'i' | b'u' | b'f'), size]
                 if matches!((kind, size), (_, b'2' | b'4' | b'8') | (b'i' | b'u', b'1')) =>
             {
-                // '=' never leaves NumPy; it would mean the writer's machine: little-endian.
+                // NumPy never writes '='; it would mean the writer's machine: little-endian.
                 (kind, usize::from(size - b'0'), order == b'>')
             }
             _ => {
@@ -81,7 +81,7 @@ impl<'a> Array<'a> {
         Ok(Self { shape, kind, size, big_endian, fortran, data })
     }
 
-    /// Bytes of a value, where values are unsigned.
+    /// Bytes per value of an unsigned type.
     pub fn unsigned(&self) -> Option<usize> {
         (self.kind == b'u').then_some(self.size)
     }
@@ -91,7 +91,7 @@ impl<'a> Array<'a> {
         self.kind == b'f' && self.size < 8
     }
 
-    /// The value at a place in memory order; 64-bit integers beyond 2⁵³ are rounded.
+    /// The value at an index in memory order; 64-bit integers beyond 2⁵³ are rounded.
     fn stored(&self, i: usize) -> f64 {
         let mut b = [0_u8; 8];
         b[..self.size].copy_from_slice(&self.data[i * self.size..(i + 1) * self.size]);
@@ -130,8 +130,8 @@ impl<'a> Array<'a> {
     }
 }
 
-/// The text of a key's value in a Python dictionary of the kind NPY headers are.
-pub(super) fn value<'a>(text: &'a str, key: &str) -> Option<&'a str> {
+/// The text of a key's value in an NPY header's Python dictionary.
+pub(crate) fn value<'a>(text: &'a str, key: &str) -> Option<&'a str> {
     let at = [format!("'{key}'"), format!("\"{key}\"")]
         .iter()
         .find_map(|quoted| text.find(quoted).map(|at| at + quoted.len()))?;
@@ -144,7 +144,7 @@ pub(super) fn value<'a>(text: &'a str, key: &str) -> Option<&'a str> {
 }
 
 /// `(3, 4)`, `(3,)` or `()`; NumPy 1 wrote `3L` in Python 2.
-pub(super) fn tuple(text: &str) -> Option<Vec<usize>> {
+pub(crate) fn tuple(text: &str) -> Option<Vec<usize>> {
     let inner = text.trim().strip_prefix('(')?.strip_suffix(')')?.trim();
     if inner.is_empty() {
         return Some(Vec::new());
@@ -153,13 +153,13 @@ pub(super) fn tuple(text: &str) -> Option<Vec<usize>> {
     inner.split(',').map(|n| n.trim().trim_end_matches('L').parse().ok()).collect()
 }
 
-/// A 2-D array; nothing is known of its cells.
-pub(super) fn heights(path: &Path, bytes: &[u8]) -> Result<Raster> {
+/// A 2-D array; its cell size is unknown.
+pub(crate) fn heights(path: &Path, bytes: &[u8]) -> Result<Raster> {
     raster(path, "", &Array::parse(path, "", bytes)?)
 }
 
 /// A 2-D array as a raster; `inside` as in [`Array::parse`].
-pub(super) fn raster(path: &Path, inside: &str, array: &Array) -> Result<Raster> {
+pub(crate) fn raster(path: &Path, inside: &str, array: &Array) -> Result<Raster> {
     let place = format!("{inside}header: shape");
     let &[rows, cols] = array.shape.as_slice() else {
         let found = format!("{} dimensions", array.shape.len());
@@ -170,11 +170,11 @@ pub(super) fn raster(path: &Path, inside: &str, array: &Array) -> Result<Raster>
     Ok(Raster { single: array.single(), ..Raster::bare(rows, cols, values) })
 }
 
-/// What stands before the data of an array of this type ("<f4") and shape, last index running fastest.
+/// The header of an array of this type ("<f4") and shape, last index running fastest.
 ///
 /// # Errors
 /// More dimensions than a header holds.
-pub(super) fn header(descr: &str, shape: &[usize]) -> Result<Vec<u8>> {
+pub(crate) fn header(descr: &str, shape: &[usize]) -> Result<Vec<u8>> {
     let sizes: String = shape.iter().map(|n| format!("{n}, ")).collect();
     let mut text = format!(
         "{{'descr': '{descr}', 'fortran_order': False, 'shape': ({}), }}",
@@ -192,7 +192,7 @@ pub(super) fn header(descr: &str, shape: &[usize]) -> Result<Vec<u8>> {
 
 /// Writes an array of little-endian f32 piece by piece, so that it may be larger than memory.
 ///
-/// Nothing is at the destination until [`finish`](Self::finish); dropped before, it leaves nothing.
+/// The destination is untouched until [`finish`](Self::finish); dropping the writer leaves nothing.
 #[derive(Debug)]
 pub struct NpyWriter {
     file: Temporary,
@@ -205,7 +205,7 @@ impl NpyWriter {
     /// horizons.
     ///
     /// # Errors
-    /// A shape beyond the address space; a directory that cannot be written to.
+    /// A shape beyond the address space; a directory that cannot be written.
     pub fn create(path: &Path, shape: &[usize]) -> Result<Self> {
         let left = shape.iter().try_fold(1_usize, |n, d| n.checked_mul(*d)).ok_or_else(|| {
             Error::setting("shape", format!("{shape:?}"), "a product within the address space")
@@ -217,7 +217,7 @@ impl NpyWriter {
     /// Appends values in order; NaN is allowed.
     ///
     /// # Errors
-    /// More values than the shape holds; a disk that does not take them.
+    /// More values than the shape holds; a write error.
     pub fn write(&mut self, values: &[f32]) -> Result<()> {
         self.left = self.left.checked_sub(values.len()).ok_or_else(|| {
             Error::setting(
@@ -233,7 +233,7 @@ impl NpyWriter {
         Ok(())
     }
 
-    /// Puts the file at its destination.
+    /// Moves the file to its destination.
     ///
     /// # Errors
     /// As [`close`](Self::close); a destination that cannot be replaced.
@@ -244,7 +244,7 @@ impl NpyWriter {
     /// Ends the file, which waits beside its destination.
     ///
     /// # Errors
-    /// Fewer values than the shape holds; a disk that does not take them.
+    /// Fewer values than the shape holds; a write error.
     pub fn close(self) -> Result<Written> {
         if self.left > 0 {
             return Err(Error::setting(
@@ -257,18 +257,19 @@ impl NpyWriter {
     }
 }
 
-/// A file with an array's header, for its values to follow.
+/// A file with an array's header, before its values.
 fn begin(path: &Path, descr: &str, shape: &[usize]) -> Result<Temporary> {
     let mut file = Temporary::create(path)?;
     file.write(&header(descr, shape)?)?;
     Ok(file)
 }
 
-/// Writes a field's heights as an array of little-endian f64, absolute, in its length unit; voids as NaN, to be read
-/// with no-data NaN. A field that is read from it has the same heights to a rounding of f32, above a base of its own.
+/// Writes a field's absolute heights as an array of little-endian f64, in its length unit, with
+/// voids as NaN (read it with no-data NaN). A field read back has the same heights to a rounding of
+/// f32, relative to its own base height.
 ///
 /// # Errors
-/// A disk that does not take them.
+/// A write error.
 pub fn write_npy_heights(path: &Path, field: &HeightField) -> Result<()> {
     let mut file = begin(path, "<f8", &[field.rows(), field.cols()])?;
     let is_void = |i: usize| field.voids().is_some_and(|v| v[i]);
@@ -287,7 +288,7 @@ pub fn write_npy_heights(path: &Path, field: &HeightField) -> Result<()> {
 /// Writes an array of `shape` (last index fastest) from chunks of any lengths, in order.
 ///
 /// # Errors
-/// As [`NpyWriter`]: too many or too few values, or a disk that does not take them.
+/// As [`NpyWriter`]: another number of values, or a write error.
 pub fn write_npy_f32<'a>(
     path: &Path,
     shape: &[usize],

@@ -1,30 +1,30 @@
-//! NumPy archives: a ZIP of `.npy` members, heights in one and their cell size in scalars.
+//! NumPy archives: a ZIP of `.npy` members with heights, and their cell size in scalars.
 
-use super::geo::{Cell, looks_like_degrees};
-use super::heights::Raster;
-use super::npy::{self, Array};
-use super::open;
+use crate::heights::Raster;
+use crate::heights::geo::{Cell, looks_like_degrees};
+use crate::npy::{self, Array};
+use crate::open;
 use ridgelight::{Error, Result};
 use std::io::{Cursor, Read};
 use std::path::Path;
 use zip::ZipArchive;
 
-pub(super) type Archive<'a> = ZipArchive<Cursor<&'a [u8]>>;
+pub(crate) type Archive<'a> = ZipArchive<Cursor<&'a [u8]>>;
 
-/// Members that hold heights, best first; failing these, the only 2-D array.
+/// Members that hold heights, in order of preference; else the only 2-D array is used.
 const HEIGHTS: [&str; 4] = ["elevation", "heights", "height", "z"];
 
 /// # Errors
-/// Bytes that are no whole archive.
-pub(super) fn archive<'a>(path: &Path, bytes: &'a [u8]) -> Result<Archive<'a>> {
+/// Bytes that are no complete archive.
+pub(crate) fn archive<'a>(path: &Path, bytes: &'a [u8]) -> Result<Archive<'a>> {
     ZipArchive::new(Cursor::new(bytes)).map_err(|e| {
         Error::file(path, "archive", open::complaint(e), "a whole ZIP archive of arrays")
     })
 }
 
-/// Heights with the cell of the scalars `dx` and `dy`; `xmin` to `ymax` tell degrees from metres,
-/// and `ymin` may be the northern one.
-pub(super) fn heights(path: &Path, bytes: &[u8]) -> Result<Raster> {
+/// Heights with the cell size of the scalars `dx` and `dy`. `xmin` to `ymax` distinguish degrees
+/// from metres; `ymin` may be the northern one.
+pub(crate) fn heights(path: &Path, bytes: &[u8]) -> Result<Raster> {
     let mut archive = archive(path, bytes)?;
     let names: Vec<String> = archive
         .file_names()
@@ -103,8 +103,9 @@ fn only_plane(path: &Path, archive: &mut Archive, held: usize, names: &[String])
     found.ok_or_else(|| Error::file(path, "archive", "no 2-D array", "an array of heights"))
 }
 
-/// A member's bytes, never more than it claims, never a claim beyond what the file could hold.
-pub(super) fn member(
+/// A member's bytes. A claimed size beyond what the file could hold is refused, as is a member
+/// larger than its claim.
+pub(crate) fn member(
     path: &Path,
     archive: &mut Archive,
     held: usize,
@@ -120,7 +121,7 @@ pub(super) fn member(
     bytes
         .try_reserve_exact(usize::try_from(claimed).unwrap_or(usize::MAX))
         .map_err(|_| wrong(format!("{claimed} bytes, more than there is memory")))?;
-    // A byte more: checksums are held to at the end alone.
+    // One more byte: checksums are only verified at the end.
     let read = file.take(claimed.saturating_add(1)).read_to_end(&mut bytes);
     read.map_err(|e| wrong(open::complaint(e)))?;
     if bytes.len() as u64 != claimed {
@@ -129,7 +130,7 @@ pub(super) fn member(
     Ok(bytes)
 }
 
-/// A member's name fit for a sentence.
+/// A member's name for messages.
 fn printable(name: &str) -> String {
     name.chars().filter(|c| !c.is_control()).take(40).collect()
 }

@@ -1,20 +1,20 @@
-//! What every reader does first: fetch the bytes, know the format, doubt the header.
+//! Common first steps of all readers: read the bytes, determine the format, check the header.
 
 use ridgelight::{Error, Result};
 use std::{fs, io::Read, path::Path};
 
 /// The longest side of a field or picture that is read.
-pub(super) const SIDE_LIMIT: u64 = 1 << 16;
+pub(crate) const SIDE_LIMIT: u64 = 1 << 16;
 /// The most samples (of one channel) that are read.
-pub(super) const SAMPLE_LIMIT: u64 = 1 << 30;
+pub(crate) const SAMPLE_LIMIT: u64 = 1 << 30;
 /// The largest file that is read: the most samples there may be, as f64, twice over.
 const FILE_LIMIT: u64 = 16 * SAMPLE_LIMIT;
 /// DEFLATE's greatest expansion: a match of 258 bytes for two bits (RFC 1951, §3.2.5).
-pub(super) const DEFLATE_RATIO: u64 = 1032;
+pub(crate) const DEFLATE_RATIO: u64 = 1032;
 
-/// A file format this module reads.
+/// A file format that this crate reads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Format {
+pub(crate) enum Format {
     Png,
     Exr,
     Tiff,
@@ -26,7 +26,7 @@ pub(super) enum Format {
 }
 
 impl Format {
-    /// With its article, for sentences.
+    /// With its article, for messages.
     fn named(self) -> &'static str {
         match self {
             Format::Png => "a PNG",
@@ -40,7 +40,7 @@ impl Format {
         }
     }
 
-    /// For sentences.
+    /// The usual extension, for messages.
     fn extensions(self) -> &'static str {
         match self {
             Format::Png => ".png",
@@ -54,7 +54,7 @@ impl Format {
         }
     }
 
-    /// By the name's extension, in either case.
+    /// By the name's extension, case-insensitive.
     pub fn of_name(path: &Path) -> Option<Self> {
         match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {
             "png" => Some(Format::Png),
@@ -69,8 +69,8 @@ impl Format {
         }
     }
 
-    /// By the first bytes. SRTM tiles have none; read as one, each of these would begin with a
-    /// height above 18 000 m or below -30 000 m, so no tile is taken for another format.
+    /// By signature. SRTM tiles have none. Read as a tile, each signature would be a height above
+    /// 18 000 m or below -30 000 m, so no tile is mistaken for another format.
     fn of_bytes(bytes: &[u8]) -> Option<Self> {
         const STARTS: [(&[u8], Format); 9] = [
             (b"\x89PNG\r\n\x1a\n", Format::Png),
@@ -87,8 +87,8 @@ impl Format {
     }
 }
 
-/// The format that the name claims, if it is one of `accepted` and the first bytes agree.
-pub(super) fn format(path: &Path, bytes: &[u8], accepted: &[Format]) -> Result<Format> {
+/// The name's format, if it is one of `accepted` and matches the signature.
+pub(crate) fn format(path: &Path, bytes: &[u8], accepted: &[Format]) -> Result<Format> {
     let format = Format::of_name(path).filter(|f| accepted.contains(f)).ok_or_else(|| {
         let found = match path.extension() {
             Some(extension) => format!("the extension .{}", extension.display()),
@@ -116,8 +116,8 @@ fn hex(bytes: &[u8]) -> String {
     bytes.iter().take(4).map(|b| format!("{b:02x}")).collect::<Vec<_>>().join(" ")
 }
 
-/// The whole of a regular file.
-pub(super) fn read(path: &Path) -> Result<Vec<u8>> {
+/// All bytes of a regular file.
+pub(crate) fn read(path: &Path) -> Result<Vec<u8>> {
     let io = |e| Error::io(path, e);
     let about = fs::metadata(path).map_err(io)?;
     if !about.is_file() {
@@ -137,8 +137,8 @@ pub(super) fn read(path: &Path) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Rows and columns as sizes in memory, if they are within what is read.
-pub(super) fn size(path: &Path, place: &str, rows: u64, cols: u64) -> Result<(usize, usize)> {
+/// Rows and columns as `usize`, if they are within the limits.
+pub(crate) fn size(path: &Path, place: &str, rows: u64, cols: u64) -> Result<(usize, usize)> {
     let side = 1..=SIDE_LIMIT;
     if !side.contains(&rows) || !side.contains(&cols) || rows * cols > SAMPLE_LIMIT {
         return Err(Error::file(
@@ -152,7 +152,7 @@ pub(super) fn size(path: &Path, place: &str, rows: u64, cols: u64) -> Result<(us
 }
 
 /// Refuses a header that claims more bytes of samples than `held` bytes could expand to.
-pub(super) fn plausible(
+pub(crate) fn plausible(
     path: &Path,
     place: &str,
     claimed: u64,
@@ -170,8 +170,8 @@ pub(super) fn plausible(
     Ok(())
 }
 
-/// Memory for `count` values, all zero, or the system's refusal.
-pub(super) fn zeros<T: Copy + Default>(path: &Path, count: usize) -> Result<Vec<T>> {
+/// Memory for `count` zeros, or the system's refusal.
+pub(crate) fn zeros<T: Copy + Default>(path: &Path, count: usize) -> Result<Vec<T>> {
     let mut values = Vec::new();
     values
         .try_reserve_exact(count)
@@ -180,15 +180,15 @@ pub(super) fn zeros<T: Copy + Default>(path: &Path, count: usize) -> Result<Vec<
     Ok(values)
 }
 
-/// A decoder's complaint as the `found` of one sentence: one line, no full stop.
-pub(super) fn complaint(error: impl std::fmt::Display) -> String {
+/// A decoder's error as the `found` of a message: one line, no full stop.
+pub(crate) fn complaint(error: impl std::fmt::Display) -> String {
     let text = error.to_string().replace(|c: char| c.is_control(), " ");
     let words: Vec<_> = text.split_whitespace().collect();
     words.join(" ").trim_end_matches('.').to_owned()
 }
 
-/// [`complaint`] of the `image` crate, whose word for a short file is the reader's.
-pub(super) fn reason(error: image::ImageError) -> String {
+/// [`complaint`] for the `image` crate, which reports a truncated file as the reader does.
+pub(crate) fn reason(error: image::ImageError) -> String {
     match error {
         image::ImageError::IoError(e) if e.kind() == std::io::ErrorKind::UnexpectedEof => {
             "the end of the file".to_owned()

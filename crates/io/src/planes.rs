@@ -1,21 +1,23 @@
-//! Results read back as plain planes, to be compared.
+//! Results read back as plain planes, for comparison.
 
-use super::npy::Array;
-use super::open::{self, Format};
-use super::{exr, hdr, png};
+use crate::environment::hdr;
+use crate::exr;
+use crate::npy::Array;
+use crate::open::{self, Format};
+use crate::png;
 use ridgelight::{Error, Result};
 use std::path::Path;
 
-/// Named channels of one size, row-major. Anything may stand in them, NaN included.
+/// Named channels of one size, row-major. Values are arbitrary, NaN included.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Planes {
     /// Number of rows.
     pub rows: usize,
     /// Number of columns.
     pub cols: usize,
-    /// One name a plane.
+    /// One name per plane.
     pub names: Vec<String>,
-    /// One value a pixel.
+    /// One value per pixel.
     pub planes: Vec<Vec<f32>>,
 }
 
@@ -27,15 +29,15 @@ pub struct Planes {
 ///
 /// # Errors
 /// A file that cannot be read or decoded; other dimensions; sizes beyond 65 536 a side or 2³⁰
-/// samples a plane.
+/// values per plane.
 pub fn read_planes(path: &Path) -> Result<Planes> {
     parse_planes(path, &open::read(path)?)
 }
 
-/// [`read_planes`] from bytes in memory; `name` gives the format and stands in error messages.
+/// [`read_planes`] from bytes in memory. `name` sets the format and appears in messages.
 ///
 /// # Errors
-/// As [`read_planes`], but for those of reading.
+/// As [`read_planes`], except file access.
 pub fn parse_planes(name: &Path, bytes: &[u8]) -> Result<Planes> {
     match open::format(name, bytes, &[Format::Exr, Format::Npy, Format::Png, Format::Hdr])? {
         Format::Exr => {

@@ -1,8 +1,8 @@
 //! PNG: grey heights, colour maps, and pictures of results.
 
-use super::atomic::Temporary;
-use super::heights::Raster;
-use super::open;
+use crate::heights::Raster;
+use crate::open;
+use crate::write::atomic::Temporary;
 use ::png::{BitDepth, ColorType as Kind, Encoder, EncodingError};
 use image::codecs::png::PngDecoder;
 use image::{ColorType, ImageDecoder, ImageError, Limits};
@@ -10,13 +10,13 @@ use ridgelight::scene::Tone;
 use ridgelight::{Error, Result};
 use std::{io::Cursor, path::Path};
 
-/// A decoded picture: samples of 8 or 16 bits; palettes and smaller depths are expanded, and the
+/// A decoded picture with samples of 8 or 16 bits. Palettes and smaller depths are expanded; the
 /// grey or colour of a `tRNS` chunk has become alpha.
 struct Samples {
     rows: usize,
     cols: usize,
     colour: ColorType,
-    /// Bits a sample in the file.
+    /// Bits per sample in the file.
     depth: u8,
     /// 255 or 65 535.
     white: u16,
@@ -29,16 +29,16 @@ fn decode(path: &Path, bytes: &[u8]) -> Result<Samples> {
     let wrong = |place: &str, e: ImageError| {
         Error::file(path, place, open::reason(e), "a whole and valid PNG")
     };
-    // What the decoder may take beside the picture: rows of up to SIDE_LIMIT pixels of 8 bytes,
-    // and texts and profiles, which it keeps (a chunk's buffer doubles as it grows, and is copied).
+    // The decoder's memory beside the picture: rows of up to SIDE_LIMIT pixels of 8 bytes, and
+    // texts and profiles, which it keeps (a chunk's buffer doubles as it grows, and is copied).
     let mut limits = Limits::no_limits();
     limits.max_alloc = Some(4 * bytes.len() as u64 + (4 << 20));
     let decoder =
         PngDecoder::with_limits(Cursor::new(bytes), limits).map_err(|e| wrong("header", e))?;
     let (cols, rows) = decoder.dimensions();
     let (rows, cols) = open::size(path, "header", rows.into(), cols.into())?;
-    // The decoder tells only what it expands to. IHDR, always first and with its CRC now checked,
-    // has the depth at byte 24 and the colour type at 25.
+    // The decoder reports only the expanded type. IHDR, always first and with its CRC checked by
+    // now, has the depth at byte 24 and the colour type at 25.
     let depth = bytes[24];
     let channels = [1, 0, 3, 1, 2, 0, 4][usize::from(bytes[25])];
     let line = (cols as u64 * channels * u64::from(depth)).div_ceil(8);
@@ -57,7 +57,7 @@ fn decode(path: &Path, bytes: &[u8]) -> Result<Samples> {
         decoder.read_image(&mut values).map_err(|e| wrong("image data", e))?;
         values.into_iter().map(u16::from).collect()
     };
-    // The decoder stops with the last row. A file that goes no further was cut.
+    // The decoder stops after the last row. A file that ends there was truncated.
     if !bytes.windows(END.len()).rev().any(|w| w == END) {
         return Err(Error::file(path, "end", "no IEND chunk", "a whole and valid PNG"));
     }
@@ -67,8 +67,8 @@ fn decode(path: &Path, bytes: &[u8]) -> Result<Samples> {
 /// The chunk that ends every PNG: no bytes, its name, the CRC of that.
 const END: &[u8] = b"\0\0\0\0IEND\xae\x42\x60\x82";
 
-/// Grey of 8 or 16 bits as heights, one count one metre; transparent samples are voids.
-pub(super) fn heights(path: &Path, bytes: &[u8]) -> Result<Raster> {
+/// Grey of 8 or 16 bits as heights in metres; transparent pixels are voids.
+pub(crate) fn heights(path: &Path, bytes: &[u8]) -> Result<Raster> {
     let png = decode(path, bytes)?;
     if png.colour.has_color() {
         let found = "a palette, or red, green and blue";
@@ -89,19 +89,19 @@ pub(super) fn heights(path: &Path, bytes: &[u8]) -> Result<Raster> {
 }
 
 /// A picture in linear light.
-pub(super) struct Linear {
+pub(crate) struct Linear {
     pub rows: usize,
     pub cols: usize,
-    /// Whether red, green and blue are one grey channel in the file.
+    /// Whether the file has one grey channel.
     pub grey: bool,
     pub rgb: Vec<[f32; 3]>,
-    /// Opacity, 0 to 1, not through the transfer curve.
+    /// Opacity, 0 to 1, without the transfer curve.
     pub alpha: Option<Vec<f32>>,
 }
 
-/// Any PNG in linear light: samples are sRGB-encoded, at 8 bits and at 16, whatever a `gAMA` chunk
-/// or profile says.
-pub(super) fn linear(path: &Path, bytes: &[u8]) -> Result<Linear> {
+/// Any PNG in linear light. Samples are sRGB-encoded, at 8 and 16 bits; `gAMA` chunks and profiles
+/// are ignored.
+pub(crate) fn linear(path: &Path, bytes: &[u8]) -> Result<Linear> {
     let png = decode(path, bytes)?;
     let curve: Vec<f32> =
         (0..=png.white).map(|v| decoded(f64::from(v) / f64::from(png.white)) as f32).collect();
@@ -125,12 +125,11 @@ fn decoded(v: f64) -> f64 {
 
 /// Writes an 8-bit RGB picture of linear radiance, with alpha where `transparent` is given.
 ///
-/// `transparent` marks pixels, row-major like `rgb`, that become black with alpha 0; their
-/// radiance is not looked at. `metadata` becomes texts of the file: tEXt where it is ASCII, else iTXt
-/// (UTF-8).
+/// `transparent` marks pixels, row-major like `rgb`, that become black with alpha 0; their radiance
+/// is ignored. `metadata` becomes text chunks: tEXt for ASCII, else iTXt (UTF-8).
 ///
 /// # Errors
-/// As [`encode_png`]; a destination that cannot be written to.
+/// As [`encode_png`]; a destination that cannot be written.
 pub fn write_png(
     path: &Path,
     rows: usize,
@@ -140,18 +139,18 @@ pub fn write_png(
     tone: Tone,
     metadata: &[(String, String)],
 ) -> Result<()> {
-    // By way of memory: the encoder loses the error of writing its last chunk.
+    // Encoded in memory: the encoder loses the error of writing its last chunk.
     let png = encode_png(rows, cols, rgb, transparent, tone, metadata)?;
     let mut file = Temporary::create(path)?;
     file.write(&png)?;
     file.finish()
 }
 
-/// What [`write_png`] writes, as bytes.
+/// The bytes of [`write_png`].
 ///
 /// # Errors
-/// Lengths that are not `rows`·`cols`; NaN outside transparent pixels (named by row and column);
-/// an exposure out of range; names of metadata that PNG does not take (empty, over 79 bytes).
+/// Lengths that are not `rows`·`cols`; NaN outside transparent pixels (with row and column); an
+/// exposure out of range; metadata names that PNG does not allow (empty, over 79 bytes).
 pub fn encode_png(
     rows: usize,
     cols: usize,
@@ -230,7 +229,7 @@ mod tests {
                 assert_eq!(usize::from(tone.code(step.next_down())), code - 1, "{exposure}");
             }
         }
-        // No radiance has a code above 0, but at the least exposure infinity has every.
+        // No radiance has a code above 0, but at the least exposure infinity has every code.
         assert!(Tone { exposure: 0.0 }.steps()[1..].iter().all(|s| s.is_nan()));
         assert!(Tone { exposure: 1e-45 }.steps()[1..].iter().all(|s| s.is_infinite()));
     }
@@ -250,7 +249,7 @@ mod tests {
             [-1.0, 0.0, 0.5, 9.0, f32::INFINITY].map(|v| tone.code(v)),
             [0, 0, 255, 255, 255]
         );
-        // Middle grey: linear 0.214 041 is sRGB 0.5, code 127.5 rounds to 128 or 127.
+        // Middle grey: linear 0.214 041 is sRGB 0.5; code 127.5 rounds to 128 or 127.
         assert!((127..=128).contains(&tone.code(0.107_020_5)));
     }
 }

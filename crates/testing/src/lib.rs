@@ -1,23 +1,22 @@
-//! Results that a repository keeps, for its tests: where one differs, what was got, what was wanted and the
-//! difference are left to be looked at.
+//! Golden images for tests: on failure the result, the golden and their difference are written to files.
 //!
-//! `RIDGELIGHT_BLESS=1` keeps what is got instead; refused where `CI` is set.
+//! `RIDGELIGHT_BLESS=1` writes the result as the new golden instead. It is refused where `CI` is set.
 //!
 //! ```no_run
 //! use std::path::Path;
 //! use ridgelight_testing as golden;
 //! # use ridgelight::gpu::Pixels;
 //! # fn test(pixels: Pixels) -> ridgelight::Result<()> {
-//! // Of `Headless::pixels`, 64 rows of 64 texels.
+//! // `pixels` from `Headless::pixels`, 64 rows of 64 texels.
 //! let lit = golden::planes(&pixels, [64, 64])?;
-//! let off = golden::hold(&lit, Path::new("tests/goldens/lit.exr"), 1e-5, Path::new("target/goldens"))?;
-//! assert!(off <= 1.0, "the worst value, in tolerances");
+//! let error = golden::hold(&lit, Path::new("tests/goldens/lit.exr"), 1e-5, Path::new("target/goldens"))?;
+//! assert!(error <= 1.0, "the largest error over the tolerance");
 //! # Ok(())
 //! # }
 //! ```
 //!
-//! Results of another driver differ by roundings: a tolerance above them (`ridgelight_cpu::tolerance`
-//! has those of single passes) is better than a golden for each.
+//! Drivers differ by rounding. Prefer a tolerance above it (`ridgelight_cpu::tolerance` has those of
+//! single passes) to one golden per driver.
 
 #![deny(clippy::missing_errors_doc)]
 
@@ -29,15 +28,15 @@ use ridgelight::{Error, Result};
 use ridgelight_io as files;
 use ridgelight_io::{Channels, Layer, Planes};
 
-/// Planes of an image of `rows` × `cols` texels: R, G and B of a colour (its alpha is left out), Y of one
-/// channel, 0, 1, 2 … of layers.
+/// Planes of an image of `rows` × `cols` texels: R, G and B of a colour without its alpha, Y of one
+/// channel, or 0, 1, 2 … of layers.
 ///
 /// # Errors
-/// Values that are no whole layers of that size.
+/// A number of values that is no multiple of a layer's.
 pub fn planes(pixels: &Pixels, [rows, cols]: [usize; 2]) -> Result<Planes> {
     let size = rows * cols * pixels.channels;
     if size == 0 || !pixels.values.len().is_multiple_of(size) {
-        let found = format!("{} values of {} a texel", pixels.values.len(), pixels.channels);
+        let found = format!("{} values, {} per texel", pixels.values.len(), pixels.channels);
         return Err(Error::setting(&pixels.name, found, format!("layers of {rows} × {cols}")));
     }
     let layers: Vec<&[f32]> = pixels.values.chunks_exact(size).collect();
@@ -54,23 +53,39 @@ pub fn planes(pixels: &Pixels, [rows, cols]: [usize; 2]) -> Result<Planes> {
     Ok(Planes { rows, cols, names, planes })
 }
 
-/// Holds a result to the file kept for it, .exr or .npy ([`files::read_planes`]): how far the worst value is off,
-/// over `tolerance`. NaN is equal to NaN alone.
+/// Compares a result with a golden, .exr or .npy ([`files::read_planes`]), and returns the largest error over
+/// `tolerance`. NaN equals only NaN.
 ///
 /// # Errors
-/// A value beyond the tolerance, another size, other names: with the place, and with the names of
-/// `KEPT.got.exr`, `KEPT.want.exr` and, of equal shapes, `KEPT.diff.exr`, written to `folder`, which is made
-/// where it is missing. Files that cannot be read or written.
-pub fn hold(got: &Planes, kept: &Path, tolerance: f64, folder: &Path) -> Result<f64> {
+/// - A value beyond the tolerance, another size or other names. The message names the place and the files
+///   `GOLDEN.got.exr`, `GOLDEN.want.exr` and, for equal shapes, `GOLDEN.diff.exr`, written to `folder`, which is
+///   made if missing.
+/// - A missing golden. The result is written beside it as `NAME.new.EXT`.
+/// - Files that cannot be read or written.
+pub fn hold(got: &Planes, golden: &Path, tolerance: f64, folder: &Path) -> Result<f64> {
     let is_set = |name: &str, value: &str| std::env::var_os(name).is_some_and(|v| v == value);
     if is_set("RIDGELIGHT_BLESS", "1") {
         if std::env::var_os("CI").is_some() {
             return Err(Error::setting("RIDGELIGHT_BLESS", "CI set too", "one of them"));
         }
-        keep(kept, got)?;
+        write(golden, got)?;
+    } else if !golden.exists() {
+        let mut name = golden.file_stem().unwrap_or_default().to_owned();
+        name.push(".new");
+        if let Some(extension) = golden.extension() {
+            name.push(".");
+            name.push(extension);
+        }
+        let new = golden.with_file_name(name);
+        write(&new, got)?;
+        let expected = format!(
+            "a golden; check {} and rename it, or set RIDGELIGHT_BLESS=1 to write the golden",
+            new.display()
+        );
+        return Err(Error::file(golden, "golden", "no file", expected));
     }
-    let want = in_order(files::read_planes(kept)?, &got.names);
-    let wrong = match worst(got, &want, tolerance) {
+    let want = in_order(files::read_planes(golden)?, &got.names);
+    let failure = match worst(got, &want, tolerance) {
         Ok((ratio, _)) if ratio <= 1.0 => return Ok(ratio),
         Ok((_, (plane, i))) => {
             let place =
@@ -78,25 +93,25 @@ pub fn hold(got: &Planes, kept: &Path, tolerance: f64, folder: &Path) -> Result<
             let [found, expected] = [got, &want].map(|p| p.planes[plane][i].to_string());
             (place, found, format!("{expected} within {tolerance:e}"))
         }
-        Err((found, expected)) => ("the whole".to_owned(), found, expected),
+        Err((found, expected)) => ("shape".to_owned(), found, expected),
     };
     std::fs::create_dir_all(folder).map_err(|source| Error::io(folder, source))?;
-    let name = kept.file_name().unwrap_or(OsStr::new("golden")).to_string_lossy();
-    let left = |what: &str| -> PathBuf { folder.join(format!("{name}.{what}.exr")) };
-    write_exr(&left("got"), got)?;
-    write_exr(&left("want"), &want)?;
+    let name = golden.file_name().unwrap_or(OsStr::new("golden")).to_string_lossy();
+    let output = |what: &str| -> PathBuf { folder.join(format!("{name}.{what}.exr")) };
+    write_exr(&output("got"), got)?;
+    write_exr(&output("want"), &want)?;
     let mut all = "got,want";
     if shape(got) == shape(&want) {
         let mut diff = got.clone();
         for (d, w) in diff.planes.iter_mut().flatten().zip(want.planes.iter().flatten()) {
             *d -= w;
         }
-        write_exr(&left("diff"), &diff)?;
+        write_exr(&output("diff"), &diff)?;
         all = "got,want,diff";
     }
-    let (place, found, expected) = wrong;
-    let see = left(&format!("{{{all}}}"));
-    Err(Error::file(kept, place, found, format!("{expected}; see {}", see.display())))
+    let (place, found, expected) = failure;
+    let see = output(&format!("{{{all}}}"));
+    Err(Error::file(golden, place, found, format!("{expected}; see {}", see.display())))
 }
 
 fn shape(planes: &Planes) -> (usize, usize, &[String]) {
@@ -105,15 +120,15 @@ fn shape(planes: &Planes) -> (usize, usize, &[String]) {
 
 type Place = (usize, usize);
 
-/// The largest |difference| over `tolerance`, with its plane and place there; else what is wrong with the whole.
+/// The largest |difference| over `tolerance`, with its plane and index; else both shapes, where they differ.
 fn worst(
     got: &Planes,
     want: &Planes,
     tolerance: f64,
 ) -> std::result::Result<(f64, Place), (String, String)> {
     if shape(got) != shape(want) {
-        let told = |p: &Planes| format!("{} × {} of {}", p.rows, p.cols, p.names.join(", "));
-        return Err((told(got), told(want)));
+        let text = |p: &Planes| format!("{} × {} of {}", p.rows, p.cols, p.names.join(", "));
+        return Err((text(got), text(want)));
     }
     let mut worst = (0.0, (0, 0));
     for (plane, (got, want)) in got.planes.iter().zip(&want.planes).enumerate() {
@@ -132,21 +147,21 @@ fn worst(
     Ok(worst)
 }
 
-/// Channels of an EXR are stored by name.
-fn in_order(kept: Planes, names: &[String]) -> Planes {
-    let place = |name: &String| kept.names.iter().position(|n| n == name);
+/// Planes in the order of `names`: an EXR stores channels by name.
+fn in_order(planes: Planes, names: &[String]) -> Planes {
+    let place = |name: &String| planes.names.iter().position(|n| n == name);
     let order: Option<Vec<usize>> = names.iter().map(place).collect();
-    match order.filter(|order| order.len() == kept.names.len()) {
+    match order.filter(|order| order.len() == planes.names.len()) {
         Some(order) => Planes {
             names: names.to_vec(),
-            planes: order.iter().map(|i| kept.planes[*i].clone()).collect(),
-            ..kept
+            planes: order.iter().map(|i| planes.planes[*i].clone()).collect(),
+            ..planes
         },
-        None => kept,
+        None => planes,
     }
 }
 
-fn keep(path: &Path, planes: &Planes) -> Result<()> {
+fn write(path: &Path, planes: &Planes) -> Result<()> {
     if path.extension().is_some_and(|e| e == "npy") {
         let shape = [planes.planes.len(), planes.rows, planes.cols];
         return files::write_npy_f32(path, &shape, planes.planes.iter().map(Vec::as_slice));
@@ -174,42 +189,56 @@ mod tests {
     }
 
     #[test]
-    fn what_differs_leaves_three_images() {
+    fn a_difference_writes_three_images() {
         let folder = tempfile::tempdir().unwrap();
-        let (kept, left) = (folder.path().join("seen.exr"), folder.path().join("left"));
+        let (golden, output) = (folder.path().join("lit.exr"), folder.path().join("left"));
         let want = two_by_three();
-        keep(&kept, &want).unwrap();
-        assert_eq!(hold(&want, &kept, 1e-6, &left).unwrap(), 0.0);
-        assert!(!left.exists());
+        write(&golden, &want).unwrap();
+        assert_eq!(hold(&want, &golden, 1e-6, &output).unwrap(), 0.0);
+        assert!(!output.exists());
         let mut got = want.clone();
         got.planes[0][4] += 5e-7;
         // An ulp of 4 is 4.8e-7.
-        let ratio = hold(&got, &kept, 1e-6, &left).unwrap();
+        let ratio = hold(&got, &golden, 1e-6, &output).unwrap();
         assert!(ratio > 0.0 && ratio <= 1.0, "{ratio}");
         got.planes[0][4] = 4.5;
-        let wrong = hold(&got, &kept, 1e-6, &left).unwrap_err().to_string();
-        for said in [
-            "seen.exr: Y: row 1, column 1",
+        let wrong = hold(&got, &golden, 1e-6, &output).unwrap_err().to_string();
+        for part in [
+            "lit.exr: Y: row 1, column 1",
             "found 4.5",
             "expected 4 within 1e-6",
             "{got,want,diff}",
         ] {
-            assert!(wrong.contains(said), "{said} in {wrong}");
+            assert!(wrong.contains(part), "{part} in {wrong}");
         }
         let read = |what: &str| {
-            files::read_planes(&left.join(format!("seen.exr.{what}.exr"))).unwrap().planes
+            files::read_planes(&output.join(format!("lit.exr.{what}.exr"))).unwrap().planes
         };
         assert_eq!((read("got")[0][4], read("want")[0][4], read("diff")[0][4]), (4.5, 4.0, 0.5));
     }
 
     #[test]
-    fn no_number_another_size_and_other_names_are_seen() {
+    fn a_missing_golden_is_written_as_new() {
         let folder = tempfile::tempdir().unwrap();
-        let kept = folder.path().join("seen.npy");
+        let (golden, output) = (folder.path().join("lit.exr"), folder.path().join("output"));
+        let got = two_by_three();
+        let message = hold(&got, &golden, 1e-6, &output).unwrap_err().to_string();
+        for part in ["lit.exr: golden: found no file", "lit.new.exr", "RIDGELIGHT_BLESS=1"] {
+            assert!(message.contains(part), "{part} in {message}");
+        }
+        assert!(!golden.exists() && !output.exists());
+        std::fs::rename(folder.path().join("lit.new.exr"), &golden).unwrap();
+        assert_eq!(hold(&got, &golden, 1e-6, &output).unwrap(), 0.0);
+    }
+
+    #[test]
+    fn nan_size_and_names_are_compared() {
+        let folder = tempfile::tempdir().unwrap();
+        let golden = folder.path().join("lit.npy");
         let want = Planes { names: vec!["0".to_owned()], ..two_by_three() };
-        keep(&kept, &want).unwrap();
+        write(&golden, &want).unwrap();
         let refuses =
-            |got: &Planes| hold(got, &kept, f64::MAX, folder.path()).unwrap_err().to_string();
+            |got: &Planes| hold(got, &golden, f64::MAX, folder.path()).unwrap_err().to_string();
         let mut got = want.clone();
         got.planes[0][0] = f32::NAN;
         assert!(refuses(&got).contains("row 0, column 0: found NaN"), "{}", refuses(&got));
@@ -226,7 +255,7 @@ mod tests {
     }
 
     #[test]
-    fn planes_are_colours_numbers_or_layers() {
+    fn planes_are_colours_scalars_or_layers() {
         let of = |channels: usize, values: Vec<f32>, size: [usize; 2]| {
             let pixels = Pixels { name: "lit".into(), channels, values };
             planes(&pixels, size).map(|p| (p.names.join(""), p.planes))

@@ -171,7 +171,7 @@ mod tests {
         [picture(false), picture(true)]
     }
 
-    fn seen(a: &[[f32; 3]], b: &[[f32; 3]], cols: usize) -> Vec<f32> {
+    fn flip(a: &[[f32; 3]], b: &[[f32; 3]], cols: usize) -> Vec<f32> {
         map(a, b, cols, PIXELS_PER_DEGREE).unwrap()
     }
 
@@ -182,7 +182,7 @@ mod tests {
     #[test]
     fn errors_are_those_of_the_published_program() {
         let [a, b] = pair();
-        let errors = seen(&b, &a, COLS);
+        let errors = flip(&b, &a, COLS);
         let tolerance = 3e-4 * 0.04;
         for (row, col, published) in [
             (0, 0, 0.010_792_24),
@@ -199,34 +199,34 @@ mod tests {
     }
 
     #[test]
-    fn equal_pictures_have_no_error_and_one_pixel_is_seen() {
+    fn equal_pictures_have_no_error_and_one_pixel_has() {
         let [a, _] = pair();
-        assert!(seen(&a, &a, COLS).iter().all(|e| *e == 0.0));
+        assert!(flip(&a, &a, COLS).iter().all(|e| *e == 0.0));
         let mut b = a.clone();
         b[20 * COLS + 9][1] += 0.1;
-        let e = FlipError::of(&seen(&b, &a, COLS), COLS).unwrap();
+        let e = FlipError::of(&flip(&b, &a, COLS), COLS).unwrap();
         assert!(e.mean > 0.0 && e.worst > 0.1, "{e:?}");
         assert!(e.worst_row.abs_diff(20) < 4 && e.worst_col.abs_diff(9) < 4, "{e:?}");
         // Beyond the display's range there is no difference.
         let bright = [[7.0, 1.0, f32::INFINITY], [-3.0, 0.0, f32::NEG_INFINITY]];
         let clipped = [[1.0; 3], [0.0; 3]];
-        assert_eq!(seen(&bright, &clipped, 2), [0.0; 2]);
+        assert_eq!(flip(&bright, &clipped, 2), [0.0; 2]);
     }
 
     /// The order of the pictures does not matter, nor does transposing or mirroring both.
     #[test]
-    fn pictures_may_change_places_and_be_turned() {
+    fn order_and_orientation_do_not_matter() {
         let [a, b] = pair();
-        let errors = seen(&a, &b, COLS);
-        assert_eq!(errors, seen(&b, &a, COLS));
+        let errors = flip(&a, &b, COLS);
+        assert_eq!(errors, flip(&b, &a, COLS));
         let transposed = |p: &Picture| -> Picture {
             (0..p.len()).map(|i| p[i % ROWS * COLS + i / ROWS]).collect()
         };
         let mirrored = |p: &Picture| -> Picture {
             p.chunks(COLS).flat_map(|r| r.iter().rev()).copied().collect()
         };
-        let turned = seen(&transposed(&a), &transposed(&b), ROWS);
-        let mirror = seen(&mirrored(&a), &mirrored(&b), COLS);
+        let turned = flip(&transposed(&a), &transposed(&b), ROWS);
+        let mirror = flip(&mirrored(&a), &mirrored(&b), COLS);
         for (i, e) in errors.iter().enumerate() {
             let (row, col) = (i / COLS, i % COLS);
             // Sums in another order, then rounded to f32.
@@ -241,10 +241,10 @@ mod tests {
         let [a, b] = pair();
         let tall = |p: &Picture| [p.as_slice(); 4].concat();
         let (a, b) = (tall(&a), tall(&b));
-        let all = seen(&a, &b, COLS);
+        let all = flip(&a, &b, COLS);
         let (from, to) = (70, 190);
         assert!((from..to).contains(&BAND) && a.len() > BAND * COLS);
-        let part = seen(&a[from * COLS..to * COLS], &b[from * COLS..to * COLS], COLS);
+        let part = flip(&a[from * COLS..to * COLS], &b[from * COLS..to * COLS], COLS);
         // 12 pixels are more than any filter reaches.
         for row in from + 12..to - 12 {
             let range = |row: usize| row * COLS..(row + 1) * COLS;
@@ -254,28 +254,28 @@ mod tests {
 
     /// As if both pictures were black there, and without a number there.
     #[test]
-    fn voids_are_black_in_both_and_left_out() {
+    fn voids_are_black_and_excluded() {
         let [a, b] = pair();
         let (mut holed, mut black) = (a.clone(), [a.clone(), b.clone()]);
         for i in 100..130 {
             holed[i][2] = f32::NAN;
             black.iter_mut().for_each(|p| p[i] = [0.0; 3]);
         }
-        let errors = seen(&holed, &b, COLS);
-        let shown = seen(&black[0], &black[1], COLS);
+        let errors = flip(&holed, &b, COLS);
+        let shown = flip(&black[0], &black[1], COLS);
         for (i, (e, s)) in errors.iter().zip(shown).enumerate() {
             assert!(if (100..130).contains(&i) { e.is_nan() } else { *e == s }, "{i}");
         }
         let pooled = FlipError::of(&errors, COLS).unwrap();
         assert_eq!((pooled.count, pooled.masked), (COLS * ROWS - 30, 30));
-        assert_eq!(seen(&holed, &a, COLS).iter().filter(|e| **e == 0.0).count(), pooled.count);
+        assert_eq!(flip(&holed, &a, COLS).iter().filter(|e| **e == 0.0).count(), pooled.count);
         assert!(FlipError::of(&[f32::NAN; 4], 2).is_err());
     }
 
     /// A pixel-wide checkerboard against its mean grey: plain at 10 pixels a degree, hardly seen
     /// at 200.
     #[test]
-    fn small_pixels_hide_what_large_ones_show() {
+    fn smaller_pixels_have_smaller_errors() {
         let board: Picture = (0..32 * 32).map(|i| [((i + i / 32) % 2) as f32; 3]).collect();
         let grey = vec![[0.5; 3]; board.len()];
         let mean = |ppd| FlipError::of(&map(&board, &grey, 32, ppd).unwrap(), 32).unwrap().mean;
@@ -286,7 +286,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_compared_is_refused() {
+    fn invalid_sizes_and_resolutions_are_refused() {
         let p = [[0.5; 3]; 6];
         assert!(map(&p, &p[..4], 2, 67.0).is_err());
         assert!(map(&p, &p, 4, 67.0).is_err());
@@ -300,7 +300,7 @@ mod tests {
     /// Errors of 1/8 to 4/8: sum 10/8, running sums 1 3 6 10 eighths; quarters of the sum are 2.5, 5
     /// and 7.5, first reached by the second, third and fourth. Rank 0.99 · 3 = 2.97.
     #[test]
-    fn pools_have_their_known_values() {
+    fn statistics_have_their_known_values() {
         let e = FlipError::of(&[0.25, f32::NAN, 0.5, 0.125, 0.375, f32::NAN], 3).unwrap();
         assert_eq!((e.count, e.masked, e.mean), (4, 2, 0.3125));
         assert_eq!(e.weighted_quartiles, [0.25, 0.375, 0.5]);

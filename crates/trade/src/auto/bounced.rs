@@ -62,8 +62,8 @@ impl BouncedLight {
 
 /// The planner's choice: see [`BounceEngine::Auto`].
 pub(super) fn engine(quality: &Quality) -> BounceEngine {
-    let has_lines =
-        quality.lines != Lines::Exact && !matches!(quality.method, Method::BruteForce | Method::Pyramid);
+    let has_lines = quality.lines != Lines::Exact
+        && !matches!(quality.method, Method::BruteForce | Method::Pyramid);
     match quality.bounces.engine {
         BounceEngine::Auto if has_lines => BounceEngine::Sweep,
         BounceEngine::Auto => BounceEngine::BruteForce,

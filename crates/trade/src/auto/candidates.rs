@@ -91,7 +91,8 @@ fn with_bounces(scene: &Scene, count: u32, all: &[Quality]) -> Vec<Quality> {
     let with = |q: &Quality| {
         let (quality, is_exact) = (*q, is_exact(q));
         // Without lines the planner itself uses brute force.
-        let is_other = move |b: &&(Bounces, u32)| !is_exact || b.0.engine != BounceEngine::BruteForce;
+        let is_other =
+            move |b: &&(Bounces, u32)| !is_exact || b.0.engine != BounceEngine::BruteForce;
         bounced
             .iter()
             .filter(is_other)

@@ -128,7 +128,7 @@ impl<'a> Chooser<'a> {
         }
         let most = most / self.doubt();
         let Some(best) = self.best() else {
-            return self.cheapest_within(most).or_else(|| self.most_accurate());
+            return self.fastest_within(most).or_else(|| self.most_accurate());
         };
         // Expected saving, in ln, times the probability of reaching the goal.
         let gain = |q: &Quality| {
@@ -143,9 +143,9 @@ impl<'a> Chooser<'a> {
 
     /// A control frame: finer than the goal, unless that is too slow.
     fn control(&self, most: f64) -> Option<Quality> {
-        let Some(holds) = self.cheapest_within(most) else { return self.most_accurate() };
+        let Some(holds) = self.fastest_within(most) else { return self.most_accurate() };
         let affordable = |q: &Quality| self.cost(q) <= DEAREST_CONTROL * self.cost(&holds);
-        self.cheapest_within(most / CONTROL).filter(affordable).or_else(|| {
+        self.fastest_within(most / CONTROL).filter(affordable).or_else(|| {
             let all = self.open().filter(|q| affordable(q));
             all.min_by(|a, b| self.error(a).total_cmp(&self.error(b))).copied()
         })
@@ -262,7 +262,7 @@ impl<'a> Chooser<'a> {
     pub fn lacks(&self) -> String {
         let is_drawn = |q: &Quality| self.trials.iter().any(|t| t.quality == *q);
         if self.trials.len() >= TRIALS {
-            format!("more than the {} frames that are drawn at most", self.trials.len())
+            format!("more than {} frames, the most that are tried", self.trials.len())
         } else if self.candidates.iter().any(|q| !is_drawn(q) && self.cost(q) > LONGEST_NS) {
             format!("frames that are expected to take more than {} s each", LONGEST_NS / 1e9)
         } else {
@@ -310,7 +310,7 @@ impl<'a> Chooser<'a> {
         })
     }
 
-    fn cheapest_within(&self, most: f64) -> Option<Quality> {
+    fn fastest_within(&self, most: f64) -> Option<Quality> {
         self.open()
             .filter(|q| self.error(q) <= most)
             .min_by(|a, b| self.cost(a).total_cmp(&self.cost(b)))
@@ -320,7 +320,7 @@ impl<'a> Chooser<'a> {
     /// The fastest of those nearly as accurate as the best.
     fn most_accurate(&self) -> Option<Quality> {
         let least = self.open().map(|q| self.error(q)).min_by(f64::total_cmp)?;
-        self.cheapest_within(NEARLY * least)
+        self.fastest_within(NEARLY * least)
     }
 }
 

@@ -5,7 +5,7 @@
 use super::model::Fitted;
 
 /// In the order of [`super::PARTS`].
-#[expect(clippy::approx_constant, reason = "fitted: that one is near 1/π is chance")]
+#[expect(clippy::approx_constant, reason = "fitted: one is near 1/π by coincidence")]
 pub(super) const FITTED: [Fitted; 4] = [
     Fitted {
         bias: 0.318,

@@ -178,17 +178,17 @@ impl Model {
     /// becomes the largest). P falls by K hᵀP. Below 1e-6 f32 frames do not resolve errors.
     pub fn learn(&mut self, quality: &Quality, error: f64, spread: f64) {
         let before = self.logs;
-        let told = error.max(1e-6).ln();
+        let measured = error.max(1e-6).ln();
         // Squares of parts with fitted powers have an error of about a tenth themselves.
         let noise = spread.powi(2) + 0.1_f64.powi(2);
         for _ in 0..STEPS {
             let (shares, sum) = self.shares(quality);
             let (variance, with) = self.variance(&shares);
             let moved = (0..ALL).map(|i| shares[i] * (before[i].unwrap_or(0.0) - self.log(i)));
-            let off = told - 0.5 * sum.ln() - moved.sum::<f64>();
+            let residual = measured - 0.5 * sum.ln() - moved.sum::<f64>();
             for i in 0..ALL {
                 if let (Some(log), Some(first)) = (&mut self.logs[i], before[i]) {
-                    let to = first + with[i] / (variance + noise) * off;
+                    let to = first + with[i] / (variance + noise) * residual;
                     *log += 0.5 * (to - *log);
                 }
             }
@@ -221,7 +221,7 @@ pub struct Costs {
     /// Of a frame with any such work.
     overheads_ns: [f64; KINDS],
     /// Work and nanoseconds of all frames.
-    seen: [Vec<[f64; 2]>; KINDS],
+    measured: [Vec<[f64; 2]>; KINDS],
 }
 
 /// Sweeps along lines, exact horizons, shading, tables, sphere lights, all else; bounces by each
@@ -250,7 +250,7 @@ impl Costs {
         Self {
             units_ns: [samples, samples, samples, 67.0, samples, 0.0, samples, samples, samples],
             overheads_ns: [0.0; KINDS],
-            seen: Default::default(),
+            measured: Default::default(),
         }
     }
 
@@ -272,9 +272,20 @@ impl Costs {
             None => [0.0, EXACT[0] + EXACT[1] * all / side],
         };
         let shade = SHADE[fuse_row(quality.fuse)][spacing];
-        let balls = f64::from(quality.sun_azimuths) * scene.lights.sphere_lights.len() as f64;
+        let sphere_slices =
+            f64::from(quality.sun_azimuths) * scene.lights.sphere_lights.len() as f64;
         let [walk, march, gather] = bounced::work(scene, quality);
-        [all * sweep, all * exact, all * shade, table, balls * SLICE, 1.0, walk, march, gather]
+        [
+            all * sweep,
+            all * exact,
+            all * shade,
+            table,
+            sphere_slices * SLICE,
+            1.0,
+            walk,
+            march,
+            gather,
+        ]
     }
 
     /// Expected nanoseconds of a frame.
@@ -303,8 +314,8 @@ impl Costs {
         }
         for (kind, work) in Self::work(scene, quality).into_iter().enumerate() {
             if work > 0.0 {
-                self.seen[kind].push([work, sums[kind]]);
-                [self.overheads_ns[kind], self.units_ns[kind]] = line(&self.seen[kind]);
+                self.measured[kind].push([work, sums[kind]]);
+                [self.overheads_ns[kind], self.units_ns[kind]] = line(&self.measured[kind]);
             }
         }
     }

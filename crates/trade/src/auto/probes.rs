@@ -5,12 +5,12 @@ use ridgelight_cpu::lit::Lit;
 use ridgelight_cpu::oracle::PERIOD_CAP;
 
 /// Probes: as many as [`CELLS`] allow, within these.
-const FEWEST: usize = 64;
+const MIN_PROBES: usize = 64;
 const MOST: usize = 1000;
 /// Cells that the oracle's rays may cross: some seconds of one core.
 const CELLS: usize = 1 << 29;
 /// Probes that measure the oracle's own error.
-const SELVES: usize = 64;
+const SELF_PROBES: usize = 64;
 /// Radius about a difference of pictures, in texels, within which other settings' errors are
 /// expected: a shadow of 40 cells moves its edge by this much for the 3° of 64 azimuths.
 const REACH: usize = 2;
@@ -26,7 +26,7 @@ pub struct Probes {
     /// Variance of the path-traced part, mean of the channels; 0 without bounces.
     noise: Vec<f64>,
     /// Root mean square error of the oracle: its difference to half its rays, and unsampled light.
-    off: f64,
+    own_rms: f64,
 }
 
 /// Path-traced bounced light of a texel.
@@ -66,20 +66,20 @@ impl Probes {
     pub const CONFIDENCE: f64 = 0.95;
 
     /// Standard normal deviate with 5 % beyond: for a single bound.
-    pub const ONE_LOOK: f64 = 1.645;
+    pub const ONE_BOUND: f64 = 1.645;
 
     /// With 5 %/4 beyond: four bounds hold together with [`CONFIDENCE`](Self::CONFIDENCE)
     /// (Bonferroni).
-    pub const FOUR_LOOKS: f64 = 2.241;
+    pub const FOUR_BOUNDS: f64 = 2.241;
 
     /// With 5 %/8 beyond: with bounces each of four bounds may fail by its probes or by unsampled
     /// light ([`UNSAMPLED_PROBABILITY`](Self::UNSAMPLED_PROBABILITY)), so eight bounds hold
     /// together.
-    pub const EACH_OF_FOUR_LOOKS: f64 = 2.498;
+    pub const EIGHT_BOUNDS: f64 = 2.498;
 
     /// Probability that more light is unsampled than estimated, for one of four bounds: the other 5
     /// %/8.
-    pub const CHANCE_OF_UNMET: f64 = (1.0 - Self::CONFIDENCE) / 8.0;
+    pub const UNSAMPLED_PROBABILITY: f64 = (1.0 - Self::CONFIDENCE) / 8.0;
 
     /// `wanted` texels without void, or all. The same `seed`, count and probabilities give the same
     /// texels. Runs on all cores.
@@ -96,7 +96,7 @@ impl Probes {
             .filter(|i| field.voids().is_none_or(|v| !v[*i]))
             .collect();
         if known.is_empty() {
-            return Err(Error::setting("field", "voids alone", "samples to light"));
+            return Err(Error::setting("field", "voids only", "at least one height"));
         }
         let weights: Vec<f64> =
             known.iter().map(|i| unsure.get(*i).copied().unwrap_or(0.0)).collect();
@@ -104,7 +104,7 @@ impl Probes {
         let places: Vec<usize> = picks.into_iter().map(|k| known[k]).collect();
         let lit = Lit::of(scene);
         let light = lights(&lit, field.cols(), &places);
-        let stride = places.len().div_ceil(SELVES);
+        let stride = places.len().div_ceil(SELF_PROBES);
         let some: Vec<usize> = places.iter().copied().step_by(stride).collect();
         let halves = lights(&lit.halved(), field.cols(), &some);
         let squares = halves.iter().enumerate().map(|(i, half)| {
@@ -112,9 +112,9 @@ impl Probes {
             let square: f64 = half.iter().zip(whole).map(|(h, w)| (h - w).powi(2) / 3.0).sum();
             factors[i * stride] * square
         });
-        let off = (squares.sum::<f64>() / some.len() as f64).sqrt();
+        let own_rms = (squares.sum::<f64>() / some.len() as f64).sqrt();
         let noise = vec![0.0; places.len()];
-        Ok(Self { is_whole: places.len() == known.len(), places, factors, light, noise, off })
+        Ok(Self { is_whole: places.len() == known.len(), places, factors, light, noise, own_rms })
     }
 
     /// Row-major indices of the texels; some may occur twice.
@@ -127,24 +127,24 @@ impl Probes {
     ///
     /// # Panics
     /// Another number of texels.
-    pub fn add_bounced(&mut self, traced: &[Traced], unmet: [f64; 3]) {
-        assert_eq!(traced.len(), self.len(), "one a probe");
+    pub fn add_bounced(&mut self, traced: &[Traced], unsampled: [f64; 3]) {
+        assert_eq!(traced.len(), self.len(), "one per probe");
         for ((light, noise), more) in self.light.iter_mut().zip(&mut self.noise).zip(traced) {
             light.iter_mut().zip(more.mean).for_each(|(l, m)| *l += m);
             *noise += more.standard_error.iter().map(|e| e * e).sum::<f64>() / 3.0;
         }
-        let unmet = unmet.iter().map(|u| u * u).sum::<f64>() / 3.0;
-        self.off = (self.off.powi(2) + unmet).sqrt();
+        let unsampled = unsampled.iter().map(|u| u * u).sum::<f64>() / 3.0;
+        self.own_rms = (self.own_rms.powi(2) + unsampled).sqrt();
     }
 
     /// Relative RMSE that Monte Carlo noise alone may add to the bound, at this many `deviations`,
     /// for a picture with a uniform relative `error`. The bound is the root of the sum of both
     /// squares. For `count` probes like these, whose paths leave a `share` of these probes'
     /// variance.
-    pub fn chance(&self, error: f64, share: f64, count: usize, deviations: f64) -> f64 {
+    pub fn path_noise(&self, error: f64, share: f64, count: usize, deviations: f64) -> f64 {
         let square = (error * self.mean()).powi(2);
         let each = self.noise.iter().zip(&self.factors);
-        let sum: f64 = each.map(|(n, f)| f.powi(2) * wavering(square, share * n)).sum();
+        let sum: f64 = each.map(|(n, f)| f.powi(2) * noise_variance(square, share * n)).sum();
         self.relative(deviations * (sum / self.len() as f64 / count as f64).sqrt())
     }
 
@@ -170,7 +170,8 @@ impl Probes {
             return;
         }
         let [own, more] = [self.len(), others.len()].map(|n| n as f64);
-        self.off = ((own * self.off.powi(2) + more * others.off.powi(2)) / (own + more)).sqrt();
+        self.own_rms =
+            ((own * self.own_rms.powi(2) + more * others.own_rms.powi(2)) / (own + more)).sqrt();
         self.places.extend(&others.places);
         self.factors.extend(&others.factors);
         self.light.extend(&others.light);
@@ -182,19 +183,19 @@ impl Probes {
         let side = scene.field.rows().max(scene.field.cols());
         // Rays over a periodic field may continue through that many periods.
         let periods = if scene.surface.border == Border::Periodic { PERIOD_CAP } else { 1 };
-        (CELLS / (Lit::of(scene).rays() * side * periods).max(1)).clamp(FEWEST, MOST)
+        (CELLS / (Lit::of(scene).rays() * side * periods).max(1)).clamp(MIN_PROBES, MOST)
     }
 
     /// The oracle's own error, over the mean radiance.
     pub fn own_error(&self) -> f64 {
-        self.relative(self.off.powi(2))
+        self.relative(self.own_rms.powi(2))
     }
 
     /// The part of the own error that [`add_bounced`](Self::add_bounced) has added since the `same`
     /// probes: unsampled light, over the mean radiance.
-    pub(super) fn off_since(&self, same: &Self) -> f64 {
+    pub(super) fn unsampled_error(&self, same: &Self) -> f64 {
         // Below 0 by rounding only: both are sums of squares.
-        self.relative((self.off.powi(2) - same.off.powi(2)).max(0.0))
+        self.relative((self.own_rms.powi(2) - same.own_rms.powi(2)).max(0.0))
     }
 
     /// Number of probes.
@@ -244,9 +245,9 @@ impl Probes {
             _ => own,
         };
         let relative = |s: f64| if s == 0.0 { 0.0 } else { s.sqrt() / square.mean };
-        let off = relative(self.off.powi(2));
+        let own = relative(self.own_rms.powi(2));
         let [error, at_most] = [square.estimate, square.at_most].map(|s| relative(s.max(0.0)));
-        let measured = Measured { error, at_most: at_most + off };
+        let measured = Measured { error, at_most: at_most + own };
         // Nothing is known of a picture with values beyond f32.
         if measured.at_most.is_finite() { measured } else { Measured::UNKNOWN }
     }
@@ -266,7 +267,7 @@ impl Probes {
             }
         }
         let count = self.places.len() as f64;
-        let (mut rest, mut shift, mut wavering) = (Vec::new(), 0.0, 0.0);
+        let (mut rest, mut shift, mut path_variance) = (Vec::new(), 0.0, 0.0);
         let lights = self.light.iter().zip(&self.noise);
         for ((i, factor), (light, noise)) in self.places.iter().zip(&self.factors).zip(lights) {
             let (mut square, mut of_control) = (-noise, 0.0);
@@ -277,13 +278,13 @@ impl Probes {
                 shift += factor * (l - k) / (3.0 * count);
             }
             rest.push(factor * (square - of_control));
-            wavering += factor.powi(2) * self::wavering(square.max(0.0), *noise);
+            path_variance += factor.powi(2) * self::noise_variance(square.max(0.0), *noise);
         }
         let mean_rest = rest.iter().sum::<f64>() / count;
         let variance =
             rest.iter().map(|r| (r - mean_rest).powi(2)).sum::<f64>() / (count - 1.0).max(1.0);
         // Where every texel is a probe only the path tracing is random.
-        let variance = if self.is_whole { wavering / count } else { variance };
+        let variance = if self.is_whole { path_variance / count } else { variance };
         let deviation = (variance / count).sqrt();
         let cubes = rest.iter().map(|r| (r - mean_rest).powi(3)).sum::<f64>() / count;
         let is_spread = variance > 0.0 && !self.is_whole;
@@ -297,7 +298,7 @@ impl Probes {
 
 /// Variance of (d + ε)² - s², for d² and the variance of ε, of fully correlated channels: 4 d² ε² +
 /// 2 ε⁴, and 2 ε⁴ of s², its estimate, as two batches leave it.
-fn wavering(square: f64, noise: f64) -> f64 {
+fn noise_variance(square: f64, noise: f64) -> f64 {
     4.0 * (square * noise + noise.powi(2))
 }
 
@@ -326,7 +327,7 @@ fn lights(lit: &Lit<'_>, cols: usize, places: &[usize]) -> Vec<[f64; 3]> {
 pub fn apart(a: &[Vec<f32>], b: &[Vec<f32>], cols: usize) -> Vec<f64> {
     let last = |planes: &[Vec<f32>], c: usize, i: usize| planes[c.min(planes.len() - 1)][i];
     let count = a[0].len();
-    let off: Vec<f64> = (0..count)
+    let differences: Vec<f64> = (0..count)
         .map(|i| (0..3).map(|c| f64::from((last(a, c, i) - last(b, c, i)).abs())).sum::<f64>())
         // Voids are NaN.
         .map(|d| if d.is_nan() { 0.0 } else { d })
@@ -335,7 +336,8 @@ pub fn apart(a: &[Vec<f32>], b: &[Vec<f32>], cols: usize) -> Vec<f64> {
         let (from, to) = (at.saturating_sub(REACH), (at + REACH).min(length - 1));
         (from..=to).map(|j| values[i - at * stride + j * stride]).fold(0.0, f64::max)
     };
-    let along: Vec<f64> = (0..count).map(|i| farthest(&off, i, i % cols, cols, 1)).collect();
+    let along: Vec<f64> =
+        (0..count).map(|i| farthest(&differences, i, i % cols, cols, 1)).collect();
     (0..count).map(|i| farthest(&along, i, i / cols, count / cols, cols)).collect()
 }
 
@@ -347,7 +349,7 @@ fn picks(weights: &[f64], wanted: usize, seed: u64) -> (Vec<usize>, Vec<f64>) {
     if wanted >= count {
         return ((0..count).collect(), vec![1.0; count]);
     }
-    let chance = |k: u64| unit(mixed(seed.wrapping_add((k + 1).wrapping_mul(STEP))));
+    let random = |k: u64| unit(mixed(seed.wrapping_add((k + 1).wrapping_mul(STEP))));
     let sum: f64 = weights.iter().sum();
     // In units of the mean probability.
     let of = |i: usize| {
@@ -356,7 +358,7 @@ fn picks(weights: &[f64], wanted: usize, seed: u64) -> (Vec<usize>, Vec<f64>) {
     let (mut all, mut factors) = (Vec::with_capacity(wanted), Vec::with_capacity(wanted));
     let (mut i, mut until) = (0, of(0));
     for k in 0..wanted {
-        let place = (k as f64 + chance(k as u64)) / wanted as f64 * count as f64;
+        let place = (k as f64 + random(k as u64)) / wanted as f64 * count as f64;
         while until < place && i + 1 < count {
             i += 1;
             until += of(i);

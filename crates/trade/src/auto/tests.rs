@@ -42,7 +42,7 @@ fn draw(scene: &Scene, quality: &Quality) -> Result<Drawn> {
 const WHOLE: (usize, u64) = (SIDE * SIDE, 7);
 
 fn error(probes: &Probes, picture: &[Vec<f32>], control: Option<&[Vec<f32>]>) -> Measured {
-    probes.error(picture, control, Probes::ONE_LOOK)
+    probes.error(picture, control, Probes::ONE_BOUND)
 }
 
 fn whole(scene: &Scene) -> Probes {
@@ -57,7 +57,7 @@ fn chosen(goal: Goal) -> Result<Chosen> {
 /// With every texel as a probe nothing is random: the choice reaches the goal, and half of its
 /// azimuths would not.
 #[test]
-fn the_cheapest_that_holds_is_chosen() {
+fn the_fastest_that_reaches_the_goal_is_chosen() {
     let scene = scene();
     let probes = whole(&scene);
     for most in [0.02, 0.003] {
@@ -67,26 +67,24 @@ fn the_cheapest_that_holds_is_chosen() {
         assert!(found.expected.error > 0.0 && found.expected.factor >= 1.0);
         let half = Quality { azimuths: quality.azimuths / 2, ..quality };
         if half.azimuths >= 8 {
-            let off = probes.error(&draw(&scene, &half).unwrap().planes, None, Probes::ONE_LOOK);
-            assert!(off.error > most, "{off:?} by half of {quality:?}");
+            let coarse =
+                probes.error(&draw(&scene, &half).unwrap().planes, None, Probes::ONE_BOUND);
+            assert!(coarse.error > most, "{coarse:?} by half of {quality:?}");
         }
     }
 }
 
 #[test]
-fn what_nothing_reaches_is_refused() {
-    for (goal, says) in [
+fn unreachable_goals_are_refused() {
+    for (goal, parts) in [
         (Goal::MaxError(1e-12), ["`max_error 0.000000000001`: needs exact light", "half"]),
-        (
-            Goal::MaxError(2e-5),
-            ["`max_error 0.00002`: needs more than the 18 frames", "nearest found"],
-        ),
+        (Goal::MaxError(2e-5), ["`max_error 0.00002`: needs more than 18 frames", "nearest found"]),
         (Goal::MaxCost(1e6), ["`time_budget 1`: needs 8.00 ms", "the limit is 1 ms"]),
     ] {
         let error = chosen(goal).unwrap_err();
         assert!(matches!(error, Error::Limit { .. }), "{error}");
         let text = error.to_string();
-        assert!(says.iter().all(|s| text.contains(s)), "{text}");
+        assert!(parts.iter().all(|s| text.contains(s)), "{text}");
     }
     for goal in [Goal::MaxError(0.0), Goal::MaxError(f64::NAN), Goal::MaxCost(-1.0)] {
         assert!(matches!(chosen(goal).unwrap_err(), Error::Setting { .. }));
@@ -128,10 +126,10 @@ fn expectations_are_monotone_and_learn() {
         assert!(costs.expected_ns(&scene, &of(few)) < costs.expected_ns(&scene, &of(many)));
     }
     let before = model.expected(&of(16));
-    let told = 3.0 * before.error;
-    model.learn(&of(16), told, 0.01);
+    let measured = 3.0 * before.error;
+    model.learn(&of(16), measured, 0.01);
     let after = model.expected(&of(16));
-    assert!((after.error / told).ln().abs() < 0.3, "{before:?} {after:?}");
+    assert!((after.error / measured).ln().abs() < 0.3, "{before:?} {after:?}");
     assert!(after.factor < before.factor);
 }
 
@@ -154,7 +152,7 @@ fn costs_have_an_overhead() {
 /// A device that takes a second per azimuth ends the search early, which is reported. Pilots that
 /// do not fit leave no confidence.
 #[test]
-fn what_ends_a_search_and_what_bounds_it_are_said() {
+fn search_limits_and_bounds_are_reported() {
     let scene = scene();
     let slow = choose(&scene, Goal::MaxError(3e-5), WHOLE, None, |quality| {
         let mut drawn = draw(&scene, quality)?;
@@ -182,7 +180,7 @@ const SEEDS: u64 = 40;
 /// slopes of a ridge that shades the field, with none elsewhere; the bare estimate would fail as a
 /// bound. Nearly no seed is refused: 128 slices have an error of 0.
 #[test]
-fn choices_hold_as_often_as_they_say() {
+fn bounds_hold_at_the_stated_confidence() {
     let sun = Sun { azimuth_rad: 0.3, elevation_rad: 0.6, diameter_rad: 0.3, irradiance: [1.0; 3] };
     let height = |i: usize| f64::from(u8::from((18..20).contains(&(i % LARGE)))) * 6.0;
     let heights: Vec<f64> = (0..LARGE * LARGE).map(height).collect();
@@ -196,11 +194,11 @@ fn choices_hold_as_often_as_they_say() {
     let mean = truth.iter().sum::<f64>() / truth.len() as f64;
     let picture = |quality: &Quality| -> Vec<f32> {
         let scale = (1.0 / f64::from(quality.sun_azimuths) - 1.0 / 128.0).max(0.0);
-        let off = |i: usize| {
+        let error_at = |i: usize| {
             let is_edge = (14..24).contains(&(i % LARGE));
             if is_edge { scale * (1.0 + (i as f64 * 2.4).sin()) } else { 0.02 * scale }
         };
-        truth.iter().enumerate().map(|(i, t)| (t + off(i)) as f32).collect()
+        truth.iter().enumerate().map(|(i, t)| (t + error_at(i)) as f32).collect()
     };
     let most = 0.01;
     let [mut held, mut bare, mut chosen] = [0_u64; 3];
@@ -213,36 +211,36 @@ fn choices_hold_as_often_as_they_say() {
         let Ok(found) = found else { continue };
         let drawn = picture(&found.trial.quality);
         let squares = drawn.iter().zip(&truth).map(|(d, t)| (f64::from(*d) - t).powi(2));
-        let off = (squares.sum::<f64>() / truth.len() as f64).sqrt() / mean;
+        let actual = (squares.sum::<f64>() / truth.len() as f64).sqrt() / mean;
         let Measured { error, at_most } = found.trial.measured;
         assert!(found.probes < LARGE * LARGE && at_most <= most, "{found:?}");
         chosen += 1;
-        held += u64::from(off <= at_most);
-        bare += u64::from(off <= error);
+        held += u64::from(actual <= at_most);
+        bare += u64::from(actual <= error);
     }
     let promised = Probes::CONFIDENCE
         - 3.0 * (Probes::CONFIDENCE * (1.0 - Probes::CONFIDENCE) / SEEDS as f64).sqrt();
-    let said = format!("{held} held, {bare} by the estimate, of {chosen} choices");
-    assert!(chosen as f64 >= 0.9 * SEEDS as f64, "{said}");
-    assert!(held as f64 >= promised * chosen as f64, "{said}");
-    assert!((bare as f64) < promised * chosen as f64, "{said}");
+    let text = format!("{held} held, {bare} by the estimate, of {chosen} choices");
+    assert!(chosen as f64 >= 0.9 * SEEDS as f64, "{text}");
+    assert!(held as f64 >= promised * chosen as f64, "{text}");
+    assert!((bare as f64) < promised * chosen as f64, "{text}");
 }
 
 /// Settings with lines reach the goal when first rendered and have an error of a tenth when
 /// rendered again, like errors in few texels: exact horizons are chosen in the end, not refused.
 #[test]
-fn where_all_that_was_chosen_fails_exact_horizons_are_drawn() {
+fn exact_horizons_are_the_last_resort() {
     let scene = scene();
     let is_exact = |q: &Quality| q.method == Method::BruteForce || q.lines == Lines::Exact;
-    let mut seen = Vec::new();
+    let mut rendered = Vec::new();
     let found = choose(&scene, Goal::MaxError(0.02), WHOLE, None, |quality| {
         let mut drawn = draw(&scene, quality)?;
         // Exact ones are a hundred times slower: only their accuracy is in their favour.
         drawn.passes[0].1 *= if is_exact(quality) { 100.0 } else { 1.0 };
-        if seen.contains(quality) && !is_exact(quality) {
+        if rendered.contains(quality) && !is_exact(quality) {
             drawn.planes[0].iter_mut().for_each(|v| *v *= 1.1);
         }
-        seen.push(*quality);
+        rendered.push(*quality);
         Ok(drawn)
     });
     let found = found.unwrap();
@@ -252,7 +250,7 @@ fn where_all_that_was_chosen_fails_exact_horizons_are_drawn() {
 
 /// Device errors unrelated to settings are returned.
 #[test]
-fn what_stands_in_every_settings_way_is_told() {
+fn errors_unrelated_to_settings_are_returned() {
     let too_long = || Error::Limit {
         what: "a field 9 samples long".into(),
         needs: "longer images".into(),
@@ -278,7 +276,7 @@ fn pictures_of_infinities_are_not_chosen() {
 /// on two peaks). The model then expects no azimuths to be worse than a measurement with fewer, and
 /// 1024 azimuths with exact horizons to be better than 64.
 #[test]
-fn one_bad_frame_does_not_spoil_the_others() {
+fn one_inaccurate_frame_leaves_other_expectations() {
     let scene = scene();
     let mut model = Model::of(&scene, &Statistics::of(&scene), 0);
     let rough = Quality { azimuths: 8, lines: Lines::FourCells, ..Quality::default() };
@@ -293,7 +291,7 @@ fn one_bad_frame_does_not_spoil_the_others() {
 /// 64 of 144 probes the control reduces the sampling error, and does not move the estimate beyond
 /// its bound.
 #[test]
-fn probes_see_a_wrong_picture_and_controls_help() {
+fn probes_measure_errors_and_controls_reduce_noise() {
     let scene = scene();
     let all = whole(&scene);
     let right = draw(&scene, &Quality { azimuths: 720, ..Quality::default() }).unwrap().planes;
@@ -302,8 +300,8 @@ fn probes_see_a_wrong_picture_and_controls_help() {
     let mean = right[0].iter().sum::<f32>() / right[0].len() as f32;
     let square = right[0].iter().map(|v| v * v).sum::<f32>() / right[0].len() as f32;
     let expected = f64::from(0.1 * square.sqrt() / mean);
-    let seen = error(&all, std::slice::from_ref(&bright), None);
-    assert!((seen.error / expected - 1.0).abs() < 1e-3, "{seen:?} {expected}");
+    let measured = error(&all, std::slice::from_ref(&bright), None);
+    assert!((measured.error / expected - 1.0).abs() < 1e-3, "{measured:?} {expected}");
     let few = Probes::of(&scene, 64, 1, &[]).unwrap();
     assert_eq!(few.len(), 64);
     let rough = draw(&scene, &Quality { azimuths: 8, ..Quality::default() }).unwrap().planes;
@@ -314,14 +312,14 @@ fn probes_see_a_wrong_picture_and_controls_help() {
     assert!(helped.at_most - helped.error < 0.1 * (alone.at_most - alone.error));
     // An error in one colour is measured beside grey light.
     let blue = vec![right[0].clone(), right[0].clone(), bright];
-    let seen = error(&all, &blue, None).error;
-    assert!((seen / expected * 3.0_f64.sqrt() - 1.0).abs() < 1e-3, "{seen}");
+    let measured = error(&all, &blue, None).error;
+    assert!((measured / expected * 3.0_f64.sqrt() - 1.0).abs() < 1e-3, "{measured}");
 }
 
 /// A sun or a key light needs horizons, with or without sphere lights, which compute their own
 /// visibility.
 #[test]
-fn key_lights_beside_balls_have_geometry() {
+fn key_lights_need_horizons_beside_sphere_lights() {
     use super::Part;
     use ridgelight::scene::{KeyLight, SphereLight};
     let key = KeyLight {
@@ -330,8 +328,8 @@ fn key_lights_beside_balls_have_geometry() {
         elevations_rad: [0.1, 0.2],
         radiance: [1.0; 3],
     };
-    let ball = SphereLight { position_m: [0.0; 3], radius_m: 1.0, radiance: [1.0; 3] };
-    let spheres = vec![ball];
+    let light = SphereLight { position_m: [0.0; 3], radius_m: 1.0, radiance: [1.0; 3] };
+    let spheres = vec![light];
     let of = |lights: Lights| Part::Geometry.is_in(&Scene { lights, ..scene() });
     assert!(of(Lights { keys: vec![key], sphere_lights: spheres.clone(), ..Lights::default() }));
     assert!(!of(Lights { sphere_lights: spheres, ..Lights::default() }));

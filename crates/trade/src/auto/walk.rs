@@ -86,12 +86,12 @@ const MOST_BATCHES: u32 = 256;
 /// ([`Probes::path_noise`]). The target increases the bound of such an error by √(1 + 0.4²), 8 %.
 /// Up to the limit, √(1 + 0.8²), 28 %, is accepted where [`MOST_BATCHES`] do no better; beyond it
 /// the goal is refused.
-const CHANCE_WANTED: f64 = 0.4;
-const CHANCE_AT_MOST: f64 = 0.8;
+const NOISE_TARGET: f64 = 0.4;
+const NOISE_LIMIT: f64 = 0.8;
 /// Unsampled light, as a share of that target.
-const UNMET: f64 = 0.25;
+const UNSAMPLED_SHARE: f64 = 0.25;
 /// The target where the goal is a time.
-const CHANCE_OF_TIMED: f64 = 0.002;
+const TIMED_NOISE_TARGET: f64 = 0.002;
 
 /// Where only bounds decide, probes are added up to this many times the first.
 const MOST_PROBES: usize = 4;
@@ -140,36 +140,37 @@ impl<'a> Judge<'a> {
         let direct = judge.probes.clone();
         judge.trace_first()?;
         let (wanted, error) = match goal {
-            Goal::MaxError(most) => (CHANCE_WANTED * most, most),
-            Goal::MaxCost(_) => (CHANCE_OF_TIMED, 0.0),
+            Goal::MaxError(most) => (NOISE_TARGET * most, most),
+            Goal::MaxCost(_) => (TIMED_NOISE_TARGET, 0.0),
         };
         let known = scene.field.rows() * scene.field.cols()
             - scene.field.voids().map_or(0, |v| v.iter().filter(|v| **v).count());
         let judging = known.min(CONFIRMING_PROBES * judge.probes.len());
-        let chance = |batches: u32, error: f64| {
+        let noise = |batches: u32, error: f64| {
             let share = f64::from(FIRST_BATCHES) / f64::from(batches);
-            judge.probes.chance(error, share, judging, Probes::EACH_OF_FOUR_LOOKS)
+            judge.probes.path_noise(error, share, judging, Probes::EIGHT_BOUNDS)
         };
-        let least = chance(MOST_BATCHES, error);
-        if error > 0.0 && least > CHANCE_AT_MOST * error {
+        let least = noise(MOST_BATCHES, error);
+        if error > 0.0 && least > NOISE_LIMIT * error {
             // The noise grows at most with the root of the error: each step halves the error of the
             // logarithm.
-            let told = (0..30).fold(error, |e, _| chance(MOST_BATCHES, e) / CHANCE_AT_MOST);
+            let reachable = (0..30).fold(error, |e, _| noise(MOST_BATCHES, e) / NOISE_LIMIT);
             return Err(Error::Limit {
                 what: format!("a goal of {}", figures(error)),
-                needs: "bounced light that is known so well".into(),
+                needs: "bounced light of that precision".into(),
                 limit: format!(
-                    "{}, as the chance of {} light paths from each of {judging} samples would be {}",
-                    figures(told),
+                    "{}: the standard error of {} paths from each of {judging} texels would be {}",
+                    figures(reachable),
                     MOST_BATCHES * REFERENCE_BATCH,
                     figures(least)
                 ),
             });
         }
         // Unsampled light falls in proportion to the number of paths.
-        let unmet = judge.probes.off_since(&direct) / (UNMET * wanted) * f64::from(FIRST_BATCHES);
+        let unsampled = judge.probes.unsampled_error(&direct) / (UNSAMPLED_SHARE * wanted)
+            * f64::from(FIRST_BATCHES);
         let enough = (FIRST_BATCHES..MOST_BATCHES)
-            .find(|b| chance(*b, error) <= wanted && unmet <= f64::from(*b))
+            .find(|b| noise(*b, error) <= wanted && unsampled <= f64::from(*b))
             .unwrap_or(MOST_BATCHES);
         if enough > FIRST_BATCHES {
             judge.batches = enough;
@@ -202,8 +203,11 @@ impl<'a> Judge<'a> {
         let seed = (self.seed ^ (self.seed >> 32)).wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 32;
         let traced = (bounced.trace)(probes.places(), self.batches, seed as u32)?;
         let of = (self.batches * REFERENCE_BATCH, probes.len());
-        let chance = Probes::CHANCE_OF_UNMET;
-        probes.add_bounced(&traced, unsampled_bounce_error(self.scene, bounced.count, of, chance));
+        let probability = Probes::UNSAMPLED_PROBABILITY;
+        probes.add_bounced(
+            &traced,
+            unsampled_bounce_error(self.scene, bounced.count, of, probability),
+        );
         Ok(())
     }
 
@@ -229,12 +233,16 @@ impl<'a> Judge<'a> {
     }
 
     fn judge(&mut self, chooser: &mut Chooser<'_>) {
-        let alone = |p: &Vec<Vec<f32>>| self.probes.error(p, None, Probes::ONE_LOOK).error;
-        let own =
-            self.pictures.iter().enumerate().filter_map(|(i, p)| Some((i, alone(p.as_ref()?))));
+        let without_control =
+            |p: &Vec<Vec<f32>>| self.probes.error(p, None, Probes::ONE_BOUND).error;
+        let own = self
+            .pictures
+            .iter()
+            .enumerate()
+            .filter_map(|(i, p)| Some((i, without_control(p.as_ref()?))));
         self.control = own.min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(i, _)| i);
         let control = self.control();
-        let measured = |p: &Vec<Vec<f32>>| self.probes.error(p, control, Probes::ONE_LOOK);
+        let measured = |p: &Vec<Vec<f32>>| self.probes.error(p, control, Probes::ONE_BOUND);
         let all: Vec<_> = self.pictures.iter().map(|p| p.as_ref().map(measured)).collect();
         chooser.judged(&all);
         for (i, (picture, trial)) in self.pictures.iter_mut().zip(chooser.trials()).enumerate() {
@@ -302,13 +310,13 @@ pub fn choose<'a>(
     {
         return Err(Error::Limit {
             what: format!("`max_error {most}`"),
-            needs: "exact light that is known so well".into(),
+            needs: "an oracle of that precision".into(),
             limit: format!(
-                "{}, by which half of its rays are off{}",
+                "{}, the difference to half of its rays{}",
                 figures(own),
                 match count {
                     0 => "",
-                    _ => ", or light that no path has met",
+                    _ => ", or unsampled light",
                 }
             ),
         });
@@ -316,15 +324,15 @@ pub fn choose<'a>(
     for (quality, drawn) in pilots {
         judge.take(&mut chooser, &quality, drawn)?;
     }
-    for look in 1..=CONFIRMATIONS {
-        let is_last = look == CONFIRMATIONS;
+    for attempt in 1..=CONFIRMATIONS {
+        let is_last = attempt == CONFIRMATIONS;
         while let Some(quality) = chooser.next().or_else(|| chooser.last_resort(is_last)) {
             match draw(&quality) {
                 Err(Error::Limit { .. }) => chooser.refuse(&quality),
                 drawn => judge.take(&mut chooser, &quality, drawn?)?,
             }
         }
-        let best = match CONFIRMATIONS - look {
+        let best = match CONFIRMATIONS - attempt {
             0 => chooser.exact(),
             1 => chooser.surest(),
             _ => chooser.best(),
@@ -333,9 +341,9 @@ pub fn choose<'a>(
         let quality = best.quality;
         let Drawn { planes, passes } = draw(&quality)?;
         let fresh = judge.fresh(CONFIRMING_PROBES * probes)?;
-        let looks = if count > 0 { Probes::EACH_OF_FOUR_LOOKS } else { Probes::FOUR_LOOKS };
+        let deviations = if count > 0 { Probes::EIGHT_BOUNDS } else { Probes::FOUR_BOUNDS };
         let ns = passes.iter().map(|p| p.1).sum();
-        let measured = fresh.error(&planes, judge.control(), looks);
+        let measured = fresh.error(&planes, judge.control(), deviations);
         let trial = chooser.confirmed(&quality, measured, ns).copied();
         if let Some(trial) = trial.filter(|t| goal.is_reached(t)) {
             return Ok(Chosen {

@@ -101,7 +101,7 @@ mod tests {
     /// By hand: none covers (1, 9), (2, 4), (4, 3) and (9, 0); (2, 5) and (5, 3) are covered; of
     /// the two (4, 3) the first stays.
     #[test]
-    fn a_frontier_is_what_nothing_covers() {
+    fn the_frontier_has_no_covered_point() {
         let all = values(&[
             (9.0, 0.0),
             (4.0, 3.0),
@@ -135,7 +135,7 @@ mod tests {
     }
 
     #[test]
-    fn bounds_are_kept_or_said_to_be_broken() {
+    fn broken_bounds_are_reported() {
         let all = values(&[(1.0, 8.0), (2.0, 3.0), (3.0, 2.5), (8.0, 1.0), (4.0, 2.6)]);
         let pick = |rule| recommend(&all, rule).map(|r| (r.point, r.holds)).unwrap();
         assert_eq!(pick(Rule::MaxError(2.7)), (2, true));

@@ -4,8 +4,8 @@
 //! Hull storage has no ladder: it costs time and never changes the result.
 
 use ridgelight::scene::{
-    Basis, BounceEngine, BounceSpecular, Bounces, Fuse, LightBasis, Lights, Lines, Method, Precision,
-    Quality, Scene,
+    Basis, BounceEngine, BounceSpecular, Bounces, Fuse, LightBasis, Lights, Lines, Method,
+    Precision, Quality, Scene,
 };
 use std::ops::RangeInclusive;
 
@@ -22,7 +22,7 @@ pub struct Ladder {
     /// Index of the default step.
     pub default: usize,
     /// What the slower end buys.
-    pub dearer: &'static str,
+    pub slower: &'static str,
     /// Applies a step to a quality.
     set: fn(&mut Quality, usize),
     /// Whether it has no effect beside the other settings.
@@ -49,7 +49,7 @@ const PRECISIONS: [Precision; 3] = [Precision::Packed, Precision::F16, Precision
 
 const BOUNCE_ENGINES: [BounceEngine; 3] =
     [BounceEngine::Pyramid, BounceEngine::Auto, BounceEngine::BruteForce];
-const BOUNCE_GLOSSES: [BounceSpecular; 3] =
+const BOUNCE_SPECULARS: [BounceSpecular; 3] =
     [BounceSpecular::Scalar, BounceSpecular::VectorF16, BounceSpecular::Vector];
 const BOUNCE_AZIMUTHS: [u32; 4] = [8, 16, 32, 64];
 const LEVEL_STEPS: [u32; 5] = [1, 2, 4, 8, 16];
@@ -64,27 +64,28 @@ fn has_no_levels(quality: &Quality) -> bool {
 }
 
 /// The lights with radiance above 0: for others no setting changes anything.
-fn shining(lights: &Lights) -> Lights {
+fn nonzero_lights(lights: &Lights) -> Lights {
     let is_lit = |c: &[f32; 3]| c.iter().any(|v| *v > 0.0);
-    let mut shining = lights.clone();
-    shining.sky = lights.sky.filter(is_lit);
-    shining.suns.retain(|sun| is_lit(&sun.irradiance));
-    shining.keys.retain(|key| is_lit(&key.radiance));
-    shining.sphere_lights.retain(|ball| is_lit(&ball.radiance));
-    shining
+    let mut kept = lights.clone();
+    kept.sky = lights.sky.filter(is_lit);
+    kept.suns.retain(|sun| is_lit(&sun.irradiance));
+    kept.keys.retain(|key| is_lit(&key.radiance));
+    kept.sphere_lights.retain(|light| is_lit(&light.radiance));
+    kept
 }
 
 /// Whether the surface has Phong specular.
-fn has_lobe(scene: &Scene) -> bool {
-    scene.surface.specular.as_ref().is_some_and(|lobe| lobe.largest().scale > 0.0)
+fn has_specular(scene: &Scene) -> bool {
+    scene.surface.specular.as_ref().is_some_and(|specular| specular.largest().scale > 0.0)
 }
 
 /// The ladders that affect a scene with this many bounces: no azimuths without a sky, no table
 /// without an environment. Phong specular is lit by harmonics only; its bounces use pyramids only,
 /// at every texel.
 pub fn ladders(scene: &Scene, bounces: u32) -> Vec<Ladder> {
-    let (lights, has_lobe) = (&shining(&scene.lights), has_lobe(scene));
-    let spell = |setting: &str, values: &[u32]| values.iter().map(|v| format!("`{setting} {v}`")).collect();
+    let (lights, has_specular) = (&nonzero_lights(&scene.lights), has_specular(scene));
+    let spell =
+        |setting: &str, values: &[u32]| values.iter().map(|v| format!("`{setting} {v}`")).collect();
     let mut all = vec![
         Ladder {
             name: "sweep",
@@ -95,8 +96,8 @@ pub fn ladders(scene: &Scene, bounces: u32) -> Vec<Ladder> {
                 .collect(),
             range: None,
             default: 0,
-            dearer: "closer lines, then every sample on a line: small occluders; a pyramid of heights, \
-                     which only costs more; brute force",
+            slower: "closer lines, then every grid point on a line: small occluders; a pyramid of heights, \
+                     slower only; brute force",
             set: |quality, step| match LINES.get(step) {
                 Some((lines, _)) => (quality.method, quality.lines) = (Method::Sweep, *lines),
                 None if step == LINES.len() => quality.method = Method::Pyramid,
@@ -109,7 +110,7 @@ pub fn ladders(scene: &Scene, bounces: u32) -> Vec<Ladder> {
             steps: FUSES.iter().map(|f| format!("`fuse {}`", f.name())).collect(),
             range: None,
             default: 0,
-            dearer: "more of the lines' results, then the surface itself, then all around there: horizons of each \
+            slower: "more of the lines' results, then the surface itself, then all around there: horizons of each \
                      sample",
             set: |quality, step| quality.fuse = FUSES[step],
             idle: has_no_lines,
@@ -119,7 +120,7 @@ pub fn ladders(scene: &Scene, bounces: u32) -> Vec<Ladder> {
             steps: PRECISIONS.iter().map(|p| format!("`precision {}`", p.name())).collect(),
             range: None,
             default: 0,
-            dearer: "more bits: heights on the hull, stored slopes",
+            slower: "more bits: heights on the hull, stored slopes",
             set: |quality, step| quality.precision = PRECISIONS[step],
             idle: has_no_lines,
         },
@@ -128,7 +129,7 @@ pub fn ladders(scene: &Scene, bounces: u32) -> Vec<Ladder> {
             steps: spell("level_step", &LEVEL_STEPS),
             range: Some(Quality::LEVEL_STEP),
             default: 0,
-            dearer: "more levels of a pyramid: what stands between two samples",
+            slower: "more levels of a pyramid: occluders between two grid points",
             set: |quality, step| quality.level_step = LEVEL_STEPS[step],
             idle: has_no_levels,
         },
@@ -137,7 +138,7 @@ pub fn ladders(scene: &Scene, bounces: u32) -> Vec<Ladder> {
             steps: spell("level_offset", &LEVEL_OFFSETS),
             range: Some(Quality::LEVEL_OFFSET),
             default: 0,
-            dearer: "finer levels of a pyramid: sharp distant horizons",
+            slower: "finer levels of a pyramid: sharp distant horizons",
             set: |quality, step| quality.level_offset = LEVEL_OFFSETS[step],
             idle: has_no_levels,
         },
@@ -153,7 +154,7 @@ pub fn ladders(scene: &Scene, bounces: u32) -> Vec<Ladder> {
             steps: spell("azimuths", &AZIMUTHS),
             range: Some(Quality::AZIMUTHS),
             default: 0,
-            dearer: "more azimuths: sharp silhouettes",
+            slower: "more azimuths: sharp silhouettes",
             set: |quality, step| quality.azimuths = AZIMUTHS[step],
             idle: |_| false,
         });
@@ -164,7 +165,7 @@ pub fn ladders(scene: &Scene, bounces: u32) -> Vec<Ladder> {
             steps: spell("sun_azimuths", &SUN_AZIMUTHS),
             range: Some(Quality::SUN_AZIMUTHS),
             default: 0,
-            dearer: "more slices of a sun's disc, a key light or a ball of light: soft shadows",
+            slower: "more slices of a sun's disc, a key light or a sphere light: soft shadows",
             set: |quality, step| quality.sun_azimuths = SUN_AZIMUTHS[step],
             idle: |_| false,
         });
@@ -175,31 +176,31 @@ pub fn ladders(scene: &Scene, bounces: u32) -> Vec<Ladder> {
             steps: LIGHT_BASES.iter().map(|b| format!("`light_basis {}`", b.name())).collect(),
             range: None,
             default: 0,
-            dearer: "each slice of a ball of light exact: sharp shadows",
+            slower: "each slice of a sphere light exact: sharp shadows",
             set: |quality, step| quality.light_basis = LIGHT_BASES[step],
             idle: |_| false,
         });
     }
-    if lights.environment.is_some() && !has_lobe {
+    if lights.environment.is_some() && !has_specular {
         all.push(Ladder {
             name: "table elevations",
             steps: spell("table_elevations", &TABLE_ELEVATIONS),
             range: Some(Quality::TABLE_ELEVATIONS),
             default: 0,
-            dearer: "more elevations a table: small bright places",
+            slower: "more elevations per table: small bright features",
             set: |quality, step| quality.table_elevations = TABLE_ELEVATIONS[step],
             idle: |quality| quality.basis == Basis::Sh,
         });
     }
-    if lights.environment.is_some() || (lights.sky.is_some() && has_lobe) {
+    if lights.environment.is_some() || (lights.sky.is_some() && has_specular) {
         let orders = SH_ORDERS.map(|n| format!("`basis sh` `sh_order {n}`"));
-        let table = (!has_lobe).then(|| "`basis table`".to_owned());
+        let table = (!has_specular).then(|| "`basis table`".to_owned());
         all.push(Ladder {
             name: "basis",
             steps: orders.into_iter().chain(table).collect(),
             range: None,
             default: 0,
-            dearer: "higher orders of harmonics, then tables: the environment's detail",
+            slower: "higher orders of harmonics, then tables: the environment's detail",
             set: |quality, step| match SH_ORDERS.get(step) {
                 Some(order) => (quality.basis, quality.sh_order) = (Basis::Sh, *order),
                 None => quality.basis = Basis::Table,
@@ -207,37 +208,40 @@ pub fn ladders(scene: &Scene, bounces: u32) -> Vec<Ladder> {
             idle: |_| false,
         });
     }
-    let is_sampled_all = has_lobe && bounces > 0;
+    let is_sampled_all = has_specular && bounces > 0;
     if (lights.environment.is_some() || bounces > 0) && !is_sampled_all {
         all.push(Ladder {
             name: "sub-sampling",
             steps: spell("subsample", &SUBSAMPLES),
             range: None,
             default: 0,
-            dearer: "what is seen, and thrown, at more samples: sharp shadows",
+            slower: "visibility and indirect light at more texels: sharp shadows",
             set: |quality, step| quality.subsample = SUBSAMPLES[step],
             idle: |quality| quality.basis != Basis::Sh && quality.bounces.count == 0,
         });
     }
     if bounces > 0 {
-        all.extend(bounce_knobs(has_lobe));
+        all.extend(bounce_ladders(has_specular));
     }
     let start = start_of(scene);
-    for knob in &mut all {
-        knob.default = default_step(knob, &start);
+    for ladder in &mut all {
+        ladder.default = default_step(ladder, &start);
     }
     all
 }
 
-fn bounce_knobs(has_lobe: bool) -> [Ladder; 2] {
-    let by = match has_lobe {
+fn bounce_ladders(has_specular: bool) -> [Ladder; 2] {
+    let by = match has_specular {
         true => Ladder {
             name: "bounce gloss",
-            steps: BOUNCE_GLOSSES.iter().map(|g| format!("`bounce_gloss {}`", g.name())).collect(),
+            steps: BOUNCE_SPECULARS
+                .iter()
+                .map(|g| format!("`bounce_gloss {}`", g.name()))
+                .collect(),
             range: None,
             default: 0,
-            dearer: "radiance by direction, then in full precision: what lobes throw on",
-            set: |quality, step| quality.bounces.specular = BOUNCE_GLOSSES[step],
+            slower: "radiance by direction, then in full precision: specular bounces",
+            set: |quality, step| quality.bounces.specular = BOUNCE_SPECULARS[step],
             idle: |_| false,
         },
         false => Ladder {
@@ -245,7 +249,7 @@ fn bounce_knobs(has_lobe: bool) -> [Ladder; 2] {
             steps: BOUNCE_ENGINES.iter().map(|e| format!("`bounce_engine {}`", e.name())).collect(),
             range: None,
             default: 0,
-            dearer: "one sample a level of pyramids; every stretch of surface that a sample sees",
+            slower: "one lookup per level of pyramids; every visible interval of the surface",
             set: |quality, step| quality.bounces.engine = BOUNCE_ENGINES[step],
             idle: |_| false,
         },
@@ -257,7 +261,7 @@ fn bounce_knobs(has_lobe: bool) -> [Ladder; 2] {
             steps: BOUNCE_AZIMUTHS.iter().map(|m| format!("`bounce_azimuths {m}`")).collect(),
             range: Some(Bounces::AZIMUTHS),
             default: 0,
-            dearer: "more azimuths of bounces: narrow things that shine",
+            slower: "more azimuths of bounces: narrow bright features",
             set: |quality, step| quality.bounces.azimuths = BOUNCE_AZIMUTHS[step],
             idle: |_| false,
         },
@@ -271,19 +275,19 @@ pub fn start() -> Quality {
 
 /// The start for a scene: Phong specular is lit by harmonics.
 pub fn start_of(scene: &Scene) -> Quality {
-    let Lights { sky, environment, .. } = shining(&scene.lights);
-    let is_mirrored = has_lobe(scene) && (sky.is_some() || environment.is_some());
-    let basis = if is_mirrored { Basis::Sh } else { Basis::Table };
+    let Lights { sky, environment, .. } = nonzero_lights(&scene.lights);
+    let is_specular = has_specular(scene) && (sky.is_some() || environment.is_some());
+    let basis = if is_specular { Basis::Sh } else { Basis::Table };
     Quality { basis, ..start() }
 }
 
-fn default_step(knob: &Ladder, start: &Quality) -> usize {
+fn default_step(ladder: &Ladder, start: &Quality) -> usize {
     let is_default = |step: &usize| {
         let mut quality = *start;
-        (knob.set)(&mut quality, *step);
+        (ladder.set)(&mut quality, *step);
         quality == *start
     };
-    (0..knob.steps.len()).find(is_default).expect("every default is on its ladder")
+    (0..ladder.steps.len()).find(is_default).expect("every default is on its ladder")
 }
 
 /// Settings, and their step on each ladder.
@@ -318,17 +322,17 @@ pub fn places(ladders: &[Ladder], start: &Quality) -> Vec<Place> {
         let is_repeated = idle.iter().zip(&steps).any(|(idle, s)| *idle && *s > 0);
         if !is_repeated && (!is_other || has_no_lines(&quality)) {
             let mut quality = *start;
-            for ((knob, step), _) in
+            for ((ladder, step), _) in
                 ladders.iter().zip(&steps).zip(&idle).filter(|(_, idle)| !**idle)
             {
-                (knob.set)(&mut quality, *step);
+                (ladder.set)(&mut quality, *step);
             }
             let steps = steps.iter().zip(&idle).map(|(s, idle)| (!idle).then_some(*s)).collect();
             all.push(Place { quality, steps });
         }
-        for (step, knob) in steps.iter_mut().zip(ladders) {
+        for (step, ladder) in steps.iter_mut().zip(ladders) {
             *step += 1;
-            if *step < knob.steps.len() {
+            if *step < ladder.steps.len() {
                 continue 'next;
             }
             *step = 0;

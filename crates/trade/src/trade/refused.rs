@@ -21,12 +21,12 @@ pub fn refused(
             .collect()
     };
     let has = |place: &Place, steps: &[(usize, usize)]| {
-        steps.iter().all(|(knob, step)| place.steps[*knob] == Some(*step))
+        steps.iter().all(|(ladder, step)| place.steps[*ladder] == Some(*step))
     };
     for count in 1..=2 {
         for place in places {
             let steps = others(place);
-            let is_choice = steps.iter().all(|(knob, _)| ladders[*knob].range.is_none());
+            let is_choice = steps.iter().all(|(ladder, _)| ladders[*ladder].range.is_none());
             let is_known = known.iter().any(|(of, _)| has(place, of));
             if steps.len() == count && is_choice && !is_known {
                 known.extend(why(place).map(|why| (steps, why)));
@@ -49,7 +49,7 @@ mod tests {
     /// Under a sky and a sun exact lines are refused, and here packed heights with the slopes'
     /// fuse: every place with either, and no other, by few calls.
     #[test]
-    fn what_is_refused_is_known_of_all_counts() {
+    fn refusals_cover_all_counts() {
         let sun =
             Sun { azimuth_rad: 0.0, elevation_rad: 0.5, diameter_rad: 0.01, irradiance: [1.0; 3] };
         let scene = Scene {

@@ -44,7 +44,7 @@ pub enum Skip {
         /// The measured place that is better.
         by: usize,
         /// The measured place below.
-        dearer_than: usize,
+        slower_than: usize,
         /// The measured place above.
         worse_than: Option<usize>,
     },
@@ -70,7 +70,7 @@ pub struct Search {
     /// Measured places, in order.
     measured: Vec<usize>,
     /// Abandoned for their cost.
-    too_dear: Vec<usize>,
+    too_slow: Vec<usize>,
     /// Whether each ladder bounds cost, and error.
     trusted: [Vec<bool>; 2],
     breaks: Vec<Break>,
@@ -89,10 +89,11 @@ impl Search {
     /// `start` out of range, or places of different numbers of ladders.
     pub fn new(steps: Vec<Steps>, start: usize, floor: f64) -> Self {
         let ladders = steps[start].len();
-        assert!(steps.iter().all(|s| s.len() == ladders), "one step a knob");
+        assert!(steps.iter().all(|s| s.len() == ladders), "one step per ladder");
         let count = steps.len();
-        let most = |knob: usize| steps.iter().filter_map(|s| s[knob]).max().map_or(0, |s| s + 1);
-        let alone = (0..ladders).map(|knob| vec![None; most(knob) + 1]).collect();
+        let most =
+            |ladder: usize| steps.iter().filter_map(|s| s[ladder]).max().map_or(0, |s| s + 1);
+        let alone = (0..ladders).map(|ladder| vec![None; most(ladder) + 1]).collect();
         Self {
             steps,
             start,
@@ -100,7 +101,7 @@ impl Search {
             values: vec![None; count],
             given_up: vec![false; count],
             measured: Vec::new(),
-            too_dear: Vec::new(),
+            too_slow: Vec::new(),
             trusted: [vec![true; ladders], vec![true; ladders]],
             breaks: Vec::new(),
             bounds: vec![[None; 2]; count],
@@ -128,10 +129,10 @@ impl Search {
         let value = Value { cost: value.cost, error: value.error.max(self.floor) };
         self.values[place] = Some(value);
         self.measured.push(place);
-        for knob in 0..self.alone.len() {
-            if self.differing(place, self.start).all(|k| k == knob) {
-                let step = self.steps[place][knob].map_or(0, |s| s + 1);
-                self.alone[knob][step].get_or_insert(value);
+        for ladder in 0..self.alone.len() {
+            if self.differing(place, self.start).all(|k| k == ladder) {
+                let step = self.steps[place][ladder].map_or(0, |s| s + 1);
+                self.alone[ladder][step].get_or_insert(value);
             }
         }
         if self.find_breaks(place) {
@@ -151,7 +152,7 @@ impl Search {
         let steps = std::mem::take(&mut self.steps);
         let fresh = Self::new(steps, self.start, self.floor);
         let old = std::mem::replace(self, fresh);
-        (self.given_up, self.too_dear) = (old.given_up, old.too_dear);
+        (self.given_up, self.too_slow) = (old.given_up, old.too_slow);
         for i in old.measured {
             let known = if i == place { Some(value) } else { old.values[i] };
             if let Some(value) = known {
@@ -161,10 +162,10 @@ impl Search {
     }
 
     /// Records that a place cannot be measured; with `too_slow`, nor can slower ones.
-    pub fn give_up(&mut self, place: usize, too_dear: bool) {
+    pub fn give_up(&mut self, place: usize, too_slow: bool) {
         self.given_up[place] = true;
-        if too_dear {
-            self.too_dear.push(place);
+        if too_slow {
+            self.too_slow.push(place);
         }
     }
 
@@ -198,29 +199,30 @@ impl Search {
         if self.values[place].is_some() || self.given_up[place] {
             return None;
         }
-        let than = self.too_dear.iter().copied().find(|&p| self.is_below(p, place, Side::Cost));
+        let than = self.too_slow.iter().copied().find(|&p| self.is_below(p, place, Side::Cost));
         if let Some(than) = than {
             return Some(Skip::TooDear { than });
         }
         let [cost, error] = self.bounds[place];
-        let (cost, dearer_than) = cost?;
+        let (cost, slower_than) = cost?;
         let (error, worse_than) = error.map_or((self.floor, None), |(e, by)| (e, Some(by)));
         let best = Value { cost, error };
         let by =
             self.front.iter().copied().find(|&i| self.values[i].is_some_and(|v| v.covers(&best)));
-        by.map(|by| Skip::Covered { by, dearer_than, worse_than })
+        by.map(|by| Skip::Covered { by, slower_than, worse_than })
     }
 
     /// The expected value of a place: the nearest measured one's, changed by each differing ladder
     /// as at the start. Costs multiply; squares of errors add, as for independent causes. Nearest
     /// are those whose every difference was measured at the start.
     pub fn predicted(&self, place: usize) -> Value {
-        let alone =
-            |knob: usize, i: usize| self.alone[knob][self.steps[i][knob].map_or(0, |s| s + 1)];
+        let alone = |ladder: usize, i: usize| {
+            self.alone[ladder][self.steps[i][ladder].map_or(0, |s| s + 1)]
+        };
         let near = self.measured.iter().copied().min_by_key(|&i| {
             let unseen = self
                 .differing(i, place)
-                .filter(|&knob| alone(knob, i).is_none() || alone(knob, place).is_none());
+                .filter(|&ladder| alone(ladder, i).is_none() || alone(ladder, place).is_none());
             let differing = self.differing(i, place).count();
             (unseen.count(), differing, self.distance(i, place), usize::MAX - i)
         });
@@ -228,8 +230,8 @@ impl Search {
             return Value { cost: 0.0, error: self.floor };
         };
         let (mut cost, mut squared) = (value.cost, value.error.powi(2));
-        for knob in self.differing(near, place) {
-            if let (Some(from), Some(to)) = (alone(knob, near), alone(knob, place)) {
+        for ladder in self.differing(near, place) {
+            if let (Some(from), Some(to)) = (alone(ladder, near), alone(ladder, place)) {
                 cost *= to.cost / from.cost.max(f64::MIN_POSITIVE);
                 squared += to.error.powi(2) - from.error.powi(2);
             }
@@ -311,8 +313,8 @@ impl Search {
                     if !is_broken || ladders.is_empty() || !self.is_below(lower, higher, side) {
                         continue;
                     }
-                    for knob in &ladders {
-                        self.trusted[side as usize][*knob] = false;
+                    for ladder in &ladders {
+                        self.trusted[side as usize][*ladder] = false;
                     }
                     self.breaks.push(Break { ladders, side, lower, higher });
                     any = true;

@@ -58,9 +58,9 @@ fn monotone(sides: &[usize], random: &mut Random) -> impl Fn(&Steps) -> Value + 
         let each = || steps.iter().enumerate().map(at);
         // The first ladder's last step compensates for any step of the one without effect.
         let idle = steps.iter().any(Option::is_none);
-        let dear: f64 = if idle { ladders.last().unwrap().last().unwrap()[0] } else { 1.0 };
+        let factor: f64 = if idle { ladders.last().unwrap().last().unwrap()[0] } else { 1.0 };
         Value {
-            cost: dear * each().map(|v| v[0]).product::<f64>(),
+            cost: factor * each().map(|v| v[0]).product::<f64>(),
             error: each().map(|v| v[1] * v[1]).sum::<f64>().sqrt(),
         }
     }
@@ -108,11 +108,11 @@ fn pruning_loses_no_point_of_a_monotone_frontier() {
         assert_eq!(lost(&steps, &model, floor, &search), 0, "seed {seed}");
         for (place, value) in steps.iter().map(&model).enumerate() {
             match search.skip(place) {
-                Some(Skip::Covered { by, dearer_than, worse_than }) => {
+                Some(Skip::Covered { by, slower_than, worse_than }) => {
                     let of = |i: usize| search.value(i).unwrap();
                     let error = worse_than.map_or(floor, |i| of(i).error);
                     // The reported reason is true: the bounds hold, and the covering place covers.
-                    assert!(of(dearer_than).cost <= value.cost && error <= value.error.max(floor));
+                    assert!(of(slower_than).cost <= value.cost && error <= value.error.max(floor));
                     assert!(of(by).cost <= value.cost && of(by).error <= value.error.max(floor));
                     pruned += 1;
                 }
@@ -126,7 +126,7 @@ fn pruning_loses_no_point_of_a_monotone_frontier() {
 
 /// Tests the check itself: it detects rules that lose a frontier point.
 #[test]
-fn a_lost_point_is_seen() {
+fn a_lost_point_is_detected() {
     let sides = [4, 5, 3];
     let model = monotone(&sides, &mut Random(7));
     let steps = grid(&sides);
@@ -138,7 +138,7 @@ fn a_lost_point_is_seen() {
 /// The first ladder's cost falls where it should rise, the second's error rises at its last step:
 /// both are reported, bound nothing from then on, and the frontier is complete.
 #[test]
-fn a_ladder_the_wrong_way_round_is_noticed() {
+fn a_broken_order_is_detected() {
     let sides = [3, 4, 3];
     let steps = grid(&sides);
     for seed in 0..20 {
@@ -153,8 +153,8 @@ fn a_ladder_the_wrong_way_round_is_noticed() {
             }
         };
         let search = walk(&steps, wrong, 0.0, usize::MAX);
-        let broken = |side, knob| {
-            search.breaks().iter().any(|b| b.side == side && b.ladders.contains(&knob))
+        let broken = |side, ladder| {
+            search.breaks().iter().any(|b| b.side == side && b.ladders.contains(&ladder))
         };
         assert!(broken(Side::Cost, 0) && broken(Side::Error, 1), "seed {seed}");
         for found in search.breaks() {
@@ -168,7 +168,7 @@ fn a_ladder_the_wrong_way_round_is_noticed() {
 /// On a grid of 1,152 places with realistic ladders, the first 45 give a frontier with small gaps:
 /// no point of the whole frontier is better than a found one by more than a factor of 1.5 in both.
 #[test]
-fn a_short_walk_comes_near_the_whole_frontier() {
+fn a_short_search_is_close_to_the_whole_frontier() {
     let sides = [6, 4, 6, 8];
     let steps = grid(&sides);
     for seed in 0..10 {
@@ -186,7 +186,7 @@ fn a_short_walk_comes_near_the_whole_frontier() {
 
 /// A place abandoned for its cost excludes slower ones, with that reason.
 #[test]
-fn too_dear_is_too_dear_for_all_above() {
+fn a_place_too_slow_excludes_slower_ones() {
     let steps = grid(&[4, 4]);
     let mut search = Search::new(steps.clone(), 0, 0.0);
     let at = |a: usize, b: usize| {
@@ -203,7 +203,7 @@ fn too_dear_is_too_dear_for_all_above() {
 /// A value corrected afterwards has the same result as if it had been first: frontier, breaks,
 /// reasons.
 #[test]
-fn a_corrected_value_is_as_if_it_were_the_first() {
+fn a_corrected_value_replaces_the_first() {
     let sides = [3, 4, 3];
     let steps = grid(&sides);
     for seed in 0..20 {
@@ -234,7 +234,7 @@ fn a_corrected_value_is_as_if_it_were_the_first() {
 /// A slow place where one ladder has no effect differs from a fast one in a single ladder, too. The
 /// change in cost by that ladder is unknown, so the fast place's expectation comes from the start.
 #[test]
-fn what_is_expected_comes_from_differences_that_were_seen() {
+fn expectations_use_measured_differences() {
     let steps = grid(&[3, 3, 3]);
     let at = |wanted: [Option<usize>; 3]| steps.iter().position(|s| s[..] == wanted).unwrap();
     let start = at([Some(1); 3]);

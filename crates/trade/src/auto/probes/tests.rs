@@ -12,14 +12,14 @@ fn noise(k: u64) -> f64 {
 /// Shares of seeds whose bound, and whose bare estimate, is at least the true error of a picture of
 /// light 1 with an `error` at each texel; and the mean of the estimate's square over it.
 fn covered(
-    off: impl Fn(usize) -> f64,
+    error_at: impl Fn(usize) -> f64,
     probes: usize,
     control: Option<f64>,
     unsure: &[f64],
 ) -> [f64; 3] {
     let count = SIDE * SIDE;
-    let square = (0..count).map(|i| off(i).powi(2)).sum::<f64>() / count as f64;
-    let of = |scale: f64| vec![(0..count).map(|i| (1.0 + scale * off(i)) as f32).collect()];
+    let square = (0..count).map(|i| error_at(i).powi(2)).sum::<f64>() / count as f64;
+    let of = |scale: f64| vec![(0..count).map(|i| (1.0 + scale * error_at(i)) as f32).collect()];
     let picture: Vec<Vec<f32>> = of(1.0);
     let control: Option<Vec<Vec<f32>>> = control.map(of);
     let mut sums = [0.0; 3];
@@ -32,12 +32,12 @@ fn covered(
             places,
             factors,
             light,
-            off: 0.0,
+            own_rms: 0.0,
         };
-        let seen = probes.error(&picture, control.as_deref(), Probes::FOUR_LOOKS);
-        sums[0] += f64::from(u8::from(seen.at_most >= square.sqrt()));
-        sums[1] += f64::from(u8::from(seen.error >= square.sqrt()));
-        sums[2] += seen.error.powi(2) / square;
+        let measured = probes.error(&picture, control.as_deref(), Probes::FOUR_BOUNDS);
+        sums[0] += f64::from(u8::from(measured.at_most >= square.sqrt()));
+        sums[1] += f64::from(u8::from(measured.error >= square.sqrt()));
+        sums[2] += measured.error.powi(2) / square;
     }
     sums.map(|s| s / SEEDS as f64)
 }
@@ -55,19 +55,19 @@ fn promised() -> f64 {
 /// probes), here at most 0.55, and that of its mean 0.55/√200). The bare estimate would fail as a
 /// bound, except for the growing errors, where stratification leaves no sampling error.
 #[test]
-fn the_bound_covers_as_often_as_it_says() {
+fn the_bound_covers_as_often_as_stated() {
     let everywhere = |i: usize| 0.02 * noise(i as u64);
     let edges = |i: usize| if noise(i as u64) > 0.45 { 0.1 * noise(!i as u64) } else { 0.0 };
     let across = |i: usize| 0.03 * (i / SIDE) as f64 / SIDE as f64;
-    for (name, off) in
+    for (name, error_at) in
         [("everywhere", everywhere as fn(usize) -> f64), ("edges", edges), ("across", across)]
     {
         for (probes, control) in [(200, None), (400, None), (200, Some(0.3)), (64, Some(-0.2))] {
-            let [bound, bare, mean] = covered(off, probes, control, &vec![0.0; SIDE * SIDE]);
-            let said = format!("{name}, {probes} probes, {control:?}: {bound} {bare} {mean}");
-            assert!(bound >= promised(), "{said}");
-            assert!(bare < 0.8 || name == "across", "{said}");
-            assert!((mean - 1.0).abs() < 3.0 * 0.55 / (SEEDS as f64).sqrt(), "{said}");
+            let [bound, bare, mean] = covered(error_at, probes, control, &vec![0.0; SIDE * SIDE]);
+            let text = format!("{name}, {probes} probes, {control:?}: {bound} {bare} {mean}");
+            assert!(bound >= promised(), "{text}");
+            assert!(bare < 0.8 || name == "across", "{text}");
+            assert!((mean - 1.0).abs() < 3.0 * 0.55 / (SEEDS as f64).sqrt(), "{text}");
         }
     }
 }
@@ -76,10 +76,10 @@ fn the_bound_covers_as_often_as_it_says() {
 /// miss them, and their bound fails. Where pictures differ within 2 texels of them (and in 300
 /// texels elsewhere), half of the probes are there, and the bound holds.
 #[test]
-fn errors_of_few_samples_are_found_where_pictures_differ() {
+fn errors_of_few_texels_are_found_where_pictures_differ() {
     let is_edge = |i: usize| i / SIDE == 20 && (30..39).contains(&(i % SIDE));
-    let off = |i: usize| if is_edge(i) { 0.5 } else { 0.0 };
-    let even = covered(off, 300, None, &vec![0.0; SIDE * SIDE]);
+    let error_at = |i: usize| if is_edge(i) { 0.5 } else { 0.0 };
+    let even = covered(error_at, 300, None, &vec![0.0; SIDE * SIDE]);
     assert!(even[0] < 0.8, "{even:?}");
     let drawn = |scale: f32| -> Vec<f32> {
         let at = |i| if is_edge(i) || (1000..1300).contains(&i) { scale } else { 0.0 };
@@ -88,7 +88,7 @@ fn errors_of_few_samples_are_found_where_pictures_differ() {
     let unsure = apart(&[drawn(0.3)], &[drawn(0.5)], SIDE);
     let touched = unsure.iter().filter(|u| **u > 0.0).count();
     assert!((5 * 13 + 300..5 * 13 + 1000).contains(&touched), "{touched}");
-    let aimed = covered(off, 300, None, &unsure);
+    let aimed = covered(error_at, 300, None, &unsure);
     assert!(aimed[0] >= promised(), "{aimed:?}");
 }
 
@@ -97,10 +97,10 @@ fn errors_of_few_samples_are_found_where_pictures_differ() {
 #[test]
 fn a_better_picture_than_its_control_has_an_error() {
     let count = SIDE * SIDE;
-    let off = |i: usize| 1e-4 * noise(i as u64);
+    let error_at = |i: usize| 1e-4 * noise(i as u64);
     let rough = vec![(0..count).map(|i| (1.0 + 0.1 * noise(!i as u64)) as f32).collect()];
-    let fine = vec![(0..count).map(|i| (1.0 + off(i)) as f32).collect::<Vec<f32>>()];
-    let truth = ((0..count).map(|i| off(i).powi(2)).sum::<f64>() / count as f64).sqrt();
+    let fine = vec![(0..count).map(|i| (1.0 + error_at(i)) as f32).collect::<Vec<f32>>()];
+    let rms = ((0..count).map(|i| error_at(i).powi(2)).sum::<f64>() / count as f64).sqrt();
     for seed in 0..SEEDS {
         let (places, factors) = picks(&vec![0.0; count], 200, seed);
         let light = vec![[1.0; 3]; places.len()];
@@ -110,10 +110,10 @@ fn a_better_picture_than_its_control_has_an_error() {
             places,
             factors,
             light,
-            off: 0.0,
+            own_rms: 0.0,
         };
-        let seen = probes.error(&fine, Some(&rough), Probes::FOUR_LOOKS);
-        assert!((seen.error / truth - 1.0).abs() < 0.3 && seen.at_most < 1.5 * truth);
+        let measured = probes.error(&fine, Some(&rough), Probes::FOUR_BOUNDS);
+        assert!((measured.error / rms - 1.0).abs() < 0.3 && measured.at_most < 1.5 * rms);
     }
 }
 
@@ -148,7 +148,7 @@ fn normal(k: u64) -> f64 {
 /// noise of 0.02. The prediction for four times the probes and half the variance matches a
 /// measurement.
 #[test]
-fn the_chance_of_paths_is_that_of_a_bound() {
+fn path_noise_predicts_the_bound() {
     let count = SIDE * SIDE;
     let of = |count: usize, noise: f64| Probes {
         is_whole: true,
@@ -157,46 +157,46 @@ fn the_chance_of_paths_is_that_of_a_bound() {
         // The mean of a square is then that of the error and that of the noise.
         light: vec![[1.0; 3]; count],
         noise: vec![noise; count],
-        off: 0.0,
+        own_rms: 0.0,
     };
-    let off = (0.04_f64.powi(2) + 4e-4).sqrt();
-    let picture = vec![vec![(1.0 + off) as f32; count]];
+    let offset = (0.04_f64.powi(2) + 4e-4).sqrt();
+    let picture = vec![vec![(1.0 + offset) as f32; count]];
     let probes = of(count, 4e-4);
-    let seen = probes.error(&picture, None, Probes::FOUR_LOOKS);
-    let chance = probes.chance(0.04, 1.0, count, Probes::FOUR_LOOKS);
+    let measured = probes.error(&picture, None, Probes::FOUR_BOUNDS);
+    let expected = probes.path_noise(0.04, 1.0, count, Probes::FOUR_BOUNDS);
     let near = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 1e-4, "{a} {b}");
-    near(seen.error, 0.04);
-    near(seen.at_most, 0.04_f64.hypot(chance));
-    let few = of(count / 4, 8e-4).chance(0.04, 0.5, count, Probes::FOUR_LOOKS);
-    near(few, chance);
+    near(measured.error, 0.04);
+    near(measured.at_most, 0.04_f64.hypot(expected));
+    let few = of(count / 4, 8e-4).path_noise(0.04, 0.5, count, Probes::FOUR_BOUNDS);
+    near(few, expected);
 }
 
 /// Direct light of 1 with an error of 0.01, bounced light of 0.3 of which 0.008 may be unsampled:
 /// 0.008 / 1.3 of all. Over the mean of direct light alone the oracle's share would exceed it, and
 /// nothing would remain.
 #[test]
-fn unmet_light_is_over_the_mean_of_all_light() {
+fn unsampled_light_is_relative_to_all_light() {
     let direct = Probes {
         is_whole: true,
         places: vec![0, 1],
         factors: vec![1.0; 2],
         light: vec![[1.0; 3]; 2],
         noise: vec![0.0; 2],
-        off: 0.01,
+        own_rms: 0.01,
     };
     let mut all = direct.clone();
     let traced = Traced { mean: [0.3; 3], standard_error: [0.0; 3] };
     all.add_bounced(&[traced; 2], [0.008; 3]);
     assert!(all.own_error() < direct.own_error());
-    let unmet = all.off_since(&direct);
-    assert!((unmet - 0.008 / 1.3).abs() < 1e-12, "{unmet}");
-    assert_eq!(direct.off_since(&direct), 0.0);
+    let unsampled = all.unsampled_error(&direct);
+    assert!((unsampled - 0.008 / 1.3).abs() < 1e-12, "{unsampled}");
+    assert_eq!(direct.unsampled_error(&direct), 0.0);
 }
 
 /// Eight bounds of 5 %/8 each: the normal distribution's tail beyond z, by Simpson's rule, and the
 /// unsampled light.
 #[test]
-fn bounds_of_bounced_light_share_what_may_miss() {
+fn eight_bounds_share_the_confidence() {
     let density = |x: f64| (-0.5 * x * x).exp() / std::f64::consts::TAU.sqrt();
     let tail = |z: f64| {
         let step = (12.0 - z) / 4000.0;
@@ -204,13 +204,13 @@ fn bounds_of_bounced_light_share_what_may_miss() {
         (0..=4000).map(|k| weight(k) * density(z + f64::from(k) * step)).sum::<f64>() * step / 3.0
     };
     // To the last written digit of each.
-    for (z, looks) in
-        [(Probes::ONE_LOOK, 1.0), (Probes::FOUR_LOOKS, 4.0), (Probes::EACH_OF_FOUR_LOOKS, 8.0)]
+    for (z, count) in
+        [(Probes::ONE_BOUND, 1.0), (Probes::FOUR_BOUNDS, 4.0), (Probes::EIGHT_BOUNDS, 8.0)]
     {
         let slack = 0.0005 * density(z);
-        assert!((tail(z) - 0.05 / looks).abs() <= slack, "{z}: {}", tail(z));
+        assert!((tail(z) - 0.05 / count).abs() <= slack, "{z}: {}", tail(z));
     }
-    let all = 4.0 * (tail(Probes::EACH_OF_FOUR_LOOKS) + Probes::CHANCE_OF_UNMET);
+    let all = 4.0 * (tail(Probes::EIGHT_BOUNDS) + Probes::UNSAMPLED_PROBABILITY);
     assert!((all - (1.0 - Probes::CONFIDENCE)).abs() < 1e-4, "{all}");
 }
 
@@ -218,12 +218,12 @@ fn bounds_of_bounced_light_share_what_may_miss() {
 /// batches, is subtracted. Otherwise the square would be twice as large. The bound holds as often
 /// as stated, for a part of the texels and for all, where only the path tracing is random.
 #[test]
-fn light_that_wavers_leaves_errors_as_they_are() {
-    const WAVER: f64 = 0.02;
+fn noise_does_not_bias_the_error() {
+    const NOISE: f64 = 0.02;
     let count = SIDE * SIDE;
-    let off = |i: usize| 0.07 * noise(i as u64);
-    let truth = ((0..count).map(|i| off(i).powi(2)).sum::<f64>() / count as f64).sqrt();
-    let of = |scale: f64| vec![(0..count).map(|i| (1.0 + scale * off(i)) as f32).collect()];
+    let error_at = |i: usize| 0.07 * noise(i as u64);
+    let rms = ((0..count).map(|i| error_at(i).powi(2)).sum::<f64>() / count as f64).sqrt();
+    let of = |scale: f64| vec![(0..count).map(|i| (1.0 + scale * error_at(i)) as f32).collect()];
     let (picture, control): (Vec<Vec<f32>>, Vec<Vec<f32>>) = (of(1.0), of(0.5));
     for (wanted, control) in [(300, None), (300, Some(&control[..])), (count, None)] {
         let (mut held, mut mean, mut bare) = (0_u64, 0.0, 0.0);
@@ -236,21 +236,21 @@ fn light_that_wavers_leaves_errors_as_they_are() {
                 light: vec![[0.75; 3]; places.len()],
                 places,
                 factors,
-                off: 0.0,
+                own_rms: 0.0,
             };
             let traced = |k: usize| {
                 let of = |j: u64| normal((seed << 24) + 9 * k as u64 + j);
                 let batches = (0..7).map(|j| of(j).powi(2)).sum::<f64>() / 7.0;
-                let mean = [0.25 + WAVER * of(7); 3];
-                Traced { mean, standard_error: [WAVER * batches.sqrt(); 3] }
+                let mean = [0.25 + NOISE * of(7); 3];
+                Traced { mean, standard_error: [NOISE * batches.sqrt(); 3] }
             };
             let traced: Vec<Traced> = (0..probes.len()).map(traced).collect();
             probes.add_bounced(&traced, [0.0; 3]);
-            let seen = probes.error(&picture, control, Probes::FOUR_LOOKS);
-            held += u64::from(seen.at_most >= truth);
-            mean += seen.error.powi(2) / truth.powi(2) / SEEDS as f64;
+            let measured = probes.error(&picture, control, Probes::FOUR_BOUNDS);
+            held += u64::from(measured.at_most >= rms);
+            mean += measured.error.powi(2) / rms.powi(2) / SEEDS as f64;
             let steady = Probes { noise: vec![0.0; probes.len()], ..probes.clone() };
-            bare += steady.error(&picture, None, 0.0).error.powi(2) / truth.powi(2) / SEEDS as f64;
+            bare += steady.error(&picture, None, 0.0).error.powi(2) / rms.powi(2) / SEEDS as f64;
             // √(z √(4 (d² s² + s⁴) / probes)), of a mean light of 1, s⁴ as of eight batches (1 +
             // 2/7) times as much. χ² / 7 of seven has a fourth moment of 7·9·11·13 / 7⁴: the
             // standard error of its square is 1.13 of itself, that of the fourth root of a mean a
@@ -258,22 +258,22 @@ fn light_that_wavers_leaves_errors_as_they_are() {
             // Five of these.
             let squared: f64 = 1.0 + 2.0 / 7.0;
             let one = (9009.0_f64 / 2401.0 - squared.powi(2)).sqrt() / squared;
-            let slack = 5.0 * (0.25 * one + WAVER) / (wanted as f64).sqrt();
-            for error in [0.0, 2.0 * WAVER] {
-                let square = 4.0 * ((error * WAVER).powi(2) + squared * WAVER.powi(4));
-                let chance = (Probes::FOUR_LOOKS * (square / wanted as f64).sqrt()).sqrt();
-                let found = probes.chance(error, 1.0, wanted, Probes::FOUR_LOOKS);
-                assert!((found / chance - 1.0).abs() < slack, "{found} {chance}");
+            let slack = 5.0 * (0.25 * one + NOISE) / (wanted as f64).sqrt();
+            for error in [0.0, 2.0 * NOISE] {
+                let square = 4.0 * ((error * NOISE).powi(2) + squared * NOISE.powi(4));
+                let expected = (Probes::FOUR_BOUNDS * (square / wanted as f64).sqrt()).sqrt();
+                let found = probes.path_noise(error, 1.0, wanted, Probes::FOUR_BOUNDS);
+                assert!((found / expected - 1.0).abs() < slack, "{found} {expected}");
             }
         }
-        let said = format!("{wanted}: {held} held, mean {mean}, bare {bare}");
-        assert!(held as f64 >= promised() * SEEDS as f64, "{said}");
+        let text = format!("{wanted}: {held} held, mean {mean}, bare {bare}");
+        assert!(held as f64 >= promised() * SEEDS as f64, "{text}");
         // The standard error of one square is a fifth or less of 300 or more.
-        assert!((mean - 1.0).abs() < 3.0 * 0.2 / (SEEDS as f64).sqrt(), "{said}");
+        assert!((mean - 1.0).abs() < 3.0 * 0.2 / (SEEDS as f64).sqrt(), "{text}");
         // d² + s²; the standard error of one mean is √((4 d² s² + 2 s⁴ + 0.8 d⁴) / probes): a
         // uniform d² varies by 0.8 d⁴.
-        let (d, s) = (truth.powi(2), WAVER.powi(2));
+        let (d, s) = (rms.powi(2), NOISE.powi(2));
         let one = ((4.0 * d * s + 2.0 * s * s + 0.8 * d * d) / wanted as f64).sqrt() / d;
-        assert!((bare - (1.0 + s / d)).abs() < 3.0 * one / (SEEDS as f64).sqrt(), "{said}");
+        assert!((bare - (1.0 + s / d)).abs() < 3.0 * one / (SEEDS as f64).sqrt(), "{text}");
     }
 }

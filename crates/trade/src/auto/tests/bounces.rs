@@ -10,23 +10,24 @@ use ridgelight_cpu::indirect::{self, Fineness};
 /// choice reaches the goal without noise and is faster than the defaults. A goal below the paths'
 /// noise is refused, as is one that all bounces do not reach.
 #[test]
-fn choices_of_bounces_hold_and_walk_their_settings() {
+fn choices_of_bounces_reach_the_goal() {
     let mut scene = scene();
     scene.surface.albedo = Albedo::Constant([0.8; 3]);
     let fineness = Fineness { azimuths: 32, divisions: 1, strips: 1 };
     let all = indirect::light(&scene, 2, fineness).unwrap();
     let lit = Lit::of(&scene);
     let direct: Vec<f64> = (0..SIDE * SIDE).map(|i| lit.at(i / SIDE, i % SIDE)[0]).collect();
-    let thrown = |i: usize, count: usize| all[count][i][0] - all[0][i][0];
+    let bounced = |i: usize, count: usize| all[count][i][0] - all[0][i][0];
     let picture = |quality: &Quality| -> Vec<f32> {
         let drawn = quality.bounces.needed_bounces(f64::from(0.8_f32)) as usize;
-        let off = 3.2 / f64::from(quality.bounces.azimuths) * f64::from(u8::from(drawn > 0));
+        let error_share =
+            3.2 / f64::from(quality.bounces.azimuths) * f64::from(u8::from(drawn > 0));
         (0..SIDE * SIDE)
-            .map(|i| (direct[i] + thrown(i, drawn) + off * thrown(i, 1)) as f32)
+            .map(|i| (direct[i] + bounced(i, drawn) + error_share * bounced(i, 1)) as f32)
             .collect()
     };
     let true_error = |quality: &Quality| {
-        let truth = |i: usize| direct[i] + thrown(i, 2);
+        let truth = |i: usize| direct[i] + bounced(i, 2);
         let squares = picture(quality)
             .iter()
             .enumerate()
@@ -40,15 +41,15 @@ fn choices_of_bounces_hold_and_walk_their_settings() {
         1e6 * f64::from(quality.azimuths) + 1e6 * f64::from(drawn * azimuths)
     };
     let found = |most: f64, waver: f64| {
-        let mut told = Vec::new();
+        let mut batches_used = Vec::new();
         let mut trace = |samples: &[usize], batches: u32, seed: u32| {
-            told.push(batches);
+            batches_used.push(batches);
             let error = waver / f64::from(batches).sqrt();
             let of = |(k, i): (usize, &usize)| {
                 let turn = (f64::from(seed % 1009) + 1.0) * (k as f64 + 1.0) * 2.399_963;
                 // A sine of evenly spread phases has the variance ½.
-                let mean = thrown(*i, 2) * (1.0 + error * std::f64::consts::SQRT_2 * turn.sin());
-                Traced { mean: [mean; 3], standard_error: [thrown(*i, 2) * error; 3] }
+                let mean = bounced(*i, 2) * (1.0 + error * std::f64::consts::SQRT_2 * turn.sin());
+                Traced { mean: [mean; 3], standard_error: [bounced(*i, 2) * error; 3] }
             };
             Ok(samples.iter().enumerate().map(of).collect())
         };
@@ -58,10 +59,10 @@ fn choices_of_bounces_hold_and_walk_their_settings() {
             ns.push(("bounce_walk bounce1".to_owned(), cost(quality) - ns[0].1));
             Ok(Drawn { planes: vec![picture(quality)], passes: ns })
         });
-        (found, told)
+        (found, batches_used)
     };
     for most in [0.05, 0.02] {
-        let (chosen, told) = found(most, 0.05);
+        let (chosen, batches_used) = found(most, 0.05);
         let chosen = chosen.unwrap();
         let Trial { quality, measured, .. } = chosen.trial;
         assert!(measured.at_most <= most, "{most}: {measured:?}");
@@ -74,8 +75,11 @@ fn choices_of_bounces_hold_and_walk_their_settings() {
                 })
         );
         // The last count is that of the probes that measured the choice.
-        assert_eq!(chosen.paths, told[told.len() - 1] * ridgelight::plan::REFERENCE_BATCH);
-        assert!(told.iter().all(|batches| (8..=256).contains(batches)), "{told:?}");
+        assert_eq!(
+            chosen.paths,
+            batches_used[batches_used.len() - 1] * ridgelight::plan::REFERENCE_BATCH
+        );
+        assert!(batches_used.iter().all(|batches| (8..=256).contains(batches)), "{batches_used:?}");
         let azimuths: Vec<u32> = chosen.trials.iter().map(|t| t.quality.bounces.azimuths).collect();
         assert!(azimuths.iter().any(|a| *a != azimuths[0]), "{azimuths:?}");
         let text = flags(&quality, &scene);
@@ -84,10 +88,10 @@ fn choices_of_bounces_hold_and_walk_their_settings() {
     // Ten times the bounced light: with 256 batches 60 % of each texel remain.
     let refused = found(0.001, 10.0).0.unwrap_err().to_string();
     assert!(
-        refused.contains("a goal of 0.00100: needs bounced light that is known so well"),
+        refused.contains("a goal of 0.00100: needs bounced light of that precision"),
         "{refused}"
     );
-    assert!(refused.contains("16384 light paths from each of 144 samples"), "{refused}");
+    assert!(refused.contains("16384 paths from each of 144 texels"), "{refused}");
     // 128 azimuths leave 2.5 % of the first bounce.
     let refused = found(1e-4, 0.0).0.unwrap_err().to_string();
     assert!(refused.contains("nearest found"), "{refused}");
@@ -97,7 +101,7 @@ fn choices_of_bounces_hold_and_walk_their_settings() {
 /// bounces every texel's own visibility, although every second texel and averages of the surface
 /// are faster.
 #[test]
-fn the_last_resort_leaves_nothing_to_means() {
+fn the_last_resort_uses_exact_visibility() {
     let mut scene = scene();
     scene.surface.albedo = Albedo::Constant([0.8; 3]);
     let statistics = Statistics::of(&scene);
@@ -106,21 +110,21 @@ fn the_last_resort_leaves_nothing_to_means() {
         let quality = chooser.last_resort(true).unwrap();
         let all = crate::auto::candidates::candidates(&scene, count);
         let exact = all.iter().filter(|q| crate::auto::candidates::is_exact(q));
-        let cheaper = exact.filter(|q| chooser.cost(q) < chooser.cost(&quality));
+        let faster = exact.filter(|q| chooser.cost(q) < chooser.cost(&quality));
         if count == 0 {
-            assert_eq!(cheaper.count(), 0);
+            assert_eq!(faster.count(), 0);
             continue;
         }
         let is_mean = |q: &Quality| q.subsample > 1 || q.bounces.engine == BounceEngine::Pyramid;
         assert!(!is_mean(&quality), "{quality:?}");
-        assert!(cheaper.filter(|q| is_mean(q)).count() > 0, "means are no cheaper");
+        assert!(faster.filter(|q| is_mean(q)).count() > 0, "averages are no faster");
     }
 }
 
 /// Candidates of bounces are valid and none occurs twice; with few bounces no two energies omit the
 /// same ones.
 #[test]
-fn what_is_chosen_among_differs() {
+fn candidates_are_distinct() {
     let mut scene = scene();
     for (albedo, bounces, cutoffs) in [(0.8, 1, 1), (0.3, 4, 3), (0.01, 2, 3)] {
         scene.surface.albedo = Albedo::Constant([albedo; 3]);

@@ -1,5 +1,7 @@
 use super::*;
-use ridgelight::scene::{HeightField, KeyLight, Specular, PhongSpecular, SphereLight, Sun, Surface};
+use ridgelight::scene::{
+    HeightField, KeyLight, PhongSpecular, Specular, SphereLight, Sun, Surface,
+};
 
 fn scene(lights: Lights) -> Scene {
     let field = HeightField::new(2, 2, &[0.0; 4], [1.0; 2], None).unwrap();
@@ -16,21 +18,21 @@ fn sun(diameter_rad: f64) -> Lights {
 }
 
 #[test]
-fn only_knobs_that_change_something_are_walked() {
+fn only_ladders_with_an_effect_are_listed() {
     let names = |lights| ladders(&scene(lights), 0).iter().map(|k| k.name).collect::<Vec<_>>();
     let always = ["sweep", "fuse", "precision", "level step", "level offset"];
     let with = |more: &[&'static str]| [&always, more].concat();
     assert_eq!(names(sky()), with(&["azimuths"]));
     assert_eq!(names(sun(0.01)), with(&["sun azimuths"]));
     assert_eq!(names(sun(0.0)), with(&[]));
-    let ball = SphereLight { position_m: [0.0; 3], radius_m: 1.0, radiance: [1.0; 3] };
-    let spheres = vec![ball];
+    let light = SphereLight { position_m: [0.0; 3], radius_m: 1.0, radiance: [1.0; 3] };
+    let spheres = vec![light];
     assert_eq!(
         names(Lights { sphere_lights: spheres.clone(), ..Lights::default() }),
         ["sun azimuths", "light basis"]
     );
-    let balls_too = with(&["sun azimuths", "light basis"]);
-    assert_eq!(names(Lights { sphere_lights: spheres.clone(), ..sun(0.0) }), balls_too);
+    let with_spheres = with(&["sun azimuths", "light basis"]);
+    assert_eq!(names(Lights { sphere_lights: spheres.clone(), ..sun(0.0) }), with_spheres);
     // A key light needs horizons as a sun does; a black sky and a black sun need none.
     let keys = vec![KeyLight {
         azimuth_rad: 0.0,
@@ -48,7 +50,7 @@ fn only_knobs_that_change_something_are_walked() {
 /// and 25 pyramids, each with 6 numbers of azimuths. Every quality is valid, none occurs twice, the
 /// default is among them.
 #[test]
-fn places_are_all_that_differ() {
+fn places_are_distinct_and_complete() {
     let ladders = ladders(&scene(sky()), 0);
     let start = start();
     let all = places(&ladders, &start);
@@ -60,7 +62,8 @@ fn places_are_all_that_differ() {
     let default = all.iter().find(|p| p.quality == start).unwrap();
     let flags = "`lines 1` `fuse aimed-nearest` `precision f32` `azimuths 64`";
     assert_eq!(default.flags(&ladders), flags);
-    let brute: Vec<&Place> = all.iter().filter(|p| p.quality.method == Method::BruteForce).collect();
+    let brute: Vec<&Place> =
+        all.iter().filter(|p| p.quality.method == Method::BruteForce).collect();
     assert_eq!(brute.len(), 6);
     assert_eq!(brute[0].flags(&ladders), "`method brute-force` `azimuths 8`");
     assert_eq!(brute[0].steps, [Some(7), None, None, None, None, Some(0)]);
@@ -69,7 +72,7 @@ fn places_are_all_that_differ() {
 /// Phong specular is lit by sky and environment through harmonics, its bounces use pyramids at
 /// every texel, and it needs neither under a sun alone; a scale of 0 changes nothing.
 #[test]
-fn lobes_have_knobs_of_their_own() {
+fn specular_has_its_own_ladders() {
     let names = |lights: Lights, scale: f32, bounces: u32| {
         let mut scene = scene(lights);
         scene.surface.specular = Some(Specular::Constant(PhongSpecular { exponent: 5.0, scale }));
@@ -80,8 +83,8 @@ fn lobes_have_knobs_of_their_own() {
     assert_eq!(names(sky(), 0.0, 0), with(&["azimuths"]));
     assert_eq!(names(sky(), 0.2, 0), with(&["azimuths", "basis"]));
     assert_eq!(names(sun(0.0), 0.2, 0), with(&[]));
-    let thrown = ["azimuths", "basis", "bounce gloss", "bounce azimuths"];
-    assert_eq!(names(sky(), 0.2, 2), with(&thrown));
+    let with_bounces = ["azimuths", "basis", "bounce gloss", "bounce azimuths"];
+    assert_eq!(names(sky(), 0.2, 2), with(&with_bounces));
     let mut scene = scene(sky());
     scene.surface.specular = Some(Specular::Constant(PhongSpecular { exponent: 5.0, scale: 0.2 }));
     let all = ladders(&scene, 1);
@@ -93,7 +96,7 @@ fn lobes_have_knobs_of_their_own() {
 
 /// Steps rise within the range, differ, and the default is the command line's.
 #[test]
-fn knobs_say_their_range_and_default() {
+fn ladders_have_their_range_and_default() {
     let light = Lights {
         environment: Some(
             ridgelight::scene::Environment::new(2, 1, vec![[1.0; 3]; 2], 0.0).unwrap(),
@@ -118,17 +121,17 @@ fn knobs_say_their_range_and_default() {
         ("bounce azimuths", "`bounce_azimuths 32`"),
     ];
     assert_eq!(found, expected);
-    for knob in &all {
-        let Some(range) = &knob.range else { continue };
+    for ladder in &all {
+        let Some(range) = &ladder.range else { continue };
         let count = |s: &String| s.split(' ').next_back().unwrap().parse::<u32>().unwrap();
-        let counts: Vec<u32> = knob.steps.iter().map(count).collect();
+        let counts: Vec<u32> = ladder.steps.iter().map(count).collect();
         assert!(counts.iter().all(|c| range.contains(c)), "{counts:?}");
         assert!(counts.windows(2).all(|two| two[0] < two[1]), "{counts:?}");
         for (step, count) in counts.iter().enumerate() {
             let mut quality = start();
-            (knob.set)(&mut quality, step);
+            (ladder.set)(&mut quality, step);
             quality.check().unwrap();
-            assert_eq!(quality == start(), step == knob.default, "{count}");
+            assert_eq!(quality == start(), step == ladder.default, "{count}");
         }
     }
 }

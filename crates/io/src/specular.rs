@@ -1,23 +1,25 @@
-//! Maps of lobes.
+//! Maps of Phong specular.
 
-use super::open::Format;
-use super::planes::{Planes, read_planes};
-use ridgelight::scene::{Lobe, Phong};
+use crate::open::Format;
+use crate::planes::{Planes, read_planes};
+use ridgelight::scene::{PhongSpecular, Specular};
 use ridgelight::{Error, Result};
 use std::path::Path;
 
-/// Reads exponent and scale of a lobe at each of `rows` × `cols` samples: `.exr` channels "R" and "G", others
-/// unread, or an `.npy` array [2, rows, cols]. A `.png` is refused: its numbers end at 1, exponents do not.
+/// Reads the Phong exponent and scale of each of `rows` × `cols` grid points: `.exr` channels "R"
+/// and "G", other channels ignored, or an `.npy` array [2, rows, cols]. A `.png` is refused: its
+/// values end at 1, exponents do not.
 ///
 /// # Errors
-/// Another format, size or number of channels; an exponent or a scale out of range (row and column named).
-pub fn read_lobes(path: &Path, rows: usize, cols: usize) -> Result<Lobe> {
+/// Another format, size or number of channels; an exponent or a scale out of range (with row and
+/// column).
+pub fn read_specular(path: &Path, rows: usize, cols: usize) -> Result<Specular> {
     if !matches!(Format::of_name(path), Some(Format::Exr | Format::Npy)) {
         let found = path.extension().map_or("none".into(), |e| format!(".{}", e.display()));
         let expected = ".exr or .npy, which hold exponents above 1";
         return Err(Error::file(path, "extension", found, expected));
     }
-    // What is no such file after all is named by what it is.
+    // The signature is checked here.
     let Planes { rows: map_rows, cols: map_cols, names, planes } = read_planes(path)?;
     let of = |wanted: [&str; 2]| wanted.map(|name| names.iter().position(|n| n == name));
     let places = match of(["R", "G"]) {
@@ -33,12 +35,13 @@ pub fn read_lobes(path: &Path, rows: usize, cols: usize) -> Result<Lobe> {
         return Err(Error::file(path, "size", found, format!("{cols} × {rows}, as the heights")));
     }
     let all = planes[exponents].iter().zip(&planes[scales]);
-    let map: Vec<Phong> = all.map(|(e, s)| Phong { exponent: *e, scale: *s }).collect();
-    match map.iter().enumerate().find_map(|(i, phong)| Some((i, phong.complaint()?))) {
+    let map: Vec<PhongSpecular> =
+        all.map(|(e, s)| PhongSpecular { exponent: *e, scale: *s }).collect();
+    match map.iter().enumerate().find_map(|(i, phong)| Some((i, phong.out_of_range()?))) {
         Some((i, (what, found, expected))) => {
             let place = format!("row {}, column {}", i / cols, i % cols);
             Err(Error::file(path, place, format!("{what} {found}"), expected))
         }
-        None => Ok(Lobe::Map(map)),
+        None => Ok(Specular::Map(map)),
     }
 }

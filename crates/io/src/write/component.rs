@@ -2,7 +2,7 @@
 
 use half::f16;
 
-/// A component of a texel, as Vulkan reads it.
+/// Format of a texel's component, as Vulkan reads it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Component {
     /// 0..255 for 0..1.
@@ -20,7 +20,7 @@ pub enum Component {
 }
 
 impl Component {
-    /// Bytes.
+    /// Size in bytes.
     pub fn bytes(self) -> usize {
         match self {
             Component::Unorm8 | Component::Snorm8 => 1,
@@ -29,7 +29,7 @@ impl Component {
         }
     }
 
-    /// The code of 1; of floats 1 itself.
+    /// The code of 1; for floats 1 itself.
     pub fn one(self) -> f64 {
         match self {
             Component::Unorm8 => 255.0,
@@ -40,22 +40,22 @@ impl Component {
         }
     }
 
-    /// Whether it holds fractions of a fixed range, not floats.
+    /// Whether it is a fraction of a fixed range, not a float.
     pub fn is_normalised(self) -> bool {
         !matches!(self, Component::F16 | Component::F32)
     }
 
-    /// Whether it holds numbers below 0.
+    /// Whether it can be negative.
     pub fn is_signed(self) -> bool {
         !matches!(self, Component::Unorm8 | Component::Unorm16)
     }
 
-    /// What a normalised component can be off by: half a step. 0 of floats.
+    /// Largest rounding error of a normalised component: half a step. 0 for floats.
     pub fn half_step(self) -> f64 {
         if self.is_normalised() { 0.5 / self.one() } else { 0.0 }
     }
 
-    /// The nearest that it holds; what lies beyond its range becomes the range's end.
+    /// The nearest representable value; values out of range are clamped.
     pub fn rounded(self, value: f64) -> f64 {
         match self {
             Component::F16 => f16::from_f64(value).to_f64(),
@@ -70,7 +70,7 @@ impl Component {
         (value.clamp(least, 1.0) * self.one()).round()
     }
 
-    /// Appends the nearest that it holds, little-endian.
+    /// Appends the nearest representable value, little-endian.
     pub fn put(self, value: f64, bytes: &mut Vec<u8>) {
         match self {
             Component::Unorm8 => bytes.push(self.code(value) as u8),

@@ -1,13 +1,15 @@
-//! What samples of a field see, kept as a NumPy archive: `numpy.load` opens it.
+//! Visible points of a field as a NumPy archive, which `numpy.load` opens.
 //!
-//! Members: `visible_points` [N, rows, cols, 2], row and column of the sample that is seen, u2, or u1 of fields of at most
-//! 255 by 255; both of the type's largest number where nothing is, the largest and one less where the level ground beyond
-//! the field is: no field has a row of that number. `directions` [N, 3] f8, east, north, up; `lowest_direction_z` f8; `field_hash` [8] u1, little-endian, of the field
-//! that they were made of.
+//! `visible_points` [N, rows, cols, 2]: row and column of the visible grid point, u2, or u1 for
+//! fields of at most 255 by 255. Both are the type's largest number for the sky; the largest and
+//! one less for the level ground beyond the field. No field has a row of that number. `directions`
+//! [N, 3] f8: east, north, up. `lowest_direction_z` f8. `field_hash` [8] u1, little-endian: hash of
+//! the source field.
 
-use super::atomic::Temporary;
-use super::npy::{self, Array};
-use super::{npz, open};
+use crate::npy::{self, Array};
+use crate::npz;
+use crate::open;
+use crate::write::atomic::Temporary;
 use glam::DVec3;
 use ridgelight::scene::{Border, Directions, HeightField, VisiblePoint, VisiblePoints};
 use ridgelight::{Error, Result};
@@ -69,10 +71,11 @@ pub fn write_visible_points(path: &Path, points: &VisiblePoints) -> Result<()> {
     file.finish()
 }
 
-/// Reads visible points of a field, which must be the one that they were made of.
+/// Reads visible points of `field`, which must be their source.
 ///
 /// # Errors
-/// No such archive, arrays of other types or shapes, a point outside the field, points of another field.
+/// Another archive, arrays of other types or shapes, a point outside the field, points of another
+/// field.
 pub fn read_visible_points(
     path: &Path,
     field: &HeightField,

@@ -1,21 +1,22 @@
-//! Pictures of the whole sphere that are not equirectangular: cubes and angular maps, and their
-//! one resampling to the grid that [`Environment`](ridgelight::scene::Environment) keeps.
+//! Cube maps and angular maps of the whole sphere, and their resampling to the equirectangular grid
+//! of [`Environment`](ridgelight::scene::Environment).
 //!
-//! All of them are seen from inside with the world's +x (azimuth 0) straight ahead, +z up, and so
-//! -y to the right.
+//! The view is from inside: the world's +x (azimuth 0) straight ahead, +z up, and so -y to the
+//! right.
 
 use std::f64::consts::PI;
 use std::ops::Range;
 
 /// Row-major linear RGB.
-pub(super) struct Picture {
+pub(crate) struct Picture {
     pub rows: usize,
     pub cols: usize,
     pub texels: Vec<[f32; 3]>,
 }
 
 impl Picture {
-    /// The square of `side` texels whose top left corner is at a place, turned by half if asked.
+    /// The square of `side` texels whose top left corner is at a place, rotated by 180° if
+    /// requested.
     pub fn cut(&self, row: usize, col: usize, side: usize, turned: bool) -> Picture {
         let mut texels: Vec<[f32; 3]> = (row..row + side)
             .flat_map(|r| &self.texels[r * self.cols + col..r * self.cols + col + side])
@@ -27,8 +28,8 @@ impl Picture {
         Picture { rows: side, cols: side, texels }
     }
 
-    /// Bilinear lookup at a place in texels, (0, 0) the top left corner of the picture; clamped at
-    /// the edges, so that the weight of every texel sums to its own area.
+    /// Bilinear lookup at a position in texels, (0, 0) the top left corner of the picture. Clamped
+    /// at the edges, so that the weight of every texel sums to its own area.
     fn bilinear(&self, x: f64, y: f64) -> [f64; 3] {
         let (c0, c1, fx) = taps(x, self.cols);
         let (r0, r1, fy) = taps(y, self.rows);
@@ -43,14 +44,14 @@ impl Picture {
     }
 }
 
-/// The two texels around a coordinate and the share of the second.
+/// The two texels around a coordinate and the weight of the second.
 fn taps(x: f64, count: usize) -> (usize, usize, f64) {
     let x = (x - 0.5).clamp(0.0, (count - 1) as f64);
     let first = x as usize;
     (first, (first + 1).min(count - 1), x - first as f64)
 }
 
-/// An equirectangular picture of `rows` and twice as many columns: each texel the mean of
+/// An equirectangular picture of `rows` and twice as many columns. Each texel is the mean of
 /// `lookup` over 4 × 4 directions, evenly spaced in azimuth and in the cosine of the zenith angle
 /// (equal solid angles).
 fn resample(rows: usize, lookup: impl Fn([f64; 3]) -> [f64; 3] + Sync) -> Picture {
@@ -91,16 +92,16 @@ fn resample(rows: usize, lookup: impl Fn([f64; 3]) -> [f64; 3] + Sync) -> Pictur
 
 /// Rows that resolve a cube of faces `side` texels wide at its finest.
 ///
-/// Stepping one texel along an axis at (u, v) on a face turns by (2/side)·√(1+v²)/(1+u²+v²), least
+/// One texel along an axis at (u, v) on a face is an angle of (2/side)·√(1+v²)/(1+u²+v²), smallest
 /// at a corner: (2/side)·√2/3 = 0.943/side. Ten rows for three texels are π·3/(10·side) =
 /// 0.942/side apart.
-pub(super) fn cube_rows(side: usize) -> usize {
+pub(crate) fn cube_rows(side: usize) -> usize {
     (10 * side).div_ceil(3)
 }
 
 /// Six faces, +X -X +Y -Y +Z -Z, as OpenGL and Vulkan define them (their +Y up), to an
 /// equirectangular picture. The cube's +Z is straight ahead and its +X to the right.
-pub(super) fn from_cube(faces: &[Picture; 6]) -> Picture {
+pub(crate) fn from_cube(faces: &[Picture; 6]) -> Picture {
     let side = faces[0].cols as f64;
     resample(cube_rows(faces[0].cols), |[x, y, z]| {
         let (cx, cy, cz) = (-y, z, x);
@@ -120,10 +121,10 @@ pub(super) fn from_cube(faces: &[Picture; 6]) -> Picture {
     })
 }
 
-/// The six faces of a cross folded into a cube: in the middle straight ahead, around it left,
-/// right, up and down; behind is at the far right of a horizontal cross (4:3) and, upside down,
+/// The six faces of a cross, folded into a cube. Straight ahead is in the centre, with left, right,
+/// up and down around it. Behind is at the far right of a horizontal cross (4:3) and, upside down,
 /// at the foot of a vertical one (3:4).
-pub(super) fn from_cross(cross: &Picture) -> Picture {
+pub(crate) fn from_cross(cross: &Picture) -> Picture {
     let vertical = cross.rows > cross.cols;
     let side = if vertical { cross.cols / 3 } else { cross.cols / 4 };
     let at = |row: usize, col: usize| cross.cut(row * side, col * side, side, false);
@@ -131,13 +132,13 @@ pub(super) fn from_cross(cross: &Picture) -> Picture {
     from_cube(&[at(1, 2), at(1, 0), at(0, 1), at(2, 1), at(1, 1), behind])
 }
 
-/// An angular map (Debevec's light probes) to an equirectangular picture: the centre is straight
-/// ahead, the rim of the inscribed circle straight behind, and the distance from the centre is
-/// the angle from ahead. Texels outside the circle are not looked at.
+/// An angular map (Debevec's light probes) to an equirectangular picture. The centre is straight
+/// ahead, the rim of the inscribed circle straight behind, and the distance from the centre is the
+/// angle from ahead. Texels outside the circle are ignored.
 ///
-/// Its rows keep the map's radial resolution, 2π/width. Near the rim the map is finer around the
-/// circle, without bound at the rim itself; there the samples average.
-pub(super) fn from_angular(map: &Picture) -> Picture {
+/// The rows keep the map's radial resolution, 2π/width. Near the rim the map's resolution around
+/// the circle grows without bound; there the lookups average.
+pub(crate) fn from_angular(map: &Picture) -> Picture {
     let side = map.cols as f64;
     let inside = |r: usize, c: usize| {
         let unit = |i: usize| (2.0 * i as f64 + 1.0) / side - 1.0;
@@ -184,7 +185,7 @@ mod tests {
         Picture { rows: side, cols: side, texels: vec![value; side * side] }
     }
 
-    /// The value in the middle of a picture's texel that looks along a world direction.
+    /// The value at the centre of the texel in a world direction.
     fn seen(picture: &Picture, [x, y, z]: [f64; 3]) -> [f32; 3] {
         let col = (PI - y.atan2(x)) / (2.0 * PI) * picture.cols as f64;
         let row = x.hypot(y).atan2(z) / PI * picture.rows as f64;
@@ -192,8 +193,8 @@ mod tests {
         picture.texels[row * picture.cols + col as usize % picture.cols]
     }
 
-    /// ∫ L max(N·e, 0) de / π over an equirectangular picture, by the exact area of each texel and
-    /// the direction of its middle.
+    /// ∫ L max(N·e, 0) de / π over an equirectangular picture, with the exact area of each texel
+    /// and the direction of its centre.
     fn irradiance(picture: &Picture, n: [f64; 3]) -> f64 {
         let mut sum = 0.0;
         for row in 0..picture.rows {
@@ -217,7 +218,7 @@ mod tests {
         let faces = [0; 6].map(|_| flat(5, value));
         assert!(from_cube(&faces).texels.iter().all(|t| *t == value));
         let mut probe = flat(9, value);
-        // Outside the circle anything may stand.
+        // Texels outside the circle may hold anything.
         probe.texels[0] = [f32::NAN; 3];
         assert!(from_angular(&probe).texels.iter().all(|t| *t == value));
     }
@@ -275,9 +276,9 @@ mod tests {
 
     #[test]
     fn a_bright_patch_of_a_cube_keeps_its_irradiance() {
-        // A patch of 4 × 4 texels of 1000 on the face above, off its middle: the truth is the sum
-        // over 64 × 64 points a texel of dA / (1 + u² + v²)^1.5 (solid angle) times the cosine
-        // 1/√(1 + u² + v²), over π.
+        // A patch of 4 × 4 texels of 1000 on the face above, off its centre. The ground truth is
+        // the sum over 64 × 64 points per texel of dA / (1 + u² + v²)^1.5 (solid angle) times the
+        // cosine 1/√(1 + u² + v²), over π.
         let (n, from) = (32, 20);
         let mut faces = [0; 6].map(|_| flat(n, [0.0; 3]));
         let (mut expected, fine) = (0.0, 64);

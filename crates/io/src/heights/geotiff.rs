@@ -1,8 +1,8 @@
-//! The few GeoTIFF tags that say how large a cell is (OGC 19-008r4), and GDAL's no-data tag.
+//! The GeoTIFF tags for the cell size (OGC 19-008r4), and GDAL's no-data tag.
 
-use super::geo::{Cell, looks_like_degrees};
-use super::open;
-use super::tif::Tiff;
+use crate::heights::geo::{Cell, looks_like_degrees};
+use crate::heights::tif::Tiff;
+use crate::open;
 use ridgelight::{Error, Result};
 use std::path::Path;
 use tiff::{decoder::ifd::Value, tags::Tag};
@@ -21,22 +21,22 @@ const LINEAR_UNIT: u16 = 3076;
 const LINEAR_UNIT_SIZE: u16 = 3077;
 const VERTICAL_UNIT: u16 = 4099;
 
-/// What the tags say.
-pub(super) struct Geo {
+/// Values of the tags.
+pub(crate) struct Geo {
     pub cell: Cell,
     /// Metres in a unit of height.
     pub unit_m: f64,
     pub nodata: Option<f64>,
 }
 
-/// Grid coordinates: where the raster lies, north up.
+/// Grid coordinates of a north-up raster.
 struct Grid {
     cell: [f64; 2],
     /// World position of raster position (0, 0), if there is a tie point.
     origin: Option<[f64; 2]>,
 }
 
-pub(super) fn read(path: &Path, tiff: &mut Tiff, rows: usize, cols: usize) -> Result<Geo> {
+pub(crate) fn read(path: &Path, tiff: &mut Tiff, rows: usize, cols: usize) -> Result<Geo> {
     let nodata = nodata(path, tiff)?;
     let keys = Keys::read(path, tiff)?;
     let unit_m = keys.length(path, VERTICAL_UNIT)?.unwrap_or(1.0);
@@ -87,8 +87,8 @@ pub(super) fn read(path: &Path, tiff: &mut Tiff, rows: usize, cols: usize) -> Re
     Ok(Geo { cell, unit_m, nodata })
 }
 
-/// A tag's value, `None` where it is absent. Its count is held against the file's size before the
-/// decoder makes room for it.
+/// A tag's value, `None` where absent. Its count is checked against the file's size before the
+/// decoder allocates memory.
 fn find(path: &Path, tiff: &mut Tiff, tag: u16, expected: &str) -> Result<Option<Value>> {
     let wrong = |found: String| Error::file(path, format!("tag {tag}"), found, expected);
     let held = tiff.inner().get_ref().len() as u64;
@@ -102,14 +102,14 @@ fn find(path: &Path, tiff: &mut Tiff, tag: u16, expected: &str) -> Result<Option
     }
 }
 
-/// The numbers of a tag, `None` where it is absent.
+/// The numbers of a tag, `None` where absent.
 fn doubles(path: &Path, tiff: &mut Tiff, tag: u16) -> Result<Option<Vec<f64>>> {
     let wrong = |e| Error::file(path, format!("tag {tag}"), open::complaint(e), "numbers");
     let value = find(path, tiff, tag, "numbers")?;
     value.map(|v| v.into_f64_vec().map_err(wrong)).transpose()
 }
 
-/// The grid from the transformation or from scale and tie point; `None` where there is neither.
+/// The grid from the transformation, or from scale and tie point; `None` where both are absent.
 fn grid(path: &Path, tiff: &mut Tiff) -> Result<Option<Grid>> {
     let (tag, cell, origin) = if let Some(m) = doubles(path, tiff, TRANSFORMATION)? {
         let &[xi, xj, _, x0, yi, yj, _, y0, ..] = m.as_slice() else {
@@ -163,7 +163,7 @@ fn nodata(path: &Path, tiff: &mut Tiff) -> Result<Option<f64>> {
     text.parse().map(Some).map_err(|_| wrong(format!("{short:?}")))
 }
 
-/// The GeoKey directory: entries of four shorts (key, where the value is, count, value).
+/// The GeoKey directory: entries of four shorts (key, location, count, value).
 struct Keys {
     entries: Vec<[u16; 4]>,
     doubles: Vec<f64>,
@@ -191,7 +191,7 @@ impl Keys {
         self.entries.iter().find(|e| e[0] == key && e[1] == 0).map(|e| e[3])
     }
 
-    /// Metres in the EPSG unit of length that a key names; `None` where the key is absent.
+    /// Metres in the EPSG unit of length of a key; `None` where the key is absent.
     fn length(&self, path: &Path, key: u16) -> Result<Option<f64>> {
         let user_size = || {
             let entry =

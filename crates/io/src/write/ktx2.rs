@@ -1,7 +1,8 @@
-//! KTX 2.0 textures (Khronos KTX File Format Specification 2.0): one level, uncompressed, an array of layers or one.
+//! KTX 2.0 textures (Khronos KTX File Format Specification 2.0): one uncompressed level, with or
+//! without array layers.
 
-use super::atomic::{Temporary, Written};
 use crate::Component;
+use crate::write::atomic::{Temporary, Written};
 use ridgelight::{Error, Result};
 use std::path::Path;
 
@@ -12,17 +13,18 @@ const HEADER_BYTES: usize = 80;
 /// An entry of the level index.
 const LEVEL_BYTES: usize = 24;
 
-/// A format of texels.
+/// Texel format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TexelFormat {
-    /// Of each component.
+    /// Format of each component.
     pub component: Component,
     /// 1 (R), 2 (RG) or 4 (RGBA).
     pub count: usize,
 }
 
 impl TexelFormat {
-    /// Its number in Vulkan, and its name there without `VK_FORMAT_`; none for other counts of components.
+    /// The Vulkan format's number and its name without `VK_FORMAT_`; none for other counts of
+    /// components.
     pub fn vulkan(self) -> Option<(u32, &'static str)> {
         use Component::{F16, F32, Snorm8, Snorm16, Unorm8, Unorm16};
         Some(match (self.component, self.count) {
@@ -53,13 +55,13 @@ impl TexelFormat {
         self.count * self.component.bytes()
     }
 
-    /// The basic descriptor of Khronos' Data Format Specification 1.3 (§5), behind its total size: linear numbers
-    /// without primaries, a sample a component.
+    /// The basic descriptor of Khronos' Data Format Specification 1.3 (§5), after its total size:
+    /// linear numbers without primaries, one sample per component.
     fn descriptor(self) -> Vec<u8> {
         let block = 24 + 16 * self.count as u32;
         let bits = 8 * self.component.bytes() as u32;
-        // Vendor 0 and type 0; version 2; colour model 1 (RGBSDA), primaries 0, transfer 1 (linear), flags 0;
-        // texels of 1 × 1 × 1 × 1 (each less one); bytes of the first plane.
+        // Vendor 0 and type 0; version 2; colour model 1 (RGBSDA), primaries 0, transfer 1
+        // (linear), flags 0; texels of 1 × 1 × 1 × 1 (each less one); bytes of the first plane.
         let mut words =
             vec![4 + block, 0, 2 | (block << 16), 1 | (1 << 16), 0, self.bytes() as u32, 0];
         for i in 0..self.count as u32 {
@@ -86,7 +88,7 @@ impl TexelFormat {
 
 /// Writes a texture layer by layer, so that it may be larger than memory.
 ///
-/// Nothing is at the destination until [`finish`](Self::finish); dropped before, it leaves nothing.
+/// The destination is untouched until [`finish`](Self::finish); dropping the writer leaves nothing.
 #[derive(Debug)]
 pub struct Ktx2Writer {
     file: Temporary,
@@ -94,13 +96,14 @@ pub struct Ktx2Writer {
 }
 
 impl Ktx2Writer {
-    /// Begins a texture of `rows` × `cols` texels, the first row uppermost: an array where `layers` is given.
+    /// Begins a texture of `rows` × `cols` texels, the top row first; an array where `layers` is
+    /// given.
     ///
-    /// `texts` are keys and values to be kept beside KTXorientation and KTXwriter, which are there in any case.
+    /// `texts` are keys and values, in addition to KTXorientation and KTXwriter.
     ///
     /// # Errors
-    /// A format that is none, sides of 0 or beyond 2³², a key that is empty, reserved ("KTX…") or there twice; a directory
-    /// that cannot be written to.
+    /// An invalid format, sides of 0 or beyond 2³², an empty, reserved ("KTX…") or duplicate key; a
+    /// directory that cannot be written.
     pub fn create(
         path: &Path,
         format: TexelFormat,
@@ -127,7 +130,8 @@ impl Ktx2Writer {
         let (descriptor, keys) = (format.descriptor(), keys(texts)?);
         let descriptor_at = HEADER_BYTES + LEVEL_BYTES;
         let keys_at = descriptor_at + descriptor.len();
-        // Texels begin at a multiple of both 4 and a texel's bytes, which are powers of two (§3.9.7).
+        // Texels begin at a multiple of both 4 and a texel's bytes, which are powers of two
+        // (§3.9.7).
         let texels_at = (keys_at + keys.len()).next_multiple_of(format.bytes().max(4));
         let mut head = IDENTIFIER.to_vec();
         let (depth, faces, levels, supercompression) = (0, 1, 1, 0);
@@ -147,7 +151,7 @@ impl Ktx2Writer {
             keys.len() as u32,
         ];
         head.extend(words.iter().flat_map(|word| word.to_le_bytes()));
-        // No supercompression's data; the level's place, length and length uncompressed.
+        // No supercompression data; the level's offset, length and uncompressed length.
         let longs = [0, 0, texels_at as u64, level, level];
         head.extend(longs.iter().flat_map(|long: &u64| long.to_le_bytes()));
         head.extend(descriptor);
@@ -158,17 +162,17 @@ impl Ktx2Writer {
         Ok(Self { file, left: level })
     }
 
-    /// Appends texels, layers in order and rows from the uppermost on.
+    /// Appends texels, layers in order and rows from the top.
     ///
     /// # Errors
-    /// More than the texture holds; a disk that does not take them.
+    /// More texels than the texture holds; a write error.
     pub fn write(&mut self, texels: &[u8]) -> Result<()> {
         let found = || Error::setting("texels", "more bytes", format!("{} more", self.left));
         self.left = self.left.checked_sub(texels.len() as u64).ok_or_else(found)?;
         self.file.write(texels)
     }
 
-    /// Puts the file at its destination.
+    /// Moves the file to its destination.
     ///
     /// # Errors
     /// As [`close`](Self::close); a destination that cannot be replaced.
@@ -179,7 +183,7 @@ impl Ktx2Writer {
     /// Ends the file, which waits beside its destination.
     ///
     /// # Errors
-    /// Fewer texels than the texture holds; a disk that does not take them.
+    /// Fewer texels than the texture holds; a write error.
     pub fn close(self) -> Result<Written> {
         if self.left > 0 {
             let found = format!("{} bytes too few", self.left);
@@ -189,7 +193,8 @@ impl Ktx2Writer {
     }
 }
 
-/// Keys and values (§3.11): each with its length before it, a NUL behind both, padded to 4 bytes, sorted by key.
+/// Keys and values (§3.11): each prefixed by its length, both NUL-terminated, padded to 4 bytes,
+/// sorted by key.
 fn keys(texts: &[(String, String)]) -> Result<Vec<u8>> {
     let writer = concat!("ridgelight ", env!("CARGO_PKG_VERSION"));
     let mut all = vec![("KTXorientation", "rd"), ("KTXwriter", writer)];

@@ -1,7 +1,7 @@
-//! How large a field is, by its header alone.
+//! The size of a height field, from its header.
 
-use super::npy::{tuple, value};
-use super::open::{self, Format};
+use crate::npy::{tuple, value};
+use crate::open::{self, Format};
 use ::exr::meta::MetaData;
 use std::fs::{self, File};
 use std::io::{BufReader, Read};
@@ -11,11 +11,11 @@ use tiff::decoder::Decoder;
 /// Headers of text and of arrays are shorter.
 const HEAD_BYTES: u64 = 1 << 16;
 
-/// Rows and columns that the header of a height field claims, read without its samples: to refuse what
-/// is too large before the time and memory that reading takes.
+/// Rows and columns in the header of a height field, without reading the heights: a caller can
+/// refuse a field that is too large before it spends time and memory.
 ///
-/// Nothing where the header says nothing, as of an `.npz`, or is wrong; what is wrong,
-/// [`read_heights`](super::read_heights) tells.
+/// `None` where the header has no size, as in an `.npz`, or is invalid;
+/// [`read_heights`](crate::read_heights) reports why.
 pub fn height_size(path: &Path) -> Option<[usize; 2]> {
     let about = fs::metadata(path).ok().filter(fs::Metadata::is_file)?;
     let mut file = BufReader::new(File::open(path).ok()?);

@@ -1,18 +1,18 @@
-//! SRTM tiles: a square of big-endian 16-bit metres, row 0 in the north, nothing else.
+//! SRTM tiles: a square of big-endian 16-bit metres, row 0 in the north, without a header.
 
-use super::geo::Cell;
-use super::heights::Raster;
-use super::open;
+use crate::heights::Raster;
+use crate::heights::geo::Cell;
+use crate::open;
 use ridgelight::{Error, Result};
 use std::path::Path;
 
-/// SRTM's mark for radar shadow.
+/// SRTM's value for voids.
 const VOID: f64 = -32768.0;
 
-/// A tile of one degree, its edges on the outermost samples; 1201² and 3601² are the usual ones.
-/// Without a latitude in the name (N44W072: the tile's south-west corner) the cell is unknown,
-/// which is an error unless `cell_known`.
-pub(super) fn heights(path: &Path, bytes: &[u8], cell_known: bool) -> Result<Raster> {
+/// A tile of one degree, its edges on the outermost grid points; 1201² and 3601² are usual. Without
+/// a latitude in the name (N44W072: the tile's south-west corner) the cell size is unknown, which
+/// is an error unless `cell_known`.
+pub(crate) fn heights(path: &Path, bytes: &[u8], cell_known: bool) -> Result<Raster> {
     let side = (bytes.len() / 2).isqrt();
     if !bytes.len().is_multiple_of(2) || side < 2 || side * side * 2 != bytes.len() {
         return Err(Error::file(
@@ -43,7 +43,7 @@ pub(super) fn heights(path: &Path, bytes: &[u8], cell_known: bool) -> Result<Ras
     Ok(Raster { cell, nodata: Some(VOID), ..Raster::bare(side, side, values) })
 }
 
-/// The latitude of the tile's southern edge from a name that begins like `N44W072` or `s05e110`.
+/// The latitude of the tile's southern edge from a name like `N44W072` or `s05e110`.
 fn south_edge(path: &Path) -> Option<f64> {
     let stem = path.file_stem()?.to_str()?.to_ascii_uppercase();
     let rest = stem.strip_prefix(['N', 'S'])?;

@@ -1,21 +1,21 @@
-//! How large a degree is, and when numbers in a header are degrees.
+//! Metres per degree, and the unit of a header's numbers.
 
-/// The spacing of samples as a file gives it.
+/// The cell size in a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Cell {
-    /// The file does not say.
+pub(crate) enum Cell {
+    /// Not in the file.
     Unknown,
     /// Columns and rows, metres.
     Metres([f64; 2]),
-    /// Columns and rows, degrees, on a field whose middle is at this latitude (degrees).
+    /// Columns and rows, degrees, on a field whose centre is at this latitude (degrees).
     Degrees { cell: [f64; 2], latitude: f64 },
 }
 
 /// Metres in a degree of longitude and in a degree of latitude at `latitude` degrees.
 ///
 /// The Fourier series of the radii of curvature of the WGS84 ellipsoid, as printed by the US
-/// National Geospatial-Intelligence Agency; within 0.1 m a degree of the closed form (tested).
-pub(super) fn metres_a_degree(latitude: f64) -> [f64; 2] {
+/// National Geospatial-Intelligence Agency; within 0.1 m per degree of the closed form (tested).
+pub(crate) fn metres_a_degree(latitude: f64) -> [f64; 2] {
     let phi = latitude.to_radians();
     let east = 111_412.84 * phi.cos() - 93.5 * (3.0 * phi).cos() + 0.118 * (5.0 * phi).cos();
     let north = 111_132.92 - 559.82 * (2.0 * phi).cos() + 1.175 * (4.0 * phi).cos()
@@ -23,10 +23,10 @@ pub(super) fn metres_a_degree(latitude: f64) -> [f64; 2] {
     [east, north]
 }
 
-/// Whether a header that names no unit is in degrees: every corner is a longitude and latitude
-/// (±360, ±90) *and* the cell is under 0.1. A projected grid with metres that small around the
-/// very origin of its projection would be mistaken; a caller's own cell size settles it.
-pub(super) fn looks_like_degrees(x: [f64; 2], y: [f64; 2], cell: [f64; 2]) -> bool {
+/// Whether a header without a unit is in degrees: every corner is a longitude and latitude (±360,
+/// ±90) *and* the cell is below 0.1. A projected grid with so small a cell at the origin of its
+/// projection would be mistaken for degrees; the caller can override the cell size.
+pub(crate) fn looks_like_degrees(x: [f64; 2], y: [f64; 2], cell: [f64; 2]) -> bool {
     x.iter().all(|x| x.abs() <= 360.0)
         && y.iter().all(|y| y.abs() <= 90.0)
         && cell.iter().all(|c| *c > 0.0 && *c < 0.1)

@@ -1,6 +1,6 @@
-//! Files that are complete or absent.
+//! Output files that are complete or absent.
 
-use super::open::complaint;
+use crate::open::complaint;
 use ridgelight::{Error, Result};
 use std::fs;
 use std::io::{BufWriter, Write};
@@ -8,8 +8,8 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use tempfile::TempPath;
 
-/// What this process leaves unfinished: temporary files, and folders that it has made for results. Locked while a file is
-/// made, renamed or removed, and a folder made or removed.
+/// Unfinished temporary files and new result folders of this process. Locked while one is made,
+/// renamed or removed.
 static UNFINISHED: Mutex<Unfinished> =
     Mutex::new(Unfinished { files: Vec::new(), folders: Vec::new() });
 
@@ -22,12 +22,12 @@ fn unfinished() -> MutexGuard<'static, Unfinished> {
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Removes every file that this process has begun and not finished, and folders that it has made and that are empty; for a
-/// handler of signals, which ends the process next. Whoever begins or finishes one from here on waits for that end.
+/// Removes this process's unfinished files and its empty result folders, for a signal handler that
+/// then ends the process. Any thread that begins or finishes a file from here on blocks until then.
 pub fn abandon_unfinished() {
     let all = unfinished();
     for path in &all.files {
-        // What cannot be removed stays: there is no one left to tell.
+        // A file that cannot be removed stays: nobody is left to report it to.
         let _ = fs::remove_file(path);
     }
     for path in &all.folders {
@@ -36,8 +36,8 @@ pub fn abandon_unfinished() {
     std::mem::forget(all);
 }
 
-/// A folder for results, made where it was missing. One that was made goes with this, or with the process
-/// ([`abandon_unfinished`]), unless something lies in it by then.
+/// A folder for results, made if missing. A new folder is removed with this value, or with the
+/// process ([`abandon_unfinished`]), if it is still empty.
 #[derive(Debug)]
 pub struct ResultFolder {
     made: Option<PathBuf>,
@@ -45,7 +45,7 @@ pub struct ResultFolder {
 
 impl ResultFolder {
     /// # Errors
-    /// A folder that can neither be found nor made.
+    /// A folder that cannot be found or made.
     pub fn create(path: &Path) -> Result<Self> {
         let mut all = unfinished();
         match fs::create_dir(path) {
@@ -64,37 +64,38 @@ impl Drop for ResultFolder {
         let Some(path) = self.made.take() else { return };
         let mut all = unfinished();
         all.folders.retain(|other| *other != path);
-        // It is no error that it has something in it.
+        // A folder that is not empty is no error.
         let _ = fs::remove_dir(path);
     }
 }
 
-/// A file under a temporary name beside its destination; dropped unfinished, it is removed.
+/// A file under a temporary name beside its destination. Dropping it unfinished removes it.
 #[derive(Debug)]
-pub(super) struct Temporary {
+pub(crate) struct Temporary {
     // Closed before it is removed.
     stream: BufWriter<fs::File>,
     whole: Written,
 }
 
-/// A file that is whole and closed, but under a temporary name still; dropped before [`place`](Self::place), it is removed.
+/// A complete, closed file under a temporary name. Dropping it before [`place`](Self::place)
+/// removes it.
 #[derive(Debug)]
 pub struct Written {
-    /// As the caller wrote it, for messages.
+    /// The path from the caller, for messages.
     path: PathBuf,
-    /// Where it goes: `path`, or what `path` links to.
+    /// The destination: `path`, or the target of its link.
     destination: PathBuf,
-    /// Gone once it is renamed or removed.
+    /// None once it is renamed or removed.
     name: Option<TempPath>,
 }
 
 impl Written {
-    /// Where it lies until then.
+    /// The temporary path.
     pub fn path(&self) -> &Path {
         self.name.as_deref().expect("it has a name until it is placed")
     }
 
-    /// Puts it at its destination.
+    /// Moves the file to its destination.
     ///
     /// # Errors
     /// A destination that cannot be replaced.
@@ -104,7 +105,7 @@ impl Written {
             .map_err(|e| Error::io(&self.path, e))
     }
 
-    /// Has the temporary name taken away, with the list of such names locked.
+    /// Applies `end` to the temporary name, with the list of such names locked.
     fn end(&mut self, take: impl FnOnce(TempPath) -> std::io::Result<()>) -> std::io::Result<()> {
         let Some(name) = self.name.take() else { return Ok(()) };
         let mut all = unfinished();
@@ -115,7 +116,7 @@ impl Written {
 
 impl Drop for Written {
     fn drop(&mut self) {
-        // As for any temporary file, what cannot be removed stays.
+        // As for any temporary file, one that cannot be removed stays.
         let _ = self.end(TempPath::close);
     }
 }
@@ -123,8 +124,8 @@ impl Drop for Written {
 impl Temporary {
     /// Begins a file that will replace `path`.
     ///
-    /// A destination that is there but is no regular file is refused: renaming over a device such
-    /// as /dev/null would replace the device.
+    /// A destination that exists but is no regular file is refused: renaming over a device such as
+    /// /dev/null would replace the device.
     pub fn create(path: &Path) -> Result<Self> {
         let destination = match fs::metadata(path) {
             Ok(about) if about.is_file() => {
@@ -142,12 +143,12 @@ impl Temporary {
         };
         let mut builder = tempfile::Builder::new();
         builder.prefix(".ridgelight-");
-        // Temporary files are private by default; a result is as readable as any new file.
+        // Temporary files are private by default. A result is as readable as any new file.
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
         let mut all = unfinished();
         let file = builder.tempfile_in(directory).map_err(|e| {
-            // The system's reason without the temporary name, which would only puzzle.
+            // The system's reason, without the temporary name.
             let reason = e.get_ref().and_then(|e| e.source()).map_or(e.to_string(), complaint);
             let reason = reason.split(" at path ").next().unwrap_or_default().to_owned();
             Error::io(path, std::io::Error::new(e.kind(), reason))
@@ -164,12 +165,12 @@ impl Temporary {
         self.stream.write_all(bytes).map_err(|e| Error::io(&self.whole.path, e))
     }
 
-    /// The stream itself, for encoders.
+    /// The stream, for encoders.
     pub fn stream(&mut self) -> &mut BufWriter<fs::File> {
         &mut self.stream
     }
 
-    /// Its name until it is finished, for reading back what has been flushed.
+    /// The temporary path, for reading back what has been flushed.
     pub fn name(&self) -> &Path {
         self.whole.path()
     }
@@ -186,10 +187,10 @@ impl Temporary {
     }
 }
 
-/// Whether a file can be written at `path`, found out by beginning one there and leaving nothing.
+/// Checks that `path` can be written, by beginning a file there and removing it.
 ///
 /// # Errors
-/// A destination that cannot be written to, or that is a directory or a device.
+/// A destination that cannot be written, or that is a directory or a device.
 pub fn check_writable(path: &Path) -> Result<()> {
     Temporary::create(path).map(drop)
 }
@@ -197,17 +198,17 @@ pub fn check_writable(path: &Path) -> Result<()> {
 /// Writes UTF-8 text, whole or not at all.
 ///
 /// # Errors
-/// A destination that cannot be written to, or that is a directory or a device.
+/// A destination that cannot be written, or that is a directory or a device.
 pub fn write_text(path: &Path, text: &str) -> Result<()> {
     let mut file = Temporary::create(path)?;
     file.write(text.as_bytes())?;
     file.finish()
 }
 
-/// Writes JSON, indented and with a line feed at its end, whole or not at all.
+/// Writes indented JSON with a final line feed, whole or not at all.
 ///
 /// # Errors
-/// A destination that cannot be written to, or that is a directory or a device.
+/// A destination that cannot be written, or that is a directory or a device.
 pub fn write_json(path: &Path, value: &serde_json::Value) -> Result<()> {
     // The alternate form of a value's Display is its pretty-printed text.
     write_text(path, &format!("{value:#}\n"))

@@ -1,25 +1,25 @@
-//! Radiance HDR: the `image` crate decodes texels; what the header says of them is applied here.
+//! Radiance HDR: the `image` crate decodes texels; the header's factors are applied here.
 
-use super::open;
+use crate::open;
 use image::{ImageDecoder, ImageError, codecs::hdr::HdrDecoder};
 use ridgelight::{Error, Result};
 use std::io::{self, Read};
 use std::path::Path;
 
 /// The most texels an environment may have: 16384 × 8192.
-pub(super) const TEXEL_LIMIT: u64 = 1 << 27;
-/// The longest header that is looked through; the decoder keeps every line of it.
+pub(crate) const TEXEL_LIMIT: u64 = 1 << 27;
+/// The longest header that is read; the decoder keeps every line of it.
 const HEADER_LIMIT: usize = 1 << 16;
 
-/// Rows, columns and radiance. A texel (r, g, b, e) is (r, g, b)·2^(e-136), over the product of
-/// the header's EXPOSURE lines (which say by what the values were multiplied) and of its COLORCORR
-/// lines. GAMMA and PRIMARIES lines mean nothing here and are passed over.
+/// Rows, columns and radiance. A texel (r, g, b, e) is (r, g, b)·2^(e-136), divided by the product
+/// of the header's EXPOSURE and COLORCORR lines (the factors already applied to the values). GAMMA
+/// and PRIMARIES lines are ignored.
 ///
-/// The decoder wants lines that end in a line feed alone and the top row first (-Y +X); it refuses
-/// other orientations. It takes a row that begins with a texel (2, 2, below 128) for one of new runs
-/// at any width, where only widths from 8 to 32767 have them: no encoder writes such a texel, as
-/// one of its parts is always 128 or more.
-pub(super) fn colour(path: &Path, bytes: &[u8]) -> Result<(usize, usize, Vec<[f32; 3]>)> {
+/// The decoder requires lines that end in a single line feed and the top row first (-Y +X); it
+/// refuses other orientations. It reads a row that begins with a texel (2, 2, below 128) as
+/// new-style runs at any width, although only widths from 8 to 32767 have them. No encoder writes
+/// such a texel, as one of its parts is always 128 or more.
+pub(crate) fn colour(path: &Path, bytes: &[u8]) -> Result<(usize, usize, Vec<[f32; 3]>)> {
     let start = &bytes[..bytes.len().min(HEADER_LIMIT)];
     if !start.windows(2).any(|pair| pair == b"\n\n") {
         let found = format!("no empty line in the first {} bytes", start.len());
@@ -28,8 +28,8 @@ pub(super) fn colour(path: &Path, bytes: &[u8]) -> Result<(usize, usize, Vec<[f3
     let wrong = |place: &str, expected: &str, e: ImageError| {
         Error::file(path, place, open::reason(e), expected)
     };
-    // Strictness would only refuse "#?RGBE" as the first line, and every malformed EXPOSURE with
-    // another sentence than ours.
+    // Strict mode would only refuse "#?RGBE" as the first line, and report malformed EXPOSURE lines
+    // differently.
     let decoder = HdrDecoder::new_nonstrict(Guarded { rest: bytes, marks: 0 })
         .map_err(|e| wrong("header", "FORMAT=32-bit_rle_rgbe and then -Y rows +X columns", e))?;
     let about = decoder.metadata();
@@ -57,8 +57,8 @@ pub(super) fn colour(path: &Path, bytes: &[u8]) -> Result<(usize, usize, Vec<[f3
     Ok((rows, cols, texels))
 }
 
-/// What the header asks to multiply by. The decoder collects EXPOSURE and COLORCORR, too, but
-/// skips what it cannot read as f32 without a word.
+/// The header's factor. The decoder collects EXPOSURE and COLORCORR, too, but silently skips values
+/// that are no f32.
 fn scale(path: &Path, lines: &[(String, String)]) -> Result<[f64; 3]> {
     let mut scale = [1.0_f64; 3];
     for (key, value) in lines {
@@ -84,12 +84,12 @@ fn scale(path: &Path, lines: &[(String, String)]) -> Result<[f64; 3]> {
     Ok(scale)
 }
 
-/// The file's bytes, up to a fifth old run mark in a row: two are enough for the widest row, and
+/// The file's bytes, up to a fifth old-style run mark in a row. Two suffice for the widest row, and
 /// the decoder multiplies its count by 256 for each without a check, which panics in debug builds
 /// (image-rs/image#2714, merged, not in 0.25.10).
 struct Guarded<'a> {
     rest: &'a [u8],
-    /// Marks read since the last thing that was none; the decoder reads texels and marks whole.
+    /// Consecutive marks read so far; the decoder reads whole texels and marks.
     marks: u8,
 }
 

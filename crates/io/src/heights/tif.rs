@@ -1,18 +1,19 @@
-//! TIFF heights: one band of any integer or float type; [`geotiff`] reads where it lies.
+//! TIFF heights: one band of any integer or float type; [`geotiff`] reads its position.
 
-use super::heights::Raster;
-use super::{geotiff, open};
+use crate::heights::Raster;
+use crate::heights::geotiff;
+use crate::open;
 use half::f16;
 use ridgelight::{Error, Result};
 use std::{io::Cursor, path::Path};
 use tiff::decoder::{Decoder, DecodingResult, Limits};
 use tiff::{ColorType, TiffError, tags::Tag};
 
-pub(super) type Tiff<'a> = Decoder<Cursor<&'a [u8]>>;
+pub(crate) type Tiff<'a> = Decoder<Cursor<&'a [u8]>>;
 
 /// The first image of the file: strips or tiles, uncompressed, PackBits, LZW or DEFLATE, with any
 /// predictor.
-pub(super) fn heights(path: &Path, bytes: &[u8]) -> Result<Raster> {
+pub(crate) fn heights(path: &Path, bytes: &[u8]) -> Result<Raster> {
     let header = |e: TiffError| Error::file(path, "header", open::complaint(e), "a whole TIFF");
     let mut tiff = Decoder::new(Cursor::new(bytes)).map_err(header)?;
     let (width, height) = tiff.dimensions().map_err(header)?;

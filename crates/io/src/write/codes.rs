@@ -1,18 +1,20 @@
-//! Pictures of codes: PNG whose samples are numbers, not colours.
+//! PNG files whose samples are numbers, not colours.
 
-use super::atomic::{Temporary, Written};
-use super::open::complaint;
+use crate::open::complaint;
+use crate::write::atomic::{Temporary, Written};
 use ::png::{BitDepth, ColorType, Encoder, EncodingError, ScaledFloat};
 use ridgelight::{Error, Result};
 use std::path::Path;
 
-/// Writes samples of 8 or 16 bits (big-endian) as they are: 1 to 4 a pixel are grey, grey with alpha, RGB and RGBA.
+/// Writes samples of 8 or 16 bits (big-endian) unchanged. 1 to 4 channels are grey, grey with
+/// alpha, RGB and RGBA.
 ///
-/// It waits beside its destination. It says that its samples are linear (gAMA 1). `metadata` becomes texts, as of [`write_png`](super::write_png).
+/// The file waits beside its destination. Its gAMA chunk is 1 (linear). `metadata` becomes text
+/// chunks, as in [`write_png`](crate::write_png).
 ///
 /// # Errors
-/// Samples that are not `rows`·`cols` pixels, other counts or depths, names that PNG does not take, a destination that
-/// cannot be written to.
+/// Samples that are not `rows`·`cols` pixels, other channel counts or depths, names that PNG does
+/// not allow, a destination that cannot be written.
 pub fn write_codes_aside(
     path: &Path,
     [cols, rows]: [usize; 2],

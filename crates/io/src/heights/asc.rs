@@ -1,13 +1,13 @@
 //! ESRI ASCII grids: `key value` lines, then rows from north to south.
 
-use super::geo::{Cell, looks_like_degrees};
-use super::heights::Raster;
-use super::open;
+use crate::heights::Raster;
+use crate::heights::geo::{Cell, looks_like_degrees};
+use crate::open;
 use ridgelight::{Error, Result};
 use std::path::Path;
 
-/// The header's keys, in either case. Positions are those of the south-west corner of the
-/// south-west cell, or of its centre.
+/// The header's keys, case-insensitive. Positions are those of the south-west cell's south-west
+/// corner, or of its centre.
 #[derive(Default)]
 struct Header {
     ncols: Option<f64>,
@@ -34,7 +34,7 @@ impl Header {
         })
     }
 
-    /// Cells of unknown unit are degrees when [`looks_like_degrees`] says so, else metres.
+    /// Cells of unknown unit are degrees where [`looks_like_degrees`] holds, else metres.
     fn cell(&self, path: &Path, rows: usize, cols: usize) -> Result<Cell> {
         let cell = match self.cell {
             [None, None] => return Ok(Cell::Unknown),
@@ -59,8 +59,8 @@ impl Header {
     }
 }
 
-/// The grid. Its count of numbers must be the header's, no fewer and no more.
-pub(super) fn heights(path: &Path, bytes: &[u8]) -> Result<Raster> {
+/// The grid. The count of numbers must match the header.
+pub(crate) fn heights(path: &Path, bytes: &[u8]) -> Result<Raster> {
     let text = std::str::from_utf8(bytes).map_err(|e| {
         Error::file(path, format!("byte {}", e.valid_up_to()), "bytes that are no text", "text")
     })?;
@@ -91,7 +91,7 @@ pub(super) fn heights(path: &Path, bytes: &[u8]) -> Result<Raster> {
     };
     let (rows, cols) = (count("nrows", header.nrows)?, count("ncols", header.ncols)?);
     let (rows, cols) = open::size(path, "header", rows, cols)?;
-    // Every number takes at least a digit and a blank; 8 bytes of memory for 2 of text.
+    // Each number takes at least a digit and a blank: 8 bytes of memory for 2 of text.
     let claimed = 8 * rows as u64 * cols as u64;
     open::plausible(path, "header", claimed, bytes.len() + 1, 4)?;
     let mut values = Vec::with_capacity(rows * cols);
@@ -111,12 +111,12 @@ pub(super) fn heights(path: &Path, bytes: &[u8]) -> Result<Raster> {
     Ok(Raster { cell, nodata: header.nodata, ..Raster::bare(rows, cols, values) })
 }
 
-/// A number as these files write them; `nan` is one, so that it can mark no data.
+/// A number as these files write them; `nan` is accepted, so that it can mark no data.
 fn number(word: &str) -> Option<f64> {
     word.parse().ok()
 }
 
-/// A word short enough for a sentence.
+/// A word, shortened for messages.
 fn shortened(word: &str) -> String {
     word.chars().take(24).filter(|c| !c.is_control()).collect()
 }

@@ -1,10 +1,10 @@
-//! Whether a disk has room for what will be written, before the work.
+//! Free disk space, checked before the work.
 
 use ridgelight::{Error, Result};
 use std::path::Path;
 
-/// Refuses files that together need more than their disks have free; each is a destination and how
-/// many bytes it will take. Where the system does not say, nothing is refused.
+/// Refuses files that together exceed the free space of their disks. Each is a destination and its
+/// size in bytes. Without information from the system nothing is refused.
 ///
 /// # Errors
 /// The first file without room, as [`Error::Limit`].
@@ -25,7 +25,7 @@ pub fn check_room(files: &[(&Path, u64)]) -> Result<()> {
     Ok(())
 }
 
-/// The disk on which `path` is, and its bytes that are free to this user.
+/// The disk of `path`, and its bytes free to this user.
 #[cfg(unix)]
 fn free(path: &Path) -> Option<(u64, u64)> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
@@ -51,12 +51,12 @@ mod tests {
         check_room(&[(&a, 1), (&b, 1)]).unwrap();
         let said = check_room(&[(&a, 1 << 62)]).unwrap_err().to_string();
         assert!(said.contains("a.npy: needs 4611686018427387904 bytes on its disk"), "{said}");
-        // Two that fit alone do not fit together.
+        // Two files that fit alone do not fit together.
         let (_, free) = free(&a).unwrap();
         let most = free / 4 * 3;
         check_room(&[(&a, most)]).unwrap();
         assert!(check_room(&[(&a, most), (&b, most)]).is_err());
-        // A folder that is not there is told when the file is made.
+        // A missing folder is reported when the file is made.
         check_room(&[(&folder.path().join("no/a.npy"), 1 << 62)]).unwrap();
     }
 }
