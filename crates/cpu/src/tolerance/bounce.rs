@@ -115,7 +115,7 @@ pub struct BounceError {
 impl BounceError {
     /// From all that a CPU reference has seen, each cast with what an engine errs by there.
     ///
-    /// With F the weight of all below an elevation a slice throws Σ (F(ω_i) - F(ω_i-1)) L_i. An end ω_i that has an error of
+    /// With F the weight of all below an elevation a slice contributes Σ (F(ω_i) - F(ω_i-1)) L_i. An end ω_i that has an error of
     /// δ moves (F' + 2 δ) δ from L_i to L_i+1 (nothing beyond the last): differences of neighbours count, not the light
     /// itself. What is hidden by less than δ may be seen instead of either: it is among the casts, without weight, up
     /// to [`NEARLY_RAD`]; beyond, it may be as bright as any. The first end is the own plane, where F' is 0 and F
@@ -204,7 +204,7 @@ pub fn march_error(cell_m: [f64; 2], along: &Along, cast: &Cast) -> CastError {
 /// What `bounce_walk` errs by where a visible interval ends, given what the device's own sweep has met.
 ///
 /// Rises are sums and products that are not fused, as the CPU reference's. A slope is their quotient by a product: 6 ε and the
-/// twin's own 2 ε. Moments: half an arc tangent and 5 ε, and 4 ε, each times its part of the wedge, which errs
+/// CPU reference's own 2 ε. Moments: half an arc tangent and 5 ε, and 4 ε, each times its part of the wedge, which errs
 /// by its cosine, sine and width of f32.
 pub fn walk_error(wedge_rad: f64, cast: &Cast) -> CastError {
     let slope = cast.high_rad.tan();

@@ -28,7 +28,7 @@ pub fn device_specular_exit(order: usize, normal_error: f64) -> f64 {
 /// A coefficient of what arrives by `specular_gather`, from all that a CPU reference has seen, each cast with what it errs by there, of
 /// surface whose radiance by direction has coefficients that sum to `of.brightest` at most, by magnitude.
 ///
-/// An end ends what one place throws and begins what the next does: twice its error times `brightest`, with Y_lm 1 at
+/// An end closes the contribution of one place and opens the next one: twice its error times `brightest`, with Y_lm 1 at
 /// most; the first is the own plane, which turns with the normal. Radiance errs by itself, changes by n a radian of
 /// direction, and its series sum with 100 ε; slices are polynomials whose coefficients sum to 15, 100 ε an end.
 pub fn device_arriving(
