@@ -4,6 +4,8 @@
 mod cover;
 mod suite;
 
+use std::io::Write as _;
+
 use ridgelight::scene::{
     BounceEngine, Fuse, Hull, Levels, LightBasis, Lines, Method, Precision, Quality, Receiver,
     Wedges,
@@ -131,6 +133,12 @@ fn hold(is_such: fn(&Case) -> bool) {
     let rows = of_such(cover(&cases, &methods));
     let left = of_such(suite::put(&cases, &methods)).len() - rows.len();
     println!("{} rows; {left} left to tools/test --all", rows.len());
+    // What tools/test adds up.
+    if let Some(counts) = std::env::var_os("RIDGELIGHT_ROWS") {
+        let file = std::fs::OpenOptions::new().create(true).append(true).open(counts);
+        let line = format!("{} {left}\n", rows.len());
+        file.and_then(|mut file| file.write_all(line.as_bytes())).expect("RIDGELIGHT_ROWS");
+    }
     let mut wrong = Vec::new();
     for [c, m] in rows {
         let probes = suite::probes(device.gpu.as_mut().expect("alive"), &cases[c], &methods[m]);
