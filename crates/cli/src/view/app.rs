@@ -49,6 +49,8 @@ pub struct App<'a> {
     last: Option<Instant>,
     /// Since when the window shows nothing, and why, where it should.
     blank: Option<(Instant, &'static str)>,
+    /// How long it may, where a script draws.
+    patience: Duration,
 }
 
 /// A window and what is drawn in it.
@@ -88,6 +90,7 @@ impl<'a> App<'a> {
             spent: Vec::new(),
             last: None,
             blank: None,
+            patience: steps::PATIENCE,
         }
     }
 

@@ -30,12 +30,14 @@ pub enum Step {
     Paths(u32),
     /// Frames so far, and milliseconds of each since the last report; after some words.
     Report(String),
-    /// Input is awaited for so many seconds, as without a script.
-    Wait(f64),
+    /// Input is awaited until such a file exists, as without a script.
+    Wait(PathBuf),
+    /// Input that came before that file has been heard: it is drawn.
+    Heard,
+    /// How many seconds the window may show nothing, 600 at most, before the script gives up.
+    Patience(f64),
     /// A size that has been asked for, and until when it may come.
     Resizing([u32; 2], Instant),
-    /// Until when input is awaited.
-    Waiting(Instant),
 }
 
 /// A mouse button's work.
@@ -69,7 +71,7 @@ pub fn read(path: &Path) -> Result<Vec<Step>> {
                 found: line.to_owned(),
                 expected:
                     "key, drag, wheel, frames, size, lose, picture, scene, screenshot, text, paths, \
-                       report or wait, and what belongs to it"
+                       report, wait or patience, and what belongs to it"
                         .into(),
             }
         })?);
@@ -102,7 +104,11 @@ fn step(line: &str) -> Option<Step> {
         ["text", file] => Step::Text(file.into()),
         ["paths", count] => Step::Paths(count.parse().ok()?),
         ["report", ..] => Step::Report(words[1..].join(" ")),
-        ["wait", seconds] => Step::Wait(seconds.parse().ok()?),
+        ["wait", file] => Step::Wait(file.into()),
+        ["patience", seconds] => {
+            let seconds = seconds.parse().ok()?;
+            Step::Patience((0.0..=600.0).contains(&seconds).then_some(seconds)?)
+        }
         _ => return None,
     })
 }
@@ -125,5 +131,7 @@ mod tests {
         assert_eq!(read(&path).unwrap(), steps);
         std::fs::write(&path, "lose\njump\n").unwrap();
         assert!(read(&path).unwrap_err().to_string().contains("line 2: found jump"));
+        std::fs::write(&path, "patience nan\n").unwrap();
+        assert!(read(&path).unwrap_err().to_string().contains("found patience nan"));
     }
 }
