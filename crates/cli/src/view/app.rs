@@ -49,6 +49,8 @@ pub struct App<'a> {
     last: Option<Instant>,
     /// Since when the window has shown nothing though it should, and why.
     blank: Option<(Instant, &'static str)>,
+    /// How long it may, where a script draws.
+    patience: Duration,
 }
 
 /// A window and its frames.
@@ -88,6 +90,7 @@ impl<'a> App<'a> {
             spent: Vec::new(),
             last: None,
             blank: None,
+            patience: steps::PATIENCE,
         }
     }
 

@@ -30,12 +30,14 @@ pub enum Step {
     Paths(u32),
     /// Prints the frames so far and their milliseconds since the last report, after some words.
     Report(String),
-    /// Waits for input for so many seconds, as without a script.
-    Wait(f64),
+    /// Waits for input until this file exists, as without a script.
+    Wait(PathBuf),
+    /// Draws what the input before that file has changed.
+    Heard,
+    /// How many seconds the window may show nothing before the script gives up, 600 at most.
+    Patience(f64),
     /// A requested size, and its deadline.
     Resizing([u32; 2], Instant),
-    /// The end of a wait for input.
-    Waiting(Instant),
 }
 
 /// What a mouse button drags.
@@ -69,7 +71,7 @@ pub fn read(path: &Path) -> Result<Vec<Step>> {
                 found: line.to_owned(),
                 expected:
                     "key, drag, wheel, frames, size, lose, picture, scene, screenshot, text, \
-                        paths, report or wait, with its values"
+                        paths, report, wait or patience, with its values"
                         .into(),
             }
         })?);
@@ -102,7 +104,11 @@ fn step(line: &str) -> Option<Step> {
         ["text", file] => Step::Text(file.into()),
         ["paths", count] => Step::Paths(count.parse().ok()?),
         ["report", ..] => Step::Report(words[1..].join(" ")),
-        ["wait", seconds] => Step::Wait(seconds.parse().ok()?),
+        ["wait", file] => Step::Wait(file.into()),
+        ["patience", seconds] => {
+            let seconds = seconds.parse().ok()?;
+            Step::Patience((0.0..=600.0).contains(&seconds).then_some(seconds)?)
+        }
         _ => return None,
     })
 }
@@ -125,5 +131,7 @@ mod tests {
         assert_eq!(read(&path).unwrap(), steps);
         std::fs::write(&path, "lose\njump\n").unwrap();
         assert!(read(&path).unwrap_err().to_string().contains("line 2: found jump"));
+        std::fs::write(&path, "patience nan\n").unwrap();
+        assert!(read(&path).unwrap_err().to_string().contains("found patience nan"));
     }
 }

@@ -126,15 +126,17 @@ fn gpu_brushes_have_size_limits() {
 #[test]
 fn gpu_real_keys_and_mouse_events_work() {
     let (folder, display) = (Folder::new(), Display::new());
-    folder.write("script", b"frames 2\nwait 6\nscene heard.json\n");
+    folder.write("script", b"frames 2\nwait acted\nscene heard.json\n");
     let mut view = folder.command(&format!("view hills.asc {LIT} --size 300x200 --script script"));
     let mut view = view.env("DISPLAY", &display.name).stdout(Stdio::null()).spawn().unwrap();
     // Without a window manager the window does not get the keyboard by itself.
-    let act = "search --sync --name hills.asc windowfocus --sync sleep 0.5 mousemove 100 100 key period key m key Tab key Tab key period mousedown 3 mousemove 120 100 mousemove 140 100 mouseup 3 key 2 mousemove 200 120 mousedown 1 mousemove 210 120 mouseup 1";
+    let act = "windowfocus --sync mousemove 100 100 key period key m key Tab key Tab key period mousedown 3 mousemove 120 100 mousemove 140 100 mouseup 3 key 2 mousemove 200 120 mousedown 1 mousemove 210 120 mouseup 1";
     // `timeout` ends a wait for a window that never appears.
     let mut xdotool = Command::new("timeout");
-    xdotool.args(["1200", "xdotool"]).args(act.split(' '));
-    let acted = xdotool.env("DISPLAY", &display.name).status();
+    // Its title is this once it has drawn.
+    xdotool.args(["1200", "xdotool", "search", "--sync", "--name", "hills.asc - ridgelight - "]);
+    let acted = xdotool.args(act.split(' ')).env("DISPLAY", &display.name).status();
+    folder.write("acted", b"");
     let ended = view.wait().unwrap();
     assert!(acted.expect("xdotool: run tools/setup --tests").success() && ended.success());
     let text = std::fs::read_to_string(folder.0.path().join("heard.json")).unwrap();

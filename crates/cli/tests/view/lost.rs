@@ -161,10 +161,10 @@ fn gpu_window_without_area_waits() {
         silent(window);
         assert_same(&folder, "shown.png", "render.png");
     }
-    let mut window = folder.window(&display, &args, "frames 1\nscreenshot none.png\n");
+    let mut window = folder.window(&display, &args, "patience 1\nframes 1\nscreenshot none.png\n");
     beset(&folder, &mut window, (name, 2, ALL, 0));
     let said = sentence(window);
-    let expected = "--script: screenshot: the window has shown nothing for 10 s: it has no area";
+    let expected = "--script: screenshot: the window has shown nothing for 1 s: it has no area";
     assert!(said.contains(expected), "{said}");
     assert!(!folder.0.path().join("none.png").exists());
 }

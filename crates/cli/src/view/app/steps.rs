@@ -11,8 +11,8 @@ use super::compare::MOST_PATHS;
 use super::drawing::places;
 use super::{App, OpenWindow};
 
-/// How long a script's window may show nothing.
-const PATIENCE: Duration = Duration::from_secs(10);
+/// How long a script's window may show nothing, unless the script sets it.
+pub(super) const PATIENCE: Duration = Duration::from_secs(120);
 /// How long a script waits for a requested size: window managers of busy machines take seconds.
 const RESIZE_PATIENCE: Duration = Duration::from_secs(120);
 
@@ -85,17 +85,25 @@ impl App<'_> {
                 self.report(&what);
                 None
             }
-            Step::Wait(seconds) => {
-                let until = Instant::now() + Duration::from_secs_f64(seconds.clamp(0.0, 600.0));
-                Some(Step::Waiting(until))
-            }
-            Step::Waiting(until) => {
+            Step::Wait(path) => {
+                // Asked before the loop takes input once more: what came before the file is then heard.
+                let is_there = path.exists();
                 if self.is_due() {
                     self.draw(false)?;
                 } else {
                     std::thread::sleep(Duration::from_millis(5));
                 }
-                (Instant::now() < until).then_some(Step::Waiting(until))
+                Some(if is_there { Step::Heard } else { Step::Wait(path) })
+            }
+            Step::Heard => {
+                if self.is_due() {
+                    self.draw(false)?;
+                }
+                None
+            }
+            Step::Patience(seconds) => {
+                self.patience = Duration::from_secs_f64(seconds);
+                None
             }
         };
         if let (Some(again), Some(steps)) = (again, &mut self.steps) {
@@ -106,10 +114,11 @@ impl App<'_> {
 
     /// Refuses a window that has shown nothing for too long.
     fn check_shown(&self, step: &str) -> Result<()> {
-        let Some((_, why)) = self.blank.filter(|(since, _)| since.elapsed() > PATIENCE) else {
+        let Some((_, why)) = self.blank.filter(|(since, _)| since.elapsed() > self.patience) else {
             return Ok(());
         };
-        let reason = format!("the window has shown nothing for {} s: {why}", PATIENCE.as_secs());
+        let reason =
+            format!("the window has shown nothing for {} s: {why}", self.patience.as_secs_f64());
         Err(Error::Device { doing: format!("--script: {step}"), reason })
     }
 
