@@ -14,7 +14,7 @@ const RESORTS: usize = 2;
 /// Margins within the error after two estimates were too low.
 const MARGIN: f64 = 1.5;
 /// Factor between two times of the same settings that counts as timing noise.
-const WAVER: f64 = 1.25;
+const TIMING_NOISE: f64 = 1.25;
 /// Least expected gain of a further frame, in ln of cost or error.
 const WORTH: f64 = 0.05;
 /// Accuracy of the control relative to the goal: aimed for, and required, unless this many frames
@@ -52,7 +52,7 @@ impl Goal {
     pub fn is_missed(&self, trial: &Trial) -> bool {
         match self {
             Goal::MaxError(most) => 2.0 * trial.measured.error - trial.measured.at_most > *most,
-            Goal::MaxCost(most) => trial.ns > WAVER * *most,
+            Goal::MaxCost(most) => trial.ns > TIMING_NOISE * *most,
         }
     }
 }

@@ -14,7 +14,7 @@ use std::ops::RangeInclusive;
 pub struct Ladder {
     /// Name of the setting.
     pub name: &'static str,
-    /// Its values as the command line spells them, flag and all, from cheap to dear.
+    /// Its values as settings, "`lines 1`", from fast to slow.
     pub steps: Vec<String>,
     /// The range of a count, of which the steps are a few values; none for a choice, whose steps
     /// are complete.

@@ -40,11 +40,11 @@ fn choices_of_bounces_reach_the_goal() {
         let drawn = quality.bounces.needed_bounces(f64::from(0.8_f32));
         1e6 * f64::from(quality.azimuths) + 1e6 * f64::from(drawn * azimuths)
     };
-    let found = |most: f64, waver: f64| {
+    let found = |most: f64, noise: f64| {
         let mut batches_used = Vec::new();
         let mut trace = |samples: &[usize], batches: u32, seed: u32| {
             batches_used.push(batches);
-            let error = waver / f64::from(batches).sqrt();
+            let error = noise / f64::from(batches).sqrt();
             let of = |(k, i): (usize, &usize)| {
                 let turn = (f64::from(seed % 1009) + 1.0) * (k as f64 + 1.0) * 2.399_963;
                 // A sine of evenly spread phases has the variance ½.
