@@ -38,7 +38,7 @@ impl Format {
     }
 
     /// Whether texels are unsigned integers.
-    pub fn is_uint(self) -> bool {
+    pub(crate) fn is_uint(self) -> bool {
         matches!(self, Format::R32Uint | Format::Rg32Uint | Format::Rgba32Uint)
     }
 

@@ -39,7 +39,7 @@ pub(super) enum Colour {
 }
 
 impl<'a> ActiveLights<'a> {
-    pub fn of(
+    pub(super) fn of(
         scene: &'a Scene,
         quality: &Quality,
         wanted: Picture,
@@ -129,17 +129,17 @@ impl<'a> ActiveLights<'a> {
     }
 
     /// Number of the caller's colours: the sky's, if any, then those of all suns, then those of all key lights.
-    pub fn texels_of(lights: &Lights) -> usize {
+    pub(super) fn texels_of(lights: &Lights) -> usize {
         usize::from(lights.sky.is_some()) + lights.suns.len() + lights.keys.len()
     }
 
     /// Colour of the sky.
-    pub fn sky_colour(&self) -> Option<Colour> {
+    pub(super) fn sky_colour(&self) -> Option<Colour> {
         self.sky.map(|sky| self.texels.map_or(Colour::Known(sky), |_| Colour::Texel(0)))
     }
 
     /// Whether no light is active, so the picture is black.
-    pub fn is_dark(&self) -> bool {
+    pub(super) fn is_dark(&self) -> bool {
         let has_sky = self.sky.is_some() || self.environment.is_some();
         !has_sky && self.aimed().next().is_none() && self.sphere_lights.shining.is_empty()
     }
@@ -167,12 +167,12 @@ impl<'a> ActiveLights<'a> {
     }
 
     /// Whether specular reflects light from all directions.
-    pub fn has_specular_around(&self) -> bool {
+    pub(super) fn has_specular_around(&self) -> bool {
         self.specular.is_some() && (self.sky.is_some() || self.environment.is_some())
     }
 
     /// Suns, then key lights: each uses azimuths of its own.
-    pub fn aimed(&self) -> impl Iterator<Item = Aimed> {
+    pub(super) fn aimed(&self) -> impl Iterator<Item = Aimed> {
         let colour = |known, i: usize, of: usize| match self.texels {
             Some(firsts) => Colour::Texel((firsts[of] + i) as u32),
             None => Colour::Known(known),
@@ -192,7 +192,7 @@ impl<'a> ActiveLights<'a> {
 
     /// Azimuths to sweep: the circle's if a sky or an environment needs it, then those of each light that is
     /// [aimed](Self::aimed).
-    pub fn lists(
+    pub(super) fn lists(
         &self,
         need_circle: bool,
         quality: &Quality,

@@ -25,7 +25,7 @@ impl Bends {
     ///
     /// # Errors
     /// Directions without a triangulation; more of them than an image has layers.
-    pub fn make(
+    pub(super) fn make(
         builder: &mut Builder,
         size: [u32; 2],
         directions: &Directions,
@@ -50,7 +50,7 @@ impl Bends {
     }
 
     /// Records the passes that fill [`bent`](Self::bent); `points` and `ground` are those of the flat field.
-    pub fn record(
+    pub(super) fn record(
         &self,
         builder: &mut Builder,
         (field, border): (&HeightField, Border),
@@ -73,7 +73,7 @@ impl Bends {
     }
 
     /// Records the passes that weigh the directions; returns their image.
-    pub fn weigh(&self, builder: &mut Builder, field: &HeightField) -> ResourceId {
+    pub(super) fn weigh(&self, builder: &mut Builder, field: &HeightField) -> ResourceId {
         let extent = [field.cols() as u32, field.rows() as u32, self.count];
         let weights = builder.image("fan_weights", Owner::Internal, Format::R32Float, extent, true);
         let bound = [("bent", self.bent), ("fans", self.buffer), ("fan_weights", weights)];

@@ -105,10 +105,10 @@ impl Quality {
     /// Range of [`table_elevations`](Self::table_elevations).
     pub const TABLE_ELEVATIONS: RangeInclusive<u32> = 8..=4096;
     /// Range of [`sh_order`](Self::sh_order).
-    pub const SH_ORDER: RangeInclusive<u32> = 2..=6;
+    const SH_ORDER: RangeInclusive<u32> = 2..=6;
 
     /// Range of [`wedge_side`](Self::wedge_side).
-    pub const WEDGE_SIDE: RangeInclusive<u32> = 4..=256;
+    const WEDGE_SIDE: RangeInclusive<u32> = 4..=256;
 
     /// Order of the lights' series: with an exact cosine one less than that of visibility.
     pub fn light_order(&self) -> usize {

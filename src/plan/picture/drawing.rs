@@ -37,11 +37,11 @@ pub(super) struct Drawing<'a> {
 }
 
 impl Drawing<'_> {
-    pub fn border(&self) -> Border {
+    pub(super) fn border(&self) -> Border {
         self.scene.surface.border
     }
 
-    pub fn fill_tables(&mut self, quality: &Quality) {
+    pub(super) fn fill_tables(&mut self, quality: &Quality) {
         self.fill_matrices();
         let (Some(e), Some(image)) = (self.active.environment, self.images.environment) else {
             return;
@@ -59,7 +59,7 @@ impl Drawing<'_> {
     }
 
     /// Passes from the field to the lit picture; for an edit, from its lattices.
-    pub fn light(&mut self, lists: &Lists, quality: &Quality) -> Result<()> {
+    pub(super) fn light(&mut self, lists: &Lists, quality: &Quality) -> Result<()> {
         self.is_begun = false;
         self.specular_is_begun = false;
         self.sky_and_environment(lists);
@@ -72,7 +72,7 @@ impl Drawing<'_> {
     }
 
     /// From here on passes are those of an edit. All horizons come first, as every batch lights the same texels.
-    pub fn edit(&mut self, size: [u32; 2], lists: &Lists, Edits { dirty, list }: Edits) {
+    pub(super) fn edit(&mut self, size: [u32; 2], lists: &Lists, Edits { dirty, list }: Edits) {
         self.builder.begin_edits();
         let (border, ids) = (self.border(), [dirty, list]);
         self.edited = Some(ids);
@@ -288,7 +288,7 @@ impl Drawing<'_> {
         self.light_resolve(name, &light);
     }
 
-    pub fn light_resolve(&mut self, name: &str, light: &light_resolve::Light) {
+    pub(super) fn light_resolve(&mut self, name: &str, light: &light_resolve::Light) {
         let size = [self.scene.field.cols() as u32, self.scene.field.rows() as u32];
         light_resolve::plan(&mut self.builder, size, name, light);
     }

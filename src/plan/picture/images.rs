@@ -35,7 +35,7 @@ pub(super) struct Images {
 }
 
 impl Images {
-    pub fn make(
+    pub(super) fn make(
         builder: &mut Builder,
         scene: &Scene,
         active: &ActiveLights<'_>,
@@ -104,7 +104,7 @@ impl Images {
     }
 
     /// Whether light arrives from all directions.
-    pub fn need_circle(&self) -> bool {
+    pub(super) fn need_circle(&self) -> bool {
         self.sky_sum.is_some() || self.env_sum.is_some()
     }
 }
@@ -116,7 +116,7 @@ pub(super) struct Tables {
 }
 
 impl Tables {
-    pub fn make(
+    pub(super) fn make(
         builder: &mut Builder,
         (environment, border): (&Environment, Border),
         quality: &Quality,
@@ -167,7 +167,7 @@ impl HarmonicLight {
 
 impl Harmonics {
     /// For an environment, for specular, or for both.
-    pub fn make(
+    pub(super) fn make(
         builder: &mut Builder,
         size: [u32; 2],
         (environment, border): (Option<&Environment>, Border),
@@ -204,7 +204,7 @@ impl Harmonics {
     }
 
     /// Layout of the visibility, equal for all lights.
-    pub fn sh(&self) -> &Sh {
+    pub(super) fn sh(&self) -> &Sh {
         let seen = self.diffuse.as_ref().or(self.specular.as_ref());
         &seen.expect("an environment or specular").sh
     }

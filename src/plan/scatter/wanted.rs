@@ -22,7 +22,7 @@ pub(super) struct Wanted<'a> {
 }
 
 impl<'a> Wanted<'a> {
-    pub fn of(
+    pub(super) fn of(
         scene: &'a Scene,
         directions: usize,
         scatter: &Scatter,
@@ -69,17 +69,17 @@ impl<'a> Wanted<'a> {
     }
 
     /// Whether visible points reflect lights by specular.
-    pub fn mirrors_lights(&self) -> bool {
+    pub(super) fn mirrors_lights(&self) -> bool {
         self.mirrors_sky || !self.suns.is_empty()
     }
 
     /// One more than bounces if the last visible point, or the texel itself, reflects lights by specular.
-    pub fn steps(&self) -> u32 {
+    pub(super) fn steps(&self) -> u32 {
         self.bounces + u32::from(self.mirrors_lights())
     }
 
     /// Directions of the suns' centres, for specular.
-    pub fn towards_suns(&self) -> Result<Option<Directions>> {
+    pub(super) fn towards_suns(&self) -> Result<Option<Directions>> {
         if self.suns.is_empty() {
             return Ok(None);
         }
