@@ -8,6 +8,7 @@ mod sphere_lights;
 mod spheres;
 mod sweeps;
 
+use glam::DVec3;
 use ridgelight::gpu::{Headless, Pixels};
 use ridgelight::plan::{self, Limits, Picture};
 use ridgelight::scene::{
@@ -219,6 +220,29 @@ impl Verifier {
 
 fn percent(share: f64) -> String {
     format!("{:.3} %", 100.0 * share)
+}
+
+/// RMSE of `found` and RMS of its tolerance, both over the root mean square, if every value is
+/// within its tolerance. `wanted` holds values of the CPU reference and tolerances.
+fn judge(
+    what: &str,
+    found: impl Iterator<Item = f64>,
+    wanted: &[[f64; 2]],
+    quality: &Quality,
+) -> Result<(f64, f64)> {
+    let scale = rms(wanted.iter().map(|w| w[0])).max(f64::MIN_POSITIVE);
+    let off: Vec<f64> = found.zip(wanted).map(|(found, w)| (found - w[0]) / scale).collect();
+    for (off, [_, bound]) in off.iter().zip(wanted) {
+        within(what, "the CPU reference", off.abs(), bound / scale, quality)?;
+    }
+    Ok((rms(off.into_iter()), rms(wanted.iter().map(|w| w[1] / scale))))
+}
+
+/// R, G, B of a picture at some places; a grey one has one channel.
+fn colours(pixels: &Pixels, places: &[usize]) -> Vec<DVec3> {
+    let channel =
+        |p: &usize, c: usize| pixels.values[p * pixels.channels + c.min(pixels.channels - 1)];
+    places.iter().map(|p| DVec3::from_array([0, 1, 2].map(|c| channel(p, c).into()))).collect()
 }
 
 /// An error and its bound, where it is within.

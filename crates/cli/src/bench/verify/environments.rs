@@ -11,10 +11,11 @@ use ridgelight::scene::{Border, Environment, Lights, Quality, Scene};
 use ridgelight_cpu::env_tables::{bottom_rad, env_tables};
 use ridgelight_cpu::env_wedges::env_wedges;
 use ridgelight_cpu::shared::gather::Swept;
-use ridgelight_cpu::tolerance::{ShadeError, twin_resolved, twin_table, twin_wedge_row};
+use ridgelight_cpu::tolerance::{ShadeError, device_resolved, device_table, device_wedge_row};
 
+use super::harmonics::Wanted;
 use super::sweeps::{lit, white};
-use super::{percent, rms, within};
+use super::{colours, percent};
 
 /// The scene's environment on white ground, at some texels; none without an environment.
 pub(super) fn check(
@@ -31,20 +32,15 @@ pub(super) fn check(
     let lights = Lights { environment: Some(environment.clone()), ..Lights::default() };
     let scene = Scene { lights, ..white(scene) };
     let plan = plan::picture(&scene, quality, limits, Picture::default())?;
-    let wanted = Wanted::of(&scene, &plan, places, quality, lines);
+    let wanted = wanted_of(&scene, &plan, places, quality, lines);
     let contents = plan::picture_inputs(&scene);
     let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
     let picture = gpu.with_frame(plan, &contents, |gpu, frame| {
         gpu.draw(frame)?;
         gpu.pixels(frame, 0)
     })?;
-    let texel = |p: &usize| {
-        let t = &picture.values[p * picture.channels..];
-        let last = picture.channels.min(3) - 1;
-        DVec3::from_array([0, 1, 2].map(|c: usize| t[c.min(last)].into()))
-    };
-    let found: Vec<DVec3> = places.iter().map(texel).collect();
-    let (error, bound) = wanted.judge(&found, quality)?;
+    let (error, bound) =
+        wanted.judge("the environment at one place", &colours(&picture, places), quality)?;
     Ok(Some(format!(
         "environment error {} against the CPU reference (RMSE; bound {})",
         percent(error),
@@ -52,67 +48,40 @@ pub(super) fn check(
     )))
 }
 
-/// Light of the CPU reference at each place, and its tolerance.
-struct Wanted(Vec<[DVec3; 2]>);
-
-impl Wanted {
-    /// At the plan's azimuths, which are denser where the environment is bright.
-    fn of(
-        scene: &Scene,
-        plan: &Plan,
-        places: &[usize],
-        quality: &Quality,
-        line_shift: u32,
-    ) -> Self {
-        let environment = scene.lights.environment.as_ref().expect("an environment");
-        let azimuths = plan.azimuths[..quality.azimuths as usize].to_vec();
-        let nodes = quality.table_elevations as usize;
-        let (cols, border) = (scene.field.cols(), scene.surface.border);
-        let all = lit(scene, azimuths, quality, line_shift, |swept, error| {
-            let rows = env_wedges(environment, border, swept.azimuths);
-            let counts = (environment.height(), swept.azimuths.len());
-            let tables = env_tables(&rows, counts, nodes, bottom_rad(border));
-            let off: Vec<[DVec3; 3]> = (0..swept.azimuths.len())
-                .map(|k| tables_off(environment, border, swept, &rows, (k, nodes)))
-                .collect();
-            let at = |p: &usize| {
-                let (mut light, mut bound) = (DVec3::ZERO, DVec3::ZERO);
-                swept.add_all((p % cols) as i32, (p / cols) as i32, |k, _, lowest, normal| {
-                    light += tables.light(k, lowest, normal);
-                    bound +=
-                        ShadeError::wedge_looked_up(error, &tables, (k, lowest, normal), &off[k]);
-                });
-                [light, bound + light.map(|v| twin_resolved(v, 1))]
-            };
-            places.iter().map(at).collect()
-        });
-        Self(all)
-    }
-
-    /// RMSE and RMS of the bounds, both over the root mean square, if every place is within its
-    /// bound.
-    fn judge(&self, found: &[DVec3], quality: &Quality) -> Result<(f64, f64)> {
-        let flat = |of: &dyn Fn(usize) -> DVec3| -> Vec<f64> {
-            (0..self.0.len()).flat_map(|i| of(i).to_array()).collect()
+/// Light of the CPU reference at each place, and its tolerance. Uses the plan's azimuths, which are denser where the environment is bright.
+fn wanted_of(
+    scene: &Scene,
+    plan: &Plan,
+    places: &[usize],
+    quality: &Quality,
+    line_shift: u32,
+) -> Wanted {
+    let environment = scene.lights.environment.as_ref().expect("an environment");
+    let azimuths = plan.azimuths[..quality.azimuths as usize].to_vec();
+    let nodes = quality.table_elevations as usize;
+    let (cols, border) = (scene.field.cols(), scene.surface.border);
+    let all = lit(scene, azimuths, quality, line_shift, |swept, error| {
+        let rows = env_wedges(environment, border, swept.azimuths);
+        let counts = (environment.height(), swept.azimuths.len());
+        let tables = env_tables(&rows, counts, nodes, bottom_rad(border));
+        let off: Vec<[DVec3; 3]> = (0..swept.azimuths.len())
+            .map(|k| tables_off(environment, border, swept, &rows, (k, nodes)))
+            .collect();
+        let at = |p: &usize| {
+            let (mut light, mut bound) = (DVec3::ZERO, DVec3::ZERO);
+            swept.add_all((p % cols) as i32, (p / cols) as i32, |k, _, lowest, normal| {
+                light += tables.light(k, lowest, normal);
+                bound += ShadeError::wedge_looked_up(error, &tables, (k, lowest, normal), &off[k]);
+            });
+            [light, bound + light.map(|v| device_resolved(v, 1))]
         };
-        let scale = rms(flat(&|i| self.0[i][0]).into_iter()).max(f64::MIN_POSITIVE);
-        let off = flat(&|i| (found[i] - self.0[i][0]) / scale);
-        let bounds = flat(&|i| self.0[i][1] / scale);
-        for (off, bound) in off.iter().zip(&bounds) {
-            within(
-                "the environment at one place",
-                "the CPU reference",
-                off.abs(),
-                *bound,
-                quality,
-            )?;
-        }
-        Ok((rms(off.into_iter()), rms(bounds.into_iter())))
-    }
+        places.iter().map(at).collect()
+    });
+    Wanted(all)
 }
 
-/// Tolerance of one azimuth's tables, per moment: their own ([`twin_table`]), and that of the
-/// wedge's rows by the brightest of their texels ([`twin_wedge_row`]). A table holds moments of
+/// Tolerance of one azimuth's tables, per moment: their own ([`device_table`]), and that of the
+/// wedge's rows by the brightest of their texels ([`device_wedge_row`]). A table holds moments of
 /// elevations: at most a row's height of each, over π.
 fn tables_off(
     environment: &Environment,
@@ -131,14 +100,14 @@ fn tables_off(
         brightest.fold(DVec3::ZERO, |m, t| m.max(DVec3::from_array(t)))
     };
     let of_rows = (0..kept).fold(DVec3::ZERO, |sum, row| {
-        sum + brightest(row).map(|b| twin_wedge_row(b, azimuth.wedge_rad.into(), columns))
+        sum + brightest(row).map(|b| device_wedge_row(b, azimuth.wedge_rad.into(), columns))
     });
     let own = &rows[k * kept..(k + 1) * kept];
     [0, 1, 2].map(|moment| {
         let all = own.iter().map(|row| row[moment].abs());
         let largest = all.clone().fold(DVec3::ZERO, DVec3::max);
         let sum: DVec3 = all.sum();
-        let table = |c| twin_table(sum[c], largest[c], (kept + nodes) as f64);
+        let table = |c| device_table(sum[c], largest[c], (kept + nodes) as f64);
         DVec3::new(table(0), table(1), table(2)) + of_rows / height as f64
     })
 }
@@ -178,13 +147,13 @@ mod tests {
                 let places: Vec<usize> = (3..48 * 48).step_by(61).collect();
                 let limits = Limits::lavapipe();
                 let plan = plan::picture(&scene, quality, &limits, Picture::default()).unwrap();
-                Wanted::of(&scene, &plan, &places, quality, quality.lines.shift().unwrap())
+                wanted_of(&scene, &plan, &places, quality, quality.lines.shift().unwrap())
             };
             let quality = Quality { azimuths: 16, ..Quality::default() };
             let wanted = of(0.0, &quality);
             let values = |wanted: &Wanted| wanted.0.iter().map(|w| w[0]).collect::<Vec<DVec3>>();
             let right = values(&wanted);
-            let (error, bound) = wanted.judge(&right, &quality).unwrap();
+            let (error, bound) = wanted.judge("light", &right, &quality).unwrap();
             println!("peak {peak}: bound {bound:e}");
             assert!(error == 0.0 && bound < 0.005, "{bound}");
             let mut turned = right.clone();
@@ -201,7 +170,7 @@ mod tests {
                 ("NaN", holed),
             ];
             for (name, light) in wrong {
-                assert!(wanted.judge(&light, &quality).is_err(), "{name} passes: {peak}");
+                assert!(wanted.judge("light", &light, &quality).is_err(), "{name} passes: {peak}");
             }
         }
     }

@@ -16,10 +16,10 @@ use ridgelight_cpu::shared::field::{field_slope, normal_of};
 use ridgelight_cpu::shared::sweep::Heights;
 use ridgelight_cpu::sky_shade::wedge_of_sky;
 use ridgelight_cpu::tolerance::{
-    ARC_TANGENT, ShadeError, twin_fused_slope, twin_resolved, two_devices,
+    ARC_TANGENT, ShadeError, device_fused_slope, device_resolved, two_devices,
 };
 
-use super::{Verifier, albedo_of, bounds, percent, rms, within};
+use super::{Verifier, albedo_of, bounds, colours, judge, percent, rms, within};
 
 /// A place before it is lit.
 pub(super) struct Place {
@@ -80,7 +80,7 @@ pub(super) fn check(
     let wanted = Wanted::of(scene, quality, places, nodes);
     let what = format!("light of order {} at one place", quality.sh_order);
     let (series, series_bound) =
-        wanted.judge(&what, &texels(&own, &ground_truth.places), quality)?;
+        wanted.judge(&what, &colours(&own, &ground_truth.places), quality)?;
 
     let [whole_means, own_means] = [&whole, &own].map(|p| ground_truth.means(p));
     let rest = whole_means.iter().zip(&own_means).zip(&ground_truth.expected);
@@ -178,15 +178,6 @@ fn draw(
     })
 }
 
-/// A picture of three or more channels at some places.
-fn texels(pixels: &Pixels, places: &[usize]) -> Vec<DVec3> {
-    let texel = |p: &usize| {
-        let t = &pixels.values[p * pixels.channels..];
-        DVec3::new(t[0].into(), t[1].into(), t[2].into())
-    };
-    places.iter().map(texel).collect()
-}
-
 /// Light at each place by the same series in f64, and the tolerance of a device.
 pub(super) struct Wanted(pub Vec<[DVec3; 2]>);
 
@@ -199,7 +190,7 @@ impl Wanted {
             let albedo = DVec3::from_array(albedo_of(scene, place.index));
             let [light, off] = harmonics.light(place.normal, seen, error);
             let light = albedo * light;
-            [light, albedo * off + light.map(|v| twin_resolved(v, 1))]
+            [light, albedo * off + light.map(|v| device_resolved(v, 1))]
         })
     }
 
@@ -217,7 +208,7 @@ impl Wanted {
         let (low, high) = (heights().fold(f64::MAX, f64::min), heights().fold(f64::MIN, f64::max));
         let cell = field.cell_m()[0].min(field.cell_m()[1]);
         // A march step is a cell or longer.
-        let slope = two_devices(twin_fused_slope(low.abs().max(high.abs()), cell)) + ARC_TANGENT;
+        let slope = two_devices(device_fused_slope(low.abs().max(high.abs()), cell)) + ARC_TANGENT;
         let error = ShadeError::new(slope, high - low, cell, quality.azimuths as usize);
         let own_plane_hides = quality.receiver == Receiver::Plane;
         let seen: BTreeMap<usize, Seen> = nodes
@@ -237,22 +228,10 @@ impl Wanted {
         Self(places.iter().map(of).collect())
     }
 
-    /// RMSE of the device's light and RMS of its tolerance, both over the root mean square, if
-    /// every place is within its tolerance.
     pub fn judge(&self, what: &str, found: &[DVec3], quality: &Quality) -> Result<(f64, f64)> {
-        let of = |i: usize| self.0.iter().map(move |w| w[i]);
-        let all = |values: Vec<DVec3>| {
-            rms(values.iter().flat_map(|v| v.to_array()).collect::<Vec<_>>().into_iter())
-        };
-        let scale = all(of(0).collect()).max(f64::MIN_POSITIVE);
-        for (found, [want, off]) in found.iter().zip(&self.0) {
-            for c in 0..3 {
-                let error = (found[c] - want[c]).abs() / scale;
-                within(what, "the same series in f64", error, off[c] / scale, quality)?;
-            }
-        }
-        let off = found.iter().zip(of(0)).map(|(found, want)| *found - want).collect();
-        Ok((all(off) / scale, all(of(1).collect()) / scale))
+        let pairs = |[want, bound]: &[DVec3; 2]| [0, 1, 2].map(|c| [want[c], bound[c]]);
+        let wanted: Vec<[f64; 2]> = self.0.iter().flat_map(pairs).collect();
+        judge(what, found.iter().flat_map(|v| v.to_array()), &wanted, quality)
     }
 }
 

@@ -3,17 +3,17 @@
 
 use glam::DVec3;
 use ridgelight::Result;
-use ridgelight::gpu::{Headless, Pixels};
+use ridgelight::gpu::Headless;
 use ridgelight::plan::{self, Limits, Picture};
 use ridgelight::scene::{
     Albedo, Basis, Lights, PhongSpecular, Quality, Scene, Specular, Sun, Surface,
 };
 use ridgelight_cpu::harmonics::Harmonics;
 use ridgelight_cpu::sun_specular::gloss_on;
-use ridgelight_cpu::tolerance::{EPSILON, Land, twin_resolved, twin_sun_specular};
+use ridgelight_cpu::tolerance::{EPSILON, Land, device_resolved, device_sun_specular};
 
 use super::harmonics::{Place, Wanted, with_nodes};
-use super::percent;
+use super::{colours, percent};
 
 /// Sky and environment that light the specular surface.
 pub(super) fn quality(scene: &Scene, quality: &Quality) -> Quality {
@@ -75,13 +75,6 @@ fn half(scene: &Scene) -> Scene {
     Scene { surface, ..scene.clone() }
 }
 
-/// R, G, B at some places.
-fn colours(pixels: &Pixels, places: &[usize]) -> Vec<DVec3> {
-    let channel =
-        |p: &usize, c: usize| pixels.values[p * pixels.channels + c.min(pixels.channels - 1)];
-    places.iter().map(|p| DVec3::from_array([0, 1, 2].map(|c| channel(p, c).into()))).collect()
-}
-
 /// Specular light of a [`half`] scene at some places; suns by their diffuse light there.
 fn wanted_of(
     scene: &Scene,
@@ -111,7 +104,7 @@ fn wanted_of(
         }
     }
     let lights = 1 + suns.len();
-    all.0.iter_mut().for_each(|[light, off]| *off += light.map(|v| twin_resolved(v, lights)));
+    all.0.iter_mut().for_each(|[light, off]| *off += light.map(|v| device_resolved(v, lights)));
     all
 }
 
@@ -134,7 +127,7 @@ fn of_sun(
     let towards = DVec3::new(cos * sun.azimuth_rad.cos(), cos * sun.azimuth_rad.sin(), sin);
     let turned = Land::normal_at(field, border, at);
     let facing = place.normal.dot(towards);
-    let off = twin_sun_specular(phong.exponent.into(), turned, facing);
+    let off = device_sun_specular(phong.exponent.into(), turned, facing);
     // A hidden sun has no specular light.
     let off = if sum > 0.0 { f64::from(phong.scale) * off } else { 0.0 };
     [mirrored, irradiance * off + 6.0 * EPSILON * mirrored]

@@ -1,19 +1,20 @@
 //! Compares sphere lights by harmonics with the same series in f64, within f32 rounding. The error
 //! of the series itself is reported, not bounded.
 
+use glam::DVec3;
 use ridgelight::Result;
-use ridgelight::gpu::{Headless, Pixels};
+use ridgelight::gpu::Headless;
 use ridgelight::plan::pyramid::Pyramid;
 use ridgelight::plan::{self, Limits, Picture};
 use ridgelight::scene::{Levels, Lights, Method, Quality, Scene, SphereLight};
 use ridgelight_cpu::light::normal;
 use ridgelight_cpu::oracle::Oracle;
 use ridgelight_cpu::pyramid_march::Stored;
-use ridgelight_cpu::soft_sphere::{SoftBall, twin_pyramid_within, twin_surface_within};
+use ridgelight_cpu::soft_sphere::{SphereShError, device_pyramid_within, device_surface_within};
 use ridgelight_cpu::sphere_sh_shade::SphereSh;
-use ridgelight_cpu::tolerance::{BallSeen, EPSILON, twin_pyramid_slope, twin_resolved};
+use ridgelight_cpu::tolerance::{EPSILON, SphereGeometry, device_pyramid_slope, device_resolved};
 
-use super::{GroundTruth, albedo_of, percent, rms, within};
+use super::{GroundTruth, albedo_of, colours, judge, percent, rms};
 
 /// A scene's sphere lights alone, at some of its texels.
 pub(super) fn check(
@@ -40,7 +41,7 @@ pub(super) fn check(
         Ok((gpu.pixels(frame, 0)?, levels))
     })?;
     let wanted = Wanted::of(scene, quality, &levels, &ground_truth.places);
-    let (error, bound) = wanted.judge(&texels(&picture, &ground_truth.places), quality)?;
+    let (error, bound) = wanted.judge(&colours(&picture, &ground_truth.places), quality)?;
     let means = ground_truth.means(&picture);
     let sphere_lights = ground_truth.expected.iter().map(|[.., sphere_lights]| *sphere_lights);
     let missed = rms(means.iter().zip(sphere_lights.clone()).map(|(a, b)| a - b));
@@ -55,13 +56,6 @@ pub(super) fn check(
         quality.sh_order,
         percent(missed / scale),
     ))
-}
-
-/// R, G, B at some places.
-fn texels(pixels: &Pixels, places: &[usize]) -> Vec<[f64; 3]> {
-    let channel =
-        |p: &usize, c: usize| pixels.values[p * pixels.channels + c.min(pixels.channels - 1)];
-    places.iter().map(|p| [0, 1, 2].map(|c| f64::from(channel(p, c)))).collect()
 }
 
 /// Sphere light at each place by the same series in f64, and the tolerance of a device.
@@ -83,7 +77,7 @@ impl Wanted {
             (pyramid, stored)
         });
         let reference = SphereSh::new(Oracle::new(field, border), levels, *quality);
-        let (errors, mut negative) = (SoftBall::new(quality), 0);
+        let (errors, mut negative) = (SphereShError::new(quality), 0);
         let largest = field.heights_m().iter().fold(0.0, |m, h| f64::from(h.abs()).max(m));
         let mut at = |place: &usize| {
             let (row, col) = (place / field.cols(), place % field.cols());
@@ -94,9 +88,13 @@ impl Wanted {
             for sphere_light in &scene.lights.sphere_lights {
                 let soft = reference.at(sphere_light, row, col);
                 rings |= soft.light < 0.0;
-                let seen = BallSeen::of(field, sphere_light, *place);
-                let off =
-                    errors.twin(&seen, slope_error(&seen, quality, largest), normal, &soft.seen);
+                let seen = SphereGeometry::of(field, sphere_light, *place);
+                let off = errors.tolerance(
+                    &seen,
+                    slope_error(&seen, quality, largest),
+                    normal,
+                    &soft.seen,
+                );
                 let light = soft.light.max(0.0);
                 for (c, [want, bound]) in all.iter_mut().enumerate() {
                     let radiance = f64::from(sphere_light.radiance[c]) * albedo[c];
@@ -106,38 +104,28 @@ impl Wanted {
             }
             negative += usize::from(rings);
             let sphere_lights = scene.lights.sphere_lights.len();
-            all.map(|[want, bound]| [want, bound + twin_resolved(want, sphere_lights)])
+            all.map(|[want, bound]| [want, bound + device_resolved(want, sphere_lights)])
         };
         let light = places.iter().map(&mut at).collect();
         Self { light, negative }
     }
 
-    /// RMSE of the device's light and RMS of its tolerance, both over the root mean square, if
-    /// every place is within its tolerance.
-    fn judge(&self, found: &[[f64; 3]], quality: &Quality) -> Result<(f64, f64)> {
-        let of = |i: usize| -> Vec<f64> {
-            self.light.as_flattened().iter().map(|pair| pair[i]).collect()
-        };
-        let scale = rms(of(0).into_iter()).max(f64::MIN_POSITIVE);
+    fn judge(&self, found: &[DVec3], quality: &Quality) -> Result<(f64, f64)> {
         let what = format!("sphere light of order {} at one place", quality.sh_order);
-        for (found, [want, off]) in found.as_flattened().iter().zip(self.light.as_flattened()) {
-            let error = (found - want).abs() / scale;
-            within(&what, "the same series in f64", error, off / scale, quality)?;
-        }
-        let off: Vec<f64> = found.as_flattened().iter().zip(of(0)).map(|(a, b)| a - b).collect();
-        Ok((rms(off.into_iter()) / scale, rms(of(1).into_iter()) / scale))
+        let found = found.iter().flat_map(|v| v.to_array());
+        judge(&what, found, self.light.as_flattened(), quality)
     }
 }
 
 /// Error of slopes towards a sphere light: of the surface, or of a pyramid's levels.
-fn slope_error(seen: &BallSeen, quality: &Quality, largest: f64) -> f64 {
+fn slope_error(seen: &SphereGeometry, quality: &Quality, largest: f64) -> f64 {
     if quality.method != Method::Pyramid {
-        return twin_surface_within(seen);
+        return device_surface_within(seen);
     }
     let (relief, step) = (seen.relief_m, seen.cell_m);
     let steepest = relief / step;
-    let march = twin_pyramid_slope(steepest, largest, relief, step);
-    twin_pyramid_within(seen, march, steepest, quality.level_step)
+    let march = device_pyramid_slope(steepest, largest, relief, step);
+    device_pyramid_within(seen, march, steepest, quality.level_step)
 }
 
 /// A scene without its sphere lights; none without other lights.
@@ -173,9 +161,10 @@ mod tests {
             (6, Wedges::Slices, Receiver::Plane),
         ] {
             let quality = Quality { sh_order, wedges, receiver, ..base };
-            let light = |scene: &Scene, quality: &Quality| -> Vec<[f64; 3]> {
+            let light = |scene: &Scene, quality: &Quality| -> Vec<DVec3> {
                 let wanted = Wanted::of(scene, quality, &[], &places);
-                wanted.light.iter().map(|all| all.map(|[want, _]| want)).collect()
+                let value = |all: &[[f64; 2]; 3]| DVec3::from_array(all.map(|[want, _]| want));
+                wanted.light.iter().map(value).collect()
             };
             let wanted = Wanted::of(&scene, &quality, &[], &places);
             let right = light(&scene, &quality);
@@ -190,7 +179,7 @@ mod tests {
             let exact = |p: &usize| {
                 let share =
                     ridgelight_cpu::sphere::sphere_of(&oracle, p / 32, p % 32, &sphere_light, 32);
-                sphere_light.radiance.map(|r| f64::from(r) * share)
+                DVec3::from_array(sphere_light.radiance.map(|r| f64::from(r) * share))
             };
             let mut turned = right.clone();
             turned.rotate_left(1);
@@ -199,13 +188,13 @@ mod tests {
             let other =
                 Quality { sh_order: if sh_order == 6 { 5 } else { sh_order + 1 }, ..quality };
             let wrong = [
-                ("dim", right.iter().map(|v| v.map(|c| dim * c)).collect()),
-                ("black", vec![[0.0; 3]; right.len()]),
+                ("dim", right.iter().map(|v| dim * *v).collect()),
+                ("black", vec![DVec3::ZERO; right.len()]),
                 ("of another order", light(&scene, &other)),
                 ("of a light moved aside", light(&moved, &quality)),
                 ("of the exact form", places.iter().map(exact).collect()),
                 ("of a neighbour", turned),
-                ("of other colours", right.iter().map(|[r, g, b]| [*b, *g, *r]).collect()),
+                ("of other colours", right.iter().map(|v| DVec3::new(v.z, v.y, v.x)).collect()),
                 ("NaN", holed),
             ];
             for (name, light) in wrong {

@@ -1,16 +1,17 @@
 //! Compares sphere lights slice by slice with the same slices in f64 on the CPU. They may differ by
 //! f32 rounding only.
 
+use glam::DVec3;
 use ridgelight::Result;
 use ridgelight::gpu::Headless;
 use ridgelight::plan::{self, Limits, Picture};
 use ridgelight::scene::{Lights, Quality, Scene};
 use ridgelight_cpu::oracle::Oracle;
 use ridgelight_cpu::sphere_shade::sphere_at;
-use ridgelight_cpu::tolerance::{BallSeen, EPSILON, twin_resolved};
+use ridgelight_cpu::tolerance::{EPSILON, SphereGeometry, device_resolved};
 
 use super::sweeps::white;
-use super::{percent, rms, within};
+use super::{colours, judge, percent};
 
 /// The scene's sphere lights on white ground, at some texels; none where none has radiance.
 pub(super) fn check(
@@ -32,14 +33,8 @@ pub(super) fn check(
         gpu.draw(frame)?;
         gpu.pixels(frame, 0)
     })?;
-    let texel = |p: &usize| {
-        let t = &picture.values[p * picture.channels..];
-        let last = picture.channels.min(3) - 1;
-        [0, 1, 2].map(|c: usize| f64::from(t[c.min(last)]))
-    };
-    let found: Vec<[f64; 3]> = places.iter().map(texel).collect();
     let wanted = Wanted::of(&scene, places, quality);
-    let (error, bound) = wanted.judge(&found, quality)?;
+    let (error, bound) = wanted.judge(&colours(&picture, places), quality)?;
     Ok(Some(format!(
         "sphere light error {} against f64 slices (RMSE; bound {})",
         percent(error),
@@ -59,29 +54,21 @@ impl Wanted {
             for sphere_light in sphere_lights {
                 let light =
                     sphere_at(&oracle, sphere_light, quality.sun_azimuths, p / cols, p % cols);
-                let off = BallSeen::of(&scene.field, sphere_light, *p).twin() + 4.0 * EPSILON;
+                let off =
+                    SphereGeometry::of(&scene.field, sphere_light, *p).tolerance() + 4.0 * EPSILON;
                 for ([want, bound], radiance) in all.iter_mut().zip(sphere_light.radiance) {
                     *want += f64::from(radiance) * light;
                     *bound += f64::from(radiance) * off;
                 }
             }
-            all.map(|[want, bound]| [want, bound + twin_resolved(want, sphere_lights.len())])
+            all.map(|[want, bound]| [want, bound + device_resolved(want, sphere_lights.len())])
         };
         Self(places.iter().map(at).collect())
     }
 
-    /// RMSE and RMS of the bounds, both over the root mean square, if every place is within its
-    /// bound.
-    fn judge(&self, found: &[[f64; 3]], quality: &Quality) -> Result<(f64, f64)> {
-        let all = self.0.as_flattened();
-        let scale = rms(all.iter().map(|w| w[0])).max(f64::MIN_POSITIVE);
-        let pairs = found.as_flattened().iter().zip(all);
-        let off: Vec<f64> = pairs.map(|(found, [want, _])| (found - want) / scale).collect();
-        for (off, [_, bound]) in off.iter().zip(all) {
-            let bound = bound / scale;
-            within("sphere light at one place", "the CPU reference", off.abs(), bound, quality)?;
-        }
-        Ok((rms(off.into_iter()), rms(all.iter().map(|w| w[1] / scale))))
+    fn judge(&self, found: &[DVec3], quality: &Quality) -> Result<(f64, f64)> {
+        let found = found.iter().flat_map(|v| v.to_array());
+        judge("sphere light at one place", found, self.0.as_flattened(), quality)
     }
 }
 
@@ -116,8 +103,8 @@ mod tests {
         };
         let quality = Quality { sun_azimuths: 8, ..Quality::default() };
         let wanted = of(0.0, 1.0, &quality, false);
-        let values = |wanted: &Wanted| -> Vec<[f64; 3]> {
-            wanted.0.iter().map(|all| all.map(|w| w[0])).collect()
+        let values = |wanted: &Wanted| -> Vec<DVec3> {
+            wanted.0.iter().map(|all| DVec3::from_array(all.map(|w| w[0]))).collect()
         };
         let right = values(&wanted);
         let (error, bound) = wanted.judge(&right, &quality).unwrap();
@@ -128,7 +115,7 @@ mod tests {
         let mut holed = right.clone();
         holed[3][1] = f64::NAN;
         let wrong = [
-            ("dim", right.iter().map(|v| v.map(|v| 0.99 * v)).collect()),
+            ("dim", right.iter().map(|v| 0.99 * *v).collect()),
             (
                 "of fewer slices",
                 values(&of(0.0, 1.0, &Quality { sun_azimuths: 4, ..quality }, false)),
@@ -137,7 +124,7 @@ mod tests {
             ("wider", values(&of(0.0, 1.1, &quality, false))),
             ("on level ground", values(&of(0.0, 1.0, &quality, true))),
             ("of a neighbour", turned),
-            ("of other colours", right.iter().map(|[r, g, b]| [*b, *g, *r]).collect()),
+            ("of other colours", right.iter().map(|v| DVec3::new(v.z, v.y, v.x)).collect()),
             ("NaN", holed),
         ];
         for (name, light) in wrong {
