@@ -271,7 +271,7 @@ fn main() -> Result<()> {
     rows.push((Method::Sweep, Lines::Exact, Fuse::AimedNearest));
     // Brute force costs a side's length a sample.
     if megasamples * (field.cols().max(field.rows()) as f64) < 200.0 {
-        rows.push((Method::Brute, Lines::Cell, Fuse::AimedNearest));
+        rows.push((Method::BruteForce, Lines::Cell, Fuse::AimedNearest));
     }
     let mut same_occluders = String::new();
     for (method, lines, fuse) in rows {
@@ -293,7 +293,7 @@ fn main() -> Result<()> {
         let light = ImageError::of(&ours, &sky_truth, lit.len())?;
         let [row, col] = picks[e.worst_at[2]];
         let names = match (method, lines) {
-            (Method::Brute, _) => "brute | ".to_owned(),
+            (Method::BruteForce, _) => "brute | ".to_owned(),
             (_, Lines::Exact) => "exact | ".to_owned(),
             _ => format!("{} | {}", lines.name(), fuse.name()),
         };

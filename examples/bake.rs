@@ -21,7 +21,8 @@ use ridgelight::scene::{Border, Environment, HeightField, Method, Quality};
 use ridgelight::{Error, Result};
 use ridgelight_bake as bake;
 use ridgelight_bake::{
-    BentNormal, Encoding, Ray, ShTransfer, ShVisibility, SkyView, Sum, Summing, VisibleSky,
+    BentNormal, Encoding, HorizonMap, HorizonSums, Ray, ShTransfer, ShVisibility, SkyView,
+    VisibleSky,
 };
 use ridgelight_io as files;
 use serde_json::{Value, json};
@@ -60,7 +61,7 @@ impl Baked {
 
 /// Elevations along even azimuths, exact in each.
 fn horizons(gpu: &mut Headless, field: &HeightField) -> Result<Vec<Vec<f32>>> {
-    let quality = Quality { azimuths: AZIMUTHS, method: Method::Brute, ..Quality::default() };
+    let quality = Quality { azimuths: AZIMUTHS, method: Method::BruteForce, ..Quality::default() };
     let limits = gpu.report().limits;
     let plan = plan::horizons(field, Border::Plane, &quality, &limits, (0, AZIMUTHS), false)?;
     let order = plan.layer_azimuths.clone();
@@ -73,10 +74,10 @@ fn horizons(gpu: &mut Headless, field: &HeightField) -> Result<Vec<Vec<f32>>> {
     Ok((0..AZIMUTHS).map(|k| layers[layer_of(k)].to_vec()).collect())
 }
 
-fn summed(field: &HeightField, horizons: &[Vec<f32>], what: Box<dyn Sum>) -> Vec<Vec<f32>> {
+fn summed(field: &HeightField, horizons: &[Vec<f32>], what: Box<dyn HorizonMap>) -> Vec<Vec<f32>> {
     let normals = bake::normals(field, Border::Plane);
     let width_rad = TAU / f64::from(AZIMUTHS);
-    let mut sums = Summing::new(what, SIDE * SIDE);
+    let mut sums = HorizonSums::new(what, SIDE * SIDE);
     for (k, elevations) in horizons.iter().enumerate() {
         sums.add(Ray { azimuth_rad: width_rad * k as f64, width_rad }, elevations, &normals)
             .expect("memory");
@@ -86,7 +87,7 @@ fn summed(field: &HeightField, horizons: &[Vec<f32>], what: Box<dyn Sum>) -> Vec
 
 fn all(field: &HeightField, horizons: Vec<Vec<f32>>) -> Vec<Baked> {
     let mut all = Vec::new();
-    let mut add = |kind, channels: &str, encodings, what: Box<dyn Sum>| {
+    let mut add = |kind, channels: &str, encodings, what: Box<dyn HorizonMap>| {
         let planes = summed(field, &horizons, what);
         all.push(Baked::of(kind, channels, "a sample", encodings, planes));
     };
@@ -113,7 +114,7 @@ fn rows(baked: &Baked) -> Vec<Value> {
                 }
                 let back = encoding.packed(&values);
                 for (worst, bound) in worst.iter_mut().zip(encoding.bounds) {
-                    worst.0 = worst.0.max((bound.off)(&back, &values)[0]);
+                    worst.0 = worst.0.max((bound.error)(&back, &values)[0]);
                     worst.1 = worst.1.max(bound.share(component, &back, &values));
                 }
             }

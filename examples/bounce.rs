@@ -36,7 +36,7 @@ use ridgelight_cpu::light::sky_of;
 use ridgelight_cpu::oracle::Oracle;
 
 const ENGINES: [BounceEngine; 3] =
-    [BounceEngine::Brute, BounceEngine::Sweep, BounceEngine::Pyramid];
+    [BounceEngine::BruteForce, BounceEngine::Sweep, BounceEngine::Pyramid];
 
 struct Request {
     is_table: bool,
@@ -207,8 +207,11 @@ fn pits(gpu: &mut Headless, rim: u32) -> Result<()> {
         let field = pit(rim, alpha, is_cone)?;
         let side = field.cols();
         let truth = quadrature(&field, albedo.into(), 4);
-        let surface =
-            Surface { albedo: Albedo::Constant([albedo; 3]), border: Border::Plane, phong: None };
+        let surface = Surface {
+            albedo: Albedo::Constant([albedo; 3]),
+            border: Border::Plane,
+            specular: None,
+        };
         let lights = Lights { sky: Some([1.0; 3]), ..Lights::default() };
         let scene = Scene { field, surface, lights };
         for (count, azimuths) in [(0, 64), (1, 64), (4, 64), (4, 256)] {
@@ -223,7 +226,7 @@ fn pits(gpu: &mut Headless, rim: u32) -> Result<()> {
                 format!("{:.3}", 100.0 * rms(inner.map(|i| light(i) - expected)) / expected)
             };
             let mut cells = vec![error(&|i| truth[count as usize][i])];
-            let ways = [(Method::Brute, BounceEngine::Brute)];
+            let ways = [(Method::BruteForce, BounceEngine::BruteForce)];
             for (method, engine) in ways.into_iter().chain(ENGINES.map(|e| (Method::Auto, e))) {
                 let bounces =
                     Bounces { count, engine, azimuths, cutoff: 0.0, ..Bounces::default() };

@@ -229,7 +229,7 @@ fn row(gpu: &mut Headless, flat: &Flat, scene: &Scene, per_m: f64) -> Result<Row
         shadows,
         light: [0, 1].map(scattered),
         device,
-        changed: curvature.changed(field, BORDER),
+        changed: curvature.occlusion_change(field, BORDER),
         refused,
     })
 }
@@ -258,7 +258,7 @@ fn run() -> Result<()> {
     let own =
         (0..field.heights_m().len()).map(|at| light::shines(at % field.cols(), PERIOD)).collect();
     let surface =
-        Surface { border: BORDER, albedo: Albedo::Constant([ALBEDO as f32; 3]), phong: None };
+        Surface { border: BORDER, albedo: Albedo::Constant([ALBEDO as f32; 3]), specular: None };
     let scene = Scene { field: field.clone(), surface, lights: Lights::default() };
     let flat = Flat { field, points, fans, net, lights, five, own, scattered };
     println!(
@@ -267,7 +267,7 @@ fn run() -> Result<()> {
          lays open, of light at most {} % (`Curvature::changed`); beyond, the rows are the twin's, as the renderer refuses. Five: fitted at radii of {} outwards and {} inwards. \
          Off: RMSE over the mean; between three: light of these and the flat base, as straight as ellipses; device: {PATHS} paths.\n",
         PERIOD / 2,
-        100.0 * Curvature::MOST_CHANGED,
+        100.0 * Curvature::MAX_CHANGE,
         1.0 / STEPS[0],
         1.0 / STEPS[1]
     );

@@ -20,8 +20,8 @@ use ridgelight::gpu::{Headless, HeadlessOptions, Pixels};
 use ridgelight::plan::{self, Picture, Plan, REFERENCE_BATCH, Resource};
 use ridgelight::scene::Tone;
 use ridgelight::scene::{
-    Albedo, Basis, Border, BounceEngine, BounceGloss, Bounces, Lights, Lobe, Phong, Quality, Scene,
-    Surface,
+    Albedo, Basis, Border, BounceEngine, BounceSpecular, Bounces, Lights, PhongSpecular, Quality,
+    Scene, Specular, Surface,
 };
 use ridgelight::{Error, Result};
 use ridgelight_io as files;
@@ -30,13 +30,13 @@ use traced::traced;
 const EXPONENTS: [f32; 4] = [1.0, 5.0, 20.0, 80.0];
 const BOUNCES: u32 = 2;
 /// What is kept, and the order; the first three are drawn.
-const FORMS: [(BounceGloss, u32); 6] = [
-    (BounceGloss::Vector, 4),
-    (BounceGloss::Scalar, 4),
-    (BounceGloss::Vector, 6),
-    (BounceGloss::VectorF16, 4),
-    (BounceGloss::Vector, 2),
-    (BounceGloss::Scalar, 6),
+const FORMS: [(BounceSpecular, u32); 6] = [
+    (BounceSpecular::Vector, 4),
+    (BounceSpecular::Scalar, 4),
+    (BounceSpecular::Vector, 6),
+    (BounceSpecular::VectorF16, 4),
+    (BounceSpecular::Vector, 2),
+    (BounceSpecular::Scalar, 6),
 ];
 const DRAWN: usize = 3;
 /// Pixels a sample, and white ones between pictures.
@@ -92,13 +92,13 @@ struct Drawn {
 fn drawn(
     gpu: &mut Headless,
     scene: &Scene,
-    (gloss, sh_order): (BounceGloss, u32),
+    (gloss, sh_order): (BounceSpecular, u32),
 ) -> Result<Drawn> {
     let bounces = Bounces {
         count: BOUNCES,
         engine: BounceEngine::Pyramid,
         cutoff: 0.0,
-        gloss,
+        specular: gloss,
         ..Bounces::default()
     };
     let quality = Quality { basis: Basis::Sh, sh_order, bounces, ..Quality::default() };
@@ -185,7 +185,7 @@ fn run() -> Result<()> {
                 surface: Surface {
                     albedo: Albedo::Constant([albedo; 3]),
                     border: Border::Plane,
-                    phong: Some(Lobe::Constant(Phong { exponent, scale })),
+                    specular: Some(Specular::Constant(PhongSpecular { exponent, scale })),
                 },
                 lights: Lights { environment: Some(sky.clone()), ..Lights::default() },
             };

@@ -103,7 +103,7 @@ fn lamps_of(gpu: &mut Headless, device: &str, side: usize) -> Result<()> {
     println!("|---|---|---|---|---|");
     for (radius_m, count) in RADII_M.into_iter().flat_map(|r| COUNTS.map(|c| (r, c))) {
         let spheres = lamps(&field, count, radius_m);
-        let lights = Lights { spheres, ..Lights::default() };
+        let lights = Lights { sphere_lights: spheres, ..Lights::default() };
         let scene = Scene { field: field.clone(), surface: Surface::default(), lights };
         let limits = gpu.report().limits;
         let plan = plan::picture(&scene, &Quality::default(), &limits, Picture::default())?;

@@ -14,7 +14,7 @@ use ridgelight::Result;
 use ridgelight::gpu::{Headless, HeadlessOptions};
 use ridgelight::plan::{self, Picture, REFERENCE_BATCH};
 use ridgelight::scene::{
-    Albedo, Basis, Border, Lights, Lobe, Phong, Quality, Receiver, Scene, Surface,
+    Albedo, Basis, Border, Lights, PhongSpecular, Quality, Receiver, Scene, Specular, Surface,
 };
 use traced::traced;
 
@@ -48,12 +48,12 @@ fn run() -> Result<()> {
             surface: Surface {
                 albedo: Albedo::Constant([0.0; 3]),
                 border: Border::Plane,
-                phong: Some(Lobe::Constant(Phong { exponent, scale: 1.0 })),
+                specular: Some(Specular::Constant(PhongSpecular { exponent, scale: 1.0 })),
             },
             lights: Lights { environment: Some(sky.clone()), ..Lights::default() },
         };
         let truth = traced(&mut gpu, &scene, 0, BATCHES)?;
-        for receiver in [Receiver::Plane, Receiver::Lobe] {
+        for receiver in [Receiver::Plane, Receiver::CosineLobe] {
             for sh_order in 2..=6 {
                 let quality =
                     Quality { basis: Basis::Sh, receiver, sh_order, ..Quality::default() };

@@ -101,7 +101,7 @@ fn lit(gpu: &mut Headless, scene: &Scene, quality: &Quality) -> Result<(Vec<[f32
     let contents = [scene.field.heights_m(), &texels];
     let (times, pixels) = gpu.with_frame(plan, &contents, |gpu, frame| {
         // The first frame compiles and warms caches: little beside brute force, which is drawn once.
-        if quality.method != Method::Brute {
+        if quality.method != Method::BruteForce {
             gpu.draw(frame)?;
         }
         Ok((gpu.draw(frame)?, gpu.pixels(frame, 0)?))
@@ -125,7 +125,7 @@ fn main() -> Result<()> {
     let mut gpu = Headless::new(&HeadlessOptions::default())?;
     let (ours, ours_ms) = lit(&mut gpu, &scene, &quality)?;
     let brute = Quality {
-        method: Method::Brute,
+        method: Method::BruteForce,
         azimuths: TRUE_AZIMUTHS,
         sun_azimuths: TRUE_SUN_AZIMUTHS,
         ..quality

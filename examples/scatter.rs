@@ -104,7 +104,7 @@ fn grooves(rows: usize, cols: usize, columns: usize) -> Result<Scene> {
     let colour = |i: usize| if i % cols % columns > half { [0.8, 0.1, 0.1] } else { [0.8; 3] };
     let albedo = Albedo::Map((0..rows * cols).map(colour).collect());
     let field = HeightField::new(rows, cols, &heights, [1.0; 2], None)?;
-    let surface = Surface { albedo, border: Border::Periodic, phong: None };
+    let surface = Surface { albedo, border: Border::Periodic, specular: None };
     Ok(Scene { field, surface, lights: lights() })
 }
 

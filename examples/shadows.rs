@@ -187,7 +187,7 @@ fn swept(
             irradiance: [1.0; 3],
         };
         let surface =
-            Surface { border: land.border, albedo: Albedo::Constant([1.0; 3]), phong: None };
+            Surface { border: land.border, albedo: Albedo::Constant([1.0; 3]), specular: None };
         let lights = Lights { suns: vec![sun], ..Lights::default() };
         let scene = Scene { field: land.field.clone(), surface, lights };
         let quality = Quality { method: Method::Sweep, ..Quality::default() };

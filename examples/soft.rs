@@ -115,7 +115,7 @@ fn colours(pixels: &Pixels) -> Vec<f32> {
 /// Every crossing in 256 azimuths, by tables of 1024 elevations.
 fn truth(gpu: &mut Headless, scene: &Scene) -> Result<Vec<f32>> {
     let quality = Quality {
-        method: Method::Brute,
+        method: Method::BruteForce,
         azimuths: 256,
         table_elevations: 1024,
         ..Quality::default()

@@ -74,7 +74,7 @@ fn rows() -> [(&'static str, Lights, f32); 3] {
     [
         ("sky", sky, 1.0),
         ("key light", Lights { keys: vec![key], ..Lights::default() }, 0.8),
-        ("three balls", Lights { spheres: balls, ..Lights::default() }, 1.2),
+        ("three balls", Lights { sphere_lights: balls, ..Lights::default() }, 1.2),
     ]
 }
 
@@ -116,7 +116,7 @@ fn unshadowed(scene: &Scene, row: usize, col: usize) -> [f64; 3] {
     for key in &lights.keys {
         add(key_on(&oracle, 0, 0, &receiver, key, STRIPS)[0], key.radiance);
     }
-    for ball in &lights.spheres {
+    for ball in &lights.sphere_lights {
         let [x, y, z] = ball.position_m;
         let away = [x - col as f64, y - (SIDE - 1 - row) as f64, z];
         let ball = SphereLight { position_m: away, ..*ball };

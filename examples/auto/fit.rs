@@ -40,7 +40,7 @@ fn settings(part: Part) -> (Vec<Quality>, Quality) {
             let with = |fuse| LINES.map(|lines| Quality { lines, fuse, ..plain });
             let all = [Fuse::AimedNearest, Fuse::Aimed, Fuse::AimedAround].map(with).concat();
             // Exact lines have azimuths of their own: brute force is the truth in the same ones.
-            (all, Quality { method: Method::Brute, ..plain })
+            (all, Quality { method: Method::BruteForce, ..plain })
         }
         Part::Azimuths => {
             let all = of(&[8, 16, 32, 64, 128, 256], |q, v| q.azimuths = v);

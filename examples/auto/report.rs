@@ -45,18 +45,18 @@ impl Truth {
         let control = draw(gpu, scene, &dense, 0)?.planes;
         let unsure = apart(&plain, &control, scene.field.cols());
         let probes = Probes::of(scene, TRUE_PROBES, TRUE_SEED, &unsure)?;
-        let own = probes.error(&control, None, Probes::ONE_LOOK);
+        let own = probes.error(&control, None, Probes::ONE_BOUND);
         let mut truth = Self { probes, control, own, needs_exact: own.error > GOOD };
         if truth.needs_exact {
             truth.probes = Probes::of(scene, MORE_PROBES, TRUE_SEED, &unsure)?;
             let exact = if scene.lights.suns.is_empty() {
                 Quality { lines: Lines::Exact, azimuths: 512, ..dense }
             } else {
-                Quality { method: Method::Brute, azimuths: 128, sun_azimuths: 64, ..dense }
+                Quality { method: Method::BruteForce, azimuths: 128, sun_azimuths: 64, ..dense }
             };
             let control = draw(gpu, scene, &exact, 0)?.planes;
-            truth.own = truth.probes.error(&truth.control, None, Probes::ONE_LOOK);
-            let own = truth.probes.error(&control, None, Probes::ONE_LOOK);
+            truth.own = truth.probes.error(&truth.control, None, Probes::ONE_BOUND);
+            let own = truth.probes.error(&control, None, Probes::ONE_BOUND);
             if own.error < truth.own.error {
                 (truth.control, truth.own) = (control, own);
             }
@@ -65,7 +65,7 @@ impl Truth {
     }
 
     fn error(&self, planes: &[Vec<f32>]) -> Measured {
-        self.probes.error(planes, Some(&self.control), Probes::ONE_LOOK)
+        self.probes.error(planes, Some(&self.control), Probes::ONE_BOUND)
     }
 }
 
@@ -78,7 +78,7 @@ fn walked(
 ) -> Result<Vec<(Quality, Point)>> {
     let start = start();
     let ladders = ladders(scene, 0);
-    let is_exact = |q: &Quality| q.method == Method::Brute || q.lines == Lines::Exact;
+    let is_exact = |q: &Quality| q.method == Method::BruteForce || q.lines == Lines::Exact;
     let is_walked = |q: &Quality| truth.needs_exact || !is_exact(q);
     let places: Vec<_> =
         places(&ladders, &start).into_iter().filter(|p| is_walked(&p.quality)).collect();

@@ -105,7 +105,7 @@ pub fn lit(gpu: &mut Headless, field: HeightField) -> Result<Vec<Baked>> {
     };
     let lights = Lights { sky: Some([0.3, 0.4, 0.6]), suns: vec![sun], ..Lights::default() };
     let albedo = Albedo::Constant([0.6, 0.5, 0.3]);
-    let surface = Surface { border: Border::Periodic, albedo, phong: None };
+    let surface = Surface { border: Border::Periodic, albedo, specular: None };
     let scene = Scene { field, surface, lights };
     let mut light = direct(gpu, &scene, &limits)?;
     let around = Directions::fibonacci(DIRECTIONS, -1.0, 0)?;
@@ -128,7 +128,8 @@ pub fn lit(gpu: &mut Headless, field: HeightField) -> Result<Vec<Baked>> {
         &limits,
         &mut |i, radiance| {
             let z = directions.vectors()[i].z;
-            values.extend(facets.seen_from_all(&radiance).into_iter().map(|m| m.map(|v| v / z)));
+            values
+                .extend(facets.radiance_from_all(&radiance).into_iter().map(|m| m.map(|v| v / z)));
             for texels in facets.texels_from_all(&radiance) {
                 pictures.extend(
                     [0, 1, 2, 3]

@@ -107,7 +107,7 @@ pub fn run(gpu: &mut Headless, side: usize, samples: usize) -> Result<()> {
         (BounceEngine::Sweep, 16),
         (BounceEngine::Sweep, 8),
         (BounceEngine::Pyramid, 32),
-        (BounceEngine::Brute, 32),
+        (BounceEngine::BruteForce, 32),
     ] {
         let limits = gpu.report().limits;
         let of = |count| quality(engine, azimuths, count);

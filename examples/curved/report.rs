@@ -1,6 +1,6 @@
 //! What was found on each base: tables and curves.
 
-use ridgelight::scene::Changed;
+use ridgelight::scene::OcclusionChange;
 
 use super::STEPS;
 use super::light::BOUNCES;
@@ -18,7 +18,7 @@ pub struct Row {
     /// Off the device several times, RMSE; of bases that it does not refuse.
     pub device: Option<f64>,
     /// What [`Curvature::check`] finds.
-    pub changed: Changed,
+    pub changed: OcclusionChange,
     pub refused: Option<String>,
 }
 

@@ -54,7 +54,7 @@ fn scene(field: &HeightField, lights: usize) -> Scene {
     };
     let spheres =
         [[128.0, 128.0], [90.0, 150.0], [150.0, 95.0]].into_iter().take(lights).map(at).collect();
-    let lights = Lights { spheres, ..Lights::default() };
+    let lights = Lights { sphere_lights: spheres, ..Lights::default() };
     Scene { field: field.clone(), surface: Surface::default(), lights }
 }
 
@@ -78,7 +78,7 @@ fn thesis(azimuths: u32, level_step: u32) -> Quality {
         light_basis: LightBasis::Sh,
         basis: Basis::Sh,
         wedges: Wedges::Table,
-        receiver: Receiver::Lobe,
+        receiver: Receiver::CosineLobe,
         sun_azimuths: azimuths,
         azimuths: 32,
         ..Quality::default()
@@ -115,7 +115,7 @@ fn off(found: impl Fn(usize) -> f64, right: &[(usize, f64)]) -> f64 {
 /// Figures 6.1 and 6.2: errors, and the sheet of details.
 fn figures(gpu: &mut Headless, field: &HeightField, output: Option<&Path>) -> Result<()> {
     let scene = scene(field, 1);
-    let (oracle, light) = (Oracle::new(field, Border::Plane), scene.lights.spheres[0]);
+    let (oracle, light) = (Oracle::new(field, Border::Plane), scene.lights.sphere_lights[0]);
     let truth = |i: usize| sphere_of(&oracle, i / SIDE, i % SIDE, &light, 64);
     // Multiples of the golden ratio's share of the field: no two near each other.
     let place =

@@ -31,7 +31,7 @@ pub const SCATTER: Scatter = Scatter {
     cutoff: 1.0 / 65536.0,
     seed: 0,
     view: DVec3::Z,
-    own_lobe: false,
+    direct_specular: false,
     curvature: Curvature::FLAT,
 };
 const FACTORS: [usize; 5] = [1, 2, 4, 8, 16];
@@ -89,7 +89,7 @@ impl Seen<'_> {
         let mut values = Vec::new();
         self.each(gpu, &facets, directions.count(), is_scattered, |light, radiance| {
             let z = directions.vectors()[light].z;
-            values.extend(facets.seen_from_all(radiance).into_iter().map(|m| m.map(|v| v / z)));
+            values.extend(facets.radiance_from_all(radiance).into_iter().map(|m| m.map(|v| v / z)));
         })?;
         Ok((Brdf::from_values(directions.vectors().to_vec(), values)?, facets))
     }
@@ -106,7 +106,7 @@ impl Seen<'_> {
         let mut all = Vec::new();
         self.each(gpu, &facets, count, is_scattered, |light, radiance| {
             let z = pairs.vectors()[light].z;
-            all.push(facets.seen_from(count + light, radiance).map(|m| m / z));
+            all.push(facets.radiance_from(count + light, radiance).map(|m| m / z));
         })?;
         Ok(all)
     }
@@ -123,7 +123,7 @@ pub fn groove() -> Result<Scene> {
     let colour = |i: usize| if i % COLS > COLS / 2 { [0.8, 0.1, 0.1] } else { [0.8; 3] };
     let albedo = Albedo::Map((0..ROWS * COLS).map(colour).collect());
     let field = HeightField::new(ROWS, COLS, &heights, [0.25, 4.0], None)?;
-    let surface = Surface { albedo, border: Border::Periodic, phong: None };
+    let surface = Surface { albedo, border: Border::Periodic, specular: None };
     Ok(Scene { field, surface, lights: Lights::default() })
 }
 

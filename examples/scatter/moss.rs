@@ -31,6 +31,6 @@ pub fn tile(folder: &Path) -> Result<Scene> {
     let heights: Vec<f64> = (0..SIDE * SIDE).map(mean).collect();
     let field = HeightField::new(SIDE, SIDE, &heights, [each as f64; 2], None)?;
     let albedo = Albedo::Constant([0.55, 0.7, 0.25]);
-    let surface = Surface { albedo, border: Border::Periodic, phong: None };
+    let surface = Surface { albedo, border: Border::Periodic, specular: None };
     Ok(Scene { field, surface, lights: Lights::default() })
 }

@@ -42,8 +42,11 @@ pub fn run(gpu: &mut Headless) -> Result<()> {
     ] {
         let directions = Directions::fibonacci(COUNT, -1.0, 0)?;
         let (points, found_ms) = points(gpu, &field, Border::Periodic, &directions)?;
-        let surface =
-            Surface { albedo: Albedo::Constant([0.8; 3]), border: Border::Periodic, phong: None };
+        let surface = Surface {
+            albedo: Albedo::Constant([0.8; 3]),
+            border: Border::Periodic,
+            specular: None,
+        };
         let direct = vec![[1.0; 3]; field.heights_m().len()];
         let scene = Scene { field, surface, lights: lights() };
         let mut cells = Vec::new();

@@ -42,7 +42,7 @@ impl Bench<'_> {
 
     /// Of exact horizons: what azimuths and the basis leave.
     fn floor(&mut self, azimuths: u32) -> Result<Errors> {
-        self.errors(Quality { method: Method::Brute, azimuths, ..Quality::default() })
+        self.errors(Quality { method: Method::BruteForce, azimuths, ..Quality::default() })
     }
 }
 
@@ -68,8 +68,12 @@ fn panel(title: &str, x: &'static str, rows: &[(f64, Errors)], floors: &[(f64, E
 }
 
 pub fn run(gpu: &mut Headless, scene: &Scene) -> Result<String> {
-    let exact =
-        Quality { method: Method::Brute, azimuths: 256, basis: Basis::Sh, ..Quality::default() };
+    let exact = Quality {
+        method: Method::BruteForce,
+        azimuths: 256,
+        basis: Basis::Sh,
+        ..Quality::default()
+    };
     let soft_truth = drawn(gpu, scene, &exact, 1)?.0;
     let truth = truth(gpu, scene)?;
     let (cols, rows) = (scene.field.cols(), scene.field.rows());

@@ -37,7 +37,7 @@
 //! | albedo ([`Albedo::unknown`]) | RGBA32F, RGBA16F, RGBA8 UNORM, SRGB | 0 | the same | 1 |
 //! | environment ([`Environment::unknown`]) | as albedo | 0 | the same | 1 |
 //! | colours of sky, suns, keys ([`colours_on_device`](crate::plan::Picture::colours_on_device)) | as albedo | 0 | the same | 1 |
-//! | lobes ([`Lobe::unknown`]) | RGBA32F | 0 | the same | 1 |
+//! | specular ([`Specular::unknown`]) | RGBA32F | 0 | the same | 1 |
 //! | colours of balls, directions, positions and sizes of lights | no | | no | |
 //!
 //! An [`ImageArg`] is read where it is. Rows of texels in a buffer ([`BufferArg`]) are taken where the plan was told so
@@ -51,7 +51,7 @@
 //! [`HeightField::unknown`]: crate::scene::HeightField::unknown
 //! [`Albedo::unknown`]: crate::scene::Albedo::unknown
 //! [`Environment::unknown`]: crate::scene::Environment::unknown
-//! [`Lobe::unknown`]: crate::scene::Lobe::unknown
+//! [`Specular::unknown`]: crate::scene::Specular::unknown
 //! [`fill_voids`]: crate::scene::fill_voids
 //!
 //! # Lights that change

@@ -41,13 +41,13 @@ use crate::graph::shaders::same_layout;
 use crate::passes::batch::Batch;
 use crate::passes::blocks::Blocks;
 use crate::passes::pyramid::Pyramid;
-use crate::scene::{HeightField, Phong};
+use crate::scene::{HeightField, PhongSpecular};
 
 /// What passes are told of lobes: one of all samples, or an image of each sample's.
 #[derive(Clone, Copy)]
 pub(crate) struct Lobes {
     /// Where there is no map.
-    pub constant: Phong,
+    pub constant: PhongSpecular,
     pub map: Option<ResourceId>,
 }
 

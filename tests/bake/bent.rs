@@ -36,7 +36,7 @@ fn bent_grooves_are_off_by_about_what_is_said() {
     let heights: Vec<f64> = (0..ROWS * COLS).map(height).collect();
     let field = HeightField::new(ROWS, COLS, &heights, [1.0; 2], None).expect("a field");
     let border = Border::Open;
-    let surface = Surface { border, albedo: Albedo::Constant([ALBEDO as f32; 3]), phong: None };
+    let surface = Surface { border, albedo: Albedo::Constant([ALBEDO as f32; 3]), specular: None };
     let scene = Scene { field: field.clone(), surface, lights: Lights::default() };
     let directions = Directions::fibonacci(COUNT, -1.0, 0).expect("directions");
     let seen = visible_points(&field, border, &directions);

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use glam::{DVec2, DVec3};
 use ridgelight::scene::{
-    Border, Changed, Curvature, Directions, HeightField, VisiblePoint, VisiblePoints,
+    Border, Curvature, Directions, HeightField, OcclusionChange, VisiblePoint, VisiblePoints,
 };
 use ridgelight_bake::CurvedEllipses;
 use ridgelight_cpu::bent_directions::ways::Ways;
@@ -109,7 +109,7 @@ fn repetitions_are_those_that_rays_meet() {
             for here in [knob, (knob + 1) % (rows * cols), 0] {
                 let at = [here / cols, here % cols];
                 let VisiblePoint::Sample(there) = visible_point(&oracle, at, e) else { continue };
-                oracle.stretches(at[0], at[1], e.y.atan2(e.x), &mut stretches);
+                oracle.visible_intervals(at[0], at[1], e.y.atan2(e.x), &mut stretches);
                 let elevation = e.z.atan2(plan);
                 let stretch = stretches.iter().find(|s| elevation < s.high_rad).expect("met");
                 let want = stretch.distance_m(elevation);
@@ -167,7 +167,10 @@ fn a_hollow_shows_its_own_ground() {
     let level =
         HeightField::new(side, side, &vec![7.0; side * side], [1.0; 2], None).expect("a field");
     for border in [Border::Plane, Border::Open] {
-        assert_eq!(Curvature { per_m: [0.05; 2] }.changed(&level, border), Changed::default());
+        assert_eq!(
+            Curvature { per_m: [0.05; 2] }.occlusion_change(&level, border),
+            OcclusionChange::default()
+        );
         for radius in [30.0, 200.0] {
             let hollow = Curvature { per_m: [-1.0 / radius; 2] };
             let mut sum = 0.0;
@@ -190,7 +193,7 @@ fn a_hollow_shows_its_own_ground() {
                 }
             }
             let want = sum / (16 * side * side) as f64;
-            let found = hollow.changed(&level, border).light;
+            let found = hollow.occlusion_change(&level, border).light;
             assert!((found - want).abs() <= 1e-9 * want, "{border:?} {radius}: {found} {want}");
         }
     }
@@ -211,10 +214,11 @@ fn strong_bends_are_refused_by_name() {
     let limit = strong.split("at most ").nth(1).and_then(|t| t.split(' ').next()).expect("a limit");
     let limit: f64 = limit.parse().expect("a number");
     assert!((-0.1..0.0).contains(&limit), "{strong}");
-    let changed = |k: f64| Curvature { per_m: [k; 2] }.changed(&field, Border::Periodic).light;
+    let changed =
+        |k: f64| Curvature { per_m: [k; 2] }.occlusion_change(&field, Border::Periodic).light;
     // Named to four figures, and found to a part in 256.
-    assert!(changed(0.99 * limit - 1e-4) <= 1.02 * Curvature::MOST_CHANGED, "{strong}");
-    assert!(changed(1.01 * limit - 5e-4) > Curvature::MOST_CHANGED, "{strong}");
+    assert!(changed(0.99 * limit - 1e-4) <= 1.02 * Curvature::MAX_CHANGE, "{strong}");
+    assert!(changed(1.01 * limit - 5e-4) > Curvature::MAX_CHANGE, "{strong}");
     assert!(said(f64::NAN, 0.0).is_some_and(|e| e.contains("two numbers")));
 }
 
@@ -223,8 +227,9 @@ fn strong_bends_are_refused_by_name() {
 #[test]
 fn what_a_base_changes_is_not_the_tiles() {
     for k in [-0.08, 0.1] {
-        let of =
-            |rows| Curvature { per_m: [k, 0.0] }.changed(&grooves(rows), Border::Periodic).light;
+        let of = |rows| {
+            Curvature { per_m: [k, 0.0] }.occlusion_change(&grooves(rows), Border::Periodic).light
+        };
         let many = of(32);
         assert!(many > 0.005, "{k}: {many}");
         for rows in [2, 16] {

@@ -20,7 +20,7 @@ fn scene(rows: usize, cols: usize, heights: impl Fn(usize, usize) -> f64) -> Sce
     let all: Vec<f64> = (0..rows * cols).map(|i| heights(i / cols, i % cols)).collect();
     let field = HeightField::new(rows, cols, &all, [1.0; 2], None).expect("a field");
     let albedo = Albedo::Constant(ALBEDO);
-    let surface = Surface { border: Border::Periodic, albedo, phong: None };
+    let surface = Surface { border: Border::Periodic, albedo, specular: None };
     Scene { field, surface, lights: Lights::default() }
 }
 
@@ -36,7 +36,7 @@ pub fn table(facets: &Facets, radiance: impl Fn(usize) -> ExitRadiance) -> Brdf 
     facets.check().expect("a plane from afar");
     let directions = facets.directions().vectors().to_vec();
     let of = |(light, e): (usize, &DVec3)| {
-        let seen = facets.seen_from_all(&radiance(light));
+        let seen = facets.radiance_from_all(&radiance(light));
         seen.into_iter().map(|mean| mean.map(|m| m / e.z)).collect::<Vec<_>>()
     };
     let values = directions.iter().enumerate().flat_map(of).collect();
@@ -115,7 +115,7 @@ fn waves() -> Scene {
 
 /// The most that any triangle can reflect into a set of views of what it receives: Σ w (n·v)⁺ / (π v_z) over those that it is
 /// seen from, each filled as the plane fills it. Nothing of the light in it.
-fn most_reflected(scene: &Scene, times: usize, weights: &[f64], facets: &Facets) -> f64 {
+fn max_reflectance(scene: &Scene, times: usize, weights: &[f64], facets: &Facets) -> f64 {
     let field = scene.field.finer(Border::Periodic, times).expect("a finer field");
     let (rows, cols) = (field.rows(), field.cols());
     let [x, y] = field.cell_m();
@@ -173,7 +173,7 @@ fn no_more_leaves_than_arrives() {
         let table = direct(&facets);
         let weights = angles.projected_sr();
         assert!((weights.iter().sum::<f64>() - PI).abs() < 1e-12);
-        let most = most_reflected(&scene, times, &weights, &facets);
+        let most = max_reflectance(&scene, times, &weights, &facets);
         let albedo = f64::from(ALBEDO[0]);
         let reflected: Vec<f64> =
             (0..angles.count()).map(|light| table.reflected(light, &weights)[0]).collect();
@@ -244,13 +244,13 @@ impl Shares {
             radiance
         };
         let seen = |light: &ExitRadiance| -> f64 {
-            facets.seen_from_all(light).iter().zip(weights).map(|(l, w)| w * l[0]).sum()
+            facets.radiance_from_all(light).iter().zip(weights).map(|(l, w)| w * l[0]).sum()
         };
         let of_sample = |sample: usize| {
             let mut samples = vec![[0.0; 3]; samples];
             samples[sample] = [1.0; 3];
             let mut light = ExitRadiance::from(vec![[0.0; 3]; count]);
-            facets.add_samples(&samples, &mut light);
+            facets.add_grid_points(&samples, &mut light);
             light
         };
         let left: Vec<f64> = (0..samples).map(|j| seen(&of_sample(j))).collect();
@@ -279,7 +279,7 @@ impl Shares {
         let of_facet = |facet: usize| {
             let radiance = only(facet);
             let thrown: Vec<f64> =
-                facets.to_samples(&radiance).iter().map(|l| f64::from(l[0])).collect();
+                facets.to_grid_points(&radiance).iter().map(|l| f64::from(l[0])).collect();
             let sum = |of: &[f64]| thrown.iter().zip(of).map(|(l, s)| l * s).sum::<f64>();
             let at_once = seen(&ExitRadiance::from(radiance)) / sent(count);
             let all = at_once + sum(&scattered) / sent(count);
@@ -309,11 +309,11 @@ fn scattered_light_leaves_as_much_as_arrives() {
     let facets = facets(&scene, 3, above(VIEWS));
     let lit = |light: usize, bounces: u32| {
         let mut radiance = facets.lit_from(light);
-        let samples = facets.to_samples(radiance.alike());
+        let samples = facets.to_grid_points(radiance.alike());
         let direct: Vec<_> = samples.iter().map(|s| s.map(f64::from)).collect();
         let more = expected(&scene, &points, &direct, bounces);
         let more: Vec<_> = more.iter().map(|s| s.map(|v| v as f32)).collect();
-        facets.add_samples(&more, &mut radiance);
+        facets.add_grid_points(&more, &mut radiance);
         radiance
     };
     let table = self::table(&facets, |light| lit(light, 20));
@@ -367,7 +367,7 @@ fn textures_hold_what_is_seen() {
             let whole: f64 = texels.iter().map(|t| t[3]).sum();
             let z = facets.directions().vectors()[view].z;
             assert!((whole / 64.0 - z).abs() < 1e-12, "{view}: {whole} {z}");
-            let own = facets.seen_from(view, &radiance);
+            let own = facets.radiance_from(view, &radiance);
             for c in 0..3 {
                 let mean = texels.iter().map(|t| t[3] * t[c]).sum::<f64>() / whole;
                 assert!((mean - own[c]).abs() < 1e-12, "{view}: {mean} {}", own[c]);

@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use glam::DVec3;
 use ridgelight::scene::{
-    Albedo, Border, Directions, HeightField, Lights, Lobe, Phong, Scene, Surface,
+    Albedo, Border, Directions, HeightField, Lights, PhongSpecular, Scene, Specular, Surface,
 };
 use ridgelight_bake::{Angles, Brdf, Facets};
 use ridgelight_cpu::facet_mask::facet_mask;
@@ -14,18 +14,18 @@ use crate::groove::{groove_bound, wall};
 fn scene(
     rows: usize,
     cols: usize,
-    (albedo, lobe): (f32, Lobe),
+    (albedo, lobe): (f32, Specular),
     height: impl Fn(usize) -> f64,
 ) -> Scene {
     let all: Vec<f64> = (0..rows * cols).map(|i| height(i % cols)).collect();
     let field = HeightField::new(rows, cols, &all, [1.0; 2], None).expect("a field");
     let albedo = Albedo::Constant([albedo; 3]);
-    let surface = Surface { border: Border::Periodic, albedo, phong: Some(lobe) };
+    let surface = Surface { border: Border::Periodic, albedo, specular: Some(lobe) };
     Scene { field, surface, lights: Lights::default() }
 }
 
-fn one(exponent: f32, scale: f32) -> Lobe {
-    Lobe::Constant(Phong { exponent, scale })
+fn one(exponent: f32, scale: f32) -> Specular {
+    Specular::Constant(PhongSpecular { exponent, scale })
 }
 
 fn facets(scene: &Scene, directions: Directions) -> Facets {
@@ -182,8 +182,8 @@ fn sums_of_narrow_lobes_are_no_integrals() {
 /// 1000 that mirror nothing and one of 2 that mirrors half are (2000 + 2)/3 and a sixth, one of 1000 and two of 2 a third.
 #[test]
 fn the_sharpest_lobe_is_of_what_mirrors() {
-    let sharpest = |of: &dyn Fn(usize) -> Phong| {
-        let map = Lobe::Map((0..12).map(|i| of(i % 4)).collect());
+    let sharpest = |of: &dyn Fn(usize) -> PhongSpecular| {
+        let map = Specular::Map((0..12).map(|i| of(i % 4)).collect());
         facets(
             &scene(3, 4, (0.2, map), |_| 1.0),
             Directions::fibonacci(4, 0.0, 0).expect("directions"),
@@ -191,7 +191,7 @@ fn the_sharpest_lobe_is_of_what_mirrors() {
         .sharpest()
     };
     let [sharp, broad] =
-        [[1000.0, 0.0], [2.0, 0.5]].map(|[exponent, scale]| Phong { exponent, scale });
+        [[1000.0, 0.0], [2.0, 0.5]].map(|[exponent, scale]| PhongSpecular { exponent, scale });
     assert_eq!(sharpest(&|_| sharp), None);
     assert_eq!(sharpest(&|_| broad), Some(broad));
     let found = sharpest(&|c| if c == 1 { broad } else { sharp }).expect("a lobe");
@@ -203,11 +203,11 @@ fn the_sharpest_lobe_is_of_what_mirrors() {
 /// from the north-west to the south-east.
 #[test]
 fn lobes_of_maps_are_means_of_corners() {
-    let lobes: Vec<Phong> = (0..12)
-        .map(|i| Phong { exponent: 3.0 * (i * 5 % 7) as f32, scale: 0.1 * (i % 5) as f32 })
+    let lobes: Vec<PhongSpecular> = (0..12)
+        .map(|i| PhongSpecular { exponent: 3.0 * (i * 5 % 7) as f32, scale: 0.1 * (i % 5) as f32 })
         .collect();
     let of = |r: usize, c: usize| lobes[r % 3 * 4 + c % 4];
-    let scene = scene(3, 4, (0.2, Lobe::Map(lobes.clone())), |_| 1.0);
+    let scene = scene(3, 4, (0.2, Specular::Map(lobes.clone())), |_| 1.0);
     let facets = facets(&scene, Directions::fibonacci(20, 0.0, 0).expect("directions"));
     let table = table(&facets);
     let e = table.directions();
@@ -216,7 +216,7 @@ fn lobes_of_maps_are_means_of_corners() {
         for (r, c) in (0..12).map(|i| (i / 4, i % 4)) {
             for beside in [of(r, c + 1), of(r + 1, c)] {
                 let corners = [of(r, c), beside, of(r + 1, c + 1)];
-                let mean = |of: fn(&Phong) -> f32| {
+                let mean = |of: fn(&PhongSpecular) -> f32| {
                     corners.iter().map(|p| f64::from(of(p))).sum::<f64>() / 3.0
                 };
                 let p = density(mean(|p| p.exponent), DVec3::Z, e[l], e[v]);

@@ -15,8 +15,8 @@ use ridgelight::basis::zonal;
 use ridgelight::scene::fractal;
 use ridgelight::scene::{Border, HeightField, Receiver, Wedges};
 use ridgelight_bake::{
-    BentNormal, MAX_TRANSFER_ORDER, Ray, ShTransfer, ShVisibility, SkyView, Sum, Summing,
-    VisibleSky, normals,
+    BentNormal, HorizonMap, HorizonSums, MAX_TRANSFER_ORDER, Ray, ShTransfer, ShVisibility,
+    SkyView, VisibleSky, normals,
 };
 use ridgelight_cpu::light::{normal, sky};
 use ridgelight_cpu::oracle::Oracle;
@@ -27,8 +27,8 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 const COUNT: usize = 2048;
 
 /// The values of one sample whose horizon is a function of azimuth.
-fn of(what: Box<dyn Sum>, normal: DVec3, horizon: impl Fn(f64) -> f64) -> Vec<f64> {
-    let mut sums = Summing::new(what, 1);
+fn of(what: Box<dyn HorizonMap>, normal: DVec3, horizon: impl Fn(f64) -> f64) -> Vec<f64> {
+    let mut sums = HorizonSums::new(what, 1);
     let width_rad = TAU / COUNT as f64;
     for k in 0..COUNT {
         let azimuth_rad = width_rad * k as f64;
@@ -200,8 +200,8 @@ fn fields_agree_with_their_twins() {
         let (oracle, normals) = (Oracle::new(&field, border), normals(&field, border));
         let (count, samples) = (16, 17 * 17);
         let width_rad = TAU / count as f64;
-        let kinds: [Box<dyn Sum>; 2] = [Box::new(SkyView), Box::new(ShVisibility::new(4))];
-        let mut sums = kinds.map(|kind| Summing::new(kind, samples));
+        let kinds: [Box<dyn HorizonMap>; 2] = [Box::new(SkyView), Box::new(ShVisibility::new(4))];
+        let mut sums = kinds.map(|kind| HorizonSums::new(kind, samples));
         let mut horizons = vec![Vec::new(); samples];
         for k in 0..count {
             let azimuth_rad = width_rad * f64::from(k);
@@ -221,7 +221,7 @@ fn fields_agree_with_their_twins() {
             // Elevations of f32, 2^-23 of at most π/2, move a sum by no more than twice that; its own rounding.
             let expected = sky(&field, border, row, col, count as usize);
             close(view[0][i].into(), expected, 1e-6, "sky view");
-            let twin = Series { order: 4, wedges: Wedges::Slices, receiver: Receiver::Lobe };
+            let twin = Series { order: 4, wedges: Wedges::Slices, receiver: Receiver::CosineLobe };
             for (plane, expected) in series.iter().zip(seen_along(twin, &horizons[i])) {
                 close(plane[i].into(), expected, 2e-6, "visibility");
             }

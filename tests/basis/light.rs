@@ -4,7 +4,7 @@ use crate::{ORDERS, noise, within};
 use glam::DVec3;
 use ridgelight::basis::azimuth::{assemble, circle};
 use ridgelight::basis::harmonics::{evaluate, reconstruct, turned};
-use ridgelight::basis::light::{fit_above_ground, gloss, lobe, plane, receiver};
+use ridgelight::basis::light::{fit_above_ground, lobe, plane, receiver, specular};
 use ridgelight::basis::product::{product, triples};
 use ridgelight::basis::quadrature::points;
 use ridgelight::basis::slice::Slices;
@@ -101,10 +101,10 @@ fn a_gloss_is_the_triple_product() {
         let triples = triples(order);
         let about = turned(&phong(order, exponent), mirror);
         let want: f64 = product(&triples, &light, &v).iter().zip(&about).map(|(a, b)| a * b).sum();
-        within(&[gloss(&product(&triples, &light, &v), mirror, exponent)], &[want], 1e-12);
+        within(&[specular(&product(&triples, &light, &v), mirror, exponent)], &[want], 1e-12);
         let mut one = vec![0.0; order * order];
         one[0] = (4.0 * PI).sqrt();
-        within(&[gloss(&product(&triples, &one, &one), mirror, exponent)], &[1.0], 1e-13);
+        within(&[specular(&product(&triples, &one, &one), mirror, exponent)], &[1.0], 1e-13);
     }
 }
 

@@ -50,24 +50,24 @@ fn caps_are_the_thesis() {
 fn a_far_ball_is_a_point() {
     for distance in [1e4_f64, 1e9, 1e150] {
         let solid_angle = PI / distance / distance;
-        for (l, z) in ball(6, 1.0, distance).iter().enumerate() {
+        for (l, z) in sphere(6, 1.0, distance).iter().enumerate() {
             let point = solid_angle * ((2 * l + 1) as f64 / (4.0 * PI)).sqrt();
             // 1 - cos a = a²/2 (1 - a²/12 …) and P_l'(cos a): relative l(l+1) a²/4 at most, 30/4.
             let tolerance = (7.5 / distance / distance + 1e-14) * point;
             assert!((z - point).abs() <= tolerance, "{distance}: {z:e} {point:e}");
         }
     }
-    assert_eq!(ball(3, 0.0, 0.0), [0.0; 3], "a point that is nowhere seen");
-    assert_eq!(ball(3, 1.0, f64::INFINITY), [0.0; 3]);
+    assert_eq!(sphere(3, 0.0, 0.0), [0.0; 3], "a point that is nowhere seen");
+    assert_eq!(sphere(3, 1.0, f64::INFINITY), [0.0; 3]);
 }
 
 /// Outside, sin a = r/d; on the surface half of all directions; inside all of them.
 #[test]
 fn a_ball_around_its_receiver_is_the_whole_sphere() {
-    same(&ball(6, 2.0, 4.0), &cap(6, PI / 6.0));
-    within(&ball(6, 2.0, 2.0), &cap(6, FRAC_PI_2), 1e-15);
+    same(&sphere(6, 2.0, 4.0), &cap(6, PI / 6.0));
+    within(&sphere(6, 2.0, 2.0), &cap(6, FRAC_PI_2), 1e-15);
     for distance in [1.9999999, 1.0, 0.0] {
-        let whole = ball(6, 2.0, distance);
+        let whole = sphere(6, 2.0, distance);
         within(&whole, &[2.0 * PI.sqrt(), 0.0, 0.0, 0.0, 0.0, 0.0], 1e-15);
         within(&whole, &cap(6, PI), 1e-14);
     }
@@ -89,9 +89,9 @@ fn a_disc_at_the_zenith_lights_by_its_sine_squared() {
 
 #[test]
 fn a_balls_azimuths() {
-    assert_eq!(ball_half_azimuth(1.0, 2.0), Some(0.5_f64.asin()));
-    assert_eq!(ball_half_azimuth(1.0, 1.0), None);
-    assert_eq!(ball_half_azimuth(1.0, 0.0), None);
+    assert_eq!(sphere_half_azimuth(1.0, 2.0), Some(0.5_f64.asin()));
+    assert_eq!(sphere_half_azimuth(1.0, 1.0), None);
+    assert_eq!(sphere_half_azimuth(1.0, 0.0), None);
 }
 
 /// The sky against quadrature; all that is not zonal is 0.

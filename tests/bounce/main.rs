@@ -43,7 +43,7 @@ fn rough(rows: usize, cols: usize, cell_m: [f64; 2], relief: f64) -> HeightField
 fn under_sky(field: HeightField, border: Border, albedo: f32) -> Scene {
     Scene {
         field,
-        surface: Surface { albedo: Albedo::Constant([albedo; 3]), border, phong: None },
+        surface: Surface { albedo: Albedo::Constant([albedo; 3]), border, specular: None },
         lights: Lights { sky: Some([1.0; 3]), ..Lights::default() },
     }
 }

@@ -1,6 +1,6 @@
 //! The quadrature against counting paths, whose lobes are seen from above alone, as the quadrature's.
 
-use ridgelight::scene::{Albedo, Border, Environment, Lights, Lobe, Phong};
+use ridgelight::scene::{Albedo, Border, Environment, Lights, PhongSpecular, Specular};
 use ridgelight_cpu::indirect::{Fineness, truth};
 use ridgelight_cpu::light::normal;
 
@@ -19,7 +19,7 @@ fn paths_bring_what_the_quadrature_says() {
     let texels = (0..18_u8).map(|i| [f32::from(i % 5), 1.0, f32::from(i % 3)]).collect();
     let mut open = under_sky(field(), Border::Open, 0.0);
     open.surface.albedo = map;
-    open.surface.phong = Some(Lobe::Constant(Phong { exponent: 5.0, scale: 0.2 }));
+    open.surface.specular = Some(Specular::Constant(PhongSpecular { exponent: 5.0, scale: 0.2 }));
     open.lights = Lights {
         environment: Some(Environment::new(6, 3, texels, 0.9).unwrap()),
         ..Lights::default()

@@ -1,7 +1,7 @@
 //! Balls of light and lobes: what the sky's tests do not reach.
 
 use ridgelight::scene::{
-    Border, HeightField, KeyLight, Lights, Lobe, Phong, Scene, SphereLight, Sun,
+    Border, HeightField, KeyLight, Lights, PhongSpecular, Scene, Specular, SphereLight, Sun,
 };
 use ridgelight_cpu::indirect::{Fineness, light, truth};
 use ridgelight_cpu::light::sun;
@@ -14,7 +14,7 @@ const FINE: Fineness = Fineness { azimuths: 8, divisions: 1, strips: 64 };
 fn under_ball(field: HeightField, border: Border, position_m: [f64; 3], radius_m: f64) -> Scene {
     let mut scene = under_sky(field, border, 1.0);
     let ball = SphereLight { position_m, radius_m, radiance: [1.0; 3] };
-    scene.lights = Lights { spheres: vec![ball], ..Lights::default() };
+    scene.lights = Lights { sphere_lights: vec![ball], ..Lights::default() };
     scene
 }
 
@@ -148,7 +148,7 @@ fn a_lobe_has_closed_forms() {
     let of = |mut scene: Scene, exponent: f32| {
         scene.surface = ridgelight::scene::Surface {
             albedo: ridgelight::scene::Albedo::Constant([0.0; 3]),
-            phong: Some(Lobe::Constant(Phong { exponent, scale: 0.5 })),
+            specular: Some(Specular::Constant(PhongSpecular { exponent, scale: 0.5 })),
             ..scene.surface
         };
         let fineness = Fineness { azimuths: 64, divisions: 1, strips: 1 };

@@ -175,7 +175,7 @@ fn albedo_is_linear_and_fits_the_field() {
 /// Channels by their names, whatever their order; two planes of an array; the size and the range of each texel.
 #[test]
 fn lobes_are_two_numbers_a_sample() {
-    use ridgelight::scene::{Lobe, Phong};
+    use ridgelight::scene::{PhongSpecular, Specular};
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name);
     let channel = |v: [f32; 2]| FlatSamples::F32(v.to_vec());
@@ -186,10 +186,10 @@ fn lobes_are_two_numbers_a_sample() {
     };
     write("a.exr", 1.0);
     write_npy_f32(&path("a.npy"), &[2, 1, 2], [&[0.0, 1e4, 0.25, 1.0][..]]).unwrap();
-    let phong = |exponent, scale| Phong { exponent, scale };
-    let want = Lobe::Map(vec![phong(0.0, 0.25), phong(1e4, 1.0)]);
+    let phong = |exponent, scale| PhongSpecular { exponent, scale };
+    let want = Specular::Map(vec![phong(0.0, 0.25), phong(1e4, 1.0)]);
     for name in ["a.exr", "a.npy"] {
-        assert_eq!(read_lobes(&path(name), 1, 2).unwrap(), want, "{name}");
+        assert_eq!(read_specular(&path(name), 1, 2).unwrap(), want, "{name}");
     }
     write_npy_f32(&path("three.npy"), &[3, 1, 2], [&[0.0; 6][..]]).unwrap();
     write("b.exr", f32::NAN);
@@ -199,7 +199,7 @@ fn lobes_are_two_numbers_a_sample() {
         ("b.exr", [1, 2], "row 0, column 1: found scale NaN"),
         ("none", [1, 2], "extension: found none"),
     ] {
-        let error = read_lobes(&path(name), size[0], size[1]).unwrap_err().to_string();
+        let error = read_specular(&path(name), size[0], size[1]).unwrap_err().to_string();
         one_sentence(&error, name);
         assert!(error.contains(says), "{error}");
     }

@@ -10,7 +10,7 @@ fn flat_ground_under_the_sky_is_its_albedo() {
     for (rows, cols) in [(1, 1), (1, 5), (2, 3), (17, 16)] {
         for border in [Border::Plane, Border::Open, Border::Periodic] {
             let scene = under_sky(field(rows, cols, [1.0, 2.0], |_, _| 7.0), border);
-            for method in [Method::Sweep, Method::Pyramid, Method::Brute] {
+            for method in [Method::Sweep, Method::Pyramid, Method::BruteForce] {
                 let quality = Quality { azimuths: 16, method, ..Quality::default() };
                 let picture = gpu.picture(&scene, &quality);
                 for (i, v) in picture.values.iter().enumerate() {
@@ -95,7 +95,7 @@ fn a_wall_hides_what_it_should() {
     // row, tan h = 10 / (20 - c).
     let mut gpu = Device::new();
     let wall = field(15, 31, [2.0, 2.0], |_, c| if c == 20 { 10.0 } else { 0.0 });
-    for method in [Method::Sweep, Method::Brute] {
+    for method in [Method::Sweep, Method::BruteForce] {
         for lines in [Lines::Cell, Lines::Exact] {
             let quality = Quality { azimuths: 8, method, lines, ..Quality::default() };
             let found = gpu.horizons(&wall, Border::Plane, &quality);

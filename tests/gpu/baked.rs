@@ -4,10 +4,10 @@ use std::f64::consts::TAU;
 use std::path::Path;
 
 use ridgelight::scene::{Border, Method, Quality};
-use ridgelight_bake::{Ray, SkyView, Summing, normals};
+use ridgelight_bake::{HorizonSums, Ray, SkyView, normals};
 use ridgelight_cpu::light;
 use ridgelight_cpu::oracle::Oracle;
-use ridgelight_cpu::tolerance::{ShadeError, twin_march_slope};
+use ridgelight_cpu::tolerance::{ShadeError, device_march_slope};
 use ridgelight_io as files;
 use ridgelight_io::HeightOptions;
 
@@ -25,11 +25,11 @@ fn sky_view_of_bundled_terrain_is_the_oracles() {
     let whole = files::read_heights(&path, &HeightOptions::default()).expect("the bundled field");
     let at = |r: usize, c: usize| f64::from(whole.heights_m()[(80 + r) * 256 + 80 + c]);
     let ground = field(SIDE, SIDE, [66.0, 92.6], at);
-    let quality = Quality { azimuths: AZIMUTHS, method: Method::Brute, ..Quality::default() };
+    let quality = Quality { azimuths: AZIMUTHS, method: Method::BruteForce, ..Quality::default() };
     let horizons = gpu.horizons(&ground, Border::Plane, &quality);
     let normals = normals(&ground, Border::Plane);
     let view = |every: usize| {
-        let mut sums = Summing::new(Box::new(SkyView), SIDE * SIDE);
+        let mut sums = HorizonSums::new(Box::new(SkyView), SIDE * SIDE);
         let width_rad = TAU / f64::from(AZIMUTHS) * every as f64;
         let azimuths = horizons.chunks_exact(SIDE * SIDE).step_by(every).enumerate();
         for (k, elevations) in azimuths {
@@ -49,7 +49,7 @@ fn sky_view_of_bundled_terrain_is_the_oracles() {
     };
     let heights = || ground.heights_m().iter().map(|h| f64::from(*h));
     let relief = heights().fold(f64::MIN, f64::max) - heights().fold(f64::MAX, f64::min);
-    let slope = twin_march_slope(relief, 66.0);
+    let slope = device_march_slope(relief, 66.0);
     let bound = ShadeError::new(slope, relief, 66.0, AZIMUTHS as usize).sky();
     let (all, half) = (worst(&view(1)), worst(&view(2)));
     println!("{all:.2e} of {bound:.2e}; half as many azimuths {half:.2e}");

@@ -2,7 +2,7 @@
 
 use ridgelight::plan::{self, Picture};
 use ridgelight::scene::{
-    Albedo, Border, BounceEngine, BounceGloss, Bounces, HeightField, Levels, Lights, Quality,
+    Albedo, Border, BounceEngine, BounceSpecular, Bounces, HeightField, Levels, Lights, Quality,
     Scene, Sun,
 };
 use ridgelight_cpu::tolerance::EPSILON;
@@ -10,7 +10,7 @@ use ridgelight_cpu::tolerance::EPSILON;
 use crate::{Device, field, random, under_sky};
 
 const ENGINES: [BounceEngine; 3] =
-    [BounceEngine::Brute, BounceEngine::Sweep, BounceEngine::Pyramid];
+    [BounceEngine::BruteForce, BounceEngine::Sweep, BounceEngine::Pyramid];
 
 const LOW: Sun =
     Sun { azimuth_rad: 0.3, elevation_rad: 1.4, diameter_rad: 0.0, irradiance: [3.0; 3] };
@@ -18,8 +18,9 @@ const LOW: Sun =
 /// So many bounces, none dropped; one level an octave, whose texels lie on the field's samples.
 fn quality(engine: BounceEngine, count: u32, azimuths: u32) -> Quality {
     let (level_step, level_offset) = (1, 1);
-    let gloss = BounceGloss::Vector;
-    let bounces = Bounces { count, engine, azimuths, cutoff: 0.0, level_step, level_offset, gloss };
+    let gloss = BounceSpecular::Vector;
+    let bounces =
+        Bounces { count, engine, azimuths, cutoff: 0.0, level_step, level_offset, specular: gloss };
     let levels = Levels::Pyramid;
     Quality { azimuths, bounces, levels, level_step, level_offset, ..Quality::default() }
 }

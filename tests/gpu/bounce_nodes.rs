@@ -53,7 +53,7 @@ fn rough(rows: usize, cols: usize, border: Border, relief: f64) -> Scene {
 }
 
 const ENGINES: [BounceEngine; 3] =
-    [BounceEngine::Sweep, BounceEngine::Brute, BounceEngine::Pyramid];
+    [BounceEngine::Sweep, BounceEngine::BruteForce, BounceEngine::Pyramid];
 
 /// At a node nothing else counts, and its share of ground is its own: the first bounce is that of every sample, the last
 /// ones too, but for the rounding of a quotient.
@@ -62,7 +62,7 @@ fn nodes_are_lit_as_they_are_by_themselves() {
     let mut gpu = Device::new();
     for (engine, border, stride) in [
         (BounceEngine::Sweep, Border::Plane, 2),
-        (BounceEngine::Brute, Border::Open, 4),
+        (BounceEngine::BruteForce, Border::Open, 4),
         (BounceEngine::Pyramid, Border::Periodic, 2),
     ] {
         let scene = rough(10, 15, border, 7.0);
@@ -89,7 +89,7 @@ fn nothing_is_gained_between_nodes() {
     for engine in ENGINES {
         let (border, relief) = match engine {
             BounceEngine::Sweep => (Border::Periodic, 40.0),
-            BounceEngine::Brute => (Border::Open, 7.0),
+            BounceEngine::BruteForce => (Border::Open, 7.0),
             _ => (Border::Plane, 1e-3),
         };
         let scene = rough(11, 13, border, relief);

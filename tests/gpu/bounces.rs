@@ -11,7 +11,7 @@ use ridgelight::scene::{
     Scene, Sun, Surface,
 };
 use ridgelight_cpu::bounce_gather::BounceGather;
-use ridgelight_cpu::bounce_march::{bounce_march, stretches_along};
+use ridgelight_cpu::bounce_march::{bounce_march, visible_intervals_along};
 use ridgelight_cpu::height_expand::height_expand;
 use ridgelight_cpu::height_reduce::height_levels;
 use ridgelight_cpu::indirect;
@@ -22,7 +22,7 @@ use ridgelight_cpu::shade_reduce::shade_levels;
 use ridgelight_cpu::shared::bounced::{Along, radiance};
 use ridgelight_cpu::shared::levels::LevelTexels;
 use ridgelight_cpu::shared::sweep::Heights;
-use ridgelight_cpu::tolerance::{EPSILON, Gathered, Land, Slices, ThrownError, march_error};
+use ridgelight_cpu::tolerance::{BounceError, EPSILON, Gathered, Land, Slices, march_error};
 use ridgelight_io as files;
 use ridgelight_io::HeightOptions;
 
@@ -32,7 +32,7 @@ use crate::{Device, field, random, under_sky};
 /// So many bounces in so many azimuths, none dropped, of direct light by brute force in as many.
 fn brute(count: u32, azimuths: u32) -> Quality {
     let bounces = Bounces { count, azimuths, cutoff: 0.0, ..Bounces::default() };
-    Quality { method: Method::Brute, azimuths, bounces, ..Quality::default() }
+    Quality { method: Method::BruteForce, azimuths, bounces, ..Quality::default() }
 }
 
 /// The whole, and the layer of each bounce.
@@ -87,7 +87,7 @@ fn scenes(border: Border) -> Vec<(&'static str, Scene)> {
     let lights = Lights { sky: Some([1.0, 0.5, 0.0]), suns: vec![sun], ..Lights::default() };
     let of = |field: HeightField, albedo| Scene {
         field,
-        surface: Surface { border, albedo, phong: None },
+        surface: Surface { border, albedo, specular: None },
         lights: lights.clone(),
     };
     let grey = || Albedo::Constant([0.8, 0.8, 0.8]);
@@ -105,7 +105,7 @@ fn scenes(border: Border) -> Vec<(&'static str, Scene)> {
 fn beside(
     layer: &[[f64; 3]],
     scene: &Scene,
-    twin: impl Fn(usize) -> (Vec<Along>, ThrownError),
+    twin: impl Fn(usize) -> (Vec<Along>, BounceError),
 ) -> f64 {
     let mut largest = 0.0_f64;
     for (i, got) in layer.iter().enumerate() {
@@ -143,11 +143,11 @@ fn every_stretch_is_the_twins() {
                 let brightest = brightest(&from);
                 let ratio = beside(layer, &scene, |i| {
                     let at = [i / cols, i % cols];
-                    let all = stretches_along(&oracle, &from, azimuths, at);
+                    let all = visible_intervals_along(&oracle, &from, azimuths, at);
                     let normal = Land::normal_at(&scene.field, border, at);
                     let slices = Slices { normal, wedge: 1.0, brightest };
                     let error = |along: &Along, cast: &_| march_error(cell, along, cast);
-                    let error = ThrownError::of(&all, error, &slices);
+                    let error = BounceError::of(&all, error, &slices);
                     (all, error)
                 });
                 println!("{border:?} {name}: {ratio:.3} of the bound");
@@ -163,8 +163,8 @@ fn pyramids_are_the_twins() {
     let mut gpu = Device::new();
     for (border, levels, receiver, azimuths) in [
         (Border::Plane, Levels::Stack, Receiver::Plane, 8),
-        (Border::Open, Levels::Pyramid, Receiver::Lobe, 5),
-        (Border::Periodic, Levels::Stack, Receiver::Lobe, 4),
+        (Border::Open, Levels::Pyramid, Receiver::CosineLobe, 5),
+        (Border::Periodic, Levels::Stack, Receiver::CosineLobe, 4),
         (Border::Periodic, Levels::Pyramid, Receiver::Plane, 4),
     ] {
         // Each is a pipeline of its own.
@@ -230,7 +230,7 @@ fn pyramids_are_the_twins() {
                     let all = twin.casts_along(at);
                     let normal = Land::normal_at(field, border, at);
                     let slices = Slices { normal, wedge: 1.0, brightest };
-                    let error = ThrownError::of(&all, |_, cast| gathered.error(cast), &slices);
+                    let error = BounceError::of(&all, |_, cast| gathered.error(cast), &slices);
                     (all, error)
                 });
                 println!("{border:?} {levels:?} {receiver:?} {name}: {ratio:.3} of the bound");
@@ -422,7 +422,7 @@ fn pyramids_come_to_every_stretch() {
     };
     let [usual, fine] = [(4, 2), (8, 4)].map(|(k, o)| error(k, o, Receiver::Plane));
     assert!(fine <= 0.5 * usual, "{fine} {usual}");
-    assert!(error(8, 4, Receiver::Lobe) > fine);
+    assert!(error(8, 4, Receiver::CosineLobe) > fine);
 }
 
 /// No sample throws more on than the brightest threw before, however steep and whatever the borders.

@@ -3,7 +3,8 @@
 use ridgelight::plan::{self, Format, Limits, Picture, Plan, Rectangle};
 use ridgelight::scene::fractal;
 use ridgelight::scene::{
-    Albedo, Border, KeyLight, Lights, Lobe, Phong, Quality, Scene, SphereLight, Sun, Surface,
+    Albedo, Border, KeyLight, Lights, PhongSpecular, Quality, Scene, Specular, SphereLight, Sun,
+    Surface,
 };
 
 use crate::Device;
@@ -29,7 +30,7 @@ fn scene([sky, one, other, patch]: Colours) -> Scene {
         surface: Surface {
             albedo: Albedo::Constant([0.7, 0.5, 0.3]),
             border: Border::Plane,
-            phong: None,
+            specular: None,
         },
         lights: Lights {
             sky: Some(sky),
@@ -167,11 +168,12 @@ fn colours_that_are_summed_up_are_the_scenes() {
     };
     let mut with_ball = scene(FIRST);
     let ball = SphereLight { position_m: [1.0; 3], radius_m: 1.0, radiance: [1.0; 3] };
-    with_ball.lights.spheres = vec![ball];
-    refuse(&with_ball, "a ball of light");
+    with_ball.lights.sphere_lights = vec![ball];
+    refuse(&with_ball, "a sphere light");
     let mut with_lobe = scene(FIRST);
-    with_lobe.surface.phong = Some(Lobe::Constant(Phong { exponent: 9.0, scale: 0.25 }));
-    refuse(&with_lobe, "a lobe");
+    with_lobe.surface.specular =
+        Some(Specular::Constant(PhongSpecular { exponent: 9.0, scale: 0.25 }));
+    refuse(&with_lobe, "specular");
     let lone = Scene { lights: Lights::default(), ..scene(FIRST) };
     refuse(&lone, "nothing that has one");
 }

@@ -129,8 +129,7 @@ fn plans_say_what_a_base_changes() {
     assert!((changed.scattered(0.5, 3) - off).abs() < 1e-12);
     let scatter = Scatter { curvature, cutoff: 0.0, ..Scatter::default() };
     let plan = plan::scatter(&scene, &directions, &scatter, &limits).expect("a plan");
-    let said =
-        format!("the base {changed}: by it scattered light is off by about {off:.4} or less of");
+    let said = format!("the base {changed}: error of scattered light about {off:.4} or less of");
     assert!(plan.notes.iter().any(|note| note.starts_with(&said)), "{said}: {:?}", plan.notes);
     let plan = plan::curved_ellipses(&scene.field, BORDER, &directions, [0.02, 0.01], &limits);
     let said = format!("the base bent east -: {changed}");
@@ -163,13 +162,14 @@ fn bends_are_refused_by_name() {
     assert!(fitted([1e-3, 0.2]).is_some_and(|said| said.contains("curvature of the base")));
     let mut glossy = scene.clone();
     glossy.surface.albedo = Albedo::Constant([0.8; 3]);
-    glossy.surface.phong = Some(ridgelight::scene::Lobe::Constant(ridgelight::scene::Phong {
-        exponent: 5.0,
-        scale: 0.1,
-    }));
+    glossy.surface.specular =
+        Some(ridgelight::scene::Specular::Constant(ridgelight::scene::PhongSpecular {
+            exponent: 5.0,
+            scale: 0.1,
+        }));
     let scatter = Scatter { curvature: Curvature { per_m: [1e-3, 0.0] }, ..Scatter::default() };
     let said = plan::scatter(&glossy, &directions, &scatter, &limits).unwrap_err().to_string();
-    assert!(said.contains("a lobe") && said.contains("diffuse"), "{said}");
+    assert!(said.contains("specular") && said.contains("diffuse"), "{said}");
     // More directions than an image has layers.
     let few = plan::Limits { image_layers: 63, ..limits };
     let plan = plan::curved_ellipses(&scene.field, BORDER, &directions, [1e-3; 2], &few);

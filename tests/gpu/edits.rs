@@ -260,7 +260,7 @@ fn edits_that_cannot_be_are_refused() {
         (&scene, quality, false),
         (&scene, Quality { fuse: Fuse::Slopes, ..quality }, true),
         (&periodic, quality, true),
-        (&scene, Quality { method: Method::Brute, ..quality }, true),
+        (&scene, Quality { method: Method::BruteForce, ..quality }, true),
         (&scene, Quality { method: Method::Pyramid, ..quality }, true),
     ] {
         let plan = planned(gpu, scene, &quality, keeps);

@@ -19,7 +19,7 @@ fn dome_and_wall(side: usize) -> HeightField {
 
 fn all_forms(gpu: &mut Device, field: &HeightField, border: Border, base: Quality) {
     let plain = gpu.horizons(field, border, &Quality { hull: Hull::Private, ..base });
-    for hull in [Hull::Shared, Hull::List] {
+    for hull in [Hull::Shared, Hull::OccluderList] {
         let other = gpu.horizons(field, border, &Quality { hull, ..base });
         let differing =
             plain.iter().zip(&other).filter(|(a, b)| a.to_bits() != b.to_bits()).count();

@@ -6,10 +6,11 @@ use std::path::Path;
 use ridgelight::basis::zonal::{cap, phong};
 use ridgelight::plan::{self, Picture};
 use ridgelight::scene::{
-    Albedo, Basis, Border, HeightField, Lights, Lobe, Method, Phong, Quality, Scene, Sun,
+    Albedo, Basis, Border, HeightField, Lights, Method, PhongSpecular, Quality, Scene, Specular,
+    Sun,
 };
 use ridgelight_cpu::indirect::{Fineness, light};
-use ridgelight_cpu::tolerance::{ShadeError, twin_march_slope, twin_sun_specular};
+use ridgelight_cpu::tolerance::{ShadeError, device_march_slope, device_sun_specular};
 use ridgelight_io as files;
 use ridgelight_io::HeightOptions;
 
@@ -20,7 +21,7 @@ use crate::{Device, field, random, under_sky};
 fn glossy(field: HeightField, exponent: f32, scale: f32) -> Scene {
     let mut scene = under_sky(field, Border::Plane);
     scene.surface.albedo = Albedo::Constant([0.0; 3]);
-    scene.surface.phong = Some(Lobe::Constant(Phong { exponent, scale }));
+    scene.surface.specular = Some(Specular::Constant(PhongSpecular { exponent, scale }));
     scene
 }
 
@@ -85,7 +86,7 @@ fn suns_in_a_lobe_are_the_quadratures() {
         let n = f64::from(exponent);
         let relief = 1.2 / n.sqrt();
         let rough = field(6, 8, [1.0, 1.5], |r, c| relief * noise[r * 8 + c]);
-        let error = ShadeError::new(twin_march_slope(relief, 1.0), relief, 1.0, 32);
+        let error = ShadeError::new(device_march_slope(relief, 1.0), relief, 1.0, 32);
         let sun = |azimuth_rad, elevation_rad, irradiance| Sun {
             azimuth_rad,
             elevation_rad,
@@ -96,7 +97,8 @@ fn suns_in_a_lobe_are_the_quadratures() {
         // Two, which add up.
         let suns = vec![sun(2.0, 0.3, [2.0, 0.0, 0.0]), sun(-0.4, 1.5, [0.0, 1.0, 3.0])];
         scene.lights = Lights { suns, ..Lights::default() };
-        let quality = Quality { method: Method::Brute, sun_azimuths: 32, ..Quality::default() };
+        let quality =
+            Quality { method: Method::BruteForce, sun_azimuths: 32, ..Quality::default() };
         let picture = gpu.picture(&scene, &quality);
         let fineness = Fineness { azimuths: 8, divisions: 1, strips: 256 };
         let truth = light(&scene, 0, fineness).expect("a truth").remove(0);
@@ -108,7 +110,7 @@ fn suns_in_a_lobe_are_the_quadratures() {
                 let irradiance: f64 =
                     scene.lights.suns.iter().map(|s| f64::from(s.irradiance[c])).sum();
                 // A sun that is faced by a tenth or less: of f32's share, ten times.
-                let rounded = twin_sun_specular(n, error.normal(), 0.1);
+                let rounded = device_sun_specular(n, error.normal(), 0.1);
                 let uneven = peak * (n / std::f64::consts::E).sqrt() * 2.0 * radius;
                 let of_sum = 10.0 * PI * error.sun(if radius > 0.0 { PI } else { 1.0 }) * peak;
                 let bound = 0.5 * irradiance * (rounded + uneven + of_sum);

@@ -3,8 +3,8 @@
 use ridgelight::basis::zonal::clamped_cosine;
 use ridgelight::plan::{self, Picture};
 use ridgelight::scene::{
-    Albedo, Basis, Border, BounceEngine, BounceGloss, Bounces, Environment, Lights, Lobe, Method,
-    Phong, Quality, Scene,
+    Albedo, Basis, Border, BounceEngine, BounceSpecular, Bounces, Environment, Lights, Method,
+    PhongSpecular, Quality, Scene, Specular,
 };
 use ridgelight_cpu::light::normal;
 use std::f64::consts::PI;
@@ -14,18 +14,18 @@ use crate::reference_truth::traced;
 use crate::{Device, field, random, under_sky};
 
 /// So many bounces by pyramids whose samples all look at the field itself.
-fn thrown(count: u32, gloss: BounceGloss, sh_order: u32) -> Quality {
+fn thrown(count: u32, gloss: BounceSpecular, sh_order: u32) -> Quality {
     let bounces = Bounces {
         count,
         engine: BounceEngine::Pyramid,
         azimuths: 16,
         cutoff: 0.0,
         level_offset: 4,
-        gloss,
+        specular: gloss,
         ..Bounces::default()
     };
     let base =
-        Quality { azimuths: 16, method: Method::Brute, level_offset: 4, ..Quality::default() };
+        Quality { azimuths: 16, method: Method::BruteForce, level_offset: 4, ..Quality::default() };
     Quality { basis: Basis::Sh, sh_order, bounces, ..base }
 }
 
@@ -53,10 +53,12 @@ fn lobed() -> Scene {
     let noise: Vec<f64> = (0..25).map(|_| next()).collect();
     let mut scene =
         under_sky(field(5, 5, [1.0, 1.25], |r, c| 2.5 * noise[r * 5 + c]), Border::Open);
-    let lobe =
-        |i: usize| Phong { exponent: (i * 7 % 30) as f32, scale: 0.3 + 0.1 * (i % 4) as f32 };
+    let lobe = |i: usize| PhongSpecular {
+        exponent: (i * 7 % 30) as f32,
+        scale: 0.3 + 0.1 * (i % 4) as f32,
+    };
     scene.surface.albedo = Albedo::Constant([0.3, 0.1, 0.4]);
-    scene.surface.phong = Some(Lobe::Map((0..25).map(lobe).collect()));
+    scene.surface.specular = Some(Specular::Map((0..25).map(lobe).collect()));
     let texels = (0..18_u8).map(|i| [f32::from(i % 5), 1.0, f32::from(i % 3)]).collect();
     let environment = Environment::new(6, 3, texels, 0.9).expect("an environment");
     scene.lights = Lights { environment: Some(environment), ..Lights::default() };
@@ -101,7 +103,8 @@ fn lobes_reflect_no_more_than_arrives() {
     for (field, is_level) in [(rough, false), (level, true)] {
         let mut scene = under_sky(field, Border::Open);
         scene.surface.albedo = Albedo::Constant([0.5; 3]);
-        scene.surface.phong = Some(Lobe::Constant(Phong { exponent: 9.0, scale: 0.5 }));
+        scene.surface.specular =
+            Some(Specular::Constant(PhongSpecular { exponent: 9.0, scale: 0.5 }));
         let [light, _] = traced(&mut gpu, &scene, 64, 3, 2);
         // Of each vertex one rounding of density, light and quotient.
         let slack = 64.0 * 1e-6;
@@ -118,10 +121,11 @@ fn lobes_reflect_no_more_than_arrives() {
 fn a_lobe_of_nothing_is_none() {
     let mut gpu = Device::new();
     let mut scene = lobed();
-    let quality = thrown(2, BounceGloss::Vector, 4);
+    let quality = thrown(2, BounceSpecular::Vector, 4);
     let mut plans = Vec::new();
     for scale in [None, Some(0.0)] {
-        scene.surface.phong = scale.map(|scale| Lobe::Constant(Phong { exponent: 5.0, scale }));
+        scene.surface.specular =
+            scale.map(|scale| Specular::Constant(PhongSpecular { exponent: 5.0, scale }));
         let wanted = Picture { light_layers: true, ..Picture::default() };
         let plan = plan::picture(&scene, &quality, &gpu.limits(), wanted).expect("a plan");
         assert!(plan.find("arriving").is_none() && plan.find("glossy").is_none());
@@ -143,12 +147,13 @@ fn a_lobe_of_exponent_one_is_a_cosine() {
     });
     let mut scene = under_sky(yard, Border::Open);
     scene.surface.albedo = Albedo::Constant([0.5; 3]);
-    let lobe = |i: usize| Phong { exponent: 1.0, scale: if i == MIDDLE { 0.25 } else { 0.0 } };
-    scene.surface.phong = Some(Lobe::Map((0..144).map(lobe).collect()));
+    let lobe =
+        |i: usize| PhongSpecular { exponent: 1.0, scale: if i == MIDDLE { 0.25 } else { 0.0 } };
+    scene.surface.specular = Some(Specular::Map((0..144).map(lobe).collect()));
     for order in [3, 6] {
         let missing = missing_cosine(order as usize);
         let mut first = 0.0;
-        for gloss in [BounceGloss::Vector, BounceGloss::VectorF16, BounceGloss::Scalar] {
+        for gloss in [BounceSpecular::Vector, BounceSpecular::VectorF16, BounceSpecular::Scalar] {
             let all = drawn(&mut gpu, &scene, &thrown(2, gloss, order));
             let [glossy, one, two] =
                 ["glossy", "indirect.1", "indirect.2"].map(|name| layer(&all, name));
@@ -156,7 +161,7 @@ fn a_lobe_of_exponent_one_is_a_cosine() {
             let want = 0.5 * (one[MIDDLE][0] + two[MIDDLE][0]);
             let off = (glossy[MIDDLE][0] - want).abs();
             // f32 does 1e-5, f16 half a thousandth.
-            let rounded = if gloss == BounceGloss::VectorF16 { 1e-3 } else { 1e-5 };
+            let rounded = if gloss == BounceSpecular::VectorF16 { 1e-3 } else { 1e-5 };
             let bound = 0.25 * missing * 0.75 + rounded;
             println!("order {order}, {}: {off:.5} of {want:.4}, bound {bound:.4}", gloss.name());
             assert!(off <= bound && want > 2.0 * bound, "{off} of {want}");
@@ -196,7 +201,7 @@ fn radiance_by_direction_is_nearer_to_light_paths() {
     let hills = field(SIDE, SIDE, [1.0, 1.0], |r, c| 1.8 * (wave(r) + wave(c)));
     let mut scene = under_sky(hills, Border::Plane);
     scene.surface.albedo = Albedo::Constant([0.2; 3]);
-    scene.surface.phong = Some(Lobe::Constant(Phong { exponent: 5.0, scale: 0.8 }));
+    scene.surface.specular = Some(Specular::Constant(PhongSpecular { exponent: 5.0, scale: 0.8 }));
     let [first, first_error] = traced(&mut gpu, &scene, 0, 1, BATCHES);
     let [all, error] = traced(&mut gpu, &scene, 2, 1, BATCHES);
     let count = (SIDE * SIDE) as f64;
@@ -215,8 +220,8 @@ fn radiance_by_direction_is_nearer_to_light_paths() {
         ((squares - noise).max(0.0) / count).sqrt() / bounced
     };
     let thrown = |gloss, order| Quality { method: Method::Auto, ..thrown(2, gloss, order) };
-    let [coarse, vector] = [2, 4].map(|order| off(&thrown(BounceGloss::Vector, order)));
-    let scalar = off(&thrown(BounceGloss::Scalar, 4));
+    let [coarse, vector] = [2, 4].map(|order| off(&thrown(BounceSpecular::Vector, order)));
+    let scalar = off(&thrown(BounceSpecular::Scalar, 4));
     let chance = (noise / count).sqrt() / bounced;
     println!(
         "bounced {bounced:.4}: vector {vector:.3}, of order 2 {coarse:.3}, scalar {scalar:.3} off; chance {chance:.3}"

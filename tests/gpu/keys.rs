@@ -10,7 +10,7 @@ use ridgelight::scene::{
 use ridgelight_cpu::indirect::{Fineness, truth};
 use ridgelight_cpu::key::key_of;
 use ridgelight_cpu::oracle::Oracle;
-use ridgelight_cpu::tolerance::{ShadeError, twin_march_slope};
+use ridgelight_cpu::tolerance::{ShadeError, device_march_slope};
 use ridgelight_io as files;
 use ridgelight_io::HeightOptions;
 
@@ -18,7 +18,7 @@ use crate::reference_truth::traced;
 use crate::scenes::Agreement;
 use crate::{Device, field, random, under_sky};
 
-const METHODS: [Method; 3] = [Method::Sweep, Method::Pyramid, Method::Brute];
+const METHODS: [Method; 3] = [Method::Sweep, Method::Pyramid, Method::BruteForce];
 
 fn key(azimuth: f64, width: f64, [low, high]: [f64; 2]) -> KeyLight {
     KeyLight {
@@ -100,8 +100,8 @@ fn a_wall_cuts_a_key_in_elevation() {
         };
         let scene = under_key(wall.clone(), Border::Plane, key);
         let rule = (key.width_rad / 64.0).powi(2) * (1.1 * key.width_rad / 24.0 + 0.075) / TAU;
-        let error = ShadeError::new(twin_march_slope(4.0, 1.0), 4.0, 1.0, 64).sun(key.width_rad);
-        for method in [Method::Sweep, Method::Brute] {
+        let error = ShadeError::new(device_march_slope(4.0, 1.0), 4.0, 1.0, 64).sun(key.width_rad);
+        for method in [Method::Sweep, Method::BruteForce] {
             let quality = Quality { method, sun_azimuths: 64, ..Quality::default() };
             let picture = gpu.picture(&scene, &quality);
             // Rays from the middle row meet the wall, up to 18 · tan 28° rows away. Next to it the ground's
@@ -145,9 +145,9 @@ fn a_key_over_bundled_terrain_is_the_oracles() {
         picks.iter().zip(&truth).map(at).collect()
     };
     let wedge = key.width_rad / 8.0;
-    let error = ShadeError::new(twin_march_slope(relief, 66.0), relief, 66.0, 8);
+    let error = ShadeError::new(device_march_slope(relief, 66.0), relief, 66.0, 8);
     let bound = error.sun(key.width_rad) + key.width_rad / PI * wedge * wedge / 24.0 * FRAC_PI_2;
-    let worst = off(&mut gpu, Method::Brute).into_iter().fold(0.0, f64::max);
+    let worst = off(&mut gpu, Method::BruteForce).into_iter().fold(0.0, f64::max);
     let swept = off(&mut gpu, Method::Sweep);
     let mean = swept.iter().sum::<f64>() / swept.len() as f64;
     let light = truth.iter().sum::<f64>() / truth.len() as f64;

@@ -23,7 +23,7 @@ fn under_balls(count: usize) -> Scene {
         radiance: [next() as f32, 1.0, 0.0],
     });
     let mut scene = under_sky(field, Border::Plane);
-    scene.lights = Lights { spheres: spheres.collect(), ..Lights::default() };
+    scene.lights = Lights { sphere_lights: spheres.collect(), ..Lights::default() };
     scene
 }
 
@@ -43,7 +43,7 @@ fn many_balls_are_their_sum() {
     let [light, error] = traced(&mut device, &scene, 0, 1, BATCHES);
     let of = |i: usize, strips: usize| -> [f64; 3] {
         let mut sum = [0.0; 3];
-        for ball in &scene.lights.spheres {
+        for ball in &scene.lights.sphere_lights {
             let light = sphere_of(&oracle, i / SIDE, i % SIDE, ball, strips);
             (0..2).for_each(|c| sum[c] += light * f64::from(ball.radiance[c]));
         }
@@ -71,7 +71,7 @@ fn many_balls_are_their_sum() {
     );
     assert!(found.holds(), "{found:?}");
     // One ball of 120 less is seen.
-    let ball = scene.lights.spheres[17];
+    let ball = scene.lights.sphere_lights[17];
     let mut less = truth.clone();
     for (i, sum) in less.iter_mut().enumerate() {
         let light = sphere_of(&oracle, i / SIDE, i % SIDE, &ball, 16);

@@ -28,7 +28,7 @@ fn pit_of(field: HeightField, albedo: f32) -> Scene {
 fn bounced(gpu: &mut Device, scene: &Scene, bounces: Bounces) -> Vec<Vec<f64>> {
     let Bounces { level_step, level_offset, .. } = bounces;
     let method = match bounces.engine {
-        BounceEngine::Brute => Method::Brute,
+        BounceEngine::BruteForce => Method::BruteForce,
         _ => Method::Sweep,
     };
     let azimuths = bounces.azimuths;
@@ -68,7 +68,7 @@ fn pits_are_lit_as_their_closed_form() {
     for (alpha, albedo) in PITS {
         let (scene, rho) = (pit_of(pit(RIM, alpha), albedo), f64::from(albedo));
         let bounds = pit_bounds(RIM, alpha, rho, LIMIT);
-        for engine in [BounceEngine::Brute, BounceEngine::Sweep] {
+        for engine in [BounceEngine::BruteForce, BounceEngine::Sweep] {
             let all = bounced(&mut gpu, &scene, thrown(engine));
             let mut said = Vec::new();
             for count in (0..=4).chain([LIMIT]) {
@@ -151,7 +151,7 @@ fn exact_bounces_of_pits_are_within_a_five_hundredth() {
         let inner = (0..side * side).filter(|i| away(*i) <= 0.5 * FAR);
         let bounds: Vec<(usize, f64)> =
             inner.map(|i| (i, rho * sky_changed(away(i), FAR, alpha))).collect();
-        let of = |count, azimuths| Bounces { count, azimuths, ..thrown(BounceEngine::Brute) };
+        let of = |count, azimuths| Bounces { count, azimuths, ..thrown(BounceEngine::BruteForce) };
         let all = bounced(&mut gpu, &pit_of(rimmed_pit(FAR, alpha), albedo), of(2, azimuths));
         let errors: Vec<f64> = (0..=2)
             .map(|count| rmse(&all[count], &bounds, pit_radiance(alpha, rho, count)))

@@ -4,7 +4,7 @@
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use ridgelight::plan;
-use ridgelight::scene::{Albedo, Border, Lights, Lobe, Phong, Sun};
+use ridgelight::scene::{Albedo, Border, Lights, PhongSpecular, Specular, Sun};
 use ridgelight_cpu::light;
 use ridgelight_cpu::oracle::Oracle;
 
@@ -57,7 +57,7 @@ fn a_narrow_lobe_keeps_its_digits() {
     for (off, exponent) in [(0.0, 1e4), (0.004, 1e4), (0.2, 30.0), (0.7, 1.0), (0.5, 0.0)] {
         scene.lights =
             Lights { suns: vec![point(PI, FRAC_PI_2 - 2.0 * tilt + off)], ..Lights::default() };
-        scene.surface.phong = Some(Lobe::Constant(Phong { exponent, scale: 0.6 }));
+        scene.surface.specular = Some(Specular::Constant(PhongSpecular { exponent, scale: 0.6 }));
         let [light, _] = traced(&mut device, &scene, 0, 1, 1);
         let n = f64::from(exponent);
         let expected = 3.0 * f64::from(0.6_f32) * (n + 1.0) / TAU * off.cos().powf(n);

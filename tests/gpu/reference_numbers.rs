@@ -14,8 +14,8 @@ use ridgelight::basis::light::receiver as polynomials;
 use ridgelight::basis::{bands, index, zonal};
 use ridgelight::plan::{self, Picture};
 use ridgelight::scene::{
-    Albedo, Basis, Border, Environment, HeightField, Lights, Lobe, Method, Phong, Quality,
-    Receiver, Scene, SphereLight, Surface, Wedges,
+    Albedo, Basis, Border, Environment, HeightField, Lights, Method, PhongSpecular, Quality,
+    Receiver, Scene, Specular, SphereLight, Surface, Wedges,
 };
 use ridgelight_cpu::oracle::Oracle;
 use ridgelight_cpu::sh_visibility::{Series, seen_above};
@@ -61,9 +61,9 @@ fn bowl(slope: f64) -> HeightField {
 
 fn harmonics(azimuths: u32, sh_order: u32, wedges: Wedges) -> Quality {
     Quality {
-        method: Method::Brute,
+        method: Method::BruteForce,
         basis: Basis::Sh,
-        receiver: Receiver::Lobe,
+        receiver: Receiver::CosineLobe,
         azimuths,
         sh_order,
         wedges,
@@ -240,7 +240,7 @@ fn caps() {
         let radius_m = 100.0 * half.sin();
         let ball = SphereLight { position_m: [1.0, 1.0, 100.0], radius_m, radiance: [1.0; 3] };
         let mut scene = under_sky(field(3, 3, [1.0, 1.0], |_, _| 0.0), Border::Plane);
-        scene.lights = Lights { spheres: vec![ball], ..Lights::default() };
+        scene.lights = Lights { sphere_lights: vec![ball], ..Lights::default() };
         let light = f64::from(gpu.picture(&scene, &Quality::default()).values[4]);
         let band = light * PI / (4.0 * PI / 3.0).sqrt();
         near(&format!("zh_cap {half:.2}, a ball"), &[band], &zh[1..2], zh[1], NEAR);
@@ -274,7 +274,7 @@ fn the_bottom_of_a_pit() {
         let rise = (0.5 * number(&sample["alpha"])).tan();
         let mut scene = under_sky(bowl(rise), Border::Plane);
         scene.surface.albedo = Albedo::Constant([number(&sample["albedo"]) as f32; 3]);
-        let quality = Quality { method: Method::Brute, azimuths: 4, ..Quality::default() };
+        let quality = Quality { method: Method::BruteForce, azimuths: 4, ..Quality::default() };
         let got = f64::from(gpu.picture(&scene, &quality).values[4]);
         let want = number(&sample["radiance"]);
         near("spherical_pit", &[got], &[want], want, NEAR);
@@ -296,7 +296,8 @@ fn values_of_harmonics() {
         for exponent in [1.0_f32, 2.0, 40.0] {
             let mut scene = under_sky(plane.clone(), Border::Open);
             scene.surface.albedo = Albedo::Constant([0.0; 3]);
-            scene.surface.phong = Some(Lobe::Constant(Phong { exponent, scale: 1.0 }));
+            scene.surface.specular =
+                Some(Specular::Constant(PhongSpecular { exponent, scale: 1.0 }));
             let quality = harmonics(16, 4, Wedges::Slices);
             let plan = plan::picture(&scene, &quality, &gpu.limits(), Picture::default());
             let along = |a: &plan::Azimuth| {
@@ -304,7 +305,7 @@ fn values_of_harmonics() {
                 (*a, slope)
             };
             let lowest: Vec<_> = plan.expect("a plan").azimuths.iter().map(along).collect();
-            let how = Series { order: 4, wedges: Wedges::Slices, receiver: Receiver::Lobe };
+            let how = Series { order: 4, wedges: Wedges::Slices, receiver: Receiver::CosineLobe };
             let seen = seen_above(how, &lowest);
             let lobe = zonal::phong(4, exponent.into());
             let terms: Vec<f64> = bands(4)

@@ -86,7 +86,7 @@ fn paths_from_listed_samples_bring_what_is_thrown() {
         let error: Vec<_> = error.map(|(e, a)| [0, 1, 2].map(|c| e[c] + 1e-5 * a[c])).collect();
         let both = traced_at(&mut device, &scene, 2, &listed);
         // Convex ground gets little, of few paths: what a sample's own may not have met counts as error, too.
-        let unmet = plan::unmet_bounced_error(&scene, 2, (PATHS as u32, 1), 0.05);
+        let unmet = plan::unsampled_bounce_error(&scene, 2, (PATHS as u32, 1), 0.05);
         let sigma: Vec<_> =
             both[1].iter().map(|e| [0, 1, 2].map(|c| e[c].hypot(unmet[c]))).collect();
         let agreement = |right: &[[f64; 3]]| {
@@ -233,7 +233,7 @@ fn light_that_no_path_has_met_is_allowed_for() {
         let right = [&truth.radiance[1][..], &truth.error[1]];
         Agreement::of([&light, sigma], right, f64::INFINITY, 1e-5)
     };
-    let unmet = plan::unmet_error(&scene, 1, FEW as u32 * plan::REFERENCE_BATCH);
+    let unmet = plan::unsampled_light_error(&scene, 1, FEW as u32 * plan::REFERENCE_BATCH);
     let sigma: Vec<_> = error.iter().map(|e| [0, 1, 2].map(|c| e[c].hypot(unmet[c]))).collect();
     assert!(against(&sigma).holds(), "{:?}", against(&sigma));
     assert!(!against(&error).holds(), "deaf to what was not met");

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use ridgelight::plan;
 use ridgelight::scene::{
-    Albedo, Border, Directions, Lights, Lobe, Phong, Scatter, Scene, Sun, VisiblePoints,
+    Albedo, Border, Directions, Lights, PhongSpecular, Scatter, Scene, Specular, Sun, VisiblePoints,
 };
 use ridgelight_cpu::scatter_gather::expected;
 
@@ -273,9 +273,9 @@ fn walls_scatter_what_lobes_mirror_as_their_integral() {
             column if column < HALF => share,
             _ => 0.25,
         };
-        let lobes = (0..count).map(|i| Phong { exponent, scale: scale(i) }).collect();
+        let lobes = (0..count).map(|i| PhongSpecular { exponent, scale: scale(i) }).collect();
         scene.surface.albedo = Albedo::Constant([albedo; 3]);
-        scene.surface.phong = Some(Lobe::Map(lobes));
+        scene.surface.specular = Some(Specular::Map(lobes));
         let points = points(&mut device, &scene, &sphere(COUNT));
         let view = glam::DVec3::new(-towards.x, 0.0, towards.z);
         let paths = COUNT as u32;
@@ -376,10 +376,11 @@ fn scattering_is_refused_by_name() {
         let plan = plan::scatter(&scene, &sphere(16), &scatter, &Limits::lavapipe());
         plan.unwrap_err().to_string()
     };
-    assert!(said(Scatter { bounces: 0, ..Scatter::default() }).contains("--bounces"));
-    assert!(said(Scatter { paths: 5000, ..Scatter::default() }).contains("--paths"));
+    assert!(said(Scatter { bounces: 0, ..Scatter::default() }).contains("bounces"));
+    assert!(said(Scatter { paths: 5000, ..Scatter::default() }).contains("paths"));
     assert!(
-        said(Scatter { bounces: 65, own_lobe: true, ..Scatter::default() }).contains("--bounces")
+        said(Scatter { bounces: 65, direct_specular: true, ..Scatter::default() })
+            .contains("bounces")
     );
     assert!(said(Scatter { view: glam::DVec3::ZERO, ..Scatter::default() }).contains("view"));
     let mut device = Device::new();

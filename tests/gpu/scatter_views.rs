@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use ridgelight::plan::{self, Limits};
 use ridgelight::scene::{
-    Albedo, Border, Directions, Lights, Lobe, Phong, Scatter, Scene, Sun, VisiblePoints,
+    Albedo, Border, Directions, Lights, PhongSpecular, Scatter, Scene, Specular, Sun, VisiblePoints,
 };
 use ridgelight_bake::ExitRadiance;
 
@@ -38,16 +38,16 @@ fn views_side_by_side_are_each_alone() {
     let noise: Vec<f64> = (0..63).map(|_| 2.0 * next()).collect();
     let mut scene = under_sky(field(7, 9, [1.0; 2], |r, c| noise[9 * r + c]), Border::Periodic);
     scene.surface.albedo = Albedo::Constant([0.4, 0.3, 0.2]);
-    scene.surface.phong = Some(Lobe::Constant(Phong { exponent: 12.0, scale: 0.5 }));
+    scene.surface.specular = Some(Specular::Constant(PhongSpecular { exponent: 12.0, scale: 0.5 }));
     let points = points(&mut device, &scene, &sphere(30));
     let views = [glam::DVec3::Z, glam::DVec3::X, glam::DVec3::new(-0.48, 0.6, 0.64)];
-    for (own_lobe, bounces) in [(false, 2), (true, 1), (true, 0)] {
-        let scatter = Scatter { bounces, paths: 70, own_lobe, ..Scatter::default() };
+    for (direct_specular, bounces) in [(false, 2), (true, 1), (true, 0)] {
+        let scatter = Scatter { bounces, paths: 70, direct_specular, ..Scatter::default() };
         let all = towards_views(&mut device, &scene, &points, &scatter, &views);
         assert_eq!(all.len(), 3);
         for (view, of_view) in views.iter().zip(&all) {
             let alone = towards_views(&mut device, &scene, &points, &scatter, &[*view]);
-            assert!(alone[0] == *of_view, "{own_lobe} {bounces} {view}");
+            assert!(alone[0] == *of_view, "{direct_specular} {bounces} {view}");
         }
         assert!(all[0] != all[1] && all[1] != all[2], "deaf");
     }
@@ -77,8 +77,10 @@ fn own_lobes_of_level_ground_are_their_closed_form() {
     let points = points(&mut device, &scene, &directions);
     let views = [glam::DVec3::Z, glam::DVec3::new(-0.6, 0.0, 0.8)];
     for n in [1.0, 25.0] {
-        scene.surface.phong = Some(Lobe::Constant(Phong { exponent: n as f32, scale: 0.75 }));
-        let scatter = Scatter { bounces: 0, paths: 4096, own_lobe: true, ..Scatter::default() };
+        scene.surface.specular =
+            Some(Specular::Constant(PhongSpecular { exponent: n as f32, scale: 0.75 }));
+        let scatter =
+            Scatter { bounces: 0, paths: 4096, direct_specular: true, ..Scatter::default() };
         let all = towards_views(&mut device, &scene, &points, &scatter, &views);
         for (view, of_view) in views.iter().zip(&all) {
             let mirror = glam::DVec3::new(-view.x, -view.y, view.z);
@@ -104,7 +106,7 @@ fn lights_in_turn_are_each_alone() {
     let noise: Vec<f64> = (0..56).map(|_| next()).collect();
     let mut scene = under_sky(field(7, 8, [1.0; 2], |r, c| noise[8 * r + c]), Border::Periodic);
     scene.surface.albedo = Albedo::Constant([0.4, 0.3, 0.2]);
-    scene.surface.phong = Some(Lobe::Constant(Phong { exponent: 5.0, scale: 0.5 }));
+    scene.surface.specular = Some(Specular::Constant(PhongSpecular { exponent: 5.0, scale: 0.5 }));
     let points = points(&mut device, &scene, &sphere(30));
     let scatter = Scatter { bounces: 2, paths: 40, ..Scatter::default() };
     let above = Directions::fibonacci(8, 0.0, 0).expect("directions");
@@ -138,14 +140,14 @@ fn lights_in_turn_are_each_alone() {
         let lights = Lights { suns: vec![sun], ..Lights::default() };
         let lit = Scene { lights, ..scene.clone() };
         let direct = facets.lit_from(light);
-        let samples = facets.to_samples(direct.alike());
+        let samples = facets.to_grid_points(direct.alike());
         for view in wanted(light) {
             let towards = Scatter { view: above.vectors()[view], ..scatter };
             let more = gpu.scattered(&lit, &points, &samples, &towards, &limits).expect("light");
             let alone = direct.clone().scattering(view, vec![more]);
-            let [got, known] = [&leaving, &alone].map(|light| facets.seen_from(view, light));
+            let [got, known] = [&leaving, &alone].map(|light| facets.radiance_from(view, light));
             assert_eq!(got, known, "{light} {view}");
-            brightest = brightest.max(known[0] - facets.seen_from(view, &direct)[0]);
+            brightest = brightest.max(known[0] - facets.radiance_from(view, &direct)[0]);
         }
     }
     assert!(brightest > 0.01, "deaf: {brightest}");

@@ -6,15 +6,15 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use ridgelight::basis::bands;
 use ridgelight::basis::legendre::{legendre, value};
 use ridgelight::basis::slice::{Slices, slice_index};
-use ridgelight::basis::zonal::{ball as zonal_ball, clamped_cosine};
+use ridgelight::basis::zonal::{clamped_cosine, sphere as zonal_ball};
 use ridgelight::scene::fractal;
 use ridgelight::scene::{Border, HeightField, LightBasis, Quality, Receiver, Scene, Wedges};
 use ridgelight_cpu::light::normal;
 use ridgelight_cpu::oracle::Oracle;
-use ridgelight_cpu::soft_sphere::SoftBall;
+use ridgelight_cpu::soft_sphere::SphereShError;
 use ridgelight_cpu::sphere::sphere_of;
 use ridgelight_cpu::sphere_sh_shade::{BEYOND, SphereSh, half_width, light_of};
-use ridgelight_cpu::tolerance::BallSeen;
+use ridgelight_cpu::tolerance::SphereGeometry;
 
 use crate::spheres::awkward;
 use crate::spheres::{ball, under, values};
@@ -33,11 +33,11 @@ fn soft(sh_order: u32, sun_azimuths: u32) -> Quality {
 
 /// How far a device may be from the twin at a sample, of radiance 1.
 fn twin_bound(scene: &Scene, quality: &Quality, sample: usize, seen: &[f64]) -> f64 {
-    let (field, light) = (&scene.field, &scene.lights.spheres[0]);
-    let at = BallSeen::of(field, light, sample);
+    let (field, light) = (&scene.field, &scene.lights.sphere_lights[0]);
+    let at = SphereGeometry::of(field, light, sample);
     let n = normal(field, scene.surface.border, sample / field.cols(), sample % field.cols());
     let slope = slope_error(&at, quality, false);
-    SoftBall::new(quality).twin(&at, slope, n, seen)
+    SphereShError::new(quality).tolerance(&at, slope, n, seen)
 }
 
 /// Σ of a ball's coefficients times those of the clamped cosine's first bands times P_l of the angle between: what a
@@ -45,7 +45,7 @@ fn twin_bound(scene: &Scene, quality: &Quality, sample: usize, seen: &[f64]) -> 
 fn closed_form(quality: &Quality, radius_m: f64, to: glam::DVec3) -> f64 {
     let count = match quality.receiver {
         Receiver::Plane => quality.light_order(),
-        Receiver::Lobe => quality.light_order().min(3),
+        Receiver::CosineLobe => quality.light_order().min(3),
     };
     let light = zonal_ball(count, radius_m, to.length());
     let cosine = clamped_cosine(count);
@@ -102,10 +102,10 @@ fn free_light_is_its_series_in_closed_form() {
     ];
     let base = soft(4, 8);
     let by_table = Quality { wedges: Wedges::Table, wedge_side: 9, ..base };
-    for quality in [base, Quality { receiver: Receiver::Lobe, ..soft(6, 12) }, by_table] {
+    for quality in [base, Quality { receiver: Receiver::CosineLobe, ..soft(6, 12) }, by_table] {
         let twin_of = |scene: &Scene| {
             let oracle = Oracle::new(&one, Border::Open);
-            SphereSh::new(oracle, None, quality).at(&scene.lights.spheres[0], 0, 0)
+            SphereSh::new(oracle, None, quality).at(&scene.lights.sphere_lights[0], 0, 0)
         };
         for (place, radius) in places {
             let scene = under(&one, Border::Open, vec![ball(place, radius)]);
@@ -168,7 +168,7 @@ fn soft_balls_at_the_extremes_are_their_twins() {
                     continue;
                 }
                 for (i, got) in found.iter().enumerate() {
-                    let seen = BallSeen::of(&land, light, i);
+                    let seen = SphereGeometry::of(&land, light, i);
                     // Whether rounding puts it inside or outside is chance.
                     if (seen.distance_m / light.radius_m - 1.0).abs() < 1e-6 {
                         continue;
@@ -213,7 +213,7 @@ fn more_azimuths_tend_to_the_floor_of_the_order() {
     let land = cones();
     let scene = under(&land, Border::Plane, vec![ball([16.0, 16.0, 4.0], 1.5)]);
     let oracle = Oracle::new(&land, Border::Plane);
-    let light = scene.lights.spheres[0];
+    let light = scene.lights.sphere_lights[0];
     let truth: Vec<f64> =
         (0..33 * 33).map(|i| sphere_of(&oracle, i / 33, i % 33, &light, 64)).collect();
     let mut floors = Vec::new();
@@ -241,7 +241,7 @@ fn popped(gpu: &mut Device, quality: &Quality, steps: usize) -> f64 {
         let light = ball([-3.0 + 21.0 * t, 11.0 - 6.0 * t, land.base_m() + up], 2.2);
         let found = values(&gpu.picture(&under(&land, Border::Plane, vec![light]), quality));
         let truth = |i: usize| sphere_of(&oracle, i / 16, i % 16, &light, 24);
-        let is_within = |i: usize| BallSeen::of(&land, &light, i).distance_m < light.radius_m;
+        let is_within = |i: usize| SphereGeometry::of(&land, &light, i).distance_m < light.radius_m;
         let state = |i: usize| ([found[i], truth(i)], is_within(i));
         let now: Vec<_> = (0..256).step_by(7).map(state).collect();
         for ((a, was_within), (b, is_within)) in before.iter().zip(&now) {

@@ -11,7 +11,7 @@ use ridgelight_cpu::lit::Lit;
 use ridgelight_cpu::oracle::Oracle;
 use ridgelight_cpu::sphere::sphere_of;
 use ridgelight_cpu::sphere_shade::sphere_at;
-use ridgelight_cpu::tolerance::BallSeen;
+use ridgelight_cpu::tolerance::SphereGeometry;
 use ridgelight_io as files;
 use ridgelight_io::HeightOptions;
 
@@ -21,11 +21,11 @@ pub(crate) fn ball(position_m: [f64; 3], radius_m: f64) -> SphereLight {
     SphereLight { position_m, radius_m, radiance: [1.0; 3] }
 }
 
-pub(crate) fn under(field: &HeightField, border: Border, spheres: Vec<SphereLight>) -> Scene {
+pub(crate) fn under(field: &HeightField, border: Border, sphere_lights: Vec<SphereLight>) -> Scene {
     Scene {
         field: field.clone(),
         surface: Surface { border, ..Surface::default() },
-        lights: Lights { spheres, ..Lights::default() },
+        lights: Lights { sphere_lights, ..Lights::default() },
     }
 }
 
@@ -83,10 +83,10 @@ fn a_ball_over_level_ground() {
         let scene = under(&level, Border::Plane, vec![light]);
         let found = values(&gpu.picture(&scene, &all(16)));
         for (i, got) in found.iter().enumerate() {
-            let seen = BallSeen::of(&level, &light, i);
+            let seen = SphereGeometry::of(&level, &light, i);
             let up = place[2] - 71.0;
             let want = radius * radius * up / seen.distance_m.powi(3);
-            let bound = seen.twin() + 1e-6 * want;
+            let bound = seen.tolerance() + 1e-6 * want;
             assert!((got - want).abs() <= bound, "{place:?} {i}: {got} {want} {bound:e}");
         }
     }
@@ -104,13 +104,13 @@ fn a_ball_half_in_the_ground_and_samples_inside_it() {
     let found = values(&gpu.picture(&scene, &all(64)));
     let mut inside = 0;
     for (i, got) in found.iter().enumerate() {
-        let seen = BallSeen::of(&level, &light, i);
+        let seen = SphereGeometry::of(&level, &light, i);
         let a = (light.radius_m / seen.distance_m).min(1.0).asin();
         let is_inside = seen.distance_m < light.radius_m;
         let want = if is_inside { 1.0 } else { (a - a.sin() * a.cos()) / PI };
         // Midpoints of a chord's half angle, whose third derivative is 1/√ at a graze: 1/slices^1.5.
         let rule = if is_inside { 0.0 } else { want / 64_f64.powf(1.5) };
-        let bound = seen.twin() + rule;
+        let bound = seen.tolerance() + rule;
         assert!((got - want).abs() <= bound, "{i}: {got} {want} {bound:e}");
         inside += usize::from(is_inside);
     }
@@ -130,13 +130,13 @@ fn a_wall_hides_half_of_a_ball() {
         let scene = under(&wall, Border::Plane, vec![light]);
         let found = values(&gpu.picture(&scene, &all(32)));
         let i = 40 * 41 + 10;
-        let seen = BallSeen::of(&wall, &light, i);
+        let seen = SphereGeometry::of(&wall, &light, i);
         let a = (radius / seen.distance_m).asin();
         // Up is the sine of the elevation along c, its cosine along n.
         let [sin, cos] = [8.0 / seen.distance_m, 20.0 / seen.distance_m];
         let half = sin * PI * a.sin().powi(2) / 2.0 + cos * (a - a.sin() * a.cos());
         let (got, want) = (found[i], half / PI);
-        let bound = seen.twin() + want / 32_f64.powi(2);
+        let bound = seen.tolerance() + want / 32_f64.powi(2);
         assert!((got - want).abs() <= bound, "{radius}: {got} {want} {bound:e}");
         // From half as far the wall hides it, from twice as far it hides nothing.
         assert!(found[40 * 41 + 17] == 0.0, "{}", found[40 * 41 + 17]);
@@ -253,13 +253,13 @@ fn balls_at_the_extremes_are_the_oracles() {
                     continue;
                 }
                 for (i, got) in found.iter().enumerate() {
-                    let seen = BallSeen::of(&field, light, i);
+                    let seen = SphereGeometry::of(&field, light, i);
                     // Whether rounding puts it inside or outside is chance.
                     if (seen.distance_m / light.radius_m - 1.0).abs() < 1e-6 {
                         continue;
                     }
                     let want = sphere_at(&oracle, light, 4, i / cols, i % cols);
-                    let bound = seen.twin() + 1e-6 * want;
+                    let bound = seen.tolerance() + 1e-6 * want;
                     assert!(
                         (got - want).abs() <= bound,
                         "{rows} × {cols}, {relief}, {border:?}, {name}, {i}: {got} {want} {bound:e}"
@@ -294,10 +294,10 @@ fn a_moving_ball_pops_no_more_than_the_truth() {
         let found = values(&gpu.picture(&scene, &quality));
         let mut now = Vec::new();
         for i in (0..256).step_by(3) {
-            let seen = BallSeen::of(&land, &light, i);
+            let seen = SphereGeometry::of(&land, &light, i);
             let same = sphere_at(&oracle, &light, slices, i / 16, i % 16);
             let truth = sphere_of(&oracle, i / 16, i % 16, &light, 64);
-            let bound = seen.twin() + 1e-6 * same;
+            let bound = seen.tolerance() + 1e-6 * same;
             assert!((found[i] - same).abs() <= bound, "step {step}, {i}: {} {same}", found[i]);
             squares += (found[i] - truth).powi(2);
             sum += truth;
@@ -357,11 +357,12 @@ fn sixty_four_lights_add_up() {
     let (oracle, mut next) = (Oracle::new(&land, Border::Plane), random(6));
     for i in (0..40).map(|_| (next() * found.len() as f64) as usize) {
         let (mut want, mut bound) = (0.0, 0.0);
-        for light in &scene.lights.spheres {
+        for light in &scene.lights.sphere_lights {
             let radiance = f64::from(light.radiance[0]);
             want += radiance * sphere_at(&oracle, light, 1, i / 512, i % 512);
             // A rounding of the sum for each light besides.
-            bound += radiance * BallSeen::of(&land, light, i).twin() + 2_f64.powi(-23) * want;
+            bound +=
+                radiance * SphereGeometry::of(&land, light, i).tolerance() + 2_f64.powi(-23) * want;
         }
         let less = want - found[i];
         assert!(-bound <= less && less <= lost + bound, "{i}: {} {want} {bound:e}", found[i]);

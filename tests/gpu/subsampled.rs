@@ -67,7 +67,7 @@ fn nodes_are_lit_as_they_are_by_themselves() {
     let rough = field(23, 30, [3.0, 2.0], |r, c| 7.0 * noise[r * 30 + c]);
     for (method, border, strides) in [
         (Method::Sweep, Border::Plane, &[2, 4][..]),
-        (Method::Brute, Border::Plane, &[4]),
+        (Method::BruteForce, Border::Plane, &[4]),
         (Method::Pyramid, Border::Periodic, &[2]),
     ] {
         let scene = under(noisy(4), rough.clone(), border);
@@ -134,7 +134,7 @@ fn memory_and_work_are_those_of_the_nodes() {
     let sun = Sun { azimuth_rad: 0.3, elevation_rad: 0.5, diameter_rad: 0.0, irradiance: [1.0; 3] };
     for has_sun in [false, true] {
         scene.lights.suns.extend(has_sun.then_some(sun));
-        for (method, stride) in [Method::Sweep, Method::Brute, Method::Pyramid]
+        for (method, stride) in [Method::Sweep, Method::BruteForce, Method::Pyramid]
             .into_iter()
             .flat_map(|m| [1, 2, 4].map(move |s| (m, s)))
         {
@@ -153,7 +153,7 @@ fn memory_and_work_are_those_of_the_nodes() {
             assert_eq!(samples("sh_shade"), 13 * 9);
             let marched = if has_sun { 13 * 9 * 17 } else { nodes * 16 };
             match method {
-                Method::Brute => assert_eq!(samples("horizon_march"), marched),
+                Method::BruteForce => assert_eq!(samples("horizon_march"), marched),
                 Method::Pyramid => assert_eq!(samples("pyramid_march"), marched),
                 Method::Sweep | Method::Auto => {}
             }
@@ -162,5 +162,5 @@ fn memory_and_work_are_those_of_the_nodes() {
         }
     }
     let refused = plan::picture(&scene, &harmonics(3), &Limits::lavapipe(), Picture::default());
-    assert!(refused.unwrap_err().to_string().contains("--subsample: found 3, expected 1, 2 or 4"));
+    assert!(refused.unwrap_err().to_string().contains("subsample: found 3, expected 1, 2 or 4"));
 }

@@ -107,7 +107,7 @@ fn walks_are_near_every_crossing() {
             });
             one.iter().zip(&none).map(|(a, b)| a - b).collect::<Vec<f64>>()
         };
-        let (walked, every) = (alone(BounceEngine::Sweep), alone(BounceEngine::Brute));
+        let (walked, every) = (alone(BounceEngine::Sweep), alone(BounceEngine::BruteForce));
         let rms = |values: &mut dyn Iterator<Item = f64>| values.map(|v| v * v).sum::<f64>().sqrt();
         let off = rms(&mut walked.iter().zip(&every).map(|(a, b)| a - b));
         off / rms(&mut every.iter().copied())
@@ -125,14 +125,14 @@ fn what_has_no_lines_is_refused() {
         plan::picture(scene, &quality, &Limits::lavapipe(), Picture::default())
     };
     let ways = [
-        (Method::Brute, Lines::Cell, "--method brute"),
-        (Method::Pyramid, Lines::Cell, "--method pyramid"),
-        (Method::Auto, Lines::Exact, "--lines exact"),
+        (Method::BruteForce, Lines::Cell, "method brute-force"),
+        (Method::Pyramid, Lines::Cell, "method pyramid"),
+        (Method::Auto, Lines::Exact, "lines exact"),
     ];
     for (method, lines, name) in ways {
         let said = of(&scene, method, lines).unwrap_err().to_string();
-        assert!(said.contains("--bounce-engine sweep") && said.contains(name), "{said}");
+        assert!(said.contains("bounce_engine sweep") && said.contains(name), "{said}");
     }
     scene.surface.albedo = Albedo::Constant([0.0; 3]);
-    assert!(of(&scene, Method::Brute, Lines::Cell).is_ok());
+    assert!(of(&scene, Method::BruteForce, Lines::Cell).is_ok());
 }

@@ -2,7 +2,7 @@
 //! shares nothing with profiles, slices and weights, nor with the tracer of the device.
 
 use glam::DVec3;
-use ridgelight::scene::{Albedo, Border, Phong, Scene};
+use ridgelight::scene::{Albedo, Border, PhongSpecular, Scene};
 use std::f64::consts::{PI, TAU};
 
 /// A scene's paths.
@@ -123,9 +123,9 @@ impl<'a> Paths<'a> {
 
     /// Exponent and scale.
     pub fn lobe(&self, sample: usize) -> [f64; 2] {
-        let none = Phong { exponent: 0.0, scale: 0.0 };
-        let Phong { exponent, scale } =
-            self.scene.surface.phong.as_ref().map_or(none, |l| l.at(sample));
+        let none = PhongSpecular { exponent: 0.0, scale: 0.0 };
+        let PhongSpecular { exponent, scale } =
+            self.scene.surface.specular.as_ref().map_or(none, |l| l.at(sample));
         [exponent, scale].map(f64::from)
     }
 

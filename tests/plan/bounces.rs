@@ -9,7 +9,7 @@ use ridgelight::scene::{
 use crate::{flat, under_sky};
 
 const ENGINES: [BounceEngine; 3] =
-    [BounceEngine::Brute, BounceEngine::Sweep, BounceEngine::Pyramid];
+    [BounceEngine::BruteForce, BounceEngine::Sweep, BounceEngine::Pyramid];
 
 fn quality(engine: BounceEngine, count: u32, subsample: u32) -> Quality {
     let bounces = Bounces { count, engine, azimuths: 8, cutoff: 0.0, ..Bounces::default() };
@@ -35,9 +35,19 @@ fn the_planner_takes_walks_where_there_are_lines() {
     for (method, lines, pass, why) in [
         (Method::Auto, Lines::Cell, "bounce_walk", "bounce engine sweep: "),
         (Method::Sweep, Lines::FourCells, "bounce_walk", "bounce engine sweep: "),
-        (Method::Sweep, Lines::Exact, "bounce_march", "bounce engine brute: --lines exact "),
-        (Method::Brute, Lines::Cell, "bounce_march", "bounce engine brute: --method brute "),
-        (Method::Pyramid, Lines::Cell, "bounce_march", "bounce engine brute: --method pyramid "),
+        (Method::Sweep, Lines::Exact, "bounce_march", "bounce engine brute-force: lines exact "),
+        (
+            Method::BruteForce,
+            Lines::Cell,
+            "bounce_march",
+            "bounce engine brute-force: method brute-force ",
+        ),
+        (
+            Method::Pyramid,
+            Lines::Cell,
+            "bounce_march",
+            "bounce engine brute-force: method pyramid ",
+        ),
     ] {
         let plan = drawn(&scene, &Quality { method, lines, ..auto }, ROOMY);
         assert!(count(&plan, pass) > 0, "{method:?} {lines:?}");
@@ -62,7 +72,7 @@ fn bounces_at_nodes() {
     for stride in [2, 4] {
         let engines = [
             (BounceEngine::Sweep, "bounce_walk"),
-            (BounceEngine::Brute, "bounce_march"),
+            (BounceEngine::BruteForce, "bounce_march"),
             (BounceEngine::Pyramid, "bounce_gather"),
         ];
         for (engine, name) in engines {
@@ -121,12 +131,13 @@ fn shares_of_ground_are_found_once() {
     assert!(walked.find("sky_share").is_some() && walked.find("sky_sum").is_none());
     let shares = walked.passes.iter().filter(|p| p.label().starts_with("sky_shade bounce"));
     assert_eq!(shares.map(|p| p.azimuths.len()).sum::<usize>(), 8);
-    let marched = drawn(&scene, &quality(BounceEngine::Brute, 2, 2), ROOMY);
+    let marched = drawn(&scene, &quality(BounceEngine::BruteForce, 2, 2), ROOMY);
     assert!(marched.find("sky_share").is_none() && marched.find("sky_sum").is_some());
 }
 
 fn planned(albedo: [f32; 3], count: u32, engine: BounceEngine) -> Plan {
-    let surface = Surface { albedo: Albedo::Constant(albedo), border: Border::Plane, phong: None };
+    let surface =
+        Surface { albedo: Albedo::Constant(albedo), border: Border::Plane, specular: None };
     let lights = Lights { sky: Some([1.0; 3]), ..Lights::default() };
     let scene = Scene { field: flat(9, 14), surface, lights };
     let bounces = Bounces { count, engine, azimuths: 8, cutoff: 0.0, ..Bounces::default() };

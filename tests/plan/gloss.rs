@@ -3,23 +3,23 @@
 use ridgelight::plan::{self, Limits, Picture, Plan, missing_barriers};
 use ridgelight::scene::fractal;
 use ridgelight::scene::{
-    Albedo, Basis, Border, BounceEngine, BounceGloss, Bounces, Lights, Lobe, Phong, Quality, Scene,
-    Surface,
+    Albedo, Basis, Border, BounceEngine, BounceSpecular, Bounces, Lights, PhongSpecular, Quality,
+    Scene, Specular, Surface,
 };
 
 const SIDE: usize = 128;
 
 /// Two bounces of a grey surface under a sky.
-fn planned(gloss: BounceGloss, sh_order: u32) -> Plan {
+fn planned(gloss: BounceSpecular, sh_order: u32) -> Plan {
     let surface = Surface {
         albedo: Albedo::Constant([0.3; 3]),
         border: Border::Plane,
-        phong: Some(Lobe::Constant(Phong { exponent: 5.0, scale: 0.5 })),
+        specular: Some(Specular::Constant(PhongSpecular { exponent: 5.0, scale: 0.5 })),
     };
     let lights = Lights { sky: Some([1.0; 3]), ..Lights::default() };
     let scene = Scene { field: fractal(SIDE, 1).expect("a field"), surface, lights };
     let engine = BounceEngine::Pyramid;
-    let bounces = Bounces { count: 2, engine, cutoff: 0.0, gloss, ..Bounces::default() };
+    let bounces = Bounces { count: 2, engine, cutoff: 0.0, specular: gloss, ..Bounces::default() };
     let quality =
         Quality { azimuths: 8, basis: Basis::Sh, sh_order, bounces, ..Quality::default() };
     let wanted = Picture { light_layers: true, ..Picture::default() };
@@ -35,9 +35,9 @@ fn bytes(plan: &Plan, names: &[&str]) -> u64 {
 #[test]
 fn each_bounce_is_thrown_once() {
     let has = |plan: &Plan, label: &str| plan.passes.iter().any(|p| p.label() == label);
-    for gloss in [BounceGloss::Vector, BounceGloss::VectorF16, BounceGloss::Scalar] {
+    for gloss in [BounceSpecular::Vector, BounceSpecular::VectorF16, BounceSpecular::Scalar] {
         let plan = planned(gloss, 4);
-        let is_vector = gloss != BounceGloss::Scalar;
+        let is_vector = gloss != BounceSpecular::Scalar;
         for label in [
             "specular_exit direct",
             "specular_exit bounce1",
@@ -62,11 +62,11 @@ fn each_bounce_is_thrown_once() {
 #[test]
 fn vectors_take_what_the_plan_says() {
     let vectors = |plan: &Plan| bytes(plan, &["exit_vectors", "vector_levels"]);
-    let [four, three] = [4, 3].map(|order| vectors(&planned(BounceGloss::Vector, order)));
-    let half = planned(BounceGloss::VectorF16, 4);
+    let [four, three] = [4, 3].map(|order| vectors(&planned(BounceSpecular::Vector, order)));
+    let half = planned(BounceSpecular::VectorF16, 4);
     assert_eq!(four, 2 * vectors(&half));
     assert_eq!(4 * three, 3 * four);
-    let exit = bytes(&planned(BounceGloss::Vector, 4), &["exit_vectors"]);
+    let exit = bytes(&planned(BounceSpecular::Vector, 4), &["exit_vectors"]);
     assert_eq!(exit, (SIDE * SIDE * 4 * 16) as u64);
     let note = half.notes.iter().find(|n| n.starts_with("radiance by direction")).expect("a note");
     let mebibytes = |at: usize| -> f64 {
@@ -81,6 +81,6 @@ fn vectors_take_what_the_plan_says() {
     assert!((there - 2.0 * here).abs() <= 0.2, "{note}");
     let of_images = vectors(&half) as f64 / 1_048_576.0;
     assert!(here <= of_images + 0.1 && here > 0.98 * of_images, "{note}: {of_images}");
-    let scalar = bytes(&planned(BounceGloss::Scalar, 4), &["exit_seen", "shade_levels"]);
+    let scalar = bytes(&planned(BounceSpecular::Scalar, 4), &["exit_seen", "shade_levels"]);
     assert!(scalar < vectors(&half) / 2, "{scalar}");
 }

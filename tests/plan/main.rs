@@ -94,23 +94,23 @@ fn plans() -> Vec<Plan> {
     let qualities = [
         base,
         Quality { hull: Hull::Shared, fuse: Fuse::Slopes, ..base },
-        Quality { hull: Hull::List, fuse: Fuse::Own, ..base },
+        Quality { hull: Hull::OccluderList, fuse: Fuse::Own, ..base },
         Quality { lines: Lines::TwoCells, fuse: Fuse::Aimed, ..base },
         Quality { fuse: Fuse::Nearest, precision: Precision::F16, ..base },
         Quality { precision: Precision::Packed, ..base },
-        Quality { method: Method::Brute, ..base },
+        Quality { method: Method::BruteForce, ..base },
         Quality { lines: Lines::Exact, ..base },
         Quality { method: Method::Pyramid, ..base },
         Quality { method: Method::Pyramid, levels: Levels::Pyramid, level_offset: 0, ..base },
         soft,
-        Quality { wedges: Wedges::Nlp, receiver: Receiver::Lobe, ..soft },
+        Quality { wedges: Wedges::Nlp, receiver: Receiver::CosineLobe, ..soft },
         Quality { wedges: Wedges::Table, light_basis: LightBasis::Sh, ..soft },
         Quality { method: Method::Pyramid, light_basis: LightBasis::Sh, subsample: 4, ..soft },
-        bounced(BounceEngine::Brute),
+        bounced(BounceEngine::BruteForce),
         bounced(BounceEngine::Sweep),
         bounced(BounceEngine::Pyramid),
         Quality { subsample: 2, basis: Basis::Sh, ..bounced(BounceEngine::Sweep) },
-        Quality { subsample: 2, basis: Basis::Sh, ..bounced(BounceEngine::Brute) },
+        Quality { subsample: 2, basis: Basis::Sh, ..bounced(BounceEngine::BruteForce) },
     ];
     let graphics = Limits { is_cpu: false, ..Limits::lavapipe() };
     let mut all = Vec::new();
@@ -124,7 +124,7 @@ fn plans() -> Vec<Plan> {
                 // Balls take no edits, which others do.
                 if quality.basis == Basis::Sh || quality.bounces.count > 0 {
                     let (position_m, radius_m) = ([1.0, 1.0, 2.0], 0.5);
-                    scene.lights.spheres =
+                    scene.lights.sphere_lights =
                         vec![SphereLight { position_m, radius_m, radiance: [3.0; 3] }];
                 }
                 if quality.lines == Lines::Exact {
@@ -230,7 +230,7 @@ fn devices_limits_are_kept() {
 fn harmonics() {
     let scene = under_everything(flat(7, 13), Border::Plane);
     let limits = Limits::lavapipe();
-    for (receiver, rows) in [(Receiver::Plane, [3; 5]), (Receiver::Lobe, [4, 9, 9, 9, 9])] {
+    for (receiver, rows) in [(Receiver::Plane, [3; 5]), (Receiver::CosineLobe, [4, 9, 9, 9, 9])] {
         for (sh_order, rows) in (2..=6).zip(rows) {
             let quality = Quality { basis: Basis::Sh, sh_order, receiver, ..Quality::default() };
             let wanted = Picture { keeps_horizons: true, ..Picture::default() };
@@ -320,7 +320,7 @@ fn bounces() {
     let drawn = |count, albedo: f32, cutoff, light_layers| {
         let mut scene = under_sky(flat(9, 14));
         scene.surface.albedo = Albedo::Constant([albedo; 3]);
-        let engine = BounceEngine::Brute;
+        let engine = BounceEngine::BruteForce;
         let bounces = Bounces { count, cutoff, engine, ..Bounces::default() };
         let quality = Quality { azimuths: 8, bounces, ..Quality::default() };
         let wanted = Picture { light_layers, keeps_horizons: true, ..Picture::default() };
@@ -363,7 +363,7 @@ fn without_shadows_nothing_is_swept() {
     let field = HeightField::new(9, 14, &ridges, [1.0, 1.0], None).expect("a good field");
     let scene = under_everything(field, Border::Plane);
     let bounces = Bounces { count: 2, ..Bounces::default() };
-    for method in [Method::Sweep, Method::Pyramid, Method::Brute] {
+    for method in [Method::Sweep, Method::Pyramid, Method::BruteForce] {
         let quality = Quality { method, azimuths: 8, bounces, ..Quality::default() };
         let drawn = |unshadowed| {
             let wanted = Picture { unshadowed, ..Picture::default() };

@@ -2,7 +2,7 @@
 
 use ridgelight::plan::{self, Kind, Limits, Plan, missing_barriers};
 use ridgelight::scene::{
-    Albedo, Border, Directions, HeightField, Lights, Lobe, Phong, Scatter, Scene, Sun,
+    Albedo, Border, Directions, HeightField, Lights, PhongSpecular, Scatter, Scene, Specular, Sun,
     VisiblePoint, VisiblePoints,
 };
 
@@ -56,7 +56,7 @@ fn what_is_too_large_is_cut() {
     let names: Vec<_> = cut.outputs().map(|(_, r)| r.name.as_str()).collect();
     assert_eq!(names, ["visible_points.0", "visible_points.1", "visible_points.2"]);
     let said = of(1024, 1024, 600, &Limits::lavapipe()).unwrap_err();
-    assert!(said.contains("the limit is 2048.0 MiB of --memory-budget"), "{said}");
+    assert!(said.contains("the limit is 2048.0 MiB of `memory_budget`"), "{said}");
     let said = of(1024, 1024, 5, &Limits { allocation_bytes: 2 << 20, ..limits }).unwrap_err();
     assert!(said.contains("one direction") && said.contains("4096.0 KiB"), "{said}");
 }
@@ -288,7 +288,8 @@ fn lobes_look_for_what_shines() {
     let of = |scale: f32, lights: Lights| {
         let mut scene = Scene { lights, ..under_sky(pitted(5, 5)) };
         scene.surface.albedo = Albedo::Constant([0.5; 3]);
-        scene.surface.phong = Some(Lobe::Map(vec![Phong { exponent: 9.0, scale }; 25]));
+        scene.surface.specular =
+            Some(Specular::Map(vec![PhongSpecular { exponent: 9.0, scale }; 25]));
         let scatter = Scatter { bounces: 2, paths: 1, ..Scatter::default() };
         let plan = plan::scatter(&scene, &directions, &scatter, &Limits::lavapipe());
         let plan = plan.expect("a plan");

@@ -62,7 +62,7 @@ fn field(rows: usize, cols: usize, h: impl Fn(usize, usize) -> f64) -> HeightFie
 fn under_sky(field: HeightField, border: Border, albedo: f32) -> Scene {
     Scene {
         field,
-        surface: Surface { albedo: Albedo::Constant([albedo; 3]), border, phong: None },
+        surface: Surface { albedo: Albedo::Constant([albedo; 3]), border, specular: None },
         lights: Lights { sky: Some([1.0; 3]), ..Lights::default() },
     }
 }

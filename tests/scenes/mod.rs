@@ -2,7 +2,8 @@
 
 use ridgelight::scene::fractal;
 use ridgelight::scene::{
-    Albedo, Border, Environment, HeightField, Lights, Lobe, Phong, Scene, SphereLight, Sun, Surface,
+    Albedo, Border, Environment, HeightField, Lights, PhongSpecular, Scene, Specular, SphereLight,
+    Sun, Surface,
 };
 
 /// A scene and its name. Its channels are lit apart: red by the sky, green by a sun, blue by a ball of
@@ -20,9 +21,9 @@ pub fn scenes() -> Vec<(&'static str, Scene)> {
             irradiance: [0.0, 3.0, 0.0],
         }],
         keys: Vec::new(),
-        spheres: vec![place],
+        sphere_lights: vec![place],
     };
-    let grey = |border| Surface { albedo: Albedo::Constant([0.7; 3]), border, phong: None };
+    let grey = |border| Surface { albedo: Albedo::Constant([0.7; 3]), border, specular: None };
     let cone =
         || field(9, 9, [1.0, 1.0], |r, c| 6.0 - 1.2 * (r as f64 - 4.0).hypot(c as f64 - 4.0));
     let environment = Environment::new(
@@ -82,7 +83,10 @@ pub fn scenes() -> Vec<(&'static str, Scene)> {
             Scene {
                 field: cone(),
                 surface: Surface {
-                    phong: Some(Lobe::Constant(Phong { exponent: 12.0, scale: 0.3 })),
+                    specular: Some(Specular::Constant(PhongSpecular {
+                        exponent: 12.0,
+                        scale: 0.3,
+                    })),
                     ..grey(Border::Open)
                 },
                 lights: Lights { environment: Some(environment), ..Lights::default() },

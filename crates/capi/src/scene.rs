@@ -1,7 +1,7 @@
 use ridgelight::scene::{
     Albedo, Basis, Border, BounceEngine, Bounces, Environment, Fuse, HeightField, Hull, KeyLight,
-    Levels, LightBasis, Lights, Lines, Lobe, Method, Phong, Precision, Quality, Receiver, Scene,
-    SphereLight, Sun, Surface, Wedges, Window,
+    Levels, LightBasis, Lights, Lines, Method, PhongSpecular, Precision, Quality, Receiver, Scene,
+    Specular, SphereLight, Sun, Surface, Wedges, Window,
 };
 
 use crate::errors::{Done, Failure};
@@ -148,9 +148,9 @@ pub(crate) unsafe fn scene(from: *const RidgelightScene) -> Done<Scene> {
         // SAFETY: as the caller says.
         albedo: unsafe { albedo(&scene, samples) },
         border: pick("scene: border", scene.border, Border::Plane, &borders)?,
-        phong: (scene.phong_scale != 0.0)
-            .then_some(Phong { exponent: scene.phong_exponent, scale: scene.phong_scale })
-            .map(Lobe::Constant),
+        specular: (scene.phong_scale != 0.0)
+            .then_some(PhongSpecular { exponent: scene.phong_exponent, scale: scene.phong_scale })
+            .map(Specular::Constant),
     };
     // SAFETY: as the caller says.
     Ok(Scene { field, surface, lights: unsafe { lights(&scene) }? })
@@ -215,7 +215,7 @@ unsafe fn lights(scene: &RidgelightScene) -> Done<Lights> {
             radiance: k.radiance,
         })
         .collect();
-    lights.spheres = spheres
+    lights.sphere_lights = spheres
         .into_iter()
         .map(|s| SphereLight {
             position_m: s.position_m,
@@ -308,7 +308,7 @@ pub(crate) unsafe fn quality(from: *const RidgelightQuality) -> Done<Quality> {
     let or = |found: u32, default: u32| if found == 0 { default } else { found };
     let less_1 = |found: u32, default: u32| if found == 0 { default } else { found - 1 };
     let share = |found: f64, default: f64| if found == 0.0 { default } else { found.max(0.0) };
-    let methods = [Method::Auto, Method::Sweep, Method::Pyramid, Method::Brute];
+    let methods = [Method::Auto, Method::Sweep, Method::Pyramid, Method::BruteForce];
     let lines = [
         Lines::Exact,
         Lines::QuarterCell,
@@ -326,12 +326,13 @@ pub(crate) unsafe fn quality(from: *const RidgelightQuality) -> Done<Quality> {
         Fuse::AimedAround,
     ];
     let precisions = [Precision::F32, Precision::F16];
-    let hulls = [Hull::Auto, Hull::Private, Hull::Shared, Hull::List];
+    let hulls = [Hull::Auto, Hull::Private, Hull::Shared, Hull::OccluderList];
     let windows = [Window::None, Window::Lanczos, Window::Hann, Window::Nonnegative];
     let wedges = [Wedges::Slices, Wedges::Nlp, Wedges::Table];
-    let engines = [BounceEngine::Brute, BounceEngine::Sweep, BounceEngine::Pyramid];
+    let engines = [BounceEngine::BruteForce, BounceEngine::Sweep, BounceEngine::Pyramid];
     let bases = [Basis::Auto, Basis::Table, Basis::Sh];
-    let (receivers, levels) = ([Receiver::Plane, Receiver::Lobe], [Levels::Stack, Levels::Pyramid]);
+    let (receivers, levels) =
+        ([Receiver::Plane, Receiver::CosineLobe], [Levels::Stack, Levels::Pyramid]);
     let light_bases = [LightBasis::Exact, LightBasis::Sh];
     let none = Bounces::NONE;
     Ok(Quality {
@@ -367,7 +368,7 @@ pub(crate) unsafe fn quality(from: *const RidgelightQuality) -> Done<Quality> {
             cutoff: share(q.bounce_cutoff, none.cutoff),
             level_step: or(q.bounce_level_step, none.level_step),
             level_offset: less_1(q.bounce_level_offset_plus_1, none.level_offset),
-            gloss: none.gloss,
+            specular: none.specular,
         },
     })
 }

@@ -3,7 +3,7 @@ use std::ops::Range;
 use crate::graph::shaders;
 use crate::graph::shaders::same_layout;
 use crate::graph::{Builder, ResourceId};
-use crate::scene::{Albedo, Curvature, HeightField, Lobe, Phong, VisiblePoints};
+use crate::scene::{Albedo, Curvature, HeightField, PhongSpecular, Specular, VisiblePoints};
 
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
@@ -60,7 +60,7 @@ pub(crate) struct Steps<'a> {
     pub field: &'a HeightField,
     pub albedo: &'a Albedo,
     /// Where it reflects anything.
-    pub lobe: Option<&'a Lobe>,
+    pub lobe: Option<&'a Specular>,
     /// That it mirrors.
     pub suns: usize,
     /// Texels of the first path's first step, of the first sun, and of the first view.
@@ -74,7 +74,7 @@ pub(crate) struct Steps<'a> {
     /// Towards which the last step goes, each a layer of what is scattered.
     pub views: u32,
     /// Whether views see what the sample's own lobe mirrors of the lights, too.
-    pub own_lobe: bool,
+    pub direct_specular: bool,
     pub curvature: Curvature,
 }
 
@@ -95,8 +95,8 @@ pub(crate) fn plan(
         Albedo::Map(_) => ([0.0; 4], true),
     };
     let lobe = match steps.lobe {
-        Some(Lobe::Constant(phong)) => *phong,
-        _ => Phong { exponent: 0.0, scale: 0.0 },
+        Some(Specular::Constant(phong)) => *phong,
+        _ => PhongSpecular { exponent: 0.0, scale: 0.0 },
     };
     let is_small = VisiblePoints::is_small(field.rows(), field.cols());
     let part = match sums {
@@ -119,9 +119,9 @@ pub(crate) fn plan(
             small: is_small,
             albedo_is_map: is_map,
             has_lobe: steps.lobe.is_some(),
-            lobe_is_map: matches!(steps.lobe, Some(Lobe::Map(_))),
+            lobe_is_map: matches!(steps.lobe, Some(Specular::Map(_))),
             bent: steps.curvature != Curvature::FLAT,
-            own_lobe: sums && steps.own_lobe,
+            own_lobe: sums && steps.direct_specular,
         },
         &part,
         why,

@@ -176,7 +176,8 @@ pub(crate) fn plan(
                 of.heights.samples(),
                 match of.receiver {
                     Receiver::Plane => "the cosine exact",
-                    Receiver::Lobe => "in Legendre coefficients and three bands of the cosine",
+                    Receiver::CosineLobe =>
+                        "in Legendre coefficients and three bands of the cosine",
                 }
             ),
             [across.div_ceil(8), along.div_ceil(8), 1],

@@ -68,8 +68,8 @@ pub(crate) fn settled(
     sweep: &Sweep,
     notes: &mut Vec<String>,
 ) -> Quality {
-    let albedo = surface.most_reflected();
-    if quality.bounces.engine != BounceEngine::Auto || quality.bounces.worth_drawing(albedo) == 0 {
+    let albedo = surface.max_reflectance();
+    if quality.bounces.engine != BounceEngine::Auto || quality.bounces.needed_bounces(albedo) == 0 {
         return *quality;
     }
     let (engine, why) = match sweep.why_no_lines() {
@@ -77,16 +77,16 @@ pub(crate) fn settled(
             BounceEngine::Sweep,
             "the sweep's lines lead to what is seen, in a fraction of brute's time".to_owned(),
         ),
-        Some(way) => (BounceEngine::Brute, format!("{way} has no lines to walk over")),
+        Some(way) => (BounceEngine::BruteForce, format!("{way} has no lines to walk over")),
     };
     notes.push(format!("bounce engine {}: {why}", engine.name()));
     Quality { bounces: Bounces { engine, ..quality.bounces }, ..*quality }
 }
 
 /// How many bounces are worth drawing.
-pub(crate) fn worth_drawing(scene: &Scene, quality: &Quality, notes: &mut Vec<String>) -> u32 {
-    let albedo = scene.surface.most_reflected();
-    let count = quality.bounces.worth_drawing(albedo);
+pub(crate) fn needed_bounces(scene: &Scene, quality: &Quality, notes: &mut Vec<String>) -> u32 {
+    let albedo = scene.surface.max_reflectance();
+    let count = quality.bounces.needed_bounces(albedo);
     if count < quality.bounces.count {
         notes.push(dropped(&quality.bounces, count, albedo));
     }
@@ -122,7 +122,7 @@ impl Bouncing {
         let glossy = gloss
             .map(|notes| Glossy::make(builder, (size, &shade), quality, (grey, layers), notes));
         let engine = match bounces.engine {
-            BounceEngine::Brute => Engine::Brute,
+            BounceEngine::BruteForce => Engine::Brute,
             BounceEngine::Sweep => Engine::Sweep,
             BounceEngine::Auto => unreachable!("settled before"),
             BounceEngine::Pyramid => {
@@ -234,7 +234,7 @@ impl Bouncing {
         add("bounce_azimuths", self.azimuths.to_string());
         add("subsample", self.at_nodes.map_or(1, |at| at.first.nodes.stride).to_string());
         let engine = match &self.engine {
-            Engine::Brute => BounceEngine::Brute,
+            Engine::Brute => BounceEngine::BruteForce,
             Engine::Sweep => BounceEngine::Sweep,
             Engine::Pyramid(of) => {
                 if let Some(glossy) = &self.glossy {
@@ -384,7 +384,7 @@ pub(crate) fn dropped(bounces: &Bounces, count: u32, albedo: f64) -> String {
     let all: f64 = (first..=bounces.count).map(|k| albedo.powi(k as i32)).sum();
     format!(
         "bounces {first} to {} dropped: of a surface that reflects at most {albedo} they carry at most {all:.3e} of \
-         the direct light, within --bounce-cutoff {}",
+         the direct light, within the bounce cutoff of {}",
         bounces.count, bounces.cutoff
     )
 }

@@ -220,8 +220,8 @@ mod tests {
         SphereLight { position_m: [x, y, 30.0], radius_m, radiance: [1.0; 3] }
     }
 
-    fn plan(spheres: Vec<SphereLight>, light_cutoff: f64, wanted: Picture) -> Plan {
-        let lights = Lights { spheres, ..Lights::default() };
+    fn plan(sphere_lights: Vec<SphereLight>, light_cutoff: f64, wanted: Picture) -> Plan {
+        let lights = Lights { sphere_lights, ..Lights::default() };
         let scene = Scene { field: fractal(64, 1).unwrap(), surface: Surface::default(), lights };
         let quality = Quality { light_cutoff, ..Quality::default() };
         plan::picture(&scene, &quality, &Limits::lavapipe(), wanted).unwrap()

@@ -212,7 +212,7 @@ fn simplest_vector(phi_rad: f64, tolerance_rad: f64, cell_m: [f64; 2]) -> Result
         }
     }
     Err(Error::Limit {
-        what: format!("--lines exact on cells of {} × {}", cell_m[0], cell_m[1]),
+        what: format!("`lines exact` on cells of {} × {}", cell_m[0], cell_m[1]),
         needs: format!("a grid vector near {:.2}°", phi_rad.to_degrees()),
         limit: format!("{LONGEST_VECTOR} cells"),
     })

@@ -141,16 +141,16 @@ impl Sweep {
             if distances {
                 return Err(Error::setting(
                     "distances to the horizon",
-                    "--method pyramid",
-                    "a method that knows its occluders: sweep or brute",
+                    "`method pyramid`",
+                    "a method that knows its occluders: sweep or brute-force",
                 ));
             }
             return Ok(Sweep::Pyramid(Pyramid::new(quality, sides, border)));
         }
-        if quality.method == Method::Brute {
+        if quality.method == Method::BruteForce {
             if total > MARCH_STEPS_LIMIT {
                 return Err(Error::Limit {
-                    what: "--method brute".into(),
+                    what: "`method brute-force`".into(),
                     needs: format!("{total} steps a sample"),
                     limit: format!("{MARCH_STEPS_LIMIT} steps"),
                 });
@@ -160,7 +160,7 @@ impl Sweep {
         let Some(shift) = quality.lines.shift() else {
             if total > SURFACE_STEPS_LIMIT {
                 return Err(Error::Limit {
-                    what: "--lines exact".into(),
+                    what: "`lines exact`".into(),
                     needs: format!(
                         "{total} steps a line (a periodic field is marched three times at least)"
                     ),
@@ -188,7 +188,7 @@ impl Sweep {
             Hull::Auto if limits.is_cpu => HullPlace::Private,
             Hull::Auto | Hull::Shared => HullPlace::Shared,
             Hull::Private => HullPlace::Private,
-            Hull::List => HullPlace::Occluders,
+            Hull::OccluderList => HullPlace::Occluders,
         };
         let group_size: u32 = if limits.is_cpu { 8 } else { 32 };
         let periodic = border == Border::Periodic;
@@ -206,7 +206,7 @@ impl Sweep {
         let holds_line = place != HullPlace::Occluders && hull_depth >= total;
         if total > limits.image_side {
             return Err(Error::Limit {
-                what: "--border periodic".into(),
+                what: "`border periodic`".into(),
                 needs: format!("{total} steps a line (three periods at least)"),
                 limit: format!("{} on this device", limits.image_side),
             });
@@ -243,9 +243,9 @@ impl Sweep {
     pub(crate) fn keep_occluders(&mut self) -> Result<()> {
         if let Some(way) = self.why_no_lines() {
             return Err(Error::setting(
-                "--bounce-engine sweep",
-                way,
-                "a sweep along lines, or --bounce-engine brute, which needs none",
+                "`bounce_engine sweep`",
+                format!("`{way}`"),
+                "a sweep along lines, or `bounce_engine brute-force`, which needs none",
             ));
         }
         if let Sweep::Lines(lines) = self {
@@ -254,13 +254,13 @@ impl Sweep {
         Ok(())
     }
 
-    /// The flag of a way that sweeps along no lines.
+    /// The setting of a method that does not sweep along lines.
     pub(crate) fn why_no_lines(&self) -> Option<&'static str> {
         match self {
             Sweep::Lines(_) | Sweep::Crossings => None,
-            Sweep::Surface { .. } => Some("--lines exact"),
-            Sweep::Pyramid(_) => Some("--method pyramid"),
-            Sweep::March { .. } => Some("--method brute"),
+            Sweep::Surface { .. } => Some("lines exact"),
+            Sweep::Pyramid(_) => Some("method pyramid"),
+            Sweep::March { .. } => Some("method brute-force"),
         }
     }
 

@@ -312,7 +312,7 @@ fn cut_lists(
         return Err(Error::Limit {
             what: format!("horizons of one azimuth of a {cols} × {rows} field"),
             needs: format!("{} with all else", bytes_text(fixed_bytes + all)),
-            limit: format!("{} of --memory-budget", bytes_text(limits.memory_budget)),
+            limit: format!("{} of `memory_budget`", bytes_text(limits.memory_budget)),
         });
     }
     let budget = u128::from(limits.memory_budget - fixed_bytes);
@@ -391,7 +391,7 @@ pub(crate) fn settings(
             add("lines", "exact".into());
         }
         Sweep::Crossings => add("method", "first crossings".into()),
-        Sweep::March { .. } => add("method", "brute".into()),
+        Sweep::March { .. } => add("method", "brute-force".into()),
         Sweep::Pyramid(pyramid) => {
             add("method", "pyramid".into());
             add("level_step", pyramid.level_step.to_string());

@@ -5,7 +5,7 @@ use crate::graph::shaders::same_layout;
 use crate::graph::{Builder, ResourceId};
 use crate::passes::LandPush;
 use crate::passes::blocks::Blocks;
-use crate::scene::{Albedo, Lobe, Phong, Scene};
+use crate::scene::{Albedo, PhongSpecular, Scene, Specular};
 
 /// log2 of the paths a sample of one batch, 8 at most. Fewer: more dispatches. More: a net fills its square
 /// more evenly, but fewer batches tell the standard error.
@@ -75,7 +75,7 @@ pub(crate) struct Part {
 /// few bounces.
 pub(crate) fn parts(scene: &Scene, blocks: &Blocks, bounces: u32) -> Vec<Part> {
     let lights = &scene.lights;
-    let all = (lights.suns.len() + lights.keys.len() + lights.spheres.len()) as u32;
+    let all = (lights.suns.len() + lights.keys.len() + lights.sphere_lights.len()) as u32;
     let vertices = bounces.min(3) + 1;
     let of_ray = blocks.usual_steps();
     let others = 1 + u32::from(lights.environment.is_some());
@@ -120,7 +120,7 @@ pub(crate) fn plan(
         label.push(format!("paths {path} lights {light}"));
     }
     let highest_m = field.heights_m().iter().copied().fold(f32::NEG_INFINITY, f32::max);
-    let count = lights.suns.len() + lights.keys.len() + lights.spheres.len();
+    let count = lights.suns.len() + lights.keys.len() + lights.sphere_lights.len();
     let whole = Part { paths: 0..BATCH_PATHS, lights: 0..count as u32 };
     let Part { paths, lights: looked_at } = part.unwrap_or(&whole);
     let [thin_rows, thin_cols] = blocks.thin(field);
@@ -129,15 +129,15 @@ pub(crate) fn plan(
         Albedo::Constant(colour) => (colour, false),
         Albedo::Map(_) => ([0.0; 3], true),
     };
-    let lobe = match &surface.phong {
-        Some(Lobe::Constant(phong)) => *phong,
-        _ => Phong { exponent: 0.0, scale: 0.0 },
+    let lobe = match &surface.specular {
+        Some(Specular::Constant(phong)) => *phong,
+        _ => PhongSpecular { exponent: 0.0, scale: 0.0 },
     };
     let turns = |e: &crate::scene::Environment| {
         (e.rotation_rad() / std::f64::consts::TAU).rem_euclid(1.0) as f32
     };
     builder.pass(
-        shaders::PathTrace { border: surface.border as u32, thin_rows, thin_cols, set_bits: SET_BITS, albedo_is_map: is_map, has_environment: lights.environment.is_some(), has_lobe: surface.phong.is_some(), has_lights: count > 0, has_keys: !lights.keys.is_empty(), has_balls: !lights.spheres.is_empty(), has_bounces: bounces > 0, most_steps: blocks.most_steps() as i32, in_parts: part.is_some(), lobe_is_map: matches!(surface.phong, Some(Lobe::Map(_))), at_places: listed.is_some() },
+        shaders::PathTrace { border: surface.border as u32, thin_rows, thin_cols, set_bits: SET_BITS, albedo_is_map: is_map, has_environment: lights.environment.is_some(), has_lobe: surface.specular.is_some(), has_lights: count > 0, has_keys: !lights.keys.is_empty(), has_balls: !lights.sphere_lights.is_empty(), has_bounces: bounces > 0, most_steps: blocks.most_steps() as i32, in_parts: part.is_some(), lobe_is_map: matches!(surface.specular, Some(Specular::Map(_))), at_places: listed.is_some() },
         &label.join(" "),
         match listed {
             None => format!("{BATCH_PATHS} more paths a sample, up to {bounces} bounces"),

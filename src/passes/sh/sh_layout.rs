@@ -28,7 +28,7 @@ impl Lit {
     pub fn diffuse(receiver: Receiver) -> Self {
         match receiver {
             Receiver::Plane => Lit::Plane,
-            Receiver::Lobe => Lit::Cosine,
+            Receiver::CosineLobe => Lit::Cosine,
         }
     }
 }

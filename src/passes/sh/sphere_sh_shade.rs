@@ -108,9 +108,9 @@ pub(crate) fn check(border: Border, field: &HeightField, soft: &SphereSh) -> Res
     if soft.wedges == Wedges::Table && 2 * (most_turns(border, field, soft) + 1) > MOST_TURNS {
         let longest = field.cols().max(field.rows());
         return Err(Error::setting(
-            "--wedges table with --light-basis sh",
+            "`wedges table` with `light_basis sh`",
             format!("a field of {longest} samples a side"),
-            "10,000 a side at most, --wedges slices or --method pyramid",
+            "10,000 a side at most, `wedges slices` or `method pyramid`",
         ));
     }
     Ok(())

@@ -8,7 +8,7 @@ use crate::basis::harmonics::{evaluate, product_rule};
 use crate::graph::{Builder, Format, Owner, ResourceId};
 use crate::passes::pyramid::Pyramid;
 use crate::passes::sh_layout::by_fours;
-use crate::scene::{BounceGloss, Quality};
+use crate::scene::{BounceSpecular, Quality};
 
 /// Series of what arrives, and what is thrown on.
 #[derive(Clone, Copy)]
@@ -71,10 +71,10 @@ impl Glossy {
         let arriving = image("arriving", Owner::Internal, Format::Rgba32Float, arriving, true);
         let bounced = image("gloss_bounced", Owner::Internal, Format::Rgba32Float, flat, false);
         let layer = layers.then(|| image("glossy", Owner::Output, colour, flat, false));
-        let thrown = if quality.bounces.gloss == BounceGloss::Scalar {
+        let thrown = if quality.bounces.specular == BounceSpecular::Scalar {
             BouncedLight::Seen(image("exit_seen", Owner::Internal, colour, flat, false))
         } else {
-            let halves = quality.bounces.gloss == BounceGloss::VectorF16;
+            let halves = quality.bounces.specular == BounceSpecular::VectorF16;
             notes.push(memory_note(size, shade, (order, count), halves));
             let format = if halves { Format::Rgba16Float } else { Format::Rgba32Float };
             let exit = image("exit_vectors", Owner::Internal, format, [cols, rows, count], true);
@@ -110,11 +110,11 @@ impl Glossy {
     }
 
     /// As the command line spells it.
-    pub fn gloss(&self) -> BounceGloss {
+    pub fn gloss(&self) -> BounceSpecular {
         match self.thrown {
-            BouncedLight::Seen(_) => BounceGloss::Scalar,
-            BouncedLight::Vectors(Vectors { halves: true, .. }) => BounceGloss::VectorF16,
-            BouncedLight::Vectors(_) => BounceGloss::Vector,
+            BouncedLight::Seen(_) => BounceSpecular::Scalar,
+            BouncedLight::Vectors(Vectors { halves: true, .. }) => BounceSpecular::VectorF16,
+            BouncedLight::Vectors(_) => BounceSpecular::Vector,
         }
     }
 }

@@ -3,22 +3,22 @@
 use super::suite::methods::Method;
 use super::suite::{self, About, Asks, Case};
 
-/// How a row is judged.
+/// What a row is judged by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Judged {
-    ByBound,
-    /// By being a number alone.
-    ByNumber,
-    ByRefusal,
+    Bound,
+    /// That it is a number, no more.
+    Number,
+    Refusal,
 }
 
 pub fn judged(case: &Case, method: &Method) -> Judged {
     if (case.refuses)(method).is_some() {
-        Judged::ByRefusal
+        Judged::Refusal
     } else if (case.unjudged)(method) {
-        Judged::ByNumber
+        Judged::Number
     } else {
-        Judged::ByBound
+        Judged::Bound
     }
 }
 
@@ -40,7 +40,7 @@ pub fn cover(cases: &[Case], methods: &[Method]) -> Vec<[usize; 2]> {
     let how = |[c, m]: [usize; 2]| judged(&cases[c], &methods[m]);
     let such = |of: Judged| put.iter().copied().filter(move |pair| how(*pair) == of);
     let mut all: Vec<[usize; 2]> = Vec::new();
-    for of in [Judged::ByBound, Judged::ByNumber] {
+    for of in [Judged::Bound, Judged::Number] {
         for (c, case) in cases.iter().enumerate() {
             let uses = |m: usize| {
                 let is_same =
@@ -51,17 +51,17 @@ pub fn cover(cases: &[Case], methods: &[Method]) -> Vec<[usize; 2]> {
             all.extend(least);
         }
     }
-    for [c, m] in such(Judged::ByBound) {
+    for [c, m] in such(Judged::Bound) {
         let is_same = |pair: &[usize; 2]| {
             pair[1] == m
                 && group(&cases[pair[0]]) == group(&cases[c])
-                && how(*pair) == Judged::ByBound
+                && how(*pair) == Judged::Bound
         };
         if !all.iter().any(is_same) {
             all.push([c, m]);
         }
     }
-    all.extend(such(Judged::ByRefusal));
+    all.extend(such(Judged::Refusal));
     all
 }
 
@@ -81,12 +81,12 @@ fn the_selection_has_every_case_method_and_refusal() {
         };
         assert!(has(&|pair| pair[0] == c), "{}: none {of:?}", case.name);
         match of {
-            Judged::ByBound => {
+            Judged::Bound => {
                 let is_there = has(&|pair| pair[1] == m && group(&cases[pair[0]]) == group(case));
                 assert!(is_there, "{}: none like {}", method.name, case.name);
             }
-            Judged::ByNumber => {}
-            Judged::ByRefusal => assert!(has(&|pair| *pair == [c, m]), "{}", case.name),
+            Judged::Number => {}
+            Judged::Refusal => assert!(has(&|pair| *pair == [c, m]), "{}", case.name),
         }
     }
     let mut once = cover.clone();

@@ -148,7 +148,7 @@ fn hold(is_such: fn(&Case) -> bool) {
         let is_right = said.is_none();
         wrong.extend(said);
         if let (Ok(probes), true) = (probes, is_right)
-            && judged(&cases[c], &methods[m]) == Judged::ByBound
+            && judged(&cases[c], &methods[m]) == Judged::Bound
         {
             hears(&probes, [c, m], &cases, &methods);
         }

@@ -13,7 +13,7 @@ use ridgelight_cpu::oracle::Oracle;
 use ridgelight_cpu::pyramid_march::Stored;
 use ridgelight_cpu::shared::bounced::{light_and_weight, radiance};
 use ridgelight_cpu::tolerance::{
-    Gathered, Land, Slices, BounceError, march_error, device_level, device_spline, walk_error,
+    BounceError, Gathered, Land, Slices, device_level, device_spline, march_error, walk_error,
 };
 use ridgelight_cpu::{shade_expand as expand_twin, shade_reduce as reduce_twin};
 

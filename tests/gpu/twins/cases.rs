@@ -8,7 +8,7 @@ mod points;
 use ridgelight::plan::{self, Limits, Picture, Plan};
 use ridgelight::scene::{
     Albedo, Border, Directions, Environment, Fuse, HeightField, Hull, KeyLight, Levels, Lights,
-    Lines, Lobe, Method, Precision, Quality, Scatter, Scene, Surface, VisiblePoints,
+    Lines, Method, Precision, Quality, Scatter, Scene, Specular, Surface, VisiblePoints,
 };
 use ridgelight_cpu::visible_points::visible_points;
 
@@ -84,7 +84,7 @@ impl Case {
             Wanted::Scatter(directions, scatter, is_cut) => {
                 let image_layers = if *is_cut { 2 } else { limits.image_layers };
                 let limits = Limits { image_layers, ..*limits };
-                match scatter.own_lobe {
+                match scatter.direct_specular {
                     true => plan::scatter_views(&self.scene, directions, scatter, &VIEWS, &limits),
                     false => plan::scatter(&self.scene, directions, scatter, &limits),
                 }
@@ -147,7 +147,7 @@ impl Case {
             if let Albedo::Map(map) = &self.scene.surface.albedo {
                 all.push(four(map));
             }
-            if let Some(Lobe::Map(map)) = &self.scene.surface.phong {
+            if let Some(Specular::Map(map)) = &self.scene.surface.specular {
                 all.push(map.iter().flat_map(|p| [p.exponent, p.scale, 0.0, 1.0]).collect());
             }
         }
@@ -214,7 +214,7 @@ pub(super) fn sweeps() -> Vec<Case> {
             "list f32",
             rough(18, 31, 2),
             Border::Periodic,
-            Quality { hull: Hull::List, fuse: Fuse::Own, ..base },
+            Quality { hull: Hull::OccluderList, fuse: Fuse::Own, ..base },
             false,
         ),
         horizons(
@@ -236,7 +236,7 @@ pub(super) fn sweeps() -> Vec<Case> {
             "list packed",
             rough(14, 33, 5),
             Border::Plane,
-            Quality { hull: Hull::List, fuse: Fuse::Nearest, ..packed },
+            Quality { hull: Hull::OccluderList, fuse: Fuse::Nearest, ..packed },
             false,
         ),
         horizons(
@@ -271,7 +271,7 @@ pub(super) fn sweeps() -> Vec<Case> {
 /// `surface_sweep` and `horizon_march`: one value a sample, with what is met.
 pub(super) fn samples() -> Vec<Case> {
     let exact = Quality { azimuths: 12, lines: Lines::Exact, ..Quality::default() };
-    let brute = Quality { azimuths: 12, method: Method::Brute, ..Quality::default() };
+    let brute = Quality { azimuths: 12, method: Method::BruteForce, ..Quality::default() };
     vec![
         horizons("exact", rough(17, 22, 7), Border::Plane, exact, true),
         horizons("exact, periodic", rough(9, 10, 8), Border::Periodic, exact, true),

@@ -12,8 +12,8 @@ use ridgelight_cpu::shared::field::{field_slope, normal_of};
 use ridgelight_cpu::specular_exit::{exit_series, mirrored};
 use ridgelight_cpu::specular_gather::{Series, SpecularGather};
 use ridgelight_cpu::tolerance::{
-    CastError, EPSILON, Gathered, BounceError, stored_f16, device_arriving, device_level,
-    device_sh_specular, device_specular_exit, device_specular_visibility,
+    BounceError, CastError, EPSILON, Gathered, device_arriving, device_level, device_sh_specular,
+    device_specular_exit, device_specular_visibility, stored_f16,
 };
 use ridgelight_cpu::{specular_visibility as seen_twin, vector_reduce as reduce_twin};
 
@@ -175,7 +175,8 @@ pub(super) fn vector_reduce(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let is_half = run.is_half(pass, "vector_levels");
     let want = reduce_twin::vector_reduce(&exit, &shade, number, &texels);
     let largest = exit.iter().flatten().flatten().fold(0.0, |m: f64, v| m.max(v.abs()));
-    let tolerance = |want: f64| device_level(largest) + if is_half { stored_f16(want) } else { 0.0 };
+    let tolerance =
+        |want: f64| device_level(largest) + if is_half { stored_f16(want) } else { 0.0 };
     let across = level.size[0] as usize;
     let own = texels[level.first as usize..].iter().zip(&want).enumerate();
     own.flat_map(|(i, (got, want))| paired((got, want), tolerance, [i / across, i % across]))

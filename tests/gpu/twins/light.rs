@@ -18,8 +18,8 @@ use ridgelight_cpu::sphere_shade as sphere_twin;
 use ridgelight_cpu::sun_shade as sun_twin;
 use ridgelight_cpu::sun_specular as gloss_twin;
 use ridgelight_cpu::tolerance::{
-    BallSeen, EPSILON, ShadeError, twin_fused_slope, twin_resolved, twin_sun_arriving,
-    twin_sun_specular, twin_table, twin_wedge_row,
+    EPSILON, ShadeError, SphereGeometry, device_fused_slope, device_resolved, device_sun_arriving,
+    device_sun_specular, device_table, device_wedge_row,
 };
 
 use super::{Pair, Run, constant, fuse_of, pushed};
@@ -61,7 +61,7 @@ pub(super) fn env_wedges(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         let columns = wedge / std::f64::consts::TAU * environment.width() as f64 + 2.0;
         let texels = environment.texels().chunks_exact(environment.width()).nth(row);
         let of_row = texels.into_iter().flatten().flatten().fold(0.0_f32, |m, v| m.max(*v));
-        let tolerance = twin_wedge_row(of_row.into(), wedge, columns);
+        let tolerance = device_wedge_row(of_row.into(), wedge, columns);
         for (moment, (got, want)) in got.iter().zip(want).enumerate() {
             let at = [k, row, moment];
             pairs.extend((0..3).map(|c| Pair { got: got[c], want: want[c], tolerance, at }));
@@ -94,7 +94,7 @@ pub(super) fn env_tables(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         let summed = rows[k * kept..(k + 1) * kept].iter().map(|row| row[moment].abs());
         let sum: Rgb = summed.clone().sum();
         let largest = summed.fold(Rgb::ZERO, Rgb::max);
-        let tolerance = |c| twin_table(sum[c], largest[c], pieces);
+        let tolerance = |c| device_table(sum[c], largest[c], pieces);
         let at = [k, moment, i % nodes];
         let pair = |c| Pair { got: got[c], want: want[c], tolerance: tolerance(c), at };
         [pair(0), pair(1), pair(2)]
@@ -117,7 +117,7 @@ pub(super) fn so_far(
     let range = run.light_begins..first + count;
     let [largest, relief] = run.relief();
     let steps = run.plan.azimuths[range.clone()].iter().map(|a| f64::from(a.step_m));
-    let slope_error = twin_fused_slope(largest, steps.fold(f64::MAX, f64::min));
+    let slope_error = device_fused_slope(largest, steps.fold(f64::MAX, f64::min));
     let [x, y] = run.scene.field.cell_m();
     let error = ShadeError::new(slope_error, relief, x.min(y), range.len());
     (range, error)
@@ -219,7 +219,7 @@ pub(super) fn sun_specular(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         let phong = run.lobe(i);
         let light = gloss_twin::gloss_on(normal, &sun, phong, sums[i].into());
         let tolerance =
-            twin_sun_specular(phong.exponent.into(), error.normal(), normal.dot(towards));
+            device_sun_specular(phong.exponent.into(), error.normal(), normal.dot(towards));
         for (c, (got, sum)) in got.iter().zip(&mut run.gloss[i]).enumerate() {
             let colour = f64::from(sun.irradiance[c]);
             let want = *sum + colour * light;
@@ -254,7 +254,7 @@ fn sun_arriving(run: &mut Run, pass: &Pass, sun: &Sun, towards: Rgb) -> Vec<Pair
             .map(|(b, y)| [0, 1, 2].map(|c| b[c] + f64::from(sun.irradiance[c]) * y))
             .collect();
         let largest = sun.irradiance.iter().fold(0.0, |m: f32, v| m.max(*v));
-        let off = f64::from(largest) * twin_sun_arriving(error.normal(), normal.dot(towards));
+        let off = f64::from(largest) * device_sun_arriving(error.normal(), normal.dot(towards));
         let tolerance = |want: f64| off + 2.0 * EPSILON * want.abs();
         pairs.extend(super::gloss::paired((got, &want), tolerance, [i / cols, i % cols]));
     }
@@ -274,20 +274,20 @@ pub(super) fn sphere_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     }
     let name = pass.part.split(' ').next().and_then(|part| part.strip_prefix("light"));
     let number: usize = name.and_then(|n| n.parse().ok()).expect("light and its number");
-    let ball = run.scene.lights.spheres[number - 1];
+    let ball = run.scene.lights.sphere_lights[number - 1];
     let reach = f64::from(f32::from_bits(pushed(pass, REACH_M)));
     let oracle = Oracle::new(&run.scene.field, run.border());
     let [cols, _] = run.size();
     let mut balls = std::mem::take(&mut run.balls);
     for (i, (sum, tolerance)) in balls.iter_mut().enumerate() {
-        let seen = BallSeen::of(&run.scene.field, &ball, i);
+        let seen = SphereGeometry::of(&run.scene.field, &ball, i);
         if seen.distance_m > reach {
             continue;
         }
         let light = sphere_twin::sphere_at(&oracle, &ball, slices, i / cols, i % cols);
         let brightest = ball.radiance.iter().fold(0.0, |m: f32, v| m.max(*v));
         sum.iter_mut().zip(ball.radiance).for_each(|(s, r)| *s += light * f64::from(r));
-        *tolerance += f64::from(brightest) * (seen.twin() + 4.0 * EPSILON);
+        *tolerance += f64::from(brightest) * (seen.tolerance() + 4.0 * EPSILON);
     }
     let got = run.floats(pass, "sphere_sum").expect("written");
     let texels = got.chunks_exact(4).zip(&balls).enumerate();
@@ -345,7 +345,7 @@ pub(super) fn light_resolve(run: &mut Run, pass: &Pass) -> Vec<Pair> {
             pairs.extend(got.iter().zip(want).map(|(got, want)| Pair {
                 got: (*got).into(),
                 want: *want,
-                tolerance: twin_resolved(*want, lights),
+                tolerance: device_resolved(*want, lights),
                 at,
             }));
         }

@@ -14,7 +14,7 @@ use ridgelight_cpu::cache_gather::{
 };
 use ridgelight_cpu::shared::bounced::light_and_weight;
 use ridgelight_cpu::shared::sweep::March;
-use ridgelight_cpu::tolerance::{EPSILON, Slices, BounceError, device_bounce_shade, walk_error};
+use ridgelight_cpu::tolerance::{BounceError, EPSILON, Slices, device_bounce_shade, walk_error};
 
 use super::bounce::{brightest, colours};
 use super::{Pair, Run, constant, pushed};

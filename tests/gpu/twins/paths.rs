@@ -1,7 +1,7 @@
 //! The passes of the path tracer.
 
 use ridgelight::gpu::shaders::offsets;
-use ridgelight::plan::{Pass, REFERENCE_BATCH, unmet_error};
+use ridgelight::plan::{Pass, REFERENCE_BATCH, unsampled_light_error};
 use ridgelight_cpu::height_bounds as bounds_twin;
 use ridgelight_cpu::height_cells as cells_twin;
 use ridgelight_cpu::indirect::{Fineness, truth};
@@ -185,7 +185,7 @@ fn held(run: &Run) {
     );
     let of = &run.scene.lights;
     let even = [of.sky.is_some(), of.environment.is_some()].map(usize::from).iter().sum::<usize>();
-    let lights = even + of.suns.len() + of.keys.len() + of.spheres.len();
+    let lights = even + of.suns.len() + of.keys.len() + of.sphere_lights.len();
     assert!(in_doubt * lights as f64 <= light, "{in_doubt} of {light} in doubt");
     assert!(
         middle * f64::from(REFERENCE_BATCH) < 1.0,
@@ -210,7 +210,7 @@ pub(super) fn quadrature(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let light = run.floats(pass, "radiance").expect("written");
     let error = run.floats(pass, "standard_error").expect("written");
     let [cols, _] = run.size();
-    let unmet = unmet_error(run.scene, bounces as u32, BATCHES * REFERENCE_BATCH);
+    let unmet = unsampled_light_error(run.scene, bounces as u32, BATCHES * REFERENCE_BATCH);
     let pair = |i: usize, c: usize| {
         let (got, want) = (f64::from(light[4 * i + c]), want[i][c]);
         let sigma = f64::from(error[4 * i + c]).hypot(unmet[c]);

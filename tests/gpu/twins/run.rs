@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use ridgelight::gpu::{Frame, Headless};
 use ridgelight::plan::{Azimuth, Kind, Pass, Plan, ResourceId};
-use ridgelight::scene::{Border, Directions, Fuse, Phong, Quality, Scene, VisiblePoints};
+use ridgelight::scene::{Border, Directions, Fuse, PhongSpecular, Quality, Scene, VisiblePoints};
 use ridgelight_cpu::lattice::{Lattice, Lattices, number_layers};
 use ridgelight_cpu::path_trace::Traced;
 use ridgelight_cpu::shared::gather::Swept;
@@ -128,8 +128,8 @@ impl<'a> Run<'a> {
         [self.scene.field.cols(), self.scene.field.rows()]
     }
 
-    pub fn lobe(&self, sample: usize) -> Phong {
-        self.scene.surface.phong.as_ref().expect("a lobe").at(sample)
+    pub fn lobe(&self, sample: usize) -> PhongSpecular {
+        self.scene.surface.specular.as_ref().expect("a lobe").at(sample)
     }
 
     pub fn directions(&self) -> Directions {

@@ -41,7 +41,7 @@ pub(super) fn scatter_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     .map(|o| pushed(pass, o) as usize);
     let weight = f64::from(f32::from_bits(pushed(pass, push::WEIGHT_SR)));
     let (source, sums) = (constant(pass, "source"), constant(pass, "sums") == 1);
-    let own_lobe = paths > 0 && constant(pass, "own_lobe") == 1;
+    let direct_specular = paths > 0 && constant(pass, "own_lobe") == 1;
     let points = run.points.clone().expect("a case with points");
     let texel = |i: usize| -> [f64; 4] {
         std::array::from_fn(|c| f64::from(run.plan.constants[4 * i + c]))
@@ -133,7 +133,7 @@ pub(super) fn scatter_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
                 _ => [0.0; 3],
             };
             let back = if sums { &of_views[view] } else { back };
-            let sees_sky = (!sums || own_lobe) && seen == VisiblePoint::Sky;
+            let sees_sky = (!sums || direct_specular) && seen == VisiblePoint::Sky;
             let mirrored = if sees_sky { *sky } else { arrives };
             let (e, weight) = match &bent {
                 None => (*e, weight),
@@ -147,7 +147,7 @@ pub(super) fn scatter_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
             if !sums {
                 of_path.add(direct[at], [0.0; 3]);
             }
-            if !sums || own_lobe {
+            if !sums || direct_specular {
                 for (i, (e, irradiance)) in shining.iter().enumerate() {
                     let lit = sun_points.as_ref().expect("suns").seen(i, at) == VisiblePoint::Sky;
                     if lit {

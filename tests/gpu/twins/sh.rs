@@ -15,7 +15,9 @@ use ridgelight_cpu::sh_visibility::{Series, sh_visibility as visibility_twin};
 use ridgelight_cpu::sh_wedges::sh_wedges as wedges_twin;
 use ridgelight_cpu::shared::field::{field_slope, normal_of};
 use ridgelight_cpu::shared::gather::Swept;
-use ridgelight_cpu::tolerance::{twin_light_matrix, twin_sh_gloss, twin_sh_shade, twin_turn};
+use ridgelight_cpu::tolerance::{
+    device_light_matrix, device_sh_shade, device_sh_specular, device_turn,
+};
 
 use super::light::{rgb, so_far};
 use super::{Pair, Run, constant, fuse_of, pushed};
@@ -44,7 +46,7 @@ pub(super) fn env_rotation(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         let (row, turn) = (i / turns, i % turns);
         let of_row = environment.texels()[row * width..].iter().take(width);
         let all: DVec3 = of_row.map(|l| DVec3::from_array(l.map(f64::from))).sum();
-        let tolerance = twin_turn(width) * all / width as f64;
+        let tolerance = device_turn(width) * all / width as f64;
         pairs.extend(three(got, want[row][turn], tolerance, [0, row, turn]));
     }
     pairs
@@ -68,7 +70,7 @@ pub(super) fn light_matrix(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let gloss = (pass.part == "glossy").then_some(sky);
     let want = match gloss {
         None => matrix_twin::light_matrix(&quality, &series),
-        Some(_) => matrix_twin::gloss_matrix(&quality, &series),
+        Some(_) => matrix_twin::specular_matrix(&quality, &series),
     };
     let summed = matrix_magnitudes(&quality, run.border(), height, &turns, gloss);
     let got = texels(run, pass, "light_matrix");
@@ -76,7 +78,7 @@ pub(super) fn light_matrix(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let mut pairs = Vec::new();
     for (entry, got) in got.into_iter().enumerate() {
         let (receiver, k) = (entry / (order * order), entry % (order * order));
-        let tolerance = twin_light_matrix(height) * summed[receiver][k];
+        let tolerance = device_light_matrix(height) * summed[receiver][k];
         pairs.extend(three(got, want[receiver][k], tolerance, [0, receiver, k]));
     }
     pairs
@@ -101,7 +103,7 @@ pub(super) fn sh_visibility(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         receiver: if constant(pass, "own_plane_hides") == 1 {
             Receiver::Plane
         } else {
-            Receiver::Lobe
+            Receiver::CosineLobe
         },
     };
     let got = device_series(run, pass, order);
@@ -239,7 +241,7 @@ pub(super) fn sh_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
             .iter()
             .flat_map(|row| row.iter().zip(&seen.errors).map(|(m, e)| 2.0 * m.abs() * *e))
             .sum();
-        let of_sum = if is_gloss { twin_sh_gloss } else { twin_sh_shade };
+        let of_sum = if is_gloss { device_sh_specular } else { device_sh_shade };
         let tolerance = of_sum(order, error.normal()) * summed + counted;
         pairs.extend(three(rgb(got), want.max(DVec3::ZERO), tolerance, at));
         let is_decided = (0..3).all(|c| want[c].abs() > tolerance[c]);

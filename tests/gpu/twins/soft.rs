@@ -7,21 +7,21 @@ use ridgelight::scene::Quality;
 use ridgelight_cpu::light::normal;
 use ridgelight_cpu::oracle::Oracle;
 use ridgelight_cpu::pyramid_march::Stored;
-use ridgelight_cpu::soft_sphere::{SoftBall, twin_pyramid_within, twin_surface_within};
+use ridgelight_cpu::soft_sphere::{SphereShError, device_pyramid_within, device_surface_within};
 use ridgelight_cpu::sphere_sh_shade::SphereSh;
-use ridgelight_cpu::tolerance::{BallSeen, EPSILON, twin_pyramid_slope};
+use ridgelight_cpu::tolerance::{EPSILON, SphereGeometry, device_pyramid_slope};
 
 use super::{Pair, Run, pushed};
 
 /// What slopes err by, of a pyramid's steepest at most.
-pub(crate) fn slope_error(seen: &BallSeen, quality: &Quality, is_pyramid: bool) -> f64 {
+pub(crate) fn slope_error(seen: &SphereGeometry, quality: &Quality, is_pyramid: bool) -> f64 {
     if !is_pyramid {
-        return twin_surface_within(seen);
+        return device_surface_within(seen);
     }
     let (largest, relief, step) = (seen.largest_m, seen.relief_m, seen.cell_m);
     let steepest = relief / step;
-    let march = twin_pyramid_slope(steepest, largest, relief, step);
-    twin_pyramid_within(seen, march, steepest, quality.level_step)
+    let march = device_pyramid_slope(steepest, largest, relief, step);
+    device_pyramid_within(seen, march, steepest, quality.level_step)
 }
 
 /// All azimuths of one ball, once the last are there: the sum of the balls so far, and this one's light before it
@@ -36,7 +36,7 @@ pub(super) fn sphere_sh_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     }
     let name = pass.part.split(' ').next().and_then(|part| part.strip_prefix("light"));
     let number: usize = name.and_then(|n| n.parse().ok()).expect("light and its number");
-    let ball = run.scene.lights.spheres[number - 1];
+    let ball = run.scene.lights.sphere_lights[number - 1];
     let reach = f64::from(f32::from_bits(pushed(pass, REACH_M)));
     let (quality, border) = (run.quality, run.border());
     let [stack, levels] = ["height_stack", "height_levels"].map(|name| run.floats(pass, name));
@@ -47,18 +47,18 @@ pub(super) fn sphere_sh_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     };
     let pyramid = is_pyramid.then(|| (Pyramid::new(&quality, run.plan.size, border), stored));
     let oracle = Oracle::new(&run.scene.field, border);
-    let (twin, errors) = (SphereSh::new(oracle, pyramid, quality), SoftBall::new(&quality));
+    let (twin, errors) = (SphereSh::new(oracle, pyramid, quality), SphereShError::new(&quality));
     let got = run.floats(pass, "sphere_sum").expect("written");
     let [cols, _] = run.size();
     let mut balls = std::mem::take(&mut run.balls);
     let mut pairs = Vec::new();
     for (i, ((sum, tolerance), got)) in balls.iter_mut().zip(got.chunks_exact(4)).enumerate() {
-        let (seen, row, col) = (BallSeen::of(&run.scene.field, &ball, i), i / cols, i % cols);
+        let (seen, row, col) = (SphereGeometry::of(&run.scene.field, &ball, i), i / cols, i % cols);
         if seen.distance_m <= reach {
             let soft = twin.at(&ball, row, col);
             let n = normal(&run.scene.field, border, row, col);
             let slope = slope_error(&seen, &quality, is_pyramid);
-            let off = errors.twin(&seen, slope, n, &soft.seen);
+            let off = errors.tolerance(&seen, slope, n, &soft.seen);
             let brightest = ball.radiance.iter().fold(0.0, |m: f32, v| m.max(*v));
             let light = soft.light.max(0.0);
             sum.iter_mut().zip(ball.radiance).for_each(|(s, r)| *s += light * f64::from(r));

@@ -467,8 +467,8 @@ fn what_a_plan_cannot_be_is_named() {
     }
     let of_quality: [(RidgelightQuality, _, &str); 3] = [
         (RidgelightQuality { fuse: 7, ..zeroed() }, argument, "quality: fuse"),
-        (RidgelightQuality { azimuths: 3, ..zeroed() }, setting, "--azimuths"),
-        (RidgelightQuality { level_offset_plus_1: 6, ..zeroed() }, setting, "--level-offset"),
+        (RidgelightQuality { azimuths: 3, ..zeroed() }, setting, "azimuths"),
+        (RidgelightQuality { level_offset_plus_1: 6, ..zeroed() }, setting, "level_offset"),
     ];
     for (quality, code, named) in of_quality {
         refuse(scene(), quality, 0, code, named);
@@ -477,7 +477,7 @@ fn what_a_plan_cannot_be_is_named() {
     let ball: RidgelightSphereLight = RidgelightSphereLight { radius_m: 1.0, ..zeroed() };
     let with_ball = RidgelightScene { spheres: &ball, sphere_count: 1, ..scene() };
     let flag = RIDGELIGHT_PICTURE_COLOURS_ON_DEVICE;
-    refuse(with_ball, zeroed(), flag, setting, "picture: colours_on_device: found a ball of light");
+    refuse(with_ball, zeroed(), flag, setting, "picture: colours_on_device: found a sphere light");
     // SAFETY: as above.
     let made = unsafe { ridgelight_plan_create(&host, &scene(), ptr::null(), 0, 1, &mut plan) };
     refused(made, RidgelightResult::Limit, "the limit is");
@@ -513,7 +513,7 @@ fn every_setting_of_c_is_the_one_of_rust() {
     };
     let zero = zeroed::<RidgelightQuality>;
     changed(RidgelightQuality { azimuths: 32, ..zero() }, "azimuths", "32");
-    changed(RidgelightQuality { method: 4, ..zero() }, "method", "brute");
+    changed(RidgelightQuality { method: 4, ..zero() }, "method", "brute-force");
     changed(RidgelightQuality { fuse: 5, ..zero() }, "fuse", "aimed");
     changed(RidgelightQuality { table_elevations: 64, ..zero() }, "table_elevations", "64");
     let sh = || RidgelightQuality { basis: 3, ..zero() };

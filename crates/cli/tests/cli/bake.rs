@@ -97,7 +97,7 @@ fn wrong_requests_are_refused() {
         (
             with("--what scatter --albedo 0.5 --specular 5,0.1 --sphere-light 1,1,9,1,5"),
             2,
-            &["a lobe and 1 key lights and balls"],
+            &["specular and 1 key lights and sphere lights"],
         ),
         (with("--what light-field --sun 0,100"), 2, &["--sun"]),
         (horizon("--json out.txt"), 2, &["--json: found out.txt"]),

@@ -251,7 +251,7 @@ fn gpu_scattered_specular_is_added_to_its_picture() {
         assert!(said.contains("straight above"), "{manifest}");
     }
     let keys = "bake field.npy -o keys --border periodic --albedo 0.5 --specular 20,0.5 --sphere-light 3,3,9,1,5 --what";
-    let said = "a lobe and 1 key lights and balls";
+    let said = "specular and 1 key lights and sphere lights";
     let cases = ["scatter", "light-field", "light-field --bounces 0"];
     for case in cases {
         let run = folder.run(&format!("{keys} {case}").split_whitespace().collect::<Vec<_>>());

@@ -231,7 +231,7 @@ fn specular() {
             (
                 "--specular 10,0.5 --albedo 0.5 --bounces 1 --bounce-engine pyramid --receiver lobe",
                 2,
-                &["--receiver", "a lobe: found lobe, expected plane"],
+                &["--receiver", "specular: found lobe, expected plane"],
             ),
             (
                 "--specular 10,0.5 --albedo 0.5 --bounces 1 --bounce-engine pyramid --subsample 2",

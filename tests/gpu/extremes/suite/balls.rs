@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 use ridgelight::scene::{Border, HeightField, Lights, SphereLight};
-use ridgelight_cpu::tolerance::{BallSeen, EPSILON};
+use ridgelight_cpu::tolerance::{EPSILON, SphereGeometry};
 
 use super::lights::{PLACES, SIDE, filled_voids, level, light};
 use super::{Case, Found, Probe, field};
@@ -71,7 +71,7 @@ fn case(
     ball: SphereLight,
     probes: impl Fn(&Found) -> Vec<Probe> + 'static,
 ) -> Case {
-    let lights = Lights { spheres: vec![ball], ..Lights::default() };
+    let lights = Lights { sphere_lights: vec![ball], ..Lights::default() };
     light(name, (expected, BOUND), (ground, border, lights), probes)
 }
 
@@ -81,9 +81,9 @@ fn slices(found: &Found, ball: &SphereLight) -> f64 {
     f64::from(found.method.quality.sun_azimuths).min(most)
 }
 
-fn seen(found: &Found, ball: &SphereLight, [row, col]: [usize; 2]) -> BallSeen {
+fn seen(found: &Found, ball: &SphereLight, [row, col]: [usize; 2]) -> SphereGeometry {
     let field = &found.scene.field;
-    BallSeen::of(field, ball, row * field.cols() + col)
+    SphereGeometry::of(field, ball, row * field.cols() + col)
 }
 
 /// `share` of the ball's radiance is expected, of which the rule over slices errs by `rule`. A sample may lose
@@ -97,7 +97,7 @@ fn probe(found: &Found, ball: &SphereLight, at: [usize; 2], share: f64, rule: f6
     let brightest = (ball.radius_m / seen(found, ball, foot).distance_m).powi(2).min(1.0);
     let lost = found.method.quality.light_cutoff * brightest;
     // Where nothing is seen there is nothing to round.
-    let error = if share > 0.0 { seen(found, ball, at).twin() } else { 0.0 };
+    let error = if share > 0.0 { seen(found, ball, at).tolerance() } else { 0.0 };
     Probe {
         found: found.light("direct.light1", at[0], at[1]),
         expected: [(share - lost).max(0.0), share].map(|s| radiance * s),

@@ -11,7 +11,7 @@ use ridgelight::plan::azimuths::even;
 use ridgelight::plan::pyramid::Pyramid;
 use ridgelight::scene::{Albedo, Border, BounceEngine, HeightField, Levels, Lights, Sun};
 use ridgelight_cpu::bounce_gather::BounceGather;
-use ridgelight_cpu::bounce_march::stretches_along;
+use ridgelight_cpu::bounce_march::visible_intervals_along;
 use ridgelight_cpu::height_expand::height_expand;
 use ridgelight_cpu::height_reduce::height_levels;
 use ridgelight_cpu::oracle::Oracle;
@@ -23,7 +23,7 @@ use ridgelight_cpu::shared::gather::elevation_moments;
 use ridgelight_cpu::shared::levels::LevelTexels;
 use ridgelight_cpu::shared::sweep::Heights;
 use ridgelight_cpu::tolerance::{
-    CastError, EPSILON, Gathered, Land, Slices, ThrownError, march_error, walk_error,
+    BounceError, CastError, EPSILON, Gathered, Land, Slices, march_error, walk_error,
 };
 
 use super::lights::light;
@@ -304,16 +304,17 @@ impl<'a> Ground<'a> {
     }
 
     /// By radiance 1 of all ground; by pyramids by what it is. What light errs by, by what it is.
-    fn seen(&self, [row, col]: [usize; 2]) -> (Vec<Along>, ThrownError) {
+    fn seen(&self, [row, col]: [usize; 2]) -> (Vec<Along>, BounceError) {
         let (field, border) = (&self.found.scene.field, self.found.scene.surface.border);
         let bounces = self.found.method.quality.bounces;
         let normal = Land::normal_at(field, border, [row, col]);
         let slices = |wedge: f64, brightest: f64| Slices { normal, wedge, brightest };
         match bounces.engine {
-            BounceEngine::Brute => {
-                let all = stretches_along(&self.oracle, &self.exit, bounces.azimuths, [row, col]);
+            BounceEngine::BruteForce => {
+                let all =
+                    visible_intervals_along(&self.oracle, &self.exit, bounces.azimuths, [row, col]);
                 let error = |along: &Along, cast: &Cast| march_error(field.cell_m(), along, cast);
-                let error = ThrownError::of(&all, error, &slices(1.0, 1.0));
+                let error = BounceError::of(&all, error, &slices(1.0, 1.0));
                 (all, error.times(self.ends[1]))
             }
             BounceEngine::Auto | BounceEngine::Sweep => {
@@ -324,7 +325,7 @@ impl<'a> Ground<'a> {
                     let of = walk_error(wedge, cast);
                     CastError { elevation_rad: 1.25 * of.elevation_rad, ..of }
                 };
-                let error = ThrownError::of(&all, error, &slices(wedge, 1.0));
+                let error = BounceError::of(&all, error, &slices(wedge, 1.0));
                 (all, error.times(self.ends[1]))
             }
             BounceEngine::Pyramid => self.by_pyramid([row, col], &slices(1.0, self.ends[1])),
@@ -366,7 +367,7 @@ impl<'a> Ground<'a> {
         even(4, field.cell_m()).into_iter().zip(directions).map(along).collect()
     }
 
-    fn by_pyramid(&self, [row, col]: [usize; 2], slices: &Slices) -> (Vec<Along>, ThrownError) {
+    fn by_pyramid(&self, [row, col]: [usize; 2], slices: &Slices) -> (Vec<Along>, BounceError) {
         let (field, border) = (&self.found.scene.field, self.found.scene.surface.border);
         let quality = &self.found.method.quality;
         let of = self.levels.as_ref().expect("of a pyramid");
@@ -396,7 +397,7 @@ impl<'a> Ground<'a> {
             spread: most - least,
         };
         let all = twin.casts_along([row, col]);
-        let error = ThrownError::of(&all, |_, cast| gathered.error(cast), slices);
+        let error = BounceError::of(&all, |_, cast| gathered.error(cast), slices);
         (all, error)
     }
 }

@@ -9,19 +9,20 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use glam::DVec3;
 use ridgelight::basis::harmonics::evaluate;
 use ridgelight::scene::{
-    Albedo, Border, BounceGloss, HeightField, Levels, Lights, Lobe, Phong, Receiver, Sun,
+    Albedo, Border, BounceSpecular, HeightField, Levels, Lights, PhongSpecular, Receiver, Specular,
+    Sun,
 };
 use ridgelight_cpu::bounce_gather::BounceGather;
 use ridgelight_cpu::pyramid_march::Stored;
 use ridgelight_cpu::shared::bounced::Cast;
 use ridgelight_cpu::shared::field::{field_slope, normal_of};
 use ridgelight_cpu::shared::sweep::Heights;
-use ridgelight_cpu::specular_exit::{mirrored, thrown};
+use ridgelight_cpu::specular_exit::{exit_series, mirrored};
 use ridgelight_cpu::specular_gather::{Series, SpecularGather};
 use ridgelight_cpu::sun_specular::gloss_on;
 use ridgelight_cpu::tolerance::{
-    CastError, EPSILON, Gathered, Land, Slices, ThrownError, twin_arriving, twin_sh_gloss,
-    twin_specular_exit, twin_sun_arriving, twin_sun_specular,
+    BounceError, CastError, EPSILON, Gathered, Land, Slices, device_arriving, device_sh_specular,
+    device_specular_exit, device_sun_arriving, device_sun_specular,
 };
 use ridgelight_cpu::vector_reduce::vector_reduce;
 
@@ -101,14 +102,14 @@ fn lobed(
         irradiance: [irradiance; 3],
     };
     let samples = ground.heights_m().len();
-    let phong = |i: usize| Phong { exponent: exponents[i % 2], scale };
+    let phong = |i: usize| PhongSpecular { exponent: exponents[i % 2], scale };
     let lights = Lights { suns: vec![sun], ..Lights::default() };
     let mut case = light(name, (EXPECTED, BOUND), (ground, border, lights), both);
     case.about = About::Glosses;
     case.scene.surface.albedo = Albedo::Constant([albedo; 3]);
-    case.scene.surface.phong = Some(match exponents {
-        [a, b] if a == b => Lobe::Constant(phong(0)),
-        _ => Lobe::Map((0..samples).map(phong).collect()),
+    case.scene.surface.specular = Some(match exponents {
+        [a, b] if a == b => Specular::Constant(phong(0)),
+        _ => Specular::Map((0..samples).map(phong).collect()),
     });
     case
 }
@@ -152,7 +153,8 @@ impl Exit {
     fn new(found: &Found, order: usize) -> Self {
         let (field, surface) = (&found.scene.field, &found.scene.surface);
         let (heights, sun) = (Heights::of(field, surface.border), &found.scene.lights.suns[0]);
-        let (Some(lobe), Albedo::Constant([albedo, ..])) = (&surface.phong, &surface.albedo) else {
+        let (Some(lobe), Albedo::Constant([albedo, ..])) = (&surface.specular, &surface.albedo)
+        else {
             unreachable!("each case has both");
         };
         let (albedo, bright) = (f64::from(*albedo), f64::from(sun.irradiance[0]));
@@ -173,16 +175,16 @@ impl Exit {
             let (phong, facing) = (lobe.at(i), normal.z);
             let diffuse = [bright * albedo * facing / PI; 3];
             let mirrored = bright * gloss_on(normal, sun, phong, facing / PI);
-            exit.series.push(thrown(&arriving, normal, phong, diffuse));
+            exit.series.push(exit_series(&arriving, normal, phong, diffuse));
             exit.seen.push(diffuse.map(|d| d + mirrored));
             exit.normals.push(normal);
             let scale = f64::from(phong.scale) * bright;
             // A coefficient that arrives is turned into at most √(n²) times its error; diffuse light by √4π.
-            let arrives = order as f64 * twin_sun_arriving(error, facing);
+            let arrives = order as f64 * device_sun_arriving(error, facing);
             let of_diffuse = 4.0 * (error * bright * albedo + 16.0 * EPSILON * diffuse[0]);
-            let leaves = twin_specular_exit(order, error) * magnitude;
+            let leaves = device_specular_exit(order, error) * magnitude;
             exit.off = exit.off.max(scale * (arrives + leaves) + of_diffuse);
-            let of_lobe = twin_sun_specular(phong.exponent.into(), error, facing);
+            let of_lobe = device_sun_specular(phong.exponent.into(), error, facing);
             exit.off_seen =
                 exit.off_seen.max(scale * of_lobe + of_diffuse + 16.0 * EPSILON * mirrored);
         }
@@ -198,7 +200,7 @@ fn both(found: &Found) -> Vec<Probe> {
     let exit = Exit::new(found, order);
     let levels = OfPyramid::new(found, &exit.seen);
     let mut texels: Vec<Series> = Vec::new();
-    let is_vector = quality.bounces.gloss != BounceGloss::Scalar;
+    let is_vector = quality.bounces.specular != BounceSpecular::Scalar;
     if is_vector {
         for number in 1..=levels.shade.levels() {
             let level = vector_reduce(&exit.series, &levels.shade, number, &texels);
@@ -254,7 +256,7 @@ fn both(found: &Found) -> Vec<Probe> {
     };
     let layers = ["indirect.1", "glossy"].map(|name| found.layer(name));
     let (Some(lobe), Albedo::Constant([albedo, ..])) =
-        (&found.scene.surface.phong, &found.scene.surface.albedo)
+        (&found.scene.surface.specular, &found.scene.surface.albedo)
     else {
         return Vec::new();
     };
@@ -267,12 +269,12 @@ fn both(found: &Found) -> Vec<Probe> {
             let slices = Slices { normal, wedge: 1.0, brightest: bright };
             let all = twin.casts_along(at);
             let want = twin.of(&all);
-            let of_series = twin_arriving(&all, of_exit, order, &slices);
-            let of_light = ThrownError::of(&all, |_, cast| turned(cast), &slices).light[0];
+            let of_series = device_arriving(&all, of_exit, order, &slices);
+            let of_light = BounceError::of(&all, |_, cast| turned(cast), &slices).light[0];
             let phong = lobe.at(i);
             let mirror = mirrored(&want.series, exit.normals[i], phong)[0];
             let coefficients = in_a_direction * of_series;
-            let of_lobe = coefficients + twin_sh_gloss(order, normal) * sum(&want.series);
+            let of_lobe = coefficients + device_sh_specular(order, normal) * sum(&want.series);
             let albedo = f64::from(*albedo);
             let probes = [
                 (albedo * want.diffuse[0], albedo * of_light),

@@ -11,22 +11,22 @@ pub const ALL: &[Input] = &[
     (
         "a height of NaN",
         || height(f64::NAN),
-        "height at row 1, column 2: found NaN, expected a finite number within ±1e15, or one marked as no-data (--nodata)",
+        "height at row 1, column 2: found NaN, expected a finite number within ±1e15, or one marked as no-data (`nodata`)",
     ),
     (
         "an infinite height",
         || height(f64::INFINITY),
-        "height at row 1, column 2: found inf, expected a finite number within ±1e15, or one marked as no-data (--nodata)",
+        "height at row 1, column 2: found inf, expected a finite number within ±1e15, or one marked as no-data (`nodata`)",
     ),
     (
         "an infinite depth",
         || height(f64::NEG_INFINITY),
-        "height at row 1, column 2: found -inf, expected a finite number within ±1e15, or one marked as no-data (--nodata)",
+        "height at row 1, column 2: found -inf, expected a finite number within ±1e15, or one marked as no-data (`nodata`)",
     ),
     (
         "a height of 2e15",
         || height(2e15),
-        "height at row 1, column 2: found 2000000000000000.0, expected a finite number within ±1e15, or one marked as no-data (--nodata)",
+        "height at row 1, column 2: found 2000000000000000.0, expected a finite number within ±1e15, or one marked as no-data (`nodata`)",
     ),
     (
         "nothing but voids",

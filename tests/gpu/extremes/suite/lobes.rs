@@ -3,8 +3,10 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use ridgelight::basis::zonal::{cap, phong};
-use ridgelight::scene::{Albedo, Border, HeightField, Lights, Lobe, Phong, Sun};
-use ridgelight_cpu::tolerance::{EPSILON, Land, ShadeError, twin_sh_gloss, twin_sun_specular};
+use ridgelight::scene::{Albedo, Border, HeightField, Lights, PhongSpecular, Specular, Sun};
+use ridgelight_cpu::tolerance::{
+    EPSILON, Land, ShadeError, device_sh_specular, device_sun_specular,
+};
 
 use super::lights::{PLACES, SIDE, filled_voids, level, light, probe};
 use super::{About, Case, Found, Probe, field};
@@ -53,7 +55,8 @@ fn case(
     let mut case = light(name, about, (ground, border, lights), probes);
     case.about = About::Lobes;
     case.scene.surface.albedo = Albedo::Constant([0.0; 3]);
-    case.scene.surface.phong = Some(Lobe::Constant(Phong { exponent, scale: SCALE }));
+    case.scene.surface.specular =
+        Some(Specular::Constant(PhongSpecular { exponent, scale: SCALE }));
     case
 }
 
@@ -75,7 +78,7 @@ fn sky(name: &str, ground: HeightField, border: Border, exponent: f32, radiance:
         let off: f64 = bands()
             .map(|(l, (lobe, cap))| {
                 let seen = error.series(l, quality.wedges) + error.node_weight() * cap.abs();
-                lobe.abs() * (seen + twin_sh_gloss(n, error.normal()) * cap.abs())
+                lobe.abs() * (seen + device_sh_specular(n, error.normal()) * cap.abs())
             })
             .sum();
         let places = match (rows, cols) {
@@ -98,13 +101,14 @@ fn none() -> Case {
             assert!(!found.has("direct.glossy"), "{}", found.method.name);
             PLACES.map(|[r, c]| probe(found.light("radiance", r, c), 0.0, 0.0, [0, r, c])).into()
         });
-    case.scene.surface.phong = Some(Lobe::Constant(Phong { exponent: 20.0, scale: 0.0 }));
+    case.scene.surface.specular =
+        Some(Specular::Constant(PhongSpecular { exponent: 20.0, scale: 0.0 }));
     case
 }
 
 const OF_SUNS: (&str, &str) = (
     "E · scale · (n + 1) / 2π · cosⁿ of the sun's angle to the mirrored zenith; 0 of suns that stand at 0°",
-    "what f32 does to directions, powers and quotients (`twin_sun_specular`), and 16 ε of a sun's light",
+    "what f32 does to directions, powers and quotients (`device_sun_specular`), and 16 ε of a sun's light",
 );
 
 fn sun(azimuth_rad: f64, elevation_rad: f64) -> Sun {
@@ -115,7 +119,7 @@ fn sun(azimuth_rad: f64, elevation_rad: f64) -> Sun {
 fn reflected(exponent: f64, off: f64, facing: f64, normal_error: f64) -> [f64; 2] {
     let peak = (exponent + 1.0) / (2.0 * PI);
     let right = peak * off.cos().max(0.0).powf(exponent);
-    let bound = twin_sun_specular(exponent, normal_error, facing) + 16.0 * EPSILON * right;
+    let bound = device_sun_specular(exponent, normal_error, facing) + 16.0 * EPSILON * right;
     [right, bound].map(|v| f64::from(SCALE) * v)
 }
 

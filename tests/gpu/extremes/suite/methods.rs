@@ -4,13 +4,13 @@ use glam::DVec3;
 use ridgelight::plan::Azimuth;
 use ridgelight::plan::azimuths::{along_grid_vectors, even};
 use ridgelight::scene::{
-    self, Basis, BounceEngine, BounceGloss, Bounces, Directions, Fuse, Hull, Levels, LightBasis,
+    self, Basis, BounceEngine, BounceSpecular, Bounces, Directions, Fuse, Hull, Levels, LightBasis,
     Lines, Precision, Quality, Receiver, Scatter, Wedges,
 };
 use ridgelight_cpu::tolerance::{
-    ARC_TANGENT, EPSILON, march_slope, pyramid_angle, pyramid_plane_slope, surface_slope,
-    sweep_slope, twin_fused_slope, twin_march_slope, twin_slope, twin_slope_f16, twin_slope_packed,
-    twin_surface_slope,
+    ARC_TANGENT, EPSILON, device_fused_slope, device_march_slope, device_slope, device_slope_f16,
+    device_slope_packed, device_surface_slope, march_slope, pyramid_angle, pyramid_plane_slope,
+    surface_slope, sweep_slope,
 };
 
 use super::About;
@@ -39,11 +39,11 @@ pub fn all() -> Vec<Method> {
     let kept = |precision, fuse| Quality { precision, fuse, ..base };
     let soft = |sh_order, subsample| Quality { basis: Basis::Sh, sh_order, subsample, ..base };
     [
-        ("brute", Quality { method: scene::Method::Brute, ..base }),
+        ("brute", Quality { method: scene::Method::BruteForce, ..base }),
         ("exact", Quality { lines: Lines::Exact, ..base }),
         ("auto: 1, aimed-nearest", base),
         ("1, aimed", Quality { method: scene::Method::Sweep, ..fused(Fuse::Aimed) }),
-        ("1, own, list", Quality { hull: Hull::List, ..fused(Fuse::Own) }),
+        ("1, own, list", Quality { hull: Hull::OccluderList, ..fused(Fuse::Own) }),
         ("1, slopes, shared", Quality { hull: Hull::Shared, ..fused(Fuse::Slopes) }),
         ("1, nearest, private", Quality { hull: Hull::Private, ..fused(Fuse::Nearest) }),
         ("1, aimed-around", fused(Fuse::AimedAround)),
@@ -128,7 +128,7 @@ fn soft_balls(base: &Quality) -> impl Iterator<Item = Method> + use<> {
     let (nlp, table) = (Wedges::Nlp, Wedges::Table);
     [
         ("balls by harmonics, 2", of(2)),
-        ("balls by harmonics, 4, lobe", Quality { receiver: Receiver::Lobe, ..of(4) }),
+        ("balls by harmonics, 4, lobe", Quality { receiver: Receiver::CosineLobe, ..of(4) }),
         ("balls by harmonics, 6", of(6)),
         ("balls by harmonics, 4, nlp", Quality { wedges: nlp, ..of(4) }),
         ("balls by harmonics, 4, table", Quality { wedges: table, wedge_side: 33, ..of(4) }),
@@ -143,7 +143,7 @@ fn lobes(base: &Quality) -> impl Iterator<Item = Method> + use<> {
     let of = |sh_order| Quality { basis: Basis::Sh, sh_order, ..*base };
     [
         ("a lobe by harmonics, 2", of(2)),
-        ("a lobe by harmonics, 4, brute", Quality { method: scene::Method::Brute, ..of(4) }),
+        ("a lobe by harmonics, 4, brute", Quality { method: scene::Method::BruteForce, ..of(4) }),
         ("a lobe by harmonics, 5, pyramid", Quality { method: scene::Method::Pyramid, ..of(5) }),
         ("a lobe by harmonics, 6, every 4th", Quality { subsample: 4, ..of(6) }),
     ]
@@ -161,15 +161,15 @@ fn glosses(base: &Quality) -> impl Iterator<Item = Method> + use<> {
             azimuths: 8,
             cutoff: 0.0,
             level_offset: 1,
-            gloss,
+            specular: gloss,
             ..Bounces::NONE
         };
         Quality { basis: Basis::Sh, sh_order, levels, level_offset: 1, bounces, ..base }
     };
     [
-        ("by direction, 4, stack", of(BounceGloss::Vector, 4, Levels::Stack)),
-        ("by direction, 3, levels", of(BounceGloss::Vector, 3, Levels::Pyramid)),
-        ("as seen from above, 4", of(BounceGloss::Scalar, 4, Levels::Stack)),
+        ("by direction, 4, stack", of(BounceSpecular::Vector, 4, Levels::Stack)),
+        ("by direction, 3, levels", of(BounceSpecular::Vector, 3, Levels::Pyramid)),
+        ("as seen from above, 4", of(BounceSpecular::Scalar, 4, Levels::Stack)),
     ]
     .into_iter()
     .map(|(name, quality)| Method::of(name, About::Glosses, quality))
@@ -186,15 +186,15 @@ fn bounces(base: &Quality) -> impl Iterator<Item = Method> + use<> {
     let stack = thrown(BounceEngine::Pyramid, 4);
     let levels = Quality {
         levels: Levels::Pyramid,
-        receiver: Receiver::Lobe,
+        receiver: Receiver::CosineLobe,
         level_step: 3,
         level_offset: 0,
         bounces: Bounces { level_step: 2, level_offset: 1, ..of(BounceEngine::Pyramid, 5) },
         ..base
     };
     [
-        ("every stretch, 4 azimuths", thrown(BounceEngine::Brute, 4)),
-        ("every stretch, 5 azimuths", thrown(BounceEngine::Brute, 5)),
+        ("every stretch, 4 azimuths", thrown(BounceEngine::BruteForce, 4)),
+        ("every stretch, 5 azimuths", thrown(BounceEngine::BruteForce, 5)),
         ("walks, lines of 1", walked(Lines::Cell)),
         ("walks, lines of 4", walked(Lines::FourCells)),
         ("thrown by a pyramid, stack", stack),
@@ -215,7 +215,7 @@ impl Method {
     }
 
     pub fn is_brute(&self) -> bool {
-        self.quality.method == scene::Method::Brute
+        self.quality.method == scene::Method::BruteForce
     }
 
     /// Whether it sweeps along grid vectors, where every crossing is on the hull.
@@ -299,21 +299,21 @@ impl Method {
         let rounded = 2.0 * EPSILON * largest_m / near_m;
         if self.is_brute() {
             let relief = 2.0 * largest_m;
-            return rounded + march_slope(relief, near_m) + twin_march_slope(relief, near_m);
+            return rounded + march_slope(relief, near_m) + device_march_slope(relief, near_m);
         }
         if self.is_exact() {
             let vector = [azimuth.vector_march, azimuth.vector_lane];
-            let twin = twin_surface_slope(largest_m, near_m, vector);
+            let twin = device_surface_slope(largest_m, near_m, vector);
             return rounded + surface_slope(largest_m, near_m) + twin;
         }
         if self.is_pyramid() {
             return rounded + pyramid_plane_slope(largest_m, near_m);
         }
-        let swept = sweep_slope(largest_m, near_m) + 2.0 * twin_fused_slope(largest_m, near_m);
+        let swept = sweep_slope(largest_m, near_m) + 2.0 * device_fused_slope(largest_m, near_m);
         let reduced = match self.quality.precision {
-            Precision::F32 => twin_slope(slope),
-            Precision::F16 => twin_slope_f16(slope),
-            Precision::Packed => twin_slope(slope) + twin_slope_packed(largest_m, near_m),
+            Precision::F32 => device_slope(slope),
+            Precision::F16 => device_slope_f16(slope),
+            Precision::Packed => device_slope(slope) + device_slope_packed(largest_m, near_m),
         };
         rounded + swept + reduced
     }

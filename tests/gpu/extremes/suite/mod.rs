@@ -395,7 +395,7 @@ fn field(
 
 /// A white field.
 fn white(field: HeightField, border: Border, lights: Lights) -> Scene {
-    let surface = Surface { albedo: Albedo::Constant([1.0; 3]), border, phong: None };
+    let surface = Surface { albedo: Albedo::Constant([1.0; 3]), border, specular: None };
     Scene { field, surface, lights }
 }
 

@@ -5,7 +5,9 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 use ridgelight::gpu::shaders::offsets::scatter_gather_push::STEPS;
-use ridgelight::scene::{Albedo, Border, Lights, Lobe, Phong, Scene, Sun, Surface, VisiblePoint};
+use ridgelight::scene::{
+    Albedo, Border, Lights, PhongSpecular, Scene, Specular, Sun, Surface, VisiblePoint,
+};
 use ridgelight_cpu::scatter_gather::{Gathered, Samples};
 use ridgelight_cpu::tolerance::{EPSILON, Land, gathered};
 
@@ -56,9 +58,9 @@ fn mirrors() -> Case {
     let ground = field([6, 16], [1.0, 1.0], |_, c| c.abs_diff(8) as f64);
     let sun =
         Sun { azimuth_rad: 0.0, elevation_rad: 0.5 * PI, diameter_rad: 0.0, irradiance: [1.0; 3] };
-    let lobe = Lobe::Constant(Phong { exponent: 1e4, scale: 0.25 });
+    let lobe = Specular::Constant(PhongSpecular { exponent: 1e4, scale: 0.25 });
     let albedo = Albedo::Constant([0.5; 3]);
-    let surface = Surface { albedo, border: Border::Periodic, phong: Some(lobe) };
+    let surface = Surface { albedo, border: Border::Periodic, specular: Some(lobe) };
     let lights = Lights { suns: vec![sun], ..Lights::default() };
     let name = "scattered between walls at right angles, lobes of 10000".to_owned();
     scattered(name, Case { scene: Scene { field: ground, surface, lights }, ..level() })
@@ -68,7 +70,7 @@ fn mirrors() -> Case {
 fn level() -> Case {
     let ground = field([33, 33], [1.0, 1.0], |_, _| 8848.0);
     let white = Albedo::Constant([1.0; 3]);
-    let surface = Surface { albedo: white, border: Border::Periodic, phong: None };
+    let surface = Surface { albedo: white, border: Border::Periodic, specular: None };
     let lights = Lights { sky: Some([1.0; 3]), ..Lights::default() };
     Case {
         name: "scattered by white level ground".to_owned(),
@@ -161,7 +163,8 @@ impl Chain<'_> {
         if step > 0 {
             let mut own = f64::from(self.direct[at][0]);
             let mut off = 0.0;
-            for sun in self.scene.lights.suns.iter().filter(|_| self.scene.surface.phong.is_some())
+            for sun in
+                self.scene.lights.suns.iter().filter(|_| self.scene.surface.specular.is_some())
             {
                 // Nothing stands over a sample.
                 let arrives = [[0.0; 3], [f64::from(sun.irradiance[0]); 3]];
@@ -199,7 +202,7 @@ fn probes(found: &Found) -> Vec<Probe> {
     let texels = found.plan.constants.chunks_exact(8);
     let link = |t: &[f32]| (DVec3::new(t[0].into(), t[1].into(), t[2].into()), t[4].into());
     let looks = found.looks();
-    let has_lobe = scene.surface.phong.as_ref().is_some_and(|lobe| lobe.largest().scale > 0.0);
+    let has_lobe = scene.surface.specular.as_ref().is_some_and(|lobe| lobe.largest().scale > 0.0);
     let chain = Chain {
         scene,
         sight: Sight::of(scene),

@@ -10,9 +10,11 @@ use ridgelight_cpu::oracle::Oracle;
 use ridgelight_cpu::pyramid_march::Stored;
 use ridgelight_cpu::shared::levels::LevelTexels;
 use ridgelight_cpu::shared::sweep::Heights;
-use ridgelight_cpu::soft_sphere::{SoftBall, twin_pyramid_within, twin_surface_within};
+use ridgelight_cpu::soft_sphere::{SphereShError, device_pyramid_within, device_surface_within};
 use ridgelight_cpu::sphere_sh_shade::SphereSh;
-use ridgelight_cpu::tolerance::{BallSeen, EPSILON, twin_pyramid_angle, twin_pyramid_slope};
+use ridgelight_cpu::tolerance::{
+    EPSILON, SphereGeometry, device_pyramid_angle, device_pyramid_slope,
+};
 
 use super::{About, Case, Found, Method, Probe, balls};
 
@@ -41,7 +43,7 @@ fn soft(case: Case) -> Case {
 
 fn probes(found: &Found) -> Vec<Probe> {
     let (field, border) = (&found.scene.field, found.scene.surface.border);
-    let (quality, ball) = (&found.method.quality, &found.scene.lights.spheres[0]);
+    let (quality, ball) = (&found.method.quality, &found.scene.lights.sphere_lights[0]);
     let pyramid = Pyramid::new(quality, [field.cols() as u32, field.rows() as u32], border);
     let texels = height_levels(&Heights::of(field, border), &pyramid);
     let of = LevelTexels { pyramid: &pyramid, texels: &texels };
@@ -52,13 +54,13 @@ fn probes(found: &Found) -> Vec<Probe> {
     };
     let levels = found.method.is_pyramid().then_some((pyramid, stored));
     let twin = SphereSh::new(Oracle::new(field, border), levels, *quality);
-    let errors = SoftBall::new(quality);
+    let errors = SphereShError::new(quality);
     let (rows, cols) = (field.rows(), field.cols());
     let at = |[row, col]: [usize; 2]| {
         let soft = twin.at(ball, row, col);
-        let seen = BallSeen::of(field, ball, row * cols + col);
+        let seen = SphereGeometry::of(field, ball, row * cols + col);
         let slope = slope_error(&seen, found.method, super::largest(field));
-        let off = errors.twin(&seen, slope, normal(field, border, row, col), &soft.seen);
+        let off = errors.tolerance(&seen, slope, normal(field, border, row, col), &soft.seen);
         let radiance = f64::from(ball.radiance[0]);
         let light = soft.light.max(0.0);
         Probe {
@@ -73,13 +75,13 @@ fn probes(found: &Found) -> Vec<Probe> {
 }
 
 /// What slopes towards a ball err by, where a pyramid's levels, too, are the twins'.
-fn slope_error(seen: &BallSeen, method: &Method, largest: f64) -> f64 {
+fn slope_error(seen: &SphereGeometry, method: &Method, largest: f64) -> f64 {
     if !method.is_pyramid() {
-        return twin_surface_within(seen);
+        return device_surface_within(seen);
     }
     let (relief, step) = (seen.relief_m, seen.cell_m);
     let steepest = relief / step;
-    let march = twin_pyramid_slope(steepest, largest, relief, step)
-        + (1.0 + steepest * steepest) * twin_pyramid_angle(largest, relief, step);
-    twin_pyramid_within(seen, march, steepest, method.quality.level_step)
+    let march = device_pyramid_slope(steepest, largest, relief, step)
+        + (1.0 + steepest * steepest) * device_pyramid_angle(largest, relief, step);
+    device_pyramid_within(seen, march, steepest, method.quality.level_step)
 }

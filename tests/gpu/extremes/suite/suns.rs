@@ -118,6 +118,6 @@ pub fn suns_along_the_grid(border: Border) -> Case {
 
 fn suns_off_the_grid(method: &Method) -> Option<&'static str> {
     method.is_exact().then_some(
-        "--lines exact with --sun: found a sun, whose azimuths are no grid vectors, expected --method brute, which is exact in every azimuth",
+        "`lines exact` with `suns`: found a sun, whose azimuths are no grid vectors, expected `method brute-force`, which is exact in every azimuth",
     )
 }

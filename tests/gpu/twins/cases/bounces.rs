@@ -2,8 +2,8 @@
 
 use ridgelight::plan::Picture;
 use ridgelight::scene::{
-    Albedo, Basis, Border, BounceEngine, BounceGloss, Bounces, HeightField, Levels, Lights, Lines,
-    Lobe, Phong, Quality, Receiver, Scene, Sun, Surface,
+    Albedo, Basis, Border, BounceEngine, BounceSpecular, Bounces, HeightField, Levels, Lights,
+    Lines, PhongSpecular, Quality, Receiver, Scene, Specular, Sun, Surface,
 };
 
 use super::{Case, Wanted, bowl, noisy_environment, rough};
@@ -19,7 +19,7 @@ pub(in crate::twins) fn walks() -> Vec<Case> {
     };
     let of = |field: HeightField, border, albedo| Scene {
         field,
-        surface: Surface { border, albedo, phong: None },
+        surface: Surface { border, albedo, specular: None },
         lights: Lights { sky: Some([1.0; 3]), ..Lights::default() },
     };
     let colourful = {
@@ -84,7 +84,7 @@ pub(in crate::twins) fn throws() -> Vec<Case> {
             name,
             scene: Scene {
                 field,
-                surface: Surface { border, albedo, phong: None },
+                surface: Surface { border, albedo, specular: None },
                 lights: Lights { sky: Some([1.0; 3]), ..Lights::default() },
             },
             quality: Quality { azimuths: 8, bounces, levels, ..Quality::default() },
@@ -92,14 +92,14 @@ pub(in crate::twins) fn throws() -> Vec<Case> {
             loses_lines: false,
         }
     };
-    use BounceEngine::{Brute, Pyramid};
+    use BounceEngine::{BruteForce, Pyramid};
     let rough = |rows, cols| rough(rows, cols, 36);
     let lobe = case("a bowl by a lobe", bowl(13), Border::Plane, Pyramid, Levels::Stack);
-    let lobe = Case { quality: Quality { receiver: Receiver::Lobe, ..lobe.quality }, ..lobe };
+    let lobe = Case { quality: Quality { receiver: Receiver::CosineLobe, ..lobe.quality }, ..lobe };
     vec![
-        case("every stretch, grey", rough(7, 9), Border::Plane, Brute, Levels::Stack),
-        case("every stretch, colours", rough(6, 5), Border::Open, Brute, Levels::Stack),
-        case("every stretch of a bowl", bowl(13), Border::Plane, Brute, Levels::Stack),
+        case("every stretch, grey", rough(7, 9), Border::Plane, BruteForce, Levels::Stack),
+        case("every stretch, colours", rough(6, 5), Border::Open, BruteForce, Levels::Stack),
+        case("every stretch of a bowl", bowl(13), Border::Plane, BruteForce, Levels::Stack),
         case("radiance by a stack, grey", rough(11, 13), Border::Plane, Pyramid, Levels::Stack),
         case("radiance by a stack", rough(9, 12), Border::Open, Pyramid, Levels::Stack),
         case("radiance by levels", rough(10, 12), Border::Periodic, Pyramid, Levels::Pyramid),
@@ -122,7 +122,7 @@ pub(in crate::twins) fn nodes() -> Vec<Case> {
             name,
             scene: Scene {
                 field: rough(rows, cols, 37),
-                surface: Surface { border, albedo, phong: None },
+                surface: Surface { border, albedo, specular: None },
                 lights: Lights { sky: Some([1.0; 3]), ..Lights::default() },
             },
             quality: Quality { azimuths: 8, bounces, subsample, ..Quality::default() },
@@ -130,12 +130,12 @@ pub(in crate::twins) fn nodes() -> Vec<Case> {
             loses_lines: false,
         }
     };
-    use BounceEngine::{Brute, Pyramid, Sweep};
+    use BounceEngine::{BruteForce, Pyramid, Sweep};
     vec![
         case("walks at nodes, colours", (14, 17), Border::Open, (Sweep, 3, 2)),
         case("walks at nodes, grey", (12, 8), Border::Periodic, (Sweep, 2, 4)),
         case("walks at nodes, outside black", (9, 11), Border::Plane, (Sweep, 1, 2)),
-        case("every stretch at nodes", (6, 7), Border::Open, (Brute, 1, 2)),
+        case("every stretch at nodes", (6, 7), Border::Open, (BruteForce, 1, 2)),
         case("pyramids at nodes", (10, 13), Border::Plane, (Pyramid, 1, 4)),
     ]
 }
@@ -144,16 +144,20 @@ pub(in crate::twins) fn nodes() -> Vec<Case> {
 pub(in crate::twins) fn glosses() -> Vec<Case> {
     let case = |name, field: HeightField, border, gloss, sh_order, levels, lights| {
         let samples = field.heights_m().len();
-        let is_map = gloss == BounceGloss::Vector;
-        let lobe = |i: usize| Phong { exponent: (i % 40) as f32, scale: (i % 3) as f32 * 0.2 };
+        let is_map = gloss == BounceSpecular::Vector;
+        let lobe =
+            |i: usize| PhongSpecular { exponent: (i % 40) as f32, scale: (i % 3) as f32 * 0.2 };
         let albedo = |i: usize| [0.5, (i % 5) as f32 / 10.0, 0.3];
         let (albedo, phong) = if is_map {
             (
                 Albedo::Map((0..samples).map(albedo).collect()),
-                Lobe::Map((0..samples).map(lobe).collect()),
+                Specular::Map((0..samples).map(lobe).collect()),
             )
         } else {
-            (Albedo::Constant([0.5; 3]), Lobe::Constant(Phong { exponent: 6.0, scale: 0.5 }))
+            (
+                Albedo::Constant([0.5; 3]),
+                Specular::Constant(PhongSpecular { exponent: 6.0, scale: 0.5 }),
+            )
         };
         let bounces = Bounces {
             count: 2,
@@ -163,12 +167,16 @@ pub(in crate::twins) fn glosses() -> Vec<Case> {
             cutoff: 0.0,
             level_step: 2,
             level_offset: 0,
-            gloss,
+            specular: gloss,
         };
         let base = Quality { azimuths: 8, level_step: 3, level_offset: 0, ..Quality::default() };
         Case {
             name,
-            scene: Scene { field, surface: Surface { border, albedo, phong: Some(phong) }, lights },
+            scene: Scene {
+                field,
+                surface: Surface { border, albedo, specular: Some(phong) },
+                lights,
+            },
             quality: Quality { basis: Basis::Sh, sh_order, levels, bounces, ..base },
             wanted: Wanted::Picture(Picture { light_layers: true, ..Picture::default() }),
             loses_lines: false,
@@ -187,7 +195,7 @@ pub(in crate::twins) fn glosses() -> Vec<Case> {
         ..sky()
     };
     let alone = Lights { suns: vec![sun(0.4, 0.0, [2.0; 3])], ..Lights::default() };
-    use BounceGloss::{Scalar, Vector, VectorF16};
+    use BounceSpecular::{Scalar, Vector, VectorF16};
     let (stack, levels) = (Levels::Stack, Levels::Pyramid);
     vec![
         case("by direction", rough(9, 11, 52), Border::Plane, Vector, 3, stack, all.clone()),

@@ -1,7 +1,7 @@
 //! Light paths.
 
 use ridgelight::scene::{
-    Albedo, Border, Lights, Lobe, Phong, Quality, Scene, SphereLight, Sun, Surface,
+    Albedo, Border, Lights, PhongSpecular, Quality, Scene, Specular, SphereLight, Sun, Surface,
 };
 
 use super::{Case, Wanted, key, noisy_environment, rough};
@@ -21,13 +21,13 @@ fn of_all_lights() -> [Scene; 2] {
     let map = (0..7 * 9).map(|_| [0.8 * next() as f32, 0.5, 0.1]).collect();
     let all = Scene {
         field: rough(7, 9, 22),
-        surface: Surface { border: Border::Open, albedo: Albedo::Map(map), phong: None },
+        surface: Surface { border: Border::Open, albedo: Albedo::Map(map), specular: None },
         lights: Lights {
             sky: Some([0.3, 0.5, 0.9]),
             environment: Some(noisy_environment(23)),
             suns: vec![sun(0.2), sun(0.0)],
             keys: vec![key(-0.4, 0.5, [1.0, 0.3, 0.0]), key(0.9, 1.2, [0.0, 0.4, 2.0])],
-            spheres: vec![ball],
+            sphere_lights: vec![ball],
         },
     };
     let repeated = Scene {
@@ -35,7 +35,7 @@ fn of_all_lights() -> [Scene; 2] {
         surface: Surface {
             border: Border::Periodic,
             albedo: Albedo::Constant([0.6, 0.3, 0.9]),
-            phong: None,
+            specular: None,
         },
         lights: Lights {
             sky: Some([1.0; 3]),
@@ -52,9 +52,9 @@ fn reference(name: &'static str, scene: Scene, wanted: Wanted) -> Case {
 }
 
 fn with_lobes(mut scene: Scene) -> Scene {
-    let lobe = |i: usize| Phong { exponent: (i % 12) as f32, scale: (i % 3) as f32 * 0.05 };
+    let lobe = |i: usize| PhongSpecular { exponent: (i % 12) as f32, scale: (i % 3) as f32 * 0.05 };
     let count = scene.field.heights_m().len();
-    scene.surface.phong = Some(Lobe::Map((0..count).map(lobe).collect()));
+    scene.surface.specular = Some(Specular::Map((0..count).map(lobe).collect()));
     scene
 }
 
@@ -76,7 +76,7 @@ pub(in crate::twins) fn paths() -> Vec<Case> {
     let [all, repeated] = of_all_lights();
     let on = |field, border, lights: &Lights| Scene {
         field,
-        surface: Surface { border, albedo: Albedo::Constant([0.7, 0.4, 0.2]), phong: None },
+        surface: Surface { border, albedo: Albedo::Constant([0.7, 0.4, 0.2]), specular: None },
         lights: lights.clone(),
     };
     let level = on(rough(17, 13, 25), Border::Plane, &all.lights);
@@ -91,7 +91,8 @@ pub(in crate::twins) fn paths() -> Vec<Case> {
         })
         .collect();
     let mut glossy = with_lobes(level.clone());
-    glossy.surface.phong = Some(Lobe::Constant(Phong { exponent: 100.0, scale: 0.05 }));
+    glossy.surface.specular =
+        Some(Specular::Constant(PhongSpecular { exponent: 100.0, scale: 0.05 }));
     vec![
         reference("lobes that are met", with_lobes(all.clone()), Wanted::Reference(1)),
         reference("lobes that repeat", with_lobes(repeated.clone()), Wanted::Reference(1)),

@@ -2,8 +2,8 @@
 
 use ridgelight::plan::Picture;
 use ridgelight::scene::{
-    Albedo, Basis, Border, Fuse, Levels, LightBasis, Lights, Lobe, Method, Phong, Quality,
-    Receiver, Scene, SphereLight, Sun, Surface, Wedges, Window,
+    Albedo, Basis, Border, Fuse, Levels, LightBasis, Lights, Method, PhongSpecular, Quality,
+    Receiver, Scene, Specular, SphereLight, Sun, Surface, Wedges, Window,
 };
 
 use super::{Case, Wanted, key, noisy_environment, rough};
@@ -59,14 +59,15 @@ pub(in crate::twins) fn pictures() -> Vec<Case> {
             ball(9.5, 6.1, 903.0, 5.0, [0.5, 1.0, 2.0]),
             ball(-30.0, 50.0, 890.0, 12.0, [4.0, 0.0, 1.0]),
         ];
-        let lights = Lights { sky: Some([0.3, 0.5, 0.9]), spheres, ..Lights::default() };
+        let lights =
+            Lights { sky: Some([0.3, 0.5, 0.9]), sphere_lights: spheres, ..Lights::default() };
         Scene { lights, ..colourful.clone() }
     };
     let balls_alone = {
         let spheres =
             vec![ball(7.0, 4.0, 911.0, 2.0, [5.0; 3]), ball(31.0, 9.0, 908.0, 1.0, [2.0; 3])];
         let surface = Surface { border: Border::Periodic, ..Surface::default() };
-        let lights = Lights { spheres, ..Lights::default() };
+        let lights = Lights { sphere_lights: spheres, ..Lights::default() };
         Scene { field: rough(9, 8, 17), surface, lights }
     };
     let picture = |name, scene, quality, light_layers, sky_view| Case {
@@ -86,7 +87,7 @@ pub(in crate::twins) fn pictures() -> Vec<Case> {
         ..picture("colours on the device", grey.clone(), quality, false, false)
     };
     let sh = |sh_order| Quality { basis: Basis::Sh, sh_order, ..quality };
-    let nlp = Quality { wedges: Wedges::Nlp, receiver: Receiver::Lobe, ..sh(5) };
+    let nlp = Quality { wedges: Wedges::Nlp, receiver: Receiver::CosineLobe, ..sh(5) };
     let soft = |sh_order, sun_azimuths| Quality {
         light_basis: LightBasis::Sh,
         sh_order,
@@ -96,7 +97,7 @@ pub(in crate::twins) fn pictures() -> Vec<Case> {
     let soft_table = Quality { wedges: Wedges::Table, wedge_side: 17, ..soft(3, 6) };
     let soft_nlp = Quality {
         wedges: Wedges::Nlp,
-        receiver: Receiver::Lobe,
+        receiver: Receiver::CosineLobe,
         window: Window::Lanczos,
         ..soft(5, 7)
     };
@@ -109,18 +110,19 @@ pub(in crate::twins) fn pictures() -> Vec<Case> {
     };
     let soft_stack = Quality {
         wedges: Wedges::Table,
-        receiver: Receiver::Lobe,
+        receiver: Receiver::CosineLobe,
         levels: Levels::Stack,
         level_step: 2,
         level_offset: 1,
         ..Quality { sun_azimuths: 8, sh_order: 6, ..soft_levels }
     };
     let windowed = Quality { window: Window::Hann, fuse: Fuse::Own, ..sh(4) };
-    let lobe = Quality { receiver: Receiver::Lobe, window: Window::Nonnegative, ..sh(2) };
+    let lobe = Quality { receiver: Receiver::CosineLobe, window: Window::Nonnegative, ..sh(2) };
     let subsampled = |subsample, sh_order| Quality { subsample, ..sh(sh_order) };
-    let by_table = Quality { wedges: Wedges::Table, method: Method::Brute, ..subsampled(2, 6) };
+    let by_table =
+        Quality { wedges: Wedges::Table, method: Method::BruteForce, ..subsampled(2, 6) };
     let open_wedges = Quality { wedges: Wedges::Table, wedge_side: 9, ..sh(3) };
-    let marched = Quality { method: Method::Brute, ..subsampled(4, 4) };
+    let marched = Quality { method: Method::BruteForce, ..subsampled(4, 4) };
     let smoothed = Quality { method: Method::Pyramid, level_step: 2, ..subsampled(2, 3) };
     // A lobe under all that it mirrors, and under a sky alone.
     let mirrored = {
@@ -133,16 +135,18 @@ pub(in crate::twins) fn pictures() -> Vec<Case> {
         let surface = Surface {
             border: Border::Plane,
             albedo: Albedo::Constant([0.5; 3]),
-            phong: Some(Lobe::Constant(Phong { exponent: 20.0, scale: 0.4 })),
+            specular: Some(Specular::Constant(PhongSpecular { exponent: 20.0, scale: 0.4 })),
         };
         Scene { field: rough(14, 11, 42), surface, lights }
     };
     let mirrored_sky = {
         let lights = Lights { sky: Some([1.0; 3]), ..Lights::default() };
         let mut next = random(45);
-        let map = (0..9 * 14).map(|i| Phong { exponent: (79 * i) as f32, scale: next() as f32 });
-        let phong = Some(Lobe::Map(map.collect()));
-        let surface = Surface { border: Border::Open, albedo: Albedo::Constant([0.0; 3]), phong };
+        let map =
+            (0..9 * 14).map(|i| PhongSpecular { exponent: (79 * i) as f32, scale: next() as f32 });
+        let phong = Some(Specular::Map(map.collect()));
+        let surface =
+            Surface { border: Border::Open, albedo: Albedo::Constant([0.0; 3]), specular: phong };
         Scene { field: rough(9, 14, 43), surface, lights }
     };
     // Twelve columns: the last is no multiple of 4 from the first; of a field that repeats.

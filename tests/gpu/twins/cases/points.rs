@@ -4,8 +4,8 @@ use std::f64::consts::TAU;
 
 use glam::{DVec2, DVec3};
 use ridgelight::scene::{
-    Albedo, Border, Curvature, Directions, HeightField, Lights, Lobe, Phong, Quality, Scatter,
-    Scene, Sun, Surface,
+    Albedo, Border, Curvature, Directions, HeightField, Lights, PhongSpecular, Quality, Scatter,
+    Scene, Specular, Sun, Surface,
 };
 
 use super::{Case, Wanted, noisy_environment, rough};
@@ -182,14 +182,16 @@ pub fn scatters() -> Vec<Case> {
     };
     let mut next = random(72);
     let map = Albedo::Map((0..72).map(|_| [next() as f32, 0.5, 0.9]).collect());
-    let grey = |border| Surface { border, albedo: Albedo::Constant([0.6, 0.3, 0.9]), phong: None };
-    let lobes = (0..72).map(|i| Phong { exponent: 1.0 + i as f32, scale: next() as f32 * 0.1 });
+    let grey =
+        |border| Surface { border, albedo: Albedo::Constant([0.6, 0.3, 0.9]), specular: None };
+    let lobes =
+        (0..72).map(|i| PhongSpecular { exponent: 1.0 + i as f32, scale: next() as f32 * 0.1 });
     let black = Surface { albedo: Albedo::Constant([0.0; 3]), ..Surface::default() };
-    let mapped = Surface { border: Border::Open, albedo: map, phong: None };
+    let mapped = Surface { border: Border::Open, albedo: map, specular: None };
     let glossy = Surface {
         border: Border::Plane,
         albedo: Albedo::Constant([0.4, 0.3, 0.2]),
-        phong: Some(Lobe::Map(lobes.collect())),
+        specular: Some(Specular::Map(lobes.collect())),
     };
     let sun = |azimuth_rad, elevation_rad| Sun {
         azimuth_rad,
@@ -207,7 +209,7 @@ pub fn scatters() -> Vec<Case> {
     let one = Surface {
         border: Border::Periodic,
         albedo: Albedo::Constant([0.5, 0.3, 0.2]),
-        phong: Some(Lobe::Constant(Phong { exponent: 20.0, scale: 0.4 })),
+        specular: Some(Specular::Constant(PhongSpecular { exponent: 20.0, scale: 0.4 })),
     };
     let long = field(3, 257, [2.0, 2.0], |r, c| ((7 * r + 5 * c) % 11) as f64);
     let bent = |bounces, paths, per_m| Scatter {
@@ -247,14 +249,14 @@ pub fn scatters() -> Vec<Case> {
             rough(8, 9, 77),
             glossy.clone(),
             lights.clone(),
-            (17, Scatter { own_lobe: true, ..scatter(1, 20) }, false),
+            (17, Scatter { direct_specular: true, ..scatter(1, 20) }, false),
         ),
         of(
             "their own light alone",
             rough(8, 9, 79),
             glossy.clone(),
             lights.clone(),
-            (17, Scatter { own_lobe: true, ..scatter(0, 12) }, false),
+            (17, Scatter { direct_specular: true, ..scatter(0, 12) }, false),
         ),
         of("lobes", rough(8, 9, 77), glossy, lights, (17, scatter(2, 20), false)),
         of("a lobe under nothing", rough(5, 7, 78), one, none(), (8, scatter(1, 9), false)),
