@@ -7,11 +7,11 @@
 //! - [`SkyView`]: cosine-weighted unoccluded share of the sky. [`VisibleSky`]: unweighted share.
 //! - [`BentNormal`], [`ShVisibility`], [`ShTransfer`].
 //! - [`Ellipse`]s and visible points come from the device unchanged
-//! ([`plan::ellipses`](ridgelight::plan::ellipses),
-//! [`plan::visible_points`](ridgelight::plan::visible_points)). [`CurvedEllipses`] interpolate
-//! those of [`plan::curved_ellipses`](ridgelight::plan::curved_ellipses) on a curved base surface.
+//!   ([`plan::ellipses`](ridgelight::plan::ellipses),
+//!   [`plan::visible_points`](ridgelight::plan::visible_points)). [`CurvedEllipses`] interpolate
+//!   those of [`plan::curved_ellipses`](ridgelight::plan::curved_ellipses) on a curved base surface.
 //! - [`Facets`]: a field as flat triangles. [`Brdf`]: its far-field reflection as a table.
-//! [`Factors`] and [`BrdfHarmonics`]: the table in short form.
+//!   [`Factors`] and [`BrdfHarmonics`]: the table in short form.
 //! - [`Encoding`]: values to texels and back, with guaranteed error bounds.
 
 #![deny(clippy::missing_errors_doc)]

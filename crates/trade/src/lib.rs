@@ -1,7 +1,7 @@
 //! Error metrics, and the search for settings.
 //!
 //! - [`error`]: root mean square, mean shift, 99th percentile and worst texel, of radiance and of
-//! horizons;
+//!   horizons;
 //! - [`flip`]: ꟻLIP, the perceived difference of two pictures;
 //! - [`statistics`]: median and percentiles of times and of errors;
 //! - [`auto`]: settings for a given error or time, chosen while rendering;

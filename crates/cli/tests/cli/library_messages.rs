@@ -22,15 +22,15 @@ fn literals(source: &str) -> Vec<(usize, &str)> {
                 let length = rest[open..].find(&end).unwrap_or(rest.len() - open);
                 all.push((next, &rest[open..open + length]));
                 open + length + end.len()
-            } else if rest.starts_with('"') {
+            } else if let Some(inner) = rest.strip_prefix('"') {
                 let mut is_escaped = false;
-                let close = rest[1..].find(|c| {
+                let close = inner.find(|c| {
                     let closes = c == '"' && !is_escaped;
                     is_escaped = c == '\\' && !is_escaped;
                     closes
                 });
-                let length = close.unwrap_or(rest.len() - 1);
-                all.push((next, &rest[1..=length]));
+                let length = close.unwrap_or(inner.len());
+                all.push((next, &inner[..length]));
                 (length + 2).min(rest.len())
             } else if rest.starts_with("'\"'") {
                 3

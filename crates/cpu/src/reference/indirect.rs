@@ -2,16 +2,16 @@
 //! tracer, which follows the definition below and shares no code.
 //!
 //! - A result is the exit radiance of a grid point, towards straight above where there is Phong specular, with the
-//! grid point's normal ([`normal`]) and albedo. Light in directions e with N·e > 0 counts.
+//!   grid point's normal ([`normal`]) and albedo. Light in directions e with N·e > 0 counts.
 //! - Rays hit the triangulated surface. A direction that leads from the grid point straight into the ground hits, at
-//! distance 0, the triangle in its azimuth.
+//!   distance 0, the triangle in its azimuth.
 //! - A hit point reflects diffusely, with the geometric normal of its triangle and the albedo interpolated over the
-//! triangle's corners. Its specular is left out, unlike in the path tracer: with Phong specular, bounces here are a
-//! lower bound wherever ground is visible from ground.
+//!   triangle's corners. Its specular is left out, unlike in the path tracer: with Phong specular, bounces here are a
+//!   lower bound wherever ground is visible from ground.
 //! - Sky and environment are visible where nothing is hit: above horizontal under `plane` and `periodic`, everywhere
-//! under `open`. Rays that leave the field below horizontal under `plane` hit black ground.
+//!   under `open`. Rays that leave the field below horizontal under `plane` hit black ground.
 //! - Bounce 0 is light straight from its sources; bounce b has been reflected b times before it reaches the grid
-//! point. Results hold all bounces up to b.
+//!   point. Results hold all bounces up to b.
 //!
 //! The unknowns are the radiances at the corners of every triangle, three per triangle as a shared corner has another
 //! normal on each; radiance is linear between them. All receivers at a grid point share the same profiles
