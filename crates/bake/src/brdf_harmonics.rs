@@ -151,8 +151,8 @@ mod tests {
     use super::*;
 
     /// The fit recovers a sum of harmonics; with Phong specular one that is not reciprocal. For an
-    /// eigenvalue s of BᵀWB the ridge removes the share r/(s + r) of the coefficients, and √s r/(s
-    /// + r) ≤ √r/2 of the values, as a norm weighted by cos θ dω. At one direction of weight w that
+    /// eigenvalue s of BᵀWB the ridge removes the share r/(s + r) of the coefficients, and √s r/(s +
+    /// r) ≤ √r/2 of the values, as a norm weighted by cos θ dω. At one direction of weight w that
     /// is at most √(r/w)/2 of the coefficients' length. It counts once for lights and once for
     /// views; the other side's harmonics have the length √(n²/4π) everywhere.
     #[test]
