@@ -4,7 +4,7 @@
 //!
 //! FOLDER has height fields in `height/` and environments in `env/`. Every field (its middle N², 256) is
 //! paired with every environment and with skies and suns; pairs of an even sum of places are for fitting:
-//! `--fit` measures those and prints the table of `src/measure/auto/fitted.rs`. So every field and every
+//! `--fit` measures those and prints the table of `crates/trade/src/auto/fitted.rs`. So every field and every
 //! light is in both halves, and no pair is. The other half is reported: per error asked for, what was
 //! chosen, its true error, and its time over that of the cheapest that truly holds of all that a `trade`
 //! walk of S (20) seconds and the choices for all errors drew, in turn. `--only` takes the pairs whose name holds a text; `--json`

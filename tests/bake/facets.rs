@@ -445,7 +445,7 @@ fn what_is_no_plane_from_afar_is_refused() {
     let words = Facets::of(&scene, 1, above(8), vec![0; 3]).unwrap_err().to_string();
     assert!(words.contains("found 3 words"), "{words}");
     let lost = Facets::of(&scene, 1, above(8), vec![1 << 31; 49]).unwrap_err().to_string();
-    assert!(lost.contains("took more steps"), "{lost}");
+    assert!(lost.contains("exceeded the step limit"), "{lost}");
 }
 
 /// Grids of angles: weights are π together, a direction of the grid stands alone, halfway between it is halves, and the turn

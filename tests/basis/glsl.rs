@@ -214,8 +214,9 @@ fn harmonics_are_harmonics() {
 /// The shaders' copies are the texts. `RIDGELIGHT_BLESS=1` writes them anew.
 #[test]
 fn the_shaders_copies_are_the_texts() {
-    let shared = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders_glsl/shared");
-    for (name, text) in [("seen.glsl", glsl_seen()), ("harmonics.glsl", glsl_harmonics())] {
+    let shared = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders_glsl");
+    for (name, text) in [("sh/seen.glsl", glsl_seen()), ("shared/harmonics.glsl", glsl_harmonics())]
+    {
         let path = shared.join(name);
         if std::env::var_os("RIDGELIGHT_BLESS").is_some_and(|v| v == "1") {
             std::fs::write(&path, &text).expect("written");

@@ -168,9 +168,7 @@ mod tests {
             said(1.0, 0.97)
         );
         assert!(said(1.0, 0.8).ends_with("Advice: add --hull shared."));
-        assert!(
-            said(1.3, 0.8).ends_with("planner.") && said(1.0 / 1.3, 0.75).ends_with("planner.")
-        );
+        assert!(said(1.3, 0.8).ends_with("choice.") && said(1.0 / 1.3, 0.75).ends_with("choice."));
         let all = said(1.0, 0.8);
         assert!(all.contains("private 1.00 × (measured twice), shared 0.800 ×;"), "{all}");
         assert!(all.contains("--hull list was not timed: late."), "{all}");

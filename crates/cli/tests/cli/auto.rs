@@ -185,7 +185,7 @@ fn gpu_goals_out_of_reach_are_refused_and_a_budget_is_kept() {
     write_field(&folder, SIDE, peaks);
     let before = folder.contents();
     for (goal, says) in [
-        ("--max-error 1e-9", ["--max-error 0.000000001: needs", "exact light", "half of its rays"]),
+        ("--max-error 1e-9", ["--max-error 0.000000001: needs", "an oracle", "half of its rays"]),
         ("--time-budget 1e-6", ["--time-budget 0.000001: needs", "ms a frame", "--azimuths"]),
     ] {
         let args = format!("render field.npy -o out.exr {goal}");

@@ -246,7 +246,7 @@ fn gpu_views_of_back_faces_hold_0() {
     let run = folder.run(&words.split(' ').collect::<Vec<_>>());
     assert_eq!(run.status, Some(0), "{}", run.err);
     let said =
-        "note: light-field, btf: 2 of 8 directions of --angles see nothing of the field's front";
+        "note: light-field, btf: 2 of 8 directions of --angles do not face the field's front";
     assert!(run.err.contains(said), "{}", run.err);
     let manifest = json(&folder.path("out/manifest.json"));
     for (at, name) in ["light_field", "btf"].into_iter().enumerate() {
@@ -275,7 +275,7 @@ fn gpu_requested_settings_of_scattered_light_are_listed() {
     let said = of("half --lines exact --bounces 2 --bounce-engine pyramid");
     for what in [
         "--lines exact changes nothing with --method brute-force",
-        "--bounce-engine pyramid changes nothing for what is baked",
+        "--bounce-engine pyramid changes nothing for these kinds",
         ".ktx2 stores f16; use --encoding scatter=f32",
     ] {
         assert!(said.contains(what), "{said}");

@@ -248,7 +248,7 @@ fn gpu_scattered_specular_is_added_to_its_picture() {
         }
         let manifest = json(&folder.path(name).join("manifest.json"));
         let said = manifest["maps"][0]["values"][0]["about"].as_str().unwrap_or_default();
-        assert!(said.contains("straight above"), "{manifest}");
+        assert!(said.contains("straight up"), "{manifest}");
     }
     let keys = "bake field.npy -o keys --border periodic --albedo 0.5 --specular 20,0.5 --sphere-light 3,3,9,1,5 --what";
     let said = "specular and 1 key lights and sphere lights";

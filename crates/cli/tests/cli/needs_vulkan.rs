@@ -365,7 +365,7 @@ fn gpu_devices_are_listed_and_chosen() {
         let args = ["render", "a.asc", "-o", "out.png", "--device", wanted];
         assert_eq!(folder.run(&args).status, Some(0), "{wanted}");
         let run = folder.run(&["plan", "a.asc", "--device", wanted]);
-        assert!(run.out.starts_with(&format!("for {name}\n")), "{}", run.out);
+        assert!(run.out.starts_with(&format!("Plan for {name}\n")), "{}", run.out);
     }
     std::fs::remove_file(folder.path("out.png")).unwrap();
     let before = folder.contents();

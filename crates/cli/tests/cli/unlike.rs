@@ -37,7 +37,7 @@ fn what_are_no_horizons_is_refused() {
     folder.write("a1.png", &png(4, 3, colour::GREY, 8, &[], &[0; 12]));
     write(&folder, "up.exr", &[("horizon.000.000", [std::f32::consts::FRAC_PI_2; 12])]);
     assert_eq!(run(&folder, "compare up.exr up.exr --horizons").status, Some(0));
-    let named = "expected horizons: horizon.000.000";
+    let named = "expected horizon channels horizon.000.000";
     let radians = "expected an elevation, -π/2 to π/2 radians";
     refused(
         &folder,

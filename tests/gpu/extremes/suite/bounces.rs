@@ -35,7 +35,7 @@ const MIDDLE: usize = 16;
 const PLACES: usize = 40;
 
 const EXPECTED: &str = "all ground shining alike: of what it throws, least to most, the share that the oracle's horizons leave above the own plane; pyramid: what its twins see";
-const BOUND: &str = "the engine's, from what the twin sees (`src/measure/tolerance/bounce.rs`), at most all that is thrown; 4 ε";
+const BOUND: &str = "the engine's, from what the twin sees (`crates/cpu/src/tolerance/bounce.rs`), at most all that is thrown; 4 ε";
 
 pub fn cases() -> Vec<Case> {
     let square = [1.0, 1.0];

@@ -35,7 +35,7 @@ const SIDE: usize = 33;
 const PLACES: usize = 12;
 
 const EXPECTED: &str = "what the twins see of the sun's own harmonics thrown by every sample's lobe and diffusely, mirrored to above";
-const BOUND: &str = "series: what arrives, leaves and is gathered (`src/measure/tolerance/gloss.rs`), a lobe's sum of them; 4 ε";
+const BOUND: &str = "series: what arrives, leaves and is gathered (`crates/cpu/src/tolerance/specular.rs`), a lobe's sum of them; 4 ε";
 
 const STEEP: &str = "thrown and mirrored by a spike of 1e6 cells, lobes of 0 and 1e4 in turn";
 

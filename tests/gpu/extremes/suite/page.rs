@@ -33,7 +33,7 @@ horizon, at the distance d of what makes it, with heights up to H:
 | pyramid | on planes (2 + 144) ε H / d: heights in, levels; elsewhere what is expected is not the truth but what its twin on the processor finds in f32 from the same heights, within the angle (232 H + 12 R) ε / step and 6e-6 of the steepest that it may be, R / step or 1, R highest less lowest |
 | f16 besides | 2^-10 of the slope and 2^-24; slopes beyond 65 504 are that |
 | packed besides | 2^-9 H / d and 100 ε H / d |
-| harmonics | as all others: they change an environment's light alone, by what f32 may do to their *series* (`src/measure/harmonics.rs`); by *nlp* and *table* what is expected of an environment is what the series keeps of it, in f64 |
+| harmonics | as all others: they change an environment's light alone, by what f32 may do to their *series* (`crates/cpu/src/sh/harmonics.rs`); by *nlp* and *table* what is expected of an environment is what the series keeps of it, in f64 |
 
 *Not judged*: a pyramid's levels are nearly level somewhere whatever they are made from, and the rounding of 1e6
 cells alone turns an angle there by anything. In each other row a bound is below a tenth of the largest that is expected in it.
@@ -44,7 +44,7 @@ sweeps along lines have met, and pyramids; with the azimuths of `--bounce-azimut
 Visible points are numbers of samples: right, or wrong. Ellipses of the sky and light that is scattered are found from them.
 
 Bounds on a slope are each turned into an angle by 1 / (1 + slope²), and the arc tangent's 4.4e-7 of slopes below 1.
-Derived in `src/measure/tolerance.rs` and `tests/gpu/extremes/suite/methods.rs`.
+Derived in `crates/cpu/src/tolerance.rs` and `tests/gpu/extremes/suite/methods.rs`.
 ";
 
 /// What stands before the inputs that are refused.

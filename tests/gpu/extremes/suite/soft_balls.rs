@@ -30,7 +30,8 @@ fn soft(case: Case) -> Case {
         about: About::SoftBalls,
         expected: "what their order keeps of it, from the same series in f64, at least 0"
             .to_owned(),
-        bound: "what f32 may do to the series (`src/measure/soft_sphere.rs`), and 4 ε".to_owned(),
+        bound: "what f32 may do to the series (`crates/cpu/src/direct/soft_sphere.rs`), and 4 ε"
+            .to_owned(),
         probes: Box::new(probes),
         // Of 64 cells a pyramid's levels may err by more than a ball is wide.
         unjudged: match super::relief(&case.scene.field) > 16.0 {

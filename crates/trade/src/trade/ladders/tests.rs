@@ -123,7 +123,9 @@ fn ladders_have_their_range_and_default() {
     assert_eq!(found, expected);
     for ladder in &all {
         let Some(range) = &ladder.range else { continue };
-        let count = |s: &String| s.split(' ').next_back().unwrap().parse::<u32>().unwrap();
+        let count = |s: &String| {
+            s.trim_end_matches('`').split(' ').next_back().unwrap().parse::<u32>().unwrap()
+        };
         let counts: Vec<u32> = ladder.steps.iter().map(count).collect();
         assert!(counts.iter().all(|c| range.contains(c)), "{counts:?}");
         assert!(counts.windows(2).all(|two| two[0] < two[1]), "{counts:?}");
