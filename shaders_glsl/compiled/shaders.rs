@@ -1095,7 +1095,7 @@ pub const PATH_TRACE: Shader = Shader {
         Constant { id: 5, name: "has_lobe" },
         Constant { id: 6, name: "thin_cols" },
         Constant { id: 7, name: "has_lights" },
-        Constant { id: 8, name: "has_balls" },
+        Constant { id: 8, name: "has_sphere_lights" },
         Constant { id: 9, name: "has_bounces" },
         Constant { id: 10, name: "most_steps" },
         Constant { id: 11, name: "has_keys" },
@@ -1103,7 +1103,7 @@ pub const PATH_TRACE: Shader = Shader {
         Constant { id: 13, name: "lobe_is_map" },
         Constant { id: 14, name: "at_places" },
     ],
-    words: words_at(114106, 22904),
+    words: words_at(114106, 22906),
 };
 
 /// `shaders_glsl/reference/path_trace.comp` with its specialisation constants.
@@ -1125,8 +1125,8 @@ pub(crate) struct PathTrace {
     pub thin_cols: bool,
     /// `HAS_LIGHTS`, by default false.
     pub has_lights: bool,
-    /// `HAS_BALLS`, by default false.
-    pub has_balls: bool,
+    /// `HAS_SPHERE_LIGHTS`, by default false.
+    pub has_sphere_lights: bool,
     /// `HAS_BOUNCES`, by default false.
     pub has_bounces: bool,
     /// `MOST_STEPS`, by default 60000.
@@ -1152,7 +1152,7 @@ impl Default for PathTrace {
             has_lobe: false,
             thin_cols: false,
             has_lights: false,
-            has_balls: false,
+            has_sphere_lights: false,
             has_bounces: false,
             most_steps: 60000,
             has_keys: false,
@@ -1174,7 +1174,7 @@ impl From<PathTrace> for Specialised {
             u32::from(of.has_lobe),
             u32::from(of.thin_cols),
             u32::from(of.has_lights),
-            u32::from(of.has_balls),
+            u32::from(of.has_sphere_lights),
             u32::from(of.has_bounces),
             of.most_steps as u32,
             u32::from(of.has_keys),
@@ -1195,7 +1195,7 @@ pub const PICTURE_TONE_FRAG: Shader = Shader {
     constants: &[
         Constant { id: 0, name: "encodes" },
     ],
-    words: words_at(137010, 455),
+    words: words_at(137012, 455),
 };
 
 /// `shaders_glsl/view/picture_tone.frag` with its specialisation constants.
@@ -1229,7 +1229,7 @@ pub const PICTURE_TONE_VERT: Shader = Shader {
     ],
     constants: &[
     ],
-    words: words_at(137465, 266),
+    words: words_at(137467, 266),
 };
 
 /// `shaders_glsl/view/picture_tone.vert` with its specialisation constants.
@@ -1261,7 +1261,7 @@ pub const PYRAMID_MARCH: Shader = Shader {
         Constant { id: 2, name: "levels" },
         Constant { id: 3, name: "node_stride" },
     ],
-    words: words_at(137731, 9022),
+    words: words_at(137733, 9022),
 };
 
 /// `shaders_glsl/horizon/pyramid_march.comp` with its specialisation constants.
@@ -1327,7 +1327,7 @@ pub const SCATTER_GATHER: Shader = Shader {
         Constant { id: 6, name: "bent" },
         Constant { id: 7, name: "own_lobe" },
     ],
-    words: words_at(146753, 4659),
+    words: words_at(146755, 4659),
 };
 
 /// `shaders_glsl/bake/scatter_gather.comp` with its specialisation constants.
@@ -1401,7 +1401,7 @@ pub const SH_SHADE: Shader = Shader {
         Constant { id: 4, name: "node_stride" },
         Constant { id: 5, name: "lobe_is_map" },
     ],
-    words: words_at(151412, 12952),
+    words: words_at(151414, 12952),
 };
 
 /// `shaders_glsl/sh/sh_shade.comp` with its specialisation constants.
@@ -1473,7 +1473,7 @@ pub const SH_VISIBILITY: Shader = Shader {
         Constant { id: 8, name: "lane_stride" },
         Constant { id: 9, name: "lattice_stride" },
     ],
-    words: words_at(164364, 29805),
+    words: words_at(164366, 29805),
 };
 
 /// `shaders_glsl/sh/sh_visibility.comp` with its specialisation constants.
@@ -1553,7 +1553,7 @@ pub const SH_WEDGES: Shader = Shader {
         Constant { id: 3, name: "own_plane_hides" },
         Constant { id: 4, name: "lane_stride" },
     ],
-    words: words_at(194169, 7775),
+    words: words_at(194171, 7775),
 };
 
 /// `shaders_glsl/sh/sh_wedges.comp` with its specialisation constants.
@@ -1607,7 +1607,7 @@ pub const SHADE_EXPAND: Shader = Shader {
     constants: &[
         Constant { id: 0, name: "periodic" },
     ],
-    words: words_at(201944, 2396),
+    words: words_at(201946, 2396),
 };
 
 /// `shaders_glsl/bounce/shade_expand.comp` with its specialisation constants.
@@ -1639,7 +1639,7 @@ pub const SHADE_REDUCE: Shader = Shader {
         Constant { id: 1, name: "from_field" },
         Constant { id: 2, name: "grey" },
     ],
-    words: words_at(204340, 2916),
+    words: words_at(204342, 2916),
 };
 
 /// `shaders_glsl/bounce/shade_reduce.comp` with its specialisation constants.
@@ -1673,7 +1673,7 @@ pub const SKY_DRAW_FRAG: Shader = Shader {
     constants: &[
         Constant { id: 0, name: "has_environment" },
     ],
-    words: words_at(207256, 1269),
+    words: words_at(207258, 1269),
 };
 
 /// `shaders_glsl/view/sky_draw.frag` with its specialisation constants.
@@ -1699,7 +1699,7 @@ pub const SKY_DRAW_VERT: Shader = Shader {
     ],
     constants: &[
     ],
-    words: words_at(208525, 289),
+    words: words_at(208527, 289),
 };
 
 /// `shaders_glsl/view/sky_draw.vert` with its specialisation constants.
@@ -1738,7 +1738,7 @@ pub const SKY_SHADE: Shader = Shader {
         Constant { id: 6, name: "marches_rows" },
         Constant { id: 7, name: "relights" },
     ],
-    words: words_at(208814, 22805),
+    words: words_at(208816, 22805),
 };
 
 /// `shaders_glsl/direct/sky_shade.comp` with its specialisation constants.
@@ -1816,7 +1816,7 @@ pub const SPECULAR_EXIT: Shader = Shader {
         Constant { id: 5, name: "vectors" },
         Constant { id: 6, name: "halves" },
     ],
-    words: words_at(231619, 6433),
+    words: words_at(231621, 6433),
 };
 
 /// `shaders_glsl/specular/specular_exit.comp` with its specialisation constants.
@@ -1895,7 +1895,7 @@ pub const SPECULAR_GATHER: Shader = Shader {
         Constant { id: 6, name: "order" },
         Constant { id: 7, name: "most_knots" },
     ],
-    words: words_at(238052, 20112),
+    words: words_at(238054, 20112),
 };
 
 /// `shaders_glsl/specular/specular_gather.comp` with its specialisation constants.
@@ -1962,7 +1962,7 @@ pub const SPECULAR_VISIBILITY: Shader = Shader {
         Constant { id: 0, name: "order" },
         Constant { id: 1, name: "grey" },
     ],
-    words: words_at(258164, 1238),
+    words: words_at(258166, 1238),
 };
 
 /// `shaders_glsl/specular/specular_visibility.comp` with its specialisation constants.
@@ -2019,7 +2019,7 @@ pub const SPHERE_SH_SHADE: Shader = Shader {
         Constant { id: 8, name: "stack" },
         Constant { id: 9, name: "levels" },
     ],
-    words: words_at(259402, 27587),
+    words: words_at(259404, 27587),
 };
 
 /// `shaders_glsl/sh/sphere_sh_shade.comp` with its specialisation constants.
@@ -2097,7 +2097,7 @@ pub const SPHERE_SHADE: Shader = Shader {
         Constant { id: 2, name: "thin_cols" },
         Constant { id: 3, name: "most_steps" },
     ],
-    words: words_at(286989, 14297),
+    words: words_at(286991, 14297),
 };
 
 /// `shaders_glsl/direct/sphere_shade.comp` with its specialisation constants.
@@ -2157,7 +2157,7 @@ pub const SUN_SHADE: Shader = Shader {
         Constant { id: 5, name: "marches_rows" },
         Constant { id: 6, name: "relights" },
     ],
-    words: words_at(301286, 22087),
+    words: words_at(301288, 22087),
 };
 
 /// `shaders_glsl/direct/sun_shade.comp` with its specialisation constants.
@@ -2225,7 +2225,7 @@ pub const SUN_SPECULAR: Shader = Shader {
         Constant { id: 3, name: "order" },
         Constant { id: 4, name: "grey" },
     ],
-    words: words_at(323373, 7943),
+    words: words_at(323375, 7943),
 };
 
 /// `shaders_glsl/specular/sun_specular.comp` with its specialisation constants.
@@ -2270,7 +2270,7 @@ pub const SURFACE_SWEEP: Shader = Shader {
         Constant { id: 2, name: "periodic" },
         Constant { id: 3, name: "writes_distances" },
     ],
-    words: words_at(331316, 6812),
+    words: words_at(331318, 6812),
 };
 
 /// `shaders_glsl/horizon/surface_sweep.comp` with its specialisation constants.
@@ -2329,7 +2329,7 @@ pub const SWEEP_FUSE: Shader = Shader {
         Constant { id: 5, name: "lattice_has_distances" },
         Constant { id: 6, name: "marches_rows" },
     ],
-    words: words_at(338128, 18087),
+    words: words_at(338130, 18087),
 };
 
 /// `shaders_glsl/horizon/sweep_fuse.comp` with its specialisation constants.
@@ -2391,7 +2391,7 @@ pub const TERRAIN_DRAW_FRAG: Shader = Shader {
         Constant { id: 0, name: "is_grey" },
         Constant { id: 1, name: "has_voids" },
     ],
-    words: words_at(356215, 1130),
+    words: words_at(356217, 1130),
 };
 
 /// `shaders_glsl/view/terrain_draw.frag` with its specialisation constants.
@@ -2421,7 +2421,7 @@ pub const TERRAIN_DRAW_VERT: Shader = Shader {
     ],
     constants: &[
     ],
-    words: words_at(357345, 917),
+    words: words_at(357347, 917),
 };
 
 /// `shaders_glsl/view/terrain_draw.vert` with its specialisation constants.
@@ -2449,7 +2449,7 @@ pub const VECTOR_REDUCE: Shader = Shader {
         Constant { id: 0, name: "periodic" },
         Constant { id: 1, name: "from_field" },
     ],
-    words: words_at(358262, 2963),
+    words: words_at(358264, 2963),
 };
 
 /// `shaders_glsl/bounce/vector_reduce.comp` with its specialisation constants.
@@ -2488,7 +2488,7 @@ pub const VISIBLE_POINTS: Shader = Shader {
         Constant { id: 3, name: "most_steps" },
         Constant { id: 4, name: "small" },
     ],
-    words: words_at(361225, 9659),
+    words: words_at(361227, 9659),
 };
 
 /// `shaders_glsl/bake/visible_points.comp` with its specialisation constants.
@@ -3513,4 +3513,4 @@ pub mod offsets {
 }
 
 /// Words of all shaders together.
-const WORD_COUNT: usize = 370884;
+const WORD_COUNT: usize = 370886;

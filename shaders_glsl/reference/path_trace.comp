@@ -31,7 +31,7 @@ layout(constant_id = 4) const bool HAS_ENVIRONMENT = false;
 layout(constant_id = 5) const bool HAS_LOBE = false;
 layout(constant_id = 7) const bool HAS_LIGHTS = false;  // suns, key lights or sphere lights
 layout(constant_id = 11) const bool HAS_KEYS = false;
-layout(constant_id = 8) const bool HAS_BALLS = false;
+layout(constant_id = 8) const bool HAS_SPHERE_LIGHTS = false;
 layout(constant_id = 9) const bool HAS_BOUNCES = false;
 // More steps than a ray of this field can take; 60,000 at most, as llvmpipe ends all loops of an invocation together
 // after 65,535 iterations.
@@ -307,13 +307,13 @@ vec3 path_light(Place place, uint index, uvec3 key, bool alive, inout uvec2 rays
             seen += from_there.rgb * (of.density / max(of.density + from_there.w, 1e-30));
         }
         seen = met.what == RAY_FREE ? seen : vec3(0.0);
-        if (HAS_BALLS) {
+        if (HAS_SPHERE_LIGHTS) {
             int i = max(suns + keys, first_light);
             for (; i < last_light; i++) {
-                vec4 ball = texelFetch(lights, ivec2(0, i), 0);
-                vec3 to = ball.xyz - centre;
+                vec4 sphere = texelFetch(lights, ivec2(0, i), 0);
+                vec3 to = sphere.xyz - centre;
                 float ahead = dot(to, e);
-                float inside = ball.w * ball.w - dot(to, to);
+                float inside = sphere.w * sphere.w - dot(to, to);
                 float exit_m = ahead + sqrt(max(ahead * ahead + inside, 0.0));
                 bool in_view = inside >= 0.0 && (met.what != RAY_HIT || met.t >= exit_m * ray.scale);
                 seen += in_view ? texelFetch(lights, ivec2(1, i), 0).rgb : vec3(0.0);

@@ -126,7 +126,8 @@ impl Bouncing {
             BounceEngine::Sweep => Engine::Sweep,
             BounceEngine::Auto => unreachable!("settled before"),
             BounceEngine::Pyramid => {
-                let has_numbers = glossy.is_none_or(|g| matches!(g.thrown, BouncedLight::Seen(_)));
+                let has_numbers =
+                    glossy.is_none_or(|g| matches!(g.outgoing, BouncedLight::Seen(_)));
                 Engine::Pyramid(pyramids(builder, (shade, grey), quality, levels, has_numbers))
             }
         };
@@ -182,7 +183,7 @@ impl Bouncing {
                 1 => "direct light off the surface".to_owned(),
                 _ => format!("light of bounce {} off the surface", k - 1),
             },
-            exit: match self.glossy.map(|glossy| glossy.thrown) {
+            exit: match self.glossy.map(|glossy| glossy.outgoing) {
                 Some(BouncedLight::Seen(exit)) => exit,
                 _ => before.unwrap_or(direct),
             },
@@ -310,7 +311,7 @@ fn gather(
 ) {
     if let Some(glossy) = glossy
         && let BouncedLight::Vectors(Vectors { exit, levels: Some([levels, table]), .. }) =
-            glossy.thrown
+            glossy.outgoing
     {
         for level in 1..=of.shade.levels() {
             let (of, ids) = ((&of.shade, level), [exit, levels, table]);

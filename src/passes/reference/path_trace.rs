@@ -137,7 +137,7 @@ pub(crate) fn plan(
         (e.rotation_rad() / std::f64::consts::TAU).rem_euclid(1.0) as f32
     };
     builder.pass(
-        shaders::PathTrace { border: surface.border as u32, thin_rows, thin_cols, set_bits: SET_BITS, albedo_is_map: is_map, has_environment: lights.environment.is_some(), has_lobe: surface.specular.is_some(), has_lights: count > 0, has_keys: !lights.keys.is_empty(), has_balls: !lights.sphere_lights.is_empty(), has_bounces: bounces > 0, most_steps: blocks.most_steps() as i32, in_parts: part.is_some(), lobe_is_map: matches!(surface.specular, Some(Specular::Map(_))), at_places: listed.is_some() },
+        shaders::PathTrace { border: surface.border as u32, thin_rows, thin_cols, set_bits: SET_BITS, albedo_is_map: is_map, has_environment: lights.environment.is_some(), has_lobe: surface.specular.is_some(), has_lights: count > 0, has_keys: !lights.keys.is_empty(), has_sphere_lights: !lights.sphere_lights.is_empty(), has_bounces: bounces > 0, most_steps: blocks.most_steps() as i32, in_parts: part.is_some(), lobe_is_map: matches!(surface.specular, Some(Specular::Map(_))), at_places: listed.is_some() },
         &label.join(" "),
         match listed {
             None => format!("{BATCH_PATHS} more paths a sample, up to {bounces} bounces"),

@@ -10,7 +10,7 @@ use crate::passes::pyramid::Pyramid;
 use crate::passes::sh_layout::by_fours;
 use crate::scene::{BounceSpecular, Quality};
 
-/// Series of what arrives, and what is thrown on.
+/// Series of what arrives, and what is outgoing on.
 #[derive(Clone, Copy)]
 pub(crate) struct Glossy {
     /// Of the series.
@@ -22,7 +22,7 @@ pub(crate) struct Glossy {
     /// What the lobes reflect upwards of all bounces.
     pub bounced: ResourceId,
     pub layer: Option<ResourceId>,
-    pub thrown: BouncedLight,
+    pub outgoing: BouncedLight,
 }
 
 /// What leaves a sample.
@@ -71,7 +71,7 @@ impl Glossy {
         let arriving = image("arriving", Owner::Internal, Format::Rgba32Float, arriving, true);
         let bounced = image("gloss_bounced", Owner::Internal, Format::Rgba32Float, flat, false);
         let layer = layers.then(|| image("glossy", Owner::Output, colour, flat, false));
-        let thrown = if quality.bounces.specular == BounceSpecular::Scalar {
+        let outgoing = if quality.bounces.specular == BounceSpecular::Scalar {
             BouncedLight::Seen(image("exit_seen", Owner::Internal, colour, flat, false))
         } else {
             let halves = quality.bounces.specular == BounceSpecular::VectorF16;
@@ -93,7 +93,7 @@ impl Glossy {
             let (constants, first_texel) = builder.constants(&texels);
             BouncedLight::Vectors(Vectors { exit, levels, halves, constants, first_texel, fours })
         };
-        Self { order, grey, arriving, bounced, layer, thrown }
+        Self { order, grey, arriving, bounced, layer, outgoing }
     }
 
     /// Layers of four coefficients of all channels.
@@ -103,7 +103,7 @@ impl Glossy {
 
     /// Of the series that leave.
     pub fn texel_bytes(&self) -> u64 {
-        match self.thrown {
+        match self.outgoing {
             BouncedLight::Vectors(Vectors { halves: true, .. }) => 8,
             _ => 16,
         }
@@ -111,7 +111,7 @@ impl Glossy {
 
     /// As the command line spells it.
     pub fn gloss(&self) -> BounceSpecular {
-        match self.thrown {
+        match self.outgoing {
             BouncedLight::Seen(_) => BounceSpecular::Scalar,
             BouncedLight::Vectors(Vectors { halves: true, .. }) => BounceSpecular::VectorF16,
             BouncedLight::Vectors(_) => BounceSpecular::Vector,

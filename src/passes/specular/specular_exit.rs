@@ -51,11 +51,11 @@ pub(crate) fn plan(
     let samples = u64::from(cols) * u64::from(rows);
     let is_direct = leaving.bounce == 0;
     let throws = leaving.diffuse.is_some();
-    let vectors = match glossy.thrown {
+    let vectors = match glossy.outgoing {
         BouncedLight::Vectors(vectors) if throws => Some(vectors),
         _ => None,
     };
-    let has_vectors = matches!(glossy.thrown, BouncedLight::Vectors(_));
+    let has_vectors = matches!(glossy.outgoing, BouncedLight::Vectors(_));
     let mut bound = vec![("ground", ground)];
     if has_vectors || !is_direct {
         bound.push(("arriving", glossy.arriving));
@@ -67,7 +67,7 @@ pub(crate) fn plan(
     }
     bound.extend(leaving.diffuse.map(|diffuse| ("exit_radiance", diffuse)));
     bound.extend(lobes.map.map(|map| ("phong_map", map)));
-    match (glossy.thrown, vectors) {
+    match (glossy.outgoing, vectors) {
         (_, Some(Vectors { exit, constants, .. })) => {
             bound.extend([("constants", constants), ("exit_vectors", exit)]);
         }

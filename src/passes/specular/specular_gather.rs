@@ -24,7 +24,7 @@ pub(crate) fn plan(
         ("arriving", glossy.arriving),
     ];
     bound.extend(of.height_bindings());
-    match glossy.thrown {
+    match glossy.outgoing {
         BouncedLight::Vectors(Vectors { exit, levels, .. }) => {
             bound.push(("exit_vectors", exit));
             let of_levels =
@@ -36,7 +36,7 @@ pub(crate) fn plan(
             bound.extend(of.shade_bindings());
         }
     }
-    let has_vectors = matches!(glossy.thrown, BouncedLight::Vectors(_));
+    let has_vectors = matches!(glossy.outgoing, BouncedLight::Vectors(_));
     // The march, and inside it samples that round to one distance; then for each sample that is seen, and for the
     // end, the sums over its coefficients.
     let looked_at = of.heights.samples();

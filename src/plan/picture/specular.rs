@@ -123,7 +123,7 @@ impl Drawing<'_> {
     /// The specular bounces, if stored as series.
     fn bounced_by_direction(&self) -> Option<Glossy> {
         let glossy = self.bouncing.as_ref().and_then(|bouncing| bouncing.glossy);
-        glossy.filter(|glossy| matches!(glossy.thrown, BouncedLight::Vectors(_)))
+        glossy.filter(|glossy| matches!(glossy.outgoing, BouncedLight::Vectors(_)))
     }
 
     /// Specular exit radiance of bounce `k`; 0 is direct light.

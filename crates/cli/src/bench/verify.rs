@@ -56,7 +56,7 @@ impl GroundTruth {
     }
 
     /// The same of all light but sphere lights'.
-    fn without_balls(&self) -> Self {
+    fn without_sphere_lights(&self) -> Self {
         let rest = self
             .expected
             .iter()
@@ -181,7 +181,7 @@ impl Verifier {
             let found =
                 sphere_lights::check(&self.scene, &self.ground_truth, gpu, quality, limits)?;
             let Some(scene) = sphere_lights::without(&self.scene) else { return Ok(found) };
-            let rest = Self { scene, ground_truth: self.ground_truth.without_balls() };
+            let rest = Self { scene, ground_truth: self.ground_truth.without_sphere_lights() };
             return Ok(format!("{}; {found}", rest.check_direct(gpu, quality, limits)?));
         }
         if quality.basis == Basis::Sh && self.scene.lights.environment.is_some() {

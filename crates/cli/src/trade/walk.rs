@@ -14,7 +14,7 @@ use super::rig::{Budget, Rig};
 use crate::setup;
 
 /// Share of the budget that one setting may take.
-const DEAREST: f64 = 0.1;
+const SLOWEST: f64 = 0.1;
 /// Share reserved for timing the recommended settings again, and their hull storage.
 pub const KEPT: f64 = 0.15;
 
@@ -186,7 +186,7 @@ fn visit(
     if baseline.is_some() {
         // At least two draws: one to warm up, one timed.
         let needs = 2.0 * expected_s(rig, walk, place, quality, plan.azimuths.len(), slow)?;
-        let most = rig.share(DEAREST);
+        let most = rig.share(SLOWEST);
         if needs > most {
             let why = format!(
                 "would take about {} s, more than a tenth of the budget ({} s)",

@@ -72,7 +72,7 @@ pub(super) fn check(
     let sky =
         rms(places.iter().zip(&ground_truth.open).map(|(place, open)| place.sky(border) - open));
     let open = rms(ground_truth.open.iter().copied());
-    let [of_sky, _, of_suns, of_balls] = bounds(scene, ground_truth.dark(), quality);
+    let [of_sky, _, of_suns, of_sphere_lights] = bounds(scene, ground_truth.dark(), quality);
     let what = "a uniform sky through the horizons";
     let (sky, sky_bound) = within(what, "the oracle", sky / open, of_sky, quality)?;
 
@@ -88,7 +88,7 @@ pub(super) fn check(
         whole - own - sky - suns - sphere_lights
     }));
     let scales = ground_truth.scales();
-    let aimed = scales[2] * of_suns + scales[3] * of_balls;
+    let aimed = scales[2] * of_suns + scales[3] * of_sphere_lights;
     let bound = (scales[0] * of_sky + aimed) / ground_truth.scale();
     within("other light", "the oracle", rest / ground_truth.scale(), bound, quality)?;
     Ok(format!(
