@@ -1866,7 +1866,7 @@ impl From<SpecularExit> for Specialised {
     }
 }
 
-/// `shaders_glsl/specular/specular_gather.comp`.
+/// `shaders_glsl/bounce/specular_gather.comp`.
 pub const SPECULAR_GATHER: Shader = Shader {
     name: "specular_gather",
     push_bytes: 64,
@@ -1898,7 +1898,7 @@ pub const SPECULAR_GATHER: Shader = Shader {
     words: words_at(238054, 20112),
 };
 
-/// `shaders_glsl/specular/specular_gather.comp` with its specialisation constants.
+/// `shaders_glsl/bounce/specular_gather.comp` with its specialisation constants.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SpecularGather {
     /// `PERIODIC`, by default false.
@@ -1992,7 +1992,7 @@ impl From<SpecularVisibility> for Specialised {
     }
 }
 
-/// `shaders_glsl/sh/sphere_sh_shade.comp`.
+/// `shaders_glsl/direct/sphere_sh_shade.comp`.
 pub const SPHERE_SH_SHADE: Shader = Shader {
     name: "sphere_sh_shade",
     push_bytes: 128,
@@ -2022,7 +2022,7 @@ pub const SPHERE_SH_SHADE: Shader = Shader {
     words: words_at(259404, 27587),
 };
 
-/// `shaders_glsl/sh/sphere_sh_shade.comp` with its specialisation constants.
+/// `shaders_glsl/direct/sphere_sh_shade.comp` with its specialisation constants.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SphereShShade {
     /// `BORDER`, by default 0.

@@ -15,9 +15,12 @@ pub use bake::facet_mask;
 pub(crate) use bake::{bent_directions, ellipse_fit, fan_weights, scatter_gather, visible_points};
 pub(crate) use bounce::{
     bounce_gather, bounce_march, bounce_nodes, bounce_shade, bounce_walk, bounces, cache_gather,
-    shade_expand, shade_reduce, vector_reduce,
+    shade_expand, shade_reduce, specular_gather, vector_reduce,
 };
-pub(crate) use direct::{env_tables, light_resolve, sky_shade, sphere_shade, spheres, sun_shade};
+pub(crate) use direct::{
+    env_tables, light_resolve, sky_shade, sphere_sh, sphere_sh_shade, sphere_shade, spheres,
+    sun_shade,
+};
 pub(crate) use edit::{dirty_list, dirty_mark, edits, horizon_resweep};
 pub use horizon::{azimuths, batch, nodes, pyramid, sweep, sweeping};
 pub(crate) use horizon::{
@@ -28,11 +31,8 @@ pub(crate) use rays::{blocks, height_bounds, height_cells};
 pub(crate) use reference::path_trace;
 pub(crate) use sh::{
     env_rotation, env_wedges, light_matrix, sh_layout, sh_shade, sh_visibility, sh_wedges,
-    sphere_sh, sphere_sh_shade,
 };
-pub(crate) use specular::{
-    glossy, specular_exit, specular_gather, specular_visibility, sun_specular,
-};
+pub(crate) use specular::{glossy, specular_exit, specular_visibility, sun_specular};
 pub use view::map_draw;
 pub(crate) use view::{picture_tone, sky_draw, terrain_draw};
 

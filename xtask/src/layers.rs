@@ -22,6 +22,10 @@ const CRATES: [&str; 9] = [
     "ridgelight-capi",
 ];
 
+/// Rooms of the core's passes, lowest first.
+const ROOMS: [&str; 10] =
+    ["rays", "horizon", "edit", "sh", "specular", "direct", "bounce", "bake", "reference", "view"];
+
 /// What each node imports, and how often.
 type Arrows = BTreeMap<String, BTreeMap<String, usize>>;
 
@@ -31,15 +35,12 @@ pub fn print(root: &Path) -> Outcome {
     for (what, names, arrows) in [
         ("crates", &CRATES[..], crates(root)?),
         ("modules of ridgelight", &MODULES[..], modules(root)?),
+        ("rooms of passes", &ROOMS[..], rooms(root)?),
     ] {
         writeln!(text, "{what}, lowest first").expect("to a string");
         for name in names {
             writeln!(text, "  {name:<20} {}", listed(arrows.get(*name))).expect("to a string");
         }
-    }
-    text.push_str("rooms of passes\n");
-    for (room, used) in &rooms(root)? {
-        writeln!(text, "  {room:<20} {}", listed(Some(used))).expect("to a string");
     }
     Ok(text)
 }
@@ -48,6 +49,7 @@ pub fn print(root: &Path) -> Outcome {
 pub fn check(root: &Path) -> Outcome {
     let mut wrong = upward(&CRATES, &crates(root)?);
     wrong.extend(upward(&MODULES, &modules(root)?));
+    wrong.extend(upward(&ROOMS, &rooms(root)?));
     if wrong.is_empty() {
         return Ok("layers: no circle, no import that points upward\n".to_owned());
     }

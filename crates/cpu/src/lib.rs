@@ -28,9 +28,11 @@ pub use bake::{
 };
 pub use bounce::{
     bounce_gather, bounce_march, bounce_shade, bounce_walk, cache_gather, shade_expand,
-    shade_reduce, vector_reduce,
+    shade_reduce, specular_gather, vector_reduce,
 };
-pub use direct::{env_tables, light_resolve, sky_shade, soft_sphere, sphere_shade, sun_shade};
+pub use direct::{
+    env_tables, light_resolve, sky_shade, soft_sphere, sphere_sh_shade, sphere_shade, sun_shade,
+};
 pub use edit::{dirty_list, dirty_mark, horizon_resweep};
 pub use horizon::{
     height_expand, height_reduce, height_transpose, horizon_march, horizon_sweep, lattice,
@@ -40,7 +42,6 @@ pub use rays::{height_bounds, height_cells};
 pub use reference::{indirect, key, light, lit, oracle, path_trace, profile, sphere};
 pub use sh::{
     env_rotation, env_wedges, harmonics, light_matrix, sh_shade, sh_visibility, sh_wedges,
-    sphere_sh_shade,
 };
-pub use specular::{specular_exit, specular_gather, specular_visibility, sun_specular};
+pub use specular::{specular_exit, specular_visibility, sun_specular};
 pub use view::{map_draw, picture_tone, sky_draw, terrain_draw};

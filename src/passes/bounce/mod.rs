@@ -7,4 +7,5 @@ pub(crate) mod bounces;
 pub(crate) mod cache_gather;
 pub(crate) mod shade_expand;
 pub(crate) mod shade_reduce;
+pub(crate) mod specular_gather;
 pub(crate) mod vector_reduce;

@@ -5,5 +5,3 @@ pub mod sh_layout;
 pub(crate) mod sh_shade;
 pub(crate) mod sh_visibility;
 pub(crate) mod sh_wedges;
-pub(crate) mod sphere_sh;
-pub(crate) mod sphere_sh_shade;

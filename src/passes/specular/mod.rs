@@ -1,5 +1,4 @@
 pub(crate) mod glossy;
 pub(crate) mod specular_exit;
-pub(crate) mod specular_gather;
 pub(crate) mod specular_visibility;
 pub(crate) mod sun_specular;

@@ -8,4 +8,5 @@ pub mod bounce_walk;
 pub mod cache_gather;
 pub mod shade_expand;
 pub mod shade_reduce;
+pub mod specular_gather;
 pub mod vector_reduce;

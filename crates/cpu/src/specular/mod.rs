@@ -2,6 +2,5 @@
 //! harmonics, and its reflection towards the view and the next bounce.
 
 pub mod specular_exit;
-pub mod specular_gather;
 pub mod specular_visibility;
 pub mod sun_specular;
