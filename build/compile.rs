@@ -10,7 +10,7 @@ use super::{fail, read};
 const NOT_SHADERS: [&str; 2] = ["shared", "compiled"];
 
 /// The shaders in a folder and in the folders inside it, sorted by file name.
-pub fn shaders_in(folder: &Path) -> Vec<PathBuf> {
+pub(crate) fn shaders_in(folder: &Path) -> Vec<PathBuf> {
     let mut sources = Vec::new();
     find(folder, &mut sources);
     sources.sort_by(|a, b| a.file_name().cmp(&b.file_name()));
@@ -31,13 +31,13 @@ fn find(folder: &Path, sources: &mut Vec<PathBuf>) {
 }
 
 /// The SPIR-V of one shader. The first error stops the build with file and line.
-pub fn compile(path: &Path) -> Vec<u32> {
+pub(crate) fn compile(path: &Path) -> Vec<u32> {
     let (text, files) = include(path);
     translate(&text, &files)
 }
 
 /// What a file's extension says, where it is a shader's.
-pub fn stage(path: &Path) -> Option<&'static str> {
+pub(crate) fn stage(path: &Path) -> Option<&'static str> {
     let extension = path.extension()?;
     ["comp", "frag", "vert"].into_iter().find(|stage| extension == *stage)
 }

@@ -12,7 +12,7 @@ use super::reflect::{self, Constant, Layouts, Reflection, reflect};
 use super::write;
 
 /// The library's shaders.
-pub fn core(out: &Path) {
+pub(crate) fn core(out: &Path) {
     let folder = Path::new("shaders_glsl");
     println!("cargo:rerun-if-changed={}", folder.display());
     let mut table = String::from(
@@ -50,7 +50,7 @@ pub fn core(out: &Path) {
 }
 
 /// Shaders of tests (`tests/gpu/decoders/*.comp`, where they are) as `NAME.spv`, which no library holds.
-pub fn decoders(out: &Path) {
+pub(crate) fn decoders(out: &Path) {
     let folder = Path::new("tests/gpu/decoders");
     if !folder.is_dir() {
         return;
@@ -178,7 +178,7 @@ fn add_layouts(table: &mut String, layouts: &Layouts) {
     writeln!(table, "}}").unwrap();
 }
 
-pub fn snake(name: &str) -> String {
+pub(crate) fn snake(name: &str) -> String {
     let mut out = String::new();
     for (i, c) in name.chars().enumerate() {
         if c.is_uppercase() && i > 0 {

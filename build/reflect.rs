@@ -8,7 +8,7 @@ use rspirv::spirv::{BuiltIn, Decoration, Dim, Op, StorageClass};
 use super::fail;
 
 /// One binding of a shader.
-pub struct Binding {
+pub(crate) struct Binding {
     pub name: String,
     /// A `BindingKind` as Rust text.
     pub kind: String,
@@ -16,7 +16,7 @@ pub struct Binding {
 }
 
 /// Default of a specialisation constant, of its own type.
-pub enum Default {
+pub(crate) enum Default {
     Bool(bool),
     Int(i32),
     Uint(u32),
@@ -24,23 +24,23 @@ pub enum Default {
 }
 
 /// One specialisation constant of a shader.
-pub struct Constant {
+pub(crate) struct Constant {
     pub name: String,
     pub default: Default,
 }
 
 /// What reflection finds in a shader; bindings and constants by number.
-pub struct Reflection {
+pub(crate) struct Reflection {
     pub push_bytes: u32,
     pub bindings: BTreeMap<u32, Binding>,
     pub constants: BTreeMap<u32, Constant>,
 }
 
 /// Byte offsets by structure and member, of all shaders.
-pub type Layouts = BTreeMap<String, BTreeMap<String, u32>>;
+pub(crate) type Layouts = BTreeMap<String, BTreeMap<String, u32>>;
 
 /// Reflects one shader and adds the offsets of its structs. A struct of one name must have one layout in all shaders.
-pub fn reflect(name: &str, words: &[u32], layouts: &mut Layouts) -> Reflection {
+pub(crate) fn reflect(name: &str, words: &[u32], layouts: &mut Layouts) -> Reflection {
     let module = rspirv::dr::load_words(words).unwrap_or_else(|e| fail(&format!("{name}: {e:?}")));
     let d = Decorations { module: &module };
     let (push_bytes, bindings) = variables(name, &d);
