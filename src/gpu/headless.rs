@@ -1,3 +1,10 @@
+pub(super) mod copy;
+pub(super) mod frame;
+pub(super) mod host_image;
+pub(super) mod look;
+pub(super) mod read;
+pub(super) mod scattering;
+
 use ash::{ext, khr, vk};
 
 use super::allocator::Blocks;

@@ -81,18 +81,12 @@
 //! `destroy`. A renderer that is dropped leaks and says so: what was recorded may still run.
 
 mod allocator;
-mod copy;
-mod frame;
 mod headless;
-mod host_image;
 mod instance;
-mod look;
 mod memory;
 mod pipelines;
-mod read;
 mod renderer;
 mod requirements;
-mod scattering;
 mod specialise;
 mod surface;
 mod validation;
@@ -101,14 +95,14 @@ mod view;
 pub use crate::graph::shaders;
 pub use allocator::{Allocation, Allocator, Blocks, MemoryRequest, MemoryUse};
 #[doc(hidden)]
-pub use frame::Owned;
-pub use frame::{Frame, Pixels};
-pub use headless::{Headless, HeadlessOptions};
-pub use host_image::{HostBuffer, HostImage};
-pub use instance::{choose, devices};
-pub use look::Seen;
+pub use headless::frame::Owned;
+pub use headless::frame::{Frame, Pixels};
+pub use headless::host_image::{HostBuffer, HostImage};
+pub use headless::look::Seen;
 #[doc(hidden)]
-pub use look::view_inputs;
+pub use headless::look::view_inputs;
+pub use headless::{Headless, HeadlessOptions};
+pub use instance::{choose, devices};
 #[doc(hidden)]
 pub use memory::{Backed, whole};
 pub use renderer::{BufferArg, ImageArg, ImageState, InputArg, Renderer, Timing, Work};

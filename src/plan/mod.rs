@@ -36,7 +36,6 @@
 mod active_lights;
 mod bend;
 mod change;
-mod choice;
 mod ellipses;
 mod facet_mask;
 mod finish;
@@ -49,13 +48,13 @@ pub(crate) mod scatter;
 mod view;
 mod visible_points;
 
-#[doc(hidden)]
-pub use choice::max_path_light;
 pub use ellipses::{curved_ellipses, ellipses};
 pub use facet_mask::facet_mask;
 pub use horizons::horizons;
 pub use map::map;
 pub use picture::{Picture, picture, picture_inputs};
+#[doc(hidden)]
+pub use reference::choice::max_path_light;
 pub use reference::{
     REFERENCE_BATCH, listed_places, reference, reference_at, reference_in_bands, reference_inputs,
     unsampled_bounce_error, unsampled_light_error,

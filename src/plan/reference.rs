@@ -1,10 +1,12 @@
+pub(super) mod choice;
+
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use super::Plan;
-use super::choice::{choice_density, environment_cdf, max_path_light};
 use crate::graph::{Builder, Format, Limits, Owner, ResourceId};
 use crate::passes::blocks::Blocks;
 use crate::passes::path_trace::{self, BATCH_PATHS};
+use crate::plan::reference::choice::{choice_density, environment_cdf, max_path_light};
 use crate::scene::{Albedo, Border, KeyLight, Lights, PhongSpecular, Scene, Specular};
 use crate::{Error, Result};
 

@@ -1,3 +1,8 @@
+pub(super) mod finer;
+pub(super) mod fractal;
+pub(super) mod hash;
+pub(super) mod normal;
+
 use super::Border;
 use crate::{Error, Result};
 

@@ -1,3 +1,6 @@
+pub(super) mod key;
+pub(super) mod key_harmonics;
+
 use super::{Environment, KeyLight};
 use crate::{Error, Result};
 

@@ -36,13 +36,7 @@ mod curvature;
 mod directions;
 mod environment;
 mod field;
-mod finer;
-mod fractal;
-mod hash;
-mod key;
-mod key_harmonics;
 mod lights;
-mod normal;
 mod quality;
 mod scatter;
 mod surface;
@@ -56,11 +50,11 @@ pub use camera::{Camera, Lens};
 pub use curvature::{Curvature, OcclusionChange};
 pub use directions::{Directions, least_radius};
 pub use environment::Environment;
+pub use field::fractal::fractal;
+pub use field::normal::normal;
 pub use field::{HeightField, fill_voids};
-pub use fractal::fractal;
-pub use key::KeyLight;
+pub use lights::key::KeyLight;
 pub use lights::{Lights, POINT_DIAMETER_RAD, SphereLight, Sun};
-pub use normal::normal;
 pub use quality::{
     Basis, Fuse, Hull, Levels, LightBasis, Lines, Method, Precision, Quality, Receiver, Wedges,
     Window,

@@ -2,11 +2,13 @@
 
 use ash::vk;
 
-use super::allocator::MemoryUse;
-use super::failed;
-use super::frame::Owned;
-use super::memory::{Backed, DEPTH, whole_attachment};
-use super::{Frame, Headless, ImageArg, ImageState, Timing, ViewInputs, ViewOutputs, ViewRenderer};
+use crate::gpu::allocator::MemoryUse;
+use crate::gpu::failed;
+use crate::gpu::headless::frame::Owned;
+use crate::gpu::memory::{Backed, DEPTH, whole_attachment};
+use crate::gpu::{
+    Frame, Headless, ImageArg, ImageState, Timing, ViewInputs, ViewOutputs, ViewRenderer,
+};
 use crate::graph::Format;
 use crate::plan::View;
 use crate::{Error, Result};

@@ -2,13 +2,13 @@
 
 use std::f64::consts::PI;
 
-use super::reference::visible_part;
+use crate::plan::reference::visible_part;
 use crate::scene::{Albedo, Border, Environment, KeyLight, Scene, Specular, Sun};
 
 /// Cumulative distribution of an environment's texels, in proportion to the light of all channels: rows of width + 1
 /// values. First column: the share of the rows from the zenith to this one. Then the share, within the row, of the
 /// texels up to each. Rows below horizontal count under `open` only.
-pub(super) fn environment_cdf(environment: &Environment, border: Border) -> Vec<f32> {
+pub(in crate::plan) fn environment_cdf(environment: &Environment, border: Border) -> Vec<f32> {
     let (width, height) = (environment.width(), environment.height());
     let lit_rows = environment.rows_above_ground(border);
     let rows: Vec<Vec<f64>> = environment
@@ -44,7 +44,7 @@ fn running_shares(values: impl Iterator<Item = f64>) -> Vec<f64> {
 
 /// Density of the chosen directions of each texel, 1/sr: the rounded shares over the texel's solid angle
 /// (2π/width)(cos a - cos b), written without cancellation.
-pub(super) fn choice_density(environment: &Environment, cdf: &[f32]) -> Vec<f64> {
+pub(in crate::plan) fn choice_density(environment: &Environment, cdf: &[f32]) -> Vec<f64> {
     let (width, height) = (environment.width(), environment.height());
     let at = |row: usize, col: usize| f64::from(cdf[row * (width + 1) + col]);
     let half_row = 0.5 * PI / height as f64;
@@ -113,7 +113,7 @@ pub fn max_path_light(scene: &Scene, bounces: u32) -> [f64; 3] {
     })
 }
 
-/// Irradiance facing a sun, spread over its whole cone: see [`super::reference_inputs`].
+/// Irradiance facing a sun, spread over its whole cone: see [`crate::plan::reference_inputs`].
 fn sun_facing(sun: &Sun, channel: usize) -> f64 {
     2.0 / (1.0 + (0.5 * sun.diameter_rad).cos()) * f64::from(sun.irradiance[channel])
 }

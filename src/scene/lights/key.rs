@@ -1,6 +1,6 @@
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-use super::lights::{ANGLE, RADIANCES, is_angle, is_valid_radiance};
+use crate::scene::lights::{ANGLE, RADIANCES, is_angle, is_valid_radiance};
 use crate::{Error, Result};
 
 /// A patch of uniform radiance at infinity between two azimuths and two elevations: a window, or a bright part of the
@@ -24,7 +24,7 @@ const LOWEST_RAD: f64 = 1e-5;
 
 impl KeyLight {
     /// Checks every range; `number` counts from 1.
-    pub(super) fn check(&self, number: usize) -> Result<()> {
+    pub(in crate::scene) fn check(&self, number: usize) -> Result<()> {
         let bad = |what: &str, found: String, expected: &str| {
             Err(Error::setting(format!("key {number}: {what}"), found, expected))
         };

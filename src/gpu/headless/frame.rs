@@ -1,14 +1,14 @@
-use super::allocator::Blocks;
-use super::memory::Backed;
-use super::{Headless, ImageArg, ImageState, Renderer, Timing};
+use crate::gpu::allocator::Blocks;
+use crate::gpu::memory::Backed;
+use crate::gpu::{Headless, ImageArg, ImageState, Renderer, Timing};
 use crate::graph::{Format, Kind, Owner, Rectangle, Resource};
 use crate::plan::Plan;
 use crate::{Error, Result};
 
 /// A renderer with images for its inputs and outputs; given back with [`Headless::end`].
 pub struct Frame {
-    pub(super) renderer: Option<Renderer>,
-    pub(super) inputs: Vec<Owned>,
+    pub(in crate::gpu) renderer: Option<Renderer>,
+    pub(in crate::gpu) inputs: Vec<Owned>,
     /// Images of the outputs.
     #[doc(hidden)]
     pub outputs: Vec<Owned>,
@@ -30,7 +30,7 @@ pub struct Owned {
     pub format: Format,
     /// Columns, rows, layers.
     pub extent: [u32; 3],
-    pub(super) name: String,
+    pub(in crate::gpu) name: String,
 }
 
 impl Owned {

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Border, HeightField};
+use crate::scene::{Border, HeightField};
 
 /// The unit normal at a grid point: the sum of the unnormalised normals of the adjoining quads.
 ///

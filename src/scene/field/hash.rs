@@ -1,4 +1,4 @@
-use super::{Border, Directions, HeightField};
+use crate::scene::{Border, Directions, HeightField};
 
 /// FNV-1a of 64 bits (Fowler, Noll & Vo): offset basis and prime.
 const OFFSET: u64 = 0xcbf2_9ce4_8422_2325;

@@ -1,5 +1,5 @@
-use super::{Albedo, Border, HeightField, PhongSpecular, Scene, Specular};
 use crate::Result;
+use crate::scene::{Albedo, Border, HeightField, PhongSpecular, Scene, Specular};
 
 /// A grid `times` finer, and for each of its points the corners of the triangle around it with their weights.
 struct Finer {

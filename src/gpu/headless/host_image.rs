@@ -2,9 +2,9 @@
 
 use ash::vk;
 
-use super::allocator::MemoryUse;
-use super::memory::Backed;
-use super::{BufferArg, Headless, ImageArg, ImageState};
+use crate::gpu::allocator::MemoryUse;
+use crate::gpu::memory::Backed;
+use crate::gpu::{BufferArg, Headless, ImageArg, ImageState};
 use crate::{Error, Result};
 
 /// An image beside those of frames, in GENERAL; given back with [`Headless::take_back`].

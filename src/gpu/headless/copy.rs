@@ -1,16 +1,16 @@
 use ash::vk;
 
-use super::Headless;
-use super::allocator::MemoryUse;
-use super::frame::Owned;
-use super::memory::{Backed, whole};
+use crate::gpu::Headless;
+use crate::gpu::allocator::MemoryUse;
+use crate::gpu::headless::frame::Owned;
+use crate::gpu::memory::{Backed, whole};
 use crate::{Error, Result};
 
 /// Staging goes through buffers of at most this size.
 const STAGING_BYTES: u64 = 64 << 20;
 
 impl Headless {
-    pub(super) fn to_general(&self, commands: vk::CommandBuffer, image: &Owned) {
+    pub(in crate::gpu) fn to_general(&self, commands: vk::CommandBuffer, image: &Owned) {
         let barrier = [vk::ImageMemoryBarrier2::default()
             .dst_stage_mask(vk::PipelineStageFlags2::ALL_COMMANDS)
             .dst_access_mask(vk::AccessFlags2::MEMORY_READ | vk::AccessFlags2::MEMORY_WRITE)
@@ -25,7 +25,7 @@ impl Headless {
     }
 
     /// Copies between an image in GENERAL and host memory, in stretches of whole rows.
-    pub(super) fn copy(
+    pub(in crate::gpu) fn copy(
         &mut self,
         image: &Owned,
         to_image: bool,

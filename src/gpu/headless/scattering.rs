@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use super::{Frame, Headless, Timing};
 use crate::Result;
+use crate::gpu::{Frame, Headless, Timing};
 use crate::graph::Limits;
 use crate::plan;
 use crate::scene::{Border, Directions, HeightField, Scatter, Scene, VisiblePoints};

@@ -3,9 +3,9 @@
 
 use ash::vk;
 
-use super::allocator::MemoryUse;
-use super::frame::Owned;
-use super::{Frame, Headless, ImageArg, ImageState, Renderer, failed, memory};
+use crate::gpu::allocator::MemoryUse;
+use crate::gpu::headless::frame::Owned;
+use crate::gpu::{Frame, Headless, ImageArg, ImageState, Renderer, failed, memory};
 use crate::graph::{Kind, Owner, ResourceId};
 use crate::{Error, Result};
 

@@ -4,10 +4,10 @@
 //! of [horizon, π/2] with the light's. The light is uniform, so light times visibility is this visibility times a
 //! radiance: a sum of slices, without a product of two series.
 
-use super::KeyLight;
 use crate::basis::azimuth::{Blend, assemble, assemble_nlp, swath};
 use crate::basis::legendre::occlusion;
 use crate::basis::slice::Slices;
+use crate::scene::KeyLight;
 
 impl KeyLight {
     /// Azimuths of the horizons: `count` of them from end to end (NS09: 3).
