@@ -1,7 +1,7 @@
-//! Puts the shaders where the library includes them from: SPIR-V in `$OUT_DIR/shaders.spv`, and in
-//! `$OUT_DIR/shaders.rs` what reflection finds in it.
+//! Compiles or copies the shaders for the library: SPIR-V in `$OUT_DIR/shaders.spv`, and its reflection in
+//! `$OUT_DIR/shaders.rs`.
 //!
-//! With the feature `glslang` (default) or `shaderc`, both files are made from the GLSL of `shaders_glsl/`. Without
+//! With the feature `glslang` (default) or `shaderc`, both files come from the GLSL of `shaders_glsl/`. Without
 //! either they are copies of `shaders_glsl/compiled/`, which needs no C++ compiler. `tools/shaders` writes that
 //! folder from the GLSL; `tools/shaders --check` fails where the two differ.
 
@@ -31,7 +31,7 @@ fn main() {
     copy(&out);
 }
 
-/// The committed files in place of freshly compiled ones.
+/// Copies the committed files instead of compiling.
 #[cfg(not(any(feature = "glslang", feature = "shaderc")))]
 fn copy(out: &Path) {
     for name in ["shaders.rs", "shaders.spv"] {

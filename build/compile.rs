@@ -1,4 +1,4 @@
-//! GLSL to SPIR-V 1.3, which every Vulkan 1.1 device takes.
+//! GLSL to SPIR-V 1.3, which every Vulkan 1.1 device supports.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use super::{fail, read};
 
-/// Folders of `shaders_glsl/` without shaders: text that others include, and what `tools/shaders` writes.
+/// Folders of `shaders_glsl/` without shaders: include files, and the output of `tools/shaders`.
 const NOT_SHADERS: [&str; 2] = ["shared", "compiled"];
 
 /// The shaders in a folder and in the folders inside it, sorted by file name.
@@ -36,14 +36,14 @@ pub(crate) fn compile(path: &Path) -> Vec<u32> {
     translate(&text, &files)
 }
 
-/// What a file's extension says, where it is a shader's.
+/// The shader stage of a file, by its extension.
 pub(crate) fn stage(path: &Path) -> Option<&'static str> {
     let extension = path.extension()?;
     ["comp", "frag", "vert"].into_iter().find(|stage| extension == *stage)
 }
 
-/// Splices `#include "x"` lines (relative to the shader's folder, each file once) and returns the
-/// text with `#line` marks, and the files that their source numbers stand for.
+/// Inlines `#include "x"` lines (relative to the shader's folder, each file once). Returns the text with
+/// `#line` marks, and the files for their source numbers.
 fn include(path: &Path) -> (String, Vec<PathBuf>) {
     let mut files = Vec::new();
     let mut text = String::new();

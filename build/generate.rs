@@ -1,8 +1,8 @@
-//! Writes `shaders.rs` and `shaders.spv`: each shader's place in the SPIR-V, what it binds, and a struct of its
-//! specialisation constants, by which alone the host dispatches it.
+//! Writes `shaders.rs` and `shaders.spv`: each shader's place in the SPIR-V, its bindings, and a struct of its
+//! specialisation constants. The host dispatches it only through that struct.
 //!
-//! A shader is named after its file, a `.vert` `NAME_VERT` and a `.frag` `NAME_FRAG`. `same_layout!`
-//! (src/gpu/shaders.rs) checks the host's structs against the offsets at compile time.
+//! A shader has the name of its file; a `.vert` is `NAME_VERT`, a `.frag` is `NAME_FRAG`. `same_layout!`
+//! (src/graph/shaders.rs) checks the host's structs against the offsets at compile time.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -49,7 +49,8 @@ pub(crate) fn core(out: &Path) {
     write(&out.join("shaders.spv"), &bytes);
 }
 
-/// Shaders of tests (`tests/gpu/decoders/*.comp`, where they are) as `NAME.spv`, which no library holds.
+/// Shaders of tests (`tests/gpu/decoders/*.comp`, where present) as `NAME.spv`; the library does not contain
+/// them.
 pub(crate) fn decoders(out: &Path) {
     let folder = Path::new("tests/gpu/decoders");
     if !folder.is_dir() {
@@ -95,7 +96,8 @@ fn add_shader(
     writeln!(table, "    ],\n    words: words_at({first}, {count}),\n}};\n").unwrap();
 }
 
-/// The struct of a shader's specialisation constants, its defaults, and its words in the order of their numbers.
+/// The struct of a shader's specialisation constants, its defaults, and its words in the order of their
+/// numbers.
 fn add_constants(table: &mut String, name: &str, source: &str, found: &Reflection) {
     let (shader, structure) = (name.to_uppercase(), pascal(name));
     let all: Vec<Field> = found.constants.values().map(Field::of).collect();
@@ -139,7 +141,7 @@ struct Field {
     of_type: &'static str,
     default: String,
     is_zero: bool,
-    /// The word that Vulkan is given for it.
+    /// The word passed to Vulkan.
     word: String,
 }
 

@@ -1,4 +1,4 @@
-//! What a SPIR-V module binds, is pushed and is specialised by.
+//! Reflects a SPIR-V module: bindings, push constants and specialisation constants.
 
 use std::collections::BTreeMap;
 
@@ -15,7 +15,7 @@ pub(crate) struct Binding {
     pub written: bool,
 }
 
-/// Default of a specialisation constant, of its own type.
+/// Default of a specialisation constant, with its type.
 pub(crate) enum Default {
     Bool(bool),
     Int(i32),
@@ -29,17 +29,18 @@ pub(crate) struct Constant {
     pub default: Default,
 }
 
-/// What reflection finds in a shader; bindings and constants by number.
+/// Reflection of a shader; bindings and constants by number.
 pub(crate) struct Reflection {
     pub push_bytes: u32,
     pub bindings: BTreeMap<u32, Binding>,
-    pub constants: BTreeMap<u32, Constant>,
+    pub(crate) constants: BTreeMap<u32, Constant>,
 }
 
 /// Byte offsets by structure and member, of all shaders.
 pub(crate) type Layouts = BTreeMap<String, BTreeMap<String, u32>>;
 
-/// Reflects one shader and adds the offsets of its structs. A struct of one name must have one layout in all shaders.
+/// Reflects one shader and adds the offsets of its structs. Structs of one name must have one layout in all
+/// shaders.
 pub(crate) fn reflect(name: &str, words: &[u32], layouts: &mut Layouts) -> Reflection {
     let module = rspirv::dr::load_words(words).unwrap_or_else(|e| fail(&format!("{name}: {e:?}")));
     let d = Decorations { module: &module };
@@ -103,7 +104,7 @@ fn variables(name: &str, d: &Decorations<'_>) -> (u32, BTreeMap<u32, Binding>) {
                 fail(&format!("{name}: binding {binding} is a {other:?}, which nothing here uses"))
             }
         };
-        // A block without an instance is known by its own name.
+        // A block without an instance name has the name of its type.
         let block = super::generate::snake(&d.name(pointee.result_id.expect("a type has an id")));
         let name = Some(d.name(target)).filter(|n| !n.is_empty()).unwrap_or(block);
         bindings.insert(binding, Binding { name, kind, written });
@@ -135,7 +136,7 @@ fn add_layouts(name: &str, d: &Decorations<'_>, layouts: &mut Layouts) {
     }
 }
 
-/// The specialisation constants by number. Those of the workgroup's size, which GLSL does not name, are
+/// The specialisation constants by number. GLSL does not name those of the workgroup size; they are
 /// `LOCAL_SIZE_X`, `_Y` and `_Z`.
 fn constants(name: &str, d: &Decorations<'_>) -> BTreeMap<u32, Constant> {
     let values = &d.module.types_global_values;
@@ -189,7 +190,7 @@ fn literal(operand: &Operand) -> u32 {
     }
 }
 
-/// What the decorations of a module say.
+/// Decorations of a module.
 struct Decorations<'m> {
     module: &'m Module,
 }
@@ -204,7 +205,7 @@ impl Decorations<'_> {
         })
     }
 
-    /// Whether it is the size of the workgroup.
+    /// Whether it is a dimension of the workgroup size.
     fn is_group_size(&self, target: u32) -> bool {
         self.module.annotations.iter().any(|a| {
             a.class.opcode == Op::Decorate

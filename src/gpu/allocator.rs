@@ -8,71 +8,72 @@ use gpu_allocator::{AllocationSizes, AllocatorDebugSettings, MemoryLocation};
 use super::Host;
 use crate::{Error, Result};
 
-/// Memory is taken from the device in blocks of this size, and what is larger alone: the least that the
-/// allocator offers, so that what is held is near what a plan says.
+/// Block size for memory from the device; larger requests get memory of their own. It is the least that
+/// gpu-allocator offers, so that the memory in use is close to a plan's.
 const BLOCK_BYTES: u64 = 4 << 20;
 
 /// Who reads and writes a piece of memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MemoryUse {
-    /// The device alone: device-local where there is such memory.
+    /// The device only; device-local where available.
     Device,
     /// The host writes, the device reads: host-visible and host-coherent, mapped.
     Upload,
-    /// The device writes, the host reads: host-visible and host-coherent, mapped; cached where there is such.
+    /// The device writes, the host reads: host-visible and host-coherent, mapped; cached where available.
     Readback,
 }
 
-/// What an image or buffer needs.
+/// Requirements of an image or buffer.
 #[derive(Clone, Copy, Debug)]
 pub struct MemoryRequest<'a> {
-    /// Of the image or buffer, for debuggers and reports.
+    /// Name of the image or buffer, for debuggers and reports.
     pub name: &'a str,
-    /// Size, alignment and the types of memory that will do, as the device says.
+    /// Size, alignment and permitted memory types, from the device.
     pub requirements: vk::MemoryRequirements,
     /// Who reads and writes it.
     pub used_by: MemoryUse,
-    /// A buffer; else an image of optimal tiling, which `bufferImageGranularity` keeps apart from buffers.
+    /// Whether it is a buffer. Else it is an image of optimal tiling, which `bufferImageGranularity` separates
+    /// from buffers.
     pub is_linear: bool,
 }
 
 /// A piece of memory for one image or buffer.
 #[derive(Debug)]
 pub struct Allocation {
-    /// The memory that it lies in.
+    /// The memory object.
     pub memory: vk::DeviceMemory,
-    /// Its first byte there.
+    /// Offset of its first byte, in bytes.
     pub offset: u64,
-    /// Where the host sees that byte; none for [`MemoryUse::Device`], where nobody looks.
+    /// Host address of that byte; none for [`MemoryUse::Device`].
     pub mapped: Option<NonNull<u8>>,
-    /// The allocator's own mark, handed back with [`Allocator::free`].
+    /// The allocator's own key, passed back to [`Allocator::free`].
     pub key: u64,
 }
 
-// SAFETY: the pointer is to device memory that this value alone stands for; nothing of it is bound to a
-// thread.
+// SAFETY: the pointer is to device memory that only this value owns; it is bound to no thread.
 unsafe impl Send for Allocation {}
 
-/// Where images and buffers get their memory: [`Blocks`], or an engine's own.
+/// Supplies memory for images and buffers: [`Blocks`], or an engine's own.
 ///
 /// # Safety
-/// What `allocate` returns is what the request asks for: of one of its types of memory, at its alignment, as
+/// `allocate` must return what was requested: one of the memory types, the alignment, at least the size, owned
+/// by nobody else until it is freed, and mapped for as long unless it is for the device only.
 /// large, given to nobody else until it is freed, and mapped as long unless it is for the device alone.
 pub unsafe trait Allocator: Send {
     /// Memory for one image or buffer.
     ///
     /// # Errors
-    /// No such memory left.
+    /// Out of memory.
     fn allocate(&mut self, request: &MemoryRequest<'_>) -> Result<Allocation>;
 
-    /// Takes back what `allocate` returned; its image or buffer has been destroyed.
+    /// Frees what `allocate` returned, after its image or buffer was destroyed.
     fn free(&mut self, allocation: Allocation);
 
-    /// Bytes that are held of the device: what is handed out, and what is kept besides.
+    /// Bytes taken from the device, in use or not.
     fn bytes(&self) -> u64;
 }
 
-/// The allocator of renderers that are given none: blocks of 4 MiB, and what is larger alone.
+/// The default allocator: blocks of 4 MiB; larger requests get memory of their own.
 pub struct Blocks {
     allocator: blocks::Allocator,
     given: HashMap<u64, blocks::Allocation>,
@@ -80,7 +81,7 @@ pub struct Blocks {
 }
 
 impl Blocks {
-    /// Takes nothing from the device yet.
+    /// Allocates nothing yet.
     ///
     /// # Errors
     /// The device's.
@@ -101,7 +102,7 @@ impl Blocks {
     }
 }
 
-// SAFETY: gpu-allocator gives what is asked for; pieces are kept in `given` until they are freed.
+// SAFETY: gpu-allocator returns what was requested; pieces are kept in `given` until they are freed.
 unsafe impl Allocator for Blocks {
     fn allocate(&mut self, request: &MemoryRequest<'_>) -> Result<Allocation> {
         let MemoryRequest { name, requirements, used_by, is_linear } = *request;
@@ -124,7 +125,7 @@ unsafe impl Allocator for Blocks {
         })?;
         self.next += 1;
         let allocation = Allocation {
-            // SAFETY: freed only by `free`, after what lies there.
+            // SAFETY: freed only by `free`, after the image or buffer in it.
             memory: unsafe { piece.memory() },
             offset: piece.offset(),
             mapped: piece.mapped_ptr().map(NonNull::cast),
@@ -135,7 +136,8 @@ unsafe impl Allocator for Blocks {
     }
 
     fn free(&mut self, allocation: Allocation) {
-        // Freeing a piece of this allocator cannot fail; if it did, memory is lost until the device goes.
+        // Freeing a piece of this allocator cannot fail. If it did, memory is lost until the device is
+        // destroyed.
         let _ = self.given.remove(&allocation.key).map(|piece| self.allocator.free(piece));
     }
 

@@ -16,24 +16,24 @@ use super::validation::{self, Listener, Messages};
 use super::{DeviceReport, Host, failed, requirements};
 use crate::Result;
 
-/// How a device of our own is made.
+/// How to make a device of our own.
 #[derive(Clone, Debug, Default)]
 pub struct HeadlessOptions {
-    /// Part of the device's name, or its number in [`devices`](super::devices); else the first that will do,
-    /// graphics processors before software.
+    /// Part of the device's name, or its number in [`devices`](super::devices). None: the first suitable one,
+    /// GPUs before software.
     pub device: Option<String>,
     /// Requires VK_LAYER_KHRONOS_validation with synchronisation validation, and keeps its messages.
     pub validation: bool,
 }
 
-/// An instance and who listens to it; ends both.
+/// An instance and its validation messenger; ends both.
 struct Started {
     entry: ash::Entry,
     instance: ash::Instance,
     listener: Option<Listener>,
-    /// Of a window, where pictures are shown in one.
+    /// Surface functions, where pictures are shown in a window.
     surface: Option<Surface>,
-    /// Outlives the instance, which may speak while it ends.
+    /// Outlives the instance, which may report while it is destroyed.
     _messages: Messages,
 }
 
@@ -71,12 +71,13 @@ impl Drop for Started {
         if let Some(listener) = &self.listener {
             listener.end();
         }
-        // SAFETY: devices made of it have been destroyed: that of `Headless` before its fields go.
+        // SAFETY: the devices made from it have been destroyed: `Headless` destroys its own before its fields
+        // drop.
         unsafe { self.instance.destroy_instance(None) };
     }
 }
 
-/// A device of our own, for rendering offscreen: for programs that have none to lend.
+/// A device of our own for offscreen rendering, for programs that have none.
 pub struct Headless {
     started: Started,
     host: Host,
@@ -85,14 +86,14 @@ pub struct Headless {
     report: DeviceReport,
     #[doc(hidden)]
     pub memory: Memory,
-    /// Kept from frame to frame: making them is most of a small frame's time.
+    /// Kept between frames, since making pipelines takes most of a small frame's time.
     #[doc(hidden)]
     pub pipelines: Pipelines,
     /// Passes of [`draw_counted`](Self::draw_counted): name, runs, nanoseconds.
     pub(super) counted: Vec<(String, u32, f64)>,
 }
 
-/// A device with what [`missing`](super::missing) asks for, and the family of its one queue.
+/// A device with the features that [`missing`](super::missing) requires, and the family of its one queue.
 fn make_device(
     instance: &ash::Instance,
     physical_device: vk::PhysicalDevice,
@@ -125,13 +126,13 @@ impl Headless {
     /// Makes an instance and a device.
     ///
     /// # Errors
-    /// No loader, no driver, no device of that name, a device that lacks something, or no validation
-    /// layer where it is required.
+    /// No loader, no driver, no device of that name, a device that lacks something, or no validation layer
+    /// where it is required.
     pub fn new(options: &HeadlessOptions) -> Result<Self> {
         Self::showing(options, None)
     }
 
-    /// The same, able to show pictures in a window.
+    /// The same, for pictures in a window.
     #[doc(hidden)]
     pub fn showing(options: &HeadlessOptions, window: Option<SurfaceSource>) -> Result<Self> {
         let started = Started::new(options.validation, window)?;
@@ -161,27 +162,27 @@ impl Headless {
                 Ok(Self { started, host, queue, pool, report, memory, pipelines, counted })
             }
             Err(error) => {
-                // SAFETY: nothing is left that was made on it.
+                // SAFETY: everything made on it has been destroyed.
                 unsafe { host.device.destroy_device(None) };
                 Err(error)
             }
         }
     }
 
-    /// The surface of its window, and what makes another.
+    /// The surface of its window, and the functions for another one.
     #[doc(hidden)]
     pub fn surface(&mut self) -> Option<(&ash::Entry, &ash::Instance, &mut Surface)> {
         let Started { entry, instance, surface, .. } = &mut self.started;
         Some((entry, instance, surface.as_mut()?))
     }
 
-    /// Where its commands go.
+    /// The queue of its commands.
     #[doc(hidden)]
     pub fn queue(&self) -> vk::Queue {
         self.queue
     }
 
-    /// What a renderer borrows.
+    /// The device as renderers borrow it.
     pub fn host(&self) -> &Host {
         &self.host
     }
@@ -191,7 +192,7 @@ impl Headless {
         &self.report
     }
 
-    /// What validation has said so far, oldest first; emptied by the call.
+    /// Validation messages so far, oldest first; the call empties the list.
     pub fn take_messages(&self) -> Vec<String> {
         self.started.listener.as_ref().map(Listener::take).unwrap_or_default()
     }
@@ -204,8 +205,8 @@ impl Headless {
         self.run_all([record])
     }
 
-    /// Runs each of `records` in a command buffer of its own, in order but submitted as one, and waits
-    /// once, for all: frames in flight.
+    /// Runs each of `records` in a command buffer of its own. All are submitted together, in order, as frames
+    /// in flight; waits once.
     ///
     /// # Errors
     /// A record's own, before anything has run, or the device's.
@@ -251,7 +252,7 @@ impl Drop for Headless {
     fn drop(&mut self) {
         self.memory.end();
         std::mem::take(&mut self.pipelines).end(&self.host);
-        // SAFETY: every frame has been ended or leaks by its own word; the queue is idle (`run` waits).
+        // SAFETY: every frame has been ended, or leaks with a warning; the queue is idle (`run` waits).
         unsafe {
             self.host.device.destroy_command_pool(self.pool, None);
             self.host.device.destroy_device(None);

@@ -20,11 +20,11 @@ pub(super) fn load() -> Result<ash::Entry> {
 fn no_driver() -> Error {
     Error::Device {
         doing: "choosing a device".into(),
-        reason: "no Vulkan driver answers (Debian: install mesa-vulkan-drivers)".into(),
+        reason: "no Vulkan driver was found (Debian: install mesa-vulkan-drivers)".into(),
     }
 }
 
-/// An instance; with the validation layer where there is a `messenger` for what it says meanwhile.
+/// An instance; with the validation layer where there is a `messenger` for its messages.
 pub(super) fn instance(
     entry: &ash::Entry,
     messenger: Option<&mut vk::DebugUtilsMessengerCreateInfoEXT<'_>>,
@@ -57,7 +57,7 @@ pub(super) fn instance(
 /// All devices of the system.
 ///
 /// # Errors
-/// No loader, or no driver that answers.
+/// No loader, or no working driver.
 pub fn devices() -> Result<Vec<DeviceReport>> {
     let entry = load()?;
     let instance = instance(&entry, None, &[])?;
@@ -70,7 +70,7 @@ pub fn devices() -> Result<Vec<DeviceReport>> {
     }
 }
 
-/// The device of an instance that [`choose`] chooses.
+/// The device of an instance that [`choose`] selects.
 pub(super) fn chosen(
     instance: &ash::Instance,
     wanted: Option<&str>,
@@ -87,11 +87,11 @@ pub(super) fn chosen(
     Ok((all[index], reports.swap_remove(index)))
 }
 
-/// Which of the `reports` of [`devices`] would be used: the one `wanted`, by number or by a part of
-/// its name, else the first GPU that will do, else any that will.
+/// Selects one of the `reports` of [`devices`]: the one `wanted`, by number or by part of its name. None: the
+/// first suitable GPU, else the first suitable device.
 ///
 /// # Errors
-/// No such device, none at all, or one that lacks what is needed (named).
+/// No such device, no device at all, or one that lacks a requirement (named).
 pub fn choose(reports: &[DeviceReport], wanted: Option<&str>) -> Result<usize> {
     let listed = || reports.iter().map(|r| r.name.as_str()).collect::<Vec<_>>().join(", ");
     let no = |reason: String| Error::Device { doing: "choosing a device".into(), reason };
@@ -99,7 +99,7 @@ pub fn choose(reports: &[DeviceReport], wanted: Option<&str>) -> Result<usize> {
         Some(wanted) => {
             let lower = wanted.to_lowercase();
             let named = || reports.iter().position(|r| r.name.to_lowercase().contains(&lower));
-            // A number is never looked for in names, which are full of versions.
+            // A number is not searched for in names, which contain version numbers.
             let found = match wanted.parse::<usize>() {
                 Ok(number) => Some(number).filter(|i| *i < reports.len()),
                 Err(_) if wanted.is_empty() => None,

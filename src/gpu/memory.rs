@@ -12,30 +12,31 @@ pub(crate) use attachment::{DEPTH, whole_attachment};
 /// An image or a buffer with its memory.
 #[doc(hidden)]
 pub struct Backed {
-    /// Null of a buffer.
+    /// Null for a buffer.
     pub image: vk::Image,
-    /// Null of a buffer.
+    /// Null for a buffer.
     pub view: vk::ImageView,
-    /// Null of an image.
+    /// Null for an image.
     pub buffer: vk::Buffer,
     pub(crate) texels: vk::BufferView,
     allocation: Option<Allocation>,
-    /// Of the buffer.
+    /// Bytes of the buffer.
     bytes: u64,
     pub(crate) layers: u32,
 }
 
 impl Backed {
-    /// A buffer's bytes, where the host sees them.
+    /// A buffer's bytes, where it is mapped.
     pub fn mapped(&mut self) -> Option<&mut [u8]> {
         let begin = self.allocation.as_ref()?.mapped?;
-        // SAFETY: the allocator's word: mapped while it is allocated, at least as large as the buffer, and
-        // nobody else's. That the device is not at work on it is the caller's, as with any mapped memory.
+        // SAFETY: the allocator guarantees that it is mapped while allocated, at least as large as the buffer,
+        // and owned by nobody else. The caller guarantees that the device is not using it, as with any mapped
+        // memory.
         Some(unsafe { std::slice::from_raw_parts_mut(begin.as_ptr(), self.bytes as usize) })
     }
 }
 
-/// Makes images and buffers on a host's device and frees them again.
+/// Makes images and buffers on a host's device, and frees them.
 pub struct Memory {
     allocator: Option<Box<dyn Allocator>>,
     host: Host,
@@ -76,7 +77,7 @@ impl Memory {
         self.allocator.as_ref().map_or(0, |a| a.bytes())
     }
 
-    /// An image or buffer of a plan; buffers in memory of that kind, images in the device's.
+    /// An image or buffer of a plan; buffers in memory of that kind, images in device memory.
     pub fn make(&mut self, name: &str, kind: Kind, used_by: MemoryUse) -> Result<Backed> {
         match kind {
             Kind::Image { format, width, height, layers, layered } => {
@@ -113,7 +114,7 @@ impl Memory {
         }
     }
 
-    /// An image of a plan's.
+    /// An image of a plan.
     pub fn image(
         &mut self,
         name: &str,
@@ -158,8 +159,8 @@ impl Memory {
         (view_type, range): (vk::ImageViewType, vk::ImageSubresourceRange),
     ) -> Result<Backed> {
         let device = self.host.device.clone();
-        // SAFETY: the device is alive (the caller of Renderer::new and Headless vouch for it), `info`
-        // is a plain 2D image within the plan's limits.
+        // SAFETY: the device is alive, as the callers of Renderer::new and Headless guarantee; `info` is a
+        // plain 2D image within the plan's limits.
         let image = unsafe { device.create_image(info, None) }
             .map_err(failed(format!("making image {name}")))?;
         let mut backed = Backed {
@@ -179,8 +180,8 @@ impl Memory {
                 .view_type(view_type)
                 .format(info.format)
                 .subresource_range(range);
-            // SAFETY: the allocation is at least as large as the image requires and bound once; the
-            // view is of the image's own format and layers.
+            // SAFETY: the allocation is at least as large as the image requires and bound once; the view has
+            // the image's own format and layers.
             let view = unsafe {
                 device
                     .bind_image_memory(image, allocation.memory, allocation.offset)
@@ -245,12 +246,12 @@ impl Memory {
         }
     }
 
-    /// Lets go of the allocator; everything must have been freed.
+    /// Drops the allocator; everything must have been freed.
     pub fn end(&mut self) {
         self.allocator = None;
     }
 
-    /// Keeps all memory until the device goes: for images and buffers that may still be in use.
+    /// Keeps all memory until the device is destroyed: for images and buffers that may still be in use.
     pub fn leak(&mut self) {
         std::mem::forget(self.allocator.take());
     }
@@ -258,7 +259,7 @@ impl Memory {
     /// Frees what `make`, `image` or `buffer` returned. The device must be done with it.
     pub fn free(&mut self, backed: &mut Backed) {
         let device = &self.host.device;
-        // SAFETY: the handles came from this device and are null or alive; whoever calls says that no
+        // SAFETY: the handles came from this device and are null or alive; the caller guarantees that no
         // command in flight uses them.
         unsafe {
             device.destroy_image_view(backed.view, None);
@@ -276,7 +277,7 @@ impl Memory {
     }
 }
 
-/// All of a colour image.
+/// The whole of a colour image.
 pub fn whole(layers: u32) -> vk::ImageSubresourceRange {
     vk::ImageSubresourceRange {
         aspect_mask: vk::ImageAspectFlags::COLOR,

@@ -1,52 +1,56 @@
-//! Vulkan: device, memory, pipelines, barriers, recording, timing. All of the crate's `unsafe`.
+//! The Vulkan backend: device, memory, pipelines, barriers, recording, timing. It holds nearly all of the
+//! crate's `unsafe` code.
 //!
-//! Three ways in, by whose device it is:
+//! There are three entry points, by owner of the device:
 //!
-//! - **an engine's**: [`Renderer`] records a [plan](crate::plan), [`ViewRenderer`] a [view](crate::plan::View) of what
-//!   it has lit, into the engine's command buffers;
-//! - **one of its own**, for tools and tests: [`Headless`] makes images for a plan's inputs and outputs
-//!   ([`Frame`]), fills, draws and reads them, and [`look`](Headless::look)s at them before a camera;
-//! - **a window's**: the crate `ridgelight-viewer`.
+//! - **an engine's device**: [`Renderer`] records a [plan](crate::plan) into the engine's command buffers;
+//!   [`ViewRenderer`] records a [view](crate::plan::View) of the result;
+//! - **a device of our own**, for tools and tests: [`Headless`] makes a [`Frame`] with images for a plan's
+//!   inputs and outputs, fills, draws and reads it, and draws camera pictures ([`look`](Headless::look));
+//! - **a window's device**: the crate `ridgelight-viewer`.
 //!
 //! # Before there is a device
 //!
-//! [`requirements`] says what to enable: Vulkan 1.3, four features, no extension, a queue with compute. [`missing`]
-//! names what a physical device lacks, [`devices`] lists all, [`limits`] is what a plan may count on.
+//! [`requirements`] lists what to enable: Vulkan 1.3, four features, no extension, a queue with compute.
+//! [`missing`] names what a physical device lacks. [`devices`] lists all devices. [`limits`] are the limits for
+//! a plan.
 //!
 //! # States
 //!
-//! Each image comes with the [state](ImageState) that it is in: stages and accesses that used it last, and its
-//! layout. [`Renderer::record`] begins with the barriers from there and ends with those to where it is to be left:
+//! The caller passes each image with its [state](ImageState): the stages and accesses that used it last, and
+//! its layout. [`Renderer::record`] begins with the barriers from that state, and ends with barriers to the
+//! requested state:
 //!
-//! | image | comes as | is used as | is left as |
+//! | image | state before | used as | state after |
 //! |---|---|---|---|
-//! | inputs | any state with contents | SHADER_READ_ONLY_OPTIMAL, compute | as it came |
-//! | inputs in buffers | any stage and access | copied from | as it came |
-//! | outputs | any, UNDEFINED too | GENERAL, compute | the state asked for |
+//! | inputs | any state with contents | SHADER_READ_ONLY_OPTIMAL, compute | as before |
+//! | inputs in buffers | any stage and access | copied from | as before |
+//! | outputs | any, also UNDEFINED | GENERAL, compute | as requested |
 //!
-//! What cannot be is refused by a sentence that names image and field ("heights: layout before: found …"), and
-//! then nothing has been recorded. Images of exclusive sharing belong to the host's queue family throughout.
+//! An invalid argument is refused with the image and field named ("heights: layout before: found …"); nothing
+//! has been recorded then. Images of exclusive sharing belong to the host's queue family throughout.
 //!
 //! # Formats, and buffers
 //!
-//! What of a scene may be the device's alone, in which formats ([`Format::vk_read`]), and with how many copies:
+//! These parts of a scene may exist only on the device, in these formats ([`Format::vk_read`]) and with this
+//! many copies:
 //!
-//! | what | in an image | copies | in a buffer | copies |
+//! | part | in an image | copies | in a buffer | copies |
 //! |---|---|---|---|---|
 //! | heights ([`HeightField::unknown`]) | R32F, R16F, R16 UNORM | 0 | the same | 1 |
 //! | albedo ([`Albedo::unknown`]) | RGBA32F, RGBA16F, RGBA8 UNORM, SRGB | 0 | the same | 1 |
 //! | environment ([`Environment::unknown`]) | as albedo | 0 | the same | 1 |
-//! | colours of sky, suns, keys ([`colours_on_device`](crate::plan::Picture::colours_on_device)) | as albedo | 0 | the same | 1 |
+//! | colours of sky, suns, key lights ([`colours_on_device`](crate::plan::Picture::colours_on_device)) | as albedo | 0 | the same | 1 |
 //! | specular ([`Specular::unknown`]) | RGBA32F | 0 | the same | 1 |
-//! | colours of balls, directions, positions and sizes of lights | no | | no | |
+//! | colours of sphere lights; directions, positions and sizes of lights | no | | no | |
 //!
-//! An [`ImageArg`] is read where it is. Rows of texels in a buffer ([`BufferArg`]) are taken where the plan was told so
-//! ([`Plan::take_buffer`](crate::plan::Plan::take_buffer)): shaders fetch from images, so that each recording begins
-//! with one vkCmdCopyBufferToImage per buffer, into an image of the renderer's
-//! ([`Renderer::taken`]); an [edit](Renderer::record_edit) copies the edited rectangle alone.
+//! Shaders fetch from an [`ImageArg`] directly. Rows of texels in a buffer ([`BufferArg`]) are accepted where
+//! the plan allows it ([`Plan::take_buffer`](crate::plan::Plan::take_buffer)). Each recording then begins with
+//! one vkCmdCopyBufferToImage per buffer, into an image of the renderer ([`Renderer::taken`]); an
+//! [edit](Renderer::record_edit) copies only the edited rectangle.
 //!
-//! Heights are never NaN: those without data are filled beforehand ([`fill_voids`]), and their light is the caller's to
-//! mask. A [`ViewRenderer`] leaves holes where an image of marks says so ([`ViewInputs::voids`]).
+//! Heights are never NaN. Voids are filled beforehand ([`fill_voids`]), and the caller masks their light. A
+//! [`ViewRenderer`] leaves holes where a mask marks voids ([`ViewInputs::voids`]).
 //!
 //! [`HeightField::unknown`]: crate::scene::HeightField::unknown
 //! [`Albedo::unknown`]: crate::scene::Albedo::unknown
@@ -56,29 +60,31 @@
 //!
 //! # Lights that change
 //!
-//! What of the light is a frame's own, and what is the plan's:
+//! Some properties of lights may change per recording, others need a new plan or a new renderer:
 //!
-//! | what | how it changes |
+//! | what changes | how |
 //! |---|---|
-//! | texels of an environment, an albedo, a lobe's map; colours of sky, suns and keys, where the plan has them so | on the device: they are inputs of each recording |
-//! | colours of sky, suns, keys and balls; directions, positions, sizes | [`Renderer::replace_plan`], a plan of the new scene: no pipeline, no memory, no wait, also while frames are in flight |
-//! | number and kind of lights, a sun into another octant, grey to coloured | a renderer of its own, beside the old one |
+//! | texels of an environment, an albedo or a specular map; colours of sky, suns and key lights, where the plan takes them | on the device: they are inputs of each recording |
+//! | colours of sky, suns, key lights and sphere lights; directions, positions, sizes | [`Renderer::replace_plan`] with a plan of the new scene: no pipeline, no memory, no wait, also while frames are in flight |
+//! | number and kind of lights, a sun into another octant, grey to coloured | a second renderer |
 //!
-//! Directions decide which lines a sweep follows and how many, and where a ball is, which samples it may reach: workgroups,
-//! memory and constants of a plan, so that they are the host's to know. Colours of balls are summed up with their light;
-//! with [`light_layers`](crate::plan::Picture::light_layers), a ball of radiance 1 has an image of its own, which times a
-//! colour that the device alone knows is its share of the picture.
+//! Directions decide which lines a sweep follows, and how many. The position of a sphere light decides which
+//! texels it reaches. Both change workgroups, memory and constants of a plan, so the host must know them.
+//! Colours of sphere lights are part of their sum. With [`light_layers`](crate::plan::Picture::light_layers), a
+//! sphere light of radiance 1 has an image of its own; that image times a colour on the device is its share of
+//! the picture.
 //!
 //! # Frames in flight
 //!
-//! A renderer has as many slots as it was made for. A slot's last command buffer must have run before it is recorded
-//! again; those of other slots may be in flight. Internal images serve all slots, in turn on one queue. Recording
-//! may move to another thread ([`Renderer`] is `Send`); [`Renderer::timings`] never waits.
+//! The number of slots is given when a renderer is made. A slot's last command buffer must have run before the
+//! slot is recorded again; those of other slots may be in flight. Internal images serve all slots, in turn on
+//! one queue. Recording may move to another thread ([`Renderer`] is `Send`). [`Renderer::timings`] never waits.
 //!
 //! # Memory
 //!
-//! By [`Blocks`] of 4 MiB, or an engine's own [`Allocator`]; all of it taken when a renderer is made, given back by
-//! `destroy`. A renderer that is dropped leaks and says so: what was recorded may still run.
+//! Memory comes in [`Blocks`] of 4 MiB, or from an engine's own [`Allocator`]. A renderer takes all of it when
+//! it is made; `destroy` returns it. A renderer that is dropped leaks and prints a warning, since its commands
+//! may still run.
 
 mod allocator;
 mod headless;
@@ -116,26 +122,25 @@ use ash::vk;
 use crate::Error;
 use crate::graph::Format;
 
-/// A device that a renderer records for: borrowed, never destroyed by it.
+/// The device that a renderer records for. The renderer borrows it and never destroys it.
 ///
-/// It must outlive every renderer that was made on it, and is used from the thread that calls: what Vulkan
-/// wants synchronised from outside (a command buffer, a queue) stays the caller's to synchronise.
+/// It must outlive every renderer made on it. Calls use it from the calling thread: objects that Vulkan
+/// requires to be externally synchronised (a command buffer, a queue) remain the caller's responsibility.
 #[derive(Clone)]
 pub struct Host {
-    /// The instance that the device came from.
+    /// The instance of the device.
     pub instance: ash::Instance,
-    /// Its physical device.
+    /// The physical device.
     pub physical_device: vk::PhysicalDevice,
-    /// The device, with what [`requirements`] asks for enabled.
+    /// The device, with the [`requirements`] enabled.
     pub device: ash::Device,
-    /// The family of the queue that commands go to; it must offer compute. Images of exclusive sharing belong
-    /// to it when a recording runs, and still do afterwards: a renderer transfers none between families.
+    /// The family of the queue that runs the commands; it must support compute. Images of exclusive sharing
+    /// belong to it before and after a recording: a renderer transfers none between families.
     pub queue_family: u32,
-    /// Where compiled pipelines are looked for and kept, or null. Filled from what an earlier run had of
-    /// vkGetPipelineCacheData, and read by it again, by whom it belongs to; not created as externally
-    /// synchronised.
+    /// Cache for compiled pipelines, or null. Its owner fills it from an earlier run's vkGetPipelineCacheData
+    /// and saves it. It must not be created as externally synchronised.
     pub pipeline_cache: vk::PipelineCache,
-    /// Names and labels for debuggers, where the instance has VK_EXT_debug_utils enabled.
+    /// For names and labels in debuggers, where the instance has VK_EXT_debug_utils enabled.
     pub debug_utils: Option<ash::ext::debug_utils::Device>,
 }
 
@@ -147,14 +152,14 @@ impl Host {
         };
         let info =
             vk::DebugUtilsObjectNameInfoEXT::default().object_handle(handle).object_name(&name);
-        // A name that could not be set is no reason to fail.
+        // A missing name is not an error.
         // SAFETY: the handle was made on this device and is alive.
         let _ = unsafe { debug.set_debug_utils_object_name(&info) };
     }
 }
 
 impl Format {
-    /// Vulkan's name.
+    /// The Vulkan format.
     pub fn vk(self) -> vk::Format {
         match self {
             Format::R32Float => vk::Format::R32_SFLOAT,
@@ -170,8 +175,8 @@ impl Format {
         }
     }
 
-    /// Formats that a caller's image may have where a plan says this format and only fetches from it: itself first.
-    /// Texels are what Vulkan makes of them: UNORM from 0 to 1, SRGB decoded to linear light.
+    /// Formats that a caller's image may have where a plan only fetches from this format; the first is the
+    /// format itself. Texels are decoded by Vulkan: UNORM to 0..1, SRGB to linear light.
     pub fn vk_read(self) -> &'static [vk::Format] {
         match self {
             Format::R32Float => {

@@ -20,7 +20,7 @@ pub(crate) struct Pipeline {
 /// A shader's name and its constants.
 type Key = (&'static str, Vec<u32>);
 
-/// Pipelines, one a shader and set of constants: of a renderer, or of all that share a clone of this.
+/// Pipelines, one per shader and set of constants: of a renderer, or shared by all that hold a clone of this.
 #[derive(Clone, Default)]
 pub struct Pipelines(Arc<Mutex<HashMap<Key, Pipeline>>>);
 
@@ -34,7 +34,7 @@ pub(crate) fn descriptor_type(kind: BindingKind) -> vk::DescriptorType {
 }
 
 impl Pipelines {
-    /// The pipeline of each pass; makes those that are not there yet.
+    /// The pipeline of each pass; makes missing ones.
     pub(crate) fn of<'a>(
         &self,
         host: &Host,
@@ -57,13 +57,13 @@ impl Pipelines {
         Ok(all)
     }
 
-    /// Lets go of them: the last of those that share them destroys them. The device must be done
-    /// with what this one used.
+    /// Drops this clone; the last one destroys the pipelines. The device must have finished with those that
+    /// this clone used.
     pub fn end(self, host: &Host) {
         let Some(known) = Arc::into_inner(self.0) else { return };
         for pipeline in known.into_inner().unwrap_or_else(PoisonError::into_inner).into_values() {
-            // SAFETY: made by this host's device; everyone who used them has let go of them, and
-            // says with that that nothing in flight uses them.
+            // SAFETY: made by this host's device; every user has dropped its clone, and thereby guarantees that
+            // nothing in flight uses them.
             unsafe {
                 host.device.destroy_pipeline(pipeline.pipeline, None);
                 host.device.destroy_pipeline_layout(pipeline.layout, None);
@@ -103,9 +103,8 @@ fn make(host: &Host, shader: &Shader, constants: &[u32]) -> Result<Pipeline> {
         Pipeline { pipeline: vk::Pipeline::null(), layout: vk::PipelineLayout::null(), set_layout };
     let words = specialised(shader, constants);
     let module_info = vk::ShaderModuleCreateInfo::default().code(&words);
-    // SAFETY: the SPIR-V is glslang's output for this very layout, with constants of its own types;
-    // the cache is null or the host's;
-    // handles made on the way are destroyed here when a later step fails.
+    // SAFETY: the SPIR-V is glslang's output for this layout, with constants of its own types; the cache is
+    // null or the host's; handles made before a failing step are destroyed here.
     let result = unsafe {
         device.create_pipeline_layout(&layout_info, None).and_then(|layout| {
             made.layout = layout;
@@ -129,7 +128,7 @@ fn make(host: &Host, shader: &Shader, constants: &[u32]) -> Result<Pipeline> {
             Ok(made)
         }
         Err(result) => {
-            // SAFETY: made above, used by nothing.
+            // SAFETY: made above and unused.
             unsafe {
                 device.destroy_pipeline_layout(made.layout, None);
                 device.destroy_descriptor_set_layout(set_layout, None);

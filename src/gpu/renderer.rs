@@ -1,4 +1,4 @@
-//! A plan on a device: what it makes, what it records, how long that took.
+//! A plan on a device: its resources, its recording, its GPU times.
 
 mod buffers;
 mod checks;
@@ -31,58 +31,57 @@ pub struct Timing {
     pub ns: f64,
 }
 
-/// What lights a frame before it is shown.
+/// How a frame is lit before it is shown.
 #[derive(Clone, Copy, Debug)]
 pub enum Work<'a> {
-    /// Passes by position in its plan, as [`Renderer::record_passes`] takes them; none: it
-    /// stays as it was.
+    /// Passes by position in its plan, as for [`Renderer::record_passes`]; none: the light is unchanged.
     Passes(&'a [usize]),
-    /// What an edit of a rectangle of its heights needs: [`Renderer::record_edit`].
+    /// The edit of a rectangle of heights: [`Renderer::record_edit`].
     Edit(Rectangle),
 }
 
 impl Work<'_> {
-    /// Whether nothing is done.
+    /// Whether there is nothing to do.
     #[doc(hidden)]
     pub fn is_none(&self) -> bool {
         matches!(self, Self::Passes([]))
     }
 }
 
-/// Records a plan into command buffers of a device that it borrows. Makes every resource when it is
-/// made; recording takes nothing from the device, submits nothing and waits for nothing. (It takes
-/// a little memory of the host, for barriers and descriptor writes, and gives it back.)
+/// Records a plan into command buffers of a borrowed device. It makes every resource when it is made. Recording
+/// allocates nothing on the device, submits nothing and waits for nothing. (It allocates a little host memory
+/// for barriers and descriptor writes.)
 ///
-/// The plan's internal images serve all slots: command buffers of different slots must run one after
-/// the other on one queue (which a queue does by itself: the recording begins with the barrier).
+/// The plan's internal images serve all slots: command buffers of different slots must run one after the other
+/// on one queue (which a queue does by itself: the recording begins with the barrier).
 pub struct Renderer {
     host: Host,
     plan: Plan,
     memory: Memory,
     resources: Vec<Option<Backed>>,
-    /// For bindings that a pass leaves unused: (kind, pass that alone may write it, resource).
+    /// For bindings that a pass leaves unused: (kind, the only pass that may write it, resource).
     unused: Vec<(BindingKind, Option<usize>, Backed)>,
     pipelines: Pipelines,
     pipeline_of_pass: Vec<Pipeline>,
     descriptor_pool: vk::DescriptorPool,
     slots: Vec<Slot>,
-    /// How many of the plan's first passes have been recorded; after all, it stays all: what an edit goes on from.
+    /// How many of the plan's first passes have been recorded. An edit needs all of them.
     begun: usize,
-    /// By pass of a whole recording: whether it must run, as it has been told something new since it
-    /// was recorded last, or follows one that has.
+    /// By pass of a whole recording: whether it must run, because its inputs from the plan changed since its
+    /// last recording, or because it follows such a pass.
     pending: Vec<bool>,
-    /// Nanoseconds of a tick and a mask of the bits that count, where the host's queue has timestamps.
+    /// Nanoseconds per tick and a mask of the valid bits, where the host's queue has timestamps.
     timestamps: Option<(f64, u64)>,
-    /// Formats that inputs may have on this device, beside those of their plan.
+    /// Formats that inputs may have on this device, besides the plan's.
     readable: Vec<vk::Format>,
     destroyed: bool,
 }
 
 struct Slot {
     sets: Vec<vk::DescriptorSet>,
-    /// What the host tells passes beside push constants: of frames in flight each has its own.
+    /// Buffers that the host writes; one set per frame in flight.
     tables: Vec<(ResourceId, Backed)>,
-    /// Whether they hold what the plan says.
+    /// Whether they hold the current plan's values.
     is_told: bool,
     /// Null where there are no timestamps.
     queries: vk::QueryPool,
@@ -93,15 +92,16 @@ const fn is_send<T: Send>() {}
 const _: () = is_send::<Renderer>();
 
 impl Renderer {
-    /// Makes all that `plan` needs on the host's device, for `slots` frames in flight (1 or more).
+    /// Makes everything that `plan` needs on the host's device, for `slots` frames in flight (1 or more).
     ///
     /// # Errors
-    /// A device that lacks something (named), or is out of memory.
+    /// A device that lacks a requirement (named), or is out of memory.
     pub fn new(host: &Host, plan: Plan, slots: usize) -> Result<Self> {
         Self::with_memory(host, plan, slots, Box::new(Blocks::new(host)?))
     }
 
-    /// [`new`](Self::new) with memory from an engine's own allocator, dropped after all has been freed.
+    /// [`new`](Self::new) with memory from an engine's own allocator, which is dropped after everything has
+    /// been freed.
     ///
     /// # Errors
     /// As there, and the allocator's own.
@@ -114,7 +114,7 @@ impl Renderer {
         Self::sharing(host, plan, slots, Pipelines::default(), allocator)
     }
 
-    /// The same with pipelines that other renderers of the same device share.
+    /// The same, with pipelines shared with other renderers of the device.
     #[doc(hidden)]
     pub fn sharing(
         host: &Host,
@@ -161,13 +161,12 @@ impl Renderer {
         &self.plan
     }
 
-    /// Goes over to a plan that differs in what its passes are told, not in which there are nor in
-    /// images and buffers: another colour of a light, a sun that has moved a little. Returns the
-    /// passes that must run next for inputs that are as they were ([`Plan::passes_after`]), with those
-    /// that earlier calls returned and that have not been recorded since.
+    /// Replaces the plan by one with the same passes, images and buffers but other values: another colour of a
+    /// light, a sun that moved a little. Returns the passes that must run next if the inputs are unchanged
+    /// ([`Plan::passes_after`]), with those that earlier calls returned and that have not been recorded since.
     ///
-    /// Waits for nothing, and need not be waited for: what is in flight goes on with the plan that it was
-    /// recorded with. So lights may change each frame.
+    /// It does not wait, and the caller need not wait: frames in flight finish with the plan of their
+    /// recording. So lights may change each frame.
     ///
     /// # Errors
     /// A plan that needs a renderer of its own; the old one stays.
@@ -182,7 +181,7 @@ impl Renderer {
         for pass in plan.passes_after(&self.plan, &[]) {
             self.pending[pass] = true;
         }
-        // Pieces go on from the first pass that is not of this plan.
+        // Recording in parts continues from the first pass that is not of this plan.
         let first = self.pending.iter().position(|p| *p);
         if let Some(first) = first.filter(|_| self.begun < self.pending.len()) {
             self.begun = self.begun.min(first);
@@ -192,19 +191,18 @@ impl Renderer {
         Ok((0..self.pending.len()).filter(|p| self.pending[*p]).collect())
     }
 
-    /// Bytes of memory that the renderer has taken from the device: [`Plan::internal_bytes`], the few that
-    /// the host writes once more for each further slot, and what drivers round up to and blocks of 4 MiB
-    /// leave over.
+    /// Bytes of device memory in use: [`Plan::internal_bytes`], the few that the host writes for each further
+    /// slot, and what drivers and blocks of 4 MiB round up to.
     pub fn device_bytes(&self) -> u64 {
         self.memory.bytes()
     }
 
-    /// An image or buffer of the renderer's own; of those that each slot has, the first's.
+    /// An image or buffer of the renderer; the first slot's where each slot has one.
     pub(crate) fn internal(&self, id: ResourceId) -> Option<&Backed> {
         self.internal_of(0, id)
     }
 
-    /// The same, a slot's.
+    /// The same, for a slot.
     fn internal_of(&self, slot: usize, id: ResourceId) -> Option<&Backed> {
         let tables = self.slots.get(slot).map_or(&[][..], |slot| &slot.tables);
         let table = tables.iter().find(|table| table.0 == id).map(|table| &table.1);
@@ -213,14 +211,14 @@ impl Renderer {
 
     /// Appends the plan to `commands`.
     ///
-    /// `slot` is the frame in flight (0..slots); its last command buffer must have run. `inputs` and
-    /// `outputs` are the plan's, in its order: inputs are [images](ImageArg), or [buffers](BufferArg) where
-    /// [`Plan::take_buffer`] said so ([`InputArg`] where there are both). Checks everything first: after an
-    /// error nothing has been recorded. `commands` is being recorded, outside a render pass, for the host's
-    /// family.
+    /// `slot` is the frame in flight (0..slots); its last command buffer must have run. `inputs` and `outputs`
+    /// are the plan's, in its order. Inputs are [images](ImageArg), or [buffers](BufferArg) where
+    /// [`Plan::take_buffer`] allowed it ([`InputArg`] where both occur). `commands` is being recorded, outside
+    /// a render pass, for the host's family. All arguments are checked first: after an error nothing has been
+    /// recorded.
     ///
     /// # Errors
-    /// An argument that is not what the plan says, by name.
+    /// An argument that does not match the plan, by name.
     pub fn record<I: Copy + Into<InputArg>>(
         &mut self,
         commands: vk::CommandBuffer,
@@ -232,17 +230,17 @@ impl Renderer {
         self.record_passes(commands, slot, inputs, outputs, &all)
     }
 
-    /// Appends only some passes, by position in the plan, in its order: for timing them alone, or
-    /// because no others are needed ([`Plan::passes_after`]). What they read must have been left by an
-    /// earlier recording of this renderer; of outputs that they do not write the contents are kept
-    /// where the caller's state before keeps them.
+    /// Appends only some passes, by position in the plan and in its order: to time them alone, or because no
+    /// others are needed ([`Plan::passes_after`]). An earlier recording of this renderer must have left what
+    /// they read. Outputs that they do not write keep their contents where the caller's state before keeps
+    /// them.
     ///
-    /// A renderer that has not yet recorded all may do so in pieces: the plan's first passes, and then those that
-    /// follow, or the first again.
+    /// A renderer that has not yet recorded all passes may record in parts: the plan's first passes, then the
+    /// following ones, or the first ones again.
     ///
     /// # Errors
-    /// As [`record`](Self::record); a pass that does not exist, twice the same, or one before another
-    /// that precedes it in the plan; others than those of the next piece by a renderer that has not yet recorded all.
+    /// As [`record`](Self::record). A pass that does not exist, is repeated, or is out of order; or not the
+    /// next part, where not all have been recorded.
     pub fn record_passes<I: Copy + Into<InputArg>>(
         &mut self,
         commands: vk::CommandBuffer,
@@ -261,8 +259,8 @@ impl Renderer {
         Ok(())
     }
 
-    /// What [`record_passes`](Self::record_passes) refuses, or of a rectangle [`record_edit`](Self::record_edit), with
-    /// nothing recorded.
+    /// Whether [`record_passes`](Self::record_passes) would refuse these passes, or
+    /// [`record_edit`](Self::record_edit) a rectangle; records nothing.
     #[doc(hidden)]
     pub fn check_recording(
         &self,
@@ -280,7 +278,7 @@ impl Renderer {
         }
     }
 
-    /// Of what was recorded last nothing ran: nothing counts as recorded.
+    /// The last recording did not run: nothing counts as recorded.
     #[doc(hidden)]
     pub fn forget(&mut self) {
         self.begun = 0;
@@ -288,18 +286,18 @@ impl Renderer {
         self.slots.iter_mut().for_each(|slot| slot.recorded.clear());
     }
 
-    /// Appends what an edit needs, a rectangle of heights in which alone the input differs from the last
-    /// recording: the lines that can reach it, from where they meet it to where it no longer stands on
-    /// their hulls, and the light of the samples that see it ([`Plan::edit_passes`]). Leaves the same
-    /// bits in every output as [`record`](Self::record) would.
+    /// Appends the edit of a rectangle of heights; only there may the input differ from the last recording. It
+    /// sweeps the lines that can reach the rectangle, from where they enter it to where it has left their
+    /// hulls, and lights the texels whose horizon changes ([`Plan::edit_passes`]). Every output gets the same
+    /// bits as from [`record`](Self::record).
     ///
-    /// The outputs must hold, in the state that they come in, what the last recording left in them;
-    /// every earlier change must have been recorded.
+    /// The outputs must hold, in their state before, what the last recording left in them. Every earlier change
+    /// must have been recorded.
     ///
     /// # Errors
-    /// As [`record`](Self::record); a plan without passes for edits; a rectangle beyond the field; a
-    /// renderer that has not yet recorded all, or not all since its plan was replaced; an output whose
-    /// contents are not kept.
+    /// As [`record`](Self::record). A plan without passes for edits; a rectangle beyond the field; a renderer
+    /// that has not recorded all passes, or not since its plan was replaced; an output whose contents are not
+    /// kept.
     pub fn record_edit<I: Copy + Into<InputArg>>(
         &mut self,
         commands: vk::CommandBuffer,
@@ -324,7 +322,7 @@ impl Renderer {
         if index < all { &self.plan.passes[index] } else { &self.plan.edit_passes[index - all] }
     }
 
-    /// GPU times of the passes that `slot` recorded last, in order; none while they are not all in, and
+    /// GPU times of the passes that `slot` recorded last, in order. None while some are not available, and
     /// where the host's queue family has no timestamps. Never waits.
     pub fn timings(&self, slot: usize) -> Option<Vec<Timing>> {
         let slot = self.slots.get(slot)?;
@@ -332,10 +330,10 @@ impl Renderer {
         if slot.recorded.is_empty() {
             return None;
         }
-        // Each a value and whether it is there.
+        // Each is a value and its availability.
         let mut ticks = vec![[0_u64; 2]; slot.recorded.len() + 1];
         let flags = vk::QueryResultFlags::TYPE_64 | vk::QueryResultFlags::WITH_AVAILABILITY;
-        // SAFETY: the pool holds at least this many queries; two words a query are asked for and given.
+        // SAFETY: the pool holds at least this many queries; two words per query are requested and provided.
         let got =
             unsafe { self.host.device.get_query_pool_results(slot.queries, 0, &mut ticks, flags) };
         if got.is_err() || ticks.iter().any(|t| t[1] == 0) {
@@ -349,7 +347,7 @@ impl Renderer {
         Some(timings.collect())
     }
 
-    /// Frees everything. The device must be done with all that was recorded.
+    /// Frees everything. All recorded commands must have finished.
     pub fn destroy(mut self) {
         self.free();
     }

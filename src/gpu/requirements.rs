@@ -5,31 +5,31 @@ use ash::vk;
 use super::shaders::{self, BindingKind, Shader};
 use crate::graph::{Format, Limits};
 
-/// What one device offers.
+/// Properties of a device.
 #[derive(Clone, Debug)]
 pub struct DeviceReport {
     /// Its name.
     pub name: String,
-    /// Its driver's name and version.
+    /// The driver's name and version.
     pub driver: String,
     /// Vulkan version, as "1.3.230".
     pub api: String,
     /// "cpu", "discrete gpu" and so on.
     pub kind: &'static str,
-    /// What a plan may count on; the memory budget is half of the largest device-local heap.
+    /// Limits for a plan; the memory budget is half of the largest device-local heap.
     pub limits: Limits,
-    /// Invocations that run in step.
+    /// Subgroup size, in invocations.
     pub subgroup_size: u32,
-    /// Nanoseconds of a timestamp's tick; 0 where timestamps do not work.
+    /// Nanoseconds per timestamp tick; 0 where timestamps do not work.
     pub timestamp_period_ns: f32,
-    /// What Ridgelight needs and the device lacks; empty where it will run.
+    /// Requirements that the device lacks; empty where Ridgelight will run.
     pub missing: Vec<String>,
 }
 
-/// What a device must be made with: known before there is one. No extension, of instance or device.
+/// What to enable when a device is made; known beforehand. No extension, of instance or device.
 #[derive(Clone, Copy, Debug)]
 pub struct Requirements {
-    /// Vulkan version that instance and device must have, and that the instance must be made for.
+    /// Vulkan version of instance and device; the instance must be created for it.
     pub api_version: u32,
     /// Core features to enable.
     pub features: vk::PhysicalDeviceFeatures,
@@ -37,14 +37,13 @@ pub struct Requirements {
     pub features12: vk::PhysicalDeviceVulkan12Features<'static>,
     /// Features of Vulkan 1.3 to enable.
     pub features13: vk::PhysicalDeviceVulkan13Features<'static>,
-    /// What the family of the queue that commands go to must offer.
+    /// Capabilities of the queue's family.
     pub queue_flags: vk::QueueFlags,
 }
 
-/// What an engine enables when it makes its device, beside what it wants itself: Vulkan 1.3 with
-/// `synchronization2` and `hostQueryReset`, `shaderStorageImageWriteWithoutFormat`,
-/// `shaderStorageImageExtendedFormats`, and a queue with compute. Whether a device has it, and subgroup votes
-/// in compute shaders, [`missing`] says.
+/// What an engine enables when it makes its device, besides its own needs: Vulkan 1.3 with `synchronization2`
+/// and `hostQueryReset`, `shaderStorageImageWriteWithoutFormat`, `shaderStorageImageExtendedFormats`, and a
+/// queue with compute. [`missing`] reports whether a device has it, and subgroup votes in compute shaders.
 pub fn requirements() -> Requirements {
     Requirements {
         api_version: vk::API_VERSION_1_3,
@@ -57,19 +56,18 @@ pub fn requirements() -> Requirements {
     }
 }
 
-/// What a device lacks, by name: of [`requirements`], subgroup votes in compute shaders, and as many storage
-/// images in a shader as one has. Empty where Ridgelight will run.
+/// What a device lacks, by name: of the [`requirements`], subgroup votes in compute shaders, and enough storage
+/// images per shader. Empty where Ridgelight will run.
 pub fn missing(instance: &ash::Instance, physical_device: vk::PhysicalDevice) -> Vec<String> {
     report(instance, physical_device).missing
 }
 
-/// What a plan may count on; `memory_budget` is half of the largest device-local heap.
+/// Limits for a plan; `memory_budget` is half of the largest device-local heap.
 pub fn limits(instance: &ash::Instance, physical_device: vk::PhysicalDevice) -> Limits {
     report(instance, physical_device).limits
 }
 
-/// Nanoseconds of a timestamp's tick, and the bits that count; none where the host's queue family has
-/// no timestamps.
+/// Nanoseconds per timestamp tick, and the valid bits; none where the host's queue family has no timestamps.
 pub(crate) fn timestamps(host: &super::Host) -> Option<(f64, u32)> {
     // SAFETY: the physical device is the instance's.
     let (families, properties) = unsafe {
@@ -82,7 +80,7 @@ pub(crate) fn timestamps(host: &super::Host) -> Option<(f64, u32)> {
     (bits > 0).then(|| (f64::from(properties.limits.timestamp_period), bits))
 }
 
-/// Of the formats that inputs may have, those that the device fetches from.
+/// The formats for inputs that the device can sample.
 pub(crate) fn readable(host: &super::Host) -> Vec<vk::Format> {
     let is_readable = |format: &vk::Format| {
         // SAFETY: the physical device is the instance's.
@@ -116,7 +114,7 @@ pub(crate) fn report(
     if is_13 {
         features = features.push_next(&mut features12).push_next(&mut features13);
     }
-    // SAFETY: as above; the structs of 1.2 and 1.3 are chained only where the device knows them.
+    // SAFETY: as above; the structs of 1.2 and 1.3 are chained only where the device supports them.
     unsafe { instance.get_physical_device_features2(physical_device, &mut features) };
     let core_features = features.features;
     // SAFETY: the physical device is the instance's.

@@ -1,7 +1,7 @@
-//! SPIR-V whose specialisation constants are plain ones.
+//! Replaces specialisation constants in SPIR-V by plain constants.
 //!
-//! A driver may do this itself, before all else. SwiftShader leaves them what they are: both ways of every
-//! branch on a setting are compiled, which takes most of the time that its pipelines take to make.
+//! A driver may do this first of all. SwiftShader does not: it compiles both sides of every branch on a
+//! setting, which is most of its pipeline creation time.
 
 use std::collections::HashMap;
 
@@ -25,19 +25,19 @@ const DECORATE: u32 = 71;
 const COMPOSITE_EXTRACT: u32 = 81;
 const SPEC_ID: u32 = 1;
 
-/// A shader's module with words in place of its specialisation constants, in their order, and of those beyond the
-/// words with their defaults.
+/// A shader's module with `words` in place of its specialisation constants, in their order; the rest get their
+/// defaults.
 pub(crate) fn specialised(shader: &Shader, words: &[u32]) -> Vec<u32> {
     let numbered: Vec<_> =
         shader.constants.iter().map(|constant| constant.id).zip(words.iter().copied()).collect();
     with_constants(shader.words, &numbered)
 }
 
-/// A module with `constants`, (constant_id, word), in place of its specialisation constants, and of the others
-/// with their defaults. What [`folded`] does not know stays as it is.
+/// A module with `constants`, (constant_id, word), in place of its specialisation constants; the others get
+/// their defaults. Operations unknown to [`folded`] stay unchanged.
 fn with_constants(words: &[u32], constants: &[(u32, u32)]) -> Vec<u32> {
     let mut out = words[..HEADER].to_vec();
-    // By result id: what is asked for, values of scalars, and of vectors.
+    // By result id: the requested words; values of scalars and of vectors.
     let (mut asked, mut known) = (HashMap::new(), HashMap::new());
     let mut vectors: HashMap<u32, Vec<u32>> = HashMap::new();
     let mut bool_type = None;
@@ -91,12 +91,12 @@ fn with_constants(words: &[u32], constants: &[(u32, u32)]) -> Vec<u32> {
     out
 }
 
-/// Values of these, where all are known.
+/// The values of these ids, where all are known.
 fn all_of(known: &HashMap<u32, u32>, ids: &[u32]) -> Option<Vec<u32>> {
     ids.iter().map(|id| known.get(id).copied()).collect()
 }
 
-/// What an operation on constants gives, booleans as 0 and 1; none where it is not defined or not known here.
+/// The result of an operation on constants, booleans as 0 and 1; none where it is undefined or unknown here.
 fn folded(op: u32, operands: &[u32]) -> Option<u32> {
     let signed = |v: u32| v as i32;
     Some(match (op, operands) {
@@ -149,7 +149,7 @@ mod tests {
         all
     }
 
-    /// Of every shader, and nothing else changes but the decorations that number them.
+    /// In every shader only the constants and the decorations that number them change.
     #[test]
     fn no_constant_is_left_to_the_driver() {
         let mut count = 0;
@@ -171,7 +171,8 @@ mod tests {
         assert!(count > 100, "{count}");
     }
 
-    /// Words of the generated structs stand in the order of the shader's constants: their defaults are the module's.
+    /// Words of the generated structs are in the order of the shader's constants, and their defaults are the
+    /// module's.
     #[test]
     fn generated_defaults_are_the_modules() {
         let all: [Specialised; 4] = [
@@ -187,8 +188,8 @@ mod tests {
         }
     }
 
-    /// bool, u32; a boolean and a number of 7 that are asked for, one of 5 that is not, their sum, what the
-    /// boolean selects of it, a vector of both numbers and its second, and an operation that is not known.
+    /// bool, u32; a boolean and a number of 7 that are requested, a 5 that is not, their sum, the boolean's
+    /// selection of it, a vector of both numbers and its second component, and an unknown operation.
     #[test]
     fn constants_become_what_is_asked_for() {
         let [boolean, uint, is, seven, five, sum, selected, pair, second, other] =

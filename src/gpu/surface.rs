@@ -1,4 +1,4 @@
-//! What pictures in a window need of instance and device.
+//! Instance and device for pictures in a window.
 
 use std::ffi::{CStr, c_char};
 
@@ -8,21 +8,21 @@ use ash::{khr, vk};
 use super::failed;
 use crate::{Error, Result};
 
-/// Makes a surface of a window that is alive.
+/// Makes a surface for a window that is alive.
 #[doc(hidden)]
 pub type CreateSurface = Box<dyn Fn(&ash::Entry, &ash::Instance) -> VkResult<vk::SurfaceKHR>>;
 
-/// How a window gets its surface: from the crate that knows window systems.
+/// Makes the surface of a window; supplied by the crate that knows window systems.
 #[doc(hidden)]
 pub struct SurfaceSource {
-    /// Instance extensions that surfaces of its system need.
+    /// Instance extensions for surfaces of its window system.
     pub extensions: &'static [*const c_char],
     /// Makes a surface of the window, which outlives it.
     pub create: CreateSurface,
 }
 
 impl SurfaceSource {
-    /// Instance extensions that surfaces of its system need, all of which a driver here has.
+    /// Instance extensions for surfaces of its window system; refuses where no driver has one of them.
     pub(super) fn extensions(&self, entry: &ash::Entry) -> Result<&'static [*const c_char]> {
         // SAFETY: a query without preconditions.
         let known = unsafe { entry.enumerate_instance_extension_properties(None) };
@@ -41,7 +41,7 @@ impl SurfaceSource {
     }
 }
 
-/// A window's surface; not destroyed but by [`Surface::end`].
+/// A window's surface; only [`Surface::end`] destroys it.
 #[doc(hidden)]
 pub struct Surface {
     pub loader: khr::surface::Instance,
@@ -61,10 +61,10 @@ impl Surface {
         Ok(made)
     }
 
-    /// Another of the same window, where the first was lost. No swapchain of it may be alive.
+    /// Makes another surface of the window, after the first was lost. No swapchain of it may be alive.
     ///
     /// # Errors
-    /// A window that is gone, a device that is lost.
+    /// A window that no longer exists, a device that is lost.
     pub fn renew(&mut self, entry: &ash::Entry, instance: &ash::Instance) -> Result<()> {
         self.end();
         self.surface = (self.source.create)(entry, instance)
@@ -72,7 +72,7 @@ impl Surface {
         Ok(())
     }
 
-    /// What a device lacks to show pictures on it.
+    /// What a device lacks to show pictures on the surface.
     pub(super) fn missing(
         &self,
         instance: &ash::Instance,
@@ -89,14 +89,14 @@ impl Surface {
         (!has_family).then(|| "a queue that computes and shows pictures in this window".into())
     }
 
-    /// Destroys it: before the instance, after its swapchains. Nothing where there is none.
+    /// Destroys it, if there is one: before the instance, after its swapchains.
     pub(super) fn end(&mut self) {
-        // SAFETY: made by this loader's instance, or null; the caller says that no swapchain is left.
+        // SAFETY: made by this loader's instance, or null; the caller guarantees that no swapchain is left.
         unsafe { self.loader.destroy_surface(std::mem::take(&mut self.surface), None) };
     }
 }
 
-/// The family of the one queue of a device: with compute, and with pictures on the surface where there is one.
+/// The family of a device's one queue: with compute, and able to present to the surface where there is one.
 pub(super) fn queue_family(
     instance: &ash::Instance,
     device: vk::PhysicalDevice,
@@ -117,7 +117,7 @@ pub(super) fn queue_family(
         let found = all.find(|(f, index)| f.queue_flags.contains(flags) && shows(*index));
         found.map(|(_, index)| index)
     };
-    // Graphics for views, where there are any.
+    // Prefers graphics, for views.
     let compute = vk::QueueFlags::COMPUTE;
     with(compute | vk::QueueFlags::GRAPHICS).or_else(|| with(compute))
 }

@@ -8,10 +8,10 @@ use crate::{Error, Result};
 
 pub(super) const LAYER: &CStr = c"VK_LAYER_KHRONOS_validation";
 
-/// What the layer has said, oldest first.
+/// The layer's messages, oldest first.
 pub(super) type Messages = Arc<Mutex<Vec<String>>>;
 
-/// Fails where the layer is not installed.
+/// An error where the layer is not installed.
 pub(super) fn require(entry: &ash::Entry) -> Result<()> {
     // SAFETY: a query without preconditions.
     let known =
@@ -25,7 +25,7 @@ pub(super) fn require(entry: &ash::Entry) -> Result<()> {
     })
 }
 
-/// Turns one of the layer's settings on.
+/// Enables one of the layer's settings.
 fn setting(key: &'static CStr) -> vk::LayerSettingEXT<'static> {
     const ON: [u8; 4] = vk::TRUE.to_ne_bytes();
     let mut setting = vk::LayerSettingEXT::default()
@@ -38,7 +38,7 @@ fn setting(key: &'static CStr) -> vk::LayerSettingEXT<'static> {
     setting
 }
 
-/// Synchronisation validation. Without the second, hazards of dispatches on one buffer go unheard.
+/// Synchronisation validation. The second setting is needed to find hazards of dispatches on one buffer.
 pub(super) fn settings() -> [vk::LayerSettingEXT<'static>; 2] {
     [setting(c"validate_sync"), setting(c"syncval_shader_accesses_heuristic")]
 }
@@ -55,7 +55,7 @@ pub(super) fn messenger(messages: &Messages) -> vk::DebugUtilsMessengerCreateInf
         .user_data(Arc::as_ptr(messages).cast_mut().cast())
 }
 
-/// An instance's messenger and what it has heard; not destroyed but by [`Listener::end`].
+/// An instance's messenger and its messages; only [`Listener::end`] destroys it.
 pub(super) struct Listener {
     loader: ext::debug_utils::Instance,
     messenger: vk::DebugUtilsMessengerEXT,
@@ -72,13 +72,13 @@ impl Listener {
         Ok(Self { loader, messenger, messages })
     }
 
-    /// What was said since the last call.
+    /// Messages since the last call.
     pub fn take(&self) -> Vec<String> {
         self.messages.lock().map(|mut m| std::mem::take(&mut *m)).unwrap_or_default()
     }
 
-    /// Stops listening: once, before the instance ends. What the instance was made with may still
-    /// speak until then, so that this must be dropped after it.
+    /// Destroys the messenger: once, before the instance. The messenger of instance creation reports until the
+    /// instance is destroyed, so this must be dropped after it.
     pub fn end(&self) {
         // SAFETY: the instance is alive; the messenger is its own, and not used again.
         unsafe { self.loader.destroy_debug_utils_messenger(self.messenger, None) };
@@ -91,8 +91,8 @@ unsafe extern "system" fn keep_message(
     data: *const vk::DebugUtilsMessengerCallbackDataEXT<'_>,
     user: *mut c_void,
 ) -> vk::Bool32 {
-    // SAFETY: Vulkan passes valid callback data; `user` is the Mutex of a `Messages` that outlives
-    // the messenger.
+    // SAFETY: Vulkan passes valid callback data; `user` is the Mutex of a `Messages` that outlives the
+    // messenger.
     unsafe {
         let kept = &*user.cast::<Mutex<Vec<String>>>();
         let text = (*data)

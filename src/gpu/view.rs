@@ -1,5 +1,5 @@
-//! Pictures of a lit field before a camera: the graphics passes, recorded after the compute passes or instead of
-//! them, into a command buffer of the caller's.
+//! Camera pictures of a lit field: graphics passes, recorded after the compute passes or instead of them, into
+//! a caller's command buffer.
 
 mod checks;
 mod pipelines;
@@ -17,54 +17,56 @@ use crate::{Error, Result};
 
 use pipelines::Drawing;
 
-/// Images that a [`ViewRenderer`] reads, in any state; they are left as they came.
+/// Images that a [`ViewRenderer`] reads, in any state; they are left as before.
 ///
-/// Of the plan that lit the field: its input "heights", its output "radiance", its input "environment"; also in
-/// another of [`Format::vk_read`](crate::graph::Format::vk_read) that the device can sample.
+/// They are those of the plan that lit the field: its input "heights", its output "radiance", its input
+/// "environment". Another format of [`Format::vk_read`](crate::graph::Format::vk_read) that the device can
+/// sample is allowed.
 #[derive(Clone, Copy, Debug)]
 pub struct ViewInputs {
-    /// Heights above the field's base, one texel a sample.
+    /// Heights above the field's base, one texel per grid point.
     pub heights: ImageArg,
-    /// Exit radiance, one texel a sample, one channel or four.
+    /// Exit radiance, one texel per grid point, one channel or four.
     pub radiance: ImageArg,
     /// The environment behind the field, where the view has one.
     pub environment: Option<ImageArg>,
-    /// One channel, one texel a sample, where the view has voids: 0 where there is ground, 1 where there is none.
+    /// The mask of voids, where the view has any: one channel, one texel per grid point, 0 on ground, 1 on
+    /// voids.
     pub voids: Option<ImageArg>,
 }
 
-/// Images that a [`ViewRenderer`] draws into, of one sample a pixel and the picture's size; what they held is lost.
+/// Attachments of a [`ViewRenderer`], with one MSAA sample and the picture's size; their old contents are lost.
 #[derive(Clone, Copy, Debug)]
 pub struct ViewOutputs {
-    /// Of the format that the renderer was made for, with usage COLOR_ATTACHMENT: an image of one's own, or of a
-    /// swapchain.
+    /// Of the format that the renderer was made for, with usage COLOR_ATTACHMENT: your own image, or a
+    /// swapchain's.
     pub picture: ImageArg,
-    /// D32_SFLOAT with usage DEPTH_STENCIL_ATTACHMENT: [`View::distance_m`] tells metres. Of several samples a pixel
-    /// it holds the first one's.
+    /// D32_SFLOAT with usage DEPTH_STENCIL_ATTACHMENT; [`View::distance_m`] converts to metres. With several
+    /// MSAA samples it holds the first one's depth.
     pub depth: Option<ImageArg>,
 }
 
-/// Records a [`View`] into command buffers of a device that it borrows: dynamic rendering of a mesh without vertex
-/// buffers, the sky behind it, and where the picture is for a screen, the tone curve.
+/// Records a [`View`] into command buffers of a borrowed device, by dynamic rendering: a mesh without vertex
+/// buffers, the sky behind it, and the tone curve where the picture is for a screen.
 ///
-/// As [`Renderer`](super::Renderer): makes every resource when it is made; recording takes nothing from the device,
-/// submits nothing and waits for nothing; internal images serve all slots in turn. Beside what
-/// [`missing`](super::missing) asks for, the device needs `dynamicRendering` (1.3 features) enabled, and the host's
-/// queue family graphics.
+/// As [`Renderer`](super::Renderer), it makes every resource when it is made. Recording allocates nothing on
+/// the device, submits nothing and waits for nothing; internal images serve all slots in turn. Besides what
+/// [`missing`](super::missing) checks, the device needs `dynamicRendering` (1.3 features) enabled, and the
+/// host's queue family needs graphics.
 pub struct ViewRenderer {
     host: Host,
-    /// What it was made for.
+    /// The view that it was made for.
     shape: View,
     format: vk::Format,
     memory: Memory,
     /// Formats that inputs may have.
     readable: Vec<vk::Format>,
     samples: vk::SampleCountFlags,
-    /// Of several samples a pixel.
+    /// With several MSAA samples.
     many: Option<Backed>,
-    /// Of the view's samples.
+    /// With the view's MSAA samples.
     depth: Option<Backed>,
-    /// What the tone curve reads.
+    /// Input of the tone curve.
     linear: Option<Backed>,
     indices: Option<Backed>,
     terrain: Drawing,
@@ -78,7 +80,7 @@ pub struct ViewRenderer {
 
 /// One frame in flight.
 struct Slot {
-    /// Of terrain, sky and tone.
+    /// Sets of terrain, sky and tone curve.
     sets: [vk::DescriptorSet; 3],
     /// Null where there are no timestamps.
     queries: vk::QueryPool,
@@ -88,12 +90,12 @@ struct Slot {
 const fn is_send<T: Send>() {}
 const _: () = is_send::<ViewRenderer>();
 
-/// How radiance gets into a picture of a format.
+/// How radiance is stored in a picture's format.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Curve {
-    /// As it is: the image holds floats.
+    /// Unchanged: the image holds floats.
     None,
-    /// Exposure and clip; the image encodes by itself.
+    /// Exposure and clip; the format itself encodes sRGB.
     Clip,
     /// Exposure, clip, sRGB.
     Encode,
@@ -116,26 +118,28 @@ impl Curve {
     }
 }
 
-/// Of images before the tone curve.
+/// Format of the images before the tone curve.
 const LINEAR: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 
-/// What is timed, in order.
+/// Labels of the GPU times, in order.
 const LABELS: [&str; 3] = ["terrain_draw", "sky_draw", "picture_tone"];
 
 impl ViewRenderer {
-    /// Makes what views shaped like `view` need, for pictures of a format and `slots` frames in flight (1 or more).
+    /// Makes the resources for views with the shape of `view`, for pictures of a format and `slots` frames in
+    /// flight (1 or more).
     ///
-    /// `format` is R32G32B32A32 or R16G16B16A16 SFLOAT, which get linear radiance, or of a screen: R8G8B8A8,
-    /// B8G8R8A8 or A8B8G8R8_PACK32, UNORM or SRGB, or 10 bits a colour, which get radiance times exposure, clipped
-    /// and sRGB-encoded, as in a PNG.
+    /// `format` is R32G32B32A32 or R16G16B16A16 SFLOAT for linear radiance; or a screen format, which gets
+    /// radiance times exposure, clipped and sRGB-encoded, as in a PNG: R8G8B8A8, B8G8R8A8 or A8B8G8R8_PACK32,
+    /// UNORM or SRGB, or 10 bits per colour.
     ///
     /// # Errors
-    /// A device that lacks something (named): samples a pixel, graphics; or is out of memory.
+    /// A device that lacks something (named): the MSAA count, graphics; or is out of memory.
     pub fn new(host: &Host, view: &View, format: vk::Format, slots: usize) -> Result<Self> {
         Self::with_memory(host, (view, format), slots, Box::new(Blocks::new(host)?))
     }
 
-    /// [`new`](Self::new) with memory from an engine's own allocator, dropped after all has been freed.
+    /// [`new`](Self::new) with memory from an engine's own allocator, which is dropped after everything has
+    /// been freed.
     ///
     /// # Errors
     /// As there, and the allocator's own.
@@ -175,19 +179,20 @@ impl ViewRenderer {
         }
     }
 
-    /// Bytes of memory that it has taken from the device.
+    /// Bytes of device memory in use.
     pub fn device_bytes(&self) -> u64 {
         self.memory.bytes()
     }
 
-    /// Appends the drawing of `view` to `commands`, which is being recorded outside rendering for the host's family.
+    /// Appends the drawing of `view` to `commands`, which is being recorded outside rendering for the host's
+    /// family.
     ///
-    /// `slot` is the frame in flight (0..slots); its last command buffer must have run. The camera may be another
-    /// each time, and the light. `exposure` is the factor before the tone curve, where the format has one. Checks
-    /// everything first: after an error nothing has been recorded.
+    /// `slot` is the frame in flight (0..slots); its last command buffer must have run. Camera and light may
+    /// change each time. `exposure` is the factor before the tone curve, where the format has one. All
+    /// arguments are checked first: after an error nothing has been recorded.
     ///
     /// # Errors
-    /// An argument that is not what the view says, by name; a view of another shape.
+    /// An argument that does not match the view, by name; a view of another shape.
     pub fn record(
         &mut self,
         commands: vk::CommandBuffer,
@@ -201,16 +206,16 @@ impl ViewRenderer {
         Ok(())
     }
 
-    /// GPU times of what `slot` recorded last; none while they are not all in, and where the host's queue family has
-    /// no timestamps. Never waits.
+    /// GPU times of what `slot` recorded last. None while some are not available, and where the host's queue
+    /// family has no timestamps. Never waits.
     pub fn timings(&self, slot: usize) -> Option<Vec<Timing>> {
         let slot = self.slots.get(slot).filter(|s| s.is_recorded)?;
         let (tick_ns, mask) = self.timestamps?;
         let count = if self.tone.is_some() { 3 } else { 2 };
-        // Each a value and whether it is there.
+        // Each is a value and its availability.
         let mut ticks = vec![[0_u64; 2]; count + 1];
         let flags = vk::QueryResultFlags::TYPE_64 | vk::QueryResultFlags::WITH_AVAILABILITY;
-        // SAFETY: the pool holds at least this many queries; two words a query are asked for and given.
+        // SAFETY: the pool holds at least this many queries; two words per query are requested and provided.
         let got =
             unsafe { self.host.device.get_query_pool_results(slot.queries, 0, &mut ticks, flags) };
         if got.is_err() || ticks.iter().any(|t| t[1] == 0) {
@@ -223,7 +228,7 @@ impl ViewRenderer {
         Some(timed.collect())
     }
 
-    /// Frees everything. The device must be done with all that was recorded.
+    /// Frees everything. All recorded commands must have finished.
     pub fn destroy(mut self) {
         self.free();
     }
@@ -240,7 +245,7 @@ impl Drop for ViewRenderer {
     }
 }
 
-/// A setting that is not what was asked for.
+/// An error for a setting.
 fn wrong<T>(name: &str, found: impl Into<String>, expected: impl Into<String>) -> Result<T> {
     Err(Error::setting(name, found, expected))
 }

@@ -1,4 +1,5 @@
-//! One file a pass: what it binds, how large it is, and why it is there; below, what several push alike.
+//! Passes, one file per shader: bindings, size, reason and cost of each dispatch. A folder per technique.
+//! This file holds the push constants that several passes share.
 
 pub(crate) mod bake;
 pub(crate) mod bounce;
@@ -32,7 +33,7 @@ pub(crate) use reference::path_trace;
 pub(crate) use sh::{
     env_rotation, env_wedges, light_matrix, sh_layout, sh_shade, sh_visibility, sh_wedges,
 };
-pub(crate) use specular::{glossy, specular_exit, specular_visibility, sun_specular};
+pub(crate) use specular::{bounced_specular, specular_exit, specular_visibility, sun_specular};
 pub use view::map_draw;
 pub(crate) use view::{picture_tone, sky_draw, terrain_draw};
 
@@ -43,15 +44,15 @@ use crate::passes::blocks::Blocks;
 use crate::passes::pyramid::Pyramid;
 use crate::scene::{HeightField, PhongSpecular};
 
-/// What passes are told of lobes: one of all samples, or an image of each sample's.
+/// Phong specular: constant, or a map.
 #[derive(Clone, Copy)]
-pub(crate) struct Lobes {
-    /// Where there is no map.
+pub(crate) struct PhongSource {
+    /// Used where there is no map.
     pub constant: PhongSpecular,
     pub map: Option<ResourceId>,
 }
 
-/// Of the passes that add light through a batch's horizons.
+/// Push constants of the passes that add light through a batch's horizons.
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 struct ShadePush {
@@ -94,7 +95,7 @@ impl ShadePush {
     }
 }
 
-/// Of the passes that march over the field's own heights, cell by cell.
+/// Push constants of the passes that march over the field's own heights, cell by cell.
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 struct MarchPush {
@@ -125,7 +126,7 @@ impl MarchPush {
     }
 }
 
-/// Of the passes whose rays look at cells by blocks, before all else: what `walk.glsl` reads.
+/// First push constants of the passes whose rays traverse blocks of cells: what `walk.glsl` reads.
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 struct LandPush {
@@ -170,7 +171,7 @@ impl LandPush {
     }
 }
 
-/// Of the passes that make a level of a pyramid of a finer one.
+/// Push constants of the passes that make a pyramid level from a finer one.
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 struct ReducePush {

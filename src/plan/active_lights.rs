@@ -91,7 +91,7 @@ impl<'a> ActiveLights<'a> {
             && sky.is_none_or(|c| grey(&c))
             && suns.iter().all(|(_, s)| grey(&s.irradiance))
             && keys.iter().all(|(_, k)| grey(&k.radiance))
-            && sphere_lights.shining.iter().all(|(_, s)| grey(&s.radiance))
+            && sphere_lights.active.iter().all(|(_, s)| grey(&s.radiance))
             && matches!(&surface.albedo, Albedo::Constant(c) if grey(c));
         let has_sky_view = wanted.sky_view;
         if has_texels {
@@ -141,7 +141,7 @@ impl<'a> ActiveLights<'a> {
     /// Whether no light is active, so the picture is black.
     pub(super) fn is_dark(&self) -> bool {
         let has_sky = self.sky.is_some() || self.environment.is_some();
-        !has_sky && self.aimed().next().is_none() && self.sphere_lights.shining.is_empty()
+        !has_sky && self.aimed().next().is_none() && self.sphere_lights.active.is_empty()
     }
 
     /// The key lights that can be visible.

@@ -285,7 +285,7 @@ fn used(
         }
         _ => {}
     }
-    let has_spheres = !active.sphere_lights.shining.is_empty();
+    let has_spheres = !active.sphere_lights.active.is_empty();
     if has_spheres || active.aimed().any(|light| light.shape != Shape::Point) {
         used.push(("sun_azimuths".into(), quality.sun_azimuths.to_string()));
     }

@@ -168,7 +168,7 @@ pub fn scatter_views(
         let of = Steps {
             field,
             albedo: &surface.albedo,
-            lobe: wanted.lobe,
+            specular: wanted.lobe,
             suns: wanted.suns.len(),
             texels: [first_link, first_sun, first_view],
             count: steps,

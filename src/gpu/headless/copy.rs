@@ -6,7 +6,7 @@ use crate::gpu::headless::frame::Owned;
 use crate::gpu::memory::{Backed, whole};
 use crate::{Error, Result};
 
-/// Staging goes through buffers of at most this size.
+/// Largest staging buffer, in bytes.
 const STAGING_BYTES: u64 = 64 << 20;
 
 impl Headless {
@@ -24,7 +24,7 @@ impl Headless {
         unsafe { self.host().device.cmd_pipeline_barrier2(commands, &info) };
     }
 
-    /// Copies between an image in GENERAL and host memory, in stretches of whole rows.
+    /// Copies between an image in GENERAL and host memory, several whole rows at a time.
     pub(in crate::gpu) fn copy(
         &mut self,
         image: &Owned,

@@ -5,7 +5,7 @@ use crate::graph::{Format, Kind, Owner, Rectangle, Resource};
 use crate::plan::Plan;
 use crate::{Error, Result};
 
-/// A renderer with images for its inputs and outputs; given back with [`Headless::end`].
+/// A renderer with images for its inputs and outputs; freed by [`Headless::end`].
 pub struct Frame {
     pub(in crate::gpu) renderer: Option<Renderer>,
     pub(in crate::gpu) inputs: Vec<Owned>,
@@ -15,7 +15,7 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// What it draws.
+    /// The plan that it draws.
     pub fn plan(&self) -> &Plan {
         self.renderer.as_ref().expect("alive until ended").plan()
     }
@@ -52,7 +52,7 @@ impl Owned {
 pub struct Pixels {
     /// The image's name in the plan.
     pub name: String,
-    /// f32 a texel: 1 or 4.
+    /// f32 values per texel: 1 or 4.
     pub channels: usize,
     /// Layer after layer, row after row.
     pub values: Vec<f32>,
@@ -70,11 +70,11 @@ impl Headless {
         Ok(Owned { backed, format, extent, name: resource.name.clone() })
     }
 
-    /// Makes a renderer for `plan` with images for all its inputs and outputs, and fills the inputs:
-    /// `contents` are their texels in the plan's order, 1 or 4 f32 each.
+    /// Makes a renderer for `plan` with images for all its inputs and outputs, and fills the inputs. `contents`
+    /// are their texels in the plan's order, 1 or 4 f32 each.
     ///
     /// # Errors
-    /// Contents that do not fit, or a device out of memory.
+    /// Contents of another size, or a device out of memory.
     pub fn frame(&mut self, plan: Plan, contents: &[&[f32]]) -> Result<Frame> {
         self.frame_in_flight(plan, contents, 1)
     }
@@ -110,7 +110,7 @@ impl Headless {
         }
     }
 
-    /// Makes a frame ([`frame`](Self::frame)), hands it to `work` and frees it, whatever comes of it.
+    /// Makes a frame ([`frame`](Self::frame)), passes it to `work` and frees it, also after an error.
     ///
     /// # Errors
     /// As there, or `work`'s own.
@@ -159,10 +159,10 @@ impl Headless {
         })
     }
 
-    /// Writes new texels into input number `input` of a frame.
+    /// Writes new texels into input `input` of a frame.
     ///
     /// # Errors
-    /// Contents that do not fit.
+    /// Contents of another size.
     pub fn refill(&mut self, frame: &Frame, input: usize, values: &[f32]) -> Result<()> {
         let image = frame.inputs.get(input).ok_or_else(|| {
             Error::setting("input", input.to_string(), format!("less than {}", frame.inputs.len()))
@@ -178,9 +178,10 @@ impl Headless {
         frame.renderer.as_mut().expect("alive until ended").replace_plan(plan)
     }
 
-    /// Runs a frame once and waits; its times by pass, where the device has timestamps.
+    /// Runs a frame once and waits. Returns GPU times by pass, where the device has timestamps.
     ///
     /// # Errors
+    /// The device's.
     /// The device's.
     pub fn draw(&self, frame: &mut Frame) -> Result<Vec<Timing>> {
         let all: Vec<usize> = (0..frame.plan().passes.len()).collect();
@@ -198,8 +199,8 @@ impl Headless {
         Ok(renderer.timings(0).unwrap_or_default())
     }
 
-    /// Runs what an edit of a rectangle of heights needs, and waits: [`Renderer::record_edit`]. The
-    /// frame has been drawn, and its heights have been refilled.
+    /// Runs the edit of a rectangle of heights, and waits: [`Renderer::record_edit`]. The frame must have been
+    /// drawn, and its heights refilled.
     ///
     /// # Errors
     /// As there.
@@ -210,10 +211,10 @@ impl Headless {
         Ok(renderer.timings(0).unwrap_or_default())
     }
 
-    /// Texels of output number `output` of a frame.
+    /// Texels of output `output` of a frame.
     ///
     /// # Errors
-    /// An output that does not exist, or the device's.
+    /// No such output, or the device's.
     pub fn pixels(&mut self, frame: &Frame, output: usize) -> Result<Pixels> {
         let image = frame.outputs.get(output).ok_or_else(|| {
             Error::setting(

@@ -1,4 +1,4 @@
-//! Images as an engine has them, in formats of its own: for tests, and programs that hold 8 or 16 bits.
+//! Images in an engine's own formats: for tests, and for programs with 8 or 16 bits per channel.
 
 use ash::vk;
 
@@ -7,7 +7,7 @@ use crate::gpu::memory::Backed;
 use crate::gpu::{BufferArg, Headless, ImageArg, ImageState};
 use crate::{Error, Result};
 
-/// An image beside those of frames, in GENERAL; given back with [`Headless::take_back`].
+/// An image outside a frame, in GENERAL; freed by [`Headless::take_back`].
 pub struct HostImage {
     backed: Backed,
     format: vk::Format,
@@ -15,7 +15,7 @@ pub struct HostImage {
 }
 
 impl HostImage {
-    /// To be read by a renderer in place of a frame's own input.
+    /// As an argument that replaces a frame's own input.
     pub fn arg(&self) -> ImageArg {
         ImageArg {
             image: self.backed.image,
@@ -28,14 +28,14 @@ impl HostImage {
     }
 }
 
-/// A buffer of texels, given back with [`Headless::take_back_buffer`].
+/// A buffer of texels, freed by [`Headless::take_back_buffer`].
 pub struct HostBuffer {
     backed: Backed,
     bytes: u64,
 }
 
 impl HostBuffer {
-    /// To be read by a renderer whose plan takes a buffer, from its begin, rows one after the other.
+    /// As an argument for a plan that takes a buffer: from its first byte, rows consecutive.
     pub fn arg(&self) -> BufferArg {
         BufferArg {
             buffer: self.backed.buffer,
@@ -47,14 +47,14 @@ impl HostBuffer {
         }
     }
 
-    /// Its bytes, which the device must not be at work on.
+    /// Its bytes; the device must not be using them.
     pub fn contents(&mut self) -> &mut [u8] {
         self.backed.mapped().expect("uploads are mapped")
     }
 }
 
 impl Headless {
-    /// Makes a buffer that the host writes and a renderer copies from, and fills it.
+    /// Makes and fills a buffer that the host writes and a renderer copies from.
     ///
     /// # Errors
     /// No bytes, or the device's.
@@ -69,16 +69,16 @@ impl Headless {
         Ok(lent)
     }
 
-    /// Frees a buffer that was lent.
+    /// Frees such a buffer.
     pub fn take_back_buffer(&mut self, mut lent: HostBuffer) {
         self.memory.free(&mut lent.backed);
     }
 
-    /// Makes an image of a colour format that the device samples, and fills it: rows of texels as Vulkan
-    /// packs them.
+    /// Makes and fills an image of a colour format that the device can sample; texels row by row, packed as in
+    /// Vulkan.
     ///
     /// # Errors
-    /// Texels that are not whole ones for `cols` × `rows`, or the device's.
+    /// The bytes are not whole texels for `cols` × `rows`, or the device's.
     pub fn lend(
         &mut self,
         name: &str,
@@ -147,7 +147,7 @@ impl Headless {
         filled
     }
 
-    /// Frees an image that was lent.
+    /// Frees such an image.
     pub fn take_back(&mut self, mut lent: HostImage) {
         self.memory.free(&mut lent.backed);
     }

@@ -1,4 +1,4 @@
-//! Pictures of a frame before a camera, on a device of our own.
+//! Camera pictures of a frame, on a device of our own.
 
 use ash::vk;
 
@@ -13,33 +13,33 @@ use crate::graph::Format;
 use crate::plan::View;
 use crate::{Error, Result};
 
-/// A picture of a lit field before a camera.
+/// A camera picture of a lit field.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Seen {
     /// Radiance, linear RGB, row after row from the top.
     pub radiance: Vec<[f32; 3]>,
-    /// Distance along the direction of view, of the first sample of each pixel, in the field's length unit; infinite
-    /// where no ground is seen.
+    /// Distance along the view direction at the first MSAA sample of each pixel, in the field's length unit;
+    /// infinite where no ground is visible.
     pub distances_m: Vec<f32>,
     /// GPU time by pass, where the device has timestamps.
     pub timings: Vec<Timing>,
 }
 
-/// Images that are drawn into, and their bytes.
+/// The bytes of a picture, of its depths, and its GPU times.
 struct Drawn {
     picture: Vec<u8>,
     depths: Vec<f32>,
     timings: Vec<Timing>,
 }
 
-/// Where copies leave what they read.
+/// The state for copies from an image.
 const COPIED: ImageState = ImageState {
     stage: vk::PipelineStageFlags2::COPY,
     access: vk::AccessFlags2::TRANSFER_READ,
     layout: vk::ImageLayout::TRANSFER_SRC_OPTIMAL,
 };
 
-/// Nobody has used it.
+/// The state of a new image.
 const NEW: ImageState = ImageState {
     stage: vk::PipelineStageFlags2::NONE,
     access: vk::AccessFlags2::NONE,
@@ -47,10 +47,11 @@ const NEW: ImageState = ImageState {
 };
 
 impl Headless {
-    /// Draws a frame that has been drawn as a camera sees it, and waits. `voids` are the field's, where it has any.
+    /// Draws a camera picture of a lit frame, and waits. `voids` are the field's, where it has any.
     ///
     /// # Errors
-    /// A view of another plan's field, samples that the device does not have, or a device out of memory.
+    /// A view of another plan's field, an MSAA count that the device does not support, or a device out of
+    /// memory.
     pub fn look(&mut self, frame: &Frame, view: &View, voids: Option<&[bool]>) -> Result<Seen> {
         let format = vk::Format::R32G32B32A32_SFLOAT;
         let drawn = self.look_as(frame, (view, 1.0), format, voids)?;
@@ -62,8 +63,8 @@ impl Headless {
         })
     }
 
-    /// The same as for a screen of four bytes a pixel: radiance times `exposure`, clipped and sRGB-encoded, in the
-    /// format's order of channels.
+    /// The same for a screen of four bytes per pixel: radiance times `exposure`, clipped and sRGB-encoded, in
+    /// the format's channel order.
     ///
     /// # Errors
     /// As [`look`](Self::look), and a format of another kind.
@@ -93,7 +94,7 @@ impl Headless {
         drawn
     }
 
-    /// `made` are the caller's to free.
+    /// The caller frees `made`.
     fn draw_view(
         &mut self,
         renderer: &mut ViewRenderer,
@@ -145,7 +146,7 @@ impl Headless {
         })
     }
 
-    /// An image of the field's voids, pushed onto `made`.
+    /// A mask image of the field's voids, added to `made`.
     ///
     /// # Errors
     /// A device out of memory or lost.
@@ -194,10 +195,10 @@ impl Headless {
     }
 }
 
-/// What a view reads of a frame.
+/// The inputs of a view, from a frame.
 ///
 /// # Errors
-/// A frame that holds no light.
+/// A frame without radiance.
 #[doc(hidden)]
 pub fn view_inputs(frame: &Frame, voids: Option<ImageArg>) -> Result<ViewInputs> {
     let plan = frame.plan();
@@ -209,8 +210,7 @@ pub fn view_inputs(frame: &Frame, voids: Option<ImageArg>) -> Result<ViewInputs>
         |name| found(name, frame.inputs(), plan.inputs().map(|r| r.1.name.as_str()).collect());
     let output =
         |name| found(name, frame.outputs(), plan.outputs().map(|r| r.1.name.as_str()).collect());
-    let missing =
-        || Error::setting("the frame before a camera", "no radiance", "that of a picture");
+    let missing = || Error::setting("frame of a view", "no radiance", "that of a picture");
     Ok(ViewInputs {
         heights: input("heights").ok_or_else(missing)?,
         radiance: output("radiance").ok_or_else(missing)?,

@@ -1,5 +1,4 @@
-//! Reading back whatever a plan left, and handing a frame's images to other renderers: for tools
-//! and tests that look inside.
+//! Reads back any resource of a plan, and passes a frame's images to other renderers: for tools and tests.
 
 use ash::vk;
 
@@ -10,22 +9,22 @@ use crate::graph::{Kind, Owner, ResourceId};
 use crate::{Error, Result};
 
 impl Frame {
-    /// What draws it: to be recorded into command buffers beside others.
+    /// The frame's renderer, to record it into command buffers with others.
     pub fn renderer(&mut self) -> &mut Renderer {
         self.renderer.as_mut().expect("alive until ended")
     }
 
-    /// The plan's inputs, in its order: in GENERAL, where they are to stay.
+    /// The plan's inputs, in its order: in GENERAL, before and after.
     pub fn inputs(&self) -> Vec<ImageArg> {
         self.inputs.iter().map(Owned::arg).collect()
     }
 
-    /// The plan's outputs, in its order: in GENERAL, where they are to stay.
+    /// The plan's outputs, in its order: in GENERAL, before and after.
     pub fn outputs(&self) -> Vec<ImageArg> {
         self.outputs.iter().map(Owned::arg).collect()
     }
 
-    /// The image or buffer that a resource of the plan is.
+    /// The image or buffer of a resource of the plan.
     fn handles(&self, id: ResourceId) -> Option<(vk::Image, vk::Buffer)> {
         let owner = self.plan().resources.get(id.0)?.owner;
         let backed = match owner {
@@ -42,13 +41,14 @@ impl Frame {
 }
 
 impl Headless {
-    /// Words of any resource of a frame that has been drawn, as its passes left it: an image layer
-    /// after layer, row after row, texel after texel; a buffer from its begin. f32 as their bits.
+    /// Words of any resource of a frame that has been drawn, as its passes left it. An image is layer after
+    /// layer, row after row, texel after texel; a buffer from its first byte. f32 values as their bits.
     ///
-    /// Images that several passes write in turn hold what the last left: to see what an earlier one
-    /// did, run the passes one by one ([`draw_passes`](Self::draw_passes)).
+    /// An image that several passes write in turn holds the last result. To read an earlier one, run the passes
+    /// one by one ([`draw_passes`](Self::draw_passes)).
     ///
     /// # Errors
+    /// A resource that the plan does not have, or a device out of memory: all of it is staged at once.
     /// A resource that the plan does not have, or a device out of memory: all of it is staged at once.
     pub fn read(&mut self, frame: &Frame, id: ResourceId) -> Result<Vec<u32>> {
         let (image, buffer) = frame.handles(id).ok_or_else(|| {
@@ -106,8 +106,8 @@ impl Headless {
         words.ok_or_else(|| failed("reading back")(vk::Result::ERROR_MEMORY_MAP_FAILED))
     }
 
-    /// Share of the samples, [0..1], where light by spherical harmonics rang below 0 in a colour and was set to
-    /// 0, an environment's or what a lobe reflects, in a frame that has been drawn; none without harmonics.
+    /// Share of the texels, [0..1], where SH light rang below 0 in a channel and was set to 0: of an
+    /// environment, or of specular reflection, in a frame that has been drawn. None without SH.
     ///
     /// # Errors
     /// As [`read`](Self::read).
@@ -128,8 +128,8 @@ impl Headless {
         Ok(Some(count as f64 / is_negative.len().max(1) as f64))
     }
 
-    /// Takes an image from its state `before` to its state `after`, within `commands`, which is being
-    /// recorded ([`run`](Self::run)).
+    /// Changes an image from state `before` to state `after`, within `commands`, which is being recorded
+    /// ([`run`](Self::run)).
     pub fn transition(&self, commands: vk::CommandBuffer, image: &ImageArg) {
         let ImageArg { before, after, .. } = *image;
         let barrier = [vk::ImageMemoryBarrier2::default()
@@ -142,14 +142,14 @@ impl Headless {
             .image(image.image)
             .subresource_range(memory::whole(image.extent[2]))];
         let info = vk::DependencyInfo::default().image_memory_barriers(&barrier);
-        // SAFETY: the caller says that `commands` is being recorded and the image is alive and in the
-        // state that it comes in.
+        // SAFETY: the caller guarantees that `commands` is being recorded and that the image is alive and in
+        // its state `before`.
         unsafe { self.host().device.cmd_pipeline_barrier2(commands, &info) };
     }
 }
 
 impl ImageState {
-    /// The state of a [`Frame`]'s images between recordings: GENERAL, used in any way.
+    /// The state of a [`Frame`]'s images between recordings: GENERAL, any use.
     pub const ANY_USE: Self = Self {
         stage: vk::PipelineStageFlags2::ALL_COMMANDS,
         access: vk::AccessFlags2::from_raw(

@@ -1,4 +1,4 @@
-//! What a device of our own finds along directions: visible points, and light that is scattered between them.
+//! Bake passes on a device of our own: visible points, and light scattered between them.
 
 use glam::DVec3;
 
@@ -9,7 +9,7 @@ use crate::plan;
 use crate::scene::{Border, Directions, HeightField, Scatter, Scene, VisiblePoints};
 
 impl Headless {
-    /// What each sample sees in each of some directions.
+    /// The visible point of each grid point in each of some directions.
     ///
     /// # Errors
     /// As [`plan::visible_points`] and [`VisiblePoints::new`].
@@ -62,7 +62,7 @@ impl Headless {
         })
     }
 
-    /// The same towards each of some views in turn ([`plan::scatter_views`]): `take` is given their numbers.
+    /// The same towards each of some views in turn ([`plan::scatter_views`]): `take` gets their light.
     ///
     /// # Errors
     /// As there; the first of `take`.
@@ -90,8 +90,8 @@ impl Headless {
         Ok(())
     }
 
-    /// Runs a frame once, waits, and counts its times for [`take_timings`](Self::take_timings), as everything that is looked
-    /// at along directions does: a light at a time, that is hundreds of frames.
+    /// Runs a frame once, waits, and adds its times to [`take_timings`](Self::take_timings). Baking one light
+    /// at a time takes hundreds of frames.
     ///
     /// # Errors
     /// As [`draw`](Self::draw).
@@ -106,8 +106,8 @@ impl Headless {
         Ok(())
     }
 
-    /// What was counted since this was last asked, in the order of the first runs: of every pass the sum over its runs,
-    /// whose number is the label's part.
+    /// GPU times since the last call, in the order of the first runs: for every pass the sum over its runs,
+    /// with their number as the label's part.
     pub fn take_timings(&mut self) -> Vec<Timing> {
         let all = std::mem::take(&mut self.counted).into_iter();
         all.map(|(name, runs, ns)| Timing { label: format!("{name} {runs} runs"), ns }).collect()

@@ -3,10 +3,10 @@ use ash::vk;
 use super::{Backed, Memory};
 use crate::Result;
 
-/// Depth, farthest 0.
+/// Depth format; 0 is farthest.
 pub(crate) const DEPTH: vk::Format = vk::Format::D32_SFLOAT;
 
-/// All of an image that is drawn into.
+/// The whole of an attachment.
 pub(crate) fn whole_attachment(format: vk::Format) -> vk::ImageSubresourceRange {
     let aspect =
         if format == DEPTH { vk::ImageAspectFlags::DEPTH } else { vk::ImageAspectFlags::COLOR };
@@ -14,7 +14,8 @@ pub(crate) fn whole_attachment(format: vk::Format) -> vk::ImageSubresourceRange 
 }
 
 impl Memory {
-    /// An image to draw into, of `samples` a pixel; also to copy from where that is one, and, of colour, to sample.
+    /// An attachment with `samples` MSAA samples. With one it can also be copied from and, if of colour,
+    /// sampled.
     pub fn attachment(
         &mut self,
         name: &str,

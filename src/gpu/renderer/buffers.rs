@@ -6,30 +6,31 @@ use super::{ImageArg, ImageState, Renderer};
 use crate::graph::{Kind, Owner, Rectangle, Resource, ResourceId};
 use crate::{Error, Result};
 
-/// Texels in a buffer of the caller's, handed in for one recording where [`Plan::take_buffer`] said so: row after
-/// row, of the format that it said. They are copied where the recording begins, by one vkCmdCopyBufferToImage.
+/// Texels in a caller's buffer for one recording, where [`Plan::take_buffer`] allowed it: row after row, of the
+/// format given there. The recording begins with one vkCmdCopyBufferToImage.
 ///
 /// [`Plan::take_buffer`]: crate::plan::Plan::take_buffer
 #[derive(Clone, Copy, Debug)]
 pub struct BufferArg {
-    /// The buffer, of usage TRANSFER_SRC. Of exclusive sharing it belongs to the host's family.
+    /// The buffer, with usage TRANSFER_SRC. If of exclusive sharing, it belongs to the host's family.
     pub buffer: vk::Buffer,
-    /// How long all of it is, bytes: nothing beyond is read.
+    /// Size of the buffer, bytes: nothing beyond is read.
     pub bytes: u64,
-    /// Where the first texel stands, bytes: whole texels.
+    /// Offset of the first texel, bytes: a multiple of the texel size.
     pub offset: u64,
-    /// From a row's begin to the next one's, bytes: whole texels, less than 2^31. 0: rows follow one another.
+    /// Distance between the starts of rows, bytes: a multiple of the texel size, less than 2^31. 0: rows are
+    /// consecutive.
     pub row_bytes: u64,
-    /// Stages that used it last, and are taken to use it next.
+    /// Stages that used it last, and will use it next.
     pub stage: vk::PipelineStageFlags2,
-    /// How they did, and will.
+    /// Accesses that used it last, and will use it next.
     pub access: vk::AccessFlags2,
 }
 
-/// What is handed in for an input: an image, or a buffer where the plan says so.
+/// An input: an image, or a buffer where the plan allows it.
 #[derive(Clone, Copy, Debug)]
 pub enum InputArg {
-    /// Read as it is.
+    /// Read directly.
     Image(ImageArg),
     /// Copied first.
     Buffer(BufferArg),
@@ -47,7 +48,7 @@ impl From<BufferArg> for InputArg {
     }
 }
 
-/// How a renderer uses callers' buffers.
+/// The renderer's use of callers' buffers.
 const READ: (vk::PipelineStageFlags2, vk::AccessFlags2) =
     (vk::PipelineStageFlags2::COPY, vk::AccessFlags2::TRANSFER_READ);
 
@@ -56,11 +57,11 @@ pub(super) struct Taken {
     pub arg: BufferArg,
     image: vk::Image,
     region: vk::BufferImageCopy,
-    /// From the first byte to behind the last that is read.
+    /// From the first byte to the end of the last that is read.
     range: std::ops::Range<u64>,
 }
 
-/// Columns, rows, and bytes a texel of an image.
+/// Columns, rows, and bytes per texel of an image.
 fn measures(resource: &Resource) -> Option<[u64; 3]> {
     match resource.kind {
         Kind::Image { format, width, height, .. } => {
@@ -70,7 +71,7 @@ fn measures(resource: &Resource) -> Option<[u64; 3]> {
     }
 }
 
-/// What is read of a buffer, or why it cannot be.
+/// The range that is read from a buffer, or why it cannot be.
 pub(super) fn check_buffer(arg: &BufferArg, resource: &Resource) -> Result<std::ops::Range<u64>> {
     let name = &resource.name;
     let wrong = |field: &str, found: String, expected: String| {
@@ -80,7 +81,7 @@ pub(super) fn check_buffer(arg: &BufferArg, resource: &Resource) -> Result<std::
     if arg.buffer == vk::Buffer::null() {
         return wrong("buffer", "null".into(), "a buffer".into());
     }
-    let of_texels = format!("a multiple of {texel}, of a texel's bytes");
+    let of_texels = format!("a multiple of {texel}, the bytes of a texel");
     if !arg.offset.is_multiple_of(texel) {
         return wrong("offset", format!("{} bytes", arg.offset), of_texels);
     }
@@ -99,14 +100,15 @@ pub(super) fn check_buffer(arg: &BufferArg, resource: &Resource) -> Result<std::
     }
     if arg.stage == vk::PipelineStageFlags2::NONE && arg.access != vk::AccessFlags2::NONE {
         let found = format!("NONE, with access {:?}", arg.access);
-        return wrong("stage", found, "the stages that use it so".into());
+        return wrong("stage", found, "the stages of this access".into());
     }
     Ok(arg.offset..end)
 }
 
 impl Renderer {
-    /// The image that an input in a buffer is copied to, as each recording leaves it, for passes of one's own
-    /// and a [`ViewRenderer`](crate::gpu::ViewRenderer): to be left so again. None for an input in an image.
+    /// The image that an input in a buffer is copied to, as each recording leaves it: for passes of your own
+    /// and for a [`ViewRenderer`](crate::gpu::ViewRenderer). Leave it in that state. None for an input in an
+    /// image.
     pub fn taken(&self, input: &str) -> Option<ImageArg> {
         let id = self.plan.find(input)?;
         let resource = &self.plan.resources[id.0];
@@ -123,7 +125,7 @@ impl Renderer {
         })
     }
 
-    /// What is to be copied: after an edit, of heights the edited rectangle.
+    /// What is copied: for an edit of heights, only the edited rectangle.
     pub(super) fn takes(
         &self,
         buffers: &[Option<BufferArg>],
@@ -173,7 +175,7 @@ impl Taken {
             .size(self.range.end - self.range.start)
     }
 
-    /// From what the buffer was used as to the copy.
+    /// Barriers from the buffer's last use to the copy.
     pub fn entry(&self) -> vk::BufferMemoryBarrier2<'static> {
         self.barrier()
             .src_stage_mask(self.arg.stage)
@@ -182,7 +184,7 @@ impl Taken {
             .dst_access_mask(READ.1)
     }
 
-    /// And back.
+    /// Barriers from the copy back to that use.
     pub fn exit(&self) -> vk::BufferMemoryBarrier2<'static> {
         self.barrier()
             .src_stage_mask(READ.0)
@@ -191,16 +193,16 @@ impl Taken {
             .dst_access_mask(self.arg.access)
     }
 
-    /// From the copy to the passes.
+    /// Barriers from the copy to the passes.
     pub fn filled(&self) -> vk::ImageMemoryBarrier2<'static> {
         super::transition(self.image, 1, Self::COPIED, ImageState::WRITTEN)
     }
 
     /// # Safety
-    /// `commands` is being recorded outside a render pass; the image is in GENERAL, and both are alive.
+    /// `commands` is being recorded outside a render pass; the image is in GENERAL; image and buffer are alive.
     pub unsafe fn copy(&self, device: &ash::Device, commands: vk::CommandBuffer) {
         let (buffer, layout) = (self.arg.buffer, Self::COPIED.layout);
-        // SAFETY: as the caller says; the region lies within what was checked.
+        // SAFETY: as the caller guarantees; the region is within the checked range.
         unsafe {
             device.cmd_copy_buffer_to_image(commands, buffer, self.image, layout, &[self.region]);
         }

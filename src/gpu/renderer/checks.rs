@@ -1,4 +1,4 @@
-//! What is refused before anything is recorded.
+//! Checks of arguments before anything is recorded.
 
 use ash::vk;
 
@@ -8,7 +8,7 @@ use crate::graph::{Kind, Owner, Resource, ResourceId};
 use crate::{Error, Result};
 
 impl Renderer {
-    /// Whether the arguments are what the plan says.
+    /// Whether the arguments match the plan.
     pub(super) fn check(
         &self,
         slot: usize,
@@ -60,8 +60,8 @@ impl Renderer {
         self.check_apart(inputs, outputs)
     }
 
-    /// Formats that the caller's image may have. What a [`plan::reference`](crate::plan::reference) works
-    /// out besides light, such as how densely it looks at an environment, is f32's to hold.
+    /// Formats that the caller's image may have. Quantities that a [`plan::reference`](crate::plan::reference)
+    /// derives, such as how densely it samples an environment, need f32.
     fn formats(&self, resource: &Resource) -> Vec<vk::Format> {
         let Kind::Image { format, .. } = resource.kind else { return Vec::new() };
         let may_differ = resource.may_be_narrow() && self.plan.find("environment_cdf").is_none();
@@ -69,7 +69,7 @@ impl Renderer {
         all.filter(|f| *f == format.vk() || may_differ && self.readable.contains(f)).collect()
     }
 
-    /// No image is handed in twice: it could not be in two states.
+    /// No image is passed twice: it could not be in two states.
     fn check_apart(&self, inputs: &[InputArg], outputs: &[ImageArg]) -> Result<()> {
         let names = || self.plan.inputs().chain(self.plan.outputs()).map(|(_, r)| &r.name);
         let inputs = inputs.iter().map(|input| match input {
@@ -88,8 +88,8 @@ impl Renderer {
         Ok(())
     }
 
-    /// In the plan's order, each once; so that as many as there are, are all. Before all have been, only those that
-    /// come next: the plan's own images would hold nothing.
+    /// In the plan's order, each once, so that the count suffices to know that all are there. Until all have
+    /// been recorded only the next ones are allowed, since the plan's own images would hold nothing.
     pub(super) fn check_passes(&self, passes: &[usize]) -> Result<()> {
         let count = self.plan.passes.len();
         if let Some(pass) = passes.iter().find(|p| **p >= count) {
@@ -116,7 +116,7 @@ impl Renderer {
         Ok(())
     }
 
-    /// Whether an edit can go on from what was recorded last.
+    /// Whether an edit can continue from the last recording.
     pub(super) fn check_drawn(&self, outputs: &[ImageArg]) -> Result<()> {
         let count = self.plan.passes.len();
         if self.begun < count {
@@ -188,20 +188,20 @@ fn check_image(arg: &ImageArg, resource: &Resource, formats: &[vk::Format]) -> R
     if resource.owner == Owner::Output { check_state(name, "after", arg.after) } else { Ok(()) }
 }
 
-/// What no barrier can name.
+/// Refuses stages and accesses that no barrier can name.
 pub(in crate::gpu) fn check_stage(name: &str, when: &str, state: ImageState) -> Result<()> {
     let ImageState { stage, access, .. } = state;
     if stage == vk::PipelineStageFlags2::NONE && access != vk::AccessFlags2::NONE {
         return Err(Error::setting(
             format!("{name}: stage {when}"),
             format!("NONE, with access {access:?}"),
-            "the stages that use it so",
+            "the stages of this access",
         ));
     }
     Ok(())
 }
 
-/// The same, and what no image of colours can be in.
+/// The same, and layouts that no colour image can be in.
 pub(in crate::gpu) fn check_state(name: &str, when: &str, state: ImageState) -> Result<()> {
     check_stage(name, when, state)?;
     let layout = state.layout;

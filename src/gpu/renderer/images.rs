@@ -1,28 +1,28 @@
-//! What a caller says of images, and barriers between what they are used for.
+//! Image arguments, and the barriers between uses of an image.
 
 use ash::vk;
 
 use super::super::memory::whole;
 
-/// What an image is being used for at a point of a command buffer.
+/// The use of an image at a point of a command buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ImageState {
-    /// Stages that used it last, or will next.
+    /// Stages of its last or next use.
     pub stage: vk::PipelineStageFlags2,
-    /// How they did, or will.
+    /// Accesses of its last or next use.
     pub access: vk::AccessFlags2,
-    /// Its layout. UNDEFINED is allowed for outputs on entry: their contents are not kept.
+    /// Its layout. UNDEFINED is allowed for outputs before a recording: their contents are not kept.
     pub layout: vk::ImageLayout,
 }
 
 impl ImageState {
-    /// What the renderer uses inputs as.
+    /// How the renderer uses inputs.
     pub(super) const READ: Self = Self {
         stage: vk::PipelineStageFlags2::COMPUTE_SHADER,
         access: vk::AccessFlags2::SHADER_SAMPLED_READ,
         layout: vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL,
     };
-    /// What the renderer uses outputs and its own images as.
+    /// How the renderer uses outputs and its own images.
     pub(super) const WRITTEN: Self = Self {
         stage: vk::PipelineStageFlags2::COMPUTE_SHADER,
         access: vk::AccessFlags2::from_raw(
@@ -34,22 +34,22 @@ impl ImageState {
     };
 }
 
-/// An image of the caller's, handed in for one recording.
+/// An image of the caller, for one recording.
 #[derive(Clone, Copy, Debug)]
 pub struct ImageArg {
-    /// The image, of mip level 0 and array layers from 0: no others are looked at, nor change state. Inputs
-    /// are made with usage SAMPLED, outputs with STORAGE.
+    /// The image; only mip level 0 and array layers from 0 are used and change state. Inputs need usage
+    /// SAMPLED, outputs STORAGE.
     pub image: vk::Image,
-    /// A view of its colour: 2D, or 2D array where the plan's resource is layered.
+    /// A view of its colour aspect: 2D, or 2D array where the plan's resource is layered.
     pub view: vk::ImageView,
-    /// Its format: the plan's; of inputs that only hold heights, an environment, an albedo or colours of lights also another
+    /// Its format: the plan's. An input of heights, an environment, an albedo or light colours may have another
     /// of [`Format::vk_read`](crate::graph::Format::vk_read) that the device can sample.
     pub format: vk::Format,
-    /// Columns, rows and layers; must be the plan's.
+    /// Columns, rows and layers; must match the plan.
     pub extent: [u32; 3],
-    /// How it comes.
+    /// State before the recording.
     pub before: ImageState,
-    /// How it is left. Inputs are left as they came, whatever stands here.
+    /// State after the recording. Ignored for inputs, which are left as before.
     pub after: ImageState,
 }
 

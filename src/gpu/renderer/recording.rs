@@ -1,4 +1,4 @@
-//! Passes into a command buffer, all arguments checked.
+//! Records passes into a command buffer.
 
 use ash::vk;
 
@@ -11,7 +11,7 @@ use super::{BufferArg, ImageArg, ImageState, InputArg, Renderer};
 use crate::graph::{Owner, Pass, Rectangle, ResourceId};
 
 impl Renderer {
-    /// Records passes, all arguments checked.
+    /// Records passes; all arguments have been checked.
     pub(super) fn append(
         &mut self,
         commands: vk::CommandBuffer,
@@ -32,7 +32,7 @@ impl Renderer {
         let entry = self.entry(&bound, holds_nothing);
         let exit = self.exit(&bound);
         let compute = vk::PipelineStageFlags2::COMPUTE_SHADER;
-        // Passes of an edit may find their workgroups in a buffer.
+        // Passes of an edit may read their workgroup counts from a buffer.
         let stages = compute | vk::PipelineStageFlags2::DRAW_INDIRECT;
         let memory = [vk::MemoryBarrier2::default()
             .src_stage_mask(stages)
@@ -50,18 +50,17 @@ impl Renderer {
             .memory_barriers(&memory);
         let timestamp = |query: usize| {
             if queries != vk::QueryPool::null() {
-                // SAFETY: `commands` is being recorded for a family with timestamps; the pool has a
-                // query more than the plan has passes, reset where the recording begins.
+                // SAFETY: `commands` is being recorded for a family with timestamps; the pool has one query
+                // more than the plan has passes, reset at the start of the recording.
                 unsafe { device.cmd_write_timestamp2(commands, compute, queries, query as u32) };
             }
         };
-        // SAFETY: the caller says that `commands` is being recorded for the host's family; every
-        // handle is alive, images are in the layouts that their arguments state, sets and queries of
-        // this slot are not in use.
+        // SAFETY: the caller guarantees that `commands` is being recorded for the host's family; every handle
+        // is alive, images are in the stated layouts, sets and queries of this slot are not in use.
         unsafe {
             if queries != vk::QueryPool::null() {
                 let count = passes.len() as u32 + 1;
-                // At once, so that no earlier times are taken for these; and where it runs, in case it
+                // Now, so that earlier times are not mistaken for these; and in the command buffer, in case it
                 // runs again.
                 device.reset_query_pool(queries, 0, count);
                 device.cmd_reset_query_pool(commands, queries, 0, count);
@@ -87,8 +86,8 @@ impl Renderer {
         self.slots[slot].recorded = passes.to_vec();
     }
 
-    /// From what images were to what passes use them as. The plan's own hold nothing from frame to
-    /// frame, unless some passes alone are recorded after others.
+    /// Barriers from the images' states to their use by passes. The plan's own images hold nothing from frame
+    /// to frame, unless only some passes are recorded after others.
     fn entry(
         &self,
         bound: &[Option<&ImageArg>],
@@ -123,7 +122,7 @@ impl Renderer {
         entry
     }
 
-    /// From what passes used the caller's images as to what they are left as.
+    /// Barriers from the passes' use of the caller's images to their states after.
     fn exit(&self, bound: &[Option<&ImageArg>]) -> Vec<vk::ImageMemoryBarrier2<'static>> {
         let left = |(i, arg): (usize, &Option<&ImageArg>)| {
             let arg = (*arg)?;
@@ -139,8 +138,8 @@ impl Renderer {
     /// One pass, labelled.
     ///
     /// # Safety
-    /// `commands` is being recorded for the host's family; every handle is alive, and the slot's sets
-    /// are not in use.
+    /// `commands` is being recorded for the host's family; every handle is alive, and the slot's sets are not
+    /// in use.
     unsafe fn dispatch(
         &self,
         commands: vk::CommandBuffer,
@@ -156,7 +155,7 @@ impl Renderer {
         let of_edit = edited.map(|rectangle| pass.for_edit(rectangle));
         let (groups, push) = of_edit.as_ref().map_or((pass.groups, &pass.push), |(g, p)| (*g, p));
         self.label(commands, Some(pass));
-        // SAFETY: as the caller says; sets and push constants are those of the pipeline's layout.
+        // SAFETY: as the caller guarantees; sets and push constants match the pipeline's layout.
         unsafe {
             device.cmd_bind_pipeline(commands, point, pipeline.pipeline);
             device.cmd_bind_descriptor_sets(commands, point, pipeline.layout, 0, &sets, &[]);
@@ -170,7 +169,7 @@ impl Renderer {
         self.label(commands, None);
     }
 
-    /// Whether a barrier stands between two passes recorded one after the other.
+    /// Whether a barrier is between two passes recorded one after the other.
     fn must_wait(&self, last: usize, next: usize) -> bool {
         (last + 1..=next).any(|p| self.pass(p).barrier_before)
     }
@@ -270,8 +269,8 @@ impl Renderer {
                     }
                 })
                 .collect();
-            // SAFETY: the sets are this slot's, whose last command buffer has run; views and buffers
-            // are alive and of the kinds that reflection found.
+            // SAFETY: the sets are this slot's, whose last command buffer has run; views and buffers are alive
+            // and of the reflected kinds.
             unsafe { self.host.device.update_descriptor_sets(&writes, &[]) };
         }
     }

@@ -1,4 +1,4 @@
-//! What a renderer makes on the device when it is made, and gives back at its end.
+//! Creates and destroys a renderer's device resources.
 
 use ash::vk;
 
@@ -12,7 +12,7 @@ use crate::graph::{Format, Kind, Owner, Resource, ResourceId};
 use crate::plan::Plan;
 use crate::{Error, Result};
 
-/// Buffers that the host writes, by name: the plan's azimuths, and its constants.
+/// Buffers that the host writes, by name: the plan's azimuths and its constants.
 const TABLES: [&str; 2] = ["azimuths", "constants"];
 
 impl Renderer {
@@ -29,8 +29,8 @@ impl Renderer {
             };
             self.resources.push(backed);
         }
-        // What a shader might write is its pass's alone: two passes that "write" one unused image
-        // would need a barrier for nothing.
+        // A resource that a shader might write belongs to its pass only: two passes that "write" one unused
+        // image would need a barrier for nothing.
         for (index, pass) in self.plan.every_pass().enumerate() {
             for (binding, id) in pass.shader.bindings.iter().zip(&pass.bindings) {
                 let writer = binding.written.then_some(index);
@@ -46,7 +46,7 @@ impl Renderer {
         self.make_slots(slots)
     }
 
-    /// An image for what comes in a buffer: only copied to and fetched from, as no other format must be.
+    /// An image for an input in a buffer: only copied to and fetched from, so that any format works.
     fn take(memory: &mut Memory, readable: &[vk::Format], resource: &Resource) -> Result<Backed> {
         let Kind::Image { format, width, height, layers, layered } = resource.kind else {
             return memory.make(&resource.name, resource.kind, MemoryUse::Device);
@@ -76,7 +76,7 @@ impl Renderer {
         Ok(made)
     }
 
-    /// What the host tells passes beside push constants, where the slot's last recording was told another.
+    /// Writes the plan's azimuths and constants where the slot does not hold the current ones.
     pub(super) fn write_tables(&mut self, slot: usize) {
         let Plan { azimuths, constants, .. } = &self.plan;
         let contents: [&[u8]; 2] =
@@ -152,7 +152,7 @@ impl Renderer {
         }
         for mut slot in self.slots.drain(..) {
             slot.tables.iter_mut().for_each(|table| self.memory.free(&mut table.1));
-            // SAFETY: made by this device; the caller of `destroy` says that nothing in flight uses it.
+            // SAFETY: made by this device; the caller of `destroy` guarantees that nothing in flight uses it.
             // Null is allowed.
             unsafe { self.host.device.destroy_query_pool(slot.queries, None) };
         }

@@ -1,4 +1,4 @@
-//! What is refused before anything is made or recorded.
+//! Checks before anything is made or recorded.
 
 use ash::vk;
 
@@ -11,7 +11,7 @@ use crate::graph::Format;
 use crate::plan::View;
 use crate::{Error, Result};
 
-/// What a device must offer for a view, and how its radiance gets into a picture.
+/// Checks what a device must support for a view; how its radiance is stored in a picture.
 pub(super) fn check_device(host: &Host, view: &View, format: vk::Format) -> Result<Curve> {
     let Some(curve) = Curve::of(format) else {
         let known = "one of 8 or 10 bits, UNORM or SRGB, or four floats";
@@ -131,7 +131,7 @@ impl ViewRenderer {
         check_state(name, "before", arg.before)
     }
 
-    /// No image is handed in twice: it could not be in two states.
+    /// No image is passed twice: it could not be in two states.
     fn check_apart(&self, inputs: &ViewInputs, outputs: &ViewOutputs) -> Result<()> {
         let all = [
             ("heights", Some(&inputs.heights)),

@@ -8,7 +8,7 @@ use super::super::specialise::specialised;
 use super::super::{Host, failed};
 use crate::Result;
 
-/// A pipeline and its layouts; null until it is made.
+/// A pipeline and its layouts; null until made.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Drawing {
     pub pipeline: vk::Pipeline,
@@ -17,23 +17,23 @@ pub(super) struct Drawing {
     pub push_bytes: u32,
 }
 
-/// What a pipeline is made from.
+/// Inputs of a pipeline.
 pub(super) struct Recipe {
     /// Vertex, fragment.
     pub shaders: [Specialised; 2],
     pub format: vk::Format,
     pub samples: vk::SampleCountFlags,
-    /// How depths must compare to what is there, and whether they are kept.
+    /// The depth comparison, and whether depths are written.
     pub depth: Option<(vk::CompareOp, bool)>,
 }
 
-/// Stages that read what is bound and pushed.
+/// Stages that read the bindings and push constants.
 pub(super) const STAGES: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
     vk::ShaderStageFlags::VERTEX.as_raw() | vk::ShaderStageFlags::FRAGMENT.as_raw(),
 );
 
 impl Drawing {
-    /// Makes layouts and pipeline; what is made before an error is this one's to [`free`](Self::free).
+    /// Makes layouts and pipeline; after an error [`free`](Self::free) frees what was made.
     pub fn make(&mut self, host: &Host, recipe: &Recipe) -> Result<()> {
         let device = &host.device;
         let doing = || format!("making the pipeline of {}", recipe.shaders[1].shader.name);
@@ -65,8 +65,8 @@ impl Drawing {
         self.layout = unsafe { device.create_pipeline_layout(&layout_info, None) }
             .map_err(failed(doing()))?;
         let mut modules = [vk::ShaderModule::null(); 2];
-        // SAFETY: the SPIR-V is glslang's output for this very layout, with constants of its own types; modules are
-        // destroyed once, whatever came of it.
+        // SAFETY: the SPIR-V is glslang's output for this layout, with constants of its own types; modules are
+        // destroyed once, also after an error.
         let made = unsafe {
             let made = recipe.modules(device, &mut modules);
             let made = made.and_then(|()| recipe.pipeline(host, self.layout, modules));
@@ -82,7 +82,7 @@ impl Drawing {
 
     /// Destroys what has been made.
     pub fn free(&mut self, host: &Host) {
-        // SAFETY: made by this device or null; whoever calls says that nothing in flight uses them.
+        // SAFETY: made by this device or null; the caller guarantees that nothing in flight uses them.
         unsafe {
             host.device.destroy_pipeline(self.pipeline, None);
             host.device.destroy_pipeline_layout(self.layout, None);
@@ -94,7 +94,7 @@ impl Drawing {
 
 impl Recipe {
     /// # Safety
-    /// The device is alive; the modules are the caller's to destroy, after an error, too.
+    /// The device is alive; the caller destroys the modules, also after an error.
     unsafe fn modules(
         &self,
         device: &ash::Device,
@@ -103,7 +103,7 @@ impl Recipe {
         for (module, Specialised { shader, constants }) in modules.iter_mut().zip(&self.shaders) {
             let words = specialised(shader, constants);
             let info = vk::ShaderModuleCreateInfo::default().code(&words);
-            // SAFETY: as the caller says.
+            // SAFETY: as the caller guarantees.
             *module = unsafe { device.create_shader_module(&info, None) }?;
         }
         Ok(())
@@ -129,7 +129,7 @@ impl Recipe {
             .topology(vk::PrimitiveTopology::TRIANGLE_LIST);
         let viewport =
             vk::PipelineViewportStateCreateInfo::default().viewport_count(1).scissor_count(1);
-        // Both sides of the ground are seen.
+        // Both sides of the ground are visible.
         let raster = vk::PipelineRasterizationStateCreateInfo::default()
             .polygon_mode(vk::PolygonMode::FILL)
             .cull_mode(vk::CullModeFlags::NONE)
@@ -164,7 +164,7 @@ impl Recipe {
             .dynamic_state(&dynamic)
             .layout(layout)
             .push_next(&mut rendering);
-        // SAFETY: as the caller says; what the info points to lives across the call.
+        // SAFETY: as the caller guarantees; the data that the info points to lives across the call.
         let made =
             unsafe { host.device.create_graphics_pipelines(host.pipeline_cache, &[info], None) };
         made.map(|all| all[0]).map_err(|(_, result)| result)

@@ -1,4 +1,4 @@
-//! A view into a command buffer, all arguments checked.
+//! Records a view into a command buffer.
 
 use ash::vk;
 
@@ -11,7 +11,7 @@ use crate::passes::picture_tone::PictureTonePush;
 use crate::passes::terrain_draw::TILE;
 use crate::plan::View;
 
-/// What shaders read.
+/// Inputs of the shaders.
 const READ: ImageState = ImageState {
     stage: vk::PipelineStageFlags2::from_raw(
         vk::PipelineStageFlags2::VERTEX_SHADER.as_raw()
@@ -21,7 +21,7 @@ const READ: ImageState = ImageState {
     layout: vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL,
 };
 
-/// What is drawn into.
+/// Colour attachments.
 const DRAWN: ImageState = ImageState {
     stage: vk::PipelineStageFlags2::COLOR_ATTACHMENT_OUTPUT,
     access: vk::AccessFlags2::from_raw(
@@ -31,7 +31,7 @@ const DRAWN: ImageState = ImageState {
     layout: vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL,
 };
 
-/// Depths: tested, and resolved where colours are.
+/// Depths: tested, and resolved with colours.
 const TESTED: ImageState = ImageState {
     stage: vk::PipelineStageFlags2::from_raw(
         vk::PipelineStageFlags2::EARLY_FRAGMENT_TESTS.as_raw()
@@ -48,7 +48,7 @@ const TESTED: ImageState = ImageState {
 
 type Barrier = vk::ImageMemoryBarrier2<'static>;
 
-/// From what an image was, its contents lost, to what it is drawn into as.
+/// Barriers from an image's state, without its contents, to its use as an attachment.
 fn begun(image: vk::Image, from: ImageState, to: ImageState) -> Barrier {
     let from = ImageState { layout: vk::ImageLayout::UNDEFINED, ..from };
     of_kind(transition(image, 1, from, to), to)
@@ -79,8 +79,8 @@ impl ViewRenderer {
         let timestamp = |query: u32| {
             if queries != vk::QueryPool::null() {
                 let stage = vk::PipelineStageFlags2::ALL_GRAPHICS;
-                // SAFETY: `commands` is being recorded for a family with timestamps; the pool has a query more than
-                // there are draws, reset where the recording begins.
+                // SAFETY: `commands` is being recorded for a family with timestamps; the pool has one query
+                // more than there are draws, reset at the start of the recording.
                 unsafe { device.cmd_write_timestamp2(commands, stage, queries, query) };
             }
         };
@@ -91,8 +91,8 @@ impl ViewRenderer {
         };
         if queries != vk::QueryPool::null() {
             let count = LABELS.len() as u32 + 1;
-            // SAFETY: the slot's last command buffer has run. At once, so that no earlier times are taken for these;
-            // and where it runs, in case it runs again.
+            // SAFETY: the slot's last command buffer has run. Now, so that earlier times are not mistaken for
+            // these; and in the command buffer, in case it runs again.
             unsafe {
                 device.reset_query_pool(queries, 0, count);
                 device.cmd_reset_query_pool(commands, queries, 0, count);
@@ -219,8 +219,8 @@ impl ViewRenderer {
             min_depth: 0.0,
             max_depth: 1.0,
         }];
-        // SAFETY: `commands` is being recorded outside rendering; the attachments are of the picture's size and in the
-        // layouts stated.
+        // SAFETY: `commands` is being recorded outside rendering; the attachments have the picture's size and
+        // the stated layouts.
         unsafe {
             self.host.device.cmd_begin_rendering(commands, &info);
             self.host.device.cmd_set_viewport(commands, 0, &viewport);
@@ -238,8 +238,8 @@ impl ViewRenderer {
         let point = vk::PipelineBindPoint::GRAPHICS;
         let push = &push[..drawing.push_bytes as usize];
         let device = &self.host.device;
-        // SAFETY: `commands` is being recorded within rendering of the pipeline's formats; set and push constants are
-        // those of its layout.
+        // SAFETY: `commands` is being recorded within rendering of the pipeline's formats; set and push
+        // constants match its layout.
         unsafe {
             device.cmd_bind_pipeline(commands, point, drawing.pipeline);
             device.cmd_bind_descriptor_sets(commands, point, drawing.layout, 0, &[set], &[]);
@@ -250,15 +250,15 @@ impl ViewRenderer {
     fn draw_tiles(&self, commands: vk::CommandBuffer, tiles: u32) {
         let Some(indices) = &self.indices else { return };
         let device = &self.host.device;
-        // SAFETY: `commands` is being recorded within rendering, the terrain's pipeline bound; the buffer holds the
-        // indices of a tile.
+        // SAFETY: `commands` is being recorded within rendering, with the terrain's pipeline bound; the buffer
+        // holds the indices of a tile.
         unsafe {
             device.cmd_bind_index_buffer(commands, indices.buffer, 0, vk::IndexType::UINT16);
             device.cmd_draw_indexed(commands, TILE * TILE * 6, tiles, 0, 0, 0);
         }
     }
 
-    /// One that covers the picture.
+    /// A triangle that covers the picture.
     fn draw_triangle(&self, commands: vk::CommandBuffer) {
         // SAFETY: `commands` is being recorded within rendering, a pipeline bound.
         unsafe { self.host.device.cmd_draw(commands, 3, 1, 0, 0) };
@@ -280,7 +280,7 @@ impl ViewRenderer {
 
     fn write_sets(&self, slot: usize, inputs: &ViewInputs) {
         let [terrain, sky, tone] = self.slots[slot].sets;
-        // What is not there is not looked at: any image stands in for it.
+        // Absent inputs are not read: any image is bound for them.
         let absent = &inputs.radiance;
         let voids = inputs.voids.as_ref().unwrap_or(absent);
         let environment = inputs.environment.as_ref().unwrap_or(absent);

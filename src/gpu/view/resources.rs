@@ -1,4 +1,4 @@
-//! What a renderer of views makes on the device, and gives back.
+//! Creates and destroys the device resources of a renderer of views.
 
 use ash::vk;
 
@@ -47,7 +47,7 @@ impl ViewRenderer {
                 ],
                 format: drawn,
                 samples: self.samples,
-                // Where nothing has been drawn.
+                // Background, where nothing is drawn.
                 depth: Some((vk::CompareOp::GREATER_OR_EQUAL, false)),
             },
         )?;
@@ -87,7 +87,7 @@ impl ViewRenderer {
         let device = &self.host.device;
         let drawings = [Some(self.terrain), Some(self.sky), self.tone];
         let layouts: Vec<_> = drawings.iter().flatten().map(|d| d.set_layout).collect();
-        // Heights, radiance, voids; the environment; what the tone curve reads.
+        // Heights, radiance, voids; the environment; the input of the tone curve.
         let sizes = [vk::DescriptorPoolSize {
             ty: vk::DescriptorType::SAMPLED_IMAGE,
             descriptor_count: 5 * slots as u32,
@@ -135,8 +135,8 @@ impl ViewRenderer {
             self.memory.free(&mut backed);
         }
         for slot in self.slots.drain(..) {
-            // SAFETY: made by this device; the caller of `destroy` says that nothing in flight uses it. Null is
-            // allowed.
+            // SAFETY: made by this device; the caller of `destroy` guarantees that nothing in flight uses it.
+            // Null is allowed.
             unsafe { self.host.device.destroy_query_pool(slot.queries, None) };
         }
         // SAFETY: as above.

@@ -30,8 +30,8 @@ same_layout!(
     curvature = CURVATURE_X,
 );
 
-/// Some directions of all samples; `texels` are the first of the directions' and of the fans'. `bound` are visible points,
-/// ground, both buffers and what is written.
+/// Some directions of every grid point, on the curved base surface. `texels` are the first texel of the
+/// directions and of the fans. `bound` are the visible points, the ground, both buffers and the output.
 pub(crate) fn plan(
     builder: &mut Builder,
     (field, border): (&HeightField, Border),
@@ -42,7 +42,7 @@ pub(crate) fn plan(
 ) {
     let [cols, rows] = [field.cols() as u32, field.rows() as u32];
     let count = directions.end - directions.start;
-    let looks = u64::from(cols) * u64::from(rows) * u64::from(count);
+    let rays = u64::from(cols) * u64::from(rows) * u64::from(count);
     let is_small = VisiblePoints::is_small(field.rows(), field.cols());
     builder.pass(
         shaders::BentDirections {
@@ -51,7 +51,7 @@ pub(crate) fn plan(
             reach: REACH_CELLS as i32,
         },
         part,
-        "where samples see on the curved base what they see on the flat one",
+        "on the curved base, the direction to each visible point of the flat one",
         [cols.div_ceil(8), rows.div_ceil(8), count],
         &BentDirectionsPush {
             cols: cols as i32,
@@ -63,7 +63,7 @@ pub(crate) fn plan(
             curvature: curvature.per_m.map(|k| k as f32),
         },
         bound,
-        looks * (4 + 4 + 16),
-        looks,
+        rays * (4 + 4 + 16),
+        rays,
     );
 }

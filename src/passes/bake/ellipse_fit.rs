@@ -28,8 +28,8 @@ same_layout!(
     least_radius = LEAST_RADIUS,
 );
 
-/// The ellipses of some rows. `bound` are visible points and directions, or those of a curved
-/// base, and what is written; `base` says in the label which base.
+/// The ellipses of some rows. `bound` are the visible points, the directions (flat or on a curved base surface)
+/// and the output. `base` names the base in the label.
 pub(crate) fn plan(
     builder: &mut Builder,
     field: &HeightField,
@@ -45,7 +45,7 @@ pub(crate) fn plan(
     builder.pass(
         shaders::EllipseFit { small: is_small, bent: is_bent },
         &format!("{base}rows {}..{}", rows.start, rows.end),
-        "the ellipse of directions in which each sample sees the sky",
+        "the ellipse of directions in which the sky is visible",
         [cols.div_ceil(8), height.div_ceil(8), 1],
         &EllipseFitPush {
             cols: cols as i32,

@@ -7,7 +7,7 @@ use crate::passes::LandPush;
 use crate::passes::blocks::Blocks;
 use crate::scene::{Border, HeightField};
 
-/// Directions whose bits stand in a word of the device, as in `facets.glsl`.
+/// Directions whose bits share one word, as in `facets.glsl`.
 pub const DIRECTIONS_A_WORD: usize = 15;
 
 #[repr(C)]
@@ -30,7 +30,7 @@ same_layout!(
     end_direction = END_DIRECTION,
 );
 
-/// Some layers of the image: `texels` are those of all directions in the buffer "directions".
+/// Some layers of the image. `texels` are those of all directions in the buffer "directions".
 pub(crate) fn plan(
     builder: &mut Builder,
     (field, border): (&HeightField, Border),
@@ -44,7 +44,7 @@ pub(crate) fn plan(
     builder.pass(
         shaders::FacetMask { border: border as u32, most_steps: blocks.most_steps() as i32 },
         &format!("layers {}..{}", layers.start, layers.end),
-        "which triangles are seen from each direction",
+        "which triangles are visible from each direction",
         [cells_x.div_ceil(8), cells_y.div_ceil(8), layers.end - layers.start],
         &FacetMaskPush {
             land: LandPush::of(field, blocks),

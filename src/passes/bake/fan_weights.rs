@@ -23,8 +23,8 @@ same_layout!(
     first_direction = FIRST_DIRECTION,
 );
 
-/// Some directions of all samples. `bound` are the directions on the curved base, the fans from texel `first_fan`, and what
-/// is written.
+/// Some directions of every grid point. `bound` are the directions on the curved base surface, the fans from
+/// texel `first_fan`, and the output.
 pub(crate) fn plan(
     builder: &mut Builder,
     field: &HeightField,
@@ -34,11 +34,11 @@ pub(crate) fn plan(
 ) {
     let [cols, rows] = [field.cols() as u32, field.rows() as u32];
     let count = directions.end - directions.start;
-    let looks = u64::from(cols) * u64::from(rows) * u64::from(count);
+    let rays = u64::from(cols) * u64::from(rows) * u64::from(count);
     builder.pass(
         shaders::FanWeights,
         part,
-        "what each direction stands for on the curved base",
+        "the solid angle of each direction on the curved base",
         [cols.div_ceil(8), rows.div_ceil(8), count],
         &FanWeightsPush {
             cols: cols as i32,
@@ -47,7 +47,7 @@ pub(crate) fn plan(
             first_direction: directions.start as i32,
         },
         bound,
-        looks * (7 * 16 + 4),
-        looks,
+        rays * (7 * 16 + 4),
+        rays,
     );
 }

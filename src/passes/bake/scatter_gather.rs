@@ -47,7 +47,7 @@ same_layout!(
     albedo = ALBEDO,
 );
 
-/// What the samples that are seen give, as in the shader.
+/// Where the light of visible points comes from; numbered as in the shader.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Source {
     None,
@@ -55,30 +55,31 @@ pub(crate) enum Source {
     Carried,
 }
 
-/// What is the same in all steps.
+/// Inputs that are equal in all steps.
 pub(crate) struct Steps<'a> {
     pub field: &'a HeightField,
     pub albedo: &'a Albedo,
-    /// Where it reflects anything.
-    pub lobe: Option<&'a Specular>,
-    /// That it mirrors.
+    /// None where the surface has no specular reflection.
+    pub specular: Option<&'a Specular>,
+    /// Suns that the specular reflection mirrors.
     pub suns: usize,
-    /// Texels of the first path's first step, of the first sun, and of the first view.
+    /// First texel of the first path's first step, of the first sun, and of the first view.
     pub texels: [usize; 3],
     /// Steps of a path.
     pub count: u32,
-    /// Paths that the output holds before.
+    /// Paths that the output already holds.
     pub first_path: u32,
     /// Solid angle of all directions, sr.
     pub weight_sr: f64,
-    /// Towards which the last step goes, each a layer of what is scattered.
+    /// Views that the last step scatters towards, one layer each.
     pub views: u32,
-    /// Whether views see what the sample's own lobe mirrors of the lights, too.
+    /// Whether views include the specular reflection of the lights at the grid point itself.
     pub direct_specular: bool,
     pub curvature: Curvature,
 }
 
-/// Step `step` of some paths, which look at one image of visible points, whose first direction is `first_direction`.
+/// Step `step` of some paths. They read one image of visible points, whose first direction is
+/// `first_direction`.
 pub(crate) fn plan(
     builder: &mut Builder,
     steps: &Steps,
@@ -94,7 +95,7 @@ pub(crate) fn plan(
         Albedo::Constant([r, g, b]) => ([r, g, b, 1.0], false),
         Albedo::Map(_) => ([0.0; 4], true),
     };
-    let lobe = match steps.lobe {
+    let specular = match steps.specular {
         Some(Specular::Constant(phong)) => *phong,
         _ => PhongSpecular { exponent: 0.0, scale: 0.0 },
     };
@@ -105,21 +106,21 @@ pub(crate) fn plan(
     };
     let why = match sums {
         true if steps.views > 1 => {
-            "what each sample scatters towards each view of the light that it sees along its paths"
+            "the light of visible points along its paths, scattered towards each view"
         }
-        true => "what each sample scatters of the light that it sees along its paths",
-        false => "what each sample sends back along its paths",
+        true => "the light of visible points along its paths, scattered",
+        false => "the radiance that leaves back along its paths",
     };
     let views = if sums { steps.views } else { 1 };
-    let looks = u64::from(cols) * u64::from(rows) * u64::from(count) * u64::from(views);
+    let rays = u64::from(cols) * u64::from(rows) * u64::from(count) * u64::from(views);
     builder.pass(
         shaders::ScatterGather {
             source: source as u32,
             sums,
             small: is_small,
             albedo_is_map: is_map,
-            has_lobe: steps.lobe.is_some(),
-            lobe_is_map: matches!(steps.lobe, Some(Specular::Map(_))),
+            has_lobe: steps.specular.is_some(),
+            lobe_is_map: matches!(steps.specular, Some(Specular::Map(_))),
             bent: steps.curvature != Curvature::FLAT,
             own_lobe: sums && steps.direct_specular,
         },
@@ -138,15 +139,15 @@ pub(crate) fn plan(
             first_sun: steps.texels[1] as i32,
             suns: steps.suns as i32,
             weight_sr: steps.weight_sr as f32,
-            exponent: lobe.exponent,
-            lobe_share: lobe.scale,
+            exponent: specular.exponent,
+            lobe_share: specular.scale,
             first_view: steps.texels[2] as i32,
             curvature: steps.curvature.per_m.map(|k| k as f32),
             albedo,
         },
         bound,
-        looks * (4 + 16 + 16 + 16),
-        looks,
+        rays * (4 + 16 + 16 + 16),
+        rays,
     );
 }
 

@@ -27,8 +27,8 @@ same_layout!(
     end_direction = END_DIRECTION,
 );
 
-/// What each sample sees in the directions of some layers of an image. `texels` are those of the image's directions
-/// in the buffer "directions".
+/// The visible points in the directions of some layers of an image. `texels` are those of the image's
+/// directions in the buffer "directions".
 pub(crate) fn plan(
     builder: &mut Builder,
     (field, border): (&HeightField, Border),
@@ -52,7 +52,7 @@ pub(crate) fn plan(
             small: is_small,
         },
         part,
-        "the sample that each sample sees in each direction",
+        "the visible point of each grid point in each direction",
         [cols.div_ceil(8), rows.div_ceil(8), count],
         &VisiblePointsPush {
             land: LandPush::of(field, blocks),

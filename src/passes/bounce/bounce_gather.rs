@@ -11,7 +11,7 @@ use crate::passes::sphere_shade::MOST_TURNS;
 use crate::passes::sweep::warm_up;
 use crate::scene::{HeightField, Levels, Receiver};
 
-/// Of this pass and of `specular_gather`.
+/// Push constants of this pass and of `specular_gather`.
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 pub(crate) struct GatherPush {
@@ -57,7 +57,7 @@ same_layout!(
 );
 
 impl GatherPush {
-    /// Of some of so many azimuths.
+    /// Push constants for `range` of `azimuths`.
     pub fn of(field: &HeightField, of: &Pyramids, azimuths: u32, range: Range<u32>) -> Self {
         let [cell_x, cell_y] = field.cell_m();
         let [warm_up_cols, warm_up_rows] =
@@ -83,7 +83,6 @@ impl GatherPush {
     }
 }
 
-/// Levels of exit radiance.
 #[derive(Clone, Copy)]
 pub(crate) struct ShadeImages {
     pub levels: ResourceId,
@@ -91,11 +90,11 @@ pub(crate) struct ShadeImages {
     pub stack: Option<ResourceId>,
 }
 
-/// The levels that a sample looks at, of heights and of exit radiance; images where there are any.
+/// The pyramids that a gather reads: heights and exit radiance. No images where there are no levels.
 pub(crate) struct Pyramids {
     pub heights: Pyramid,
     pub height_images: Option<pyramid_march::Images>,
-    /// Whether nothing else has filled them.
+    /// Whether this pass must fill them.
     pub fills_heights: bool,
     pub shade: Pyramid,
     pub shade_images: Option<ShadeImages>,
@@ -103,7 +102,7 @@ pub(crate) struct Pyramids {
 }
 
 impl Pyramids {
-    /// Levels of heights, as shaders call them.
+    /// Bindings of the height levels.
     pub fn height_bindings(&self) -> Vec<(&'static str, ResourceId)> {
         match self.height_images {
             Some(pyramid_march::Images { stack: Some(stack), .. }) => vec![("height_stack", stack)],
@@ -114,7 +113,7 @@ impl Pyramids {
         }
     }
 
-    /// Levels of exit radiance, as shaders call them.
+    /// Bindings of the levels of exit radiance.
     pub fn shade_bindings(&self) -> Vec<(&'static str, ResourceId)> {
         match self.shade_images {
             Some(ShadeImages { stack: Some(stack), .. }) => vec![("shade_stack", stack)],
@@ -126,7 +125,8 @@ impl Pyramids {
     }
 }
 
-/// What every sample, or every node, sees of the surface by its pyramids, in as many dispatches as its azimuths need.
+/// Gathers bounced light at every grid point, or at every node, from pyramids. As many dispatches as its
+/// azimuths need.
 pub(crate) fn plan(
     builder: &mut Builder,
     field: &HeightField,
@@ -148,7 +148,7 @@ pub(crate) fn plan(
     ];
     bound.extend(of.height_bindings());
     bound.extend(of.shade_bindings());
-    // The march, and inside it samples that round to one distance.
+    // The march, and inside it pyramid samples that round to one distance.
     let at_once = (MOST_TURNS / (2 * of.heights.samples() + 3)).max(1);
     for first in (0..azimuths).step_by(at_once as usize) {
         let last = azimuths.min(first + at_once);
@@ -157,8 +157,8 @@ pub(crate) fn plan(
             true => bounce.name.clone(),
             false => format!("{} azimuths {first}..{last}", bounce.name),
         };
-        // Of each azimuth every sample's height, and of those that are seen, at most all, radiance.
-        let looked_at = u64::from(of.heights.samples()) * u64::from(count);
+        // Per azimuth: the height of every pyramid sample, and at most as many radiances.
+        let march_samples = u64::from(of.heights.samples()) * u64::from(count);
         builder.pass(
             shaders::BounceGather {
                 periodic: of.heights.periodic,
@@ -183,7 +183,7 @@ pub(crate) fn plan(
             [across.div_ceil(8), along.div_ceil(8), 1],
             &GatherPush::of(field, of, azimuths, first..last),
             &bound,
-            samples * (2 * 16 + looked_at * (4 + 16)),
+            samples * (2 * 16 + march_samples * (4 + 16)),
             samples * u64::from(count),
         );
     }

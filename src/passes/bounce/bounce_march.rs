@@ -26,7 +26,8 @@ same_layout!(
     last_azimuth = LAST_AZIMUTH,
 );
 
-/// What every sample, or every node, sees of the surface, in as many dispatches as its azimuths need.
+/// Gathers bounced light at every grid point, or at every node, by brute force. As many dispatches as its
+/// azimuths need.
 pub(crate) fn plan(
     builder: &mut Builder,
     scene: &Scene,
@@ -57,7 +58,7 @@ pub(crate) fn plan(
                 node_stride: nodes.stride as i32,
             },
             &part,
-            format!("{}, every stretch seen along {count} azimuths", bounce.why),
+            format!("{}, every visible interval along {count} azimuths", bounce.why),
             [across.div_ceil(8), along.div_ceil(8), 1],
             &BounceMarchPush {
                 land: LandPush::of(field, blocks),

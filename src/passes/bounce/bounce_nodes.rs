@@ -1,12 +1,12 @@
-//! Sub-sampled bounces: what arrives is found at nodes, and every sample lit by the mean radiance of the ground that
-//! they see and its own share of ground.
+//! Sub-sampled bounces. Irradiance is found at nodes. Every grid point then takes the mean radiance of the
+//! ground visible from the nodes around it, times its own share of ground.
 
 use crate::graph::bytes_text;
 use crate::graph::{Builder, Format, Limits, Owner, ResourceId};
 use crate::passes::nodes::Nodes;
 use crate::scene::{BounceEngine, Quality};
 
-/// Nodes, and what arrives there.
+/// Nodes, and the irradiance there.
 #[derive(Clone, Copy)]
 pub(crate) struct NodeSum {
     pub nodes: Nodes,
@@ -14,32 +14,33 @@ pub(crate) struct NodeSum {
 }
 
 impl NodeSum {
-    /// How many nodes there are on a field of this size.
+    /// How many nodes a field of this size has.
     pub fn count(&self, size: [u32; 2]) -> u64 {
         self.nodes.size(size).map(u64::from).iter().product()
     }
 }
 
-/// Where bounces are found, and what is kept there.
+/// Where bounces are found, and the images for them.
 #[derive(Clone, Copy)]
 pub(crate) struct BounceNodes {
-    /// Of the first bounce.
+    /// Nodes of the first bounce.
     pub first: NodeSum,
-    /// Of later ones, every second of those, where there are any: what has been thrown twice is less, and smoother.
+    /// Nodes of later bounces, where there are any: every second one of the first bounce's, since later bounces
+    /// are weaker and smoother.
     pub later: Option<NodeSum>,
-    /// What a sky of radiance 1 gives to every sample.
+    /// Irradiance of a sky of radiance 1, at every grid point.
     pub sky_share: ResourceId,
-    /// Whether that is the bounces' own to find, in their azimuths.
+    /// Whether the bounces find it themselves, along their own azimuths.
     pub finds_share: bool,
-    /// What the first bounce has seen from the later ones' nodes, a layer an azimuth: of four rings where, and its
-    /// weight.
-    pub casts: Option<ResourceId>,
+    /// The visibility cache: what the first bounce found at the later bounces' nodes, one layer per azimuth.
+    /// Each holds the positions of four rings, and its weight.
+    pub visibility_cache: Option<ResourceId>,
 }
 
 impl BounceNodes {
-    /// None where every sample is a node, or without bounces; `sky_share` is that of other lights, which walks find by
-    /// their own azimuths. Of walks, casting sets are kept where later bounces need them and they take no more than a quarter
-    /// of what the budget leaves.
+    /// None where every grid point is a node, or without bounces. `sky_share` is that of other lights; walks
+    /// find their own along their own azimuths. Walks keep a visibility cache where later bounces need one and
+    /// it takes at most a quarter of the remaining budget.
     pub fn make(
         builder: &mut Builder,
         size: [u32; 2],
@@ -71,14 +72,14 @@ impl BounceNodes {
         };
         let sky_share = shared.unwrap_or_else(share);
         let kept = later.filter(|_| is_walked);
-        let casts = kept.and_then(|later| {
+        let visibility_cache = kept.and_then(|later| {
             let layers = quality.bounces.azimuths;
             let bytes = later.count(size) * u64::from(layers) * 16;
             let room = (limits.memory_budget.saturating_sub(builder.bytes()) / 4)
                 .min(limits.allocation_bytes);
             if bytes > room || layers > limits.image_layers {
                 notes.push(format!(
-                    "each bounce swept and walked anew: what the first one sees takes {} in {layers} layers, of {} in {}",
+                    "each bounce sweeps and walks again: the visibility cache would take {} in {layers} layers, of {} in {}",
                     bytes_text(bytes),
                     bytes_text(room),
                     limits.image_layers
@@ -90,6 +91,6 @@ impl BounceNodes {
             let format = Format::Rgba32Uint;
             Some(builder.image("casting_sets", Owner::Internal, format, extent, true))
         });
-        Some(Self { first, later, sky_share, finds_share: shared.is_none(), casts })
+        Some(Self { first, later, sky_share, finds_share: shared.is_none(), visibility_cache })
     }
 }

@@ -22,7 +22,7 @@ same_layout!(
     cell_y_m = CELL_Y_M,
 );
 
-/// What arrives at every sample, of what does at the nodes around it.
+/// Irradiance at every grid point, from that at the nodes around it.
 pub(crate) fn plan(
     builder: &mut Builder,
     field: &HeightField,
@@ -36,7 +36,7 @@ pub(crate) fn plan(
     builder.pass(
         shaders::BounceShade { node_stride: at.nodes.stride as i32 },
         &bounce.name,
-        "the radiance that nodes see, by every sample's own share of ground",
+        "mean radiance of the ground visible from nodes, times each texel's own share of ground",
         [size[0].div_ceil(8), size[1].div_ceil(8), 1],
         &BounceShadePush {
             cols: size[0] as i32,

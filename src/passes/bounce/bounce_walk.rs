@@ -38,30 +38,32 @@ same_layout!(
     begin = BEGIN,
 );
 
-/// What a walk reads of the heights and of what a sweep left.
+/// What a walk reads: heights and the results of a sweep.
 pub(crate) struct Swept {
     pub lane_heights: ResourceId,
     pub azimuths: ResourceId,
     pub occluders: ResourceId,
     pub line_shift: u32,
-    /// Where the circle begins, and whether it ends with the batch.
+    /// Whether the circle begins with this batch, and whether it ends with it.
     pub begin: u32,
     pub is_last: bool,
-    /// Where what is seen from every second node is kept.
-    pub casts: Option<ResourceId>,
+    /// The visibility cache of every second node.
+    pub visibility_cache: Option<ResourceId>,
 }
 
-/// Which nodes a dispatch walks from, as the shader's constant.
+/// Which nodes a dispatch walks from; numbered as in the shader.
 #[derive(Clone, Copy, PartialEq)]
 enum From {
     All,
-    /// Those of every second lane and of the last, of which every second along keeps its casting sets.
+    /// Nodes of every second lane and of the last one. Every second one along a lane writes the visibility
+    /// cache.
     Kept,
-    /// Those of other lanes.
+    /// Nodes of the other lanes.
     Rest,
 }
 
-/// What every sample, or every node, sees of the ground in the azimuths of a batch, in as many dispatches as its turns need.
+/// Gathers bounced light at every grid point, or at every node, along the azimuths of a batch. As many
+/// dispatches as its loop iterations need.
 pub(crate) fn plan(
     builder: &mut Builder,
     (border, cell_m): (Border, [f64; 2]),
@@ -76,7 +78,7 @@ pub(crate) fn plan(
     let NodeSum { nodes, sum } = bounce.found_at();
     let [along, across] = nodes.size([axis.steps, axis.lanes]);
     let [_, kept] = Nodes { stride: 2 * nodes.stride }.size([axis.steps, axis.lanes]);
-    let dispatches = match swept.casts {
+    let dispatches = match swept.visibility_cache {
         None => vec![(From::All, "", across)],
         Some(_) => vec![(From::Kept, " kept", kept), (From::Rest, " not kept", across - kept)],
     };
@@ -96,8 +98,10 @@ pub(crate) fn plan(
         for (from, which, across) in dispatches.iter().filter(|d| d.2 > 0) {
             let found = u64::from(along) * u64::from(*across);
             let mut bound = bound.to_vec();
-            bound.extend(swept.casts.filter(|_| *from == From::Kept).map(|c| ("casting_sets", c)));
-            // Of two nodes one keeps 16 bytes.
+            bound.extend(
+                swept.visibility_cache.filter(|_| *from == From::Kept).map(|c| ("casting_sets", c)),
+            );
+            // One of two nodes stores 16 bytes.
             let bytes_an_azimuth = if *from == From::Kept { 10 } else { 2 };
             let pass = builder.pass(
                 shaders::BounceWalk {
@@ -109,7 +113,7 @@ pub(crate) fn plan(
                     from: *from as u32,
                 },
                 &format!("{part}{which}{turn}"),
-                format!("{}, stretches seen along {} azimuths", bounce.why, last - first),
+                format!("{}, visible intervals along {} azimuths", bounce.why, last - first),
                 [along.div_ceil(8), across.div_ceil(8), 1],
                 &BounceWalkPush {
                     cols: cols as i32,

@@ -1,13 +1,13 @@
-//! Light that the surface throws at itself: which bounces are drawn, and their passes.
+//! Indirect light: which bounces are computed, and their passes.
 //!
-//! A bounce's engine reads the exit radiance of the one before, and whatever it needs of the heights, and
-//! writes what arrives at every sample; `light_resolve` makes that the bounce's own exit radiance.
+//! A bounce engine reads the exit radiance of the previous bounce and the heights it needs. It writes
+//! irradiance for albedo 1 at every grid point; `light_resolve` turns that into this bounce's exit radiance.
 
 use crate::graph::{Builder, Format, Owner, ResourceId};
 use crate::passes::batch::Batch;
 use crate::passes::blocks::Blocks;
 use crate::passes::bounce_nodes::{BounceNodes, NodeSum};
-use crate::passes::glossy::{BouncedLight, Glossy, Vectors};
+use crate::passes::bounced_specular::{BouncedSpecular, ExitLight, Vectors};
 use crate::passes::nodes::Nodes;
 use crate::passes::pyramid::Pyramid;
 use crate::passes::sweep::Sweep;
@@ -18,23 +18,23 @@ use crate::passes::{
 };
 use crate::scene::{Border, BounceEngine, Bounces, HeightField, Levels, Quality, Scene, Surface};
 
-/// What an engine's passes are told of one bounce.
+/// Inputs of an engine's passes for one bounce.
 pub(crate) struct Bounce {
-    /// As in labels: "bounce1" is the first.
+    /// Label: "bounce1" is the first.
     pub name: String,
-    /// What it is, to begin a reason with.
+    /// Begins the reason of each pass.
     pub why: String,
-    /// Exit radiance of all samples, albedo and all, to be thrown on: four channels, or one where `grey`.
+    /// Exit radiance that this bounce reflects, albedo applied: four channels, or one where `grey`.
     pub exit: ResourceId,
     pub grey: bool,
-    /// To be written: exit radiance for albedo 1, R, G, B; the fourth channel is the engine's own.
+    /// Output: exit radiance for albedo 1, R, G, B. The fourth channel is the engine's own.
     pub sum: ResourceId,
-    /// Where the engine finds what arrives, in place of every sample.
+    /// Nodes at which the engine computes, in place of every grid point.
     pub at_nodes: Option<NodeSum>,
 }
 
 impl Bounce {
-    /// Where an engine finds what arrives, and what it writes there.
+    /// Nodes at which an engine computes, and its output there.
     pub fn found_at(&self) -> NodeSum {
         self.at_nodes.unwrap_or(NodeSum { nodes: Nodes { stride: 1 }, sum: self.sum })
     }
@@ -47,21 +47,21 @@ pub(crate) struct Bouncing {
     sum: ResourceId,
     at_nodes: Option<BounceNodes>,
     engine: Engine,
-    /// What lobes throw on, where there are any.
-    pub glossy: Option<Glossy>,
-    /// Exit radiance of each bounce: its layer where wanted, else one image, used in turn; the last one's goes
-    /// into the picture alone.
+    /// Bounced specular reflection, where there is any.
+    pub specular: Option<BouncedSpecular>,
+    /// Exit radiance of each bounce: its own layer where requested, else one image used in turn. The last
+    /// bounce's goes only into the picture.
     exits: Vec<Option<ResourceId>>,
 }
 
-/// How what a sample sees is found, with what that needs of its own.
+/// How bounced light is found, with the engine's own images.
 enum Engine {
     Brute,
     Sweep,
     Pyramid(bounce_gather::Pyramids),
 }
 
-/// The settings with the engine that the planner takes where it is to choose.
+/// The settings with the engine that the planner chooses for `auto`.
 pub(crate) fn settled(
     quality: &Quality,
     surface: &Surface,
@@ -75,7 +75,7 @@ pub(crate) fn settled(
     let (engine, why) = match sweep.why_no_lines() {
         None => (
             BounceEngine::Sweep,
-            "the sweep's lines lead to what is seen, in a fraction of brute's time".to_owned(),
+            "walks along the sweep's lines take a fraction of brute-force's time".to_owned(),
         ),
         Some(way) => (BounceEngine::BruteForce, format!("{way} has no lines to walk over")),
     };
@@ -83,7 +83,7 @@ pub(crate) fn settled(
     Quality { bounces: Bounces { engine, ..quality.bounces }, ..*quality }
 }
 
-/// How many bounces are worth drawing.
+/// How many bounces the planner computes.
 pub(crate) fn needed_bounces(scene: &Scene, quality: &Quality, notes: &mut Vec<String>) -> u32 {
     let albedo = scene.surface.max_reflectance();
     let count = quality.bounces.needed_bounces(albedo);
@@ -94,7 +94,8 @@ pub(crate) fn needed_bounces(scene: &Scene, quality: &Quality, notes: &mut Vec<S
 }
 
 impl Bouncing {
-    /// So many bounces, 1 or more, at nodes or at every sample; `levels` are those that direct light has of heights.
+    /// `count` bounces, 1 or more, at nodes or at every grid point. `levels` are the height levels that direct
+    /// light uses.
     pub fn make(
         builder: &mut Builder,
         scene: &Scene,
@@ -119,27 +120,28 @@ impl Bouncing {
         let sum = image("bounce_sum", Owner::Internal, Format::Rgba32Float);
         let size = [extent[0], extent[1]];
         let shade = shade(quality, size, scene);
-        let glossy = gloss
-            .map(|notes| Glossy::make(builder, (size, &shade), quality, (grey, layers), notes));
+        let specular = gloss.map(|notes| {
+            BouncedSpecular::make(builder, (size, &shade), quality, (grey, layers), notes)
+        });
         let engine = match bounces.engine {
             BounceEngine::BruteForce => Engine::Brute,
             BounceEngine::Sweep => Engine::Sweep,
             BounceEngine::Auto => unreachable!("settled before"),
             BounceEngine::Pyramid => {
                 let has_numbers =
-                    glossy.is_none_or(|g| matches!(g.outgoing, BouncedLight::Seen(_)));
+                    specular.is_none_or(|g| matches!(g.outgoing, ExitLight::Upward(_)));
                 Engine::Pyramid(pyramids(builder, (shade, grey), quality, levels, has_numbers))
             }
         };
-        Self { azimuths: bounces.azimuths, grey, sum, at_nodes, engine, glossy, exits }
+        Self { azimuths: bounces.azimuths, grey, sum, at_nodes, engine, specular, exits }
     }
 
-    /// How many there are.
+    /// How many bounces there are.
     pub fn count(&self) -> usize {
         self.exits.len()
     }
 
-    /// The passes before the first bounce; `is_recorded` says that the blocks' are there.
+    /// The passes before the first bounce. `is_recorded`: those of the blocks have been recorded.
     pub fn prepare(
         &self,
         builder: &mut Builder,
@@ -166,8 +168,8 @@ impl Bouncing {
         }
     }
 
-    /// The passes of bounce `k`, the first is 1; of `heights` and `direct` light it begins with the latter. Returns
-    /// what arrives, and where its exit radiance belongs.
+    /// The passes of bounce `k`, from 1; bounce 1 reads `direct`. Returns the irradiance, and the image for its
+    /// exit radiance.
     pub fn record(
         &self,
         builder: &mut Builder,
@@ -183,8 +185,8 @@ impl Bouncing {
                 1 => "direct light off the surface".to_owned(),
                 _ => format!("light of bounce {} off the surface", k - 1),
             },
-            exit: match self.glossy.map(|glossy| glossy.outgoing) {
-                Some(BouncedLight::Seen(exit)) => exit,
+            exit: match self.specular.map(|specular| specular.outgoing) {
+                Some(ExitLight::Upward(exit)) => exit,
                 _ => before.unwrap_or(direct),
             },
             grey: self.grey,
@@ -197,19 +199,25 @@ impl Bouncing {
             Engine::Brute => bounce_march::plan(builder, scene, blocks(), self.azimuths, &bounce),
             Engine::Sweep => {
                 let (sweeping, batches) = swept.expect("swept for walks");
-                match self.at_nodes.and_then(|at| Some((at.first, at.casts?))) {
-                    Some((walked, casts)) if k > 1 => {
+                match self.at_nodes.and_then(|at| Some((at.first, at.visibility_cache?))) {
+                    Some((walked, visibility_cache)) if k > 1 => {
                         let first = batches[0].first;
                         let circle = (sweeping.azimuths, first..first + self.azimuths);
                         let field = (size, scene.surface.border);
-                        cache_gather::plan(builder, field, circle, (&walked, casts), &bounce);
+                        cache_gather::plan(
+                            builder,
+                            field,
+                            circle,
+                            (&walked, visibility_cache),
+                            &bounce,
+                        );
                     }
                     _ => walk(builder, scene, k, (sweeping, batches), (&bounce, &self.at_nodes)),
                 }
             }
             Engine::Pyramid(of) => {
                 let ids = [heights, blocks().images.ground];
-                let how = (of, self.glossy.as_ref(), self.azimuths);
+                let how = (of, self.specular.as_ref(), self.azimuths);
                 gather(builder, &scene.field, how, &bounce, ids);
             }
         }
@@ -220,7 +228,7 @@ impl Bouncing {
         (self.sum, self.exits[k - 1])
     }
 
-    /// What leaves the ground diffusely after bounce `k` of `direct` light, which is 0; none of the last.
+    /// The diffuse exit radiance after bounce `k`; 0 is direct light. None after the last bounce.
     pub fn diffuse(&self, k: usize, direct: ResourceId) -> Option<ResourceId> {
         match k {
             0 => Some(direct),
@@ -228,7 +236,7 @@ impl Bouncing {
         }
     }
 
-    /// The settings really used.
+    /// The settings in use, for metadata.
     pub fn used(&self) -> Vec<(String, String)> {
         let mut used = Vec::new();
         let mut add = |name: &str, value: String| used.push((name.to_owned(), value));
@@ -238,9 +246,9 @@ impl Bouncing {
             Engine::Brute => BounceEngine::BruteForce,
             Engine::Sweep => BounceEngine::Sweep,
             Engine::Pyramid(of) => {
-                if let Some(glossy) = &self.glossy {
-                    add("bounce_gloss", glossy.gloss().name().to_owned());
-                    add("sh_order", glossy.order.to_string());
+                if let Some(specular) = &self.specular {
+                    add("bounce_gloss", specular.mode().name().to_owned());
+                    add("sh_order", specular.order.to_string());
                 }
                 add("bounce_level_step", of.shade.level_step.to_string());
                 add("bounce_level_offset", of.shade.level_offset.to_string());
@@ -267,7 +275,7 @@ fn walk(
     for (i, batch) in batches.iter().enumerate() {
         let part = part(&bounce.name, batch, batches);
         let occluders = sweeping.occluders(batch).expect("kept for walks");
-        // A lattice of its own still holds what the first bounce has swept.
+        // A lattice of its own still holds the first bounce's sweep.
         let is_shared =
             batches.iter().filter(|b| sweeping.occluders(b) == Some(occluders)).count() > 1;
         if k == 1 || is_shared {
@@ -284,7 +292,7 @@ fn walk(
                 edited: None,
             };
             let (border, cell_m) = field;
-            // Where nothing is met there is no ground to share.
+            // Without relief there is no ground to be visible.
             let border = if border == Border::Plane { Border::Open } else { border };
             sky_shade::plan(builder, &sweeping.sweep, border, cell_m, batch, &part, &images);
         }
@@ -295,27 +303,27 @@ fn walk(
             line_shift: sweeping.sweep.line_shift(),
             begin: batches[0].first,
             is_last: i + 1 == batches.len(),
-            casts: at_nodes.and_then(|at| at.casts),
+            visibility_cache: at_nodes.and_then(|at| at.visibility_cache),
         };
         bounce_walk::plan(builder, field, (batch, &part), &swept, bounce);
     }
 }
 
-/// Levels of what is thrown, and what is seen of them along so many azimuths.
+/// Fills the levels of exit radiance, then gathers from them along `azimuths`.
 fn gather(
     builder: &mut Builder,
     field: &HeightField,
-    (of, glossy, azimuths): (&bounce_gather::Pyramids, Option<&Glossy>, u32),
+    (of, specular, azimuths): (&bounce_gather::Pyramids, Option<&BouncedSpecular>, u32),
     bounce: &Bounce,
     ids: [ResourceId; 2],
 ) {
-    if let Some(glossy) = glossy
-        && let BouncedLight::Vectors(Vectors { exit, levels: Some([levels, table]), .. }) =
-            glossy.outgoing
+    if let Some(specular) = specular
+        && let ExitLight::Vectors(Vectors { exit, levels: Some([levels, table]), .. }) =
+            specular.outgoing
     {
         for level in 1..=of.shade.levels() {
             let (of, ids) = ((&of.shade, level), [exit, levels, table]);
-            vector_reduce::plan(builder, of, glossy, &bounce.name, ids);
+            vector_reduce::plan(builder, of, specular, &bounce.name, ids);
         }
     }
     if let Some(bounce_gather::ShadeImages { levels, table, stack }) = of.shade_images {
@@ -326,8 +334,10 @@ fn gather(
             shade_expand::plan(builder, &of.shade, bounce, [levels, table, stack]);
         }
     }
-    match glossy {
-        Some(glossy) => specular_gather::plan(builder, field, (of, glossy), azimuths, bounce, ids),
+    match specular {
+        Some(specular) => {
+            specular_gather::plan(builder, field, (of, specular), azimuths, bounce, ids)
+        }
         None => bounce_gather::plan(builder, field, of, azimuths, bounce, ids),
     }
 }
@@ -338,8 +348,8 @@ fn shade(quality: &Quality, size: [u32; 2], scene: &Scene) -> Pyramid {
     Pyramid { level_step, level_offset, ..Pyramid::new(quality, size, scene.surface.border) }
 }
 
-/// Levels of heights as settings of pyramids say, and of exit radiance as bounces' own, with images where numbers are
-/// stored; light follows the receiver.
+/// Height levels by the pyramid settings and exit radiance levels by the bounce settings, with images where
+/// levels are stored. Light follows the receiver.
 fn pyramids(
     builder: &mut Builder,
     (shade, grey): (Pyramid, bool),
@@ -371,7 +381,7 @@ fn pyramids(
     bounce_gather::Pyramids { heights, height_images, fills_heights, shade, shade_images, receiver }
 }
 
-/// As in labels.
+/// The bounce's label.
 pub(crate) fn bounce_name(k: usize) -> String {
     format!("bounce{k}")
 }

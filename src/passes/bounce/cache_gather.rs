@@ -24,19 +24,19 @@ same_layout!(
     count = COUNT,
 );
 
-/// What every node sees of one more bounce, by the casting sets that the first one left along some of the `azimuths`
-/// where it was `walked`, at every second node of it.
+/// One more bounce at every node, from the visibility cache that the first bounce left along some of the
+/// `azimuths` where it was `walked`, at every second node.
 pub(crate) fn plan(
     builder: &mut Builder,
     (size, border): ([u32; 2], Border),
     (azimuths, circle): (ResourceId, Range<u32>),
-    (walked, casts): (&NodeSum, ResourceId),
+    (walked, visibility_cache): (&NodeSum, ResourceId),
     bounce: &Bounce,
 ) {
     let at = bounce.found_at();
     let [nodes_x, nodes_y] = at.nodes.size(size);
     let count = circle.len() as u32;
-    let seen = at.count(size) * u64::from(count);
+    let visible = at.count(size) * u64::from(count);
     let pass = builder.pass(
         shaders::CacheGather {
             border: border as u32,
@@ -44,18 +44,18 @@ pub(crate) fn plan(
             node_stride: at.nodes.stride as i32,
         },
         &bounce.name,
-        format!("{}, by the casting sets of {count} azimuths", bounce.why),
+        format!("{}, by the visibility cache of {count} azimuths", bounce.why),
         [nodes_x.div_ceil(8), nodes_y.div_ceil(8), 1],
         &CacheGatherPush { cols: size[0] as i32, rows: size[1] as i32, begin: circle.start, count },
         &[
-            ("casting_sets", casts),
+            ("casting_sets", visibility_cache),
             ("azimuths", azimuths),
             (if bounce.grey { "exit_grey" } else { "exit_radiance" }, bounce.exit),
             ("node_sum", walked.sum),
             ("bounce_sum", at.sum),
         ],
-        at.count(size) * 32 + seen * (16 + if bounce.grey { 16 } else { 64 }),
-        seen,
+        at.count(size) * 32 + visible * (16 + if bounce.grey { 16 } else { 64 }),
+        visible,
     );
     pass.azimuths = circle;
 }

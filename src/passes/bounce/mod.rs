@@ -1,3 +1,6 @@
+//! Indirect light: bounce engines (brute force, sweep walks, pyramids), their nodes and their pyramids of exit radiance.
+//! `bounces` plans them; the other files are one per pass.
+
 pub(crate) mod bounce_gather;
 pub(crate) mod bounce_march;
 pub(crate) mod bounce_nodes;

@@ -20,7 +20,7 @@ same_layout!(
     width_shift = WIDTH_SHIFT,
 );
 
-/// Every level of exit radiance at every sample.
+/// Every level of exit radiance at every grid point.
 pub(crate) fn plan(
     builder: &mut Builder,
     pyramid: &Pyramid,
@@ -32,7 +32,7 @@ pub(crate) fn plan(
     builder.pass(
         shaders::ShadeExpand { periodic: pyramid.periodic },
         &bounce.name,
-        format!("{} levels of radiance at every sample, by B-splines", pyramid.levels()),
+        format!("{} levels of radiance at every texel, by B-splines", pyramid.levels()),
         [cols.div_ceil(8), rows.div_ceil(8), pyramid.levels()],
         &ShadeExpandPush {
             cols: cols as i32,

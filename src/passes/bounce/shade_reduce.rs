@@ -23,7 +23,7 @@ pub(crate) fn plan(
             grey: bounce.grey,
         },
         &format!("{} level {number}", bounce.name),
-        format!("radiance every {apart:.1} samples"),
+        format!("radiance every {apart:.1} texels"),
         [cols.div_ceil(8), rows.div_ceil(8), 1],
         &ReducePush::of(pyramid, number),
         &[("exit_radiance", bounce.exit), ("shade_levels", levels), ("shade_table", table)],

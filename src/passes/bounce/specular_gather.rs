@@ -1,16 +1,16 @@
 use crate::graph::shaders;
 use crate::graph::{Builder, ResourceId};
 use crate::passes::bounce_gather::{GatherPush, Pyramids};
+use crate::passes::bounced_specular::{BouncedSpecular, ExitLight, Vectors};
 use crate::passes::bounces::Bounce;
-use crate::passes::glossy::{BouncedLight, Glossy, Vectors};
 use crate::passes::sphere_shade::MOST_TURNS;
 use crate::scene::{HeightField, Levels};
 
-/// What every sample sees of the surface by its pyramids, for diffuse ground and for its lobe.
+/// Gathers bounced light from pyramids at every texel, for diffuse and for specular reflection.
 pub(crate) fn plan(
     builder: &mut Builder,
     field: &HeightField,
-    (of, glossy): (&Pyramids, &Glossy),
+    (of, specular): (&Pyramids, &BouncedSpecular),
     azimuths: u32,
     bounce: &Bounce,
     [heights, ground]: [ResourceId; 2],
@@ -21,29 +21,29 @@ pub(crate) fn plan(
         ("heights", heights),
         ("ground", ground),
         ("bounce_sum", bounce.sum),
-        ("arriving", glossy.arriving),
+        ("arriving", specular.arriving),
     ];
     bound.extend(of.height_bindings());
-    match glossy.outgoing {
-        BouncedLight::Vectors(Vectors { exit, levels, .. }) => {
+    match specular.outgoing {
+        ExitLight::Vectors(Vectors { exit, levels, .. }) => {
             bound.push(("exit_vectors", exit));
             let of_levels =
                 levels.into_iter().flat_map(|[l, t]| [("vector_levels", l), ("shade_table", t)]);
             bound.extend(of_levels);
         }
-        BouncedLight::Seen(exit) => {
+        ExitLight::Upward(exit) => {
             bound.push(("exit_radiance", exit));
             bound.extend(of.shade_bindings());
         }
     }
-    let has_vectors = matches!(glossy.outgoing, BouncedLight::Vectors(_));
-    // The march, and inside it samples that round to one distance; then for each sample that is seen, and for the
-    // end, the sums over its coefficients.
-    let looked_at = of.heights.samples();
+    let has_vectors = matches!(specular.outgoing, ExitLight::Vectors(_));
+    // The march, and inside it pyramid samples that round to one distance; then for each visible one, and for
+    // the end, the sums over its coefficients.
+    let march_samples = of.heights.samples();
     // Beyond the last distance less than an octave more rounds to it, and two knots end the spline.
-    let knots = looked_at + of.heights.level_step + 2;
-    let layers = glossy.layers();
-    let of_each = glossy.order * glossy.order + if has_vectors { layers + layers } else { 0 };
+    let knots = march_samples + of.heights.level_step + 2;
+    let layers = specular.layers();
+    let of_each = specular.order * specular.order + if has_vectors { layers + layers } else { 0 };
     let turns = 3 * knots + 1 + (knots + 1) * of_each;
     let at_once = ((MOST_TURNS - 8 * layers) / turns).max(1);
     for first in (0..azimuths).step_by(at_once as usize) {
@@ -53,8 +53,9 @@ pub(crate) fn plan(
             true => bounce.name.clone(),
             false => format!("{} azimuths {first}..{last}", bounce.name),
         };
-        let looks = u64::from(looked_at) * u64::from(count);
-        let of_look = if has_vectors { 4 * glossy.texel_bytes() * u64::from(layers) } else { 16 };
+        let rays = u64::from(march_samples) * u64::from(count);
+        let ray_bytes =
+            if has_vectors { 4 * specular.texel_bytes() * u64::from(layers) } else { 16 };
         builder.pass(
             shaders::SpecularGather {
                 periodic: of.heights.periodic,
@@ -63,23 +64,23 @@ pub(crate) fn plan(
                 shade_levels: of.shade.levels() as i32,
                 grey: bounce.grey,
                 vectors: has_vectors,
-                order: glossy.order as i32,
+                order: specular.order as i32,
                 most_knots: knots as i32,
             },
             &part,
             format!(
-                "{} along {count} azimuths, {looked_at} samples each, {}; as a series besides",
+                "{} along {count} azimuths, {march_samples} samples each, {}; also as a series",
                 bounce.why,
                 if has_vectors {
-                    "radiance towards the sample"
+                    "radiance towards the texel"
                 } else {
-                    "radiance as seen from above"
+                    "radiance towards the zenith"
                 }
             ),
             [cols.div_ceil(8), rows.div_ceil(8), 1],
             &GatherPush::of(field, of, azimuths, first..last),
             &bound,
-            samples * (2 * 16 + 2 * 16 * u64::from(layers) + looks * (4 + of_look)),
+            samples * (2 * 16 + 2 * 16 * u64::from(layers) + rays * (4 + ray_bytes)),
             samples * u64::from(count),
         );
     }

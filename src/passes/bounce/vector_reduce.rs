@@ -1,14 +1,14 @@
 use crate::graph::shaders;
 use crate::graph::{Builder, ResourceId};
 use crate::passes::ReducePush;
-use crate::passes::glossy::Glossy;
+use crate::passes::bounced_specular::BouncedSpecular;
 use crate::passes::pyramid::Pyramid;
 
-/// One level of series of exit radiance from the one an octave finer.
+/// One level of exit radiance as SH from the one an octave finer.
 pub(crate) fn plan(
     builder: &mut Builder,
     (pyramid, number): (&Pyramid, u32),
-    glossy: &Glossy,
+    specular: &BouncedSpecular,
     name: &str,
     [exit, levels, table]: [ResourceId; 3],
 ) {
@@ -16,11 +16,11 @@ pub(crate) fn plan(
     let (level, source) = (pyramid.level(number), pyramid.level(from));
     let [cols, rows] = level.size;
     let apart = (f64::from(number) / f64::from(pyramid.level_step)).exp2();
-    let layers = glossy.layers();
+    let layers = specular.layers();
     builder.pass(
         shaders::VectorReduce { periodic: pyramid.periodic, from_field: from == 0 },
         &format!("{name} level {number}"),
-        format!("radiance by direction every {apart:.1} samples"),
+        format!("radiance by direction every {apart:.1} texels"),
         [cols.div_ceil(8), rows.div_ceil(8), layers],
         &ReducePush::of(pyramid, number),
         &[
@@ -29,7 +29,7 @@ pub(crate) fn plan(
             ("vector_levels", levels),
             ("shade_table", table),
         ],
-        glossy.texel_bytes() * u64::from(layers) * (level.texels() + source.texels()),
+        specular.texel_bytes() * u64::from(layers) * (level.texels() + source.texels()),
         level.texels() * u64::from(layers),
     );
 }

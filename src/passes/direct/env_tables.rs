@@ -23,7 +23,7 @@ same_layout!(
     bottom_rad = BOTTOM_RAD,
 );
 
-/// What each azimuth's wedge gives above each elevation.
+/// Tabulates the light of each azimuth's wedge above each elevation.
 pub(crate) fn plan(
     builder: &mut Builder,
     (environment, border): (&Environment, Border),

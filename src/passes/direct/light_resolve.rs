@@ -23,25 +23,25 @@ same_layout!(
     colour = COLOUR,
 );
 
-/// One light's sum on its way into the picture.
+/// One light's sum and where it is added.
 pub(crate) struct Light {
     pub sum: ResourceId,
-    /// Whether the sum has colour; else it is one channel.
+    /// Whether the sum has colour; else it has one channel.
     pub has_colour: bool,
-    /// Of the light, where neither the sum nor a texel has it, times a constant albedo.
+    /// Colour of the light, where neither the sum nor a texel holds it, times a constant albedo.
     pub colour: [f32; 3],
-    /// The caller's colours, and which of them is the light's.
+    /// The caller's colours, and the light's index among them.
     pub texel: Option<(ResourceId, u32)>,
     pub albedo_map: Option<ResourceId>,
     /// The picture, and whether this light is its first.
     pub radiance: Option<(ResourceId, bool)>,
     pub layer: Option<ResourceId>,
     pub grey: bool,
-    /// Marks of the samples that an edit reaches, and their list, where only they are resolved.
+    /// Texels that an edit changes: their mask and their list. Only these are resolved.
     pub edited: Option<[ResourceId; 2]>,
 }
 
-/// Adds one light to the picture, and writes its own layer where asked.
+/// Adds one light to the picture, and writes its own layer where requested.
 pub(crate) fn plan(builder: &mut Builder, [cols, rows]: [u32; 2], part: &str, light: &Light) {
     let mut bound = vec![(if light.has_colour { "colour_sum" } else { "scalar_sum" }, light.sum)];
     bound.extend(light.texel.map(|(colours, _)| ("light_colours", colours)));

@@ -1,3 +1,6 @@
+//! Direct light: uniform sky, environment, suns, key lights and sphere lights.
+//! `light_resolve` adds each light's sum to the picture.
+
 pub(crate) mod env_tables;
 pub(crate) mod light_resolve;
 pub(crate) mod sky_shade;

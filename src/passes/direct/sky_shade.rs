@@ -12,9 +12,9 @@ pub(crate) struct Images {
     pub lattice: Option<ResourceId>,
     pub azimuths: ResourceId,
     pub sky_sum: Option<ResourceId>,
-    /// The sum, and the tables it is made of.
+    /// The sum, and the tables.
     pub environment: Option<[ResourceId; 2]>,
-    /// Marks of the samples that an edit reaches, and their list, where only they are lit.
+    /// Texels that an edit changes: their mask and their list. Only these are lit.
     pub edited: Option<[ResourceId; 2]>,
 }
 

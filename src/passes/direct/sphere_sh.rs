@@ -1,4 +1,4 @@
-//! Balls of light by spherical harmonics: what their passes are told, and where horizons are looked up.
+//! Sphere lights by spherical harmonics: the constants of their passes, and where horizons come from.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -10,7 +10,7 @@ use crate::passes::pyramid_march;
 use crate::passes::sh_layout::{Lit, by_fours, matrix};
 use crate::scene::{Border, Method, Quality, Receiver, Wedges};
 
-/// Sizes, and where things lie in [`Plan::constants`](crate::plan::Plan::constants), in texels of four.
+/// Sizes and offsets in [`Plan::constants`](crate::plan::Plan::constants), in texels of four.
 pub(crate) struct SphereSh {
     pub order: u32,
     pub wedges: Wedges,
@@ -21,12 +21,12 @@ pub(crate) struct SphereSh {
     pub entry_count: usize,
     pub table_first: usize,
     pub side: u32,
-    /// Where horizons come from: levels of a height pyramid, where some are looked at; else the surface.
+    /// Where horizons come from: levels of a height pyramid where any are read, else the surface.
     pub pyramid: Option<(Pyramid, Option<pyramid_march::Images>)>,
 }
 
 impl SphereSh {
-    /// Sizes and constants for a quality; `levels` are a pyramid's that the plan has for other lights.
+    /// Sizes and constants for a quality. `levels` are those of a pyramid that the plan has for other lights.
     pub fn make(
         builder: &mut Builder,
         (size, border): ([u32; 2], Border),
@@ -65,7 +65,7 @@ impl SphereSh {
         }
     }
 
-    /// The settings that it uses, as (name, value).
+    /// The settings in use, as (name, value).
     pub fn settings(&self, quality: &Quality) -> Vec<(String, String)> {
         let mut all = vec![
             ("sh_order", self.order.to_string()),
@@ -88,8 +88,8 @@ impl SphereSh {
     }
 }
 
-/// Row of the receiver's polynomials, place in what is seen, place in the ball's series and what their product
-/// counts for, of all that a ball towards azimuth 0 has a part in: none of m below 0.
+/// Row of the receiver's polynomials, index in visibility, index in the light's series and the weight of their
+/// product, for all products that a sphere light towards azimuth 0 takes part in: none with m < 0.
 fn entries(quality: &Quality) -> Vec<f32> {
     let (order, light_order) = (quality.sh_order as usize, quality.light_order());
     let row_first = if quality.receiver == Receiver::Plane { 1 } else { 0 };
@@ -98,7 +98,7 @@ fn entries(quality: &Quality) -> Vec<f32> {
     for (at, shares) in matrix(quality, light_order, lit).iter().enumerate() {
         let (row, seen) = (row_first + at / (order * order), at % (order * order));
         for (i, ((_, m), share)) in bands(light_order).zip(shares).enumerate() {
-            // What is not 0 is above 1e-4: a product of three harmonics, over π.
+            // Products that are not 0 are above 1e-4: three harmonics, over π.
             if m >= 0 && share.abs() > 1e-9 {
                 all.extend([row as f32, seen as f32, i as f32, *share as f32]);
             }

@@ -7,7 +7,7 @@ use crate::scene::{Border, HeightField, Levels, Receiver, Scene, SphereLight, We
 use crate::{Error, Result};
 
 use crate::passes::LandPush;
-use crate::passes::sphere_shade::{Look, MOST_TURNS, place_of};
+use crate::passes::sphere_shade::{MOST_TURNS, SphereShading, place_of};
 
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
@@ -60,14 +60,14 @@ same_layout!(
 /// As in `within.glsl`.
 const WITHIN_CELLS: u32 = 8192;
 
-/// Light of one ball, in as many dispatches as its azimuths need.
+/// Light of one sphere light, in as many dispatches as its azimuths need.
 pub(crate) fn plan(
     builder: &mut Builder,
     (scene, blocks, soft): (&Scene, &Blocks, &SphereSh),
     heights: ResourceId,
     name: &str,
-    ball: &SphereLight,
-    look: &Look,
+    light: &SphereLight,
+    shading: &SphereShading,
     sum: ResourceId,
 ) {
     // A wedge of a table needs a ray at both of its ends.
@@ -81,36 +81,44 @@ pub(crate) fn plan(
             all if all == soft.azimuths => name.to_owned(),
             _ => format!("{name} azimuths {first}..{last}"),
         };
-        dispatch(builder, (scene, blocks, soft), heights, (&part, [first, last]), ball, look, sum);
+        dispatch(
+            builder,
+            (scene, blocks, soft),
+            heights,
+            (&part, [first, last]),
+            light,
+            shading,
+            sum,
+        );
     }
 }
 
-/// Turns of loops that an azimuth may ask for.
+/// Largest number of loop iterations per azimuth.
 fn most_turns(border: Border, field: &HeightField, soft: &SphereSh) -> u32 {
     match &soft.pyramid {
-        // A spline adds up four rows at each look.
+        // A spline adds four rows at each texel.
         Some((pyramid, _)) => 5 * pyramid.samples() + 2,
         None => most_steps(border, field),
     }
 }
 
-/// As those of [`Blocks::most_steps`], of a ray that ends sooner where the field repeats.
+/// As [`Blocks::most_steps`], for a ray that ends sooner where the field repeats.
 fn most_steps(border: Border, field: &HeightField) -> u32 {
     let longest = field.cols().max(field.rows()) as u32;
     3 * if border == Border::Periodic { WITHIN_CELLS } else { longest } + 64
 }
 
-/// Refuses fields of which two rays of a wedge are longer than what loops may turn on some devices.
+/// Refuses fields on which two rays of a wedge exceed the loop limit of some devices.
 ///
 /// # Errors
-/// More samples a side than that.
+/// More grid points per side than that.
 pub(crate) fn check(border: Border, field: &HeightField, soft: &SphereSh) -> Result<()> {
     if soft.wedges == Wedges::Table && 2 * (most_turns(border, field, soft) + 1) > MOST_TURNS {
         let longest = field.cols().max(field.rows());
         return Err(Error::setting(
             "`wedges table` with `light_basis sh`",
-            format!("a field of {longest} samples a side"),
-            "10,000 a side at most, `wedges slices` or `method pyramid`",
+            format!("a field of {longest} grid points per side"),
+            "10,000 per side at most, `wedges slices` or `method pyramid`",
         ));
     }
     Ok(())
@@ -121,17 +129,17 @@ fn dispatch(
     (scene, blocks, soft): (&Scene, &Blocks, &SphereSh),
     heights: ResourceId,
     (part, [first, last]): (&str, [u32; 2]),
-    ball: &SphereLight,
-    look: &Look,
+    light: &SphereLight,
+    shading: &SphereShading,
     sum: ResourceId,
 ) {
     let field = &scene.field;
-    let (base, offset) = place_of(field, ball);
-    let Rectangle { col, row, cols, rows } = look.rectangle;
+    let (base, offset) = place_of(field, light);
+    let Rectangle { col, row, cols, rows } = shading.rectangle;
     let samples = u64::from(cols) * u64::from(rows);
     let [thin_rows, thin_cols] = blocks.thin(field);
-    let [r, g, b] = ball.radiance;
-    let begins = look.begins && first == 0;
+    let [r, g, b] = light.radiance;
+    let begins = shading.begins && first == 0;
     let mut bound =
         vec![("ground", blocks.images.ground), ("sphere_sum", sum), ("constants", soft.constants)];
     let levels = match &soft.pyramid {
@@ -168,8 +176,12 @@ fn dispatch(
         },
         part,
         match soft.wedges {
-            Wedges::Table => "the ball times what a table of wedges all around sees up to it",
-            Wedges::Slices | Wedges::Nlp => "the ball times what is seen across and up to it",
+            Wedges::Table => {
+                "the sphere light times the visibility up to it, from a table of wedges"
+            }
+            Wedges::Slices | Wedges::Nlp => {
+                "the sphere light times the visibility across and up to it"
+            }
         },
         [cols.div_ceil(8), rows.div_ceil(8), 1],
         &SphereShShadePush {
@@ -177,9 +189,9 @@ fn dispatch(
             first: [col as i32, row as i32],
             base,
             offset,
-            up_m: (ball.position_m[2] - field.base_m()) as f32,
-            radius_m: ball.radius_m as f32,
-            reach_m: look.reach_m,
+            up_m: (light.position_m[2] - field.base_m()) as f32,
+            radius_m: light.radius_m as f32,
+            reach_m: shading.reach_m,
             azimuths: soft.azimuths as i32,
             first_azimuth: first as i32,
             last_azimuth: last as i32,

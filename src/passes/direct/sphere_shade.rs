@@ -44,31 +44,31 @@ same_layout!(
     radiance = RADIANCE,
 );
 
-/// llvmpipe ends all loops of an invocation together after 65,535 turns.
+/// llvmpipe ends all loops of an invocation together after 65,535 iterations.
 pub(crate) const MOST_TURNS: u32 = 60_000;
 
-/// How a ball is looked at.
-pub(crate) struct Look {
-    /// The setting of how many slices.
+/// How and where a sphere light is shaded.
+pub(crate) struct SphereShading {
+    /// Slices across the light.
     pub slices: u32,
-    /// Samples that it is looked for at, and how far away they may be.
+    /// Grid points that it may reach, and their largest distance.
     pub rectangle: Rectangle,
     pub reach_m: f32,
     /// Whether the sum begins with it.
     pub begins: bool,
 }
 
-/// Light of one ball, in as many dispatches as its slices need.
+/// Light of one sphere light, in as many dispatches as its slices need.
 pub(crate) fn plan(
     builder: &mut Builder,
     scene: &Scene,
     blocks: &Blocks,
     name: &str,
-    ball: &SphereLight,
-    look: &Look,
+    light: &SphereLight,
+    shading: &SphereShading,
     sum: ResourceId,
 ) {
-    let [narrow, around] = ball.slices(look.slices, scene.field.cell_m());
+    let [narrow, around] = light.slices(shading.slices, scene.field.cell_m());
     let at_once = (MOST_TURNS / (blocks.most_steps() + 1)).max(1);
     for first in (0..around).step_by(at_once as usize) {
         let range = first..around.min(first + at_once);
@@ -76,19 +76,28 @@ pub(crate) fn plan(
             all if all == around => name.to_owned(),
             _ => format!("{name} slices {}..{}", range.start, range.end),
         };
-        // Where the ball is narrower it has no further slices.
+        // Beyond this distance the light subtends fewer slices.
         let half_width = PI * f64::from(first) / f64::from(around);
         let rectangle = if first < narrow {
-            look.rectangle
+            shading.rectangle
         } else {
-            let within = 1.001 * ball.radius_m / half_width.min(FRAC_PI_2).sin();
-            common(samples_within(&scene.field, ball, within), look.rectangle)
+            let within = 1.001 * light.radius_m / half_width.min(FRAC_PI_2).sin();
+            common(samples_within(&scene.field, light, within), shading.rectangle)
         };
-        dispatch(builder, scene, blocks, &part, ball, &Look { rectangle, ..*look }, range, sum);
+        dispatch(
+            builder,
+            scene,
+            blocks,
+            &part,
+            light,
+            &SphereShading { rectangle, ..*shading },
+            range,
+            sum,
+        );
     }
 }
 
-/// What is in both; where nothing is, one sample, so that plans of a moving ball have the same passes.
+/// The intersection. One grid point where it is empty, so that plans of a moving light have the same passes.
 fn common(near: Option<Rectangle>, all: Rectangle) -> Rectangle {
     let none = Rectangle { cols: 1, rows: 1, ..all };
     let Some(near) = near else { return none };
@@ -104,10 +113,10 @@ fn common(near: Option<Rectangle>, all: Rectangle) -> Rectangle {
     }
 }
 
-/// Of a ball's middle: whole cells east of the first column and south of the first row, and the rest of a cell.
-pub(crate) fn place_of(field: &HeightField, ball: &SphereLight) -> ([i32; 2], [f32; 2]) {
+/// The light's centre: whole cells east of the first column and south of the first row, and the rest of a cell.
+pub(crate) fn place_of(field: &HeightField, light: &SphereLight) -> ([i32; 2], [f32; 2]) {
     let [cell_x, cell_y] = field.cell_m();
-    let [x, y, _] = ball.position_m;
+    let [x, y, _] = light.position_m;
     let place = [x / cell_x, (field.rows() - 1) as f64 - y / cell_y];
     // Beyond this a whole cell is less than a rounding of the distance.
     let base = place.map(|p| p.floor().clamp(-1e9, 1e9));
@@ -120,19 +129,19 @@ fn dispatch(
     scene: &Scene,
     blocks: &Blocks,
     part: &str,
-    ball: &SphereLight,
-    look: &Look,
+    light: &SphereLight,
+    shading: &SphereShading,
     slices: Range<u32>,
     sum: ResourceId,
 ) {
     let field = &scene.field;
-    let [narrow, around] = ball.slices(look.slices, field.cell_m());
-    let (base, offset) = place_of(field, ball);
-    let Rectangle { col, row, cols, rows } = look.rectangle;
+    let [narrow, around] = light.slices(shading.slices, field.cell_m());
+    let (base, offset) = place_of(field, light);
+    let Rectangle { col, row, cols, rows } = shading.rectangle;
     let samples = u64::from(cols) * u64::from(rows);
     let [thin_rows, thin_cols] = blocks.thin(field);
-    let [r, g, b] = ball.radiance;
-    let begins = look.begins && slices.start == 0;
+    let [r, g, b] = light.radiance;
+    let begins = shading.begins && slices.start == 0;
     builder.pass(
         shaders::SphereShade {
             border: scene.surface.border as u32,
@@ -141,16 +150,16 @@ fn dispatch(
             most_steps: blocks.most_steps() as i32,
         },
         part,
-        "slices of the ball over what the surface hides of them",
+        "slices of the sphere light above the horizon",
         [cols.div_ceil(8), rows.div_ceil(8), 1],
         &SphereShadePush {
             land: LandPush::of(field, blocks),
             first: [col as i32, row as i32],
             base,
             offset,
-            up_m: (ball.position_m[2] - field.base_m()) as f32,
-            radius_m: ball.radius_m as f32,
-            reach_m: look.reach_m,
+            up_m: (light.position_m[2] - field.base_m()) as f32,
+            radius_m: light.radius_m as f32,
+            reach_m: shading.reach_m,
             slices: narrow as i32,
             slices_around: around as i32,
             first_slice: slices.start as i32,

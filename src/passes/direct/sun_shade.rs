@@ -7,7 +7,7 @@ use crate::passes::dirty_list;
 use crate::passes::sweep::Sweep;
 use crate::scene::Border;
 
-/// Light of one sun or key light through the horizons of the azimuths that it covers.
+/// Light of one sun or key light through the horizons of its azimuths.
 #[expect(clippy::too_many_arguments, reason = "a pass is its inputs")]
 pub(crate) fn plan(
     builder: &mut Builder,

@@ -12,12 +12,12 @@ struct DirtyMarkPush {
 
 same_layout!(DirtyMarkPush, dirty_mark_push, cols = COLS, rows = ROWS, rectangle = FIRST_COL);
 
-/// Words that mark the samples of a field: eight columns of four rows each.
+/// Size of the mask in words; each marks eight columns of four rows.
 pub(crate) fn words([cols, rows]: [u32; 2]) -> [u32; 2] {
     [cols.div_ceil(8), rows.div_ceil(4)]
 }
 
-/// Which samples an edit changes by itself; sweeps add those that see it.
+/// Marks the texels that an edit changes directly. Sweeps add those whose horizon changes.
 pub(crate) fn plan(builder: &mut Builder, size: [u32; 2], [dirty, list]: [ResourceId; 2]) {
     let [across, down] = words(size);
     let all = u64::from(across) * u64::from(down);
@@ -25,7 +25,7 @@ pub(crate) fn plan(builder: &mut Builder, size: [u32; 2], [dirty, list]: [Resour
     let pass = builder.pass(
         shaders::DirtyMark,
         "",
-        "samples whose own surface was edited; clears the marks of the last edit",
+        "texels whose own surface was edited; clears the mask of the last edit",
         [across.div_ceil(8), down.div_ceil(8), 1],
         &DirtyMarkPush { cols, rows, rectangle: Rectangle::whole(size).words() },
         &[("dirty_samples", dirty), ("edit_list", list)],

@@ -1,7 +1,7 @@
 use crate::graph::{Builder, ResourceId};
 use crate::passes;
 
-/// What edits keep: marks of the samples that they reach, and the list of those.
+/// Resources of edits: the mask of changed texels, and the list of its words.
 #[derive(Clone, Copy)]
 pub(crate) struct Edits {
     pub dirty: ResourceId,

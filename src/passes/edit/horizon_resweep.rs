@@ -24,7 +24,7 @@ same_layout!(
     rectangle = FIRST_COL,
 );
 
-/// What a sweep of an edit reads and writes.
+/// What the sweep of an edit reads and writes.
 pub(crate) struct Images {
     pub heights: ResourceId,
     pub azimuths: ResourceId,
@@ -33,7 +33,7 @@ pub(crate) struct Images {
     pub list: ResourceId,
 }
 
-/// The lines of a batch that an edited rectangle can reach, again.
+/// Sweeps the lines of a batch that an edited rectangle can reach.
 pub(crate) fn plan(
     builder: &mut Builder,
     sweep: &LineSweep,
@@ -45,7 +45,7 @@ pub(crate) fn plan(
     let pass = builder.pass(
         shaders::HorizonResweep { line_shift: sweep.line_shift as i32, hull_packed: sweep.packed },
         part,
-        "lines that meet the edit, until it is off their hulls",
+        "lines that cross the edit, until it has left their hulls",
         [batch.most_lines.div_ceil(32), 1, batch.count],
         &HorizonResweepPush {
             lanes: axis.lanes as i32,

@@ -1,5 +1,4 @@
-//! The directions of a sweep: even ones, ones along grid vectors, and those that a sun's disc or a key
-//! light covers.
+//! The azimuths of a sweep: even ones, ones along grid vectors, and those across a sun's disc or a key light.
 
 mod aimed;
 mod drawn;
@@ -14,7 +13,7 @@ pub use drawn::towards_light;
 
 pub use crate::graph::CELL;
 
-/// Stands for the slope of a vertical direction, in f32 safe to square.
+/// Slope of a vertical direction; safe to square in f32.
 pub const STEEPEST: f32 = 1e9;
 
 pub(crate) const MARCHES_ROWS: u32 = 1;
@@ -23,14 +22,13 @@ pub const FLIPS_MARCH: u32 = 2;
 /// Bit of an azimuth whose lanes are in reverse order.
 pub const FLIPS_LANES: u32 = 4;
 
-/// One direction and what it weighs, as the shaders read it: four texels, `Azimuth` and
-/// `azimuth_at` in `conventions.glsl`, in this order.
+/// One azimuth with its weights. Four texels in the order of `Azimuth` and `azimuth_at` in `conventions.glsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct Azimuth {
-    /// cos φ of the direction swept: the wedge's centre, but for exact azimuths.
+    /// cos φ of the swept direction: the wedge's centre, except for exact azimuths.
     pub cos_phi: f32,
-    /// sin φ of the direction swept.
+    /// sin φ of the swept direction.
     pub sin_phi: f32,
     /// ∫ cos φ over the wedge.
     pub wedge_cos: f32,
@@ -74,7 +72,7 @@ impl Azimuth {
         flips + if self.marches_rows() { 4 } else { 0 }
     }
 
-    /// The azimuth that its lines really follow, radians: within 1.6e-5 of the one asked for.
+    /// The azimuth that its lines follow, radians: within 1.6e-5 of the requested one.
     pub fn swept_rad(&self, cell_m: [f64; 2]) -> f64 {
         let lane = if self.vector_march > 0 {
             f64::from(self.vector_lane) / f64::from(self.vector_march)
@@ -93,7 +91,7 @@ fn swept(dcol: f64, drow: f64, cell_m: [f64; 2]) -> Azimuth {
     let rows = drow.abs() > dcol.abs();
     let (march, lane) = if rows { (drow, dcol) } else { (dcol, drow) };
     let shear = (lane / march).abs();
-    // Marching goes away from the horizon's side: positions count up where the horizon is behind.
+    // Marching goes away from the horizon: positions count up with the horizon behind.
     let flips_march = march > 0.0;
     let flips_lanes = lane > 0.0;
     let (march_cell, lane_cell) =
@@ -110,7 +108,7 @@ fn swept(dcol: f64, drow: f64, cell_m: [f64; 2]) -> Azimuth {
     }
 }
 
-/// (dcol, drow) of a world azimuth. Components below 1e-15 of the other are none: φ = π is west.
+/// (dcol, drow) of a world azimuth. A component below 1e-15 becomes 0, so that φ = π is exactly west.
 fn grid_direction(phi_rad: f64, cell_m: [f64; 2]) -> (f64, f64) {
     let tidy = |v: f64| if v.abs() < 1e-15 { 0.0 } else { v };
     (tidy(phi_rad.cos()) / cell_m[0], -tidy(phi_rad.sin()) / cell_m[1])
@@ -144,13 +142,13 @@ pub fn even(count: u32, cell_m: [f64; 2]) -> Vec<Azimuth> {
         .collect()
 }
 
-/// The integer grid vectors that stand in for `count` even azimuths in exact mode.
+/// The integer grid vectors that replace `count` even azimuths in exact mode.
 ///
-/// Each even azimuth is replaced by the vector of the smallest components whose world direction
-/// lies within a quarter of its wedge; wedges then reach to the middle between neighbours.
+/// Each even azimuth becomes the vector with the smallest components whose world direction is within a quarter
+/// of its wedge. Wedges then end midway between neighbours.
 ///
 /// # Errors
-/// Cells so unlike in width and height that a vector would be longer than 4096 cells.
+/// The cells' width and height differ so much that a vector would be longer than 4096 cells.
 pub fn along_grid_vectors(count: u32, cell_m: [f64; 2]) -> Result<Vec<Azimuth>> {
     let width = TAU / f64::from(count);
     let vectors: Vec<(Azimuth, f64)> = (0..count)
@@ -169,7 +167,7 @@ pub fn along_grid_vectors(count: u32, cell_m: [f64; 2]) -> Result<Vec<Azimuth>> 
             let ratio = f64::from(lane.abs()) / f64::from(march.abs());
             azimuth.step_m = march_cell.hypot(ratio * lane_cell) as f32;
             let exact = (f64::from(-drow) * cell_m[1]).atan2(f64::from(dcol) * cell_m[0]);
-            // On the turn that φ_k is on.
+            // In the same revolution as φ_k.
             Ok((azimuth, exact + TAU * ((phi - exact) / TAU).round()))
         })
         .collect::<Result<_>>()?;
@@ -184,12 +182,12 @@ pub fn along_grid_vectors(count: u32, cell_m: [f64; 2]) -> Result<Vec<Azimuth>> 
     Ok(all)
 }
 
-/// Longest component of an exact azimuth's vector: what the shader's i32 lane positions and its margin
-/// around the field's edge are made for.
+/// Longest component of an exact azimuth's vector: the limit of the shader's i32 lane positions and its margin
+/// around the field's edge.
 const LONGEST_VECTOR: i32 = 4096;
 
-/// The vector (dcol, drow) of the least larger component whose world direction is within
-/// `tolerance_rad` of `phi_rad`; among those, the nearest.
+/// The vector (dcol, drow) with the smallest larger component whose world direction is within `tolerance_rad`
+/// of `phi_rad`. Among several, the nearest.
 fn simplest_vector(phi_rad: f64, tolerance_rad: f64, cell_m: [f64; 2]) -> Result<(i32, i32)> {
     let (gx, gy) = grid_direction(phi_rad, cell_m);
     let larger = gx.abs().max(gy.abs());
@@ -201,12 +199,12 @@ fn simplest_vector(phi_rad: f64, tolerance_rad: f64, cell_m: [f64; 2]) -> Result
             .filter(|v| *v != (0, 0) && v.0.abs().max(v.1.abs()) <= size)
             .map(|(x, y)| {
                 let phi = (f64::from(-y) * cell_m[1]).atan2(f64::from(x) * cell_m[0]);
-                let off = (phi - phi_rad + PI).rem_euclid(TAU) - PI;
-                (off.abs(), (x, y))
+                let offset = (phi - phi_rad + PI).rem_euclid(TAU) - PI;
+                (offset.abs(), (x, y))
             })
             .min_by(|a, b| a.0.total_cmp(&b.0));
-        if let Some((off, vector)) = best
-            && off <= tolerance_rad
+        if let Some((offset, vector)) = best
+            && offset <= tolerance_rad
         {
             return Ok(vector);
         }
@@ -218,10 +216,10 @@ fn simplest_vector(phi_rad: f64, tolerance_rad: f64, cell_m: [f64; 2]) -> Result
     })
 }
 
-/// The azimuths that a sun's disc covers, `count` even slices across it; one for a point.
+/// The azimuths across a sun's disc: `count` even slices, or one for a point.
 ///
-/// Each slice holds the disc's chord at its middle; weights make a surface that faces the sun and
-/// sees all of it receive irradiance 1, whatever the number of slices.
+/// Each slice holds the disc's chord at its middle. The weights give irradiance 1 to a surface that faces the
+/// unoccluded sun, for any number of slices.
 pub fn across_sun(sun: &Sun, count: u32, cell_m: [f64; 2]) -> Vec<Azimuth> {
     let slope = |elevation: f64| (elevation.tan().min(f64::from(STEEPEST))) as f32;
     let slope = |elevation: f64| if elevation >= FRAC_PI_2 { STEEPEST } else { slope(elevation) };
@@ -240,23 +238,23 @@ pub fn across_sun(sun: &Sun, count: u32, cell_m: [f64; 2]) -> Vec<Azimuth> {
     if sun.is_point() {
         return vec![Azimuth { weight: 1.0, ..at(azimuth, [azimuth; 2], elevation, elevation) }];
     }
-    // A disc that holds the zenith shines from everywhere; another within asin(sin r / cos e).
+    // A disc that contains the zenith covers all azimuths; another those within asin(sin r / cos e).
     let reach =
         if elevation + radius >= FRAC_PI_2 { PI } else { (radius.sin() / elevation.cos()).asin() };
     let width = 2.0 * reach / f64::from(count);
     let mut slices = Vec::new();
     let mut facing = 0.0;
     for k in 0..count {
-        let off = -reach + width * (f64::from(k) + 0.5);
-        let phi = azimuth + off;
-        // cos of the angle to the centre = sin e sin ω + cos e cos off cos ω = r cos(ω - ψ).
-        let (s, c) = (elevation.sin(), elevation.cos() * off.cos());
+        let offset = -reach + width * (f64::from(k) + 0.5);
+        let phi = azimuth + offset;
+        // cos of the angle to the centre = sin e sin ω + cos e cos offset cos ω = r cos(ω - ψ).
+        let (s, c) = (elevation.sin(), elevation.cos() * offset.cos());
         let psi = s.atan2(c);
-        // sin² of half the chord, from sin² of the radius, so that narrow discs keep their digits.
-        let beside = (elevation.cos() * off.sin()).powi(2);
+        // sin² of half the chord, from sin² of the radius, so that narrow discs keep their precision.
+        let beside = (elevation.cos() * offset.sin()).powi(2);
         let sin2_radius = radius.sin().powi(2);
         let sin2_half = (sin2_radius - beside) / (1.0 - beside);
-        // What touches the disc by a rounding does not cross it.
+        // A slice that only touches the disc by rounding does not cross it.
         if sin2_half <= 1e-12 * sin2_radius {
             continue;
         }
@@ -266,7 +264,7 @@ pub fn across_sun(sun: &Sun, count: u32, cell_m: [f64; 2]) -> Vec<Azimuth> {
         if low >= high {
             continue;
         }
-        // ∫ cos(angle to centre) cos ω dω over the chord: what a surface facing the sun receives.
+        // ∫ cos(angle to centre) cos ω dω over the chord: the irradiance of a surface that faces the sun.
         let cos2 = |w: f64| w / 2.0 + (2.0 * w).sin() / 4.0;
         let cossin = |w: f64| w.sin().powi(2) / 2.0;
         facing += width * (c * (cos2(high) - cos2(low)) + s * (cossin(high) - cossin(low)));
@@ -302,11 +300,11 @@ mod tests {
     fn a_sweep_follows_its_azimuth() {
         for cell in [[1.0, 1.0], [66.0, 92.6], [3.0, 1.0]] {
             for (k, a) in even(97, cell).iter().enumerate() {
-                let asked = TAU * k as f64 / 97.0;
-                let off = (a.swept_rad(cell) - asked + PI).rem_euclid(TAU) - PI;
-                // Half a unit of shear, seen across cells of unlike sides.
+                let requested = TAU * k as f64 / 97.0;
+                let offset = (a.swept_rad(cell) - requested + PI).rem_euclid(TAU) - PI;
+                // Half a unit of shear, where the cell's sides differ.
                 let bound = 0.5 / f64::from(CELL) * (cell[0] / cell[1]).max(cell[1] / cell[0]);
-                assert!(off.abs() <= bound, "{k}: {off}");
+                assert!(offset.abs() <= bound, "{k}: {offset}");
             }
         }
     }
@@ -319,9 +317,9 @@ mod tests {
                 let sum: f64 = all.iter().map(|a| f64::from(a.wedge_rad)).sum();
                 assert!((sum - TAU).abs() < f64::from(count) * 1e-6);
                 for (k, a) in all.iter().enumerate() {
-                    let asked = TAU * k as f64 / f64::from(count);
-                    let off = (a.swept_rad(cell) - asked + PI).rem_euclid(TAU) - PI;
-                    assert!(off.abs() <= TAU / f64::from(count) / 4.0 + 1e-9);
+                    let requested = TAU * k as f64 / f64::from(count);
+                    let offset = (a.swept_rad(cell) - requested + PI).rem_euclid(TAU) - PI;
+                    assert!(offset.abs() <= TAU / f64::from(count) / 4.0 + 1e-9);
                     assert!(a.vector_lane <= a.vector_march && a.vector_march <= 4096);
                 }
             }
@@ -330,8 +328,8 @@ mod tests {
 
     #[test]
     fn a_disc_of_many_slices_has_the_discs_irradiance_on_the_ground() {
-        // E sin(elevation) on a horizontal surface, for a disc wholly above the horizon: the disc's
-        // irradiance vector points to its centre.
+        // E sin(elevation) on a horizontal surface, for a disc wholly above the horizon: the irradiance vector
+        // points to the disc's centre.
         for (elevation, diameter) in [(30.0_f64, 0.53_f64), (89.9, 1.0), (60.0, 20.0), (90.0, 10.0)]
         {
             let sun = Sun {

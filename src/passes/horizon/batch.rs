@@ -18,33 +18,33 @@ impl Axis {
 /// Azimuths that are swept together: one axis, consecutive in the buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Batch {
-    /// Their axis.
+    /// The axis of all of them.
     pub axis: Axis,
-    /// Which of the plan's batches, in the order of the lists.
+    /// Index among the plan's batches, in the order of the lists.
     pub number: u32,
-    /// Position of the first in the buffer "azimuths".
+    /// Index of the first one in the buffer "azimuths".
     pub first: u32,
-    /// How many.
+    /// Number of azimuths.
     pub count: u32,
-    /// Lines of the azimuth that has most.
+    /// Lines of the azimuth with the most lines.
     pub most_lines: u32,
-    /// Samples on all lines.
+    /// Points on all lines.
     pub line_samples: u64,
     /// Layers of the lattice.
     pub layers: u32,
-    /// Whether it is the first of its light: sums begin here.
+    /// Whether it is the light's first: its sum begins here.
     pub is_first: bool,
 }
 
 impl Batch {
-    /// Their positions in the buffer "azimuths".
+    /// Their indices in the buffer "azimuths".
     pub fn azimuths(&self) -> std::ops::Range<u32> {
         self.first..self.first + self.count
     }
 }
 
-/// Sorts azimuths by octant: one axis after the other, directions that share neighbours together.
-/// Returns the order, as positions in the list given.
+/// Sorts azimuths by octant, axis by axis, so that directions with shared neighbours are together. Returns the
+/// order as indices into the given list.
 pub(crate) fn sort(azimuths: &mut Vec<Azimuth>) -> Vec<u32> {
     let mut order: Vec<u32> = (0..azimuths.len() as u32).collect();
     order.sort_by_key(|&k| azimuths[k as usize].octant());
@@ -52,19 +52,19 @@ pub(crate) fn sort(azimuths: &mut Vec<Azimuth>) -> Vec<u32> {
     order
 }
 
-/// Memory that a lattice may take, by axis: marching columns, rows.
+/// Memory for lattices, by axis: marching columns, rows.
 pub(crate) struct Room {
-    /// All of it; enough for one azimuth.
+    /// In total; enough for one azimuth.
     pub lattice_bytes: [u64; 2],
-    /// A layer.
+    /// Per layer.
     pub layer_bytes: [u64; 2],
 }
 
-/// Cuts sorted azimuths, beginning at `first` of the buffer, into batches whose lattices have room,
-/// and gives each azimuth its layer.
+/// Cuts sorted azimuths, from index `first` of the buffer, into batches whose lattices fit, and assigns each
+/// azimuth its layer.
 ///
 /// # Errors
-/// One azimuth that does not fit alone on the device.
+/// A single azimuth does not fit on the device.
 pub(crate) fn cut(
     azimuths: &mut [Azimuth],
     first: u32,

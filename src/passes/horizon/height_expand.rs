@@ -12,7 +12,7 @@ struct HeightExpandPush {
 
 same_layout!(HeightExpandPush, height_expand_push, size = COLS, width_shift = WIDTH_SHIFT);
 
-/// All levels at the field's own samples.
+/// All levels at the field's own resolution.
 pub(crate) fn plan(
     builder: &mut Builder,
     pyramid: &Pyramid,
@@ -23,7 +23,7 @@ pub(crate) fn plan(
     builder.pass(
         shaders::HeightExpand { periodic: pyramid.periodic },
         "",
-        "a march then reads levels as it reads the field",
+        "so that a march reads levels like the field",
         [cols.div_ceil(8), rows.div_ceil(8), pyramid.levels()],
         &HeightExpandPush {
             size: pyramid.size.map(|n| n as i32),

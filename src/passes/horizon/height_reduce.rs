@@ -18,7 +18,7 @@ pub(crate) fn plan(
     builder.pass(
         shaders::HeightReduce { periodic: pyramid.periodic, from_field: from == 0 },
         &format!("level {number}"),
-        format!("every {apart:.1} samples, for marches {away:.0} steps away"),
+        format!("every {apart:.1} texels, for marches {away:.0} steps away"),
         [cols.div_ceil(8), rows.div_ceil(8), 1],
         &ReducePush::of(pyramid, number),
         &[("heights", heights), ("height_levels", levels), ("level_table", table)],

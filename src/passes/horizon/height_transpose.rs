@@ -19,7 +19,7 @@ same_layout!(
     rectangle = FIRST_COL,
 );
 
-/// Heights laid out for one axis, four lanes a texel.
+/// Heights transposed for one axis, four lanes per texel.
 pub(crate) fn plan(
     builder: &mut Builder,
     axis: Axis,
@@ -34,7 +34,7 @@ pub(crate) fn plan(
             periodic: border == Border::Periodic,
         },
         axis.name(),
-        "four neighbouring lanes are read at once",
+        "so that one fetch reads four neighbouring lanes",
         [quads.div_ceil(8), axis.steps.div_ceil(8), 1],
         &HeightTransposePush {
             lanes: axis.lanes as i32,

@@ -4,7 +4,7 @@ use crate::passes::MarchPush;
 use crate::passes::batch::Batch;
 use crate::passes::nodes::Nodes;
 
-/// Brute force: every crossing of every sample's own line.
+/// Brute force: every crossing of every grid point's own line.
 pub(crate) fn plan(
     builder: &mut Builder,
     batch: &Batch,

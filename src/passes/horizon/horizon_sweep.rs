@@ -2,7 +2,7 @@ use crate::graph::shaders;
 use crate::graph::shaders::same_layout;
 use crate::graph::{Builder, ResourceId};
 use crate::passes::batch::Batch;
-use crate::passes::sweep::{HullPlace, LineSweep};
+use crate::passes::sweep::{HullStorage, LineSweep};
 
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
@@ -31,12 +31,11 @@ pub(crate) struct Images {
     pub azimuths: ResourceId,
     pub occluders: Option<ResourceId>,
     pub slopes: Option<ResourceId>,
-    /// Where lines are marked whose hull was deeper than what it is kept in.
+    /// Marks the lines whose hull overflowed its storage.
     pub lost_lines: Option<ResourceId>,
 }
 
-/// Hull sweeps along all lines of a batch of azimuths; and again along those whose hull was deeper
-/// than the memory that it is kept in.
+/// Hull sweeps along all lines of a batch, then again along those whose hull overflowed its storage.
 pub(crate) fn plan(
     builder: &mut Builder,
     sweep: &LineSweep,
@@ -46,7 +45,7 @@ pub(crate) fn plan(
 ) {
     run(builder, sweep, batch, part, images, false);
     if images.lost_lines.is_some() {
-        let again = LineSweep { hull: HullPlace::Occluders, hull_depth: 1, ..*sweep };
+        let again = LineSweep { hull: HullStorage::Occluders, hull_depth: 1, ..*sweep };
         run(builder, &again, batch, format!("{part} again").trim(), images, true);
     }
 }
@@ -61,15 +60,15 @@ fn run(
 ) {
     let axis = batch.axis;
     let depth = sweep.hull_depth as i32;
-    let private = sweep.hull == HullPlace::Private;
+    let private = sweep.hull == HullStorage::Private;
     let shared_words = 4 * depth * sweep.group_size as i32 * if sweep.packed { 1 } else { 2 };
     let mut bound = vec![("azimuths", images.azimuths)];
-    // Lines a cell apart share texels of four lanes; all others fetch sample by sample.
+    // Lines one cell apart share texels of four lanes; all others fetch one height at a time.
     match images.lane_heights {
         Some(lanes) => bound.push(("lane_heights", lanes)),
         None => bound.push(("heights", images.heights)),
     }
-    if sweep.hull == HullPlace::Occluders && images.lane_heights.is_some() {
+    if sweep.hull == HullStorage::Occluders && images.lane_heights.is_some() {
         bound.push(("heights", images.heights));
     }
     bound.extend(images.occluders.map(|o| ("occluders", o)));
@@ -85,7 +84,7 @@ fn run(
             hull_depth: depth,
             private_entries: if private && !sweep.packed { depth } else { 1 },
             private_words: if private && sweep.packed { depth } else { 1 },
-            shared_words: if sweep.hull == HullPlace::Shared { shared_words } else { 1 },
+            shared_words: if sweep.hull == HullStorage::Shared { shared_words } else { 1 },
             hull_holds_line: sweep.holds_line,
             hull_packed: sweep.packed,
             writes_occluders: images.occluders.is_some(),
@@ -96,17 +95,16 @@ fn run(
         },
         part,
         if again {
-            "lines whose hull was deeper than its memory; ends at once where there are none"
-                .to_owned()
+            "lines whose hull overflowed its storage; ends at once where there are none".to_owned()
         } else {
             format!(
                 "horizons of {} azimuths along {}, hull in {}",
                 batch.count,
                 axis.name(),
                 match sweep.hull {
-                    HullPlace::Private => "private memory",
-                    HullPlace::Shared => "shared memory",
-                    HullPlace::Occluders => "the occluders themselves",
+                    HullStorage::Private => "private memory",
+                    HullStorage::Shared => "shared memory",
+                    HullStorage::Occluders => "the stored occluders",
                 }
             )
         },

@@ -1,3 +1,6 @@
+//! Horizons: azimuths, line sweeps, exact sweeps, brute force and height pyramids.
+//! `sweep` chooses the form, `sweeping` and `batch` cut it into dispatches; the other files are one per pass.
+
 pub mod azimuths;
 pub mod batch;
 pub(crate) mod height_expand;

@@ -1,29 +1,29 @@
-//! Sub-sampling: what is seen is found at nodes, light at every sample.
+//! Sub-sampling: visibility is found at nodes, light at every grid point.
 
-/// Every `stride`-th sample along each axis, from the first, and the last.
+/// Every `stride`-th grid point along each axis, from the first, and the last.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Nodes {
-    /// Samples from one to the next: 1, 2, 4, or, of later bounces, 8.
+    /// Grid points from one node to the next: 1, 2, 4, or 8 for later bounces.
     pub stride: u32,
 }
 
 impl Nodes {
-    /// How many there are along an axis of so many samples.
+    /// Number of nodes along an axis of `samples` grid points.
     pub fn count(self, samples: u32) -> u32 {
         (samples - 1).div_ceil(self.stride) + 1
     }
 
-    /// Columns and rows of them.
+    /// Columns and rows of nodes.
     pub fn size(self, size: [u32; 2]) -> [u32; 2] {
         size.map(|samples| self.count(samples))
     }
 
-    /// The sample that a node is.
+    /// The grid point of a node.
     pub fn place(self, node: u32, samples: u32) -> u32 {
         (node * self.stride).min(samples - 1)
     }
 
-    /// The nodes that a sample lies between, and how far from the one to the other, [0..1].
+    /// The nodes on both sides of a grid point, and its position between them, [0..1].
     pub fn around(self, place: u32, samples: u32) -> ([u32; 2], f64) {
         let low = place / self.stride;
         let high = (low + 1).min(self.count(samples) - 1);

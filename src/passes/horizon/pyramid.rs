@@ -1,4 +1,4 @@
-//! The levels of a height pyramid: how many a scene needs, how large each is, where it lies.
+//! The levels of a height pyramid: how many a scene needs, their sizes and places.
 
 use crate::graph::{Builder, Format, Owner, ResourceId};
 use crate::passes::sweep;
@@ -7,15 +7,15 @@ use crate::scene::{Border, Levels, Quality};
 
 /// Horizons from a pyramid of filtered heights (Nowrouzezahrai & Snyder 2009, §5.2).
 ///
-/// Sample i of a march stands 2^(i/k) march steps away, rounded to whole steps, and looks at level i - k·o, or at the field
-/// itself (level 0) where that is below 1: the paper's f_(i + k o) counts levels from the coarsest.
+/// Pyramid sample i of a march is 2^(i/k) march steps away, rounded to whole steps. It reads level i - k·o, or
+/// the field itself (level 0) where that is below 1: the paper's f_(i + k o) counts levels from the coarsest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pyramid {
-    /// Levels an octave, k.
+    /// Levels per octave, k.
     pub level_step: u32,
-    /// Octaves by which samples look at finer levels, o.
+    /// Octaves by which levels are finer than the distance needs, o.
     pub level_offset: u32,
-    /// What is stored of the levels.
+    /// How levels are stored.
     pub stored: Levels,
     /// Columns and rows of the field.
     pub size: [u32; 2],
@@ -23,26 +23,26 @@ pub struct Pyramid {
     pub periodic: bool,
 }
 
-/// One level beside the field itself.
+/// One level above the field itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Level {
-    /// Where its texels begin among those of all levels.
+    /// Index of its first texel among those of all levels.
     pub first: u64,
     /// Columns and rows.
     pub size: [u32; 2],
-    /// Texels a sample, along columns' and rows' directions: 0 where there is one texel.
+    /// Texels per grid point along columns and along rows: 0 for a single texel.
     pub per_sample: [f32; 2],
 }
 
 impl Level {
-    /// Texels.
+    /// Texels of the level.
     pub fn texels(&self) -> u64 {
         u64::from(self.size[0]) * u64::from(self.size[1])
     }
 }
 
 impl Pyramid {
-    /// The pyramid that a quality asks for.
+    /// The pyramid for a quality.
     pub fn new(quality: &Quality, size: [u32; 2], border: Border) -> Self {
         Self {
             level_step: quality.level_step,
@@ -53,11 +53,11 @@ impl Pyramid {
         }
     }
 
-    /// Samples of the longest march: the last stands where the march leaves the field.
+    /// Samples of the longest march; the last one is where the march leaves the field.
     pub fn samples(&self) -> u32 {
         let longest = |n: u32| if self.periodic { n + sweep::warm_up(n) } else { n };
         let reach = self.size.map(longest).into_iter().max().unwrap_or(1) - 1;
-        // As the march counts them.
+        // Counted as the march does.
         let (mut samples, mut back) = (u32::from(reach > 0), 1.0_f32);
         while ((back + 0.5) as u32) < reach {
             back *= self.growth();
@@ -66,17 +66,17 @@ impl Pyramid {
         samples
     }
 
-    /// Samples that look at the field itself.
+    /// Samples that read the field itself.
     pub fn fine_samples(&self) -> u32 {
         self.level_step * self.level_offset + 1
     }
 
-    /// Levels beside the field itself: those that some sample of the longest march looks at.
+    /// Levels above the field itself that some sample of the longest march reads.
     pub fn levels(&self) -> u32 {
         self.samples().saturating_sub(self.fine_samples())
     }
 
-    /// What distances grow by from sample to sample, 2^(1/k).
+    /// Ratio of the distances of consecutive samples, 2^(1/k).
     pub fn growth(&self) -> f32 {
         (1.0 / f64::from(self.level_step)).exp2() as f32
     }
@@ -86,7 +86,7 @@ impl Pyramid {
         level.saturating_sub(self.level_step)
     }
 
-    /// Texels of its source a texel of `level`, along columns' and rows' directions.
+    /// Texels of its source per texel of `level`, along columns and along rows.
     pub fn ratio(&self, level: u32) -> [f32; 2] {
         let (size, source) = (self.size_of(level), self.size_of(self.source(level)));
         [0, 1].map(|axis| {
@@ -109,8 +109,8 @@ impl Pyramid {
         Level { first, size, per_sample }
     }
 
-    /// Texels 2^(l/k) samples apart, as nearly as lets the first and the last stand on the field's
-    /// first and last samples, or a whole number of them make a period.
+    /// Texels 2^(l/k) grid points apart, or as near as possible so that the first and the last lie on the
+    /// field's first and last grid points, or a whole number of them makes a period.
     fn size_of(&self, level: u32) -> [u32; 2] {
         let scale = (-f64::from(level) / f64::from(self.level_step)).exp2();
         self.size.map(|samples| {
@@ -123,19 +123,19 @@ impl Pyramid {
         })
     }
 
-    /// log2 of the width of the image that holds all levels: as wide as high, nearly.
+    /// log2 of the width of the image of all levels, which is about square.
     pub fn width_shift(&self) -> u32 {
         let texels: u64 = self.all_texels();
         texels.max(1).next_power_of_two().trailing_zeros().div_ceil(2)
     }
 
-    /// Texels of all levels beside the field itself.
+    /// Texels of all levels above the field itself.
     pub fn all_texels(&self) -> u64 {
         let last = self.level(self.levels());
         if self.levels() == 0 { 0 } else { last.first + last.texels() }
     }
 
-    /// Images of the levels beside the field itself; none where no march looks at any.
+    /// Images of the levels; none where no march reads any.
     pub(crate) fn images(&self, builder: &mut Builder) -> Option<Images> {
         let count = self.levels();
         if count == 0 {

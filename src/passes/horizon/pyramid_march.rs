@@ -32,7 +32,7 @@ same_layout!(
     growth = GROWTH,
 );
 
-/// What a pyramid's passes leave; nothing where all samples look at the field itself.
+/// Output of a pyramid's passes; nothing where every sample reads the field itself.
 #[derive(Clone, Copy)]
 pub(crate) struct Images {
     pub levels: ResourceId,
@@ -40,7 +40,7 @@ pub(crate) struct Images {
     pub stack: Option<ResourceId>,
 }
 
-/// Horizons from the levels, one sample a level.
+/// Horizons from the levels, one sample per level.
 pub(crate) fn plan(
     builder: &mut Builder,
     (pyramid, nodes): (&Pyramid, Nodes),
@@ -59,10 +59,10 @@ pub(crate) fn plan(
         None => {}
     }
     let is_stack = pyramid.stored == Levels::Stack;
-    // A sample of its own at every level, once; then one a level and azimuth.
+    // An own sample at every level, once; then one per level and azimuth.
     let (own, far) = if is_stack { (1, 2) } else { (16, 16) };
     let fine = pyramid.fine_samples().min(pyramid.samples());
-    let looked_at = u64::from(2 * fine + far * pyramid.levels());
+    let march_samples = u64::from(2 * fine + far * pyramid.levels());
     let own = u64::from(1 + own * pyramid.levels());
     let [lanes, steps] = nodes.size([axis.lanes, axis.steps]);
     let places = u64::from(lanes) * u64::from(steps);
@@ -88,7 +88,7 @@ pub(crate) fn plan(
             growth: pyramid.growth(),
         },
         &bound,
-        4 * (samples * (1 + looked_at) + places * own),
+        4 * (samples * (1 + march_samples) + places * own),
         samples,
     );
     pass.azimuths = batch.azimuths();

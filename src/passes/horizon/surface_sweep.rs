@@ -3,7 +3,7 @@ use crate::graph::{Builder, ResourceId};
 use crate::passes::MarchPush;
 use crate::passes::batch::Batch;
 
-/// Exact sweeps along grid vectors: every crossing of every line on its hull.
+/// Exact sweeps along grid vectors: the hull holds every crossing of every line.
 pub(crate) fn plan(
     builder: &mut Builder,
     batch: &Batch,

@@ -1,4 +1,4 @@
-//! How horizons of a field are found: which form of sweep, what it stores, how much it takes.
+//! Chooses how horizons are found: the form of the sweep, its storage and its cost.
 
 use crate::graph::{Axis, Limits};
 use crate::passes::azimuths::{Azimuth, CELL};
@@ -6,24 +6,24 @@ use crate::passes::pyramid::Pyramid;
 use crate::scene::{Border, Fuse, HeightField, Hull, Lines, Method, Precision, Quality};
 use crate::{Error, Result};
 
-/// Where a line's hull lives; the numbers are the shader's.
+/// Where a line's hull is stored; numbered as in the shader.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum HullPlace {
+pub enum HullStorage {
     /// Private memory of the invocation.
     Private = 0,
     /// Shared memory of the workgroup.
     Shared = 1,
-    /// The occluders written so far.
+    /// The list of stored occluders.
     Occluders = 2,
 }
 
-impl HullPlace {
+impl HullStorage {
     /// As the command line spells it.
     pub fn name(self) -> &'static str {
         match self {
-            HullPlace::Private => "private",
-            HullPlace::Shared => "shared",
-            HullPlace::Occluders => "list",
+            HullStorage::Private => "private",
+            HullStorage::Shared => "shared",
+            HullStorage::Occluders => "list",
         }
     }
 }
@@ -31,36 +31,36 @@ impl HullPlace {
 /// A hull sweep along lines.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LineSweep {
-    /// Where the hull lives.
-    pub hull: HullPlace,
-    /// Entries a line keeps there; a power of two.
+    /// Where the hull is stored.
+    pub hull: HullStorage,
+    /// Entries per line there; a power of two.
     pub hull_depth: u32,
-    /// Whether that is enough for every sample of the longest line.
+    /// Whether that is enough for every point of the longest line.
     pub holds_line: bool,
-    /// f16 + u16 entries.
+    /// Whether entries are packed as f16 height and u16 distance.
     pub packed: bool,
-    /// What scales heights to [-1..1] for packed entries.
+    /// Factor that scales heights to [-1..1] for packed entries.
     pub height_scale: f32,
     /// Lines are 2^shift / 32768 cells apart.
     pub line_shift: u32,
-    /// Invocations a workgroup, each four lines.
+    /// Invocations per workgroup; each sweeps four lines.
     pub group_size: u32,
-    /// Slopes stored: 0 none, 1 f32, 2 f16.
+    /// Stored slopes: 0 none, 1 f32, 2 f16.
     pub slope_format: u32,
     /// Whether occluders are stored.
     pub writes_occluders: bool,
-    /// How they come back to the samples.
+    /// How results of lines come back to grid points.
     pub fuse: Fuse,
 }
 
 impl LineSweep {
-    /// The distance of lines that is used, where a periodic field did not take another.
+    /// The line spacing in use; a periodic field may not allow the requested one.
     pub(crate) fn spacing(&self) -> Lines {
         let all = [Lines::QuarterCell, Lines::HalfCell, Lines::TwoCells, Lines::FourCells];
         all.into_iter().find(|l| l.shift() == Some(self.line_shift)).unwrap_or(Lines::Cell)
     }
 
-    /// What is kept, which may be more than what was asked for.
+    /// The precision in use, which may be higher than requested.
     pub(crate) fn precision(&self) -> Precision {
         match (self.packed, self.slope_format) {
             (true, _) => Precision::Packed,
@@ -75,16 +75,16 @@ impl LineSweep {
 pub enum Sweep {
     /// Hull sweeps along lines of even azimuths.
     Lines(LineSweep),
-    /// Exact hull sweeps along grid vectors; entries that a hull can hold.
+    /// Exact hull sweeps along grid vectors.
     Surface {
-        /// Entries a line keeps.
+        /// Hull entries per line.
         hull_depth: u32,
         /// Whether distances are stored beside slopes.
         distances: bool,
     },
-    /// None: on a concave field a sample's horizon is the first crossing of its own line.
+    /// No sweep: on a concave field the horizon is the first crossing of a grid point's own line.
     Crossings,
-    /// Brute force, all crossings.
+    /// Brute force: all crossings.
     March {
         /// Whether distances are stored beside slopes.
         distances: bool,
@@ -93,31 +93,32 @@ pub enum Sweep {
     Pyramid(Pyramid),
 }
 
-/// Samples of a periodic field that are marched before the period whose horizons are kept: whole periods,
-/// two or more, and as many as make 512 samples.
+/// Columns or rows of a periodic field that are marched before the period whose horizons are kept. Whole
+/// periods: two or more, and as many as make 512.
 ///
-/// What lies farther is not seen: an error of at most atan(relief / their length).
+/// Farther ground is not found: the error is at most atan(relief / their length).
 pub fn warm_up(steps: u32) -> u32 {
     LEAST_WARM_UP.div_ceil(steps).max(2) * steps
 }
 
-/// A tile as high as it is wide, of 16 cells, is not seen only where it would rise by a slope of 16/512 at most:
-/// sin² of that angle, 0.1 % of what a sky sends to level ground. Two periods alone would miss a slope of 1/2.
+/// A tile of 16 cells that is as high as it is wide is missed only where it would rise by a slope of 16/512 at
+/// most: sin² of that angle, 0.1 % of the sky's light on level ground. Two periods alone would miss a slope of
+/// 1/2.
 const LEAST_WARM_UP: u32 = 512;
 
-// Entries kept in private memory. Real terrain needs about 30, smooth hills a thousand; what is
-// deeper is done again with the hull in the occluders. Measured on lavapipe: 128 compile in 0.1 s,
-// 1024 in up to 3 s, 4096 in over 5 s, and run no faster.
+// Entries kept in private memory. Measured terrain needs about 30, smooth hills a thousand. Deeper hulls are
+// swept again with the hull in the stored occluders. Measured on lavapipe: 128 compile in 0.1 s, 1024 in up to
+// 3 s, 4096 in over 5 s, and run no faster.
 const PRIVATE_DEPTH: u32 = 128;
-// Crossings are up to four a step; llvmpipe ends any loop after 65 535 turns.
+// A step has up to four crossings; llvmpipe ends any loop after 65,535 iterations.
 const SURFACE_STEPS_LIMIT: u32 = 4096;
 const MARCH_STEPS_LIMIT: u32 = 65_000;
 
 impl Sweep {
-    /// The form that a quality asks for, or that suits the device.
+    /// The form for a quality and a device.
     ///
     /// # Errors
-    /// Combinations that cannot hold what they promise: said in a sentence.
+    /// Settings that exclude each other, with the reason.
     pub fn choose(
         field: &HeightField,
         border: Border,
@@ -133,7 +134,7 @@ impl Sweep {
         if border == Border::Periodic {
             let [cols, rows] = sides.map(warm_up);
             notes.push(format!(
-                "border periodic: nothing is seen beyond {cols} columns and {rows} rows; at distance d it would \
+                "border periodic: no ground is found beyond {cols} columns and {rows} rows; at distance d it would \
                  raise a horizon by atan(relief / d) at most"
             ));
         }
@@ -142,7 +143,7 @@ impl Sweep {
                 return Err(Error::setting(
                     "distances to the horizon",
                     "`method pyramid`",
-                    "a method that knows its occluders: sweep or brute-force",
+                    "a method that stores occluders: sweep or brute-force",
                 ));
             }
             return Ok(Sweep::Pyramid(Pyramid::new(quality, sides, border)));
@@ -151,7 +152,7 @@ impl Sweep {
             if total > MARCH_STEPS_LIMIT {
                 return Err(Error::Limit {
                     what: "`method brute-force`".into(),
-                    needs: format!("{total} steps a sample"),
+                    needs: format!("{total} steps per grid point"),
                     limit: format!("{MARCH_STEPS_LIMIT} steps"),
                 });
             }
@@ -162,7 +163,7 @@ impl Sweep {
                 return Err(Error::Limit {
                     what: "`lines exact`".into(),
                     needs: format!(
-                        "{total} steps a line (a periodic field is marched three times at least)"
+                        "{total} steps per line (a periodic field is marched three times at least)"
                     ),
                     limit: format!("{SURFACE_STEPS_LIMIT} steps"),
                 });
@@ -183,31 +184,31 @@ impl Sweep {
         };
         let packed = quality.precision == Precision::Packed;
         let place = match quality.hull {
-            // Measured: see the table in README. Processors keep private arrays in their cache;
-            // elsewhere the paper's form, until a device has been measured.
-            Hull::Auto if limits.is_cpu => HullPlace::Private,
-            Hull::Auto | Hull::Shared => HullPlace::Shared,
-            Hull::Private => HullPlace::Private,
-            Hull::OccluderList => HullPlace::Occluders,
+            // Measured: see the table in README. Processors keep private arrays in their cache. Elsewhere the
+            // paper's form, until a device has been measured.
+            Hull::Auto if limits.is_cpu => HullStorage::Private,
+            Hull::Auto | Hull::Shared => HullStorage::Shared,
+            Hull::Private => HullStorage::Private,
+            Hull::OccluderList => HullStorage::Occluders,
         };
         let group_size: u32 = if limits.is_cpu { 8 } else { 32 };
         let periodic = border == Border::Periodic;
         let wanted = total.next_power_of_two();
         let hull_depth = match place {
-            HullPlace::Private => wanted.min(PRIVATE_DEPTH),
-            HullPlace::Shared => {
-                // Half of what there is, so that two groups fit.
+            HullStorage::Private => wanted.min(PRIVATE_DEPTH),
+            HullStorage::Shared => {
+                // Half of the shared memory, so that two workgroups fit.
                 let entries =
                     limits.shared_bytes / 2 / (4 * group_size * if packed { 4 } else { 8 });
                 wanted.min(1 << entries.max(1).ilog2())
             }
-            HullPlace::Occluders => 1,
+            HullStorage::Occluders => 1,
         };
-        let holds_line = place != HullPlace::Occluders && hull_depth >= total;
+        let holds_line = place != HullStorage::Occluders && hull_depth >= total;
         if total > limits.image_side {
             return Err(Error::Limit {
                 what: "`border periodic`".into(),
-                needs: format!("{total} steps a line (three periods at least)"),
+                needs: format!("{total} steps per line (three periods at least)"),
                 limit: format!("{} on this device", limits.image_side),
             });
         }
@@ -219,7 +220,7 @@ impl Sweep {
         } else {
             shift
         };
-        // Of others nothing depends on it, so that edits of the highest are edits.
+        // Other precisions do not depend on the highest height, so that edits may change it.
         let heights = field.heights_m().iter().filter(|_| packed);
         let highest = heights.fold(0.0_f32, |m, h| m.max(h.abs()));
         Ok(Sweep::Lines(LineSweep {
@@ -236,10 +237,10 @@ impl Sweep {
         }))
     }
 
-    /// Has a sweep along lines store what its samples meet, for walks over it.
+    /// Has a sweep along lines store its occluders, for walks over it.
     ///
     /// # Errors
-    /// Other sweeps, which do not know it.
+    /// The sweep has no occluders.
     pub(crate) fn keep_occluders(&mut self) -> Result<()> {
         if let Some(way) = self.why_no_lines() {
             return Err(Error::setting(
@@ -254,7 +255,7 @@ impl Sweep {
         Ok(())
     }
 
-    /// The setting of a method that does not sweep along lines.
+    /// The setting that selects a method which does not sweep along lines.
     pub(crate) fn why_no_lines(&self) -> Option<&'static str> {
         match self {
             Sweep::Lines(_) | Sweep::Crossings => None,
@@ -264,18 +265,17 @@ impl Sweep {
         }
     }
 
-    /// The lines of a sweep whose occluders an edit can go on from: stored, and in lines that begin
-    /// at an edge.
+    /// The sweep, where an edit can continue from its occluders: they are stored, and lines begin at an edge.
     pub(crate) fn editable(&self, border: Border) -> Option<&LineSweep> {
         match self {
-            // What is looked at around an occluder is not marked.
+            // Texels that this fuse searches around an occluder are not marked.
             Sweep::Lines(l) if l.fuse == Fuse::AimedAround => None,
             Sweep::Lines(l) if l.slope_format == 0 && border != Border::Periodic => Some(l),
             _ => None,
         }
     }
 
-    /// Whether a sample's own first crossings are among its candidates.
+    /// Whether the first crossings of a grid point's own line are among its candidates.
     pub(crate) fn sees_own_crossings(&self) -> bool {
         matches!(self, Sweep::Lines(l) if matches!(l.fuse, Fuse::Aimed | Fuse::AimedNearest | Fuse::AimedAround))
     }
@@ -298,12 +298,12 @@ impl Sweep {
         }
     }
 
-    /// Which of the shaders' two bindings the lattice is: halves of words, or words.
+    /// Which of the shaders' two lattice bindings is used: halves of words, or words.
     pub(crate) fn lattice_binding(&self) -> &'static str {
         if self.lattice_content() == 1 { "lattice_words" } else { "lattice" }
     }
 
-    /// Bytes that a sample reads from the lattice and the field around what it proposes.
+    /// Bytes that a grid point reads from the lattice and from the field around the proposed occluders.
     pub(crate) fn lattice_bytes(&self) -> u64 {
         match self {
             Sweep::Lines(lines) => match lines.fuse {
@@ -311,7 +311,7 @@ impl Sweep {
                 Fuse::Slopes => 8,
                 Fuse::AimedNearest => 2 + 8,
                 Fuse::Own | Fuse::Aimed => 4 + 16,
-                // Six heights of each of four segments a line.
+                // Six heights of each of four segments per line.
                 Fuse::AimedAround => 4 + 2 * 4 * 24,
             },
             Sweep::Crossings => 0,
@@ -356,7 +356,7 @@ impl Sweep {
         lines as u32
     }
 
-    /// Samples that the lines of one azimuth touch: those on the field.
+    /// Points of the field on the lines of one azimuth.
     pub(crate) fn line_samples(&self, azimuth: &Azimuth, axis: Axis) -> u64 {
         match self {
             Sweep::Lines(lines) => {
@@ -369,10 +369,10 @@ impl Sweep {
         }
     }
 
-    /// Layers of the lattice that one azimuth takes.
+    /// Layers of the lattice for one azimuth.
     pub(crate) fn layers(&self, azimuth: &Azimuth, axis: Axis) -> u32 {
         match self {
-            // Whole groups: those of a line beyond the last are swept, too.
+            // Whole workgroups: those of a line beyond the last are swept too.
             Sweep::Lines(lines) => {
                 let group_lines = 4 * lines.group_size;
                 self.lines(azimuth, axis).div_ceil(group_lines) * group_lines / 32

@@ -25,7 +25,7 @@ same_layout!(
     first_layer = FIRST_LAYER,
 );
 
-/// Horizons of the samples themselves, as elevations.
+/// Horizons at grid points, as elevations.
 pub(crate) fn plan(
     builder: &mut Builder,
     sweep: &Sweep,
@@ -52,7 +52,7 @@ pub(crate) fn plan(
             marches_rows: axis.marches_rows,
         },
         part,
-        "from the lines back to the samples",
+        "from the lines back to grid points",
         [axis.steps.div_ceil(8), axis.lanes.div_ceil(4 * 16), batch.count],
         &SweepFusePush {
             cols: cols as i32,

@@ -8,28 +8,28 @@ use crate::passes::batch;
 use crate::passes::batch::Batch;
 use crate::passes::nodes::Nodes;
 use crate::passes::pyramid_march;
-use crate::passes::sweep::{HullPlace, LineSweep, Sweep};
+use crate::passes::sweep::{HullStorage, LineSweep, Sweep};
 use crate::scene::{Border, HeightField, Lines, Method, Quality};
 use crate::{Error, Result, passes};
 
-/// What every sweep of a plan shares.
+/// What all sweeps of a plan share.
 pub(crate) struct Sweeping {
     pub sweep: Sweep,
     heights: ResourceId,
     pub azimuths: ResourceId,
-    /// Heights by lanes of each axis that is marched: columns', rows'.
+    /// Heights by lanes, of each axis that is marched: columns, rows.
     lane_heights: [Option<ResourceId>; 2],
-    /// Whether the sweep reads its heights from them too, four lanes at a time.
+    /// Whether the sweep also reads its heights there, four lanes at a time.
     quads: bool,
-    /// Levels of a height pyramid, where some are looked at.
+    /// Levels of a height pyramid, where any are read.
     pub levels: Option<pyramid_march::Images>,
-    /// Where marches that store a value a sample find it.
+    /// Nodes at which marches store a value.
     pub nodes: Nodes,
-    /// Each batch's; several may have the same in turn.
+    /// The lattice of each batch; several batches may use one in turn.
     lattices: Vec<Lattice>,
 }
 
-/// What sweeps leave behind.
+/// Output of sweeps.
 #[derive(Clone, Copy)]
 struct Lattice {
     occluders: Option<ResourceId>,
@@ -38,7 +38,7 @@ struct Lattice {
 }
 
 impl Sweeping {
-    /// Heights by lanes of a batch's axis.
+    /// Heights by lanes along a batch's axis.
     pub fn lane_heights(&self, batch: &Batch) -> ResourceId {
         self.lane_heights[usize::from(batch.axis.marches_rows)].expect("made for every axis used")
     }
@@ -47,23 +47,23 @@ impl Sweeping {
         self.lattices[batch.number as usize]
     }
 
-    /// What a batch's sweep leaves for the samples: slopes where they are stored, else occluders.
+    /// The output of a batch's sweep for shading: slopes where stored, else occluders.
     pub fn lattice(&self, batch: &Batch) -> Option<ResourceId> {
         let lattice = self.lattice_of(batch);
         lattice.slopes.or(lattice.occluders)
     }
 
-    /// What a batch's sweep along lines has met.
+    /// The occluders of a batch's sweep along lines.
     pub fn occluders(&self, batch: &Batch) -> Option<ResourceId> {
         self.lattice_of(batch).occluders
     }
 
-    /// The same of a sweep that there is.
+    /// The same, of a sweep that stores something.
     pub fn written(&self, batch: &Batch) -> ResourceId {
         self.lattice(batch).expect("a sweep stores something")
     }
 
-    /// Passes that bring heights by lanes and lattices up to an edit, and mark what it reaches.
+    /// Passes that update heights by lanes and lattices after an edit, and mark the texels that change.
     pub fn record_edit<'a>(
         &self,
         builder: &mut Builder,
@@ -124,14 +124,14 @@ impl Sweeping {
     }
 }
 
-/// Azimuth lists, one a light, in the order of the buffer; and how they are cut.
+/// Azimuth lists, one per light, in the order of the buffer; and their batches.
 #[derive(Default)]
 pub(crate) struct Lists {
     pub lists: Vec<Vec<Azimuth>>,
     pub batches: Vec<Vec<Batch>>,
 }
 
-/// Layers that a sweep writes: their formats, width and height; their number is the batches'.
+/// Layers that a sweep writes: formats, width and height. Their number follows from the batches.
 #[derive(Clone, Copy, PartialEq)]
 struct LatticeShape {
     occluders: Option<Format>,
@@ -167,8 +167,8 @@ impl LatticeShape {
     }
 }
 
-/// Makes the sweep's own images, within what the budget leaves, and cuts the lists into batches. Those of
-/// the lists from `kept_from` on keep a lattice of their own, if there are such; others use some in turn.
+/// Makes the sweep's images within the remaining budget, and cuts the lists into batches. Lists from
+/// `kept_from` on have a lattice of their own; the others use lattices in turn.
 pub(crate) fn prepare(
     builder: &mut Builder,
     field: &HeightField,
@@ -195,7 +195,7 @@ pub(crate) fn prepare(
     let shape_of =
         |axis: Axis| shapes[usize::from(axis.marches_rows)].expect("a shape for every axis used");
     let can_lose =
-        matches!(&sweep, Sweep::Lines(l) if !l.holds_line && l.hull != HullPlace::Occluders);
+        matches!(&sweep, Sweep::Lines(l) if !l.holds_line && l.hull != HullStorage::Occluders);
     let mut make = |axis: Axis, layers: u32, suffix: &str| {
         let shape = shape_of(axis);
         let extent = [shape.width, shape.height, layers];
@@ -243,7 +243,7 @@ pub(crate) fn prepare(
     if let (Sweep::Pyramid(pyramid), Some(images)) = (&sweep, &levels) {
         pyramid.record(builder, heights, images);
     }
-    // Lines a cell apart pass four neighbouring lanes alike.
+    // Lines one cell apart pass four neighbouring lanes alike.
     let quads = matches!(sweep, Sweep::Lines(LineSweep { line_shift: 15, .. }))
         && border != Border::Periodic;
     let sweeping =
@@ -251,14 +251,14 @@ pub(crate) fn prepare(
     Ok((sweeping, Lists { lists, batches }))
 }
 
-/// The image of heights by lanes of an axis.
+/// The image of heights by lanes along an axis.
 fn lane_image(builder: &mut Builder, axis: Axis) -> ResourceId {
     let extent = [axis.lanes.div_ceil(4), axis.steps, 1];
     let name = format!("lane_heights_{}", axis.name());
     builder.image(name, Owner::Internal, Format::Rgba32Float, extent, false)
 }
 
-/// Bytes of the lattice of one azimuth, of those along each axis that need most.
+/// Bytes of the lattice of one azimuth: the largest along each axis.
 fn least_bytes(
     lists: &[Vec<Azimuth>],
     axes: &[Option<Axis>; 2],
@@ -275,8 +275,8 @@ fn least_bytes(
     least
 }
 
-/// Shapes of the lattices along each axis: one that holds both, used in turn, where it takes no more
-/// than one for each.
+/// Shapes of the lattices along each axis: one shape for both, used in turn, where that takes no more than one
+/// for each.
 fn shapes(
     lists: &[Vec<Azimuth>],
     axes: &[Option<Axis>; 2],
@@ -293,7 +293,7 @@ fn shapes(
     if in_turn[0].max(in_turn[1]) <= apart[0] + apart[1] { [Some(both); 2] } else { own }
 }
 
-/// Sorts every list and cuts it into batches; `fixed_bytes` are taken whatever the cut.
+/// Sorts every list and cuts it into batches. `fixed_bytes` are taken in any case.
 fn cut_lists(
     lists: &mut [Vec<Azimuth>],
     fixed_bytes: u64,
@@ -303,7 +303,7 @@ fn cut_lists(
     limits: &Limits,
 ) -> Result<Vec<Vec<Batch>>> {
     let layer_bytes = shapes.map(|shape| shape.map_or(0, |s| s.layer_bytes()));
-    // Axes of one shape use one lattice in turn; others share what the budget leaves, by need.
+    // Axes of one shape use one lattice in turn; others divide the remaining budget by need.
     let least = least_bytes(lists, axes, sweep, layer_bytes);
     let differ = matches!(shapes, [Some(a), Some(b)] if a != b);
     let all = if differ { least[0] + least[1] } else { least[0].max(least[1]) };
@@ -311,7 +311,7 @@ fn cut_lists(
         let [cols, rows] = axes.iter().flatten().next().map_or([0, 0], |axis| axis.size());
         return Err(Error::Limit {
             what: format!("horizons of one azimuth of a {cols} × {rows} field"),
-            needs: format!("{} with all else", bytes_text(fixed_bytes + all)),
+            needs: format!("{} in total", bytes_text(fixed_bytes + all)),
             limit: format!("{} of `memory_budget`", bytes_text(limits.memory_budget)),
         });
     }
@@ -333,7 +333,7 @@ fn cut_lists(
     Ok(all)
 }
 
-/// The part of a pass for one of the batches of a light.
+/// The part in a pass's label for one of the batches of a light.
 pub(crate) fn part(light: &str, batch: &Batch, batches: &[Batch]) -> String {
     match batches {
         [_] => light.to_owned(),
@@ -349,11 +349,11 @@ pub(crate) fn circle(quality: &Quality, sweep: &Sweep, cell_m: [f64; 2]) -> Resu
     }
 }
 
-/// The azimuths that [`horizons`](crate::plan::horizons()) sweeps for a quality, radians counter-clockwise
-/// from east: 2πk/M, or in exact mode the grid vectors' own.
+/// The azimuths that [`horizons`](crate::plan::horizons()) sweeps for a quality, radians counter-clockwise from
+/// east: 2πk/M, or the directions of the grid vectors in exact mode.
 ///
 /// # Errors
-/// Cells too unlike in width and height for exact azimuths.
+/// The cells' width and height differ too much for exact azimuths.
 pub fn circle_rad(quality: &Quality, cell_m: [f64; 2]) -> Result<Vec<f64>> {
     let count = quality.azimuths;
     let all = match (quality.method, quality.lines) {
@@ -368,7 +368,7 @@ pub fn circle_rad(quality: &Quality, cell_m: [f64; 2]) -> Result<Vec<f64>> {
     Ok(all)
 }
 
-/// The settings really used, for metadata and messages.
+/// The settings in use, for metadata and messages.
 pub(crate) fn settings(
     quality: &Quality,
     sweep: Option<&Sweep>,

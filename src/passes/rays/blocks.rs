@@ -2,19 +2,19 @@ use crate::graph::{Builder, Format, Owner, ResourceId};
 use crate::passes::{height_bounds, height_cells};
 use crate::scene::{Border, HeightField};
 
-/// What rays over the surface look at: its cells, and the highest of blocks of them to skip by.
+/// What rays over the surface read: its cells, and the maximum height of blocks of cells, to skip by.
 pub(crate) struct Blocks {
     /// Columns and rows of cells.
     pub cells: [u32; 2],
-    /// Rows that the places of the levels in their image follow from.
+    /// Rows from which the places of the levels in their image follow.
     pub padded_rows: u32,
-    /// The level of one block that holds all cells.
+    /// The level whose one block holds all cells.
     pub top_level: u32,
     border: Border,
     pub images: BlockImages,
 }
 
-/// Images of the field's size, and that of all levels.
+/// Images of the field's size, and one of all levels.
 #[derive(Clone, Copy)]
 pub(crate) struct BlockImages {
     pub cells: ResourceId,
@@ -23,8 +23,8 @@ pub(crate) struct BlockImages {
 }
 
 impl Blocks {
-    /// Levels of 4 by 4 up to one block that holds all cells. A field without cells has one that is not
-    /// looked at.
+    /// Levels of 4 by 4 cells up to one block that holds all. A field without cells has one cell that is never
+    /// read.
     pub fn make(builder: &mut Builder, size: [u32; 2], border: Border) -> Self {
         let cells = size.map(|n| match border {
             Border::Periodic => n,
@@ -44,7 +44,7 @@ impl Blocks {
         Self { cells, padded_rows, top_level, border, images }
     }
 
-    /// The passes that fill the images; `paths` are the sums of a path tracer that begin with them.
+    /// The passes that fill the images. `paths` are the sums that a path tracer starts from.
     pub fn record(
         &self,
         builder: &mut Builder,
@@ -59,7 +59,7 @@ impl Blocks {
         }
     }
 
-    /// The same without what rays skip by: for those that need the ground alone.
+    /// The same without the levels: for passes that need only the ground.
     pub fn record_ground(
         &self,
         builder: &mut Builder,
@@ -71,22 +71,22 @@ impl Blocks {
         height_cells::plan(builder, (field, self.border), [heights, cells, ground], paths);
     }
 
-    /// Steps that no ray can ask for: over the field's longest side, or as far as a ray over repetitions
-    /// is followed, two cells a cell along it, and half as many changes of level; and those of the last
-    /// block.
+    /// An upper bound of a ray's steps. Over the field's longest side, or as far as a ray is followed over
+    /// repetitions: two cells per cell along it, half as many changes of level, and those of the last block.
     pub fn most_steps(&self) -> u32 {
         let [x, y] = self.cells;
         3 * if self.border == Border::Periodic { REACH_CELLS } else { x.max(y) } + 64
     }
 
-    /// Steps that the slowest of eight neighbouring rays asks for in the mean, or less: twice what was measured on
+    /// A bound of the mean steps of the slowest of eight neighbouring rays: twice the steps measured on
     /// fractals of 9² to 257², 6 to 13 with two levels, 13 to 50 with three and 25 to 50 with four. To find it
-    /// again: the number of lights with which llvmpipe loses rays of 64 paths in one dispatch, 65,535 / 64 over it.
+    /// again: the number of lights with which llvmpipe loses rays of 64 paths in one dispatch, 65,535 / 64 over
+    /// it.
     pub fn usual_steps(&self) -> u32 {
         24 * self.top_level
     }
 
-    /// Whether the field is one sample wide along rows, along columns: a line, which only rays along it meet.
+    /// Whether the field is one grid point wide along rows, along columns: only rays along such a line hit it.
     pub fn thin(&self, field: &HeightField) -> [bool; 2] {
         [field.rows(), field.cols()].map(|n| self.border != Border::Periodic && n == 1)
     }

@@ -20,7 +20,7 @@ same_layout!(
     level = LEVEL,
 );
 
-/// The highest of each block of 4^level by 4^level cells.
+/// The maximum height of each block of 4^level by 4^level cells.
 pub(crate) fn plan(
     builder: &mut Builder,
     [cells_x, cells_y]: [u32; 2],
@@ -33,7 +33,7 @@ pub(crate) fn plan(
     builder.pass(
         shaders::HeightBounds,
         &format!("level {level}"),
-        "rays above all of a block skip it",
+        "so that rays above a block skip it",
         [across.div_ceil(8), down.div_ceil(8), 1],
         &HeightBoundsPush {
             cells_x: cells_x as i32,

@@ -21,7 +21,7 @@ same_layout!(
     cell_y_m = CELL_Y_M,
 );
 
-/// Heights as rays look at them; the sums of `paths`, where there are any, begin anew.
+/// Heights by cell, as rays read them. Clears the sums of `paths`, where there are any.
 pub(crate) fn plan(
     builder: &mut Builder,
     (field, border): (&HeightField, Border),
@@ -40,7 +40,7 @@ pub(crate) fn plan(
             begins_paths: paths.is_some(),
         },
         "",
-        "a ray reads a cell at once; light begins with the samples' normals",
+        "so that one fetch reads a cell; light needs the normals of texels",
         [cols.div_ceil(8), rows.div_ceil(8), 1],
         &HeightCellsPush {
             cols: cols as i32,

@@ -7,11 +7,11 @@ use crate::passes::LandPush;
 use crate::passes::blocks::Blocks;
 use crate::scene::{Albedo, PhongSpecular, Scene, Specular};
 
-/// log2 of the paths a sample of one batch, 8 at most. Fewer: more dispatches. More: a net fills its square
-/// more evenly, but fewer batches tell the standard error.
+/// log2 of the paths per texel and batch, 8 at most. Fewer: more dispatches. More: a net fills its square more
+/// evenly, but fewer batches estimate the standard error.
 const SET_BITS: u32 = 6;
 
-/// Paths a sample that one run of the pass adds.
+/// Paths per texel that one run of the pass adds.
 pub(crate) const BATCH_PATHS: u32 = 1 << SET_BITS;
 
 #[repr(C)]
@@ -58,28 +58,28 @@ same_layout!(
     last_light = LAST_LIGHT,
 );
 
-/// llvmpipe ends all loops of an invocation together after 65,535 turns.
+/// llvmpipe ends all loops of an invocation together after 65,535 iterations.
 const MOST_TURNS: u32 = 60_000;
 
-/// Lights that a part looks at, where there are as many: the scattered ray of each part is one more.
+/// Lights per part, where there are as many; each part adds one scattered ray.
 const LIGHTS_OF_A_PART: u32 = 16;
 
-/// What one dispatch does of a batch: some of its paths, some of the lights at each vertex.
+/// One dispatch of a batch: some of its paths, some of the lights at each vertex.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Part {
     pub paths: Range<u32>,
     pub lights: Range<u32>,
 }
 
-/// The parts of a batch, one where all of it is within what a device may turn. Few paths go on beyond a
-/// few bounces.
+/// The parts of a batch; one where all of it is within the device's loop limit. Few paths continue beyond a few
+/// bounces.
 pub(crate) fn parts(scene: &Scene, blocks: &Blocks, bounces: u32) -> Vec<Part> {
     let lights = &scene.lights;
     let all = (lights.suns.len() + lights.keys.len() + lights.sphere_lights.len()) as u32;
     let vertices = bounces.min(3) + 1;
     let of_ray = blocks.usual_steps();
     let others = 1 + u32::from(lights.environment.is_some());
-    // One turn more a light, and one where the scattered ray looks for a ball.
+    // One more iteration per light, and one where the scattered ray searches for a sphere light.
     let most_lights = |paths: u32| {
         (MOST_TURNS / (paths * vertices)).saturating_sub(others * of_ray) / (of_ray + 2)
     };
@@ -97,8 +97,8 @@ pub(crate) fn parts(scene: &Scene, blocks: &Blocks, bounces: u32) -> Vec<Part> {
     .collect()
 }
 
-/// One batch of paths from every sample of some rows, counted in eights; of `listed` samples, their bounced light
-/// alone from some rows of the list.
+/// One batch of paths from every texel of some rows, counted in eights; for `listed` texels, only their bounced
+/// light, from some rows of the list.
 pub(crate) fn plan(
     builder: &mut Builder,
     scene: &Scene,
@@ -122,14 +122,14 @@ pub(crate) fn plan(
     let highest_m = field.heights_m().iter().copied().fold(f32::NEG_INFINITY, f32::max);
     let count = lights.suns.len() + lights.keys.len() + lights.sphere_lights.len();
     let whole = Part { paths: 0..BATCH_PATHS, lights: 0..count as u32 };
-    let Part { paths, lights: looked_at } = part.unwrap_or(&whole);
+    let Part { paths, lights: light_range } = part.unwrap_or(&whole);
     let [thin_rows, thin_cols] = blocks.thin(field);
     let four = |[r, g, b]: [f32; 3]| [r, g, b, 1.0];
     let (albedo, is_map) = match surface.albedo {
         Albedo::Constant(colour) => (colour, false),
         Albedo::Map(_) => ([0.0; 3], true),
     };
-    let lobe = match &surface.specular {
+    let specular = match &surface.specular {
         Some(Specular::Constant(phong)) => *phong,
         _ => PhongSpecular { exponent: 0.0, scale: 0.0 },
     };
@@ -140,9 +140,9 @@ pub(crate) fn plan(
         shaders::PathTrace { border: surface.border as u32, thin_rows, thin_cols, set_bits: SET_BITS, albedo_is_map: is_map, has_environment: lights.environment.is_some(), has_lobe: surface.specular.is_some(), has_lights: count > 0, has_keys: !lights.keys.is_empty(), has_sphere_lights: !lights.sphere_lights.is_empty(), has_bounces: bounces > 0, most_steps: blocks.most_steps() as i32, in_parts: part.is_some(), lobe_is_map: matches!(surface.specular, Some(Specular::Map(_))), at_places: listed.is_some() },
         &label.join(" "),
         match listed {
-            None => format!("{BATCH_PATHS} more paths a sample, up to {bounces} bounces"),
+            None => format!("{BATCH_PATHS} more paths per texel, up to {bounces} bounces"),
             Some(count) => format!(
-                "{BATCH_PATHS} more paths from each of {count} samples: bounced light of up to {bounces} bounces"
+                "{BATCH_PATHS} more paths from each of {count} texels: bounced light of up to {bounces} bounces"
             ),
         },
         [cols.div_ceil(8), (band.end - band.start).div_ceil(8), 1],
@@ -150,8 +150,8 @@ pub(crate) fn plan(
             land: LandPush::of(field, blocks),
             highest_m,
             rotation_turns: lights.environment.as_ref().map_or(0.0, turns),
-            exponent: lobe.exponent,
-            lobe_share: lobe.scale,
+            exponent: specular.exponent,
+            lobe_share: specular.scale,
             bounces: bounces as i32,
             suns: lights.suns.len() as i32,
             light_count: count as i32,
@@ -162,8 +162,8 @@ pub(crate) fn plan(
             keys: lights.keys.len() as i32,
             first_path: paths.start as i32,
             last_path: paths.end as i32,
-            first_light: looked_at.start as i32,
-            last_light: looked_at.end as i32,
+            first_light: light_range.start as i32,
+            last_light: light_range.end as i32,
         },
         bound,
         samples * 7 * 16,

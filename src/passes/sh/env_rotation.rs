@@ -22,7 +22,7 @@ same_layout!(
     column_first = COLUMN_FIRST,
 );
 
-/// The environment summed around each of its rows.
+/// The environment's Fourier sums around each of its rows.
 pub(crate) fn plan(
     builder: &mut Builder,
     environment: &Environment,
@@ -34,7 +34,7 @@ pub(crate) fn plan(
     builder.pass(
         shaders::EnvRotation,
         sh.part(),
-        format!("the environment around each row, up to {} turns", sh.light_order - 1),
+        format!("the environment around each row, up to Fourier order {}", sh.light_order - 1),
         [((sh.rows * count) as u32).div_ceil(32), 1, 1],
         &EnvRotationPush {
             width: environment.width() as i32,

@@ -34,7 +34,7 @@ pub(crate) fn plan(
         shaders::EnvWedges,
         "",
         format!(
-            "the environment's light in each azimuth's wedge: {kept} of {} rows can be seen",
+            "the environment's light in each azimuth's wedge: {kept} of {} rows can be visible",
             environment.height()
         ),
         [kept.div_ceil(8), azimuths, 1],

@@ -28,7 +28,7 @@ same_layout!(
     sky = SKY,
 );
 
-/// What the environment, and a sky that is lit by harmonics, make of a series of visibility.
+/// The matrix from an SH series of visibility to light, for the environment and for a sky that SH light.
 pub(crate) fn plan(
     builder: &mut Builder,
     sh: &Sh,
@@ -44,7 +44,7 @@ pub(crate) fn plan(
     builder.pass(
         shaders::LightMatrix,
         sh.part(),
-        format!("light of order {light_order} times what is seen: {receivers} × {}", order * order),
+        format!("light of order {light_order} times visibility: {receivers} × {}", order * order),
         [1, 1, 1],
         &LightMatrixPush {
             rows: rows as i32,

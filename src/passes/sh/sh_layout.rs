@@ -1,4 +1,4 @@
-//! What the passes of spherical harmonics are told: a buffer of constants, computed in f64.
+//! Inputs of the SH passes: a buffer of constants, computed in f64.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -12,19 +12,19 @@ use crate::passes::batch;
 use crate::passes::nodes::Nodes;
 use crate::scene::{Border, Environment, Quality, Receiver, Window};
 
-/// What turns what is seen into light. Numbered as in `sh_shade.comp`.
+/// The receiver that turns visibility into light. Numbered as in `sh_shade.comp`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Lit {
     /// A clamped cosine of three bands.
     Cosine = 0,
-    /// The cosine of a surface whose plane hides what lies below it.
+    /// The cosine of a surface whose plane hides the light below it.
     Plane = 1,
-    /// A Phong lobe: what arrives is a series of its own.
-    Gloss = 2,
+    /// A Phong lobe. Its incoming light is an SH series of its own.
+    Specular = 2,
 }
 
 impl Lit {
-    /// On diffuse ground.
+    /// The receiver of diffuse ground.
     pub fn diffuse(receiver: Receiver) -> Self {
         match receiver {
             Receiver::Plane => Lit::Plane,
@@ -33,21 +33,21 @@ impl Lit {
     }
 }
 
-/// Sizes, and where things lie in [`Plan::constants`](crate::plan::Plan::constants), in texels of four.
+/// Sizes and offsets in [`Plan::constants`](crate::plan::Plan::constants), in texels of four.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Sh {
-    /// Of what is seen.
+    /// SH order of visibility.
     pub order: usize,
-    /// Of the environment's series.
+    /// SH order of the environment.
     pub light_order: usize,
     pub lit: Lit,
-    /// Whether what lies below a sample's own plane is not seen.
+    /// Whether each grid point's own plane hides the directions below it.
     pub own_plane_hides: bool,
-    /// Where what is seen is found.
+    /// Nodes at which visibility is found.
     pub nodes: Nodes,
     /// Rows of the light's matrix.
     pub receivers: usize,
-    /// Of the environment, from the zenith down, that count.
+    /// Rows of the environment, from the zenith down, that count.
     pub rows: usize,
     pub column_first: usize,
     pub row_first: usize,
@@ -55,24 +55,24 @@ pub(crate) struct Sh {
 }
 
 impl Sh {
-    /// Sizes for an environment, and for a uniform sky where there is none; adds the constants. For a lobe, else for
-    /// the diffuse receiver of the quality.
+    /// Sizes for an environment, or for a uniform sky where there is none; adds the constants. For the specular
+    /// receiver, or the diffuse one of the quality.
     ///
-    /// Where ground hides all below horizontal, a plane's light is fitted to what is above: nothing else
-    /// of its series is ever seen. A window needs a series of all directions. A lobe takes all bands of what is
-    /// seen, so its light has as many.
+    /// Where ground hides everything below horizontal, the light for the plane receiver is fitted to the
+    /// directions above: the rest of its series is never visible. An SH window needs a series of all
+    /// directions. The specular receiver uses all bands of visibility, so its light has as many.
     pub fn of(
         environment: Option<&Environment>,
         border: Border,
         quality: &Quality,
-        is_gloss: bool,
+        is_specular: bool,
         constants: &mut Vec<f32>,
     ) -> Self {
         let order = quality.sh_order as usize;
         let is_fitted = quality.receiver == Receiver::Plane
             && quality.window == Window::None
             && border != Border::Open;
-        let lit = if is_gloss { Lit::Gloss } else { Lit::diffuse(quality.receiver) };
+        let lit = if is_specular { Lit::Specular } else { Lit::diffuse(quality.receiver) };
         let light_order = if lit == Lit::Plane { order - 1 } else { order };
         let column_first = constants.len() / 4;
         constants.extend(environment.iter().flat_map(|e| columns(e, light_order)));
@@ -103,9 +103,9 @@ impl Sh {
         }
     }
 
-    /// What the passes before the shading are of, where there are two of each.
+    /// The part in the labels of the passes before the shading, where there are two of each.
     pub fn part(&self) -> &'static str {
-        if self.lit == Lit::Gloss { "glossy" } else { "" }
+        if self.lit == Lit::Specular { "glossy" } else { "" }
     }
 
     /// Layers of four coefficients.
@@ -114,7 +114,7 @@ impl Sh {
     }
 }
 
-/// A table of wedges among the constants, and the circle that it is looked up for, in texels of four.
+/// A table of wedges among the constants, and the circle for look-up, in texels of four.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct WedgeTexels {
     pub side: usize,
@@ -125,7 +125,7 @@ pub(crate) struct WedgeTexels {
 }
 
 impl WedgeTexels {
-    /// Adds them to the constants, for even azimuths in the order of the circle whose horizons lie in layers
+    /// Adds them to the constants, for even azimuths in the order of the circle, whose horizons are in layers
     /// in the order of [`batch::sort`].
     pub fn of(
         border: Border,
@@ -148,12 +148,12 @@ impl WedgeTexels {
     }
 }
 
-/// The lowest horizon of a table of wedges: where light comes from below, of the whole sphere.
+/// The lowest horizon of a table of wedges: the nadir where light comes from below.
 pub fn lowest_rad(border: Border) -> f64 {
     if border == Border::Open { -FRAC_PI_2 } else { 0.0 }
 }
 
-/// Numbers as texels of four f32, zeros at the end.
+/// Numbers as texels of four f32, padded with zeros.
 pub(crate) fn by_fours(values: &[f64]) -> Vec<f32> {
     let mut all: Vec<f32> = values.iter().map(|v| *v as f32).collect();
     all.resize(values.len().next_multiple_of(4), 0.0);
@@ -165,7 +165,7 @@ fn columns(environment: &Environment, order: usize) -> Vec<f32> {
     let width = environment.width();
     let step = TAU / width as f64;
     let weight = |turn: isize, col: usize| {
-        // Column 0 begins at azimuth π, turned; columns run clockwise.
+        // Column 0 begins at azimuth π, rotated; columns run clockwise.
         let middle = PI + environment.rotation_rad() - step * (col as f64 + 0.5);
         let m = turn.unsigned_abs() as f64;
         let chord = if turn == 0 { step } else { 2.0 * (0.5 * m * step).sin() / m };
@@ -179,7 +179,7 @@ fn columns(environment: &Environment, order: usize) -> Vec<f32> {
     turns.flat_map(|t| by_fours(&(0..width).map(|c| weight(t, c)).collect::<Vec<_>>())).collect()
 }
 
-/// ∫ over each row above `lowest_rad` of Θ_lm dz, or what a fit makes of them, m ≥ 0: `[(l, m)][row]`.
+/// ∫ over each row above `lowest_rad` of Θ_lm dz, or of the fitted function, m ≥ 0: `[(l, m)][row]`.
 fn elevations(
     (height, rows): (usize, usize),
     order: usize,
@@ -202,8 +202,8 @@ fn elevations(
         .collect()
 }
 
-/// How each entry of the light's matrix follows from the environment's series: `[entry][coefficient]`.
-/// The light of one coefficient at a time makes a column of it.
+/// How each entry of the light's matrix follows from the environment's series: `[entry][coefficient]`. Each
+/// column is the light of one coefficient alone.
 pub(crate) fn matrix(quality: &Quality, light_order: usize, lit: Lit) -> Vec<Vec<f64>> {
     let order = quality.sh_order as usize;
     let triples = triples(order);
@@ -214,7 +214,7 @@ pub(crate) fn matrix(quality: &Quality, light_order: usize, lit: Lit) -> Vec<Vec
             let mut light = vec![0.0; light_order * light_order];
             light[i] = factors[l];
             match lit {
-                Lit::Gloss => light_matrix(&triples, &light).concat(),
+                Lit::Specular => light_matrix(&triples, &light).concat(),
                 Lit::Plane => plane(&triples, order, &light).concat(),
                 Lit::Cosine => lobe(&triples, order, &light).concat(),
             }
@@ -223,7 +223,7 @@ pub(crate) fn matrix(quality: &Quality, light_order: usize, lit: Lit) -> Vec<Vec
     (0..columns[0].len()).map(|entry| columns.iter().map(|c| c[entry]).collect()).collect()
 }
 
-/// Factors of the bands; as wide as the series, so that the last band keeps some.
+/// Factors of the bands; as wide as the series, so that the last band is not 0.
 fn factors(window: Window, order: usize) -> Vec<f64> {
     match window {
         Window::None => vec![1.0; order],

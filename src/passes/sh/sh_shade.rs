@@ -1,7 +1,7 @@
 use crate::graph::shaders;
 use crate::graph::shaders::same_layout;
 use crate::graph::{Axis, Builder, ResourceId};
-use crate::passes::Lobes;
+use crate::passes::PhongSource;
 use crate::passes::sh_layout::{Lit, Sh};
 use crate::scene::Border;
 
@@ -25,14 +25,14 @@ same_layout!(
     lobe = LOBE,
 );
 
-/// Light from what is seen and the light's matrix, by normals of full resolution.
+/// Light from visibility and the light's matrix, with normals of full resolution.
 pub(crate) fn plan(
     builder: &mut Builder,
     (axis, border, cell_m): (Axis, Border, [f64; 2]),
     sh: &Sh,
     [lane_heights, visibility, light_matrix, env_sum]: [ResourceId; 4],
     nodes: Option<ResourceId>,
-    lobes: Option<Lobes>,
+    phong: Option<PhongSource>,
 ) {
     let [cols, rows] = axis.size();
     let mut bound = vec![
@@ -42,7 +42,7 @@ pub(crate) fn plan(
         ("env_sum", env_sum),
     ];
     bound.extend(nodes.map(|n| ("nodes", n)));
-    let map = lobes.and_then(|lobes| lobes.map);
+    let map = phong.and_then(|phong| phong.map);
     bound.extend(map.map(|map| ("phong_map", map)));
     let [across, along] = sh.nodes.size([cols, rows]).map(u64::from);
     let seen = across * along * 16 * (sh.layers() as u64 + u64::from(nodes.is_some()));
@@ -57,12 +57,12 @@ pub(crate) fn plan(
         },
         match sh.lit {
             Lit::Plane | Lit::Cosine => "env",
-            Lit::Gloss => "glossy",
+            Lit::Specular => "glossy",
         },
         match sh.lit {
-            Lit::Plane => "what is seen times the light's matrix; the cosine is exact",
-            Lit::Cosine => "what is seen times the light's matrix; a cosine of three bands",
-            Lit::Gloss => "what is seen times the light's matrix; a Phong lobe of as many bands",
+            Lit::Plane => "visibility times the light's matrix; the cosine is exact",
+            Lit::Cosine => "visibility times the light's matrix; a cosine of three bands",
+            Lit::Specular => "visibility times the light's matrix; a Phong lobe of as many bands",
         },
         [axis.steps.div_ceil(8), axis.lanes.div_ceil(4 * 16), 1],
         &ShShadePush {
@@ -70,7 +70,7 @@ pub(crate) fn plan(
             rows: rows as i32,
             cell_x_m: cell_m[0] as f32,
             cell_y_m: cell_m[1] as f32,
-            lobe: lobes.map_or([0.0; 2], |l| [l.constant.exponent, l.constant.scale]),
+            lobe: phong.map_or([0.0; 2], |l| [l.constant.exponent, l.constant.scale]),
         },
         &bound,
         axis.samples() * (4 + 16) + seen,

@@ -7,7 +7,7 @@ use crate::passes::sh_layout::Sh;
 use crate::passes::sweep::Sweep;
 use crate::scene::{Border, Wedges};
 
-/// What a batch adds to what is seen.
+/// How a batch's wedges become SH.
 pub(crate) struct Images {
     pub lane_heights: ResourceId,
     pub lattice: Option<ResourceId>,
@@ -16,7 +16,7 @@ pub(crate) struct Images {
     pub nodes: Option<ResourceId>,
 }
 
-/// What samples, or nodes among them, see through the horizons of a batch, as a series.
+/// Visibility at texels, or at nodes, through the horizons of a batch, as an SH series.
 pub(crate) fn plan(
     builder: &mut Builder,
     sweep: &Sweep,
@@ -52,8 +52,8 @@ pub(crate) fn plan(
         },
         part,
         match wedges {
-            Wedges::Slices => "what is seen, as harmonics by exact integrals over elevation",
-            Wedges::Nlp => "what is seen, as harmonics by Legendre coefficients",
+            Wedges::Slices => "visibility as SH, by exact integrals over elevation",
+            Wedges::Nlp => "visibility as SH, by Legendre coefficients",
             Wedges::Table => unreachable!("sh_wedges looks up two azimuths at once"),
         },
         [steps.div_ceil(8), lanes.div_ceil(4 * 16), 1],

@@ -41,7 +41,7 @@ pub(crate) struct Images {
     pub nodes: Option<ResourceId>,
 }
 
-/// What samples, or nodes among them, see between neighbouring horizons, from a table of wedges.
+/// Visibility at texels, or at nodes, between neighbouring horizons, from a table of wedges.
 pub(crate) fn plan(
     builder: &mut Builder,
     (axis, border, cell_m): (Axis, Border, [f64; 2]),
@@ -69,7 +69,7 @@ pub(crate) fn plan(
             lane_stride: sh.nodes.stride as i32,
         },
         "env",
-        format!("what is seen, as harmonics from a table of {0} × {0} wedges", table.side),
+        format!("visibility as SH, from a table of {0} × {0} wedges", table.side),
         [steps.div_ceil(8), lanes.div_ceil(4 * 16), 1],
         &ShWedgesPush {
             cols: cols as i32,

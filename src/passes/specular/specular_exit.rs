@@ -1,8 +1,8 @@
 use crate::graph::shaders;
 use crate::graph::shaders::same_layout;
 use crate::graph::{Builder, ResourceId};
-use crate::passes::Lobes;
-use crate::passes::glossy::{BouncedLight, Glossy, Vectors};
+use crate::passes::PhongSource;
+use crate::passes::bounced_specular::{BouncedSpecular, ExitLight, Vectors};
 
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
@@ -32,76 +32,76 @@ same_layout!(
 pub(crate) struct ExitRadiance {
     /// As in labels: "direct", "bounce1".
     pub name: String,
-    /// How often it has been reflected before it arrived: 0 is direct light.
+    /// How often it was reflected before it arrived: 0 is direct light.
     pub bounce: usize,
-    /// What of it is diffuse; none where it is not thrown on.
+    /// Its diffuse part; none after the last bounce.
     pub diffuse: Option<ResourceId>,
-    /// What the lobes make of direct light.
+    /// Specular reflection of direct light.
     pub gloss_direct: ResourceId,
 }
 
-/// What the lobes make of what arrives.
+/// Specular reflection of incoming light.
 pub(crate) fn plan(
     builder: &mut Builder,
     [cols, rows]: [u32; 2],
-    (glossy, lobes): (&Glossy, Lobes),
+    (specular, phong): (&BouncedSpecular, PhongSource),
     ground: ResourceId,
-    leaving: &ExitRadiance,
+    outgoing: &ExitRadiance,
 ) {
     let samples = u64::from(cols) * u64::from(rows);
-    let is_direct = leaving.bounce == 0;
-    let throws = leaving.diffuse.is_some();
-    let vectors = match glossy.outgoing {
-        BouncedLight::Vectors(vectors) if throws => Some(vectors),
+    let is_direct = outgoing.bounce == 0;
+    let is_bounced = outgoing.diffuse.is_some();
+    let vectors = match specular.outgoing {
+        ExitLight::Vectors(vectors) if is_bounced => Some(vectors),
         _ => None,
     };
-    let has_vectors = matches!(glossy.outgoing, BouncedLight::Vectors(_));
+    let has_vectors = matches!(specular.outgoing, ExitLight::Vectors(_));
     let mut bound = vec![("ground", ground)];
     if has_vectors || !is_direct {
-        bound.push(("arriving", glossy.arriving));
+        bound.push(("arriving", specular.arriving));
     }
     if is_direct {
-        bound.push(("gloss_direct", leaving.gloss_direct));
+        bound.push(("gloss_direct", outgoing.gloss_direct));
     } else {
-        bound.push(("gloss_bounced", glossy.bounced));
+        bound.push(("gloss_bounced", specular.bounced));
     }
-    bound.extend(leaving.diffuse.map(|diffuse| ("exit_radiance", diffuse)));
-    bound.extend(lobes.map.map(|map| ("phong_map", map)));
-    match (glossy.outgoing, vectors) {
+    bound.extend(outgoing.diffuse.map(|diffuse| ("exit_radiance", diffuse)));
+    bound.extend(phong.map.map(|map| ("phong_map", map)));
+    match (specular.outgoing, vectors) {
         (_, Some(Vectors { exit, constants, .. })) => {
             bound.extend([("constants", constants), ("exit_vectors", exit)]);
         }
-        (BouncedLight::Seen(exit), _) if throws => bound.push(("exit_seen", exit)),
+        (ExitLight::Upward(exit), _) if is_bounced => bound.push(("exit_seen", exit)),
         _ => {}
     }
-    let why = match (throws, has_vectors) {
-        (true, true) => "what leaves by direction: diffuse, and mirrored about the normal by lobes",
-        (true, false) => "what leaves as seen from above: diffuse, and by lobes",
-        (false, _) => "what lobes mirror straight upwards",
+    let why = match (is_bounced, has_vectors) {
+        (true, true) => "exit radiance by direction: diffuse, and specular about the normal",
+        (true, false) => "exit radiance towards the zenith: diffuse and specular",
+        (false, _) => "specular reflection towards the zenith",
     };
-    let layers = u64::from(glossy.layers());
-    let written = vectors.map_or(16, |_| glossy.texel_bytes() * layers);
+    let layers = u64::from(specular.layers());
+    let written = vectors.map_or(16, |_| specular.texel_bytes() * layers);
     builder.pass(
         shaders::SpecularExit {
-            order: glossy.order as i32,
-            grey: glossy.grey,
-            lobe_is_map: lobes.map.is_some(),
+            order: specular.order as i32,
+            grey: specular.grey,
+            lobe_is_map: phong.map.is_some(),
             is_direct,
-            throws,
+            throws: is_bounced,
             vectors: has_vectors,
             halves: vectors.is_some_and(|v| v.halves),
         },
-        &leaving.name,
+        &outgoing.name,
         why,
         [cols.div_ceil(8), rows.div_ceil(8), 1],
         &SpecularExitPush {
             cols: cols as i32,
             rows: rows as i32,
-            begins: u32::from(leaving.bounce == 1),
+            begins: u32::from(outgoing.bounce == 1),
             first_texel: vectors.map_or(0, |v| v.first_texel as i32),
             fours: vectors.map_or(0, |v| v.fours as i32),
-            exponent: lobes.constant.exponent,
-            scale: lobes.constant.scale,
+            exponent: phong.constant.exponent,
+            scale: phong.constant.scale,
         },
         &bound,
         samples * (3 * 16 + 16 * layers + written),

@@ -1,7 +1,7 @@
 use crate::graph::shaders;
 use crate::graph::shaders::same_layout;
 use crate::graph::{Builder, ResourceId};
-use crate::passes::glossy::Glossy;
+use crate::passes::bounced_specular::BouncedSpecular;
 
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
@@ -12,27 +12,27 @@ struct SpecularVisibilityPush {
 
 same_layout!(SpecularVisibilityPush, specular_visibility_push, cols = COLS, rows = ROWS);
 
-/// What arrives of light from all around, as a series.
+/// Incoming light from all directions, as an SH series.
 pub(crate) fn plan(
     builder: &mut Builder,
     [cols, rows]: [u32; 2],
-    glossy: &Glossy,
+    specular: &BouncedSpecular,
     [visibility, light_matrix]: [ResourceId; 2],
 ) {
     let samples = u64::from(cols) * u64::from(rows);
-    let fours = u64::from((glossy.order * glossy.order).div_ceil(4));
+    let fours = u64::from((specular.order * specular.order).div_ceil(4));
     builder.pass(
-        shaders::SpecularVisibility { order: glossy.order as i32, grey: glossy.grey },
+        shaders::SpecularVisibility { order: specular.order as i32, grey: specular.grey },
         "",
-        "what is seen times the light, to be thrown on",
+        "visibility times the light, for bounces",
         [cols.div_ceil(8), rows.div_ceil(8), 1],
         &SpecularVisibilityPush { cols: cols as i32, rows: rows as i32 },
         &[
             ("visibility", visibility),
             ("light_matrix", light_matrix),
-            ("arriving", glossy.arriving),
+            ("arriving", specular.arriving),
         ],
-        samples * 16 * (fours + u64::from(glossy.layers())),
+        samples * 16 * (fours + u64::from(specular.layers())),
         samples,
     );
 }

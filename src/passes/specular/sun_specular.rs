@@ -1,8 +1,8 @@
 use crate::graph::shaders;
 use crate::graph::shaders::same_layout;
 use crate::graph::{Axis, Builder, ResourceId};
-use crate::passes::Lobes;
-use crate::passes::glossy::Glossy;
+use crate::passes::PhongSource;
+use crate::passes::bounced_specular::BouncedSpecular;
 use crate::scene::{Border, Sun};
 
 #[repr(C)]
@@ -29,14 +29,15 @@ same_layout!(
     lobe = LOBE,
 );
 
-/// A sun in a lobe, by the part of it that diffuse ground sees; `begins` the sum with it.
+/// Specular reflection of a sun, scaled by the visible part that diffuse shading found. `begins`: the sum
+/// begins with it.
 pub(crate) fn plan(
     builder: &mut Builder,
     (axis, border, cell_m): (Axis, Border, [f64; 2]),
     name: &str,
-    (sun, lobes): (&Sun, Lobes),
+    (sun, phong): (&Sun, PhongSource),
     [lane_heights, sun_sum, gloss_sum]: [ResourceId; 3],
-    (begins, thrown): (bool, Option<Glossy>),
+    (begins, outgoing): (bool, Option<BouncedSpecular>),
 ) {
     let [cols, rows] = axis.size();
     let (sin, cos) = sun.azimuth_rad.sin_cos();
@@ -45,19 +46,19 @@ pub(crate) fn plan(
     let [r, g, b] = sun.irradiance;
     let mut bound =
         vec![("lane_heights", lane_heights), ("sun_sum", sun_sum), ("gloss_sum", gloss_sum)];
-    bound.extend(lobes.map.map(|map| ("phong_map", map)));
-    bound.extend(thrown.map(|glossy| ("arriving", glossy.arriving)));
-    let layers = thrown.map_or(0, |glossy| glossy.layers());
+    bound.extend(phong.map.map(|map| ("phong_map", map)));
+    bound.extend(outgoing.map(|specular| ("arriving", specular.arriving)));
+    let layers = outgoing.map_or(0, |specular| specular.layers());
     builder.pass(
         shaders::SunSpecular {
             border: border as u32,
             marches_rows: axis.marches_rows,
-            lobe_is_map: lobes.map.is_some(),
-            order: thrown.map_or(0, |glossy| glossy.order) as i32,
-            grey: thrown.is_some_and(|glossy| glossy.grey),
+            lobe_is_map: phong.map.is_some(),
+            order: outgoing.map_or(0, |specular| specular.order) as i32,
+            grey: outgoing.is_some_and(|specular| specular.grey),
         },
         name,
-        "the lobe towards the sun, times the part of it that is seen",
+        "the Phong lobe towards the sun, times the sun's visible part",
         [axis.steps.div_ceil(8), axis.lanes.div_ceil(4 * 16), 1],
         &SunSpecularPush {
             cols: cols as i32,
@@ -66,7 +67,7 @@ pub(crate) fn plan(
             cell_y_m: cell_m[1] as f32,
             towards: [east, north, up, 0.0],
             colour: [r, g, b, f32::from(u8::from(begins))],
-            lobe: [lobes.constant.exponent, lobes.constant.scale],
+            lobe: [phong.constant.exponent, phong.constant.scale],
         },
         &bound,
         axis.samples() * (4 + 4 + 2 * 16 * (1 + u64::from(layers))),

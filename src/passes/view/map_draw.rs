@@ -3,31 +3,31 @@ use crate::graph::shaders::same_layout;
 use crate::graph::{Builder, ResourceId};
 use crate::{Error, Result};
 
-/// What part of a lit field a screen shows from above, north up, and how large.
+/// The part of a lit field that a screen shows from above, north up, and its scale.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Map {
     /// Columns and rows of the field.
     pub field: [u32; 2],
     /// Whether the radiance has four channels; else it has one.
     pub has_colour: bool,
-    /// Whether there is an image of samples without data, which are not shown.
+    /// Whether there is a mask of voids, which are not shown.
     pub has_voids: bool,
     /// Columns and rows of the picture, pixels.
     pub size: [u32; 2],
-    /// Column and row of the field at the picture's upper left corner; 0, 0 is the field's. Within ±1e6.
+    /// Column and row of the field at the picture's upper left corner, within ±1e6; 0, 0 is the field's.
     pub corner: [f32; 2],
-    /// Side of a pixel, [1e-3..1e3] samples: a pixel shows the sample that its middle is in.
+    /// Texels per pixel, [1e-3..1e3]: a pixel shows the texel at its middle.
     pub samples_per_pixel: f32,
-    /// Whether blue comes first in a pixel's four bytes, not red.
+    /// Whether the order of a pixel's four bytes is B, G, R, A instead of R, G, B, A.
     pub swaps: bool,
 }
 
 impl Map {
-    /// The four bytes of pixels where there is no field.
+    /// The four bytes of pixels beyond the field.
     pub const BEYOND: [u8; 4] = [0x20, 0x20, 0x20, 0xff];
 
     /// # Errors
-    /// What is out of range, by name.
+    /// The value out of range, by name.
     pub fn check(&self) -> Result<()> {
         if !self.corner.iter().all(|v| v.abs() <= 1e6) {
             let found = format!("{},{}", self.corner[0], self.corner[1]);
@@ -36,7 +36,7 @@ impl Map {
         if !(1e-3..=1e3).contains(&self.samples_per_pixel) {
             let found = self.samples_per_pixel.to_string();
             return Err(Error::setting(
-                "map: samples a pixel",
+                "map: samples per pixel",
                 found,
                 "a number from 0.001 to 1000",
             ));
@@ -67,14 +67,14 @@ same_layout!(
     beyond = BEYOND,
 );
 
-/// A pixel a sample, or fewer or more.
+/// One texel per pixel, or fewer or more.
 pub(crate) fn plan(builder: &mut Builder, map: &Map, bound: &[(&str, ResourceId)]) {
     let [width, height] = map.size;
     let pixels = u64::from(width) * u64::from(height);
     builder.pass(
         shaders::MapDraw { grey: !map.has_colour, has_voids: map.has_voids },
         "",
-        "radiance as a screen shows it",
+        "radiance, tone-mapped for a screen",
         [width.div_ceil(8), height.div_ceil(8), 1],
         &MapDrawPush {
             size: map.size.map(|n| n as i32),

@@ -1,6 +1,6 @@
 use crate::graph::shaders::same_layout;
 
-/// How radiance becomes a picture.
+/// Tone curve: radiance to picture values.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub(crate) struct PictureTonePush {

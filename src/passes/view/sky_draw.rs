@@ -1,17 +1,17 @@
 use crate::graph::shaders::same_layout;
 
-/// What is behind a field.
+/// The background behind a field.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub(crate) struct SkyDrawPush {
     pub forward: [f32; 4],
-    /// To the picture's right edge.
+    /// Step to the picture's right edge.
     pub right: [f32; 4],
-    /// To its lower edge.
+    /// Step to its lower edge.
     pub down: [f32; 4],
-    /// Radiance of directions above horizontal, without the environment's.
+    /// Radiance of directions above horizontal, where the environment is not drawn.
     pub above: [f32; 4],
-    /// Of others.
+    /// Radiance of other directions.
     pub below: [f32; 4],
     pub rotation_turns: f32,
 }

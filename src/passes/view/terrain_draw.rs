@@ -1,10 +1,10 @@
 use crate::graph::shaders::same_layout;
 
-/// What the mesh of a field is told.
+/// Push constants of the field's mesh.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub(crate) struct TerrainDrawPush {
-    /// Columns of the matrix from columns, rows and metres away from the origin to clip coordinates.
+    /// Columns of the matrix from (columns, rows, metres) relative to the origin to clip coordinates.
     pub clip_per_col: [f32; 4],
     pub clip_per_row: [f32; 4],
     pub clip_per_metre: [f32; 4],
@@ -34,7 +34,7 @@ same_layout!(
     tiles_across = TILES_ACROSS,
 );
 
-/// Cells a side of a tile of the mesh, which one instance draws.
+/// Cells per side of a tile of the mesh; one instance draws a tile.
 pub(crate) const TILE: u32 = 16;
 
 /// Vertices of a tile's triangles, row after row of cells: (r, c), (r, c+1), (r+1, c+1) and (r, c), (r+1, c+1),

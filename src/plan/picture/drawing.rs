@@ -146,12 +146,12 @@ impl Drawing<'_> {
                 passes::sh_wedges::plan(&mut self.builder, field, h.sh(), &table, &images);
             }
             let field = (batch.axis, border, cell_m);
-            let lobes = self.lobes();
-            let lit = [(&h.diffuse, env_sum, None), (&h.specular, self.images.specular_sum, lobes)];
-            for (seen, sum, lobes) in lit {
+            let phong = self.phong();
+            let lit = [(&h.diffuse, env_sum, None), (&h.specular, self.images.specular_sum, phong)];
+            for (seen, sum, phong) in lit {
                 if let (Some(seen), Some(sum)) = (seen, sum) {
                     let ids = [lane_heights, h.visibility, seen.light_matrix, sum];
-                    passes::sh_shade::plan(&mut self.builder, field, &seen.sh, ids, h.nodes, lobes);
+                    passes::sh_shade::plan(&mut self.builder, field, &seen.sh, ids, h.nodes, phong);
                 }
             }
             self.specular_is_begun = h.specular.is_some();
@@ -214,7 +214,7 @@ impl Drawing<'_> {
             blocks.record(&mut self.builder, field, heights, None);
         }
         let names: Vec<String> =
-            self.active.sphere_lights.shining.iter().map(|(i, _)| light_name(*i)).collect();
+            self.active.sphere_lights.active.iter().map(|(i, _)| light_name(*i)).collect();
         for (index, name) in names.iter().enumerate() {
             let layer = self.images.sphere_layers[index];
             let Some(blocks) = &self.blocks else { return };

@@ -68,7 +68,7 @@ impl Images {
         let sky_layer = layer(active.sky.is_some(), "sky");
         let env_layer = layer(environment.is_some(), "env");
         let aimed_layers = active.aimed().map(|light| layer(true, &light.name)).collect();
-        let spheres = &active.sphere_lights.shining;
+        let spheres = &active.sphere_lights.active;
         let sphere_layers = spheres.iter().map(|(i, _)| layer(true, &light_name(*i))).collect();
         let has_specular = active.specular.is_some();
         let specular_layer = layer(has_specular, "glossy");

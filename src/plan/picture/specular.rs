@@ -4,9 +4,9 @@ use super::super::active_lights::ActiveLights;
 use super::drawing::Drawing;
 use crate::graph::ResourceId;
 use crate::passes::batch::Batch;
+use crate::passes::bounced_specular::{BouncedSpecular, ExitLight};
 use crate::passes::bounces::{Bouncing, bounce_name};
-use crate::passes::glossy::{BouncedLight, Glossy};
-use crate::passes::{self, Lobes, light_resolve, specular_exit};
+use crate::passes::{self, PhongSource, light_resolve, specular_exit};
 use crate::scene::{Basis, BounceEngine, PhongSpecular, Quality, Receiver, Specular, Sun};
 use crate::{Error, Result};
 
@@ -27,7 +27,7 @@ pub(super) fn quality(
     if !active.keys.is_empty() {
         return refuse("specular under a key light", alone);
     }
-    if !active.sphere_lights.shining.is_empty() {
+    if !active.sphere_lights.active.is_empty() {
         return refuse("specular under a sphere light", alone);
     }
     let quality = bounced(*quality, notes)?;
@@ -92,7 +92,7 @@ impl Drawing<'_> {
 
     /// Specular of a sun, from its diffuse irradiance.
     pub(super) fn sun_specular(&mut self, name: &str, sun: &Sun, batch: &Batch, sum: ResourceId) {
-        let Some((specular, lobes)) = self.images.specular_sum.zip(self.lobes()) else { return };
+        let Some((specular, phong)) = self.images.specular_sum.zip(self.phong()) else { return };
         let (border, cell_m) = (self.border(), self.scene.field.cell_m());
         let Some(sweeping) = &self.sweeping else { return };
         let ids = [sweeping.lane_heights(batch), sum, specular];
@@ -103,7 +103,7 @@ impl Drawing<'_> {
             &mut self.builder,
             field,
             name,
-            (sun, lobes),
+            (sun, phong),
             ids,
             (begins, bounced),
         );
@@ -111,24 +111,24 @@ impl Drawing<'_> {
 
     /// Light that arrives from sky and environment, if specular bounces keep directions.
     pub(super) fn specular_around(&mut self) {
-        let Some((glossy, h)) = self.bounced_by_direction().zip(self.harmonics.as_ref()) else {
+        let Some((specular, h)) = self.bounced_by_direction().zip(self.harmonics.as_ref()) else {
             return;
         };
         let Some(seen) = &h.specular else { return };
         let size = [self.scene.field.cols() as u32, self.scene.field.rows() as u32];
         let ids = [h.visibility, seen.light_matrix];
-        passes::specular_visibility::plan(&mut self.builder, size, &glossy, ids);
+        passes::specular_visibility::plan(&mut self.builder, size, &specular, ids);
     }
 
     /// The specular bounces, if stored as series.
-    fn bounced_by_direction(&self) -> Option<Glossy> {
-        let glossy = self.bouncing.as_ref().and_then(|bouncing| bouncing.glossy);
-        glossy.filter(|glossy| matches!(glossy.outgoing, BouncedLight::Vectors(_)))
+    fn bounced_by_direction(&self) -> Option<BouncedSpecular> {
+        let specular = self.bouncing.as_ref().and_then(|bouncing| bouncing.specular);
+        specular.filter(|specular| matches!(specular.outgoing, ExitLight::Vectors(_)))
     }
 
     /// Specular exit radiance of bounce `k`; 0 is direct light.
     pub(super) fn record_specular_exit(&mut self, bouncing: &Bouncing, k: usize) {
-        let (Some(glossy), Some(lobes)) = (bouncing.glossy, self.lobes()) else { return };
+        let (Some(specular), Some(phong)) = (bouncing.specular, self.phong()) else { return };
         let (Some(blocks), Some(gloss_direct)) = (&self.blocks, self.images.specular_sum) else {
             return;
         };
@@ -140,22 +140,22 @@ impl Drawing<'_> {
             gloss_direct,
         };
         let ground = blocks.images.ground;
-        specular_exit::plan(&mut self.builder, size, (&glossy, lobes), ground, &exit);
+        specular_exit::plan(&mut self.builder, size, (&specular, phong), ground, &exit);
     }
 
     /// Adds the specular of all bounces.
     pub(super) fn bounced_specular(&mut self, bouncing: &Bouncing) {
-        let Some(glossy) = bouncing.glossy else { return };
-        self.resolve_specular("bounces glossy", glossy.bounced, glossy.layer);
+        let Some(specular) = bouncing.specular else { return };
+        self.resolve_specular("bounces glossy", specular.bounced, specular.layer);
     }
 
     /// The specular as passes take it.
-    pub(super) fn lobes(&self) -> Option<Lobes> {
+    pub(super) fn phong(&self) -> Option<PhongSource> {
         let constant = match self.active.specular? {
             Specular::Constant(specular) => *specular,
             Specular::Map(_) => PhongSpecular { exponent: 0.0, scale: 0.0 },
         };
-        Some(Lobes { constant, map: self.images.specular_map })
+        Some(PhongSource { constant, map: self.images.specular_map })
     }
 
     /// Adds the direct specular.

@@ -3,21 +3,21 @@ use std::f64::consts::FRAC_PI_2;
 use crate::passes::azimuths::{Azimuth, STEEPEST, grid_direction, swept, with_wedge};
 use crate::scene::KeyLight;
 
-/// What part of the sky a light covers.
+/// The part of the sky that a light covers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shape {
-    /// A sun's disc: a chord in each azimuth, of which the horizon leaves a part free.
+    /// A sun's disc: a chord in each azimuth, partly above the horizon.
     Disc,
-    /// A sun lit as a point: one azimuth, lit or not.
+    /// A point sun: one azimuth, lit or not.
     Point,
-    /// A key light: the same elevations over each wedge, of which the horizon leaves a part free.
+    /// A key light: the same elevations over each wedge, partly above the horizon.
     Patch,
 }
 
-/// The azimuths that a key light covers, in the middles of `count` equal wedges across it.
+/// The azimuths of a key light: the middles of `count` equal wedges across it.
 ///
-/// Between its elevations each wedge is lit evenly: what free ground above its own plane receives is
-/// exact, whatever their number.
+/// Each wedge is lit evenly between the two elevations. The irradiance of an unoccluded surface is exact for
+/// any number of wedges.
 pub fn across_key(key: &KeyLight, count: u32, cell_m: [f64; 2]) -> Vec<Azimuth> {
     let [low_slope, high_slope] = key.elevations_rad.map(slope);
     let width = key.width_rad / f64::from(count);
@@ -33,7 +33,7 @@ pub fn across_key(key: &KeyLight, count: u32, cell_m: [f64; 2]) -> Vec<Azimuth> 
         .collect()
 }
 
-/// The slope of an elevation, in f32 safe to square.
+/// The slope of an elevation; safe to square in f32.
 fn slope(elevation_rad: f64) -> f32 {
     let steepest = f64::from(STEEPEST);
     match elevation_rad {
@@ -49,8 +49,8 @@ mod tests {
     use ridgelight_cpu::shared::gather::elevation_moments;
     use std::f64::consts::TAU;
 
-    /// Level ground receives L width (sin²high - sin²low) / 2 from any number of slices: wedges are f32,
-    /// and so are the slopes, whose elevations they move by half a unit of 2^-24 of their sine and cosine.
+    /// Level ground receives L width (sin²high - sin²low) / 2 from any number of slices. Wedges and slopes are
+    /// f32: an elevation moves by half a unit of 2^-24 of its sine and cosine.
     #[test]
     fn slices_make_up_the_light() {
         for (low, high, width) in [(0.0, 90.0, 360.0), (10.0, 12.0, 0.5), (-90.0, 40.0, 90.0)] {
@@ -80,7 +80,7 @@ mod tests {
         }
     }
 
-    /// A circle of 12 slices that begins half a slice before east has the azimuths of 12 even ones.
+    /// A full circle of 12 slices that begins half a slice before east has the azimuths of 12 even ones.
     #[test]
     fn a_whole_circle_has_the_skys_azimuths() {
         let key = KeyLight {

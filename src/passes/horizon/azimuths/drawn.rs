@@ -4,19 +4,20 @@ use crate::basis::light::slice;
 use crate::passes::azimuths::{Azimuth, grid_direction, swept, with_wedge};
 use crate::scene::{Border, Environment};
 
-/// Share of the azimuths that are spread evenly: what is dark now may be bright in the next frame.
+/// Share of the azimuths that are spread evenly, as a dark part of the environment may be bright in the next
+/// frame.
 const EVEN: f64 = 0.25;
 
-/// The others are as dense as this power of the light.
+/// The density of the other azimuths is the light to this power.
 ///
-/// A wedge of width w in light of density l errs by about l w^(1+a), as horizons turn by w^a within it; over
-/// independent wedges the sum of squares is least where their density is l^(1/(1+a)). Horizons of level
-/// ground would have a = 1. With 64 azimuths on nine fields and lights 4/5 is at most 1.5 times as far off as
-/// the best of 1/2, 2/3, 4/5 and 1, and 1/2 up to 6 times.
+/// A wedge of width w in light of density l has an error of about l w^(1+a), as horizons turn by w^a within it.
+/// Over independent wedges the sum of squares is least where their density is l^(1/(1+a)). Horizons of level
+/// ground would have a = 1. With 64 azimuths on nine fields and lights, the error at 4/5 is at most 1.5 times
+/// that of the best of 1/2, 2/3, 4/5 and 1; at 1/2 up to 6 times.
 const POWER: f64 = 0.8;
 
-/// `count` azimuths of wedges that are narrow where an environment is bright, each swept towards the middle
-/// of its wedge's light. A uniform sky beside it, of so much radiance, is bright all around.
+/// `count` azimuths with narrow wedges where an environment is bright, each swept towards the middle of its
+/// wedge's light. `sky` is the radiance of a uniform sky that is added.
 pub fn towards_light(
     environment: &Environment,
     sky: f64,
@@ -24,24 +25,24 @@ pub fn towards_light(
     count: u32,
     cell_m: [f64; 2],
 ) -> Vec<Azimuth> {
-    let columns = given(environment, sky, border);
+    let columns = column_light(environment, sky, border);
     let width = columns.len() as f64;
     let sum: f64 = columns.iter().map(|l| l.powf(POWER)).sum();
     let density = |l: f64| EVEN / width + (1.0 - EVEN) * share(l.powf(POWER), sum, width);
-    // Up to each column's beginning.
+    // Up to the beginning of each column.
     let mut sums = vec![0.0];
     for l in &columns {
         sums.push(sums[sums.len() - 1] + density(*l));
     }
     let whole = sums[columns.len()];
-    let place = |chance: f64| {
-        let turns = (chance / whole).floor();
-        let rest = chance - turns * whole;
+    let place = |position: f64| {
+        let revolutions = (position / whole).floor();
+        let rest = position - revolutions * whole;
         let column = sums.partition_point(|s| *s <= rest).clamp(1, columns.len()) - 1;
         let part = (rest - sums[column]) / (sums[column + 1] - sums[column]);
-        turns * width + column as f64 + part.clamp(0.0, 1.0)
+        revolutions * width + column as f64 + part.clamp(0.0, 1.0)
     };
-    // Columns run clockwise from west; where all are alike the first azimuth is east.
+    // Columns run clockwise from west. Where all are equal the first azimuth is east.
     let west = PI + environment.rotation_rad();
     let east = (west / TAU * width).rem_euclid(width);
     let column = (east as usize).min(columns.len() - 1);
@@ -58,8 +59,8 @@ pub fn towards_light(
         .collect()
 }
 
-/// What each column gives to level ground and to a wall that faces it, mean over channels.
-fn given(environment: &Environment, sky: f64, border: Border) -> Vec<f64> {
+/// Irradiance from each column on level ground plus on a wall that faces it, mean over channels.
+fn column_light(environment: &Environment, sky: f64, border: Border) -> Vec<f64> {
     let (width, height) = (environment.width(), environment.height());
     let elevation = |row: usize| FRAC_PI_2 - PI * row as f64 / height as f64;
     let mut columns = vec![0.0; width];
@@ -73,12 +74,12 @@ fn given(environment: &Environment, sky: f64, border: Border) -> Vec<f64> {
     columns
 }
 
-/// Of a sum; of nothing all alike.
+/// Divided by the sum; equal parts where the sum is 0.
 fn share(part: f64, sum: f64, count: f64) -> f64 {
     if sum > 0.0 { part / sum } else { 1.0 / count }
 }
 
-/// The middle of the light between two places, in columns; of nothing of the places.
+/// The middle of the light between two places, in columns; the middle of the places where it is dark.
 fn middle(columns: &[f64], [begin, end]: [f64; 2]) -> f64 {
     let (mut sum, mut moment) = (0.0, 0.0);
     for x in begin.floor() as i64..end.ceil() as i64 {
@@ -116,11 +117,11 @@ mod tests {
         }
     }
 
-    /// One column of 16 gives 32 times what each other does, 16 by the power of 4/5: 1/4 · 1/16 +
-    /// 3/4 · 16/31 of all azimuths look at it. The wedges make a circle, and the one whose
-    /// middle is not its light's looks towards that.
+    /// One column of 16 gives 32 times the light of each other, 16 by the power of 4/5: 1/4 · 1/16 + 3/4 ·
+    /// 16/31 of all azimuths point to it. The wedges fill the circle. A wedge whose middle is not its light's
+    /// points to the light.
     #[test]
-    fn bright_columns_are_looked_at_often() {
+    fn bright_columns_get_most_azimuths() {
         let mut columns = [1.0; 16];
         columns[3] = 32.0;
         let env = environment(&columns);
@@ -141,7 +142,7 @@ mod tests {
         let across = across.expect("a wedge that ends beyond the column");
         let phi = f64::from(across.sin_phi).atan2(f64::from(across.cos_phi));
         assert!((phi - f64::from(across.centre_rad)).rem_euclid(TAU) > PI, "{across:?}");
-        // Under a sky that is far brighter all are even.
+        // With a far brighter sky all are even.
         let under = towards_light(&env, 1e9, Border::Plane, 64, CELL);
         assert!(under.iter().all(|a| (f64::from(a.wedge_rad) / TAU * 64.0 - 1.0).abs() < 1e-5));
     }

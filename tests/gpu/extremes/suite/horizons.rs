@@ -337,6 +337,6 @@ fn long_and_thin(is_north: bool) -> Case {
 
 fn lines_too_long(method: &Method) -> Option<&'static str> {
     method.is_exact().then_some(
-        "`lines exact`: needs 8191 steps a line (a periodic field is marched three times at least), the limit is 4096 steps",
+        "`lines exact`: needs 8191 steps per line (a periodic field is marched three times at least), the limit is 4096 steps",
     )
 }

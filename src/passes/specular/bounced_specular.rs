@@ -1,8 +1,9 @@
-//! Light that lobes throw from surface to surface (Nowrouzezahrai & Snyder 2009, §5.3 and §7).
+//! Specular reflection of indirect light (Nowrouzezahrai & Snyder 2009, §5.3 and §7).
 //!
-//! At every sample light arrives as a series of spherical harmonics: first direct light, then of each bounce what
-//! `specular_gather` finds. `specular_exit` makes of it what leaves, diffuse light beside it: a series again, whose pyramid
-//! is looked at in the direction towards each sample that sees it, or one number, the radiance as seen from above.
+//! Light arrives at every texel as an SH series: first direct light, then for each bounce the light that
+//! `specular_gather` finds. `specular_exit` turns it into exit radiance, with diffuse light added. That is an
+//! SH series again, whose pyramid is read in the direction to each texel that receives it; or one number, the
+//! radiance towards the zenith.
 
 use crate::basis::harmonics::{evaluate, product_rule};
 use crate::graph::{Builder, Format, Owner, ResourceId};
@@ -10,47 +11,47 @@ use crate::passes::pyramid::Pyramid;
 use crate::passes::sh_layout::by_fours;
 use crate::scene::{BounceSpecular, Quality};
 
-/// Series of what arrives, and what is outgoing on.
+/// SH series of incoming light and of exit radiance.
 #[derive(Clone, Copy)]
-pub(crate) struct Glossy {
-    /// Of the series.
+pub(crate) struct BouncedSpecular {
+    /// Order of the series.
     pub order: u32,
-    /// Radiance of one channel.
+    /// Whether radiance has one channel.
     pub grey: bool,
-    /// Four coefficients a layer, channel after channel.
+    /// Four coefficients per layer, channel after channel.
     pub arriving: ResourceId,
-    /// What the lobes reflect upwards of all bounces.
+    /// Specular reflection of all bounces towards the zenith.
     pub bounced: ResourceId,
     pub layer: Option<ResourceId>,
-    pub outgoing: BouncedLight,
+    pub outgoing: ExitLight,
 }
 
-/// What leaves a sample.
+/// Exit radiance.
 #[derive(Clone, Copy)]
-pub(crate) enum BouncedLight {
+pub(crate) enum ExitLight {
     Vectors(Vectors),
-    /// Exit radiance as seen from above.
-    Seen(ResourceId),
+    /// Exit radiance towards the zenith.
+    Upward(ResourceId),
 }
 
-/// Exit radiance as series.
+/// Exit radiance as SH series.
 #[derive(Clone, Copy)]
 pub(crate) struct Vectors {
-    /// As those that arrive.
+    /// Laid out as the series of incoming light.
     pub exit: ResourceId,
-    /// All levels beside, and their table.
+    /// All levels above the field's own resolution, and their table.
     pub levels: Option<[ResourceId; 2]>,
-    /// f16.
+    /// Whether they are f16.
     pub halves: bool,
-    /// Directions that series are turned by.
+    /// Directions for the rotation of series.
     pub constants: ResourceId,
     pub first_texel: usize,
-    /// Of four directions each.
+    /// Groups of four directions.
     pub fours: usize,
 }
 
-impl Glossy {
-    /// Images for a field of `size`; `shade` are the levels that exit radiance has.
+impl BouncedSpecular {
+    /// Images for a field of `size`; `shade` are the levels of exit radiance.
     pub fn make(
         builder: &mut Builder,
         (size, shade): ([u32; 2], &Pyramid),
@@ -72,7 +73,7 @@ impl Glossy {
         let bounced = image("gloss_bounced", Owner::Internal, Format::Rgba32Float, flat, false);
         let layer = layers.then(|| image("glossy", Owner::Output, colour, flat, false));
         let outgoing = if quality.bounces.specular == BounceSpecular::Scalar {
-            BouncedLight::Seen(image("exit_seen", Owner::Internal, colour, flat, false))
+            ExitLight::Upward(image("exit_seen", Owner::Internal, colour, flat, false))
         } else {
             let halves = quality.bounces.specular == BounceSpecular::VectorF16;
             notes.push(memory_note(size, shade, (order, count), halves));
@@ -91,30 +92,30 @@ impl Glossy {
             let texels = turning(order as usize);
             let fours = product_rule(order as usize).len().div_ceil(4);
             let (constants, first_texel) = builder.constants(&texels);
-            BouncedLight::Vectors(Vectors { exit, levels, halves, constants, first_texel, fours })
+            ExitLight::Vectors(Vectors { exit, levels, halves, constants, first_texel, fours })
         };
         Self { order, grey, arriving, bounced, layer, outgoing }
     }
 
-    /// Layers of four coefficients of all channels.
+    /// Layers of four coefficients, of all channels.
     pub fn layers(&self) -> u32 {
         layers_of(self.order, self.grey)
     }
 
-    /// Of the series that leave.
+    /// Bytes per texel of the series of exit radiance.
     pub fn texel_bytes(&self) -> u64 {
         match self.outgoing {
-            BouncedLight::Vectors(Vectors { halves: true, .. }) => 8,
+            ExitLight::Vectors(Vectors { halves: true, .. }) => 8,
             _ => 16,
         }
     }
 
     /// As the command line spells it.
-    pub fn gloss(&self) -> BounceSpecular {
+    pub fn mode(&self) -> BounceSpecular {
         match self.outgoing {
-            BouncedLight::Seen(_) => BounceSpecular::Scalar,
-            BouncedLight::Vectors(Vectors { halves: true, .. }) => BounceSpecular::VectorF16,
-            BouncedLight::Vectors(_) => BounceSpecular::Vector,
+            ExitLight::Upward(_) => BounceSpecular::Scalar,
+            ExitLight::Vectors(Vectors { halves: true, .. }) => BounceSpecular::VectorF16,
+            ExitLight::Vectors(_) => BounceSpecular::Vector,
         }
     }
 }
@@ -123,7 +124,7 @@ fn layers_of(order: u32, grey: bool) -> u32 {
     (order * order).div_ceil(4) * if grey { 1 } else { 3 }
 }
 
-/// What the pyramid of vectors takes, as it is stored and as it could be.
+/// Memory of the pyramid of series, as stored and in the other precision.
 fn memory_note(
     [cols, rows]: [u32; 2],
     shade: &Pyramid,
@@ -141,7 +142,8 @@ fn memory_note(
     )
 }
 
-/// Of four directions each their x, y and z, then each one's Y_lm times its weight. Directions of no weight fill the last.
+/// For each four directions: their x, y and z, then the Y_lm of each times its weight. Directions of weight 0
+/// fill the last group.
 fn turning(order: usize) -> Vec<f32> {
     let mut rule = product_rule(order);
     rule.resize(rule.len().next_multiple_of(4), (glam::DVec3::Z, 0.0));
