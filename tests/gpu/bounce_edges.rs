@@ -18,15 +18,15 @@ const LOW: Sun =
 /// So many bounces, none dropped; one level an octave, whose texels lie on the field's samples.
 fn quality(engine: BounceEngine, count: u32, azimuths: u32) -> Quality {
     let (level_step, level_offset) = (1, 1);
-    let gloss = BounceSpecular::Vector;
+    let specular = BounceSpecular::Vector;
     let bounces =
-        Bounces { count, engine, azimuths, cutoff: 0.0, level_step, level_offset, specular: gloss };
+        Bounces { count, engine, azimuths, cutoff: 0.0, level_step, level_offset, specular };
     let levels = Levels::Pyramid;
     Quality { azimuths, bounces, levels, level_step, level_offset, ..Quality::default() }
 }
 
 /// First channel of the layer of each bounce.
-fn thrown(gpu: &mut Device, scene: &Scene, quality: &Quality) -> Vec<Vec<f32>> {
+fn bounced(gpu: &mut Device, scene: &Scene, quality: &Quality) -> Vec<Vec<f32>> {
     let wanted = Picture { light_layers: true, ..Picture::default() };
     let plan = plan::picture(scene, quality, &gpu.limits(), wanted).expect("a plan");
     let contents = plan::picture_inputs(scene);
@@ -36,8 +36,9 @@ fn thrown(gpu: &mut Device, scene: &Scene, quality: &Quality) -> Vec<Vec<f32>> {
     layers.map(|p| p.values.iter().step_by(p.channels).copied().collect()).collect()
 }
 
-/// A field that repeats has no edge: rolled by half of it, light and all, what is thrown rolls along, bit by bit but
-/// for what sums round in another order: both within 200 roundings. What stands at one edge throws over the other, where the field ends not.
+/// A periodic field has no edge. Rolled by half its size, with its light, it has the same indirect light, rolled: within
+/// 200 roundings, as sums round in another order. A wall at one edge bounces light across the other edge of a periodic
+/// field only.
 #[test]
 fn what_leaves_a_field_that_repeats_comes_in_again() {
     const SIDE: usize = 16;
@@ -57,8 +58,8 @@ fn what_leaves_a_field_that_repeats_comes_in_again() {
     };
     for engine in ENGINES {
         let quality = quality(engine, 2, 4);
-        let still = thrown(&mut gpu, &scene([0, 0], Border::Periodic), &quality);
-        let rolled = thrown(&mut gpu, &scene([8, 8], Border::Periodic), &quality);
+        let still = bounced(&mut gpu, &scene([0, 0], Border::Periodic), &quality);
+        let rolled = bounced(&mut gpu, &scene([8, 8], Border::Periodic), &quality);
         let brightest = still[0].iter().fold(0.0_f32, |m, v| m.max(*v));
         let bound = f64::from(brightest) * 200.0 * EPSILON;
         for (k, (still, rolled)) in still.iter().zip(&rolled).enumerate() {
@@ -81,12 +82,12 @@ fn what_leaves_a_field_that_repeats_comes_in_again() {
         let bounces = Bounces { level_step, level_offset, ..quality.bounces };
         let quality = Quality { bounces, level_step, level_offset, ..quality };
         let [over, within] = [Border::Periodic, Border::Plane]
-            .map(|border| third(&thrown(&mut gpu, &walled(border), &quality)[0]));
+            .map(|border| third(&bounced(&mut gpu, &walled(border), &quality)[0]));
         assert!(over > 2.0 * within, "{engine:?}: {over} beside {within}");
     }
 }
 
-/// Voids are ground as they were filled: they throw and hide as the same heights without marks. Their base is another,
+/// Voids are ground as they were filled: they bounce light and occlude as the same heights without marks. Their base is another,
 /// so that heights are rounded again, by ε of the relief, 3, at either end: 6 ε of a slope, on either side of at most
 /// 30 stretches.
 #[test]
@@ -106,7 +107,7 @@ fn voids_are_filled_ground() {
     for engine in ENGINES {
         let quality = quality(engine, 2, 6);
         let [with, without] = [&marked, &plain]
-            .map(|f| thrown(&mut gpu, &under_sky(f.clone(), Border::Plane), &quality));
+            .map(|f| bounced(&mut gpu, &under_sky(f.clone(), Border::Plane), &quality));
         for (a, b) in with.iter().flatten().zip(without.iter().flatten()) {
             let off = f64::from((a - b).abs());
             assert!(off <= 360.0 * EPSILON, "{engine:?}: {a} {b}");
@@ -115,7 +116,7 @@ fn voids_are_filled_ground() {
         let level: Vec<f64> =
             (0..SIDE * SIDE).map(|i| if is_void(i) { base - 9.0 } else { filled[i] }).collect();
         let level = HeightField::new(SIDE, SIDE, &level, [1.0; 2], None).unwrap();
-        let other = thrown(&mut gpu, &under_sky(level, Border::Plane), &quality);
+        let other = bounced(&mut gpu, &under_sky(level, Border::Plane), &quality);
         let beside = 6 * SIDE + 6;
         let off = (with[0][beside] - other[0][beside]).abs();
         assert!(off > 0.05 * with[0][beside], "{engine:?}: {off}");
@@ -139,7 +140,7 @@ fn fields_one_sample_wide() {
         for border in [Border::Plane, Border::Open] {
             for [rows, cols] in [[1, LONG], [LONG, 1], [1, 1]] {
                 let line = field(rows, cols, [1.0, 1.0], |r, c| height(r + c));
-                let all = thrown(&mut gpu, &lit(line, border), &quality(engine, 1, 4));
+                let all = bounced(&mut gpu, &lit(line, border), &quality(engine, 1, 4));
                 let most = all[0].iter().fold(0.0_f32, |m, v| m.max(*v));
                 let is_seen = engine == BounceEngine::Sweep && rows * cols > 1;
                 assert_eq!(most > 0.0, is_seen, "{engine:?} {border:?} {rows} × {cols}: {most}");
@@ -147,8 +148,9 @@ fn fields_one_sample_wide() {
         }
         let row = field(1, LONG, [1.0, 1.0], |_, c| height(c));
         let grooves = field(LONG, LONG, [1.0, 1.0], |_, c| height(c));
-        let [row, grooves] = [row, grooves]
-            .map(|f| thrown(&mut gpu, &lit(f, Border::Periodic), &quality(engine, 1, 4)).remove(0));
+        let [row, grooves] = [row, grooves].map(|f| {
+            bounced(&mut gpu, &lit(f, Border::Periodic), &quality(engine, 1, 4)).remove(0)
+        });
         let most = grooves.iter().fold(0.0_f32, |m, v| m.max(*v));
         for (i, (one, many)) in row.iter().zip(&grooves[5 * LONG..]).enumerate() {
             let off = f64::from((one - many).abs());

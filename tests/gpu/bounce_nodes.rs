@@ -81,7 +81,7 @@ fn nodes_are_lit_as_they_are_by_themselves() {
     }
 }
 
-/// Radiances that nodes see are means, and shares at most 1: no sample throws more on than the brightest did, but for what
+/// Radiances that nodes see are means, and shares at most 1: no sample bounces more than the brightest did, but for what
 /// two rules over azimuths in equal parts h differ by in the share, h² or less of all that is seen.
 #[test]
 fn nothing_is_gained_between_nodes() {
@@ -139,9 +139,9 @@ fn interpolated(whole: &[f64], side: u32, nodes: Nodes) -> Vec<f64> {
     (0..side * side).map(at).collect()
 }
 
-/// Radiance by every sample's own share of ground is nearer by a third or more to what every sample finds than light interpolated, and
-/// more nodes are nearer. Casting sets, which take a stretch's light from one sample, move a second bounce by less than its nodes
-/// do.
+/// Radiance by every sample's own share of ground has an error smaller by a third or more than interpolated light, and
+/// more nodes have a smaller one. Visibility caches take the light of a visible interval from one sample: they change a
+/// second bounce by less than its nodes do.
 #[test]
 fn on_terrain_shares_are_better_than_light() {
     let mut gpu = Device::new();
@@ -178,7 +178,7 @@ fn on_terrain_shares_are_better_than_light() {
             let limits = Limits { memory_budget: all - sets, ..gpu.limits() };
             let walked = layers_within(&mut gpu, &scene, &of, &limits);
             let moved = off(&found[2], &walked[2]);
-            println!("casting sets move the second by {:.2} %", 100.0 * moved);
+            println!("visibility caches change the second by {:.2} %", 100.0 * moved);
             assert!(0.0 < moved && moved < second, "{moved} {second}");
         }
     }

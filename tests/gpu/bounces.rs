@@ -1,4 +1,4 @@
-//! Light that the surface throws at itself: against twins, closed forms, the f64 quadrature and what must be.
+//! Indirect light: against the CPU reference, closed forms, the f64 quadrature and conservation of energy.
 
 use std::path::Path;
 
@@ -54,7 +54,7 @@ fn colours(pixels: &Pixels) -> Vec<[f64; 3]> {
     pixels.values.chunks_exact(pixels.channels).map(colour).collect()
 }
 
-/// What has been thrown so often, and not yet: the whole less the last bounces.
+/// The light before the last bounces: the whole less those bounces.
 fn less(whole: &[[f64; 3]], bounces: &[Vec<[f64; 3]>]) -> Vec<[f64; 3]> {
     let at =
         |i: usize| [0, 1, 2].map(|c| whole[i][c] - bounces.iter().map(|b| b[i][c]).sum::<f64>());
@@ -101,15 +101,15 @@ fn scenes(border: Border) -> Vec<(&'static str, Scene)> {
     ]
 }
 
-/// A bounce beside its twin: the largest share that it is off of what it may be.
+/// A bounce beside the CPU reference: the largest ratio of an error to its bound.
 fn beside(
     layer: &[[f64; 3]],
     scene: &Scene,
-    twin: impl Fn(usize) -> (Vec<Along>, BounceError),
+    reference: impl Fn(usize) -> (Vec<Along>, BounceError),
 ) -> f64 {
     let mut largest = 0.0_f64;
     for (i, got) in layer.iter().enumerate() {
-        let (all, error) = twin(i);
+        let (all, error) = reference(i);
         let (want, albedo) = (radiance(&all), albedo_of(scene, i));
         for c in 0..3 {
             let (want, off) = (albedo[c] * want[c], albedo[c] * error.light[c]);
@@ -122,9 +122,9 @@ fn beside(
     largest
 }
 
-/// Each bounce is the twin's of what the device made of the one before.
+/// Each bounce is what the CPU reference makes of the device's bounce before.
 #[test]
-fn every_stretch_is_the_twins() {
+fn brute_force_matches_the_cpu_reference() {
     let mut gpu = Device::new();
     for (border, azimuths) in [(Border::Plane, 8), (Border::Open, 4), (Border::Periodic, 4)] {
         // Each is a pipeline of its own, and rays over repetitions go on for long.
@@ -157,9 +157,9 @@ fn every_stretch_is_the_twins() {
     }
 }
 
-/// The same by pyramids, of either storage and receiver; their levels are the twins', too.
+/// The same by pyramids, of either storage and receiver; their levels are the CPU reference's, too.
 #[test]
-fn pyramids_are_the_twins() {
+fn pyramids_match_the_cpu_reference() {
     let mut gpu = Device::new();
     for (border, levels, receiver, azimuths) in [
         (Border::Plane, Levels::Stack, Receiver::Plane, 8),
@@ -205,7 +205,7 @@ fn pyramids_are_the_twins() {
                 let brightest = brightest(&from);
                 let shade_texels = &shade_levels(&from, &shade);
                 let (shade, pyramid, exit) = (&shade, &pyramid, &from[..]);
-                let twin = BounceGather {
+                let reference = BounceGather {
                     field,
                     heights,
                     pyramid,
@@ -227,7 +227,7 @@ fn pyramids_are_the_twins() {
                 };
                 let ratio = beside(layer, &scene, |i| {
                     let at = [i / field.cols(), i % field.cols()];
-                    let all = twin.casts_along(at);
+                    let all = reference.casts_along(at);
                     let normal = Land::normal_at(field, border, at);
                     let slices = Slices { normal, wedge: 1.0, brightest };
                     let error = BounceError::of(&all, |_, cast| gathered.error(cast), &slices);
@@ -242,8 +242,8 @@ fn pyramids_are_the_twins() {
 
 /// White ground under a white sky: each bounce adds, and the sum comes up to 1 from below.
 ///
-/// Sky and what is thrown are two rules over azimuths: where a sample's shares s of sky and t of ground, by the
-/// twin, make 1 + d, light that is nowhere more than 1 + D stays so if s + t (1 + D) ≤ 1 + D: D = d / (1 - t),
+/// Sky and indirect light are two rules over azimuths: where a sample's shares s of sky and t of ground, by the
+/// CPU reference, make 1 + d, light that is nowhere more than 1 + D stays so if s + t (1 + D) ≤ 1 + D: D = d / (1 - t),
 /// and likewise from below. f32 adds 16 roundings a bounce. What is missing after k bounces is at most the
 /// largest tᵏ.
 #[test]
@@ -317,12 +317,12 @@ fn bounces_come_to_the_quadratures() {
     let truth = scene_of(halved(&steep));
     let fineness = Fineness { azimuths: 32, divisions: 2, strips: 8 };
     let pictures = indirect::light(&truth, 3, fineness).unwrap();
-    let thrown: Vec<[f64; 3]> =
+    let bounced: Vec<[f64; 3]> =
         (0..23 * 23).map(|i| [0, 1, 2].map(|c| pictures[3][i][c] - pictures[0][i][c])).collect();
     let at = |every: usize, of: &[[f64; 3]], side: usize| -> Vec<[f64; 3]> {
         (0..144).map(|i| of[i / 12 * every * side + i % 12 * every]).collect()
     };
-    let want = at(2, &thrown, 23);
+    let want = at(2, &bounced, 23);
     let errors: Vec<f64> = [(steep.clone(), 1, 12), (halved(&steep), 2, 23)]
         .into_iter()
         .map(|(field, every, side)| {
@@ -352,12 +352,12 @@ fn rms(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
     (squares / a.len() as f64).sqrt()
 }
 
-/// A piece of the bundled mountain, three times as steep, against light paths with as many bounces: apart by
-/// chance, twice its standard error, and by what lies between samples. That falls with the cells by an order of 0.7
+/// A piece of the bundled mountain, three times as steep, against the path-traced reference with as many bounces. The two differ
+/// by twice the standard error, and by what lies between grid points. That falls with the cells by an order of 0.7
 /// or more (see the quadratures), so that it is 1 / (1 - 2^-0.7) = 2.6 times what half the cells change.
 /// Light without bounces is farther.
 #[test]
-fn a_mountain_is_lit_as_by_light_paths() {
+fn a_mountain_matches_the_path_traced_reference() {
     const SIDE: usize = 16;
     let mut gpu = Device::new();
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/mt_washington_256.png");
@@ -376,19 +376,19 @@ fn a_mountain_is_lit_as_by_light_paths() {
         scene
     };
     let scene = scene_of(land.clone());
-    let thrown = |all: &[Vec<[f64; 3]>]| -> Vec<[f64; 3]> {
+    let bounced = |all: &[Vec<[f64; 3]>]| -> Vec<[f64; 3]> {
         let sum = |i: usize| [0, 1, 2].map(|c| all[1..].iter().map(|layer| layer[i][c]).sum());
         (0..all[0].len()).map(sum).collect()
     };
     let ours = drawn(&mut gpu, &scene, &brute(2, 32));
-    let finer = thrown(&drawn(&mut gpu, &scene_of(halved(&land)), &brute(2, 32)));
+    let finer = bounced(&drawn(&mut gpu, &scene_of(halved(&land)), &brute(2, 32)));
     let side = 2 * SIDE - 1;
     let finer: Vec<[f64; 3]> =
         (0..SIDE * SIDE).map(|i| finer[i / SIDE * 2 * side + i % SIDE * 2]).collect();
     let direct = drawn(&mut gpu, &scene, &brute(0, 32)).swap_remove(0);
     let [light, error] = traced(&mut gpu, &scene, 2, 1, 16);
     let chance = rms(&error, &vec![[0.0; 3]; error.len()]);
-    let bound = 2.6 * rms(&thrown(&ours), &finer) + 2.0 * chance;
+    let bound = 2.6 * rms(&bounced(&ours), &finer) + 2.0 * chance;
     let [off, without] = [&ours[0], &direct].map(|of| rms(of, &light));
     println!("{off:.5} off, of {bound:.5}; chance {chance:.5}, without bounces {without:.5}");
     assert!(off <= bound && without > 2.0 * bound, "{off} {bound} {without}");
@@ -425,7 +425,7 @@ fn pyramids_come_to_every_stretch() {
     assert!(error(8, 4, Receiver::CosineLobe) > fine);
 }
 
-/// No sample throws more on than the brightest threw before, however steep and whatever the borders.
+/// No sample bounces more than the brightest did before, whatever the slopes and borders.
 #[test]
 fn pyramids_gain_nothing() {
     let mut gpu = Device::new();
@@ -446,10 +446,10 @@ fn pyramids_gain_nothing() {
     }
 }
 
-/// Voids are filled ground: they throw and hide as the same field without marks, and a field one sample wide
-/// throws nothing.
+/// Voids are filled ground: they bounce light and occlude as the same field without marks. A field one sample wide
+/// has no indirect light.
 #[test]
-fn voids_are_ground_and_lines_throw_nothing() {
+fn voids_are_ground_and_lines_bounce_nothing() {
     let mut gpu = Device::new();
     let height = |i: usize| ((i * 7) % 5) as f64;
     let mut heights: Vec<f64> = (0..63).map(height).collect();
@@ -470,7 +470,7 @@ fn voids_are_ground_and_lines_throw_nothing() {
         let line = field(rows, cols, [1.0, 1.0], |r, c| height(r + c));
         let scene = under_sky(line, border);
         let all = drawn(&mut gpu, &scene, &brute(1, 8));
-        let thrown = all[1].iter().fold(0.0_f64, |m, v| m.max(v[0]));
-        assert_eq!(thrown == 0.0, border != Border::Periodic, "{border:?} {thrown}");
+        let bounced = all[1].iter().fold(0.0_f64, |m, v| m.max(v[0]));
+        assert_eq!(bounced == 0.0, border != Border::Periodic, "{border:?} {bounced}");
     }
 }

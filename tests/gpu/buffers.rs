@@ -257,7 +257,7 @@ fn edits_and_cameras_go_on_from_what_was_copied() {
     let host = gpu.host().clone();
     let target = Target::new(&host);
     let mut looking = ViewRenderer::new(&host, &view, FORMAT, 1).expect("a renderer");
-    // Copied anew, seen, and copied again: each waits for the other.
+    // Copied, viewed, and copied again: each waits for the other.
     lent.contents().copy_from_slice(&bytes(&raised));
     gpu.run(|commands| {
         renderer.record(commands, 0, &given, &outputs)?;

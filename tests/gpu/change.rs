@@ -86,7 +86,7 @@ fn passes_after_a_change_give_what_all_would() {
         let mut frame = gpu.frame(plan, &[&heights, &texels]).expect("a frame");
         gpu.draw(&mut frame).expect("drawn");
         let mut last = bits(gpu, &frame);
-        // A lamp of another colour; a new environment, by the plan of the old one, whose azimuths are
+        // A sphere light of another colour; a new environment, by the plan of the old one, whose azimuths are
         // drawn to that; a new field.
         let mut texels = texels;
         for change in 0..3 {
@@ -195,7 +195,7 @@ fn two_changes_before_a_recording_are_both_drawn() {
     let all: Vec<usize> = (0..plan.passes.len()).collect();
     assert_eq!(gpu.replace_plan(&mut frame, plan).expect("the same"), all, "nothing is drawn yet");
     gpu.draw(&mut frame).expect("drawn");
-    // Half an environment's turn, which its wedges are told; then a colour, which they are not.
+    // Half an environment's turn, which its wedges depend on; then a colour, which they do not.
     let environment = scene.lights.environment.take().expect("one");
     let texels = environment.texels().to_vec();
     scene.lights.environment = Environment::new(32, 16, texels, 3.0).ok();

@@ -77,7 +77,7 @@ fn colours_of_the_device_light_as_the_scenes_do() {
         if n == 1 {
             gpu.refill(&frame, 1, &texels(SECOND)).expect("other colours");
             let passes = plan.passes_after(&plan, &[colours]);
-            // What one sum after the other was in is found anew, from the horizons that are kept.
+            // The sums over lights are recomputed, from the horizons that are kept.
             let is_swept = |pass: &usize| plan.passes[*pass].name().ends_with("_sweep");
             assert!(!passes.is_empty() && !passes.iter().any(is_swept), "{passes:?}");
             gpu.draw_passes(&mut frame, &passes).expect("drawn");
@@ -106,7 +106,7 @@ fn colours_of_the_device_light_as_the_scenes_do() {
     gpu.end(frame);
 }
 
-/// In an image of each format, and in a buffer, of which one copy is made; the bounce throws the same light.
+/// In an image of each format, and in a buffer, of which one copy is made; the bounced light is the same.
 #[test]
 fn colours_come_in_formats_and_buffers() {
     let mut device = Device::new();
@@ -166,10 +166,10 @@ fn colours_that_are_summed_up_are_the_scenes() {
         let said = refused.expect_err(says).to_string();
         assert!(said.starts_with(&format!("picture: colours_on_device: found {says}")), "{said}");
     };
-    let mut with_ball = scene(FIRST);
-    let ball = SphereLight { position_m: [1.0; 3], radius_m: 1.0, radiance: [1.0; 3] };
-    with_ball.lights.sphere_lights = vec![ball];
-    refuse(&with_ball, "a sphere light");
+    let mut with_sphere_light = scene(FIRST);
+    let sphere_light = SphereLight { position_m: [1.0; 3], radius_m: 1.0, radiance: [1.0; 3] };
+    with_sphere_light.lights.sphere_lights = vec![sphere_light];
+    refuse(&with_sphere_light, "a sphere light");
     let mut with_lobe = scene(FIRST);
     with_lobe.surface.specular =
         Some(Specular::Constant(PhongSpecular { exponent: 9.0, scale: 0.25 }));

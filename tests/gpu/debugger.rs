@@ -10,8 +10,8 @@ use ridgelight::plan;
 use crate::Device;
 use crate::borrowed::{framed, planned, scene};
 
-/// What a debugger is told: objects by type and name, and labels that begin and end (an empty one).
-static TOLD: Mutex<Vec<(vk::ObjectType, String)>> = Mutex::new(Vec::new());
+/// What a debugger receives: objects by type and name, labels that begin, and an empty name where one ends.
+static REPORTED: Mutex<Vec<(vk::ObjectType, String)>> = Mutex::new(Vec::new());
 
 unsafe fn text(name: *const c_char) -> String {
     // SAFETY: Vulkan's names end with a nul.
@@ -24,7 +24,7 @@ unsafe extern "system" fn keep_name(
 ) -> vk::Result {
     // SAFETY: whoever names hands in a whole struct.
     let (kind, name) = unsafe { ((*info).object_type, text((*info).p_object_name)) };
-    TOLD.lock().expect("no panic").push((kind, name));
+    REPORTED.lock().expect("no panic").push((kind, name));
     vk::Result::SUCCESS
 }
 
@@ -34,11 +34,11 @@ unsafe extern "system" fn keep_label(
 ) {
     // SAFETY: as above.
     let name = unsafe { text((*info).p_label_name) };
-    TOLD.lock().expect("no panic").push((vk::ObjectType::COMMAND_BUFFER, name));
+    REPORTED.lock().expect("no panic").push((vk::ObjectType::COMMAND_BUFFER, name));
 }
 
 unsafe extern "system" fn keep_end(_commands: vk::CommandBuffer) {
-    TOLD.lock().expect("no panic").push((vk::ObjectType::COMMAND_BUFFER, String::new()));
+    REPORTED.lock().expect("no panic").push((vk::ObjectType::COMMAND_BUFFER, String::new()));
 }
 
 unsafe extern "system" fn debugger(
@@ -58,7 +58,7 @@ unsafe extern "system" fn debugger(
 }
 
 /// A host whose debugger is this test.
-fn told(host: &Host) -> Host {
+fn reporting(host: &Host) -> Host {
     // SAFETY: of this instance only the debugger's functions are looked up.
     let instance = unsafe {
         ash::Instance::load_with(
@@ -74,16 +74,16 @@ fn told(host: &Host) -> Host {
 }
 
 #[test]
-fn a_debugger_is_told_what_everything_is() {
+fn debuggers_get_the_names_of_all_objects_and_passes() {
     use vk::ObjectType as Type;
     let mut device = Device::new();
     let scene = scene();
     let gpu = device.gpu.as_mut().expect("alive");
     let plan = planned(gpu, &scene);
     let frame = framed(gpu, &scene);
-    TOLD.lock().expect("no panic").clear();
-    let mut renderer = Renderer::new(&told(gpu.host()), plan.clone(), 2).expect("a renderer");
-    let names = std::mem::take(&mut *TOLD.lock().expect("no panic"));
+    REPORTED.lock().expect("no panic").clear();
+    let mut renderer = Renderer::new(&reporting(gpu.host()), plan.clone(), 2).expect("a renderer");
+    let names = std::mem::take(&mut *REPORTED.lock().expect("no panic"));
     let (inputs, outputs) = (frame.inputs(), frame.outputs());
     gpu.run(|commands| renderer.record(commands, 0, &inputs, &outputs)).expect("recorded and run");
     renderer.destroy();
@@ -113,7 +113,7 @@ fn a_debugger_is_told_what_everything_is() {
         assert!(has(Type::QUERY_POOL, "ridgelight, slot 1"));
     }
     // Each pass in a label of its own.
-    let labels = std::mem::take(&mut *TOLD.lock().expect("no panic"));
+    let labels = std::mem::take(&mut *REPORTED.lock().expect("no panic"));
     let labels: Vec<&str> = labels.iter().map(|l| l.1.as_str()).collect();
     let passes: Vec<String> = plan.passes.iter().map(plan::Pass::label).collect();
     let around: Vec<&str> = passes.iter().flat_map(|label| [label.as_str(), ""]).collect();

@@ -1,5 +1,5 @@
 //! The decoders that `bake` writes beside its maps, compiled as they are and run on the device over the files of a real
-//! field, against the values that were packed: each within the error that its sheet states.
+//! field, against the values that were packed: each within the error that its manifest states.
 
 mod harmonics;
 mod light;
@@ -158,17 +158,17 @@ fn baked(folder: &Path, number: usize, border: &str, wanted: &[Decoder]) -> serd
         .output()
         .expect("the binary");
     assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
-    let sheet = std::fs::read(folder.join("manifest.json")).expect("a manifest");
-    serde_json::from_slice(&sheet).expect("JSON")
+    let manifest = std::fs::read(folder.join("manifest.json")).expect("a manifest");
+    serde_json::from_slice(&manifest).expect("JSON")
 }
 
 fn numbered(decoder: &Decoder, number: usize) -> &'static Encoding {
     &decoder.encodings[number.min(decoder.encodings.len() - 1)]
 }
 
-/// What the sheet promises of a map's texture: of what, at most, and a share of the value.
-fn promised(sheet: &serde_json::Value, kind: &str) -> Vec<(String, f64, f64)> {
-    let maps = sheet["maps"].as_array().expect("maps");
+/// What the manifest promises of a map's texture: of what, at most, and a share of the value.
+fn promised(manifest: &serde_json::Value, kind: &str) -> Vec<(String, f64, f64)> {
+    let maps = manifest["maps"].as_array().expect("maps");
     let map = maps.iter().find(|map| map["kind"] == kind).expect("the map");
     assert!(map["beyond_range"].is_null(), "{kind}: values beyond what is encoded");
     let files = map["files"].as_array().expect("files");
@@ -228,7 +228,7 @@ fn worst(
 
 /// Every decoder with every encoding of its kind.
 #[test]
-fn decoders_keep_what_sheets_promise() {
+fn decoders_keep_the_errors_that_manifests_state() {
     let device = Device::new();
     let gpu = device.gpu.as_ref().expect("alive");
     let most = all().iter().map(|d| d.encodings.len()).max().expect("some");
@@ -239,7 +239,7 @@ fn decoders_keep_what_sheets_promise() {
         let folder = tempfile::tempdir().expect("a folder");
         let wanted: Vec<Decoder> =
             all().into_iter().filter(|d| !is_open || is_lower(d, number)).collect();
-        let sheet = baked(folder.path(), number, border, &wanted);
+        let manifest = baked(folder.path(), number, border, &wanted);
         for decoder in wanted.iter().filter(|d| number < d.encodings.len()) {
             let encoding = numbered(decoder, number);
             let stem = decoder.kind.replace('-', "_");
@@ -253,7 +253,7 @@ fn decoders_keep_what_sheets_promise() {
 
             let mut truth = read_planes(&path("npy")).expect("values");
             let texture = std::fs::read(path("ktx2")).expect("a texture");
-            let promised = promised(&sheet, decoder.kind);
+            let promised = promised(&manifest, decoder.kind);
             // An azimuth is within m 2^-22 of a step of the one that was asked for, across which horizons change by no
             // more than a right angle, two where they may be below horizontal.
             let is_horizon = decoder.kind == "horizon";
@@ -284,13 +284,13 @@ fn decoders_keep_what_sheets_promise() {
             assert!(worst(&promised, &off, &truth, slack).0 > 1.0, "{}: deaf", decoder.kind);
 
             if decoder.kind == "ellipse" {
-                lit_as_told(&found, &truth, promised[0].2);
+                lit_as_stated(&found, &truth, promised[0].2);
             }
             if decoder.kind == "curved-ellipse" {
-                curved_as_told(&found, &truth, promised[0].2);
+                curved_as_stated(&found, &truth, promised[0].2);
             }
             if decoder.kind == "visible-points" {
-                shared_as_told(&found, &truth);
+                shared_as_stated(&found, &truth);
             }
             // Between two azimuths both count alike.
             if is_horizon && !is_sine {
@@ -311,7 +311,7 @@ fn decoders_keep_what_sheets_promise() {
 
 /// The last plane is the test of the ellipses for a light, but where what is promised of a number (centre up to 4, radii) may
 /// put it over the edge: 1 / radius times that of the centre and the axis' 1.6 at most, and of itself, squared.
-fn lit_as_told(found: &[f32], truth: &Planes, share: f64) {
+fn lit_as_stated(found: &[f32], truth: &Planes, share: f64) {
     let (samples, light) = (truth.rows * truth.cols, glam::DVec3::new(0.6, 0.48, 0.64));
     let mut counts = [0; 2];
     for i in 0..samples {
@@ -332,7 +332,7 @@ fn lit_as_told(found: &[f32], truth: &Planes, share: f64) {
 /// The last plane is the test between five ellipses on a base bent by half of what they were fitted at: |adj P v| ≤ det P, but
 /// where what is promised of a number n may put it over the edge: three numbers move each of P's by 2 n at most and the
 /// centre's, so that |adj P v| is off by 2 n (|v| + 2 max P) of them and det P by 4 n max P.
-fn curved_as_told(found: &[f32], truth: &Planes, share: f64) {
+fn curved_as_stated(found: &[f32], truth: &Planes, share: f64) {
     let (samples, light) = (truth.rows * truth.cols, glam::DVec3::new(0.6, 0.48, 0.64));
     let curvature =
         ridgelight::scene::Curvature { per_m: [0.5 * CURVATURES[0], -0.5 * CURVATURES[1]] };
@@ -361,15 +361,15 @@ fn curved_as_told(found: &[f32], truth: &Planes, share: f64) {
 
 /// The last plane is how much of a light arrives whose shares of the first three directions are 0.5, 0.3 and 0.2: sums of those
 /// in which the sky is seen, a rounding each.
-fn shared_as_told(found: &[f32], truth: &Planes) {
+fn shared_as_stated(found: &[f32], truth: &Planes) {
     let samples = truth.rows * truth.cols;
-    let mut told = std::collections::BTreeSet::new();
+    let mut stated = std::collections::BTreeSet::new();
     for i in 0..samples {
         let sees_sky = |k: &usize| truth.planes[2 * k][i] == -1.0;
         let want: f64 = (0..3).filter(sees_sky).map(|k| [0.5, 0.3, 0.2][k]).sum();
         let got = f64::from(found[2 * DIRECTIONS * samples + i]);
         assert!((got - want).abs() <= 3.0 / f64::from(1 << 24), "{i}: {got} {want}");
-        told.insert((10.0 * want).round() as u32);
+        stated.insert((10.0 * want).round() as u32);
     }
-    assert!(told.len() > 1, "all alike: {told:?}");
+    assert!(stated.len() > 1, "all alike: {stated:?}");
 }

@@ -179,16 +179,16 @@ fn edits_give_the_bits_of_all() {
     }
 }
 
-/// The comparison is not deaf: an edit that is told one row or column too few leaves other bits.
+/// The comparison detects errors: an edit whose rectangle lacks one row or column leaves other bits.
 #[test]
-fn an_edit_told_too_small_a_rectangle_is_seen() {
+fn an_edit_with_too_small_a_rectangle_is_detected() {
     let mut device = Device::new();
     let quality = Quality { azimuths: 8, table_elevations: 16, ..Quality::default() };
     let scene = under_sky(rough(40, 40, [2.0, 2.0]), Border::Plane);
     let gpu = device.gpu.as_mut().expect("alive");
     let plan = planned(gpu, &scene, &quality, true);
     let mut frame = made(gpu, &scene, plan);
-    let told = Rectangle { col: 9, row: 9, cols: 10, rows: 10 };
+    let stated = Rectangle { col: 9, row: 9, cols: 10, rows: 10 };
     for (wide, high) in [(10, 10), (11, 10), (10, 11)] {
         let mut heights = scene.field.heights_m().to_vec();
         (9..9 + high)
@@ -196,7 +196,7 @@ fn an_edit_told_too_small_a_rectangle_is_seen() {
         gpu.refill(&frame, 0, scene.field.heights_m()).expect("refilled");
         gpu.draw(&mut frame).expect("drawn");
         gpu.refill(&frame, 0, &heights).expect("refilled");
-        gpu.draw_edit(&mut frame, told).expect("drawn");
+        gpu.draw_edit(&mut frame, stated).expect("drawn");
         let edited = bits(gpu, &frame);
         gpu.draw(&mut frame).expect("drawn");
         assert_eq!(edited == bits(gpu, &frame), (wide, high) == (10, 10), "{wide} × {high}");

@@ -1,4 +1,4 @@
-//! Key lights on the device: closed forms, real terrain and light paths against the oracle.
+//! Key lights on the device: closed forms, real terrain and path tracing against the oracle.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::path::Path;
@@ -163,7 +163,7 @@ fn a_key_over_bundled_terrain_is_the_oracles() {
     assert!(far.sum::<f64>() / picks.len() as f64 > key.width_rad / PI * 0.3_f64.to_radians());
 }
 
-/// Light paths against the quadrature: patches from below horizontal, at the zenith and all around, with two
+/// Path tracing against the quadrature: patches from below horizontal, at the zenith and all around, with two
 /// bounces; and light that is not there is not found.
 #[test]
 fn paths_to_keys_agree_with_the_quadrature() {

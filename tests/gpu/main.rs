@@ -15,6 +15,8 @@ mod contract;
 mod curved;
 mod debugger;
 // Its shaders are compiled from GLSL only.
+mod bounced_specular;
+mod cpu_reference;
 #[cfg(any(feature = "glslang", feature = "shaderc"))]
 mod decoders;
 mod edits;
@@ -25,8 +27,6 @@ mod extremes;
 mod first_light;
 mod flight;
 mod forms;
-mod gloss;
-mod glossy;
 mod goldens;
 mod harmonics;
 mod keys;
@@ -49,11 +49,11 @@ mod scatter_views;
 #[path = "../scenes/mod.rs"]
 mod scenes;
 mod soft_spheres;
+mod specular;
 mod spheres;
 mod subsampled;
 #[path = "../target/mod.rs"]
 mod target;
-mod twins;
 mod view;
 mod view_flight;
 mod walks;

@@ -12,8 +12,8 @@ use crate::{Device, random, under_sky};
 
 const SIDE: usize = 9;
 
-/// Balls over a fractal, some of them in each other's way and in the ground's.
-fn under_balls(count: usize) -> Scene {
+/// Sphere lights over a fractal, some of them in each other's way and in the ground's.
+fn under_sphere_lights(count: usize) -> Scene {
     let field = fractal(SIDE, 3).expect("a field");
     let top = field.base_m() + f64::from(field.heights_m().iter().copied().fold(0.0, f32::max));
     let mut next = random(5);
@@ -27,14 +27,14 @@ fn under_balls(count: usize) -> Scene {
     scene
 }
 
-/// 120 balls and a sky in the blue channel that no ball has: the whole is the f64 quadrature's sum of balls, and
-/// what a sky alone gives. All in one dispatch instead, the bound on turns is passed where there is one: rays are
-/// lost, and counted.
+/// 120 sphere lights, and a sky in the blue channel, which no sphere light has: the whole is the f64 quadrature's sum over
+/// the sphere lights, and a sky's own light. All in one dispatch instead exceeds the bound on iterations, where there is
+/// one: rays are lost, and counted.
 #[test]
-fn many_balls_are_their_sum() {
+fn many_sphere_lights_are_their_sum() {
     const BATCHES: usize = 4;
     let mut device = Device::new();
-    let mut scene = under_balls(120);
+    let mut scene = under_sphere_lights(120);
     let oracle = Oracle::new(&scene.field, Border::Plane);
     scene.lights.sky = Some([0.0, 0.0, 1.0]);
     let plan = plan::reference(&scene, 0, 1, &device.limits()).expect("a plan");
@@ -43,9 +43,9 @@ fn many_balls_are_their_sum() {
     let [light, error] = traced(&mut device, &scene, 0, 1, BATCHES);
     let of = |i: usize, strips: usize| -> [f64; 3] {
         let mut sum = [0.0; 3];
-        for ball in &scene.lights.sphere_lights {
-            let light = sphere_of(&oracle, i / SIDE, i % SIDE, ball, strips);
-            (0..2).for_each(|c| sum[c] += light * f64::from(ball.radiance[c]));
+        for sphere_light in &scene.lights.sphere_lights {
+            let light = sphere_of(&oracle, i / SIDE, i % SIDE, sphere_light, strips);
+            (0..2).for_each(|c| sum[c] += light * f64::from(sphere_light.radiance[c]));
         }
         sum
     };
@@ -70,14 +70,14 @@ fn many_balls_are_their_sum() {
         found.rms, found.worst, found.mean
     );
     assert!(found.holds(), "{found:?}");
-    // One ball of 120 less is seen.
-    let ball = scene.lights.sphere_lights[17];
+    // One sphere light of 120 less is seen.
+    let sphere_light = scene.lights.sphere_lights[17];
     let mut less = truth.clone();
     for (i, sum) in less.iter_mut().enumerate() {
-        let light = sphere_of(&oracle, i / SIDE, i % SIDE, &ball, 16);
-        (0..2).for_each(|c| sum[c] -= light * f64::from(ball.radiance[c]));
+        let light = sphere_of(&oracle, i / SIDE, i % SIDE, &sphere_light, 16);
+        (0..2).for_each(|c| sum[c] -= light * f64::from(sphere_light.radiance[c]));
     }
-    assert!(!agrees(&less).holds(), "deaf to a ball");
+    assert!(!agrees(&less).holds(), "a missing sphere light is not detected");
 }
 
 /// However a batch is cut, by its lights and by its paths, these are the same: sums in another order, 64 paths of
@@ -85,13 +85,13 @@ fn many_balls_are_their_sum() {
 #[test]
 fn parts_of_a_batch_are_the_batch() {
     use ridgelight::gpu::shaders::offsets::path_trace_push::{LAST_LIGHT, LAST_PATH};
-    const BALLS: usize = 30;
+    const SPHERE_LIGHTS: usize = 30;
     let mut device = Device::new();
-    let scene = under_balls(BALLS);
+    let scene = under_sphere_lights(SPHERE_LIGHTS);
     let plan = plan::reference(&scene, 1, 1, &device.limits()).expect("a plan");
     let parts = || plan.passes.iter().filter(|p| p.name() == "path_trace");
     let cuts = |at: usize, last: u32| parts().any(|p| p.push[at..at + 4] != last.to_ne_bytes());
-    let lasts = [(LAST_LIGHT, BALLS as u32), (LAST_PATH, plan::REFERENCE_BATCH)];
+    let lasts = [(LAST_LIGHT, SPHERE_LIGHTS as u32), (LAST_PATH, plan::REFERENCE_BATCH)];
     assert!(lasts.iter().all(|(at, last)| cuts(*at, *last)), "not cut");
     let first = plan.passes.len() - parts().count();
     let mut whole = plan.clone();
@@ -102,7 +102,7 @@ fn parts_of_a_batch_are_the_batch() {
     let [in_parts, at_once] = [plan, whole].map(|p| traced_by(&mut device, &scene, p, 2, &[]));
     assert_eq!([in_parts.1, at_once.1], [0, 0], "rays were lost");
     let both = in_parts.0[0].iter().flatten().zip(at_once.0[0].iter().flatten());
-    let rounded = 64.0 * (BALLS as f64 + 1.0) * f64::from(f32::EPSILON);
+    let rounded = 64.0 * (SPHERE_LIGHTS as f64 + 1.0) * f64::from(f32::EPSILON);
     for (i, (a, b)) in both.enumerate() {
         assert!((a - b).abs() <= rounded * b, "{i}: {a} for {b}");
     }

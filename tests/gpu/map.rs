@@ -1,4 +1,4 @@
-//! Maps for screens: to the bit what their twin says, which is what a PNG of the same light holds.
+//! Maps for screens: to the bit the CPU reference's, which a PNG of the same light holds.
 
 use ridgelight::plan::{self, Map};
 use ridgelight::scene::Tone;
@@ -47,7 +47,7 @@ fn drawn(
 }
 
 #[test]
-fn maps_are_their_twins_to_the_bit() {
+fn maps_match_the_cpu_reference_to_the_bit() {
     let mut device = Device::new();
     let field = [37, 23];
     let at_once = Map {

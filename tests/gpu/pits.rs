@@ -13,7 +13,7 @@ use crate::{Device, field, under_sky};
 /// Half-angles and albedos; of two the project's reference numbers know some bounces and the limit, which the
 /// closed form meets.
 const PITS: [(f64, f32); 4] = [(0.6, 0.7), (0.8, 0.5), (1.2, 0.9), (1.4, 0.3)];
-/// Of a millionth of the light and less no more is thrown on by any of them: the limit.
+/// After this many bounces each of them bounces a millionth of the light or less: the limit.
 const LIMIT: usize = 12;
 /// Cells from the middle to the rim.
 const RIM: f64 = 12.5;
@@ -51,7 +51,7 @@ fn bounced(gpu: &mut Device, scene: &Scene, bounces: Bounces) -> Vec<Vec<f64>> {
     all
 }
 
-fn thrown(engine: BounceEngine) -> Bounces {
+fn bounces_of(engine: BounceEngine) -> Bounces {
     Bounces { count: LIMIT as u32, engine, azimuths: 32, cutoff: 0.0, ..Bounces::default() }
 }
 
@@ -69,7 +69,7 @@ fn pits_are_lit_as_their_closed_form() {
         let (scene, rho) = (pit_of(pit(RIM, alpha), albedo), f64::from(albedo));
         let bounds = pit_bounds(RIM, alpha, rho, LIMIT);
         for engine in [BounceEngine::BruteForce, BounceEngine::Sweep] {
-            let all = bounced(&mut gpu, &scene, thrown(engine));
+            let all = bounced(&mut gpu, &scene, bounces_of(engine));
             let mut said = Vec::new();
             for count in (0..=4).chain([LIMIT]) {
                 let expected = match count {
@@ -79,7 +79,7 @@ fn pits_are_lit_as_their_closed_form() {
                 // What later bounces would add to the limit.
                 let left = pit_radiance(alpha, rho, 1000) - pit_radiance(alpha, rho, LIMIT);
                 let left = if count == LIMIT { left } else { 0.0 };
-                // The rim's own cells throw what is between the pit's light and the plain's, ρ: as much of what is
+                // The rim's own cells bounce what is between the pit's light and the plain's, ρ: as much of what is
                 // gained of sky, 1 - L, as ρ - L is of that.
                 let before = count.checked_sub(1).map_or(1.0, |b| pit_radiance(alpha, rho, b));
                 let rim = 1.0 + (rho - before).max(0.0) / (1.0 - before).max(1e-9);
@@ -151,7 +151,8 @@ fn exact_bounces_of_pits_are_within_a_five_hundredth() {
         let inner = (0..side * side).filter(|i| away(*i) <= 0.5 * FAR);
         let bounds: Vec<(usize, f64)> =
             inner.map(|i| (i, rho * sky_changed(away(i), FAR, alpha))).collect();
-        let of = |count, azimuths| Bounces { count, azimuths, ..thrown(BounceEngine::BruteForce) };
+        let of =
+            |count, azimuths| Bounces { count, azimuths, ..bounces_of(BounceEngine::BruteForce) };
         let all = bounced(&mut gpu, &pit_of(rimmed_pit(FAR, alpha), albedo), of(2, azimuths));
         let errors: Vec<f64> = (0..=2)
             .map(|count| rmse(&all[count], &bounds, pit_radiance(alpha, rho, count)))
@@ -178,7 +179,7 @@ fn pyramids_come_to_pits() {
         let bounds = pit_bounds(RIM, alpha, rho, LIMIT);
         let mut errors = Vec::new();
         for (level_step, level_offset) in [(2, 0), (8, 3)] {
-            let bounces = Bounces { level_step, level_offset, ..thrown(BounceEngine::Pyramid) };
+            let bounces = Bounces { level_step, level_offset, ..bounces_of(BounceEngine::Pyramid) };
             let all = bounced(&mut gpu, &scene, bounces);
             let mut said = Vec::new();
             for count in (0..=4).chain([LIMIT]) {

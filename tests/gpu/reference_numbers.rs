@@ -216,7 +216,7 @@ fn bands_of_the_clamped_cosine() {
 /// itself it would need 1 - sin, which loses no digits, in place of the sine.
 ///
 /// The disc's light on level ground is π sin²a of its radiance, √(4π/3) of its band 1: through `sphere_shade` that
-/// is 1e-6 of itself, however small, by a ball straight above.
+/// is 1e-6 of itself, however small, by a sphere light straight above.
 #[test]
 fn caps() {
     let mut gpu = Device::new();
@@ -238,19 +238,20 @@ fn caps() {
             continue;
         }
         let radius_m = 100.0 * half.sin();
-        let ball = SphereLight { position_m: [1.0, 1.0, 100.0], radius_m, radiance: [1.0; 3] };
+        let sphere_light =
+            SphereLight { position_m: [1.0, 1.0, 100.0], radius_m, radiance: [1.0; 3] };
         let mut scene = under_sky(field(3, 3, [1.0, 1.0], |_, _| 0.0), Border::Plane);
-        scene.lights = Lights { sphere_lights: vec![ball], ..Lights::default() };
+        scene.lights = Lights { sphere_lights: vec![sphere_light], ..Lights::default() };
         let light = f64::from(gpu.picture(&scene, &Quality::default()).values[4]);
         let band = light * PI / (4.0 * PI / 3.0).sqrt();
-        near(&format!("zh_cap {half:.2}, a ball"), &[band], &zh[1..2], zh[1], NEAR);
+        near(&format!("zh_cap {half:.2}, a sphere light"), &[band], &zh[1..2], zh[1], NEAR);
     }
 }
 
 /// `sn08_wedge` through `sh_wedges`: on level ground every wedge lies between two horizons of 0, a texel of the
 /// table, and all around turns cancel: what is left are 32 times its Y_l0. Other horizons lie between texels,
 /// where a table errs by [`WedgeTable::error`](ridgelight::basis::wedge::WedgeTable::error), 1e-5 of a wedge at
-/// 256 horizons a side: no look-up is 1e-6; the twin holds the kernel to the look-up.
+/// 256 horizons a side: no look-up is 1e-6; the CPU reference holds the kernel to the look-up.
 #[test]
 fn wedges_of_level_horizons() {
     let mut gpu = Device::new();

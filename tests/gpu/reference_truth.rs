@@ -63,10 +63,10 @@ fn traced_at(device: &mut Device, scene: &Scene, bounces: u32, samples: &[usize]
     [light, error].map(|texels| texels[..samples.len()].to_vec())
 }
 
-/// What is thrown alone is what the quadrature has with bounces less what it has without, wherever it is asked, under
-/// lights of every kind; a sample that is asked twice goes other ways. Also seen to fail: against all light.
+/// Indirect light alone is the quadrature's with bounces less its own without, at any listed sample, under lights of every
+/// kind. A sample that is listed twice takes other paths. The comparison fails against all light.
 #[test]
-fn paths_from_listed_samples_bring_what_is_thrown() {
+fn paths_from_listed_samples_bring_indirect_light() {
     let mut device = Device::new();
     for (name, scene) in scenes() {
         let fineness = Fineness { azimuths: 24, divisions: 1, strips: 12 };
@@ -77,23 +77,23 @@ fn paths_from_listed_samples_bring_what_is_thrown() {
         let listed: Vec<usize> = first.iter().copied().chain((0..count).step_by(3)).collect();
         let at = |picture: &[[f64; 3]]| listed.iter().map(|i| picture[*i]).collect::<Vec<_>>();
         let (all, straight) = (at(&truth.radiance[2]), at(&truth.radiance[0]));
-        let thrown: Vec<_> =
+        let bounced: Vec<_> =
             all.iter().zip(&straight).map(|(a, s)| [0, 1, 2].map(|c| a[c] - s[c])).collect();
-        // Both pictures' errors are of the same quadrature; rounding is a share of all light, not of what is thrown: rays
+        // Both pictures' errors are of the same quadrature; rounding is a share of all light, not of indirect light: rays
         // that graze a slope meet it or not by a hair.
         let stated = at(&truth.error[2]);
         let error = stated.iter().zip(&all);
         let error: Vec<_> = error.map(|(e, a)| [0, 1, 2].map(|c| e[c] + 1e-5 * a[c])).collect();
         let both = traced_at(&mut device, &scene, 2, &listed);
         // Convex ground gets little, of few paths: what a sample's own may not have met counts as error, too.
-        let unmet = plan::unsampled_bounce_error(&scene, 2, (PATHS as u32, 1), 0.05);
+        let unsampled = plan::unsampled_bounce_error(&scene, 2, (PATHS as u32, 1), 0.05);
         let sigma: Vec<_> =
-            both[1].iter().map(|e| [0, 1, 2].map(|c| e[c].hypot(unmet[c]))).collect();
+            both[1].iter().map(|e| [0, 1, 2].map(|c| e[c].hypot(unsampled[c]))).collect();
         let agreement = |right: &[[f64; 3]]| {
             Agreement::of([&both[0], &sigma], [right, &error], f64::INFINITY, 1e-5)
         };
-        println!("{name}: {:?}", agreement(&thrown));
-        assert!(agreement(&thrown).holds(), "{name}: {:?}", agreement(&thrown));
+        println!("{name}: {:?}", agreement(&bounced));
+        assert!(agreement(&bounced).holds(), "{name}: {:?}", agreement(&bounced));
         assert!(!agreement(&all).holds(), "{name}: deaf to direct light");
         let twice = (first.len()..listed.len())
             .filter_map(|k| Some((k, first.iter().position(|i| *i == listed[k])?)));
@@ -227,14 +227,15 @@ fn light_that_no_path_has_met_is_allowed_for() {
     let fineness = Fineness { azimuths: 48, divisions: 1, strips: 16 };
     let truth = truth(&scene, 1, fineness).expect("a truth");
     let [light, error] = traced(&mut device, &scene, 1, 1, FEW);
-    let unmet = (0..light.len()).filter(|i| error[*i][0] == 0.0 && truth.radiance[1][*i][0] > 1e-3);
-    assert!(unmet.count() > 0, "every sample has met the light");
+    let unsampled =
+        (0..light.len()).filter(|i| error[*i][0] == 0.0 && truth.radiance[1][*i][0] > 1e-3);
+    assert!(unsampled.count() > 0, "every sample has met the light");
     let against = |sigma: &[[f64; 3]]| {
         let right = [&truth.radiance[1][..], &truth.error[1]];
         Agreement::of([&light, sigma], right, f64::INFINITY, 1e-5)
     };
-    let unmet = plan::unsampled_light_error(&scene, 1, FEW as u32 * plan::REFERENCE_BATCH);
-    let sigma: Vec<_> = error.iter().map(|e| [0, 1, 2].map(|c| e[c].hypot(unmet[c]))).collect();
+    let unsampled = plan::unsampled_light_error(&scene, 1, FEW as u32 * plan::REFERENCE_BATCH);
+    let sigma: Vec<_> = error.iter().map(|e| [0, 1, 2].map(|c| e[c].hypot(unsampled[c]))).collect();
     assert!(against(&sigma).holds(), "{:?}", against(&sigma));
     assert!(!against(&error).holds(), "deaf to what was not met");
 }

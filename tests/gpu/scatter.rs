@@ -204,7 +204,7 @@ fn grooves_scatter_as_their_closed_form() {
     let second = expected(&scene, &points, &f64s(&direct), 2);
     for i in (0..count).filter(|i| !(i % HALF).is_multiple_of(HALF)) {
         let (one, two) = (once(s_of(i)), once(s_of(i)) + twice(s_of(i)));
-        // A second bounce throws half of half of what the first is off by, too.
+        // A second bounce also carries a quarter of the first one's error.
         let allowed = grid + chance;
         assert!((first[i][0] - one).abs() <= allowed, "{i}: {} {one} {allowed}", first[i][0]);
         let off = (second[i][0] - two).abs();
@@ -316,7 +316,7 @@ fn walls_scatter_what_lobes_mirror_as_their_integral() {
 }
 
 /// 50 paths and 50 more by a plan that replaces the first are 100: sums of terms in another order, each rounded within 16 ε.
-/// Paths that began anew would say 50.
+/// Paths that began again would be 50.
 #[test]
 fn paths_are_added_to_those_before() {
     let mut device = Device::new();

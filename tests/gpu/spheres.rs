@@ -1,4 +1,4 @@
-//! Balls of light: against answers derived by hand, against the f64 oracle, moving, and many.
+//! Sphere lights: against answers derived by hand, against the f64 oracle, moving, and many.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::path::Path;
@@ -17,7 +17,7 @@ use ridgelight_io::HeightOptions;
 
 use crate::{Device, field, random};
 
-pub(crate) fn ball(position_m: [f64; 3], radius_m: f64) -> SphereLight {
+pub(crate) fn sphere_light(position_m: [f64; 3], radius_m: f64) -> SphereLight {
     SphereLight { position_m, radius_m, radiance: [1.0; 3] }
 }
 
@@ -56,30 +56,30 @@ fn relative_rmse(pixels: &Pixels, scene: &Scene, samples: usize) -> f64 {
     (squares / samples as f64).sqrt() / (sum / samples as f64)
 }
 
-/// Balls where numbers are hardest, about a sample of rough ground of a relief over 500 m.
+/// Sphere lights where numbers are hardest, about a sample of rough ground of a relief over 500 m.
 pub(crate) fn awkward([x, y, z]: [f64; 3], relief: f64) -> [(&'static str, SphereLight); 10] {
     [
-        ("at a sample", ball([x, y, z], 2.5)),
-        ("touching a sample", ball([x, y, z + 1.0], 1.0)),
-        ("in the ground", ball([x + 0.3, y - 0.4, 500.0 - 20.0], 4.0)),
-        ("over the ground", ball([x, y, 500.0 + relief + 9.0], 3.0)),
-        ("tiny", ball([x + 0.7, y + 0.2, z + 0.5], 1e-5)),
-        ("far", ball([2e6, -1e6, 3e5], 1e5)),
-        ("far and small", ball([-3e6, 2e6, 4e6], 3.0)),
-        ("all around", ball([x, y, z], 3e6)),
-        ("beyond the edge and below", ball([-40.0, y, 480.0], 8.0)),
-        ("as far as may be", ball([1e15, 1e15, 1e15], 1e15)),
+        ("at a sample", sphere_light([x, y, z], 2.5)),
+        ("touching a sample", sphere_light([x, y, z + 1.0], 1.0)),
+        ("in the ground", sphere_light([x + 0.3, y - 0.4, 500.0 - 20.0], 4.0)),
+        ("over the ground", sphere_light([x, y, 500.0 + relief + 9.0], 3.0)),
+        ("tiny", sphere_light([x + 0.7, y + 0.2, z + 0.5], 1e-5)),
+        ("far", sphere_light([2e6, -1e6, 3e5], 1e5)),
+        ("far and small", sphere_light([-3e6, 2e6, 4e6], 3.0)),
+        ("all around", sphere_light([x, y, z], 3e6)),
+        ("beyond the edge and below", sphere_light([-40.0, y, 480.0], 8.0)),
+        ("as far as may be", sphere_light([1e15, 1e15, 1e15], 1e15)),
     ]
 }
 
-/// A whole ball over level ground: irradiance π r² h / d³ (as that of its middle, facing it π r² / d²). The
+/// A whole sphere light over level ground: irradiance π r² h / d³ (as that of its middle, facing it π r² / d²). The
 /// slices' midpoint rule errs by (r/away)^(2 slices) or less; there are 16.
 #[test]
-fn a_ball_over_level_ground() {
+fn a_sphere_light_over_level_ground() {
     let mut gpu = Device::new();
     let level = field(12, 17, [2.0, 3.0], |_, _| 71.0);
     for (place, radius) in [([9.0, 14.0, 79.0], 1.5), ([-4.0, 50.0, 73.0], 0.01)] {
-        let light = ball(place, radius);
+        let light = sphere_light(place, radius);
         let scene = under(&level, Border::Plane, vec![light]);
         let found = values(&gpu.picture(&scene, &all(16)));
         for (i, got) in found.iter().enumerate() {
@@ -92,14 +92,14 @@ fn a_ball_over_level_ground() {
     }
 }
 
-/// A ball whose middle lies in level ground: the half of its disc above. With c towards the middle, up n and
+/// A sphere light whose middle lies in level ground: the half of its disc above. With c towards the middle, up n and
 /// a = asin(r/d), half a cap gives along n ∫ sin²θ dθ ∫ cos φ dφ = a - sin a cos a, over π. From within
 /// the whole hemisphere shines: 1.
 #[test]
-fn a_ball_half_in_the_ground_and_samples_inside_it() {
+fn a_sphere_light_half_in_the_ground_and_samples_inside_it() {
     let mut gpu = Device::new();
     let level = field(21, 23, [1.0, 1.0], |_, _| 0.0);
-    let light = ball([11.3, 9.8, 0.0], 4.4);
+    let light = sphere_light([11.3, 9.8, 0.0], 4.4);
     let scene = under(&level, Border::Plane, vec![light]);
     let found = values(&gpu.picture(&scene, &all(64)));
     let mut inside = 0;
@@ -117,16 +117,16 @@ fn a_ball_half_in_the_ground_and_samples_inside_it() {
     assert!(inside > 50, "{inside}");
 }
 
-/// A long wall's top and the sample span a plane through the ball's middle: it cuts its disc in half. Half
+/// A long wall's top and the sample span a plane through the sphere light's middle: it cuts its disc in half. Half
 /// a cap of radius a about c, on the side of n, gives c π sin²a / 2 + n (a - sin a cos a).
 #[test]
-fn a_wall_hides_half_of_a_ball() {
+fn a_wall_hides_half_of_a_sphere_light() {
     const COLS: usize = 81;
     let mut gpu = Device::new();
     let wall = field(COLS, 41, [1.0, 1.0], |_, c| if c == 20 { 4.0 } else { 0.0 });
     for radius in [0.05, 2.0] {
         // Twice as far as the wall and twice as high, from column 10.
-        let light = ball([30.0, 40.0, 8.0], radius);
+        let light = sphere_light([30.0, 40.0, 8.0], radius);
         let scene = under(&wall, Border::Plane, vec![light]);
         let found = values(&gpu.picture(&scene, &all(32)));
         let i = 40 * 41 + 10;
@@ -159,14 +159,14 @@ fn city() -> HeightField {
     })
 }
 
-/// What light of balls may be off: half of the middle one of 64 slices, a 64th of the diameter wide, of a disc of π/4 of its
-/// square. So much is off where an upright edge ends within that slice, which is seen whole or not at all.
+/// Bound on the error of sphere lights: half of the middle one of 64 slices, a 64th of the diameter wide, of a disc of π/4
+/// of its square. So large is the error where an upright edge ends within that slice, which is visible whole or not at all.
 const HALF_SLICE: f64 = 0.5 * (1.0 / 64.0) / (0.25 * PI);
 
-/// Against the truth, relative RMSE within half a slice: on mountains with settings as they come; among houses, of which
-/// each has four upright edges, with 64 slices where a ball is wide, under lamps from hard to soft.
+/// Relative RMSE against the ground truth, within half a slice: on mountains with default settings; among houses, each with
+/// four upright edges, with 64 slices where a sphere light is wide, from hard to soft.
 #[test]
-fn balls_are_within_a_percent_of_the_truth() {
+fn sphere_lights_are_within_a_percent_of_the_ground_truth() {
     let mut gpu = Device::new();
     let mountain = bundled();
     let height = |c: usize, r: usize| {
@@ -174,23 +174,28 @@ fn balls_are_within_a_percent_of_the_truth() {
     };
     let over = |c: usize, r: usize, up: f64, radius: f64| {
         let north = (mountain.rows() - 1 - r) as f64 * 92.6;
-        ball([c as f64 * 66.0, north, height(c, r) + up], radius)
+        sphere_light([c as f64 * 66.0, north, height(c, r) + up], radius)
     };
     let (city, fine) = (city(), Quality { sun_azimuths: 64, ..Quality::default() });
     let cases = [
-        ("a high ball", &mountain, Quality::default(), vec![over(128, 128, 1500.0, 400.0)]),
-        ("a small ball", &mountain, Quality::default(), vec![over(90, 60, 700.0, 20.0)]),
-        ("a ball in a slope", &mountain, Quality::default(), vec![over(60, 150, 100.0, 900.0)]),
+        ("a high sphere light", &mountain, Quality::default(), vec![over(128, 128, 1500.0, 400.0)]),
+        ("a small sphere light", &mountain, Quality::default(), vec![over(90, 60, 700.0, 20.0)]),
         (
-            "two balls",
+            "a sphere light in a slope",
+            &mountain,
+            Quality::default(),
+            vec![over(60, 150, 100.0, 900.0)],
+        ),
+        (
+            "two sphere lights",
             &mountain,
             Quality::default(),
             vec![over(60, 50, 900.0, 300.0), over(200, 160, 1200.0, 100.0)],
         ),
-        ("a lamp", &city, Quality::default(), vec![ball([60.0, 75.0, 8.0], 0.3)]),
-        ("a lantern", &city, Quality::default(), vec![ball([92.0, 75.0, 12.0], 1.5)]),
-        ("a globe", &city, fine, vec![ball([92.0, 75.0, 12.0], 5.0)]),
-        ("a moon", &city, fine, vec![ball([100.0, 100.0, 120.0], 20.0)]),
+        ("a small light", &city, Quality::default(), vec![sphere_light([60.0, 75.0, 8.0], 0.3)]),
+        ("a lantern", &city, Quality::default(), vec![sphere_light([92.0, 75.0, 12.0], 1.5)]),
+        ("a globe", &city, fine, vec![sphere_light([92.0, 75.0, 12.0], 5.0)]),
+        ("a moon", &city, fine, vec![sphere_light([100.0, 100.0, 120.0], 20.0)]),
     ];
     for (name, field, quality, spheres) in cases {
         let scene = under(field, Border::Plane, spheres);
@@ -201,13 +206,13 @@ fn balls_are_within_a_percent_of_the_truth() {
     }
 }
 
-/// The comparison is not deaf: light without its shadows, of a ball a cell away or of another radius is not
+/// The comparison detects errors: light without its shadows, of a sphere light a cell away or of another radius is not
 /// within half a slice.
 #[test]
 fn wrong_light_is_not_within_a_percent() {
     let mut gpu = Device::new();
     let city = city();
-    let right = ball([92.0, 75.0, 12.0], 5.0);
+    let right = sphere_light([92.0, 75.0, 12.0], 5.0);
     let scene = under(&city, Border::Plane, vec![right]);
     let flat = field(96, 96, [2.0, 2.0], |_, _| 0.0);
     let mut moved = right;
@@ -226,7 +231,7 @@ fn wrong_light_is_not_within_a_percent() {
 /// Places and sizes at their extremes, against the oracle in as many slices: at a sample, in the ground, far
 /// away, tiny and all around, on fields of one sample and of lines, of gentle and of wild relief.
 #[test]
-fn balls_at_the_extremes_are_the_oracles() {
+fn sphere_lights_at_the_extremes_match_the_oracle() {
     let mut gpu = Device::new();
     let mut next = random(5);
     let noise: Vec<f64> = (0..99).map(|_| next()).collect();
@@ -242,10 +247,10 @@ fn balls_at_the_extremes_are_the_oracles() {
             [c as f64 * 2.0, (rows - 1 - r) as f64 * 3.0, height]
         };
         let [x, y, z] = at(rows / 2, cols / 2);
-        let balls = awkward([x, y, z], relief);
+        let sphere_lights = awkward([x, y, z], relief);
         for border in [Border::Plane, Border::Open, Border::Periodic] {
             let oracle = Oracle::new(&field, border);
-            for (name, light) in &balls {
+            for (name, light) in &sphere_lights {
                 let scene = under(&field, border, vec![*light]);
                 let found = values(&gpu.picture(&scene, &all(4)));
                 // The oracle's profiles know no surface on a line of samples.
@@ -270,11 +275,11 @@ fn balls_at_the_extremes_are_the_oracles() {
     }
 }
 
-/// A ball that comes from beyond the edge, crosses the ground, goes through it under samples that it takes in,
+/// A sphere light that comes from beyond the edge, crosses the ground, goes through it under samples that it takes in,
 /// and comes out: in every step each sample changes as the oracle's does, and the whole picture stays as near
 /// to the truth.
 #[test]
-fn a_moving_ball_pops_no_more_than_the_truth() {
+fn a_moving_sphere_light_pops_no_more_than_the_ground_truth() {
     const STEPS: usize = 40;
     // Weber's fraction: a light that changes by less is seen as the same.
     const SEEN_AT_ONCE: f64 = 0.01;
@@ -289,7 +294,7 @@ fn a_moving_ball_pops_no_more_than_the_truth() {
         let t = step as f64 / (STEPS - 1) as f64;
         // Down into the ground at a quarter and at three quarters of the way.
         let up = 6.0 * (4.0 * FRAC_PI_2 * t).cos() + 1.0;
-        let light = ball([-3.0 + 21.0 * t, 11.0 - 6.0 * t, land.base_m() + up], 2.2);
+        let light = sphere_light([-3.0 + 21.0 * t, 11.0 - 6.0 * t, land.base_m() + up], 2.2);
         let scene = under(&land, Border::Plane, vec![light]);
         let found = values(&gpu.picture(&scene, &quality));
         let mut now = Vec::new();
@@ -315,13 +320,13 @@ fn a_moving_ball_pops_no_more_than_the_truth() {
     assert!(popped <= SEEN_AT_ONCE, "{popped}");
 }
 
-/// A narrow ball over level ground gives (r / d)² cos θ, of however few slices: a disc of half-width w is cos u wide, whose
+/// A narrow sphere light over level ground gives (r / d)² cos θ, of however few slices: a disc of half-width w is cos u wide, whose
 /// square midpoints sum as it is. What is not a disc's differs by the square of its half-width in azimuth.
 #[test]
-fn few_slices_hold_all_of_a_narrow_ball() {
+fn few_slices_hold_all_of_a_narrow_sphere_light() {
     let mut gpu = Device::new();
     let (level, side, radius) = (field(33, 33, [1.0; 2], |_, _| 0.0), 33, 0.5);
-    let scene = under(&level, Border::Plane, vec![ball([16.4, 16.4, 12.0], radius)]);
+    let scene = under(&level, Border::Plane, vec![sphere_light([16.4, 16.4, 12.0], radius)]);
     for slices in [1, 2, 3] {
         let found = values(&gpu.picture(&scene, &all(slices)));
         for (i, found) in found.iter().enumerate() {
@@ -337,19 +342,22 @@ fn few_slices_hold_all_of_a_narrow_ball() {
     }
 }
 
-/// 64 lamps over mountains of 512²: what they add up to, at some samples, beside the oracle in as many slices, less
+/// 64 sphere lights over mountains of 512²: their sum, at some samples, beside the oracle in as many slices, less
 /// at most what the plan says is lost.
 #[test]
 fn sixty_four_lights_add_up() {
     let mut gpu = Device::new();
     let land = fractal(512, 1).unwrap();
-    let lamp = |i: usize| {
+    let small_light = |i: usize| {
         let [x, y] = [i % 8, i / 8].map(|k| 32.0 + 64.0 * k as f64);
         let at = (511 - y as usize) * 512 + x as usize;
         let ground = land.base_m() + f64::from(land.heights_m()[at]);
-        SphereLight { radiance: [1.0 + i as f32 / 64.0; 3], ..ball([x, y, ground + 12.0], 0.3) }
+        SphereLight {
+            radiance: [1.0 + i as f32 / 64.0; 3],
+            ..sphere_light([x, y, ground + 12.0], 0.3)
+        }
     };
-    let scene = under(&land, Border::Plane, (0..64).map(lamp).collect());
+    let scene = under(&land, Border::Plane, (0..64).map(small_light).collect());
     let quality = Quality { light_cutoff: 0.5, ..all(1) };
     let plan = plan::picture(&scene, &quality, &Limits::lavapipe(), Picture::default()).unwrap();
     let lost = said_lost(&plan);
@@ -380,7 +388,7 @@ fn said_lost(plan: &Plan) -> f64 {
 fn no_sample_loses_more_than_the_cutoff() {
     let mut gpu = Device::new();
     let land = fractal(64, 4).unwrap();
-    let over = |x: f64, y: f64| ball([x, y, land.base_m() + 8.0], 1.0);
+    let over = |x: f64, y: f64| sphere_light([x, y, land.base_m() + 8.0], 1.0);
     let lights = vec![over(12.0, 15.0), over(40.0, 50.0), over(70.0, 20.0), over(12.3, 40.0)];
     let scene = under(&land, Border::Plane, lights);
     let whole = values(&gpu.picture(&scene, &all(8)));
@@ -389,7 +397,7 @@ fn no_sample_loses_more_than_the_cutoff() {
     let plan = plan::picture(&scene, &cut, &Limits::lavapipe(), Picture::default()).unwrap();
     let groups = |p: &&plan::Pass| p.name() == "sphere_shade" && p.groups[0] * p.groups[1] < 64;
     assert!(plan.passes.iter().filter(groups).count() == 3, "{plan}");
-    // At most the brightest: a sample under the ball's middle.
+    // At most the brightest: a sample under the sphere light's middle.
     let brightest = whole.iter().copied().fold(0.0, f64::max);
     let lit = values(&gpu.picture(&scene, &cut));
     let lost = whole.iter().zip(&lit).map(|(a, b)| a - b);

@@ -157,8 +157,8 @@ fn memory_and_work_are_those_of_the_nodes() {
                 Method::Pyramid => assert_eq!(samples("pyramid_march"), marched),
                 Method::Sweep | Method::Auto => {}
             }
-            let told = plan.settings.iter().find(|s| s.0 == "subsample").expect("told");
-            assert_eq!(told.1, stride.to_string());
+            let reported = plan.settings.iter().find(|s| s.0 == "subsample").expect("reported");
+            assert_eq!(reported.1, stride.to_string());
         }
     }
     let refused = plan::picture(&scene, &harmonics(3), &Limits::lavapipe(), Picture::default());

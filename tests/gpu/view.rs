@@ -226,7 +226,7 @@ fn a_pixel_half_covered_is_half_as_bright() {
     }
 }
 
-/// On a screen that encodes and on one that is told codes, the picture is a PNG's, to one code: powers are not exact.
+/// On a screen that encodes and on one that takes codes, the picture is a PNG's, to one code: powers are not exact.
 #[test]
 fn screens_show_what_pictures_hold() {
     let mut device = Device::new();
@@ -249,7 +249,7 @@ fn screens_show_what_pictures_hold() {
     });
     let (linear, shown) = drawn.expect("pictures");
     let tone = Tone { exposure };
-    // The twin, where the shader encodes: either code beside the value, which powers err by: 3 units of a logarithm of
+    // The CPU reference, where the shader encodes: either code beside the value, which powers err by: 3 units of a logarithm of
     // up to 9 over 2.4, as many of its exponential, and a rounding of each other step.
     let power = 32.0 * f64::from(f32::EPSILON);
     let channels =

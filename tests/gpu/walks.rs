@@ -27,7 +27,7 @@ fn drawn(gpu: &mut Device, scene: &Scene, quality: &Quality) -> Vec<f64> {
     gpu.picture(scene, quality).values.into_iter().map(f64::from).collect()
 }
 
-/// What a sample sees of ground that radiates 1, by the twin.
+/// What a sample sees of ground that radiates 1, by the CPU reference.
 fn ground_shares(field: &HeightField, border: Border, count: u32) -> Vec<f64> {
     let mut azimuths = even(count, field.cell_m());
     number_layers(&mut azimuths);

@@ -80,13 +80,13 @@ fn baked(folder: &Path, number: usize) -> serde_json::Value {
         .output()
         .expect("the binary");
     assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
-    let sheet = std::fs::read(folder.join("out/manifest.json")).expect("a manifest");
-    serde_json::from_slice(&sheet).expect("JSON")
+    let manifest = std::fs::read(folder.join("out/manifest.json")).expect("a manifest");
+    serde_json::from_slice(&manifest).expect("JSON")
 }
 
-/// Planes of an .exr, which keeps them by their names, in the order of the sheet.
-fn in_order(sheet: &serde_json::Value, kind: &str, mut read: Planes) -> Planes {
-    let maps = sheet["maps"].as_array().expect("maps");
+/// Planes of an .exr, which keeps them by their names, in the order of the manifest.
+fn in_order(manifest: &serde_json::Value, kind: &str, mut read: Planes) -> Planes {
+    let maps = manifest["maps"].as_array().expect("maps");
     let map = maps.iter().find(|map| map["kind"] == kind).expect("the map");
     let names = map["planes"].as_array().expect("names");
     let names: Vec<String> = names.iter().map(|n| n.as_str().expect("a name").into()).collect();
@@ -106,12 +106,12 @@ fn beside(truth: &Planes) -> f64 {
 }
 
 #[test]
-fn decoders_of_light_keep_what_sheets_promise() {
+fn decoders_of_light_keep_the_errors_that_manifests_state() {
     let device = Device::new();
     let gpu = device.gpu.as_ref().expect("alive");
     for number in 0..2 {
         let folder = tempfile::tempdir().expect("a folder");
-        let sheet = baked(folder.path(), number);
+        let manifest = baked(folder.path(), number);
         for decoder in all() {
             let encoding = numbered(&decoder, number);
             let stem = decoder.kind.replace('-', "_");
@@ -123,9 +123,10 @@ fn decoders_of_light_keep_what_sheets_promise() {
             let is_code = |line: &&str| !line.is_empty() && !line.starts_with("//");
             assert!(decoder.body.lines().filter(is_code).count() <= 20, "{stem}");
             let bits: Vec<u32> = constants.iter().map(|(_, c)| c.bits()).collect();
-            let truth = in_order(&sheet, decoder.kind, read_planes(&path("exr")).expect("values"));
+            let truth =
+                in_order(&manifest, decoder.kind, read_planes(&path("exr")).expect("values"));
             let texture = std::fs::read(path("ktx2")).expect("a texture");
-            let promised = promised(&sheet, decoder.kind);
+            let promised = promised(&manifest, decoder.kind);
             let is_between = ["brdf", "brdf-factors"].contains(&decoder.kind);
             let slack = if is_between { beside(&truth) } else { 0.0 };
             let found = decode(gpu, &decoder, &bits, &texture, 0.0);

@@ -28,11 +28,11 @@ fn is_light(case: &Case) -> bool {
 }
 
 fn is_bounce(case: &Case) -> bool {
-    matches!(case.about, About::Bounces | About::Glosses)
+    matches!(case.about, About::Bounces | About::Specular)
 }
 
-fn is_ball_or_lobe(case: &Case) -> bool {
-    matches!(case.about, About::SoftBalls | About::Lobes)
+fn is_soft_sphere_or_phong(case: &Case) -> bool {
+    matches!(case.about, About::SoftSpheres | About::Phong)
 }
 
 fn is_of_points(case: &Case) -> bool {
@@ -55,8 +55,8 @@ fn selected_bounces_hold() {
 }
 
 #[test]
-fn selected_balls_and_lobes_hold_by_harmonics() {
-    hold(is_ball_or_lobe);
+fn selected_sphere_lights_and_phong_lobes_hold_by_harmonics() {
+    hold(is_soft_sphere_or_phong);
 }
 
 #[test]
@@ -79,8 +79,8 @@ fn every_bounce_holds_under_every_engine() {
 
 #[test]
 #[ignore = "tools/test --all"]
-fn every_ball_and_lobe_holds_by_harmonics() {
-    hold_all(is_ball_or_lobe);
+fn every_sphere_light_and_phong_lobe_holds_by_harmonics() {
+    hold_all(is_soft_sphere_or_phong);
 }
 
 #[test]
@@ -95,7 +95,7 @@ fn a_value_of_visible_points_beyond_its_bound_is_seen() {
 
 #[test]
 fn every_case_is_in_one_test() {
-    let groups = [is_horizon, is_light, is_bounce, is_ball_or_lobe, is_of_points];
+    let groups = [is_horizon, is_light, is_bounce, is_soft_sphere_or_phong, is_of_points];
     for case in suite::cases() {
         let count = groups.iter().filter(|is_such| is_such(&case)).count();
         assert_eq!(count, 1, "{}", case.name);
@@ -191,12 +191,12 @@ fn what_is_not_judged_is_known() {
         let is_known = [
             "a single-sample spike of 1e6 cells",
             "a single-sample pit of 1e6 cells",
-            "thrown by a spike of 1e6 cells",
-            "thrown in a pit of 1e6 cells",
-            "thrown and mirrored by a spike of 1e6 cells, lobes of 0 and 1e4 in turn",
-            "thrown by a slope of 1e6",
-            "thrown under a hemisphere whose hull is as deep as the line",
-            "a ball over a slope of 1e0, by harmonics",
+            "bounced by a spike of 1e6 cells",
+            "bounced in a pit of 1e6 cells",
+            "bounced and mirrored by a spike of 1e6 cells, lobes of 0 and 1e4 in turn",
+            "bounced by a slope of 1e6",
+            "bounced under a hemisphere whose hull is as deep as the line",
+            "a sphere light over a slope of 1e0, by harmonics",
         ]
         .contains(&case.name.as_str());
         assert_eq!(!unjudged.is_empty(), is_known, "{}", case.name);
@@ -364,9 +364,9 @@ fn summary(cases: &[Case], methods: &[methods::Method]) -> String {
     let groups = [
         (About::Horizons, "horizons, and direct light shaded from them"),
         (About::Bounces, "indirect light"),
-        (About::SoftBalls, "sphere lights by spherical harmonics"),
-        (About::Lobes, "direct Phong specular"),
-        (About::Glosses, "indirect Phong specular"),
+        (About::SoftSpheres, "sphere lights by spherical harmonics"),
+        (About::Phong, "direct Phong specular"),
+        (About::Specular, "indirect Phong specular"),
         (About::Points, "visible points"),
         (About::Ellipses, "ellipses of visible sky"),
         (About::Scattering, "light scattered over visible points"),

@@ -1,4 +1,4 @@
-//! What the surface throws at itself at the extremes, by every engine of bounces.
+//! Indirect light at the extremes, by every bounce engine.
 //!
 //! A point sun in the zenith casts no shadow, and an albedo of c / N_z makes all ground shine alike under it. What a
 //! sample then gets of a bounce is what it sees of ground, whatever that radiates from place to place: between own
@@ -34,8 +34,8 @@ const MIDDLE: usize = 16;
 /// Samples looked at: about so many.
 const PLACES: usize = 40;
 
-const EXPECTED: &str = "all ground shining alike: of what it throws, least to most, the share that the oracle's horizons leave above the own plane; pyramid: what its twins see";
-const BOUND: &str = "the engine's, from what the twin sees (`crates/cpu/src/tolerance/bounce.rs`), at most all that is thrown; 4 ε";
+const EXPECTED: &str = "all ground of one exit radiance: of that, least to most, the share that the oracle's horizons leave above the own plane; pyramid: what the CPU reference sees";
+const BOUND: &str = "the engine's, from what the CPU reference sees (`crates/cpu/src/tolerance/bounce.rs`), at most all exit radiance; 4 ε";
 
 pub fn cases() -> Vec<Case> {
     let square = [1.0, 1.0];
@@ -43,44 +43,44 @@ pub fn cases() -> Vec<Case> {
     let one =
         |height: f64, cell| field([SIDE; 2], cell, move |r, c| if at(r, c) { height } else { 0.0 });
     let ramp = |slope: f64| field([SIDE; 2], square, move |_, c| slope * c as f64);
-    let plain = |name: &str, ground| thrown(name, ground, Border::Plane, 1.0);
+    let plain = |name: &str, ground| bounced(name, ground, Border::Plane, 1.0);
     let mut all = vec![
-        plain("thrown by 8848 m ± 1 cm of rubble", rubble([SIDE; 2], square, 0.01, 8848.0)),
-        plain("thrown by a spike of 1 cell", one(1.0, square)),
-        steep(plain("thrown by a spike of 1e6 cells", one(1e6, square))),
-        steep(plain("thrown in a pit of 1e6 cells", one(-1e6, square))),
-        plain("thrown in cells of 1 × 1000", one(3.0, [1.0, 1000.0])),
-        nothing(plain("thrown by a slope of 1", ramp(1.0))),
-        steep(nothing(plain("thrown by a slope of 1e6", ramp(1e6)))),
+        plain("bounced by 8848 m ± 1 cm of rubble", rubble([SIDE; 2], square, 0.01, 8848.0)),
+        plain("bounced by a spike of 1 cell", one(1.0, square)),
+        steep(plain("bounced by a spike of 1e6 cells", one(1e6, square))),
+        steep(plain("bounced in a pit of 1e6 cells", one(-1e6, square))),
+        plain("bounced in cells of 1 × 1000", one(3.0, [1.0, 1000.0])),
+        nothing(plain("bounced by a slope of 1", ramp(1.0))),
+        steep(nothing(plain("bounced by a slope of 1e6", ramp(1e6)))),
         plain(
-            "thrown by teeth",
+            "bounced by teeth",
             field([SIDE; 2], square, |_, c| 0.25 * c as f64 - if c % 2 == 0 { 0.0 } else { 3.0 }),
         ),
         plain(
-            "thrown by a plateau",
+            "bounced by a plateau",
             field([SIDE; 2], square, |r, c| {
                 if (8..=24).contains(&r) && (8..=24).contains(&c) { 2.0 } else { 0.0 }
             }),
         ),
-        plain("thrown beside voids of NaN and infinities", with_voids()),
-        steep(plain("thrown under a hemisphere whose hull is as deep as the line", dome())),
-        thrown(
-            "thrown in rubble of exit radiance 1e30",
+        plain("bounced beside voids of NaN and infinities", with_voids()),
+        steep(plain("bounced under a hemisphere whose hull is as deep as the line", dome())),
+        bounced(
+            "bounced in rubble of exit radiance 1e30",
             rubble([13, 17], square, 3.0, 0.0),
             Border::Plane,
             1e30,
         ),
-        faint(plain("thrown by a spike of 1e-6 cells", one(1e-6, square))),
-        faint(plain("thrown by a slope of 1e-6", ramp(1e-6))),
+        faint(plain("bounced by a spike of 1e-6 cells", one(1e-6, square))),
+        faint(plain("bounced by a slope of 1e-6", ramp(1e-6))),
         black(),
         Case {
             is_long: |_| true,
-            ..plain("thrown in 8191 × 3 of rubble", rubble([8191, 3], square, 3.0, 0.0))
+            ..plain("bounced in 8191 × 3 of rubble", rubble([8191, 3], square, 3.0, 0.0))
         },
     ];
     for border in [Border::Plane, Border::Open, Border::Periodic] {
-        all.push(thrown(
-            "thrown by level ground at 1e15",
+        all.push(bounced(
+            "bounced by level ground at 1e15",
             field([SIDE; 2], square, |_, _| 1e15),
             border,
             1.0,
@@ -91,8 +91,8 @@ pub fn cases() -> Vec<Case> {
             Border::Periodic => &[[1, 31], [2, 3], [13, 17]],
         };
         for &[rows, cols] in sides {
-            let name = format!("thrown in {rows} × {cols} of rubble");
-            all.push(thrown(&name, rubble([rows, cols], [1.5, 1.0], 3.0, 0.0), border, 1.0));
+            let name = format!("bounced in {rows} × {cols} of rubble");
+            all.push(bounced(&name, rubble([rows, cols], [1.5, 1.0], 3.0, 0.0), border, 1.0));
         }
     }
     all
@@ -128,9 +128,9 @@ fn dome() -> HeightField {
     })
 }
 
-/// A plane throws nothing onto itself.
+/// A plane has no indirect light.
 fn nothing(case: Case) -> Case {
-    let expected = "a plane throws nothing onto itself: 0".to_owned();
+    let expected = "a plane has no indirect light: 0".to_owned();
     let probes = |found: &Found| {
         let nothing = |probe| Probe { expected: [0.0; 2], ..probe };
         both(found).into_iter().map(nothing).collect()
@@ -151,7 +151,7 @@ fn normals(ground: &HeightField, border: Border) -> Vec<f64> {
     (0..ground.heights_m().len()).map(at).collect()
 }
 
-fn thrown(name: &str, ground: HeightField, border: Border, exit: f32) -> Case {
+fn bounced(name: &str, ground: HeightField, border: Border, exit: f32) -> Case {
     let up = normals(&ground, border);
     let least = up.iter().fold(1.0_f64, |m, z| m.min(*z));
     let albedo = Albedo::Map(up.iter().map(|z| [(least / z) as f32; 3]).collect());
@@ -164,11 +164,11 @@ fn thrown(name: &str, ground: HeightField, border: Border, exit: f32) -> Case {
     case
 }
 
-/// So flat that f32 resolves nothing of what is thrown beside what is there: the whole is as without.
+/// So flat that f32 does not resolve the indirect light beside the direct: the whole is the direct light.
 fn faint(case: Case) -> Case {
-    let expected = "the sun alone: what is thrown is 1e-12 of it".to_owned();
+    let expected = "the sun alone: indirect light is 1e-12 of it".to_owned();
     let bound =
-        "8 ε and a walk's moments, 4 wedges of (0.5 arc tangents and 9 ε), of all that is thrown"
+        "8 ε and a walk's moments, 4 wedges of (0.5 arc tangents and 9 ε), of all exit radiance"
             .to_owned();
     let probes = |found: &Found| {
         let (whole, direct) = (found.layer("radiance"), found.layer("direct.sun1"));
@@ -187,10 +187,10 @@ fn faint(case: Case) -> Case {
     Case { expected, bound, probes: Box::new(probes), ..case }
 }
 
-/// Black ground throws nothing, and no bounce is drawn.
+/// Black ground bounces nothing, and no bounce is drawn.
 fn black() -> Case {
-    let mut case = thrown(
-        "thrown by rubble of albedo 0",
+    let mut case = bounced(
+        "bounced by rubble of albedo 0",
         rubble([13, 17], [1.0, 1.0], 3.0, 0.0),
         Border::Plane,
         1.0,
@@ -207,7 +207,7 @@ fn black() -> Case {
     case
 }
 
-/// Both bounces, each by what it is thrown by.
+/// Both bounces, each by the exit radiance before it.
 fn both(found: &Found) -> Vec<Probe> {
     let layers = ["direct.sun1", "indirect.1", "indirect.2"].map(|name| found.layer(name));
     let cols = found.scene.field.cols();
@@ -320,7 +320,7 @@ impl<'a> Ground<'a> {
             BounceEngine::Auto | BounceEngine::Sweep => {
                 let all = self.along_the_grid([row, col]);
                 let wedge = TAU / f64::from(bounces.azimuths);
-                // A rise from the truth, rounded once, instead of the twin's.
+                // A rise from the truth, rounded once, instead of the CPU reference's.
                 let error = |_: &Along, cast: &Cast| {
                     let of = walk_error(wedge, cast);
                     CastError { elevation_rad: 1.25 * of.elevation_rad, ..of }
@@ -372,7 +372,7 @@ impl<'a> Ground<'a> {
         let quality = &self.found.method.quality;
         let of = self.levels.as_ref().expect("of a pyramid");
         let is_stack = quality.levels == Levels::Stack;
-        let twin = BounceGather {
+        let reference = BounceGather {
             field,
             heights: Heights::of(field, border),
             pyramid: &of.heights,
@@ -396,7 +396,7 @@ impl<'a> Ground<'a> {
             brightest: most,
             spread: most - least,
         };
-        let all = twin.casts_along([row, col]);
+        let all = reference.casts_along([row, col]);
         let error = BounceError::of(&all, |_, cast| gathered.error(cast), slices);
         (all, error)
     }

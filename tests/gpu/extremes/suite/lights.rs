@@ -336,7 +336,7 @@ fn trench(border: Border) -> Case {
             "level beside an edge of height H, D away: as between two, but for azimuths that leave the field before it, which see all"
         }
     };
-    let bound = "2 δ + the level ground's; environment: + 3 Δ² / 2 besides, harmonics: the series'; δ: the method's, at D; pyramid: as its twin's elevations see";
+    let bound = "2 δ + the level ground's; environment: + 3 Δ² / 2 besides, harmonics: the series'; δ: the method's, at D; pyramid: as the CPU reference's elevations see";
     let name = "light in a trench";
     light(name, (expected, bound), (ground, border, around(uniform(1.0))), move |found| {
         let [row, col] = PLACE;
@@ -360,7 +360,7 @@ fn trench(border: Border) -> Case {
         let mut right = [0.0; 2];
         for azimuth in &found.azimuths {
             let share = f64::from(azimuth.wedge_rad) / TAU;
-            if let Some((elevation, error)) = found.twin_elevation(azimuth, row, col) {
+            if let Some((elevation, error)) = found.reference_elevation(azimuth, row, col) {
                 angle = angle.max(error);
                 right.iter_mut().for_each(|sum| *sum += share * elevation.cos().powi(2));
                 continue;

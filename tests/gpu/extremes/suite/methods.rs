@@ -68,9 +68,9 @@ pub fn all() -> Vec<Method> {
     .map(|(name, quality)| Method::of(name, About::Horizons, quality))
     .into_iter()
     .chain(bounces(&base))
-    .chain(soft_balls(&base))
+    .chain(soft_spheres(&base))
     .chain(lobes(&base))
-    .chain(glosses(&base))
+    .chain(specular(&base))
     .chain(looks(&base))
     .collect()
 }
@@ -116,8 +116,8 @@ fn around_the_grid(turned_rad: f64) -> Directions {
     Directions::from_vectors(all, -1.0).expect("unit vectors")
 }
 
-/// Balls of light by harmonics of every kind.
-fn soft_balls(base: &Quality) -> impl Iterator<Item = Method> + use<> {
+/// Sphere lights by harmonics of every kind.
+fn soft_spheres(base: &Quality) -> impl Iterator<Item = Method> + use<> {
     let of = |sh_order| Quality {
         light_basis: LightBasis::Sh,
         light_cutoff: 0.0,
@@ -127,15 +127,24 @@ fn soft_balls(base: &Quality) -> impl Iterator<Item = Method> + use<> {
     };
     let (nlp, table) = (Wedges::Nlp, Wedges::Table);
     [
-        ("balls by harmonics, 2", of(2)),
-        ("balls by harmonics, 4, lobe", Quality { receiver: Receiver::CosineLobe, ..of(4) }),
-        ("balls by harmonics, 6", of(6)),
-        ("balls by harmonics, 4, nlp", Quality { wedges: nlp, ..of(4) }),
-        ("balls by harmonics, 4, table", Quality { wedges: table, wedge_side: 33, ..of(4) }),
-        ("balls by harmonics, 4, pyramid", Quality { method: scene::Method::Pyramid, ..of(4) }),
+        ("sphere lights by harmonics, 2", of(2)),
+        (
+            "sphere lights by harmonics, 4, lobe",
+            Quality { receiver: Receiver::CosineLobe, ..of(4) },
+        ),
+        ("sphere lights by harmonics, 6", of(6)),
+        ("sphere lights by harmonics, 4, nlp", Quality { wedges: nlp, ..of(4) }),
+        (
+            "sphere lights by harmonics, 4, table",
+            Quality { wedges: table, wedge_side: 33, ..of(4) },
+        ),
+        (
+            "sphere lights by harmonics, 4, pyramid",
+            Quality { method: scene::Method::Pyramid, ..of(4) },
+        ),
     ]
     .into_iter()
-    .map(|(name, quality)| Method::of(name, About::SoftBalls, quality))
+    .map(|(name, quality)| Method::of(name, About::SoftSpheres, quality))
 }
 
 /// Lobes by harmonics of every order, and through horizons of every kind.
@@ -148,20 +157,20 @@ fn lobes(base: &Quality) -> impl Iterator<Item = Method> + use<> {
         ("a lobe by harmonics, 6, every 4th", Quality { subsample: 4, ..of(6) }),
     ]
     .into_iter()
-    .map(|(name, quality)| Method::of(name, About::Lobes, quality))
+    .map(|(name, quality)| Method::of(name, About::Phong, quality))
 }
 
-/// Light of lobes thrown once: by direction, of either storage of levels, and as seen from above.
-fn glosses(base: &Quality) -> impl Iterator<Item = Method> + use<> {
+/// One bounce of Phong specular: by direction, of either storage of levels, and one number a texel.
+fn specular(base: &Quality) -> impl Iterator<Item = Method> + use<> {
     let base = *base;
-    let of = |gloss, sh_order, levels| {
+    let of = |specular, sh_order, levels| {
         let bounces = Bounces {
             count: 1,
             engine: BounceEngine::Pyramid,
             azimuths: 8,
             cutoff: 0.0,
             level_offset: 1,
-            specular: gloss,
+            specular,
             ..Bounces::NONE
         };
         Quality { basis: Basis::Sh, sh_order, levels, level_offset: 1, bounces, ..base }
@@ -172,7 +181,7 @@ fn glosses(base: &Quality) -> impl Iterator<Item = Method> + use<> {
         ("as seen from above, 4", of(BounceSpecular::Scalar, 4, Levels::Stack)),
     ]
     .into_iter()
-    .map(|(name, quality)| Method::of(name, About::Glosses, quality))
+    .map(|(name, quality)| Method::of(name, About::Specular, quality))
 }
 
 /// Every engine of bounces: walks along the grid, where they meet all there is; rays along cells' diagonals, and
@@ -181,9 +190,9 @@ fn bounces(base: &Quality) -> impl Iterator<Item = Method> + use<> {
     let base = *base;
     let of =
         |engine, azimuths| Bounces { count: 2, engine, azimuths, cutoff: 0.0, ..Bounces::NONE };
-    let thrown = |engine, azimuths| Quality { bounces: of(engine, azimuths), ..base };
-    let walked = |lines| Quality { lines, ..thrown(BounceEngine::Sweep, 4) };
-    let stack = thrown(BounceEngine::Pyramid, 4);
+    let bounced = |engine, azimuths| Quality { bounces: of(engine, azimuths), ..base };
+    let walked = |lines| Quality { lines, ..bounced(BounceEngine::Sweep, 4) };
+    let stack = bounced(BounceEngine::Pyramid, 4);
     let levels = Quality {
         levels: Levels::Pyramid,
         receiver: Receiver::CosineLobe,
@@ -193,12 +202,12 @@ fn bounces(base: &Quality) -> impl Iterator<Item = Method> + use<> {
         ..base
     };
     [
-        ("every stretch, 4 azimuths", thrown(BounceEngine::BruteForce, 4)),
-        ("every stretch, 5 azimuths", thrown(BounceEngine::BruteForce, 5)),
+        ("brute force, 4 azimuths", bounced(BounceEngine::BruteForce, 4)),
+        ("brute force, 5 azimuths", bounced(BounceEngine::BruteForce, 5)),
         ("walks, lines of 1", walked(Lines::Cell)),
         ("walks, lines of 4", walked(Lines::FourCells)),
-        ("thrown by a pyramid, stack", stack),
-        ("thrown by a pyramid, levels, 3, 0, lobe", levels),
+        ("bounced by a pyramid, stack", stack),
+        ("bounced by a pyramid, levels, 3, 0, lobe", levels),
     ]
     .into_iter()
     .map(|(name, quality)| Method::of(name, About::Bounces, quality))
@@ -291,8 +300,8 @@ impl Method {
     /// How far a slope may be from the truth, where heights reach `largest_m` and nothing that is
     /// not level stands nearer than `near_m`.
     ///
-    /// Heights are rounded on the way in, at both ends: 2 ε H. Then the truth to the twin and the twin
-    /// to the device (`measure::tolerance`, with `near_m` in place of a step): a march R ≤ 2 H; a
+    /// Heights are rounded on the way in, at both ends: 2 ε H. Then the CPU reference's error and the
+    /// device's beside it (`measure::tolerance`, with `near_m` in place of a step): a march R ≤ 2 H; a
     /// surface sweep; a sweep and its fuse. Reduced precision adds its own: slopes as f16 2^-10 of
     /// themselves, packed heights 2^-11 of H.
     fn slope_error(&self, slope: f64, largest_m: f64, near_m: f64, azimuth: &Azimuth) -> f64 {
@@ -303,8 +312,8 @@ impl Method {
         }
         if self.is_exact() {
             let vector = [azimuth.vector_march, azimuth.vector_lane];
-            let twin = device_surface_slope(largest_m, near_m, vector);
-            return rounded + surface_slope(largest_m, near_m) + twin;
+            let reference = device_surface_slope(largest_m, near_m, vector);
+            return rounded + surface_slope(largest_m, near_m) + reference;
         }
         if self.is_pyramid() {
             return rounded + pyramid_plane_slope(largest_m, near_m);

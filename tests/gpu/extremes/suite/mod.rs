@@ -1,27 +1,27 @@
 //! DESIGN §4 as a table: every case put to every method, each error beside its bound. The tests run
 //! it on the driver at hand; `examples/extremes.rs` prints it for several as `out/extremes.md`.
 
-mod balls;
 mod bounces;
-mod glosses;
 mod horizons;
 pub mod inputs;
 mod lights;
-mod lobes;
 pub mod methods;
 pub mod page;
+mod phong;
 mod points;
+mod reference;
 mod scatters;
-mod soft_balls;
+mod soft_spheres;
+mod specular;
+mod sphere_lights;
 mod suns;
-mod twin;
 
 use ridgelight::gpu::{Headless, Pixels};
 use ridgelight::plan::{self, Azimuth, Picture, Plan};
 use ridgelight::scene::{Albedo, Border, HeightField, Lights, Scene, Surface, VisiblePoints};
 
 use methods::{Looks, Method};
-use twin::CpuReference;
+use reference::CpuReference;
 
 /// What is drawn for a case.
 pub enum Asks {
@@ -42,14 +42,14 @@ pub enum Asks {
 pub enum About {
     /// Horizons, and the light that is drawn through them.
     Horizons,
-    /// What the ground throws at itself.
+    /// Indirect light.
     Bounces,
-    /// Balls of light by spherical harmonics.
-    SoftBalls,
-    /// What ground mirrors.
-    Lobes,
-    /// What ground mirrors of what it throws.
-    Glosses,
+    /// Sphere lights by spherical harmonics.
+    SoftSpheres,
+    /// Direct Phong specular.
+    Phong,
+    /// Indirect Phong specular.
+    Specular,
     /// What samples see, direction by direction.
     Points,
     /// The sky that they see, as ellipses.
@@ -115,7 +115,7 @@ pub struct Found<'a> {
     /// Radians of each.
     pub azimuths_rad: Vec<f64>,
     /// What a pyramid has to find where heights are no plane's.
-    twin: Option<CpuReference<'a>>,
+    reference: Option<CpuReference<'a>>,
     plan: Plan,
     outputs: Vec<Pixels>,
 }
@@ -139,7 +139,7 @@ impl Found<'_> {
     }
 
     /// A horizon whose slope has to be in an interval, where ties may be broken by rounding. Of a pyramid on
-    /// uneven ground its twin's, whatever the slope.
+    /// uneven ground the CPU reference's, whatever the slope.
     pub fn between(
         &self,
         at: [usize; 3],
@@ -150,8 +150,8 @@ impl Found<'_> {
         let [k, row, col] = at;
         let found = self.horizon(k, row, col)?;
         let azimuth = &self.azimuths[k];
-        if let Some((twin, bound)) = self.twin_elevation(azimuth, row, col) {
-            return Some(Probe { found, expected: [twin; 2], bound, at });
+        if let Some((reference, bound)) = self.reference_elevation(azimuth, row, col) {
+            return Some(Probe { found, expected: [reference; 2], bound, at });
         }
         let bounds = slopes.map(|s| self.method.angle_error(s, rounded, ties, azimuth));
         let expected = slopes.map(f64::atan);
@@ -160,8 +160,13 @@ impl Found<'_> {
 
     /// The elevation that a pyramid has to find on uneven ground, and how far from it one may be found; `None`
     /// where the truth itself is asked for.
-    pub fn twin_elevation(&self, azimuth: &Azimuth, row: usize, col: usize) -> Option<(f64, f64)> {
-        self.twin.as_ref().map(|twin| twin.elevation(azimuth, row, col))
+    pub fn reference_elevation(
+        &self,
+        azimuth: &Azimuth,
+        row: usize,
+        col: usize,
+    ) -> Option<(f64, f64)> {
+        self.reference.as_ref().map(|reference| reference.elevation(azimuth, row, col))
     }
 
     /// First channel of a layer at a sample.
@@ -232,10 +237,11 @@ pub struct Row {
 
 /// Every case. A new one is enrolled by an entry in one of the lists.
 pub fn cases() -> Vec<Case> {
-    let of_horizons = horizons::cases().into_iter().chain(lights::cases()).chain(balls::cases());
-    let of_their_own = bounces::cases().into_iter().chain(soft_balls::cases());
+    let of_horizons =
+        horizons::cases().into_iter().chain(lights::cases()).chain(sphere_lights::cases());
+    let of_their_own = bounces::cases().into_iter().chain(soft_spheres::cases());
     let of_visible_points = points::cases().into_iter().chain(scatters::cases());
-    let of_lobes = lobes::cases().into_iter().chain(glosses::cases());
+    let of_lobes = phong::cases().into_iter().chain(specular::cases());
     of_horizons.chain(of_their_own).chain(of_lobes).chain(of_visible_points).collect()
 }
 
@@ -300,13 +306,13 @@ pub fn probes(gpu: &mut Headless, case: &Case, method: &Method) -> Result<Vec<Pr
     let outputs = drawn(gpu, plan.clone(), &contents)?;
     let finds_horizons = case.about == About::Horizons;
     let is_smoothed = finds_horizons && method.is_pyramid() && !is_plane(scene);
-    let twin = is_smoothed.then(|| CpuReference::new(scene, &quality));
+    let reference = is_smoothed.then(|| CpuReference::new(scene, &quality));
     let found = Found {
         scene,
         method,
         azimuths: method.azimuths(quality.azimuths, field.cell_m()),
         azimuths_rad: plan::circle_rad(&quality, field.cell_m()).expect("azimuths"),
-        twin,
+        reference,
         plan,
         outputs,
     };

@@ -30,7 +30,7 @@ horizon, at the distance d of what makes it, with heights up to H:
 | brute | (2 + 76 + 208) ε H / d: heights in, march, device |
 | exact | (2 + 540 + 40 (1 + march / lane)) ε H / d along the grid vector (march, lane) |
 | all others | (2 + 38 + 256) ε H / d and 6 ε of the slope: heights in, sweep, fuse |
-| pyramid | on planes (2 + 144) ε H / d: heights in, levels; elsewhere what is expected is not the truth but what its twin on the processor finds in f32 from the same heights, within the angle (232 H + 12 R) ε / step and 6e-6 of the steepest that it may be, R / step or 1, R highest less lowest |
+| pyramid | on planes (2 + 144) ε H / d: heights in, levels; elsewhere what is expected is not the truth but what the CPU reference finds in f32 from the same heights, within the angle (232 H + 12 R) ε / step and 6e-6 of the steepest that it may be, R / step or 1, R highest less lowest |
 | f16 besides | 2^-10 of the slope and 2^-24; slopes beyond 65 504 are that |
 | packed besides | 2^-9 H / d and 100 ε H / d |
 | harmonics | as all others: they change an environment's light alone, by what f32 may do to their *series* (`crates/cpu/src/sh/harmonics.rs`); by *nlp* and *table* what is expected of an environment is what the series keeps of it, in f64 |
@@ -38,8 +38,8 @@ horizon, at the distance d of what makes it, with heights up to H:
 *Not judged*: a pyramid's levels are nearly level somewhere whatever they are made from, and the rounding of 1e6
 cells alone turns an angle there by anything. In each other row a bound is below a tenth of the largest that is expected in it.
 
-What ground throws at itself (`--bounces`) is found by engines of its own: every stretch of it, walks over what
-sweeps along lines have met, and pyramids; with the azimuths of `--bounce-azimuths`.
+Indirect light (`--bounces`) has three engines of its own: brute force, walks over what sweeps along lines have
+met, and pyramids; each with the azimuths of `--bounce-azimuths`.
 
 Visible points are numbers of samples: right, or wrong. Ellipses of the sky and light that is scattered are found from them.
 

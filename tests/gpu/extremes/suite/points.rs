@@ -1,4 +1,4 @@
-//! What samples see at the extremes, and the ellipses of the sky that they see: on the ground that throws light at itself.
+//! Visible points at the extremes, and ellipses of visible sky: on the ground of the bounces' cases.
 
 use glam::DVec3;
 use ridgelight::scene::{Border, HeightField, Scene, VisiblePoint};
@@ -42,9 +42,9 @@ pub fn cases() -> Vec<Case> {
     all
 }
 
-/// "thrown by …" as another kind of answer.
+/// "bounced by …" as another kind of answer.
 pub fn renamed(name: &str, begin: &str) -> String {
-    format!("{begin} {}", name.strip_prefix("thrown ").expect("so they begin"))
+    format!("{begin} {}", name.strip_prefix("bounced ").expect("so they begin"))
 }
 
 /// What is seen does not depend on what shines.

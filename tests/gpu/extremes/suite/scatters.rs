@@ -12,7 +12,7 @@ use ridgelight_cpu::scatter_gather::{Gathered, Samples};
 use ridgelight_cpu::tolerance::{EPSILON, Land, gathered};
 
 use super::points::{Sight, places, renamed};
-use super::{About, Asks, Case, Found, Probe, bounces, field, glosses, none};
+use super::{About, Asks, Case, Found, Probe, bounces, field, none, specular};
 
 const PLACES: usize = 12;
 
@@ -28,7 +28,7 @@ pub fn cases() -> Vec<Case> {
     });
     // Where all is black but for lobes that no direction meets, nothing is to be found.
     let is_seen = |case: &Case| !case.name.contains("albedo 0, lobes of 10000");
-    let glossy = glosses::cases().into_iter().filter(is_seen).map(|case| {
+    let glossy = specular::cases().into_iter().filter(is_seen).map(|case| {
         let name = format!("scattered: {}", case.name);
         let mut case = scattered(name, case);
         // Where paths leave, lobes meet a sky.

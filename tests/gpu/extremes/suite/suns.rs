@@ -55,7 +55,7 @@ pub fn suns_on_level_ground(border: Border) -> Case {
     Case { refuses: suns_off_the_grid, ..case }
 }
 
-/// The top of an eastern slope of height 10 and 2.5 a cell: it throws the shadow.
+/// The top of an eastern slope of height 10 and 2.5 a cell: it casts the shadow.
 const EDGE: usize = 48;
 
 /// Point suns at 30° in the azimuths 0°, 45° and 90° and hairs beside them: the shadow of the edge reaches
@@ -78,7 +78,7 @@ pub fn suns_along_the_grid(border: Border) -> Case {
         (2.5 * (c as f64 + 4.0 - EDGE as f64)).clamp(0.0, HEIGHT)
     });
     let expected = "west of an edge of height H, in its shadow 0, out of it sin 30° / π, but for four cells around the end at H cos φ / tan 30°; where the field repeats, likewise east of it for a sun in the west";
-    let bound = "in the shadow 0, out of it 16 ε of the light; pyramid: where its twin's elevation is as far from the sun as it may err, for suns without a hair";
+    let bound = "in the shadow 0, out of it 16 ε of the light; pyramid: where the CPU reference's elevation is as far from the sun as it may err, for suns without a hair";
     let lights = Lights { suns: suns.clone(), ..Lights::default() };
     let beside = if border == Border::Plane { ", a hair beside," } else { "" };
     let name = format!("point suns at 0°, 45°, 90°{beside} and 180°");
@@ -91,11 +91,11 @@ pub fn suns_along_the_grid(border: Border) -> Case {
             let reach = HEIGHT * azimuth.cos().abs() / FRAC_PI_6.tan();
             // Level ground, in rows from which a line at 45° meets the edge inside the field.
             for (row, col) in (40..60).flat_map(|row| (4..=EDGE - 6).map(move |col| (row, col))) {
-                let is_lit = if found.twin.is_some() {
+                let is_lit = if found.reference.is_some() {
                     if s % hairs.len() != 0 {
                         continue;
                     }
-                    found.twin_elevation(&swept, row, col).and_then(|(elevation, error)| {
+                    found.reference_elevation(&swept, row, col).and_then(|(elevation, error)| {
                         let below = FRAC_PI_6 - elevation;
                         (below.abs() > error + ARC_TANGENT).then_some(below > 0.0)
                     })

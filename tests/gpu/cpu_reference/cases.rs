@@ -1,4 +1,4 @@
-//! What is run against the twins: small fields of odd sizes, every form of every pass at least once.
+//! What is run against the CPU reference: small fields of odd sizes, every form of every pass at least once.
 
 mod bounces;
 mod paths;
@@ -12,7 +12,7 @@ use ridgelight::scene::{
 };
 use ridgelight_cpu::visible_points::visible_points;
 
-pub(super) use bounces::{glosses, nodes, throws, walks};
+pub(super) use bounces::{bounced_light, nodes, specular, walks};
 pub(super) use paths::{paths, references};
 pub(super) use pictures::pictures;
 pub(super) use points::{ellipses, facets, points, scatters, towards};
@@ -114,7 +114,7 @@ impl Case {
         Some((1..=count).map(|i| (3 * all - 3 * i) % all).collect())
     }
 
-    /// What samples see, by the twin.
+    /// What samples see, by the CPU reference.
     pub fn points(&self) -> Option<VisiblePoints> {
         let Wanted::Scatter(directions, ..) = &self.wanted else { return None };
         let (field, border) = (&self.scene.field, self.scene.surface.border);
@@ -168,7 +168,7 @@ fn rough(rows: usize, cols: usize, seed: u64) -> HeightField {
     field(rows, cols, [3.0, 2.0], |r, c| 900.0 + 7.0 * noise[r * cols + c])
 }
 
-/// A paraboloid, smooth and with nothing hidden: what is thrown has few places where rounding counts.
+/// A paraboloid, smooth and with nothing hidden: few of its bounces hang on rounding.
 fn bowl(side: usize) -> HeightField {
     let middle = (side / 2) as f64;
     field(side, side, [1.0, 1.0], |r, c| {

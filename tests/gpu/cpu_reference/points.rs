@@ -17,7 +17,7 @@ fn number(point: VisiblePoint) -> f64 {
     }
 }
 
-/// The twin's answer, or another that it gives within what a ray's elevation and place may err by: a sample beside a
+/// The CPU reference's answer, or another that it gives within what a ray's elevation and place may err by: a sample beside a
 /// boundary between two, or the other side of a silhouette.
 pub(super) fn visible_points(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let (field, border) = (&run.scene.field, run.border());

@@ -1,4 +1,4 @@
-//! Balls of light by spherical harmonics at the extremes: the same scenes as exact ones. What harmonics keep of
+//! Sphere lights by spherical harmonics at the extremes: the same scenes as exact ones. What harmonics keep of
 //! them is known in f64, from the surface's own horizons or a pyramid's.
 
 use ridgelight::plan::pyramid::Pyramid;
@@ -16,24 +16,24 @@ use ridgelight_cpu::tolerance::{
     EPSILON, SphereGeometry, device_pyramid_angle, device_pyramid_slope,
 };
 
-use super::{About, Case, Found, Method, Probe, balls};
+use super::{About, Case, Found, Method, Probe, sphere_lights};
 
 pub fn cases() -> Vec<Case> {
     // Borders alone make no other series.
     let is_other = |case: &Case| case.scene.surface.border != Border::Open;
-    balls::cases().into_iter().filter(is_other).map(soft).collect()
+    sphere_lights::cases().into_iter().filter(is_other).map(soft).collect()
 }
 
 fn soft(case: Case) -> Case {
     Case {
         name: format!("{}, by harmonics", case.name),
-        about: About::SoftBalls,
+        about: About::SoftSpheres,
         expected: "what their order keeps of it, from the same series in f64, at least 0"
             .to_owned(),
         bound: "what f32 may do to the series (`crates/cpu/src/direct/soft_sphere.rs`), and 4 ε"
             .to_owned(),
         probes: Box::new(probes),
-        // Of 64 cells a pyramid's levels may err by more than a ball is wide.
+        // Of 64 cells a pyramid's levels may err by more than a sphere light is wide.
         unjudged: match super::relief(&case.scene.field) > 16.0 {
             true => super::is_pyramid,
             false => super::none,
@@ -44,7 +44,7 @@ fn soft(case: Case) -> Case {
 
 fn probes(found: &Found) -> Vec<Probe> {
     let (field, border) = (&found.scene.field, found.scene.surface.border);
-    let (quality, ball) = (&found.method.quality, &found.scene.lights.sphere_lights[0]);
+    let (quality, sphere_light) = (&found.method.quality, &found.scene.lights.sphere_lights[0]);
     let pyramid = Pyramid::new(quality, [field.cols() as u32, field.rows() as u32], border);
     let texels = height_levels(&Heights::of(field, border), &pyramid);
     let of = LevelTexels { pyramid: &pyramid, texels: &texels };
@@ -54,15 +54,15 @@ fn probes(found: &Found) -> Vec<Probe> {
         Levels::Pyramid => Stored::Levels(&texels),
     };
     let levels = found.method.is_pyramid().then_some((pyramid, stored));
-    let twin = SphereSh::new(Oracle::new(field, border), levels, *quality);
+    let reference = SphereSh::new(Oracle::new(field, border), levels, *quality);
     let errors = SphereShError::new(quality);
     let (rows, cols) = (field.rows(), field.cols());
     let at = |[row, col]: [usize; 2]| {
-        let soft = twin.at(ball, row, col);
-        let seen = SphereGeometry::of(field, ball, row * cols + col);
+        let soft = reference.at(sphere_light, row, col);
+        let seen = SphereGeometry::of(field, sphere_light, row * cols + col);
         let slope = slope_error(&seen, found.method, super::largest(field));
         let off = errors.tolerance(&seen, slope, normal(field, border, row, col), &soft.seen);
-        let radiance = f64::from(ball.radiance[0]);
+        let radiance = f64::from(sphere_light.radiance[0]);
         let light = soft.light.max(0.0);
         Probe {
             found: found.light("direct.light1", row, col),
@@ -75,7 +75,7 @@ fn probes(found: &Found) -> Vec<Probe> {
     places.map(at).into()
 }
 
-/// What slopes towards a ball err by, where a pyramid's levels, too, are the twins'.
+/// What slopes towards a sphere light err by, where a pyramid's levels, too, are the CPU reference's.
 fn slope_error(seen: &SphereGeometry, method: &Method, largest: f64) -> f64 {
     if !method.is_pyramid() {
         return device_surface_within(seen);

@@ -21,8 +21,8 @@ fn short(got: f64, than: f64, off: f64) -> Pair {
     Pair { got: (than - off - got).max(0.0), want: 0.0, tolerance: 0.0, at: [0; 3] }
 }
 
-/// That the score is what the twin makes of the ellipse; no less than what the twin starts with; of no neighbour less, one
-/// last step away, where the search came to its end; and the axis one of the moments'. Decisions of the search hang on
+/// The score is the CPU reference's score of the ellipse. It is no less than at the CPU reference's start, and no less than
+/// that of a neighbour one last step away, where the search came to its end. The axis is one of the moments'. Decisions of the search hang on
 /// whether a direction is in, so that the way to it is no number that could be compared.
 pub(super) fn ellipse_fit(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let (field, border) = (&run.scene.field, run.border());
@@ -98,7 +98,7 @@ fn of_sample(seen: &[Seen], least: f64, found: Ellipse, (got, step): (f64, f64))
     pairs
 }
 
-/// The comparison hears: of a twin's own ellipse, one turned, one shifted, and a score that is another.
+/// The comparison detects errors: in the CPU reference's own ellipse, one turned, one shifted, and a score that is another.
 #[test]
 fn another_ellipse_is_seen() {
     use ridgelight::scene::Directions;

@@ -7,10 +7,10 @@ use std::ops::Range;
 use ridgelight::gpu::shaders::offsets;
 use ridgelight::plan::{Nodes, Pass};
 use ridgelight::scene::{Border, Fuse};
-use ridgelight_cpu::bounce_shade::bounce_shade as shade_twin;
+use ridgelight_cpu::bounce_shade::bounce_shade as shade_reference;
 use ridgelight_cpu::bounce_walk::walked_along;
 use ridgelight_cpu::cache_gather::{
-    Cast, RING_ENDS, cache_gather as gather_twin, cast_of, cast_part,
+    Cast, RING_ENDS, cache_gather as gather_reference, cast_of, cast_part,
 };
 use ridgelight_cpu::shared::bounced::light_and_weight;
 use ridgelight_cpu::shared::sweep::March;
@@ -27,13 +27,13 @@ pub(super) fn places(run: &Run, nodes: Nodes) -> Vec<[usize; 2]> {
     (0..across * along).map(|i| place(i).map(|n| n as usize)).collect()
 }
 
-/// The casting sets that a walk has left of some azimuths, if it leaves any: they throw ground of radiance 1 as the walk
-/// does, but for half a part of each ring's weight, and that of radiances that are columns and rows, which lie as their
+/// The visibility caches that a walk has left of some azimuths, if it leaves any: from ground of radiance 1 they bounce what the
+/// walk does, but for half a part of each ring's weight, and that of radiances that are columns and rows, which lie as their
 /// mean does, within a sample: it stands half a step away, and across it as much again.
 pub(super) fn casts(run: &mut Run, pass: &Pass, azimuths: Range<usize>) -> Vec<Pair> {
     let places = &places(run, Nodes { stride: 2 * constant(pass, "node_stride") });
     let begin = pushed(pass, offsets::bounce_walk_push::BEGIN) as usize;
-    let Some(sets) = casting_sets(run, pass, begin, places) else {
+    let Some(sets) = visibility_caches(run, pass, begin, places) else {
         return Vec::new();
     };
     let [cols, rows] = run.size();
@@ -56,7 +56,7 @@ pub(super) fn casts(run: &mut Run, pass: &Pass, azimuths: Range<usize>) -> Vec<P
                 let want = light_and_weight(&along).0;
                 let walked = BounceError::of(&along, |_, cast| walk_error(wedge, cast), slices).sum;
                 let off = walked[0] + 2.0 * cast_part(wedge);
-                let got = gather_twin(set, &exit64);
+                let got = gather_reference(set, &exit64);
                 pairs.push(Pair { got: got[0], want: want[0], tolerance: off, at });
                 let tolerance = want[0] + far * off;
                 let pair = |c: usize| Pair { got: got[c], want: want[c], tolerance, at };
@@ -67,9 +67,9 @@ pub(super) fn casts(run: &mut Run, pass: &Pass, azimuths: Range<usize>) -> Vec<P
     pairs
 }
 
-/// Casting sets of all nodes, azimuth by azimuth from the first one kept, if the pass binds any. Every ring's mean lies
+/// Visibility caches of all nodes, azimuth by azimuth from the first one kept, if the pass binds any. Every ring's mean lies
 /// within the ring, rounded to a step.
-fn casting_sets(
+fn visibility_caches(
     run: &mut Run,
     pass: &Pass,
     begin: usize,
@@ -95,12 +95,12 @@ fn casting_sets(
     Some(words.chunks_exact(4 * places.len()).enumerate().map(of).collect())
 }
 
-/// From the device's own casting sets: a product and a sum for each, of weights that are products themselves.
+/// From the device's own visibility caches: a product and a sum for each, of weights that are products themselves.
 pub(super) fn cache_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     use offsets::cache_gather_push::{BEGIN, COUNT};
     let places = places(run, Nodes { stride: constant(pass, "node_stride") });
     let begin = pushed(pass, BEGIN) as usize;
-    let sets = casting_sets(run, pass, begin, &places).expect("bound");
+    let sets = visibility_caches(run, pass, begin, &places).expect("bound");
     assert_eq!(sets.len(), pushed(pass, COUNT) as usize);
     let exit = match run.floats(pass, "exit_grey") {
         Some(grey) => grey.iter().map(|v| [f64::from(*v); 3]).collect(),
@@ -117,7 +117,7 @@ pub(super) fn cache_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     for (node, ([row, col], got)) in places.iter().zip(texels.chunks_exact(4)).enumerate() {
         let seen: Vec<&Cast> = sets.iter().flat_map(|set| &set[node]).collect();
         let whole = wholes[&[*row, *col]];
-        let want = gather_twin(seen.iter().copied(), &exit).map(|v| v / whole);
+        let want = gather_reference(seen.iter().copied(), &exit).map(|v| v / whole);
         let weights: f64 = seen.iter().map(|c| c.weight).sum();
         let terms = (seen.len() + 10) as f64;
         let tolerance = terms * EPSILON * brightest(&exit) * weights / whole;
@@ -139,7 +139,7 @@ pub(super) fn bounce_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let mut pairs = Vec::new();
     for (i, got) in got.iter().enumerate() {
         let place = [i % cols, i / cols].map(|n| n as i32);
-        let want = shade_twin(&heights, nodes, (&light, &share), place);
+        let want = shade_reference(&heights, nodes, (&light, &share), place);
         pairs.extend((0..3).map(|c| Pair {
             got: got[c],
             want: want[c],

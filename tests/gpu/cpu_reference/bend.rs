@@ -64,7 +64,7 @@ fn may_be_met(ways: &Ways, rise_m: f64) -> Vec<Way> {
     possible
 }
 
-/// The twin's direction, or another that it gives where which neighbour a direction moves with, or which repetition is seen,
+/// The CPU reference's direction, or another that it gives where which neighbour a direction moves with, or which repetition is seen,
 /// hangs on roundings.
 pub(super) fn bent_directions(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let directions = run.bent_directions();

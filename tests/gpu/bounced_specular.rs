@@ -1,4 +1,4 @@
-//! Light that lobes throw: light paths against counting, what is thrown against what is derived and against paths.
+//! Indirect Phong specular: the path tracer against counting, bounces against closed forms and against the path tracer.
 
 use ridgelight::basis::zonal::clamped_cosine;
 use ridgelight::plan::{self, Picture};
@@ -14,14 +14,14 @@ use crate::reference_truth::traced;
 use crate::{Device, field, random, under_sky};
 
 /// So many bounces by pyramids whose samples all look at the field itself.
-fn thrown(count: u32, gloss: BounceSpecular, sh_order: u32) -> Quality {
+fn bounce_quality(count: u32, specular: BounceSpecular, sh_order: u32) -> Quality {
     let bounces = Bounces {
         count,
         engine: BounceEngine::Pyramid,
         azimuths: 16,
         cutoff: 0.0,
         level_offset: 4,
-        specular: gloss,
+        specular,
         ..Bounces::default()
     };
     let base =
@@ -121,7 +121,7 @@ fn lobes_reflect_no_more_than_arrives() {
 fn a_lobe_of_nothing_is_none() {
     let mut gpu = Device::new();
     let mut scene = lobed();
-    let quality = thrown(2, BounceSpecular::Vector, 4);
+    let quality = bounce_quality(2, BounceSpecular::Vector, 4);
     let mut plans = Vec::new();
     for scale in [None, Some(0.0)] {
         scene.surface.specular =
@@ -137,7 +137,7 @@ fn a_lobe_of_nothing_is_none() {
 
 /// A sample of level ground among walls that are diffuse: its lobe of exponent 1 about the zenith is a cosine, so it
 /// reflects of each bounce what diffuse ground does, but for the bands of the cosine that the series lacks: π times
-/// their integral by magnitude, of light of 1 at most. What throws is diffuse, so scalars and vectors are alike.
+/// their integral by magnitude, of light of 1 at most. The walls are diffuse, so scalars and vectors are alike.
 #[test]
 fn a_lobe_of_exponent_one_is_a_cosine() {
     const MIDDLE: usize = 6 * 12 + 6;
@@ -153,17 +153,18 @@ fn a_lobe_of_exponent_one_is_a_cosine() {
     for order in [3, 6] {
         let missing = missing_cosine(order as usize);
         let mut first = 0.0;
-        for gloss in [BounceSpecular::Vector, BounceSpecular::VectorF16, BounceSpecular::Scalar] {
-            let all = drawn(&mut gpu, &scene, &thrown(2, gloss, order));
+        for specular in [BounceSpecular::Vector, BounceSpecular::VectorF16, BounceSpecular::Scalar]
+        {
+            let all = drawn(&mut gpu, &scene, &bounce_quality(2, specular, order));
             let [glossy, one, two] =
                 ["glossy", "indirect.1", "indirect.2"].map(|name| layer(&all, name));
-            // Of 0.5 diffusely and 0.25 by the lobe; of what is thrown, at most 3/4 of the sky's 1.
+            // Of 0.5 diffusely and 0.25 by the lobe; of the bounced light, at most 3/4 of the sky's 1.
             let want = 0.5 * (one[MIDDLE][0] + two[MIDDLE][0]);
             let off = (glossy[MIDDLE][0] - want).abs();
             // f32 does 1e-5, f16 half a thousandth.
-            let rounded = if gloss == BounceSpecular::VectorF16 { 1e-3 } else { 1e-5 };
+            let rounded = if specular == BounceSpecular::VectorF16 { 1e-3 } else { 1e-5 };
             let bound = 0.25 * missing * 0.75 + rounded;
-            println!("order {order}, {}: {off:.5} of {want:.4}, bound {bound:.4}", gloss.name());
+            println!("order {order}, {}: {off:.5} of {want:.4}, bound {bound:.4}", specular.name());
             assert!(off <= bound && want > 2.0 * bound, "{off} of {want}");
             let others = glossy.iter().enumerate().filter(|(i, _)| *i != MIDDLE);
             assert!(others.into_iter().all(|(_, v)| v[0] == 0.0), "lobes of nothing");
@@ -190,10 +191,11 @@ fn missing_cosine(order: usize) -> f64 {
         .sum()
 }
 
-/// Hills whose feet see their sides, mirroring four fifths, under a sky: what bounces bring is nearer to light paths by
-/// direction than as seen from above, and either nearer than without, by more than paths waver; likewise by order.
+/// Hills of specular scale four fifths, whose feet see their sides, under a sky. Bounces by direction have a smaller error
+/// than bounces by one number a texel, and either a smaller one than none, by more than the Monte Carlo noise of the
+/// path-traced reference. Higher orders have smaller errors.
 #[test]
-fn radiance_by_direction_is_nearer_to_light_paths() {
+fn radiance_by_direction_is_nearer_to_the_path_traced_reference() {
     const SIDE: usize = 17;
     const BATCHES: usize = 24;
     let mut gpu = Device::new();
@@ -219,9 +221,10 @@ fn radiance_by_direction_is_nearer_to_light_paths() {
         }
         ((squares - noise).max(0.0) / count).sqrt() / bounced
     };
-    let thrown = |gloss, order| Quality { method: Method::Auto, ..thrown(2, gloss, order) };
-    let [coarse, vector] = [2, 4].map(|order| off(&thrown(BounceSpecular::Vector, order)));
-    let scalar = off(&thrown(BounceSpecular::Scalar, 4));
+    let bounce_quality =
+        |specular, order| Quality { method: Method::Auto, ..bounce_quality(2, specular, order) };
+    let [coarse, vector] = [2, 4].map(|order| off(&bounce_quality(BounceSpecular::Vector, order)));
+    let scalar = off(&bounce_quality(BounceSpecular::Scalar, 4));
     let chance = (noise / count).sqrt() / bounced;
     println!(
         "bounced {bounced:.4}: vector {vector:.3}, of order 2 {coarse:.3}, scalar {scalar:.3} off; chance {chance:.3}"

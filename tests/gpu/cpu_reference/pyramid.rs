@@ -4,11 +4,11 @@ use ridgelight::gpu::shaders::offsets;
 use ridgelight::plan::pyramid::{Level, Pyramid};
 use ridgelight::plan::{Azimuth, Nodes, Pass};
 use ridgelight_cpu::lattice::Lattice;
-use ridgelight_cpu::pyramid_march::{Stored, pyramid_march as march_twin};
+use ridgelight_cpu::pyramid_march::{Stored, pyramid_march as march_reference};
 use ridgelight_cpu::shared::levels::LevelTexels;
 use ridgelight_cpu::shared::sweep::March;
 use ridgelight_cpu::tolerance::{device_level, device_pyramid_slope, device_spline};
-use ridgelight_cpu::{height_expand as expand_twin, height_reduce as reduce_twin};
+use ridgelight_cpu::{height_expand as expand_reference, height_reduce as reduce_reference};
 
 use super::sweep::marched;
 use super::{Pair, Run, constant, pushed};
@@ -26,7 +26,7 @@ pub(super) fn height_reduce(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let level = pyramid.level(number);
     let texels = run.floats(pass, "height_levels").expect("written");
     let table = run.words(pass, "level_table").expect("written");
-    let want = reduce_twin::height_reduce(&run.heights(), &pyramid, number, &texels);
+    let want = reduce_reference::height_reduce(&run.heights(), &pyramid, number, &texels);
     let tolerance = device_level(run.relief()[0]);
     let [cols, _] = level.size.map(|n| n as usize);
     let made = texels[level.first as usize..].iter().zip(&want).enumerate();
@@ -36,12 +36,12 @@ pub(super) fn height_reduce(run: &mut Run, pass: &Pass) -> Vec<Pair> {
             Pair { got: (*got).into(), want: (*want).into(), tolerance, at }
         })
         .collect();
-    pairs.extend(told(&level, number, &table));
+    pairs.extend(table_pairs(&level, number, &table));
     pairs
 }
 
 /// What a pyramid's table says of a level.
-pub(super) fn told(level: &Level, number: u32, table: &[u32]) -> Vec<Pair> {
+pub(super) fn table_pairs(level: &Level, number: u32, table: &[u32]) -> Vec<Pair> {
     let [x, y] = level.per_sample.map(f32::to_bits);
     let want = [level.first as u32, level.size[0] | level.size[1] << 16, x, y];
     let pair = |(i, (want, got)): (usize, (&u32, &u32))| Pair {
@@ -63,7 +63,7 @@ pub(super) fn height_expand(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let mut pairs = Vec::new();
     for number in 1..=pyramid.levels() {
         let layer = (number as usize - 1) * cols * rows;
-        let want = expand_twin::height_expand(&levels, number);
+        let want = expand_reference::height_expand(&levels, number);
         pairs.extend(stack[layer..].iter().zip(want).enumerate().map(|(i, (got, want))| Pair {
             got: (*got).into(),
             want: want.into(),
@@ -88,16 +88,16 @@ pub(super) fn pyramid_march(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         let alone = Azimuth { layer: 0, ..azimuth };
         let march = March::new(run.heights(), &alone);
         let mut left = Lattice::new(1, march.lanes as usize, march.steps as usize);
-        let mut twin = left.clone();
+        let mut reference = left.clone();
         let warm_up = run.warm_up(azimuth.marches_rows());
-        march_twin(run.heights(), &alone, &pyramid, stored, warm_up, &mut twin);
+        march_reference(run.heights(), &alone, &pyramid, stored, warm_up, &mut reference);
         for ([step, lane], [row, col]) in
             marched(&march, Nodes { stride: constant(pass, "node_stride") })
         {
             let texel = left.texel(lane, march.march_position(step), 0);
             let word = words[(azimuth.layer as usize * height + row) * width + col];
             left.slopes[texel] = f32::from_bits(word);
-            let want = f64::from(twin.slopes[texel]);
+            let want = f64::from(reference.slopes[texel]);
             let tolerance = device_pyramid_slope(want, largest, relief, azimuth.step_m.into());
             let got = left.slopes[texel].into();
             pairs.push(Pair { got, want, tolerance, at: [k, row, col] });

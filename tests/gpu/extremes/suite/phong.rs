@@ -53,7 +53,7 @@ fn case(
     probes: impl Fn(&Found) -> Vec<Probe> + 'static,
 ) -> Case {
     let mut case = light(name, about, (ground, border, lights), probes);
-    case.about = About::Lobes;
+    case.about = About::Phong;
     case.scene.surface.albedo = Albedo::Constant([0.0; 3]);
     case.scene.surface.specular =
         Some(Specular::Constant(PhongSpecular { exponent, scale: SCALE }));

@@ -7,12 +7,12 @@ use ridgelight::basis::wedge::WedgeTable;
 use ridgelight::gpu::shaders::offsets;
 use ridgelight::plan::{Azimuth, Nodes, Pass};
 use ridgelight::scene::{Border, Environment, Receiver, Wedges};
-use ridgelight_cpu::env_rotation as turns_twin;
+use ridgelight_cpu::env_rotation as turns_reference;
 use ridgelight_cpu::harmonics::{Seen, matrix_magnitudes};
-use ridgelight_cpu::light_matrix as matrix_twin;
+use ridgelight_cpu::light_matrix as matrix_reference;
 use ridgelight_cpu::sh_shade::{gloss_on, light_at, nodes_around};
-use ridgelight_cpu::sh_visibility::{Series, sh_visibility as visibility_twin};
-use ridgelight_cpu::sh_wedges::sh_wedges as wedges_twin;
+use ridgelight_cpu::sh_visibility::{Series, sh_visibility as visibility_reference};
+use ridgelight_cpu::sh_wedges::sh_wedges as wedges_reference;
 use ridgelight_cpu::shared::field::{field_slope, normal_of};
 use ridgelight_cpu::shared::gather::Swept;
 use ridgelight_cpu::tolerance::{
@@ -39,7 +39,7 @@ pub(super) fn env_rotation(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let [rows, turns] = [ROWS, TURNS].map(|at| pushed(pass, at) as usize);
     let got = texels(run, pass, "env_rotation");
     let environment = environment(run);
-    let want = turns_twin::env_rotation(environment, rows, turns.div_ceil(2));
+    let want = turns_reference::env_rotation(environment, rows, turns.div_ceil(2));
     let width = environment.width();
     let mut pairs = Vec::new();
     for (i, got) in got.into_iter().enumerate() {
@@ -62,17 +62,17 @@ pub(super) fn light_matrix(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         Vec::new()
     };
     assert_eq!(turns.len(), rows);
-    let (quality, fitted) = (run.quality, matrix_twin::is_fitted(&run.quality, run.border()));
+    let (quality, fitted) = (run.quality, matrix_reference::is_fitted(&run.quality, run.border()));
     let height = run.scene.lights.environment.as_ref().map_or(1, Environment::height);
-    let mut series = matrix_twin::series(&turns, height, light_order, fitted);
+    let mut series = matrix_reference::series(&turns, height, light_order, fitted);
     let sky = [0, 4, 8].map(|at| f32::from_bits(pushed(pass, SKY + at)));
-    matrix_twin::add_sky(&mut series, sky);
-    let gloss = (pass.part == "glossy").then_some(sky);
-    let want = match gloss {
-        None => matrix_twin::light_matrix(&quality, &series),
-        Some(_) => matrix_twin::specular_matrix(&quality, &series),
+    matrix_reference::add_sky(&mut series, sky);
+    let specular = (pass.part == "glossy").then_some(sky);
+    let want = match specular {
+        None => matrix_reference::light_matrix(&quality, &series),
+        Some(_) => matrix_reference::specular_matrix(&quality, &series),
     };
-    let summed = matrix_magnitudes(&quality, run.border(), height, &turns, gloss);
+    let summed = matrix_magnitudes(&quality, run.border(), height, &turns, specular);
     let got = texels(run, pass, "light_matrix");
     assert_eq!(got.len(), want.len() * order * order);
     let mut pairs = Vec::new();
@@ -107,8 +107,8 @@ pub(super) fn sh_visibility(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         },
     };
     let got = device_series(run, pass, order);
-    let twin = |swept: &Swept| visibility_twin(swept, series);
-    let want = run.swept(range.clone(), fuse_of(pass), twin);
+    let reference = |swept: &Swept| visibility_reference(swept, series);
+    let want = run.swept(range.clone(), fuse_of(pass), reference);
     let (size, nodes) = (run.plan.size, Nodes { stride: constant(pass, "lane_stride") });
     let [cols, rows] = nodes.size(size);
     assert_eq!(got.len(), (cols * rows) as usize);
@@ -161,7 +161,7 @@ pub(super) fn sh_wedges(run: &mut Run, pass: &Pass) -> Vec<Pair> {
             (*azimuth, horizon.max(own))
         };
         let lowest: Vec<_> = azimuths.iter().enumerate().map(lowest).collect();
-        let want = wedges_twin(&table, &lowest);
+        let want = wedges_reference(&table, &lowest);
         let at = [count, row, col];
         let bands = ridgelight::basis::bands(order);
         pairs.extend(bands.zip(got.iter().zip(&want)).map(|((l, _), (got, want))| Pair {
@@ -201,7 +201,7 @@ pub(super) fn sh_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let matrix: Vec<Vec<DVec3>> = matrix.chunks_exact(order * order).map(<[_]>::to_vec).collect();
     let got = run.floats(pass, "env_sum").expect("written");
     if constant(pass, "receiver") == 2 {
-        run.gloss = got.chunks_exact(4).map(|t| rgb(t).to_array()).collect();
+        run.specular = got.chunks_exact(4).map(|t| rgb(t).to_array()).collect();
     }
     let [cols, _] = run.size();
     let heights = run.heights();
@@ -224,8 +224,8 @@ pub(super) fn sh_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
             between = Seen::between(around.iter().map(|(at, w)| (node(*at), *w)), &error);
             &between
         };
-        let is_gloss = constant(pass, "receiver") == 2;
-        let want = if is_gloss {
+        let is_specular = constant(pass, "receiver") == 2;
+        let want = if is_specular {
             let normal = normal_of(field_slope(&heights, place[0], place[1]));
             gloss_on(normal, run.lobe(i), &seen.values, &matrix)
         } else {
@@ -241,7 +241,7 @@ pub(super) fn sh_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
             .iter()
             .flat_map(|row| row.iter().zip(&seen.errors).map(|(m, e)| 2.0 * m.abs() * *e))
             .sum();
-        let of_sum = if is_gloss { device_sh_specular } else { device_sh_shade };
+        let of_sum = if is_specular { device_sh_specular } else { device_sh_shade };
         let tolerance = of_sum(order, error.normal()) * summed + counted;
         pairs.extend(three(rgb(got), want.max(DVec3::ZERO), tolerance, at));
         let is_decided = (0..3).all(|c| want[c].abs() > tolerance[c]);

@@ -3,10 +3,10 @@
 
 use ridgelight::gpu::shaders::offsets;
 use ridgelight::plan::{Azimuth, Pass, Rectangle};
-use ridgelight_cpu::dirty_list as list_twin;
-use ridgelight_cpu::dirty_mark as mark_twin;
-use ridgelight_cpu::horizon_resweep as resweep_twin;
-use ridgelight_cpu::horizon_sweep as sweep_twin;
+use ridgelight_cpu::dirty_list as list_reference;
+use ridgelight_cpu::dirty_mark as mark_reference;
+use ridgelight_cpu::horizon_resweep as resweep_reference;
+use ridgelight_cpu::horizon_sweep as sweep_reference;
 use ridgelight_cpu::horizon_sweep::SweepOptions;
 use ridgelight_cpu::lattice::{Lattice, line_number, line_position, slots};
 use ridgelight_cpu::shared::sweep::{Heights, March, on_field};
@@ -19,7 +19,7 @@ pub(super) struct Edit {
     rectangle: Rectangle,
     /// Heights before it.
     before: Vec<f32>,
-    /// What the twins have marked so far.
+    /// What the CPU reference has marked so far.
     dirty: Vec<u32>,
 }
 
@@ -46,7 +46,7 @@ pub(super) fn dirty_mark(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let got = run.words(pass, "dirty_samples").expect("written");
     let size = run.size();
     let edit = run.edit.as_mut().expect("drawn");
-    edit.dirty = mark_twin::dirty_mark(size, edit.rectangle);
+    edit.dirty = mark_reference::dirty_mark(size, edit.rectangle);
     let words = got.iter().zip(&edit.dirty).enumerate();
     let pair = |(i, (got, want)): (usize, (&u32, &u32))| Pair {
         got: (got & want).into(),
@@ -57,7 +57,7 @@ pub(super) fn dirty_mark(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     words.map(pair).collect()
 }
 
-/// Occluders are those of the twin, which marks what it reaches.
+/// Occluders are those of the CPU reference, which marks what it reaches.
 pub(super) fn horizon_resweep(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let occluders = stored(run, pass, "occluders", 2).expect("written");
     let first = pushed(pass, offsets::horizon_resweep_push::FIRST_AZIMUTH) as usize;
@@ -81,12 +81,12 @@ fn lines_of(
     let alone = Azimuth { layer: 0, ..*azimuth };
     let march = March::new(heights, &alone);
     let slots = slots(march.lanes as usize, shift, border);
-    let mut twin = Lattice::new(1, slots, march.steps as usize);
+    let mut reference = Lattice::new(1, slots, march.steps as usize);
     let edit = run.edit.as_mut().expect("drawn");
     let before = Heights { samples: &edit.before, ..heights };
-    sweep_twin::horizon_sweep(before, &alone, &options, &mut twin);
+    sweep_reference::horizon_sweep(before, &alone, &options, &mut reference);
     let (rectangle, dirty) = (edit.rectangle, &mut edit.dirty);
-    resweep_twin::horizon_resweep(heights, &alone, &options, rectangle, &mut twin, dirty);
+    resweep_reference::horizon_resweep(heights, &alone, &options, rectangle, &mut reference, dirty);
     let all = (0..march.steps).flat_map(|s| (0..slots as i32).map(move |t| (s, t)));
     let shear = azimuth.shear;
     let on_field =
@@ -95,7 +95,7 @@ fn lines_of(
         let line = line_number((slot, slots as i32), (step, march.steps), shear, shift, border);
         Pair {
             got: occluders.bits(azimuth.layer, line, step).into(),
-            want: twin.occluders[twin.texel(slot, march.march_position(step), 0)].into(),
+            want: reference.occluders[reference.texel(slot, march.march_position(step), 0)].into(),
             tolerance: 0.0,
             at: [k, step as usize, slot as usize],
         }
@@ -103,7 +103,7 @@ fn lines_of(
     all.filter(on_field).map(pair).collect()
 }
 
-/// All marks, now that the twins have made theirs; and the list of their words, in any order, with
+/// All marks, after the CPU reference has made its own; and the list of their words, in any order, with
 /// just enough workgroups.
 pub(super) fn dirty_list(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let got = run.words(pass, "dirty_samples").expect("written");
@@ -113,15 +113,15 @@ pub(super) fn dirty_list(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let mut listed =
         words[offsets::edit_list::DIRTY_WORDS / 4..][..at(offsets::edit_list::WORD_COUNT)].to_vec();
     listed.sort_unstable();
-    let listed_by_twin = list_twin::dirty_list(&want);
+    let listed_by_reference = list_reference::dirty_list(&want);
     let groups = |a: usize| [at(a), at(a + 4), at(a + 8)];
     // Sixteen words a group that lights, two a group that resolves; fewer groups than a row holds.
     for (at, words) in
         [(offsets::edit_list::LIGHT_GROUPS, 16), (offsets::edit_list::RESOLVE_GROUPS, 2)]
     {
-        assert_eq!(groups(at), [listed_by_twin.len().div_ceil(words), 1, 1]);
+        assert_eq!(groups(at), [listed_by_reference.len().div_ceil(words), 1, 1]);
     }
-    assert_eq!(listed.len(), listed_by_twin.len(), "words that mark anything");
+    assert_eq!(listed.len(), listed_by_reference.len(), "words that mark anything");
     let pairs = |got: Vec<u32>, want: Vec<u32>, of: usize| {
         let words = got.into_iter().zip(want).enumerate();
         let pair = move |(i, (got, want)): (usize, (u32, u32))| Pair {
@@ -132,5 +132,5 @@ pub(super) fn dirty_list(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         };
         words.map(pair)
     };
-    pairs(got, want, 0).chain(pairs(listed, listed_by_twin, 1)).collect()
+    pairs(got, want, 0).chain(pairs(listed, listed_by_reference, 1)).collect()
 }

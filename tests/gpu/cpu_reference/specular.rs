@@ -1,4 +1,4 @@
-//! The passes that throw light by lobes.
+//! The passes of indirect Phong specular.
 
 use half::f16;
 use ridgelight::gpu::shaders::offsets;
@@ -15,7 +15,7 @@ use ridgelight_cpu::tolerance::{
     BounceError, CastError, EPSILON, Gathered, device_arriving, device_level, device_sh_specular,
     device_specular_exit, device_specular_visibility, stored_f16,
 };
-use ridgelight_cpu::{specular_visibility as seen_twin, vector_reduce as reduce_twin};
+use ridgelight_cpu::{specular_visibility as seen_reference, vector_reduce as reduce_reference};
 
 use super::bounce::{brightest, colours};
 use super::sh::device_series;
@@ -50,7 +50,7 @@ impl Run<'_> {
     }
 }
 
-/// Coefficients beside a twin's.
+/// Coefficients beside the CPU reference's.
 pub(super) fn paired(
     (got, want): (&Series, &Series),
     tolerance: impl Fn(f64) -> f64,
@@ -84,7 +84,7 @@ pub(super) fn specular_visibility(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let [cols, _] = run.size();
     let mut pairs = Vec::new();
     for (i, (got, seen)) in got.iter().zip(&seen).enumerate() {
-        let want = seen_twin::specular_visibility(seen, &matrix);
+        let want = seen_reference::specular_visibility(seen, &matrix);
         for (k, row) in matrix.iter().enumerate() {
             let summed: glam::DVec3 = row.iter().zip(seen).map(|(m, v)| m.abs() * v.abs()).sum();
             pairs.extend((0..3).map(|c| Pair {
@@ -101,10 +101,10 @@ pub(super) fn specular_visibility(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 
 pub(super) fn specular_exit(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     use offsets::specular_exit_push::BEGINS;
-    let [order, direct, throws, vectors, halves] =
+    let [order, direct, has_bounces, vectors, halves] =
         ["order", "is_direct", "throws", "vectors", "halves"]
             .map(|name| constant(pass, name) as usize);
-    let (is_direct, throws, has_vectors) = (direct == 1, throws == 1, vectors == 1);
+    let (is_direct, has_bounces, has_vectors) = (direct == 1, has_bounces == 1, vectors == 1);
     let has_series = has_vectors || !is_direct;
     let arriving = if has_series { run.all_series(pass, "arriving", order) } else { Vec::new() };
     let ([cols, rows], error, heights) = (run.size(), run.normal_error(), run.heights());
@@ -117,23 +117,23 @@ pub(super) fn specular_exit(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         seen = colours(&run.floats(pass, "gloss_direct").expect("bound"));
     } else {
         if pushed(pass, BEGINS) == 1 {
-            run.gloss = vec![[0.0; 3]; cols * rows];
+            run.specular = vec![[0.0; 3]; cols * rows];
         }
         let got = colours(&run.floats(pass, "gloss_bounced").expect("written"));
         for (i, got) in got.iter().enumerate() {
             let own = mirrored(&arriving[i], normals[i], run.lobe(i));
             let off = f64::from(run.lobe(i).scale) * device_sh_specular(order, error);
-            let tolerance = off * magnitude(&arriving[i]) + 2.0 * EPSILON * run.gloss[i][0];
+            let tolerance = off * magnitude(&arriving[i]) + 2.0 * EPSILON * run.specular[i][0];
             pairs.extend([0, 1, 2].map(|c| {
-                let want = run.gloss[i][c] + own[c];
+                let want = run.specular[i][c] + own[c];
                 let tolerance = tolerance + 2.0 * EPSILON * want;
                 Pair { got: got[c], want, tolerance, at: [c, i / cols, i % cols] }
             }));
-            seen.push([0, 1, 2].map(|c| got[c] - run.gloss[i][c]));
+            seen.push([0, 1, 2].map(|c| got[c] - run.specular[i][c]));
         }
-        run.gloss = got;
+        run.specular = got;
     }
-    if !throws {
+    if !has_bounces {
         return pairs;
     }
     let diffuse = run.exit(pass);
@@ -144,7 +144,7 @@ pub(super) fn specular_exit(run: &mut Run, pass: &Pass) -> Vec<Pair> {
             for c in 0..channels.min(3) {
                 let want = diffuse[i][c] + seen[i][c];
                 // What the lobe gave is a difference of sums here.
-                let tolerance = 4.0 * EPSILON * (want + run.gloss[i][c]);
+                let tolerance = 4.0 * EPSILON * (want + run.specular[i][c]);
                 let at = [c, i / cols, i % cols];
                 pairs.push(Pair { got: got[c].into(), want, tolerance, at });
             }
@@ -173,7 +173,7 @@ pub(super) fn vector_reduce(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let exit = run.all_series(pass, "exit_vectors", order);
     let texels = run.all_series(pass, "vector_levels", order);
     let is_half = run.is_half(pass, "vector_levels");
-    let want = reduce_twin::vector_reduce(&exit, &shade, number, &texels);
+    let want = reduce_reference::vector_reduce(&exit, &shade, number, &texels);
     let largest = exit.iter().flatten().flatten().fold(0.0, |m: f64, v| m.max(v.abs()));
     let tolerance =
         |want: f64| device_level(largest) + if is_half { stored_f16(want) } else { 0.0 };
@@ -227,7 +227,7 @@ pub(super) fn specular_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         azimuths,
     };
     let of_vectors = vectors.as_ref().map(|[exit, levels]| [&exit[..], &levels[..]]);
-    let twin = SpecularGather { gather, order, vectors: of_vectors };
+    let reference = SpecularGather { gather, order, vectors: of_vectors };
     let bright = match &vectors {
         Some([exit, _]) => exit.iter().map(magnitude).fold(0.0, f64::max),
         None => brightest(&exit),
@@ -251,8 +251,8 @@ pub(super) fn specular_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let mut pairs = Vec::new();
     for (i, (got, series)) in got.iter().zip(&series).enumerate() {
         let at = [i / cols, i % cols];
-        let all = twin.casts_along(at);
-        let want = twin.of(&all);
+        let all = reference.casts_along(at);
+        let want = reference.of(&all);
         let slices = run.slices(at, 1.0, bright);
         let of_series = device_arriving(&all, |cast| gathered.error(cast), order, &slices);
         let off = BounceError::of(&all, |_, cast| error(cast), &slices).light;

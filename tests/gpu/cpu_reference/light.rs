@@ -4,19 +4,19 @@ use ridgelight::gpu::shaders::offsets;
 use ridgelight::plan::Pass;
 use ridgelight::plan::azimuths::{Azimuth, Shape};
 use ridgelight::scene::{Albedo, Border, Environment, Sun};
-use ridgelight_cpu::env_tables as tables_twin;
+use ridgelight_cpu::env_tables as tables_reference;
 use ridgelight_cpu::env_tables::{EnvTables, bottom_rad};
-use ridgelight_cpu::env_wedges as wedges_twin;
-use ridgelight_cpu::light_resolve as resolve_twin;
+use ridgelight_cpu::env_wedges as wedges_reference;
+use ridgelight_cpu::light_resolve as resolve_reference;
 use ridgelight_cpu::light_resolve::LightSum;
 use ridgelight_cpu::oracle::Oracle;
 use ridgelight_cpu::shared::field::{field_slope, normal_of};
 use ridgelight_cpu::shared::gather::Swept;
 use ridgelight_cpu::shared::sweep::Heights;
-use ridgelight_cpu::sky_shade as sky_twin;
-use ridgelight_cpu::sphere_shade as sphere_twin;
-use ridgelight_cpu::sun_shade as sun_twin;
-use ridgelight_cpu::sun_specular as gloss_twin;
+use ridgelight_cpu::sky_shade as sky_reference;
+use ridgelight_cpu::sphere_shade as sphere_reference;
+use ridgelight_cpu::sun_shade as sun_reference;
+use ridgelight_cpu::sun_specular as specular_reference;
 use ridgelight_cpu::tolerance::{
     EPSILON, ShadeError, SphereGeometry, device_fused_slope, device_resolved, device_sun_arriving,
     device_sun_specular, device_table, device_wedge_row,
@@ -51,7 +51,7 @@ pub(super) fn env_wedges(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let got = wedge_rows(run, pass);
     let environment = run.scene.lights.environment.as_ref().expect("an environment");
     let azimuths = &run.plan.azimuths[..pass.groups[1] as usize];
-    let want = wedges_twin::env_wedges(environment, run.scene.surface.border, azimuths);
+    let want = wedges_reference::env_wedges(environment, run.scene.surface.border, azimuths);
     assert_eq!(got.len(), want.len());
     let rows = got.len() / azimuths.len();
     let mut pairs = Vec::new();
@@ -85,7 +85,7 @@ pub(super) fn env_tables(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let got = device_tables(run, pass);
     let height = pushed(pass, offsets::env_tables_push::HEIGHT) as usize;
     let azimuths = pushed(pass, offsets::env_tables_push::AZIMUTH_COUNT) as usize;
-    let want = tables_twin::env_tables(&rows, (height, azimuths), got.nodes, got.bottom_rad);
+    let want = tables_reference::env_tables(&rows, (height, azimuths), got.nodes, got.bottom_rad);
     assert_eq!(got.texels.len(), want.texels.len());
     let (nodes, pieces) = (got.nodes, (height + got.nodes) as f64);
     let kept = rows.len() / azimuths;
@@ -135,7 +135,7 @@ pub(super) fn sky_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         let want = run.swept(range.clone(), fuse_of(pass), |swept| {
             let border = if is_open { Border::Open } else { swept.heights.border };
             let heights = Heights { border, ..swept.heights };
-            sky_twin::sky_shade(&Swept { heights, ..*swept })
+            sky_reference::sky_shade(&Swept { heights, ..*swept })
         });
         let tolerance = error.sky();
         pairs.extend(got.iter().zip(want).enumerate().map(|(i, (got, want))| Pair {
@@ -149,8 +149,8 @@ pub(super) fn sky_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         let tables = device_tables(run, pass);
         let environment = run.scene.lights.environment.as_ref().expect("an environment");
         let tolerance = error.environment(brightest(environment));
-        let twin = |swept: &Swept| sky_twin::env_shade(swept, &tables);
-        let want = run.swept(range.clone(), fuse_of(pass), twin);
+        let reference = |swept: &Swept| sky_reference::env_shade(swept, &tables);
+        let want = run.swept(range.clone(), fuse_of(pass), reference);
         for (i, (got, want)) in got.chunks_exact(4).zip(want).enumerate() {
             pairs.extend(channels(got, want.into(), tolerance, at(i)));
         }
@@ -185,7 +185,7 @@ pub(super) fn sun_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         for (i, got) in got.iter().enumerate() {
             let (col, row) = ((i % cols) as i32, (i / cols) as i32);
             if !grazes(col, row) {
-                let want = sun_twin::sun_at(swept, shape, col, row);
+                let want = sun_reference::sun_at(swept, shape, col, row);
                 let at = [range.len(), i / cols, i % cols];
                 pairs.push(Pair { got: (*got).into(), want, tolerance, at });
             }
@@ -206,7 +206,7 @@ pub(super) fn sun_specular(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let (heights, error) = (run.heights(), run.sample_error());
     let [cols, _] = run.size();
     if f32::from_bits(pushed(pass, COLOUR + 12)) > 0.0 {
-        run.gloss = vec![[0.0; 3]; sums.len()];
+        run.specular = vec![[0.0; 3]; sums.len()];
     }
     let towards = {
         let (sin, cos) = sun.azimuth_rad.sin_cos();
@@ -217,10 +217,10 @@ pub(super) fn sun_specular(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     for (i, got) in got.chunks_exact(4).enumerate() {
         let normal = normal_of(field_slope(&heights, (i % cols) as i32, (i / cols) as i32));
         let phong = run.lobe(i);
-        let light = gloss_twin::gloss_on(normal, &sun, phong, sums[i].into());
+        let light = specular_reference::gloss_on(normal, &sun, phong, sums[i].into());
         let tolerance =
             device_sun_specular(phong.exponent.into(), error.normal(), normal.dot(towards));
-        for (c, (got, sum)) in got.iter().zip(&mut run.gloss[i]).enumerate() {
+        for (c, (got, sum)) in got.iter().zip(&mut run.specular[i]).enumerate() {
             let colour = f64::from(sun.irradiance[c]);
             let want = *sum + colour * light;
             *sum = f64::from(*got);
@@ -231,7 +231,7 @@ pub(super) fn sun_specular(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     pairs
 }
 
-/// What the same pass leaves of what arrives, where it is thrown on.
+/// The same pass's series of the light that arrives, where it is bounced.
 fn sun_arriving(run: &mut Run, pass: &Pass, sun: &Sun, towards: Rgb) -> Vec<Pair> {
     let order = constant(pass, "order") as usize;
     if order == 0 {
@@ -247,7 +247,7 @@ fn sun_arriving(run: &mut Run, pass: &Pass, sun: &Sun, towards: Rgb) -> Vec<Pair
     let mut pairs = Vec::new();
     for (i, (got, before)) in got.iter().zip(&run.arriving).enumerate() {
         let normal = normal_of(field_slope(&heights, (i % cols) as i32, (i / cols) as i32));
-        let more = gloss_twin::arriving(normal, sun, order, sums[i].into());
+        let more = specular_reference::arriving(normal, sun, order, sums[i].into());
         let want: Vec<_> = before
             .iter()
             .zip(&more)
@@ -256,47 +256,47 @@ fn sun_arriving(run: &mut Run, pass: &Pass, sun: &Sun, towards: Rgb) -> Vec<Pair
         let largest = sun.irradiance.iter().fold(0.0, |m: f32, v| m.max(*v));
         let off = f64::from(largest) * device_sun_arriving(error.normal(), normal.dot(towards));
         let tolerance = |want: f64| off + 2.0 * EPSILON * want.abs();
-        pairs.extend(super::gloss::paired((got, &want), tolerance, [i / cols, i % cols]));
+        pairs.extend(super::specular::paired((got, &want), tolerance, [i / cols, i % cols]));
     }
     run.arriving = got;
     pairs
 }
 
-/// Slices of one ball, all of them once the last are there.
+/// Slices of one sphere light, paired after the last.
 pub(super) fn sphere_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     use offsets::sphere_shade_push::{LAST_SLICE, RADIANCE, REACH_M, SLICES_AROUND};
     let slices = run.quality.sun_azimuths;
     if f32::from_bits(pushed(pass, RADIANCE + 12)) > 0.0 {
-        run.balls = vec![([0.0; 3], 0.0); run.scene.field.heights_m().len()];
+        run.sphere_lights = vec![([0.0; 3], 0.0); run.scene.field.heights_m().len()];
     }
     if pushed(pass, LAST_SLICE) < pushed(pass, SLICES_AROUND) {
         return Vec::new();
     }
     let name = pass.part.split(' ').next().and_then(|part| part.strip_prefix("light"));
     let number: usize = name.and_then(|n| n.parse().ok()).expect("light and its number");
-    let ball = run.scene.lights.sphere_lights[number - 1];
+    let sphere_light = run.scene.lights.sphere_lights[number - 1];
     let reach = f64::from(f32::from_bits(pushed(pass, REACH_M)));
     let oracle = Oracle::new(&run.scene.field, run.border());
     let [cols, _] = run.size();
-    let mut balls = std::mem::take(&mut run.balls);
-    for (i, (sum, tolerance)) in balls.iter_mut().enumerate() {
-        let seen = SphereGeometry::of(&run.scene.field, &ball, i);
+    let mut sphere_lights = std::mem::take(&mut run.sphere_lights);
+    for (i, (sum, tolerance)) in sphere_lights.iter_mut().enumerate() {
+        let seen = SphereGeometry::of(&run.scene.field, &sphere_light, i);
         if seen.distance_m > reach {
             continue;
         }
-        let light = sphere_twin::sphere_at(&oracle, &ball, slices, i / cols, i % cols);
-        let brightest = ball.radiance.iter().fold(0.0, |m: f32, v| m.max(*v));
-        sum.iter_mut().zip(ball.radiance).for_each(|(s, r)| *s += light * f64::from(r));
+        let light = sphere_reference::sphere_at(&oracle, &sphere_light, slices, i / cols, i % cols);
+        let brightest = sphere_light.radiance.iter().fold(0.0, |m: f32, v| m.max(*v));
+        sum.iter_mut().zip(sphere_light.radiance).for_each(|(s, r)| *s += light * f64::from(r));
         *tolerance += f64::from(brightest) * (seen.tolerance() + 4.0 * EPSILON);
     }
     let got = run.floats(pass, "sphere_sum").expect("written");
-    let texels = got.chunks_exact(4).zip(&balls).enumerate();
+    let texels = got.chunks_exact(4).zip(&sphere_lights).enumerate();
     let pairs = texels
         .flat_map(|(i, (got, (want, tolerance)))| {
             channels(got, Rgb::from(*want), *tolerance, [0, i / cols, i % cols])
         })
         .collect();
-    run.balls = balls;
+    run.sphere_lights = sphere_lights;
     pairs
 }
 
@@ -315,18 +315,18 @@ pub(super) fn light_resolve(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let layer = if constant(pass, "sum_has_colour") == 1 {
         let sum = run.floats(pass, "colour_sum").expect("read");
         let sum: Vec<[f64; 3]> = sum.chunks_exact(4).map(|t| rgb(t).to_array()).collect();
-        resolve_twin::light_resolve(LightSum::Colour(&sum), colour, map)
+        resolve_reference::light_resolve(LightSum::Colour(&sum), colour, map)
     } else {
         let sum = run.floats(pass, "scalar_sum").expect("read");
         let sum: Vec<f64> = sum.into_iter().map(f64::from).collect();
-        resolve_twin::light_resolve(LightSum::Scalar(&sum), colour, map)
+        resolve_reference::light_resolve(LightSum::Scalar(&sum), colour, map)
     };
     if pushed(pass, CLEARS) == 1 {
         run.radiance = vec![[0.0; 3]; layer.len()];
         run.lights = 0;
     }
     if constant(pass, "adds_to_radiance") == 1 {
-        resolve_twin::add_to_radiance(&mut run.radiance, &layer);
+        resolve_reference::add_to_radiance(&mut run.radiance, &layer);
         run.lights += 1;
     }
     let (radiance, lights) = (run.radiance.clone(), run.lights);

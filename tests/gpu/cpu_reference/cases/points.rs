@@ -78,10 +78,11 @@ pub fn ellipses() -> Vec<Case> {
     };
     let deep = field(9, 9, [1.0, 1.0], |r, c| if (r, c) == (4, 4) { 0.0 } else { 60.0 });
     let long = field(3, 257, [2.0, 2.0], |r, c| ((7 * r + 5 * c) % 11) as f64);
-    // From the knob of low hills rays meet others 100 to 300 cells away, past dozens of repetitions and near a right angle of the base.
+    // Rays from the bump on low hills meet others 100 to 300 cells away, past dozens of repetitions and near a right
+    // angle of the base.
     let low = field(7, 40, [1.0, 1.5], |r, c| {
-        let knob = if (r, c) == (3, 25) { 0.5 } else { 0.0 };
-        0.05 * (TAU * c as f64 / 40.0).sin() + 0.03 * (TAU * r as f64 / 7.0).cos() + knob
+        let bump = if (r, c) == (3, 25) { 0.5 } else { 0.0 };
+        0.05 * (TAU * c as f64 / 40.0).sin() + 0.03 * (TAU * r as f64 / 7.0).cos() + bump
     });
     let flat = (0..60).map(|k| {
         let z = [-0.05, -0.004, -0.002, -0.001, 0.4][k % 5];

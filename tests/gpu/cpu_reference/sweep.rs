@@ -6,13 +6,13 @@ use ridgelight::plan::azimuths::CELL;
 use ridgelight::plan::{Azimuth, Nodes, Pass};
 use ridgelight::scene::{Border, Fuse};
 use ridgelight_cpu::height_transpose::{heights_by_col, heights_by_row};
-use ridgelight_cpu::horizon_march as march_twin;
+use ridgelight_cpu::horizon_march as march_reference;
 use ridgelight_cpu::horizon_march::MarchOptions;
-use ridgelight_cpu::horizon_sweep as sweep_twin;
+use ridgelight_cpu::horizon_sweep as sweep_reference;
 use ridgelight_cpu::horizon_sweep::{SweepOptions, height_scale, line_height};
 use ridgelight_cpu::lattice::{Lattice, line_number, line_position, slots};
 use ridgelight_cpu::shared::sweep::{LOWEST_MET, March, on_field};
-use ridgelight_cpu::surface_sweep as surface_twin;
+use ridgelight_cpu::surface_sweep as surface_reference;
 use ridgelight_cpu::sweep_fuse::fused_horizon;
 use ridgelight_cpu::tolerance::{
     EPSILON, device_angle, device_distance, device_fused_slope, device_march_slope, device_slope,
@@ -106,7 +106,7 @@ pub(super) fn horizon_sweep(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     pairs
 }
 
-/// Pairs one azimuth's lines and returns what the device left of them, as the twins store it.
+/// Pairs one azimuth's lines and returns what the device left of them, as the CPU reference stores it.
 fn lines_of(
     run: &Run,
     (k, azimuth): (usize, &Azimuth),
@@ -121,8 +121,8 @@ fn lines_of(
     let (shift, border) = (options.line_shift, run.border());
     let slots = slots(march.lanes as usize, shift, border);
     let mut left = Lattice::new(1, slots, march.steps as usize);
-    let mut twin = left.clone();
-    sweep_twin::horizon_sweep(heights, &alone, &options, &mut twin);
+    let mut reference = left.clone();
+    sweep_reference::horizon_sweep(heights, &alone, &options, &mut reference);
     let [largest, _] = run.relief();
     let step_m = f64::from(azimuth.step_m);
     let total = options.warm_up + march.steps;
@@ -138,7 +138,7 @@ fn lines_of(
         let at = [k, row as usize, slot as usize];
         if let Some(occluders) = occluders {
             let got = occluders.bits(azimuth.layer, line, step);
-            let want = twin.occluders[texel];
+            let want = reference.occluders[texel];
             left.occluders[texel] = got as u16;
             let slope = |back| slope_of(&march, y, step, back);
             pairs.push(match (slope(got as i32), slope(want.into())) {
@@ -156,7 +156,7 @@ fn lines_of(
                 false => f32::from_bits(bits),
             };
             left.slopes[texel] = got;
-            let want = f64::from(twin.slopes[texel]);
+            let want = f64::from(reference.slopes[texel]);
             let tolerance = match (options.packed, options.slopes_f16) {
                 (Some(_), _) => device_slope_packed(largest, step_m),
                 (None, true) => device_slope_f16(want),
@@ -190,8 +190,8 @@ fn slope_at(march: &March, (lane, step): (i32, i32), back: f64) -> f64 {
     (height - f64::from(march.height_at(lane, step))) / (back * f64::from(azimuth.step_m))
 }
 
-/// What is met need not be the twin's own, where two stand equally high; but it must be a place that
-/// stands as high as the twin's slope says, once for the device's error and once for the twin's.
+/// What is met need not be the CPU reference's own, where two stand equally high; but it must be a place that
+/// stands as high as the CPU reference's slope, within the device's error and the CPU reference's.
 fn place_pair(
     march: &March,
     sample: (i32, i32),
@@ -226,7 +226,7 @@ fn one_a_sample(
     pass: &Pass,
     first: u32,
     (has_distances, nodes): (bool, Nodes),
-    twin_of: impl Fn(&Run, &Azimuth, &mut Lattice) -> f64,
+    reference_of: impl Fn(&Run, &Azimuth, &mut Lattice) -> f64,
 ) -> Vec<Pair> {
     let words = run.floats(pass, "slopes").expect("written");
     let [width, height] = run.extent(pass, "slopes");
@@ -236,13 +236,13 @@ fn one_a_sample(
         let alone = Azimuth { layer: 0, ..azimuth };
         let march = March::new(run.heights(), &alone);
         let mut left = Lattice::new(1, march.lanes as usize, march.steps as usize);
-        let mut twin = left.clone();
-        let tolerance = twin_of(run, &alone, &mut twin);
+        let mut reference = left.clone();
+        let tolerance = reference_of(run, &alone, &mut reference);
         for ([step, lane], [row, col]) in marched(&march, nodes) {
             let texel = left.texel(lane, march.march_position(step), 0);
             let stored = |layer: u32| words[(layer as usize * height + row) * width + col];
             left.slopes[texel] = stored(azimuth.layer);
-            let (got, want) = (left.slopes[texel].into(), twin.slopes[texel]);
+            let (got, want) = (left.slopes[texel].into(), reference.slopes[texel]);
             let at = [k, row, col];
             pairs.push(Pair { got, want: want.into(), tolerance, at });
             if has_distances {
@@ -259,9 +259,9 @@ fn one_a_sample(
 pub(super) fn surface_sweep(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let first = pushed(pass, offsets::march_push::FIRST_AZIMUTH);
     let stored = (constant(pass, "writes_distances") == 1, Nodes { stride: 1 });
-    one_a_sample(run, pass, first, stored, |run, azimuth, twin| {
+    one_a_sample(run, pass, first, stored, |run, azimuth, reference| {
         let warm_up = run.warm_up(azimuth.marches_rows());
-        surface_twin::surface_sweep(run.heights(), azimuth, warm_up, twin);
+        surface_reference::surface_sweep(run.heights(), azimuth, warm_up, reference);
         let vector = [azimuth.vector_march, azimuth.vector_lane];
         device_surface_slope(run.relief()[0], azimuth.step_m.into(), vector)
     })
@@ -271,10 +271,10 @@ pub(super) fn horizon_march(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let first = pushed(pass, offsets::march_push::FIRST_AZIMUTH);
     let stored =
         (constant(pass, "writes_distances") == 1, Nodes { stride: constant(pass, "node_stride") });
-    one_a_sample(run, pass, first, stored, |run, azimuth, twin| {
+    one_a_sample(run, pass, first, stored, |run, azimuth, reference| {
         let warm_up = run.warm_up(azimuth.marches_rows());
         let options = MarchOptions { all_crossings: constant(pass, "all_crossings") == 1, warm_up };
-        march_twin::horizon_march(run.heights(), azimuth, options, twin);
+        march_reference::horizon_march(run.heights(), azimuth, options, reference);
         device_march_slope(run.relief()[1], azimuth.step_m.into())
     })
 }

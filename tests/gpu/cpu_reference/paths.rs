@@ -2,8 +2,8 @@
 
 use ridgelight::gpu::shaders::offsets;
 use ridgelight::plan::{Pass, REFERENCE_BATCH, unsampled_light_error};
-use ridgelight_cpu::height_bounds as bounds_twin;
-use ridgelight_cpu::height_cells as cells_twin;
+use ridgelight_cpu::height_bounds as bounds_reference;
+use ridgelight_cpu::height_cells as cells_reference;
 use ridgelight_cpu::indirect::{Fineness, truth};
 use ridgelight_cpu::path_trace::{Traced, Tracer};
 use ridgelight_cpu::tolerance::EPSILON;
@@ -18,8 +18,8 @@ pub(super) fn height_cells(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let [cols, _] = run.size();
     let [_, relief] = run.relief();
     let slope = 12.0 * EPSILON * relief / field.cell_m()[0].min(field.cell_m()[1]);
-    let cells = cells_twin::cells(field, border);
-    let ground = cells_twin::ground(field, border);
+    let cells = cells_reference::cells(field, border);
+    let ground = cells_reference::ground(field, border);
     let mut pairs = Vec::new();
     let mut add = |i: usize, got: f32, want: f64, tolerance: f64| {
         pairs.push(Pair { got: got.into(), want, tolerance, at: [0, i / cols, i % cols] });
@@ -43,9 +43,9 @@ pub(super) fn height_cells(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 pub(super) fn height_bounds(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     use offsets::height_bounds_push::{CELLS_X, CELLS_Y, LEVEL, PADDED_ROWS};
     let [x, y, level, padded] = [CELLS_X, CELLS_Y, LEVEL, PADDED_ROWS].map(|o| pushed(pass, o));
-    let cells = cells_twin::cells(&run.scene.field, run.border());
+    let cells = cells_reference::cells(&run.scene.field, run.border());
     let [cols, _] = run.size();
-    let want = bounds_twin::height_bounds(&cells, cols, [x as usize, y as usize], level);
+    let want = bounds_reference::height_bounds(&cells, cols, [x as usize, y as usize], level);
     let across = x.div_ceil(4_u32.pow(level)) as usize;
     let top = (padded / 2 - padded / (2 * 4_u32.pow(level - 1))) as usize;
     let [width, _] = run.extent(pass, "maxima");
@@ -159,7 +159,7 @@ const HEIGHT_OFF: f64 = 3.0 * 80.0;
 /// cosine to be met, it falls by a third of the relief a cell in the middle, or more: 3 · 3 · 4.
 const HIT_OFF: f64 = 36.0;
 
-/// That the comparison says something, by numbers that know nothing of what the twin itself says it may be off by.
+/// The comparison detects errors, by numbers that do not depend on the CPU reference's own bounds.
 ///
 /// Decisions in doubt are no more than are to be expected of heights that are spread evenly over the relief, of which so much is
 /// in doubt on either side, twice that for decisions that are no heights, and three standard deviations of so rare events. What
@@ -210,10 +210,10 @@ pub(super) fn quadrature(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let light = run.floats(pass, "radiance").expect("written");
     let error = run.floats(pass, "standard_error").expect("written");
     let [cols, _] = run.size();
-    let unmet = unsampled_light_error(run.scene, bounces as u32, BATCHES * REFERENCE_BATCH);
+    let unsampled = unsampled_light_error(run.scene, bounces as u32, BATCHES * REFERENCE_BATCH);
     let pair = |i: usize, c: usize| {
         let (got, want) = (f64::from(light[4 * i + c]), want[i][c]);
-        let sigma = f64::from(error[4 * i + c]).hypot(unmet[c]);
+        let sigma = f64::from(error[4 * i + c]).hypot(unsampled[c]);
         let tolerance = 6.0 * sigma + 3.0 * stated[i][c] + 1e-5 * want;
         Pair { got, want, tolerance, at: [c, i / cols, i % cols] }
     };

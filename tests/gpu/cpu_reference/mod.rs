@@ -1,5 +1,5 @@
-//! Every pass on the device against its CPU twin, given what the device itself handed to the pass, so
-//! that each is judged alone. Tolerances are the formulas of `measure::tolerance`.
+//! Every pass on the device against its CPU reference: the counterpart of the pass in `ridgelight_cpu`.
+//! The reference gets what the device itself handed to the pass, so that each is judged alone. Tolerances are the formulas of `measure::tolerance`.
 
 mod bend;
 mod bounce;
@@ -7,7 +7,6 @@ mod cases;
 mod edit;
 mod ellipses;
 mod facets;
-mod gloss;
 mod light;
 mod nodes;
 mod paths;
@@ -17,6 +16,7 @@ mod run;
 mod scatter;
 mod sh;
 pub(crate) mod soft;
+mod specular;
 mod sweep;
 
 use std::collections::BTreeMap;
@@ -29,7 +29,7 @@ use crate::Device;
 use cases::Case;
 use run::Run;
 
-/// One value of the device, its twin's, and how far apart they may be.
+/// One value of the device, the CPU reference's, and how far apart they may be.
 #[derive(Clone, Copy, Debug)]
 struct Pair {
     got: f64,
@@ -59,8 +59,8 @@ fn worst(pairs: &[Pair]) -> Option<&Pair> {
 
 type CpuReference = fn(&mut Run, &Pass) -> Vec<Pair>;
 
-/// The twin of every pass, by name.
-const TWINS: &[(&str, CpuReference)] = &[
+/// Every pass's name and its CPU reference.
+const REFERENCES: &[(&str, CpuReference)] = &[
     ("dirty_list", edit::dirty_list),
     ("dirty_mark", edit::dirty_mark),
     ("height_expand", pyramid::height_expand),
@@ -95,10 +95,10 @@ const TWINS: &[(&str, CpuReference)] = &[
     ("sphere_sh_shade", soft::sphere_sh_shade),
     ("light_resolve", light::light_resolve),
     ("bounce_gather", bounce::bounce_gather),
-    ("specular_exit", gloss::specular_exit),
-    ("specular_gather", gloss::specular_gather),
-    ("specular_visibility", gloss::specular_visibility),
-    ("vector_reduce", gloss::vector_reduce),
+    ("specular_exit", specular::specular_exit),
+    ("specular_gather", specular::specular_gather),
+    ("specular_visibility", specular::specular_visibility),
+    ("vector_reduce", specular::vector_reduce),
     ("bounce_march", bounce::bounce_march),
     ("bounce_shade", nodes::bounce_shade),
     ("bounce_walk", bounce::bounce_walk),
@@ -107,12 +107,12 @@ const TWINS: &[(&str, CpuReference)] = &[
     ("shade_reduce", bounce::shade_reduce),
 ];
 
-/// Held to their twins where whole pictures are, byte by byte: [`crate::map`].
+/// Held to the CPU reference where whole pictures are, byte by byte: [`crate::map`].
 const ELSEWHERE: [&str; 1] = ["map_draw"];
 
-fn twin_of(pass: &Pass) -> CpuReference {
-    let twin = TWINS.iter().find(|t| t.0 == pass.name());
-    twin.unwrap_or_else(|| panic!("{} has no twin test", pass.name())).1
+fn reference_of(pass: &Pass) -> CpuReference {
+    let reference = REFERENCES.iter().find(|t| t.0 == pass.name());
+    reference.unwrap_or_else(|| panic!("{} has no test against a CPU reference", pass.name())).1
 }
 
 /// A specialisation constant of a pass.
@@ -159,7 +159,7 @@ fn check(device: &mut Device, case: &Case) -> usize {
 }
 
 #[test]
-fn every_shader_has_a_twin_and_a_case() {
+fn every_shader_has_a_cpu_reference_and_a_case() {
     let cases: Vec<Case> = [
         cases::sweeps(),
         cases::samples(),
@@ -172,8 +172,8 @@ fn every_shader_has_a_twin_and_a_case() {
         cases::ellipses(),
         cases::facets(),
         cases::walks(),
-        cases::throws(),
-        cases::glosses(),
+        cases::bounced_light(),
+        cases::specular(),
         cases::nodes(),
     ]
     .into_iter()
@@ -186,14 +186,22 @@ fn every_shader_has_a_twin_and_a_case() {
         .map(|pass| pass.name())
         .collect();
     for shader in shaders::ALL.iter().filter(|s| !ELSEWHERE.contains(&s.name)) {
-        assert!(TWINS.iter().any(|t| t.0 == shader.name), "{} has no twin test", shader.name);
+        assert!(
+            REFERENCES.iter().any(|t| t.0 == shader.name),
+            "{} has no test against a CPU reference",
+            shader.name
+        );
         assert!(planned.contains(&shader.name), "no case runs {}", shader.name);
     }
-    assert_eq!(TWINS.len() + ELSEWHERE.len(), shaders::ALL.len(), "a twin of no shader");
+    assert_eq!(
+        REFERENCES.len() + ELSEWHERE.len(),
+        shaders::ALL.len(),
+        "a CPU reference of no shader"
+    );
 }
 
 #[test]
-fn sweeps_in_every_form_are_their_twins() {
+fn sweeps_in_every_form_match() {
     let mut device = Device::new();
     for case in cases::sweeps() {
         let lost = check(&mut device, &case);
@@ -202,7 +210,7 @@ fn sweeps_in_every_form_are_their_twins() {
 }
 
 #[test]
-fn sweeps_of_one_value_a_sample_are_their_twins() {
+fn sweeps_of_one_value_a_sample_match() {
     let mut device = Device::new();
     for case in cases::samples() {
         check(&mut device, &case);
@@ -210,7 +218,7 @@ fn sweeps_of_one_value_a_sample_are_their_twins() {
 }
 
 #[test]
-fn pyramids_are_their_twins() {
+fn pyramids_match() {
     let mut device = Device::new();
     for case in cases::pyramids() {
         check(&mut device, &case);
@@ -218,7 +226,7 @@ fn pyramids_are_their_twins() {
 }
 
 #[test]
-fn pictures_are_their_twins_pass_by_pass() {
+fn pictures_match_pass_by_pass() {
     let mut device = Device::new();
     for case in cases::pictures() {
         check(&mut device, &case);
@@ -226,7 +234,7 @@ fn pictures_are_their_twins_pass_by_pass() {
 }
 
 #[test]
-fn walks_are_their_twins_pass_by_pass() {
+fn walks_match_pass_by_pass() {
     let mut device = Device::new();
     for case in cases::walks() {
         check(&mut device, &case);
@@ -234,23 +242,23 @@ fn walks_are_their_twins_pass_by_pass() {
 }
 
 #[test]
-fn throws_are_their_twins() {
+fn bounces_match() {
     let mut device = Device::new();
-    for case in cases::throws() {
+    for case in cases::bounced_light() {
         check(&mut device, &case);
     }
 }
 
 #[test]
-fn lobes_throw_as_their_twins() {
+fn bounced_specular_matches() {
     let mut device = Device::new();
-    for case in cases::glosses() {
+    for case in cases::specular() {
         check(&mut device, &case);
     }
 }
 
 #[test]
-fn bounces_at_nodes_are_their_twins() {
+fn bounces_at_nodes_match() {
     let mut device = Device::new();
     for case in cases::nodes() {
         check(&mut device, &case);
@@ -258,7 +266,7 @@ fn bounces_at_nodes_are_their_twins() {
 }
 
 #[test]
-fn paths_are_their_twins_pass_by_pass() {
+fn paths_match_pass_by_pass() {
     let mut device = Device::new();
     for case in cases::references().into_iter().chain(cases::paths()) {
         check(&mut device, &case);
@@ -285,7 +293,8 @@ fn a_value_beyond_its_tolerance_is_seen() {
     let cases = cases::pictures();
     let mut all = Vec::new();
     for case in cases.iter().filter(|c| {
-        ["environment on a plane", "harmonics of order 3", "balls by harmonics"].contains(&c.name)
+        ["environment on a plane", "harmonics of order 3", "sphere lights by harmonics"]
+            .contains(&c.name)
     }) {
         let mut run = Run::new(device.gpu.as_mut().expect("alive"), case);
         all.extend(run.pairs());
@@ -295,7 +304,7 @@ fn a_value_beyond_its_tolerance_is_seen() {
         for picked in [0, pairs.len() / 2, pairs.len() - 1] {
             let mut spoiled = pairs.clone();
             let pair = &mut spoiled[picked];
-            // Where nothing is tolerated, the next f32; the f64 sum may round towards the twin.
+            // Where nothing is tolerated, the next f32; the f64 sum may round towards the CPU reference.
             let beyond = (pair.want as f32).next_up();
             pair.got = if pair.tolerance > 0.0 {
                 pair.want + 1.01 * pair.tolerance
@@ -309,7 +318,7 @@ fn a_value_beyond_its_tolerance_is_seen() {
 }
 
 #[test]
-fn points_are_their_twins() {
+fn points_match() {
     let mut device = Device::new();
     for case in cases::points() {
         check(&mut device, &case);
@@ -317,7 +326,7 @@ fn points_are_their_twins() {
 }
 
 #[test]
-fn scattered_light_is_its_twins() {
+fn scattered_light_matches() {
     let mut device = Device::new();
     for case in cases::scatters() {
         check(&mut device, &case);
@@ -325,7 +334,7 @@ fn scattered_light_is_its_twins() {
 }
 
 #[test]
-fn ellipses_are_their_twins() {
+fn ellipses_match() {
     let mut device = Device::new();
     for case in cases::ellipses() {
         check(&mut device, &case);
@@ -333,7 +342,7 @@ fn ellipses_are_their_twins() {
 }
 
 #[test]
-fn triangles_are_seen_as_by_their_twins() {
+fn triangles_match() {
     let mut device = Device::new();
     for case in cases::facets() {
         check(&mut device, &case);

@@ -1,4 +1,4 @@
-//! Light paths.
+//! Path tracing.
 
 use ridgelight::scene::{
     Albedo, Border, Lights, PhongSpecular, Quality, Scene, Specular, SphereLight, Sun, Surface,
@@ -15,7 +15,7 @@ fn of_all_lights() -> [Scene; 2] {
         diameter_rad,
         irradiance: [1.0, 0.5, 0.2],
     };
-    let ball =
+    let sphere_light =
         SphereLight { position_m: [9.0, 7.0, 912.0], radius_m: 3.0, radiance: [0.1, 0.4, 2.0] };
     let mut next = random(21);
     let map = (0..7 * 9).map(|_| [0.8 * next() as f32, 0.5, 0.1]).collect();
@@ -27,7 +27,7 @@ fn of_all_lights() -> [Scene; 2] {
             environment: Some(noisy_environment(23)),
             suns: vec![sun(0.2), sun(0.0)],
             keys: vec![key(-0.4, 0.5, [1.0, 0.3, 0.0]), key(0.9, 1.2, [0.0, 0.4, 2.0])],
-            sphere_lights: vec![ball],
+            sphere_lights: vec![sphere_light],
         },
     };
     let repeated = Scene {
@@ -58,8 +58,8 @@ fn with_lobes(mut scene: Scene) -> Scene {
     scene
 }
 
-/// Light paths that the quadrature knows: every kind of light, a lobe and a map; a field that repeats.
-pub(in crate::twins) fn references() -> Vec<Case> {
+/// Paths whose light the quadrature also computes: every kind of light, a lobe and a map; a field that repeats.
+pub(in crate::cpu_reference) fn references() -> Vec<Case> {
     let [all, repeated] = of_all_lights();
     // The quadrature knows of no lobes that are met.
     let lobes = with_lobes(all.clone());
@@ -70,9 +70,9 @@ pub(in crate::twins) fn references() -> Vec<Case> {
     ]
 }
 
-/// Light paths that nothing else knows: lobes that are met; batches in parts, by paths and by lights; a list of samples; ground
+/// Paths whose light nothing else computes: lobes that are met; batches in parts, by paths and by lights; a list of samples; ground
 /// that goes on level; a line.
-pub(in crate::twins) fn paths() -> Vec<Case> {
+pub(in crate::cpu_reference) fn paths() -> Vec<Case> {
     let [all, repeated] = of_all_lights();
     let on = |field, border, lights: &Lights| Scene {
         field,

@@ -26,7 +26,7 @@ impl Sum {
     }
 }
 
-/// One look-up after the other as the twin has it, given what the device was.
+/// One look-up after the other as the CPU reference has it, given what the device was.
 pub(super) fn scatter_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let [first_link, steps, step, first_path, paths, first_sun, suns, first_view] = [
         push::FIRST_LINK,

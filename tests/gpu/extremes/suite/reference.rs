@@ -1,5 +1,5 @@
-//! What a pyramid has to find on uneven ground: what its levels, means of heights, let it. Its twins on the
-//! processor say, in f32, from the same heights.
+//! Horizons that a pyramid has to find on uneven ground, where its levels are means of heights: those of its CPU
+//! reference, in f32, from the same heights.
 
 use std::f64::consts::FRAC_PI_2;
 

@@ -1,7 +1,7 @@
-//! Light that lobes throw, once, and mirror, at the extremes.
+//! Indirect Phong specular, one bounce, at the extremes.
 //!
 //! Under a point sun in the zenith nothing is in shadow: what arrives of it is known in closed form at every sample. What
-//! leaves there by direction, what others see of it by pyramids and what their lobes make of that are the twins' in f64,
+//! leaves there by direction, what others see of it by pyramids and what their lobes make of that are the CPU reference's in f64,
 //! from the heights alone.
 
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -34,10 +34,10 @@ const SIDE: usize = 33;
 /// Samples looked at: about so many.
 const PLACES: usize = 12;
 
-const EXPECTED: &str = "what the twins see of the sun's own harmonics thrown by every sample's lobe and diffusely, mirrored to above";
+const EXPECTED: &str = "what the CPU reference sees of the sun's own harmonics, bounced by every sample's lobe and diffusely, mirrored to above";
 const BOUND: &str = "series: what arrives, leaves and is gathered (`crates/cpu/src/tolerance/specular.rs`), a lobe's sum of them; 4 ε";
 
-const STEEP: &str = "thrown and mirrored by a spike of 1e6 cells, lobes of 0 and 1e4 in turn";
+const STEEP: &str = "bounced and mirrored by a spike of 1e6 cells, lobes of 0 and 1e4 in turn";
 
 pub fn cases() -> Vec<Case> {
     let square = [1.0, 1.0];
@@ -52,9 +52,9 @@ pub fn cases() -> Vec<Case> {
             let name = format!("{name}, lobes of {exponent}");
             lobed(&name, ground, Border::Plane, albedo, [exponent; 2], scale, 1.0)
         };
-        all.push(of("thrown and mirrored in rubble", rough(), 0.5, 0.5));
+        all.push(of("bounced and mirrored in rubble", rough(), 0.5, 0.5));
         all.push(of("mirrored in rubble of albedo 0", black(), 0.0, 1.0));
-        all.push(of("thrown and mirrored by a spike of 1 cell", spike(1.0), 0.5, 0.5));
+        all.push(of("bounced and mirrored by a spike of 1 cell", spike(1.0), 0.5, 0.5));
     }
     let of = |name: &str, ground, border, exponents, exit| {
         lobed(name, ground, border, 0.5, exponents, 0.25, exit)
@@ -63,9 +63,9 @@ pub fn cases() -> Vec<Case> {
     let needle = field([13, 17], square, |r, c| if (r, c) == (6, 8) { 1e6 } else { 0.0 });
     let needle = of(STEEP, needle, Border::Plane, [0.0, 1e4], 1.0);
     all.push(Case { unjudged: is_pyramid, ..needle });
-    let mixed = "thrown and mirrored in rubble, lobes of 0 and 1e4 in turn";
+    let mixed = "bounced and mirrored in rubble, lobes of 0 and 1e4 in turn";
     all.push(of(mixed, rough(), Border::Open, [0.0, 1e4], 1.0));
-    let bright = "thrown and mirrored in rubble under a sun of 1e30";
+    let bright = "bounced and mirrored in rubble under a sun of 1e30";
     all.push(of(bright, rough(), Border::Plane, [20.0; 2], 1e30));
     let high = field([13, 17], square, |_, _| 1e15);
     all.push(of("mirrored by level ground at 1e15", high, Border::Plane, [20.0; 2], 1.0));
@@ -77,11 +77,11 @@ pub fn cases() -> Vec<Case> {
         ([2, 3], Border::Periodic),
     ] {
         let [rows, cols] = sides;
-        let name = format!("thrown and mirrored in {rows} × {cols} of rubble");
+        let name = format!("bounced and mirrored in {rows} × {cols} of rubble");
         all.push(of(&name, rubble(sides, [1.5, 1.0], 3.0, 0.0), border, [20.0; 2], 1.0));
     }
-    all.push(without("thrown in white rubble, lobes of scale 0", 1.0, true));
-    all.push(without("thrown in black rubble, lobes of scale 0", 0.0, false));
+    all.push(without("bounced in white rubble, lobes of scale 0", 1.0, true));
+    all.push(without("bounced in black rubble, lobes of scale 0", 0.0, false));
     all
 }
 
@@ -105,7 +105,7 @@ fn lobed(
     let phong = |i: usize| PhongSpecular { exponent: exponents[i % 2], scale };
     let lights = Lights { suns: vec![sun], ..Lights::default() };
     let mut case = light(name, (EXPECTED, BOUND), (ground, border, lights), both);
-    case.about = About::Glosses;
+    case.about = About::Specular;
     case.scene.surface.albedo = Albedo::Constant([albedo; 3]);
     case.scene.surface.specular = Some(match exponents {
         [a, b] if a == b => Specular::Constant(phong(0)),
@@ -115,18 +115,18 @@ fn lobed(
 }
 
 /// Lobes of scale 0 are none: no layer of theirs, and, where the ground is black, none of a bounce.
-fn without(name: &str, albedo: f32, is_thrown: bool) -> Case {
+fn without(name: &str, albedo: f32, is_bounced: bool) -> Case {
     let ground = rubble([13, 17], [1.0, 1.0], 3.0, 0.0);
     let case = lobed(name, ground, Border::Plane, albedo, [20.0; 2], 0.0, 1.0);
     let expected =
         "no layer of lobes; black: nothing, white: diffuse bounces as without".to_owned();
     let probes = move |found: &Found| {
         assert!(!found.has("glossy"), "{}", found.method.name);
-        assert_eq!(found.has("indirect.1"), is_thrown, "{}", found.method.name);
+        assert_eq!(found.has("indirect.1"), is_bounced, "{}", found.method.name);
         let [whole, direct] = ["radiance", "direct.sun1"].map(|name| found.layer(name));
-        let thrown = if is_thrown { found.layer("indirect.1") } else { vec![0.0; whole.len()] };
+        let bounced = if is_bounced { found.layer("indirect.1") } else { vec![0.0; whole.len()] };
         let at = |i: usize| {
-            let expected = direct[i] + thrown[i];
+            let expected = direct[i] + bounced[i];
             Probe {
                 found: whole[i],
                 expected: [expected; 2],
@@ -139,7 +139,7 @@ fn without(name: &str, albedo: f32, is_thrown: bool) -> Case {
     Case { expected, bound: "4 ε".to_owned(), probes: Box::new(probes), ..case }
 }
 
-/// What samples throw of the sun, and what that is off by in each coefficient.
+/// What samples bounce of the sun, and the bound on each coefficient.
 struct Exit {
     normals: Vec<DVec3>,
     series: Vec<Series>,
@@ -192,7 +192,7 @@ impl Exit {
     }
 }
 
-/// What is thrown, by the diffuse part and by the lobe.
+/// The bounced light, of the diffuse part and of the lobe.
 fn both(found: &Found) -> Vec<Probe> {
     let quality = &found.method.quality;
     let (field, border) = (&found.scene.field, found.scene.surface.border);
@@ -223,7 +223,7 @@ fn both(found: &Found) -> Vec<Probe> {
         azimuths: quality.bounces.azimuths,
     };
     let vectors = is_vector.then_some([&exit.series[..], &texels[..]]);
-    let twin = SpecularGather { gather, order, vectors };
+    let reference = SpecularGather { gather, order, vectors };
     let sum = |series: &Series| series.iter().map(|s| s[0].abs()).sum::<f64>();
     // Y_lm of a direction have the norm n / √4π; so have n² coefficients that are e off each, n e: in any direction a series
     // is n² e / √4π off, and one of norm |c| is n |c| / √4π at most.
@@ -267,8 +267,8 @@ fn both(found: &Found) -> Vec<Probe> {
             let at = [i / field.cols(), i % field.cols()];
             let normal = Land::normal_at(field, border, at);
             let slices = Slices { normal, wedge: 1.0, brightest: bright };
-            let all = twin.casts_along(at);
-            let want = twin.of(&all);
+            let all = reference.casts_along(at);
+            let want = reference.of(&all);
             let of_series = device_arriving(&all, of_exit, order, &slices);
             let of_light = BounceError::of(&all, |_, cast| turned(cast), &slices).light[0];
             let phong = lobe.at(i);
@@ -285,7 +285,7 @@ fn both(found: &Found) -> Vec<Probe> {
                 let bound = bound + 4.0 * EPSILON * expected;
                 Probe { found: layers[k][i], expected: [expected; 2], bound, at: [k, at[0], at[1]] }
             };
-            // Black ground throws by its lobes alone.
+            // Black ground bounces by its lobes alone.
             let of_both = [probe(0), probe(1)];
             of_both.into_iter().skip(usize::from(albedo == 0.0)).collect::<Vec<_>>()
         })

@@ -10,7 +10,7 @@ use super::{Case, Wanted, key, noisy_environment, rough};
 use crate::random;
 
 /// Everything that sums light: sky, environment, discs and a point; colours and a map, or all grey.
-pub(in crate::twins) fn pictures() -> Vec<Case> {
+pub(in crate::cpu_reference) fn pictures() -> Vec<Case> {
     let sun = |azimuth_rad, diameter_rad, irradiance| Sun {
         azimuth_rad,
         elevation_rad: 0.4,
@@ -50,22 +50,24 @@ pub(in crate::twins) fn pictures() -> Vec<Case> {
         let lights = Lights { sky: Some([1.0; 3]), suns, keys, ..Lights::default() };
         Scene { field: rough(12, 17, 14), surface, lights }
     };
-    let ball =
+    let sphere_light =
         |x, y, z, radius_m, radiance| SphereLight { position_m: [x, y, z], radius_m, radiance };
     // Over the ground; cut by it, with samples under and inside; beyond the edge.
-    let balls = {
+    let sphere_lights = {
         let spheres = vec![
-            ball(20.0, 14.0, 920.0, 4.0, [3.0, 2.0, 1.0]),
-            ball(9.5, 6.1, 903.0, 5.0, [0.5, 1.0, 2.0]),
-            ball(-30.0, 50.0, 890.0, 12.0, [4.0, 0.0, 1.0]),
+            sphere_light(20.0, 14.0, 920.0, 4.0, [3.0, 2.0, 1.0]),
+            sphere_light(9.5, 6.1, 903.0, 5.0, [0.5, 1.0, 2.0]),
+            sphere_light(-30.0, 50.0, 890.0, 12.0, [4.0, 0.0, 1.0]),
         ];
         let lights =
             Lights { sky: Some([0.3, 0.5, 0.9]), sphere_lights: spheres, ..Lights::default() };
         Scene { lights, ..colourful.clone() }
     };
-    let balls_alone = {
-        let spheres =
-            vec![ball(7.0, 4.0, 911.0, 2.0, [5.0; 3]), ball(31.0, 9.0, 908.0, 1.0, [2.0; 3])];
+    let sphere_lights_alone = {
+        let spheres = vec![
+            sphere_light(7.0, 4.0, 911.0, 2.0, [5.0; 3]),
+            sphere_light(31.0, 9.0, 908.0, 1.0, [2.0; 3]),
+        ];
         let surface = Surface { border: Border::Periodic, ..Surface::default() };
         let lights = Lights { sphere_lights: spheres, ..Lights::default() };
         Scene { field: rough(9, 8, 17), surface, lights }
@@ -160,21 +162,45 @@ pub(in crate::twins) fn pictures() -> Vec<Case> {
         picture("environment on a plane", on_a_plane.clone(), quality, false, false),
         of_device,
         picture("grey", grey, Quality { fuse: Fuse::Aimed, ..quality }, false, true),
-        picture("balls of light", balls.clone(), quality, true, false),
+        picture("sphere lights", sphere_lights.clone(), quality, true, false),
         picture(
-            "balls in one sum",
-            balls.clone(),
+            "sphere lights in one sum",
+            sphere_lights.clone(),
             Quality { sun_azimuths: 5, ..quality },
             false,
             false,
         ),
-        picture("balls by harmonics", balls.clone(), soft(4, 8), true, false),
-        picture("balls by harmonics of order 6", balls.clone(), soft(6, 4), false, false),
-        picture("balls by a table of wedges", balls.clone(), soft_table, false, false),
-        picture("balls by Legendre, periodic", balls_alone.clone(), soft_nlp, false, false),
-        picture("balls by a pyramid's levels", balls, soft_levels, false, false),
-        picture("balls by a stack, periodic", balls_alone.clone(), soft_stack, true, false),
-        picture("balls alone, periodic", balls_alone, quality, false, false),
+        picture("sphere lights by harmonics", sphere_lights.clone(), soft(4, 8), true, false),
+        picture(
+            "sphere lights by harmonics of order 6",
+            sphere_lights.clone(),
+            soft(6, 4),
+            false,
+            false,
+        ),
+        picture(
+            "sphere lights by a table of wedges",
+            sphere_lights.clone(),
+            soft_table,
+            false,
+            false,
+        ),
+        picture(
+            "sphere lights by Legendre, periodic",
+            sphere_lights_alone.clone(),
+            soft_nlp,
+            false,
+            false,
+        ),
+        picture("sphere lights by a pyramid's levels", sphere_lights, soft_levels, false, false),
+        picture(
+            "sphere lights by a stack, periodic",
+            sphere_lights_alone.clone(),
+            soft_stack,
+            true,
+            false,
+        ),
+        picture("sphere lights alone, periodic", sphere_lights_alone, quality, false, false),
         picture("harmonics of order 6", on_a_plane.clone(), sh(6), false, false),
         picture("harmonics beside a sky", colourful.clone(), windowed, true, false),
         picture("harmonics by Legendre", colourful.clone(), nlp, false, false),

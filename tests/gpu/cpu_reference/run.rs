@@ -13,7 +13,7 @@ use ridgelight_cpu::specular_gather::Series;
 use ridgelight_cpu::tolerance::ShadeError;
 
 use super::cases::Case;
-use super::{Pair, edit, twin_of};
+use super::{Pair, edit, reference_of};
 
 /// A plan run pass by pass, and what its passes have left so far.
 pub(super) struct Run<'a> {
@@ -26,14 +26,14 @@ pub(super) struct Run<'a> {
     pub lattices: Vec<Option<Lattice>>,
     /// Where the azimuths of the light that is being summed begin.
     pub light_begins: usize,
-    /// The sum of the lights so far, by the twin, and how many they are.
+    /// The sum of the lights so far, by the CPU reference, and how many they are.
     pub radiance: Vec<[f64; 3]>,
     pub lights: usize,
-    /// The sum of the balls of light so far, by the twin, and how far each sample may be off it.
-    pub balls: Vec<([f64; 3], f64)>,
+    /// The sum of the sphere lights so far, by the CPU reference, and each sample's bound.
+    pub sphere_lights: Vec<([f64; 3], f64)>,
     /// What the lobe's passes have left so far.
-    pub gloss: Vec<[f64; 3]>,
-    /// What arrives to be thrown on, as series.
+    pub specular: Vec<[f64; 3]>,
+    /// The light that arrives and is bounced, as series.
     pub arriving: Vec<Series>,
     /// Groups of four lines whose hull was deeper than its memory.
     pub lost: usize,
@@ -46,7 +46,7 @@ pub(super) struct Run<'a> {
     pub listed: Option<Vec<usize>>,
     /// Of every pixel, the batch of paths that is being traced.
     pub batches: Vec<Traced>,
-    /// The mean so far, by the twin, and what it may be off by.
+    /// The mean so far, by the CPU reference, and its bound.
     pub scattered: Vec<([f64; 3], [f64; 3])>,
 }
 
@@ -66,8 +66,8 @@ impl<'a> Run<'a> {
             light_begins: 0,
             radiance: Vec::new(),
             lights: 0,
-            balls: Vec::new(),
-            gloss: Vec::new(),
+            sphere_lights: Vec::new(),
+            specular: Vec::new(),
             arriving: Vec::new(),
             lost: 0,
             edit: None,
@@ -80,13 +80,13 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// Runs every pass alone, in order, and pairs what it left with its twin's.
+    /// Runs every pass alone, in order, and pairs what it left with the CPU reference's.
     pub fn pairs(&mut self) -> Vec<(String, Vec<Pair>)> {
         let passes = self.plan.passes.clone();
         let mut all = Vec::new();
         for (i, pass) in passes.iter().enumerate() {
             self.gpu.draw_passes(&mut self.frame, &[i]).expect("drawn");
-            all.push((pass.label(), twin_of(pass)(self, pass)));
+            all.push((pass.label(), reference_of(pass)(self, pass)));
         }
         if !self.plan.edit_passes.is_empty() {
             self.edit = Some(edit::draw(self));
@@ -94,7 +94,7 @@ impl<'a> Run<'a> {
                 ["dirty_mark", "height_transpose", "horizon_resweep", "dirty_list"];
             let passes = self.plan.edit_passes.clone();
             for pass in passes.iter().filter(|p| finds_horizons.contains(&p.name())) {
-                all.push((format!("edit: {}", pass.label()), twin_of(pass)(self, pass)));
+                all.push((format!("edit: {}", pass.label()), reference_of(pass)(self, pass)));
             }
         }
         all
@@ -176,7 +176,7 @@ impl<'a> Run<'a> {
         batch.warm_up as i32
     }
 
-    /// What the sweeps of some azimuths left, for the twins of what comes after.
+    /// What the sweeps of some azimuths left, for the CPU references of later passes.
     pub fn swept<T>(
         &self,
         azimuths: Range<usize>,

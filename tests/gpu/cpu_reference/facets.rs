@@ -9,7 +9,7 @@ use ridgelight_cpu::tolerance::{Land, facet_elevation};
 
 use super::{Pair, Run, pushed};
 
-/// The twin's answer, or the other where what a ray's elevation may err by decides.
+/// The CPU reference's answer, or the other where what a ray's elevation may err by decides.
 pub(super) fn facet_mask(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let (field, border) = (&run.scene.field, run.border());
     let directions = run.directions();

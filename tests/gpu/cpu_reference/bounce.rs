@@ -1,4 +1,4 @@
-//! The passes that throw light from ground to ground.
+//! The passes of indirect diffuse light.
 
 use std::collections::HashSet;
 
@@ -15,10 +15,10 @@ use ridgelight_cpu::shared::bounced::{light_and_weight, radiance};
 use ridgelight_cpu::tolerance::{
     BounceError, Gathered, Land, Slices, device_level, device_spline, march_error, walk_error,
 };
-use ridgelight_cpu::{shade_expand as expand_twin, shade_reduce as reduce_twin};
+use ridgelight_cpu::{shade_expand as expand_reference, shade_reduce as reduce_reference};
 
 use super::nodes::{casts, places};
-use super::pyramid::told;
+use super::pyramid::table_pairs;
 use super::{Pair, Run, constant, pushed};
 
 impl Run<'_> {
@@ -29,7 +29,7 @@ impl Run<'_> {
         Pyramid { level_step: bounces.level_step, level_offset: bounces.level_offset, ..heights }
     }
 
-    /// What every sample throws.
+    /// The exit radiance of every sample.
     pub(super) fn exit(&mut self, pass: &Pass) -> Vec<[f64; 3]> {
         let texels = self.floats(pass, "exit_radiance").expect("bound");
         let samples = self.scene.field.heights_m().len();
@@ -57,7 +57,7 @@ pub(super) fn brightest(exit: &[[f64; 3]]) -> f64 {
     exit.as_flattened().iter().fold(0.0, |m, v| v.max(m))
 }
 
-/// Colours beside a twin's, each with its own tolerance.
+/// Colours beside the CPU reference's, each with its own tolerance.
 fn each(got: &[[f64; 3]], of: impl Fn(usize) -> ([f64; 3], [f64; 3]), at: [usize; 2]) -> Vec<Pair> {
     let [number, cols] = at;
     let pairs = |(i, got): (usize, &[f64; 3])| {
@@ -101,11 +101,11 @@ pub(super) fn shade_reduce(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let exit = run.exit(pass);
     let texels = colours(&run.floats(pass, "shade_levels").expect("written"));
     let table = run.words(pass, "shade_table").expect("written");
-    let want = reduce_twin::shade_reduce(&exit, &shade, number, &texels);
+    let want = reduce_reference::shade_reduce(&exit, &shade, number, &texels);
     let tolerance = device_level(brightest(&exit));
     let at = [number as usize, level.size[0] as usize];
     let mut pairs = paired(&texels[level.first as usize..], &want, tolerance, at);
-    pairs.extend(told(&level, number, &table));
+    pairs.extend(table_pairs(&level, number, &table));
     pairs
 }
 
@@ -122,14 +122,14 @@ pub(super) fn shade_expand(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     };
     let tolerance = device_spline(brightest(&texels));
     let of = |number: u32| {
-        let want = expand_twin::shade_expand(&shade, &texels, number);
+        let want = expand_reference::shade_expand(&shade, &texels, number);
         let layer = &stack[(number as usize - 1) * samples..];
         paired(layer, &want, tolerance, [number as usize, cols])
     };
     (1..=shade.levels()).flat_map(of).collect()
 }
 
-/// What is thrown, from the levels that the device made, in one dispatch.
+/// The bounced light, from the levels that the device made, in one dispatch.
 pub(super) fn bounce_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     use offsets::bounce_gather_push::{AZIMUTHS, FIRST_AZIMUTH, LAST_AZIMUTH};
     let azimuths = pushed(pass, AZIMUTHS);
@@ -140,14 +140,14 @@ pub(super) fn bounce_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let texels = match run.floats(pass, "shade_levels") {
         Some(texels) => colours(&texels),
         // The device reads what `shade_expand` made of them.
-        None => reduce_twin::shade_levels(&exit, &shade),
+        None => reduce_reference::shade_levels(&exit, &shade),
     };
     let stack = run.floats(pass, "height_stack");
     let levels = run.floats(pass, "height_levels").unwrap_or_default();
     let stored = stack.as_ref().map_or(Stored::Levels(&levels), |s| Stored::Stack(s));
     let got = colours(&run.floats(pass, "bounce_sum").expect("written"));
     let field = &run.scene.field;
-    let twin = BounceGather {
+    let reference = BounceGather {
         field,
         heights: run.heights(),
         pyramid: &pyramid,
@@ -173,7 +173,7 @@ pub(super) fn bounce_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         spread: brightest - exit.as_flattened().iter().fold(brightest, |m, v| v.min(m)),
     };
     let of = |i: usize| {
-        let all = twin.casts_along(places[i]);
+        let all = reference.casts_along(places[i]);
         let slices = run.slices(places[i], 1.0, brightest);
         let off = BounceError::of(&all, |_, cast| gathered.error(cast), &slices);
         (radiance(&all), off.light)
@@ -181,7 +181,7 @@ pub(super) fn bounce_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     each(&got, of, [0, across])
 }
 
-/// The sum so far; what is thrown, once the last azimuths are there.
+/// The sum so far; after the last azimuths, the bounced light.
 pub(super) fn bounce_walk(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     use offsets::bounce_walk_push::{AZIMUTH_COUNT, CLEARS, FIRST_AZIMUTH, IS_LAST};
     let word = |offset| pushed(pass, offset) as usize;
@@ -206,7 +206,7 @@ pub(super) fn bounce_walk(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let kept = self::places(run, Nodes { stride: 2 * nodes.stride });
     let places = places(run, nodes);
     let from = constant(pass, "from");
-    // All of them, those of lanes whose casting sets are kept, the others.
+    // All of them, those of lanes whose visibility caches are kept, the others.
     let across_of =
         |[row, col]: [usize; 2]| if constant(pass, "marches_rows") == 1 { col } else { row };
     let lanes: HashSet<usize> = kept.iter().map(|place| across_of(*place)).collect();

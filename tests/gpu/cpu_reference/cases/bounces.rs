@@ -1,4 +1,4 @@
-//! Surfaces that throw light: walks, every stretch, pyramids, nodes, lobes.
+//! Indirect light: walks, brute force, pyramids, nodes, Phong specular.
 
 use ridgelight::plan::Picture;
 use ridgelight::scene::{
@@ -10,7 +10,7 @@ use super::{Case, Wanted, bowl, noisy_environment, rough};
 
 /// `bounce_walk`: colours and grey, every border, lines half a cell and two cells apart, one sample and lines of them,
 /// in batches.
-pub(in crate::twins) fn walks() -> Vec<Case> {
+pub(in crate::cpu_reference) fn walks() -> Vec<Case> {
     let base = Quality { azimuths: 8, ..Quality::default() };
     let walked = |count, azimuths, lines| {
         let (engine, cutoff) = (BounceEngine::Sweep, 0.0);
@@ -70,7 +70,7 @@ pub(in crate::twins) fn walks() -> Vec<Case> {
 
 /// `bounce_march`, and the passes of pyramids of radiance: colours and grey, every border, either storage and
 /// receiver; uneven ground, and smooth where tolerances are least.
-pub(in crate::twins) fn throws() -> Vec<Case> {
+pub(in crate::cpu_reference) fn bounced_light() -> Vec<Case> {
     let case = |name, field: HeightField, border, engine, levels| {
         let (rows, cols) = (field.rows(), field.cols());
         let map = (0..rows * cols).map(|i| [1.0, (i % 5) as f32 / 4.0, 0.5]).collect();
@@ -108,9 +108,9 @@ pub(in crate::twins) fn throws() -> Vec<Case> {
     ]
 }
 
-/// Bounces at every second or fourth sample, the last ones among them: every engine, colours and grey, casting sets of
+/// Bounces at every second or fourth sample, the last ones among them: every engine, colours and grey, visibility caches of
 /// one batch and of several.
-pub(in crate::twins) fn nodes() -> Vec<Case> {
+pub(in crate::cpu_reference) fn nodes() -> Vec<Case> {
     let case = |name, (rows, cols), border, (engine, count, subsample)| {
         let map = (0..rows * cols).map(|i| [1.0, (i % 5) as f32 / 4.0, 0.5]).collect();
         let albedo = match border {
@@ -140,11 +140,11 @@ pub(in crate::twins) fn nodes() -> Vec<Case> {
     ]
 }
 
-/// Light thrown by lobes: series of odd and even orders, colours and grey, as f32 and f16, and one number a texel.
-pub(in crate::twins) fn glosses() -> Vec<Case> {
-    let case = |name, field: HeightField, border, gloss, sh_order, levels, lights| {
+/// Bounced Phong specular: series of odd and even orders, colours and grey, as f32 and f16, and one number a texel.
+pub(in crate::cpu_reference) fn specular() -> Vec<Case> {
+    let case = |name, field: HeightField, border, specular, sh_order, levels, lights| {
         let samples = field.heights_m().len();
-        let is_map = gloss == BounceSpecular::Vector;
+        let is_map = specular == BounceSpecular::Vector;
         let lobe =
             |i: usize| PhongSpecular { exponent: (i % 40) as f32, scale: (i % 3) as f32 * 0.2 };
         let albedo = |i: usize| [0.5, (i % 5) as f32 / 10.0, 0.3];
@@ -167,7 +167,7 @@ pub(in crate::twins) fn glosses() -> Vec<Case> {
             cutoff: 0.0,
             level_step: 2,
             level_offset: 0,
-            specular: gloss,
+            specular,
         };
         let base = Quality { azimuths: 8, level_step: 3, level_offset: 0, ..Quality::default() };
         Case {
