@@ -1,7 +1,7 @@
 //! A field that repeats as geometry: repetitions of it, lit by light paths, before an orthographic camera far away.
 
 use glam::DVec3;
-use ridgelight::gpu::{Frame, Headless, Seen};
+use ridgelight::gpu::{Frame, Headless, ViewPixels};
 use ridgelight::plan::{self, View, ViewOptions};
 use ridgelight::scene::{Albedo, Border, Camera, HeightField, Lens, Lights, Scene, Sun};
 use ridgelight::{Error, Result};
@@ -84,7 +84,11 @@ impl Geometry {
     }
 
     /// The picture from `v`, one repetition of the plane just in it, and for each pixel where in that it lies, if in it.
-    pub fn look(&self, gpu: &mut Headless, v: DVec3) -> Result<(Seen, Vec<Option<[f64; 2]>>)> {
+    pub fn look(
+        &self,
+        gpu: &mut Headless,
+        v: DVec3,
+    ) -> Result<(ViewPixels, Vec<Option<[f64; 2]>>)> {
         // Any place is the middle of a repetition.
         let target = [0, 1].map(|i| 0.5 * self.repeats[i] as f64 * self.period_m[i]);
         let mut camera = Camera {

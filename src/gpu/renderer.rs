@@ -82,7 +82,7 @@ struct Slot {
     /// Buffers that the host writes; one set per frame in flight.
     tables: Vec<(ResourceId, Backed)>,
     /// Whether they hold the current plan's values.
-    is_told: bool,
+    is_current: bool,
     /// Null where there are no timestamps.
     queries: vk::QueryPool,
     recorded: Vec<usize>,
@@ -187,7 +187,7 @@ impl Renderer {
             self.begun = self.begun.min(first);
         }
         self.plan = plan;
-        self.slots.iter_mut().for_each(|slot| slot.is_told = false);
+        self.slots.iter_mut().for_each(|slot| slot.is_current = false);
         Ok((0..self.pending.len()).filter(|p| self.pending[*p]).collect())
     }
 

@@ -38,7 +38,7 @@ pub(crate) fn specialised(shader: &Shader, words: &[u32]) -> Vec<u32> {
 fn with_constants(words: &[u32], constants: &[(u32, u32)]) -> Vec<u32> {
     let mut out = words[..HEADER].to_vec();
     // By result id: the requested words; values of scalars and of vectors.
-    let (mut asked, mut known) = (HashMap::new(), HashMap::new());
+    let (mut requested, mut known) = (HashMap::new(), HashMap::new());
     let mut vectors: HashMap<u32, Vec<u32>> = HashMap::new();
     let mut bool_type = None;
     let mut rest = &words[HEADER..];
@@ -48,7 +48,7 @@ fn with_constants(words: &[u32], constants: &[(u32, u32)]) -> Vec<u32> {
         match (first & 0xffff, instruction) {
             (DECORATE, [_, id, SPEC_ID, number]) => {
                 let given = constants.iter().find(|c| c.0 == *number);
-                asked.extend(given.map(|c| (*id, c.1)));
+                requested.extend(given.map(|c| (*id, c.1)));
                 continue;
             }
             (TYPE_BOOL, [_, id]) => bool_type = Some(*id),
@@ -74,7 +74,7 @@ fn with_constants(words: &[u32], constants: &[(u32, u32)]) -> Vec<u32> {
                     _ => None,
                 };
                 if let Some(default) = value {
-                    let value = asked.get(id).copied().unwrap_or(default);
+                    let value = requested.get(id).copied().unwrap_or(default);
                     known.insert(*id, value);
                     match (bool_type == Some(*of_type), value) {
                         (true, 0) => out.extend([3 << 16 | CONSTANT_FALSE, *of_type, *id]),
@@ -191,7 +191,7 @@ mod tests {
     /// bool, u32; a boolean and a number of 7 that are requested, a 5 that is not, their sum, the boolean's
     /// selection of it, a vector of both numbers and its second component, and an unknown operation.
     #[test]
-    fn constants_become_what_is_asked_for() {
+    fn constants_become_the_requested_words() {
         let [boolean, uint, is, seven, five, sum, selected, pair, second, other] =
             [1, 2, 3, 4, 5, 6, 7, 8, 9, 10];
         let op = |code: u32, operands: &[u32]| {

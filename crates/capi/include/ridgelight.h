@@ -19,7 +19,7 @@
 // The version of this header: major << 16 | minor << 8 | patch.
 #define RIDGELIGHT_VERSION 256
 
-// Who reads and writes a piece of memory: the device alone, device-local where there is such memory.
+// Who reads and writes a piece of memory: the device only, device-local where available.
 #define RIDGELIGHT_MEMORY_DEVICE 0
 
 // The host writes, the device reads: host-visible, host-coherent, mapped.
@@ -28,62 +28,63 @@
 // The device writes, the host reads: host-visible, host-coherent, mapped.
 #define RIDGELIGHT_MEMORY_READBACK 2
 
-// Beyond the field's edge the ground goes on forever at horizontal: the default.
+// Beyond the field's edge the ground continues at horizontal forever: the default.
 #define RIDGELIGHT_BORDER_PLANE 1
 
-// Nothing lies there: light may come from below horizontal.
+// Nothing is beyond the edge: light may come from below horizontal.
 #define RIDGELIGHT_BORDER_OPEN 2
 
 // The field repeats.
 #define RIDGELIGHT_BORDER_PERIODIC 3
 
-// Besides the whole, an image for each light and each bounce.
+// Also an image for each light and each bounce.
 #define RIDGELIGHT_PICTURE_LIGHT_LAYERS 1
 
-// Besides, what a sky of radiance 1 gives to albedo 1.
+// Also the light of a sky of radiance 1 on albedo 1.
 #define RIDGELIGHT_PICTURE_SKY_VIEW 2
 
-// Horizons are kept, so that light alone may change, and rectangles of heights be edited.
+// Keeps the horizons, so that lights alone may change, and rectangles of heights may be edited.
 #define RIDGELIGHT_PICTURE_KEEPS_HORIZONS 4
 
-// Radiances of the sky and of key lights and irradiances of suns are the caller's, on the device: one more input, the
-// last, "light_colours", a row of texels, the sky's where the scene's is not 0, then each sun's, then each key light's.
-// Those of the scene then count for nothing but, the sky's beside an environment, for where azimuths lie. Not with balls of light or a lobe.
+// Radiances of the sky and of key lights and irradiances of suns come from the caller's image on the device.
+// It is the last input, "light_colours", a row of texels: the sky's where the scene's is not 0, then each
+// sun's, then each key light's. The scene's own colours then do not matter, except the sky's beside an
+// environment, which affects the choice of azimuths. Not with sphere lights or specular.
 #define RIDGELIGHT_PICTURE_COLOURS_ON_DEVICE 8
 
 // How a call ended.
 typedef enum RidgelightResult {
-    // It did what it should.
+    // Success.
     RIDGELIGHT_RESULT_OK = 0,
-    // A null pointer, a struct_size or a number that stands for nothing.
+    // A null pointer, a struct_size or an undefined constant.
     RIDGELIGHT_RESULT_ARGUMENT = 1,
-    // A value out of its range, or an image that is not what the plan says.
+    // A value out of range, or an image that does not match the plan.
     RIDGELIGHT_RESULT_SETTING = 2,
-    // A scene that the device or the memory budget cannot hold.
+    // A scene that exceeds the device or the memory budget.
     RIDGELIGHT_RESULT_LIMIT = 3,
     // A device that lacks something, or a Vulkan call that failed.
     RIDGELIGHT_RESULT_DEVICE = 4,
-    // A fault of Ridgelight's own: please report it.
+    // A bug in Ridgelight: please report it.
     RIDGELIGHT_RESULT_INTERNAL = 5,
 } RidgelightResult;
 
-// The passes that light one scene, in order, and everything that they touch: data alone. Threads may share it,
-// but for ridgelight_plan_take_buffer.
+// The passes that light one scene, in order, and their resources; plain data. Threads may share it, except
+// during ridgelight_plan_take_buffer.
 typedef struct RidgelightPlan RidgelightPlan;
 
-// A plan on a device. One thread at a time uses it, any thread.
+// A plan on a device. Any thread may use it, one at a time.
 typedef struct RidgelightRenderer RidgelightRenderer;
 
-// Pictures of a lit field before a camera, on a device. One thread at a time uses it, any thread.
+// Camera pictures of a lit field, on a device. Any thread may use it, one at a time.
 typedef struct RidgelightView RidgelightView;
 
-// What a device must be made with. No extension, of instance or device.
+// What to enable when a device is made. No extension, of instance or device.
 typedef struct RidgelightRequirements {
     // sizeof(RidgelightRequirements).
     uint32_t struct_size;
-    // The Vulkan version of instance and device, and the apiVersion that the instance is made for.
+    // The Vulkan version of instance and device, and the instance's apiVersion.
     uint32_t api_version;
-    // What the family of the queue must offer.
+    // Capabilities of the queue's family.
     VkQueueFlags queue_flags;
     // Core features to enable.
     VkPhysicalDeviceFeatures features;
@@ -93,22 +94,22 @@ typedef struct RidgelightRequirements {
     VkPhysicalDeviceVulkan13Features features13;
 } RidgelightRequirements;
 
-// A device that is borrowed, never destroyed: it outlives every renderer made on it.
+// A borrowed device, never destroyed by Ridgelight: it must outlive every renderer made on it.
 typedef struct RidgelightHost {
     // sizeof(RidgelightHost).
     uint32_t struct_size;
-    // The family of the queue that commands go to: it offers compute. Images of exclusive sharing belong to it
-    // when a recording runs, and still do afterwards.
+    // The family of the queue that runs the commands; it must support compute. Images of exclusive sharing
+    // belong to it before and after a recording.
     uint32_t queue_family;
-    // The instance that the device came from, for Vulkan 1.3.
+    // The instance of the device, for Vulkan 1.3.
     VkInstance instance;
-    // Its physical device.
+    // The physical device.
     VkPhysicalDevice physical_device;
-    // The device, with what ridgelight_requirements asks for enabled.
+    // The device, with the features of ridgelight_requirements enabled.
     VkDevice device;
-    // The loader's vkGetInstanceProcAddr: all functions are looked up through it.
+    // The loader's vkGetInstanceProcAddr, through which all functions are loaded.
     PFN_vkGetInstanceProcAddr get_instance_proc_addr;
-    // Where compiled pipelines are looked for and kept, or null; not created as externally synchronised.
+    // Cache for compiled pipelines, or null; not created as externally synchronised.
     VkPipelineCache pipeline_cache;
     // VK_TRUE where the instance has VK_EXT_debug_utils enabled: for names and labels.
     VkBool32 debug_utils;
@@ -142,7 +143,7 @@ typedef struct RidgelightKeyLight {
     double elevations_rad[2];
 } RidgelightKeyLight;
 
-// A ball of uniform radiance near the field.
+// A sphere light: a sphere of uniform radiance near the field.
 typedef struct RidgelightSphereLight {
     // sizeof(RidgelightSphereLight).
     uint32_t struct_size;
@@ -154,17 +155,16 @@ typedef struct RidgelightSphereLight {
     double radius_m;
 } RidgelightSphereLight;
 
-// A field, what it is made of, and the light that falls on it. Heights are the image's that is handed in with
-// each frame, in the unit of `cell_m`, none of them NaN: the host need not know them. All that pointers point at is
-// copied.
+// A field, its surface, and its lights. Heights come from an image with each frame, in the unit of `cell_m`,
+// never NaN; the host need not know them. Data behind pointers is copied.
 typedef struct RidgelightScene {
     // sizeof(RidgelightScene).
     uint32_t struct_size;
-    // Rows of samples, row 0 in the north.
+    // Rows of grid points, row 0 in the north.
     uint32_t rows;
-    // Columns of samples, column 0 in the west.
+    // Columns of grid points, column 0 in the west.
     uint32_t cols;
-    // What lies beyond the field's edge, a RIDGELIGHT_BORDER_; 0: PLANE.
+    // The ground beyond the field's edge, a RIDGELIGHT_BORDER_; 0: PLANE.
     uint32_t border;
     // Spacing of columns and of rows, in the unit of heights; 0, 0: 1, 1.
     double cell_m[2];
@@ -174,221 +174,228 @@ typedef struct RidgelightScene {
     float albedo[3];
     // VK_TRUE for an image of reflectance instead.
     uint32_t albedo_is_map;
-    // VK_TRUE for an environment: an image whose middle looks east, its left quarter north, row 0 the zenith.
+    // VK_TRUE for an environment: an image whose centre is east, its left quarter north, row 0 the zenith.
     uint32_t has_environment;
-    // The map's texels, RGB; null where only the device knows them.
+    // The map's texels, RGB; null where only the device has them.
     const float *albedo_map;
-    // The environment's texels, RGB; null where only the device knows them: azimuths are even then.
+    // The environment's texels, RGB; null where only the device has them: azimuths are even then.
     const float *environment;
     // Texels around the full circle.
     uint32_t environment_width;
     // Texels from zenith to nadir.
     uint32_t environment_height;
-    // Counter-clockwise turn of the environment, radians.
+    // Counter-clockwise rotation of the environment, radians.
     double environment_rotation_rad;
-    // Exponent of a lobe about the mirror direction of the view from straight above, [0..1e4].
-    float phong_exponent;
-    // Share of light that the lobe reflects, [0..1]; 0: no lobe.
-    float phong_scale;
-    // Suns, one after the other.
+    // Phong specular: exponent of the lobe about the mirror direction of a vertical view, [0..1e4].
+    float specular_exponent;
+    // Phong specular: share of light that it reflects, [0..1]; 0: none.
+    float specular_scale;
+    // Suns, consecutive.
     const struct RidgelightSun *suns;
-    // Key lights, one after the other.
+    // Key lights, consecutive.
     const struct RidgelightKeyLight *keys;
-    // Balls of light, one after the other.
+    // Sphere lights, consecutive.
     const struct RidgelightSphereLight *spheres;
-    // How many suns.
+    // Number of suns.
     uint32_t sun_count;
-    // How many key lights.
+    // Number of key lights.
     uint32_t key_count;
-    // How many balls of light.
+    // Number of sphere lights.
     uint32_t sphere_count;
-    // VK_TRUE where some samples hold no ground: pictures before a camera then take an image of marks and leave holes.
-    // Heights there are filled all the same: ridgelight_fill_voids.
+    // VK_TRUE where the field has voids: camera pictures then take a mask and leave holes. Heights must still
+    // be filled there: ridgelight_fill_voids.
     uint32_t has_voids;
 } RidgelightScene;
 
-// What speed is traded against accuracy with. In every field 0 is the default.
+// Speed against accuracy. In every field 0 is the default.
 typedef struct RidgelightQuality {
     // sizeof(RidgelightQuality).
     uint32_t struct_size;
-    // How horizons are found: 1 auto (default), 2 sweep, 3 pyramid, 4 brute.
+    // How horizons are found: 1 auto (default), 2 sweep, 3 pyramid, 4 brute-force.
     uint32_t method;
     // Azimuths of sky and environment, [4..1024], default 64. Fewer: faster, banding at sharp silhouettes.
     uint32_t azimuths;
-    // Slices across a sun's disc, a key light or a ball of light, [1..256], default 8. Fewer: faster, steps in
+    // Slices across a sun's disc, a key light or a sphere light, [1..256], default 8. Fewer: faster, steps in
     // soft shadows.
     uint32_t sun_azimuths;
     // Distance between the lines of a sweep: 1 exact, 2 a quarter of a cell, 3 half a cell, 4 a cell (default),
     // 5 two cells, 6 four cells. Wider: faster, small occluders missed between lines.
     uint32_t lines;
-    // How the lines' results come back to samples: 1 nearest, 2 slopes, 3 own, 4 aimed-nearest (default),
-    // 5 aimed, 6 aimed-around. Later: nearer to the truth, slower.
+    // How the lines' results come back to grid points: 1 nearest, 2 slopes, 3 own, 4 aimed-nearest (default),
+    // 5 aimed, 6 aimed-around. Later: slower, smaller error.
     uint32_t fuse;
-    // Bits of what the sweep keeps: 1 f32 (default), 2 f16. (Packed ones would have to know heights beforehand.)
+    // Precision of stored sweep results: 1 f32 (default), 2 f16. (A packed hull would need the heights
+    // beforehand.)
     uint32_t precision;
-    // Where the sweep's hull lives: 1 auto (default), 2 private, 3 shared, 4 list. Never changes the result.
+    // Hull storage: 1 auto (default), 2 private, 3 shared, 4 list. Never changes the result.
     uint32_t hull;
-    // Levels a doubling of distance in a height pyramid, [1..16], default 4. Fewer: faster, smeared horizons.
+    // Levels per doubling of distance in a height pyramid, [1..16], default 4. Fewer: faster, smeared
+    // horizons.
     uint32_t level_step;
-    // One more than the doublings of resolution by which a march over a pyramid looks at finer levels, [1..5],
-    // default 3. Fewer: soft distant horizons.
+    // One more than the doublings of resolution by which a pyramid march reads finer levels, [1..5], default
+    // 3. Fewer: blurred distant horizons.
     uint32_t level_offset_plus_1;
-    // What is stored of a pyramid's levels: 1 stack (default), 2 pyramid: less memory, slower.
+    // How a pyramid's levels are stored: 1 stack (default), 2 pyramid: less memory, slower.
     uint32_t levels;
     // Elevations of an environment table, [8..4096], default 256. Fewer: faster, small bright places smeared.
     uint32_t table_elevations;
-    // What an environment is looked up in: 1 auto (default), 2 table, 3 sh.
+    // How an environment is evaluated: 1 auto (default), 2 table, 3 sh.
     uint32_t basis;
-    // Order of what samples see as spherical harmonics, [2..6], default 4.
+    // SH order of visibility, [2..6], default 4.
     uint32_t sh_order;
-    // How what is seen becomes harmonics: 1 slices (default), 2 nlp, 3 table.
+    // How visibility becomes SH: 1 slices (default), 2 nlp, 3 table.
     uint32_t wedges;
-    // How a surface turns what it sees into light: 1 plane (default), 2 lobe.
+    // Receiver: how visibility becomes light: 1 plane (default), 2 lobe.
     uint32_t receiver;
-    // What tames the ringing of harmonics: 1 none (default), 2 lanczos, 3 hann, 4 nonnegative.
+    // SH window: 1 none (default), 2 lanczos, 3 hann, 4 nonnegative.
     uint32_t window;
-    // What is seen is found at every so many samples, 1, 2 or 4, default 1. More: faster, blurred shadows.
+    // Visibility is found at every nth grid point, n = 1, 2 or 4, default 1. More: faster, blurred shadows.
     uint32_t subsample;
-    // Horizons of either side of a table of wedges, [4..256], default 64.
+    // Horizons per side of a table of wedges, [4..256], default 64.
     uint32_t wedge_side;
-    // What balls of light are lit by: 1 exact (default), 2 sh.
+    // Basis of sphere lights: 1 exact (default), 2 sh.
     uint32_t light_basis;
-    // What a sample may lose, all balls of light together, of the brightest that one of them would give to
-    // level ground at height 0, [0..1], default 1/65536; below 0: nothing.
+    // Largest light that a texel may lose from all sphere lights together, as a share of the brightest light
+    // that one of them would give to level ground at height 0, [0..1], default 1/65536; below 0: none.
     double light_cutoff;
-    // Times that light may be reflected on its way to a sample, [0..64].
+    // Number of bounces of light, [0..64].
     uint32_t bounces;
-    // How what a sample sees of the surface is found: 1 brute (default), 2 sweep, 3 pyramid.
+    // How bounced light is found: 1 brute-force (default), 2 sweep, 3 pyramid.
     uint32_t bounce_engine;
-    // Azimuths that each sample looks along for them, [4..1024], default 32.
+    // Azimuths of bounced light per grid point, [4..1024], default 32.
     uint32_t bounce_azimuths;
     // As level_step, for the pyramid of exit radiance, [1..16], default 4.
     uint32_t bounce_level_step;
     // As level_offset_plus_1, for the pyramid of exit radiance, [1..5], default 3.
     uint32_t bounce_level_offset_plus_1;
-    // Share of the direct light's energy that may be left out of bounces, [0..1], default 1/65536; below 0: none.
+    // Share of the direct light's energy that bounces may leave out, [0..1], default 1/65536; below 0: none.
     double bounce_cutoff;
 } RidgelightQuality;
 
-// How much of what a plan has.
+// Sizes of a plan.
 typedef struct RidgelightPlanInfo {
     // sizeof(RidgelightPlanInfo).
     uint32_t struct_size;
-    // Images that are handed in to be read.
+    // Number of input images.
     uint32_t inputs;
-    // Images that are handed in to be written.
+    // Number of output images.
     uint32_t outputs;
-    // Passes: as many timings.
+    // Number of passes, and of timings.
     uint32_t passes;
     // Bytes of a renderer's own images and buffers.
     uint64_t internal_bytes;
 } RidgelightPlanInfo;
 
-// An image that a plan asks its caller for.
+// An image that the caller provides for a plan.
 typedef struct RidgelightImageInfo {
     // sizeof(RidgelightImageInfo).
     uint32_t struct_size;
-    // Its format; of inputs the one of which no bit is lost, see RidgelightImage.
+    // Its format; for inputs the one without loss, see RidgelightImage.
     VkFormat format;
     // Columns, rows and layers.
     uint32_t extent[3];
-    // What it must be made for: SAMPLED or STORAGE; 0 where a buffer is taken instead.
+    // Its required usage: SAMPLED or STORAGE; 0 where a buffer is taken instead.
     VkImageUsageFlags usage;
-    // "heights", "environment", "albedo", "light_colours"; "radiance", "direct.sky", ...: UTF-8, ended by a nul.
+    // "heights", "environment", "albedo", "light_colours"; "radiance", "direct.sky", ...: UTF-8,
+    // nul-terminated.
     char name[32];
 } RidgelightImageInfo;
 
-// What an image or buffer needs.
+// Requirements of an image or buffer.
 typedef struct RidgelightMemoryRequest {
     // sizeof(RidgelightMemoryRequest).
     uint32_t struct_size;
     // Who reads and writes it: RIDGELIGHT_MEMORY_DEVICE, _UPLOAD or _READBACK.
     uint32_t used_by;
-    // Of the image or buffer; good during the call.
+    // Name of the image or buffer; valid during the call.
     const char *name;
-    // Size, alignment and the types of memory that will do.
+    // Size, alignment and permitted memory types.
     VkMemoryRequirements requirements;
-    // VK_TRUE for a buffer; else an image of optimal tiling, which bufferImageGranularity keeps apart.
+    // VK_TRUE for a buffer; else an image of optimal tiling, which bufferImageGranularity separates from
+    // buffers.
     VkBool32 is_linear;
 } RidgelightMemoryRequest;
 
 // A piece of memory for one image or buffer.
 typedef struct RidgelightAllocation {
-    // The memory that it lies in.
+    // The memory object.
     VkDeviceMemory memory;
-    // Its first byte there.
+    // Offset of its first byte, in bytes.
     uint64_t offset;
-    // Where the host sees that byte; null for RIDGELIGHT_MEMORY_DEVICE.
+    // Host address of that byte; null for RIDGELIGHT_MEMORY_DEVICE.
     void *mapped;
-    // The allocator's own mark.
+    // The allocator's own key.
     uint64_t key;
 } RidgelightAllocation;
 
-// An engine's own memory: called by the thread that makes, changes or destroys a renderer, one call at a time.
+// An engine's own memory. It is called by the thread that makes, changes or destroys a renderer, one call at a
+// time.
 //
-// What `allocate` gives is what the request asks for: of one of its types of memory, at its alignment, as
-// large, nobody else's until `free`, and mapped as long unless it is for the device alone.
+// `allocate` must return what was requested: one of the memory types, the alignment, at least the size, owned
+// by nobody else until `free`, and mapped for as long unless it is for the device only.
 typedef struct RidgelightAllocator {
     // sizeof(RidgelightAllocator).
     uint32_t struct_size;
-    // Handed back with every call.
+    // Passed back with every call.
     void *user;
-    // Fills `allocation`; VK_FALSE where there is no such memory left.
+    // Fills `allocation`; VK_FALSE where no such memory is left.
     VkBool32 (*allocate)(void *user,
                          const struct RidgelightMemoryRequest *request,
                          struct RidgelightAllocation *allocation);
-    // Takes back what `allocate` gave: its image or buffer has been destroyed.
+    // Frees what `allocate` returned, after its image or buffer was destroyed.
     void (*free)(void *user, const struct RidgelightAllocation *allocation);
 } RidgelightAllocator;
 
-// What an image is being used for at a point of a command buffer.
+// The use of an image at a point of a command buffer.
 typedef struct RidgelightImageState {
-    // Stages that used it last, or will next.
+    // Stages of its last or next use.
     VkPipelineStageFlags2 stage;
-    // How they did, or will.
+    // Accesses of its last or next use.
     VkAccessFlags2 access;
-    // Its layout. VK_IMAGE_LAYOUT_UNDEFINED is allowed for outputs on entry: their contents are not kept.
+    // Its layout. VK_IMAGE_LAYOUT_UNDEFINED is allowed for outputs before a recording: their contents are not
+    // kept.
     VkImageLayout layout;
 } RidgelightImageState;
 
-// An image of the caller's, handed in for one recording: its mip level 0, array layers from 0.
+// A caller's image for one recording: its mip level 0, array layers from 0.
 typedef struct RidgelightImage {
     // sizeof(RidgelightImage).
     uint32_t struct_size;
-    // Its format, 0: the plan's. Heights may be R32F, R16F or R16_UNORM (0 to 1: cells and lights are told in
-    // units of the range); environment, albedo and colours of lights RGBA32F, RGBA16F, RGBA8 UNORM or SRGB; outputs are
-    // the plan's.
+    // Its format, 0: the plan's. Heights may be R32F, R16F or R16_UNORM (0 to 1: cells and lights are then in
+    // units of the range); environment, albedo and light colours RGBA32F, RGBA16F, RGBA8 UNORM or SRGB;
+    // outputs have the plan's.
     VkFormat format;
     // The image: of usage SAMPLED for an input, STORAGE for an output.
     VkImage image;
-    // A view of its colour, 2D.
+    // A view of its colour aspect, 2D.
     VkImageView view;
-    // Columns, rows and layers; 0, 0, 0: the plan's, which they must be.
+    // Columns, rows and layers; 0, 0, 0 or the plan's.
     uint32_t extent[3];
-    // How it comes.
+    // State before the recording.
     struct RidgelightImageState before;
-    // How it is left. Inputs are left as they came, whatever stands here.
+    // State after the recording. Ignored for inputs, which are left as before.
     struct RidgelightImageState after;
-    // Instead of image and view, for an input that ridgelight_plan_take_buffer said it of: its texels, row after
-    // row, of usage TRANSFER_SRC. Of `before` stage and access count; it is left so.
+    // Replaces image and view for an input of ridgelight_plan_take_buffer: its texels, row after row, of usage
+    // TRANSFER_SRC. Only stage and access of `before` are used; it is left in that use.
     VkBuffer buffer;
-    // How long all of the buffer is, bytes: nothing beyond is read.
+    // Size of the buffer, bytes: nothing beyond is read.
     uint64_t buffer_bytes;
-    // Where its first texel stands, bytes: whole texels.
+    // Offset of the first texel, bytes: a multiple of the texel size.
     uint64_t buffer_offset;
-    // From a row's begin to the next one's, bytes: whole texels, less than 2^31. 0: rows follow one another.
+    // Distance between the starts of rows, bytes: a multiple of the texel size, less than 2^31. 0: rows are
+    // consecutive.
     uint64_t row_bytes;
 } RidgelightImage;
 
-// A rectangle of a field's samples.
+// A rectangle of texels.
 typedef struct RidgelightRectangle {
     // The first column.
     uint32_t col;
     // The first row.
     uint32_t row;
-    // How many columns, 1 or more.
+    // Number of columns, 1 or more.
     uint32_t cols;
-    // How many rows, 1 or more.
+    // Number of rows, 1 or more.
     uint32_t rows;
 } RidgelightRectangle;
 
@@ -396,58 +403,61 @@ typedef struct RidgelightRectangle {
 typedef struct RidgelightTiming {
     // sizeof(RidgelightTiming).
     uint32_t struct_size;
-    // The pass's name and part: UTF-8, ended by a nul.
+    // The pass's name and part: UTF-8, nul-terminated.
     char label[60];
     // Nanoseconds.
     double ns;
 } RidgelightTiming;
 
-// From where a lit field is seen, and how. North is up on the map.
+// The camera of a picture of a lit field. North is up on the map.
 typedef struct RidgelightCamera {
     // sizeof(RidgelightCamera).
     uint32_t struct_size;
-    // Samples a pixel, 1, 2, 4 or 8, where the device has them; 0: 4.
+    // MSAA samples per pixel, 1, 2, 4 or 8, where the device supports them; 0: 4.
     uint32_t samples;
     // Columns and rows of the picture.
     uint32_t size[2];
-    // Where the eye stands as seen from what it looks at: in the plane, radians counter-clockwise from east.
+    // Azimuth of the eye from the target, in the plane, radians counter-clockwise from east.
     double azimuth_rad;
-    // And above horizontal, radians, [-pi/2..pi/2].
+    // Elevation of the eye from the target above horizontal, radians, [-pi/2..pi/2].
     double elevation_rad;
-    // What stands in the middle of the picture: x east of the westernmost column, y north of the southernmost row,
-    // z as heights.
+    // The target in the middle of the picture: x east of the westernmost column, y north of the southernmost
+    // row, z as heights.
     double target_m[3];
-    // From there to the eye, [1e-9..1e15]. 0: so far that all of a level field at height 0 is just seen, about its
-    // middle, whatever target_m.
+    // Distance from the target to the eye, [1e-9..1e15]. 0: a level field at height 0 just fits the picture,
+    // about its middle, whatever target_m.
     double distance_m;
     // Angle between the lower and the upper edge of the picture, radians, [0.001..3]; 0: 40 degrees.
     double fov_rad;
-    // Above 0, [1e-9..1e15]: parallel rays, and what the picture spans from its lower to its upper edge.
+    // Above 0, [1e-9..1e15]: parallel rays, and the distance that the picture spans from its lower to its
+    // upper edge.
     double ortho_height_m;
-    // The mesh has a vertex at every so many samples, [1..1024], default 1. Larger: faster, coarser.
+    // The mesh has a vertex at every nth grid point, [1..1024], default 1. Larger: faster, coarser.
     uint32_t mesh_step;
-    // Factor before the tone curve, where the picture is of codes; 0: 1.
+    // Factor before the tone curve, for screen formats; 0: 1.
     float exposure;
-    // Radiance, linear RGB, where neither ground nor sky is seen.
+    // Radiance, linear RGB, of pixels without ground and sky.
     float background[3];
 } RidgelightCamera;
 
-// Images of one picture. Those that are read are left as they came.
+// Images of one picture. Those that are read are left as before.
 typedef struct RidgelightViewImages {
     // sizeof(RidgelightViewImages).
     uint32_t struct_size;
-    // Heights: the plan's input, or what ridgelight_taken says of a buffer.
+    // Heights: the plan's input, or the image of ridgelight_taken for a buffer.
     const struct RidgelightImage *heights;
-    // Exit radiance: the plan's output "radiance", of usage SAMPLED too.
+    // Exit radiance: the plan's output "radiance", also with usage SAMPLED.
     const struct RidgelightImage *radiance;
     // The environment, where the scene has one.
     const struct RidgelightImage *environment;
-    // Drawn into, of the format of ridgelight_view_create, of usage COLOR_ATTACHMENT. What it held is lost.
+    // The picture, of the format of ridgelight_view_create, with usage COLOR_ATTACHMENT. Its old contents are
+    // lost.
     const struct RidgelightImage *picture;
-    // D32_SFLOAT, of usage DEPTH_STENCIL_ATTACHMENT; null: no depths. ridgelight_view_distance tells what they are.
+    // D32_SFLOAT, with usage DEPTH_STENCIL_ATTACHMENT; null: no depths. ridgelight_view_distance converts
+    // them.
     const struct RidgelightImage *depth;
-    // Where the scene has voids: a texel a sample, of R32F, R16F or R16_UNORM, 0 where there is ground, 1 where there is
-    // none.
+    // The mask of voids, where the scene has any: one texel per grid point, of R32F, R16F or R16_UNORM, 0 on
+    // ground, 1 on voids.
     const struct RidgelightImage *voids;
 } RidgelightViewImages;
 
@@ -455,28 +465,29 @@ typedef struct RidgelightViewImages {
 extern "C" {
 #endif // __cplusplus
 
-// One sentence on why the last call on this thread that failed did: UTF-8, ended by a nul, good until
-// another call on this thread fails. Empty before any has.
+// One sentence on why the last failing call on this thread failed: UTF-8, nul-terminated, valid until another
+// call on this thread fails. Empty before the first failure.
 const char *ridgelight_last_error(void);
 
 // The version of the library: major << 16 | minor << 8 | patch.
 uint32_t ridgelight_version(void);
 
-// Whether the library does for a program that was compiled with a header of a version: with
-// RIDGELIGHT_VERSION. The major must be the same, and before 1.0 the minor; else the library may not be older.
+// Whether the library is compatible with a program compiled with a header of `version`, which is
+// RIDGELIGHT_VERSION. The major version must be equal, before 1.0 also the minor; otherwise the library must
+// not be older.
 //
 // Returns OK, or ARGUMENT.
 enum RidgelightResult ridgelight_check_version(uint32_t header);
 
-// Writes what a device must be made with, beside what its engine wants itself: before there is one.
+// Writes what to enable, besides an engine's own needs. It needs no device.
 //
 // Returns OK, or ARGUMENT.
 //
 // # Safety
-// `requirements` is null or points at a struct whose struct_size is set.
+// `requirements` is null or points to a struct whose struct_size is set.
 enum RidgelightResult ridgelight_requirements(struct RidgelightRequirements *requirements);
 
-// Whether a device will do: before one is made, so that `device` may be anything.
+// Whether a device is suitable; before it is made, so `device` is ignored.
 //
 // Returns OK; DEVICE where it lacks something, which ridgelight_last_error names; ARGUMENT.
 //
@@ -492,8 +503,8 @@ enum RidgelightResult ridgelight_check_device(PFN_vkGetInstanceProcAddr get_inst
 // Returns OK, ARGUMENT, SETTING or LIMIT.
 //
 // # Safety
-// Pointers are null, or to structs whose struct_size is set and whose pointers and handles are what their
-// fields say; `plan` may be written to.
+// Pointers are null, or to structs whose struct_size is set and whose pointers and handles are as their fields
+// require; `plan` may be written to.
 enum RidgelightResult ridgelight_plan_create(const struct RidgelightHost *host,
                                              const struct RidgelightScene *scene,
                                              const struct RidgelightQuality *quality,
@@ -501,13 +512,13 @@ enum RidgelightResult ridgelight_plan_create(const struct RidgelightHost *host,
                                              uint64_t memory_budget,
                                              struct RidgelightPlan **plan);
 
-// Gives a plan up; renderers made for it keep theirs. Null is allowed.
+// Destroys a plan; renderers made for it keep a copy. Null is allowed.
 //
 // # Safety
 // It came from ridgelight_plan_create and is not used again.
 void ridgelight_plan_destroy(struct RidgelightPlan *plan);
 
-// Says how much of what a plan has.
+// Writes the sizes of a plan.
 //
 // Returns OK, or ARGUMENT.
 //
@@ -516,9 +527,9 @@ void ridgelight_plan_destroy(struct RidgelightPlan *plan);
 enum RidgelightResult ridgelight_plan_info(const struct RidgelightPlan *plan,
                                            struct RidgelightPlanInfo *info);
 
-// Describes input number `index` of a plan.
+// Describes input `index` of a plan.
 //
-// Returns OK; ARGUMENT, beyond the last too.
+// Returns OK; ARGUMENT, also beyond the last.
 //
 // # Safety
 // `plan` is alive or null; `info` is null or points at a struct whose struct_size is set.
@@ -526,12 +537,12 @@ enum RidgelightResult ridgelight_plan_input(const struct RidgelightPlan *plan,
                                             uint32_t index,
                                             struct RidgelightImageInfo *info);
 
-// Has input number `index` come in a buffer of the caller's instead of an image, as rows of texels of `format`,
-// 0: that of ridgelight_plan_input. Heights may be R32F, R16F or R16_UNORM; environment, albedo and colours of lights
-// RGBA32F, RGBA16F, RGBA8 UNORM or SRGB. Each recording then begins with one copy to an image of the renderer's own.
-// Before a renderer is made; nobody else uses the plan meanwhile.
+// Takes input `index` from a caller's buffer instead of an image, as rows of texels of `format`, 0: that of
+// ridgelight_plan_input. Heights may be R32F, R16F or R16_UNORM; environment, albedo and light colours
+// RGBA32F, RGBA16F, RGBA8 UNORM or SRGB. Each recording then begins with one copy to an image of the
+// renderer's own. Call it before a renderer is made, while nobody else uses the plan.
 //
-// Returns OK; ARGUMENT, beyond the last too; SETTING for texels that it cannot have.
+// Returns OK; ARGUMENT, also beyond the last; SETTING for a format that the input cannot have.
 //
 // # Safety
 // `plan` is alive or null.
@@ -539,9 +550,9 @@ enum RidgelightResult ridgelight_plan_take_buffer(struct RidgelightPlan *plan,
                                                   uint32_t index,
                                                   VkFormat format);
 
-// Describes output number `index` of a plan.
+// Describes output `index` of a plan.
 //
-// Returns OK; ARGUMENT, beyond the last too.
+// Returns OK; ARGUMENT, also beyond the last.
 //
 // # Safety
 // `plan` is alive or null; `info` is null or points at a struct whose struct_size is set.
@@ -549,38 +560,39 @@ enum RidgelightResult ridgelight_plan_output(const struct RidgelightPlan *plan,
                                              uint32_t index,
                                              struct RidgelightImageInfo *info);
 
-// Makes all that a plan needs on a host's device, for `slots` frames in flight (0: 1): recording takes nothing
-// more of it. `allocator` may be null: memory is then taken in blocks of 4 MiB.
+// Makes everything that a plan needs on a host's device, for `slots` frames in flight (0: 1); recording
+// allocates nothing on it. `allocator` may be null: memory then comes in blocks of 4 MiB.
 //
-// Internal images serve all slots: command buffers of different slots run one after the other on one queue.
+// Internal images serve all slots: command buffers of different slots must run one after the other on one
+// queue.
 //
 // Returns OK, ARGUMENT, SETTING or DEVICE.
 //
 // # Safety
 // Pointers are null, or to structs whose struct_size is set, and whose handles are alive until the renderer is
-// destroyed, as is what `allocator` points at through `user`; `renderer` may be written to.
+// destroyed, as is the data that `allocator` uses through `user`; `renderer` may be written to.
 enum RidgelightResult ridgelight_renderer_create(const struct RidgelightHost *host,
                                                  const struct RidgelightPlan *plan,
                                                  uint32_t slots,
                                                  const struct RidgelightAllocator *allocator,
                                                  struct RidgelightRenderer **renderer);
 
-// Frees everything. The device must be done with all that was recorded. Null is allowed.
+// Frees everything. All recorded commands must have finished. Null is allowed.
 //
 // # Safety
 // It came from ridgelight_renderer_create and is not used again.
 void ridgelight_renderer_destroy(struct RidgelightRenderer *renderer);
 
-// Appends a plan to `commands`: no submit, no wait, nothing allocated on the device. Checks everything first:
-// after an error nothing has been recorded.
+// Appends a plan to `commands`: no submit, no wait, no allocation on the device. All arguments are checked
+// first: after an error nothing has been recorded.
 //
-// `commands` is being recorded outside a render pass, for the host's family. `slot` is the frame in flight,
-// whose last command buffer has run. `inputs` and `outputs` are the plan's, in its order.
+// `commands` is being recorded outside a render pass, for the host's family. `slot` is the frame in flight;
+// its last command buffer must have run. `inputs` and `outputs` are the plan's, in its order.
 //
 // Returns OK, ARGUMENT or SETTING.
 //
 // # Safety
-// `renderer` is alive or null, and used by this thread alone meanwhile; arrays are as long as said, and each
+// `renderer` is alive or null, and used only by this thread meanwhile; arrays have the given lengths, and each
 // struct's struct_size is set; images and views are alive until the command buffer has run.
 enum RidgelightResult ridgelight_record(struct RidgelightRenderer *renderer,
                                         VkCommandBuffer commands,
@@ -590,8 +602,8 @@ enum RidgelightResult ridgelight_record(struct RidgelightRenderer *renderer,
                                         const struct RidgelightImage *outputs,
                                         uint32_t output_count);
 
-// Appends what an edit of a rectangle of heights needs, to a plan of RIDGELIGHT_PICTURE_KEEPS_HORIZONS: the same
-// bits in every output as ridgelight_record. Outputs hold what the last recording left in them.
+// Appends the edit of a rectangle of heights, for a plan with RIDGELIGHT_PICTURE_KEEPS_HORIZONS. Every output
+// gets the same bits as from ridgelight_record. Outputs must hold what the last recording left in them.
 //
 // Returns OK, ARGUMENT or SETTING.
 //
@@ -606,21 +618,21 @@ enum RidgelightResult ridgelight_record_edit(struct RidgelightRenderer *renderer
                                              uint32_t output_count,
                                              const struct RidgelightRectangle *rectangle);
 
-// Goes over to a plan that differs in what its passes are told, not in which there are nor in images and
-// buffers: another colour of a light, a sun that has moved a little. What is in flight goes on with the plan that
-// it was recorded with, and need not be waited for; what is recorded next is a whole recording.
+// Replaces the plan by one with the same passes, images and buffers but other values: another colour of a
+// light, a sun that moved a little. Frames in flight finish with the plan of their recording; do not wait for
+// them. The next recording must be a whole one.
 //
 // Returns OK, ARGUMENT; SETTING where the plan needs a renderer of its own: the old one stays.
 //
 // # Safety
-// Both are alive or null; the renderer is used by this thread alone meanwhile.
+// Both are alive or null; only this thread uses the renderer meanwhile.
 enum RidgelightResult ridgelight_replace_plan(struct RidgelightRenderer *renderer,
                                               const struct RidgelightPlan *plan);
 
-// GPU times of the passes that `slot` recorded last, in order. Never waits: `count` becomes 0 while they are not
-// all in, and where the queue family has no timestamps.
+// GPU times of the passes that `slot` recorded last, in order. Never waits: `count` becomes 0 while some are
+// not available, and where the queue family has no timestamps.
 //
-// `count` is how many `timings` has room for, and becomes how many there are; more than fit are left out.
+// `count` is the capacity of `timings`, and becomes their number; those beyond the capacity are left out.
 //
 // Returns OK, or ARGUMENT.
 //
@@ -631,18 +643,18 @@ enum RidgelightResult ridgelight_timings(const struct RidgelightRenderer *render
                                          struct RidgelightTiming *timings,
                                          uint32_t *count);
 
-// Makes what pictures of a scene's light need, for `slots` frames in flight (0: 1): `plan` lights it. `format` is
-// R32G32B32A32 or R16G16B16A16 SFLOAT, which get linear radiance, or of a screen, 8 or 10 bits a colour, UNORM or SRGB,
-// which get exposure, clip and sRGB. `allocator` may be null.
+// Makes the resources for pictures of a scene's light, for `slots` frames in flight (0: 1); `plan` lights it.
+// `format` is R32G32B32A32 or R16G16B16A16 SFLOAT for linear radiance; or a screen format of 8 or 10 bits per
+// colour, UNORM or SRGB, which gets exposure, clip and sRGB. `allocator` may be null.
 //
-// The device needs dynamicRendering of Vulkan 1.3 besides what ridgelight_requirements asks for, and the host's family
+// The device needs dynamicRendering of Vulkan 1.3 besides ridgelight_requirements, and the host's family needs
 // graphics.
 //
 // Returns OK, ARGUMENT, SETTING, LIMIT or DEVICE.
 //
 // # Safety
-// As ridgelight_renderer_create; `scene` and `camera` are null or structs whose struct_size is set, `scene`'s pointers
-// what their fields say.
+// As ridgelight_renderer_create; `scene` and `camera` are null or structs whose struct_size is set, `scene`'s
+// pointers are as their fields require.
 enum RidgelightResult ridgelight_view_create(const struct RidgelightHost *host,
                                              const struct RidgelightScene *scene,
                                              const struct RidgelightPlan *plan,
@@ -652,28 +664,28 @@ enum RidgelightResult ridgelight_view_create(const struct RidgelightHost *host,
                                              const struct RidgelightAllocator *allocator,
                                              struct RidgelightView **view);
 
-// Frees everything. The device must be done with all that was recorded. Null is allowed.
+// Frees everything. All recorded commands must have finished. Null is allowed.
 //
 // # Safety
 // It came from ridgelight_view_create and is not used again.
 void ridgelight_view_destroy(struct RidgelightView *view);
 
-// Appends a picture to `commands`, which is being recorded outside rendering for the host's family: a second call,
-// after ridgelight_record. `camera` may be another each time, of the same picture size and samples; null: the last.
-// Checks everything first: after an error nothing has been recorded.
+// Appends a picture to `commands`, which is being recorded outside rendering for the host's family; call it
+// after ridgelight_record. `camera` may change each time, with the same picture size and MSAA samples; null:
+// the last one. All arguments are checked first: after an error nothing has been recorded.
 //
 // Returns OK, ARGUMENT, SETTING, or LIMIT for a camera whose picture is beyond the device's.
 //
 // # Safety
-// As ridgelight_record: of `images` and `camera`, which are null or structs whose struct_size is set.
+// As ridgelight_record, for `images` and `camera`, which are null or structs whose struct_size is set.
 enum RidgelightResult ridgelight_view_record(struct RidgelightView *view,
                                              VkCommandBuffer commands,
                                              uint32_t slot,
                                              const struct RidgelightCamera *camera,
                                              const struct RidgelightViewImages *images);
 
-// What a value of the depth image stands for: distance along the direction of view from the plane of the eye, infinite
-// where no ground is seen; of the camera that was recorded last.
+// Converts a value of the depth image to a distance along the view direction from the plane of the eye,
+// infinite where no ground is visible; for the camera that was recorded last.
 //
 // Returns OK, or ARGUMENT.
 //
@@ -694,8 +706,8 @@ enum RidgelightResult ridgelight_view_timings(const struct RidgelightView *view,
                                               struct RidgelightTiming *timings,
                                               uint32_t *count);
 
-// The image that input number `index`, of a plan that takes a buffer for it, is copied to, as each recording leaves it:
-// for passes of one's own, and for ridgelight_view_record. It is to be left so.
+// The image that input `index`, of a plan that takes a buffer for it, is copied to, as each recording leaves
+// it: for your own passes, and for ridgelight_view_record. Leave it in that state.
 //
 // Returns OK; ARGUMENT, for an input in an image too.
 //
@@ -705,17 +717,18 @@ enum RidgelightResult ridgelight_taken(const struct RidgelightRenderer *renderer
                                        uint32_t index,
                                        struct RidgelightImage *image);
 
-// Fills heights that hold no data, before they go to the device: those that are NaN, and where `voids` is not null those
-// whose byte is not 0. Each takes the mean of its neighbours that are known, from the rim inwards, as the command line has
-// it; the others keep their bits. Of `voids` every byte becomes 1 or 0: whether there is no ground. Light is found for
-// filled samples, too, and is the caller's to mask; for pictures before a camera the marks go to the device, see
-// RidgelightScene's has_voids.
+// Fills heights without data before they go to the device: those that are NaN, and those whose byte in `voids`
+// is not 0, where `voids` is not null. Each takes the mean of its known neighbours, from the rim inwards, as
+// the command line does; the others keep their bits. Every byte of `voids` becomes 1 or 0: whether it is a
+// void. Filled texels are lit too; the caller masks that light. For camera pictures the mask goes to the
+// device, see RidgelightScene's has_voids.
 //
-// Returns OK; ARGUMENT; SETTING for an infinite height, which is named, and for nothing but voids: then nothing is changed.
+// Returns OK; ARGUMENT; SETTING for an infinite height, which is named, and for a field of voids only: then
+// nothing is changed.
 //
 // # Safety
-// `heights` is null or points at rows times cols numbers, `voids` at as many bytes, row after row from the north-west;
-// nobody else uses them meanwhile.
+// `heights` is null or points to rows times cols numbers, `voids` to as many bytes, row after row from the
+// north-west; nobody else uses them meanwhile.
 enum RidgelightResult ridgelight_fill_voids(uint32_t rows,
                                             uint32_t cols,
                                             float *heights,

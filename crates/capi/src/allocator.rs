@@ -7,14 +7,14 @@ use ridgelight::{Error, Result};
 
 use crate::read::SizeFirst;
 
-/// Who reads and writes a piece of memory: the device alone, device-local where there is such memory.
+/// Who reads and writes a piece of memory: the device only, device-local where available.
 pub const RIDGELIGHT_MEMORY_DEVICE: u32 = 0;
 /// The host writes, the device reads: host-visible, host-coherent, mapped.
 pub const RIDGELIGHT_MEMORY_UPLOAD: u32 = 1;
 /// The device writes, the host reads: host-visible, host-coherent, mapped.
 pub const RIDGELIGHT_MEMORY_READBACK: u32 = 2;
 
-/// What an image or buffer needs.
+/// Requirements of an image or buffer.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct RidgelightMemoryRequest {
@@ -22,11 +22,12 @@ pub struct RidgelightMemoryRequest {
     pub struct_size: u32,
     /// Who reads and writes it: RIDGELIGHT_MEMORY_DEVICE, _UPLOAD or _READBACK.
     pub used_by: u32,
-    /// Of the image or buffer; good during the call.
+    /// Name of the image or buffer; valid during the call.
     pub name: *const c_char,
-    /// Size, alignment and the types of memory that will do.
+    /// Size, alignment and permitted memory types.
     pub requirements: vk::MemoryRequirements,
-    /// VK_TRUE for a buffer; else an image of optimal tiling, which bufferImageGranularity keeps apart.
+    /// VK_TRUE for a buffer; else an image of optimal tiling, which bufferImageGranularity separates from
+    /// buffers.
     pub is_linear: vk::Bool32,
 }
 
@@ -34,28 +35,29 @@ pub struct RidgelightMemoryRequest {
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct RidgelightAllocation {
-    /// The memory that it lies in.
+    /// The memory object.
     pub memory: vk::DeviceMemory,
-    /// Its first byte there.
+    /// Offset of its first byte, in bytes.
     pub offset: u64,
-    /// Where the host sees that byte; null for RIDGELIGHT_MEMORY_DEVICE.
+    /// Host address of that byte; null for RIDGELIGHT_MEMORY_DEVICE.
     pub mapped: *mut c_void,
-    /// The allocator's own mark.
+    /// The allocator's own key.
     pub key: u64,
 }
 
-/// An engine's own memory: called by the thread that makes, changes or destroys a renderer, one call at a time.
+/// An engine's own memory. It is called by the thread that makes, changes or destroys a renderer, one call at a
+/// time.
 ///
-/// What `allocate` gives is what the request asks for: of one of its types of memory, at its alignment, as
-/// large, nobody else's until `free`, and mapped as long unless it is for the device alone.
+/// `allocate` must return what was requested: one of the memory types, the alignment, at least the size, owned
+/// by nobody else until `free`, and mapped for as long unless it is for the device only.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct RidgelightAllocator {
     /// sizeof(RidgelightAllocator).
     pub struct_size: u32,
-    /// Handed back with every call.
+    /// Passed back with every call.
     pub user: *mut c_void,
-    /// Fills `allocation`; VK_FALSE where there is no such memory left.
+    /// Fills `allocation`; VK_FALSE where no such memory is left.
     pub allocate: Option<
         unsafe extern "C" fn(
             user: *mut c_void,
@@ -63,7 +65,7 @@ pub struct RidgelightAllocator {
             allocation: *mut RidgelightAllocation,
         ) -> vk::Bool32,
     >,
-    /// Takes back what `allocate` gave: its image or buffer has been destroyed.
+    /// Frees what `allocate` returned, after its image or buffer was destroyed.
     pub free:
         Option<unsafe extern "C" fn(user: *mut c_void, allocation: *const RidgelightAllocation)>,
 }
@@ -78,23 +80,23 @@ type Allocate = unsafe extern "C" fn(
 ) -> vk::Bool32;
 type Free = unsafe extern "C" fn(*mut c_void, *const RidgelightAllocation);
 
-/// The same as the library's own trait.
+/// Adapts it to the library's own trait.
 pub(crate) struct Callbacks {
     pub user: *mut c_void,
     pub allocate: Allocate,
     pub free: Free,
-    /// Sizes of what is held, by what they lie at.
+    /// Sizes of the pieces in use, by memory and offset.
     pub held: std::collections::HashMap<(vk::DeviceMemory, u64), u64>,
 }
 
-// SAFETY: calls come one at a time, by whichever thread has the renderer: the header says so.
+// SAFETY: calls come one at a time, by whichever thread has the renderer, as the header requires.
 unsafe impl Send for Callbacks {}
 
-// SAFETY: the caller's word, in the header.
+// SAFETY: the header requires it of the caller.
 unsafe impl Allocator for Callbacks {
     fn allocate(&mut self, request: &MemoryRequest<'_>) -> Result<Allocation> {
         let name = CString::new(request.name).unwrap_or_default();
-        let asked = RidgelightMemoryRequest {
+        let requested = RidgelightMemoryRequest {
             struct_size: size_of::<RidgelightMemoryRequest>() as u32,
             used_by: match request.used_by {
                 MemoryUse::Device => RIDGELIGHT_MEMORY_DEVICE,
@@ -112,13 +114,16 @@ unsafe impl Allocator for Callbacks {
             key: 0,
         };
         // SAFETY: the caller's function; both structs live across the call.
-        if unsafe { (self.allocate)(self.user, &asked, &mut given) } == vk::FALSE {
+        if unsafe { (self.allocate)(self.user, &requested, &mut given) } == vk::FALSE {
             return Err(Error::Device {
-                doing: format!("allocating {} bytes for {}", asked.requirements.size, request.name),
+                doing: format!(
+                    "allocating {} bytes for {}",
+                    requested.requirements.size, request.name
+                ),
                 reason: "the allocator has no such memory".into(),
             });
         }
-        self.held.insert((given.memory, given.offset), asked.requirements.size);
+        self.held.insert((given.memory, given.offset), requested.requirements.size);
         let RidgelightAllocation { memory, offset, mapped, key } = given;
         Ok(Allocation { memory, offset, mapped: NonNull::new(mapped.cast()), key })
     }

@@ -8,21 +8,21 @@ use ridgelight::Error;
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RidgelightResult {
-    /// It did what it should.
+    /// Success.
     Ok = 0,
-    /// A null pointer, a struct_size or a number that stands for nothing.
+    /// A null pointer, a struct_size or an undefined constant.
     Argument = 1,
-    /// A value out of its range, or an image that is not what the plan says.
+    /// A value out of range, or an image that does not match the plan.
     Setting = 2,
-    /// A scene that the device or the memory budget cannot hold.
+    /// A scene that exceeds the device or the memory budget.
     Limit = 3,
     /// A device that lacks something, or a Vulkan call that failed.
     Device = 4,
-    /// A fault of Ridgelight's own: please report it.
+    /// A bug in Ridgelight: please report it.
     Internal = 5,
 }
 
-/// What stops a call: a code and a sentence.
+/// Why a call failed: a code and a sentence.
 pub(crate) struct Failure(pub RidgelightResult, pub String);
 
 pub(crate) type Done<T = ()> = Result<T, Failure>;
@@ -49,9 +49,9 @@ thread_local! {
     static LAST: RefCell<CString> = RefCell::default();
 }
 
-/// Runs what a function does; keeps the sentence where it fails. No panic crosses into C.
+/// Runs the body of a function; keeps the sentence if it fails. No panic crosses into C.
 pub(crate) fn done(work: impl FnOnce() -> Done) -> RidgelightResult {
-    // What a panic leaves half done is behind a handle that its caller is told to give up.
+    // What a panic leaves half done is behind a handle that its caller must no longer use.
     let ended = catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|_| {
         Err(Failure(RidgelightResult::Internal, "a fault of Ridgelight's own".to_owned()))
     });
@@ -65,8 +65,8 @@ pub(crate) fn done(work: impl FnOnce() -> Done) -> RidgelightResult {
     }
 }
 
-/// One sentence on why the last call on this thread that failed did: UTF-8, ended by a nul, good until
-/// another call on this thread fails. Empty before any has.
+/// One sentence on why the last failing call on this thread failed: UTF-8, nul-terminated, valid until another
+/// call on this thread fails. Empty before the first failure.
 #[unsafe(no_mangle)]
 pub extern "C" fn ridgelight_last_error() -> *const c_char {
     LAST.with(|last| last.borrow().as_ptr())
@@ -81,8 +81,9 @@ pub extern "C" fn ridgelight_version() -> u32 {
     RIDGELIGHT_VERSION
 }
 
-/// Whether the library does for a program that was compiled with a header of a version: with
-/// RIDGELIGHT_VERSION. The major must be the same, and before 1.0 the minor; else the library may not be older.
+/// Whether the library is compatible with a program compiled with a header of `version`, which is
+/// RIDGELIGHT_VERSION. The major version must be equal, before 1.0 also the minor; otherwise the library must
+/// not be older.
 ///
 /// Returns OK, or ARGUMENT.
 #[unsafe(no_mangle)]
@@ -95,7 +96,7 @@ pub extern "C" fn ridgelight_check_version(header: u32) -> RidgelightResult {
             return Ok(());
         }
         let text = |v: [u32; 3]| format!("{}.{}.{}", v[0], v[1], v[2]);
-        let expected = format!("one that library {} does for", text(own));
+        let expected = format!("a version that library {} supports", text(own));
         Err(Failure::argument("header", text(found), &expected))
     })
 }

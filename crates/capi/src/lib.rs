@@ -1,6 +1,6 @@
-//! Ridgelight for C: what `include/ridgelight.h` declares. Only the library's public API stands behind it.
+//! Ridgelight for C: implements `include/ridgelight.h` by the library's public API.
 //!
-//! Every struct begins with its size, so that one of an older header is read as far as it goes; what is 0 is
+//! Every struct begins with its size, so that a struct of an older header is read as far as it goes; 0 selects
 //! the default. Plans and renderers are opaque. Functions that can fail return a [`RidgelightResult`], and
 //! leave a sentence for [`ridgelight_last_error`].
 
@@ -14,7 +14,7 @@ mod types;
 mod view;
 mod voids;
 
-/// Under the name that C has for it; null is none.
+/// The type under its C name; null is none.
 #[expect(non_camel_case_types, reason = "C's name")]
 type PFN_vkGetInstanceProcAddr = Option<ash::vk::PFN_vkGetInstanceProcAddr>;
 

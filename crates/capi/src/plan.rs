@@ -9,26 +9,27 @@ use crate::read::{SizeFirst, hand_out, handle, handle_mut, write};
 use crate::scene::{RidgelightQuality, RidgelightScene, quality, scene};
 use crate::types::{RidgelightHost, host};
 
-/// The passes that light one scene, in order, and everything that they touch: data alone. Threads may share it,
-/// but for ridgelight_plan_take_buffer.
+/// The passes that light one scene, in order, and their resources; plain data. Threads may share it, except
+/// during ridgelight_plan_take_buffer.
 pub struct RidgelightPlan(pub(crate) Plan);
 
 impl RidgelightPlan {
-    /// The settings really used, as (name, value): for Rust.
+    /// The settings in use, as (name, value): for Rust.
     pub fn settings(&self) -> &[(String, String)] {
         &self.0.settings
     }
 }
 
-/// Besides the whole, an image for each light and each bounce.
+/// Also an image for each light and each bounce.
 pub const RIDGELIGHT_PICTURE_LIGHT_LAYERS: u32 = 1;
-/// Besides, what a sky of radiance 1 gives to albedo 1.
+/// Also the light of a sky of radiance 1 on albedo 1.
 pub const RIDGELIGHT_PICTURE_SKY_VIEW: u32 = 2;
-/// Horizons are kept, so that light alone may change, and rectangles of heights be edited.
+/// Keeps the horizons, so that lights alone may change, and rectangles of heights may be edited.
 pub const RIDGELIGHT_PICTURE_KEEPS_HORIZONS: u32 = 4;
-/// Radiances of the sky and of key lights and irradiances of suns are the caller's, on the device: one more input, the
-/// last, "light_colours", a row of texels, the sky's where the scene's is not 0, then each sun's, then each key light's.
-/// Those of the scene then count for nothing but, the sky's beside an environment, for where azimuths lie. Not with balls of light or a lobe.
+/// Radiances of the sky and of key lights and irradiances of suns come from the caller's image on the device.
+/// It is the last input, "light_colours", a row of texels: the sky's where the scene's is not 0, then each
+/// sun's, then each key light's. The scene's own colours then do not matter, except the sky's beside an
+/// environment, which affects the choice of azimuths. Not with sphere lights or specular.
 pub const RIDGELIGHT_PICTURE_COLOURS_ON_DEVICE: u32 = 8;
 
 /// Plans a picture of a scene for a host's device. `quality` may be null; `picture` is flags
@@ -37,8 +38,8 @@ pub const RIDGELIGHT_PICTURE_COLOURS_ON_DEVICE: u32 = 8;
 /// Returns OK, ARGUMENT, SETTING or LIMIT.
 ///
 /// # Safety
-/// Pointers are null, or to structs whose struct_size is set and whose pointers and handles are what their
-/// fields say; `plan` may be written to.
+/// Pointers are null, or to structs whose struct_size is set and whose pointers and handles are as their fields
+/// require; `plan` may be written to.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ridgelight_plan_create(
     host: *const RidgelightHost,
@@ -79,7 +80,7 @@ fn wanted(flags: u32) -> Done<Picture> {
     })
 }
 
-/// Gives a plan up; renderers made for it keep theirs. Null is allowed.
+/// Destroys a plan; renderers made for it keep a copy. Null is allowed.
 ///
 /// # Safety
 /// It came from ridgelight_plan_create and is not used again.
@@ -91,17 +92,17 @@ pub unsafe extern "C" fn ridgelight_plan_destroy(plan: *mut RidgelightPlan) {
     }
 }
 
-/// How much of what a plan has.
+/// Sizes of a plan.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct RidgelightPlanInfo {
     /// sizeof(RidgelightPlanInfo).
     pub struct_size: u32,
-    /// Images that are handed in to be read.
+    /// Number of input images.
     pub inputs: u32,
-    /// Images that are handed in to be written.
+    /// Number of output images.
     pub outputs: u32,
-    /// Passes: as many timings.
+    /// Number of passes, and of timings.
     pub passes: u32,
     /// Bytes of a renderer's own images and buffers.
     pub internal_bytes: u64,
@@ -110,7 +111,7 @@ pub struct RidgelightPlanInfo {
 // SAFETY: numbers; the size is first.
 unsafe impl SizeFirst for RidgelightPlanInfo {}
 
-/// Says how much of what a plan has.
+/// Writes the sizes of a plan.
 ///
 /// Returns OK, or ARGUMENT.
 ///
@@ -135,28 +136,29 @@ pub unsafe extern "C" fn ridgelight_plan_info(
     })
 }
 
-/// An image that a plan asks its caller for.
+/// An image that the caller provides for a plan.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct RidgelightImageInfo {
     /// sizeof(RidgelightImageInfo).
     pub struct_size: u32,
-    /// Its format; of inputs the one of which no bit is lost, see RidgelightImage.
+    /// Its format; for inputs the one without loss, see RidgelightImage.
     pub format: vk::Format,
     /// Columns, rows and layers.
     pub extent: [u32; 3],
-    /// What it must be made for: SAMPLED or STORAGE; 0 where a buffer is taken instead.
+    /// Its required usage: SAMPLED or STORAGE; 0 where a buffer is taken instead.
     pub usage: vk::ImageUsageFlags,
-    /// "heights", "environment", "albedo", "light_colours"; "radiance", "direct.sky", ...: UTF-8, ended by a nul.
+    /// "heights", "environment", "albedo", "light_colours"; "radiance", "direct.sky", ...: UTF-8,
+    /// nul-terminated.
     pub name: [c_char; 32],
 }
 
 // SAFETY: numbers; the size is first.
 unsafe impl SizeFirst for RidgelightImageInfo {}
 
-/// Describes input number `index` of a plan.
+/// Describes input `index` of a plan.
 ///
-/// Returns OK; ARGUMENT, beyond the last too.
+/// Returns OK; ARGUMENT, also beyond the last.
 ///
 /// # Safety
 /// `plan` is alive or null; `info` is null or points at a struct whose struct_size is set.
@@ -173,12 +175,12 @@ pub unsafe extern "C" fn ridgelight_plan_input(
     })
 }
 
-/// Has input number `index` come in a buffer of the caller's instead of an image, as rows of texels of `format`,
-/// 0: that of ridgelight_plan_input. Heights may be R32F, R16F or R16_UNORM; environment, albedo and colours of lights
-/// RGBA32F, RGBA16F, RGBA8 UNORM or SRGB. Each recording then begins with one copy to an image of the renderer's own.
-/// Before a renderer is made; nobody else uses the plan meanwhile.
+/// Takes input `index` from a caller's buffer instead of an image, as rows of texels of `format`, 0: that of
+/// ridgelight_plan_input. Heights may be R32F, R16F or R16_UNORM; environment, albedo and light colours
+/// RGBA32F, RGBA16F, RGBA8 UNORM or SRGB. Each recording then begins with one copy to an image of the
+/// renderer's own. Call it before a renderer is made, while nobody else uses the plan.
 ///
-/// Returns OK; ARGUMENT, beyond the last too; SETTING for texels that it cannot have.
+/// Returns OK; ARGUMENT, also beyond the last; SETTING for a format that the input cannot have.
 ///
 /// # Safety
 /// `plan` is alive or null.
@@ -215,9 +217,9 @@ pub unsafe extern "C" fn ridgelight_plan_take_buffer(
     })
 }
 
-/// Describes output number `index` of a plan.
+/// Describes output `index` of a plan.
 ///
-/// Returns OK; ARGUMENT, beyond the last too.
+/// Returns OK; ARGUMENT, also beyond the last.
 ///
 /// # Safety
 /// `plan` is alive or null; `info` is null or points at a struct whose struct_size is set.
@@ -255,11 +257,11 @@ unsafe fn describe(
         name: [0; 32],
     };
     text(&mut value.name, &resource.name);
-    // SAFETY: as the caller of the callers says.
+    // SAFETY: as the callers' callers guarantee.
     unsafe { write(info, &value, "info") }
 }
 
-/// A text of C; its end is cut off where it does not fit.
+/// Copies a text to C, cut off where it does not fit.
 pub(crate) fn text<const N: usize>(to: &mut [c_char; N], from: &str) {
     for (to, byte) in to[..N - 1].iter_mut().zip(from.bytes()) {
         *to = byte as c_char;

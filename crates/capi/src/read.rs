@@ -1,4 +1,4 @@
-//! Structs of the caller's, read as far as the size that they begin with says.
+//! Reads the caller's structs, up to the size that they begin with.
 
 use std::mem::{MaybeUninit, size_of};
 use std::ptr;
@@ -11,10 +11,10 @@ use crate::errors::{Done, Failure};
 /// All bits are a value of the type, and its first four bytes are the size.
 pub(crate) unsafe trait SizeFirst: Copy {}
 
-/// A copy of what `from` points at; zeros where the caller's struct is shorter.
+/// A copy of the struct at `from`; zeros where the caller's struct is shorter.
 ///
 /// # Safety
-/// `from` is null or points at as many bytes as its first four say.
+/// `from` is null or points to as many bytes as its first four give.
 pub(crate) unsafe fn read<T: SizeFirst>(from: *const T, name: &str) -> Done<T> {
     if from.is_null() {
         return Err(Failure::argument(name, "a null pointer", "a struct"));
@@ -34,14 +34,14 @@ fn check_size<T>(found: u32, name: &str) -> Done<usize> {
     if (size_of::<u32>()..=own).contains(&(found as usize)) {
         return Ok(found as usize);
     }
-    let expected = format!("sizeof the struct, {own}, or what an older header says");
+    let expected = format!("sizeof the struct, {own}, or that of an older header");
     Err(Failure::argument(&format!("{name}: struct_size"), found, &expected))
 }
 
-/// Copies of `count` structs one after the other, each as long as the first says.
+/// Copies of `count` consecutive structs, each with the size of the first.
 ///
 /// # Safety
-/// `from` points at that many of them, or is null.
+/// `from` points to that many of them, or is null.
 pub(crate) unsafe fn read_all<T: SizeFirst>(
     from: *const T,
     count: u32,
@@ -62,10 +62,10 @@ pub(crate) unsafe fn read_all<T: SizeFirst>(
     std::iter::once(Ok(first)).chain(all).collect()
 }
 
-/// Writes a struct back, as far as the caller's goes; its size stays.
+/// Writes a struct back, up to the caller's size; its size stays.
 ///
 /// # Safety
-/// As [`read`], and nobody else looks at it meanwhile.
+/// As [`read`], and nobody else reads it meanwhile.
 pub(crate) unsafe fn write<T: SizeFirst>(to: *mut T, value: &T, name: &str) -> Done {
     // SAFETY: as the caller says.
     unsafe {
@@ -78,25 +78,25 @@ pub(crate) unsafe fn write<T: SizeFirst>(to: *mut T, value: &T, name: &str) -> D
     Ok(())
 }
 
-/// `count` numbers that a pointer points at.
+/// `count` numbers at a pointer.
 ///
 /// # Safety
-/// They are there for as long as the slice is used, or the pointer is null.
+/// They are valid for as long as the slice is used, or the pointer is null.
 pub(crate) unsafe fn numbers<'a>(from: *const f32, count: usize) -> Option<&'a [f32]> {
     // SAFETY: as the caller says.
     (!from.is_null()).then(|| unsafe { std::slice::from_raw_parts(from, count) })
 }
 
-/// What an opaque handle stands for.
+/// The object of an opaque handle.
 ///
 /// # Safety
-/// It is null or came from the function that makes it and has not been destroyed.
+/// It is null, or came from the function that makes it and has not been destroyed.
 pub(crate) unsafe fn handle<'a, T>(from: *const T, name: &str) -> Done<&'a T> {
     // SAFETY: as the caller says.
     unsafe { from.as_ref() }.ok_or_else(|| Failure::argument(name, "a null pointer", "a handle"))
 }
 
-/// The same, to be changed: by one thread at a time.
+/// The same, for changes by one thread at a time.
 ///
 /// # Safety
 /// As [`handle`], and nobody else uses it meanwhile.
@@ -105,7 +105,7 @@ pub(crate) unsafe fn handle_mut<'a, T>(from: *mut T, name: &str) -> Done<&'a mut
     unsafe { from.as_mut() }.ok_or_else(|| Failure::argument(name, "a null pointer", "a handle"))
 }
 
-/// Hands a new value out as a handle.
+/// Passes a new object out as a handle.
 ///
 /// # Safety
 /// `to` is null or may be written to.
@@ -121,7 +121,7 @@ pub(crate) unsafe fn hand_out<T>(to: *mut *mut T, make: impl FnOnce() -> Done<T>
     Ok(())
 }
 
-/// A field of the caller's as Rust's own: 0 is the default, others count from 1.
+/// A constant of the caller as a Rust value: 0 is the default, others count from 1.
 pub(crate) fn pick<T: Copy>(name: &str, found: u32, default: T, all: &[T]) -> Done<T> {
     match found {
         0 => Ok(default),

@@ -11,7 +11,7 @@ use crate::plan::{RidgelightPlan, text};
 use crate::read::{SizeFirst, hand_out, handle, handle_mut, read, read_all, write};
 use crate::types::{RidgelightHost, RidgelightImage, host};
 
-/// A plan on a device. One thread at a time uses it, any thread.
+/// A plan on a device. Any thread may use it, one at a time.
 pub struct RidgelightRenderer(Renderer);
 
 impl RidgelightRenderer {
@@ -20,16 +20,17 @@ impl RidgelightRenderer {
     }
 }
 
-/// Makes all that a plan needs on a host's device, for `slots` frames in flight (0: 1): recording takes nothing
-/// more of it. `allocator` may be null: memory is then taken in blocks of 4 MiB.
+/// Makes everything that a plan needs on a host's device, for `slots` frames in flight (0: 1); recording
+/// allocates nothing on it. `allocator` may be null: memory then comes in blocks of 4 MiB.
 ///
-/// Internal images serve all slots: command buffers of different slots run one after the other on one queue.
+/// Internal images serve all slots: command buffers of different slots must run one after the other on one
+/// queue.
 ///
 /// Returns OK, ARGUMENT, SETTING or DEVICE.
 ///
 /// # Safety
 /// Pointers are null, or to structs whose struct_size is set, and whose handles are alive until the renderer is
-/// destroyed, as is what `allocator` points at through `user`; `renderer` may be written to.
+/// destroyed, as is the data that `allocator` uses through `user`; `renderer` may be written to.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ridgelight_renderer_create(
     host: *const RidgelightHost,
@@ -57,7 +58,7 @@ pub(crate) unsafe fn callbacks(from: *const RidgelightAllocator) -> Done<Option<
     if from.is_null() {
         return Ok(None);
     }
-    // SAFETY: as the caller of the caller says.
+    // SAFETY: as the caller's caller guarantees.
     let given = unsafe { read(from, "allocator") }?;
     let null = |name: &str| Failure::argument(&format!("allocator: {name}"), "null", "a function");
     Ok(Some(Callbacks {
@@ -68,7 +69,7 @@ pub(crate) unsafe fn callbacks(from: *const RidgelightAllocator) -> Done<Option<
     }))
 }
 
-/// Frees everything. The device must be done with all that was recorded. Null is allowed.
+/// Frees everything. All recorded commands must have finished. Null is allowed.
 ///
 /// # Safety
 /// It came from ridgelight_renderer_create and is not used again.
@@ -80,7 +81,7 @@ pub unsafe extern "C" fn ridgelight_renderer_destroy(renderer: *mut RidgelightRe
     }
 }
 
-/// A rectangle of a field's samples.
+/// A rectangle of texels.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct RidgelightRectangle {
@@ -88,22 +89,22 @@ pub struct RidgelightRectangle {
     pub col: u32,
     /// The first row.
     pub row: u32,
-    /// How many columns, 1 or more.
+    /// Number of columns, 1 or more.
     pub cols: u32,
-    /// How many rows, 1 or more.
+    /// Number of rows, 1 or more.
     pub rows: u32,
 }
 
-/// Appends a plan to `commands`: no submit, no wait, nothing allocated on the device. Checks everything first:
-/// after an error nothing has been recorded.
+/// Appends a plan to `commands`: no submit, no wait, no allocation on the device. All arguments are checked
+/// first: after an error nothing has been recorded.
 ///
-/// `commands` is being recorded outside a render pass, for the host's family. `slot` is the frame in flight,
-/// whose last command buffer has run. `inputs` and `outputs` are the plan's, in its order.
+/// `commands` is being recorded outside a render pass, for the host's family. `slot` is the frame in flight;
+/// its last command buffer must have run. `inputs` and `outputs` are the plan's, in its order.
 ///
 /// Returns OK, ARGUMENT or SETTING.
 ///
 /// # Safety
-/// `renderer` is alive or null, and used by this thread alone meanwhile; arrays are as long as said, and each
+/// `renderer` is alive or null, and used only by this thread meanwhile; arrays have the given lengths, and each
 /// struct's struct_size is set; images and views are alive until the command buffer has run.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ridgelight_record(
@@ -123,8 +124,8 @@ pub unsafe extern "C" fn ridgelight_record(
     })
 }
 
-/// Appends what an edit of a rectangle of heights needs, to a plan of RIDGELIGHT_PICTURE_KEEPS_HORIZONS: the same
-/// bits in every output as ridgelight_record. Outputs hold what the last recording left in them.
+/// Appends the edit of a rectangle of heights, for a plan with RIDGELIGHT_PICTURE_KEEPS_HORIZONS. Every output
+/// gets the same bits as from ridgelight_record. Outputs must hold what the last recording left in them.
 ///
 /// Returns OK, ARGUMENT or SETTING.
 ///
@@ -158,7 +159,7 @@ unsafe fn recorder<'a>(
     if commands == vk::CommandBuffer::null() {
         return Err(Failure::argument("commands", "null", "a command buffer"));
     }
-    // SAFETY: as the caller of the caller says.
+    // SAFETY: as the caller's caller guarantees.
     Ok(&mut unsafe { handle_mut(renderer, "renderer") }?.0)
 }
 
@@ -171,7 +172,7 @@ unsafe fn images(
 ) -> Done<(Vec<InputArg>, Vec<ImageArg>)> {
     let plan = renderer.plan();
     let (read, written) = (plan.inputs().map(|(_, r)| r), plan.outputs().map(|(_, r)| r));
-    // SAFETY: as the caller of the caller says.
+    // SAFETY: as the caller's caller guarantees.
     unsafe {
         Ok((
             args(inputs, read, "input", RidgelightImage::input)?,
@@ -186,20 +187,20 @@ unsafe fn args<'a, T>(
     name: &str,
     arg: fn(RidgelightImage, Option<&Resource>) -> T,
 ) -> Done<Vec<T>> {
-    // SAFETY: as the caller of the caller says.
+    // SAFETY: as the caller's caller guarantees.
     let images = unsafe { read_all(images, count, name) }?;
-    // More than the plan has are for `record` to refuse, by their number.
+    // `record` refuses a wrong number of them.
     Ok(images.into_iter().map(|image| arg(image, wanted.next())).collect())
 }
 
-/// Goes over to a plan that differs in what its passes are told, not in which there are nor in images and
-/// buffers: another colour of a light, a sun that has moved a little. What is in flight goes on with the plan that
-/// it was recorded with, and need not be waited for; what is recorded next is a whole recording.
+/// Replaces the plan by one with the same passes, images and buffers but other values: another colour of a
+/// light, a sun that moved a little. Frames in flight finish with the plan of their recording; do not wait for
+/// them. The next recording must be a whole one.
 ///
 /// Returns OK, ARGUMENT; SETTING where the plan needs a renderer of its own: the old one stays.
 ///
 /// # Safety
-/// Both are alive or null; the renderer is used by this thread alone meanwhile.
+/// Both are alive or null; only this thread uses the renderer meanwhile.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ridgelight_replace_plan(
     renderer: *mut RidgelightRenderer,
@@ -219,7 +220,7 @@ pub unsafe extern "C" fn ridgelight_replace_plan(
 pub struct RidgelightTiming {
     /// sizeof(RidgelightTiming).
     pub struct_size: u32,
-    /// The pass's name and part: UTF-8, ended by a nul.
+    /// The pass's name and part: UTF-8, nul-terminated.
     pub label: [c_char; 60],
     /// Nanoseconds.
     pub ns: f64,
@@ -228,10 +229,10 @@ pub struct RidgelightTiming {
 // SAFETY: numbers; the size is first.
 unsafe impl SizeFirst for RidgelightTiming {}
 
-/// GPU times of the passes that `slot` recorded last, in order. Never waits: `count` becomes 0 while they are not
-/// all in, and where the queue family has no timestamps.
+/// GPU times of the passes that `slot` recorded last, in order. Never waits: `count` becomes 0 while some are
+/// not available, and where the queue family has no timestamps.
 ///
-/// `count` is how many `timings` has room for, and becomes how many there are; more than fit are left out.
+/// `count` is the capacity of `timings`, and becomes their number; those beyond the capacity are left out.
 ///
 /// Returns OK, or ARGUMENT.
 ///
@@ -252,7 +253,7 @@ pub unsafe extern "C" fn ridgelight_timings(
 }
 
 /// # Safety
-/// `count` is null or says how many structs `timings` has, each with its struct_size set.
+/// `count` is null or the number of structs in `timings`, each with its struct_size set.
 pub(crate) unsafe fn write_timings(
     times: &[Timing],
     timings: *mut RidgelightTiming,

@@ -45,7 +45,7 @@ pub struct RidgelightKeyLight {
 // SAFETY: numbers; the size is first.
 unsafe impl SizeFirst for RidgelightKeyLight {}
 
-/// A ball of uniform radiance near the field.
+/// A sphere light: a sphere of uniform radiance near the field.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct RidgelightSphereLight {
@@ -62,26 +62,25 @@ pub struct RidgelightSphereLight {
 // SAFETY: numbers; the size is first.
 unsafe impl SizeFirst for RidgelightSphereLight {}
 
-/// Beyond the field's edge the ground goes on forever at horizontal: the default.
+/// Beyond the field's edge the ground continues at horizontal forever: the default.
 pub const RIDGELIGHT_BORDER_PLANE: u32 = 1;
-/// Nothing lies there: light may come from below horizontal.
+/// Nothing is beyond the edge: light may come from below horizontal.
 pub const RIDGELIGHT_BORDER_OPEN: u32 = 2;
 /// The field repeats.
 pub const RIDGELIGHT_BORDER_PERIODIC: u32 = 3;
 
-/// A field, what it is made of, and the light that falls on it. Heights are the image's that is handed in with
-/// each frame, in the unit of `cell_m`, none of them NaN: the host need not know them. All that pointers point at is
-/// copied.
+/// A field, its surface, and its lights. Heights come from an image with each frame, in the unit of `cell_m`,
+/// never NaN; the host need not know them. Data behind pointers is copied.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct RidgelightScene {
     /// sizeof(RidgelightScene).
     pub struct_size: u32,
-    /// Rows of samples, row 0 in the north.
+    /// Rows of grid points, row 0 in the north.
     pub rows: u32,
-    /// Columns of samples, column 0 in the west.
+    /// Columns of grid points, column 0 in the west.
     pub cols: u32,
-    /// What lies beyond the field's edge, a RIDGELIGHT_BORDER_; 0: PLANE.
+    /// The ground beyond the field's edge, a RIDGELIGHT_BORDER_; 0: PLANE.
     pub border: u32,
     /// Spacing of columns and of rows, in the unit of heights; 0, 0: 1, 1.
     pub cell_m: [f64; 2],
@@ -91,36 +90,36 @@ pub struct RidgelightScene {
     pub albedo: [f32; 3],
     /// VK_TRUE for an image of reflectance instead.
     pub albedo_is_map: u32,
-    /// VK_TRUE for an environment: an image whose middle looks east, its left quarter north, row 0 the zenith.
+    /// VK_TRUE for an environment: an image whose centre is east, its left quarter north, row 0 the zenith.
     pub has_environment: u32,
-    /// The map's texels, RGB; null where only the device knows them.
+    /// The map's texels, RGB; null where only the device has them.
     pub albedo_map: *const f32,
-    /// The environment's texels, RGB; null where only the device knows them: azimuths are even then.
+    /// The environment's texels, RGB; null where only the device has them: azimuths are even then.
     pub environment: *const f32,
     /// Texels around the full circle.
     pub environment_width: u32,
     /// Texels from zenith to nadir.
     pub environment_height: u32,
-    /// Counter-clockwise turn of the environment, radians.
+    /// Counter-clockwise rotation of the environment, radians.
     pub environment_rotation_rad: f64,
-    /// Exponent of a lobe about the mirror direction of the view from straight above, [0..1e4].
-    pub phong_exponent: f32,
-    /// Share of light that the lobe reflects, [0..1]; 0: no lobe.
-    pub phong_scale: f32,
-    /// Suns, one after the other.
+    /// Phong specular: exponent of the lobe about the mirror direction of a vertical view, [0..1e4].
+    pub specular_exponent: f32,
+    /// Phong specular: share of light that it reflects, [0..1]; 0: none.
+    pub specular_scale: f32,
+    /// Suns, consecutive.
     pub suns: *const RidgelightSun,
-    /// Key lights, one after the other.
+    /// Key lights, consecutive.
     pub keys: *const RidgelightKeyLight,
-    /// Balls of light, one after the other.
+    /// Sphere lights, consecutive.
     pub spheres: *const RidgelightSphereLight,
-    /// How many suns.
+    /// Number of suns.
     pub sun_count: u32,
-    /// How many key lights.
+    /// Number of key lights.
     pub key_count: u32,
-    /// How many balls of light.
+    /// Number of sphere lights.
     pub sphere_count: u32,
-    /// VK_TRUE where some samples hold no ground: pictures before a camera then take an image of marks and leave holes.
-    /// Heights there are filled all the same: ridgelight_fill_voids.
+    /// VK_TRUE where the field has voids: camera pictures then take a mask and leave holes. Heights must still
+    /// be filled there: ridgelight_fill_voids.
     pub has_voids: u32,
 }
 
@@ -130,7 +129,7 @@ unsafe impl SizeFirst for RidgelightScene {}
 /// The scene that a struct describes.
 ///
 /// # Safety
-/// As [`read`]; its pointers are null or point at what its sizes and counts say.
+/// As [`read`]; its pointers are null or point to data of the given sizes and counts.
 pub(crate) unsafe fn scene(from: *const RidgelightScene) -> Done<Scene> {
     // SAFETY: as the caller says, here and below.
     let scene = unsafe { read(from, "scene") }?;
@@ -148,8 +147,11 @@ pub(crate) unsafe fn scene(from: *const RidgelightScene) -> Done<Scene> {
         // SAFETY: as the caller says.
         albedo: unsafe { albedo(&scene, samples) },
         border: pick("scene: border", scene.border, Border::Plane, &borders)?,
-        specular: (scene.phong_scale != 0.0)
-            .then_some(PhongSpecular { exponent: scene.phong_exponent, scale: scene.phong_scale })
+        specular: (scene.specular_scale != 0.0)
+            .then_some(PhongSpecular {
+                exponent: scene.specular_exponent,
+                scale: scene.specular_scale,
+            })
             .map(Specular::Constant),
     };
     // SAFETY: as the caller says.
@@ -162,7 +164,7 @@ fn texels(values: &[f32]) -> Vec<[f32; 3]> {
 
 unsafe fn albedo(scene: &RidgelightScene, samples: usize) -> Albedo {
     if scene.albedo_is_map != 0 {
-        // SAFETY: as the caller of `scene` says.
+        // SAFETY: as the caller of `scene` guarantees.
         let known = unsafe { numbers(scene.albedo_map, 3 * samples) };
         return known.map_or_else(|| Albedo::unknown(samples), |m| Albedo::Map(texels(m)));
     }
@@ -182,14 +184,14 @@ unsafe fn lights(scene: &RidgelightScene) -> Done<Lights> {
         }
         let (width, height) = (width as usize, height as usize);
         let turn = scene.environment_rotation_rad;
-        // SAFETY: as the caller of `scene` says.
+        // SAFETY: as the caller of `scene` guarantees.
         let known = unsafe { numbers(scene.environment, 3 * count as usize) };
         lights.environment = Some(match known {
             Some(values) => Environment::new(width, height, texels(values), turn)?,
             None => Environment::unknown(width, height, turn)?,
         });
     }
-    // SAFETY: as the caller of `scene` says.
+    // SAFETY: as the caller of `scene` guarantees.
     let (suns, keys, spheres) = unsafe {
         (
             read_all(scene.suns, scene.sun_count, "sun")?,
@@ -226,68 +228,70 @@ unsafe fn lights(scene: &RidgelightScene) -> Done<Lights> {
     Ok(lights)
 }
 
-/// What speed is traded against accuracy with. In every field 0 is the default.
+/// Speed against accuracy. In every field 0 is the default.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct RidgelightQuality {
     /// sizeof(RidgelightQuality).
     pub struct_size: u32,
-    /// How horizons are found: 1 auto (default), 2 sweep, 3 pyramid, 4 brute.
+    /// How horizons are found: 1 auto (default), 2 sweep, 3 pyramid, 4 brute-force.
     pub method: u32,
     /// Azimuths of sky and environment, [4..1024], default 64. Fewer: faster, banding at sharp silhouettes.
     pub azimuths: u32,
-    /// Slices across a sun's disc, a key light or a ball of light, [1..256], default 8. Fewer: faster, steps in
+    /// Slices across a sun's disc, a key light or a sphere light, [1..256], default 8. Fewer: faster, steps in
     /// soft shadows.
     pub sun_azimuths: u32,
     /// Distance between the lines of a sweep: 1 exact, 2 a quarter of a cell, 3 half a cell, 4 a cell (default),
     /// 5 two cells, 6 four cells. Wider: faster, small occluders missed between lines.
     pub lines: u32,
-    /// How the lines' results come back to samples: 1 nearest, 2 slopes, 3 own, 4 aimed-nearest (default),
-    /// 5 aimed, 6 aimed-around. Later: nearer to the truth, slower.
+    /// How the lines' results come back to grid points: 1 nearest, 2 slopes, 3 own, 4 aimed-nearest (default),
+    /// 5 aimed, 6 aimed-around. Later: slower, smaller error.
     pub fuse: u32,
-    /// Bits of what the sweep keeps: 1 f32 (default), 2 f16. (Packed ones would have to know heights beforehand.)
+    /// Precision of stored sweep results: 1 f32 (default), 2 f16. (A packed hull would need the heights
+    /// beforehand.)
     pub precision: u32,
-    /// Where the sweep's hull lives: 1 auto (default), 2 private, 3 shared, 4 list. Never changes the result.
+    /// Hull storage: 1 auto (default), 2 private, 3 shared, 4 list. Never changes the result.
     pub hull: u32,
-    /// Levels a doubling of distance in a height pyramid, [1..16], default 4. Fewer: faster, smeared horizons.
+    /// Levels per doubling of distance in a height pyramid, [1..16], default 4. Fewer: faster, smeared
+    /// horizons.
     pub level_step: u32,
-    /// One more than the doublings of resolution by which a march over a pyramid looks at finer levels, [1..5],
-    /// default 3. Fewer: soft distant horizons.
+    /// One more than the doublings of resolution by which a pyramid march reads finer levels, [1..5], default
+    /// 3. Fewer: blurred distant horizons.
     pub level_offset_plus_1: u32,
-    /// What is stored of a pyramid's levels: 1 stack (default), 2 pyramid: less memory, slower.
+    /// How a pyramid's levels are stored: 1 stack (default), 2 pyramid: less memory, slower.
     pub levels: u32,
     /// Elevations of an environment table, [8..4096], default 256. Fewer: faster, small bright places smeared.
     pub table_elevations: u32,
-    /// What an environment is looked up in: 1 auto (default), 2 table, 3 sh.
+    /// How an environment is evaluated: 1 auto (default), 2 table, 3 sh.
     pub basis: u32,
-    /// Order of what samples see as spherical harmonics, [2..6], default 4.
+    /// SH order of visibility, [2..6], default 4.
     pub sh_order: u32,
-    /// How what is seen becomes harmonics: 1 slices (default), 2 nlp, 3 table.
+    /// How visibility becomes SH: 1 slices (default), 2 nlp, 3 table.
     pub wedges: u32,
-    /// How a surface turns what it sees into light: 1 plane (default), 2 lobe.
+    /// Receiver: how visibility becomes light: 1 plane (default), 2 lobe.
     pub receiver: u32,
-    /// What tames the ringing of harmonics: 1 none (default), 2 lanczos, 3 hann, 4 nonnegative.
+    /// SH window: 1 none (default), 2 lanczos, 3 hann, 4 nonnegative.
     pub window: u32,
-    /// What is seen is found at every so many samples, 1, 2 or 4, default 1. More: faster, blurred shadows.
+    /// Visibility is found at every nth grid point, n = 1, 2 or 4, default 1. More: faster, blurred shadows.
     pub subsample: u32,
-    /// Horizons of either side of a table of wedges, [4..256], default 64.
+    /// Horizons per side of a table of wedges, [4..256], default 64.
     pub wedge_side: u32,
-    /// What balls of light are lit by: 1 exact (default), 2 sh.
+    /// Basis of sphere lights: 1 exact (default), 2 sh.
     pub light_basis: u32,
-    /// What a sample may lose, all balls of light together, of the brightest that one of them would give to
-    /// level ground at height 0, [0..1], default 1/65536; below 0: nothing.
+    /// Largest light that a texel may lose from all sphere lights together, as a share of the brightest light
+    /// that one of them would give to level ground at height 0, [0..1], default 1/65536; below 0: none.
     pub light_cutoff: f64,
-    /// Times that light may be reflected on its way to a sample, [0..64].
+    /// Number of bounces of light, [0..64].
     pub bounces: u32,
-    /// How what a sample sees of the surface is found: 1 brute (default), 2 sweep, 3 pyramid.
+    /// How bounced light is found: 1 brute-force (default), 2 sweep, 3 pyramid.
     pub bounce_engine: u32,
-    /// Azimuths that each sample looks along for them, [4..1024], default 32.
+    /// Azimuths of bounced light per grid point, [4..1024], default 32.
     pub bounce_azimuths: u32,
     /// As level_step, for the pyramid of exit radiance, [1..16], default 4.
     pub bounce_level_step: u32,
     /// As level_offset_plus_1, for the pyramid of exit radiance, [1..5], default 3.
     pub bounce_level_offset_plus_1: u32,
-    /// Share of the direct light's energy that may be left out of bounces, [0..1], default 1/65536; below 0: none.
+    /// Share of the direct light's energy that bounces may leave out, [0..1], default 1/65536; below 0: none.
     pub bounce_cutoff: f64,
 }
 

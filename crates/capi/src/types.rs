@@ -6,24 +6,24 @@ use crate::PFN_vkGetInstanceProcAddr;
 use crate::errors::{Done, Failure, RidgelightResult, done};
 use crate::read::{SizeFirst, read, write};
 
-/// A device that is borrowed, never destroyed: it outlives every renderer made on it.
+/// A borrowed device, never destroyed by Ridgelight: it must outlive every renderer made on it.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct RidgelightHost {
     /// sizeof(RidgelightHost).
     pub struct_size: u32,
-    /// The family of the queue that commands go to: it offers compute. Images of exclusive sharing belong to it
-    /// when a recording runs, and still do afterwards.
+    /// The family of the queue that runs the commands; it must support compute. Images of exclusive sharing
+    /// belong to it before and after a recording.
     pub queue_family: u32,
-    /// The instance that the device came from, for Vulkan 1.3.
+    /// The instance of the device, for Vulkan 1.3.
     pub instance: vk::Instance,
-    /// Its physical device.
+    /// The physical device.
     pub physical_device: vk::PhysicalDevice,
-    /// The device, with what ridgelight_requirements asks for enabled.
+    /// The device, with the features of ridgelight_requirements enabled.
     pub device: vk::Device,
-    /// The loader's vkGetInstanceProcAddr: all functions are looked up through it.
+    /// The loader's vkGetInstanceProcAddr, through which all functions are loaded.
     pub get_instance_proc_addr: PFN_vkGetInstanceProcAddr,
-    /// Where compiled pipelines are looked for and kept, or null; not created as externally synchronised.
+    /// Cache for compiled pipelines, or null; not created as externally synchronised.
     pub pipeline_cache: vk::PipelineCache,
     /// VK_TRUE where the instance has VK_EXT_debug_utils enabled: for names and labels.
     pub debug_utils: vk::Bool32,
@@ -50,7 +50,7 @@ pub(crate) unsafe fn host(from: *const RidgelightHost) -> Done<Host> {
         return Err(null("device"));
     }
     let get = host.get_instance_proc_addr.ok_or_else(|| null("get_instance_proc_addr"))?;
-    // SAFETY: the loader's own function, and handles that the caller says are alive.
+    // SAFETY: the loader's own function, and handles that the caller guarantees are alive.
     unsafe {
         let entry = ash::StaticFn { get_instance_proc_addr: get };
         let instance = ash::Instance::load(&entry, host.instance);
@@ -68,15 +68,15 @@ pub(crate) unsafe fn host(from: *const RidgelightHost) -> Done<Host> {
     }
 }
 
-/// What a device must be made with. No extension, of instance or device.
+/// What to enable when a device is made. No extension, of instance or device.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct RidgelightRequirements {
     /// sizeof(RidgelightRequirements).
     pub struct_size: u32,
-    /// The Vulkan version of instance and device, and the apiVersion that the instance is made for.
+    /// The Vulkan version of instance and device, and the instance's apiVersion.
     pub api_version: u32,
-    /// What the family of the queue must offer.
+    /// Capabilities of the queue's family.
     pub queue_flags: vk::QueueFlags,
     /// Core features to enable.
     pub features: vk::PhysicalDeviceFeatures,
@@ -89,12 +89,12 @@ pub struct RidgelightRequirements {
 // SAFETY: numbers, and pointers that may be null; the size is first.
 unsafe impl SizeFirst for RidgelightRequirements {}
 
-/// Writes what a device must be made with, beside what its engine wants itself: before there is one.
+/// Writes what to enable, besides an engine's own needs. It needs no device.
 ///
 /// Returns OK, or ARGUMENT.
 ///
 /// # Safety
-/// `requirements` is null or points at a struct whose struct_size is set.
+/// `requirements` is null or points to a struct whose struct_size is set.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ridgelight_requirements(
     requirements: *mut RidgelightRequirements,
@@ -114,7 +114,7 @@ pub unsafe extern "C" fn ridgelight_requirements(
     })
 }
 
-/// Whether a device will do: before one is made, so that `device` may be anything.
+/// Whether a device is suitable; before it is made, so `device` is ignored.
 ///
 /// Returns OK; DEVICE where it lacks something, which ridgelight_last_error names; ARGUMENT.
 ///
@@ -133,7 +133,7 @@ pub unsafe extern "C" fn ridgelight_check_device(
             return Err(null("instance or physical_device"));
         }
         let entry = ash::StaticFn { get_instance_proc_addr: get };
-        // SAFETY: the loader's own function, and an instance that the caller says is alive.
+        // SAFETY: the loader's own function, and an instance that the caller guarantees is alive.
         let instance = unsafe { ash::Instance::load(&entry, instance) };
         let missing = gpu::missing(&instance, physical_device);
         if missing.is_empty() {
@@ -144,15 +144,16 @@ pub unsafe extern "C" fn ridgelight_check_device(
     })
 }
 
-/// What an image is being used for at a point of a command buffer.
+/// The use of an image at a point of a command buffer.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct RidgelightImageState {
-    /// Stages that used it last, or will next.
+    /// Stages of its last or next use.
     pub stage: vk::PipelineStageFlags2,
-    /// How they did, or will.
+    /// Accesses of its last or next use.
     pub access: vk::AccessFlags2,
-    /// Its layout. VK_IMAGE_LAYOUT_UNDEFINED is allowed for outputs on entry: their contents are not kept.
+    /// Its layout. VK_IMAGE_LAYOUT_UNDEFINED is allowed for outputs before a recording: their contents are not
+    /// kept.
     pub layout: vk::ImageLayout,
 }
 
@@ -166,34 +167,35 @@ impl RidgelightImageState {
     }
 }
 
-/// An image of the caller's, handed in for one recording: its mip level 0, array layers from 0.
+/// A caller's image for one recording: its mip level 0, array layers from 0.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct RidgelightImage {
     /// sizeof(RidgelightImage).
     pub struct_size: u32,
-    /// Its format, 0: the plan's. Heights may be R32F, R16F or R16_UNORM (0 to 1: cells and lights are told in
-    /// units of the range); environment, albedo and colours of lights RGBA32F, RGBA16F, RGBA8 UNORM or SRGB; outputs are
-    /// the plan's.
+    /// Its format, 0: the plan's. Heights may be R32F, R16F or R16_UNORM (0 to 1: cells and lights are then in
+    /// units of the range); environment, albedo and light colours RGBA32F, RGBA16F, RGBA8 UNORM or SRGB;
+    /// outputs have the plan's.
     pub format: vk::Format,
     /// The image: of usage SAMPLED for an input, STORAGE for an output.
     pub image: vk::Image,
-    /// A view of its colour, 2D.
+    /// A view of its colour aspect, 2D.
     pub view: vk::ImageView,
-    /// Columns, rows and layers; 0, 0, 0: the plan's, which they must be.
+    /// Columns, rows and layers; 0, 0, 0 or the plan's.
     pub extent: [u32; 3],
-    /// How it comes.
+    /// State before the recording.
     pub before: RidgelightImageState,
-    /// How it is left. Inputs are left as they came, whatever stands here.
+    /// State after the recording. Ignored for inputs, which are left as before.
     pub after: RidgelightImageState,
-    /// Instead of image and view, for an input that ridgelight_plan_take_buffer said it of: its texels, row after
-    /// row, of usage TRANSFER_SRC. Of `before` stage and access count; it is left so.
+    /// Replaces image and view for an input of ridgelight_plan_take_buffer: its texels, row after row, of usage
+    /// TRANSFER_SRC. Only stage and access of `before` are used; it is left in that use.
     pub buffer: vk::Buffer,
-    /// How long all of the buffer is, bytes: nothing beyond is read.
+    /// Size of the buffer, bytes: nothing beyond is read.
     pub buffer_bytes: u64,
-    /// Where its first texel stands, bytes: whole texels.
+    /// Offset of the first texel, bytes: a multiple of the texel size.
     pub buffer_offset: u64,
-    /// From a row's begin to the next one's, bytes: whole texels, less than 2^31. 0: rows follow one another.
+    /// Distance between the starts of rows, bytes: a multiple of the texel size, less than 2^31. 0: rows are
+    /// consecutive.
     pub row_bytes: u64,
 }
 
@@ -201,7 +203,7 @@ pub struct RidgelightImage {
 unsafe impl SizeFirst for RidgelightImage {}
 
 impl RidgelightImage {
-    /// What C is told of an image.
+    /// An image argument as a C struct.
     pub(crate) fn of(arg: &ImageArg) -> Self {
         Self {
             struct_size: 0,
@@ -218,7 +220,7 @@ impl RidgelightImage {
         }
     }
 
-    /// The same of what is read: a buffer, where there is one.
+    /// As an input: a buffer, where there is one.
     pub(crate) fn input(self, resource: Option<&Resource>) -> InputArg {
         if self.buffer == vk::Buffer::null() {
             return self.arg(resource).into();
@@ -234,7 +236,7 @@ impl RidgelightImage {
         .into()
     }
 
-    /// What fields of 0 leave to the plan is `resource`'s.
+    /// As an image; fields of 0 are taken from `resource`.
     pub(crate) fn arg(self, resource: Option<&Resource>) -> ImageArg {
         let mut arg = ImageArg {
             image: self.image,

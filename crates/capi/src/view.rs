@@ -11,48 +11,49 @@ use crate::renderer::{RidgelightRenderer, RidgelightTiming, callbacks, write_tim
 use crate::scene::{RidgelightScene, scene};
 use crate::types::{RidgelightHost, RidgelightImage, host};
 
-/// From where a lit field is seen, and how. North is up on the map.
+/// The camera of a picture of a lit field. North is up on the map.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct RidgelightCamera {
     /// sizeof(RidgelightCamera).
     pub struct_size: u32,
-    /// Samples a pixel, 1, 2, 4 or 8, where the device has them; 0: 4.
+    /// MSAA samples per pixel, 1, 2, 4 or 8, where the device supports them; 0: 4.
     pub samples: u32,
     /// Columns and rows of the picture.
     pub size: [u32; 2],
-    /// Where the eye stands as seen from what it looks at: in the plane, radians counter-clockwise from east.
+    /// Azimuth of the eye from the target, in the plane, radians counter-clockwise from east.
     pub azimuth_rad: f64,
-    /// And above horizontal, radians, [-pi/2..pi/2].
+    /// Elevation of the eye from the target above horizontal, radians, [-pi/2..pi/2].
     pub elevation_rad: f64,
-    /// What stands in the middle of the picture: x east of the westernmost column, y north of the southernmost row,
-    /// z as heights.
+    /// The target in the middle of the picture: x east of the westernmost column, y north of the southernmost
+    /// row, z as heights.
     pub target_m: [f64; 3],
-    /// From there to the eye, [1e-9..1e15]. 0: so far that all of a level field at height 0 is just seen, about its
-    /// middle, whatever target_m.
+    /// Distance from the target to the eye, [1e-9..1e15]. 0: a level field at height 0 just fits the picture,
+    /// about its middle, whatever target_m.
     pub distance_m: f64,
     /// Angle between the lower and the upper edge of the picture, radians, [0.001..3]; 0: 40 degrees.
     pub fov_rad: f64,
-    /// Above 0, [1e-9..1e15]: parallel rays, and what the picture spans from its lower to its upper edge.
+    /// Above 0, [1e-9..1e15]: parallel rays, and the distance that the picture spans from its lower to its
+    /// upper edge.
     pub ortho_height_m: f64,
-    /// The mesh has a vertex at every so many samples, [1..1024], default 1. Larger: faster, coarser.
+    /// The mesh has a vertex at every nth grid point, [1..1024], default 1. Larger: faster, coarser.
     pub mesh_step: u32,
-    /// Factor before the tone curve, where the picture is of codes; 0: 1.
+    /// Factor before the tone curve, for screen formats; 0: 1.
     pub exposure: f32,
-    /// Radiance, linear RGB, where neither ground nor sky is seen.
+    /// Radiance, linear RGB, of pixels without ground and sky.
     pub background: [f32; 3],
 }
 
 // SAFETY: numbers; the size is first.
 unsafe impl SizeFirst for RidgelightCamera {}
 
-/// Pictures of a lit field before a camera, on a device. One thread at a time uses it, any thread.
+/// Camera pictures of a lit field, on a device. Any thread may use it, one at a time.
 pub struct RidgelightView {
     renderer: ViewRenderer,
     scene: Scene,
     lit: Plan,
     limits: Limits,
-    /// What was recorded last.
+    /// The last recorded camera.
     view: View,
     exposure: f32,
     format: vk::Format,
@@ -60,7 +61,7 @@ pub struct RidgelightView {
 
 /// # Safety
 /// As [`read`].
-unsafe fn seen(
+unsafe fn camera_view(
     from: *const RidgelightCamera,
     (scene, has_voids): (&Scene, bool),
     lit: &Plan,
@@ -94,18 +95,18 @@ unsafe fn seen(
     Ok((view, exposure))
 }
 
-/// Makes what pictures of a scene's light need, for `slots` frames in flight (0: 1): `plan` lights it. `format` is
-/// R32G32B32A32 or R16G16B16A16 SFLOAT, which get linear radiance, or of a screen, 8 or 10 bits a colour, UNORM or SRGB,
-/// which get exposure, clip and sRGB. `allocator` may be null.
+/// Makes the resources for pictures of a scene's light, for `slots` frames in flight (0: 1); `plan` lights it.
+/// `format` is R32G32B32A32 or R16G16B16A16 SFLOAT for linear radiance; or a screen format of 8 or 10 bits per
+/// colour, UNORM or SRGB, which gets exposure, clip and sRGB. `allocator` may be null.
 ///
-/// The device needs dynamicRendering of Vulkan 1.3 besides what ridgelight_requirements asks for, and the host's family
+/// The device needs dynamicRendering of Vulkan 1.3 besides ridgelight_requirements, and the host's family needs
 /// graphics.
 ///
 /// Returns OK, ARGUMENT, SETTING, LIMIT or DEVICE.
 ///
 /// # Safety
-/// As ridgelight_renderer_create; `scene` and `camera` are null or structs whose struct_size is set, `scene`'s pointers
-/// what their fields say.
+/// As ridgelight_renderer_create; `scene` and `camera` are null or structs whose struct_size is set, `scene`'s
+/// pointers are as their fields require.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ridgelight_view_create(
     host: *const RidgelightHost,
@@ -124,7 +125,7 @@ pub unsafe extern "C" fn ridgelight_view_create(
             let has_voids = read(scene, "scene")?.has_voids != 0;
             let (scene, lit) = (self::scene(scene)?, handle(plan, "plan")?.0.clone());
             let limits = gpu::limits(&host.instance, host.physical_device);
-            let (view, exposure) = seen(camera, (&scene, has_voids), &lit, &limits)?;
+            let (view, exposure) = camera_view(camera, (&scene, has_voids), &lit, &limits)?;
             let slots = slots.max(1) as usize;
             let renderer = match callbacks(allocator)? {
                 Some(memory) => {
@@ -137,7 +138,7 @@ pub unsafe extern "C" fn ridgelight_view_create(
     })
 }
 
-/// Frees everything. The device must be done with all that was recorded. Null is allowed.
+/// Frees everything. All recorded commands must have finished. Null is allowed.
 ///
 /// # Safety
 /// It came from ridgelight_view_create and is not used again.
@@ -149,38 +150,40 @@ pub unsafe extern "C" fn ridgelight_view_destroy(view: *mut RidgelightView) {
     }
 }
 
-/// Images of one picture. Those that are read are left as they came.
+/// Images of one picture. Those that are read are left as before.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct RidgelightViewImages {
     /// sizeof(RidgelightViewImages).
     pub struct_size: u32,
-    /// Heights: the plan's input, or what ridgelight_taken says of a buffer.
+    /// Heights: the plan's input, or the image of ridgelight_taken for a buffer.
     pub heights: *const RidgelightImage,
-    /// Exit radiance: the plan's output "radiance", of usage SAMPLED too.
+    /// Exit radiance: the plan's output "radiance", also with usage SAMPLED.
     pub radiance: *const RidgelightImage,
     /// The environment, where the scene has one.
     pub environment: *const RidgelightImage,
-    /// Drawn into, of the format of ridgelight_view_create, of usage COLOR_ATTACHMENT. What it held is lost.
+    /// The picture, of the format of ridgelight_view_create, with usage COLOR_ATTACHMENT. Its old contents are
+    /// lost.
     pub picture: *const RidgelightImage,
-    /// D32_SFLOAT, of usage DEPTH_STENCIL_ATTACHMENT; null: no depths. ridgelight_view_distance tells what they are.
+    /// D32_SFLOAT, with usage DEPTH_STENCIL_ATTACHMENT; null: no depths. ridgelight_view_distance converts
+    /// them.
     pub depth: *const RidgelightImage,
-    /// Where the scene has voids: a texel a sample, of R32F, R16F or R16_UNORM, 0 where there is ground, 1 where there is
-    /// none.
+    /// The mask of voids, where the scene has any: one texel per grid point, of R32F, R16F or R16_UNORM, 0 on
+    /// ground, 1 on voids.
     pub voids: *const RidgelightImage,
 }
 
 // SAFETY: pointers that may be null; the size is first.
 unsafe impl SizeFirst for RidgelightViewImages {}
 
-/// Appends a picture to `commands`, which is being recorded outside rendering for the host's family: a second call,
-/// after ridgelight_record. `camera` may be another each time, of the same picture size and samples; null: the last.
-/// Checks everything first: after an error nothing has been recorded.
+/// Appends a picture to `commands`, which is being recorded outside rendering for the host's family; call it
+/// after ridgelight_record. `camera` may change each time, with the same picture size and MSAA samples; null:
+/// the last one. All arguments are checked first: after an error nothing has been recorded.
 ///
 /// Returns OK, ARGUMENT, SETTING, or LIMIT for a camera whose picture is beyond the device's.
 ///
 /// # Safety
-/// As ridgelight_record: of `images` and `camera`, which are null or structs whose struct_size is set.
+/// As ridgelight_record, for `images` and `camera`, which are null or structs whose struct_size is set.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ridgelight_view_record(
     view: *mut RidgelightView,
@@ -198,7 +201,7 @@ pub unsafe extern "C" fn ridgelight_view_record(
         let given = read(images, "images")?;
         let (view, exposure) = match camera.is_null() {
             true => (of.view.clone(), of.exposure),
-            false => seen(camera, (&of.scene, of.view.has_voids), &of.lit, &of.limits)?,
+            false => camera_view(camera, (&of.scene, of.view.has_voids), &of.lit, &of.limits)?,
         };
         let resource = |name: &str| of.lit.find(name).map(|id| &of.lit.resources[id.0]);
         let wanted = |from: *const RidgelightImage, name, like| match from.is_null() {
@@ -250,8 +253,8 @@ unsafe fn image(
     }
 }
 
-/// What a value of the depth image stands for: distance along the direction of view from the plane of the eye, infinite
-/// where no ground is seen; of the camera that was recorded last.
+/// Converts a value of the depth image to a distance along the view direction from the plane of the eye,
+/// infinite where no ground is visible; for the camera that was recorded last.
 ///
 /// Returns OK, or ARGUMENT.
 ///
@@ -265,8 +268,8 @@ pub unsafe extern "C" fn ridgelight_view_distance(
 ) -> RidgelightResult {
     // SAFETY: as the caller says.
     done(|| unsafe {
-        let told = handle(view, "view")?.view.distance_m(depth);
-        *handle_mut(distance_m, "distance_m")? = told;
+        let converted = handle(view, "view")?.view.distance_m(depth);
+        *handle_mut(distance_m, "distance_m")? = converted;
         Ok(())
     })
 }
@@ -291,8 +294,8 @@ pub unsafe extern "C" fn ridgelight_view_timings(
     })
 }
 
-/// The image that input number `index`, of a plan that takes a buffer for it, is copied to, as each recording leaves it:
-/// for passes of one's own, and for ridgelight_view_record. It is to be left so.
+/// The image that input `index`, of a plan that takes a buffer for it, is copied to, as each recording leaves
+/// it: for your own passes, and for ridgelight_view_record. Leave it in that state.
 ///
 /// Returns OK; ARGUMENT, for an input in an image too.
 ///

@@ -1,16 +1,17 @@
 use crate::errors::{Failure, RidgelightResult, done};
 
-/// Fills heights that hold no data, before they go to the device: those that are NaN, and where `voids` is not null those
-/// whose byte is not 0. Each takes the mean of its neighbours that are known, from the rim inwards, as the command line has
-/// it; the others keep their bits. Of `voids` every byte becomes 1 or 0: whether there is no ground. Light is found for
-/// filled samples, too, and is the caller's to mask; for pictures before a camera the marks go to the device, see
-/// RidgelightScene's has_voids.
+/// Fills heights without data before they go to the device: those that are NaN, and those whose byte in `voids`
+/// is not 0, where `voids` is not null. Each takes the mean of its known neighbours, from the rim inwards, as
+/// the command line does; the others keep their bits. Every byte of `voids` becomes 1 or 0: whether it is a
+/// void. Filled texels are lit too; the caller masks that light. For camera pictures the mask goes to the
+/// device, see RidgelightScene's has_voids.
 ///
-/// Returns OK; ARGUMENT; SETTING for an infinite height, which is named, and for nothing but voids: then nothing is changed.
+/// Returns OK; ARGUMENT; SETTING for an infinite height, which is named, and for a field of voids only: then
+/// nothing is changed.
 ///
 /// # Safety
-/// `heights` is null or points at rows times cols numbers, `voids` at as many bytes, row after row from the north-west;
-/// nobody else uses them meanwhile.
+/// `heights` is null or points to rows times cols numbers, `voids` to as many bytes, row after row from the
+/// north-west; nobody else uses them meanwhile.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ridgelight_fill_voids(
     rows: u32,

@@ -1,11 +1,11 @@
-//! The pictures that a window takes in turn.
+//! The swapchain of a window.
 
 use ash::{khr, vk};
 
 use ridgelight::gpu::{Headless, failed};
 use ridgelight::{Error, Result};
 
-/// A swapchain and what is waited for before each of its pictures is shown.
+/// A swapchain and the semaphores that its pictures wait for before presentation.
 pub(super) struct Chain {
     pub swapchain: vk::SwapchainKHR,
     pub images: Vec<vk::Image>,
@@ -14,12 +14,12 @@ pub(super) struct Chain {
     pub size: [u32; 2],
     /// Whether pictures can be read back.
     pub is_readable: bool,
-    /// Whether the window has changed, so that another is better or needed.
+    /// Whether the window has changed, so that another swapchain is better or needed.
     pub is_stale: bool,
     format: vk::Format,
 }
 
-/// What is shown as it is written, by preference, and whether blue comes first.
+/// Formats that are presented without conversion, by preference, and whether blue comes first.
 const FORMATS: [(vk::Format, bool); 4] = [
     (vk::Format::B8G8R8A8_UNORM, true),
     (vk::Format::R8G8B8A8_UNORM, false),
@@ -27,12 +27,12 @@ const FORMATS: [(vk::Format, bool); 4] = [
     (vk::Format::R8G8B8A8_SRGB, false),
 ];
 
-/// What the window's surface takes now.
+/// The current capabilities of the window's surface.
 pub(super) fn capabilities(
     gpu: &mut Headless,
 ) -> std::result::Result<vk::SurfaceCapabilitiesKHR, vk::Result> {
     let device = gpu.host().physical_device;
-    // Null where the last could not be made.
+    // Null where the last one could not be made.
     let surface = gpu.surface().filter(|(_, _, made)| made.surface != vk::SurfaceKHR::null());
     let (_, _, surface) = surface.ok_or(vk::Result::ERROR_SURFACE_LOST_KHR)?;
     let (loader, surface) = (&surface.loader, surface.surface);
@@ -40,10 +40,10 @@ pub(super) fn capabilities(
     unsafe { loader.get_physical_device_surface_capabilities(device, surface) }
 }
 
-/// Columns and rows of pictures; a 0 where the window has no area.
+/// Columns and rows of pictures; 0 where the window has no area.
 pub(super) fn size(known: &vk::SurfaceCapabilitiesKHR, wanted: [u32; 2]) -> [u32; 2] {
     let vk::Extent2D { width, height } = known.current_extent;
-    // No size of its own.
+    // A surface without a size of its own.
     if width == u32::MAX {
         let (least, most) = (known.min_image_extent, known.max_image_extent);
         let [width, height] = wanted;
@@ -53,7 +53,7 @@ pub(super) fn size(known: &vk::SurfaceCapabilitiesKHR, wanted: [u32; 2]) -> [u32
 }
 
 impl Chain {
-    /// Pictures of a `size` that is not 0, in the place of `old`, which is then good for nothing but its end.
+    /// A swapchain of a `size` that is not 0, which replaces `old`; `old` can then only be ended.
     pub fn new(
         gpu: &mut Headless,
         swapchains: &khr::swapchain::Device,
@@ -99,7 +99,7 @@ impl Chain {
             .present_mode(vk::PresentModeKHR::FIFO)
             .clipped(true)
             .old_swapchain(old.map_or_else(Default::default, |c| c.swapchain));
-        // SAFETY: the surface takes what `info` says; the old swapchain, if any, is its.
+        // SAFETY: the surface supports what `info` asks for; the old swapchain, if any, is its own.
         let swapchain = unsafe { swapchains.create_swapchain(&info, None) }
             .map_err(failed(format!("making pictures of {} × {}", size[0], size[1])))?;
         let (images, finished) = (Vec::new(), Vec::new());
@@ -135,9 +135,9 @@ impl Chain {
         FORMATS.contains(&(self.format, true))
     }
 
-    /// The device must be done with it.
+    /// The device must have finished with it.
     pub fn end(self, gpu: &Headless, swapchains: &khr::swapchain::Device) {
-        // SAFETY: made by this device; the caller says that the device is done with them.
+        // SAFETY: made by this device; the caller guarantees that the device has finished with them.
         unsafe {
             for semaphore in self.finished {
                 gpu.host().device.destroy_semaphore(semaphore, None);
@@ -155,8 +155,8 @@ fn gpu_name(gpu: &Headless) -> &str {
 mod tests {
     use super::*;
 
-    /// A minimised window of a system where surfaces have sizes has none; where they have none it is the window's, as far
-    /// as it goes.
+    /// A minimised window has no area where surfaces have sizes. Where they have none, the window's size
+    /// counts, within limits.
     #[test]
     fn pictures_are_as_large_as_the_window_or_none() {
         let extent = |width, height| vk::Extent2D { width, height };

@@ -1,8 +1,8 @@
-//! What turns radiance into a screen's bytes, and its images.
+//! Renderers that turn radiance into a screen's bytes, and their images.
 
 use ash::vk;
 
-use super::{SLOTS, Sight};
+use super::{SLOTS, Viewpoint};
 use ridgelight::gpu::{
     Backed, Blocks, Frame, Headless, ImageArg, ImageState, Owned, Renderer, Timing, ViewOutputs,
     ViewRenderer, view_inputs,
@@ -11,17 +11,17 @@ use ridgelight::plan::{self, Map, View};
 use ridgelight::scene::Tone;
 use ridgelight::{Error, Result};
 
-/// How pictures are left for copies.
+/// State of pictures for copies.
 pub(super) const COPIED: ImageState = ImageState {
     stage: vk::PipelineStageFlags2::COPY,
     access: vk::AccessFlags2::TRANSFER_READ,
     layout: vk::ImageLayout::TRANSFER_SRC_OPTIMAL,
 };
 
-/// What it was, when nothing of it is kept.
+/// State of a picture whose contents are not kept.
 const LOST: ImageState = ImageState { layout: vk::ImageLayout::UNDEFINED, ..COPIED };
 
-/// Of maps or of views of one size.
+/// A renderer of maps or of camera views of one size.
 pub(super) enum Drawer {
     Map(Box<MapDrawer>),
     View(Box<ViewDrawer>),
@@ -30,25 +30,27 @@ pub(super) enum Drawer {
 impl Drawer {
     pub fn new(
         gpu: &mut Headless,
-        sight: Sight<'_>,
+        viewpoint: Viewpoint<'_>,
         (tone, voids, swaps): (Tone, Option<&[bool]>, bool),
     ) -> Result<Self> {
-        Ok(match sight {
-            Sight::Map(map) => Self::Map(Box::new(MapDrawer::new(gpu, map, tone, voids)?)),
-            Sight::Camera(view) => Self::View(Box::new(ViewDrawer::new(gpu, view, voids, swaps)?)),
+        Ok(match viewpoint {
+            Viewpoint::Map(map) => Self::Map(Box::new(MapDrawer::new(gpu, map, tone, voids)?)),
+            Viewpoint::Camera(view) => {
+                Self::View(Box::new(ViewDrawer::new(gpu, view, voids, swaps)?))
+            }
         })
     }
 
-    /// Whether it can draw what is seen so without being made anew.
-    pub fn fits(&self, sight: Sight<'_>) -> bool {
-        match (self, sight) {
-            (Self::Map(drawer), Sight::Map(map)) => drawer.fits(map),
-            (Self::View(drawer), Sight::Camera(view)) => drawer.view.is_shaped_like(view),
+    /// Whether it can draw this viewpoint as it is.
+    pub fn fits(&self, viewpoint: Viewpoint<'_>) -> bool {
+        match (self, viewpoint) {
+            (Self::Map(drawer), Viewpoint::Map(map)) => drawer.fits(map),
+            (Self::View(drawer), Viewpoint::Camera(view)) => drawer.view.is_shaped_like(view),
             _ => false,
         }
     }
 
-    /// Goes over to another tone; waits.
+    /// Changes the tone; waits.
     pub fn set_tone(&mut self, gpu: &mut Headless, tone: Tone) -> Result<()> {
         match self {
             Self::Map(drawer) => drawer.set_tone(gpu, tone),
@@ -56,26 +58,26 @@ impl Drawer {
         }
     }
 
-    /// Draws a frame that has been lit as it is seen, which fits; the picture is left for copies.
+    /// Draws a lit frame from a viewpoint that fits; leaves the picture for copies.
     pub fn record(
         &mut self,
         gpu: &Headless,
         commands: vk::CommandBuffer,
         slot: usize,
-        (frame, sight, exposure): (&Frame, Sight<'_>, f32),
+        (frame, viewpoint, exposure): (&Frame, Viewpoint<'_>, f32),
     ) -> Result<()> {
-        match (self, sight) {
-            (Self::Map(drawer), Sight::Map(map)) => {
+        match (self, viewpoint) {
+            (Self::Map(drawer), Viewpoint::Map(map)) => {
                 drawer.record(gpu, commands, slot, (map, frame))
             }
-            (Self::View(drawer), Sight::Camera(view)) => {
+            (Self::View(drawer), Viewpoint::Camera(view)) => {
                 drawer.record(commands, slot, (view, exposure), frame)
             }
-            _ => Err(Error::setting("sight", "another", "the one that was prepared")),
+            _ => Err(Error::setting("viewpoint", "another", "the one that was prepared")),
         }
     }
 
-    /// What copies read.
+    /// The picture, for copies.
     pub fn picture(&self) -> vk::Image {
         match self {
             Self::Map(drawer) => drawer.picture.backed.image,
@@ -91,7 +93,7 @@ impl Drawer {
         timings.unwrap_or_default()
     }
 
-    /// The device must be done with it.
+    /// The device must have finished with it.
     pub fn end(self, gpu: &mut Headless) {
         match self {
             Self::Map(drawer) => drawer.end(gpu),
@@ -104,7 +106,7 @@ impl Drawer {
 pub(super) struct ViewDrawer {
     renderer: ViewRenderer,
     view: View,
-    /// The picture, then the voids where there are any.
+    /// The picture, then the mask of voids, if any.
     made: Vec<Backed>,
     picture: ImageArg,
     voids: Option<ImageArg>,
@@ -160,7 +162,7 @@ impl ViewDrawer {
     }
 }
 
-/// A renderer of maps of one size, with the images that it reads beside radiance, and its picture.
+/// A renderer of maps of one size, with its picture and its inputs besides radiance.
 pub(super) struct MapDrawer {
     renderer: Renderer,
     map: Map,
@@ -193,7 +195,9 @@ impl MapDrawer {
                     let marks: Vec<f32> = voids.iter().map(|v| f32::from(u8::from(*v))).collect();
                     gpu.upload(image, &marks)
                 }
-                (Some(_), None) => Err(Error::setting("voids", "none", "marks, one a sample")),
+                (Some(_), None) => {
+                    Err(Error::setting("voids", "none", "a mask, one byte per texel"))
+                }
                 (None, _) => Ok(()),
             }
         });
@@ -207,13 +211,13 @@ impl MapDrawer {
         Ok(Self { renderer, map: *map, tone, steps, voids: made.next(), picture })
     }
 
-    /// Whether it can draw a map without being made anew.
+    /// Whether it can draw a map as it is.
     pub fn fits(&self, map: &Map) -> bool {
         let of = |m: &Map| (m.field, m.has_colour, m.has_voids, m.size);
         of(&self.map) == of(map)
     }
 
-    /// Goes over to another tone; waits.
+    /// Changes the tone; waits.
     pub fn set_tone(&mut self, gpu: &mut Headless, tone: Tone) -> Result<()> {
         if tone != self.tone {
             gpu.upload(&self.steps, &tone.steps())?;
@@ -222,7 +226,7 @@ impl MapDrawer {
         Ok(())
     }
 
-    /// Draws a map that fits, of a frame that has been lit; the picture is left for copies.
+    /// Draws a map that fits, of a lit frame; leaves the picture for copies.
     pub fn record(
         &mut self,
         gpu: &Headless,
@@ -231,7 +235,7 @@ impl MapDrawer {
         (map, frame): (&Map, &Frame),
     ) -> Result<()> {
         if self.map != *map {
-            // Nothing that a device at work reads: what this plan's pass is told stands in commands.
+            // Nothing that the device is reading: this plan's push constants are in the commands.
             self.renderer.replace_plan(plan::map(map, &gpu.report().limits)?)?;
             self.map = *map;
         }
@@ -241,7 +245,7 @@ impl MapDrawer {
         self.renderer.record(commands, slot, &inputs, &[picture])
     }
 
-    /// The device must be done with it.
+    /// The device must have finished with it.
     pub fn end(self, gpu: &mut Headless) {
         self.renderer.destroy();
         let images = [Some(self.steps), self.voids, Some(self.picture)];

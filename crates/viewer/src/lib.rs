@@ -26,62 +26,62 @@ use slot::Slot;
 /// Frames in flight.
 const SLOTS: usize = 2;
 
-/// A device that shows pictures in a window: its swapchain, and two frames in flight.
+/// A device that presents pictures in a window: its swapchain, and two frames in flight.
 pub struct Screen {
     gpu: Headless,
     swapchains: khr::swapchain::Device,
-    /// None before the first picture and where the last is of no use any more.
+    /// None before the first picture and where the last swapchain can no longer be used.
     chain: Option<Chain>,
     slots: Vec<Slot>,
     next: usize,
-    /// One a pane of the last shot.
+    /// One per pane of the last picture.
     drawers: Vec<Drawer>,
-    /// Outlives its surface, which goes with the device.
+    /// Outlives its surface, which is destroyed with the device.
     _window: Arc<dyn Any>,
 }
 
-/// Pixels over a picture: opaque.
+/// Opaque pixels over a picture.
 #[derive(Clone, Copy, Debug)]
 pub struct Panel<'a> {
-    /// Column and row of the picture where its upper left corner is.
+    /// Column and row of its upper left corner in the picture.
     pub at: [u32; 2],
-    /// Columns and rows, pixels; what does not fit is cut off.
+    /// Columns and rows, pixels; parts outside the picture are cut off.
     pub size: [u32; 2],
     /// Red, green, blue and 255, row after row.
     pub pixels: &'a [[u8; 4]],
 }
 
-/// How a lit field is seen.
+/// How a lit field is viewed.
 #[derive(Clone, Copy, Debug)]
-pub enum Sight<'a> {
-    /// From straight above, to the byte as in a PNG; its order of bytes is [`Screen::swaps`].
+pub enum Viewpoint<'a> {
+    /// From straight above, byte for byte as in a PNG; the byte order is [`Screen::swaps`].
     Map(&'a Map),
     /// From a camera.
     Camera(&'a View),
 }
 
-/// One frame of a picture: what is done to it, and where it is shown.
+/// A part of a picture: a frame, how it is lit, and where it is shown.
 pub struct Pane<'a> {
     /// Made by [`Screen::frame`].
     pub frame: &'a mut Frame,
-    /// The heights above the field's base, one a sample, and the rectangle where they are new; else as they are.
+    /// The heights above the field's base, one per grid point, and the rectangle that changed; none: unchanged.
     pub heights: Option<(&'a [f32], Rectangle)>,
-    /// Before it is shown.
+    /// Passes to run first.
     pub work: Work<'a>,
-    /// What is seen of it, and how large.
-    pub sight: Sight<'a>,
-    /// The picture's column where it begins, in its first row.
+    /// Its viewpoint and size.
+    pub viewpoint: Viewpoint<'a>,
+    /// The pane's first column in the picture; all panes begin in the first row.
     pub left: u32,
 }
 
-/// What a picture is beside its panes.
+/// Options of one picture, besides its panes.
 #[derive(Clone, Copy, Debug)]
-pub struct Shot<'a> {
-    /// How radiance looks.
+pub struct PresentOptions<'a> {
+    /// Tone curve of radiance.
     pub tone: Tone,
-    /// The field's, where it has any.
+    /// The field's voids, if any.
     pub voids: Option<&'a [bool]>,
-    /// Over the picture, in this order.
+    /// Drawn over the picture, in this order.
     pub panels: &'a [Panel<'a>],
     /// Whether the picture is read back, which waits for it.
     pub keeps: bool,
@@ -90,28 +90,29 @@ pub struct Shot<'a> {
 /// GPU times of one pane of a picture.
 #[derive(Clone, Debug, Default)]
 pub struct PaneTimes {
-    /// What lit its frame; nothing where nothing did.
+    /// Passes that lit its frame; empty where none ran.
     pub light: Vec<Timing>,
-    /// What drew it.
+    /// Passes that drew it.
     pub drawing: Vec<Timing>,
 }
 
-/// What became of a frame that has been handed to the window.
+/// The result of presenting a picture.
 #[derive(Clone, Debug, Default)]
-pub struct Shown {
-    /// GPU times of the picture before the last, of each pane, where they are in.
+pub struct Presented {
+    /// GPU times of the picture before the last, by pane, where available.
     pub timings: Vec<PaneTimes>,
-    /// Red, green, blue, 255 of each pixel, row after row, where they were to be kept.
+    /// Red, green, blue, 255 of each pixel, row after row, where they were requested.
     pub pixels: Option<Vec<[u8; 4]>>,
-    /// Whether the window took it: not where it has become another meanwhile, or lost its surface. Then another is due.
+    /// Whether the window presented it. False where the window has changed meanwhile, or lost its surface: draw
+    /// again.
     pub is_taken: bool,
 }
 
 impl Screen {
-    /// A device for a window, the one that `options` name or the first that shows pictures in it.
+    /// A device for a window: the one that `options` name, or the first that can present to it.
     ///
     /// # Errors
-    /// As [`Headless::new`]; a window or a device that takes no pictures.
+    /// As [`Headless::new`]; a window or a device that cannot present pictures.
     pub fn new<W>(window: Arc<W>, options: &HeadlessOptions) -> Result<Self>
     where
         W: HasDisplayHandle + HasWindowHandle + 'static,
@@ -143,13 +144,13 @@ impl Screen {
         Ok(screen)
     }
 
-    /// Its device.
+    /// The device.
     pub fn gpu(&mut self) -> &mut Headless {
         &mut self.gpu
     }
 
-    /// A frame whose light it can show: as [`Headless::frame`], for frames in flight, dark until it is lit. To be ended
-    /// by [`end`](Self::end).
+    /// A frame whose light it can present: as [`Headless::frame`], for frames in flight, dark until it is lit.
+    /// Freed by [`end`](Self::end).
     ///
     /// # Errors
     /// As there.
@@ -169,7 +170,7 @@ impl Screen {
         }
     }
 
-    /// Frees a frame, once the device is done with it.
+    /// Frees a frame, once the device has finished with it.
     ///
     /// # Errors
     /// A lost device.
@@ -179,20 +180,21 @@ impl Screen {
         Ok(())
     }
 
-    /// Waits for all that was handed to the device.
+    /// Waits for all submitted work.
     ///
     /// # Errors
     /// A lost device.
     pub fn wait(&self) -> Result<()> {
-        // SAFETY: one thread alone, the one that owns this, hands commands to the device.
+        // SAFETY: only one thread, the owner of this, submits commands to the device.
         unsafe { self.gpu.host().device.device_wait_idle() }.map_err(failed("waiting"))
     }
 
     /// Columns and rows of the next picture, made ready; none while the window has no area. `wanted` is the
-    /// window's, for systems where a surface has no size of its own.
+    /// window's size, for systems where a surface has none.
     ///
     /// # Errors
-    /// A device that is out of memory or lost, or that takes no pictures in 8 bits a colour; a window that is gone.
+    /// A device that is out of memory or lost, or that cannot present 8 bits per colour; a window that no
+    /// longer exists.
     pub fn size(&mut self, wanted: [u32; 2]) -> Result<Option<[u32; 2]>> {
         let known = match chain::capabilities(&mut self.gpu) {
             Err(vk::Result::ERROR_SURFACE_LOST_KHR) => {
@@ -224,15 +226,15 @@ impl Screen {
         Ok(Some(size))
     }
 
-    /// Whether blue comes first in the bytes of its pictures; known once there is one.
+    /// Whether blue comes first in the bytes of its pictures; known after the first one.
     pub fn swaps(&self) -> bool {
         self.chain.as_ref().is_some_and(Chain::swaps)
     }
 
-    /// Begins anew with another surface of the window, as after the loss of one.
+    /// Starts again with another surface of the window, as after the loss of one.
     ///
     /// # Errors
-    /// A device that is lost, a window that is gone.
+    /// A device that is lost, a window that no longer exists.
     pub fn renew(&mut self) -> Result<()> {
         self.wait()?;
         if let Some(chain) = self.chain.take() {
@@ -244,13 +246,17 @@ impl Screen {
         }
     }
 
-    /// Lights the frames of a picture's panes as they say, draws it and hands it to the window. None where there was no
-    /// picture to draw into: [`size`](Self::size) then tells the next, and nothing of the panes was done.
+    /// Lights the frames of a picture's panes, draws and presents it. None where there was no picture to draw
+    /// into: call [`size`](Self::size) for the next one; the panes are unchanged.
     ///
     /// # Errors
-    /// Panes that do not fit, or a device out of memory or lost. Nothing of the panes counts as done then, and what this
-    /// had in hand of the window is given up: the next [`size`](Self::size) makes it anew.
-    pub fn draw(&mut self, panes: &mut [Pane<'_>], shot: &Shot<'_>) -> Result<Option<Shown>> {
+    /// Panes that do not fit, or a device out of memory or lost. The panes are unchanged then, and the
+    /// swapchain is dropped: the next [`size`](Self::size) makes another.
+    pub fn draw(
+        &mut self,
+        panes: &mut [Pane<'_>],
+        options: &PresentOptions<'_>,
+    ) -> Result<Option<Presented>> {
         let slot = self.next;
         let Some(chain) = &self.chain else { return Ok(None) };
         let (size, swaps) = (chain.size, chain.swaps());
@@ -262,10 +268,10 @@ impl Screen {
             let drawing = self.drawers.get(n).map(|d| d.timings(slot)).unwrap_or_default();
             timings.push(PaneTimes { light: light.unwrap_or_default(), drawing });
         }
-        // All that may be refused comes before a picture is taken.
-        self.prepare(slot, panes, shot)?;
+        // All checks come before a picture is acquired.
+        self.prepare(slot, panes, options)?;
         let Some(image) = self.acquire(slot)? else { return Ok(None) };
-        let is_taken = match self.hand_over(slot, image, panes, shot) {
+        let is_taken = match self.hand_over(slot, image, panes, options) {
             Ok(is_taken) => is_taken,
             Err(error) => {
                 for pane in panes.iter_mut().filter(|pane| !pane.work.is_none()) {
@@ -277,14 +283,14 @@ impl Screen {
         };
         self.slots[slot].was_lit = panes.iter().map(|pane| !pane.work.is_none()).collect();
         self.next = (slot + 1) % SLOTS;
-        let pixels = if shot.keeps { Some(self.read_back(slot, (size, swaps))?) } else { None };
-        Ok(Some(Shown { timings, pixels, is_taken }))
+        let pixels = if options.keeps { Some(self.read_back(slot, (size, swaps))?) } else { None };
+        Ok(Some(Presented { timings, pixels, is_taken }))
     }
 }
 
 impl Drop for Screen {
     fn drop(&mut self) {
-        // A lost device is done with everything.
+        // A lost device has finished with everything.
         let _ = self.wait();
         for drawer in self.drawers.drain(..) {
             drawer.end(&mut self.gpu);

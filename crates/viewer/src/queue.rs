@@ -1,16 +1,16 @@
-//! A picture's way from the window to the queue and back.
+//! Acquires, submits and presents pictures.
 
 use ash::vk;
 
-use super::{Pane, Screen, Shot};
+use super::{Pane, PresentOptions, Screen};
 use ridgelight::Result;
 use ridgelight::gpu::failed;
 
-/// Compositors may hold pictures of windows that nobody sees.
+/// Timeout of acquiring a picture: compositors may hold pictures of hidden windows.
 const PATIENCE_NS: u64 = 500_000_000;
 
 impl Screen {
-    /// The number of the picture to draw into; the slot is free.
+    /// The index of the picture to draw into; the slot is free.
     pub(super) fn acquire(&mut self, slot: usize) -> Result<Option<usize>> {
         let acquired = self.slots[slot].acquired(&self.gpu)?;
         let Some(chain) = &mut self.chain else { return Ok(None) };
@@ -34,23 +34,23 @@ impl Screen {
         }
     }
 
-    /// Records a picture that was taken, runs it and shows it; whether the window took it.
+    /// Records an acquired picture, runs it and presents it; returns whether the window presented it.
     pub(super) fn hand_over(
         &mut self,
         slot: usize,
         image: usize,
         panes: &mut [Pane<'_>],
-        shot: &Shot<'_>,
+        options: &PresentOptions<'_>,
     ) -> Result<bool> {
-        self.record(slot, image, panes, shot)?;
+        self.record(slot, image, panes, options)?;
         self.submit(slot, image)?;
         self.present(slot, image)
     }
 
-    /// After a picture was taken that could not be handed over: with all others of the window's it goes, and with it the
-    /// semaphore that its taking signals, for which nothing will wait.
+    /// Drops the swapchain after an acquired picture could not be submitted; with it the semaphore of the
+    /// acquisition, which nothing will wait for.
     pub(super) fn give_up(&mut self, slot: usize) {
-        // A lost device is done with everything.
+        // A lost device has finished with everything.
         let _ = self.wait();
         if let Some(chain) = self.chain.take() {
             chain.end(&self.gpu, &self.swapchains);
@@ -82,7 +82,7 @@ impl Screen {
         Ok(())
     }
 
-    /// Whether the window takes it.
+    /// Whether the window presents it.
     fn present(&mut self, slot: usize, image: usize) -> Result<bool> {
         let chain = self.chain.as_mut().expect("acquired from");
         let (finished, swapchains) = ([chain.finished[image]], [chain.swapchain]);
@@ -91,7 +91,7 @@ impl Screen {
             .wait_semaphores(&finished)
             .swapchains(&swapchains)
             .image_indices(&images);
-        // SAFETY: the picture was acquired, and is left for presenting by the commands of this slot.
+        // SAFETY: the picture was acquired, and this slot's commands leave it for presentation.
         let shown = unsafe { self.swapchains.queue_present(self.gpu.queue(), &info) };
         match shown {
             Ok(is_suboptimal) => {

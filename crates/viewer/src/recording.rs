@@ -1,15 +1,15 @@
-//! One frame's commands.
+//! Records the commands of one frame.
 
 use ash::vk;
 
 use super::drawer::{COPIED, Drawer};
 use super::slot::{Slot, fitting};
-use super::{Pane, Panel, Screen, Shot, Sight};
+use super::{Pane, Panel, PresentOptions, Screen, Viewpoint};
 use ridgelight::gpu::{Backed, Frame, MemoryUse, Work, failed, whole};
 use ridgelight::plan::Rectangle;
 use ridgelight::{Error, Result};
 
-/// Where the window's picture is, between the copies into it.
+/// State of the window's picture between the copies into it.
 const FILLED: (vk::ImageLayout, vk::AccessFlags2) =
     (vk::ImageLayout::TRANSFER_DST_OPTIMAL, vk::AccessFlags2::TRANSFER_WRITE);
 const READ: (vk::ImageLayout, vk::AccessFlags2) =
@@ -20,14 +20,14 @@ const SHOWN: (vk::ImageLayout, vk::AccessFlags2) =
     (vk::ImageLayout::PRESENT_SRC_KHR, vk::AccessFlags2::NONE);
 
 impl Screen {
-    /// What the panes hand to the device; the slot is free.
+    /// Uploads the panes' data; the slot is free.
     pub(super) fn prepare(
         &mut self,
         slot: usize,
         panes: &mut [Pane<'_>],
-        shot: &Shot<'_>,
+        options: &PresentOptions<'_>,
     ) -> Result<()> {
-        let chain = self.chain.as_ref().expect("draw asks");
+        let chain = self.chain.as_ref().expect("draw checks");
         let (size, swaps, is_readable) = (chain.size, chain.swaps(), chain.is_readable);
         for pane in panes.iter_mut() {
             check(pane, size, swaps)?;
@@ -36,7 +36,7 @@ impl Screen {
         }
         let columns: Vec<[u32; 2]> = panes.iter().map(|pane| [pane.left, pane.size()[0]]).collect();
         check_apart(&columns)?;
-        for (n, panel) in shot.panels.iter().enumerate() {
+        for (n, panel) in options.panels.iter().enumerate() {
             check_panel(n, panel)?;
         }
         let gpu = &mut self.gpu;
@@ -56,16 +56,16 @@ impl Screen {
                 to = after;
             }
         }
-        let bytes: u64 = shot.panels.iter().map(|panel| 4 * panel.pixels.len() as u64).sum();
+        let bytes: u64 = options.panels.iter().map(|panel| 4 * panel.pixels.len() as u64).sum();
         if bytes > 0 {
             let named = ("text of a frame", bytes);
             let to = mapped(fitting(gpu, &mut of_slot.text, named, MemoryUse::Upload)?)?;
-            let pixels = shot.panels.iter().flat_map(|panel| panel.pixels);
+            let pixels = options.panels.iter().flat_map(|panel| panel.pixels);
             for (to, pixel) in to.as_chunks_mut::<4>().0.iter_mut().zip(pixels) {
                 *to = ordered(*pixel, swaps);
             }
         }
-        if shot.keeps {
+        if options.keeps {
             if !is_readable {
                 let reason = "the window's pictures cannot be copied".into();
                 return Err(Error::Device { doing: "reading a picture back".into(), reason });
@@ -73,21 +73,26 @@ impl Screen {
             let named = ("picture of a frame", 4 * u64::from(size[0]) * u64::from(size[1]));
             fitting(gpu, &mut of_slot.readback, named, MemoryUse::Readback)?;
         }
-        self.prepare_drawers(panes, shot, swaps)
+        self.prepare_drawers(panes, options, swaps)
     }
 
-    fn prepare_drawers(&mut self, panes: &[Pane<'_>], shot: &Shot<'_>, swaps: bool) -> Result<()> {
+    fn prepare_drawers(
+        &mut self,
+        panes: &[Pane<'_>],
+        options: &PresentOptions<'_>,
+        swaps: bool,
+    ) -> Result<()> {
         let fit = self.drawers.len() == panes.len()
-            && self.drawers.iter().zip(panes).all(|(drawer, pane)| drawer.fits(pane.sight));
+            && self.drawers.iter().zip(panes).all(|(drawer, pane)| drawer.fits(pane.viewpoint));
         if !fit {
             self.wait()?;
             self.drawers.drain(..).for_each(|old| old.end(&mut self.gpu));
             for pane in panes {
-                let of_all = (shot.tone, shot.voids, swaps);
-                self.drawers.push(Drawer::new(&mut self.gpu, pane.sight, of_all)?);
+                let of_all = (options.tone, options.voids, swaps);
+                self.drawers.push(Drawer::new(&mut self.gpu, pane.viewpoint, of_all)?);
             }
         }
-        self.drawers.iter_mut().try_for_each(|drawer| drawer.set_tone(&mut self.gpu, shot.tone))
+        self.drawers.iter_mut().try_for_each(|drawer| drawer.set_tone(&mut self.gpu, options.tone))
     }
 
     pub(super) fn record(
@@ -95,7 +100,7 @@ impl Screen {
         slot: usize,
         image: usize,
         panes: &mut [Pane<'_>],
-        shot: &Shot<'_>,
+        options: &PresentOptions<'_>,
     ) -> Result<()> {
         let commands = self.begin(slot)?;
         for (n, pane) in panes.iter_mut().enumerate() {
@@ -111,22 +116,22 @@ impl Screen {
                 }
                 Work::Edit(at) => renderer.record_edit(commands, slot, &inputs, &outputs, at)?,
             }
-            let seen = (&*pane.frame, pane.sight, shot.tone.exposure);
+            let seen = (&*pane.frame, pane.viewpoint, options.tone.exposure);
             self.drawers[n].record(&self.gpu, commands, slot, seen)?;
         }
-        self.fill(slot, image, panes, shot);
+        self.fill(slot, image, panes, options);
         // SAFETY: recording was begun above.
         unsafe { self.gpu.host().device.end_command_buffer(commands) }
             .map_err(failed("recording a frame"))
     }
 
-    /// Begins the slot's commands anew.
+    /// Begins the slot's commands.
     fn begin(&self, slot: usize) -> Result<vk::CommandBuffer> {
         let device = &self.gpu.host().device;
         let Slot { pool, commands, .. } = self.slots[slot];
         let begin = vk::CommandBufferBeginInfo::default()
             .flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
-        // SAFETY: the slot's commands have run, or were never handed to the device.
+        // SAFETY: the slot's commands have run, or were never submitted.
         unsafe {
             device
                 .reset_command_pool(pool, vk::CommandPoolResetFlags::empty())
@@ -136,8 +141,8 @@ impl Screen {
         Ok(commands)
     }
 
-    /// From a buffer of a rectangle's into the frame's first input, which is in GENERAL: what used it before and will
-    /// next is the renderer's to wait for, which hands it over for any use.
+    /// Copies from a buffer of a rectangle into the frame's first input, which is in GENERAL. The renderer
+    /// waits for its previous use, and makes it available for any next use.
     fn copy_heights(
         &self,
         commands: vk::CommandBuffer,
@@ -157,16 +162,16 @@ impl Screen {
             .dst_access_mask(any)];
         let wait = vk::DependencyInfo::default().memory_barriers(&barrier);
         let device = &self.gpu.host().device;
-        // SAFETY: `commands` is being recorded; the buffer holds a height a texel of the rectangle, which is checked to
-        // be within the image.
+        // SAFETY: `commands` is being recorded; the buffer holds a height per texel of the rectangle, which was
+        // checked to be within the image.
         unsafe {
             device.cmd_pipeline_barrier2(commands, &wait);
             device.cmd_copy_buffer_to_image(commands, from, to, general, &region);
         }
     }
 
-    /// Copies pictures and text into the window's image, and back to the host where they are kept.
-    fn fill(&self, slot: usize, image: usize, panes: &[Pane<'_>], shot: &Shot<'_>) {
+    /// Copies pictures and text into the window's image, and back to the host where requested.
+    fn fill(&self, slot: usize, image: usize, panes: &[Pane<'_>], options: &PresentOptions<'_>) {
         let (device, slot) = (&self.gpu.host().device, &self.slots[slot]);
         let chain = self.chain.as_ref().expect("acquired from");
         let (to, commands) = (chain.images[image], slot.commands);
@@ -189,12 +194,12 @@ impl Screen {
                 .dst_offset(vk::Offset3D { x: pane.left as i32, y: 0, z: 0 })
                 .extent(size)];
             let (from, layout) = (drawer.picture(), COPIED.layout);
-            // SAFETY: `commands` is being recorded; texels of both images are four bytes; the pane was checked to be
-            // within the image, and is as large as its picture.
+            // SAFETY: `commands` is being recorded; texels of both images are four bytes; the pane was checked
+            // to be within the image, and has the size of its picture.
             unsafe { device.cmd_copy_image(commands, from, layout, to, FILLED.0, &copy) };
         }
         let mut offset = 0;
-        for panel in shot.panels {
+        for panel in options.panels {
             if let (Some(region), Some(from)) = (text(panel, chain.size, offset), &slot.text) {
                 change(FILLED, FILLED);
                 // SAFETY: the buffer holds the panel's pixels from the offset on, the region is cut to the image.
@@ -207,7 +212,7 @@ impl Screen {
         }
         let whole_image = copied(chain.size);
         let mut last = FILLED;
-        if let (true, Some(back)) = (shot.keeps, &slot.readback) {
+        if let (true, Some(back)) = (options.keeps, &slot.readback) {
             change(FILLED, READ);
             let written = [vk::MemoryBarrier2::default()
                 .src_stage_mask(vk::PipelineStageFlags2::COPY)
@@ -226,7 +231,7 @@ impl Screen {
         change(last, SHOWN);
     }
 
-    /// A barrier between copies; the first comes after what the semaphore of the picture waits for.
+    /// A barrier between copies; the first follows the wait for the picture's semaphore.
     fn change(
         &self,
         commands: vk::CommandBuffer,
@@ -250,7 +255,7 @@ impl Screen {
         unsafe { self.gpu.host().device.cmd_pipeline_barrier2(commands, &info) };
     }
 
-    /// What the slot read back, once it has run, of a picture of a size.
+    /// The picture of a size that the slot read back, once it has run.
     pub(super) fn read_back(
         &mut self,
         slot: usize,
@@ -276,11 +281,11 @@ fn mapped(backed: &mut Backed) -> Result<&mut [u8]> {
 }
 
 impl Pane<'_> {
-    /// Columns and rows that it takes of the picture.
+    /// Columns and rows of the picture that it covers.
     fn size(&self) -> [u32; 2] {
-        match self.sight {
-            Sight::Map(map) => map.size,
-            Sight::Camera(view) => view.size,
+        match self.viewpoint {
+            Viewpoint::Map(map) => map.size,
+            Viewpoint::Camera(view) => view.size,
         }
     }
 }
@@ -303,22 +308,22 @@ fn check(pane: &Pane<'_>, size: [u32; 2], swaps: bool) -> Result<()> {
         }
     }
     let [width, height] = pane.size();
-    let is_ordered = match pane.sight {
-        Sight::Map(map) => map.swaps == swaps,
-        Sight::Camera(_) => true,
+    let is_ordered = match pane.viewpoint {
+        Viewpoint::Map(map) => map.swaps == swaps,
+        Viewpoint::Camera(_) => true,
     };
     if pane.left.checked_add(width).is_none_or(|end| end > size[0]) || height > size[1] {
         let found = format!("{width} × {height} from column {}", pane.left);
-        return Err(Error::setting("sight: size", found, format!("within {size:?}")));
+        return Err(Error::setting("viewpoint: size", found, format!("within {size:?}")));
     }
     if !is_ordered {
-        return Err(Error::setting("sight: swaps", "another order", "that of the window"));
+        return Err(Error::setting("viewpoint: swaps", "another order", "that of the window"));
     }
     Ok(())
 }
 
-/// Whether panes, each the column where it begins and its columns, stand beside one another: all begin in the first row,
-/// and copies into the same pixels would come in any order.
+/// Whether panes, each its first column and its columns, do not overlap: all begin in the first row, and copies
+/// into the same pixels would come in any order.
 fn check_apart(columns: &[[u32; 2]]) -> Result<()> {
     let end = |[left, width]: [u32; 2]| left.saturating_add(width);
     for (later, pane) in columns.iter().enumerate() {
@@ -332,7 +337,7 @@ fn check_apart(columns: &[[u32; 2]]) -> Result<()> {
     Ok(())
 }
 
-/// Whether a panel, by its position in the shot, has a pixel a place.
+/// Whether a panel, by its index in the options, has a pixel per place.
 fn check_panel(n: usize, panel: &Panel<'_>) -> Result<()> {
     let [width, height] = panel.size;
     let expected = u64::from(width) * u64::from(height);
@@ -355,7 +360,7 @@ fn copied([width, height]: [u32; 2]) -> vk::BufferImageCopy {
         .image_extent(vk::Extent3D { width, height, depth: 1 })
 }
 
-/// A panel's part of a picture, from an offset of the buffer on; none where nothing of it is seen.
+/// A panel's part of a picture, from an offset of the buffer; none where it is outside.
 fn text(panel: &Panel<'_>, size: [u32; 2], offset: u64) -> Option<vk::BufferImageCopy> {
     let [width, height] = panel.size;
     let left = |i: usize| size[i].saturating_sub(panel.at[i]).min(panel.size[i]);
@@ -370,7 +375,7 @@ fn text(panel: &Panel<'_>, size: [u32; 2], offset: u64) -> Option<vk::BufferImag
 mod tests {
     use super::*;
 
-    /// Panes may touch, in any order; one column in common is too many.
+    /// Panes may touch, in any order; one common column is refused.
     #[test]
     fn panes_share_no_column() {
         check_apart(&[[8, 8], [0, 8], [16, 4]]).expect("apart");

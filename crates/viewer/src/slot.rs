@@ -1,4 +1,4 @@
-//! What one frame in flight holds.
+//! The objects of one frame in flight.
 
 use ash::vk;
 
@@ -11,15 +11,15 @@ pub(super) struct Slot {
     pub commands: vk::CommandBuffer,
     /// Signalled when its commands have run.
     pub done: vk::Fence,
-    /// Whether commands were handed to the device that will signal `done`, and may not have yet.
+    /// Whether submitted commands will signal `done`, and may not have yet.
     pub is_in_flight: bool,
     /// Signalled when its picture may be drawn into; null until [`acquired`](Self::acquired) makes it.
     pub acquired: vk::Semaphore,
-    /// Heights of each pane, text, and what is read back: made when first needed.
+    /// Heights of each pane, text, and the picture that is read back: made when first needed.
     pub heights: Vec<Option<Backed>>,
     pub text: Option<Backed>,
     pub readback: Option<Backed>,
-    /// Whether the last shot lit each of its panes.
+    /// Whether the last picture lit each of its panes.
     pub was_lit: Vec<bool>,
 }
 
@@ -65,7 +65,7 @@ impl Slot {
     /// Waits for its commands: then it is free.
     pub fn settle(&mut self, gpu: &Headless) -> Result<()> {
         if self.is_in_flight {
-            // SAFETY: the fence is this slot's, and what signals it was handed to the device.
+            // SAFETY: the fence is this slot's, and what signals it was submitted.
             unsafe { gpu.host().device.wait_for_fences(&[self.done], true, u64::MAX) }
                 .map_err(failed("waiting for a frame"))?;
             self.is_in_flight = false;
@@ -73,7 +73,7 @@ impl Slot {
         Ok(())
     }
 
-    /// What the next picture's taking signals: made where there is none.
+    /// Semaphore of the next acquisition; made where there is none.
     pub fn acquired(&mut self, gpu: &Headless) -> Result<vk::Semaphore> {
         if self.acquired == vk::Semaphore::null() {
             let info = vk::SemaphoreCreateInfo::default();
@@ -84,17 +84,17 @@ impl Slot {
         Ok(self.acquired)
     }
 
-    /// Lets go of a semaphore that nothing will wait for, once the device is done and its swapchain gone.
+    /// Drops a semaphore that nothing will wait for, once the device has finished and its swapchain is gone.
     pub fn give_up(&mut self, gpu: &Headless) {
         self.was_lit.clear();
-        // SAFETY: made by this device, or null; nothing uses it any more, as the caller says.
+        // SAFETY: made by this device, or null; nothing uses it any more, as the caller guarantees.
         unsafe { gpu.host().device.destroy_semaphore(std::mem::take(&mut self.acquired), None) };
     }
 
     /// Its objects; its buffers go with [`free`](Self::free).
     pub fn end(&self, gpu: &Headless) {
         let device = &gpu.host().device;
-        // SAFETY: made by this device, or null; the caller says that the device is done with them.
+        // SAFETY: made by this device, or null; the caller guarantees that the device has finished with them.
         unsafe {
             device.destroy_command_pool(self.pool, None);
             device.destroy_fence(self.done, None);
@@ -111,7 +111,7 @@ impl Slot {
     }
 }
 
-/// A buffer of at least so many bytes in the place of one that is none or smaller.
+/// A buffer of at least `bytes`, which replaces none or a smaller one.
 pub(super) fn fitting<'b>(
     gpu: &mut Headless,
     place: &'b mut Option<Backed>,

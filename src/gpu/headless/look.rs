@@ -15,7 +15,7 @@ use crate::{Error, Result};
 
 /// A camera picture of a lit field.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Seen {
+pub struct ViewPixels {
     /// Radiance, linear RGB, row after row from the top.
     pub radiance: Vec<[f32; 3]>,
     /// Distance along the view direction at the first MSAA sample of each pixel, in the field's length unit;
@@ -52,11 +52,16 @@ impl Headless {
     /// # Errors
     /// A view of another plan's field, an MSAA count that the device does not support, or a device out of
     /// memory.
-    pub fn look(&mut self, frame: &Frame, view: &View, voids: Option<&[bool]>) -> Result<Seen> {
+    pub fn look(
+        &mut self,
+        frame: &Frame,
+        view: &View,
+        voids: Option<&[bool]>,
+    ) -> Result<ViewPixels> {
         let format = vk::Format::R32G32B32A32_SFLOAT;
         let drawn = self.look_as(frame, (view, 1.0), format, voids)?;
         let texels: Vec<f32> = bytemuck::pod_collect_to_vec(&drawn.picture);
-        Ok(Seen {
+        Ok(ViewPixels {
             radiance: texels.chunks_exact(4).map(|t| [t[0], t[1], t[2]]).collect(),
             distances_m: drawn.depths.iter().map(|d| view.distance_m(*d) as f32).collect(),
             timings: drawn.timings,

@@ -82,7 +82,7 @@ impl Renderer {
         let contents: [&[u8]; 2] =
             [bytemuck::cast_slice(azimuths), bytemuck::cast_slice(constants)];
         let slot = &mut self.slots[slot];
-        if std::mem::replace(&mut slot.is_told, true) {
+        if std::mem::replace(&mut slot.is_current, true) {
             return;
         }
         for (id, backed) in &mut slot.tables {
@@ -126,7 +126,7 @@ impl Renderer {
                         None => vk::QueryPool::null(),
                     };
                     let (tables, recorded) = (Vec::new(), Vec::new());
-                    Ok(Slot { sets, tables, is_told: false, queries, recorded })
+                    Ok(Slot { sets, tables, is_current: false, queries, recorded })
                 })
             };
             let slot = slot.map_err(failed("making a frame's descriptors"))?;

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use ridgelight::gpu::Seen;
+use ridgelight::gpu::ViewPixels;
 use ridgelight::plan::{self, Picture, View, ViewOptions};
 use ridgelight::scene::{Border, Camera, HeightField, Lens, Method, Quality, Scene, Sun};
 use ridgelight_cpu::sky_draw::sky_draw;
@@ -26,7 +26,7 @@ pub(super) struct Shot {
     pub(super) options: ViewOptions,
     /// The lit field.
     pub(super) lit: Vec<[f32; 3]>,
-    pub(super) seen: Seen,
+    pub(super) seen: ViewPixels,
 }
 
 pub(super) fn quality() -> Quality {

@@ -1,5 +1,5 @@
-//! The functions themselves, called as C would, on a device of the library's own: what a C program that goes well
-//! does not reach.
+//! The functions, called as from C, on a device of the library's own: what a successful C program does not
+//! reach.
 
 use std::collections::HashMap;
 use std::ffi::{CStr, c_void};
@@ -36,7 +36,7 @@ pub(super) fn refused(result: RidgelightResult, code: RidgelightResult, named: &
     assert!(last_error().contains(named), "{named}: {}", last_error());
 }
 
-/// All zeros, but for the size that it begins with.
+/// All zeros, except for the size that it begins with.
 pub(super) fn zeroed<T>() -> T {
     let mut value = std::mem::MaybeUninit::<T>::zeroed();
     // SAFETY: the library's structs take zeros for their defaults, and begin with their size.
@@ -50,7 +50,7 @@ pub(super) fn heights() -> Vec<f64> {
     (0..SIDE * SIDE).map(|i| f64::from((i / SIDE * 31 + i % SIDE * 17) as u32 % 7) - 3.0).collect()
 }
 
-/// A device that says what validation hears, and what C is told of it.
+/// A device with validation messages, and its C description.
 pub(super) fn device() -> (Headless, RidgelightHost) {
     let validation = crate::is_validated();
     let gpu = Headless::new(&HeadlessOptions { device: None, validation }).expect("a device");
@@ -89,7 +89,7 @@ struct Engine {
     device: ash::Device,
     types: vk::PhysicalDeviceMemoryProperties,
     held: HashMap<u64, String>,
-    /// So many pieces are given.
+    /// How many pieces are in use.
     left: usize,
 }
 
@@ -134,7 +134,7 @@ unsafe extern "C" fn allocate(
 }
 
 unsafe extern "C" fn free(user: *mut c_void, allocation: *const RidgelightAllocation) {
-    // SAFETY: as above; what lay there is gone.
+    // SAFETY: as above; the image or buffer is gone.
     unsafe {
         let (engine, allocation) = (&mut *user.cast::<Engine>(), &*allocation);
         assert!(engine.held.remove(&allocation.key).is_some(), "freed once");
@@ -194,7 +194,7 @@ fn an_engine_in_c_lends_its_memory_and_reads_times() {
         let passes = planned.passes.len() as u32;
         assert_eq!((info.inputs, info.outputs, info.passes), (1, 1, passes));
         assert_eq!(info.internal_bytes, planned.internal_bytes());
-        // A plan that is given up: renderers have their own.
+        // The plan is destroyed: renderers have their own copy.
         ridgelight_plan_destroy(plan);
 
         let (input, output) = (image(&frame.inputs()[0]), image(&frame.outputs()[0]));
@@ -220,7 +220,7 @@ fn an_engine_in_c_lends_its_memory_and_reads_times() {
             assert_eq!(count, 0);
         }
 
-        // What the library's own checks refuse arrives as it says it, and nothing has been recorded.
+        // The library's own checks pass their message through, and nothing has been recorded.
         let setting = RidgelightResult::Setting;
         let wrong = RidgelightImage { format: vk::Format::R8_UNORM, ..input };
         gpu.run(|commands| {
@@ -248,7 +248,7 @@ fn an_engine_in_c_lends_its_memory_and_reads_times() {
     assert_eq!(gpu.take_messages(), [""; 0]);
 }
 
-/// Heights in a buffer of C's, with rows apart: the light of the same heights in an image.
+/// Heights in a buffer of C's, with padded rows: the light equals that of the same heights in an image.
 #[test]
 fn a_buffer_of_c_is_lit_as_an_image_is() {
     let (mut gpu, host) = device();
@@ -320,8 +320,8 @@ fn a_buffer_of_c_is_lit_as_an_image_is() {
     assert_eq!(gpu.take_messages(), [""; 0]);
 }
 
-/// A field as the library lights it, and how a camera sees it.
-pub fn seen_by_rust(gpu: &mut Headless, field: &HeightField) -> (Frame, View, Camera) {
+/// A field as the library lights it, and its view by a camera.
+pub fn view_by_rust(gpu: &mut Headless, field: &HeightField) -> (Frame, View, Camera) {
     let lights = Lights { sky: Some([1.0, 0.5, 0.25]), ..Lights::default() };
     let scene = Scene { field: field.clone(), surface: Surface::default(), lights };
     let limits = gpu.report().limits;
@@ -342,12 +342,12 @@ pub fn seen_by_rust(gpu: &mut Headless, field: &HeightField) -> (Frame, View, Ca
     (frame, view, at)
 }
 
-/// A picture before a camera, heights from a buffer and from an image: the library's own, byte for byte.
+/// A camera picture, heights from a buffer and from an image: the library's own, byte for byte.
 #[test]
 fn a_camera_of_c_sees_what_rusts_does() {
     let (mut gpu, host) = device();
     let field = HeightField::new(SIDE, SIDE, &heights(), [1.0; 2], None).expect("a field");
-    let (frame, view_of_rust, at) = seen_by_rust(&mut gpu, &field);
+    let (frame, view_of_rust, at) = view_by_rust(&mut gpu, &field);
     let right = gpu.look(&frame, &view_of_rust, None).expect("a picture").radiance;
     let lent = gpu.host().clone();
     let target = Target::new(&lent);
@@ -474,17 +474,17 @@ fn what_a_plan_cannot_be_is_named() {
         refuse(scene(), quality, 0, code, named);
     }
     refuse(scene(), zeroed(), 16, argument, "picture: found 16");
-    let ball: RidgelightSphereLight = RidgelightSphereLight { radius_m: 1.0, ..zeroed() };
-    let with_ball = RidgelightScene { spheres: &ball, sphere_count: 1, ..scene() };
+    let light: RidgelightSphereLight = RidgelightSphereLight { radius_m: 1.0, ..zeroed() };
+    let with_light = RidgelightScene { spheres: &light, sphere_count: 1, ..scene() };
     let flag = RIDGELIGHT_PICTURE_COLOURS_ON_DEVICE;
-    refuse(with_ball, zeroed(), flag, setting, "picture: colours_on_device: found a sphere light");
+    refuse(with_light, zeroed(), flag, setting, "picture: colours_on_device: found a sphere light");
     // SAFETY: as above.
     let made = unsafe { ridgelight_plan_create(&host, &scene(), ptr::null(), 0, 1, &mut plan) };
     refused(made, RidgelightResult::Limit, "the limit is");
     drop(gpu);
 }
 
-/// Zeros are the defaults, and every field is its own: no two of them are mixed up.
+/// Zeros are the defaults, and no two fields are mixed up.
 #[test]
 fn every_setting_of_c_is_the_one_of_rust() {
     let (gpu, host) = device();

@@ -1,4 +1,4 @@
-//! Inputs that an engine in C fills or masks itself: heights with voids, colours of lights.
+//! Inputs that an engine in C fills or masks itself: heights with voids, light colours.
 
 use std::ffi::CStr;
 use std::ptr;
@@ -8,20 +8,20 @@ use ridgelight::plan::{self, Picture};
 use ridgelight::scene::{HeightField, Lights, Quality, Scene, Sun, Surface};
 use ridgelight_c::*;
 
-use crate::abi::{SIDE, device, good, heights, image, refused, scene, seen_by_rust, zeroed};
+use crate::abi::{SIDE, device, good, heights, image, refused, scene, view_by_rust, zeroed};
 use crate::target::{FORMAT, SIZE, Target};
 
 fn bytes(values: &[f32]) -> Vec<u8> {
     values.iter().flat_map(|v| v.to_ne_bytes()).collect()
 }
 
-/// Marked, or not a number: in both ways.
+/// Marked, or NaN: both kinds of void.
 fn is_void(i: usize) -> bool {
     i % 29 == 3 || (100..110).contains(&i)
 }
 
-/// Heights that C has filled are the field's own, their light is the same, and before a camera the same triangles are
-/// holes.
+/// Heights filled through C are the field's own and give the same light; a camera picture has holes at the same
+/// triangles.
 #[test]
 fn voids_of_c_are_filled_and_holes() {
     let (mut gpu, host) = device();
@@ -53,7 +53,7 @@ fn voids_of_c_are_filled_and_holes() {
     assert_eq!(filled, field.heights_m());
     assert!(marks.iter().zip(&voids).all(|(mark, void)| *mark == u8::from(*void)));
 
-    let (frame, view_of_rust, at) = seen_by_rust(&mut gpu, &field);
+    let (frame, view_of_rust, at) = view_by_rust(&mut gpu, &field);
     let right = gpu.look(&frame, &view_of_rust, Some(&voids)).expect("a picture").radiance;
     let mut whole = view_of_rust;
     whole.has_voids = false;
@@ -108,7 +108,7 @@ fn voids_of_c_are_filled_and_holes() {
     assert_eq!(gpu.take_messages(), [""; 0]);
 }
 
-/// One more input of a plan: texels in the place of the scene's colours.
+/// One more input of a plan: texels instead of the scene's colours.
 #[test]
 fn colours_of_c_come_on_the_device() {
     let (mut gpu, host) = device();

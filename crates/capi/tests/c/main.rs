@@ -1,4 +1,4 @@
-//! The C ABI as C meets it: its header, its symbols, and a program.
+//! The C ABI: its header, its symbols, and programs in C.
 
 mod abi;
 mod inputs;
@@ -22,8 +22,8 @@ fn library(name: &str) -> PathBuf {
 
 fn run(command: &mut Command) -> (Output, String) {
     let done = command.output().unwrap_or_else(|e| panic!("{command:?}: {e}"));
-    let said = [&done.stdout, &done.stderr].map(|s| String::from_utf8_lossy(s).into_owned());
-    (done, said.concat())
+    let output = [&done.stdout, &done.stderr].map(|s| String::from_utf8_lossy(s).into_owned());
+    (done, output.concat())
 }
 
 /// `RIDGELIGHT_BLESS=1` writes it.
@@ -47,11 +47,11 @@ fn the_header_is_what_the_source_says() {
     assert!(kept == made, "include/ridgelight.h is another: RIDGELIGHT_BLESS=1 writes it");
     let mut cpp = Command::new("c++");
     cpp.args(["-x", "c++", "-std=c++11", "-fsyntax-only", "-Wall", "-Wextra", "-Werror"]);
-    let (done, said) = run(cpp.args(["-include"]).arg(&path).arg("/dev/null"));
-    assert!(done.status.success(), "{said}");
+    let (done, output) = run(cpp.args(["-include"]).arg(&path).arg("/dev/null"));
+    assert!(done.status.success(), "{output}");
 }
 
-/// Every function of the header, and no symbol besides.
+/// Every function of the header is exported, and no other symbol.
 #[test]
 fn the_shared_library_exports_the_header_alone() {
     let header = std::fs::read_to_string(Path::new(ROOT).join("crates/capi/include/ridgelight.h"))
@@ -65,15 +65,15 @@ fn the_shared_library_exports_the_header_alone() {
     declared.sort_unstable();
     declared.dedup();
     let library = library("libridgelight_c.so");
-    let (done, said) = run(Command::new("nm").args(["-D", "--defined-only"]).arg(library));
-    assert!(done.status.success(), "{said}");
-    let mut exported: Vec<&str> = said.lines().filter_map(|l| l.split(' ').nth(2)).collect();
+    let (done, output) = run(Command::new("nm").args(["-D", "--defined-only"]).arg(library));
+    assert!(done.status.success(), "{output}");
+    let mut exported: Vec<&str> = output.lines().filter_map(|l| l.split(' ').nth(2)).collect();
     exported.sort_unstable();
     assert_eq!(exported, declared);
     assert!(declared.len() > 10, "{declared:?}");
 }
 
-/// Each function that can fail says with which codes: names that the header has.
+/// Each function that can fail documents its codes, by names that the header has.
 #[test]
 fn every_function_lists_its_codes() {
     let header = std::fs::read_to_string(Path::new(ROOT).join("crates/capi/include/ridgelight.h"))
@@ -100,12 +100,12 @@ fn every_function_lists_its_codes() {
     assert!(functions >= 12, "{functions}");
 }
 
-/// What a program is linked with.
+/// A library to link with.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum With {
     Shared,
     Static,
-    /// The shared library, and an allocator that hears of what is used after it is freed, or beyond its end.
+    /// The shared library, with AddressSanitizer, which finds use after free and out-of-bounds accesses.
     Sanitizer,
 }
 
@@ -126,8 +126,8 @@ fn compiled(folder: &Path, name: &str, source: &str, with: With) -> PathBuf {
         let folder = shared.parent().expect("a folder");
         cc.arg(&shared).arg(format!("-Wl,-rpath,{}", folder.display()));
     }
-    let (done, said) = run(cc.arg("-lvulkan"));
-    assert!(done.status.success(), "{said}");
+    let (done, output) = run(cc.arg("-lvulkan"));
+    assert!(done.status.success(), "{output}");
     program
 }
 
@@ -135,10 +135,10 @@ fn is_validated() -> bool {
     std::env::var_os("RIDGELIGHT_VALIDATION").is_some_and(|v| v == "1")
 }
 
-/// Runs a program under the validation layer where tests are; what it and the layer say.
+/// Runs a program under the validation layer of the tests; returns its output with the layer's.
 fn run_validated(program: &Path, out: &Path) -> (Output, String) {
     let mut command = Command::new(program);
-    // Drivers keep what they take: their leaks are not looked for.
+    // Drivers keep some allocations: their leaks are not checked.
     command.arg(out).env("ASAN_OPTIONS", "detect_leaks=0");
     if is_validated() {
         command.env("VK_INSTANCE_LAYERS", "VK_LAYER_KHRONOS_validation");
@@ -146,12 +146,12 @@ fn run_validated(program: &Path, out: &Path) -> (Output, String) {
     run(&mut command)
 }
 
-/// Without a messenger the layer prints what it hears.
-fn is_complaint(said: &str) -> bool {
-    said.contains("VUID") || said.contains("SYNC-HAZARD")
+/// Without a messenger the layer prints its messages.
+fn is_complaint(output: &str) -> bool {
+    output.contains("VUID") || output.contains("SYNC-HAZARD")
 }
 
-/// What the command line makes of the scene of host.c.
+/// The command line's result for the scene of host.c.
 fn by_command_line(folder: &Path) -> Vec<u8> {
     let heights: Vec<f32> =
         (0..48 * 64).map(|i| ((i / 64 * 31 + i % 64 * 17) % 7) as f32 - 3.0).collect();
@@ -160,8 +160,8 @@ fn by_command_line(folder: &Path) -> Vec<u8> {
     let binary = test.parent().and_then(Path::parent).expect("a folder").join("ridgelight");
     assert!(binary.exists(), "{} is not there: cargo build", binary.display());
     let arguments = "render field.npy --sky 0.5 --sun 90,30,0.5,3 --quiet -o lit.exr";
-    let (done, said) = run(Command::new(binary).current_dir(folder).args(arguments.split(' ')));
-    assert!(done.status.success(), "{said}");
+    let (done, output) = run(Command::new(binary).current_dir(folder).args(arguments.split(' ')));
+    assert!(done.status.success(), "{output}");
     let lit = files::read_planes(&folder.join("lit.exr")).expect("a picture");
     let red = lit.names.iter().position(|name| name == "R").expect("a channel R");
     lit.planes[red].iter().flat_map(|v| v.to_ne_bytes()).collect()
@@ -179,33 +179,33 @@ fn a_c_program_gives_the_command_lines_bytes() {
     for (name, with) in all {
         let program = compiled(folder.path(), name, source, with);
         let out = folder.path().join("texels");
-        let (done, said) = run_validated(&program, &out);
-        assert!(done.status.success() && !is_complaint(&said), "{name}: {said}");
+        let (done, output) = run_validated(&program, &out);
+        assert!(done.status.success() && !is_complaint(&output), "{name}: {output}");
         assert!(std::fs::read(out).expect("texels") == right, "{name}: other light");
     }
-    // And complaints would have been heard: light that is copied from another layout than it is left in.
+    // Proof that validation is active: an image is copied from another layout than it is left in.
     if is_validated() {
         let from =
             "vkCmdCopyImageToBuffer(commands, light.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL";
         assert!(source.contains(from));
         let wrong = source.replace(from, &from.replace("TRANSFER_SRC_OPTIMAL", "GENERAL"));
         let program = compiled(folder.path(), "wrong", &wrong, With::Shared);
-        let (_, said) = run_validated(&program, &folder.path().join("wrong.texels"));
-        assert!(is_complaint(&said), "validation is deaf: {said}");
+        let (_, output) = run_validated(&program, &folder.path().join("wrong.texels"));
+        assert!(is_complaint(&output), "validation reports nothing: {output}");
     }
 }
 
-/// What the library refuses, by code and by a word of its sentence: from C, so that the header is right.
+/// What the library refuses, by code and by a word of its sentence: from C, so that the header is tested.
 #[test]
 fn wrong_arguments_are_named() {
     let folder = tempfile::tempdir().expect("a folder");
     let source = include_str!("wrong.c");
-    let (done, said) =
+    let (done, output) =
         run(&mut Command::new(compiled(folder.path(), "wrong", source, With::Sanitizer)));
-    assert!(done.status.success(), "{said}");
-    // And the sanitizer hears of a struct that is shorter than it says.
+    assert!(done.status.success(), "{output}");
+    // The sanitizer reports a struct that is shorter than its size.
     let beyond = format!("#define BEYOND\n{source}");
-    let (done, said) =
+    let (done, output) =
         run(&mut Command::new(compiled(folder.path(), "beyond", &beyond, With::Sanitizer)));
-    assert!(!done.status.success() && said.contains("heap-buffer-overflow"), "{said}");
+    assert!(!done.status.success() && output.contains("heap-buffer-overflow"), "{output}");
 }

@@ -1,6 +1,6 @@
 //! `render --camera`: a camera view of the field instead of its map.
 
-use ridgelight::gpu::{DeviceReport, Seen, Timing};
+use ridgelight::gpu::{DeviceReport, Timing, ViewPixels};
 use ridgelight::plan::{Limits, Plan, View, ViewOptions, mesh_error_m};
 use ridgelight::scene::Tone;
 use ridgelight::scene::{Camera, HeightField, Lens, Scene};
@@ -120,7 +120,7 @@ impl CameraView {
 pub fn write(
     args: &RenderArgs,
     camera_view: &CameraView,
-    seen: &Seen,
+    seen: &ViewPixels,
     metadata: &[(String, String)],
 ) -> Result<()> {
     let [cols, rows] = camera_view.options.size.map(|n| n as usize);

@@ -6,7 +6,7 @@ use ridgelight::gpu::{Frame, Work};
 use ridgelight::plan::{self, Format, Kind, Map, Plan, Rectangle, View};
 use ridgelight::scene::Scene;
 use ridgelight::{Error, Result};
-use ridgelight_viewer::{Pane, PaneTimes, Panel, Screen, Shot, Sight};
+use ridgelight_viewer::{Pane, PaneTimes, Panel, PresentOptions, Screen, Viewpoint};
 
 use super::super::panel::{self, Drawn};
 use super::super::state::{Light, State, Wish};
@@ -253,24 +253,25 @@ impl OpenWindow {
         let at_ours = frames.len();
         frames.push((lit, heights, Vec::new()));
         frames.extend(truth.map(|(frame, passes)| (frame, None, passes)));
-        let mut sights: Vec<(Map, Option<View>)> = Vec::new();
+        let mut viewpoints: Vec<(Map, Option<View>)> = Vec::new();
         for (frame, ..) in &frames {
             let map = state.map(pane_size, swaps, has_colour(frame.plan()));
-            sights.push((map, state.view(frame.plan(), pane_size, &self.limits)?));
+            viewpoints.push((map, state.view(frame.plan(), pane_size, &self.limits)?));
         }
         let mut panes: Vec<Pane<'_>> = Vec::new();
-        let of_panes = frames.iter_mut().zip(&sights).zip(&lefts).enumerate();
+        let of_panes = frames.iter_mut().zip(&viewpoints).zip(&lefts).enumerate();
         for (n, (((frame, heights, passes), (map, view)), left)) in of_panes {
             panes.push(Pane {
                 frame,
                 heights: *heights,
                 work: if n == at_ours { work } else { Work::Passes(passes) },
-                sight: view.as_ref().map_or(Sight::Map(map), Sight::Camera),
+                viewpoint: view.as_ref().map_or(Viewpoint::Map(map), Viewpoint::Camera),
                 left: *left,
             });
         }
-        let shot = Shot { tone: state.tone(), voids: field.voids(), panels: &panels, keeps };
-        let Some(mut done) = self.screen.draw(&mut panes, &shot)? else { return Ok(None) };
+        let options =
+            PresentOptions { tone: state.tone(), voids: field.voids(), panels: &panels, keeps };
+        let Some(mut done) = self.screen.draw(&mut panes, &options)? else { return Ok(None) };
         if let Some(compare) = compare {
             compare.drawn(done.timings.get(2).map_or(&[], |times| times.light.as_slice()));
         }
