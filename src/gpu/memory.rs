@@ -43,7 +43,7 @@ pub struct Memory {
 }
 
 impl Memory {
-    pub fn new(host: &Host, allocator: Box<dyn Allocator>) -> Self {
+    pub(crate) fn new(host: &Host, allocator: Box<dyn Allocator>) -> Self {
         Self { allocator: Some(allocator), host: host.clone() }
     }
 
@@ -73,12 +73,12 @@ impl Memory {
     }
 
     /// Bytes taken from the device.
-    pub fn bytes(&self) -> u64 {
+    pub(crate) fn bytes(&self) -> u64 {
         self.allocator.as_ref().map_or(0, |a| a.bytes())
     }
 
     /// An image or buffer of a plan; buffers in memory of that kind, images in device memory.
-    pub fn make(&mut self, name: &str, kind: Kind, used_by: MemoryUse) -> Result<Backed> {
+    pub(crate) fn make(&mut self, name: &str, kind: Kind, used_by: MemoryUse) -> Result<Backed> {
         match kind {
             Kind::Image { format, width, height, layers, layered } => {
                 self.image(name, format, [width, height, layers], layered)
@@ -115,7 +115,7 @@ impl Memory {
     }
 
     /// An image of a plan.
-    pub fn image(
+    pub(crate) fn image(
         &mut self,
         name: &str,
         format: Format,
@@ -130,7 +130,7 @@ impl Memory {
     }
 
     /// An image of any colour format, for one use.
-    pub fn image_for(
+    pub(crate) fn image_for(
         &mut self,
         name: &str,
         (format, usage): (vk::Format, vk::ImageUsageFlags),
@@ -247,12 +247,12 @@ impl Memory {
     }
 
     /// Drops the allocator; everything must have been freed.
-    pub fn end(&mut self) {
+    pub(crate) fn end(&mut self) {
         self.allocator = None;
     }
 
     /// Keeps all memory until the device is destroyed: for images and buffers that may still be in use.
-    pub fn leak(&mut self) {
+    pub(crate) fn leak(&mut self) {
         std::mem::forget(self.allocator.take());
     }
 

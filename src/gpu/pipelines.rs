@@ -59,7 +59,7 @@ impl Pipelines {
 
     /// Drops this clone; the last one destroys the pipelines. The device must have finished with those that
     /// this clone used.
-    pub fn end(self, host: &Host) {
+    pub(crate) fn end(self, host: &Host) {
         let Some(known) = Arc::into_inner(self.0) else { return };
         for pipeline in known.into_inner().unwrap_or_else(PoisonError::into_inner).into_values() {
             // SAFETY: made by this host's device; every user has dropped its clone, and thereby guarantees that

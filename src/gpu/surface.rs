@@ -10,7 +10,8 @@ use crate::{Error, Result};
 
 /// Makes a surface for a window that is alive.
 #[doc(hidden)]
-pub type CreateSurface = Box<dyn Fn(&ash::Entry, &ash::Instance) -> VkResult<vk::SurfaceKHR>>;
+pub(crate) type CreateSurface =
+    Box<dyn Fn(&ash::Entry, &ash::Instance) -> VkResult<vk::SurfaceKHR>>;
 
 /// Makes the surface of a window; supplied by the crate that knows window systems.
 #[doc(hidden)]

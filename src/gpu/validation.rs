@@ -63,7 +63,11 @@ pub(super) struct Listener {
 }
 
 impl Listener {
-    pub fn new(entry: &ash::Entry, instance: &ash::Instance, messages: Messages) -> Result<Self> {
+    pub(crate) fn new(
+        entry: &ash::Entry,
+        instance: &ash::Instance,
+        messages: Messages,
+    ) -> Result<Self> {
         let loader = ext::debug_utils::Instance::new(entry, instance);
         let info = messenger(&messages);
         // SAFETY: the callback's data lives as long as this.
@@ -73,13 +77,13 @@ impl Listener {
     }
 
     /// Messages since the last call.
-    pub fn take(&self) -> Vec<String> {
+    pub(crate) fn take(&self) -> Vec<String> {
         self.messages.lock().map(|mut m| std::mem::take(&mut *m)).unwrap_or_default()
     }
 
     /// Destroys the messenger: once, before the instance. The messenger of instance creation reports until the
     /// instance is destroyed, so this must be dropped after it.
-    pub fn end(&self) {
+    pub(crate) fn end(&self) {
         // SAFETY: the instance is alive; the messenger is its own, and not used again.
         unsafe { self.loader.destroy_debug_utils_messenger(self.messenger, None) };
     }

@@ -80,7 +80,7 @@ same_layout!(
 );
 
 impl ShadePush {
-    pub fn of(batch: &Batch, cell_m: [f64; 2]) -> Self {
+    pub(crate) fn of(batch: &Batch, cell_m: [f64; 2]) -> Self {
         let [cols, rows] = batch.axis.size();
         Self {
             cols: cols as i32,
@@ -115,7 +115,7 @@ same_layout!(
 );
 
 impl MarchPush {
-    pub fn of(batch: &Batch) -> Self {
+    pub(crate) fn of(batch: &Batch) -> Self {
         let axis = batch.axis;
         Self {
             lanes: axis.lanes as i32,
@@ -156,7 +156,7 @@ same_layout!(
 );
 
 impl LandPush {
-    pub fn of(field: &HeightField, blocks: &Blocks) -> Self {
+    pub(crate) fn of(field: &HeightField, blocks: &Blocks) -> Self {
         let [cell_x, cell_y] = field.cell_m();
         Self {
             cols: field.cols() as i32,
@@ -201,7 +201,7 @@ same_layout!(
 );
 
 impl ReducePush {
-    pub fn of(pyramid: &Pyramid, number: u32) -> Self {
+    pub(crate) fn of(pyramid: &Pyramid, number: u32) -> Self {
         let (level, source) = (pyramid.level(number), pyramid.level(pyramid.source(number)));
         Self {
             size: level.size.map(|n| n as i32),

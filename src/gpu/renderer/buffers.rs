@@ -160,7 +160,7 @@ impl Renderer {
 
 impl Taken {
     /// The image between copy and passes.
-    pub const COPIED: ImageState = ImageState {
+    pub(crate) const COPIED: ImageState = ImageState {
         stage: vk::PipelineStageFlags2::COPY,
         access: vk::AccessFlags2::TRANSFER_WRITE,
         layout: vk::ImageLayout::GENERAL,
@@ -176,7 +176,7 @@ impl Taken {
     }
 
     /// Barriers from the buffer's last use to the copy.
-    pub fn entry(&self) -> vk::BufferMemoryBarrier2<'static> {
+    pub(crate) fn entry(&self) -> vk::BufferMemoryBarrier2<'static> {
         self.barrier()
             .src_stage_mask(self.arg.stage)
             .src_access_mask(self.arg.access)
@@ -185,7 +185,7 @@ impl Taken {
     }
 
     /// Barriers from the copy back to that use.
-    pub fn exit(&self) -> vk::BufferMemoryBarrier2<'static> {
+    pub(crate) fn exit(&self) -> vk::BufferMemoryBarrier2<'static> {
         self.barrier()
             .src_stage_mask(READ.0)
             .src_access_mask(READ.1)
@@ -194,13 +194,13 @@ impl Taken {
     }
 
     /// Barriers from the copy to the passes.
-    pub fn filled(&self) -> vk::ImageMemoryBarrier2<'static> {
+    pub(crate) fn filled(&self) -> vk::ImageMemoryBarrier2<'static> {
         super::transition(self.image, 1, Self::COPIED, ImageState::WRITTEN)
     }
 
     /// # Safety
     /// `commands` is being recorded outside a render pass; the image is in GENERAL; image and buffer are alive.
-    pub unsafe fn copy(&self, device: &ash::Device, commands: vk::CommandBuffer) {
+    pub(crate) unsafe fn copy(&self, device: &ash::Device, commands: vk::CommandBuffer) {
         let (buffer, layout) = (self.arg.buffer, Self::COPIED.layout);
         // SAFETY: as the caller guarantees; the region is within the checked range.
         unsafe {

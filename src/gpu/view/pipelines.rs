@@ -34,7 +34,7 @@ pub(super) const STAGES: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
 
 impl Drawing {
     /// Makes layouts and pipeline; after an error [`free`](Self::free) frees what was made.
-    pub fn make(&mut self, host: &Host, recipe: &Recipe) -> Result<()> {
+    pub(crate) fn make(&mut self, host: &Host, recipe: &Recipe) -> Result<()> {
         let device = &host.device;
         let doing = || format!("making the pipeline of {}", recipe.shaders[1].shader.name);
         let bindings: Vec<_> = recipe
@@ -81,7 +81,7 @@ impl Drawing {
     }
 
     /// Destroys what has been made.
-    pub fn free(&mut self, host: &Host) {
+    pub(crate) fn free(&mut self, host: &Host) {
         // SAFETY: made by this device or null; the caller guarantees that nothing in flight uses them.
         unsafe {
             host.device.destroy_pipeline(self.pipeline, None);

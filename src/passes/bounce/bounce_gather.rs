@@ -58,7 +58,7 @@ same_layout!(
 
 impl GatherPush {
     /// Push constants for `range` of `azimuths`.
-    pub fn of(field: &HeightField, of: &Pyramids, azimuths: u32, range: Range<u32>) -> Self {
+    pub(crate) fn of(field: &HeightField, of: &Pyramids, azimuths: u32, range: Range<u32>) -> Self {
         let [cell_x, cell_y] = field.cell_m();
         let [warm_up_cols, warm_up_rows] =
             of.heights.size.map(|n| if of.heights.periodic { warm_up(n) as i32 } else { 0 });
@@ -103,7 +103,7 @@ pub(crate) struct Pyramids {
 
 impl Pyramids {
     /// Bindings of the height levels.
-    pub fn height_bindings(&self) -> Vec<(&'static str, ResourceId)> {
+    pub(crate) fn height_bindings(&self) -> Vec<(&'static str, ResourceId)> {
         match self.height_images {
             Some(pyramid_march::Images { stack: Some(stack), .. }) => vec![("height_stack", stack)],
             Some(pyramid_march::Images { levels, table, stack: None }) => {
@@ -114,7 +114,7 @@ impl Pyramids {
     }
 
     /// Bindings of the levels of exit radiance.
-    pub fn shade_bindings(&self) -> Vec<(&'static str, ResourceId)> {
+    pub(crate) fn shade_bindings(&self) -> Vec<(&'static str, ResourceId)> {
         match self.shade_images {
             Some(ShadeImages { stack: Some(stack), .. }) => vec![("shade_stack", stack)],
             Some(ShadeImages { levels, table, stack: None }) => {

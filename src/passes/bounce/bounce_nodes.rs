@@ -15,7 +15,7 @@ pub(crate) struct NodeSum {
 
 impl NodeSum {
     /// How many nodes a field of this size has.
-    pub fn count(&self, size: [u32; 2]) -> u64 {
+    pub(crate) fn count(&self, size: [u32; 2]) -> u64 {
         self.nodes.size(size).map(u64::from).iter().product()
     }
 }
@@ -41,7 +41,7 @@ impl BounceNodes {
     /// None where every grid point is a node, or without bounces. `sky_share` is that of other lights; walks
     /// find their own along their own azimuths. Walks keep a visibility cache where later bounces need one and
     /// it takes at most a quarter of the remaining budget.
-    pub fn make(
+    pub(crate) fn make(
         builder: &mut Builder,
         size: [u32; 2],
         quality: &Quality,

@@ -35,7 +35,7 @@ pub(crate) struct Bounce {
 
 impl Bounce {
     /// Nodes at which an engine computes, and its output there.
-    pub fn found_at(&self) -> NodeSum {
+    pub(crate) fn found_at(&self) -> NodeSum {
         self.at_nodes.unwrap_or(NodeSum { nodes: Nodes { stride: 1 }, sum: self.sum })
     }
 }
@@ -96,7 +96,7 @@ pub(crate) fn needed_bounces(scene: &Scene, quality: &Quality, notes: &mut Vec<S
 impl Bouncing {
     /// `count` bounces, 1 or more, at nodes or at every grid point. `levels` are the height levels that direct
     /// light uses.
-    pub fn make(
+    pub(crate) fn make(
         builder: &mut Builder,
         scene: &Scene,
         quality: &Quality,
@@ -137,12 +137,12 @@ impl Bouncing {
     }
 
     /// How many bounces there are.
-    pub fn count(&self) -> usize {
+    pub(crate) fn count(&self) -> usize {
         self.exits.len()
     }
 
     /// The passes before the first bounce. `is_recorded`: those of the blocks have been recorded.
-    pub fn prepare(
+    pub(crate) fn prepare(
         &self,
         builder: &mut Builder,
         scene: &Scene,
@@ -170,7 +170,7 @@ impl Bouncing {
 
     /// The passes of bounce `k`, from 1; bounce 1 reads `direct`. Returns the irradiance, and the image for its
     /// exit radiance.
-    pub fn record(
+    pub(crate) fn record(
         &self,
         builder: &mut Builder,
         scene: &Scene,
@@ -229,7 +229,7 @@ impl Bouncing {
     }
 
     /// The diffuse exit radiance after bounce `k`; 0 is direct light. None after the last bounce.
-    pub fn diffuse(&self, k: usize, direct: ResourceId) -> Option<ResourceId> {
+    pub(crate) fn diffuse(&self, k: usize, direct: ResourceId) -> Option<ResourceId> {
         match k {
             0 => Some(direct),
             _ => self.exits[k - 1].filter(|_| k < self.exits.len()),
@@ -237,7 +237,7 @@ impl Bouncing {
     }
 
     /// The settings in use, for metadata.
-    pub fn used(&self) -> Vec<(String, String)> {
+    pub(crate) fn used(&self) -> Vec<(String, String)> {
         let mut used = Vec::new();
         let mut add = |name: &str, value: String| used.push((name.to_owned(), value));
         add("bounce_azimuths", self.azimuths.to_string());

@@ -27,7 +27,7 @@ pub(crate) struct SphereSh {
 
 impl SphereSh {
     /// Sizes and constants for a quality. `levels` are those of a pyramid that the plan has for other lights.
-    pub fn make(
+    pub(crate) fn make(
         builder: &mut Builder,
         (size, border): ([u32; 2], Border),
         quality: &Quality,
@@ -66,7 +66,7 @@ impl SphereSh {
     }
 
     /// The settings in use, as (name, value).
-    pub fn settings(&self, quality: &Quality) -> Vec<(String, String)> {
+    pub(crate) fn settings(&self, quality: &Quality) -> Vec<(String, String)> {
         let mut all = vec![
             ("sh_order", self.order.to_string()),
             ("wedges", self.wedges.name().to_owned()),

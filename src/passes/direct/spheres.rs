@@ -34,7 +34,7 @@ impl<'a> Spheres<'a> {
     /// largest at which no grid point loses more than `cutoff` times the brightest light that one sphere light
     /// may give to its nearest grid point. The loss is bounded by the sum over the lights of min(T, the most
     /// that each may give).
-    pub fn of(
+    pub(crate) fn of(
         field: &HeightField,
         lit: Vec<(usize, &'a SphereLight)>,
         cutoff: f64,
@@ -86,7 +86,7 @@ impl<'a> Spheres<'a> {
     }
 
     /// As [`record`](Self::record), by spherical harmonics.
-    pub fn record_soft(
+    pub(crate) fn record_soft(
         &self,
         builder: &mut Builder,
         lit: (&Scene, &Blocks, &SphereSh),
@@ -100,7 +100,7 @@ impl<'a> Spheres<'a> {
     }
 
     /// The passes of the active light at `index`; `begins`: the sum begins with it.
-    pub fn record(
+    pub(crate) fn record(
         &self,
         builder: &mut Builder,
         (scene, blocks): (&Scene, &Blocks),

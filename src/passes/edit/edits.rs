@@ -9,7 +9,7 @@ pub(crate) struct Edits {
 }
 
 impl Edits {
-    pub fn make(builder: &mut Builder, size: [u32; 2]) -> Self {
+    pub(crate) fn make(builder: &mut Builder, size: [u32; 2]) -> Self {
         let [across, down] = passes::dirty_mark::words(size).map(u64::from);
         Self {
             dirty: builder.buffer("dirty_samples", 4 * across * down, false),

@@ -14,7 +14,7 @@ pub use drawn::towards_light;
 pub use crate::graph::CELL;
 
 /// Slope of a vertical direction; safe to square in f32.
-pub const STEEPEST: f32 = 1e9;
+pub(crate) const STEEPEST: f32 = 1e9;
 
 pub(crate) const MARCHES_ROWS: u32 = 1;
 /// Bit of an azimuth that marches against its axis.

@@ -38,7 +38,7 @@ pub struct Batch {
 
 impl Batch {
     /// Their indices in the buffer "azimuths".
-    pub fn azimuths(&self) -> std::ops::Range<u32> {
+    pub(crate) fn azimuths(&self) -> std::ops::Range<u32> {
         self.first..self.first + self.count
     }
 }

@@ -36,7 +36,7 @@ pub struct Level {
 
 impl Level {
     /// Texels of the level.
-    pub fn texels(&self) -> u64 {
+    pub(crate) fn texels(&self) -> u64 {
         u64::from(self.size[0]) * u64::from(self.size[1])
     }
 }
@@ -124,13 +124,13 @@ impl Pyramid {
     }
 
     /// log2 of the width of the image of all levels, which is about square.
-    pub fn width_shift(&self) -> u32 {
+    pub(crate) fn width_shift(&self) -> u32 {
         let texels: u64 = self.all_texels();
         texels.max(1).next_power_of_two().trailing_zeros().div_ceil(2)
     }
 
     /// Texels of all levels above the field itself.
-    pub fn all_texels(&self) -> u64 {
+    pub(crate) fn all_texels(&self) -> u64 {
         let last = self.level(self.levels());
         if self.levels() == 0 { 0 } else { last.first + last.texels() }
     }

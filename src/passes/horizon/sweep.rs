@@ -19,7 +19,7 @@ pub enum HullStorage {
 
 impl HullStorage {
     /// As the command line spells it.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             HullStorage::Private => "private",
             HullStorage::Shared => "shared",

@@ -39,7 +39,7 @@ struct Lattice {
 
 impl Sweeping {
     /// Heights by lanes along a batch's axis.
-    pub fn lane_heights(&self, batch: &Batch) -> ResourceId {
+    pub(crate) fn lane_heights(&self, batch: &Batch) -> ResourceId {
         self.lane_heights[usize::from(batch.axis.marches_rows)].expect("made for every axis used")
     }
 
@@ -48,23 +48,23 @@ impl Sweeping {
     }
 
     /// The output of a batch's sweep for shading: slopes where stored, else occluders.
-    pub fn lattice(&self, batch: &Batch) -> Option<ResourceId> {
+    pub(crate) fn lattice(&self, batch: &Batch) -> Option<ResourceId> {
         let lattice = self.lattice_of(batch);
         lattice.slopes.or(lattice.occluders)
     }
 
     /// The occluders of a batch's sweep along lines.
-    pub fn occluders(&self, batch: &Batch) -> Option<ResourceId> {
+    pub(crate) fn occluders(&self, batch: &Batch) -> Option<ResourceId> {
         self.lattice_of(batch).occluders
     }
 
     /// The same, of a sweep that stores something.
-    pub fn written(&self, batch: &Batch) -> ResourceId {
+    pub(crate) fn written(&self, batch: &Batch) -> ResourceId {
         self.lattice(batch).expect("a sweep stores something")
     }
 
     /// Passes that update heights by lanes and lattices after an edit, and mark the texels that change.
-    pub fn record_edit<'a>(
+    pub(crate) fn record_edit<'a>(
         &self,
         builder: &mut Builder,
         border: Border,
@@ -91,7 +91,7 @@ impl Sweeping {
         }
     }
 
-    pub fn record(&self, builder: &mut Builder, batch: &Batch, part: &str) {
+    pub(crate) fn record(&self, builder: &mut Builder, batch: &Batch, part: &str) {
         let lattice = self.lattice_of(batch);
         match &self.sweep {
             Sweep::Lines(lines) => {

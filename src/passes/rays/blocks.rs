@@ -25,7 +25,7 @@ pub(crate) struct BlockImages {
 impl Blocks {
     /// Levels of 4 by 4 cells up to one block that holds all. A field without cells has one cell that is never
     /// read.
-    pub fn make(builder: &mut Builder, size: [u32; 2], border: Border) -> Self {
+    pub(crate) fn make(builder: &mut Builder, size: [u32; 2], border: Border) -> Self {
         let cells = size.map(|n| match border {
             Border::Periodic => n,
             Border::Plane | Border::Open => (n - 1).max(1),
@@ -45,7 +45,7 @@ impl Blocks {
     }
 
     /// The passes that fill the images. `paths` are the sums that a path tracer starts from.
-    pub fn record(
+    pub(crate) fn record(
         &self,
         builder: &mut Builder,
         field: &HeightField,
@@ -60,7 +60,7 @@ impl Blocks {
     }
 
     /// The same without the levels: for passes that need only the ground.
-    pub fn record_ground(
+    pub(crate) fn record_ground(
         &self,
         builder: &mut Builder,
         field: &HeightField,
@@ -73,7 +73,7 @@ impl Blocks {
 
     /// An upper bound of a ray's steps. Over the field's longest side, or as far as a ray is followed over
     /// repetitions: two cells per cell along it, half as many changes of level, and those of the last block.
-    pub fn most_steps(&self) -> u32 {
+    pub(crate) fn most_steps(&self) -> u32 {
         let [x, y] = self.cells;
         3 * if self.border == Border::Periodic { REACH_CELLS } else { x.max(y) } + 64
     }
@@ -82,12 +82,12 @@ impl Blocks {
     /// fractals of 9² to 257², 6 to 13 with two levels, 13 to 50 with three and 25 to 50 with four. To find it
     /// again: the number of lights with which llvmpipe loses rays of 64 paths in one dispatch, 65,535 / 64 over
     /// it.
-    pub fn usual_steps(&self) -> u32 {
+    pub(crate) fn usual_steps(&self) -> u32 {
         24 * self.top_level
     }
 
     /// Whether the field is one grid point wide along rows, along columns: only rays along such a line hit it.
-    pub fn thin(&self, field: &HeightField) -> [bool; 2] {
+    pub(crate) fn thin(&self, field: &HeightField) -> [bool; 2] {
         [field.rows(), field.cols()].map(|n| self.border != Border::Periodic && n == 1)
     }
 }

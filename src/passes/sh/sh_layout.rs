@@ -25,7 +25,7 @@ pub(crate) enum Lit {
 
 impl Lit {
     /// The receiver of diffuse ground.
-    pub fn diffuse(receiver: Receiver) -> Self {
+    pub(crate) fn diffuse(receiver: Receiver) -> Self {
         match receiver {
             Receiver::Plane => Lit::Plane,
             Receiver::CosineLobe => Lit::Cosine,
@@ -61,7 +61,7 @@ impl Sh {
     /// Where ground hides everything below horizontal, the light for the plane receiver is fitted to the
     /// directions above: the rest of its series is never visible. An SH window needs a series of all
     /// directions. The specular receiver uses all bands of visibility, so its light has as many.
-    pub fn of(
+    pub(crate) fn of(
         environment: Option<&Environment>,
         border: Border,
         quality: &Quality,
@@ -104,12 +104,12 @@ impl Sh {
     }
 
     /// The part in the labels of the passes before the shading, where there are two of each.
-    pub fn part(&self) -> &'static str {
+    pub(crate) fn part(&self) -> &'static str {
         if self.lit == Lit::Specular { "glossy" } else { "" }
     }
 
     /// Layers of four coefficients.
-    pub fn layers(self) -> usize {
+    pub(crate) fn layers(self) -> usize {
         (self.order * self.order).div_ceil(4)
     }
 }
@@ -127,7 +127,7 @@ pub(crate) struct WedgeTexels {
 impl WedgeTexels {
     /// Adds them to the constants, for even azimuths in the order of the circle, whose horizons are in layers
     /// in the order of [`batch::sort`].
-    pub fn of(
+    pub(crate) fn of(
         border: Border,
         quality: &Quality,
         circle: &[Azimuth],

@@ -52,7 +52,7 @@ pub(crate) struct Vectors {
 
 impl BouncedSpecular {
     /// Images for a field of `size`; `shade` are the levels of exit radiance.
-    pub fn make(
+    pub(crate) fn make(
         builder: &mut Builder,
         (size, shade): ([u32; 2], &Pyramid),
         quality: &Quality,
@@ -98,12 +98,12 @@ impl BouncedSpecular {
     }
 
     /// Layers of four coefficients, of all channels.
-    pub fn layers(&self) -> u32 {
+    pub(crate) fn layers(&self) -> u32 {
         layers_of(self.order, self.grey)
     }
 
     /// Bytes per texel of the series of exit radiance.
-    pub fn texel_bytes(&self) -> u64 {
+    pub(crate) fn texel_bytes(&self) -> u64 {
         match self.outgoing {
             ExitLight::Vectors(Vectors { halves: true, .. }) => 8,
             _ => 16,
@@ -111,7 +111,7 @@ impl BouncedSpecular {
     }
 
     /// As the command line spells it.
-    pub fn mode(&self) -> BounceSpecular {
+    pub(crate) fn mode(&self) -> BounceSpecular {
         match self.outgoing {
             ExitLight::Upward(_) => BounceSpecular::Scalar,
             ExitLight::Vectors(Vectors { halves: true, .. }) => BounceSpecular::VectorF16,

@@ -28,7 +28,7 @@ impl Map {
 
     /// # Errors
     /// The value out of range, by name.
-    pub fn check(&self) -> Result<()> {
+    pub(crate) fn check(&self) -> Result<()> {
         if !self.corner.iter().all(|v| v.abs() <= 1e6) {
             let found = format!("{},{}", self.corner[0], self.corner[1]);
             return Err(Error::setting("map: corner", found, "numbers within ±1e6"));
