@@ -112,7 +112,7 @@ fn bounces_at_nodes() {
     };
     assert_eq!(walked(&plan), found(2) * 128);
     assert_eq!(walked(&tight), (found(2) + 2 * found(4)) * 128);
-    assert!(tight.notes.iter().any(|n| n.contains("anew")), "{:?}", tight.notes);
+    assert!(tight.notes.iter().any(|n| n.contains("walks again")), "{:?}", tight.notes);
     // One bounce is not looked at again, and none is not found anywhere.
     let once = drawn(&scene, &quality(BounceEngine::Sweep, 1, 2), ROOMY);
     assert!(once.find("casting_sets").is_none() && once.find("node_sum").is_some());
