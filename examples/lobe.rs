@@ -53,7 +53,7 @@ fn run() -> Result<()> {
             lights: Lights { environment: Some(sky.clone()), ..Lights::default() },
         };
         let truth = traced(&mut gpu, &scene, 0, BATCHES)?;
-        for receiver in [Receiver::Plane, Receiver::CosineLobe] {
+        for receiver in [Receiver::Plane, Receiver::Cosine] {
             for sh_order in 2..=6 {
                 let quality =
                     Quality { basis: Basis::Sh, receiver, sh_order, ..Quality::default() };

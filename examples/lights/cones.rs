@@ -78,7 +78,7 @@ fn thesis(azimuths: u32, level_step: u32) -> Quality {
         light_basis: LightBasis::Sh,
         basis: Basis::Sh,
         wedges: Wedges::Table,
-        receiver: Receiver::CosineLobe,
+        receiver: Receiver::Cosine,
         sun_azimuths: azimuths,
         azimuths: 32,
         ..Quality::default()

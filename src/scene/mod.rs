@@ -30,8 +30,8 @@
 //! [`Albedo::unknown`] and [`Specular::unknown`].
 
 mod bend;
-mod bounces;
 mod camera;
+mod choices;
 mod curvature;
 mod directions;
 mod environment;
@@ -39,14 +39,18 @@ mod field;
 mod lights;
 mod quality;
 mod scatter;
+mod settings;
 mod surface;
 mod tone;
 mod visible;
 
 pub use bend::{Fans, MAX_TURN_RAD, REACH_CELLS, bent_direction, bent_direction_within};
-pub use bounces::{BounceEngine, BounceSpecular, Bounces};
 pub(crate) use camera::corners;
 pub use camera::{Camera, Lens};
+pub use choices::{
+    Basis, BounceEngine, BounceSpecular, Fuse, Hull, Levels, LightBasis, Lines, Method, Precision,
+    Receiver, Wedges, Window,
+};
 pub use curvature::{Curvature, OcclusionChange};
 pub use directions::{Directions, least_radius};
 pub use environment::Environment;
@@ -55,12 +59,10 @@ pub use field::normal::normal;
 pub use field::{HeightField, fill_voids};
 pub use lights::key::KeyLight;
 pub use lights::{Lights, POINT_DIAMETER_RAD, SphereLight, Sun};
-pub use quality::{
-    Basis, Fuse, Hull, Levels, LightBasis, Lines, Method, Precision, Quality, Receiver, Wedges,
-    Window,
-};
+pub use quality::{Bounces, Quality, SETTINGS, setting};
 pub use scatter::Scatter;
 pub(crate) use scatter::check_view;
+pub use settings::{Audience, Setting, Values, Word};
 pub use surface::{Albedo, Border, PhongSpecular, Specular, Surface};
 pub use tone::{Tone, picture_tone};
 pub use visible::{LOST_RAY, VisiblePoint, VisiblePoints};

@@ -2,8 +2,7 @@ use std::ops::RangeInclusive;
 
 use glam::DVec3;
 
-use super::quality::within;
-use super::{Bounces, Curvature, OcclusionChange, Scene};
+use super::{Bounces, Curvature, OcclusionChange, Quality, Scene};
 use crate::{Error, Result};
 
 /// Settings of scattered light: paths that look up visible points ([`VisiblePoints`](super::VisiblePoints)).
@@ -40,7 +39,7 @@ impl Default for Scatter {
             bounces: 3,
             paths: 100,
             first_path: 0,
-            cutoff: Bounces::NONE.cutoff,
+            cutoff: Bounces::DEFAULT.cutoff,
             seed: 0,
             view: DVec3::Z,
             direct_specular: false,
@@ -68,7 +67,8 @@ impl Scatter {
         }
         within("paths", self.paths, Self::PATHS)?;
         within("first path", self.first_path, Self::FIRST_PATH)?;
-        Bounces { cutoff: self.cutoff, ..Bounces::NONE }.check()?;
+        let bounces = Bounces { cutoff: self.cutoff, ..Bounces::DEFAULT };
+        Quality { bounces, ..Quality::DEFAULT }.check()?;
         check_view(self.view)?;
         scene.lights.check()?;
         scene.surface.check(scene.field.rows() * scene.field.cols())?;
@@ -98,4 +98,12 @@ pub(crate) fn check_view(view: DVec3) -> Result<()> {
         return Ok(());
     }
     Err(Error::setting("view", view.to_string(), "a vector of length 1"))
+}
+
+fn within(name: &str, value: u32, range: RangeInclusive<u32>) -> Result<()> {
+    if range.contains(&value) {
+        return Ok(());
+    }
+    let expected = format!("a whole number from {} to {}", range.start(), range.end());
+    Err(Error::setting(name, value.to_string(), expected))
 }

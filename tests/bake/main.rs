@@ -221,7 +221,7 @@ fn fields_agree_with_their_twins() {
             // Elevations of f32, 2^-23 of at most π/2, move a sum by no more than twice that; its own rounding.
             let expected = sky(&field, border, row, col, count as usize);
             close(view[0][i].into(), expected, 1e-6, "sky view");
-            let twin = Series { order: 4, wedges: Wedges::Slices, receiver: Receiver::CosineLobe };
+            let twin = Series { order: 4, wedges: Wedges::Slices, receiver: Receiver::Cosine };
             for (plane, expected) in series.iter().zip(seen_along(twin, &horizons[i])) {
                 close(plane[i].into(), expected, 2e-6, "visibility");
             }

@@ -163,8 +163,8 @@ fn pyramids_match_the_cpu_reference() {
     let mut gpu = Device::new();
     for (border, levels, receiver, azimuths) in [
         (Border::Plane, Levels::Stack, Receiver::Plane, 8),
-        (Border::Open, Levels::Pyramid, Receiver::CosineLobe, 5),
-        (Border::Periodic, Levels::Stack, Receiver::CosineLobe, 4),
+        (Border::Open, Levels::Pyramid, Receiver::Cosine, 5),
+        (Border::Periodic, Levels::Stack, Receiver::Cosine, 4),
         (Border::Periodic, Levels::Pyramid, Receiver::Plane, 4),
     ] {
         // Each is a pipeline of its own.
@@ -422,7 +422,7 @@ fn pyramids_come_to_every_stretch() {
     };
     let [usual, fine] = [(4, 2), (8, 4)].map(|(k, o)| error(k, o, Receiver::Plane));
     assert!(fine <= 0.5 * usual, "{fine} {usual}");
-    assert!(error(8, 4, Receiver::CosineLobe) > fine);
+    assert!(error(8, 4, Receiver::Cosine) > fine);
 }
 
 /// No sample bounces more than the brightest did before, whatever the slopes and borders.

@@ -117,12 +117,12 @@ fn level_ground_is_the_same_series_in_f64() {
     peak[3 * 40 + 10] = [1e6, 1e6, 3e6];
     let peak = Environment::new(40, 20, peak, 0.0).expect("good texels");
     let forms = [
-        (2, Receiver::CosineLobe, Window::None, Border::Open),
+        (2, Receiver::Cosine, Window::None, Border::Open),
         (3, Receiver::Plane, Window::Lanczos, Border::Plane),
         (4, Receiver::Plane, Window::None, Border::Plane),
-        (4, Receiver::CosineLobe, Window::Nonnegative, Border::Plane),
+        (4, Receiver::Cosine, Window::Nonnegative, Border::Plane),
         (4, Receiver::Plane, Window::None, Border::Open),
-        (5, Receiver::CosineLobe, Window::Hann, Border::Plane),
+        (5, Receiver::Cosine, Window::Hann, Border::Plane),
         (6, Receiver::Plane, Window::None, Border::Plane),
         (5, Receiver::Plane, Window::None, Border::Plane),
     ];

@@ -63,7 +63,7 @@ fn harmonics(azimuths: u32, sh_order: u32, wedges: Wedges) -> Quality {
     Quality {
         method: Method::BruteForce,
         basis: Basis::Sh,
-        receiver: Receiver::CosineLobe,
+        receiver: Receiver::Cosine,
         azimuths,
         sh_order,
         wedges,
@@ -306,7 +306,7 @@ fn values_of_harmonics() {
                 (*a, slope)
             };
             let lowest: Vec<_> = plan.expect("a plan").azimuths.iter().map(along).collect();
-            let how = Series { order: 4, wedges: Wedges::Slices, receiver: Receiver::CosineLobe };
+            let how = Series { order: 4, wedges: Wedges::Slices, receiver: Receiver::Cosine };
             let seen = seen_above(how, &lowest);
             let lobe = zonal::phong(4, exponent.into());
             let terms: Vec<f64> = bands(4)

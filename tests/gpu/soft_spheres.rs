@@ -45,7 +45,7 @@ fn reference_bound(scene: &Scene, quality: &Quality, sample: usize, seen: &[f64]
 fn closed_form(quality: &Quality, radius_m: f64, to: glam::DVec3) -> f64 {
     let count = match quality.receiver {
         Receiver::Plane => quality.light_order(),
-        Receiver::CosineLobe => quality.light_order().min(3),
+        Receiver::Cosine => quality.light_order().min(3),
     };
     let light = zonal_sphere(count, radius_m, to.length());
     let cosine = clamped_cosine(count);
@@ -102,7 +102,7 @@ fn free_light_is_its_series_in_closed_form() {
     ];
     let base = soft(4, 8);
     let by_table = Quality { wedges: Wedges::Table, wedge_side: 9, ..base };
-    for quality in [base, Quality { receiver: Receiver::CosineLobe, ..soft(6, 12) }, by_table] {
+    for quality in [base, Quality { receiver: Receiver::Cosine, ..soft(6, 12) }, by_table] {
         let reference_of = |scene: &Scene| {
             let oracle = Oracle::new(&one, Border::Open);
             SphereSh::new(oracle, None, quality).at(&scene.lights.sphere_lights[0], 0, 0)

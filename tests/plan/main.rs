@@ -103,7 +103,7 @@ fn plans() -> Vec<Plan> {
         Quality { method: Method::Pyramid, ..base },
         Quality { method: Method::Pyramid, levels: Levels::Pyramid, level_offset: 0, ..base },
         soft,
-        Quality { wedges: Wedges::Nlp, receiver: Receiver::CosineLobe, ..soft },
+        Quality { wedges: Wedges::Nlp, receiver: Receiver::Cosine, ..soft },
         Quality { wedges: Wedges::Table, light_basis: LightBasis::Sh, ..soft },
         Quality { method: Method::Pyramid, light_basis: LightBasis::Sh, subsample: 4, ..soft },
         bounced(BounceEngine::BruteForce),
@@ -230,7 +230,7 @@ fn devices_limits_are_kept() {
 fn harmonics() {
     let scene = under_everything(flat(7, 13), Border::Plane);
     let limits = Limits::lavapipe();
-    for (receiver, rows) in [(Receiver::Plane, [3; 5]), (Receiver::CosineLobe, [4, 9, 9, 9, 9])] {
+    for (receiver, rows) in [(Receiver::Plane, [3; 5]), (Receiver::Cosine, [4, 9, 9, 9, 9])] {
         for (sh_order, rows) in (2..=6).zip(rows) {
             let quality = Quality { basis: Basis::Sh, sh_order, receiver, ..Quality::default() };
             let wanted = Picture { keeps_horizons: true, ..Picture::default() };

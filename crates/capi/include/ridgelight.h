@@ -227,7 +227,7 @@ typedef struct RidgelightQuality {
     // Precision of stored sweep results: 1 f32 (default), 2 f16. (A packed hull would need the heights
     // beforehand.)
     uint32_t precision;
-    // Hull storage: 1 auto (default), 2 private, 3 shared, 4 list. Never changes the result.
+    // Hull storage: 1 auto (default), 2 private, 3 shared, 4 occluder-list. Never changes the result.
     uint32_t hull;
     // Levels per doubling of distance in a height pyramid, [1..16], default 4. Fewer: faster, smeared
     // horizons.
@@ -245,7 +245,7 @@ typedef struct RidgelightQuality {
     uint32_t sh_order;
     // How visibility becomes SH: 1 slices (default), 2 nlp, 3 table.
     uint32_t wedges;
-    // Receiver: how visibility becomes light: 1 plane (default), 2 lobe.
+    // Receiver: how visibility becomes light: 1 plane (default), 2 cosine.
     uint32_t receiver;
     // SH window: 1 none (default), 2 lanczos, 3 hann, 4 nonnegative.
     uint32_t window;
@@ -260,7 +260,7 @@ typedef struct RidgelightQuality {
     double light_cutoff;
     // Number of bounces of light, [0..64].
     uint32_t bounces;
-    // How bounced light is found: 1 brute-force (default), 2 sweep, 3 pyramid.
+    // How bounced light is found: 1 brute-force, 2 sweep, 3 pyramid, 4 auto (default).
     uint32_t bounce_engine;
     // Azimuths of bounced light per grid point, [4..1024], default 32.
     uint32_t bounce_azimuths;
@@ -270,6 +270,8 @@ typedef struct RidgelightQuality {
     uint32_t bounce_level_offset_plus_1;
     // Share of the direct light's energy that bounces may leave out, [0..1], default 1/65536; below 0: none.
     double bounce_cutoff;
+    // Storage of specular light between bounces: 1 vector (default), 2 vector-f16, 3 scalar.
+    uint32_t bounce_specular;
 } RidgelightQuality;
 
 // Sizes of a plan.

@@ -1,7 +1,6 @@
 use ridgelight::scene::{
-    Albedo, Basis, Border, BounceEngine, Bounces, Environment, Fuse, HeightField, Hull, KeyLight,
-    Levels, LightBasis, Lights, Lines, Method, PhongSpecular, Precision, Quality, Receiver, Scene,
-    Specular, SphereLight, Sun, Surface, Wedges, Window,
+    Albedo, Border, Environment, HeightField, KeyLight, Lights, PhongSpecular, Quality, Scene,
+    Specular, SphereLight, Sun, Surface, Values, setting,
 };
 
 use crate::errors::{Done, Failure};
@@ -250,7 +249,7 @@ pub struct RidgelightQuality {
     /// Precision of stored sweep results: 1 f32 (default), 2 f16. (A packed hull would need the heights
     /// beforehand.)
     pub precision: u32,
-    /// Hull storage: 1 auto (default), 2 private, 3 shared, 4 list. Never changes the result.
+    /// Hull storage: 1 auto (default), 2 private, 3 shared, 4 occluder-list. Never changes the result.
     pub hull: u32,
     /// Levels per doubling of distance in a height pyramid, [1..16], default 4. Fewer: faster, smeared
     /// horizons.
@@ -268,7 +267,7 @@ pub struct RidgelightQuality {
     pub sh_order: u32,
     /// How visibility becomes SH: 1 slices (default), 2 nlp, 3 table.
     pub wedges: u32,
-    /// Receiver: how visibility becomes light: 1 plane (default), 2 lobe.
+    /// Receiver: how visibility becomes light: 1 plane (default), 2 cosine.
     pub receiver: u32,
     /// SH window: 1 none (default), 2 lanczos, 3 hann, 4 nonnegative.
     pub window: u32,
@@ -283,7 +282,7 @@ pub struct RidgelightQuality {
     pub light_cutoff: f64,
     /// Number of bounces of light, [0..64].
     pub bounces: u32,
-    /// How bounced light is found: 1 brute-force (default), 2 sweep, 3 pyramid.
+    /// How bounced light is found: 1 brute-force, 2 sweep, 3 pyramid, 4 auto (default).
     pub bounce_engine: u32,
     /// Azimuths of bounced light per grid point, [4..1024], default 32.
     pub bounce_azimuths: u32,
@@ -293,6 +292,8 @@ pub struct RidgelightQuality {
     pub bounce_level_offset_plus_1: u32,
     /// Share of the direct light's energy that bounces may leave out, [0..1], default 1/65536; below 0: none.
     pub bounce_cutoff: f64,
+    /// Storage of specular light between bounces: 1 vector (default), 2 vector-f16, 3 scalar.
+    pub bounce_specular: u32,
 }
 
 // SAFETY: numbers; the size is first.
@@ -309,70 +310,54 @@ pub(crate) unsafe fn quality(from: *const RidgelightQuality) -> Done<Quality> {
     }
     // SAFETY: as the caller says.
     let q = unsafe { read(from, "quality") }?;
-    let or = |found: u32, default: u32| if found == 0 { default } else { found };
-    let less_1 = |found: u32, default: u32| if found == 0 { default } else { found - 1 };
-    let share = |found: f64, default: f64| if found == 0.0 { default } else { found.max(0.0) };
-    let methods = [Method::Auto, Method::Sweep, Method::Pyramid, Method::BruteForce];
-    let lines = [
-        Lines::Exact,
-        Lines::QuarterCell,
-        Lines::HalfCell,
-        Lines::Cell,
-        Lines::TwoCells,
-        Lines::FourCells,
-    ];
-    let fuses = [
-        Fuse::Nearest,
-        Fuse::Slopes,
-        Fuse::Own,
-        Fuse::AimedNearest,
-        Fuse::Aimed,
-        Fuse::AimedAround,
-    ];
-    let precisions = [Precision::F32, Precision::F16];
-    let hulls = [Hull::Auto, Hull::Private, Hull::Shared, Hull::OccluderList];
-    let windows = [Window::None, Window::Lanczos, Window::Hann, Window::Nonnegative];
-    let wedges = [Wedges::Slices, Wedges::Nlp, Wedges::Table];
-    let engines = [BounceEngine::BruteForce, BounceEngine::Sweep, BounceEngine::Pyramid];
-    let bases = [Basis::Auto, Basis::Table, Basis::Sh];
-    let (receivers, levels) =
-        ([Receiver::Plane, Receiver::CosineLobe], [Levels::Stack, Levels::Pyramid]);
-    let light_bases = [LightBasis::Exact, LightBasis::Sh];
-    let none = Bounces::NONE;
-    Ok(Quality {
-        method: pick("quality: method", q.method, default.method, &methods)?,
-        azimuths: or(q.azimuths, default.azimuths),
-        sun_azimuths: or(q.sun_azimuths, default.sun_azimuths),
-        light_cutoff: share(q.light_cutoff, default.light_cutoff),
-        light_basis: pick(
-            "quality: light_basis",
-            q.light_basis,
-            default.light_basis,
-            &light_bases,
-        )?,
-        lines: pick("quality: lines", q.lines, default.lines, &lines)?,
-        fuse: pick("quality: fuse", q.fuse, default.fuse, &fuses)?,
-        precision: pick("quality: precision", q.precision, default.precision, &precisions)?,
-        hull: pick("quality: hull", q.hull, default.hull, &hulls)?,
-        level_step: or(q.level_step, default.level_step),
-        level_offset: less_1(q.level_offset_plus_1, default.level_offset),
-        levels: pick("quality: levels", q.levels, default.levels, &levels)?,
-        table_elevations: or(q.table_elevations, default.table_elevations),
-        basis: pick("quality: basis", q.basis, default.basis, &bases)?,
-        sh_order: or(q.sh_order, default.sh_order),
-        wedges: pick("quality: wedges", q.wedges, default.wedges, &wedges)?,
-        receiver: pick("quality: receiver", q.receiver, default.receiver, &receivers)?,
-        window: pick("quality: window", q.window, default.window, &windows)?,
-        subsample: or(q.subsample, default.subsample),
-        wedge_side: or(q.wedge_side, default.wedge_side),
-        bounces: Bounces {
-            count: q.bounces,
-            engine: pick("quality: bounce_engine", q.bounce_engine, none.engine, &engines)?,
-            azimuths: or(q.bounce_azimuths, none.azimuths),
-            cutoff: share(q.bounce_cutoff, none.cutoff),
-            level_step: or(q.bounce_level_step, none.level_step),
-            level_offset: less_1(q.bounce_level_offset_plus_1, none.level_offset),
-            specular: none.specular,
-        },
-    })
+    // 0 is the default. Words count from 1. Numbers that may be 0 have 1 added; a share below 0 is 0.
+    macro_rules! fields {
+        ($($field:ident)*) => { [$((stringify!($field), f64::from(q.$field))),*] };
+    }
+    let given = fields! {
+        method azimuths sun_azimuths lines fuse precision hull level_step level_offset_plus_1 levels
+        table_elevations basis sh_order wedges receiver window subsample wedge_side light_basis
+        light_cutoff bounces bounce_engine bounce_azimuths bounce_level_step
+        bounce_level_offset_plus_1 bounce_cutoff bounce_specular
+    };
+    let mut quality = default;
+    for (field, value) in given.into_iter().filter(|(_, value)| *value != 0.0) {
+        let name = field.strip_suffix("_plus_1");
+        let setting = setting(name.unwrap_or(field)).expect("a field for each setting");
+        let text = match &setting.values {
+            Values::Share => value.max(0.0).to_string(),
+            Values::Words(words) => {
+                // A packed hull would need the heights beforehand.
+                let count = words.len() - usize::from(field == "precision");
+                let word = words[..count].get(value as usize - 1).ok_or_else(|| {
+                    let expected = format!("one of its constants, 0 to {count}");
+                    Failure::argument(&format!("quality: {field}"), value, &expected)
+                })?;
+                word.name.to_owned()
+            }
+            _ => (value - if name.is_some() { 1.0 } else { 0.0 }).to_string(),
+        };
+        setting.set(&mut quality, &text)?;
+    }
+    Ok(quality)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ridgelight::scene::SETTINGS;
+
+    /// A setting without a field could not be reached from C.
+    #[test]
+    fn every_setting_has_a_field_of_the_header() {
+        let header = include_str!("../include/ridgelight.h");
+        let (_, quality) = header.split_once("typedef struct RidgelightQuality {").unwrap();
+        let (quality, _) = quality.split_once('}').unwrap();
+        for setting in SETTINGS {
+            let has_zero = matches!(&setting.values, Values::Whole(r) if *r.start() == 0);
+            let is_shifted = has_zero && setting.get(&Quality::DEFAULT) != "0";
+            let field = format!("{}{};", setting.name, if is_shifted { "_plus_1" } else { "" });
+            assert!(quality.contains(&format!(" {field}")), "{field}");
+        }
+    }
 }

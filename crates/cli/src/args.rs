@@ -2,7 +2,6 @@
 
 mod auto;
 mod bake;
-mod bounces;
 mod camera;
 mod compare;
 mod quality;
@@ -24,10 +23,7 @@ pub use auto::AutoArgs;
 pub use bake::BakeArgs;
 pub use camera::CameraArgs;
 pub use compare::CompareArgs;
-pub use quality::{
-    BasisName, FuseName, HullName, LevelsName, LightBasisName, LinesName, MethodName,
-    PrecisionName, QualityArgs, ReceiverName, SETTINGS, SubsampleName, WedgesName, WindowName,
-};
+pub use quality::{QualityArgs, flag};
 pub use reference::ReferenceArgs;
 pub use renamed::Renamed;
 pub use scene::{BorderName, FieldArgs, LightArgs, SurfaceArgs};

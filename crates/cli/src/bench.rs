@@ -43,7 +43,7 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
             return Err(Error::setting(name, size.to_string(), expected));
         }
     }
-    let quality = setup::quality(&args.quality)?;
+    let quality = args.quality.quality()?;
     let field = match &args.input {
         Some(path) => setup::field(path, &args.surface.field, &args.global)?,
         None => fractal(*args.sizes.first().unwrap_or(&args.size), 1)?,

@@ -105,7 +105,7 @@ pub fn run(args: &HorizonArgs) -> Result<Outcome> {
         ("--json", args.global.json.as_deref()),
     ];
     setup::check_distinct(&outputs, &[&args.input.path])?;
-    let quality = setup::quality(&args.quality)?;
+    let quality = args.quality.quality()?;
     let is_npy = setup::extension(&args.output) == "npy";
     let is_exact = quality.lines == Lines::Exact && quality.method != Method::BruteForce;
     if is_exact && is_npy && args.global.json.is_none() {

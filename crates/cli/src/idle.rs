@@ -2,7 +2,9 @@
 
 use std::io::Write as _;
 
-use crate::args::SETTINGS;
+use ridgelight::scene::setting as setting_of;
+
+use crate::args::flag;
 
 /// Prints a note for each `written` setting that is not among the `used`.
 pub fn say(quiet: bool, written: &[(String, String)], used: &[(String, String)]) {
@@ -34,7 +36,8 @@ fn lines(
     why: &dyn Fn(&str) -> Option<String>,
 ) -> Vec<String> {
     let mut lines = Vec::new();
-    for (setting, value) in written.iter().filter(|(s, _)| SETTINGS.contains(&s.as_str())) {
+    for (setting, value) in written.iter().filter(|(s, _)| s != "method" && setting_of(s).is_some())
+    {
         let by_name = |(name, used): &(String, String)| {
             // The planner may choose another value of these two.
             let is_kept = !matches!(name.as_str(), "lines" | "precision") || used == value;
@@ -54,7 +57,7 @@ pub fn note(setting: &str, value: &str, reason: &str) {
 }
 
 fn line(setting: &str, value: &str, reason: &str) -> String {
-    format!("note: --{} {value} changes nothing {reason}", setting.replace('_', "-"))
+    format!("note: {} {value} changes nothing {reason}", flag(setting))
 }
 
 fn print(line: &str) {
@@ -80,7 +83,7 @@ fn reason(setting: &str, used: &[(String, String)]) -> String {
         ("bounce_level_step" | "bounce_level_offset", ..) => {
             "without --bounces and --bounce-engine pyramid".into()
         }
-        ("bounce_gloss", ..) => "without --bounces and --specular".into(),
+        ("bounce_specular", ..) => "without --bounces and --specular".into(),
         ("level_step" | "level_offset" | "levels", ..) => "without --method pyramid".into(),
         (
             "table_elevations" | "basis" | "sh_order" | "wedges" | "receiver" | "window"

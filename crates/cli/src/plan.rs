@@ -15,7 +15,7 @@ pub fn run(args: &PlanArgs) -> Result<Outcome> {
         let inputs = setup::inputs(&args.input.path, &args.lights, &args.surface);
         setup::check_distinct(&[("--json", Some(json))], &inputs)?;
     }
-    let quality = setup::quality(&args.quality)?;
+    let quality = args.quality.quality()?;
     let field = setup::field(&args.input.path, &args.surface.field, &args.global)?;
     let scene = setup::scene(field, &args.surface, &args.lights)?;
     let camera_view = camera::requested(&args.camera, &scene)?;

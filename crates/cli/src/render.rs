@@ -44,7 +44,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
     camera::check_layers(args)?;
     let goal = auto::goal(&args.auto)?;
     auto::say_idle(&args.auto, args.global.quiet);
-    let mut quality = setup::quality(&args.quality)?;
+    let mut quality = args.quality.quality()?;
     let field = setup::field(&args.input.path, &args.surface.field, &args.global)?;
     let scene = setup::scene(field, &args.surface, &args.lights)?;
     if goal.is_some() {

@@ -15,7 +15,7 @@ use clap::error::{ContextKind, ContextValue};
 use clap::parser::ValueSource;
 use ridgelight::{Error, Result};
 
-use crate::args::Renamed;
+use crate::args::{Renamed, flag};
 use json::Found;
 use keys::{GROUPS, Kind};
 pub use write::Request;
@@ -60,7 +60,7 @@ impl SceneFile {
         let (Some(path), Some(command)) = (path, parser.find_subcommand(name)) else {
             return Ok(Self::default());
         };
-        let mut scene = Self { path: path.clone(), given: all(parser, path, renamed)? };
+        let mut scene = Self { path: path.clone(), given: all(path, renamed)? };
         let input = command.get_positionals().next().map(|arg| arg.get_id().as_str());
         scene.given.retain(|given| {
             if given.is_switch && given.value == "false" {
@@ -143,7 +143,7 @@ impl SceneFile {
 }
 
 /// All flags of a file, also those that the command does not have.
-fn all(parser: &clap::Command, path: &Path, renamed: &mut Renamed) -> Result<Vec<Given>> {
+fn all(path: &Path, renamed: &mut Renamed) -> Result<Vec<Given>> {
     let text = read(path)?;
     let root = Found::root(path, &text)?;
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
@@ -153,7 +153,7 @@ fn all(parser: &clap::Command, path: &Path, renamed: &mut Renamed) -> Result<Vec
             continue;
         }
         let keys = match group.key.as_str() {
-            "quality" => keys::quality(parser),
+            "quality" => keys::quality(),
             name => match GROUPS.iter().find(|(known, _)| *known == name) {
                 Some((_, keys)) => keys.to_vec(),
                 None => {
@@ -163,9 +163,17 @@ fn all(parser: &clap::Command, path: &Path, renamed: &mut Renamed) -> Result<Vec
             },
         };
         for found in group.members()? {
-            let name = match renamed.new_name(&found.key) {
-                Some(new) => new.rsplit('.').next().expect("group.key"),
-                None => found.name(),
+            // Keys of quality are renamed as their flags are.
+            let old = match group.key.as_str() {
+                "quality" => flag(found.name()),
+                _ => found.key.clone(),
+            };
+            let name = match renamed.new_name(&old) {
+                Some(new) => {
+                    let key = new.rsplit('.').next().expect("group.key");
+                    key.trim_start_matches('-').replace('-', "_")
+                }
+                None => found.name().to_owned(),
             };
             let Some(key) = keys.iter().find(|key| key.name == name) else {
                 let known: Vec<&str> = keys.iter().map(|key| key.name).collect();

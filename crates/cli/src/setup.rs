@@ -4,19 +4,15 @@ mod settings_used;
 
 use ridgelight::gpu::{self, Headless, HeadlessOptions};
 use ridgelight::plan::{Limits, Picture, Plan};
-use ridgelight::scene::{
-    Albedo, Basis, Border, Fuse, HeightField, Hull, Levels, LightBasis, Lights, Lines, Method,
-    Precision, Quality, Receiver, Scene, Specular, Surface, Wedges, Window,
-};
+use ridgelight::scene::{Albedo, Border, HeightField, Lights, Scene, Specular, Surface, setting};
 use ridgelight::{Error, Result};
 use ridgelight_io as files;
 use ridgelight_io::HeightOptions;
 use std::path::{Path, PathBuf};
 
 use crate::args::{
-    BasisName, BorderName, FieldArgs, FuseName, GlobalArgs, HullName, Layer, LevelsName, LightArgs,
-    LightBasisName, LinesName, MethodName, PrecisionName, QualityArgs, ReceiverName, SETTINGS,
-    SpecularArg, SubsampleName, SurfaceArgs, WedgesName, WindowName, albedo_colour,
+    BorderName, FieldArgs, GlobalArgs, Layer, LightArgs, SpecularArg, SurfaceArgs, albedo_colour,
+    flag,
 };
 pub use settings_used::{as_json, asked, metadata, typed};
 
@@ -99,88 +95,6 @@ pub fn border(surface: &FieldArgs) -> Border {
         BorderName::Open => Border::Open,
         BorderName::Periodic => Border::Periodic,
     }
-}
-
-pub fn quality(args: &QualityArgs) -> Result<Quality> {
-    let quality = Quality {
-        method: match args.method {
-            MethodName::Auto => Method::Auto,
-            MethodName::Sweep => Method::Sweep,
-            MethodName::BruteForce => Method::BruteForce,
-            MethodName::Pyramid => Method::Pyramid,
-        },
-        azimuths: args.azimuths,
-        sun_azimuths: args.sun_azimuths,
-        light_cutoff: args.light_cutoff,
-        light_basis: match args.light_basis {
-            LightBasisName::Exact => LightBasis::Exact,
-            LightBasisName::Sh => LightBasis::Sh,
-        },
-        lines: match args.lines {
-            LinesName::Exact => Lines::Exact,
-            LinesName::QuarterCell => Lines::QuarterCell,
-            LinesName::HalfCell => Lines::HalfCell,
-            LinesName::Cell => Lines::Cell,
-            LinesName::TwoCells => Lines::TwoCells,
-            LinesName::FourCells => Lines::FourCells,
-        },
-        fuse: match args.fuse {
-            FuseName::Nearest => Fuse::Nearest,
-            FuseName::Slopes => Fuse::Slopes,
-            FuseName::Own => Fuse::Own,
-            FuseName::AimedNearest => Fuse::AimedNearest,
-            FuseName::Aimed => Fuse::Aimed,
-            FuseName::AimedAround => Fuse::AimedAround,
-        },
-        precision: match args.precision {
-            PrecisionName::F32 => Precision::F32,
-            PrecisionName::F16 => Precision::F16,
-            PrecisionName::Packed => Precision::Packed,
-        },
-        hull: match args.hull {
-            HullName::Auto => Hull::Auto,
-            HullName::Private => Hull::Private,
-            HullName::Shared => Hull::Shared,
-            HullName::List => Hull::OccluderList,
-        },
-        level_step: args.level_step,
-        level_offset: args.level_offset,
-        levels: match args.levels {
-            LevelsName::Stack => Levels::Stack,
-            LevelsName::Pyramid => Levels::Pyramid,
-        },
-        table_elevations: args.table_elevations,
-        basis: match args.basis {
-            BasisName::Auto => Basis::Auto,
-            BasisName::Table => Basis::Table,
-            BasisName::Sh => Basis::Sh,
-        },
-        sh_order: args.sh_order,
-        wedges: match args.wedges {
-            WedgesName::Slices => Wedges::Slices,
-            WedgesName::Nlp => Wedges::Nlp,
-            WedgesName::Table => Wedges::Table,
-        },
-        receiver: match args.receiver {
-            ReceiverName::Plane => Receiver::Plane,
-            ReceiverName::Lobe => Receiver::CosineLobe,
-        },
-        window: match args.window {
-            WindowName::None => Window::None,
-            WindowName::Lanczos => Window::Lanczos,
-            WindowName::Hann => Window::Hann,
-            WindowName::Nonnegative => Window::Nonnegative,
-        },
-        subsample: match args.subsample {
-            SubsampleName::One => 1,
-            SubsampleName::Two => 2,
-            SubsampleName::Four => 4,
-        },
-        wedge_side: args.wedge_side,
-        bounces: args.bounces.bounces()?,
-    };
-    quality.check()?;
-    Ok(quality)
 }
 
 /// Refuses specular where the ground truth is diffuse.
@@ -329,13 +243,12 @@ const FLAGS: [(&str, &str); 26] = [
 ];
 
 /// Settings whose flag is their name with `-` for `_`, beside those of quality.
-const SAME: [&str; 7] =
-    ["method", "memory_budget", "max_error", "time_budget", "border", "nodata", "paths"];
+const SAME: [&str; 6] = ["memory_budget", "max_error", "time_budget", "border", "nodata", "paths"];
 
 /// The flag of a library name, as "azimuths" or "sun 2: elevation".
 fn flag_of(name: &str) -> Option<String> {
-    if SETTINGS.contains(&name) || SAME.contains(&name) {
-        return Some(format!("--{}", name.replace('_', "-")));
+    if setting(name).is_some() || SAME.contains(&name) {
+        return Some(flag(name));
     }
     FLAGS.iter().find_map(|(ours, flag)| Some(format!("{flag}{}", name.strip_prefix(ours)?)))
 }

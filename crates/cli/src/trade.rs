@@ -57,8 +57,8 @@ pub fn run(args: &TradeArgs) -> Result<Outcome> {
         return Err(Error::setting("--bounces", args.bounces.to_string(), expected));
     }
     let bounces = Bounces { count: args.bounces, ..Bounces::default() };
-    bounces.check()?;
     let start = Quality { bounces, ..start_of(&scene) };
+    start.check()?;
     let planned = |limits: &plan::Limits| plan::picture(&scene, &start, limits, Picture::default());
     setup::check_plan(&args.global, planned)?;
     if let Some(path) = args.reference.as_deref().filter(|p| setup::extension(p) != "exr") {

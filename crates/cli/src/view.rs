@@ -27,7 +27,7 @@ pub fn run(args: &ViewArgs) -> Result<Outcome> {
         setup::check_distinct(&[("--json", Some(json.as_path()))], &inputs)?;
     }
     crate::render::check_positive("--exposure", args.exposure)?;
-    let quality = setup::quality(&args.quality)?;
+    let quality = args.quality.quality()?;
     let field = setup::field(&args.input.path, &args.surface.field, &args.global)?;
     let scene = setup::scene(field, &args.surface, &args.lights)?;
     let still = setup::wanted(&[]);

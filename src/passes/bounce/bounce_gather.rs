@@ -176,8 +176,7 @@ pub(crate) fn plan(
                 of.heights.samples(),
                 match of.receiver {
                     Receiver::Plane => "the cosine exact",
-                    Receiver::CosineLobe =>
-                        "in Legendre coefficients and three bands of the cosine",
+                    Receiver::Cosine => "in Legendre coefficients and three bands of the cosine",
                 }
             ),
             [across.div_ceil(8), along.div_ceil(8), 1],

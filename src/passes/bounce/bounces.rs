@@ -247,7 +247,7 @@ impl Bouncing {
             Engine::Sweep => BounceEngine::Sweep,
             Engine::Pyramid(of) => {
                 if let Some(specular) = &self.specular {
-                    add("bounce_gloss", specular.mode().name().to_owned());
+                    add("bounce_specular", specular.mode().name().to_owned());
                     add("sh_order", specular.order.to_string());
                 }
                 add("bounce_level_step", of.shade.level_step.to_string());

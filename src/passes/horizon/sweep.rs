@@ -23,7 +23,7 @@ impl HullStorage {
         match self {
             HullStorage::Private => "private",
             HullStorage::Shared => "shared",
-            HullStorage::Occluders => "list",
+            HullStorage::Occluders => "occluder-list",
         }
     }
 }
@@ -379,21 +379,6 @@ impl Sweep {
             }
             Sweep::Crossings => 0,
             _ => 1 + u32::from(self.lattice_has_distances()),
-        }
-    }
-}
-
-/// Names of settings in messages and metadata.
-impl Lines {
-    /// As the command line spells it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Lines::Exact => "exact",
-            Lines::QuarterCell => "1/4",
-            Lines::HalfCell => "1/2",
-            Lines::Cell => "1",
-            Lines::TwoCells => "2",
-            Lines::FourCells => "4",
         }
     }
 }

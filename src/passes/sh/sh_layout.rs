@@ -28,7 +28,7 @@ impl Lit {
     pub(crate) fn diffuse(receiver: Receiver) -> Self {
         match receiver {
             Receiver::Plane => Lit::Plane,
-            Receiver::CosineLobe => Lit::Cosine,
+            Receiver::Cosine => Lit::Cosine,
         }
     }
 }

@@ -40,7 +40,8 @@ impl<'a> Wanted<'a> {
             Some(_) => lights.suns.iter().filter(|sun| lit(&sun.irradiance)).copied().collect(),
             None => Vec::new(),
         };
-        let requested = Bounces { count: scatter.bounces, cutoff: scatter.cutoff, ..Bounces::NONE };
+        let requested =
+            Bounces { count: scatter.bounces, cutoff: scatter.cutoff, ..Bounces::DEFAULT };
         let most = surface.max_reflectance();
         let mut bounces = requested.needed_bounces(most);
         if bounces < requested.count {

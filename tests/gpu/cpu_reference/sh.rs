@@ -103,7 +103,7 @@ pub(super) fn sh_visibility(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         receiver: if constant(pass, "own_plane_hides") == 1 {
             Receiver::Plane
         } else {
-            Receiver::CosineLobe
+            Receiver::Cosine
         },
     };
     let got = device_series(run, pass, order);

@@ -238,7 +238,7 @@ fn kinds_of(quality: &Quality) -> [(usize, usize); 10] {
     };
     let receiver = match receiver {
         Receiver::Plane => 0,
-        Receiver::CosineLobe => 1,
+        Receiver::Cosine => 1,
     };
     let engine = match bounces.engine {
         // A method without; what the planner would take is here by its own name.

@@ -520,7 +520,7 @@ fn every_setting_of_c_is_the_one_of_rust() {
     changed(sh(), "basis", "sh");
     changed(RidgelightQuality { sh_order: 3, ..sh() }, "sh_order", "3");
     changed(RidgelightQuality { wedges: 2, ..sh() }, "wedges", "nlp");
-    changed(RidgelightQuality { receiver: 2, ..sh() }, "receiver", "lobe");
+    changed(RidgelightQuality { receiver: 2, ..sh() }, "receiver", "cosine");
     changed(RidgelightQuality { window: 3, ..sh() }, "window", "hann");
     changed(RidgelightQuality { subsample: 2, ..sh() }, "subsample", "2");
     let levels = || RidgelightQuality { method: 3, ..zero() };

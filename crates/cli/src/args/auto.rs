@@ -1,12 +1,12 @@
 use clap::Args;
+use ridgelight::scene::SETTINGS;
 
-use super::quality::SETTINGS;
 use super::values::whole;
 
 /// Settings that `--max-error` and `--time-budget` choose: all but hull storage and the number of bounces.
 fn chosen() -> impl Iterator<Item = &'static str> {
-    let is_free = |s: &str| matches!(s, "hull" | "bounces");
-    SETTINGS.into_iter().filter(move |s| !is_free(s)).chain(["method"])
+    let is_free = |name: &str| matches!(name, "hull" | "bounces");
+    SETTINGS.iter().map(|setting| setting.name).filter(move |name| !is_free(name))
 }
 
 #[derive(Args)]

@@ -4,12 +4,15 @@ use std::ffi::OsString;
 use std::io::Write as _;
 
 /// Old and new: `--flag`, `--flag value`, or `group.key` of a scene file.
-pub const RENAMED: [(&str, &str); 7] = [
+pub const RENAMED: [(&str, &str); 10] = [
     ("--phong", "--specular"),
     ("--light", "--sphere-light"),
     ("--samples", "--runs"),
     ("--method brute", "--method brute-force"),
     ("--bounce-engine brute", "--bounce-engine brute-force"),
+    ("--hull list", "--hull occluder-list"),
+    ("--receiver lobe", "--receiver cosine"),
+    ("--bounce-gloss", "--bounce-specular"),
     ("surface.phong", "surface.specular"),
     ("lights.balls", "lights.sphere_lights"),
 ];

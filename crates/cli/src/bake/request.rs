@@ -7,9 +7,9 @@ use ridgelight_bake::{Angles, encoding_named};
 use super::Packing;
 use super::kinds::{KINDS, Kind, Source};
 use super::map::Wanted;
-use crate::args::{BakeArgs, MethodName};
+use crate::args::BakeArgs;
 use crate::bake::Format;
-use crate::{idle, setup};
+use crate::idle;
 
 /// Default of --directions.
 pub const DIRECTIONS: u32 = 256;
@@ -107,8 +107,8 @@ pub fn wanted(args: &BakeArgs) -> Result<Vec<Wanted>> {
 }
 
 pub fn quality(args: &BakeArgs) -> Result<Quality> {
-    let mut quality = setup::quality(&args.quality)?;
-    if matches!(args.quality.method, MethodName::Auto) {
+    let mut quality = args.quality.quality()?;
+    if quality.method == Method::Auto {
         quality.method = Method::BruteForce;
     }
     if quality.lines == Lines::Exact && quality.method != Method::BruteForce {

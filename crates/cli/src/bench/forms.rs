@@ -48,9 +48,11 @@ fn forms(quality: &Quality) -> Vec<Form> {
         slow,
     };
     let mut all = Vec::new();
-    for (hull, place) in
-        [(Hull::Private, "private"), (Hull::Shared, "shared"), (Hull::OccluderList, "list")]
-    {
+    for (hull, place) in [
+        (Hull::Private, "private"),
+        (Hull::Shared, "shared"),
+        (Hull::OccluderList, "occluder-list"),
+    ] {
         for precision in [Precision::F32, Precision::Packed] {
             let name = format!("horizon_sweep {place} {}", precision.name());
             all.push(form(name, Quality { hull, precision, ..base }, false, false));

@@ -1,6 +1,6 @@
 //! Keys of a scene file, and the flag that each stands for.
 
-use crate::args::SETTINGS;
+use ridgelight::scene::{SETTINGS, Values};
 
 /// Stands for the positional argument.
 pub const INPUT: &str = "path";
@@ -126,16 +126,11 @@ const CAMERA: [Key; 8] = [
 pub const GROUPS: [(&str, &[Key]); 4] =
     [("field", &FIELD), ("surface", &SURFACE), ("lights", &LIGHTS), ("camera", &CAMERA)];
 
-/// Keys of the quality group: the settings of `render`.
-pub fn quality(parser: &clap::Command) -> Vec<Key> {
-    let render = parser.find_subcommand("render").expect("a command of ours");
-    let is_number = |name: &str| {
-        let arg = render.get_arguments().find(|arg| arg.get_id() == name);
-        arg.expect("a flag of ours").get_possible_values().is_empty()
-    };
-    SETTINGS
-        .into_iter()
-        .chain(["method", "max_error", "time_budget"])
-        .map(|name| key(name, name, if is_number(name) { NUMBER } else { Kind::Word }))
-        .collect()
+/// Keys of the quality group: the settings, and how to choose them.
+pub fn quality() -> Vec<Key> {
+    let keys = SETTINGS.iter().map(|setting| {
+        let is_number = matches!(setting.values, Values::Whole(_) | Values::Share);
+        key(setting.name, setting.name, if is_number { NUMBER } else { Kind::Word })
+    });
+    keys.chain(["max_error", "time_budget"].map(|name| key(name, name, NUMBER))).collect()
 }

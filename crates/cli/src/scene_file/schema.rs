@@ -1,6 +1,7 @@
-//! The JSON schema of scene files, from the keys that read them.
+//! The JSON schema of scene files, from the keys that read them, and the page of settings.
 
 use clap::CommandFactory as _;
+use ridgelight::scene::{Audience, Quality, SETTINGS, Values, setting};
 use serde_json::{Value, json};
 
 use super::keys::{GROUPS, INPUT, Key, Kind, Numbers, Part, quality};
@@ -80,7 +81,7 @@ fn schema() -> Value {
     };
     let mut groups: serde_json::Map<_, _> =
         GROUPS.iter().map(|(name, keys)| ((*name).to_owned(), group(keys))).collect();
-    groups.insert("quality".into(), group(&quality(&parser)));
+    groups.insert("quality".into(), group(&quality()));
     groups.insert("$schema".into(), json!({ "type": "string" }));
     json!({
         "$schema": "https://json-schema.org/draft/2020-12/schema",
@@ -92,14 +93,60 @@ fn schema() -> Value {
     })
 }
 
-/// `RIDGELIGHT_BLESS=1` writes it.
+/// The table of docs/settings.md.
+fn settings_page() -> String {
+    let mut page = "# Settings\n\nEvery setting trades time for accuracy. One definition in `src/scene/quality.rs` gives the flag of \
+                    the command line (`--sun-azimuths`), the JSON key (`sun_azimuths`), the field of `RidgelightQuality` and \
+                    the viewer's entry. [Choosing settings](choosing-settings.md) says which to change first.\n"
+        .to_owned();
+    let groups = [
+        ("For everyone", Audience::Everyone),
+        ("To compare methods", Audience::Advanced),
+        ("To measure the methods themselves", Audience::Expert),
+    ];
+    for (title, audience) in groups {
+        page += &format!(
+            "\n## {title}\n\n| setting | values | default | effect |\n|---|---|---|---|\n"
+        );
+        for setting in SETTINGS.iter().filter(|setting| setting.audience == audience) {
+            let values = match &setting.values {
+                Values::Words(words) => {
+                    let all = words.iter().map(|w| format!("`{}`: {}", w.name, w.summary()));
+                    all.collect::<Vec<_>>().join("<br>")
+                }
+                Values::Whole(range) => format!("{} to {}", range.start(), range.end()),
+                values => values.expected(),
+            };
+            let default = match &setting.values {
+                Values::Share => "1/65536".to_owned(),
+                _ => setting.get(&Quality::DEFAULT),
+            };
+            let effect = format!("{}. {}", setting.summary(), setting.trade());
+            let row = [&format!("`{}`", setting.name), &values, &default, effect.trim_end()];
+            page += &format!("| {} |\n", row.map(|cell| cell.replace('|', "\\|")).join(" | "));
+        }
+    }
+    page
+}
+
+fn is_kept(name: &str, text: &str) {
+    let path = format!("{}/../../docs/{name}", env!("CARGO_MANIFEST_DIR"));
+    if std::env::var_os("RIDGELIGHT_BLESS").is_some_and(|v| v == "1") {
+        std::fs::write(&path, text).unwrap();
+    }
+    let kept = std::fs::read_to_string(&path).unwrap_or_default();
+    assert!(kept == text, "docs/{name} is out of date: RIDGELIGHT_BLESS=1 writes it");
+}
+
 #[test]
 fn the_schema_that_is_kept_is_of_the_keys_that_are_read() {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/scene.schema.json");
-    let text = format!("{:#}\n", schema());
-    if std::env::var_os("RIDGELIGHT_BLESS").is_some_and(|v| v == "1") {
-        std::fs::write(path, &text).unwrap();
+    is_kept("scene.schema.json", &format!("{:#}\n", schema()));
+}
+
+#[test]
+fn the_page_of_settings_follows_from_their_definitions() {
+    for share in ["light_cutoff", "bounce_cutoff"] {
+        assert_eq!(setting(share).unwrap().get(&Quality::DEFAULT), (1.0 / 65536.0).to_string());
     }
-    let kept = std::fs::read_to_string(path).unwrap();
-    assert!(kept == text, "docs/scene.schema.json is out of date: RIDGELIGHT_BLESS=1 writes it");
+    is_kept("settings.md", &settings_page());
 }

@@ -38,9 +38,9 @@ impl Request {
     }
 
     /// The scene file. Paths stay as they are.
-    pub fn to_json(&self, parser: &clap::Command) -> Value {
+    pub fn to_json(&self) -> Value {
         let mut groups = Map::new();
-        let quality = quality(parser);
+        let quality = quality();
         let known = GROUPS.iter().map(|(name, keys)| (*name, *keys));
         for (name, keys) in known.chain([("quality", quality.as_slice())]) {
             let group: Map<_, _> = keys.iter().filter_map(|key| self.member(key)).collect();

@@ -57,7 +57,7 @@ pub fn asked(
         SpecularArg::Constant(one) => format!("{},{}", one.exponent, one.scale),
         SpecularArg::File(path) => path.display().to_string(),
     });
-    all.extend(specular.map(|text| ("phong".to_owned(), text)));
+    all.extend(specular.map(|text| ("specular".to_owned(), text)));
     if let Some(sky) = &scene.lights.sky {
         all.push(("sky".to_owned(), numbers(sky)));
     }
@@ -84,7 +84,7 @@ pub fn asked(
     for (i, sphere) in scene.lights.sphere_lights.iter().enumerate() {
         let [x, y, z] = sphere.position_m;
         let text = format!("{x},{y},{z},{},{}", sphere.radius_m, numbers(&sphere.radiance));
-        all.push((format!("light{}", i + 1), text));
+        all.push((format!("sphere_light{}", i + 1), text));
     }
     all
 }

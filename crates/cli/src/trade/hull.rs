@@ -37,8 +37,11 @@ pub fn places(rig: &mut Rig, quality: &Quality, draw_s: f64) -> Result<Vec<Place
     let drawn = rig.gpu.draw(&mut own).and_then(|_| rig.radiance(&own));
     let measured = |rig: &mut Rig| -> Result<Vec<Place>> {
         let right = drawn?;
-        let all =
-            [("private", Hull::Private), ("shared", Hull::Shared), ("list", Hull::OccluderList)];
+        let all = [
+            ("private", Hull::Private),
+            ("shared", Hull::Shared),
+            ("occluder-list", Hull::OccluderList),
+        ];
         let one = |(name, hull)| {
             let is_own = home == name;
             let none = |why: String| Ok(Place { name, is_own, ratio: Err(why) });
@@ -158,7 +161,7 @@ mod tests {
             let places = [
                 Place { name: "private", is_own: true, ratio: Ok(own) },
                 Place { name: "shared", is_own: false, ratio: Ok(other) },
-                Place { name: "list", is_own: false, ratio: Err("late".to_owned()) },
+                Place { name: "occluder-list", is_own: false, ratio: Err("late".to_owned()) },
             ];
             text(&places).unwrap()
         };
@@ -171,7 +174,7 @@ mod tests {
         assert!(said(1.3, 0.8).ends_with("choice.") && said(1.0 / 1.3, 0.75).ends_with("choice."));
         let all = said(1.0, 0.8);
         assert!(all.contains("private 1.00 × (measured twice), shared 0.800 ×;"), "{all}");
-        assert!(all.contains("--hull list was not timed: late."), "{all}");
+        assert!(all.contains("--hull occluder-list was not timed: late."), "{all}");
         assert!(text(&[]).is_none());
     }
 }

@@ -15,7 +15,9 @@ const NEAR: f64 = 1e-6;
 /// Refuses a file whose metadata states another surface, border or light, or light that no settings
 /// here compute. `asked` is this scene's metadata. A file without metadata is accepted.
 pub fn check(path: &Path, scene: &Scene, asked: &[(String, String)]) -> Result<()> {
-    let stated: BTreeMap<String, String> = files::read_metadata(path)?.into_iter().collect();
+    let stated = files::read_metadata(path)?;
+    let stated: BTreeMap<String, String> =
+        stated.into_iter().map(|(name, value)| (new_key(name), value)).collect();
     if !stated.contains_key("ridgelight") {
         return Ok(());
     }
@@ -45,11 +47,20 @@ pub fn check(path: &Path, scene: &Scene, asked: &[(String, String)]) -> Result<(
     Ok(())
 }
 
+/// The key that replaces one of an earlier release.
+fn new_key(name: String) -> String {
+    match name.as_str() {
+        "phong" => "specular".to_owned(),
+        old if is_numbered(old, "light") => format!("sphere_{old}"),
+        _ => name,
+    }
+}
+
 const NO_SETTINGS: &str = "no settings of this search compute such light";
 
 /// Light that no settings compute if the scene has none.
 fn gives_none(name: &str) -> bool {
-    matches!(name, "bounces" | "phong" | "specular") || is_numbered(name, "light")
+    matches!(name, "bounces" | "specular") || is_numbered(name, "sphere_light")
 }
 
 fn is_scene(name: &str) -> bool {
@@ -114,7 +125,7 @@ mod tests {
             ("cell_m", Some("30,30"), Some("30,30.000001")),
             ("env", Some("a/sky.hdr"), Some("sky.hdr")),
             ("bounces", Some("0"), None),
-            ("phong", None, None),
+            ("specular", None, None),
         ] {
             assert!(is_same(name, a, b) && is_same(name, a, a), "{name}: {a:?} {b:?}");
         }
@@ -128,13 +139,17 @@ mod tests {
             ("cell_m", Some("30,30"), Some("30,30.001")),
             ("env", Some("sky.hdr"), Some("lab.hdr")),
             ("bounces", Some("2"), None),
-            ("phong", Some("9,0.25"), None),
-            ("light1", Some("4,4,9,1,2,3,4"), None),
+            ("specular", Some("9,0.25"), None),
+            ("sphere_light1", Some("4,4,9,1,2,3,4"), None),
             ("border", Some("open"), Some("plane")),
         ] {
             assert!(!is_same(name, a, b), "{name}: {a:?} {b:?}");
         }
-        assert!(["key1", "sun12", "light3", "bounces"].iter().all(|name| is_scene(name)));
+        assert!(
+            ["key1", "sun12", "light3", "phong", "bounces"]
+                .iter()
+                .all(|name| is_scene(&new_key((*name).to_owned())))
+        );
         // A method's settings are not part of the scene.
         assert!(!["sun_azimuths", "lights", "spp", "seed"].iter().any(|name| is_scene(name)));
     }

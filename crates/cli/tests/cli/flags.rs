@@ -229,16 +229,16 @@ fn specular() {
                 &["--bounce-engine", "found sweep, expected pyramid"],
             ),
             (
-                "--specular 10,0.5 --albedo 0.5 --bounces 1 --bounce-engine pyramid --receiver lobe",
+                "--specular 10,0.5 --albedo 0.5 --bounces 1 --bounce-engine pyramid --receiver cosine",
                 2,
-                &["--receiver", "specular: found lobe, expected plane"],
+                &["--receiver", "specular: found cosine, expected plane"],
             ),
             (
                 "--specular 10,0.5 --albedo 0.5 --bounces 1 --bounce-engine pyramid --subsample 2",
                 2,
                 &["--subsample", "found 2"],
             ),
-            ("--bounces 1 --bounce-gloss half", 2, &["--bounce-gloss", "vector-f16"]),
+            ("--bounces 1 --bounce-specular half", 2, &["--bounce-specular", "vector-f16"]),
         ],
     );
     let both = "--specular 10,0.5 --albedo 0.5";
@@ -406,7 +406,7 @@ fn help_gives_units_and_defaults() {
         ("--bounce-cutoff", &["0 to 1", "default 1/65536"]),
         ("--bounce-level-step", &["1 to 16", "[default: 4]"]),
         ("--bounce-level-offset", &["0 to 4", "[default: 2]"]),
-        ("--bounce-gloss", &["vector-f16", "[default: vector]"]),
+        ("--bounce-specular", &["vector-f16", "[default: vector]"]),
         ("--device", &["Default the first GPU"]),
         ("--memory-budget", &["512MiB", "default half"]),
     ];

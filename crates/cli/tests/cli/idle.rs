@@ -26,8 +26,8 @@ fn flags_that_change_nothing_are_noted() {
     let folder = folder();
     for (flags, says) in [
         (
-            "--method brute-force --hull list",
-            &["--hull list changes nothing with --method brute-force"][..],
+            "--method brute-force --hull occluder-list",
+            &["--hull occluder-list changes nothing with --method brute-force"][..],
         ),
         (
             "--method brute-force --lines exact",
@@ -99,14 +99,14 @@ fn other_flags_are_not_noted() {
         "--lines exact",
         "--method brute-force --azimuths 8",
         "--lines 2 --fuse slopes --precision f16 --hull shared --azimuths 8",
-        "--precision packed --hull list",
+        "--precision packed --hull occluder-list",
         "--precision f32 --lines 1 --fuse aimed-nearest --hull auto --method sweep",
         "--sun 90,30 --sun-azimuths 4",
         "--key 90,45,360,90,1 --sun-azimuths 4",
         "--env env.hdr --table-elevations 64 --azimuths 8",
         "--sun 90,30 --env env.hdr --table-elevations 64 --azimuths 8 --sun-azimuths 4",
         "--border periodic --lines 1/2",
-        "--env env.hdr --basis sh --sh-order 3 --wedges nlp --receiver lobe --window hann",
+        "--env env.hdr --basis sh --sh-order 3 --wedges nlp --receiver cosine --window hann",
         "--env env.hdr --basis sh --subsample 4 --method brute-force",
         "--env env.hdr --basis sh --wedges table --wedge-side 8",
         "--env env.hdr --basis table --table-elevations 64",

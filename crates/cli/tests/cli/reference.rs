@@ -76,8 +76,8 @@ fn gpu_reference_writes_light_and_its_error() {
         ("spp", "128", json!(128)),
         ("bounces", "1", json!(1)),
         ("seed", "7", json!(7)),
-        ("phong", "9,0.25", json!([9, 0.25])),
-        ("light1", "4,4,9,1,2,3,4", json!([4, 4, 9, 1, 2, 3, 4])),
+        ("specular", "9,0.25", json!([9, 0.25])),
+        ("sphere_light1", "4,4,9,1,2,3,4", json!([4, 4, 9, 1, 2, 3, 4])),
     ] {
         assert_eq!(settings.get(name).map(String::as_str), Some(text), "{name}");
         assert_eq!(report["settings"][name], value, "{name}");

@@ -14,7 +14,20 @@ fn warning(old: &str, new: &str) -> String {
     format!("warning: {old} is now {new}; the old name goes away in the next release\n")
 }
 
-const CASES: [(&str, &str, &str, &str); 8] = [
+const CASES: [(&str, &str, &str, &str); 11] = [
+    ("--hull list", "--hull occluder-list", "--hull list", "--hull occluder-list"),
+    (
+        "--receiver lobe",
+        "--receiver cosine",
+        "--sphere-light 1,2,30,4,5 --light-basis sh --receiver lobe",
+        "--sphere-light 1,2,30,4,5 --light-basis sh --receiver cosine",
+    ),
+    (
+        "--bounce-gloss",
+        "--bounce-specular",
+        "--albedo 0.5 --specular 10,0.5 --bounces 1 --bounce-engine pyramid --bounce-gloss scalar",
+        "--albedo 0.5 --specular 10,0.5 --bounces 1 --bounce-engine pyramid --bounce-specular scalar",
+    ),
     ("--phong", "--specular", "--albedo 0.5 --phong 10,0.5", "--albedo 0.5 --specular 10,0.5"),
     ("--phong", "--specular", "--albedo 0.5 --phong=10,0.5", "--albedo 0.5 --specular=10,0.5"),
     ("--light", "--sphere-light", "--light 1,2,30,4,5", "--sphere-light 1,2,30,4,5"),
@@ -65,14 +78,17 @@ fn old_keys_of_scene_files_warn_once() {
     let folder = Folder::new();
     let sphere = r#"[{ "position_m": [1, 2, 30], "radius_m": 4, "radiance": 5 }]"#;
     let specular = r#"{ "exponent": 10, "scale": 0.5 }"#;
-    let text = |sphere_lights: &str, key: &str, method: &str| {
+    let text = |sphere_lights: &str, key: &str, stored: &str, method: &str| {
         format!(
             r#"{{ "field": {{ "file": "a.asc" }}, "surface": {{ "albedo": 0.5, "{key}": {specular} }},
-                "lights": {{ "sky": 1, "{sphere_lights}": [] }}, "quality": {{ "method": "{method}" }} }}"#
+                "lights": {{ "sky": 1, "{sphere_lights}": [] }}, "quality": {{ "method": "{method}", "{stored}": "scalar" }} }}"#
         )
     };
-    folder.write("old.json", text("balls", "phong", "brute").as_bytes());
-    folder.write("new.json", text("sphere_lights", "specular", "brute-force").as_bytes());
+    folder.write("old.json", text("balls", "phong", "bounce_gloss", "brute").as_bytes());
+    folder.write(
+        "new.json",
+        text("sphere_lights", "specular", "bounce_specular", "brute-force").as_bytes(),
+    );
     let [plan, warned] = planned(&folder, "--scene old.json");
     let [expected, silent] = planned(&folder, "--scene new.json");
     assert_eq!((plan, silent.as_str()), (expected, ""));
@@ -81,6 +97,7 @@ fn old_keys_of_scene_files_warn_once() {
     assert_eq!(
         lines,
         [
+            warning("--bounce-gloss", "--bounce-specular"),
             warning("--method brute", "--method brute-force"),
             warning("lights.balls", "lights.sphere_lights"),
             warning("surface.phong", "surface.specular"),

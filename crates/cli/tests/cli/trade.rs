@@ -344,7 +344,7 @@ fn gpu_trade_takes_specular() {
     };
     let tried: Vec<String> = flags("points");
     assert!(tried.iter().all(|f| f.contains("--basis sh --sh-order")), "{tried:?}");
-    assert!(tried.iter().all(|f| f.contains("--bounce-gloss")), "{tried:?}");
+    assert!(tried.iter().all(|f| f.contains("--bounce-specular")), "{tried:?}");
     // Exact lines have no azimuth for the sun.
     let open = flags("not_tried");
     assert!(!open.iter().chain(&tried).any(|f| f.contains("--lines exact")), "{open:?}");

@@ -61,7 +61,7 @@ impl March {
 /// Progress along a slice.
 struct Seen {
     slice: Slice,
-    /// Contribution of Legendre coefficients to the bands of a [`Receiver::CosineLobe`].
+    /// Contribution of Legendre coefficients to the bands of a [`Receiver::Cosine`].
     bands: Option<[f64; 4]>,
     top: f64,
     casts: Vec<Cast>,
@@ -126,7 +126,7 @@ impl BounceGather<'_> {
             let slice = place.slice(azimuth_rad);
             let (bands, whole) = match self.receiver {
                 Receiver::Plane => (None, slice.light(-FRAC_PI_2, FRAC_PI_2)),
-                Receiver::CosineLobe => (Some(three_bands(&slice)), 0.5),
+                Receiver::Cosine => (Some(three_bands(&slice)), 0.5),
             };
             let mut seen = Seen { slice, bands, top: slice.low, casts: Vec::new() };
             let march = self.march([col, row], azimuth_rad);

@@ -81,7 +81,7 @@ impl<'a> SphereSh<'a> {
         let own_slope = -DVec2::new(normal.x, normal.y) / normal.z;
         let hidden = |phi: f64, free: f64| match receiver {
             Receiver::Plane => free.max(own_slope.dot(DVec2::from_angle(phi))),
-            Receiver::CosineLobe => free,
+            Receiver::Cosine => free,
         };
         let count = sun_azimuths as usize;
         if let Some(table) = &self.table {

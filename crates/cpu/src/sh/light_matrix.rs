@@ -64,7 +64,7 @@ pub fn add_sky(series: &mut [DVec3], sky: [f32; 3]) {
 pub fn light_matrix(quality: &Quality, series: &[DVec3]) -> Vec<Vec<DVec3>> {
     matrix(quality, series, |triples, order, light| match quality.receiver {
         Receiver::Plane => plane(triples, order, light),
-        Receiver::CosineLobe => lobe(triples, order, light),
+        Receiver::Cosine => lobe(triples, order, light),
     })
 }
 

@@ -266,7 +266,7 @@ impl Gathered {
             device_spline(self.brightest) + levels * device_level(self.brightest) + places;
         let (end, weight) = match self.receiver {
             Receiver::Plane => (0.0, EPSILON * (2.0 + 24.0 * width)),
-            Receiver::CosineLobe => (4.0 * 2.0_f64.sqrt() * 8.0 * EPSILON, 4.0 * EPSILON * width),
+            Receiver::Cosine => (4.0 * 2.0_f64.sqrt() * 8.0 * EPSILON, 4.0 * EPSILON * width),
         };
         CastError { elevation_rad: angle, end, weight, radiance }
     }

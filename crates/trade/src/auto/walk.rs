@@ -64,7 +64,7 @@ const COARSE: Quality = Quality {
     window: Window::None,
     subsample: 2,
     wedge_side: 64,
-    bounces: Bounces { azimuths: 8, ..Bounces::NONE },
+    bounces: Bounces { azimuths: 8, ..Bounces::DEFAULT },
 };
 
 /// Bounced light, which the choice must also get right.

@@ -4,8 +4,8 @@
 //! Hull storage has no ladder: it costs time and never changes the result.
 
 use ridgelight::scene::{
-    Basis, BounceEngine, BounceSpecular, Bounces, Fuse, LightBasis, Lights, Lines, Method,
-    Precision, Quality, Scene,
+    Basis, BounceEngine, BounceSpecular, Fuse, LightBasis, Lights, Lines, Method, Precision,
+    Quality, Scene, Values, setting,
 };
 use std::ops::RangeInclusive;
 
@@ -54,6 +54,14 @@ const BOUNCE_SPECULARS: [BounceSpecular; 3] =
 const BOUNCE_AZIMUTHS: [u32; 4] = [8, 16, 32, 64];
 const LEVEL_STEPS: [u32; 5] = [1, 2, 4, 8, 16];
 const LEVEL_OFFSETS: [u32; 5] = [0, 1, 2, 3, 4];
+
+/// The range of a setting that counts.
+fn range(name: &str) -> Option<RangeInclusive<u32>> {
+    match &setting(name)?.values {
+        Values::Whole(range) => Some(range.clone()),
+        _ => None,
+    }
+}
 
 fn has_no_lines(quality: &Quality) -> bool {
     matches!(quality.method, Method::BruteForce | Method::Pyramid) || quality.lines == Lines::Exact
@@ -127,7 +135,7 @@ pub fn ladders(scene: &Scene, bounces: u32) -> Vec<Ladder> {
         Ladder {
             name: "level step",
             steps: spell("level_step", &LEVEL_STEPS),
-            range: Some(Quality::LEVEL_STEP),
+            range: range("level_step"),
             default: 0,
             slower: "more levels of a pyramid: occluders between two grid points",
             set: |quality, step| quality.level_step = LEVEL_STEPS[step],
@@ -136,7 +144,7 @@ pub fn ladders(scene: &Scene, bounces: u32) -> Vec<Ladder> {
         Ladder {
             name: "level offset",
             steps: spell("level_offset", &LEVEL_OFFSETS),
-            range: Some(Quality::LEVEL_OFFSET),
+            range: range("level_offset"),
             default: 0,
             slower: "finer levels of a pyramid: sharp distant horizons",
             set: |quality, step| quality.level_offset = LEVEL_OFFSETS[step],
@@ -152,7 +160,7 @@ pub fn ladders(scene: &Scene, bounces: u32) -> Vec<Ladder> {
         all.push(Ladder {
             name: "azimuths",
             steps: spell("azimuths", &AZIMUTHS),
-            range: Some(Quality::AZIMUTHS),
+            range: range("azimuths"),
             default: 0,
             slower: "more azimuths: sharp silhouettes",
             set: |quality, step| quality.azimuths = AZIMUTHS[step],
@@ -163,7 +171,7 @@ pub fn ladders(scene: &Scene, bounces: u32) -> Vec<Ladder> {
         all.push(Ladder {
             name: "sun azimuths",
             steps: spell("sun_azimuths", &SUN_AZIMUTHS),
-            range: Some(Quality::SUN_AZIMUTHS),
+            range: range("sun_azimuths"),
             default: 0,
             slower: "more slices of a sun's disc, a key light or a sphere light: soft shadows",
             set: |quality, step| quality.sun_azimuths = SUN_AZIMUTHS[step],
@@ -185,7 +193,7 @@ pub fn ladders(scene: &Scene, bounces: u32) -> Vec<Ladder> {
         all.push(Ladder {
             name: "table elevations",
             steps: spell("table_elevations", &TABLE_ELEVATIONS),
-            range: Some(Quality::TABLE_ELEVATIONS),
+            range: range("table_elevations"),
             default: 0,
             slower: "more elevations per table: small bright features",
             set: |quality, step| quality.table_elevations = TABLE_ELEVATIONS[step],
@@ -233,10 +241,10 @@ pub fn ladders(scene: &Scene, bounces: u32) -> Vec<Ladder> {
 fn bounce_ladders(has_specular: bool) -> [Ladder; 2] {
     let by = match has_specular {
         true => Ladder {
-            name: "bounce gloss",
+            name: "bounce specular",
             steps: BOUNCE_SPECULARS
                 .iter()
-                .map(|g| format!("`bounce_gloss {}`", g.name()))
+                .map(|g| format!("`bounce_specular {}`", g.name()))
                 .collect(),
             range: None,
             default: 0,
@@ -259,7 +267,7 @@ fn bounce_ladders(has_specular: bool) -> [Ladder; 2] {
         Ladder {
             name: "bounce azimuths",
             steps: BOUNCE_AZIMUTHS.iter().map(|m| format!("`bounce_azimuths {m}`")).collect(),
-            range: Some(Bounces::AZIMUTHS),
+            range: range("bounce_azimuths"),
             default: 0,
             slower: "more azimuths of bounces: narrow bright features",
             set: |quality, step| quality.bounces.azimuths = BOUNCE_AZIMUTHS[step],

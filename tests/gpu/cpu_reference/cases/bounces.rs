@@ -95,7 +95,7 @@ pub(in crate::cpu_reference) fn bounced_light() -> Vec<Case> {
     use BounceEngine::{BruteForce, Pyramid};
     let rough = |rows, cols| rough(rows, cols, 36);
     let lobe = case("a bowl by a lobe", bowl(13), Border::Plane, Pyramid, Levels::Stack);
-    let lobe = Case { quality: Quality { receiver: Receiver::CosineLobe, ..lobe.quality }, ..lobe };
+    let lobe = Case { quality: Quality { receiver: Receiver::Cosine, ..lobe.quality }, ..lobe };
     vec![
         case("every stretch, grey", rough(7, 9), Border::Plane, BruteForce, Levels::Stack),
         case("every stretch, colours", rough(6, 5), Border::Open, BruteForce, Levels::Stack),

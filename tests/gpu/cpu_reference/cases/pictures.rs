@@ -89,7 +89,7 @@ pub(in crate::cpu_reference) fn pictures() -> Vec<Case> {
         ..picture("colours on the device", grey.clone(), quality, false, false)
     };
     let sh = |sh_order| Quality { basis: Basis::Sh, sh_order, ..quality };
-    let nlp = Quality { wedges: Wedges::Nlp, receiver: Receiver::CosineLobe, ..sh(5) };
+    let nlp = Quality { wedges: Wedges::Nlp, receiver: Receiver::Cosine, ..sh(5) };
     let soft = |sh_order, sun_azimuths| Quality {
         light_basis: LightBasis::Sh,
         sh_order,
@@ -99,7 +99,7 @@ pub(in crate::cpu_reference) fn pictures() -> Vec<Case> {
     let soft_table = Quality { wedges: Wedges::Table, wedge_side: 17, ..soft(3, 6) };
     let soft_nlp = Quality {
         wedges: Wedges::Nlp,
-        receiver: Receiver::CosineLobe,
+        receiver: Receiver::Cosine,
         window: Window::Lanczos,
         ..soft(5, 7)
     };
@@ -112,14 +112,14 @@ pub(in crate::cpu_reference) fn pictures() -> Vec<Case> {
     };
     let soft_stack = Quality {
         wedges: Wedges::Table,
-        receiver: Receiver::CosineLobe,
+        receiver: Receiver::Cosine,
         levels: Levels::Stack,
         level_step: 2,
         level_offset: 1,
         ..Quality { sun_azimuths: 8, sh_order: 6, ..soft_levels }
     };
     let windowed = Quality { window: Window::Hann, fuse: Fuse::Own, ..sh(4) };
-    let lobe = Quality { receiver: Receiver::CosineLobe, window: Window::Nonnegative, ..sh(2) };
+    let lobe = Quality { receiver: Receiver::Cosine, window: Window::Nonnegative, ..sh(2) };
     let subsampled = |subsample, sh_order| Quality { subsample, ..sh(sh_order) };
     let by_table =
         Quality { wedges: Wedges::Table, method: Method::BruteForce, ..subsampled(2, 6) };

@@ -128,10 +128,7 @@ fn soft_spheres(base: &Quality) -> impl Iterator<Item = Method> + use<> {
     let (nlp, table) = (Wedges::Nlp, Wedges::Table);
     [
         ("sphere lights by harmonics, 2", of(2)),
-        (
-            "sphere lights by harmonics, 4, lobe",
-            Quality { receiver: Receiver::CosineLobe, ..of(4) },
-        ),
+        ("sphere lights by harmonics, 4, lobe", Quality { receiver: Receiver::Cosine, ..of(4) }),
         ("sphere lights by harmonics, 6", of(6)),
         ("sphere lights by harmonics, 4, nlp", Quality { wedges: nlp, ..of(4) }),
         (
@@ -171,7 +168,7 @@ fn specular(base: &Quality) -> impl Iterator<Item = Method> + use<> {
             cutoff: 0.0,
             level_offset: 1,
             specular,
-            ..Bounces::NONE
+            ..Bounces::DEFAULT
         };
         Quality { basis: Basis::Sh, sh_order, levels, level_offset: 1, bounces, ..base }
     };
@@ -189,13 +186,13 @@ fn specular(base: &Quality) -> impl Iterator<Item = Method> + use<> {
 fn bounces(base: &Quality) -> impl Iterator<Item = Method> + use<> {
     let base = *base;
     let of =
-        |engine, azimuths| Bounces { count: 2, engine, azimuths, cutoff: 0.0, ..Bounces::NONE };
+        |engine, azimuths| Bounces { count: 2, engine, azimuths, cutoff: 0.0, ..Bounces::DEFAULT };
     let bounced = |engine, azimuths| Quality { bounces: of(engine, azimuths), ..base };
     let walked = |lines| Quality { lines, ..bounced(BounceEngine::Sweep, 4) };
     let stack = bounced(BounceEngine::Pyramid, 4);
     let levels = Quality {
         levels: Levels::Pyramid,
-        receiver: Receiver::CosineLobe,
+        receiver: Receiver::Cosine,
         level_step: 3,
         level_offset: 0,
         bounces: Bounces { level_step: 2, level_offset: 1, ..of(BounceEngine::Pyramid, 5) },

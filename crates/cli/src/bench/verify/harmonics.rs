@@ -286,8 +286,8 @@ pub(super) mod tests {
             for (wedges, receiver, window) in [
                 (Wedges::Slices, Receiver::Plane, Window::None),
                 (Wedges::Nlp, Receiver::Plane, Window::Lanczos),
-                (Wedges::Slices, Receiver::CosineLobe, Window::Hann),
-                (Wedges::Nlp, Receiver::CosineLobe, Window::Nonnegative),
+                (Wedges::Slices, Receiver::Cosine, Window::Hann),
+                (Wedges::Nlp, Receiver::Cosine, Window::Nonnegative),
                 (Wedges::Table, Receiver::Plane, Window::None),
             ] {
                 let quality = Quality { sh_order, wedges, receiver, window, ..base };
@@ -307,8 +307,8 @@ pub(super) mod tests {
                 };
                 let free: Vec<Place> = known.iter().map(free).collect();
                 let other = match receiver {
-                    Receiver::Plane => Receiver::CosineLobe,
-                    Receiver::CosineLobe => Receiver::Plane,
+                    Receiver::Plane => Receiver::Cosine,
+                    Receiver::Cosine => Receiver::Plane,
                 };
                 let next = if sh_order == 6 { 5 } else { sh_order + 1 };
                 let mut turned = right.clone();

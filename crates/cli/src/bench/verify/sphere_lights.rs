@@ -157,7 +157,7 @@ mod tests {
         for (sh_order, wedges, receiver) in [
             (2, Wedges::Slices, Receiver::Plane),
             (4, Wedges::Nlp, Receiver::Plane),
-            (4, Wedges::Table, Receiver::CosineLobe),
+            (4, Wedges::Table, Receiver::Cosine),
             (6, Wedges::Slices, Receiver::Plane),
         ] {
             let quality = Quality { sh_order, wedges, receiver, ..base };

@@ -2,13 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::CommandFactory as _;
 use ridgelight::Result;
 use ridgelight::scene::Tone;
 use ridgelight_io as files;
 
 use super::App;
-use crate::args::Cli;
 use crate::{render, setup};
 
 impl App<'_> {
@@ -46,7 +44,7 @@ impl App<'_> {
         let heights = self.state.has_other_heights().then(|| path.with_extension("npy"));
         let name = heights.as_ref().and_then(|h| h.file_name()).map(|n| n.to_string_lossy());
         let asked = self.state.asked(shown.size, &shown.limits, name.as_deref());
-        let scene = asked.to_json(&Cli::command());
+        let scene = asked.to_json();
         let field = &self.state.scene.field;
         let saved = heights.iter().try_for_each(|h| files::write_npy_heights(h, field));
         self.say(saved.and_then(|()| files::write_json(&path, &scene)), &path)

@@ -68,7 +68,7 @@ impl State {
         let field = &self.scene.field;
         let word = |id: &str| {
             let mut all = self.settings.list(&self.asked);
-            all.find(|(name, ..)| *name == id).map_or("", |(_, word, _)| word)
+            all.find(|(name, ..)| *name == id).map_or(String::new(), |(_, word, _)| word)
         };
         let mut lines = vec![format!(
             "{} x {}  method {}  azimuths {}  bounces {}",
@@ -136,8 +136,7 @@ impl State {
         }
         let all = self.settings.list(&self.asked);
         let chosen = all.filter(|(id, _, is_chosen)| *is_chosen && self.asked.first(id).is_some());
-        let written: Vec<_> =
-            chosen.map(|(id, word, _)| (id.to_owned(), word.to_owned())).collect();
+        let written: Vec<_> = chosen.map(|(id, word, _)| (id.to_owned(), word)).collect();
         lines.extend(idle::notes(&written, &plan.settings));
         lines
     }

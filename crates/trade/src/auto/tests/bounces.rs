@@ -70,7 +70,7 @@ fn choices_of_bounces_reach_the_goal() {
         assert!(
             cost(&quality)
                 < cost(&Quality {
-                    bounces: Bounces { count: 2, ..Bounces::NONE },
+                    bounces: Bounces { count: 2, ..Bounces::DEFAULT },
                     ..Quality::default()
                 })
         );

@@ -83,14 +83,14 @@ fn specular_has_its_own_ladders() {
     assert_eq!(names(sky(), 0.0, 0), with(&["azimuths"]));
     assert_eq!(names(sky(), 0.2, 0), with(&["azimuths", "basis"]));
     assert_eq!(names(sun(0.0), 0.2, 0), with(&[]));
-    let with_bounces = ["azimuths", "basis", "bounce gloss", "bounce azimuths"];
+    let with_bounces = ["azimuths", "basis", "bounce specular", "bounce azimuths"];
     assert_eq!(names(sky(), 0.2, 2), with(&with_bounces));
     let mut scene = scene(sky());
     scene.surface.specular = Some(Specular::Constant(PhongSpecular { exponent: 5.0, scale: 0.2 }));
     let all = ladders(&scene, 1);
     let found: Vec<&str> = all.iter().map(|k| k.steps[k.default].as_str()).collect();
     let [.., basis, gloss, _] = found[..] else { panic!("{found:?}") };
-    assert_eq!([basis, gloss], ["`basis sh` `sh_order 4`", "`bounce_gloss vector`"]);
+    assert_eq!([basis, gloss], ["`basis sh` `sh_order 4`", "`bounce_specular vector`"]);
     assert!(!all.iter().flat_map(|k| &k.steps).any(|step| step == "`basis table`"));
 }
 
