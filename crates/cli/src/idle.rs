@@ -79,11 +79,11 @@ fn reason(setting: &str, used: &[(String, String)]) -> String {
             _,
         ) => "without a sky, an environment, a sun or a key light".into(),
         ("bounces", ..) => "for horizons".into(),
-        ("bounce_engine" | "bounce_azimuths" | "bounce_cutoff", ..) => "without --bounces".into(),
         ("bounce_level_step" | "bounce_level_offset", ..) => {
             "without --bounces and --bounce-engine pyramid".into()
         }
         ("bounce_specular", ..) => "without --bounces and --specular".into(),
+        (name, ..) if name.starts_with("bounce_") => "without --bounces".into(),
         ("level_step" | "level_offset" | "levels", ..) => "without --method pyramid".into(),
         (
             "table_elevations" | "basis" | "sh_order" | "wedges" | "receiver" | "window"
