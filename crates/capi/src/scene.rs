@@ -349,15 +349,15 @@ mod tests {
 
     /// A setting without a field could not be reached from C.
     #[test]
-    fn every_setting_has_a_field_of_the_header() {
-        let header = include_str!("../include/ridgelight.h");
-        let (_, quality) = header.split_once("typedef struct RidgelightQuality {").unwrap();
+    fn every_setting_has_a_field() {
+        let (_, quality) =
+            include_str!("scene.rs").split_once("pub struct RidgelightQuality {").unwrap();
         let (quality, _) = quality.split_once('}').unwrap();
         for setting in SETTINGS {
             let has_zero = matches!(&setting.values, Values::Whole(r) if *r.start() == 0);
             let is_shifted = has_zero && setting.get(&Quality::DEFAULT) != "0";
-            let field = format!("{}{};", setting.name, if is_shifted { "_plus_1" } else { "" });
-            assert!(quality.contains(&format!(" {field}")), "{field}");
+            let field = format!("pub {}{}:", setting.name, if is_shifted { "_plus_1" } else { "" });
+            assert!(quality.contains(&field), "{field}");
         }
     }
 }
