@@ -29,8 +29,18 @@ const ROOMS: [&str; 10] =
 /// What each node imports, and how often.
 type Arrows = BTreeMap<String, BTreeMap<String, usize>>;
 
-/// Prints every layer with its arrows.
+const PAGE: &str = "docs/architecture.md";
+const MARKS: [&str; 2] = ["<!-- begin layers -->\n", "<!-- end layers -->"];
+
+/// Prints every layer with its arrows and their counts, and writes the arrows into the page.
 pub fn print(root: &Path) -> Outcome {
+    let [before, _, after] = page(root)?;
+    let text = [before, fenced(&arrows(root, false)?), after].concat();
+    fs::write(root.join(PAGE), text).map_err(|e| format!("{PAGE}: {e}"))?;
+    arrows(root, true)
+}
+
+fn arrows(root: &Path, is_counted: bool) -> Outcome {
     let mut text = String::new();
     for (what, names, arrows) in [
         ("crates", &CRATES[..], crates(root)?),
@@ -39,10 +49,25 @@ pub fn print(root: &Path) -> Outcome {
     ] {
         writeln!(text, "{what}, lowest first").expect("to a string");
         for name in names {
-            writeln!(text, "  {name:<20} {}", listed(arrows.get(*name))).expect("to a string");
+            let used = listed(arrows.get(*name), is_counted && what != "crates");
+            writeln!(text, "  {name:<20} {used}").expect("to a string");
         }
     }
     Ok(text)
+}
+
+/// The page before, between and after its marks.
+fn page(root: &Path) -> Result<[String; 3], String> {
+    let text = read(&root.join(PAGE))?;
+    let parts = text.split_once(MARKS[0]).and_then(|(before, rest)| {
+        let (kept, after) = rest.split_once(MARKS[1])?;
+        Some([format!("{before}{}", MARKS[0]), kept.to_owned(), format!("{}{after}", MARKS[1])])
+    });
+    parts.ok_or_else(|| format!("{PAGE}: no marks {MARKS:?}"))
+}
+
+fn fenced(text: &str) -> String {
+    format!("```text\n{text}```\n")
 }
 
 /// Fails on an import or a dependency that points upward, which every circle has.
@@ -50,14 +75,20 @@ pub fn check(root: &Path) -> Outcome {
     let mut wrong = upward(&CRATES, &crates(root)?);
     wrong.extend(upward(&MODULES, &modules(root)?));
     wrong.extend(upward(&ROOMS, &rooms(root)?));
+    if wrong.is_empty() && page(root)?[1] != fenced(&arrows(root, false)?) {
+        return Err(format!("layers: {PAGE} is out of date; cargo xtask layers writes it"));
+    }
     if wrong.is_empty() {
         return Ok("layers: no circle, no import that points upward\n".to_owned());
     }
     Err(format!("layers: imports that point upward:\n  {}", wrong.join("\n  ")))
 }
 
-fn listed(used: Option<&BTreeMap<String, usize>>) -> String {
-    let used = used.into_iter().flatten().map(|(name, count)| format!("{name} {count}"));
+fn listed(used: Option<&BTreeMap<String, usize>>, is_counted: bool) -> String {
+    let used = used.into_iter().flatten().map(|(name, count)| match is_counted {
+        true => format!("{name} {count}"),
+        false => name.clone(),
+    });
     let all: Vec<_> = used.collect();
     if all.is_empty() { "-".to_owned() } else { format!("-> {}", all.join(", ")) }
 }

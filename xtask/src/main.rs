@@ -10,7 +10,8 @@ use std::path::Path;
 use std::process::ExitCode;
 
 const USAGE: &str = "usage: cargo xtask COMMAND
-  layers [--check]   crates, modules and their imports; fails on a circle or an upward import
+  layers [--check]   crates, modules and their imports, also into docs/architecture.md;
+                     --check fails on a circle, an upward import or an old page
   words              coined words that tools/words.txt forbids; fails where there is one
   size               lines of Rust and GLSL, files a folder, README, dependencies of an embedder
   surface [--check]  public items of the core, as kept in tools/surface.txt";
