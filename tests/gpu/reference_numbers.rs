@@ -315,7 +315,7 @@ fn values_of_harmonics() {
                     lobe[l] * (4.0 * PI / (2 * l + 1) as f64).sqrt() * values[i] * seen[i]
                 })
                 .collect();
-            let got = image(&mut gpu, &scene, &quality, "gloss_sum")[4 * 4];
+            let got = image(&mut gpu, &scene, &quality, "specular_sum")[4 * 4];
             let summed = terms.iter().map(|t| t.abs()).sum();
             let name = format!("sh_samples {theta} {phi}, exponent {exponent}");
             near(&name, &[got], &[terms.iter().sum::<f64>().max(0.0)], summed, NEAR);

@@ -105,7 +105,7 @@ impl Sh {
 
     /// The part in the labels of the passes before the shading, where there are two of each.
     pub(crate) fn part(&self) -> &'static str {
-        if self.lit == Lit::Specular { "glossy" } else { "" }
+        if self.lit == Lit::Specular { "specular" } else { "" }
     }
 
     /// Layers of four coefficients.

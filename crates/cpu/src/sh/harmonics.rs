@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use crate::env_rotation::env_rotation;
 use crate::light_matrix::{add_sky, is_fitted, light_matrix, row_weights, series, specular_matrix};
-use crate::sh_shade::{gloss_on, light_on};
+use crate::sh_shade::{light_on, specular_on};
 use crate::sh_visibility::{Series, seen_above};
 use crate::sh_wedges::sh_wedges;
 use crate::tolerance::{
@@ -67,7 +67,7 @@ impl Harmonics {
     }
 
     /// The same for Phong specular, from all bands of visibility, for an environment and a sky.
-    pub fn of_lobes(
+    pub fn of_specular(
         environment: Option<&Environment>,
         sky: [f32; 3],
         border: Border,
@@ -153,7 +153,7 @@ impl Harmonics {
         [light.max(DVec3::ZERO), tolerance]
     }
 
-    /// Phong specular straight upwards, from the matrix [`of_lobes`](Self::of_lobes), and a device's error in it.
+    /// Phong specular straight upwards, from the matrix [`of_specular`](Self::of_specular), and a device's error in it.
     pub fn mirrored(
         &self,
         normal: DVec3,
@@ -174,7 +174,7 @@ impl Harmonics {
             }
         }
         let tolerance = off + device_sh_specular(order, error.normal()) * summed;
-        let light = gloss_on(normal, phong, &seen.values, &self.matrix);
+        let light = specular_on(normal, phong, &seen.values, &self.matrix);
         [light.max(DVec3::ZERO), f64::from(phong.scale) * tolerance]
     }
 }

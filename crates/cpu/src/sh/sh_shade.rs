@@ -70,7 +70,12 @@ pub fn light_on(normal: DVec3, seen: &[f64], matrix: &[Vec<DVec3>]) -> DVec3 {
 ///
 /// # Panics
 /// A matrix of no order.
-pub fn gloss_on(normal: DVec3, phong: PhongSpecular, seen: &[f64], matrix: &[Vec<DVec3>]) -> DVec3 {
+pub fn specular_on(
+    normal: DVec3,
+    phong: PhongSpecular,
+    seen: &[f64],
+    matrix: &[Vec<DVec3>],
+) -> DVec3 {
     let mirror = 2.0 * normal.z * normal - DVec3::Z;
     let order = matrix.len().isqrt();
     let kept = phong_bands(order, phong.exponent.into());

@@ -10,7 +10,7 @@ use std::f64::consts::{PI, TAU};
 /// The Phong lobe is taken as constant over the sun: for a radius a and an exponent n the error is n a²/4 of its
 /// peak, 5 % for the sun's 0.27° and n = 10⁴. Where a grid point's own plane or a horizon cuts a disc, the visible
 /// part is weighted by the cosine.
-pub fn gloss_on(normal: DVec3, sun: &Sun, phong: PhongSpecular, sun_sum: f64) -> f64 {
+pub fn specular_on(normal: DVec3, sun: &Sun, phong: PhongSpecular, sun_sum: f64) -> f64 {
     let [exponent, scale] = [phong.exponent, phong.scale].map(f64::from);
     let towards = towards(sun);
     let mirror = 2.0 * normal.z * normal - DVec3::Z;

@@ -9,7 +9,7 @@ use ridgelight::scene::{
     Albedo, Basis, Lights, PhongSpecular, Quality, Scene, Specular, Sun, Surface,
 };
 use ridgelight_cpu::harmonics::Harmonics;
-use ridgelight_cpu::sun_specular::gloss_on;
+use ridgelight_cpu::sun_specular::specular_on;
 use ridgelight_cpu::tolerance::{EPSILON, Land, device_resolved, device_sun_specular};
 
 use super::harmonics::{Place, Wanted, with_nodes};
@@ -39,7 +39,7 @@ pub(super) fn check(
     let wanted = Picture { light_layers: true, ..Picture::default() };
     let plan = plan::picture(scene, quality, limits, wanted)?;
     let number = |name: &str| plan.outputs().position(|(_, r)| r.name == name);
-    let Some(glossy) = number("direct.glossy") else {
+    let Some(glossy) = number("direct.specular") else {
         return Ok("the specular scale is 0 everywhere".to_owned());
     };
     let suns: Vec<Option<usize>> =
@@ -88,7 +88,7 @@ fn wanted_of(
         true => {
             let border = scene.surface.border;
             let sky = sky.unwrap_or_default();
-            let harmonics = Harmonics::of_lobes(environment.as_ref(), sky, border, quality);
+            let harmonics = Harmonics::of_specular(environment.as_ref(), sky, border, quality);
             Wanted::lit(scene, quality, [places, nodes], &harmonics, |place, seen, error| {
                 harmonics.mirrored(place.normal, specular.at(place.index), seen, error)
             })
@@ -120,7 +120,7 @@ fn of_sun(
     let irradiance = DVec3::from_array(sun.irradiance.map(f64::from));
     let brightest = irradiance.max_position();
     let sum = light[brightest] / (0.5 * irradiance[brightest]);
-    let mirrored = irradiance * gloss_on(place.normal, sun, phong, sum);
+    let mirrored = irradiance * specular_on(place.normal, sun, phong, sum);
     let (field, border) = (&scene.field, scene.surface.border);
     let at = [place.index / field.cols(), place.index % field.cols()];
     let (sin, cos) = sun.elevation_rad.sin_cos();

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::{Tracer, given, largest, one};
-use crate::shared::lobe::lobe_density;
+use crate::shared::phong_lobe::phong_lobe;
 use crate::shared::random::{direction_about, on_circle};
 use crate::shared::trace::Met;
 use crate::tolerance::near::{Near, Near3, dot, minus, normalize, plus, times};
@@ -95,7 +95,7 @@ impl Tracer<'_> {
         if self.lobes.is_empty() {
             return Reflected { facing, light, density, scattered: place.albedo };
         }
-        let lobe = lobe_density(minus(e, place.mirror), place.lobe[0]);
+        let lobe = phong_lobe(minus(e, place.mirror), place.lobe[0]);
         let choice = Self::lobe_choice(place);
         let density = density * (one() - choice) + lobe * choice;
         let more = place.lobe[1] * lobe;
