@@ -95,7 +95,7 @@ pub fn scattered(
     let gathered = |leaving: &[f64]| -> Vec<f64> {
         let of = |(at, bent): (usize, &Vec<DVec3>)| -> f64 {
             let of_look = |i: usize| {
-                let VisiblePoint::Sample(there) = points.seen(i, at) else { return 0.0 };
+                let VisiblePoint::Sample(there) = points.point(i, at) else { return 0.0 };
                 let weight = looks.weights.as_ref().map_or(1.0, |weights| weights[at][i]);
                 let arrives = [[leaving[there]; 3], [0.0; 3]];
                 materials.scattered(at, (bent[i], share * weight), DVec3::Z, arrives).light[0]

@@ -108,7 +108,7 @@ pub fn scatter_views(
         if matches!(surface.albedo, Albedo::Map(_)) {
             bound.push(("albedo_map", image("albedo", Owner::Input, rgba)));
         }
-        if matches!(wanted.lobe, Some(Specular::Map(_))) {
+        if matches!(wanted.specular, Some(Specular::Map(_))) {
             bound.push(("phong_map", image("phong", Owner::Input, rgba)));
         }
         let points = images(&mut builder, size, directions.count(), Owner::Input, limits)?;
@@ -168,7 +168,7 @@ pub fn scatter_views(
         let of = Steps {
             field,
             albedo: &surface.albedo,
-            specular: wanted.lobe,
+            specular: wanted.specular,
             suns: wanted.suns.len(),
             texels: [first_link, first_sun, first_view],
             count: steps,

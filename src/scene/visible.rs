@@ -181,7 +181,7 @@ impl VisiblePoints {
     ///
     /// # Panics
     /// Outside the field or the directions.
-    pub fn seen(&self, direction: usize, sample: usize) -> VisiblePoint {
+    pub fn point(&self, direction: usize, sample: usize) -> VisiblePoint {
         match self.word(direction, sample) {
             SKY => VisiblePoint::Sky,
             GROUND => VisiblePoint::Ground,
@@ -213,7 +213,7 @@ impl VisiblePoints {
     /// # Panics
     /// Outside the field.
     pub fn lit_share(&self, around: &[(usize, f64); 3], sample: usize) -> f64 {
-        let is_sky = |i: usize| self.seen(i, sample) == VisiblePoint::Sky;
+        let is_sky = |i: usize| self.point(i, sample) == VisiblePoint::Sky;
         around.iter().filter(|c| is_sky(c.0)).map(|c| c.1).sum()
     }
 

@@ -9,7 +9,7 @@ use ridgelight::scene::{
 use ridgelight_bake::CurvedEllipses;
 use ridgelight_cpu::bent_directions::ways::Ways;
 use ridgelight_cpu::bent_directions::{Draped, Fans, bent_direction};
-use ridgelight_cpu::ellipse_fit::{Ellipse, Seen, fit, least_radius};
+use ridgelight_cpu::ellipse_fit::{Ellipse, SkyDirection, fit, least_radius};
 use ridgelight_cpu::fan_weights::weight;
 use ridgelight_cpu::oracle::Oracle;
 use ridgelight_cpu::visible_points::{visible_point, visible_points};
@@ -271,7 +271,7 @@ fn weights_are_solid_angles_between_bent_walls() {
         let curvature = Curvature { per_m: [per_m, 0.0] };
         let draped = Draped { field: &field, border, points: &points, fans: &fans, curvature };
         let bent = draped.bent(HALF);
-        let sees = |i: &usize| points.seen(*i, HALF) != VisiblePoint::Sky;
+        let sees = |i: &usize| points.point(*i, HALF) != VisiblePoint::Sky;
         let of = |weigh: bool| -> f64 {
             let light = |i: usize| {
                 let weight = if weigh { weight(&fans, &bent, i) } else { 1.0 };
@@ -346,7 +346,7 @@ fn flat_bases_are_as_they_were() {
     }
 }
 
-fn seen(lit: impl Fn(DVec3) -> bool) -> Vec<Seen> {
+fn seen(lit: impl Fn(DVec3) -> bool) -> Vec<SkyDirection> {
     let directions = Directions::fibonacci(1000, 0.0, 0).expect("directions");
     directions.vectors().iter().map(|e| (*e, lit(*e))).collect()
 }

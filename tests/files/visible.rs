@@ -25,7 +25,7 @@ fn visible_points_round_trip() {
         assert!(seen.contains(&VisiblePoint::Sky) && seen.contains(&VisiblePoint::Ground));
         let points = VisiblePoints::from_points(&field, border, directions, &seen).unwrap();
         for (i, point) in seen.iter().enumerate() {
-            assert_eq!(points.seen(i / samples, i % samples), *point);
+            assert_eq!(points.point(i / samples, i % samples), *point);
         }
         write_visible_points(&path, &points).unwrap();
         assert_eq!(read_visible_points(&path, &field, border).unwrap(), points);
@@ -49,7 +49,7 @@ fn the_last_sample_of_a_small_field_is_no_mark() {
         let read = read_visible_points(&path, &field, Border::Plane).unwrap();
         assert_eq!(read, points);
         for (i, point) in seen.iter().enumerate() {
-            assert_eq!(read.seen(i / (side * side), i % (side * side)), *point);
+            assert_eq!(read.point(i / (side * side), i % (side * side)), *point);
         }
     }
 }
@@ -128,5 +128,5 @@ fn points_compare_by_what_is_seen() {
         VisiblePoints::new(&field, Border::Plane, directions.clone(), words).expect("points")
     };
     assert_eq!(of(0xffff), of(0));
-    assert_eq!(of(0).seen(4, 2), VisiblePoint::Sample(3));
+    assert_eq!(of(0).point(4, 2), VisiblePoint::Sample(3));
 }

@@ -18,7 +18,7 @@ use ridgelight::scene::{
     Receiver, Scene, Specular, SphereLight, Surface, Wedges,
 };
 use ridgelight_cpu::oracle::Oracle;
-use ridgelight_cpu::sh_visibility::{Series, seen_above};
+use ridgelight_cpu::sh_visibility::{Series, visibility_above};
 use serde_json::Value;
 
 use crate::{Device, field, random, under_sky};
@@ -307,7 +307,7 @@ fn values_of_harmonics() {
             };
             let lowest: Vec<_> = plan.expect("a plan").azimuths.iter().map(along).collect();
             let how = Series { order: 4, wedges: Wedges::Slices, receiver: Receiver::CosineLobe };
-            let seen = seen_above(how, &lowest);
+            let seen = visibility_above(how, &lowest);
             let lobe = zonal::phong(4, exponent.into());
             let terms: Vec<f64> = bands(4)
                 .enumerate()

@@ -22,7 +22,7 @@ pub use bounce::{BounceError, CastError, Gathered, Land, Slices, march_error, wa
 pub use light::{ShadeError, SphereGeometry};
 pub use points::{
     MET_SHARE, crossing_elevation, ellipse_moment, ellipse_reach, ellipse_start, facet_elevation,
-    gathered, seen_elevation,
+    gathered, visible_elevation,
 };
 pub use specular::{
     device_arriving, device_specular_exit, device_specular_visibility, device_sun_arriving,

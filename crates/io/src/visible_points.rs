@@ -48,7 +48,7 @@ pub fn write_visible_points(path: &Path, points: &VisiblePoints) -> Result<()> {
         for row in 0..rows {
             row_bytes.clear();
             for col in 0..cols {
-                let pair = match points.seen(direction, row * cols + col) {
+                let pair = match points.point(direction, row * cols + col) {
                     VisiblePoint::Sample(at) => [at / cols, at % cols].map(|n| n as u16),
                     VisiblePoint::Sky => [u16::MAX; 2],
                     VisiblePoint::Ground => [u16::MAX, u16::MAX - 1],

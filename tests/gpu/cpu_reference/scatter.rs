@@ -41,7 +41,7 @@ pub(super) fn scatter_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     .map(|o| pushed(pass, o) as usize);
     let weight = f64::from(f32::from_bits(pushed(pass, push::WEIGHT_SR)));
     let (source, sums) = (constant(pass, "source"), constant(pass, "sums") == 1);
-    let direct_specular = paths > 0 && constant(pass, "own_lobe") == 1;
+    let direct_specular = paths > 0 && constant(pass, "direct_specular") == 1;
     let points = run.points.clone().expect("a case with points");
     let texel = |i: usize| -> [f64; 4] {
         std::array::from_fn(|c| f64::from(run.plan.constants[4 * i + c]))
@@ -115,7 +115,7 @@ pub(super) fn scatter_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
             None => flat,
             Some(_) => stretch[0].max(stretch[1]) * (flat + 8.0 * EPSILON),
         };
-        let n = samples.lobe(at).map_or(1.0, |phong| f64::from(phong.exponent));
+        let n = samples.specular(at).map_or(1.0, |phong| f64::from(phong.exponent));
         let off = |of: &Gathered, e: DVec3| {
             let mut off = gathered(of, n, turned);
             // A lobe ends at the sample's own plane.
@@ -126,7 +126,7 @@ pub(super) fn scatter_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         };
         let mut sum = Sum::default();
         for (path, (e, direction, sky, back)) in links.iter().enumerate() {
-            let seen = points.seen(*direction, at);
+            let seen = points.point(*direction, at);
             let arrives = match (seen, source) {
                 (VisiblePoint::Sample(there), 1) => direct[there],
                 (VisiblePoint::Sample(there), 2) => carried[path * count + there],
@@ -149,7 +149,7 @@ pub(super) fn scatter_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
             }
             if !sums || direct_specular {
                 for (i, (e, irradiance)) in shining.iter().enumerate() {
-                    let lit = sun_points.as_ref().expect("suns").seen(i, at) == VisiblePoint::Sky;
+                    let lit = sun_points.as_ref().expect("suns").point(i, at) == VisiblePoint::Sky;
                     if lit {
                         let of = samples.scattered(at, (*e, 1.0), *back, [[0.0; 3], *irradiance]);
                         of_path.add(of.light, off(&of, *e));

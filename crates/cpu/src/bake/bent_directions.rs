@@ -43,11 +43,11 @@ impl Draped<'_> {
     /// neighbours with visible surface that are within `slack` of the nearest's cosine; empty where it stays.
     pub fn movers(&self, i: usize, sample: usize, slack: f64) -> Vec<(usize, usize)> {
         let vectors = self.points.directions().vectors();
-        let met = |j: usize| match self.points.seen(j, sample) {
+        let met = |j: usize| match self.points.point(j, sample) {
             VisiblePoint::Sample(there) => Some((j, there)),
             VisiblePoint::Sky | VisiblePoint::Ground => None,
         };
-        match self.points.seen(i, sample) {
+        match self.points.point(i, sample) {
             VisiblePoint::Sample(there) => return vec![(i, there)],
             VisiblePoint::Ground => return Vec::new(),
             VisiblePoint::Sky => {}
@@ -102,7 +102,7 @@ impl Draped<'_> {
             for ((i, e), part) in face.iter().zip([a, b, c]).zip(of) {
                 let part = if e.z > 0.0 { part.max(0.0) } else { 0.0 };
                 all += part;
-                if self.points.seen(*i as usize, sample) == VisiblePoint::Sky {
+                if self.points.point(*i as usize, sample) == VisiblePoint::Sky {
                     lit += part;
                 }
             }

@@ -63,9 +63,9 @@ pub fn possible_within(
         return vec![if e.z > 0.0 { VisiblePoint::Sky } else { own }];
     }
     let elevation = e.z.atan2(e.x.hypot(e.y));
-    let mut seen = Vec::new();
-    oracle.visible_intervals(row, col, e.y.atan2(e.x), &mut seen);
-    let free = seen.last().map_or(-FRAC_PI_2, |last| last.high_rad);
+    let mut intervals = Vec::new();
+    oracle.visible_intervals(row, col, e.y.atan2(e.x), &mut intervals);
+    let free = intervals.last().map_or(-FRAC_PI_2, |last| last.high_rad);
     let beyond = |elevation: f64| match oracle.border() {
         Border::Plane | Border::Periodic if elevation <= 0.0 => VisiblePoint::Ground,
         _ => VisiblePoint::Sky,
@@ -77,13 +77,13 @@ pub fn possible_within(
         }
     };
     // The exact answer first.
-    match seen.iter().find(|interval| elevation < interval.high_rad) {
+    match intervals.iter().find(|interval| elevation < interval.high_rad) {
         Some(interval) => add(met(oracle, interval, interval.distance_m(elevation), [0.0; 2])),
         None => add(beyond(elevation)),
     }
     // Upper end of the interval below, where this one begins.
     let mut below = 0.0_f64;
-    for interval in &seen {
+    for interval in &intervals {
         let above = elevation_rad(interval);
         let ends = [interval.low_rad - below, interval.high_rad + above];
         let off = below.max(above);

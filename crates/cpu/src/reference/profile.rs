@@ -35,7 +35,7 @@ impl VisibleInterval {
     /// Horizontal distance to the piece along an elevation, metres.
     pub fn distance_m(&self, elevation_rad: f64) -> f64 {
         let [near, far] = self.span_m;
-        // rise + slope D = D tan ω; a piece seen edge-on is hit where it begins.
+        // rise + slope D = D tan ω; a piece viewed edge-on is hit where it begins.
         let distance = self.rise_m / (elevation_rad.tan() - self.slope);
         if distance.is_finite() { distance.clamp(near, far) } else { near }
     }
@@ -72,7 +72,7 @@ impl Oracle<'_> {
         [[row, col], between, [below, right]]
     }
 
-    /// Writes the visible intervals along an azimuth into `seen`, from below upwards.
+    /// Writes the visible intervals along an azimuth into `intervals`, from below upwards.
     ///
     /// Nothing where the ray leaves the field at once. Under `periodic` a ray without a hit at its own height after
     /// [`cap_m`] extends its last visible interval up to horizontal.
@@ -84,24 +84,24 @@ impl Oracle<'_> {
         row: usize,
         col: usize,
         azimuth_rad: f64,
-        seen: &mut Vec<VisibleInterval>,
+        intervals: &mut Vec<VisibleInterval>,
     ) {
-        self.nearly_seen(row, col, azimuth_rad, 0.0, seen);
+        self.nearly_visible(row, col, azimuth_rad, 0.0, intervals);
     }
 
     /// The same with all surface that is hidden by less than `nearly_rad`, as intervals of equal ends.
     ///
     /// # Panics
     /// When `row` or `col` lies outside the field.
-    pub fn nearly_seen(
+    pub fn nearly_visible(
         &self,
         row: usize,
         col: usize,
         azimuth_rad: f64,
         nearly_rad: f64,
-        seen: &mut Vec<VisibleInterval>,
+        intervals: &mut Vec<VisibleInterval>,
     ) {
-        seen.clear();
+        intervals.clear();
         let field = self.field();
         let (rows, cols) = (field.rows(), field.cols());
         assert!(row < rows && col < cols, "sample (row {row}, column {col}) of {rows} × {cols}");
@@ -134,12 +134,12 @@ impl Oracle<'_> {
             // The surface is continuous: no piece begins above the largest slope before it.
             if piece.high_rad > lowest {
                 let high_rad = piece.high_rad.max(reached);
-                seen.push(VisibleInterval { low_rad: reached, high_rad, ..piece });
+                intervals.push(VisibleInterval { low_rad: reached, high_rad, ..piece });
                 reached = high_rad;
             }
             near = far;
         }
-        if let Some(last) = seen.last_mut()
+        if let Some(last) = intervals.last_mut()
             && periodic
         {
             last.high_rad = last.high_rad.max(0.0);
@@ -152,14 +152,14 @@ impl Oracle<'_> {
     /// # Panics
     /// When `row` or `col` lies outside the field.
     pub fn slope_within(&self, row: usize, col: usize, azimuth_rad: f64, within_m: f64) -> f64 {
-        let mut seen = Vec::new();
-        self.visible_intervals(row, col, azimuth_rad, &mut seen);
+        let mut intervals = Vec::new();
+        self.visible_intervals(row, col, azimuth_rad, &mut intervals);
         let slope = |interval: &VisibleInterval| {
             let [near, far] = interval.span_m;
             let end = if near == 0.0 { far } else { far.min(within_m) };
             (near == 0.0 || near < within_m).then(|| interval.slope + interval.rise_m / end)
         };
-        seen.iter().filter_map(slope).fold(f64::NEG_INFINITY, f64::max)
+        intervals.iter().filter_map(slope).fold(f64::NEG_INFINITY, f64::max)
     }
 
     /// The piece of surface between two distances from a grid point, all of it taken as visible; none outside the

@@ -49,14 +49,14 @@ impl Swept<'_> {
     /// # Panics
     /// Outside the field.
     pub fn add_all(&self, col: i32, row: i32, add_light: impl FnMut(usize, &Azimuth, f64, DVec3)) {
-        self.add_seen(col, row, true, add_light);
+        self.add_visible(col, row, true, add_light);
     }
 
     /// The same, the lowest slope with or without the grid point's own plane.
     ///
     /// # Panics
     /// Outside the field.
-    pub fn add_seen(
+    pub fn add_visible(
         &self,
         col: i32,
         row: i32,

@@ -20,15 +20,15 @@ pub fn specular_on(normal: DVec3, sun: &Sun, phong: PhongSpecular, sun_sum: f64)
         return 0.0;
     }
     let density = (exponent + 1.0) / TAU * cosine.powf(exponent);
-    scale * seen(normal, towards, sun_sum) * density
+    scale * visible(normal, towards, sun_sum) * density
 }
 
 /// Incident light of the sun for irradiance 1, as a series of n²: the visible fraction, all of it from the sun's
 /// centre.
 pub fn arriving(normal: DVec3, sun: &Sun, order: usize, sun_sum: f64) -> Vec<f64> {
     let towards = towards(sun);
-    let seen = seen(normal, towards, sun_sum);
-    evaluate(order, towards).iter().map(|y| seen * y).collect()
+    let visible = visible(normal, towards, sun_sum);
+    evaluate(order, towards).iter().map(|y| visible * y).collect()
 }
 
 fn towards(sun: &Sun) -> DVec3 {
@@ -38,7 +38,7 @@ fn towards(sun: &Sun) -> DVec3 {
 }
 
 /// The visible fraction of a sun.
-fn seen(normal: DVec3, towards: DVec3, sun_sum: f64) -> f64 {
+fn visible(normal: DVec3, towards: DVec3, sun_sum: f64) -> f64 {
     let facing = normal.dot(towards);
     if facing > 0.0 { (PI * sun_sum / facing).min(1.0) } else { 0.0 }
 }

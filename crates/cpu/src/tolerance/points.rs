@@ -18,7 +18,7 @@ pub const MET_SHARE: f64 = 32.0 * EPSILON;
 /// where it matters, as beyond a ray is over everything; the surface by three differences, two products and two sums of at
 /// most R, 8 ε R, and by its place, 10 ε t, times the steepest slope G. What is met first stands half a cell c away or
 /// more: 32 ε R / c + 10 ε G. The direction itself errs by 12 ε upwards, and by as much sideways, which is 12 ε G more.
-pub fn seen_elevation(land: &Land) -> f64 {
+pub fn visible_elevation(land: &Land) -> f64 {
     let Land { relief_m, steepest, cell_m, .. } = *land;
     EPSILON * (12.0 + 32.0 * relief_m / cell_m + 22.0 * steepest)
 }
@@ -44,11 +44,11 @@ pub fn crossing_elevation(oracle: &Oracle, interval: &VisibleInterval, own_m: f6
     (slope + off).atan() - (slope - off).atan() + 12.0 * EPSILON
 }
 
-/// [`seen_elevation`] from the middles of triangles, of the threefold finer field whose samples they are: there the device's
+/// [`visible_elevation`] from the middles of triangles, of the threefold finer field whose samples they are: there the device's
 /// height errs by 4 ε R (two differences, their sum's third, a sum), the field's own, rounded, by ε R at either end, half a
 /// finer cell apart or more.
 pub fn facet_elevation(finer: &Land) -> f64 {
-    seen_elevation(finer) + 12.0 * EPSILON * finer.relief_m / finer.cell_m
+    visible_elevation(finer) + 12.0 * EPSILON * finer.relief_m / finer.cell_m
 }
 
 /// What one look-up of `scatter_gather` errs by against its CPU reference, R, G, B; the lobe's exponent is `n`, 1 or more; the normal may

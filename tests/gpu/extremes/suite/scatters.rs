@@ -182,7 +182,7 @@ impl Chain<'_> {
     fn off(&self, at: usize, e: DVec3, of: &Gathered) -> f64 {
         let (field, border) = (&self.scene.field, self.scene.surface.border);
         let turned = Land::normal_at(field, border, [at / field.cols(), at % field.cols()]);
-        let n = self.samples.lobe(at).map_or(1.0, |phong| f64::from(phong.exponent));
+        let n = self.samples.specular(at).map_or(1.0, |phong| f64::from(phong.exponent));
         let [off, ..] = gathered(of, n, turned);
         let normal = self.samples.normal(at);
         let apart = 4.0 * turned + 16.0 * EPSILON;

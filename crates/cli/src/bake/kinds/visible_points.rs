@@ -52,7 +52,7 @@ fn take(traced: &DirectionsJob, files: &mut MapFiles) -> Result<()> {
         files.add_entry("triangles", serde_json::json!(net.corners()));
     }
     for direction in 0..directions.count() {
-        let seen = |sample| match points.seen(direction, sample) {
+        let seen = |sample| match points.point(direction, sample) {
             VisiblePoint::Sample(at) => [at / cols, at % cols].map(|n| n as f32),
             VisiblePoint::Sky => [-1.0; 2],
             VisiblePoint::Ground => [-2.0; 2],

@@ -10,7 +10,7 @@ use ridgelight::Result;
 use ridgelight::gpu::{Headless, Pixels};
 use ridgelight::plan::{self, Azimuth, Limits, Nodes, Picture};
 use ridgelight::scene::{Border, Quality, Receiver, Scene};
-use ridgelight_cpu::harmonics::{Harmonics, Seen};
+use ridgelight_cpu::harmonics::{Harmonics, Visibility};
 use ridgelight_cpu::sh_shade::nodes_around;
 use ridgelight_cpu::shared::field::{field_slope, normal_of};
 use ridgelight_cpu::shared::sweep::Heights;
@@ -201,7 +201,7 @@ impl Wanted {
         quality: &Quality,
         [places, nodes]: [&[Place]; 2],
         harmonics: &Harmonics,
-        light: impl Fn(&Place, &Seen, &ShadeError) -> [DVec3; 2],
+        light: impl Fn(&Place, &Visibility, &ShadeError) -> [DVec3; 2],
     ) -> Self {
         let (field, border) = (&scene.field, scene.surface.border);
         let heights = || field.heights_m().iter().map(|h| f64::from(*h));
@@ -211,9 +211,9 @@ impl Wanted {
         let slope = two_devices(device_fused_slope(low.abs().max(high.abs()), cell)) + ARC_TANGENT;
         let error = ShadeError::new(slope, high - low, cell, quality.azimuths as usize);
         let own_plane_hides = quality.receiver == Receiver::Plane;
-        let seen: BTreeMap<usize, Seen> = nodes
+        let seen: BTreeMap<usize, Visibility> = nodes
             .iter()
-            .map(|n| (n.index, harmonics.seen(&n.lowest(border, own_plane_hides), &error)))
+            .map(|n| (n.index, harmonics.visibility(&n.lowest(border, own_plane_hides), &error)))
             .collect();
         let shader_heights = Heights::of(field, border);
         let of = |place: &Place| {
@@ -221,7 +221,10 @@ impl Wanted {
                 seen[&place.index].clone()
             } else {
                 let around = around(&shader_heights, quality, place.index);
-                Seen::between(around.iter().map(|(node, weight)| (&seen[node], *weight)), &error)
+                Visibility::between(
+                    around.iter().map(|(node, weight)| (&seen[node], *weight)),
+                    &error,
+                )
             };
             light(place, &seen, &error)
         };

@@ -93,7 +93,7 @@ impl Wanted {
                     &seen,
                     slope_error(&seen, quality, largest),
                     normal,
-                    &soft.seen,
+                    &soft.visibility,
                 );
                 let light = soft.light.max(0.0);
                 for (c, [want, bound]) in all.iter_mut().enumerate() {

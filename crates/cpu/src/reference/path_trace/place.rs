@@ -16,7 +16,7 @@ pub(super) struct Place {
     pub(super) own: Near,
     pub(super) normal: Near3,
     pub(super) albedo: Near3,
-    pub(super) lobe: [Near; 2],
+    pub(super) specular: [Near; 2],
     pub(super) mirror: Near3,
 }
 
@@ -41,7 +41,7 @@ impl Tracer<'_> {
             own,
             normal,
             albedo: given(self.albedo[sample]),
-            lobe: self.lobes.get(sample).map_or([Near::ZERO; 2], |l| given(*l)),
+            specular: self.specular.get(sample).map_or([Near::ZERO; 2], |l| given(*l)),
             mirror: minus(mirror, [Near::ZERO, Near::ZERO, one()]),
         }
     }
@@ -65,11 +65,11 @@ impl Tracer<'_> {
             a + b + c
         };
         let is_map = matches!(self.scene.surface.albedo, Albedo::Map(_));
-        let lobe_is_map = matches!(self.scene.surface.specular, Some(Specular::Map(_)));
+        let specular_is_map = matches!(self.scene.surface.specular, Some(Specular::Map(_)));
         let channel = |c: usize| between(&|i| Near::given(self.albedo[i][c]));
-        let lobe = |c: usize| match (lobe_is_map, self.lobes.first()) {
-            (true, _) => between(&|i| Near::given(self.lobes[i][c])).max(Near::ZERO),
-            (false, Some(lobe)) => Near::given(lobe[c]),
+        let specular = |c: usize| match (specular_is_map, self.specular.first()) {
+            (true, _) => between(&|i| Near::given(self.specular[i][c])).max(Near::ZERO),
+            (false, Some(pair)) => Near::given(pair[c]),
             (false, None) => Near::ZERO,
         };
         Place {
@@ -78,27 +78,27 @@ impl Tracer<'_> {
             own: nw + met.offset[0] * east + met.offset[1] * south,
             normal,
             albedo: if is_map { [0, 1, 2].map(channel) } else { given(self.albedo[0]) },
-            lobe: [0, 1].map(lobe),
+            specular: [0, 1].map(specular),
             mirror: minus(e, times(Near::of(2.0) * dot(e, normal), normal)),
         }
     }
 
     /// Fraction of scattered rays drawn from the Phong lobe.
-    fn lobe_choice(place: &Place) -> Near {
-        place.lobe[1] / (largest(place.albedo) + place.lobe[1]).max(Near::of(1e-30))
+    fn specular_choice(place: &Place) -> Near {
+        place.specular[1] / (largest(place.albedo) + place.specular[1]).max(Near::of(1e-30))
     }
 
     pub(super) fn reflected(&self, place: &Place, e: Near3) -> Reflected {
         let facing = dot(place.normal, e);
         let density = facing / Near::of(PI);
         let light = times(density, place.albedo);
-        if self.lobes.is_empty() {
+        if self.specular.is_empty() {
             return Reflected { facing, light, density, scattered: place.albedo };
         }
-        let lobe = phong_lobe(minus(e, place.mirror), place.lobe[0]);
-        let choice = Self::lobe_choice(place);
-        let density = density * (one() - choice) + lobe * choice;
-        let more = place.lobe[1] * lobe;
+        let phong = phong_lobe(minus(e, place.mirror), place.specular[0]);
+        let choice = Self::specular_choice(place);
+        let density = density * (one() - choice) + phong * choice;
+        let more = place.specular[1] * phong;
         let light = light.map(|l| l + more);
         let scattered = light.map(|l| l / density.max(Near::of(1e-30)));
         Reflected { facing, light, density, scattered }
@@ -121,10 +121,13 @@ impl Tracer<'_> {
 
     /// Direction of the scattered ray; none where rounding decides between diffuse and specular.
     pub(super) fn scattered(&self, place: &Place, u: [Near; 2], v: [Near; 2]) -> Option<Near3> {
-        let by_lobe =
-            if self.lobes.is_empty() { false } else { Self::lobe_choice(place).above(v[0])? };
-        if by_lobe {
-            let power = one() / (place.lobe[0] + one());
+        let by_specular = if self.specular.is_empty() {
+            false
+        } else {
+            Self::specular_choice(place).above(v[0])?
+        };
+        if by_specular {
+            let power = one() / (place.specular[0] + one());
             let near_mirror = u[0].max(Near::of(1e-30)).powf(power);
             return direction_about(place.mirror, one() - near_mirror, u[1]);
         }
