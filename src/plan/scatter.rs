@@ -142,9 +142,9 @@ pub fn scatter_views(
             bound.push(("sun_points", all.0));
         }
         if scatter.curvature != Curvature::FLAT {
-            let seen = one_image(field, directions, &points, limits)?;
+            let one = one_image(field, directions, &points, limits)?;
             let bends = Bends::make(&mut builder, size, directions, limits)?;
-            let ids = [seen, blocks.images.ground];
+            let ids = [one, blocks.images.ground];
             bends.record(&mut builder, (field, surface.border), scatter.curvature, ids);
             bound.push(("bent", bends.bent));
             bound.push(("fan_weights", bends.weigh(&mut builder, field)));
@@ -188,12 +188,12 @@ pub fn scatter_views(
                     () if wanted.mirrors_lights() => Source::None,
                     () => Source::Direct,
                 };
-                let looked = order[(first * steps + step) as usize] / of_layer;
-                let holds = |(_, layers): &&(ResourceId, Range<u32>)| layers.contains(&looked);
-                let (seen, layers) =
+                let direction = order[(first * steps + step) as usize] / of_layer;
+                let holds = |(_, layers): &&(ResourceId, Range<u32>)| layers.contains(&direction);
+                let (of_direction, layers) =
                     points.iter().find(holds).expect("every direction has a layer");
                 let mut bound = bound.clone();
-                bound.push(("visible_points", *seen));
+                bound.push(("visible_points", *of_direction));
                 if source == Source::Carried {
                     bound.push(("carried_in", carried[(step as usize + 1) % 2]));
                 }

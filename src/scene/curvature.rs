@@ -17,8 +17,8 @@ use crate::{Error, Result};
 /// on.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Curvature {
-    /// One over the radius towards east and towards north, 1/m; above 0 where the base bends down (a sphere seen from
-    /// outside, where valleys widen), below 0 where it is hollow.
+    /// One over the radius towards east and towards north, 1/m; above 0 where the base bends down (the outside
+    /// of a sphere, where valleys widen), below 0 where it is hollow.
     pub per_m: [f64; 2],
 }
 

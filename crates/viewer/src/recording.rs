@@ -116,8 +116,8 @@ impl Screen {
                 }
                 Work::Edit(at) => renderer.record_edit(commands, slot, &inputs, &outputs, at)?,
             }
-            let seen = (&*pane.frame, pane.viewpoint, options.tone.exposure);
-            self.drawers[n].record(&self.gpu, commands, slot, seen)?;
+            let shown = (&*pane.frame, pane.viewpoint, options.tone.exposure);
+            self.drawers[n].record(&self.gpu, commands, slot, shown)?;
         }
         self.fill(slot, image, panes, options);
         // SAFETY: recording was begun above.
@@ -364,11 +364,11 @@ fn copied([width, height]: [u32; 2]) -> vk::BufferImageCopy {
 fn text(panel: &Panel<'_>, size: [u32; 2], offset: u64) -> Option<vk::BufferImageCopy> {
     let [width, height] = panel.size;
     let left = |i: usize| size[i].saturating_sub(panel.at[i]).min(panel.size[i]);
-    let seen = [left(0), left(1)];
+    let shown = [left(0), left(1)];
     let [x, y] = panel.at.map(|at| at as i32);
-    let region = copied(seen).buffer_row_length(width).buffer_image_height(height);
+    let region = copied(shown).buffer_row_length(width).buffer_image_height(height);
     let region = region.image_offset(vk::Offset3D { x, y, z: 0 }).buffer_offset(offset);
-    (!seen.contains(&0)).then_some(region)
+    (!shown.contains(&0)).then_some(region)
 }
 
 #[cfg(test)]

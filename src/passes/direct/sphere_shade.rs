@@ -6,7 +6,7 @@ use crate::graph::shaders::same_layout;
 use crate::graph::{Builder, Rectangle, ResourceId};
 use crate::passes::LandPush;
 use crate::passes::blocks::Blocks;
-use crate::passes::spheres::samples_within;
+use crate::passes::spheres::texels_within;
 use crate::scene::{HeightField, Scene, SphereLight};
 
 #[repr(C)]
@@ -82,7 +82,7 @@ pub(crate) fn plan(
             shading.rectangle
         } else {
             let within = 1.001 * light.radius_m / half_width.min(FRAC_PI_2).sin();
-            common(samples_within(&scene.field, light, within), shading.rectangle)
+            common(texels_within(&scene.field, light, within), shading.rectangle)
         };
         dispatch(
             builder,

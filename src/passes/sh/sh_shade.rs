@@ -45,7 +45,7 @@ pub(crate) fn plan(
     let map = phong.and_then(|phong| phong.map);
     bound.extend(map.map(|map| ("phong_map", map)));
     let [across, along] = sh.nodes.size([cols, rows]).map(u64::from);
-    let seen = across * along * 16 * (sh.layers() as u64 + u64::from(nodes.is_some()));
+    let visibility = across * along * 16 * (sh.layers() as u64 + u64::from(nodes.is_some()));
     builder.pass(
         shaders::ShShade {
             border: border as u32,
@@ -73,7 +73,7 @@ pub(crate) fn plan(
             specular: phong.map_or([0.0; 2], |l| [l.constant.exponent, l.constant.scale]),
         },
         &bound,
-        axis.samples() * (4 + 16) + seen,
+        axis.samples() * (4 + 16) + visibility,
         axis.samples(),
     );
 }

@@ -205,7 +205,7 @@ impl Harmonics {
 
     /// Layout of the visibility, equal for all lights.
     pub(super) fn sh(&self) -> &Sh {
-        let seen = self.diffuse.as_ref().or(self.specular.as_ref());
-        &seen.expect("an environment or specular").sh
+        let light = self.diffuse.as_ref().or(self.specular.as_ref());
+        &light.expect("an environment or specular").sh
     }
 }

@@ -79,14 +79,14 @@ impl Drawing<'_> {
         let Some(h) = &self.harmonics else { return };
         let builder = &mut self.builder;
         let lit = [(&h.diffuse, None), (&h.specular, self.active.sky)];
-        for (seen, sky) in lit {
-            let Some(seen) = seen else { continue };
+        for (light, sky) in lit {
+            let Some(light) = light else { continue };
             let environment = self.active.environment.zip(self.images.environment);
-            if let (Some((e, image)), Some(turns)) = (environment, seen.env_rotation) {
-                passes::env_rotation::plan(builder, e, &seen.sh, [image, h.constants, turns]);
+            if let (Some((e, image)), Some(turns)) = (environment, light.env_rotation) {
+                passes::env_rotation::plan(builder, e, &light.sh, [image, h.constants, turns]);
             }
-            let ids = [h.constants, seen.light_matrix];
-            passes::light_matrix::plan(builder, &seen.sh, sky, seen.env_rotation, ids);
+            let ids = [h.constants, light.light_matrix];
+            passes::light_matrix::plan(builder, &light.sh, sky, light.env_rotation, ids);
         }
     }
 
@@ -114,9 +114,9 @@ impl Drawing<'_> {
         let Some((specular, h)) = self.bounced_by_direction().zip(self.harmonics.as_ref()) else {
             return;
         };
-        let Some(seen) = &h.specular else { return };
+        let Some(light) = &h.specular else { return };
         let size = [self.scene.field.cols() as u32, self.scene.field.rows() as u32];
-        let ids = [h.visibility, seen.light_matrix];
+        let ids = [h.visibility, light.light_matrix];
         passes::specular_visibility::plan(&mut self.builder, size, &specular, ids);
     }
 

@@ -83,8 +83,8 @@ impl View {
         let sky = ViewPass {
             pass: "sky_draw",
             why: match self.environment {
-                Some(_) => "behind the ground: sky and environment, where no ground is seen",
-                None => "behind the ground: the sky, or the background, where no ground is seen",
+                Some(_) => "behind the ground: sky and environment, where no ground is visible",
+                None => "behind the ground: the sky, or the background, where no ground is visible",
             }
             .to_owned(),
             vertices: 3,

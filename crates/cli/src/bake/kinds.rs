@@ -228,11 +228,11 @@ struct Sums {
 }
 
 impl Sums {
-    fn begin(what: Box<dyn HorizonMap>, asked: &Request, map: Map) -> Making {
+    fn begin(what: Box<dyn HorizonMap>, request: &Request, map: Map) -> Making {
         // The sums, and the values computed from them.
-        let bytes =
-            HorizonSums::bytes(&*what, asked.samples) + 4 * (what.values() * asked.samples) as u64;
-        let summing = HorizonSums::new(what, asked.samples);
+        let bytes = HorizonSums::bytes(&*what, request.samples)
+            + 4 * (what.values() * request.samples) as u64;
+        let summing = HorizonSums::new(what, request.samples);
         Making { map, source: Source::Horizons(Box::new(Self { summing, bytes })) }
     }
 }

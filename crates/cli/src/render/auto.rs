@@ -153,7 +153,7 @@ pub fn metadata(
     chosen: &Chosen,
     scene: &Scene,
 ) -> Vec<(String, String)> {
-    let asked = match goal {
+    let wanted = match goal {
         Goal::MaxError(most) => ("max_error", most.to_string()),
         Goal::MaxCost(ns) => ("time_budget_ms", (ns / 1e6).to_string()),
     };
@@ -166,7 +166,7 @@ pub fn metadata(
     let measured = &chosen.trial.measured;
     let confidence = chosen.confidence.map_or_else(|| "none".to_owned(), |c| c.to_string());
     [
-        asked,
+        wanted,
         ("error_expected", chosen.expected.error.to_string()),
         ("error_expected_deviation_factor", chosen.expected.factor.to_string()),
         ("error_measured", measured.error.to_string()),

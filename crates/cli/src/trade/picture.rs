@@ -85,14 +85,14 @@ pub fn pictures(
         full.map(|c: f64| (0.02 + share.abs().min(1.0) * (c - 0.02)) as f32)
     });
     let difference = encode(field, &texels, 1.0)?;
-    let seen = |planes: &[Vec<f32>]| -> Vec<[f32; 3]> {
+    let toned = |planes: &[Vec<f32>]| -> Vec<[f32; 3]> {
         let last = planes.len() - 1;
         (0..planes[0].len())
             .map(|i| [0, 1, 2].map(|c| planes[c.min(last)][i] / tones.white))
             .collect()
     };
     let map =
-        flip::map(&seen(planes), &seen(&ground_truth.planes), field.cols(), PIXELS_PER_DEGREE)?;
+        flip::map(&toned(planes), &toned(&ground_truth.planes), field.cols(), PIXELS_PER_DEGREE)?;
     let flip = FlipError::of(&map, field.cols())?;
     Ok(Pictures { light: light_png(field, planes, tones)?, difference, scale, flip })
 }

@@ -1,5 +1,5 @@
-//! The visible point of a grid point in a direction, in f64, by testing every surface piece along its azimuth: ground
-//! truth, which shares no code with the device's rays.
+//! The visible point of a grid point in a direction, in f64, by testing every surface piece along its azimuth: the
+//! ground truth, which shares no code with the device's rays.
 
 use crate::oracle::Oracle;
 use crate::profile::VisibleInterval;

@@ -183,7 +183,7 @@ impl BounceGather<'_> {
         let mut angles: Option<[(f64, i32); 4]> = None;
         // Radiance lookup of a knot: place and level.
         let mut before = ([0.0; 2], 0);
-        let (mut looked, mut at) = (0, 0);
+        let (mut visited, mut at) = (0, 0);
         let mut take_in = |newest: (f64, i32), of: ([f64; 2], u32), gathered: &mut Gathered| {
             let four = angles.map_or([newest; 4], |[_, a, b, c]| [a, b, c, newest]);
             let [x, y, z, w] = four.map(|(angle, _)| angle);
@@ -197,13 +197,13 @@ impl BounceGather<'_> {
         };
         for next in 0_u32.. {
             let whole = (back + 0.5) as i32;
-            if whole > looked {
+            if whole > visited {
                 at = whole.min(march.reach);
                 let level = (next + 1).saturating_sub(fine).min(levels);
                 let own = self.height(march, level, march.here);
                 let rise = self.height(march, level, march.place(at)) - own;
                 angle = (rise / (f64::from(at) * march.step_m)).atan();
-                looked = whole;
+                visited = whole;
             }
             let (to, from) = (self.shade.level_step, self.pyramid.level_step);
             let shade =

@@ -19,7 +19,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 /// Wedges from one end of the azimuths across a sphere around to the other: the shader's value.
 pub const BEYOND: usize = 32;
 
-/// How sphere lights are looked at.
+/// How sphere lights are shaded.
 #[derive(Clone, Debug)]
 pub struct SphereSh<'a> {
     /// Of the field.

@@ -1,4 +1,4 @@
-//! Direct and indirect light of small fields, in f64, by deterministic quadrature: the ground truth of the GPU's path
+//! Direct and indirect light of small fields, in f64, by deterministic quadrature: the ground ground_truth of the GPU's path
 //! tracer, which follows the definition below and shares no code.
 //!
 //! - A result is the exit radiance of a grid point, towards straight above where there is Phong specular, with the
@@ -17,7 +17,7 @@
 //! normal on each; radiance is linear between them. All receivers at a grid point share the same profiles
 //! ([`profile`](crate::profile)). Every visible interval adds its cosine weight in closed form; its radiance is taken
 //! at the two-point Gauss mean of its distance. Errors: second order in the triangles' size where light is smooth,
-//! first order along shadow edges; second order in the step between azimuths. [`truth`] measures both by halving
+//! first order along shadow edges; second order in the step between azimuths. [`ground_truth`] measures both by halving
 //! both.
 
 use crate::key::key_on;
@@ -55,7 +55,7 @@ pub type Picture = Vec<[f64; 3]>;
 
 /// Radiance and its error estimate.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Truth {
+pub struct GroundTruth {
     /// Exit radiance with all bounces up to the index.
     pub radiance: Vec<Picture>,
     /// The difference to half the fineness at each grid point and channel. This is the error where doubling halves
@@ -68,14 +68,14 @@ pub struct Truth {
 ///
 /// # Errors
 /// As [`light`].
-pub fn truth(scene: &Scene, bounces: usize, fineness: Fineness) -> Result<Truth> {
+pub fn ground_truth(scene: &Scene, bounces: usize, fineness: Fineness) -> Result<GroundTruth> {
     let coarse = light(scene, bounces, fineness)?;
     let radiance = light(scene, bounces, fineness.doubled())?;
     let difference = |(a, b): (&Picture, &Picture)| -> Picture {
         a.iter().zip(b).map(|(a, b)| [0, 1, 2].map(|i| (a[i] - b[i]).abs())).collect()
     };
     let error = radiance.iter().zip(&coarse).map(difference).collect();
-    Ok(Truth { radiance, error })
+    Ok(GroundTruth { radiance, error })
 }
 
 /// Exit radiance of every grid point with all bounces up to 0, 1, … `bounces`.

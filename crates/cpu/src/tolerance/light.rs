@@ -222,7 +222,7 @@ impl SphereGeometry {
     /// angle 4 ε (1 + H/d); the ends of its disc by 2 (d/t)² of that, t the tangent's length, but never by
     /// more than √(8 ε), what is left of a tangent that is nothing; directions, arc tangents and sums by
     /// 40 ε and [`ARC_TANGENT`]. The circle's half chord on a piece of surface has a square that errs by
-    /// 16 ε r²: 4 √ε r where they just touch, seen from d - r or from within. Slices' weights sum to
+    /// 16 ε r²: 4 √ε r where they just touch, from d - r or from within. Slices' weights sum to
     /// π asin(r / away) at most, or to 2 π; two ends a slice, a normal that turns both its parts, over π.
     pub fn tolerance(&self) -> f64 {
         let Self { distance_m: d, away_m, radius_m: r, .. } = *self;

@@ -51,12 +51,12 @@ pub fn facet_elevation(finer: &Land) -> f64 {
     visible_elevation(finer) + 12.0 * EPSILON * finer.relief_m / finer.cell_m
 }
 
-/// What one look-up of `scatter_gather` errs by against its CPU reference, R, G, B; the lobe's exponent is `n`, 1 or more; the normal may
-/// be turned by `normal` radians.
+/// Tolerance of one look-up of `scatter_gather` against its CPU reference, R, G, B. The Phong exponent is `n`, 1 or more.
+/// The normal has an error of `normal` radians.
 ///
 /// A cosine errs by the normal's turn and 6 ε (three products, two sums, the direction's roundings). What a direction lies
 /// apart from the mirror errs by four turns, as that moves by twice the normal's and by twice the cosine's, and 16 ε: the
-/// lobe is what it may be within. Its power x = n ln errs by 8 ε of itself and 1e-7, its exponential by (3 + 2 |x|) ulp
+/// lobe counts with its range within that. Its power x = n ln errs by 8 ε of itself and 1e-7, its exponential by (3 + 2 |x|) ulp
 /// (Vulkan): (12 |x| + 8) ε and 1e-7 of it; f32 ends at 1e-37. Products and quotients round 16 times.
 pub fn gathered(of: &Gathered, n: f64, normal: f64) -> [f64; 3] {
     let cosine = normal + 6.0 * EPSILON;
@@ -64,8 +64,8 @@ pub fn gathered(of: &Gathered, n: f64, normal: f64) -> [f64; 3] {
     let power = |along: f64| along.clamp(0.0, 1.0).powf(n);
     let [near, far] = [power(of.along + apart), power(of.along - apart)];
     let x = n * of.along.clamp(1e-30, 1.0).ln().abs();
-    let lobe = near - far + near * ((12.0 * x + 24.0) * EPSILON + 1e-7) + 1e-37;
-    [0, 1, 2].map(|c| of.facing[c] * cosine + of.mirrored[c] * lobe + 16.0 * EPSILON * of.light[c])
+    let phong = near - far + near * ((12.0 * x + 24.0) * EPSILON + 1e-7) + 1e-37;
+    [0, 1, 2].map(|c| of.facing[c] * cosine + of.mirrored[c] * phong + 16.0 * EPSILON * of.light[c])
 }
 
 /// By how much equation 4 of an ellipse of `ellipse_fit` may be off near its edge, where neither term is over 1.

@@ -15,8 +15,8 @@ pub static KIND: Kind = Kind {
     begin,
 };
 
-fn begin(asked: &Request) -> Result<Making> {
-    let count = asked.directions.count();
+fn begin(request: &Request) -> Result<Making> {
+    let count = request.directions.count();
     let value = |name| Value {
         name,
         about: "of the grid point nearest to the hit, from the north-west; -1 for the sky, -2 \
@@ -52,13 +52,13 @@ fn take(traced: &DirectionsJob, files: &mut MapFiles) -> Result<()> {
         files.add_entry("triangles", serde_json::json!(net.corners()));
     }
     for direction in 0..directions.count() {
-        let seen = |sample| match points.point(direction, sample) {
+        let place = |sample| match points.point(direction, sample) {
             VisiblePoint::Sample(at) => [at / cols, at % cols].map(|n| n as f32),
             VisiblePoint::Sky => [-1.0; 2],
             VisiblePoint::Ground => [-2.0; 2],
         };
         let [rows, columns] = [0, 1]
-            .map(|part| -> Vec<f32> { (0..samples).map(|sample| seen(sample)[part]).collect() });
+            .map(|part| -> Vec<f32> { (0..samples).map(|sample| place(sample)[part]).collect() });
         files.take(&[&rows, &columns])?;
     }
     Ok(())

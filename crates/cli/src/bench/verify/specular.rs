@@ -39,7 +39,7 @@ pub(super) fn check(
     let wanted = Picture { light_layers: true, ..Picture::default() };
     let plan = plan::picture(scene, quality, limits, wanted)?;
     let number = |name: &str| plan.outputs().position(|(_, r)| r.name == name);
-    let Some(glossy) = number("direct.specular") else {
+    let Some(specular_layer) = number("direct.specular") else {
         return Ok("the specular scale is 0 everywhere".to_owned());
     };
     let suns: Vec<Option<usize>> =
@@ -50,7 +50,7 @@ pub(super) fn check(
         gpu.draw(frame)?;
         let mut of = |number: usize| Ok(colours(&gpu.pixels(frame, number)?, places));
         let suns: Result<Vec<_>> = suns.into_iter().map(|n| n.map(&mut of).transpose()).collect();
-        Ok((of(glossy)?, suns?))
+        Ok((of(specular_layer)?, suns?))
     })?;
     let all = match shines_around(&scene.lights) {
         true => with_nodes(scene, places, gpu, quality, limits)?,
@@ -89,8 +89,8 @@ fn wanted_of(
             let border = scene.surface.border;
             let sky = sky.unwrap_or_default();
             let harmonics = Harmonics::of_specular(environment.as_ref(), sky, border, quality);
-            Wanted::lit(scene, quality, [places, nodes], &harmonics, |place, seen, error| {
-                harmonics.mirrored(place.normal, specular.at(place.index), seen, error)
+            Wanted::lit(scene, quality, [places, nodes], &harmonics, |place, visibility, error| {
+                harmonics.mirrored(place.normal, specular.at(place.index), visibility, error)
             })
         }
         false => Wanted(vec![[DVec3::ZERO; 2]; places.len()]),
