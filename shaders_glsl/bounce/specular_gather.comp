@@ -105,7 +105,7 @@ Taps4 taps_of(int level, vec2 place) {
     Taps4 taps;
     if (level > 0) {
         Level of = level_of(texelFetch(shade_table, ivec2(level - 1, 0), 0));
-        precise vec2 at = place * of.per_sample;
+        precise vec2 at = place * of.per_grid_point;
         ivec2 x;
         ivec2 y;
         float t;

@@ -20,7 +20,7 @@ pub struct Axis {
 
 impl Axis {
     /// Texels of the field.
-    pub fn samples(self) -> u64 {
+    pub fn texels(self) -> u64 {
         u64::from(self.lanes) * u64::from(self.steps)
     }
 

@@ -149,9 +149,9 @@ pub fn scatter_views(
             bound.push(("bent", bends.bent));
             bound.push(("fan_weights", bends.weigh(&mut builder, field)));
         }
-        let samples = u64::from(size[0]) * u64::from(size[1]);
+        let grid_points = u64::from(size[0]) * u64::from(size[1]);
         let is_chained = steps > 1;
-        let fitting = CARRIED_BYTES / (2 * 16 * samples);
+        let fitting = CARRIED_BYTES / (2 * 16 * grid_points);
         // Parallel paths need one image of visible points.
         let most = match (points.len(), is_chained) {
             (1, true) => fitting.clamp(1, MOST_AT_ONCE).min(limits.image_layers.into()) as u32,
@@ -273,10 +273,14 @@ pub fn scatter_inputs(
         let expected = format!("those of the plan, {wanted}: vectors and lowest height alike");
         return Err(Error::setting("directions of the visible points", found, expected));
     }
-    let samples = field.rows() * field.cols();
-    if direct.len() != samples {
+    let grid_points = field.rows() * field.cols();
+    if direct.len() != grid_points {
         let found = format!("{} colours", direct.len());
-        return Err(Error::setting("direct light", found, format!("{samples}, one a sample")));
+        return Err(Error::setting(
+            "direct light",
+            found,
+            format!("{grid_points}, one per grid point"),
+        ));
     }
     let four = |texels: &[[f32; 3]]| -> Vec<f32> {
         texels.iter().flat_map(|t| [t[0], t[1], t[2], 1.0]).collect()

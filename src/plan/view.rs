@@ -96,7 +96,7 @@ impl View {
         options.check_within(limits)?;
         let Scene { field, lights, .. } = scene;
         if field.rows() < 2 || field.cols() < 2 {
-            let found = format!("{} × {} samples", field.cols(), field.rows());
+            let found = format!("{} × {} grid points", field.cols(), field.rows());
             return Err(Error::setting("a field before a camera", found, "2 × 2 or more"));
         }
         let radiance = lit.find("radiance").and_then(|id| lit.resources.get(id.0)?.format());
@@ -234,7 +234,7 @@ fn terrain(scene: &Scene, camera: &Camera, options: &ViewOptions) -> (TerrainDra
         origin_m,
         cols: field.cols() as i32,
         rows: field.rows() as i32,
-        step_samples: options.mesh_step as i32,
+        mesh_step: options.mesh_step as i32,
         tiles_across: 0,
     };
     (push, depths)

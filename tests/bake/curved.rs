@@ -108,7 +108,9 @@ fn repetitions_are_those_that_rays_meet() {
             let plan = e.truncate().length();
             for here in [knob, (knob + 1) % (rows * cols), 0] {
                 let at = [here / cols, here % cols];
-                let VisiblePoint::Sample(there) = visible_point(&oracle, at, e) else { continue };
+                let VisiblePoint::GridPoint(there) = visible_point(&oracle, at, e) else {
+                    continue;
+                };
                 oracle.visible_intervals(at[0], at[1], e.y.atan2(e.x), &mut stretches);
                 let elevation = e.z.atan2(plan);
                 let stretch = stretches.iter().find(|s| elevation < s.high_rad).expect("met");
@@ -141,7 +143,7 @@ fn what_the_base_turns_away_is_taken_for_no_nearer() {
     let (field, border) = (hills(7, 40), Border::Periodic);
     let (oracle, knob) = (Oracle::new(&field, border), knob(7, 40));
     let e = DVec3::new(1.0, 0.17, -0.001).normalize();
-    let VisiblePoint::Sample(there) = visible_point(&oracle, [knob / 40, knob % 40], e) else {
+    let VisiblePoint::GridPoint(there) = visible_point(&oracle, [knob / 40, knob % 40], e) else {
         panic!("it falls")
     };
     let away = |k: f64| {

@@ -77,7 +77,7 @@ fn bounces_at_nodes() {
         ];
         for (engine, name) in engines {
             let plan = drawn(&scene, &quality(engine, 3, stride), ROOMY);
-            let samples = plan.passes.iter().filter(|p| p.name() == name).map(|p| p.samples);
+            let samples = plan.passes.iter().filter(|p| p.name() == name).map(|p| p.texels);
             let walks_once = engine == BounceEngine::Sweep;
             let later = if walks_once { 0 } else { 2 * nodes(2 * stride) };
             assert_eq!(samples.sum::<u64>(), (nodes(stride) + later) * 8, "{name} {stride}");
@@ -105,7 +105,7 @@ fn bounces_at_nodes() {
     let tight = drawn(&large, &walks, all - sets + sets / 8);
     assert!(tight.find("visibility_cache").is_none() && count(&tight, "cache_gather") == 0);
     let walked = |plan: &Plan| -> u64 {
-        plan.passes.iter().filter(|p| p.name() == "bounce_walk").map(|p| p.samples).sum()
+        plan.passes.iter().filter(|p| p.name() == "bounce_walk").map(|p| p.texels).sum()
     };
     let found = |stride: u32| {
         u64::from(49_u32.div_ceil(stride) + 1) * u64::from(69_u32.div_ceil(stride) + 1)

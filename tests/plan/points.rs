@@ -22,7 +22,7 @@ fn layers(plan: &Plan) -> Vec<u32> {
     plan.outputs().map(|(_, r)| extent(r.kind)).collect()
 }
 
-/// Two directions a word up to 255 samples a side, else one; odd numbers of them fill half a word.
+/// Two directions a word up to 255 grid points a side, else one; odd numbers of them fill half a word.
 #[test]
 fn points_take_what_they_say() {
     let limits = Limits::lavapipe();

@@ -134,7 +134,7 @@ fn json(plan: &Plan, view: Option<&View>) -> serde_json::Value {
         .map(|p| {
             serde_json::json!({
                 "pass": p.name(), "part": p.part, "why": p.why, "groups": p.groups, "bytes": p.bytes,
-                "samples": p.samples, "barrier_before": p.barrier_before,
+                "texels": p.texels, "barrier_before": p.barrier_before,
                 "reads": p.reads().map(|r| name(&r)).collect::<Vec<_>>(),
                 "writes": p.writes().map(|r| name(&r)).collect::<Vec<_>>(),
             })
@@ -153,7 +153,7 @@ fn json(plan: &Plan, view: Option<&View>) -> serde_json::Value {
         passes.extend(view.passes(false).into_iter().map(|d| {
             serde_json::json!({
                 "pass": d.pass, "part": "", "why": d.why, "vertices": d.vertices, "bytes": d.bytes,
-                "samples": u64::from(view.size[0]) * u64::from(view.size[1]), "barrier_before": true,
+                "texels": u64::from(view.size[0]) * u64::from(view.size[1]), "barrier_before": true,
                 "reads": d.reads, "writes": d.writes,
             })
         }));

@@ -298,12 +298,12 @@ fn check(pane: &Pane<'_>, size: [u32; 2], swaps: bool) -> Result<()> {
         let within = |first: u32, count: u32, all: u32| {
             first.checked_add(count).is_some_and(|end| end <= all) && count > 0
         };
-        let samples = cols as usize * rows as usize;
-        if heights.len() != samples
+        let grid_points = cols as usize * rows as usize;
+        if heights.len() != grid_points
             || !(within(at.col, at.cols, cols) && within(at.row, at.rows, rows))
         {
             let found = format!("{} heights, new in {at:?}", heights.len());
-            let expected = format!("{samples}, new within {} × {}", field[0], field[1]);
+            let expected = format!("{grid_points}, new within {} × {}", field[0], field[1]);
             return Err(Error::setting("heights", found, expected));
         }
     }

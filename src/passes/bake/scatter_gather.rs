@@ -158,7 +158,7 @@ pub(crate) fn plan_nothing(
     (scattered, views): (ResourceId, u32),
 ) {
     let [cols, rows] = [field.cols() as u32, field.rows() as u32];
-    let samples = u64::from(cols) * u64::from(rows);
+    let grid_points = u64::from(cols) * u64::from(rows);
     builder.pass(
         shaders::ScatterGather { source: Source::None as u32, sums: true, ..Default::default() },
         "nothing",
@@ -166,7 +166,7 @@ pub(crate) fn plan_nothing(
         [cols.div_ceil(8), rows.div_ceil(8), views],
         &ScatterGatherPush { cols: cols as i32, rows: rows as i32, ..bytemuck::Zeroable::zeroed() },
         &[("scattered", scattered)],
-        16 * samples * u64::from(views),
-        samples * u64::from(views),
+        16 * grid_points * u64::from(views),
+        grid_points * u64::from(views),
     );
 }

@@ -138,7 +138,7 @@ fn dispatch(
     let [narrow, around] = light.slices(shading.slices, field.cell_m());
     let (base, offset) = place_of(field, light);
     let Rectangle { col, row, cols, rows } = shading.rectangle;
-    let samples = u64::from(cols) * u64::from(rows);
+    let grid_points = u64::from(cols) * u64::from(rows);
     let [thin_rows, thin_cols] = blocks.thin(field);
     let [r, g, b] = light.radiance;
     let begins = shading.begins && slices.start == 0;
@@ -173,7 +173,7 @@ fn dispatch(
             ("ground", blocks.images.ground),
             ("sphere_sum", sum),
         ],
-        samples * (3 * 16),
-        samples * slices.len() as u64,
+        grid_points * (3 * 16),
+        grid_points * slices.len() as u64,
     );
 }

@@ -109,7 +109,7 @@ pub(crate) fn plan(
 ) {
     let Scene { field, surface, lights } = scene;
     let (cols, rows) = (field.cols() as u32, field.rows() as u32);
-    let samples = u64::from(cols) * u64::from(band.end - band.start);
+    let grid_points = u64::from(cols) * u64::from(band.end - band.start);
     let mut label = Vec::new();
     let all_rows = listed.map_or(rows, |count| count.div_ceil(cols));
     if band.end - band.start < all_rows {
@@ -166,7 +166,7 @@ pub(crate) fn plan(
             last_light: light_range.end as i32,
         },
         bound,
-        samples * 7 * 16,
-        samples * u64::from(BATCH_PATHS),
+        grid_points * 7 * 16,
+        grid_points * u64::from(BATCH_PATHS),
     );
 }

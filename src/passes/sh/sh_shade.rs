@@ -73,7 +73,7 @@ pub(crate) fn plan(
             specular: phong.map_or([0.0; 2], |l| [l.constant.exponent, l.constant.scale]),
         },
         &bound,
-        axis.samples() * (4 + 16) + visibility,
-        axis.samples(),
+        axis.texels() * (4 + 16) + visibility,
+        axis.texels(),
     );
 }

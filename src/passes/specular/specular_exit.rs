@@ -48,7 +48,7 @@ pub(crate) fn plan(
     ground: ResourceId,
     outgoing: &ExitRadiance,
 ) {
-    let samples = u64::from(cols) * u64::from(rows);
+    let grid_points = u64::from(cols) * u64::from(rows);
     let is_direct = outgoing.bounce == 0;
     let is_bounced = outgoing.diffuse.is_some();
     let vectors = match specular.outgoing {
@@ -104,7 +104,7 @@ pub(crate) fn plan(
             scale: phong.constant.scale,
         },
         &bound,
-        samples * (3 * 16 + 16 * layers + written),
-        samples,
+        grid_points * (3 * 16 + 16 * layers + written),
+        grid_points,
     );
 }

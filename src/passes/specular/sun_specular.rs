@@ -70,7 +70,7 @@ pub(crate) fn plan(
             specular: [phong.constant.exponent, phong.constant.scale],
         },
         &bound,
-        axis.samples() * (4 + 4 + 2 * 16 * (1 + u64::from(layers))),
-        axis.samples(),
+        axis.texels() * (4 + 4 + 2 * 16 * (1 + u64::from(layers))),
+        axis.texels(),
     );
 }

@@ -102,7 +102,7 @@ pub(super) fn bent_directions(run: &mut Run, pass: &Pass) -> Vec<Pair> {
                 pairs.push(Pair { got, want, tolerance: best.1, at: [i, at / cols, at % cols] });
             }
             let want = match points.point(i, at) {
-                VisiblePoint::Sample(_) => 1.0,
+                VisiblePoint::GridPoint(_) => 1.0,
                 VisiblePoint::Sky => 0.0,
                 VisiblePoint::Ground => -1.0,
             };

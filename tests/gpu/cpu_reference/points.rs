@@ -11,7 +11,7 @@ use super::{Pair, Run, pushed};
 
 fn number(point: VisiblePoint) -> f64 {
     match point {
-        VisiblePoint::Sample(at) => at as f64,
+        VisiblePoint::GridPoint(at) => at as f64,
         VisiblePoint::Sky => -1.0,
         VisiblePoint::Ground => -2.0,
     }

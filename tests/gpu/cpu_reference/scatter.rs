@@ -4,7 +4,7 @@ use glam::DVec3;
 use ridgelight::gpu::shaders::offsets::scatter_gather_push as push;
 use ridgelight::plan::Pass;
 use ridgelight::scene::{Curvature, Directions, VisiblePoint, VisiblePoints};
-use ridgelight_cpu::scatter_gather::{Gathered, Samples};
+use ridgelight_cpu::scatter_gather::{Gathered, GridPoints};
 use ridgelight_cpu::tolerance::{EPSILON, Land, gathered};
 
 use super::cases::towards;
@@ -92,7 +92,7 @@ pub(super) fn scatter_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         per_m: [push::CURVATURE_X, push::CURVATURE_Y]
             .map(|o| f64::from(f32::from_bits(pushed(pass, o)))),
     };
-    let samples = Samples::of(run.scene).on(curvature);
+    let samples = GridPoints::of(run.scene).on(curvature);
     // On a curved base, the device's own directions and weights.
     let bent = (curvature != Curvature::FLAT).then(|| {
         let looks = super::bend::of_samples(run, pass, points.directions().count());
@@ -128,8 +128,8 @@ pub(super) fn scatter_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         for (path, (e, direction, sky, back)) in links.iter().enumerate() {
             let seen = points.point(*direction, at);
             let arrives = match (seen, source) {
-                (VisiblePoint::Sample(there), 1) => direct[there],
-                (VisiblePoint::Sample(there), 2) => carried[path * count + there],
+                (VisiblePoint::GridPoint(there), 1) => direct[there],
+                (VisiblePoint::GridPoint(there), 2) => carried[path * count + there],
                 _ => [0.0; 3],
             };
             let back = if sums { &of_views[view] } else { back };

@@ -86,19 +86,19 @@ pub const MOVES: [(f64, f64); 8] = [
 ];
 
 /// Sky visibility of a grid point above horizontal.
-pub fn sky_directions(points: &VisiblePoints, sample: usize) -> Vec<SkyDirection> {
+pub fn sky_directions(points: &VisiblePoints, grid_point: usize) -> Vec<SkyDirection> {
     let all = points.directions().vectors().iter().enumerate().filter(|(_, e)| e.z > 0.0);
-    all.map(|(i, e)| (*e, points.point(i, sample) == VisiblePoint::Sky)).collect()
+    all.map(|(i, e)| (*e, points.point(i, grid_point) == VisiblePoint::Sky)).collect()
 }
 
 /// The same on a curved base surface, where a grid point's directions are `bent`.
 pub fn bent_sky_directions(
     points: &VisiblePoints,
     bent: &[DVec3],
-    sample: usize,
+    grid_point: usize,
 ) -> Vec<SkyDirection> {
     let all = bent.iter().enumerate().filter(|(_, e)| e.z > 0.0);
-    all.map(|(i, e)| (*e, points.point(i, sample) == VisiblePoint::Sky)).collect()
+    all.map(|(i, e)| (*e, points.point(i, grid_point) == VisiblePoint::Sky)).collect()
 }
 
 /// Lit minus shadowed directions inside.

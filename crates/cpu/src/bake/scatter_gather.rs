@@ -19,12 +19,12 @@ pub struct Gathered {
 }
 
 /// Reflectances and normals of a field's grid points.
-pub struct Samples<'a> {
+pub struct GridPoints<'a> {
     scene: &'a Scene,
     normals: Vec<DVec3>,
 }
 
-impl<'a> Samples<'a> {
+impl<'a> GridPoints<'a> {
     /// Of a scene's field.
     pub fn of(scene: &'a Scene) -> Self {
         let (field, border) = (&scene.field, scene.surface.border);
@@ -99,7 +99,7 @@ pub fn expected(
     direct: &[[f64; 3]],
     bounces: u32,
 ) -> Vec<[f64; 3]> {
-    let samples = Samples::of(scene);
+    let grid_points = GridPoints::of(scene);
     let share = points.directions().share_sr();
     let mut leaving = direct.to_vec();
     let mut sums = vec![[0.0; 3]; direct.len()];
@@ -107,9 +107,9 @@ pub fn expected(
         for (at, sum) in sums.iter_mut().enumerate() {
             *sum = [0.0; 3];
             for (i, e) in points.directions().vectors().iter().enumerate() {
-                if let VisiblePoint::Sample(there) = points.point(i, at) {
+                if let VisiblePoint::GridPoint(there) = points.point(i, at) {
                     let arrives = [leaving[there], [0.0; 3]];
-                    let more = samples.scattered(at, (*e, share), DVec3::Z, arrives).light;
+                    let more = grid_points.scattered(at, (*e, share), DVec3::Z, arrives).light;
                     *sum = [0, 1, 2].map(|c| sum[c] + more[c]);
                 }
             }

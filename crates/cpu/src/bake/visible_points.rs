@@ -14,8 +14,8 @@ pub fn visible_points(
     directions: &Directions,
 ) -> Vec<VisiblePoint> {
     let oracle = Oracle::new(field, border);
-    let samples = field.rows() * field.cols();
-    let each = directions.vectors().iter().flat_map(|e| (0..samples).map(move |at| (*e, at)));
+    let grid_points = field.rows() * field.cols();
+    let each = directions.vectors().iter().flat_map(|e| (0..grid_points).map(move |at| (*e, at)));
     each.map(|(e, at)| visible_point(&oracle, [at / field.cols(), at % field.cols()], e)).collect()
 }
 
@@ -59,7 +59,7 @@ pub fn possible_within(
 ) -> Vec<VisiblePoint> {
     // Straight up or down there is no azimuth: sky, or the grid point itself.
     if e.x == 0.0 && e.y == 0.0 {
-        let own = VisiblePoint::Sample(row * oracle.field().cols() + col);
+        let own = VisiblePoint::GridPoint(row * oracle.field().cols() + col);
         return vec![if e.z > 0.0 { VisiblePoint::Sky } else { own }];
     }
     let elevation = e.z.atan2(e.x.hypot(e.y));
@@ -130,7 +130,7 @@ fn met(
             Border::Plane | Border::Open => place.clamp(0, count as i64 - 1) as usize,
         }
     };
-    VisiblePoint::Sample(
+    VisiblePoint::GridPoint(
         nearest(row, down, off[0], rows) * cols + nearest(col, right, off[1], cols),
     )
 }

@@ -239,13 +239,13 @@ impl BounceGather<'_> {
     fn height(&self, march: &March, level: u32, place: [f64; 2]) -> f64 {
         if let (Stored::Levels(texels), 1..) = (self.stored, level) {
             let of = self.pyramid.level(level);
-            let at = [0, 1].map(|i| place[i] as f32 * of.per_sample[i]);
+            let at = [0, 1].map(|i| place[i] as f32 * of.per_grid_point[i]);
             return f64::from(LevelTexels { pyramid: self.pyramid, texels }.spline_at(&of, at));
         }
-        let samples = self.pyramid.size[0] as usize * self.pyramid.size[1] as usize;
+        let grid_points = self.pyramid.size[0] as usize * self.pyramid.size[1] as usize;
         let (two, t) = self.beside(march, place);
         let [low, high] = two.map(|i| match self.stored {
-            Stored::Stack(stack) if level > 0 => stack[(level as usize - 1) * samples + i],
+            Stored::Stack(stack) if level > 0 => stack[(level as usize - 1) * grid_points + i],
             _ => self.field.heights_m()[i],
         });
         f64::from(low) + t * (f64::from(high) - f64::from(low))

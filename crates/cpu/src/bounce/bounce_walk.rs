@@ -134,7 +134,7 @@ impl Progress {
 impl<'a> Walk<'a> {
     fn new(swept: &Swept<'a>, exit: &'a [[f32; 3]], azimuth: &Azimuth, col: i32, row: i32) -> Self {
         let march = March::new(swept.heights, azimuth);
-        let (lane, step) = march.of_sample(col, row);
+        let (lane, step) = march.of_grid_point(col, row);
         let gradient = field_slope(&swept.heights, col, row);
         let direction = DVec2::new(azimuth.cos_phi.into(), azimuth.sin_phi.into());
         let warm_up = swept.warm_up[usize::from(azimuth.marches_rows())];

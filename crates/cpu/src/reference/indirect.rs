@@ -87,8 +87,8 @@ pub fn ground_truth(scene: &Scene, bounces: usize, fineness: Fineness) -> Result
 /// A scene or a fineness out of range.
 pub fn light(scene: &Scene, bounces: usize, fineness: Fineness) -> Result<Vec<Picture>> {
     let Scene { field, surface, lights } = scene;
-    let samples = field.rows() * field.cols();
-    surface.check(samples)?;
+    let grid_points = field.rows() * field.cols();
+    surface.check(grid_points)?;
     lights.check()?;
     let Fineness { azimuths, divisions, strips } = fineness;
     for (name, value) in [("azimuths", azimuths), ("divisions", divisions), ("strips", strips)] {
@@ -118,11 +118,11 @@ pub fn light(scene: &Scene, bounces: usize, fineness: Fineness) -> Result<Vec<Pi
         let scale =
             surface.specular.as_ref().map_or(0.0, |specular| f64::from(specular.at(at).scale));
         let diffuse = product(albedo(at), arrived[corners + at]);
-        let mirrored = arrived.get(corners + samples + at).copied().unwrap_or_default();
+        let mirrored = arrived.get(corners + grid_points + at).copied().unwrap_or_default();
         [0, 1, 2].map(|i| diffuse[i] + scale * mirrored[i])
     };
 
-    let mut picture: Picture = (0..samples).map(|at| towards_above(&arrived, at)).collect();
+    let mut picture: Picture = (0..grid_points).map(|at| towards_above(&arrived, at)).collect();
     let mut pictures = vec![picture.clone()];
     for _ in 0..bounces {
         let leaving: Vec<[f64; 3]> =
@@ -185,15 +185,15 @@ fn places(
             places[r * fine.cols() + c].push((3 * triangle + k, receiver));
         }
     }
-    let samples = field.rows() * field.cols();
-    for at in 0..samples {
+    let grid_points = field.rows() * field.cols();
+    for at in 0..grid_points {
         let (r, c) = (at / field.cols(), at % field.cols());
         let normal = normal(field, oracle.border(), r, c);
         let place = &mut places[divisions * (r * fine.cols() + c)];
         place.push((corners + at, Receiver::diffuse(normal)));
         if let Some(specular) = specular {
             let n = f64::from(specular.at(at).exponent);
-            place.push((corners + samples + at, Receiver::specular_from_above(normal, n)));
+            place.push((corners + grid_points + at, Receiver::specular_from_above(normal, n)));
         }
     }
     places

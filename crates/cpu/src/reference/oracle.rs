@@ -110,7 +110,7 @@ impl<'a> Oracle<'a> {
         }
         assert!(
             row < self.field.rows() && col < self.field.cols(),
-            "sample (row {row}, column {col}) of a field of {} × {}",
+            "grid point (row {row}, column {col}) of a field of {} × {}",
             self.field.rows(),
             self.field.cols()
         );

@@ -32,7 +32,7 @@ const FAINTEST: f64 = 1e-30;
 pub struct Tracer<'a> {
     scene: &'a Scene,
     ground: Ground,
-    samples: Vec<[f32; 3]>,
+    grid_points: Vec<[f32; 3]>,
     /// Two texels a light: suns, key lights, sphere lights.
     lights: Vec<[f32; 4]>,
     environment: Option<Environment>,
@@ -78,7 +78,7 @@ impl<'a> Tracer<'a> {
     /// grid points, where direct light does not count.
     pub fn of(
         scene: &'a Scene,
-        samples: Vec<[f32; 3]>,
+        grid_points: Vec<[f32; 3]>,
         (bounces, seed): (u32, u32),
         counts_direct: bool,
     ) -> Self {
@@ -95,7 +95,7 @@ impl<'a> Tracer<'a> {
                 (of.rotation_rad() / std::f64::consts::TAU).rem_euclid(1.0) as f32,
             ),
         });
-        let count = samples.len();
+        let count = grid_points.len();
         let pair = |phong: ridgelight::scene::PhongSpecular| [phong.exponent, phong.scale];
         let sky = lights.sky.unwrap_or_default();
         let texels = lights.environment.iter().flat_map(|e| e.texels());
@@ -120,7 +120,7 @@ impl<'a> Tracer<'a> {
             },
             most: (0..=bounces).map(|b| max_path_light(scene, b)).collect(),
             scene,
-            samples,
+            grid_points,
             bounces,
             seed,
             counts_direct,
@@ -147,14 +147,14 @@ impl<'a> Tracer<'a> {
     /// The grid point lies outside the field.
     pub fn traced(
         &self,
-        sample: usize,
+        grid_point: usize,
         (slot, batch): (u32, u32),
         (paths, lights): (Range<u32>, Range<u32>),
     ) -> Traced {
         let mut all = Traced::default();
         for path in paths {
             let words = [slot, batch, self.seed];
-            self.path_light(self.first(sample), path, words, &lights, &mut all);
+            self.path_light(self.first(grid_point), path, words, &lights, &mut all);
         }
         all
     }

@@ -55,9 +55,9 @@ impl VisibleInterval {
 impl Oracle<'_> {
     /// Cells of the surface: rows, columns. Under `periodic` the last cell connects to the first grid point.
     pub fn cells(&self) -> [usize; 2] {
-        let count = |samples| match self.border() {
-            Border::Periodic => samples,
-            Border::Plane | Border::Open => samples - 1,
+        let count = |grid_points| match self.border() {
+            Border::Periodic => grid_points,
+            Border::Plane | Border::Open => grid_points - 1,
         };
         [count(self.field().rows()), count(self.field().cols())]
     }
@@ -104,7 +104,10 @@ impl Oracle<'_> {
         intervals.clear();
         let field = self.field();
         let (rows, cols) = (field.rows(), field.cols());
-        assert!(row < rows && col < cols, "sample (row {row}, column {col}) of {rows} × {cols}");
+        assert!(
+            row < rows && col < cols,
+            "grid point (row {row}, column {col}) of {rows} × {cols}"
+        );
         let [cols_per_m, rows_per_m] = grid_direction(field, azimuth_rad);
         let here = [row as f64, col as f64];
         let above_m = self.highest_m - self.vertex(here[0], here[1]);
@@ -167,7 +170,7 @@ impl Oracle<'_> {
     fn piece(&self, here: [f64; 2], per_m: [f64; 2], span_m: [f64; 2]) -> Option<VisibleInterval> {
         let [near, far] = span_m;
         let middle = 0.5 * (near + far);
-        let samples = [self.field().rows(), self.field().cols()];
+        let grid_points = [self.field().rows(), self.field().cols()];
         let cells = self.cells();
         // Along the last row or column lies the last cell.
         let is_last = [0, 1].map(|i| {
@@ -179,7 +182,7 @@ impl Oracle<'_> {
         let [down, right] = [0, 1].map(|i| here[i] + per_m[i] * middle - cell[i]);
         let lower = down > right;
         let at = match self.border() {
-            Border::Periodic => [0, 1].map(|i| (cell[i] as i64).rem_euclid(samples[i] as i64)),
+            Border::Periodic => [0, 1].map(|i| (cell[i] as i64).rem_euclid(grid_points[i] as i64)),
             Border::Plane | Border::Open => [0, 1].map(|i| cell[i] as i64),
         };
         if (0..2).any(|i| !(0..cells[i] as i64).contains(&at[i])) {

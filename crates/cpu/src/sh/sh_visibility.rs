@@ -73,5 +73,5 @@ pub fn visibility_along(series: Series, rays: &[[f64; 3]]) -> Vec<f64> {
 
 /// `visibility` of all azimuths: [`visibility_at`] for every grid point, row-major.
 pub fn sh_visibility(swept: &Swept, series: Series) -> Vec<Vec<f64>> {
-    swept.per_sample(|col, row| visibility_at(swept, series, col, row))
+    swept.per_grid_point(|col, row| visibility_at(swept, series, col, row))
 }

@@ -44,7 +44,7 @@ pub fn crossing_elevation(oracle: &Oracle, interval: &VisibleInterval, own_m: f6
     (slope + off).atan() - (slope - off).atan() + 12.0 * EPSILON
 }
 
-/// [`visible_elevation`] from the middles of triangles, of the threefold finer field whose samples they are: there the device's
+/// [`visible_elevation`] from the middles of triangles, of the threefold finer field whose grid points they are: there the device's
 /// height errs by 4 ε R (two differences, their sum's third, a sum), the field's own, rounded, by ε R at either end, half a
 /// finer cell apart or more.
 pub fn facet_elevation(finer: &Land) -> f64 {

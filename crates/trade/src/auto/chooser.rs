@@ -85,13 +85,13 @@ impl<'a> Chooser<'a> {
     /// For a scene with this many bounces and its [`Statistics`].
     pub fn new(scene: &'a Scene, statistics: &Statistics, goal: Goal, bounces: u32) -> Self {
         let model = Model::of(scene, statistics, bounces);
-        let samples = scene.field.rows() * scene.field.cols();
+        let grid_points = scene.field.rows() * scene.field.cols();
         Self {
             scene,
             goal,
             first_guess: model.clone(),
             model,
-            costs: Costs::guessed(samples),
+            costs: Costs::guessed(grid_points),
             candidates: candidates(scene, bounces),
             trials: Vec::new(),
         }

@@ -161,9 +161,9 @@ fn search_limits_and_bounds_are_reported() {
     });
     assert!(slow.unwrap_err().to_string().contains("take more than 30 s"));
     let full = || Error::Limit { what: "".into(), needs: "".into(), limit: "".into() };
-    for (samples, confidence) in [(40, None), (SIDE * SIDE, Some(Probes::CONFIDENCE))] {
+    for (probes, confidence) in [(40, None), (SIDE * SIDE, Some(Probes::CONFIDENCE))] {
         let mut frames = 0;
-        let found = choose(&scene, Goal::MaxError(0.1), (samples, 7), None, |quality| {
+        let found = choose(&scene, Goal::MaxError(0.1), (probes, 7), None, |quality| {
             frames += 1;
             if frames == 2 { Err(full()) } else { draw(&scene, quality) }
         });
@@ -253,7 +253,7 @@ fn exact_horizons_are_the_last_resort() {
 #[test]
 fn errors_unrelated_to_settings_are_returned() {
     let too_long = || Error::Limit {
-        what: "a field 9 samples long".into(),
+        what: "a field 9 grid points long".into(),
         needs: "longer images".into(),
         limit: "8".into(),
     };

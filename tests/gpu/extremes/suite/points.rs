@@ -54,7 +54,7 @@ fn is_ground(case: &Case) -> bool {
 
 fn number(point: VisiblePoint) -> f64 {
     match point {
-        VisiblePoint::Sample(at) => at as f64,
+        VisiblePoint::GridPoint(at) => at as f64,
         VisiblePoint::Sky => -1.0,
         VisiblePoint::Ground => -2.0,
     }
@@ -97,8 +97,10 @@ impl<'a> Sight<'a> {
         let mut all: Vec<VisiblePoint> = Vec::new();
         for seen in possible(&Oracle::new(doubled, self.oracle.border()), here, e) {
             let point = match seen {
-                VisiblePoint::Sample(there) if is_row => VisiblePoint::Sample(there % field.cols()),
-                VisiblePoint::Sample(there) => VisiblePoint::Sample(there / 2),
+                VisiblePoint::GridPoint(there) if is_row => {
+                    VisiblePoint::GridPoint(there % field.cols())
+                }
+                VisiblePoint::GridPoint(there) => VisiblePoint::GridPoint(there / 2),
                 other => other,
             };
             if !all.contains(&point) {

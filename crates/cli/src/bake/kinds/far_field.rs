@@ -91,16 +91,16 @@ pub fn direct(gpu: &mut Headless, lit: &Lit, scene: &Scene) -> Result<Vec<[f32; 
 
 /// Bytes for triangles and texels in so many directions.
 pub fn bytes(lit: &Lit, directions: usize) -> u64 {
-    let samples = lit.scene.field.heights_m().len();
-    let facets = 2 * samples * times(&lit.scene.field).pow(2);
+    let grid_points = lit.scene.field.heights_m().len();
+    let facets = 2 * grid_points * times(&lit.scene.field).pow(2);
     let words = 2 * directions.div_ceil(DIRECTIONS_A_WORD) * 4;
     // Slopes, albedo, specular, words before and after unpacking, two radiances; all texels of one
     // view, visible points.
     let of_facets = facets * (16 + 24 + 16 + words + 48);
     // Specular light scattered towards each view, as read back and as kept.
     let towards = if specular(lit).is_some() && lit.scatter.is_some() { 28 } else { 0 };
-    let of_samples = samples * (200 + (36 + towards) * directions + 8 * lit.around.count());
-    (of_facets + of_samples) as u64
+    let of_grid_points = grid_points * (200 + (36 + towards) * directions + 8 * lit.around.count());
+    (of_facets + of_grid_points) as u64
 }
 
 /// The refined field of triangles. Errors state the original size and cell.
@@ -168,8 +168,8 @@ pub fn rays(lit: &Lit, name: &str, limits: &Limits) -> Option<(u128, String)> {
     let (paths, steps) = (scatter.paths, scatter.bounces);
     let a_path = u128::from(steps) * walks as u128 + views as u128;
     let of_pairs = pairs as u128 * u128::from(steps + 1);
-    let samples = field.heights_m().len() as u128;
-    let rays = samples * u128::from(paths) * (lights as u128 * a_path + of_pairs);
+    let grid_points = field.heights_m().len() as u128;
+    let rays = grid_points * u128::from(paths) * (lights as u128 * a_path + of_pairs);
     let of_lights = if lights == 1 { String::new() } else { format!("of {lights} lights each ") };
     let again = if walks == 1 { String::new() } else { format!(", walked {walks} times") };
     let of_pairs = match pairs {
@@ -286,12 +286,12 @@ pub fn add_entries(
 /// The sharpest specular of all triangles (means of their corners) and texels (which light paths
 /// hit).
 fn sharpest(lit: &Lit, facets: &Facets) -> Option<PhongSpecular> {
-    let samples = match &lit.scene.surface.specular {
+    let grid_points = match &lit.scene.surface.specular {
         Some(Specular::Constant(phong)) => std::slice::from_ref(phong),
         Some(Specular::Map(map)) => map,
         None => &[],
     };
-    let all = facets.sharpest().into_iter().chain(samples.iter().copied());
+    let all = facets.sharpest().into_iter().chain(grid_points.iter().copied());
     let of = all.filter(|phong| phong.scale > 0.0);
     of.max_by(|a, b| a.exponent.total_cmp(&b.exponent).then(a.scale.total_cmp(&b.scale)))
 }
@@ -312,7 +312,7 @@ pub fn is_coarse(lit: &Lit, facets: &Facets) -> bool {
     sharpest(lit, facets).is_some_and(|phong| apart_deg(&lit.angles) > half_width_deg(&phong))
 }
 
-/// Half width of the sharpest Phong lobe, and the spacing of the directions that sample it.
+/// Half width of the sharpest Phong lobe, and the spacing of the directions within it.
 fn report_specular(
     files: &mut MapFiles,
     lit: &Lit,

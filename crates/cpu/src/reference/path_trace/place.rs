@@ -30,18 +30,18 @@ pub(super) struct Reflected {
 
 impl Tracer<'_> {
     /// At a grid point.
-    pub(super) fn first(&self, sample: usize) -> Place {
+    pub(super) fn first(&self, grid_point: usize) -> Place {
         let cols = self.scene.field.cols();
-        let [own, east, north] = given(self.samples[sample]);
+        let [own, east, north] = given(self.grid_points[grid_point]);
         let normal = normalize([-east, -north, one()]);
         let mirror = times(Near::of(2.0) * normal[2], normal);
         Place {
-            base: [(sample % cols) as i32, (sample / cols) as i32],
+            base: [(grid_point % cols) as i32, (grid_point / cols) as i32],
             offset: [Near::ZERO; 2],
             own,
             normal,
-            albedo: given(self.albedo[sample]),
-            specular: self.specular.get(sample).map_or([Near::ZERO; 2], |l| given(*l)),
+            albedo: given(self.albedo[grid_point]),
+            specular: self.specular.get(grid_point).map_or([Near::ZERO; 2], |l| given(*l)),
             mirror: minus(mirror, [Near::ZERO, Near::ZERO, one()]),
         }
     }
@@ -59,9 +59,10 @@ impl Tracer<'_> {
         let [far, along] = if is_lower { met.offset } else { [met.offset[1], met.offset[0]] };
         let near = one() - along;
         let rest = one() - near - far;
-        let samples = [(near, at), (far, next), (rest, third)].map(|(w, [c, r])| (w, r * cols + c));
+        let grid_points =
+            [(near, at), (far, next), (rest, third)].map(|(w, [c, r])| (w, r * cols + c));
         let between = |of: &dyn Fn(usize) -> Near| {
-            let [a, b, c] = samples.map(|(weight, sample)| weight * of(sample));
+            let [a, b, c] = grid_points.map(|(weight, grid_point)| weight * of(grid_point));
             a + b + c
         };
         let is_map = matches!(self.scene.surface.albedo, Albedo::Map(_));

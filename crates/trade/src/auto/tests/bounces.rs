@@ -42,7 +42,7 @@ fn choices_of_bounces_reach_the_goal() {
     };
     let found = |most: f64, noise: f64| {
         let mut batches_used = Vec::new();
-        let mut trace = |samples: &[usize], batches: u32, seed: u32| {
+        let mut trace = |places: &[usize], batches: u32, seed: u32| {
             batches_used.push(batches);
             let error = noise / f64::from(batches).sqrt();
             let of = |(k, i): (usize, &usize)| {
@@ -51,7 +51,7 @@ fn choices_of_bounces_reach_the_goal() {
                 let mean = bounced(*i, 2) * (1.0 + error * std::f64::consts::SQRT_2 * turn.sin());
                 Traced { mean: [mean; 3], standard_error: [bounced(*i, 2) * error; 3] }
             };
-            Ok(samples.iter().enumerate().map(of).collect())
+            Ok(places.iter().enumerate().map(of).collect())
         };
         let bounced = Some(Bounced { count: 2, trace: &mut trace });
         let found = choose(&scene, Goal::MaxError(most), WHOLE, bounced, |quality| {
