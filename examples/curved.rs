@@ -34,7 +34,7 @@ use ridgelight::scene::{
 use ridgelight::{Error, Result};
 use ridgelight_bake::CurvedEllipses;
 use ridgelight_cpu::bent_directions::{Draped, Fans};
-use ridgelight_cpu::ellipse_fit::{Ellipse, fit, seen_bent};
+use ridgelight_cpu::ellipse_fit::{Ellipse, bent_sky_directions, fit};
 use ridgelight_cpu::fan_weights::weight;
 
 const LIGHTS: usize = 200;
@@ -157,7 +157,7 @@ impl Flat {
             let nearest = (0..DIRECTIONS)
                 .filter(|i| bent[*i].z > 0.0)
                 .max_by(|a, b| near(a).total_cmp(&near(b)));
-            let sees_sky = nearest.is_some_and(|i| self.points.seen(i, at) == VisiblePoint::Sky);
+            let sees_sky = nearest.is_some_and(|i| self.points.point(i, at) == VisiblePoint::Sky);
             f64::from(u8::from(sees_sky))
         });
         share >= 0.5
@@ -183,7 +183,7 @@ fn row(gpu: &mut Headless, flat: &Flat, scene: &Scene, per_m: f64) -> Result<Row
     let samples = 0..field.heights_m().len();
     let vectors = flat.points.directions().vectors();
     let bent: Vec<Vec<DVec3>> = samples.map(|at| adapted.bent(at)).collect();
-    let here = |at: &usize| fit(&seen_bent(&flat.points, &bent[*at], *at)).0;
+    let here = |at: &usize| fit(&bent_sky_directions(&flat.points, &bent[*at], *at)).0;
     let fitted: Vec<Ellipse> = all.iter().map(here).collect();
     let between: Vec<CurvedEllipses> =
         all.iter().map(|at| CurvedEllipses::of(&flat.five[*at], STEPS)).collect();

@@ -1,7 +1,7 @@
 //! Measures what an edit of a square brush costs against a whole recompute, and that both leave the
 //! same bits: a uniform sky in 32 azimuths over a fractal field.
 //!
-//! `cargo run --release --example edits -- [SIDE [BRUSH [EDITS [SEED]]]]`: samples a side of the field
+//! `cargo run --release --example edits -- [SIDE [BRUSH [EDITS [SEED]]]]`: grid points a side of the field
 //! (4096), of the brush (64), how many edits at random places (10), and the generator's seed (1).
 
 use ridgelight::gpu::shaders::offsets;
@@ -112,7 +112,7 @@ fn edit_all(gpu: &mut Headless, frame: &mut Frame, scene: &Scene, asked: &Reques
         let times = gpu.draw_edit(frame, at)?;
         let swept =
             4.0 * f64::from(words(gpu, frame, "edit_list")?[offsets::edit_list::SWEPT_STEPS / 4]);
-        let marks = words(gpu, frame, "dirty_samples")?;
+        let marks = words(gpu, frame, "dirty_texels")?;
         let marked: f64 = marks.iter().map(|w| f64::from(w.count_ones())).sum();
         let lit = marked / (side * side) as f64;
         let edited = pixels(gpu, frame)?;

@@ -118,7 +118,7 @@ fn drawn(
         let whole = of(&gpu.pixels(frame, 0)?);
         let mut bounced = vec![[0.0; 3]; whole.len()];
         for (i, name) in names.iter().enumerate() {
-            if name == "glossy" || name.starts_with("indirect.") {
+            if name == "indirect.specular" || name.starts_with("indirect.") {
                 bounced = with(&bounced, &of(&gpu.pixels(frame, i)?), 1.0);
             }
         }
@@ -128,7 +128,7 @@ fn drawn(
 
 fn kept_bytes(plan: &Plan) -> u64 {
     const KEPT: [&str; 5] =
-        ["exit_vectors", "vector_levels", "exit_seen", "shade_levels", "shade_stack"];
+        ["exit_vectors", "vector_levels", "exit_upward", "shade_levels", "shade_stack"];
     let all = plan.resources.iter().filter(|r| KEPT.contains(&r.name.as_str()));
     all.map(Resource::bytes).sum()
 }

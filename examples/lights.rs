@@ -1,7 +1,7 @@
 //! What balls of light cost and how near they are to the truth: lamps over a fractal field, by their number and
 //! their radius.
 //!
-//! `cargo run --release --example lights -- [SIDE]`: samples a side of the field (512).
+//! `cargo run --release --example lights -- [SIDE]`: grid points a side of the field (512).
 //!
 //! `… -- cones [-o SHEET.png]`: spherical harmonics beside the exact form, on the scene of cones of the thesis on local
 //! lights: its figures 6.1 and 6.2 with errors, details to a PNG; its tables 6.1 to 6.4 as ratios.

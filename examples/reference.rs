@@ -17,7 +17,7 @@ use ridgelight::gpu::{Headless, HeadlessOptions};
 use ridgelight::scene::Scene;
 use ridgelight::{Error, Result, plan};
 use ridgelight_cpu::indirect;
-use ridgelight_cpu::indirect::Truth;
+use ridgelight_cpu::indirect::GroundTruth;
 use ridgelight_io as files;
 use scenes::{Agreement, scenes};
 
@@ -106,7 +106,7 @@ fn row(
     head: &str,
     channel: usize,
     [light, error]: &[Vec<[f64; 3]>; 2],
-    truth: &Truth,
+    truth: &GroundTruth,
     bounces: usize,
 ) -> (String, bool) {
     let one = |picture: &[[f64; 3]]| picture.iter().map(|v| [v[channel]]).collect::<Vec<_>>();
@@ -159,7 +159,7 @@ fn measure(device: &str) -> Result<(String, Vec<String>)> {
     page += "\n| scene | bounces | light | n | quadrature | stated | paths | ± | z of the mean | rms z | worst z |\n";
     page += "|---|---|---|---|---|---|---|---|---|---|---|\n";
     for (name, scene) in scenes() {
-        let truth = indirect::truth(&scene, MOST_BOUNCES, FINENESS)?;
+        let truth = indirect::ground_truth(&scene, MOST_BOUNCES, FINENESS)?;
         for bounces in 0..=MOST_BOUNCES {
             let found = traced(&mut gpu, &scene, bounces)?;
             for (channel, light) in light_names(&scene).into_iter().enumerate() {

@@ -27,7 +27,7 @@ use ridgelight::scene::{
 };
 use ridgelight::{Error, Result};
 use ridgelight_bake as bake;
-use ridgelight_cpu::ellipse_fit::{Ellipse, seen as sky_of, start};
+use ridgelight_cpu::ellipse_fit::{Ellipse, sky_directions as sky_of, start};
 use ridgelight_io as files;
 use ridgelight_io::HeightOptions;
 use seen::{points, timed};
@@ -217,7 +217,7 @@ fn one(gpu: &mut Headless, land: &Land, lights: &Directions) -> Result<Vec<Ellip
     let Land { name, field, border } = land;
     let samples = field.rows() * field.cols();
     let (exact, exact_ms) = points(gpu, field, *border, lights)?;
-    let sees_sky = |k: usize, at: usize| exact.seen(k, at) == VisiblePoint::Sky;
+    let sees_sky = |k: usize, at: usize| exact.point(k, at) == VisiblePoint::Sky;
     let lit: Vec<Vec<bool>> =
         (0..LIGHTS).map(|k| (0..samples).map(|at| sees_sky(k, at)).collect()).collect();
     let normals = bake::normals(field, *border);

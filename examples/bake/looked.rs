@@ -64,8 +64,8 @@ pub fn looked(gpu: &mut Headless, field: &HeightField) -> Result<Vec<Baked>> {
 
     let few = Directions::fibonacci(POINTS, -1.0, 0)?;
     let points = gpu.visible_points((field, border), &few, &limits)?;
-    let seen = |i: usize, at: usize| match points.seen(i / 2, at) {
-        VisiblePoint::Sample(seen) => [seen / field.cols(), seen % field.cols()][i % 2] as f32,
+    let seen = |i: usize, at: usize| match points.point(i / 2, at) {
+        VisiblePoint::GridPoint(seen) => [seen / field.cols(), seen % field.cols()][i % 2] as f32,
         VisiblePoint::Sky => -1.0,
         VisiblePoint::Ground => -2.0,
     };

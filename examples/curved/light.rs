@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use glam::DVec3;
 use ridgelight::Result;
 use ridgelight::scene::{Curvature, Directions, HeightField, Scene, VisiblePoint, VisiblePoints};
-use ridgelight_cpu::scatter_gather::Samples;
+use ridgelight_cpu::scatter_gather::GridPoints;
 
 use super::mesh::Mesh;
 
@@ -90,12 +90,12 @@ pub fn scattered(
     looks: &Looks,
     own: &[f64],
 ) -> [Vec<f64>; 2] {
-    let materials = Samples::of(scene).on(curvature);
+    let materials = GridPoints::of(scene).on(curvature);
     let share = points.directions().share_sr();
     let gathered = |leaving: &[f64]| -> Vec<f64> {
         let of = |(at, bent): (usize, &Vec<DVec3>)| -> f64 {
             let of_look = |i: usize| {
-                let VisiblePoint::Sample(there) = points.seen(i, at) else { return 0.0 };
+                let VisiblePoint::GridPoint(there) = points.point(i, at) else { return 0.0 };
                 let weight = looks.weights.as_ref().map_or(1.0, |weights| weights[at][i]);
                 let arrives = [[leaving[there]; 3], [0.0; 3]];
                 materials.scattered(at, (bent[i], share * weight), DVec3::Z, arrives).light[0]

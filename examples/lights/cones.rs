@@ -20,7 +20,7 @@ use super::typical_ms;
 /// Samples a side, in cells of 1 m.
 const SIDE: usize = 256;
 const CONES: usize = 12;
-/// First column and row of the detail that is drawn, and its samples a side: one cone and its shadow.
+/// First column and row of the detail that is drawn, and its grid points a side: one cone and its shadow.
 const DETAIL: [usize; 2] = [178, 62];
 const DETAIL_SIDE: usize = 56;
 /// Samples held against the oracle.

@@ -7,7 +7,7 @@ use ridgelight::scene::Tone;
 use ridgelight::scene::{Albedo, Border, Directions, HeightField, Scatter, Scene, Surface};
 use ridgelight_cpu::bounce_march::bounce_march;
 use ridgelight_cpu::oracle::Oracle;
-use ridgelight_cpu::scatter_gather::{Samples, expected};
+use ridgelight_cpu::scatter_gather::{GridPoints, expected};
 use ridgelight_io as files;
 
 use crate::seen::points;
@@ -79,7 +79,7 @@ pub fn run(gpu: &mut Headless, asked: &Request) -> Result<()> {
 /// Scattered light by all that each sample sees along azimuths, in f64, with normals and light of samples.
 fn by_own_normals(scene: &Scene, direct: &Colours) -> Colours {
     let oracle = Oracle::new(&scene.field, scene.surface.border);
-    let samples = Samples::of(scene);
+    let samples = GridPoints::of(scene);
     let cols = scene.field.cols();
     let direct: Vec<[f64; 3]> = direct.iter().map(|v| v.map(f64::from)).collect();
     let (mut leaving, mut sums) = (direct.clone(), Vec::new());

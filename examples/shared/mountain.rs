@@ -7,7 +7,7 @@ use ridgelight::{Error, Result};
 use ridgelight_io as files;
 use ridgelight_io::HeightOptions;
 
-/// A whole number of samples a side, as it was asked for.
+/// A whole number of grid points a side, as it was asked for.
 pub fn side_of(text: Option<String>, default: usize) -> Result<usize> {
     let side = text.as_ref().map_or(Ok(default), |text| text.parse());
     let found = text.unwrap_or_default();

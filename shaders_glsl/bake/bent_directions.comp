@@ -47,7 +47,7 @@ layout(push_constant) uniform BentDirectionsPush {
     float curvature_y;
 };
 
-uint seen(int i, ivec2 at) {
+uint point_towards(int i, ivec2 at) {
     return point_of(texelFetch(visible_points, ivec3(at, SMALL ? i >> 1 : i), 0).x, i, SMALL);
 }
 
@@ -187,19 +187,19 @@ void main() {
     }
     vec3 e = texelFetch(directions, first_texel + i).xyz;
     float own = texelFetch(ground, at, 0).x;
-    uint met = seen(i, at);
+    uint met = point_towards(i, at);
     uint by = met;   // the direction to move with
     int as = i;
-    if (met == SEES_SKY) {
+    if (met == POINT_SKY) {
         vec4 fan = texelFetch(fans, first_fan + i);
         float nearest = -2.0;
         for (int k = 0; k < int(fan.y); k++) {
             vec4 pair = texelFetch(fans, int(fan.x) + k);
             for (int corner = 0; corner < 2; corner++) {
                 int j = int(pair[corner]);
-                uint other = seen(j, at);
+                uint other = point_towards(j, at);
                 float near = dot(texelFetch(directions, first_texel + j).xyz, e);
-                bool is_nearer = other < SEES_LOST && near > nearest;
+                bool is_nearer = other < POINT_LOST && near > nearest;
                 nearest = is_nearer ? near : nearest;
                 by = is_nearer ? other : by;
                 as = is_nearer ? j : as;
@@ -207,11 +207,11 @@ void main() {
         }
     }
     vec3 to = e;
-    if (by < SEES_LOST) {
+    if (by < POINT_LOST) {
         vec3 with = texelFetch(directions, first_texel + as).xyz;
         float away = away_of(at, ivec2(by & 0xffffu, by >> 16), own, with);
         to = bent_direction(e, away, own, vec2(curvature_x, curvature_y));
     }
-    float what = met == SEES_SKY ? 0.0 : (met < SEES_LOST ? 1.0 : -1.0);
+    float what = met == POINT_SKY ? 0.0 : (met < POINT_LOST ? 1.0 : -1.0);
     imageStore(bent, ivec3(at, i), vec4(to, what));
 }

@@ -43,7 +43,7 @@ const vec4 MOVE_B = vec4(1.0, -1.0, 0.0, 1.0);
 const vec4 GROW_B = vec4(0.0, 1.0, 1.0, 1.0);
 
 // Plan coordinates of a direction and its weight: 1 visible sky, -1 hidden, 0 below horizontal.
-vec3 seen(int i, ivec2 at, out float z) {
+vec3 plan_of(int i, ivec2 at, out float z) {
     if (BENT) {
         vec4 own = texelFetch(bent, ivec3(at, i), 0);
         z = own.z;
@@ -52,7 +52,7 @@ vec3 seen(int i, ivec2 at, out float z) {
     vec3 e = texelFetch(directions, first_direction + i).xyz;
     uint point = point_of(texelFetch(visible_points, ivec3(at, SMALL ? i >> 1 : i), 0).x, i, SMALL);
     z = e.z;
-    return vec3(e.xy, e.z > 0.0 ? (point == SEES_SKY ? 1.0 : -1.0) : 0.0);
+    return vec3(e.xy, e.z > 0.0 ? (point == POINT_SKY ? 1.0 : -1.0) : 0.0);
 }
 
 // Which of four ellipses, moved along one axis, contain a point, given its coordinate along the axis and the other
@@ -73,7 +73,7 @@ void main() {
     vec2 mean = vec2(0.0);
     ivec2 counts = ivec2(0);
     for (int i = 0; i < count; i++) {
-        vec3 s = seen(i, at, z);
+        vec3 s = plan_of(i, at, z);
         float w = s.z > 0.0 ? z : 0.0;
         weight += w;
         mean += w * s.xy;
@@ -82,7 +82,7 @@ void main() {
     mean /= max(weight, 1e-30);
     vec3 spread = vec3(0.0);
     for (int i = 0; i < count; i++) {
-        vec3 s = seen(i, at, z);
+        vec3 s = plan_of(i, at, z);
         vec2 d = s.xy - mean;
         spread += (s.z > 0.0 ? z : 0.0) * vec3(d.x * d.x, d.x * d.y, d.y * d.y);
     }
@@ -101,7 +101,7 @@ void main() {
 
     int score = 0;
     for (int i = 0; i < count; i++) {
-        vec3 s = seen(i, at, z);
+        vec3 s = plan_of(i, at, z);
         vec2 t = (vec2(dot(axis, s.xy), dot(vec2(-axis.y, axis.x), s.xy)) - centre) / radii;
         score += int(s.z) * (dot(t, t) <= 1.0 ? 1 : 0);
     }
@@ -110,7 +110,7 @@ void main() {
     for (int k = 0; k < MOST_STEPS && h >= LAST_STEP && mixed; k++) {
         ivec4 scores[4] = ivec4[4](ivec4(0), ivec4(0), ivec4(0), ivec4(0));
         for (int i = 0; i < count; i++) {
-            vec3 s = seen(i, at, z);
+            vec3 s = plan_of(i, at, z);
             vec2 p = vec2(dot(axis, s.xy), dot(vec2(-axis.y, axis.x), s.xy));
             vec2 t = (p - centre) / radii;
             t *= t;

@@ -48,15 +48,15 @@ void main() {
     uint word = 0u;
     for (int bit = 0; bit < 2 * FACET_DIRECTIONS; bit++) {
         int i = first_direction + FACET_DIRECTIONS * layer + (bit >> 1);
-        bool asked = alive && i < end_direction;
+        bool counts = alive && i < end_direction;
         vec3 e = texelFetch(directions, min(i, end_direction - 1)).xyz;
         bool is_south = (bit & 1) == 1;
         vec2 middle = is_south ? vec2(1.0, 2.0) / 3.0 : vec2(2.0, 1.0) / 3.0;
         float third = is_south ? corners.z : corners.y;
         float own = third + ((corners.x - third) + (corners.w - third)) / 3.0;
-        Met met = trace(ray_from(here, middle, own, e, vec2(cell_x_m, cell_y_m)), 1e30, asked);
-        word |= asked && met.what == RAY_FREE ? 1u << bit : 0u;
-        word |= asked && met.what == RAY_LOST ? FACET_LOST : 0u;
+        Met met = trace(ray_from(here, middle, own, e, vec2(cell_x_m, cell_y_m)), 1e30, counts);
+        word |= counts && met.what == RAY_FREE ? 1u << bit : 0u;
+        word |= counts && met.what == RAY_LOST ? FACET_LOST : 0u;
     }
     if (alive) {
         imageStore(facet_mask, ivec3(at, layer), uvec4(word));

@@ -1,10 +1,10 @@
-// What a grid point sees in a direction, one word: row << 16 | column of the grid point nearest to the hit, or one of
-// the values below. Fields of at most 255 by 255 grid points pack two directions per word, the even one in the lower
-// half: row << 8 | column, and the lower halves of the same values.
+// The visible point of a grid point in a direction, as one word: row << 16 | column of the grid point nearest to the
+// hit, or one of the values below. Fields of at most 255 by 255 grid points pack two directions per word, the even one
+// in the lower half: row << 8 | column, and the lower halves of the same values.
 
-const uint SEES_SKY = 0xffffffffu;     // no hit
-const uint SEES_GROUND = 0xfffffffeu;  // hit on the level black ground beyond the field
-const uint SEES_LOST = 0xfffffffdu;    // the ray exceeded the step limit
+const uint POINT_SKY = 0xffffffffu;     // no hit
+const uint POINT_GROUND = 0xfffffffeu;  // hit on the level black ground beyond the field
+const uint POINT_LOST = 0xfffffffdu;    // the ray exceeded the step limit
 
 // Value of direction i in its word.
 uint point_of(uint word, int i, bool small) {
@@ -15,6 +15,6 @@ uint point_of(uint word, int i, bool small) {
 
 // Inverse of the above.
 uint word_of(uint point, int i, bool small) {
-    uint narrowed = point >= SEES_LOST ? point & 0xffffu : ((point >> 16) << 8) | (point & 0xffu);
+    uint narrowed = point >= POINT_LOST ? point & 0xffffu : ((point >> 16) << 8) | (point & 0xffu);
     return small ? narrowed << (16 * (i & 1)) : point;
 }

@@ -14,7 +14,7 @@
 
 #include "shared/conventions.glsl"
 #include "bake/points.glsl"
-#include "specular/lobe.glsl"
+#include "specular/phong_lobe.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -27,11 +27,11 @@ layout(constant_id = 1) const bool SUMS = false;  // the last step
 // Two directions per word.
 layout(constant_id = 2) const bool SMALL = false;
 layout(constant_id = 3) const bool ALBEDO_IS_MAP = false;
-layout(constant_id = 4) const bool HAS_LOBE = false;
-layout(constant_id = 5) const bool LOBE_IS_MAP = false;
+layout(constant_id = 4) const bool HAS_SPECULAR = false;
+layout(constant_id = 5) const bool SPECULAR_IS_MAP = false;
 layout(constant_id = 6) const bool BENT = false;
 // Views include the grid point's own Phong specular reflection of the lights.
-layout(constant_id = 7) const bool OWN_LOBE = false;
+layout(constant_id = 7) const bool DIRECT_SPECULAR = false;
 
 layout(binding = 0) uniform texture2D ground;
 // Diffuse exit radiance.
@@ -63,21 +63,21 @@ layout(push_constant) uniform ScatterGatherPush {
     int suns;
     float weight_sr;      // W
     float exponent;
-    float lobe_share;
+    float specular_scale;
     int first_view;       // texel
     float curvature_x;    // of the base, 1/m
     float curvature_y;
     vec4 albedo;          // where it is constant
 };
 
-vec3 sun_lobe(ivec2 here, vec3 normal, vec3 mirror, vec2 lobe) {
+vec3 sun_specular(ivec2 here, vec3 normal, vec3 mirror, vec2 specular) {
     vec3 light = vec3(0.0);
     for (int i = 0; i < suns; i++) {
         vec3 e = texelFetch(links, first_sun + 2 * i).xyz;
-        uint seen = point_of(texelFetch(sun_points, ivec3(here, SMALL ? i >> 1 : i), 0).x, i, SMALL);
-        bool lit = seen == SEES_SKY && dot(normal, e) > 0.0;
+        uint point = point_of(texelFetch(sun_points, ivec3(here, SMALL ? i >> 1 : i), 0).x, i, SMALL);
+        bool lit = point == POINT_SKY && dot(normal, e) > 0.0;
         vec3 irradiance = texelFetch(links, first_sun + 2 * i + 1).rgb;
-        light += lit ? lobe.y * lobe_density(e - mirror, lobe.x) * irradiance : vec3(0.0);
+        light += lit ? specular.y * phong_lobe(e - mirror, specular.x) * irradiance : vec3(0.0);
     }
     return light;
 }
@@ -100,17 +100,17 @@ void main() {
     }
     normal = normalize(normal);
     vec3 colour = albedo.rgb;
-    vec2 lobe = vec2(exponent, lobe_share);
+    vec2 specular = vec2(exponent, specular_scale);
     if (ALBEDO_IS_MAP) {
         colour = texelFetch(albedo_map, at, 0).rgb;
     }
-    if (LOBE_IS_MAP) {
-        lobe = texelFetch(phong_map, at, 0).xy;
+    if (SPECULAR_IS_MAP) {
+        specular = texelFetch(phong_map, at, 0).xy;
     }
     int first = SUMS ? 0 : int(gl_WorkGroupID.z);
     int end = SUMS ? paths : first + 1;
     vec3 towards_view = vec3(0.0, 0.0, 1.0);
-    if (SUMS && HAS_LOBE) {
+    if (SUMS && HAS_SPECULAR) {
         towards_view = texelFetch(links, first_view + view).xyz;
     }
     vec3 sum = vec3(0.0);
@@ -118,9 +118,9 @@ void main() {
         int link = first_link + 2 * (path * steps + step);
         vec4 ahead = texelFetch(links, link);
         int i = int(ahead.w) - first_direction;
-        uint seen = point_of(texelFetch(visible_points, ivec3(at, SMALL ? i >> 1 : i), 0).x, i, SMALL);
-        bool met = seen < SEES_LOST;
-        ivec2 there = met ? ivec2(seen & 0xffffu, seen >> 16) : at;
+        uint point = point_of(texelFetch(visible_points, ivec3(at, SMALL ? i >> 1 : i), 0).x, i, SMALL);
+        bool met = point < POINT_LOST;
+        ivec2 there = met ? ivec2(point & 0xffffu, point >> 16) : at;
         vec3 arriving = vec3(0.0);
         if (SOURCE == FROM_DIRECT) {
             arriving = texelFetch(direct, there, 0).rgb;
@@ -135,28 +135,28 @@ void main() {
         }
         vec3 light = colour * (facing / PI) * arriving;
         vec3 mirror = vec3(0.0);
-        if (HAS_LOBE) {
+        if (HAS_SPECULAR) {
             vec3 back = SUMS ? towards_view : -texelFetch(links, link - 2).xyz;
             mirror = 2.0 * dot(normal, back) * normal - back;
             // Sky light is part of the diffuse direct light and of the grid point's own.
-            bool sees_sky = (!SUMS || OWN_LOBE) && seen == SEES_SKY;
-            vec3 all = arriving + (sees_sky ? texelFetch(links, link + 1).rgb : vec3(0.0));
-            light += facing > 0.0 ? lobe.y * lobe_density(ahead.xyz - mirror, lobe.x) * all : vec3(0.0);
+            bool is_sky = (!SUMS || DIRECT_SPECULAR) && point == POINT_SKY;
+            vec3 all = arriving + (is_sky ? texelFetch(links, link + 1).rgb : vec3(0.0));
+            light += facing > 0.0 ? specular.y * phong_lobe(ahead.xyz - mirror, specular.x) * all : vec3(0.0);
         }
         light *= weight_sr;
         if (!SUMS) {
             light += texelFetch(direct, at, 0).rgb;
-            if (HAS_LOBE) {
-                light += sun_lobe(at, normal, mirror, lobe);
+            if (HAS_SPECULAR) {
+                light += sun_specular(at, normal, mirror, specular);
             }
             imageStore(carried, ivec3(at, path), vec4(light, 1.0));
         }
         sum += light;
     }
     if (SUMS) {
-        if (OWN_LOBE) {
+        if (DIRECT_SPECULAR) {
             vec3 mirror = 2.0 * dot(normal, towards_view) * normal - towards_view;
-            sum += float(paths) * sun_lobe(at, normal, mirror, lobe);
+            sum += float(paths) * sun_specular(at, normal, mirror, specular);
         }
         vec4 before = imageLoad(scattered, ivec3(at, view));
         before = first_path > 0 ? before : vec4(0.0);

@@ -42,16 +42,16 @@ layout(push_constant) uniform VisiblePointsPush {
 
 #include "rays/trace.glsl"
 
-uint seen_along(int i, ivec2 here, float own, bool alive) {
+uint visible_along(int i, ivec2 here, float own, bool alive) {
     vec3 e = texelFetch(directions, min(i, end_direction - 1)).xyz;
     Met met = trace(ray_from(here, vec2(0.0), own, e, vec2(cell_x_m, cell_y_m)), 1e30, alive && i < end_direction);
     ivec2 size = ivec2(cols, rows);
     ivec2 near = met.cell + ivec2(floor(met.offset + 0.5));
     near = BORDER == BORDER_PERIODIC ? near - ivec2(near.x >= cols ? cols : 0, near.y >= rows ? rows : 0)
                                      : min(near, size - 1);
-    uint seen = met.what == RAY_HIT ? uint(near.y << 16 | near.x) : SEES_SKY;
-    seen = met.what == RAY_GROUND ? SEES_GROUND : seen;
-    return met.what == RAY_LOST ? SEES_LOST : seen;
+    uint point = met.what == RAY_HIT ? uint(near.y << 16 | near.x) : POINT_SKY;
+    point = met.what == RAY_GROUND ? POINT_GROUND : point;
+    return met.what == RAY_LOST ? POINT_LOST : point;
 }
 
 void main() {
@@ -63,7 +63,7 @@ void main() {
     uint word = 0u;
     for (int k = 0; k < (SMALL ? 2 : 1); k++) {
         int i = SMALL ? 2 * layer + k : layer;
-        word |= word_of(seen_along(first_direction + i, here, own, alive), i, SMALL);
+        word |= word_of(visible_along(first_direction + i, here, own, alive), i, SMALL);
     }
     if (alive) {
         imageStore(visible_points, ivec3(at, layer), uvec4(word));

@@ -62,7 +62,7 @@ layout(push_constant) uniform BounceGatherPush {
 Facing facing;
 vec2 reached;    // direction up to which the surface has been visited
 float top;       // its elevation
-vec3 thrown;
+vec3 indirect;
 mat3x4 series;   // Legendre coefficients, R, G, B
 
 // Integrals of the first four normalised Legendre polynomials of z = sin(omega) below an elevation (eq. 13).
@@ -83,7 +83,7 @@ void cast_light(float angle, vec2 place, int level, bool on) {
     if (IS_PLANE) {
         float weight = max(light_between(facing, reached, direction), 0.0);
         float counts = rises ? weight : 0.0;
-        thrown += counts * radiance;
+        indirect += counts * radiance;
     } else {
         vec4 opened = occlusion(direction) - occlusion(reached);
         opened = rises ? opened : vec4(0.0);
@@ -128,17 +128,17 @@ void main() {
         facing = Facing(-own_slope * up, up);
         reached = direction_of(own_slope);
         top = arc_tangent(vec4(own_slope)).x;
-        thrown = vec3(0.0);
+        indirect = vec3(0.0);
         series = mat3x4(0.0);
         float whole = light_between(facing, reached, vec2(0.0, 1.0));
         march(exists);
         if (!IS_PLANE) {
             vec4 weights = three_bands();
-            // Per azimuth int u K dz; a whole hemisphere's is pi/2 of what `thrown` counts.
-            thrown = vec3(dot(series[0], weights), dot(series[1], weights), dot(series[2], weights));
+            // Per azimuth int u K dz; a whole hemisphere's is pi/2 of the sum in `indirect`.
+            indirect = vec3(dot(series[0], weights), dot(series[1], weights), dot(series[2], weights));
             whole = 0.5;
         }
-        sum += vec4(thrown, whole);
+        sum += vec4(indirect, whole);
     }
     if (exists) {
         vec4 before = imageLoad(bounce_sum, at);

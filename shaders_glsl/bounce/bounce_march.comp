@@ -52,7 +52,7 @@ Facing facing;
 // So far: the slope up to which the surface is visible, its indirect light, and the radiance of the last visible
 // interval.
 float reached;
-vec3 thrown;
+vec3 indirect;
 vec3 last_radiance;
 
 vec3 radiance_at(ivec2 at) {
@@ -79,7 +79,7 @@ float share_at(vec2 begin, vec2 end, vec2 direction) {
 
 // Adds a piece: the part from `reached` up to its end, if that is higher. `place` and `advance` give its start in the
 // cell and its direction through it.
-void see(vec2 begin, vec2 end, vec2 place, vec2 advance) {
+void add_piece(vec2 begin, vec2 end, vec2 place, vec2 advance) {
     float slope = end.y / max(end.x, 1e-30);
     bool rises = end.x > begin.x && slope > reached;
     vec2 low = direction_of(reached);
@@ -98,7 +98,7 @@ void see(vec2 begin, vec2 end, vec2 place, vec2 advance) {
     // Clamped against rounding.
     vec3 radiance = max(radiance_within(clamp(place + min(share, 1.0) * advance, 0.0, 1.0)), vec3(0.0));
     float counts = rises ? weight : 0.0;
-    thrown += counts * radiance;
+    indirect += counts * radiance;
     last_radiance = rises ? radiance : last_radiance;
     reached = rises ? slope : reached;
 }
@@ -144,8 +144,8 @@ void march(Ray ray, bool going) {
         // In an unsplit cell the middle is the entry, whose slope has been added already.
         float split_slope = max(middle_slope, exit_slope);
         float steepest = is_split ? split_slope : exit_slope;
-        bool looks = going && is_cell && block.ahead > walk.t && steepest > reached;
-        if (subgroupAny(looks)) {
+        bool opens = going && is_cell && block.ahead > walk.t && steepest > reached;
+        if (subgroupAny(opens)) {
             ivec2 size = ivec2(cols, rows);
             ivec2 next = fetched + 1;
             next *= ivec2(lessThan(next, size));
@@ -154,13 +154,13 @@ void march(Ray ray, bool going) {
             corners_of[2] = radiance_at(ivec2(fetched.x, next.y));
             corners_of[3] = radiance_at(next);
             float reached_before = reached;
-            vec3 thrown_before = thrown;
+            vec3 indirect_before = indirect;
             vec3 last_before = last_radiance;
-            see(entry, middle, at_entry, at_middle - at_entry);
-            see(middle, exit, at_middle, at_exit - at_middle);
-            reached = looks ? reached : reached_before;
-            thrown = looks ? thrown : thrown_before;
-            last_radiance = looks ? last_radiance : last_before;
+            add_piece(entry, middle, at_entry, at_middle - at_entry);
+            add_piece(middle, exit, at_middle, at_exit - at_middle);
+            reached = opens ? reached : reached_before;
+            indirect = opens ? indirect : indirect_before;
+            last_radiance = opens ? last_radiance : last_before;
         }
         walk_on(walk, ray, block, going, clear, top_level);
         bool is_over = reached >= 0.0 && walk.t > 0.0 && walk.t * reached * step_m >= highest;
@@ -190,15 +190,15 @@ void main() {
         float own_slope = own.y * e.x + own.z * e.y;
         facing = Facing(-own_slope * up, up);
         reached = own_slope;
-        thrown = vec3(0.0);
+        indirect = vec3(0.0);
         last_radiance = vec3(0.0);
         march(ray_from(here, vec2(0.0), own.x, vec3(e, 0.0), vec2(cell_x_m, cell_y_m)), exists && !is_line);
         if (BORDER == BORDER_PERIODIC) {
             // A ray without a hit up to horizontal continues over the same terrain forever.
             float rest = max(light_between(facing, direction_of(min(reached, 0.0)), vec2(1.0, 0.0)), 0.0);
-            thrown += rest * last_radiance;
+            indirect += rest * last_radiance;
         }
-        sum += vec4(thrown, light_between(facing, direction_of(own_slope), vec2(0.0, 1.0)));
+        sum += vec4(indirect, light_between(facing, direction_of(own_slope), vec2(0.0, 1.0)));
     }
     if (exists) {
         vec4 before = imageLoad(bounce_sum, at);

@@ -5,7 +5,7 @@
 // Reads: lane_heights, azimuths, occluders, exit_radiance (or exit_grey).
 // Reads and writes: bounce_sum (exit radiance for albedo 1; divided by A, the sum for whole hemispheres, after the
 // last dispatch).
-// Writes: casting_sets (visibility cache of every second node).
+// Writes: visibility_cache (of every second node).
 // One invocation is one grid point, or one node: bounce_sum has a texel for each.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
@@ -26,7 +26,7 @@ layout(constant_id = 4) const int NODE_STRIDE = 1;
 layout(constant_id = 5) const uint FROM = 0u;
 const uint FROM_KEPT = 1u;
 const uint FROM_REST = 2u;
-const bool KEEPS_CASTS = FROM == FROM_KEPT;
+const bool FILLS_CACHE = FROM == FROM_KEPT;
 const int LANE_STRIDE = 1;
 
 layout(binding = 0, rgba32f) uniform readonly image2D lane_heights;
@@ -35,7 +35,7 @@ layout(binding = 2, rg32ui) uniform readonly uimage2DArray occluders;
 layout(binding = 3, rgba32f) uniform readonly image2D exit_radiance;
 layout(binding = 4, r32f) uniform readonly image2D exit_grey;
 layout(binding = 5, rgba32f) uniform image2D bounce_sum;
-layout(binding = 6, rgba32ui) uniform writeonly uimage2DArray casting_sets;
+layout(binding = 6, rgba32ui) uniform writeonly uimage2DArray visibility_cache;
 
 #include "shared/angle.glsl"
 #include "shared/lattice.glsl"
@@ -187,10 +187,10 @@ vec2 moments_above(float slope) {
 vec2 faces;
 vec2 passed;
 float reached;
-vec3 thrown;
+vec3 indirect;
 
-void throw_light(vec2 opened, vec3 light) {
-    thrown += dot(faces, opened) * light;
+void add_indirect(vec2 opened, vec3 light) {
+    indirect += dot(faces, opened) * light;
 }
 
 // The visibility cache so far, per ring: weights, and weights times the distance in steps.
@@ -198,7 +198,7 @@ vec4 ring_weights;
 vec4 ring_moments;
 
 // A visible interval and its middle.
-void take_cast(float middle, vec2 opened, bool on) {
+void add_to_cache(float middle, vec2 opened, bool on) {
     float weight = mix(0.0, max(dot(faces, opened), 0.0), on);
     vec3 within = vec3(lessThan(vec3(middle), RING_ENDS));
     vec4 of_rings = weight * (vec4(within, 1.0) - vec4(0.0, within));
@@ -220,7 +220,7 @@ vec4 walked(vec3 normal, float plane) {
     faces = vec2(normal.x * azimuth.wedge_cos + normal.y * azimuth.wedge_sin, normal.z * azimuth.wedge_rad);
     passed = moments_above(plane);
     float whole = dot(faces, passed);
-    thrown = vec3(0.0);
+    indirect = vec3(0.0);
     ring_weights = vec4(0.0);
     ring_moments = vec4(0.0);
     reached = plane;
@@ -234,15 +234,15 @@ vec4 walked(vec3 normal, float plane) {
     precise float split_slope = rise / (u * azimuth.step_m);
     vec3 own_light = leaving(lane_position(azimuth, own_lane, lanes), ends.y);
     vec3 split_light = mix(leaving(ends.x, ends.y), leaving(ends.z, ends.w), u);
-    bool sees_split = walking && split && split_slope > reached;
+    bool split_rises = walking && split && split_slope > reached;
     vec2 split_moments = moments_above(split_slope);
-    vec2 split_opened = mix(vec2(0.0), passed - split_moments, bvec2(sees_split));
-    throw_light(split_opened, own_light);
-    if (KEEPS_CASTS) {
-        take_cast(0.0, split_opened, sees_split);
+    vec2 split_opened = mix(vec2(0.0), passed - split_moments, bvec2(split_rises));
+    add_indirect(split_opened, own_light);
+    if (FILLS_CACHE) {
+        add_to_cache(0.0, split_opened, split_rises);
     }
-    passed = mix(passed, split_moments, bvec2(sees_split));
-    reached = sees_split ? split_slope : reached;
+    passed = mix(passed, split_moments, bvec2(split_rises));
+    reached = split_rises ? split_slope : reached;
     // Start of the next piece: distance in steps, slope, and radiance.
     int at = 0;
     float from = split ? u : 0.0;
@@ -264,7 +264,7 @@ vec4 walked(vec3 normal, float plane) {
         float next_slope = slope_at(next);
         to = searches ? next : to;
         to_slope = searches ? next_slope : to_slope;
-        bool sees = walking && to_slope > reached;
+        bool rises = walking && to_slope > reached;
         bool is_own = at == 0 && !split;
         vec3 there = light_at(to);
         vec3 far = mix(there, own_light, bvec3(is_own));
@@ -274,15 +274,15 @@ vec4 walked(vec3 normal, float plane) {
         float hidden = under / max(under + over, 1e-30);
         vec3 begins = mix(light, far, hidden);
         vec2 now = moments_above(to_slope);
-        vec2 opened = mix(vec2(0.0), passed - now, bvec2(sees));
-        throw_light(opened, mix(vec3(0.0), 0.5 * (begins + far), bvec3(sees)));
-        if (KEEPS_CASTS) {
+        vec2 opened = mix(vec2(0.0), passed - now, bvec2(rises));
+        add_indirect(opened, mix(vec3(0.0), 0.5 * (begins + far), bvec3(rises)));
+        if (FILLS_CACHE) {
             float begin_of = mix(from, float(to), hidden);
             float middle = mix(0.5 * (begin_of + float(to)), 0.0, is_own);
-            take_cast(middle, opened, sees);
+            add_to_cache(middle, opened, rises);
         }
-        passed = mix(passed, now, bvec2(sees));
-        reached = sees ? to_slope : reached;
+        passed = mix(passed, now, bvec2(rises));
+        reached = rises ? to_slope : reached;
         light = mix(light, there, bvec3(walking));
         at = walking ? to : at;
         from = walking ? float(to) : from;
@@ -290,14 +290,14 @@ vec4 walked(vec3 normal, float plane) {
         walking = walking && at < limit;
         turns_on = int(walking);
     }
-    if (KEEPS_CASTS) {
+    if (FILLS_CACHE) {
         vec4 steps_to = ring_moments / max(ring_weights, vec4(1e-30));
-        uvec4 kept = casts_of(steps_to, ring_weights / azimuth.wedge_rad);
+        uvec4 kept = cache_word(steps_to, ring_weights / azimuth.wedge_rad);
         if (own_is_kept) {
-            imageStore(casting_sets, ivec3(own_kept_node, int(azimuth_index - begin)), kept);
+            imageStore(visibility_cache, ivec3(own_kept_node, int(azimuth_index - begin)), kept);
         }
     }
-    return vec4(thrown, whole);
+    return vec4(indirect, whole);
 }
 
 void main() {

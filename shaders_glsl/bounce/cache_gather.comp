@@ -1,7 +1,7 @@
 // Computes: one more bounce at every node: the radiance of each ring of its visibility cache, filled in the first
 // bounce, times the ring's weight.
-// Reads: casting_sets, azimuths, exit_radiance (or exit_grey), node_sum (of the first bounce; every second node of it
-// is a node here; A is the divisor, the sum for whole hemispheres).
+// Reads: visibility_cache, azimuths, exit_radiance (or exit_grey), node_sum (of the first bounce; every second node of
+// it is a node here; A is the divisor, the sum for whole hemispheres).
 // Writes: bounce_sum (exit radiance for albedo 1).
 // One invocation is one node.
 #version 460
@@ -15,7 +15,7 @@ layout(constant_id = 1) const bool GREY = false;
 // Grid points from node to node: 4 or 8.
 layout(constant_id = 2) const int NODE_STRIDE = 4;
 
-layout(binding = 0, rgba32ui) uniform readonly uimage2DArray casting_sets;
+layout(binding = 0, rgba32ui) uniform readonly uimage2DArray visibility_cache;
 layout(binding = 1) uniform textureBuffer azimuths;
 layout(binding = 2, rgba32f) uniform readonly image2D exit_radiance;
 layout(binding = 3, r32f) uniform readonly image2D exit_grey;
@@ -44,7 +44,7 @@ vec3 leaving(ivec2 at) {
 }
 
 // The grid point nearest to a point that many steps away on a grid point's own line.
-ivec2 sample_at(Azimuth azimuth, ivec2 here, int back) {
+ivec2 grid_point_at(Azimuth azimuth, ivec2 here, int back) {
     bool by_rows = (azimuth.flags & AZIMUTH_MARCHES_ROWS) != 0u;
     ivec2 swapped_here = here.yx;
     ivec2 own = by_rows ? here : swapped_here;
@@ -65,18 +65,18 @@ void main() {
         return;
     }
     ivec2 here = ivec2(node_place(node.x, cols, NODE_STRIDE), node_place(node.y, rows, NODE_STRIDE));
-    vec3 thrown = vec3(0.0);
+    vec3 indirect = vec3(0.0);
     for (uint k = 0u; k < count; k++) {
         Azimuth azimuth = azimuth_at(azimuths, begin + k);
-        uvec4 kept = imageLoad(casting_sets, ivec3(node, int(k)));
-        ivec4 steps_to = cast_steps(kept);
-        vec4 weights = azimuth.wedge_rad * cast_weights(kept);
+        uvec4 kept = imageLoad(visibility_cache, ivec3(node, int(k)));
+        ivec4 steps_to = cache_steps(kept);
+        vec4 weights = azimuth.wedge_rad * cache_weights(kept);
         for (int ring = 0; ring < 4; ring++) {
-            thrown += weights[ring] * leaving(sample_at(azimuth, here, steps_to[ring]));
+            indirect += weights[ring] * leaving(grid_point_at(azimuth, here, steps_to[ring]));
         }
     }
     ivec2 walked = ivec2(second_node(node.x, node_count(cols, NODE_STRIDE / 2)),
                          second_node(node.y, node_count(rows, NODE_STRIDE / 2)));
     float whole = imageLoad(node_sum, walked).a;
-    imageStore(bounce_sum, node, vec4(thrown / max(whole, 1e-30), whole));
+    imageStore(bounce_sum, node, vec4(indirect / max(whole, 1e-30), whole));
 }

@@ -55,7 +55,7 @@ void beside(vec2 place, out ivec2 low, out ivec2 high, out float t) {
 float height_at(int level, vec2 place) {
     if (level > 0 && !STACK) {
         Level of = level_of(texelFetch(level_table, ivec2(level - 1, 0), 0));
-        precise vec2 at = place * of.per_sample;
+        precise vec2 at = place * of.per_grid_point;
         return spline_at(of, at, width_shift);
     }
     ivec2 low;
@@ -74,7 +74,7 @@ float height_at(int level, vec2 place) {
 vec3 radiance_at(int level, vec2 place) {
     if (level > 0 && !STACK) {
         Level of = level_of(texelFetch(shade_table, ivec2(level - 1, 0), 0));
-        precise vec2 at = place * of.per_sample;
+        precise vec2 at = place * of.per_grid_point;
         return shade_at(of, at, shade_shift);
     }
     ivec2 low;

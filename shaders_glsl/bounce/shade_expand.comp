@@ -28,6 +28,6 @@ void main() {
         return;
     }
     Level level = level_of(texelFetch(shade_table, ivec2(at.z, 0), 0));
-    precise vec2 place = vec2(at.xy) * level.per_sample;
+    precise vec2 place = vec2(at.xy) * level.per_grid_point;
     imageStore(shade_stack, at, vec4(shade_at(level, place, width_shift), 1.0));
 }

@@ -25,8 +25,8 @@ layout(push_constant) uniform ShadeReducePush {
     int source_first;
     float ratio_x;  // source texels per texel
     float ratio_y;
-    float per_sample_x;
-    float per_sample_y;
+    float per_grid_point_x;
+    float per_grid_point_y;
     int level;
     int width_shift;
 };
@@ -52,7 +52,7 @@ void main() {
     vec4 mean = reduced(ivec2(x, y), vec2(ratio_x, ratio_y));
     imageStore(shade_levels, level_texel(first + y * cols + x, width_shift), mean);
     if (x == 0 && y == 0) {
-        Level made = Level(first, cols, rows, vec2(per_sample_x, per_sample_y));
+        Level made = Level(first, cols, rows, vec2(per_grid_point_x, per_grid_point_y));
         imageStore(shade_table, ivec2(level - 1, 0), words_of(made));
     }
 }

@@ -68,10 +68,10 @@ vec4 harmonics[36];
 #include "shared/harmonics.glsl"
 
 // Visibility above an elevation, in this azimuth; 0 between uses.
-#define SEEN float
+#define VALUE float
 float series[36];
 float turn[11];
-#include "sh/seen.glsl"
+#include "sh/visible.glsl"
 #include "sh/turn.glsl"
 
 // The slice.
@@ -79,7 +79,7 @@ Facing facing;
 vec2 azimuth;
 vec2 reached;    // direction up to which the surface has been visited
 float top;       // its elevation
-vec3 thrown;
+vec3 indirect;
 vec3 last;       // radiance of the last visible knot
 vec3 arrived[36];
 
@@ -105,7 +105,7 @@ Taps4 taps_of(int level, vec2 place) {
     Taps4 taps;
     if (level > 0) {
         Level of = level_of(texelFetch(shade_table, ivec2(level - 1, 0), 0));
-        precise vec2 at = place * of.per_sample;
+        precise vec2 at = place * of.per_grid_point;
         ivec2 x;
         ivec2 y;
         float t;
@@ -201,7 +201,7 @@ void add_knots() {
         vec3 radiance = radiance_towards(direction, int(knot.w), knot.yz);
         float weight = max(light_between(facing, reached, direction), 0.0);
         float counts = on ? weight : 0.0;
-        thrown += counts * radiance;
+        indirect += counts * radiance;
         vec3 change = radiance - last;
         vec3 more = on ? change : vec3(0.0);
         add_arriving(more);
@@ -234,7 +234,7 @@ void main() {
         facing = Facing(-own_slope * up, up);
         reached = direction_of(own_slope);
         top = arc_tangent(vec4(own_slope)).x;
-        thrown = vec3(0.0);
+        indirect = vec3(0.0);
         last = vec3(0.0);
         float whole = light_between(facing, reached, vec2(0.0, 1.0));
         float own_top = top;
@@ -244,7 +244,7 @@ void main() {
         march(exists);
         top = own_top;
         add_knots();
-        sum += vec4(thrown, whole);
+        sum += vec4(indirect, whole);
     }
     if (!exists) {
         return;

@@ -11,18 +11,18 @@
 const vec3 RING_ENDS = vec3(3.0, 9.0, 27.0);
 // Over a radian of azimuth the integral of max(N.e, 0) cos(omega) is at most pi / 2: a wall that faces it,
 // cos(omega)^2.
-const float CAST_PART = HALF_PI / 65535.0;
+const float WEIGHT_UNIT = HALF_PI / 65535.0;
 
 // From steps and from weights per radian.
-uvec4 casts_of(vec4 steps_to, vec4 weights) {
-    return uvec4(steps_to + 0.5) | uvec4(weights / CAST_PART + 0.5) << 16;
+uvec4 cache_word(vec4 steps_to, vec4 weights) {
+    return uvec4(steps_to + 0.5) | uvec4(weights / WEIGHT_UNIT + 0.5) << 16;
 }
 
-ivec4 cast_steps(uvec4 kept) {
+ivec4 cache_steps(uvec4 kept) {
     return ivec4(kept & 0xffffu);
 }
 
 // Per radian.
-vec4 cast_weights(uvec4 kept) {
-    return vec4(kept >> 16) * CAST_PART;
+vec4 cache_weights(uvec4 kept) {
+    return vec4(kept >> 16) * WEIGHT_UNIT;
 }

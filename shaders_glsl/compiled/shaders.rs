@@ -16,7 +16,7 @@ pub const BENT_DIRECTIONS: Shader = Shader {
         Constant { id: 1, name: "small" },
         Constant { id: 2, name: "reach" },
     ],
-    words: words_at(0, 8158),
+    words: words_at(0, 8160),
 };
 
 /// `shaders_glsl/bake/bent_directions.comp` with its specialisation constants.
@@ -75,7 +75,7 @@ pub const BOUNCE_GATHER: Shader = Shader {
         Constant { id: 5, name: "is_plane" },
         Constant { id: 6, name: "node_stride" },
     ],
-    words: words_at(8158, 11633),
+    words: words_at(8160, 11636),
 };
 
 /// `shaders_glsl/bounce/bounce_gather.comp` with its specialisation constants.
@@ -144,7 +144,7 @@ pub const BOUNCE_MARCH: Shader = Shader {
         Constant { id: 4, name: "grey" },
         Constant { id: 5, name: "node_stride" },
     ],
-    words: words_at(19791, 12301),
+    words: words_at(19796, 12304),
 };
 
 /// `shaders_glsl/bounce/bounce_march.comp` with its specialisation constants.
@@ -203,7 +203,7 @@ pub const BOUNCE_SHADE: Shader = Shader {
     constants: &[
         Constant { id: 0, name: "node_stride" },
     ],
-    words: words_at(32092, 2676),
+    words: words_at(32100, 2678),
 };
 
 /// `shaders_glsl/bounce/bounce_shade.comp` with its specialisation constants.
@@ -240,7 +240,7 @@ pub const BOUNCE_WALK: Shader = Shader {
         Binding { binding: 3, name: "exit_radiance", kind: BindingKind::StorageImage { format: "Rgba32f", uint: false, layered: false }, written: false },
         Binding { binding: 4, name: "exit_grey", kind: BindingKind::StorageImage { format: "R32f", uint: false, layered: false }, written: false },
         Binding { binding: 5, name: "bounce_sum", kind: BindingKind::StorageImage { format: "Rgba32f", uint: false, layered: false }, written: true },
-        Binding { binding: 6, name: "casting_sets", kind: BindingKind::StorageImage { format: "Rgba32ui", uint: true, layered: true }, written: true },
+        Binding { binding: 6, name: "visibility_cache", kind: BindingKind::StorageImage { format: "Rgba32ui", uint: true, layered: true }, written: true },
     ],
     constants: &[
         Constant { id: 0, name: "line_shift" },
@@ -250,7 +250,7 @@ pub const BOUNCE_WALK: Shader = Shader {
         Constant { id: 4, name: "node_stride" },
         Constant { id: 5, name: "from" },
     ],
-    words: words_at(34768, 13808),
+    words: words_at(34778, 13812),
 };
 
 /// `shaders_glsl/bounce/bounce_walk.comp` with its specialisation constants.
@@ -301,7 +301,7 @@ pub const CACHE_GATHER: Shader = Shader {
     name: "cache_gather",
     push_bytes: 16,
     bindings: &[
-        Binding { binding: 0, name: "casting_sets", kind: BindingKind::StorageImage { format: "Rgba32ui", uint: true, layered: true }, written: false },
+        Binding { binding: 0, name: "visibility_cache", kind: BindingKind::StorageImage { format: "Rgba32ui", uint: true, layered: true }, written: false },
         Binding { binding: 1, name: "azimuths", kind: BindingKind::TexelBuffer, written: false },
         Binding { binding: 2, name: "exit_radiance", kind: BindingKind::StorageImage { format: "Rgba32f", uint: false, layered: false }, written: false },
         Binding { binding: 3, name: "exit_grey", kind: BindingKind::StorageImage { format: "R32f", uint: false, layered: false }, written: false },
@@ -313,7 +313,7 @@ pub const CACHE_GATHER: Shader = Shader {
         Constant { id: 1, name: "grey" },
         Constant { id: 2, name: "node_stride" },
     ],
-    words: words_at(48576, 3633),
+    words: words_at(48590, 3639),
 };
 
 /// `shaders_glsl/bounce/cache_gather.comp` with its specialisation constants.
@@ -352,12 +352,12 @@ pub const DIRTY_LIST: Shader = Shader {
     name: "dirty_list",
     push_bytes: 8,
     bindings: &[
-        Binding { binding: 0, name: "dirty_samples", kind: BindingKind::StorageBuffer, written: false },
+        Binding { binding: 0, name: "dirty_texels", kind: BindingKind::StorageBuffer, written: false },
         Binding { binding: 1, name: "edit_list", kind: BindingKind::StorageBuffer, written: true },
     ],
     constants: &[
     ],
-    words: words_at(52209, 875),
+    words: words_at(52229, 874),
 };
 
 /// `shaders_glsl/edit/dirty_list.comp` with its specialisation constants.
@@ -376,12 +376,12 @@ pub const DIRTY_MARK: Shader = Shader {
     name: "dirty_mark",
     push_bytes: 24,
     bindings: &[
-        Binding { binding: 0, name: "dirty_samples", kind: BindingKind::StorageBuffer, written: true },
+        Binding { binding: 0, name: "dirty_texels", kind: BindingKind::StorageBuffer, written: true },
         Binding { binding: 1, name: "edit_list", kind: BindingKind::StorageBuffer, written: true },
     ],
     constants: &[
     ],
-    words: words_at(53084, 1324),
+    words: words_at(53103, 1323),
 };
 
 /// `shaders_glsl/edit/dirty_mark.comp` with its specialisation constants.
@@ -410,7 +410,7 @@ pub const ELLIPSE_FIT: Shader = Shader {
         Constant { id: 0, name: "small" },
         Constant { id: 1, name: "bent" },
     ],
-    words: words_at(54408, 5048),
+    words: words_at(54426, 5049),
 };
 
 /// `shaders_glsl/bake/ellipse_fit.comp` with its specialisation constants.
@@ -442,7 +442,7 @@ pub const ENV_ROTATION: Shader = Shader {
     ],
     constants: &[
     ],
-    words: words_at(59456, 949),
+    words: words_at(59475, 949),
 };
 
 /// `shaders_glsl/sh/env_rotation.comp` with its specialisation constants.
@@ -466,7 +466,7 @@ pub const ENV_TABLES: Shader = Shader {
     ],
     constants: &[
     ],
-    words: words_at(60405, 1463),
+    words: words_at(60424, 1463),
 };
 
 /// `shaders_glsl/direct/env_tables.comp` with its specialisation constants.
@@ -491,7 +491,7 @@ pub const ENV_WEDGES: Shader = Shader {
     ],
     constants: &[
     ],
-    words: words_at(61868, 2151),
+    words: words_at(61887, 2151),
 };
 
 /// `shaders_glsl/sh/env_wedges.comp` with its specialisation constants.
@@ -519,7 +519,7 @@ pub const FACET_MASK: Shader = Shader {
         Constant { id: 0, name: "border" },
         Constant { id: 1, name: "most_steps" },
     ],
-    words: words_at(64019, 9115),
+    words: words_at(64038, 9115),
 };
 
 /// `shaders_glsl/bake/facet_mask.comp` with its specialisation constants.
@@ -560,7 +560,7 @@ pub const FAN_WEIGHTS: Shader = Shader {
     ],
     constants: &[
     ],
-    words: words_at(73134, 1842),
+    words: words_at(73153, 1842),
 };
 
 /// `shaders_glsl/bake/fan_weights.comp` with its specialisation constants.
@@ -584,7 +584,7 @@ pub const HEIGHT_BOUNDS: Shader = Shader {
     ],
     constants: &[
     ],
-    words: words_at(74976, 1109),
+    words: words_at(74995, 1109),
 };
 
 /// `shaders_glsl/rays/height_bounds.comp` with its specialisation constants.
@@ -613,7 +613,7 @@ pub const HEIGHT_CELLS: Shader = Shader {
         Constant { id: 0, name: "periodic" },
         Constant { id: 1, name: "begins_paths" },
     ],
-    words: words_at(76085, 2514),
+    words: words_at(76104, 2514),
 };
 
 /// `shaders_glsl/rays/height_cells.comp` with its specialisation constants.
@@ -646,7 +646,7 @@ pub const HEIGHT_EXPAND: Shader = Shader {
     constants: &[
         Constant { id: 0, name: "periodic" },
     ],
-    words: words_at(78599, 2495),
+    words: words_at(78618, 2496),
 };
 
 /// `shaders_glsl/horizon/height_expand.comp` with its specialisation constants.
@@ -677,7 +677,7 @@ pub const HEIGHT_REDUCE: Shader = Shader {
         Constant { id: 0, name: "periodic" },
         Constant { id: 1, name: "from_field" },
     ],
-    words: words_at(81094, 2857),
+    words: words_at(81114, 2860),
 };
 
 /// `shaders_glsl/horizon/height_reduce.comp` with its specialisation constants.
@@ -710,7 +710,7 @@ pub const HEIGHT_TRANSPOSE: Shader = Shader {
         Constant { id: 0, name: "marches_rows" },
         Constant { id: 1, name: "periodic" },
     ],
-    words: words_at(83951, 978),
+    words: words_at(83974, 978),
 };
 
 /// `shaders_glsl/horizon/height_transpose.comp` with its specialisation constants.
@@ -746,7 +746,7 @@ pub const HORIZON_MARCH: Shader = Shader {
         Constant { id: 2, name: "writes_distances" },
         Constant { id: 3, name: "node_stride" },
     ],
-    words: words_at(84929, 5454),
+    words: words_at(84952, 5456),
 };
 
 /// `shaders_glsl/horizon/horizon_march.comp` with its specialisation constants.
@@ -792,14 +792,14 @@ pub const HORIZON_RESWEEP: Shader = Shader {
         Binding { binding: 0, name: "heights", kind: BindingKind::SampledImage { uint: false, layered: false }, written: false },
         Binding { binding: 1, name: "azimuths", kind: BindingKind::TexelBuffer, written: false },
         Binding { binding: 2, name: "occluders", kind: BindingKind::StorageImage { format: "Rg32ui", uint: true, layered: true }, written: true },
-        Binding { binding: 3, name: "dirty_samples", kind: BindingKind::StorageBuffer, written: true },
+        Binding { binding: 3, name: "dirty_texels", kind: BindingKind::StorageBuffer, written: true },
         Binding { binding: 4, name: "edit_list", kind: BindingKind::StorageBuffer, written: true },
     ],
     constants: &[
         Constant { id: 0, name: "line_shift" },
         Constant { id: 1, name: "hull_packed" },
     ],
-    words: words_at(90383, 8883),
+    words: words_at(90408, 8882),
 };
 
 /// `shaders_glsl/edit/horizon_resweep.comp` with its specialisation constants.
@@ -856,7 +856,7 @@ pub const HORIZON_SWEEP: Shader = Shader {
         Constant { id: 11, name: "line_shift" },
         Constant { id: 12, name: "redoes_lost" },
     ],
-    words: words_at(99266, 9430),
+    words: words_at(99290, 9430),
 };
 
 /// `shaders_glsl/horizon/horizon_sweep.comp` with its specialisation constants.
@@ -941,7 +941,7 @@ pub const LIGHT_MATRIX: Shader = Shader {
     ],
     constants: &[
     ],
-    words: words_at(108696, 1843),
+    words: words_at(108720, 1843),
 };
 
 /// `shaders_glsl/sh/light_matrix.comp` with its specialisation constants.
@@ -967,7 +967,7 @@ pub const LIGHT_RESOLVE: Shader = Shader {
         Binding { binding: 4, name: "layer", kind: BindingKind::StorageImage { format: "Rgba32f", uint: false, layered: false }, written: true },
         Binding { binding: 5, name: "radiance_grey", kind: BindingKind::StorageImage { format: "R32f", uint: false, layered: false }, written: true },
         Binding { binding: 6, name: "layer_grey", kind: BindingKind::StorageImage { format: "R32f", uint: false, layered: false }, written: true },
-        Binding { binding: 7, name: "dirty_samples", kind: BindingKind::StorageBuffer, written: false },
+        Binding { binding: 7, name: "dirty_texels", kind: BindingKind::StorageBuffer, written: false },
         Binding { binding: 8, name: "edit_list", kind: BindingKind::StorageBuffer, written: false },
         Binding { binding: 9, name: "light_colours", kind: BindingKind::SampledImage { uint: false, layered: false }, written: false },
     ],
@@ -980,7 +980,7 @@ pub const LIGHT_RESOLVE: Shader = Shader {
         Constant { id: 5, name: "relights" },
         Constant { id: 6, name: "colour_is_texel" },
     ],
-    words: words_at(110539, 1992),
+    words: words_at(110563, 1991),
 };
 
 /// `shaders_glsl/direct/light_resolve.comp` with its specialisation constants.
@@ -1044,7 +1044,7 @@ pub const MAP_DRAW: Shader = Shader {
         Constant { id: 0, name: "grey" },
         Constant { id: 1, name: "has_voids" },
     ],
-    words: words_at(112531, 1575),
+    words: words_at(112554, 1576),
 };
 
 /// `shaders_glsl/view/map_draw.comp` with its specialisation constants.
@@ -1092,7 +1092,7 @@ pub const PATH_TRACE: Shader = Shader {
         Constant { id: 2, name: "set_bits" },
         Constant { id: 3, name: "albedo_is_map" },
         Constant { id: 4, name: "has_environment" },
-        Constant { id: 5, name: "has_lobe" },
+        Constant { id: 5, name: "has_specular" },
         Constant { id: 6, name: "thin_cols" },
         Constant { id: 7, name: "has_lights" },
         Constant { id: 8, name: "has_sphere_lights" },
@@ -1100,10 +1100,10 @@ pub const PATH_TRACE: Shader = Shader {
         Constant { id: 10, name: "most_steps" },
         Constant { id: 11, name: "has_keys" },
         Constant { id: 12, name: "in_parts" },
-        Constant { id: 13, name: "lobe_is_map" },
+        Constant { id: 13, name: "specular_is_map" },
         Constant { id: 14, name: "at_places" },
     ],
-    words: words_at(114106, 22906),
+    words: words_at(114130, 22914),
 };
 
 /// `shaders_glsl/reference/path_trace.comp` with its specialisation constants.
@@ -1119,8 +1119,8 @@ pub(crate) struct PathTrace {
     pub albedo_is_map: bool,
     /// `HAS_ENVIRONMENT`, by default false.
     pub has_environment: bool,
-    /// `HAS_LOBE`, by default false.
-    pub has_lobe: bool,
+    /// `HAS_SPECULAR`, by default false.
+    pub has_specular: bool,
     /// `THIN_COLS`, by default false.
     pub thin_cols: bool,
     /// `HAS_LIGHTS`, by default false.
@@ -1135,8 +1135,8 @@ pub(crate) struct PathTrace {
     pub has_keys: bool,
     /// `IN_PARTS`, by default false.
     pub in_parts: bool,
-    /// `LOBE_IS_MAP`, by default false.
-    pub lobe_is_map: bool,
+    /// `SPECULAR_IS_MAP`, by default false.
+    pub specular_is_map: bool,
     /// `AT_PLACES`, by default false.
     pub at_places: bool,
 }
@@ -1149,7 +1149,7 @@ impl Default for PathTrace {
             set_bits: 4,
             albedo_is_map: false,
             has_environment: false,
-            has_lobe: false,
+            has_specular: false,
             thin_cols: false,
             has_lights: false,
             has_sphere_lights: false,
@@ -1157,7 +1157,7 @@ impl Default for PathTrace {
             most_steps: 60000,
             has_keys: false,
             in_parts: false,
-            lobe_is_map: false,
+            specular_is_map: false,
             at_places: false,
         }
     }
@@ -1171,7 +1171,7 @@ impl From<PathTrace> for Specialised {
             of.set_bits,
             u32::from(of.albedo_is_map),
             u32::from(of.has_environment),
-            u32::from(of.has_lobe),
+            u32::from(of.has_specular),
             u32::from(of.thin_cols),
             u32::from(of.has_lights),
             u32::from(of.has_sphere_lights),
@@ -1179,7 +1179,7 @@ impl From<PathTrace> for Specialised {
             of.most_steps as u32,
             u32::from(of.has_keys),
             u32::from(of.in_parts),
-            u32::from(of.lobe_is_map),
+            u32::from(of.specular_is_map),
             u32::from(of.at_places),
         ] }
     }
@@ -1195,7 +1195,7 @@ pub const PICTURE_TONE_FRAG: Shader = Shader {
     constants: &[
         Constant { id: 0, name: "encodes" },
     ],
-    words: words_at(137012, 455),
+    words: words_at(137044, 455),
 };
 
 /// `shaders_glsl/view/picture_tone.frag` with its specialisation constants.
@@ -1229,7 +1229,7 @@ pub const PICTURE_TONE_VERT: Shader = Shader {
     ],
     constants: &[
     ],
-    words: words_at(137467, 266),
+    words: words_at(137499, 266),
 };
 
 /// `shaders_glsl/view/picture_tone.vert` with its specialisation constants.
@@ -1261,7 +1261,7 @@ pub const PYRAMID_MARCH: Shader = Shader {
         Constant { id: 2, name: "levels" },
         Constant { id: 3, name: "node_stride" },
     ],
-    words: words_at(137733, 9022),
+    words: words_at(137765, 9025),
 };
 
 /// `shaders_glsl/horizon/pyramid_march.comp` with its specialisation constants.
@@ -1322,12 +1322,12 @@ pub const SCATTER_GATHER: Shader = Shader {
         Constant { id: 1, name: "sums" },
         Constant { id: 2, name: "small" },
         Constant { id: 3, name: "albedo_is_map" },
-        Constant { id: 4, name: "has_lobe" },
-        Constant { id: 5, name: "lobe_is_map" },
+        Constant { id: 4, name: "has_specular" },
+        Constant { id: 5, name: "specular_is_map" },
         Constant { id: 6, name: "bent" },
-        Constant { id: 7, name: "own_lobe" },
+        Constant { id: 7, name: "direct_specular" },
     ],
-    words: words_at(146755, 4659),
+    words: words_at(146790, 4664),
 };
 
 /// `shaders_glsl/bake/scatter_gather.comp` with its specialisation constants.
@@ -1341,14 +1341,14 @@ pub(crate) struct ScatterGather {
     pub small: bool,
     /// `ALBEDO_IS_MAP`, by default false.
     pub albedo_is_map: bool,
-    /// `HAS_LOBE`, by default false.
-    pub has_lobe: bool,
-    /// `LOBE_IS_MAP`, by default false.
-    pub lobe_is_map: bool,
+    /// `HAS_SPECULAR`, by default false.
+    pub has_specular: bool,
+    /// `SPECULAR_IS_MAP`, by default false.
+    pub specular_is_map: bool,
     /// `BENT`, by default false.
     pub bent: bool,
-    /// `OWN_LOBE`, by default false.
-    pub own_lobe: bool,
+    /// `DIRECT_SPECULAR`, by default false.
+    pub direct_specular: bool,
 }
 
 impl Default for ScatterGather {
@@ -1358,10 +1358,10 @@ impl Default for ScatterGather {
             sums: false,
             small: false,
             albedo_is_map: false,
-            has_lobe: false,
-            lobe_is_map: false,
+            has_specular: false,
+            specular_is_map: false,
             bent: false,
-            own_lobe: false,
+            direct_specular: false,
         }
     }
 }
@@ -1373,10 +1373,10 @@ impl From<ScatterGather> for Specialised {
             u32::from(of.sums),
             u32::from(of.small),
             u32::from(of.albedo_is_map),
-            u32::from(of.has_lobe),
-            u32::from(of.lobe_is_map),
+            u32::from(of.has_specular),
+            u32::from(of.specular_is_map),
             u32::from(of.bent),
-            u32::from(of.own_lobe),
+            u32::from(of.direct_specular),
         ] }
     }
 }
@@ -1399,9 +1399,9 @@ pub const SH_SHADE: Shader = Shader {
         Constant { id: 2, name: "order" },
         Constant { id: 3, name: "receiver" },
         Constant { id: 4, name: "node_stride" },
-        Constant { id: 5, name: "lobe_is_map" },
+        Constant { id: 5, name: "specular_is_map" },
     ],
-    words: words_at(151414, 12952),
+    words: words_at(151454, 12958),
 };
 
 /// `shaders_glsl/sh/sh_shade.comp` with its specialisation constants.
@@ -1417,8 +1417,8 @@ pub(crate) struct ShShade {
     pub receiver: u32,
     /// `NODE_STRIDE`, by default 1.
     pub node_stride: i32,
-    /// `LOBE_IS_MAP`, by default false.
-    pub lobe_is_map: bool,
+    /// `SPECULAR_IS_MAP`, by default false.
+    pub specular_is_map: bool,
 }
 
 impl Default for ShShade {
@@ -1429,7 +1429,7 @@ impl Default for ShShade {
             order: 4,
             receiver: 1,
             node_stride: 1,
-            lobe_is_map: false,
+            specular_is_map: false,
         }
     }
 }
@@ -1442,7 +1442,7 @@ impl From<ShShade> for Specialised {
             of.order as u32,
             of.receiver,
             of.node_stride as u32,
-            u32::from(of.lobe_is_map),
+            u32::from(of.specular_is_map),
         ] }
     }
 }
@@ -1457,7 +1457,7 @@ pub const SH_VISIBILITY: Shader = Shader {
         Binding { binding: 2, name: "azimuths", kind: BindingKind::TexelBuffer, written: false },
         Binding { binding: 3, name: "visibility", kind: BindingKind::StorageImage { format: "Rgba32f", uint: false, layered: true }, written: true },
         Binding { binding: 4, name: "nodes", kind: BindingKind::StorageImage { format: "Rgba32f", uint: false, layered: false }, written: true },
-        Binding { binding: 6, name: "dirty_samples", kind: BindingKind::StorageBuffer, written: false },
+        Binding { binding: 6, name: "dirty_texels", kind: BindingKind::StorageBuffer, written: false },
         Binding { binding: 7, name: "lattice_words", kind: BindingKind::SampledImage { uint: true, layered: true }, written: false },
         Binding { binding: 8, name: "edit_list", kind: BindingKind::StorageBuffer, written: false },
     ],
@@ -1473,7 +1473,7 @@ pub const SH_VISIBILITY: Shader = Shader {
         Constant { id: 8, name: "lane_stride" },
         Constant { id: 9, name: "lattice_stride" },
     ],
-    words: words_at(164366, 29805),
+    words: words_at(164412, 29808),
 };
 
 /// `shaders_glsl/sh/sh_visibility.comp` with its specialisation constants.
@@ -1553,7 +1553,7 @@ pub const SH_WEDGES: Shader = Shader {
         Constant { id: 3, name: "own_plane_hides" },
         Constant { id: 4, name: "lane_stride" },
     ],
-    words: words_at(194171, 7775),
+    words: words_at(194220, 7777),
 };
 
 /// `shaders_glsl/sh/sh_wedges.comp` with its specialisation constants.
@@ -1607,7 +1607,7 @@ pub const SHADE_EXPAND: Shader = Shader {
     constants: &[
         Constant { id: 0, name: "periodic" },
     ],
-    words: words_at(201946, 2396),
+    words: words_at(201997, 2397),
 };
 
 /// `shaders_glsl/bounce/shade_expand.comp` with its specialisation constants.
@@ -1639,7 +1639,7 @@ pub const SHADE_REDUCE: Shader = Shader {
         Constant { id: 1, name: "from_field" },
         Constant { id: 2, name: "grey" },
     ],
-    words: words_at(204342, 2916),
+    words: words_at(204394, 2919),
 };
 
 /// `shaders_glsl/bounce/shade_reduce.comp` with its specialisation constants.
@@ -1673,7 +1673,7 @@ pub const SKY_DRAW_FRAG: Shader = Shader {
     constants: &[
         Constant { id: 0, name: "has_environment" },
     ],
-    words: words_at(207258, 1269),
+    words: words_at(207313, 1269),
 };
 
 /// `shaders_glsl/view/sky_draw.frag` with its specialisation constants.
@@ -1699,7 +1699,7 @@ pub const SKY_DRAW_VERT: Shader = Shader {
     ],
     constants: &[
     ],
-    words: words_at(208527, 289),
+    words: words_at(208582, 289),
 };
 
 /// `shaders_glsl/view/sky_draw.vert` with its specialisation constants.
@@ -1724,7 +1724,7 @@ pub const SKY_SHADE: Shader = Shader {
         Binding { binding: 3, name: "sky_sum", kind: BindingKind::StorageImage { format: "R32f", uint: false, layered: false }, written: true },
         Binding { binding: 4, name: "env_sum", kind: BindingKind::StorageImage { format: "Rgba32f", uint: false, layered: false }, written: true },
         Binding { binding: 5, name: "env_tables", kind: BindingKind::StorageImage { format: "Rgba32f", uint: false, layered: true }, written: false },
-        Binding { binding: 6, name: "dirty_samples", kind: BindingKind::StorageBuffer, written: false },
+        Binding { binding: 6, name: "dirty_texels", kind: BindingKind::StorageBuffer, written: false },
         Binding { binding: 7, name: "lattice_words", kind: BindingKind::SampledImage { uint: true, layered: true }, written: false },
         Binding { binding: 8, name: "edit_list", kind: BindingKind::StorageBuffer, written: false },
     ],
@@ -1738,7 +1738,7 @@ pub const SKY_SHADE: Shader = Shader {
         Constant { id: 6, name: "marches_rows" },
         Constant { id: 7, name: "relights" },
     ],
-    words: words_at(208816, 22805),
+    words: words_at(208871, 22806),
 };
 
 /// `shaders_glsl/direct/sky_shade.comp` with its specialisation constants.
@@ -1800,23 +1800,23 @@ pub const SPECULAR_EXIT: Shader = Shader {
         Binding { binding: 0, name: "arriving", kind: BindingKind::SampledImage { uint: false, layered: true }, written: false },
         Binding { binding: 1, name: "ground", kind: BindingKind::SampledImage { uint: false, layered: false }, written: false },
         Binding { binding: 2, name: "exit_radiance", kind: BindingKind::SampledImage { uint: false, layered: false }, written: false },
-        Binding { binding: 3, name: "gloss_direct", kind: BindingKind::SampledImage { uint: false, layered: false }, written: false },
+        Binding { binding: 3, name: "specular_direct", kind: BindingKind::SampledImage { uint: false, layered: false }, written: false },
         Binding { binding: 4, name: "phong_map", kind: BindingKind::SampledImage { uint: false, layered: false }, written: false },
         Binding { binding: 5, name: "constants", kind: BindingKind::TexelBuffer, written: false },
-        Binding { binding: 6, name: "gloss_bounced", kind: BindingKind::StorageImage { format: "Rgba32f", uint: false, layered: false }, written: true },
+        Binding { binding: 6, name: "specular_bounced", kind: BindingKind::StorageImage { format: "Rgba32f", uint: false, layered: false }, written: true },
         Binding { binding: 7, name: "exit_vectors", kind: BindingKind::StorageImage { format: "Unknown", uint: false, layered: true }, written: true },
-        Binding { binding: 8, name: "exit_seen", kind: BindingKind::StorageImage { format: "Unknown", uint: false, layered: false }, written: true },
+        Binding { binding: 8, name: "exit_upward", kind: BindingKind::StorageImage { format: "Unknown", uint: false, layered: false }, written: true },
     ],
     constants: &[
         Constant { id: 0, name: "order" },
         Constant { id: 1, name: "grey" },
-        Constant { id: 2, name: "lobe_is_map" },
+        Constant { id: 2, name: "specular_is_map" },
         Constant { id: 3, name: "is_direct" },
-        Constant { id: 4, name: "throws" },
+        Constant { id: 4, name: "is_bounced" },
         Constant { id: 5, name: "vectors" },
         Constant { id: 6, name: "halves" },
     ],
-    words: words_at(231621, 6433),
+    words: words_at(231677, 6438),
 };
 
 /// `shaders_glsl/specular/specular_exit.comp` with its specialisation constants.
@@ -1826,12 +1826,12 @@ pub(crate) struct SpecularExit {
     pub order: i32,
     /// `GREY`, by default false.
     pub grey: bool,
-    /// `LOBE_IS_MAP`, by default false.
-    pub lobe_is_map: bool,
+    /// `SPECULAR_IS_MAP`, by default false.
+    pub specular_is_map: bool,
     /// `IS_DIRECT`, by default false.
     pub is_direct: bool,
-    /// `THROWS`, by default true.
-    pub throws: bool,
+    /// `IS_BOUNCED`, by default true.
+    pub is_bounced: bool,
     /// `VECTORS`, by default true.
     pub vectors: bool,
     /// `HALVES`, by default false.
@@ -1843,9 +1843,9 @@ impl Default for SpecularExit {
         Self {
             order: 4,
             grey: false,
-            lobe_is_map: false,
+            specular_is_map: false,
             is_direct: false,
-            throws: true,
+            is_bounced: true,
             vectors: true,
             halves: false,
         }
@@ -1857,9 +1857,9 @@ impl From<SpecularExit> for Specialised {
         Self { shader: &SPECULAR_EXIT, constants: vec![
             of.order as u32,
             u32::from(of.grey),
-            u32::from(of.lobe_is_map),
+            u32::from(of.specular_is_map),
             u32::from(of.is_direct),
-            u32::from(of.throws),
+            u32::from(of.is_bounced),
             u32::from(of.vectors),
             u32::from(of.halves),
         ] }
@@ -1895,7 +1895,7 @@ pub const SPECULAR_GATHER: Shader = Shader {
         Constant { id: 6, name: "order" },
         Constant { id: 7, name: "most_knots" },
     ],
-    words: words_at(238054, 20112),
+    words: words_at(238115, 20114),
 };
 
 /// `shaders_glsl/bounce/specular_gather.comp` with its specialisation constants.
@@ -1962,7 +1962,7 @@ pub const SPECULAR_VISIBILITY: Shader = Shader {
         Constant { id: 0, name: "order" },
         Constant { id: 1, name: "grey" },
     ],
-    words: words_at(258166, 1238),
+    words: words_at(258229, 1238),
 };
 
 /// `shaders_glsl/specular/specular_visibility.comp` with its specialisation constants.
@@ -2019,7 +2019,7 @@ pub const SPHERE_SH_SHADE: Shader = Shader {
         Constant { id: 8, name: "stack" },
         Constant { id: 9, name: "levels" },
     ],
-    words: words_at(259404, 27587),
+    words: words_at(259467, 27590),
 };
 
 /// `shaders_glsl/direct/sphere_sh_shade.comp` with its specialisation constants.
@@ -2097,7 +2097,7 @@ pub const SPHERE_SHADE: Shader = Shader {
         Constant { id: 2, name: "thin_cols" },
         Constant { id: 3, name: "most_steps" },
     ],
-    words: words_at(286991, 14297),
+    words: words_at(287057, 14302),
 };
 
 /// `shaders_glsl/direct/sphere_shade.comp` with its specialisation constants.
@@ -2144,7 +2144,7 @@ pub const SUN_SHADE: Shader = Shader {
         Binding { binding: 1, name: "lattice", kind: BindingKind::StorageImage { format: "Rg32ui", uint: true, layered: true }, written: false },
         Binding { binding: 2, name: "azimuths", kind: BindingKind::TexelBuffer, written: false },
         Binding { binding: 3, name: "sun_sum", kind: BindingKind::StorageImage { format: "R32f", uint: false, layered: false }, written: true },
-        Binding { binding: 6, name: "dirty_samples", kind: BindingKind::StorageBuffer, written: false },
+        Binding { binding: 6, name: "dirty_texels", kind: BindingKind::StorageBuffer, written: false },
         Binding { binding: 7, name: "lattice_words", kind: BindingKind::SampledImage { uint: true, layered: true }, written: false },
         Binding { binding: 8, name: "edit_list", kind: BindingKind::StorageBuffer, written: false },
     ],
@@ -2157,7 +2157,7 @@ pub const SUN_SHADE: Shader = Shader {
         Constant { id: 5, name: "marches_rows" },
         Constant { id: 6, name: "relights" },
     ],
-    words: words_at(301288, 22087),
+    words: words_at(301359, 22088),
 };
 
 /// `shaders_glsl/direct/sun_shade.comp` with its specialisation constants.
@@ -2214,18 +2214,18 @@ pub const SUN_SPECULAR: Shader = Shader {
     bindings: &[
         Binding { binding: 0, name: "lane_heights", kind: BindingKind::StorageImage { format: "Rgba32f", uint: false, layered: false }, written: false },
         Binding { binding: 1, name: "sun_sum", kind: BindingKind::SampledImage { uint: false, layered: false }, written: false },
-        Binding { binding: 2, name: "gloss_sum", kind: BindingKind::StorageImage { format: "Rgba32f", uint: false, layered: false }, written: true },
+        Binding { binding: 2, name: "specular_sum", kind: BindingKind::StorageImage { format: "Rgba32f", uint: false, layered: false }, written: true },
         Binding { binding: 3, name: "phong_map", kind: BindingKind::SampledImage { uint: false, layered: false }, written: false },
         Binding { binding: 4, name: "arriving", kind: BindingKind::StorageImage { format: "Rgba32f", uint: false, layered: true }, written: true },
     ],
     constants: &[
         Constant { id: 0, name: "border" },
         Constant { id: 1, name: "marches_rows" },
-        Constant { id: 2, name: "lobe_is_map" },
+        Constant { id: 2, name: "specular_is_map" },
         Constant { id: 3, name: "order" },
         Constant { id: 4, name: "grey" },
     ],
-    words: words_at(323375, 7943),
+    words: words_at(323447, 7945),
 };
 
 /// `shaders_glsl/specular/sun_specular.comp` with its specialisation constants.
@@ -2235,8 +2235,8 @@ pub(crate) struct SunSpecular {
     pub border: u32,
     /// `MARCHES_ROWS`, by default false.
     pub marches_rows: bool,
-    /// `LOBE_IS_MAP`, by default false.
-    pub lobe_is_map: bool,
+    /// `SPECULAR_IS_MAP`, by default false.
+    pub specular_is_map: bool,
     /// `ORDER`, by default 0.
     pub order: i32,
     /// `GREY`, by default false.
@@ -2248,7 +2248,7 @@ impl From<SunSpecular> for Specialised {
         Self { shader: &SUN_SPECULAR, constants: vec![
             of.border,
             u32::from(of.marches_rows),
-            u32::from(of.lobe_is_map),
+            u32::from(of.specular_is_map),
             of.order as u32,
             u32::from(of.grey),
         ] }
@@ -2270,7 +2270,7 @@ pub const SURFACE_SWEEP: Shader = Shader {
         Constant { id: 2, name: "periodic" },
         Constant { id: 3, name: "writes_distances" },
     ],
-    words: words_at(331318, 6812),
+    words: words_at(331392, 6812),
 };
 
 /// `shaders_glsl/horizon/surface_sweep.comp` with its specialisation constants.
@@ -2329,7 +2329,7 @@ pub const SWEEP_FUSE: Shader = Shader {
         Constant { id: 5, name: "lattice_has_distances" },
         Constant { id: 6, name: "marches_rows" },
     ],
-    words: words_at(338130, 18087),
+    words: words_at(338204, 18089),
 };
 
 /// `shaders_glsl/horizon/sweep_fuse.comp` with its specialisation constants.
@@ -2391,7 +2391,7 @@ pub const TERRAIN_DRAW_FRAG: Shader = Shader {
         Constant { id: 0, name: "is_grey" },
         Constant { id: 1, name: "has_voids" },
     ],
-    words: words_at(356217, 1130),
+    words: words_at(356293, 1129),
 };
 
 /// `shaders_glsl/view/terrain_draw.frag` with its specialisation constants.
@@ -2421,7 +2421,7 @@ pub const TERRAIN_DRAW_VERT: Shader = Shader {
     ],
     constants: &[
     ],
-    words: words_at(357347, 917),
+    words: words_at(357422, 916),
 };
 
 /// `shaders_glsl/view/terrain_draw.vert` with its specialisation constants.
@@ -2449,7 +2449,7 @@ pub const VECTOR_REDUCE: Shader = Shader {
         Constant { id: 0, name: "periodic" },
         Constant { id: 1, name: "from_field" },
     ],
-    words: words_at(358264, 2963),
+    words: words_at(358338, 2966),
 };
 
 /// `shaders_glsl/bounce/vector_reduce.comp` with its specialisation constants.
@@ -2488,7 +2488,7 @@ pub const VISIBLE_POINTS: Shader = Shader {
         Constant { id: 3, name: "most_steps" },
         Constant { id: 4, name: "small" },
     ],
-    words: words_at(361227, 9659),
+    words: words_at(361304, 9659),
 };
 
 /// `shaders_glsl/bake/visible_points.comp` with its specialisation constants.
@@ -2739,10 +2739,10 @@ pub mod offsets {
         /// Bytes.
         pub const ROWS: usize = 4;
     }
-    /// `DirtySamples`.
-    pub mod dirty_samples {
+    /// `DirtyTexels`.
+    pub mod dirty_texels {
         /// Bytes.
-        pub const DIRTY_SAMPLES: usize = 0;
+        pub const DIRTY_TEXELS: usize = 0;
     }
     /// `EditList`.
     pub mod edit_list {
@@ -2888,9 +2888,9 @@ pub mod offsets {
         /// Bytes.
         pub const LEVEL: usize = 40;
         /// Bytes.
-        pub const PER_SAMPLE_X: usize = 32;
+        pub const PER_GRID_POINT_X: usize = 32;
         /// Bytes.
-        pub const PER_SAMPLE_Y: usize = 36;
+        pub const PER_GRID_POINT_Y: usize = 36;
         /// Bytes.
         pub const RATIO_X: usize = 24;
         /// Bytes.
@@ -3004,11 +3004,11 @@ pub mod offsets {
         /// Bytes.
         pub const FIRST_ROW: usize = 20;
         /// Bytes.
+        pub const GRID_POINTS_PER_PIXEL: usize = 24;
+        /// Bytes.
         pub const HEIGHT: usize = 4;
         /// Bytes.
         pub const ROWS: usize = 12;
-        /// Bytes.
-        pub const SAMPLES_PER_PIXEL: usize = 24;
         /// Bytes.
         pub const SWAPS: usize = 28;
         /// Bytes.
@@ -3060,8 +3060,6 @@ pub mod offsets {
         /// Bytes.
         pub const LIGHT_COUNT: usize = 56;
         /// Bytes.
-        pub const LOBE_SHARE: usize = 44;
-        /// Bytes.
         pub const PADDED_ROWS: usize = 16;
         /// Bytes.
         pub const ROTATION_TURNS: usize = 36;
@@ -3071,6 +3069,8 @@ pub mod offsets {
         pub const SEED: usize = 60;
         /// Bytes.
         pub const SKY: usize = 80;
+        /// Bytes.
+        pub const SPECULAR_SCALE: usize = 44;
         /// Bytes.
         pub const SUNS: usize = 52;
         /// Bytes.
@@ -3123,11 +3123,11 @@ pub mod offsets {
         /// Bytes.
         pub const FIRST_VIEW: usize = 52;
         /// Bytes.
-        pub const LOBE_SHARE: usize = 48;
-        /// Bytes.
         pub const PATHS: usize = 24;
         /// Bytes.
         pub const ROWS: usize = 4;
+        /// Bytes.
+        pub const SPECULAR_SCALE: usize = 48;
         /// Bytes.
         pub const STEP: usize = 16;
         /// Bytes.
@@ -3146,9 +3146,9 @@ pub mod offsets {
         /// Bytes.
         pub const COLS: usize = 0;
         /// Bytes.
-        pub const LOBE: usize = 16;
-        /// Bytes.
         pub const ROWS: usize = 4;
+        /// Bytes.
+        pub const SPECULAR: usize = 16;
     }
     /// `ShWedgesPush`.
     pub mod sh_wedges_push {
@@ -3208,9 +3208,9 @@ pub mod offsets {
         /// Bytes.
         pub const LEVEL: usize = 40;
         /// Bytes.
-        pub const PER_SAMPLE_X: usize = 32;
+        pub const PER_GRID_POINT_X: usize = 32;
         /// Bytes.
-        pub const PER_SAMPLE_Y: usize = 36;
+        pub const PER_GRID_POINT_Y: usize = 36;
         /// Bytes.
         pub const RATIO_X: usize = 24;
         /// Bytes.
@@ -3407,9 +3407,9 @@ pub mod offsets {
         /// Bytes.
         pub const COLS: usize = 0;
         /// Bytes.
-        pub const LOBE: usize = 48;
-        /// Bytes.
         pub const ROWS: usize = 4;
+        /// Bytes.
+        pub const SPECULAR: usize = 48;
         /// Bytes.
         pub const TOWARDS: usize = 16;
     }
@@ -3439,6 +3439,8 @@ pub mod offsets {
         /// Bytes.
         pub const COLS: usize = 76;
         /// Bytes.
+        pub const MESH_STEP: usize = 84;
+        /// Bytes.
         pub const ORIGIN_COL: usize = 64;
         /// Bytes.
         pub const ORIGIN_M: usize = 72;
@@ -3446,8 +3448,6 @@ pub mod offsets {
         pub const ORIGIN_ROW: usize = 68;
         /// Bytes.
         pub const ROWS: usize = 80;
-        /// Bytes.
-        pub const STEP_SAMPLES: usize = 84;
         /// Bytes.
         pub const TILES_ACROSS: usize = 88;
     }
@@ -3460,9 +3460,9 @@ pub mod offsets {
         /// Bytes.
         pub const LEVEL: usize = 40;
         /// Bytes.
-        pub const PER_SAMPLE_X: usize = 32;
+        pub const PER_GRID_POINT_X: usize = 32;
         /// Bytes.
-        pub const PER_SAMPLE_Y: usize = 36;
+        pub const PER_GRID_POINT_Y: usize = 36;
         /// Bytes.
         pub const RATIO_X: usize = 24;
         /// Bytes.
@@ -3513,4 +3513,4 @@ pub mod offsets {
 }
 
 /// Words of all shaders together.
-const WORD_COUNT: usize = 370886;
+const WORD_COUNT: usize = 370963;

@@ -5,7 +5,7 @@
 // constants RELIGHTS and OWN_PLANE_HIDES. It defines add_light and dark_slope, the horizon slope above which an
 // azimuth gives no light.
 
-layout(binding = 6) readonly buffer DirtySamples { uint dirty_samples[]; };
+layout(binding = 6) readonly buffer DirtyTexels { uint dirty_texels[]; };
 layout(binding = 8) readonly buffer EditList { uint swept_steps; uint word_count; uint light_groups[3]; uint resolve_groups[3]; uint dirty_words[]; };
 
 layout(push_constant) uniform ShadePush {
@@ -35,11 +35,11 @@ ivec2 place_of_four() {
 
 // Which of the four grid points from a lane on are shaded: after an edit only those that it reaches. The same in
 // every batch, so that sums stay complete.
-bvec4 lit_samples(int lane, int march) {
+bvec4 lit_texels(int lane, int march) {
     if (!RELIGHTS) {
         return bvec4(true);
     }
-    uint word = dirty_samples[dirty_word(texel_at(lane, march), cols)];
+    uint word = dirty_texels[dirty_word(texel_at(lane, march), cols)];
     uvec4 bits = uvec4(dirty_bit(texel_at(lane, march)), dirty_bit(texel_at(lane + 1, march)),
                        dirty_bit(texel_at(lane + 2, march)), dirty_bit(texel_at(lane + 3, march)));
     return notEqual(word & bits, uvec4(0));

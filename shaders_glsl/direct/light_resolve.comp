@@ -1,5 +1,5 @@
 // Computes: exit radiance of one light: its sum times its colour and the surface's albedo.
-// Reads: scalar_sum or colour_sum, light_colours, albedo_map, dirty_samples, edit_list.
+// Reads: scalar_sum or colour_sum, light_colours, albedo_map, dirty_texels, edit_list.
 // Reads and writes: radiance (or radiance_grey).
 // Writes: layer (or layer_grey).
 // One invocation is one grid point.
@@ -16,7 +16,7 @@ layout(constant_id = 2) const bool ADDS_TO_RADIANCE = true;
 layout(constant_id = 3) const bool WRITES_LAYER = false;
 // All colours are grey: images of one channel.
 layout(constant_id = 4) const bool GREY = false;
-// Only the grid points marked in dirty_samples, from the list of their words.
+// Only the grid points marked in dirty_texels, from the list of their words.
 layout(constant_id = 5) const bool RELIGHTS = false;
 // The light's colour is a texel of the caller's image.
 layout(constant_id = 6) const bool COLOUR_IS_TEXEL = false;
@@ -28,7 +28,7 @@ layout(binding = 3, rgba32f) uniform image2D radiance;
 layout(binding = 4, rgba32f) uniform writeonly image2D layer;
 layout(binding = 5, r32f) uniform image2D radiance_grey;
 layout(binding = 6, r32f) uniform writeonly image2D layer_grey;
-layout(binding = 7) readonly buffer DirtySamples { uint dirty_samples[]; };
+layout(binding = 7) readonly buffer DirtyTexels { uint dirty_texels[]; };
 layout(binding = 8) readonly buffer EditList { uint swept_steps; uint word_count; uint light_groups[3]; uint resolve_groups[3]; uint dirty_words[]; };
 // One row, one texel per light.
 layout(binding = 9) uniform texture2D light_colours;
@@ -45,11 +45,11 @@ void main() {
     ivec2 at = ivec2(gl_GlobalInvocationID.xy);
     if (RELIGHTS) {
         uint group = gl_WorkGroupID.y * GROUPS_ACROSS + gl_WorkGroupID.x;
-        uint sample_of_list = group * (32u * RESOLVE_GROUP_WORDS) + gl_LocalInvocationIndex;
-        uint word = dirty_words[min(sample_of_list >> 5, word_count - 1u)];
-        uint i = sample_of_list & 31u;
-        bool is_marked = (dirty_samples[word] >> i & 1u) != 0u;
-        at = (sample_of_list >> 5) < word_count && is_marked ? word_corner(word, cols) + ivec2(i & 7u, i >> 3)
+        uint texel_of_list = group * (32u * RESOLVE_GROUP_WORDS) + gl_LocalInvocationIndex;
+        uint word = dirty_words[min(texel_of_list >> 5, word_count - 1u)];
+        uint i = texel_of_list & 31u;
+        bool is_marked = (dirty_texels[word] >> i & 1u) != 0u;
+        at = (texel_of_list >> 5) < word_count && is_marked ? word_corner(word, cols) + ivec2(i & 7u, i >> 3)
                                                              : ivec2(0x7fffffff);
     }
     if (at.x >= cols || at.y >= rows) {

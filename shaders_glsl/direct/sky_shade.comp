@@ -1,6 +1,6 @@
 // Computes: exit radiance under a uniform sky and under an environment, from the horizons in the azimuths of a batch,
 // added to earlier batches.
-// Reads: lane_heights, azimuths, lattice, env_tables, dirty_samples, edit_list.
+// Reads: lane_heights, azimuths, lattice, env_tables, dirty_texels, edit_list.
 // Reads and writes: sky_sum (exit radiance for sky radiance 1 and albedo 1), env_sum (exit radiance for albedo 1,
 // RGB).
 // One invocation is four grid points side by side along the lane axis, at one march position.
@@ -21,7 +21,7 @@ const bool OWN_PLANE_HIDES = true;
 layout(constant_id = 4) const bool HAS_SKY = true;
 layout(constant_id = 5) const bool HAS_ENVIRONMENT = false;
 layout(constant_id = 6) const bool MARCHES_ROWS = false;
-// Only the grid points marked in dirty_samples, from the list of their words.
+// Only the grid points marked in dirty_texels, from the list of their words.
 layout(constant_id = 7) const bool RELIGHTS = false;
 
 layout(binding = 0, rgba32f) uniform readonly image2D lane_heights;
@@ -91,7 +91,7 @@ void main() {
     if (lane >= lanes || march >= steps) {
         return;
     }
-    bvec4 lit = lit_samples(lane, march);
+    bvec4 lit = lit_texels(lane, march);
     if (!any(lit)) {
         return;
     }

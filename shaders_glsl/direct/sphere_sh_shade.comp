@@ -84,13 +84,13 @@ layout(push_constant) uniform SphereShShadePush {
 
 // Of the sphere: coefficients of m below 0 are 0, as it is at azimuth 0. Of visibility. Of one wedge. The azimuth's
 // weights.
-#define SEEN float
+#define VALUE float
 float light[36];
 float series[36];
 float wedge[36];
 float turn[11];
 
-#include "sh/seen.glsl"
+#include "sh/visible.glsl"
 #include "sh/turn.glsl"
 #include "sh/wedge.glsl"
 
@@ -301,9 +301,9 @@ void main() {
         add_wedges_around(within_m, alive);
     } else {
         // asin(r / away), continuous to the whole circle from where the sphere is overhead or around.
-        float seen = min(radius_m / max(away, 1e-30), 1.0);
-        float half_angle = arc_tangent(vec4(seen * inversesqrt(max((1.0 - seen) * (1.0 + seen), 1e-20)))).x;
-        add_slices_across(max(half_angle, PI * seen * seen * seen), within_m, alive);
+        float half_angle_sin = min(radius_m / max(away, 1e-30), 1.0);
+        float half_angle = arc_tangent(vec4(half_angle_sin * inversesqrt(max((1.0 - half_angle_sin) * (1.0 + half_angle_sin), 1e-20)))).x;
+        add_slices_across(max(half_angle, PI * half_angle_sin * half_angle_sin * half_angle_sin), within_m, alive);
     }
     float part = product();
     if (exists) {

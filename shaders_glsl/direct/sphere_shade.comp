@@ -61,7 +61,7 @@ float flat_part;
 float normal_up;
 // State of the slice: the slope below which the surface hides it, and the light of the visible interval below.
 float reached;
-float seen_light;
+float visible_light;
 
 // A direction of the slice, counted from the axis: cosine and sine.
 vec2 from_axis(float slope) {
@@ -88,18 +88,18 @@ float light_between(vec2 low, vec2 high) {
 
 // Adds a surface piece, from a distance and height to a farther one: the visible interval of the disc in front of it,
 // where some of the piece itself is visible.
-void see(vec2 begin, vec2 end) {
+void add_piece(vec2 begin, vec2 end) {
     float slope = (end.y - begin.y) / (end.x - begin.x);
     float end_slope = end.y / end.x;
     float top_slope = min(end_slope, high_slope);
     // The piece is visible from where it crosses `reached`; the part above the disc does not count.
     float under = begin.y - reached * begin.x;
     float over = end.y - reached * end.x;
-    float seen_from = begin.x + (end.x - begin.x) * clamp(under / min(under - over, -1e-30), 0.0, 1.0);
+    float visible_from = begin.x + (end.x - begin.x) * clamp(under / min(under - over, -1e-30), 0.0, 1.0);
     float below_top = begin.y - high_slope * begin.x;
     float above_top = end.y - high_slope * end.x;
     float cut = begin.x + (end.x - begin.x) * clamp(below_top / min(below_top - above_top, -1e-30), 0.0, 1.0);
-    float seen_to = end_slope > high_slope ? cut : end.x;
+    float visible_to = end_slope > high_slope ? cut : end.x;
     // The circle's intersection with the piece's line: within half a chord of the foot of the perpendicular.
     float a = 1.0 + slope * slope;
     vec2 to_middle = disc - begin;
@@ -108,28 +108,28 @@ void see(vec2 begin, vec2 end) {
     float foot = begin.x + (to_middle.x + slope * to_middle.y) / a;
     float half_chord = sqrt(max(chord2, 0.0));
     bool is_met = chord2 > 0.0;
-    float enters = clamp(foot - half_chord, seen_from, seen_to);
-    float leaves = clamp(foot + half_chord, seen_from, seen_to);
-    enters = is_met ? enters : seen_to;
-    leaves = is_met ? leaves : seen_to;
+    float enters = clamp(foot - half_chord, visible_from, visible_to);
+    float leaves = clamp(foot + half_chord, visible_from, visible_to);
+    enters = is_met ? enters : visible_to;
+    leaves = is_met ? leaves : visible_to;
     // Outside the disc, but between its tangents: behind it if beyond the line through the points of tangency.
-    float before_at = 0.5 * (seen_from + enters);
-    float after_at = 0.5 * (leaves + seen_to);
+    float before_at = 0.5 * (visible_from + enters);
+    float after_at = 0.5 * (leaves + visible_to);
     float before = before_at * disc.x + (begin.y + slope * (before_at - begin.x)) * disc.y;
     float after = after_at * disc.x + (begin.y + slope * (after_at - begin.x)) * disc.y;
-    float from_outside = before > tangent2 ? seen_from : enters;
-    float to_outside = after > tangent2 ? seen_to : leaves;
+    float from_outside = before > tangent2 ? visible_from : enters;
+    float to_outside = after > tangent2 ? visible_to : leaves;
     // From inside, a hit within the sphere hides.
-    float from_inside = is_met ? leaves : seen_from;
+    float from_inside = is_met ? leaves : visible_from;
     bool is_inside = tangent2 <= 0.0;
     float from = is_inside ? from_inside : from_outside;
-    float to = is_inside ? seen_to : to_outside;
+    float to = is_inside ? visible_to : to_outside;
     float low = (begin.y + slope * (from - begin.x)) / from;
     float high = min((begin.y + slope * (to - begin.x)) / to, top_slope);
     low = max(low, reached);
     float light = light_between(from_axis(low), from_axis(high));
     bool counts = begin.x > 0.0 && end.x > begin.x && end_slope > reached && reached < high_slope && to > from && high > low;
-    seen_light += counts ? light : 0.0;
+    visible_light += counts ? light : 0.0;
 }
 
 // March over the surface from the grid point to the disc's far end.
@@ -172,16 +172,16 @@ void march(Ray ray, bool going) {
         float middle_slope = middle.y / max(middle.x, 1e-30);
         float exit_slope = exit.y / max(exit.x, 1e-30);
         float steepest = is_split ? max(middle_slope, exit_slope) : exit_slope;
-        bool looks = has_piece && exit.x > near_m && steepest > reached && reached < high_slope;
-        if (subgroupAny(looks)) {
-            float kept = seen_light;
+        bool opens = has_piece && exit.x > near_m && steepest > reached && reached < high_slope;
+        if (subgroupAny(opens)) {
+            float kept = visible_light;
             float reached_before = reached;
             vec2 entry = vec2(walk.t * step_m, cell_rise(corners, ray.own, clamp(from + walk.t * ray.advance, 0.0, 1.0)));
             middle.y = is_split ? middle.y : entry.y;
-            see(entry, middle);
+            add_piece(entry, middle);
             reached = is_split ? max(reached, middle_slope) : reached;
-            see(middle, exit);
-            seen_light = looks ? seen_light : kept;
+            add_piece(middle, exit);
+            visible_light = opens ? visible_light : kept;
             reached = reached_before;
         }
         reached = has_piece ? max(reached, steepest) : reached;
@@ -224,12 +224,12 @@ float slice_light(ivec2 here, vec4 own, vec2 towards, float away, float up, vec2
     float own_slope = own.y * e.x + own.z * e.y;
     flat_part = -own_slope * normal_up;
     reached = max(low_slope, own_slope);
-    seen_light = 0.0;
+    visible_light = 0.0;
     march(ray_from(here, vec2(0.0), own.x, vec3(e, 0.0), vec2(cell_x_m, cell_y_m)), alive && reached < high_slope);
-    vec2 seen_from = from_axis(reached);
-    vec2 lowest = reached > low_slope ? seen_from : low;
+    vec2 visible_from = from_axis(reached);
+    vec2 lowest = reached > low_slope ? visible_from : low;
     float rest = light_between(lowest, high);
-    float light = max(seen_light + (reached < high_slope ? rest : 0.0), 0.0);
+    float light = max(visible_light + (reached < high_slope ? rest : 0.0), 0.0);
     return alive ? light : 0.0;
 }
 

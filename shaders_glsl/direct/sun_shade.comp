@@ -1,6 +1,6 @@
 // Computes: direct light of a sun or a key light from the horizons in the azimuths that it covers, added to earlier
 // batches.
-// Reads: lane_heights, azimuths, lattice, dirty_samples, edit_list.
+// Reads: lane_heights, azimuths, lattice, dirty_texels, edit_list.
 // Reads and writes: sun_sum (exit radiance for albedo 1, and irradiance 1 of a sun or radiance 1 of a key light).
 // One invocation is four grid points side by side along the lane axis, at one march position.
 #version 460
@@ -22,7 +22,7 @@ const uint SHAPE_POINT = 1u;  // lit or not
 const uint SHAPE_PATCH = 2u;  // the part of its elevations above the horizon, over each wedge
 layout(constant_id = 4) const uint SHAPE = 0u;
 layout(constant_id = 5) const bool MARCHES_ROWS = false;
-// Only the grid points marked in dirty_samples, from the list of their words.
+// Only the grid points marked in dirty_texels, from the list of their words.
 layout(constant_id = 6) const bool RELIGHTS = false;
 
 layout(binding = 0, rgba32f) uniform readonly image2D lane_heights;
@@ -78,7 +78,7 @@ void main() {
     if (lane >= lanes || march >= steps) {
         return;
     }
-    bvec4 lit = lit_samples(lane, march);
+    bvec4 lit = lit_texels(lane, march);
     if (!any(lit)) {
         return;
     }

@@ -1,5 +1,5 @@
 // Computes: the compact list of the bitmap's nonzero words, and the workgroup counts of the passes that shade them.
-// Reads: dirty_samples.
+// Reads: dirty_texels.
 // Reads and writes: edit_list.
 // One invocation is one word.
 #version 460
@@ -8,7 +8,7 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(binding = 0) readonly buffer DirtySamples { uint dirty_samples[]; };
+layout(binding = 0) readonly buffer DirtyTexels { uint dirty_texels[]; };
 layout(binding = 1) buffer EditList { uint swept_steps; uint word_count; uint light_groups[3]; uint resolve_groups[3]; uint dirty_words[]; };
 
 layout(push_constant) uniform DirtyListPush {
@@ -22,7 +22,7 @@ void main() {
         return;
     }
     int word = dirty_word(at, cols);
-    if (dirty_samples[word] == 0u) {
+    if (dirty_texels[word] == 0u) {
         return;
     }
     uint place = atomicAdd(word_count, 1u);

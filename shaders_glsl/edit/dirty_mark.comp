@@ -1,7 +1,7 @@
 // Computes: the grid points that an edited rectangle changes directly: its own and their neighbours, whose normals
 // and first crossings depend on it. Clears the marks, list and counts of the last edit.
 // Reads: nothing.
-// Writes: dirty_samples, edit_list.
+// Writes: dirty_texels, edit_list.
 // One invocation is one word: eight columns of four rows.
 #version 460
 
@@ -9,7 +9,7 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(binding = 0) writeonly buffer DirtySamples { uint dirty_samples[]; };
+layout(binding = 0) writeonly buffer DirtyTexels { uint dirty_texels[]; };
 layout(binding = 1) writeonly buffer EditList { uint swept_steps; uint word_count; uint light_groups[3]; uint resolve_groups[3]; uint dirty_words[]; };
 
 layout(push_constant) uniform DirtyMarkPush {
@@ -43,5 +43,5 @@ void main() {
         bool inside = row >= first_row - 1 && row <= last_row + 1 && row < rows;
         word |= inside ? columns << uint(8 * r) : 0u;
     }
-    dirty_samples[dirty_word(at, cols)] = word;
+    dirty_texels[dirty_word(at, cols)] = word;
 }

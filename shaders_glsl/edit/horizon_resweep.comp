@@ -2,7 +2,7 @@
 // bit: from where a line meets the rectangle until no hull vertex depends on it.
 // Reads: heights, azimuths.
 // Reads and writes: occluders (a linked list per line: the occluder of a hull vertex is the vertex below it),
-// dirty_samples.
+// dirty_texels.
 // Writes: edit_list (steps times four lines).
 // One invocation is four neighbouring lines.
 #version 460
@@ -26,7 +26,7 @@ const bool PERIODIC = false;
 layout(binding = 0) uniform texture2D heights;
 layout(binding = 1) uniform textureBuffer azimuths;
 layout(binding = 2, rg32ui) uniform uimage2DArray occluders;
-layout(binding = 3) buffer DirtySamples { uint dirty_samples[]; };
+layout(binding = 3) buffer DirtyTexels { uint dirty_texels[]; };
 layout(binding = 4) buffer EditList { uint swept_steps; uint word_count; uint light_groups[3]; uint resolve_groups[3]; uint dirty_words[]; };
 
 layout(push_constant) uniform HorizonResweepPush {
@@ -78,7 +78,7 @@ void mark(int y, int step) {
     for (int lane = max((y - SPACING + CELL - 1) >> CELL_SHIFT, 0); lane <= last; lane++) {
         int column = lane_position(azimuth, lane, lanes);
         ivec2 at = by_row ? ivec2(column, march) : ivec2(march, column);
-        atomicOr(dirty_samples[dirty_word(at, by_row ? lanes : steps)], dirty_bit(at));
+        atomicOr(dirty_texels[dirty_word(at, by_row ? lanes : steps)], dirty_bit(at));
     }
 }
 

@@ -13,7 +13,7 @@
 const uint FUSE_DIRECT = 0u;   // the lattice holds one value per grid point or node
 const uint FUSE_NEAREST = 1u;  // the slope of the nearer line
 const uint FUSE_SLOPES = 2u;   // both lines' slopes, interpolated
-const uint FUSE_OWN = 3u;      // both lines' occluders as seen from the grid point's height, interpolated
+const uint FUSE_OWN = 3u;      // both lines' occluders from the grid point's own height, interpolated
 const uint FUSE_AIMED_NEAREST = 4u;  // the surface on the grid point's own line at the distance of the nearer
                                      // line's occluder; and the first crossings of its own line
 const uint FUSE_AIMED = 5u;          // the same with both lines' occluders, the higher one
@@ -130,7 +130,7 @@ Met first_crossings(Azimuth azimuth, Quad q, int lanes, int steps) {
 
 // The surface at proposed distances, `back` steps ahead on lines through the lane positions `y` (not flipped),
 // relative to the grid points. None where `back` is 0 or the line has left the field.
-Met seen(Azimuth azimuth, Quad q, ivec4 y, uvec4 back, int lanes, int steps) {
+Met surface_at(Azimuth azimuth, Quad q, ivec4 y, uvec4 back, int lanes, int steps) {
     bool flips_march = (azimuth.flags & AZIMUTH_FLIPS_MARCH) != 0u;
     bool flips_lanes = (azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u;
     int shear = mix(-azimuth.shear, azimuth.shear, flips_lanes);
@@ -298,7 +298,7 @@ Met fused(Azimuth azimuth, Quad q, int lanes, int steps, int warm_up, vec4 enoug
         uvec4 back = mix(uvec4(0), values, greaterThan(values, uvec4(1)));
         back = mix(uvec4(0), back, bvec4(takes));
         met = first_crossings(azimuth, q, lanes, steps);
-        return higher(met, seen(azimuth, q, q.lane * CELL, back, lanes, steps));
+        return higher(met, surface_at(azimuth, q, q.lane * CELL, back, lanes, steps));
     }
     // The lines around each grid point: before it (or through it), and after it.
     ivec4 before = from_origin >> LINE_SHIFT;
@@ -321,8 +321,8 @@ Met fused(Azimuth azimuth, Quad q, int lanes, int steps, int warm_up, vec4 enoug
         uvec4 before_far = mix(uvec4(0), before_back, greaterThan(before_back, uvec4(1)));
         uvec4 after_far = mix(uvec4(0), after_back, greaterThan(after_back, uvec4(1)));
         met = first_crossings(azimuth, q, lanes, steps);
-        met = higher(met, seen(azimuth, q, y, before_far, lanes, steps));
-        met = higher(met, seen(azimuth, q, y, after_far, lanes, steps));
+        met = higher(met, surface_at(azimuth, q, y, before_far, lanes, steps));
+        met = higher(met, surface_at(azimuth, q, y, after_far, lanes, steps));
         if (FUSE == FUSE_AIMED_AROUND) {
             for (int k = 0; k < 4; k++) {
                 if (met.slope[k] < enough[k]) {
@@ -340,8 +340,8 @@ Met fused(Azimuth azimuth, Quad q, int lanes, int steps, int warm_up, vec4 enoug
     Met a;
     if (FUSE == FUSE_OWN) {
         ivec4 y = q.lane * CELL;
-        b = seen(azimuth, q, y + mix(-offset, offset, bvec4(flips_lanes)), before_back, lanes, steps);
-        a = seen(azimuth, q, y + mix(spacing - offset, offset - spacing, bvec4(flips_lanes)), after_back, lanes, steps);
+        b = surface_at(azimuth, q, y + mix(-offset, offset, bvec4(flips_lanes)), before_back, lanes, steps);
+        a = surface_at(azimuth, q, y + mix(spacing - offset, offset - spacing, bvec4(flips_lanes)), after_back, lanes, steps);
     } else {
         b = Met(mix(vec4(NO_SLOPE), slopes_of(before_values), has_before), vec4(0.0));
         a = Met(mix(vec4(NO_SLOPE), slopes_of(after_values), has_after), vec4(0.0));

@@ -27,6 +27,6 @@ void main() {
         return;
     }
     Level level = level_of(texelFetch(level_table, ivec2(at.z, 0), 0));
-    precise vec2 place = vec2(at.xy) * level.per_sample;
+    precise vec2 place = vec2(at.xy) * level.per_grid_point;
     imageStore(height_stack, at, vec4(spline_at(level, place, width_shift)));
 }

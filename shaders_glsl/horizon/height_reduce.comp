@@ -24,8 +24,8 @@ layout(push_constant) uniform HeightReducePush {
     int source_first;
     float ratio_x;  // source texels per texel
     float ratio_y;
-    float per_sample_x;
-    float per_sample_y;
+    float per_grid_point_x;
+    float per_grid_point_y;
     int level;
     int width_shift;
 };
@@ -50,7 +50,7 @@ void main() {
     float sum = reduced(ivec2(x, y), vec2(ratio_x, ratio_y));
     imageStore(height_levels, level_texel(first + y * cols + x, width_shift), vec4(sum));
     if (x == 0 && y == 0) {
-        Level made = Level(first, cols, rows, vec2(per_sample_x, per_sample_y));
+        Level made = Level(first, cols, rows, vec2(per_grid_point_x, per_grid_point_y));
         imageStore(level_table, ivec2(level - 1, 0), words_of(made));
     }
 }

@@ -90,7 +90,7 @@ float spline_height(Level level, int cell, float f, int step) {
     float at_step = float(march_position(azimuth, step, steps));
     bool by_row = (azimuth.flags & AZIMUTH_MARCHES_ROWS) != 0u;
     vec2 place = vec2(by_row ? at_lane : at_step, by_row ? at_step : at_lane);
-    precise vec2 at = place * level.per_sample;
+    precise vec2 at = place * level.per_grid_point;
     return spline_at(level, at, width_shift);
 }
 

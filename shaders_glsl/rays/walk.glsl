@@ -51,7 +51,7 @@ struct Walk {
 struct Block {
     ivec2 low;
     ivec2 high;
-    ivec2 seen;    // offset of the field's repetition
+    ivec2 wrap;    // offset of the field's repetition
     float ahead;   // t at which the ray leaves it
     bool by_x;     // across an edge to the east or west
 };
@@ -86,12 +86,12 @@ Block block_of(Walk walk, Ray ray) {
     int bits = LEVEL_BITS * walk.level;
     ivec2 low = (walk.at >> bits) << bits;
     ivec2 high = min(low + (1 << bits), cells_of);
-    ivec2 seen = BORDER == BORDER_PERIODIC ? walk.at - walk.cell : ivec2(0);
-    ivec2 edge = ivec2(onward.x ? high.x : low.x, onward.y ? high.y : low.y) - seen - ray.base;
+    ivec2 wrap = BORDER == BORDER_PERIODIC ? walk.at - walk.cell : ivec2(0);
+    ivec2 edge = ivec2(onward.x ? high.x : low.x, onward.y ? high.y : low.y) - wrap - ray.base;
     // Edges parallel to the ray are never reached, even where the ray runs along one.
     vec2 to_edge = mix((vec2(edge) - ray.offset) * inverse, vec2(1e30), along_line);
     float ahead = max(min(to_edge.x, to_edge.y), walk.t);
-    return Block(low, high, seen, ahead, to_edge.x <= to_edge.y);
+    return Block(low, high, wrap, ahead, to_edge.x <= to_edge.y);
 }
 
 // Steps to the next block of the level, exactly across the edge and never back along the other axis, if this one is
@@ -100,8 +100,8 @@ void walk_on(inout Walk walk, Ray ray, Block block, bool going, bool clear, int 
     ivec2 cells_of = ivec2(cells_x, cells_y);
     bvec2 onward = greaterThanEqual(ray.advance, vec2(0.0));
     int bits = LEVEL_BITS * walk.level;
-    ivec2 low = block.low - block.seen;
-    ivec2 high = block.high - block.seen;
+    ivec2 low = block.low - block.wrap;
+    ivec2 high = block.high - block.wrap;
     ivec2 other = ivec2(floor(ray.offset + block.ahead * ray.advance)) + ray.base;
     other = clamp(other, low, high - 1);
     other = ivec2(onward.x ? max(other.x, walk.cell.x) : min(other.x, walk.cell.x),

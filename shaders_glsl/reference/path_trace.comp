@@ -16,7 +16,7 @@
 
 #include "shared/conventions.glsl"
 #include "reference/random.glsl"
-#include "specular/lobe.glsl"
+#include "specular/phong_lobe.glsl"
 #include "shared/angle.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -28,7 +28,7 @@ layout(constant_id = 6) const bool THIN_COLS = false;
 layout(constant_id = 2) const uint SET_BITS = 4u;
 layout(constant_id = 3) const bool ALBEDO_IS_MAP = false;
 layout(constant_id = 4) const bool HAS_ENVIRONMENT = false;
-layout(constant_id = 5) const bool HAS_LOBE = false;
+layout(constant_id = 5) const bool HAS_SPECULAR = false;
 layout(constant_id = 7) const bool HAS_LIGHTS = false;  // suns, key lights or sphere lights
 layout(constant_id = 11) const bool HAS_KEYS = false;
 layout(constant_id = 8) const bool HAS_SPHERE_LIGHTS = false;
@@ -37,7 +37,7 @@ layout(constant_id = 9) const bool HAS_BOUNCES = false;
 // after 65,535 iterations.
 layout(constant_id = 10) const int MOST_STEPS = 60000;
 layout(constant_id = 12) const bool IN_PARTS = false;
-layout(constant_id = 13) const bool LOBE_IS_MAP = false;
+layout(constant_id = 13) const bool SPECULAR_IS_MAP = false;
 layout(constant_id = 14) const bool AT_PLACES = false;
 
 layout(binding = 0) uniform texture2D cells;
@@ -75,7 +75,7 @@ layout(push_constant) uniform PathTracePush {
     float highest_m;
     float rotation_turns;  // of the environment
     float exponent;        // Phong exponent, where it is constant
-    float lobe_share;      // Phong scale, where it is constant
+    float specular_scale;  // Phong scale, where it is constant
     int bounces;
     int suns;
     int light_count;
@@ -99,8 +99,8 @@ struct Place {
     float own;
     vec3 normal;
     vec3 albedo;
-    vec2 lobe;    // exponent and scale
-    vec3 mirror;  // axis of the Phong lobe
+    vec2 specular;  // exponent and scale
+    vec3 mirror;    // axis of the Phong lobe
 };
 
 // First entry above u among n entries of the CDF from `at` on, `step` apart.
@@ -158,7 +158,7 @@ Place place_of(Met met, vec3 e) {
     place.own = corners.x + met.offset.x * east + met.offset.y * south;
     place.normal = normalize(vec3(-east / cell_x_m, south / cell_y_m, 1.0));
     place.albedo = albedo.rgb;
-    place.lobe = vec2(exponent, lobe_share);
+    place.specular = vec2(exponent, specular_scale);
     place.mirror = e - 2.0 * dot(e, place.normal) * place.normal;
     // Cells of a repeating field connect its last grid points to its first.
     ivec2 next = ivec2((met.cell.x + 1) % cols, (met.cell.y + 1) % rows);
@@ -171,11 +171,11 @@ Place place_of(Met met, vec3 e) {
         vec3 se = texelFetch(albedo_map, next, 0).rgb;
         place.albedo = near * nw + far * se + rest * texelFetch(albedo_map, third, 0).rgb;
     }
-    if (LOBE_IS_MAP) {
+    if (SPECULAR_IS_MAP) {
         vec2 nw = texelFetch(phong_map, met.cell, 0).xy;
         vec2 se = texelFetch(phong_map, next, 0).xy;
         // Clamps exponent and scale against rounding.
-        place.lobe = max(near * nw + far * se + rest * texelFetch(phong_map, third, 0).xy, vec2(0.0));
+        place.specular = max(near * nw + far * se + rest * texelFetch(phong_map, third, 0).xy, vec2(0.0));
     }
     return place;
 }
@@ -190,19 +190,19 @@ struct Reflected {
 };
 
 // Fraction of scattered rays drawn from the Phong lobe, where there is one.
-float lobe_choice(Place place) {
+float specular_choice(Place place) {
     float most_diffuse = max(place.albedo.r, max(place.albedo.g, place.albedo.b));
-    return place.lobe.y / max(most_diffuse + place.lobe.y, 1e-30);
+    return place.specular.y / max(most_diffuse + place.specular.y, 1e-30);
 }
 
 Reflected reflected_from(Place place, vec3 e) {
     float facing = dot(place.normal, e);
     float density = facing / PI;
     Reflected of = Reflected(facing, place.albedo * density, density, place.albedo);
-    if (HAS_LOBE) {
-        float lobe = lobe_density(e - place.mirror, place.lobe.x);
-        of.density = mix(density, lobe, lobe_choice(place));
-        of.light += place.lobe.y * lobe;
+    if (HAS_SPECULAR) {
+        float lobe = phong_lobe(e - place.mirror, place.specular.x);
+        of.density = mix(density, lobe, specular_choice(place));
+        of.light += place.specular.y * lobe;
         of.scattered = of.light / max(of.density, 1e-30);
     }
     return of;
@@ -287,13 +287,13 @@ vec3 path_light(Place place, uint index, uvec3 key, bool alive, inout uvec2 rays
             light += going && met.what == RAY_FREE ? carried * brought : vec3(0.0);
         }
         points_of(index, key, first_ray + uint(light_count + 1), is_first, u, v);
-        bool by_lobe = HAS_LOBE && v.x < lobe_choice(place);
-        // Uniform over a sphere tangent to the surface point, seen from there: cosine-distributed.
+        bool by_specular = HAS_SPECULAR && v.x < specular_choice(place);
+        // Uniform over a sphere tangent to the surface point, as directions from there: cosine-distributed.
         vec3 e = normalize(place.normal + vec3(on_circle(u.y) * sqrt(4.0 * u.x * (1.0 - u.x)), 1.0 - 2.0 * u.x));
-        if (HAS_LOBE) {
-            float near_mirror = pow(max(u.x, 1e-30), 1.0 / (place.lobe.x + 1.0));
-            vec3 glossy = direction_about(place.mirror, 1.0 - near_mirror, u.y);
-            e = by_lobe ? glossy : e;
+        if (HAS_SPECULAR) {
+            float near_mirror = pow(max(u.x, 1e-30), 1.0 / (place.specular.x + 1.0));
+            vec3 about_mirror = direction_about(place.mirror, 1.0 - near_mirror, u.y);
+            e = by_specular ? about_mirror : e;
         }
         Reflected of = reflected_from(place, e);
         float most_scattered = max(of.scattered.r, max(of.scattered.g, of.scattered.b));
@@ -301,12 +301,12 @@ vec3 path_light(Place place, uint index, uvec3 key, bool alive, inout uvec2 rays
         Ray ray = ray_from(place.base, place.offset, place.own, e, cell_m);
         Met met = trace(ray, 1e30, going);
         rays += uvec2(going ? 1u : 0u, going && met.what == RAY_LOST ? 1u : 0u);
-        vec3 seen = has_sky ? sky.rgb : vec3(0.0);
+        vec3 arriving = has_sky ? sky.rgb : vec3(0.0);
         if (HAS_ENVIRONMENT && has_sky) {
             vec4 from_there = texelFetch(environment, texel_towards(e, env_size), 0);
-            seen += from_there.rgb * (of.density / max(of.density + from_there.w, 1e-30));
+            arriving += from_there.rgb * (of.density / max(of.density + from_there.w, 1e-30));
         }
-        seen = met.what == RAY_FREE ? seen : vec3(0.0);
+        arriving = met.what == RAY_FREE ? arriving : vec3(0.0);
         if (HAS_SPHERE_LIGHTS) {
             int i = max(suns + keys, first_light);
             for (; i < last_light; i++) {
@@ -316,11 +316,11 @@ vec3 path_light(Place place, uint index, uvec3 key, bool alive, inout uvec2 rays
                 float inside = sphere.w * sphere.w - dot(to, to);
                 float exit_m = ahead + sqrt(max(ahead * ahead + inside, 0.0));
                 bool in_view = inside >= 0.0 && (met.what != RAY_HIT || met.t >= exit_m * ray.scale);
-                seen += in_view ? texelFetch(lights, ivec2(1, i), 0).rgb : vec3(0.0);
+                arriving += in_view ? texelFetch(lights, ivec2(1, i), 0).rgb : vec3(0.0);
             }
             rays.y += i < last_light ? 1u : 0u;
         }
-        light += going && counts ? carried * of.scattered * seen : vec3(0.0);
+        light += going && counts ? carried * of.scattered * arriving : vec3(0.0);
         if (HAS_BOUNCES) {
             alive = going && met.what == RAY_HIT;
             place = place_of(met, e);
@@ -352,12 +352,12 @@ void main() {
     place.own = own.x;
     place.normal = normalize(vec3(-own.y, -own.z, 1.0));
     place.albedo = albedo.rgb;
-    place.lobe = vec2(exponent, lobe_share);
+    place.specular = vec2(exponent, specular_scale);
     if (ALBEDO_IS_MAP) {
         place.albedo = texelFetch(albedo_map, here, 0).rgb;
     }
-    if (LOBE_IS_MAP) {
-        place.lobe = texelFetch(phong_map, here, 0).xy;
+    if (SPECULAR_IS_MAP) {
+        place.specular = texelFetch(phong_map, here, 0).xy;
     }
     // Viewed from straight above.
     place.mirror = 2.0 * place.normal.z * place.normal - vec3(0.0, 0.0, 1.0);

@@ -14,11 +14,11 @@ layout(constant_id = 1) const bool MARCHES_ROWS = false;
 layout(constant_id = 2) const int ORDER = 4;
 const uint RECEIVER_COSINE = 0u; // polynomials of N, bands 0 to 2 (band 1 at order 2)
 const uint RECEIVER_PLANE = 1u;  // N_y, N_z, N_x only
-const uint RECEIVER_GLOSS = 2u;  // Y_lm of the mirror direction of the view from straight above
+const uint RECEIVER_SPECULAR = 2u;  // Y_lm of the mirror direction of the view from straight above
 layout(constant_id = 3) const uint RECEIVER = 1u;
 // Grid points from node to node: 1, 2 or 4.
 layout(constant_id = 4) const int NODE_STRIDE = 1;
-layout(constant_id = 5) const bool LOBE_IS_MAP = false;
+layout(constant_id = 5) const bool SPECULAR_IS_MAP = false;
 const int LANE_STRIDE = 1;
 
 layout(binding = 0, rgba32f) uniform readonly image2D lane_heights;
@@ -35,7 +35,7 @@ layout(push_constant) uniform ShShadePush {
     int rows;
     float cell_x_m;
     float cell_y_m;
-    vec2 lobe;  // exponent and scale, where they are constant
+    vec2 specular;  // exponent and scale, where they are constant
 };
 
 #include "shared/quad.glsl"
@@ -45,7 +45,7 @@ layout(push_constant) uniform ShShadePush {
 vec4 harmonics[36];
 
 #include "shared/harmonics.glsl"
-#include "specular/lobe_bands.glsl"
+#include "specular/phong_bands.glsl"
 
 // The nodes on both sides across the lanes of four grid points, at two march positions: their texels, and their
 // weights for each of the four.
@@ -99,7 +99,7 @@ void find_nodes(Quad q, int lanes, int steps, vec4 east, vec4 north) {
 }
 
 // Four visibility coefficients of the four grid points: [coefficient][grid point].
-mat4 seen_at(int layer, int lane, int march, int lanes) {
+mat4 visibility_at(int layer, int lane, int march, int lanes) {
     mat4 four = mat4(0.0);
     if (NODE_STRIDE > 1) {
         for (int i = 0; i < 2 * ACROSS; i++) {
@@ -122,7 +122,7 @@ vec4 green;
 vec4 blue;
 
 // Polynomials of the four normals, times a column of the matrix, times that coefficient of the four.
-void add_coefficient(int column, vec4 seen, vec4 x, vec4 y, vec4 z) {
+void add_coefficient(int column, vec4 visible, vec4 x, vec4 y, vec4 z) {
     if (column >= ORDER * ORDER) {
         return;
     }
@@ -151,19 +151,19 @@ void add_coefficient(int column, vec4 seen, vec4 x, vec4 y, vec4 z) {
             b += on_xy.b * x * y + on_yz.b * y * z + on_zz.b * zz + on_xz.b * x * z + on_xx.b * xx;
         }
     }
-    red += r * seen;
-    green += g * seen;
-    blue += b * seen;
+    red += r * visible;
+    green += g * visible;
+    blue += b * visible;
 }
 
 // The same for the Phong specular, for all coefficients of a layer: one loop, as SwiftShader compiles each for
 // seconds.
-void add_gloss(int layer, mat4 four) {
+void add_specular(int layer, mat4 four) {
     for (int k = 0; k < 4 && 4 * layer + k < ORDER * ORDER; k++) {
-        vec4 seen = four[k];
+        vec4 visible = four[k];
         for (int row = 0; row < ORDER * ORDER; row++) {
             vec3 on = texelFetch(light_matrix, ivec2(4 * layer + k, row), 0).rgb;
-            vec4 share = harmonics[row] * seen;
+            vec4 share = harmonics[row] * visible;
             red += on.r * share;
             green += on.g * share;
             blue += on.b * share;
@@ -186,11 +186,11 @@ void main() {
     vec4 z = inversesqrt(1.0 + east * east + north * north);
     vec4 x = -east * z;
     vec4 y = -north * z;
-    if (RECEIVER == RECEIVER_GLOSS) {
+    if (RECEIVER == RECEIVER_SPECULAR) {
         find_harmonics(2.0 * z * x, 2.0 * z * y, 2.0 * z * z - 1.0);
-        vec4 exponents = vec4(lobe.x);
-        vec4 scales = vec4(lobe.y);
-        for (int k = 0; k < 4 && LOBE_IS_MAP; k++) {
+        vec4 exponents = vec4(specular.x);
+        vec4 scales = vec4(specular.y);
+        for (int k = 0; k < 4 && SPECULAR_IS_MAP; k++) {
             vec2 of = texelFetch(phong_map, texel_at(min(lane + k, lanes - 1), march), 0).xy;
             exponents[k] = of.x;
             scales[k] = of.y;
@@ -204,9 +204,9 @@ void main() {
     green = vec4(0.0);
     blue = vec4(0.0);
     for (int layer = 0; layer < (ORDER * ORDER + 3) / 4; layer++) {
-        mat4 four = seen_at(layer, lane, march, lanes);
-        if (RECEIVER == RECEIVER_GLOSS) {
-            add_gloss(layer, four);
+        mat4 four = visibility_at(layer, lane, march, lanes);
+        if (RECEIVER == RECEIVER_SPECULAR) {
+            add_specular(layer, four);
             continue;
         }
         add_coefficient(4 * layer, four[0], x, y, z);

@@ -37,11 +37,11 @@ layout(binding = 3, rgba32f) uniform image2DArray visibility;
 layout(binding = 4, rgba32f) uniform writeonly image2D nodes;
 
 // Of the four grid points; and the azimuth's weights.
-#define SEEN vec4
+#define VALUE vec4
 vec4 series[36];
 float turn[11];
 
-#include "sh/seen.glsl"
+#include "sh/visible.glsl"
 #include "sh/turn.glsl"
 
 void add_light(uint index, Azimuth azimuth, vec4 lowest) {

@@ -42,7 +42,7 @@ layout(push_constant) uniform ShWedgesPush {
 const int LAYERS = (ORDER * ORDER + 3) / 4;
 
 // Of the four grid points; and of one wedge from the table.
-#define SEEN vec4
+#define VALUE vec4
 vec4 series[4 * LAYERS];
 vec4 wedge[4 * LAYERS];
 

@@ -87,7 +87,7 @@ float height_within(int level, vec2 place, bool crosses_row) {
                 return between(texelFetch(height_stack, ivec3(on, level - 1), 0).x, texelFetch(height_stack, ivec3(beside, level - 1), 0).x, f);
             }
             Level of = level_of(texelFetch(level_table, ivec2(level - 1, 0), 0));
-            precise vec2 at = place * of.per_sample;
+            precise vec2 at = place * of.per_grid_point;
             return spline_at(of, at, width_shift);
         }
     }

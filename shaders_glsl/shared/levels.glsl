@@ -9,7 +9,7 @@ struct Level {
     int first;  // texel index
     int cols;
     int rows;
-    vec2 per_sample;  // texels per grid point
+    vec2 per_grid_point;  // texels per grid point
 };
 
 // As height_reduce writes it in the table of levels.
@@ -18,7 +18,7 @@ Level level_of(uvec4 words) {
 }
 
 uvec4 words_of(Level level) {
-    return uvec4(uint(level.first), uint(level.cols) | uint(level.rows) << 16, floatBitsToUint(level.per_sample));
+    return uvec4(uint(level.first), uint(level.cols) | uint(level.rows) << 16, floatBitsToUint(level.per_grid_point));
 }
 
 ivec2 level_texel(int i, int width_shift) {

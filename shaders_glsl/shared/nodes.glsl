@@ -1,11 +1,11 @@
 // Nodes: every `stride`-th grid point along an axis, from the first, and the last.
 
-int node_count(int samples, int stride) {
-    return (samples + stride - 2) / stride + 1;
+int node_count(int grid_points, int stride) {
+    return (grid_points + stride - 2) / stride + 1;
 }
 
-int node_place(int node, int samples, int stride) {
-    return min(node * stride, samples - 1);
+int node_place(int node, int grid_points, int stride) {
+    return min(node * stride, grid_points - 1);
 }
 
 // Relation to nodes of twice the stride (every second and the last): the i-th of them, and whether a node is one.

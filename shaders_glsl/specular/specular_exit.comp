@@ -1,9 +1,9 @@
 // Computes: exit radiance of every grid point from its incident light: the Phong specular straight upwards, and for
 // the next bounce specular plus diffuse light, as a series of spherical harmonics or as one number towards straight
 // above.
-// Reads: arriving, ground, exit_radiance (diffuse), gloss_direct, phong_map, constants.
-// Reads and writes: gloss_bounced (RGB, of all bounces so far).
-// Writes: exit_vectors or exit_seen.
+// Reads: arriving, ground, exit_radiance (diffuse), specular_direct, phong_map, constants.
+// Reads and writes: specular_bounced (RGB, of all bounces so far).
+// Writes: exit_vectors or exit_upward.
 // One invocation is one grid point.
 //
 // A Phong lobe about the mirror direction r of o reflects towards o the incident light, smoothed by the lobe, at r. r
@@ -16,11 +16,11 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 0) const int ORDER = 4;
 // One channel of radiance.
 layout(constant_id = 1) const bool GREY = false;
-layout(constant_id = 2) const bool LOBE_IS_MAP = false;
+layout(constant_id = 2) const bool SPECULAR_IS_MAP = false;
 // For direct light, whose specular has been added already.
 layout(constant_id = 3) const bool IS_DIRECT = false;
-// Whether another bounce follows, and its representation.
-layout(constant_id = 4) const bool THROWS = true;
+// Whether another bounce follows, and how its exit radiance is stored: by direction or straight upwards.
+layout(constant_id = 4) const bool IS_BOUNCED = true;
 layout(constant_id = 5) const bool VECTORS = true;
 // Vectors of f16, whose largest number is 65504.
 layout(constant_id = 6) const bool HALVES = false;
@@ -28,12 +28,12 @@ layout(constant_id = 6) const bool HALVES = false;
 layout(binding = 0) uniform texture2DArray arriving;
 layout(binding = 1) uniform texture2D ground;
 layout(binding = 2) uniform texture2D exit_radiance;
-layout(binding = 3) uniform texture2D gloss_direct;
+layout(binding = 3) uniform texture2D specular_direct;
 layout(binding = 4) uniform texture2D phong_map;
 layout(binding = 5) uniform textureBuffer constants;
-layout(binding = 6, rgba32f) uniform image2D gloss_bounced;
+layout(binding = 6, rgba32f) uniform image2D specular_bounced;
 layout(binding = 7) uniform writeonly image2DArray exit_vectors;
-layout(binding = 8) uniform writeonly image2D exit_seen;
+layout(binding = 8) uniform writeonly image2D exit_upward;
 
 layout(push_constant) uniform SpecularExitPush {
     int cols;
@@ -51,18 +51,18 @@ const int CHANNELS = GREY ? 1 : 3;
 
 vec4 harmonics[36];
 #include "shared/harmonics.glsl"
-#include "specular/lobe_bands.glsl"
+#include "specular/phong_bands.glsl"
 
-// Incident light, smoothed by the lobe and scaled.
+// Incident light, smoothed by the Phong lobe and scaled.
 vec3 smoothed[36];
 // Exit radiance.
 vec4 leaving[27];
 
-void find_smoothed(ivec2 at, vec2 lobe) {
+void find_smoothed(ivec2 at, vec2 specular) {
     for (int i = 0; i < 36; i++) {
         harmonics[i] = vec4(1.0);
     }
-    keep_bands(vec4(lobe.x), vec4(lobe.y));
+    keep_bands(vec4(specular.x), vec4(specular.y));
     for (int i = 0; i < FOURS; i++) {
         mat3x4 four = mat3x4(0.0);
         for (int c = 0; c < CHANNELS; c++) {
@@ -86,7 +86,7 @@ vec3 mirrored(vec3 normal) {
     return GREY ? light.xxx : light;
 }
 
-void throw_vectors(ivec2 at, vec3 normal, vec3 diffuse) {
+void store_vectors(ivec2 at, vec3 normal, vec3 diffuse) {
     for (int i = 0; i < CHANNELS * FOURS; i++) {
         leaving[i] = vec4(0.0);
     }
@@ -135,30 +135,30 @@ void main() {
     }
     vec4 own = texelFetch(ground, at, 0);
     vec3 normal = vec3(-own.y, -own.z, 1.0) * inversesqrt(1.0 + own.y * own.y + own.z * own.z);
-    vec2 lobe = vec2(exponent, scale);
-    if (LOBE_IS_MAP) {
-        lobe = texelFetch(phong_map, at, 0).xy;
+    vec2 specular = vec2(exponent, scale);
+    if (SPECULAR_IS_MAP) {
+        specular = texelFetch(phong_map, at, 0).xy;
     }
-    vec3 seen = vec3(0.0);
+    vec3 upward = vec3(0.0);
     if (VECTORS || !IS_DIRECT) {
-        find_smoothed(at, lobe);
+        find_smoothed(at, specular);
     }
     if (IS_DIRECT) {
-        seen = texelFetch(gloss_direct, at, 0).rgb;
+        upward = texelFetch(specular_direct, at, 0).rgb;
     } else {
-        seen = mirrored(normal);
-        vec4 before = imageLoad(gloss_bounced, at);
-        vec4 own_light = vec4(seen, 1.0);
-        vec4 both = vec4(before.rgb + seen, 1.0);
-        imageStore(gloss_bounced, at, begins > 0u ? own_light : both);
+        upward = mirrored(normal);
+        vec4 before = imageLoad(specular_bounced, at);
+        vec4 own_light = vec4(upward, 1.0);
+        vec4 both = vec4(before.rgb + upward, 1.0);
+        imageStore(specular_bounced, at, begins > 0u ? own_light : both);
     }
-    if (THROWS) {
+    if (IS_BOUNCED) {
         vec4 texel = texelFetch(exit_radiance, at, 0);
         vec3 diffuse = GREY ? texel.xxx : texel.rgb;
         if (VECTORS) {
-            throw_vectors(at, normal, diffuse);
+            store_vectors(at, normal, diffuse);
         } else {
-            imageStore(exit_seen, at, vec4(diffuse + seen, 1.0));
+            imageStore(exit_upward, at, vec4(diffuse + upward, 1.0));
         }
     }
 }

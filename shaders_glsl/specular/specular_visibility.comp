@@ -31,10 +31,10 @@ void main() {
     for (int layer = 0; layer < FOURS; layer++) {
         mat3x4 four = mat3x4(0.0);
         for (int from = 0; from < FOURS; from++) {
-            vec4 seen = texelFetch(visibility, ivec3(at, from), 0);
+            vec4 visible = texelFetch(visibility, ivec3(at, from), 0);
             for (int k = 0; k < 4 && 4 * from + k < COUNT; k++) {
                 for (int row = 0; row < 4 && 4 * layer + row < COUNT; row++) {
-                    vec3 share = seen[k] * texelFetch(light_matrix, ivec2(4 * from + k, 4 * layer + row), 0).rgb;
+                    vec3 share = visible[k] * texelFetch(light_matrix, ivec2(4 * from + k, 4 * layer + row), 0).rgb;
                     four[0][row] += share.r;
                     four[1][row] += share.g;
                     four[2][row] += share.b;

@@ -3,7 +3,7 @@
 // unoccluded diffuse light. Where another bounce follows, also the incident light of the sun as a series, all of it
 // from its centre.
 // Reads: lane_heights, sun_sum, phong_map.
-// Reads and writes: gloss_sum (exit radiance, RGB), arriving (four coefficients per layer, channel after channel).
+// Reads and writes: specular_sum (exit radiance, RGB), arriving (four coefficients per layer, channel after channel).
 // One invocation is four grid points side by side along the lane axis, at one march position.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
@@ -12,7 +12,7 @@ layout(local_size_x = 8, local_size_y = 16) in;
 
 layout(constant_id = 0) const uint BORDER = 0u;
 layout(constant_id = 1) const bool MARCHES_ROWS = false;
-layout(constant_id = 2) const bool LOBE_IS_MAP = false;
+layout(constant_id = 2) const bool SPECULAR_IS_MAP = false;
 // Order of the series; 0 for none. One channel of radiance.
 layout(constant_id = 3) const int ORDER = 0;
 layout(constant_id = 4) const bool GREY = false;
@@ -20,7 +20,7 @@ const int LANE_STRIDE = 1;
 
 layout(binding = 0, rgba32f) uniform readonly image2D lane_heights;
 layout(binding = 1) uniform texture2D sun_sum;
-layout(binding = 2, rgba32f) uniform image2D gloss_sum;
+layout(binding = 2, rgba32f) uniform image2D specular_sum;
 // Phong exponent and scale.
 layout(binding = 3) uniform texture2D phong_map;
 layout(binding = 4, rgba32f) uniform image2DArray arriving;
@@ -32,11 +32,11 @@ layout(push_constant) uniform SunSpecularPush {
     float cell_y_m;
     vec4 towards;  // the sun's centre
     vec4 colour;   // irradiance; w: 1 where the sum begins
-    vec2 lobe;     // Phong exponent and scale, where they are constant
+    vec2 specular;  // Phong exponent and scale, where they are constant
 };
 
 #include "shared/quad.glsl"
-#include "specular/lobe.glsl"
+#include "specular/phong_lobe.glsl"
 
 vec4 harmonics[36];
 #include "shared/harmonics.glsl"
@@ -44,13 +44,13 @@ vec4 harmonics[36];
 const int FOURS = (ORDER * ORDER + 3) / 4;
 const int CHANNELS = GREY ? 1 : 3;
 
-void add_arriving(ivec2 at, float seen) {
+void add_arriving(ivec2 at, float visible) {
     for (int i = 0; i < FOURS; i++) {
         vec4 y = vec4(harmonics[4 * i].x, harmonics[4 * i + 1].x, harmonics[4 * i + 2].x, harmonics[4 * i + 3].x);
         for (int c = 0; c < CHANNELS; c++) {
             ivec3 layer = ivec3(at, c * FOURS + i);
             vec4 before = imageLoad(arriving, layer);
-            vec4 light = (seen * colour[c]) * y;
+            vec4 light = (visible * colour[c]) * y;
             vec4 both = before + light;
             imageStore(arriving, layer, colour.w > 0.0 ? light : both);
         }
@@ -81,21 +81,21 @@ void main() {
         ivec2 at = texel_at(lane + k, march);
         vec3 normal = vec3(-east[k], -north[k], 1.0) * z[k];
         vec3 mirror = 2.0 * normal.z * normal - vec3(0.0, 0.0, 1.0);
-        vec2 of = lobe;
-        if (LOBE_IS_MAP) {
+        vec2 of = specular;
+        if (SPECULAR_IS_MAP) {
             of = texelFetch(phong_map, at, 0).xy;
         }
         float facing = dot(normal, towards.xyz);
         // Where the own plane cuts the disc, the visible fraction can exceed the mean cosine's.
-        float seen = min(PI * texelFetch(sun_sum, at, 0).x / max(facing, 1e-30), 1.0);
-        float density = facing > 0.0 ? of.y * lobe_density(towards.xyz - mirror, of.x) : 0.0;
+        float visible = min(PI * texelFetch(sun_sum, at, 0).x / max(facing, 1e-30), 1.0);
+        float density = facing > 0.0 ? of.y * phong_lobe(towards.xyz - mirror, of.x) : 0.0;
         // A: written by earlier SH passes.
-        vec4 before = imageLoad(gloss_sum, at);
-        vec4 light = vec4(colour.rgb * (seen * density), 0.0);
+        vec4 before = imageLoad(specular_sum, at);
+        vec4 light = vec4(colour.rgb * (visible * density), 0.0);
         vec4 sum = before + light;
-        imageStore(gloss_sum, at, colour.w > 0.0 ? light : sum);
+        imageStore(specular_sum, at, colour.w > 0.0 ? light : sum);
         if (ORDER > 0) {
-            add_arriving(at, facing > 0.0 ? seen : 0.0);
+            add_arriving(at, facing > 0.0 ? visible : 0.0);
         }
     }
 }

@@ -22,7 +22,7 @@ layout(push_constant) uniform MapDrawPush {
     int rows;
     float first_col;          // of the picture's upper left corner
     float first_row;
-    float samples_per_pixel;
+    float grid_points_per_pixel;
     uint swaps;               // not 0: BGRA order
     uint beyond;              // the pixel outside the field
 };
@@ -41,7 +41,7 @@ void main() {
     if (pixel.x >= width || pixel.y >= height) {
         return;
     }
-    precise vec2 place = (vec2(pixel) + 0.5) * samples_per_pixel;
+    precise vec2 place = (vec2(pixel) + 0.5) * grid_points_per_pixel;
     precise vec2 from = vec2(first_col, first_row);
     place += from;
     ivec2 at = ivec2(floor(clamp(place, vec2(-1.0), vec2(cols, rows))));

@@ -9,6 +9,6 @@ layout(push_constant) uniform TerrainDrawPush {
     float origin_m;
     int cols;
     int rows;
-    int step_samples;
+    int mesh_step;
     int tiles_across;
 };

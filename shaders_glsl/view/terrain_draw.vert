@@ -18,9 +18,9 @@ layout(location = 1) flat out ivec2 first;
 void main() {
     ivec2 tile = ivec2(gl_InstanceIndex % tiles_across, gl_InstanceIndex / tiles_across);
     ivec2 corner = ivec2(gl_VertexIndex % SIDE, gl_VertexIndex / SIDE);
-    first = tile * (SIDE - 1) * step_samples;
+    first = tile * (SIDE - 1) * mesh_step;
     // The last row and column are vertices at any step; cells beyond them have no area.
-    ivec2 place = min(first + corner * step_samples, ivec2(cols, rows) - 1);
+    ivec2 place = min(first + corner * mesh_step, ivec2(cols, rows) - 1);
     offset = vec2(place - first);
     // Positions are integers and heights relative to an origin near the camera: exact close to it.
     vec2 away = vec2(place - ivec2(origin_col, origin_row));

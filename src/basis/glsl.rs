@@ -127,26 +127,26 @@ fn number(value: f64) -> String {
     format!("{:?}", value as f32)
 }
 
-/// `shaders_glsl/sh/seen.glsl`: adds the visibility along one azimuth to the array `series`, of one texel or four at a
+/// `shaders_glsl/sh/visible.glsl`: adds the visibility along one azimuth to the array `series`, of one texel or four at a
 /// time, for every value of `ORDER`.
 ///
 /// `add_slices` uses the exact slices, `add_nlps` n NLP coefficients ([`from_nlp`]).
-pub fn glsl_seen() -> String {
+pub fn glsl_visible() -> String {
     let mut text = String::from(
-        "// Made by basis::glsl::glsl_seen, and held to it by a test.\n//\n\
-         // Adds what is seen along an azimuth above elevations of sine `sin_` and cosine `cos_`, `rise` from\n\
-         // the zenith, to the series of what SEEN is, one sample or four. The including shader declares ORDER,\n\
-         // the azimuth's weights float turn[11], of m at m + 5, and SEEN series[36].\n\n\
+        "// Made by basis::glsl::glsl_visible, and held to it by a test.\n//\n\
+         // Adds the visibility along an azimuth above elevations of sine `sin_` and cosine `cos_`, `rise` from\n\
+         // the zenith, to the series. VALUE is of one texel or of four. The including shader declares ORDER,\n\
+         // the azimuth's weights float turn[11], of m at m + 5, and VALUE series[36].\n\n\
          // By exact integrals over elevation.\n\
-         void add_slices(SEEN rise, SEEN sin_, SEEN cos_) {\n    SEEN t;\n",
+         void add_slices(VALUE rise, VALUE sin_, VALUE cos_) {\n    VALUE t;\n",
     );
     let slices = Slices::new(MAX_ORDER);
     let exact: Vec<String> = slices.parts().iter().map(above).collect();
     add_parts(&mut text, &exact);
     text += "}\n\n// By ORDER coefficients of normalised Legendre polynomials (NS09 eq. 11).\n\
-             void add_nlps(SEEN sin_, SEEN cos_) {\n    SEEN t;\n    SEEN cos2 = cos_ * cos_;\n";
+             void add_nlps(VALUE sin_, VALUE cos_) {\n    VALUE t;\n    VALUE cos2 = cos_ * cos_;\n";
     for (l, line) in visibility_nlp(MAX_ORDER).iter().enumerate() {
-        let line = format!("SEEN nlp{l} = {line}");
+        let line = format!("VALUE nlp{l} = {line}");
         match l {
             0 | 1 => writeln!(text, "    {line};").unwrap(),
             _ => writeln!(text, "    {line} * (ORDER > {l} ? 1.0 : 0.0);").unwrap(),

@@ -5,10 +5,10 @@
 //! - [`plane`]: V also ends at the surface's own plane, so N·e needs no maximum: three numbers of band 1, exact. L of order
 //!   n - 1 times N·e is a series of order n, so V of order n truncates nothing: the only approximation is L's. It rings only
 //!   where L does.
-//! - [`lobe`]: V ends at the horizon only and the maximum is a series of three bands (NS09 §7), so V does not depend on the
+//! - [`cosine_lobe`]: V ends at the horizon only and the maximum is a series of three bands (NS09 §7), so V does not depend on the
 //!   normal. V, L and the cosine lobe are all truncated; L has order n.
 //!
-//! V first, then the matrix: n² products per azimuth and 9 n² (27 n² for [`lobe`]) per texel. Light summed over azimuths
+//! V first, then the matrix: n² products per azimuth and 9 n² (27 n² for [`cosine_lobe`]) per texel. Light summed over azimuths
 //! without V would take 9 n(n+1)/2 per azimuth: 90 against 16 at order 4.
 //!
 //! Phong specular uses [`specular`] of the arriving light, V times L.
@@ -26,7 +26,7 @@ use super::quadrature::integral;
 use super::{bands, check_order, index, zonal};
 
 /// Bands of the clamped cosine that are kept: of the rest, odd ones are 0 and band 4 is 4 % of band 0.
-const LOBE_BANDS: usize = 3;
+const COSINE_BANDS: usize = 3;
 
 /// Weight of light below ground in a fit.
 ///
@@ -109,9 +109,9 @@ pub fn plane(triples: &[Triple], order: usize, light: &[f64]) -> Vec<Vec<f64>> {
 ///
 /// # Panics
 /// If `light` does not have the order of the `triples`.
-pub fn lobe(triples: &[Triple], order: usize, light: &[f64]) -> Vec<Vec<f64>> {
+pub fn cosine_lobe(triples: &[Triple], order: usize, light: &[f64]) -> Vec<Vec<f64>> {
     assert_eq!(light.len(), order * order, "a light of order {order}");
-    let kept = order.min(LOBE_BANDS);
+    let kept = order.min(COSINE_BANDS);
     let cosine = zonal::clamped_cosine(kept);
     let matrix = light_matrix(triples, light);
     bands(kept)
@@ -153,7 +153,7 @@ fn factor(l: usize, m: isize) -> f64 {
 }
 
 /// The polynomials of a unit normal in Y_lm without their factors: 1; y, z, x; xy, yz, 3z² - 1, xz, x² - y². They are the
-/// rows of [`lobe`] in order; the second to fourth are those of [`plane`].
+/// rows of [`cosine_lobe`] in order; the second to fourth are those of [`plane`].
 pub fn receiver([x, y, z]: [f64; 3]) -> [f64; 9] {
     [1.0, y, z, x, x * y, y * z, 3.0 * z * z - 1.0, x * z, x * x - y * y]
 }

@@ -5,7 +5,7 @@
 
 use glam::DVec3;
 
-/// Height above a face's plane, on a unit sphere, from which a point sees the face: far above the rounding of its distance,
+/// Height above a face's plane, on a unit sphere, above which the face is visible from a point: far above the rounding of its distance,
 /// 4 · 2⁻⁵³, and far below the height of the cap of any isolated point. Four points on one circle become two triangles,
 /// either pair.
 const LEAST_ABOVE: f64 = 1e-13;
@@ -32,12 +32,12 @@ impl Triangles {
             })
             .collect();
         for i in (0..points.len()).filter(|i| !first.contains(i)) {
-            let (seen, kept): (Vec<_>, Vec<_>) =
+            let (visible, kept): (Vec<_>, Vec<_>) =
                 faces.into_iter().partition(|face| above(points, *face, points[i]) > LEAST_ABOVE);
-            if seen.is_empty() {
+            if visible.is_empty() {
                 return None;
             }
-            let edges: Vec<[usize; 2]> = seen.iter().flat_map(|face| edges(*face)).collect();
+            let edges: Vec<[usize; 2]> = visible.iter().flat_map(|face| edges(*face)).collect();
             faces = kept;
             // Edges of only one visible face form the rim.
             let rim = edges.iter().filter(|[a, b]| !edges.contains(&[*b, *a]));
@@ -61,7 +61,7 @@ impl Triangles {
         self
     }
 
-    /// Indices of points, counter-clockwise seen from outside.
+    /// Indices of points, counter-clockwise from outside.
     pub fn corners(&self) -> &[[u32; 3]] {
         &self.corners
     }

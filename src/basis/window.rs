@@ -26,9 +26,9 @@ fn window(order: usize, width: f64, f: impl Fn(f64) -> f64) -> Vec<f64> {
 }
 
 /// The window after which no series of non-negative light is negative anywhere: the factors of the sharpest non-negative
-/// lobe of these bands.
+/// kernel of these bands.
 ///
-/// Factors are those of a convolution with a zonal lobe K(z), and light convolved with K ≥ 0 stays above
+/// Factors are those of a convolution with a zonal kernel K(z), and light convolved with K ≥ 0 stays above
 /// 0. Of all such polynomials of degree d = n - 1 the one here keeps the most of band 1, the largest mean
 /// of z: by Gauss' rule with weight (1+z)^e, e = d mod 2, that mean is at most the rule's last node x,
 /// and reached by K = (1+z)^e (R(z)/(z-x))², R the polynomial of the nodes.
@@ -36,17 +36,17 @@ pub fn nonnegative(order: usize) -> Vec<f64> {
     check_order(order);
     let (half, odd) = ((order - 1) / 2, (order - 1) % 2);
     let mut nodes = legendre(half + 1);
-    let mut lobe = vec![1.0];
+    let mut kernel = vec![1.0];
     if odd == 1 {
         // Radau's: P_{k+1} + P_{k+2} vanishes at -1, the node that the weight takes over.
         let mut sum = legendre(half + 2);
         sum.iter_mut().zip(&nodes).for_each(|(s, n)| *s += n);
         nodes = without_root(&sum, -1.0);
-        lobe = vec![1.0, 1.0];
+        kernel = vec![1.0, 1.0];
     }
     let root = without_root(&nodes, last_root(&nodes));
-    lobe = product(&lobe, &product(&root, &root));
-    let band = |l: usize| integral(-1.0, 1.0, |z| value(&lobe, z) * value(&legendre(l), z));
+    kernel = product(&kernel, &product(&root, &root));
+    let band = |l: usize| integral(-1.0, 1.0, |z| value(&kernel, z) * value(&legendre(l), z));
     (0..order).map(|l| band(l) / band(0)).collect()
 }
 

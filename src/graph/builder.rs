@@ -57,7 +57,7 @@ impl Builder {
         push: &P,
         bound: &[(&str, ResourceId)],
         bytes: u64,
-        samples: u64,
+        texels: u64,
     ) -> &mut Pass {
         let Specialised { shader, constants } = of.into();
         let push = bytemuck::bytes_of(push).to_vec();
@@ -90,7 +90,7 @@ impl Builder {
             bindings,
             azimuths: 0..0,
             bytes,
-            samples,
+            texels,
             reach: None,
             indirect: None,
             barrier_before: false,

@@ -29,7 +29,7 @@ pub struct Pass {
     /// Minimal bytes read and written.
     pub bytes: u64,
     /// Texels processed, for rates.
-    pub samples: u64,
+    pub texels: u64,
     /// The part that an edit needs, where the push constants hold the edited rectangle.
     pub reach: Option<Reach>,
     /// For an indirect dispatch, the buffer (also bound) and the byte offset of its workgroups; `groups` is then an upper

@@ -20,7 +20,7 @@ pub struct Axis {
 
 impl Axis {
     /// Texels of the field.
-    pub fn samples(self) -> u64 {
+    pub fn texels(self) -> u64 {
         u64::from(self.lanes) * u64::from(self.steps)
     }
 
@@ -78,7 +78,7 @@ pub enum Reach {
     Whole,
     /// Workgroups with texels of the rectangle, 8 × 8 times four lanes each.
     Quads(Axis),
-    /// Workgroups with lines, 32 each and 2^line_shift / 32768 cells apart, that a texel which sees the rectangle may use.
+    /// Workgroups with lines, 32 each and 2^line_shift / 32768 cells apart, for texels from which the rectangle is visible.
     Lines(Axis, u32),
 }
 

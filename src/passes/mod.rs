@@ -180,7 +180,7 @@ struct ReducePush {
     source_size: [i32; 2],
     source_first: i32,
     ratio: [f32; 2],
-    per_sample: [f32; 2],
+    per_grid_point: [f32; 2],
     level: i32,
     width_shift: i32,
 }
@@ -194,7 +194,7 @@ same_layout!(
         source_size = SOURCE_COLS,
         source_first = SOURCE_FIRST,
         ratio = RATIO_X,
-        per_sample = PER_SAMPLE_X,
+        per_grid_point = PER_GRID_POINT_X,
         level = LEVEL,
         width_shift = WIDTH_SHIFT,
     }
@@ -209,7 +209,7 @@ impl ReducePush {
             source_size: source.size.map(|n| n as i32),
             source_first: source.first as i32,
             ratio: pyramid.ratio(number),
-            per_sample: level.per_sample,
+            per_grid_point: level.per_grid_point,
             level: number as i32,
             width_shift: pyramid.width_shift() as i32,
         }

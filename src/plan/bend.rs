@@ -85,8 +85,8 @@ impl Bends {
     }
 
     fn bands(&self, field: &HeightField) -> impl Iterator<Item = std::ops::Range<u32>> + use<> {
-        let samples = (field.rows() * field.cols()) as u64;
-        let each = (BAND_RAYS / samples).clamp(1, self.count.into());
+        let grid_points = (field.rows() * field.cols()) as u64;
+        let each = (BAND_RAYS / grid_points).clamp(1, self.count.into());
         let count = self.count;
         (0..count).step_by(each as usize).map(move |first| first..count.min(first + each as u32))
     }

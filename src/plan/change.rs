@@ -53,7 +53,7 @@ impl Plan {
         if !(fits(col, cols, self.size[0]) && fits(row, rows, self.size[1])) {
             return Err(Error::setting(
                 "an edit",
-                format!("{cols} × {rows} samples from column {col}, row {row}"),
+                format!("{cols} × {rows} grid points from column {col}, row {row}"),
                 format!("1 or more within {} × {}", self.size[0], self.size[1]),
             ));
         }

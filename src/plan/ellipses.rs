@@ -69,8 +69,8 @@ pub fn curved_ellipses(
     let notes =
         changed.iter().zip(names).map(|(changed, name)| format!("the base bent {name}: {changed}"));
     for ((curvature, name), outputs) in four.into_iter().zip(names).zip(&outputs[1..]) {
-        let seen = [begun.points, begun.ground];
-        bends.record(&mut begun.builder, (field, border), curvature, seen);
+        let points = [begun.points, begun.ground];
+        bends.record(&mut begun.builder, (field, border), curvature, points);
         begun.fit((Some(bends.bent), &format!("{name}, ")), *outputs);
     }
     let method = "ellipses of visible sky on curved bases";
@@ -110,8 +110,8 @@ impl<'a> Begun<'a> {
         let blocks = Blocks::make(&mut builder, size, border);
         blocks.record(&mut builder, field, heights, None);
         let (buffer, first) = builder.constants(&texels(directions));
-        let seen = all.into_iter().next().expect("one image");
-        record(&mut builder, (field, border), &blocks, (buffer, first), directions, seen);
+        let image = all.into_iter().next().expect("one image");
+        record(&mut builder, (field, border), &blocks, (buffer, first), directions, image);
         let ground = blocks.images.ground;
         Ok(Self { field, border, directions, size, builder, points, ground, buffer, first })
     }

@@ -27,7 +27,7 @@ pub fn facet_mask(
     check_field(field)?;
     if border != Border::Periodic && size.contains(&1) {
         let found = format!("a field of {} × {}", size[0], size[1]);
-        return Err(Error::setting("triangles", found, "2 × 2 samples or more"));
+        return Err(Error::setting("triangles", found, "2 × 2 grid points or more"));
     }
     let mut builder = Builder::new();
     let heights =

@@ -54,8 +54,8 @@ pub struct Picture {
 /// Passes that light a scene. [`Picture`] requests outputs besides the radiance.
 ///
 /// Inputs, in order: "heights"; "environment", "albedo" and "phong" if the scene has them; "light_colours" if requested.
-/// Outputs, in order: "radiance"; if requested one "direct.*" image per light; "direct.glossy" (specular of all lights,
-/// which the others then exclude); "sky_view"; one "indirect.*" image per bounce; and "glossy" (specular of all bounces,
+/// Outputs, in order: "radiance"; if requested one "direct.*" image per light; "direct.specular" (specular of all lights,
+/// which the others then exclude); "sky_view"; one "indirect.*" image per bounce; and "indirect.specular" (specular of all bounces,
 /// which the others then exclude). Images have one channel if every colour is grey, else four.
 ///
 /// Specular is viewed from straight above. Sky and environment use harmonics, whose order limits the lobe as it limits

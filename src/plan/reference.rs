@@ -65,16 +65,16 @@ pub fn reference_at(
     scene: &Scene,
     bounces: u32,
     seed: u32,
-    samples: usize,
+    places: usize,
     limits: &Limits,
 ) -> Result<Plan> {
     let all = scene.field.rows() * scene.field.cols();
-    if !(1..=all).contains(&samples) {
+    if !(1..=all).contains(&places) {
         let expected = format!("1 to {all}, as the field has");
-        return Err(Error::setting("samples of a reference", samples.to_string(), expected));
+        return Err(Error::setting("places of a reference", places.to_string(), expected));
     }
     let rows = band_rows(scene.field.cols() as u32, bounces);
-    traced(scene, (bounces, seed), Some(samples as u32), rows, limits)
+    traced(scene, (bounces, seed), Some(places as u32), rows, limits)
 }
 
 /// The input list of [`reference_at`]: positions of texels in the field, row-major, in rows as long as the field's. The
@@ -82,17 +82,17 @@ pub fn reference_at(
 ///
 /// # Errors
 /// A position beyond the field, named by its index in the list.
-pub fn listed_places(scene: &Scene, samples: &[usize]) -> Result<Vec<f32>> {
+pub fn listed_places(scene: &Scene, places: &[usize]) -> Result<Vec<f32>> {
     let cols = scene.field.cols();
     let count = cols * scene.field.rows();
-    if let Some(at) = samples.iter().position(|i| *i >= count) {
-        let (name, found) = (format!("samples of a reference: position {at}"), samples[at]);
+    if let Some(at) = places.iter().position(|i| *i >= count) {
+        let (name, found) = (format!("places of a reference: position {at}"), places[at]);
         return Err(Error::setting(name, found.to_string(), format!("less than {count}")));
     }
     let texel = |i: &usize| [(i % cols) as f32, (i / cols) as f32, 0.0, 0.0];
-    let mut all: Vec<f32> = samples.iter().flat_map(texel).collect();
-    let whole = samples.len().next_multiple_of(cols);
-    all.extend([-1.0, -1.0, 0.0, 0.0].repeat(whole - samples.len()));
+    let mut all: Vec<f32> = places.iter().flat_map(texel).collect();
+    let whole = places.len().next_multiple_of(cols);
+    all.extend([-1.0, -1.0, 0.0, 0.0].repeat(whole - places.len()));
     Ok(all)
 }
 
@@ -209,18 +209,18 @@ pub fn unsampled_light_error(scene: &Scene, bounces: u32, paths: u32) -> [f64; 3
 }
 
 /// As [`unsampled_light_error`], for the indirect light of all texels of a [`reference_at`] together: the root mean square
-/// over them, except with a probability `chance` in (0, 1). An event that no path has sampled has a share of at most
-/// -ln(chance) / (N · samples) of all (the rule of three: 3 for 5 %). Its variance is W²/N times its mean share, with W
+/// over them, except with a `probability` in (0, 1). An event that no path has sampled has a share of at most
+/// -ln(probability) / (N · texels) of all (the rule of three: 3 for 5 %). Its variance is W²/N times its mean share, with W
 /// the upper bound of a path's light after one reflection.
 pub fn unsampled_bounce_error(
     scene: &Scene,
     bounces: u32,
-    (paths, samples): (u32, usize),
-    chance: f64,
+    (paths, texels): (u32, usize),
+    probability: f64,
 ) -> [f64; 3] {
     let Some(later) = bounces.checked_sub(1) else { return [0.0; 3] };
     let most = max_path_light(scene, later);
-    let share = -chance.ln() / samples as f64;
+    let share = -probability.ln() / texels as f64;
     let scale = share.sqrt() * scene.surface.max_reflectance() / f64::from(paths);
     most.map(|most| scale * most)
 }

@@ -108,7 +108,7 @@ pub fn scatter_views(
         if matches!(surface.albedo, Albedo::Map(_)) {
             bound.push(("albedo_map", image("albedo", Owner::Input, rgba)));
         }
-        if matches!(wanted.lobe, Some(Specular::Map(_))) {
+        if matches!(wanted.specular, Some(Specular::Map(_))) {
             bound.push(("phong_map", image("phong", Owner::Input, rgba)));
         }
         let points = images(&mut builder, size, directions.count(), Owner::Input, limits)?;
@@ -142,16 +142,16 @@ pub fn scatter_views(
             bound.push(("sun_points", all.0));
         }
         if scatter.curvature != Curvature::FLAT {
-            let seen = one_image(field, directions, &points, limits)?;
+            let one = one_image(field, directions, &points, limits)?;
             let bends = Bends::make(&mut builder, size, directions, limits)?;
-            let ids = [seen, blocks.images.ground];
+            let ids = [one, blocks.images.ground];
             bends.record(&mut builder, (field, surface.border), scatter.curvature, ids);
             bound.push(("bent", bends.bent));
             bound.push(("fan_weights", bends.weigh(&mut builder, field)));
         }
-        let samples = u64::from(size[0]) * u64::from(size[1]);
+        let grid_points = u64::from(size[0]) * u64::from(size[1]);
         let is_chained = steps > 1;
-        let fitting = CARRIED_BYTES / (2 * 16 * samples);
+        let fitting = CARRIED_BYTES / (2 * 16 * grid_points);
         // Parallel paths need one image of visible points.
         let most = match (points.len(), is_chained) {
             (1, true) => fitting.clamp(1, MOST_AT_ONCE).min(limits.image_layers.into()) as u32,
@@ -168,7 +168,7 @@ pub fn scatter_views(
         let of = Steps {
             field,
             albedo: &surface.albedo,
-            specular: wanted.lobe,
+            specular: wanted.specular,
             suns: wanted.suns.len(),
             texels: [first_link, first_sun, first_view],
             count: steps,
@@ -188,12 +188,12 @@ pub fn scatter_views(
                     () if wanted.mirrors_lights() => Source::None,
                     () => Source::Direct,
                 };
-                let looked = order[(first * steps + step) as usize] / of_layer;
-                let holds = |(_, layers): &&(ResourceId, Range<u32>)| layers.contains(&looked);
-                let (seen, layers) =
+                let direction = order[(first * steps + step) as usize] / of_layer;
+                let holds = |(_, layers): &&(ResourceId, Range<u32>)| layers.contains(&direction);
+                let (of_direction, layers) =
                     points.iter().find(holds).expect("every direction has a layer");
                 let mut bound = bound.clone();
-                bound.push(("visible_points", *seen));
+                bound.push(("visible_points", *of_direction));
                 if source == Source::Carried {
                     bound.push(("carried_in", carried[(step as usize + 1) % 2]));
                 }
@@ -273,10 +273,14 @@ pub fn scatter_inputs(
         let expected = format!("those of the plan, {wanted}: vectors and lowest height alike");
         return Err(Error::setting("directions of the visible points", found, expected));
     }
-    let samples = field.rows() * field.cols();
-    if direct.len() != samples {
+    let grid_points = field.rows() * field.cols();
+    if direct.len() != grid_points {
         let found = format!("{} colours", direct.len());
-        return Err(Error::setting("direct light", found, format!("{samples}, one a sample")));
+        return Err(Error::setting(
+            "direct light",
+            found,
+            format!("{grid_points}, one per grid point"),
+        ));
     }
     let four = |texels: &[[f32; 3]]| -> Vec<f32> {
         texels.iter().flat_map(|t| [t[0], t[1], t[2], 1.0]).collect()

@@ -96,7 +96,7 @@ impl View {
         options.check_within(limits)?;
         let Scene { field, lights, .. } = scene;
         if field.rows() < 2 || field.cols() < 2 {
-            let found = format!("{} × {} samples", field.cols(), field.rows());
+            let found = format!("{} × {} grid points", field.cols(), field.rows());
             return Err(Error::setting("a field before a camera", found, "2 × 2 or more"));
         }
         let radiance = lit.find("radiance").and_then(|id| lit.resources.get(id.0)?.format());
@@ -220,21 +220,21 @@ fn terrain(scene: &Scene, camera: &Camera, options: &ViewOptions) -> (TerrainDra
         (last_row - f64::from(origin_row)) * cell_y,
         field.base_m() + f64::from(origin_m),
     ) - eye;
-    let seen = |v: DVec3, w: f64| {
+    let projected = |v: DVec3, w: f64| {
         let clip: DVec4 = projection * DVec4::new(v.dot(right), v.dot(up), v.dot(back), w);
         clip.as_vec4().to_array()
     };
     let push = TerrainDrawPush {
-        clip_per_col: seen(DVec3::X * cell_x, 0.0),
-        clip_per_row: seen(DVec3::Y * -cell_y, 0.0),
-        clip_per_metre: seen(DVec3::Z, 0.0),
-        clip_at_origin: seen(origin, 1.0),
+        clip_per_col: projected(DVec3::X * cell_x, 0.0),
+        clip_per_row: projected(DVec3::Y * -cell_y, 0.0),
+        clip_per_metre: projected(DVec3::Z, 0.0),
+        clip_at_origin: projected(origin, 1.0),
         origin_col,
         origin_row,
         origin_m,
         cols: field.cols() as i32,
         rows: field.rows() as i32,
-        step_samples: options.mesh_step as i32,
+        mesh_step: options.mesh_step as i32,
         tiles_across: 0,
     };
     (push, depths)

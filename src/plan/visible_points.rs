@@ -83,7 +83,7 @@ pub(super) fn check_field(field: &HeightField) -> Result<()> {
     }
     Err(Error::Limit {
         what: format!("visible points of a field of {} × {}", field.cols(), field.rows()),
-        needs: format!("{longest} samples a side"),
+        needs: format!("{longest} grid points a side"),
         limit: format!("{} in 16 bits", VisiblePoints::LARGEST_SIDE),
     })
 }
@@ -141,11 +141,11 @@ pub(super) fn one_image(
         return Ok(*points);
     }
     let is_small = VisiblePoints::is_small(field.rows(), field.cols());
-    let (count, samples) = (directions.count(), (field.rows() * field.cols()) as u64);
+    let (count, grid_points) = (directions.count(), (field.rows() * field.cols()) as u64);
     let layers = VisiblePoints::layers(count, is_small) as u64;
     Err(Error::Limit {
         what: format!("visible points in {count} directions together"),
-        needs: format!("one image of {layers} layers, {}", bytes_text(4 * samples * layers)),
+        needs: format!("one image of {layers} layers, {}", bytes_text(4 * grid_points * layers)),
         limit: format!(
             "{} layers and {} in one allocation; fewer directions or a smaller field fit",
             limits.image_layers,

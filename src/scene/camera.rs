@@ -13,9 +13,9 @@ use crate::{Error, Result};
 pub struct Camera {
     /// The target, at the centre of the image.
     pub target_m: [f64; 3],
-    /// Azimuth of the eye seen from the target, radians counter-clockwise from east.
+    /// Azimuth of the eye from the target, radians counter-clockwise from east.
     pub azimuth_rad: f64,
-    /// Elevation of the eye seen from the target, radians, [-π/2..π/2]. At π/2 the image is a map whose upper edge lies
+    /// Elevation of the eye from the target, radians, [-π/2..π/2]. At π/2 the image is a map whose upper edge lies
     /// opposite the azimuth: north for an eye in the south.
     pub elevation_rad: f64,
     /// Distance from the target to the eye, [1e-9..1e15].
@@ -142,7 +142,7 @@ mod tests {
 
     /// From the south, 90° up: north is up and east is right.
     #[test]
-    fn seen_from_above_east_is_right_and_north_is_up() {
+    fn from_above_east_is_right_and_north_is_up() {
         let camera = Camera {
             target_m: [0.0; 3],
             azimuth_rad: -FRAC_PI_2,
@@ -156,7 +156,7 @@ mod tests {
         assert!((camera.eye_m() - DVec3::new(0.0, 0.0, 5.0)).length() < 1e-14);
     }
 
-    /// A level square of 2 by 2 seen from above under 90°: its edge is at 45° for an eye 1 above it. An orthographic image
+    /// A level square of 2 by 2 from above under 90°: its edge is at 45° for an eye 1 above it. An orthographic image
     /// half as wide as high needs a height of 4.
     #[test]
     fn around_fits_the_field() {

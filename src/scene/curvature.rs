@@ -17,8 +17,8 @@ use crate::{Error, Result};
 /// on.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Curvature {
-    /// One over the radius towards east and towards north, 1/m; above 0 where the base bends down (a sphere seen from
-    /// outside, where valleys widen), below 0 where it is hollow.
+    /// One over the radius towards east and towards north, 1/m; above 0 where the base bends down (the outside
+    /// of a sphere, where valleys widen), below 0 where it is hollow.
     pub per_m: [f64; 2],
 }
 
@@ -60,7 +60,7 @@ impl fmt::Display for OcclusionChange {
 }
 
 /// Grid points at which the change is estimated.
-const SAMPLES: usize = 512;
+const PROBES: usize = 512;
 /// Azimuths per grid point.
 const AZIMUTHS: usize = 16;
 /// Distance, in cells, from which steps grow to the distance over this number. A step then misses, in the sine of an
@@ -169,17 +169,17 @@ impl Curvature {
     /// distance. They end at the field's edge; in a periodic field where the base has risen or fallen by the relief, at
     /// least one cell and at most half a circle away.
     pub fn occlusion_change(&self, field: &HeightField, border: Border) -> OcclusionChange {
-        let samples = field.rows() * field.cols();
-        let count = samples.min(SAMPLES);
+        let grid_points = field.rows() * field.cols();
+        let count = grid_points.min(PROBES);
         // Multiples of the golden section are even and match no pattern of the field.
         let golden = 0.5 * (5_f64.sqrt() - 1.0);
         let heights = field.heights_m().iter();
         let (low, high) = heights.fold((f32::MAX, f32::MIN), |(l, h), z| (l.min(*z), h.max(*z)));
         let relief_m = f64::from(high) - f64::from(low);
         let of = |i: usize| {
-            let at = match count == samples {
+            let at = match count == grid_points {
                 true => i,
-                false => ((i as f64 * golden).fract() * samples as f64) as usize,
+                false => ((i as f64 * golden).fract() * grid_points as f64) as usize,
             };
             let azimuths = (0..AZIMUTHS).map(|k| TAU * (k as f64 + 0.5) / AZIMUTHS as f64);
             azimuths.map(move |azimuth| {

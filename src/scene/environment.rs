@@ -5,8 +5,8 @@ use crate::{Error, Result};
 /// Radiance from infinity as an equirectangular (latitude-longitude) image, linear RGB.
 ///
 /// The first row touches the zenith, the last the nadir. Column 0 begins at azimuth π (west). Columns run *clockwise*
-/// seen from above, as the image is viewed from inside: its centre looks east (+x, azimuth 0), a quarter to the left
-/// looks north. Texel (row, col) of a `width`×`height` image covers azimuths π - 2π·[col, col+1]/width and zenith
+/// from above, as the image is viewed from inside: its centre is east (+x, azimuth 0), a quarter to the left
+/// is north. Texel (row, col) of a `width`×`height` image covers azimuths π - 2π·[col, col+1]/width and zenith
 /// angles π·[row, row+1]/height.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Environment {

@@ -63,7 +63,7 @@ impl HeightField {
             return Err(Error::setting(
                 "voids",
                 format!("{} marks", voids.map_or(0, |v| v.len())),
-                format!("{} marks, one a sample", heights_m.len()),
+                format!("{} marks, one per grid point", heights_m.len()),
             ));
         }
         let voids = voids.filter(|v| v.contains(&true));
@@ -243,8 +243,11 @@ impl HeightField {
 pub fn fill_voids([rows, cols]: [usize; 2], heights_m: &mut [f32], voids: &[bool]) -> Result<()> {
     let count = rows.checked_mul(cols).filter(|count| *count == heights_m.len());
     if count != Some(voids.len()) {
-        let found =
-            format!("{} and {} voids for {rows} × {cols} samples", heights_m.len(), voids.len());
+        let found = format!(
+            "{} and {} voids for {rows} × {cols} grid points",
+            heights_m.len(),
+            voids.len()
+        );
         return Err(Error::setting("heights", found, "rows × columns of both"));
     }
     let is_wrong =
@@ -350,7 +353,7 @@ mod tests {
             let message = fill_voids([5, 6], heights, voids).unwrap_err().to_string();
             assert!(message.contains(expected), "{message}");
         };
-        refuse(&mut filled[1..], &voids, "29 and 30 voids for 5 × 6 samples");
+        refuse(&mut filled[1..], &voids, "29 and 30 voids for 5 × 6 grid points");
         refuse(&mut filled, &[true; 30], "nothing but voids");
         filled[8] = f32::INFINITY;
         refuse(&mut filled, &[false; 30], "height at row 1, column 2: found inf");

@@ -53,7 +53,7 @@ pub struct SphereLight {
 }
 
 impl SphereLight {
-    /// Vertical slices for a setting: first where the sphere looks narrow from a texel, then where it surrounds the texel.
+    /// Vertical slices for a setting: first where the sphere is narrow from a texel, then where it surrounds the texel.
     ///
     /// Narrow: the setting, but at most eight per cell of the sphere's width, as the surface is flat within a cell; at
     /// least 4. Surrounding: eight times the setting. At the default this equals the azimuths of a sky.

@@ -19,19 +19,19 @@ impl Default for Surface {
 }
 
 impl Surface {
-    /// Checks ranges and sizes for a field of `samples` grid points.
+    /// Checks ranges and sizes for a field of `grid_points` grid points.
     ///
     /// # Errors
     /// As [`Albedo::check`]; an exponent or a scale out of range; albedo plus scale above 1 in any channel at any texel.
-    pub fn check(&self, samples: usize) -> Result<()> {
-        self.albedo.check(samples)?;
+    pub fn check(&self, grid_points: usize) -> Result<()> {
+        self.albedo.check(grid_points)?;
         match &self.specular {
             None => Ok(()),
             Some(Specular::Constant(specular)) => specular.check("", self.albedo.largest()),
-            Some(Specular::Map(map)) if map.len() != samples => Err(Error::setting(
+            Some(Specular::Map(map)) if map.len() != grid_points => Err(Error::setting(
                 "specular map",
                 format!("{} texels", map.len()),
-                format!("{samples} texels, one a sample"),
+                format!("{grid_points} texels, one per grid point"),
             )),
             Some(Specular::Map(map)) => map.iter().enumerate().try_for_each(|(i, specular)| {
                 specular.check(&format!(", texel {i}"), self.albedo.largest_at(i))
@@ -59,17 +59,17 @@ pub enum Specular {
 }
 
 impl Specular {
-    /// A map of `samples` texels that only the device knows. The plan assumes `scale` everywhere; no texel may exceed it.
+    /// A map of `grid_points` texels that only the device knows. The plan assumes `scale` everywhere; no texel may exceed it.
     /// With [`Albedo::unknown`], which the plan takes as fully reflecting, use `f32::EPSILON`.
-    pub fn unknown(samples: usize, scale: f32) -> Self {
-        Specular::Map(vec![PhongSpecular { exponent: 0.0, scale }; samples])
+    pub fn unknown(grid_points: usize, scale: f32) -> Self {
+        Specular::Map(vec![PhongSpecular { exponent: 0.0, scale }; grid_points])
     }
 
     /// The value at a grid point.
-    pub fn at(&self, sample: usize) -> PhongSpecular {
+    pub fn at(&self, texel: usize) -> PhongSpecular {
         match self {
             Specular::Constant(specular) => *specular,
-            Specular::Map(map) => map[sample],
+            Specular::Map(map) => map[texel],
         }
     }
 
@@ -140,25 +140,25 @@ pub enum Albedo {
 }
 
 impl Albedo {
-    /// A map of `samples` texels that only the device knows. The plan assumes albedo 1, so it drops no bounce.
-    pub fn unknown(samples: usize) -> Self {
-        Albedo::Map(vec![[1.0; 3]; samples])
+    /// A map of `grid_points` texels that only the device knows. The plan assumes albedo 1, so it drops no bounce.
+    pub fn unknown(grid_points: usize) -> Self {
+        Albedo::Map(vec![[1.0; 3]; grid_points])
     }
 
-    /// Checks range and size for a field of `samples` grid points.
+    /// Checks range and size for a field of `grid_points` grid points.
     ///
     /// # Errors
     /// A channel outside [0..1] or not finite; a map that does not have one colour per grid point.
-    pub fn check(&self, samples: usize) -> Result<()> {
+    pub fn check(&self, grid_points: usize) -> Result<()> {
         let good = |c: &[f32; 3]| c.iter().all(|v| (0.0..=1.0).contains(v));
         match self {
             Albedo::Constant(c) if !good(c) => {
                 Err(Error::setting("albedo", format!("{c:?}"), "channels from 0 to 1"))
             }
-            Albedo::Map(map) if map.len() != samples => Err(Error::setting(
+            Albedo::Map(map) if map.len() != grid_points => Err(Error::setting(
                 "albedo map",
                 format!("{} texels", map.len()),
-                format!("{samples} texels, one a sample"),
+                format!("{grid_points} texels, one per grid point"),
             )),
             Albedo::Map(map) => match map.iter().position(|c| !good(c)) {
                 Some(i) => Err(Error::setting(
@@ -173,10 +173,10 @@ impl Albedo {
     }
 
     /// The largest channel at a grid point.
-    fn largest_at(&self, sample: usize) -> f32 {
+    fn largest_at(&self, texel: usize) -> f32 {
         let colour = match self {
             Albedo::Constant(c) => c,
-            Albedo::Map(map) => &map[sample],
+            Albedo::Map(map) => &map[texel],
         };
         colour.iter().copied().fold(0.0, f32::max)
     }

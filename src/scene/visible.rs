@@ -21,7 +21,7 @@ pub struct VisiblePoints {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum VisiblePoint {
     /// The surface, nearest to the grid point row · columns + column.
-    Sample(usize),
+    GridPoint(usize),
     /// No surface.
     Sky,
     /// The level, black ground beyond the field under `plane`; under `periodic` everything beyond the traced repetitions.
@@ -79,16 +79,17 @@ impl VisiblePoints {
         }
         let points = Self { directions, size, field_hash: field.hash(border), words };
         for direction in 0..points.directions.count() {
-            for sample in 0..size[0] * size[1] {
-                let word = points.word(direction, sample);
+            for grid_point in 0..size[0] * size[1] {
+                let word = points.word(direction, grid_point);
                 let [row, col] = [word >> 16, word & 0xffff].map(|n| n as usize);
-                let at = || format!("visible points: direction {direction}, sample {sample}");
+                let at =
+                    || format!("visible points: direction {direction}, grid point {grid_point}");
                 if word == LOST {
                     return Err(Error::Device { doing: at(), reason: LOST_RAY.to_owned() });
                 }
                 if word < LOST && (row >= size[0] || col >= size[1]) {
                     let found = format!("row {row}, column {col}");
-                    let expected = format!("a sample of {} × {}", size[1], size[0]);
+                    let expected = format!("a grid point of {} × {}", size[1], size[0]);
                     return Err(Error::setting(at(), found, expected));
                 }
             }
@@ -108,29 +109,30 @@ impl VisiblePoints {
     ) -> Result<Self> {
         let (rows, cols) = (field.rows(), field.cols());
         check_sides([rows, cols])?;
-        let (samples, is_small) = (rows * cols, Self::is_small(rows, cols));
-        if points.len() != directions.count() * samples {
-            let expected = format!("{} points", directions.count() * samples);
+        let (grid_points, is_small) = (rows * cols, Self::is_small(rows, cols));
+        if points.len() != directions.count() * grid_points {
+            let expected = format!("{} points", directions.count() * grid_points);
             return Err(Error::setting("visible points", points.len().to_string(), expected));
         }
-        let mut words = vec![0; Self::layers(directions.count(), is_small) * samples];
+        let mut words = vec![0; Self::layers(directions.count(), is_small) * grid_points];
         for (i, point) in points.iter().enumerate() {
-            let (direction, sample) = (i / samples, i % samples);
+            let (direction, grid_point) = (i / grid_points, i % grid_points);
             let word = match *point {
-                VisiblePoint::Sample(at) if at >= samples => {
-                    let name = format!("visible points: direction {direction}, sample {sample}");
-                    let expected = format!("one of {samples}, {cols} × {rows}");
-                    return Err(Error::setting(name, format!("sample {at}"), expected));
+                VisiblePoint::GridPoint(at) if at >= grid_points => {
+                    let name =
+                        format!("visible points: direction {direction}, grid point {grid_point}");
+                    let expected = format!("one of {grid_points}, {cols} × {rows}");
+                    return Err(Error::setting(name, format!("grid point {at}"), expected));
                 }
-                VisiblePoint::Sample(at) => (((at / cols) << 16) | (at % cols)) as u32,
+                VisiblePoint::GridPoint(at) => (((at / cols) << 16) | (at % cols)) as u32,
                 VisiblePoint::Sky => SKY,
                 VisiblePoint::Ground => GROUND,
             };
             if is_small {
                 let half = if word >= LOST { word & 0xffff } else { word >> 16 << 8 | word & 0xff };
-                words[direction / 2 * samples + sample] |= half << (16 * (direction % 2));
+                words[direction / 2 * grid_points + grid_point] |= half << (16 * (direction % 2));
             } else {
-                words[direction * samples + sample] = word;
+                words[direction * grid_points + grid_point] = word;
             }
         }
         Self::new(field, border, directions, words)
@@ -177,17 +179,17 @@ impl VisiblePoints {
         &self.words
     }
 
-    /// The visible point of grid point `sample` = row · columns + column in direction `direction`.
+    /// The visible point of grid point `grid_point` = row · columns + column in direction `direction`.
     ///
     /// # Panics
     /// Outside the field or the directions.
-    pub fn seen(&self, direction: usize, sample: usize) -> VisiblePoint {
-        match self.word(direction, sample) {
+    pub fn point(&self, direction: usize, grid_point: usize) -> VisiblePoint {
+        match self.word(direction, grid_point) {
             SKY => VisiblePoint::Sky,
             GROUND => VisiblePoint::Ground,
             word => {
                 let [row, col] = [word >> 16, word & 0xffff].map(|n| n as usize);
-                VisiblePoint::Sample(row * self.size[1] + col)
+                VisiblePoint::GridPoint(row * self.size[1] + col)
             }
         }
     }
@@ -212,19 +214,19 @@ impl VisiblePoints {
     ///
     /// # Panics
     /// Outside the field.
-    pub fn lit_share(&self, around: &[(usize, f64); 3], sample: usize) -> f64 {
-        let is_sky = |i: usize| self.seen(i, sample) == VisiblePoint::Sky;
+    pub fn lit_share(&self, around: &[(usize, f64); 3], grid_point: usize) -> f64 {
+        let is_sky = |i: usize| self.point(i, grid_point) == VisiblePoint::Sky;
         around.iter().filter(|c| is_sky(c.0)).map(|c| c.1).sum()
     }
 
     /// In the layout of a large field.
-    fn word(&self, direction: usize, sample: usize) -> u32 {
+    fn word(&self, direction: usize, grid_point: usize) -> u32 {
         let [rows, cols] = self.size;
         if !Self::is_small(rows, cols) {
-            return self.words[direction * rows * cols + sample];
+            return self.words[direction * rows * cols + grid_point];
         }
         let half =
-            self.words[direction / 2 * rows * cols + sample] >> (16 * (direction % 2)) & 0xffff;
+            self.words[direction / 2 * rows * cols + grid_point] >> (16 * (direction % 2)) & 0xffff;
         if half >= LOST & 0xffff { 0xffff_0000 | half } else { half >> 8 << 16 | half & 0xff }
     }
 }
@@ -235,6 +237,6 @@ fn check_sides([rows, cols]: [usize; 2]) -> Result<()> {
     if rows.max(cols) <= VisiblePoints::LARGEST_SIDE {
         return Ok(());
     }
-    let expected = format!("at most {} samples a side", VisiblePoints::LARGEST_SIDE);
+    let expected = format!("at most {} grid points a side", VisiblePoints::LARGEST_SIDE);
     Err(Error::setting("visible points", format!("a field of {cols} × {rows}"), expected))
 }

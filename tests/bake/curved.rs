@@ -9,7 +9,7 @@ use ridgelight::scene::{
 use ridgelight_bake::CurvedEllipses;
 use ridgelight_cpu::bent_directions::ways::Ways;
 use ridgelight_cpu::bent_directions::{Draped, Fans, bent_direction};
-use ridgelight_cpu::ellipse_fit::{Ellipse, Seen, fit, least_radius};
+use ridgelight_cpu::ellipse_fit::{Ellipse, SkyDirection, fit, least_radius};
 use ridgelight_cpu::fan_weights::weight;
 use ridgelight_cpu::oracle::Oracle;
 use ridgelight_cpu::visible_points::{visible_point, visible_points};
@@ -108,7 +108,9 @@ fn repetitions_are_those_that_rays_meet() {
             let plan = e.truncate().length();
             for here in [knob, (knob + 1) % (rows * cols), 0] {
                 let at = [here / cols, here % cols];
-                let VisiblePoint::Sample(there) = visible_point(&oracle, at, e) else { continue };
+                let VisiblePoint::GridPoint(there) = visible_point(&oracle, at, e) else {
+                    continue;
+                };
                 oracle.visible_intervals(at[0], at[1], e.y.atan2(e.x), &mut stretches);
                 let elevation = e.z.atan2(plan);
                 let stretch = stretches.iter().find(|s| elevation < s.high_rad).expect("met");
@@ -141,7 +143,7 @@ fn what_the_base_turns_away_is_taken_for_no_nearer() {
     let (field, border) = (hills(7, 40), Border::Periodic);
     let (oracle, knob) = (Oracle::new(&field, border), knob(7, 40));
     let e = DVec3::new(1.0, 0.17, -0.001).normalize();
-    let VisiblePoint::Sample(there) = visible_point(&oracle, [knob / 40, knob % 40], e) else {
+    let VisiblePoint::GridPoint(there) = visible_point(&oracle, [knob / 40, knob % 40], e) else {
         panic!("it falls")
     };
     let away = |k: f64| {
@@ -271,7 +273,7 @@ fn weights_are_solid_angles_between_bent_walls() {
         let curvature = Curvature { per_m: [per_m, 0.0] };
         let draped = Draped { field: &field, border, points: &points, fans: &fans, curvature };
         let bent = draped.bent(HALF);
-        let sees = |i: &usize| points.seen(*i, HALF) != VisiblePoint::Sky;
+        let sees = |i: &usize| points.point(*i, HALF) != VisiblePoint::Sky;
         let of = |weigh: bool| -> f64 {
             let light = |i: usize| {
                 let weight = if weigh { weight(&fans, &bent, i) } else { 1.0 };
@@ -346,7 +348,7 @@ fn flat_bases_are_as_they_were() {
     }
 }
 
-fn seen(lit: impl Fn(DVec3) -> bool) -> Vec<Seen> {
+fn seen(lit: impl Fn(DVec3) -> bool) -> Vec<SkyDirection> {
     let directions = Directions::fibonacci(1000, 0.0, 0).expect("directions");
     directions.vectors().iter().map(|e| (*e, lit(*e))).collect()
 }

@@ -2,24 +2,26 @@
 
 use glam::{DVec2, DVec3};
 use ridgelight::scene::{Border, Directions, HeightField, VisiblePoints};
-use ridgelight_cpu::ellipse_fit::{Ellipse, Seen, fit, least_radius, moments, score, start};
+use ridgelight_cpu::ellipse_fit::{
+    Ellipse, SkyDirection, fit, least_radius, moments, score, start,
+};
 use ridgelight_cpu::visible_points::visible_points;
 
 const COUNT: usize = 1000;
 
-fn seen(lit: impl Fn(DVec3) -> bool) -> Vec<Seen> {
+fn seen(lit: impl Fn(DVec3) -> bool) -> Vec<SkyDirection> {
     let directions = Directions::fibonacci(COUNT, 0.0, 0).expect("directions");
     directions.vectors().iter().map(|e| (*e, lit(*e))).collect()
 }
 
 /// Directions that the ellipse has wrong.
-fn wrong(ellipse: &Ellipse, seen: &[Seen]) -> usize {
+fn wrong(ellipse: &Ellipse, seen: &[SkyDirection]) -> usize {
     seen.iter().filter(|(e, is_lit)| ellipse.holds(*e) != *is_lit).count()
 }
 
 /// That the ellipse of what another holds is that: its ends along the axes, and whatever it has wrong, lie within a direction's
 /// own radius of the other's.
-fn close(found: &Ellipse, truth: &Ellipse, seen: &[Seen]) {
+fn close(found: &Ellipse, truth: &Ellipse, seen: &[SkyDirection]) {
     let off = least_radius(COUNT);
     assert!((found.centre - truth.centre).length() <= off, "{found:?} {truth:?}");
     for (found, truth) in found.inverse_radii.iter().zip(truth.inverse_radii) {
@@ -136,7 +138,7 @@ fn between_directions_light_goes_over() {
             let share = of_wall.lit_share(&around, sample);
             let own = directions.vectors().iter().position(|e| e == light);
             if let Some(own) = own {
-                let is_lit = of_wall.seen(own, sample) == ridgelight::scene::VisiblePoint::Sky;
+                let is_lit = of_wall.point(own, sample) == ridgelight::scene::VisiblePoint::Sky;
                 assert!((share - f64::from(u8::from(is_lit))).abs() < 1e-9, "{share}");
             } else if share > 1e-9 && share < 1.0 - 1e-9 {
                 between += 1;

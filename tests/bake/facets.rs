@@ -232,7 +232,7 @@ impl Shares {
         for (i, row) in gathered.iter_mut().enumerate() {
             let n = normal(field, Border::Periodic, i / field.cols(), i % field.cols());
             for (d, e) in points.directions().vectors().iter().enumerate() {
-                if let VisiblePoint::Sample(j) = points.seen(d, i) {
+                if let VisiblePoint::GridPoint(j) = points.point(d, i) {
                     row[j] += share * n.dot(*e).max(0.0);
                 }
             }

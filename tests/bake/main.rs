@@ -20,7 +20,7 @@ use ridgelight_bake::{
 };
 use ridgelight_cpu::light::{normal, sky};
 use ridgelight_cpu::oracle::Oracle;
-use ridgelight_cpu::sh_visibility::{Series, seen_along};
+use ridgelight_cpu::sh_visibility::{Series, visibility_along};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Azimuths of a circle.
@@ -222,7 +222,7 @@ fn fields_agree_with_their_twins() {
             let expected = sky(&field, border, row, col, count as usize);
             close(view[0][i].into(), expected, 1e-6, "sky view");
             let twin = Series { order: 4, wedges: Wedges::Slices, receiver: Receiver::Cosine };
-            for (plane, expected) in series.iter().zip(seen_along(twin, &horizons[i])) {
+            for (plane, expected) in series.iter().zip(visibility_along(twin, &horizons[i])) {
                 close(plane[i].into(), expected, 2e-6, "visibility");
             }
         }

@@ -3,7 +3,7 @@
 use crate::{ORDERS, noise, within};
 use glam::DVec3;
 use ridgelight::basis::glsl::{
-    Factor, glsl_harmonics, glsl_product, glsl_seen, glsl_slice, glsl_visibility_nlp,
+    Factor, glsl_harmonics, glsl_product, glsl_slice, glsl_visibility_nlp, glsl_visible,
 };
 use ridgelight::basis::harmonics::{evaluate, turned};
 use ridgelight::basis::legendre::occlusion;
@@ -215,7 +215,8 @@ fn harmonics_are_harmonics() {
 #[test]
 fn the_shaders_copies_are_the_texts() {
     let shared = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders_glsl");
-    for (name, text) in [("sh/seen.glsl", glsl_seen()), ("shared/harmonics.glsl", glsl_harmonics())]
+    for (name, text) in
+        [("sh/visible.glsl", glsl_visible()), ("shared/harmonics.glsl", glsl_harmonics())]
     {
         let path = shared.join(name);
         if std::env::var_os("RIDGELIGHT_BLESS").is_some_and(|v| v == "1") {

@@ -4,7 +4,7 @@ use crate::{ORDERS, noise, within};
 use glam::DVec3;
 use ridgelight::basis::azimuth::{assemble, circle};
 use ridgelight::basis::harmonics::{evaluate, reconstruct, turned};
-use ridgelight::basis::light::{fit_above_ground, lobe, plane, receiver, specular};
+use ridgelight::basis::light::{cosine_lobe, fit_above_ground, plane, receiver, specular};
 use ridgelight::basis::product::{product, triples};
 use ridgelight::basis::quadrature::points;
 use ridgelight::basis::slice::Slices;
@@ -87,7 +87,7 @@ fn a_lobe_is_the_triple_product() {
         let want: f64 =
             product(&triples, &light, &v).iter().zip(&about).map(|(a, b)| a * b / PI).sum();
         let rows = &receiver(normal.to_array())[..kept * kept];
-        within(&[exit(&lobe(&triples, order, &light), rows, &v)], &[want], 1e-12);
+        within(&[exit(&cosine_lobe(&triples, order, &light), rows, &v)], &[want], 1e-12);
     }
 }
 

@@ -1,7 +1,7 @@
 //! The quadrature against counting paths, whose lobes are seen from above alone, as the quadrature's.
 
 use ridgelight::scene::{Albedo, Border, Environment, Lights, PhongSpecular, Specular};
-use ridgelight_cpu::indirect::{Fineness, truth};
+use ridgelight_cpu::indirect::{Fineness, ground_truth as truth};
 use ridgelight_cpu::light::normal;
 
 use crate::naive::Paths;

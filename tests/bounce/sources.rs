@@ -3,7 +3,7 @@
 use ridgelight::scene::{
     Border, HeightField, KeyLight, Lights, PhongSpecular, Scene, Specular, SphereLight, Sun,
 };
-use ridgelight_cpu::indirect::{Fineness, light, truth};
+use ridgelight_cpu::indirect::{Fineness, ground_truth as truth, light};
 use ridgelight_cpu::light::sun;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 

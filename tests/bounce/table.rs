@@ -1,6 +1,6 @@
 //! The scenes that the path tracer is compared on, as the quadrature sees them.
 
-use ridgelight_cpu::indirect::{Fineness, truth};
+use ridgelight_cpu::indirect::{Fineness, ground_truth as truth};
 
 use crate::reference_page::{FINENESS, MOST_BOUNCES, closed_forms, head, light_names};
 use crate::scenes::{Agreement, scenes};

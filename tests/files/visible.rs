@@ -25,7 +25,7 @@ fn visible_points_round_trip() {
         assert!(seen.contains(&VisiblePoint::Sky) && seen.contains(&VisiblePoint::Ground));
         let points = VisiblePoints::from_points(&field, border, directions, &seen).unwrap();
         for (i, point) in seen.iter().enumerate() {
-            assert_eq!(points.seen(i / samples, i % samples), *point);
+            assert_eq!(points.point(i / samples, i % samples), *point);
         }
         write_visible_points(&path, &points).unwrap();
         assert_eq!(read_visible_points(&path, &field, border).unwrap(), points);
@@ -40,7 +40,7 @@ fn the_last_sample_of_a_small_field_is_no_mark() {
     for side in [255, 256] {
         let field = HeightField::new(side, side, &vec![0.0; side * side], [1.0; 2], None).unwrap();
         let directions = Directions::fibonacci(5, -1.0, 0).expect("directions");
-        let kinds = [side * side - 1, side * side - side, side - 1].map(VisiblePoint::Sample);
+        let kinds = [side * side - 1, side * side - side, side - 1].map(VisiblePoint::GridPoint);
         let kinds = [&kinds[..], &[VisiblePoint::Sky, VisiblePoint::Ground]].concat();
         let seen: Vec<_> = (0..5 * side * side).map(|i| kinds[i % 5]).collect();
         let points =
@@ -49,7 +49,7 @@ fn the_last_sample_of_a_small_field_is_no_mark() {
         let read = read_visible_points(&path, &field, Border::Plane).unwrap();
         assert_eq!(read, points);
         for (i, point) in seen.iter().enumerate() {
-            assert_eq!(read.seen(i / (side * side), i % (side * side)), *point);
+            assert_eq!(read.point(i / (side * side), i % (side * side)), *point);
         }
     }
 }
@@ -103,10 +103,10 @@ fn points_that_are_none_are_refused() {
     // Row 256 has the same byte as row 0.
     for outside in [35, 7 * 256, usize::MAX] {
         let mut seen = vec![VisiblePoint::Sky; 4 * 35];
-        seen[36] = VisiblePoint::Sample(outside);
+        seen[36] = VisiblePoint::GridPoint(outside);
         let said = VisiblePoints::from_points(&field, Border::Plane, directions.clone(), &seen);
         let said = said.unwrap_err().to_string();
-        assert!(said.contains("direction 1, sample 1"), "{said}");
+        assert!(said.contains("direction 1, grid point 1"), "{said}");
     }
     let long = waves(1, 65_534, 1.0);
     for said in [
@@ -114,7 +114,7 @@ fn points_that_are_none_are_refused() {
         VisiblePoints::from_points(&long, Border::Plane, directions.clone(), &[]),
     ] {
         let said = said.unwrap_err().to_string();
-        assert!(said.contains("at most 65533 samples a side"), "{said}");
+        assert!(said.contains("at most 65533 grid points a side"), "{said}");
     }
 }
 
@@ -128,5 +128,5 @@ fn points_compare_by_what_is_seen() {
         VisiblePoints::new(&field, Border::Plane, directions.clone(), words).expect("points")
     };
     assert_eq!(of(0xffff), of(0));
-    assert_eq!(of(0).seen(4, 2), VisiblePoint::Sample(3));
+    assert_eq!(of(0).point(4, 2), VisiblePoint::GridPoint(3));
 }

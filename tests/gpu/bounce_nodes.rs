@@ -174,7 +174,7 @@ fn on_terrain_shares_are_better_than_light() {
             let plan = plan::picture(&scene, &of, &gpu.limits(), wanted).expect("a plan");
             let bytes = |id: plan::ResourceId| plan.resources[id.0].bytes();
             let all: u64 = plan.resources.iter().map(plan::Resource::bytes).sum();
-            let sets = bytes(plan.find("casting_sets").expect("kept"));
+            let sets = bytes(plan.find("visibility_cache").expect("kept"));
             let limits = Limits { memory_budget: all - sets, ..gpu.limits() };
             let walked = layers_within(&mut gpu, &scene, &of, &limits);
             let moved = off(&found[2], &walked[2]);

@@ -128,7 +128,7 @@ fn a_lobe_of_nothing_is_none() {
             scale.map(|scale| Specular::Constant(PhongSpecular { exponent: 5.0, scale }));
         let wanted = Picture { light_layers: true, ..Picture::default() };
         let plan = plan::picture(&scene, &quality, &gpu.limits(), wanted).expect("a plan");
-        assert!(plan.find("arriving").is_none() && plan.find("glossy").is_none());
+        assert!(plan.find("arriving").is_none() && plan.find("indirect.specular").is_none());
         let passes: Vec<String> = plan.passes.iter().map(plan::Pass::label).collect();
         plans.push((passes, plan.bytes(), plan.constants, drawn(&mut gpu, &scene, &quality)));
     }
@@ -157,7 +157,7 @@ fn a_lobe_of_exponent_one_is_a_cosine() {
         {
             let all = drawn(&mut gpu, &scene, &bounce_quality(2, specular, order));
             let [glossy, one, two] =
-                ["glossy", "indirect.1", "indirect.2"].map(|name| layer(&all, name));
+                ["indirect.specular", "indirect.1", "indirect.2"].map(|name| layer(&all, name));
             // Of 0.5 diffusely and 0.25 by the lobe; of the bounced light, at most 3/4 of the sky's 1.
             let want = 0.5 * (one[MIDDLE][0] + two[MIDDLE][0]);
             let off = (glossy[MIDDLE][0] - want).abs();
@@ -213,7 +213,7 @@ fn radiance_by_direction_is_nearer_to_the_path_traced_reference() {
     // RMSE of all that bounces bring, the paths' noise taken off.
     let mut off = |quality: &Quality| {
         let layers = drawn(&mut gpu, &scene, quality);
-        let is_bounced = |name: &str| name == "glossy" || name.starts_with("indirect.");
+        let is_bounced = |name: &str| name == "indirect.specular" || name.starts_with("indirect.");
         let mut squares = 0.0;
         for i in 0..SIDE * SIDE {
             let own = layers.iter().filter(|(name, _)| is_bounced(name)).map(|(_, v)| v[i][0]);

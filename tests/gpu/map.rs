@@ -56,7 +56,7 @@ fn maps_match_the_cpu_reference_to_the_bit() {
         has_voids: false,
         size: field,
         corner: [0.0; 2],
-        samples_per_pixel: 1.0,
+        grid_points_per_pixel: 1.0,
         swaps: false,
     };
     let grey = Map { has_colour: false, ..at_once };
@@ -64,11 +64,11 @@ fn maps_match_the_cpu_reference_to_the_bit() {
         has_voids: true,
         size: [61, 40],
         corner: [-3.25, 7.5],
-        samples_per_pixel: 0.37,
+        grid_points_per_pixel: 0.37,
         swaps: true,
         ..at_once
     };
-    let far = Map { size: [19, 30], corner: [5.0, -8.0], samples_per_pixel: 1.7, ..grey };
+    let far = Map { size: [19, 30], corner: [5.0, -8.0], grid_points_per_pixel: 1.7, ..grey };
     let voids: Vec<bool> = (0..37 * 23).map(|i| i % 11 == 3).collect();
     for (map, exposure) in [(at_once, 1.0), (grey, 0.0), (near, 3.7), (far, 1e-3)] {
         let tone = Tone { exposure };

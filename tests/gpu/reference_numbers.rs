@@ -18,7 +18,7 @@ use ridgelight::scene::{
     Receiver, Scene, Specular, SphereLight, Surface, Wedges,
 };
 use ridgelight_cpu::oracle::Oracle;
-use ridgelight_cpu::sh_visibility::{Series, seen_above};
+use ridgelight_cpu::sh_visibility::{Series, visibility_above};
 use serde_json::Value;
 
 use crate::{Device, field, random, under_sky};
@@ -307,7 +307,7 @@ fn values_of_harmonics() {
             };
             let lowest: Vec<_> = plan.expect("a plan").azimuths.iter().map(along).collect();
             let how = Series { order: 4, wedges: Wedges::Slices, receiver: Receiver::Cosine };
-            let seen = seen_above(how, &lowest);
+            let seen = visibility_above(how, &lowest);
             let lobe = zonal::phong(4, exponent.into());
             let terms: Vec<f64> = bands(4)
                 .enumerate()
@@ -315,7 +315,7 @@ fn values_of_harmonics() {
                     lobe[l] * (4.0 * PI / (2 * l + 1) as f64).sqrt() * values[i] * seen[i]
                 })
                 .collect();
-            let got = image(&mut gpu, &scene, &quality, "gloss_sum")[4 * 4];
+            let got = image(&mut gpu, &scene, &quality, "specular_sum")[4 * 4];
             let summed = terms.iter().map(|t| t.abs()).sum();
             let name = format!("sh_samples {theta} {phi}, exponent {exponent}");
             near(&name, &[got], &[terms.iter().sum::<f64>().max(0.0)], summed, NEAR);

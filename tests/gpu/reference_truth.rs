@@ -2,7 +2,7 @@
 
 use ridgelight::plan::{self, Plan};
 use ridgelight::scene::{Albedo, Border, Environment, Lights, Scene, Sun, Surface};
-use ridgelight_cpu::indirect::{Fineness, truth};
+use ridgelight_cpu::indirect::{Fineness, ground_truth as truth};
 
 use crate::scenes::{Agreement, scenes};
 use crate::{Device, field, under_sky};

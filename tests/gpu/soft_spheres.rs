@@ -117,7 +117,8 @@ fn free_light_is_its_series_in_closed_form() {
                 Wedges::Table => 0.0,
                 Wedges::Slices | Wedges::Nlp => uneven(&quality, radius, to, low),
             };
-            let bound = rule + reference_bound(&scene, &quality, 0, &reference_of(&scene).seen);
+            let bound =
+                rule + reference_bound(&scene, &quality, 0, &reference_of(&scene).visibility);
             assert!((got - want).abs() <= bound, "{place:?}, {radius}: {got} {want} {bound:e}");
             let all = (radius / to.length()).min(1.0).powi(2);
             assert!(bound < 0.02 * all, "{place:?}, {radius}: {bound:e} of {all}");
@@ -174,7 +175,7 @@ fn soft_spheres_at_the_extremes_match_the_cpu_reference() {
                         continue;
                     }
                     let want = reference.at(light, i / cols, i % cols);
-                    let bound = reference_bound(&scene, &quality, i, &want.seen);
+                    let bound = reference_bound(&scene, &quality, i, &want.visibility);
                     let light = want.light.max(0.0);
                     assert!(
                         (got - light).abs() <= bound,
@@ -289,7 +290,7 @@ fn wrong_harmonics_are_not_within_their_bound() {
         let right = SphereSh::new(Oracle::new(&land, Border::Plane), None, quality);
         let seen = found.iter().enumerate().filter(|(i, got)| {
             let bound =
-                reference_bound(&scene, &quality, *i, &right.at(&light, i / 11, i % 11).seen);
+                reference_bound(&scene, &quality, *i, &right.at(&light, i / 11, i % 11).visibility);
             (*got - reference.at(&light, i / 11, i % 11).light.max(0.0)).abs() > bound
         });
         let seen = seen.count();

@@ -40,7 +40,7 @@ fn level_ground_reflects_its_hemisphere() {
         let wanted = Picture { light_layers: true, ..Picture::default() };
         let plan = plan::picture(&scene, &sh(order), &gpu.limits(), wanted).expect("a plan");
         let all = gpu.draw(plan, &[scene.field.heights_m()]);
-        let own = all.iter().find(|p| p.name == "direct.glossy").expect("a layer");
+        let own = all.iter().find(|p| p.name == "direct.specular").expect("a layer");
         let n = order as usize;
         let bands = phong(n, exponent.into()).into_iter().zip(cap(n, FRAC_PI_2));
         let want = 0.25 * bands.map(|(l, c)| l * c).sum::<f64>();

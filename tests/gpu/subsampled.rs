@@ -147,7 +147,7 @@ fn memory_and_work_are_those_of_the_nodes() {
             assert_eq!(bytes("visibility"), nodes * 4 * 16);
             assert_eq!(plan.find("nodes").is_some(), stride > 1);
             let samples = |name: &str| -> u64 {
-                plan.passes.iter().filter(|p| p.name() == name).map(|p| p.samples).sum()
+                plan.passes.iter().filter(|p| p.name() == name).map(|p| p.texels).sum()
             };
             assert_eq!(samples("sh_visibility"), nodes * 16);
             assert_eq!(samples("sh_shade"), 13 * 9);

@@ -43,7 +43,7 @@ fn ground_shares(field: &HeightField, border: Border, count: u32) -> Vec<f64> {
     let (azimuths, lattices) = (azimuths.as_slice(), &lattices);
     let swept = Swept { heights, azimuths, lattices, fuse: None, line_shift: 15, warm_up };
     let white = vec![[1.0; 3]; field.heights_m().len()];
-    swept.per_sample(|col, row| bounce_walk(&swept, &white, col, row).radiance()[0])
+    swept.per_grid_point(|col, row| bounce_walk(&swept, &white, col, row).radiance()[0])
 }
 
 /// White ground under a white sky: each bounce adds, and the sum comes up to 1 from below. Sky and ground are found

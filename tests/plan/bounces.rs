@@ -77,7 +77,7 @@ fn bounces_at_nodes() {
         ];
         for (engine, name) in engines {
             let plan = drawn(&scene, &quality(engine, 3, stride), ROOMY);
-            let samples = plan.passes.iter().filter(|p| p.name() == name).map(|p| p.samples);
+            let samples = plan.passes.iter().filter(|p| p.name() == name).map(|p| p.texels);
             let walks_once = engine == BounceEngine::Sweep;
             let later = if walks_once { 0 } else { 2 * nodes(2 * stride) };
             assert_eq!(samples.sum::<u64>(), (nodes(stride) + later) * 8, "{name} {stride}");
@@ -90,7 +90,7 @@ fn bounces_at_nodes() {
             let has = |s: &(String, String)| *s == ("subsample".into(), stride.to_string());
             assert!(plan.settings.iter().any(has), "{:?}", plan.settings);
             if walks_once {
-                assert_eq!(bytes("casting_sets"), nodes(2 * stride) * 8 * 16);
+                assert_eq!(bytes("visibility_cache"), nodes(2 * stride) * 8 * 16);
             }
         }
     }
@@ -99,13 +99,13 @@ fn bounces_at_nodes() {
     let walks = Quality { bounces: Bounces { azimuths: 128, ..few.bounces }, ..few };
     let large = under_sky(flat(50, 70));
     let plan = drawn(&large, &walks, ROOMY);
-    let sets = plan.resources[plan.find("casting_sets").expect("kept").0].bytes();
+    let sets = plan.resources[plan.find("visibility_cache").expect("kept").0].bytes();
     let all: u64 = plan.resources.iter().map(plan::Resource::bytes).sum();
     // What is swept anew takes a little more than what was swept once.
     let tight = drawn(&large, &walks, all - sets + sets / 8);
-    assert!(tight.find("casting_sets").is_none() && count(&tight, "cache_gather") == 0);
+    assert!(tight.find("visibility_cache").is_none() && count(&tight, "cache_gather") == 0);
     let walked = |plan: &Plan| -> u64 {
-        plan.passes.iter().filter(|p| p.name() == "bounce_walk").map(|p| p.samples).sum()
+        plan.passes.iter().filter(|p| p.name() == "bounce_walk").map(|p| p.texels).sum()
     };
     let found = |stride: u32| {
         u64::from(49_u32.div_ceil(stride) + 1) * u64::from(69_u32.div_ceil(stride) + 1)
@@ -115,7 +115,7 @@ fn bounces_at_nodes() {
     assert!(tight.notes.iter().any(|n| n.contains("walks again")), "{:?}", tight.notes);
     // One bounce is not looked at again, and none is not found anywhere.
     let once = drawn(&scene, &quality(BounceEngine::Sweep, 1, 2), ROOMY);
-    assert!(once.find("casting_sets").is_none() && once.find("node_sum").is_some());
+    assert!(once.find("visibility_cache").is_none() && once.find("node_sum").is_some());
     let none = drawn(&scene, &quality(BounceEngine::Sweep, 0, 2), ROOMY);
     assert!(none.find("node_sum").is_none() && none.find("ground").is_none());
 }

@@ -42,7 +42,7 @@ fn each_bounce_is_thrown_once() {
             "specular_exit direct",
             "specular_exit bounce1",
             "specular_exit bounce2",
-            "light_resolve bounces glossy",
+            "light_resolve bounces specular",
         ] {
             assert!(has(&plan, label), "{label}");
         }
@@ -53,7 +53,7 @@ fn each_bounce_is_thrown_once() {
         assert_eq!(missing_barriers(&plan.passes), vec![]);
         assert!(plan.settings.contains(&("bounce_specular".into(), gloss.name().into())));
         let outputs: Vec<&str> = plan.outputs().map(|(_, r)| r.name.as_str()).collect();
-        assert_eq!(outputs[outputs.len() - 3..], ["indirect.1", "indirect.2", "glossy"]);
+        assert_eq!(outputs[outputs.len() - 3..], ["indirect.1", "indirect.2", "indirect.specular"]);
     }
 }
 
@@ -81,6 +81,6 @@ fn vectors_take_what_the_plan_says() {
     assert!((there - 2.0 * here).abs() <= 0.2, "{note}");
     let of_images = vectors(&half) as f64 / 1_048_576.0;
     assert!(here <= of_images + 0.1 && here > 0.98 * of_images, "{note}: {of_images}");
-    let scalar = bytes(&planned(BounceSpecular::Scalar, 4), &["exit_seen", "shade_levels"]);
+    let scalar = bytes(&planned(BounceSpecular::Scalar, 4), &["exit_upward", "shade_levels"]);
     assert!(scalar < vectors(&half) / 2, "{scalar}");
 }

@@ -22,7 +22,7 @@ fn layers(plan: &Plan) -> Vec<u32> {
     plan.outputs().map(|(_, r)| extent(r.kind)).collect()
 }
 
-/// Two directions a word up to 255 samples a side, else one; odd numbers of them fill half a word.
+/// Two directions a word up to 255 grid points a side, else one; odd numbers of them fill half a word.
 #[test]
 fn points_take_what_they_say() {
     let limits = Limits::lavapipe();
@@ -248,8 +248,8 @@ fn what_carries_no_light_is_not_scattered() {
     let slope = HeightField::new(4, 4, &slope, [1.0; 2], None).expect("a field");
     for (scene, why) in [
         (grey(0.0, pitted(5, 5)), "reflects nothing"),
-        (grey(0.7, flat(5, 5)), "no place sees another"),
-        (grey(0.7, slope), "no place sees another"),
+        (grey(0.7, flat(5, 5)), "no ground is visible from other ground"),
+        (grey(0.7, slope), "no ground is visible from other ground"),
     ] {
         let plan = of(&scene, Scatter::default());
         assert_eq!(parts(&plan), (1, vec!["scatter_gather"]));

@@ -3,7 +3,7 @@
 use std::f64::consts::{SQRT_2, TAU};
 
 use ridgelight::scene::{Albedo, Border, Environment, HeightField, Lights, Scene, Surface};
-use ridgelight_cpu::indirect::{Fineness, Truth};
+use ridgelight_cpu::indirect::{Fineness, GroundTruth};
 
 /// How finely the page's quadrature is cut, before it is doubled.
 pub const FINENESS: Fineness = Fineness { azimuths: 24, divisions: 1, strips: 12 };
@@ -20,7 +20,13 @@ pub fn light_names(scene: &Scene) -> [&'static str; 3] {
 }
 
 /// The row of a scene as far as the quadrature goes: its mean, and the mean of its stated error.
-pub fn head(name: &str, bounces: usize, light: &str, truth: &Truth, channel: usize) -> String {
+pub fn head(
+    name: &str,
+    bounces: usize,
+    light: &str,
+    truth: &GroundTruth,
+    channel: usize,
+) -> String {
     let count = truth.radiance[bounces].len();
     let mean =
         |picture: &[[f64; 3]]| picture.iter().map(|v| v[channel]).sum::<f64>() / count as f64;

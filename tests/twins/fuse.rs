@@ -105,7 +105,7 @@ fn on_axes_and_diagonals_every_mode_is_the_march() {
                     swept.azimuths.iter().flat_map(|a| samples(&rough).map(move |s| (a, s)))
                 {
                     let march = March::new(swept.heights, azimuth);
-                    let (lane, step) = march.of_sample(col, row);
+                    let (lane, step) = march.of_grid_point(col, row);
                     let at = |l: &Lattices| {
                         let l = l.of(azimuth);
                         l.slopes[l.texel(lane, march.march_position(step), azimuth.layer)]
@@ -186,7 +186,7 @@ fn a_ridge_between_steps_is_met() {
         for azimuth in swept.azimuths {
             let march = March::new(swept.heights, azimuth);
             for (col, row) in samples(&roof) {
-                let (lane, step) = march.of_sample(col, row);
+                let (lane, step) = march.of_grid_point(col, row);
                 let options = MarchOptions { all_crossings: true, warm_up: 0 };
                 let truth = march_of(&march, lane, step, options).slope;
                 let found = swept.found(azimuth, col, row).slope;
@@ -219,7 +219,7 @@ fn the_lines_beside_a_sample_are_the_nearest_there_are() {
                     swept.azimuths.iter().flat_map(|a| samples(&rough).map(move |s| (a, s)))
                 {
                     let march = March::new(swept.heights, azimuth);
-                    let (lane, step) = march.of_sample(col, row);
+                    let (lane, step) = march.of_grid_point(col, row);
                     let lattice = swept.lattices.of(azimuth);
                     let total = step + warm_up_of(swept.warm_up, azimuth);
                     let (y, spacing, period) = (lane * CELL, 1 << line_shift, march.lanes * CELL);
@@ -312,7 +312,7 @@ fn a_ramp_has_its_slope_up_to_the_edge() {
                 let near = (f64::from(found) - slope).abs()
                     <= 2.0 * sweep_slope(largest, azimuth.step_m.into());
                 let march = March::new(swept.heights, azimuth);
-                let (lane, step) = march.of_sample(col, row);
+                let (lane, step) = march.of_grid_point(col, row);
                 let stays = step > 0 && (lane > 0 || azimuth.shear == 0);
                 if aims(fuse) {
                     assert_eq!(near, stays, "{fuse:?} ({row}, {col}) {azimuth:?} {found}");

@@ -19,7 +19,7 @@ fn check(field: &HeightField, border: Border, count: u32) -> Result<(), String> 
         let tolerance = march_slope(relief, azimuth.step_m.into());
         let reach = (border == Border::Periodic).then(|| warm_up_of(warm_up, azimuth));
         for (row, col) in (0..field.rows()).flat_map(|r| (0..field.cols()).map(move |c| (r, c))) {
-            let (lane, step) = march.of_sample(col as i32, row as i32);
+            let (lane, step) = march.of_grid_point(col as i32, row as i32);
             let texel = lattice.texel(lane, march.march_position(step), azimuth.layer);
             let found = (lattice.slopes[texel], lattice.distances[texel]);
             check_exact(&oracle, (row, col), azimuth, found, tolerance, reach)?;
@@ -77,7 +77,7 @@ fn a_fractal_field_within_a_ten_thousandth_of_a_degree() {
             ridgelight_cpu::shared::sweep::March::new(Heights::of(&rough, Border::Plane), azimuth);
         for i in (0..1600).step_by(3) {
             let (row, col) = (i / 40, i % 40);
-            let (lane, step) = march.of_sample(col as i32, row as i32);
+            let (lane, step) = march.of_grid_point(col as i32, row as i32);
             let lattice = lattices.of(azimuth);
             let slope =
                 lattice.slopes[lattice.texel(lane, march.march_position(step), azimuth.layer)];

@@ -28,7 +28,7 @@ fn resweep(
     let mut lattices = swept(before, Border::Plane, &mut azimuths, [0; 2], options);
     let mut whole = lattices.clone();
     let mut dirty = dirty_mark([before.cols(), before.rows()], rectangle);
-    let heights = Heights { samples: after, ..Heights::of(before, Border::Plane) };
+    let heights = Heights { heights_m: after, ..Heights::of(before, Border::Plane) };
     let mut count = 0;
     for azimuth in &azimuths {
         horizon_sweep(heights, azimuth, &options, whole.of_mut(azimuth));

@@ -43,7 +43,7 @@ fn check(
         let reach = (border == Border::Periodic).then(|| warm_up_of(warm_up, azimuth));
         for i in (0..field.rows() * field.cols()).step_by(stride) {
             let (row, col) = (i / field.cols(), i % field.cols());
-            let (lane, step) = march.of_sample(col as i32, row as i32);
+            let (lane, step) = march.of_grid_point(col as i32, row as i32);
             let texel = lattice.texel(lane, march.march_position(step), azimuth.layer);
             let found = (lattice.slopes[texel], lattice.distances[texel]);
             check_exact(&oracle, (row, col), azimuth, found, tolerance, reach)?;

@@ -37,7 +37,7 @@ fn with_swept<T>(
 /// at every step of its own line.
 fn share_of_ground(swept: &Swept, azimuth: &Azimuth, col: i32, row: i32) -> f64 {
     let march = March::new(swept.heights, azimuth);
-    let (lane, step) = march.of_sample(col, row);
+    let (lane, step) = march.of_grid_point(col, row);
     let own = swept.heights.at(col, row);
     let gradient = field_slope(&swept.heights, col, row);
     let plane = gradient.dot(DVec2::new(azimuth.cos_phi.into(), azimuth.sin_phi.into())) as f32;
@@ -104,7 +104,7 @@ fn relative(got: &[f64], want: &[f64]) -> f64 {
 fn walks(field: &HeightField, border: Border, azimuths: u32, exit: &[[f32; 3]]) -> Vec<Walked> {
     let mut azimuths = even(azimuths, field.cell_m());
     with_swept(field, border, &mut azimuths, |swept| {
-        swept.per_sample(|col, row| bounce_walk(swept, exit, col, row))
+        swept.per_grid_point(|col, row| bounce_walk(swept, exit, col, row))
     })
 }
 

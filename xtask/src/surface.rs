@@ -1,4 +1,4 @@
-//! Public items of the core: a listing that is kept, so that a change of it is seen in review.
+//! Public items of the core: a listing that is kept, so that a review shows a change of it.
 
 use std::path::Path;
 

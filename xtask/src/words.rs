@@ -5,17 +5,23 @@ use std::process::Command;
 
 use crate::source::{Outcome, read};
 
-/// One line of tools/words.txt: a pattern, what to write instead, and a pattern of lines in which it is right.
+/// One line of tools/words.txt: a pattern, what to write instead, a pattern of lines in which it is right, and the
+/// paths that it leaves out: those of the lines above it that begin with `!`.
 struct Rule {
     pattern: String,
     instead: String,
     allowed: Option<String>,
+    left_out: Vec<String>,
 }
 
 fn rules(text: &str) -> Result<Vec<Rule>, String> {
-    let mut all = Vec::new();
+    let (mut all, mut left_out) = (Vec::new(), Vec::new());
     for (number, line) in text.lines().enumerate() {
-        if line.is_empty() || line.starts_with(['#', '!']) {
+        if let Some(path) = line.strip_prefix('!') {
+            left_out.push(format!(":!{}", path.trim()));
+            continue;
+        }
+        if line.is_empty() || line.starts_with('#') {
             continue;
         }
         let parts: Vec<&str> = line.split('\t').map(str::trim).collect();
@@ -29,15 +35,14 @@ fn rules(text: &str) -> Result<Vec<Rule>, String> {
             }
         };
         let allowed = parts.get(2).map(|text| (*text).to_owned());
-        all.push(Rule { pattern: (*pattern).to_owned(), instead: (*instead).to_owned(), allowed });
+        all.push(Rule {
+            pattern: (*pattern).to_owned(),
+            instead: (*instead).to_owned(),
+            allowed,
+            left_out: left_out.clone(),
+        });
     }
     Ok(all)
-}
-
-/// Paths that the list leaves out: lines that begin with `!`.
-fn left_out(text: &str) -> Vec<String> {
-    let paths = text.lines().filter_map(|line| line.strip_prefix('!'));
-    paths.map(|path| format!(":!{}", path.trim())).collect()
 }
 
 /// Lines of the tracked files that match a Perl pattern, CHANGELOG.md and the table of old names aside.
@@ -69,23 +74,22 @@ fn grep(root: &Path, pattern: &str, left_out: &[String]) -> Result<Vec<String>, 
 /// Fails with each place where a word is not allowed.
 pub fn check(root: &Path) -> Outcome {
     let text = read(&root.join("tools/words.txt"))?;
-    let (rules, left_out) = (rules(&text)?, left_out(&text));
+    let rules = rules(&text)?;
     let mut wrong = String::new();
     let mut count = 0;
     for rule in &rules {
         let allowed = match &rule.allowed {
-            Some(allowed) => grep(root, allowed, &left_out)?,
+            Some(allowed) => grep(root, allowed, &rule.left_out)?,
             None => Vec::new(),
         };
-        for line in
-            grep(root, &rule.pattern, &left_out)?.iter().filter(|line| !allowed.contains(line))
-        {
+        let found = grep(root, &rule.pattern, &rule.left_out)?;
+        for line in found.iter().filter(|line| !allowed.contains(line)) {
             count += 1;
             wrong.push_str(&format!("{line}\n    write: {}\n", rule.instead));
         }
     }
     if count == 0 {
-        let paths = left_out.len();
+        let paths = rules.last().map_or(0, |rule| rule.left_out.len());
         return Ok(format!("words: none of {} patterns; {paths} paths left out\n", rules.len()));
     }
     Err(format!("{wrong}words: {count} places"))
@@ -101,5 +105,12 @@ mod tests {
         assert_eq!((all.len(), all[0].instead.as_str()), (2, "sphere light"));
         assert_eq!(all[1].allowed.as_deref(), Some("off by one"));
         assert!(rules("alone").is_err());
+    }
+
+    #[test]
+    fn a_path_is_left_out_of_the_rules_below_it() {
+        let all = rules("!old\nlamp\tsphere light\n!tests\nstretch\tinterval\n").unwrap();
+        assert_eq!(all[0].left_out, [":!old"]);
+        assert_eq!(all[1].left_out, [":!old", ":!tests"]);
     }
 }

@@ -296,7 +296,12 @@ pub static POINTS: [Encoding; 1] = [Encoding {
         }
     },
     decoding: "row = round(65535 r) - 2, column = round(65535 g) - 2",
-    bounds: &[Bound { of: "row and column", unit: "samples", half_steps: 0.0, error: farthest }],
+    bounds: &[Bound {
+        of: "row and column",
+        unit: "grid points",
+        half_steps: 0.0,
+        error: farthest,
+    }],
 }];
 
 const COLOUR: Encoding = Encoding {

@@ -1,7 +1,7 @@
 //! A height field as flat triangles, and the visibility of each triangle from a set of directions.
 //!
 //! In the far field a periodic height field is a plane. A light of irradiance 1 facing it, from l,
-//! gives the plane l_z; seen from v, each part of the plane's area A fills A v_z of the view. An
+//! gives the plane l_z; from v, each part of the plane's area A fills A v_z of the view. An
 //! area dx of the plan has the area dx / n_z on the slope. It fills (n·v)⁺ dx / n_z of the view
 //! where V(x, v) = 1, that is where nothing occludes it from v. Every view ray hits the surface, so
 //! ∫ V (n·v)⁺ / n_z dx = A v_z. The radiance of a view is the mean over the visible surface,

@@ -25,7 +25,7 @@ pub unsafe extern "C" fn ridgelight_fill_voids(
         }
         if !(1..=1 << 30).contains(&(u64::from(rows) * u64::from(cols))) {
             let found = format!("{rows} x {cols}");
-            let expected = "at least one sample, at most 2^30";
+            let expected = "at least one grid point, at most 2^30";
             return Err(Failure::argument("rows and cols", found, expected));
         }
         let size = [rows as usize, cols as usize];

@@ -49,7 +49,7 @@ pub fn run(args: &BakeArgs) -> Result<Outcome> {
     let quality = request::quality(args)?;
     let field = setup::field(&args.input.path, &args.surface.field, &args.global)?;
     let scene = setup::scene(field, &args.surface, &args.lights)?;
-    let (border, samples) = (scene.surface.border, scene.field.heights_m().len());
+    let (border, grid_points) = (scene.surface.border, scene.field.heights_m().len());
     let (directions, angles) = (request::directions(args)?, request::angles(args)?);
     let has_specular =
         scene.surface.specular.as_ref().is_some_and(|specular| specular.largest().scale > 0.0);
@@ -65,7 +65,7 @@ pub fn run(args: &BakeArgs) -> Result<Outcome> {
             encoding,
             has_texels: w.formats.contains(&Format::Ktx2),
             has_specular,
-            samples,
+            grid_points,
         })
     });
     let making = making.collect::<Result<Vec<_>>>()?;

@@ -21,7 +21,7 @@ pub fn run(args: &PlanArgs) -> Result<Outcome> {
     let camera_view = camera::requested(&args.camera, &scene)?;
     let (name, limits) = limits(&args.global)?;
     let plan = plan::picture(&scene, &quality, &limits, setup::wanted(&[]))?;
-    let seen = match &camera_view {
+    let view = match &camera_view {
         Some(camera_view) => {
             let mut view = camera_view.view(&scene, &plan, &limits)?;
             view.settings = camera_view.settings(&view, &scene.field);
@@ -35,15 +35,15 @@ pub fn run(args: &PlanArgs) -> Result<Outcome> {
         PlanFormat::Text => {
             crate::say!("Plan for {name}");
             crate::say!("{}", plan.to_string().trim_end());
-            if let Some(view) = &seen {
+            if let Some(view) = &view {
                 crate::say!("\n{}", view.to_string().trim_end());
             }
         }
-        PlanFormat::Json => crate::say!("{:#}", json(&plan, seen.as_ref())),
-        PlanFormat::Dot => crate::say!("{}", dot(&plan, seen.as_ref()).trim_end()),
+        PlanFormat::Json => crate::say!("{:#}", json(&plan, view.as_ref())),
+        PlanFormat::Dot => crate::say!("{}", dot(&plan, view.as_ref()).trim_end()),
     }
     if let Some(path) = &args.global.json {
-        ridgelight_io::write_json(path, &json(&plan, seen.as_ref()))?;
+        ridgelight_io::write_json(path, &json(&plan, view.as_ref()))?;
     }
     Ok(Outcome::Done)
 }
@@ -126,7 +126,7 @@ pub fn limits(global: &GlobalArgs) -> Result<(String, Limits)> {
     Ok((name, limits))
 }
 
-fn json(plan: &Plan, seen: Option<&View>) -> serde_json::Value {
+fn json(plan: &Plan, view: Option<&View>) -> serde_json::Value {
     let name = |id: &plan::ResourceId| plan.resources[id.0].name.clone();
     let mut passes: Vec<_> = plan
         .passes
@@ -134,7 +134,7 @@ fn json(plan: &Plan, seen: Option<&View>) -> serde_json::Value {
         .map(|p| {
             serde_json::json!({
                 "pass": p.name(), "part": p.part, "why": p.why, "groups": p.groups, "bytes": p.bytes,
-                "samples": p.samples, "barrier_before": p.barrier_before,
+                "texels": p.texels, "barrier_before": p.barrier_before,
                 "reads": p.reads().map(|r| name(&r)).collect::<Vec<_>>(),
                 "writes": p.writes().map(|r| name(&r)).collect::<Vec<_>>(),
             })
@@ -148,12 +148,12 @@ fn json(plan: &Plan, seen: Option<&View>) -> serde_json::Value {
         .collect();
     let (mut settings, mut notes) = (plan.settings.clone(), plan.notes.clone());
     let mut bytes = plan.bytes();
-    if let Some(view) = seen {
+    if let Some(view) = view {
         // Each waits for the one before: they draw into the same images.
         passes.extend(view.passes(false).into_iter().map(|d| {
             serde_json::json!({
                 "pass": d.pass, "part": "", "why": d.why, "vertices": d.vertices, "bytes": d.bytes,
-                "samples": u64::from(view.size[0]) * u64::from(view.size[1]), "barrier_before": true,
+                "texels": u64::from(view.size[0]) * u64::from(view.size[1]), "barrier_before": true,
                 "reads": d.reads, "writes": d.writes,
             })
         }));
@@ -171,7 +171,7 @@ fn json(plan: &Plan, seen: Option<&View>) -> serde_json::Value {
     })
 }
 
-fn dot(plan: &Plan, seen: Option<&View>) -> String {
+fn dot(plan: &Plan, view: Option<&View>) -> String {
     let mut text =
         String::from("digraph plan {\n  rankdir=LR;\n  node [fontname=\"sans-serif\"];\n");
     for (i, resource) in plan.resources.iter().enumerate() {
@@ -186,7 +186,7 @@ fn dot(plan: &Plan, seen: Option<&View>) -> String {
             text += &format!("  p{i} -> r{};\n", w.0);
         }
     }
-    let Some(view) = seen else { return text + "}\n" };
+    let Some(view) = view else { return text + "}\n" };
     let mut names: Vec<&str> = plan.resources.iter().map(|r| r.name.as_str()).collect();
     for drawn in view.memory(false) {
         text += &format!("  r{} [label=\"{}\", shape=box];\n", names.len(), drawn.name);

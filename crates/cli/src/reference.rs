@@ -17,7 +17,7 @@ use crate::setup::{self, Outcome};
 const LEAST_BATCHES: u32 = 8;
 
 /// Batches between two estimates of the error.
-const BATCHES_A_LOOK: u32 = 4;
+const BATCHES_A_CHECK: u32 = 4;
 
 /// Whether a signal ends the tracing instead of the program.
 static IS_TRACING: AtomicBool = AtomicBool::new(false);
@@ -133,9 +133,9 @@ fn trace(
     let mut batches = 1;
     loop {
         let interrupted = WAS_INTERRUPTED.load(Ordering::SeqCst);
-        let looks = batches % BATCHES_A_LOOK == 0 && batches >= LEAST_BATCHES;
+        let is_due = batches % BATCHES_A_CHECK == 0 && batches >= LEAST_BATCHES;
         // At least two batches: one has no error estimate.
-        if batches >= 2 && (batches >= wanted || interrupted || looks) {
+        if batches >= 2 && (batches >= wanted || interrupted || is_due) {
             let [radiance, standard_error] = [picture(gpu, frame, 0)?, picture(gpu, frame, 1)?];
             let (mean, error) = mean_and_error(scene, &radiance, &standard_error)?;
             let unsampled =

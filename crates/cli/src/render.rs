@@ -92,20 +92,25 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
     let contents = plan::picture_inputs(&scene);
     let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
     let outputs = plan.outputs().count();
-    let (times, pixels, seen, mut metadata) = gpu.with_frame(plan, &contents, |gpu, frame| {
-        let mut times = gpu.draw(frame)?;
-        let pixels: Vec<Pixels> =
-            (0..outputs).map(|output| gpu.pixels(frame, output)).collect::<Result<_>>()?;
-        pixels.iter().try_for_each(|p| check_finite(p, &scene.field))?;
-        let look = |view| gpu.look(frame, view, scene.field.voids());
-        let seen = view.as_ref().map(look).transpose()?;
-        times.extend(seen.iter().flat_map(|seen| seen.timings.iter().cloned()));
-        let mut metadata = setup::metadata(gpu, &scene.field, frame.plan(), &times);
-        if let Some(share) = gpu.negative_share(frame)? {
-            metadata.push(("negative_share".to_owned(), share.to_string()));
-        }
-        Ok((times, pixels, seen, metadata))
-    })?;
+    let (times, pixels, camera_pixels, mut metadata) =
+        gpu.with_frame(plan, &contents, |gpu, frame| {
+            let mut times = gpu.draw(frame)?;
+            let pixels: Vec<Pixels> =
+                (0..outputs).map(|output| gpu.pixels(frame, output)).collect::<Result<_>>()?;
+            pixels.iter().try_for_each(|p| check_finite(p, &scene.field))?;
+            let look = |view| gpu.look(frame, view, scene.field.voids());
+            let camera_pixels = view.as_ref().map(look).transpose()?;
+            times.extend(
+                camera_pixels
+                    .iter()
+                    .flat_map(|camera_pixels| camera_pixels.timings.iter().cloned()),
+            );
+            let mut metadata = setup::metadata(gpu, &scene.field, frame.plan(), &times);
+            if let Some(share) = gpu.negative_share(frame)? {
+                metadata.push(("negative_share".to_owned(), share.to_string()));
+            }
+            Ok((times, pixels, camera_pixels, metadata))
+        })?;
     metadata.extend(setup::asked(
         &args.input.path,
         &args.surface.field,
@@ -121,8 +126,8 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
         if horizon { Some(mean_horizon(&mut gpu, &scene, &quality, &limits)?) } else { None };
     progress.finish_and_clear();
     let (rows, cols) = (scene.field.rows(), scene.field.cols());
-    if let (Some(camera_view), Some(seen)) = (&camera_view, &seen) {
-        camera::write(args, camera_view, seen, &metadata)?;
+    if let (Some(camera_view), Some(camera_pixels)) = (&camera_view, &camera_pixels) {
+        camera::write(args, camera_view, camera_pixels, &metadata)?;
     } else if is_exr {
         write_exr(args, &scene.field, &pixels, mean_horizon.as_deref(), &metadata)?;
     } else {

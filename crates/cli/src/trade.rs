@@ -69,17 +69,17 @@ pub fn run(args: &TradeArgs) -> Result<Outcome> {
             "an .exr: other formats clip bright values",
         ));
     }
-    let mut asked = setup::asked(
+    let mut scene_metadata = setup::asked(
         &args.input.path,
         &args.surface.field,
         Some((&args.lights, &args.surface, &scene)),
     );
     if args.bounces > 0 {
-        asked.push(("bounces".to_owned(), args.bounces.to_string()));
+        scene_metadata.push(("bounces".to_owned(), args.bounces.to_string()));
     }
     let read = |path: &Path| {
         let ground_truth = GroundTruth::read(path, &scene.field)?;
-        same::check(path, &scene, &asked).map(|()| ground_truth)
+        same::check(path, &scene, &scene_metadata).map(|()| ground_truth)
     };
     let given = args.reference.as_deref().map(read).transpose()?;
     let (gpu, limits) = setup::device(&args.global)?;
@@ -123,7 +123,7 @@ pub fn run(args: &TradeArgs) -> Result<Outcome> {
         ("cols".to_owned(), scene.field.cols().to_string()),
         ("cell_m".to_owned(), format!("{},{}", scene.field.cell_m()[0], scene.field.cell_m()[1])),
     ];
-    about.extend(asked);
+    about.extend(scene_metadata);
     let report = Report {
         about,
         ground_truth: &ground_truth,

@@ -22,7 +22,7 @@ pub use bounce::{BounceError, CastError, Gathered, Land, Slices, march_error, wa
 pub use light::{ShadeError, SphereGeometry};
 pub use points::{
     MET_SHARE, crossing_elevation, ellipse_moment, ellipse_reach, ellipse_start, facet_elevation,
-    gathered, seen_elevation,
+    gathered, visible_elevation,
 };
 pub use specular::{
     device_arriving, device_specular_exit, device_specular_visibility, device_sun_arriving,
@@ -45,7 +45,7 @@ pub fn march_slope(relief_m: f64, step_m: f64) -> f64 {
 /// Slope of a line of `horizon_sweep`, against all steps of the line.
 ///
 /// A height of the line errs by 5 ε H (difference 2, product 2, sum 1), the rise between two by
-/// 2 · 5 + 2, seen one step away or more: 12 ε H / s; its quotient by 3 roundings of 2 H / s. Which of two
+/// 2 · 5 + 2, from one step away or more: 12 ε H / s; its quotient by 3 roundings of 2 H / s. Which of two
 /// is higher is decided by products with 2 roundings a side of 2 H: 8 ε H / s. Heights take part twice,
 /// chosen and missed: (2 · 12 + 6 + 8) ε H / s. A vertex popped in error may pop another in error; each
 /// has its own place in the line, and no test shows them adding up.
@@ -55,7 +55,7 @@ pub fn sweep_slope(largest_m: f64, step_m: f64) -> f64 {
 
 /// Slope of `surface_sweep`.
 ///
-/// What was found is then seen as by a march: [`march_slope`] with R ≤ 2 H, 76 ε H / s. Which of two
+/// What was found then errs as by a march: [`march_slope`] with R ≤ 2 H, 76 ε H / s. Which of two
 /// crossings is higher is decided from heights that err by 22 ε H each (as a march's rise, with `own` 0,
 /// differences of 2 H, and f in error by 4 ε: 1 + 6 + 12 + 3), the grid point's own by 0, and by products with 2
 /// roundings a side of 2 H: (2 · 22 + 8) ε H / (s/2) = 104 ε H / s.
@@ -120,7 +120,7 @@ pub fn device_march_slope(relief_m: f64, step_m: f64) -> f64 {
 ///
 /// Each errs as [`surface_slope`]; a device besides by its quotients: f0 = k / march has an error of 5 ε, so a
 /// crossing (1 - f0) / shear by 5 ε march / lane of a step, across which the surface rises by 2 H at
-/// most, seen s/2 away, at what is chosen and at what is missed; likewise by the crossing's own 5 ε.
+/// most, from s/2 away, at what is chosen and at what is missed; likewise by the crossing's own 5 ε.
 pub fn device_surface_slope(largest_m: f64, step_m: f64, [march, lane]: [i32; 2]) -> f64 {
     let shallow = if lane == 0 { 0.0 } else { f64::from(march) / f64::from(lane) };
     2.0 * surface_slope(largest_m, step_m) + 40.0 * (1.0 + shallow) * EPSILON * largest_m / step_m
@@ -163,7 +163,7 @@ pub fn device_spline(largest_m: f64) -> f64 {
 
 /// Slope of `pyramid_march` on a plane, where every level is the plane itself, against ground truth.
 ///
-/// After j octaves of reductions, 18 ε H each, and a spline, 40 ε H, an end errs by (18 j + 40) ε H, seen
+/// After j octaves of reductions, 18 ε H each, and a spline, 40 ε H, an end errs by (18 j + 40) ε H, from
 /// 2^j steps away or more: 58 ε H at most, at j = 1. A place errs by 2 ε of the whole side along either
 /// axis, across which a plane rises by 2 H: 8 ε H. Two ends; product and quotient 6 ε of a slope of 2 H / s.
 pub fn pyramid_plane_slope(largest_m: f64, step_m: f64) -> f64 {
@@ -197,7 +197,7 @@ pub fn device_pyramid_slope(slope: f64, largest_m: f64, relief_m: f64, step_m: f
 /// against its CPU references from the same heights, radians.
 ///
 /// Weights of a reduction and of a spline are positive and sum to 1, so that what a level errs by is passed on,
-/// no more: after j octaves j [`device_level`], at two ends, seen 2^(j-1) steps away or more: j / 2^(j-1) ≤ 1.
+/// no more: after j octaves j [`device_level`], at two ends, from 2^(j-1) steps away or more: j / 2^(j-1) ≤ 1.
 /// The rest of a rise as in [`device_pyramid_slope`]. No slope is steeper than R / s: arc tangents, in
 /// proportion below slope 1 (A&S 4.4.49 bounds the error of atan(x) / x), a spline's 12 ε and the CPU reference's 4 ε,
 /// then [`pyramid_angle`] on the way to a slope and back, all on both sides.
@@ -275,7 +275,7 @@ pub fn device_sh_specular(order: usize, normal_error: f64) -> f64 {
 ///
 /// The lobe is (n + 1)/2π at most and changes by √(n/e) of that a radian; its direction turns by twice the
 /// normal's error, and the difference of two directions, the sun's rounded to f32, by 6 ε. Its power errs by
-/// 40 ε: n m e^(-n m) ≤ 1/e of a series' and quotients' 10 ε, and `exp` by 2^-22 and less. The part that is seen
+/// 40 ε: n m e^(-n m) ≤ 1/e of a series' and quotients' 10 ε, and `exp` by 2^-22 and less. The part that is visible
 /// is a quotient by a cosine that errs as the normal does and by 6 ε: at most 1, of which that is the share.
 pub fn device_sun_specular(exponent: f64, normal_error: f64, facing: f64) -> f64 {
     let peak = (exponent + 1.0) / (2.0 * PI);

@@ -109,7 +109,7 @@ impl<'a> ExrFile<'a> {
             })
             .map_err(wrong)?
             .sequential_decompressor(false);
-        let mut seen = HashSet::new();
+        let mut found = HashSet::new();
         let mut filled = 0;
         while let Some(block) = blocks.decompress_next_block() {
             let block = block.map_err(wrong)?;
@@ -117,7 +117,7 @@ impl<'a> ExrFile<'a> {
             if !parts.contains(&at.layer) || at.level != Vec2(0, 0) {
                 continue;
             }
-            if !seen.insert((at.layer, at.pixel_position.0, at.pixel_position.1)) {
+            if !found.insert((at.layer, at.pixel_position.0, at.pixel_position.1)) {
                 let found = format!("the block at row {} twice", at.pixel_position.1);
                 return Err(Error::file(path, "image data", found, "every block once"));
             }

@@ -48,8 +48,8 @@ pub fn write_visible_points(path: &Path, points: &VisiblePoints) -> Result<()> {
         for row in 0..rows {
             row_bytes.clear();
             for col in 0..cols {
-                let pair = match points.seen(direction, row * cols + col) {
-                    VisiblePoint::Sample(at) => [at / cols, at % cols].map(|n| n as u16),
+                let pair = match points.point(direction, row * cols + col) {
+                    VisiblePoint::GridPoint(at) => [at / cols, at % cols].map(|n| n as u16),
                     VisiblePoint::Sky => [u16::MAX; 2],
                     VisiblePoint::Ground => [u16::MAX, u16::MAX - 1],
                 };
@@ -139,12 +139,12 @@ pub fn read_visible_points(
             [r, c] if r == largest && c == largest => VisiblePoint::Sky,
             [r, c] if r == largest && c == largest - 1.0 => VisiblePoint::Ground,
             [r, c] if r < rows as f64 && c < cols as f64 => {
-                VisiblePoint::Sample(r as usize * cols + c as usize)
+                VisiblePoint::GridPoint(r as usize * cols + c as usize)
             }
             [r, c] => {
                 let place = format!("{inside}point {}", points.len());
                 let expected = format!(
-                    "a sample of {cols} × {rows}, or the row {largest} with the column {largest} or one less"
+                    "a grid point of {cols} × {rows}, or the row {largest} with the column {largest} or one less"
                 );
                 return Err(Error::file(path, place, format!("row {r}, column {c}"), expected));
             }

@@ -206,7 +206,7 @@ impl Pairs {
             return Err(Error::setting(
                 "comparison",
                 format!("{} masked, {} mismatched", pairs.masked, pairs.mismatched),
-                "at least one sample with data on both sides",
+                "at least one texel with data on both sides",
             ));
         }
         Ok(pairs)

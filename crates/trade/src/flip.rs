@@ -63,8 +63,8 @@ pub fn map(
                     let next = bands.lock().ok().and_then(|mut bands| bands.next());
                     let Some((i, band)) = next else { return };
                     let rows = (i * BAND, band.len() / cols);
-                    let a = eye.looks_at(result, &voids, cols, rows);
-                    let b = eye.looks_at(reference, &voids, cols, rows);
+                    let a = eye.filtered(result, &voids, cols, rows);
+                    let b = eye.filtered(reference, &voids, cols, rows);
                     for (error, (a, b)) in band.iter_mut().zip(a.iter().zip(&b)) {
                         *error = eye.difference(a, b) as f32;
                     }
@@ -272,7 +272,7 @@ mod tests {
         assert!(FlipError::of(&[f32::NAN; 4], 2).is_err());
     }
 
-    /// A pixel-wide checkerboard against its mean grey: plain at 10 pixels a degree, hardly seen
+    /// A pixel-wide checkerboard against its mean grey: plain at 10 pixels a degree, hardly visible
     /// at 200.
     #[test]
     fn smaller_pixels_have_smaller_errors() {

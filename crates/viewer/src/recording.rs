@@ -116,8 +116,8 @@ impl Screen {
                 }
                 Work::Edit(at) => renderer.record_edit(commands, slot, &inputs, &outputs, at)?,
             }
-            let seen = (&*pane.frame, pane.viewpoint, options.tone.exposure);
-            self.drawers[n].record(&self.gpu, commands, slot, seen)?;
+            let shown = (&*pane.frame, pane.viewpoint, options.tone.exposure);
+            self.drawers[n].record(&self.gpu, commands, slot, shown)?;
         }
         self.fill(slot, image, panes, options);
         // SAFETY: recording was begun above.
@@ -298,12 +298,12 @@ fn check(pane: &Pane<'_>, size: [u32; 2], swaps: bool) -> Result<()> {
         let within = |first: u32, count: u32, all: u32| {
             first.checked_add(count).is_some_and(|end| end <= all) && count > 0
         };
-        let samples = cols as usize * rows as usize;
-        if heights.len() != samples
+        let grid_points = cols as usize * rows as usize;
+        if heights.len() != grid_points
             || !(within(at.col, at.cols, cols) && within(at.row, at.rows, rows))
         {
             let found = format!("{} heights, new in {at:?}", heights.len());
-            let expected = format!("{samples}, new within {} × {}", field[0], field[1]);
+            let expected = format!("{grid_points}, new within {} × {}", field[0], field[1]);
             return Err(Error::setting("heights", found, expected));
         }
     }
@@ -364,11 +364,11 @@ fn copied([width, height]: [u32; 2]) -> vk::BufferImageCopy {
 fn text(panel: &Panel<'_>, size: [u32; 2], offset: u64) -> Option<vk::BufferImageCopy> {
     let [width, height] = panel.size;
     let left = |i: usize| size[i].saturating_sub(panel.at[i]).min(panel.size[i]);
-    let seen = [left(0), left(1)];
+    let shown = [left(0), left(1)];
     let [x, y] = panel.at.map(|at| at as i32);
-    let region = copied(seen).buffer_row_length(width).buffer_image_height(height);
+    let region = copied(shown).buffer_row_length(width).buffer_image_height(height);
     let region = region.image_offset(vk::Offset3D { x, y, z: 0 }).buffer_offset(offset);
-    (!seen.contains(&0)).then_some(region)
+    (!shown.contains(&0)).then_some(region)
 }
 
 #[cfg(test)]

@@ -116,7 +116,7 @@ impl Headless {
         if plan.find("visibility").is_none() {
             return Ok(None);
         }
-        let sums = ["env_sum", "gloss_sum"].map(|name| plan.find(name));
+        let sums = ["env_sum", "specular_sum"].map(|name| plan.find(name));
         let mut is_negative = Vec::new();
         for sum in sums.into_iter().flatten() {
             let words = self.read(frame, sum)?;

@@ -38,7 +38,7 @@ pub(crate) fn plan(
     bound: &[(&str, ResourceId)],
 ) {
     let [cols, height] = [field.cols() as u32, rows.end - rows.start];
-    let samples = u64::from(cols) * u64::from(height);
+    let grid_points = u64::from(cols) * u64::from(height);
     let is_small = VisiblePoints::is_small(field.rows(), field.cols());
     let is_bent = bound.iter().any(|(name, _)| *name == "bent");
     let above = directions.vectors().iter().filter(|e| e.z > 0.0).count();
@@ -56,7 +56,7 @@ pub(crate) fn plan(
             least_radius: least_radius(above) as f32,
         },
         bound,
-        samples * (4 * directions.count() as u64 + 32),
-        samples,
+        grid_points * (4 * directions.count() as u64 + 32),
+        grid_points,
     );
 }

@@ -20,7 +20,7 @@ struct ScatterGatherPush {
     suns: i32,
     weight_sr: f32,
     exponent: f32,
-    lobe_share: f32,
+    specular_scale: f32,
     first_view: i32,
     curvature: [f32; 2],
     albedo: [f32; 4],
@@ -41,7 +41,7 @@ same_layout!(
     suns = SUNS,
     weight_sr = WEIGHT_SR,
     exponent = EXPONENT,
-    lobe_share = LOBE_SHARE,
+    specular_scale = SPECULAR_SCALE,
     first_view = FIRST_VIEW,
     curvature = CURVATURE_X,
     albedo = ALBEDO,
@@ -119,10 +119,10 @@ pub(crate) fn plan(
             sums,
             small: is_small,
             albedo_is_map: is_map,
-            has_lobe: steps.specular.is_some(),
-            lobe_is_map: matches!(steps.specular, Some(Specular::Map(_))),
+            has_specular: steps.specular.is_some(),
+            specular_is_map: matches!(steps.specular, Some(Specular::Map(_))),
             bent: steps.curvature != Curvature::FLAT,
-            own_lobe: sums && steps.direct_specular,
+            direct_specular: sums && steps.direct_specular,
         },
         &part,
         why,
@@ -140,7 +140,7 @@ pub(crate) fn plan(
             suns: steps.suns as i32,
             weight_sr: steps.weight_sr as f32,
             exponent: specular.exponent,
-            lobe_share: specular.scale,
+            specular_scale: specular.scale,
             first_view: steps.texels[2] as i32,
             curvature: steps.curvature.per_m.map(|k| k as f32),
             albedo,
@@ -158,7 +158,7 @@ pub(crate) fn plan_nothing(
     (scattered, views): (ResourceId, u32),
 ) {
     let [cols, rows] = [field.cols() as u32, field.rows() as u32];
-    let samples = u64::from(cols) * u64::from(rows);
+    let grid_points = u64::from(cols) * u64::from(rows);
     builder.pass(
         shaders::ScatterGather { source: Source::None as u32, sums: true, ..Default::default() },
         "nothing",
@@ -166,7 +166,7 @@ pub(crate) fn plan_nothing(
         [cols.div_ceil(8), rows.div_ceil(8), views],
         &ScatterGatherPush { cols: cols as i32, rows: rows as i32, ..bytemuck::Zeroable::zeroed() },
         &[("scattered", scattered)],
-        16 * samples * u64::from(views),
-        samples * u64::from(views),
+        16 * grid_points * u64::from(views),
+        grid_points * u64::from(views),
     );
 }

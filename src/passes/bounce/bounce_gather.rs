@@ -138,7 +138,7 @@ pub(crate) fn plan(
     let (cols, rows) = (field.cols() as u32, field.rows() as u32);
     let NodeSum { nodes, sum } = bounce.found_at();
     let [across, along] = nodes.size([cols, rows]);
-    let samples = u64::from(across) * u64::from(along);
+    let grid_points = u64::from(across) * u64::from(along);
     let is_stack = of.heights.stored == Levels::Stack;
     let mut bound = vec![
         ("heights", heights),
@@ -182,8 +182,8 @@ pub(crate) fn plan(
             [across.div_ceil(8), along.div_ceil(8), 1],
             &GatherPush::of(field, of, azimuths, first..last),
             &bound,
-            samples * (2 * 16 + march_samples * (4 + 16)),
-            samples * u64::from(count),
+            grid_points * (2 * 16 + march_samples * (4 + 16)),
+            grid_points * u64::from(count),
         );
     }
 }

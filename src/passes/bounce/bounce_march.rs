@@ -39,7 +39,7 @@ pub(crate) fn plan(
     let NodeSum { nodes, sum } = bounce.found_at();
     let [across, along] = nodes.size([field.cols() as u32, field.rows() as u32]);
     let [thin_rows, thin_cols] = blocks.thin(field);
-    let samples = u64::from(across) * u64::from(along);
+    let grid_points = u64::from(across) * u64::from(along);
     let at_once = (MOST_TURNS / (blocks.most_steps() + 1)).max(1);
     for first in (0..azimuths).step_by(at_once as usize) {
         let last = azimuths.min(first + at_once);
@@ -73,8 +73,8 @@ pub(crate) fn plan(
                 ("exit_radiance", bounce.exit),
                 ("bounce_sum", sum),
             ],
-            samples * (3 * 16 + if bounce.grey { 4 } else { 16 }),
-            samples * u64::from(count),
+            grid_points * (3 * 16 + if bounce.grey { 4 } else { 16 }),
+            grid_points * u64::from(count),
         );
     }
 }

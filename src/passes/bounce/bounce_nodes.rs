@@ -89,7 +89,7 @@ impl BounceNodes {
             let [across, along] = later.nodes.size(size);
             let extent = [across, along, layers];
             let format = Format::Rgba32Uint;
-            Some(builder.image("casting_sets", Owner::Internal, format, extent, true))
+            Some(builder.image("visibility_cache", Owner::Internal, format, extent, true))
         });
         Some(Self { first, later, sky_share, finds_share: shared.is_none(), visibility_cache })
     }

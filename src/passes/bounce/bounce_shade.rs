@@ -32,7 +32,7 @@ pub(crate) fn plan(
     let at = bounce.found_at();
     let size = [field.cols() as u32, field.rows() as u32];
     let [cell_x, cell_y] = field.cell_m();
-    let samples = u64::from(size[0]) * u64::from(size[1]);
+    let grid_points = u64::from(size[0]) * u64::from(size[1]);
     builder.pass(
         shaders::BounceShade { node_stride: at.nodes.stride as i32 },
         &bounce.name,
@@ -50,7 +50,7 @@ pub(crate) fn plan(
             ("node_sum", at.sum),
             ("bounce_sum", bounce.sum),
         ],
-        samples * (16 + 4 + 16) + at.count(size) * 16,
-        samples,
+        grid_points * (16 + 4 + 16) + at.count(size) * 16,
+        grid_points,
     );
 }

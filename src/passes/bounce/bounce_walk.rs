@@ -99,7 +99,10 @@ pub(crate) fn plan(
             let found = u64::from(along) * u64::from(*across);
             let mut bound = bound.to_vec();
             bound.extend(
-                swept.visibility_cache.filter(|_| *from == From::Kept).map(|c| ("casting_sets", c)),
+                swept
+                    .visibility_cache
+                    .filter(|_| *from == From::Kept)
+                    .map(|c| ("visibility_cache", c)),
             );
             // One of two nodes stores 16 bytes.
             let bytes_an_azimuth = if *from == From::Kept { 10 } else { 2 };

@@ -102,7 +102,7 @@ impl Bouncing {
         quality: &Quality,
         (count, at_nodes, levels): (u32, Option<BounceNodes>, Option<pyramid_march::Images>),
         (grey, layers): (bool, bool),
-        gloss: Option<&mut Vec<String>>,
+        specular_notes: Option<&mut Vec<String>>,
     ) -> Self {
         let bounces = &quality.bounces;
         let extent = [scene.field.cols() as u32, scene.field.rows() as u32, 1];
@@ -120,7 +120,7 @@ impl Bouncing {
         let sum = image("bounce_sum", Owner::Internal, Format::Rgba32Float);
         let size = [extent[0], extent[1]];
         let shade = shade(quality, size, scene);
-        let specular = gloss.map(|notes| {
+        let specular = specular_notes.map(|notes| {
             BouncedSpecular::make(builder, (size, &shade), quality, (grey, layers), notes)
         });
         let engine = match bounces.engine {

@@ -48,7 +48,7 @@ pub(crate) fn plan(
         [nodes_x.div_ceil(8), nodes_y.div_ceil(8), 1],
         &CacheGatherPush { cols: size[0] as i32, rows: size[1] as i32, begin: circle.start, count },
         &[
-            ("casting_sets", visibility_cache),
+            ("visibility_cache", visibility_cache),
             ("azimuths", azimuths),
             (if bounce.grey { "exit_grey" } else { "exit_radiance" }, bounce.exit),
             ("node_sum", walked.sum),

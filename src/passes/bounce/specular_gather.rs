@@ -16,7 +16,7 @@ pub(crate) fn plan(
     [heights, ground]: [ResourceId; 2],
 ) {
     let (cols, rows) = (field.cols() as u32, field.rows() as u32);
-    let samples = u64::from(cols) * u64::from(rows);
+    let grid_points = u64::from(cols) * u64::from(rows);
     let mut bound = vec![
         ("heights", heights),
         ("ground", ground),
@@ -80,8 +80,8 @@ pub(crate) fn plan(
             [cols.div_ceil(8), rows.div_ceil(8), 1],
             &GatherPush::of(field, of, azimuths, first..last),
             &bound,
-            samples * (2 * 16 + 2 * 16 * u64::from(layers) + rays * (4 + ray_bytes)),
-            samples * u64::from(count),
+            grid_points * (2 * 16 + 2 * 16 * u64::from(layers) + rays * (4 + ray_bytes)),
+            grid_points * u64::from(count),
         );
     }
 }

@@ -51,9 +51,9 @@ pub(crate) fn plan(builder: &mut Builder, [cols, rows]: [u32; 2], part: &str, li
     );
     bound.extend(light.layer.map(|l| (if light.grey { "layer_grey" } else { "layer" }, l)));
     if let Some([dirty, list]) = light.edited {
-        bound.extend([("dirty_samples", dirty), ("edit_list", list)]);
+        bound.extend([("dirty_texels", dirty), ("edit_list", list)]);
     }
-    let samples = u64::from(cols) * u64::from(rows);
+    let grid_points = u64::from(cols) * u64::from(rows);
     let texel = if light.grey { 4 } else { 16 };
     let written = u64::from(light.radiance.is_some()) * 2 + u64::from(light.layer.is_some());
     let pass = builder.pass(
@@ -77,8 +77,8 @@ pub(crate) fn plan(builder: &mut Builder, [cols, rows]: [u32; 2], part: &str, li
             colour: [light.colour[0], light.colour[1], light.colour[2], 1.0],
         },
         &bound,
-        samples * (if light.has_colour { 16 } else { 4 } + written * texel),
-        samples,
+        grid_points * (if light.has_colour { 16 } else { 4 } + written * texel),
+        grid_points,
     );
     pass.indirect = light.edited.map(|[_, list]| (list, dirty_list::RESOLVE_GROUPS_AT));
 }

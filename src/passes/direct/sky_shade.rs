@@ -36,7 +36,7 @@ pub(crate) fn plan(
         bound.extend([("env_sum", sum), ("env_tables", tables)]);
     }
     if let Some([dirty, list]) = images.edited {
-        bound.extend([("dirty_samples", dirty), ("edit_list", list)]);
+        bound.extend([("dirty_texels", dirty), ("edit_list", list)]);
     }
     let sums = if images.sky_sum.is_some() { 8 } else { 0 }
         + if images.environment.is_some() { 32 } else { 0 };
@@ -60,8 +60,8 @@ pub(crate) fn plan(
         [axis.steps.div_ceil(8), axis.lanes.div_ceil(4 * 16), 1],
         &ShadePush::of(batch, cell_m),
         &bound,
-        axis.samples() * (4 + sums + u64::from(batch.count) * sweep.lattice_bytes()),
-        axis.samples() * u64::from(batch.count),
+        axis.texels() * (4 + sums + u64::from(batch.count) * sweep.lattice_bytes()),
+        axis.texels() * u64::from(batch.count),
     );
     pass.azimuths = batch.azimuths();
     pass.indirect = images.edited.map(|[_, list]| (list, dirty_list::LIGHT_GROUPS_AT));

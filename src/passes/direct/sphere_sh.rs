@@ -96,11 +96,11 @@ fn entries(quality: &Quality) -> Vec<f32> {
     let mut all = Vec::new();
     let lit = Lit::diffuse(quality.receiver);
     for (at, shares) in matrix(quality, light_order, lit).iter().enumerate() {
-        let (row, seen) = (row_first + at / (order * order), at % (order * order));
+        let (row, coefficient) = (row_first + at / (order * order), at % (order * order));
         for (i, ((_, m), share)) in bands(light_order).zip(shares).enumerate() {
             // Products that are not 0 are above 1e-4: three harmonics, over π.
             if m >= 0 && share.abs() > 1e-9 {
-                all.extend([row as f32, seen as f32, i as f32, *share as f32]);
+                all.extend([row as f32, coefficient as f32, i as f32, *share as f32]);
             }
         }
     }

@@ -136,7 +136,7 @@ fn dispatch(
     let field = &scene.field;
     let (base, offset) = place_of(field, light);
     let Rectangle { col, row, cols, rows } = shading.rectangle;
-    let samples = u64::from(cols) * u64::from(rows);
+    let grid_points = u64::from(cols) * u64::from(rows);
     let [thin_rows, thin_cols] = blocks.thin(field);
     let [r, g, b] = light.radiance;
     let begins = shading.begins && first == 0;
@@ -206,7 +206,7 @@ fn dispatch(
             radiance: [r, g, b, f32::from(u8::from(begins))],
         },
         &bound,
-        samples * (3 * 16),
-        samples * u64::from(last - first),
+        grid_points * (3 * 16),
+        grid_points * u64::from(last - first),
     );
 }

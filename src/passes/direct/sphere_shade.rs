@@ -6,7 +6,7 @@ use crate::graph::shaders::same_layout;
 use crate::graph::{Builder, Rectangle, ResourceId};
 use crate::passes::LandPush;
 use crate::passes::blocks::Blocks;
-use crate::passes::spheres::samples_within;
+use crate::passes::spheres::texels_within;
 use crate::scene::{HeightField, Scene, SphereLight};
 
 #[repr(C)]
@@ -82,7 +82,7 @@ pub(crate) fn plan(
             shading.rectangle
         } else {
             let within = 1.001 * light.radius_m / half_width.min(FRAC_PI_2).sin();
-            common(samples_within(&scene.field, light, within), shading.rectangle)
+            common(texels_within(&scene.field, light, within), shading.rectangle)
         };
         dispatch(
             builder,
@@ -138,7 +138,7 @@ fn dispatch(
     let [narrow, around] = light.slices(shading.slices, field.cell_m());
     let (base, offset) = place_of(field, light);
     let Rectangle { col, row, cols, rows } = shading.rectangle;
-    let samples = u64::from(cols) * u64::from(rows);
+    let grid_points = u64::from(cols) * u64::from(rows);
     let [thin_rows, thin_cols] = blocks.thin(field);
     let [r, g, b] = light.radiance;
     let begins = shading.begins && slices.start == 0;
@@ -173,7 +173,7 @@ fn dispatch(
             ("ground", blocks.images.ground),
             ("sphere_sum", sum),
         ],
-        samples * (3 * 16),
-        samples * slices.len() as u64,
+        grid_points * (3 * 16),
+        grid_points * slices.len() as u64,
     );
 }

@@ -46,9 +46,10 @@ impl<'a> Spheres<'a> {
                 return Err(Error::setting(
                     format!("light {}: radius", i + 1),
                     light.radius_m.to_string(),
-                    format!("{} at least: half a millionth of the way to the nearest sample", {
-                        light.radius_m * NARROWEST / seems
-                    }),
+                    format!(
+                        "{} at least: half a millionth of the way to the nearest grid point",
+                        { light.radius_m * NARROWEST / seems }
+                    ),
                 ));
             }
         }
@@ -63,14 +64,14 @@ impl<'a> Spheres<'a> {
             } else {
                 f64::INFINITY
             };
-            match samples_within(field, light, reach) {
-                Some(seen) => {
-                    is_cut |= seen != whole(field);
+            match texels_within(field, light, reach) {
+                Some(lit_texels) => {
+                    is_cut |= lit_texels != whole(field);
                     spheres.active.push((i, light));
                     // Slightly more, so that no rounding drops a texel that counts.
                     spheres
                         .regions
-                        .push((seen, (reach * (1.0 + 1e-6)).min(f64::from(f32::MAX)) as f32));
+                        .push((lit_texels, (reach * (1.0 + 1e-6)).min(f64::from(f32::MAX)) as f32));
                 }
                 None => notes
                     .push(format!("light {} dropped: it gives less than {threshold:.3e}", i + 1)),
@@ -198,7 +199,7 @@ fn in_part(field: &HeightField, light: &SphereLight, part: [usize; 2]) -> f64 {
 }
 
 /// The grid points within `reach` of a sphere light's centre in plan, if any.
-pub(crate) fn samples_within(
+pub(crate) fn texels_within(
     field: &HeightField,
     light: &SphereLight,
     reach: f64,

@@ -26,7 +26,7 @@ pub(crate) fn plan(
         vec![("lane_heights", lane_heights), ("azimuths", azimuths), ("sun_sum", sun_sum)];
     bound.extend(lattice.map(|l| (sweep.lattice_binding(), l)));
     if let Some([dirty, list]) = edited {
-        bound.extend([("dirty_samples", dirty), ("edit_list", list)]);
+        bound.extend([("dirty_texels", dirty), ("edit_list", list)]);
     }
     let pass = builder.pass(
         shaders::SunShade {
@@ -47,8 +47,8 @@ pub(crate) fn plan(
         [axis.steps.div_ceil(8), axis.lanes.div_ceil(4 * 16), 1],
         &ShadePush::of(batch, cell_m),
         &bound,
-        axis.samples() * (12 + u64::from(batch.count) * sweep.lattice_bytes()),
-        axis.samples() * u64::from(batch.count),
+        axis.texels() * (12 + u64::from(batch.count) * sweep.lattice_bytes()),
+        axis.texels() * u64::from(batch.count),
     );
     pass.azimuths = batch.azimuths();
     pass.indirect = edited.map(|[_, list]| (list, dirty_list::LIGHT_GROUPS_AT));

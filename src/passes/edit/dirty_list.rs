@@ -33,7 +33,7 @@ pub(crate) fn plan(builder: &mut Builder, size: [u32; 2], [dirty, list]: [Resour
         "light is summed only where a texel is marked",
         [across.div_ceil(8), down.div_ceil(8), 1],
         &DirtyListPush { cols, rows },
-        &[("dirty_samples", dirty), ("edit_list", list)],
+        &[("dirty_texels", dirty), ("edit_list", list)],
         8 * all,
         32 * all,
     );

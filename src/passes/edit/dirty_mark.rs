@@ -28,7 +28,7 @@ pub(crate) fn plan(builder: &mut Builder, size: [u32; 2], [dirty, list]: [Resour
         "texels whose own surface was edited; clears the mask of the last edit",
         [across.div_ceil(8), down.div_ceil(8), 1],
         &DirtyMarkPush { cols, rows, rectangle: Rectangle::whole(size).words() },
-        &[("dirty_samples", dirty), ("edit_list", list)],
+        &[("dirty_texels", dirty), ("edit_list", list)],
         4 * all,
         32 * all,
     );

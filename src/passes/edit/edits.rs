@@ -12,7 +12,7 @@ impl Edits {
     pub(crate) fn make(builder: &mut Builder, size: [u32; 2]) -> Self {
         let [across, down] = passes::dirty_mark::words(size).map(u64::from);
         Self {
-            dirty: builder.buffer("dirty_samples", 4 * across * down, false),
+            dirty: builder.buffer("dirty_texels", 4 * across * down, false),
             list: builder.buffer("edit_list", passes::dirty_list::bytes(size), false),
         }
     }

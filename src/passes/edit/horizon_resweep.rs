@@ -58,11 +58,11 @@ pub(crate) fn plan(
             ("heights", images.heights),
             ("azimuths", images.azimuths),
             ("occluders", images.occluders),
-            ("dirty_samples", images.dirty),
+            ("dirty_texels", images.dirty),
             ("edit_list", images.list),
         ],
-        batch.line_samples * 8,
-        batch.line_samples,
+        batch.line_texels * 8,
+        batch.line_texels,
     );
     pass.azimuths = batch.azimuths();
     pass.reach = Some(Reach::Lines(axis, sweep.line_shift));

@@ -29,7 +29,7 @@ pub struct Batch {
     /// Lines of the azimuth with the most lines.
     pub most_lines: u32,
     /// Points on all lines.
-    pub line_samples: u64,
+    pub line_texels: u64,
     /// Layers of the lattice.
     pub layers: u32,
     /// Whether it is the light's first: its sum begins here.
@@ -105,7 +105,7 @@ pub(crate) fn cut(
                 first: first + i as u32,
                 count: 0,
                 most_lines: 0,
-                line_samples: 0,
+                line_texels: 0,
                 layers: 0,
                 is_first: i == 0,
             });
@@ -115,7 +115,7 @@ pub(crate) fn cut(
         batch.layers += layers;
         batch.count += 1;
         batch.most_lines = batch.most_lines.max(sweep.lines(azimuth, axis));
-        batch.line_samples += sweep.line_samples(azimuth, axis);
+        batch.line_texels += sweep.line_texels(azimuth, axis);
     }
     Ok(batches)
 }

@@ -19,7 +19,7 @@ pub(crate) fn plan(
     [levels, table, stack]: [ResourceId; 3],
 ) {
     let [cols, rows] = pyramid.size;
-    let samples = u64::from(cols) * u64::from(rows) * u64::from(pyramid.levels());
+    let grid_points = u64::from(cols) * u64::from(rows) * u64::from(pyramid.levels());
     builder.pass(
         shaders::HeightExpand { periodic: pyramid.periodic },
         "",
@@ -30,7 +30,7 @@ pub(crate) fn plan(
             width_shift: pyramid.width_shift() as i32,
         },
         &[("height_levels", levels), ("level_table", table), ("height_stack", stack)],
-        4 * (samples + pyramid.all_texels()),
-        samples,
+        4 * (grid_points + pyramid.all_texels()),
+        grid_points,
     );
 }

@@ -42,8 +42,8 @@ pub(crate) fn plan(
             rectangle: Rectangle::whole(axis.size()).words(),
         },
         &[("heights", heights), ("lane_heights", lane_heights)],
-        8 * axis.samples(),
-        axis.samples(),
+        8 * axis.texels(),
+        axis.texels(),
     );
     pass.reach = Some(Reach::Quads(axis));
 }

@@ -14,7 +14,7 @@ pub(crate) fn plan(
 ) {
     let axis = batch.axis;
     let [lanes, steps] = nodes.size([axis.lanes, axis.steps]);
-    let samples = u64::from(lanes) * u64::from(steps) * u64::from(batch.count);
+    let grid_points = u64::from(lanes) * u64::from(steps) * u64::from(batch.count);
     let pass = builder.pass(
         shaders::HorizonMarch {
             all_crossings: true,
@@ -27,8 +27,8 @@ pub(crate) fn plan(
         [lanes.div_ceil(8), steps.div_ceil(8), batch.count],
         &MarchPush::of(batch),
         &[("heights", heights), ("azimuths", azimuths), ("slopes", slopes)],
-        samples * 8,
-        samples,
+        grid_points * 8,
+        grid_points,
     );
     pass.azimuths = batch.azimuths();
 }

@@ -117,8 +117,8 @@ fn run(
             height_scale: sweep.height_scale,
         },
         &bound,
-        if again { u64::from(batch.layers) * 32 } else { batch.line_samples * (4 + value_bytes) },
-        if again { 0 } else { batch.line_samples },
+        if again { u64::from(batch.layers) * 32 } else { batch.line_texels * (4 + value_bytes) },
+        if again { 0 } else { batch.line_texels },
     );
     pass.azimuths = batch.azimuths();
 }

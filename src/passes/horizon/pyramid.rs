@@ -31,7 +31,7 @@ pub struct Level {
     /// Columns and rows.
     pub size: [u32; 2],
     /// Texels per grid point along columns and along rows: 0 for a single texel.
-    pub per_sample: [f32; 2],
+    pub per_grid_point: [f32; 2],
 }
 
 impl Level {
@@ -100,25 +100,28 @@ impl Pyramid {
     pub fn level(&self, level: u32) -> Level {
         let first = (1..level).map(|l| self.size_of(l).map(u64::from)).map(|[w, h]| w * h).sum();
         let size = self.size_of(level);
-        let per_sample = [0, 1].map(|axis| {
-            let (samples, texels) = (f64::from(self.size[axis]), f64::from(size[axis]));
-            let [gaps, of] =
-                if self.periodic { [texels, samples] } else { [texels - 1.0, samples - 1.0] };
+        let per_grid_point = [0, 1].map(|axis| {
+            let (grid_points, texels) = (f64::from(self.size[axis]), f64::from(size[axis]));
+            let [gaps, of] = if self.periodic {
+                [texels, grid_points]
+            } else {
+                [texels - 1.0, grid_points - 1.0]
+            };
             if of > 0.0 { (gaps / of) as f32 } else { 0.0 }
         });
-        Level { first, size, per_sample }
+        Level { first, size, per_grid_point }
     }
 
     /// Texels 2^(l/k) grid points apart, or as near as possible so that the first and the last lie on the
     /// field's first and last grid points, or a whole number of them makes a period.
     fn size_of(&self, level: u32) -> [u32; 2] {
         let scale = (-f64::from(level) / f64::from(self.level_step)).exp2();
-        self.size.map(|samples| {
+        self.size.map(|grid_points| {
             let texels = |n: u32| ((f64::from(n) * scale).round() as u32).max(1);
-            match (self.periodic, samples) {
-                (true, _) => texels(samples),
+            match (self.periodic, grid_points) {
+                (true, _) => texels(grid_points),
                 (false, 1) => 1,
-                (false, _) => texels(samples - 1) + 1,
+                (false, _) => texels(grid_points - 1) + 1,
             }
         })
     }

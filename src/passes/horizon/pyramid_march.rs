@@ -59,14 +59,14 @@ pub(crate) fn plan(
         None => {}
     }
     let is_stack = pyramid.stored == Levels::Stack;
-    // An own sample at every level, once; then one per level and azimuth.
+    // An own height at every level, once; then one per level and azimuth.
     let (own, far) = if is_stack { (1, 2) } else { (16, 16) };
     let fine = pyramid.fine_samples().min(pyramid.samples());
     let march_samples = u64::from(2 * fine + far * pyramid.levels());
     let own = u64::from(1 + own * pyramid.levels());
     let [lanes, steps] = nodes.size([axis.lanes, axis.steps]);
     let places = u64::from(lanes) * u64::from(steps);
-    let samples = places * u64::from(batch.count);
+    let horizons = places * u64::from(batch.count);
     let pass = builder.pass(
         shaders::PyramidMarch {
             periodic: pyramid.periodic,
@@ -88,8 +88,8 @@ pub(crate) fn plan(
             growth: pyramid.growth(),
         },
         &bound,
-        4 * (samples * (1 + march_samples) + places * own),
-        samples,
+        4 * (horizons * (1 + march_samples) + places * own),
+        horizons,
     );
     pass.azimuths = batch.azimuths();
 }

@@ -26,8 +26,8 @@ pub(crate) fn plan(
         [batch.most_lines.div_ceil(group_size), 1, batch.count],
         &MarchPush::of(batch),
         &[("heights", heights), ("azimuths", azimuths), ("slopes", slopes)],
-        batch.line_samples * 4 + axis.samples() * u64::from(batch.count) * 4,
-        batch.line_samples,
+        batch.line_texels * 4 + axis.texels() * u64::from(batch.count) * 4,
+        batch.line_texels,
     );
     pass.azimuths = batch.azimuths();
 }

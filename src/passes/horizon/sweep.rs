@@ -357,14 +357,14 @@ impl Sweep {
     }
 
     /// Points of the field on the lines of one azimuth.
-    pub(crate) fn line_samples(&self, azimuth: &Azimuth, axis: Axis) -> u64 {
+    pub(crate) fn line_texels(&self, azimuth: &Azimuth, axis: Axis) -> u64 {
         match self {
             Sweep::Lines(lines) => {
-                ((axis.samples() << 15) >> lines.line_shift)
+                ((axis.texels() << 15) >> lines.line_shift)
                     * u64::from(1 + axis.warm_up / axis.steps)
             }
-            Sweep::Surface { .. } => axis.samples() * azimuth.vector_march as u64,
-            Sweep::March { .. } | Sweep::Pyramid(_) => axis.samples(),
+            Sweep::Surface { .. } => axis.texels() * azimuth.vector_march as u64,
+            Sweep::March { .. } | Sweep::Pyramid(_) => axis.texels(),
             Sweep::Crossings => 0,
         }
     }

@@ -62,8 +62,8 @@ pub(crate) fn plan(
             first_layer: batch.first,
         },
         &bound,
-        axis.samples() * u64::from(batch.count) * (8 + sweep.lattice_bytes()),
-        axis.samples() * u64::from(batch.count),
+        axis.texels() * u64::from(batch.count) * (8 + sweep.lattice_bytes()),
+        axis.texels() * u64::from(batch.count),
     );
     pass.azimuths = batch.azimuths();
 }

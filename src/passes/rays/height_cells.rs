@@ -33,7 +33,7 @@ pub(crate) fn plan(
         bound.extend([("batch_mean", batch_mean), ("lost_rays", lost_rays)]);
     }
     let (cols, rows) = (field.cols() as u32, field.rows() as u32);
-    let samples = u64::from(cols) * u64::from(rows);
+    let grid_points = u64::from(cols) * u64::from(rows);
     builder.pass(
         shaders::HeightCells {
             periodic: border == Border::Periodic,
@@ -49,7 +49,7 @@ pub(crate) fn plan(
             cell_y_m: field.cell_m()[1] as f32,
         },
         &bound,
-        samples * (4 + if paths.is_some() { 3 } else { 2 } * 16),
-        samples,
+        grid_points * (4 + if paths.is_some() { 3 } else { 2 } * 16),
+        grid_points,
     );
 }

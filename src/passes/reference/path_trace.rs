@@ -21,7 +21,7 @@ struct PathTracePush {
     highest_m: f32,
     rotation_turns: f32,
     exponent: f32,
-    lobe_share: f32,
+    specular_scale: f32,
     bounces: i32,
     suns: i32,
     light_count: i32,
@@ -43,7 +43,7 @@ same_layout!(
     highest_m = HIGHEST_M,
     rotation_turns = ROTATION_TURNS,
     exponent = EXPONENT,
-    lobe_share = LOBE_SHARE,
+    specular_scale = SPECULAR_SCALE,
     bounces = BOUNCES,
     suns = SUNS,
     light_count = LIGHT_COUNT,
@@ -109,7 +109,7 @@ pub(crate) fn plan(
 ) {
     let Scene { field, surface, lights } = scene;
     let (cols, rows) = (field.cols() as u32, field.rows() as u32);
-    let samples = u64::from(cols) * u64::from(band.end - band.start);
+    let grid_points = u64::from(cols) * u64::from(band.end - band.start);
     let mut label = Vec::new();
     let all_rows = listed.map_or(rows, |count| count.div_ceil(cols));
     if band.end - band.start < all_rows {
@@ -137,7 +137,7 @@ pub(crate) fn plan(
         (e.rotation_rad() / std::f64::consts::TAU).rem_euclid(1.0) as f32
     };
     builder.pass(
-        shaders::PathTrace { border: surface.border as u32, thin_rows, thin_cols, set_bits: SET_BITS, albedo_is_map: is_map, has_environment: lights.environment.is_some(), has_lobe: surface.specular.is_some(), has_lights: count > 0, has_keys: !lights.keys.is_empty(), has_sphere_lights: !lights.sphere_lights.is_empty(), has_bounces: bounces > 0, most_steps: blocks.most_steps() as i32, in_parts: part.is_some(), lobe_is_map: matches!(surface.specular, Some(Specular::Map(_))), at_places: listed.is_some() },
+        shaders::PathTrace { border: surface.border as u32, thin_rows, thin_cols, set_bits: SET_BITS, albedo_is_map: is_map, has_environment: lights.environment.is_some(), has_specular: surface.specular.is_some(), has_lights: count > 0, has_keys: !lights.keys.is_empty(), has_sphere_lights: !lights.sphere_lights.is_empty(), has_bounces: bounces > 0, most_steps: blocks.most_steps() as i32, in_parts: part.is_some(), specular_is_map: matches!(surface.specular, Some(Specular::Map(_))), at_places: listed.is_some() },
         &label.join(" "),
         match listed {
             None => format!("{BATCH_PATHS} more paths per texel, up to {bounces} bounces"),
@@ -151,7 +151,7 @@ pub(crate) fn plan(
             highest_m,
             rotation_turns: lights.environment.as_ref().map_or(0.0, turns),
             exponent: specular.exponent,
-            lobe_share: specular.scale,
+            specular_scale: specular.scale,
             bounces: bounces as i32,
             suns: lights.suns.len() as i32,
             light_count: count as i32,
@@ -166,7 +166,7 @@ pub(crate) fn plan(
             last_light: light_range.end as i32,
         },
         bound,
-        samples * 7 * 16,
-        samples * u64::from(BATCH_PATHS),
+        grid_points * 7 * 16,
+        grid_points * u64::from(BATCH_PATHS),
     );
 }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use crate::basis::light::{fit_above_ground, lobe, plane};
+use crate::basis::light::{cosine_lobe, fit_above_ground, plane};
 use crate::basis::product::{light_matrix, triples};
 use crate::basis::slice::{Slices, parts, slice_index};
 use crate::basis::wedge::WedgeTable;
@@ -105,7 +105,7 @@ impl Sh {
 
     /// The part in the labels of the passes before the shading, where there are two of each.
     pub(crate) fn part(&self) -> &'static str {
-        if self.lit == Lit::Specular { "glossy" } else { "" }
+        if self.lit == Lit::Specular { "specular" } else { "" }
     }
 
     /// Layers of four coefficients.
@@ -216,7 +216,7 @@ pub(crate) fn matrix(quality: &Quality, light_order: usize, lit: Lit) -> Vec<Vec
             match lit {
                 Lit::Specular => light_matrix(&triples, &light).concat(),
                 Lit::Plane => plane(&triples, order, &light).concat(),
-                Lit::Cosine => lobe(&triples, order, &light).concat(),
+                Lit::Cosine => cosine_lobe(&triples, order, &light).concat(),
             }
         })
         .collect();

@@ -12,7 +12,7 @@ struct ShShadePush {
     rows: i32,
     cell_x_m: f32,
     cell_y_m: f32,
-    lobe: [f32; 2],
+    specular: [f32; 2],
 }
 
 same_layout!(
@@ -22,7 +22,7 @@ same_layout!(
     rows = ROWS,
     cell_x_m = CELL_X_M,
     cell_y_m = CELL_Y_M,
-    lobe = LOBE,
+    specular = SPECULAR,
 );
 
 /// Light from visibility and the light's matrix, with normals of full resolution.
@@ -45,7 +45,7 @@ pub(crate) fn plan(
     let map = phong.and_then(|phong| phong.map);
     bound.extend(map.map(|map| ("phong_map", map)));
     let [across, along] = sh.nodes.size([cols, rows]).map(u64::from);
-    let seen = across * along * 16 * (sh.layers() as u64 + u64::from(nodes.is_some()));
+    let visibility = across * along * 16 * (sh.layers() as u64 + u64::from(nodes.is_some()));
     builder.pass(
         shaders::ShShade {
             border: border as u32,
@@ -53,11 +53,11 @@ pub(crate) fn plan(
             order: sh.order as i32,
             receiver: sh.lit as u32,
             node_stride: sh.nodes.stride as i32,
-            lobe_is_map: map.is_some(),
+            specular_is_map: map.is_some(),
         },
         match sh.lit {
             Lit::Plane | Lit::Cosine => "env",
-            Lit::Specular => "glossy",
+            Lit::Specular => "specular",
         },
         match sh.lit {
             Lit::Plane => "visibility times the light's matrix; the cosine is exact",
@@ -70,10 +70,10 @@ pub(crate) fn plan(
             rows: rows as i32,
             cell_x_m: cell_m[0] as f32,
             cell_y_m: cell_m[1] as f32,
-            lobe: phong.map_or([0.0; 2], |l| [l.constant.exponent, l.constant.scale]),
+            specular: phong.map_or([0.0; 2], |l| [l.constant.exponent, l.constant.scale]),
         },
         &bound,
-        axis.samples() * (4 + 16) + seen,
-        axis.samples(),
+        axis.texels() * (4 + 16) + visibility,
+        axis.texels(),
     );
 }

@@ -70,10 +70,10 @@ impl BouncedSpecular {
         let flat = [cols, rows, 1];
         let arriving = [cols, rows, count];
         let arriving = image("arriving", Owner::Internal, Format::Rgba32Float, arriving, true);
-        let bounced = image("gloss_bounced", Owner::Internal, Format::Rgba32Float, flat, false);
-        let layer = layers.then(|| image("glossy", Owner::Output, colour, flat, false));
+        let bounced = image("specular_bounced", Owner::Internal, Format::Rgba32Float, flat, false);
+        let layer = layers.then(|| image("indirect.specular", Owner::Output, colour, flat, false));
         let outgoing = if quality.bounces.specular == BounceSpecular::Scalar {
-            ExitLight::Upward(image("exit_seen", Owner::Internal, colour, flat, false))
+            ExitLight::Upward(image("exit_upward", Owner::Internal, colour, flat, false))
         } else {
             let halves = quality.bounces.specular == BounceSpecular::VectorF16;
             notes.push(memory_note(size, shade, (order, count), halves));

@@ -37,7 +37,7 @@ pub(crate) struct ExitRadiance {
     /// Its diffuse part; none after the last bounce.
     pub diffuse: Option<ResourceId>,
     /// Specular reflection of direct light.
-    pub gloss_direct: ResourceId,
+    pub specular_direct: ResourceId,
 }
 
 /// Specular reflection of incoming light.
@@ -48,7 +48,7 @@ pub(crate) fn plan(
     ground: ResourceId,
     outgoing: &ExitRadiance,
 ) {
-    let samples = u64::from(cols) * u64::from(rows);
+    let grid_points = u64::from(cols) * u64::from(rows);
     let is_direct = outgoing.bounce == 0;
     let is_bounced = outgoing.diffuse.is_some();
     let vectors = match specular.outgoing {
@@ -61,9 +61,9 @@ pub(crate) fn plan(
         bound.push(("arriving", specular.arriving));
     }
     if is_direct {
-        bound.push(("gloss_direct", outgoing.gloss_direct));
+        bound.push(("specular_direct", outgoing.specular_direct));
     } else {
-        bound.push(("gloss_bounced", specular.bounced));
+        bound.push(("specular_bounced", specular.bounced));
     }
     bound.extend(outgoing.diffuse.map(|diffuse| ("exit_radiance", diffuse)));
     bound.extend(phong.map.map(|map| ("phong_map", map)));
@@ -71,7 +71,7 @@ pub(crate) fn plan(
         (_, Some(Vectors { exit, constants, .. })) => {
             bound.extend([("constants", constants), ("exit_vectors", exit)]);
         }
-        (ExitLight::Upward(exit), _) if is_bounced => bound.push(("exit_seen", exit)),
+        (ExitLight::Upward(exit), _) if is_bounced => bound.push(("exit_upward", exit)),
         _ => {}
     }
     let why = match (is_bounced, has_vectors) {
@@ -85,9 +85,9 @@ pub(crate) fn plan(
         shaders::SpecularExit {
             order: specular.order as i32,
             grey: specular.grey,
-            lobe_is_map: phong.map.is_some(),
+            specular_is_map: phong.map.is_some(),
             is_direct,
-            throws: is_bounced,
+            is_bounced,
             vectors: has_vectors,
             halves: vectors.is_some_and(|v| v.halves),
         },
@@ -104,7 +104,7 @@ pub(crate) fn plan(
             scale: phong.constant.scale,
         },
         &bound,
-        samples * (3 * 16 + 16 * layers + written),
-        samples,
+        grid_points * (3 * 16 + 16 * layers + written),
+        grid_points,
     );
 }

@@ -19,7 +19,7 @@ pub(crate) fn plan(
     specular: &BouncedSpecular,
     [visibility, light_matrix]: [ResourceId; 2],
 ) {
-    let samples = u64::from(cols) * u64::from(rows);
+    let grid_points = u64::from(cols) * u64::from(rows);
     let fours = u64::from((specular.order * specular.order).div_ceil(4));
     builder.pass(
         shaders::SpecularVisibility { order: specular.order as i32, grey: specular.grey },
@@ -32,7 +32,7 @@ pub(crate) fn plan(
             ("light_matrix", light_matrix),
             ("arriving", specular.arriving),
         ],
-        samples * 16 * (fours + u64::from(specular.layers())),
-        samples,
+        grid_points * 16 * (fours + u64::from(specular.layers())),
+        grid_points,
     );
 }

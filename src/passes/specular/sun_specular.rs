@@ -14,7 +14,7 @@ struct SunSpecularPush {
     cell_y_m: f32,
     towards: [f32; 4],
     colour: [f32; 4],
-    lobe: [f32; 2],
+    specular: [f32; 2],
 }
 
 same_layout!(
@@ -26,7 +26,7 @@ same_layout!(
     cell_y_m = CELL_Y_M,
     towards = TOWARDS,
     colour = COLOUR,
-    lobe = LOBE,
+    specular = SPECULAR,
 );
 
 /// Specular reflection of a sun, scaled by the visible part that diffuse shading found. `begins`: the sum
@@ -36,7 +36,7 @@ pub(crate) fn plan(
     (axis, border, cell_m): (Axis, Border, [f64; 2]),
     name: &str,
     (sun, phong): (&Sun, PhongSource),
-    [lane_heights, sun_sum, gloss_sum]: [ResourceId; 3],
+    [lane_heights, sun_sum, specular_sum]: [ResourceId; 3],
     (begins, outgoing): (bool, Option<BouncedSpecular>),
 ) {
     let [cols, rows] = axis.size();
@@ -45,7 +45,7 @@ pub(crate) fn plan(
     let [east, north, up] = [cos * along, sin * along, up].map(|v| v as f32);
     let [r, g, b] = sun.irradiance;
     let mut bound =
-        vec![("lane_heights", lane_heights), ("sun_sum", sun_sum), ("gloss_sum", gloss_sum)];
+        vec![("lane_heights", lane_heights), ("sun_sum", sun_sum), ("specular_sum", specular_sum)];
     bound.extend(phong.map.map(|map| ("phong_map", map)));
     bound.extend(outgoing.map(|specular| ("arriving", specular.arriving)));
     let layers = outgoing.map_or(0, |specular| specular.layers());
@@ -53,7 +53,7 @@ pub(crate) fn plan(
         shaders::SunSpecular {
             border: border as u32,
             marches_rows: axis.marches_rows,
-            lobe_is_map: phong.map.is_some(),
+            specular_is_map: phong.map.is_some(),
             order: outgoing.map_or(0, |specular| specular.order) as i32,
             grey: outgoing.is_some_and(|specular| specular.grey),
         },
@@ -67,10 +67,10 @@ pub(crate) fn plan(
             cell_y_m: cell_m[1] as f32,
             towards: [east, north, up, 0.0],
             colour: [r, g, b, f32::from(u8::from(begins))],
-            lobe: [phong.constant.exponent, phong.constant.scale],
+            specular: [phong.constant.exponent, phong.constant.scale],
         },
         &bound,
-        axis.samples() * (4 + 4 + 2 * 16 * (1 + u64::from(layers))),
-        axis.samples(),
+        axis.texels() * (4 + 4 + 2 * 16 * (1 + u64::from(layers))),
+        axis.texels(),
     );
 }

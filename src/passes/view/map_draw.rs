@@ -17,7 +17,7 @@ pub struct Map {
     /// Column and row of the field at the picture's upper left corner, within ±1e6; 0, 0 is the field's.
     pub corner: [f32; 2],
     /// Texels per pixel, [1e-3..1e3]: a pixel shows the texel at its middle.
-    pub samples_per_pixel: f32,
+    pub grid_points_per_pixel: f32,
     /// Whether the order of a pixel's four bytes is B, G, R, A instead of R, G, B, A.
     pub swaps: bool,
 }
@@ -33,10 +33,10 @@ impl Map {
             let found = format!("{},{}", self.corner[0], self.corner[1]);
             return Err(Error::setting("map: corner", found, "numbers within ±1e6"));
         }
-        if !(1e-3..=1e3).contains(&self.samples_per_pixel) {
-            let found = self.samples_per_pixel.to_string();
+        if !(1e-3..=1e3).contains(&self.grid_points_per_pixel) {
+            let found = self.grid_points_per_pixel.to_string();
             return Err(Error::setting(
-                "map: samples per pixel",
+                "map: grid points per pixel",
                 found,
                 "a number from 0.001 to 1000",
             ));
@@ -51,7 +51,7 @@ struct MapDrawPush {
     size: [i32; 2],
     field: [i32; 2],
     corner: [f32; 2],
-    samples_per_pixel: f32,
+    grid_points_per_pixel: f32,
     swaps: u32,
     beyond: u32,
 }
@@ -62,7 +62,7 @@ same_layout!(
     size = WIDTH,
     field = COLS,
     corner = FIRST_COL,
-    samples_per_pixel = SAMPLES_PER_PIXEL,
+    grid_points_per_pixel = GRID_POINTS_PER_PIXEL,
     swaps = SWAPS,
     beyond = BEYOND,
 );
@@ -80,7 +80,7 @@ pub(crate) fn plan(builder: &mut Builder, map: &Map, bound: &[(&str, ResourceId)
             size: map.size.map(|n| n as i32),
             field: map.field.map(|n| n as i32),
             corner: map.corner,
-            samples_per_pixel: map.samples_per_pixel,
+            grid_points_per_pixel: map.grid_points_per_pixel,
             swaps: u32::from(map.swaps),
             beyond: u32::from_le_bytes(Map::BEYOND),
         },

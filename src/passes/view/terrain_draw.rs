@@ -14,7 +14,7 @@ pub(crate) struct TerrainDrawPush {
     pub origin_m: f32,
     pub cols: i32,
     pub rows: i32,
-    pub step_samples: i32,
+    pub mesh_step: i32,
     pub tiles_across: i32,
 }
 
@@ -30,7 +30,7 @@ same_layout!(
     origin_m = ORIGIN_M,
     cols = COLS,
     rows = ROWS,
-    step_samples = STEP_SAMPLES,
+    mesh_step = MESH_STEP,
     tiles_across = TILES_ACROSS,
 );
 

@@ -50,11 +50,11 @@ impl Drawing<'_> {
         let (border, count) = (self.border(), quality.azimuths);
         let builder = &mut self.builder;
         if let Some(Tables { wedge_rows, tables }) = self.tables {
-            let seen = (e, border);
+            let of = (e, border);
             let wedges = [image, azimuths, wedge_rows];
-            passes::env_wedges::plan(builder, seen, count, wedges);
+            passes::env_wedges::plan(builder, of, count, wedges);
             let nodes = quality.table_elevations;
-            passes::env_tables::plan(builder, seen, nodes, count, [wedge_rows, tables]);
+            passes::env_tables::plan(builder, of, nodes, count, [wedge_rows, tables]);
         }
     }
 
@@ -127,8 +127,8 @@ impl Drawing<'_> {
                     nodes,
                 };
                 let sh = harmonics.sh();
-                let (field, seen) = ((border, cell_m), (sh, *wedges, sweeping.nodes));
-                passes::sh_visibility::plan(builder, sweep, field, seen, batch, &part, &images);
+                let (field, series) = ((border, cell_m), (sh, *wedges, sweeping.nodes));
+                passes::sh_visibility::plan(builder, sweep, field, series, batch, &part, &images);
             }
         }
         if let (Some(h), Some(batch)) = (&self.harmonics, batches.last()) {
@@ -148,10 +148,17 @@ impl Drawing<'_> {
             let field = (batch.axis, border, cell_m);
             let phong = self.phong();
             let lit = [(&h.diffuse, env_sum, None), (&h.specular, self.images.specular_sum, phong)];
-            for (seen, sum, phong) in lit {
-                if let (Some(seen), Some(sum)) = (seen, sum) {
-                    let ids = [lane_heights, h.visibility, seen.light_matrix, sum];
-                    passes::sh_shade::plan(&mut self.builder, field, &seen.sh, ids, h.nodes, phong);
+            for (light, sum, phong) in lit {
+                if let (Some(light), Some(sum)) = (light, sum) {
+                    let ids = [lane_heights, h.visibility, light.light_matrix, sum];
+                    passes::sh_shade::plan(
+                        &mut self.builder,
+                        field,
+                        &light.sh,
+                        ids,
+                        h.nodes,
+                        phong,
+                    );
                 }
             }
             self.specular_is_begun = h.specular.is_some();

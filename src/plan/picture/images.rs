@@ -71,7 +71,7 @@ impl Images {
         let spheres = &active.sphere_lights.active;
         let sphere_layers = spheres.iter().map(|(i, _)| layer(true, &light_name(*i))).collect();
         let has_specular = active.specular.is_some();
-        let specular_layer = layer(has_specular, "glossy");
+        let specular_layer = layer(has_specular, "specular");
         let view = wanted.sky_view;
         let sky_view = view.then(|| image("sky_view", Owner::Output, Format::R32Float, flat));
         let mut sum = |needed: bool, name: &str, format: Format| {
@@ -81,7 +81,7 @@ impl Images {
         let env_sum = sum(environment.is_some(), "env_sum", Format::Rgba32Float);
         let sun_sum = sum(active.aimed().next().is_some(), "sun_sum", Format::R32Float);
         let sphere_sum = sum(!spheres.is_empty(), "sphere_sum", Format::Rgba32Float);
-        let specular_sum = sum(has_specular, "gloss_sum", Format::Rgba32Float);
+        let specular_sum = sum(has_specular, "specular_sum", Format::Rgba32Float);
         Self {
             heights,
             environment,
@@ -186,8 +186,8 @@ impl Harmonics {
         let (constants, _) = builder.constants(&constants);
         let diffuse =
             diffuse.map(|sh| HarmonicLight::make(builder, sh, ["env_rotation", "light_matrix"]));
-        let specular =
-            specular.map(|sh| HarmonicLight::make(builder, sh, ["gloss_turns", "gloss_matrix"]));
+        let specular = specular
+            .map(|sh| HarmonicLight::make(builder, sh, ["specular_rotation", "specular_matrix"]));
         let wedge_table = table.map(|table| {
             let extent = [size[0], size[1], table.azimuths as u32];
             let format = Format::R32Float;
@@ -205,7 +205,7 @@ impl Harmonics {
 
     /// Layout of the visibility, equal for all lights.
     pub(super) fn sh(&self) -> &Sh {
-        let seen = self.diffuse.as_ref().or(self.specular.as_ref());
-        &seen.expect("an environment or specular").sh
+        let light = self.diffuse.as_ref().or(self.specular.as_ref());
+        &light.expect("an environment or specular").sh
     }
 }

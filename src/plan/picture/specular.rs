@@ -79,14 +79,14 @@ impl Drawing<'_> {
         let Some(h) = &self.harmonics else { return };
         let builder = &mut self.builder;
         let lit = [(&h.diffuse, None), (&h.specular, self.active.sky)];
-        for (seen, sky) in lit {
-            let Some(seen) = seen else { continue };
+        for (light, sky) in lit {
+            let Some(light) = light else { continue };
             let environment = self.active.environment.zip(self.images.environment);
-            if let (Some((e, image)), Some(turns)) = (environment, seen.env_rotation) {
-                passes::env_rotation::plan(builder, e, &seen.sh, [image, h.constants, turns]);
+            if let (Some((e, image)), Some(turns)) = (environment, light.env_rotation) {
+                passes::env_rotation::plan(builder, e, &light.sh, [image, h.constants, turns]);
             }
-            let ids = [h.constants, seen.light_matrix];
-            passes::light_matrix::plan(builder, &seen.sh, sky, seen.env_rotation, ids);
+            let ids = [h.constants, light.light_matrix];
+            passes::light_matrix::plan(builder, &light.sh, sky, light.env_rotation, ids);
         }
     }
 
@@ -114,9 +114,9 @@ impl Drawing<'_> {
         let Some((specular, h)) = self.bounced_by_direction().zip(self.harmonics.as_ref()) else {
             return;
         };
-        let Some(seen) = &h.specular else { return };
+        let Some(light) = &h.specular else { return };
         let size = [self.scene.field.cols() as u32, self.scene.field.rows() as u32];
-        let ids = [h.visibility, seen.light_matrix];
+        let ids = [h.visibility, light.light_matrix];
         passes::specular_visibility::plan(&mut self.builder, size, &specular, ids);
     }
 
@@ -129,7 +129,7 @@ impl Drawing<'_> {
     /// Specular exit radiance of bounce `k`; 0 is direct light.
     pub(super) fn record_specular_exit(&mut self, bouncing: &Bouncing, k: usize) {
         let (Some(specular), Some(phong)) = (bouncing.specular, self.phong()) else { return };
-        let (Some(blocks), Some(gloss_direct)) = (&self.blocks, self.images.specular_sum) else {
+        let (Some(blocks), Some(specular_direct)) = (&self.blocks, self.images.specular_sum) else {
             return;
         };
         let size = [self.scene.field.cols() as u32, self.scene.field.rows() as u32];
@@ -137,7 +137,7 @@ impl Drawing<'_> {
             name: if k == 0 { "direct".to_owned() } else { bounce_name(k) },
             bounce: k,
             diffuse: bouncing.diffuse(k, self.images.radiance),
-            gloss_direct,
+            specular_direct,
         };
         let ground = blocks.images.ground;
         specular_exit::plan(&mut self.builder, size, (&specular, phong), ground, &exit);
@@ -146,7 +146,7 @@ impl Drawing<'_> {
     /// Adds the specular of all bounces.
     pub(super) fn bounced_specular(&mut self, bouncing: &Bouncing) {
         let Some(specular) = bouncing.specular else { return };
-        self.resolve_specular("bounces glossy", specular.bounced, specular.layer);
+        self.resolve_specular("bounces specular", specular.bounced, specular.layer);
     }
 
     /// The specular as passes take it.
@@ -162,7 +162,7 @@ impl Drawing<'_> {
     pub(super) fn specular(&mut self) {
         let Some(sum) = self.images.specular_sum else { return };
         if self.specular_is_begun {
-            self.resolve_specular("glossy", sum, self.images.specular_layer);
+            self.resolve_specular("specular", sum, self.images.specular_layer);
         }
     }
 
@@ -251,20 +251,22 @@ mod tests {
         let of_sky = plan(sky(), Basis::Auto, 0.5).unwrap();
         assert!(of_sky.notes.iter().any(|n| n.starts_with("basis sh")), "{:?}", of_sky.notes);
         assert!(of_sky.settings.contains(&("basis".into(), "sh".into())));
-        assert!(of_sky.find("env_rotation").is_none() && of_sky.find("gloss_turns").is_none());
-        assert!(names(&of_sky).contains(&"sh_shade glossy".to_owned()), "{:?}", names(&of_sky));
+        assert!(
+            of_sky.find("env_rotation").is_none() && of_sky.find("specular_rotation").is_none()
+        );
+        assert!(names(&of_sky).contains(&"sh_shade specular".to_owned()), "{:?}", names(&of_sky));
         let environment = Environment::new(4, 2, vec![[1.0; 3]; 8], 0.0).unwrap();
         let lit = Lights { environment: Some(environment), ..sun() };
         let of_all = plan(lit, Basis::Auto, 0.5).unwrap();
         let all = names(&of_all);
-        for name in ["env_rotation", "env_rotation glossy", "sh_shade env", "sun_specular sun1"] {
+        for name in ["env_rotation", "env_rotation specular", "sh_shade env", "sun_specular sun1"] {
             assert!(all.iter().any(|n| n == name), "{name}: {all:?}");
         }
-        assert!(of_all.find("direct.glossy").is_some() && of_all.edit_passes.is_empty());
+        assert!(of_all.find("direct.specular").is_some() && of_all.edit_passes.is_empty());
         let of_sun = plan(sun(), Basis::Auto, 0.5).unwrap();
-        assert!(of_sun.find("visibility").is_none() && of_sun.find("gloss_sum").is_some());
+        assert!(of_sun.find("visibility").is_none() && of_sun.find("specular_sum").is_some());
         let none = plan(sky(), Basis::Auto, 0.0).unwrap();
         assert!(none.notes.iter().any(|n| n.starts_with("specular dropped")), "{:?}", none.notes);
-        assert!(none.find("gloss_sum").is_none() && none.find("visibility").is_none());
+        assert!(none.find("specular_sum").is_none() && none.find("visibility").is_none());
     }
 }

@@ -75,7 +75,7 @@ pub fn max_path_light(scene: &Scene, bounces: u32) -> [f64; 3] {
         }
     };
     let largest = surface.specular.as_ref().map(Specular::largest);
-    let lobe = largest.map_or([0.0; 2], |p| [p.scale, p.exponent].map(f64::from));
+    let [scale, exponent] = largest.map_or([0.0; 2], |p| [p.scale, p.exponent].map(f64::from));
     let brightest = albedo.into_iter().fold(0.0_f32, f32::max);
     let shares = lights.environment.as_ref().map(|environment| {
         let cdf = environment_cdf(environment, surface.border);
@@ -105,10 +105,10 @@ pub fn max_path_light(scene: &Scene, bounces: u32) -> [f64; 3] {
             let met = environment[0].min(dense * environment[1]);
             (direct + scattered * sphere_lights, scattered * (sky + met), scattered)
         };
-        let peak = (lobe[1] + 1.0) / (2.0 * PI);
-        let all = if surface.specular.is_some() { f64::from(brightest) + lobe[0] } else { diffuse };
+        let peak = (exponent + 1.0) / (2.0 * PI);
+        let all = if surface.specular.is_some() { f64::from(brightest) + scale } else { diffuse };
         let dense = if surface.specular.is_some() { peak.max(1.0 / PI) } else { 1.0 / PI };
-        let (always, met, scattered) = vertex(all, diffuse / PI + lobe[0] * peak, dense);
+        let (always, met, scattered) = vertex(all, diffuse / PI + scale * peak, dense);
         (0..=bounces).fold(0.0, |later, _| always + met.max(scattered * later))
     })
 }

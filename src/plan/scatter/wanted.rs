@@ -8,7 +8,7 @@ use crate::scene::{Bounces, Directions, Scatter, Scene, Specular, Sun};
 /// The effective settings.
 pub(super) struct Wanted<'a> {
     /// The surface's specular, if its scale is above 0.
-    pub lobe: Option<&'a Specular>,
+    pub specular: Option<&'a Specular>,
     /// Whether specular reflects sky or environment.
     pub mirrors_sky: bool,
     /// Suns that specular reflects.
@@ -30,13 +30,13 @@ impl<'a> Wanted<'a> {
     ) -> Self {
         let Scene { field, surface, lights } = scene;
         let lit = |c: &[f32; 3]| c.iter().any(|v| *v > 0.0);
-        let lobe = surface.specular.as_ref().filter(|lobe| lobe.largest().scale > 0.0);
-        if surface.specular.is_some() && lobe.is_none() {
+        let specular = surface.specular.as_ref().filter(|s| s.largest().scale > 0.0);
+        if surface.specular.is_some() && specular.is_none() {
             notes.push("specular dropped: its scale is 0".into());
         }
-        let mirrors_sky =
-            lobe.is_some() && (lights.sky.is_some_and(|c| lit(&c)) || lights.environment.is_some());
-        let suns = match lobe {
+        let mirrors_sky = specular.is_some()
+            && (lights.sky.is_some_and(|c| lit(&c)) || lights.environment.is_some());
+        let suns = match specular {
             Some(_) => lights.suns.iter().filter(|sun| lit(&sun.irradiance)).copied().collect(),
             None => Vec::new(),
         };
@@ -49,10 +49,10 @@ impl<'a> Wanted<'a> {
         }
         if bounces > 0 && field.is_concave(surface.border) {
             bounces = 0;
-            notes.push("no paths: nothing rises above anything else, no place sees another".into());
+            notes.push("no paths: nothing rises above anything else, no ground is visible from other ground".into());
         }
         let mut wanted =
-            Self { lobe, mirrors_sky, suns, bounces, direct_specular: false, paths: 0 };
+            Self { specular, mirrors_sky, suns, bounces, direct_specular: false, paths: 0 };
         wanted.direct_specular = scatter.direct_specular && wanted.mirrors_lights();
         if bounces > 0 || wanted.direct_specular {
             wanted.paths = scatter.paths;

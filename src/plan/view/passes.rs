@@ -51,10 +51,10 @@ impl View {
         let field = u64::from(self.field[0]) * u64::from(self.field[1]);
         let side = u64::from(TILE) + 1;
         let vertices = u64::from(self.tiles) * side * side;
-        let step = self.terrain.step_samples;
+        let step = self.terrain.mesh_step;
         let mesh = match step {
-            1 => "the ground: a vertex at every sample, two triangles a cell".to_owned(),
-            _ => format!("the ground: a vertex at every {step}th sample, two triangles a cell"),
+            1 => "the ground: a vertex at every grid point, two triangles a cell".to_owned(),
+            _ => format!("the ground: a vertex at every {step}th grid point, two triangles a cell"),
         };
         let why_samples = match samples {
             1 => String::new(),
@@ -83,8 +83,8 @@ impl View {
         let sky = ViewPass {
             pass: "sky_draw",
             why: match self.environment {
-                Some(_) => "behind the ground: sky and environment, where no ground is seen",
-                None => "behind the ground: the sky, or the background, where no ground is seen",
+                Some(_) => "behind the ground: sky and environment, where no ground is visible",
+                None => "behind the ground: the sky, or the background, where no ground is visible",
             }
             .to_owned(),
             vertices: 3,

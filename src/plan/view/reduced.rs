@@ -35,9 +35,9 @@ impl Cell<'_> {
             return 0.0;
         }
         let places = (0..=down).flat_map(|r| (0..=right).map(move |c| [r as f64, c as f64]));
-        let at_samples = places.map(|place| self.difference_m(place)).fold(0.0, f64::max);
+        let at_grid_points = places.map(|place| self.difference_m(place)).fold(0.0, f64::max);
         if down == right {
-            return at_samples;
+            return at_grid_points;
         }
         // Crossings of rows, columns and diagonals with this cell's own diagonal, as shares of it.
         let share = |k: usize, n: usize| k as f64 / n as f64;
@@ -46,7 +46,7 @@ impl Cell<'_> {
         let of_diagonals = (1..down.abs_diff(right)).map(|k| share(k, down.abs_diff(right)));
         let crossings = of_rows.chain(of_cols).chain(of_diagonals);
         let along = crossings.map(|t| self.difference_m([t * down as f64, t * right as f64]));
-        along.fold(at_samples, f64::max)
+        along.fold(at_grid_points, f64::max)
     }
 
     /// Height difference of the two surfaces at rows and columns from the cell's north-western corner.

@@ -25,14 +25,14 @@ impl Finer {
         let part = |n: usize| (n % self.times) as f64 / self.times as f64;
         let [first_row, first_col] = [row, col].map(|n| n / self.times);
         let [down, right] = [row, col].map(part);
-        let sample = |down: usize, right: usize| {
+        let coarse = |down: usize, right: usize| {
             (first_row + down) % self.of[0] * self.of[1] + (first_col + right) % self.of[1]
         };
         // Corners of weight 0 may lie beyond the last grid point: any value serves.
         let (low, middle) =
-            if down <= right { (right - down, sample(0, 1)) } else { (down - right, sample(1, 0)) };
+            if down <= right { (right - down, coarse(0, 1)) } else { (down - right, coarse(1, 0)) };
         let both = down.min(right);
-        [(sample(0, 0), 1.0 - low - both), (middle, low), (sample(1, 1), both)]
+        [(coarse(0, 0), 1.0 - low - both), (middle, low), (coarse(1, 1), both)]
     }
 
     fn each(&self, value: impl Fn(usize) -> f64) -> Vec<f64> {

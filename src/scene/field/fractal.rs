@@ -8,7 +8,7 @@ use crate::scene::HeightField;
 use crate::{Error, Result};
 
 /// Spacing of the finest octave's lattice, in cells. It doubles from octave to octave.
-const FINEST_SAMPLES: f64 = 2.0;
+const FINEST_TEXELS: f64 = 2.0;
 /// 2^0.8: amplitude of an octave over that of the next finer. The spectrum is that of a self-affine
 /// surface of Hurst exponent 0.8, between eroded (0.9) and young (0.7) mountains.
 const PER_OCTAVE: f64 = 1.741_101_126_592_248_2;
@@ -26,18 +26,22 @@ const FINEST_AMPLITUDE_M: f64 = 1.25;
 /// # Errors
 /// Size 0, or one whose square exceeds the address space.
 pub fn fractal(size: usize, seed: u64) -> Result<HeightField> {
-    let samples = size.checked_mul(size).filter(|&n| n > 0 && n <= isize::MAX as usize / 8);
-    let Some(samples) = samples else {
-        return Err(Error::setting("fractal size", size.to_string(), "1 or more samples a side"));
+    let grid_points = size.checked_mul(size).filter(|&n| n > 0 && n <= isize::MAX as usize / 8);
+    let Some(grid_points) = grid_points else {
+        return Err(Error::setting(
+            "fractal size",
+            size.to_string(),
+            "1 or more grid points a side",
+        ));
     };
-    let mut heights = vec![0.0; samples];
+    let mut heights = vec![0.0; grid_points];
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let band = size.div_ceil(threads);
     std::thread::scope(|scope| {
         for (i, rows) in heights.chunks_mut(band * size).enumerate() {
             scope.spawn(move || {
                 let (mut spacing, mut amplitude, mut octave) =
-                    (FINEST_SAMPLES, FINEST_AMPLITUDE_M, 0);
+                    (FINEST_TEXELS, FINEST_AMPLITUDE_M, 0);
                 while octave == 0 || 4.0 * spacing <= size as f64 {
                     add_octave(rows, size, i * band, spacing, amplitude, mix(seed, octave));
                     spacing *= 2.0;

@@ -101,8 +101,8 @@ pub(super) fn bent_directions(run: &mut Run, pass: &Pass) -> Vec<Pair> {
                 let [got, want] = [found[c], best.0[c]];
                 pairs.push(Pair { got, want, tolerance: best.1, at: [i, at / cols, at % cols] });
             }
-            let want = match points.seen(i, at) {
-                VisiblePoint::Sample(_) => 1.0,
+            let want = match points.point(i, at) {
+                VisiblePoint::GridPoint(_) => 1.0,
                 VisiblePoint::Sky => 0.0,
                 VisiblePoint::Ground => -1.0,
             };

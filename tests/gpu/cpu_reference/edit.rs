@@ -28,7 +28,7 @@ pub(super) fn draw(run: &mut Run) -> Edit {
     let [cols, rows] = run.size().map(|n| n as u32);
     let rectangle =
         Rectangle { col: cols / 3, row: rows / 4, cols: cols / 4 + 1, rows: rows / 3 + 1 };
-    let samples = run.heights().samples;
+    let samples = run.heights().heights_m;
     let mut before = samples.to_vec();
     for row in rectangle.row..rectangle.row + rectangle.rows {
         let first = (row * cols + rectangle.col) as usize;
@@ -43,7 +43,7 @@ pub(super) fn draw(run: &mut Run) -> Edit {
 
 /// Marks of the rectangle itself are among all marks.
 pub(super) fn dirty_mark(run: &mut Run, pass: &Pass) -> Vec<Pair> {
-    let got = run.words(pass, "dirty_samples").expect("written");
+    let got = run.words(pass, "dirty_texels").expect("written");
     let size = run.size();
     let edit = run.edit.as_mut().expect("drawn");
     edit.dirty = mark_reference::dirty_mark(size, edit.rectangle);
@@ -83,7 +83,7 @@ fn lines_of(
     let slots = slots(march.lanes as usize, shift, border);
     let mut reference = Lattice::new(1, slots, march.steps as usize);
     let edit = run.edit.as_mut().expect("drawn");
-    let before = Heights { samples: &edit.before, ..heights };
+    let before = Heights { heights_m: &edit.before, ..heights };
     sweep_reference::horizon_sweep(before, &alone, &options, &mut reference);
     let (rectangle, dirty) = (edit.rectangle, &mut edit.dirty);
     resweep_reference::horizon_resweep(heights, &alone, &options, rectangle, &mut reference, dirty);
@@ -106,7 +106,7 @@ fn lines_of(
 /// All marks, after the CPU reference has made its own; and the list of their words, in any order, with
 /// just enough workgroups.
 pub(super) fn dirty_list(run: &mut Run, pass: &Pass) -> Vec<Pair> {
-    let got = run.words(pass, "dirty_samples").expect("written");
+    let got = run.words(pass, "dirty_texels").expect("written");
     let want = run.edit.as_ref().expect("drawn").dirty.clone();
     let words = run.words(pass, "edit_list").expect("written");
     let at = |offset: usize| words[offset / 4] as usize;

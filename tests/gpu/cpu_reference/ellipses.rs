@@ -5,14 +5,14 @@ use ridgelight::gpu::shaders::offsets::ellipse_fit_push::{FIRST_ROW, LEAST_RADIU
 use ridgelight::plan::Pass;
 use ridgelight::scene::VisiblePoints;
 use ridgelight_cpu::ellipse_fit::{
-    Ellipse, LAST_STEP, Seen, least_radius, moments, neighbours, score, seen,
+    Ellipse, LAST_STEP, SkyDirection, least_radius, moments, neighbours, score, sky_directions,
 };
 use ridgelight_cpu::tolerance::{ellipse_moment, ellipse_reach, ellipse_start};
 
 use super::{Pair, Run, constant, pushed};
 
 /// Directions that may lie on either side of an ellipse's edge.
-fn on_edge(ellipse: &Ellipse, of: &[Seen], reach: f64) -> f64 {
+fn on_edge(ellipse: &Ellipse, of: &[SkyDirection], reach: f64) -> f64 {
     of.iter().filter(|(e, _)| (ellipse.reach(*e) - 1.0).abs() <= reach).count() as f64
 }
 
@@ -28,7 +28,7 @@ pub(super) fn ellipse_fit(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let (field, border) = (&run.scene.field, run.border());
     let directions = run.directions();
     let is_bent = constant(pass, "bent") == 1;
-    let all: Vec<Vec<Seen>> = if is_bent {
+    let all: Vec<Vec<SkyDirection>> = if is_bent {
         let looks = super::bend::of_samples(run, pass, directions.count());
         let above = |of: &Vec<(DVec3, f64)>| {
             of.iter().filter(|(e, _)| e.z > 0.0).map(|(e, what)| (*e, *what == 0.0)).collect()
@@ -37,7 +37,7 @@ pub(super) fn ellipse_fit(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     } else {
         let words = run.words(pass, "visible_points").expect("bound");
         let points = VisiblePoints::new(field, border, directions, words).expect("all whole");
-        (0..field.heights_m().len()).map(|at| seen(&points, at)).collect()
+        (0..field.heights_m().len()).map(|at| sky_directions(&points, at)).collect()
     };
     let least = f64::from(f32::from_bits(pushed(pass, LEAST_RADIUS)));
     let [axes, radii] =
@@ -58,7 +58,12 @@ pub(super) fn ellipse_fit(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 }
 
 /// The pairs of a sample that sees these, has this ellipse, and says this score and last step.
-fn of_sample(seen: &[Seen], least: f64, found: Ellipse, (got, step): (f64, f64)) -> Vec<Pair> {
+fn of_sample(
+    seen: &[SkyDirection],
+    least: f64,
+    found: Ellipse,
+    (got, step): (f64, f64),
+) -> Vec<Pair> {
     let lit = seen.iter().filter(|s| s.1).count();
     let same = |got: f64, want: f64, tolerance: f64| Pair { got, want, tolerance, at: [0; 3] };
     let edge = |e: &Ellipse| on_edge(e, seen, ellipse_reach(e));
@@ -105,7 +110,7 @@ fn another_ellipse_is_seen() {
     use ridgelight_cpu::ellipse_fit::fit;
     let directions = Directions::fibonacci(64, 0.0, 0).expect("directions");
     let lit = |e: &glam::DVec3| e.x > 0.1 && e.y.abs() < 0.7;
-    let seen: Vec<Seen> = directions.vectors().iter().map(|e| (*e, lit(e))).collect();
+    let seen: Vec<SkyDirection> = directions.vectors().iter().map(|e| (*e, lit(e))).collect();
     let (own, score) = fit(&seen);
     let worst = |found: Ellipse, score: f64| {
         let pairs = of_sample(&seen, least_radius(seen.len()), found, (score, 0.5 * LAST_STEP));

@@ -3,7 +3,7 @@
 use ridgelight::gpu::shaders::offsets::facet_mask_push as push;
 use ridgelight::plan::DIRECTIONS_A_WORD;
 use ridgelight::plan::Pass;
-use ridgelight_cpu::facet_mask::{cells, sees_sky};
+use ridgelight_cpu::facet_mask::{cells, sky_is_visible};
 use ridgelight_cpu::oracle::Oracle;
 use ridgelight_cpu::tolerance::{Land, facet_elevation};
 
@@ -26,7 +26,7 @@ pub(super) fn facet_mask(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     for i in own {
         for facet in 0..2 * cells_x * cells_y {
             let e = directions.vectors()[i];
-            let [want, is_unsure] = sees_sky(&oracle, (facet, cells_x), e, elevation);
+            let [want, is_unsure] = sky_is_visible(&oracle, (facet, cells_x), e, elevation);
             // Two bits a cell and direction, first the triangle north-east of the diagonal; the rest of a word's directions next.
             let word = words[i / DIRECTIONS_A_WORD * cells_x * cells_y + facet / 2];
             let got = word >> (2 * (i % DIRECTIONS_A_WORD) + facet % 2) & 1 == 1;

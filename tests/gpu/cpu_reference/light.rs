@@ -202,7 +202,7 @@ pub(super) fn sun_specular(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         pass.part.strip_prefix("sun").and_then(|n| n.parse().ok()).expect("sun and its number");
     let sun = run.scene.lights.suns[number - 1];
     let sums = run.floats(pass, "sun_sum").expect("read");
-    let got = run.floats(pass, "gloss_sum").expect("written");
+    let got = run.floats(pass, "specular_sum").expect("written");
     let (heights, error) = (run.heights(), run.sample_error());
     let [cols, _] = run.size();
     if f32::from_bits(pushed(pass, COLOUR + 12)) > 0.0 {
@@ -217,7 +217,7 @@ pub(super) fn sun_specular(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     for (i, got) in got.chunks_exact(4).enumerate() {
         let normal = normal_of(field_slope(&heights, (i % cols) as i32, (i / cols) as i32));
         let phong = run.lobe(i);
-        let light = specular_reference::gloss_on(normal, &sun, phong, sums[i].into());
+        let light = specular_reference::specular_on(normal, &sun, phong, sums[i].into());
         let tolerance =
             device_sun_specular(phong.exponent.into(), error.normal(), normal.dot(towards));
         for (c, (got, sum)) in got.iter().zip(&mut run.specular[i]).enumerate() {

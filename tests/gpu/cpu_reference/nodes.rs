@@ -75,7 +75,7 @@ fn visibility_caches(
     begin: usize,
     places: &[[usize; 2]],
 ) -> Option<Vec<Vec<[Cast; 4]>>> {
-    let words = run.words(pass, "casting_sets")?;
+    let words = run.words(pass, "visibility_cache")?;
     let heights = run.heights();
     let set = |march: &March, words: &[u32], [row, col]: [usize; 2]| {
         [0, 1, 2, 3].map(|ring| {

@@ -4,7 +4,7 @@ use ridgelight::gpu::shaders::offsets;
 use ridgelight::plan::{Pass, REFERENCE_BATCH, unsampled_light_error};
 use ridgelight_cpu::height_bounds as bounds_reference;
 use ridgelight_cpu::height_cells as cells_reference;
-use ridgelight_cpu::indirect::{Fineness, truth};
+use ridgelight_cpu::indirect::{Fineness, ground_truth as truth};
 use ridgelight_cpu::path_trace::{Traced, Tracer};
 use ridgelight_cpu::tolerance::EPSILON;
 use ridgelight_cpu::tolerance::near::Near;

@@ -11,7 +11,7 @@ use super::{Pair, Run, pushed};
 
 fn number(point: VisiblePoint) -> f64 {
     match point {
-        VisiblePoint::Sample(at) => at as f64,
+        VisiblePoint::GridPoint(at) => at as f64,
         VisiblePoint::Sky => -1.0,
         VisiblePoint::Ground => -2.0,
     }
@@ -38,7 +38,7 @@ pub(super) fn visible_points(run: &mut Run, pass: &Pass) -> Vec<Pair> {
             let own = f64::from(field.heights_m()[at]);
             let off = |stretch: &_| crossing_elevation(&oracle, stretch, own);
             let possible = possible_within(&oracle, here, *e, off, MET_SHARE);
-            let got = points.seen(i, at);
+            let got = points.point(i, at);
             let want = if possible.contains(&got) { got } else { possible[0] };
             let [got, want] = [got, want].map(number);
             pairs.push(Pair { got, want, tolerance: 0.0, at: [i, here[0], here[1]] });

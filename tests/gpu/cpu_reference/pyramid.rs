@@ -42,7 +42,7 @@ pub(super) fn height_reduce(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 
 /// What a pyramid's table says of a level.
 pub(super) fn table_pairs(level: &Level, number: u32, table: &[u32]) -> Vec<Pair> {
-    let [x, y] = level.per_sample.map(f32::to_bits);
+    let [x, y] = level.per_grid_point.map(f32::to_bits);
     let want = [level.first as u32, level.size[0] | level.size[1] << 16, x, y];
     let pair = |(i, (want, got)): (usize, (&u32, &u32))| Pair {
         got: (*got).into(),

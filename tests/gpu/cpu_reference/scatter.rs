@@ -4,7 +4,7 @@ use glam::DVec3;
 use ridgelight::gpu::shaders::offsets::scatter_gather_push as push;
 use ridgelight::plan::Pass;
 use ridgelight::scene::{Curvature, Directions, VisiblePoint, VisiblePoints};
-use ridgelight_cpu::scatter_gather::{Gathered, Samples};
+use ridgelight_cpu::scatter_gather::{Gathered, GridPoints};
 use ridgelight_cpu::tolerance::{EPSILON, Land, gathered};
 
 use super::cases::towards;
@@ -41,7 +41,7 @@ pub(super) fn scatter_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     .map(|o| pushed(pass, o) as usize);
     let weight = f64::from(f32::from_bits(pushed(pass, push::WEIGHT_SR)));
     let (source, sums) = (constant(pass, "source"), constant(pass, "sums") == 1);
-    let direct_specular = paths > 0 && constant(pass, "own_lobe") == 1;
+    let direct_specular = paths > 0 && constant(pass, "direct_specular") == 1;
     let points = run.points.clone().expect("a case with points");
     let texel = |i: usize| -> [f64; 4] {
         std::array::from_fn(|c| f64::from(run.plan.constants[4 * i + c]))
@@ -92,7 +92,7 @@ pub(super) fn scatter_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         per_m: [push::CURVATURE_X, push::CURVATURE_Y]
             .map(|o| f64::from(f32::from_bits(pushed(pass, o)))),
     };
-    let samples = Samples::of(run.scene).on(curvature);
+    let samples = GridPoints::of(run.scene).on(curvature);
     // On a curved base, the device's own directions and weights.
     let bent = (curvature != Curvature::FLAT).then(|| {
         let looks = super::bend::of_samples(run, pass, points.directions().count());
@@ -115,7 +115,7 @@ pub(super) fn scatter_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
             None => flat,
             Some(_) => stretch[0].max(stretch[1]) * (flat + 8.0 * EPSILON),
         };
-        let n = samples.lobe(at).map_or(1.0, |phong| f64::from(phong.exponent));
+        let n = samples.specular(at).map_or(1.0, |phong| f64::from(phong.exponent));
         let off = |of: &Gathered, e: DVec3| {
             let mut off = gathered(of, n, turned);
             // A lobe ends at the sample's own plane.
@@ -126,10 +126,10 @@ pub(super) fn scatter_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         };
         let mut sum = Sum::default();
         for (path, (e, direction, sky, back)) in links.iter().enumerate() {
-            let seen = points.seen(*direction, at);
+            let seen = points.point(*direction, at);
             let arrives = match (seen, source) {
-                (VisiblePoint::Sample(there), 1) => direct[there],
-                (VisiblePoint::Sample(there), 2) => carried[path * count + there],
+                (VisiblePoint::GridPoint(there), 1) => direct[there],
+                (VisiblePoint::GridPoint(there), 2) => carried[path * count + there],
                 _ => [0.0; 3],
             };
             let back = if sums { &of_views[view] } else { back };
@@ -149,7 +149,7 @@ pub(super) fn scatter_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
             }
             if !sums || direct_specular {
                 for (i, (e, irradiance)) in shining.iter().enumerate() {
-                    let lit = sun_points.as_ref().expect("suns").seen(i, at) == VisiblePoint::Sky;
+                    let lit = sun_points.as_ref().expect("suns").point(i, at) == VisiblePoint::Sky;
                     if lit {
                         let of = samples.scattered(at, (*e, 1.0), *back, [[0.0; 3], *irradiance]);
                         of_path.add(of.light, off(&of, *e));

@@ -8,9 +8,9 @@ use ridgelight::gpu::shaders::offsets;
 use ridgelight::plan::{Azimuth, Nodes, Pass};
 use ridgelight::scene::{Border, Environment, Receiver, Wedges};
 use ridgelight_cpu::env_rotation as turns_reference;
-use ridgelight_cpu::harmonics::{Seen, matrix_magnitudes};
+use ridgelight_cpu::harmonics::{Visibility, matrix_magnitudes};
 use ridgelight_cpu::light_matrix as matrix_reference;
-use ridgelight_cpu::sh_shade::{gloss_on, light_at, nodes_around};
+use ridgelight_cpu::sh_shade::{light_at, nodes_around, specular_on};
 use ridgelight_cpu::sh_visibility::{Series, sh_visibility as visibility_reference};
 use ridgelight_cpu::sh_wedges::sh_wedges as wedges_reference;
 use ridgelight_cpu::shared::field::{field_slope, normal_of};
@@ -67,7 +67,7 @@ pub(super) fn light_matrix(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let mut series = matrix_reference::series(&turns, height, light_order, fitted);
     let sky = [0, 4, 8].map(|at| f32::from_bits(pushed(pass, SKY + at)));
     matrix_reference::add_sky(&mut series, sky);
-    let specular = (pass.part == "glossy").then_some(sky);
+    let specular = (pass.part == "specular").then_some(sky);
     let want = match specular {
         None => matrix_reference::light_matrix(&quality, &series),
         Some(_) => matrix_reference::specular_matrix(&quality, &series),
@@ -209,8 +209,8 @@ pub(super) fn sh_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let nodes = Nodes { stride: constant(pass, "node_stride") };
     let across = nodes.size(run.plan.size)[0];
     let none = vec![0.0; order * order];
-    let seen: Vec<Seen> =
-        seen.into_iter().map(|values| Seen { values, errors: none.clone() }).collect();
+    let seen: Vec<Visibility> =
+        seen.into_iter().map(|values| Visibility { values, errors: none.clone() }).collect();
     let mut pairs = Vec::new();
     for (i, got) in got.chunks_exact(4).enumerate() {
         let at = [0, i / cols, i % cols];
@@ -221,13 +221,13 @@ pub(super) fn sh_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         } else {
             let around = nodes_around(&heights, nodes, place);
             let node = |[col, row]: [u32; 2]| &seen[(row * across + col) as usize];
-            between = Seen::between(around.iter().map(|(at, w)| (node(*at), *w)), &error);
+            between = Visibility::between(around.iter().map(|(at, w)| (node(*at), *w)), &error);
             &between
         };
         let is_specular = constant(pass, "receiver") == 2;
         let want = if is_specular {
             let normal = normal_of(field_slope(&heights, place[0], place[1]));
-            gloss_on(normal, run.lobe(i), &seen.values, &matrix)
+            specular_on(normal, run.lobe(i), &seen.values, &matrix)
         } else {
             light_at(&heights, &seen.values, &matrix, place)
         };

@@ -62,7 +62,7 @@ pub(super) fn sphere_sh_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
             let soft = reference.at(&sphere_light, row, col);
             let n = normal(&run.scene.field, border, row, col);
             let slope = slope_error(&seen, &quality, is_pyramid);
-            let off = errors.tolerance(&seen, slope, n, &soft.seen);
+            let off = errors.tolerance(&seen, slope, n, &soft.visibility);
             let brightest = sphere_light.radiance.iter().fold(0.0, |m: f32, v| m.max(*v));
             let light = soft.light.max(0.0);
             sum.iter_mut().zip(sphere_light.radiance).for_each(|(s, r)| *s += light * f64::from(r));

@@ -102,7 +102,7 @@ pub(super) fn specular_visibility(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 pub(super) fn specular_exit(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     use offsets::specular_exit_push::BEGINS;
     let [order, direct, has_bounces, vectors, halves] =
-        ["order", "is_direct", "throws", "vectors", "halves"]
+        ["order", "is_direct", "is_bounced", "vectors", "halves"]
             .map(|name| constant(pass, name) as usize);
     let (is_direct, has_bounces, has_vectors) = (direct == 1, has_bounces == 1, vectors == 1);
     let has_series = has_vectors || !is_direct;
@@ -114,12 +114,12 @@ pub(super) fn specular_exit(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let mut pairs = Vec::new();
     let mut seen = Vec::new();
     if is_direct {
-        seen = colours(&run.floats(pass, "gloss_direct").expect("bound"));
+        seen = colours(&run.floats(pass, "specular_direct").expect("bound"));
     } else {
         if pushed(pass, BEGINS) == 1 {
             run.specular = vec![[0.0; 3]; cols * rows];
         }
-        let got = colours(&run.floats(pass, "gloss_bounced").expect("written"));
+        let got = colours(&run.floats(pass, "specular_bounced").expect("written"));
         for (i, got) in got.iter().enumerate() {
             let own = mirrored(&arriving[i], normals[i], run.lobe(i));
             let off = f64::from(run.lobe(i).scale) * device_sh_specular(order, error);
@@ -138,7 +138,7 @@ pub(super) fn specular_exit(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     }
     let diffuse = run.exit(pass);
     if !has_vectors {
-        let got = run.floats(pass, "exit_seen").expect("written");
+        let got = run.floats(pass, "exit_upward").expect("written");
         let channels = got.len() / (cols * rows);
         for (i, got) in got.chunks_exact(channels).enumerate() {
             for c in 0..channels.min(3) {

@@ -24,7 +24,7 @@ use super::{Pair, Run, constant, fuse_of, pushed};
 /// Heights are moved, not changed.
 pub(super) fn height_transpose(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let [cols, rows] = run.size();
-    let samples = run.heights().samples;
+    let samples = run.heights().heights_m;
     let by_row = constant(pass, "marches_rows") == 1;
     let (lanes, want) = if by_row {
         (cols, heights_by_row(samples))
@@ -89,7 +89,8 @@ pub(super) fn horizon_sweep(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let occluders =
         stored(run, pass, "occluders", 2).filter(|_| constant(pass, "writes_occluders") == 1);
     let slopes = stored(run, pass, "slopes", if slope_format == 1 { 4 } else { 2 });
-    let packed = (constant(pass, "hull_packed") == 1).then(|| height_scale(run.heights().samples));
+    let packed =
+        (constant(pass, "hull_packed") == 1).then(|| height_scale(run.heights().heights_m));
     let first = pushed(pass, offsets::horizon_sweep_push::FIRST_AZIMUTH) as usize;
     let mut pairs = Vec::new();
     for k in first..first + pass.groups[2] as usize {
@@ -315,7 +316,7 @@ pub(super) fn sweep_fuse(run: &mut Run, pass: &Pass) -> Vec<Pair> {
                     pairs.extend((!on_edge).then_some(pair));
                 } else {
                     let march = March::new(swept.heights, azimuth);
-                    let sample = march.of_sample(col as i32, row as i32);
+                    let sample = march.of_grid_point(col as i32, row as i32);
                     let steepest = 2.0 * largest / f64::from(azimuth.step_m);
                     let error = slope_error + 8.0 * EPSILON * steepest;
                     let back = got / f64::from(azimuth.step_m);

@@ -16,14 +16,15 @@ pub struct Job<'a> {
 }
 
 impl Job<'_> {
-    fn samples(&self) -> usize {
+    fn grid_points(&self) -> usize {
         self.lit.scene.field.heights_m().len()
     }
 
     /// Every file and an upper bound of its bytes.
     pub fn files(&self) -> Vec<(String, u64)> {
         let pairs = self.wanted.iter().zip(&self.making);
-        let mut all: Vec<_> = pairs.flat_map(|(w, m)| w.files(&m.map, self.samples())).collect();
+        let mut all: Vec<_> =
+            pairs.flat_map(|(w, m)| w.files(&m.map, self.grid_points())).collect();
         // The manifest: each file and its decoding, each plane's name, each direction's three
         // numbers.
         let planes: usize = self.making.iter().map(|m| m.map.planes.len()).sum();
@@ -36,12 +37,13 @@ impl Job<'_> {
     /// Bytes in this process: sums, planes that wait for their files, normals, and azimuths read
     /// back.
     pub fn host_bytes(&self, limits: &Limits) -> u64 {
-        let (samples, field) = (self.samples(), &self.lit.scene.field);
-        let of =
-            |(w, m): (&Wanted, &Making)| m.source.bytes(&self.lit) + w.held_bytes(&m.map, samples);
+        let (grid_points, field) = (self.grid_points(), &self.lit.scene.field);
+        let of = |(w, m): (&Wanted, &Making)| {
+            m.source.bytes(&self.lit) + w.held_bytes(&m.map, grid_points)
+        };
         let pairs = self.wanted.iter().zip(&self.making);
         let azimuths = u64::from(horizon::at_once(field, limits).min(self.lit.quality.azimuths));
-        pairs.map(of).sum::<u64>() + (24 + 4 * azimuths) * samples as u64
+        pairs.map(of).sum::<u64>() + (24 + 4 * azimuths) * grid_points as u64
     }
 
     /// Kinds that trace directions.

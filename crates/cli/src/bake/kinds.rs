@@ -77,7 +77,7 @@ pub struct Request<'a> {
     /// Whether the surface has Phong specular.
     pub has_specular: bool,
     /// Of the field.
-    pub samples: usize,
+    pub grid_points: usize,
 }
 
 /// The layout of a map in its files.
@@ -98,9 +98,9 @@ pub struct Map {
 }
 
 impl Map {
-    /// Texels of a plane, for a field of `samples` grid points.
-    pub fn texels(&self, samples: usize) -> usize {
-        self.size.map_or(samples, |[cols, rows]| cols * rows)
+    /// Texels of a plane, for a field of `grid_points` grid points.
+    pub fn texels(&self, grid_points: usize) -> usize {
+        self.size.map_or(grid_points, |[cols, rows]| cols * rows)
     }
 }
 
@@ -228,11 +228,11 @@ struct Sums {
 }
 
 impl Sums {
-    fn begin(what: Box<dyn HorizonMap>, asked: &Request, map: Map) -> Making {
+    fn begin(what: Box<dyn HorizonMap>, request: &Request, map: Map) -> Making {
         // The sums, and the values computed from them.
-        let bytes =
-            HorizonSums::bytes(&*what, asked.samples) + 4 * (what.values() * asked.samples) as u64;
-        let summing = HorizonSums::new(what, asked.samples);
+        let bytes = HorizonSums::bytes(&*what, request.grid_points)
+            + 4 * (what.values() * request.grid_points) as u64;
+        let summing = HorizonSums::new(what, request.grid_points);
         Making { map, source: Source::Horizons(Box::new(Self { summing, bytes })) }
     }
 }

@@ -186,7 +186,7 @@ fn in_turn(
         runs: scalar_ns.len(),
         times: Summary::of(&scalar_ns),
         bytes: 0,
-        work: scalar.samples() * u64::from(SCALAR_AZIMUTHS),
+        work: scalar.points() * u64::from(SCALAR_AZIMUTHS),
     };
     Ok([ours, rival])
 }

@@ -42,7 +42,7 @@ impl Row {
             runs,
             times: Summary::of(times_ns),
             bytes: passes.iter().map(|p| p.bytes).sum(),
-            work: passes.iter().map(|p| p.samples).sum(),
+            work: passes.iter().map(|p| p.texels).sum(),
         }
     }
 
@@ -139,7 +139,7 @@ pub fn trace(device: &str, driver: &str, plan: &Plan, frame: &[Timing]) -> Value
         let us = timing.ns * 1e-3;
         events.push(json!({
             "name": timing.label, "cat": "pass", "ph": "X", "ts": start_us, "dur": us, "pid": 1, "tid": 1,
-            "args": { "why": pass.why, "bytes": pass.bytes, "samples": pass.samples, "groups": pass.groups },
+            "args": { "why": pass.why, "bytes": pass.bytes, "texels": pass.texels, "groups": pass.groups },
         }));
         start_us += us;
     }

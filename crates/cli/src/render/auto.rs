@@ -52,10 +52,10 @@ pub fn choose(
     let mut drawn = 0;
     let probes = (Probes::affordable(scene), u64::from(seed));
     let gpu = RefCell::new(gpu);
-    let mut trace = |samples: &[usize], batches: u32, seed: u32| {
+    let mut trace = |places: &[usize], batches: u32, seed: u32| {
         let paths = batches * plan::REFERENCE_BATCH;
-        bar.set_message(format!("tracing {paths} paths from each of {} probes", samples.len()));
-        trace(&mut gpu.borrow_mut(), limits, (scene, bounces), samples, (batches, seed))
+        bar.set_message(format!("tracing {paths} paths from each of {} probes", places.len()));
+        trace(&mut gpu.borrow_mut(), limits, (scene, bounces), places, (batches, seed))
     };
     let bounced = (bounces > 0).then_some(Bounced { count: bounces, trace: &mut trace });
     let mut chosen = auto::choose(scene, goal, probes, bounced, |quality| {
@@ -116,14 +116,14 @@ fn trace(
     gpu: &mut Headless,
     limits: &Limits,
     (scene, bounces): (&Scene, u32),
-    samples: &[usize],
+    places: &[usize],
     (batches, seed): (u32, u32),
 ) -> Result<Vec<Traced>> {
-    let plan = plan::reference_at(scene, bounces, seed, samples.len(), limits)?;
+    let plan = plan::reference_at(scene, bounces, seed, places.len(), limits)?;
     let is_traced = |i: &usize| plan.passes[*i].name() == "path_trace";
     let passes: Vec<usize> = (0..plan.passes.len()).filter(is_traced).collect();
     let mut contents = plan::reference_inputs(scene);
-    contents.push(plan::listed_places(scene, samples)?);
+    contents.push(plan::listed_places(scene, places)?);
     let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
     let [means, errors] = gpu.with_frame(plan, &contents, |gpu, frame| {
         gpu.draw(frame)?;
@@ -137,7 +137,7 @@ fn trace(
         }
         Ok([reference::picture(gpu, frame, 0)?, reference::picture(gpu, frame, 1)?])
     })?;
-    let both = means.iter().zip(&errors).take(samples.len());
+    let both = means.iter().zip(&errors).take(places.len());
     let light = |c: &[f32; 3]| c.map(f64::from);
     Ok(both.map(|(m, e)| Traced { mean: light(m), standard_error: light(e) }).collect())
 }
@@ -153,7 +153,7 @@ pub fn metadata(
     chosen: &Chosen,
     scene: &Scene,
 ) -> Vec<(String, String)> {
-    let asked = match goal {
+    let wanted = match goal {
         Goal::MaxError(most) => ("max_error", most.to_string()),
         Goal::MaxCost(ns) => ("time_budget_ms", (ns / 1e6).to_string()),
     };
@@ -166,7 +166,7 @@ pub fn metadata(
     let measured = &chosen.trial.measured;
     let confidence = chosen.confidence.map_or_else(|| "none".to_owned(), |c| c.to_string());
     [
-        asked,
+        wanted,
         ("error_expected", chosen.expected.error.to_string()),
         ("error_expected_deviation_factor", chosen.expected.factor.to_string()),
         ("error_measured", measured.error.to_string()),

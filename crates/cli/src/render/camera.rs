@@ -120,18 +120,18 @@ impl CameraView {
 pub fn write(
     args: &RenderArgs,
     camera_view: &CameraView,
-    seen: &ViewPixels,
+    pixels: &ViewPixels,
     metadata: &[(String, String)],
 ) -> Result<()> {
     let [cols, rows] = camera_view.options.size.map(|n| n as usize);
     if setup::extension(&args.output) != "exr" {
         let tone = Tone { exposure: args.exposure };
-        return files::write_png(&args.output, rows, cols, &seen.radiance, None, tone, metadata);
+        return files::write_png(&args.output, rows, cols, &pixels.radiance, None, tone, metadata);
     }
     let main = |channels| FileLayer { name: String::new(), channels };
-    let mut layers = vec![main(Channels::Rgb(&seen.radiance))];
+    let mut layers = vec![main(Channels::Rgb(&pixels.radiance))];
     if !args.layers.is_empty() {
-        layers.push(main(Channels::Scalar("Z", &seen.distances_m)));
+        layers.push(main(Channels::Scalar("Z", &pixels.distances_m)));
     }
     files::write_exr(&args.output, rows, cols, &layers, metadata)
 }

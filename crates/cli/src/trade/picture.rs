@@ -75,9 +75,9 @@ pub fn pictures(
     let mean = |planes: &[Vec<f32>], i: usize| {
         planes.iter().map(|p| f64::from(p[i])).sum::<f64>() / planes.len() as f64
     };
-    let texels = downsized(field, |samples| {
+    let texels = downsized(field, |grid_points| {
         // The largest of either sign: a mean would hide single texels.
-        let largest = samples
+        let largest = grid_points
             .map(|i| mean(planes, i) - mean(&ground_truth.planes, i))
             .fold(0.0, |m: f64, d| if d.abs() > m.abs() { d } else { m });
         let share = largest / tones.mean.abs().max(f64::MIN_POSITIVE) / scale;
@@ -85,14 +85,14 @@ pub fn pictures(
         full.map(|c: f64| (0.02 + share.abs().min(1.0) * (c - 0.02)) as f32)
     });
     let difference = encode(field, &texels, 1.0)?;
-    let seen = |planes: &[Vec<f32>]| -> Vec<[f32; 3]> {
+    let toned = |planes: &[Vec<f32>]| -> Vec<[f32; 3]> {
         let last = planes.len() - 1;
         (0..planes[0].len())
             .map(|i| [0, 1, 2].map(|c| planes[c.min(last)][i] / tones.white))
             .collect()
     };
     let map =
-        flip::map(&seen(planes), &seen(&ground_truth.planes), field.cols(), PIXELS_PER_DEGREE)?;
+        flip::map(&toned(planes), &toned(&ground_truth.planes), field.cols(), PIXELS_PER_DEGREE)?;
     let flip = FlipError::of(&map, field.cols())?;
     Ok(Pictures { light: light_png(field, planes, tones)?, difference, scale, flip })
 }
@@ -135,9 +135,9 @@ fn downsized<T>(
 /// A PNG of radiance between the tones' black and white.
 pub fn light_png(field: &HeightField, planes: &[Vec<f32>], tones: &Tones) -> Result<Vec<u8>> {
     let last = planes.len() - 1;
-    let texels = downsized(field, |samples| {
+    let texels = downsized(field, |grid_points| {
         let (mut sum, mut count) = ([0.0_f64; 3], 0.0_f64);
-        for i in samples {
+        for i in grid_points {
             (0..3).for_each(|c| sum[c] += f64::from(planes[c.min(last)][i]));
             count += 1.0;
         }
@@ -148,7 +148,7 @@ pub fn light_png(field: &HeightField, planes: &[Vec<f32>], tones: &Tones) -> Res
 
 fn encode(field: &HeightField, texels: &[[f32; 3]], exposure: f32) -> Result<Vec<u8>> {
     let [rows, cols] = small(field).0;
-    let empty = downsized(field, |samples| samples.next().is_none());
+    let empty = downsized(field, |grid_points| grid_points.next().is_none());
     let transparent = empty.contains(&true).then_some(&empty[..]);
     files::encode_png(rows, cols, texels, transparent, Tone { exposure }, &[])
 }

@@ -115,13 +115,13 @@ impl<'a> Rig<'a> {
         let seconds = begun.elapsed().as_secs_f64();
         self.gpu.end(frame);
         second?;
-        let samples = |f: &HeightField| (f.rows() * f.cols()) as f64;
+        let grid_points = |f: &HeightField| (f.rows() * f.cols()) as f64;
         let side = |f: &HeightField| f.rows().max(f.cols()) as f64;
         let (whole, part) = (&self.scene.field, &piece.field);
         let longer = match quality.method {
             Method::BruteForce => side(whole) / side(part),
             _ => 1.0,
         };
-        Ok(seconds / azimuths * longer * samples(whole) / samples(part))
+        Ok(seconds / azimuths * longer * grid_points(whole) / grid_points(part))
     }
 }

@@ -13,8 +13,8 @@ use crate::args::albedo_colour;
 const NEAR: f64 = 1e-6;
 
 /// Refuses a file whose metadata states another surface, border or light, or light that no settings
-/// here compute. `asked` is this scene's metadata. A file without metadata is accepted.
-pub fn check(path: &Path, scene: &Scene, asked: &[(String, String)]) -> Result<()> {
+/// here compute. `metadata` is this scene's. A file without metadata is accepted.
+pub fn check(path: &Path, scene: &Scene, metadata: &[(String, String)]) -> Result<()> {
     let stated = files::read_metadata(path)?;
     let stated: BTreeMap<String, String> =
         stated.into_iter().map(|(name, value)| (new_key(name), value)).collect();
@@ -22,7 +22,7 @@ pub fn check(path: &Path, scene: &Scene, asked: &[(String, String)]) -> Result<(
         return Ok(());
     }
     let field = &scene.field;
-    let mut ours: BTreeMap<String, String> = asked.iter().cloned().collect();
+    let mut ours: BTreeMap<String, String> = metadata.iter().cloned().collect();
     ours.insert("cell_m".to_owned(), format!("{},{}", field.cell_m()[0], field.cell_m()[1]));
     ours.insert("base_m".to_owned(), field.base_m().to_string());
     ours.insert("border".to_owned(), format!("{:?}", scene.surface.border).to_lowercase());

@@ -104,8 +104,8 @@ pub fn walk(
             },
             places[place].flags(ladders)
         ));
-        let truths = (ground_truth, tones);
-        if let Err(error) = visit(rig, truths, place, places, &mut walk, &mut frame, &mut slow) {
+        let reference = (ground_truth, tones);
+        if let Err(error) = visit(rig, reference, place, places, &mut walk, &mut frame, &mut slow) {
             break Err(error);
         }
     };

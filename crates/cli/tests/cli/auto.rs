@@ -166,7 +166,7 @@ fn gpu_a_max_error_holds_with_bounces() {
     let lights = Lights { sky: Some([1.0; 3]), ..Lights::default() };
     let scene = Scene { field, surface, lights };
     let fineness = Fineness { azimuths: 32, divisions: 1, strips: 1 };
-    let truth = indirect::truth(&scene, 2, fineness).unwrap();
+    let truth = indirect::ground_truth(&scene, 2, fineness).unwrap();
     let root = |of: &dyn Fn(usize) -> f64| {
         ((0..SIDE * SIDE).map(|i| of(i).powi(2)).sum::<f64>() / (SIDE * SIDE) as f64).sqrt()
     };

@@ -41,14 +41,14 @@ pub struct Draped<'a> {
 impl Draped<'_> {
     /// The directions that direction `i` may move with at a grid point: itself where the surface is visible, else the
     /// neighbours with visible surface that are within `slack` of the nearest's cosine; empty where it stays.
-    pub fn movers(&self, i: usize, sample: usize, slack: f64) -> Vec<(usize, usize)> {
+    pub fn movers(&self, i: usize, grid_point: usize, slack: f64) -> Vec<(usize, usize)> {
         let vectors = self.points.directions().vectors();
-        let met = |j: usize| match self.points.seen(j, sample) {
-            VisiblePoint::Sample(there) => Some((j, there)),
+        let met = |j: usize| match self.points.point(j, grid_point) {
+            VisiblePoint::GridPoint(there) => Some((j, there)),
             VisiblePoint::Sky | VisiblePoint::Ground => None,
         };
-        match self.points.seen(i, sample) {
-            VisiblePoint::Sample(there) => return vec![(i, there)],
+        match self.points.point(i, grid_point) {
+            VisiblePoint::GridPoint(there) => return vec![(i, there)],
             VisiblePoint::Ground => return Vec::new(),
             VisiblePoint::Sky => {}
         }
@@ -65,13 +65,13 @@ impl Draped<'_> {
     }
 
     /// The bent directions of a grid point, direction after direction.
-    pub fn bent(&self, sample: usize) -> Vec<DVec3> {
+    pub fn bent(&self, grid_point: usize) -> Vec<DVec3> {
         let vectors = self.points.directions().vectors();
-        let own = f64::from(self.field.heights_m()[sample]);
-        let of = |i: usize| match self.movers(i, sample, 0.0).first() {
+        let own = f64::from(self.field.heights_m()[grid_point]);
+        let of = |i: usize| match self.movers(i, grid_point, 0.0).first() {
             Some((with, there)) => {
                 let on = (self.field, self.border);
-                let ways = Ways::of(on, self.curvature, [sample, *there], vectors[*with]);
+                let ways = Ways::of(on, self.curvature, [grid_point, *there], vectors[*with]);
                 bent_direction(vectors[i], ways.met().away_m, own, self.curvature)
             }
             None => vectors[i],
@@ -86,7 +86,7 @@ impl Draped<'_> {
         &self,
         triangles: &Triangles,
         bent: &[DVec3],
-        sample: usize,
+        grid_point: usize,
         light: DVec3,
     ) -> Option<f64> {
         let shares = triangles.corners().iter().filter_map(|face| {
@@ -102,7 +102,7 @@ impl Draped<'_> {
             for ((i, e), part) in face.iter().zip([a, b, c]).zip(of) {
                 let part = if e.z > 0.0 { part.max(0.0) } else { 0.0 };
                 all += part;
-                if self.points.seen(*i as usize, sample) == VisiblePoint::Sky {
+                if self.points.point(*i as usize, grid_point) == VisiblePoint::Sky {
                     lit += part;
                 }
             }

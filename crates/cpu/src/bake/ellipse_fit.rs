@@ -64,7 +64,7 @@ impl Ellipse {
 }
 
 /// A direction above horizontal, and whether its sky is visible.
-pub type Seen = (DVec3, bool);
+pub type SkyDirection = (DVec3, bool);
 
 /// The search's first step, its last, and the largest step count; of radii and centre, in units of the disc's radius.
 pub const FIRST_STEP: f64 = 0.25;
@@ -86,26 +86,30 @@ pub const MOVES: [(f64, f64); 8] = [
 ];
 
 /// Sky visibility of a grid point above horizontal.
-pub fn seen(points: &VisiblePoints, sample: usize) -> Vec<Seen> {
+pub fn sky_directions(points: &VisiblePoints, grid_point: usize) -> Vec<SkyDirection> {
     let all = points.directions().vectors().iter().enumerate().filter(|(_, e)| e.z > 0.0);
-    all.map(|(i, e)| (*e, points.seen(i, sample) == VisiblePoint::Sky)).collect()
+    all.map(|(i, e)| (*e, points.point(i, grid_point) == VisiblePoint::Sky)).collect()
 }
 
 /// The same on a curved base surface, where a grid point's directions are `bent`.
-pub fn seen_bent(points: &VisiblePoints, bent: &[DVec3], sample: usize) -> Vec<Seen> {
+pub fn bent_sky_directions(
+    points: &VisiblePoints,
+    bent: &[DVec3],
+    grid_point: usize,
+) -> Vec<SkyDirection> {
     let all = bent.iter().enumerate().filter(|(_, e)| e.z > 0.0);
-    all.map(|(i, e)| (*e, points.seen(i, sample) == VisiblePoint::Sky)).collect()
+    all.map(|(i, e)| (*e, points.point(i, grid_point) == VisiblePoint::Sky)).collect()
 }
 
 /// Lit minus shadowed directions inside.
-pub fn score(ellipse: &Ellipse, seen: &[Seen]) -> i64 {
-    let within = seen.iter().filter(|(e, _)| ellipse.holds(*e));
+pub fn score(ellipse: &Ellipse, sky: &[SkyDirection]) -> i64 {
+    let within = sky.iter().filter(|(e, _)| ellipse.holds(*e));
     within.map(|(_, is_lit)| if *is_lit { 1 } else { -1 }).sum()
 }
 
 /// Mean and covariance (xx, xy, yy) of the lit directions over the plan's area; zeros where none is.
-pub fn moments(seen: &[Seen]) -> (DVec2, [f64; 3]) {
-    let lit = || seen.iter().filter(|s| s.1).map(|(e, _)| (e.truncate(), e.z));
+pub fn moments(sky: &[SkyDirection]) -> (DVec2, [f64; 3]) {
+    let lit = || sky.iter().filter(|s| s.1).map(|(e, _)| (e.truncate(), e.z));
     let weight = lit().map(|(_, z)| z).sum::<f64>().max(1e-30);
     let mean = lit().map(|(p, z)| p * z).sum::<DVec2>() / weight;
     let mut spread = [0.0; 3];
@@ -119,9 +123,9 @@ pub fn moments(seen: &[Seen]) -> (DVec2, [f64; 3]) {
 }
 
 /// Where the search starts.
-pub fn start(seen: &[Seen]) -> Ellipse {
-    let least = least_radius(seen.len());
-    let (centre, [xx, xy, yy]) = moments(seen);
+pub fn start(sky: &[SkyDirection]) -> Ellipse {
+    let least = least_radius(sky.len());
+    let (centre, [xx, xy, yy]) = moments(sky);
     let (half_sum, half_difference) = (0.5 * (xx + yy), 0.5 * (xx - yy));
     let root = half_difference.hypot(xy);
     let axis = if half_difference >= 0.0 {
@@ -136,15 +140,15 @@ pub fn start(seen: &[Seen]) -> Ellipse {
 
 /// The ellipse and its [`score`]: from a start, moved to its best neighbour while that is better, then by half the
 /// step. The whole disc where that is as good, nothing where no ellipse is better than that.
-pub fn fit(seen: &[Seen]) -> (Ellipse, i64) {
-    let lit = seen.iter().filter(|s| s.1).count() as i64;
-    let whole = 2 * lit - seen.len() as i64;
-    if lit == 0 || lit == seen.len() as i64 {
+pub fn fit(sky: &[SkyDirection]) -> (Ellipse, i64) {
+    let lit = sky.iter().filter(|s| s.1).count() as i64;
+    let whole = 2 * lit - sky.len() as i64;
+    if lit == 0 || lit == sky.len() as i64 {
         return if lit == 0 { (Ellipse::EMPTY, 0) } else { (Ellipse::WHOLE, whole) };
     }
-    let least = least_radius(seen.len());
-    let mut found = start(seen);
-    let mut best = score(&found, seen);
+    let least = least_radius(sky.len());
+    let mut found = start(sky);
+    let mut best = score(&found, sky);
     let mut step = FIRST_STEP;
     for _ in 0..MOST_STEPS {
         if step < LAST_STEP {
@@ -152,7 +156,7 @@ pub fn fit(seen: &[Seen]) -> (Ellipse, i64) {
         }
         let mut next = None;
         for other in neighbours(&found, step, least) {
-            let of_other = score(&other, seen);
+            let of_other = score(&other, sky);
             if of_other > best {
                 (best, next) = (of_other, Some(other));
             }

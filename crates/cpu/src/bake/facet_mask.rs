@@ -23,7 +23,7 @@ pub fn cells(field: &HeightField, border: Border) -> [usize; 2] {
 
 /// Whether a triangle has a free view along `e`; and the same with an elevation error of so much. `finer` is the
 /// oracle of the threefold finer field.
-pub fn sees_sky(
+pub fn sky_is_visible(
     finer: &Oracle,
     (facet, cells_x): (usize, usize),
     e: DVec3,
@@ -51,9 +51,9 @@ pub fn facet_mask(
     let mut words = vec![0; directions.count().div_ceil(DIRECTIONS_A_WORD) * count];
     for (i, e) in directions.vectors().iter().enumerate() {
         for facet in 0..2 * count {
-            let [is_seen, _] = sees_sky(&oracle, (facet, cells_x), *e, 0.0);
+            let [is_visible, _] = sky_is_visible(&oracle, (facet, cells_x), *e, 0.0);
             let bit = 2 * (i % DIRECTIONS_A_WORD) + facet % 2;
-            words[i / DIRECTIONS_A_WORD * count + facet / 2] |= u32::from(is_seen) << bit;
+            words[i / DIRECTIONS_A_WORD * count + facet / 2] |= u32::from(is_visible) << bit;
         }
     }
     Ok(words)

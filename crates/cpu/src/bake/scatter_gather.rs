@@ -19,12 +19,12 @@ pub struct Gathered {
 }
 
 /// Reflectances and normals of a field's grid points.
-pub struct Samples<'a> {
+pub struct GridPoints<'a> {
     scene: &'a Scene,
     normals: Vec<DVec3>,
 }
 
-impl<'a> Samples<'a> {
+impl<'a> GridPoints<'a> {
     /// Of a scene's field.
     pub fn of(scene: &'a Scene) -> Self {
         let (field, border) = (&scene.field, scene.surface.border);
@@ -58,8 +58,8 @@ impl<'a> Samples<'a> {
     }
 
     /// Of a grid point, where there is Phong specular.
-    pub fn lobe(&self, at: usize) -> Option<PhongSpecular> {
-        self.scene.surface.specular.as_ref().map(|lobe| lobe.at(at))
+    pub fn specular(&self, at: usize) -> Option<PhongSpecular> {
+        self.scene.surface.specular.as_ref().map(|specular| specular.at(at))
     }
 
     /// Light scattered by grid point `at` towards `back`, from `diffuse` radiance and specular radiance `mirrored`
@@ -76,7 +76,7 @@ impl<'a> Samples<'a> {
         let facing = [0, 1, 2].map(|c| solid_sr * albedo[c] / PI * diffuse[c]);
         let light = facing.map(|f| f * cosine);
         let mut of = Gathered { light, facing, ..Gathered::default() };
-        if let Some(PhongSpecular { exponent, scale }) = self.lobe(at) {
+        if let Some(PhongSpecular { exponent, scale }) = self.specular(at) {
             let (exponent, scale) = (f64::from(exponent), f64::from(scale));
             let mirror = 2.0 * n.dot(back) * n - back;
             let middle = scale * (exponent + 1.0) / TAU;
@@ -99,7 +99,7 @@ pub fn expected(
     direct: &[[f64; 3]],
     bounces: u32,
 ) -> Vec<[f64; 3]> {
-    let samples = Samples::of(scene);
+    let grid_points = GridPoints::of(scene);
     let share = points.directions().share_sr();
     let mut leaving = direct.to_vec();
     let mut sums = vec![[0.0; 3]; direct.len()];
@@ -107,9 +107,9 @@ pub fn expected(
         for (at, sum) in sums.iter_mut().enumerate() {
             *sum = [0.0; 3];
             for (i, e) in points.directions().vectors().iter().enumerate() {
-                if let VisiblePoint::Sample(there) = points.seen(i, at) {
+                if let VisiblePoint::GridPoint(there) = points.point(i, at) {
                     let arrives = [leaving[there], [0.0; 3]];
-                    let more = samples.scattered(at, (*e, share), DVec3::Z, arrives).light;
+                    let more = grid_points.scattered(at, (*e, share), DVec3::Z, arrives).light;
                     *sum = [0, 1, 2].map(|c| sum[c] + more[c]);
                 }
             }

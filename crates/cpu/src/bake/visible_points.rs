@@ -1,5 +1,5 @@
-//! The visible point of a grid point in a direction, in f64, by testing every surface piece along its azimuth: ground
-//! truth, which shares no code with the device's rays.
+//! The visible point of a grid point in a direction, in f64, by testing every surface piece along its azimuth: the
+//! ground truth, which shares no code with the device's rays.
 
 use crate::oracle::Oracle;
 use crate::profile::VisibleInterval;
@@ -14,8 +14,8 @@ pub fn visible_points(
     directions: &Directions,
 ) -> Vec<VisiblePoint> {
     let oracle = Oracle::new(field, border);
-    let samples = field.rows() * field.cols();
-    let each = directions.vectors().iter().flat_map(|e| (0..samples).map(move |at| (*e, at)));
+    let grid_points = field.rows() * field.cols();
+    let each = directions.vectors().iter().flat_map(|e| (0..grid_points).map(move |at| (*e, at)));
     each.map(|(e, at)| visible_point(&oracle, [at / field.cols(), at % field.cols()], e)).collect()
 }
 
@@ -59,13 +59,13 @@ pub fn possible_within(
 ) -> Vec<VisiblePoint> {
     // Straight up or down there is no azimuth: sky, or the grid point itself.
     if e.x == 0.0 && e.y == 0.0 {
-        let own = VisiblePoint::Sample(row * oracle.field().cols() + col);
+        let own = VisiblePoint::GridPoint(row * oracle.field().cols() + col);
         return vec![if e.z > 0.0 { VisiblePoint::Sky } else { own }];
     }
     let elevation = e.z.atan2(e.x.hypot(e.y));
-    let mut seen = Vec::new();
-    oracle.visible_intervals(row, col, e.y.atan2(e.x), &mut seen);
-    let free = seen.last().map_or(-FRAC_PI_2, |last| last.high_rad);
+    let mut intervals = Vec::new();
+    oracle.visible_intervals(row, col, e.y.atan2(e.x), &mut intervals);
+    let free = intervals.last().map_or(-FRAC_PI_2, |last| last.high_rad);
     let beyond = |elevation: f64| match oracle.border() {
         Border::Plane | Border::Periodic if elevation <= 0.0 => VisiblePoint::Ground,
         _ => VisiblePoint::Sky,
@@ -77,13 +77,13 @@ pub fn possible_within(
         }
     };
     // The exact answer first.
-    match seen.iter().find(|interval| elevation < interval.high_rad) {
+    match intervals.iter().find(|interval| elevation < interval.high_rad) {
         Some(interval) => add(met(oracle, interval, interval.distance_m(elevation), [0.0; 2])),
         None => add(beyond(elevation)),
     }
     // Upper end of the interval below, where this one begins.
     let mut below = 0.0_f64;
-    for interval in &seen {
+    for interval in &intervals {
         let above = elevation_rad(interval);
         let ends = [interval.low_rad - below, interval.high_rad + above];
         let off = below.max(above);
@@ -130,7 +130,7 @@ fn met(
             Border::Plane | Border::Open => place.clamp(0, count as i64 - 1) as usize,
         }
     };
-    VisiblePoint::Sample(
+    VisiblePoint::GridPoint(
         nearest(row, down, off[0], rows) * cols + nearest(col, right, off[1], cols),
     )
 }

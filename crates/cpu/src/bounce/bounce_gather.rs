@@ -59,7 +59,7 @@ impl March {
 }
 
 /// Progress along a slice.
-struct Seen {
+struct Gathered {
     slice: Slice,
     /// Contribution of Legendre coefficients to the bands of a [`Receiver::Cosine`].
     bands: Option<[f64; 4]>,
@@ -67,7 +67,7 @@ struct Seen {
     casts: Vec<Cast>,
 }
 
-impl Seen {
+impl Gathered {
     /// Weight of the elevations up to one, without the common factor.
     fn weight_of(bands: &[f64; 4], angle: f64) -> f64 {
         occlusion(4, angle.sin(), angle.cos()).iter().zip(bands).map(|(o, b)| o * b).sum()
@@ -89,9 +89,9 @@ impl Seen {
             }
         };
         let radiance = radiance();
-        let seen =
+        let gathered =
             Cast { low_rad, high_rad, weight, facing, radiance, distance, ..Cast::default() };
-        self.casts.push(seen);
+        self.casts.push(gathered);
         self.top = high_rad;
     }
 }
@@ -128,13 +128,13 @@ impl BounceGather<'_> {
                 Receiver::Plane => (None, slice.light(-FRAC_PI_2, FRAC_PI_2)),
                 Receiver::Cosine => (Some(three_bands(&slice)), 0.5),
             };
-            let mut seen = Seen { slice, bands, top: slice.low, casts: Vec::new() };
+            let mut gathered = Gathered { slice, bands, top: slice.low, casts: Vec::new() };
             let march = self.march([col, row], azimuth_rad);
-            self.cast(&mut seen, &march, |angle, of| {
+            self.cast(&mut gathered, &march, |angle, of| {
                 let ((sin, cos), (s, c)) = (angle.sin_cos(), azimuth_rad.sin_cos());
                 radiance(&march, DVec3::new(cos * c, cos * s, sin), of)
             });
-            Along { azimuth_rad, low_rad: slice.low, whole, casts: seen.casts }
+            Along { azimuth_rad, low_rad: slice.low, whole, casts: gathered.casts }
         };
         (0..self.azimuths).map(along).collect()
     }
@@ -170,7 +170,7 @@ impl BounceGather<'_> {
 
     fn cast(
         &self,
-        seen: &mut Seen,
+        gathered: &mut Gathered,
         march: &March,
         radiance: impl Fn(f64, ([f64; 2], u32)) -> [f64; 3],
     ) {
@@ -183,8 +183,8 @@ impl BounceGather<'_> {
         let mut angles: Option<[(f64, i32); 4]> = None;
         // Radiance lookup of a knot: place and level.
         let mut before = ([0.0; 2], 0);
-        let (mut looked, mut at) = (0, 0);
-        let mut take_in = |newest: (f64, i32), of: ([f64; 2], u32), seen: &mut Seen| {
+        let (mut visited, mut at) = (0, 0);
+        let mut take_in = |newest: (f64, i32), of: ([f64; 2], u32), gathered: &mut Gathered| {
             let four = angles.map_or([newest; 4], |[_, a, b, c]| [a, b, c, newest]);
             let [x, y, z, w] = four.map(|(angle, _)| angle);
             let knot_of = if angles.is_none() { of } else { before };
@@ -192,29 +192,29 @@ impl BounceGather<'_> {
             // Both have the same radiance: the higher opens the elevations of both.
             let nearest = f64::from(four[0].1);
             let angle = middle.max(knot);
-            seen.cast(angle, nearest, || radiance(angle, knot_of));
+            gathered.cast(angle, nearest, || radiance(angle, knot_of));
             (angles, before) = (Some(four), of);
         };
         for next in 0_u32.. {
             let whole = (back + 0.5) as i32;
-            if whole > looked {
+            if whole > visited {
                 at = whole.min(march.reach);
                 let level = (next + 1).saturating_sub(fine).min(levels);
                 let own = self.height(march, level, march.here);
                 let rise = self.height(march, level, march.place(at)) - own;
                 angle = (rise / (f64::from(at) * march.step_m)).atan();
-                looked = whole;
+                visited = whole;
             }
             let (to, from) = (self.shade.level_step, self.pyramid.level_step);
             let shade =
                 ((next * to + from / 2) / from + 1).saturating_sub(self.shade.fine_samples());
             let of = (march.place(at), shade.min(self.shade.levels()));
-            take_in((angle, at), of, seen);
+            take_in((angle, at), of, gathered);
             back *= self.pyramid.growth();
             // Lookups that round to one distance are combined.
             if whole >= march.reach && (back + 0.5) as i32 > whole {
-                take_in((angle, at), of, seen);
-                take_in((angle, at), of, seen);
+                take_in((angle, at), of, gathered);
+                take_in((angle, at), of, gathered);
                 break;
             }
         }
@@ -239,13 +239,13 @@ impl BounceGather<'_> {
     fn height(&self, march: &March, level: u32, place: [f64; 2]) -> f64 {
         if let (Stored::Levels(texels), 1..) = (self.stored, level) {
             let of = self.pyramid.level(level);
-            let at = [0, 1].map(|i| place[i] as f32 * of.per_sample[i]);
+            let at = [0, 1].map(|i| place[i] as f32 * of.per_grid_point[i]);
             return f64::from(LevelTexels { pyramid: self.pyramid, texels }.spline_at(&of, at));
         }
-        let samples = self.pyramid.size[0] as usize * self.pyramid.size[1] as usize;
+        let grid_points = self.pyramid.size[0] as usize * self.pyramid.size[1] as usize;
         let (two, t) = self.beside(march, place);
         let [low, high] = two.map(|i| match self.stored {
-            Stored::Stack(stack) if level > 0 => stack[(level as usize - 1) * samples + i],
+            Stored::Stack(stack) if level > 0 => stack[(level as usize - 1) * grid_points + i],
             _ => self.field.heights_m()[i],
         });
         f64::from(low) + t * (f64::from(high) - f64::from(low))

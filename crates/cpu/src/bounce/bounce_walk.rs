@@ -41,9 +41,9 @@ impl Walked {
 pub fn bounce_walk(swept: &Swept, exit: &[[f32; 3]], col: i32, row: i32) -> Walked {
     let (all, turns) = walked_along(swept, exit, col, row);
     let (light, whole) = light_and_weight(&all);
-    let is_seen = |cast: &&Cast| cast.high_rad > cast.low_rad;
+    let is_visible = |cast: &&Cast| cast.high_rad > cast.low_rad;
     let visible_intervals =
-        all.iter().map(|along| along.casts.iter().filter(is_seen).count() as u32).sum();
+        all.iter().map(|along| along.casts.iter().filter(is_visible).count() as u32).sum();
     Walked { light: DVec3::from_array(light), whole, turns, visible_intervals }
 }
 
@@ -54,9 +54,9 @@ pub fn bounce_walk(swept: &Swept, exit: &[[f32; 3]], col: i32, row: i32) -> Walk
 pub fn walked_along(swept: &Swept, exit: &[[f32; 3]], col: i32, row: i32) -> (Vec<Along>, u32) {
     let mut turns = 0;
     let along = |azimuth| {
-        let seen = Walk::new(swept, exit, azimuth, col, row).walked();
-        turns += seen.turns;
-        seen.along
+        let walked = Walk::new(swept, exit, azimuth, col, row).walked();
+        turns += walked.turns;
+        walked.along
     };
     let all = swept.azimuths.iter().map(along).collect();
     (all, turns)
@@ -77,7 +77,7 @@ struct Walk<'a> {
 }
 
 /// Progress of a walk: the surface is visible up to `reached`, the slope of its last point that rose.
-struct Seen {
+struct Progress {
     along: Along,
     turns: u32,
     /// Weights of the two moments.
@@ -94,10 +94,10 @@ struct Place {
     light: DVec3,
 }
 
-impl Seen {
+impl Progress {
     /// The piece between two points, of which the far one may be visible: from where it rises above what is before
     /// it. Radiance is linear in the distance.
-    fn see(&mut self, near: Place, far: Place) {
+    fn add_interval(&mut self, near: Place, far: Place) {
         let under = (self.reached - near.slope).max(0.0) * near.steps;
         let over = (far.slope - self.reached) * far.steps;
         let begins = near.light.lerp(far.light, f64::from(under / (under + over)));
@@ -134,7 +134,7 @@ impl Seen {
 impl<'a> Walk<'a> {
     fn new(swept: &Swept<'a>, exit: &'a [[f32; 3]], azimuth: &Azimuth, col: i32, row: i32) -> Self {
         let march = March::new(swept.heights, azimuth);
-        let (lane, step) = march.of_sample(col, row);
+        let (lane, step) = march.of_grid_point(col, row);
         let gradient = field_slope(&swept.heights, col, row);
         let direction = DVec2::new(azimuth.cos_phi.into(), azimuth.sin_phi.into());
         let warm_up = swept.warm_up[usize::from(azimuth.marches_rows())];
@@ -191,7 +191,7 @@ impl<'a> Walk<'a> {
             .map_or(0, |texel| i32::from(self.lattice.occluders[texel]))
     }
 
-    fn walked(&self) -> Seen {
+    fn walked(&self) -> Progress {
         let azimuth = &self.march.azimuth;
         let flat = DVec2::new(azimuth.wedge_cos.into(), azimuth.wedge_sin.into());
         let faces =
@@ -204,7 +204,7 @@ impl<'a> Walk<'a> {
             whole,
             casts: Vec::new(),
         };
-        let mut seen = Seen { along, turns: 0, faces, passed, reached: self.plane };
+        let mut progress = Progress { along, turns: 0, faces, passed, reached: self.plane };
 
         let mut reach = self.step + self.settings.1;
         if !self.march.periodic() && azimuth.shear > 0 {
@@ -213,37 +213,38 @@ impl<'a> Walk<'a> {
         // Nothing rises behind the point where the nearest line has no occluder.
         let limit = self.occluder_at(0).max(1).min(reach);
         if limit < 1 {
-            return seen;
+            return progress;
         }
         // The triangle of the grid point: the first surface is met at once.
         let next = Place { steps: 1.0, slope: self.slope_at(1), light: self.light_at(1) };
         let own = self.leaving(self.lane, self.step);
         match split_crossing(&self.march, (self.lane, self.step), self.own) {
-            None => seen.add(next.slope, 1.0, [own, DVec3::ZERO]),
+            None => progress.add(next.slope, 1.0, [own, DVec3::ZERO]),
             Some(split) => {
-                seen.add(split.slope, split.steps, [own, DVec3::ZERO]);
+                progress.add(split.slope, split.steps, [own, DVec3::ZERO]);
                 let side = self.leaving(self.lane - 1, self.step);
                 let light = side.lerp(self.leaving(self.lane, self.step - 1), split.steps.into());
-                seen.see(Place { steps: split.steps, slope: split.slope, light }, next);
+                progress
+                    .add_interval(Place { steps: split.steps, slope: split.slope, light }, next);
             }
         }
         let (mut at, mut near) = (1, next);
         while at < limit {
-            seen.turns += 1;
+            progress.turns += 1;
             let back = self.occluder_at(at);
             if back == 0 {
                 break;
             }
             let mut to = (at + back).min(limit);
             let mut slope = self.slope_at(to);
-            if slope > seen.reached && to > at + 1 {
+            if slope > progress.reached && to > at + 1 {
                 to = at + 1;
                 slope = self.slope_at(to);
             }
             let far = Place { steps: to as f32, slope, light: self.light_at(to) };
-            seen.see(near, far);
+            progress.add_interval(near, far);
             (at, near) = (to, far);
         }
-        seen
+        progress
     }
 }

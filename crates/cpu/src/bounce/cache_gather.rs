@@ -8,7 +8,7 @@ use std::f64::consts::FRAC_PI_2;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cast {
     /// The grid point at the mean distance, row-major.
-    pub sample: usize,
+    pub grid_point: usize,
     /// March steps to there.
     pub steps: i32,
     /// Its weight.
@@ -25,7 +25,7 @@ pub fn cast_part(wedge_rad: f64) -> f64 {
 
 /// A word of the visibility cache, of the node at a column and a row.
 pub fn cast_of(march: &March, word: u32, [col, row]: [i32; 2]) -> Cast {
-    let (lane, step) = march.of_sample(col, row);
+    let (lane, step) = march.of_grid_point(col, row);
     let steps = (word & 0xffff) as i32;
     let inside = |i: i32, n: i32| if march.periodic() { wrapped(i, n) } else { i.clamp(0, n - 1) };
     let nearest = (lane * CELL - steps * march.azimuth.shear + CELL / 2) >> CELL_SHIFT;
@@ -34,7 +34,7 @@ pub fn cast_of(march: &March, word: u32, [col, row]: [i32; 2]) -> Cast {
     let by_row = march.azimuth.marches_rows();
     let (col, row) = if by_row { (lane_at, march_at) } else { (march_at, lane_at) };
     let weight = f64::from(word >> 16) * cast_part(march.azimuth.wedge_rad.into());
-    Cast { sample: row as usize * march.heights.cols + col as usize, steps, weight }
+    Cast { grid_point: row as usize * march.heights.cols + col as usize, steps, weight }
 }
 
 /// Radiance times weight; not yet divided by the sum for whole hemispheres.
@@ -42,7 +42,7 @@ pub fn cast_of(march: &March, word: u32, [col, row]: [i32; 2]) -> Cast {
 /// # Panics
 /// A cast refers to a grid point outside the field.
 pub fn cache_gather<'a>(casts: impl IntoIterator<Item = &'a Cast>, exit: &[[f64; 3]]) -> [f64; 3] {
-    casts
-        .into_iter()
-        .fold([0.0; 3], |sum, cast| [0, 1, 2].map(|c| sum[c] + cast.weight * exit[cast.sample][c]))
+    casts.into_iter().fold([0.0; 3], |sum, cast| {
+        [0, 1, 2].map(|c| sum[c] + cast.weight * exit[cast.grid_point][c])
+    })
 }

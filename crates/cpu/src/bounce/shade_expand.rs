@@ -10,7 +10,7 @@ use ridgelight::plan::pyramid::Pyramid;
 pub fn shade_at(pyramid: &Pyramid, texels: &[[f64; 3]], number: u32, place: [f64; 2]) -> [f64; 3] {
     let level = pyramid.level(number);
     let [cols, rows] = level.size;
-    let at = [0, 1].map(|i| place[i] as f32 * level.per_sample[i]);
+    let at = [0, 1].map(|i| place[i] as f32 * level.per_grid_point[i]);
     let (x, x_weight) = spline_taps(at[0], cols, pyramid.periodic);
     let (y, y_weight) = spline_taps(at[1], rows, pyramid.periodic);
     let mut sum = [0.0; 3];

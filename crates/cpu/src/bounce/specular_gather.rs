@@ -97,7 +97,7 @@ impl SpecularGather<'_> {
         let shade = self.gather.shade;
         let level = shade.level(number);
         let [cols, rows] = level.size.map(|n| n as i32);
-        let at = [0, 1].map(|i| place[i] as f32 * level.per_sample[i]);
+        let at = [0, 1].map(|i| place[i] as f32 * level.per_grid_point[i]);
         let two = |place: f32, count: i32| {
             let cell = place.floor() as i32;
             if shade.periodic {

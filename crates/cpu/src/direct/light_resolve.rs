@@ -18,8 +18,8 @@ pub fn light_resolve(
     let resolve = |i: usize, light: [f64; 3]| -> [f64; 3] {
         std::array::from_fn(|c| {
             let albedo = albedo_map.map_or(1.0, |map| f64::from(map[i][c]));
-            let seen = if light[c] < 0.0 { 0.0 } else { light[c] };
-            seen * f64::from(colour[c]) * albedo
+            let shown = if light[c] < 0.0 { 0.0 } else { light[c] };
+            shown * f64::from(colour[c]) * albedo
         })
     };
     match sum {

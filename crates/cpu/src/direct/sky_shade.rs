@@ -42,10 +42,10 @@ pub fn environment_at(swept: &Swept, tables: &EnvTables, col: i32, row: i32) -> 
 
 /// `sky_sum` of all azimuths: [`sky_at`] for every grid point, row-major.
 pub fn sky_shade(swept: &Swept) -> Vec<f64> {
-    swept.per_sample(|col, row| sky_at(swept, col, row))
+    swept.per_grid_point(|col, row| sky_at(swept, col, row))
 }
 
 /// `env_sum` of all azimuths: [`environment_at`] for every grid point, row-major.
 pub fn env_shade(swept: &Swept, tables: &EnvTables) -> Vec<[f64; 3]> {
-    swept.per_sample(|col, row| environment_at(swept, tables, col, row))
+    swept.per_grid_point(|col, row| environment_at(swept, tables, col, row))
 }

@@ -32,7 +32,7 @@ impl SphereShError {
         Self { quality: *quality, shares: (0..count).map(of_one).collect() }
     }
 
-    /// For a series `seen` through horizons with a slope error of `slope_error`, on a surface of this normal, under a
+    /// For a series `visibility` through horizons with a slope error of `slope_error`, on a surface of this normal, under a
     /// sphere light of radiance 1.
     ///
     /// A coefficient of visibility errs as [`ShadeError::series`] gives it, for azimuths across the sphere and
@@ -44,14 +44,14 @@ impl SphereShError {
         sphere: &SphereGeometry,
         slope_error: f64,
         normal: DVec3,
-        seen: &[f64],
+        visibility: &[f64],
     ) -> f64 {
         let order = self.quality.sh_order as usize;
         let beyond = if self.quality.wedges == Wedges::Table { 0 } else { BEYOND };
         let count = self.quality.sun_azimuths as usize + beyond;
         let error = ShadeError::new(slope_error, sphere.relief_m, sphere.cell_m, count);
         let end = 2.0 * (ARC_TANGENT + 24.0 * EPSILON);
-        let of_seen: Vec<f64> = bands(order)
+        let of_visibility: Vec<f64> = bands(order)
             .map(|(l, _)| {
                 let jump = 2.0_f64.sqrt() * ((2 * l + 1) as f64 / (4.0 * PI)).sqrt();
                 error.series(l, self.quality.wedges) + end * jump
@@ -67,8 +67,8 @@ impl SphereShError {
                 let polynomial = all[first + row].abs() + 6.0 * error.normal();
                 let turned = 6.0 * error.normal() + (8.0 + terms as f64) * EPSILON * polynomial;
                 for (k, share) in shares.iter().enumerate() {
-                    let (value, of_seen) = (seen[k].abs(), of_seen[k]);
-                    let of_parts = light * of_seen + off * (value + of_seen);
+                    let (value, of_visibility) = (visibility[k].abs(), of_visibility[k]);
+                    let of_parts = light * of_visibility + off * (value + of_visibility);
                     sum += share * (polynomial * of_parts + turned * light * value);
                 }
             }

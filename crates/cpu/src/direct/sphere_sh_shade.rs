@@ -6,7 +6,7 @@ use crate::light_matrix::light_matrix;
 use crate::oracle::Oracle;
 use crate::pyramid_march::{Stored, Within};
 use crate::sh_shade::light_on;
-use crate::sh_visibility::{Series, seen_along};
+use crate::sh_visibility::{Series, visibility_along};
 use crate::sh_wedges::wedges_around;
 use glam::{DVec2, DVec3};
 use ridgelight::basis::harmonics::turned;
@@ -19,7 +19,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 /// Wedges from one end of the azimuths across a sphere around to the other: the shader's value.
 pub const BEYOND: usize = 32;
 
-/// How sphere lights are looked at.
+/// How sphere lights are shaded.
 #[derive(Clone, Debug)]
 pub struct SphereSh<'a> {
     /// Of the field.
@@ -37,7 +37,7 @@ pub struct Soft {
     /// Exit radiance of albedo 1, negative where harmonics ring.
     pub light: f64,
     /// Visibility series, n² coefficients.
-    pub seen: Vec<f64>,
+    pub visibility: Vec<f64>,
 }
 
 impl<'a> SphereSh<'a> {
@@ -69,12 +69,15 @@ impl<'a> SphereSh<'a> {
             z - field.base_m() - own,
         );
         let normal = normal(field, self.oracle.border(), row, col);
-        let seen = self.seen(sphere.radius_m, to, normal, [row, col]);
-        Soft { light: light_of(&self.quality, sphere.radius_m, to, normal, &seen), seen }
+        let visibility = self.visibility(sphere.radius_m, to, normal, [row, col]);
+        Soft {
+            light: light_of(&self.quality, sphere.radius_m, to, normal, &visibility),
+            visibility,
+        }
     }
 
     /// The visibility series up to the sphere's distance.
-    fn seen(&self, radius_m: f64, to: DVec3, normal: DVec3, place: [usize; 2]) -> Vec<f64> {
+    fn visibility(&self, radius_m: f64, to: DVec3, normal: DVec3, place: [usize; 2]) -> Vec<f64> {
         let Quality { sh_order, wedges, receiver, sun_azimuths, .. } = self.quality;
         let (away, towards) = (to.x.hypot(to.y), to.y.atan2(to.x));
         let within = within_m(radius_m, to);
@@ -105,7 +108,7 @@ impl<'a> SphereSh<'a> {
                 rays.push([phi, width, hidden(phi, free)]);
             }
         }
-        seen_along(Series { order: sh_order as usize, wedges, receiver }, &rays)
+        visibility_along(Series { order: sh_order as usize, wedges, receiver }, &rays)
     }
 
     fn free(&self, [row, col]: [usize; 2], azimuth_rad: f64, within_m: f64) -> f64 {
@@ -118,12 +121,18 @@ impl<'a> SphereSh<'a> {
 }
 
 /// Exit radiance of albedo 1 from a visibility series, of a sphere at that position.
-pub fn light_of(quality: &Quality, radius_m: f64, to: DVec3, normal: DVec3, seen: &[f64]) -> f64 {
+pub fn light_of(
+    quality: &Quality,
+    radius_m: f64,
+    to: DVec3,
+    normal: DVec3,
+    visibility: &[f64],
+) -> f64 {
     let order = quality.light_order();
     let axis = if to == DVec3::ZERO { DVec3::Z } else { to.normalize() };
     let light = turned(&sphere(order, radius_m, to.length()), axis);
     let series: Vec<DVec3> = light.into_iter().map(DVec3::splat).collect();
-    light_on(normal, seen, &light_matrix(quality, &series)).x
+    light_on(normal, visibility, &light_matrix(quality, &series)).x
 }
 
 /// In [-π, π).
@@ -137,8 +146,8 @@ pub fn half_width(radius_m: f64, away_m: f64) -> f64 {
     if away_m <= radius_m {
         return PI;
     }
-    let seen = radius_m / away_m;
-    seen.asin().max(PI * seen.powi(3))
+    let half_angle_sin = radius_m / away_m;
+    half_angle_sin.asin().max(PI * half_angle_sin.powi(3))
 }
 
 /// Distance up to which ground may hide part of a sphere: its centre's in the plane, or that of the farthest point

@@ -38,5 +38,5 @@ pub fn sun_at(swept: &Swept, shape: Shape, col: i32, row: i32) -> f64 {
 
 /// `sun_sum` of all azimuths: [`sun_at`] for every grid point, row-major.
 pub fn sun_shade(swept: &Swept, shape: Shape) -> Vec<f64> {
-    swept.per_sample(|col, row| sun_at(swept, shape, col, row))
+    swept.per_grid_point(|col, row| sun_at(swept, shape, col, row))
 }

@@ -21,8 +21,8 @@ struct Reach {
 impl Reach {
     fn of(march: &March, rectangle: Rectangle, spacing: i32) -> Self {
         let Rectangle { col, row, cols, rows } = rectangle;
-        let first = march.of_sample(col as i32, row as i32);
-        let last = march.of_sample((col + cols - 1) as i32, (row + rows - 1) as i32);
+        let first = march.of_grid_point(col as i32, row as i32);
+        let last = march.of_grid_point((col + cols - 1) as i32, (row + rows - 1) as i32);
         Self {
             steps: [first.1.min(last.1), first.1.max(last.1)],
             positions: [

@@ -9,9 +9,9 @@ use crate::shared::levels::LevelTexels;
 pub fn height_expand(levels: &LevelTexels, number: u32) -> Vec<f32> {
     let level = levels.pyramid.level(number);
     let [cols, rows] = levels.pyramid.size;
-    let sample = |i: u32| {
+    let texel = |i: u32| {
         let at = [(i % cols) as f32, (i / cols) as f32];
-        levels.spline_at(&level, [at[0] * level.per_sample[0], at[1] * level.per_sample[1]])
+        levels.spline_at(&level, [at[0] * level.per_grid_point[0], at[1] * level.per_grid_point[1]])
     };
-    (0..cols * rows).map(sample).collect()
+    (0..cols * rows).map(texel).collect()
 }

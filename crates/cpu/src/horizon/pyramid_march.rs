@@ -85,7 +85,7 @@ impl PyramidMarch<'_> {
                 let lane = if flips { from_end } else { cell as f32 + f };
                 let step = march.march_position(step) as f32;
                 let [x, y] = if march.azimuth.marches_rows() { [lane, step] } else { [step, lane] };
-                let place = [x * level.per_sample[0], y * level.per_sample[1]];
+                let place = [x * level.per_grid_point[0], y * level.per_grid_point[1]];
                 LevelTexels { pyramid: self.pyramid, texels }.spline_at(&level, place)
             }
         }
@@ -195,7 +195,8 @@ impl Within<'_> {
             }
             Stored::Levels(texels) => {
                 let level = self.pyramid.level(number);
-                let place = [x as f32 * level.per_sample[0], y as f32 * level.per_sample[1]];
+                let place =
+                    [x as f32 * level.per_grid_point[0], y as f32 * level.per_grid_point[1]];
                 LevelTexels { pyramid: self.pyramid, texels }.spline_at(&level, place).into()
             }
         }

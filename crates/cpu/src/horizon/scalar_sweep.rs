@@ -155,7 +155,7 @@ impl<'a> ScalarSweep<'a> {
     }
 
     /// Steps on the field, of all lines of the last azimuth.
-    pub fn samples(&self) -> u64 {
+    pub fn points(&self) -> u64 {
         self.spans.iter().map(|[first, end]| u64::from(end - first)).sum()
     }
 }
@@ -242,7 +242,7 @@ mod tests {
                 assert!(same, "line {line} step {i}: {slope}, expected {expected}");
             }
         }
-        sweep.samples()
+        sweep.points()
     }
 
     #[test]
@@ -253,17 +253,17 @@ mod tests {
         for field in [&square, &oblong] {
             for k in 0..16 {
                 // Axes, diagonals, and places between.
-                let samples = check(field, TAU * f64::from(k) / 16.0 + f64::from(k % 3) * 0.1);
+                let points = check(field, TAU * f64::from(k) / 16.0 + f64::from(k % 3) * 0.1);
                 let cells = ((field.rows() - 1) * (field.cols() - 1)) as f64;
                 // Lines a cell apart, steps a cell long: a grid point a cell, but for the rim.
                 let rim = 2.0 * (field.rows() + field.cols()) as f64;
-                assert!((samples as f64 - cells).abs() < rim, "{samples} of {cells}");
+                assert!((points as f64 - cells).abs() < rim, "{points} of {cells}");
             }
         }
     }
 
     #[test]
-    fn fields_without_cells_have_no_samples() {
+    fn fields_without_cells_have_no_points() {
         for (rows, cols) in [(1, 1), (1, 9), (9, 1)] {
             let flat = HeightField::new(rows, cols, &vec![1.0; rows * cols], [1.0; 2], None);
             assert_eq!(check(&flat.unwrap(), 0.3), 0);

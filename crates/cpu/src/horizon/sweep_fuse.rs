@@ -37,6 +37,6 @@ pub fn fused_horizon(swept: &Swept, azimuth: &Azimuth, col: i32, row: i32) -> Fu
 
 /// All grid points in all azimuths, as `[azimuth][row][column]`.
 pub fn sweep_fuse(swept: &Swept) -> Vec<FusedHorizon> {
-    let one = |a| swept.per_sample(|col, row| fused_horizon(swept, a, col, row));
+    let one = |a| swept.per_grid_point(|col, row| fused_horizon(swept, a, col, row));
     swept.azimuths.iter().flat_map(one).collect()
 }

@@ -1,4 +1,4 @@
-//! Direct and indirect light of small fields, in f64, by deterministic quadrature: the ground truth of the GPU's path
+//! Direct and indirect light of small fields, in f64, by deterministic quadrature: the ground ground_truth of the GPU's path
 //! tracer, which follows the definition below and shares no code.
 //!
 //! - A result is the exit radiance of a grid point, towards straight above where there is Phong specular, with the
@@ -17,7 +17,7 @@
 //! normal on each; radiance is linear between them. All receivers at a grid point share the same profiles
 //! ([`profile`](crate::profile)). Every visible interval adds its cosine weight in closed form; its radiance is taken
 //! at the two-point Gauss mean of its distance. Errors: second order in the triangles' size where light is smooth,
-//! first order along shadow edges; second order in the step between azimuths. [`truth`] measures both by halving
+//! first order along shadow edges; second order in the step between azimuths. [`ground_truth`] measures both by halving
 //! both.
 
 use crate::key::key_on;
@@ -55,7 +55,7 @@ pub type Picture = Vec<[f64; 3]>;
 
 /// Radiance and its error estimate.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Truth {
+pub struct GroundTruth {
     /// Exit radiance with all bounces up to the index.
     pub radiance: Vec<Picture>,
     /// The difference to half the fineness at each grid point and channel. This is the error where doubling halves
@@ -68,14 +68,14 @@ pub struct Truth {
 ///
 /// # Errors
 /// As [`light`].
-pub fn truth(scene: &Scene, bounces: usize, fineness: Fineness) -> Result<Truth> {
+pub fn ground_truth(scene: &Scene, bounces: usize, fineness: Fineness) -> Result<GroundTruth> {
     let coarse = light(scene, bounces, fineness)?;
     let radiance = light(scene, bounces, fineness.doubled())?;
     let difference = |(a, b): (&Picture, &Picture)| -> Picture {
         a.iter().zip(b).map(|(a, b)| [0, 1, 2].map(|i| (a[i] - b[i]).abs())).collect()
     };
     let error = radiance.iter().zip(&coarse).map(difference).collect();
-    Ok(Truth { radiance, error })
+    Ok(GroundTruth { radiance, error })
 }
 
 /// Exit radiance of every grid point with all bounces up to 0, 1, … `bounces`.
@@ -87,8 +87,8 @@ pub fn truth(scene: &Scene, bounces: usize, fineness: Fineness) -> Result<Truth>
 /// A scene or a fineness out of range.
 pub fn light(scene: &Scene, bounces: usize, fineness: Fineness) -> Result<Vec<Picture>> {
     let Scene { field, surface, lights } = scene;
-    let samples = field.rows() * field.cols();
-    surface.check(samples)?;
+    let grid_points = field.rows() * field.cols();
+    surface.check(grid_points)?;
     lights.check()?;
     let Fineness { azimuths, divisions, strips } = fineness;
     for (name, value) in [("azimuths", azimuths), ("divisions", divisions), ("strips", strips)] {
@@ -115,13 +115,14 @@ pub fn light(scene: &Scene, bounces: usize, fineness: Fineness) -> Result<Vec<Pi
         })
         .collect();
     let towards_above = |arrived: &[[f64; 3]], at: usize| {
-        let scale = surface.specular.as_ref().map_or(0.0, |lobe| f64::from(lobe.at(at).scale));
+        let scale =
+            surface.specular.as_ref().map_or(0.0, |specular| f64::from(specular.at(at).scale));
         let diffuse = product(albedo(at), arrived[corners + at]);
-        let lobe = arrived.get(corners + samples + at).copied().unwrap_or_default();
-        [0, 1, 2].map(|i| diffuse[i] + scale * lobe[i])
+        let mirrored = arrived.get(corners + grid_points + at).copied().unwrap_or_default();
+        [0, 1, 2].map(|i| diffuse[i] + scale * mirrored[i])
     };
 
-    let mut picture: Picture = (0..samples).map(|at| towards_above(&arrived, at)).collect();
+    let mut picture: Picture = (0..grid_points).map(|at| towards_above(&arrived, at)).collect();
     let mut pictures = vec![picture.clone()];
     for _ in 0..bounces {
         let leaving: Vec<[f64; 3]> =
@@ -142,13 +143,13 @@ fn product(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 
 /// Visibility of one receiver: weights of the corners' radiances and of a sky of radiance 1.
 #[derive(Clone, Debug, Default)]
-struct Seen {
+struct Visibility {
     corners: Vec<u32>,
     weights: Vec<f64>,
     sky: f64,
 }
 
-impl Seen {
+impl Visibility {
     fn of(&self, radiance: &[[f64; 3]]) -> [f64; 3] {
         let mut sum = [0.0; 3];
         for (corner, weight) in self.corners.iter().zip(&self.weights) {
@@ -173,7 +174,7 @@ fn places(
     oracle: &Oracle,
     field: &HeightField,
     divisions: usize,
-    lobe: Option<&Specular>,
+    specular: Option<&Specular>,
 ) -> Vec<Vec<(usize, Receiver)>> {
     let fine = oracle.field();
     let mut places = vec![Vec::new(); fine.rows() * fine.cols()];
@@ -184,15 +185,15 @@ fn places(
             places[r * fine.cols() + c].push((3 * triangle + k, receiver));
         }
     }
-    let samples = field.rows() * field.cols();
-    for at in 0..samples {
+    let grid_points = field.rows() * field.cols();
+    for at in 0..grid_points {
         let (r, c) = (at / field.cols(), at % field.cols());
         let normal = normal(field, oracle.border(), r, c);
         let place = &mut places[divisions * (r * fine.cols() + c)];
         place.push((corners + at, Receiver::diffuse(normal)));
-        if let Some(lobe) = lobe {
-            let n = f64::from(lobe.at(at).exponent);
-            place.push((corners + samples + at, Receiver::lobe_from_above(normal, n)));
+        if let Some(specular) = specular {
+            let n = f64::from(specular.at(at).exponent);
+            place.push((corners + grid_points + at, Receiver::specular_from_above(normal, n)));
         }
     }
     places
@@ -204,16 +205,16 @@ fn at_all(
     places: &[Vec<(usize, Receiver)>],
     lights: &Lights,
     fineness: Fineness,
-) -> (Vec<Seen>, Vec<[f64; 3]>) {
+) -> (Vec<Visibility>, Vec<[f64; 3]>) {
     let count = places.iter().map(Vec::len).sum();
-    let (mut rows, mut direct) = (vec![Seen::default(); count], vec![[0.0; 3]; count]);
+    let (mut rows, mut direct) = (vec![Visibility::default(); count], vec![[0.0; 3]; count]);
     for (at, place) in places.iter().enumerate() {
         let here = [at / oracle.field().cols(), at % oracle.field().cols()];
         let receivers: Vec<Receiver> = place.iter().map(|(_, receiver)| *receiver).collect();
-        let seen = gather(oracle, here, &receivers, fineness.azimuths);
-        let arriving = arriving(oracle, here, &receivers, &seen, lights, fineness.strips);
-        for (((target, _), seen), light) in place.iter().zip(seen).zip(arriving) {
-            (rows[*target], direct[*target]) = (seen, light);
+        let visibility = gather(oracle, here, &receivers, fineness.azimuths);
+        let arriving = arriving(oracle, here, &receivers, &visibility, lights, fineness.strips);
+        for (((target, _), visibility), light) in place.iter().zip(visibility).zip(arriving) {
+            (rows[*target], direct[*target]) = (visibility, light);
         }
     }
     (rows, direct)
@@ -238,22 +239,27 @@ fn triangle_normal(oracle: &Oracle, triangle: usize) -> DVec3 {
 /// Weights of a diffuse receiver are scaled so that those of its whole hemisphere sum to 1. The rule over azimuths
 /// alone misses this by less the more azimuths and the gentler the slope. Uniform incident radiance is preserved, and
 /// energy is not gained.
-fn gather(oracle: &Oracle, here: [usize; 2], receivers: &[Receiver], azimuths: usize) -> Vec<Seen> {
+fn gather(
+    oracle: &Oracle,
+    here: [usize; 2],
+    receivers: &[Receiver],
+    azimuths: usize,
+) -> Vec<Visibility> {
     let corners = corner_count(oracle);
     let mut dense = vec![vec![0.0; corners]; receivers.len()];
-    let mut all = vec![Seen::default(); receivers.len()];
+    let mut all = vec![Visibility::default(); receivers.len()];
     let mut totals = vec![0.0; receivers.len()];
-    let mut seen = Vec::new();
+    let mut intervals = Vec::new();
     for k in 0..azimuths {
         let azimuth = TAU * (k as f64 + 0.5) / azimuths as f64;
-        oracle.visible_intervals(here[0], here[1], azimuth, &mut seen);
-        let met = seen.last().map_or(-FRAC_PI_2, |last| last.high_rad);
+        oracle.visible_intervals(here[0], here[1], azimuth, &mut intervals);
+        let met = intervals.last().map_or(-FRAC_PI_2, |last| last.high_rad);
         let horizon = if oracle.border() == Border::Open { met } else { met.max(0.0) };
         for (i, receiver) in receivers.iter().enumerate() {
             let slice = receiver.slice(azimuth);
             all[i].sky += slice.light(horizon, FRAC_PI_2);
             totals[i] += slice.light(-FRAC_PI_2, FRAC_PI_2);
-            for interval in &seen {
+            for interval in &intervals {
                 let weight = slice.light(interval.low_rad, interval.high_rad);
                 if weight > 0.0 {
                     let shares = interval.corner_weights(mean_distance_m(&slice, interval));
@@ -268,11 +274,12 @@ fn gather(oracle: &Oracle, here: [usize; 2], receivers: &[Receiver], azimuths: u
             }
         }
     }
-    for (i, seen) in all.iter_mut().enumerate() {
-        let lobe = receivers[i].lobe.is_some();
-        let scale = if lobe { 2.0 / azimuths as f64 } else { 1.0 / totals[i] };
-        seen.weights = seen.corners.iter().map(|c| scale * dense[i][*c as usize]).collect();
-        seen.sky *= scale;
+    for (i, visibility) in all.iter_mut().enumerate() {
+        let is_specular = receivers[i].phong_lobe.is_some();
+        let scale = if is_specular { 2.0 / azimuths as f64 } else { 1.0 / totals[i] };
+        visibility.weights =
+            visibility.corners.iter().map(|c| scale * dense[i][*c as usize]).collect();
+        visibility.sky *= scale;
     }
     all
 }
@@ -292,13 +299,13 @@ fn arriving(
     oracle: &Oracle,
     here: [usize; 2],
     receivers: &[Receiver],
-    seen: &[Seen],
+    visibility: &[Visibility],
     lights: &Lights,
     strips: usize,
 ) -> Vec<[f64; 3]> {
     let [row, col] = here;
     let sky = lights.sky.unwrap_or_default().map(f64::from);
-    let mut sums: Vec<[f64; 3]> = seen.iter().map(|seen| sky.map(|s| s * seen.sky)).collect();
+    let mut sums: Vec<[f64; 3]> = visibility.iter().map(|of| sky.map(|s| s * of.sky)).collect();
     let mut add = |more: Vec<[f64; 3]>| {
         for (sum, more) in sums.iter_mut().zip(more) {
             *sum = [0, 1, 2].map(|i| sum[i] + more[i]);

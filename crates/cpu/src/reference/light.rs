@@ -23,28 +23,28 @@ pub struct Receiver {
     /// Unit normal, upwards.
     pub normal: DVec3,
     /// Unit direction r and exponent n of the Phong specular, in place of the cosine.
-    pub lobe: Option<(DVec3, f64)>,
+    pub phong_lobe: Option<(DVec3, f64)>,
 }
 
 impl Receiver {
     /// A diffuse surface of albedo 1.
     pub fn diffuse(normal: DVec3) -> Self {
-        Self { normal, lobe: None }
+        Self { normal, phong_lobe: None }
     }
 
     /// A lobe of unit integral about the mirror direction of the zenith, the map view's: r = 2 N_z N - z.
-    pub fn lobe_from_above(normal: DVec3, exponent: f64) -> Self {
-        Self { normal, lobe: Some((2.0 * normal.z * normal - DVec3::Z, exponent)) }
+    pub fn specular_from_above(normal: DVec3, exponent: f64) -> Self {
+        Self { normal, phong_lobe: Some((2.0 * normal.z * normal - DVec3::Z, exponent)) }
     }
 
     /// The receiver's share in one azimuth.
     pub(crate) fn slice(&self, azimuth_rad: f64) -> Slice {
         let (sin, cos) = azimuth_rad.sin_cos();
         let along = |v: DVec3| v.x * cos + v.y * sin;
-        let Self { normal, lobe } = *self;
+        let Self { normal, phong_lobe } = *self;
         // N·e > 0 where tan ω > -A/B (B > 0 on a height field), for A > 0 below horizontal.
         let low = (-along(normal)).atan2(normal.z);
-        match lobe {
+        match phong_lobe {
             None => Slice { a: along(normal), b: normal.z, low, exponent: None },
             Some((r, n)) => Slice { a: along(r), b: r.z, low, exponent: Some(n) },
         }

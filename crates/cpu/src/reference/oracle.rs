@@ -1,7 +1,7 @@
 //! Brute-force ground truth: the horizon of one grid point over the triangulated surface, in f64.
 //!
 //! Along any line the surface is piecewise linear between the line's crossings with grid columns,
-//! grid rows and cell diagonals. Over one such piece the slope seen from the receiver,
+//! grid rows and cell diagonals. Over one such piece the slope from the receiver,
 //! (h₀ + g·(d - d₀) - h_receiver) / d, is monotonic in d (its derivative keeps the sign of
 //! h_receiver - h₀ + g·d₀), so its maximum stands at an end of the piece: the crossings hold every
 //! candidate, and visiting all of them is exact. Nothing is shared with the sweep that this judges.
@@ -110,7 +110,7 @@ impl<'a> Oracle<'a> {
         }
         assert!(
             row < self.field.rows() && col < self.field.cols(),
-            "sample (row {row}, column {col}) of a field of {} × {}",
+            "grid point (row {row}, column {col}) of a field of {} × {}",
             self.field.rows(),
             self.field.cols()
         );

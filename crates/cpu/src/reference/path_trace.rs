@@ -32,12 +32,12 @@ const FAINTEST: f64 = 1e-30;
 pub struct Tracer<'a> {
     scene: &'a Scene,
     ground: Ground,
-    samples: Vec<[f32; 3]>,
+    grid_points: Vec<[f32; 3]>,
     /// Two texels a light: suns, key lights, sphere lights.
     lights: Vec<[f32; 4]>,
     environment: Option<Environment>,
     albedo: Vec<[f32; 3]>,
-    lobes: Vec<[f32; 2]>,
+    specular: Vec<[f32; 2]>,
     bounces: u32,
     seed: u32,
     /// Whether direct light counts.
@@ -78,7 +78,7 @@ impl<'a> Tracer<'a> {
     /// grid points, where direct light does not count.
     pub fn of(
         scene: &'a Scene,
-        samples: Vec<[f32; 3]>,
+        grid_points: Vec<[f32; 3]>,
         (bounces, seed): (u32, u32),
         counts_direct: bool,
     ) -> Self {
@@ -95,8 +95,8 @@ impl<'a> Tracer<'a> {
                 (of.rotation_rad() / std::f64::consts::TAU).rem_euclid(1.0) as f32,
             ),
         });
-        let count = samples.len();
-        let lobe = |phong: ridgelight::scene::PhongSpecular| [phong.exponent, phong.scale];
+        let count = grid_points.len();
+        let pair = |phong: ridgelight::scene::PhongSpecular| [phong.exponent, phong.scale];
         let sky = lights.sky.unwrap_or_default();
         let texels = lights.environment.iter().flat_map(|e| e.texels());
         let brightest = texels.fold([0.0_f32; 3], |m, t| [0, 1, 2].map(|c| m[c].max(t[c])));
@@ -113,14 +113,14 @@ impl<'a> Tracer<'a> {
                 Albedo::Constant(colour) => vec![*colour; count],
                 Albedo::Map(map) => map.clone(),
             },
-            lobes: match &surface.specular {
+            specular: match &surface.specular {
                 None => Vec::new(),
-                Some(Specular::Constant(phong)) => vec![lobe(*phong); count],
-                Some(Specular::Map(map)) => map.iter().map(|p| lobe(*p)).collect(),
+                Some(Specular::Constant(phong)) => vec![pair(*phong); count],
+                Some(Specular::Map(map)) => map.iter().map(|p| pair(*p)).collect(),
             },
             most: (0..=bounces).map(|b| max_path_light(scene, b)).collect(),
             scene,
-            samples,
+            grid_points,
             bounces,
             seed,
             counts_direct,
@@ -129,7 +129,7 @@ impl<'a> Tracer<'a> {
 
     /// Bounds on the radiance along a scattered ray with that many more bounces: sphere lights that it leaves, then
     /// the far field or ground.
-    fn most_seen(&self, left: u32) -> [f64; 3] {
+    fn most_arriving(&self, left: u32) -> [f64; 3] {
         let later = left.checked_sub(1).map_or([0.0; 3], |l| self.most[l as usize]);
         [0, 1, 2].map(|c| self.spheres[c] + self.far[c].max(later[c]))
     }
@@ -147,14 +147,14 @@ impl<'a> Tracer<'a> {
     /// The grid point lies outside the field.
     pub fn traced(
         &self,
-        sample: usize,
+        grid_point: usize,
         (slot, batch): (u32, u32),
         (paths, lights): (Range<u32>, Range<u32>),
     ) -> Traced {
         let mut all = Traced::default();
         for path in paths {
             let words = [slot, batch, self.seed];
-            self.path_light(self.first(sample), path, words, &lights, &mut all);
+            self.path_light(self.first(grid_point), path, words, &lights, &mut all);
         }
         all
     }
@@ -254,17 +254,17 @@ impl<'a> Tracer<'a> {
             sum.crossed[sum.reflected] += met.crossed;
             let scattered = product(carried, of.scattered);
             let Some(what) = met.what else {
-                let (seen, all) = (self.most_seen(left), most(carried, left));
-                sum.doubt([0, 1, 2].map(|c| (scattered[c].most() * seen[c]).min(all[c])));
+                let (arriving, all) = (self.most_arriving(left), most(carried, left));
+                sum.doubt([0, 1, 2].map(|c| (scattered[c].most() * arriving[c]).min(all[c])));
                 sum.rays.off += f64::from(left * (lights.end - lights.start + 2));
                 return;
             };
-            let mut seen = Traced::default();
+            let mut arriving = Traced::default();
             if has_sky && what == What::Free {
                 let sky = self.scene.lights.sky.unwrap_or_default();
-                seen.light = given(sky);
+                arriving.light = given(sky);
                 if let Some(environment) = &self.environment {
-                    environment.towards(e, of.density, &mut seen);
+                    environment.towards(e, of.density, &mut arriving);
                 }
             }
             let [suns, keys, _] = self.counts();
@@ -277,13 +277,13 @@ impl<'a> Tracer<'a> {
                 let is_before = any([Some(what != What::Hit), (exit_m * ray.scale).at_most(met.t)]);
                 let in_view = all([Near::ZERO.at_most(inside), is_before]);
                 let radiance = colour(self.lights[2 * i + 1]);
-                seen.add(radiance, in_view, radiance.map(Near::most));
+                arriving.add(radiance, in_view, radiance.map(Near::most));
             }
             if counts == Some(true) {
-                let light = product(scattered, seen.light);
+                let light = product(scattered, arriving.light);
                 sum.light = plus(sum.light, light);
-                sum.doubts[sum.reflected] += seen.doubts[0];
-                (0..3).for_each(|c| sum.in_doubt[c] += scattered[c].most() * seen.in_doubt[c]);
+                sum.doubts[sum.reflected] += arriving.doubts[0];
+                (0..3).for_each(|c| sum.in_doubt[c] += scattered[c].most() * arriving.in_doubt[c]);
             }
             if left == 0 || what != What::Hit {
                 return;

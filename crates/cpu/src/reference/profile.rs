@@ -35,7 +35,7 @@ impl VisibleInterval {
     /// Horizontal distance to the piece along an elevation, metres.
     pub fn distance_m(&self, elevation_rad: f64) -> f64 {
         let [near, far] = self.span_m;
-        // rise + slope D = D tan ω; a piece seen edge-on is hit where it begins.
+        // rise + slope D = D tan ω; a piece viewed edge-on is hit where it begins.
         let distance = self.rise_m / (elevation_rad.tan() - self.slope);
         if distance.is_finite() { distance.clamp(near, far) } else { near }
     }
@@ -55,9 +55,9 @@ impl VisibleInterval {
 impl Oracle<'_> {
     /// Cells of the surface: rows, columns. Under `periodic` the last cell connects to the first grid point.
     pub fn cells(&self) -> [usize; 2] {
-        let count = |samples| match self.border() {
-            Border::Periodic => samples,
-            Border::Plane | Border::Open => samples - 1,
+        let count = |grid_points| match self.border() {
+            Border::Periodic => grid_points,
+            Border::Plane | Border::Open => grid_points - 1,
         };
         [count(self.field().rows()), count(self.field().cols())]
     }
@@ -72,7 +72,7 @@ impl Oracle<'_> {
         [[row, col], between, [below, right]]
     }
 
-    /// Writes the visible intervals along an azimuth into `seen`, from below upwards.
+    /// Writes the visible intervals along an azimuth into `intervals`, from below upwards.
     ///
     /// Nothing where the ray leaves the field at once. Under `periodic` a ray without a hit at its own height after
     /// [`cap_m`] extends its last visible interval up to horizontal.
@@ -84,27 +84,30 @@ impl Oracle<'_> {
         row: usize,
         col: usize,
         azimuth_rad: f64,
-        seen: &mut Vec<VisibleInterval>,
+        intervals: &mut Vec<VisibleInterval>,
     ) {
-        self.nearly_seen(row, col, azimuth_rad, 0.0, seen);
+        self.nearly_visible(row, col, azimuth_rad, 0.0, intervals);
     }
 
     /// The same with all surface that is hidden by less than `nearly_rad`, as intervals of equal ends.
     ///
     /// # Panics
     /// When `row` or `col` lies outside the field.
-    pub fn nearly_seen(
+    pub fn nearly_visible(
         &self,
         row: usize,
         col: usize,
         azimuth_rad: f64,
         nearly_rad: f64,
-        seen: &mut Vec<VisibleInterval>,
+        intervals: &mut Vec<VisibleInterval>,
     ) {
-        seen.clear();
+        intervals.clear();
         let field = self.field();
         let (rows, cols) = (field.rows(), field.cols());
-        assert!(row < rows && col < cols, "sample (row {row}, column {col}) of {rows} × {cols}");
+        assert!(
+            row < rows && col < cols,
+            "grid point (row {row}, column {col}) of {rows} × {cols}"
+        );
         let [cols_per_m, rows_per_m] = grid_direction(field, azimuth_rad);
         let here = [row as f64, col as f64];
         let above_m = self.highest_m - self.vertex(here[0], here[1]);
@@ -134,12 +137,12 @@ impl Oracle<'_> {
             // The surface is continuous: no piece begins above the largest slope before it.
             if piece.high_rad > lowest {
                 let high_rad = piece.high_rad.max(reached);
-                seen.push(VisibleInterval { low_rad: reached, high_rad, ..piece });
+                intervals.push(VisibleInterval { low_rad: reached, high_rad, ..piece });
                 reached = high_rad;
             }
             near = far;
         }
-        if let Some(last) = seen.last_mut()
+        if let Some(last) = intervals.last_mut()
             && periodic
         {
             last.high_rad = last.high_rad.max(0.0);
@@ -152,14 +155,14 @@ impl Oracle<'_> {
     /// # Panics
     /// When `row` or `col` lies outside the field.
     pub fn slope_within(&self, row: usize, col: usize, azimuth_rad: f64, within_m: f64) -> f64 {
-        let mut seen = Vec::new();
-        self.visible_intervals(row, col, azimuth_rad, &mut seen);
+        let mut intervals = Vec::new();
+        self.visible_intervals(row, col, azimuth_rad, &mut intervals);
         let slope = |interval: &VisibleInterval| {
             let [near, far] = interval.span_m;
             let end = if near == 0.0 { far } else { far.min(within_m) };
             (near == 0.0 || near < within_m).then(|| interval.slope + interval.rise_m / end)
         };
-        seen.iter().filter_map(slope).fold(f64::NEG_INFINITY, f64::max)
+        intervals.iter().filter_map(slope).fold(f64::NEG_INFINITY, f64::max)
     }
 
     /// The piece of surface between two distances from a grid point, all of it taken as visible; none outside the
@@ -167,7 +170,7 @@ impl Oracle<'_> {
     fn piece(&self, here: [f64; 2], per_m: [f64; 2], span_m: [f64; 2]) -> Option<VisibleInterval> {
         let [near, far] = span_m;
         let middle = 0.5 * (near + far);
-        let samples = [self.field().rows(), self.field().cols()];
+        let grid_points = [self.field().rows(), self.field().cols()];
         let cells = self.cells();
         // Along the last row or column lies the last cell.
         let is_last = [0, 1].map(|i| {
@@ -179,7 +182,7 @@ impl Oracle<'_> {
         let [down, right] = [0, 1].map(|i| here[i] + per_m[i] * middle - cell[i]);
         let lower = down > right;
         let at = match self.border() {
-            Border::Periodic => [0, 1].map(|i| (cell[i] as i64).rem_euclid(samples[i] as i64)),
+            Border::Periodic => [0, 1].map(|i| (cell[i] as i64).rem_euclid(grid_points[i] as i64)),
             Border::Plane | Border::Open => [0, 1].map(|i| cell[i] as i64),
         };
         if (0..2).any(|i| !(0..cells[i] as i64).contains(&at[i])) {

@@ -34,7 +34,7 @@ pub fn sphere_on(
     let (away, middle) = (east.hypot(north), north.atan2(east));
     let widest = (sphere.radius_m / away).asin();
     let mut sums = vec![0.0; receivers.len()];
-    let mut seen = Vec::new();
+    let mut intervals = Vec::new();
     for i in 0..strips {
         let centre = (i as f64 + 0.5) / strips as f64 * 2.0 - 1.0;
         let (offset, weight) = if sphere.radius_m < away {
@@ -52,8 +52,8 @@ pub fn sphere_on(
             continue;
         }
         let disc = Disc { along: away * offset.cos(), up, radius: squared.sqrt() };
-        oracle.visible_intervals(row, col, azimuth, &mut seen);
-        let visible = disc.visible(&seen);
+        oracle.visible_intervals(row, col, azimuth, &mut intervals);
+        let visible = disc.visible(&intervals);
         for (receiver, sum) in receivers.iter().zip(&mut sums) {
             let slice = receiver.slice(azimuth);
             *sum +=
@@ -98,7 +98,7 @@ struct Disc {
 
 impl Disc {
     /// The visible elevations of the disc.
-    fn visible(&self, seen: &[VisibleInterval]) -> Vec<[f64; 2]> {
+    fn visible(&self, intervals: &[VisibleInterval]) -> Vec<[f64; 2]> {
         let distance = self.along.hypot(self.up);
         let (low, high) = if distance > self.radius {
             let (middle, half) = (self.up.atan2(self.along), (self.radius / distance).asin());
@@ -107,7 +107,7 @@ impl Disc {
             (-FRAC_PI_2, FRAC_PI_2)
         };
         let mut visible = Vec::new();
-        for interval in seen {
+        for interval in intervals {
             let mut cuts = vec![interval.low_rad, interval.high_rad, low, high];
             cuts.extend(self.crossings(interval));
             cuts.sort_unstable_by(f64::total_cmp);
@@ -123,7 +123,7 @@ impl Disc {
                 }
             }
         }
-        let horizon = seen.last().map_or(-FRAC_PI_2, |last| last.high_rad);
+        let horizon = intervals.last().map_or(-FRAC_PI_2, |last| last.high_rad);
         if high > horizon.max(low) {
             visible.push([horizon.max(low), high]);
         }

@@ -7,8 +7,8 @@ use glam::DVec3;
 
 use crate::env_rotation::env_rotation;
 use crate::light_matrix::{add_sky, is_fitted, light_matrix, row_weights, series, specular_matrix};
-use crate::sh_shade::{gloss_on, light_on};
-use crate::sh_visibility::{Series, seen_above};
+use crate::sh_shade::{light_on, specular_on};
+use crate::sh_visibility::{Series, visibility_above};
 use crate::sh_wedges::sh_wedges;
 use crate::tolerance::{
     ShadeError, device_light_matrix, device_sh_shade, device_sh_specular, device_turn,
@@ -24,25 +24,25 @@ use ridgelight::scene::{Border, Environment, PhongSpecular, Quality, Wedges};
 
 /// Visibility of a grid point: coefficients, and a device's error in each.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Seen {
+pub struct Visibility {
     /// n² of them.
     pub values: Vec<f64>,
     /// As many.
     pub errors: Vec<f64>,
 }
 
-impl Seen {
+impl Visibility {
     /// Visibility of a grid point from that of nodes, each with its weight.
     pub fn between<'a>(
-        nodes: impl Iterator<Item = (&'a Seen, f64)> + Clone,
+        nodes: impl Iterator<Item = (&'a Visibility, f64)> + Clone,
         error: &ShadeError,
     ) -> Self {
         let counted = error.node_weight();
-        let sum = |of: &dyn Fn(&Seen, usize) -> f64, k: usize| {
+        let sum = |of: &dyn Fn(&Visibility, usize) -> f64, k: usize| {
             nodes.clone().map(|(node, weight)| weight * of(node, k)).sum()
         };
         let count = nodes.clone().next().map_or(0, |(node, _)| node.values.len());
-        let off = |node: &Seen, k: usize| node.errors[k] + counted * node.values[k].abs();
+        let off = |node: &Visibility, k: usize| node.errors[k] + counted * node.values[k].abs();
         Self {
             values: (0..count).map(|k| sum(&|node, k| node.values[k], k)).collect(),
             errors: (0..count).map(|k| sum(&off, k)).collect(),
@@ -67,7 +67,7 @@ impl Harmonics {
     }
 
     /// The same for Phong specular, from all bands of visibility, for an environment and a sky.
-    pub fn of_lobes(
+    pub fn of_specular(
         environment: Option<&Environment>,
         sky: [f32; 3],
         border: Border,
@@ -125,40 +125,41 @@ impl Harmonics {
 
     /// Visibility above slopes with these errors, each that of the lowest visible direction: above the horizon, and
     /// for [`Receiver::Plane`](ridgelight::scene::Receiver::Plane) above the grid point's own plane.
-    pub fn seen(&self, lowest: &[(Azimuth, f64)], error: &ShadeError) -> Seen {
+    pub fn visibility(&self, lowest: &[(Azimuth, f64)], error: &ShadeError) -> Visibility {
         let Series { order, wedges, .. } = self.series;
         let of_band: Vec<f64> = (0..order).map(|l| error.series(l, wedges)).collect();
         let errors = bands(order).map(|(l, _)| of_band[l]).collect();
         let values = match &self.table {
             Some(table) => sh_wedges(table, lowest),
-            None => seen_above(self.series, lowest),
+            None => visibility_above(self.series, lowest),
         };
-        Seen { values, errors }
+        Visibility { values, errors }
     }
 
     /// Exit radiance of albedo 1, clamped at 0 where harmonics ring, and a device's error in it.
-    pub fn light(&self, normal: DVec3, seen: &Seen, error: &ShadeError) -> [DVec3; 2] {
+    pub fn light(&self, normal: DVec3, visibility: &Visibility, error: &ShadeError) -> [DVec3; 2] {
         let all = receiver(normal.to_array());
         let rows = if self.matrix.len() == 3 { &all[1..4] } else { &all[..self.matrix.len()] };
         let (mut off, mut summed) = (DVec3::ZERO, DVec3::ZERO);
         for ((polynomial, row), errors) in rows.iter().zip(&self.matrix).zip(&self.errors) {
             for (k, (entry, error)) in row.iter().zip(errors).enumerate() {
-                let (value, of_seen) = (seen.values[k].abs(), seen.errors[k]);
-                off += polynomial.abs() * (entry.abs() * of_seen + *error * (value + of_seen));
+                let (value, of_visibility) = (visibility.values[k].abs(), visibility.errors[k]);
+                off += polynomial.abs()
+                    * (entry.abs() * of_visibility + *error * (value + of_visibility));
                 summed += entry.abs() * value;
             }
         }
         let tolerance = off + device_sh_shade(self.series.order, error.normal()) * summed;
-        let light = light_on(normal, &seen.values, &self.matrix);
+        let light = light_on(normal, &visibility.values, &self.matrix);
         [light.max(DVec3::ZERO), tolerance]
     }
 
-    /// Phong specular straight upwards, from the matrix [`of_lobes`](Self::of_lobes), and a device's error in it.
+    /// Phong specular straight upwards, from the matrix [`of_specular`](Self::of_specular), and a device's error in it.
     pub fn mirrored(
         &self,
         normal: DVec3,
         phong: PhongSpecular,
-        seen: &Seen,
+        visibility: &Visibility,
         error: &ShadeError,
     ) -> [DVec3; 2] {
         let order = self.series.order;
@@ -168,13 +169,13 @@ impl Harmonics {
         for (k, (l, _)) in bands(order).enumerate() {
             let share = (kept[l] * mirrored[k]).abs();
             for (j, (entry, error)) in self.matrix[k].iter().zip(&self.errors[k]).enumerate() {
-                let (value, of_seen) = (seen.values[j].abs(), seen.errors[j]);
-                off += share * (entry.abs() * of_seen + *error * (value + of_seen));
+                let (value, of_visibility) = (visibility.values[j].abs(), visibility.errors[j]);
+                off += share * (entry.abs() * of_visibility + *error * (value + of_visibility));
                 summed += kept[l] * entry.abs() * value;
             }
         }
         let tolerance = off + device_sh_specular(order, error.normal()) * summed;
-        let light = gloss_on(normal, phong, &seen.values, &self.matrix);
+        let light = specular_on(normal, phong, &visibility.values, &self.matrix);
         [light.max(DVec3::ZERO), f64::from(phong.scale) * tolerance]
     }
 }

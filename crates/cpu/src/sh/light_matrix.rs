@@ -1,7 +1,7 @@
 //! SH series of the environment, and the matrix from visibility to exit radiance.
 
 use glam::DVec3;
-use ridgelight::basis::light::{fit_above_ground, lobe, plane};
+use ridgelight::basis::light::{cosine_lobe, fit_above_ground, plane};
 use ridgelight::basis::product;
 use ridgelight::basis::product::{Triple, triples};
 use ridgelight::basis::slice::{Slices, slice_index};
@@ -64,7 +64,7 @@ pub fn add_sky(series: &mut [DVec3], sky: [f32; 3]) {
 pub fn light_matrix(quality: &Quality, series: &[DVec3]) -> Vec<Vec<DVec3>> {
     matrix(quality, series, |triples, order, light| match quality.receiver {
         Receiver::Plane => plane(triples, order, light),
-        Receiver::Cosine => lobe(triples, order, light),
+        Receiver::Cosine => cosine_lobe(triples, order, light),
     })
 }
 

@@ -48,21 +48,21 @@ pub fn nodes_around(heights: &Heights, nodes: Nodes, [col, row]: [i32; 2]) -> [(
 /// Outside the field, or a matrix of neither receiver.
 pub fn light_at(
     heights: &Heights,
-    seen: &[f64],
+    visibility: &[f64],
     matrix: &[Vec<DVec3>],
     [col, row]: [i32; 2],
 ) -> DVec3 {
-    light_on(normal_of(field_slope(heights, col, row)), seen, matrix)
+    light_on(normal_of(field_slope(heights, col, row)), visibility, matrix)
 }
 
 /// The same on a surface of this normal.
 ///
 /// # Panics
 /// A matrix of neither receiver.
-pub fn light_on(normal: DVec3, seen: &[f64], matrix: &[Vec<DVec3>]) -> DVec3 {
+pub fn light_on(normal: DVec3, visibility: &[f64], matrix: &[Vec<DVec3>]) -> DVec3 {
     let all = receiver(normal.to_array());
     let rows = if matrix.len() == 3 { &all[1..4] } else { &all[..matrix.len()] };
-    times(rows, seen, matrix)
+    times(rows, visibility, matrix)
 }
 
 /// What a lobe on a surface of this normal mirrors straight upwards; `matrix` is
@@ -70,15 +70,20 @@ pub fn light_on(normal: DVec3, seen: &[f64], matrix: &[Vec<DVec3>]) -> DVec3 {
 ///
 /// # Panics
 /// A matrix of no order.
-pub fn gloss_on(normal: DVec3, phong: PhongSpecular, seen: &[f64], matrix: &[Vec<DVec3>]) -> DVec3 {
+pub fn specular_on(
+    normal: DVec3,
+    phong: PhongSpecular,
+    visibility: &[f64],
+    matrix: &[Vec<DVec3>],
+) -> DVec3 {
     let mirror = 2.0 * normal.z * normal - DVec3::Z;
     let order = matrix.len().isqrt();
     let kept = phong_bands(order, phong.exponent.into());
     let rows = bands(order).zip(evaluate(order, mirror)).map(|((l, _), y)| kept[l] * y);
-    f64::from(phong.scale) * times(&rows.collect::<Vec<_>>(), seen, matrix)
+    f64::from(phong.scale) * times(&rows.collect::<Vec<_>>(), visibility, matrix)
 }
 
-fn times(rows: &[f64], seen: &[f64], matrix: &[Vec<DVec3>]) -> DVec3 {
-    let share = |row: &[DVec3]| row.iter().zip(seen).map(|(m, v)| *v * *m).sum::<DVec3>();
+fn times(rows: &[f64], visibility: &[f64], matrix: &[Vec<DVec3>]) -> DVec3 {
+    let share = |row: &[DVec3]| row.iter().zip(visibility).map(|(m, v)| *v * *m).sum::<DVec3>();
     rows.iter().zip(matrix).map(|(r, row)| *r * share(row)).sum()
 }

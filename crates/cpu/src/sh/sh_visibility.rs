@@ -23,31 +23,31 @@ pub struct Series {
 ///
 /// # Panics
 /// Outside the field.
-pub fn seen_at(swept: &Swept, series: Series, col: i32, row: i32) -> Vec<f64> {
+pub fn visibility_at(swept: &Swept, series: Series, col: i32, row: i32) -> Vec<f64> {
     let mut lowest = Vec::new();
-    swept.add_seen(col, row, series.receiver == Receiver::Plane, |_, azimuth, slope, _| {
+    swept.add_visible(col, row, series.receiver == Receiver::Plane, |_, azimuth, slope, _| {
         lowest.push((*azimuth, slope));
     });
-    seen_above(series, &lowest)
+    visibility_above(series, &lowest)
 }
 
 /// The series of visibility above these slopes along azimuths, each independently.
 ///
 /// # Panics
 /// By a table: [`sh_wedges`](crate::sh_wedges::sh_wedges).
-pub fn seen_above(series: Series, lowest: &[(Azimuth, f64)]) -> Vec<f64> {
+pub fn visibility_above(series: Series, lowest: &[(Azimuth, f64)]) -> Vec<f64> {
     let ray = |(azimuth, lowest): &(Azimuth, f64)| {
         let phi = f64::from(azimuth.sin_phi).atan2(azimuth.cos_phi.into());
         [phi, azimuth.wedge_rad.into(), *lowest]
     };
-    seen_along(series, &lowest.iter().map(ray).collect::<Vec<_>>())
+    visibility_along(series, &lowest.iter().map(ray).collect::<Vec<_>>())
 }
 
 /// The same for azimuths, their widths in radians, and slopes.
 ///
 /// # Panics
 /// By a table.
-pub fn seen_along(series: Series, rays: &[[f64; 3]]) -> Vec<f64> {
+pub fn visibility_along(series: Series, rays: &[[f64; 3]]) -> Vec<f64> {
     let Series { order, wedges, .. } = series;
     let slices = Slices::new(order);
     let (mut weights, mut along) = (Vec::new(), Vec::new());
@@ -71,7 +71,7 @@ pub fn seen_along(series: Series, rays: &[[f64; 3]]) -> Vec<f64> {
     }
 }
 
-/// `visibility` of all azimuths: [`seen_at`] for every grid point, row-major.
+/// `visibility` of all azimuths: [`visibility_at`] for every grid point, row-major.
 pub fn sh_visibility(swept: &Swept, series: Series) -> Vec<Vec<f64>> {
-    swept.per_sample(|col, row| seen_at(swept, series, col, row))
+    swept.per_grid_point(|col, row| visibility_at(swept, series, col, row))
 }

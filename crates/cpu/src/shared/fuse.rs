@@ -112,7 +112,7 @@ pub fn split_crossing(march: &March, (lane, step): (i32, i32), own: f32) -> Opti
 }
 
 /// The surface at a proposed distance, relative to a height at lane position y.
-fn seen(march: &March, y: i32, back: u16, step: i32, own: f32) -> Found {
+fn surface_at(march: &March, y: i32, back: u16, step: i32, own: f32) -> Found {
     let steps = i32::from(back);
     let Some(h) = (back > 0)
         .then(|| surface_on_line(march, y - steps * march.azimuth.shear, step - steps))
@@ -207,7 +207,7 @@ pub fn fused(
     // A proposal one step back is the first crossing itself.
     let aimed = |texel: Option<usize>| match back(texel) {
         0 | 1 => NOTHING,
-        back => seen(march, y, back, step, o.own),
+        back => surface_at(march, y, back, step, o.own),
     };
 
     // Ridges that unit steps miss stand beside a proposal.
@@ -236,8 +236,8 @@ pub fn fused(
             return higher(higher(found, around(before_texel)), around(after_texel));
         }
         Fuse::Own => (
-            seen(march, after, back(after_texel), step, o.own),
-            seen(march, before, back(before_texel), step, o.own),
+            surface_at(march, after, back(after_texel), step, o.own),
+            surface_at(march, before, back(before_texel), step, o.own),
         ),
         Fuse::Slopes => (slope(after_texel), slope(before_texel)),
     };

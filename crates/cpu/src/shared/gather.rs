@@ -34,7 +34,7 @@ impl Swept<'_> {
     /// Outside the field.
     pub fn found(&self, azimuth: &Azimuth, col: i32, row: i32) -> Found {
         let march = March::new(self.heights, azimuth);
-        let (lane, step) = march.of_sample(col, row);
+        let (lane, step) = march.of_grid_point(col, row);
         let own = self.heights.at(col, row);
         let settings =
             (self.fuse, self.line_shift, self.warm_up[usize::from(azimuth.marches_rows())]);
@@ -49,14 +49,14 @@ impl Swept<'_> {
     /// # Panics
     /// Outside the field.
     pub fn add_all(&self, col: i32, row: i32, add_light: impl FnMut(usize, &Azimuth, f64, DVec3)) {
-        self.add_seen(col, row, true, add_light);
+        self.add_visible(col, row, true, add_light);
     }
 
     /// The same, the lowest slope with or without the grid point's own plane.
     ///
     /// # Panics
     /// Outside the field.
-    pub fn add_seen(
+    pub fn add_visible(
         &self,
         col: i32,
         row: i32,
@@ -79,7 +79,7 @@ impl Swept<'_> {
     }
 
     /// `of` at every grid point, row-major.
-    pub fn per_sample<T>(&self, of: impl Fn(i32, i32) -> T) -> Vec<T> {
+    pub fn per_grid_point<T>(&self, of: impl Fn(i32, i32) -> T) -> Vec<T> {
         let cols = self.heights.cols;
         (0..cols * self.heights.rows).map(|i| of((i % cols) as i32, (i / cols) as i32)).collect()
     }

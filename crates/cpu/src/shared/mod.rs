@@ -5,7 +5,7 @@ pub mod field;
 pub mod fuse;
 pub mod gather;
 pub mod levels;
-pub mod lobe;
+pub mod phong_lobe;
 pub mod random;
 pub mod segment;
 pub mod surface;

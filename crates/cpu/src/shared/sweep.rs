@@ -19,7 +19,7 @@ pub const PER_CELL: f32 = 1.0 / CELL as f32;
 #[derive(Clone, Copy, Debug)]
 pub struct Heights<'a> {
     /// Row-major, row 0 in the north, metres.
-    pub samples: &'a [f32],
+    pub heights_m: &'a [f32],
     /// Grid points from west to east.
     pub cols: usize,
     /// Grid points from north to south.
@@ -34,7 +34,7 @@ impl<'a> Heights<'a> {
     /// The heights of a field.
     pub fn of(field: &'a HeightField, border: Border) -> Self {
         Self {
-            samples: field.heights_m(),
+            heights_m: field.heights_m(),
             cols: field.cols(),
             rows: field.rows(),
             cell_m: field.cell_m().map(|c| c as f32),
@@ -47,7 +47,7 @@ impl<'a> Heights<'a> {
     /// # Panics
     /// Outside the field.
     pub fn at(&self, col: i32, row: i32) -> f32 {
-        self.samples[row as usize * self.cols + col as usize]
+        self.heights_m[row as usize * self.cols + col as usize]
     }
 }
 
@@ -88,7 +88,7 @@ impl<'a> March<'a> {
     }
 
     /// Lane and step of the grid point in a column and row.
-    pub fn of_sample(&self, col: i32, row: i32) -> (i32, i32) {
+    pub fn of_grid_point(&self, col: i32, row: i32) -> (i32, i32) {
         let (lane, march) = if self.azimuth.marches_rows() { (col, row) } else { (row, col) };
         (self.lane_position(lane), self.march_position(march))
     }

@@ -132,7 +132,7 @@ pub(super) struct Walk {
 pub(super) struct Block {
     low: [i32; 2],
     high: [i32; 2],
-    seen: [i32; 2],
+    wrap: [i32; 2],
     pub ahead: Near,
     by_x: bool,
 }
@@ -168,16 +168,16 @@ impl Walk {
         let low = self.at.map(|at| (at >> bits) << bits);
         let high = [0, 1].map(|i| (low[i] + (1 << bits)).min(ground.size[i]));
         let is_periodic = ground.border == Border::Periodic;
-        let seen = [0, 1].map(|i| if is_periodic { self.at[i] - self.cell[i] } else { 0 });
+        let wrap = [0, 1].map(|i| if is_periodic { self.at[i] - self.cell[i] } else { 0 });
         let to_edge = [0, 1].map(|i| {
-            let edge = if self.onward[i] { high[i] } else { low[i] } - seen[i] - ray.base[i];
+            let edge = if self.onward[i] { high[i] } else { low[i] } - wrap[i] - ray.base[i];
             if ray.advance[i].v == 0.0 {
                 return Near::of(1e30);
             }
             (Near::given(edge as f32) - ray.offset[i]) * (Near::of(1.0) / ray.advance[i])
         });
         let ahead = to_edge[0].min(to_edge[1]).max(self.t);
-        Block { low, high, seen, ahead, by_x: to_edge[0].v <= to_edge[1].v }
+        Block { low, high, wrap, ahead, by_x: to_edge[0].v <= to_edge[1].v }
     }
 
     /// Steps to the next block of the level where this one is `clear`. Goes to a coarser level on entering a coarser
@@ -187,7 +187,7 @@ impl Walk {
         let mut next = self.cell;
         if clear {
             for (i, to) in next.iter_mut().enumerate() {
-                let [low, high] = [block.low[i] - block.seen[i], block.high[i] - block.seen[i]];
+                let [low, high] = [block.low[i] - block.wrap[i], block.high[i] - block.wrap[i]];
                 let across = if self.onward[i] { high } else { low - 1 };
                 let place = (ray.offset[i].v + block.ahead.v * ray.advance[i].v).floor() as i32;
                 let other = (place + ray.base[i]).clamp(low, high - 1);

@@ -10,7 +10,7 @@ use std::f64::consts::{PI, TAU};
 /// The Phong lobe is taken as constant over the sun: for a radius a and an exponent n the error is n a²/4 of its
 /// peak, 5 % for the sun's 0.27° and n = 10⁴. Where a grid point's own plane or a horizon cuts a disc, the visible
 /// part is weighted by the cosine.
-pub fn gloss_on(normal: DVec3, sun: &Sun, phong: PhongSpecular, sun_sum: f64) -> f64 {
+pub fn specular_on(normal: DVec3, sun: &Sun, phong: PhongSpecular, sun_sum: f64) -> f64 {
     let [exponent, scale] = [phong.exponent, phong.scale].map(f64::from);
     let towards = towards(sun);
     let mirror = 2.0 * normal.z * normal - DVec3::Z;
@@ -20,15 +20,15 @@ pub fn gloss_on(normal: DVec3, sun: &Sun, phong: PhongSpecular, sun_sum: f64) ->
         return 0.0;
     }
     let density = (exponent + 1.0) / TAU * cosine.powf(exponent);
-    scale * seen(normal, towards, sun_sum) * density
+    scale * visible(normal, towards, sun_sum) * density
 }
 
 /// Incident light of the sun for irradiance 1, as a series of n²: the visible fraction, all of it from the sun's
 /// centre.
 pub fn arriving(normal: DVec3, sun: &Sun, order: usize, sun_sum: f64) -> Vec<f64> {
     let towards = towards(sun);
-    let seen = seen(normal, towards, sun_sum);
-    evaluate(order, towards).iter().map(|y| seen * y).collect()
+    let visible = visible(normal, towards, sun_sum);
+    evaluate(order, towards).iter().map(|y| visible * y).collect()
 }
 
 fn towards(sun: &Sun) -> DVec3 {
@@ -38,7 +38,7 @@ fn towards(sun: &Sun) -> DVec3 {
 }
 
 /// The visible fraction of a sun.
-fn seen(normal: DVec3, towards: DVec3, sun_sum: f64) -> f64 {
+fn visible(normal: DVec3, towards: DVec3, sun_sum: f64) -> f64 {
     let facing = normal.dot(towards);
     if facing > 0.0 { (PI * sun_sum / facing).min(1.0) } else { 0.0 }
 }

@@ -113,11 +113,11 @@ pub struct BounceError {
 }
 
 impl BounceError {
-    /// From all that a CPU reference has seen, each cast with what an engine errs by there.
+    /// From all visible intervals of a CPU reference, each with what an engine errs by there.
     ///
     /// With F the weight of all below an elevation a slice contributes Σ (F(ω_i) - F(ω_i-1)) L_i. An end ω_i that has an error of
     /// δ moves (F' + 2 δ) δ from L_i to L_i+1 (nothing beyond the last): differences of neighbours count, not the light
-    /// itself. What is hidden by less than δ may be seen instead of either: it is among the casts, without weight, up
+    /// itself. What is hidden by less than δ may be visible instead of either: it is among the casts, without weight, up
     /// to [`NEARLY_RAD`]; beyond, it may be as bright as any. The first end is the own plane, where F' is 0 and F
     /// itself errs as at other ends; a normal that turns by ν changes a slice's weight by ν ∫ cos ω dω. Where on a
     /// piece a mean is taken errs by what its ends err by, in shares of the piece: mean weight times (2 δ + 16 ε),
@@ -218,7 +218,7 @@ pub fn walk_error(wedge_rad: f64, cast: &Cast) -> CastError {
     }
 }
 
-/// How `bounce_gather` looks at a field.
+/// How `bounce_gather` samples a field.
 #[derive(Clone, Copy, Debug)]
 pub struct Gathered {
     /// The field.
@@ -244,7 +244,7 @@ impl Gathered {
     /// slope. The ends of a rise: a spline ([`device_spline`]) each, or between two samples of a stack 3 ε; of levels that
     /// are the CPU references' a [`device_level`] an octave, and the stack's own spline. Product and quotient turn an angle by
     /// 3 ε, an arc tangent; a spline's weights are positive and sum to 1, 12 ε, its sine and cosine 4 ε. Steps are
-    /// those of the nearest sample that a spline looks at.
+    /// those of the nearest grid point that a spline reads.
     ///
     /// Weights as [`march_error`]'s. Three bands: four polynomials of an end, 8 ε of √2 each, times weights of
     /// at most 1. Radiance: a spline, an octave's levels where they are the CPU references', and its place: two lookups farther,

@@ -26,7 +26,7 @@ impl ShadeError {
     ///
     /// A component of the gradient: differences 1, weighted exactly and summed 2, a quotient 5: 8 ε R / c;
     /// two of them turn the normal by √2 of that, `inversesqrt` and products by 8 ε. The slope of the
-    /// sample's own plane is 3 roundings of the gradient besides, √2 R / c at most.
+    /// grid point's own plane is 3 roundings of the gradient besides, √2 R / c at most.
     pub fn new(slope_error: f64, relief_m: f64, cell_m: f64, count: usize) -> Self {
         let gradient = 2.0_f64.sqrt() * 8.0 * EPSILON * relief_m / cell_m;
         let own_plane = gradient + 3.0 * EPSILON * 2.0_f64.sqrt() * relief_m / cell_m;
@@ -193,14 +193,14 @@ impl SphereGeometry {
     ///
     /// # Panics
     /// Outside the field.
-    pub fn of(field: &HeightField, sphere: &SphereLight, sample: usize) -> Self {
+    pub fn of(field: &HeightField, sphere: &SphereLight, grid_point: usize) -> Self {
         let (cols, heights) = (field.cols(), field.heights_m());
         let [cell_x, cell_y] = field.cell_m();
         let [x, y, z] = sphere.position_m;
-        let east = x - (sample % cols) as f64 * cell_x;
-        let north = y - (field.rows() - 1 - sample / cols) as f64 * cell_y;
+        let east = x - (grid_point % cols) as f64 * cell_x;
+        let north = y - (field.rows() - 1 - grid_point / cols) as f64 * cell_y;
         let over = z - field.base_m();
-        let up = over - f64::from(heights[sample]);
+        let up = over - f64::from(heights[grid_point]);
         let all = heights.iter().map(|h| f64::from(*h));
         let (low, high) = all.fold((f64::MAX, f64::MIN), |(l, h), v| (l.min(v), h.max(v)));
         Self {
@@ -222,7 +222,7 @@ impl SphereGeometry {
     /// angle 4 ε (1 + H/d); the ends of its disc by 2 (d/t)² of that, t the tangent's length, but never by
     /// more than √(8 ε), what is left of a tangent that is nothing; directions, arc tangents and sums by
     /// 40 ε and [`ARC_TANGENT`]. The circle's half chord on a piece of surface has a square that errs by
-    /// 16 ε r²: 4 √ε r where they just touch, seen from d - r or from within. Slices' weights sum to
+    /// 16 ε r²: 4 √ε r where they just touch, from d - r or from within. Slices' weights sum to
     /// π asin(r / away) at most, or to 2 π; two ends a slice, a normal that turns both its parts, over π.
     pub fn tolerance(&self) -> f64 {
         let Self { distance_m: d, away_m, radius_m: r, .. } = *self;

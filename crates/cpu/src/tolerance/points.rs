@@ -18,7 +18,7 @@ pub const MET_SHARE: f64 = 32.0 * EPSILON;
 /// where it matters, as beyond a ray is over everything; the surface by three differences, two products and two sums of at
 /// most R, 8 ε R, and by its place, 10 ε t, times the steepest slope G. What is met first stands half a cell c away or
 /// more: 32 ε R / c + 10 ε G. The direction itself errs by 12 ε upwards, and by as much sideways, which is 12 ε G more.
-pub fn seen_elevation(land: &Land) -> f64 {
+pub fn visible_elevation(land: &Land) -> f64 {
     let Land { relief_m, steepest, cell_m, .. } = *land;
     EPSILON * (12.0 + 32.0 * relief_m / cell_m + 22.0 * steepest)
 }
@@ -44,19 +44,19 @@ pub fn crossing_elevation(oracle: &Oracle, interval: &VisibleInterval, own_m: f6
     (slope + off).atan() - (slope - off).atan() + 12.0 * EPSILON
 }
 
-/// [`seen_elevation`] from the middles of triangles, of the threefold finer field whose samples they are: there the device's
+/// [`visible_elevation`] from the middles of triangles, of the threefold finer field whose grid points they are: there the device's
 /// height errs by 4 ε R (two differences, their sum's third, a sum), the field's own, rounded, by ε R at either end, half a
 /// finer cell apart or more.
 pub fn facet_elevation(finer: &Land) -> f64 {
-    seen_elevation(finer) + 12.0 * EPSILON * finer.relief_m / finer.cell_m
+    visible_elevation(finer) + 12.0 * EPSILON * finer.relief_m / finer.cell_m
 }
 
-/// What one look-up of `scatter_gather` errs by against its CPU reference, R, G, B; the lobe's exponent is `n`, 1 or more; the normal may
-/// be turned by `normal` radians.
+/// Tolerance of one look-up of `scatter_gather` against its CPU reference, R, G, B. The Phong exponent is `n`, 1 or more.
+/// The normal has an error of `normal` radians.
 ///
 /// A cosine errs by the normal's turn and 6 ε (three products, two sums, the direction's roundings). What a direction lies
 /// apart from the mirror errs by four turns, as that moves by twice the normal's and by twice the cosine's, and 16 ε: the
-/// lobe is what it may be within. Its power x = n ln errs by 8 ε of itself and 1e-7, its exponential by (3 + 2 |x|) ulp
+/// lobe counts with its range within that. Its power x = n ln errs by 8 ε of itself and 1e-7, its exponential by (3 + 2 |x|) ulp
 /// (Vulkan): (12 |x| + 8) ε and 1e-7 of it; f32 ends at 1e-37. Products and quotients round 16 times.
 pub fn gathered(of: &Gathered, n: f64, normal: f64) -> [f64; 3] {
     let cosine = normal + 6.0 * EPSILON;
@@ -64,8 +64,8 @@ pub fn gathered(of: &Gathered, n: f64, normal: f64) -> [f64; 3] {
     let power = |along: f64| along.clamp(0.0, 1.0).powf(n);
     let [near, far] = [power(of.along + apart), power(of.along - apart)];
     let x = n * of.along.clamp(1e-30, 1.0).ln().abs();
-    let lobe = near - far + near * ((12.0 * x + 24.0) * EPSILON + 1e-7) + 1e-37;
-    [0, 1, 2].map(|c| of.facing[c] * cosine + of.mirrored[c] * lobe + 16.0 * EPSILON * of.light[c])
+    let phong = near - far + near * ((12.0 * x + 24.0) * EPSILON + 1e-7) + 1e-37;
+    [0, 1, 2].map(|c| of.facing[c] * cosine + of.mirrored[c] * phong + 16.0 * EPSILON * of.light[c])
 }
 
 /// By how much equation 4 of an ellipse of `ellipse_fit` may be off near its edge, where neither term is over 1.

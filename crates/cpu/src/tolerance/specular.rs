@@ -11,7 +11,7 @@ pub fn device_specular_visibility(order: usize) -> f64 {
 }
 
 /// A coefficient that `sun_specular` adds of a sun of irradiance 1 that faces the grid point by `facing`, the cosine: the part
-/// that is seen errs as in [`device_sun_specular`](super::device_sun_specular), Y_lm, 1 at most, by 100 ε, their products by 3 ε.
+/// that is visible errs as in [`device_sun_specular`](super::device_sun_specular), Y_lm, 1 at most, by 100 ε, their products by 3 ε.
 pub fn device_sun_arriving(normal_error: f64, facing: f64) -> f64 {
     ((normal_error + 6.0 * EPSILON) / facing.max(1e-30)).min(1.0) + 104.0 * EPSILON
 }
@@ -25,7 +25,7 @@ pub fn device_specular_exit(order: usize, normal_error: f64) -> f64 {
     (4.0 * PI).sqrt() * (device_sh_specular(order, normal_error) + (directions + 4.0) * EPSILON)
 }
 
-/// A coefficient of what arrives by `specular_gather`, from all that a CPU reference has seen, each cast with what it errs by there, of
+/// A coefficient of what arrives by `specular_gather`, from all visible intervals of a CPU reference, each with its error there, of
 /// surface whose radiance by direction has coefficients that sum to `of.brightest` at most, by magnitude.
 ///
 /// An end closes the contribution of one place and opens the next one: twice its error times `brightest`, with Y_lm 1 at

@@ -12,13 +12,13 @@ pub fn map_draw(
 ) -> Vec<[u8; 4]> {
     let [width, height] = map.size;
     // In f32, as on the device: both must find the same grid point for a pixel's centre.
-    let sample = |corner: f32, pixel: u32, count: u32| {
-        let place = ((pixel as f32 + 0.5) * map.samples_per_pixel + corner).floor();
+    let grid_point = |corner: f32, pixel: u32, count: u32| {
+        let place = ((pixel as f32 + 0.5) * map.grid_points_per_pixel + corner).floor();
         (place >= 0.0 && place < count as f32).then_some(place as usize)
     };
     let pixel = |x: u32, y: u32| {
-        let col = sample(map.corner[0], x, map.field[0])?;
-        let at = sample(map.corner[1], y, map.field[1])? * map.field[0] as usize + col;
+        let col = grid_point(map.corner[0], x, map.field[0])?;
+        let at = grid_point(map.corner[1], y, map.field[1])? * map.field[0] as usize + col;
         if voids.is_some_and(|v| v[at]) {
             return None;
         }

@@ -104,7 +104,7 @@ fn is_hole(field: &HeightField, met: &Met) -> bool {
 
 /// The cell of a position, and how far down and right in it.
 fn cell(field: &HeightField, met: &Met) -> (usize, usize, [f64; 2]) {
-    let floor = |v: f64, samples: usize| (v.floor().max(0.0) as usize).min(samples - 2);
+    let floor = |v: f64, grid_points: usize| (v.floor().max(0.0) as usize).min(grid_points - 2);
     let (row, col) = (floor(met.row, field.rows()), floor(met.col, field.cols()));
     (row, col, [met.row - row as f64, met.col - col as f64])
 }

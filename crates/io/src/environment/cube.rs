@@ -186,7 +186,7 @@ mod tests {
     }
 
     /// The value at the centre of the texel in a world direction.
-    fn seen(picture: &Picture, [x, y, z]: [f64; 3]) -> [f32; 3] {
+    fn fetched(picture: &Picture, [x, y, z]: [f64; 3]) -> [f32; 3] {
         let col = (PI - y.atan2(x)) / (2.0 * PI) * picture.cols as f64;
         let row = x.hypot(y).atan2(z) / PI * picture.rows as f64;
         let row = (row as usize).min(picture.rows - 1);
@@ -236,15 +236,15 @@ mod tests {
             ([1.0, 0.0, 0.0], 5.0),
             ([-1.0, 0.01, 0.0], 6.0),
         ] {
-            assert_eq!(seen(&picture, direction), [face; 3], "{direction:?}");
+            assert_eq!(fetched(&picture, direction), [face; 3], "{direction:?}");
         }
-        // Within the face ahead, the top left quarter looks left (north, +y) and up.
+        // Within the face ahead, the top left quarter is left (north, +y) and up.
         let mut faces = faces.map(|f| flat(16, f.texels[0]));
         (0..64).for_each(|i| faces[4].texels[i / 8 * 16 + i % 8] = [9.0; 3]);
         let picture = from_cube(&faces);
-        assert_eq!(seen(&picture, [1.0, 0.5, 0.5]), [9.0; 3]);
-        assert_eq!(seen(&picture, [1.0, -0.5, 0.5]), [5.0; 3]);
-        assert_eq!(seen(&picture, [1.0, 0.5, -0.5]), [5.0; 3]);
+        assert_eq!(fetched(&picture, [1.0, 0.5, 0.5]), [9.0; 3]);
+        assert_eq!(fetched(&picture, [1.0, -0.5, 0.5]), [5.0; 3]);
+        assert_eq!(fetched(&picture, [1.0, 0.5, -0.5]), [5.0; 3]);
     }
 
     #[test]
@@ -337,7 +337,7 @@ mod tests {
             ([0.0, -1.0, -0.3], [0.0, 0.0, 1.0]),
             ([0.0, 0.3, 1.0], [0.0, 1.0, 0.0]),
         ] {
-            assert_eq!(seen(&picture, direction), value, "{direction:?}");
+            assert_eq!(fetched(&picture, direction), value, "{direction:?}");
         }
     }
 }

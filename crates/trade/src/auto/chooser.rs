@@ -85,13 +85,13 @@ impl<'a> Chooser<'a> {
     /// For a scene with this many bounces and its [`Statistics`].
     pub fn new(scene: &'a Scene, statistics: &Statistics, goal: Goal, bounces: u32) -> Self {
         let model = Model::of(scene, statistics, bounces);
-        let samples = scene.field.rows() * scene.field.cols();
+        let grid_points = scene.field.rows() * scene.field.cols();
         Self {
             scene,
             goal,
             first_guess: model.clone(),
             model,
-            costs: Costs::guessed(samples),
+            costs: Costs::guessed(grid_points),
             candidates: candidates(scene, bounces),
             trials: Vec::new(),
         }
@@ -207,9 +207,9 @@ impl<'a> Chooser<'a> {
         self.surest_of(|t| is_surest(&t.quality)).or_else(|| self.surest())
     }
 
-    fn surest_of(&self, is_asked: impl Fn(&Trial) -> bool) -> Option<&Trial> {
+    fn surest_of(&self, is_wanted: impl Fn(&Trial) -> bool) -> Option<&Trial> {
         let Goal::MaxError(most) = self.goal else { return self.best() };
-        let all = || self.reached().filter(|t| is_asked(t));
+        let all = || self.reached().filter(|t| is_wanted(t));
         let well = all().filter(|t| MARGIN * t.measured.at_most <= most);
         well.min_by(|a, b| a.ns.total_cmp(&b.ns)).or_else(|| all().min_by(by_error))
     }

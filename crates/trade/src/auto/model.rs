@@ -244,11 +244,21 @@ const SLICE: f64 = 200.0;
 
 impl Costs {
     /// lavapipe's costs, before any measurement, for this many texels.
-    pub fn guessed(samples: usize) -> Self {
-        let samples = samples as f64;
+    pub fn guessed(grid_points: usize) -> Self {
+        let grid_points = grid_points as f64;
         // Tables: README's 2.2 ms for 64 azimuths of 512 elevations.
         Self {
-            units_ns: [samples, samples, samples, 67.0, samples, 0.0, samples, samples, samples],
+            units_ns: [
+                grid_points,
+                grid_points,
+                grid_points,
+                67.0,
+                grid_points,
+                0.0,
+                grid_points,
+                grid_points,
+                grid_points,
+            ],
             overheads_ns: [0.0; KINDS],
             measured: Default::default(),
         }

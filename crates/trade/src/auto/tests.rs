@@ -161,9 +161,9 @@ fn search_limits_and_bounds_are_reported() {
     });
     assert!(slow.unwrap_err().to_string().contains("take more than 30 s"));
     let full = || Error::Limit { what: "".into(), needs: "".into(), limit: "".into() };
-    for (samples, confidence) in [(40, None), (SIDE * SIDE, Some(Probes::CONFIDENCE))] {
+    for (probes, confidence) in [(40, None), (SIDE * SIDE, Some(Probes::CONFIDENCE))] {
         let mut frames = 0;
-        let found = choose(&scene, Goal::MaxError(0.1), (samples, 7), None, |quality| {
+        let found = choose(&scene, Goal::MaxError(0.1), (probes, 7), None, |quality| {
             frames += 1;
             if frames == 2 { Err(full()) } else { draw(&scene, quality) }
         });
@@ -190,15 +190,16 @@ fn bounds_hold_at_the_stated_confidence() {
         lights: Lights { suns: vec![sun], ..Lights::default() },
     };
     let lit = Lit::of(&scene);
-    let truth: Vec<f64> = (0..LARGE * LARGE).map(|i| lit.at(i / LARGE, i % LARGE)[0]).collect();
-    let mean = truth.iter().sum::<f64>() / truth.len() as f64;
+    let ground_truth: Vec<f64> =
+        (0..LARGE * LARGE).map(|i| lit.at(i / LARGE, i % LARGE)[0]).collect();
+    let mean = ground_truth.iter().sum::<f64>() / ground_truth.len() as f64;
     let picture = |quality: &Quality| -> Vec<f32> {
         let scale = (1.0 / f64::from(quality.sun_azimuths) - 1.0 / 128.0).max(0.0);
         let error_at = |i: usize| {
             let is_edge = (14..24).contains(&(i % LARGE));
             if is_edge { scale * (1.0 + (i as f64 * 2.4).sin()) } else { 0.02 * scale }
         };
-        truth.iter().enumerate().map(|(i, t)| (t + error_at(i)) as f32).collect()
+        ground_truth.iter().enumerate().map(|(i, t)| (t + error_at(i)) as f32).collect()
     };
     let most = 0.01;
     let [mut held, mut bare, mut chosen] = [0_u64; 3];
@@ -210,8 +211,8 @@ fn bounds_hold_at_the_stated_confidence() {
         });
         let Ok(found) = found else { continue };
         let drawn = picture(&found.trial.quality);
-        let squares = drawn.iter().zip(&truth).map(|(d, t)| (f64::from(*d) - t).powi(2));
-        let actual = (squares.sum::<f64>() / truth.len() as f64).sqrt() / mean;
+        let squares = drawn.iter().zip(&ground_truth).map(|(d, t)| (f64::from(*d) - t).powi(2));
+        let actual = (squares.sum::<f64>() / ground_truth.len() as f64).sqrt() / mean;
         let Measured { error, at_most } = found.trial.measured;
         assert!(found.probes < LARGE * LARGE && at_most <= most, "{found:?}");
         chosen += 1;
@@ -252,7 +253,7 @@ fn exact_horizons_are_the_last_resort() {
 #[test]
 fn errors_unrelated_to_settings_are_returned() {
     let too_long = || Error::Limit {
-        what: "a field 9 samples long".into(),
+        what: "a field 9 grid points long".into(),
         needs: "longer images".into(),
         limit: "8".into(),
     };
@@ -305,10 +306,13 @@ fn probes_measure_errors_and_controls_reduce_noise() {
     let few = Probes::of(&scene, 64, 1, &[]).unwrap();
     assert_eq!(few.len(), 64);
     let rough = draw(&scene, &Quality { azimuths: 8, ..Quality::default() }).unwrap().planes;
-    let truth = error(&all, &rough, None).error;
+    let ground_truth = error(&all, &rough, None).error;
     let [alone, helped] = [None, Some(right.as_slice())].map(|c| error(&few, &rough, c));
-    assert!(alone.at_most > alone.error && truth <= alone.at_most, "{alone:?} {truth}");
-    assert!((helped.error / truth - 1.0).abs() < 1e-3, "{helped:?} {truth}");
+    assert!(
+        alone.at_most > alone.error && ground_truth <= alone.at_most,
+        "{alone:?} {ground_truth}"
+    );
+    assert!((helped.error / ground_truth - 1.0).abs() < 1e-3, "{helped:?} {ground_truth}");
     assert!(helped.at_most - helped.error < 0.1 * (alone.at_most - alone.error));
     // An error in one colour is measured beside grey light.
     let blue = vec![right[0].clone(), right[0].clone(), bright];

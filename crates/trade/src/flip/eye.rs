@@ -22,7 +22,7 @@ const FEATURE_WIDTH_DEG: f64 = 0.082;
 /// Exponent of the feature difference (§4.2.2).
 const FEATURE_EXPONENT: f64 = 0.5;
 /// Filtered values of one pixel.
-pub(super) struct Seen {
+pub(super) struct Filtered {
     /// L*, a*, b* after filtering, a* and b* adjusted to lightness.
     colour: DVec3,
     /// Strength of an edge and of a point, in units of white.
@@ -89,13 +89,13 @@ impl Eye {
     }
 
     /// `rows` is the first row and the number of rows.
-    pub fn looks_at(
+    pub fn filtered(
         &self,
         picture: &[[f32; 3]],
         voids: &[bool],
         cols: usize,
         rows: (usize, usize),
-    ) -> Vec<Seen> {
+    ) -> Vec<Filtered> {
         let (height, reach) = (picture.len() / cols, self.reach);
         let opponent = |i: usize| {
             let shown = |v: f32| if voids[i] { 0.0 } else { f64::from(v).clamp(0.0, 1.0) };
@@ -136,7 +136,7 @@ impl Eye {
                 let y = (colour[0][i] + 16.0) / 116.0;
                 let xyz = DVec3::new(y + colour[1][i] / 500.0, y, y - colour[2][i] / 200.0);
                 let rgb = (self.to_rgb * (xyz * self.white)).clamp(DVec3::ZERO, DVec3::ONE);
-                Seen { colour: self.colour(rgb), edge: edges[i], point: points[i] }
+                Filtered { colour: self.colour(rgb), edge: edges[i], point: points[i] }
             })
             .collect()
     }
@@ -154,7 +154,7 @@ impl Eye {
         DVec3::new(lightness, chroma * 500.0 * (x - y), chroma * 200.0 * (y - z))
     }
 
-    pub fn difference(&self, a: &Seen, b: &Seen) -> f64 {
+    pub fn difference(&self, a: &Filtered, b: &Filtered) -> f64 {
         // §4.1.4: compresses large differences into the last twentieth.
         let apart = hyab(a.colour, b.colour).powf(COLOUR_EXPONENT);
         let knee = KNEE * self.largest;
@@ -307,13 +307,13 @@ mod tests {
     #[test]
     fn features_have_their_known_strength() {
         let eye = Eye::new(PIXELS_PER_DEGREE);
-        let looked = |white: &dyn Fn(usize) -> bool| {
+        let filtered = |white: &dyn Fn(usize) -> bool| {
             let picture: Vec<[f32; 3]> =
                 (0..40 * 5).map(|i| [f32::from(white(i % 40)); 3]).collect();
-            eye.looks_at(&picture, &[false; 200], 40, (0, 5))
+            eye.filtered(&picture, &[false; 200], 40, (0, 5))
         };
         let near = |a: f64, b: f64| (a - b).abs() < 1e-12;
-        let step = looked(&|col| col >= 20);
+        let step = filtered(&|col| col >= 20);
         for row in 0..5 {
             assert!(near(step[row * 40 + 19].edge, 1.0) && near(step[row * 40 + 20].edge, 1.0));
             for far in [0, 39] {
@@ -321,12 +321,12 @@ mod tests {
                 assert!(near(s.edge, 0.0) && near(s.point, 0.0), "{} {}", s.edge, s.point);
             }
         }
-        let band = looked(&|col: usize| col.abs_diff(20) > 2);
+        let band = filtered(&|col: usize| col.abs_diff(20) > 2);
         assert!(near(band[60].point, 1.0) && near(band[60].edge, 0.0));
         // Against uniform white, an edge or point of 1 is a difference of (1/√2)^0.5 (§4.2.2), so
         // the colour difference has the exponent 1 - 0.8409; the colour is the same here.
-        let plain = |edge| Seen { colour: DVec3::new(50.0, 0.0, 0.0), edge, point: 0.0 };
-        let dark = |edge| Seen { colour: DVec3::new(40.0, 0.0, 0.0), edge, point: 0.0 };
+        let plain = |edge| Filtered { colour: DVec3::new(50.0, 0.0, 0.0), edge, point: 0.0 };
+        let dark = |edge| Filtered { colour: DVec3::new(40.0, 0.0, 0.0), edge, point: 0.0 };
         let (without, with) =
             (eye.difference(&plain(0.0), &dark(0.0)), eye.difference(&plain(1.0), &dark(0.0)));
         assert!(near(with, without.powf(1.0 - 0.5_f64.powf(0.25))), "{without} {with}");

@@ -119,7 +119,7 @@ pub fn ladders(scene: &Scene, bounces: u32) -> Vec<Ladder> {
             range: None,
             default: 0,
             slower: "more of the lines' results, then the surface itself, then all around there: horizons of each \
-                     sample",
+                     grid point",
             set: |quality, step| quality.fuse = FUSES[step],
             idle: has_no_lines,
         },

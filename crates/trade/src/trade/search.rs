@@ -220,11 +220,11 @@ impl Search {
             self.alone[ladder][self.steps[i][ladder].map_or(0, |s| s + 1)]
         };
         let near = self.measured.iter().copied().min_by_key(|&i| {
-            let unseen = self
+            let unmeasured = self
                 .differing(i, place)
                 .filter(|&ladder| alone(ladder, i).is_none() || alone(ladder, place).is_none());
             let differing = self.differing(i, place).count();
-            (unseen.count(), differing, self.distance(i, place), usize::MAX - i)
+            (unmeasured.count(), differing, self.distance(i, place), usize::MAX - i)
         });
         let Some((near, value)) = near.and_then(|i| Some((i, self.values[i]?))) else {
             return Value { cost: 0.0, error: self.floor };

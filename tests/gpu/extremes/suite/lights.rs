@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use glam::DVec3;
 use ridgelight::plan::Azimuth;
 use ridgelight::scene::{Albedo, Border, Environment, HeightField, Lights};
-use ridgelight_cpu::harmonics::{Harmonics, Seen};
+use ridgelight_cpu::harmonics::{Harmonics, Visibility};
 use ridgelight_cpu::tolerance::{ARC_TANGENT, EPSILON, ShadeError};
 
 use super::{About, Asks, Case, Found, Probe, field, never, none, suns, white};
@@ -131,9 +131,9 @@ fn series_above(
     let environment = found.scene.lights.environment.as_ref().expect("an environment");
     let harmonics = Harmonics::new(environment, found.scene.surface.border, quality);
     let error = ShadeError::new(slope_error, 0.0, 1.0, found.azimuths.len());
-    let mut seen = harmonics.seen(lowest, &error);
+    let mut seen = harmonics.visibility(lowest, &error);
     if quality.subsample > 1 {
-        seen = Seen::between([(&seen, 1.0)].into_iter(), &error);
+        seen = Visibility::between([(&seen, 1.0)].into_iter(), &error);
     }
     let [light, off] = harmonics.light(normal, &seen, &error);
     [light.x, off.x]

@@ -241,8 +241,8 @@ pub fn cases() -> Vec<Case> {
         horizons::cases().into_iter().chain(lights::cases()).chain(sphere_lights::cases());
     let of_their_own = bounces::cases().into_iter().chain(soft_spheres::cases());
     let of_visible_points = points::cases().into_iter().chain(scatters::cases());
-    let of_lobes = phong::cases().into_iter().chain(specular::cases());
-    of_horizons.chain(of_their_own).chain(of_lobes).chain(of_visible_points).collect()
+    let of_specular = phong::cases().into_iter().chain(specular::cases());
+    of_horizons.chain(of_their_own).chain(of_specular).chain(of_visible_points).collect()
 }
 
 /// Which cases are put to which methods, by their places in the lists.

@@ -86,7 +86,7 @@ fn sky(name: &str, ground: HeightField, border: Border, exponent: f32, radiance:
             _ => vec![[0, 0], [rows / 2, cols / 2], [rows - 1, cols - 1]],
         };
         let at = |[r, c]: [usize; 2]| {
-            probe(found.light("direct.glossy", r, c), all * expected, all * off, [0, r, c])
+            probe(found.light("direct.specular", r, c), all * expected, all * off, [0, r, c])
         };
         places.into_iter().map(at).collect()
     })
@@ -98,7 +98,7 @@ fn none() -> Case {
     let about = ("0, and no layer of it", "0");
     let mut case =
         case("a lobe of scale 0", about, (level(), Border::Plane), 20.0, lights, |found| {
-            assert!(!found.has("direct.glossy"), "{}", found.method.name);
+            assert!(!found.has("direct.specular"), "{}", found.method.name);
             PLACES.map(|[r, c]| probe(found.light("radiance", r, c), 0.0, 0.0, [0, r, c])).into()
         });
     case.scene.surface.specular =
@@ -134,8 +134,9 @@ fn suns(exponent: f32) -> Case {
         let normal = 8.0 * EPSILON;
         let both = [reflected(n, 0.0, 1.0, normal), reflected(n, off, off.cos(), normal)];
         let [right, bound] = [0, 1].map(|i| both[0][i] + both[1][i]);
-        let at =
-            |[r, c]: [usize; 2]| probe(found.light("direct.glossy", r, c), right, bound, [0, r, c]);
+        let at = |[r, c]: [usize; 2]| {
+            probe(found.light("direct.specular", r, c), right, bound, [0, r, c])
+        };
         PLACES.map(at).into()
     })
 }
@@ -153,7 +154,7 @@ fn mirrored(exponent: f32, slope: f64) -> Case {
             let rounded = 2.0 * EPSILON * super::largest(field);
             let normal = Land::normal_at(field, Border::Plane, [r, c]) + rounded;
             let [right, bound] = reflected(f64::from(exponent), 0.0, tilt.cos(), normal);
-            probe(found.light("direct.glossy", r, c), right, bound, [0, r, c])
+            probe(found.light("direct.specular", r, c), right, bound, [0, r, c])
         };
         [[32, 32], [20, 41], [37, 9]].map(at).into()
     })

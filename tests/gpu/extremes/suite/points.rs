@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use ridgelight::scene::{Border, HeightField, Scene, VisiblePoint};
-use ridgelight_cpu::ellipse_fit::{Ellipse, Seen, score, start};
+use ridgelight_cpu::ellipse_fit::{Ellipse, SkyDirection, score, start};
 use ridgelight_cpu::oracle::Oracle;
 use ridgelight_cpu::tolerance::{MET_SHARE, crossing_elevation, ellipse_reach, ellipse_start};
 use ridgelight_cpu::visible_points::possible_within;
@@ -54,7 +54,7 @@ fn is_ground(case: &Case) -> bool {
 
 fn number(point: VisiblePoint) -> f64 {
     match point {
-        VisiblePoint::Sample(at) => at as f64,
+        VisiblePoint::GridPoint(at) => at as f64,
         VisiblePoint::Sky => -1.0,
         VisiblePoint::Ground => -2.0,
     }
@@ -97,8 +97,10 @@ impl<'a> Sight<'a> {
         let mut all: Vec<VisiblePoint> = Vec::new();
         for seen in possible(&Oracle::new(doubled, self.oracle.border()), here, e) {
             let point = match seen {
-                VisiblePoint::Sample(there) if is_row => VisiblePoint::Sample(there % field.cols()),
-                VisiblePoint::Sample(there) => VisiblePoint::Sample(there / 2),
+                VisiblePoint::GridPoint(there) if is_row => {
+                    VisiblePoint::GridPoint(there % field.cols())
+                }
+                VisiblePoint::GridPoint(there) => VisiblePoint::GridPoint(there / 2),
                 other => other,
             };
             if !all.contains(&point) {
@@ -128,7 +130,7 @@ fn seen(found: &Found) -> Vec<Probe> {
     for at in places(found, PLACES) {
         for (i, e) in points.directions().vectors().iter().enumerate() {
             let possible = sight.possible(at, *e);
-            let got = points.seen(i, at);
+            let got = points.point(i, at);
             let want = if possible.contains(&got) { got } else { possible[0] };
             known += usize::from(possible.len() == 1);
             all.push(Probe {
@@ -187,7 +189,7 @@ fn of_sample(found: &Found, sight: &Sight, at: usize, [axes, radii]: [[f32; 4]; 
     let count = seen.len() as f64;
     let whole = seen.iter().map(|s| if s.1 == Some(true) { 1.0 } else { -1.0 }).sum::<f64>();
     let mut probes = vec![exact(got, said), exact(got, [whole.max(0.0), count])];
-    let known: Vec<Seen> = seen.iter().filter_map(|(e, lit)| Some((*e, (*lit)?))).collect();
+    let known: Vec<SkyDirection> = seen.iter().filter_map(|(e, lit)| Some((*e, (*lit)?))).collect();
     let lit = known.iter().filter(|s| s.1).count();
     if known.len() < seen.len() {
         return probes;

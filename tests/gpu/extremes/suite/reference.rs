@@ -52,7 +52,7 @@ impl<'a> CpuReference<'a> {
             },
         };
         let warm_up = Axis::of(azimuth.marches_rows(), self.pyramid.size, border).warm_up as i32;
-        let (lane, step) = march.march.of_sample(col as i32, row as i32);
+        let (lane, step) = march.march.of_grid_point(col as i32, row as i32);
         let slope = march.slope(lane, step, warm_up);
         let angle = if slope <= LOWEST_MET { -FRAC_PI_2 } else { f64::from(slope).atan() };
         let elevation = if border == Border::Open { angle } else { angle.max(0.0) };

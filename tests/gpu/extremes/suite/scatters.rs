@@ -8,7 +8,7 @@ use ridgelight::gpu::shaders::offsets::scatter_gather_push::STEPS;
 use ridgelight::scene::{
     Albedo, Border, Lights, PhongSpecular, Scene, Specular, Sun, Surface, VisiblePoint,
 };
-use ridgelight_cpu::scatter_gather::{Gathered, Samples};
+use ridgelight_cpu::scatter_gather::{Gathered, GridPoints};
 use ridgelight_cpu::tolerance::{EPSILON, Land, gathered};
 
 use super::points::{Sight, places, renamed};
@@ -97,7 +97,7 @@ fn level() -> Case {
 
 /// Direct light of what is diffuse: that of suns in the zenith, in four steps from sample to sample.
 pub fn direct(scene: &Scene) -> Vec<[f32; 3]> {
-    let samples = Samples::of(scene);
+    let samples = GridPoints::of(scene);
     let sun: f32 = scene.lights.suns.iter().map(|sun| sun.irradiance[0]).sum();
     let of = |at: usize| {
         let facing = samples.albedo(at)[0] * samples.normal(at).z / PI;
@@ -116,7 +116,7 @@ struct Light {
 struct Chain<'a> {
     scene: &'a Scene,
     sight: Sight<'a>,
-    samples: Samples<'a>,
+    samples: GridPoints<'a>,
     direct: Vec<[f32; 3]>,
     /// Of each path's steps, in order: direction, sky.
     links: Vec<(DVec3, f64)>,
@@ -134,10 +134,10 @@ impl Chain<'_> {
         let mut light = Light { ends: [f64::MAX, 0.0], off: 0.0 };
         for seen in self.sight.possible(at, e) {
             let arrives = match seen {
-                VisiblePoint::Sample(there) if step + 1 < self.steps => {
+                VisiblePoint::GridPoint(there) if step + 1 < self.steps => {
                     self.leaving(path, step + 1, there, -e)
                 }
-                VisiblePoint::Sample(there) if self.ends_in_direct => {
+                VisiblePoint::GridPoint(there) if self.ends_in_direct => {
                     let own = f64::from(self.direct[there][0]);
                     Light { ends: [own; 2], off: 0.0 }
                 }
@@ -182,7 +182,7 @@ impl Chain<'_> {
     fn off(&self, at: usize, e: DVec3, of: &Gathered) -> f64 {
         let (field, border) = (&self.scene.field, self.scene.surface.border);
         let turned = Land::normal_at(field, border, [at / field.cols(), at % field.cols()]);
-        let n = self.samples.lobe(at).map_or(1.0, |phong| f64::from(phong.exponent));
+        let n = self.samples.specular(at).map_or(1.0, |phong| f64::from(phong.exponent));
         let [off, ..] = gathered(of, n, turned);
         let normal = self.samples.normal(at);
         let apart = 4.0 * turned + 16.0 * EPSILON;
@@ -206,7 +206,7 @@ fn probes(found: &Found) -> Vec<Probe> {
     let chain = Chain {
         scene,
         sight: Sight::of(scene),
-        samples: Samples::of(scene),
+        samples: GridPoints::of(scene),
         direct: direct(scene),
         links: texels.map(link).collect(),
         steps,

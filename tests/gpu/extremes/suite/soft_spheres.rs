@@ -61,7 +61,7 @@ fn probes(found: &Found) -> Vec<Probe> {
         let soft = reference.at(sphere_light, row, col);
         let seen = SphereGeometry::of(field, sphere_light, row * cols + col);
         let slope = slope_error(&seen, found.method, super::largest(field));
-        let off = errors.tolerance(&seen, slope, normal(field, border, row, col), &soft.seen);
+        let off = errors.tolerance(&seen, slope, normal(field, border, row, col), &soft.visibility);
         let radiance = f64::from(sphere_light.radiance[0]);
         let light = soft.light.max(0.0);
         Probe {

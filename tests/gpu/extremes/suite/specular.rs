@@ -19,7 +19,7 @@ use ridgelight_cpu::shared::field::{field_slope, normal_of};
 use ridgelight_cpu::shared::sweep::Heights;
 use ridgelight_cpu::specular_exit::{exit_series, mirrored};
 use ridgelight_cpu::specular_gather::{Series, SpecularGather};
-use ridgelight_cpu::sun_specular::gloss_on;
+use ridgelight_cpu::sun_specular::specular_on;
 use ridgelight_cpu::tolerance::{
     BounceError, CastError, EPSILON, Gathered, Land, Slices, device_arriving, device_sh_specular,
     device_specular_exit, device_sun_arriving, device_sun_specular,
@@ -121,7 +121,7 @@ fn without(name: &str, albedo: f32, is_bounced: bool) -> Case {
     let expected =
         "no layer of lobes; black: nothing, white: diffuse bounces as without".to_owned();
     let probes = move |found: &Found| {
-        assert!(!found.has("glossy"), "{}", found.method.name);
+        assert!(!found.has("indirect.specular"), "{}", found.method.name);
         assert_eq!(found.has("indirect.1"), is_bounced, "{}", found.method.name);
         let [whole, direct] = ["radiance", "direct.sun1"].map(|name| found.layer(name));
         let bounced = if is_bounced { found.layer("indirect.1") } else { vec![0.0; whole.len()] };
@@ -174,7 +174,7 @@ impl Exit {
             let error = Land::normal_at(field, surface.border, at);
             let (phong, facing) = (lobe.at(i), normal.z);
             let diffuse = [bright * albedo * facing / PI; 3];
-            let mirrored = bright * gloss_on(normal, sun, phong, facing / PI);
+            let mirrored = bright * specular_on(normal, sun, phong, facing / PI);
             exit.series.push(exit_series(&arriving, normal, phong, diffuse));
             exit.seen.push(diffuse.map(|d| d + mirrored));
             exit.normals.push(normal);
@@ -254,7 +254,7 @@ fn both(found: &Found) -> Vec<Probe> {
         let here = of_exit(cast);
         CastError { radiance: here.radiance + order as f64 * here.elevation_rad * bright, ..here }
     };
-    let layers = ["indirect.1", "glossy"].map(|name| found.layer(name));
+    let layers = ["indirect.1", "indirect.specular"].map(|name| found.layer(name));
     let (Some(lobe), Albedo::Constant([albedo, ..])) =
         (&found.scene.surface.specular, &found.scene.surface.albedo)
     else {

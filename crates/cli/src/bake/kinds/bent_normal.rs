@@ -17,7 +17,7 @@ pub static KIND: Kind = Kind {
     begin,
 };
 
-fn begin(asked: &Request) -> Result<Making> {
+fn begin(request: &Request) -> Result<Making> {
     let component = |name| Value {
         name,
         about: "unit vector along ∫ V e de; the zenith where everything is occluded",
@@ -31,8 +31,8 @@ fn begin(asked: &Request) -> Result<Making> {
         unit: "rad",
         range: [0.0, PI],
     };
-    let is_octahedral = asked.encoding.name.ends_with("-octahedral");
-    let scale = if asked.encoding.component == Component::F32 { 1.0 } else { PI };
+    let is_octahedral = request.encoding.name.ends_with("-octahedral");
+    let scale = if request.encoding.component == Component::F32 { 1.0 } else { PI };
     let map = Map {
         planes: ["x", "y", "z", "cone"].map(|name| format!("bent_normal.{name}")).into(),
         values: vec![component("x"), component("y"), component("z"), cone],
@@ -43,5 +43,5 @@ fn begin(asked: &Request) -> Result<Making> {
         ],
         ..Map::default()
     };
-    Ok(Sums::begin(Box::new(BentNormal), asked, map))
+    Ok(Sums::begin(Box::new(BentNormal), request, map))
 }

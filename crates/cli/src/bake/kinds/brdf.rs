@@ -23,11 +23,11 @@ pub static KIND: Kind = Kind {
 pub const PAIRS: usize = 64;
 
 /// In the far field a periodic field is a plane.
-pub fn check(asked: &Request, name: &str) -> Result<()> {
-    if asked.border == Border::Periodic {
+pub fn check(request: &Request, name: &str) -> Result<()> {
+    if request.border == Border::Periodic {
         return Ok(());
     }
-    let found = format!("{:?} with --what {name}", asked.border).to_lowercase();
+    let found = format!("{:?} with --what {name}", request.border).to_lowercase();
     Err(Error::setting("--border", found, "periodic: the far field is of an infinite plane"))
 }
 
@@ -37,16 +37,16 @@ pub fn bytes(lit: &Lit) -> u64 {
     far_field::bytes(lit, count.max(2 * PAIRS)) + 72 * (count as u64).pow(2)
 }
 
-fn begin(asked: &Request) -> Result<Making> {
-    let (angles, count) = (asked.angles, asked.angles.count());
-    check(asked, KIND.name)?;
+fn begin(request: &Request) -> Result<Making> {
+    let (angles, count) = (request.angles, request.angles.count());
+    check(request, KIND.name)?;
     let value = |name| Value {
         name,
         about: "mean visible radiance over the plane's irradiance cos θ; texel (x, y) is view x \
             and light y, θ by θ and in each all φ; θ = (k + ½) π/2 / thetas, φ = 2π j / phis \
             counter-clockwise from east",
         unit: "1/sr",
-        range: [0.0, far_field::largest(asked)],
+        range: [0.0, far_field::largest(request)],
     };
     let map = Map {
         planes: ["brdf.R", "brdf.G", "brdf.B"].map(String::from).into(),
@@ -101,19 +101,23 @@ fn make_table(gpu: &mut Headless, lit: &Lit, say: Say) -> Result<Table> {
         say(format!("light {} of {count}", light + 1));
         let z = directions.vectors()[light].z;
         values.extend(
-            facets.radiance_from_all(&radiance).into_iter().map(|seen| seen.map(|v| v / z)),
+            facets.radiance_from_all(&radiance).into_iter().map(|light| light.map(|v| v / z)),
         );
         Ok(())
     })?;
     let brdf = Brdf::from_values(directions.vectors().to_vec(), values)?;
     say(format!("{PAIRS} pairs between the angles"));
     let pairs = bake::pairs(PAIRS, lit.seed)?;
-    let seen = ridgelight_bake::facets(gpu, lit.scene, facets.times(), &pairs, &lit.limits)?;
+    let facets_between =
+        ridgelight_bake::facets(gpu, lit.scene, facets.times(), &pairs, &lit.limits)?;
     let mut between = Vec::with_capacity(PAIRS);
     let own = |light| PAIRS + light..PAIRS + light + 1;
-    far_field::each_light(gpu, lit, &seen, (0..PAIRS, &own), &mut |light, radiance| {
+    far_field::each_light(gpu, lit, &facets_between, (0..PAIRS, &own), &mut |light, radiance| {
         let [l, v] = [light, PAIRS + light].map(|i| pairs.vectors()[i]);
-        between.push(([l, v], seen.radiance_from(PAIRS + light, &radiance).map(|m| m / l.z)));
+        between.push((
+            [l, v],
+            facets_between.radiance_from(PAIRS + light, &radiance).map(|m| m / l.z),
+        ));
         Ok(())
     })?;
     Ok(Table { brdf, facets, between })

@@ -21,9 +21,9 @@ pub static KIND: Kind = Kind {
 /// (`examples/scatter`).
 const COUNT: usize = 8;
 
-fn begin(asked: &Request) -> Result<Making> {
-    let angles = asked.angles;
-    brdf::check(asked, KIND.name)?;
+fn begin(request: &Request) -> Result<Making> {
+    let angles = request.angles;
+    brdf::check(request, KIND.name)?;
     if angles.count() < COUNT {
         let found = format!("{}x{}", angles.zeniths, angles.azimuths);
         return Err(Error::setting(
@@ -32,7 +32,7 @@ fn begin(asked: &Request) -> Result<Making> {
             format!("{COUNT} angles or more, one per factor"),
         ));
     }
-    let largest = far_field::largest(asked);
+    let largest = far_field::largest(request);
     let value = |name| Value {
         name,
         about: "a function of one direction: the table is the sum over k of layer k for the \
@@ -44,7 +44,7 @@ fn begin(asked: &Request) -> Result<Making> {
     let mut constants = far_field::constants("BRDF", angles);
     constants.push(format!("const int BRDF_FACTORS = {COUNT};"));
     // Specular is not symmetric in light and view.
-    let views = if asked.has_specular { COUNT } else { 0 };
+    let views = if request.has_specular { COUNT } else { 0 };
     constants.push(format!("const int BRDF_VIEWS = {views};"));
     let map = Map {
         planes: (0..COUNT + views)

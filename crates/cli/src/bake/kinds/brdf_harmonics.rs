@@ -16,15 +16,15 @@ pub static KIND: Kind = Kind {
     begin,
 };
 
-fn begin(asked: &Request) -> Result<Making> {
-    let (angles, order) = (asked.angles, asked.quality.sh_order as usize);
-    brdf::check(asked, KIND.name)?;
+fn begin(request: &Request) -> Result<Making> {
+    let (angles, order) = (request.angles, request.quality.sh_order as usize);
+    brdf::check(request, KIND.name)?;
     let terms = order * order;
     if angles.count() < terms {
         let found = format!("{}x{} with --sh-order {order}", angles.zeniths, angles.azimuths);
         return Err(Error::setting("--angles", found, format!("{terms} angles or more")));
     }
-    let largest = far_field::largest(asked);
+    let largest = far_field::largest(request);
     let value = |name| Value {
         name,
         about: "the table is the sum over texels (j, i) of their values times Y_i of the light \

@@ -17,8 +17,8 @@ pub static KIND: Kind = Kind {
     begin,
 };
 
-fn begin(asked: &Request) -> Result<Making> {
-    let count = asked.angles.count();
+fn begin(request: &Request) -> Result<Making> {
+    let count = request.angles.count();
     let name = |pair: usize| {
         let (light, view) = (pair / count, pair % count);
         ["R", "G", "B", "share"].map(|c| format!("btf.{light:04}.{view:04}.{c}"))
@@ -29,10 +29,10 @@ fn begin(asked: &Request) -> Result<Making> {
             "radiance that leaves the texel towards the view under a light of irradiance 1 \
                 facing it; 0 where it is not visible",
             "1/sr",
-            asked,
+            request,
         ),
         is_array: true,
-        constants: far_field::constants("BTF", asked.angles),
+        constants: far_field::constants("BTF", request.angles),
         ..Map::default()
     };
     let of = OfLight {

@@ -21,8 +21,8 @@ pub static KIND: Kind = Kind {
 const BASES: [&str; 5] =
     ["flat", "east_outwards", "east_inwards", "north_outwards", "north_inwards"];
 
-fn begin(asked: &Request) -> Result<Making> {
-    let Some([outwards, inwards]) = asked.curvature else {
+fn begin(request: &Request) -> Result<Making> {
+    let Some([outwards, inwards]) = request.curvature else {
         let expected = "OUT[,IN], the curvatures at which ellipses are fitted, 1/m";
         return Err(Error::setting("--curvature", "none with --what curved-ellipse", expected));
     };

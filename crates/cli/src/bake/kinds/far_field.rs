@@ -19,8 +19,8 @@ use super::super::map::MapFiles;
 use super::{Lit, Request, Say, Value, brdf, light_field, number};
 
 /// The largest value that the files hold: of f32, or less in a .ktx2.
-pub fn largest(asked: &Request) -> f64 {
-    let is_half = asked.encoding.component == Component::F16 && asked.has_texels;
+pub fn largest(request: &Request) -> f64 {
+    let is_half = request.encoding.component == Component::F16 && request.has_texels;
     if is_half { 65_504.0 } else { f64::from(f32::MAX) }
 }
 
@@ -43,8 +43,8 @@ pub fn constants(prefix: &str, angles: Angles) -> Vec<String> {
 }
 
 /// A texel of a picture of one view.
-pub fn texel(about: &'static str, unit: &'static str, asked: &Request) -> Vec<Value> {
-    let range = [0.0, largest(asked)];
+pub fn texel(about: &'static str, unit: &'static str, request: &Request) -> Vec<Value> {
+    let range = [0.0, largest(request)];
     let colour = |name| Value { name, about, unit, range };
     let share = Value {
         name: "share",
@@ -91,16 +91,16 @@ pub fn direct(gpu: &mut Headless, lit: &Lit, scene: &Scene) -> Result<Vec<[f32; 
 
 /// Bytes for triangles and texels in so many directions.
 pub fn bytes(lit: &Lit, directions: usize) -> u64 {
-    let samples = lit.scene.field.heights_m().len();
-    let facets = 2 * samples * times(&lit.scene.field).pow(2);
+    let grid_points = lit.scene.field.heights_m().len();
+    let facets = 2 * grid_points * times(&lit.scene.field).pow(2);
     let words = 2 * directions.div_ceil(DIRECTIONS_A_WORD) * 4;
     // Slopes, albedo, specular, words before and after unpacking, two radiances; all texels of one
     // view, visible points.
     let of_facets = facets * (16 + 24 + 16 + words + 48);
     // Specular light scattered towards each view, as read back and as kept.
     let towards = if specular(lit).is_some() && lit.scatter.is_some() { 28 } else { 0 };
-    let of_samples = samples * (200 + (36 + towards) * directions + 8 * lit.around.count());
-    (of_facets + of_samples) as u64
+    let of_grid_points = grid_points * (200 + (36 + towards) * directions + 8 * lit.around.count());
+    (of_facets + of_grid_points) as u64
 }
 
 /// The refined field of triangles. Errors state the original size and cell.
@@ -168,8 +168,8 @@ pub fn rays(lit: &Lit, name: &str, limits: &Limits) -> Option<(u128, String)> {
     let (paths, steps) = (scatter.paths, scatter.bounces);
     let a_path = u128::from(steps) * walks as u128 + views as u128;
     let of_pairs = pairs as u128 * u128::from(steps + 1);
-    let samples = field.heights_m().len() as u128;
-    let looks = samples * u128::from(paths) * (lights as u128 * a_path + of_pairs);
+    let grid_points = field.heights_m().len() as u128;
+    let rays = grid_points * u128::from(paths) * (lights as u128 * a_path + of_pairs);
     let of_lights = if lights == 1 { String::new() } else { format!("of {lights} lights each ") };
     let again = if walks == 1 { String::new() } else { format!(", walked {walks} times") };
     let of_pairs = match pairs {
@@ -177,7 +177,7 @@ pub fn rays(lit: &Lit, name: &str, limits: &Limits) -> Option<(u128, String)> {
         _ => format!("; of {pairs} pairs between each {paths} of {} steps", steps + 1),
     };
     Some((
-        looks,
+        rays,
         format!(
             "rays of {name}: {of_lights}{paths} paths of {steps} steps{again}, and one more \
                 towards each of {views} views{of_pairs}"
@@ -279,19 +279,19 @@ pub fn add_entries(
         json!({ "bounces": bounces, "paths": paths, "seed": seed, "directions": lit.around.count() })
     });
     files.add_entry("scattered", scattered.into());
-    tell_lobe(files, lit, facets, walked, is_linear);
+    report_specular(files, lit, facets, walked, is_linear);
     Ok(())
 }
 
 /// The sharpest specular of all triangles (means of their corners) and texels (which light paths
 /// hit).
 fn sharpest(lit: &Lit, facets: &Facets) -> Option<PhongSpecular> {
-    let samples = match &lit.scene.surface.specular {
+    let grid_points = match &lit.scene.surface.specular {
         Some(Specular::Constant(phong)) => std::slice::from_ref(phong),
         Some(Specular::Map(map)) => map,
         None => &[],
     };
-    let all = facets.sharpest().into_iter().chain(samples.iter().copied());
+    let all = facets.sharpest().into_iter().chain(grid_points.iter().copied());
     let of = all.filter(|phong| phong.scale > 0.0);
     of.max_by(|a, b| a.exponent.total_cmp(&b.exponent).then(a.scale.total_cmp(&b.scale)))
 }
@@ -312,8 +312,8 @@ pub fn is_coarse(lit: &Lit, facets: &Facets) -> bool {
     sharpest(lit, facets).is_some_and(|phong| apart_deg(&lit.angles) > half_width_deg(&phong))
 }
 
-/// Half width of the sharpest lobe, and the spacing of the directions that sample it.
-fn tell_lobe(
+/// Half width of the sharpest Phong lobe, and the spacing of the directions within it.
+fn report_specular(
     files: &mut MapFiles,
     lit: &Lit,
     facets: &Facets,

@@ -16,8 +16,8 @@ pub static SH_VISIBILITY: Kind = Kind {
     begin: begin_visibility,
 };
 
-fn begin_visibility(asked: &Request) -> Result<Making> {
-    let order = asked.quality.sh_order as usize;
+fn begin_visibility(request: &Request) -> Result<Making> {
+    let order = request.quality.sh_order as usize;
     let value = Value {
         name: "coefficient",
         about: "∫ V Y_lm de in plane l(l+1) + m; real, orthonormal, x east, y north, z up, no \
@@ -27,7 +27,7 @@ fn begin_visibility(asked: &Request) -> Result<Making> {
         range: [-3.545, 3.545],
     };
     let map = coefficients(&SH_VISIBILITY, order, value);
-    Ok(Sums::begin(Box::new(ShVisibility::new(order)), asked, map))
+    Ok(Sums::begin(Box::new(ShVisibility::new(order)), request, map))
 }
 
 pub static SH_TRANSFER: Kind = Kind {
@@ -40,8 +40,8 @@ pub static SH_TRANSFER: Kind = Kind {
     begin: begin_transfer,
 };
 
-fn begin_transfer(asked: &Request) -> Result<Making> {
-    let order = asked.quality.sh_order as usize;
+fn begin_transfer(request: &Request) -> Result<Making> {
+    let order = request.quality.sh_order as usize;
     if order > MAX_TRANSFER_ORDER {
         return Err(Error::setting(
             "--sh-order",
@@ -58,7 +58,7 @@ fn begin_transfer(asked: &Request) -> Result<Making> {
         range: [-0.461, 0.461],
     };
     let map = coefficients(&SH_TRANSFER, order, value);
-    Ok(Sums::begin(Box::new(ShTransfer::new(order)), asked, map))
+    Ok(Sums::begin(Box::new(ShTransfer::new(order)), request, map))
 }
 
 /// SH coefficients, four per texel.

@@ -18,17 +18,17 @@ pub static KIND: Kind = Kind {
     begin,
 };
 
-fn begin(asked: &Request) -> Result<Making> {
-    let (encoding, count) = (asked.encoding, asked.quality.azimuths);
+fn begin(request: &Request) -> Result<Making> {
+    let (encoding, count) = (request.encoding, request.quality.azimuths);
     let component = encoding.component;
-    if asked.border == Border::Open && !component.is_signed() {
+    if request.border == Border::Open && !component.is_signed() {
         return Err(Error::setting(
             format!("--encoding {}=", KIND.name),
             format!("{} with --border open", encoding.name),
             "snorm16-angle, snorm8-angle or f32: these hold horizons below 0",
         ));
     }
-    let lowest = if asked.border == Border::Open { -FRAC_PI_2 } else { 0.0 };
+    let lowest = if request.border == Border::Open { -FRAC_PI_2 } else { 0.0 };
     let is_angle = component != Component::F32 && !encoding.name.ends_with("-sin");
     let scale = if is_angle { FRAC_PI_2 } else { 1.0 };
     let map = Map {

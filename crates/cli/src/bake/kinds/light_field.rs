@@ -19,8 +19,8 @@ pub static KIND: Kind = Kind {
     begin,
 };
 
-fn begin(asked: &Request) -> Result<Making> {
-    let count = asked.angles.count();
+fn begin(request: &Request) -> Result<Making> {
+    let count = request.angles.count();
     let map = Map {
         planes: (0..count)
             .flat_map(|view| ["R", "G", "B", "share"].map(|c| format!("light_field.{view:04}.{c}")))
@@ -28,10 +28,10 @@ fn begin(asked: &Request) -> Result<Making> {
         values: texel(
             "radiance that leaves the texel; 0 where it is not visible",
             "radiance",
-            asked,
+            request,
         ),
         is_array: true,
-        constants: far_field::constants("LIGHT_FIELD", asked.angles),
+        constants: far_field::constants("LIGHT_FIELD", request.angles),
         ..Map::default()
     };
     let of = OfLight { plans, bytes: |lit| far_field::bytes(lit, lit.angles.count()), make };

@@ -22,10 +22,10 @@ pub static KIND: Kind = Kind {
 /// noise.
 const PARTS: u32 = 8;
 
-fn begin(asked: &Request) -> Result<Making> {
-    let range = [0.0, far_field::largest(asked)];
+fn begin(request: &Request) -> Result<Making> {
+    let range = [0.0, far_field::largest(request)];
     let value = |name, about| Value { name, about, unit: "radiance", range };
-    let light = match asked.has_specular {
+    let light = match request.has_specular {
         false => "radiance that leaves diffuse ground: direct light and all bounces",
         true => {
             "radiance that leaves straight up, diffuse and specular: direct light as render \

@@ -14,7 +14,7 @@ pub static SKY_VIEW: Kind = Kind {
     encodings: &bake::SHARE,
     formats: &[Format::Ktx2, Format::Png],
     decoder: include_str!("../../../../../shaders_glsl/decode/sky_view.glsl"),
-    begin: |asked| begin(asked, Box::new(SkyView), "sky_view", "1/π ∫ V max(N·e, 0) de"),
+    begin: |request| begin(request, Box::new(SkyView), "sky_view", "1/π ∫ V max(N·e, 0) de"),
 };
 
 pub static VISIBLE_SKY: Kind = Kind {
@@ -24,14 +24,14 @@ pub static VISIBLE_SKY: Kind = Kind {
     encodings: &bake::SHARE,
     formats: &[Format::Ktx2, Format::Png],
     decoder: include_str!("../../../../../shaders_glsl/decode/visible_sky.glsl"),
-    begin: |asked| {
+    begin: |request| {
         let about = "1/2π ∫ V de over the upper hemisphere";
-        begin(asked, Box::new(VisibleSky), "visible_sky", about)
+        begin(request, Box::new(VisibleSky), "visible_sky", about)
     },
 };
 
 fn begin(
-    asked: &Request,
+    request: &Request,
     sum: Box<dyn HorizonMap>,
     name: &'static str,
     about: &'static str,
@@ -41,5 +41,5 @@ fn begin(
         values: vec![Value { name, about, unit: "", range: [0.0, 1.0] }],
         ..Map::default()
     };
-    Ok(Sums::begin(sum, asked, map))
+    Ok(Sums::begin(sum, request, map))
 }

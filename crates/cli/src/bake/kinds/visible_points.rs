@@ -15,13 +15,13 @@ pub static KIND: Kind = Kind {
     begin,
 };
 
-fn begin(asked: &Request) -> Result<Making> {
-    let count = asked.directions.count();
+fn begin(request: &Request) -> Result<Making> {
+    let count = request.directions.count();
     let value = |name| Value {
         name,
         about: "of the grid point nearest to the hit, from the north-west; -1 for the sky, -2 \
             for the ground beyond; layer k is directions[k] of this manifest",
-        unit: "samples",
+        unit: "grid points",
         range: [-2.0, VisiblePoints::LARGEST_SIDE as f64 - 1.0],
     };
     let name = |k: usize| ["row", "column"].map(|part| format!("visible_points.{k:04}.{part}"));
@@ -45,20 +45,20 @@ fn take(traced: &DirectionsJob, files: &mut MapFiles) -> Result<()> {
     let DirectionsJob { field, border, directions, outputs, .. } = traced;
     let words = outputs.iter().flatten().map(|v| v.to_bits()).collect();
     let points = VisiblePoints::new(field, *border, (*directions).clone(), words)?;
-    let (samples, cols) = (field.rows() * field.cols(), field.cols());
+    let (grid_points, cols) = (field.rows() * field.cols(), field.cols());
     // The triangulation of the directions, which the decoder's `visible_share` needs. Too few
     // directions have none.
     if let Ok(net) = directions.triangles() {
         files.add_entry("triangles", serde_json::json!(net.corners()));
     }
     for direction in 0..directions.count() {
-        let seen = |sample| match points.seen(direction, sample) {
-            VisiblePoint::Sample(at) => [at / cols, at % cols].map(|n| n as f32),
+        let place = |texel| match points.point(direction, texel) {
+            VisiblePoint::GridPoint(at) => [at / cols, at % cols].map(|n| n as f32),
             VisiblePoint::Sky => [-1.0; 2],
             VisiblePoint::Ground => [-2.0; 2],
         };
         let [rows, columns] = [0, 1]
-            .map(|part| -> Vec<f32> { (0..samples).map(|sample| seen(sample)[part]).collect() });
+            .map(|part| -> Vec<f32> { (0..grid_points).map(|texel| place(texel)[part]).collect() });
         files.take(&[&rows, &columns])?;
     }
     Ok(())

@@ -48,10 +48,10 @@ impl MapFiles<'_> {
         let (encoding, voids) = (self.wanted.encoding, self.voids());
         let (component, format) = (encoding.component, self.wanted.texels());
         let of_picture = self.picture_component();
-        let samples = self.size().iter().product::<usize>();
+        let grid_points = self.size().iter().product::<usize>();
         let (has_texels, has_picture) = (self.has(Format::Ktx2), self.has(Format::Png));
         let reserve = |is_wanted: bool, each: usize| {
-            Vec::with_capacity(if is_wanted { each * samples } else { 0 })
+            Vec::with_capacity(if is_wanted { each * grid_points } else { 0 })
         };
         let mut texels = reserve(has_texels, format.bytes());
         let mut picture = reserve(has_picture, self.channels() * of_picture.bytes());
@@ -60,7 +60,7 @@ impl MapFiles<'_> {
         }
         let (mut values, mut parts) = ([0.0; 4], [0.0; 4]);
         let (values, parts) = (&mut values[..encoding.values], &mut parts[..encoding.components]);
-        for at in 0..samples {
+        for at in 0..grid_points {
             for (value, plane) in values.iter_mut().zip(planes) {
                 *value = f64::from(plane[at]);
             }
@@ -76,10 +76,10 @@ impl MapFiles<'_> {
                 for part in parts.iter() {
                     let part = part / scale;
                     let part = if of_picture.is_signed() { 0.5 + 0.5 * part } else { part };
-                    sample(&mut picture, of_picture, if is_void { 0.0 } else { part });
+                    put(&mut picture, of_picture, if is_void { 0.0 } else { part });
                 }
                 if voids.is_some() {
-                    sample(&mut picture, of_picture, if is_void { 0.0 } else { 1.0 });
+                    put(&mut picture, of_picture, if is_void { 0.0 } else { 1.0 });
                 }
             }
         }
@@ -88,7 +88,7 @@ impl MapFiles<'_> {
 }
 
 /// Appends a pixel value with as many bits as the component.
-fn sample(picture: &mut Vec<u8>, component: Component, value: f64) {
+fn put(picture: &mut Vec<u8>, component: Component, value: f64) {
     match component.bytes() {
         1 => Component::Unorm8.put(value, picture),
         _ => {

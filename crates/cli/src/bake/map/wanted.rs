@@ -65,22 +65,22 @@ impl Wanted {
     }
 
     /// Every file and an upper bound of its bytes.
-    pub fn files(&self, map: &Map, samples: usize) -> Vec<(String, u64)> {
+    pub fn files(&self, map: &Map, grid_points: usize) -> Vec<(String, u64)> {
         let (stem, planes) = (stem(self.kind), map.planes.len() as u64);
-        let samples = map.texels(samples) as u64;
+        let grid_points = map.texels(grid_points) as u64;
         let mut all = Vec::new();
         for format in &self.formats {
             let name = format!("{stem}.{}", format.name());
             let texels = self.texels().bytes() as u64;
             match format {
                 // ZIP adds little to incompressible data.
-                Format::Exr => all.push((name, 4 * planes * samples / 100 * 101 + 65_536)),
-                Format::Npy => all.push((name, 4 * planes * samples + 256)),
+                Format::Exr => all.push((name, 4 * planes * grid_points / 100 * 101 + 65_536)),
+                Format::Npy => all.push((name, 4 * planes * grid_points + 256)),
                 Format::Ktx2 => {
-                    all.push((name, texels * self.layers(map) as u64 * samples + 1024));
+                    all.push((name, texels * self.layers(map) as u64 * grid_points + 1024));
                 }
                 Format::Png => {
-                    let most = (texels + 2) * samples / 100 * 101 + 65_536;
+                    let most = (texels + 2) * grid_points / 100 * 101 + 65_536;
                     all.extend((0..self.layers(map)).map(|k| (self.picture(map, k), most)));
                 }
             }
@@ -90,13 +90,13 @@ impl Wanted {
     }
 
     /// Bytes that the files hold before they are written; formats that stream hold one layer.
-    pub fn held_bytes(&self, map: &Map, samples: usize) -> u64 {
-        let samples = map.texels(samples) as u64;
+    pub fn held_bytes(&self, map: &Map, grid_points: usize) -> u64 {
+        let grid_points = map.texels(grid_points) as u64;
         let of = |format: &Format| match format {
-            Format::Exr => 4 * map.planes.len() as u64 * samples,
+            Format::Exr => 4 * map.planes.len() as u64 * grid_points,
             // Pixels, and the compressed copy.
-            Format::Png => 2 * (self.texels().bytes() + 2) as u64 * samples,
-            Format::Npy | Format::Ktx2 => self.texels().bytes() as u64 * samples,
+            Format::Png => 2 * (self.texels().bytes() + 2) as u64 * grid_points,
+            Format::Npy | Format::Ktx2 => self.texels().bytes() as u64 * grid_points,
         };
         self.formats.iter().map(of).sum()
     }

@@ -10,7 +10,7 @@ use ridgelight::Result;
 use ridgelight::gpu::{Headless, Pixels};
 use ridgelight::plan::{self, Azimuth, Limits, Nodes, Picture};
 use ridgelight::scene::{Border, Quality, Receiver, Scene};
-use ridgelight_cpu::harmonics::{Harmonics, Seen};
+use ridgelight_cpu::harmonics::{Harmonics, Visibility};
 use ridgelight_cpu::sh_shade::nodes_around;
 use ridgelight_cpu::shared::field::{field_slope, normal_of};
 use ridgelight_cpu::shared::sweep::Heights;
@@ -186,9 +186,9 @@ impl Wanted {
     fn of(scene: &Scene, quality: &Quality, places: &[Place], nodes: &[Place]) -> Self {
         let environment = scene.lights.environment.as_ref().expect("an environment");
         let harmonics = Harmonics::new(environment, scene.surface.border, quality);
-        Self::lit(scene, quality, [places, nodes], &harmonics, |place, seen, error| {
+        Self::lit(scene, quality, [places, nodes], &harmonics, |place, visibility, error| {
             let albedo = DVec3::from_array(albedo_of(scene, place.index));
-            let [light, off] = harmonics.light(place.normal, seen, error);
+            let [light, off] = harmonics.light(place.normal, visibility, error);
             let light = albedo * light;
             [light, albedo * off + light.map(|v| device_resolved(v, 1))]
         })
@@ -201,7 +201,7 @@ impl Wanted {
         quality: &Quality,
         [places, nodes]: [&[Place]; 2],
         harmonics: &Harmonics,
-        light: impl Fn(&Place, &Seen, &ShadeError) -> [DVec3; 2],
+        light: impl Fn(&Place, &Visibility, &ShadeError) -> [DVec3; 2],
     ) -> Self {
         let (field, border) = (&scene.field, scene.surface.border);
         let heights = || field.heights_m().iter().map(|h| f64::from(*h));
@@ -211,19 +211,22 @@ impl Wanted {
         let slope = two_devices(device_fused_slope(low.abs().max(high.abs()), cell)) + ARC_TANGENT;
         let error = ShadeError::new(slope, high - low, cell, quality.azimuths as usize);
         let own_plane_hides = quality.receiver == Receiver::Plane;
-        let seen: BTreeMap<usize, Seen> = nodes
+        let visibility: BTreeMap<usize, Visibility> = nodes
             .iter()
-            .map(|n| (n.index, harmonics.seen(&n.lowest(border, own_plane_hides), &error)))
+            .map(|n| (n.index, harmonics.visibility(&n.lowest(border, own_plane_hides), &error)))
             .collect();
         let shader_heights = Heights::of(field, border);
         let of = |place: &Place| {
-            let seen = if quality.subsample == 1 {
-                seen[&place.index].clone()
+            let visibility = if quality.subsample == 1 {
+                visibility[&place.index].clone()
             } else {
                 let around = around(&shader_heights, quality, place.index);
-                Seen::between(around.iter().map(|(node, weight)| (&seen[node], *weight)), &error)
+                Visibility::between(
+                    around.iter().map(|(node, weight)| (&visibility[node], *weight)),
+                    &error,
+                )
             };
-            light(place, &seen, &error)
+            light(place, &visibility, &error)
         };
         Self(places.iter().map(of).collect())
     }

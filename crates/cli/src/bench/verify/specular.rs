@@ -9,7 +9,7 @@ use ridgelight::scene::{
     Albedo, Basis, Lights, PhongSpecular, Quality, Scene, Specular, Sun, Surface,
 };
 use ridgelight_cpu::harmonics::Harmonics;
-use ridgelight_cpu::sun_specular::gloss_on;
+use ridgelight_cpu::sun_specular::specular_on;
 use ridgelight_cpu::tolerance::{EPSILON, Land, device_resolved, device_sun_specular};
 
 use super::harmonics::{Place, Wanted, with_nodes};
@@ -39,7 +39,7 @@ pub(super) fn check(
     let wanted = Picture { light_layers: true, ..Picture::default() };
     let plan = plan::picture(scene, quality, limits, wanted)?;
     let number = |name: &str| plan.outputs().position(|(_, r)| r.name == name);
-    let Some(glossy) = number("direct.glossy") else {
+    let Some(specular_layer) = number("direct.specular") else {
         return Ok("the specular scale is 0 everywhere".to_owned());
     };
     let suns: Vec<Option<usize>> =
@@ -50,7 +50,7 @@ pub(super) fn check(
         gpu.draw(frame)?;
         let mut of = |number: usize| Ok(colours(&gpu.pixels(frame, number)?, places));
         let suns: Result<Vec<_>> = suns.into_iter().map(|n| n.map(&mut of).transpose()).collect();
-        Ok((of(glossy)?, suns?))
+        Ok((of(specular_layer)?, suns?))
     })?;
     let all = match shines_around(&scene.lights) {
         true => with_nodes(scene, places, gpu, quality, limits)?,
@@ -88,9 +88,9 @@ fn wanted_of(
         true => {
             let border = scene.surface.border;
             let sky = sky.unwrap_or_default();
-            let harmonics = Harmonics::of_lobes(environment.as_ref(), sky, border, quality);
-            Wanted::lit(scene, quality, [places, nodes], &harmonics, |place, seen, error| {
-                harmonics.mirrored(place.normal, specular.at(place.index), seen, error)
+            let harmonics = Harmonics::of_specular(environment.as_ref(), sky, border, quality);
+            Wanted::lit(scene, quality, [places, nodes], &harmonics, |place, visibility, error| {
+                harmonics.mirrored(place.normal, specular.at(place.index), visibility, error)
             })
         }
         false => Wanted(vec![[DVec3::ZERO; 2]; places.len()]),
@@ -120,7 +120,7 @@ fn of_sun(
     let irradiance = DVec3::from_array(sun.irradiance.map(f64::from));
     let brightest = irradiance.max_position();
     let sum = light[brightest] / (0.5 * irradiance[brightest]);
-    let mirrored = irradiance * gloss_on(place.normal, sun, phong, sum);
+    let mirrored = irradiance * specular_on(place.normal, sun, phong, sum);
     let (field, border) = (&scene.field, scene.surface.border);
     let at = [place.index / field.cols(), place.index % field.cols()];
     let (sin, cos) = sun.elevation_rad.sin_cos();

@@ -88,12 +88,12 @@ impl Wanted {
             for sphere_light in &scene.lights.sphere_lights {
                 let soft = reference.at(sphere_light, row, col);
                 rings |= soft.light < 0.0;
-                let seen = SphereGeometry::of(field, sphere_light, *place);
+                let geometry = SphereGeometry::of(field, sphere_light, *place);
                 let off = errors.tolerance(
-                    &seen,
-                    slope_error(&seen, quality, largest),
+                    &geometry,
+                    slope_error(&geometry, quality, largest),
                     normal,
-                    &soft.seen,
+                    &soft.visibility,
                 );
                 let light = soft.light.max(0.0);
                 for (c, [want, bound]) in all.iter_mut().enumerate() {
@@ -118,14 +118,14 @@ impl Wanted {
 }
 
 /// Error of slopes towards a sphere light: of the surface, or of a pyramid's levels.
-fn slope_error(seen: &SphereGeometry, quality: &Quality, largest: f64) -> f64 {
+fn slope_error(geometry: &SphereGeometry, quality: &Quality, largest: f64) -> f64 {
     if quality.method != Method::Pyramid {
-        return device_surface_within(seen);
+        return device_surface_within(geometry);
     }
-    let (relief, step) = (seen.relief_m, seen.cell_m);
+    let (relief, step) = (geometry.relief_m, geometry.cell_m);
     let steepest = relief / step;
     let march = device_pyramid_slope(steepest, largest, relief, step);
-    device_pyramid_within(seen, march, steepest, quality.level_step)
+    device_pyramid_within(geometry, march, steepest, quality.level_step)
 }
 
 /// A scene without its sphere lights; none without other lights.

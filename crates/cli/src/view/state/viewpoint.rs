@@ -21,7 +21,7 @@ const MOST_STEPS: f64 = 4096.0;
 struct Place {
     /// Column and row in the middle of the picture.
     middle: [f64; 2],
-    samples_per_pixel: f64,
+    grid_points_per_pixel: f64,
 }
 
 /// Where a field is viewed from.
@@ -36,14 +36,14 @@ pub struct Viewpoint {
 impl Viewpoint {
     /// The visible section in a picture of a size.
     pub fn map(&self, field: &HeightField, size: [u32; 2], swaps: bool, has_colour: bool) -> Map {
-        let Place { samples_per_pixel, .. } = self.place(field, size);
+        let Place { grid_points_per_pixel, .. } = self.place(field, size);
         Map {
             field: [field.cols() as u32, field.rows() as u32],
             has_colour,
             has_voids: field.voids().is_some(),
             size,
             corner: self.corner(field, size).map(|c| c as f32),
-            samples_per_pixel: samples_per_pixel as f32,
+            grid_points_per_pixel: grid_points_per_pixel as f32,
             swaps,
         }
     }
@@ -51,10 +51,10 @@ impl Viewpoint {
     /// Column and row at the map's upper left corner; whole pixels, so that all texels have the
     /// same size.
     fn corner(&self, field: &HeightField, size: [u32; 2]) -> [f64; 2] {
-        let Place { middle, samples_per_pixel } = self.place(field, size);
+        let Place { middle, grid_points_per_pixel } = self.place(field, size);
         std::array::from_fn(|i| {
-            let pixels = middle[i] / samples_per_pixel - f64::from(size[i]) / 2.0;
-            pixels.round() * samples_per_pixel
+            let pixels = middle[i] / grid_points_per_pixel - f64::from(size[i]) / 2.0;
+            pixels.round() * grid_points_per_pixel
         })
     }
 
@@ -63,9 +63,9 @@ impl Viewpoint {
             let field = [field.cols(), field.rows()].map(|n| n as f64);
             let needed = (field[0] / f64::from(size[0])).max(field[1] / f64::from(size[1]));
             // Whole pixels per texel where there are enough.
-            let samples_per_pixel =
+            let grid_points_per_pixel =
                 if needed <= 1.0 { 1.0 / (1.0 / needed).floor() } else { needed };
-            Place { middle: field.map(|n| n / 2.0), samples_per_pixel }
+            Place { middle: field.map(|n| n / 2.0), grid_points_per_pixel }
         })
     }
 
@@ -73,7 +73,7 @@ impl Viewpoint {
         let mut place = self.place(field, size);
         let field = [field.cols(), field.rows()];
         for i in 0..2 {
-            let moved = place.middle[i] - pixels[i] * place.samples_per_pixel;
+            let moved = place.middle[i] - pixels[i] * place.grid_points_per_pixel;
             place.middle[i] = moved.clamp(0.0, field[i] as f64);
         }
         self.place = Some(place);
@@ -86,12 +86,12 @@ impl Viewpoint {
             return;
         }
         let mut place = self.place(field, size);
-        let finer = (place.samples_per_pixel / factor).clamp(1.0 / 64.0, 64.0);
+        let finer = (place.grid_points_per_pixel / factor).clamp(1.0 / 64.0, 64.0);
         for i in 0..2 {
             let off = at[i] - f64::from(size[i]) / 2.0;
-            place.middle[i] += off * (place.samples_per_pixel - finer);
+            place.middle[i] += off * (place.grid_points_per_pixel - finer);
         }
-        place.samples_per_pixel = finer;
+        place.grid_points_per_pixel = finer;
         self.place = Some(place);
     }
 
@@ -161,10 +161,11 @@ impl Viewpoint {
     /// The ground under a pixel, absolute; none where there is none.
     pub fn ground(&self, field: &HeightField, size: [u32; 2], at: [f64; 2]) -> Option<[f64; 3]> {
         let Some(camera) = &self.camera else {
-            let (corner, Place { samples_per_pixel, .. }) =
+            let (corner, Place { grid_points_per_pixel, .. }) =
                 (self.corner(field, size), self.place(field, size));
             // A texel is centred in its pixels.
-            let [col, row] = std::array::from_fn(|i| corner[i] + at[i] * samples_per_pixel - 0.5);
+            let [col, row] =
+                std::array::from_fn(|i| corner[i] + at[i] * grid_points_per_pixel - 0.5);
             return height(field, [col, row]).map(|z| place(field, [col, row], z));
         };
         let [right, up, back] = camera.axes();
@@ -183,12 +184,12 @@ impl Viewpoint {
         length_m: f64,
     ) -> Option<([f64; 2], f64)> {
         let Some(camera) = &self.camera else {
-            let (corner, Place { samples_per_pixel, .. }) =
+            let (corner, Place { grid_points_per_pixel, .. }) =
                 (self.corner(field, size), self.place(field, size));
             let [cell_x, cell_y] = field.cell_m();
             let sample = [x / cell_x, (field.rows() - 1) as f64 - y / cell_y];
-            let at = std::array::from_fn(|i| (sample[i] + 0.5 - corner[i]) / samples_per_pixel);
-            return Some((at, length_m / cell_x / samples_per_pixel));
+            let at = std::array::from_fn(|i| (sample[i] + 0.5 - corner[i]) / grid_points_per_pixel);
+            return Some((at, length_m / cell_x / grid_points_per_pixel));
         };
         let [right, up, back] = camera.axes();
         let from = DVec3::new(x, y, z) - camera.eye_m();

@@ -49,7 +49,7 @@ impl Environment {
 
     /// Adds the radiance along e, weighted by the balance heuristic: where rounding decides between texels, that of
     /// f64, with the largest difference to any other of them in doubt. Straight above, e may belong to any column.
-    pub(super) fn towards(&self, e: Near3, density: Near, seen: &mut Traced) {
+    pub(super) fn towards(&self, e: Near3, density: Near, traced: &mut Traced) {
         let [width, height] = self.size;
         let length = (e[0] * e[0] + e[1] * e[1]).sqrt();
         let [azimuth, zenith] = [angle(e[1], e[0]), angle(length, e[2])];
@@ -67,7 +67,7 @@ impl Environment {
             times(weight, colour(from_there))
         };
         let light = at(col, row);
-        seen.light = plus(seen.light, light);
+        traced.light = plus(traced.light, light);
         let mut apart = [0.0_f64; 3];
         // Once around covers all of them.
         let cols = west..=east.min(west.saturating_add(width - 1));
@@ -79,7 +79,7 @@ impl Environment {
             }
         }
         if apart != [0.0; 3] {
-            seen.doubt(apart);
+            traced.doubt(apart);
         }
     }
 }

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::{Tracer, given, largest, one};
-use crate::shared::lobe::lobe_density;
+use crate::shared::phong_lobe::phong_lobe;
 use crate::shared::random::{direction_about, on_circle};
 use crate::shared::trace::Met;
 use crate::tolerance::near::{Near, Near3, dot, minus, normalize, plus, times};
@@ -16,7 +16,7 @@ pub(super) struct Place {
     pub(super) own: Near,
     pub(super) normal: Near3,
     pub(super) albedo: Near3,
-    pub(super) lobe: [Near; 2],
+    pub(super) specular: [Near; 2],
     pub(super) mirror: Near3,
 }
 
@@ -30,18 +30,18 @@ pub(super) struct Reflected {
 
 impl Tracer<'_> {
     /// At a grid point.
-    pub(super) fn first(&self, sample: usize) -> Place {
+    pub(super) fn first(&self, grid_point: usize) -> Place {
         let cols = self.scene.field.cols();
-        let [own, east, north] = given(self.samples[sample]);
+        let [own, east, north] = given(self.grid_points[grid_point]);
         let normal = normalize([-east, -north, one()]);
         let mirror = times(Near::of(2.0) * normal[2], normal);
         Place {
-            base: [(sample % cols) as i32, (sample / cols) as i32],
+            base: [(grid_point % cols) as i32, (grid_point / cols) as i32],
             offset: [Near::ZERO; 2],
             own,
             normal,
-            albedo: given(self.albedo[sample]),
-            lobe: self.lobes.get(sample).map_or([Near::ZERO; 2], |l| given(*l)),
+            albedo: given(self.albedo[grid_point]),
+            specular: self.specular.get(grid_point).map_or([Near::ZERO; 2], |l| given(*l)),
             mirror: minus(mirror, [Near::ZERO, Near::ZERO, one()]),
         }
     }
@@ -59,17 +59,18 @@ impl Tracer<'_> {
         let [far, along] = if is_lower { met.offset } else { [met.offset[1], met.offset[0]] };
         let near = one() - along;
         let rest = one() - near - far;
-        let samples = [(near, at), (far, next), (rest, third)].map(|(w, [c, r])| (w, r * cols + c));
+        let grid_points =
+            [(near, at), (far, next), (rest, third)].map(|(w, [c, r])| (w, r * cols + c));
         let between = |of: &dyn Fn(usize) -> Near| {
-            let [a, b, c] = samples.map(|(weight, sample)| weight * of(sample));
+            let [a, b, c] = grid_points.map(|(weight, grid_point)| weight * of(grid_point));
             a + b + c
         };
         let is_map = matches!(self.scene.surface.albedo, Albedo::Map(_));
-        let lobe_is_map = matches!(self.scene.surface.specular, Some(Specular::Map(_)));
+        let specular_is_map = matches!(self.scene.surface.specular, Some(Specular::Map(_)));
         let channel = |c: usize| between(&|i| Near::given(self.albedo[i][c]));
-        let lobe = |c: usize| match (lobe_is_map, self.lobes.first()) {
-            (true, _) => between(&|i| Near::given(self.lobes[i][c])).max(Near::ZERO),
-            (false, Some(lobe)) => Near::given(lobe[c]),
+        let specular = |c: usize| match (specular_is_map, self.specular.first()) {
+            (true, _) => between(&|i| Near::given(self.specular[i][c])).max(Near::ZERO),
+            (false, Some(pair)) => Near::given(pair[c]),
             (false, None) => Near::ZERO,
         };
         Place {
@@ -78,27 +79,27 @@ impl Tracer<'_> {
             own: nw + met.offset[0] * east + met.offset[1] * south,
             normal,
             albedo: if is_map { [0, 1, 2].map(channel) } else { given(self.albedo[0]) },
-            lobe: [0, 1].map(lobe),
+            specular: [0, 1].map(specular),
             mirror: minus(e, times(Near::of(2.0) * dot(e, normal), normal)),
         }
     }
 
     /// Fraction of scattered rays drawn from the Phong lobe.
-    fn lobe_choice(place: &Place) -> Near {
-        place.lobe[1] / (largest(place.albedo) + place.lobe[1]).max(Near::of(1e-30))
+    fn specular_choice(place: &Place) -> Near {
+        place.specular[1] / (largest(place.albedo) + place.specular[1]).max(Near::of(1e-30))
     }
 
     pub(super) fn reflected(&self, place: &Place, e: Near3) -> Reflected {
         let facing = dot(place.normal, e);
         let density = facing / Near::of(PI);
         let light = times(density, place.albedo);
-        if self.lobes.is_empty() {
+        if self.specular.is_empty() {
             return Reflected { facing, light, density, scattered: place.albedo };
         }
-        let lobe = lobe_density(minus(e, place.mirror), place.lobe[0]);
-        let choice = Self::lobe_choice(place);
-        let density = density * (one() - choice) + lobe * choice;
-        let more = place.lobe[1] * lobe;
+        let phong = phong_lobe(minus(e, place.mirror), place.specular[0]);
+        let choice = Self::specular_choice(place);
+        let density = density * (one() - choice) + phong * choice;
+        let more = place.specular[1] * phong;
         let light = light.map(|l| l + more);
         let scattered = light.map(|l| l / density.max(Near::of(1e-30)));
         Reflected { facing, light, density, scattered }
@@ -121,10 +122,13 @@ impl Tracer<'_> {
 
     /// Direction of the scattered ray; none where rounding decides between diffuse and specular.
     pub(super) fn scattered(&self, place: &Place, u: [Near; 2], v: [Near; 2]) -> Option<Near3> {
-        let by_lobe =
-            if self.lobes.is_empty() { false } else { Self::lobe_choice(place).above(v[0])? };
-        if by_lobe {
-            let power = one() / (place.lobe[0] + one());
+        let by_specular = if self.specular.is_empty() {
+            false
+        } else {
+            Self::specular_choice(place).above(v[0])?
+        };
+        if by_specular {
+            let power = one() / (place.specular[0] + one());
             let near_mirror = u[0].max(Near::of(1e-30)).powf(power);
             return direction_about(place.mirror, one() - near_mirror, u[1]);
         }

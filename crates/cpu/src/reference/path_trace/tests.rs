@@ -19,9 +19,9 @@ fn a_ray_sees_the_ball_that_it_leaves_and_what_is_behind_it() {
     let lights = Lights { sky: Some([0.2; 3]), sphere_lights: vec![sphere], ..Lights::default() };
     let scene = scene([0.3; 3], lights);
     let tracer = Tracer::of(&scene, vec![[0.0; 3]; 9], (1, 0), true);
-    assert!(tracer.most_seen(1)[1] >= 1.3, "{:?}", tracer.most_seen(1));
+    assert!(tracer.most_arriving(1)[1] >= 1.3, "{:?}", tracer.most_arriving(1));
     // The last ray's ground is black.
-    assert!((tracer.most_seen(0)[1] - 1.2).abs() < 1e-6, "{:?}", tracer.most_seen(0));
+    assert!((tracer.most_arriving(0)[1] - 1.2).abs() < 1e-6, "{:?}", tracer.most_arriving(0));
 }
 
 /// Almost straight above, a direction may belong to any column of the highest row, and to no other row: the largest
@@ -44,11 +44,11 @@ fn straight_above_every_column_is_in_doubt() {
         let mut environment = tracer.environment.unwrap();
         // Without importance sampling.
         environment.texels.iter_mut().for_each(|t| t[3] = 0.0);
-        let mut seen = Traced::default();
+        let mut traced = Traced::default();
         let e = [Near::ZERO.wider(1e-7), Near::ZERO.wider(1e-7), Near::of(1.0)];
-        environment.towards(e, one(), &mut seen);
-        assert_eq!(seen.doubts, [1, 0, 0], "{bright}");
-        let off = seen.in_doubt[0];
+        environment.towards(e, one(), &mut traced);
+        assert_eq!(traced.doubts, [1, 0, 0], "{bright}");
+        let off = traced.in_doubt[0];
         assert!((4.0..4.01).contains(&off), "column {bright}: {off}");
     }
 }

@@ -5,7 +5,7 @@ use ridgelight::scene::{Albedo, BounceEngine, Bounces};
 use ridgelight_cpu::indirect::{self, Fineness};
 
 /// Two bounces of an albedo of 0.8, by the f64 quadrature; the simulated paths have a noise of 5 %
-/// of it. Pictures are the ground truth except for the settings of bounces: omitted bounces lack
+/// of it. Pictures are the ground ground_truth except for the settings of bounces: omitted bounces lack
 /// all their light, and azimuths leave 32nds / azimuths · 10 % of the second bounce's light. The
 /// choice reaches the goal without noise and is faster than the defaults. A goal below the paths'
 /// noise is refused, as is one that all bounces do not reach.
@@ -27,13 +27,13 @@ fn choices_of_bounces_reach_the_goal() {
             .collect()
     };
     let true_error = |quality: &Quality| {
-        let truth = |i: usize| direct[i] + bounced(i, 2);
+        let ground_truth = |i: usize| direct[i] + bounced(i, 2);
         let squares = picture(quality)
             .iter()
             .enumerate()
-            .map(|(i, p)| (f64::from(*p) - truth(i)).powi(2))
+            .map(|(i, p)| (f64::from(*p) - ground_truth(i)).powi(2))
             .sum::<f64>();
-        (squares * (SIDE * SIDE) as f64).sqrt() / (0..SIDE * SIDE).map(truth).sum::<f64>()
+        (squares * (SIDE * SIDE) as f64).sqrt() / (0..SIDE * SIDE).map(ground_truth).sum::<f64>()
     };
     let cost = |quality: &Quality| {
         let Bounces { azimuths, .. } = quality.bounces;
@@ -42,7 +42,7 @@ fn choices_of_bounces_reach_the_goal() {
     };
     let found = |most: f64, noise: f64| {
         let mut batches_used = Vec::new();
-        let mut trace = |samples: &[usize], batches: u32, seed: u32| {
+        let mut trace = |places: &[usize], batches: u32, seed: u32| {
             batches_used.push(batches);
             let error = noise / f64::from(batches).sqrt();
             let of = |(k, i): (usize, &usize)| {
@@ -51,7 +51,7 @@ fn choices_of_bounces_reach_the_goal() {
                 let mean = bounced(*i, 2) * (1.0 + error * std::f64::consts::SQRT_2 * turn.sin());
                 Traced { mean: [mean; 3], standard_error: [bounced(*i, 2) * error; 3] }
             };
-            Ok(samples.iter().enumerate().map(of).collect())
+            Ok(places.iter().enumerate().map(of).collect())
         };
         let bounced = Some(Bounced { count: 2, trace: &mut trace });
         let found = choose(&scene, Goal::MaxError(most), WHOLE, bounced, |quality| {

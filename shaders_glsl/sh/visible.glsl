@@ -1,12 +1,12 @@
-// Made by basis::glsl::glsl_seen, and held to it by a test.
+// Made by basis::glsl::glsl_visible, and held to it by a test.
 //
-// Adds what is seen along an azimuth above elevations of sine `sin_` and cosine `cos_`, `rise` from
-// the zenith, to the series of what SEEN is, one sample or four. The including shader declares ORDER,
-// the azimuth's weights float turn[11], of m at m + 5, and SEEN series[36].
+// Adds the visibility along an azimuth above elevations of sine `sin_` and cosine `cos_`, `rise` from
+// the zenith, to the series. VALUE is of one texel or of four. The including shader declares ORDER,
+// the azimuth's weights float turn[11], of m at m + 5, and VALUE series[36].
 
 // By exact integrals over elevation.
-void add_slices(SEEN rise, SEEN sin_, SEEN cos_) {
-    SEEN t;
+void add_slices(VALUE rise, VALUE sin_, VALUE cos_) {
+    VALUE t;
     t = 0.70710677 + sin_ * (-0.70710677);
     series[0] += turn[5] * t;
     t = 0.61237246 + sin_ * (sin_ * (-0.61237246));
@@ -75,15 +75,15 @@ void add_slices(SEEN rise, SEEN sin_, SEEN cos_) {
 }
 
 // By ORDER coefficients of normalised Legendre polynomials (NS09 eq. 11).
-void add_nlps(SEEN sin_, SEEN cos_) {
-    SEEN t;
-    SEEN cos2 = cos_ * cos_;
-    SEEN nlp0 = 0.70710677 * (1.0 - sin_);
-    SEEN nlp1 = cos2 * (0.61237246);
-    SEEN nlp2 = cos2 * (sin_ * (0.7905694)) * (ORDER > 2 ? 1.0 : 0.0);
-    SEEN nlp3 = cos2 * (-0.2338536 + sin_ * (sin_ * (1.1692679))) * (ORDER > 3 ? 1.0 : 0.0);
-    SEEN nlp4 = cos2 * (sin_ * (-0.79549515 + sin_ * (sin_ * (1.8561553)))) * (ORDER > 4 ? 1.0 : 0.0);
-    SEEN nlp5 = cos2 * (0.1465755 + sin_ * (sin_ * (-2.0520568 + sin_ * (sin_ * (3.0780854))))) * (ORDER > 5 ? 1.0 : 0.0);
+void add_nlps(VALUE sin_, VALUE cos_) {
+    VALUE t;
+    VALUE cos2 = cos_ * cos_;
+    VALUE nlp0 = 0.70710677 * (1.0 - sin_);
+    VALUE nlp1 = cos2 * (0.61237246);
+    VALUE nlp2 = cos2 * (sin_ * (0.7905694)) * (ORDER > 2 ? 1.0 : 0.0);
+    VALUE nlp3 = cos2 * (-0.2338536 + sin_ * (sin_ * (1.1692679))) * (ORDER > 3 ? 1.0 : 0.0);
+    VALUE nlp4 = cos2 * (sin_ * (-0.79549515 + sin_ * (sin_ * (1.8561553)))) * (ORDER > 4 ? 1.0 : 0.0);
+    VALUE nlp5 = cos2 * (0.1465755 + sin_ * (sin_ * (-2.0520568 + sin_ * (sin_ * (3.0780854))))) * (ORDER > 5 ? 1.0 : 0.0);
     t = 1.0 * nlp0;
     series[0] += turn[5] * t;
     t = 1.0 * nlp1;

@@ -3,7 +3,7 @@
 //
 // The built-in power has an error of 1e-3 at exponents of 1e4. 1 - cos from the difference stays exact near the axis,
 // and ln(1 - m) = -2 atanh(m / (2 - m)), a series to 1e-7 up to m = 1/2.
-float lobe_density(vec3 apart, float n) {
+float phong_lobe(vec3 apart, float n) {
     float m = 0.5 * dot(apart, apart);
     float z = m / (2.0 - m);
     float s = z * z;

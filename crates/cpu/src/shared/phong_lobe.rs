@@ -1,4 +1,4 @@
-//! `lobe.glsl`: the normalised Phong lobe.
+//! `phong_lobe.glsl`: the normalised Phong lobe.
 
 use crate::tolerance::EPSILON;
 use crate::tolerance::near::{Near, Near3, dot};
@@ -10,7 +10,7 @@ use std::f64::consts::TAU;
 /// It decreases with m = 1 - cos: its range lies between its values at the ends of m; an exponent error of δ changes
 /// it by (δ + δ |ln(1 - m)|) of itself. Its power n ln(1 - m) errs by the series' 1e-7 and 12 roundings of itself, or
 /// by a logarithm's 3 ulp; the exponential by (3 + 2 |x|) ulp; the rest by 8 ε. f32 ends at 1e-37.
-pub fn lobe_density(apart: Near3, n: Near) -> Near {
+pub fn phong_lobe(apart: Near3, n: Near) -> Near {
     let m = Near::of(0.5) * dot(apart, apart);
     let logarithm = |m: f64| (-m.clamp(0.0, 1.0)).ln_1p();
     let at = |m: f64| if m < 1.0 { (n.v + 1.0) / TAU * (n.v * logarithm(m)).exp() } else { 0.0 };
