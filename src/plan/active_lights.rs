@@ -78,7 +78,7 @@ impl<'a> ActiveLights<'a> {
         let (lit_spheres, dark): (Vec<_>, Vec<_>) =
             lights.sphere_lights.iter().enumerate().partition(|(_, s)| lit(&s.radiance));
         for (i, _) in dark {
-            notes.push(format!("light {} dropped: its radiance is 0", i + 1));
+            notes.push(format!("sphere light {} dropped: its radiance is 0", i + 1));
         }
         let sphere_lights = Spheres::of(field, lit_spheres, quality.light_cutoff, notes)?;
         let specular = surface.specular.as_ref().filter(|specular| specular.largest().scale > 0.0);

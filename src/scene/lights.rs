@@ -142,7 +142,7 @@ impl Lights {
         }
         for (i, sphere) in self.sphere_lights.iter().enumerate() {
             let bad = |what: &str, found: String, expected: &str| {
-                Err(Error::setting(format!("light {}: {what}", i + 1), found, expected))
+                Err(Error::setting(format!("sphere light {}: {what}", i + 1), found, expected))
             };
             let SphereLight { position_m, radius_m, radiance } = sphere;
             if !position_m.iter().all(|v| v.abs() <= PLACE_LIMIT) {
@@ -178,7 +178,7 @@ mod tests {
             (SphereLight { radiance: [f32::INFINITY; 3], ..good }, "radiance"),
         ] {
             let message = of(sphere).unwrap_err().to_string();
-            assert!(message.starts_with(&format!("light 2: {what}: ")), "{message}");
+            assert!(message.starts_with(&format!("sphere light 2: {what}: ")), "{message}");
         }
     }
 }

@@ -28,9 +28,7 @@ pub use reference::ReferenceArgs;
 pub use renamed::Renamed;
 pub use scene::{BorderName, FieldArgs, LightArgs, SurfaceArgs};
 use values::bytes;
-#[cfg(feature = "window")]
-pub use values::sun;
-pub use values::{SpecularArg, albedo_colour};
+pub use values::{SpecularArg, albedo_colour, numbers};
 pub use view::ViewArgs;
 
 /// Renders height fields on Vulkan: exact horizons under sky, environment, suns, key lights and sphere lights, and

@@ -29,6 +29,7 @@ mod bench;
 mod compare;
 mod horizon;
 mod idle;
+mod lights;
 mod plan;
 mod reference;
 mod render;

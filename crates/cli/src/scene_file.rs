@@ -17,7 +17,8 @@ use ridgelight::{Error, Result};
 
 use crate::args::{Renamed, flag};
 use json::Found;
-use keys::{GROUPS, Kind};
+use keys::Kind;
+pub use keys::{Numbers, Part, or, part};
 pub use write::Request;
 
 /// A flag from a scene file.
@@ -147,20 +148,14 @@ fn all(path: &Path, renamed: &mut Renamed) -> Result<Vec<Given>> {
     let text = read(path)?;
     let root = Found::root(path, &text)?;
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let mut given = Vec::new();
+    let (mut given, groups) = (Vec::new(), keys::groups());
     for group in root.members()? {
         if group.key == "$schema" {
             continue;
         }
-        let keys = match group.key.as_str() {
-            "quality" => keys::quality(),
-            name => match GROUPS.iter().find(|(known, _)| *known == name) {
-                Some((_, keys)) => keys.to_vec(),
-                None => {
-                    let known = GROUPS.map(|(known, _)| known).join(", ");
-                    return Err(group.unknown(&format!("{known}, quality or $schema")));
-                }
-            },
+        let Some((_, keys)) = groups.iter().find(|(name, _)| *name == group.key) else {
+            let known: Vec<&str> = groups.iter().map(|(name, _)| *name).collect();
+            return Err(group.unknown(&format!("{} or $schema", known.join(", "))));
         };
         for found in group.members()? {
             // Keys of quality are renamed as their flags are.

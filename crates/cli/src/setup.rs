@@ -14,6 +14,7 @@ use crate::args::{
     BorderName, FieldArgs, GlobalArgs, Layer, LightArgs, SpecularArg, SurfaceArgs, albedo_colour,
     flag,
 };
+use crate::lights::LIGHTS;
 pub use settings_used::{as_json, asked, metadata, typed};
 
 /// How a command ended without an error.
@@ -81,9 +82,7 @@ pub fn scene(field: HeightField, surface: &SurfaceArgs, lights: &LightArgs) -> R
         lights: Lights {
             sky: if lights.is_empty() { Some([1.0; 3]) } else { lights.sky },
             environment,
-            suns: lights.sun.clone(),
-            keys: lights.key.clone(),
-            sphere_lights: lights.sphere_light.clone(),
+            ..lights.others.0.clone()
         },
         field,
     })
@@ -213,14 +212,8 @@ pub fn check_distinct(outputs: &[(&str, Option<&Path>)], inputs: &[&Path]) -> Re
 }
 
 /// Phrases and settings of library messages whose flag has another name.
-const FLAGS: [(&str, &str); 26] = [
+const FLAGS: [(&str, &str); 20] = [
     ("sky radiance", "--sky"),
-    ("suns", "--sun"),
-    ("sun ", "--sun "),
-    ("keys", "--key"),
-    ("key ", "--key "),
-    ("sphere light ", "--sphere-light "),
-    ("light ", "--sphere-light "),
     ("specular", "--specular"),
     ("albedo", "--albedo"),
     ("cell_m", "--cell"),
@@ -249,6 +242,14 @@ const SAME: [&str; 6] = ["memory_budget", "max_error", "time_budget", "border", 
 fn flag_of(name: &str) -> Option<String> {
     if setting(name).is_some() || SAME.contains(&name) {
         return Some(flag(name));
+    }
+    let light = LIGHTS.iter().find_map(|light| {
+        let rest = name.strip_prefix(&light.id.replace('_', " "))?;
+        let is_numbered = rest.starts_with(' ');
+        (is_numbered || rest == "s").then(|| flag(light.id) + rest.trim_start_matches('s'))
+    });
+    if light.is_some() {
+        return light;
     }
     FLAGS.iter().find_map(|(ours, flag)| Some(format!("{flag}{}", name.strip_prefix(ours)?)))
 }
@@ -305,7 +306,7 @@ mod tests {
         };
         assert_eq!(named("azimuths"), "--azimuths");
         assert_eq!(named("sun 2: elevation"), "--sun 2: elevation");
-        assert_eq!(named("light 1: radius"), "--sphere-light 1: radius");
+        assert_eq!(named("sphere light 1: radius"), "--sphere-light 1: radius");
         assert_eq!(named("specular scale"), "--specular scale");
         assert_eq!(named("heights"), "heights");
     }

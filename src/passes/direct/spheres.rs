@@ -44,7 +44,7 @@ impl<'a> Spheres<'a> {
             let seems = (on_nearest(field, light) / strongest(light)).sqrt();
             if seems < NARROWEST {
                 return Err(Error::setting(
-                    format!("light {}: radius", i + 1),
+                    format!("sphere light {}: radius", i + 1),
                     light.radius_m.to_string(),
                     format!(
                         "{} at least: half a millionth of the way to the nearest grid point",
@@ -73,8 +73,10 @@ impl<'a> Spheres<'a> {
                         .regions
                         .push((lit_texels, (reach * (1.0 + 1e-6)).min(f64::from(f32::MAX)) as f32));
                 }
-                None => notes
-                    .push(format!("light {} dropped: it gives less than {threshold:.3e}", i + 1)),
+                None => notes.push(format!(
+                    "sphere light {} dropped: it gives less than {threshold:.3e}",
+                    i + 1
+                )),
             }
         }
         if is_cut {
@@ -284,14 +286,21 @@ mod tests {
         };
         assert!(of(0.51).is_ok());
         let message = of(0.49).unwrap_err().to_string();
-        assert!(message.starts_with("light 1: radius: found 0.49, expected 0.4999"), "{message}");
+        assert!(
+            message.starts_with("sphere light 1: radius: found 0.49, expected 0.4999"),
+            "{message}"
+        );
     }
 
     #[test]
     fn a_sphere_light_that_reaches_nothing_is_dropped() {
         let far =
             plan(vec![light(10.0, 20.0, 1.0), light(1e6, 0.0, 1.0)], 1e-3, Picture::default());
-        assert!(far.notes.iter().any(|n| n.starts_with("light 2 dropped")), "{:?}", far.notes);
+        assert!(
+            far.notes.iter().any(|n| n.starts_with("sphere light 2 dropped")),
+            "{:?}",
+            far.notes
+        );
         assert!(far.passes.iter().all(|p| !p.part.starts_with("light2")));
     }
 }

@@ -2,9 +2,11 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches, ValueEnum};
+use ridgelight::scene::Lights;
 
-use super::values::{SpecularArg, cell, colour, key, specular, sphere_light, sun};
+use super::values::{SpecularArg, cell, colour, specular};
+use crate::lights::LIGHTS;
 
 #[derive(Args)]
 #[command(next_help_heading = "Lights")]
@@ -31,38 +33,61 @@ pub struct LightArgs {
         requires = "env"
     )]
     pub env_rotate: f64,
-    /// Sun: compass azimuth, elevation (degrees)
-    ///
-    /// ANGLE is the angular diameter in degrees, default 0.53; 0 casts hard shadows. IRRADIANCE is that of a surface facing
-    /// the sun, one number or R,G,B, default 1. Repeat the flag for more suns.
-    #[arg(long, value_name = "AZ,EL[,ANGLE[,IRRADIANCE]]", value_parser = sun, allow_hyphen_values = true)]
-    pub sun: Vec<ridgelight::scene::Sun>,
-    /// Key light: bright sky patch (degrees)
-    ///
-    /// AZ and EL are the compass azimuth and the elevation of its centre; WIDTH and HEIGHT are angles, all in degrees.
-    /// RADIANCE is one number or R,G,B. 90,45,360,90,1 is the whole sky; 180,30,60,20,4 is a window to the south. Repeat the
-    /// flag for more.
-    #[arg(
-        long,
-        value_name = "AZ,EL,WIDTH,HEIGHT,RADIANCE",
-        value_parser = key,
-        allow_hyphen_values = true
-    )]
-    pub key: Vec<ridgelight::scene::KeyLight>,
-    /// Sphere light: centre and radius (metres)
-    ///
-    /// X is east of the westernmost column, Y north of the southernmost row, Z above height 0. RADIANCE is one number or
-    /// R,G,B. Repeat the flag for more.
-    #[arg(long, value_name = "X,Y,Z,RADIUS,RADIANCE", value_parser = sphere_light, allow_hyphen_values = true)]
-    pub sphere_light: Vec<ridgelight::scene::SphereLight>,
+    #[command(flatten)]
+    pub others: OtherLights,
+}
+
+/// Suns, key lights and sphere lights.
+#[derive(Default)]
+pub struct OtherLights(pub Lights);
+
+impl Args for OtherLights {
+    fn augment_args(command: Command) -> Command {
+        command.args(LIGHTS.iter().map(|light| {
+            Arg::new(light.id)
+                .long(light.id.replace('_', "-"))
+                .help(light.help)
+                .long_help(format!("{}\n\n{}", light.help, light.long_help))
+                .help_heading("Lights")
+                .value_name(light.value_name)
+                .allow_hyphen_values(true)
+                .action(ArgAction::Append)
+                .value_parser(|words: &str| {
+                    light.add(&mut Lights::default(), words).map(|()| words.to_owned())
+                })
+        }))
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        Self::augment_args(command)
+    }
+}
+
+impl FromArgMatches for OtherLights {
+    fn from_arg_matches(matches: &ArgMatches) -> std::result::Result<Self, clap::Error> {
+        let mut lights = Lights::default();
+        for light in &LIGHTS {
+            for words in matches.get_many::<String>(light.id).into_iter().flatten() {
+                light.add(&mut lights, words).expect("the parser has tried it");
+            }
+        }
+        Ok(Self(lights))
+    }
+
+    fn update_from_arg_matches(
+        &mut self,
+        matches: &ArgMatches,
+    ) -> std::result::Result<(), clap::Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
 }
 
 impl LightArgs {
     /// Whether the command line gives no light.
     pub fn is_empty(&self) -> bool {
-        let Self { sky, env, env_rotate: _, sun, key, sphere_light } = self;
-        let are_none_aimed = sun.is_empty() && key.is_empty() && sphere_light.is_empty();
-        sky.is_none() && env.is_none() && are_none_aimed
+        let has_none = LIGHTS.iter().all(|light| light.words(&self.others.0).is_empty());
+        self.sky.is_none() && self.env.is_none() && has_none
     }
 }
 

@@ -77,54 +77,6 @@ pub fn cell(text: &str) -> Result<[f64; 2], String> {
     }
 }
 
-pub fn sun(text: &str) -> Result<ridgelight::scene::Sun, String> {
-    let parts = numbers(text)?;
-    let irradiance = match parts.get(3..).unwrap_or_default() {
-        [] => [1.0; 3],
-        [grey] => [*grey as f32; 3],
-        [r, g, b] => [*r as f32, *g as f32, *b as f32],
-        _ => return Err("expected AZ,EL[,ANGLE[,IRRADIANCE or R,G,B]]".into()),
-    };
-    let [azimuth, elevation] =
-        parts.get(..2).and_then(|p| p.try_into().ok()).ok_or("expected at least AZ,EL")?;
-    let azimuth: f64 = azimuth;
-    Ok(ridgelight::scene::Sun {
-        // The compass turns clockwise from north; the library counter-clockwise from east.
-        azimuth_rad: (90.0 - azimuth).to_radians(),
-        elevation_rad: f64::to_radians(elevation),
-        diameter_rad: parts.get(2).copied().unwrap_or(0.53).to_radians(),
-        irradiance,
-    })
-}
-
-pub fn key(text: &str) -> Result<ridgelight::scene::KeyLight, String> {
-    let parts = numbers(text)?;
-    let radiance = match parts.get(4..).unwrap_or_default() {
-        [grey] => [*grey as f32; 3],
-        [r, g, b] => [*r as f32, *g as f32, *b as f32],
-        _ => return Err("expected AZ,EL,WIDTH,HEIGHT and RADIANCE, one number or R,G,B".into()),
-    };
-    let [azimuth, elevation, width, height] = [0, 1, 2, 3].map(|i| parts[i]);
-    Ok(ridgelight::scene::KeyLight {
-        azimuth_rad: (90.0 - azimuth).to_radians(),
-        width_rad: width.to_radians(),
-        // Added in degrees, so that 90° is exactly the zenith.
-        elevations_rad: [elevation - height / 2.0, elevation + height / 2.0].map(f64::to_radians),
-        radiance,
-    })
-}
-
-pub fn sphere_light(text: &str) -> Result<ridgelight::scene::SphereLight, String> {
-    let parts = numbers(text)?;
-    let radiance = match parts.get(4..).unwrap_or_default() {
-        [grey] => [*grey as f32; 3],
-        [r, g, b] => [*r as f32, *g as f32, *b as f32],
-        _ => return Err("expected X,Y,Z,RADIUS and RADIANCE, one number or R,G,B".into()),
-    };
-    let position_m = [parts[0], parts[1], parts[2]];
-    Ok(ridgelight::scene::SphereLight { position_m, radius_m: parts[3], radiance })
-}
-
 pub fn bytes(text: &str) -> Result<u64, String> {
     let digits = text.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(text.len());
     let (number, unit) = text.split_at(digits);

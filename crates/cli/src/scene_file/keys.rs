@@ -2,6 +2,8 @@
 
 use ridgelight::scene::{SETTINGS, Values};
 
+use crate::lights::LIGHTS;
+
 /// Stands for the positional argument.
 pub const INPUT: &str = "path";
 
@@ -57,35 +59,16 @@ const fn key(name: &'static str, id: &'static str, kind: Kind) -> Key {
     Key { name, id, kind }
 }
 
-const fn part(name: &'static str, numbers: Numbers) -> Part {
+pub const fn part(name: &'static str, numbers: Numbers) -> Part {
     Part { name, numbers, default: None }
 }
 
-const fn or(part: Part, default: &'static str) -> Part {
+pub const fn or(part: Part, default: &'static str) -> Part {
     Part { default: Some(default), ..part }
 }
 
 const NUMBER: Kind = Kind::Numbers(Numbers::One);
 const SPECULAR: [Part; 2] = [part("exponent", Numbers::One), part("scale", Numbers::One)];
-const SUN: [Part; 4] = [
-    part("azimuth_deg", Numbers::One),
-    part("elevation_deg", Numbers::One),
-    or(part("diameter_deg", Numbers::One), "0.53"),
-    or(part("irradiance", Numbers::Colour), "1"),
-];
-const PATCH: [Part; 5] = [
-    part("azimuth_deg", Numbers::One),
-    part("elevation_deg", Numbers::One),
-    part("width_deg", Numbers::One),
-    part("height_deg", Numbers::One),
-    part("radiance", Numbers::Colour),
-];
-const SPHERE: [Part; 3] = [
-    part("position_m", Numbers::Three),
-    part("radius_m", Numbers::One),
-    part("radiance", Numbers::Colour),
-];
-
 const FIELD: [Key; 5] = [
     key("file", INPUT, Kind::File),
     key("cell_m", "cell", Kind::Numbers(Numbers::Pair)),
@@ -97,13 +80,10 @@ const SURFACE: [Key; 2] = [
     key("albedo", "albedo", Kind::ColourOrFile),
     key("specular", "specular", Kind::PartsOrFile(&SPECULAR)),
 ];
-const LIGHTS: [Key; 6] = [
+const LIGHT: [Key; 3] = [
     key("sky", "sky", Kind::Numbers(Numbers::Colour)),
     key("environment", "env", Kind::File),
     key("environment_rotate_deg", "env_rotate", NUMBER),
-    key("suns", "sun", Kind::List(&SUN)),
-    key("keys", "key", Kind::List(&PATCH)),
-    key("sphere_lights", "sphere_light", Kind::List(&SPHERE)),
 ];
 
 const EYE: [Part; 3] = [
@@ -122,15 +102,19 @@ const CAMERA: [Key; 8] = [
     key("background", "background", Kind::Numbers(Numbers::Colour)),
 ];
 
-/// All groups but quality, whose keys are the settings.
-pub const GROUPS: [(&str, &[Key]); 4] =
-    [("field", &FIELD), ("surface", &SURFACE), ("lights", &LIGHTS), ("camera", &CAMERA)];
-
-/// Keys of the quality group: the settings, and how to choose them.
-pub fn quality() -> Vec<Key> {
-    let keys = SETTINGS.iter().map(|setting| {
+/// Every group and its keys. Those of quality are the settings, and how to choose them.
+pub fn groups() -> Vec<(&'static str, Vec<Key>)> {
+    let lights = LIGHTS.iter().map(|light| key(light.list, light.id, Kind::List(light.parts)));
+    let settings = SETTINGS.iter().map(|setting| {
         let is_number = matches!(setting.values, Values::Whole(_) | Values::Share);
         key(setting.name, setting.name, if is_number { NUMBER } else { Kind::Word })
     });
-    keys.chain(["max_error", "time_budget"].map(|name| key(name, name, NUMBER))).collect()
+    let goals = ["max_error", "time_budget"].map(|name| key(name, name, NUMBER));
+    vec![
+        ("field", FIELD.to_vec()),
+        ("surface", SURFACE.to_vec()),
+        ("lights", LIGHT.into_iter().chain(lights).collect()),
+        ("camera", CAMERA.to_vec()),
+        ("quality", settings.chain(goals).collect()),
+    ]
 }

@@ -4,7 +4,7 @@ use clap::CommandFactory as _;
 use ridgelight::scene::{Audience, Quality, SETTINGS, Values, setting};
 use serde_json::{Value, json};
 
-use super::keys::{GROUPS, INPUT, Key, Kind, Numbers, Part, quality};
+use super::keys::{INPUT, Key, Kind, Numbers, Part, groups};
 use crate::args::Cli;
 
 fn list(least: usize, most: usize) -> Value {
@@ -79,9 +79,8 @@ fn schema() -> Value {
         let members: serde_json::Map<_, _> = members.collect();
         json!({ "type": "object", "properties": members, "additionalProperties": false })
     };
-    let mut groups: serde_json::Map<_, _> =
-        GROUPS.iter().map(|(name, keys)| ((*name).to_owned(), group(keys))).collect();
-    groups.insert("quality".into(), group(&quality()));
+    let groups = groups().into_iter().map(|(name, keys)| (name.to_owned(), group(&keys)));
+    let mut groups: serde_json::Map<_, _> = groups.collect();
     groups.insert("$schema".into(), json!({ "type": "string" }));
     json!({
         "$schema": "https://json-schema.org/draft/2020-12/schema",

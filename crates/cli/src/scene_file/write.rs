@@ -4,7 +4,7 @@ use clap::ArgMatches;
 use clap::parser::ValueSource;
 use serde_json::{Map, Value};
 
-use super::keys::{GROUPS, INPUT, Key, Kind, Numbers, Part, quality};
+use super::keys::{INPUT, Key, Kind, Numbers, Part, groups};
 
 /// Flags of the command line and the scene file, by id, and the values of each.
 #[derive(Clone, Debug, Default)]
@@ -39,16 +39,14 @@ impl Request {
 
     /// The scene file. Paths stay as they are.
     pub fn to_json(&self) -> Value {
-        let mut groups = Map::new();
-        let quality = quality();
-        let known = GROUPS.iter().map(|(name, keys)| (*name, *keys));
-        for (name, keys) in known.chain([("quality", quality.as_slice())]) {
+        let mut all = Map::new();
+        for (name, keys) in groups() {
             let group: Map<_, _> = keys.iter().filter_map(|key| self.member(key)).collect();
             if !group.is_empty() {
-                groups.insert(name.to_owned(), group.into());
+                all.insert(name.to_owned(), group.into());
             }
         }
-        groups.into()
+        all.into()
     }
 
     fn member(&self, key: &Key) -> Option<(String, Value)> {

@@ -7,6 +7,7 @@ use ridgelight::plan::Plan;
 use ridgelight::scene::{HeightField, Scene};
 
 use crate::args::{FieldArgs, LightArgs, SpecularArg, SurfaceArgs};
+use crate::lights::LIGHTS;
 
 /// Used settings and times.
 pub fn metadata(
@@ -65,26 +66,9 @@ pub fn asked(
         all.push(("env".to_owned(), path.display().to_string()));
         all.push(("env_rotate_deg".to_owned(), args.env_rotate.to_string()));
     }
-    // As the flags take them, without the rounding from degrees to radians and back.
-    let degrees = |rad: f64| (rad.to_degrees() * 1e9).round() / 1e9;
-    let compass = |azimuth_rad: f64| degrees(std::f64::consts::FRAC_PI_2 - azimuth_rad);
-    for (i, sun) in scene.lights.suns.iter().enumerate() {
-        let azimuth = compass(sun.azimuth_rad);
-        let [elevation, diameter] = [sun.elevation_rad, sun.diameter_rad].map(degrees);
-        let text = format!("{azimuth},{elevation},{diameter},{}", numbers(&sun.irradiance));
-        all.push((format!("sun{}", i + 1), text));
-    }
-    for (i, key) in scene.lights.keys.iter().enumerate() {
-        let (azimuth, width) = (compass(key.azimuth_rad), degrees(key.width_rad));
-        let [low, high] = key.elevations_rad.map(degrees);
-        let (elevation, height) = ((low + high) / 2.0, high - low);
-        let text = format!("{azimuth},{elevation},{width},{height},{}", numbers(&key.radiance));
-        all.push((format!("key{}", i + 1), text));
-    }
-    for (i, sphere) in scene.lights.sphere_lights.iter().enumerate() {
-        let [x, y, z] = sphere.position_m;
-        let text = format!("{x},{y},{z},{},{}", sphere.radius_m, numbers(&sphere.radiance));
-        all.push((format!("sphere_light{}", i + 1), text));
+    for light in &LIGHTS {
+        let words = light.words(&scene.lights).into_iter().enumerate();
+        all.extend(words.map(|(i, words)| (format!("{}{}", light.id, i + 1), words)));
     }
     all
 }

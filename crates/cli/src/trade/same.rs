@@ -8,6 +8,7 @@ use ridgelight::{Error, Result};
 use ridgelight_io as files;
 
 use crate::args::albedo_colour;
+use crate::lights::LIGHTS;
 
 /// Tolerance of numbers that were written and read back as text.
 const NEAR: f64 = 1e-6;
@@ -71,7 +72,7 @@ fn is_scene(name: &str) -> bool {
 
 /// Lights whose first number is their azimuth.
 fn is_aimed(name: &str) -> bool {
-    is_numbered(name, "sun") || is_numbered(name, "key")
+    LIGHTS.iter().any(|light| light.is_aimed && light.is_key(name))
 }
 
 fn is_numbered(name: &str, word: &str) -> bool {

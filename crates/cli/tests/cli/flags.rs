@@ -122,7 +122,7 @@ fn lights() {
             ("--sky 1,2,3,4", 2, &["--sky", "4 numbers"]),
             ("--sky blue", 2, &["--sky", "no number"]),
             ("--sky 0", 2, &["found all of radiance 0"]),
-            ("--sun 90", 2, &["--sun", "at least AZ,EL"]),
+            ("--sun 90", 2, &["--sun", "expected AZ,EL"]),
             ("--sun 1,2,3,4,5", 2, &["--sun", "expected AZ,EL"]),
             ("--sun 1,2,3,4,5,6,7", 2, &["--sun", "expected AZ,EL"]),
             ("--sun x,y", 2, &["--sun", "no number"]),
@@ -141,8 +141,8 @@ fn lights() {
                 2,
                 &["--lines exact with --sun", "--method brute-force"],
             ),
-            ("--key 90,45,10,10", 2, &["--key", "expected AZ,EL,WIDTH,HEIGHT and RADIANCE"]),
-            ("--key 1,2,3,4,5,6", 2, &["--key", "expected AZ,EL,WIDTH,HEIGHT and RADIANCE"]),
+            ("--key 90,45,10,10", 2, &["--key", "expected AZ,EL,WIDTH,HEIGHT,RADIANCE"]),
+            ("--key 1,2,3,4,5,6", 2, &["--key", "expected AZ,EL,WIDTH,HEIGHT,RADIANCE"]),
             ("--key 1,2,3,x,5", 2, &["--key", "no number"]),
             ("--key nan,45,10,10,1", 2, &["--key 1: azimuth: found NaN"]),
             ("--key 90,45,0,10,1", 2, &["--key 1: width: found 0°", "up to 360°"]),
@@ -166,7 +166,7 @@ fn lights() {
             (
                 "--sphere-light -1,2,3,4,5 --sphere-light 0",
                 2,
-                &["--sphere-light", "X,Y,Z,RADIUS and RADIANCE"],
+                &["--sphere-light", "X,Y,Z,RADIUS,RADIANCE"],
             ),
             ("--sphere-light 1,2,x,4,5", 2, &["--sphere-light", "no number"]),
             (

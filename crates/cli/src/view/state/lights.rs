@@ -4,7 +4,7 @@ use ridgelight::scene::{SphereLight, Sun};
 
 use super::viewpoint::height;
 use super::{State, Wish, hundredths};
-use crate::args::sun;
+use crate::lights::light;
 
 /// Colours that a sphere light cycles through; its brightest channel stays.
 const COLOURS: [[f32; 3]; 6] = [
@@ -28,44 +28,26 @@ impl State {
     /// Turns the first sun by degrees; adds one where there is none.
     pub(super) fn turn_sun(&mut self, clockwise: f64, up: f64) -> Wish {
         let lights = &mut self.scene.lights;
-        let words = match lights.suns.first() {
+        match lights.suns.first_mut() {
             Some(sun) => {
                 let (azimuth, elevation) = compass(sun);
                 let azimuth = hundredths((azimuth + clockwise).rem_euclid(360.0)) % 360.0;
-                sun_words(sun, azimuth, hundredths((elevation + up).clamp(0.0, 90.0)))
+                let elevation = hundredths((elevation + up).clamp(0.0, 90.0));
+                sun.azimuth_rad = (90.0 - azimuth).to_radians();
+                sun.elevation_rad = elevation.to_radians();
             }
-            None => "315,30".to_owned(),
-        };
-        let Ok(sun) = sun(&words) else { return Wish::Nothing };
-        let mut all: Vec<String> = vec![words];
-        all.extend(lights.suns.iter().skip(1).map(|s| {
-            let (azimuth, elevation) = compass(s);
-            sun_words(s, azimuth, elevation)
-        }));
-        match lights.suns.first_mut() {
-            Some(first) => *first = sun,
-            None => lights.suns.push(sun),
+            None => light("sun").add(lights, "315,30").expect("a sun"),
         }
-        self.ask_for_sky();
-        self.asked.set("sun", all);
-        Wish::Light
+        self.ask_for("sun")
     }
 
-    /// The first explicit light replaces the default of a scene without lights.
-    fn ask_for_sky(&mut self) {
+    /// Keeps the lights of a type as the user would write them.
+    fn ask_for(&mut self, id: &str) -> Wish {
+        // The first explicit light replaces the default of a scene without lights.
         if let Some([r, g, b]) = self.scene.lights.sky {
             self.asked.set("sky", vec![format!("{r},{g},{b}")]);
         }
-    }
-
-    /// After any change of the sphere lights.
-    fn ask_for_lights(&mut self) -> Wish {
-        let words = |sphere_light: &SphereLight| {
-            let ([x, y, z], [r, g, b]) = (sphere_light.position_m, sphere_light.radiance);
-            format!("{x},{y},{z},{},{r},{g},{b}", sphere_light.radius_m)
-        };
-        self.ask_for_sky();
-        self.asked.set("sphere_light", self.scene.lights.sphere_lights.iter().map(words).collect());
+        self.asked.set(id, light(id).words(&self.scene.lights));
         Wish::Light
     }
 
@@ -84,7 +66,7 @@ impl State {
         let radiance = [RADIANCE; 3];
         self.scene.lights.sphere_lights.push(SphereLight { position_m, radius_m, radiance });
         self.sphere_light = Some(self.scene.lights.sphere_lights.len() - 1);
-        self.ask_for_lights()
+        self.ask_for("sphere_light")
     }
 
     /// Takes hold of the sphere light at a pixel, or adds one there.
@@ -124,7 +106,7 @@ impl State {
         let heights = self.on_ground(moved).zip(self.on_ground([x, y]));
         let rise = heights.map_or(0.0, |(new, old)| new - old);
         self.scene.lights.sphere_lights[n].position_m = [moved[0], moved[1], z + rise];
-        self.ask_for_lights()
+        self.ask_for("sphere_light")
     }
 
     /// Changes the chosen sphere light by a key.
@@ -152,7 +134,7 @@ impl State {
                 self.sphere_light = sphere_lights.len().checked_sub(1);
             }
         }
-        self.ask_for_lights()
+        self.ask_for("sphere_light")
     }
 
     /// Absolute height of the ground at a place; none beyond it.
@@ -174,11 +156,4 @@ impl State {
 pub fn compass(sun: &Sun) -> (f64, f64) {
     let degrees = |rad: f64| (rad.to_degrees() * 1e9).round() / 1e9;
     ((90.0 - degrees(sun.azimuth_rad)).rem_euclid(360.0), degrees(sun.elevation_rad))
-}
-
-/// As `--sun` takes it.
-fn sun_words(sun: &Sun, azimuth: f64, elevation: f64) -> String {
-    let diameter = (sun.diameter_rad.to_degrees() * 1e9).round() / 1e9;
-    let [r, g, b] = sun.irradiance;
-    format!("{azimuth},{elevation},{diameter},{r},{g},{b}")
 }
