@@ -3,8 +3,8 @@
 use glam::DVec3;
 use std::f64::consts::{FRAC_1_PI, PI, TAU};
 
+use super::bands;
 use super::legendre::{associated, value};
-use super::{bands, index};
 
 /// Y_lm of every coefficient at a unit direction.
 ///
@@ -66,20 +66,6 @@ pub fn half_turn(coefficients: &[f64], axis: DVec3) -> Vec<f64> {
         out.iter_mut().zip(evaluate(order, o)).for_each(|(sum, y)| *sum += weight * value * y);
     }
     out
-}
-
-/// The function rotated counter-clockwise about z: f'(φ) = f(φ - angle).
-///
-/// # Panics
-/// If the number of `coefficients` is not a square.
-pub fn rotate_z(coefficients: &[f64], angle_rad: f64) -> Vec<f64> {
-    bands(order_of(coefficients))
-        .map(|(l, m)| {
-            // cos m(φ - a) = cos mφ cos ma + sin mφ sin ma; sin m(φ - a) = sin mφ cos ma - cos mφ sin ma.
-            let (sin, cos) = (m as f64 * angle_rad).sin_cos();
-            coefficients[index(l, m)] * cos - coefficients[index(l, -m)] * sin
-        })
-        .collect()
 }
 
 /// A zonal function about z (n coefficients of Y_l0) rotated to a unit axis: z_l √(4π/(2l+1)) Y_lm (Sloan, Luna & Snyder

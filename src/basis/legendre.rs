@@ -6,7 +6,7 @@ use std::sync::LazyLock;
 use super::{MAX_ORDER, check_order};
 
 /// Coefficients of z⁰, z¹, … of a polynomial.
-pub type Polynomial = Vec<f64>;
+pub(crate) type Polynomial = Vec<f64>;
 
 /// A polynomial at `x` (Horner).
 pub fn value(polynomial: &[f64], x: f64) -> f64 {
@@ -14,7 +14,7 @@ pub fn value(polynomial: &[f64], x: f64) -> f64 {
 }
 
 /// The derivative.
-pub fn derivative(polynomial: &[f64]) -> Polynomial {
+pub(crate) fn derivative(polynomial: &[f64]) -> Polynomial {
     polynomial.iter().enumerate().skip(1).map(|(k, c)| k as f64 * c).collect()
 }
 
@@ -40,12 +40,6 @@ pub fn legendre(degree: usize) -> Polynomial {
         (before, current) = (current, next);
     }
     current
-}
-
-/// P̂_l = √((2l+1)/2) P_l at `z`, for l < `order`: orthonormal on [-1, 1] (NS09 §4).
-pub fn nlp(order: usize, z: f64) -> Vec<f64> {
-    check_order(order);
-    (0..order).map(|l| value(associated(l, 0), z)).collect()
 }
 
 /// The polynomial q of Θ_lm(cos θ) = sinᵐθ q(cos θ), for 0 ≤ m ≤ l < [`MAX_ORDER`].

@@ -6,7 +6,7 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use super::check_order;
-use super::legendre::{Polynomial, associated, nlp, product, value};
+use super::legendre::{Polynomial, associated, product, value};
 use super::quadrature::integral;
 
 /// Index of (l, m), 0 ≤ m ≤ l, in a slice: l(l+1)/2 + m.
@@ -137,22 +137,4 @@ pub fn from_nlp(order: usize) -> Vec<Vec<f64>> {
                 .collect()
         })
         .collect()
-}
-
-/// The slice of a function of elevation, smooth in θ, from its values at z.
-pub fn project(order: usize, f: impl Fn(f64) -> f64) -> Vec<f64> {
-    parts(order)
-        .map(|(l, m)| {
-            let q = associated(l, m);
-            integral(0.0, PI, |theta| {
-                let (sin, cos) = theta.sin_cos();
-                f(cos) * value(q, cos) * sin.powi(m as i32 + 1)
-            })
-        })
-        .collect()
-}
-
-/// The NLP reconstruction of a function of elevation at z (NS09 eq. 13).
-pub fn nlp_value(coefficients: &[f64], z: f64) -> f64 {
-    coefficients.iter().zip(nlp(coefficients.len(), z)).map(|(c, p)| c * p).sum()
 }

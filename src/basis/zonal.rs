@@ -47,12 +47,6 @@ pub fn sphere(order: usize, radius: f64, distance: f64) -> Vec<f64> {
     cap_of(order, sin * sin, ((1.0 - sin) * (1.0 + sin)).sqrt())
 }
 
-/// Half the azimuthal extent of a sphere light, radians, from its radius and the horizontal distance of its centre. `None`
-/// if it is above, below or around the point: all azimuths.
-pub fn sphere_half_azimuth(radius: f64, distance_in_plane: f64) -> Option<f64> {
-    (distance_in_plane > radius).then(|| (radius / distance_in_plane).asin())
-}
-
 /// A sky of radiance 1 above horizontal.
 pub fn sky(order: usize) -> Vec<f64> {
     cap(order, FRAC_PI_2)
@@ -82,13 +76,4 @@ pub fn phong_bands(order: usize, exponent: f64) -> Vec<f64> {
     }
     ratios.truncate(order);
     ratios
-}
-
-/// The paper's Phong lobe: band l keeps e^(-l²/2S) (NS09 §7, Ramamoorthi & Hanrahan 2002), S > 0.
-///
-/// Times √((2l+1)/4π), which the paper omits, for a lobe of unit integral. Approaches [`phong`] for large S, which keeps
-/// e^(-l(l+1)/2S): a relative error of l/(2S) in band l.
-pub fn phong_gaussian(order: usize, exponent: f64) -> Vec<f64> {
-    check_order(order);
-    (0..order).map(|l| (-((l * l) as f64) / (2.0 * exponent)).exp() * whole_band(l)).collect()
 }

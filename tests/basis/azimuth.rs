@@ -1,8 +1,9 @@
 use crate::{ORDERS, noise, number, numbers, project, project_whole, reference, same, within};
 use ridgelight::basis::azimuth::{Blend, assemble, assemble_nlp, blend_matrix, circle, swath};
-use ridgelight::basis::harmonics::rotate_z;
-use ridgelight::basis::slice::{Slices, from_nlp, nlp_value};
+use ridgelight::basis::slice::{Slices, from_nlp};
 use ridgelight::basis::{bands, index, zonal};
+use ridgelight_cpu::basis::nlp_value;
+use ridgelight_cpu::basis::rotate_z;
 use std::f64::consts::{PI, TAU};
 
 const BLENDS: [Blend; 2] = [Blend::Linear, Blend::BSpline];

@@ -2,13 +2,13 @@
 
 use crate::{ORDERS, noise, within};
 use glam::DVec3;
-use ridgelight::basis::glsl::{
-    Factor, glsl_harmonics, glsl_product, glsl_slice, glsl_visibility_nlp, glsl_visible,
-};
 use ridgelight::basis::harmonics::{evaluate, turned};
 use ridgelight::basis::legendre::occlusion;
 use ridgelight::basis::product::{product, triples};
 use ridgelight::basis::slice::Slices;
+use ridgelight_cpu::basis::glsl::{
+    Factor, glsl_harmonics, glsl_product, glsl_slice, glsl_visibility_nlp, glsl_visible,
+};
 use std::collections::HashMap;
 use std::f64::consts::{FRAC_PI_2, SQRT_2};
 

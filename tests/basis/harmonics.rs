@@ -3,8 +3,9 @@ use crate::{
     ORDERS, direction, directions, noise, number, numbers, project_whole, reference, same,
 };
 use glam::{DQuat, DVec3};
-use ridgelight::basis::harmonics::{evaluate, reconstruct, rotate_z, turned};
+use ridgelight::basis::harmonics::{evaluate, reconstruct, turned};
 use ridgelight::basis::{bands, index};
+use ridgelight_cpu::basis::rotate_z;
 use std::f64::consts::PI;
 
 #[test]

@@ -1,8 +1,9 @@
 use crate::{ORDERS, direction, noise, project_whole, within};
 use glam::DVec3;
-use ridgelight::basis::harmonics::{reconstruct, rotate_z, turned};
+use ridgelight::basis::harmonics::{reconstruct, turned};
 use ridgelight::basis::product::{light_matrix, product, triples};
 use ridgelight::basis::zonal;
+use ridgelight_cpu::basis::rotate_z;
 use std::f64::consts::PI;
 
 /// Distinct products and all that are not 0, as counted by an independent quadrature.

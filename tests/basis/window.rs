@@ -1,8 +1,9 @@
 use crate::{ORDERS, directions, noise, within};
 use glam::DVec3;
 use ridgelight::basis::harmonics::{reconstruct, turned};
-use ridgelight::basis::window::{apply, hann, lanczos, mildest, nonnegative};
+use ridgelight::basis::window::{hann, lanczos, nonnegative};
 use ridgelight::basis::zonal;
+use ridgelight_cpu::basis::window::{apply, mildest};
 use std::f64::consts::PI;
 
 fn lowest(coefficients: &[f64]) -> f64 {
