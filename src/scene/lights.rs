@@ -1,7 +1,5 @@
 pub(super) mod key;
-pub(super) mod key_harmonics;
-
-use super::{Environment, KeyLight};
+pub(super) use super::{Environment, KeyLight};
 use crate::{Error, Result};
 
 /// All light sources of a scene. All fields may be empty.

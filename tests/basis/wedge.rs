@@ -1,8 +1,8 @@
 use crate::{number, numbers, project, reference, same, within};
-use ridgelight::basis::azimuth::{Blend, assemble, circle};
 use ridgelight::basis::slice::Slices;
 use ridgelight::basis::wedge::{WedgeTable, wedge};
-use ridgelight::basis::{bands, index, zonal};
+use ridgelight::basis::{bands, index};
+use ridgelight_cpu::basis::azimuth::{Blend, assemble, circle};
 use ridgelight_cpu::basis::rotate_z;
 use ridgelight_cpu::basis::wedge::{look_up, look_up_error};
 use std::f64::consts::{FRAC_PI_2, TAU};
@@ -62,7 +62,7 @@ fn wedges_all_around_are_a_cap() {
             let turned = rotate_z(&one, width * f64::from(k));
             sum.iter_mut().zip(turned).for_each(|(s, t)| *s += t);
         }
-        let cap = zonal::cap(order, FRAC_PI_2 - elevation);
+        let cap = ridgelight_cpu::basis::cap(order, FRAC_PI_2 - elevation);
         let expected: Vec<f64> =
             bands(order).map(|(l, m)| if m == 0 { cap[l] } else { 0.0 }).collect();
         within(&sum, &expected, 1e-13);

@@ -4,10 +4,12 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::FRAC_1_PI;
 use std::fmt::Write as _;
 
-use ridgelight::basis::legendre::{associated, occlusion_polynomials};
+use ridgelight::basis::legendre::associated;
 use ridgelight::basis::product::{orders, triples};
-use ridgelight::basis::slice::{Above, Slices, from_nlp, parts};
+use ridgelight::basis::slice::{Above, Slices, parts};
 use ridgelight::basis::{MAX_ORDER, bands, index};
+
+use super::{from_nlp, occlusion_polynomials};
 
 /// The second factor of a [`glsl_product`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

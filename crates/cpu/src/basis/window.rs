@@ -2,11 +2,10 @@
 
 use glam::DVec3;
 use ridgelight::basis::bands;
-use ridgelight::basis::harmonics::reconstruct;
 use ridgelight::basis::window::nonnegative;
 use std::f64::consts::{PI, TAU};
 
-use super::order_of;
+use super::{order_of, reconstruct};
 
 /// The mildest window, between none and [`nonnegative`], that makes this series non-negative.
 ///

@@ -165,7 +165,7 @@ pub fn ladders(scene: &Scene, bounces: u32) -> Vec<Ladder> {
             idle: |_| false,
         });
     }
-    if have_slices(&lights) {
+    if have_slices(lights) {
         all.push(Ladder {
             name: "sun azimuths",
             steps: spell("sun_azimuths", &SUN_AZIMUTHS),
