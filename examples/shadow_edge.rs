@@ -15,12 +15,13 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use ridgelight::Result;
-use ridgelight::basis::azimuth::Blend;
-use ridgelight::basis::harmonics::turned;
 use ridgelight::basis::zonal::clamped_cosine;
 use ridgelight::gpu::{Headless, HeadlessOptions};
 use ridgelight::plan::{self, Picture, REFERENCE_BATCH};
 use ridgelight::scene::{Border, HeightField, KeyLight, Lights, Quality, Scene, Surface};
+use ridgelight_cpu::basis::azimuth::Blend;
+use ridgelight_cpu::basis::key::KeyHarmonics;
+use ridgelight_cpu::basis::turned;
 use ridgelight_cpu::oracle::Oracle;
 use ridgelight_io as files;
 use std::f64::consts::PI;

@@ -253,7 +253,9 @@ fn one(gpu: &mut Headless, land: &Land, lights: &Directions) -> Result<Vec<Ellip
             .iter()
             .map(|light| points.around(&triangles, *light).unwrap_or_else(|| nearest(*light)))
             .collect();
-        let (wrong, ms) = Wrong::of(&truth, |k, at| points.lit_share(&around[k], at) >= 0.5);
+        let (wrong, ms) = Wrong::of(&truth, |k, at| {
+            ridgelight_cpu::visible_points::lit_share(&points, &around[k], at) >= 0.5
+        });
         let bytes = 4 * points.words().len() / samples;
         println!(
             "| {count} directions | {found_ms:.1} | | {ms:.3} | {bytes} | {} |",

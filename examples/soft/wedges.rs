@@ -1,12 +1,13 @@
 //! How near the series of what is seen is by slices, by Legendre coefficients and by a table of wedges
 //! between two azimuths (Snyder & Nowrouzezahrai 2008), from the same horizons.
 
-use ridgelight::basis::azimuth::{assemble, assemble_nlp, circle};
-use ridgelight::basis::harmonics::rotate_z;
-use ridgelight::basis::legendre::occlusion;
 use ridgelight::basis::slice::Slices;
 use ridgelight::basis::wedge::WedgeTable;
 use ridgelight::scene::{Border, HeightField};
+use ridgelight_cpu::basis::azimuth::{assemble, assemble_nlp, circle};
+use ridgelight_cpu::basis::occlusion;
+use ridgelight_cpu::basis::rotate_z;
+use ridgelight_cpu::basis::wedge::look_up;
 use ridgelight_cpu::oracle::Oracle;
 use std::f64::consts::{SQRT_2, TAU};
 
@@ -38,7 +39,7 @@ fn table(table: &WedgeTable, horizons: &[f64]) -> Vec<f64> {
     let count = horizons.len();
     let mut sum = vec![0.0; ORDER * ORDER];
     for k in 0..count {
-        let wedge = table.look_up([horizons[k], horizons[(k + 1) % count]]);
+        let wedge = look_up(table, [horizons[k], horizons[(k + 1) % count]]);
         let turned = rotate_z(&wedge, TAU * k as f64 / count as f64);
         sum.iter_mut().zip(turned).for_each(|(s, t)| *s += t);
     }

@@ -1,4 +1,4 @@
-// Made by basis::glsl::glsl_visible, and held to it by a test.
+// Made by ridgelight_cpu::basis::glsl::glsl_visible, and held to it by a test.
 //
 // Adds the visibility along an azimuth above elevations of sine `sin_` and cosine `cos_`, `rise` from
 // the zenith, to the series. VALUE is of one texel or of four. The including shader declares ORDER,

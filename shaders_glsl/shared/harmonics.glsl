@@ -1,4 +1,4 @@
-// Made by basis::glsl::glsl_harmonics, and held to it by a test.
+// Made by ridgelight_cpu::basis::glsl::glsl_harmonics, and held to it by a test.
 //
 // Y_lm of four unit directions (x, y, z). The including shader declares ORDER and vec4 harmonics[36].
 void find_harmonics(vec4 x, vec4 y, vec4 z) {

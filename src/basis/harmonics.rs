@@ -1,10 +1,10 @@
 //! Real orthonormal spherical harmonics: values, rotation about the vertical, zonal functions about any axis.
 
 use glam::DVec3;
-use std::f64::consts::{FRAC_1_PI, PI, TAU};
+use std::f64::consts::{FRAC_1_PI, TAU};
 
+use super::bands;
 use super::legendre::{associated, value};
-use super::{bands, index};
 
 /// Y_lm of every coefficient at a unit direction.
 ///
@@ -29,18 +29,9 @@ pub fn evaluate(order: usize, direction: DVec3) -> Vec<f64> {
         .collect()
 }
 
-/// The value of a series at a unit direction: Σ of coefficients times Y.
-///
-/// # Panics
-/// If the number of `coefficients` is not a square.
-pub fn reconstruct(coefficients: &[f64], direction: DVec3) -> f64 {
-    let values = evaluate(order_of(coefficients), direction);
-    coefficients.iter().zip(values).map(|(c, y)| c * y).sum()
-}
-
 /// Directions and weights that integrate the product of two functions of an order exactly: Gauss' n points in z times
 /// 2n - 1 even azimuths, n (2n - 1) in all.
-pub(crate) fn product_rule(order: usize) -> Vec<(DVec3, f64)> {
+pub fn product_rule(order: usize) -> Vec<(DVec3, f64)> {
     let turns = 2 * order - 1;
     let step = TAU / turns as f64;
     let rows = super::quadrature::rule(order).into_iter();
@@ -52,52 +43,4 @@ pub(crate) fn product_rule(order: usize) -> Vec<(DVec3, f64)> {
         })
     })
     .collect()
-}
-
-/// The function rotated by half a turn about a unit axis: its value at o is the old one at 2 (a·o) a - o.
-///
-/// # Panics
-/// If the number of `coefficients` is not a square.
-pub fn half_turn(coefficients: &[f64], axis: DVec3) -> Vec<f64> {
-    let order = order_of(coefficients);
-    let mut out = vec![0.0; coefficients.len()];
-    for (o, weight) in product_rule(order) {
-        let value = reconstruct(coefficients, 2.0 * axis.dot(o) * axis - o);
-        out.iter_mut().zip(evaluate(order, o)).for_each(|(sum, y)| *sum += weight * value * y);
-    }
-    out
-}
-
-/// The function rotated counter-clockwise about z: f'(φ) = f(φ - angle).
-///
-/// # Panics
-/// If the number of `coefficients` is not a square.
-pub fn rotate_z(coefficients: &[f64], angle_rad: f64) -> Vec<f64> {
-    bands(order_of(coefficients))
-        .map(|(l, m)| {
-            // cos m(φ - a) = cos mφ cos ma + sin mφ sin ma; sin m(φ - a) = sin mφ cos ma - cos mφ sin ma.
-            let (sin, cos) = (m as f64 * angle_rad).sin_cos();
-            coefficients[index(l, m)] * cos - coefficients[index(l, -m)] * sin
-        })
-        .collect()
-}
-
-/// A zonal function about z (n coefficients of Y_l0) rotated to a unit axis: z_l √(4π/(2l+1)) Y_lm (Sloan, Luna & Snyder
-/// 2005).
-///
-/// # Panics
-/// If there are none, or more than [`super::MAX_ORDER`].
-pub fn turned(zonal: &[f64], axis: DVec3) -> Vec<f64> {
-    let values = evaluate(zonal.len(), axis);
-    bands(zonal.len())
-        .zip(values)
-        .map(|((l, _), y)| zonal[l] * (4.0 * PI / (2 * l + 1) as f64).sqrt() * y)
-        .collect()
-}
-
-/// The order n of n² coefficients.
-pub(super) fn order_of(coefficients: &[f64]) -> usize {
-    let order = coefficients.len().isqrt();
-    assert_eq!(order * order, coefficients.len(), "coefficients: not a square number of them");
-    order
 }

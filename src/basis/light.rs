@@ -11,15 +11,10 @@
 //! V first, then the matrix: n² products per azimuth and 9 n² (27 n² for [`cosine_lobe`]) per texel. Light summed over azimuths
 //! without V would take 9 n(n+1)/2 per azimuth: 90 against 16 at order 4.
 //!
-//! Phong specular uses [`specular`] of the arriving light, V times L.
-//!
 //! All are linear in L: one constant matrix maps its series to the light's matrix.
 
 use std::f64::consts::PI;
 
-use glam::DVec3;
-
-use super::harmonics::evaluate;
 use super::legendre::{associated, value};
 use super::product::{Triple, light_matrix};
 use super::quadrature::integral;
@@ -105,7 +100,7 @@ pub fn plane(triples: &[Triple], order: usize, light: &[f64]) -> Vec<Vec<f64>> {
 }
 
 /// The matrix of a light for the cosine lobe: `[row][k]`, 9 rows (4 at order 2), n² columns. Exit radiance is Σ R_row
-/// M_row,k V_k with R of [`receiver`] and V above the horizon.
+/// M_row,k V_k with R the polynomials of the normal, 1; y, z, x; xy, yz, 3z² - 1, xz, x² - y², and V above the horizon.
 ///
 /// # Panics
 /// If `light` does not have the order of the `triples`.
@@ -124,23 +119,7 @@ pub fn cosine_lobe(triples: &[Triple], order: usize, light: &[f64]) -> Vec<Vec<f
         .collect()
 }
 
-/// Reflection of arriving light, given as a series, by a Phong lobe of unit integral about a direction r: Σ r_l Y_lm(r)
-/// U_lm, as band l of a zonal function rotated to r has coefficients √(4π/(2l+1)) Y_lm(r) (NS09 §7, with the exact bands of
-/// the lobe: [`zonal::phong_bands`]).
-///
-/// If U is the product of V and L ([`light_matrix`] times V), then V, L and the lobe are all truncated, and the product
-/// lacks bands of V: sharper lobes lose more.
-///
-/// # Panics
-/// If the number of coefficients in `arriving` is not a square.
-pub fn specular(arriving: &[f64], direction: DVec3, exponent: f64) -> f64 {
-    let order = arriving.len().isqrt();
-    let kept = zonal::phong_bands(order, exponent);
-    let all = bands(order).zip(evaluate(order, direction)).zip(arriving);
-    all.map(|(((l, _), y), u)| kept[l] * y * u).sum()
-}
-
-/// The factor of the polynomial of [`receiver`] in Y_lm.
+/// The factor of the polynomial in Y_lm.
 fn factor(l: usize, m: isize) -> f64 {
     let root = |a: f64| (a / PI).sqrt();
     match (l, m) {
@@ -150,12 +129,6 @@ fn factor(l: usize, m: isize) -> f64 {
         (_, 2) => 0.25 * root(15.0),
         _ => 0.5 * root(15.0),
     }
-}
-
-/// The polynomials of a unit normal in Y_lm without their factors: 1; y, z, x; xy, yz, 3z² - 1, xz, x² - y². They are the
-/// rows of [`cosine_lobe`] in order; the second to fourth are those of [`plane`].
-pub fn receiver([x, y, z]: [f64; 3]) -> [f64; 9] {
-    [1.0, y, z, x, x * y, y * z, 3.0 * z * z - 1.0, x * z, x * x - y * y]
 }
 
 /// ∫ from `low` to `high` of (a cos²ω + b sin ω cos ω) dω, 0 when the interval is empty.

@@ -15,7 +15,6 @@
 //! Condon-Shortley phase.
 
 pub mod azimuth;
-pub mod glsl;
 pub mod harmonics;
 pub mod legendre;
 pub mod light;

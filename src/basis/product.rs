@@ -70,25 +70,11 @@ pub fn orders([i, j, k]: [usize; 3]) -> Vec<[usize; 3]> {
     all
 }
 
-/// The product of two series, truncated to their order.
-///
-/// # Panics
-/// If `triples` have a higher order than `a` or `b`.
-pub fn product(triples: &[Triple], a: &[f64], b: &[f64]) -> Vec<f64> {
-    let mut out = vec![0.0; a.len()];
-    for triple in triples {
-        for [i, j, k] in orders(triple.places) {
-            out[k] += triple.value * a[i] * b[j];
-        }
-    }
-    out
-}
-
 /// M_jk = Σ_i Γ_ijk L_i: the matrix of a light, `[row][column]`, symmetric.
 ///
 /// M V is light times visibility. Its first rows are its first bands: a diffuse receiver needs 9 coefficients at order 4.
 /// M is the same at every texel, so a shader needs no Γ: at order 4, 144 products per colour where visibility is known,
-/// and 9 per colour at each receiver. The generated product ([`super::glsl`]) costs some 300 and 16 per colour, all at each
+/// and 9 per colour at each receiver. The generated product (`ridgelight_cpu::basis::glsl`) costs some 300 and 16 per colour, all at each
 /// receiver.
 ///
 /// # Panics

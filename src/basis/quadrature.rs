@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 use std::sync::LazyLock;
 
 /// Points of the rule.
-pub const POINTS: usize = 32;
+const POINTS: usize = 32;
 
 /// Nodes and weights on [-1, 1], ascending.
 static RULE: LazyLock<Vec<(f64, f64)>> = LazyLock::new(|| rule(POINTS));

@@ -3,11 +3,10 @@
 //! A slice holds ∫ f Θ_lm dz at [`slice_index`], m ≥ 0. NS09 keeps n NLP coefficients instead, which lose part of f for odd
 //! m, as sinᵐθ is not a polynomial in z there. Slices of visibility above a horizon have a closed form without that loss.
 
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::FRAC_PI_2;
 
 use super::check_order;
-use super::legendre::{Polynomial, associated, nlp, product, value};
-use super::quadrature::integral;
+use super::legendre::{Polynomial, associated, product, value};
 
 /// Index of (l, m), 0 ≤ m ≤ l, in a slice: l(l+1)/2 + m.
 pub fn slice_index(l: usize, m: usize) -> usize {
@@ -114,45 +113,4 @@ impl Slices {
         let (low, high) = (self.above(low_rad), self.above(high_rad));
         low.iter().zip(high).map(|(l, h)| l - h).collect()
     }
-}
-
-/// ∫ P̂_c Θ_lm dz: `[slice_index][c]`, the map from NLP coefficients to a slice.
-///
-/// 0 where l + m + c is odd; the unit matrix at m = 0.
-pub fn from_nlp(order: usize) -> Vec<Vec<f64>> {
-    parts(order)
-        .map(|(l, m)| {
-            let q = associated(l, m);
-            (0..order)
-                .map(|c| {
-                    if (l + m + c) % 2 == 1 {
-                        return 0.0;
-                    }
-                    let p = associated(c, 0);
-                    integral(0.0, PI, |theta| {
-                        let (sin, cos) = theta.sin_cos();
-                        value(p, cos) * value(q, cos) * sin.powi(m as i32 + 1)
-                    })
-                })
-                .collect()
-        })
-        .collect()
-}
-
-/// The slice of a function of elevation, smooth in θ, from its values at z.
-pub fn project(order: usize, f: impl Fn(f64) -> f64) -> Vec<f64> {
-    parts(order)
-        .map(|(l, m)| {
-            let q = associated(l, m);
-            integral(0.0, PI, |theta| {
-                let (sin, cos) = theta.sin_cos();
-                f(cos) * value(q, cos) * sin.powi(m as i32 + 1)
-            })
-        })
-        .collect()
-}
-
-/// The NLP reconstruction of a function of elevation at z (NS09 eq. 13).
-pub fn nlp_value(coefficients: &[f64], z: f64) -> f64 {
-    coefficients.iter().zip(nlp(coefficients.len(), z)).map(|(c, p)| c * p).sum()
 }

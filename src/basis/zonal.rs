@@ -1,61 +1,12 @@
 //! Zonal functions about z, as their n coefficients of Y_l0 = P̂_l/√2π: discs of light and reflection lobes.
 
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::f64::consts::PI;
 
 use super::check_order;
-use super::legendre::{derivative, legendre, value};
 
 /// √((2l+1)/4π), the coefficient of a lobe of unit integral whose band keeps the share 1.
 fn whole_band(l: usize) -> f64 {
     ((2 * l + 1) as f64 / (4.0 * PI)).sqrt()
-}
-
-/// A disc of radiance 1 and half-angle `half_rad`, [0..π]: a spherical cap (thesis appendix A).
-///
-/// 2π ∫ from cos a to 1 of Y_l0 dz = 2π √((2l+1)/4π) sin²a P_l'(cos a)/(l(l+1)), by Legendre's equation;
-/// band 0: √π (1 - cos a) = 2√π sin²(a/2). Small discs keep their digits.
-pub fn cap(order: usize, half_rad: f64) -> Vec<f64> {
-    let (sin, cos) = half_rad.sin_cos();
-    cap_of(order, sin * sin, cos)
-}
-
-/// [`cap`] from sin² and cos of its half-angle.
-fn cap_of(order: usize, sin_squared: f64, cos: f64) -> Vec<f64> {
-    check_order(order);
-    let missing = if cos > 0.0 { sin_squared / (1.0 + cos) } else { 1.0 - cos };
-    (0..order)
-        .map(|l| {
-            let share = match l {
-                0 => missing,
-                _ => sin_squared * value(&derivative(&legendre(l)), cos) / (l * (l + 1)) as f64,
-            };
-            TAU * whole_band(l) * share
-        })
-        .collect()
-}
-
-/// A sphere light of radiance 1 and this radius at this distance of its centre, about the direction to the centre.
-///
-/// Outside, a [`cap`] with sin a = radius/distance. Inside, and on the inner side of its surface, light comes from every
-/// direction: the whole sphere. At the surface the cap is a half-space, so the light doubles across the surface, as it
-/// physically does. Coefficients fall off as distance⁻² and are finite at any f64 distance.
-pub fn sphere(order: usize, radius: f64, distance: f64) -> Vec<f64> {
-    if distance < radius {
-        return cap_of(order, 0.0, -1.0);
-    }
-    let sin = if radius > 0.0 { radius / distance } else { 0.0 };
-    cap_of(order, sin * sin, ((1.0 - sin) * (1.0 + sin)).sqrt())
-}
-
-/// Half the azimuthal extent of a sphere light, radians, from its radius and the horizontal distance of its centre. `None`
-/// if it is above, below or around the point: all azimuths.
-pub fn sphere_half_azimuth(radius: f64, distance_in_plane: f64) -> Option<f64> {
-    (distance_in_plane > radius).then(|| (radius / distance_in_plane).asin())
-}
-
-/// A sky of radiance 1 above horizontal.
-pub fn sky(order: usize) -> Vec<f64> {
-    cap(order, FRAC_PI_2)
 }
 
 /// max(cos θ, 0), of integral π; exit radiance of a diffuse surface divides by π once (NS09 §7). It is π times the Phong
@@ -82,13 +33,4 @@ pub fn phong_bands(order: usize, exponent: f64) -> Vec<f64> {
     }
     ratios.truncate(order);
     ratios
-}
-
-/// The paper's Phong lobe: band l keeps e^(-l²/2S) (NS09 §7, Ramamoorthi & Hanrahan 2002), S > 0.
-///
-/// Times √((2l+1)/4π), which the paper omits, for a lobe of unit integral. Approaches [`phong`] for large S, which keeps
-/// e^(-l(l+1)/2S): a relative error of l/(2S) in band l.
-pub fn phong_gaussian(order: usize, exponent: f64) -> Vec<f64> {
-    check_order(order);
-    (0..order).map(|l| (-((l * l) as f64) / (2.0 * exponent)).exp() * whole_band(l)).collect()
 }

@@ -57,7 +57,7 @@ pub use picture::{Picture, picture, picture_inputs};
 pub use reference::choice::max_path_light;
 pub use reference::{
     REFERENCE_BATCH, listed_places, reference, reference_at, reference_in_bands, reference_inputs,
-    unsampled_bounce_error, unsampled_light_error,
+    unsampled_light_error,
 };
 pub use scatter::{scatter, scatter_inputs, scatter_views, views_at_once};
 pub use view::{View, ViewOptions, ViewPass, ViewResource, mesh_error_m};

@@ -208,23 +208,6 @@ pub fn unsampled_light_error(scene: &Scene, bounces: u32, paths: u32) -> [f64; 3
     max_path_light(scene, bounces).map(|most| 3_f64.sqrt() * most / f64::from(paths))
 }
 
-/// As [`unsampled_light_error`], for the indirect light of all texels of a [`reference_at`] together: the root mean square
-/// over them, except with a `probability` in (0, 1). An event that no path has sampled has a share of at most
-/// -ln(probability) / (N · texels) of all (the rule of three: 3 for 5 %). Its variance is W²/N times its mean share, with W
-/// the upper bound of a path's light after one reflection.
-pub fn unsampled_bounce_error(
-    scene: &Scene,
-    bounces: u32,
-    (paths, texels): (u32, usize),
-    probability: f64,
-) -> [f64; 3] {
-    let Some(later) = bounces.checked_sub(1) else { return [0.0; 3] };
-    let most = max_path_light(scene, later);
-    let share = -probability.ln() / texels as f64;
-    let scale = share.sqrt() * scene.surface.max_reflectance() / f64::from(paths);
-    most.map(|most| scale * most)
-}
-
 /// Texels of the inputs of a [`reference`](reference()), in the order of its plan: "heights"; "environment" (fourth
 /// channel: density of the chosen directions, 1/sr) and "environment_cdf" if there is one; "lights"; "albedo" and "phong"
 /// (exponent, scale) if they are maps.

@@ -1,7 +1,5 @@
 pub(super) mod key;
-pub(super) mod key_harmonics;
-
-use super::{Environment, KeyLight};
+pub(super) use super::{Environment, KeyLight};
 use crate::{Error, Result};
 
 /// All light sources of a scene. All fields may be empty.
@@ -95,12 +93,6 @@ impl Sun {
 }
 
 impl Lights {
-    /// Whether some lights are integrated in slices: suns that are not points, key lights, sphere lights.
-    pub fn have_slices(&self) -> bool {
-        let have_others = !self.keys.is_empty() || !self.sphere_lights.is_empty();
-        have_others || self.suns.iter().any(|s| !s.is_point())
-    }
-
     /// Checks every range.
     ///
     /// # Errors

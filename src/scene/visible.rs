@@ -209,16 +209,6 @@ impl VisiblePoints {
         Some(corners)
     }
 
-    /// Visibility, 0 to 1, of a light [`around`](Self::around) which these directions lie: the weight of those in which the
-    /// sky is visible.
-    ///
-    /// # Panics
-    /// Outside the field.
-    pub fn lit_share(&self, around: &[(usize, f64); 3], grid_point: usize) -> f64 {
-        let is_sky = |i: usize| self.point(i, grid_point) == VisiblePoint::Sky;
-        around.iter().filter(|c| is_sky(c.0)).map(|c| c.1).sum()
-    }
-
     /// In the layout of a large field.
     fn word(&self, direction: usize, grid_point: usize) -> u32 {
         let [rows, cols] = self.size;

@@ -335,7 +335,9 @@ fn flat_bases_are_as_they_were() {
         let bent = draped.bent(at);
         assert_eq!(bent, points.directions().vectors());
         for light in Directions::fibonacci(60, 0.0, 1).expect("lights").vectors() {
-            let before = points.around(&net, *light).map(|around| points.lit_share(&around, at));
+            let before = points
+                .around(&net, *light)
+                .map(|around| ridgelight_cpu::visible_points::lit_share(&points, &around, at));
             let now = draped.lit_share(&net, &bent, at, *light);
             match (before, now) {
                 (Some(before), Some(now)) => {

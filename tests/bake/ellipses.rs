@@ -133,9 +133,11 @@ fn between_directions_light_goes_over() {
         };
         let sum: f64 = around.iter().map(|c| c.1).sum();
         assert!((sum - 1.0).abs() < 1e-12 && around.iter().all(|c| c.1 >= 0.0));
-        assert!((of_level.lit_share(&around, 4) - 1.0).abs() < 1e-12);
+        assert!(
+            (ridgelight_cpu::visible_points::lit_share(&of_level, &around, 4) - 1.0).abs() < 1e-12
+        );
         for sample in 0..63 {
-            let share = of_wall.lit_share(&around, sample);
+            let share = ridgelight_cpu::visible_points::lit_share(&of_wall, &around, sample);
             let own = directions.vectors().iter().position(|e| e == light);
             if let Some(own) = own {
                 let is_lit = of_wall.point(own, sample) == ridgelight::scene::VisiblePoint::Sky;

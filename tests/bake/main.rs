@@ -10,7 +10,7 @@ mod groove;
 mod lobes;
 
 use glam::DVec3;
-use ridgelight::basis::harmonics::{evaluate, turned};
+use ridgelight::basis::harmonics::evaluate;
 use ridgelight::basis::zonal;
 use ridgelight::scene::fractal;
 use ridgelight::scene::{Border, HeightField, Receiver, Wedges};
@@ -18,6 +18,7 @@ use ridgelight_bake::{
     BentNormal, HorizonMap, HorizonSums, MAX_TRANSFER_ORDER, Ray, ShTransfer, ShVisibility,
     SkyView, VisibleSky, normals,
 };
+use ridgelight_cpu::basis::turned;
 use ridgelight_cpu::light::{normal, sky};
 use ridgelight_cpu::oracle::Oracle;
 use ridgelight_cpu::sh_visibility::{Series, visibility_along};
@@ -65,7 +66,7 @@ fn a_basin() {
             close(*found, expected, allowed + 1e-7, "bent normal");
         }
         for order in 1..=6 {
-            let cap = turned(&zonal::cap(order, FRAC_PI_2 - b), up);
+            let cap = turned(&ridgelight_cpu::basis::cap(order, FRAC_PI_2 - b), up);
             let found = of(Box::new(ShVisibility::new(order)), up, |_| b);
             for (f, e) in found.iter().zip(&cap) {
                 close(*f, *e, 4.0 * allowed, "visibility");

@@ -1,8 +1,10 @@
 use crate::{ORDERS, noise, number, numbers, project, project_whole, reference, same, within};
-use ridgelight::basis::azimuth::{Blend, assemble, assemble_nlp, blend_matrix, circle, swath};
-use ridgelight::basis::harmonics::rotate_z;
-use ridgelight::basis::slice::{Slices, from_nlp, nlp_value};
-use ridgelight::basis::{bands, index, zonal};
+use ridgelight::basis::slice::Slices;
+use ridgelight::basis::{bands, index};
+use ridgelight_cpu::basis::azimuth::{Blend, assemble, assemble_nlp, blend_matrix, circle, swath};
+use ridgelight_cpu::basis::from_nlp;
+use ridgelight_cpu::basis::nlp_value;
+use ridgelight_cpu::basis::rotate_z;
 use std::f64::consts::{PI, TAU};
 
 const BLENDS: [Blend; 2] = [Blend::Linear, Blend::BSpline];
@@ -76,7 +78,7 @@ fn a_level_horizon_is_a_cap() {
     for order in ORDERS {
         for (count, elevation) in [(order, 0.3), (8, -0.9), (31, 1.2), (32, 0.0)] {
             let seen = vec![Slices::new(order).above(elevation); count];
-            let cap = zonal::cap(order, PI / 2.0 - elevation);
+            let cap = ridgelight_cpu::basis::cap(order, PI / 2.0 - elevation);
             let mut expected = vec![0.0; order * order];
             (0..order).for_each(|l| expected[index(l, 0)] = cap[l]);
             for blend in BLENDS {

@@ -2,13 +2,15 @@
 
 use crate::{ORDERS, noise, within};
 use glam::DVec3;
-use ridgelight::basis::glsl::{
+use ridgelight::basis::harmonics::evaluate;
+use ridgelight::basis::product::triples;
+use ridgelight::basis::slice::Slices;
+use ridgelight_cpu::basis::glsl::{
     Factor, glsl_harmonics, glsl_product, glsl_slice, glsl_visibility_nlp, glsl_visible,
 };
-use ridgelight::basis::harmonics::{evaluate, turned};
-use ridgelight::basis::legendre::occlusion;
-use ridgelight::basis::product::{product, triples};
-use ridgelight::basis::slice::Slices;
+use ridgelight_cpu::basis::occlusion;
+use ridgelight_cpu::basis::product;
+use ridgelight_cpu::basis::turned;
 use std::collections::HashMap;
 use std::f64::consts::{FRAC_PI_2, SQRT_2};
 

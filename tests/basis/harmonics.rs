@@ -3,8 +3,10 @@ use crate::{
     ORDERS, direction, directions, noise, number, numbers, project_whole, reference, same,
 };
 use glam::{DQuat, DVec3};
-use ridgelight::basis::harmonics::{evaluate, reconstruct, rotate_z, turned};
+use ridgelight::basis::harmonics::evaluate;
 use ridgelight::basis::{bands, index};
+use ridgelight_cpu::basis::rotate_z;
+use ridgelight_cpu::basis::{reconstruct, turned};
 use std::f64::consts::PI;
 
 #[test]

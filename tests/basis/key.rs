@@ -1,10 +1,11 @@
 use crate::{project, within};
-use ridgelight::basis::azimuth::Blend;
-use ridgelight::basis::harmonics::turned;
+use ridgelight::basis::index;
 use ridgelight::basis::slice::Slices;
 use ridgelight::basis::zonal::clamped_cosine;
-use ridgelight::basis::{index, zonal};
 use ridgelight::scene::KeyLight;
+use ridgelight_cpu::basis::azimuth::Blend;
+use ridgelight_cpu::basis::key::KeyHarmonics;
+use ridgelight_cpu::basis::turned;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 const KEY: KeyLight =
@@ -73,7 +74,7 @@ fn the_whole_sky_is_a_key_light() {
     let elevations_rad = [0.0, FRAC_PI_2];
     let whole = KeyLight { azimuth_rad: PI, width_rad: TAU, elevations_rad, ..KEY };
     let seen = whole.visible(&Slices::new(6), Blend::Linear, &[-0.3; 9]);
-    let sky = zonal::sky(6);
+    let sky = ridgelight_cpu::basis::sky(6);
     for l in 0..6 {
         within(&[seen[index(l, 0)]], &[sky[l]], 1e-13);
     }

@@ -1,6 +1,8 @@
 use crate::{ORDERS, number, numbers, reference, same, within};
-use ridgelight::basis::legendre::{associated, nlp, occlusion, occlusion_polynomials, value};
+use ridgelight::basis::legendre::{associated, value};
 use ridgelight::basis::quadrature::{integral, points};
+use ridgelight_cpu::basis::nlp;
+use ridgelight_cpu::basis::{occlusion, occlusion_polynomials};
 use std::f64::consts::{FRAC_PI_2, SQRT_2};
 
 /// ∫ from -1 to 1 of x^k is 2/(k+1) or 0, up to the degree that 32 points reach; not beyond.

@@ -2,13 +2,16 @@
 
 use crate::{ORDERS, noise, within};
 use glam::DVec3;
-use ridgelight::basis::azimuth::{assemble, circle};
-use ridgelight::basis::harmonics::{evaluate, reconstruct, turned};
-use ridgelight::basis::light::{cosine_lobe, fit_above_ground, plane, receiver, specular};
-use ridgelight::basis::product::{product, triples};
+use ridgelight::basis::harmonics::evaluate;
+use ridgelight::basis::light::{cosine_lobe, fit_above_ground, plane};
+use ridgelight::basis::product::triples;
 use ridgelight::basis::quadrature::points;
 use ridgelight::basis::slice::Slices;
 use ridgelight::basis::zonal::{clamped_cosine, phong};
+use ridgelight_cpu::basis::azimuth::{assemble, circle};
+use ridgelight_cpu::basis::product;
+use ridgelight_cpu::basis::{receiver, specular};
+use ridgelight_cpu::basis::{reconstruct, turned};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 const AZIMUTHS: usize = 64;

@@ -1,8 +1,10 @@
 use crate::{ORDERS, direction, noise, project_whole, within};
 use glam::DVec3;
-use ridgelight::basis::harmonics::{reconstruct, rotate_z, turned};
-use ridgelight::basis::product::{light_matrix, product, triples};
+use ridgelight::basis::product::{light_matrix, triples};
 use ridgelight::basis::zonal;
+use ridgelight_cpu::basis::product;
+use ridgelight_cpu::basis::rotate_z;
+use ridgelight_cpu::basis::{reconstruct, turned};
 use std::f64::consts::PI;
 
 /// Distinct products and all that are not 0, as counted by an independent quadrature.
@@ -68,7 +70,7 @@ fn a_lights_matrix_is_its_product() {
 #[test]
 fn light_through_visibility_on_a_receiver() {
     let up = |zonal: Vec<f64>| turned(&zonal, DVec3::Z);
-    let (sky, seen) = (up(zonal::sky(4)), up(zonal::sky(4)));
+    let (sky, seen) = (up(ridgelight_cpu::basis::sky(4)), up(ridgelight_cpu::basis::sky(4)));
     let cosine = up(zonal::clamped_cosine(4));
     let triples = triples(4);
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>() / PI;

@@ -1,7 +1,11 @@
 use crate::{ORDERS, within};
-use ridgelight::basis::legendre::{associated, nlp, occlusion, value};
+use ridgelight::basis::legendre::{associated, value};
 use ridgelight::basis::quadrature::integral;
-use ridgelight::basis::slice::{Slices, from_nlp, nlp_value, parts, project, slice_index};
+use ridgelight::basis::slice::{Slices, parts, slice_index};
+use ridgelight_cpu::basis::from_nlp;
+use ridgelight_cpu::basis::nlp;
+use ridgelight_cpu::basis::occlusion;
+use ridgelight_cpu::basis::{nlp_value, project};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 fn direct(l: usize, m: usize, low: f64, high: f64) -> f64 {

@@ -2,7 +2,8 @@
 //! against integrals. On the device a case hears some of them less than it errs by.
 
 use crate::glsl::Machine;
-use ridgelight::basis::legendre::{nlp, occlusion};
+use ridgelight_cpu::basis::nlp;
+use ridgelight_cpu::basis::occlusion;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 const SHADER: &str = include_str!("../../shaders_glsl/bounce/bounce_gather.comp");

@@ -1,8 +1,8 @@
 use crate::{ORDERS, directions, noise, within};
 use glam::DVec3;
-use ridgelight::basis::harmonics::{reconstruct, turned};
-use ridgelight::basis::window::{apply, hann, lanczos, mildest, nonnegative};
-use ridgelight::basis::zonal;
+use ridgelight::basis::window::{hann, lanczos, nonnegative};
+use ridgelight_cpu::basis::window::{apply, mildest};
+use ridgelight_cpu::basis::{reconstruct, turned};
 use std::f64::consts::PI;
 
 fn lowest(coefficients: &[f64]) -> f64 {
@@ -63,8 +63,9 @@ fn the_mildest_window_just_reaches_0() {
             let mut light = vec![0.0; order * order];
             for place in places.chunks(3) {
                 let towards = DVec3::from_slice(place).normalize();
-                let disc = turned(&zonal::cap(order, 0.3 + place[0].abs()), towards);
-                let sky = turned(&zonal::sky(order), DVec3::Z);
+                let disc =
+                    turned(&ridgelight_cpu::basis::cap(order, 0.3 + place[0].abs()), towards);
+                let sky = turned(&ridgelight_cpu::basis::sky(order), DVec3::Z);
                 for (sum, (d, s)) in light.iter_mut().zip(disc.iter().zip(sky)) {
                     *sum += d + 0.01 * s;
                 }

@@ -1,8 +1,9 @@
 use crate::{ORDERS, number, numbers, project, reference, same, within};
 use ridgelight::basis::index;
-use ridgelight::basis::legendre::nlp;
 use ridgelight::basis::quadrature::integral;
 use ridgelight::basis::zonal::*;
+use ridgelight_cpu::basis::nlp;
+use ridgelight_cpu::basis::{cap, phong_gaussian, sky, sphere, sphere_half_azimuth};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 #[test]

@@ -3,10 +3,8 @@
 use std::f64::consts::{PI, TAU};
 
 use glam::DVec3;
-use ridgelight::basis::azimuth::{assemble, circle};
 use ridgelight::basis::bands;
 use ridgelight::basis::harmonics::evaluate;
-use ridgelight::basis::light::receiver as polynomials;
 use ridgelight::basis::slice::Slices;
 use ridgelight::basis::zonal::clamped_cosine;
 use ridgelight::gpu::Pixels;
@@ -14,6 +12,8 @@ use ridgelight::plan::{self, Picture};
 use ridgelight::scene::{
     Basis, Border, Environment, HeightField, Quality, Receiver, Scene, Window,
 };
+use ridgelight_cpu::basis::azimuth::{assemble, circle};
+use ridgelight_cpu::basis::receiver as polynomials;
 use ridgelight_cpu::env_rotation::env_rotation;
 use ridgelight_cpu::light_matrix::{light_matrix, series};
 

@@ -7,16 +7,17 @@
 use std::f64::consts::{FRAC_PI_2, PI, SQRT_2, TAU};
 
 use glam::DVec3;
-use ridgelight::basis::azimuth::Blend;
-use ridgelight::basis::harmonics::{evaluate, rotate_z};
-use ridgelight::basis::legendre::occlusion;
-use ridgelight::basis::light::receiver as polynomials;
+use ridgelight::basis::harmonics::evaluate;
 use ridgelight::basis::{bands, index, zonal};
 use ridgelight::plan::{self, Picture};
 use ridgelight::scene::{
     Albedo, Basis, Border, Environment, HeightField, Lights, Method, PhongSpecular, Quality,
     Receiver, Scene, Specular, SphereLight, Surface, Wedges,
 };
+use ridgelight_cpu::basis::azimuth::Blend;
+use ridgelight_cpu::basis::occlusion;
+use ridgelight_cpu::basis::receiver as polynomials;
+use ridgelight_cpu::basis::rotate_z;
 use ridgelight_cpu::oracle::Oracle;
 use ridgelight_cpu::sh_visibility::{Series, visibility_above};
 use serde_json::Value;

@@ -86,7 +86,8 @@ fn paths_from_listed_samples_bring_indirect_light() {
         let error: Vec<_> = error.map(|(e, a)| [0, 1, 2].map(|c| e[c] + 1e-5 * a[c])).collect();
         let both = traced_at(&mut device, &scene, 2, &listed);
         // Convex ground gets little, of few paths: what a sample's own may not have met counts as error, too.
-        let unsampled = plan::unsampled_bounce_error(&scene, 2, (PATHS as u32, 1), 0.05);
+        let unsampled =
+            ridgelight_trade::auto::unsampled_bounce_error(&scene, 2, (PATHS as u32, 1), 0.05);
         let sigma: Vec<_> =
             both[1].iter().map(|e| [0, 1, 2].map(|c| e[c].hypot(unsampled[c]))).collect();
         let agreement = |right: &[[f64; 3]]| {

@@ -3,12 +3,13 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::path::Path;
 
-use ridgelight::basis::zonal::{cap, phong};
+use ridgelight::basis::zonal::phong;
 use ridgelight::plan::{self, Picture};
 use ridgelight::scene::{
     Albedo, Basis, Border, HeightField, Lights, Method, PhongSpecular, Quality, Scene, Specular,
     Sun,
 };
+use ridgelight_cpu::basis::cap;
 use ridgelight_cpu::indirect::{Fineness, light};
 use ridgelight_cpu::tolerance::{ShadeError, device_march_slope, device_sun_specular};
 use ridgelight_io as files;

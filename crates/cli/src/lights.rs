@@ -5,6 +5,9 @@ use ridgelight::scene::{KeyLight, Lights, SphereLight, Sun};
 use crate::args::numbers as numbers_in;
 use crate::scene_file::{Numbers, Part, or, part};
 
+/// A light's numbers, and its colour.
+type Placed = (Vec<f64>, [f32; 3]);
+
 /// A light type.
 pub struct Light {
     /// Id of its flag. Its metadata keys are numbered: `sun1`.
@@ -20,7 +23,7 @@ pub struct Light {
     /// Whether its first number is a compass azimuth.
     pub is_aimed: bool,
     add: fn(&mut Lights, &[f64], [f32; 3]),
-    numbers: fn(&Lights) -> Vec<(Vec<f64>, [f32; 3])>,
+    numbers: fn(&Lights) -> Vec<Placed>,
 }
 
 pub static LIGHTS: [Light; 3] = [
@@ -163,7 +166,7 @@ impl Light {
 
     /// Its lights in a scene, as the flag takes them.
     pub fn words(&self, lights: &Lights) -> Vec<String> {
-        let words = |(place, [r, g, b]): (Vec<f64>, [f32; 3])| {
+        let words = |(place, [r, g, b]): Placed| {
             let place: Vec<String> = place.iter().map(f64::to_string).collect();
             format!("{},{r},{g},{b}", place.join(","))
         };

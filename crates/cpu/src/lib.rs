@@ -11,6 +11,7 @@
 #![deny(clippy::missing_errors_doc)]
 
 mod bake;
+pub mod basis;
 mod bounce;
 mod direct;
 mod edit;

@@ -4,8 +4,18 @@
 use crate::oracle::Oracle;
 use crate::profile::VisibleInterval;
 use glam::DVec3;
-use ridgelight::scene::{Border, Directions, HeightField, VisiblePoint};
+use ridgelight::scene::{Border, Directions, HeightField, VisiblePoint, VisiblePoints};
 use std::f64::consts::FRAC_PI_2;
+
+/// Visibility, 0 to 1, of a light [`around`](VisiblePoints::around) which these directions lie: the weight of those in which the
+/// sky is visible.
+///
+/// # Panics
+/// Outside the field.
+pub fn lit_share(points: &VisiblePoints, around: &[(usize, f64); 3], grid_point: usize) -> f64 {
+    let is_sky = |i: usize| points.point(i, grid_point) == VisiblePoint::Sky;
+    around.iter().filter(|c| is_sky(c.0)).map(|c| c.1).sum()
+}
 
 /// The visible point of each grid point in each direction, direction after direction.
 pub fn visible_points(

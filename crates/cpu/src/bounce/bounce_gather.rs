@@ -2,6 +2,8 @@
 //! per level. Each knot and midpoint of the B-spline over their elevations that rises above all before contributes
 //! its radiance over the newly visible elevations (Nowrouzezahrai & Snyder 2009, eq. 6-17).
 
+use crate::basis::nlp;
+use crate::basis::occlusion;
 use crate::light::{Receiver as Place, Slice, normal};
 use crate::oracle::grid_direction;
 use crate::pyramid_march::Stored;
@@ -10,7 +12,6 @@ use crate::shared::bounced::{Along, Cast, NEARLY_RAD, radiance};
 use crate::shared::levels::LevelTexels;
 use crate::shared::sweep::{Heights, wrapped};
 use glam::DVec3;
-use ridgelight::basis::legendre::{nlp, occlusion};
 use ridgelight::plan::pyramid::Pyramid;
 use ridgelight::plan::sweep::warm_up;
 use ridgelight::scene::{HeightField, Receiver};

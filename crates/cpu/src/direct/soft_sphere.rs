@@ -4,11 +4,11 @@
 use glam::DVec3;
 use std::f64::consts::PI;
 
+use crate::basis::receiver;
 use crate::light_matrix::light_matrix;
 use crate::sphere_sh_shade::BEYOND;
 use crate::tolerance::{ARC_TANGENT, EPSILON, ShadeError, SphereGeometry};
 use ridgelight::basis::bands;
-use ridgelight::basis::light::receiver;
 use ridgelight::scene::{Quality, Receiver, Wedges};
 
 /// Contributions of visibility and sphere coefficients to the light, for a quality.

@@ -1,6 +1,8 @@
 //! Direct light of a sphere light by spherical harmonics: visibility up to the sphere's distance, times the sphere,
 //! times the receiver. In f64 and directly from the basis: no rotated frame, no list of products.
 
+use crate::basis::sphere;
+use crate::basis::turned;
 use crate::light::normal;
 use crate::light_matrix::light_matrix;
 use crate::oracle::Oracle;
@@ -9,9 +11,7 @@ use crate::sh_shade::light_on;
 use crate::sh_visibility::{Series, visibility_along};
 use crate::sh_wedges::wedges_around;
 use glam::{DVec2, DVec3};
-use ridgelight::basis::harmonics::turned;
 use ridgelight::basis::wedge::WedgeTable;
-use ridgelight::basis::zonal::sphere;
 use ridgelight::plan::pyramid::Pyramid;
 use ridgelight::scene::{Quality, Receiver, SphereLight, Wedges};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};

@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 
 use glam::DVec3;
 
+use crate::basis::receiver;
 use crate::env_rotation::env_rotation;
 use crate::light_matrix::{add_sky, is_fitted, light_matrix, row_weights, series, specular_matrix};
 use crate::sh_shade::{light_on, specular_on};
@@ -15,7 +16,6 @@ use crate::tolerance::{
 };
 use ridgelight::basis::bands;
 use ridgelight::basis::harmonics::evaluate;
-use ridgelight::basis::light::receiver;
 use ridgelight::basis::wedge::WedgeTable;
 use ridgelight::basis::zonal::phong_bands;
 use ridgelight::plan::Azimuth;

@@ -1,11 +1,11 @@
 //! Exit radiance under an environment from a visibility series.
 
+use crate::basis::receiver;
 use crate::shared::field::{field_slope, normal_of};
 use crate::shared::sweep::Heights;
 use glam::{DVec2, DVec3};
 use ridgelight::basis::bands;
 use ridgelight::basis::harmonics::evaluate;
-use ridgelight::basis::light::receiver;
 use ridgelight::basis::zonal::phong_bands;
 use ridgelight::plan::Nodes;
 use ridgelight::scene::PhongSpecular;

@@ -1,8 +1,9 @@
 //! Visibility of every grid point above its horizons, as a series of spherical harmonics.
 
+use crate::basis::azimuth::{assemble, assemble_nlp};
+use crate::basis::occlusion;
 use crate::shared::gather::Swept;
-use ridgelight::basis::azimuth::{around, assemble, assemble_nlp};
-use ridgelight::basis::legendre::occlusion;
+use ridgelight::basis::azimuth::around;
 use ridgelight::basis::slice::Slices;
 use ridgelight::plan::Azimuth;
 use ridgelight::scene::{Receiver, Wedges};

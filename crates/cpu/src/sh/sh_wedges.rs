@@ -1,6 +1,7 @@
 //! Visibility of a grid point above its horizons, from a table of wedges between two azimuths.
 
-use ridgelight::basis::harmonics::rotate_z;
+use crate::basis::rotate_z;
+use crate::basis::wedge::look_up;
 use ridgelight::basis::wedge::WedgeTable;
 use ridgelight::plan::Azimuth;
 
@@ -16,7 +17,7 @@ pub fn wedges_around(table: &WedgeTable, mut circle: Vec<[f64; 2]>) -> Vec<f64> 
     let mut sum = vec![0.0; table.texels[0].len()];
     for (k, [phi, first]) in circle.iter().enumerate() {
         let [_, last] = circle[(k + 1) % circle.len()];
-        let turned = rotate_z(&table.look_up([*first, last]), *phi);
+        let turned = rotate_z(&look_up(table, [*first, last]), *phi);
         sum.iter_mut().zip(turned).for_each(|(s, t)| *s += t);
     }
     sum

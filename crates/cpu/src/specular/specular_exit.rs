@@ -1,9 +1,9 @@
 //! Exit radiance of a grid point from incident light as a series: Phong specular, and diffuse light beside it.
 
+use crate::basis::{half_turn, reconstruct};
 use crate::specular_gather::Series;
 use glam::DVec3;
 use ridgelight::basis::bands;
-use ridgelight::basis::harmonics::{half_turn, reconstruct};
 use ridgelight::basis::zonal::phong_bands;
 use ridgelight::scene::PhongSpecular;
 use std::f64::consts::PI;

@@ -5,11 +5,12 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use glam::DVec3;
 
 use super::{ARC_TANGENT, EPSILON, device_table, device_wedge_row};
+use crate::basis::from_nlp;
+use crate::basis::occlusion_polynomials;
 use crate::env_tables::EnvTables;
 use crate::sh_shade::OFF_PLANE;
 use ridgelight::basis::MAX_ORDER;
-use ridgelight::basis::legendre::occlusion_polynomials;
-use ridgelight::basis::slice::{Slices, from_nlp, slice_index};
+use ridgelight::basis::slice::{Slices, slice_index};
 use ridgelight::scene::{HeightField, SphereLight, Wedges};
 
 /// Errors of a grid point's light through its horizons.

@@ -18,6 +18,6 @@ mod walk;
 
 pub use chooser::{Chooser, Goal, Trial};
 pub use model::{Costs, Expected, FEATURES, Model, PARTS, Part};
-pub use probes::{Measured, Probes, Traced, apart};
+pub use probes::{Measured, Probes, Traced, apart, unsampled_bounce_error};
 pub use statistics::Statistics;
 pub use walk::{Bounced, Chosen, Drawn, Trace, choose, flags};

@@ -62,7 +62,7 @@ impl Part {
                 lights.sky.is_some_and(|s| s != [0.0; 3]) || lights.environment.is_some()
             }
             Part::Table => lights.environment.is_some(),
-            Part::Strips => lights.have_slices(),
+            Part::Strips => crate::trade::have_slices(lights),
         }
     }
 }

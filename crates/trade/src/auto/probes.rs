@@ -1,4 +1,5 @@
 use ridgelight::basis::random::{STEP, mixed, unit};
+use ridgelight::plan::max_path_light;
 use ridgelight::scene::{Border, Scene};
 use ridgelight::{Error, Result};
 use ridgelight_cpu::lit::Lit;
@@ -367,6 +368,23 @@ fn picks(weights: &[f64], wanted: usize, seed: u64) -> (Vec<usize>, Vec<f64>) {
         factors.push(1.0 / of(i));
     }
     (all, factors)
+}
+
+/// As [`unsampled_light_error`](ridgelight::plan::unsampled_light_error), for the indirect light of all texels of a
+/// [`reference_at`](ridgelight::plan::reference_at) together: the root mean square over them, except with a `probability` in (0, 1). An event that no path has sampled has a share of at most
+/// -ln(probability) / (N · texels) of all (the rule of three: 3 for 5 %). Its variance is W²/N times its mean share, with W
+/// the upper bound of a path's light after one reflection.
+pub fn unsampled_bounce_error(
+    scene: &Scene,
+    bounces: u32,
+    (paths, texels): (u32, usize),
+    probability: f64,
+) -> [f64; 3] {
+    let Some(later) = bounces.checked_sub(1) else { return [0.0; 3] };
+    let most = max_path_light(scene, later);
+    let share = -probability.ln() / texels as f64;
+    let scale = share.sqrt() * scene.surface.max_reflectance() / f64::from(paths);
+    most.map(|most| scale * most)
 }
 
 #[cfg(test)]

@@ -2,10 +2,10 @@
 
 use super::chooser::{Chooser, Goal, Trial};
 use super::model::{Expected, PARTS, Part};
-use super::probes::{Probes, Traced, apart};
+use super::probes::{Probes, Traced, apart, unsampled_bounce_error};
 use super::statistics::Statistics;
 use crate::trade::start;
-use ridgelight::plan::{REFERENCE_BATCH, unsampled_bounce_error};
+use ridgelight::plan::REFERENCE_BATCH;
 use ridgelight::scene::{
     Basis, Bounces, Fuse, Hull, Levels, LightBasis, Lines, Method, Precision, Quality, Receiver,
     Scene, Wedges, Window,

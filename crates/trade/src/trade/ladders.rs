@@ -71,6 +71,12 @@ fn has_no_levels(quality: &Quality) -> bool {
     quality.method != Method::Pyramid
 }
 
+/// Whether some lights are integrated in slices: suns that are not points, key lights, sphere lights.
+pub(crate) fn have_slices(lights: &Lights) -> bool {
+    let have_others = !lights.keys.is_empty() || !lights.sphere_lights.is_empty();
+    have_others || lights.suns.iter().any(|s| !s.is_point())
+}
+
 /// The lights with radiance above 0: for others no setting changes anything.
 fn nonzero_lights(lights: &Lights) -> Lights {
     let is_lit = |c: &[f32; 3]| c.iter().any(|v| *v > 0.0);
@@ -167,7 +173,7 @@ pub fn ladders(scene: &Scene, bounces: u32) -> Vec<Ladder> {
             idle: |_| false,
         });
     }
-    if lights.have_slices() {
+    if have_slices(lights) {
         all.push(Ladder {
             name: "sun azimuths",
             steps: spell("sun_azimuths", &SUN_AZIMUTHS),

@@ -9,6 +9,7 @@ mod search;
 mod tests;
 
 pub use frontier::{Recommendation, Rule, Value, frontier, recommend};
+pub(crate) use ladders::have_slices;
 pub use ladders::{Ladder, Place, ladders, places, start, start_of};
 pub use refused::refused;
 pub use search::{Break, SLACK, Search, Side, Skip};

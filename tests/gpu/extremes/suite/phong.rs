@@ -2,8 +2,9 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use ridgelight::basis::zonal::{cap, phong};
+use ridgelight::basis::zonal::phong;
 use ridgelight::scene::{Albedo, Border, HeightField, Lights, PhongSpecular, Specular, Sun};
+use ridgelight_cpu::basis::cap;
 use ridgelight_cpu::tolerance::{
     EPSILON, Land, ShadeError, device_sh_specular, device_sun_specular,
 };

@@ -4,10 +4,12 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::FRAC_1_PI;
 use std::fmt::Write as _;
 
-use super::legendre::{associated, occlusion_polynomials};
-use super::product::{orders, triples};
-use super::slice::{Above, Slices, from_nlp, parts};
-use super::{MAX_ORDER, bands, index};
+use ridgelight::basis::legendre::associated;
+use ridgelight::basis::product::{orders, triples};
+use ridgelight::basis::slice::{Above, Slices, parts};
+use ridgelight::basis::{MAX_ORDER, bands, index};
+
+use super::{from_nlp, occlusion_polynomials};
 
 /// The second factor of a [`glsl_product`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -133,7 +135,7 @@ fn number(value: f64) -> String {
 /// `add_slices` uses the exact slices, `add_nlps` n NLP coefficients ([`from_nlp`]).
 pub fn glsl_visible() -> String {
     let mut text = String::from(
-        "// Made by basis::glsl::glsl_visible, and held to it by a test.\n//\n\
+        "// Made by ridgelight_cpu::basis::glsl::glsl_visible, and held to it by a test.\n//\n\
          // Adds the visibility along an azimuth above elevations of sine `sin_` and cosine `cos_`, `rise` from\n\
          // the zenith, to the series. VALUE is of one texel or of four. The including shader declares ORDER,\n\
          // the azimuth's weights float turn[11], of m at m + 5, and VALUE series[36].\n\n\
@@ -167,7 +169,7 @@ pub fn glsl_visible() -> String {
 /// `shaders_glsl/shared/harmonics.glsl`: Y_lm of four directions, for every value of `ORDER`.
 pub fn glsl_harmonics() -> String {
     let mut text = String::from(
-        "// Made by basis::glsl::glsl_harmonics, and held to it by a test.\n//\n\
+        "// Made by ridgelight_cpu::basis::glsl::glsl_harmonics, and held to it by a test.\n//\n\
          // Y_lm of four unit directions (x, y, z). The including shader declares ORDER and vec4 harmonics[36].\n\
          void find_harmonics(vec4 x, vec4 y, vec4 z) {\n    vec4 t;\n",
     );
