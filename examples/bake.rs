@@ -13,6 +13,7 @@ use ridgelight::scene::{Border, HeightField, Method, Quality};
 use ridgelight_bake::{BentNormal, HorizonMap, HorizonSums, Ray, SHARE, SkyView, normals};
 use ridgelight_io::{HeightOptions, read_heights, write_npy_f32};
 
+/// Evenly around the circle, the first towards the east.
 pub const AZIMUTHS: u32 = 64;
 
 /// Elevations in radians, a plane for each of [`AZIMUTHS`] even azimuths, exact in each.

@@ -30,7 +30,7 @@ const RUNS: usize = 3;
 fn middle_run(drawn: &Drawn, name: &str) -> f64 {
     let mut runs: Vec<_> = drawn.runs.iter().collect();
     runs.sort_by(|a, b| ms(a, "").total_cmp(&ms(b, "")));
-    ms(runs[RUNS / 2], name)
+    ms(runs[runs.len() / 2], name)
 }
 
 /// Elevations at the picked grid points, [azimuth][pick], and where wanted distances, metres.
@@ -97,27 +97,9 @@ fn occluders(field: &HeightField, found: &[Vec<f32>; 2], truth: &[Option<Horizon
     )
 }
 
-/// Levels an octave and the offset of each row, and what is stored.
-const PYRAMIDS: [(u32, u32, Levels); 15] = {
-    use Levels::{Pyramid, Stack};
-    [
-        (1, 0, Stack),
-        (2, 1, Stack),
-        (4, 2, Stack),
-        (8, 3, Stack),
-        (16, 4, Stack),
-        (1, 2, Stack),
-        (2, 2, Stack),
-        (8, 2, Stack),
-        (16, 2, Stack),
-        (4, 0, Stack),
-        (4, 1, Stack),
-        (4, 3, Stack),
-        (4, 4, Stack),
-        (4, 2, Pyramid),
-        (16, 4, Pyramid),
-    ]
-};
+/// Levels an octave of each row, and its offset; of the last two a pyramid is stored, of the others a stack.
+const LEVEL_STEPS: [u32; 15] = [1, 2, 4, 8, 16, 1, 2, 8, 16, 4, 4, 4, 4, 4, 16];
+const LEVEL_OFFSETS: [u32; 15] = [0, 1, 2, 3, 4, 2, 2, 2, 2, 0, 1, 3, 4, 2, 4];
 
 /// A field, where its horizons and its light are compared, and their ground truths.
 struct Ground {
@@ -144,7 +126,8 @@ fn pyramids(gpu: &mut Headless, ground: &Ground) -> Result<()> {
         "| k | o | stored | levels MiB | mean ° | median ° | 99 % ° | sky RMSE % | mean shift % | levels ms | march ms | × sweep |",
     );
     let elevations = elevations(&ground.even);
-    for (level_step, level_offset, levels) in PYRAMIDS {
+    for (i, (level_step, level_offset)) in LEVEL_STEPS.into_iter().zip(LEVEL_OFFSETS).enumerate() {
+        let levels = if i < 13 { Levels::Stack } else { Levels::Pyramid };
         let method = Method::Pyramid;
         let quality = Quality { method, level_step, level_offset, levels, ..Quality::default() };
         let [angles, _] = horizons(gpu, field, &quality, picks, false)?;

@@ -117,27 +117,22 @@ fn on_surface(quality: Quality) -> Quality {
 
 /// Figure, form and settings of each row.
 fn forms() -> Vec<(&'static str, String, Quality)> {
-    const AROUND: &str = "table of all around";
+    type Form = (&'static str, fn(u32, u32) -> Quality);
+    const FORMS: [Form; 2] = [("table of all around", thesis), ("across", across)];
+    let of = |azimuths: &'static [u32], steps: &'static [u32]| {
+        let settings = move || azimuths.iter().flat_map(|m| steps.iter().map(move |k| (*m, *k)));
+        FORMS.iter().flat_map(move |form| settings().map(move |(m, k)| (form.0, form.1(m, k))))
+    };
     let mut all = Vec::new();
-    for azimuths in [4, 8, 32] {
-        all.push(("6.1", AROUND.to_owned(), thesis(azimuths, 4)));
-    }
-    for azimuths in [4, 8, 32] {
-        all.push(("6.1", "across".to_owned(), across(azimuths, 4)));
-    }
-    for step in 1..=4 {
-        all.push(("6.2", AROUND.to_owned(), thesis(32, step)));
-    }
-    for step in 1..=4 {
-        all.push(("6.2", "across".to_owned(), across(32, step)));
-    }
-    for azimuths in [4, 8, 32] {
-        all.push(("", AROUND.to_owned(), on_surface(thesis(azimuths, 4))));
-        all.push(("", "across".to_owned(), on_surface(across(azimuths, 4))));
+    let mut add = |figure, name: &str, quality| all.push((figure, name.to_owned(), quality));
+    of(&[4, 8, 32], &[4]).for_each(|(name, quality)| add("6.1", name, quality));
+    of(&[32], &[1, 2, 3, 4]).for_each(|(name, quality)| add("6.2", name, quality));
+    for azimuths in [&[4], &[8], &[32]] {
+        of(azimuths, &[4]).for_each(|(name, quality)| add("", name, on_surface(quality)));
     }
     for sh_order in [2, 3, 5, 6] {
         let quality = Quality { sh_order, ..on_surface(across(32, 4)) };
-        all.push(("", format!("across, order {sh_order}"), quality));
+        add("", &format!("across, order {sh_order}"), quality);
     }
     all
 }

@@ -15,11 +15,10 @@ use ridgelight::gpu::Headless;
 use ridgelight::plan::REFERENCE_BATCH;
 use ridgelight::scene::{Border, KeyLight, Lights, Quality, Scene, Surface};
 use ridgelight_cpu::oracle::Oracle;
-use ridgelight_io as files;
 
 use crate::common::args::Args;
 use crate::common::frames::{Colours, drawn, open, rms, traced};
-use crate::common::plot::{self, Curve, Panel, Style};
+use crate::common::plot::{self, Panel, Style, curve};
 use crate::common::{Outcome, inputs};
 
 /// Grid points, one metre apart; where the wall stands, and how high it is.
@@ -103,22 +102,17 @@ fn table(name: &str, profile: &Profile) {
 }
 
 fn panel(name: &str, profile: &Profile) -> Panel {
-    let curve = |k: usize, name: &str, colour, style, step| {
+    let points = |k: usize, step: usize| {
         let near = (0..profile[k].len()).filter(|i| distance(*i) <= 10.0).step_by(step);
-        let points = near.map(|i| [distance(i), profile[k][i]]).collect();
-        Curve { name: name.into(), points, colour, style }
+        near.map(|i| [distance(i), profile[k][i]]).collect()
     };
-    Panel {
-        title: name.into(),
-        x: "distance behind the wall, in its heights",
-        y: "share of the light of free ground",
-        curves: vec![
-            curve(3, "reference (path-traced)", 4, Style::Circles, 2),
-            curve(0, "ours, 3 slices", 0, Style::Line, 1),
-            curve(2, "SH of order 4, as in NS09", 1, Style::Dashes, 1),
-        ],
-        linear: Some([10.0, 1.2]),
-    }
+    let curves = vec![
+        curve("reference (path-traced)", 4, Style::Circles, points(3, 2)),
+        curve("ours, 3 slices", 0, Style::Line, points(0, 1)),
+        curve("SH of order 4, as in NS09", 1, Style::Dashes, points(2, 1)),
+    ];
+    let axes = ["distance behind the wall, in its heights", "share of the light of free ground"];
+    Panel { linear: Some([10.0, 1.2]), ..Panel::new(name, axes, curves) }
 }
 
 pub fn run(mut args: Args) -> Outcome {
@@ -137,8 +131,5 @@ pub fn run(mut args: Args) -> Outcome {
         table(name, &profile);
         panels.push(panel(name, &profile));
     }
-    match output {
-        Some(path) => Ok(files::write_text(&path, &plot::svg(&panels))?),
-        None => Ok(()),
-    }
+    plot::write(output.as_deref(), &panels)
 }

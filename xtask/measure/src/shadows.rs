@@ -244,7 +244,9 @@ fn worst(land: &Land, ellipses: &[Ellipse]) -> panels::Panel {
     let places: Vec<usize> = match land.name {
         "pit" => vec![16 * cols + 16],
         "grooves" => vec![16 * cols + 12],
-        _ => (0..ellipses.len()).filter(|at| at / cols % 4 == 0 && at % 4 == 0).collect(),
+        _ => (0..ellipses.len())
+            .filter(|at| [at / cols, *at].iter().all(|n| n.is_multiple_of(4)))
+            .collect(),
     };
     let all = places.into_iter().map(|at| (at, panel(land, at, &ellipses[at])));
     let worst = all.max_by(|a, b| a.1.1.total_cmp(&b.1.1)).expect("grid points");

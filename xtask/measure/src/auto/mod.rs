@@ -161,5 +161,6 @@ pub fn run(mut args: Args) -> Outcome {
     };
     args.end()?;
     let mut gpu = open()?;
-    Ok(if asked.fit { fit::fit(&mut gpu, &asked)? } else { report::report(&mut gpu, &asked)? })
+    let work = if asked.fit { fit::fit } else { report::report };
+    Ok(work(&mut gpu, &asked)?)
 }

@@ -206,17 +206,16 @@ fn fill(
         let ms = t.ns / 1e6;
         json!({ "settings": flags(&t.quality, scene), "measured": error, "at_most": at_most, "ms": ms })
     });
-    row["settings"] = flags(&quality, scene).into();
-    row["expected"] = found.expected.error.into();
-    row["expected_within_factor"] = found.expected.factor.into();
-    row["measured"] = found.trial.measured.error.into();
-    row["at_most"] = found.trial.measured.at_most.into();
-    row["probes"] = found.probes.into();
-    row["tried"] = tried.collect();
-    row["true"] = off.error.into();
-    row["true_at_most"] = off.at_most.into();
-    row["holds"] = (off.error <= number(row, "asked")).into();
-    row["time_over_best"] = times.into();
+    let more = json!({
+        "settings": flags(&quality, scene), "probes": found.probes, "tried": tried.collect::<Vec<_>>(),
+        "expected": found.expected.error, "expected_within_factor": found.expected.factor,
+        "measured": found.trial.measured.error, "at_most": found.trial.measured.at_most,
+        "true": off.error, "true_at_most": off.at_most, "holds": off.error <= number(row, "asked"),
+        "time_over_best": times,
+    });
+    for (key, value) in more.as_object().into_iter().flatten() {
+        row[key] = value.clone();
+    }
     Ok(())
 }
 
@@ -245,29 +244,6 @@ fn summary(rows: &[Value]) -> Value {
         "ratios": ratios.len(), "ratio_median": at(0.5), "ratio_90": at(0.9), "ratio_worst": at(1.0),
         "within_1.3": ratios.iter().filter(|r| **r <= 1.3).count()
     })
-}
-
-/// A sentence.
-fn sentence(counts: &Value) -> String {
-    let of = |key: &str| number(counts, key);
-    format!(
-        "{} of {} hold ({:.1} %; {} are nearer to the goal than the truth's own bound; {} are \
-         within the stated bound), {} refused ({} of them where settings that hold were \
-         drawn); time over the cheapest drawn that holds: median {:.2}, 90 % {:.2}, worst {:.2}; at \
-         most 1.3 in {} of {}",
-        of("held"),
-        of("chosen"),
-        100.0 * of("held") / of("chosen"),
-        of("close"),
-        of("within_stated_bound"),
-        of("refused"),
-        of("refused_though_found"),
-        of("ratio_median"),
-        of("ratio_90"),
-        of("ratio_worst"),
-        of("within_1.3"),
-        of("ratios")
-    )
 }
 
 /// Rows of an earlier run that are kept: of the same device and side.
@@ -332,6 +308,6 @@ pub fn report(gpu: &mut Headless, asked: &Request) -> Result<()> {
         write(asked, &mut about, &all)?;
     }
     write(asked, &mut about, &all)?;
-    println!("\n{} pairs: {}", all.len() / ERRORS.len(), sentence(&summary(&all)));
+    println!("\n{} pairs: {}", all.len() / ERRORS.len(), summary(&all));
     Ok(())
 }

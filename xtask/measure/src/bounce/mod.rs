@@ -21,12 +21,10 @@ use ridgelight::scene::{
 use ridgelight_cpu::bounce_march::bounce_march;
 use ridgelight_cpu::light::sky_of;
 use ridgelight_cpu::oracle::Oracle;
-use ridgelight_io as files;
 
 use crate::common::args::Args;
 use crate::common::frames::{Colours, add, colours, device, open, rms, total, with_picture};
-use crate::common::plot::svg;
-use crate::common::{Outcome, head, inputs, median};
+use crate::common::{Outcome, head, inputs, median, plot};
 
 const ENGINES: [BounceEngine; 3] =
     [BounceEngine::BruteForce, BounceEngine::Sweep, BounceEngine::Pyramid];
@@ -165,5 +163,5 @@ pub fn run(mut args: Args) -> Outcome {
     println!("{}\n", device(&gpu));
     pits(&mut gpu, rim)?;
     let panels = real::run(&mut gpu, folder.as_deref(), side, paths)?;
-    output.map_or(Ok(()), |path| Ok(files::write_text(&path, &svg(&panels))?))
+    plot::write(output.as_deref(), &panels)
 }

@@ -9,7 +9,7 @@ use ridgelight::scene::{Albedo, BounceEngine, Bounces, Environment, HeightField,
 
 use super::{ENGINES, drawn, quality};
 use crate::common::frames::{Colours, add, error, mean, minus, rms, traced_at};
-use crate::common::plot::{Curve, Panel, Style};
+use crate::common::plot::{Panel, Style, curve};
 use crate::common::{head, inputs};
 
 type Named<T> = Vec<(&'static str, T)>;
@@ -155,25 +155,15 @@ fn panel(
             points.push([got.ms, error(&got.bounced, &bounced)?]);
         }
         let name = format!("{}, 8 to 64 azimuths", engine.name());
-        curves.push(Curve { name, points, colour, style: Style::Dotted });
+        curves.push(curve(&name, colour, Style::Dotted, points));
     }
     let ends = curves.iter().flat_map(|c| &c.points).map(|p| p[0]);
     let [from, to] = ends.fold([f64::MAX, 0.0_f64], |[l, h], x| [l.min(x), h.max(x)]);
     let noise = noise(truth, albedo.into(), 1, MOST);
     let points = vec![[from, noise], [to, noise]];
-    curves.push(Curve {
-        name: "noise of the reference".into(),
-        points,
-        colour: 4,
-        style: Style::Dashes,
-    });
-    Ok(Panel {
-        title: format!("{}, {}", names[0], names[1]),
-        x: "ms of three bounces",
-        y: "indirect light, relative RMSE %",
-        curves,
-        linear: None,
-    })
+    curves.push(curve("noise of the reference", 4, Style::Dashes, points));
+    let axes = ["ms of three bounces", "indirect light, relative RMSE %"];
+    Ok(Panel::new(names.join(", "), axes, curves))
 }
 
 /// The tables; and the figure.

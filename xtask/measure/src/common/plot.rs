@@ -1,6 +1,11 @@
 //! Curves as one SVG of panels side by side.
 
 use std::fmt::Write as _;
+use std::path::Path;
+
+use ridgelight_io as files;
+
+use super::Outcome;
 
 /// How a curve is drawn.
 #[derive(Clone, Copy, PartialEq)]
@@ -27,6 +32,18 @@ pub struct Panel {
     pub curves: Vec<Curve>,
     /// Where linear axes end, from 0; else both are logarithmic.
     pub linear: Option<[f64; 2]>,
+}
+
+impl Panel {
+    /// With logarithmic axes.
+    pub fn new(title: impl Into<String>, [x, y]: [&'static str; 2], curves: Vec<Curve>) -> Self {
+        Self { title: title.into(), x, y, curves, linear: None }
+    }
+}
+
+/// A curve of these points.
+pub fn curve(name: &str, colour: usize, style: Style, points: Vec<[f64; 2]>) -> Curve {
+    Curve { name: name.to_owned(), points, colour, style }
 }
 
 /// Distinct without red and green.
@@ -124,8 +141,9 @@ fn draw(svg: &mut String, panel: &Panel, left: f64) -> std::fmt::Result {
     Ok(())
 }
 
-/// All panels side by side.
-pub fn svg(panels: &[Panel]) -> String {
+/// All panels side by side, where a path is given.
+pub fn write(path: Option<&Path>, panels: &[Panel]) -> Outcome {
+    let Some(path) = path else { return Ok(()) };
     let [width, height] = [SIZE[0] * panels.len() as f64, SIZE[1]];
     let mut svg = format!(
         "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {width} {height}' width='{width}' height='{height}'>\n\
@@ -136,5 +154,5 @@ pub fn svg(panels: &[Panel]) -> String {
     for (i, panel) in panels.iter().enumerate() {
         draw(&mut svg, panel, SIZE[0] * i as f64).expect("text");
     }
-    svg + "</svg>\n"
+    Ok(files::write_text(path, &(svg + "</svg>\n"))?)
 }

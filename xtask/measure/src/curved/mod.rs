@@ -23,13 +23,11 @@ use ridgelight_bake::CurvedEllipses;
 use ridgelight_cpu::bent_directions::{Draped, Fans};
 use ridgelight_cpu::ellipse_fit::{Ellipse, fit, seen_bent};
 use ridgelight_cpu::fan_weights::weight;
-use ridgelight_io as files;
 
 use crate::bake::light::five_ellipses;
 use crate::common::args::Args;
 use crate::common::frames::{device, error_of, open};
-use crate::common::plot::svg;
-use crate::common::{Outcome, inputs};
+use crate::common::{Outcome, inputs, plot};
 
 const LIGHTS: usize = 200;
 const DIRECTIONS: usize = 1024;
@@ -233,5 +231,5 @@ pub fn run(mut args: Args) -> Outcome {
             println!("radius {:+.0}: {reason}", 1.0 / row.curvature);
         }
     }
-    output.map_or(Ok(()), |path| Ok(files::write_text(&path, &svg(&picture(&rows)))?))
+    plot::write(output.as_deref(), &picture(&rows))
 }

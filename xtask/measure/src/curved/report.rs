@@ -6,7 +6,7 @@ use super::STEPS;
 use super::light::BOUNCES;
 use crate::common::frames::error_of;
 use crate::common::head;
-use crate::common::plot::{Curve, Panel, Style};
+use crate::common::plot::{self, Panel, Style};
 
 /// Errors on a base, percent.
 pub struct Row {
@@ -111,16 +111,13 @@ pub fn picture(rows: &[Row]) -> Vec<Panel> {
     let panel = |title: &str, is_out: bool, y, lines: &[Line]| {
         let is_own = |r: &&Row| r.curvature != 0.0 && (r.curvature > 0.0) == is_out;
         let own = || rows.iter().filter(is_own);
-        let curve = |(name, colour, style, value): &Line| Curve {
-            name: (*name).into(),
-            points: own().map(|r| [1.0 / r.curvature.abs(), value(r)]).collect(),
-            colour: *colour,
-            style: *style,
+        let curve = |(name, colour, style, value): &Line| {
+            let points = own().map(|r| [1.0 / r.curvature.abs(), value(r)]).collect();
+            plot::curve(name, *colour, *style, points)
         };
         let held = own().filter(|r| r.refused.is_none()).map(|r| 1.0 / r.curvature.abs());
         let title = format!("{title}; refused below {:.0}", held.fold(f64::MAX, f64::min));
-        let curves = lines.iter().map(curve).collect();
-        Panel { title, x: "radius of the base, cells", y, curves, linear: None }
+        Panel::new(title, ["radius of the base, cells", y], lines.iter().map(curve).collect())
     };
     let (shadows, light) = ("lights wrong, %", "scattered light, RMSE, %");
     vec![

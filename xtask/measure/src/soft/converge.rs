@@ -11,7 +11,7 @@ use ridgelight_io as files;
 use super::truth;
 use crate::common::args::Args;
 use crate::common::frames::{Colours, drawn, error, open};
-use crate::common::plot::{Curve, Panel, Style, svg};
+use crate::common::plot::{self, Panel, Style, curve};
 use crate::common::{Outcome, head, inputs};
 
 /// Levels an octave and the offset that goes with them (figure 10, above).
@@ -57,26 +57,19 @@ fn row(name: &str, Errors([tables, soft, alike]): &Errors) {
     println!("| {name} | {tables:.3} | {soft:.3} | {alike:.3} |");
 }
 
-/// Three curves of errors, and where sharp horizons leave them.
+/// Three curves of errors, and those of sharp horizons.
 fn panel(title: &str, x: &'static str, rows: &[(f64, Errors)], floors: &[(f64, Errors)]) -> Panel {
     let names = ["tables", "SH", "SH, beside SH of exact horizons"];
     let of = |rows: &[(f64, Errors)], i: usize| rows.iter().map(|(x, e)| [*x, e.0[i]]).collect();
     let mut curves = Vec::new();
     for (i, name) in names.into_iter().enumerate() {
-        curves.push(Curve {
-            name: name.into(),
-            points: of(rows, i),
-            colour: i,
-            style: Style::Dotted,
-        });
-        let floor = format!("{name}: floor");
+        curves.push(curve(name, i, Style::Dotted, of(rows, i)));
         // Of itself it has none.
         if i < 2 {
-            let points = of(floors, i);
-            curves.push(Curve { name: floor, points, colour: i, style: Style::Dashes });
+            curves.push(curve(&format!("{name}: floor"), i, Style::Dashes, of(floors, i)));
         }
     }
-    Panel { title: title.into(), x, y: "relative RMSE, %", curves, linear: None }
+    Panel::new(title, [x, "relative RMSE, %"], curves)
 }
 
 pub fn run(mut args: Args) -> Outcome {
@@ -90,7 +83,7 @@ pub fn run(mut args: Args) -> Outcome {
     let mut gpu = open()?;
     println!("{}", gpu.report().name);
     let panels = measured(&mut gpu, &scene)?;
-    output.map_or(Ok(()), |path| Ok(files::write_text(&path, &svg(&panels))?))
+    plot::write(output.as_deref(), &panels)
 }
 
 fn measured(gpu: &mut Headless, scene: &Scene) -> Result<[Panel; 2]> {

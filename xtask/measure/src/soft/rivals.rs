@@ -6,12 +6,11 @@ use std::path::{Path, PathBuf};
 use ridgelight::Result;
 use ridgelight::gpu::{Frame, Headless};
 use ridgelight::scene::{Basis, Fuse, Lines, Method, Quality, Scene, Wedges};
-use ridgelight_io as files;
 
 use super::truth;
 use crate::common::args::Args;
 use crate::common::frames::{self, Colours, colours, error, open, total};
-use crate::common::plot::{Curve, Panel, Style, svg};
+use crate::common::plot::{self, Panel, Style};
 use crate::common::{Outcome, head, inputs, median};
 
 /// Goals, %.
@@ -155,18 +154,13 @@ pub fn run(mut args: Args) -> Outcome {
             agreed += usize::from(best[0].is_some_and(|p| p.time == least));
         }
         println!();
-        let curve = |family: usize| Curve {
-            name: FAMILIES[family].into(),
-            points: frontier(&points, family),
-            colour: family,
-            style: Style::Dotted,
-        };
+        let curve = |f: usize| plot::curve(FAMILIES[f], f, Style::Dotted, frontier(&points, f));
         let curves = (0..FAMILIES.len()).map(curve).collect();
-        let (x, y) = ("time over that of the defaults", "relative RMSE, %");
-        panels.push(Panel { title: name.into(), x, y, curves, linear: None });
+        let axes = ["time over that of the defaults", "relative RMSE, %"];
+        panels.push(Panel::new(name, axes, curves));
     }
     println!(
         "auto is sweep + tables: the cheapest at {agreed} of the {asked} errors that any reach"
     );
-    output.map_or(Ok(()), |path| Ok(files::write_text(&path, &svg(&panels))?))
+    plot::write(output.as_deref(), &panels)
 }
