@@ -6,7 +6,7 @@
 
 use ridgelight::gpu::shaders::offsets;
 use ridgelight::gpu::{Frame, Headless, HeadlessOptions, Timing};
-use ridgelight::plan::{self, Limits, Picture, Plan, Rectangle};
+use ridgelight::plan::{self, Limits, Picture, Rectangle};
 use ridgelight::scene::fractal;
 use ridgelight::scene::{Lights, Quality, Scene, Surface};
 use ridgelight::{Error, Result};
@@ -56,30 +56,24 @@ fn asked() -> Result<Request> {
         *value = text.parse().map_err(|_| Error::setting("edits", &text, "a whole number"))?;
     }
     let [side, brush, edits, seed] = values;
-    if brush == 0 || brush > side {
-        return Err(Error::setting("BRUSH", brush.to_string(), format!("1 to {side}")));
-    }
-    if edits == 0 {
-        return Err(Error::setting("EDITS", "0", "1 or more"));
+    if brush == 0 || brush > side || edits == 0 {
+        let found = format!("a brush of {brush}, {edits} edits");
+        return Err(Error::setting("edits", found, format!("1 to {side}, 1 or more")));
     }
     Ok(Request { side, brush, edits, seed: seed as u64 })
 }
 
-fn planned(gpu: &Headless, side: usize, seed: u64) -> Result<(Scene, Plan)> {
+fn main() -> Result<()> {
+    let asked = asked()?;
+    let Request { side, brush: width, seed, .. } = asked;
+    let mut gpu = Headless::new(&HeadlessOptions::default())?;
     let lights = Lights { sky: Some([1.0; 3]), ..Lights::default() };
     let scene = Scene { field: fractal(side, seed)?, surface: Surface::default(), lights };
     let quality = Quality { azimuths: AZIMUTHS, ..Quality::default() };
     let limits = Limits { memory_budget: MEMORY_BUDGET, ..gpu.report().limits };
+    // An edit recomputes what it changes: the plan keeps its horizons.
     let wanted = Picture { keeps_horizons: true, ..Picture::default() };
     let plan = plan::picture(&scene, &quality, &limits, wanted)?;
-    Ok((scene, plan))
-}
-
-fn run() -> Result<()> {
-    let asked = asked()?;
-    let Request { side, brush: width, seed, .. } = asked;
-    let mut gpu = Headless::new(&HeadlessOptions::default())?;
-    let (scene, plan) = planned(&gpu, side, seed)?;
     println!("{}: {side}², {width}² brush, {AZIMUTHS} azimuths", gpu.report().name);
     println!("memory: {:.1} MiB", plan.bytes() as f64 / 1_048_576.0);
     gpu.with_frame(plan, &[scene.field.heights_m()], |gpu, frame| {
@@ -161,14 +155,4 @@ fn summary(asked: &Request, costs: &[[f64; 3]]) -> String {
         least(&ratio),
         most(&ratio),
     )
-}
-
-fn main() -> std::process::ExitCode {
-    match run() {
-        Ok(()) => std::process::ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("{error}");
-            std::process::ExitCode::FAILURE
-        }
-    }
 }

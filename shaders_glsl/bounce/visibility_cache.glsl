@@ -3,7 +3,7 @@
 // fraction of the largest possible one.
 
 // Steps to the outer ends of all rings but the last. A slice of 16 azimuths is 0.4 of its distance wide, and one
-// line's radiance stands for it, so narrower rings gain little. Measured on the scene of `examples/bounce table`, a
+// line's radiance stands for it, so narrower rings gain little. Measured on the scene of `cargo measure bounce-table`, a
 // fractal of 512² in 32 azimuths, with the cache of every second grid point. Error of the second bounce: 3.7 %
 // recomputed, 6.0 % with eight rings of which each ends twice as far as the one before, 7.9 % with these, 8.5 % with
 // 2, 8, 32, 9.4 % with 1.5, 4.5, 13.5. Error of all bounces together: 3.24, 3.26, 3.28, 3.29 and 3.30 %. Storing

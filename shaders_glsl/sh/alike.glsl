@@ -1,7 +1,7 @@
 // Light leaks over ridges from nodes off a grid point's plane, or where it is off theirs. A node has half weight
 // where the two together deviate by a quarter of their distance. Fitted: best or within 2 % of it among 0.05, 0.1,
 // 0.25, 0.5 and 1 on two elevation models; bilinear weights alone have a 15 to 31 % larger error. To fit it again,
-// change it here and in the CPU reference, and run `examples/soft converge`.
+// change it here and in the CPU reference, and run `cargo measure soft`.
 const float OFF_PLANE = 0.25;
 
 // Weight of one point (height, slopes towards east and north) for four others (`h`, `east`, `north`), or of them for

@@ -28,7 +28,7 @@ pub struct Curvature {
 /// Points visible on the flat field are placed correctly on any base. Errors come from points that the base newly
 /// occludes or reveals. A direction's light has at most the error of the largest light, so light errors are about these
 /// shares of it or less, in addition to the error of the number of directions. These are estimates from some texels and
-/// azimuths, not bounds: in hollows more lights have errors (`examples/curved`). Bounces spread the error no farther
+/// azimuths, not bounds: in hollows more lights have errors (`cargo measure curved`). Bounces spread the error no farther
 /// than light, as visibility is mutual.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct OcclusionChange {
@@ -73,7 +73,7 @@ impl Curvature {
     /// A flat base.
     pub const FLAT: Self = Self { per_m: [0.0; 2] };
     /// Largest [`OcclusionChange::light`] that is accepted. A choice: up to here bending adds about as much to the error of
-    /// shadows in grooves as the limit of 1024 directions does on the flat base (`examples/curved`).
+    /// shadows in grooves as the limit of 1024 directions does on the flat base (`cargo measure curved`).
     pub const MAX_CHANGE: f64 = 0.02;
     /// Smallest horizontal scale at any height: 1 + curvature times height over the base.
     pub const MIN_SCALE: f64 = 0.25;

@@ -29,7 +29,7 @@ pub struct Scatter {
     /// Curvature of the base surface, default flat. Visibility is that of the flat field; positions and weights of visible
     /// points follow the base. Diffuse surfaces only. One value serves the whole field: repetitions of a tile over an object
     /// lie on different bases. For those, interpolate linearly between the results of a few curvatures, as `CurvedEllipses`
-    /// does for shadows; `examples/curved` reports the error.
+    /// does for shadows; `cargo measure curved` reports the error.
     pub curvature: Curvature,
 }
 

@@ -8,9 +8,9 @@ use ridgelight_cpu::bent_directions::{Draped, Fans};
 use ridgelight_cpu::fan_weights::weight;
 use ridgelight_cpu::visible_points::visible_points;
 
-#[path = "../../examples/curved/light.rs"]
+#[path = "../../xtask/measure/src/curved/light.rs"]
 mod light;
-#[path = "../../examples/curved/mesh.rs"]
+#[path = "../../xtask/measure/src/curved/mesh.rs"]
 mod mesh;
 
 use light::{ALBEDO, BOUNCES, Looks};

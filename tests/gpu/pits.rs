@@ -135,7 +135,7 @@ fn sky_changed(away: f64, rim: f64, alpha: f64) -> f64 {
 }
 
 /// What claims to be exact, brute, is at 64 and at 256 azimuths within 0.2 % of the closed form where the field has no staircase. That
-/// alone takes more of a rim 30 cells away, in quadrature of f64, too (`examples/bounce`). Every sample's sky is within what
+/// alone takes more of a rim 30 cells away, in quadrature of f64, too (`cargo measure bounce`). Every sample's sky is within what
 /// is left of it.
 #[test]
 fn exact_bounces_of_pits_are_within_a_five_hundredth() {

@@ -17,7 +17,7 @@ fn bundled() -> HeightField {
     files::read_heights(&path, &options).expect("the bundled field")
 }
 
-/// What is published of the bundled field, and drawn by `examples/accuracy`.
+/// What is published of the bundled field, and drawn by `cargo measure accuracy`.
 const PUBLISHED: &str = include_str!("../../benches/results/accuracy_mt_washington_256.txt");
 /// Samples that it looked at: for horizons, for the sky.
 const PUBLISHED_SAMPLES: [f64; 2] = [4000.0, 500.0];

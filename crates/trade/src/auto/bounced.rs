@@ -8,7 +8,7 @@ use ridgelight::scene::{BounceEngine, Lines, Method, Quality, Scene};
 pub(super) const PARTS: usize = 4;
 
 /// Relative error of bounced light by each part at 32 azimuths, 2× sub-sampled. Source: columns
-/// "bounced" of `cargo run --release --example bounce` and the same with `-- table`
+/// "bounced" of `cargo measure bounce` and `cargo measure bounce-table`
 /// (`benches/results/bounce.txt`, `bounce_table.txt`). Pyramids: √(pyramid² - noise²) of Mt
 /// Washington under the sky, one bounce. Nodes: sweep, one bounce, 2×. Azimuths: √(sweep's 32² -
 /// sweep's three bounces, 2×²), which removes the error common to both. Omitted bounces: all of
@@ -72,7 +72,7 @@ pub(super) fn engine(quality: &Quality) -> BounceEngine {
 }
 
 /// ns per azimuth and texel: of a walk, of a march per texel of the side, of a gather; on lavapipe.
-/// Source: "ms" of one bounce, 1×, of `cargo run --release --example bounce -- table`
+/// Source: "ms" of one bounce, 1×, of `cargo measure bounce-table`
 /// (`benches/results/bounce_table.txt`, sub-sampled bounces) over 32 · 128² · 10⁻⁶, for brute force
 /// over 128 more. Measured frames correct each.
 const WALK: f64 = 110.0;

@@ -1,4 +1,4 @@
-//! Fitted by `cargo run --release --example auto -- FOLDER --fit`, which prints this table. Each
+//! Fitted by `cargo measure auto FOLDER --fit`, which prints this table. Each
 //! part of the error is measured alone, by frames that differ in its setting only, on half of the
 //! scenes of a folder; linear least squares on logarithms (ridge, see there).
 

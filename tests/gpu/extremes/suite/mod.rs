@@ -1,5 +1,5 @@
 //! DESIGN §4 as a table: every case put to every method, each error beside its bound. The tests run
-//! it on the driver at hand; `examples/extremes.rs` prints it for several as `out/extremes.md`.
+//! it on the driver at hand; `cargo measure extremes` prints it for several as `out/extremes.md`.
 
 mod bounces;
 mod horizons;

@@ -18,7 +18,7 @@ pub static KIND: Kind = Kind {
 };
 
 /// More factors would remove less error than the table's own angular steps leave
-/// (`examples/scatter`).
+/// (`cargo measure brdf`).
 const COUNT: usize = 8;
 
 fn begin(request: &Request) -> Result<Making> {

@@ -1,0 +1,188 @@
+//! Frames on a device of our own, what is read from them, and its errors.
+
+use std::time::{Duration, Instant};
+
+use ridgelight::gpu::{Frame, Headless, HeadlessOptions, Pixels, Timing};
+use ridgelight::plan::{self, Picture, Plan, Resource};
+use ridgelight::scene::{Border, Directions, HeightField, Quality, Scene, VisiblePoints};
+use ridgelight::{Error, Result};
+use ridgelight_trade::error::ImageError;
+
+use super::median;
+
+/// Linear RGB of all grid points.
+pub type Colours = Vec<[f64; 3]>;
+
+/// The device that the environment offers first.
+pub fn open() -> Result<Headless> {
+    Headless::new(&HeadlessOptions::default())
+}
+
+/// Its name and driver.
+pub fn device(gpu: &Headless) -> String {
+    format!("{}, {}", gpu.report().name, gpu.report().driver)
+}
+
+pub fn slices(all: &[Vec<f32>]) -> Vec<&[f32]> {
+    all.iter().map(Vec::as_slice).collect()
+}
+
+/// A picture's frame; give it back with [`Headless::end`].
+pub fn frame(gpu: &mut Headless, scene: &Scene, quality: &Quality) -> Result<Frame> {
+    let plan = plan::picture(scene, quality, &gpu.report().limits, Picture::default())?;
+    gpu.frame(plan, &slices(&plan::picture_inputs(scene)))
+}
+
+/// `work` on a picture's frame.
+pub fn with_picture<T>(
+    gpu: &mut Headless,
+    scene: &Scene,
+    quality: &Quality,
+    wanted: Picture,
+    work: impl FnOnce(&mut Headless, &mut Frame) -> Result<T>,
+) -> Result<T> {
+    let plan = plan::picture(scene, quality, &gpu.report().limits, wanted)?;
+    gpu.with_frame(plan, &slices(&plan::picture_inputs(scene)), work)
+}
+
+/// No more runs once they took so long together.
+const LONGEST: Duration = Duration::from_secs(20);
+
+/// A picture, and the passes of each run after the first, which compiles; of the first where it is alone.
+pub struct Drawn {
+    pub light: Colours,
+    pub runs: Vec<Vec<Timing>>,
+}
+
+impl Drawn {
+    /// The median of whole frames.
+    pub fn ms(&self) -> f64 {
+        median(self.runs.iter().map(|run| total(run)).collect())
+    }
+}
+
+pub fn drawn(gpu: &mut Headless, scene: &Scene, quality: &Quality, runs: usize) -> Result<Drawn> {
+    with_picture(gpu, scene, quality, Picture::default(), |gpu, frame| {
+        let first = gpu.draw(frame)?;
+        let (begun, mut all) = (Instant::now(), Vec::new());
+        while all.len() < runs && begun.elapsed() < LONGEST {
+            all.push(gpu.draw(frame)?);
+        }
+        let runs = if all.is_empty() { vec![first] } else { all };
+        Ok(Drawn { light: colours(&gpu.pixels(frame, 0)?), runs })
+    })
+}
+
+/// Milliseconds of a frame.
+pub fn total(run: &[Timing]) -> f64 {
+    ms(run, "")
+}
+
+/// Milliseconds of the passes whose names begin so.
+pub fn ms(run: &[Timing], name: &str) -> f64 {
+    run.iter().filter(|t| t.label.starts_with(name)).map(|t| t.ns).sum::<f64>() / 1e6
+}
+
+/// The texels' first three channels; one channel is grey.
+pub fn colours(pixels: &Pixels) -> Colours {
+    let channel = |t: &[f32], c: usize| f64::from(t[c.min(t.len() - 1)]);
+    pixels.values.chunks_exact(pixels.channels).map(|t| [0, 1, 2].map(|c| channel(t, c))).collect()
+}
+
+pub fn to_f32(light: &[[f64; 3]]) -> Vec<[f32; 3]> {
+    light.iter().map(|t| t.map(|v| v as f32)).collect()
+}
+
+/// Bytes of a plan's resources of these names.
+pub fn bytes(plan: &Plan, names: &[&str]) -> u64 {
+    let own = plan.resources.iter().filter(|r| names.contains(&r.name.as_str()));
+    own.map(Resource::bytes).sum()
+}
+
+/// Path-traced radiance and its standard error after each number of batches, of 64 paths each, that
+/// `stops` lists in rising order.
+///
+/// # Errors
+/// Also where a ray was lost.
+pub fn traced_at(
+    gpu: &mut Headless,
+    scene: &Scene,
+    (bounces, seed): (u32, u32),
+    stops: &[u32],
+) -> Result<Vec<[Colours; 2]>> {
+    let plan = plan::reference(scene, bounces, seed, &gpu.report().limits)?;
+    let is_path = |p: &usize| plan.passes[*p].name() == "path_trace";
+    let paths: Vec<usize> = (0..plan.passes.len()).filter(is_path).collect();
+    let lost = plan.find("lost_rays");
+    gpu.with_frame(plan, &slices(&plan::reference_inputs(scene)), |gpu, frame| {
+        gpu.draw(frame)?;
+        let (mut done, mut all) = (1, Vec::new());
+        for stop in stops {
+            while done < *stop {
+                gpu.draw_passes(frame, &paths)?;
+                done += 1;
+            }
+            all.push([colours(&gpu.pixels(frame, 0)?), colours(&gpu.pixels(frame, 1)?)]);
+        }
+        let lost = lost.map(|lost| gpu.read(frame, lost)).transpose()?;
+        if lost.is_some_and(|lost| lost.first() != Some(&0)) {
+            let reason = "rays took more steps than a field can need".into();
+            return Err(Error::Device { doing: "tracing paths".into(), reason });
+        }
+        Ok(all)
+    })
+}
+
+pub fn traced(
+    gpu: &mut Headless,
+    scene: &Scene,
+    bounces: u32,
+    batches: u32,
+) -> Result<[Colours; 2]> {
+    Ok(traced_at(gpu, scene, (bounces, 1), &[batches])?.remove(0))
+}
+
+/// Visible points, and the milliseconds of finding them; of small fields once more, warmed up.
+pub fn visible(
+    gpu: &mut Headless,
+    (field, border): (&HeightField, Border),
+    directions: &Directions,
+) -> Result<(VisiblePoints, f64)> {
+    let limits = gpu.report().limits;
+    if field.rows() * field.cols() < 1 << 18 {
+        gpu.visible_points((field, border), directions, &limits)?;
+    }
+    gpu.take_timings();
+    let points = gpu.visible_points((field, border), directions, &limits)?;
+    Ok((points, total(&gpu.take_timings())))
+}
+
+pub fn minus(a: &Colours, b: &Colours) -> Colours {
+    a.iter().zip(b).map(|(a, b)| [0, 1, 2].map(|c| a[c] - b[c])).collect()
+}
+
+pub fn add(sum: &mut Colours, share: f64, light: &Colours) {
+    let values = sum.as_flattened_mut().iter_mut().zip(light.as_flattened());
+    values.for_each(|(sum, v)| *sum += share * v);
+}
+
+pub fn mean(light: &Colours) -> f64 {
+    light.as_flattened().iter().sum::<f64>() / (3 * light.len()) as f64
+}
+
+pub fn rms(values: impl Iterator<Item = f64>) -> f64 {
+    let (squares, count) = values.fold((0.0, 0.0), |(s, n), v| (s + v * v, n + 1.0));
+    f64::sqrt(squares / f64::max(count, 1.0))
+}
+
+/// RMSE relative to the mean of the reference, %.
+pub fn error(found: &Colours, reference: &Colours) -> Result<f64> {
+    let error = ImageError::of(found.as_flattened(), reference.as_flattened(), 3)?;
+    Ok(100.0 * error.relative_rmse)
+}
+
+/// The same of values.
+pub fn error_of(found: &[f64], reference: &[f64]) -> f64 {
+    let rmse = rms(found.iter().zip(reference).map(|(a, b)| a - b));
+    100.0 * rmse * reference.len() as f64 / reference.iter().sum::<f64>()
+}

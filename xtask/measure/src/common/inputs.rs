@@ -1,0 +1,113 @@
+//! Fields and skies: the bundled ones, those of a folder with `height/` and `env/`, and parts of them.
+
+use std::path::Path;
+
+use ridgelight::scene::{Albedo, Border, Environment, HeightField, Lights, Scene, Surface};
+use ridgelight::{Error, Result};
+use ridgelight_io::{HeightOptions, read_environment, read_heights};
+
+use super::args::Args;
+
+pub const MOUNTAIN: &str = "assets/mt_washington_256.png";
+pub const SKY: &str = "assets/sky_512x256.hdr";
+pub const MOSS: &str = "Moss001_1K_Displacement.png";
+pub const RAINIER: &str = "mt_rainier_90m.tif";
+pub const WHITE_MOUNTAINS: &str = "N44W072.hgt";
+
+/// The bundled mountain, `steeper` times as steep. One count of its PNG is one metre.
+pub fn mountain(steeper: f64) -> Result<HeightField> {
+    let options =
+        HeightOptions { cell_m: Some([66.0, 92.6]), z_scale: steeper, ..HeightOptions::default() };
+    read_heights(Path::new(MOUNTAIN), &options)
+}
+
+/// The bundled sky, turned counter-clockwise.
+pub fn sky(turned_rad: f64) -> Result<Environment> {
+    read_environment(Path::new(SKY), turned_rad)
+}
+
+/// The bundled sky, its texels at most 20 times their mean: SH keep next to nothing of a light as
+/// small as its sun, which belongs in `suns`.
+pub fn sky_without_sun() -> Result<Environment> {
+    let sky = sky(0.0)?;
+    let texels = sky.texels();
+    let most = 20.0 * texels.as_flattened().iter().sum::<f32>() / (3 * texels.len()) as f32;
+    let cut = texels.iter().map(|t| t.map(|v| v.min(most))).collect();
+    Environment::new(sky.width(), sky.height(), cut, 0.0)
+}
+
+/// A field of a folder's `height/`, by its file's name. The moss has 80 cells from black to white.
+pub fn field_of(folder: &Path, name: &str) -> Result<HeightField> {
+    let plain = HeightOptions::default();
+    let options = match name {
+        MOSS => HeightOptions { z_scale: 80.0 / 65535.0, cell_m: Some([1.0; 2]), ..plain },
+        RAINIER => HeightOptions { cell_m: Some([64.0, 92.6]), nodata: Some(-32768.0), ..plain },
+        "mt_washington_256.png" => HeightOptions { cell_m: Some([66.0, 92.6]), ..plain },
+        _ => plain,
+    };
+    read_heights(&folder.join("height").join(name), &options)
+}
+
+/// An environment of a folder's `env/`.
+pub fn environment_of(folder: &Path, name: &str) -> Result<Environment> {
+    read_environment(&folder.join("env").join(name), 0.0)
+}
+
+/// FIELD and `--cell X,Y`.
+pub fn field_asked(args: &mut Args) -> Result<HeightField> {
+    let options = HeightOptions { cell_m: args.numbers("--cell")?, ..HeightOptions::default() };
+    let path = args.word().ok_or_else(|| Error::setting("FIELD", "nothing", "a height field"))?;
+    read_heights(Path::new(&path), &options)
+}
+
+/// The middle of a field, at most `side`² grid points, with its voids.
+pub fn cut(field: &HeightField, side: usize) -> Result<HeightField> {
+    let [rows, cols] = [field.rows(), field.cols()].map(|n| n.min(side));
+    let [top, left] = [(field.rows() - rows) / 2, (field.cols() - cols) / 2];
+    let of = |i: usize| (top + i / cols) * field.cols() + left + i % cols;
+    let heights: Vec<f64> = (0..rows * cols).map(|i| f64::from(field.heights_m()[of(i)])).collect();
+    let voids = field.voids().map(|voids| (0..rows * cols).map(|i| voids[of(i)]).collect());
+    HeightField::new(rows, cols, &heights, field.cell_m(), voids)
+}
+
+/// The same without its voids.
+pub fn middle(field: &HeightField, side: usize) -> Result<HeightField> {
+    let part = cut(field, side)?;
+    let heights: Vec<f64> = part.heights_m().iter().map(|h| f64::from(*h)).collect();
+    HeightField::new(part.rows(), part.cols(), &heights, part.cell_m(), None)
+}
+
+/// A field in cells of 1 m, its heights by row and column.
+pub fn field(
+    rows: usize,
+    cols: usize,
+    height: impl Fn(usize, usize) -> f64,
+) -> Result<HeightField> {
+    let heights: Vec<f64> = (0..rows * cols).map(|i| height(i / cols, i % cols)).collect();
+    HeightField::new(rows, cols, &heights, [1.0; 2], None)
+}
+
+/// A field under one environment.
+pub fn under(field: HeightField, environment: Environment) -> Scene {
+    let lights = Lights { environment: Some(environment), ..Lights::default() };
+    Scene { field, surface: Surface::default(), lights }
+}
+
+pub fn matte(albedo: [f32; 3], border: Border) -> Surface {
+    Surface { albedo: Albedo::Constant(albedo), border, specular: None }
+}
+
+/// A place of a field for each k: multiples of the golden ratio's share, no two near each other.
+pub fn spread(k: usize, count: usize) -> usize {
+    ((k as f64 * 0.618_033_988_749_895).fract() * count as f64) as usize
+}
+
+/// Numbers below a bound by Marsaglia's xorshift (2003), its upper bits.
+pub fn xorshift(mut state: u64) -> impl FnMut() -> usize {
+    move || {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        (state >> 11) as usize
+    }
+}

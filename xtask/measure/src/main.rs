@@ -1,0 +1,83 @@
+//! Measures the project and makes the tables and pictures of its pages: `cargo measure NAME`.
+//! `tools/bench` runs these programs and keeps what they print in `benches/results`.
+
+mod accuracy;
+mod auto;
+mod bake;
+mod bounce;
+mod common;
+mod curved;
+mod extremes;
+mod goals;
+mod lights;
+mod pages;
+mod pictures;
+mod reference;
+mod scatter;
+mod shadow_edge;
+mod shadows;
+mod soft;
+mod specular;
+
+use std::path::Path;
+use std::process::ExitCode;
+
+use common::Outcome;
+use common::args::Args;
+
+type Program = (&'static str, &'static str, fn(Args) -> Outcome);
+
+const PROGRAMS: [Program; 26] = [
+    ("accuracy", "FIELD [--cell X,Y] [--env FILE] [--points N] [--pyramids]", accuracy::run),
+    ("auto", "FOLDER [--fit] [--side N] [--seconds S] [--only TEXT] [--json FILE]", auto::run),
+    ("bake", "-o PICTURE.png --json FILE", bake::run),
+    ("bleed", "-o PICTURE.png", pictures::bleed::run),
+    ("bounce", "[FOLDER] [--side N] [--spp N] [--rim N] [-o FILE.svg]", bounce::run),
+    ("bounce-table", "[--side N] [--runs K]", bounce::table::run),
+    ("brdf", "[FOLDER] [-o PICTURE.png]", scatter::brdf::run),
+    ("cones", "[-o PICTURE.png]", lights::cones),
+    ("curved", "[-o FILE.svg]", curved::run),
+    ("extremes", "DEVICE...", extremes::run),
+    ("fractal", "SIDE FIELD.npy", fractal),
+    ("gloss", "[SIDE] [--spp N] [-o PICTURE.png]", specular::gloss),
+    ("goals", "PROGRAM [FOLDER]", goals::run),
+    ("lights", "[SIDE]", lights::run),
+    ("lobe", "[SIDE]", specular::lobe),
+    ("pages", "[--check]", pages::run),
+    ("picture", "-o PICTURE.png --json FILE", pictures::picture::run),
+    ("reference", "DEVICE", reference::run),
+    ("rivals", "FOLDER [--side N] [--runs K] [-o FILE.svg]", soft::rivals::run),
+    ("scatter", "[FOLDER] [--side N] [--spp N] [-o PICTURE.png]", scatter::run),
+    ("shadow-edge", "[-o FILE.svg]", shadow_edge::run),
+    ("shadows", "[FOLDER] [--side N] [-o PICTURE.png]", shadows::run),
+    ("soft", "FIELD [--cell X,Y] [--env FILE] [--side N] [-o FILE.svg]", soft::converge::run),
+    ("sizes", "[--largest N] [--runs K]", soft::sizes::run),
+    ("terrain", "-o PICTURE.png --json FILE", pictures::terrain::run),
+    ("town", "-o PICTURE.png", pictures::town::run),
+];
+
+/// Writes the fractal field of `ridgelight bench --size N` as a file.
+fn fractal(mut args: Args) -> Outcome {
+    let (Some(side), Some(path)) = (args.word(), args.word()) else {
+        return Err("expected SIDE FIELD.npy".into());
+    };
+    let field = ridgelight::scene::fractal(side.parse()?, 1)?;
+    Ok(ridgelight_io::write_npy_heights(Path::new(&path), &field)?)
+}
+
+fn main() -> ExitCode {
+    let mut args = Args(std::env::args().skip(1).collect());
+    let name = args.word().unwrap_or_default();
+    let Some((_, usage, run)) = PROGRAMS.iter().find(|program| program.0 == name) else {
+        eprintln!("usage: cargo measure NAME ..., one of");
+        PROGRAMS.iter().for_each(|(name, usage, _)| eprintln!("  {name} {usage}"));
+        return ExitCode::from(2);
+    };
+    match run(args) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{name}: {error}\nusage: cargo measure {name} {usage}");
+            ExitCode::FAILURE
+        }
+    }
+}

@@ -1,0 +1,81 @@
+//! README's list of modes: exact or approximate, and the error that benches/results has of each.
+
+use std::path::PathBuf;
+
+use super::Result;
+use super::figures::{RESULTS, cells, text, wrong};
+
+/// Mode | kind | file of benches/results | measured error. `{A;B@2}` is cell 2, counted from 0, of the first row
+/// that begins with the cells A and B; `{max@2}` the largest number of column 2; `{after TEXT}` the word
+/// after a text; `{trade TEXT}` the error of the line with these settings.
+const MODES: [&str; 17] = [
+    "horizons: `--lines exact` | exact | accuracy_mt_washington_256 | worst horizon {exact@6}°",
+    "horizons: `--method brute-force` | exact | accuracy_mt_washington_256 | worst horizon {brute@6}°",
+    "horizons: sweep, the default | approximate, never too high | accuracy_N44W072 | horizons {1;aimed-nearest@2}° mean, \
+     {1;aimed-nearest@5}° at 99.9 %; sky light {1;aimed-nearest@7} %",
+    "horizons: `--method pyramid` | approximate | pyramids_mt_washington_256 | horizons {4;2;stack@4}° mean; sky light \
+     {4;2;stack@7} %",
+    "environment by tables | approximate | accuracy_N44W072 | {64@1} % with 64 azimuths",
+    "environment by SH, order 4 | approximate | soft_converge | {exact horizons@2} %",
+    "sun alone, 0.53° wide, 2 slices, sweep `aimed` | approximate | trade_mountain_sun | \
+     {trade --lines 1 --fuse aimed --precision f32 --sun-azimuths 2} %",
+    "the same sun, brute-force | exact but for its slices | trade_mountain_sun | {trade --method brute --sun-azimuths 2} %",
+    "key light, 3 slices | exact but for its slices | shadow_edge | {after 3 slices } of the unshadowed light",
+    "sphere light, 8 slices | exact but for its slices | lights | at most {max@4} %",
+    "sphere light by SH, order 4 | approximate | lights_cones | {;surface;across;32@6} %",
+    "3 bounces, `sweep` | approximate | bounce | {Mt Rainier;sky;0.8;3;sweep, picked@5} % of the indirect light (reference \
+     noise {Mt Rainier;sky;0.8;3;sweep, picked@6} %), {Mt Rainier;sky;0.8;3;sweep, picked@7} % of all light",
+    "3 bounces, `brute-force` | approximate | bounce | {Mt Rainier;sky;0.8;3;brute@5} % of the indirect light (reference \
+     noise {Mt Rainier;sky;0.8;3;brute@6} %), {Mt Rainier;sky;0.8;3;brute@7} % of all light",
+    "3 bounces, `pyramid` | approximate | bounce | {Mt Rainier;sky;0.8;3;pyramid@5} % of the indirect light (reference \
+     noise {Mt Rainier;sky;0.8;3;pyramid@6} %), {Mt Rainier;sky;0.8;3;pyramid@7} % of all light",
+    "Phong specular, exponent 1, 5, 20 | approximate | lobe | {1;plane;4@3}, {5;plane;4@3}, {20;plane;4@3} %",
+    "Phong specular bounced, exponent 1, 5, 20 | approximate | gloss | {0;0.9;1;vector;4@5}, {0;0.9;5;vector;4@5}, \
+     {0;0.9;20;vector;4@5} %",
+    "edit of a rectangle | exact | edits | the same bits as a whole frame",
+];
+
+/// What a place between braces stands for.
+fn figure(file: &str, place: &str) -> Result<String> {
+    let path = PathBuf::from(RESULTS).join(format!("{file}.txt"));
+    let text = text(&path)?;
+    let missing = || wrong(&path, "nothing", place);
+    if let Some(before) = place.strip_prefix("after ") {
+        let rest = text.rsplit_once(before).ok_or_else(missing)?.1;
+        return Ok(rest.split([' ', ',']).next().unwrap_or_default().to_owned());
+    }
+    if let Some(settings) = place.strip_prefix("trade ") {
+        let line = text.lines().find(|line| line.contains(settings));
+        let error = line.and_then(|line| line.split_whitespace().nth(2));
+        return error.map(str::to_owned).ok_or_else(missing);
+    }
+    let (begin, column) = place.split_once('@').ok_or_else(missing)?;
+    let column: usize = column.parse().map_err(|_| missing())?;
+    let mut rows = text.lines().filter(|line| line.starts_with('|')).map(cells);
+    if begin == "max" {
+        let values = rows.filter_map(|row| row.get(column)?.parse::<f64>().ok());
+        return values.max_by(f64::total_cmp).map(|v| format!("{v:.2}")).ok_or_else(missing);
+    }
+    let begin: Vec<&str> = begin.split(';').collect();
+    let row = rows.find(|row| row.starts_with(&begin)).ok_or_else(missing)?;
+    let value = row.get(column).ok_or_else(missing)?;
+    Ok(value.split(" (").next().unwrap_or_default().to_owned())
+}
+
+/// A row for each mode.
+pub fn features() -> Result<String> {
+    let mut out = String::from("| mode | exact or approximate | measured error |\n|---|---|---|\n");
+    for mode in MODES {
+        let parts: Vec<&str> = mode.splitn(4, " | ").collect();
+        let [mode, kind, file, error] = parts[..] else { unreachable!("four parts: {mode}") };
+        let mut pieces = error.split('{');
+        let mut measured = pieces.next().unwrap_or_default().to_owned();
+        for piece in pieces {
+            let (place, rest) = piece.split_once('}').unwrap_or((piece, ""));
+            measured += &figure(file, place)?;
+            measured += rest;
+        }
+        out += &format!("| {mode} | {kind} | [{measured}](benches/results/{file}.txt) |\n");
+    }
+    Ok(out)
+}

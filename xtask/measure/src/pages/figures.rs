@@ -1,0 +1,80 @@
+//! Figures of benches/results, with readers that name what is missing.
+
+use std::path::{Path, PathBuf};
+
+use serde_json::Value;
+
+use super::Result;
+
+pub const RESULTS: &str = "benches/results";
+
+pub fn text(path: &Path) -> Result<String> {
+    std::fs::read_to_string(path).map_err(|e| format!("{}: {e}", path.display()))
+}
+
+pub fn wrong(path: &Path, found: &str, expected: &str) -> String {
+    format!("{}: found {found}, expected {expected}", path.display())
+}
+
+/// Cells of a table's row.
+pub fn cells(line: &str) -> Vec<&str> {
+    let line = line.trim();
+    let line = line.strip_prefix('|').unwrap_or(line);
+    line.strip_suffix('|').unwrap_or(line).split('|').map(str::trim).collect()
+}
+
+/// A JSON file of the results.
+pub struct Figures {
+    pub path: PathBuf,
+    pub all: Value,
+}
+
+impl Figures {
+    pub fn read(name: &str) -> Result<Self> {
+        let path = Path::new(RESULTS).join(format!("{name}.json"));
+        let all = serde_json::from_str(&text(&path)?)
+            .map_err(|e| wrong(&path, &e.to_string(), "JSON, as tools/bench writes it"))?;
+        Ok(Self { path, all })
+    }
+
+    fn missing(&self, key: &str) -> String {
+        wrong(&self.path, &format!("no {key}"), "one, as tools/bench writes it")
+    }
+
+    pub fn number(&self, of: &Value, key: &str) -> Result<f64> {
+        of[key].as_f64().ok_or_else(|| self.missing(key))
+    }
+
+    /// Of the whole file.
+    pub fn numbers<const N: usize>(&self, of: &Value, keys: [&str; N]) -> Result<[f64; N]> {
+        let all = keys.into_iter().map(|key| self.number(of, key)).collect::<Result<Vec<_>>>()?;
+        Ok(all.try_into().expect("as many as keys"))
+    }
+
+    pub fn word<'a>(&self, of: &'a Value, key: &str) -> Result<&'a str> {
+        of[key].as_str().ok_or_else(|| self.missing(key))
+    }
+
+    pub fn rows(&self) -> &[Value] {
+        self.all["rows"].as_array().map_or(&[], Vec::as_slice)
+    }
+
+    /// Device and driver, and when, where and at which commit it was measured.
+    pub fn caption(&self) -> Result<String> {
+        let [device, driver] = ["device", "driver"].map(|key| self.word(&self.all, key));
+        Ok(format!("*{}, {}{}*\n", device?, driver?, made(&self.path.with_extension("txt"))?))
+    }
+}
+
+/// The line with which tools/bench begins a text: date, cores, load, commit.
+pub fn made(path: &Path) -> Result<String> {
+    let text = text(path)?;
+    let first = text.lines().next().unwrap_or_default();
+    let is_dated = first.starts_with(|c: char| c.is_ascii_digit()) && first.contains("load");
+    Ok(if is_dated { format!("; {first}") } else { String::new() })
+}
+
+/// What is not known is not 0.
+pub fn percent(value: Option<f64>) -> String {
+    value.map_or_else(|| "error not measured".to_owned(), |v| format!("{:.2} %", 100.0 * v))
+}

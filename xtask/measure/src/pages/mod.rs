@@ -1,0 +1,394 @@
+//! Puts the figures of benches/results into README.md and docs/*.md, between `<!-- begin NAME -->` and
+//! `<!-- end NAME -->`. Also checks README.md's size, the links of every page, that docs/SUMMARY.md lists
+//! every page and that some page shows every picture. See `tools/readme`.
+
+mod brdf;
+mod features;
+mod figures;
+mod links;
+
+use std::path::Path;
+
+use figures::{Figures, RESULTS, cells, made, percent, text, wrong};
+use ridgelight_io as files;
+use serde_json::Value;
+
+use crate::common::Outcome;
+use crate::common::args::Args;
+
+/// Or a sentence for the user.
+type Result<T> = std::result::Result<T, String>;
+
+/// A real field of more than a million grid points; others lie beside it.
+const ACCURACY: &str = "accuracy_N44W072.txt";
+
+fn picture() -> Result<String> {
+    let figures = Figures::read("picture")?;
+    let of = |key| figures.number(&figures.all, key);
+    let caption = figures.caption()?;
+    let errors = ["off_error", "ours_error"].map(|key| of(key).map(|v| percent(Some(v))));
+    let [unshadowed, ours] = errors;
+    Ok(format!(
+        "![A mountain without shadows, as Ridgelight lights it, and its reference](docs/pictures/demo.png)\n\n\
+         | without shadows | Ridgelight, {} azimuths | brute force, {} azimuths |\n|:-:|:-:|:-:|\n\
+         | | {:.1} ms | {:.1} ms |\n| error {} | error {} | the reference |\n\n\
+         {} × {} grid points (SRTM) under the bundled sky and a sun 10° high. Error: RMSE relative to the mean.\n{caption}",
+        of("azimuths")?,
+        of("reference_azimuths")?,
+        of("ours_ms")?,
+        of("reference_ms")?,
+        unshadowed?,
+        ours?,
+        of("cols")?,
+        of("rows")?
+    ))
+}
+
+fn camera() -> Result<String> {
+    let figures = Figures::read("terrain")?;
+    let keys = ["field_cols", "field_rows", "azimuths", "bounces", "cols", "rows", "samples"];
+    let [field_cols, field_rows, azimuths, bounces, cols, rows, samples] =
+        figures.numbers(&figures.all, keys)?;
+    let [lit, drawn] = figures.numbers(&figures.all, ["lit_ms", "drawn_ms"])?;
+    Ok(format!(
+        "![A mountain range under a low sun, from a camera](pictures/terrain.png)\n\n\
+         Mt Washington and the Presidential Range, {field_cols} × {field_rows} grid points (SRTM), under the bundled sky and a \
+         low sun. {azimuths} azimuths, {bounces} bounce. Lit in {lit:.1} ms; drawn at {cols} × {rows} with {samples} MSAA \
+         samples in {drawn:.1} ms. Coloured by height; no vertical exaggeration (`cargo measure terrain`).\n{}",
+        figures.caption()?
+    ))
+}
+
+/// Programs that an integrator would write, whole.
+const HOSTS: [(&str, &str, &str); 3] = [
+    ("Rust, `ash`", "examples/ash_host.rs", "the code above and an engine around it"),
+    (
+        "C, plain Vulkan",
+        "crates/capi/tests/c/host.c",
+        "the shared and the static library, also under the address sanitizer",
+    ),
+    (
+        "Rust, `wgpu`",
+        "examples/wgpu/src/main.rs",
+        "wgpu's device and textures; a wgpu pass samples the light",
+    ),
+];
+
+/// Where a program's own engine begins, if it has this line.
+const ENGINE: &str = "// What follows an engine has already.";
+
+/// Lines of code: neither empty nor a comment alone.
+fn code_lines(text: &str) -> usize {
+    let is_comment = |line: &str| line.starts_with("//") || line.starts_with("/*");
+    text.lines().map(str::trim).filter(|line| !line.is_empty() && !is_comment(line)).count()
+}
+
+fn hosts() -> Result<String> {
+    let mut out = String::from("| host | lines of code | what it is |\n|---|---|---|\n");
+    for (name, path, what) in HOSTS {
+        let program = text(Path::new(path))?;
+        let own = program.split_once(ENGINE);
+        let own = own.map(|(own, _)| format!(", {} without the engine", code_lines(own)));
+        let (lines, own) = (code_lines(&program), own.unwrap_or_default());
+        out += &format!("| [{name}](../{path}) | {lines}{own} | {what} |\n");
+    }
+    Ok(out
+        + "\nTests run each one and compare its bytes with the command line's, without a validation message \
+           (`tests/gpu/ash_host.rs`, `crates/capi/tests/c`, `tools/wgpu`).\n")
+}
+
+fn sizes() -> Result<String> {
+    let figures = Figures::read("sizes")?;
+    let distinct = |key: &str| {
+        let mut all: Vec<u64> = figures.rows().iter().filter_map(|r| r[key].as_u64()).collect();
+        all.sort_unstable();
+        all.dedup();
+        all
+    };
+    let (sides, counts) = (distinct("cols"), distinct("azimuths"));
+    let heads: String = counts.iter().map(|m| format!(" {m} azimuths |")).collect();
+    let mut out = format!("| field |{heads}\n|---|{}\n", "---|".repeat(counts.len()));
+    for side in &sides {
+        out += &format!("| {side}² |");
+        for count in &counts {
+            let is = |row: &&Value| row["cols"] == *side && row["azimuths"] == *count;
+            let Some(row) = figures.rows().iter().find(is) else {
+                out += " not measured |";
+                continue;
+            };
+            let settings = &row["settings"];
+            let mb = figures.number(settings, "device_bytes")? * 1e-6;
+            let ms = figures.number(row, "median_ns")? * 1e-6;
+            let error = percent(settings["light_error"].as_f64());
+            out += &format!(" {ms:.1} ms, {mb:.1} MB, {error} |");
+        }
+        out.push('\n');
+    }
+    let about = "A whole frame under a uniform sky; memory of all images and buffers; RMSE of the light relative to its mean, \
+                 against the f64 oracle.";
+    Ok(format!("{out}\n{about}\n{}", figures.caption()?))
+}
+
+fn forms() -> Result<String> {
+    let figures = Figures::read("forms_1024")?;
+    let mut out = String::from(
+        "| form | azimuths | ms per azimuth | time over a scalar CPU sweep on all cores |\n|---|---|---|---|\n",
+    );
+    let an_azimuth = |row: &Value| -> Result<f64> {
+        Ok(figures.number(row, "median_ns")? * 1e-6 / figures.number(row, "azimuths")?)
+    };
+    for row in figures.rows() {
+        let Some(beside) = row["settings"]["scalar_beside"].as_str() else { continue };
+        let scalar = figures.rows().iter().find(|r| r["pass"] == beside);
+        let missing = || wrong(&figures.path, &format!("no row {beside}"), "the scalar's row");
+        let scalar = an_azimuth(scalar.ok_or_else(missing)?)?;
+        let (ms, azimuths) = (an_azimuth(row)?, figures.number(row, "azimuths")?);
+        let pass = figures.word(row, "pass")?;
+        out += &format!("| {pass} | {azimuths} | {ms:.3} | {:.3} |\n", ms / scalar);
+    }
+    Ok(format!("{out}\n{}", figures.caption()?))
+}
+
+/// A text of the results, without its first line, in words that have changed since it was made.
+fn result(name: &str, words: &[(&str, &str)]) -> Result<(String, String)> {
+    let path = Path::new(RESULTS).join(name);
+    let text = text(&path)?;
+    let (_, mut body) = text.split_once('\n').map(|(a, b)| (a, b.to_owned())).unwrap_or_default();
+    for (old, new) in words {
+        body = body.replace(old, new);
+    }
+    Ok((body, made(&path)?))
+}
+
+fn found<T>(name: &str, part: Option<T>, expected: &str) -> Result<T> {
+    part.ok_or_else(|| wrong(&Path::new(RESULTS).join(name), "another text", expected))
+}
+
+/// The tables of [`ACCURACY`], as `cargo measure accuracy` printed them.
+fn accuracy() -> Result<String> {
+    let words = [
+        (" samples, ", " grid points, "),
+        ("the angle is at most", "the angle error is at most"),
+        ("° off", "°"),
+        ("ms an azimuth and megasample", "ms per azimuth and million grid points"),
+    ];
+    let (tables, made) = result(ACCURACY, &words)?;
+    let is_right = tables.contains(" grid points, ") && tables.contains("\n| ");
+    found(ACCURACY, is_right.then_some(()), "the text of cargo measure accuracy")?;
+    let name = ACCURACY.trim_start_matches("accuracy_").trim_end_matches(".txt");
+    Ok(format!("{name}{made}: {}\n", tables.trim()))
+}
+
+/// The last paragraph of examples/edits.
+fn edits() -> Result<String> {
+    let words = [
+        ("all line samples swept", "all points on lines swept"),
+        ("of the samples lit again", "of the texels shaded again"),
+        (
+            "faster than everything, and each time the same bits",
+            "faster than a whole frame, with the same bits",
+        ),
+    ];
+    let (body, made) = result("edits.txt", &words)?;
+    let expected = "the text of examples/edits";
+    let (_, summary) = found("edits.txt", body.trim_end().rsplit_once("\n\n"), expected)?;
+    let device = body.lines().next().and_then(|line| line.rsplit_once(": "));
+    let (device, _) = found("edits.txt", device, expected)?;
+    Ok(format!("{summary}\n*{device}{made}*\n"))
+}
+
+/// What bounces add to a frame, as `cargo measure bounce-table` printed it.
+fn bounces() -> Result<String> {
+    let words = [("| brute |", "| brute-force |"), ("the paper, GTX 285", "NS09 table 1, GTX 285")];
+    let (body, made) = result("bounce_table.txt", &words)?;
+    let table = body.split("\n\n").find(|part| part.starts_with("| engine | bounce azimuths |"));
+    let head = "| engine | bounce azimuths | MB | no bounces, ms | time of 1 | 2 | 3 bounces | third over first | error of the \
+                indirect light, % | error of all light, % |";
+    let table = with_head("bounce_table.txt", table.unwrap_or_default(), head)?;
+    Ok(format!("{table}\n\n*{}*\n", made.trim_start_matches("; ")))
+}
+
+/// A table under another first line of as many cells.
+fn with_head(name: &str, table: &str, head: &str) -> Result<String> {
+    let parts = table.split_once('\n').filter(|(old, _)| cells(old).len() == cells(head).len());
+    let (_, rows) = found(name, parts, &format!("a table with as many columns as {head}"))?;
+    Ok(format!("{head}\n{rows}"))
+}
+
+/// How often `render --max-error` holds with bounces, as `cargo measure goals` counts it.
+fn goals() -> Result<String> {
+    let words =
+        [("chosen hold", "chosen settings meet the goal"), (" refused", " requests were refused")];
+    let (body, made) = result("goals.txt", &words)?;
+    let counted = body.trim_end().rsplit_once("\n\n").map(|(_, last)| last);
+    let counted = counted.filter(|last| last.ends_with("refused"));
+    let counted = found("goals.txt", counted, "the text of cargo measure goals")?;
+    Ok(format!("{counted}.\n\n*{}*\n", made.trim_start_matches("; ")))
+}
+
+/// What `cargo measure auto` found of `render --max-error`.
+fn auto() -> Result<String> {
+    let figures = Figures::read("auto")?;
+    let [pairs, side, seconds] =
+        figures.numbers(&figures.all, ["pairs", "side", "trade_seconds"])?;
+    let keys = [
+        "held",
+        "chosen",
+        "within_stated_bound",
+        "refused",
+        "asked",
+        "refused_though_found",
+        "ratio_median",
+        "ratio_90",
+        "ratio_worst",
+        "within_1.3",
+        "ratios",
+    ];
+    let [held, chosen, bound, refused, asked, though_found, median, most, worst, within, ratios] =
+        figures.numbers(&figures.all["summary"], keys)?;
+    let of = |row: &Value| (row["scene"].to_string(), row["settings"].as_str().map(str::to_owned));
+    let mut different: Vec<_> = figures.rows().iter().map(of).filter(|of| of.1.is_some()).collect();
+    different.sort_unstable();
+    different.dedup();
+    Ok(format!(
+        "Errors of 5, 2, 1, 0.5 and 0.2 % were requested for {pairs} pairs of a field (its middle {side}²) and lights. No \
+         constant was fitted on these pairs. {held} of {chosen} choices meet the goal ({:.1} %). {} of them differ from \
+         each other; {bound} are within the bound that they state. {refused} of {asked} requests were refused, {though_found} \
+         of them although settings that meet the goal had been drawn. The rival is the cheapest setting that truly meets the \
+         goal, of all that a `trade` walk of {seconds} s and the choices drew. Time over that of the rival: median \
+         {median:.2}, 90th percentile {most:.2}, worst {worst:.2}; at most 1.3 in {within} of {ratios}.\n\n{}",
+        100.0 * held / chosen,
+        different.len(),
+        figures.caption()?
+    ))
+}
+
+/// The encoding of each map of `bake` and its error; angles in degrees.
+fn bake() -> Result<String> {
+    let figures = Figures::read("bake")?;
+    let mut out = String::from(
+        "| map | channels | encoding | bytes | stated error | worst measured |\n|---|---|---|---|---|---|\n",
+    );
+    for row in figures.rows() {
+        let word = |key| figures.word(row, key);
+        let (mut stated, mut worst) = (Vec::new(), Vec::new());
+        for bound in row["bounds"].as_array().map_or(&[][..], Vec::as_slice) {
+            let is_angle = figures.word(bound, "unit")? == "rad";
+            let shown = |v: f64| match is_angle {
+                _ if v == 0.0 => "0".to_owned(),
+                true => format!("{:.4}°", v.to_degrees()),
+                false => format!("{v:.2e}"),
+            };
+            let [most, share, measured] =
+                figures.numbers(bound, ["at_most", "and_of_the_value", "worst"])?;
+            let of_value = format!("{share:.1e} of the value");
+            let most = match (most > 0.0, share > 0.0) {
+                (true, true) => format!("{} + {of_value}", shown(most)),
+                (false, true) => of_value,
+                _ => shown(most),
+            };
+            stated.push(format!("{}: {most}", figures.word(bound, "of")?));
+            worst.push(shown(measured));
+        }
+        let each = word("each")?.replace("a sample", "a texel").replace("an angle", "a direction");
+        out += &format!(
+            "| {} | {} | {} | {} {} | {} | {} |\n",
+            word("kind")?,
+            word("channels")?.replace("angles", "directions"),
+            word("encoding")?,
+            figures.number(row, "bytes")?,
+            each.replace("angle", "direction"),
+            stated.join("; "),
+            worst.join("; ")
+        );
+    }
+    let [steeper, azimuths, side] =
+        figures.numbers(&figures.all, ["steeper", "azimuths", "lit_side"])?;
+    Ok(format!(
+        "{out}\nErrors of decoding a .ktx2 or .png. Worst measured: on the bundled mountain, {steeper} times as steep, \
+         {azimuths} azimuths; for maps of light on its middle {side}² texels, repeated (`cargo measure bake`).\n{}",
+        figures.caption()?
+    ))
+}
+
+/// What `cargo measure curved` found: the bases that are not refused.
+fn curved() -> Result<String> {
+    let (body, made) = result("curved.txt", &[])?;
+    let is_refused = |row: &&str| row.ends_with(" refused |");
+    let tables: Vec<&str> = body.split("\n\n").filter(|part| part.starts_with('|')).collect();
+    let two = <[&str; 2]>::try_from(tables).ok();
+    let [shadows, light] = found("curved.txt", two, "the text of cargo measure curved")?;
+    let shown = |table: &str, head: &str| {
+        // The last column is for what is refused.
+        let rows = table.lines().filter(|row| !is_refused(row)).map(|row| {
+            let row = row.strip_suffix('|').unwrap_or(row);
+            &row[..=row.rfind('|').unwrap_or(0)]
+        });
+        with_head("curved.txt", &rows.collect::<Vec<_>>().join("\n"), head)
+    };
+    let refused: Vec<&str> = shadows.lines().filter(is_refused).map(|row| cells(row)[0]).collect();
+    Ok(format!(
+        "{}\n\n{}\n\nThree V-shaped grooves, 16 by 8 cells each, bent across their length. Ground truth: rays against the bent \
+         mesh ([all rows](../benches/results/curved.txt)). A radius above 0 widens the grooves. Errors of scattered light: \
+         RMSE relative to the mean, %. Refused radii: {}.\n*{}{made}*\n",
+        shown(shadows, SHADOW_HEAD)?,
+        shown(light, LIGHT_HEAD)?,
+        refused.join(", "),
+        body.lines().next().unwrap_or_default()
+    ))
+}
+
+const SHADOW_HEAD: &str = "| radius, cells | lit, % | wrongly lit, %: flat directions | adapted directions | predicted by \
+                           the plan | flat ellipses | five ellipses | ellipses fitted at this radius |";
+const LIGHT_HEAD: &str = "| radius, cells | scattered once, over flat | error: flat directions | rotated | rotated and \
+                          reweighted | between three bases | predicted by the plan | up to 3 times, over flat | error: \
+                          flat directions | rotated | rotated and reweighted | between three bases | device |";
+
+type Section = (&'static str, fn() -> Result<String>);
+
+/// Which page holds which sections.
+const PAGES: [(&str, &[Section]); 7] = [
+    ("README.md", &[("picture", picture), ("sizes", sizes), ("features", features::features)]),
+    ("docs/getting-started.md", &[("camera", camera)]),
+    ("docs/embedding.md", &[("hosts", hosts), ("edits", edits)]),
+    ("docs/methods.md", &[("forms", forms)]),
+    ("docs/accuracy.md", &[("accuracy", accuracy), ("bounces", bounces)]),
+    ("docs/choosing-settings.md", &[("auto", auto), ("goals", goals)]),
+    ("docs/baking.md", &[("brdf", brdf::brdf), ("bake", bake), ("curved", curved)]),
+];
+
+/// `page` with what stands between the marks of `name` replaced.
+fn with(path: &Path, page: &str, name: &str, new: &str) -> Result<String> {
+    let (begin, end) = (format!("<!-- begin {name} -->\n"), format!("<!-- end {name} -->"));
+    let parts = page.split_once(&begin).and_then(|(before, rest)| {
+        let (_, after) = rest.split_once(&end)?;
+        (!after.contains(&begin)).then_some((before, after))
+    });
+    let expected = format!("{} and {end}, once each", begin.trim_end());
+    let (before, after) = parts.ok_or_else(|| wrong(path, "no marks", &expected))?;
+    Ok(format!("{before}{begin}\n{new}\n{end}{after}"))
+}
+
+pub fn run(mut args: Args) -> Outcome {
+    let check = args.has("--check");
+    args.end()?;
+    let mut complaints = Vec::new();
+    for (page, sections) in PAGES {
+        let path = Path::new(page);
+        let mut all = text(path)?;
+        for (name, section) in sections {
+            let new = with(path, &all, name, &section()?)?;
+            if check && new != all {
+                complaints.push(format!(
+                    "{page} is not what {RESULTS} says (section {name}): run tools/readme"
+                ));
+            }
+            all = new;
+        }
+        if !check {
+            files::write_text(path, &all)?;
+        }
+    }
+    complaints.extend(links::complaints()?);
+    if complaints.is_empty() { Ok(()) } else { Err(complaints.join("\n").into()) }
+}
