@@ -119,8 +119,8 @@ settings! {
         ///
         /// Light is computed at every texel with its own normal from the nodes around it. Visibility takes a quarter or a
         /// sixteenth of the memory. RMSE on the bundled mountain under the bundled sky: 0.2 % at 2, 0.4 % at 4
-        /// (`cargo measure soft converge`). Bounces use the same nodes with any basis: 0.1 % RMSE of all light at 2, 0.3 %
-        /// at 4, at an albedo of 0.8 (`cargo measure bounce table`).
+        /// (`cargo measure soft`). Bounces use the same nodes with any basis: 0.1 % RMSE of all light at 2, 0.3 %
+        /// at 4, at an albedo of 0.8 (`cargo measure bounce-table`).
         Expert "subsample" subsample: u32 = 1, Values::OneOf(&[1, 2, 4]);
     }
 

@@ -33,7 +33,7 @@ fn middle_run(drawn: &Drawn, name: &str) -> f64 {
     ms(runs[runs.len() / 2], name)
 }
 
-/// Elevations at the picked grid points, [azimuth][pick], and where wanted distances, metres.
+/// Elevations at the picked grid points, by azimuth and pick, and where wanted distances, metres.
 fn horizons(
     gpu: &mut Headless,
     field: &HeightField,
@@ -65,7 +65,7 @@ fn horizons(
     Ok(found)
 }
 
-/// The oracle at the picked grid points, [azimuth][pick].
+/// The oracle at the picked grid points, by azimuth and pick.
 fn truth(oracle: &Oracle, azimuths: &[f64], picks: &Picks) -> Vec<Option<Horizon>> {
     let at =
         |phi: &f64| picks.iter().map(|[r, c]| oracle.horizon(*r, *c, *phi)).collect::<Vec<_>>();
