@@ -8,7 +8,7 @@
 //! - Φ_0 = 1/√2π, Φ_m = cos mφ/√π, Φ_-m = sin mφ/√π: [`azimuth`].
 //!
 //! Visibility along one azimuth is a [slice](mod@slice) of n(n+1)/2 numbers ∫ f Θ_lm dz, or the n numbers of the NLP.
-//! Spherical harmonics are sums of slices times weights of Φ: [`azimuth::assemble`].
+//! Spherical harmonics are sums of slices times weights of Φ: `assemble` in the CPU reference.
 //!
 //! Order n means bands l < n: n² coefficients at [`index`]. n is 1 to [`MAX_ORDER`]; functions panic on any other. A zonal
 //! function about the z axis is its n coefficients of Y_l0. Directions have z up; elevation ω = π/2 - θ, so z = sin ω. No
