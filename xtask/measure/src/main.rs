@@ -51,7 +51,7 @@ const PROGRAMS: [Program; 26] = [
     ("shadow-edge", "[-o FILE.svg]", shadow_edge::run),
     ("shadows", "[FOLDER] [--side N] [-o PICTURE.png]", shadows::run),
     ("soft", "FIELD [--cell X,Y] [--env FILE] [--side N] [-o FILE.svg]", soft::converge::run),
-    ("sizes", "[--largest N] [--runs K]", soft::sizes::run),
+    ("soft-sizes", "[--largest N] [--runs K]", soft::sizes::run),
     ("terrain", "-o PICTURE.png --json FILE", pictures::terrain::run),
     ("town", "-o PICTURE.png", pictures::town::run),
 ];

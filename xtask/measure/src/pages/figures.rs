@@ -45,10 +45,10 @@ impl Figures {
         of[key].as_f64().ok_or_else(|| self.missing(key))
     }
 
-    /// Of the whole file.
-    pub fn numbers<const N: usize>(&self, of: &Value, keys: [&str; N]) -> Result<[f64; N]> {
-        let all = keys.into_iter().map(|key| self.number(of, key)).collect::<Result<Vec<_>>>()?;
-        Ok(all.try_into().expect("as many as keys"))
+    /// Of as many keys, with spaces between.
+    pub fn numbers<const N: usize>(&self, of: &Value, keys: &str) -> Result<[f64; N]> {
+        let all = keys.split(' ').map(|key| self.number(of, key)).collect::<Result<Vec<_>>>()?;
+        Ok(all.try_into().expect("as many names as keys"))
     }
 
     pub fn word<'a>(&self, of: &'a Value, key: &str) -> Result<&'a str> {

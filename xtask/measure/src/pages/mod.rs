@@ -24,32 +24,24 @@ const ACCURACY: &str = "accuracy_N44W072.txt";
 
 fn picture() -> Result<String> {
     let figures = Figures::read("picture")?;
-    let of = |key| figures.number(&figures.all, key);
-    let caption = figures.caption()?;
-    let errors = ["off_error", "ours_error"].map(|key| of(key).map(|v| percent(Some(v))));
-    let [unshadowed, ours] = errors;
+    let keys = "azimuths reference_azimuths ours_ms reference_ms off_error ours_error cols rows";
+    let [azimuths, true_azimuths, ours_ms, reference_ms, unshadowed, ours, cols, rows] =
+        figures.numbers(&figures.all, keys)?;
+    let [unshadowed, ours] = [unshadowed, ours].map(|error| percent(Some(error)));
     Ok(format!(
         "![A mountain without shadows, as Ridgelight lights it, and its reference](docs/pictures/demo.png)\n\n\
-         | without shadows | Ridgelight, {} azimuths | brute force, {} azimuths |\n|:-:|:-:|:-:|\n\
-         | | {:.1} ms | {:.1} ms |\n| error {} | error {} | the reference |\n\n\
-         {} × {} grid points (SRTM) under the bundled sky and a sun 10° high. Error: RMSE relative to the mean.\n{caption}",
-        of("azimuths")?,
-        of("reference_azimuths")?,
-        of("ours_ms")?,
-        of("reference_ms")?,
-        unshadowed?,
-        ours?,
-        of("cols")?,
-        of("rows")?
+         | without shadows | Ridgelight, {azimuths} azimuths | brute force, {true_azimuths} azimuths |\n|:-:|:-:|:-:|\n\
+         | | {ours_ms:.1} ms | {reference_ms:.1} ms |\n| error {unshadowed} | error {ours} | the reference |\n\n\
+         {cols} × {rows} grid points (SRTM) under the bundled sky and a sun 10° high. Error: RMSE relative to the mean.\n{}",
+        figures.caption()?
     ))
 }
 
 fn camera() -> Result<String> {
     let figures = Figures::read("terrain")?;
-    let keys = ["field_cols", "field_rows", "azimuths", "bounces", "cols", "rows", "samples"];
-    let [field_cols, field_rows, azimuths, bounces, cols, rows, samples] =
+    let keys = "field_cols field_rows azimuths bounces cols rows samples lit_ms drawn_ms";
+    let [field_cols, field_rows, azimuths, bounces, cols, rows, samples, lit, drawn] =
         figures.numbers(&figures.all, keys)?;
-    let [lit, drawn] = figures.numbers(&figures.all, ["lit_ms", "drawn_ms"])?;
     Ok(format!(
         "![A mountain range under a low sun, from a camera](pictures/terrain.png)\n\n\
          Mt Washington and the Presidential Range, {field_cols} × {field_rows} grid points (SRTM), under the bundled sky and a \
@@ -229,21 +221,9 @@ fn goals() -> Result<String> {
 /// What `cargo measure auto` found of `render --max-error`.
 fn auto() -> Result<String> {
     let figures = Figures::read("auto")?;
-    let [pairs, side, seconds] =
-        figures.numbers(&figures.all, ["pairs", "side", "trade_seconds"])?;
-    let keys = [
-        "held",
-        "chosen",
-        "within_stated_bound",
-        "refused",
-        "asked",
-        "refused_though_found",
-        "ratio_median",
-        "ratio_90",
-        "ratio_worst",
-        "within_1.3",
-        "ratios",
-    ];
+    let [pairs, side, seconds] = figures.numbers(&figures.all, "pairs side trade_seconds")?;
+    let keys = "held chosen within_stated_bound refused asked refused_though_found \
+                ratio_median ratio_90 ratio_worst within_1.3 ratios";
     let [held, chosen, bound, refused, asked, though_found, median, most, worst, within, ratios] =
         figures.numbers(&figures.all["summary"], keys)?;
     let of = |row: &Value| (row["scene"].to_string(), row["settings"].as_str().map(str::to_owned));
@@ -280,7 +260,7 @@ fn bake() -> Result<String> {
                 false => format!("{v:.2e}"),
             };
             let [most, share, measured] =
-                figures.numbers(bound, ["at_most", "and_of_the_value", "worst"])?;
+                figures.numbers(bound, "at_most and_of_the_value worst")?;
             let of_value = format!("{share:.1e} of the value");
             let most = match (most > 0.0, share > 0.0) {
                 (true, true) => format!("{} + {of_value}", shown(most)),
@@ -302,8 +282,7 @@ fn bake() -> Result<String> {
             worst.join("; ")
         );
     }
-    let [steeper, azimuths, side] =
-        figures.numbers(&figures.all, ["steeper", "azimuths", "lit_side"])?;
+    let [steeper, azimuths, side] = figures.numbers(&figures.all, "steeper azimuths lit_side")?;
     Ok(format!(
         "{out}\nErrors of decoding a .ktx2 or .png. Worst measured: on the bundled mountain, {steeper} times as steep, \
          {azimuths} azimuths; for maps of light on its middle {side}² texels, repeated (`cargo measure bake`).\n{}",
