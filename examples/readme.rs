@@ -123,7 +123,7 @@ fn hosts() -> Result<String> {
         writeln!(out, "| [{name}](../{path}) | {}{own} | {what} |", code_lines(&program)).unwrap();
     }
     let tests = "Tests run each one and compare its bytes with the command line's, without a validation message \
-                 (`tests/gpu/ash_host.rs`, `crates/capi/tests/c`, `tools/wgpu`).";
+                 (`tests/gpu/embedding/ash_host.rs`, `crates/capi/tests/c`, `tools/wgpu`).";
     writeln!(out, "\n{tests}").unwrap();
     Ok(out)
 }

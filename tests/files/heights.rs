@@ -1,6 +1,6 @@
 //! Each format, built here byte by byte, gives the heights and cells that were put in.
 
-use crate::common::*;
+use crate::formats::*;
 use crate::{absolute, expected, one_sentence, parse};
 use exr::prelude::FlatSamples;
 use ridgelight::Error;

@@ -1,6 +1,6 @@
 //! Environments and albedo maps.
 
-use crate::common::*;
+use crate::formats::*;
 use crate::one_sentence;
 use exr::prelude::FlatSamples;
 use ridgelight::Error;

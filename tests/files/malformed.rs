@@ -1,6 +1,6 @@
 //! Wrong inputs: one sentence each, and no panic.
 
-use crate::common::*;
+use crate::formats::*;
 use crate::{one_sentence, parse};
 use ridgelight::Error;
 use ridgelight_io::*;

@@ -1,62 +1,93 @@
 //! Everything that needs a Vulkan device. `tools/test` runs it on lavapipe and on SwiftShader under
 //! validation with synchronisation validation; alone, it runs on whatever driver is first.
 
-mod analytic;
-mod ash_host;
-mod baked;
-mod borrowed;
-mod bounce_edges;
-mod bounce_nodes;
-mod bounces;
-mod buffers;
-mod change;
-mod colours;
-mod contract;
-mod curved;
-mod debugger;
-// Its shaders are compiled from GLSL only.
-mod bounced_specular;
+mod bake {
+    pub mod cpu_reference;
+    mod curved;
+    // Its shaders are compiled from GLSL only.
+    #[cfg(any(feature = "glslang", feature = "shaderc"))]
+    mod decoders;
+    mod scatter;
+    mod scatter_views;
+    mod sky_view;
+}
+mod bounce {
+    pub mod cpu_reference;
+    mod edges;
+    mod engines;
+    mod nodes;
+    mod pits;
+    mod walks;
+}
 mod cpu_reference;
-#[cfg(any(feature = "glslang", feature = "shaderc"))]
-mod decoders;
-mod edits;
-mod embedding;
+mod direct {
+    pub mod cpu_reference;
+    mod keys;
+    mod sphere_sh;
+    mod spheres;
+}
+mod edit {
+    pub mod cpu_reference;
+    mod edits;
+}
+mod embedding {
+    mod ash_host;
+    mod borrowed;
+    mod buffers;
+    mod colours;
+    mod command_buffer;
+    mod contract;
+    mod debugger;
+    mod in_flight;
+    mod plan_changes;
+}
 mod extremes;
 #[expect(dead_code, reason = "its main, which prints")]
 #[path = "../../examples/first_light.rs"]
 mod first_light;
-mod flight;
-mod forms;
 mod goldens;
-mod harmonics;
-mod keys;
-mod many_lights;
-mod map;
-#[path = "../naive/mod.rs"]
-mod naive;
-mod pits;
+mod horizon {
+    mod analytic;
+    pub mod cpu_reference;
+    mod hull_storage;
+    mod pyramid;
+    mod terrain;
+}
+#[path = "../common/brute_force_paths.rs"]
+mod brute_force_paths;
 mod pruned;
-mod pyramid;
-mod real;
-mod reference_edges;
-mod reference_numbers;
+mod rays {
+    pub mod cpu_reference;
+}
+mod reference {
+    pub mod cpu_reference;
+    mod edges;
+    mod many_lights;
+    pub mod quadrature;
+}
 #[expect(dead_code, reason = "of its scenes only pits and grooves are drawn here")]
-#[path = "../reference_page/mod.rs"]
+#[path = "../common/reference_page.rs"]
 mod reference_page;
-mod reference_truth;
-mod scatter;
-mod scatter_views;
-#[path = "../scenes/mod.rs"]
+#[path = "../common/scenes.rs"]
 mod scenes;
-mod soft_spheres;
-mod specular;
-mod spheres;
-mod subsampled;
-#[path = "../target/mod.rs"]
+mod sh {
+    pub mod cpu_reference;
+    mod harmonics;
+    mod nodes;
+    mod reference_numbers;
+}
+mod specular {
+    mod bounced;
+    pub mod cpu_reference;
+    mod direct;
+}
+#[path = "../common/target.rs"]
 mod target;
-mod view;
-mod view_flight;
-mod walks;
+mod view {
+    mod in_flight;
+    mod map;
+    mod pictures;
+}
 
 use std::sync::{Mutex, MutexGuard};
 

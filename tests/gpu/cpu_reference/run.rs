@@ -12,11 +12,10 @@ use ridgelight_cpu::shared::sweep::Heights;
 use ridgelight_cpu::specular_gather::Series;
 use ridgelight_cpu::tolerance::ShadeError;
 
-use super::cases::Case;
-use super::{Pair, edit, reference_of};
+use super::{Case, Pair, edit, reference_of};
 
 /// A plan run pass by pass, and what its passes have left so far.
-pub(super) struct Run<'a> {
+pub(crate) struct Run<'a> {
     pub gpu: &'a mut Headless,
     pub frame: Frame,
     pub plan: Plan,

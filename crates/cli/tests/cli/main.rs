@@ -1,30 +1,34 @@
 //! The binary as scripts use it: exit status 0 done, 1 failed, 2 wrong usage. On an error, one line on standard error and no
 //! file changed or left behind.
 
-mod auto;
-mod bake;
-mod bake_light;
-mod bake_manifest;
-mod bake_specular;
+mod arguments {
+    mod flags;
+    mod inputs;
+    mod renamed;
+    mod scene_file;
+    mod unused;
+}
+mod bake {
+    mod files;
+    mod light;
+    mod manifest;
+    mod specular;
+}
 mod camera;
-#[path = "../../../../tests/common/mod.rs"]
-mod common;
 mod compare;
-mod flags;
-#[path = "../../../../tests/groove/mod.rs"]
-mod groove;
-mod idle;
-mod inputs;
+mod compare_refused;
+#[path = "../../../../tests/common/formats.rs"]
+mod formats;
+mod goals;
 mod library_messages;
 mod light;
 mod needs_vulkan;
 mod plan;
 mod reference;
-mod renamed;
-mod scene_file;
 mod signals;
 mod trade;
-mod unlike;
+#[path = "../../../../tests/common/v_grooves.rs"]
+mod v_grooves;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -44,7 +48,7 @@ impl Folder {
     /// One valid height field of every format ("a.asc", …).
     fn new() -> Self {
         let folder = Self(tempfile::tempdir().unwrap());
-        for (name, bytes) in common::height_files() {
+        for (name, bytes) in formats::height_files() {
             folder.write(name, &bytes);
         }
         folder

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use ridgelight_io::Planes;
 
-use crate::common::{colour, hdr, npy, png};
+use crate::formats::{colour, hdr, npy, png};
 use crate::{Folder, read};
 
 /// Runs a command that must succeed with an empty standard error (progress is for terminals) and one line on standard
@@ -415,7 +415,7 @@ fn gpu_fields_beyond_the_device_are_refused_unread() {
     folder.write("long.npy", &npy("<f4", false, "(3, 40000)", &[]));
     folder.write("long.asc", b"ncols 40000 nrows 3 cellsize 1 0 0 0");
     let zeros = || exr::prelude::FlatSamples::F32(vec![0.0; 40_000]);
-    let whole = crate::common::exr(40_000, 1, &[("Z", zeros())]);
+    let whole = crate::formats::exr(40_000, 1, &[("Z", zeros())]);
     folder.write("long.exr", &whole[..whole.len() - 30]);
     let mut image = std::io::Cursor::new(Vec::new());
     let mut encoder = tiff::encoder::TiffEncoder::new(&mut image).unwrap();

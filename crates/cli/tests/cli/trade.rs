@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::common::npy;
+use crate::formats::npy;
 use crate::{Folder, refused};
 
 #[test]
