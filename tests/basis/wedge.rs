@@ -107,8 +107,7 @@ fn a_tables_error_falls_with_the_square_of_its_spacing() {
     }
 }
 
-/// Wedges blend angles, slices blend what is seen: both come to the truth with the square of the wedge's
-/// width.
+/// Wedges blend angles, slices blend visibility: both converge with the square of the wedge's width.
 #[test]
 fn wedges_and_slices_meet_as_azimuths_grow() {
     let order = 4;

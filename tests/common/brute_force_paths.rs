@@ -1,5 +1,5 @@
-//! Counting paths: a naive tracer that tests every triangle for every ray, follows the definition word by word and
-//! shares nothing with profiles, slices and weights, nor with the tracer of the device.
+//! A brute-force path tracer: it tests every triangle for every ray, follows the definition, and shares no code
+//! with visible intervals, slices and weights, nor with the device's path tracer.
 
 use glam::DVec3;
 use ridgelight::scene::{Albedo, Border, PhongSpecular, Scene};
@@ -8,14 +8,14 @@ use std::f64::consts::{PI, TAU};
 /// A scene's paths.
 pub struct Paths<'a> {
     scene: &'a Scene,
-    /// Whether what is met reflects by its lobe, too.
+    /// Whether hit ground reflects by its Phong lobe, too.
     lobes: bool,
-    /// Corners of triangles, each counter-clockwise from above, with their samples.
+    /// Corners of triangles, each counter-clockwise from above, with their texels.
     triangles: Vec<[(DVec3, usize); 3]>,
     state: u64,
 }
 
-/// Where a path stands: at a sample, or inside a triangle.
+/// The start of a ray: a texel, or a point inside a triangle.
 #[derive(Clone, Copy)]
 enum Place {
     Sample(usize),
@@ -82,7 +82,7 @@ impl<'a> Paths<'a> {
                 Place::Inside(own) => own == i,
                 Place::Sample(own) => {
                     let here = corners.iter().any(|(_, sample)| *sample == own);
-                    // In the azimuth of this triangle, and not above it: met at once.
+                    // In the azimuth of this triangle, and not above it: a hit at once.
                     let beside = from + DVec3::new(e.x, e.y, 0.0) * 1e-6;
                     let towards = self.meets(i, beside + DVec3::Z * 1e3, -DVec3::Z).is_some();
                     if here && towards && e.dot(self.up(i)) <= 0.0 {
@@ -129,13 +129,13 @@ impl<'a> Paths<'a> {
         [exponent, scale].map(f64::from)
     }
 
-    /// Where a sample stands.
+    /// The position of a texel.
     pub fn place(&self, sample: usize) -> DVec3 {
         let all = self.triangles.iter().flatten();
         all.clone().find_map(|(at, own)| (*own == sample).then_some(*at)).expect("a sample")
     }
 
-    /// What the samples of a triangle have, linear between them.
+    /// Values of a triangle's texels, linear between them.
     fn within<const N: usize>(
         &self,
         triangle: usize,
@@ -148,7 +148,7 @@ impl<'a> Paths<'a> {
         std::array::from_fn(|i| (1.0 - u - v) * a[i] + u * b[i] + v * c[i])
     }
 
-    /// What one path brings from a first direction: zero, or light after so many bounces.
+    /// The light of one path from a first direction: zero, or light after so many bounces.
     pub fn follow(
         &mut self,
         sample: usize,
@@ -183,7 +183,8 @@ impl<'a> Paths<'a> {
         (0, [0.0; 3])
     }
 
-    /// Means and their standard errors of so many paths from a sample, with all bounces up to each number.
+    /// Means and their standard errors of so many paths from a texel, for all numbers of bounces up to the
+    /// given one.
     pub fn light(
         &mut self,
         sample: usize,

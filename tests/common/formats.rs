@@ -2,7 +2,7 @@
 
 use std::io::{Cursor, Write};
 
-/// The heights that every sample file holds: 3 rows of 4, none special.
+/// The heights in every test file: 3 rows of 4, none special.
 pub const HEIGHTS: [i16; 12] = [0, 1, 2, 3, 10, 11, 12, 13, 100, 101, 102, 120];
 pub const ROWS: usize = 3;
 pub const COLS: usize = 4;

@@ -1,17 +1,17 @@
-//! What docs/measured/reference.md says whatever the device: closed forms, and the heads of its rows.
+//! The device-independent parts of docs/measured/reference.md: closed forms, and the heads of its rows.
 
 use std::f64::consts::{SQRT_2, TAU};
 
 use ridgelight::scene::{Albedo, Border, Environment, HeightField, Lights, Scene, Surface};
 use ridgelight_cpu::indirect::{Fineness, Truth};
 
-/// How finely the page's quadrature is cut, before it is doubled.
+/// The fineness of the page's quadrature, before it is doubled.
 pub const FINENESS: Fineness = Fineness { azimuths: 24, divisions: 1, strips: 12 };
 
 /// Bounces of the page's scenes: none, one, two.
 pub const MOST_BOUNCES: usize = 2;
 
-/// What the three channels of a scene are lit by.
+/// The light of each of a scene's three channels.
 pub fn light_names(scene: &Scene) -> [&'static str; 3] {
     match scene.lights.environment {
         Some(_) => ["environment, red", "environment, green", "environment, blue"],
@@ -19,7 +19,7 @@ pub fn light_names(scene: &Scene) -> [&'static str; 3] {
     }
 }
 
-/// The row of a scene as far as the quadrature goes: its mean, and the mean of its stated error.
+/// The row of a scene up to the quadrature's columns: its mean, and the mean of its stated error.
 pub fn head(name: &str, bounces: usize, light: &str, truth: &Truth, channel: usize) -> String {
     let count = truth.radiance[bounces].len();
     let mean =
@@ -28,17 +28,17 @@ pub fn head(name: &str, bounces: usize, light: &str, truth: &Truth, channel: usi
     format!("| {name} | {bounces} | {light} | {count} | {light_mean:.5} | {stated:.5} | ")
 }
 
-/// A scene whose radiance is known at some of its samples.
+/// A scene whose radiance is known at some of its texels.
 pub struct Closed {
     pub name: String,
     pub scene: Scene,
     pub bounces: usize,
-    /// Samples, the radiance of each, and how far the grid may be from what the formula is for.
+    /// Texels, the radiance of each, and the largest error of the grid against the formula.
     pub known: Vec<(usize, f64, f64)>,
 }
 
 impl Closed {
-    /// Means over the known samples: radiance, and what the grid may change.
+    /// Means over the known texels: radiance, and the grid's error.
     pub fn means(&self) -> [f64; 2] {
         let count = self.known.len() as f64;
         let sum =
@@ -46,7 +46,7 @@ impl Closed {
         [sum(|k| k.1), sum(|k| k.2)]
     }
 
-    /// Its row as far as the formula goes.
+    /// Its row up to the formula's columns.
     pub fn head(&self) -> String {
         let [value, grid] = self.means();
         let Self { name, bounces, known, .. } = self;
@@ -76,8 +76,8 @@ pub fn closed_forms() -> Vec<Closed> {
     all
 }
 
-/// White ground in light of radiance 1 from everywhere that is not ground: 1. Of 64 bounces on the rough
-/// one no path is left: each leaves with a chance above a third.
+/// White ground in light of radiance 1 from all other directions: 1. After 64 bounces on the rough one no path
+/// is left: each ends with a probability above a third.
 fn furnaces() -> Vec<Closed> {
     let whole = |name: &str, scene: Scene, bounces| Closed {
         name: name.to_owned(),
@@ -88,7 +88,7 @@ fn furnaces() -> Vec<Closed> {
     let level = under_sky(field(5, 7, |_, _| 8.0), Border::Plane, 1.0);
     let rough = field(12, 11, |r, c| ((r * 31 + c * 17) % 7) as f64 / 3.0);
     let sky = under_sky(rough, Border::Open, 1.0);
-    // As an environment, directions are chosen or met: each path's share is right in the mean alone.
+    // As an environment, directions are sampled or hit: each path's share is right in the mean alone.
     let white = Environment::new(6, 5, vec![[1.0; 3]; 30], 0.5).unwrap();
     let lights = Lights { environment: Some(white), ..Lights::default() };
     let environment = Scene { lights, ..sky.clone() };
@@ -99,7 +99,7 @@ fn furnaces() -> Vec<Closed> {
     ]
 }
 
-/// Tilted by t, under `plane`: what leaves below horizontal is black, (1 + cos t)/2 of the sky is left.
+/// Tilted by t, under `plane`: directions below horizontal are black, (1 + cos t)/2 of the sky is left.
 fn tilted_plane() -> Closed {
     let tilted = field(6, 6, |r, c| 0.5 * c as f64 + r as f64);
     let cos = (1.0_f64 + 0.25 + 1.0).sqrt().recip();
@@ -111,7 +111,7 @@ fn tilted_plane() -> Closed {
     }
 }
 
-/// Samples from a groove's bottom to its ridge.
+/// Texels from a groove's bottom to its ridge.
 pub const HALF: usize = 8;
 /// Length of a wall.
 pub const WALL: f64 = HALF as f64 * SQRT_2;
@@ -137,7 +137,7 @@ pub fn groove_sky(s: f64) -> f64 {
     0.5 + 0.5 * s / s.hypot(WALL)
 }
 
-/// What bounces 0, 1 and 2 add at s, for albedo ½ and a sky of 1.
+/// The light of bounces 0, 1 and 2 at s, for albedo ½ and a sky of 1.
 pub fn groove_parts() -> [Box<dyn Fn(f64) -> f64>; 3] {
     let once = |s: f64| 0.5 * from_the_other_wall(s, |t| 0.5 * groove_sky(t));
     // Once reflected light at 200 points of the wall, linear between them.
@@ -152,8 +152,8 @@ pub fn groove_parts() -> [Box<dyn Fn(f64) -> f64>; 3] {
     [Box::new(|s| 0.5 * groove_sky(s)), Box::new(once), Box::new(twice)]
 }
 
-/// On its walls; at bottom and ridge normals are not a wall's. Flat triangles are the walls: the grid
-/// changes nothing.
+/// On its walls; normals at bottom and ridge are not a wall's. Flat triangles are the walls: the grid adds no
+/// error.
 fn grooves_lit(bounces: usize) -> Closed {
     let parts = groove_parts();
     let rows = 4;
@@ -173,8 +173,8 @@ fn grooves_lit(bounces: usize) -> Closed {
     }
 }
 
-/// Spherical pits by independent quadrature to 15 digits (`spherical_pit` of the project's reference
-/// numbers): α, ρ, bounces, radiance.
+/// Spherical pits by independent quadrature to 15 digits (`spherical_pit` of
+/// tests/basis/reference_numbers.json): α, ρ, bounces, radiance.
 pub const PITS: [(f64, f32, usize, f64); 4] = [
     (0.8, 0.5, 0, 0.424_176_677_336_791_4),
     (0.8, 0.5, 1, 0.456_339_162_408_706_64),
@@ -202,12 +202,11 @@ pub fn pit(rim: f64, alpha: f64) -> HeightField {
     })
 }
 
-/// How much sky a place of the pit, `away` from its axis, may gain on the grid.
+/// The sky that a point of the pit, `away` from its axis, may gain on the grid.
 ///
-/// The plain is met not at the rim, D away, but up to √2 cells farther, where the last cell's surface has
-/// risen to it: the horizon ω sinks by up to sin ω cos ω √2/D, and of the slice (N·e) cos ω dω is
-/// gained. On a sphere N·e = (chord from here to the rim)/2R. Flat triangles instead of the sphere: second
-/// order in a cell over R.
+/// The plain is met not at the rim, D away, but up to √2 cells farther, where the last cell's surface has risen
+/// to it: the horizon ω sinks by up to sin ω cos ω √2/D, and (N·e) cos ω dω of the slice is gained. On a sphere
+/// N·e = (chord from here to the rim)/2R. Flat triangles instead of the sphere: second order in a cell over R.
 fn sky_gained(away: f64, rim: f64, alpha: f64) -> f64 {
     let sphere = rim / alpha.sin();
     let depth = (sphere * sphere - away * away).sqrt() - sphere * alpha.cos();
@@ -224,10 +223,9 @@ fn sky_gained(away: f64, rim: f64, alpha: f64) -> f64 {
     2.0 / f64::from(m) * sum + 1.0 / (sphere * sphere)
 }
 
-/// For bounces 0, 1, … the samples of the pit's inner half, and how far each may be from the closed form by
-/// what the rim's staircase can do: directions that turn from pit (radiance L of the bounces before) to
-/// sky change a bounce by ρ (1 - L) of them, and what the whole pit is off by on average comes back
-/// with ρ (1 - s).
+/// For bounces 0, 1, … the texels of the pit's inner half, and the largest error of each against the closed
+/// form due to the rim's staircase: directions that turn from pit (radiance L of the bounces before) to sky
+/// change a bounce by ρ (1 - L) of them, and the mean error of the whole pit returns with ρ (1 - s).
 pub fn pit_bounds(rim: f64, alpha: f64, albedo: f64, bounces: usize) -> Vec<Vec<(usize, f64)>> {
     let side = pit(rim, alpha).cols();
     let share = 0.5 * (1.0 + alpha.cos());
@@ -235,7 +233,7 @@ pub fn pit_bounds(rim: f64, alpha: f64, albedo: f64, bounces: usize) -> Vec<Vec<
         let middle = (side / 2) as f64;
         ((i / side) as f64 - middle).hypot((i % side) as f64 - middle)
     };
-    // No place can gain more than all it does not see.
+    // No point gains more than all that it does not see.
     let gained = |i: &usize| sky_gained(away(*i), rim, alpha).min(1.0 - share);
     let inside: Vec<usize> = (0..side * side).filter(|i| away(*i) < rim - 0.01).collect();
     let gained_mean = inside.iter().map(gained).sum::<f64>() / inside.len() as f64;

@@ -1,4 +1,4 @@
-//! Small scenes on which two truths must agree: the f64 quadrature and the path tracer.
+//! Small scenes for comparing the f64 quadrature with the path tracer.
 
 use ridgelight::scene::fractal;
 use ridgelight::scene::{
@@ -6,10 +6,10 @@ use ridgelight::scene::{
     Sun, Surface,
 };
 
-/// A scene and its name. Its channels are lit apart: red by the sky, green by a sun, blue by a ball of
-/// light, so that each light is judged alone; an environment shines in all three.
+/// A scene and its name. Each light has a channel of its own: red the sky, green a sun, blue a sphere light; an
+/// environment adds to all three.
 pub fn scenes() -> Vec<(&'static str, Scene)> {
-    let ball =
+    let sphere_light =
         |x, y, z| SphereLight { position_m: [x, y, z], radius_m: 1.5, radiance: [0.0, 0.0, 9.0] };
     let apart = |place| Lights {
         sky: Some([1.0, 0.0, 0.0]),
@@ -43,7 +43,7 @@ pub fn scenes() -> Vec<(&'static str, Scene)> {
             Scene {
                 field: field(4, 5, [1.0, 2.0], |_, _| 7.0),
                 surface: grey(Border::Plane),
-                lights: apart(ball(8.0, 3.0, 13.0)),
+                lights: apart(sphere_light(8.0, 3.0, 13.0)),
             },
         ),
         (
@@ -51,7 +51,7 @@ pub fn scenes() -> Vec<(&'static str, Scene)> {
             Scene {
                 field: field(6, 6, [1.0, 1.0], |_, c| 0.8 * c as f64),
                 surface: grey(Border::Open),
-                lights: apart(ball(0.0, 2.0, 4.0)),
+                lights: apart(sphere_light(0.0, 2.0, 4.0)),
             },
         ),
         (
@@ -59,7 +59,7 @@ pub fn scenes() -> Vec<(&'static str, Scene)> {
             Scene {
                 field: field(9, 10, [1.0, 1.0], |_, c| if c == 6 { 3.0 } else { 0.0 }),
                 surface: grey(Border::Plane),
-                lights: apart(ball(2.0, 4.0, 5.0)),
+                lights: apart(sphere_light(2.0, 4.0, 5.0)),
             },
         ),
         (
@@ -67,7 +67,7 @@ pub fn scenes() -> Vec<(&'static str, Scene)> {
             Scene {
                 field: field(6, 8, [1.0, 1.0], |_, c| (c as f64 - 4.0).abs()),
                 surface: grey(Border::Periodic),
-                lights: apart(ball(4.0, 2.0, 4.0)),
+                lights: apart(sphere_light(4.0, 2.0, 4.0)),
             },
         ),
         (
@@ -75,7 +75,7 @@ pub fn scenes() -> Vec<(&'static str, Scene)> {
             Scene {
                 field: cone(),
                 surface: grey(Border::Plane),
-                lights: apart(ball(8.0, 8.0, 4.0)),
+                lights: apart(sphere_light(8.0, 8.0, 4.0)),
             },
         ),
         (
@@ -100,7 +100,7 @@ pub fn scenes() -> Vec<(&'static str, Scene)> {
                     -(5.0_f64 * 5.0 - away * away).sqrt()
                 }),
                 surface: Surface { albedo: Albedo::Constant([0.9; 3]), ..grey(Border::Plane) },
-                lights: apart(ball(6.0, 6.0, -1.0)),
+                lights: apart(sphere_light(6.0, 6.0, -1.0)),
             },
         ),
         (
@@ -108,7 +108,7 @@ pub fn scenes() -> Vec<(&'static str, Scene)> {
             Scene {
                 field: steep,
                 surface: Surface { albedo: Albedo::Map(map), ..grey(Border::Plane) },
-                lights: apart(ball(6.0, 6.0, 12.0)),
+                lights: apart(sphere_light(6.0, 6.0, 12.0)),
             },
         ),
         (
@@ -116,7 +116,7 @@ pub fn scenes() -> Vec<(&'static str, Scene)> {
             Scene {
                 field: field(6, 6, [1.0, 1.5], |r, c| if (r * 6 + c) % 7 == 0 { 3.0 } else { 0.0 }),
                 surface: grey(Border::Periodic),
-                lights: apart(ball(2.5, 4.0, 9.0)),
+                lights: apart(sphere_light(2.5, 4.0, 9.0)),
             },
         ),
     ]
@@ -132,27 +132,27 @@ fn field(
     HeightField::new(rows, cols, &heights, cell_m, None).unwrap()
 }
 
-/// How a picture with standard errors stands to a truth with stated errors.
+/// The agreement of a picture with standard errors and a reference with stated errors.
 ///
-/// Of each sample and channel, z = (|difference| - stated error, at least 0) / σ. σ is the standard error with
-/// what it cannot know: events so rare that a few or none of the paths met one. Bernstein's inequality: N
-/// paths of variance v that carry W at most have a mean beyond `off` with probability exp(-off² / 2σ²),
-/// σ² = v / N + W·off / 3N. W is taken as the brightest sample.
+/// For each texel and channel, z = (|difference| - stated error, at least 0) / σ. σ is the standard error plus
+/// an allowance for events so rare that few or none of the paths sampled one. Bernstein's inequality: N paths
+/// of variance v with values of at most W have a mean beyond `off` with probability exp(-off² / 2σ²), σ² = v /
+/// N + W·off / 3N. W is taken as the brightest texel.
 #[derive(Clone, Copy, Debug)]
 pub struct Agreement {
-    /// √(mean z²); 1 or less where both tell the truth.
+    /// √(mean z²); 1 or less where both errors are right.
     pub rms: f64,
     /// The largest z.
     pub worst: f64,
-    /// z of the channel whose mean differs most: one shared bias shows here first.
+    /// z of the channel whose mean differs most: one shared bias appears here first.
     pub mean: f64,
-    /// How many z there are.
+    /// The number of z.
     pub count: usize,
 }
 
 impl Agreement {
-    /// `paths` are those of a sample, infinitely many for noise without rare events; `rounding` is the
-    /// share of a value that the picture's arithmetic may lose.
+    /// `paths` are those of a texel, infinitely many for noise without rare events; `rounding` is the
+    /// arithmetic error of the picture as a share of a value.
     pub fn of<const N: usize>(
         [picture, standard_error]: [&[[f64; N]]; 2],
         [truth, stated]: [&[[f64; N]]; 2],
@@ -185,13 +185,14 @@ impl Agreement {
         Self { rms: (squares / count as f64).sqrt(), worst, mean, count }
     }
 
-    /// Whether chance explains it: rms within four of its own standard deviations 1/√(2·count) of 1 (noise
-    /// whose standard error is itself an estimate), the mean within 4 and the worst within 6.
+    /// Whether Monte Carlo noise explains the difference: rms within four of its own standard deviations
+    /// 1/√(2·count) of 1 (noise whose standard error is itself an estimate), the mean within 4 and the worst
+    /// within 6.
     pub fn holds(&self) -> bool {
         self.rms <= self.most_rms() && self.worst <= 6.0 && self.mean <= 4.0
     }
 
-    /// What `rms` may be.
+    /// The largest accepted `rms`.
     pub fn most_rms(&self) -> f64 {
         1.0 + 4.0 / (2.0 * self.count as f64).sqrt()
     }

@@ -1,4 +1,4 @@
-//! An image that an engine has drawn into, and what it holds: of this crate's tests and the C ABI's.
+//! An image that an engine draws into, and its texels: for the tests of the core and of the C ABI.
 
 use ash::vk;
 use ridgelight::gpu::{Host, ImageArg, ImageState};
@@ -7,7 +7,7 @@ pub(crate) const FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 pub(crate) const SIZE: [u32; 2] = [20, 12];
 const BYTES: usize = 20 * 12 * 16;
 
-/// An image that an engine has drawn into, and a buffer to look at it.
+/// An image that an engine draws into, and a buffer to read it back.
 pub(crate) struct Target {
     image: vk::Image,
     view: vk::ImageView,
@@ -102,7 +102,8 @@ impl Target {
             .dst_access_mask(vk::AccessFlags2::HOST_READ)];
         let written = vk::DependencyInfo::default().memory_barriers(&written);
         let layout = vk::ImageLayout::TRANSFER_SRC_OPTIMAL;
-        // SAFETY: `commands` is being recorded, the image left for copies; the buffer holds its texels.
+        // SAFETY: `commands` is being recorded, the image is in the layout for copies; the buffer holds its
+        // texels.
         unsafe {
             host.device.cmd_copy_image_to_buffer(
                 commands,
@@ -117,7 +118,7 @@ impl Target {
 
     pub(crate) fn texels(&self, host: &Host) -> Vec<[f32; 3]> {
         let (memory, flags) = (self.memory[1], vk::MemoryMapFlags::empty());
-        // SAFETY: the queue is idle; the memory is mapped here alone, and as long as the buffer.
+        // SAFETY: the queue is idle; only this function maps the memory, and the buffer is as long.
         let bytes = unsafe {
             let at = host.device.map_memory(memory, 0, vk::WHOLE_SIZE, flags).expect("mapped");
             let bytes = std::slice::from_raw_parts(at.cast::<u8>(), BYTES).to_vec();
@@ -131,7 +132,7 @@ impl Target {
 
     pub(crate) fn end(self, host: &Host) {
         let device = &host.device;
-        // SAFETY: made here, no longer used.
+        // SAFETY: made by `new`, no longer used.
         unsafe {
             device.destroy_image_view(self.view, None);
             device.destroy_image(self.image, None);

@@ -137,7 +137,7 @@ fn environment_rows_below_any_horizon_are_left_out() {
 
 /// Lights of radiance 0 have no pass, and a field lit by one that shines is as if they were not there.
 #[test]
-fn lights_that_do_not_shine_have_no_pass() {
+fn lights_without_radiance_have_no_pass() {
     let sun = Sun { azimuth_rad: 0.7, elevation_rad: 0.3, diameter_rad: 0.0, irradiance: [0.0; 3] };
     let dark = scene(Lights { suns: vec![sun], ..sky([1.0; 3]) });
     assert!(!names(&planned(&dark)).contains(&"sun_shade"));
@@ -188,7 +188,7 @@ fn a_concave_field_that_stays_is_not_swept() {
 
 /// A valley along any of the three families of edges is one.
 #[test]
-fn valleys_are_seen() {
+fn valleys_stay_in_the_plan() {
     let level = |_: usize, _: usize| 0.0;
     assert!(field(5, 5, [1.0, 3.0], level).is_concave(Border::Plane));
     // A dent of one sample, and creases along rows, columns and diagonals.

@@ -1,4 +1,4 @@
-//! What is adapted to curved bases, held to cylinders and balls whose geometry is known.
+//! Bakes for curved base surfaces, against cylinders and spheres of known geometry.
 
 use std::f64::consts::PI;
 
@@ -16,21 +16,21 @@ use ridgelight_cpu::visible_points::{visible_point, visible_points};
 
 const HALF: usize = 8;
 
-/// Grooves of 45° walls, eight cells deep, that repeat; their median height is 4.
+/// Periodic grooves of 45° walls, eight cells deep; their median height is 4.
 fn grooves(rows: usize) -> HeightField {
     let height = |i: usize| (i % (2 * HALF)).abs_diff(HALF) as f64;
     let heights: Vec<f64> = (0..rows * 2 * HALF).map(height).collect();
     HeightField::new(rows, 2 * HALF, &heights, [1.0; 2], None).expect("a field")
 }
 
-/// Walls a sample wide and eight cells high on level ground, 16 cells apart.
+/// Walls one texel wide and eight cells high on level ground, 16 cells apart.
 fn walls(rows: usize) -> HeightField {
     let height = |i: usize| if i.is_multiple_of(2 * HALF) { HALF as f64 } else { 0.0 };
     let heights: Vec<f64> = (0..rows * 2 * HALF).map(height).collect();
     HeightField::new(rows, 2 * HALF, &heights, [1.0; 2], None).expect("a field")
 }
 
-/// Half the angle that the middle between two [`walls`] sees of the sky on a cylinder: they stand 8 cells of arc away.
+/// Half the angle of sky at the middle between two [`walls`] on a cylinder: they stand 8 cells of arc away.
 fn opening(per_m: f64) -> f64 {
     if per_m == 0.0 {
         return 0.25 * PI;
@@ -40,10 +40,11 @@ fn opening(per_m: f64) -> f64 {
     ((radius + half) * sin).atan2((radius + half) * cos - radius)
 }
 
-/// Of a cylinder along north, and of a ball: places written down as such. A height h over the place x along the base of radius
-/// R is at ((R + h) sin(x/R), (R + h) cos(x/R) - R). Roundings of sums of R, over the distance, 16 of them.
+/// Against positions on a cylinder along north and on a sphere. A height h over the place x along the base of
+/// radius R is at ((R + h) sin(x/R), (R + h) cos(x/R) - R). Tolerance: 16 roundings of sums of R, over the
+/// distance.
 #[test]
-fn directions_are_those_of_cylinders_and_balls() {
+fn directions_match_cylinders_and_spheres() {
     let directions = Directions::fibonacci(100, -1.0, 0).expect("directions");
     for radius in [3.0_f64, -8.0, 50.0, -1e4, 1e7] {
         for (own, away) in [(0.0, 1e-3), (0.5, 1.0), (-1.0, 2.0), (1.0, 4.0)] {
@@ -57,8 +58,9 @@ fn directions_are_those_of_cylinders_and_balls() {
                 let [x, z] = along(o.x, radius);
                 let cylinder = DVec3::new(x, o.y, z).normalize();
                 let [across, z] = along(o.length(), radius);
-                let ball = (o.normalize() * across).extend(z).normalize();
-                for (per_m, want) in [([1.0 / radius, 0.0], cylinder), ([1.0 / radius; 2], ball)] {
+                let sphere = (o.normalize() * across).extend(z).normalize();
+                for (per_m, want) in [([1.0 / radius, 0.0], cylinder), ([1.0 / radius; 2], sphere)]
+                {
                     let got = bent_direction(*e, away, own, Curvature { per_m });
                     assert!(
                         (got - want).length() <= allowed,
@@ -72,41 +74,41 @@ fn directions_are_those_of_cylinders_and_balls() {
     }
 }
 
-/// The sample of the knob of [`hills`].
-fn knob(rows: usize, cols: usize) -> usize {
+/// The texel of the peak of [`hills`].
+fn peak(rows: usize, cols: usize) -> usize {
     rows / 2 * cols + 5 * cols / 8
 }
 
-/// Low hills, each with a knob, that repeat: from the knob rays a hundredth off level go on for a hundred cells.
+/// Low periodic hills, each with a peak: rays from the peak at a slope of -1/100 travel a hundred cells.
 fn hills(rows: usize, cols: usize) -> HeightField {
     let height = |i: usize| {
         let (row, col) = ((i / cols) as f64, (i % cols) as f64);
-        let knob = if i == knob(rows, cols) { 0.5 } else { 0.0 };
+        let peak = if i == peak(rows, cols) { 0.5 } else { 0.0 };
         let wave = |place: f64, count: usize| 2.0 * PI * place / count as f64;
-        0.05 * wave(col, cols).sin() + 0.03 * wave(row, rows).cos() + knob
+        0.05 * wave(col, cols).sin() + 0.03 * wave(row, rows).cos() + peak
     };
     let heights: Vec<f64> = (0..rows * cols).map(height).collect();
     HeightField::new(rows, cols, &heights, [1.0, 1.5], None).expect("a field")
 }
 
-/// What a field that repeats shows is found in the repetition that the ray meets, however many it has passed over: within
-/// half a cell each way of where the oracle, which follows the surface piece by piece, meets it; or in one before, which the ray
-/// passes over by less than is told from meeting it. Of the ladders' rays some go beyond two repetitions and 128 cells, of wide
-/// fields and of lines one or two samples wide.
+/// A ray's hit is found in the repetition that it reaches, however many it passes over: within half a cell each
+/// way of where the oracle, which follows the surface piece by piece, hits it; or in an earlier one, which the
+/// ray clears by less than the tolerance. Some rays of the lists go beyond two repetitions and 128 cells, on
+/// wide fields and on lines one or two texels wide.
 #[test]
-fn repetitions_are_those_that_rays_meet() {
+fn repetitions_match_ray_tracing() {
     let (mut met, mut far, mut grazed) = (0, 0, 0);
     let mut stretches = Vec::new();
     for [rows, cols] in [[7, 40], [40, 7], [2, 30], [31, 1]] {
         let (field, border) = (hills(rows, cols), Border::Periodic);
         let oracle = Oracle::new(&field, border);
-        let knob = knob(rows, cols);
+        let peak = peak(rows, cols);
         let flat = [-0.08, -0.01, -0.004, -0.002, 1e-4, 0.01];
         for (k, z) in (0..100).flat_map(|k| flat.map(|z| (k, z))) {
             let azimuth = 2.0 * PI * (f64::from(k) + 0.3) / 100.0;
             let e = DVec2::from_angle(azimuth).extend(z).normalize();
             let plan = e.truncate().length();
-            for here in [knob, (knob + 1) % (rows * cols), 0] {
+            for here in [peak, (peak + 1) % (rows * cols), 0] {
                 let at = [here / cols, here % cols];
                 let VisiblePoint::Sample(there) = visible_point(&oracle, at, e) else { continue };
                 oracle.visible_intervals(at[0], at[1], e.y.atan2(e.x), &mut stretches);
@@ -117,7 +119,7 @@ fn repetitions_are_those_that_rays_meet() {
                 let way = ways.met();
                 let found = plan * way.away_m;
                 let off = 0.5 * 1.0_f64.hypot(1.5) + 1e-6;
-                // As near over the surface as f32 would not tell from it.
+                // Closer to the surface than f32 can resolve.
                 if way.over_m > 1e-9 {
                     let (over, graze) = (way.over_m, way.graze_m);
                     assert!(over <= graze, "{rows} {cols} {at:?} {e}: {over} over, {graze} grazes");
@@ -135,18 +137,19 @@ fn repetitions_are_those_that_rays_meet() {
     assert!(met > 3000 && far > 100 && 100 * grazed < met, "{far} of {met}, {grazed} grazed");
 }
 
-/// Over a base that turns by a right angle within the way, what lies beyond stands as far as that, and no farther is looked.
+/// On a base that turns by a right angle within the distance, points beyond count as that far, and the search
+/// ends there.
 #[test]
-fn what_the_base_turns_away_is_taken_for_no_nearer() {
+fn points_turned_away_by_the_base_are_not_moved_nearer() {
     let (field, border) = (hills(7, 40), Border::Periodic);
-    let (oracle, knob) = (Oracle::new(&field, border), knob(7, 40));
+    let (oracle, peak) = (Oracle::new(&field, border), peak(7, 40));
     let e = DVec3::new(1.0, 0.17, -0.001).normalize();
-    let VisiblePoint::Sample(there) = visible_point(&oracle, [knob / 40, knob % 40], e) else {
+    let VisiblePoint::Sample(there) = visible_point(&oracle, [peak / 40, peak % 40], e) else {
         panic!("it falls")
     };
     let away = |k: f64| {
         let curvature = Curvature { per_m: [k; 2] };
-        Ways::of((&field, border), curvature, [knob, there], e).met().away_m
+        Ways::of((&field, border), curvature, [peak, there], e).met().away_m
     };
     let flat = away(0.0);
     assert!((150.0..1e4).contains(&flat), "{flat}");
@@ -158,11 +161,12 @@ fn what_the_base_turns_away_is_taken_for_no_nearer() {
     }
 }
 
-/// Level ground sees nothing of itself, and nothing of a ball. In a hollow ball of radius R what stands d away rises to an
-/// elevation of d/2R: of the light on the ground, up to the edge of the field, its sine's square. The first step is seen on
-/// the flat ground, too, where half a cell turns it by half as much.
+/// Level ground on a flat or a convex base does not see itself. In a concave sphere of radius R a point at
+/// distance d rises to an elevation of d/2R: up to the edge of the field it sends the squared sine of that
+/// elevation of the ground's light. The first step is visible on the flat ground, too, where half a cell turns
+/// it by half as much.
 #[test]
-fn a_hollow_shows_its_own_ground() {
+fn a_concave_base_sees_its_own_ground() {
     let side = 21;
     let level =
         HeightField::new(side, side, &vec![7.0; side * side], [1.0; 2], None).expect("a field");
@@ -199,9 +203,9 @@ fn a_hollow_shows_its_own_ground() {
     }
 }
 
-/// Beyond the limit the sentence names it, and there it is kept.
+/// Beyond the limit the message names the limit; at the limit the curvature is accepted.
 #[test]
-fn strong_bends_are_refused_by_name() {
+fn strong_curvatures_are_refused_by_name() {
     let field = grooves(16);
     let said = |x: f64, y: f64| {
         Curvature { per_m: [x, y] }.check(&field, Border::Periodic).err().map(|e| e.to_string())
@@ -216,16 +220,17 @@ fn strong_bends_are_refused_by_name() {
     assert!((-0.1..0.0).contains(&limit), "{strong}");
     let changed =
         |k: f64| Curvature { per_m: [k; 2] }.occlusion_change(&field, Border::Periodic).light;
-    // Named to four figures, and found to a part in 256.
+    // The limit is printed with four figures and found to 1/256.
     assert!(changed(0.99 * limit - 1e-4) <= 1.02 * Curvature::MAX_CHANGE, "{strong}");
     assert!(changed(1.01 * limit - 5e-4) > Curvature::MAX_CHANGE, "{strong}");
     assert!(said(f64::NAN, 0.0).is_some_and(|e| e.contains("two numbers")));
 }
 
-/// Grooves along the rows are the same grooves in fewer rows and in more, and so is what a base changes of them. Level ground
-/// that repeats has no relief beside the base's own shape: what of it counts is the next cell, which turns by half a cell, in tiles of any side.
+/// Grooves along the rows are the same with fewer and with more rows, and so is the effect of curvature.
+/// Periodic level ground has no relief besides the base's own shape: only the next cell counts, which turns by
+/// half a cell, in tiles of any side.
 #[test]
-fn what_a_base_changes_is_not_the_tiles() {
+fn curvature_does_not_change_the_tile() {
     for k in [-0.08, 0.1] {
         let of = |rows| {
             Curvature { per_m: [k, 0.0] }.occlusion_change(&grooves(rows), Border::Periodic).light
@@ -253,12 +258,12 @@ fn what_a_base_changes_is_not_the_tiles() {
     }
 }
 
-/// The light that the middle between two walls has of them, if they shine alike, by weights: that of its hemisphere but for a
-/// lune of twice the opening, π (1 - sin a). The silhouette is two half circles of length π, over which the height is 2/π cos a in
-/// the mean, to each side of which directions stand for what lies within a quarter of their spacing √(4π/N) or so. Without weights the light is that of other walls. On the flat base each
-/// weighs 1.
+/// By the weights, the middle between two walls of equal radiance receives the light of its hemisphere less a
+/// lune of twice the opening, π (1 - sin a). The silhouette is two half circles of length π, whose mean height
+/// is 2/π cos a; on each side directions stand for what lies within about a quarter of their spacing √(4π/N).
+/// Without weights the light is that of other walls. On the flat base each weight is 1.
 #[test]
-fn weights_are_solid_angles_between_bent_walls() {
+fn fan_weights_are_solid_angles_between_curved_walls() {
     let (field, count) = (walls(2), 2048);
     let directions = Directions::fibonacci(count, -1.0, 0).expect("directions");
     let net = directions.triangles().expect("a net");
@@ -293,8 +298,8 @@ fn weights_are_solid_angles_between_bent_walls() {
     }
 }
 
-/// FileNotes by more rows or columns than a base may turn by across, a field that repeats is no other one; a field that does not is
-/// refused.
+/// A periodic field with more rows or columns than a base may turn by is the same surface; a field that is not
+/// periodic is refused.
 #[test]
 fn long_tiles_are_the_same_surface() {
     let height = |i: usize| if i.is_multiple_of(8) { 0.1 } else { 0.0 };
@@ -312,9 +317,9 @@ fn long_tiles_are_the_same_surface() {
     assert!(across.contains("6.40 radians") && across.contains("half a circle"), "{across}");
 }
 
-/// On the flat base lights are lit as before, whichever of two triangles has an edge.
+/// On the flat base the lighting is unchanged, whichever of two triangles has an edge.
 #[test]
-fn flat_bases_are_as_they_were() {
+fn a_flat_base_changes_nothing() {
     let field = grooves(2);
     let directions = Directions::fibonacci(200, -1.0, 0).expect("directions");
     let net = directions.triangles().expect("a net");
@@ -351,10 +356,10 @@ fn seen(lit: impl Fn(DVec3) -> bool) -> Vec<Seen> {
     directions.vectors().iter().map(|e| (*e, lit(*e))).collect()
 }
 
-/// The middle between walls sees |x| < z tan a: an ellipse of half axes sin a and 1, on every base. Between five that were fitted the
-/// half axis is that within what a fit is off by, and what sin a bends by between.
+/// The middle between walls sees |x| < z tan a: an ellipse with half axes sin a and 1, on every base. Between
+/// five fitted curvatures the half axis errs by the fit's own error and by the curve of sin a in between.
 #[test]
-fn ellipses_open_and_close_with_the_base() {
+fn ellipses_widen_and_narrow_with_curvature() {
     let step = 0.02;
     let fitted = |k: f64| fit(&seen(|e| e.x.abs() < e.z * opening(k).tan())).0;
     let five = [fitted(0.0), fitted(step), fitted(-step), fitted(0.0), fitted(0.0)];
@@ -374,10 +379,10 @@ fn ellipses_open_and_close_with_the_base() {
     assert!(wide > 2.0 * least_radius(1000), "nothing opens: {wide}");
 }
 
-/// On the flat base the test is that of its own ellipse; all and nothing are what they were, and between nothing and a patch
-/// lies a smaller patch about the same middle.
+/// On the flat base the test is that of its own ellipse. A whole and an empty sky stay so; between an empty sky
+/// and a patch lies a smaller patch about the same middle.
 #[test]
-fn flat_ellipses_are_as_they_were() {
+fn a_flat_base_changes_no_ellipse() {
     let patch = Ellipse {
         centre: DVec2::new(0.3, -0.1),
         axis: DVec2::from_angle(0.7),

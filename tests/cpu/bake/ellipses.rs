@@ -1,4 +1,4 @@
-//! Shadows by what samples see: ellipses of sets that are known, and what lies between directions.
+//! Ellipses of visible sky, fitted to sets of known shape, and visibility between directions.
 
 use glam::{DVec2, DVec3};
 use ridgelight::scene::{Border, Directions, HeightField, VisiblePoints};
@@ -12,13 +12,13 @@ fn seen(lit: impl Fn(DVec3) -> bool) -> Vec<Seen> {
     directions.vectors().iter().map(|e| (*e, lit(*e))).collect()
 }
 
-/// Directions that the ellipse has wrong.
+/// Directions that the ellipse classifies wrongly.
 fn wrong(ellipse: &Ellipse, seen: &[Seen]) -> usize {
     seen.iter().filter(|(e, is_lit)| ellipse.holds(*e) != *is_lit).count()
 }
 
-/// That the ellipse of what another holds is that: its ends along the axes, and whatever it has wrong, lie within a direction's
-/// own radius of the other's.
+/// The fitted ellipse matches the given one: its ends along the axes, and every wrong direction, lie within one
+/// direction's own radius of it.
 fn close(found: &Ellipse, truth: &Ellipse, seen: &[Seen]) {
     let off = least_radius(COUNT);
     assert!((found.centre - truth.centre).length() <= off, "{found:?} {truth:?}");
@@ -46,8 +46,8 @@ fn a_pit_is_a_disc() {
     }
 }
 
-/// A groove's bottom sees |x| < z tan a between its walls, x across: x² < (1 - x² - y²) tan²a, which is x²/sin²a + y² < 1,
-/// an ellipse however steep.
+/// A groove's bottom sees |x| < z tan a between its walls, x across: x² < (1 - x² - y²) tan²a, which is
+/// x²/sin²a + y² < 1, an ellipse however steep.
 #[test]
 fn a_groove_is_an_ellipse() {
     for (a, azimuth) in [(0.3_f64, 0.0_f64), (0.8, 0.7), (1.2, 2.0)] {
@@ -65,9 +65,10 @@ fn a_groove_is_an_ellipse() {
     }
 }
 
-/// At the foot of an endless wall half of the disc is lit, which no ellipse is. Its middle is 4/3π away from the wall, its
-/// variances are 1/4 - (4/3π)² across and 1/4 along it. The sums' errors are those of the half's edges, √(πN) of N directions
-/// long. The search leaves no more wrong than there was, and some: what lies in two corners of the half disc.
+/// At the foot of an endless wall half of the disc is lit, which is no ellipse. Its middle is 4/3π away from
+/// the wall, its variances are 1/4 - (4/3π)² across and 1/4 along it. The sums' errors are those of the half's
+/// edges, √(πN) of N directions long. The search leaves no more wrong directions than before, and still some,
+/// in two corners of the half disc.
 #[test]
 fn a_wall_is_no_ellipse() {
     use std::f64::consts::PI;
@@ -87,15 +88,15 @@ fn a_wall_is_no_ellipse() {
         println!("{azimuth}: {first}, then {last} of {COUNT} wrong; {found:?}");
         assert!(0 < last && last <= first, "{first} {last}");
         assert!(found.centre.dot(towards) < 0.0, "{found:?}");
-        // All the sky or none would have a half of it wrong.
+        // A whole or an empty sky has half of it wrong.
         assert!(4 * last < COUNT, "{last}");
     }
 }
 
-/// All and nothing are what they are called. Two patches of sky low in the east and in the west come out wrong: an ellipse
-/// that holds some of both holds what lies between, too, which is not lit.
+/// A whole and an empty sky are recognised. Two patches of sky low in the east and in the west are wrong: an
+/// ellipse that holds parts of both also holds what lies between them, which is not lit.
 #[test]
-fn what_is_alike_needs_no_search() {
+fn a_whole_and_an_empty_sky_are_exact_ellipses() {
     assert_eq!(fit(&seen(|_| true)), (Ellipse::WHOLE, COUNT as i64));
     assert_eq!(fit(&seen(|_| false)), (Ellipse::EMPTY, 0));
     for e in seen(|_| true) {
@@ -106,10 +107,10 @@ fn what_is_alike_needs_no_search() {
     assert!(wrong(&found, &two) > 0, "{found:?}");
 }
 
-/// Along one of the directions a light is as visible as that direction; between some that agree as they do. On level ground
-/// all is lit.
+/// A light along one of the directions is as visible as that direction; between directions that agree it is as
+/// visible as they are. On level ground all light is visible.
 #[test]
-fn between_directions_light_goes_over() {
+fn visibility_is_interpolated_between_directions() {
     let heights: Vec<f64> = (0..63).map(|i| if i % 9 == 6 { 5.0 } else { 0.0 }).collect();
     let wall = HeightField::new(7, 9, &heights, [1.0; 2], None).expect("a field");
     let level = HeightField::new(3, 3, &[2.0; 9], [1.0; 2], None).expect("a field");
@@ -124,7 +125,7 @@ fn between_directions_light_goes_over() {
     let own = directions.vectors().iter().filter(|e| e.z > 0.0);
     let mut between = 0;
     for light in own.chain(above.vectors()) {
-        // Nearly horizontal ones lie among directions below.
+        // Nearly horizontal lights lie among directions below.
         let Some(around) = of_wall.around(&triangles, *light) else {
             assert!(light.z < 0.2, "{light}");
             continue;

@@ -1,4 +1,4 @@
-//! Fields seen from afar, held to what diffuse ground is: level, grooves of a closed form, energy, light and view exchanged.
+//! The aggregate BRDF of diffuse fields: level ground, grooves with a closed form, energy, reciprocity.
 
 use std::f64::consts::PI;
 
@@ -31,9 +31,9 @@ fn facets(scene: &Scene, times: usize, directions: Directions) -> Facets {
     Facets::of(scene, times, directions, words).expect("above horizontal")
 }
 
-/// Of all pairs: `radiance` is that of all triangles under a light of irradiance 1 facing it from each direction.
+/// For all pairs of directions: `radiance` is that of all triangles under a light of irradiance 1 facing it.
 pub fn table(facets: &Facets, radiance: impl Fn(usize) -> ExitRadiance) -> Brdf {
-    facets.check().expect("a plane from afar");
+    facets.check().expect("a plane in the aggregate");
     let directions = facets.directions().vectors().to_vec();
     let of = |(light, e): (usize, &DVec3)| {
         let seen = facets.radiance_from_all(&radiance(light));
@@ -51,15 +51,16 @@ fn above(count: usize) -> Directions {
     Directions::fibonacci(count, 0.0, 0).expect("directions")
 }
 
-/// Parts of ∫ cos θ dω of directions that are even on the hemisphere.
+/// Parts of ∫ cos θ dω of evenly spaced directions on the hemisphere.
 fn projected_sr(directions: &Directions) -> Vec<f64> {
     let sum: f64 = directions.vectors().iter().map(|v| v.z).sum();
     directions.vectors().iter().map(|v| PI * v.z / sum).collect()
 }
 
-/// The level is diffuse from afar as near: ρ/π whatever light and view, and ρ of all light leaves, but for a dozen roundings.
+/// The BRDF of level ground is ρ/π for all directions of light and view, and its albedo is ρ, to a dozen
+/// roundings.
 #[test]
-fn the_level_is_as_diffuse_from_afar() {
+fn level_ground_in_the_aggregate_is_lambertian() {
     let scene = scene(3, 4, |_, _| 3.0);
     for times in [1, 2] {
         let facets = facets(&scene, times, above(60));
@@ -77,7 +78,7 @@ fn the_level_is_as_diffuse_from_afar() {
     }
 }
 
-/// Columns of a wall of the grooves.
+/// Columns of one wall of a groove.
 const WALL: usize = 16;
 
 /// Walls at right angles, along the columns.
@@ -86,7 +87,7 @@ fn grooves() -> Scene {
 }
 
 #[test]
-fn grooves_reflect_as_their_closed_form() {
+fn grooves_match_their_closed_form() {
     let facets = facets(&grooves(), 1, above(100));
     let table = direct(&facets);
     let vectors = table.directions();
@@ -97,14 +98,15 @@ fn grooves_reflect_as_their_closed_form() {
         let got = table.at(light, view)[0];
         let off = |got: f64| (got - known).abs() / allowed.max(1e-12);
         worst = worst.max(off(got));
-        // A plane that receives what is counted of triangles, not cos θ; and one that receives all.
+        // A plane that receives the counted cosines of triangles, not cos θ; and one that receives all of the
+        // light.
         caught += usize::from(off(got / facets.closure(light)) > 1.0);
         tight += usize::from(off(got * vectors[light].z) > 1.0);
     }
     println!("{worst:.3} of what is allowed; other irradiances are seen in {caught} and {tight}");
     assert!(worst <= 1.0, "{worst}");
     assert!(caught > 100 && tight > 5000, "{caught} {tight}");
-    // The sides of light and view are told apart: from the east the eastern walls are dark.
+    // Light and view are not exchanged: from the east the eastern walls are dark.
     let low = DVec3::new(0.9, 0.3, (1.0_f64 - 0.9).sqrt()).normalize();
     assert!(groove_brdf(low, low) > 2.0 * groove_brdf(low, DVec3::new(-low.x, low.y, low.z)));
 }
@@ -113,8 +115,8 @@ fn waves() -> Scene {
     scene(8, 8, |r, c| (0.785 * r as f64).sin() + 1.3 * (0.785 * c as f64).cos())
 }
 
-/// The most that any triangle can reflect into a set of views of what it receives: Σ w (n·v)⁺ / (π v_z) over those that it is
-/// seen from, each filled as the plane fills it. Nothing of the light in it.
+/// The most of its incident light that any triangle can reflect into a set of views: Σ w (n·v)⁺ / (π v_z) over
+/// the views that see it, each filled as the plane fills it. It does not depend on the light.
 fn max_reflectance(scene: &Scene, times: usize, weights: &[f64], facets: &Facets) -> f64 {
     let field = scene.field.finer(Border::Periodic, times).expect("a finer field");
     let (rows, cols) = (field.rows(), field.cols());
@@ -134,8 +136,8 @@ fn max_reflectance(scene: &Scene, times: usize, weights: &[f64], facets: &Facets
     most
 }
 
-/// Shares of the largest of what samples, not triangles, would reflect: seen or hidden as they themselves are, by smoothed
-/// normals, with the light that they count for that of the plane.
+/// The largest reflectance by texels instead of triangles: with the texels' own visibility and smoothed
+/// normals, and the plane's share of light.
 fn most_of_samples(scene: &Scene, directions: &Directions, weights: &[f64]) -> f64 {
     let field = &scene.field;
     let seen = visible_points(field, Border::Periodic, directions);
@@ -162,11 +164,11 @@ fn most_of_samples(scene: &Scene, directions: &Directions, weights: &[f64]) -> f
     reflected.fold(0.0, f64::max)
 }
 
-/// What leaves is no more than the albedo of what arrives, down to two degrees above horizontal, but for the sum of cosines of the
-/// triangle that has the largest over these views, which says nothing of light. What samples count for triangles is more.
-/// Light and view are exchanged exactly.
+/// At most the albedo of the incident light leaves, down to two degrees above horizontal, but for the largest
+/// sum of cosines of a triangle over these views, which does not depend on the light. Texels in place of
+/// triangles exceed that. The BRDF is exactly reciprocal.
 #[test]
-fn no_more_leaves_than_arrives() {
+fn reflected_energy_is_at_most_incident_energy() {
     for (name, scene, times) in [("grooves", grooves(), 1), ("waves", waves(), 2)] {
         let angles = Angles { zeniths: 22, azimuths: 4 };
         let facets = facets(&scene, times, angles.directions().expect("directions"));
@@ -195,14 +197,14 @@ fn no_more_leaves_than_arrives() {
     }
 }
 
-/// Exchanged over 10,000 pairs. Direct light differs by roundings. A table of lights of other strengths is seen to: half a
-/// difference of up to the whole of a value.
+/// Over 10,000 pairs direct light is reciprocal up to roundings. A table with wrong light intensities fails:
+/// the difference is up to the whole value, half of it in the mean.
 #[test]
-fn light_and_view_can_be_exchanged() {
+fn brdf_is_reciprocal() {
     let facets = facets(&waves(), 1, above(100));
     let table = direct(&facets);
     assert!(table.unreciprocal() < 1e-14, "{}", table.unreciprocal());
-    // The irradiance alone forgotten: ½ |l_z - v_z| of values, a sixth in the mean of z even from 0 to 1.
+    // Only the irradiance omitted: ½ |l_z - v_z| of values, a sixth in the mean for z uniform from 0 to 1.
     let of_wrong = |light: usize| {
         let z = facets.directions().vectors()[light].z;
         let light = facets.lit_from(light);
@@ -212,12 +214,13 @@ fn light_and_view_can_be_exchanged() {
     assert!(wrong.unreciprocal() > 0.05, "{}", wrong.unreciprocal());
 }
 
-/// What a white field's triangles send, each radiance 1: how much of it leaves over some views, directly and by scattering over
-/// what samples see of each other, of all that it sends. All by sums of the test's own, from the last bounce to the first.
+/// For triangles of a white field, each of radiance 1: the shares of their light that leave over some views,
+/// directly and by scattering between visible texels. These sums belong to the test alone and run from the last
+/// bounce to the first.
 struct Shares {
-    /// Of each triangle, over π times its area in plans of triangles.
+    /// Of each triangle, over π times its projected area.
     of_facets: Vec<f64>,
-    /// By how much that may be off all that it sends.
+    /// The largest error of that, as a share of all emitted light.
     off: Vec<f64>,
 }
 
@@ -227,7 +230,7 @@ impl Shares {
         let field = &scene.field;
         let samples = field.heights_m().len();
         let share = points.directions().share_sr() / PI;
-        // gathered[i][j]: what sample i throws of radiance 1 of sample j.
+        // gathered[i][j]: the light that texel i reflects where texel j has radiance 1.
         let mut gathered = vec![vec![0.0; samples]; samples];
         for (i, row) in gathered.iter_mut().enumerate() {
             let n = normal(field, Border::Periodic, i / field.cols(), i % field.cols());
@@ -263,12 +266,12 @@ impl Shares {
             step = before(&step);
             scattered.iter_mut().zip(&step).for_each(|(sum, step)| *sum += step);
         }
-        // Walls at right angles: a plan's √2 of slope, shared by a triangle's and by a sample's count.
+        // Walls at right angles: the area is √2 of the plan, counted by triangles and by texels.
         let sent = |of: usize| PI * 2_f64.sqrt() / of as f64;
         let of_others = before(&vec![1.0; samples]);
         let unsent: Vec<f64> =
             of_others.iter().zip(&left).map(|(o, l)| (o + l / sent(samples) - 1.0).abs()).collect();
-        // What is unsent at once, and of what others gather later.
+        // The share that is not sent, at once and in what others gather later.
         let mut later = unsent.clone();
         for _ in 0..2 * BOUNCES {
             later = before(&later).iter().zip(&unsent).map(|(l, u)| l + u).collect();
@@ -278,9 +281,9 @@ impl Shares {
         let each = sent(samples) / sent(count);
         let of_facet = |facet: usize| {
             let radiance = only(facet);
-            let thrown: Vec<f64> =
+            let reflected: Vec<f64> =
                 facets.to_grid_points(&radiance).iter().map(|l| f64::from(l[0])).collect();
-            let sum = |of: &[f64]| thrown.iter().zip(of).map(|(l, s)| l * s).sum::<f64>();
+            let sum = |of: &[f64]| reflected.iter().zip(of).map(|(l, s)| l * s).sum::<f64>();
             let at_once = seen(&ExitRadiance::from(radiance)) / sent(count);
             let all = at_once + sum(&scattered) / sent(count);
             let unsent = (at_once + each * sum(&of_others) - 1.0).abs();
@@ -291,13 +294,13 @@ impl Shares {
     }
 }
 
-/// Grooves of white walls, twenty bounces: what leaves is what the same sums have from the last bounce to the first, but for three
-/// roundings to f32 of what is scattered and the sums' own, 8 · 2^-24. Nearly all that arrives leaves: of what a sample
-/// sends others gather a share and views see a share, by sums over directions; where those are not all, the rest is unsent, of
-/// what others gather another part later, and twenty bounces leave κ^20 out, where others gather κ at most. That is less than
-/// half of what is scattered, or it says nothing.
+/// Grooves with white walls, twenty bounces: the light that leaves matches the same sums from the last bounce
+/// to the first, but for three roundings of scattered light to f32 and the sums' own, 8 · 2^-24. Nearly all
+/// incident light leaves: texels and views gather shares of a texel's light by sums over directions; where
+/// these are not complete the rest counts as not sent, in later bounces too, and twenty bounces leave out κ^20,
+/// where others gather κ at most. The test needs that to be less than half of the scattered light.
 #[test]
-fn scattered_light_leaves_as_much_as_arrives() {
+fn scattered_light_conserves_energy() {
     const AROUND: usize = 512;
     const VIEWS: usize = 60;
     let mut scene = scene(2, 16, |_, c| c.abs_diff(8) as f64);
@@ -343,7 +346,8 @@ fn scattered_light_leaves_as_much_as_arrives() {
     assert!(off(&table) <= rounded, "{}", off(&table));
     let beyond = |light: usize| (reflected(&table, light) - 1.0).abs() - allowed(light);
     assert!(largest(&beyond) <= rounded, "{}", largest(&beyond));
-    // Two ways of one path differ by what directions count of it either way, of which the unsent is what does not cancel.
+    // Two directions of one path differ by the directions' sums of either, of which only the unsent part does
+    // not cancel.
     assert!(table.unreciprocal() <= largest(&allowed), "{}", table.unreciprocal());
     let dark = direct(&facets);
     let scattered = largest(&|light| 1.0 - reflected(&dark, light));
@@ -352,10 +356,10 @@ fn scattered_light_leaves_as_much_as_arrives() {
     assert!(off(&fewer) > rounded && off(&dark) > largest(&allowed), "deaf");
 }
 
-/// What a texture keeps of a view is what is seen of it from afar: shares fill v_z, and the light's mean over them is that of
-/// the triangles.
+/// A texture holds the visible shares of a view in the aggregate: shares sum to v_z, and their mean light is
+/// that of the triangles.
 #[test]
-fn textures_hold_what_is_seen() {
+fn textures_hold_the_visible_share() {
     let mut scene = waves();
     let albedo = (0..64).map(|i| [0.1 + 0.01 * i as f32, 0.5, 1.0]).collect();
     scene.surface.albedo = Albedo::Map(albedo);
@@ -376,11 +380,11 @@ fn textures_hold_what_is_seen() {
     }
 }
 
-/// Level ground that ends fills as much of a view as its own area does, v_z a cell: its samples inside all of a cell, at edges
-/// half, at corners a third or, where no diagonal ends, a sixth, as the triangles that meet there go to their corners alike.
-/// Irradiance is the cosine itself, with nothing scaled.
+/// Level ground with an edge fills as much of a view as its own area does, v_z for each cell: texels inside
+/// hold a whole cell, at edges half, at corners a third or, where no diagonal ends, a sixth, as each triangle
+/// is split evenly among its corners. Irradiance is the cosine itself, not scaled.
 #[test]
-fn fields_that_end_hold_parts_of_cells() {
+fn fields_with_an_edge_hold_parts_of_cells() {
     let mut scene = scene(4, 6, |_, _| 2.0);
     for (border, times) in [(Border::Plane, 1), (Border::Open, 2)] {
         scene.surface.border = border;
@@ -408,10 +412,10 @@ fn fields_that_end_hold_parts_of_cells() {
     }
 }
 
-/// A ramp that rises by 10 a cell towards the east and ends shows the east its backs alone: nothing is seen from there and
-/// nothing lit, 0 throughout and no quotient of zeros.
+/// A ramp that rises by 10 a cell towards the east and ends shows only back faces to the east: nothing is
+/// visible or lit from there, values are 0 and no quotient of zeros.
 #[test]
-fn backs_are_no_part_of_a_view() {
+fn back_faces_are_not_counted() {
     let mut scene = scene(4, 4, |_, c| 10.0 * c as f64);
     scene.surface.border = Border::Plane;
     let east = DVec3::new(1.0, 0.0, 1.0).normalize();
@@ -426,7 +430,7 @@ fn backs_are_no_part_of_a_view() {
 }
 
 #[test]
-fn what_is_no_plane_from_afar_is_refused() {
+fn fields_that_are_no_plane_in_the_aggregate_are_refused() {
     let mut scene = waves();
     let said = |scene: &Scene, directions: Directions| {
         let border = scene.surface.border;
@@ -436,7 +440,8 @@ fn what_is_no_plane_from_afar_is_refused() {
     };
     let below = Directions::fibonacci(8, -1.0, 0).expect("directions");
     assert!(said(&scene, below).contains("above horizontal"));
-    // Teeth that rise by 1 a sample for three and fall back: from the west, nearly level, the middles of what faces it are hidden.
+    // Teeth that rise by 1 a texel for three texels and fall back: from the west, nearly level, the middles of
+    // the facing triangles are hidden.
     let low = DVec3::new(-1.0, 0.0, 0.02).normalize();
     let two = Directions::from_vectors(vec![DVec3::Z, low], 0.0).expect("directions");
     assert!(said(&self::scene(4, 8, |_, c| (c % 4) as f64), two).contains("direction 1"));
@@ -448,10 +453,10 @@ fn what_is_no_plane_from_afar_is_refused() {
     assert!(lost.contains("exceeded the step limit"), "{lost}");
 }
 
-/// Grids of angles: weights are π together, a direction of the grid stands alone, halfway between it is halves, and the turn
-/// closes.
+/// Weights of a grid of angles sum to π. A direction of the grid has one entry, a direction halfway has two
+/// halves, and the azimuths are cyclic.
 #[test]
-fn angles_are_even() {
+fn angles_are_evenly_spaced() {
     let angles = Angles { zeniths: 5, azimuths: 8 };
     let directions = angles.directions().expect("directions");
     for (i, e) in directions.vectors().iter().enumerate() {

@@ -1,11 +1,11 @@
-//! What is baked, held to closed forms of horizons that are known: level ground, a basin, a wall, a canyon, planes; and to
-//! the f64 quadrature on fields.
+//! Baked maps against closed forms for known horizons (level ground, a basin, a wall, a canyon, planes), and
+//! against the f64 quadrature on fields.
 
-mod bent;
 mod curved;
+mod curved_grooves;
 mod ellipses;
 mod facets;
-mod lobes;
+mod specular;
 
 use glam::DVec3;
 use ridgelight::basis::harmonics::{evaluate, turned};
@@ -24,7 +24,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 /// Azimuths of a circle.
 const COUNT: usize = 2048;
 
-/// The values of one sample whose horizon is a function of azimuth.
+/// The values of one texel whose horizon is a function of azimuth.
 fn of(what: Box<dyn HorizonMap>, normal: DVec3, horizon: impl Fn(f64) -> f64) -> Vec<f64> {
     let mut sums = HorizonSums::new(what, 1);
     let width_rad = TAU / COUNT as f64;
@@ -36,8 +36,8 @@ fn of(what: Box<dyn HorizonMap>, normal: DVec3, horizon: impl Fn(f64) -> f64) ->
     sums.end(&[normal]).unwrap().iter().map(|plane| f64::from(plane[0])).collect()
 }
 
-/// What `COUNT` even azimuths may be off by: the rule errs by (2π/COUNT)²/8 times a kink's change of slope, of which these
-/// horizons have two, up to 2 steep; f32 elevations and values by 2^-22 and less.
+/// Error of `COUNT` even azimuths: (2π/COUNT)²/8 times a kink's change of slope, of which these horizons have
+/// two, of up to 2 times `steep`; f32 elevations and values add 2^-22 or less.
 fn tolerance(steep: f64) -> f64 {
     2.0 * steep * (TAU / COUNT as f64).powi(2) / 8.0 * 2.0 + 1.0 / f64::from(1 << 21)
 }
@@ -48,10 +48,10 @@ fn close(found: f64, expected: f64, allowed: f64, what: &str) {
 
 const ELEVATIONS: [f64; 6] = [0.0, 1e-3, 0.3, 0.8, 1.3, 1.57];
 
-/// A rim of one elevation b all around. Uniform light on level ground: sin² of the free cone's half-angle, cos²b. Solid
-/// angle 1 - sin b. The mean direction is up, and the cone is what is free: π/2 - b.
+/// A rim of elevation b all around. Uniform light on level ground: sin² of the free cone's half-angle, cos²b.
+/// Solid angle 1 - sin b. The mean direction is up, and the cone's half-angle is π/2 - b.
 #[test]
-fn a_basin() {
+fn maps_of_a_basin() {
     for b in ELEVATIONS {
         let allowed = tolerance(0.0);
         let up = DVec3::Z;
@@ -72,11 +72,11 @@ fn a_basin() {
     }
 }
 
-/// An infinite wall of elevation b due east: along φ it stands up to atan(tan b cos φ). What is free is a lune between
-/// the western horizon and the wall's edge plane, π - b wide: light (1 + cos b)/2, solid angle 2 (π - b) of 2π, middle
-/// b/2 west of up; the cone as large has 1 - cos a = 1 - b/π.
+/// An infinite wall of elevation b due east: along φ its horizon is atan(tan b cos φ). The free sky is a lune
+/// between the western horizon and the wall's edge plane, π - b wide: light (1 + cos b)/2, solid angle 2 (π -
+/// b) of 2π, middle b/2 west of up; the cone of equal size has 1 - cos a = 1 - b/π.
 #[test]
-fn a_wall() {
+fn maps_of_a_wall() {
     for b in [1e-3_f64, 0.3, 0.8, 1.3] {
         let horizon = |phi: f64| (b.tan() * phi.cos()).max(0.0).atan();
         let allowed = tolerance(b.tan());
@@ -93,24 +93,25 @@ fn a_wall() {
 
 /// Walls of elevation b on both sides: cos b, and 1 - 2b/π.
 #[test]
-fn a_canyon() {
+fn maps_of_a_canyon() {
     for b in [0.1_f64, 0.7, 1.2] {
         let horizon = |phi: f64| (b.tan() * phi.cos()).abs().atan();
         let allowed = 2.0 * tolerance(b.tan());
         close(of(Box::new(SkyView), DVec3::Z, horizon)[0], b.cos(), allowed, "sky view");
         let visible = of(Box::new(VisibleSky), DVec3::Z, horizon)[0];
         close(visible, 1.0 - 2.0 * b / PI, allowed, "visible sky");
-        // The two are different things: where half the light is left, a third of the sky is.
+        // The two maps differ: where half the light is left, a third of the sky is.
         if b > 0.5 {
             assert!((visible - b.cos()).abs() > 0.1);
         }
     }
 }
 
-/// A plane of slope s, rising to the east. Where it goes on for ever (its own horizon, above and below): all of its
-/// hemisphere, 1; its transfer the clamped cosine over π, about its normal. Above level ground alone: (1 + cos tilt)/2.
+/// A plane of slope s, rising to the east. Infinite, with its own horizon above and below: 1, its whole
+/// hemisphere; its transfer is the clamped cosine over π about its normal. Above level ground alone: (1 + cos
+/// tilt)/2.
 #[test]
-fn a_plane() {
+fn maps_of_a_plane() {
     for slope in [0.0_f64, 0.5, 1.0, 4.0] {
         let tilt = slope.atan();
         let up = DVec3::new(-tilt.sin(), 0.0, tilt.cos());
@@ -120,7 +121,7 @@ fn a_plane() {
         let above = |phi: f64| own(phi).max(0.0);
         let half = 0.5 * (1.0 + tilt.cos());
         close(of(Box::new(SkyView), up, above)[0], half, allowed, "above ground");
-        // Whatever the horizon is below the plane, light comes from above it alone.
+        // Wherever the horizon lies below the plane, only light from above the plane arrives.
         close(of(Box::new(SkyView), up, |_| -FRAC_PI_2)[0], 1.0, allowed, "nothing but itself");
         for order in 1..=MAX_TRANSFER_ORDER {
             let cosine = turned(&zonal::clamped_cosine(order), up);
@@ -134,9 +135,9 @@ fn a_plane() {
     }
 }
 
-/// A uniform sky of radiance 1 above horizontal, as harmonics, through a transfer is the sky view but for what the series
-/// leaves out of the step at the horizon; through the first coefficient alone, Y_00 = 1/√4π of all directions, it is
-/// exact where nothing comes from below: t_0 = sky view/√4π.
+/// The transfer of a uniform sky of radiance 1 above horizontal matches the sky view up to the series' error at
+/// the step of the horizon. The first coefficient alone, Y_00 = 1/√4π of all directions, is exact where no
+/// light comes from below: t_0 = sky view/√4π.
 #[test]
 fn transfer_and_sky_view_agree() {
     let horizon = |phi: f64| 0.4 + 0.3 * (2.0 * phi).sin();
@@ -151,8 +152,8 @@ fn transfer_and_sky_view_agree() {
     close(visible * (4.0 * PI).sqrt() / TAU, share, 1e-6, "of all that is free");
 }
 
-/// Coefficients against quadrature over directions that knows nothing of slices: in elevation Gauss' rule above the
-/// horizon, in azimuth the same rays, whose rule therefore takes no part in the difference.
+/// Coefficients against quadrature over directions without slices: Gauss' rule above the horizon in elevation;
+/// in azimuth the same rays, so their rule does not enter the difference.
 #[test]
 fn coefficients_are_integrals() {
     let horizon = |phi: f64| f64::from((0.2 + 0.5 * (phi - 1.0).sin()) as f32);
@@ -187,10 +188,10 @@ fn coefficients_are_integrals() {
     }
 }
 
-/// On a field: the sky view by the horizons of the oracle is the oracle's light of a uniform sky, in as many azimuths, and
-/// the coefficients those of the twin of `sh_visibility`.
+/// On a field: the sky view by the oracle's horizons matches the oracle's light of a uniform sky in as many
+/// azimuths, and the coefficients match the CPU reference of `sh_visibility`.
 #[test]
-fn fields_agree_with_their_twins() {
+fn maps_agree_with_cpu_references() {
     let rough = fractal(17, 5).unwrap();
     let heights: Vec<f64> = rough.heights_m().iter().map(|h| 3.0 * f64::from(*h)).collect();
     let field = HeightField::new(17, 17, &heights, [1.0, 1.5], None).unwrap();
@@ -216,20 +217,22 @@ fn fields_agree_with_their_twins() {
         for i in (0..samples).step_by(7) {
             let (row, col) = (i / 17, i % 17);
             assert_eq!(normals[i], normal(&field, border, row, col));
-            // Elevations of f32, 2^-23 of at most π/2, move a sum by no more than twice that; its own rounding.
+            // Elevations of f32, 2^-23 of at most π/2, change a sum by no more than twice that, besides its own
+            // rounding.
             let expected = sky(&field, border, row, col, count as usize);
             close(view[0][i].into(), expected, 1e-6, "sky view");
-            let twin = Series { order: 4, wedges: Wedges::Slices, receiver: Receiver::CosineLobe };
-            for (plane, expected) in series.iter().zip(seen_along(twin, &horizons[i])) {
+            let reference =
+                Series { order: 4, wedges: Wedges::Slices, receiver: Receiver::CosineLobe };
+            for (plane, expected) in series.iter().zip(seen_along(reference, &horizons[i])) {
                 close(plane[i].into(), expected, 2e-6, "visibility");
             }
         }
     }
 }
 
-/// Ends of what can be: all free, nothing free, a cone of next to nothing; finite, and in their ranges.
+/// Extreme horizons: all free, nothing free, a tiny cone. Values are finite and in their ranges.
 #[test]
-fn ends_hold() {
+fn extreme_horizons_have_finite_maps() {
     for elevation in [-FRAC_PI_2, -1e-30, 0.0, 1e-30, FRAC_PI_2 - 3e-7, FRAC_PI_2] {
         for up in [DVec3::Z, DVec3::X, DVec3::new(-1.0, 1e-9, 1e-9).normalize()] {
             let horizon = |_| elevation;
@@ -246,7 +249,7 @@ fn ends_hold() {
             assert!(all.iter().all(|t| t.abs() < 0.461), "{elevation} {up}: {all:?}");
         }
     }
-    // All of the sphere: a cone of π, up by what is summed.
+    // The whole sphere: a cone of π, upward by the order of the sum.
     let open = of(Box::new(BentNormal), DVec3::Z, |_| -FRAC_PI_2);
     close(open[3], PI, 1e-3, "the whole sphere");
 }

@@ -1,4 +1,4 @@
-//! Nothing is gained or lost that should not be.
+//! Conservation of energy, linearity and symmetry of indirect light.
 
 use ridgelight::scene::{Albedo, Border, Environment, Lights};
 use ridgelight_cpu::indirect::Fineness;
@@ -27,11 +27,11 @@ fn a_flat_furnace_is_one() {
     }
 }
 
-/// Bounce 0 is the sky of `cpu::light`, which has its own way to a horizon. Its m azimuths begin at 0, these
-/// between them, so both together are its 2m: this = 2·sky(2m) - sky(m), but for the scale to a whole
+/// Bounce 0 is the sky of `cpu::light`, which finds horizons differently. Its m azimuths begin at 0 and these
+/// lie between them, so both together are its 2m: this = 2·sky(2m) - sky(m), but for the scale to a whole
 /// hemisphere, e^(-m·asinh(1/slope)) at slopes up to 3, below 1e-9 for 64.
 #[test]
-fn bounce_0_is_the_sky_of_light() {
+fn bounce_0_is_direct_sky_light() {
     for border in BORDERS {
         let field = rough(6, 7, [1.0, 1.5], 1.5);
         let scene = under_sky(field.clone(), border, 1.0);
@@ -44,11 +44,11 @@ fn bounce_0_is_the_sky_of_light() {
     }
 }
 
-/// White ground under a white sky, rough: from below to 1, never back and never beyond. Under `open` and
-/// `periodic` no direction is black. Each bounce leaves at most 1 - (the least share of sky) of what was missing; 0.1
-/// is below that share here, and 0.9^200 is 7e-10.
+/// White rough ground under a white sky rises monotonically to 1. Under `open` and `periodic` no direction is
+/// black. Each bounce leaves at most 1 - (the least share of sky) of the missing light; that share is above 0.1
+/// here, and 0.9^200 is 7e-10.
 #[test]
-fn a_rough_furnace_comes_up_to_one() {
+fn a_rough_furnace_tends_to_one() {
     for (border, divisions) in [(Border::Open, 1), (Border::Open, 2), (Border::Periodic, 1)] {
         let scene = under_sky(rough(6, 5, [1.0, 1.5], 1.5), border, 1.0);
         let pictures = reds(&scene, 200, Fineness { divisions, ..COARSE });
@@ -60,9 +60,8 @@ fn a_rough_furnace_comes_up_to_one() {
     }
 }
 
-/// Under `plane` what leaves a slope below horizontal is black, at every bounce: a tilted plane has
-/// (1 + cos tilt)/2 and nothing to throw onto itself. Rule over azimuths: half a squared step, as the
-/// slice's slope is continuous.
+/// Under `plane` directions below horizontal are black at every bounce: a tilted plane has (1 + cos tilt)/2 and
+/// no indirect light. Rule over azimuths: half a squared step, as the slice's slope is continuous.
 #[test]
 fn a_tilted_plane_misses_what_is_below_horizontal() {
     for (east, north) in [(0.75, 0.0), (-1.0, 0.5)] {
@@ -76,8 +75,8 @@ fn a_tilted_plane_misses_what_is_below_horizontal() {
     }
 }
 
-/// Half a turn and a flip over the cells' diagonal leave the split of the cells, the circle of
-/// azimuths and so every sum as they are, but for rounding: the two kinds of triangle change places.
+/// Half a turn, and a flip over the cells' diagonal, keep the split of the cells, the circle of azimuths and so
+/// every sum but for rounding: the two kinds of triangle change places.
 #[test]
 fn half_a_turn_and_a_flip_change_nothing() {
     let n = 5;
@@ -101,7 +100,7 @@ fn half_a_turn_and_a_flip_change_nothing() {
     }
 }
 
-/// Each channel has its own albedo, at samples and at what they see.
+/// Each channel has its own albedo, at the texel and at the ground it sees.
 #[test]
 fn channels_do_not_mix() {
     let map: Vec<[f32; 3]> =
@@ -118,7 +117,7 @@ fn channels_do_not_mix() {
     }
 }
 
-/// However steep, albedo up to 1 and any border: no place outshines the sky.
+/// However steep the ground, for albedo up to 1 and any border, no texel is brighter than the sky.
 #[test]
 fn no_energy_is_gained() {
     for border in BORDERS {
@@ -134,7 +133,7 @@ fn no_energy_is_gained() {
     }
 }
 
-/// Bounce b carries albedo b + 1 times; light of two sources is the sum of each one's.
+/// Bounce b carries albedo b + 1 times; the light of two sources is the sum of each one's.
 #[test]
 fn light_is_linear() {
     let rough = || rough(6, 6, [1.0, 1.0], 4.0);

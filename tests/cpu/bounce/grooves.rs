@@ -1,6 +1,6 @@
-//! Endless V-shaped grooves with slopes of 1: walls of length a at right angles, ridges all of one
-//! height. Along the groove nothing changes, so a wall's point at s from the bottom sees the other
-//! wall's points at t with the kernel of two perpendicular strips, ½ s t / (s² + t²)^(3/2) dt.
+//! Endless V-shaped grooves with slopes of 1: walls of length a at right angles, ridges all of one height.
+//! Nothing changes along the groove, so a point at s from the bottom receives light from the other wall's
+//! points at t with the kernel of two perpendicular strips, ½ s t / (s² + t²)^(3/2) dt.
 
 use ridgelight::scene::{Border, Lights, Sun};
 use ridgelight_cpu::indirect::Fineness;
@@ -10,8 +10,7 @@ use super::{reds, under_sky};
 use crate::field;
 use crate::reference_page::{HALF, WALL, groove_parts, grooves};
 
-/// The worst error of a column's answer over the walls, bottom and ridge left out: there normals are
-/// not a wall's.
+/// The largest error of a column over the walls. Bottom and ridge are left out: normals there are not a wall's.
 fn worst(answer: &[f64], expected: &dyn Fn(f64) -> f64) -> f64 {
     (1..HALF)
         .flat_map(|i| [(HALF + i, i), (HALF - i, i)])
@@ -19,12 +18,12 @@ fn worst(answer: &[f64], expected: &dyn Fn(f64) -> f64) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// Sky, and sky reflected once and twice, for albedo ½. The sky is exact: slices and horizons are closed
-/// forms, and the rule over azimuths leaves (√2 - 1)^azimuths for a slope of 1. Reflected light is
-/// linear over each triangle instead of smooth: half the cells, a fourth of the error. Under once
-/// reflected light the error per cell c is at most (c²/8)·|L''| of the sky's, 1.5·½/(2a²).
+/// Sky light, and sky light reflected once and twice, for albedo ½. The sky is exact: slices and horizons are
+/// closed forms, and the rule over azimuths leaves (√2 - 1)^azimuths for a slope of 1. Reflected light is
+/// linear over each triangle instead of smooth: half the cells, a fourth of the error. For once reflected light
+/// the error per cell c is at most (c²/8)·|L''| of the sky's, 1.5·½/(2a²).
 #[test]
-fn a_groove_reflects_as_perpendicular_strips_do() {
+fn grooves_match_perpendicular_strips() {
     let scene = under_sky(grooves(1), Border::Periodic, 0.5);
     let [sky, once, twice] = groove_parts();
     let [coarse, fine] = [1, 2].map(|divisions| {
@@ -44,10 +43,10 @@ fn a_groove_reflects_as_perpendicular_strips_do() {
     }
 }
 
-/// A point sun a hair above one wall's slope lights the other wall alone and evenly. What that wall
-/// throws back has a closed form, ρ (E/π) ½ (1 - s/√(s² + a²)): the radiance is constant, so the
-/// stretches' closed form leaves only the rule over azimuths, smooth and periodic, and what the hair
-/// lets through: its sine.
+/// A point sun barely above one wall's slope lights only the other wall, and evenly. The indirect light of that
+/// wall has a closed form, ρ (E/π) ½ (1 - s/√(s² + a²)): the radiance is constant, so the closed form of
+/// visible intervals leaves only the rule over azimuths, smooth and periodic, and the sine of the sun's angle
+/// above the slope.
 #[test]
 fn a_lit_wall_lights_the_other() {
     let hair = 1e-7;
@@ -73,9 +72,9 @@ fn a_lit_wall_lights_the_other() {
 }
 
 /// Walls of lengths a and b that meet at a right angle exchange by crossed strings (a + b - c)/2, c the
-/// distance between their ends: what is bright on the one is seen from the other as much as the other
-/// way round. Each wall in turn reflects a constant light that falls straight down (a point sun in the
-/// zenith); the other's share of it, averaged over its length, is (a + b - c)/2 over that length.
+/// distance between their ends; the exchange is symmetric. Each wall in turn reflects a constant light that
+/// falls straight down (a point sun in the zenith); the mean share that the other wall receives is (a + b -
+/// c)/2 over its length.
 #[test]
 fn walls_exchange_by_crossed_strings() {
     // Slopes 2 over 4 columns and ½ over 16: a right angle, both 8 high, and so is the next groove's.
@@ -99,9 +98,9 @@ fn walls_exchange_by_crossed_strings() {
         scene.lights = Lights { suns: vec![zenith], ..Lights::default() };
         let fineness = Fineness { azimuths: 128, divisions: 1, strips: 1 };
         let pictures = reds(&scene, 1, fineness);
-        // Bounce 1 inside the wall, over the light that the other one gives off; at its ends the
-        // samples have other normals, so their values are the closed form's: ½ at the bottom of a
-        // right angle, ½ (1 - cos of the angle at which the other wall ends) at the ridge.
+        // Bounce 1 inside the wall, over the radiance of the other wall. At the wall's ends the texels have
+        // other normals, so the closed form gives their values: ½ at the bottom of a right angle, ½ (1 - cos of
+        // the angle at which the other wall ends) at the ridge.
         let inside: Vec<f64> = wall.map(|c| (pictures[1][c] - pictures[0][c]) / lit).collect();
         let other = steep.hypot(gentle);
         let ridge = 0.5 * (1.0 - length / other);

@@ -1,4 +1,4 @@
-//! The f64 truth for direct and bounced light against scenes whose answer has a closed form.
+//! The f64 quadrature of direct and indirect light, against closed forms.
 
 mod energy;
 mod grooves;
@@ -16,14 +16,14 @@ use crate::field;
 
 const COARSE: Fineness = Fineness { azimuths: 32, divisions: 1, strips: 8 };
 
-/// Nothing special: hashed heights from 0 to `relief`.
+/// Hashed heights from 0 to `relief`.
 fn rough(rows: usize, cols: usize, cell_m: [f64; 2], relief: f64) -> HeightField {
     field(rows, cols, cell_m, |r, c| {
         ((r * 7919 + c * 104_729 + r * c * 31) % 61) as f64 * relief / 61.0
     })
 }
 
-/// Under a sky of radiance 1, of one albedo.
+/// Under a sky of radiance 1, with one albedo.
 fn under_sky(field: HeightField, border: Border, albedo: f32) -> Scene {
     Scene {
         field,
@@ -37,7 +37,7 @@ fn red(picture: &Picture) -> Vec<f64> {
     picture.iter().map(|rgb| rgb[0]).collect()
 }
 
-/// The first channel of all bounces up to 0, 1, …
+/// The first channel, for 0, 1, … bounces in all.
 fn reds(scene: &Scene, bounces: usize, fineness: Fineness) -> Vec<Vec<f64>> {
     light(scene, bounces, fineness).unwrap().iter().map(red).collect()
 }

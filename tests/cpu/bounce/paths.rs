@@ -1,4 +1,5 @@
-//! The quadrature against counting paths, whose lobes are seen from above alone, as the quadrature's.
+//! The quadrature against brute-force path tracing. Both evaluate indirect Phong specular towards straight
+//! above only.
 
 use ridgelight::scene::{Albedo, Border, Environment, Lights, PhongSpecular, Specular};
 use ridgelight_cpu::indirect::{Fineness, truth};
@@ -7,11 +8,11 @@ use ridgelight_cpu::light::normal;
 use super::{rough, under_sky};
 use crate::brute_force_paths::Paths;
 
-/// Bounces 0 and up to 3 at some samples of a rough field, diffuse with a map of albedos and with a lobe,
-/// under a sky or an environment: within four standard errors of the paths and the stated error of the
-/// quadrature. (4 σ: 6e-5 a comparison; 72 comparisons, one seed.)
+/// Bounces 0 to 3 at some texels of a rough field, diffuse with an albedo map and with Phong specular, under a
+/// sky or an environment: within four standard errors of the paths plus the stated error of the quadrature. (4
+/// σ: 6e-5 a comparison; 72 comparisons, one seed.)
 #[test]
-fn paths_bring_what_the_quadrature_says() {
+fn brute_force_paths_match_the_quadrature() {
     let field = || rough(5, 5, [1.0, 1.25], 2.5);
     let map = Albedo::Map((0..25_u8).map(|i| [0.8, f32::from(i % 4) / 4.0, 0.3]).collect());
     let mut plane = under_sky(field(), Border::Plane, 0.0);

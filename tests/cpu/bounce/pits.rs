@@ -10,24 +10,24 @@ use super::{reds, under_sky};
 use crate::reference_page::{PITS, pit, pit_bounds, pit_radiance};
 
 #[test]
-fn the_closed_form_is_the_quadrature() {
+fn the_closed_form_matches_the_quadrature() {
     for (alpha, albedo, bounces, radiance) in PITS {
         let off = pit_radiance(alpha, f64::from(albedo), bounces) - radiance;
         assert!(off.abs() < 1e-7, "f32 of 0.9");
     }
 }
 
-/// The reference's pits to 1e-12, by slices of what places of the sphere see above its rim and below it. Of a
-/// sphere every place sees as much sky, the same radiance comes back from the rest, and so it goes on.
+/// The reference numbers' pits to 1e-12, by slices of visible sphere above and below its rim. Every point of a
+/// sphere sees as much sky, and the same radiance from the rest, at every bounce.
 #[test]
-fn slices_of_a_pit_are_the_reference() {
+fn slices_of_a_pit_match_reference_numbers() {
     let all: serde_json::Value =
         serde_json::from_str(include_str!("../../basis/reference_numbers.json")).unwrap();
     for sample in all["spherical_pit"].as_array().unwrap() {
         let number = |name: &str| sample[name].as_f64().unwrap();
         let (alpha, albedo) = (number("alpha"), number("albedo"));
         for from_bottom in [0.0, 0.3 * alpha, 0.9 * alpha] {
-            // On a sphere of radius 1 about the origin; its normal is towards that.
+            // On a sphere of radius 1 about the origin; its normal points there.
             let (x, z) = (f64::sin(from_bottom), -f64::cos(from_bottom));
             let azimuths = 4096;
             let (mut sky, mut ground) = (0.0, 0.0);
@@ -51,10 +51,10 @@ fn slices_of_a_pit_are_the_reference() {
     }
 }
 
-/// Bounces 0, 1, 2 and the limit at every sample of the inner half, within what the rim's staircase can
-/// do. Half the cells, half the error: order 1, ± 0.3 as the staircase is another one.
+/// Bounces 0, 1, 2 and the limit at every texel of the inner half, within the error of the rim's staircase.
+/// Half the cells, half the error: order 1, ± 0.3 as the staircase differs.
 #[test]
-fn a_pit_is_lit_as_its_closed_form() {
+fn pits_match_their_closed_form() {
     for (alpha, albedo, limit) in [(0.8, 0.5_f32, 10), (1.2, 0.9_f32, 50)] {
         let rho = f64::from(albedo);
         let errors = [6.5, 12.5].map(|rim| {

@@ -1,4 +1,4 @@
-//! What is seen along an azimuth.
+//! Visible intervals along an azimuth.
 
 use ridgelight_cpu::oracle::Oracle;
 use std::f64::consts::{FRAC_PI_2, TAU};
@@ -6,11 +6,11 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 use super::rough;
 use crate::{BORDERS, field};
 
-/// Stretches fill the elevations from straight down to the horizon that the oracle finds by itself, and
-/// what each says is met in a direction lies in that direction. Relief 3 on cells of 1 and 2: slopes
-/// carry few roundings, angles near 3.
+/// Intervals fill the elevations from straight down to the oracle's horizon, and the ground that an interval
+/// gives for a direction lies in that direction. Relief 3 on cells of 1 and 2: slopes carry few roundings,
+/// angles near 3.
 #[test]
-fn stretches_fill_what_is_below_the_horizon() {
+fn visible_intervals_fill_the_angle_below_the_horizon() {
     let field = rough(7, 9, [1.0, 2.0], 3.0);
     let mut seen = Vec::new();
     for border in BORDERS {
@@ -36,7 +36,7 @@ fn stretches_fill_what_is_below_the_horizon() {
                     let corners = oracle.corners(stretch.triangle).map(height);
                     let met: f64 = weights.iter().zip(corners).map(|(w, h)| w * h).sum();
                     let rise = met - height([row, col]);
-                    // The last stretch of a periodic field may end at horizontal, met nowhere.
+                    // The last interval of a periodic field may end at horizontal, without a hit.
                     let expected = distance * elevation.tan();
                     let ends = elevation > oracle.horizon(row, col, azimuth).unwrap().slope.atan();
                     assert!(ends || distance == 0.0 || (rise - expected).abs() < 1e-9);
@@ -64,8 +64,8 @@ fn stretches_fill_what_is_below_the_horizon() {
     }
 }
 
-/// A step up by 2 at distance 2..3 on cells of 1, seen along a row: the floor from straight down to
-/// horizontal, met where tan ω = 0, and the ramp up to atan(2/3).
+/// A step up by 2 at distance 2..3 on cells of 1, along a row: the floor from straight down to horizontal, hit
+/// where tan ω = 0, and the ramp up to atan(2/3).
 #[test]
 fn a_step_shows_its_floor_and_its_face() {
     let step = field(5, 8, [1.0, 1.0], |_, c| if c > 4 { 2.0 } else { 0.0 });

@@ -1,12 +1,12 @@
-//! The scenes that the path tracer is compared on, as the quadrature sees them.
+//! The quadrature of the scenes that the path tracer is compared on.
 
 use ridgelight_cpu::indirect::{Fineness, truth};
 
 use crate::reference_page::{FINENESS, MOST_BOUNCES, closed_forms, head, light_names};
 use crate::scenes::{Agreement, scenes};
 
-/// Figures after a row's head on the published page; none where there is no such row, one that is no number
-/// or too few.
+/// Figures after a row's head on the published page; none where the row is missing, or a figure is no number,
+/// or there are too few.
 fn figures<const N: usize>(page: &str, head: &str) -> Option<[f64; N]> {
     let row = page.lines().find_map(|line| line.strip_prefix(head))?;
     let all: Option<Vec<f64>> =
@@ -14,14 +14,14 @@ fn figures<const N: usize>(page: &str, head: &str) -> Option<[f64; N]> {
     all?.try_into().ok()
 }
 
-/// docs/measured/reference.md: what stands there.
+/// The text of docs/measured/reference.md.
 fn page() -> String {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/measured/reference.md");
     std::fs::read_to_string(path).expect("docs/measured/reference.md")
 }
 
-/// Prints mean radiance and stated error of every scene, and asks that the truth be worth comparing with:
-/// the stated errors' rms is below 1 % of the mean. The published page says the same means, and its z hold.
+/// Prints mean radiance and stated error of every scene, and requires an RMS of the stated errors below 1 % of
+/// the mean. The published page has the same means, and its z are small enough.
 #[test]
 fn stated_errors_are_small_on_every_scene() {
     println!("{:34} bounces  mean radiance (sky, sun, sphere)    rms of stated error", "scene");
@@ -64,15 +64,15 @@ fn closed_forms_are_published() {
             panic!("run tools/reference: docs/measured/reference.md lacks {head}");
         };
         assert!(z <= 4.0, "{head}{z}");
-        // A row of another value is not this one's.
+        // A row with another value does not match.
         assert!(figures::<4>(&page.replace(&head, "| "), &head).is_none());
     }
 }
 
-/// The comparison passes a picture with the noise that it admits to, and fails one that is a hundredth
-/// too bright, one moved by a sample, one of a single wrong sample, and one that hides its noise.
+/// The comparison passes a picture with its stated noise, and fails one that is 1 % too bright, one shifted by
+/// a texel, one with a single wrong texel, and one that understates its noise.
 #[test]
-fn agreement_tells_noise_from_wrong() {
+fn agreement_separates_noise_from_error() {
     let scene = scenes().remove(7).1;
     let truth = truth(&scene, 1, Fineness { azimuths: 24, divisions: 1, strips: 12 }).unwrap();
     let (right, stated) = (&truth.radiance[1], &truth.error[1]);

@@ -1,4 +1,4 @@
-//! `bounce_walk`: against every step of the samples' own lines, the f64 truth, and answers derived here.
+//! `bounce_walk` against every step of the texels' own lines, the f64 quadrature, and closed forms.
 
 use crate::horizon::*;
 use glam::DVec2;
@@ -14,7 +14,7 @@ use ridgelight_cpu::shared::sweep::March;
 use ridgelight_cpu::sky_shade::sky_at;
 use std::f64::consts::PI;
 
-/// Sweeps a field and hands it to `of`.
+/// Sweeps a field and passes it to `of`.
 fn with_swept<T>(
     field: &HeightField,
     border: Border,
@@ -33,8 +33,8 @@ fn with_swept<T>(
     })
 }
 
-/// What is thrown from flat white ground everywhere: the ground's share of what a sample sees, found by looking
-/// at every step of its own line.
+/// Indirect light of flat white ground everywhere: the share of ground in a texel's view, by testing every step
+/// of its own line.
 fn share_of_ground(swept: &Swept, azimuth: &Azimuth, col: i32, row: i32) -> f64 {
     let march = March::new(swept.heights, azimuth);
     let (lane, step) = march.of_sample(col, row);
@@ -64,11 +64,11 @@ fn rough(rows: usize, cols: usize, relief: f64) -> HeightField {
     field(rows, cols, [3.0, 2.0], |r, c| relief * noise(7, r, c))
 }
 
-/// Along the grid and its diagonals every own line is a swept one: all that a look at every step finds is found,
-/// to the last bit, and stretches fill the elevations without gap or overlap. In other azimuths the tree is that of
-/// the line beside: what is found is never more.
+/// Along the grid and its diagonals every texel's own line is a swept one: the walk matches the test of every
+/// step to the last bit, and visible intervals fill the elevations without gap or overlap. In other azimuths
+/// the walk uses the neighbouring line: it never finds more.
 #[test]
-fn what_is_seen_is_what_rises() {
+fn walks_match_every_step_along_swept_lines() {
     for (i, (rows, cols)) in SIZES.into_iter().chain([(24, 31)]).enumerate() {
         let rough = rough(rows, cols, 9.0 + i as f64);
         let white = vec![[1.0_f32; 3]; rows * cols];
@@ -100,7 +100,7 @@ fn relative(got: &[f64], want: &[f64]) -> f64 {
     (squares / want.len() as f64).sqrt() / mean
 }
 
-/// Walks of every sample.
+/// Walks of every texel.
 fn walks(field: &HeightField, border: Border, azimuths: u32, exit: &[[f32; 3]]) -> Vec<Walked> {
     let mut azimuths = even(azimuths, field.cell_m());
     with_swept(field, border, &mut azimuths, |swept| {
@@ -108,11 +108,11 @@ fn walks(field: &HeightField, border: Border, azimuths: u32, exit: &[[f32; 3]]) 
     })
 }
 
-/// Ground that is cut finer in straight pieces: the walk, which sees it at its steps alone, comes to the truth of
-/// every crossing as the steps halve; by how much, the ridges it steps over decide. The light is the heights'
-/// own, linear like the surface.
+/// On a surface divided more finely, the walk, which uses whole steps only, tends to the quadrature over every
+/// crossing as the steps halve. The error depends on ridges between steps. The light is linear between heights,
+/// like the surface.
 #[test]
-fn walks_come_to_the_truth() {
+fn walks_tend_to_the_quadrature() {
     let coarse = fractal(16, 3).unwrap();
     let h = |r: usize, c: usize| f64::from(coarse.heights_m()[r.min(15) * 16 + c.min(15)]);
     let cut = |parts: usize| {
@@ -145,10 +145,11 @@ fn walks_come_to_the_truth() {
     assert!(errors[1] < 0.8 * errors[0] && errors[2] < 0.8 * errors[1], "{errors:?}");
 }
 
-/// A valley between two planes of slope 1, white on one side up to the ridge: a sample on the dark side at s from the
-/// bottom sees the whole white side, of length a, with ½ (1 - s/√(s² + a²)) of its hemisphere, 1/8 s² less, as between
-/// the bottom and the first white sample radiance is linear. The rule over azimuths is smooth and periodic; beyond
-/// 512 rows nothing is seen: at most 1 - cos of the angle at which the wall ends there, tan = 2a/512.
+/// A valley between two planes of slope 1, white on one side up to the ridge: a texel on the dark side at s
+/// from the bottom sees the whole white side, of length a, over ½ (1 - s/√(s² + a²)) of its hemisphere, 1/8 s²
+/// less, as radiance is linear between the bottom and the first white texel. The rule over azimuths is smooth
+/// and periodic. Ground beyond 512 rows is not visited: at most 1 - cos of the angle at which the wall ends
+/// there, tan = 2a/512.
 #[test]
 fn a_white_wall_lights_a_black_one() {
     let (rows, half) = (128, 24);
@@ -175,10 +176,10 @@ fn a_white_wall_lights_a_black_one() {
     });
 }
 
-/// Light of equal radiance all around, along the grid and its diagonals, where walks and aimed horizons look at the
-/// same places: the shares of sky and ground make a whole.
+/// Equal radiance from all directions, along the grid and its diagonals, where walks and aimed horizons use the
+/// same points: the shares of sky and ground sum to one.
 #[test]
-fn ground_and_sky_make_a_whole() {
+fn ground_and_sky_shares_sum_to_one() {
     let rough = field(9, 12, [1.0, 1.0], |r, c| 3.0 * noise(7, r, c));
     let white = vec![[1.0_f32; 3]; 9 * 12];
     let mut azimuths = even(8, [1.0, 1.0]);

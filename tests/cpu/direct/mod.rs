@@ -1,4 +1,4 @@
-//! The reference for direct light against scenes whose answer has a closed form.
+//! The reference for direct light against closed forms.
 
 mod passes;
 mod suns_and_keys;
@@ -27,7 +27,7 @@ fn circle_tolerance(azimuths: usize) -> f64 {
 
 /// The slice against Simpson's rule with 2·1000 steps: error ≤ width·(width/2000)⁴·16/180.
 #[test]
-fn the_slice_is_the_integral_it_says() {
+fn the_slice_matches_simpsons_rule() {
     for (a, b, low, high) in
         [(0.3, 0.9, -0.4, 1.2), (-0.7, 0.7, 0.1, FRAC_PI_2), (0.5, 0.2, -1.5, 1.5)]
     {
@@ -103,7 +103,7 @@ fn normals_turn_with_the_field() {
 
 /// Flat and free: (1/π) ∫ cos = 1, under every border, at every size, at corners.
 #[test]
-fn flat_ground_answers_one() {
+fn flat_ground_sees_all_of_the_sky() {
     for (rows, cols) in [(1, 1), (1, 5), (5, 1), (2, 3), (7, 7)] {
         let flat = field(rows, cols, [1.0, 3.0], |_, _| 100.0);
         for border in BORDERS {
@@ -116,8 +116,8 @@ fn flat_ground_answers_one() {
     }
 }
 
-/// A tilted plane. `open`: its own plane is its horizon both ways, the whole hemisphere shines: 1.
-/// `plane`: of the hemisphere about the normal what lies above horizontal, (1 + cos tilt) / 2.
+/// A tilted plane. `open`: its own plane is its horizon both ways and its whole hemisphere is bright: 1.
+/// `plane`: the part of the normal's hemisphere above horizontal, (1 + cos tilt) / 2.
 #[test]
 fn a_tilted_plane_sees_its_share_of_the_sky() {
     for (east, north) in [(0.75, 0.0), (-2.0, 1.0), (0.125, -0.25), (16.0, 0.0)] {
@@ -135,7 +135,7 @@ fn a_tilted_plane_sees_its_share_of_the_sky() {
 /// sides: tan h = (H/d)|cos φ|, and the mean over φ of cos²h = 1/(1 + t²cos²φ) is 1/√(1 + t²) = cos b.
 /// The rule on a circle converges like q^(m/2), q = ((√(1+t²) - 1)/t)² ≤ 0.38 for t ≤ 2.
 #[test]
-fn a_canyon_answers_the_cosine_of_its_walls() {
+fn a_canyon_has_the_cosine_of_its_walls() {
     for t in [0.25, 1.0, 2.0] {
         let canyon = field(1, 16, [2.0, 1.0], |_, c| if c == 0 { 16.0 * t } else { 0.0 });
         let answer = sky(&canyon, Border::Periodic, 0, 8, 256);
@@ -147,7 +147,7 @@ fn a_canyon_answers_the_cosine_of_its_walls() {
 /// either side: azimuths within ε = atan(d/L) of its line are free too, which adds at most
 /// (2/π)∫₀^ε t²φ² dφ ≤ t²ε³ / (1.5π).
 #[test]
-fn a_wall_answers_half_one_plus_its_cosine() {
+fn a_wall_leaves_half_of_one_plus_its_cosine() {
     for t in [0.5, 2.0] {
         let wall = field(801, 4, [1.0, 1.0], |_, c| if c == 3 { 2.0 * t } else { 0.0 });
         let answer = sky(&wall, Border::Plane, 400, 1, 1024);
@@ -162,7 +162,7 @@ fn a_wall_answers_half_one_plus_its_cosine() {
 /// On the grid the rim's crest along a ray is met between R - √2 and R + √2 cells, so its elevation is
 /// off by at most Δ = sin b cos b·√2/(R - √2) and cos²b by sin 2b·Δ ≤ (√2/2)/(R - √2).
 #[test]
-fn a_circular_basin_answers_the_squared_cosine() {
+fn a_circular_basin_has_the_squared_cosine() {
     let radius = 60.0_f64;
     for b in [0.3_f64, 0.8, 1.2] {
         let basin = field(127, 127, [1.0, 1.0], |r, c| {
@@ -177,14 +177,14 @@ fn a_circular_basin_answers_the_squared_cosine() {
 
 /// The spherical pit: a cap of half-angle α of a sphere of radius R, sunk into a plain.
 ///
-/// Between two points of a sphere the form factor is dA / (4πR²) whatever the points, so any point of
-/// the pit sees the pit itself with share (1 - cos α)/2 and the sky with (1 + cos α)/2. With albedo
-/// 0.5, α = 0.8 that is 0.4241766773367914 (the independent quadrature of the project's vectors).
+/// The form factor between two points of a sphere is dA / (4πR²) for all points, so any point of the pit sees
+/// the pit with share (1 - cos α)/2 and the sky with (1 + cos α)/2. With albedo 0.5, α = 0.8 that is
+/// 0.4241766773367914 (an independent quadrature).
 ///
-/// From the grid: (1) the rim along a ray is met within √2 cells of its place at distance D, so its
-/// elevation is off by Δ ≤ sin ω cos ω √2/(D - √2) and the slice by 2 cos ω Δ ≤ 2·0.385·√2/(D - √2),
-/// sin ω cos²ω being at most 0.385; (2) the normal's gradient by (1/6 + 1/4)·f''' with
-/// f''' ≤ 3 sin α/(R² cos⁵α), and light by at most twice that; (3) the rule over azimuths.
+/// Errors of the grid: (1) the rim along a ray is met within √2 cells of its place at distance D, so its
+/// elevation errs by Δ ≤ sin ω cos ω √2/(D - √2) and the slice by 2 cos ω Δ ≤ 2·0.385·√2/(D - √2), sin ω cos²ω
+/// being at most 0.385; (2) the normal's gradient by (1/6 + 1/4)·f''' with f''' ≤ 3 sin α/(R² cos⁵α), and light
+/// by at most twice that; (3) the rule over azimuths.
 #[test]
 fn a_spherical_pit_is_lit_the_same_everywhere() {
     let (alpha, albedo, radiance) = (0.8_f64, 0.5, 0.424_176_677_336_791_4);
@@ -206,7 +206,7 @@ fn a_spherical_pit_is_lit_the_same_everywhere() {
     }
 }
 
-/// A constant environment is a uniform sky; the lower half of one shines under `open` only.
+/// A constant environment is a uniform sky; its lower half contributes under `open` only.
 #[test]
 fn a_constant_environment_is_a_sky() {
     let tilted = plane(9, 9, [1.0, 1.0], 0.75, -0.5);
@@ -266,10 +266,10 @@ fn sun_at(azimuth_rad: f64, elevation_rad: f64, diameter_rad: f64) -> Sun {
     Sun { azimuth_rad, elevation_rad, diameter_rad, irradiance: [PI as f32, 0.0, 1.0] }
 }
 
-/// Extremes stay numbers: light under a sky of radiance 1 lies within [0, 1] whatever the heights and
-/// cells accepted. Slopes below 1e-5 turn neither normal nor horizon by more than a few of them: 1.
+/// Results are finite at extremes: light under a sky of radiance 1 lies within [0, 1] for all accepted heights
+/// and cells. Slopes below 1e-5 turn neither normal nor horizon by more than a few times that: 1.
 #[test]
-fn extremes_stay_numbers() {
+fn extremes_give_finite_numbers() {
     for border in BORDERS {
         for (height, cell) in [(1e15, 1e-3), (-1e15, 1e-3), (1e6, 1.0), (1e-6, 1.0), (1e-15, 1e12)]
         {
@@ -287,7 +287,7 @@ fn extremes_stay_numbers() {
     }
 }
 
-/// Voids are lit as their filling: a hole in a level plain is level.
+/// Voids are lit as filled ground: a hole in a level plain is level.
 #[test]
 fn a_void_is_lit_as_it_is_filled() {
     let mut voids = vec![false; 25];

@@ -18,8 +18,8 @@ use ridgelight_cpu::sun_shade::sun_shade;
 use ridgelight_cpu::tolerance::{EPSILON, march_slope};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// Marches the azimuths with all crossings and hands what was found to `of`: exact horizons, so that
-/// only light is judged.
+/// Marches the azimuths with all crossings and passes the result to `of`: horizons are exact, so only light is
+/// tested.
 fn lit<T>(
     field: &HeightField,
     border: Border,
@@ -79,7 +79,7 @@ fn the_sky_is_the_closed_form_over_the_oracles_horizons() {
         let sky = lit(&rough, border, &mut azimuths, sky_shade);
         let (_, relief) = extent(&rough);
         let tolerance = 2.0 * march_slope(relief, 2.0) + 16.0 * EPSILON;
-        // What lies beyond 512 cells, two metres wide or more, is missed by a march.
+        // A march misses ground beyond 512 cells, two metres wide or more.
         let unseen = if border == Border::Periodic { relief / (512.0 * 2.0) } else { 0.0 };
         for (i, sky) in sky.into_iter().enumerate() {
             let (row, col) = (i / 8, i % 8);
@@ -109,9 +109,9 @@ fn the_sky_is_the_closed_form_over_the_oracles_horizons() {
     }
 }
 
-/// Flat: 1. A plane inclined by θ sees the sky above its own plane: 1 where the sky goes on below
-/// horizontal, (1 + cos θ)/2 where it ends there. m wedges with the lowest slope of their centre:
-/// off by (2π/m)²/6 or less, as the reference's own test derives with twice the room.
+/// Flat: 1. A plane inclined by θ sees the sky above its own plane: 1 where the sky continues below horizontal,
+/// (1 + cos θ)/2 where it ends there. m wedges with the lowest slope of their centre err by (2π/m)²/6 or less,
+/// as the reference's own test derives with a factor of two.
 #[test]
 fn a_plane_sees_its_share_of_the_sky() {
     for (east, north) in [(0.0, 0.0), (0.5, -0.25), (-2.0, 1.0)] {
@@ -149,8 +149,8 @@ fn tables(env: &Environment, azimuths: &[Azimuth], nodes: usize, border: Border)
     env_tables(&rows, (env.height(), azimuths.len()), nodes, bottom_rad(border))
 }
 
-/// All wedges together are the whole circle, wherever they part: the tables' sums over azimuths are
-/// the texels' own integrals. Wedges are f32: ε of each of their ends, at which radiance jumps by 30.
+/// All wedges together are the whole circle, wherever they begin: the tables' sums over azimuths are the
+/// texels' own integrals. Wedges are f32: ε of each of their ends, at which radiance jumps by 30.
 #[test]
 fn tables_of_all_azimuths_add_up_to_the_environment() {
     for env in environments() {
@@ -284,9 +284,9 @@ fn suns_are_those_of_the_reference() {
     }
 }
 
-/// Key lights over bumps, in the reference's own azimuths: what is left is the march's slope over the wedges,
-/// cosines taken at wedges' middles by the one and over them by the other, a share δ²/24 of what the
-/// normal's horizontal part receives, and f32's rounding of wedges and slopes.
+/// Key lights over bumps, in the reference's own azimuths. The remaining error is that of the march's slope
+/// over the wedges; of cosines taken at wedges' middles in one and over them in the other, a share δ²/24 of the
+/// light on the normal's horizontal part; and of f32 rounding of wedges and slopes.
 #[test]
 fn key_lights_are_those_of_the_reference() {
     let rough = bumps(6, 7);

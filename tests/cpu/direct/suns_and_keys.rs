@@ -112,7 +112,7 @@ fn a_key_over_level_ground_has_its_closed_form() {
                 assert_eq!((g, b), (0.0, r / 2.0));
             }
         }
-        // What lies below horizontal gives level ground nothing.
+        // Light from below horizontal adds nothing on level ground.
         let below = |low, high| key_of(&oracle, 2, 2, &key(50.0, 90.0, [low, high]), 8)[0];
         assert!((below(-50.0, 40.0) - below(0.0, 40.0)).abs() < 1e-15);
         assert_eq!(below(-50.0, -1.0), 0.0);
@@ -137,8 +137,8 @@ fn a_key_of_the_whole_sky_is_the_sky() {
     }
 }
 
-/// A wall's top cuts what lies below it: 5 m high and 5 m away, along the light's middle at 45°. Above it
-/// nothing is lost, below all, and between what the closed form of the rest gives.
+/// A wall's top cuts a key light from below: 5 m high and 5 m away, along the light's middle at 45°. Above it
+/// nothing is lost, below it everything; in between the closed form of the rest holds.
 #[test]
 fn a_wall_cuts_a_key_from_below() {
     let wall = field(401, 8, [1.0, 1.0], |_, c| if c == 7 { 5.0 } else { 0.0 });

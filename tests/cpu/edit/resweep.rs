@@ -7,7 +7,7 @@ use ridgelight::plan::azimuths::even;
 use ridgelight_cpu::dirty_mark::dirty_mark;
 use ridgelight_cpu::horizon_resweep::horizon_resweep;
 
-/// Heights of a field, others in a rectangle; a field of them would have another base.
+/// Heights of a field with a changed rectangle; a new field would have another base.
 fn edited(before: &HeightField, rectangle: Rectangle, by: f64) -> Vec<f32> {
     let mut heights = before.heights_m().to_vec();
     for row in rectangle.row..rectangle.row + rectangle.rows {
@@ -17,7 +17,7 @@ fn edited(before: &HeightField, rectangle: Rectangle, by: f64) -> Vec<f32> {
     heights
 }
 
-/// Sweeps before an edit and goes on from there; returns the samples swept, and those of all lines.
+/// Sweeps before an edit and continues from there; returns the swept steps, and those of all lines.
 fn resweep(
     before: &HeightField,
     after: &[f32],
@@ -69,7 +69,7 @@ proptest! {
     }
 }
 
-/// On a dome every sample stays on the hull: what sees an edit sees it until the dome hides it.
+/// On a dome every texel stays on the hull: an edit stays visible until the dome hides it.
 #[test]
 fn a_small_edit_of_a_rough_field_sweeps_little_and_of_a_dome_is_still_right() {
     let rough = field(200, 200, [1.0, 1.0], |r, c| 3.0 * noise(5, r, c));
@@ -83,7 +83,7 @@ fn a_small_edit_of_a_rough_field_sweeps_little_and_of_a_dome_is_still_right() {
             let after = edited(before, rectangle, by);
             let options = SweepOptions::default();
             let [count, all] = resweep(before, &after, rectangle, options).unwrap();
-            // Nine lines of 200 an azimuth, and at first only what lies behind the edit.
+            // Nine lines of 200 an azimuth, and at first only texels behind the edit.
             assert!(i == 1 || count * 20 < all, "{count} of {all} samples, raised by {by}");
         }
     }

@@ -1,4 +1,4 @@
-//! Azimuths that an environment draws, against even ones.
+//! Importance-sampled azimuths of an environment, against even ones.
 
 use std::path::Path;
 
@@ -26,7 +26,7 @@ fn tables(environment: &Environment, azimuths: &[Azimuth]) -> EnvTables {
     env_tables(&rows, sides, NODES, bottom_rad(BORDER))
 }
 
-/// Light of samples through the true horizons in some azimuths alone, mean over channels.
+/// Light of texels by exact horizons in some azimuths alone, mean over channels.
 fn lit(
     field: &HeightField,
     environment: &Environment,
@@ -49,8 +49,8 @@ fn lit(
     places.iter().map(at).collect()
 }
 
-/// By how much wedges of equal light err less than these, where each errs by the same share of its light and
-/// none knows of the others: by the root of the sums of their lights' squares.
+/// The gain of wedges of equal light over these, where each errs independently by the same share of its light:
+/// by the root of the sums of their lights' squares.
 fn equal_light_gain(environment: &Environment, azimuths: &[Azimuth]) -> f64 {
     let tables = tables(environment, azimuths);
     // Over level ground.
@@ -59,16 +59,17 @@ fn equal_light_gain(environment: &Environment, azimuths: &[Azimuth]) -> f64 {
     (squares * lights.len() as f64).sqrt() / lights.iter().sum::<f64>()
 }
 
-/// The bundled sky over the bundled terrain, whose heights are drawn out until some samples do not see the sky's
-/// sun, 48 degrees high. Drawn azimuths are to gain as much over as many even ones as wedges of equal light would:
-/// a quarter of them is spread evenly, but in narrow wedges horizons turn less. And they are to be nearer to the
-/// truth than four times as many even ones: even wedges that look towards their light, too, are not.
+/// The bundled sky over the bundled terrain, whose heights are scaled until the sky's sun, 48 degrees high, is
+/// hidden from some texels. Importance-sampled azimuths must gain as much over as many even ones as wedges of
+/// equal light would: a quarter of them is spread evenly, but horizons turn less within narrow wedges. They
+/// must also be more exact than four times as many even ones: even wedges that aim at their light, too, are
+/// not.
 ///
-/// Heights as they are hide nothing of the sun: then drawn azimuths are farther off, as all else is cut a quarter
-/// as finely. A wedge four times as wide errs by 4² as much at most, where horizons turn in proportion, and
-/// there are a quarter as many: 4² / √4.
+/// Unscaled heights hide nothing of the sun: importance-sampled azimuths are then less exact, as the rest is
+/// cut a quarter as finely. A wedge four times as wide errs by 4² as much at most, where horizons turn in
+/// proportion, and there are a quarter as many: 4² / √4.
 #[test]
-fn drawn_azimuths_beat_even_ones_where_what_is_bright_is_hidden() {
+fn importance_sampled_azimuths_beat_even_ones_where_occlusion_cuts_bright_light() {
     const COUNT: u32 = 16;
     let sky = files::read_environment(&asset("sky_512x256.hdr"), 0.0).expect("the bundled sky");
     for z_scale in [1.0, 3.0, 4.0] {

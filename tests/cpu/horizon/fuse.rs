@@ -20,7 +20,7 @@ fn aims(fuse: Fuse) -> bool {
     matches!(fuse, Fuse::AimedNearest | Fuse::Aimed | Fuse::AimedAround)
 }
 
-/// Sweeps and hands the swept field with one mode after the other to `check`.
+/// Sweeps and passes the swept field in one mode after the other to `check`.
 fn each_mode(
     field: &HeightField,
     border: Border,
@@ -48,8 +48,8 @@ fn samples(field: &HeightField) -> impl Iterator<Item = (i32, i32)> {
     (0..field.rows() * cols).map(move |i| ((i % cols) as i32, (i / cols) as i32))
 }
 
-/// Aimed modes see points of the surface on the sample's own line: never above the true horizon, at
-/// every border, spacing and size.
+/// Aimed modes use points of the surface on the texel's own line: never above the exact horizon, at every
+/// border, spacing and size.
 #[test]
 fn aimed_modes_are_lower_bounds() {
     for (i, (rows, cols)) in SIZES.into_iter().enumerate() {
@@ -84,8 +84,8 @@ fn aimed_modes_are_lower_bounds() {
     }
 }
 
-/// On axes and diagonals a line passes through every sample: each mode finds all that unit steps do,
-/// aimed ones also the first diagonal where it lies across.
+/// On axes and diagonals a line passes through every texel: each mode finds all that unit steps do; aimed ones
+/// also find the first diagonal where it lies across.
 #[test]
 fn on_axes_and_diagonals_every_mode_is_the_march() {
     for border in BORDERS {
@@ -169,9 +169,10 @@ fn errors_fall_from_mode_to_mode() {
     assert!(around < 0.5 * aimed);
 }
 
-/// A roof on level ground whose ridge runs along the cells' diagonals: any line rises to where it crosses the ridge
-/// and falls from there, so that the highest whole step lies next to the crossing. Looking around finds what a
-/// march over all crossings does; aiming at whole steps alone misses it somewhere.
+/// A roof on level ground whose ridge runs along the cells' diagonals: any line rises to where it crosses the
+/// ridge and falls from there, so the highest whole step lies next to the crossing. The mode that searches
+/// around the aim matches a march over all crossings; aiming at whole steps alone misses the crossing
+/// somewhere.
 #[test]
 fn a_ridge_between_steps_is_met() {
     let roof =
@@ -204,9 +205,9 @@ fn a_ridge_between_steps_is_met() {
     assert!(missed > 0, "whole steps are enough here");
 }
 
-/// Which lines stand beside a sample, found by looking at all of them: the lower within a spacing or
-/// through the sample, the upper within one; the nearer, or the lower of two equally near; where one
-/// is off the field the other alone.
+/// The lines beside a texel, found by testing all of them: the lower within a spacing or through the texel, the
+/// upper within one; the nearer, or the lower of two equally near; where one lies outside the field, the other
+/// alone.
 #[test]
 fn the_lines_beside_a_sample_are_the_nearest_there_are() {
     for border in BORDERS {
@@ -273,7 +274,7 @@ fn the_lines_beside_a_sample_are_the_nearest_there_are() {
     }
 }
 
-/// Flat ground: slope exactly 0 wherever anything is met, in every mode.
+/// Flat ground: slope exactly 0 wherever there is an occluder, in every mode.
 #[test]
 fn flat_ground_is_at_slope_0() {
     let flat = field(6, 5, [2.0, 3.0], |_, _| 17.0);
@@ -292,9 +293,9 @@ fn flat_ground_is_at_slope_0() {
     }
 }
 
-/// A ramp has one slope along an azimuth: a mode finds it or nothing, edges included; aimed modes find
-/// it wherever the sample's own line stays on the field for a step. Not so `Own`: it sees a place on a
-/// neighbouring line, higher or lower across the march, and only two places equally far even out.
+/// A ramp has one slope along an azimuth: a mode finds it or nothing, edges included; aimed modes find it
+/// wherever the texel's own line stays on the field for a step. `Own` does not: it uses a place on a
+/// neighbouring line, higher or lower across the march, and only two equally distant places average out.
 #[test]
 fn a_ramp_has_its_slope_up_to_the_edge() {
     let ramp = field(9, 12, [1.0, 2.0], |r, c| 0.5 * c as f64 - 0.25 * r as f64);
@@ -324,7 +325,7 @@ fn a_ramp_has_its_slope_up_to_the_edge() {
     }
 }
 
-/// What a pass that finds every sample's own horizon leaves is handed on as it is.
+/// Horizons of a pass that finds them per texel are passed on unchanged.
 #[test]
 fn direct_hands_on_slopes_and_distances() {
     let rough = field(8, 6, [1.0, 2.0], |r, c| 9.0 * noise(5, r, c));
@@ -355,10 +356,10 @@ fn direct_hands_on_slopes_and_distances() {
     }
 }
 
-/// A field turned by half a turn is the same surface, its sweeps the same to the bit; a quarter turn
-/// keeps lines but turns the split, which only aimed modes look at.
+/// A field turned by half a turn is the same surface, its sweeps the same to the bit; a quarter turn keeps
+/// lines but turns the split, which only aimed modes use.
 #[test]
-fn turns_carry_the_answers_with_them() {
+fn rotated_fields_have_rotated_horizons() {
     let (rows, cols) = (11, 14);
     let h = |r: usize, c: usize| 9.0 * noise(5, r, c);
     let original = field(rows, cols, [1.0, 2.0], h);

@@ -1,4 +1,4 @@
-//! CPU references of the passes that find horizons, against the oracle, and against answers derived beside them.
+//! CPU references of the passes that find horizons, against the oracle and closed forms.
 
 mod azimuths;
 mod fuse;
@@ -50,7 +50,7 @@ pub(crate) fn grid_vector(azimuth: &Azimuth) -> [f64; 2] {
     if azimuth.marches_rows() { [lane, march] } else { [march, lane] }
 }
 
-/// Whole periods before the field, where it repeats: for marches along columns and along rows.
+/// Whole periods before a periodic field: for marches along columns and along rows.
 pub(crate) fn warm_ups(field: &HeightField, border: Border) -> [i32; 2] {
     let size = [field.cols() as u32, field.rows() as u32];
     [false, true].map(|by_row| Axis::of(by_row, size, border).warm_up as i32)
@@ -96,11 +96,10 @@ pub(crate) fn marched(
     lattices
 }
 
-/// Checks an exact answer (slope, march steps to what is met) against the oracle's.
+/// Checks an exact answer (slope, march steps to the occluder) against the oracle's.
 ///
-/// Steps are compared where the oracle's occluder wins by more than both errors; crossings within
-/// its one-place distance are one. A periodic march knows less than the oracle: what lies beyond its
-/// reach.
+/// Steps are compared where the oracle's occluder wins by more than both errors; crossings within its one-place
+/// distance are one. A periodic march ends before the oracle: ground beyond its reach does not count.
 pub(crate) fn check_exact(
     oracle: &Oracle,
     (row, col): (usize, usize),

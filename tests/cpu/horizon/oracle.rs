@@ -1,4 +1,4 @@
-//! The oracle against scenes whose horizons are derived in the comment beside them.
+//! The oracle against closed forms, each derived in a comment.
 
 use proptest::prelude::*;
 use ridgelight::scene::{Border, HeightField};
@@ -37,7 +37,7 @@ fn flat_ground_has_its_horizon_at_zero_and_no_unique_occluder() {
 /// cells that are not square. Heights are rounded to f32: with |offset| ≤ H each is off by at most
 /// H·2⁻²⁴ and a vertex half a cell away or more makes at most 2·H·2⁻²⁴ / (0.5·smallest cell) of it.
 #[test]
-fn a_ramp_answers_slope_times_cosine_at_every_azimuth() {
+fn a_ramp_has_slope_times_cosine_at_every_azimuth() {
     for cell in [[1.0, 1.0], [30.0, 22.5], [1e-3, 5e-3]] {
         for (s, up) in [(0.5_f64, 0.3_f64), (2.0, 4.0), (1e-6, 1.0), (1e3, 2.0)] {
             let (rows, cols) = (13, 17);
@@ -180,7 +180,7 @@ fn a_funnel_has_the_same_horizon_along_all_axes() {
 /// A field turned by 180° or mirrored in its split diagonal is the same surface: answers move with
 /// it. By 90° the split turns and only lines along the axes keep their profile: bit-equal there.
 #[test]
-fn rotations_and_the_transpose_carry_the_answers_with_them() {
+fn rotated_and_transposed_fields_have_rotated_horizons() {
     let (rows, cols) = (23, 31);
     let original = field(rows, cols, [1.0, 2.0], noise);
     let half_turn = field(rows, cols, [1.0, 2.0], |r, c| noise(rows - 1 - r, cols - 1 - c));
@@ -213,7 +213,7 @@ fn rotations_and_the_transpose_carry_the_answers_with_them() {
 
 /// Fields without a cell, and the smallest with some.
 #[test]
-fn degenerate_sizes_answer() {
+fn degenerate_sizes_have_horizons() {
     let one = field(1, 1, [1.0, 1.0], |_, _| 5.0);
     let row = field(1, 5, [2.0, 1.0], |_, c| if c == 3 { 3.0 } else { 0.0 });
     let column = field(5, 1, [1.0, 2.0], |r, _| if r == 3 { 3.0 } else { 0.0 });
@@ -250,7 +250,7 @@ fn the_margin_is_that_over_the_best_other_place() {
 /// of it; the corner is met all the same: tan h = H/d to the rounding of the crossing, which is a few
 /// units in the last place of 40 cells of the field's size, on a flank of H a cell.
 #[test]
-fn corners_are_met_whatever_the_rounding() {
+fn corners_are_hit_whatever_the_rounding() {
     for p in 1..=40_usize {
         for q in 1..=40_usize {
             let cell = [0.3, 0.7];
@@ -266,7 +266,7 @@ fn corners_are_met_whatever_the_rounding() {
 /// columns east of it looking east at 5/7 too, across the seam. On the ridge everything is at most
 /// level: 0.
 #[test]
-fn a_periodic_field_is_met_across_its_seam() {
+fn a_periodic_field_occludes_across_its_seam() {
     let ridge = field(4, 10, [1.0, 1.0], |_, c| if c == 2 { 5.0 } else { 0.0 });
     let met = horizon(&ridge, Border::Periodic, 1, 5, 0.0).unwrap();
     assert_eq!((met.slope, met.col, met.row), (5.0 / 7.0, 12.0, 1.0));

@@ -57,11 +57,11 @@ fn check(
     Ok(worst.to_degrees())
 }
 
-/// Which crossings lie strictly between two steps, by whole numbers: with places in 1/q of a cell, a
-/// line at k that advances by p crosses the next lane line where k + p > q, diagonals along it where
-/// 0 < k < q - p, across it where k + p > 0 and again where k + p > q. f32 must not see one at a step:
-/// at no distance from the sample there, it would stand at any slope. A device's quotients may be off
-/// by 2.5 ulp (Vulkan's precision of division), so each is tried 3 below and above.
+/// Crossings strictly between two steps, in whole numbers: with places in 1/q of a cell, a line at k that
+/// advances by p crosses the next lane line where k + p > q, diagonals along it where 0 < k < q - p, across it
+/// where k + p > 0 and again where k + p > q. f32 must not report one at a step: at no distance from the texel
+/// there, it would have any slope. A device's quotients may err by 2.5 ulp (Vulkan's precision of division), so
+/// each is tried 3 below and above.
 #[test]
 fn crossings_between_steps_are_neither_missed_nor_made_up() {
     for q in 1..=60_u16 {

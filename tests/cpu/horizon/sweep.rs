@@ -1,4 +1,4 @@
-//! `horizon_sweep` against all samples of its own lines.
+//! `horizon_sweep` against brute force over its own lines.
 
 use super::*;
 use proptest::prelude::*;

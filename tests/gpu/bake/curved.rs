@@ -115,7 +115,7 @@ fn views_between_walls_are_those_of_the_opening() {
 
 /// Plans say what a base changes, in the numbers that it was checked by.
 #[test]
-fn plans_say_what_a_base_changes() {
+fn plans_state_the_effect_of_curvature() {
     let limits = plan::Limits::lavapipe();
     let grooves = field(2 * HALF, 2 * HALF, [1.0; 2], |_, c| c.abs_diff(HALF) as f64);
     let mut scene = under_sky(grooves, BORDER);
@@ -138,7 +138,7 @@ fn plans_say_what_a_base_changes() {
 
 /// What cannot be is refused by name, before anything is made.
 #[test]
-fn bends_are_refused_by_name() {
+fn wrong_curvatures_are_refused_by_name() {
     let limits = plan::Limits::lavapipe();
     let grooves = field(2 * HALF, 2 * HALF, [1.0; 2], |_, c| c.abs_diff(HALF) as f64);
     let scene = under_sky(grooves, BORDER);

@@ -48,7 +48,7 @@ fn f64s(colours: &[[f32; 3]]) -> Vec<[f64; 3]> {
 /// One bounce by as many paths as directions looks along each once: the mean of all, but for roundings, 16 of each of
 /// 24 terms. More bounces are the mean of seeds, within six of their standard errors, and as much as roundings may do.
 #[test]
-fn paths_tend_to_the_mean_of_all_directions() {
+fn scatter_paths_tend_to_the_mean_of_all_directions() {
     let mut device = Device::new();
     let mut next = random(81);
     let noise: Vec<f64> = (0..72).map(|_| next()).collect();
@@ -98,7 +98,7 @@ fn by_directions(count: usize) -> f64 {
 /// The pit sees itself evenly, whatever sample stands for what is seen. At the rim a sample of the plain may: within a
 /// cell of it, as what the rim's staircase does, once more.
 #[test]
-fn pits_scatter_as_their_closed_form() {
+fn scattering_in_pits_matches_its_closed_form() {
     let mut device = Device::new();
     let rim = 12.5;
     for (alpha, albedo) in [(0.8, 0.5_f32), (1.2, 0.9)] {
@@ -143,7 +143,7 @@ fn pits_scatter_as_their_closed_form() {
 /// The pit's second bounce as the device draws it, texel by texel: the mean of seeds is within six of their standard errors
 /// of what the paths tend to, and that as near to the closed form as the test before says.
 #[test]
-fn pits_scatter_twice_as_their_closed_form() {
+fn two_bounces_in_pits_match_their_closed_form() {
     const SEEDS: u32 = 8;
     let mut device = Device::new();
     let (rim, alpha, rho) = (12.5, 1.2, f64::from(0.9_f32));
@@ -185,7 +185,7 @@ fn pits_scatter_twice_as_their_closed_form() {
 /// for what is seen is up to half a cell of √2 away, where direct light, ½ · (½ + ½ s/√(s² + a²)), differs by 1/4a of that
 /// at most; of half of all that is seen.
 #[test]
-fn grooves_scatter_as_their_closed_form() {
+fn scattering_in_grooves_matches_its_closed_form() {
     let mut device = Device::new();
     let mut scene = under_sky(grooves(4), Border::Periodic);
     scene.surface.albedo = Albedo::Constant([0.5; 3]);
@@ -217,7 +217,7 @@ fn grooves_scatter_as_their_closed_form() {
 /// what is seen: off by the sum over directions alone. In the mean over the walls a tenth less, of the weight of a direction or
 /// of its cosine, is seen to be wrong.
 #[test]
-fn even_walls_scatter_what_is_not_sky() {
+fn even_walls_scatter_the_share_that_is_not_sky() {
     let mut device = Device::new();
     let mut scene = under_sky(grooves(4), Border::Periodic);
     scene.surface.albedo = Albedo::Constant([0.5; 3]);
@@ -250,7 +250,7 @@ fn even_walls_scatter_what_is_not_sky() {
 /// to a half, as if by chance: thrice √(w² √(N/4π) ∮ f² / 12); and by its rule over a function that changes within 1/(n + 2)
 /// radians, w (n + 2)² / 24 of itself.
 #[test]
-fn walls_scatter_what_lobes_mirror_as_their_integral() {
+fn specular_scattering_of_walls_matches_its_integral() {
     const COUNT: usize = 4096;
     let mut device = Device::new();
     let (irradiance, albedo) = (2.0_f32, 0.5_f32);

@@ -57,7 +57,7 @@ fn views_side_by_side_are_each_alone() {
 /// sun, from each view, without bounces. f32 of directions turns a lobe's angle by 2⁻²³, which changes cosⁿ by n 2⁻²³ of what it
 /// is at the steepest; sums of 200 terms, rounded within 16 ε each.
 #[test]
-fn own_lobes_of_level_ground_are_their_closed_form() {
+fn direct_specular_of_level_ground_matches_its_closed_form() {
     let mut device = Device::new();
     let mut scene = under_sky(field(4, 5, [1.0; 2], |_, _| 2.0), Border::Plane);
     scene.surface.albedo = Albedo::Constant([0.25; 3]);

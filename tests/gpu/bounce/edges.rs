@@ -40,7 +40,7 @@ fn bounced(gpu: &mut Device, scene: &Scene, quality: &Quality) -> Vec<Vec<f32>> 
 /// 200 roundings, as sums round in another order. A wall at one edge bounces light across the other edge of a periodic
 /// field only.
 #[test]
-fn what_leaves_a_field_that_repeats_comes_in_again() {
+fn periodic_fields_bounce_across_the_seam() {
     const SIDE: usize = 16;
     let mut gpu = Device::new();
     let mut next = random(3);

@@ -305,7 +305,7 @@ fn halved(field: &HeightField) -> HeightField {
 /// Mountains against the quadrature, which knows of no samples between its triangles: the bounces' error halves
 /// with the cells, and what is wrong without them is far beyond.
 #[test]
-fn bounces_come_to_the_quadratures() {
+fn bounces_tend_to_the_quadrature() {
     let mut gpu = Device::new();
     let land = fractal(12, 3).unwrap();
     let steep = field(12, 12, [1.0, 1.0], |r, c| 3.0 * f64::from(land.heights_m()[r * 12 + c]));
@@ -407,7 +407,7 @@ fn by_pyramids(step: u32, offset: u32, receiver: Receiver, count: u32) -> Qualit
 /// More and finer levels come to every stretch: from the defaults' to eight an octave, none of them coarse, the
 /// error halves at least. Three bands of a cosine do not.
 #[test]
-fn pyramids_come_to_every_stretch() {
+fn pyramids_tend_to_brute_force() {
     let mut gpu = Device::new();
     let land = fractal(33, 5).unwrap();
     let steep = field(33, 33, [1.0, 1.0], |r, c| 2.0 * f64::from(land.heights_m()[r * 33 + c]));
@@ -427,7 +427,7 @@ fn pyramids_come_to_every_stretch() {
 
 /// No sample bounces more than the brightest did before, whatever the slopes and borders.
 #[test]
-fn pyramids_gain_nothing() {
+fn pyramids_gain_no_energy() {
     let mut gpu = Device::new();
     for (border, relief) in [(Border::Plane, 1e-3), (Border::Open, 60.0), (Border::Periodic, 3.0)] {
         let mut next = random(7);

@@ -84,7 +84,7 @@ fn nodes_are_lit_as_they_are_by_themselves() {
 /// Radiances that nodes see are means, and shares at most 1: no sample bounces more than the brightest did, but for what
 /// two rules over azimuths in equal parts h differ by in the share, h² or less of all that is seen.
 #[test]
-fn nothing_is_gained_between_nodes() {
+fn no_energy_is_gained_between_nodes() {
     let mut gpu = Device::new();
     for engine in ENGINES {
         let (border, relief) = match engine {

@@ -63,7 +63,7 @@ fn rmse(light: &[f64], bounds: &[(usize, f64)], expected: f64) -> f64 {
 
 /// Bounces 0 to 4 and the limit, within what the rim's staircase may do.
 #[test]
-fn pits_are_lit_as_their_closed_form() {
+fn exact_engines_match_the_closed_form_of_pits() {
     let mut gpu = Device::new();
     for (alpha, albedo) in PITS {
         let (scene, rho) = (pit_of(pit(RIM, alpha), albedo), f64::from(albedo));
@@ -172,7 +172,7 @@ fn exact_bounces_of_pits_are_within_a_five_hundredth() {
 /// Pyramids smooth what stands near: they have no bound of their own, but finer levels come nearer, and no sample
 /// gets more than all ground at its brightest would give.
 #[test]
-fn pyramids_come_to_pits() {
+fn pyramids_tend_to_the_closed_form_of_pits() {
     let mut gpu = Device::new();
     for (alpha, albedo) in PITS {
         let (scene, rho) = (pit_of(pit(RIM, alpha), albedo), f64::from(albedo));

@@ -118,7 +118,7 @@ fn walks_are_near_every_crossing() {
 
 /// Ways without lines have nothing to walk over, and say so; where nothing is reflected they are not asked.
 #[test]
-fn what_has_no_lines_is_refused() {
+fn walks_without_lines_are_refused() {
     let mut scene = under_sky(fractal(8, 1).unwrap(), Border::Plane);
     let of = |scene: &Scene, method, lines| {
         let quality = Quality { method, lines, ..swept(1, 8, BounceEngine::Sweep) };

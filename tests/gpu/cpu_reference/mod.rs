@@ -204,7 +204,7 @@ fn every_shader_has_a_cpu_reference_and_a_case() {
 
 /// The comparison is not deaf: any value of any pass, moved by a bit more than its tolerance, fails.
 #[test]
-fn a_value_beyond_its_tolerance_is_seen() {
+fn a_value_beyond_its_tolerance_fails() {
     let mut device = Device::new();
     let cases = direct::pictures();
     let mut all = Vec::new();

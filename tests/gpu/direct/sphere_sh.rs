@@ -144,7 +144,7 @@ fn horizons_are_below_horizontal_where_the_ground_falls_away() {
 
 /// Places and sizes at their extremes, as for the exact form, against the CPU reference.
 #[test]
-fn soft_spheres_at_the_extremes_match_the_cpu_reference() {
+fn sphere_sh_at_the_extremes_matches_the_cpu_reference() {
     let mut gpu = Device::new();
     let mut next = random(5);
     let noise: Vec<f64> = (0..99).map(|_| next()).collect();
@@ -257,7 +257,7 @@ fn popped(gpu: &mut Device, quality: &Quality, steps: usize) -> f64 {
 /// Pops that are not the truth's own would stay in shorter steps; what follows the sphere light, and only blurs it, shrinks
 /// with them: in an eighth of the length, to half at most.
 #[test]
-fn a_moving_soft_sphere_pops_no_more_than_the_ground_truth() {
+fn a_moving_sphere_light_by_sh_pops_no_more_than_the_ground_truth() {
     let mut gpu = Device::new();
     for quality in [soft(4, 8), Quality { wedges: Wedges::Table, wedge_side: 17, ..soft(4, 16) }] {
         let [long, short] = [40, 320].map(|steps| popped(&mut gpu, &quality, steps));

@@ -113,7 +113,7 @@ fn inputs_in_an_engines_formats_are_lit_as_f32_are() {
 /// A plan that knows nothing of them draws what one that knows them does: heights and albedo are the
 /// device's alone; an environment's azimuths are even then, so that it is held to none here.
 #[test]
-fn what_only_the_device_knows_is_lit_the_same() {
+fn device_only_inputs_match_host_inputs() {
     let mut device = Device::new();
     let mut known = scene();
     known.lights.environment = None;

@@ -47,7 +47,7 @@ fn a_field_that_changes_gives_what_a_new_field_gives() {
 
 /// Validation that says nothing may be deaf: a plan without its barriers must be heard.
 #[test]
-fn missing_barriers_are_heard() {
+fn missing_barriers_are_reported() {
     let mut device = Device::new();
     let scene = under_sky(field(16, 16, [1.0, 1.0], |_, c| c as f64), Border::Plane);
     let mut plan = plan::picture(&scene, &Quality::default(), &device.limits(), Picture::default())
@@ -144,7 +144,7 @@ fn every_kind_of_plan_runs_silently_and_has_all_its_barriers() {
 /// Small plans share a block of 4 MiB in each kind of memory: the device's and the host's. What is
 /// larger has its own, and each block wastes less than what did not fit: at most half of what is held.
 #[test]
-fn memory_taken_is_near_what_the_plan_says() {
+fn memory_taken_is_near_the_planned_bytes() {
     const BLOCK: u64 = 4 << 20;
     let mut device = Device::new();
     for side in [16, 512] {

@@ -75,7 +75,7 @@ fn from_nothing(
 }
 
 #[test]
-fn passes_after_a_change_give_what_all_would() {
+fn passes_after_a_change_match_all_passes() {
     let mut device = Device::new();
     let gpu = device.gpu.as_mut().expect("alive");
     let all = qualities();

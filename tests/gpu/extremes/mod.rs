@@ -84,12 +84,12 @@ fn every_sphere_light_and_phong_lobe_holds_by_harmonics() {
 }
 
 #[test]
-fn every_visible_point_and_what_is_made_of_it_holds() {
+fn every_visible_point_and_its_bakes_hold() {
     hold_all(is_of_points);
 }
 
 #[test]
-fn a_value_of_visible_points_beyond_its_bound_is_seen() {
+fn a_visible_point_value_beyond_its_bound_fails() {
     hold(is_of_points);
 }
 
@@ -184,7 +184,7 @@ fn hears(probes: &[Probe], [c, m]: [usize; 2], cases: &[Case], methods: &[method
 /// Few rows are judged by nothing but being numbers, all of them pyramids', and no bound of any other is as wide as what may be
 /// found: see [`suite::complaint`].
 #[test]
-fn what_is_not_judged_is_known() {
+fn unjudged_cases_are_listed() {
     let methods = methods::all();
     for case in suite::cases() {
         let unjudged: Vec<_> = methods.iter().filter(|m| (case.unjudged)(m)).collect();

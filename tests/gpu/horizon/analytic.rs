@@ -90,7 +90,7 @@ fn a_tilted_plane_on_level_ground_sees_the_sky_of_its_tilt() {
 }
 
 #[test]
-fn a_wall_hides_what_it_should() {
+fn a_wall_has_its_horizon() {
     // A wall one sample thick, height 10, at column 20: from column c < 20, looking east along the
     // row, tan h = 10 / (20 - c).
     let mut gpu = Device::new();

@@ -28,7 +28,7 @@ fn all_forms(gpu: &mut Device, field: &HeightField, border: Border, base: Qualit
 }
 
 #[test]
-fn hulls_deeper_than_any_memory_lose_nothing() {
+fn hulls_deeper_than_their_storage_lose_nothing() {
     let mut gpu = Device::new();
     // 300 samples a line, more than the 128 entries of private and the 64 of shared memory.
     let deep = dome_and_wall(300);
@@ -49,7 +49,7 @@ fn hulls_deeper_than_any_memory_lose_nothing() {
 }
 
 #[test]
-fn forms_agree_to_the_bit_on_random_fields() {
+fn hull_storages_agree_to_the_bit_on_random_fields() {
     let mut gpu = Device::new();
     let mut next = random(11);
     for (i, (rows, cols)) in [(1, 1), (1, 7), (2, 3), (31, 37), (64, 5)].into_iter().enumerate() {

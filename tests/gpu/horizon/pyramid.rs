@@ -117,7 +117,7 @@ fn mean_error(gpu: &mut Device, field: &HeightField, quality: &Quality) -> f64 {
 /// The path of the paper's figure 10, k = 1 … 16 with o = 0 … 4: every step comes nearer, in both
 /// stores.
 #[test]
-fn more_and_finer_levels_come_nearer_to_the_truth() {
+fn more_and_finer_levels_tend_to_the_oracle() {
     let mut gpu = Device::new();
     let rough = fractal(65, 3).expect("a field");
     for stored in STORED {

@@ -81,7 +81,7 @@ fn errors(
 /// Every figure that is published of the default and its neighbours is held, within what chance does to so
 /// few samples; a form that errs several times as much is seen not to be.
 #[test]
-fn horizons_of_bundled_terrain_hold_what_the_readme_says() {
+fn horizons_of_bundled_terrain_match_the_published_errors() {
     const SAMPLES: usize = 200;
     let mut gpu = Device::new();
     let field = bundled();

@@ -74,7 +74,7 @@ fn a_narrow_lobe_keeps_its_digits() {
 
 /// The bound on steps, MOST_STEPS of `path_trace`, set too low for rays over a ridge: they are counted.
 #[test]
-fn rays_that_are_given_up_are_counted() {
+fn lost_rays_are_counted() {
     let mut device = Device::new();
     let ridge = field(40, 40, [1.0, 1.0], |_, c| 9.0 - (c as f64 - 20.0).abs().min(9.0));
     let scene = under_sky(ridge, Border::Plane);

@@ -167,7 +167,7 @@ fn white_ground_in_white_light_is_white() {
 
 /// A field without cells sees nothing of itself, whichever way it is thin.
 #[test]
-fn a_single_line_of_samples_sees_all_of_the_sky() {
+fn a_single_line_of_texels_sees_all_of_the_sky() {
     let mut device = Device::new();
     let (plane, open, periodic) = (Border::Plane, Border::Open, Border::Periodic);
     for (rows, cols, border) in [(1, 1, plane), (1, 9, open), (9, 1, plane), (9, 1, periodic)] {
@@ -180,7 +180,7 @@ fn a_single_line_of_samples_sees_all_of_the_sky() {
 /// Of two independent pictures, z = difference / √(sum of squared standard errors) is nearly Student's t:
 /// z² of n batches has the mean (n - 1)/(n - 3), and N of them a standard deviation of √(2/N) about it.
 #[test]
-fn standard_errors_say_how_far_two_seeds_differ() {
+fn standard_errors_predict_the_difference_of_two_seeds() {
     let mut device = Device::new();
     let surface = Surface { albedo: Albedo::Constant([0.5; 3]), ..Surface::default() };
     let lights = Lights { sky: Some([1.0; 3]), ..Lights::default() };
@@ -208,7 +208,7 @@ fn standard_errors_say_how_far_two_seeds_differ() {
 /// A needle in the shadow of a wall reaches into bright sun with its tip alone: few paths from the shade
 /// meet that. By their spread alone samples that none has met would be dark without doubt.
 #[test]
-fn light_that_no_path_has_met_is_allowed_for() {
+fn unsampled_light_counts_as_error() {
     const FEW: usize = 8;
     let mut device = Device::new();
     let needle = field(13, 13, [1.0, 1.0], |r, c| match (r, c) {

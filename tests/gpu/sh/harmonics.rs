@@ -198,7 +198,7 @@ fn a_tilted_plane_has_the_convolved_series_at_its_normal() {
 /// A lone bright texel rings below 0 somewhere on the other side, and with the window that no light rings
 /// through nowhere; what is below 0 is 0, and counted.
 #[test]
-fn what_rings_below_zero_is_counted() {
+fn negative_ringing_is_counted() {
     let mut gpu = Device::new();
     let mut texels = vec![[0.0; 3]; 40 * 20];
     texels[6 * 40 + 20] = [900.0, 0.0, 0.0];

@@ -92,7 +92,7 @@ fn nodes_are_lit_as_they_are_by_themselves() {
 /// Light interpolated between nodes knows no normals: what is seen, interpolated, is nearer to the truth,
 /// and more nodes are nearer.
 #[test]
-fn on_terrain_what_is_seen_is_better_interpolated_than_light() {
+fn on_terrain_interpolating_visibility_is_better_than_interpolating_light() {
     let mut gpu = Device::new();
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets");
     let options = HeightOptions { cell_m: Some([66.0, 92.6]), ..HeightOptions::default() };

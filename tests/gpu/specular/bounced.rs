@@ -69,7 +69,7 @@ fn lobed() -> Scene {
 /// of both (6e-7 a comparison, 24 of them). Deaf to nothing: counting paths whose lobes are seen from above alone are
 /// farther.
 #[test]
-fn paths_reflect_by_the_lobes_that_they_meet() {
+fn paths_reflect_by_phong_specular_at_every_hit() {
     let mut gpu = Device::new();
     let scene = lobed();
     let mut apart = [0.0_f64; 2];
@@ -96,7 +96,7 @@ fn paths_reflect_by_the_lobes_that_they_meet() {
 /// A surface that reflects all that arrives, half diffusely and half by lobes, in light of 1 from everywhere: no sample
 /// is brighter than 1, as lobes that the own plane cuts reflect less; level ground is not cut.
 #[test]
-fn lobes_reflect_no_more_than_arrives() {
+fn specular_reflects_no_more_than_arrives() {
     let mut gpu = Device::new();
     let rough = field(12, 11, [1.0, 1.0], |r, c| ((r * 31 + c * 17) % 7) as f64 / 3.0);
     let level = field(3, 4, [1.0, 1.0], |_, _| 2.0);
@@ -118,7 +118,7 @@ fn lobes_reflect_no_more_than_arrives() {
 
 /// Without any lobe the plan is the diffuse one, pass for pass and byte for byte, and so is its light.
 #[test]
-fn a_lobe_of_nothing_is_none() {
+fn specular_of_scale_zero_adds_nothing() {
     let mut gpu = Device::new();
     let mut scene = lobed();
     let quality = bounce_quality(2, BounceSpecular::Vector, 4);
@@ -139,7 +139,7 @@ fn a_lobe_of_nothing_is_none() {
 /// reflects of each bounce what diffuse ground does, but for the bands of the cosine that the series lacks: π times
 /// their integral by magnitude, of light of 1 at most. The walls are diffuse, so scalars and vectors are alike.
 #[test]
-fn a_lobe_of_exponent_one_is_a_cosine() {
+fn phong_exponent_one_is_a_cosine() {
     const MIDDLE: usize = 6 * 12 + 6;
     let mut gpu = Device::new();
     let yard = field(12, 12, [1.0, 1.0], |r, c| {

@@ -15,7 +15,7 @@ use crate::{Device, field, under_sky};
 use rays::{LENSES, ROUNDING, Shot, around, quality, shoot, uneven};
 
 #[test]
-fn pictures_are_what_rays_meet() {
+fn pictures_match_ray_casting() {
     let mut device = Device::new();
     let options = ViewOptions { size: [32, 24], samples: 1, ..ViewOptions::default() };
     for (lens, (compass, elevation)) in
@@ -33,7 +33,7 @@ fn pictures_are_what_rays_meet() {
 
 /// From within, near the ground: what is behind the eye and beside the picture is cut off.
 #[test]
-fn an_eye_above_the_field_sees_what_is_before_it() {
+fn a_camera_above_the_field_draws_the_ground_before_it() {
     let mut device = Device::new();
     let options = ViewOptions { size: [32, 24], samples: 1, ..ViewOptions::default() };
     let scene = uneven(3);
@@ -70,7 +70,7 @@ fn a_picture_from_elsewhere_is_refused() {
 }
 
 #[test]
-fn reduced_meshes_and_holes_are_what_rays_meet() {
+fn reduced_meshes_and_holes_match_ray_casting() {
     let mut device = Device::new();
     let options =
         ViewOptions { size: [32, 24], samples: 1, mesh_step: 3, ..ViewOptions::default() };
@@ -228,7 +228,7 @@ fn a_pixel_half_covered_is_half_as_bright() {
 
 /// On a screen that encodes and on one that takes codes, the picture is a PNG's, to one code: powers are not exact.
 #[test]
-fn screens_show_what_pictures_hold() {
+fn screen_formats_match_float_pictures() {
     let mut device = Device::new();
     let options = ViewOptions { size: [32, 24], ..ViewOptions::default() };
     let scene = uneven(11);

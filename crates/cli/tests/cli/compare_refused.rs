@@ -7,7 +7,7 @@ use crate::{Folder, refused};
 const NAN: f32 = f32::NAN;
 
 #[test]
-fn what_are_no_horizons_is_refused() {
+fn files_without_horizons_are_refused() {
     let folder = Folder::new();
     let level = [0.25_f32; 12];
     write(&folder, "a1.npy", &[("", level); 4]);
@@ -58,7 +58,7 @@ fn what_are_no_horizons_is_refused() {
 }
 
 #[test]
-fn what_cannot_be_compared_is_refused() {
+fn unlike_files_are_refused() {
     let folder = Folder::new();
     let (one, two) = ([1.0; 12], [2.0; 12]);
     write(&folder, "one.npy", &[("", one)]);

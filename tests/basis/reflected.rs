@@ -1,5 +1,5 @@
-//! The constants by which `bounce_gather` turns what a slice throws into three bands of a clamped cosine: the shader's own text,
-//! against integrals. On the device a case hears some of them less than it errs by.
+//! The constants with which `bounce_gather` projects the light of a slice into three bands of a clamped cosine: the
+//! shader's own text, against integrals. On the device some of them change a case by less than its tolerance.
 
 use crate::glsl::Machine;
 use ridgelight::basis::legendre::{nlp, occlusion};
@@ -7,7 +7,8 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 const SHADER: &str = include_str!("../../shaders_glsl/bounce/bounce_gather.comp");
 
-/// The statements of a function, as the reader of sums takes them: components of what it returns are `out[0]` to `out[3]`.
+/// The statements of a function, as the reader of sums takes them: the components of its result are `out[0]` to
+/// `out[3]`.
 fn body(name: &str) -> String {
     let begin = SHADER.find(&format!("vec4 {name}(")).expect("a function");
     let text = &SHADER[begin..];
@@ -27,7 +28,7 @@ fn body(name: &str) -> String {
         }
         match c {
             ',' if depth == 0 => parts.push(std::mem::take(&mut part)),
-            // The bracket that closes all.
+            // The bracket that closes the function.
             _ if depth < 0 => break,
             c => part.push(if c.is_whitespace() { ' ' } else { c }),
         }
@@ -46,7 +47,7 @@ fn body(name: &str) -> String {
     all.into_iter().map(|line| line + ";\n").collect::<String>()
 }
 
-/// What the statements make of some values.
+/// The results of the statements for given values.
 fn run(text: &str, given: &[(&str, f64)]) -> [f64; 4] {
     let mut machine = Machine::default();
     for (name, value) in given {
@@ -98,7 +99,7 @@ fn weighed(text: &str) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// Every number of the text, a ten-thousandth larger, in turn.
+/// The text with each number in turn a ten-thousandth larger.
 fn each_changed(text: &str) -> Vec<(String, String)> {
     let is_part = |c: char| c.is_ascii_digit() || c == '.';
     let mut all = Vec::new();
@@ -122,7 +123,7 @@ fn each_changed(text: &str) -> Vec<(String, String)> {
 
 /// As f32, in sums of terms of 2 in all: 8 ε. A ten-thousandth of any constant is more, wherever it stands.
 #[test]
-fn each_constant_of_a_thrown_slice_is_right_and_heard() {
+fn each_constant_of_a_reflected_slice_is_right_and_tested() {
     const TOLERANCE: f64 = 8.0 / (1 << 24) as f64;
     let polynomials = body("occlusion");
     let weights = body("three_bands");

@@ -1,4 +1,4 @@
-//! Light that lobes throw: which passes, and what it takes.
+//! Passes and memory of bounced Phong specular.
 
 use ridgelight::plan::{self, Limits, Picture, Plan, missing_barriers};
 use ridgelight::scene::fractal;
@@ -31,9 +31,10 @@ fn bytes(plan: &Plan, names: &[&str]) -> u64 {
     all.map(plan::Resource::bytes).sum()
 }
 
-/// What arrives is thrown on once a bounce; the last is only seen. Without vectors nothing needs direct light as a series.
+/// Arriving light is reflected once a bounce; the last bounce is only gathered. Without vectors no direct light
+/// is needed as a series.
 #[test]
-fn each_bounce_is_thrown_once() {
+fn each_bounce_is_computed_once() {
     let has = |plan: &Plan, label: &str| plan.passes.iter().any(|p| p.label() == label);
     for gloss in [BounceSpecular::Vector, BounceSpecular::VectorF16, BounceSpecular::Scalar] {
         let plan = planned(gloss, 4);
@@ -57,10 +58,10 @@ fn each_bounce_is_thrown_once() {
     }
 }
 
-/// Order 4 of one channel is 16 numbers, four texels of four; order 3 is 9, three texels. f16 takes half. The note says what
-/// the images take, but for the last row of all levels, which need not be full.
+/// Order 4 of one channel is 16 numbers, four texels of four; order 3 is 9, three texels. f16 takes half. The
+/// note states the images' bytes, but for the last row of all levels, which need not be full.
 #[test]
-fn vectors_take_what_the_plan_says() {
+fn vectors_take_the_planned_memory() {
     let vectors = |plan: &Plan| bytes(plan, &["exit_vectors", "vector_levels"]);
     let [four, three] = [4, 3].map(|order| vectors(&planned(BounceSpecular::Vector, order)));
     let half = planned(BounceSpecular::VectorF16, 4);
@@ -77,7 +78,7 @@ fn vectors_take_what_the_plan_says() {
         size * if words[units[at]] == "KiB" { 1.0 / 1024.0 } else { 1.0 }
     };
     let [here, there] = [0, 1].map(mebibytes);
-    // Written to a tenth.
+    // The note rounds to a tenth.
     assert!((there - 2.0 * here).abs() <= 0.2, "{note}");
     let of_images = vectors(&half) as f64 / 1_048_576.0;
     assert!(here <= of_images + 0.1 && here > 0.98 * of_images, "{note}: {of_images}");

@@ -1,4 +1,4 @@
-//! What is said of a bent base, held to grooves bent as real geometry: rays and light paths at the mesh.
+//! The stated errors of a curved base, against grooves bent as real geometry: rays and paths at the mesh.
 
 use glam::DVec3;
 use ridgelight::scene::{
@@ -23,15 +23,15 @@ const COUNT: usize = 256;
 /// The middle row.
 const COMPARED: std::ops::Range<usize> = ROWS / 2 * COLS..(ROWS / 2 + 1) * COLS;
 
-/// For every base that is not refused: about as many more lights of a sample are wrong than on the flat base as are said. What
-/// directions leave on any base are lights in triangles of both kinds, in which the edge between lit and hidden may lie anywhere and is
-/// taken to lie in the middle: wrong of a fourth of them by chance, on both bases, which is within three of its deviations, √(3/16) of
-/// the root of their number where each is its own. The three grooves are alike, so that a light is wrong in all three together:
-/// the root of three times their number. Light that is scattered
-/// is off by no more than is said and what it is off by on the flat base, in the mean. Where the base bends most,
-/// more lights are wrong without adapting, and everywhere light is farther off.
+/// For every base that is accepted, about as many more lights are wrong than on the flat base as stated.
+/// Directions leave lights in mixed triangles, in which the edge between lit and hidden is taken to lie in the
+/// middle: a fourth of them is wrong on both bases, within three standard deviations, √(3/16) of the root of
+/// their number where each is independent. The three grooves are alike, so a light is wrong in all three
+/// together: the root of three times their number. The mean error of scattered light is at most the stated one
+/// plus that on the flat base. At the largest curvature, more lights are wrong without adapting, and the
+/// light's error is larger everywhere.
 #[test]
-fn bent_grooves_are_off_by_about_what_is_said() {
+fn curved_grooves_err_by_about_the_stated_error() {
     let height = |i: usize| ((i % COLS) % PERIOD).abs_diff(PERIOD / 2) as f64;
     let heights: Vec<f64> = (0..ROWS * COLS).map(height).collect();
     let field = HeightField::new(ROWS, COLS, &heights, [1.0; 2], None).expect("a field");

@@ -1,4 +1,4 @@
-//! Fields with lobes seen from afar: closed forms, and what lobes are bounded by.
+//! The aggregate BRDF of fields with Phong specular: closed forms and bounds.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -44,10 +44,10 @@ fn density(n: f64, normal: DVec3, light: DVec3, view: DVec3) -> f64 {
     if along > 0.0 { (n + 1.0) / TAU * along.powf(n) } else { 0.0 }
 }
 
-/// ρ/π and s p / l_z, whatever light and view. p is the same with both exchanged, so that f l_z is, and f is not: by as much as its
-/// closed form says. A dozen roundings, and those of a power of n: n times that of its base.
+/// The BRDF is ρ/π + s p / l_z. p is reciprocal, so f l_z is and f is not; its closed form gives the
+/// difference. Tolerance: a dozen roundings, and n times the rounding of the base of a power of n.
 #[test]
-fn a_lobe_of_level_ground_is_its_closed_form() {
+fn specular_of_level_ground_matches_its_closed_form() {
     for n in [0.0, 1.0, 20.0, 1000.0] {
         let scene = scene(3, 4, (0.3, one(n as f32, 0.6)), |_| 3.0);
         let facets = facets(&scene, Directions::fibonacci(60, 0.0, 0).expect("directions"));
@@ -79,13 +79,14 @@ fn a_lobe_of_level_ground_is_its_closed_form() {
     }
 }
 
-/// Columns of a wall of the grooves.
+/// Columns of one wall of a groove.
 const WALL: usize = 16;
 
-/// Of walls at right angles, each a plane: what both see of a wall, min(u_l, u_v) of half the plan, mirrors s p towards a view that
-/// it fills t of. Triangles count that as they do of what is diffuse, but that the light falls on them as it faces them.
+/// For walls at right angles, each a plane: the jointly visible part of a wall, min(u_l, u_v) of half the plan,
+/// reflects s p towards a view that it fills t of. Triangles count it as they count diffuse reflection, but
+/// with the light that falls on their own plane.
 #[test]
-fn lobes_of_grooves_are_their_integral() {
+fn specular_of_grooves_matches_its_integral() {
     for n in [2.0, 30.0] {
         let scene = scene(2, 2 * WALL, (0.0, one(n as f32, 0.7)), |c| c.abs_diff(WALL) as f64);
         let facets = facets(&scene, Directions::fibonacci(100, 0.0, 0).expect("directions"));
@@ -114,11 +115,12 @@ fn lobes_of_grooves_are_their_integral() {
     }
 }
 
-/// Under light of 1 from all sides a view sees ρ + s at most: of level ground from straight above all of it. Sums over steps of h,
-/// of a function that changes within 1/(n + 2) radians, err by (n + 2)² h²/24 of it; triangles of grooves by what they count of
-/// views. A light at grazing angles is no such bound: more leaves than arrives, (n + 1)/(n + 2) of s from straight above.
+/// Under light of 1 from all sides a view receives ρ + s at most, and exactly that from level ground seen from
+/// straight above. Sums over steps of h, of a function that changes within 1/(n + 2) radians, err by (n + 2)²
+/// h²/24 of it; grooves also by their triangles' share of the view. A light at grazing angles has no such
+/// bound: (n + 1)/(n + 2) of s leaves straight up, more than arrives.
 #[test]
-fn lobes_are_bounded_by_the_view() {
+fn specular_is_bounded_by_the_view() {
     let angles = Angles { zeniths: 12, azimuths: 32 };
     let (weights, last) = (angles.projected_sr(), angles.count() - 1);
     let step: f64 = TAU / 32.0;
@@ -141,7 +143,7 @@ fn lobes_are_bounded_by_the_view() {
             if name == "level" {
                 assert!(most >= 1.0 - allowed, "{n}: {most}");
                 assert!(reflected > 1.5, "{n}: {reflected}");
-                // The highest light is not quite straight above; its lobe's middle is as far beside.
+                // The highest light is not quite straight above; the centre of its lobe is as far from it.
                 let above = table.reflected(0, &weights)[0];
                 let known = 0.4 + 0.6 * (n + 1.0) / (n + 2.0);
                 let beside = FRAC_PI_2 / 24.0;
@@ -151,11 +153,11 @@ fn lobes_are_bounded_by_the_view() {
     }
 }
 
-/// Of a lobe much narrower than the angles are apart sums over them are no integrals: its density at the middle counts for the whole
-/// of the part of π that its direction stands for. Level ground that reflects 0.9 seems to gather many times that, by exactly the sum
-/// of the closed form; a dozen roundings, and those of a power.
+/// Sums over angles do not converge for a lobe much narrower than the angles' spacing: its peak density counts
+/// for the whole part of π of its direction. Level ground with reflectance 0.9 seems to reflect many times
+/// that, by exactly the sum of the closed form; tolerance: a dozen roundings, and those of a power.
 #[test]
-fn sums_of_narrow_lobes_are_no_integrals() {
+fn sums_over_directions_undersample_narrow_lobes() {
     let (angles, n) = (Angles { zeniths: 8, azimuths: 16 }, 1000.0);
     let level = scene(2, 2, (0.3, one(n as f32, 0.6)), |_| 0.0);
     let facets = facets(&level, angles.directions().expect("directions"));
@@ -173,15 +175,16 @@ fn sums_of_narrow_lobes_are_no_integrals() {
         );
         most = most.max(got);
     }
-    // At the middle (n + 1)/2π s/cos θ times cos θ sin θ π/16 π/8, the lowest view's sin θ nearly 1.
+    // At the centre (n + 1)/2π s/cos θ times cos θ sin θ π/16 π/8, the lowest view's sin θ nearly 1.
     let middle = scale * (n + 1.0) / TAU * PI / 16.0 * PI / 8.0;
     assert!(most > 0.9 * middle && middle > 7.0, "{most} {middle}");
 }
 
-/// Where a lobe mirrors nothing its exponent counts for nothing, but at the corner of a triangle that mirrors by another: two corners of
-/// 1000 that mirror nothing and one of 2 that mirrors half are (2000 + 2)/3 and a sixth, one of 1000 and two of 2 a third.
+/// Texels with scale 0 do not count for the exponent, except in a triangle with a specular corner: two corners
+/// of exponent 1000 and scale 0 beside one of exponent 2 and scale ½ give (2000 + 2)/3 and a sixth; one of 1000
+/// and two of 2 a third.
 #[test]
-fn the_sharpest_lobe_is_of_what_mirrors() {
+fn the_sharpest_exponent_ignores_texels_without_specular() {
     let sharpest = |of: &dyn Fn(usize) -> PhongSpecular| {
         let map = Specular::Map((0..12).map(|i| of(i % 4)).collect());
         facets(
@@ -199,10 +202,10 @@ fn the_sharpest_lobe_is_of_what_mirrors() {
     assert!(off[0].abs() < 1e-3 && off[1].abs() < 1e-6, "{found:?}");
 }
 
-/// A map of lobes on level ground: each triangle has the mean of its corners, and the whole is the mean of triangles. Diagonals go
-/// from the north-west to the south-east.
+/// A specular map on level ground: each triangle has the mean of its corners, and the field the mean of its
+/// triangles. Diagonals run from the north-west to the south-east.
 #[test]
-fn lobes_of_maps_are_means_of_corners() {
+fn specular_maps_are_averaged_over_corners() {
     let lobes: Vec<PhongSpecular> = (0..12)
         .map(|i| PhongSpecular { exponent: 3.0 * (i * 5 % 7) as f32, scale: 0.1 * (i % 5) as f32 })
         .collect();
