@@ -3,6 +3,8 @@
 //!
 //! `cargo run --release --example reference -- DEVICE`; fails where chance does not explain a row.
 
+#[path = "../tests/common/fields.rs"]
+mod fields;
 #[path = "../tests/common/reference_page.rs"]
 mod reference_page;
 #[path = "../tests/common/scenes.rs"]

@@ -69,8 +69,7 @@ fn weights_all_around_are_wedges_turned_and_summed() {
     }
 }
 
-/// A level horizon is a cap about z: every zonal coefficient the cap's, all others 0, for any number of
-/// wedges.
+/// A level horizon is a cap about z: every zonal coefficient the cap's, all others 0, for any number of wedges.
 #[test]
 fn a_level_horizon_is_a_cap() {
     for order in ORDERS {
@@ -139,8 +138,7 @@ fn a_swath_is_its_wedges() {
     }
 }
 
-/// A swath once around, closed by the slice it began with, is the circle (linear: a B-spline stops at its
-/// ends).
+/// A swath once around, closed by the slice it began with, is the circle (linear: a B-spline stops at its ends).
 #[test]
 fn a_swath_once_around_is_the_circle() {
     let (order, count) = (6, 12);

@@ -97,8 +97,7 @@ impl Machine {
     }
 }
 
-/// Tokens apart: names with their index, numbers with sign and exponent, operators between blanks,
-/// brackets.
+/// Tokens apart: names with their index, numbers with sign and exponent, operators between blanks, brackets.
 fn tokens(text: &str) -> Vec<String> {
     text.replace('(', " ( ").replace(')', " ) ").split_whitespace().map(str::to_owned).collect()
 }

@@ -15,8 +15,7 @@ fn wedges_are_the_reference() {
     }
 }
 
-/// Direct integration over the wedge: θ from 0 to the horizon's, which moves with φ, in a variable u of
-/// [0..1].
+/// Direct integration over the wedge: θ from 0 to the horizon's, which moves with φ, in a variable u of [0..1].
 #[test]
 fn wedges_are_their_integrals() {
     let slices = Slices::new(6);

@@ -183,8 +183,7 @@ impl<'a> Paths<'a> {
         (0, [0.0; 3])
     }
 
-    /// Means and their standard errors of so many paths from a texel, for all numbers of bounces up to the
-    /// given one.
+    /// Means and their standard errors of so many paths from a texel, for all numbers of bounces up to the given one.
     pub fn light(
         &mut self,
         sample: usize,

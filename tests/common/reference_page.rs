@@ -2,8 +2,10 @@
 
 use std::f64::consts::{SQRT_2, TAU};
 
-use ridgelight::scene::{Albedo, Border, Environment, HeightField, Lights, Scene, Surface};
+use ridgelight::scene::{Border, Environment, HeightField, Lights, Scene};
 use ridgelight_cpu::indirect::{Fineness, Truth};
+
+use super::fields::under_sky;
 
 /// The fineness of the page's quadrature, before it is doubled.
 pub const FINENESS: Fineness = Fineness { azimuths: 24, divisions: 1, strips: 12 };
@@ -55,16 +57,7 @@ impl Closed {
 }
 
 fn field(rows: usize, cols: usize, h: impl Fn(usize, usize) -> f64) -> HeightField {
-    let heights: Vec<f64> = (0..rows * cols).map(|i| h(i / cols, i % cols)).collect();
-    HeightField::new(rows, cols, &heights, [1.0, 1.0], None).unwrap()
-}
-
-fn under_sky(field: HeightField, border: Border, albedo: f32) -> Scene {
-    Scene {
-        field,
-        surface: Surface { albedo: Albedo::Constant([albedo; 3]), border, specular: None },
-        lights: Lights { sky: Some([1.0; 3]), ..Lights::default() },
-    }
+    super::fields::field(rows, cols, [1.0, 1.0], h)
 }
 
 /// Every scene of the page's second table.
@@ -152,8 +145,7 @@ pub fn groove_parts() -> [Box<dyn Fn(f64) -> f64>; 3] {
     [Box::new(|s| 0.5 * groove_sky(s)), Box::new(once), Box::new(twice)]
 }
 
-/// On its walls; normals at bottom and ridge are not a wall's. Flat triangles are the walls: the grid adds no
-/// error.
+/// On its walls; normals at bottom and ridge are not a wall's. Flat triangles are the walls: the grid adds no error.
 fn grooves_lit(bounces: usize) -> Closed {
     let parts = groove_parts();
     let rows = 4;

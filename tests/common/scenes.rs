@@ -2,9 +2,10 @@
 
 use ridgelight::scene::fractal;
 use ridgelight::scene::{
-    Albedo, Border, Environment, HeightField, Lights, PhongSpecular, Scene, Specular, SphereLight,
-    Sun, Surface,
+    Albedo, Border, Environment, Lights, PhongSpecular, Scene, Specular, SphereLight, Sun, Surface,
 };
+
+use super::fields::field;
 
 /// A scene and its name. Each light has a channel of its own: red the sky, green a sun, blue a sphere light; an
 /// environment adds to all three.
@@ -122,16 +123,6 @@ pub fn scenes() -> Vec<(&'static str, Scene)> {
     ]
 }
 
-fn field(
-    rows: usize,
-    cols: usize,
-    cell_m: [f64; 2],
-    h: impl Fn(usize, usize) -> f64,
-) -> HeightField {
-    let heights: Vec<f64> = (0..rows * cols).map(|i| h(i / cols, i % cols)).collect();
-    HeightField::new(rows, cols, &heights, cell_m, None).unwrap()
-}
-
 /// The agreement of a picture with standard errors and a reference with stated errors.
 ///
 /// For each texel and channel, z = (|difference| - stated error, at least 0) / σ. σ is the standard error plus
@@ -185,9 +176,8 @@ impl Agreement {
         Self { rms: (squares / count as f64).sqrt(), worst, mean, count }
     }
 
-    /// Whether Monte Carlo noise explains the difference: rms within four of its own standard deviations
-    /// 1/√(2·count) of 1 (noise whose standard error is itself an estimate), the mean within 4 and the worst
-    /// within 6.
+    /// Whether Monte Carlo noise explains the difference: rms within four of its own standard deviations 1/√(2·count)
+    /// of 1 (noise whose standard error is itself an estimate), the mean within 4 and the worst within 6.
     pub fn holds(&self) -> bool {
         self.rms <= self.most_rms() && self.worst <= 6.0 && self.mean <= 4.0
     }

@@ -102,8 +102,7 @@ impl Target {
             .dst_access_mask(vk::AccessFlags2::HOST_READ)];
         let written = vk::DependencyInfo::default().memory_barriers(&written);
         let layout = vk::ImageLayout::TRANSFER_SRC_OPTIMAL;
-        // SAFETY: `commands` is being recorded, the image is in the layout for copies; the buffer holds its
-        // texels.
+        // SAFETY: `commands` is being recorded, the image is in the layout for copies; the buffer holds its texels.
         unsafe {
             host.device.cmd_copy_image_to_buffer(
                 commands,

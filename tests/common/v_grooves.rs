@@ -1,5 +1,4 @@
-//! The BRDF of V-shaped grooves with walls at right angles, along the columns, without scattered light: a
-//! closed form.
+//! The BRDF of V-shaped grooves with walls at right angles, along the columns, without scattered light: a closed form.
 
 use std::f64::consts::{PI, SQRT_2};
 
@@ -8,9 +7,8 @@ use glam::DVec3;
 /// The visible share of a wall in a direction, from its top, and the share of the view that the wall fills over
 /// its own plan; `side` is 1 for walls that face east, -1 for walls that face west.
 ///
-/// Over a length of plan w the wall fills w (z + side · x) of the view where it is not hidden. Once the other
-/// wall is turned away, |x| > z, both fill 2 w z together: this one's visible part is 2 z / (z + |x|), at its
-/// top.
+/// Over a length of plan w the wall fills w (z + side · x) of the view where it is not hidden. Once the other wall is
+/// turned away, |x| > z, both fill 2 w z together: this one's visible part is 2 z / (z + |x|), at its top.
 pub fn wall(e: DVec3, side: f64) -> [f64; 2] {
     let share = (e.z + side * e.x).max(0.0);
     let seen = if e.x.abs() > e.z { 2.0 * e.z / (e.z + e.x.abs()) } else { 1.0 };

@@ -1,9 +1,8 @@
 //! Results kept as floats in `tests/goldens/`: what changes is seen, and every driver gives the same
 //! within its roundings.
 //!
-//! A failure writes what was got, what was wanted and the difference as EXR, and says where. To accept
-//! new results: `RIDGELIGHT_BLESS=1 cargo nextest run --test gpu goldens` on lavapipe, and look at what
-//! has changed.
+//! A failure writes what was got, what was wanted and the difference as EXR, and says where. To accept new results:
+//! `RIDGELIGHT_BLESS=1 cargo nextest run --test gpu goldens` on lavapipe, and look at what has changed.
 
 use std::path::{Path, PathBuf};
 

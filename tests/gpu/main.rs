@@ -42,6 +42,8 @@ mod embedding {
     mod plan_changes;
 }
 mod extremes;
+#[path = "../common/fields.rs"]
+mod fields;
 #[expect(dead_code, reason = "its main, which prints")]
 #[path = "../../examples/first_light.rs"]
 mod first_light;
@@ -89,11 +91,14 @@ mod view {
     mod pictures;
 }
 
+use std::path::Path;
 use std::sync::{Mutex, MutexGuard};
 
-use ridgelight::gpu::{Headless, HeadlessOptions, Pixels};
+use fields::field;
+use ridgelight::gpu::{Frame, Headless, HeadlessOptions, Pixels};
 use ridgelight::plan::{self, Limits, Picture, Plan};
-use ridgelight::scene::{Border, HeightField, Lights, Quality, Scene, Surface};
+use ridgelight::scene::{Border, HeightField, Quality, Scene};
+use ridgelight_io::HeightOptions;
 
 /// The program `ridgelight`, which cargo builds beside the tests of the whole workspace.
 fn program() -> std::path::PathBuf {
@@ -176,10 +181,20 @@ impl Device {
     }
 
     fn picture_within(&mut self, scene: &Scene, quality: &Quality, limits: &Limits) -> Pixels {
-        let plan = plan::picture(scene, quality, limits, Picture::default()).expect("a plan");
-        let contents = plan::picture_inputs(scene);
+        self.outputs(scene, quality, limits, Picture::default()).remove(0)
+    }
+
+    /// The picture and the layer of each light and bounce.
+    fn light_layers(&mut self, scene: &Scene, quality: &Quality, limits: &Limits) -> Vec<Pixels> {
+        let wanted = Picture { light_layers: true, ..Picture::default() };
+        self.outputs(scene, quality, limits, wanted)
+    }
+
+    fn outputs(&mut self, of: &Scene, by: &Quality, limits: &Limits, what: Picture) -> Vec<Pixels> {
+        let plan = plan::picture(of, by, limits, what).expect("a plan");
+        let contents = plan::picture_inputs(of);
         let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
-        self.draw(plan, &contents).remove(0)
+        self.draw(plan, &contents)
     }
 }
 
@@ -215,22 +230,31 @@ fn the_first_program_of_the_documentation_lights_its_field() {
     assert!(shadowed > 1000 && shadowed < 128 * 96, "{shadowed}");
 }
 
-fn field(
-    rows: usize,
-    cols: usize,
-    cell_m: [f64; 2],
-    height: impl Fn(usize, usize) -> f64,
-) -> HeightField {
-    let heights: Vec<f64> = (0..rows * cols).map(|i| height(i / cols, i % cols)).collect();
-    HeightField::new(rows, cols, &heights, cell_m, None).expect("a good field")
+fn under_sky(field: HeightField, border: Border) -> Scene {
+    fields::under_sky(field, border, 1.0)
 }
 
-fn under_sky(field: HeightField, border: Border) -> Scene {
-    Scene {
-        field,
-        surface: Surface { border, ..Surface::default() },
-        lights: Lights { sky: Some([1.0; 3]), ..Lights::default() },
-    }
+/// Colours of an output; grey ones have one channel.
+fn colours(pixels: &Pixels) -> Vec<[f64; 3]> {
+    let colour = |t: &[f32]| match t {
+        [grey] => [f64::from(*grey); 3],
+        t => [t[0], t[1], t[2]].map(f64::from),
+    };
+    pixels.values.chunks_exact(pixels.channels).map(colour).collect()
+}
+
+/// Every output's bits.
+fn bits(gpu: &mut Headless, frame: &Frame) -> Vec<u32> {
+    let count = frame.plan().outputs().count();
+    let all = (0..count).map(|o| gpu.pixels(frame, o).expect("pixels").values);
+    all.flatten().map(f32::to_bits).collect()
+}
+
+/// The bundled terrain.
+fn bundled() -> HeightField {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/mt_washington_256.png");
+    let options = HeightOptions { cell_m: Some([66.0, 92.6]), ..HeightOptions::default() };
+    ridgelight_io::read_heights(&path, &options).expect("the bundled field")
 }
 
 /// A small deterministic generator for random fields.

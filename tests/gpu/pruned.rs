@@ -80,8 +80,7 @@ fn a_uniform_sky_has_no_table() {
     }
 }
 
-/// A sun alone sweeps its own azimuths. A sky that is all but black brings the circle back, and
-/// nothing else.
+/// A sun alone sweeps its own azimuths. A sky that is all but black brings the circle back, and nothing else.
 #[test]
 fn a_sun_alone_sweeps_its_own_azimuths() {
     let sun = Sun { azimuth_rad: 0.7, elevation_rad: 0.3, diameter_rad: 0.0, irradiance: [2.0; 3] };

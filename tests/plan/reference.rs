@@ -56,8 +56,7 @@ fn environments_are_importance_sampled() {
     close(&plan::reference_inputs(&scene)[2], &rows.concat());
 }
 
-/// A list of 600 texels of a field 512 wide takes two rows; its sums have that size, the heights that of the
-/// field.
+/// A list of 600 texels of a field 512 wide takes two rows; its sums have that size, the heights that of the field.
 #[test]
 fn a_reference_at_some_samples() {
     let scene = under_sky(flat(515, 512));

@@ -40,9 +40,8 @@ fn opening(per_m: f64) -> f64 {
     ((radius + half) * sin).atan2((radius + half) * cos - radius)
 }
 
-/// Against positions on a cylinder along north and on a sphere. A height h over the place x along the base of
-/// radius R is at ((R + h) sin(x/R), (R + h) cos(x/R) - R). Tolerance: 16 roundings of sums of R, over the
-/// distance.
+/// Against positions on a cylinder along north and on a sphere. A height h over the place x along the base of radius R
+/// is at ((R + h) sin(x/R), (R + h) cos(x/R) - R). Tolerance: 16 roundings of sums of R, over the distance.
 #[test]
 fn directions_match_cylinders_and_spheres() {
     let directions = Directions::fibonacci(100, -1.0, 0).expect("directions");
@@ -161,10 +160,9 @@ fn points_turned_away_by_the_base_are_not_moved_nearer() {
     }
 }
 
-/// Level ground on a flat or a convex base does not see itself. In a concave sphere of radius R a point at
-/// distance d rises to an elevation of d/2R: up to the edge of the field it sends the squared sine of that
-/// elevation of the ground's light. The first step is visible on the flat ground, too, where half a cell turns
-/// it by half as much.
+/// Level ground on a flat or a convex base does not see itself. In a concave sphere of radius R a point at distance d
+/// rises to an elevation of d/2R: up to the edge of the field it sends the squared sine of that elevation of the
+/// ground's light. The first step is visible on the flat ground, too, where half a cell turns it by half as much.
 #[test]
 fn a_concave_base_sees_its_own_ground() {
     let side = 21;

@@ -23,13 +23,12 @@ const COUNT: usize = 256;
 /// The middle row.
 const COMPARED: std::ops::Range<usize> = ROWS / 2 * COLS..(ROWS / 2 + 1) * COLS;
 
-/// For every base that is accepted, about as many more lights are wrong than on the flat base as stated.
-/// Directions leave lights in mixed triangles, in which the edge between lit and hidden is taken to lie in the
-/// middle: a fourth of them is wrong on both bases, within three standard deviations, √(3/16) of the root of
-/// their number where each is independent. The three grooves are alike, so a light is wrong in all three
-/// together: the root of three times their number. The mean error of scattered light is at most the stated one
-/// plus that on the flat base. At the largest curvature, more lights are wrong without adapting, and the
-/// light's error is larger everywhere.
+/// For every base that is accepted, about as many more lights are wrong than on the flat base as stated. Directions
+/// leave lights in mixed triangles, in which the edge between lit and hidden is taken to lie in the middle: a fourth
+/// of them is wrong on both bases, within three standard deviations, √(3/16) of the root of their number where each is
+/// independent. The three grooves are alike, so a light is wrong in all three together: the root of three times their
+/// number. The mean error of scattered light is at most the stated one plus that on the flat base. At the largest
+/// curvature, more lights are wrong without adapting, and the light's error is larger everywhere.
 #[test]
 fn curved_grooves_err_by_about_the_stated_error() {
     let height = |i: usize| ((i % COLS) % PERIOD).abs_diff(PERIOD / 2) as f64;

@@ -57,8 +57,7 @@ fn projected_sr(directions: &Directions) -> Vec<f64> {
     directions.vectors().iter().map(|v| PI * v.z / sum).collect()
 }
 
-/// The BRDF of level ground is ρ/π for all directions of light and view, and its albedo is ρ, to a dozen
-/// roundings.
+/// The BRDF of level ground is ρ/π for all directions of light and view, and its albedo is ρ, to a dozen roundings.
 #[test]
 fn level_ground_in_the_aggregate_is_lambertian() {
     let scene = scene(3, 4, |_, _| 3.0);
@@ -98,8 +97,7 @@ fn grooves_match_their_closed_form() {
         let got = table.at(light, view)[0];
         let off = |got: f64| (got - known).abs() / allowed.max(1e-12);
         worst = worst.max(off(got));
-        // A plane that receives the counted cosines of triangles, not cos θ; and one that receives all of the
-        // light.
+        // A plane that receives the counted cosines of triangles, not cos θ; and one that receives all of the light.
         caught += usize::from(off(got / facets.closure(light)) > 1.0);
         tight += usize::from(off(got * vectors[light].z) > 1.0);
     }

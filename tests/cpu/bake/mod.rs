@@ -107,9 +107,8 @@ fn maps_of_a_canyon() {
     }
 }
 
-/// A plane of slope s, rising to the east. Infinite, with its own horizon above and below: 1, its whole
-/// hemisphere; its transfer is the clamped cosine over π about its normal. Above level ground alone: (1 + cos
-/// tilt)/2.
+/// A plane of slope s, rising to the east. Infinite, with its own horizon above and below: 1, its whole hemisphere;
+/// its transfer is the clamped cosine over π about its normal. Above level ground alone: (1 + cos tilt)/2.
 #[test]
 fn maps_of_a_plane() {
     for slope in [0.0_f64, 0.5, 1.0, 4.0] {

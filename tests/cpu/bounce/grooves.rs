@@ -43,10 +43,9 @@ fn grooves_match_perpendicular_strips() {
     }
 }
 
-/// A point sun barely above one wall's slope lights only the other wall, and evenly. The indirect light of that
-/// wall has a closed form, ρ (E/π) ½ (1 - s/√(s² + a²)): the radiance is constant, so the closed form of
-/// visible intervals leaves only the rule over azimuths, smooth and periodic, and the sine of the sun's angle
-/// above the slope.
+/// A point sun barely above one wall's slope lights only the other wall, and evenly. The indirect light of that wall
+/// has a closed form, ρ (E/π) ½ (1 - s/√(s² + a²)): the radiance is constant, so the closed form of visible intervals
+/// leaves only the rule over azimuths, smooth and periodic, and the sine of the sun's angle above the slope.
 #[test]
 fn a_lit_wall_lights_the_other() {
     let hair = 1e-7;
@@ -71,10 +70,9 @@ fn a_lit_wall_lights_the_other() {
     }
 }
 
-/// Walls of lengths a and b that meet at a right angle exchange by crossed strings (a + b - c)/2, c the
-/// distance between their ends; the exchange is symmetric. Each wall in turn reflects a constant light that
-/// falls straight down (a point sun in the zenith); the mean share that the other wall receives is (a + b -
-/// c)/2 over its length.
+/// Walls of lengths a and b that meet at a right angle exchange by crossed strings (a + b - c)/2, c the distance
+/// between their ends; the exchange is symmetric. Each wall in turn reflects a constant light that falls straight down
+/// (a point sun in the zenith); the mean share that the other wall receives is (a + b - c)/2 over its length.
 #[test]
 fn walls_exchange_by_crossed_strings() {
     // Slopes 2 over 4 columns and ½ over 16: a right angle, both 8 high, and so is the next groove's.

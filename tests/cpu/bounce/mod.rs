@@ -9,10 +9,11 @@ mod sources;
 mod table;
 mod walk;
 
-use ridgelight::scene::{Albedo, Border, HeightField, Lights, Scene, Surface};
+use ridgelight::scene::{HeightField, Scene};
 use ridgelight_cpu::indirect::{Fineness, Picture, light};
 
 use crate::field;
+use crate::fields::under_sky;
 
 const COARSE: Fineness = Fineness { azimuths: 32, divisions: 1, strips: 8 };
 
@@ -21,15 +22,6 @@ fn rough(rows: usize, cols: usize, cell_m: [f64; 2], relief: f64) -> HeightField
     field(rows, cols, cell_m, |r, c| {
         ((r * 7919 + c * 104_729 + r * c * 31) % 61) as f64 * relief / 61.0
     })
-}
-
-/// Under a sky of radiance 1, with one albedo.
-fn under_sky(field: HeightField, border: Border, albedo: f32) -> Scene {
-    Scene {
-        field,
-        surface: Surface { albedo: Albedo::Constant([albedo; 3]), border, specular: None },
-        lights: Lights { sky: Some([1.0; 3]), ..Lights::default() },
-    }
 }
 
 /// The first channel.

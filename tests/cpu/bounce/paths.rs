@@ -1,5 +1,4 @@
-//! The quadrature against brute-force path tracing. Both evaluate indirect Phong specular towards straight
-//! above only.
+//! The quadrature against brute-force path tracing. Both evaluate indirect Phong specular towards straight above only.
 
 use ridgelight::scene::{Albedo, Border, Environment, Lights, PhongSpecular, Specular};
 use ridgelight_cpu::indirect::{Fineness, truth};

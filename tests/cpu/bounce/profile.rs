@@ -6,9 +6,8 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 use super::rough;
 use crate::{BORDERS, field};
 
-/// Intervals fill the elevations from straight down to the oracle's horizon, and the ground that an interval
-/// gives for a direction lies in that direction. Relief 3 on cells of 1 and 2: slopes carry few roundings,
-/// angles near 3.
+/// Intervals fill the elevations from straight down to the oracle's horizon, and the ground that an interval gives for
+/// a direction lies in that direction. Relief 3 on cells of 1 and 2: slopes carry few roundings, angles near 3.
 #[test]
 fn visible_intervals_fill_the_angle_below_the_horizon() {
     let field = rough(7, 9, [1.0, 2.0], 3.0);

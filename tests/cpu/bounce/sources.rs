@@ -104,10 +104,9 @@ fn a_wall_hides_only_sphere_lights_behind_it() {
     assert_eq!(behind, 0.0);
 }
 
-/// A sphere light in a slope is visible where it stands out of it, and a texel inside a sphere light loses the
-/// part behind the slope: both against counting directions, as (φ, sin ω) of equal weights, with the ramp z = 2
-/// (x - 6) and the sphere intersected by formula. n² directions err by their rim's share, about 4/n of the
-/// answer.
+/// A sphere light in a slope is visible where it stands out of it, and a texel inside a sphere light loses the part
+/// behind the slope: both against counting directions, as (φ, sin ω) of equal weights, with the ramp z = 2 (x - 6) and
+/// the sphere intersected by formula. n² directions err by their rim's share, about 4/n of the answer.
 #[test]
 fn a_slope_cuts_a_sphere_light() {
     let ramp = || field(15, 16, [1.0, 1.0], |_, c| 2.0 * (c as f64 - 6.0).max(0.0));

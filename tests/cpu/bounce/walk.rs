@@ -145,11 +145,10 @@ fn walks_tend_to_the_quadrature() {
     assert!(errors[1] < 0.8 * errors[0] && errors[2] < 0.8 * errors[1], "{errors:?}");
 }
 
-/// A valley between two planes of slope 1, white on one side up to the ridge: a texel on the dark side at s
-/// from the bottom sees the whole white side, of length a, over ½ (1 - s/√(s² + a²)) of its hemisphere, 1/8 s²
-/// less, as radiance is linear between the bottom and the first white texel. The rule over azimuths is smooth
-/// and periodic. Ground beyond 512 rows is not visited: at most 1 - cos of the angle at which the wall ends
-/// there, tan = 2a/512.
+/// A valley between two planes of slope 1, white on one side up to the ridge: a texel on the dark side at s from the
+/// bottom sees the whole white side, of length a, over ½ (1 - s/√(s² + a²)) of its hemisphere, 1/8 s² less, as
+/// radiance is linear between the bottom and the first white texel. The rule over azimuths is smooth and periodic.
+/// Ground beyond 512 rows is not visited: at most 1 - cos of the angle at which the wall ends there, tan = 2a/512.
 #[test]
 fn a_white_wall_lights_a_black_one() {
     let (rows, half) = (128, 24);

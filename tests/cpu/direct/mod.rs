@@ -60,11 +60,10 @@ fn normals_of_a_plane_are_its_normal_everywhere() {
     }
 }
 
-/// Gradients counted by hand. A spike of height 4 at the middle of 3 × 3: at its east neighbour two
-/// quads touch the spike, each with an edge falling 4 of its two: mean over 2 quads of
-/// (−4 + 0)/2 = −2 east; north they cancel. Periodic adds two quads across the seam that rise towards
-/// nothing: their west-side samples are the neighbour itself (0), so −1. A lone row is central inside
-/// and one-sided at its ends.
+/// Gradients counted by hand. A spike of height 4 at the middle of 3 × 3: at its east neighbour two quads touch the
+/// spike, each with an edge falling 4 of its two: mean over 2 quads of (−4 + 0)/2 = −2 east; north they cancel.
+/// Periodic adds two quads across the seam that rise towards nothing: their west-side samples are the neighbour itself
+/// (0), so −1. A lone row is central inside and one-sided at its ends.
 #[test]
 fn normals_count_the_quads_that_exist() {
     let spike = field(3, 3, [1.0, 1.0], |r, c| if (r, c) == (1, 1) { 4.0 } else { 0.0 });
@@ -143,9 +142,8 @@ fn a_canyon_has_the_cosine_of_its_walls() {
     }
 }
 
-/// One endless wall of elevation b: half the circle is free: (1 + cos b)/2. The wall here ends L to
-/// either side: azimuths within ε = atan(d/L) of its line are free too, which adds at most
-/// (2/π)∫₀^ε t²φ² dφ ≤ t²ε³ / (1.5π).
+/// One endless wall of elevation b: half the circle is free: (1 + cos b)/2. The wall here ends L to either side:
+/// azimuths within ε = atan(d/L) of its line are free too, which adds at most (2/π)∫₀^ε t²φ² dφ ≤ t²ε³ / (1.5π).
 #[test]
 fn a_wall_leaves_half_of_one_plus_its_cosine() {
     for t in [0.5, 2.0] {

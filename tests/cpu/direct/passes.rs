@@ -18,8 +18,7 @@ use ridgelight_cpu::sun_shade::sun_shade;
 use ridgelight_cpu::tolerance::{EPSILON, march_slope};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// Marches the azimuths with all crossings and passes the result to `of`: horizons are exact, so only light is
-/// tested.
+/// Marches the azimuths with all crossings and passes the result to `of`: horizons are exact, so only light is tested.
 fn lit<T>(
     field: &HeightField,
     border: Border,

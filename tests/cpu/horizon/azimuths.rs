@@ -59,11 +59,10 @@ fn equal_light_gain(environment: &Environment, azimuths: &[Azimuth]) -> f64 {
     (squares * lights.len() as f64).sqrt() / lights.iter().sum::<f64>()
 }
 
-/// The bundled sky over the bundled terrain, whose heights are scaled until the sky's sun, 48 degrees high, is
-/// hidden from some texels. Importance-sampled azimuths must gain as much over as many even ones as wedges of
-/// equal light would: a quarter of them is spread evenly, but horizons turn less within narrow wedges. They
-/// must also be more exact than four times as many even ones: even wedges that aim at their light, too, are
-/// not.
+/// The bundled sky over the bundled terrain, whose heights are scaled until the sky's sun, 48 degrees high, is hidden
+/// from some texels. Importance-sampled azimuths must gain as much over as many even ones as wedges of equal light
+/// would: a quarter of them is spread evenly, but horizons turn less within narrow wedges. They must also be more
+/// exact than four times as many even ones: even wedges that aim at their light, too, are not.
 ///
 /// Unscaled heights hide nothing of the sun: importance-sampled azimuths are then less exact, as the rest is
 /// cut a quarter as finely. A wedge four times as wide errs by 4² as much at most, where horizons turn in

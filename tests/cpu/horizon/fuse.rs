@@ -169,10 +169,9 @@ fn errors_fall_from_mode_to_mode() {
     assert!(around < 0.5 * aimed);
 }
 
-/// A roof on level ground whose ridge runs along the cells' diagonals: any line rises to where it crosses the
-/// ridge and falls from there, so the highest whole step lies next to the crossing. The mode that searches
-/// around the aim matches a march over all crossings; aiming at whole steps alone misses the crossing
-/// somewhere.
+/// A roof on level ground whose ridge runs along the cells' diagonals: any line rises to where it crosses the ridge
+/// and falls from there, so the highest whole step lies next to the crossing. The mode that searches around the aim
+/// matches a march over all crossings; aiming at whole steps alone misses the crossing somewhere.
 #[test]
 fn a_ridge_between_steps_is_met() {
     let roof =
@@ -205,9 +204,8 @@ fn a_ridge_between_steps_is_met() {
     assert!(missed > 0, "whole steps are enough here");
 }
 
-/// The lines beside a texel, found by testing all of them: the lower within a spacing or through the texel, the
-/// upper within one; the nearer, or the lower of two equally near; where one lies outside the field, the other
-/// alone.
+/// The lines beside a texel, found by testing all of them: the lower within a spacing or through the texel, the upper
+/// within one; the nearer, or the lower of two equally near; where one lies outside the field, the other alone.
 #[test]
 fn the_lines_beside_a_sample_are_the_nearest_there_are() {
     for border in BORDERS {

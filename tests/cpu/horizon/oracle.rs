@@ -262,9 +262,8 @@ fn corners_are_hit_whatever_the_rounding() {
     }
 }
 
-/// Periodic: a ridge line every 10 columns of height 5, seen from 7 columns west of it at 5/7, from 3
-/// columns east of it looking east at 5/7 too, across the seam. On the ridge everything is at most
-/// level: 0.
+/// Periodic: a ridge line every 10 columns of height 5, seen from 7 columns west of it at 5/7, from 3 columns east of
+/// it looking east at 5/7 too, across the seam. On the ridge everything is at most level: 0.
 #[test]
 fn a_periodic_field_occludes_across_its_seam() {
     let ridge = field(4, 10, [1.0, 1.0], |_, c| if c == 2 { 5.0 } else { 0.0 });
@@ -310,9 +309,8 @@ fn axis_azimuths_are_exact() {
 }
 
 proptest! {
-    /// No vertex is missed: sampling the surface finely along the ray by a different route
-    /// (barycentric, point by point) never finds a higher slope, and finds one as close to it as the
-    /// sampling step allows.
+    /// No vertex is missed: sampling the surface finely along the ray by a different route (barycentric, point by
+    /// point) never finds a higher slope, and finds one as close to it as the sampling step allows.
     #[test]
     fn no_point_of_the_surface_is_above_the_horizon(
         row in 0_usize..12, col in 0_usize..9, azimuth in 0.0..TAU, steep in 0.01_f64..100.0,

@@ -171,8 +171,7 @@ fn check_exact_fields(h: impl Fn(usize, usize) -> f64) {
     assert_eq!(checked, Ok(()));
 }
 
-/// -(x² + y²): strictly concave along every line, so every sample stays on the hull and meets the
-/// one before it.
+/// -(x² + y²): strictly concave along every line, so every sample stays on the hull and meets the one before it.
 #[test]
 fn on_a_dome_the_hull_is_as_deep_as_the_line() {
     let dome = |r: usize, c: usize| -((r as f64 - 15.0).powi(2) + (c as f64 - 18.0).powi(2));

@@ -1,6 +1,5 @@
 //! Bounces where fields end, repeat, have no data or are one sample wide: by every engine.
 
-use ridgelight::plan::{self, Picture};
 use ridgelight::scene::{
     Albedo, Border, BounceEngine, BounceSpecular, Bounces, HeightField, Levels, Lights, Quality,
     Scene, Sun,
@@ -27,11 +26,8 @@ fn quality(engine: BounceEngine, count: u32, azimuths: u32) -> Quality {
 
 /// First channel of the layer of each bounce.
 fn bounced(gpu: &mut Device, scene: &Scene, quality: &Quality) -> Vec<Vec<f32>> {
-    let wanted = Picture { light_layers: true, ..Picture::default() };
-    let plan = plan::picture(scene, quality, &gpu.limits(), wanted).expect("a plan");
-    let contents = plan::picture_inputs(scene);
-    let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
-    let outputs = gpu.draw(plan, &contents);
+    let limits = gpu.limits();
+    let outputs = gpu.light_layers(scene, quality, &limits);
     let layers = outputs.iter().filter(|p| p.name.starts_with("indirect."));
     layers.map(|p| p.values.iter().step_by(p.channels).copied().collect()).collect()
 }

@@ -4,7 +4,6 @@ use std::path::Path;
 
 use ridgelight::gpu::Pixels;
 use ridgelight::plan::pyramid::Pyramid;
-use ridgelight::plan::{self, Picture};
 use ridgelight::scene::fractal;
 use ridgelight::scene::{
     Albedo, Border, BounceEngine, Bounces, HeightField, Levels, Lights, Method, Quality, Receiver,
@@ -27,7 +26,7 @@ use ridgelight_io as files;
 use ridgelight_io::HeightOptions;
 
 use crate::reference::quadrature::traced;
-use crate::{Device, field, random, under_sky};
+use crate::{Device, colours, field, random, under_sky};
 
 /// So many bounces in so many azimuths, none dropped, of direct light by brute force in as many.
 fn brute(count: u32, azimuths: u32) -> Quality {
@@ -37,21 +36,10 @@ fn brute(count: u32, azimuths: u32) -> Quality {
 
 /// The whole, and the layer of each bounce.
 fn drawn(gpu: &mut Device, scene: &Scene, quality: &Quality) -> Vec<Vec<[f64; 3]>> {
-    let wanted = Picture { light_layers: true, ..Picture::default() };
-    let plan = plan::picture(scene, quality, &gpu.limits(), wanted).expect("a plan");
-    let contents = plan::picture_inputs(scene);
-    let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
-    let outputs = gpu.draw(plan, &contents);
+    let limits = gpu.limits();
+    let outputs = gpu.light_layers(scene, quality, &limits);
     let is_wanted = |p: &&Pixels| p.name == "radiance" || p.name.starts_with("indirect.");
     outputs.iter().filter(is_wanted).map(colours).collect()
-}
-
-fn colours(pixels: &Pixels) -> Vec<[f64; 3]> {
-    let colour = |t: &[f32]| match t {
-        [grey] => [f64::from(*grey); 3],
-        t => [t[0], t[1], t[2]].map(f64::from),
-    };
-    pixels.values.chunks_exact(pixels.channels).map(colour).collect()
 }
 
 /// The light before the last bounces: the whole less those bounces.
@@ -242,10 +230,9 @@ fn pyramids_match_the_cpu_reference() {
 
 /// White ground under a white sky: each bounce adds, and the sum comes up to 1 from below.
 ///
-/// Sky and indirect light are two rules over azimuths: where a sample's shares s of sky and t of ground, by the
-/// CPU reference, make 1 + d, light that is nowhere more than 1 + D stays so if s + t (1 + D) ≤ 1 + D: D = d / (1 - t),
-/// and likewise from below. f32 adds 16 roundings a bounce. What is missing after k bounces is at most the
-/// largest tᵏ.
+/// Sky and indirect light are two rules over azimuths: where a sample's shares s of sky and t of ground, by the CPU
+/// reference, make 1 + d, light that is nowhere more than 1 + D stays so if s + t (1 + D) ≤ 1 + D: D = d / (1 - t),
+/// and likewise from below. f32 adds 16 roundings a bounce. What is missing after k bounces is at most the largest tᵏ.
 #[test]
 fn a_furnace_comes_up_to_one() {
     const AZIMUTHS: u32 = 8;

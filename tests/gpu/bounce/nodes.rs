@@ -19,11 +19,7 @@ fn quality(engine: BounceEngine, count: u32, azimuths: u32, subsample: u32) -> Q
 
 /// The first channel of the light without bounces, then that of each bounce.
 fn layers_within(gpu: &mut Device, scene: &Scene, of: &Quality, limits: &Limits) -> Vec<Vec<f64>> {
-    let wanted = Picture { light_layers: true, ..Picture::default() };
-    let plan = plan::picture(scene, of, limits, wanted).expect("a plan");
-    let contents = plan::picture_inputs(scene);
-    let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
-    let outputs = gpu.draw(plan, &contents);
+    let outputs = gpu.light_layers(scene, of, limits);
     let red = |p: &Pixels| -> Vec<f64> {
         p.values.chunks_exact(p.channels).map(|t| t[0].into()).collect()
     };

@@ -1,7 +1,6 @@
 //! Key lights on the device: closed forms, real terrain and path tracing against the oracle.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
-use std::path::Path;
 
 use ridgelight::scene::fractal;
 use ridgelight::scene::{
@@ -11,12 +10,10 @@ use ridgelight_cpu::indirect::{Fineness, truth};
 use ridgelight_cpu::key::key_of;
 use ridgelight_cpu::oracle::Oracle;
 use ridgelight_cpu::tolerance::{ShadeError, device_march_slope};
-use ridgelight_io as files;
-use ridgelight_io::HeightOptions;
 
 use crate::reference::quadrature::traced;
 use crate::scenes::Agreement;
-use crate::{Device, field, random, under_sky};
+use crate::{Device, bundled, field, random, under_sky};
 
 const METHODS: [Method; 3] = [Method::Sweep, Method::Pyramid, Method::BruteForce];
 
@@ -78,10 +75,9 @@ fn a_key_of_the_whole_sky_is_the_sky() {
     }
 }
 
-/// A wall of height h along the columns hides, from level ground d away, elevations up to
-/// atan(h cos δ / d), δ from its normal. The light of the rest, by the midpoint rule over 20,000 parts, beside
-/// 64 slices: of an integrand f with |f''| ≤ 1.1 over ±28° and at most two kinks of 0.3, off by less
-/// than (w/64)² (1.1 w / 24 + 2 · 0.3 / 8) / 2π.
+/// A wall of height h along the columns hides, from level ground d away, elevations up to atan(h cos δ / d), δ from
+/// its normal. The light of the rest, by the midpoint rule over 20,000 parts, beside 64 slices: of an integrand f with
+/// |f''| ≤ 1.1 over ±28° and at most two kinks of 0.3, off by less than (w/64)² (1.1 w / 24 + 2 · 0.3 / 8) / 2π.
 #[test]
 fn a_wall_cuts_a_key_in_elevation() {
     let mut gpu = Device::new();
@@ -114,12 +110,6 @@ fn a_wall_cuts_a_key_in_elevation() {
             }
         }
     }
-}
-
-fn bundled() -> HeightField {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/mt_washington_256.png");
-    let options = HeightOptions { cell_m: Some([66.0, 92.6]), ..HeightOptions::default() };
-    files::read_heights(&path, &options).expect("the bundled field")
 }
 
 /// Bundled terrain under a low key light. Brute force, in the oracle's own azimuths, is off by what a march's

@@ -1,7 +1,6 @@
 //! Sphere lights: against answers derived by hand, against the f64 oracle, moving, and many.
 
 use std::f64::consts::{FRAC_PI_2, PI};
-use std::path::Path;
 
 use ridgelight::gpu::Pixels;
 use ridgelight::plan::{self, Limits, Picture, Plan};
@@ -12,10 +11,8 @@ use ridgelight_cpu::oracle::Oracle;
 use ridgelight_cpu::sphere::sphere_of;
 use ridgelight_cpu::sphere_shade::sphere_at;
 use ridgelight_cpu::tolerance::SphereGeometry;
-use ridgelight_io as files;
-use ridgelight_io::HeightOptions;
 
-use crate::{Device, field, random};
+use crate::{Device, bundled, field, random};
 
 pub(crate) fn sphere_light(position_m: [f64; 3], radius_m: f64) -> SphereLight {
     SphereLight { position_m, radius_m, radiance: [1.0; 3] }
@@ -141,12 +138,6 @@ fn a_wall_hides_half_of_a_sphere_light() {
         // From half as far the wall hides it, from twice as far it hides nothing.
         assert!(found[40 * 41 + 17] == 0.0, "{}", found[40 * 41 + 17]);
     }
-}
-
-fn bundled() -> HeightField {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/mt_washington_256.png");
-    let options = HeightOptions { cell_m: Some([66.0, 92.6]), ..HeightOptions::default() };
-    files::read_heights(&path, &options).expect("the bundled field")
 }
 
 /// Houses of 5 × 5 samples, up to 40 m, with streets between.

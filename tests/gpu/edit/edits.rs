@@ -8,7 +8,7 @@ use ridgelight::scene::{
     Scene, Sun, Surface,
 };
 
-use crate::{Device, field, random, under_sky};
+use crate::{Device, bits, field, random, under_sky};
 
 fn scene(field: HeightField, border: Border) -> Scene {
     let mut next = random(5);
@@ -71,13 +71,6 @@ fn made(gpu: &mut Headless, scene: &Scene, plan: Plan) -> Frame {
     frame
 }
 
-/// Every output's bits.
-fn bits(gpu: &mut Headless, frame: &Frame) -> Vec<u32> {
-    let count = frame.plan().outputs().count();
-    let all = (0..count).map(|o| gpu.pixels(frame, o).expect("pixels").values);
-    all.flatten().map(f32::to_bits).collect()
-}
-
 /// A rectangle of any size, often at an edge or in a corner, sometimes one sample or all.
 fn any_rectangle(next: &mut impl FnMut() -> f64, [cols, rows]: [usize; 2]) -> Rectangle {
     let mut side = |all: usize| {
@@ -122,8 +115,7 @@ fn change(
     }
 }
 
-/// Draws edits one after the other; then every field they made from nothing: outputs must have equal
-/// bits.
+/// Draws edits one after the other; then every field they made from nothing: outputs must have equal bits.
 fn edits(device: &mut Device, scene: &Scene, quality: &Quality, count: usize, seed: u64) {
     let gpu = device.gpu.as_mut().expect("alive");
     let plan = planned(gpu, scene, quality, true);

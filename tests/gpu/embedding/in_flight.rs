@@ -8,7 +8,7 @@ use ridgelight::plan::{self, Picture, Plan};
 use ridgelight::scene::fractal;
 use ridgelight::scene::{Basis, Border, Environment, Quality, Scene, Sun};
 
-use crate::{Device, under_sky};
+use crate::{Device, bits, under_sky};
 
 /// What a command buffer is to hold.
 type Record<'a> = Box<dyn FnOnce(vk::CommandBuffer) -> Result<()> + 'a>;
@@ -33,12 +33,6 @@ fn planned(gpu: &Headless, scene: &Scene) -> Plan {
 fn frame(gpu: &mut Headless, scene: &Scene) -> Frame {
     let plan = planned(gpu, scene);
     gpu.frame(plan, &[scene.field.heights_m()]).expect("a frame")
-}
-
-fn bits(gpu: &mut Headless, frame: &Frame) -> Vec<u32> {
-    let count = frame.plan().outputs().count();
-    let all = (0..count).map(|o| gpu.pixels(frame, o).expect("pixels").values);
-    all.flatten().map(f32::to_bits).collect()
 }
 
 #[test]

@@ -1,11 +1,11 @@
 //! Only the passes that a change needs: the same bits as all of them.
 
-use ridgelight::gpu::{Frame, Headless};
+use ridgelight::gpu::Headless;
 use ridgelight::plan::{self, Picture, Plan};
 use ridgelight::scene::fractal;
 use ridgelight::scene::{Basis, Environment, Lights, Quality, Scene, Sun, Surface};
 
-use crate::{Device, random};
+use crate::{Device, bits, random};
 
 fn environment(seed: u64) -> Environment {
     let mut next = random(seed);
@@ -51,13 +51,6 @@ fn planned(gpu: &Headless, scene: &Scene, (quality, keeps_horizons): Form) -> Pl
 
 /// A quality, and whether horizons are kept.
 type Form<'a> = (&'a Quality, bool);
-
-/// Every output's bits.
-fn bits(gpu: &mut Headless, frame: &Frame) -> Vec<u32> {
-    let count = frame.plan().outputs().count();
-    let all = (0..count).map(|o| gpu.pixels(frame, o).expect("pixels").values);
-    all.flatten().map(f32::to_bits).collect()
-}
 
 /// What all passes of the scene's plan draw of these contents.
 fn from_nothing(

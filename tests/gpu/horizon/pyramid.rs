@@ -75,10 +75,9 @@ fn a_wall_at_the_edge_is_seen_at_its_height() {
     }
 }
 
-/// From the tip of a pit with straight sides the rim stands at the sides' slope in every azimuth: the
-/// first sample sees it; levels lie above the tip and see less. Along the grid and its diagonals marches
-/// pass through samples; between them a chord across a cell lies above the cone, by 1/(8 r²) of it at
-/// distance r, at most 1/8.
+/// From the tip of a pit with straight sides the rim stands at the sides' slope in every azimuth: the first sample
+/// sees it; levels lie above the tip and see less. Along the grid and its diagonals marches pass through samples;
+/// between them a chord across a cell lies above the cone, by 1/(8 r²) of it at distance r, at most 1/8.
 #[test]
 fn the_tip_of_a_pit_sees_its_sides() {
     const SIDE: usize = 33;
@@ -114,8 +113,7 @@ fn mean_error(gpu: &mut Device, field: &HeightField, quality: &Quality) -> f64 {
     sum / f64::from(number)
 }
 
-/// The path of the paper's figure 10, k = 1 … 16 with o = 0 … 4: every step comes nearer, in both
-/// stores.
+/// The path of the paper's figure 10, k = 1 … 16 with o = 0 … 4: every step comes nearer, in both stores.
 #[test]
 fn more_and_finer_levels_tend_to_the_oracle() {
     let mut gpu = Device::new();
@@ -140,9 +138,8 @@ fn both_stores_hold_the_same_levels() {
     let apart: f64 = stack.iter().zip(&levels).map(|(a, b)| f64::from((a - b).abs())).sum::<f64>();
     let mean = apart / stack.len() as f64;
     println!("{mean} rad apart, {truth_error} from the truth");
-    // A bilinear sample errs by an eighth of the second difference over a sample, of levels whose texels
-    // are 2^(1/4) samples or more apart and whose splines are smooth over two: less than what the levels
-    // themselves leave out.
+    // A bilinear sample errs by an eighth of the second difference over a sample, of levels whose texels are 2^(1/4)
+    // samples or more apart and whose splines are smooth over two: less than what the levels themselves leave out.
     assert!(mean < 0.1 * truth_error, "{mean} of {truth_error}");
     assert!(mean > 0.0, "the two stores are one");
 }

@@ -1,21 +1,11 @@
 //! Real terrain against the oracle. The bundled field always; the larger ones where they are.
 
-use std::path::Path;
-
 use ridgelight::plan;
 use ridgelight::scene::{Border, Fuse, HeightField, Lines, Quality};
 use ridgelight_cpu::light;
 use ridgelight_cpu::oracle::Oracle;
-use ridgelight_io as files;
-use ridgelight_io::HeightOptions;
 
-use crate::{Device, random, under_sky};
-
-fn bundled() -> HeightField {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/mt_washington_256.png");
-    let options = HeightOptions { cell_m: Some([66.0, 92.6]), ..HeightOptions::default() };
-    files::read_heights(&path, &options).expect("the bundled field")
-}
+use crate::{Device, bundled, random, under_sky};
 
 /// What is published of the bundled field, and drawn by `examples/accuracy`.
 const PUBLISHED: &str = include_str!("../../../benches/results/accuracy_mt_washington_256.txt");

@@ -1,5 +1,4 @@
-//! Rays and lobes of the path tracer where a rounding decides: suns along lines of samples, exponents of
-//! 1e4.
+//! Rays and lobes of the path tracer where a rounding decides: suns along lines of samples, exponents of 1e4.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 

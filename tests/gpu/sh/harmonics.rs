@@ -51,7 +51,7 @@ fn constant(value: f32) -> Environment {
     Environment::new(24, 12, vec![[value, 0.5 * value, 0.0]; 24 * 12], 0.3).expect("good texels")
 }
 
-fn noisy(seed: u64) -> Environment {
+pub fn noisy(seed: u64) -> Environment {
     let mut next = random(seed);
     let texels = (0..40 * 20).map(|_| [next() as f32, 3.0 * next() as f32, 0.5]).collect();
     Environment::new(40, 20, texels, -2.0).expect("good texels")
@@ -225,9 +225,8 @@ fn negative_ringing_is_counted() {
     }
 }
 
-/// A constant environment is a uniform sky, through every horizon, in every form of the plane: azimuths
-/// stand for themselves here and for their wedges in closed form, apart by (2π/m)²/24 of the horizontal
-/// part.
+/// A constant environment is a uniform sky, through every horizon, in every form of the plane: azimuths stand for
+/// themselves here and for their wedges in closed form, apart by (2π/m)²/24 of the horizontal part.
 #[test]
 fn a_constant_environment_is_a_uniform_sky() {
     let mut gpu = Device::new();

@@ -10,16 +10,11 @@ use ridgelight_io as files;
 use ridgelight_io::HeightOptions;
 use ridgelight_trade::error::ImageError;
 
+use super::harmonics::noisy;
 use crate::{Device, field, random, under_sky};
 
 fn harmonics(subsample: u32) -> Quality {
     Quality { azimuths: 16, basis: Basis::Sh, subsample, ..Quality::default() }
-}
-
-fn noisy(seed: u64) -> Environment {
-    let mut next = random(seed);
-    let texels = (0..40 * 20).map(|_| [next() as f32, 3.0 * next() as f32, 0.5]).collect();
-    Environment::new(40, 20, texels, -2.0).expect("good texels")
 }
 
 fn under(environment: Environment, field: HeightField, border: Border) -> Scene {
@@ -31,10 +26,7 @@ fn under(environment: Environment, field: HeightField, border: Border) -> Scene 
 
 /// The picture's first three channels, row-major.
 fn light(gpu: &mut Device, scene: &Scene, quality: &Quality) -> Vec<f32> {
-    let plan = plan::picture(scene, quality, &gpu.limits(), Picture::default()).expect("a plan");
-    let contents = plan::picture_inputs(scene);
-    let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
-    let picture = gpu.draw(plan, &contents).swap_remove(0);
+    let picture = gpu.picture(scene, quality);
     picture.values.chunks_exact(picture.channels).flat_map(|t| t[..3].to_vec()).collect()
 }
 

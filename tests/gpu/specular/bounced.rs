@@ -11,7 +11,7 @@ use std::f64::consts::PI;
 
 use crate::brute_force_paths::Paths;
 use crate::reference::quadrature::traced;
-use crate::{Device, field, random, under_sky};
+use crate::{Device, colours, field, random, under_sky};
 
 /// So many bounces by pyramids whose samples all look at the field itself.
 fn bounce_quality(count: u32, specular: BounceSpecular, sh_order: u32) -> Quality {
@@ -31,16 +31,9 @@ fn bounce_quality(count: u32, specular: BounceSpecular, sh_order: u32) -> Qualit
 
 /// Layers by name, R, G, B.
 fn drawn(gpu: &mut Device, scene: &Scene, quality: &Quality) -> Vec<(String, Vec<[f64; 3]>)> {
-    let wanted = Picture { light_layers: true, ..Picture::default() };
-    let plan = plan::picture(scene, quality, &gpu.limits(), wanted).expect("a plan");
-    let contents = plan::picture_inputs(scene);
-    let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
-    let colour = |t: &[f32]| match t {
-        [grey] => [f64::from(*grey); 3],
-        t => [t[0], t[1], t[2]].map(f64::from),
-    };
-    let all = gpu.draw(plan, &contents).into_iter();
-    all.map(|p| (p.name.clone(), p.values.chunks_exact(p.channels).map(colour).collect())).collect()
+    let limits = gpu.limits();
+    let all = gpu.light_layers(scene, quality, &limits);
+    all.iter().map(|p| (p.name.clone(), colours(p))).collect()
 }
 
 fn layer<'a>(all: &'a [(String, Vec<[f64; 3]>)], name: &str) -> &'a [[f64; 3]] {

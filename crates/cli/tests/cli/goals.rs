@@ -8,7 +8,7 @@ use ridgelight_cpu::oracle::Oracle;
 use ridgelight_io::HeightOptions;
 
 use crate::needs_vulkan::{attributes, write_field};
-use crate::{Folder, read, refused};
+use crate::{Folder, read, refused, succeeded};
 
 #[test]
 fn wrong_goals_are_refused() {
@@ -87,8 +87,7 @@ fn gpu_a_max_error_holds() {
     write_field(&folder, SIDE, peaks);
     let most = 0.01;
     let args = "render field.npy -o out.exr --json out.json --max-error 0.01";
-    let run = folder.run(&args.split(' ').collect::<Vec<_>>());
-    assert_eq!((run.status, run.err.as_str()), (Some(0), ""), "{}", run.out);
+    let run = succeeded(&folder, args);
     for said in [
         "expected error",
         "one standard deviation",
@@ -144,8 +143,7 @@ fn gpu_a_max_error_holds_with_bounces() {
     write_field(&folder, SIDE, peaks);
     let args =
         "render field.npy -o out.exr --json out.json --albedo 0.7 --bounces 2 --max-error 0.02";
-    let run = folder.run(&args.split(' ').collect::<Vec<_>>());
-    assert_eq!((run.status, run.err.as_str()), (Some(0), ""), "{}", run.out);
+    let run = succeeded(&folder, args);
     for said in ["--bounces 2", "--bounce-azimuths", "paths each", "at most"] {
         assert!(run.out.contains(said), "{said}: {}", run.out);
     }
@@ -189,13 +187,13 @@ fn gpu_goals_out_of_reach_are_refused_and_a_budget_is_kept() {
         ("--time-budget 1e-6", ["--time-budget 0.000001: needs", "ms a frame", "--azimuths"]),
     ] {
         let args = format!("render field.npy -o out.exr {goal}");
-        let run = folder.run(&args.split(' ').collect::<Vec<_>>());
+        let run = folder.run_str(&args);
         assert_eq!(run.status, Some(1), "{}", run.err);
         assert!(says.iter().all(|s| run.err.contains(s)), "{}", run.err);
         assert!(folder.contents() == before);
     }
     let args = "render field.npy -o out.exr --json out.json --quiet --time-budget 60000";
-    let run = folder.run(&args.split(' ').collect::<Vec<_>>());
+    let run = folder.run_str(args);
     assert_eq!((run.status, run.out.as_str(), run.err.as_str()), (Some(0), "", ""));
     let settings = settings(&folder);
     assert_eq!(number(&settings, "time_budget_ms"), 60000.0);
@@ -213,8 +211,7 @@ fn gpu_tiny_fields_have_goals_too() {
     for (input, probes) in [("one.asc", 1.0), ("two.asc", 2.0)] {
         for goal in ["--max-error 0.01 --seed 3", "--max-error 0.01 --sun 90,30"] {
             let args = format!("render {input} -o out.exr --json out.json {goal}");
-            let run = folder.run(&args.split(' ').collect::<Vec<_>>());
-            assert_eq!((run.status, run.err.as_str()), (Some(0), ""), "{args}");
+            succeeded(&folder, &args);
             let settings = settings(&folder);
             let [measured, at_most] =
                 ["error_measured", "error_at_most"].map(|name| number(&settings, name));

@@ -73,6 +73,11 @@ impl Folder {
         ran(self.command(args))
     }
 
+    /// The same with arguments between blanks.
+    fn run_str(&self, args: &str) -> Run {
+        self.run(&args.split(' ').collect::<Vec<_>>())
+    }
+
     /// Runs without a Vulkan driver, for checks that need no device.
     fn run_without_driver(&self, args: &[&str]) -> Run {
         let mut command = self.command(args);
@@ -104,6 +109,21 @@ fn ran(mut command: Command) -> Run {
     let output = command.output().unwrap();
     let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("UTF-8");
     Run { status: output.status.code(), out: text(output.stdout), err: text(output.stderr) }
+}
+
+/// Runs a command that must succeed with an empty standard error.
+fn succeeded(folder: &Folder, args: &str) -> Run {
+    let run = folder.run_str(args);
+    assert_eq!((run.status, run.err.as_str()), (Some(0), ""), "{args}: {}", run.out);
+    run
+}
+
+/// Standard output and error of `plan` as JSON, without a driver.
+fn planned(folder: &Folder, args: &str) -> [String; 2] {
+    let args: Vec<&str> = ["plan", "--format", "json"].into_iter().chain(args.split(' ')).collect();
+    let run = folder.run_without_driver(&args);
+    assert_eq!(run.status, Some(0), "{args:?}: {}", run.err);
+    [run.out, run.err]
 }
 
 /// A wrong request: arguments, the exit status, and texts that the message must contain.

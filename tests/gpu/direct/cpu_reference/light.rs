@@ -3,7 +3,7 @@
 use ridgelight::gpu::shaders::offsets;
 use ridgelight::plan::Pass;
 use ridgelight::plan::azimuths::{Azimuth, Shape};
-use ridgelight::scene::{Albedo, Border, Environment};
+use ridgelight::scene::{Albedo, Border, Environment, SphereLight};
 use ridgelight_cpu::env_tables as tables_reference;
 use ridgelight_cpu::env_tables::{EnvTables, bottom_rad};
 use ridgelight_cpu::light_resolve as resolve_reference;
@@ -173,6 +173,12 @@ pub(crate) fn sun_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     })
 }
 
+pub(crate) fn sphere_light_of(run: &Run, pass: &Pass) -> SphereLight {
+    let name = pass.part.split(' ').next().and_then(|part| part.strip_prefix("light"));
+    let number: usize = name.and_then(|n| n.parse().ok()).expect("light and its number");
+    run.scene.lights.sphere_lights[number - 1]
+}
+
 /// Slices of one sphere light, paired after the last.
 pub(crate) fn sphere_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     use offsets::sphere_shade_push::{LAST_SLICE, RADIANCE, REACH_M, SLICES_AROUND};
@@ -183,9 +189,7 @@ pub(crate) fn sphere_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     if pushed(pass, LAST_SLICE) < pushed(pass, SLICES_AROUND) {
         return Vec::new();
     }
-    let name = pass.part.split(' ').next().and_then(|part| part.strip_prefix("light"));
-    let number: usize = name.and_then(|n| n.parse().ok()).expect("light and its number");
-    let sphere_light = run.scene.lights.sphere_lights[number - 1];
+    let sphere_light = sphere_light_of(run, pass);
     let reach = f64::from(f32::from_bits(pushed(pass, REACH_M)));
     let oracle = Oracle::new(&run.scene.field, run.border());
     let [cols, _] = run.size();

@@ -34,9 +34,7 @@ pub(crate) fn sphere_sh_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     if pushed(pass, LAST_AZIMUTH) < pushed(pass, AZIMUTHS) {
         return Vec::new();
     }
-    let name = pass.part.split(' ').next().and_then(|part| part.strip_prefix("light"));
-    let number: usize = name.and_then(|n| n.parse().ok()).expect("light and its number");
-    let sphere_light = run.scene.lights.sphere_lights[number - 1];
+    let sphere_light = super::light::sphere_light_of(run, pass);
     let reach = f64::from(f32::from_bits(pushed(pass, REACH_M)));
     let (quality, border) = (run.quality, run.border());
     let [stack, levels] = ["height_stack", "height_levels"].map(|name| run.floats(pass, name));

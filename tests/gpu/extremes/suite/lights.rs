@@ -17,8 +17,7 @@ pub const PLACES: [[usize; 2]; 3] = [[0, 0], [30, 64], [32, 32]];
 const COLUMNS: usize = 64;
 const ROWS: usize = 32;
 
-/// Every kind of light on every border, all its values on one of them. Slopes that repeat are no slopes, but
-/// trenches.
+/// Every kind of light on every border, all its values on one of them. Slopes that repeat are no slopes, but trenches.
 pub fn cases() -> Vec<Case> {
     let mut all = vec![albedo(0.0), albedo(1.0)];
     all.extend([0.0, 1.0, 65_504.0, 1e6].map(|of| uniform_environment(of, Border::Plane)));
@@ -98,9 +97,8 @@ fn is_open(found: &Found) -> bool {
     found.scene.surface.border == Border::Open
 }
 
-/// A table that is read between nodes Δ apart: Δ²/8 of a second derivative of at most 2, three moments,
-/// over 2π / π: 3 Δ² / 2. Nodes stand from the horizon, or under an open border from straight below, up to
-/// the zenith.
+/// A table that is read between nodes Δ apart: Δ²/8 of a second derivative of at most 2, three moments, over 2π / π: 3
+/// Δ² / 2. Nodes stand from the horizon, or under an open border from straight below, up to the zenith.
 fn between_nodes(found: &Found) -> f64 {
     let range = if is_open(found) { PI } else { FRAC_PI_2 };
     1.5 * (range / f64::from(found.method.quality.table_elevations - 1)).powi(2)

@@ -278,9 +278,8 @@ impl Method {
         }
     }
 
-    /// What counts of heights up to `largest_m` along a level line: their differences are 0, exactly, but
-    /// for packed entries, which are rounded and seen from what is not, and for a pyramid's levels, whose
-    /// splines round.
+    /// What counts of heights up to `largest_m` along a level line: their differences are 0, exactly, but for packed
+    /// entries, which are rounded and seen from what is not, and for a pyramid's levels, whose splines round.
     pub fn level(&self, largest_m: f64) -> f64 {
         let rounds = self.quality.precision == Precision::Packed || self.is_pyramid();
         if rounds { largest_m } else { 0.0 }
@@ -288,10 +287,9 @@ impl Method {
 
     /// Slope by which a plane that rises by `rise_m` from lane to lane may be missed between lines.
     ///
-    /// `own` sees what two lines met from the sample's height, t cells aside of the one and 1 - t of the
-    /// other, and interpolates: t (1 - t) rise_m / distance, once added and once taken away. All that a
-    /// line meets on a plane ties, and where rounding picks other distances the two do not cancel:
-    /// t (1 - t) rise_m / step at most.
+    /// `own` sees what two lines met from the sample's height, t cells aside of the one and 1 - t of the other, and
+    /// interpolates: t (1 - t) rise_m / distance, once added and once taken away. All that a line meets on a plane
+    /// ties, and where rounding picks other distances the two do not cancel: t (1 - t) rise_m / step at most.
     pub fn ties(&self, rise_m: f64, step_m: f64) -> f64 {
         let is_own = self.has_lines() && !self.is_exact() && self.quality.fuse == Fuse::Own;
         if is_own { 0.25 * rise_m / step_m } else { 0.0 }
@@ -300,10 +298,9 @@ impl Method {
     /// How far a slope may be from the truth, where heights reach `largest_m` and nothing that is
     /// not level stands nearer than `near_m`.
     ///
-    /// Heights are rounded on the way in, at both ends: 2 ε H. Then the CPU reference's error and the
-    /// device's beside it (`measure::tolerance`, with `near_m` in place of a step): a march R ≤ 2 H; a
-    /// surface sweep; a sweep and its fuse. Reduced precision adds its own: slopes as f16 2^-10 of
-    /// themselves, packed heights 2^-11 of H.
+    /// Heights are rounded on the way in, at both ends: 2 ε H. Then the CPU reference's error and the device's beside
+    /// it (`measure::tolerance`, with `near_m` in place of a step): a march R ≤ 2 H; a surface sweep; a sweep and its
+    /// fuse. Reduced precision adds its own: slopes as f16 2^-10 of themselves, packed heights 2^-11 of H.
     fn slope_error(&self, slope: f64, largest_m: f64, near_m: f64, azimuth: &Azimuth) -> f64 {
         let rounded = 2.0 * EPSILON * largest_m / near_m;
         if self.is_brute() {

@@ -1,14 +1,6 @@
 //! Old names are accepted with one warning and give the same plan and the same bytes.
 
-use crate::Folder;
-
-/// `plan --format json` of these arguments, and its standard error.
-fn planned(folder: &Folder, args: &str) -> [String; 2] {
-    let args: Vec<&str> = ["plan", "--format", "json"].into_iter().chain(args.split(' ')).collect();
-    let run = folder.run_without_driver(&args);
-    assert_eq!(run.status, Some(0), "{args:?}: {}", run.err);
-    [run.out, run.err]
-}
+use crate::{Folder, planned, succeeded};
 
 fn warning(old: &str, new: &str) -> String {
     format!("warning: {old} is now {new}; the old name goes away in the next release\n")
@@ -100,8 +92,7 @@ fn gpu_old_names_give_the_same_bytes() {
     let folder = Folder::new();
     let render = |name: &str, words: &str| {
         let args = format!("render a.asc -o {name} --azimuths 8 --quiet {words}");
-        let run = folder.run(&args.split(' ').collect::<Vec<_>>());
-        assert_eq!((run.status, run.err.as_str()), (Some(0), ""), "{args}");
+        succeeded(&folder, &args);
         crate::read(&folder.path(name))
     };
     assert_eq!(

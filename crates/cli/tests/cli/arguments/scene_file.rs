@@ -24,10 +24,9 @@ const FLAGS: &str = "a.asc --cell 30,20 --z-scale 2 --border open --nodata -9999
     --fuse aimed --sun-azimuths 4";
 
 fn planned(folder: &Folder, args: &str) -> String {
-    let args: Vec<&str> = ["plan", "--format", "json"].into_iter().chain(args.split(' ')).collect();
-    let run = folder.run_without_driver(&args);
-    assert_eq!((run.status, run.err.as_str()), (Some(0), ""), "{args:?}");
-    run.out
+    let [out, err] = crate::planned(folder, args);
+    assert_eq!(err, "", "{args}");
+    out
 }
 
 #[test]

@@ -121,7 +121,7 @@ fn gpu_results_are_those_without_the_flag() {
     let mut all = Vec::new();
     for flags in ["", " --table-elevations 64"] {
         let args = format!("horizon field.npy -o h.npy --azimuths 8{flags}");
-        let run = folder.run(&args.split(' ').collect::<Vec<_>>());
+        let run = folder.run_str(&args);
         let said = "note: --table-elevations 64 changes nothing without an environment\n";
         let said = if flags.is_empty() { "" } else { said };
         assert_eq!((run.status, run.err.as_str()), (Some(0), said));
@@ -129,20 +129,20 @@ fn gpu_results_are_those_without_the_flag() {
     }
     assert!(all[0] == all[1]);
     let args = "render field.npy -o s.exr --seed 3";
-    let run = folder.run(&args.split(' ').collect::<Vec<_>>());
+    let run = folder.run_str(args);
     let said = "note: --seed 3 changes nothing without --max-error or --time-budget\n";
     assert_eq!((run.status, run.err.as_str()), (Some(0), said));
     // The horizon layer needs azimuths all around; a sun alone does not.
     for (flags, notes) in [("", 1), (" --layers horizon", 0), (" --layers sky-view", 0)] {
         let args = format!("render field.npy -o s.exr --sun 90,30 --azimuths 8{flags}");
-        let run = folder.run(&args.split(' ').collect::<Vec<_>>());
+        let run = folder.run_str(&args);
         assert_eq!((run.status, run.err.lines().count()), (Some(0), notes), "{args}: {}", run.err);
     }
     for (flags, reason) in
         [("a.asc --size 8", "with an INPUT"), ("--size 8 --sizes 4", "with --sizes")]
     {
         let args = format!("bench {flags} --runs 1");
-        let run = folder.run(&args.split(' ').collect::<Vec<_>>());
+        let run = folder.run_str(&args);
         let said = format!("note: --size 8 changes nothing {reason}\n");
         assert_eq!((run.status, run.err), (Some(0), said), "{args}");
     }

@@ -9,7 +9,7 @@ use serde_json::Value;
 use crate::formats::npy;
 use crate::needs_vulkan::{done, json};
 use crate::v_grooves::{groove_bound, groove_brdf};
-use crate::{Folder, refused};
+use crate::{Folder, refused, succeeded};
 
 /// Reads an f32 array by NumPy's header: shape, and values with the last axis fastest.
 pub fn load(path: &Path) -> (Vec<usize>, Vec<f32>) {
@@ -243,7 +243,7 @@ fn gpu_views_of_back_faces_hold_0() {
     write(&folder, "ramp.npy", [16, 16], |_, c| 10.0 * c as f32);
     let words =
         "bake ramp.npy -o out --what light-field,btf --angles 2x4 --bounces 0 --format npy,ktx2";
-    let run = folder.run(&words.split(' ').collect::<Vec<_>>());
+    let run = folder.run_str(words);
     assert_eq!(run.status, Some(0), "{}", run.err);
     let said =
         "note: light-field, btf: 2 of 8 directions of --angles do not face the field's front";
@@ -268,7 +268,7 @@ fn gpu_requested_settings_of_scattered_light_are_listed() {
     write(&folder, "field.npy", [6, 6], |r, c| ((r * 5 + c * 3) % 7) as f32 * 0.5);
     let words = "bake field.npy --what scatter --paths 20 --seed 3 --directions 64 --sky 1e8 --format ktx2 -o";
     let of = |more: &str| {
-        let run = folder.run(&format!("{words} {more}").split(' ').collect::<Vec<_>>());
+        let run = folder.run_str(&format!("{words} {more}"));
         assert_eq!(run.status, Some(0), "{}", run.err);
         run.err
     };
@@ -291,8 +291,7 @@ fn gpu_requested_settings_of_scattered_light_are_listed() {
     for format in ["npy", "png", "exr", "png,npy"] {
         let out = format.replace(',', "_");
         let words = words.replace("--format ktx2", &format!("--format {format}"));
-        let run = folder.run(&format!("{words} {out}").split(' ').collect::<Vec<_>>());
-        assert_eq!((run.status, run.err.as_str()), (Some(0), ""), "{format}");
+        succeeded(&folder, &format!("{words} {out}"));
         let map = &json(&folder.path(&format!("{out}/manifest.json")))["maps"][0];
         assert!(map["beyond_range"].is_null(), "{map}");
         let largest = map["values"][0]["range"][1].as_f64().unwrap();
@@ -302,7 +301,7 @@ fn gpu_requested_settings_of_scattered_light_are_listed() {
     // Teeth of 30 over four cells: the centres of west faces are occluded from a nearly level view.
     write(&folder, "teeth.npy", [4, 8], |_, c| 10.0 * (c % 4) as f32);
     let words = "bake teeth.npy -o teeth --border periodic --what brdf --bounces 0 --angles 45x4";
-    let run = folder.run(&words.split(' ').collect::<Vec<_>>());
+    let run = folder.run_str(words);
     assert!(run.err.starts_with("ridgelight: --angles: found 45x4 with direction"), "{}", run.err);
 }
 

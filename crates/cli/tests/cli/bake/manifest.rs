@@ -125,7 +125,7 @@ fn gpu_unused_lights_are_reported() {
     let names = ["--sky 0.5", "--sun 200,40", "--key 90,45,60,20,1", "--sphere-light 1,1,9,1,1"];
     let of = |words: &str| {
         let args = format!("bake field.npy -o out --format npy {words}");
-        let run = folder.run(&args.split(' ').collect::<Vec<_>>());
+        let run = folder.run_str(&args);
         assert_eq!(run.status, Some(0), "{}", run.err);
         std::fs::remove_dir_all(folder.path("out")).unwrap();
         run.err
