@@ -1,4 +1,4 @@
-//! What samples see: all borders, both kinds of words, lines and single samples, prime sides.
+//! Passes of bakes: all borders, both sizes of words, lines and single texels, prime sides.
 
 pub(crate) mod curved;
 pub(crate) mod ellipses;
@@ -39,7 +39,7 @@ fn along_the_grid() -> Directions {
     Directions::from_vectors(all, -1.0).expect("unit vectors")
 }
 
-/// Without data in its middle, where it is filled: filled ground hides, and is seen, like any.
+/// With a void in its middle, which is filled: filled ground occludes and is visible.
 fn holed() -> HeightField {
     let mut next = random(69);
     let heights: Vec<f64> = (0..130).map(|_| 7.0 * next()).collect();
@@ -67,7 +67,8 @@ pub fn point_cases() -> Vec<Case> {
     ]
 }
 
-/// `ellipse_fit`: all borders, both kinds of words, all lit and nothing, directions over half a sphere and a whole one.
+/// `ellipse_fit`: all borders, both sizes of words, everything and nothing lit, directions over half a sphere and a
+/// whole one.
 pub fn ellipse_cases() -> Vec<Case> {
     let of = |name, field, border, directions| Case {
         wanted: Wanted::Ellipses(directions),
@@ -78,13 +79,13 @@ pub fn ellipse_cases() -> Vec<Case> {
         wanted: Wanted::CurvedEllipses(directions, per_m),
         ..on(name, field, border, sphere(4))
     };
-    // Shallow, of rounded hills: little is hidden that a bend would show.
+    // Shallow, of rounded hills: little is hidden that curvature would open.
     let hills = |rows, cols| {
         field(rows, cols, [1.0, 1.5], |r, c| (0.7 * r as f64).sin() + (0.4 * c as f64).cos())
     };
     let deep = field(9, 9, [1.0, 1.0], |r, c| if (r, c) == (4, 4) { 0.0 } else { 60.0 });
     let long = field(3, 257, [2.0, 2.0], |r, c| ((7 * r + 5 * c) % 11) as f64);
-    // Rays from the bump on low hills meet others 100 to 300 cells away, past dozens of repetitions and near a right
+    // Rays from the bump on low hills reach others 100 to 300 cells away, past dozens of repetitions and near a right
     // angle of the base.
     let low = field(7, 40, [1.0, 1.5], |r, c| {
         let bump = if (r, c) == (3, 25) { 0.5 } else { 0.0 };
@@ -95,8 +96,8 @@ pub fn ellipse_cases() -> Vec<Case> {
         DVec2::from_angle(2.4 * k as f64).extend(z).normalize()
     });
     let flat = Directions::from_vectors(flat.collect(), -1.0).expect("unit vectors");
-    // Steps 12 m apart in cells a millimetre wide: from the foot of one rays pass 10,000 columns and more to the next, all of which
-    // are looked at, as steps rise by as much as rays.
+    // Steps 12 m apart in cells a millimetre wide: rays from the foot of one pass 10,000 columns and more to the next.
+    // All columns are tested, as steps rise by as much as rays.
     let steps = field(12, 1, [1e-3, 1.0], |r, _| if r == 0 { 1.0 } else { 0.0 });
     let slant = (0..8).map(|k| {
         let k = f64::from(k);
@@ -150,8 +151,8 @@ pub fn ellipse_cases() -> Vec<Case> {
     ]
 }
 
-/// `facet_mask`: all borders, words that are full and not, one cell that repeats, steep ground, directions along the grid and
-/// below horizontal.
+/// `facet_mask`: all borders, words that are full and not, one periodic cell, steep ground, directions along the grid
+/// and below horizontal.
 pub fn facet_cases() -> Vec<Case> {
     let of = |name, field, border, directions| Case {
         wanted: Wanted::Facets(directions),
@@ -176,8 +177,8 @@ pub fn towards(sun: &Sun) -> DVec3 {
     DVec3::new(cos * sun.azimuth_rad.cos(), cos * sun.azimuth_rad.sin(), sin)
 }
 
-/// `scatter_gather`: one bounce, and several in more paths than go side by side; images that are cut, whole words; lobes
-/// under all that they mirror, exponents of 1 and more.
+/// `scatter_gather`: one bounce, and several with more paths than fit side by side; split images, whole words;
+/// specular under all lights, exponents of 1 and more.
 pub fn scatter_cases() -> Vec<Case> {
     let scatter = |bounces, paths| Scatter { bounces, paths, seed: 5, ..Scatter::default() };
     let of = |name, field, surface, lights, wanted: (usize, Scatter, bool)| Case {
@@ -223,7 +224,7 @@ pub fn scatter_cases() -> Vec<Case> {
         curvature: Curvature { per_m },
         ..scatter(bounces, paths)
     };
-    // One groove, whose sides see each other whole.
+    // One groove, whose sides see each other completely.
     let vault = || field(7, 9, [1.0, 1.0], |r, c| (c as f64 - 4.0).abs() + 0.01 * r as f64);
     vec![
         of("one bounce", rough(9, 8, 74), mapped, none(), (71, scatter(1, 70), false)),

@@ -1,4 +1,4 @@
-//! Between walls on curved bases, whose openings are known: light that they scatter, ellipses of sky, and what views see.
+//! Walls on curved bases with known openings: scattered light, ellipses of sky, and views.
 
 use std::f64::consts::PI;
 
@@ -14,13 +14,13 @@ use crate::{Device, field, under_sky};
 const HALF: usize = 8;
 const BORDER: Border = Border::Periodic;
 
-/// Walls a sample wide and eight cells high on level ground, 16 cells apart.
+/// Walls one texel wide and eight cells high on level ground, 16 cells apart.
 fn walls() -> HeightField {
     field(2, 2 * HALF, [1.0; 2], |_, c| if c == 0 { HALF as f64 } else { 0.0 })
 }
 
-/// Half the angle that the middle between two walls sees of the sky, whose tops stand 8 cells of arc away and 8 over the base:
-/// at ((R + 8) sin(8/R), (R + 8) cos(8/R) - R).
+/// Half the angle of sky at the middle between two walls, whose tops stand 8 cells of arc away and 8 over the base: at
+/// ((R + 8) sin(8/R), (R + 8) cos(8/R) - R).
 fn opening(per_m: f64) -> f64 {
     let half = HALF as f64;
     if per_m == 0.0 {
@@ -30,9 +30,10 @@ fn opening(per_m: f64) -> f64 {
     ((radius + half) * sin).atan2((radius + half) * cos - radius)
 }
 
-/// Walls that shine alike light the middle but for a lune of twice the opening: 1 - sin a of the light of a hemisphere. The
-/// silhouette is two half circles, over which the height is 2/π cos a in the mean, and to each side of which directions stand for
-/// what lies within a quarter of their spacing √(4π/N) or so. The flat field's light is none of the bent ones'.
+/// Walls of equal radiance light the middle but for a lune of twice the opening: 1 - sin a of the light of a
+/// hemisphere. The silhouette is two half circles, whose mean height is 2/π cos a; on each side directions stand for
+/// what lies within about a quarter of their spacing √(4π/N). The light of the flat field differs from that of the
+/// curved ones.
 #[test]
 fn walls_scatter_as_far_as_the_base_opens_them() {
     const COUNT: usize = 2048;
@@ -68,9 +69,9 @@ fn walls_scatter_as_far_as_the_base_opens_them() {
     }
 }
 
-/// The middle sees |x| < z tan a: an ellipse of half axes sin a and 1. From any view within it is seen, and from none without,
-/// but for those nearer to its edge than a direction's own radius and what straight lines between five bases leave of sin a; so
-/// for lights.
+/// The middle sees |x| < z tan a: an ellipse of half axes sin a and 1. It is visible from any view within and from
+/// none without, but for views nearer to its edge than a direction's own radius plus the error of linear interpolation
+/// of sin a between five bases; likewise for lights.
 #[test]
 fn views_between_walls_are_those_of_the_opening() {
     const COUNT: usize = 1024;
@@ -113,7 +114,7 @@ fn views_between_walls_are_those_of_the_opening() {
     }
 }
 
-/// Plans say what a base changes, in the numbers that it was checked by.
+/// Plans state the effect of curvature with the checked numbers.
 #[test]
 fn plans_state_the_effect_of_curvature() {
     let limits = plan::Limits::lavapipe();
@@ -124,7 +125,7 @@ fn plans_state_the_effect_of_curvature() {
     let curvature = Curvature { per_m: [-0.01, 0.0] };
     let changed = curvature.check(&scene.field, BORDER).expect("a shallow hollow");
     assert!(changed.light > 0.0 && changed.shadows > 0.0);
-    // Of an albedo of a half, up to three times: 1/2 + 2/4 + 3/8.
+    // For an albedo of a half, up to three times: 1/2 + 2/4 + 3/8.
     let off = 1.375 * changed.light;
     assert!((changed.scattered(0.5, 3) - off).abs() < 1e-12);
     let scatter = Scatter { curvature, cutoff: 0.0, ..Scatter::default() };
@@ -136,7 +137,7 @@ fn plans_state_the_effect_of_curvature() {
     assert!(plan.expect("a plan").notes.contains(&said), "{said}");
 }
 
-/// What cannot be is refused by name, before anything is made.
+/// Wrong curvatures are refused by name, before anything is made.
 #[test]
 fn wrong_curvatures_are_refused_by_name() {
     let limits = plan::Limits::lavapipe();

@@ -1,5 +1,5 @@
-//! The decoders that `bake` writes beside its maps, compiled as they are and run on the device over the files of a real
-//! field, against the values that were packed: each within the error that its manifest states.
+//! The decoders that `bake` writes beside its maps, run unchanged on the device over the files of a real field: each
+//! within its manifest's stated error of the packed values.
 
 mod harmonics;
 mod light;
@@ -20,17 +20,17 @@ use run::decode;
 const AZIMUTHS: u32 = 8;
 const ORDER: usize = 3;
 const DIRECTIONS: usize = 8;
-/// Of radii of 100 and 400 km, outwards and inwards.
+/// Radii of 100 and 400 km, outwards and inwards.
 const CURVATURES: [f64; 2] = [1e-5, 2.5e-6];
 
-/// A shader of `decoders/`, its decoder, and the constants that the written decoder has by name.
+/// A shader of `decoders/shaders/`, its decoder, and the decoder's named constants.
 struct Decoder {
     kind: &'static str,
     spirv: &'static [u8],
     body: &'static str,
     encodings: &'static [Encoding],
     is_array: bool,
-    /// Planes of what it writes.
+    /// Planes of its output.
     planes: usize,
     constants: fn(&Encoding) -> Vec<(&'static str, Constant)>,
 }
@@ -43,7 +43,7 @@ enum Constant {
 }
 
 impl Constant {
-    /// As the specialisation of a shader takes it.
+    /// The specialisation constant's bits.
     fn bits(self) -> u32 {
         match self {
             Constant::Int(v) => v as u32,
@@ -52,7 +52,7 @@ impl Constant {
         }
     }
 
-    /// As the written decoder has it.
+    /// The line of the written decoder.
     fn line(self, name: &str) -> String {
         match self {
             Constant::Int(v) => format!("const int {name} = {v};\n"),
@@ -118,7 +118,8 @@ fn all() -> [Decoder; 9] {
     ]
 }
 
-/// Kinds that border `open` has more of: horizons below horizontal, where they can be packed, and cones beyond π/2.
+/// Kinds with a larger range under border `open`: horizons below horizontal, where they can be packed, and cones
+/// beyond π/2.
 fn is_lower(decoder: &Decoder, number: usize) -> bool {
     match decoder.kind {
         "horizon" => numbered(decoder, number).component.is_signed(),
@@ -126,7 +127,8 @@ fn is_lower(decoder: &Decoder, number: usize) -> bool {
     }
 }
 
-/// Bakes the middle of the bundled field, 96 × 96 of its 256 × 256 samples, each kind with its encoding of this number (or its last), with its values beside.
+/// Bakes the middle of the bundled field, 96 × 96 of its 256 × 256 texels, each kind with its encoding of this number
+/// (or its last), beside its values.
 fn baked(folder: &Path, number: usize, border: &str, wanted: &[Decoder]) -> serde_json::Value {
     let (mut kinds, mut encodings) = (Vec::new(), Vec::new());
     for decoder in wanted {
@@ -166,7 +168,7 @@ fn numbered(decoder: &Decoder, number: usize) -> &'static Encoding {
     &decoder.encodings[number.min(decoder.encodings.len() - 1)]
 }
 
-/// What the manifest promises of a map's texture: of what, at most, and a share of the value.
+/// The manifest's stated errors of a map's texture: for what, at most, and a share of the value.
 fn promised(manifest: &serde_json::Value, kind: &str) -> Vec<(String, f64, f64)> {
     let maps = manifest["maps"].as_array().expect("maps");
     let map = maps.iter().find(|map| map["kind"] == kind).expect("the map");
@@ -179,7 +181,7 @@ fn promised(manifest: &serde_json::Value, kind: &str) -> Vec<(String, f64, f64)>
     errors.map(|e| (of(e), number(&e["at_most"]), number(&e["and_of_the_value"]))).collect()
 }
 
-/// The largest error of what was decoded, as a share of what is promised, and of what.
+/// The largest error of the decoded values as a share of the stated one, and where.
 fn worst(
     promised: &[(String, f64, f64)],
     found: &[f32],
@@ -194,7 +196,7 @@ fn worst(
     for (of, absolute, relative) in promised {
         let mut hold = |is: f64, was: f64| {
             let share = (is - was).abs() / (absolute + relative * was.abs() + slack);
-            // Nothing off of nothing allowed; and no number.
+            // An error of 0 where none is allowed; and NaN.
             let share = if is == was { 0.0 } else { share };
             let share = if share.is_nan() { f64::INFINITY } else { share };
             if share > worst.0 {
@@ -244,7 +246,7 @@ fn decoders_keep_the_errors_that_manifests_state() {
             let encoding = numbered(decoder, number);
             let stem = decoder.kind.replace('-', "_");
             let path = |extension: &str| folder.path().join(format!("{stem}.{extension}"));
-            // What is written is what is compiled here, behind the constants that it is specialised by.
+            // The written decoder is the compiled one, after its specialisation constants.
             let constants = (decoder.constants)(encoding);
             let lines: String = constants.iter().map(|(name, c)| c.line(name)).collect();
             let written = std::fs::read_to_string(path("glsl")).expect("a decoder");
@@ -254,8 +256,8 @@ fn decoders_keep_the_errors_that_manifests_state() {
             let mut truth = read_planes(&path("npy")).expect("values");
             let texture = std::fs::read(path("ktx2")).expect("a texture");
             let promised = promised(&manifest, decoder.kind);
-            // An azimuth is within m 2^-22 of a step of the one that was asked for, across which horizons change by no
-            // more than a right angle, two where they may be below horizontal.
+            // An azimuth is within m 2^-22 of a step of the requested one, across which horizons change by no more
+            // than a right angle, two where they may be below horizontal.
             let is_horizon = decoder.kind == "horizon";
             let across = if is_open { PI } else { FRAC_PI_2 };
             let slack =
@@ -270,7 +272,7 @@ fn decoders_keep_the_errors_that_manifests_state() {
             println!("{} {}: {share:.3} of the bound of the {of}", decoder.kind, encoding.name);
             assert!(share <= 1.0, "{} {}: {share} of {of}", decoder.kind, encoding.name);
 
-            // The comparison hears: what is off by three bounds.
+            // The comparison fails for an error of three bounds.
             let mut off = found.clone();
             let (_, absolute, relative) = promised[promised.len() - 1].clone();
             let last = truth.planes.len() * truth.rows * truth.cols - 1;
@@ -292,7 +294,7 @@ fn decoders_keep_the_errors_that_manifests_state() {
             if decoder.kind == "visible-points" {
                 shared_as_stated(&found, &truth);
             }
-            // Between two azimuths both count alike.
+            // Between two azimuths both count equally.
             if is_horizon && !is_sine {
                 let found = decode(gpu, decoder, &bits, &texture, 0.5);
                 let first = truth.planes.clone();
@@ -305,12 +307,13 @@ fn decoders_keep_the_errors_that_manifests_state() {
             }
         }
     }
-    // What only an open border has was among it.
+    // Values that only an open border has are among them.
     assert!(lowest < 0.0 && f64::from(widest) > FRAC_PI_2, "{lowest}, {widest}");
 }
 
-/// The last plane is the test of the ellipses for a light, but where what is promised of a number (centre up to 4, radii) may
-/// put it over the edge: 1 / radius times that of the centre and the axis' 1.6 at most, and of itself, squared.
+/// The last plane is the ellipses' test for a light, except where the stated error of a number (centre up to 4, radii)
+/// may move the light over the edge: 1 / radius times that of the centre and the axis' 1.6 at most, and of itself,
+/// squared.
 fn lit_as_stated(found: &[f32], truth: &Planes, share: f64) {
     let (samples, light) = (truth.rows * truth.cols, glam::DVec3::new(0.6, 0.48, 0.64));
     let mut counts = [0; 2];
@@ -329,9 +332,9 @@ fn lit_as_stated(found: &[f32], truth: &Planes, share: f64) {
     assert!(counts[0] > 0 && counts[1] > 0, "{counts:?}");
 }
 
-/// The last plane is the test between five ellipses on a base bent by half of what they were fitted at: |adj P v| ≤ det P, but
-/// where what is promised of a number n may put it over the edge: three numbers move each of P's by 2 n at most and the
-/// centre's, so that |adj P v| is off by 2 n (|v| + 2 max P) of them and det P by 4 n max P.
+/// The last plane is the test between five ellipses on a base with half of their curvature: |adj P v| ≤ det P, except
+/// where the stated error of a number n may move it over the edge: three numbers move each of P's by 2 n at most and
+/// the centre's, so that |adj P v| errs by 2 n (|v| + 2 max P) and det P by 4 n max P.
 fn curved_as_stated(found: &[f32], truth: &Planes, share: f64) {
     let (samples, light) = (truth.rows * truth.cols, glam::DVec3::new(0.6, 0.48, 0.64));
     let curvature =
@@ -359,8 +362,8 @@ fn curved_as_stated(found: &[f32], truth: &Planes, share: f64) {
     assert!(counts[0] > 0 && counts[1] > 0, "{counts:?}");
 }
 
-/// The last plane is how much of a light arrives whose shares of the first three directions are 0.5, 0.3 and 0.2: sums of those
-/// in which the sky is seen, a rounding each.
+/// The last plane is the visible share of a light between the first three directions with weights 0.5, 0.3 and 0.2:
+/// sums over those that see the sky, a rounding each.
 fn shared_as_stated(found: &[f32], truth: &Planes) {
     let samples = truth.rows * truth.cols;
     let mut stated = std::collections::BTreeSet::new();

@@ -1,4 +1,4 @@
-//! Light scattered by what samples see of each other: what its paths tend to, and closed forms.
+//! Light scattered between visible texels: the limit of its paths, and closed forms.
 
 use std::f64::consts::PI;
 
@@ -45,8 +45,8 @@ fn f64s(colours: &[[f32; 3]]) -> Vec<[f64; 3]> {
     colours.iter().map(|c| c.map(f64::from)).collect()
 }
 
-/// One bounce by as many paths as directions looks along each once: the mean of all, but for roundings, 16 of each of
-/// 24 terms. More bounces are the mean of seeds, within six of their standard errors, and as much as roundings may do.
+/// One bounce with as many paths as directions uses each direction once: the mean of all, but for 16 roundings of each
+/// of 24 terms. More bounces are the mean of seeds, within six of their standard errors plus roundings.
 #[test]
 fn scatter_paths_tend_to_the_mean_of_all_directions() {
     let mut device = Device::new();
@@ -81,22 +81,22 @@ fn scatter_paths_tend_to_the_mean_of_all_directions() {
         let sigma = ((squares / n - mean * mean).max(0.0) / (n - 1.0)).sqrt();
         let bound = 6.0 * sigma + 3.0 * rounding * want;
         worst = worst.max((mean - want).abs() / bound);
-        // A seventh of the light less would be seen.
+        // A seventh of the light less would fail.
         biased = biased.max((mean - 0.85 * want).abs() / bound);
     }
     println!("{worst:.2} of what is allowed; {biased:.2} of 0.85 of the truth");
     assert!(worst <= 1.0 && biased > 1.0, "{worst} {biased}");
 }
 
-/// By how much a sum over N directions may be off, of the radiance that it is over: cells of the directions, 4π/N each, that
-/// lie across the edge of what is seen, √(πN) of them along 2π, are wrong by up to a half of their weight, 4/N at most; as
-/// if by chance, 0.29 · 4/N · (πN)^¼, thrice.
+/// Error of a sum over N directions, of the radiance: cells of the directions, 4π/N each, that lie across a
+/// silhouette, √(πN) of them along 2π, are wrong by up to a half of their weight, 4/N at most; if independent, 0.29 ·
+/// 4/N · (πN)^¼, three times.
 fn by_directions(count: usize) -> f64 {
     3.0 * 1.16 * std::f64::consts::PI.powf(0.25) * (count as f64).powf(-0.75)
 }
 
-/// The pit sees itself evenly, whatever sample stands for what is seen. At the rim a sample of the plain may: within a
-/// cell of it, as what the rim's staircase does, once more.
+/// The pit sees itself evenly, whichever texel a ray ends in. At the rim it may be one of the plain: within a cell of
+/// it, once more the error of the rim's staircase.
 #[test]
 fn scattering_in_pits_matches_its_closed_form() {
     let mut device = Device::new();
@@ -122,7 +122,7 @@ fn scattering_in_pits_matches_its_closed_form() {
             let known = pit_radiance(alpha, rho, bounces as usize) - pit_radiance(alpha, rho, 0);
             let grid = pit_bounds(rim, alpha, rho, bounces as usize).pop().expect("bounds");
             let again = rho * 0.5 * (1.0 - alpha.cos());
-            // Towards the rim N·e is half the chord over the radius, sin α at most; and no place shines brighter than in
+            // Towards the rim N·e is half the chord over the radius, sin α at most; and no point is brighter than in
             // the limit.
             let most = alpha.sin() * pit_radiance(alpha, rho, 1000);
             let chance = rho * most * by_directions(1024) / (1.0 - again);
@@ -133,15 +133,15 @@ fn scattering_in_pits_matches_its_closed_form() {
             }
             println!("{alpha}, {albedo}, {bounces} bounces: {worst:.2} of what is allowed");
             assert!(worst <= 1.0, "{alpha} {albedo} {bounces}: {worst}");
-            // No light at all is seen to be wrong.
+            // The comparison fails without light.
             let least = grid.iter().map(|(_, bound)| 2.0 * bound + chance).fold(f64::MAX, f64::min);
             assert!(known > least, "{known} {least}");
         }
     }
 }
 
-/// The pit's second bounce as the device draws it, texel by texel: the mean of seeds is within six of their standard errors
-/// of what the paths tend to, and that as near to the closed form as the test before says.
+/// The pit's second bounce, texel by texel: the mean of seeds is within six of their standard errors of the paths'
+/// limit, and that within the bounds of the test before of the closed form.
 #[test]
 fn two_bounces_in_pits_match_their_closed_form() {
     const SEEDS: u32 = 8;
@@ -181,9 +181,9 @@ fn two_bounces_in_pits_match_their_closed_form() {
     assert!(worst[0] <= 1.0 && worst[1] > 1.0, "{worst:?}");
 }
 
-/// A wall of a groove at right angles is lit by the other: a closed form for one bounce and for two. The sample that stands
-/// for what is seen is up to half a cell of √2 away, where direct light, ½ · (½ + ½ s/√(s² + a²)), differs by 1/4a of that
-/// at most; of half of all that is seen.
+/// A wall of a groove at right angles is lit by the other: a closed form for one bounce and for two. The texel of a
+/// hit is up to half a cell of √2 away, where direct light, ½ · (½ + ½ s/√(s² + a²)), differs by 1/4a of that at most;
+/// of half of all visible ground.
 #[test]
 fn scattering_in_grooves_matches_its_closed_form() {
     let mut device = Device::new();
@@ -194,7 +194,7 @@ fn scattering_in_grooves_matches_its_closed_form() {
     let direct: Vec<[f32; 3]> =
         (0..count).map(|i| [(0.5 * groove_sky(s_of(i))) as f32; 3]).collect();
     let [_, once, twice] = groove_parts();
-    // Of an even wall the kernel is half of what is not sky.
+    // For an even wall the kernel is half of the share that is not sky.
     assert!((from_the_other_wall(3.0, |_| 1.0) - (1.0 - groove_sky(3.0))).abs() < 1e-6);
     let points = points(&mut device, &scene, &sphere(1024));
     let grid = 0.5 * 0.5 * (0.5 * 2_f64.sqrt()) / (4.0 * WALL);
@@ -213,9 +213,9 @@ fn scattering_in_grooves_matches_its_closed_form() {
     }
 }
 
-/// Under walls of even direct light each place scatters its albedo's share of what is not sky, whichever sample stands for
-/// what is seen: off by the sum over directions alone. In the mean over the walls a tenth less, of the weight of a direction or
-/// of its cosine, is seen to be wrong.
+/// Under walls of even direct light each place scatters its albedo's share of directions that are not sky, whichever
+/// texel a ray ends in: the sum over directions is the only error. The comparison fails for a tenth less of the weight
+/// of a direction or of its cosine, in the mean over the walls.
 #[test]
 fn even_walls_scatter_the_share_that_is_not_sky() {
     let mut device = Device::new();
@@ -240,15 +240,15 @@ fn even_walls_scatter_the_share_that_is_not_sky() {
     assert!((0.9 * got - known).abs() > allowed, "{got} {known}: a tenth less would do");
 }
 
-/// Of walls at right angles the eastern one faces a sun, and mirrors it by lobes alone; the western one, which the sun passes
-/// by, scatters that diffusely and towards a view that faces it. With directions u from its plane up across the groove and v
-/// along it, a sample sees the other wall's lit samples between u₀ and u₁ and all v, dω = cos v du dv; the cosine to its own
-/// normal is sin u cos v, and that which the other wall's lobe is about, back to its sun, cos u cos v. Bottom and ridge are
-/// black: what is nearest to them is no wall.
+/// For walls at right angles: the eastern one faces a sun and reflects it by Phong specular alone; the western one,
+/// which the sun does not reach, scatters that diffusely and towards a view that faces it. With directions u from its
+/// plane up across the groove and v along it, a texel sees the other wall's lit texels between u₀ and u₁ and all v, dω
+/// = cos v du dv; the cosine to its own normal is sin u cos v, and the cosine of the other wall's lobe, back to its
+/// sun, is cos u cos v. Bottom and ridge are black: the texels next to them are on no wall.
 ///
-/// A sum over N directions of w = 4π/N errs at the edges, arcs of v with √(N/4π) directions a radian each of which is wrong by up
-/// to a half, as if by chance: thrice √(w² √(N/4π) ∮ f² / 12); and by its rule over a function that changes within 1/(n + 2)
-/// radians, w (n + 2)² / 24 of itself.
+/// A sum over N directions of w = 4π/N errs at the edges, arcs of v with √(N/4π) directions a radian each of which is
+/// wrong by up to a half, independently: three times √(w² √(N/4π) ∮ f² / 12); and by its rule over a function that
+/// changes within 1/(n + 2) radians, w (n + 2)² / 24 of itself.
 #[test]
 fn specular_scattering_of_walls_matches_its_integral() {
     const COUNT: usize = 4096;
@@ -310,13 +310,13 @@ fn specular_scattering_of_walls_matches_its_integral() {
         let samples = (4 * (HALF - 1)) as f64;
         let (got, known) = (got / samples, known / samples);
         println!("{exponent}, {share}: {got:.6} of {known:.6}, within {most:.6} each");
-        // A tenth less of lobe, of cosine or of the weight of a direction is seen.
+        // The comparison fails for a tenth less of specular, of cosine or of the weight of a direction.
         assert!((0.9 * got - known).abs() > 0.5 * most, "{exponent}: a tenth less would do");
     }
 }
 
-/// 50 paths and 50 more by a plan that replaces the first are 100: sums of terms in another order, each rounded within 16 ε.
-/// Paths that began again would be 50.
+/// 50 paths and 50 more by a plan that replaces the first are 100: sums of terms in another order, each rounded within
+/// 16 ε. Restarted paths would be 50.
 #[test]
 fn paths_are_added_to_those_before() {
     let mut device = Device::new();
@@ -356,7 +356,7 @@ fn paths_are_added_to_those_before() {
     assert!(moved > 0.01, "half of the paths are as good: {moved}");
 }
 
-/// Black ground scatters 0, whatever is in the way, and says 0 paths.
+/// Black ground scatters 0, whatever occludes it, and the plan states 0 paths.
 #[test]
 fn black_ground_scatters_nothing() {
     let mut device = Device::new();
@@ -367,7 +367,7 @@ fn black_ground_scatters_nothing() {
     assert!(drawn.values.iter().all(|v| *v == 0.0));
 }
 
-/// What cannot be scattered is refused by name.
+/// Wrong arguments of scattering are refused by name.
 #[test]
 fn scattering_is_refused_by_name() {
     use ridgelight::plan::Limits;

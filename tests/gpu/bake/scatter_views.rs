@@ -1,4 +1,4 @@
-//! Light that lobes scatter towards several views: each what it is alone, closed forms, and lights one after the other.
+//! Specular scattering towards several views: each alone, closed forms, and one light after the other.
 
 use std::f64::consts::PI;
 
@@ -30,7 +30,7 @@ fn towards_views(
     texels.chunks_exact(count).map(<[_]>::to_vec).collect()
 }
 
-/// Views side by side are each what it is alone, bit by bit: the same terms in the same order. And they differ.
+/// Views side by side have each its own bits: the same terms in the same order. And they differ.
 #[test]
 fn views_side_by_side_are_each_alone() {
     let mut device = Device::new();
@@ -53,9 +53,9 @@ fn views_side_by_side_are_each_alone() {
     }
 }
 
-/// A sample's own lobe on level ground under a sky of 1 and a sun: s times the sum of p over the directions above, and s p E of the
-/// sun, from each view, without bounces. f32 of directions turns a lobe's angle by 2⁻²³, which changes cosⁿ by n 2⁻²³ of what it
-/// is at the steepest; sums of 200 terms, rounded within 16 ε each.
+/// Direct specular of level ground under a sky of 1 and a sun: s times the sum of p over the directions above, and s p
+/// E of the sun, from each view, without bounces. f32 of directions turns a lobe's angle by 2⁻²³, which changes cosⁿ
+/// by n 2⁻²³ of itself at the steepest; sums of 200 terms, rounded within 16 ε each.
 #[test]
 fn direct_specular_of_level_ground_matches_its_closed_form() {
     let mut device = Device::new();
@@ -97,8 +97,8 @@ fn direct_specular_of_level_ground_matches_its_closed_form() {
     }
 }
 
-/// Triangles under lights in turn, towards all views by a few at a time and towards one alone: each what the field scatters of that
-/// light alone towards that view alone, bit by bit, whatever lights the scene has and whatever was asked for before it.
+/// Triangles under lights in turn, towards all views by a few at a time and towards one alone: each has the bits of
+/// that light and view alone, whatever lights the scene has and whatever was computed before.
 #[test]
 fn lights_in_turn_are_each_alone() {
     let mut device = Device::new();

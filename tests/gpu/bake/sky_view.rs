@@ -1,4 +1,4 @@
-//! What is baked of the device's horizons of real ground, against the quadrature over the oracle's.
+//! The baked sky view of the device's horizons of real ground, against the quadrature over the oracle's.
 
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -13,9 +13,8 @@ use ridgelight_io::HeightOptions;
 
 use crate::{Device, field, random};
 
-/// The middle of the bundled mountain. Exact horizons are off by what a march's slopes are, as the sky's sum of
-/// `sky_shade` is; here sum and normal are in f64, so that its bound is more than enough. Half as many azimuths are
-/// seen not to be as many.
+/// The middle of the bundled mountain. Exact horizons err by a march's slopes, as in `sky_shade`; here sum and normal
+/// are in f64, so its bound is more than enough. The comparison fails with half as many azimuths.
 #[test]
 fn sky_view_of_bundled_terrain_is_the_oracles() {
     const SIDE: usize = 96;

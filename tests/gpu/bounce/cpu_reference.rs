@@ -1,4 +1,4 @@
-//! Indirect light: walks, brute force, pyramids, nodes, Phong specular.
+//! Indirect light: walks, brute force, pyramids, nodes.
 
 pub(crate) mod indirect;
 pub(crate) mod nodes;
@@ -11,8 +11,8 @@ use ridgelight::scene::{
 
 use crate::cpu_reference::{Case, Wanted, bowl, check_all, rough};
 
-/// `bounce_walk`: colours and grey, every border, lines half a cell and two cells apart, one sample and lines of them,
-/// in batches.
+/// `bounce_walk`: colours and grey, every border, lines half a cell and two cells apart, single texels and lines of
+/// them, in batches.
 pub(crate) fn walks() -> Vec<Case> {
     let base = Quality { azimuths: 8, ..Quality::default() };
     let walked = |count, azimuths, lines| {
@@ -111,8 +111,8 @@ pub(crate) fn bounced_light() -> Vec<Case> {
     ]
 }
 
-/// Bounces at every second or fourth sample, the last ones among them: every engine, colours and grey, visibility caches of
-/// one batch and of several.
+/// Bounces at every second or fourth texel, the last ones among them: every engine, colours and grey, visibility
+/// caches of one batch and of several.
 pub(crate) fn node_cases() -> Vec<Case> {
     let case = |name, (rows, cols), border, (engine, count, subsample)| {
         let map = (0..rows * cols).map(|i| [1.0, (i % 5) as f32 / 4.0, 0.5]).collect();

@@ -1,4 +1,4 @@
-//! Bounces where fields end, repeat, have no data or are one sample wide: by every engine.
+//! Bounces at edges, across the seam of periodic fields, at voids and on single lines of texels, by every engine.
 
 use ridgelight::scene::{
     Albedo, Border, BounceEngine, BounceSpecular, Bounces, HeightField, Levels, Lights, Quality,
@@ -14,7 +14,7 @@ const ENGINES: [BounceEngine; 3] =
 const LOW: Sun =
     Sun { azimuth_rad: 0.3, elevation_rad: 1.4, diameter_rad: 0.0, irradiance: [3.0; 3] };
 
-/// So many bounces, none dropped; one level an octave, whose texels lie on the field's samples.
+/// A number of bounces without cutoff; one level an octave, whose texels lie on the field's.
 fn quality(engine: BounceEngine, count: u32, azimuths: u32) -> Quality {
     let (level_step, level_offset) = (1, 1);
     let specular = BounceSpecular::Vector;
@@ -65,7 +65,7 @@ fn periodic_fields_bounce_across_the_seam() {
                 assert!(off <= bound, "{engine:?} {k} {i}: {here} {there}, {off:e}");
             }
         }
-        // The last row is a wall: the third stands 3 cells before it over the edge, 13 within.
+        // The last row is a wall: 3 cells before the third row across the seam, 13 within the field.
         let walled = |border| {
             let mut scene = scene([0, 0], border);
             scene.field = field(SIDE, SIDE, [1.0; 2], |r, _| if r == SIDE - 1 { 3.0 } else { 0.0 });
@@ -83,9 +83,9 @@ fn periodic_fields_bounce_across_the_seam() {
     }
 }
 
-/// Voids are ground as they were filled: they bounce light and occlude as the same heights without marks. Their base is another,
-/// so that heights are rounded again, by ε of the relief, 3, at either end: 6 ε of a slope, on either side of at most
-/// 30 stretches.
+/// Voids are filled ground: they bounce light and occlude like the same heights without voids. The base differs, so
+/// heights are rounded again, by ε of the relief, 3, at either end: 6 ε of a slope, on either side of at most 30
+/// intervals.
 #[test]
 fn voids_are_filled_ground() {
     const SIDE: usize = 12;
@@ -108,7 +108,7 @@ fn voids_are_filled_ground() {
             let off = f64::from((a - b).abs());
             assert!(off <= 360.0 * EPSILON, "{engine:?}: {a} {b}");
         }
-        // They are in the way, and shine: level ground there instead is another light.
+        // They occlude and reflect: level ground in their place gives another light.
         let level: Vec<f64> =
             (0..SIDE * SIDE).map(|i| if is_void(i) { base - 9.0 } else { filled[i] }).collect();
         let level = HeightField::new(SIDE, SIDE, &level, [1.0; 2], None).unwrap();
@@ -119,9 +119,8 @@ fn voids_are_filled_ground() {
     }
 }
 
-/// A row of samples, or a column, is a line. Where nothing repeats rays beside it see nothing of it; walks and
-/// pyramids look along it, too, and see what stands there. Where it repeats it is grooves, of which a row is the
-/// same light as many of them.
+/// A row of texels, or a column, is a line. Without repetition rays across it do not hit it; walks and pyramids also
+/// look along it and find its ground. A periodic one is grooves, of which one row has the same light as many.
 #[test]
 fn fields_one_sample_wide() {
     const LONG: usize = 16;

@@ -28,7 +28,7 @@ use ridgelight_io::HeightOptions;
 use crate::reference::quadrature::traced;
 use crate::{Device, colours, field, random, under_sky};
 
-/// So many bounces in so many azimuths, none dropped, of direct light by brute force in as many.
+/// A number of bounces in so many azimuths, without cutoff, of direct light by brute force in as many.
 fn brute(count: u32, azimuths: u32) -> Quality {
     let bounces = Bounces { count, azimuths, cutoff: 0.0, ..Bounces::default() };
     Quality { method: Method::BruteForce, azimuths, bounces, ..Quality::default() }
@@ -60,7 +60,7 @@ fn brightest(light: &[[f64; 3]]) -> f64 {
     light.as_flattened().iter().fold(0.0, |m, v| v.max(m))
 }
 
-/// Fields of every shape, under a sky and a sun of other colours, with an albedo each.
+/// Fields of every shape, under a sky and a sun of other colours, each with an albedo of its own.
 fn scenes(border: Border) -> Vec<(&'static str, Scene)> {
     let mut next = random(4);
     let noise: Vec<f64> = (0..143).map(|_| next()).collect();
@@ -89,7 +89,7 @@ fn scenes(border: Border) -> Vec<(&'static str, Scene)> {
     ]
 }
 
-/// A bounce beside the CPU reference: the largest ratio of an error to its bound.
+/// A bounce compared with the CPU reference: the largest ratio of an error to its bound.
 fn beside(
     layer: &[[f64; 3]],
     scene: &Scene,
@@ -110,12 +110,12 @@ fn beside(
     largest
 }
 
-/// Each bounce is what the CPU reference makes of the device's bounce before.
+/// Each bounce is the CPU reference's from the device's previous bounce.
 #[test]
 fn brute_force_matches_the_cpu_reference() {
     let mut gpu = Device::new();
     for (border, azimuths) in [(Border::Plane, 8), (Border::Open, 4), (Border::Periodic, 4)] {
-        // Each is a pipeline of its own, and rays over repetitions go on for long.
+        // Each is a pipeline of its own, and rays over repetitions are long.
         let is_drawn = |(name, _): &(&str, Scene)| match border {
             Border::Plane => ["rough", "fractal", "two rows", "one sample"].contains(name),
             Border::Open => ["wild", "tilted"].contains(name),
@@ -145,7 +145,7 @@ fn brute_force_matches_the_cpu_reference() {
     }
 }
 
-/// The same by pyramids, of either storage and receiver; their levels are the CPU reference's, too.
+/// Pyramids likewise, with either storage and receiver; their levels match the CPU reference, too.
 #[test]
 fn pyramids_match_the_cpu_reference() {
     let mut gpu = Device::new();
@@ -228,18 +228,18 @@ fn pyramids_match_the_cpu_reference() {
     }
 }
 
-/// White ground under a white sky: each bounce adds, and the sum comes up to 1 from below.
+/// White ground under a white sky: each bounce adds, and the sum rises to 1.
 ///
-/// Sky and indirect light are two rules over azimuths: where a sample's shares s of sky and t of ground, by the CPU
-/// reference, make 1 + d, light that is nowhere more than 1 + D stays so if s + t (1 + D) ≤ 1 + D: D = d / (1 - t),
-/// and likewise from below. f32 adds 16 roundings a bounce. What is missing after k bounces is at most the largest tᵏ.
+/// Sky and indirect light are two rules over azimuths: where a texel's shares s of sky and t of ground, by the CPU
+/// reference, sum to 1 + d, light that is nowhere more than 1 + D stays so if s + t (1 + D) ≤ 1 + D: D = d / (1 - t),
+/// and likewise from below. f32 adds 16 roundings a bounce. After k bounces at most the largest tᵏ is missing.
 #[test]
 fn a_furnace_comes_up_to_one() {
     const AZIMUTHS: u32 = 8;
     let mut gpu = Device::new();
     let mut next = random(9);
     let noise: Vec<f64> = (0..72).map(|_| next()).collect();
-    // Rays over repetitions go on for long.
+    // Rays over repetitions are long.
     for (border, count) in [(Border::Open, 64), (Border::Periodic, 4)] {
         let scene = under_sky(field(8, 9, [1.0, 1.5], |r, c| 1.5 * noise[r * 9 + c]), border);
         let all = drawn(&mut gpu, &scene, &brute(count, AZIMUTHS));
@@ -270,15 +270,15 @@ fn a_furnace_comes_up_to_one() {
     }
 }
 
-/// RMSE over the mean of the truth.
+/// RMSE over the mean of the quadrature.
 fn relative(got: &[[f64; 3]], want: &[[f64; 3]]) -> f64 {
     let squares: f64 = got.iter().zip(want).map(|(a, b)| (a[0] - b[0]).powi(2)).sum();
     let mean = want.iter().map(|v| v[0]).sum::<f64>() / want.len() as f64;
     (squares / want.len() as f64).sqrt() / mean
 }
 
-/// The same surface with every cell cut into four, as the quadrature's own: light between samples is linear, so
-/// the error falls at least as fast as a cell's side.
+/// The same surface with every cell cut into four, as in the quadrature: light between texels is linear, so the error
+/// falls at least as fast as a cell's side.
 fn halved(field: &HeightField) -> HeightField {
     let (rows, cols) = (field.rows(), field.cols());
     let h =
@@ -289,8 +289,8 @@ fn halved(field: &HeightField) -> HeightField {
     })
 }
 
-/// Mountains against the quadrature, which knows of no samples between its triangles: the bounces' error halves
-/// with the cells, and what is wrong without them is far beyond.
+/// Mountains against the quadrature, which has no texels between its triangles: the bounces' error halves with the
+/// cells, and without bounces the error is far larger.
 #[test]
 fn bounces_tend_to_the_quadrature() {
     let mut gpu = Device::new();
@@ -326,7 +326,7 @@ fn bounces_tend_to_the_quadrature() {
         100.0 * errors[1]
     );
     assert!(errors[1] <= 0.7 * errors[0], "{errors:?}");
-    // Deaf to nothing: two bounces of three.
+    // The comparison fails for two bounces of three.
     let short = drawn(&mut gpu, &scene_of(halved(&steep)), &brute(2, 32));
     let none = less(&short[0], &short[1..]);
     let got: Vec<[f64; 3]> =
@@ -339,10 +339,10 @@ fn rms(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
     (squares / a.len() as f64).sqrt()
 }
 
-/// A piece of the bundled mountain, three times as steep, against the path-traced reference with as many bounces. The two differ
-/// by twice the standard error, and by what lies between grid points. That falls with the cells by an order of 0.7
-/// or more (see the quadratures), so that it is 1 / (1 - 2^-0.7) = 2.6 times what half the cells change.
-/// Light without bounces is farther.
+/// A piece of the bundled mountain, three times as steep, against the path-traced reference with as many bounces. The
+/// two differ by twice the standard error, and by the surface between grid points. That part falls with the cells by
+/// an order of 0.7 or more (see the quadratures), so it is 1 / (1 - 2^-0.7) = 2.6 times the change from halving the
+/// cells. Light without bounces differs more.
 #[test]
 fn a_mountain_matches_the_path_traced_reference() {
     const SIDE: usize = 16;
@@ -391,8 +391,8 @@ fn by_pyramids(step: u32, offset: u32, receiver: Receiver, count: u32) -> Qualit
     Quality { bounces, level_step: step, level_offset: offset, receiver, ..brute(count, 16) }
 }
 
-/// More and finer levels come to every stretch: from the defaults' to eight an octave, none of them coarse, the
-/// error halves at least. Three bands of a cosine do not.
+/// More and finer levels tend to brute force: from the defaults to eight an octave, none of them coarse, the error
+/// halves at least. Three bands of a cosine do not.
 #[test]
 fn pyramids_tend_to_brute_force() {
     let mut gpu = Device::new();
@@ -412,7 +412,7 @@ fn pyramids_tend_to_brute_force() {
     assert!(error(8, 4, Receiver::CosineLobe) > fine);
 }
 
-/// No sample bounces more than the brightest did before, whatever the slopes and borders.
+/// No texel bounces more than the brightest did before, whatever the slopes and borders.
 #[test]
 fn pyramids_gain_no_energy() {
     let mut gpu = Device::new();
@@ -433,7 +433,7 @@ fn pyramids_gain_no_energy() {
     }
 }
 
-/// Voids are filled ground: they bounce light and occlude as the same field without marks. A field one sample wide
+/// Voids are filled ground: they bounce light and occlude like the same field without voids. A field one texel wide
 /// has no indirect light.
 #[test]
 fn voids_are_ground_and_lines_bounce_nothing() {

@@ -1,4 +1,4 @@
-//! Bounces that are found at every second and every fourth sample.
+//! Bounces at every second and every fourth texel.
 
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -51,8 +51,8 @@ fn rough(rows: usize, cols: usize, border: Border, relief: f64) -> Scene {
 const ENGINES: [BounceEngine; 3] =
     [BounceEngine::Sweep, BounceEngine::BruteForce, BounceEngine::Pyramid];
 
-/// At a node nothing else counts, and its share of ground is its own: the first bounce is that of every sample, the last
-/// ones too, but for the rounding of a quotient.
+/// At a node only its own light and share of ground count: the first bounce is that of every texel, the last ones too,
+/// but for the rounding of a quotient.
 #[test]
 fn nodes_are_lit_as_they_are_by_themselves() {
     let mut gpu = Device::new();
@@ -77,8 +77,8 @@ fn nodes_are_lit_as_they_are_by_themselves() {
     }
 }
 
-/// Radiances that nodes see are means, and shares at most 1: no sample bounces more than the brightest did, but for what
-/// two rules over azimuths in equal parts h differ by in the share, h² or less of all that is seen.
+/// Nodes gather means of radiance, and shares are at most 1: no texel bounces more than the brightest did, but for the
+/// difference of two rules over azimuths in equal parts h, h² or less of all visible ground.
 #[test]
 fn no_energy_is_gained_between_nodes() {
     let mut gpu = Device::new();
@@ -116,13 +116,13 @@ fn mountain() -> Scene {
     scene
 }
 
-/// RMSE over the mean of what it should be.
+/// RMSE over the mean of the reference.
 fn off(found: &[f64], want: &[f64]) -> f64 {
     let squares: f64 = found.iter().zip(want).map(|(a, b)| (a - b).powi(2)).sum();
     (squares / want.len() as f64).sqrt() / (want.iter().sum::<f64>() / want.len() as f64)
 }
 
-/// Light between nodes that knows no normals.
+/// Light interpolated between nodes without normals.
 fn interpolated(whole: &[f64], side: u32, nodes: Nodes) -> Vec<f64> {
     let at = |i: u32| {
         let (([left, right], x), ([top, bottom], y)) =
@@ -135,9 +135,9 @@ fn interpolated(whole: &[f64], side: u32, nodes: Nodes) -> Vec<f64> {
     (0..side * side).map(at).collect()
 }
 
-/// Radiance by every sample's own share of ground has an error smaller by a third or more than interpolated light, and
-/// more nodes have a smaller one. Visibility caches take the light of a visible interval from one sample: they change a
-/// second bounce by less than its nodes do.
+/// Radiance weighted by every texel's own share of ground has an error smaller by a third or more than interpolated
+/// light, and more nodes have a smaller one. Visibility caches take the light of a visible interval from one texel:
+/// they change a second bounce by less than its nodes do.
 #[test]
 fn on_terrain_shares_are_better_than_light() {
     let mut gpu = Device::new();
@@ -163,7 +163,7 @@ fn on_terrain_shares_are_better_than_light() {
         );
         before = by_shares;
         if stride == 2 {
-            // Of many azimuths the sets are most of the memory.
+            // With many azimuths the caches take most of the memory.
             let of = quality(BounceEngine::Sweep, 2, 128, 2);
             let found = layers(&mut gpu, &scene, &of);
             let wanted = Picture { light_layers: true, ..Picture::default() };

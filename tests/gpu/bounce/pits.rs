@@ -10,8 +10,8 @@ use ridgelight::scene::{
 use crate::reference_page::{pit, pit_bounds, pit_radiance};
 use crate::{Device, field, under_sky};
 
-/// Half-angles and albedos; of two the project's reference numbers know some bounces and the limit, which the
-/// closed form meets.
+/// Half-angles and albedos; for two of them the reference numbers have some bounces and the limit, which match the
+/// closed form.
 const PITS: [(f64, f32); 4] = [(0.6, 0.7), (0.8, 0.5), (1.2, 0.9), (1.4, 0.3)];
 /// After this many bounces each of them bounces a millionth of the light or less: the limit.
 const LIMIT: usize = 12;
@@ -61,7 +61,7 @@ fn rmse(light: &[f64], bounds: &[(usize, f64)], expected: f64) -> f64 {
     100.0 * (squares / bounds.len() as f64).sqrt() / expected
 }
 
-/// Bounces 0 to 4 and the limit, within what the rim's staircase may do.
+/// Bounces 0 to 4 and the limit, within the error of the rim's staircase.
 #[test]
 fn exact_engines_match_the_closed_form_of_pits() {
     let mut gpu = Device::new();
@@ -76,11 +76,11 @@ fn exact_engines_match_the_closed_form_of_pits() {
                     LIMIT => pit_radiance(alpha, rho, 1000),
                     count => pit_radiance(alpha, rho, count),
                 };
-                // What later bounces would add to the limit.
+                // Later bounces up to the limit.
                 let left = pit_radiance(alpha, rho, 1000) - pit_radiance(alpha, rho, LIMIT);
                 let left = if count == LIMIT { left } else { 0.0 };
-                // The rim's own cells bounce what is between the pit's light and the plain's, ρ: as much of what is
-                // gained of sky, 1 - L, as ρ - L is of that.
+                // The rim's own cells bounce between the pit's light and the plain's, ρ: as much of the gained sky, 1
+                // - L, as ρ - L is of that.
                 let before = count.checked_sub(1).map_or(1.0, |b| pit_radiance(alpha, rho, b));
                 let rim = 1.0 + (rho - before).max(0.0) / (1.0 - before).max(1e-9);
                 for (i, bound) in &bounds[count] {
@@ -94,7 +94,7 @@ fn exact_engines_match_the_closed_form_of_pits() {
     }
 }
 
-/// The pit with a rim that its middle sees without a staircase: samples of the plain beside the pit's stand on the cone
+/// A pit whose rim has no staircase as seen from its middle: texels of the plain beside the pit's stand on the cone
 /// from the pit's lowest point through its rim, which rises by tan(α/2).
 fn rimmed_pit(rim: f64, alpha: f64) -> HeightField {
     let (sphere, middle) = (rim / alpha.sin(), rim.ceil() + 1.0);
@@ -113,12 +113,12 @@ fn rimmed_pit(rim: f64, alpha: f64) -> HeightField {
     })
 }
 
-/// How much more or less sky a place of that pit, `away` from its axis, may see on the grid.
+/// The change of sky at a point of that pit, `away` from its axis, on the grid.
 ///
-/// A ray leaves the pit's samples between two of the cone's, δ ≤ √2 cells behind the rim. The surface is as high there as
-/// the cone, δ tan(α/2), and a chord's arrow of s² / 8D more, s² ≤ 2, times the same slope. The rim, at D, is seen at ω: from
-/// what stands by h over its line of sight at D the horizon differs by h cos²ω / D, and the sky by N·e cos ω of that.
-/// Flat triangles instead of the sphere: second order in a cell over R.
+/// A ray leaves the pit's texels between two of the cone's, δ ≤ √2 cells behind the rim. The surface is as high there
+/// as the cone, δ tan(α/2), and a chord's arrow of s² / 8D more, s² ≤ 2, times the same slope. The rim, at D, is seen
+/// at ω: ground that stands by h over its line of sight at D changes the horizon by h cos²ω / D, and the sky by N·e
+/// cos ω of that. Flat triangles instead of the sphere: second order in a cell over R.
 fn sky_changed(away: f64, rim: f64, alpha: f64) -> f64 {
     let (sphere, rise) = (rim / alpha.sin(), (0.5 * alpha).tan());
     let depth = (sphere * sphere - away * away).sqrt() - sphere * alpha.cos();
@@ -134,15 +134,15 @@ fn sky_changed(away: f64, rim: f64, alpha: f64) -> f64 {
     2.0 / f64::from(m) * (0..m).map(of).sum::<f64>() + 1.0 / (sphere * sphere)
 }
 
-/// What claims to be exact, brute, is at 64 and at 256 azimuths within 0.2 % of the closed form where the field has no staircase. That
-/// alone takes more of a rim 30 cells away, in quadrature of f64, too (`examples/bounce`). Every sample's sky is within what
-/// is left of it.
+/// Brute force is exact: at 64 and at 256 azimuths it is within 0.2 % of the closed form where the field has no
+/// staircase. The staircase of a rim 30 cells away alone takes more, in the f64 quadrature, too (`examples/bounce`).
+/// Every texel's sky is within its bound.
 #[test]
 fn exact_bounces_of_pits_are_within_a_five_hundredth() {
     const FAR: f64 = 30.5;
     const MOST: f64 = 0.2;
     let mut gpu = Device::new();
-    // The deep pit is the worse one; of the other fewer azimuths are as near, which costs less.
+    // The deep pit is the worse one; the other is as exact with fewer azimuths, which costs less.
     for (alpha, albedo, azimuths) in [(0.8, 0.5, 64), (1.2, 0.9, 256)] {
         let rho = f64::from(albedo);
         let side = pit(FAR, alpha).cols();
@@ -169,7 +169,7 @@ fn exact_bounces_of_pits_are_within_a_five_hundredth() {
     }
 }
 
-/// Pyramids smooth what stands near: they have no bound of their own, but finer levels come nearer, and no sample
+/// Pyramids smooth near ground: they have no bound of their own, but finer levels have smaller errors, and no texel
 /// gets more than all ground at its brightest would give.
 #[test]
 fn pyramids_tend_to_the_closed_form_of_pits() {

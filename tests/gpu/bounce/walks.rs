@@ -1,5 +1,5 @@
-//! Bounces by walks over what sweeps have met: against closed forms, the engine that takes every crossing, and what
-//! must be.
+//! Bounces by walks over swept occluders: against closed forms, brute force over every crossing, and conservation of
+//! energy.
 
 use ridgelight::plan::azimuths::even;
 use ridgelight::plan::{self, Axis, Limits, Picture};
@@ -16,7 +16,7 @@ use ridgelight_cpu::tolerance::EPSILON;
 
 use crate::{Device, field, random, under_sky};
 
-/// So many bounces in so many azimuths, none dropped, of direct light by sweeps in as many.
+/// A number of bounces in so many azimuths, without cutoff, of direct light by sweeps in as many.
 fn swept(count: u32, azimuths: u32, engine: BounceEngine) -> Quality {
     let bounces = Bounces { count, azimuths, engine, cutoff: 0.0, ..Bounces::default() };
     Quality { azimuths, bounces, ..Quality::default() }
@@ -27,7 +27,7 @@ fn drawn(gpu: &mut Device, scene: &Scene, quality: &Quality) -> Vec<f64> {
     gpu.picture(scene, quality).values.into_iter().map(f64::from).collect()
 }
 
-/// What a sample sees of ground that radiates 1, by the CPU reference.
+/// The share of ground of radiance 1 in a texel's view, by the CPU reference.
 fn ground_shares(field: &HeightField, border: Border, count: u32) -> Vec<f64> {
     let mut azimuths = even(count, field.cell_m());
     number_layers(&mut azimuths);
@@ -46,9 +46,9 @@ fn ground_shares(field: &HeightField, border: Border, count: u32) -> Vec<f64> {
     swept.per_sample(|col, row| bounce_walk(&swept, &white, col, row).radiance()[0])
 }
 
-/// White ground under a white sky: each bounce adds, and the sum comes up to 1 from below. Sky and ground are found
-/// apart: where a sample's shares s and t make 1 + d, light that is nowhere more than 1 + D stays so if s + t (1 + D)
-/// ≤ 1 + D: D = d / (1 - t), and likewise from below; 16 roundings a bounce.
+/// White ground under a white sky: each bounce adds, and the sum rises to 1. Sky and ground are found separately:
+/// where a texel's shares s and t sum to 1 + d, light that is nowhere more than 1 + D stays so if s + t (1 + D) ≤ 1 +
+/// D: D = d / (1 - t), and likewise from below; 16 roundings a bounce.
 #[test]
 fn a_furnace_comes_up_to_one() {
     const COUNT: u32 = 64;
@@ -80,9 +80,9 @@ fn a_furnace_comes_up_to_one() {
     }
 }
 
-/// Beside the engine that takes every crossing, of a fractal. The same land at twice the samples a cell has its crossings
-/// half as far apart, and lines two and four cells apart are as much farther from a sample's own: each is off by more than
-/// the one before, and by all that a walk steps over it is still nearer than no bounce at all.
+/// Against brute force over every crossing, on a fractal. The same land at twice the texels a cell has its crossings
+/// half as far apart, and lines two and four cells apart are as much farther from a texel's own: the errors rise in
+/// this order, and even the largest is smaller than that of no bounce at all.
 #[test]
 fn walks_are_near_every_crossing() {
     let mut gpu = Device::new();
@@ -116,7 +116,7 @@ fn walks_are_near_every_crossing() {
     assert!(errors.windows(2).all(|two| two[0] < two[1]) && errors[3] < 1.0, "{errors:?}");
 }
 
-/// Ways without lines have nothing to walk over, and say so; where nothing is reflected they are not asked.
+/// Methods without lines have nothing to walk over and are refused with that reason, except where the ground is black.
 #[test]
 fn walks_without_lines_are_refused() {
     let mut scene = under_sky(fractal(8, 1).unwrap(), Border::Plane);

@@ -1,4 +1,4 @@
-//! What is run against the CPU reference: small fields of odd sizes, every form of every pass at least once.
+//! The cases of the comparison with CPU references: small fields of odd sizes, every form of every pass at least once.
 
 use ridgelight::plan::{self, Limits, Picture, Plan};
 use ridgelight::scene::{
@@ -10,7 +10,7 @@ use ridgelight_cpu::visible_points::visible_points;
 use crate::bake::cpu_reference::towards;
 use crate::{field, random};
 
-/// Of what lobes scatter towards several.
+/// The views of specular scattering.
 const VIEWS: [glam::DVec3; 2] = [glam::DVec3::Z, glam::DVec3::new(0.6, 0.0, 0.8)];
 
 pub(crate) enum Wanted {
@@ -20,7 +20,7 @@ pub(crate) enum Wanted {
     Picture(Picture),
     /// Bounces.
     Reference(u32),
-    /// Bounces; bounced light alone of so many samples.
+    /// Bounces; bounced light alone of so many texels.
     ReferenceAt(u32, usize),
     Points(Directions),
     Ellipses(Directions),
@@ -36,7 +36,7 @@ pub(crate) struct Case {
     pub scene: Scene,
     pub quality: Quality,
     pub wanted: Wanted,
-    /// Whether some hull is deeper than the memory that it is kept in.
+    /// Whether some hull is deeper than its storage.
     pub loses_lines: bool,
 }
 
@@ -98,14 +98,14 @@ impl Case {
         }
     }
 
-    /// Samples of a list: every third from the last on, some twice.
+    /// Texels of a list: every third from the last on, some twice.
     pub fn listed(&self) -> Option<Vec<usize>> {
         let Wanted::ReferenceAt(_, count) = self.wanted else { return None };
         let all = self.scene.field.heights_m().len();
         Some((1..=count).map(|i| (3 * all - 3 * i) % all).collect())
     }
 
-    /// What samples see, by the CPU reference.
+    /// Visible points by the CPU reference.
     pub fn points(&self) -> Option<VisiblePoints> {
         let Wanted::Scatter(directions, ..) = &self.wanted else { return None };
         let (field, border) = (&self.scene.field, self.scene.surface.border);
@@ -152,14 +152,14 @@ impl Case {
     }
 }
 
-/// Heights without two alike, so that no tie hides a wrong choice, over a few cells.
+/// Heights over a few cells without ties, which could hide a wrong choice.
 pub(crate) fn rough(rows: usize, cols: usize, seed: u64) -> HeightField {
     let mut next = random(seed);
     let noise: Vec<f64> = (0..rows * cols).map(|_| next()).collect();
     field(rows, cols, [3.0, 2.0], |r, c| 900.0 + 7.0 * noise[r * cols + c])
 }
 
-/// A paraboloid, smooth and with nothing hidden: few of its bounces hang on rounding.
+/// A paraboloid, smooth and without occlusion: rounding decides few of its bounces.
 pub(crate) fn bowl(side: usize) -> HeightField {
     let middle = (side / 2) as f64;
     field(side, side, [1.0, 1.0], |r, c| {

@@ -1,5 +1,6 @@
-//! Every pass on the device against its CPU reference: the counterpart of the pass in `ridgelight_cpu`.
-//! The reference gets what the device itself handed to the pass, so that each is judged alone. Tolerances are the formulas of `measure::tolerance`.
+//! Every pass on the device against its CPU reference: the counterpart of the pass in `ridgelight_cpu`. The reference
+//! takes the device's own inputs of the pass, so each pass is compared alone. Tolerances are the formulas of
+//! `ridgelight_cpu::tolerance`.
 
 mod case;
 mod run;
@@ -24,18 +25,18 @@ use crate::specular::cpu_reference as specular;
 pub(crate) use case::{Case, Wanted, bowl, key, noisy_environment, rough};
 pub(crate) use run::Run;
 
-/// One value of the device, the CPU reference's, and how far apart they may be.
+/// A value of the device, the CPU reference's, and their tolerance.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pair {
     pub got: f64,
     pub want: f64,
     pub tolerance: f64,
-    /// Azimuth or layer, row, column; or what stands for them in a resource that has others.
+    /// Azimuth or layer, row, column; or their counterparts in a resource that has others.
     pub at: [usize; 3],
 }
 
 impl Pair {
-    /// Error over tolerance: above 1 is too far. What is no number is never near.
+    /// Error over tolerance: above 1 fails. NaN always fails.
     pub fn ratio(&self) -> f64 {
         let error = (self.got - self.want).abs();
         if self.got == self.want {
@@ -102,7 +103,7 @@ const REFERENCES: &[(&str, CpuReference)] = &[
     ("shade_reduce", bounce::indirect::shade_reduce),
 ];
 
-/// Held to the CPU reference where whole pictures are, byte by byte: [`crate::view::map`].
+/// Compared with the CPU reference byte by byte over whole pictures: [`crate::view::map`].
 const ELSEWHERE: [&str; 1] = ["map_draw"];
 
 fn reference_of(pass: &Pass) -> CpuReference {
@@ -202,7 +203,7 @@ fn every_shader_has_a_cpu_reference_and_a_case() {
     );
 }
 
-/// The comparison is not deaf: any value of any pass, moved by a bit more than its tolerance, fails.
+/// The comparison can fail: any value of any pass, moved by slightly more than its tolerance, fails.
 #[test]
 fn a_value_beyond_its_tolerance_fails() {
     let mut device = Device::new();
@@ -220,7 +221,7 @@ fn a_value_beyond_its_tolerance_fails() {
         for picked in [0, pairs.len() / 2, pairs.len() - 1] {
             let mut spoiled = pairs.clone();
             let pair = &mut spoiled[picked];
-            // Where nothing is tolerated, the next f32; the f64 sum may round towards the CPU reference.
+            // For a tolerance of 0, the next f32; the f64 sum may round towards the CPU reference.
             let beyond = (pair.want as f32).next_up();
             pair.got = if pair.tolerance > 0.0 {
                 pair.want + 1.01 * pair.tolerance

@@ -36,7 +36,7 @@ pub(crate) fn pictures() -> Vec<Case> {
         };
         Scene { field, surface, lights }
     };
-    // Of an odd number of rows the middle one lies on both sides of the ground.
+    // For an odd number of rows the middle one lies on both sides of the ground.
     let on_a_plane = {
         let environment = noisy_environment(15);
         let lights = Lights { environment: Some(environment), ..Lights::default() };
@@ -55,7 +55,7 @@ pub(crate) fn pictures() -> Vec<Case> {
     };
     let sphere_light =
         |x, y, z, radius_m, radiance| SphereLight { position_m: [x, y, z], radius_m, radiance };
-    // Over the ground; cut by it, with samples under and inside; beyond the edge.
+    // Over the ground; cut by it, with texels under and inside; beyond the edge.
     let sphere_lights = {
         let spheres = vec![
             sphere_light(20.0, 14.0, 920.0, 4.0, [3.0, 2.0, 1.0]),
@@ -129,7 +129,7 @@ pub(crate) fn pictures() -> Vec<Case> {
     let open_wedges = Quality { wedges: Wedges::Table, wedge_side: 9, ..sh(3) };
     let marched = Quality { method: Method::BruteForce, ..subsampled(4, 4) };
     let smoothed = Quality { method: Method::Pyramid, level_step: 2, ..subsampled(2, 3) };
-    // A lobe under all that it mirrors, and under a sky alone.
+    // Phong specular under all lights, and under a sky alone.
     let mirrored = {
         let lights = Lights {
             sky: Some([0.3, 0.5, 0.9]),

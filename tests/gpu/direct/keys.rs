@@ -52,7 +52,7 @@ fn a_key_over_level_ground_has_its_closed_form() {
     }
 }
 
-/// A key light over the whole upper hemisphere, in the sky's own azimuths, is the sky: each errs as it may.
+/// A key light over the whole upper hemisphere, in the sky's own azimuths, is the sky, within the errors of both.
 #[test]
 fn a_key_of_the_whole_sky_is_the_sky() {
     let mut gpu = Device::new();
@@ -76,8 +76,9 @@ fn a_key_of_the_whole_sky_is_the_sky() {
 }
 
 /// A wall of height h along the columns hides, from level ground d away, elevations up to atan(h cos δ / d), δ from
-/// its normal. The light of the rest, by the midpoint rule over 20,000 parts, beside 64 slices: of an integrand f with
-/// |f''| ≤ 1.1 over ±28° and at most two kinks of 0.3, off by less than (w/64)² (1.1 w / 24 + 2 · 0.3 / 8) / 2π.
+/// its normal. The light of the rest, by the midpoint rule over 20,000 parts, compared with 64 slices: for an
+/// integrand f with |f''| ≤ 1.1 over ±28° and at most two kinks of 0.3, the error is less than (w/64)² (1.1 w / 24 + 2
+/// · 0.3 / 8) / 2π.
 #[test]
 fn a_wall_cuts_a_key_in_elevation() {
     let mut gpu = Device::new();
@@ -100,8 +101,8 @@ fn a_wall_cuts_a_key_in_elevation() {
         for method in [Method::Sweep, Method::BruteForce] {
             let quality = Quality { method, sun_azimuths: 64, ..Quality::default() };
             let picture = gpu.picture(&scene, &quality);
-            // Rays from the middle row meet the wall, up to 18 · tan 28° rows away. Next to it the ground's
-            // normal leans.
+            // Rays from the middle row reach the wall, up to 18 · tan 28° rows away. Next to it the ground's normal
+            // leans.
             for c in (2..=18).chain(22..41) {
                 let got = f64::from(picture.values[15 * 41 + c]);
                 let want =
@@ -112,10 +113,10 @@ fn a_wall_cuts_a_key_in_elevation() {
     }
 }
 
-/// Bundled terrain under a low key light. Brute force, in the oracle's own azimuths, is off by what a march's
-/// slopes are and by cosines taken over wedges, a share δ²/24 of what the normal's horizontal part
-/// receives. Sweeps are off by their horizons, 0.3° in the mean by default (see `real.rs`), over the
-/// light's width, where what a direction brings is 1 at most.
+/// Bundled terrain under a low key light. Brute force, in the oracle's own azimuths, errs by a march's slopes and by
+/// cosines taken over wedges, a share δ²/24 of the light on the normal's horizontal part. Sweeps err by their
+/// horizons, 0.3° in the mean by default (see `horizon/terrain.rs`), over the light's width, where a direction adds 1
+/// at most.
 #[test]
 fn a_key_over_bundled_terrain_is_the_oracles() {
     let mut gpu = Device::new();
@@ -144,7 +145,7 @@ fn a_key_over_bundled_terrain_is_the_oracles() {
     println!("brute worst {worst:.2e} of {bound:.2e}; sweep mean {mean:.2e}; light {light:.2e}");
     assert!(worst <= bound, "{worst} {bound}");
     assert!(mean <= key.width_rad / PI * 0.3_f64.to_radians(), "{mean}");
-    // Neither is deaf: the same light from elsewhere is far off.
+    // Both comparisons can fail: the same light from elsewhere has a large error.
     let turned = KeyLight { azimuth_rad: key.azimuth_rad + 0.3, ..key };
     let far = picks
         .iter()
@@ -153,8 +154,8 @@ fn a_key_over_bundled_terrain_is_the_oracles() {
     assert!(far.sum::<f64>() / picks.len() as f64 > key.width_rad / PI * 0.3_f64.to_radians());
 }
 
-/// Path tracing against the quadrature: patches from below horizontal, at the zenith and all around, with two
-/// bounces; and light that is not there is not found.
+/// Path tracing against the quadrature: patches from below horizontal, at the zenith and all around, with two bounces;
+/// a channel without light stays black.
 #[test]
 fn paths_to_keys_agree_with_the_quadrature() {
     const BATCHES: usize = 64;

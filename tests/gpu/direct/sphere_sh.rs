@@ -1,5 +1,5 @@
-//! Sphere lights by spherical harmonics: against closed forms, against the CPU reference at the extremes, towards their
-//! own floor, and moving.
+//! Sphere lights by spherical harmonics: against closed forms, against the CPU reference at the extremes, towards the
+//! error of their order, and moving.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -31,7 +31,7 @@ fn soft(sh_order: u32, sun_azimuths: u32) -> Quality {
     }
 }
 
-/// How far a device may be from the CPU reference at a sample, of radiance 1.
+/// The bound of the device's error against the CPU reference at a texel, for radiance 1.
 fn reference_bound(scene: &Scene, quality: &Quality, sample: usize, seen: &[f64]) -> f64 {
     let (field, light) = (&scene.field, &scene.lights.sphere_lights[0]);
     let at = SphereGeometry::of(field, light, sample);
@@ -40,8 +40,8 @@ fn reference_bound(scene: &Scene, quality: &Quality, sample: usize, seen: &[f64]
     SphereShError::new(quality).tolerance(&at, slope, n, seen)
 }
 
-/// Σ of a sphere light's coefficients times those of the clamped cosine's first bands times P_l of the angle between: what a
-/// free level sample gets, over π.
+/// Σ of a sphere light's coefficients times those of the clamped cosine's first bands times P_l of the angle between:
+/// the light of a free level texel, over π.
 fn closed_form(quality: &Quality, radius_m: f64, to: glam::DVec3) -> f64 {
     let count = match quality.receiver {
         Receiver::Plane => quality.light_order(),
@@ -54,8 +54,8 @@ fn closed_form(quality: &Quality, radius_m: f64, to: glam::DVec3) -> f64 {
     (0..count).map(band).sum::<f64>() / PI
 }
 
-/// What slices that see the same all around leave of turns m > 0, which is to be nothing: sums of cos mφ over the
-/// middles of wedges, across the sphere light and beyond, times their widths. Of what is free above `low_rad`, as light.
+/// The error of slices with equal horizons in turns m > 0, which should be 0: sums of cos mφ over the middles of
+/// wedges, across the sphere light and beyond, times their widths. As light from above `low_rad`.
 fn uneven(quality: &Quality, radius_m: f64, to: glam::DVec3, low_rad: f64) -> f64 {
     let half = half_width(radius_m, to.x.hypot(to.y));
     let sum = |m: f64, from: f64, to: f64, count: usize| -> f64 {
@@ -84,9 +84,8 @@ fn uneven(quality: &Quality, radius_m: f64, to: glam::DVec3, low_rad: f64) -> f6
         .sum()
 }
 
-/// A sample that nothing stands beside gets what the series give in closed form, from any distance, from below,
-/// from above and from within. By a table even wedges leave nothing but its own error, which is 0 between equal
-/// horizons that its texels have.
+/// A free texel gets the closed form of the series, from any distance, from below, from above and from within. By a
+/// table, even wedges add only the table's own error, which is 0 between equal horizons at its texels.
 #[test]
 fn free_light_is_its_series_in_closed_form() {
     let mut gpu = Device::new();
@@ -125,8 +124,8 @@ fn free_light_is_its_series_in_closed_form() {
     }
 }
 
-/// A sample on a peak sees below horizontal: a sphere light at its foot lights it through what falls away up to there. From
-/// ground that goes on level to the sphere light nothing is seen of one below.
+/// A texel on a peak sees below horizontal: a sphere light at its foot lights it over the falling ground. On ground
+/// that is level up to the sphere light, one below is not visible.
 #[test]
 fn horizons_are_below_horizontal_where_the_ground_falls_away() {
     let land = field(21, 21, [1.0, 1.0], |r, c| -1.5 * ((r as f64 - 10.0).hypot(c as f64 - 10.0)));
@@ -142,7 +141,7 @@ fn horizons_are_below_horizontal_where_the_ground_falls_away() {
     assert!((oracle.slope_within(10, 10, 0.0, 7.0) - 1.5).abs() < 1e-12);
 }
 
-/// Places and sizes at their extremes, as for the exact form, against the CPU reference.
+/// Extreme positions and sizes, as for the exact form, against the CPU reference.
 #[test]
 fn sphere_sh_at_the_extremes_matches_the_cpu_reference() {
     let mut gpu = Device::new();
@@ -163,13 +162,13 @@ fn sphere_sh_at_the_extremes_matches_the_cpu_reference() {
             for (name, light) in &sphere_lights {
                 let scene = under(&land, border, vec![*light]);
                 let found = values(&gpu.picture(&scene, &quality));
-                // The oracle's profiles know no surface on a line of samples.
+                // The oracle's profiles have no surface on a line of texels.
                 if rows == 1 {
                     continue;
                 }
                 for (i, got) in found.iter().enumerate() {
                     let seen = SphereGeometry::of(&land, light, i);
-                    // Whether rounding puts it inside or outside is chance.
+                    // Rounding decides whether it is inside or outside.
                     if (seen.distance_m / light.radius_m - 1.0).abs() < 1e-6 {
                         continue;
                     }
@@ -205,8 +204,8 @@ fn rmse(a: &[f64], b: &[f64]) -> f64 {
     (squares / a.len() as f64).sqrt() / (sum / b.len() as f64)
 }
 
-/// With more azimuths the light tends to what its order alone leaves, four times as many at least twice as near; that
-/// floor is the lower the higher the order, beside the truth. Wedges of all around have farther to go.
+/// With more azimuths the light tends to the error of its order alone: four times as many at least halve the distance.
+/// That error falls with the order. Wedges over the whole circle converge more slowly.
 #[test]
 fn more_azimuths_tend_to_the_floor_of_the_order() {
     let mut gpu = Device::new();
@@ -228,9 +227,10 @@ fn more_azimuths_tend_to_the_floor_of_the_order() {
     assert!(floors.windows(2).all(|w| w[1] < w[0]), "{floors:?}");
 }
 
-/// How much a sample changes at most from step to step beyond what the truth does and a tenth more, which harmonics of
-/// order 4 may err by; where the sphere light's surface passes it, beyond a tenth of its light. The sphere light comes from
-/// beyond the edge, crosses the ground, goes through it under samples that it takes in, over others, and comes out.
+/// The largest change of a texel from step to step beyond that of the ground truth plus a tenth, the error of
+/// harmonics of order 4; where the sphere light's surface passes the texel, beyond a tenth of its light. The sphere
+/// light comes from beyond the edge, crosses the ground, passes through it under texels that it contains, over others,
+/// and leaves.
 fn popped(gpu: &mut Device, quality: &Quality, steps: usize) -> f64 {
     let land = fractal(16, 2).unwrap();
     let oracle = Oracle::new(&land, Border::Plane);
@@ -254,7 +254,7 @@ fn popped(gpu: &mut Device, quality: &Quality, steps: usize) -> f64 {
     most
 }
 
-/// Pops that are not the truth's own would stay in shorter steps; what follows the sphere light, and only blurs it, shrinks
+/// Pops of the method would stay in shorter steps; an error that follows the sphere light, and only blurs it, shrinks
 /// with them: in an eighth of the length, to half at most.
 #[test]
 fn a_moving_sphere_light_by_sh_pops_no_more_than_the_ground_truth() {
@@ -266,8 +266,8 @@ fn a_moving_sphere_light_by_sh_pops_no_more_than_the_ground_truth() {
     }
 }
 
-/// The comparison detects errors: light of a sphere light a fifth of a metre away, of another radius, of another order or by the
-/// surface of another field is beyond its bound at most samples.
+/// The comparison fails at most texels for a sphere light a fifth of a metre away, another radius, another order, or
+/// the surface of another field.
 #[test]
 fn wrong_harmonics_are_not_within_their_bound() {
     let mut gpu = Device::new();

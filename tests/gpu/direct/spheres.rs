@@ -1,4 +1,4 @@
-//! Sphere lights: against answers derived by hand, against the f64 oracle, moving, and many.
+//! Sphere lights: against closed forms, against the f64 oracle, moving, and many.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -26,7 +26,7 @@ pub(crate) fn under(field: &HeightField, border: Border, sphere_lights: Vec<Sphe
     }
 }
 
-/// Every sample gets everything, in so many slices.
+/// No cutoff, in so many slices.
 fn all(slices: u32) -> Quality {
     Quality { sun_azimuths: slices, light_cutoff: 0.0, ..Quality::default() }
 }
@@ -39,7 +39,7 @@ pub(crate) fn values(pixels: &Pixels) -> Vec<f64> {
     all
 }
 
-/// RMSE of a picture over the mean of the truth, at some samples.
+/// RMSE of a picture over the mean of the oracle's, at some texels.
 fn relative_rmse(pixels: &Pixels, scene: &Scene, samples: usize) -> f64 {
     let (values, lit) = (values(pixels), Lit::of(scene));
     let (cols, mut next) = (scene.field.cols(), random(3));
@@ -53,7 +53,7 @@ fn relative_rmse(pixels: &Pixels, scene: &Scene, samples: usize) -> f64 {
     (squares / samples as f64).sqrt() / (sum / samples as f64)
 }
 
-/// Sphere lights where numbers are hardest, about a sample of rough ground of a relief over 500 m.
+/// Sphere lights with the hardest numbers, about a texel of rough ground of a relief over 500 m.
 pub(crate) fn awkward([x, y, z]: [f64; 3], relief: f64) -> [(&'static str, SphereLight); 10] {
     [
         ("at a sample", sphere_light([x, y, z], 2.5)),
@@ -89,9 +89,9 @@ fn a_sphere_light_over_level_ground() {
     }
 }
 
-/// A sphere light whose middle lies in level ground: the half of its disc above. With c towards the middle, up n and
-/// a = asin(r/d), half a cap gives along n ∫ sin²θ dθ ∫ cos φ dφ = a - sin a cos a, over π. From within
-/// the whole hemisphere shines: 1.
+/// A sphere light whose middle lies in level ground: the half of its disc above. With c towards the middle, up n and a
+/// = asin(r/d), half a cap gives along n ∫ sin²θ dθ ∫ cos φ dφ = a - sin a cos a, over π. From within the whole
+/// hemisphere is bright: 1.
 #[test]
 fn a_sphere_light_half_in_the_ground_and_samples_inside_it() {
     let mut gpu = Device::new();
@@ -114,8 +114,8 @@ fn a_sphere_light_half_in_the_ground_and_samples_inside_it() {
     assert!(inside > 50, "{inside}");
 }
 
-/// A long wall's top and the sample span a plane through the sphere light's middle: it cuts its disc in half. Half
-/// a cap of radius a about c, on the side of n, gives c π sin²a / 2 + n (a - sin a cos a).
+/// A long wall's top and the texel span a plane through the sphere light's middle: it cuts its disc in half. Half a
+/// cap of radius a about c, on the side of n, gives c π sin²a / 2 + n (a - sin a cos a).
 #[test]
 fn a_wall_hides_half_of_a_sphere_light() {
     const COLS: usize = 81;
@@ -140,7 +140,7 @@ fn a_wall_hides_half_of_a_sphere_light() {
     }
 }
 
-/// Houses of 5 × 5 samples, up to 40 m, with streets between.
+/// Houses of 5 × 5 texels, up to 40 m, with streets between.
 fn city() -> HeightField {
     let mut next = random(8);
     let heights: Vec<f64> = (0..144).map(|_| (10.0 + 30.0 * next()).round()).collect();
@@ -197,8 +197,7 @@ fn sphere_lights_are_within_a_percent_of_the_ground_truth() {
     }
 }
 
-/// The comparison detects errors: light without its shadows, of a sphere light a cell away or of another radius is not
-/// within half a slice.
+/// The comparison fails for light without shadows, a sphere light a cell away, or another radius.
 #[test]
 fn wrong_light_is_not_within_a_percent() {
     let mut gpu = Device::new();
@@ -219,8 +218,8 @@ fn wrong_light_is_not_within_a_percent() {
     }
 }
 
-/// Places and sizes at their extremes, against the oracle in as many slices: at a sample, in the ground, far
-/// away, tiny and all around, on fields of one sample and of lines, of gentle and of wild relief.
+/// Extreme positions and sizes, against the oracle in as many slices: at a texel, in the ground, far away, tiny and
+/// all around, on fields of one texel and of lines, of gentle and of wild relief.
 #[test]
 fn sphere_lights_at_the_extremes_match_the_oracle() {
     let mut gpu = Device::new();
@@ -244,13 +243,13 @@ fn sphere_lights_at_the_extremes_match_the_oracle() {
             for (name, light) in &sphere_lights {
                 let scene = under(&field, border, vec![*light]);
                 let found = values(&gpu.picture(&scene, &all(4)));
-                // The oracle's profiles know no surface on a line of samples.
+                // The oracle's profiles have no surface on a line of texels.
                 if (rows == 1) != (cols == 1) {
                     continue;
                 }
                 for (i, got) in found.iter().enumerate() {
                     let seen = SphereGeometry::of(&field, light, i);
-                    // Whether rounding puts it inside or outside is chance.
+                    // Rounding decides whether it is inside or outside.
                     if (seen.distance_m / light.radius_m - 1.0).abs() < 1e-6 {
                         continue;
                     }
@@ -266,13 +265,13 @@ fn sphere_lights_at_the_extremes_match_the_oracle() {
     }
 }
 
-/// A sphere light that comes from beyond the edge, crosses the ground, goes through it under samples that it takes in,
-/// and comes out: in every step each sample changes as the oracle's does, and the whole picture stays as near
-/// to the truth.
+/// A sphere light that comes from beyond the edge, crosses the ground, passes through it under texels that it
+/// contains, and leaves: in every step each texel changes as the oracle's does, and the error of the whole picture
+/// stays as small.
 #[test]
 fn a_moving_sphere_light_pops_no_more_than_the_ground_truth() {
     const STEPS: usize = 40;
-    // Weber's fraction: a light that changes by less is seen as the same.
+    // Weber's fraction: smaller changes of a light are invisible.
     const SEEN_AT_ONCE: f64 = 0.01;
     let mut gpu = Device::new();
     let land = fractal(16, 2).unwrap();
@@ -311,8 +310,9 @@ fn a_moving_sphere_light_pops_no_more_than_the_ground_truth() {
     assert!(popped <= SEEN_AT_ONCE, "{popped}");
 }
 
-/// A narrow sphere light over level ground gives (r / d)² cos θ, of however few slices: a disc of half-width w is cos u wide, whose
-/// square midpoints sum as it is. What is not a disc's differs by the square of its half-width in azimuth.
+/// A narrow sphere light over level ground gives (r / d)² cos θ, with however few slices: a disc of half-width w is
+/// cos u wide, and its squared midpoints sum exactly. The difference from a disc falls with the square of its
+/// half-width in azimuth.
 #[test]
 fn few_slices_hold_all_of_a_narrow_sphere_light() {
     let mut gpu = Device::new();
@@ -333,8 +333,8 @@ fn few_slices_hold_all_of_a_narrow_sphere_light() {
     }
 }
 
-/// 64 sphere lights over mountains of 512²: their sum, at some samples, beside the oracle in as many slices, less
-/// at most what the plan says is lost.
+/// 64 sphere lights over mountains of 512²: their sum, at some texels, against the oracle in as many slices, less at
+/// most the loss that the plan states.
 #[test]
 fn sixty_four_lights_add_up() {
     let mut gpu = Device::new();
@@ -368,13 +368,13 @@ fn sixty_four_lights_add_up() {
     }
 }
 
-/// What a sample loses at most, as a plan's notes say it.
+/// The largest loss of a texel, from a plan's notes.
 fn said_lost(plan: &Plan) -> f64 {
     let after = plan.notes.iter().find_map(|n| n.split("loses more than ").nth(1));
     after.and_then(|text| text.split(',').next()?.parse().ok()).expect("a note with a number")
 }
 
-/// What is dropped is what the plan says at most, and saves samples; what is not dropped stays as it was.
+/// The cutoff drops at most the stated light and saves texels; other texels are unchanged.
 #[test]
 fn no_sample_loses_more_than_the_cutoff() {
     let mut gpu = Device::new();
@@ -388,7 +388,7 @@ fn no_sample_loses_more_than_the_cutoff() {
     let plan = plan::picture(&scene, &cut, &Limits::lavapipe(), Picture::default()).unwrap();
     let groups = |p: &&plan::Pass| p.name() == "sphere_shade" && p.groups[0] * p.groups[1] < 64;
     assert!(plan.passes.iter().filter(groups).count() == 3, "{plan}");
-    // At most the brightest: a sample under the sphere light's middle.
+    // At most the brightest: a texel under the sphere light's middle.
     let brightest = whole.iter().copied().fold(0.0, f64::max);
     let lit = values(&gpu.picture(&scene, &cut));
     let lost = whole.iter().zip(&lit).map(|(a, b)| a - b);

@@ -1,5 +1,5 @@
-//! The passes that follow an edit up to its horizons. What light they leave is compared with that of
-//! all passes, bit by bit, in `edits`.
+//! The passes that follow an edit up to its horizons. `edits` compares the light after them with that of all passes,
+//! bit by bit.
 
 use ridgelight::gpu::shaders::offsets;
 use ridgelight::plan::{Azimuth, Pass, Rectangle};
@@ -14,7 +14,7 @@ use ridgelight_cpu::shared::sweep::{Heights, March, on_field};
 use crate::cpu_reference::{Pair, Run, constant, pushed};
 use crate::horizon::cpu_reference::sweep::{Stored, stored};
 
-/// An edit that has been drawn.
+/// An edit that is drawn.
 pub(crate) struct Edit {
     rectangle: Rectangle,
     /// Heights before it.
@@ -57,7 +57,7 @@ pub(crate) fn dirty_mark(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     words.map(pair).collect()
 }
 
-/// Occluders are those of the CPU reference, which marks what it reaches.
+/// Occluders are those of the CPU reference, which marks the texels that it reaches.
 pub(crate) fn horizon_resweep(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let occluders = stored(run, pass, "occluders", 2).expect("written");
     let first = pushed(pass, offsets::horizon_resweep_push::FIRST_AZIMUTH) as usize;

@@ -1,4 +1,4 @@
-//! Edits of a rectangle, drawn from where they begin: the same bits as everything drawn again.
+//! Edits of a rectangle, drawn incrementally: the same bits as drawing everything.
 
 use ridgelight::gpu::{Frame, Headless, ImageArg, Renderer};
 use ridgelight::plan::{self, Picture, Plan, Rectangle, missing_barriers};
@@ -41,7 +41,7 @@ fn rough(rows: usize, cols: usize, cell_m: [f64; 2]) -> HeightField {
     field(rows, cols, cell_m, |r, c| heights[r * side + c].into())
 }
 
-/// Every sample stays on the hull of a line across it: more than a sweep keeps in private memory.
+/// Every texel stays on the hull of a line across it: more than a sweep keeps in private memory.
 fn dome(rows: usize, cols: usize) -> HeightField {
     let middle = (rows.max(cols) as f64 - 1.0) / 2.0;
     field(rows, cols, [1.0, 1.0], |r, c| {
@@ -71,7 +71,7 @@ fn made(gpu: &mut Headless, scene: &Scene, plan: Plan) -> Frame {
     frame
 }
 
-/// A rectangle of any size, often at an edge or in a corner, sometimes one sample or all.
+/// A rectangle of any size, often at an edge or in a corner, sometimes one texel or all.
 fn any_rectangle(next: &mut impl FnMut() -> f64, [cols, rows]: [usize; 2]) -> Rectangle {
     let mut side = |all: usize| {
         let count = match (next() * 6.0) as usize {
@@ -115,7 +115,7 @@ fn change(
     }
 }
 
-/// Draws edits one after the other; then every field they made from nothing: outputs must have equal bits.
+/// Draws edits one after the other, then every resulting field from scratch: outputs must have equal bits.
 fn edits(device: &mut Device, scene: &Scene, quality: &Quality, count: usize, seed: u64) {
     let gpu = device.gpu.as_mut().expect("alive");
     let plan = planned(gpu, scene, quality, true);
@@ -163,7 +163,7 @@ fn edits_give_the_bits_of_all() {
     for (i, (field, border, quality)) in cases.into_iter().enumerate() {
         let mut scene = scene(field, border);
         if i > 0 {
-            // Software drivers compile each pipeline for seconds.
+            // Software drivers take seconds to compile each pipeline.
             scene.lights.environment = None;
             scene.lights.suns.remove(i % 2);
         }
@@ -171,7 +171,7 @@ fn edits_give_the_bits_of_all() {
     }
 }
 
-/// The comparison detects errors: an edit whose rectangle lacks one row or column leaves other bits.
+/// The comparison fails for an edit whose rectangle lacks one row or column.
 #[test]
 fn an_edit_with_too_small_a_rectangle_is_detected() {
     let mut device = Device::new();
@@ -227,7 +227,7 @@ fn edits_that_cannot_be_are_refused() {
     gpu.draw_passes(&mut frame, &passes).expect("drawn");
     gpu.draw_edit(&mut frame, all).expect("drawn");
 
-    // Nothing to go on from: nothing recorded, or outputs whose contents are not kept.
+    // No base to continue from: nothing recorded, or outputs whose contents are not kept.
     let mut other = Renderer::new(gpu.host(), plan, 1).expect("a renderer");
     let (inputs, mut outputs) = (frame.inputs(), frame.outputs());
     let refused = |other: &mut Renderer, outputs: &[ImageArg]| {

@@ -1,4 +1,4 @@
-//! What samples see on curved bases.
+//! Visible points on curved bases.
 
 use glam::DVec3;
 use ridgelight::gpu::shaders::offsets::{bent_directions_push as push, fan_weights_push};
@@ -11,7 +11,7 @@ use ridgelight_cpu::tolerance::{EPSILON, bent as bent_error, fan_weight, over};
 
 use crate::cpu_reference::{Pair, Run, pushed};
 
-/// What was seen on the flat field, as the device has it.
+/// Visible points of the flat field, as the device has them.
 fn flat(run: &mut Run, pass: &Pass, directions: Directions) -> VisiblePoints {
     let words = run.words(pass, "visible_points").expect("bound");
     VisiblePoints::new(&run.scene.field, run.border(), directions, words).expect("all whole")
@@ -21,7 +21,7 @@ fn fans_of(directions: &Directions) -> Fans {
     Fans::of(&directions.triangles().expect("a net"), directions.vectors())
 }
 
-/// What the pass left of each sample, direction after direction: where it sees, and what.
+/// The pass's output for each texel, direction after direction: the direction, and its weight.
 pub(crate) fn of_samples(run: &mut Run, pass: &Pass, count: usize) -> Vec<Vec<(DVec3, f64)>> {
     let texels = run.floats(pass, "bent").expect("bound");
     let [cols, rows] = run.size();
@@ -34,8 +34,8 @@ pub(crate) fn of_samples(run: &mut Run, pass: &Pass, count: usize) -> Vec<Vec<(D
     (0..samples).map(|at| (0..count).map(|i| of(i, at)).collect()).collect()
 }
 
-/// What the device may take for what is met: up to the first that it surely is, all that may be touched; where none surely is,
-/// those passed nearest by, or what lies beyond.
+/// The hits that the device may choose: all possible ones up to the first certain one; where none is certain, the
+/// nearest misses, or the distance beyond.
 fn may_be_met(ways: &Ways, rise_m: f64) -> Vec<Way> {
     // Places err by far less than this of a cell.
     let margin = 1e-3;
@@ -64,8 +64,8 @@ fn may_be_met(ways: &Ways, rise_m: f64) -> Vec<Way> {
     possible
 }
 
-/// The CPU reference's direction, or another that it gives where which neighbour a direction moves with, or which repetition is seen,
-/// hangs on roundings.
+/// The CPU reference's direction, or another of its results where roundings decide with which neighbour a direction
+/// moves, or which repetition is visible.
 pub(crate) fn bent_directions(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let directions = run.bent_directions();
     let points = flat(run, pass, directions.clone());
@@ -113,7 +113,7 @@ pub(crate) fn bent_directions(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     pairs
 }
 
-/// Given the device's own directions.
+/// From the device's own directions.
 pub(crate) fn fan_weights(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let directions = run.bent_directions();
     let fans = fans_of(&directions);

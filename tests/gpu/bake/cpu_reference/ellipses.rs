@@ -1,4 +1,4 @@
-//! Ellipses of visible sky: what a search by scores promises, whichever of equal ways it took.
+//! Ellipses of visible sky: the properties of a search by scores, whichever of equal paths it took.
 
 use glam::{DVec2, DVec3};
 use ridgelight::gpu::shaders::offsets::ellipse_fit_push::{FIRST_ROW, LEAST_RADIUS, ROWS};
@@ -16,14 +16,14 @@ fn on_edge(ellipse: &Ellipse, of: &[Seen], reach: f64) -> f64 {
     of.iter().filter(|(e, _)| (ellipse.reach(*e) - 1.0).abs() <= reach).count() as f64
 }
 
-/// By how much a score falls short of one that may be off by some.
+/// The amount by which a score falls short of one with a given error.
 fn short(got: f64, than: f64, off: f64) -> Pair {
     Pair { got: (than - off - got).max(0.0), want: 0.0, tolerance: 0.0, at: [0; 3] }
 }
 
-/// The score is the CPU reference's score of the ellipse. It is no less than at the CPU reference's start, and no less than
-/// that of a neighbour one last step away, where the search came to its end. The axis is one of the moments'. Decisions of the search hang on
-/// whether a direction is in, so that the way to it is no number that could be compared.
+/// The score is the CPU reference's score of the ellipse. It is no less than at the CPU reference's start, and no less
+/// than that of a neighbour one last step away, where the search ended. The axis is one of the moments'. The search
+/// decides by whether a direction is inside, so its path cannot be compared as numbers.
 pub(crate) fn ellipse_fit(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let (field, border) = (&run.scene.field, run.border());
     let directions = run.directions();
@@ -57,7 +57,7 @@ pub(crate) fn ellipse_fit(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     pairs
 }
 
-/// The pairs of a sample that sees these, has this ellipse, and says this score and last step.
+/// The pairs of a texel with these visible directions, this ellipse, this score and last step.
 fn of_sample(seen: &[Seen], least: f64, found: Ellipse, (got, step): (f64, f64)) -> Vec<Pair> {
     let lit = seen.iter().filter(|s| s.1).count();
     let same = |got: f64, want: f64, tolerance: f64| Pair { got, want, tolerance, at: [0; 3] };
@@ -74,7 +74,7 @@ fn of_sample(seen: &[Seen], least: f64, found: Ellipse, (got, step): (f64, f64))
     if is_known {
         return pairs;
     }
-    // In the device's own axis where it has one: any will do where the moments are a circle's.
+    // In the device's own axis where it has one: any axis is right where the moments are a circle's.
     let (mean, [xx, xy, yy]) = moments(seen);
     let along = |a: DVec2| a.x * a.x * xx + 2.0 * a.x * a.y * xy + a.y * a.y * yy;
     let moment = ellipse_moment(seen.len());
@@ -98,7 +98,7 @@ fn of_sample(seen: &[Seen], least: f64, found: Ellipse, (got, step): (f64, f64))
     pairs
 }
 
-/// The comparison detects errors: in the CPU reference's own ellipse, one turned, one shifted, and a score that is another.
+/// The comparison fails for a turned and a shifted ellipse, and for another score.
 #[test]
 fn another_ellipse_fails() {
     use ridgelight::scene::Directions;

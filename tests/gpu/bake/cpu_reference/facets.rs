@@ -1,4 +1,4 @@
-//! Which triangles are seen.
+//! Visibility of triangles.
 
 use ridgelight::gpu::shaders::offsets::facet_mask_push as push;
 use ridgelight::plan::DIRECTIONS_A_WORD;
@@ -9,7 +9,7 @@ use ridgelight_cpu::tolerance::{Land, facet_elevation};
 
 use crate::cpu_reference::{Pair, Run, pushed};
 
-/// The CPU reference's answer, or the other where what a ray's elevation may err by decides.
+/// The CPU reference's answer, or the other one where the error of a ray's elevation decides.
 pub(crate) fn facet_mask(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let (field, border) = (&run.scene.field, run.border());
     let directions = run.directions();

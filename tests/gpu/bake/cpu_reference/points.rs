@@ -1,4 +1,4 @@
-//! What samples see.
+//! Visible points.
 
 use ridgelight::gpu::shaders::offsets::visible_points_push::{END_DIRECTION, FIRST_DIRECTION};
 use ridgelight::plan::Pass;
@@ -17,8 +17,8 @@ fn number(point: VisiblePoint) -> f64 {
     }
 }
 
-/// The CPU reference's answer, or another that it gives within what a ray's elevation and place may err by: a sample beside a
-/// boundary between two, or the other side of a silhouette.
+/// The CPU reference's answer, or another of its answers within the error of a ray's elevation and place: a texel
+/// beside a boundary between two, or the other side of a silhouette.
 pub(crate) fn visible_points(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let (field, border) = (&run.scene.field, run.border());
     let directions = run.directions();

@@ -10,7 +10,7 @@ use ridgelight_cpu::tolerance::{EPSILON, Land, gathered};
 use super::towards;
 use crate::cpu_reference::{Pair, Run, constant, pushed};
 
-/// A value and what it may be off by.
+/// A value and its error.
 #[derive(Clone, Copy, Default)]
 struct Sum {
     light: [f64; 3],
@@ -26,7 +26,7 @@ impl Sum {
     }
 }
 
-/// One look-up after the other as the CPU reference has it, given what the device was.
+/// One look-up after the other as in the CPU reference, from the device's inputs.
 pub(crate) fn scatter_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let [first_link, steps, step, first_path, paths, first_sun, suns, first_view] = [
         push::FIRST_LINK,
@@ -55,7 +55,7 @@ pub(crate) fn scatter_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
             (vector(ahead), ahead[3] as usize, [sky[0], sky[1], sky[2]], back)
         })
         .collect();
-    // Of the last step each view in turn.
+    // After the last step each view in turn.
     let views = if sums && paths > 0 { pass.groups[2] as usize } else { 1 };
     let of_views: Vec<_> = match sums && paths > 0 {
         true => (0..views).map(|view| vector(texel(first_view + view))).collect(),
@@ -106,8 +106,8 @@ pub(crate) fn scatter_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     for texel_at in 0..views * count {
         let (view, at) = (texel_at / count, texel_at % count);
         let here = [at / cols, at % cols];
-        // Slopes of a field that is drawn apart or pushed together by s are turned as much as they were, s or 1/s times; a quotient
-        // and a sum more.
+        // Slopes of a field that is scaled by s in height turn by as much as before, s or 1/s times; a quotient and a
+        // sum more.
         let height = f64::from(run.scene.field.heights_m()[at]);
         let stretch = curvature.per_m.map(|k| (1.0 + k * height).max(1.0 / (1.0 + k * height)));
         let flat = Land::normal_at(&run.scene.field, run.border(), here);
@@ -118,7 +118,7 @@ pub(crate) fn scatter_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         let n = samples.lobe(at).map_or(1.0, |phong| f64::from(phong.exponent));
         let off = |of: &Gathered, e: DVec3| {
             let mut off = gathered(of, n, turned);
-            // A lobe ends at the sample's own plane.
+            // A lobe ends at the texel's own plane.
             if samples.normal(at).dot(e).abs() <= turned + 6.0 * EPSILON {
                 off = [0, 1, 2].map(|c| off[c] + of.mirrored[c]);
             }

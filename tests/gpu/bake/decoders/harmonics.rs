@@ -1,4 +1,4 @@
-//! The decoder of what is reflected as harmonics, of every order: harmonics of directions, and sums of their products.
+//! The decoder of reflectance as harmonics, for every order: harmonics of directions, and sums of their products.
 
 use glam::DVec3;
 use ridgelight::basis::MAX_ORDER;
@@ -9,7 +9,7 @@ use super::turns::{none, texture, whole};
 use super::{Decoder, decode, decoder};
 use crate::Device;
 
-/// As the shader has it.
+/// As in the shader.
 fn direction(n: usize, terms: usize) -> DVec3 {
     let z = (n as f64 + 0.5) / terms as f64;
     let t = (2.0 * n as f64 - terms as f64) / 4.0;
@@ -17,7 +17,7 @@ fn direction(n: usize, terms: usize) -> DVec3 {
     DVec3::new(across * (1.0 - t * t), across * 2.0 * t, z)
 }
 
-/// The decoder's recurrences with all signs dropped: what its roundings are shares of.
+/// The decoder's recurrences without signs: the scale of its roundings.
 fn majorant(order: usize, e: DVec3) -> Vec<f64> {
     let mut all = vec![0.0; order * order];
     let (x, y) = (e.x.abs(), e.y.abs());
@@ -37,9 +37,9 @@ fn majorant(order: usize, e: DVec3) -> Vec<f64> {
     all
 }
 
-/// Each of at most n steps along l and n along m divides, takes a root and rounds four sums and products, 3 + 3 + 4 units;
-/// a direction's parts are off by 8, and a harmonic is of degree n - 1 in them. Those are shares of the recurrences without
-/// signs. A sum over pairs rounds thrice a pair besides.
+/// Each of at most n steps along l and n along m divides, takes a root and rounds four sums and products, 3 + 3 + 4
+/// units; a direction's components err by 8, and a harmonic is of degree n - 1 in them. Those are shares of the
+/// recurrences without signs. A sum over pairs rounds three times a pair besides.
 #[test]
 fn harmonics_are_those_of_the_library() {
     let device = Device::new();

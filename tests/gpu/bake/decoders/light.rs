@@ -1,4 +1,4 @@
-//! Decoders of what is baked of light: of a small field that repeats, each with both of its encodings.
+//! Decoders of baked light: of a small periodic field, each with both of its encodings.
 
 use std::f64::consts::FRAC_PI_2;
 use std::path::Path;
@@ -58,7 +58,7 @@ fn all() -> [Decoder; 6] {
     ]
 }
 
-/// All kinds of one field, values beside.
+/// All kinds of one field, beside their values.
 fn baked(folder: &Path, number: usize) -> serde_json::Value {
     let heights: Vec<f32> = (0..7 * 6).map(|i| (i * 5 % 7) as f32 * 0.4).collect();
     let field = folder.join("field.npy");
@@ -84,7 +84,7 @@ fn baked(folder: &Path, number: usize) -> serde_json::Value {
     serde_json::from_slice(&manifest).expect("JSON")
 }
 
-/// Planes of an .exr, which keeps them by their names, in the order of the manifest.
+/// Planes of an .exr, which sorts them by name, in the order of the manifest.
 fn in_order(manifest: &serde_json::Value, kind: &str, mut read: Planes) -> Planes {
     let maps = manifest["maps"].as_array().expect("maps");
     let map = maps.iter().find(|map| map["kind"] == kind).expect("the map");
@@ -98,8 +98,8 @@ fn in_order(manifest: &serde_json::Value, kind: &str, mut read: Planes) -> Plane
     Planes { names, ..read }
 }
 
-/// By how much a value may be off that is read between two angles instead of at one: places are within 8 roundings of a count
-/// of steps, along four axes, and nothing is larger than the largest.
+/// Error of a value read between two angles instead of at one: places are within 8 roundings of a count of steps,
+/// along four axes, and no difference is larger than the largest value.
 fn beside(truth: &Planes) -> f64 {
     let most = truth.planes.iter().flatten().fold(0.0_f32, |m, v| m.max(v.abs()));
     4.0 * 8.0 * ANGLES.azimuths as f64 / f64::from(1 << 24) * f64::from(most)
@@ -133,7 +133,7 @@ fn decoders_of_light_keep_the_errors_that_manifests_state() {
             let (share, of) = worst(&promised, &found, &truth, slack);
             println!("{} {}: {share:.3} of the bound of the {of}", decoder.kind, encoding.name);
             assert!(share <= 1.0, "{} {}: {share} of {of}", decoder.kind, encoding.name);
-            // The comparison hears, and not everything is 0.
+            // The comparison can fail, and not everything is 0.
             let mut off = found.clone();
             let most = (0..truth.planes.len() * truth.rows * truth.cols)
                 .max_by(|a, b| found[*a].total_cmp(&found[*b]))
@@ -171,7 +171,8 @@ fn between(found: &[f32], truth: &Planes, share: f64) {
     }
 }
 
-/// The sum over factors of a light of the grid and a view between: products of what is read, each off by its share.
+/// The sum over factors of a light of the grid and a view between: products of decoded values, each with its share of
+/// error.
 fn products(found: &[f32], truth: &Planes, share: f64) {
     let (size, view) = (ANGLES.count(), [0.5_f64, 2.0]);
     let e = glam::DVec3::new(

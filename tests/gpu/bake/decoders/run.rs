@@ -1,4 +1,4 @@
-//! A decoder on the device: its texture, and what it writes.
+//! A decoder on the device: its texture, and its output.
 
 use ash::vk;
 use ridgelight::gpu::{Allocation, Allocator, Blocks, Headless, Host, MemoryRequest, MemoryUse};
@@ -81,7 +81,7 @@ fn image(
     }
 }
 
-/// Runs a decoder over a texture, azimuths that many steps on: what it writes.
+/// Runs a decoder over a texture, at azimuths that many steps on, and returns its output.
 pub(super) fn decode(
     gpu: &Headless,
     decoder: &Decoder,

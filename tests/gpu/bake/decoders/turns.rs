@@ -1,4 +1,5 @@
-//! Decoders of azimuths whose number is no power of two, where quotients of whole numbers are not exact: whole turns close.
+//! Decoders with a number of azimuths that is no power of two, where quotients of whole numbers are not exact:
+//! azimuths stay cyclic.
 
 use ridgelight_bake as bake;
 use ridgelight_bake::Encoding;
@@ -8,7 +9,7 @@ use ridgelight_io::{Ktx2Writer, TexelFormat};
 use super::{Constant, Decoder, decode, decoder};
 use crate::Device;
 
-/// Zenith angles and azimuths: as many as an image has layers for, of pairs.
+/// Zenith angles and azimuths: as many pairs as an image has layers.
 const MANY: [usize; 2] = [8, 41];
 const PAIRS: [usize; 2] = [4, 11];
 const FACTORS: usize = 3;
@@ -46,13 +47,14 @@ pub fn none(_: &Encoding) -> Vec<(&'static str, Constant)> {
     Vec::new()
 }
 
-/// Of all pairs of what was found and what is known, the farthest apart.
+/// The largest difference of all pairs of found and known values, and its place.
 fn worst(found: &[f32], known: impl Fn(usize) -> f64) -> (f64, usize) {
     let apart = found.iter().enumerate().map(|(i, v)| ((f64::from(*v) - known(i)).abs(), i));
     apart.max_by(|a, b| a.0.total_cmp(&b.0)).expect("some")
 }
 
-/// What a place between azimuths may be off by, in their steps: four roundings of a place up to so many, and of π's decimals.
+/// Error of a place between azimuths, in their steps: four roundings of a place up to that number, and of π's
+/// decimals.
 fn place(azimuths: usize) -> f64 {
     8.0 * azimuths as f64 / f64::from(1 << 24)
 }
@@ -71,7 +73,7 @@ fn turns_of_horizons_close() {
         let share = f64::from(offset);
         let known = |k: usize| (1.0 - share) * k as f64 + share * ((k + 1) % count) as f64;
         let (off, at) = worst(&found, known);
-        // Across the turn numbers change by all of their count.
+        // Across the end of the circle numbers change by all of their count.
         let allowed = count as f64 * place(count);
         assert!(off <= allowed, "{offset}: {off} of {allowed} at {at}: {}", found[at]);
     }
@@ -100,8 +102,8 @@ fn turns_of_tables_close() {
             [between(light), between(view), 1.0][c]
         };
         let (off, at) = worst(&found, known);
-        // A place off by so much takes that of the next zenith angle's number or of the other end of the turn, along two axes,
-        // and 16 shares are sums of products that are rounded.
+        // An error of a place takes that share of the next zenith angle's number or of the other end of the circle,
+        // along two axes, and 16 shares are sums of products that are rounded.
         let allowed =
             4.0 * azimuths as f64 * place(azimuths) + 16.0 * count as f64 / f64::from(1 << 23);
         assert!(off <= allowed, "{offset}: {off} of {allowed} at {at}: {}", found[at]);
@@ -136,7 +138,7 @@ fn turns_of_factors_close() {
     }
 }
 
-/// With lobes the view has functions of its own, behind those of the light: sums are of the products of both.
+/// With Phong specular the view has functions of its own, after those of the light: sums are of the products of both.
 #[test]
 fn views_have_factors_of_their_own() {
     let device = Device::new();
@@ -162,7 +164,7 @@ fn views_have_factors_of_their_own() {
     }
 }
 
-/// Pictures of the nearest direction hold its number: asked for two fifths of a step before and behind it is the same.
+/// Pictures of the nearest direction hold its number: two fifths of a step before and behind it give the same.
 #[test]
 fn turns_of_pictures_close() {
     let device = Device::new();

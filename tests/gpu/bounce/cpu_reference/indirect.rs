@@ -57,7 +57,7 @@ pub(crate) fn brightest(exit: &[[f64; 3]]) -> f64 {
     exit.as_flattened().iter().fold(0.0, |m, v| v.max(m))
 }
 
-/// Colours beside the CPU reference's, each with its own tolerance.
+/// Colours paired with the CPU reference's, each with its own tolerance.
 fn each(got: &[[f64; 3]], of: impl Fn(usize) -> ([f64; 3], [f64; 3]), at: [usize; 2]) -> Vec<Pair> {
     let [number, cols] = at;
     let pairs = |(i, got): (usize, &[f64; 3])| {
@@ -73,7 +73,7 @@ fn paired(got: &[[f64; 3]], want: &[[f64; 3]], tolerance: f64, at: [usize; 2]) -
     each(&got[..want.len()], |i| (want[i], [tolerance; 3]), at)
 }
 
-/// Every stretch along every azimuth, in one dispatch.
+/// All visible intervals along every azimuth, in one dispatch.
 pub(crate) fn bounce_march(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     use offsets::bounce_march_push::{AZIMUTHS, FIRST_AZIMUTH, LAST_AZIMUTH};
     let azimuths = pushed(pass, AZIMUTHS);
@@ -93,7 +93,7 @@ pub(crate) fn bounce_march(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     each(&got, of, [0, across])
 }
 
-/// A level, and what the table says of it.
+/// A level, and its entry in the table.
 pub(crate) fn shade_reduce(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let shade = run.shade();
     let number = pushed(pass, offsets::shade_reduce_push::LEVEL);
@@ -129,7 +129,7 @@ pub(crate) fn shade_expand(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     (1..=shade.levels()).flat_map(of).collect()
 }
 
-/// The bounced light, from the levels that the device made, in one dispatch.
+/// The bounced light, from the device's own levels, in one dispatch.
 pub(crate) fn bounce_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     use offsets::bounce_gather_push::{AZIMUTHS, FIRST_AZIMUTH, LAST_AZIMUTH};
     let azimuths = pushed(pass, AZIMUTHS);
@@ -139,7 +139,7 @@ pub(crate) fn bounce_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let exit = run.exit(pass);
     let texels = match run.floats(pass, "shade_levels") {
         Some(texels) => colours(&texels),
-        // The device reads what `shade_expand` made of them.
+        // The device reads the output of `shade_expand`.
         None => reduce_reference::shade_levels(&exit, &shade),
     };
     let stack = run.floats(pass, "height_stack");

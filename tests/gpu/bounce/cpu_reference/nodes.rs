@@ -1,4 +1,4 @@
-//! Bounces that are found at nodes.
+//! Bounces at nodes.
 
 use std::collections::HashMap;
 use std::f64::consts::TAU;
@@ -19,7 +19,7 @@ use ridgelight_cpu::tolerance::{BounceError, EPSILON, Slices, device_bounce_shad
 use super::indirect::{brightest, colours};
 use crate::cpu_reference::{Pair, Run, constant, pushed};
 
-/// Row and column of every node's sample.
+/// Row and column of every node's texel.
 pub(crate) fn places(run: &Run, nodes: Nodes) -> Vec<[usize; 2]> {
     let [cols, rows] = run.plan.size;
     let [across, along] = nodes.size(run.plan.size);
@@ -27,9 +27,9 @@ pub(crate) fn places(run: &Run, nodes: Nodes) -> Vec<[usize; 2]> {
     (0..across * along).map(|i| place(i).map(|n| n as usize)).collect()
 }
 
-/// The visibility caches that a walk has left of some azimuths, if it leaves any: from ground of radiance 1 they bounce what the
-/// walk does, but for half a part of each ring's weight, and that of radiances that are columns and rows, which lie as their
-/// mean does, within a sample: it stands half a step away, and across it as much again.
+/// The visibility caches that a walk keeps of some azimuths, if any: from ground of radiance 1 they bounce as much as
+/// the walk, but for half a part of each ring's weight, and likewise for radiances equal to columns and rows, which
+/// lie where their mean does, within a texel: it stands half a step away, and across it as much again.
 pub(crate) fn casts(run: &mut Run, pass: &Pass, azimuths: Range<usize>) -> Vec<Pair> {
     let places = &places(run, Nodes { stride: 2 * constant(pass, "node_stride") });
     let begin = pushed(pass, offsets::bounce_walk_push::BEGIN) as usize;
@@ -95,7 +95,7 @@ fn visibility_caches(
     Some(words.chunks_exact(4 * places.len()).enumerate().map(of).collect())
 }
 
-/// From the device's own visibility caches: a product and a sum for each, of weights that are products themselves.
+/// From the device's own visibility caches: a product and a sum for each, with weights that are products themselves.
 pub(crate) fn cache_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     use offsets::cache_gather_push::{BEGIN, COUNT};
     let places = places(run, Nodes { stride: constant(pass, "node_stride") });

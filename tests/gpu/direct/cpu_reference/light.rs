@@ -80,8 +80,8 @@ pub(crate) fn env_tables(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     pairs.collect()
 }
 
-/// The azimuths of the light that a shading pass adds to, up to its own, and what their horizons err
-/// by: every batch is judged as the sum so far.
+/// The azimuths of the light that a shading pass adds to, up to its own, and the error of their horizons: every batch
+/// is compared as the sum so far.
 pub(crate) fn so_far(
     run: &mut Run,
     pass: &Pass,
@@ -150,7 +150,7 @@ pub(crate) fn sun_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         };
         let weights = swept.azimuths.iter().map(weight).sum();
         let tolerance = error.sun(weights);
-        // A horizon that a point sun grazes within its error may hide it or not.
+        // A point sun within the horizon's error may be hidden or not.
         let grazes = |col: i32, row: i32| {
             let mut any = false;
             swept.add_all(col, row, |_, azimuth, lowest, _| {

@@ -13,7 +13,7 @@ use ridgelight_cpu::tolerance::{EPSILON, SphereGeometry, device_pyramid_slope};
 
 use crate::cpu_reference::{Pair, Run, pushed};
 
-/// What slopes err by, of a pyramid's steepest at most.
+/// The error of slopes, at most the steepest of a pyramid.
 pub(crate) fn slope_error(seen: &SphereGeometry, quality: &Quality, is_pyramid: bool) -> f64 {
     if !is_pyramid {
         return device_surface_within(seen);
@@ -24,8 +24,8 @@ pub(crate) fn slope_error(seen: &SphereGeometry, quality: &Quality, is_pyramid: 
     device_pyramid_within(seen, march, steepest, quality.level_step)
 }
 
-/// All azimuths of one sphere light, once the last are there: the sum of the sphere lights so far, and this one's light before it
-/// is kept from below 0.
+/// All azimuths of one sphere light, after the last batch: the sum of the sphere lights so far, and this one's light
+/// before it is clamped at 0.
 pub(crate) fn sphere_sh_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     use offsets::sphere_sh_shade_push::{AZIMUTHS, LAST_AZIMUTH, RADIANCE, REACH_M};
     if f32::from_bits(pushed(pass, RADIANCE + 12)) > 0.0 {
