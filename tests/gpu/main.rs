@@ -1,5 +1,5 @@
-//! Everything that needs a Vulkan device. `tools/test` runs it on lavapipe and on SwiftShader under
-//! validation with synchronisation validation; alone, it runs on whatever driver is first.
+//! All tests that need a Vulkan device; a module is a room of the passes. `tools/test` runs them on lavapipe and on
+//! SwiftShader under validation with synchronisation validation; alone, they run on the first driver.
 
 mod bake {
     pub mod cpu_reference;
@@ -209,14 +209,14 @@ impl Drop for Device {
     }
 }
 
-/// What the documentation begins with. A sky of 0.3 and a sun of irradiance 2 facing a sample, albedo 1: exit radiance
-/// is at most 0.3 + 2/π, and of samples in shadow at most 0.3.
+/// The documentation's first program. A sky of 0.3 and a sun of irradiance 2 facing a texel, albedo 1: exit radiance
+/// is at most 0.3 + 2/π, and at most 0.3 for texels in shadow.
 #[test]
 fn the_first_program_of_the_documentation_lights_its_field() {
     let lines = include_str!("../../examples/first_light.rs").lines().map(str::trim);
     let code = lines.filter(|line| !line.is_empty() && !line.starts_with("//")).count();
     assert!(code <= 30, "{code} lines for a newcomer");
-    // Its device is its own: this one hears nothing, but keeps others away.
+    // The program has a device of its own: this lock keeps others away.
     let _one = ONE.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
     let light = first_light::light().expect("light");
     assert_eq!(

@@ -1,5 +1,5 @@
-//! `examples/ash_host.rs`, whose first half docs/embedding.md shows, in a process of its own: its engine knows nothing
-//! of this one's.
+//! `examples/ash_host.rs`, whose first half docs/embedding.md shows, in a process of its own, so that its engine and
+//! this one share nothing.
 
 use std::path::Path;
 use std::process::Command;
@@ -10,10 +10,10 @@ use ridgelight_io as files;
 #[path = "../../../examples/ash_host.rs"]
 mod program;
 
-/// Set for the process that is to be the program: the file that its texels go to.
+/// Set in the child process that runs the program: the file for its texels.
 const CHILD: &str = "RIDGELIGHT_ASH_HOST";
 
-/// Bits of what the command line makes of the same scene.
+/// Bits of the same scene by the command line.
 fn by_command_line(folder: &Path) -> Vec<u32> {
     let heights: Vec<f32> =
         (0..48 * 64).map(|i| ((i / 64 * 31 + i % 64 * 17) % 7) as f32 - 3.0).collect();
@@ -56,7 +56,7 @@ fn the_ash_host_gives_the_command_lines_bytes() {
     let run = child.output().expect("this test again");
     let said = [run.stdout, run.stderr].map(|s| String::from_utf8_lossy(&s).into_owned()).concat();
     assert!(run.status.success(), "{said}");
-    // Without a messenger the layer prints what it hears; the loader says that it is there.
+    // Without a messenger the layer prints its messages; the loader prints that the layer is loaded.
     assert_eq!(said.contains("VK_LAYER_KHRONOS_validation"), is_validated, "{said}");
     assert!(!said.contains("VUID") && !said.contains("SYNC-HAZARD"), "{said}");
     let bytes = std::fs::read(texels).expect("texels");

@@ -1,4 +1,4 @@
-//! What an engine lends besides a device: images in formats of its own, memory, a pipeline cache.
+//! Resources that an engine lends besides a device: images in its own formats, memory, a pipeline cache.
 
 use std::ffi::c_void;
 use std::ptr::NonNull;
@@ -64,7 +64,7 @@ pub(crate) fn packed(texels: &[f32], format: vk::Format) -> Vec<u8> {
     texels.iter().flat_map(|t| if *t == 1.0 { one.to_vec() } else { zero.clone() }).collect()
 }
 
-/// Each input in each format that the device samples, the others as they were.
+/// Each input in each format that the device samples, the others unchanged.
 #[test]
 fn inputs_in_an_engines_formats_are_lit_as_f32_are() {
     let mut device = Device::new();
@@ -85,7 +85,7 @@ fn inputs_in_an_engines_formats_are_lit_as_f32_are() {
             let bytes = packed(texels[which], format);
             let lent = match gpu.lend(name, format, [width, height], &bytes) {
                 Ok(lent) => lent,
-                // Vulkan asks for all but this.
+                // Vulkan requires every format but this.
                 Err(_) if format == vk::Format::R16_UNORM => continue,
                 Err(error) => panic!("{name} {format:?}: {error}"),
             };
@@ -110,8 +110,8 @@ fn inputs_in_an_engines_formats_are_lit_as_f32_are() {
     gpu.end(frame);
 }
 
-/// A plan that knows nothing of them draws what one that knows them does: heights and albedo are the
-/// device's alone; an environment's azimuths are even then, so that it is held to none here.
+/// A plan without their contents draws the same as one with them: heights and albedo exist only on the device.
+/// Azimuths do not depend on an environment here, as they are even for an unknown one.
 #[test]
 fn device_only_inputs_match_host_inputs() {
     let mut device = Device::new();
@@ -135,18 +135,18 @@ fn device_only_inputs_match_host_inputs() {
     assert!(values.next().is_some(), "neither black nor white");
 }
 
-/// An engine's own memory: a piece of the device's for each, as few engines would do.
+/// An engine's own memory: one allocation of the device for each, as few engines do.
 struct Pieces {
     host: Host,
-    /// Sizes of what is held, by key.
+    /// Sizes of the live allocations, by key.
     held: std::sync::Arc<Mutex<Vec<(u64, u64)>>>,
     next: u64,
-    /// What it does wrong.
+    /// The fault to make.
     fault: Option<&'static str>,
 }
 
-// SAFETY: every piece is an allocation of its own, as large as asked, of a type that will do, mapped as a
-// whole where the host looks.
+// SAFETY: every piece is an allocation of its own, as large as requested, of a suitable type, mapped as a whole where
+// the host reads or writes.
 unsafe impl Allocator for Pieces {
     fn allocate(&mut self, request: &MemoryRequest<'_>) -> Result<Allocation> {
         let device = &self.host.device;
@@ -184,7 +184,7 @@ unsafe impl Allocator for Pieces {
 
     fn free(&mut self, allocation: Allocation) {
         self.held.lock().expect("no panic").retain(|(key, _)| *key != allocation.key);
-        // SAFETY: allocated by `allocate`; what lay there is gone.
+        // SAFETY: allocated by `allocate`; nothing uses its memory any more.
         unsafe { self.host.device.free_memory(allocation.memory, None) };
     }
 
@@ -251,11 +251,11 @@ unsafe extern "system" fn keep_cache(
     unsafe { create(device, cache, count, infos, callbacks, pipelines) }
 }
 
-/// A host whose calls for pipelines this test hears.
+/// A host whose calls for pipelines this test records.
 fn heard(host: &Host, pipeline_cache: vk::PipelineCache) -> Host {
     CACHES.lock().expect("no panic").0 = Some(host.device.fp_v1_0().create_compute_pipelines);
     let (real, handle) = (host.instance.fp_v1_0(), host.device.handle());
-    // SAFETY: functions are the device's own, but for one that calls the device's own.
+    // SAFETY: all functions are the device's own, except one that calls the device's own.
     let device = unsafe {
         ash::Device::load_with(
             |name| match name.to_bytes() {
@@ -271,7 +271,7 @@ fn heard(host: &Host, pipeline_cache: vk::PipelineCache) -> Host {
     Host { device, pipeline_cache, ..host.clone() }
 }
 
-/// In: what an earlier run has kept. Out: the caller reads its own cache.
+/// In: the data of an earlier run. Out: the caller reads its own cache.
 #[test]
 fn pipelines_are_made_through_the_callers_cache() {
     let mut device = Device::new();
@@ -282,7 +282,7 @@ fn pipelines_are_made_through_the_callers_cache() {
     for run in 0..2 {
         let lent = &gpu.host().device;
         let info = vk::PipelineCacheCreateInfo::default().initial_data(&kept);
-        // SAFETY: the device is alive; the data is none, or what it gave itself.
+        // SAFETY: the device is alive; the data is empty, or the device's own.
         let cache = unsafe { lent.create_pipeline_cache(&info, None) }.expect("a cache");
         CACHES.lock().expect("no panic").1.clear();
         let mut renderer =
@@ -293,7 +293,7 @@ fn pipelines_are_made_through_the_callers_cache() {
         assert!(gpu.pixels(&frame, 0).expect("pixels") == right, "run {run}");
         renderer.destroy();
         let lent = &gpu.host().device;
-        // SAFETY: the cache is the device's; nobody uses it any more.
+        // SAFETY: the cache is the device's; nothing uses it any more.
         unsafe {
             kept = lent.get_pipeline_cache_data(cache).expect("what it kept");
             lent.destroy_pipeline_cache(cache, None);

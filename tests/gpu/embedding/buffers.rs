@@ -1,4 +1,4 @@
-//! Inputs in buffers of the caller's: the bytes of the same inputs in images.
+//! Inputs in the caller's buffers: the bytes of the same inputs in images.
 
 use ash::vk;
 use ridgelight::gpu::{
@@ -26,7 +26,7 @@ fn taking(plan: &Plan, input: &str, texels: Format) -> Plan {
     plan
 }
 
-/// Output 0, level ground drawn before: nothing is right because nothing was written.
+/// Output 0, after a draw of level ground, so that stale contents cannot pass.
 fn drawn_over(
     gpu: &mut Headless,
     frame: &mut Frame,
@@ -66,7 +66,7 @@ fn buffers_are_lit_as_images_are() {
             let made = Renderer::new(gpu.host(), plan.clone(), 1);
             let mut renderer = match made {
                 Ok(renderer) => renderer,
-                // Vulkan asks for all but this.
+                // Vulkan requires every format but this.
                 Err(error) if format == Format::R16Unorm => {
                     assert!(error.to_string().contains("heights: texels"), "{error}");
                     continue;
@@ -88,7 +88,7 @@ fn buffers_are_lit_as_images_are() {
     println!("{drawn:?}");
     assert!(drawn.len() >= 2 + 4 + 4, "{drawn:?}");
 
-    // One buffer: each input after the last, from a place of whole texels, three texels between rows.
+    // One buffer: each input after the last, from an offset of whole texels, three texels between rows.
     let mut all = plan.clone();
     let mut bytes = vec![0xff_u8; 16];
     let mut places = Vec::new();
@@ -131,7 +131,7 @@ fn input_bytes(plan: &Plan) -> u64 {
     plan.inputs().map(|(_, r)| r.bytes()).sum()
 }
 
-/// What `record` refuses of a buffer, by the field, with nothing recorded: a command in no buffer would crash.
+/// Each buffer that `record` refuses, by field, with nothing recorded: a command in a null command buffer would crash.
 #[test]
 fn wrong_buffers_are_refused_by_name() {
     let mut device = Device::new();
@@ -184,7 +184,7 @@ fn wrong_buffers_are_refused_by_name() {
     assert!(error.contains("heights: found a buffer, expected an image"), "{error}");
     of_images.destroy();
 
-    // What a plan cannot take, and where a frame has images of its own.
+    // Inputs that a plan cannot take in a buffer, and a frame with images of its own.
     for (input, texels, says) in [
         ("depths", Format::R32Float, "input: found depths, expected heights or environment"),
         ("radiance", Format::R32Float, "input: found radiance"),
@@ -202,7 +202,7 @@ fn wrong_buffers_are_refused_by_name() {
     gpu.end(frame);
 }
 
-/// What an edit copies is the edited rectangle; and a camera sees the heights that were copied.
+/// An edit copies the edited rectangle, and a camera draws the copied heights.
 #[test]
 fn edits_and_cameras_go_on_from_what_was_copied() {
     let mut device = Device::new();
@@ -236,7 +236,7 @@ fn edits_and_cameras_go_on_from_what_was_copied() {
     let (given, outputs) = ([lent.arg()], frame.outputs());
     gpu.run(|commands| renderer.record(commands, 0, &given, &outputs)).expect("run");
     assert!(gpu.pixels(&frame, 0).expect("pixels").values == before);
-    // Elsewhere the buffer has lost its heights: nothing else of it is read.
+    // The rest of the buffer has lost its heights: nothing reads it.
     let mut alone = vec![f32::NAN; heights.len()];
     for row in 21..24 {
         let at = row * 40 + 9;

@@ -1,4 +1,4 @@
-//! Colours of lights that are the caller's, on the device: the bits of the same colours in the scene.
+//! Light colours in the caller's images and buffers: the bits of the same colours in the scene.
 
 use ridgelight::plan::{self, Format, Limits, Picture, Plan, Rectangle};
 use ridgelight::scene::fractal;
@@ -10,7 +10,7 @@ use ridgelight::scene::{
 use super::borrowed::packed;
 use crate::Device;
 
-/// The sky's, those of two suns, that of a key light: of 0 and 1, which every format holds.
+/// The colours of the sky, two suns and a key light: 0 and 1, which every format holds.
 type Colours = [[f32; 3]; 4];
 
 const FIRST: Colours = [[1.0, 1.0, 0.0], [0.0, 1.0, 0.0], [1.0, 0.0, 1.0], [1.0, 1.0, 1.0]];
@@ -50,8 +50,8 @@ fn planned(scene: &Scene, limits: &Limits, wanted: Picture) -> Plan {
     plan::picture(scene, &quality, limits, wanted).expect("a plan")
 }
 
-/// A plan of a scene in whose place the device has other colours: none of the lights that it holds dark is dropped, each
-/// layer is its light's, and other colours need nothing but the sums that there are.
+/// The device's colours replace those of the scene: no light that is black in the scene is dropped, each layer belongs
+/// to its light, and other colours only add up existing sums again.
 #[test]
 fn colours_of_the_device_light_as_the_scenes_do() {
     let mut device = Device::new();
@@ -59,7 +59,7 @@ fn colours_of_the_device_light_as_the_scenes_do() {
     let kept = Picture { light_layers: true, keeps_horizons: true, ..Picture::default() };
     let [first, second] = [FIRST, SECOND].map(scene);
     let right = [&first, &second].map(|scene| {
-        // A light of no radiance has no layer there: it is all 0.
+        // A light of radiance 0 has no layer there: its layer here is all 0.
         let outputs = device.draw(planned(scene, &limits, kept), &[scene.field.heights_m()]);
         outputs.into_iter().map(|o| (o.name, o.values)).collect::<Vec<_>>()
     });
@@ -77,7 +77,7 @@ fn colours_of_the_device_light_as_the_scenes_do() {
         if n == 1 {
             gpu.refill(&frame, 1, &texels(SECOND)).expect("other colours");
             let passes = plan.passes_after(&plan, &[colours]);
-            // The sums over lights are recomputed, from the horizons that are kept.
+            // The sums over lights are recomputed, from the stored horizons.
             let is_swept = |pass: &usize| plan.passes[*pass].name().ends_with("_sweep");
             assert!(!passes.is_empty() && !passes.iter().any(is_swept), "{passes:?}");
             gpu.draw_passes(&mut frame, &passes).expect("drawn");
@@ -93,7 +93,7 @@ fn colours_of_the_device_light_as_the_scenes_do() {
             }
         }
     }
-    // An edit resolves by the same texels.
+    // An edit resolves with the same texels.
     let edited = Rectangle { col: 9, row: 21, cols: 5, rows: 3 };
     let mut raised = heights.to_vec();
     (21..24).for_each(|row| raised[row * 40 + 9..][..5].iter_mut().for_each(|h| *h += 2.0));
@@ -157,7 +157,7 @@ fn colours_come_in_formats_and_buffers() {
     gpu.end(frame);
 }
 
-/// What holds its lights' colours in sums is refused, by name.
+/// Methods whose sums hold the lights' colours are refused, by name.
 #[test]
 fn colours_that_are_summed_up_are_the_scenes() {
     let wanted = Picture { colours_on_device: true, ..Picture::default() };

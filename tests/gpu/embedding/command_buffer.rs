@@ -85,7 +85,7 @@ const COPIED_TO: ImageState = state(
     vk::ImageLayout::TRANSFER_DST_OPTIMAL,
 );
 
-/// How inputs come, how outputs come, how outputs are to be left.
+/// States of inputs, of outputs before, and of outputs after.
 const STATES: [[ImageState; 3]; 6] = [
     [SAMPLED, NO_CONTENTS, SAMPLED],
     [COPIED_TO, NO_CONTENTS, COPIED_FROM],
@@ -100,8 +100,8 @@ fn with(images: &[ImageArg], before: ImageState, after: ImageState) -> Vec<Image
     images.iter().map(|image| ImageArg { before, after, ..*image }).collect()
 }
 
-/// Records a frame with its images in the given states, and takes them there and back: `left` is how
-/// the outputs are said to have been left.
+/// Records a frame with its images in the given states, and takes them there and back: `left` is the expected state of
+/// the outputs.
 fn record_in(
     gpu: &Headless,
     frame: &mut Frame,
@@ -117,7 +117,7 @@ fn record_in(
         if before != NO_CONTENTS {
             go(&outputs, ImageState::ANY_USE, before);
         }
-        // What an input's `after` says does not count.
+        // The `after` of an input does not count.
         let read = with(&inputs, input, NO_CONTENTS);
         frame.renderer().record(commands, 0, &read, &with(&outputs, before, after))?;
         go(&inputs, input, ImageState::ANY_USE);
@@ -127,7 +127,7 @@ fn record_in(
     done.expect("recorded and run");
 }
 
-/// Validation tracks layouts and hazards: a barrier from a state that an image is not in is an error.
+/// Validation tracks layouts and hazards: a barrier from a wrong state is an error.
 #[test]
 fn images_are_left_as_the_table_says() {
     let mut device = Device::new();
@@ -158,7 +158,7 @@ fn images_are_left_as_the_table_says() {
     }
     assert_eq!(gpu.take_messages(), [""; 0], "validation is silent so far");
     if device.validates {
-        // And validation would have heard: outputs said to be where they were not asked to be.
+        // The comparison can fail: validation reports outputs in another state than the requested one.
         let gpu = device.gpu.as_mut().expect("alive");
         record_in(gpu, &mut frame, [SAMPLED, NO_CONTENTS, COPIED_FROM], SAMPLED);
         assert!(!gpu.take_messages().is_empty(), "validation is deaf");
@@ -182,7 +182,7 @@ fn two_renderers_in_one_buffer_are_each_what_they_are_alone() {
     gpu.draw(&mut seen).expect("drawn");
     let alone = [outputs(gpu, &lit), outputs(gpu, &seen)];
 
-    // Other heights in between, so that nothing is right because nothing was written.
+    // Other heights in between, so that stale contents cannot pass.
     let flat = vec![1.0; contents[0].len()];
     gpu.refill(&lit, 0, &flat).expect("other heights");
     gpu.refill(&seen, 0, &flat).expect("other heights");
@@ -191,7 +191,7 @@ fn two_renderers_in_one_buffer_are_each_what_they_are_alone() {
     assert!(outputs(gpu, &lit) != alone[0] && outputs(gpu, &seen) != alone[1]);
     gpu.refill(&lit, 0, &contents[0]).expect("the heights again");
 
-    // Both read one image: as the first leaves it, so the second finds it.
+    // Both read one image: the first leaves it as the second expects it.
     let (inputs, lit_outputs) = (lit.inputs(), lit.outputs());
     let seen_outputs = seen.outputs();
     let both = gpu.run(|commands| {
@@ -204,7 +204,7 @@ fn two_renderers_in_one_buffer_are_each_what_they_are_alone() {
     gpu.end(seen);
 }
 
-/// Everything that `record` refuses, with a word that its error has to name.
+/// Everything that `record` refuses, with a word of its error.
 fn refused(
     renderer: &mut Renderer,
     commands: vk::CommandBuffer,
@@ -225,7 +225,7 @@ fn refused(
     refuse("pass", 0, inputs, outputs, Some(&[0, passes]));
     refuse("order", 0, inputs, outputs, Some(&[1, 1]));
     refuse("order", 0, inputs, outputs, Some(&[2, 1]));
-    // More than there are queries for; as many as there are, but not all.
+    // More passes than there are queries; as many as there are, but not all.
     refuse("order", 0, inputs, outputs, Some(&vec![0; 2 * passes]));
     refuse("order", 0, inputs, outputs, Some(&vec![0; passes]));
     refuse("inputs", 0, &inputs[1..], outputs, None);
@@ -237,7 +237,7 @@ fn refused(
         ("format", |arg| arg.format = vk::Format::R8_UNORM),
         ("extent", |arg| arg.extent[1] += 1),
     ];
-    // The last of each: all others have been found good by then.
+    // The last image of each list: all others have passed the checks by then.
     for (named, spoil) in spoils {
         let (mut bad_inputs, mut bad_outputs) = (inputs.to_vec(), outputs.to_vec());
         spoil(bad_inputs.last_mut().expect("inputs"));
@@ -280,9 +280,9 @@ fn an_error_leaves_the_command_buffer_untouched() {
     assert!(flat != right);
     gpu.refill(&frame, 0, &contents[0]).expect("the heights again");
 
-    // Drivers and layers look into the buffer to record into it: a command in none would crash.
+    // Drivers and layers dereference the command buffer: a command in a null one would crash.
     refused(frame.renderer(), vk::CommandBuffer::null(), &inputs, &written);
-    // A buffer of errors alone does nothing: no texel changes, no timestamp is reset.
+    // A command buffer with nothing but refused recordings does nothing: no texel changes, no timestamp is reset.
     gpu.run(|commands| {
         refused(frame.renderer(), commands, &inputs, &written);
         Ok(())
@@ -290,7 +290,7 @@ fn an_error_leaves_the_command_buffer_untouched() {
     .expect("run");
     assert_eq!(outputs(gpu, &frame), flat);
     assert_eq!(frame.renderer().timings(0), times);
-    // After errors, the same buffer takes a right recording.
+    // After errors, the same buffer takes a valid recording.
     gpu.run(|commands| {
         refused(frame.renderer(), commands, &inputs, &written);
         frame.renderer().record(commands, 0, &inputs, &written)
@@ -300,8 +300,8 @@ fn an_error_leaves_the_command_buffer_untouched() {
     gpu.end(frame);
 }
 
-/// The plan's own images hold nothing before all passes have run, and are in no layout: piece by piece from the first on,
-/// or not at all.
+/// The plan's own images have no contents and no layout before all passes have run: a plan is recorded piece by piece
+/// from the first pass on, or refused.
 #[test]
 fn some_passes_are_refused_until_all_have_been_recorded() {
     let mut device = Device::new();
@@ -360,7 +360,8 @@ fn timings_are_those_of_the_last_recording_or_none() {
     gpu.end(frame);
 }
 
-/// What was recorded still runs, on memory that nobody has freed; its objects stay, as it says.
+/// A recorded command buffer still runs after its renderer is dropped: its memory is not freed and its objects stay,
+/// as documented.
 #[test]
 fn a_renderer_that_is_dropped_takes_no_memory_from_what_was_recorded() {
     let mut device = Device::new();

@@ -1,4 +1,4 @@
-//! The embedding contract, as far as it stands: record only, check first, leave states as asked.
+//! The embedding contract: record only, check first, leave the requested states.
 
 use ridgelight::gpu::Renderer;
 use ridgelight::plan::{self, Picture, missing_barriers};
@@ -45,7 +45,7 @@ fn a_field_that_changes_gives_what_a_new_field_gives() {
     assert_eq!(again, fresh);
 }
 
-/// Validation that says nothing may be deaf: a plan without its barriers must be heard.
+/// Silent validation must be able to fail: it reports a plan without its barriers.
 #[test]
 fn missing_barriers_are_reported() {
     let mut device = Device::new();
@@ -110,7 +110,7 @@ fn every_kind_of_plan_runs_silently_and_has_all_its_barriers() {
         Quality { lines: Lines::HalfCell, fuse: Fuse::Nearest, ..Quality::default() },
     ];
     let borders = [Border::Plane, Border::Open, Border::Periodic];
-    // Every quality once, borders in turn: software drivers compile each pipeline for seconds.
+    // Every quality once, borders in turn: software drivers take seconds to compile each pipeline.
     for (i, quality) in qualities.into_iter().enumerate() {
         scene.surface.border = borders[i % 3];
         {
@@ -141,8 +141,8 @@ fn every_kind_of_plan_runs_silently_and_has_all_its_barriers() {
     }
 }
 
-/// Small plans share a block of 4 MiB in each kind of memory: the device's and the host's. What is
-/// larger has its own, and each block wastes less than what did not fit: at most half of what is held.
+/// Small plans share a block of 4 MiB in each kind of memory: the device's and the host's. Larger ones have their own
+/// blocks, and each block wastes less than the size that did not fit: at most half of all memory held.
 #[test]
 fn memory_taken_is_near_the_planned_bytes() {
     const BLOCK: u64 = 4 << 20;

@@ -10,7 +10,7 @@ use ridgelight::plan;
 use super::borrowed::{framed, planned, scene};
 use crate::Device;
 
-/// What a debugger receives: objects by type and name, labels that begin, and an empty name where one ends.
+/// The debugger's input: objects by type and name, labels that begin, and an empty name where one ends.
 static REPORTED: Mutex<Vec<(vk::ObjectType, String)>> = Mutex::new(Vec::new());
 
 unsafe fn text(name: *const c_char) -> String {
@@ -22,7 +22,7 @@ unsafe extern "system" fn keep_name(
     _device: vk::Device,
     info: *const vk::DebugUtilsObjectNameInfoEXT<'_>,
 ) -> vk::Result {
-    // SAFETY: whoever names hands in a whole struct.
+    // SAFETY: the caller passes a complete struct.
     let (kind, name) = unsafe { ((*info).object_type, text((*info).p_object_name)) };
     REPORTED.lock().expect("no panic").push((kind, name));
     vk::Result::SUCCESS
@@ -45,7 +45,7 @@ unsafe extern "system" fn debugger(
     _device: vk::Device,
     name: *const c_char,
 ) -> vk::PFN_vkVoidFunction {
-    // SAFETY: the loader's names end with a nul; each function is returned for its own.
+    // SAFETY: the loader's names end with a nul; each name gets the function of its type.
     unsafe {
         let function: *const c_void = match text(name).as_str() {
             "vkSetDebugUtilsObjectNameEXT" => keep_name as *const c_void,
@@ -59,7 +59,7 @@ unsafe extern "system" fn debugger(
 
 /// A host whose debugger is this test.
 fn reporting(host: &Host) -> Host {
-    // SAFETY: of this instance only the debugger's functions are looked up.
+    // SAFETY: only the debugger's functions of this instance are looked up.
     let instance = unsafe {
         ash::Instance::load_with(
             |name| match name.to_bytes() {

@@ -1,5 +1,5 @@
-//! Frames in flight: several command buffers under way at once, waited for once. Synchronisation
-//! validation looks from one to the next.
+//! Frames in flight: several command buffers submitted at once, one wait. Synchronisation validation checks across
+//! them.
 
 use ash::vk;
 use ridgelight::Result;
@@ -10,7 +10,7 @@ use ridgelight::scene::{Basis, Border, Environment, Quality, Scene, Sun};
 
 use crate::{Device, bits, under_sky};
 
-/// What a command buffer is to hold.
+/// Records into a command buffer.
 type Record<'a> = Box<dyn FnOnce(vk::CommandBuffer) -> Result<()> + 'a>;
 
 fn scene(side: usize, seed: u64) -> Scene {
@@ -50,7 +50,7 @@ fn two_slots_in_flight_draw_what_each_draws_alone() {
         frames.push(frame(gpu, scene));
     }
     assert!(alone[0] != alone[1]);
-    // Heights alone differ: one plan does for both, and its own images serve both in turn.
+    // Only heights differ: one plan serves both, and its own images serve both in turn.
     let plan = planned(gpu, &scenes[0]);
     let passes = plan.passes.len();
     let mut renderer = Renderer::new(gpu.host(), plan, 2).expect("a renderer");
@@ -74,8 +74,9 @@ fn two_slots_in_flight_draw_what_each_draws_alone() {
     frames.into_iter().for_each(|frame| gpu.end(frame));
 }
 
-/// A sun that moves and an environment that turns from frame to frame, none of them waited for: what is in flight
-/// keeps what it was recorded with. Of the host's two tables the sun's azimuths are in one, the turn in the other.
+/// A sun that moves and an environment that turns from frame to frame, without a wait: frames in flight keep the
+/// values of their recording. The host has two tables: the sun's azimuths are in one, the environment's rotation in
+/// the other.
 #[test]
 fn lights_change_while_frames_are_in_flight() {
     let mut device = Device::new();
@@ -123,8 +124,8 @@ fn lights_change_while_frames_are_in_flight() {
     frames.into_iter().for_each(|frame| gpu.end(frame));
 }
 
-/// A size that changes is a new plan: its renderer draws beside the old one, whose last frame is
-/// still under way, and goes on when that is gone.
+/// A size that changes is a new plan: its renderer draws while the old one's last frame is in flight, and continues
+/// after the old one is gone.
 #[test]
 fn a_new_size_is_drawn_beside_the_old_one() {
     let mut device = Device::new();
@@ -153,7 +154,7 @@ fn a_new_size_is_drawn_beside_the_old_one() {
     gpu.end(new);
 }
 
-/// A command buffer of its own pool, which another thread may have.
+/// A command buffer of its own pool, which another thread may own.
 struct Recorded {
     pool: vk::CommandPool,
     commands: vk::CommandBuffer,
@@ -165,7 +166,7 @@ impl Recorded {
     fn new(host: &Host, what: impl FnOnce(vk::CommandBuffer)) -> Self {
         let device = &host.device;
         let pool_info = vk::CommandPoolCreateInfo::default().queue_family_index(host.queue_family);
-        // SAFETY: the device is alive; pool and buffer are this thread's until they are handed on.
+        // SAFETY: the device is alive; only this thread uses pool and buffer until they are passed on.
         unsafe {
             let pool = device.create_command_pool(&pool_info, None).expect("a pool");
             let info = vk::CommandBufferAllocateInfo::default().command_pool(pool);
@@ -198,7 +199,7 @@ impl Recorded {
     }
 }
 
-/// The first frame is submitted and not waited for before another thread has recorded the second.
+/// Another thread records the second frame while the first is in flight.
 #[test]
 fn a_frame_is_recorded_on_another_thread_while_one_is_in_flight() {
     let mut device = Device::new();
@@ -209,7 +210,7 @@ fn a_frame_is_recorded_on_another_thread_while_one_is_in_flight() {
         gpu.draw(frame).expect("drawn");
         bits(gpu, frame)
     });
-    // Other light in the images, so that nothing is right because nothing was written.
+    // Other light in the images, so that stale contents cannot pass.
     for ((frame, other), alone) in frames.iter_mut().zip([1, 0]).zip(&alone) {
         gpu.refill(frame, 0, scenes[other].field.heights_m()).expect("other heights");
         gpu.draw(frame).expect("drawn");

@@ -1,4 +1,4 @@
-//! Only the passes that a change needs: the same bits as all of them.
+//! After a change only the necessary passes run: the same bits as all of them.
 
 use ridgelight::gpu::Headless;
 use ridgelight::plan::{self, Picture, Plan};
@@ -38,7 +38,7 @@ fn contents(scene: &Scene) -> [Vec<f32>; 2] {
     [scene.field.heights_m().to_vec(), texels]
 }
 
-/// Tables, and harmonics at some samples.
+/// Tables, and harmonics at every second texel.
 fn qualities() -> [Quality; 2] {
     let tables = Quality { azimuths: 12, table_elevations: 32, ..Quality::default() };
     [tables, Quality { basis: Basis::Sh, subsample: 2, ..tables }]
@@ -52,7 +52,7 @@ fn planned(gpu: &Headless, scene: &Scene, (quality, keeps_horizons): Form) -> Pl
 /// A quality, and whether horizons are kept.
 type Form<'a> = (&'a Quality, bool);
 
-/// What all passes of the scene's plan draw of these contents.
+/// The output of all passes of the scene's plan for these contents.
 fn from_nothing(
     gpu: &mut Headless,
     scene: &Scene,
@@ -80,7 +80,7 @@ fn passes_after_a_change_match_all_passes() {
         gpu.draw(&mut frame).expect("drawn");
         let mut last = bits(gpu, &frame);
         // A sphere light of another colour; a new environment, by the plan of the old one, whose azimuths are
-        // drawn to that; a new field.
+        // importance-sampled for that; a new field.
         let mut texels = texels;
         for change in 0..3 {
             let passes = match change {
@@ -96,7 +96,7 @@ fn passes_after_a_change_match_all_passes() {
                     gpu.refill(&frame, 1, &texels).expect("refilled");
                     let input = frame.plan().find("environment").expect("an input");
                     let passes = frame.plan().passes_after(frame.plan(), &[input]);
-                    // The second sun's sum takes the place of the first's, which is added up again.
+                    // The second sun's sum reuses the memory of the first's, which is computed again.
                     let label = |i: &usize| frame.plan().passes[*i].label();
                     let is_of_light = |label: &str| {
                         let seen =
@@ -149,8 +149,8 @@ fn a_plan_of_other_images_is_refused_and_the_old_one_stays() {
     gpu.end(frame);
 }
 
-/// All but the last pass, and then another plan: its pieces begin where the first of its own is, and leave what all of it
-/// does at once.
+/// All but the last pass, and then another plan: its pieces begin at its own first pass and give the output of the
+/// whole plan.
 #[test]
 fn pieces_of_two_plans_do_not_mix() {
     let mut device = Device::new();

@@ -1,4 +1,4 @@
-//! Scenes whose answer is derived (BEYOND B5, DESIGN §4), through whole plans on the device.
+//! Scenes with closed forms (BEYOND B5, DESIGN §4), through whole plans on the device.
 
 use ridgelight::scene::{Border, Fuse, Lines, Method, Quality, Sun};
 
@@ -61,7 +61,7 @@ fn a_ramp_has_its_slope_in_every_azimuth() {
 
 #[test]
 fn a_tilted_plane_under_an_open_sky_sees_all_of_its_hemisphere() {
-    // Nothing hides anything: with `open` borders the plane receives π L whatever its tilt.
+    // Nothing occludes: with `open` borders the plane receives π L whatever its tilt.
     let mut gpu = Device::new();
     let scene = under_sky(field(9, 9, [1.0, 1.0], |_, c| 0.8 * c as f64), Border::Open);
     let picture = gpu.picture(&scene, &Quality { azimuths: 256, ..Quality::default() });
@@ -91,8 +91,8 @@ fn a_tilted_plane_on_level_ground_sees_the_sky_of_its_tilt() {
 
 #[test]
 fn a_wall_has_its_horizon() {
-    // A wall one sample thick, height 10, at column 20: from column c < 20, looking east along the
-    // row, tan h = 10 / (20 - c).
+    // A wall one texel thick, height 10, at column 20: from column c < 20, looking east along the row, tan h = 10 /
+    // (20 - c).
     let mut gpu = Device::new();
     let wall = field(15, 31, [2.0, 2.0], |_, c| if c == 20 { 10.0 } else { 0.0 });
     for method in [Method::Sweep, Method::BruteForce] {
@@ -157,7 +157,7 @@ fn quarter_turns_of_a_field_turn_its_horizons() {
         Border::Plane,
         &Quality { azimuths: 4, ..Quality::default() },
     );
-    // Turned counter-clockwise: what was east is north; sample (r, c) goes to (n - 1 - c, r).
+    // Turned counter-clockwise: east becomes north; texel (r, c) goes to (n - 1 - c, r).
     let turned = field(n, n, [1.0, 1.0], |r, c| height(c, n - 1 - r));
     let b = gpu.horizons(&turned, Border::Plane, &Quality { azimuths: 4, ..Quality::default() });
     let plane = n * n;

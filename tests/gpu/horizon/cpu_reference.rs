@@ -11,8 +11,8 @@ use ridgelight::scene::{
 use crate::cpu_reference::{Case, Wanted, check, check_all, rough};
 use crate::{Device, field};
 
-/// A dome, whose samples all stay on the hull, before a cliff that pops them: deeper than the 64
-/// entries that a line keeps in shared memory.
+/// A dome, whose texels all stay on the hull, before a cliff that pops them: deeper than the 64 entries that a line
+/// keeps in shared memory.
 fn dome(rows: usize, cols: usize) -> HeightField {
     let middle = cols as f64 / 2.0;
     field(rows, cols, [1.0, 1.0], |r, c| {
@@ -34,7 +34,7 @@ fn horizons(
     Case { name, scene, quality, wanted: Wanted::Horizons { distances }, loses_lines: false }
 }
 
-/// `horizon_sweep`: three places of the hull, both kinds of entries, both kinds of slopes, all fuses.
+/// `horizon_sweep`: three hull storages, both kinds of entries, both kinds of slopes, all fuses.
 pub(crate) fn sweeps() -> Vec<Case> {
     let base = Quality { azimuths: 12, ..Quality::default() };
     let packed = Quality { precision: Precision::Packed, ..base };
@@ -63,7 +63,7 @@ pub(crate) fn sweeps() -> Vec<Case> {
             "shared packed",
             rough(29, 19, 4),
             Border::Plane,
-            // Between lines two cells apart, every second sample is equally near to both.
+            // Between lines two cells apart, every second texel is equally near to both.
             Quality { hull: Hull::Shared, lines: Lines::TwoCells, fuse: Fuse::Nearest, ..packed },
             false,
         ),
@@ -103,7 +103,7 @@ pub(crate) fn sweeps() -> Vec<Case> {
     ]
 }
 
-/// `surface_sweep` and `horizon_march`: one value a sample, with what is met.
+/// `surface_sweep` and `horizon_march`: one value a texel, with its occluder.
 pub(crate) fn samples() -> Vec<Case> {
     let exact = Quality { azimuths: 12, lines: Lines::Exact, ..Quality::default() };
     let brute = Quality { azimuths: 12, method: Method::BruteForce, ..Quality::default() };
@@ -115,8 +115,8 @@ pub(crate) fn samples() -> Vec<Case> {
     ]
 }
 
-/// The passes of a height pyramid: both stores, all borders, few and many levels an octave, and fields
-/// with one sample across, few of them, or no level but themselves.
+/// The passes of a height pyramid: both stores, all borders, few and many levels an octave, and fields one or a few
+/// texels wide, or with no level but themselves.
 pub(crate) fn pyramids() -> Vec<Case> {
     let base = Quality { azimuths: 12, method: Method::Pyramid, ..Quality::default() };
     let looks =

@@ -1,4 +1,4 @@
-//! Where a hull lives, and how a plan is cut into batches, never changes a bit of the result.
+//! Hull storage and the split of a plan into batches never change a bit of the result.
 
 use ridgelight::plan::{self, Limits, Picture};
 use ridgelight::scene::fractal;
@@ -6,13 +6,13 @@ use ridgelight::scene::{Border, Fuse, HeightField, Hull, Lines, Precision, Quali
 
 use crate::{Device, field, random, under_sky};
 
-/// A dome: every sample stays on the hull of a line across it, until a wall behind pops them all.
+/// A dome: every texel stays on the hull of a line across it, until a wall behind pops them all.
 fn dome_and_wall(side: usize) -> HeightField {
     let middle = (side as f64 - 1.0) / 2.0;
     field(side, side, [1.0, 1.0], |r, c| {
         let (x, y) = ((c as f64 - middle) / middle, (r as f64 - middle) / middle);
         let dome = (2.5 - x * x - y * y).sqrt() * middle;
-        // A climb at the east edge sees over the dome bit by bit.
+        // A climb at the east edge uncovers the dome vertex by vertex.
         dome + if c + 40 > side { 3.0 * (c + 40 - side) as f64 } else { 0.0 }
     })
 }
@@ -30,12 +30,12 @@ fn all_forms(gpu: &mut Device, field: &HeightField, border: Border, base: Qualit
 #[test]
 fn hulls_deeper_than_their_storage_lose_nothing() {
     let mut gpu = Device::new();
-    // 300 samples a line, more than the 128 entries of private and the 64 of shared memory.
+    // 300 texels a line, more than the 128 entries of private and the 64 of shared memory.
     let deep = dome_and_wall(300);
     let base = Quality { azimuths: 8, fuse: Fuse::Slopes, ..Quality::default() };
     all_forms(&mut gpu, &deep, Border::Plane, base);
-    // And what they agree on is right: along rows and columns and diagonals lines go through every
-    // sample, so slopes are those of the samples themselves.
+    // The common result is right: along rows, columns and diagonals lines pass through every texel, so slopes are
+    // those of the texels themselves.
     let swept = gpu.horizons(&deep, Border::Open, &base);
     let exact = gpu.horizons(&deep, Border::Open, &Quality { lines: Lines::Exact, ..base });
     for k in [0, 2, 4, 6] {
@@ -99,18 +99,18 @@ fn packed_entries_err_by_their_rounding() {
     let packed = gpu.horizons(&f, Border::Plane, &Quality { precision: Precision::Packed, ..base });
     let half = gpu.horizons(&f, Border::Plane, &Quality { precision: Precision::F16, ..base });
     let highest = f.heights_m().iter().fold(0.0_f32, |m, h| m.max(h.abs()));
-    // A height is off by at most half an f16 step of [0.5..1] (2^-12) of the largest; a neighbour one
-    // cell away shows that as an angle, and which occluder wins changes the slope by no more.
+    // A height errs by at most half an f16 step of [0.5..1] (2^-12) of the largest; at a neighbour one cell away that
+    // is an angle, and the choice of occluder changes the slope by no more.
     let bound = highest * 2.0_f32.powi(-12) * 2.0;
     let worst = exact.iter().zip(&packed).fold(0.0_f32, |m, (a, b)| m.max((a - b).abs()));
     assert!(worst > 0.0 && worst <= bound, "packed {worst}, bound {bound}");
-    // An f16 slope is off by 2^-11 of itself; tangents to angles shrink that by 1 + slope².
+    // An f16 slope errs by 2^-11 of itself; the arc tangent divides that by 1 + slope².
     let worst = exact.iter().zip(&half).fold(0.0_f32, |m, (a, b)| m.max((a - b).abs()));
     assert!(worst > 0.0 && worst <= 0.5 * 2.0_f32.powi(-11) * 1.01, "f16 {worst}");
 }
 
-/// A GPU's plans have groups of 32 invocations, 128 lines: on whatever driver this is, they give the
-/// same bits as a processor's, in every layer and for lines that are done again.
+/// A GPU's plans have groups of 32 invocations, 128 lines: on any driver they give the same bits as a processor's, in
+/// every layer and for lines that are redone.
 #[test]
 fn wide_groups_and_narrow_ones_are_the_same_to_the_bit() {
     let mut gpu = Device::new();

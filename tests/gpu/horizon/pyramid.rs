@@ -1,4 +1,4 @@
-//! Horizons from a height pyramid where their limits are known, and how they come nearer to the truth.
+//! Horizons from a height pyramid with known limits, and their convergence.
 
 use std::f64::consts::TAU;
 
@@ -17,8 +17,8 @@ fn quality(azimuths: u32, levels: Levels, [level_step, level_offset]: [u32; 2]) 
     Quality { azimuths, method, levels, level_step, level_offset, ..Quality::default() }
 }
 
-/// All levels of a plane are the plane, ends and all: tan ω = s cos(φ - uphill) at every sample that has
-/// some of it in that azimuth, uphill and down.
+/// All levels of a plane are the plane, ends included: tan ω = s cos(φ - uphill) at every texel with ground in that
+/// azimuth, uphill and down.
 #[test]
 fn a_ramp_is_its_own_horizon_at_every_level() {
     const COLS: usize = 29;
@@ -33,9 +33,9 @@ fn a_ramp_is_its_own_horizon_at_every_level() {
         {
             let found = gpu.horizons(&ramp, Border::Open, &quality(24, stored, looks));
             for (k, azimuth) in even(24, cell).iter().enumerate() {
-                // What the march follows, which is 1/32768 cell a step from what was asked for at most.
+                // The marched azimuth, which differs from the requested one by 1/32768 cell a step at most.
                 let expected = slope * azimuth.swept_rad(cell).cos();
-                // Heights in, 2 ε H.
+                // The heights' rounding, 2 ε H.
                 let rounded = pyramid_plane_slope(highest, azimuth.step_m.into())
                     + 2.0 * highest * 2.0_f64.powi(-24) / f64::from(azimuth.step_m);
                 let flattest = (expected.abs() - rounded).max(0.0);
@@ -49,7 +49,7 @@ fn a_ramp_is_its_own_horizon_at_every_level() {
                         is_nothing || (at - expected.atan()).abs() <= bound,
                         "slope {slope} {stored:?} {looks:?} azimuth {k} sample {i}: {at} {expected}"
                     );
-                    // From the middle something is seen in every azimuth.
+                    // From the middle there is ground in every azimuth.
                     assert!(!is_nothing || i != ROWS / 2 * COLS + COLS / 2, "azimuth {k}");
                 }
             }
@@ -57,8 +57,8 @@ fn a_ramp_is_its_own_horizon_at_every_level() {
     }
 }
 
-/// The last sample stands where the march leaves the field: a wall along the edge is seen at its height,
-/// from as far as samples look at the field itself, 2^o steps.
+/// The last step stands where the march leaves the field: a wall along the edge has its full height, from as far as
+/// texels use the field itself, 2^o steps.
 #[test]
 fn a_wall_at_the_edge_is_seen_at_its_height() {
     let mut gpu = Device::new();
@@ -68,16 +68,16 @@ fn a_wall_at_the_edge_is_seen_at_its_height() {
         for (row, c) in (0..9).flat_map(|r| (16..32).map(move |c| (r, c))) {
             let expected = (10.0 / (2.0 * (32 - c) as f64)).atan();
             let at = f64::from(found[row * 33 + c]);
-            // Nothing but the wall counts, and it stands where marches look.
+            // Nothing but the wall counts, and it stands at a step of the march.
             let bound = 2.0 * ARC_TANGENT + pyramid_angle(1.0 / (32 - c) as f64 * 5.0);
             assert!((at - expected).abs() <= bound, "{stored:?} {step} row {row} column {c}: {at}");
         }
     }
 }
 
-/// From the tip of a pit with straight sides the rim stands at the sides' slope in every azimuth: the first sample
-/// sees it; levels lie above the tip and see less. Along the grid and its diagonals marches pass through samples;
-/// between them a chord across a cell lies above the cone, by 1/(8 r²) of it at distance r, at most 1/8.
+/// From the tip of a pit with straight sides the rim stands at the sides' slope in every azimuth: the first step finds
+/// it; levels lie above the tip and give less. Along the grid and its diagonals marches pass through texels; between
+/// them a chord across a cell lies above the cone, by 1/(8 r²) of it at distance r, at most 1/8.
 #[test]
 fn the_tip_of_a_pit_sees_its_sides() {
     const SIDE: usize = 33;
@@ -97,7 +97,7 @@ fn the_tip_of_a_pit_sees_its_sides() {
     }
 }
 
-/// Mean error of the horizons, radians, against the f64 oracle at every seventh sample.
+/// Mean error of the horizons, radians, against the f64 oracle at every seventh texel.
 fn mean_error(gpu: &mut Device, field: &HeightField, quality: &Quality) -> f64 {
     let found = gpu.horizons(field, Border::Plane, quality);
     let oracle = Oracle::new(field, Border::Plane);
@@ -113,7 +113,7 @@ fn mean_error(gpu: &mut Device, field: &HeightField, quality: &Quality) -> f64 {
     sum / f64::from(number)
 }
 
-/// The path of the paper's figure 10, k = 1 … 16 with o = 0 … 4: every step comes nearer, in both stores.
+/// The parameters of the paper's figure 10, k = 1 … 16 with o = 0 … 4: every step lowers the error, in both stores.
 #[test]
 fn more_and_finer_levels_tend_to_the_oracle() {
     let mut gpu = Device::new();
@@ -126,7 +126,7 @@ fn more_and_finer_levels_tend_to_the_oracle() {
     }
 }
 
-/// A stack read bilinearly and splines found at every look are the same levels.
+/// A bilinear stack and splines evaluated at every look-up are the same levels.
 #[test]
 fn both_stores_hold_the_same_levels() {
     let mut gpu = Device::new();
@@ -138,8 +138,8 @@ fn both_stores_hold_the_same_levels() {
     let apart: f64 = stack.iter().zip(&levels).map(|(a, b)| f64::from((a - b).abs())).sum::<f64>();
     let mean = apart / stack.len() as f64;
     println!("{mean} rad apart, {truth_error} from the truth");
-    // A bilinear sample errs by an eighth of the second difference over a sample, of levels whose texels are 2^(1/4)
-    // samples or more apart and whose splines are smooth over two: less than what the levels themselves leave out.
+    // Bilinear interpolation errs by an eighth of the second difference over a texel, of levels whose texels are
+    // 2^(1/4) field texels or more apart and whose splines are smooth over two: less than the levels' own error.
     assert!(mean < 0.1 * truth_error, "{mean} of {truth_error}");
     assert!(mean > 0.0, "the two stores are one");
 }

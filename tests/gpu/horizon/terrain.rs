@@ -1,4 +1,4 @@
-//! Real terrain against the oracle. The bundled field always; the larger ones where they are.
+//! Real terrain against the oracle: the bundled field always, larger ones where they exist.
 
 use ridgelight::plan;
 use ridgelight::scene::{Border, Fuse, HeightField, Lines, Quality};
@@ -7,9 +7,9 @@ use ridgelight_cpu::oracle::Oracle;
 
 use crate::{Device, bundled, random, under_sky};
 
-/// What is published of the bundled field, and drawn by `examples/accuracy`.
+/// The published figures of the bundled field, which `examples/accuracy` measures.
 const PUBLISHED: &str = include_str!("../../../benches/results/accuracy_mt_washington_256.txt");
-/// Samples that it looked at: for horizons, for the sky.
+/// The number of texels behind them: for horizons, for the sky.
 const PUBLISHED_SAMPLES: [f64; 2] = [4000.0, 500.0];
 
 /// A figure of a row of the published table, by its column's name.
@@ -35,14 +35,14 @@ impl Estimate {
         Self { mean, standard_error: (variance / count).sqrt() }
     }
 
-    /// Whether it is no more than a figure that so many others gave, within three standard errors of both.
+    /// Whether it exceeds a figure from another number of values by less than three standard errors of both.
     fn is_within(&self, figure: f64, count: f64, of: f64) -> bool {
         self.mean <= figure + 3.0 * self.standard_error * (1.0 + count / of).sqrt()
     }
 }
 
-/// Mean error of a sample's elevations in all azimuths against the oracle's, in those really asked for,
-/// degrees, of some samples; and the worst of all.
+/// Mean error of a texel's elevations in all azimuths against the oracle's in the requested ones, degrees, of some
+/// texels; and the largest of all.
 fn errors(
     gpu: &mut Device,
     field: &HeightField,
@@ -68,14 +68,14 @@ fn errors(
     ((0..samples).map(mean).collect(), worst)
 }
 
-/// Every figure that is published of the default and its neighbours is held, within what chance does to so
-/// few samples; a form that errs several times as much is seen not to be.
+/// Every published figure of the default and its neighbours holds, within the standard error of so few texels; the
+/// comparison fails for a form with several times the error.
 #[test]
 fn horizons_of_bundled_terrain_match_the_published_errors() {
     const SAMPLES: usize = 200;
     let mut gpu = Device::new();
     let field = bundled();
-    // As many azimuths as were published: those along the grid err less.
+    // As many azimuths as in the published table: those along the grid err less.
     let base = Quality { azimuths: 64, ..Quality::default() };
     let mut estimate = |lines: Lines, fuse: Fuse| {
         let (all, worst) = errors(&mut gpu, &field, &Quality { lines, fuse, ..base }, SAMPLES);
@@ -102,13 +102,13 @@ fn horizons_of_bundled_terrain_match_the_published_errors() {
     let default = published(Lines::Cell, Fuse::AimedNearest, "mean °");
     let sparse = estimate(Lines::FourCells, Fuse::AimedNearest);
     assert!(!holds(&sparse, default), "deaf to lines 4 cells apart");
-    // A mean of 0 is published; f32 resolves 1e-4° of a steep angle.
+    // The published mean is 0; f32 resolves 1e-4° of a steep angle.
     let exact = Quality { lines: Lines::Exact, azimuths: 16, ..base };
     let (_, worst) = errors(&mut gpu, &field, &exact, 300);
     assert!(worst <= 1e-4, "exact: worst {worst}°");
 }
 
-/// Likewise the light of a uniform sky, by its mean square.
+/// The light of a uniform sky likewise, by its mean square.
 #[test]
 fn the_sky_over_bundled_terrain_is_the_oracles() {
     const SAMPLES: usize = 400;

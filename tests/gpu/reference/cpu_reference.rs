@@ -15,7 +15,7 @@ use crate::cpu_reference::{
 };
 use crate::{Device, random};
 
-/// Path by path, and then the same of a second batch, of which the device has a mean and a standard error.
+/// Path by path, and then a second batch, from which the device has a mean and a standard error.
 pub(crate) fn path_trace(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let mut pairs = Vec::new();
     let is_last = run.plan.passes.last().is_some_and(|last| last.label() == pass.label());
@@ -35,7 +35,7 @@ pub(crate) fn path_trace(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     pairs
 }
 
-/// What one dispatch adds to the sums, given those before the batch.
+/// The sums added by one dispatch, given those before the batch.
 fn one_part(run: &mut Run, pass: &Pass, before: &[f32], spread: &[f32], pairs: &mut Vec<Pair>) {
     use offsets::path_trace_push as push;
     let [bounces, seed, first_path, last_path, first_light, last_light, lights] = [
@@ -107,21 +107,22 @@ fn one_part(run: &mut Run, pass: &Pass, before: &[f32], spread: &[f32], pairs: &
     }
 }
 
-/// By how many ε of the relief a ray from a sample may be off in height, a cell: its direction errs by 30 ε, two quotients to
-/// cells a unit add 10 and the larger's own 30 again: 70 to 80 ε of how far it has come, by which its rise errs; by which its
-/// place does, which moves the surface by no more than the relief a cell; and once more as much where that may be in the next.
+/// The error in height of a ray from a texel, in ε of the relief a cell: its direction errs by 30 ε, two quotients to
+/// cells a unit add 10 and the larger's own 30 again: 70 to 80 ε of its length. Its rise errs by that, and so does its
+/// place, which moves the surface by no more than the relief a cell; and once more as much where the place may be in
+/// the next cell.
 const HEIGHT_OFF: f64 = 3.0 * 80.0;
-/// By how many times more from where it has been hit: there its height at the ends of a piece of the surface, 3 times in all,
-/// over how much it falls in between, is off along the ray; that moves both coordinates, each the rise and the surface. With the
-/// cosine to be met, it falls by a third of the relief a cell in the middle, or more: 3 · 3 · 4.
+/// The factor of that error after a hit: the height at the ends of a piece of the surface, 3 times in all, over its
+/// fall in between, is the error along the ray; that moves both coordinates, each the rise and the surface. For rays
+/// weighted by their cosine it falls by a third of the relief a cell on average, or more: 3 · 3 · 4.
 const HIT_OFF: f64 = 36.0;
 
-/// The comparison detects errors, by numbers that do not depend on the CPU reference's own bounds.
+/// The comparison can fail, by numbers that do not depend on the CPU reference's own bounds.
 ///
-/// Decisions in doubt are no more than are to be expected of heights that are spread evenly over the relief, of which so much is
-/// in doubt on either side, twice that for decisions that are no heights, and three standard deviations of so rare events. What
-/// they may bring is less than an even share of the scene's lights, of which none may be missing. And half of the pixels are
-/// held to less than what one of a batch's paths brings.
+/// Uncertain decisions are no more than expected for heights spread evenly over the relief, of which that share is
+/// uncertain on either side, twice that for decisions about other quantities, plus three standard deviations of such
+/// rare events. Their light is less than an even share of the scene's lights, so that none may be missing. And half of
+/// the pixels have tolerances below the light of one of a batch's paths.
 fn held(run: &Run) {
     let sum = |of: &dyn Fn(&Traced) -> f64| run.batches.iter().map(of).sum::<f64>();
     for (i, off) in [1.0, HIT_OFF, HIT_OFF * HIT_OFF].into_iter().enumerate() {
@@ -150,9 +151,8 @@ fn held(run: &Run) {
     );
 }
 
-/// Against the quadrature, which knows no chance: six standard errors, as `Agreement` takes them and with
-/// that of light that no path has met, and what the quadrature itself may be off by, thrice, as single
-/// samples may do worse than it states.
+/// Against the quadrature, which has no Monte Carlo noise: six standard errors, as in `Agreement` and with that of
+/// unsampled light, plus three times the quadrature's stated error, as single texels may exceed it.
 pub(crate) fn quadrature(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     const BATCHES: u32 = 64;
     let last = run.plan.passes.len() - 1;
@@ -177,7 +177,7 @@ pub(crate) fn quadrature(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     (0..want.len()).flat_map(|i| [0, 1, 2].map(|c| pair(i, c))).collect()
 }
 
-/// Every kind of light on an open field, and a field that repeats, with two levels of blocks.
+/// Every kind of light on an open field, and a periodic field, with two levels of blocks.
 fn of_all_lights() -> [Scene; 2] {
     let sun = |diameter_rad| Sun {
         azimuth_rad: 2.0,
@@ -228,10 +228,10 @@ fn with_lobes(mut scene: Scene) -> Scene {
     scene
 }
 
-/// Paths whose light the quadrature also computes: every kind of light, a lobe and a map; a field that repeats.
+/// Paths whose light the quadrature also computes: every kind of light, specular and a map; a periodic field.
 pub(crate) fn references() -> Vec<Case> {
     let [all, repeated] = of_all_lights();
-    // The quadrature knows of no lobes that are met.
+    // The quadrature does not model specular at hit points.
     let lobes = with_lobes(all.clone());
     vec![
         reference("all lights", all, Wanted::Reference(1)),
@@ -240,8 +240,8 @@ pub(crate) fn references() -> Vec<Case> {
     ]
 }
 
-/// Paths whose light nothing else computes: lobes that are met; batches in parts, by paths and by lights; a list of samples; ground
-/// that goes on level; a line.
+/// Paths whose light nothing else computes: specular at hit points; batches in parts, by paths and by lights; a list
+/// of texels; ground that continues level; a line.
 pub(crate) fn paths() -> Vec<Case> {
     let [all, repeated] = of_all_lights();
     let on = |field, border, lights: &Lights| Scene {

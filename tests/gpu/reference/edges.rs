@@ -1,4 +1,4 @@
-//! Rays and lobes of the path tracer where a rounding decides: suns along lines of samples, exponents of 1e4.
+//! Rays and Phong lobes of the path tracer where a rounding decides: suns along lines of texels, exponents of 1e4.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -14,8 +14,8 @@ fn point(azimuth_rad: f64, elevation_rad: f64) -> Sun {
     Sun { azimuth_rad, elevation_rad, diameter_rad: 0.0, irradiance: [3.0; 3] }
 }
 
-/// A point sun at horizontal, at the zenith and along lines of samples, those at the rim too: lit or not
-/// as the oracle says, without noise.
+/// A point sun at horizontal, at the zenith and along lines of texels, those at the rim too: lit or not as by the
+/// oracle, without noise.
 #[test]
 fn suns_along_lines_of_samples_are_the_oracles() {
     let mut device = Device::new();
@@ -44,8 +44,8 @@ fn suns_along_lines_of_samples_are_the_oracles() {
     }
 }
 
-/// A ramp that rises eastwards mirrors the view from above westwards, twice its tilt from the zenith; a
-/// point sun `off` beside that gives E · scale · (n + 1) / 2π · cosⁿ off.
+/// A ramp that rises eastwards reflects the view from above westwards, twice its tilt from the zenith; a point sun
+/// `off` beside that gives E · scale · (n + 1) / 2π · cosⁿ off.
 #[test]
 fn a_narrow_lobe_keeps_its_digits() {
     let mut device = Device::new();
@@ -60,8 +60,8 @@ fn a_narrow_lobe_keeps_its_digits() {
         let [light, _] = traced(&mut device, &scene, 0, 1, 1);
         let n = f64::from(exponent);
         let expected = 3.0 * f64::from(0.6_f32) * (n + 1.0) / TAU * off.cos().powf(n);
-        // Directions of f32 are off by 3e-7, the power with their angle: n · off · 3e-7, and second
-        // order beside it; the exponential by a few ulp.
+        // Directions of f32 err by 3e-7, the power with their angle: n · off · 3e-7, and second order beside it; the
+        // exponential by a few ulp.
         let bound = expected * (4e-6 + n * (off + 1e-3) * 3e-7);
         let found = light[12][0];
         assert!(
@@ -71,7 +71,7 @@ fn a_narrow_lobe_keeps_its_digits() {
     }
 }
 
-/// The bound on steps, MOST_STEPS of `path_trace`, set too low for rays over a ridge: they are counted.
+/// The bound on steps, MOST_STEPS of `path_trace`, set too low for rays over a ridge: the lost rays are counted.
 #[test]
 fn lost_rays_are_counted() {
     let mut device = Device::new();
@@ -85,7 +85,7 @@ fn lost_rays_are_counted() {
     assert!(traced_by(&mut device, &scene, plan, 1, &[]).1 > 0);
 }
 
-/// A reference in bands, recorded piece by piece, is one that is recorded whole, to the bit; pieces out of order are
+/// A reference in bands, recorded piece by piece, has the bits of one that is recorded whole; pieces out of order are
 /// refused, the first may come again.
 #[test]
 fn pieces_of_a_batch_are_the_batch() {
@@ -117,7 +117,7 @@ fn pieces_of_a_batch_are_the_batch() {
             for piece in pieces {
                 gpu.draw_passes(frame, &piece.collect::<Vec<_>>())?;
             }
-            // Any, from here on: another batch is another mean.
+            // From here on any: another batch is another mean.
             let got = gpu.pixels(frame, 0)?;
             gpu.draw_passes(frame, &(first..count).collect::<Vec<_>>())?;
             assert!(gpu.pixels(frame, 0)? != got);

@@ -1,4 +1,4 @@
-//! More lights than the loops of one invocation may turn on llvmpipe: a batch of paths comes in parts.
+//! More lights than llvmpipe's limit of loop iterations of one invocation: a batch of paths comes in parts.
 
 use ridgelight::plan;
 use ridgelight::scene::fractal;
@@ -12,7 +12,7 @@ use crate::{Device, random, under_sky};
 
 const SIDE: usize = 9;
 
-/// Sphere lights over a fractal, some of them in each other's way and in the ground's.
+/// Sphere lights over a fractal, some of them hidden by others and by the ground.
 fn under_sphere_lights(count: usize) -> Scene {
     let field = fractal(SIDE, 3).expect("a field");
     let top = field.base_m() + f64::from(field.heights_m().iter().copied().fold(0.0, f32::max));
@@ -27,9 +27,9 @@ fn under_sphere_lights(count: usize) -> Scene {
     scene
 }
 
-/// 120 sphere lights, and a sky in the blue channel, which no sphere light has: the whole is the f64 quadrature's sum over
-/// the sphere lights, and a sky's own light. All in one dispatch instead exceeds the bound on iterations, where there is
-/// one: rays are lost, and counted.
+/// 120 sphere lights, and a sky in the blue channel, which no sphere light has: the sum is that of the f64 quadrature
+/// over the sphere lights, plus the sky's own light. In one dispatch it exceeds the limit on iterations, where there
+/// is one: rays are lost, and counted.
 #[test]
 fn many_sphere_lights_are_their_sum() {
     const BATCHES: usize = 4;
@@ -70,7 +70,7 @@ fn many_sphere_lights_are_their_sum() {
         found.rms, found.worst, found.mean
     );
     assert!(found.holds(), "{found:?}");
-    // One sphere light of 120 less is seen.
+    // The comparison fails for one sphere light of 120 less.
     let sphere_light = scene.lights.sphere_lights[17];
     let mut less = truth.clone();
     for (i, sum) in less.iter_mut().enumerate() {
@@ -80,8 +80,8 @@ fn many_sphere_lights_are_their_sum() {
     assert!(!agrees(&less).holds(), "a missing sphere light is not detected");
 }
 
-/// However a batch is cut, by its lights and by its paths, these are the same: sums in another order, 64 paths of
-/// as many terms, and nothing lost.
+/// The split of a batch, by its lights and by its paths, changes only the order of sums, 64 paths of as many terms,
+/// and nothing is lost.
 #[test]
 fn parts_of_a_batch_are_the_batch() {
     use ridgelight::gpu::shaders::offsets::path_trace_push::{LAST_LIGHT, LAST_PATH};

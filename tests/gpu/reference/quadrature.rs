@@ -1,4 +1,4 @@
-//! The path tracer against the f64 quadrature, and against what is known without either.
+//! The path tracer against the f64 quadrature and closed forms.
 
 use ridgelight::plan::{self, Plan};
 use ridgelight::scene::{Albedo, Border, Environment, Lights, Scene, Sun, Surface};
@@ -53,7 +53,7 @@ pub(crate) fn traced_by(
     all.expect("traced")
 }
 
-/// Bounced light alone of some samples, some of them twice.
+/// Bounced light alone of some texels, some of them twice.
 fn traced_at(device: &mut Device, scene: &Scene, bounces: u32, samples: &[usize]) -> Traced {
     let limits = device.limits();
     let plan = plan::reference_at(scene, bounces, 1, samples.len(), &limits).expect("a plan");
@@ -63,8 +63,8 @@ fn traced_at(device: &mut Device, scene: &Scene, bounces: u32, samples: &[usize]
     [light, error].map(|texels| texels[..samples.len()].to_vec())
 }
 
-/// Indirect light alone is the quadrature's with bounces less its own without, at any listed sample, under lights of every
-/// kind. A sample that is listed twice takes other paths. The comparison fails against all light.
+/// Indirect light alone is the quadrature's with bounces less its own without, at any listed texel, under lights of
+/// every kind. A texel that is listed twice takes other paths. The comparison fails against all light.
 #[test]
 fn paths_from_listed_samples_bring_indirect_light() {
     let mut device = Device::new();
@@ -72,20 +72,20 @@ fn paths_from_listed_samples_bring_indirect_light() {
         let fineness = Fineness { azimuths: 24, divisions: 1, strips: 12 };
         let truth = truth(&scene, 2, fineness).expect("a truth");
         let count = truth.radiance[0].len();
-        // From the last, then others; some are among both.
+        // From the last texel, then others; some are in both lists.
         let first: Vec<usize> = (1..count).rev().step_by(2).collect();
         let listed: Vec<usize> = first.iter().copied().chain((0..count).step_by(3)).collect();
         let at = |picture: &[[f64; 3]]| listed.iter().map(|i| picture[*i]).collect::<Vec<_>>();
         let (all, straight) = (at(&truth.radiance[2]), at(&truth.radiance[0]));
         let bounced: Vec<_> =
             all.iter().zip(&straight).map(|(a, s)| [0, 1, 2].map(|c| a[c] - s[c])).collect();
-        // Both pictures' errors are of the same quadrature; rounding is a share of all light, not of indirect light: rays
-        // that graze a slope meet it or not by a hair.
+        // Both pictures' errors are of the same quadrature; rounding is a share of all light, not of indirect light:
+        // rounding decides whether rays that graze a slope hit it.
         let stated = at(&truth.error[2]);
         let error = stated.iter().zip(&all);
         let error: Vec<_> = error.map(|(e, a)| [0, 1, 2].map(|c| e[c] + 1e-5 * a[c])).collect();
         let both = traced_at(&mut device, &scene, 2, &listed);
-        // Convex ground gets little, of few paths: what a sample's own may not have met counts as error, too.
+        // Convex ground gets little light, by few paths: the standard error of unsampled light counts, too.
         let unsampled = plan::unsampled_bounce_error(&scene, 2, (PATHS as u32, 1), 0.05);
         let sigma: Vec<_> =
             both[1].iter().map(|e| [0, 1, 2].map(|c| e[c].hypot(unsampled[c]))).collect();
@@ -103,11 +103,11 @@ fn paths_from_listed_samples_bring_indirect_light() {
     }
 }
 
-/// Batches that the comparisons draw, and a sample's paths in them.
+/// Batches of the comparisons, and a texel's paths in them.
 const BATCHES: usize = 64;
 const PATHS: f64 = (BATCHES as u32 * plan::REFERENCE_BATCH) as f64;
 
-/// Also seen to fail: light of no bounce against the truth of two.
+/// The comparison fails for light without bounces against the quadrature with two.
 #[test]
 fn paths_agree_with_the_quadrature_on_every_scene() {
     let mut device = Device::new();
@@ -136,7 +136,7 @@ fn paths_agree_with_the_quadrature_on_every_scene() {
     }
 }
 
-/// Every path from level ground leaves for the sky, where it carries albedo × 1.
+/// Every path from level ground leaves to the sky with albedo × 1.
 #[test]
 fn level_ground_under_a_sky_has_no_noise() {
     let mut device = Device::new();
@@ -146,8 +146,8 @@ fn level_ground_under_a_sky_has_no_noise() {
     assert!(error.iter().flatten().all(|v| *v == 0.0), "{error:?}");
 }
 
-/// White ground, light of radiance 1 from everywhere that is not ground: radiance 1 at every bounce's end.
-/// Of 64 bounces no path is left: each leaves a sample of this field with a chance above a third.
+/// White ground, light of radiance 1 from all other directions: radiance 1 at every bounce's end. After 64 bounces no
+/// path is left: each leaves a texel of this field with a probability above a third.
 #[test]
 fn white_ground_in_white_light_is_white() {
     let mut device = Device::new();
@@ -155,7 +155,7 @@ fn white_ground_in_white_light_is_white() {
     let mut scene = under_sky(rough, Border::Open);
     let [light, _] = traced(&mut device, &scene, 64, 3, 2);
     assert!(light.iter().flatten().all(|v| *v == 1.0), "{light:?}");
-    // The same light as an environment, chosen or met: each path's share is right in the mean alone.
+    // The same light as an environment, sampled or hit: each path's share is right in the mean alone.
     let white = Environment::new(6, 5, vec![[1.0; 3]; 30], 0.5).expect("an environment");
     scene.lights = Lights { environment: Some(white), ..Lights::default() };
     let [light, error] = traced(&mut device, &scene, 64, 4, BATCHES);
@@ -165,7 +165,7 @@ fn white_ground_in_white_light_is_white() {
     assert!(of.holds(), "{of:?}");
 }
 
-/// A field without cells sees nothing of itself, whichever way it is thin.
+/// A field without cells does not see itself, whichever way it is thin.
 #[test]
 fn a_single_line_of_texels_sees_all_of_the_sky() {
     let mut device = Device::new();
@@ -205,8 +205,8 @@ fn standard_errors_predict_the_difference_of_two_seeds() {
     assert!((mean - expected).abs() < 5.0 * (2.0 / count).sqrt(), "{mean} of {count}");
 }
 
-/// A needle in the shadow of a wall reaches into bright sun with its tip alone: few paths from the shade
-/// meet that. By their spread alone samples that none has met would be dark without doubt.
+/// A needle in the shadow of a wall reaches into bright sun with its tip alone: few paths from the shade hit that. By
+/// their spread alone, texels without such a path would be dark with certainty.
 #[test]
 fn unsampled_light_counts_as_error() {
     const FEW: usize = 8;

@@ -108,7 +108,7 @@ pub(crate) fn light_matrix(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     pairs
 }
 
-/// Coefficients of every sample, as the device left them.
+/// Coefficients of every texel, from the device.
 pub(crate) fn device_series(run: &mut Run, pass: &Pass, order: usize) -> Vec<Vec<f64>> {
     let floats = run.floats(pass, "visibility").expect("bound");
     let [cols, rows] = run.extent(pass, "visibility");
@@ -199,7 +199,7 @@ pub(crate) fn sh_wedges(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     pairs
 }
 
-/// The surface at nodes, where there are fewer than samples.
+/// The surface at nodes, where there are fewer than texels.
 fn node_surfaces(run: &mut Run, pass: &Pass, nodes: Nodes) -> Vec<Pair> {
     let Some(got) = run.floats(pass, "nodes") else { return Vec::new() };
     let (size, heights, tolerance) = (run.plan.size, run.heights(), run.normal_error());
@@ -255,12 +255,12 @@ pub(crate) fn sh_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         } else {
             light_at(&heights, &seen.values, &matrix, place)
         };
-        // What is summed, whatever its sign, where every polynomial of the normal is 2 at most.
+        // The sum of magnitudes, where every polynomial of the normal is 2 at most.
         let summed: DVec3 = matrix
             .iter()
             .flat_map(|row| row.iter().zip(&seen.values).map(|(m, v)| m.abs() * v.abs()))
             .sum();
-        // What nodes are counted for errs, too, times polynomials of 2.
+        // The weights of nodes err, too, times polynomials of 2.
         let counted: DVec3 = matrix
             .iter()
             .flat_map(|row| row.iter().zip(&seen.errors).map(|(m, e)| 2.0 * m.abs() * *e))

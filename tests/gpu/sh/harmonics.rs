@@ -1,4 +1,4 @@
-//! Light by spherical harmonics: scenes whose answer is derived, and the same series in f64.
+//! Light by spherical harmonics: closed forms, and the same series in f64.
 
 use std::f64::consts::{PI, TAU};
 
@@ -82,8 +82,8 @@ fn in_f64(
     rows.iter().zip(&matrix).map(|(r, row)| *r * share(row)).sum()
 }
 
-/// A series of order n - 1 that fits a constant is that constant: the light of a uniform sky, whatever
-/// the order and however bright.
+/// A series of order n - 1 fitted to a constant is that constant: the light of a uniform sky, for any order and
+/// radiance.
 #[test]
 fn level_ground_under_a_constant_environment_is_its_radiance() {
     let mut gpu = Device::new();
@@ -99,7 +99,7 @@ fn level_ground_under_a_constant_environment_is_its_radiance() {
         let scene = under(constant(value), level, border);
         let [_, found] = layers(&mut gpu, &scene, &harmonics(order));
         let want = DVec3::new(value.into(), 0.5 * f64::from(value), 0.0);
-        // A fit's weights are this many times the light's: the root of its condition.
+        // A fit's weights exceed the light by this factor: the root of its condition.
         let cancels = [1.0, 4.0, 16.0, 60.0, 100.0][order as usize - 2];
         for i in 0..rows * cols {
             let off = (texel(&found, i) - want).abs().max_element();
@@ -109,7 +109,7 @@ fn level_ground_under_a_constant_environment_is_its_radiance() {
     }
 }
 
-/// Everything on level ground, in every form, against f64: 1e-6 of what is summed.
+/// Everything on level ground, in every form, against f64: 1e-6 of the sum of magnitudes.
 #[test]
 fn level_ground_is_the_same_series_in_f64() {
     let mut gpu = Device::new();
@@ -195,8 +195,8 @@ fn a_tilted_plane_has_the_convolved_series_at_its_normal() {
     }
 }
 
-/// A lone bright texel rings below 0 somewhere on the other side, and with the window that no light rings
-/// through nowhere; what is below 0 is 0, and counted.
+/// A lone bright texel rings below 0 somewhere on the other side, and nowhere with the window that prevents ringing;
+/// negative light is clamped to 0, and counted.
 #[test]
 fn negative_ringing_is_counted() {
     let mut gpu = Device::new();
@@ -225,8 +225,8 @@ fn negative_ringing_is_counted() {
     }
 }
 
-/// A constant environment is a uniform sky, through every horizon, in every form of the plane: azimuths stand for
-/// themselves here and for their wedges in closed form, apart by (2π/m)²/24 of the horizontal part.
+/// A constant environment is a uniform sky, through every horizon, in every form of the plane: azimuths are points
+/// here and wedges in closed form, which differ by (2π/m)²/24 of the horizontal part.
 #[test]
 fn a_constant_environment_is_a_uniform_sky() {
     let mut gpu = Device::new();

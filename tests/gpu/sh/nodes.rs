@@ -1,4 +1,4 @@
-//! Harmonics of what is seen at every second and every fourth sample.
+//! Visibility as harmonics at every second and every fourth texel.
 
 use std::path::Path;
 
@@ -30,7 +30,7 @@ fn light(gpu: &mut Device, scene: &Scene, quality: &Quality) -> Vec<f32> {
     picture.values.chunks_exact(picture.channels).flat_map(|t| t[..3].to_vec()).collect()
 }
 
-/// Everywhere on a plane as much is seen, and all of it lies on every plane: weights make no difference.
+/// On a plane every texel has the same visibility, and every plane contains all of it: weights make no difference.
 #[test]
 fn a_plane_is_lit_alike_however_it_is_sampled() {
     let mut gpu = Device::new();
@@ -50,7 +50,7 @@ fn a_plane_is_lit_alike_however_it_is_sampled() {
     }
 }
 
-/// At a node nothing else counts: the same as of every sample, by every method, the last samples too.
+/// At a node only its own visibility counts: as for every texel, by every method, the last texels too.
 #[test]
 fn nodes_are_lit_as_they_are_by_themselves() {
     let mut gpu = Device::new();
@@ -81,8 +81,8 @@ fn nodes_are_lit_as_they_are_by_themselves() {
     }
 }
 
-/// Light interpolated between nodes knows no normals: what is seen, interpolated, is nearer to the truth,
-/// and more nodes are nearer.
+/// Light interpolated between nodes ignores normals: interpolated visibility has a smaller error, and so have more
+/// nodes.
 #[test]
 fn on_terrain_interpolating_visibility_is_better_than_interpolating_light() {
     let mut gpu = Device::new();
@@ -117,8 +117,8 @@ fn on_terrain_interpolating_visibility_is_better_than_interpolating_light() {
     }
 }
 
-/// What is seen takes as many texels as there are nodes, and so do marches' horizons where nothing else
-/// needs them; a sun does.
+/// Visibility takes as many texels as there are nodes, and so do marches' horizons where nothing else needs them; a
+/// sun does.
 #[test]
 fn memory_and_work_are_those_of_the_nodes() {
     let level = field(13, 9, [1.0; 2], |_, _| 0.0);

@@ -1,8 +1,9 @@
-//! Numbers found by quadrature independently of this crate (`tests/basis/reference_numbers.json`), each from the
-//! kernel that makes it: to 1e-6 of the norm of the vector that the kernel leaves, unless a test says why not.
+//! Numbers found by quadrature independently of this crate (`tests/basis/reference_numbers.json`), against the kernel
+//! that computes them: to 1e-6 of the norm of the kernel's vector, unless a test gives a reason.
 //!
-//! What a kernel leaves is a sum of n terms of the size of a whole sphere's, each off by a few 2⁻²⁴: for n up to
-//! 16 that is 1e-6. Where little is seen of a whole sphere, the error is of the sphere, not of what is left.
+//! A kernel's result is a sum of n terms of the size of a whole sphere's, each with an error of a few 2⁻²⁴: for n up
+//! to 16 that is 1e-6. Where little of a whole sphere is visible, the error is relative to the sphere, not to the
+//! result.
 
 use std::f64::consts::{FRAC_PI_2, PI, SQRT_2, TAU};
 
@@ -43,7 +44,7 @@ fn norm(values: &[f64]) -> f64 {
     values.iter().map(|v| v * v).sum::<f64>().sqrt()
 }
 
-/// The largest difference over the norm, printed, and held to `tolerance`.
+/// The largest difference over the norm, printed, and checked against `tolerance`.
 #[track_caller]
 fn near(what: &str, got: &[f64], want: &[f64], scale: f64, tolerance: f64) {
     assert_eq!(got.len(), want.len(), "{what}");
@@ -53,8 +54,8 @@ fn near(what: &str, got: &[f64], want: &[f64], scale: f64, tolerance: f64) {
     assert!(off <= tolerance, "{what}: {off:e}: {got:?} for {want:?}");
 }
 
-/// Four neighbours in the grid's directions rise so far above the middle, a cell away; the middle's normal is
-/// level. One sample where it is nothing that rises.
+/// Four neighbours in the grid's directions rise that far above the middle, a cell away; the middle's normal is level.
+/// One texel where nothing rises.
 fn bowl(slope: f64) -> HeightField {
     field(3, 3, [1.0, 1.0], |r, c| if r == 1 && c == 1 { 0.0 } else { slope })
 }
@@ -81,7 +82,7 @@ fn seen_in(field: HeightField, border: Border) -> Scene {
     Scene { field, surface: Surface { border, ..Surface::default() }, lights }
 }
 
-/// What an image of a picture holds, drawn as far as the passes that write it: no others' shaders compile.
+/// The contents of an image of a picture, after the passes up to those that write it: no other shaders compile.
 fn image(gpu: &mut Device, scene: &Scene, quality: &Quality, name: &str) -> Vec<f64> {
     let plan = plan::picture(scene, quality, &gpu.limits(), Picture::default());
     let mut plan = plan.expect("a plan");
@@ -98,7 +99,7 @@ fn image(gpu: &mut Device, scene: &Scene, quality: &Quality, name: &str) -> Vec<
     words.expect("drawn").into_iter().map(|w| f32::from_bits(w).into()).collect()
 }
 
-/// The series of the middle sample.
+/// The series of the middle texel.
 fn series(gpu: &mut Device, scene: &Scene, quality: &Quality) -> Vec<f64> {
     let texels = image(gpu, scene, quality, "visibility");
     let count = scene.field.rows() * scene.field.cols();
@@ -106,9 +107,9 @@ fn series(gpu: &mut Device, scene: &Scene, quality: &Quality) -> Vec<f64> {
     (0..order * order).map(|k| texels[(k / 4 * count + count / 2) * 4 + k % 4]).collect()
 }
 
-/// `nlp_occlusion` through `sh_visibility`: all around a horizon at σ the Y_l0 that is seen is √2π times the
-/// NLP coefficients of what lies above, (√2, 0, …) less those of what lies below. A straight wall is one of 1e6
-/// cells: 1e-12 of it is open.
+/// `nlp_occlusion` through `sh_visibility`: under a horizon at σ all around, the visible Y_l0 is √2π times the NLP
+/// coefficients of the part above, (√2, 0, …) less those of the part below. A straight wall is one of 1e6 cells: 1e-12
+/// of it is open.
 #[test]
 fn occlusion_by_legendre_coefficients() {
     let mut gpu = Device::new();
@@ -124,15 +125,15 @@ fn occlusion_by_legendre_coefficients() {
         let mut want: Vec<f64> = numbers(&sample["order6"]).iter().map(|below| -below).collect();
         want[0] += SQRT_2;
         let got: Vec<f64> = (0..6).map(|l| got[index(l, 0)] / TAU.sqrt()).collect();
-        // At the zenith nothing is left to be a norm.
+        // At the zenith the norm is 0.
         let scale = if sigma > 1.5 { SQRT_2 } else { norm(&want) };
         near(&format!("nlp_occlusion {sigma:.2}"), &got, &want, scale, NEAR);
     }
 }
 
-/// `nlp_to_sh` through `sh_visibility`, which takes each azimuth for its whole wedge. A blend from one to the
-/// next all around does nothing but damp turn m by sinc(mΔφ/2)², by B-splines to the fourth power: so the
-/// kernel's series, damped, is the sum of the reference's matrices, each turned to its wedge.
+/// `nlp_to_sh` through `sh_visibility`, which takes each azimuth for its whole wedge. A blend from one to the next all
+/// around only damps turn m by sinc(mΔφ/2)², by B-splines to the fourth power: so the kernel's series, damped, is the
+/// sum of the reference's matrices, each turned to its wedge.
 #[test]
 fn blend_matrices_all_around() {
     let mut gpu = Device::new();
@@ -182,8 +183,8 @@ fn blend_matrices_all_around() {
 }
 
 /// `zh_clamped_cosine` through `light_matrix`: under light of 1 from everywhere the matrix is diagonal, with the
-/// receiver's bands times what Y_lm have before their polynomials. A diffuse receiver keeps three bands; the
-/// lobe of exponent 1, which is the cosine over π, all six.
+/// receiver's bands times the factors of Y_lm before their polynomials. A diffuse receiver keeps three bands; the lobe
+/// of exponent 1, which is the cosine over π, all six.
 #[test]
 fn bands_of_the_clamped_cosine() {
     let mut gpu = Device::new();
@@ -210,13 +211,13 @@ fn bands_of_the_clamped_cosine() {
     near("zh_clamped_cosine, cosine of 3 bands", &got, &want, norm(&expected), NEAR);
 }
 
-/// `zh_cap` through `sh_visibility`: what lies above a level horizon is a cap about the zenith. Each coefficient
-/// is a polynomial in the horizon's sine whose terms nearly cancel for small caps: 8 roundings of terms that sum
-/// to √2π · 1.5 at most, whatever is left. So 1e-6 is of the whole sphere's norm, 2√π; of a cap of 0.01 rad
-/// itself it would need 1 - sin, which loses no digits, in place of the sine.
+/// `zh_cap` through `sh_visibility`: above a level horizon lies a cap about the zenith. Each coefficient is a
+/// polynomial in the horizon's sine whose terms nearly cancel for small caps: 8 roundings of terms that sum to √2π ·
+/// 1.5 at most, whatever is left. So 1e-6 is relative to the whole sphere's norm, 2√π; for a cap of 0.01 rad itself it
+/// would need 1 - sin, which loses no digits, in place of the sine.
 ///
-/// The disc's light on level ground is π sin²a of its radiance, √(4π/3) of its band 1: through `sphere_shade` that
-/// is 1e-6 of itself, however small, by a sphere light straight above.
+/// The disc's light on level ground is π sin²a of its radiance, √(4π/3) of its band 1: through `sphere_shade` that is
+/// 1e-6 of itself, however small, by a sphere light straight above.
 #[test]
 fn caps() {
     let mut gpu = Device::new();
@@ -248,10 +249,10 @@ fn caps() {
     }
 }
 
-/// `sn08_wedge` through `sh_wedges`: on level ground every wedge lies between two horizons of 0, a texel of the
-/// table, and all around turns cancel: what is left are 32 times its Y_l0. Other horizons lie between texels,
-/// where a table errs by [`WedgeTable::error`](ridgelight::basis::wedge::WedgeTable::error), 1e-5 of a wedge at
-/// 256 horizons a side: no look-up is 1e-6; the CPU reference holds the kernel to the look-up.
+/// `sn08_wedge` through `sh_wedges`: on level ground every wedge lies between two horizons of 0, a texel of the table,
+/// and over the circle turns cancel: 32 times its Y_l0 are left. Other horizons lie between texels, where a table errs
+/// by [`WedgeTable::error`](ridgelight::basis::wedge::WedgeTable::error), 1e-5 of a wedge at 256 horizons a side: no
+/// look-up is exact to 1e-6; the test against the CPU reference checks the kernel's look-up.
 #[test]
 fn wedges_of_level_horizons() {
     let mut gpu = Device::new();
@@ -263,9 +264,9 @@ fn wedges_of_level_horizons() {
     near("sn08_wedge 0, 0", &got, &want, norm(&want), NEAR);
 }
 
-/// `spherical_pit` without bounces through `horizon_march` and `sky_shade`: seen from its bottom, the rim of a
-/// cap of half-angle α stands at α/2 all around. Elsewhere in a pit of triangles the rim is a polygon, and
-/// bounces are found by chance: neither is 1e-6, and both are held to bounds of their own.
+/// `spherical_pit` without bounces through `horizon_march` and `sky_shade`: from its bottom, the rim of a cap of
+/// half-angle α stands at α/2 all around. Elsewhere in a pit of triangles the rim is a polygon, and bounces have Monte
+/// Carlo noise: neither is exact to 1e-6, and other tests bound both.
 #[test]
 fn the_bottom_of_a_pit() {
     let mut gpu = Device::new();
@@ -282,9 +283,9 @@ fn the_bottom_of_a_pit() {
     }
 }
 
-/// `sh_samples` through `sh_shade`'s lobe, which is turned to the mirror direction of the view by its Y_lm: a
-/// plane that mirrors straight above to the sample's direction, under a sky of radiance 1 and nothing below. What
-/// the plane sees is found in f64; Y_lm are the reference's.
+/// `sh_samples` through `sh_shade`'s lobe, which is turned to the mirror direction of the view by its Y_lm: a plane
+/// that reflects straight above to the sample direction, under a sky of radiance 1 and nothing below. The plane's
+/// visibility is computed in f64; Y_lm are the reference's.
 #[test]
 fn values_of_harmonics() {
     let mut gpu = Device::new();
@@ -323,7 +324,7 @@ fn values_of_harmonics() {
     }
 }
 
-/// What is off by 2e-6 of its norm is too far.
+/// An error of 2e-6 of the norm fails.
 #[test]
 fn the_comparison_can_fail() {
     let off = std::panic::catch_unwind(|| near("x", &[1.0 + 2e-6], &[1.0], 1.0, NEAR));

@@ -1,4 +1,5 @@
-//! Indirect Phong specular: the path tracer against counting, bounces against closed forms and against the path tracer.
+//! Indirect Phong specular: the path tracer against brute-force paths, bounces against closed forms and against the
+//! path tracer.
 
 use ridgelight::basis::zonal::clamped_cosine;
 use ridgelight::plan::{self, Picture};
@@ -13,7 +14,7 @@ use crate::brute_force_paths::Paths;
 use crate::reference::quadrature::traced;
 use crate::{Device, colours, field, random, under_sky};
 
-/// So many bounces by pyramids whose samples all look at the field itself.
+/// A number of bounces by pyramids whose texels all use the field itself.
 fn bounce_quality(count: u32, specular: BounceSpecular, sh_order: u32) -> Quality {
     let bounces = Bounces {
         count,
@@ -40,7 +41,7 @@ fn layer<'a>(all: &'a [(String, Vec<[f64; 3]>)], name: &str) -> &'a [[f64; 3]] {
     &all.iter().find(|(n, _)| n == name).unwrap_or_else(|| panic!("no layer {name}")).1
 }
 
-/// A field that sees much of itself, each sample of another lobe.
+/// A field that sees much of itself, with another Phong lobe at each texel.
 fn lobed() -> Scene {
     let mut next = random(61);
     let noise: Vec<f64> = (0..25).map(|_| next()).collect();
@@ -58,9 +59,9 @@ fn lobed() -> Scene {
     scene
 }
 
-/// The device's paths reflect by the lobe of every place that they meet, as counting ones do: within five standard errors
-/// of both (6e-7 a comparison, 24 of them). Deaf to nothing: counting paths whose lobes are seen from above alone are
-/// farther.
+/// The device's paths reflect by the lobe of every hit point, as brute-force paths do: within five standard errors of
+/// both (6e-7 a comparison, 24 of them). The comparison fails for brute-force paths whose lobes reflect towards
+/// straight above only.
 #[test]
 fn paths_reflect_by_phong_specular_at_every_hit() {
     let mut gpu = Device::new();
@@ -86,8 +87,8 @@ fn paths_reflect_by_phong_specular_at_every_hit() {
     assert!(apart[1] > 8.0, "deaf: {apart:?}");
 }
 
-/// A surface that reflects all that arrives, half diffusely and half by lobes, in light of 1 from everywhere: no sample
-/// is brighter than 1, as lobes that the own plane cuts reflect less; level ground is not cut.
+/// A surface that reflects all light, half diffusely and half by Phong specular, in light of 1 from everywhere: no
+/// texel is brighter than 1, as lobes cut by the own plane reflect less; level ground is not cut.
 #[test]
 fn specular_reflects_no_more_than_arrives() {
     let mut gpu = Device::new();
@@ -99,7 +100,7 @@ fn specular_reflects_no_more_than_arrives() {
         scene.surface.specular =
             Some(Specular::Constant(PhongSpecular { exponent: 9.0, scale: 0.5 }));
         let [light, _] = traced(&mut gpu, &scene, 64, 3, 2);
-        // Of each vertex one rounding of density, light and quotient.
+        // For each vertex one rounding of density, light and quotient.
         let slack = 64.0 * 1e-6;
         let brightest = light.iter().fold(0.0, |m: f64, l| m.max(l[0]));
         let darkest = light.iter().fold(2.0, |m: f64, l| m.min(l[0]));
@@ -109,7 +110,7 @@ fn specular_reflects_no_more_than_arrives() {
     }
 }
 
-/// Without any lobe the plan is the diffuse one, pass for pass and byte for byte, and so is its light.
+/// Without specular the plan is the diffuse one, pass for pass and byte for byte, and so is its light.
 #[test]
 fn specular_of_scale_zero_adds_nothing() {
     let mut gpu = Device::new();
@@ -128,9 +129,9 @@ fn specular_of_scale_zero_adds_nothing() {
     assert!(plans[0] == plans[1]);
 }
 
-/// A sample of level ground among walls that are diffuse: its lobe of exponent 1 about the zenith is a cosine, so it
-/// reflects of each bounce what diffuse ground does, but for the bands of the cosine that the series lacks: π times
-/// their integral by magnitude, of light of 1 at most. The walls are diffuse, so scalars and vectors are alike.
+/// A texel of level ground among diffuse walls: its lobe of exponent 1 about the zenith is a cosine, so it reflects as
+/// much of each bounce as diffuse ground, but for the bands of the cosine beyond the series: π times their integral by
+/// magnitude, of light of 1 at most. The walls are diffuse, so scalars and vectors are alike.
 #[test]
 fn phong_exponent_one_is_a_cosine() {
     const MIDDLE: usize = 6 * 12 + 6;
@@ -154,7 +155,7 @@ fn phong_exponent_one_is_a_cosine() {
             // Of 0.5 diffusely and 0.25 by the lobe; of the bounced light, at most 3/4 of the sky's 1.
             let want = 0.5 * (one[MIDDLE][0] + two[MIDDLE][0]);
             let off = (glossy[MIDDLE][0] - want).abs();
-            // f32 does 1e-5, f16 half a thousandth.
+            // f32 is exact to 1e-5, f16 to half a thousandth.
             let rounded = if specular == BounceSpecular::VectorF16 { 1e-3 } else { 1e-5 };
             let bound = 0.25 * missing * 0.75 + rounded;
             println!("order {order}, {}: {off:.5} of {want:.4}, bound {bound:.4}", specular.name());
@@ -184,9 +185,9 @@ fn missing_cosine(order: usize) -> f64 {
         .sum()
 }
 
-/// Hills of specular scale four fifths, whose feet see their sides, under a sky. Bounces by direction have a smaller error
-/// than bounces by one number a texel, and either a smaller one than none, by more than the Monte Carlo noise of the
-/// path-traced reference. Higher orders have smaller errors.
+/// Hills of specular scale four fifths, whose feet see their sides, under a sky. Bounces by direction have a smaller
+/// error than bounces by one number a texel, and either a smaller one than none, by more than the Monte Carlo noise of
+/// the path-traced reference. Higher orders have smaller errors.
 #[test]
 fn radiance_by_direction_is_nearer_to_the_path_traced_reference() {
     const SIDE: usize = 17;
@@ -203,7 +204,7 @@ fn radiance_by_direction_is_nearer_to_the_path_traced_reference() {
     let mean = |values: &[[f64; 3]]| values.iter().map(|v| v[0]).sum::<f64>() / count;
     let bounced = mean(&all) - mean(&first);
     let noise: f64 = first_error.iter().zip(&error).map(|(a, b)| a[0].powi(2) + b[0].powi(2)).sum();
-    // RMSE of all that bounces bring, the paths' noise taken off.
+    // RMSE of all bounced light, less the paths' noise.
     let mut off = |quality: &Quality| {
         let layers = drawn(&mut gpu, &scene, quality);
         let is_bounced = |name: &str| name == "glossy" || name.starts_with("indirect.");

@@ -33,7 +33,7 @@ pub(crate) fn cases() -> Vec<Case> {
         let bounces = Bounces {
             count: 2,
             engine: BounceEngine::Pyramid,
-            // None along the field's edge, where a hair decides what is left.
+            // None along the field's edge, where rounding decides.
             azimuths: 8,
             cutoff: 0.0,
             level_step: 2,

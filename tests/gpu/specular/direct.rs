@@ -17,7 +17,7 @@ use ridgelight_io::HeightOptions;
 use crate::reference::quadrature::traced;
 use crate::{Device, field, random, under_sky};
 
-/// Reflects by a lobe alone.
+/// Phong specular without a diffuse part.
 fn glossy(field: HeightField, exponent: f32, scale: f32) -> Scene {
     let mut scene = under_sky(field, Border::Plane);
     scene.surface.albedo = Albedo::Constant([0.0; 3]);
@@ -29,8 +29,8 @@ fn sh(sh_order: u32) -> Quality {
     Quality { basis: Basis::Sh, sh_order, ..Quality::default() }
 }
 
-/// Level ground sees the upper hemisphere, a cap about the zenith, and mirrors the zenith to the zenith: of a
-/// sky of radiance 1 it reflects the sum over bands of lobe times cap. In the picture and in a layer, scaled.
+/// Level ground sees the upper hemisphere, a cap about the zenith, and reflects the zenith to the zenith: of a sky of
+/// radiance 1 it reflects the sum over bands of lobe times cap. In the picture and in a layer, scaled.
 #[test]
 fn level_ground_reflects_its_hemisphere() {
     let mut gpu = Device::new();
@@ -51,9 +51,9 @@ fn level_ground_reflects_its_hemisphere() {
     }
 }
 
-/// A point sun at the zenith, or `off` beside it, on level ground: E · scale · (n + 1) / 2π · cosⁿ off, for
-/// exponents from 0 to 1e4. Directions of f32 are off by 3e-7, the power with their angle: n · off · 3e-7, and second
-/// order beside it; the exponential by a few ulp.
+/// A point sun at the zenith, or `off` beside it, on level ground: E · scale · (n + 1) / 2π · cosⁿ off, for exponents
+/// from 0 to 1e4. Directions of f32 err by 3e-7, the power with their angle: n · off · 3e-7, and second order beside
+/// it; the exponential by a few ulp.
 #[test]
 fn the_narrowest_and_the_widest_lobe_keep_their_digits() {
     let mut gpu = Device::new();
@@ -74,9 +74,8 @@ fn the_narrowest_and_the_widest_lobe_keep_their_digits() {
     }
 }
 
-/// Suns in a lobe are those of the quadrature: a point to what f32 does; a disc by how much the lobe changes over
-/// it, √(n/e) of its peak a radian and its radius at most, where the horizon or the own plane cuts it, and n a²/4
-/// where not.
+/// Suns in a lobe match the quadrature: a point to f32's rounding; a disc by the lobe's change over it, √(n/e) of its
+/// peak a radian and its radius at most, where the horizon or the own plane cuts it, and n a²/4 otherwise.
 #[test]
 fn suns_in_a_lobe_are_the_quadratures() {
     let mut gpu = Device::new();
@@ -109,7 +108,7 @@ fn suns_in_a_lobe_are_the_quadratures() {
                 let got = f64::from(picture.values[i * picture.channels + c]);
                 let irradiance: f64 =
                     scene.lights.suns.iter().map(|s| f64::from(s.irradiance[c])).sum();
-                // A sun that is faced by a tenth or less: of f32's share, ten times.
+                // For a sun with a cosine of a tenth or less: ten times f32's share.
                 let rounded = device_sun_specular(n, error.normal(), 0.1);
                 let uneven = peak * (n / std::f64::consts::E).sqrt() * 2.0 * radius;
                 let of_sum = 10.0 * PI * error.sun(if radius > 0.0 { PI } else { 1.0 }) * peak;
@@ -124,9 +123,9 @@ fn suns_in_a_lobe_are_the_quadratures() {
     }
 }
 
-/// Bundled terrain, its middle, under its sky of radiance 1 from the zenith to horizontal, by the lobe of exponent
-/// 5: the higher the order, the smaller the error against the path-traced reference, by more than its Monte Carlo noise.
-/// Light without the lobe has a large error.
+/// Bundled terrain, its middle, under its sky of radiance 1 from the zenith to horizontal, by the lobe of exponent 5:
+/// the higher the order, the smaller the error against the path-traced reference, by more than its Monte Carlo noise.
+/// Light without specular has a large error.
 #[test]
 fn higher_orders_are_nearer_to_the_path_traced_reference() {
     const BATCHES: usize = 4;

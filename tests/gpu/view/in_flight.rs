@@ -8,8 +8,8 @@ use ridgelight::scene::{Border, Camera, Lens, Quality};
 use crate::target::{FORMAT, SIZE, Target};
 use crate::{Device, field, under_sky};
 
-/// Two slots, each lit and drawn from another place into an image of its own, submitted as one: each is what the same
-/// view draws alone. Synchronisation validation looks from one command buffer to the next.
+/// Two slots, each lit and drawn from another camera into an image of its own, submitted as one: each has the bits of
+/// the same view alone. Synchronisation validation checks across the command buffers.
 #[test]
 fn two_views_in_flight_are_what_each_is_alone() {
     let mut device = Device::new();

@@ -1,4 +1,4 @@
-//! Maps for screens: to the bit the CPU reference's, which a PNG of the same light holds.
+//! Maps for screens: the bits of the CPU reference's, which a PNG of the same light has.
 
 use ridgelight::plan::{self, Map};
 use ridgelight::scene::Tone;
@@ -6,7 +6,7 @@ use ridgelight_cpu::map_draw::map_draw;
 
 use crate::{Device, random};
 
-/// Every step, what lies just below, and what is no light.
+/// Every code, values just below, and NaN.
 fn light(tone: Tone, count: usize) -> Vec<[f32; 3]> {
     let mut next = random(7);
     let steps = tone.steps();
@@ -19,7 +19,7 @@ fn light(tone: Tone, count: usize) -> Vec<[f32; 3]> {
     (0..count).map(|i| [value(3 * i), value(3 * i + 1), value(3 * i + 2)]).collect()
 }
 
-/// What the device makes of it.
+/// The device's codes.
 fn drawn(
     device: &mut Device,
     (map, tone): (&Map, Tone),

@@ -1,4 +1,4 @@
-//! Pictures before a camera, beside rays in f64 against every triangle, and where they are derived.
+//! Pictures of a camera against f64 rays that test every triangle, and against closed forms.
 
 mod rays;
 
@@ -31,7 +31,7 @@ fn pictures_match_ray_casting() {
     }
 }
 
-/// From within, near the ground: what is behind the eye and beside the picture is cut off.
+/// From within, near the ground: geometry behind the eye and beside the picture is clipped.
 #[test]
 fn a_camera_above_the_field_draws_the_ground_before_it() {
     let mut device = Device::new();
@@ -50,7 +50,7 @@ fn a_camera_above_the_field_draws_the_ground_before_it() {
     assert!(held > 570, "{held}");
 }
 
-/// A comparator must be seen to fail: a picture of a camera a pixel beside is no picture of this one.
+/// The comparison fails for a picture whose camera is a pixel aside.
 #[test]
 fn a_picture_from_elsewhere_is_refused() {
     let mut device = Device::new();
@@ -93,7 +93,7 @@ fn reduced_meshes_and_holes_match_ray_casting() {
     }
 }
 
-/// An environment that rises evenly, so that a direction off by little is light off by little.
+/// An environment with a constant gradient, so that a small error of direction is a small error of light.
 #[test]
 fn behind_the_field_is_the_environment() {
     let mut device = Device::new();
@@ -119,8 +119,8 @@ fn behind_the_field_is_the_environment() {
     }
 }
 
-/// From straight above, a pixel a sample: pixels' middles are samples, and the picture is the map. On the outermost
-/// samples the mesh ends, so that either ground or what is behind may be seen there.
+/// From straight above, a pixel a texel: pixels' middles are texels, and the picture is the map. The mesh ends on the
+/// outermost texels, so either ground or background may be visible there.
 #[test]
 fn a_level_field_from_straight_above_is_its_map() {
     let mut device = Device::new();
@@ -142,7 +142,7 @@ fn a_level_field_from_straight_above_is_its_map() {
         let (row, col) = (i as u32 / cols, i as u32 % cols);
         let is_edge = row == 0 || col == 0 || row == rows - 1 || col == cols - 1;
         for k in (0..3).filter(|_| !is_edge) {
-            // A vertex and a middle that are off by a rounding of the picture, within one cell.
+            // A vertex and a middle with an error of one rounding of the picture, within one cell.
             let off = (got[k] - want[k]).abs();
             assert!(f64::from(off) <= 24.0 * ROUNDING, "({row}, {col}): {got:?} for {want:?}");
             let far = f64::from(shot.seen.distances_m[i]);
@@ -151,7 +151,7 @@ fn a_level_field_from_straight_above_is_its_map() {
     }
 }
 
-/// Samples a pixel that pictures of floats and depths may have here: what the device itself says.
+/// The device's own MSAA sample counts for pictures of floats and depths.
 fn offered(device: &Device) -> Vec<u32> {
     let host = device.gpu.as_ref().expect("alive").host();
     let both = [
@@ -178,9 +178,9 @@ fn offered(device: &Device) -> Vec<u32> {
     [1, 2, 4, 8].into_iter().filter(has).collect()
 }
 
-/// The western edge of level ground of radiance 1 passes through the middle of a column of pixels, nothing behind it:
-/// half of 2, of 4 and of 8 standard sample places are east of it (Vulkan, standard sample locations). What a device
-/// does not have is refused, with what it has.
+/// The western edge of level ground of radiance 1 passes through the middle of a column of pixels, before a black
+/// background: half of 2, of 4 and of 8 standard sample positions are east of it (Vulkan, standard sample locations).
+/// Counts that a device lacks are refused with those that it has.
 #[test]
 fn a_pixel_half_covered_is_half_as_bright() {
     let mut device = Device::new();
@@ -249,8 +249,8 @@ fn screen_formats_match_float_pictures() {
     });
     let (linear, shown) = drawn.expect("pictures");
     let tone = Tone { exposure };
-    // The CPU reference, where the shader encodes: either code beside the value, which powers err by: 3 units of a logarithm of
-    // up to 9 over 2.4, as many of its exponential, and a rounding of each other step.
+    // The CPU reference, where the shader encodes: either code beside the value, within the error of powers: 3 units
+    // of a logarithm of up to 9 over 2.4, as many of its exponential, and a rounding of each other step.
     let power = 32.0 * f64::from(f32::EPSILON);
     let channels =
         |codes: &[[u8; 4]]| codes.iter().flat_map(|c| c[..3].to_vec()).collect::<Vec<_>>();
@@ -273,7 +273,7 @@ fn screen_formats_match_float_pictures() {
     }
 }
 
-/// What is refused names the argument, and nothing has been recorded: validation would hear of what is not there.
+/// An error names the argument, and nothing is recorded: validation would report missing images.
 #[test]
 fn wrong_arguments_are_refused_by_name() {
     let mut device = Device::new();

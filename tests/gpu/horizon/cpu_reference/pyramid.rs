@@ -19,7 +19,7 @@ impl Run<'_> {
     }
 }
 
-/// A level, and what the table says of it.
+/// A level, and its entry in the table.
 pub(crate) fn height_reduce(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let pyramid = run.pyramid();
     let number = pushed(pass, offsets::height_reduce_push::LEVEL);
@@ -40,7 +40,7 @@ pub(crate) fn height_reduce(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     pairs
 }
 
-/// What a pyramid's table says of a level.
+/// The table's entry of a level.
 pub(crate) fn table_pairs(level: &Level, number: u32, table: &[u32]) -> Vec<Pair> {
     let [x, y] = level.per_sample.map(f32::to_bits);
     let want = [level.first as u32, level.size[0] | level.size[1] << 16, x, y];

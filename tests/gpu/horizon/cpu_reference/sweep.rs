@@ -37,7 +37,7 @@ pub(crate) fn height_transpose(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     assert_eq!(got.len(), width * want.len() / lanes);
     let pairs = got.iter().enumerate().map(|(i, got)| {
         let (march, lane) = (i / width, i % width);
-        // Beyond the last lane it is held, or follows the first.
+        // Beyond the last lane the last one is repeated, or the first follows.
         let from = if periodic { lane % lanes } else { lane.min(lanes - 1) };
         let want = want[march * lanes + from].into();
         Pair { got: (*got).into(), want, tolerance: 0.0, at: [0, march, lane] }
@@ -70,7 +70,7 @@ pub(crate) fn stored(run: &mut Run, pass: &Pass, binding: &str, texel: usize) ->
     Some(Stored { words, height: run.extent(pass, binding)[1], texel })
 }
 
-/// Slope of the sample of a line `back` steps before, in f64; nothing where nothing is met.
+/// Slope of the texel of a line `back` steps before, in f64; none without an occluder.
 fn slope_of(march: &March, y: i32, step: i32, back: i32) -> Option<f64> {
     let at = |n: i32| f64::from(line_height(march, y - n * march.azimuth.shear, step - n));
     (back > 0).then(|| (at(back) - at(0)) / (f64::from(back) * f64::from(march.azimuth.step_m)))
@@ -80,7 +80,7 @@ pub(crate) fn horizon_sweep(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let in_occluders = constant(pass, "hull_place") == 2;
     let holds_line = constant(pass, "hull_holds_line") == 1;
     if !holds_line && !in_occluders {
-        // Complete once its lost lines have been redone, by the pass that follows.
+        // Complete once the pass that follows has redone its lost lines.
         let lost = run.words(pass, "lost_lines").expect("written");
         run.lost += lost.iter().filter(|w| **w != 0).count();
         return Vec::new();
@@ -106,7 +106,7 @@ pub(crate) fn horizon_sweep(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     pairs
 }
 
-/// Pairs one azimuth's lines and returns what the device left of them, as the CPU reference stores it.
+/// Pairs one azimuth's lines and returns the device's values, stored like the CPU reference's.
 fn lines_of(
     run: &Run,
     (k, azimuth): (usize, &Azimuth),
@@ -142,7 +142,7 @@ fn lines_of(
             left.occluders[texel] = got as u16;
             let slope = |back| slope_of(&march, y, step, back);
             pairs.push(match (slope(got as i32), slope(want.into())) {
-                // Rounded heights may choose another occluder, if it stands as high.
+                // Rounded heights may choose another occluder of the same height.
                 (Some(got), Some(want)) if options.packed.is_some() => {
                     Pair { got, want, tolerance: device_slope_packed(largest, step_m), at }
                 }
@@ -168,7 +168,7 @@ fn lines_of(
     left
 }
 
-/// Slope of the surface `back` steps ahead on a sample's own line, in f64.
+/// Slope of the surface `back` steps ahead on a texel's own line, in f64.
 fn slope_at(march: &March, (lane, step): (i32, i32), back: f64) -> f64 {
     let azimuth = &march.azimuth;
     let shear = if azimuth.vector_march > 0 {
@@ -190,8 +190,8 @@ fn slope_at(march: &March, (lane, step): (i32, i32), back: f64) -> f64 {
     (height - f64::from(march.height_at(lane, step))) / (back * f64::from(azimuth.step_m))
 }
 
-/// What is met need not be the CPU reference's own, where two stand equally high; but it must be a place that
-/// stands as high as the CPU reference's slope, within the device's error and the CPU reference's.
+/// The occluder may differ from the CPU reference's where two are equally high; but its slope must be the CPU
+/// reference's, within both errors.
 fn place_pair(
     march: &March,
     sample: (i32, i32),
@@ -206,8 +206,8 @@ fn place_pair(
     Pair { got, want: want.into(), tolerance: 2.0 * tolerance, at }
 }
 
-/// Samples, as (step, lane), whose values a march stores, and where in its layer: by step and lane, or of
-/// nodes alone at their own places.
+/// Texels, as (step, lane), whose values a march stores, and where in its layer: by step and lane, or of nodes alone
+/// at their own places.
 pub(crate) fn marched(march: &March, nodes: Nodes) -> Vec<([i32; 2], [usize; 2])> {
     let (steps, lanes) = (march.steps as u32, march.lanes as u32);
     let all = (0..nodes.count(steps)).flat_map(|y| (0..nodes.count(lanes)).map(move |x| [y, x]));
@@ -220,7 +220,7 @@ pub(crate) fn marched(march: &March, nodes: Nodes) -> Vec<([i32; 2], [usize; 2])
     .collect()
 }
 
-/// Pairs passes that find one value a sample: [layer][step][lane], distances in the next layer.
+/// Pairs passes that find one value a texel: [layer][step][lane], distances in the next layer.
 fn one_a_sample(
     run: &mut Run,
     pass: &Pass,
@@ -291,7 +291,7 @@ pub(crate) fn sweep_fuse(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     run.swept(range, (fuse, line_shift), |swept| {
         let mut pairs = Vec::new();
         for (k, azimuth) in swept.azimuths.iter().enumerate() {
-            // What is only read has no error.
+            // Values that are only read have no error.
             let slope_error = match fuse {
                 None | Some(Fuse::Nearest) => 0.0,
                 _ => device_fused_slope(largest, azimuth.step_m.into()),

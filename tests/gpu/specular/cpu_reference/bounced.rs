@@ -50,7 +50,7 @@ impl Run<'_> {
     }
 }
 
-/// Coefficients beside the CPU reference's.
+/// Coefficients paired with the CPU reference's.
 pub(crate) fn paired(
     (got, want): (&Series, &Series),
     tolerance: impl Fn(f64) -> f64,
@@ -68,7 +68,7 @@ pub(crate) fn paired(
     .collect()
 }
 
-/// The sum of magnitudes of the channel that has most.
+/// The sum of magnitudes of the largest channel.
 fn magnitude(series: &Series) -> f64 {
     let sum = |c: usize| series.iter().map(|s| s[c].abs()).sum::<f64>();
     (0..3).map(sum).fold(0.0, f64::max)
@@ -144,7 +144,7 @@ pub(crate) fn specular_exit(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         for (i, got) in got.chunks_exact(channels).enumerate() {
             for c in 0..channels.min(3) {
                 let want = diffuse[i][c] + seen[i][c];
-                // What the lobe gave is a difference of sums here.
+                // The specular light is a difference of sums here.
                 let tolerance = 4.0 * EPSILON * (want + run.specular[i][c]);
                 let at = [c, i / cols, i % cols];
                 pairs.push(Pair { got: got[c].into(), want, tolerance, at });
@@ -184,7 +184,7 @@ pub(crate) fn vector_reduce(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         .collect()
 }
 
-/// What arrives, from the levels that the device made, in one dispatch.
+/// The arriving light, from the device's own levels, in one dispatch.
 pub(crate) fn specular_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     use offsets::specular_gather_push::{AZIMUTHS, FIRST_AZIMUTH, LAST_AZIMUTH};
     let azimuths = pushed(pass, AZIMUTHS);

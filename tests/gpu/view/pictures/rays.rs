@@ -1,4 +1,4 @@
-//! A scene drawn on the device, beside rays in f64.
+//! A scene drawn on the device, and the same by rays in f64.
 
 use std::f64::consts::PI;
 
@@ -14,7 +14,7 @@ use crate::{Device, random, under_sky};
 /// nearest such place.
 const SNAP: f64 = 0.5 / 16.0;
 
-/// Parts of the picture that a vertex is off by before that: a few roundings of numbers about as large as the picture.
+/// Error of a vertex before that, as a part of the picture: a few roundings of numbers about as large as the picture.
 pub(super) const ROUNDING: f64 = 1.0 / (1 << 20) as f64;
 
 /// Radiance, and distance, infinite where there is no ground.
@@ -33,7 +33,7 @@ pub(super) fn quality() -> Quality {
     Quality { method: Method::Sweep, azimuths: 8, ..Quality::default() }
 }
 
-/// Lights a scene, and draws it as a camera sees it.
+/// Lights a scene and draws it from a camera.
 pub(super) fn shoot(
     device: &mut Device,
     scene: Scene,
@@ -76,11 +76,11 @@ impl Shot {
         }
     }
 
-    /// Compares every pixel with the rays about its middle: a triangle whose vertices have moved shows there what is
-    /// true at a place no farther away than they have moved. Where all of these rays meet ground, or none does, the
-    /// pixel must; its distance and its light must be between theirs, give or take as much as they differ (a crease
-    /// between two rays stands out by no more) and roundings. Returns how many pixels were held to it: elsewhere an
-    /// edge of the ground passes.
+    /// Compares every pixel with the rays about its middle: a triangle with moved vertices shows a point no farther
+    /// away than they have moved. Where all of these rays hit ground, or none does, the pixel must, too; its distance
+    /// and its light must lie between theirs, extended by their own difference (a crease between two rays stands out
+    /// by no more) and roundings. Returns the number of pixels compared: an edge of the ground passes through the
+    /// others.
     pub(super) fn check(&self) -> usize {
         let [width, height] = self.options.size;
         let away = SNAP + ROUNDING * f64::from(width.max(height));
@@ -111,13 +111,14 @@ impl Shot {
                 );
             };
             if met > 0 {
-                // Interpolated over the picture: as large a part of its change from edge to edge is lost, and of it.
+                // Interpolated over the picture: it loses the same part of its change from edge to edge, and of
+                // itself.
                 let distances = range(&|t| t.1);
                 check(got, distances, ROUNDING * (distances.1 + distances.2 * edge));
             }
             for k in 0..3 {
                 let light = range(&|t| t.0[k]);
-                // An angle of the sky is off by 4096 roundings (Vulkan, precision of atan).
+                // An angle of the sky errs by 4096 roundings (Vulkan, precision of atan).
                 let turned = if met > 0 { 0.0 } else { PI * 4096.0 * f64::from(f32::EPSILON) };
                 let pixels = (turned + ROUNDING) * edge;
                 check(
