@@ -137,7 +137,7 @@ fn each_constant_of_a_reflected_slice_is_right_and_tested() {
         for (number, text) in changed {
             let off = off(&text);
             println!("{name}: {number}: {off:e}");
-            assert!(off > 2.0 * TOLERANCE, "{name}: deaf to {number}: {off:e}");
+            assert!(off > 2.0 * TOLERANCE, "{name}: passes with another {number}: {off:e}");
         }
     }
 }

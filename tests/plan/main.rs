@@ -86,7 +86,7 @@ fn is(plan: &Plan, text: &str) {
 /// Plans with every form of every pass, at sizes that make groups, lanes and layers odd.
 fn plans() -> Vec<Plan> {
     let base = Quality { azimuths: 12, ..Quality::default() };
-    let soft = Quality { basis: Basis::Sh, ..base };
+    let by_sh = Quality { basis: Basis::Sh, ..base };
     let bounced = |engine| {
         let bounces = Bounces { count: 3, engine, azimuths: 8, cutoff: 0.0, ..Bounces::default() };
         Quality { bounces, ..base }
@@ -102,10 +102,10 @@ fn plans() -> Vec<Plan> {
         Quality { lines: Lines::Exact, ..base },
         Quality { method: Method::Pyramid, ..base },
         Quality { method: Method::Pyramid, levels: Levels::Pyramid, level_offset: 0, ..base },
-        soft,
-        Quality { wedges: Wedges::Nlp, receiver: Receiver::CosineLobe, ..soft },
-        Quality { wedges: Wedges::Table, light_basis: LightBasis::Sh, ..soft },
-        Quality { method: Method::Pyramid, light_basis: LightBasis::Sh, subsample: 4, ..soft },
+        by_sh,
+        Quality { wedges: Wedges::Nlp, receiver: Receiver::CosineLobe, ..by_sh },
+        Quality { wedges: Wedges::Table, light_basis: LightBasis::Sh, ..by_sh },
+        Quality { method: Method::Pyramid, light_basis: LightBasis::Sh, subsample: 4, ..by_sh },
         bounced(BounceEngine::BruteForce),
         bounced(BounceEngine::Sweep),
         bounced(BounceEngine::Pyramid),

@@ -10,7 +10,7 @@ use ridgelight::scene::{
 const SIDE: usize = 128;
 
 /// Two bounces of a grey surface under a sky.
-fn planned(gloss: BounceSpecular, sh_order: u32) -> Plan {
+fn planned(specular: BounceSpecular, sh_order: u32) -> Plan {
     let surface = Surface {
         albedo: Albedo::Constant([0.3; 3]),
         border: Border::Plane,
@@ -19,7 +19,7 @@ fn planned(gloss: BounceSpecular, sh_order: u32) -> Plan {
     let lights = Lights { sky: Some([1.0; 3]), ..Lights::default() };
     let scene = Scene { field: fractal(SIDE, 1).expect("a field"), surface, lights };
     let engine = BounceEngine::Pyramid;
-    let bounces = Bounces { count: 2, engine, cutoff: 0.0, specular: gloss, ..Bounces::default() };
+    let bounces = Bounces { count: 2, engine, cutoff: 0.0, specular, ..Bounces::default() };
     let quality =
         Quality { azimuths: 8, basis: Basis::Sh, sh_order, bounces, ..Quality::default() };
     let wanted = Picture { light_layers: true, ..Picture::default() };
@@ -36,9 +36,9 @@ fn bytes(plan: &Plan, names: &[&str]) -> u64 {
 #[test]
 fn each_bounce_is_computed_once() {
     let has = |plan: &Plan, label: &str| plan.passes.iter().any(|p| p.label() == label);
-    for gloss in [BounceSpecular::Vector, BounceSpecular::VectorF16, BounceSpecular::Scalar] {
-        let plan = planned(gloss, 4);
-        let is_vector = gloss != BounceSpecular::Scalar;
+    for specular in [BounceSpecular::Vector, BounceSpecular::VectorF16, BounceSpecular::Scalar] {
+        let plan = planned(specular, 4);
+        let is_vector = specular != BounceSpecular::Scalar;
         for label in [
             "specular_exit direct",
             "specular_exit bounce1",
@@ -52,7 +52,7 @@ fn each_bounce_is_computed_once() {
         assert_eq!(has(&plan, "shade_reduce bounce2 level 1"), !is_vector);
         assert!(!has(&plan, "bounce_gather bounce1"));
         assert_eq!(missing_barriers(&plan.passes), vec![]);
-        assert!(plan.settings.contains(&("bounce_gloss".into(), gloss.name().into())));
+        assert!(plan.settings.contains(&("bounce_gloss".into(), specular.name().into())));
         let outputs: Vec<&str> = plan.outputs().map(|(_, r)| r.name.as_str()).collect();
         assert_eq!(outputs[outputs.len() - 3..], ["indirect.1", "indirect.2", "glossy"]);
     }

@@ -97,7 +97,7 @@ fn hills(rows: usize, cols: usize) -> HeightField {
 #[test]
 fn repetitions_match_ray_tracing() {
     let (mut met, mut far, mut grazed) = (0, 0, 0);
-    let mut stretches = Vec::new();
+    let mut intervals = Vec::new();
     for [rows, cols] in [[7, 40], [40, 7], [2, 30], [31, 1]] {
         let (field, border) = (hills(rows, cols), Border::Periodic);
         let oracle = Oracle::new(&field, border);
@@ -110,10 +110,10 @@ fn repetitions_match_ray_tracing() {
             for here in [peak, (peak + 1) % (rows * cols), 0] {
                 let at = [here / cols, here % cols];
                 let VisiblePoint::Sample(there) = visible_point(&oracle, at, e) else { continue };
-                oracle.visible_intervals(at[0], at[1], e.y.atan2(e.x), &mut stretches);
+                oracle.visible_intervals(at[0], at[1], e.y.atan2(e.x), &mut intervals);
                 let elevation = e.z.atan2(plan);
-                let stretch = stretches.iter().find(|s| elevation < s.high_rad).expect("met");
-                let want = stretch.distance_m(elevation);
+                let interval = intervals.iter().find(|s| elevation < s.high_rad).expect("met");
+                let want = interval.distance_m(elevation);
                 let ways = Ways::of((&field, border), Curvature::FLAT, [here, there], e);
                 let way = ways.met();
                 let found = plan * way.away_m;

@@ -20,19 +20,20 @@ fn visible_intervals_fill_the_angle_below_the_horizon() {
             oracle.visible_intervals(row, col, azimuth, &mut seen);
             let horizon = oracle.elevation_rad(row, col, azimuth);
             let mut reached = -FRAC_PI_2;
-            for stretch in &seen {
-                assert_eq!(stretch.low_rad, reached);
-                assert!(stretch.high_rad > stretch.low_rad);
-                reached = stretch.high_rad;
+            for interval in &seen {
+                assert_eq!(interval.low_rad, reached);
+                assert!(interval.high_rad > interval.low_rad);
+                reached = interval.high_rad;
                 for share in [0.1, 0.5, 0.9] {
-                    let elevation = stretch.low_rad + share * (stretch.high_rad - stretch.low_rad);
-                    let distance = stretch.distance_m(elevation);
-                    let weights = stretch.corner_weights(distance);
+                    let elevation =
+                        interval.low_rad + share * (interval.high_rad - interval.low_rad);
+                    let distance = interval.distance_m(elevation);
+                    let weights = interval.corner_weights(distance);
                     assert!(
                         weights.iter().all(|w| (-1e-9..=1.0 + 1e-9).contains(w)),
                         "{weights:?}"
                     );
-                    let corners = oracle.corners(stretch.triangle).map(height);
+                    let corners = oracle.corners(interval.triangle).map(height);
                     let met: f64 = weights.iter().zip(corners).map(|(w, h)| w * h).sum();
                     let rise = met - height([row, col]);
                     // The last interval of a periodic field may end at horizontal, without a hit.

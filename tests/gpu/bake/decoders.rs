@@ -283,7 +283,7 @@ fn decoders_keep_the_errors_that_manifests_state() {
             off[last] = (value
                 + 3.0 * (absolute + relative * value.abs() + slack)
                 + 1e-6 * value.abs().max(1.0)) as f32;
-            assert!(worst(&promised, &off, &truth, slack).0 > 1.0, "{}: deaf", decoder.kind);
+            assert!(worst(&promised, &off, &truth, slack).0 > 1.0, "{}: cannot fail", decoder.kind);
 
             if decoder.kind == "ellipse" {
                 lit_as_stated(&found, &truth, promised[0].2);

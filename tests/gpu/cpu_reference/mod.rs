@@ -229,7 +229,7 @@ fn a_value_beyond_its_tolerance_fails() {
                 f64::from(beyond)
             };
             let found = worst(&spoiled).expect("values");
-            assert!(found.ratio() > 1.0, "{label}: deaf at {picked}: {found:?}");
+            assert!(found.ratio() > 1.0, "{label}: unchanged at {picked}: {found:?}");
         }
     }
 }

@@ -93,25 +93,25 @@ pub(crate) fn pictures() -> Vec<Case> {
     };
     let sh = |sh_order| Quality { basis: Basis::Sh, sh_order, ..quality };
     let nlp = Quality { wedges: Wedges::Nlp, receiver: Receiver::CosineLobe, ..sh(5) };
-    let soft = |sh_order, sun_azimuths| Quality {
+    let by_sh = |sh_order, sun_azimuths| Quality {
         light_basis: LightBasis::Sh,
         sh_order,
         sun_azimuths,
         ..quality
     };
-    let soft_table = Quality { wedges: Wedges::Table, wedge_side: 17, ..soft(3, 6) };
+    let sh_table = Quality { wedges: Wedges::Table, wedge_side: 17, ..by_sh(3, 6) };
     let soft_nlp = Quality {
         wedges: Wedges::Nlp,
         receiver: Receiver::CosineLobe,
         window: Window::Lanczos,
-        ..soft(5, 7)
+        ..by_sh(5, 7)
     };
     let soft_levels = Quality {
         method: Method::Pyramid,
         level_step: 3,
         level_offset: 0,
         levels: Levels::Pyramid,
-        ..soft(2, 1)
+        ..by_sh(2, 1)
     };
     let soft_stack = Quality {
         wedges: Wedges::Table,
@@ -173,18 +173,18 @@ pub(crate) fn pictures() -> Vec<Case> {
             false,
             false,
         ),
-        picture("sphere lights by harmonics", sphere_lights.clone(), soft(4, 8), true, false),
+        picture("sphere lights by harmonics", sphere_lights.clone(), by_sh(4, 8), true, false),
         picture(
             "sphere lights by harmonics of order 6",
             sphere_lights.clone(),
-            soft(6, 4),
+            by_sh(6, 4),
             false,
             false,
         ),
         picture(
             "sphere lights by a table of wedges",
             sphere_lights.clone(),
-            soft_table,
+            sh_table,
             false,
             false,
         ),

@@ -21,7 +21,7 @@ use super::spheres::{sphere_light, under, values};
 use crate::direct::cpu_reference::sphere_sh::slope_error;
 use crate::{Device, field, random};
 
-fn soft(sh_order: u32, sun_azimuths: u32) -> Quality {
+fn by_sh(sh_order: u32, sun_azimuths: u32) -> Quality {
     Quality {
         light_basis: LightBasis::Sh,
         light_cutoff: 0.0,
@@ -99,9 +99,9 @@ fn free_light_is_its_series_in_closed_form() {
         ([0.0, 0.0, 71.0], 1.0),
         ([5.0, -3.0, 64.0], 2.0),
     ];
-    let base = soft(4, 8);
+    let base = by_sh(4, 8);
     let by_table = Quality { wedges: Wedges::Table, wedge_side: 9, ..base };
-    for quality in [base, Quality { receiver: Receiver::CosineLobe, ..soft(6, 12) }, by_table] {
+    for quality in [base, Quality { receiver: Receiver::CosineLobe, ..by_sh(6, 12) }, by_table] {
         let reference_of = |scene: &Scene| {
             let oracle = Oracle::new(&one, Border::Open);
             SphereSh::new(oracle, None, quality).at(&scene.lights.sphere_lights[0], 0, 0)
@@ -150,7 +150,7 @@ fn sphere_sh_at_the_extremes_matches_the_cpu_reference() {
     let rough = |rows: usize, cols: usize, relief: f64| {
         field(rows, cols, [2.0, 3.0], |r, c| 500.0 + relief * noise[(r * 11 + c) % 99])
     };
-    let quality = soft(4, 4);
+    let quality = by_sh(4, 4);
     for (rows, cols, relief) in [(9, 11, 6.0), (9, 11, 1e-6), (9, 11, 2e6), (1, 9, 3.0)] {
         let land = rough(rows, cols, relief);
         let height = f64::from(land.heights_m()[(rows / 2) * cols + cols / 2]);
@@ -217,7 +217,7 @@ fn more_azimuths_tend_to_the_floor_of_the_order() {
         (0..33 * 33).map(|i| sphere_of(&oracle, i / 33, i % 33, &light, 64)).collect();
     let mut floors = Vec::new();
     for order in [2, 4, 6] {
-        let mut drawn = |azimuths| values(&gpu.picture(&scene, &soft(order, azimuths)));
+        let mut drawn = |azimuths| values(&gpu.picture(&scene, &by_sh(order, azimuths)));
         let floor = drawn(256);
         let off: Vec<f64> = [2, 8, 32].map(|m| rmse(&drawn(m), &floor)).into();
         println!("order {order}: {off:.4?} from the floor, {:.4} off", rmse(&floor, &truth));
@@ -245,9 +245,9 @@ fn popped(gpu: &mut Device, quality: &Quality, steps: usize) -> f64 {
         let state = |i: usize| ([found[i], truth(i)], is_within(i));
         let now: Vec<_> = (0..256).step_by(7).map(state).collect();
         for ((a, was_within), (b, is_within)) in before.iter().zip(&now) {
-            let [soft, truth] = [0, 1].map(|k| (b[k] - a[k]).abs());
+            let [by_sh, truth] = [0, 1].map(|k| (b[k] - a[k]).abs());
             let off = if was_within == is_within { truth } else { a[1].max(b[1]) };
-            most = most.max(soft - truth - 0.1 * off);
+            most = most.max(by_sh - truth - 0.1 * off);
         }
         before = now;
     }
@@ -259,7 +259,8 @@ fn popped(gpu: &mut Device, quality: &Quality, steps: usize) -> f64 {
 #[test]
 fn a_moving_sphere_light_by_sh_pops_no_more_than_the_ground_truth() {
     let mut gpu = Device::new();
-    for quality in [soft(4, 8), Quality { wedges: Wedges::Table, wedge_side: 17, ..soft(4, 16) }] {
+    for quality in [by_sh(4, 8), Quality { wedges: Wedges::Table, wedge_side: 17, ..by_sh(4, 16) }]
+    {
         let [long, short] = [40, 320].map(|steps| popped(&mut gpu, &quality, steps));
         println!("{long:.4} more than the truth, {short:.4} in steps an eighth as long");
         assert!(short <= 0.5 * long, "{:?}: {long} {short}", quality.wedges);
@@ -272,7 +273,7 @@ fn a_moving_sphere_light_by_sh_pops_no_more_than_the_ground_truth() {
 fn wrong_harmonics_are_not_within_their_bound() {
     let mut gpu = Device::new();
     let land = field(9, 11, [2.0, 3.0], |r, c| ((r * 7 + c * 5) % 11) as f64 * 0.4);
-    let (quality, light) = (soft(4, 4), sphere_light([11.0, 8.0, 9.0], 2.0));
+    let (quality, light) = (by_sh(4, 4), sphere_light([11.0, 8.0, 9.0], 2.0));
     let scene = under(&land, Border::Plane, vec![light]);
     let oracle = Oracle::new(&land, Border::Plane);
     let other = field(9, 11, [2.0, 3.0], |r, c| ((r * 7 + c * 5) % 11) as f64 * 0.5);
@@ -280,7 +281,7 @@ fn wrong_harmonics_are_not_within_their_bound() {
     let wrong = [
         (&oracle, sphere_light([11.0, 8.0, 9.0], 2.005), quality),
         (&oracle, moved, quality),
-        (&oracle, light, soft(5, 4)),
+        (&oracle, light, by_sh(5, 4)),
         (&Oracle::new(&other, Border::Plane), light, quality),
     ];
     let found = values(&gpu.picture(&scene, &quality));

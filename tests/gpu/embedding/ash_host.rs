@@ -45,7 +45,11 @@ fn the_ash_host_gives_the_command_lines_bytes() {
     let folder = tempfile::tempdir().expect("a folder");
     let texels = folder.path().join("texels");
     let mut child = Command::new(std::env::current_exe().expect("this test"));
-    child.args(["--exact", "ash_host::the_ash_host_gives_the_command_lines_bytes", "--nocapture"]);
+    child.args([
+        "--exact",
+        "embedding::ash_host::the_ash_host_gives_the_command_lines_bytes",
+        "--nocapture",
+    ]);
     child.env(CHILD, &texels);
     let is_validated = std::env::var_os("RIDGELIGHT_VALIDATION").is_some_and(|v| v == "1");
     if is_validated {

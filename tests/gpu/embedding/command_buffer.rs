@@ -161,7 +161,7 @@ fn images_are_left_as_the_table_says() {
         // The comparison can fail: validation reports outputs in another state than the requested one.
         let gpu = device.gpu.as_mut().expect("alive");
         record_in(gpu, &mut frame, [SAMPLED, NO_CONTENTS, COPIED_FROM], SAMPLED);
-        assert!(!gpu.take_messages().is_empty(), "validation is deaf");
+        assert!(!gpu.take_messages().is_empty(), "validation reports nothing");
     }
     device.gpu.as_mut().expect("alive").end(frame);
 }

@@ -64,7 +64,7 @@ fn missing_barriers_are_reported() {
     let messages = device.gpu.as_ref().expect("alive").take_messages();
     assert!(
         messages.iter().any(|m| m.contains("hazard detected")),
-        "validation is deaf: {messages:?}"
+        "validation reports nothing: {messages:?}"
     );
 }
 

@@ -150,7 +150,7 @@ fn hold(is_such: fn(&Case) -> bool) {
         if let (Ok(probes), true) = (probes, is_right)
             && judged(&cases[c], &methods[m]) == Judged::Bound
         {
-            hears(&probes, [c, m], &cases, &methods);
+            check_failures(&probes, [c, m], &cases, &methods);
         }
     }
     assert!(wrong.is_empty(), "{} rows:\n{}", wrong.len(), wrong.join("\n"));
@@ -158,7 +158,12 @@ fn hold(is_such: fn(&Case) -> bool) {
 
 /// The comparison can fail: for a value moved slightly more than its bound beyond the expected one, for NaN, another
 /// refusal and none.
-fn hears(probes: &[Probe], [c, m]: [usize; 2], cases: &[Case], methods: &[methods::Method]) {
+fn check_failures(
+    probes: &[Probe],
+    [c, m]: [usize; 2],
+    cases: &[Case],
+    methods: &[methods::Method],
+) {
     let (case, name) = (&cases[c], methods[m].name);
     let sees = |method, probes| {
         let row = Row { case: c, method, outcome: suite::outcome(probes) };
@@ -172,7 +177,7 @@ fn hears(probes: &[Probe], [c, m]: [usize; 2], cases: &[Case], methods: &[method
         for spoiled in [low - beyond, high + beyond, f64::NAN, f64::INFINITY] {
             let mut all = probes.to_vec();
             all[picked].found = spoiled;
-            assert!(sees(m, Ok(all)), "{}, {name}: deaf to {spoiled} at {picked}", case.name);
+            assert!(sees(m, Ok(all)), "{}, {name}: passes with {spoiled} at {picked}", case.name);
         }
     }
     assert!(sees(m, Err("no".to_owned())), "{}: a refusal", case.name);

@@ -84,7 +84,7 @@ fn paths_reflect_by_phong_specular_at_every_hit() {
     }
     println!("{:.2} standard errors; without the lobes that are met {:.2}", apart[0], apart[1]);
     assert!(apart[0] <= 5.0, "{apart:?}");
-    assert!(apart[1] > 8.0, "deaf: {apart:?}");
+    assert!(apart[1] > 8.0, "cannot fail: {apart:?}");
 }
 
 /// A surface that reflects all light, half diffusely and half by Phong specular, in light of 1 from everywhere: no

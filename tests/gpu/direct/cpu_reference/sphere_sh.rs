@@ -57,16 +57,16 @@ pub(crate) fn sphere_sh_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         let (seen, row, col) =
             (SphereGeometry::of(&run.scene.field, &sphere_light, i), i / cols, i % cols);
         if seen.distance_m <= reach {
-            let soft = reference.at(&sphere_light, row, col);
+            let by_sh = reference.at(&sphere_light, row, col);
             let n = normal(&run.scene.field, border, row, col);
             let slope = slope_error(&seen, &quality, is_pyramid);
-            let off = errors.tolerance(&seen, slope, n, &soft.seen);
+            let off = errors.tolerance(&seen, slope, n, &by_sh.seen);
             let brightest = sphere_light.radiance.iter().fold(0.0, |m: f32, v| m.max(*v));
-            let light = soft.light.max(0.0);
+            let light = by_sh.light.max(0.0);
             sum.iter_mut().zip(sphere_light.radiance).for_each(|(s, r)| *s += light * f64::from(r));
             *tolerance += f64::from(brightest) * (off + 4.0 * EPSILON * light);
             let at = [1, row, col];
-            pairs.push(Pair { got: got[3].into(), want: soft.light, tolerance: off, at });
+            pairs.push(Pair { got: got[3].into(), want: by_sh.light, tolerance: off, at });
         }
         pairs.extend((0..3).map(|c| {
             let (got, want) = (got[c].into(), sum[c]);
