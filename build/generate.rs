@@ -49,10 +49,10 @@ pub(crate) fn core(out: &Path) {
     write(&out.join("shaders.spv"), &bytes);
 }
 
-/// Shaders of tests (`tests/gpu/decoders/*.comp`, where present) as `NAME.spv`; the library does not contain
+/// Shaders of tests (`tests/gpu/bake/decoders/shaders/*.comp`, where present) as `NAME.spv`; the library does not contain
 /// them.
 pub(crate) fn decoders(out: &Path) {
-    let folder = Path::new("tests/gpu/decoders");
+    let folder = Path::new("tests/gpu/bake/decoders/shaders");
     if !folder.is_dir() {
         return;
     }

@@ -222,7 +222,7 @@ fn frame(host: &Host, queue: vk::Queue, blocks: &mut Blocks, scene: &Scene) -> A
     }
 }
 
-/// Light of every sample, row by row.
+/// Light of every texel, row by row.
 pub fn lit() -> Any<Vec<f32>> {
     // SAFETY: the system's Vulkan loader, whose initialisers are meant to run.
     let entry = unsafe { ash::Entry::load() }?;
@@ -240,6 +240,6 @@ pub fn lit() -> Any<Vec<f32>> {
 
 fn main() -> Any<()> {
     let lit = lit()?;
-    println!("{} samples, the first is lit by {}", lit.len(), lit[0]);
+    println!("{} texels, the first is lit by {}", lit.len(), lit[0]);
     Ok(())
 }

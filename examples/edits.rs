@@ -12,7 +12,7 @@ use ridgelight::scene::{Lights, Quality, Scene, Surface};
 use ridgelight::{Error, Result};
 
 const AZIMUTHS: u32 = 32;
-/// Lattices of 32 azimuths of 4096² samples take 1.6 GiB.
+/// Lattices of 32 azimuths of 4096² texels take 1.6 GiB.
 const MEMORY_BUDGET: u64 = 4 << 30;
 
 fn ms(times: &[Timing], name: &str) -> f64 {
@@ -96,7 +96,7 @@ fn edit_all(gpu: &mut Headless, frame: &mut Frame, scene: &Scene, asked: &Reques
         state ^= state << 17;
         ((state >> 11) as usize % (side - width + 1)) as u32
     };
-    println!("edit (row, column): samples swept, of all; samples lit; ms: sweep, light; whole");
+    println!("edit (row, column): points swept, of all; texels lit; ms: sweep, light; whole");
     let mut costs = Vec::new();
     for i in 0..edits {
         let n = width as u32;
@@ -133,7 +133,7 @@ fn edit_all(gpu: &mut Headless, frame: &mut Frame, scene: &Scene, asked: &Reques
     Ok(())
 }
 
-/// What docs/embedding.md says: shares of all samples that were swept and lit, and the ratio of times, of each edit.
+/// What docs/embedding.md says: shares of all points that were swept and of texels that were lit, and the ratio of times, of each edit.
 fn summary(asked: &Request, costs: &[[f64; 3]]) -> String {
     let Request { side, brush, edits, .. } = asked;
     let [swept, lit, ratio] = [0, 1, 2].map(|i| {
@@ -145,7 +145,7 @@ fn summary(asked: &Request, costs: &[[f64; 3]]) -> String {
     let mean = swept.iter().sum::<f64>() / swept.len() as f64;
     format!(
         "A {brush}² brush at {edits} random places of a {side}² fractal, {AZIMUTHS} azimuths: 1/{:.0} to 1/{:.0} of \
-         all line samples swept, in the mean 1/{:.0}; {:.2} to {:.2} % of the samples lit again; {:.0} to {:.0} times \
+         all points of lines swept, in the mean 1/{:.0}; {:.2} to {:.2} % of the texels lit again; {:.0} to {:.0} times \
          faster than everything, and each time the same bits.",
         1.0 / most(&swept),
         1.0 / least(&swept),

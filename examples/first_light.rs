@@ -4,7 +4,7 @@ use ridgelight::gpu::{Headless, HeadlessOptions, Pixels};
 use ridgelight::plan::{self, Picture};
 use ridgelight::scene::{HeightField, Lights, Quality, Scene, Sun, Surface};
 
-/// Light of 128 × 128 samples, 30 m apart, row by row from the north.
+/// Light of 128 × 128 texels, 30 m apart, row by row from the north.
 pub fn light() -> ridgelight::Result<Pixels> {
     let wave = |i: usize| (0.1 * (i % 128) as f64).sin() * (0.07 * (i / 128) as f64).cos();
     let heights_m: Vec<f64> = (0..128 * 128).map(|i| 1200.0 + 150.0 * wave(i)).collect();

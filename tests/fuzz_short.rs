@@ -1,10 +1,11 @@
 //! The fuzz targets' entry points for a few seconds with fixed seeds: no bytes may panic, hang or
 //! take memory that they could not fill, and every refusal names the file.
 
-mod common;
+#[path = "common/formats.rs"]
+mod formats;
 
-use common::*;
 use exr::prelude::FlatSamples;
+use formats::*;
 use proptest::prelude::*;
 use ridgelight_io::{HeightOptions, parse_environment, parse_heights, parse_planes};
 use std::path::Path;

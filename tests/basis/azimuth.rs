@@ -39,8 +39,8 @@ fn blends_share_out_the_whole() {
     within(&Blend::BSpline.weights(0.5), &[a, b, b, a], 1e-15);
 }
 
-/// As the paper does it: each wedge's matrix, its turn about z, and the sum of m wedges, the last one from
-/// azimuth m - 1 back to 0. With a wedge less the answers differ.
+/// As in the paper: each wedge's matrix, its turn about z, and the sum of m wedges, the last one from azimuth m - 1
+/// back to 0. With one wedge less the result differs.
 #[test]
 fn weights_all_around_are_wedges_turned_and_summed() {
     for (order, count) in [(1, 3), (2, 5), (4, 8), (4, 32), (6, 7)] {
@@ -71,8 +71,7 @@ fn weights_all_around_are_wedges_turned_and_summed() {
     }
 }
 
-/// A level horizon is a cap about z: every zonal coefficient the cap's, all others 0, for any number of
-/// wedges.
+/// A level horizon is a cap about z: every zonal coefficient the cap's, all others 0, for any number of wedges.
 #[test]
 fn a_level_horizon_is_a_cap() {
     for order in ORDERS {
@@ -92,8 +91,8 @@ fn a_level_horizon_is_a_cap() {
     }
 }
 
-/// Slices and NLP agree on functions that NLP hold, and a sum over azimuths that is turned by one azimuth
-/// is the sum of slices moved on by one.
+/// Slices and NLP agree on functions that NLP represent, and a sum over azimuths that is turned by one azimuth is the
+/// sum of slices moved on by one.
 #[test]
 fn slices_turn_with_their_azimuths() {
     let (order, count) = (5, 9);
@@ -141,8 +140,7 @@ fn a_swath_is_its_wedges() {
     }
 }
 
-/// A swath once around, closed by the slice it began with, is the circle (linear: a B-spline stops at its
-/// ends).
+/// A swath once around, closed by the slice it began with, is the circle (linear: a B-spline stops at its ends).
 #[test]
 fn a_swath_once_around_is_the_circle() {
     let (order, count) = (6, 12);
@@ -153,7 +151,7 @@ fn a_swath_once_around_is_the_circle() {
     within(&assemble(order, &weights, &slices), &all, 1e-13);
 }
 
-/// Sizes for every order: n² rows; n columns for each azimuth that takes part.
+/// Sizes for every order: n² rows; n columns for each azimuth.
 #[test]
 fn sizes_follow_the_order() {
     for order in ORDERS {
@@ -166,8 +164,8 @@ fn sizes_follow_the_order() {
     }
 }
 
-/// Slices that turn slower than count - |m| are summed exactly without a blend; with one, m is damped by
-/// sinc(mΔφ/2) to the power 2 or 4, as one wedge's matrix says too.
+/// Slices that turn slower than count - |m| are summed exactly without a blend; with one, m is damped by sinc(mΔφ/2)
+/// to the power 2 or 4, as in one wedge's matrix.
 #[test]
 fn a_blend_all_around_damps_each_turn() {
     let (order, count) = (4, 9);
@@ -187,8 +185,8 @@ fn a_blend_all_around_damps_each_turn() {
     }
 }
 
-/// With ever more azimuths a smooth horizon's harmonics come without a blend faster than any power;
-/// linearly blended with the square; a blend's error is seen.
+/// With more azimuths a smooth horizon's harmonics converge faster than any power without a blend, and with the square
+/// for a linear blend; the test detects a blend's error.
 #[test]
 fn a_smooth_horizon_converges_fastest_without_a_blend() {
     let order = 4;

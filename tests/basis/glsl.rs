@@ -1,4 +1,4 @@
-//! The texts are run by a small reader of GLSL's sums and products: what they say, in f64.
+//! A small reader of GLSL's sums and products evaluates the generated texts in f64.
 
 use crate::{ORDERS, noise, within};
 use glam::DVec3;
@@ -99,13 +99,12 @@ impl Machine {
     }
 }
 
-/// Tokens apart: names with their index, numbers with sign and exponent, operators between blanks,
-/// brackets.
+/// Tokens apart: names with their index, numbers with sign and exponent, operators between blanks, brackets.
 fn tokens(text: &str) -> Vec<String> {
     text.replace('(', " ( ").replace(')', " ) ").split_whitespace().map(str::to_owned).collect()
 }
 
-/// n² products of at most n⁴ terms of constants that are f32: each off by 2^-24 of itself, |a b| ≤ 1 and
+/// n² products of at most n⁴ terms of constants that are f32, each with an error of 2^-24 of itself; |a b| ≤ 1 and
 /// Σ|Γ| over a row below 3 n².
 fn tolerance(order: usize) -> f64 {
     3.0 * (order * order) as f64 / f64::from(1 << 24)
@@ -129,7 +128,7 @@ fn products_are_products() {
     }
 }
 
-/// About an axis of azimuth 0 a zonal function needs m ≥ 0 only: the rest may hold anything.
+/// About an axis of azimuth 0 a zonal function needs m ≥ 0 only: the rest may have any value.
 #[test]
 fn aligned_products_are_products_with_what_is_even_in_azimuth() {
     let axis = glam::DVec3::new(0.6, 0.0, 0.8);
@@ -164,7 +163,7 @@ fn slices_are_slices() {
             }
             machine.run(&text);
             let expected = Slices::new(order).above(elevation);
-            // Coefficients of at most 60 in size, each off by 2^-24, eight of them.
+            // Coefficients of at most 60 in size, each with an error of 2^-24, eight of them.
             within(&machine.read("slice", expected.len()), &expected, 500.0 / f64::from(1 << 24));
             if elevation == 0.0 {
                 println!("slice {order}: {} * {} +", machine.products, machine.sums);
@@ -193,8 +192,8 @@ fn visibility_is_what_is_not_occluded() {
     }
 }
 
-/// Y_lm to order 6 as the text says them, anywhere on the sphere: sums of seven terms of at most 15 in all, each
-/// off by 2^-24.
+/// Y_lm to order 6 by the text, anywhere on the sphere: sums of seven terms of at most 15 in all, each with an error
+/// of 2^-24.
 #[test]
 fn harmonics_are_harmonics() {
     let text: Vec<String> = glsl_harmonics()
@@ -213,7 +212,7 @@ fn harmonics_are_harmonics() {
     }
 }
 
-/// The shaders' copies are the texts. `RIDGELIGHT_BLESS=1` writes them anew.
+/// The shaders hold the generated texts. `RIDGELIGHT_BLESS=1` writes them again.
 #[test]
 fn the_shaders_copies_are_the_texts() {
     let shared = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders_glsl");

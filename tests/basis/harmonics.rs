@@ -89,8 +89,8 @@ fn turning_about_z_turns_the_function() {
     }
 }
 
-/// A zonal function of the angle to its axis, whatever the axis: Σ z_l √((2l+1)/4π) P_l(axis·e), which
-/// about the vertical is Σ z_l Y_l0. Its band norms do not change.
+/// A zonal function about any axis is one of the angle to the axis: Σ z_l √((2l+1)/4π) P_l(axis·e), which about the
+/// vertical is Σ z_l Y_l0. Its band norms do not change.
 #[test]
 fn a_turned_zonal_function_is_one_of_the_angle_to_its_axis() {
     for order in ORDERS {

@@ -40,8 +40,7 @@ fn a_horizon_cuts_the_light() {
     assert_eq!(KEY.nlp(4, -1.0), KEY.nlp(4, 0.3));
 }
 
-/// Light is lost little by little as one horizon rises: band 0 falls linearly with what the slices hold,
-/// never rises.
+/// As one horizon rises the light never increases, and band 0 falls linearly with the slices' share.
 #[test]
 fn light_falls_as_a_horizon_rises() {
     let slices = Slices::new(4);

@@ -15,7 +15,7 @@ fn gauss_rule_is_exact_to_its_degree() {
     assert!(
         (integral(-1.0, 1.0, |x| (9.0 * x).powi(64)) / 9f64.powi(64) - 2.0 / 65.0).abs() > 1e-19
     );
-    // The fastest turn it is given: ∫ from 0 to 2π of φ sin 5φ is -2π/5, of cos 5φ is 0.
+    // The fastest turn in use: ∫ from 0 to 2π of φ sin 5φ is -2π/5, of cos 5φ is 0.
     let turn = std::f64::consts::TAU;
     within(&[integral(0.0, turn, |x| x * (5.0 * x).sin())], &[-turn / 5.0], 1e-14);
     within(&[integral(0.0, turn, |x| (5.0 * x).cos())], &[0.0], 1e-14);
@@ -63,8 +63,8 @@ fn nlp_are_orthonormal_and_occlusion_is_their_integral() {
     }
 }
 
-/// Everything below the zenith is everything: √2 and 0s; below the nadir, nothing. Near both the first
-/// number keeps its digits: 1 + sin σ = 2 sin²((σ + π/2)/2).
+/// Occlusion up to the zenith is complete: √2 and 0s; below the nadir it is 0. Near both the first number keeps its
+/// digits: 1 + sin σ = 2 sin²((σ + π/2)/2).
 #[test]
 fn occlusion_at_its_ends() {
     let (sin, cos) = FRAC_PI_2.sin_cos();

@@ -1,4 +1,4 @@
-//! Light through a horizon and onto a surface, against integrals of what they stand for.
+//! Light through a horizon and onto a surface, against direct integrals.
 
 use crate::{ORDERS, noise, within};
 use glam::DVec3;
@@ -58,7 +58,7 @@ fn exit(matrix: &[Vec<f64>], rows: &[f64], seen: &[f64]) -> f64 {
     matrix.iter().zip(rows).map(|(m, r)| r * row(m)).sum()
 }
 
-/// Light of order n - 1 over a plane, through visibility of order n: nothing is cut off.
+/// Light of order n - 1 over a plane, through visibility of order n: the series is complete.
 #[test]
 fn a_plane_receives_all_of_a_light_of_one_order_less() {
     let normal = DVec3::new(0.5, -0.3, 1.0).normalize();
@@ -70,14 +70,14 @@ fn a_plane_receives_all_of_a_light_of_one_order_less() {
         let want = directly(&light, &horizons, normal);
         let got = exit(&matrix, rows, &seen(order, &horizons));
         within(&[got], &[want], 1e-11);
-        // One order less of what is seen loses part of it, but for the constant light's.
+        // Visibility of one order less loses part of it, but for the constant light's.
         let mut shorter = seen(order, &horizons);
         shorter[(order - 1) * (order - 1)..].fill(0.0);
         assert!((exit(&matrix, rows, &shorter) - want).abs() > 1e-4, "order {order}");
     }
 }
 
-/// The lobe's matrix is the product of three series: light, what is seen, the clamped cosine about N.
+/// The lobe's matrix is the product of three series: light, visibility, the clamped cosine about N.
 #[test]
 fn a_lobe_is_the_triple_product() {
     let normal = DVec3::new(0.2, 0.6, 0.9).normalize();
@@ -94,10 +94,10 @@ fn a_lobe_is_the_triple_product() {
     }
 }
 
-/// So is a gloss, of all bands of a Phong lobe about a direction; it integrates to 1, which is all of a light of
-/// 1 that is seen whole.
+/// Specular likewise, with all bands of a Phong lobe about a direction; it integrates to 1, the whole of an unoccluded
+/// light of 1.
 #[test]
-fn a_gloss_is_the_triple_product() {
+fn specular_is_the_triple_product() {
     let mirror = DVec3::new(-0.3, 0.7, -0.2).normalize();
     for (order, exponent) in ORDERS.zip([0.0, 1.0, 5.0, 20.0, 1e3, 1e4]) {
         let (light, v) = (noise(3, order * order), noise(4, order * order));
@@ -111,8 +111,8 @@ fn a_gloss_is_the_triple_product() {
     }
 }
 
-/// The fit's equations by another way: what is left above ground, and 1e-4 of what is left below to the
-/// mean above, is orthogonal to all that could have been taken. A constant is found again.
+/// The fit's equations in another form: the residual above ground, and 1e-4 of the residual below it to the mean
+/// above, is orthogonal to all functions of the fit. A constant is reproduced.
 #[test]
 fn a_fit_above_ground_is_the_best_there() {
     // Gauss' rule in z, exact here, times even azimuths, exact below 32 turns.

@@ -1,5 +1,4 @@
-//! Legendre polynomials and spherical harmonics against independent quadrature, and against answers derived
-//! beside them.
+//! Legendre polynomials and spherical harmonics against independent quadrature, and against closed forms.
 
 mod azimuth;
 mod glsl;
@@ -8,8 +7,8 @@ mod key;
 mod legendre;
 mod light;
 mod product;
+mod reflected;
 mod slice;
-mod thrown;
 mod triangles;
 mod wedge;
 mod window;
@@ -59,7 +58,7 @@ pub(crate) fn direction(theta: f64, phi: f64) -> DVec3 {
     DVec3::new(theta.sin() * phi.cos(), theta.sin() * phi.sin(), theta.cos())
 }
 
-/// Directions all over the sphere, even on it (a Fibonacci spiral).
+/// Evenly spaced directions on the sphere (a Fibonacci spiral).
 pub(crate) fn directions(count: usize) -> impl Iterator<Item = DVec3> {
     (0..count).map(move |i| {
         let z: f64 = 1.0 - (2 * i + 1) as f64 / count as f64;
@@ -105,7 +104,7 @@ pub(crate) fn noise(seed: u64, count: usize) -> Vec<f64> {
         .collect()
 }
 
-/// A number off by 2e-12 of itself is not the reference, nor is 2e-15 where there should be nothing.
+/// The comparison fails for an error of 2e-12 of a number, and for 2e-15 in place of 0.
 #[test]
 fn comparators_fail() {
     for (got, expected) in [(1.0 + 2e-12, 1.0), (2e-15, 0.0), (f64::NAN, 0.0)] {

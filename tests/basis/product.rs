@@ -7,7 +7,7 @@ use ridgelight_cpu::basis::rotate_z;
 use ridgelight_cpu::basis::{reconstruct, turned};
 use std::f64::consts::PI;
 
-/// Distinct products and all that are not 0, as counted by an independent quadrature.
+/// The numbers of distinct and of nonzero products match those of an independent quadrature.
 #[test]
 fn few_are_not_0() {
     for (order, distinct) in [(1, 1), (2, 4), (3, 25), (4, 77), (5, 238), (6, 549)] {
@@ -38,7 +38,7 @@ fn products_are_the_functions() {
     }
 }
 
-/// A product turned is the product of what is turned.
+/// The product of turned functions is their turned product.
 #[test]
 fn products_turn_with_their_factors() {
     let (a, b) = (noise(7, 25), noise(8, 25));
@@ -47,7 +47,7 @@ fn products_turn_with_their_factors() {
     within(&turned, &rotate_z(&product(&triples, &a, &b), 0.9), 1e-13);
 }
 
-/// The light's matrix gives what the product gives, whoever receives; it is symmetric.
+/// The light's matrix gives the product with any receiver; it is symmetric.
 #[test]
 fn a_lights_matrix_is_its_product() {
     for order in ORDERS {
@@ -65,8 +65,8 @@ fn a_lights_matrix_is_its_product() {
     }
 }
 
-/// Σ Γ L V H: a sky of radiance 1 through a free half-space, on a flat diffuse receiver, is 1 up to what
-/// order 4 leaves out, and does not care which two are multiplied first.
+/// Σ Γ L V H: a sky of radiance 1 through a free half-space, on a flat diffuse receiver, is 1 up to the bands beyond
+/// order 4, whichever two are multiplied first.
 #[test]
 fn light_through_visibility_on_a_receiver() {
     let up = |zonal: Vec<f64>| turned(&zonal, DVec3::Z);

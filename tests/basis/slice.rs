@@ -84,7 +84,7 @@ fn an_odd_entry_is_known() {
     within(&[nlp(1, 0.2)[0]], &[0.5_f64.sqrt()], 1e-16);
 }
 
-/// What NLP of order n lose of visibility in odd m: as the order grows, less and less (Θ_11's part).
+/// The part of visibility in odd m that NLP of order n lose falls with the order (Θ_11's part).
 #[test]
 fn nlp_lose_part_of_odd_m_and_less_with_order() {
     let mut last = f64::INFINITY;

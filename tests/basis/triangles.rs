@@ -1,4 +1,4 @@
-//! Nets of directions: closed, covering the sphere once, and Delaunay's.
+//! Triangulations of directions: closed, covering the sphere once, and Delaunay.
 
 use std::f64::consts::PI;
 
@@ -54,8 +54,8 @@ fn circumcircles_are_empty() {
     }
 }
 
-/// Shares put a direction back where it was, on its triangle's plane, and belong to the nearest three where these
-/// form a triangle: a corner itself has all of it.
+/// Shares reproduce a direction on its triangle's plane and belong to the nearest three where these form a triangle; a
+/// corner itself has all of it.
 #[test]
 fn shares_lead_back_to_the_direction() {
     let (directions, net) = (sphere(257), sphere(257).triangles().expect("a net"));
@@ -73,7 +73,7 @@ fn shares_lead_back_to_the_direction() {
     }
 }
 
-/// Of a hemisphere: the same from above, nothing below; each of the set stands for 2π/N.
+/// For a hemisphere: the same from above, nothing below; each direction stands for 2π/N.
 #[test]
 fn hemispheres_are_covered_from_above() {
     let directions = Directions::fibonacci(128, 0.0, 0).expect("directions");
@@ -82,13 +82,13 @@ fn hemispheres_are_covered_from_above() {
     let points = directions.vectors();
     assert!(net.around(points, DVec3::new(0.0, 0.6, 0.8)).is_some());
     assert!(net.around(points, -DVec3::Z).is_none());
-    // Down to the lowest ring of points, which stand 1/256 and a little more over the horizon.
+    // Down to the lowest ring of points, which stand slightly more than 1/256 above the horizon.
     let covered: f64 = net.areas_sr(points).iter().sum();
     assert!((0.9 * 2.0 * PI..2.0 * PI).contains(&covered), "{covered}");
 }
 
-/// Of a part of the sphere: no lid over the cap that is left out. The rim is as ragged as two roots of the solid angle that
-/// each direction stands for, farther than which no place is from a direction, all along the cap's edge.
+/// For a part of the sphere: the cap that is left out stays open. Along the cap's edge the rim varies by up to two
+/// roots of each direction's solid angle, the largest distance of any point from a direction.
 #[test]
 fn caps_without_directions_are_left_open() {
     for (count, lowest_z) in [(333, -0.4_f64), (1024, -0.4), (1024, -0.1), (4096, -0.8)] {
@@ -106,14 +106,14 @@ fn caps_without_directions_are_left_open() {
     }
 }
 
-/// A vector's mean over the sphere is nothing, and that of its height over a cap the middle of the cap's heights.
+/// The mean vector over the sphere is 0, and the mean height over a cap is the middle of the cap's heights.
 #[test]
 fn directions_are_even() {
     for (count, lowest_z) in [(64, -1.0), (1024, -1.0), (100, 0.0), (333, -0.4)] {
         let directions = Directions::fibonacci(count, lowest_z, 7).expect("directions");
         let mean = directions.vectors().iter().sum::<DVec3>() / count as f64;
         assert!((mean.z - 0.5 * (1.0 + lowest_z)).abs() < 1e-12, "{mean}");
-        // Azimuths are a one-dimensional net of discrepancy 2/N or so for sums of period 1.
+        // Azimuths are a one-dimensional point set of discrepancy about 2/N for sums of period 1.
         assert!(mean.truncate().length() < 4.0 / count as f64, "{count}: {mean}");
     }
 }

@@ -16,8 +16,7 @@ fn wedges_are_the_reference() {
     }
 }
 
-/// Direct integration over the wedge: θ from 0 to the horizon's, which moves with φ, in a variable u of
-/// [0..1].
+/// Direct integration over the wedge: θ from 0 to the horizon's, which moves with φ, in a variable u of [0..1].
 #[test]
 fn wedges_are_their_integrals() {
     let slices = Slices::new(6);
@@ -112,8 +111,7 @@ fn a_tables_error_falls_with_the_square_of_its_spacing() {
     }
 }
 
-/// Wedges blend angles, slices blend what is seen: both come to the truth with the square of the wedge's
-/// width.
+/// Wedges blend angles, slices blend visibility: both converge with the square of the wedge's width.
 #[test]
 fn wedges_and_slices_meet_as_azimuths_grow() {
     let order = 4;

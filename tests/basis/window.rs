@@ -23,10 +23,10 @@ fn known_factors() {
     within(&hann(6, 1e9), &[1.0; 6], 1e-15);
 }
 
-/// The mean of z that a polynomial ≥ 0 can reach: the last node of Gauss' rule. 1/3 for degree 1 (1 + z),
-/// 1/√3 for degree 2 (two points), (1 + √6)/5 for degree 3 (Radau), √(3/5) for degree 4 (three points).
+/// The largest mean of z of a polynomial ≥ 0 is the last node of Gauss' rule. 1/3 for degree 1 (1 + z), 1/√3 for
+/// degree 2 (two points), (1 + √6)/5 for degree 3 (Radau), √(3/5) for degree 4 (three points).
 #[test]
-fn the_sharpest_lobe_keeps_the_last_node_of_band_1() {
+fn the_strongest_window_keeps_the_last_node_of_band_1() {
     assert_eq!(nonnegative(1), [1.0]);
     let nodes = [1.0 / 3.0, 3.0_f64.sqrt().recip(), (1.0 + 6.0_f64.sqrt()) / 5.0, 0.6_f64.sqrt()];
     for (order, node) in (2..).zip(nodes) {
@@ -35,8 +35,8 @@ fn the_sharpest_lobe_keeps_the_last_node_of_band_1() {
     assert!(nonnegative(6).windows(2).all(|pair| pair[1] < pair[0]));
 }
 
-/// A point light is the worst there is: after this window it touches 0 and does not pass it. Without, it
-/// rings to a large share of its peak; Hann of the order's width still does.
+/// A point light is the worst case: with this window its minimum is 0. Without it, the series rings to a large share
+/// of its peak; so it does with Hann of the order's width.
 #[test]
 fn a_point_light_is_not_negative() {
     for order in ORDERS {
@@ -53,8 +53,8 @@ fn a_point_light_is_not_negative() {
     }
 }
 
-/// Lights of discs and points: the mildest window leaves 0 as the lowest value where something rang, and
-/// the whole series where nothing did.
+/// Lights of discs and points: the mildest window gives a lowest value of 0 where the series rings, and leaves the
+/// series unchanged where it does not.
 #[test]
 fn the_mildest_window_just_reaches_0() {
     for order in 2..=6 {
@@ -85,7 +85,7 @@ fn the_mildest_window_just_reaches_0() {
     }
 }
 
-/// What is negative on the whole is no light: the whole window is all that is done.
+/// A series that is negative on average gets the whole window.
 #[test]
 fn a_series_below_0_gets_the_whole_window() {
     let dark: Vec<f64> = point(4, DVec3::Z).iter().map(|c| -c).collect();

@@ -46,9 +46,9 @@ fn caps_are_the_thesis() {
     }
 }
 
-/// From far away a ball is a point: its solid angle π (r/d)² times Y_l0(z); at 1e9 radii and more.
+/// From a distance a sphere light is a point: its solid angle π (r/d)² times Y_l0(z); at 1e9 radii and more.
 #[test]
-fn a_far_ball_is_a_point() {
+fn a_distant_sphere_light_is_a_point() {
     for distance in [1e4_f64, 1e9, 1e150] {
         let solid_angle = PI / distance / distance;
         for (l, z) in sphere(6, 1.0, distance).iter().enumerate() {
@@ -64,7 +64,7 @@ fn a_far_ball_is_a_point() {
 
 /// Outside, sin a = r/d; on the surface half of all directions; inside all of them.
 #[test]
-fn a_ball_around_its_receiver_is_the_whole_sphere() {
+fn a_sphere_light_around_its_receiver_is_the_whole_sphere() {
     same(&sphere(6, 2.0, 4.0), &cap(6, PI / 6.0));
     within(&sphere(6, 2.0, 2.0), &cap(6, FRAC_PI_2), 1e-15);
     for distance in [1.9999999, 1.0, 0.0] {
@@ -74,14 +74,14 @@ fn a_ball_around_its_receiver_is_the_whole_sphere() {
     }
 }
 
-/// A flat diffuse receiver gets from a disc at the zenith π sin²a: all bands but the first three are 0 in
-/// the product of an order that holds them, and the series converges to it.
+/// A flat diffuse receiver gets π sin²a from a disc at the zenith: the product of an order beyond the first three
+/// bands has zeros there, and the series converges to it.
 #[test]
 fn a_disc_at_the_zenith_lights_by_its_sine_squared() {
     let half = 0.6_f64;
     let exact = PI * half.sin().powi(2);
     let lit: f64 = cap(6, half).iter().zip(clamped_cosine(6)).map(|(a, b)| a * b).sum();
-    // What is left out: bands 6 and on, of |disc| ≤ √(2π(1-cos a)) and |cosine| beyond band 5, by Schwarz.
+    // The remainder: bands 6 and on, of |disc| ≤ √(2π(1-cos a)) and |cosine| beyond band 5, by Schwarz.
     let rest = 2.0 * PI / 3.0 - clamped_cosine(6).iter().map(|c| c * c).sum::<f64>();
     let disc = TAU * (1.0 - half.cos()) - cap(6, half).iter().map(|c| c * c).sum::<f64>();
     assert!((lit - exact).abs() <= (rest * disc).sqrt(), "{lit} {exact}");
@@ -89,13 +89,13 @@ fn a_disc_at_the_zenith_lights_by_its_sine_squared() {
 }
 
 #[test]
-fn a_balls_azimuths() {
+fn azimuths_of_a_sphere_light() {
     assert_eq!(sphere_half_azimuth(1.0, 2.0), Some(0.5_f64.asin()));
     assert_eq!(sphere_half_azimuth(1.0, 1.0), None);
     assert_eq!(sphere_half_azimuth(1.0, 0.0), None);
 }
 
-/// The sky against quadrature; all that is not zonal is 0.
+/// The sky against quadrature; all coefficients that are not zonal are 0.
 #[test]
 fn the_sky_is_the_upper_half() {
     let direct = project(4, [0.0, FRAC_PI_2], [0.0, TAU], |_, _| 1.0);
@@ -129,8 +129,7 @@ fn phong_is_its_lobe() {
     within(&phong(6, 1.0), &cosine, 1e-15);
 }
 
-/// The paper's lobe keeps e^(-l²/2S) of band l where the lobe itself keeps e^(-l(l+1)/2S) nearly: l/2S
-/// apart.
+/// The paper's lobe keeps e^(-l²/2S) of band l, the lobe itself about e^(-l(l+1)/2S): l/2S apart.
 #[test]
 fn the_papers_phong_is_sharper_by_half_its_band_over_the_exponent() {
     let s = 1e4;

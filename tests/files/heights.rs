@@ -1,6 +1,6 @@
 //! Each format, built here byte by byte, gives the heights and cells that were put in.
 
-use crate::common::*;
+use crate::formats::*;
 use crate::{absolute, expected, one_sentence, parse};
 use exr::prelude::FlatSamples;
 use ridgelight::Error;
@@ -139,7 +139,7 @@ fn png_depths_and_masks() {
     let field = parse("a.png", &bytes).unwrap();
     assert_eq!(field.voids().unwrap(), [false, true]);
     assert_eq!(absolute(&field)[0], 9.0);
-    // What stands beside the samples changes nothing, even where it is broken or long.
+    // Chunks beside the pixels change nothing, even broken or long ones.
     let note = [b"Comment\0".to_vec(), vec![b'x'; 1 << 20]].concat();
     let chunks: [(&[u8; 4], &[u8]); 3] =
         [(b"gAMA", &[0, 0, 0, 1]), (b"iCCP", b"p\0\0junk"), (b"tEXt", &note)];
@@ -295,7 +295,7 @@ fn geotiff_places_and_units() {
     assert!(field("nan", &heights).unwrap().voids().unwrap()[3]);
 }
 
-/// By the header alone: nothing but it is there.
+/// Sizes come from the header alone; the files hold nothing else.
 #[test]
 fn sizes_are_known_from_headers() {
     let folder = tempfile::tempdir().unwrap();

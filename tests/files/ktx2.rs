@@ -1,4 +1,4 @@
-//! KTX2 as another reader takes it, and by the rules of its specification.
+//! KTX2 files, read by another reader and checked by the rules of the specification.
 
 use ::ktx2::Reader;
 use ::ktx2::dfd::{Basic, Block};
@@ -36,8 +36,8 @@ const COMPONENTS: [Component; 6] = [
     Component::F32,
 ];
 
-/// Every format: the reader finds sides, layers, texels and texts, and would have described the texels alike (but for
-/// their colour's primaries, which numbers have none of).
+/// For every format the reader finds sides, layers, texels and texts, and describes the texels alike (but for colour
+/// primaries, which plain numbers lack).
 #[test]
 fn another_reader_finds_what_was_written() {
     let folder = tempfile::tempdir().unwrap();
@@ -49,7 +49,7 @@ fn another_reader_finds_what_was_written() {
             let format = TexelFormat { component, count };
             let (number, name) = format.vulkan().unwrap();
             for layers in [None, Some(1), Some(3)] {
-                // Sides whose bytes are no multiple of anything.
+                // Sides whose bytes are not multiples of 4.
                 let texels = write(&path, format, [5, 3], layers, &kept);
                 let bytes = std::fs::read(&path).unwrap();
                 let reader = Reader::new(&bytes).unwrap_or_else(|e| panic!("{name}: {e:?}"));
@@ -92,8 +92,8 @@ fn another_reader_finds_what_was_written() {
     }
 }
 
-/// What the specification asks of places and order, which readers need not check: §3.4 and §3.8 (sections follow each
-/// other, at multiples of 4), §3.9.7 (a level at a multiple of both a texel and 4), §3.11 (keys by code point).
+/// Places and order by the specification, which readers need not check: §3.4 and §3.8 (sections follow each other, at
+/// multiples of 4), §3.9.7 (a level at a multiple of both a texel and 4), §3.11 (keys by code point).
 #[test]
 fn sections_lie_where_they_must() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,6 +1,6 @@
 //! Environments and albedo maps.
 
-use crate::common::*;
+use crate::formats::*;
 use crate::one_sentence;
 use exr::prelude::FlatSamples;
 use ridgelight::Error;
@@ -26,11 +26,11 @@ fn hdr_headers_and_codings() {
     let picture = environment("a.hdr", &hdr(4, 2, noise, &one)).unwrap();
     assert_eq!((picture.width(), picture.height(), picture.rotation_rad()), (4, 2, 0.25));
     assert!(picture.texels().iter().all(|t| *t == [1.0, 0.5, 0.25]));
-    // EXPOSURE and COLORCORR are what the values were multiplied by, line after line.
+    // EXPOSURE and COLORCORR, by which the values were multiplied, line after line.
     let lines = "EXPOSURE=2\nEXPOSURE= 4.0\nCOLORCORR=1 0.5 1\n";
     let picture = environment("a.hdr", &hdr(4, 2, lines, &one)).unwrap();
     assert!(picture.texels().iter().all(|t| *t == [0.125, 0.125, 0.03125]));
-    // The other first line there is, and the ends of the exponent: 128·2^(1-136), 255·2^(255-136).
+    // The format's other first line, and the ends of the exponent: 128·2^(1-136), 255·2^(255-136).
     let ends = hdr(4, 2, "", &[one[0], [128, 0, 0, 1], [255, 128, 0, 255], [9, 9, 9, 0]].repeat(2));
     let picture = environment("a.hdr", &with(ends, "RADIANCE", "RGBE")).unwrap();
     let smallest = f32::from_bits(1 << 21);
@@ -39,7 +39,7 @@ fn hdr_headers_and_codings() {
     // Old runs: one texel, then seven more of it; rows do not share runs.
     let old = hdr(4, 2, "", &[[128, 64, 32, 129], [1, 1, 1, 3], [128, 0, 0, 129], [1, 1, 1, 3]]);
     assert_eq!(environment("a.hdr", &old).unwrap().texels()[7], [1.0, 0.0, 0.0]);
-    // Marks in a row are the digits of one count, lowest first: 1 + 255 + 256·1 = 512.
+    // Run markers in a row are the digits of one count, lowest first: 1 + 255 + 256·1 = 512.
     let long = hdr(512, 256, "", &[[128, 64, 32, 129], [1, 1, 1, 255], [1, 1, 1, 1]].repeat(256));
     let picture = environment("a.hdr", &long).unwrap();
     assert!(picture.texels().iter().all(|t| *t == [1.0, 0.5, 0.25]));
@@ -76,7 +76,7 @@ fn hdr_headers_and_codings() {
         (with(hdr(4, 2, "", &one), "\n\n", "\r\n\r\n"), "no empty line"),
         (with(hdr(4, 2, "", &one), "-Y 2 +X 4", "+Y 2 +X 4"), "Orientation +Y +X"),
         (with(hdr(4, 2, "", &one), "-Y 2 +X 4", "-Y 2 +X -4"), "width"),
-        // A row of 257 takes at least a texel and two marks, 12 bytes.
+        // A row of 257 takes at least a texel and two run markers, 12 bytes.
         (hdr(300, 20_000, "", &[one[0]; 20_000]), "no more than the file can hold"),
     ] {
         let error = environment("a.hdr", &bytes).unwrap_err().to_string();
@@ -174,7 +174,7 @@ fn albedo_is_linear_and_fits_the_field() {
 
 /// Channels by their names, whatever their order; two planes of an array; the size and the range of each texel.
 #[test]
-fn lobes_are_two_numbers_a_sample() {
+fn specular_maps_have_two_planes() {
     use ridgelight::scene::{PhongSpecular, Specular};
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name);

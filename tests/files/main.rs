@@ -1,7 +1,7 @@
 //! Readers against files built here byte by byte and against real ones; writers by reading back.
 
-#[path = "../common/mod.rs"]
-mod common;
+#[path = "../common/formats.rs"]
+mod formats;
 mod heights;
 mod ktx2;
 mod light;
@@ -10,7 +10,7 @@ mod real;
 mod visible;
 mod write;
 
-use common::HEIGHTS;
+use formats::HEIGHTS;
 use ridgelight::Error;
 use ridgelight::scene::HeightField;
 use ridgelight_io::{HeightOptions, parse_heights};

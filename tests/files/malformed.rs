@@ -1,6 +1,6 @@
 //! Wrong inputs: one sentence each, and no panic.
 
-use crate::common::*;
+use crate::formats::*;
 use crate::{one_sentence, parse};
 use ridgelight::Error;
 use ridgelight_io::*;
@@ -31,7 +31,7 @@ fn malformed_heights_are_one_sentence() {
             }
         }
     }
-    // Sizes that lie: IHDR of a PNG is at 16..24 (its CRC is checked first, so mend it).
+    // Wrong sizes: IHDR of a PNG is at 16..24 (the test repairs its CRC, which is checked first).
     let (name, png) = &files[0];
     for (rows, cols) in
         [(0_u32, 4_u32), (3, 0), (4, 4), (70_000, 4), (1 << 31, 1 << 31), (65_536, 65_536)]
@@ -105,7 +105,7 @@ fn malformed_heights_are_one_sentence() {
     refused("a.asc", b"\xff\xfe\0\x01", "no text");
     refused("a.npz", &zip(&[("a.txt", b"hello".to_vec())]), "no arrays");
     refused("a.npz", &zip(&[("elevation.npy", b"hello".to_vec())]), "no array");
-    // The checksum that the archive's directory says of its first member.
+    // The checksum of the first member in the archive's directory.
     let mut flipped = height_files().into_iter().find(|f| f.0 == "a.npz").expect("kept").1;
     let at = flipped.windows(4).position(|w| w == b"PK\x01\x02").expect("a directory");
     flipped[at + 16] ^= 1;

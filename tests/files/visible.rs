@@ -1,4 +1,4 @@
-//! What samples see, kept and read back for the same field alone.
+//! Visible points, written and read back for the same field only.
 
 use ridgelight::scene::{Border, Directions, HeightField, VisiblePoint, VisiblePoints};
 use ridgelight_cpu::visible_points::visible_points;
@@ -32,9 +32,10 @@ fn visible_points_round_trip() {
     }
 }
 
-/// The largest field of a byte an axis has a sample (254, 254), which is no mark; neither is the last row's or column's.
+/// The largest field with one byte an axis has a texel (254, 254), which is no marker; neither is the last row or
+/// column.
 #[test]
-fn the_last_sample_of_a_small_field_is_no_mark() {
+fn the_last_texel_of_a_small_field_is_no_void_marker() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("points.npz");
     for side in [255, 256] {
@@ -88,7 +89,7 @@ fn points_of_another_field_are_refused() {
 }
 
 #[test]
-fn points_that_are_none_are_refused() {
+fn malformed_visible_points_are_refused() {
     let field = waves(5, 7, 1.0);
     let directions = Directions::fibonacci(4, -1.0, 0).expect("directions");
     let of = |words: Vec<u32>| {
@@ -118,9 +119,9 @@ fn points_that_are_none_are_refused() {
     }
 }
 
-/// Of an odd number of directions the last word's upper half is of none, whatever stands in it.
+/// For an odd number of directions the upper half of the last word does not count.
 #[test]
-fn points_compare_by_what_is_seen() {
+fn visible_points_compare_by_visibility() {
     let field = waves(2, 2, 1.0);
     let directions = Directions::fibonacci(5, -1.0, 0).expect("directions");
     let of = |padding: u32| {

@@ -1,10 +1,10 @@
-//! What is written reads back, and what fails leaves nothing.
+//! Written files read back; a failed write leaves nothing.
 
 use ridgelight::scene::Tone;
 use ridgelight_io::*;
 use std::path::Path;
 
-/// Names in a folder, to see that nothing temporary stays.
+/// Names in a folder, to show that no temporary file stays.
 fn listing(folder: &Path) -> Vec<String> {
     let entries = std::fs::read_dir(folder).unwrap();
     let mut names: Vec<String> =
@@ -59,7 +59,7 @@ fn exr_layers_round_trip() {
     assert_eq!(picture.dimensions(), (cols as u32, rows as u32));
     assert!(picture.pixels().zip(&rgb).all(|(p, t)| p.0 == *t));
 
-    // What cannot be written leaves the old file and nothing else.
+    // A failed write leaves the old file and nothing else.
     let before = std::fs::read(&path).unwrap();
     let short = [Layer { name: String::new(), channels: Channels::Rgb(&rgb[1..]) }];
     let twice = [layers[0].clone(), layers[0].clone()];
@@ -74,7 +74,7 @@ fn exr_layers_round_trip() {
     assert_eq!(listing(folder.path()), ["out.exr"]);
 }
 
-/// Texts in either chunk are read back by another reader's means; a name that PNG does not take leaves nothing.
+/// Another reader finds the texts in either chunk; a name that PNG does not allow leaves no file.
 #[test]
 fn png_texts_round_trip() {
     let folder = tempfile::tempdir().unwrap();

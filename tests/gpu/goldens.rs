@@ -1,9 +1,7 @@
-//! Results kept as floats in `tests/goldens/`: what changes is seen, and every driver gives the same
-//! within its roundings.
+//! Results stored as floats in `tests/goldens/`: a change fails, and every driver gives the same within its roundings.
 //!
-//! A failure writes what was got, what was wanted and the difference as EXR, and says where. To accept
-//! new results: `RIDGELIGHT_BLESS=1 cargo nextest run --test gpu goldens` on lavapipe, and look at what
-//! has changed.
+//! A failure writes the found and the expected values and their difference as EXR, and prints where. To accept new
+//! results: `RIDGELIGHT_BLESS=1 cargo nextest run --test gpu goldens` on lavapipe, and look at the changes.
 
 use std::path::{Path, PathBuf};
 
@@ -41,7 +39,7 @@ fn kept(file: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/goldens").join(file)
 }
 
-/// Compares an output with the file kept for it, or keeps it where blessing is asked for.
+/// Compares an output with its stored file, or writes the file where blessing is requested.
 fn check(device: &Device, file: &str, pixels: &Pixels, tolerance: f64) {
     if std::env::var_os("RIDGELIGHT_BLESS").is_some_and(|v| v == "1") {
         let name = &device.report().name;
@@ -55,7 +53,7 @@ fn check(device: &Device, file: &str, pixels: &Pixels, tolerance: f64) {
     }
 }
 
-/// What a picture's horizons err by in `count` azimuths of a plan.
+/// The errors of a picture's horizons in `count` azimuths of a plan.
 fn shade_error(scene: &Scene, plan: &Plan, count: usize) -> ShadeError {
     let heights = || scene.field.heights_m().iter().map(|h| f64::from(*h));
     let (low, high) = (heights().fold(f64::MAX, f64::min), heights().fold(f64::MIN, f64::max));

@@ -1,68 +1,104 @@
-//! Everything that needs a Vulkan device. `tools/test` runs it on lavapipe and on SwiftShader under
-//! validation with synchronisation validation; alone, it runs on whatever driver is first.
+//! All tests that need a Vulkan device; a module is a room of the passes. `tools/test` runs them on lavapipe and on
+//! SwiftShader under validation with synchronisation validation; alone, they run on the first driver.
 
-mod analytic;
-mod ash_host;
-mod baked;
-mod borrowed;
-mod bounce_edges;
-mod bounce_nodes;
-mod bounces;
-mod buffers;
-mod change;
-mod colours;
-mod contract;
-mod curved;
-mod debugger;
-// Its shaders are compiled from GLSL only.
-mod bounced_specular;
+mod bake {
+    pub mod cpu_reference;
+    mod curved;
+    // Its shaders are compiled from GLSL only.
+    #[cfg(any(feature = "glslang", feature = "shaderc"))]
+    mod decoders;
+    mod scatter;
+    mod scatter_views;
+    mod sky_view;
+}
+mod bounce {
+    pub mod cpu_reference;
+    mod edges;
+    mod engines;
+    mod nodes;
+    mod pits;
+    mod walks;
+}
 mod cpu_reference;
-#[cfg(any(feature = "glslang", feature = "shaderc"))]
-mod decoders;
-mod edits;
-mod embedding;
+mod direct {
+    pub mod cpu_reference;
+    mod keys;
+    mod sphere_sh;
+    mod spheres;
+}
+mod edit {
+    pub mod cpu_reference;
+    mod edits;
+}
+mod embedding {
+    mod ash_host;
+    mod borrowed;
+    mod buffers;
+    mod colours;
+    mod command_buffer;
+    mod contract;
+    mod debugger;
+    mod in_flight;
+    mod plan_changes;
+}
 mod extremes;
+#[path = "../common/fields.rs"]
+mod fields;
 #[expect(dead_code, reason = "its main, which prints")]
 #[path = "../../examples/first_light.rs"]
 mod first_light;
-mod flight;
-mod forms;
 mod goldens;
-mod harmonics;
-mod keys;
-mod many_lights;
-mod map;
-#[path = "../naive/mod.rs"]
-mod naive;
-mod pits;
+mod horizon {
+    mod analytic;
+    pub mod cpu_reference;
+    mod hull_storage;
+    mod pyramid;
+    mod terrain;
+}
+#[path = "../common/brute_force_paths.rs"]
+mod brute_force_paths;
 mod pruned;
-mod pyramid;
-mod real;
-mod reference_edges;
-mod reference_numbers;
+mod rays {
+    pub mod cpu_reference;
+}
+mod reference {
+    pub mod cpu_reference;
+    mod edges;
+    mod many_lights;
+    pub mod quadrature;
+}
 #[expect(dead_code, reason = "of its scenes only pits and grooves are drawn here")]
-#[path = "../reference_page/mod.rs"]
+#[path = "../common/reference_page.rs"]
 mod reference_page;
-mod reference_truth;
-mod scatter;
-mod scatter_views;
-#[path = "../scenes/mod.rs"]
+#[path = "../common/scenes.rs"]
 mod scenes;
-mod soft_spheres;
-mod specular;
-mod spheres;
-mod subsampled;
-#[path = "../target/mod.rs"]
+mod sh {
+    pub mod cpu_reference;
+    mod harmonics;
+    mod nodes;
+    mod reference_numbers;
+}
+mod specular {
+    mod bounced;
+    pub mod cpu_reference;
+    mod direct;
+}
+#[path = "../common/target.rs"]
 mod target;
-mod view;
-mod view_flight;
-mod walks;
+mod view {
+    mod in_flight;
+    mod map;
+    mod pictures;
+}
 
+use std::path::Path;
 use std::sync::{Mutex, MutexGuard};
 
-use ridgelight::gpu::{Headless, HeadlessOptions, Pixels};
+use fields::field;
+use ridgelight::gpu::{Frame, Headless, HeadlessOptions, Pixels};
 use ridgelight::plan::{self, Limits, Picture, Plan};
-use ridgelight::scene::{Border, HeightField, Lights, Quality, Scene, Surface};
+use ridgelight::scene::{Border, HeightField, Quality, Scene};
+use ridgelight_io::HeightOptions;
 
 /// The program `ridgelight`, which cargo builds beside the tests of the whole workspace.
 fn program() -> std::path::PathBuf {
@@ -145,10 +181,20 @@ impl Device {
     }
 
     fn picture_within(&mut self, scene: &Scene, quality: &Quality, limits: &Limits) -> Pixels {
-        let plan = plan::picture(scene, quality, limits, Picture::default()).expect("a plan");
-        let contents = plan::picture_inputs(scene);
+        self.outputs(scene, quality, limits, Picture::default()).remove(0)
+    }
+
+    /// The picture and the layer of each light and bounce.
+    fn light_layers(&mut self, scene: &Scene, quality: &Quality, limits: &Limits) -> Vec<Pixels> {
+        let wanted = Picture { light_layers: true, ..Picture::default() };
+        self.outputs(scene, quality, limits, wanted)
+    }
+
+    fn outputs(&mut self, of: &Scene, by: &Quality, limits: &Limits, what: Picture) -> Vec<Pixels> {
+        let plan = plan::picture(of, by, limits, what).expect("a plan");
+        let contents = plan::picture_inputs(of);
         let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
-        self.draw(plan, &contents).remove(0)
+        self.draw(plan, &contents)
     }
 }
 
@@ -163,14 +209,14 @@ impl Drop for Device {
     }
 }
 
-/// What the documentation begins with. A sky of 0.3 and a sun of irradiance 2 facing a sample, albedo 1: exit radiance
-/// is at most 0.3 + 2/π, and of samples in shadow at most 0.3.
+/// The documentation's first program. A sky of 0.3 and a sun of irradiance 2 facing a texel, albedo 1: exit radiance
+/// is at most 0.3 + 2/π, and at most 0.3 for texels in shadow.
 #[test]
 fn the_first_program_of_the_documentation_lights_its_field() {
     let lines = include_str!("../../examples/first_light.rs").lines().map(str::trim);
     let code = lines.filter(|line| !line.is_empty() && !line.starts_with("//")).count();
     assert!(code <= 30, "{code} lines for a newcomer");
-    // Its device is its own: this one hears nothing, but keeps others away.
+    // The program has a device of its own: this lock keeps others away.
     let _one = ONE.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
     let light = first_light::light().expect("light");
     assert_eq!(
@@ -184,22 +230,31 @@ fn the_first_program_of_the_documentation_lights_its_field() {
     assert!(shadowed > 1000 && shadowed < 128 * 96, "{shadowed}");
 }
 
-fn field(
-    rows: usize,
-    cols: usize,
-    cell_m: [f64; 2],
-    height: impl Fn(usize, usize) -> f64,
-) -> HeightField {
-    let heights: Vec<f64> = (0..rows * cols).map(|i| height(i / cols, i % cols)).collect();
-    HeightField::new(rows, cols, &heights, cell_m, None).expect("a good field")
+fn under_sky(field: HeightField, border: Border) -> Scene {
+    fields::under_sky(field, border, 1.0)
 }
 
-fn under_sky(field: HeightField, border: Border) -> Scene {
-    Scene {
-        field,
-        surface: Surface { border, ..Surface::default() },
-        lights: Lights { sky: Some([1.0; 3]), ..Lights::default() },
-    }
+/// Colours of an output; grey ones have one channel.
+fn colours(pixels: &Pixels) -> Vec<[f64; 3]> {
+    let colour = |t: &[f32]| match t {
+        [grey] => [f64::from(*grey); 3],
+        t => [t[0], t[1], t[2]].map(f64::from),
+    };
+    pixels.values.chunks_exact(pixels.channels).map(colour).collect()
+}
+
+/// Every output's bits.
+fn bits(gpu: &mut Headless, frame: &Frame) -> Vec<u32> {
+    let count = frame.plan().outputs().count();
+    let all = (0..count).map(|o| gpu.pixels(frame, o).expect("pixels").values);
+    all.flatten().map(f32::to_bits).collect()
+}
+
+/// The bundled terrain.
+fn bundled() -> HeightField {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/mt_washington_256.png");
+    let options = HeightOptions { cell_m: Some([66.0, 92.6]), ..HeightOptions::default() };
+    ridgelight_io::read_heights(&path, &options).expect("the bundled field")
 }
 
 /// A small deterministic generator for random fields.

@@ -1,4 +1,4 @@
-//! What a scene cannot show is not in its plan, and forcing it back changes nothing.
+//! Parts that a scene cannot show are not in its plan, and forcing them back changes nothing.
 
 use ridgelight::plan::{self, Kind, Limits, Picture, Plan};
 use ridgelight::scene::fractal;
@@ -37,8 +37,8 @@ fn environment(texels: Vec<[f32; 3]>, height: usize) -> Environment {
     Environment::new(2 * height, height, texels, 0.0).expect("an environment")
 }
 
-/// Grey lights on grey ground take one channel; a colour so near grey that it is the same number in
-/// 24 bits but one takes three, and gives the same picture.
+/// Grey lights on grey ground take one channel; a colour so close to grey that only the last of 24 bits differs takes
+/// three, and gives the same picture.
 #[test]
 fn grey_is_one_channel() {
     let grey = scene(sky([1.0; 3]));
@@ -58,9 +58,9 @@ fn grey_is_one_channel() {
     }
 }
 
-/// A uniform sky needs no environment and no table. The same sky as an environment goes through one:
-/// its nodes hold cos² and sin cos integrals, and between two of them, Δ = (π/2)/511 apart, a line
-/// errs by at most Δ²/8 of the integrand's largest slope, 1: 1.2e-6, times π of azimuth over π.
+/// A uniform sky needs no environment and no table. As an environment it goes through one: its nodes hold cos² and sin
+/// cos integrals, and between two of them, Δ = (π/2)/511 apart, interpolation errs by at most Δ²/8 of the integrand's
+/// largest second derivative, 1: 1.2e-6, times π of azimuth over π.
 #[test]
 fn a_uniform_sky_has_no_table() {
     let plain = scene(sky([0.5, 0.6, 0.7]));
@@ -80,8 +80,7 @@ fn a_uniform_sky_has_no_table() {
     }
 }
 
-/// A sun alone sweeps its own azimuths. A sky that is all but black brings the circle back, and
-/// nothing else.
+/// A sun alone sweeps its own azimuths. A sky that is nearly black brings the circle back, and nothing else.
 #[test]
 fn a_sun_alone_sweeps_its_own_azimuths() {
     let sun = Sun { azimuth_rad: 0.7, elevation_rad: 0.3, diameter_rad: 0.0, irradiance: [2.0; 3] };
@@ -94,12 +93,12 @@ fn a_sun_alone_sweeps_its_own_azimuths() {
     let a = gpu.picture(&alone, &quality()).values;
     let b = gpu.picture(&with_sky, &quality()).values;
     assert!(a.iter().any(|v| *v > 0.0));
-    // Where the sun is hidden there is the sky, 1e-30 at most.
+    // Where the sun is hidden only the sky is left, 1e-30 at most.
     assert!(a.iter().zip(&b).all(|(a, b)| (a - b).abs() <= 1e-30));
 }
 
-/// Environment rows below horizontal are seen by no sample on a plane: they are not summed, and what
-/// they hold does not show, to the bit. Under an open border they are, and it does.
+/// Environment rows below horizontal are invisible from a plane: they are not summed, and their contents do not change
+/// a bit. Under an open border they are summed, and they do.
 #[test]
 fn environment_rows_below_any_horizon_are_left_out() {
     let mut gpu = Device::new();
@@ -135,9 +134,9 @@ fn environment_rows_below_any_horizon_are_left_out() {
     }
 }
 
-/// Lights of radiance 0 have no pass, and a field lit by one that shines is as if they were not there.
+/// Lights of radiance 0 have no pass, and the other lights have the same result without them.
 #[test]
-fn lights_that_do_not_shine_have_no_pass() {
+fn lights_without_radiance_have_no_pass() {
     let sun = Sun { azimuth_rad: 0.7, elevation_rad: 0.3, diameter_rad: 0.0, irradiance: [0.0; 3] };
     let dark = scene(Lights { suns: vec![sun], ..sky([1.0; 3]) });
     assert!(!names(&planned(&dark)).contains(&"sun_shade"));
@@ -146,8 +145,8 @@ fn lights_that_do_not_shine_have_no_pass() {
     assert!(a == gpu.picture(&scene(sky([1.0; 3])), &quality()).values);
 }
 
-/// On a concave field nothing hides anything: a level one, a dome, a slope with a ridge. Swept all the
-/// same, it finds what the first crossings are.
+/// On a concave field nothing occludes: a level one, a dome, a slope with a ridge. A forced sweep finds the first
+/// crossings.
 #[test]
 fn a_concave_field_that_stays_is_not_swept() {
     let mut gpu = Device::new();
@@ -176,8 +175,8 @@ fn a_concave_field_that_stays_is_not_swept() {
         assert!(names(&planned(&scene)).contains(&"horizon_sweep"), "it may change");
         let without = gpu.draw(still, &[scene.field.heights_m()]).remove(0).values;
         let swept = gpu.picture(&scene, &quality()).values;
-        // A proposal in the plane of the first crossing differs by the rounding of two heights over
-        // two steps; light changes by no more than the slopes, and the sun by that over its disc.
+        // An occluder in the plane of the first crossing differs by the rounding of two heights over two steps; light
+        // changes by no more than the slopes, and the sun by that over its disc.
         let highest = scene.field.heights_m().iter().fold(0.0_f32, |m, h| m.max(h.abs()));
         let tolerance = 4.0 * f32::EPSILON * (highest + 1.0) * (1.0 + 2.0 / 0.1);
         for (a, b) in without.iter().zip(&swept) {
@@ -188,7 +187,7 @@ fn a_concave_field_that_stays_is_not_swept() {
 
 /// A valley along any of the three families of edges is one.
 #[test]
-fn valleys_are_seen() {
+fn valleys_stay_in_the_plan() {
     let level = |_: usize, _: usize| 0.0;
     assert!(field(5, 5, [1.0, 3.0], level).is_concave(Border::Plane));
     // A dent of one sample, and creases along rows, columns and diagonals.

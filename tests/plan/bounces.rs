@@ -1,4 +1,4 @@
-//! Which passes bounces have: engines, nodes, and none where nothing is reflected.
+//! The passes of bounces: engines, nodes, and none on black ground.
 
 use ridgelight::plan::{self, Limits, Pass, Picture, Plan, missing_barriers};
 use ridgelight::scene::{
@@ -27,7 +27,7 @@ fn count(plan: &Plan, name: &str) -> usize {
 
 const ROOMY: u64 = 2 << 30;
 
-/// Walks where lines are swept, else every stretch, and the plan says why; nothing where nothing is thrown.
+/// Walks where lines are swept, else brute force with a note; no passes on black ground.
 #[test]
 fn the_planner_takes_walks_where_there_are_lines() {
     let mut scene = under_sky(flat(9, 14));
@@ -60,9 +60,9 @@ fn the_planner_takes_walks_where_there_are_lines() {
     assert!(!dark.notes.iter().any(|n| n.contains("engine")), "{:?}", dark.notes);
 }
 
-/// An engine works at nodes, later bounces at every second of them, and every sample is lit from them. Of sweeps later
-/// bounces go by casting sets, which take
-/// no more than a quarter of what is left: else each is swept and walked.
+/// An engine works at nodes, later bounces at every second of them, and every texel is lit from them. Later
+/// bounces of sweeps use visibility caches, which take no more than a quarter of the memory left; otherwise
+/// each is swept and walked.
 #[test]
 fn bounces_at_nodes() {
     let scene = under_sky(flat(13, 18));
@@ -94,14 +94,14 @@ fn bounces_at_nodes() {
             }
         }
     }
-    // Of many azimuths the sets are most of the memory.
+    // With many azimuths the caches take most of the memory.
     let few = quality(BounceEngine::Sweep, 3, 2);
     let walks = Quality { bounces: Bounces { azimuths: 128, ..few.bounces }, ..few };
     let large = under_sky(flat(50, 70));
     let plan = drawn(&large, &walks, ROOMY);
     let sets = plan.resources[plan.find("visibility_cache").expect("kept").0].bytes();
     let all: u64 = plan.resources.iter().map(plan::Resource::bytes).sum();
-    // What is swept anew takes a little more than what was swept once.
+    // Sweeping again takes a little more memory than sweeping once.
     let tight = drawn(&large, &walks, all - sets + sets / 8);
     assert!(tight.find("visibility_cache").is_none() && count(&tight, "cache_gather") == 0);
     let walked = |plan: &Plan| -> u64 {
@@ -113,17 +113,17 @@ fn bounces_at_nodes() {
     assert_eq!(walked(&plan), found(2) * 128);
     assert_eq!(walked(&tight), (found(2) + 2 * found(4)) * 128);
     assert!(tight.notes.iter().any(|n| n.contains("walks again")), "{:?}", tight.notes);
-    // One bounce is not looked at again, and none is not found anywhere.
+    // A single bounce needs no cache, and no bounce needs no ground share.
     let once = drawn(&scene, &quality(BounceEngine::Sweep, 1, 2), ROOMY);
     assert!(once.find("visibility_cache").is_none() && once.find("node_sum").is_some());
     let none = drawn(&scene, &quality(BounceEngine::Sweep, 0, 2), ROOMY);
     assert!(none.find("node_sum").is_none() && none.find("ground").is_none());
 }
 
-/// Walks find the share of ground on their own lines, once; other engines take that of a sky's light, for which they have
-/// a circle of azimuths swept where nothing else needs it.
+/// Walks compute the share of ground on their own lines, once; other engines use that of a sky's light, and
+/// sweep a circle of azimuths for it where nothing else needs one.
 #[test]
-fn shares_of_ground_are_found_once() {
+fn ground_shares_are_computed_once() {
     let mut scene = under_sky(flat(9, 14));
     let environment = Environment::new(4, 2, vec![[1.0, 0.5, 0.2]; 8], 0.0).unwrap();
     scene.lights = Lights { environment: Some(environment), ..Lights::default() };
@@ -150,8 +150,8 @@ fn labels(plan: &Plan) -> Vec<String> {
     plan.passes.iter().map(Pass::label).collect()
 }
 
-/// Ground that reflects nothing has the passes, images and outputs of a picture without bounces, and says why; ground
-/// that reflects the least there is in one colour has them all.
+/// Ground with albedo 0 has the passes, images and outputs of a picture without bounces, and a note; the
+/// smallest albedo above 0 in one colour has them all.
 #[test]
 fn black_ground_drops_every_pass_of_bounces() {
     for engine in ENGINES {

@@ -1,10 +1,10 @@
 //! The plan as text, without a device: odd sizes, fields in bands, and the audit of its barriers.
 
 mod bounces;
-mod gloss;
 mod points;
 mod reference;
 mod sizes;
+mod specular;
 mod walks;
 
 use ridgelight::plan::{self, Kind, Limits, Owner, Picture, Plan, missing_barriers};
@@ -23,7 +23,7 @@ fn under_sky(field: HeightField) -> Scene {
     Scene { field, surface: Surface::default(), lights }
 }
 
-/// Sky, environment, a point and a disc, a key light over a map of colours.
+/// Sky, environment, a point sun and a disc, a key light, with an albedo map.
 fn under_everything(field: HeightField, border: Border) -> Scene {
     let map = vec![[0.5, 0.4, 0.3]; field.rows() * field.cols()];
     let sun = |diameter_rad| Sun {
@@ -83,10 +83,10 @@ fn is(plan: &Plan, text: &str) {
     assert_eq!(missing_barriers(&plan.passes), []);
 }
 
-/// Plans of every form of every pass, at sizes that make groups, lanes and layers odd.
+/// Plans with every form of every pass, at sizes that make groups, lanes and layers odd.
 fn plans() -> Vec<Plan> {
     let base = Quality { azimuths: 12, ..Quality::default() };
-    let soft = Quality { basis: Basis::Sh, ..base };
+    let by_sh = Quality { basis: Basis::Sh, ..base };
     let bounced = |engine| {
         let bounces = Bounces { count: 3, engine, azimuths: 8, cutoff: 0.0, ..Bounces::default() };
         Quality { bounces, ..base }
@@ -102,10 +102,10 @@ fn plans() -> Vec<Plan> {
         Quality { lines: Lines::Exact, ..base },
         Quality { method: Method::Pyramid, ..base },
         Quality { method: Method::Pyramid, levels: Levels::Pyramid, level_offset: 0, ..base },
-        soft,
-        Quality { wedges: Wedges::Nlp, receiver: Receiver::Cosine, ..soft },
-        Quality { wedges: Wedges::Table, light_basis: LightBasis::Sh, ..soft },
-        Quality { method: Method::Pyramid, light_basis: LightBasis::Sh, subsample: 4, ..soft },
+        by_sh,
+        Quality { wedges: Wedges::Nlp, receiver: Receiver::Cosine, ..by_sh },
+        Quality { wedges: Wedges::Table, light_basis: LightBasis::Sh, ..by_sh },
+        Quality { method: Method::Pyramid, light_basis: LightBasis::Sh, subsample: 4, ..by_sh },
         bounced(BounceEngine::BruteForce),
         bounced(BounceEngine::Sweep),
         bounced(BounceEngine::Pyramid),
@@ -121,7 +121,7 @@ fn plans() -> Vec<Plan> {
             all.push(plan::reference_at(&scene, 1, 0, 1, &Limits::lavapipe()).expect("a plan"));
             for quality in &qualities {
                 let mut scene = under_everything(flat(rows, cols), border);
-                // Balls take no edits, which others do.
+                // Sphere lights do not support edits; other lights do.
                 if quality.basis == Basis::Sh || quality.bounces.count > 0 {
                     let (position_m, radius_m) = ([1.0, 1.0, 2.0], 0.5);
                     scene.lights.sphere_lights =
@@ -144,9 +144,9 @@ fn plans() -> Vec<Plan> {
                 };
                 let (count, bytes) = plan(&Limits::lavapipe());
                 assert_eq!((count, plan(&graphics).0), (2, 2));
-                // Less than the whole: in bands, where one azimuth still fits.
+                // Less memory than all of it: in bands, where one azimuth still fits.
                 plan(&Limits { memory_budget: bytes * 9 / 10, ..Limits::lavapipe() });
-                // And with passes for edits, where they can be.
+                // And with passes for edits, where edits are supported.
                 let wanted = Picture { keeps_horizons: true, ..wanted };
                 let kept = plan::picture(&scene, quality, &Limits::lavapipe(), wanted);
                 all.push(kept.expect("a plan"));
@@ -182,8 +182,8 @@ fn every_plan_has_all_its_barriers_and_needs_each() {
     println!("{audited} lists of passes, {removed} barriers removed, each missed");
 }
 
-/// A group of a GPU sweeps 128 lines, the last one of an azimuth too: what it writes beyond the lines
-/// there are must be the azimuth's own, four layers of 32 lines a group.
+/// A GPU group sweeps 128 lines, also the last one of an azimuth: its writes beyond the last line must stay
+/// within the azimuth's own four layers of 32 lines a group.
 #[test]
 fn an_azimuths_layers_are_whole_groups() {
     let wide = Limits { is_cpu: false, ..Limits::lavapipe() };
@@ -198,7 +198,7 @@ fn an_azimuths_layers_are_whole_groups() {
     }
 }
 
-/// What a device cannot make or dispatch is refused by name, not handed to it.
+/// Sizes that a device cannot make or dispatch are refused by name before they reach it.
 #[test]
 fn devices_limits_are_kept() {
     let all = Limits::lavapipe();
@@ -224,8 +224,8 @@ fn devices_limits_are_kept() {
     assert!(said.contains("env_tables") && said.contains("64 layers"), "{said}");
 }
 
-/// n² numbers a sample, four a texel, beside 3 rows of the light's matrix (9 of a lobe, 4 at order 2); the
-/// sky stays in closed form, and edits draw everything.
+/// n² numbers a texel, four a GPU texel, beside 3 rows of the light's matrix (9 of a lobe, 4 at order 2); the
+/// sky stays in closed form, and edits recompute everything.
 #[test]
 fn harmonics() {
     let scene = under_everything(flat(7, 13), Border::Plane);
@@ -242,10 +242,10 @@ fn harmonics() {
             assert_eq!(bytes("constants"), 4 * plan.constants.len() as u64);
             assert!(plan.find("env_tables").is_none() && plan.find("sky_sum").is_some());
             assert!(plan.edit_passes.is_empty() && missing_barriers(&plan.passes).is_empty());
-            let told =
+            let setting =
                 |name: &str| plan.settings.iter().find(|s| s.0 == name).map(|s| s.1.as_str());
-            assert_eq!(told("sh_order"), Some(sh_order.to_string().as_str()));
-            assert_eq!((told("basis"), told("table_elevations")), (Some("sh"), None));
+            assert_eq!(setting("sh_order"), Some(sh_order.to_string().as_str()));
+            assert_eq!((setting("basis"), setting("table_elevations")), (Some("sh"), None));
         }
     }
     let tables = plan::picture(&scene, &Quality::default(), &limits, Picture::default());
@@ -256,8 +256,8 @@ fn key(high: f64, radiance: [f32; 3]) -> KeyLight {
     KeyLight { azimuth_rad: 0.3, width_rad: 0.5, elevations_rad: [-0.4, high], radiance }
 }
 
-/// Key lights add what suns do: sweeps of their own azimuths, a shading pass, a layer. Where there are
-/// none, where they are black, or below horizontal where there is ground, there is nothing of them.
+/// Key lights add what suns do: sweeps of their own azimuths, a shading pass, a layer. Black key lights, and
+/// those below horizontal where there is ground, add nothing.
 #[test]
 fn key_lights() {
     let picture = |keys: &[KeyLight], border| {
@@ -287,7 +287,7 @@ fn key_lights() {
     assert_eq!(outputs, ["radiance", "direct.sky", "direct.key2"]);
     assert!(lit.settings.contains(&("sun_azimuths".into(), "8".into())));
     assert_eq!(missing_barriers(&lit.passes), []);
-    // Another colour is resolved anew, in its share of the picture, and nothing is swept.
+    // Another colour resolves again, by its share of the picture, and sweeps nothing.
     let wanted = Picture { keeps_horizons: true, ..Picture::default() };
     let kept = |radiance| {
         let mut scene = under_sky(flat(9, 14));
@@ -300,9 +300,9 @@ fn key_lights() {
     assert!(again.iter().all(|p| after.passes[*p].name() == "light_resolve") && !again.is_empty());
 }
 
-/// An edit marks who looks at an occluder, not who looks around it.
+/// Edits mark texels that keep an occluder; a fuse that searches around it cannot.
 #[test]
-fn looking_around_takes_no_edits() {
+fn views_take_no_edits() {
     let wanted = Picture { keeps_horizons: true, ..Picture::default() };
     let edits = |fuse| {
         let quality = Quality { azimuths: 8, fuse, ..Quality::default() };
@@ -313,8 +313,8 @@ fn looking_around_takes_no_edits() {
     assert_eq!(edits(Fuse::AimedAround), 0);
 }
 
-/// One pass a bounce, what arrives resolved; exit radiance in one image used in turn, or in a layer each; bounces
-/// that are not worth it are left out, and the plan says why.
+/// One pass a bounce, after the arriving light is resolved; exit radiance in one image used in turn, or in a
+/// layer each. Bounces below the cutoff are left out with a note.
 #[test]
 fn bounces() {
     let drawn = |count, albedo: f32, cutoff, light_layers| {
@@ -339,24 +339,25 @@ fn bounces() {
     assert!(one.find("exit_radiance").is_none() && one.edit_passes.is_empty());
     assert_eq!(three.bytes() - one.bytes(), 4 * 9 * 14);
     assert_eq!((missing_barriers(&one.passes), missing_barriers(&three.passes)), (vec![], vec![]));
-    // What a bounce is thrown from has been written before.
+    // The pass before a bounce has written its light.
     assert!(three.passes.iter().filter(|p| p.name() == "bounce_march").all(|p| p.barrier_before));
     let layers = drawn(2, 0.8, 0.0, true);
     let outputs: Vec<&str> = layers.outputs().map(|(_, r)| r.name.as_str()).collect();
     assert_eq!(outputs, ["radiance", "direct.sky", "indirect.1", "indirect.2"]);
-    let told = |plan: &Plan| plan.settings.iter().find(|s| s.0 == "bounces").map(|s| s.1.clone());
+    let setting =
+        |plan: &Plan| plan.settings.iter().find(|s| s.0 == "bounces").map(|s| s.1.clone());
     let black = drawn(3, 0.0, 0.0, true);
-    assert_eq!((short(&black), told(&black)), (short(&none), Some("0".to_owned())));
+    assert_eq!((short(&black), setting(&black)), (short(&none), Some("0".to_owned())));
     assert!(black.notes.iter().any(|n| n.starts_with("no bounces")), "{:?}", black.notes);
     // 2⁻⁵ + … + 2⁻⁹ is below 1/16.
     let short = drawn(9, 0.5, 1.0 / 16.0, false);
-    assert_eq!(told(&short), Some("4".to_owned()));
+    assert_eq!(setting(&short), Some("4".to_owned()));
     let note = "bounces 5 to 9 dropped: of a surface that reflects at most 0.5 they carry at most 6.055e-2";
     assert!(short.notes.iter().any(|n| n.starts_with(note)), "{:?}", short.notes);
 }
 
-/// Without shadows no horizon is swept and nothing is thrown on: whatever the method, ground is looked at where a
-/// sample lies, and the picture has the same images.
+/// Without shadows no horizon is swept and nothing bounces: whatever the method, only each texel's own ground
+/// counts, and the picture has the same images.
 #[test]
 fn without_shadows_nothing_is_swept() {
     let ridges: Vec<f64> = (0..9 * 14).map(|i| f64::from(i % 5)).collect();

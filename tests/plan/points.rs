@@ -1,4 +1,4 @@
-//! Plans of what samples see: memory first, cut where a device holds less.
+//! Plans of visible points: memory first, split where a device has less.
 
 use ridgelight::plan::{self, Kind, Limits, Plan, missing_barriers};
 use ridgelight::scene::{
@@ -22,9 +22,9 @@ fn layers(plan: &Plan) -> Vec<u32> {
     plan.outputs().map(|(_, r)| extent(r.kind)).collect()
 }
 
-/// Two directions a word up to 255 grid points a side, else one; odd numbers of them fill half a word.
+/// Two directions a word up to 255 texels a side, else one; an odd last direction fills half a word.
 #[test]
-fn points_take_what_they_say() {
+fn visible_points_take_the_planned_memory() {
     let limits = Limits::lavapipe();
     let small = of(255, 40, 7, &limits).expect("a plan");
     assert_eq!(layers(&small), [4]);
@@ -37,10 +37,10 @@ fn points_take_what_they_say() {
     assert!(text.contains(&format!("visible_points {:.1} KiB", 7.0 * 256.0 * 40.0 * 4.0 / 1024.0)));
 }
 
-/// 2²⁰ samples: sixteen directions a dispatch of 2²⁴ rays. Of 8 MiB an allocation two layers an image; each image has its
-/// own directions, all in order.
+/// 2²⁰ texels: sixteen directions a dispatch of 2²⁴ rays. With allocations of 8 MiB an image has two layers;
+/// each image has its own directions, all in order.
 #[test]
-fn what_is_too_large_is_cut() {
+fn too_large_bakes_are_split() {
     let limits = Limits { memory_budget: 8 << 30, ..Limits::lavapipe() };
     let plan = of(1024, 1024, 40, &limits).expect("a plan");
     let labels = |plan: &Plan| -> Vec<String> {
@@ -61,8 +61,8 @@ fn what_is_too_large_is_cut() {
     assert!(said.contains("one direction") && said.contains("4096.0 KiB"), "{said}");
 }
 
-/// Of a relief of 1 over cells of 1: flatter than 1/16384 a cell are those of 40,001 directions, which there may not be;
-/// an odd number has a level one, though.
+/// With a relief of 1 over cells of 1, some of 40,001 directions are flatter than 1/16384 a cell, which is
+/// allowed; an odd number has a level one, which is not.
 #[test]
 fn level_rays_over_repetitions_are_noted() {
     let field = ridgelight::scene::HeightField::new(2, 2, &[0.0, 1.0, 0.0, 0.0], [1.0; 2], None);
@@ -90,7 +90,7 @@ fn scattered(side: usize, bounces: u32, paths: u32, limits: &Limits) -> Plan {
     plan::scatter(&scene, &directions, &scatter, limits).expect("a plan")
 }
 
-/// Words, and several layers, are copied from no buffer of texels.
+/// Words, and several layers, are not copied from a buffer of texels.
 #[test]
 fn points_come_in_images_alone() {
     let mut plan = scattered(32, 1, 16, &Limits::lavapipe());
@@ -99,7 +99,7 @@ fn points_come_in_images_alone() {
     let (name, format) = (points.name.clone(), points.format().expect("an image"));
     let refused = plan.take_buffer(&name, format).unwrap_err().to_string();
     assert!(refused.contains(&format!("{name}: found an image of words, {format:?}")), "{refused}");
-    // Of numbers no plan has any in layers: one that is made up.
+    // No plan has numbers in layers: this one is made up.
     let heights = plan.find("heights").expect("an input");
     if let Kind::Image { layers, .. } = &mut plan.resources[heights.0].kind {
         *layers = 2;
@@ -111,8 +111,8 @@ fn points_come_in_images_alone() {
     );
 }
 
-/// From the far end of all paths to the samples, paths side by side; one bounce needs nothing between. Every barrier is there
-/// and each is missed.
+/// From the far end of all paths to the texels, paths side by side; one bounce needs no image between. Every
+/// barrier is present, and each is needed.
 #[test]
 fn paths_are_walked_from_their_ends() {
     let limits = Limits::lavapipe();
@@ -135,8 +135,8 @@ fn paths_are_walked_from_their_ends() {
     }
 }
 
-/// Pictures between steps take 64 MiB, or those of one path: of 1024² samples two paths', 2 · 2 · 16 MiB; where visible points
-/// are cut into several images, one path's, as each step looks at one of them.
+/// Images between steps take 64 MiB, or the size for one path: with 1024² texels those of two paths, 2 · 2 · 16
+/// MiB; where visible points are split into several images, one path's, as each step reads one of them.
 #[test]
 fn paths_side_by_side_have_their_room() {
     let limits = Limits { memory_budget: 8 << 30, ..Limits::lavapipe() };
@@ -151,10 +151,10 @@ fn paths_side_by_side_have_their_room() {
     assert_eq!(cut.inputs().filter(|(_, r)| r.name.starts_with("visible_points.")).count(), 3);
 }
 
-/// Ellipses look at all directions at once: one image, which a device with fewer layers refuses by what is missing; and at
-/// those above horizontal, of which there must be one.
+/// Ellipses need all directions at once: one image, which a device with fewer layers refuses with the missing
+/// number; and at least one direction above horizontal.
 #[test]
-fn ellipses_want_one_image() {
+fn ellipses_need_one_image() {
     let limits = Limits::lavapipe();
     let directions = Directions::fibonacci(40, -1.0, 0).expect("directions");
     let of = |directions: &Directions, limits: &Limits| {
@@ -172,7 +172,7 @@ fn ellipses_want_one_image() {
     assert!(none.contains("above horizontal"), "{none}");
 }
 
-/// As many of other seeds, other depths, or as many words of one fewer, are not those of the plan.
+/// As many directions of another seed, another depth, or as many words of one fewer, differ from the plan's.
 #[test]
 fn points_of_other_directions_are_refused() {
     let scene = under_sky(pitted(3, 4));
@@ -197,7 +197,7 @@ fn points_of_other_directions_are_refused() {
     }
 }
 
-/// Rays end above the highest sample: of heights that only the device knows there is none.
+/// Rays end above the highest texel: heights that only the device knows have none.
 #[test]
 fn unknown_heights_are_refused() {
     let field = HeightField::unknown(4, 4, [1.0; 2]).expect("a field");
@@ -210,7 +210,7 @@ fn unknown_heights_are_refused() {
     assert!(said.to_string().contains("unknown heights"), "{said}");
 }
 
-/// What faces up on a slope sees below horizontal; where nothing is scattered nothing is lost.
+/// A texel that faces up on a slope sees below horizontal; where nothing is scattered nothing is lost.
 #[test]
 fn light_from_below_that_is_left_out_is_noted() {
     let notes = |field: HeightField, lowest_z: f64| {
@@ -231,10 +231,10 @@ fn parts(plan: &Plan) -> (usize, Vec<&'static str>) {
     (names.iter().filter(|name| **name == "scatter_gather").count(), names)
 }
 
-/// Black ground, ground that sees nothing of itself: one pass, which needs nothing. No bounces beyond what carries light: ½
-/// to the 17th and later is 2⁻¹⁶. Of one bounce no more paths than directions.
+/// Black ground, and ground that does not see itself: one pass without inputs. Bounces end where no light is
+/// left: the 17th and later bounces at ½ carry less than 2⁻¹⁶. For one bounce no more paths than directions.
 #[test]
-fn what_carries_no_light_is_not_scattered() {
+fn scatter_without_light_takes_one_pass() {
     let directions = Directions::fibonacci(20, -1.0, 0).expect("directions");
     let of = |scene: &Scene, scatter: Scatter| {
         plan::scatter(scene, &directions, &scatter, &Limits::lavapipe()).expect("a plan")
@@ -280,10 +280,10 @@ fn what_carries_no_light_is_not_scattered() {
     assert_eq!([paths(1, 50, 0), paths(2, 50, 0), paths(1, 50, 7)], ["20", "50", "50"]);
 }
 
-/// A lobe of scale 0 is none. One that there is takes a step more where what it meets mirrors a sun or a sky, looks for suns
-/// where they shine, and for nothing where no light is.
+/// Specular of scale 0 is left out. Other specular takes one more step where hit ground reflects a sun or a
+/// sky, gathers suns only where they light the ground, and nothing without light.
 #[test]
-fn lobes_look_for_what_shines() {
+fn specular_scatter_gathers_from_lit_texels() {
     let directions = Directions::fibonacci(20, -1.0, 0).expect("directions");
     let of = |scale: f32, lights: Lights| {
         let mut scene = Scene { lights, ..under_sky(pitted(5, 5)) };

@@ -1,11 +1,11 @@
-//! Plans of the reference, and what its paths choose by.
+//! Plans of the path-traced reference, and its importance sampling.
 
 use ridgelight::plan::{self, Limits, Plan};
 use ridgelight::scene::{Border, Environment, Lights, Scene};
 
 use super::{flat, under_sky};
 
-/// Blocks of 4, 16 and 64 cells up to one that holds all; another light begins the paths anew.
+/// Blocks of 4, 16 and 64 cells up to one that holds all; another light restarts the paths.
 #[test]
 fn a_reference() {
     let of = |rows, cols, bounces, seed| {
@@ -35,7 +35,7 @@ fn a_reference() {
 
 /// Three columns and rows of an environment: the shares of its light, by hand.
 #[test]
-fn environments_are_chosen_by_their_light() {
+fn environments_are_importance_sampled() {
     let grey = |v: f32| [v / 3.0; 3];
     let texels = [1.0, 0.0, 3.0, 0.0, 0.0, 0.0, 2.0, 2.0, 4.0].map(grey).to_vec();
     let mut scene = under_sky(flat(2, 2));
@@ -50,13 +50,13 @@ fn environments_are_chosen_by_their_light() {
     let third = 1.0 / 3.0;
     let rows = [[third, 0.25, 0.25, 1.0], [third, 0.0, 0.0, 0.0], [1.0, 0.25, 0.5, 1.0]];
     close(&plan::reference_inputs(&scene)[2], &rows.concat());
-    // The row that lies below horizontal gives no light.
+    // The row below horizontal gives no light.
     scene.surface.border = Border::Plane;
     let rows = [[1.0, 0.25, 0.25, 1.0], [1.0, 0.0, 0.0, 0.0], [1.0, 0.25, 0.5, 1.0]];
     close(&plan::reference_inputs(&scene)[2], &rows.concat());
 }
 
-/// A list of 600 samples of a field 512 wide takes two rows of it; its sums are of that size, the heights' of the field.
+/// A list of 600 texels of a field 512 wide takes two rows; its sums have that size, the heights that of the field.
 #[test]
 fn a_reference_at_some_samples() {
     let scene = under_sky(flat(515, 512));

@@ -153,8 +153,7 @@ fn long_and_thin() {
     );
 }
 
-/// Five images of 64 MiB leave 120 MiB for lattices, of 32 MiB an azimuth along an axis and 64 MiB along a
-/// diagonal.
+/// Five images of 64 MiB leave 120 MiB for lattices, of 32 MiB an azimuth along an axis and 64 MiB along a diagonal.
 #[test]
 fn a_large_field_in_bands() {
     let limits = Limits { memory_budget: 440 << 20, ..Limits::lavapipe() };

@@ -1,4 +1,4 @@
-//! Bounces by walks over what sweeps have met.
+//! Bounces by walks over swept occluders.
 
 use ridgelight::plan::{self, Limits, Picture, Plan, missing_barriers};
 use ridgelight::scene::{BounceEngine, Bounces, Fuse, Lights, Quality, Scene};
@@ -20,8 +20,8 @@ fn labels(plan: &Plan) -> Vec<String> {
     plan.passes.iter().map(plan::Pass::label).filter(|l| l.contains("bounce")).collect()
 }
 
-/// A batch an axis, each swept and walked over. A second bounce sweeps again what shares a lattice, and only walks
-/// where each batch keeps its own. Rays' blocks are not made.
+/// A batch an axis, each swept and walked. A second bounce sweeps again where batches share a lattice, and only
+/// walks where each batch keeps its own. Blocks for rays are not made.
 #[test]
 fn sweeps_and_walks() {
     let mut scene = under_sky(flat(9, 14));
@@ -40,7 +40,7 @@ fn sweeps_and_walks() {
     for plan in [&one, &shared, &kept] {
         assert_eq!(missing_barriers(&plan.passes), vec![]);
     }
-    // Slopes alone would not do.
+    // Slopes alone are not enough.
     let slopes = drawn(&scene, Quality { fuse: Fuse::Slopes, ..walked(1, 8) }, false);
     assert!(slopes.find("lattice_occluders").is_some());
     // A change of light alone sweeps nothing, and walks again.

@@ -104,7 +104,7 @@ fn image(device: &ash::Device, texture: &wgpu::Texture, layout: vk::ImageLayout)
     }
 }
 
-/// What wgpu does with the light: each sample is fetched by a compute shader and put in a buffer.
+/// What wgpu does with the light: each texel is fetched by a compute shader and put in a buffer.
 struct Reader {
     pipeline: wgpu::ComputePipeline,
     group: wgpu::BindGroup,
@@ -190,7 +190,7 @@ fn main() -> Any<()> {
     let heights = texture(&device, "heights", wgpu::TextureUsages::empty());
     let light = texture(&device, "light", wgpu::TextureUsages::STORAGE_BINDING);
     write(&queue, &heights, scene.field.heights_m());
-    // wgpu clears what it has not seen written before it samples it.
+    // wgpu clears a texture without a recorded write, before it reads it.
     write(&queue, &light, &[0.0; ROWS * COLS]);
     let reader = Reader::new(&device, &light);
 

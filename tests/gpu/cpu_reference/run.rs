@@ -12,37 +12,36 @@ use ridgelight_cpu::shared::sweep::Heights;
 use ridgelight_cpu::specular_gather::Series;
 use ridgelight_cpu::tolerance::ShadeError;
 
-use super::cases::Case;
-use super::{Pair, edit, reference_of};
+use super::{Case, Pair, edit, reference_of};
 
-/// A plan run pass by pass, and what its passes have left so far.
-pub(super) struct Run<'a> {
+/// A plan run pass by pass, and the outputs of its passes so far.
+pub(crate) struct Run<'a> {
     pub gpu: &'a mut Headless,
     pub frame: Frame,
     pub plan: Plan,
     pub scene: &'a Scene,
     pub quality: Quality,
-    /// What the device's sweeps left, by azimuth, as lattices of one layer.
+    /// The device's sweeps by azimuth, as lattices of one layer.
     pub lattices: Vec<Option<Lattice>>,
     /// Where the azimuths of the light that is being summed begin.
     pub light_begins: usize,
     /// The sum of the lights so far, by the CPU reference, and how many they are.
     pub radiance: Vec<[f64; 3]>,
     pub lights: usize,
-    /// The sum of the sphere lights so far, by the CPU reference, and each sample's bound.
+    /// The sum of the sphere lights so far, by the CPU reference, and each texel's bound.
     pub sphere_lights: Vec<([f64; 3], f64)>,
-    /// What the lobe's passes have left so far.
+    /// The output of the specular passes so far.
     pub specular: Vec<[f64; 3]>,
-    /// The light that arrives and is bounced, as series.
+    /// The arriving light that is bounced, as series.
     pub arriving: Vec<Series>,
-    /// Groups of four lines whose hull was deeper than its memory.
+    /// Groups of four lines whose hull was deeper than its storage.
     pub lost: usize,
     pub edit: Option<edit::Edit>,
     /// Of visible points.
     pub directions: Option<Directions>,
     /// Of scattered light.
     pub points: Option<VisiblePoints>,
-    /// Of a list of samples.
+    /// Of a list of texels.
     pub listed: Option<Vec<usize>>,
     /// Of every pixel, the batch of paths that is being traced.
     pub batches: Vec<Traced>,
@@ -80,7 +79,7 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// Runs every pass alone, in order, and pairs what it left with the CPU reference's.
+    /// Runs every pass alone, in order, and pairs its output with the CPU reference's.
     pub fn pairs(&mut self) -> Vec<(String, Vec<Pair>)> {
         let passes = self.plan.passes.clone();
         let mut all = Vec::new();
@@ -105,7 +104,7 @@ impl<'a> Run<'a> {
         pass.bindings[place.unwrap_or_else(|| panic!("{} binds no {binding}", pass.name()))]
     }
 
-    /// Words of what the pass binds under this name, if it binds anything.
+    /// Words of the resource that the pass binds under this name, if any.
     pub fn words(&mut self, pass: &Pass, binding: &str) -> Option<Vec<u32>> {
         let id = Self::bound(pass, binding)?;
         Some(self.gpu.read(&self.frame, id).expect("read back"))
@@ -136,7 +135,7 @@ impl<'a> Run<'a> {
         self.directions.clone().expect("a case with directions")
     }
 
-    /// Of what lies on a curved base.
+    /// On a curved base.
     pub fn bent_directions(&self) -> Directions {
         match &self.points {
             Some(points) => points.directions().clone(),

@@ -1,13 +1,13 @@
-//! The rows that every run of the tests draws: fixed, and few of the whole matrix.
+//! The rows that every test run draws: a fixed, small part of the whole matrix.
 
 use super::suite::methods::Method;
 use super::suite::{self, About, Asks, Case};
 
-/// What a row is judged by.
+/// The judgement of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Judged {
     Bound,
-    /// That it is a number, no more.
+    /// Finite, no more.
     Number,
     Refusal,
 }

@@ -84,12 +84,12 @@ fn every_sphere_light_and_phong_lobe_holds_by_harmonics() {
 }
 
 #[test]
-fn every_visible_point_and_what_is_made_of_it_holds() {
+fn every_visible_point_and_its_bakes_hold() {
     hold_all(is_of_points);
 }
 
 #[test]
-fn a_value_of_visible_points_beyond_its_bound_is_seen() {
+fn a_visible_point_value_beyond_its_bound_fails() {
     hold(is_of_points);
 }
 
@@ -124,7 +124,7 @@ fn hold_all(is_such: fn(&Case) -> bool) {
     assert!(wrong.is_empty(), "{} rows:\n{}", wrong.len(), wrong.join("\n"));
 }
 
-/// The rows of [`cover`] among such cases hold, and each would be seen if it did not.
+/// The rows of [`cover`] among such cases hold, and each can fail.
 fn hold(is_such: fn(&Case) -> bool) {
     let mut device = Device::new();
     let (cases, methods) = (suite::cases(), methods::all());
@@ -134,7 +134,7 @@ fn hold(is_such: fn(&Case) -> bool) {
     let rows = of_such(cover(&cases, &methods));
     let left = of_such(suite::put(&cases, &methods)).len() - rows.len();
     println!("{} rows; {left} left to tools/test --all", rows.len());
-    // What tools/test adds up.
+    // tools/test adds these up.
     if let Some(counts) = std::env::var_os("RIDGELIGHT_ROWS") {
         let file = std::fs::OpenOptions::new().create(true).append(true).open(counts);
         let line = format!("{} {left}\n", rows.len());
@@ -150,15 +150,20 @@ fn hold(is_such: fn(&Case) -> bool) {
         if let (Ok(probes), true) = (probes, is_right)
             && judged(&cases[c], &methods[m]) == Judged::Bound
         {
-            hears(&probes, [c, m], &cases, &methods);
+            check_failures(&probes, [c, m], &cases, &methods);
         }
     }
     assert!(wrong.is_empty(), "{} rows:\n{}", wrong.len(), wrong.join("\n"));
 }
 
-/// The comparison is not deaf: a value moved by a bit more than its bound beyond what is expected is beyond it; so
-/// are a value that is no number, another refusal and none.
-fn hears(probes: &[Probe], [c, m]: [usize; 2], cases: &[Case], methods: &[methods::Method]) {
+/// The comparison can fail: for a value moved slightly more than its bound beyond the expected one, for NaN, another
+/// refusal and none.
+fn check_failures(
+    probes: &[Probe],
+    [c, m]: [usize; 2],
+    cases: &[Case],
+    methods: &[methods::Method],
+) {
     let (case, name) = (&cases[c], methods[m].name);
     let sees = |method, probes| {
         let row = Row { case: c, method, outcome: suite::outcome(probes) };
@@ -167,12 +172,12 @@ fn hears(probes: &[Probe], [c, m]: [usize; 2], cases: &[Case], methods: &[method
     for picked in [0, probes.len() / 2, probes.len() - 1] {
         let [low, high] = probes[picked].expected;
         let beyond = 1.01 * probes[picked].bound + f64::MIN_POSITIVE;
-        // Above what f64 resolves beside the right answer, where nothing is tolerated.
+        // Above the resolution of f64 beside the right answer, where the bound is 0.
         let beyond = beyond.max(high.abs() * f64::EPSILON);
         for spoiled in [low - beyond, high + beyond, f64::NAN, f64::INFINITY] {
             let mut all = probes.to_vec();
             all[picked].found = spoiled;
-            assert!(sees(m, Ok(all)), "{}, {name}: deaf to {spoiled} at {picked}", case.name);
+            assert!(sees(m, Ok(all)), "{}, {name}: passes with {spoiled} at {picked}", case.name);
         }
     }
     assert!(sees(m, Err("no".to_owned())), "{}: a refusal", case.name);
@@ -181,10 +186,10 @@ fn hears(probes: &[Probe], [c, m]: [usize; 2], cases: &[Case], methods: &[method
     }
 }
 
-/// Few rows are judged by nothing but being numbers, all of them pyramids', and no bound of any other is as wide as what may be
-/// found: see [`suite::complaint`].
+/// Few rows are only judged as finite, all of them pyramids', and no bound of another row is as wide as its value: see
+/// [`suite::complaint`].
 #[test]
-fn what_is_not_judged_is_known() {
+fn unjudged_cases_are_listed() {
     let methods = methods::all();
     for case in suite::cases() {
         let unjudged: Vec<_> = methods.iter().filter(|m| (case.unjudged)(m)).collect();
@@ -204,8 +209,8 @@ fn what_is_not_judged_is_known() {
     }
 }
 
-/// What a method is of each kind, by number. A setting, or a variant of one of these enums, that is added does
-/// not compile until it stands here, and a variant fails until [`methods::all`] has a method of it.
+/// The kinds of a method, as numbers. A new setting, or a new variant of one of these enums, does not compile until it
+/// stands here, and a new variant fails until [`methods::all`] has a method of it.
 fn kinds_of(quality: &Quality) -> [(usize, usize); 10] {
     let Quality {
         method,
@@ -221,7 +226,7 @@ fn kinds_of(quality: &Quality) -> [(usize, usize); 10] {
         table_elevations: _,
         level_step: _,
         level_offset: _,
-        // How many are looked at, and what is left out.
+        // A number of nodes, and cutoffs.
         subsample: _,
         light_cutoff: _,
         light_basis,
@@ -241,7 +246,7 @@ fn kinds_of(quality: &Quality) -> [(usize, usize); 10] {
         Receiver::Cosine => 1,
     };
     let engine = match bounces.engine {
-        // A method without; what the planner would take is here by its own name.
+        // A method without bounces; the planner's choice stands here by its own name.
         BounceEngine::Auto => usize::MAX,
         _ if bounces.count == 0 => usize::MAX,
         BounceEngine::BruteForce => 0,
@@ -323,7 +328,7 @@ fn inputs_that_are_no_numbers_are_refused_by_place() {
     }
 }
 
-/// The page has a figure or a refusal for every case under every method, and a page without one of its rows is seen.
+/// The page has a figure or a refusal for every case under every method; a page without one of its rows fails.
 #[test]
 fn the_page_lacks_nothing() {
     let (cases, methods) = (suite::cases(), methods::all());
@@ -354,7 +359,7 @@ fn the_page_lacks_nothing() {
     }
 }
 
-/// A value that is what it should be.
+/// A probe with its expected value.
 fn probe() -> suite::Probe {
     suite::Probe { found: 1.0, expected: [1.0; 2], bound: 1e-6, at: [0; 3] }
 }

@@ -2,9 +2,11 @@
 //! `docs/measured/reference.md`. See `tools/reference`.
 //! Fails where Monte Carlo noise does not explain a row.
 
-#[path = "../../../tests/reference_page/mod.rs"]
+#[path = "../../../tests/common/fields.rs"]
+mod fields;
+#[path = "../../../tests/common/reference_page.rs"]
 mod reference_page;
-#[path = "../../../tests/scenes/mod.rs"]
+#[path = "../../../tests/common/scenes.rs"]
 mod scenes;
 
 use std::path::Path;
@@ -33,14 +35,14 @@ const ABOUT: &str = "\
 
 `ridgelight reference` is a path tracer on the device. This page compares it with an f64 quadrature, which shares no
 code with it, and with scenes whose radiance is a formula. `tools/reference` makes this page. The test
-`reference_truth` makes the same comparison on the driver at hand, and `tests/bounce` checks that the quadrature's
+`tests/gpu/reference/quadrature.rs` makes the same comparison on the driver at hand, and `tests/cpu/bounce` checks that the quadrature's
 figures here are those of the code.
 ";
 
 const SCENES: &str = "
 ## Against the quadrature
 
-Scenes of `tests/scenes`. Sky, sun and a sphere light each light a colour channel of their own, so each light is judged
+Scenes of `tests/common/scenes.rs`. Sky, sun and a sphere light each light a colour channel of their own, so each light is judged
 alone. *paths* is the mean radiance over all grid points. *±* is one standard error of that mean: √(Σσ²)/n, with σ of each
 grid point from the spread between its batches. *quadrature* is the same mean in f64. *stated* is the mean of its stated
 error, the difference to half the fineness.
@@ -61,7 +63,7 @@ carry W at most (Bernstein's inequality; W: the brightest grid point). Expected 
 const CLOSED: &str = "
 ## Against closed forms
 
-Derived in `tests/reference_page/mod.rs`. *grid* bounds the difference between flat triangles and the formula's surface;
+Derived in `tests/common/reference_page.rs`. *grid* bounds the difference between flat triangles and the formula's surface;
 it is 0 except for the pit, whose rim is a staircase. *quadrature* is of the same triangles in f64; its own error is that
 of its 24 azimuths. z = (|paths - value| - grid, at least 0) / ±; bound 4.
 ";

@@ -344,7 +344,7 @@ pub fn view_by_rust(gpu: &mut Headless, field: &HeightField) -> (Frame, View, Ca
 
 /// A camera picture, heights from a buffer and from an image: the library's own, byte for byte.
 #[test]
-fn a_camera_of_c_sees_what_rusts_does() {
+fn a_camera_of_c_draws_the_bytes_of_rust() {
     let (mut gpu, host) = device();
     let field = HeightField::new(SIDE, SIDE, &heights(), [1.0; 2], None).expect("a field");
     let (frame, view_of_rust, at) = view_by_rust(&mut gpu, &field);
@@ -443,7 +443,7 @@ fn a_camera_of_c_sees_what_rusts_does() {
 }
 
 #[test]
-fn what_a_plan_cannot_be_is_named() {
+fn refused_plans_name_the_field() {
     let (gpu, host) = device();
     let mut plan = ptr::null_mut();
     let (argument, setting) = (RidgelightResult::Argument, RidgelightResult::Setting);

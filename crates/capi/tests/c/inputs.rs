@@ -23,7 +23,7 @@ fn is_void(i: usize) -> bool {
 /// Heights filled through C are the field's own and give the same light; a camera picture has holes at the same
 /// triangles.
 #[test]
-fn voids_of_c_are_filled_and_holes() {
+fn voids_of_c_are_filled_and_masked() {
     let (mut gpu, host) = device();
     let voids: Vec<bool> = (0..SIDE * SIDE).map(is_void).collect();
     let field = HeightField::new(SIDE, SIDE, &heights(), [1.0; 2], Some(voids.clone()));

@@ -2,7 +2,7 @@
 
 mod abi;
 mod inputs;
-#[path = "../../../../tests/target/mod.rs"]
+#[path = "../../../../tests/common/target.rs"]
 mod target;
 
 use std::path::{Path, PathBuf};

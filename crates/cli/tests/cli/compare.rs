@@ -1,6 +1,6 @@
 //! Comparisons whose figures are derived in comments; each bound is tested from both sides.
 
-use crate::common::{self, colour, hdr, npy, png};
+use crate::formats::{self, colour, hdr, npy, png};
 use crate::{Folder, Run};
 use serde_json::Value;
 
@@ -24,7 +24,7 @@ pub fn write(folder: &Folder, name: &str, channels: &[(&str, [f32; 12])]) {
         .iter()
         .map(|(name, v)| (*name, exr::prelude::FlatSamples::F32(v.to_vec())))
         .collect();
-    folder.write(name, &common::exr(4, 3, &all));
+    folder.write(name, &formats::exr(4, 3, &all));
 }
 
 /// Figures of a run with --json.

@@ -18,7 +18,7 @@ fn gpu_light_that_is_no_number_is_refused() {
         "trade field.npy -o out --evaluations 1",
     ] {
         let args = format!("{args}{suns}");
-        let run = folder.run(&args.split(' ').collect::<Vec<_>>());
+        let run = folder.run_str(&args);
         assert_eq!((run.status, run.err.lines().count()), (Some(2), 1), "{args}: {}", run.err);
         let said = "--sky, --env, --sun, --key, --sphere-light: found light of inf at row 0, column 0 of radiance";
         assert!(run.err.contains(said), "{args}: {}", run.err);

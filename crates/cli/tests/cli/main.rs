@@ -1,30 +1,34 @@
 //! The binary as scripts use it: exit status 0 done, 1 failed, 2 wrong usage. On an error, one line on standard error and no
 //! file changed or left behind.
 
-mod auto;
-mod bake;
-mod bake_light;
-mod bake_manifest;
-mod bake_specular;
+mod arguments {
+    mod flags;
+    mod inputs;
+    mod renamed;
+    mod scene_file;
+    mod unused;
+}
+mod bake {
+    mod files;
+    mod light;
+    mod manifest;
+    mod specular;
+}
 mod camera;
-#[path = "../../../../tests/common/mod.rs"]
-mod common;
 mod compare;
-mod flags;
-#[path = "../../../../tests/groove/mod.rs"]
-mod groove;
-mod idle;
-mod inputs;
+mod compare_refused;
+#[path = "../../../../tests/common/formats.rs"]
+mod formats;
+mod goals;
 mod library_messages;
 mod light;
 mod needs_vulkan;
 mod plan;
 mod reference;
-mod renamed;
-mod scene_file;
 mod signals;
 mod trade;
-mod unlike;
+#[path = "../../../../tests/common/v_grooves.rs"]
+mod v_grooves;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -44,7 +48,7 @@ impl Folder {
     /// One valid height field of every format ("a.asc", …).
     fn new() -> Self {
         let folder = Self(tempfile::tempdir().unwrap());
-        for (name, bytes) in common::height_files() {
+        for (name, bytes) in formats::height_files() {
             folder.write(name, &bytes);
         }
         folder
@@ -67,6 +71,11 @@ impl Folder {
     /// Runs with whatever driver is there.
     fn run(&self, args: &[&str]) -> Run {
         ran(self.command(args))
+    }
+
+    /// The same with arguments between blanks.
+    fn run_str(&self, args: &str) -> Run {
+        self.run(&args.split(' ').collect::<Vec<_>>())
     }
 
     /// Runs without a Vulkan driver, for checks that need no device.
@@ -100,6 +109,21 @@ fn ran(mut command: Command) -> Run {
     let output = command.output().unwrap();
     let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("UTF-8");
     Run { status: output.status.code(), out: text(output.stdout), err: text(output.stderr) }
+}
+
+/// Runs a command that must succeed with an empty standard error.
+fn succeeded(folder: &Folder, args: &str) -> Run {
+    let run = folder.run_str(args);
+    assert_eq!((run.status, run.err.as_str()), (Some(0), ""), "{args}: {}", run.out);
+    run
+}
+
+/// Standard output and error of `plan` as JSON, without a driver.
+fn planned(folder: &Folder, args: &str) -> [String; 2] {
+    let args: Vec<&str> = ["plan", "--format", "json"].into_iter().chain(args.split(' ')).collect();
+    let run = folder.run_without_driver(&args);
+    assert_eq!(run.status, Some(0), "{args:?}: {}", run.err);
+    [run.out, run.err]
 }
 
 /// A wrong request: arguments, the exit status, and texts that the message must contain.

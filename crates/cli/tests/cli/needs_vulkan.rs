@@ -4,14 +4,13 @@ use std::path::Path;
 
 use ridgelight_io::Planes;
 
-use crate::common::{colour, hdr, npy, png};
-use crate::{Folder, read};
+use crate::formats::{colour, hdr, npy, png};
+use crate::{Folder, read, succeeded};
 
 /// Runs a command that must succeed with an empty standard error (progress is for terminals) and one line on standard
 /// output.
 pub fn done(folder: &Folder, args: &str) {
-    let run = folder.run(&args.split(' ').collect::<Vec<_>>());
-    assert_eq!((run.status, run.err.as_str()), (Some(0), ""), "{args}");
+    let run = succeeded(folder, args);
     assert_eq!(run.out.lines().count(), usize::from(!args.contains("--quiet")), "{}", run.out);
     let hidden = folder
         .contents()
@@ -394,7 +393,7 @@ fn gpu_tight_budgets_are_met_with_fewer_azimuths_at_a_time() {
     // are and by lanes, angles, distances, and a lattice of two layers.
     for kib in (96..=224).step_by(8) {
         let budgeted = format!("{args} --memory-budget {kib}KiB");
-        let run = folder.run(&budgeted.split(' ').collect::<Vec<_>>());
+        let run = folder.run_str(&budgeted);
         if run.status == Some(0) {
             met += 1;
             assert!([read(&folder.path("h.npy")), read(&folder.path("d.npy"))] == whole, "{kib}");
@@ -415,7 +414,7 @@ fn gpu_fields_beyond_the_device_are_refused_unread() {
     folder.write("long.npy", &npy("<f4", false, "(3, 40000)", &[]));
     folder.write("long.asc", b"ncols 40000 nrows 3 cellsize 1 0 0 0");
     let zeros = || exr::prelude::FlatSamples::F32(vec![0.0; 40_000]);
-    let whole = crate::common::exr(40_000, 1, &[("Z", zeros())]);
+    let whole = crate::formats::exr(40_000, 1, &[("Z", zeros())]);
     folder.write("long.exr", &whole[..whole.len() - 30]);
     let mut image = std::io::Cursor::new(Vec::new());
     let mut encoder = tiff::encoder::TiffEncoder::new(&mut image).unwrap();

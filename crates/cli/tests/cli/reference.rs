@@ -112,7 +112,7 @@ fn gpu_unsampled_light_counts_as_error() {
     let folder = Folder::new();
     write_field(&folder, 5, |_, _| 7.0);
     let args = "reference field.npy -o out.exr --until-error 0.005 --spp";
-    let of = |spp: &str| folder.run(&format!("{args} {spp}").split(' ').collect::<Vec<_>>());
+    let of = |spp: &str| folder.run_str(&format!("{args} {spp}"));
     let error = || -> f64 {
         attributes(&folder.path("out.exr"))["relative_standard_error"].parse().unwrap()
     };

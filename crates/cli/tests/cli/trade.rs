@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use crate::common::npy;
-use crate::{Folder, refused};
+use crate::formats::npy;
+use crate::{Folder, refused, succeeded};
 
 #[test]
 fn wrong_trades_are_refused() {
@@ -140,8 +140,7 @@ fn gpu_trade_of_a_small_field() {
     let folder = Folder::new();
     write_peaks(&folder);
     let args = "trade field.npy -o report --json copy.json --evaluations 4";
-    let run = folder.run(&args.split(' ').collect::<Vec<_>>());
-    assert_eq!((run.status, run.err.as_str()), (Some(0), ""), "{}", run.out);
+    let run = succeeded(&folder, args);
     let report = json(&folder.path("report/trade.json"));
     assert_eq!(
         (&report["evaluations"], &report["budget_s"]),
@@ -246,10 +245,10 @@ fn gpu_trade_against_a_reference() {
     let folder = Folder::new();
     write_peaks(&folder);
     let truth = "render field.npy -o truth.exr --method brute-force --azimuths 256 --quiet";
-    assert_eq!(folder.run(&truth.split(' ').collect::<Vec<_>>()).status, Some(0));
+    succeeded(&folder, truth);
     let trade = |more: &str| {
         let args = format!("trade field.npy -o out --evaluations 2 --reference truth.exr {more}");
-        let run = folder.run(&args.split(' ').collect::<Vec<_>>());
+        let run = folder.run_str(&args);
         assert_eq!(run.err, "", "{args}");
         (run, json(&folder.path("out/trade.json")))
     };
@@ -276,7 +275,7 @@ fn gpu_trade_against_a_reference() {
     // The ground truth of another scene is refused, and nothing is written.
     let trace =
         "reference field.npy -o traced.exr --spp 1 --sky 0.5 --sun 90,20 --bounces 2 --quiet";
-    assert_eq!(folder.run(&trace.split(' ').collect::<Vec<_>>()).status, Some(0));
+    succeeded(&folder, trace);
     let before = folder.contents();
     for (args, said) in [
         (
@@ -299,13 +298,13 @@ fn gpu_trade_against_a_reference() {
         ),
     ] {
         let args = format!("trade field.npy -o other --evaluations 1 --reference {args}");
-        let run = folder.run(&args.split(' ').collect::<Vec<_>>());
+        let run = folder.run_str(&args);
         assert_eq!((run.status, run.err.lines().count()), (Some(1), 1), "{args}: {}", run.err);
         assert!(run.err.contains(said), "{args}: {}", run.err);
     }
     assert!(folder.contents() == before);
     let args = "trade a.asc -o other --reference truth.exr";
-    let run = folder.run(&args.split(' ').collect::<Vec<_>>());
+    let run = folder.run_str(args);
     assert!(
         run.status == Some(1) && run.err.contains("truth.exr: size: found 16 × 16"),
         "{}",
@@ -326,17 +325,16 @@ fn gpu_trade_takes_specular() {
     folder.write("specular.npy", &npy("<f4", false, "(2, 16, 16)", &specular));
     let scene = "--sky 1 --sun 100,40 --albedo 0.5 --specular specular.npy --bounces 2";
     let trace = format!("reference field.npy -o truth.exr --spp 512 --quiet {scene}");
-    assert_eq!(folder.run(&trace.split(' ').collect::<Vec<_>>()).status, Some(0));
+    succeeded(&folder, &trace);
     let bare = format!("trade field.npy -o out --evaluations 2 {scene}");
-    let run = folder.run(&bare.split(' ').collect::<Vec<_>>());
+    let run = folder.run_str(&bare);
     assert_eq!(run.status, Some(2), "{}", run.err);
     assert!(
         run.err.contains("--specular with trade: found Phong specular, expected --reference"),
         "{}",
         run.err
     );
-    let run = folder.run(&format!("{bare} --reference truth.exr").split(' ').collect::<Vec<_>>());
-    assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
+    succeeded(&folder, &format!("{bare} --reference truth.exr"));
     let report = json(&folder.path("out/trade.json"));
     let flags = |list: &str| -> Vec<String> {
         let all = report[list].as_array().unwrap().iter();
@@ -363,7 +361,7 @@ fn write_bounced(folder: &Folder) -> &'static str {
     let truth = format!(
         "render field.npy -o truth.exr --method brute-force --bounce-engine brute-force --quiet {SCENE}"
     );
-    assert_eq!(folder.run(&truth.split(' ').collect::<Vec<_>>()).status, Some(0));
+    succeeded(folder, &truth);
     SCENE
 }
 
@@ -375,8 +373,7 @@ fn gpu_trade_lists_bakes() {
     let args = format!(
         "trade field.npy -o out --evaluations 2 --max-error 1 --reference truth.exr {scene}"
     );
-    let run = folder.run(&args.split(' ').collect::<Vec<_>>());
-    assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
+    let run = succeeded(&folder, &args);
     assert!(run.out.contains("visible points can be found once"), "{}", run.out);
     let rows: Vec<&str> = run.out.lines().filter(|line| line.contains(" paths: ")).collect();
     assert_eq!(rows.len(), 9, "{}", run.out);
@@ -411,8 +408,7 @@ fn gpu_trade_lists_refused_bakes() {
     let args = format!(
         "trade field.npy -o out --evaluations 2 --max-error 1 --reference truth.exr --memory-budget 300000 {scene}"
     );
-    let run = folder.run(&args.split(' ').collect::<Vec<_>>());
-    assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
+    let run = succeeded(&folder, &args);
     let rows: Vec<&str> = run.out.lines().filter(|line| line.contains(": refused: ")).collect();
     assert!(rows[0].starts_with("64 directions, 40 paths: refused: "), "{rows:?}");
     // Half of 300,000 bytes is 146.5 KiB.

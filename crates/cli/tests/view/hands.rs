@@ -4,9 +4,8 @@ use std::process::{Command, Output, Stdio};
 
 use super::{Display, Folder, LIT, apart, assert_same, code, colours};
 
-/// Strokes are drawn as edits and undone and redone bit for bit. `render` draws the saved field,
-/// whose heights are relative to another median and rounded to f32 once more, which may change a
-/// code by one.
+/// Strokes are drawn as edits and undone and redone bit for bit. `render` draws the saved field, whose heights are
+/// relative to another median and rounded to f32 once more, which may change a code by one.
 #[test]
 fn gpu_brushes_are_undone_and_saved() {
     let (folder, display) = (Folder::new(), Display::new());

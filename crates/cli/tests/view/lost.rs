@@ -66,9 +66,8 @@ fn ended(code: Option<i32>, stderr: &[u8]) -> String {
     said
 }
 
-/// A device fails once between acquiring and presenting an image: the window shows the error, later
-/// frames are right, and validation finds no semaphore or fence in a wrong state. A window that
-/// fails again ends with the sentence.
+/// A device fails once between acquiring and presenting an image: the window shows the error, later frames are right,
+/// and validation finds no semaphore or fence in a wrong state. A window that fails again ends with the sentence.
 #[test]
 fn gpu_failed_frame_is_recovered() {
     let (folder, display) = (Folder::new(), Display::new());
@@ -114,8 +113,7 @@ fn gpu_failed_frame_keeps_its_changes() {
     silent(window);
 }
 
-/// A surface that the driver loses is recreated wherever the loss is reported; also one that is out
-/// of date.
+/// A surface that the driver loses is recreated wherever the loss is reported; also one that is out of date.
 #[test]
 fn gpu_lost_surface_is_recreated() {
     let (folder, display) = (Folder::new(), Display::new());

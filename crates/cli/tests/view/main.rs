@@ -242,10 +242,9 @@ fn apart(a: &Planes, b: &Planes) -> f64 {
     pairs.map(|(a, b)| (code(a) - code(b)).abs()).fold(0.0, f64::max)
 }
 
-/// A wall across level ground, with a sun behind it. Without shadows all ground that does not touch
-/// the wall has the sky's light and the sun's irradiance times the sine of its elevation over π.
-/// The main picture equals `render`'s, the reference `reference`'s, and the error follows from
-/// their files.
+/// A wall across level ground, with a sun behind it. Without shadows all ground that does not touch the wall has the
+/// sky's light and the sun's irradiance times the sine of its elevation over π. The main picture equals `render`'s,
+/// the reference `reference`'s, and the error follows from their files.
 #[test]
 fn gpu_split_window_compares_with_the_reference() {
     let (folder, display) = (Folder::new(), Display::new());

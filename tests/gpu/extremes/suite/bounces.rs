@@ -1,8 +1,8 @@
 //! Indirect light at the extremes, by every bounce engine.
 //!
-//! A point sun in the zenith casts no shadow, and an albedo of c / N_z makes all ground shine alike under it. What a
-//! sample then gets of a bounce is what it sees of ground, whatever that radiates from place to place: between own
-//! plane and horizon, known from the oracle.
+//! A point sun in the zenith casts no shadow, and an albedo of c / N_z gives all ground the same radiance under it. A
+//! texel's light of one bounce is then its share of visible ground, whose radiance is the same everywhere: between its
+//! own plane and its horizon, known from the oracle.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -31,7 +31,7 @@ use super::{About, Case, Found, Probe, field, is_pyramid};
 
 const SIDE: usize = 33;
 const MIDDLE: usize = 16;
-/// Samples looked at: about so many.
+/// The approximate number of compared texels.
 const PLACES: usize = 40;
 
 const EXPECTED: &str = "all ground of one exit radiance: of that, least to most, the share that the oracle's horizons leave above the own plane; pyramid: what the CPU reference sees";
@@ -138,7 +138,7 @@ fn nothing(case: Case) -> Case {
     Case { expected, probes: Box::new(probes), ..case }
 }
 
-/// A pyramid's levels round to more than what is to be found.
+/// A pyramid's levels round by more than the expected value.
 fn steep(case: Case) -> Case {
     Case { unjudged: is_pyramid, ..case }
 }
@@ -164,7 +164,7 @@ fn bounced(name: &str, ground: HeightField, border: Border, exit: f32) -> Case {
     case
 }
 
-/// So flat that f32 does not resolve the indirect light beside the direct: the whole is the direct light.
+/// So flat that f32 does not resolve the indirect light beside the direct: the sum is the direct light.
 fn faint(case: Case) -> Case {
     let expected = "the sun alone: indirect light is 1e-12 of it".to_owned();
     let bound =
@@ -247,7 +247,7 @@ fn one(
     places.iter().map(probe).collect()
 }
 
-/// What samples see of ground.
+/// The ground that texels see.
 struct Ground<'a> {
     found: &'a Found<'a>,
     oracle: Oracle<'a>,
@@ -258,7 +258,7 @@ struct Ground<'a> {
     levels: Option<OfPyramid>,
 }
 
-/// What a pyramid looks at.
+/// The levels that a pyramid uses.
 pub(super) struct OfPyramid {
     pub heights: Pyramid,
     pub shade: Pyramid,
@@ -303,7 +303,7 @@ impl<'a> Ground<'a> {
         }
     }
 
-    /// By radiance 1 of all ground; by pyramids by what it is. What light errs by, by what it is.
+    /// With radiance 1 on all ground; for pyramids with its own radiance. And the error of the light, relative to it.
     fn seen(&self, [row, col]: [usize; 2]) -> (Vec<Along>, BounceError) {
         let (field, border) = (&self.found.scene.field, self.found.scene.surface.border);
         let bounces = self.found.method.quality.bounces;
@@ -320,7 +320,7 @@ impl<'a> Ground<'a> {
             BounceEngine::Auto | BounceEngine::Sweep => {
                 let all = self.along_the_grid([row, col]);
                 let wedge = TAU / f64::from(bounces.azimuths);
-                // A rise from the truth, rounded once, instead of the CPU reference's.
+                // A rise from the exact heights, rounded once, instead of the CPU reference's.
                 let error = |_: &Along, cast: &Cast| {
                     let of = walk_error(wedge, cast);
                     CastError { elevation_rad: 1.25 * of.elevation_rad, ..of }
@@ -332,7 +332,7 @@ impl<'a> Ground<'a> {
         }
     }
 
-    /// In the four azimuths along the grid, where lines that run through samples meet nothing else.
+    /// In the four azimuths along the grid, where lines through texels cross nothing else.
     fn along_the_grid(&self, [row, col]: [usize; 2]) -> Vec<Along> {
         let (field, border) = (&self.found.scene.field, self.found.scene.surface.border);
         let heights = Heights::of(field, border);

@@ -1,5 +1,5 @@
-//! Horizons at the extremes. Heights are such that every method has to find the same: features that a
-//! line runs through whatever the lines' distance, or that stretch across the lines, or planes.
+//! Horizons at the extremes. The heights give every method the same result: features that a line crosses at any
+//! distance of lines, or that extend across the lines, or planes.
 
 use std::f64::consts::FRAC_PI_4;
 
@@ -65,8 +65,8 @@ fn horizons(
     }
 }
 
-/// A pyramid looks at many levels, some of them nearly level: there the rounding of 1e6 cells, 232 ε of it,
-/// is a slope of 14, and its spline over their angles may be anything.
+/// A pyramid uses many levels, some of them nearly level: there the rounding of 1e6 cells, 232 ε of it, is a slope of
+/// 14, and its spline over their angles may have any value.
 fn rounded_away(case: Case) -> Case {
     Case { unjudged: super::is_pyramid, ..case }
 }
@@ -76,8 +76,8 @@ fn towards(k: usize) -> [isize; 2] {
     [[0, 1], [-1, 1], [-1, 0], [-1, -1], [0, -1], [1, -1], [1, 0], [1, 1]][k]
 }
 
-/// From n cells away along the grid or its diagonals, a spike of height S stands at atan(S / d). What
-/// lies between is level, so rounding counts at d alone.
+/// From n cells away along the grid or its diagonals, a spike of height S stands at atan(S / d). The ground between is
+/// level, so rounding counts at d alone.
 fn sees_spike(found: &Found, height: f64) -> Vec<Probe> {
     let [x, y] = found.scene.field.cell_m();
     let largest = largest(&found.scene.field);
@@ -106,7 +106,7 @@ fn spike(name: &str, base: f64, height: f64, cell_m: [f64; 2]) -> Case {
     horizons(name, (expected, bound), f, asks, move |found| sees_spike(found, height))
 }
 
-/// From the bottom of a pit of one sample the four neighbours stand at the pit's depth over a cell.
+/// From the bottom of a pit one texel wide the four neighbours stand at the pit's depth over a cell.
 fn pit(name: &str, base: f64, depth: f64) -> Case {
     let f = field([SIDE; 2], [1.0, 1.0], |r, c| {
         base - if (r, c) == (MIDDLE, MIDDLE) { depth } else { 0.0 }
@@ -120,8 +120,8 @@ fn pit(name: &str, base: f64, depth: f64) -> Case {
     })
 }
 
-/// Voids are filled from their rim, which is level here: as if there were none. What they hold, NaN and
-/// infinities, is never looked at.
+/// Voids are filled from their rim, which is level here: as if there were none. Their contents, NaN and infinities,
+/// are never read.
 fn voids() -> Case {
     let is_void = |r: usize, c: usize| (28..=36).contains(&r) && (4..20).contains(&c) || r < 5;
     let mut heights = vec![0.0; SIDE * SIDE];
@@ -139,9 +139,9 @@ fn voids() -> Case {
     })
 }
 
-/// A plane that rises along the shorter side of its cells is its own horizon: tan ω = s cos(φ - uphill),
-/// 0 where it falls. Any line on it sees that. A line follows its azimuth to half of 1/32768 cell a
-/// step; the interval reaches from the azimuth asked for to the one followed.
+/// A plane that rises along the shorter side of its cells is its own horizon: tan ω = s cos(φ - uphill), 0 where it
+/// falls. Any line on it gives that. A line follows its azimuth to half of 1/32768 cell a step; the interval reaches
+/// from the requested azimuth to the one followed.
 fn ramp(name: &str, slope: f64, cell_m: [f64; 2], of: u32) -> Case {
     let is_east = cell_m[0] <= cell_m[1];
     let f = field([SIDE; 2], cell_m, |r, c| {
@@ -168,7 +168,7 @@ fn ramp(name: &str, slope: f64, cell_m: [f64; 2], of: u32) -> Case {
             let rises_by_lane = azimuth.marches_rows() == is_east && !is_contour;
             let rise = if rises_by_lane { slope * cell_m[0].min(cell_m[1]) } else { 0.0 };
             let ties = found.method.ties(rise, step);
-            // Away from edges, so that the nearest line of any distance has come a step far.
+            // Away from edges, so that the nearest line at any distance has made a step.
             for (row, col) in [(MIDDLE, MIDDLE), (20, 41), (37, 9), (13, 22), (50, 51)] {
                 probes.extend(found.between([k, row, col], slopes, (counts, step), ties));
             }
@@ -199,8 +199,8 @@ fn everywhere(found: &Found, range: std::ops::Range<usize>) -> Vec<Probe> {
     probes
 }
 
-/// On a plateau everything ties at slope 0 and nothing is higher; before it its edge stands at
-/// atan(H / d). Four cells from its edge the widest lines' nearest one is on it, too.
+/// On a plateau everything ties at slope 0 and nothing is higher; before it its edge stands at atan(H / d). Four cells
+/// from its edge the nearest of the widest lines is on it, too.
 fn plateau() -> Case {
     let f = field([SIDE; 2], [1.0, 1.0], |r, c| {
         if (16..=48).contains(&r) && (16..=48).contains(&c) { 2.0 } else { 0.0 }
@@ -218,8 +218,8 @@ fn plateau() -> Case {
     })
 }
 
-/// Teeth on every second column whose tips lie on one line of slope 1/4: looking up it from a tip, all
-/// tips tie; from a bottom, 3 deep, the next tip hides all others. Dyadic: no height is rounded.
+/// Teeth on every second column whose tips lie on one line of slope 1/4: up the slope from a tip, all tips tie; from a
+/// bottom, 3 deep, the next tip hides all others. Dyadic: no height is rounded.
 fn sawtooth() -> Case {
     let tip = |c: usize| 0.25 * c as f64;
     let f = field([SIDE; 2], [1.0, 1.0], |_, c| if c % 2 == 0 { tip(c) } else { tip(c) - 3.0 });
@@ -245,9 +245,9 @@ fn sawtooth() -> Case {
     })
 }
 
-/// A quarter of a circle that falls away from the horizon's side: every sample is lower than the
-/// tangent before it and stays on the hull, 140 deep, more than any memory but the list's holds. Then
-/// a climb sees over it vertex by vertex and pops them all.
+/// A quarter of a circle that falls away from the horizon's side: every texel is lower than the tangent before it and
+/// stays on the hull, 140 deep, more than any storage but the list's holds. Then a climb uncovers it vertex by vertex
+/// and pops them all.
 fn hemisphere() -> Case {
     const DOME: usize = 140;
     let height = |c: usize| match c.checked_sub(DOME) {
@@ -280,8 +280,8 @@ fn hemisphere() -> Case {
     )
 }
 
-/// Rubble at every size, against the f64 oracle, along the grid: there the surface's only crossings are
-/// samples, and lines run through them.
+/// Rubble at every size, against the f64 oracle, along the grid: there texels are the surface's only crossings, and
+/// lines pass through them.
 fn rough([rows, cols]: [usize; 2]) -> Case {
     let f = field([rows, cols], [1.5, 1.0], |r, c| ((r * 37 + c * 101) % 11) as f64 * 0.5);
     let expected = "the f64 oracle's, along the grid, at samples that a line runs through";
@@ -292,7 +292,7 @@ fn rough([rows, cols]: [usize; 2]) -> Case {
         let mut probes = Vec::new();
         for k in 0..4 {
             let [row_step, col_step] = towards(2 * k).map(|s| s as f64);
-            // Of many samples, every seventh: the oracle's time counts, too.
+            // Every seventh of many texels: the oracle is slow.
             let picks = (0..rows * cols).step_by(if rows * cols > 1000 { 7 } else { 1 });
             for (row, col) in picks.map(|i| (i / cols, i % cols)) {
                 let lane = if k % 2 == 0 { row } else { col };
@@ -331,7 +331,7 @@ fn long_and_thin(is_north: bool) -> Case {
         }
         probes
     });
-    // A march of every sample to the end: 100 million steps, 20 s on two cores.
+    // A march of every texel to the end: 100 million steps, 20 s on two cores.
     Case { refuses: lines_too_long, is_long: Method::is_brute, ..case }
 }
 

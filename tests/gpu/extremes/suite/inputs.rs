@@ -3,7 +3,7 @@
 use ridgelight::Result;
 use ridgelight::scene::{Albedo, Environment, HeightField, Lights, Sun, Surface};
 
-/// An input, what offers it, and the sentence that refuses it.
+/// An input, a function that passes it, and the sentence that refuses it.
 pub type Input = (&'static str, fn() -> Result<()>, &'static str);
 
 /// Every input that is refused. A new one is enrolled by an entry here.
@@ -105,7 +105,7 @@ pub const ALL: &[Input] = &[
     ),
 ];
 
-/// What was said of an input.
+/// The refusal of an input.
 pub fn said(offer: fn() -> Result<()>) -> String {
     offer().map_or_else(|e| e.to_string(), |()| "nothing: it was taken".to_owned())
 }

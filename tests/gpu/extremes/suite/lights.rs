@@ -17,8 +17,7 @@ pub const PLACES: [[usize; 2]; 3] = [[0, 0], [30, 64], [32, 32]];
 const COLUMNS: usize = 64;
 const ROWS: usize = 32;
 
-/// Every kind of light on every border, all its values on one of them. Slopes that repeat are no slopes, but
-/// trenches.
+/// Every kind of light on every border, all its values on one of them. Periodic slopes are trenches.
 pub fn cases() -> Vec<Case> {
     let mut all = vec![albedo(0.0), albedo(1.0)];
     all.extend([0.0, 1.0, 65_504.0, 1e6].map(|of| uniform_environment(of, Border::Plane)));
@@ -84,10 +83,10 @@ fn sky_error(found: &Found) -> f64 {
     (8.0 + 2.0 * found.count()) * EPSILON
 }
 
-/// An environment of 64 × 32 texels of `found.count()` wedges, relative to what it gives to level
-/// ground. A wedge's ends err by 64 ε columns, of its 64/m: 2 m ε, then 64/m + 2 sums; rows by 6 ε of
-/// a moment of 1/2 that is their sum, at either end, 16 of them above ground: 2·2·16 ε; as many
-/// sums, m wedges, and 10 ε of products. Under an open border there are 16 more below.
+/// An environment of 64 × 32 texels in `found.count()` wedges, relative to its light on level ground. A wedge's ends
+/// err by 64 ε columns, of its 64/m: 2 m ε, then 64/m + 2 sums; rows by 6 ε of a moment of 1/2 that is their sum, at
+/// either end, 16 of them above ground: 2·2·16 ε; as many sums, m wedges, and 10 ε of products. Under an open border
+/// there are 16 more below.
 fn environment_error(found: &Found) -> f64 {
     let m = found.count();
     let rows = if is_open(found) { 160.0 } else { 80.0 };
@@ -98,21 +97,20 @@ fn is_open(found: &Found) -> bool {
     found.scene.surface.border == Border::Open
 }
 
-/// A table that is read between nodes Δ apart: Δ²/8 of a second derivative of at most 2, three moments,
-/// over 2π / π: 3 Δ² / 2. Nodes stand from the horizon, or under an open border from straight below, up to
-/// the zenith.
+/// A table that is read between nodes Δ apart: Δ²/8 of a second derivative of at most 2, three moments, over 2π / π: 3
+/// Δ² / 2. Nodes stand from the horizon, or under an open border from straight below, up to the zenith.
 fn between_nodes(found: &Found) -> f64 {
     let range = if is_open(found) { PI } else { FRAC_PI_2 };
     1.5 * (range / f64::from(found.method.quality.table_elevations - 1)).powi(2)
 }
 
-/// The same where level ground is the lowest that is seen: a node, but under an open border.
+/// The same where level ground is the lowest visible elevation: a node, but under an open border.
 fn at_level(found: &Found) -> f64 {
     if is_open(found) { between_nodes(found) } else { 0.0 }
 }
 
-/// Light of the environment by the same series in f64, and how far a device may be from it: on a plane that
-/// rises so much to east and north, whose horizons err by `slope_error`.
+/// Light of the environment by the same series in f64, and the device's bound: on a plane with these slopes to east
+/// and north, whose horizons err by `slope_error`.
 fn series(found: &Found, [east, north]: [f64; 2], slope_error: f64) -> [f64; 2] {
     let least = if is_open(found) { f64::NEG_INFINITY } else { 0.0 };
     let rise = |a: &Azimuth| east * f64::from(a.cos_phi) + north * f64::from(a.sin_phi);
@@ -139,9 +137,8 @@ fn series_above(
     [light.x, off.x]
 }
 
-/// What level ground gives back of a constant environment, and what that errs by: all of its radiance, by
-/// [`environment_error`] and what lies between nodes; of a series, by that; where wedges round it off, what the
-/// series keeps.
+/// The light of a constant environment on level ground, and its bound: all of its radiance, by [`environment_error`]
+/// and interpolation between nodes; of a series, by that; where wedges smooth it, the part that the series keeps.
 fn constant(found: &Found, radiance: f64) -> [f64; 2] {
     if !found.method.is_soft() {
         return [radiance, radiance * (environment_error(found) + at_level(found))];
@@ -154,7 +151,7 @@ pub fn probe(found: f64, expected: f64, bound: f64, at: [usize; 3]) -> Probe {
     Probe { found, expected: [expected; 2], bound, at }
 }
 
-/// Level ground gives back its albedo's share of what shines all around: L = ρ (1 + 1).
+/// Level ground reflects its albedo's share of light from all around: L = ρ (1 + 1).
 fn albedo(albedo: f32) -> Case {
     let expected = "under a sky of 1 and an environment of 1, level: 2 ρ";
     let bound =
@@ -177,8 +174,7 @@ fn albedo(albedo: f32) -> Case {
     case
 }
 
-/// A constant environment is a uniform sky: level ground of albedo 1 gives its radiance. The sky
-/// beside it stays what it is.
+/// A constant environment is a uniform sky: level ground of albedo 1 has its radiance. The sky beside it is unchanged.
 fn uniform_environment(value: f32, border: Border) -> Case {
     let name = format!("an environment of {value:e} everywhere");
     let expected = "level: its radiance, and 1 of the sky beside it";
@@ -227,13 +223,13 @@ fn peak(border: Border) -> Case {
     )
 }
 
-/// A plane on level ground sees (1 + cos tilt) / 2 of the sky, at any steepness; with nothing around it, from
-/// which light comes from below, too, all of its own half of it.
+/// A plane on level ground sees (1 + cos tilt) / 2 of the sky, at any steepness; without surroundings, and with light
+/// from below, all of its own hemisphere.
 ///
-/// Azimuths: the sum stops at wedge middles where the own plane begins to hide; half a wedge is missed
-/// or added at each of two ends, where the light is that of its angle, (π/m)² sin(tilt) in all. Elevations
-/// that err by an angle move the slices' ends, where the integrand is at most 1, over 2π / π. The table
-/// is read between nodes. In harmonics azimuths stand for their wedges: (2π/m)²/24 of what is horizontal.
+/// Azimuths: the sum stops at wedge middles where the own plane begins to occlude; half a wedge is missed or added at
+/// each of two ends, where the light is that of its angle, (π/m)² sin(tilt) in all. Elevations that err by an angle
+/// move the slices' ends, where the integrand is at most 1, over 2π / π. The table is interpolated between nodes. In
+/// harmonics azimuths represent their wedges: (2π/m)²/24 of the horizontal part.
 fn slope_under_the_sky(slope: f64, [rows, cols]: [usize; 2], border: Border) -> Case {
     // Uphill east, or north in a single column.
     let uphill = if cols > 1 { [slope, 0.0] } else { [0.0, slope] };
@@ -254,7 +250,7 @@ fn slope_under_the_sky(slope: f64, [rows, cols]: [usize; 2], border: Border) -> 
         let cos_tilt = 1.0 / 1.0_f64.hypot(slope);
         let right = if is_open(found) { 1.0 } else { 0.5 * (1.0 + cos_tilt) };
         let largest = slope * (rows.max(cols) / 2) as f64;
-        // A single line of samples has no other beside it.
+        // A single line of texels has no neighbour.
         let ties = if rows.min(cols) == 1 { 0.0 } else { found.method.ties(slope, 1.0) };
         let angle = found.method.angle_error(slope, (largest, 1.0), ties, &found.azimuths[0]);
         let wedge = (PI / found.count()).powi(2) * slope.atan().sin();
@@ -274,7 +270,7 @@ fn slope_under_the_sky(slope: f64, [rows, cols]: [usize; 2], border: Border) -> 
     })
 }
 
-/// Level ground of any size gives back what shines all around.
+/// Level ground of any size reflects the light from all around.
 fn level_probes(found: &Found, places: &[[usize; 2]]) -> Vec<Probe> {
     let [right, bound] = constant(found, 1.0);
     let at = |&[r, c]: &[usize; 2]| {
@@ -300,7 +296,7 @@ fn level_of([rows, cols]: [usize; 2], border: Border) -> Case {
     })
 }
 
-/// Level ground with voids, which are filled from their rim; what they hold is never looked at.
+/// Level ground with voids, which are filled from their rim; their contents are never read.
 pub fn filled_voids() -> HeightField {
     let is_void = |r: usize, c: usize| (28..=36).contains(&r) && (4..20).contains(&c) || r < 5;
     let marks: Vec<bool> = (0..SIDE * SIDE).map(|i| is_void(i / SIDE, i % SIDE)).collect();
@@ -316,12 +312,12 @@ fn voids(border: Border) -> Case {
     })
 }
 
-/// A plateau of height 10 west of level ground, whose edge stands 28 cells west of the sample and, where the
-/// field repeats, another as far east. In an azimuth φ that meets it inside the field it stands at
-/// tan ω = 10 |cos φ| / 28, and cos² ω of the sky is seen: a wedge's share of the circle times that, summed.
+/// A plateau of height 10 west of level ground, whose edge stands 28 cells west of the texel and, on a periodic field,
+/// another as far east. In an azimuth φ that reaches it inside the field it stands at tan ω = 10 |cos φ| / 28, and
+/// cos² ω of the sky is visible: a wedge's share of the circle times that, summed.
 ///
-/// A sweep looks at samples of lines: it meets the top up to a step, one cell, beyond its edge, from a line
-/// up to half their distance aside: the interval. What is nearer or farther by so much is.
+/// A sweep uses points of lines: it hits the top up to a step, one cell, beyond its edge, from a line up to half their
+/// distance aside. The interval covers both.
 fn trench(border: Border) -> Case {
     const SIDE: usize = 64;
     const HEIGHT: f64 = 10.0;
@@ -375,7 +371,7 @@ fn trench(border: Border) -> Case {
             series_above(found, DVec3::Z, &lowest, angle)
         };
         let (light, environment) = match found.method.is_soft() {
-            // The nearer the edge the less is seen.
+            // The nearer the edge, the less sky is visible.
             true if found.method.rounds_wedges() => {
                 let [near, far] = ends.map(series);
                 ([near[0], far[0]], near[1].max(far[1]))

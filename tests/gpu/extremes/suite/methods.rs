@@ -1,4 +1,4 @@
-//! The methods that every case is put to, and what each may err by.
+//! The methods for every case, and the error bound of each.
 
 use glam::DVec3;
 use ridgelight::plan::Azimuth;
@@ -15,16 +15,16 @@ use ridgelight_cpu::tolerance::{
 
 use super::About;
 
-/// A way to find horizons, as the page names it.
+/// A method for horizons, by its name on the page.
 pub struct Method {
     pub name: &'static str,
     pub about: About,
     pub quality: Quality,
-    /// Of those that look along directions.
+    /// For methods along directions.
     looks: Option<Looks>,
 }
 
-/// What visible points are looked for along, and how light is scattered over them.
+/// The directions of visible points, and the settings of scattering.
 pub struct Looks {
     pub directions: Directions,
     pub scatter: Scatter,
@@ -75,7 +75,7 @@ pub fn all() -> Vec<Method> {
     .collect()
 }
 
-/// What is looked for along directions all over the sphere, along the grid, and a hair beside it.
+/// Visible points along directions all over the sphere, along the grid, and slightly beside it.
 fn looks(base: &Quality) -> impl Iterator<Item = Method> + use<> {
     let base = *base;
     let sphere = |count| Directions::fibonacci(count, -1.0, 3).expect("directions");
@@ -144,7 +144,7 @@ fn soft_spheres(base: &Quality) -> impl Iterator<Item = Method> + use<> {
     .map(|(name, quality)| Method::of(name, About::SoftSpheres, quality))
 }
 
-/// Lobes by harmonics of every order, and through horizons of every kind.
+/// Phong specular by harmonics of every order, and through horizons of every kind.
 fn lobes(base: &Quality) -> impl Iterator<Item = Method> + use<> {
     let of = |sh_order| Quality { basis: Basis::Sh, sh_order, ..*base };
     [
@@ -181,7 +181,7 @@ fn specular(base: &Quality) -> impl Iterator<Item = Method> + use<> {
     .map(|(name, quality)| Method::of(name, About::Specular, quality))
 }
 
-/// Every engine of bounces: walks along the grid, where they meet all there is; rays along cells' diagonals, and
+/// Every engine of bounces: walks along the grid, where they find all crossings; rays along cells' diagonals, and
 /// along the grid and not.
 fn bounces(base: &Quality) -> impl Iterator<Item = Method> + use<> {
     let base = *base;
@@ -215,7 +215,7 @@ impl Method {
         Self { name, about, quality, looks: None }
     }
 
-    /// What it looks along.
+    /// Its directions.
     pub fn looks(&self) -> &Looks {
         self.looks.as_ref().expect("a method of visible points")
     }
@@ -240,8 +240,8 @@ impl Method {
         self.quality.basis == Basis::Sh
     }
 
-    /// Whether the series of what is seen is rounded off by its wedges, whatever the horizons: to Legendre
-    /// coefficients, or between a table's nodes.
+    /// Whether wedges smooth the series of visibility, whatever the horizons: to Legendre coefficients, or between a
+    /// table's nodes.
     pub fn rounds_wedges(&self) -> bool {
         self.is_soft() && self.quality.wedges != Wedges::Slices
     }
@@ -253,20 +253,20 @@ impl Method {
                 || self.quality.bounces.engine == BounceEngine::Sweep)
     }
 
-    /// Whether a line of the sweep runs through the samples of this lane in azimuths along the grid.
+    /// Whether a line of the sweep passes through the texels of this lane in azimuths along the grid.
     pub fn has_line_at(&self, lane: usize) -> bool {
         !self.has_lines()
             || self.quality.lines.shift().is_none_or(|s| (lane << 15).is_multiple_of(1 << s))
     }
 
-    /// Cells by which what a sweep meets may stand aside of or beyond what its samples would meet: half the
-    /// lines' distance and a step.
+    /// Cells by which a sweep's occluder may stand aside of or beyond that of its texels: half the lines' distance and
+    /// a step.
     pub fn aside(&self) -> f64 {
         let spaced = self.quality.lines.shift().filter(|_| self.has_lines());
         spaced.map_or(0.0, |shift| 1.0 + 0.5 * f64::from(shift).exp2() / 32_768.0)
     }
 
-    /// The azimuths that it sweeps when asked for `count`, in the order of the circle.
+    /// The azimuths that it sweeps for a requested `count`, in the order of the circle.
     pub fn azimuths(&self, count: u32, cell_m: [f64; 2]) -> Vec<Azimuth> {
         if self.is_exact() {
             along_grid_vectors(count, cell_m).expect("vectors")
@@ -275,32 +275,30 @@ impl Method {
         }
     }
 
-    /// What counts of heights up to `largest_m` along a level line: their differences are 0, exactly, but
-    /// for packed entries, which are rounded and seen from what is not, and for a pyramid's levels, whose
-    /// splines round.
+    /// Rounding of heights up to `largest_m` along a level line: their differences are exactly 0, but for packed
+    /// entries, which are rounded and compared with unrounded heights, and for a pyramid's levels, whose splines
+    /// round.
     pub fn level(&self, largest_m: f64) -> f64 {
         let rounds = self.quality.precision == Precision::Packed || self.is_pyramid();
         if rounds { largest_m } else { 0.0 }
     }
 
-    /// Slope by which a plane that rises by `rise_m` from lane to lane may be missed between lines.
+    /// Slope error between lines on a plane that rises by `rise_m` from lane to lane.
     ///
-    /// `own` sees what two lines met from the sample's height, t cells aside of the one and 1 - t of the
-    /// other, and interpolates: t (1 - t) rise_m / distance, once added and once taken away. All that a
-    /// line meets on a plane ties, and where rounding picks other distances the two do not cancel:
-    /// t (1 - t) rise_m / step at most.
+    /// `own` takes the occluders of two lines from the texel's height, t cells aside of the one and 1 - t of the
+    /// other, and interpolates: t (1 - t) rise_m / distance, once added and once subtracted. All crossings of a line
+    /// on a plane tie, and where rounding chooses other distances the two do not cancel: t (1 - t) rise_m / step at
+    /// most.
     pub fn ties(&self, rise_m: f64, step_m: f64) -> f64 {
         let is_own = self.has_lines() && !self.is_exact() && self.quality.fuse == Fuse::Own;
         if is_own { 0.25 * rise_m / step_m } else { 0.0 }
     }
 
-    /// How far a slope may be from the truth, where heights reach `largest_m` and nothing that is
-    /// not level stands nearer than `near_m`.
+    /// The bound of a slope's error, for heights up to `largest_m` and no uneven ground nearer than `near_m`.
     ///
-    /// Heights are rounded on the way in, at both ends: 2 ε H. Then the CPU reference's error and the
-    /// device's beside it (`measure::tolerance`, with `near_m` in place of a step): a march R ≤ 2 H; a
-    /// surface sweep; a sweep and its fuse. Reduced precision adds its own: slopes as f16 2^-10 of
-    /// themselves, packed heights 2^-11 of H.
+    /// The input rounds heights at both ends: 2 ε H. The errors of the CPU reference and of the device follow
+    /// (`ridgelight_cpu::tolerance`, with `near_m` in place of a step): a march R ≤ 2 H; a surface sweep; a sweep and
+    /// its fuse. Reduced precision adds its own: slopes as f16 2^-10 of themselves, packed heights 2^-11 of H.
     fn slope_error(&self, slope: f64, largest_m: f64, near_m: f64, azimuth: &Azimuth) -> f64 {
         let rounded = 2.0 * EPSILON * largest_m / near_m;
         if self.is_brute() {
@@ -341,7 +339,7 @@ impl Method {
             Precision::F32 | Precision::Packed => 0.0,
         };
         let turned = (error / (1.0 + flattest * flattest)).min(std::f64::consts::FRAC_PI_2);
-        // A pyramid's angles are added up by a spline and turned back and forth.
+        // A spline adds up a pyramid's angles, which are turned back and forth.
         let added = if self.is_pyramid() { pyramid_angle(slope.abs() + error) } else { 0.0 };
         turned + ARC_TANGENT * (slope.abs() + error).min(1.0) + saturated + added
     }

@@ -1,5 +1,5 @@
-//! DESIGN §4 as a table: every case put to every method, each error beside its bound. The tests run
-//! it on the driver at hand; `cargo measure extremes` prints it for several as `out/extremes.md`.
+//! DESIGN §4 as a table: every case under every method, each error beside its bound. The tests run it on the driver at
+//! hand; `cargo measure extremes` prints it for several as `out/extremes.md`.
 
 mod bounces;
 mod horizons;
@@ -23,21 +23,21 @@ use ridgelight::scene::{Albedo, Border, HeightField, Lights, Scene, Surface, Vis
 use methods::{Looks, Method};
 use reference::CpuReference;
 
-/// What is drawn for a case.
+/// The output of a case.
 pub enum Asks {
     /// `count` azimuths from number `first` on, of a circle of `of`.
     Horizons { of: u32, first: u32, count: u32 },
     /// A picture and a layer for each light.
     Light,
-    /// What samples see along the method's directions.
+    /// Visible points along the method's directions.
     Points,
-    /// Ellipses of the sky that they see there.
+    /// Ellipses of visible sky.
     Ellipses,
-    /// Light scattered over it, of direct light that [`scatters::direct`] makes up.
+    /// Scattered light, of the direct light of [`scatters::direct`].
     Scatter,
 }
 
-/// What a case is about: it is put to the methods of that.
+/// The subject of a case, which selects its methods.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum About {
     /// Horizons, and the light that is drawn through them.
@@ -50,85 +50,85 @@ pub enum About {
     Phong,
     /// Indirect Phong specular.
     Specular,
-    /// What samples see, direction by direction.
+    /// Visible points, direction by direction.
     Points,
-    /// The sky that they see, as ellipses.
+    /// Ellipses of visible sky.
     Ellipses,
-    /// What is scattered over what they see.
+    /// Light scattered between visible points.
     Scattering,
 }
 
-/// A scene at an extreme, and what its answer has to be.
+/// A scene at an extreme, and its expected answer.
 pub struct Case {
     pub name: String,
     pub about: About,
     /// The right answer and why; for the page.
     pub expected: String,
-    /// How far from it a value may be, as a formula; for the page.
+    /// The bound of a value's error, as a formula; for the page.
     pub bound: String,
     pub scene: Scene,
     pub asks: Asks,
-    /// Values of the result beside what is expected of them.
+    /// Values of the result beside the expected ones.
     pub probes: Probes,
     /// The sentence with which a method refuses the case.
     pub refuses: fn(&Method) -> Option<&'static str>,
-    /// Whether what a method rounds may be as large as all that it may find: no bound says anything then.
+    /// Whether a method's rounding may be as large as the expected value: no bound is meaningful then.
     pub unjudged: fn(&Method) -> bool,
-    /// Whether a method takes so long that `tools/extremes` alone draws it, and the tests do not.
+    /// Whether a method takes so long that only `tools/extremes` draws it.
     pub is_long: fn(&Method) -> bool,
 }
 
 type Probes = Box<dyn Fn(&Found) -> Vec<Probe>>;
 
-/// A value that was found, and what it may be.
+/// A found value and its limits.
 #[derive(Clone, Copy, Debug)]
 pub struct Probe {
     pub found: f64,
     /// The right answer, or the interval that holds it.
     pub expected: [f64; 2],
-    /// How far outside it may be.
+    /// The accepted distance outside it.
     pub bound: f64,
     /// Azimuth or light, row, column.
     pub at: [usize; 3],
 }
 
 impl Probe {
-    /// Distance from what is expected; infinite where no number was found.
+    /// Distance from the expected value; infinite for NaN.
     pub fn error(&self) -> f64 {
         let [low, high] = self.expected;
         let error = (low - self.found).max(self.found - high).max(0.0);
         if self.found.is_finite() { error } else { f64::INFINITY }
     }
 
-    /// Error over bound: above 1 is too far.
+    /// Error over bound: above 1 fails.
     pub fn ratio(&self) -> f64 {
         if self.error() == 0.0 { 0.0 } else { self.error() / self.bound }
     }
 }
 
-/// What a method drew for a case.
+/// A method's output for a case.
 pub struct Found<'a> {
     pub scene: &'a Scene,
     pub method: &'a Method,
-    /// The azimuths of the circle asked for, as the method sweeps them.
+    /// The azimuths of the requested circle, as the method sweeps them.
     pub azimuths: Vec<Azimuth>,
     /// Radians of each.
     pub azimuths_rad: Vec<f64>,
-    /// What a pyramid has to find where heights are no plane's.
+    /// A pyramid's expected values on ground that is no plane.
     reference: Option<CpuReference<'a>>,
     plan: Plan,
     outputs: Vec<Pixels>,
 }
 
 impl Found<'_> {
-    /// Elevation of the horizon, radians; `None` where that azimuth was not asked for.
+    /// Elevation of the horizon, radians; `None` where that azimuth was not requested.
     pub fn horizon(&self, k: usize, row: usize, col: usize) -> Option<f64> {
         let layer = self.plan.layer_azimuths.iter().position(|l| *l as usize == k)?;
         let (rows, cols) = (self.scene.field.rows(), self.scene.field.cols());
         Some(f64::from(self.outputs[0].values[(layer * rows + row) * cols + col]))
     }
 
-    /// A horizon whose slope has to be this: see [`Method::angle_error`].
+    /// A horizon with this expected slope: see [`Method::angle_error`].
     pub fn slope(
         &self,
         at: [usize; 3],
@@ -138,8 +138,8 @@ impl Found<'_> {
         self.between(at, [slope; 2], (largest_m, near_m), 0.0)
     }
 
-    /// A horizon whose slope has to be in an interval, where ties may be broken by rounding. Of a pyramid on
-    /// uneven ground the CPU reference's, whatever the slope.
+    /// A horizon with an expected interval of slopes, where rounding may break ties. For a pyramid on uneven ground
+    /// the CPU reference's, whatever the slope.
     pub fn between(
         &self,
         at: [usize; 3],
@@ -158,8 +158,7 @@ impl Found<'_> {
         Some(Probe { found, expected, bound: bounds[0].max(bounds[1]), at })
     }
 
-    /// The elevation that a pyramid has to find on uneven ground, and how far from it one may be found; `None`
-    /// where the truth itself is asked for.
+    /// The expected elevation of a pyramid on uneven ground, and its bound; `None` where the exact one is expected.
     pub fn reference_elevation(
         &self,
         azimuth: &Azimuth,
@@ -169,7 +168,7 @@ impl Found<'_> {
         self.reference.as_ref().map(|reference| reference.elevation(azimuth, row, col))
     }
 
-    /// First channel of a layer at a sample.
+    /// First channel of a layer at a texel.
     pub fn light(&self, layer: &str, row: usize, col: usize) -> f64 {
         let output = self.outputs.iter().find(|o| o.name == layer);
         let output = output.unwrap_or_else(|| panic!("no output {layer}"));
@@ -188,12 +187,12 @@ impl Found<'_> {
         self.outputs[output].values.as_chunks().0.to_vec()
     }
 
-    /// What samples see: the outputs of [`Asks::Points`].
+    /// Visible points: the outputs of [`Asks::Points`].
     fn points(&self) -> VisiblePoints {
         points_of(self.scene, self.looks(), &self.outputs)
     }
 
-    /// What the method looks along.
+    /// The method's directions.
     fn looks(&self) -> &Looks {
         self.method.looks()
     }
@@ -203,23 +202,23 @@ impl Found<'_> {
         self.outputs.iter().any(|o| o.name == layer)
     }
 
-    /// The circle's azimuths that were swept.
+    /// The number of the circle's swept azimuths.
     pub fn count(&self) -> f64 {
         f64::from(self.method.quality.azimuths)
     }
 }
 
-/// What came of a case under a method.
+/// The result of a case under a method.
 pub enum Outcome {
-    /// The worst of so many values, the largest error of all, and the tightest bound as a share of the largest
-    /// that is expected, where that is not 0.
+    /// The worst of the values, the largest error of all, and the tightest bound as a share of the largest expected
+    /// value, where that is not 0.
     Measured { worst: Probe, largest_error: f64, tightest: f64, values: usize },
-    /// The sentence that was said.
+    /// The sentence of the refusal.
     Refused(String),
 }
 
 impl Outcome {
-    /// How many values were looked at.
+    /// The number of compared values.
     pub fn values(&self) -> usize {
         match self {
             Outcome::Measured { values, .. } => *values,
@@ -245,7 +244,7 @@ pub fn cases() -> Vec<Case> {
     of_horizons.chain(of_their_own).chain(of_specular).chain(of_visible_points).collect()
 }
 
-/// Which cases are put to which methods, by their places in the lists.
+/// The pairs of cases and methods, by their places in the lists.
 pub fn put(cases: &[Case], methods: &[Method]) -> Vec<[usize; 2]> {
     let all = (0..methods.len()).flat_map(|m| (0..cases.len()).map(move |c| [c, m]));
     all.filter(|[c, m]| cases[*c].about == methods[*m].about).collect()
@@ -336,10 +335,10 @@ pub fn outcome(probes: Result<Vec<Probe>, String>) -> Outcome {
     }
 }
 
-/// A bound that says little: a tenth of the largest that is to be found.
+/// A bound that is hardly meaningful: a tenth of the largest expected value.
 const LOOSE: f64 = 0.1;
 
-/// What is wrong with a row, if anything: a value beyond its bound, or no bound that could be missed.
+/// The complaint about a row, if any: a value beyond its bound, or a bound that nothing can miss.
 pub fn complaint(row: &Row, cases: &[Case], methods: &[Method]) -> Option<String> {
     let (case, method) = (&cases[row.case], &methods[row.method]);
     let said = match (&row.outcome, (case.refuses)(method)) {
@@ -365,7 +364,7 @@ pub fn complaint(row: &Row, cases: &[Case], methods: &[Method]) -> Option<String
     Some(format!("{}, {}: {said}", case.name, method.name))
 }
 
-/// Every case under every method; long ones where asked.
+/// Every case under every method; long ones where requested.
 pub fn run(gpu: &mut Headless, cases: &[Case], methods: &[Method], long: bool) -> Vec<Row> {
     let is_drawn = |[c, m]: &[usize; 2]| long || !(cases[*c].is_long)(&methods[*m]);
     let row = |[c, m]: [usize; 2]| {
@@ -389,7 +388,7 @@ fn none(_: &Method) -> bool {
     false
 }
 
-/// Heights that are good, none of them marked as no-data.
+/// Valid heights without voids.
 fn field(
     [rows, cols]: [usize; 2],
     cell_m: [f64; 2],
@@ -405,14 +404,14 @@ fn white(field: HeightField, border: Border, lights: Lights) -> Scene {
     Scene { field, surface, lights }
 }
 
-/// Whether the ground is a plane, heights rounded to f32: so is every level of it then.
+/// Whether the ground is a plane with heights rounded to f32: so is every level of it then.
 fn is_plane(scene: &Scene) -> bool {
     let field = &scene.field;
     let (rows, cols) = (field.rows(), field.cols());
     let at = |r: usize, c: usize| f64::from(field.heights_m()[r * cols + c]);
     let by_row = (at(rows - 1, 0) - at(0, 0)) / (rows - 1).max(1) as f64;
     let by_col = (at(0, cols - 1) - at(0, 0)) / (cols - 1).max(1) as f64;
-    // Three roundings: of a height and of the two ends that it is held against.
+    // Three roundings: of a height and of the two ends that it is compared with.
     let rounding = 3.0 * ridgelight_cpu::tolerance::EPSILON * largest(field);
     let repeats = scene.surface.border == Border::Periodic;
     (!repeats || relief(field) <= rounding)

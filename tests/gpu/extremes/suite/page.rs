@@ -1,17 +1,17 @@
-//! The page of all results (`out/extremes.md`), and whether it lacks anything.
+//! The page of all results (`out/extremes.md`), and its completeness.
 
 use std::fmt::Write as _;
 
 use super::{Case, Method, Outcome, Row, inputs};
 
-/// What one device found: a row for every case under every method.
+/// The results of one device: a row for every case under every method.
 pub struct Column {
     pub name: String,
     pub driver: String,
     pub rows: Vec<Row>,
 }
 
-/// What stands before the tables.
+/// The text before the tables.
 pub const ABOUT: &str = "\
 # The extremes
 
@@ -47,13 +47,13 @@ Bounds on a slope are each turned into an angle by 1 / (1 + slope²), and the ar
 Derived in `crates/cpu/src/tolerance.rs` and `tests/gpu/extremes/suite/methods.rs`.
 ";
 
-/// What stands before the inputs that are refused.
+/// The text before the refused inputs.
 pub const INPUTS: &str = "\n## Inputs that are refused\n\n| input | what is said |\n|---|---|\n";
 
 /// In place of a bound, and of the share of it.
 pub const UNJUDGED: &str = "not judged";
 
-/// What a case's table begins with.
+/// The beginning of a case's table.
 pub fn heading(case: &Case) -> String {
     let Case { name, expected, bound, .. } = case;
     format!("\n## {name}\n\nExpected: {expected}.\nBound: {bound}.\n")
@@ -105,8 +105,8 @@ fn cells(outcome: &Outcome, unjudged: bool) -> String {
     }
 }
 
-/// What a page lacks: cases with what is expected of them, rows of methods with a figure or a refusal in
-/// every column, refused inputs.
+/// The missing parts of a page: cases with their expected values, rows of methods with a figure or a refusal in every
+/// column, refused inputs.
 pub fn missing(page: &str, cases: &[Case], methods: &[Method]) -> Vec<String> {
     let mut missing = Vec::new();
     if !page.starts_with(ABOUT) {

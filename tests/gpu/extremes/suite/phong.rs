@@ -1,4 +1,4 @@
-//! A lobe beside the diffuse reflection at the extremes: seen from straight above, under suns and under a sky.
+//! Phong specular beside the diffuse reflection at the extremes: from straight above, under suns and under a sky.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -12,7 +12,7 @@ use ridgelight_cpu::tolerance::{
 use super::lights::{PLACES, SIDE, filled_voids, level, light, probe};
 use super::{About, Case, Found, Probe, field};
 
-/// Share that the lobe reflects; all else is black.
+/// Specular scale; the rest is black.
 const SCALE: f32 = 0.25;
 
 pub fn cases() -> Vec<Case> {
@@ -61,7 +61,7 @@ fn case(
     case
 }
 
-/// Level ground sees the upper hemisphere, a cap about the zenith, and mirrors the zenith to the zenith: of a sky it
+/// Level ground sees the upper hemisphere, a cap about the zenith, and reflects the zenith to the zenith: of a sky it
 /// reflects the sum over bands of lobe times cap.
 fn sky(name: &str, ground: HeightField, border: Border, exponent: f32, radiance: f32) -> Case {
     let expected = "scale · L · Σ lobe_l cap_l over the bands of its order, of a cap of 90°";
@@ -93,7 +93,7 @@ fn sky(name: &str, ground: HeightField, border: Border, exponent: f32, radiance:
     })
 }
 
-/// A lobe of scale 0 is none: the picture is black, and has no layer of it.
+/// Specular of scale 0 adds nothing: the picture is black and has no specular layer.
 fn none() -> Case {
     let lights = Lights { sky: Some([1.0; 3]), ..Lights::default() };
     let about = ("0, and no layer of it", "0");
@@ -116,7 +116,7 @@ fn sun(azimuth_rad: f64, elevation_rad: f64) -> Sun {
     Sun { azimuth_rad, elevation_rad, diameter_rad: 0.0, irradiance: [1.0; 3] }
 }
 
-/// Light of a lobe on ground that faces a sun by `facing`, whose mirrored zenith is `off` beside the sun.
+/// Specular light of ground with cosine `facing` to a sun, whose mirrored zenith is `off` beside the sun.
 fn reflected(exponent: f64, off: f64, facing: f64, normal_error: f64) -> [f64; 2] {
     let peak = (exponent + 1.0) / (2.0 * PI);
     let right = peak * off.cos().max(0.0).powf(exponent);
@@ -142,7 +142,7 @@ fn suns(exponent: f32) -> Case {
     })
 }
 
-/// A slope that falls towards the sun and mirrors the zenith right into it: the lobe's peak.
+/// A slope that falls towards the sun and reflects the zenith right into it: the lobe's peak.
 fn mirrored(exponent: f32, slope: f64) -> Case {
     let tilt = slope.atan();
     let ground = field([SIDE; 2], [1.0, 1.0], |_, c| -slope * c as f64);

@@ -9,7 +9,7 @@ use ridgelight_cpu::visible_points::possible_within;
 
 use super::{About, Asks, Case, Found, Probe, bounces, none};
 
-/// Samples looked at: about so many, and the middle.
+/// The approximate number of compared texels; the middle is one of them.
 const PLACES: usize = 40;
 
 pub fn cases() -> Vec<Case> {
@@ -47,7 +47,7 @@ pub fn renamed(name: &str, begin: &str) -> String {
     format!("{begin} {}", name.strip_prefix("bounced ").expect("so they begin"))
 }
 
-/// What is seen does not depend on what shines.
+/// Visibility does not depend on lights.
 fn is_ground(case: &Case) -> bool {
     !["exit radiance", "albedo 0"].iter().any(|other| case.name.contains(other))
 }
@@ -60,11 +60,11 @@ fn number(point: VisiblePoint) -> f64 {
     }
 }
 
-/// What samples may see.
+/// The possible visible points of texels.
 pub struct Sight<'a> {
     oracle: Oracle<'a>,
-    /// Of a field one sample wide, which is a line that only rays along it meet: the same twice as wide, over which they see
-    /// what they would.
+    /// For a field one texel wide, which is a line that only rays along it hit: the same twice as wide, with the same
+    /// visible points.
     doubled: Option<HeightField>,
 }
 
@@ -85,7 +85,7 @@ impl<'a> Sight<'a> {
         Self { oracle: Oracle::new(field, border), doubled }
     }
 
-    /// All that a sample may see in a direction, within what a device may err by; the truth first.
+    /// All possible visible points of a texel in a direction, within the device's error; the exact one first.
     pub fn possible(&self, at: usize, e: DVec3) -> Vec<VisiblePoint> {
         let field = self.oracle.field();
         let is_along = (field.rows() == 1 && e.y == 0.0) || (field.cols() == 1 && e.x == 0.0);
@@ -141,7 +141,7 @@ fn seen(found: &Found) -> Vec<Probe> {
             });
         }
     }
-    // What may be anything says nothing.
+    // A result with any possible value tests nothing.
     assert!(2 * known > all.len(), "{}: {known} of {} are known", found.method.name, all.len());
     all
 }

@@ -1,5 +1,5 @@
-//! Horizons that a pyramid has to find on uneven ground, where its levels are means of heights: those of its CPU
-//! reference, in f32, from the same heights.
+//! Expected horizons of a pyramid on uneven ground, where its levels are means of heights: those of its CPU reference,
+//! in f32, from the same heights.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -15,7 +15,7 @@ use ridgelight_cpu::tolerance::device_pyramid_angle;
 
 use super::{largest, relief};
 
-/// A scene's levels, and how they are marched over.
+/// A scene's levels, and the settings of their march.
 pub struct CpuReference<'a> {
     heights: Heights<'a>,
     pyramid: Pyramid,
@@ -40,7 +40,7 @@ impl<'a> CpuReference<'a> {
         Self { heights, pyramid, levels, stack, largest_m: largest(field), relief_m: relief(field) }
     }
 
-    /// Elevation of a sample's horizon, and how far from it a device's may be, radians.
+    /// Elevation of a texel's horizon, and the bound of the device's error, radians.
     pub fn elevation(&self, azimuth: &Azimuth, row: usize, col: usize) -> (f64, f64) {
         let border = self.heights.border;
         let march = PyramidMarch {

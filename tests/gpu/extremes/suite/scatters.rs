@@ -1,5 +1,5 @@
-//! Light scattered over what samples see at the extremes: the paths that the device takes, over what the oracle says that
-//! samples see, in f64.
+//! Light scattered between visible points at the extremes: the device's paths, over the oracle's visible points, in
+//! f64.
 
 use std::f64::consts::PI;
 
@@ -26,12 +26,12 @@ pub fn cases() -> Vec<Case> {
         let name = renamed(&case.name, "scattered");
         scattered(name, case)
     });
-    // Where all is black but for lobes that no direction meets, nothing is to be found.
+    // Black ground whose lobes no direction reaches scatters nothing.
     let is_seen = |case: &Case| !case.name.contains("albedo 0, lobes of 10000");
     let glossy = specular::cases().into_iter().filter(is_seen).map(|case| {
         let name = format!("scattered: {}", case.name);
         let mut case = scattered(name, case);
-        // Where paths leave, lobes meet a sky.
+        // Where paths leave, specular reflects a sky.
         case.scene.lights.sky = Some([1.0; 3]);
         case
     });
@@ -52,8 +52,8 @@ fn scattered(name: String, case: Case) -> Case {
     }
 }
 
-/// Walls at right angles, which mirror a view from above to each other along level rows, and these to the zenith's sun: lobes
-/// at their middles.
+/// Walls at right angles, which reflect a view from above to each other along level rows, and these to the zenith's
+/// sun: lobes at their peaks.
 fn mirrors() -> Case {
     let ground = field([6, 16], [1.0, 1.0], |_, c| c.abs_diff(8) as f64);
     let sun =
@@ -66,7 +66,7 @@ fn mirrors() -> Case {
     scattered(name, Case { scene: Scene { field: ground, surface, lights }, ..level() })
 }
 
-/// White, and no place sees another: nothing is scattered.
+/// White, and no texel sees another: nothing is scattered.
 fn level() -> Case {
     let ground = field([33, 33], [1.0, 1.0], |_, _| 8848.0);
     let white = Albedo::Constant([1.0; 3]);
@@ -95,7 +95,7 @@ fn level() -> Case {
     }
 }
 
-/// Direct light of what is diffuse: that of suns in the zenith, in four steps from sample to sample.
+/// Direct diffuse light of suns in the zenith, in four steps from texel to texel.
 pub fn direct(scene: &Scene) -> Vec<[f32; 3]> {
     let samples = GridPoints::of(scene);
     let sun: f32 = scene.lights.suns.iter().map(|sun| sun.irradiance[0]).sum();
@@ -106,7 +106,7 @@ pub fn direct(scene: &Scene) -> Vec<[f32; 3]> {
     (0..scene.field.heights_m().len()).map(of).collect()
 }
 
-/// Least and most of what leaves, and what a device may be off by.
+/// Least and most of the exit radiance, and the device's bound.
 #[derive(Clone, Copy, Default)]
 struct Light {
     ends: [f64; 2],
@@ -123,12 +123,12 @@ struct Chain<'a> {
     steps: usize,
     /// Solid angle of all directions.
     weight_sr: f64,
-    /// Whether what is met last is seen by its direct light alone.
+    /// Whether the last hit counts by its direct light alone.
     ends_in_direct: bool,
 }
 
 impl Chain<'_> {
-    /// What sample `at` sends `back` along a path from one of its steps on.
+    /// The light of texel `at` towards `back` along a path from one of its steps on.
     fn leaving(&self, path: usize, step: usize, at: usize, back: DVec3) -> Light {
         let (e, sky) = self.links[path * self.steps + step];
         let mut light = Light { ends: [f64::MAX, 0.0], off: 0.0 };
@@ -143,7 +143,7 @@ impl Chain<'_> {
                 }
                 _ => Light::default(),
             };
-            // Diffuse light of the sky belongs to the direct light, as does what the sample itself mirrors of it.
+            // Diffuse light of the sky is part of the direct light, as is the texel's own specular of it.
             let of_sky = match seen {
                 VisiblePoint::Sky if step > 0 => sky,
                 _ => 0.0,
@@ -178,7 +178,7 @@ impl Chain<'_> {
         light
     }
 
-    /// By how much one look-up may be off, besides what arrives.
+    /// The error of one look-up besides that of the arriving light.
     fn off(&self, at: usize, e: DVec3, of: &Gathered) -> f64 {
         let (field, border) = (&self.scene.field, self.scene.surface.border);
         let turned = Land::normal_at(field, border, [at / field.cols(), at % field.cols()]);
@@ -186,7 +186,7 @@ impl Chain<'_> {
         let [off, ..] = gathered(of, n, turned);
         let normal = self.samples.normal(at);
         let apart = 4.0 * turned + 16.0 * EPSILON;
-        // A lobe ends at the sample's own plane; of an exponent of 0 at 90° beside its middle, too.
+        // A lobe ends at the texel's own plane; for an exponent of 0 at 90° beside its middle, too.
         let on_edge = normal.dot(e).abs() <= apart || (n < 1.0 && of.along.abs() <= apart);
         off + if on_edge { of.mirrored[0] } else { 0.0 }
     }

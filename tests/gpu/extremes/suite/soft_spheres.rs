@@ -1,5 +1,5 @@
-//! Sphere lights by spherical harmonics at the extremes: the same scenes as exact ones. What harmonics keep of
-//! them is known in f64, from the surface's own horizons or a pyramid's.
+//! Sphere lights by spherical harmonics at the extremes: the same scenes as exact ones. The expected values of the
+//! series are known in f64, from the surface's own horizons or a pyramid's.
 
 use ridgelight::plan::pyramid::Pyramid;
 use ridgelight::scene::{Border, Levels};
@@ -19,7 +19,7 @@ use ridgelight_cpu::tolerance::{
 use super::{About, Case, Found, Method, Probe, sphere_lights};
 
 pub fn cases() -> Vec<Case> {
-    // Borders alone make no other series.
+    // Borders alone do not change the series.
     let is_other = |case: &Case| case.scene.surface.border != Border::Open;
     sphere_lights::cases().into_iter().filter(is_other).map(soft).collect()
 }
@@ -33,7 +33,7 @@ fn soft(case: Case) -> Case {
         bound: "what f32 may do to the series (`crates/cpu/src/direct/soft_sphere.rs`), and 4 ε"
             .to_owned(),
         probes: Box::new(probes),
-        // Of 64 cells a pyramid's levels may err by more than a sphere light is wide.
+        // Over 64 cells a pyramid's levels may err by more than a sphere light's width.
         unjudged: match super::relief(&case.scene.field) > 16.0 {
             true => super::is_pyramid,
             false => super::none,
@@ -75,7 +75,7 @@ fn probes(found: &Found) -> Vec<Probe> {
     places.map(at).into()
 }
 
-/// What slopes towards a sphere light err by, where a pyramid's levels, too, are the CPU reference's.
+/// The error of slopes towards a sphere light, where a pyramid's levels, too, are the CPU reference's.
 fn slope_error(seen: &SphereGeometry, method: &Method, largest: f64) -> f64 {
     if !method.is_pyramid() {
         return device_surface_within(seen);

@@ -1,8 +1,8 @@
 //! Indirect Phong specular, one bounce, at the extremes.
 //!
-//! Under a point sun in the zenith nothing is in shadow: what arrives of it is known in closed form at every sample. What
-//! leaves there by direction, what others see of it by pyramids and what their lobes make of that are the CPU reference's in f64,
-//! from the heights alone.
+//! Under a point sun in the zenith nothing is in shadow: the arriving light has a closed form at every texel. Its
+//! reflection by direction, the pyramids' view of it and the receiving lobes are the CPU reference's in f64, from the
+//! heights alone.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -31,7 +31,7 @@ use super::lights::light;
 use super::{About, Case, Found, Probe, field, is_pyramid};
 
 const SIDE: usize = 33;
-/// Samples looked at: about so many.
+/// The approximate number of compared texels.
 const PLACES: usize = 12;
 
 const EXPECTED: &str = "what the CPU reference sees of the sun's own harmonics, bounced by every sample's lobe and diffusely, mirrored to above";
@@ -59,7 +59,7 @@ pub fn cases() -> Vec<Case> {
     let of = |name: &str, ground, border, exponents, exit| {
         lobed(name, ground, border, 0.5, exponents, 0.25, exit)
     };
-    // A pyramid's levels round to more than what is to be found.
+    // A pyramid's levels round by more than the expected value.
     let needle = field([13, 17], square, |r, c| if (r, c) == (6, 8) { 1e6 } else { 0.0 });
     let needle = of(STEEP, needle, Border::Plane, [0.0, 1e4], 1.0);
     all.push(Case { unjudged: is_pyramid, ..needle });
@@ -114,7 +114,7 @@ fn lobed(
     case
 }
 
-/// Lobes of scale 0 are none: no layer of theirs, and, where the ground is black, none of a bounce.
+/// Specular of scale 0 adds nothing: no layer, and none of a bounce where the ground is black.
 fn without(name: &str, albedo: f32, is_bounced: bool) -> Case {
     let ground = rubble([13, 17], [1.0, 1.0], 3.0, 0.0);
     let case = lobed(name, ground, Border::Plane, albedo, [20.0; 2], 0.0, 1.0);
@@ -139,7 +139,7 @@ fn without(name: &str, albedo: f32, is_bounced: bool) -> Case {
     Case { expected, bound: "4 ε".to_owned(), probes: Box::new(probes), ..case }
 }
 
-/// What samples bounce of the sun, and the bound on each coefficient.
+/// The light of the sun that texels bounce, and the bound on each coefficient.
 struct Exit {
     normals: Vec<DVec3>,
     series: Vec<Series>,
@@ -179,7 +179,7 @@ impl Exit {
             exit.seen.push(diffuse.map(|d| d + mirrored));
             exit.normals.push(normal);
             let scale = f64::from(phong.scale) * bright;
-            // A coefficient that arrives is turned into at most √(n²) times its error; diffuse light by √4π.
+            // An arriving coefficient is multiplied by at most √(n²) times its error; diffuse light by √4π.
             let arrives = order as f64 * device_sun_arriving(error, facing);
             let of_diffuse = 4.0 * (error * bright * albedo + 16.0 * EPSILON * diffuse[0]);
             let leaves = device_specular_exit(order, error) * magnitude;
@@ -192,7 +192,7 @@ impl Exit {
     }
 }
 
-/// The bounced light, of the diffuse part and of the lobe.
+/// The bounced light, of the diffuse part and of specular.
 fn both(found: &Found) -> Vec<Probe> {
     let quality = &found.method.quality;
     let (field, border) = (&found.scene.field, found.scene.surface.border);
@@ -225,8 +225,8 @@ fn both(found: &Found) -> Vec<Probe> {
     let vectors = is_vector.then_some([&exit.series[..], &texels[..]]);
     let reference = SpecularGather { gather, order, vectors };
     let sum = |series: &Series| series.iter().map(|s| s[0].abs()).sum::<f64>();
-    // Y_lm of a direction have the norm n / √4π; so have n² coefficients that are e off each, n e: in any direction a series
-    // is n² e / √4π off, and one of norm |c| is n |c| / √4π at most.
+    // Y_lm of a direction have the norm n / √4π; n² coefficients that err by e each have n e: in any direction a
+    // series errs by n² e / √4π, and one of norm |c| is n |c| / √4π at most.
     let in_a_direction = (order * order) as f64 / (4.0 * PI).sqrt();
     let largest = |series: &Series| {
         let norm = series.iter().map(|s| s[0] * s[0]).sum::<f64>().sqrt();
@@ -285,7 +285,7 @@ fn both(found: &Found) -> Vec<Probe> {
                 let bound = bound + 4.0 * EPSILON * expected;
                 Probe { found: layers[k][i], expected: [expected; 2], bound, at: [k, at[0], at[1]] }
             };
-            // Black ground bounces by its lobes alone.
+            // Black ground bounces by specular alone.
             let of_both = [probe(0), probe(1)];
             of_both.into_iter().skip(usize::from(albedo == 0.0)).collect::<Vec<_>>()
         })

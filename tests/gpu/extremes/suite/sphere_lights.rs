@@ -1,5 +1,5 @@
-//! Sphere lights at the extremes: whole over level ground and slopes, half in the ground, around all of it,
-//! behind a wall. They do not use the horizons of any method.
+//! Sphere lights at the extremes: whole over level ground and slopes, half in the ground, around all of it, behind a
+//! wall. They do not use the horizons of any method.
 
 use std::f64::consts::PI;
 
@@ -10,7 +10,7 @@ use ridgelight_cpu::tolerance::{EPSILON, SphereGeometry};
 use super::lights::{PLACES, SIDE, filled_voids, level, light};
 use super::{Case, Found, Probe, field};
 
-/// Whole, half or no sphere light is a sum over slices of what is known in closed form.
+/// A whole, half or hidden sphere light is a sum over slices with a closed form.
 const BOUND: &str = "the CPU reference's; what the rule over n slices leaves, (r/away)^2n of a whole sphere light, n^-3/2 of one that stands in the ground, n^-2 behind a wall; and, less, the cutoff's share of the brightest";
 
 pub fn cases() -> Vec<Case> {
@@ -87,7 +87,7 @@ fn case(
     light(name, (expected, BOUND), (ground, border, lights), probes)
 }
 
-/// Slices of a sphere light that is narrow as seen from a sample: no more than eight a cell that it is wide.
+/// Slices of a sphere light that is narrow from a texel: no more than eight a cell of its width.
 fn slices(found: &Found, sphere_light: &SphereLight) -> f64 {
     let most = (16.0 * sphere_light.radius_m).ceil().max(4.0);
     f64::from(found.method.quality.sun_azimuths).min(most)
@@ -98,8 +98,8 @@ fn seen(found: &Found, sphere_light: &SphereLight, [row, col]: [usize; 2]) -> Sp
     SphereGeometry::of(field, sphere_light, row * field.cols() + col)
 }
 
-/// `share` of the sphere light's radiance is expected, of which the rule over slices errs by `rule`. A sample may lose
-/// the cutoff's share of what the sphere light gives to the one nearest to its foot.
+/// `share` of the sphere light's radiance is expected, with an error of `rule` of the rule over slices. A texel may
+/// lose the cutoff's share of the sphere light's light at the texel nearest to its foot.
 fn probe(
     found: &Found,
     sphere_light: &SphereLight,
@@ -115,7 +115,7 @@ fn probe(
     let brightest =
         (sphere_light.radius_m / seen(found, sphere_light, foot).distance_m).powi(2).min(1.0);
     let lost = found.method.quality.light_cutoff * brightest;
-    // Where nothing is seen there is nothing to round.
+    // A hidden sphere light has no rounding.
     let error = if share > 0.0 { seen(found, sphere_light, at).tolerance() } else { 0.0 };
     Probe {
         found: found.light("direct.light1", at[0], at[1]),
@@ -125,8 +125,8 @@ fn probe(
     }
 }
 
-/// A sphere light that stands above a sample's plane and is not hidden: (r/d)² of its radiance times the cosine between
-/// its middle and the normal, as if all of it came from there.
+/// A sphere light above a texel's plane that is not hidden: (r/d)² of its radiance times the cosine between its middle
+/// and the normal, as if all of it came from there.
 fn whole(
     name: &str,
     [east, north]: [f64; 2],
@@ -153,8 +153,8 @@ fn whole(
     })
 }
 
-/// Its middle lies in level ground: half of its disc is above. With a = asin(r/d), half a cap gives along the
-/// normal ∫ sin²θ dθ ∫ cos φ dφ = a - sin a cos a, over π. From within the whole hemisphere shines.
+/// Its middle lies in level ground: half of its disc is above. With a = asin(r/d), half a cap gives along the normal ∫
+/// sin²θ dθ ∫ cos φ dφ = a - sin a cos a, over π. From within the whole hemisphere is bright.
 fn halves(border: Border) -> Case {
     let sphere_light = sphere_light([32.3, 31.8, 3.0], 4.4);
     let name = "a sphere light half in level ground";
@@ -190,9 +190,9 @@ fn buried() -> Case {
     })
 }
 
-/// A long wall's top and the sample span a plane through the sphere light's middle: it cuts its disc in half. Half a
-/// cap of radius a about c, on the side of n, gives c π sin²a / 2 + n (a - sin a cos a). From half as far
-/// the wall hides it.
+/// A long wall's top and the texel span a plane through the sphere light's middle: it cuts its disc in half. Half a
+/// cap of radius a about c, on the side of n, gives c π sin²a / 2 + n (a - sin a cos a). From half as far the wall
+/// hides it.
 fn behind_a_wall(border: Border) -> Case {
     const ROWS: usize = 81;
     // Twice as far from column 10 as the wall is, and twice as high.

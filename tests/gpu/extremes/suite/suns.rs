@@ -58,12 +58,12 @@ pub fn suns_on_level_ground(border: Border) -> Case {
 /// The top of an eastern slope of height 10 and 2.5 a cell: it casts the shadow.
 const EDGE: usize = 48;
 
-/// Point suns at 30° in the azimuths 0°, 45° and 90° and hairs beside them: the shadow of the edge reaches
-/// H cos φ / tan 30° west. At 180°, where the field repeats, that of the plateau before it reaches as far east
-/// of its end, a cell before the first column. Left out: four cells around either end. A sample looks where a
-/// line beside it has met the edge: with lines 2 cells apart 1 cell before it, at 3/4 of its height, which
-/// still hides the sun up to 10.2 cells away at 45°; with lines 4 apart one of two stands on the top, up to 4
-/// cells behind it, which hides it up to 8.2. The shadow there ends at 12.2.
+/// Point suns at 30° in the azimuths 0°, 45° and 90° and slightly beside them: the shadow of the edge reaches H cos φ
+/// / tan 30° west. At 180°, on a periodic field, that of the plateau before it reaches as far east of its end, a cell
+/// before the first column. Left out: four cells around either end. A texel uses the point where a neighbouring line
+/// has hit the edge: with lines 2 cells apart 1 cell before it, at 3/4 of its height, which still hides the sun up to
+/// 10.2 cells away at 45°; with lines 4 apart one of two stands on the top, up to 4 cells behind it, which hides it up
+/// to 8.2. The shadow there ends at 12.2.
 pub fn suns_along_the_grid(border: Border) -> Case {
     const HEIGHT: f64 = 10.0;
     let mut hairs = vec![0.0];

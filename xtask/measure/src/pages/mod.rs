@@ -86,7 +86,7 @@ fn hosts() -> Result<String> {
     }
     Ok(out
         + "\nTests run each one and compare its bytes with the command line's, without a validation message \
-           (`tests/gpu/ash_host.rs`, `crates/capi/tests/c`, `tools/wgpu`).\n")
+           (`tests/gpu/embedding/ash_host.rs`, `crates/capi/tests/c`, `tools/wgpu`).\n")
 }
 
 fn sizes() -> Result<String> {

@@ -1,0 +1,567 @@
+//! Arguments out of their range, of the wrong kind, or in combinations that cannot be.
+
+use crate::formats::{HEIGHTS, colour, hdr, png};
+use crate::{Folder, refused};
+
+/// `flag value`, for each command given.
+fn each(commands: &[&str], folder: &Folder, flags: &[(&str, i32, &[&str])]) {
+    let all: Vec<(String, i32, &[&str])> = commands
+        .iter()
+        .flat_map(|c| flags.iter().map(move |(f, s, says)| (format!("{c} {f}"), *s, *says)))
+        .collect();
+    let cases: Vec<_> = all.iter().map(|(a, s, says)| (a.as_str(), *s, *says)).collect();
+    refused(folder, &cases);
+}
+
+const PLAN: &str = "plan a.asc";
+const RENDER: &str = "render a.asc -o out.exr";
+const HORIZON: &str = "horizon a.asc -o out.npy";
+
+#[test]
+fn quality() {
+    let folder = Folder::new();
+    each(
+        &[PLAN, RENDER, HORIZON],
+        &folder,
+        &[
+            ("--azimuths 3", 2, &["--azimuths: found 3", "4 to 1024"]),
+            ("--azimuths 1025", 2, &["--azimuths: found 1025", "4 to 1024"]),
+            ("--azimuths -1", 2, &["--azimuths", "'-1'", "whole number"]),
+            ("--azimuths x", 2, &["--azimuths", "'x'", "whole number"]),
+            ("--azimuths 4.5", 2, &["--azimuths", "'4.5'", "whole number"]),
+            ("--azimuths 99999999999", 2, &["--azimuths"]),
+            ("--azimuths", 2, &["--azimuths"]),
+            ("--azimuths 8 --azimuths 8", 2, &["--azimuths"]),
+            ("--sun-azimuths 0", 2, &["--sun-azimuths: found 0", "1 to 256"]),
+            ("--sun-azimuths 257", 2, &["--sun-azimuths: found 257"]),
+            ("--table-elevations 7", 2, &["--table-elevations: found 7", "8 to 4096"]),
+            ("--table-elevations 4097", 2, &["--table-elevations: found 4097"]),
+            ("--method pyramid --level-step 17", 2, &["--level-step: found 17", "1 to 16"]),
+            ("--method pyramid --level-offset 5", 2, &["--level-offset: found 5", "0 to 4"]),
+            ("--levels mips", 2, &["mips", "stack"]),
+            ("--sh-order 1", 2, &["--sh-order: found 1", "2 to 6"]),
+            ("--sh-order 7", 2, &["--sh-order: found 7"]),
+            ("--wedge-side 3", 2, &["--wedge-side: found 3", "4 to 256"]),
+            ("--subsample 3", 2, &["'3'", "--subsample", "1, 2, 4"]),
+            ("--bounces 65", 2, &["--bounces: found 65", "0 to 64"]),
+            ("--bounces -1", 2, &["--bounces", "'-1'"]),
+            ("--bounce-engine magic", 2, &["--bounce-engine", "magic", "brute-force"]),
+            ("--bounce-azimuths 3", 2, &["--bounce-azimuths: found 3", "4 to 1024"]),
+            ("--bounce-level-step 17", 2, &["--bounce-level-step: found 17", "1 to 16"]),
+            ("--bounce-level-offset 5", 2, &["--bounce-level-offset: found 5", "0 to 4"]),
+            ("--bounce-cutoff 2", 2, &["--bounce-cutoff: found 2", "0 to 1"]),
+            ("--bounce-cutoff nan", 2, &["--bounce-cutoff: found NaN"]),
+            ("--method magic", 2, &["--method", "magic", "sweep"]),
+            ("--lines 3", 2, &["--lines", "'3'", "exact"]),
+            ("--fuse x", 2, &["--fuse"]),
+            ("--precision f64", 2, &["--precision", "f32"]),
+            ("--hull x", 2, &["--hull"]),
+            ("--nosuch", 2, &["--nosuch"]),
+        ],
+    );
+    let distances = "horizon a.asc -o h.npy --distances d.npy --method pyramid";
+    let words = ["--distances", "--method pyramid", "sweep or brute-force"];
+    refused(&folder, &[(distances, 2, &words)]);
+}
+
+#[test]
+fn surface() {
+    let folder = Folder::new();
+    each(
+        &[PLAN, RENDER, HORIZON],
+        &folder,
+        &[
+            ("--cell 0", 2, &["--cell: found 0", "1e-12 to 1e12"]),
+            ("--cell -1", 2, &["--cell: found -1"]),
+            ("--cell nan", 2, &["--cell: found NaN"]),
+            ("--cell inf", 2, &["--cell: found inf"]),
+            ("--cell 1,0", 2, &["--cell: found 1.0 × 0.0"]),
+            ("--cell 1,2,3", 2, &["--cell", "3 numbers"]),
+            ("--cell x", 2, &["--cell", "no number"]),
+            ("--cell 1,", 2, &["--cell", "no number"]),
+            ("--z-scale nan", 2, &["--z-scale: found NaN"]),
+            ("--z-scale inf", 2, &["--z-scale: found inf"]),
+            ("--z-scale=-inf", 2, &["--z-scale: found -inf"]),
+            ("--z-scale 0", 2, &["--z-scale: found 0"]),
+            ("--z-scale x", 2, &["--z-scale"]),
+            ("--z-scale 1e300", 1, &["a.asc", "height at row 0, column 1"]),
+            ("--border wall", 2, &["--border", "wall", "periodic"]),
+            ("--nodata x", 2, &["--nodata"]),
+        ],
+    );
+    each(
+        &[PLAN, RENDER],
+        &folder,
+        &[
+            ("--albedo 2", 2, &["--albedo: found [2.0, 2.0, 2.0]", "0 to 1"]),
+            ("--albedo -1", 2, &["--albedo: found [-1.0"]),
+            ("--albedo nan", 2, &["--albedo: found [NaN"]),
+            ("--albedo 0,0,1.5", 2, &["--albedo: found [0.0, 0.0, 1.5]"]),
+            ("--albedo grey", 1, &["grey"]),
+        ],
+    );
+    refused(&folder, &[("horizon a.asc -o out.npy --albedo 0.5", 2, &["--albedo", "unexpected"])]);
+    // Everything void: a field of one height with that height as no data.
+    folder.write("level.asc", b"ncols 2 nrows 2 cellsize 1 7 7 7 7");
+    refused(&folder, &[("plan level.asc --nodata 7", 1, &["level.asc", "no-data"])]);
+}
+
+#[test]
+fn lights() {
+    let folder = Folder::new();
+    folder.write("env.hdr", &hdr(8, 4, "", &[[128, 128, 128, 129]; 32]));
+    each(
+        &[PLAN, RENDER],
+        &folder,
+        &[
+            ("--sky -1", 2, &["--sky: found [-1.0", "0 to 1e36"]),
+            ("--sky nan", 2, &["--sky: found [NaN"]),
+            ("--sky inf", 2, &["--sky: found [inf"]),
+            ("--sky 1e39", 2, &["--sky: found [inf"]),
+            ("--sky 1,2", 2, &["--sky", "2 numbers"]),
+            ("--sky 1,2,3,4", 2, &["--sky", "4 numbers"]),
+            ("--sky blue", 2, &["--sky", "no number"]),
+            ("--sky 0", 2, &["found all of radiance 0"]),
+            ("--sun 90", 2, &["--sun", "expected AZ,EL"]),
+            ("--sun 1,2,3,4,5", 2, &["--sun", "expected AZ,EL"]),
+            ("--sun 1,2,3,4,5,6,7", 2, &["--sun", "expected AZ,EL"]),
+            ("--sun x,y", 2, &["--sun", "no number"]),
+            ("--sun 0,-1", 2, &["--sun 1: elevation: found -1°", "0° to 90°"]),
+            ("--sun 0,91", 2, &["--sun 1: elevation: found 91°"]),
+            ("--sun 0,nan", 2, &["--sun 1: elevation: found NaN"]),
+            ("--sun nan,45", 2, &["--sun 1: azimuth: found NaN"]),
+            ("--sun inf,45", 2, &["--sun 1: azimuth: found -inf"]),
+            ("--sun 0,45,-1", 2, &["--sun 1: angular diameter: found -1°"]),
+            ("--sun 0,45,91", 2, &["--sun 1: angular diameter: found 91°"]),
+            ("--sun 0,45,1,-1", 2, &["--sun 1: irradiance"]),
+            ("--sun 0,45,1,1,nan,1", 2, &["--sun 1: irradiance"]),
+            ("--sun 0,45 --sun 0,91", 2, &["--sun 2: elevation: found 91°"]),
+            (
+                "--sun 0,45,0 --lines exact",
+                2,
+                &["--lines exact with --sun", "--method brute-force"],
+            ),
+            ("--key 90,45,10,10", 2, &["--key", "expected AZ,EL,WIDTH,HEIGHT,RADIANCE"]),
+            ("--key 1,2,3,4,5,6", 2, &["--key", "expected AZ,EL,WIDTH,HEIGHT,RADIANCE"]),
+            ("--key 1,2,3,x,5", 2, &["--key", "no number"]),
+            ("--key nan,45,10,10,1", 2, &["--key 1: azimuth: found NaN"]),
+            ("--key 90,45,0,10,1", 2, &["--key 1: width: found 0°", "up to 360°"]),
+            ("--key 90,45,361,10,1", 2, &["--key 1: width: found 361°"]),
+            ("--key 90,45,10,0,1", 2, &["--key 1: elevations: found 45° to 45°", "-90° to 90°"]),
+            ("--key 90,80,10,40,1", 2, &["--key 1: elevations: found 60° to 100°"]),
+            ("--key 90,45,360,90,1,-1,1", 2, &["--key 1: radiance: found [1.0, -1.0, 1.0]"]),
+            ("--key 90,45,9,9,1 --key 90,45,-9,9,1", 2, &["--key 2: width: found -9°"]),
+            ("--key 90,45,9,9,0", 2, &["found all of radiance 0"]),
+            (
+                "--key 90,45,9,9,1 --lines exact",
+                2,
+                &["--lines exact with --key", "--method brute-force"],
+            ),
+            ("--sphere-light 1,2,3,0,5", 2, &["--sphere-light 1: radius: found 0"]),
+            (
+                "--sphere-light 1,2,3,1,5 --sphere-light 1,2,3,1,-1",
+                2,
+                &["--sphere-light 2: radiance"],
+            ),
+            (
+                "--sphere-light -1,2,3,4,5 --sphere-light 0",
+                2,
+                &["--sphere-light", "X,Y,Z,RADIUS,RADIANCE"],
+            ),
+            ("--sphere-light 1,2,x,4,5", 2, &["--sphere-light", "no number"]),
+            (
+                "--sphere-light 1,2,3,4,5 --light-cutoff 2",
+                2,
+                &["--light-cutoff: found 2", "0 to 1"],
+            ),
+            ("--sphere-light 1,2,3,4,5 --light-cutoff nan", 2, &["--light-cutoff: found NaN"]),
+            ("--env env.hdr --env-rotate nan", 2, &["--env-rotate: found NaN"]),
+            ("--env env.hdr --env-rotate x", 2, &["--env-rotate"]),
+            ("--env-rotate 90", 2, &["--env"]),
+        ],
+    );
+}
+
+#[test]
+fn everywhere() {
+    let folder = Folder::new();
+    each(
+        &[PLAN, RENDER, HORIZON],
+        &folder,
+        &[
+            ("--memory-budget 0", 1, &["needs ", "0 bytes of --memory-budget"]),
+            ("--memory-budget 0.25KiB", 1, &["needs ", "256 bytes of --memory-budget"]),
+            ("--memory-budget 5XB", 2, &["--memory-budget", "XB", "MiB"]),
+            ("--memory-budget -1", 2, &["--memory-budget"]),
+            ("--memory-budget lots", 2, &["--memory-budget", "no size"]),
+            ("--memory-budget 1.2.3MiB", 2, &["--memory-budget"]),
+            ("--device nosuch", 1, &["driver"]),
+            ("--json out.txt", 2, &["--json: found out.txt", ".json"]),
+            ("--json no/out.json", 2, &["--json", "a folder no"]),
+            ("--json a.json/out.json", 2, &["--json", "a folder a.json"]),
+        ],
+    );
+}
+
+#[test]
+fn specular() {
+    let folder = Folder::new();
+    each(
+        &[PLAN, RENDER],
+        &folder,
+        &[
+            ("--specular 10", 2, &["--specular", "EXPONENT,SCALE"]),
+            ("--specular -1,0.5 --albedo 0.5", 2, &["--specular exponent: found -1"]),
+            ("--specular 10,0.5", 2, &["--specular scale", "albedo of 1"]),
+            (
+                "--specular 10,0.5 --albedo 0.5 --basis table",
+                2,
+                &["--specular: found", "--basis sh"],
+            ),
+            (
+                "--specular 10,0.5 --albedo 0.5 --key 0,30,9,9,1",
+                2,
+                &["--specular: found", "key light"],
+            ),
+            (
+                "--specular 10,0.5 --albedo 0.5 --bounces 1 --bounce-engine sweep",
+                2,
+                &["--bounce-engine", "found sweep, expected pyramid"],
+            ),
+            (
+                "--specular 10,0.5 --albedo 0.5 --bounces 1 --bounce-engine pyramid --receiver cosine",
+                2,
+                &["--receiver", "specular: found cosine, expected plane"],
+            ),
+            (
+                "--specular 10,0.5 --albedo 0.5 --bounces 1 --bounce-engine pyramid --subsample 2",
+                2,
+                &["--subsample", "found 2"],
+            ),
+            ("--bounces 1 --bounce-specular half", 2, &["--bounce-specular", "vector-f16"]),
+        ],
+    );
+    let both = "--specular 10,0.5 --albedo 0.5";
+    refused(
+        &folder,
+        &[
+            (
+                &format!("trade a.asc -o out {both}"),
+                2,
+                &["--specular with trade", "Phong specular"],
+            ),
+            (&format!("{RENDER} {both} --max-error 1"), 2, &["--specular with --max-error"]),
+            (&format!("bench a.asc {both} --bounces 1"), 2, &["--specular with bench --bounces"]),
+            (&format!("bench --sizes 64 {both}"), 2, &["--specular with bench --sizes"]),
+            ("horizon a.asc -o out.npy --specular 10,0.5", 2, &["--specular"]),
+        ],
+    );
+}
+
+#[test]
+fn unknown_and_missing() {
+    let folder = Folder::new();
+    refused(
+        &folder,
+        &[
+            ("nosuch a.asc", 2, &["nosuch"]),
+            ("render", 2, &["<INPUT>", "--output"]),
+            ("render a.asc", 2, &["--output"]),
+        ],
+    );
+}
+
+#[test]
+fn view() {
+    let folder = Folder::new();
+    folder.write("script", b"key m\n# what follows is none\njump\n");
+    refused(
+        &folder,
+        &[
+            ("view a.asc --exposure 0", 2, &["--exposure: found 0"]),
+            ("view a.asc --size 0x5", 2, &["--size", "1 to 16384"]),
+            ("view a.asc --size 640", 2, &["--size", "WxH"]),
+            ("view a.asc --azimuths 3", 2, &["--azimuths"]),
+            ("view none.asc", 1, &["none.asc"]),
+            ("view a.asc --script script", 1, &["script: line 3: found jump"]),
+            ("view a.asc --json a.asc", 2, &["--json"]),
+        ],
+    );
+}
+
+#[test]
+fn outputs() {
+    let folder = Folder::new();
+    for name in ["folder.exr", "folder.png", "folder.npy", "folder.json"] {
+        std::fs::create_dir(folder.path(name)).unwrap();
+    }
+    let field: Vec<u8> = HEIGHTS.iter().map(|h| *h as u8).collect();
+    folder.write("map.png", &png(4, 3, colour::GREY, 8, &[], &field));
+    // What stood at the destination before stays.
+    for old in ["old.exr", "old.png", "old.npy"] {
+        folder.write(old, b"what was here before");
+    }
+    refused(
+        &folder,
+        &[
+            ("render a.asc -o out.jpg", 2, &["-o: found out.jpg", ".exr or .png"]),
+            ("render a.asc -o out", 2, &["-o: found out"]),
+            ("render a.asc -o out.npy", 2, &["-o: found out.npy"]),
+            ("horizon a.asc -o out.png", 2, &["-o: found out.png", ".npy or .exr"]),
+            ("render a.asc -o no/out.exr", 2, &["-o", "a folder no"]),
+            ("render a.asc -o folder.exr", 2, &["-o: found the directory folder.exr"]),
+            ("render a.asc -o folder.png", 2, &["-o: found the directory folder.png"]),
+            ("horizon a.asc -o folder.npy", 2, &["-o: found the directory folder.npy"]),
+            ("horizon a.asc -o folder.exr", 2, &["-o: found the directory folder.exr"]),
+            ("render a.asc -o out.png --json folder.json", 2, &["--json", "folder.json"]),
+            ("horizon a.asc -o out.npy --json folder.json", 2, &["--json", "folder.json"]),
+            ("plan a.asc --json folder.json", 2, &["--json", "folder.json"]),
+            ("devices --json folder.json", 2, &["--json", "folder.json"]),
+            ("devices --json d.txt", 2, &["--json", "d.txt"]),
+            ("horizon a.asc -o out.npy --distances far.exr", 2, &["--distances", ".npy"]),
+            ("horizon a.asc -o out.npy --distances no/far.npy", 2, &["--distances", "a folder no"]),
+            ("horizon a.asc -o out.npy --distances out.npy", 2, &["--distances", "which is -o"]),
+            ("horizon a.asc -o out.npy --distances ./out.npy", 2, &["--distances", "which is -o"]),
+            (
+                "horizon a.asc -o out.npy --distances far.npy --fuse nearest",
+                2,
+                &["--distances", "--fuse nearest", "aimed"],
+            ),
+            ("horizon a.asc -o old.npy --distances far.npy --fuse slopes", 2, &["--distances"]),
+            ("horizon a.asc -o out.npy --lines exact", 2, &["--lines exact", "--json"]),
+            // Brute force has even azimuths: nothing to say beside them.
+            ("horizon a.asc -o out.npy --lines exact --method brute-force", 1, &["driver"]),
+            ("render a.png -o a.png", 2, &["-o: found a.png", "the input"]),
+            ("render a.png -o ./a.png", 2, &["-o", "the input"]),
+            ("render a.asc -o map.png --albedo map.png", 2, &["-o: found map.png", "the input"]),
+            ("horizon a.npy -o a.npy", 2, &["-o: found a.npy", "the input"]),
+            ("render a.asc -o out.png --layers lights", 2, &["--layers", ".png"]),
+            ("render a.asc -o out.exr --layers moon", 2, &["--layers", "moon", "sky-view"]),
+            ("render a.asc -o out.png --exposure 0", 2, &["--exposure: found 0"]),
+            ("render a.asc -o out.png --exposure -1", 2, &["--exposure: found -1"]),
+            ("render a.asc -o out.png --exposure nan", 2, &["--exposure: found NaN"]),
+            ("render a.asc -o out.exr --exposure 2", 2, &["--exposure", ".exr"]),
+            ("render missing.asc -o old.exr", 1, &["missing.asc"]),
+            ("render a.asc -o old.png --memory-budget 1", 1, &["--memory-budget"]),
+            ("render a.asc -o old.exr", 1, &["driver"]),
+        ],
+    );
+    #[cfg(target_os = "linux")]
+    refused(
+        &folder,
+        &[
+            // No file can be made in /proc, not even by root.
+            ("render a.asc -o /proc/out.exr", 1, &["/proc/out.exr"]),
+            ("horizon a.asc -o /proc/out.npy", 1, &["/proc/out.npy"]),
+            ("horizon a.asc -o out.npy --distances /proc/out.npy", 1, &["/proc/out.npy"]),
+            ("render a.asc -o out.exr --json /proc/out.json", 1, &["/proc/out.json"]),
+            ("compare a.npy a.npy --diff /proc/out.npy", 1, &["/proc/out.npy"]),
+            ("plan a.asc --json /proc/out.json", 1, &["/proc/out.json"]),
+        ],
+    );
+}
+
+#[test]
+fn sizes_that_no_machine_holds_are_refused() {
+    let folder = Folder::new();
+    for args in [["bench", "--size", "1000000"], ["bench", "--sizes", "256,0"]] {
+        let run = folder.run_without_driver(&args);
+        assert_eq!(run.status, Some(2), "{args:?}: {}", run.err);
+        assert!(run.err.contains("1 to 32768"), "{args:?}: {}", run.err);
+    }
+}
+
+/// Every flag with a range, a unit or a default gives it.
+#[test]
+fn help_gives_units_and_defaults() {
+    let folder = Folder::new();
+    let shared: &[(&str, &[&str])] = &[
+        ("--cell", &["metres", "Default the file's"]),
+        ("--z-scale", &["[default: 1]"]),
+        ("--border", &["[default: plane]"]),
+        ("--nodata", &["Default the file's"]),
+        ("--method", &["[default: auto]", "pyramid"]),
+        ("--level-step", &["1 to 16", "[default: 4]"]),
+        ("--level-offset", &["0 to 4", "[default: 2]"]),
+        ("--levels", &["[default: stack]"]),
+        ("--azimuths", &["4 to 1024", "[default: 64]"]),
+        ("--sun-azimuths", &["1 to 256", "[default: 8]"]),
+        ("--light-cutoff", &["0 to 1", "faster", "default 1/65536"]),
+        ("--light-basis", &["[default: exact]", "--sh-order"]),
+        ("--lines", &["Cells", "[default: 1]"]),
+        ("--fuse", &["[default: aimed-nearest]"]),
+        ("--precision", &["[default: f32]"]),
+        ("--hull", &["[default: auto]"]),
+        ("--table-elevations", &["8 to 4096", "[default: 256]"]),
+        ("--basis", &["[default: auto]"]),
+        ("--sh-order", &["2 to 6", "[default: 4]"]),
+        ("--wedges", &["[default: slices]"]),
+        ("--receiver", &["[default: plane]"]),
+        ("--window", &["[default: none]"]),
+        ("--subsample", &["texel", "[default: 1]"]),
+        ("--wedge-side", &["4 to 256", "[default: 64]"]),
+        ("--bounces", &["0 to 64", "[default: 0]"]),
+        ("--bounce-engine", &["[default: auto]"]),
+        ("--bounce-azimuths", &["4 to 1024", "[default: 32]"]),
+        ("--bounce-cutoff", &["0 to 1", "default 1/65536"]),
+        ("--bounce-level-step", &["1 to 16", "[default: 4]"]),
+        ("--bounce-level-offset", &["0 to 4", "[default: 2]"]),
+        ("--bounce-specular", &["vector-f16", "[default: vector]"]),
+        ("--device", &["Default the first GPU"]),
+        ("--memory-budget", &["512MiB", "default half"]),
+    ];
+    let lit: &[(&str, &[&str])] = &[
+        ("--sphere-light", &["X,Y,Z,RADIUS,RADIANCE", "metres"]),
+        ("--sky", &["Default 1"]),
+        ("--env-rotate", &["clockwise", "degrees", "[default: 0]"]),
+        ("--sun", &["degrees", "default 0.53", "default 1"]),
+        ("--albedo", &["0 to 1", "[default: 1]"]),
+        ("--specular", &["0 to 10000", "0 to 1", ".npy", "--basis sh"]),
+    ];
+    let render: &[(&str, &[&str])] = &[
+        ("--exposure", &["[default: 1]"]),
+        ("--layers", &["lights", "sky-view", "horizon"]),
+        ("--max-error", &["0.01 is 1 %", "95 % confidence", "refused"]),
+        ("--time-budget", &["<MS>", "GPU time"]),
+        ("--seed", &["0 by default"]),
+    ];
+    let horizon: &[(&str, &[&str])] = &[("--distances", &["metres"])];
+    let bake: &[(&str, &[&str])] = &[
+        ("--angles", &["2..64 x 4..256", "[default: 8x16, with btf 3x8]"]),
+        ("--paths", &["1 to 4096", "[default: 256]"]),
+        ("--seed", &["[default: 0]"]),
+        ("--what", &["the list below"]),
+        ("--format", &["values in f32", "exr, png, npy, ktx2"]),
+        ("--encoding", &["KIND=ENCODING", "default the first"]),
+        ("--plan", &["memory", "runs nothing"]),
+    ];
+    let plan: &[(&str, &[&str])] = &[("--format", &["[default: text]"])];
+    let compare: &[(&str, &[&str])] = &[
+        ("--max-rmse", &["relative to the mean of B", "0.01 is 1 %"]),
+        ("--max-mean-shift", &["relative to the mean of B"]),
+        ("--max-p99", &["relative to the mean of B"]),
+        ("--max-worst", &["relative to the mean of B"]),
+        ("--max-flip", &["0 (same look) to 1"]),
+        ("--max-median-deg", &["degrees"]),
+        ("--max-p999-deg", &["degrees"]),
+        ("--max-worst-deg", &["degrees"]),
+        ("--horizons", &["radians", "degrees"]),
+        ("--exposure", &["[default: 1]"]),
+        ("--pixels-per-degree", &["1 to 1000", "Default 67.02"]),
+        ("--diff", &["difference.CHANNEL", "flip", "A - B"]),
+    ];
+    let trade: &[(&str, &[&str])] = &[
+        ("--budget", &["Seconds", "[default: 120]"]),
+        ("--evaluations", &["the same work on every machine"]),
+        ("--bounces", &["0 to 64", "only with --reference", "[default: 0]"]),
+        ("--max-error", &["0.01 is 1 %"]),
+        ("--time-budget", &["<MS>"]),
+        ("--reference", &["Default: brute force"]),
+        ("--device", &["Default the first GPU"]),
+    ];
+    let reference: &[(&str, &[&str])] = &[
+        ("--spp", &["batches of 64", "at least 128", "[default: 1024]"]),
+        ("--bounces", &["0 to 64", "[default: 0]"]),
+        ("--until-error", &["0.01 is 1 %", "512 paths"]),
+        ("--seed", &["[default: 0]"]),
+        ("--device", &["Default the first GPU"]),
+    ];
+    for (command, tables) in [
+        ("reference", &[lit, reference][..]),
+        ("trade", &[lit, trade]),
+        ("render", &[shared, lit, render]),
+        ("horizon", &[shared, horizon]),
+        ("bake", &[shared, lit, bake]),
+        ("plan", &[shared, lit, plan]),
+        ("compare", &[compare]),
+        ("devices", &[]),
+    ] {
+        let help = folder.run_without_driver(&[command, "--help"]);
+        assert_eq!((help.status, help.err.as_str()), (Some(0), ""), "{command}");
+        // Each flag's own paragraph: from its line to the next flag's.
+        let flags: Vec<&str> = help.out.split("\n      --").skip(1).collect();
+        let words = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+        for (flag, says) in tables.iter().copied().flatten() {
+            let own = flags
+                .iter()
+                .find(|f| f.split([' ', '\n']).next() == flag.strip_prefix("--"))
+                .unwrap_or_else(|| panic!("{command} --help has no {flag}"));
+            for said in *says {
+                // Maps of light are scattered by default.
+                let said = match (command, *flag, *said) {
+                    ("bake", "--bounces", "[default: 0]") => "[default: 3]",
+                    _ => *said,
+                };
+                assert!(words(own).contains(said), "{command} {flag} does not say {said:?}: {own}");
+            }
+        }
+        let has_albedo = help.out.contains("--albedo");
+        assert_eq!(
+            has_albedo,
+            ["render", "plan", "trade", "reference", "bake"].contains(&command),
+            "{command} --albedo"
+        );
+    }
+    for args in [&["--help"][..], &["--version"]] {
+        let run = folder.run_without_driver(args);
+        assert!(run.status == Some(0) && run.err.is_empty() && !run.out.is_empty(), "{args:?}");
+    }
+    // Every kind is listed with the ways to pack it.
+    let help = folder.run_without_driver(&["bake", "--help"]).out;
+    for said in ["visible-sky:", "unorm16-sin", "snorm16-xyz", "--method auto is brute-force here"]
+    {
+        assert!(help.contains(said), "{said} in\n{help}");
+    }
+}
+
+/// Lines of `-h` at 100 columns: one screen.
+#[test]
+fn short_help_fits_one_screen() {
+    let folder = Folder::new();
+    for command in [
+        "render",
+        "horizon",
+        "plan",
+        "bench",
+        "compare",
+        "devices",
+        "trade",
+        "reference",
+        "bake",
+        "view",
+        "",
+    ] {
+        let words: Vec<&str> =
+            [command, "-h"].into_iter().filter(|word| !word.is_empty()).collect();
+        let mut command_line = folder.command(&words);
+        command_line.env("COLUMNS", "100");
+        let help = crate::ran(command_line);
+        assert_eq!((help.status, help.err.as_str()), (Some(0), ""), "{command}");
+        let most = if command == "render" { 42 } else { 45 };
+        let (count, text) = (help.out.lines().count(), &help.out);
+        assert!(count <= most, "{command} -h has {count} lines, at most {most}:\n{text}");
+        let widest = text.lines().map(|line| line.chars().count()).max();
+        assert!(widest <= Some(100), "{command} -h: {widest:?} columns:\n{text}");
+        if command == "render" {
+            assert!(text.lines().last().is_some_and(|line| line.contains("--help")), "{text}");
+            // One line each.
+            assert!(!text.contains("\n          "), "{text}");
+        }
+    }
+}
+
+/// Headings of `--help` in their order; expert settings come last.
+#[test]
+fn help_is_grouped() {
+    let folder = Folder::new();
+    let help = folder.run_without_driver(&["render", "--help"]).out;
+    let headings: Vec<&str> = help
+        .lines()
+        .filter(|line| line.ends_with(':') && !line.starts_with([' ', '#']))
+        .map(|line| line.trim_end_matches(':'))
+        .collect();
+    let groups = [
+        "Input", "Lights", "Surface", "Quality", "Camera", "Output", "Device", "Expert", "Examples",
+    ];
+    assert_eq!(headings, groups);
+}

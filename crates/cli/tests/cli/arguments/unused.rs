@@ -1,0 +1,149 @@
+//! Flags that change nothing are noted and are no error.
+
+use crate::formats::{hdr, npy};
+use crate::needs_vulkan::write_field;
+use crate::{Folder, Run};
+
+/// Plans `field` with `flags`, without a driver.
+fn plan(folder: &Folder, field: &str, flags: &str) -> Run {
+    let args = format!("plan {field} {flags}");
+    let run = folder.run_without_driver(&args.split_whitespace().collect::<Vec<_>>());
+    assert_eq!(run.status, Some(0), "{args}: {}", run.err);
+    assert!(run.out.contains("border"), "{args}: {}", run.out);
+    run
+}
+
+/// A level field with a spike, so that there is an occluder.
+fn folder() -> Folder {
+    let folder = Folder::new();
+    write_field(&folder, 9, |r, c| if (r, c) == (4, 4) { 3.0 } else { 0.0 });
+    folder.write("env.hdr", &hdr(8, 4, "", &[[128, 128, 128, 129]; 32]));
+    folder
+}
+
+#[test]
+fn flags_that_change_nothing_are_noted() {
+    let folder = folder();
+    for (flags, says) in [
+        (
+            "--method brute-force --hull occluder-list",
+            &["--hull occluder-list changes nothing with --method brute-force"][..],
+        ),
+        (
+            "--method brute-force --lines exact",
+            &["--lines exact changes nothing with --method brute-force"],
+        ),
+        (
+            "--fuse own --method brute-force --precision packed",
+            &[
+                "--fuse own changes nothing with --method brute-force",
+                "--precision packed changes nothing with --method brute-force",
+            ],
+        ),
+        ("--lines exact --fuse aimed", &["--fuse aimed changes nothing with --lines exact"]),
+        ("--precision f16", &["--precision f16 changes nothing with --fuse aimed-nearest"]),
+        ("--table-elevations 64", &["--table-elevations 64 changes nothing without an env"]),
+        ("--basis sh", &["--basis sh changes nothing without an environment"]),
+        ("--env env.hdr --sh-order 3", &["--sh-order 3 changes nothing without --basis sh"]),
+        (
+            "--env env.hdr --subsample 2",
+            &[
+                "--subsample 2 changes nothing without --basis sh or --bounces: tables light each texel",
+            ],
+        ),
+        (
+            "--env env.hdr --basis sh --wedge-side 16",
+            &["--wedge-side 16 changes nothing without --wedges table"],
+        ),
+        (
+            "--subsample 4 --basis sh --sky 1",
+            &["--subsample 4 changes nothing without an env", "--basis sh changes"],
+        ),
+        (
+            "--env env.hdr --basis sh --table-elevations 64",
+            &["--table-elevations 64 changes nothing with --basis sh"],
+        ),
+        ("--sun-azimuths 4", &["--sun-azimuths 4 changes nothing without a sun wider"]),
+        ("--sun 90,30,0 --sun-azimuths 4 --sky 1", &["--sun-azimuths 4 changes nothing without"]),
+        ("--sun 90,30 --azimuths 16", &["--azimuths 16 changes nothing without a sky"]),
+        // Lines 2 apart do not divide 9 cells.
+        ("--border periodic --lines 2", &["--lines 2 changes nothing with --border periodic"]),
+    ] {
+        let run = plan(&folder, "field.npy", flags);
+        let lines: Vec<_> = run.err.lines().collect();
+        assert_eq!(lines.len(), says.len(), "{flags}: {}", run.err);
+        for said in says {
+            let line = format!("note: {said}");
+            assert!(lines.iter().any(|l| l.starts_with(&line)), "{flags}: {}", run.err);
+        }
+        let quiet = format!("plan field.npy {flags} --quiet");
+        let run = folder.run_without_driver(&quiet.split(' ').collect::<Vec<_>>());
+        assert_eq!((run.status, run.err.as_str()), (Some(0), ""), "{quiet}");
+    }
+    // A level field has no occluder.
+    let level: Vec<u8> = [0_f32; 9].iter().flat_map(|v| v.to_le_bytes()).collect();
+    folder.write("level.npy", &npy("<f4", false, "(3, 3)", &level));
+    let run = plan(&folder, "level.npy", "--hull shared");
+    assert_eq!(
+        run.err,
+        "note: --hull shared changes nothing where nothing rises above anything else\n"
+    );
+}
+
+#[test]
+fn other_flags_are_not_noted() {
+    let folder = folder();
+    for flags in [
+        "",
+        "--method brute-force",
+        "--lines exact",
+        "--method brute-force --azimuths 8",
+        "--lines 2 --fuse slopes --precision f16 --hull shared --azimuths 8",
+        "--precision packed --hull occluder-list",
+        "--precision f32 --lines 1 --fuse aimed-nearest --hull auto --method sweep",
+        "--sun 90,30 --sun-azimuths 4",
+        "--key 90,45,360,90,1 --sun-azimuths 4",
+        "--env env.hdr --table-elevations 64 --azimuths 8",
+        "--sun 90,30 --env env.hdr --table-elevations 64 --azimuths 8 --sun-azimuths 4",
+        "--border periodic --lines 1/2",
+        "--env env.hdr --basis sh --sh-order 3 --wedges nlp --receiver cosine --window hann",
+        "--env env.hdr --basis sh --subsample 4 --method brute-force",
+        "--env env.hdr --basis sh --wedges table --wedge-side 8",
+        "--env env.hdr --basis table --table-elevations 64",
+    ] {
+        assert_eq!(plan(&folder, "field.npy", flags).err, "", "{flags}");
+    }
+}
+
+#[test]
+fn gpu_results_are_those_without_the_flag() {
+    let folder = folder();
+    let mut all = Vec::new();
+    for flags in ["", " --table-elevations 64"] {
+        let args = format!("horizon field.npy -o h.npy --azimuths 8{flags}");
+        let run = folder.run_str(&args);
+        let said = "note: --table-elevations 64 changes nothing without an environment\n";
+        let said = if flags.is_empty() { "" } else { said };
+        assert_eq!((run.status, run.err.as_str()), (Some(0), said));
+        all.push(std::fs::read(folder.path("h.npy")).unwrap());
+    }
+    assert!(all[0] == all[1]);
+    let args = "render field.npy -o s.exr --seed 3";
+    let run = folder.run_str(args);
+    let said = "note: --seed 3 changes nothing without --max-error or --time-budget\n";
+    assert_eq!((run.status, run.err.as_str()), (Some(0), said));
+    // The horizon layer needs azimuths all around; a sun alone does not.
+    for (flags, notes) in [("", 1), (" --layers horizon", 0), (" --layers sky-view", 0)] {
+        let args = format!("render field.npy -o s.exr --sun 90,30 --azimuths 8{flags}");
+        let run = folder.run_str(&args);
+        assert_eq!((run.status, run.err.lines().count()), (Some(0), notes), "{args}: {}", run.err);
+    }
+    for (flags, reason) in
+        [("a.asc --size 8", "with an INPUT"), ("--size 8 --sizes 4", "with --sizes")]
+    {
+        let args = format!("bench {flags} --runs 1");
+        let run = folder.run_str(&args);
+        let said = format!("note: --size 8 changes nothing {reason}\n");
+        assert_eq!((run.status, run.err), (Some(0), said), "{args}");
+    }
+}

@@ -1,0 +1,223 @@
+//! Settings chosen for an error or a time.
+
+use ridgelight::scene::{Albedo, Border, Lights, Scene, Surface};
+use ridgelight_cpu::indirect;
+use ridgelight_cpu::indirect::Fineness;
+use ridgelight_cpu::light;
+use ridgelight_cpu::oracle::Oracle;
+use ridgelight_io::HeightOptions;
+
+use crate::needs_vulkan::{attributes, write_field};
+use crate::{Folder, read, refused, succeeded};
+
+#[test]
+fn wrong_goals_are_refused() {
+    let folder = Folder::new();
+    folder.write("void.asc", b"ncols 2 nrows 1 cellsize 1 nodata_value -9 -9 -9");
+    refused(
+        &folder,
+        &[
+            ("render a.asc -o out.exr --max-error 0", 2, &["--max-error: found 0", "above 0"]),
+            ("render a.asc -o out.exr --max-error -1", 2, &["--max-error: found -1"]),
+            ("render a.asc -o out.exr --max-error nan", 2, &["--max-error: found NaN"]),
+            ("render a.asc -o out.exr --max-error some", 2, &["--max-error", "'some'"]),
+            ("render a.asc -o out.exr --time-budget 0", 2, &["--time-budget: found 0"]),
+            ("render a.asc -o out.exr --time-budget inf", 2, &["--time-budget: found inf"]),
+            (
+                "render a.asc -o out.exr --max-error 1 --time-budget 1",
+                2,
+                &["--max-error", "cannot be used with", "--time-budget"],
+            ),
+            (
+                "render a.asc -o out.exr --max-error 1 --azimuths 64",
+                2,
+                &["--max-error", "cannot be used with", "--azimuths"],
+            ),
+            (
+                "render a.asc -o out.exr --time-budget 1 --fuse aimed",
+                2,
+                &["--time-budget", "cannot be used with", "--fuse"],
+            ),
+            (
+                "render a.asc -o out.exr --max-error 1 --method brute-force",
+                2,
+                &["--max-error", "cannot be used with", "--method"],
+            ),
+            (
+                "render a.asc -o out.exr --max-error 1 --bounces 2 --bounce-azimuths 8",
+                2,
+                &["--max-error", "cannot be used with", "--bounce-azimuths"],
+            ),
+            (
+                "render a.asc -o out.exr --max-error 1 --bounces 2 --specular 5,0.1 --albedo 0.5",
+                2,
+                &["--specular with --max-error", "diffuse"],
+            ),
+            ("render a.asc -o out.exr --max-error 1 --bounces 65", 2, &["--bounces", "0 to 64"]),
+            ("render a.asc -o out.exr --max-error 1 --seed -1", 2, &["--seed", "whole number"]),
+            ("render a.asc -o out.exr --max-error 1 --sky 0", 2, &["--sky", "radiance 0"]),
+            ("render void.asc -o out.exr --max-error 1", 1, &["void.asc", "no-data"]),
+            ("plan a.asc --max-error 1", 2, &["--max-error"]),
+            ("render a.asc -o out.exr --max-error 1", 1, &["driver"]),
+        ],
+    );
+}
+
+const SIDE: usize = 24;
+
+fn peaks(row: usize, col: usize) -> f32 {
+    let peak = |y: f32, x: f32, h: f32| (h - (row as f32 - y).hypot(col as f32 - x)).max(0.0);
+    peak(7.0, 8.0, 7.0).max(peak(16.0, 15.0, 5.5))
+}
+
+fn settings(folder: &Folder) -> serde_json::Value {
+    let text = std::fs::read(folder.path("out.json")).unwrap();
+    serde_json::from_slice::<serde_json::Value>(&text).unwrap()["settings"].clone()
+}
+
+fn number(settings: &serde_json::Value, name: &str) -> f64 {
+    settings[name].as_f64().unwrap_or_else(|| panic!("{name} in {settings}"))
+}
+
+/// The stated error holds at every third texel against the oracle. Probes cover the whole small field; the library's tests
+/// cover choices by few probes.
+#[test]
+fn gpu_a_max_error_holds() {
+    let folder = Folder::new();
+    write_field(&folder, SIDE, peaks);
+    let most = 0.01;
+    let args = "render field.npy -o out.exr --json out.json --max-error 0.01";
+    let run = succeeded(&folder, args);
+    for said in [
+        "expected error",
+        "one standard deviation",
+        "measured",
+        "95 % confidence",
+        "probes",
+        "--azimuths",
+    ] {
+        assert!(run.out.contains(said), "{said}: {}", run.out);
+    }
+    let settings = settings(&folder);
+    let [stated, at_most] = ["error_measured", "error_at_most"].map(|name| number(&settings, name));
+    assert!(0.0 < stated && stated <= at_most && at_most <= most, "{stated} {at_most}");
+    assert!(number(&settings, "error_expected") > 0.0);
+    assert!((64.0..=1000.0).contains(&number(&settings, "error_probes")));
+    // The picture's header states the same, and lists the trials that missed.
+    let header = attributes(&folder.path("out.exr"));
+    for (name, value) in settings.as_object().unwrap() {
+        match value.as_f64() {
+            // serde_json reads the nearest number or the one beside it.
+            Some(number) => {
+                let other: f64 = header[name].parse().unwrap();
+                assert!((other - number).abs() <= f64::EPSILON * number.abs(), "{name}: {other}");
+            }
+            None => assert!(header.contains_key(name), "{name}"),
+        }
+    }
+    let tried = settings["tried"].as_str().unwrap();
+    assert_eq!(tried.contains("missed"), run.out.contains("chose slower settings"), "{}", run.out);
+    let exr = read(&folder.path("out.exr"));
+    let field = ridgelight_io::read_heights(
+        &folder.path("field.npy"),
+        &HeightOptions { cell_m: Some([1.0; 2]), ..HeightOptions::default() },
+    )
+    .unwrap();
+    let oracle = Oracle::new(&field, Border::Plane);
+    let (mut squares, mut sum, mut count) = (0.0, 0.0, 0.0_f64);
+    for i in (0..SIDE * SIDE).step_by(3) {
+        let truth = light::sky_of(&oracle, i / SIDE, i % SIDE, 360);
+        squares += (f64::from(exr.planes[0][i]) - truth).powi(2);
+        sum += truth;
+        count += 1.0;
+    }
+    let off = (squares / count).sqrt() / (sum / count);
+    assert!(off <= most && off > 0.3 * stated, "{off} of {stated}");
+}
+
+/// The same with two bounces of albedo 0.7, against the f64 quadrature, which shares nothing with the path tracing that judges.
+/// The picture's error is within the goal, up to the quadrature's own error. Without indirect light it is not.
+#[test]
+fn gpu_a_max_error_holds_with_bounces() {
+    let folder = Folder::new();
+    write_field(&folder, SIDE, peaks);
+    let args =
+        "render field.npy -o out.exr --json out.json --albedo 0.7 --bounces 2 --max-error 0.02";
+    let run = succeeded(&folder, args);
+    for said in ["--bounces 2", "--bounce-azimuths", "paths each", "at most"] {
+        assert!(run.out.contains(said), "{said}: {}", run.out);
+    }
+    let settings = settings(&folder);
+    let [stated, at_most] = ["error_measured", "error_at_most"].map(|name| number(&settings, name));
+    assert!(stated <= at_most && at_most <= 0.02, "{stated} {at_most}");
+    // Batches of 64, from 8 to 256, as many as stated.
+    let paths = number(&settings, "error_paths");
+    assert!((512.0..=16384.0).contains(&paths) && paths % 64.0 == 0.0, "{paths}");
+    assert!(run.out.contains(&format!("{paths} paths each")), "{paths}: {}", run.out);
+    let exr = read(&folder.path("out.exr"));
+    let field = ridgelight_io::read_heights(
+        &folder.path("field.npy"),
+        &HeightOptions { cell_m: Some([1.0; 2]), ..HeightOptions::default() },
+    )
+    .unwrap();
+    let surface = Surface { albedo: Albedo::Constant([0.7; 3]), ..Surface::default() };
+    let lights = Lights { sky: Some([1.0; 3]), ..Lights::default() };
+    let scene = Scene { field, surface, lights };
+    let fineness = Fineness { azimuths: 32, divisions: 1, strips: 1 };
+    let truth = indirect::ground_truth(&scene, 2, fineness).unwrap();
+    let root = |of: &dyn Fn(usize) -> f64| {
+        ((0..SIDE * SIDE).map(|i| of(i).powi(2)).sum::<f64>() / (SIDE * SIDE) as f64).sqrt()
+    };
+    let mean = truth.radiance[2].iter().map(|t| t[0]).sum::<f64>() / (SIDE * SIDE) as f64;
+    let off = |b: usize| root(&|i| f64::from(exr.planes[0][i]) - truth.radiance[b][i][0]) / mean;
+    let own = root(&|i| truth.error[2][i][0]) / mean;
+    assert!(own < 0.25 * 0.02, "the quadrature may be {own} off");
+    assert!(off(2) <= at_most + own, "{} of {at_most}, {own}", off(2));
+    // Without bounces the goal is missed.
+    assert!(off(0) > 0.02, "{}", off(0));
+}
+
+#[test]
+fn gpu_goals_out_of_reach_are_refused_and_a_budget_is_kept() {
+    let folder = Folder::new();
+    write_field(&folder, SIDE, peaks);
+    let before = folder.contents();
+    for (goal, says) in [
+        ("--max-error 1e-9", ["--max-error 0.000000001: needs", "an oracle", "half of its rays"]),
+        ("--time-budget 1e-6", ["--time-budget 0.000001: needs", "ms a frame", "--azimuths"]),
+    ] {
+        let args = format!("render field.npy -o out.exr {goal}");
+        let run = folder.run_str(&args);
+        assert_eq!(run.status, Some(1), "{}", run.err);
+        assert!(says.iter().all(|s| run.err.contains(s)), "{}", run.err);
+        assert!(folder.contents() == before);
+    }
+    let args = "render field.npy -o out.exr --json out.json --quiet --time-budget 60000";
+    let run = folder.run_str(args);
+    assert_eq!((run.status, run.out.as_str(), run.err.as_str()), (Some(0), "", ""));
+    let settings = settings(&folder);
+    assert_eq!(number(&settings, "time_budget_ms"), 60000.0);
+    // A minute is enough for the finest settings.
+    assert!(number(&settings, "azimuths") >= 256.0, "{settings}");
+    assert!(number(&settings, "error_at_most") < 0.01, "{settings}");
+}
+
+/// One texel, and one beside a void: all texels are probes.
+#[test]
+fn gpu_tiny_fields_have_goals_too() {
+    let folder = Folder::new();
+    folder.write("one.asc", b"ncols 1 nrows 1 cellsize 1 5");
+    folder.write("two.asc", b"ncols 3 nrows 1 cellsize 1 nodata_value -9 0 -9 3");
+    for (input, probes) in [("one.asc", 1.0), ("two.asc", 2.0)] {
+        for goal in ["--max-error 0.01 --seed 3", "--max-error 0.01 --sun 90,30"] {
+            let args = format!("render {input} -o out.exr --json out.json {goal}");
+            succeeded(&folder, &args);
+            let settings = settings(&folder);
+            let [measured, at_most] =
+                ["error_measured", "error_at_most"].map(|name| number(&settings, name));
+            assert!(measured <= at_most && at_most <= 0.01, "{args}: {measured} {at_most}");
+            assert_eq!(number(&settings, "error_probes"), probes, "{args}");
+            assert_eq!(number(&settings, "seed"), if goal.contains("seed") { 3.0 } else { 0.0 });
+        }
+    }
+}

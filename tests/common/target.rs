@@ -1,0 +1,151 @@
+//! An image that an engine draws into, and its texels: for the tests of the core and of the C ABI.
+
+use ash::vk;
+use ridgelight::gpu::{Host, ImageArg, ImageState};
+
+pub(crate) const FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
+pub(crate) const SIZE: [u32; 2] = [20, 12];
+const BYTES: usize = 20 * 12 * 16;
+
+/// An image that an engine draws into, and a buffer to read it back.
+pub(crate) struct Target {
+    image: vk::Image,
+    view: vk::ImageView,
+    buffer: vk::Buffer,
+    memory: [vk::DeviceMemory; 2],
+}
+
+fn memory(
+    host: &Host,
+    needs: vk::MemoryRequirements,
+    flags: vk::MemoryPropertyFlags,
+) -> vk::DeviceMemory {
+    // SAFETY: the physical device is the instance's.
+    let all = unsafe { host.instance.get_physical_device_memory_properties(host.physical_device) };
+    let is_fit = |i: &u32| {
+        let has = all.memory_types[*i as usize].property_flags.contains(flags);
+        needs.memory_type_bits & (1 << i) != 0 && has
+    };
+    let index = (0..all.memory_type_count).find(is_fit).expect("memory");
+    let info =
+        vk::MemoryAllocateInfo::default().allocation_size(needs.size).memory_type_index(index);
+    // SAFETY: the device is alive.
+    unsafe { host.device.allocate_memory(&info, None) }.expect("memory")
+}
+
+impl Target {
+    pub(crate) fn new(host: &Host) -> Self {
+        let [width, height] = SIZE;
+        let info = vk::ImageCreateInfo::default()
+            .image_type(vk::ImageType::TYPE_2D)
+            .format(FORMAT)
+            .extent(vk::Extent3D { width, height, depth: 1 })
+            .mip_levels(1)
+            .array_layers(1)
+            .samples(vk::SampleCountFlags::TYPE_1)
+            .usage(vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::TRANSFER_SRC);
+        let bytes = vk::BufferCreateInfo::default()
+            .size(BYTES as u64)
+            .usage(vk::BufferUsageFlags::TRANSFER_DST);
+        let device = &host.device;
+        // SAFETY: what is made here is of the device, bound once and destroyed by `end`.
+        unsafe {
+            let image = device.create_image(&info, None).expect("an image");
+            let needs = device.get_image_memory_requirements(image);
+            let of_image = memory(host, needs, vk::MemoryPropertyFlags::empty());
+            device.bind_image_memory(image, of_image, 0).expect("bound");
+            let view = vk::ImageViewCreateInfo::default()
+                .image(image)
+                .view_type(vk::ImageViewType::TYPE_2D)
+                .format(FORMAT)
+                .subresource_range(range());
+            let view = device.create_image_view(&view, None).expect("a view");
+            let buffer = device.create_buffer(&bytes, None).expect("a buffer");
+            let needs = device.get_buffer_memory_requirements(buffer);
+            let seen =
+                vk::MemoryPropertyFlags::HOST_VISIBLE | vk::MemoryPropertyFlags::HOST_COHERENT;
+            let of_buffer = memory(host, needs, seen);
+            device.bind_buffer_memory(buffer, of_buffer, 0).expect("bound");
+            Self { image, view, buffer, memory: [of_image, of_buffer] }
+        }
+    }
+
+    pub(crate) fn arg(&self) -> ImageArg {
+        let before = ImageState {
+            stage: vk::PipelineStageFlags2::NONE,
+            access: vk::AccessFlags2::NONE,
+            layout: vk::ImageLayout::UNDEFINED,
+        };
+        let after = ImageState {
+            stage: vk::PipelineStageFlags2::COPY,
+            access: vk::AccessFlags2::TRANSFER_READ,
+            layout: vk::ImageLayout::TRANSFER_SRC_OPTIMAL,
+        };
+        let (image, view, extent) = (self.image, self.view, [SIZE[0], SIZE[1], 1]);
+        ImageArg { image, view, format: FORMAT, extent, before, after }
+    }
+
+    pub(crate) fn copy(&self, host: &Host, commands: vk::CommandBuffer) {
+        let layers = vk::ImageSubresourceLayers {
+            aspect_mask: vk::ImageAspectFlags::COLOR,
+            layer_count: 1,
+            ..Default::default()
+        };
+        let [width, height] = SIZE;
+        let region = [vk::BufferImageCopy::default()
+            .image_subresource(layers)
+            .image_extent(vk::Extent3D { width, height, depth: 1 })];
+        let written = [vk::MemoryBarrier2::default()
+            .src_stage_mask(vk::PipelineStageFlags2::COPY)
+            .src_access_mask(vk::AccessFlags2::TRANSFER_WRITE)
+            .dst_stage_mask(vk::PipelineStageFlags2::HOST)
+            .dst_access_mask(vk::AccessFlags2::HOST_READ)];
+        let written = vk::DependencyInfo::default().memory_barriers(&written);
+        let layout = vk::ImageLayout::TRANSFER_SRC_OPTIMAL;
+        // SAFETY: `commands` is being recorded, the image is in the layout for copies; the buffer holds its texels.
+        unsafe {
+            host.device.cmd_copy_image_to_buffer(
+                commands,
+                self.image,
+                layout,
+                self.buffer,
+                &region,
+            );
+            host.device.cmd_pipeline_barrier2(commands, &written);
+        }
+    }
+
+    pub(crate) fn texels(&self, host: &Host) -> Vec<[f32; 3]> {
+        let (memory, flags) = (self.memory[1], vk::MemoryMapFlags::empty());
+        // SAFETY: the queue is idle; only this function maps the memory, and the buffer is as long.
+        let bytes = unsafe {
+            let at = host.device.map_memory(memory, 0, vk::WHOLE_SIZE, flags).expect("mapped");
+            let bytes = std::slice::from_raw_parts(at.cast::<u8>(), BYTES).to_vec();
+            host.device.unmap_memory(memory);
+            bytes
+        };
+        let values: Vec<f32> =
+            bytes.as_chunks::<4>().0.iter().map(|word| f32::from_ne_bytes(*word)).collect();
+        values.chunks_exact(4).map(|t| [t[0], t[1], t[2]]).collect()
+    }
+
+    pub(crate) fn end(self, host: &Host) {
+        let device = &host.device;
+        // SAFETY: made by `new`, no longer used.
+        unsafe {
+            device.destroy_image_view(self.view, None);
+            device.destroy_image(self.image, None);
+            device.destroy_buffer(self.buffer, None);
+            self.memory.into_iter().for_each(|memory| device.free_memory(memory, None));
+        }
+    }
+}
+
+fn range() -> vk::ImageSubresourceRange {
+    vk::ImageSubresourceRange {
+        aspect_mask: vk::ImageAspectFlags::COLOR,
+        level_count: 1,
+        layer_count: 1,
+        ..Default::default()
+    }
+}

@@ -1,0 +1,105 @@
+//! The quadrature of the scenes that the path tracer is compared on.
+
+use ridgelight_cpu::indirect::{Fineness, ground_truth as truth};
+
+use crate::reference_page::{FINENESS, MOST_BOUNCES, closed_forms, head, light_names};
+use crate::scenes::{Agreement, scenes};
+
+/// Figures after a row's head on the published page; none where the row is missing, or a figure is no number,
+/// or there are too few.
+fn figures<const N: usize>(page: &str, head: &str) -> Option<[f64; N]> {
+    let row = page.lines().find_map(|line| line.strip_prefix(head))?;
+    let all: Option<Vec<f64>> =
+        row.trim_end_matches('|').split('|').map(|cell| cell.trim().parse().ok()).collect();
+    all?.try_into().ok()
+}
+
+/// The text of docs/measured/reference.md.
+fn page() -> String {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/measured/reference.md");
+    std::fs::read_to_string(path).expect("docs/measured/reference.md")
+}
+
+/// Prints mean radiance and stated error of every scene, and requires an RMS of the stated errors below 1 % of
+/// the mean. The published page has the same means, and its z are small enough.
+#[test]
+fn stated_errors_are_small_on_every_scene() {
+    println!("{:34} bounces  mean radiance (sky, sun, sphere)    rms of stated error", "scene");
+    let page = page();
+    for (name, scene) in scenes() {
+        let truth = truth(&scene, MOST_BOUNCES, FINENESS).unwrap();
+        for b in 0..=MOST_BOUNCES {
+            for (channel, light) in light_names(&scene).into_iter().enumerate() {
+                let head = head(name, b, light, &truth, channel);
+                let Some([_, _, mean, rms, worst]) = figures(&page, &head) else {
+                    panic!("run tools/reference: docs/measured/reference.md lacks {head}");
+                };
+                let count = truth.radiance[b].len();
+                let published = Agreement { rms, worst, mean, count };
+                assert!(published.holds(), "{head}: {published:?}");
+            }
+        }
+        for (b, (picture, error)) in truth.radiance.iter().zip(&truth.error).enumerate() {
+            let n = picture.len() as f64;
+            let mean = [0, 1, 2].map(|i| picture.iter().map(|v| v[i]).sum::<f64>() / n);
+            let rms =
+                [0, 1, 2].map(|i| (error.iter().map(|v| v[i] * v[i]).sum::<f64>() / n).sqrt());
+            println!("{name:34} {b}        {mean:.5?}  {rms:.5?}");
+            for i in 0..3 {
+                assert!(rms[i] < 0.01 * mean[i] || rms[i] == 0.0, "{name} {b} {i}");
+            }
+        }
+    }
+}
+
+/// Each closed form stands on the published page, and its z is below 4.
+#[test]
+fn closed_forms_are_published() {
+    let page = page();
+    for closed in closed_forms() {
+        let head = closed.head();
+        let samples = closed.scene.field.heights_m().len();
+        assert!(!closed.known.is_empty() && closed.known.iter().all(|k| k.0 < samples), "{head}");
+        let Some([_, _, _, z]) = figures(&page, &head) else {
+            panic!("run tools/reference: docs/measured/reference.md lacks {head}");
+        };
+        assert!(z <= 4.0, "{head}{z}");
+        // A row with another value does not match.
+        assert!(figures::<4>(&page.replace(&head, "| "), &head).is_none());
+    }
+}
+
+/// The comparison passes a picture with its stated noise, and fails one that is 1 % too bright, one shifted by
+/// a texel, one with a single wrong texel, and one that understates its noise.
+#[test]
+fn agreement_separates_noise_from_error() {
+    let scene = scenes().remove(7).1;
+    let truth = truth(&scene, 1, Fineness { azimuths: 24, divisions: 1, strips: 12 }).unwrap();
+    let (right, stated) = (&truth.radiance[1], &truth.error[1]);
+    let sigma = vec![[1e-3; 3]; right.len()];
+    // Sums of twelve uniform numbers: standard deviation 1.
+    let mut state = 7_u64;
+    let mut normal = || {
+        (0..12).fold(-6.0, |sum, _| {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            sum + (state >> 11) as f64 / (1_u64 << 53) as f64
+        })
+    };
+    let noisy: Vec<[f64; 3]> = right.iter().map(|v| v.map(|v| v + 1e-3 * normal())).collect();
+    let of = |picture: &[[f64; 3]], sigma: &[[f64; 3]]| {
+        Agreement::of([picture, sigma], [right, stated], f64::INFINITY, 1e-6)
+    };
+    assert!(of(&noisy, &sigma).holds(), "{:?}", of(&noisy, &sigma));
+    let brighter: Vec<[f64; 3]> = noisy.iter().map(|v| v.map(|v| 1.01 * v)).collect();
+    assert!(of(&brighter, &sigma).mean > 4.0, "{:?}", of(&brighter, &sigma));
+    let mut moved = noisy.clone();
+    moved.rotate_right(1);
+    assert!(!of(&moved, &sigma).holds());
+    let mut one = noisy.clone();
+    one[70][1] += 0.02;
+    assert!(of(&one, &sigma).worst > 6.0);
+    let hidden = vec![[2e-4; 3]; right.len()];
+    assert!(!of(&noisy, &hidden).holds());
+}

@@ -1,0 +1,234 @@
+//! The passes of indirect diffuse light.
+
+use std::collections::HashSet;
+
+use ridgelight::gpu::shaders::offsets;
+use ridgelight::plan::pyramid::Pyramid;
+use ridgelight::plan::{Nodes, Pass};
+use ridgelight::scene::{Fuse, Levels};
+use ridgelight_cpu::bounce_gather::BounceGather;
+use ridgelight_cpu::bounce_march::visible_intervals_along;
+use ridgelight_cpu::bounce_walk::walked_along;
+use ridgelight_cpu::oracle::Oracle;
+use ridgelight_cpu::pyramid_march::Stored;
+use ridgelight_cpu::shared::bounced::{light_and_weight, radiance};
+use ridgelight_cpu::tolerance::{
+    BounceError, Gathered, Land, Slices, device_level, device_spline, march_error, walk_error,
+};
+use ridgelight_cpu::{shade_expand as expand_reference, shade_reduce as reduce_reference};
+
+use super::nodes::{casts, places};
+use crate::cpu_reference::{Pair, Run, constant, pushed};
+use crate::horizon::cpu_reference::pyramid::table_pairs;
+
+impl Run<'_> {
+    /// The pyramid of exit radiance.
+    pub(crate) fn shade(&self) -> Pyramid {
+        let bounces = self.quality.bounces;
+        let heights = Pyramid::new(&self.quality, self.plan.size, self.border());
+        Pyramid { level_step: bounces.level_step, level_offset: bounces.level_offset, ..heights }
+    }
+
+    /// The exit radiance of every sample.
+    pub(crate) fn exit(&mut self, pass: &Pass) -> Vec<[f64; 3]> {
+        let texels = self.floats(pass, "exit_radiance").expect("bound");
+        let samples = self.scene.field.heights_m().len();
+        match texels.len() / samples {
+            1 => texels.iter().map(|v| [(*v).into(); 3]).collect(),
+            _ => colours(&texels),
+        }
+    }
+
+    pub(crate) fn land(&self) -> Land {
+        Land::of(&self.scene.field, self.border())
+    }
+
+    pub(crate) fn slices(&self, place: [usize; 2], wedge: f64, brightest: f64) -> Slices {
+        let normal = Land::normal_at(&self.scene.field, self.border(), place);
+        Slices { normal, wedge, brightest }
+    }
+}
+
+pub(crate) fn colours(texels: &[f32]) -> Vec<[f64; 3]> {
+    texels.chunks_exact(4).map(|t| [0, 1, 2].map(|c| t[c].into())).collect()
+}
+
+pub(crate) fn brightest(exit: &[[f64; 3]]) -> f64 {
+    exit.as_flattened().iter().fold(0.0, |m, v| v.max(m))
+}
+
+/// Colours paired with the CPU reference's, each with its own tolerance.
+fn each(got: &[[f64; 3]], of: impl Fn(usize) -> ([f64; 3], [f64; 3]), at: [usize; 2]) -> Vec<Pair> {
+    let [number, cols] = at;
+    let pairs = |(i, got): (usize, &[f64; 3])| {
+        let (want, off) = of(i);
+        let at = [number, i / cols, i % cols];
+        [0, 1, 2].map(|c| Pair { got: got[c], want: want[c], tolerance: off[c], at })
+    };
+    got.iter().enumerate().flat_map(pairs).collect()
+}
+
+/// The same with one tolerance for all.
+fn paired(got: &[[f64; 3]], want: &[[f64; 3]], tolerance: f64, at: [usize; 2]) -> Vec<Pair> {
+    each(&got[..want.len()], |i| (want[i], [tolerance; 3]), at)
+}
+
+/// All visible intervals along every azimuth, in one dispatch.
+pub(crate) fn bounce_march(run: &mut Run, pass: &Pass) -> Vec<Pair> {
+    use offsets::bounce_march_push::{AZIMUTHS, FIRST_AZIMUTH, LAST_AZIMUTH};
+    let azimuths = pushed(pass, AZIMUTHS);
+    assert_eq!([pushed(pass, FIRST_AZIMUTH), pushed(pass, LAST_AZIMUTH)], [0, azimuths]);
+    let exit = run.exit(pass);
+    let got = colours(&run.floats(pass, "bounce_sum").expect("written"));
+    let oracle = Oracle::new(&run.scene.field, run.border());
+    let nodes = Nodes { stride: constant(pass, "node_stride") };
+    let [across, _] = nodes.size(run.plan.size).map(|n| n as usize);
+    let (places, brightest) = (places(run, nodes), brightest(&exit));
+    let cell_m = run.scene.field.cell_m();
+    let of = |i: usize| {
+        let all = visible_intervals_along(&oracle, &exit, azimuths, places[i]);
+        let error = |along: &_, cast: &_| march_error(cell_m, along, cast);
+        (radiance(&all), BounceError::of(&all, error, &run.slices(places[i], 1.0, brightest)).light)
+    };
+    each(&got, of, [0, across])
+}
+
+/// A level, and its entry in the table.
+pub(crate) fn shade_reduce(run: &mut Run, pass: &Pass) -> Vec<Pair> {
+    let shade = run.shade();
+    let number = pushed(pass, offsets::shade_reduce_push::LEVEL);
+    let level = shade.level(number);
+    let exit = run.exit(pass);
+    let texels = colours(&run.floats(pass, "shade_levels").expect("written"));
+    let table = run.words(pass, "shade_table").expect("written");
+    let want = reduce_reference::shade_reduce(&exit, &shade, number, &texels);
+    let tolerance = device_level(brightest(&exit));
+    let at = [number as usize, level.size[0] as usize];
+    let mut pairs = paired(&texels[level.first as usize..], &want, tolerance, at);
+    pairs.extend(table_pairs(&level, number, &table));
+    pairs
+}
+
+pub(crate) fn shade_expand(run: &mut Run, pass: &Pass) -> Vec<Pair> {
+    let shade = run.shade();
+    let texels = colours(&run.floats(pass, "shade_levels").expect("written"));
+    let stack = run.floats(pass, "shade_stack").expect("written");
+    let [cols, rows] = run.size();
+    let samples = cols * rows;
+    let layers = shade.levels() as usize;
+    let stack = match stack.len() / (samples * layers) {
+        1 => stack.iter().map(|v| [(*v).into(); 3]).collect(),
+        _ => colours(&stack),
+    };
+    let tolerance = device_spline(brightest(&texels));
+    let of = |number: u32| {
+        let want = expand_reference::shade_expand(&shade, &texels, number);
+        let layer = &stack[(number as usize - 1) * samples..];
+        paired(layer, &want, tolerance, [number as usize, cols])
+    };
+    (1..=shade.levels()).flat_map(of).collect()
+}
+
+/// The bounced light, from the device's own levels, in one dispatch.
+pub(crate) fn bounce_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
+    use offsets::bounce_gather_push::{AZIMUTHS, FIRST_AZIMUTH, LAST_AZIMUTH};
+    let azimuths = pushed(pass, AZIMUTHS);
+    assert_eq!([pushed(pass, FIRST_AZIMUTH), pushed(pass, LAST_AZIMUTH)], [0, azimuths]);
+    let (shade, receiver) = (run.shade(), run.quality.receiver);
+    let pyramid = Pyramid::new(&run.quality, run.plan.size, run.border());
+    let exit = run.exit(pass);
+    let texels = match run.floats(pass, "shade_levels") {
+        Some(texels) => colours(&texels),
+        // The device reads the output of `shade_expand`.
+        None => reduce_reference::shade_levels(&exit, &shade),
+    };
+    let stack = run.floats(pass, "height_stack");
+    let levels = run.floats(pass, "height_levels").unwrap_or_default();
+    let stored = stack.as_ref().map_or(Stored::Levels(&levels), |s| Stored::Stack(s));
+    let got = colours(&run.floats(pass, "bounce_sum").expect("written"));
+    let field = &run.scene.field;
+    let reference = BounceGather {
+        field,
+        heights: run.heights(),
+        pyramid: &pyramid,
+        stored,
+        shade: &shade,
+        shade_texels: &texels,
+        exit: &exit,
+        receiver,
+        azimuths,
+    };
+    let nodes = Nodes { stride: constant(pass, "node_stride") };
+    let [across, _] = nodes.size(run.plan.size).map(|n| n as usize);
+    let places = places(run, nodes);
+    let [x, y] = field.cell_m();
+    let (land, brightest) = (run.land(), brightest(&exit));
+    let gathered = Gathered {
+        land,
+        step_m: x.min(y),
+        is_stack: pyramid.stored == Levels::Stack,
+        own_levels: false,
+        receiver,
+        brightest,
+        spread: brightest - exit.as_flattened().iter().fold(brightest, |m, v| v.min(m)),
+    };
+    let of = |i: usize| {
+        let all = reference.casts_along(places[i]);
+        let slices = run.slices(places[i], 1.0, brightest);
+        let off = BounceError::of(&all, |_, cast| gathered.error(cast), &slices);
+        (radiance(&all), off.light)
+    };
+    each(&got, of, [0, across])
+}
+
+/// The sum so far; after the last azimuths, the bounced light.
+pub(crate) fn bounce_walk(run: &mut Run, pass: &Pass) -> Vec<Pair> {
+    use offsets::bounce_walk_push::{AZIMUTH_COUNT, CLEARS, FIRST_AZIMUTH, IS_LAST};
+    let word = |offset| pushed(pass, offset) as usize;
+    let first = word(FIRST_AZIMUTH);
+    if word(CLEARS) == 1 {
+        run.light_begins = first;
+    }
+    let range = run.light_begins..first + word(AZIMUTH_COUNT);
+    let exit: Vec<[f32; 3]> = match run.floats(pass, "exit_grey") {
+        Some(grey) => grey.iter().map(|v| [*v; 3]).collect(),
+        None => {
+            let texels = run.floats(pass, "exit_radiance").expect("one of both");
+            texels.chunks_exact(4).map(|t| [t[0], t[1], t[2]]).collect()
+        }
+    };
+    let got = run.floats(pass, "bounce_sum").expect("written");
+    let got = colours(&got);
+    let brightest = exit.as_flattened().iter().fold(0.0_f64, |m, v| m.max((*v).into()));
+    let is_last = word(IS_LAST) == 1;
+    let nodes = Nodes { stride: constant(pass, "node_stride") };
+    let [across, _] = nodes.size(run.plan.size).map(|n| n as usize);
+    let kept = self::places(run, Nodes { stride: 2 * nodes.stride });
+    let places = places(run, nodes);
+    let from = constant(pass, "from");
+    // All of them, those of lanes whose visibility caches are kept, the others.
+    let across_of =
+        |[row, col]: [usize; 2]| if constant(pass, "marches_rows") == 1 { col } else { row };
+    let lanes: HashSet<usize> = kept.iter().map(|place| across_of(*place)).collect();
+    let is_walked = |i: usize| from == 0 || (from == 1) == lanes.contains(&across_of(places[i]));
+    let wedge = std::f64::consts::TAU / f64::from(run.quality.bounces.azimuths);
+    let settings = (Some(Fuse::AimedNearest), constant(pass, "line_shift"));
+    let walked: Vec<_> = run.swept(range.clone(), settings, |swept| {
+        let of = |[row, col]: &[usize; 2]| walked_along(swept, &exit, *col as i32, *row as i32).0;
+        places.iter().map(of).collect()
+    });
+    let of = |i: usize| {
+        let slices = run.slices(places[i], wedge, brightest);
+        let off = BounceError::of(&walked[i], |_, cast| walk_error(wedge, cast), &slices);
+        match is_last {
+            true => (radiance(&walked[i]), off.light),
+            false => (light_and_weight(&walked[i]).0, off.sum),
+        }
+    };
+    let mut pairs = each(&got, of, [range.len(), across]);
+    let walked: HashSet<[usize; 2]> =
+        (0..places.len()).filter(|i| is_walked(*i)).map(|i| [i / across, i % across]).collect();
+    pairs.retain(|pair| walked.contains(&[pair.at[1], pair.at[2]]));
+    pairs.extend(casts(run, pass, first..range.end));
+    pairs
+}

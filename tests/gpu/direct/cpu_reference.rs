@@ -1,0 +1,238 @@
+//! Everything that sums light.
+
+pub(crate) mod light;
+pub(crate) mod sphere_sh;
+
+use ridgelight::plan::Picture;
+use ridgelight::scene::{
+    Albedo, Basis, Border, Fuse, Levels, LightBasis, Lights, Method, PhongSpecular, Quality,
+    Receiver, Scene, Specular, SphereLight, Sun, Surface, Wedges, Window,
+};
+
+use crate::cpu_reference::{Case, Wanted, check_all, key, noisy_environment, rough};
+use crate::random;
+
+/// Everything that sums light: sky, environment, discs and a point; colours and a map, or all grey.
+pub(crate) fn pictures() -> Vec<Case> {
+    let sun = |azimuth_rad, diameter_rad, irradiance| Sun {
+        azimuth_rad,
+        elevation_rad: 0.4,
+        diameter_rad,
+        irradiance,
+    };
+    let quality = Quality { azimuths: 12, table_elevations: 33, ..Quality::default() };
+    let colourful = {
+        let field = rough(23, 30, 11);
+        let mut next = random(12);
+        let map = (0..23 * 30).map(|_| [next() as f32, next() as f32, 1.0]).collect();
+        let surface =
+            Surface { border: Border::Open, albedo: Albedo::Map(map), ..Surface::default() };
+        let lights = Lights {
+            sky: Some([0.3, 0.5, 0.9]),
+            environment: Some(noisy_environment(13)),
+            suns: vec![sun(2.0, 0.2, [3.0, 2.5, 2.0])],
+            keys: vec![key(-0.4, 0.5, [1.0, 2.0, 0.5])],
+            ..Lights::default()
+        };
+        Scene { field, surface, lights }
+    };
+    // For an odd number of rows the middle one lies on both sides of the ground.
+    let on_a_plane = {
+        let environment = noisy_environment(15);
+        let lights = Lights { environment: Some(environment), ..Lights::default() };
+        Scene { field: rough(13, 11, 16), surface: Surface::default(), lights }
+    };
+    let grey = {
+        let surface = Surface {
+            border: Border::Plane,
+            albedo: Albedo::Constant([0.5; 3]),
+            ..Surface::default()
+        };
+        let suns = vec![sun(-1.1, 0.0, [2.0; 3])];
+        let keys = vec![key(0.1, 0.3, [2.0; 3])];
+        let lights = Lights { sky: Some([1.0; 3]), suns, keys, ..Lights::default() };
+        Scene { field: rough(12, 17, 14), surface, lights }
+    };
+    let sphere_light =
+        |x, y, z, radius_m, radiance| SphereLight { position_m: [x, y, z], radius_m, radiance };
+    // Over the ground; cut by it, with texels under and inside; beyond the edge.
+    let sphere_lights = {
+        let spheres = vec![
+            sphere_light(20.0, 14.0, 920.0, 4.0, [3.0, 2.0, 1.0]),
+            sphere_light(9.5, 6.1, 903.0, 5.0, [0.5, 1.0, 2.0]),
+            sphere_light(-30.0, 50.0, 890.0, 12.0, [4.0, 0.0, 1.0]),
+        ];
+        let lights =
+            Lights { sky: Some([0.3, 0.5, 0.9]), sphere_lights: spheres, ..Lights::default() };
+        Scene { lights, ..colourful.clone() }
+    };
+    let sphere_lights_alone = {
+        let spheres = vec![
+            sphere_light(7.0, 4.0, 911.0, 2.0, [5.0; 3]),
+            sphere_light(31.0, 9.0, 908.0, 1.0, [2.0; 3]),
+        ];
+        let surface = Surface { border: Border::Periodic, ..Surface::default() };
+        let lights = Lights { sphere_lights: spheres, ..Lights::default() };
+        Scene { field: rough(9, 8, 17), surface, lights }
+    };
+    let picture = |name, scene, quality, light_layers, sky_view| Case {
+        name,
+        scene,
+        quality,
+        wanted: Wanted::Picture(Picture {
+            light_layers,
+            sky_view,
+            keeps_horizons: true,
+            ..Picture::default()
+        }),
+        loses_lines: false,
+    };
+    let of_device = Case {
+        wanted: Wanted::Picture(Picture { colours_on_device: true, ..Picture::default() }),
+        ..picture("colours on the device", grey.clone(), quality, false, false)
+    };
+    let sh = |sh_order| Quality { basis: Basis::Sh, sh_order, ..quality };
+    let nlp = Quality { wedges: Wedges::Nlp, receiver: Receiver::Cosine, ..sh(5) };
+    let by_sh = |sh_order, sun_azimuths| Quality {
+        light_basis: LightBasis::Sh,
+        sh_order,
+        sun_azimuths,
+        ..quality
+    };
+    let sh_table = Quality { wedges: Wedges::Table, wedge_side: 17, ..by_sh(3, 6) };
+    let soft_nlp = Quality {
+        wedges: Wedges::Nlp,
+        receiver: Receiver::Cosine,
+        window: Window::Lanczos,
+        ..by_sh(5, 7)
+    };
+    let soft_levels = Quality {
+        method: Method::Pyramid,
+        level_step: 3,
+        level_offset: 0,
+        levels: Levels::Pyramid,
+        ..by_sh(2, 1)
+    };
+    let soft_stack = Quality {
+        wedges: Wedges::Table,
+        receiver: Receiver::Cosine,
+        levels: Levels::Stack,
+        level_step: 2,
+        level_offset: 1,
+        ..Quality { sun_azimuths: 8, sh_order: 6, ..soft_levels }
+    };
+    let windowed = Quality { window: Window::Hann, fuse: Fuse::Own, ..sh(4) };
+    let lobe = Quality { receiver: Receiver::Cosine, window: Window::Nonnegative, ..sh(2) };
+    let subsampled = |subsample, sh_order| Quality { subsample, ..sh(sh_order) };
+    let by_table =
+        Quality { wedges: Wedges::Table, method: Method::BruteForce, ..subsampled(2, 6) };
+    let open_wedges = Quality { wedges: Wedges::Table, wedge_side: 9, ..sh(3) };
+    let marched = Quality { method: Method::BruteForce, ..subsampled(4, 4) };
+    let smoothed = Quality { method: Method::Pyramid, level_step: 2, ..subsampled(2, 3) };
+    // Phong specular under all lights, and under a sky alone.
+    let mirrored = {
+        let lights = Lights {
+            sky: Some([0.3, 0.5, 0.9]),
+            environment: Some(noisy_environment(41)),
+            suns: vec![sun(2.0, 0.2, [3.0, 2.5, 2.0]), sun(-1.1, 0.0, [2.0; 3])],
+            ..Lights::default()
+        };
+        let surface = Surface {
+            border: Border::Plane,
+            albedo: Albedo::Constant([0.5; 3]),
+            specular: Some(Specular::Constant(PhongSpecular { exponent: 20.0, scale: 0.4 })),
+        };
+        Scene { field: rough(14, 11, 42), surface, lights }
+    };
+    let mirrored_sky = {
+        let lights = Lights { sky: Some([1.0; 3]), ..Lights::default() };
+        let mut next = random(45);
+        let map =
+            (0..9 * 14).map(|i| PhongSpecular { exponent: (79 * i) as f32, scale: next() as f32 });
+        let phong = Some(Specular::Map(map.collect()));
+        let surface =
+            Surface { border: Border::Open, albedo: Albedo::Constant([0.0; 3]), specular: phong };
+        Scene { field: rough(9, 14, 43), surface, lights }
+    };
+    // Twelve columns: the last is no multiple of 4 from the first; of a field that repeats.
+    let repeated = {
+        let lights = Lights { environment: Some(noisy_environment(17)), ..Lights::default() };
+        let surface = Surface { border: Border::Periodic, ..Surface::default() };
+        Scene { field: rough(19, 12, 18), surface, lights }
+    };
+    vec![
+        picture("colours", colourful.clone(), quality, true, false),
+        picture("environment on a plane", on_a_plane.clone(), quality, false, false),
+        of_device,
+        picture("grey", grey, Quality { fuse: Fuse::Aimed, ..quality }, false, true),
+        picture("sphere lights", sphere_lights.clone(), quality, true, false),
+        picture(
+            "sphere lights in one sum",
+            sphere_lights.clone(),
+            Quality { sun_azimuths: 5, ..quality },
+            false,
+            false,
+        ),
+        picture("sphere lights by harmonics", sphere_lights.clone(), by_sh(4, 8), true, false),
+        picture(
+            "sphere lights by harmonics of order 6",
+            sphere_lights.clone(),
+            by_sh(6, 4),
+            false,
+            false,
+        ),
+        picture(
+            "sphere lights by a table of wedges",
+            sphere_lights.clone(),
+            sh_table,
+            false,
+            false,
+        ),
+        picture(
+            "sphere lights by Legendre, periodic",
+            sphere_lights_alone.clone(),
+            soft_nlp,
+            false,
+            false,
+        ),
+        picture("sphere lights by a pyramid's levels", sphere_lights, soft_levels, false, false),
+        picture(
+            "sphere lights by a stack, periodic",
+            sphere_lights_alone.clone(),
+            soft_stack,
+            true,
+            false,
+        ),
+        picture("sphere lights alone, periodic", sphere_lights_alone, quality, false, false),
+        picture("harmonics of order 6", on_a_plane.clone(), sh(6), false, false),
+        picture("harmonics beside a sky", colourful.clone(), windowed, true, false),
+        picture("harmonics by Legendre", colourful.clone(), nlp, false, false),
+        picture("harmonics of order 3", on_a_plane.clone(), sh(3), false, true),
+        picture(
+            "harmonics at every second sample",
+            on_a_plane.clone(),
+            subsampled(2, 5),
+            false,
+            false,
+        ),
+        picture(
+            "harmonics at every fourth sample",
+            colourful.clone(),
+            subsampled(4, 4),
+            false,
+            false,
+        ),
+        picture("harmonics by a table of wedges", on_a_plane.clone(), by_table, false, false),
+        picture("harmonics by wedges of a sphere", colourful, open_wedges, false, false),
+        picture("harmonics of marches from nodes", on_a_plane.clone(), marched, false, false),
+        picture("harmonics of a pyramid's nodes", repeated, smoothed, false, false),
+        picture("harmonics of order 2", on_a_plane, lobe, false, false),
+        picture("a lobe", mirrored, sh(5), true, false),
+        picture("a lobe at every second sample", mirrored_sky, subsampled(2, 3), false, false),
+    ]
+}
+
+#[test]
+fn pictures_match_pass_by_pass() {
+    check_all(&pictures());
+}

@@ -1,0 +1,269 @@
+//! The passes that sum light.
+
+use ridgelight::gpu::shaders::offsets;
+use ridgelight::plan::Pass;
+use ridgelight::plan::azimuths::{Azimuth, Shape};
+use ridgelight::scene::{Albedo, Border, Environment, SphereLight};
+use ridgelight_cpu::env_tables as tables_reference;
+use ridgelight_cpu::env_tables::{EnvTables, bottom_rad};
+use ridgelight_cpu::light_resolve as resolve_reference;
+use ridgelight_cpu::light_resolve::LightSum;
+use ridgelight_cpu::oracle::Oracle;
+use ridgelight_cpu::shared::gather::Swept;
+use ridgelight_cpu::shared::sweep::Heights;
+use ridgelight_cpu::sky_shade as sky_reference;
+use ridgelight_cpu::sphere_shade as sphere_reference;
+use ridgelight_cpu::sun_shade as sun_reference;
+use ridgelight_cpu::tolerance::{
+    EPSILON, ShadeError, SphereGeometry, device_fused_slope, device_resolved, device_table,
+};
+
+use crate::cpu_reference::{Pair, Run, constant, fuse_of, pushed};
+
+pub(crate) type Rgb = glam::DVec3;
+
+pub(crate) fn rgb(texel: &[f32]) -> Rgb {
+    Rgb::new(texel[0].into(), texel[1].into(), texel[2].into())
+}
+
+fn brightest(environment: &Environment) -> f64 {
+    environment.texels().iter().flatten().fold(0.0, |m, v| f64::max(m, (*v).into()))
+}
+
+/// Three channels of a texel.
+pub(crate) fn channels(
+    got: &[f32],
+    want: Rgb,
+    tolerance: f64,
+    at: [usize; 3],
+) -> impl Iterator<Item = Pair> {
+    let got = rgb(got);
+    (0..3).map(move |c| Pair { got: got[c], want: want[c], tolerance, at })
+}
+
+/// `wedge_rows` of the device: [azimuth][row][moment].
+pub(crate) fn wedge_rows(run: &mut Run, pass: &Pass) -> Vec<[Rgb; 3]> {
+    let texels = run.floats(pass, "wedge_rows").expect("bound");
+    let rows = texels.chunks_exact(12);
+    rows.map(|t| [rgb(t), rgb(&t[4..]), rgb(&t[8..])]).collect()
+}
+
+/// `env_tables` of the device.
+fn device_tables(run: &mut Run, pass: &Pass) -> EnvTables {
+    let texels = run.floats(pass, "env_tables").expect("bound");
+    EnvTables {
+        nodes: run.extent(pass, "env_tables")[0],
+        bottom_rad: bottom_rad(run.border()),
+        texels: texels.chunks_exact(4).map(rgb).collect(),
+    }
+}
+
+pub(crate) fn env_tables(run: &mut Run, pass: &Pass) -> Vec<Pair> {
+    let rows = wedge_rows(run, pass);
+    let got = device_tables(run, pass);
+    let height = pushed(pass, offsets::env_tables_push::HEIGHT) as usize;
+    let azimuths = pushed(pass, offsets::env_tables_push::AZIMUTH_COUNT) as usize;
+    let want = tables_reference::env_tables(&rows, (height, azimuths), got.nodes, got.bottom_rad);
+    assert_eq!(got.texels.len(), want.texels.len());
+    let (nodes, pieces) = (got.nodes, (height + got.nodes) as f64);
+    let kept = rows.len() / azimuths;
+    let pairs = got.texels.iter().zip(&want.texels).enumerate().flat_map(|(i, (got, want))| {
+        let (k, moment) = (i / (3 * nodes), i / nodes % 3);
+        let summed = rows[k * kept..(k + 1) * kept].iter().map(|row| row[moment].abs());
+        let sum: Rgb = summed.clone().sum();
+        let largest = summed.fold(Rgb::ZERO, Rgb::max);
+        let tolerance = |c| device_table(sum[c], largest[c], pieces);
+        let at = [k, moment, i % nodes];
+        let pair = |c| Pair { got: got[c], want: want[c], tolerance: tolerance(c), at };
+        [pair(0), pair(1), pair(2)]
+    });
+    pairs.collect()
+}
+
+/// The azimuths of the light that a shading pass adds to, up to its own, and the error of their horizons: every batch
+/// is compared as the sum so far.
+pub(crate) fn so_far(
+    run: &mut Run,
+    pass: &Pass,
+    [first, count, clears]: [usize; 3],
+) -> (std::ops::Range<usize>, ShadeError) {
+    let word = |offset| pushed(pass, offset) as usize;
+    let (first, count) = (word(first), word(count));
+    if word(clears) == 1 {
+        run.light_begins = first;
+    }
+    let range = run.light_begins..first + count;
+    let [largest, relief] = run.relief();
+    let steps = run.plan.azimuths[range.clone()].iter().map(|a| f64::from(a.step_m));
+    let slope_error = device_fused_slope(largest, steps.fold(f64::MAX, f64::min));
+    let [x, y] = run.scene.field.cell_m();
+    let error = ShadeError::new(slope_error, relief, x.min(y), range.len());
+    (range, error)
+}
+
+pub(crate) fn sky_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
+    use offsets::shade_push::{AZIMUTH_COUNT, CLEARS, FIRST_AZIMUTH};
+    let (range, error) = so_far(run, pass, [FIRST_AZIMUTH, AZIMUTH_COUNT, CLEARS]);
+    let [cols, _] = run.size();
+    let at = |i: usize| [range.len(), i / cols, i % cols];
+    let mut pairs = Vec::new();
+    if let Some(got) = run.floats(pass, "sky_sum") {
+        // Shares of ground for bounces take no horizontal for the least.
+        let is_open = constant(pass, "border") == Border::Open as u32;
+        let want = run.swept(range.clone(), fuse_of(pass), |swept| {
+            let border = if is_open { Border::Open } else { swept.heights.border };
+            let heights = Heights { border, ..swept.heights };
+            sky_reference::sky_shade(&Swept { heights, ..*swept })
+        });
+        let tolerance = error.sky();
+        pairs.extend(got.iter().zip(want).enumerate().map(|(i, (got, want))| Pair {
+            got: (*got).into(),
+            want,
+            tolerance,
+            at: at(i),
+        }));
+    }
+    if let Some(got) = run.floats(pass, "env_sum") {
+        let tables = device_tables(run, pass);
+        let environment = run.scene.lights.environment.as_ref().expect("an environment");
+        let tolerance = error.environment(brightest(environment));
+        let reference = |swept: &Swept| sky_reference::env_shade(swept, &tables);
+        let want = run.swept(range.clone(), fuse_of(pass), reference);
+        for (i, (got, want)) in got.chunks_exact(4).zip(want).enumerate() {
+            pairs.extend(channels(got, want.into(), tolerance, at(i)));
+        }
+    }
+    pairs
+}
+
+pub(crate) fn sun_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
+    use offsets::shade_push::{AZIMUTH_COUNT, CLEARS, FIRST_AZIMUTH};
+    let (range, error) = so_far(run, pass, [FIRST_AZIMUTH, AZIMUTH_COUNT, CLEARS]);
+    let shape = [Shape::Disc, Shape::Point, Shape::Patch][constant(pass, "shape") as usize];
+    let is_point = shape == Shape::Point;
+    let got = run.floats(pass, "sun_sum").expect("written");
+    let [cols, _] = run.size();
+    run.swept(range.clone(), fuse_of(pass), |swept| {
+        let weight = |a: &Azimuth| match shape {
+            Shape::Patch => f64::from(a.wedge_rad),
+            Shape::Disc | Shape::Point => f64::from(a.weight),
+        };
+        let weights = swept.azimuths.iter().map(weight).sum();
+        let tolerance = error.sun(weights);
+        // A point sun within the horizon's error may be hidden or not.
+        let grazes = |col: i32, row: i32| {
+            let mut any = false;
+            swept.add_all(col, row, |_, azimuth, lowest, _| {
+                let off = lowest - f64::from(azimuth.high_slope);
+                any |= off.abs() <= error.lowest_slope();
+            });
+            is_point && any
+        };
+        let mut pairs = Vec::new();
+        for (i, got) in got.iter().enumerate() {
+            let (col, row) = ((i % cols) as i32, (i / cols) as i32);
+            if !grazes(col, row) {
+                let want = sun_reference::sun_at(swept, shape, col, row);
+                let at = [range.len(), i / cols, i % cols];
+                pairs.push(Pair { got: (*got).into(), want, tolerance, at });
+            }
+        }
+        assert!(pairs.len() * 50 >= got.len() * 49, "{} of {} decided", pairs.len(), got.len());
+        pairs
+    })
+}
+
+pub(crate) fn sphere_light_of(run: &Run, pass: &Pass) -> SphereLight {
+    let name = pass.part.split(' ').next().and_then(|part| part.strip_prefix("light"));
+    let number: usize = name.and_then(|n| n.parse().ok()).expect("light and its number");
+    run.scene.lights.sphere_lights[number - 1]
+}
+
+/// Slices of one sphere light, paired after the last.
+pub(crate) fn sphere_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
+    use offsets::sphere_shade_push::{LAST_SLICE, RADIANCE, REACH_M, SLICES_AROUND};
+    let slices = run.quality.sun_azimuths;
+    if f32::from_bits(pushed(pass, RADIANCE + 12)) > 0.0 {
+        run.sphere_lights = vec![([0.0; 3], 0.0); run.scene.field.heights_m().len()];
+    }
+    if pushed(pass, LAST_SLICE) < pushed(pass, SLICES_AROUND) {
+        return Vec::new();
+    }
+    let sphere_light = sphere_light_of(run, pass);
+    let reach = f64::from(f32::from_bits(pushed(pass, REACH_M)));
+    let oracle = Oracle::new(&run.scene.field, run.border());
+    let [cols, _] = run.size();
+    let mut sphere_lights = std::mem::take(&mut run.sphere_lights);
+    for (i, (sum, tolerance)) in sphere_lights.iter_mut().enumerate() {
+        let seen = SphereGeometry::of(&run.scene.field, &sphere_light, i);
+        if seen.distance_m > reach {
+            continue;
+        }
+        let light = sphere_reference::sphere_at(&oracle, &sphere_light, slices, i / cols, i % cols);
+        let brightest = sphere_light.radiance.iter().fold(0.0, |m: f32, v| m.max(*v));
+        sum.iter_mut().zip(sphere_light.radiance).for_each(|(s, r)| *s += light * f64::from(r));
+        *tolerance += f64::from(brightest) * (seen.tolerance() + 4.0 * EPSILON);
+    }
+    let got = run.floats(pass, "sphere_sum").expect("written");
+    let texels = got.chunks_exact(4).zip(&sphere_lights).enumerate();
+    let pairs = texels
+        .flat_map(|(i, (got, (want, tolerance)))| {
+            channels(got, Rgb::from(*want), *tolerance, [0, i / cols, i % cols])
+        })
+        .collect();
+    run.sphere_lights = sphere_lights;
+    pairs
+}
+
+pub(crate) fn light_resolve(run: &mut Run, pass: &Pass) -> Vec<Pair> {
+    use offsets::light_resolve_push::{CLEARS, COLOUR, TEXEL};
+    let mut colour = [0, 4, 8].map(|c| f32::from_bits(pushed(pass, COLOUR + c)));
+    if constant(pass, "colour_is_texel") == 1 {
+        let texels = run.floats(pass, "light_colours").expect("read");
+        let texel = &texels[4 * pushed(pass, TEXEL) as usize..];
+        colour = [0, 1, 2].map(|c| colour[c] * texel[c]);
+    }
+    let map = match &run.scene.surface.albedo {
+        Albedo::Map(map) if constant(pass, "albedo_is_map") == 1 => Some(map.as_slice()),
+        _ => None,
+    };
+    let layer = if constant(pass, "sum_has_colour") == 1 {
+        let sum = run.floats(pass, "colour_sum").expect("read");
+        let sum: Vec<[f64; 3]> = sum.chunks_exact(4).map(|t| rgb(t).to_array()).collect();
+        resolve_reference::light_resolve(LightSum::Colour(&sum), colour, map)
+    } else {
+        let sum = run.floats(pass, "scalar_sum").expect("read");
+        let sum: Vec<f64> = sum.into_iter().map(f64::from).collect();
+        resolve_reference::light_resolve(LightSum::Scalar(&sum), colour, map)
+    };
+    if pushed(pass, CLEARS) == 1 {
+        run.radiance = vec![[0.0; 3]; layer.len()];
+        run.lights = 0;
+    }
+    if constant(pass, "adds_to_radiance") == 1 {
+        resolve_reference::add_to_radiance(&mut run.radiance, &layer);
+        run.lights += 1;
+    }
+    let (radiance, lights) = (run.radiance.clone(), run.lights);
+    let [cols, _] = run.size();
+    let mut pairs = Vec::new();
+    let written = [
+        ("radiance", &radiance, lights, 4),
+        ("radiance_grey", &radiance, lights, 1),
+        ("layer", &layer, 0, 4),
+        ("layer_grey", &layer, 0, 1),
+    ];
+    for (binding, want, lights, size) in written {
+        let Some(got) = run.floats(pass, binding) else { continue };
+        for (i, (got, want)) in got.chunks_exact(size).zip(want).enumerate() {
+            let at = [0, i / cols, i % cols];
+            pairs.extend(got.iter().zip(want).map(|(got, want)| Pair {
+                got: (*got).into(),
+                want: *want,
+                tolerance: device_resolved(*want, lights),
+                at,
+            }));
+        }
+    }
+    pairs
+}

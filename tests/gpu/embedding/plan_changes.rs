@@ -1,0 +1,236 @@
+//! After a change only the necessary passes run: the same bits as all of them.
+
+use ridgelight::gpu::Headless;
+use ridgelight::plan::{self, Picture, Plan};
+use ridgelight::scene::fractal;
+use ridgelight::scene::{Basis, Environment, Lights, Quality, Scene, Sun, Surface};
+
+use crate::{Device, bits, random};
+
+fn environment(seed: u64) -> Environment {
+    let mut next = random(seed);
+    let texels = (0..32 * 16).map(|_| [next() as f32, next() as f32, 4.0 * next() as f32]);
+    Environment::new(32, 16, texels.collect(), 0.0).expect("an environment")
+}
+
+fn scene() -> Scene {
+    let sun = |azimuth_rad, diameter_rad| Sun {
+        azimuth_rad,
+        elevation_rad: 0.3,
+        diameter_rad,
+        irradiance: [2.0, 1.5, 1.0],
+    };
+    Scene {
+        field: fractal(96, 1).expect("a field"),
+        surface: Surface::default(),
+        lights: Lights {
+            sky: Some([1.0, 0.9, 0.8]),
+            environment: Some(environment(5)),
+            suns: vec![sun(1.0, 0.02), sun(4.0, 0.0)],
+            ..Lights::default()
+        },
+    }
+}
+
+fn contents(scene: &Scene) -> [Vec<f32>; 2] {
+    let environment = scene.lights.environment.as_ref().expect("one");
+    let texels = environment.texels().iter().flat_map(|t| [t[0], t[1], t[2], 1.0]).collect();
+    [scene.field.heights_m().to_vec(), texels]
+}
+
+/// Tables, and harmonics at every second texel.
+fn qualities() -> [Quality; 2] {
+    let tables = Quality { azimuths: 12, table_elevations: 32, ..Quality::default() };
+    [tables, Quality { basis: Basis::Sh, subsample: 2, ..tables }]
+}
+
+fn planned(gpu: &Headless, scene: &Scene, (quality, keeps_horizons): Form) -> Plan {
+    let wanted = Picture { keeps_horizons, light_layers: true, ..Picture::default() };
+    plan::picture(scene, quality, &gpu.report().limits, wanted).expect("a plan")
+}
+
+/// A quality, and whether horizons are kept.
+type Form<'a> = (&'a Quality, bool);
+
+/// The output of all passes of the scene's plan for these contents.
+fn from_nothing(
+    gpu: &mut Headless,
+    scene: &Scene,
+    [heights, environment]: [Vec<f32>; 2],
+    form: Form,
+) -> Vec<u32> {
+    let plan = planned(gpu, scene, form);
+    let mut frame = gpu.frame(plan, &[&heights, &environment]).expect("a frame");
+    gpu.draw(&mut frame).expect("drawn");
+    let all = bits(gpu, &frame);
+    gpu.end(frame);
+    all
+}
+
+#[test]
+fn passes_after_a_change_match_all_passes() {
+    let mut device = Device::new();
+    let gpu = device.gpu.as_mut().expect("alive");
+    let all = qualities();
+    for form in all.iter().flat_map(|quality| [(quality, true), (quality, false)]) {
+        let mut scene = scene();
+        let plan = planned(gpu, &scene, form);
+        let [heights, texels] = contents(&scene);
+        let mut frame = gpu.frame(plan, &[&heights, &texels]).expect("a frame");
+        gpu.draw(&mut frame).expect("drawn");
+        let mut last = bits(gpu, &frame);
+        // A sphere light of another colour; a new environment, by the plan of the old one, whose azimuths are
+        // importance-sampled for that; a new field.
+        let mut texels = texels;
+        for change in 0..3 {
+            let passes = match change {
+                0 => {
+                    scene.lights.suns[1].irradiance = [0.1, 0.2, 7.0];
+                    let plan = planned(gpu, &scene, form);
+                    gpu.replace_plan(&mut frame, plan).expect("the same passes")
+                }
+                1 => {
+                    let mut other = scene.clone();
+                    other.lights.environment = Some(environment(6));
+                    [_, texels] = contents(&other);
+                    gpu.refill(&frame, 1, &texels).expect("refilled");
+                    let input = frame.plan().find("environment").expect("an input");
+                    let passes = frame.plan().passes_after(frame.plan(), &[input]);
+                    // The second sun's sum reuses the memory of the first's, which is computed again.
+                    let label = |i: &usize| frame.plan().passes[*i].label();
+                    let is_of_light = |label: &str| {
+                        let seen =
+                            label.starts_with("sh_visibility") || label.starts_with("sky_shade");
+                        !seen && !label.contains(" sky ")
+                    };
+                    let light_alone = passes.iter().all(|i| is_of_light(&label(i)));
+                    let keeps_seen = form.1 && form.0.basis == Basis::Sh;
+                    assert!(light_alone == keeps_seen, "{form:?}");
+                    passes
+                }
+                _ => {
+                    scene.field = fractal(96, 2).expect("a field");
+                    gpu.refill(&frame, 0, scene.field.heights_m()).expect("refilled");
+                    let input = frame.plan().find("heights").expect("an input");
+                    frame.plan().passes_after(frame.plan(), &[input])
+                }
+            };
+            let all = frame.plan().passes.len();
+            assert!(passes.len() < all, "change {change}: {} of {all} passes", passes.len());
+            gpu.draw_passes(&mut frame, &passes).expect("drawn");
+            let found = bits(gpu, &frame);
+            assert!(found != last, "change {change} shows");
+            let heights = scene.field.heights_m().to_vec();
+            assert!(
+                found == from_nothing(gpu, &scene, [heights, texels.clone()], (form.0, !form.1)),
+                "change {change}: {form:?}"
+            );
+            last = found;
+        }
+        gpu.end(frame);
+    }
+}
+
+#[test]
+fn a_plan_of_other_images_is_refused_and_the_old_one_stays() {
+    let mut device = Device::new();
+    let gpu = device.gpu.as_mut().expect("alive");
+    let mut scene = scene();
+    let plan = planned(gpu, &scene, (&qualities()[0], true));
+    let [heights, texels] = contents(&scene);
+    let mut frame = gpu.frame(plan, &[&heights, &texels]).expect("a frame");
+    gpu.draw(&mut frame).expect("drawn");
+    let before = bits(gpu, &frame);
+    scene.lights.suns.clear();
+    let other = planned(gpu, &scene, (&qualities()[0], true));
+    assert!(gpu.replace_plan(&mut frame, other).is_err());
+    gpu.draw(&mut frame).expect("drawn");
+    assert!(bits(gpu, &frame) == before);
+    gpu.end(frame);
+}
+
+/// All but the last pass, and then another plan: its pieces begin at its own first pass and give the output of the
+/// whole plan.
+#[test]
+fn pieces_of_two_plans_do_not_mix() {
+    let mut device = Device::new();
+    let gpu = device.gpu.as_mut().expect("alive");
+    let mut scene = scene();
+    let plan = planned(gpu, &scene, (&qualities()[0], true));
+    let count = plan.passes.len();
+    let [heights, texels] = contents(&scene);
+    let mut frame = gpu.frame(plan, &[&heights, &texels]).expect("a frame");
+    let first: Vec<usize> = (0..count - 1).collect();
+    gpu.draw_passes(&mut frame, &first).expect("the first piece");
+    let environment = scene.lights.environment.take().expect("one");
+    let texels = environment.texels().to_vec();
+    scene.lights.environment = Environment::new(32, 16, texels, 3.0).ok();
+    let plan = planned(gpu, &scene, (&qualities()[0], true));
+    let due = gpu.replace_plan(&mut frame, plan).expect("the same passes");
+    assert!(due[0] < count - 1, "{due:?}");
+    assert!(gpu.draw_passes(&mut frame, &[count - 1]).is_err(), "light of two plans");
+    let rest: Vec<usize> = (due[0]..count).collect();
+    gpu.draw_passes(&mut frame, &rest).expect("the next piece");
+    let pieces = bits(gpu, &frame);
+    gpu.draw(&mut frame).expect("drawn");
+    assert!(bits(gpu, &frame) == pieces);
+    gpu.end(frame);
+}
+
+#[test]
+fn two_changes_before_a_recording_are_both_drawn() {
+    let mut device = Device::new();
+    let gpu = device.gpu.as_mut().expect("alive");
+    let mut scene = scene();
+    let plan = planned(gpu, &scene, (&qualities()[0], true));
+    let [heights, texels] = contents(&scene);
+    let mut frame = gpu.frame(plan.clone(), &[&heights, &texels]).expect("a frame");
+    let all: Vec<usize> = (0..plan.passes.len()).collect();
+    assert_eq!(gpu.replace_plan(&mut frame, plan).expect("the same"), all, "nothing is drawn yet");
+    gpu.draw(&mut frame).expect("drawn");
+    // Half an environment's turn, which its wedges depend on; then a colour, which they do not.
+    let environment = scene.lights.environment.take().expect("one");
+    let texels = environment.texels().to_vec();
+    scene.lights.environment = Environment::new(32, 16, texels, 3.0).ok();
+    let plan = planned(gpu, &scene, (&qualities()[0], true));
+    let turned = gpu.replace_plan(&mut frame, plan).expect("the same passes");
+    scene.lights.suns[0].irradiance = [0.1, 0.2, 7.0];
+    let plan = planned(gpu, &scene, (&qualities()[0], true));
+    let coloured = plan.passes_after(frame.plan(), &[]);
+    let both = gpu.replace_plan(&mut frame, plan.clone()).expect("the same passes");
+    assert!(turned.iter().any(|p| !coloured.contains(p)), "two changes");
+    assert!(turned.iter().chain(&coloured).all(|p| both.contains(p)) && both.len() < all.len());
+    gpu.draw_passes(&mut frame, &both).expect("drawn");
+    let nothing = from_nothing(gpu, &scene, contents(&scene), (&qualities()[0], true));
+    assert!(bits(gpu, &frame) == nothing);
+    let none: [usize; 0] = [];
+    assert_eq!(gpu.replace_plan(&mut frame, plan).expect("the same"), none);
+    gpu.end(frame);
+}
+
+/// The sky's horizons and the environment's wedges have azimuths of their own in the same buffer.
+#[test]
+fn a_sun_that_moves_a_little_is_swept_alone() {
+    let mut device = Device::new();
+    let gpu = device.gpu.as_mut().expect("alive");
+    let mut scene = scene();
+    let plan = planned(gpu, &scene, (&qualities()[0], true));
+    let [heights, texels] = contents(&scene);
+    let mut frame = gpu.frame(plan, &[&heights, &texels]).expect("a frame");
+    gpu.draw(&mut frame).expect("drawn");
+    let before = bits(gpu, &frame);
+    scene.lights.suns[0].azimuth_rad += 0.01;
+    let plan = planned(gpu, &scene, (&qualities()[0], true));
+    let passes = gpu.replace_plan(&mut frame, plan).expect("the same passes");
+    let labels: Vec<String> = passes.iter().map(|p| frame.plan().passes[*p].label()).collect();
+    assert!(labels.iter().any(|l| l.starts_with("horizon_sweep sun1")), "{labels:?}");
+    for not in ["horizon_sweep sky", "horizon_sweep sun2", "env_", "sky_shade"] {
+        assert!(!labels.iter().any(|l| l.starts_with(not)), "{not} in {labels:?}");
+    }
+    gpu.draw_passes(&mut frame, &passes).expect("drawn");
+    let moved = bits(gpu, &frame);
+    assert!(moved != before, "the sun has moved");
+    let nothing = from_nothing(gpu, &scene, contents(&scene), (&qualities()[0], true));
+    assert!(moved == nothing);
+    gpu.end(frame);
+}

@@ -1,0 +1,161 @@
+//! Every form of the sweep, and the passes of a height pyramid.
+
+pub(crate) mod pyramid;
+pub(crate) mod sweep;
+
+use ridgelight::scene::{
+    Border, Fuse, HeightField, Hull, Levels, Lights, Lines, Method, Precision, Quality, Scene,
+    Surface,
+};
+
+use crate::cpu_reference::{Case, Wanted, check, check_all, rough};
+use crate::{Device, field};
+
+/// A dome, whose texels all stay on the hull, before a cliff that pops them: deeper than the 64 entries that a line
+/// keeps in shared memory.
+fn dome(rows: usize, cols: usize) -> HeightField {
+    let middle = cols as f64 / 2.0;
+    field(rows, cols, [1.0, 1.0], |r, c| {
+        let x = (c as f64 - middle) / middle;
+        let cliff = if c + 6 > cols { 9.0 * (c + 6 - cols) as f64 } else { 0.0 };
+        (2.0 - x * x).sqrt() * middle + cliff + 0.25 * (r % 3) as f64
+    })
+}
+
+fn horizons(
+    name: &'static str,
+    field: HeightField,
+    border: Border,
+    quality: Quality,
+    distances: bool,
+) -> Case {
+    let surface = Surface { border, ..Surface::default() };
+    let scene = Scene { field, surface, lights: Lights::default() };
+    Case { name, scene, quality, wanted: Wanted::Horizons { distances }, loses_lines: false }
+}
+
+/// `horizon_sweep`: three hull storages, both kinds of entries, both kinds of slopes, all fuses.
+pub(crate) fn sweeps() -> Vec<Case> {
+    let base = Quality { azimuths: 12, ..Quality::default() };
+    let packed = Quality { precision: Precision::Packed, ..base };
+    let shared_slopes = Quality { hull: Hull::Shared, fuse: Fuse::Slopes, ..base };
+    vec![
+        horizons("private f32", rough(37, 23, 1), Border::Plane, base, true),
+        Case {
+            loses_lines: true,
+            ..horizons("shared f32", dome(13, 97), Border::Plane, shared_slopes, false)
+        },
+        horizons(
+            "list f32",
+            rough(18, 31, 2),
+            Border::Periodic,
+            Quality { hull: Hull::OccluderList, fuse: Fuse::Own, ..base },
+            false,
+        ),
+        horizons(
+            "private packed",
+            rough(21, 26, 3),
+            Border::Open,
+            Quality { lines: Lines::HalfCell, fuse: Fuse::Aimed, ..packed },
+            true,
+        ),
+        horizons(
+            "shared packed",
+            rough(29, 19, 4),
+            Border::Plane,
+            // Between lines two cells apart, every second texel is equally near to both.
+            Quality { hull: Hull::Shared, lines: Lines::TwoCells, fuse: Fuse::Nearest, ..packed },
+            false,
+        ),
+        horizons(
+            "list packed",
+            rough(14, 33, 5),
+            Border::Plane,
+            Quality { hull: Hull::OccluderList, fuse: Fuse::Nearest, ..packed },
+            false,
+        ),
+        horizons(
+            "aimed around",
+            rough(23, 30, 7),
+            Border::Plane,
+            Quality { fuse: Fuse::AimedAround, ..base },
+            true,
+        ),
+        horizons(
+            "aimed around, periodic",
+            rough(14, 16, 8),
+            Border::Periodic,
+            Quality { lines: Lines::TwoCells, fuse: Fuse::AimedAround, ..base },
+            true,
+        ),
+        horizons(
+            "private f32, slopes f16",
+            rough(25, 34, 6),
+            Border::Open,
+            Quality {
+                lines: Lines::TwoCells,
+                fuse: Fuse::Slopes,
+                precision: Precision::F16,
+                ..base
+            },
+            false,
+        ),
+    ]
+}
+
+/// `surface_sweep` and `horizon_march`: one value a texel, with its occluder.
+pub(crate) fn samples() -> Vec<Case> {
+    let exact = Quality { azimuths: 12, lines: Lines::Exact, ..Quality::default() };
+    let brute = Quality { azimuths: 12, method: Method::BruteForce, ..Quality::default() };
+    vec![
+        horizons("exact", rough(17, 22, 7), Border::Plane, exact, true),
+        horizons("exact, periodic", rough(9, 10, 8), Border::Periodic, exact, true),
+        horizons("brute", rough(19, 14, 9), Border::Open, brute, true),
+        horizons("brute, periodic", rough(10, 9, 10), Border::Periodic, brute, true),
+    ]
+}
+
+/// The passes of a height pyramid: both stores, all borders, few and many levels an octave, and fields one or a few
+/// texels wide, or with no level but themselves.
+pub(crate) fn pyramids() -> Vec<Case> {
+    let base = Quality { azimuths: 12, method: Method::Pyramid, ..Quality::default() };
+    let looks =
+        |levels, level_step, level_offset| Quality { levels, level_step, level_offset, ..base };
+    let on = |name, field, border, quality| horizons(name, field, border, quality, false);
+    use Levels::{Pyramid, Stack};
+    vec![
+        on("stack", rough(37, 23, 31), Border::Plane, looks(Stack, 3, 0)),
+        on("stack, periodic", rough(11, 14, 32), Border::Periodic, looks(Stack, 2, 1)),
+        on("levels", rough(23, 41, 33), Border::Open, looks(Pyramid, 4, 1)),
+        on("levels, periodic", rough(13, 9, 34), Border::Periodic, looks(Pyramid, 5, 0)),
+        on("levels, 16 an octave", rough(17, 31, 35), Border::Plane, looks(Pyramid, 16, 0)),
+        on("levels, one sample across", rough(1, 29, 36), Border::Plane, looks(Pyramid, 1, 0)),
+        on(
+            "stack of a column that repeats",
+            rough(23, 1, 37),
+            Border::Periodic,
+            looks(Stack, 1, 0),
+        ),
+        on("the field alone", rough(2, 3, 38), Border::Plane, looks(Stack, 4, 2)),
+        on("one sample", rough(1, 1, 39), Border::Open, looks(Stack, 1, 0)),
+    ]
+}
+
+#[test]
+fn sweeps_in_every_form_match() {
+    let mut device = Device::new();
+    for case in sweeps() {
+        let lost = check(&mut device, &case);
+        assert_eq!(lost > 0, case.loses_lines, "{}: {lost} groups of lines redone", case.name);
+    }
+}
+
+#[test]
+fn sweeps_of_one_value_a_sample_match() {
+    check_all(&samples());
+}
+
+#[test]
+fn pyramids_match() {
+    check_all(&pyramids());
+}

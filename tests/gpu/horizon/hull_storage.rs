@@ -1,0 +1,129 @@
+//! Hull storage and the split of a plan into batches never change a bit of the result.
+
+use ridgelight::plan::{self, Limits, Picture};
+use ridgelight::scene::fractal;
+use ridgelight::scene::{Border, Fuse, HeightField, Hull, Lines, Precision, Quality};
+
+use crate::{Device, field, random, under_sky};
+
+/// A dome: every texel stays on the hull of a line across it, until a wall behind pops them all.
+fn dome_and_wall(side: usize) -> HeightField {
+    let middle = (side as f64 - 1.0) / 2.0;
+    field(side, side, [1.0, 1.0], |r, c| {
+        let (x, y) = ((c as f64 - middle) / middle, (r as f64 - middle) / middle);
+        let dome = (2.5 - x * x - y * y).sqrt() * middle;
+        // A climb at the east edge uncovers the dome vertex by vertex.
+        dome + if c + 40 > side { 3.0 * (c + 40 - side) as f64 } else { 0.0 }
+    })
+}
+
+fn all_forms(gpu: &mut Device, field: &HeightField, border: Border, base: Quality) {
+    let plain = gpu.horizons(field, border, &Quality { hull: Hull::Private, ..base });
+    for hull in [Hull::Shared, Hull::OccluderList] {
+        let other = gpu.horizons(field, border, &Quality { hull, ..base });
+        let differing =
+            plain.iter().zip(&other).filter(|(a, b)| a.to_bits() != b.to_bits()).count();
+        assert_eq!(differing, 0, "{hull:?} against private, {border:?}, {:?}", base.fuse);
+    }
+}
+
+#[test]
+fn hulls_deeper_than_their_storage_lose_nothing() {
+    let mut gpu = Device::new();
+    // 300 texels a line, more than the 128 entries of private and the 64 of shared memory.
+    let deep = dome_and_wall(300);
+    let base = Quality { azimuths: 8, fuse: Fuse::Slopes, ..Quality::default() };
+    all_forms(&mut gpu, &deep, Border::Plane, base);
+    // The common result is right: along rows, columns and diagonals lines pass through every texel, so slopes are
+    // those of the texels themselves.
+    let swept = gpu.horizons(&deep, Border::Open, &base);
+    let exact = gpu.horizons(&deep, Border::Open, &Quality { lines: Lines::Exact, ..base });
+    for k in [0, 2, 4, 6] {
+        let plane = 300 * 300;
+        for i in 0..plane {
+            let (a, b) = (swept[k * plane + i], exact[k * plane + i]);
+            // Heights of 500 in f32 (3e-5) over one cell, twice: both round.
+            assert!((a - b).abs() < 2.0 * 3.1e-5, "azimuth {k}, sample {i}: {a} {b}");
+        }
+    }
+}
+
+#[test]
+fn hull_storages_agree_to_the_bit_on_random_fields() {
+    let mut gpu = Device::new();
+    let mut next = random(11);
+    for (i, (rows, cols)) in [(1, 1), (1, 7), (2, 3), (31, 37), (64, 5)].into_iter().enumerate() {
+        let values: Vec<f64> = (0..rows * cols).map(|_| (next() * 40.0).floor()).collect();
+        let f = field(rows, cols, [2.0, 3.0], |r, c| values[r * cols + c]);
+        let fuse = [Fuse::Slopes, Fuse::Aimed, Fuse::AimedNearest][i % 3];
+        all_forms(
+            &mut gpu,
+            &f,
+            Border::Plane,
+            Quality { azimuths: 12, fuse, ..Quality::default() },
+        );
+        if i < 3 {
+            continue;
+        }
+        all_forms(&mut gpu, &f, Border::Periodic, Quality { azimuths: 12, ..Quality::default() });
+        let packed = Quality { azimuths: 12, precision: Precision::Packed, ..Quality::default() };
+        all_forms(&mut gpu, &f, Border::Open, packed);
+    }
+}
+
+#[test]
+fn batches_and_the_whole_are_the_same_to_the_bit() {
+    let mut gpu = Device::new();
+    let scene = under_sky(fractal(1024, 3).expect("a field"), Border::Plane);
+    let quality = Quality { azimuths: 8, ..Quality::default() };
+    let limits = Limits { memory_budget: 1 << 30, ..gpu.limits() };
+    // Three images of 4 MiB, the heights by lanes of each axis, and room for one azimuth's lattice.
+    let tight = Limits { memory_budget: 28_000_000, ..limits };
+    let count = |l: &Limits| {
+        let plan = plan::picture(&scene, &quality, l, Picture::default()).expect("a plan");
+        plan.passes.iter().filter(|p| p.name() == "sky_shade").count()
+    };
+    assert_eq!(count(&limits), 2, "one batch an axis");
+    assert!(count(&tight) >= 4, "{} batches", count(&tight));
+    let whole = gpu.picture_within(&scene, &quality, &limits).values;
+    let banded = gpu.picture_within(&scene, &quality, &tight).values;
+    assert!(whole.iter().zip(&banded).all(|(a, b)| a.to_bits() == b.to_bits()));
+}
+
+#[test]
+fn packed_entries_err_by_their_rounding() {
+    let mut gpu = Device::new();
+    let f = fractal(128, 5).expect("a field");
+    let base = Quality { azimuths: 16, fuse: Fuse::Slopes, ..Quality::default() };
+    let exact = gpu.horizons(&f, Border::Plane, &base);
+    let packed = gpu.horizons(&f, Border::Plane, &Quality { precision: Precision::Packed, ..base });
+    let half = gpu.horizons(&f, Border::Plane, &Quality { precision: Precision::F16, ..base });
+    let highest = f.heights_m().iter().fold(0.0_f32, |m, h| m.max(h.abs()));
+    // A height errs by at most half an f16 step of [0.5..1] (2^-12) of the largest; at a neighbour one cell away that
+    // is an angle, and the choice of occluder changes the slope by no more.
+    let bound = highest * 2.0_f32.powi(-12) * 2.0;
+    let worst = exact.iter().zip(&packed).fold(0.0_f32, |m, (a, b)| m.max((a - b).abs()));
+    assert!(worst > 0.0 && worst <= bound, "packed {worst}, bound {bound}");
+    // An f16 slope errs by 2^-11 of itself; the arc tangent divides that by 1 + slope².
+    let worst = exact.iter().zip(&half).fold(0.0_f32, |m, (a, b)| m.max((a - b).abs()));
+    assert!(worst > 0.0 && worst <= 0.5 * 2.0_f32.powi(-11) * 1.01, "f16 {worst}");
+}
+
+/// A GPU's plans have groups of 32 invocations, 128 lines: on any driver they give the same bits as a processor's, in
+/// every layer and for lines that are redone.
+#[test]
+fn wide_groups_and_narrow_ones_are_the_same_to_the_bit() {
+    let mut gpu = Device::new();
+    let limits = gpu.limits();
+    let narrow = Limits { is_cpu: true, ..limits };
+    let wide = Limits { is_cpu: false, ..limits };
+    let rough = fractal(150, 9).expect("a field");
+    let deep = dome_and_wall(150);
+    for (field, hull) in [(&rough, Hull::Auto), (&rough, Hull::Private), (&deep, Hull::Shared)] {
+        let quality = Quality { azimuths: 16, hull, ..Quality::default() };
+        let a = gpu.horizons_within(field, Border::Plane, &quality, &narrow);
+        let b = gpu.horizons_within(field, Border::Plane, &quality, &wide);
+        let differing = a.iter().zip(&b).filter(|(a, b)| a.to_bits() != b.to_bits()).count();
+        assert_eq!(differing, 0, "{hull:?}");
+    }
+}

@@ -1,0 +1,228 @@
+//! Indirect Phong specular: the path tracer against brute-force paths, bounces against closed forms and against the
+//! path tracer.
+
+use ridgelight::basis::zonal::clamped_cosine;
+use ridgelight::plan::{self, Picture};
+use ridgelight::scene::{
+    Albedo, Basis, Border, BounceEngine, BounceSpecular, Bounces, Environment, Lights, Method,
+    PhongSpecular, Quality, Scene, Specular,
+};
+use ridgelight_cpu::light::normal;
+use std::f64::consts::PI;
+
+use crate::brute_force_paths::Paths;
+use crate::reference::quadrature::traced;
+use crate::{Device, colours, field, random, under_sky};
+
+/// A number of bounces by pyramids whose texels all use the field itself.
+fn bounce_quality(count: u32, specular: BounceSpecular, sh_order: u32) -> Quality {
+    let bounces = Bounces {
+        count,
+        engine: BounceEngine::Pyramid,
+        azimuths: 16,
+        cutoff: 0.0,
+        level_offset: 4,
+        specular,
+        ..Bounces::default()
+    };
+    let base =
+        Quality { azimuths: 16, method: Method::BruteForce, level_offset: 4, ..Quality::default() };
+    Quality { basis: Basis::Sh, sh_order, bounces, ..base }
+}
+
+/// Layers by name, R, G, B.
+fn drawn(gpu: &mut Device, scene: &Scene, quality: &Quality) -> Vec<(String, Vec<[f64; 3]>)> {
+    let limits = gpu.limits();
+    let all = gpu.light_layers(scene, quality, &limits);
+    all.iter().map(|p| (p.name.clone(), colours(p))).collect()
+}
+
+fn layer<'a>(all: &'a [(String, Vec<[f64; 3]>)], name: &str) -> &'a [[f64; 3]] {
+    &all.iter().find(|(n, _)| n == name).unwrap_or_else(|| panic!("no layer {name}")).1
+}
+
+/// A field that sees much of itself, with another Phong lobe at each texel.
+fn lobed() -> Scene {
+    let mut next = random(61);
+    let noise: Vec<f64> = (0..25).map(|_| next()).collect();
+    let mut scene =
+        under_sky(field(5, 5, [1.0, 1.25], |r, c| 2.5 * noise[r * 5 + c]), Border::Open);
+    let lobe = |i: usize| PhongSpecular {
+        exponent: (i * 7 % 30) as f32,
+        scale: 0.3 + 0.1 * (i % 4) as f32,
+    };
+    scene.surface.albedo = Albedo::Constant([0.3, 0.1, 0.4]);
+    scene.surface.specular = Some(Specular::Map((0..25).map(lobe).collect()));
+    let texels = (0..18_u8).map(|i| [f32::from(i % 5), 1.0, f32::from(i % 3)]).collect();
+    let environment = Environment::new(6, 3, texels, 0.9).expect("an environment");
+    scene.lights = Lights { environment: Some(environment), ..Lights::default() };
+    scene
+}
+
+/// The device's paths reflect by the lobe of every hit point, as brute-force paths do: within five standard errors of
+/// both (6e-7 a comparison, 24 of them). The comparison fails for brute-force paths whose lobes reflect towards
+/// straight above only.
+#[test]
+fn paths_reflect_by_phong_specular_at_every_hit() {
+    let mut gpu = Device::new();
+    let scene = lobed();
+    let mut apart = [0.0_f64; 2];
+    for bounces in [1, 3] {
+        let [light, error] = traced(&mut gpu, &scene, bounces, 5, 64);
+        for (k, has_lobes) in [true, false].into_iter().enumerate() {
+            let mut paths = Paths::new(&scene, has_lobes);
+            for sample in [6, 7, 12, 18] {
+                let up = normal(&scene.field, Border::Open, sample / 5, sample % 5);
+                let counted = paths.light(sample, up, bounces as usize, 12_000);
+                let [mean, sigma] = counted[bounces as usize];
+                for c in 0..3 {
+                    let both = sigma[c].hypot(error[sample][c]);
+                    apart[k] = apart[k].max((light[sample][c] - mean[c]).abs() / both);
+                }
+            }
+        }
+    }
+    println!("{:.2} standard errors; without the lobes that are met {:.2}", apart[0], apart[1]);
+    assert!(apart[0] <= 5.0, "{apart:?}");
+    assert!(apart[1] > 8.0, "cannot fail: {apart:?}");
+}
+
+/// A surface that reflects all light, half diffusely and half by Phong specular, in light of 1 from everywhere: no
+/// texel is brighter than 1, as lobes cut by the own plane reflect less; level ground is not cut.
+#[test]
+fn specular_reflects_no_more_than_arrives() {
+    let mut gpu = Device::new();
+    let rough = field(12, 11, [1.0, 1.0], |r, c| ((r * 31 + c * 17) % 7) as f64 / 3.0);
+    let level = field(3, 4, [1.0, 1.0], |_, _| 2.0);
+    for (field, is_level) in [(rough, false), (level, true)] {
+        let mut scene = under_sky(field, Border::Open);
+        scene.surface.albedo = Albedo::Constant([0.5; 3]);
+        scene.surface.specular =
+            Some(Specular::Constant(PhongSpecular { exponent: 9.0, scale: 0.5 }));
+        let [light, _] = traced(&mut gpu, &scene, 64, 3, 2);
+        // For each vertex one rounding of density, light and quotient.
+        let slack = 64.0 * 1e-6;
+        let brightest = light.iter().fold(0.0, |m: f64, l| m.max(l[0]));
+        let darkest = light.iter().fold(2.0, |m: f64, l| m.min(l[0]));
+        println!("{is_level}: {darkest} to {brightest}");
+        assert!(brightest <= 1.0 + slack, "{brightest}");
+        assert!(darkest >= if is_level { 1.0 - slack } else { 0.5 }, "{darkest}");
+    }
+}
+
+/// Without specular the plan is the diffuse one, pass for pass and byte for byte, and so is its light.
+#[test]
+fn specular_of_scale_zero_adds_nothing() {
+    let mut gpu = Device::new();
+    let mut scene = lobed();
+    let quality = bounce_quality(2, BounceSpecular::Vector, 4);
+    let mut plans = Vec::new();
+    for scale in [None, Some(0.0)] {
+        scene.surface.specular =
+            scale.map(|scale| Specular::Constant(PhongSpecular { exponent: 5.0, scale }));
+        let wanted = Picture { light_layers: true, ..Picture::default() };
+        let plan = plan::picture(&scene, &quality, &gpu.limits(), wanted).expect("a plan");
+        assert!(plan.find("arriving").is_none() && plan.find("indirect.specular").is_none());
+        let passes: Vec<String> = plan.passes.iter().map(plan::Pass::label).collect();
+        plans.push((passes, plan.bytes(), plan.constants, drawn(&mut gpu, &scene, &quality)));
+    }
+    assert!(plans[0] == plans[1]);
+}
+
+/// A texel of level ground among diffuse walls: its lobe of exponent 1 about the zenith is a cosine, so it reflects as
+/// much of each bounce as diffuse ground, but for the bands of the cosine beyond the series: π times their integral by
+/// magnitude, of light of 1 at most. The walls are diffuse, so scalars and vectors are alike.
+#[test]
+fn phong_exponent_one_is_a_cosine() {
+    const MIDDLE: usize = 6 * 12 + 6;
+    let mut gpu = Device::new();
+    let yard = field(12, 12, [1.0, 1.0], |r, c| {
+        if (3..9).contains(&r) && (3..9).contains(&c) { 0.0 } else { 6.0 }
+    });
+    let mut scene = under_sky(yard, Border::Open);
+    scene.surface.albedo = Albedo::Constant([0.5; 3]);
+    let lobe =
+        |i: usize| PhongSpecular { exponent: 1.0, scale: if i == MIDDLE { 0.25 } else { 0.0 } };
+    scene.surface.specular = Some(Specular::Map((0..144).map(lobe).collect()));
+    for order in [3, 6] {
+        let missing = missing_cosine(order as usize);
+        let mut first = 0.0;
+        for specular in [BounceSpecular::Vector, BounceSpecular::VectorF16, BounceSpecular::Scalar]
+        {
+            let all = drawn(&mut gpu, &scene, &bounce_quality(2, specular, order));
+            let [glossy, one, two] =
+                ["indirect.specular", "indirect.1", "indirect.2"].map(|name| layer(&all, name));
+            // Of 0.5 diffusely and 0.25 by the lobe; of the bounced light, at most 3/4 of the sky's 1.
+            let want = 0.5 * (one[MIDDLE][0] + two[MIDDLE][0]);
+            let off = (glossy[MIDDLE][0] - want).abs();
+            // f32 is exact to 1e-5, f16 to half a thousandth.
+            let rounded = if specular == BounceSpecular::VectorF16 { 1e-3 } else { 1e-5 };
+            let bound = 0.25 * missing * 0.75 + rounded;
+            println!("order {order}, {}: {off:.5} of {want:.4}, bound {bound:.4}", specular.name());
+            assert!(off <= bound && want > 2.0 * bound, "{off} of {want}");
+            let others = glossy.iter().enumerate().filter(|(i, _)| *i != MIDDLE);
+            assert!(others.into_iter().all(|(_, v)| v[0] == 0.0), "lobes of nothing");
+            first = if first == 0.0 { one[MIDDLE][0] } else { first };
+            assert!((one[MIDDLE][0] - first).abs() <= rounded * first, "{first}");
+        }
+    }
+}
+
+/// ∫ |max(cos, 0) / π - its first bands| over the sphere.
+fn missing_cosine(order: usize) -> f64 {
+    const STEPS: u32 = 2000;
+    let zonal = clamped_cosine(order);
+    let width = PI / f64::from(STEPS);
+    (0..STEPS)
+        .map(|i| {
+            let theta = width * (f64::from(i) + 0.5);
+            let z = theta.cos();
+            let polynomials = ridgelight_cpu::basis::nlp(order, z);
+            let series: f64 =
+                zonal.iter().zip(polynomials).map(|(c, p)| c * p / (2.0 * PI).sqrt()).sum();
+            2.0 * theta.sin() * width * (z.max(0.0) - series).abs()
+        })
+        .sum()
+}
+
+/// Hills of specular scale four fifths, whose feet see their sides, under a sky. Bounces by direction have a smaller
+/// error than bounces by one number a texel, and either a smaller one than none, by more than the Monte Carlo noise of
+/// the path-traced reference. Higher orders have smaller errors.
+#[test]
+fn radiance_by_direction_is_nearer_to_the_path_traced_reference() {
+    const SIDE: usize = 17;
+    const BATCHES: usize = 24;
+    let mut gpu = Device::new();
+    let wave = |i: usize| (PI * i as f64 / 4.0).cos();
+    let hills = field(SIDE, SIDE, [1.0, 1.0], |r, c| 1.8 * (wave(r) + wave(c)));
+    let mut scene = under_sky(hills, Border::Plane);
+    scene.surface.albedo = Albedo::Constant([0.2; 3]);
+    scene.surface.specular = Some(Specular::Constant(PhongSpecular { exponent: 5.0, scale: 0.8 }));
+    let [first, first_error] = traced(&mut gpu, &scene, 0, 1, BATCHES);
+    let [all, error] = traced(&mut gpu, &scene, 2, 1, BATCHES);
+    let count = (SIDE * SIDE) as f64;
+    let mean = |values: &[[f64; 3]]| values.iter().map(|v| v[0]).sum::<f64>() / count;
+    let bounced = mean(&all) - mean(&first);
+    let noise: f64 = first_error.iter().zip(&error).map(|(a, b)| a[0].powi(2) + b[0].powi(2)).sum();
+    // RMSE of all bounced light, less the paths' noise.
+    let mut off = |quality: &Quality| {
+        let layers = drawn(&mut gpu, &scene, quality);
+        let is_bounced = |name: &str| name == "indirect.specular" || name.starts_with("indirect.");
+        let mut squares = 0.0;
+        for i in 0..SIDE * SIDE {
+            let own = layers.iter().filter(|(name, _)| is_bounced(name)).map(|(_, v)| v[i][0]);
+            squares += (own.sum::<f64>() - (all[i][0] - first[i][0])).powi(2);
+        }
+        ((squares - noise).max(0.0) / count).sqrt() / bounced
+    };
+    let bounce_quality =
+        |specular, order| Quality { method: Method::Auto, ..bounce_quality(2, specular, order) };
+    let [coarse, vector] = [2, 4].map(|order| off(&bounce_quality(BounceSpecular::Vector, order)));
+    let scalar = off(&bounce_quality(BounceSpecular::Scalar, 4));
+    let chance = (noise / count).sqrt() / bounced;
+    println!(
+        "bounced {bounced:.4}: vector {vector:.3}, of order 2 {coarse:.3}, scalar {scalar:.3} off; chance {chance:.3}"
+    );
+    assert!(vector + chance < coarse.min(scalar), "{vector} {coarse} {scalar}");
+    assert!(scalar + chance < 1.0, "{scalar}");
+}

@@ -1,0 +1,90 @@
+//! Phong specular: the suns' direct, and that of bounces.
+
+pub(crate) mod bounced;
+pub(crate) mod sun;
+
+use ridgelight::plan::Picture;
+use ridgelight::scene::{
+    Albedo, Basis, Border, BounceEngine, BounceSpecular, Bounces, HeightField, Levels, Lights,
+    PhongSpecular, Quality, Scene, Specular, Sun, Surface,
+};
+
+use crate::cpu_reference::{Case, Wanted, check_all, noisy_environment, rough};
+
+/// Bounced Phong specular: series of odd and even orders, colours and grey, as f32 and f16, and one number a texel.
+pub(crate) fn cases() -> Vec<Case> {
+    let case = |name, field: HeightField, border, specular, sh_order, levels, lights| {
+        let samples = field.heights_m().len();
+        let is_map = specular == BounceSpecular::Vector;
+        let lobe =
+            |i: usize| PhongSpecular { exponent: (i % 40) as f32, scale: (i % 3) as f32 * 0.2 };
+        let albedo = |i: usize| [0.5, (i % 5) as f32 / 10.0, 0.3];
+        let (albedo, phong) = if is_map {
+            (
+                Albedo::Map((0..samples).map(albedo).collect()),
+                Specular::Map((0..samples).map(lobe).collect()),
+            )
+        } else {
+            (
+                Albedo::Constant([0.5; 3]),
+                Specular::Constant(PhongSpecular { exponent: 6.0, scale: 0.5 }),
+            )
+        };
+        let bounces = Bounces {
+            count: 2,
+            engine: BounceEngine::Pyramid,
+            // None along the field's edge, where rounding decides.
+            azimuths: 8,
+            cutoff: 0.0,
+            level_step: 2,
+            level_offset: 0,
+            specular,
+        };
+        let base = Quality { azimuths: 8, level_step: 3, level_offset: 0, ..Quality::default() };
+        Case {
+            name,
+            scene: Scene {
+                field,
+                surface: Surface { border, albedo, specular: Some(phong) },
+                lights,
+            },
+            quality: Quality { basis: Basis::Sh, sh_order, levels, bounces, ..base },
+            wanted: Wanted::Picture(Picture { light_layers: true, ..Picture::default() }),
+            loses_lines: false,
+        }
+    };
+    let sun = |azimuth_rad, diameter_rad, irradiance| Sun {
+        azimuth_rad,
+        elevation_rad: 0.6,
+        diameter_rad,
+        irradiance,
+    };
+    let sky = || Lights { sky: Some([1.0; 3]), ..Lights::default() };
+    let all = Lights {
+        environment: Some(noisy_environment(51)),
+        suns: vec![sun(2.0, 0.2, [3.0, 2.5, 2.0]), sun(-1.1, 0.0, [2.0; 3])],
+        ..sky()
+    };
+    let alone = Lights { suns: vec![sun(0.4, 0.0, [2.0; 3])], ..Lights::default() };
+    use BounceSpecular::{Scalar, Vector, VectorF16};
+    let (stack, levels) = (Levels::Stack, Levels::Pyramid);
+    vec![
+        case("by direction", rough(9, 11, 52), Border::Plane, Vector, 3, stack, all.clone()),
+        case(
+            "by direction, f16, periodic",
+            rough(8, 10, 53),
+            Border::Periodic,
+            VectorF16,
+            4,
+            levels,
+            sky(),
+        ),
+        case("as seen from above", rough(10, 9, 54), Border::Open, Scalar, 2, levels, all),
+        case("as seen from above, grey", rough(7, 9, 55), Border::Plane, Scalar, 3, stack, alone),
+    ]
+}
+
+#[test]
+fn bounced_specular_matches() {
+    check_all(&cases());
+}

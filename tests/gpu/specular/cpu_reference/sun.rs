@@ -1,0 +1,79 @@
+//! Direct Phong specular of suns, and the light of suns that bounces reflect.
+
+use ridgelight::gpu::shaders::offsets;
+use ridgelight::plan::Pass;
+use ridgelight::scene::Sun;
+use ridgelight_cpu::shared::field::{field_slope, normal_of};
+use ridgelight_cpu::sun_specular as specular_reference;
+use ridgelight_cpu::tolerance::{EPSILON, device_sun_arriving, device_sun_specular};
+
+use super::bounced::paired;
+use crate::cpu_reference::{Pair, Run, constant, pushed};
+use crate::direct::cpu_reference::light::Rgb;
+
+/// From the device's own sun, added to what is there.
+pub(crate) fn sun_specular(run: &mut Run, pass: &Pass) -> Vec<Pair> {
+    use offsets::sun_specular_push::COLOUR;
+    let number: usize =
+        pass.part.strip_prefix("sun").and_then(|n| n.parse().ok()).expect("sun and its number");
+    let sun = run.scene.lights.suns[number - 1];
+    let sums = run.floats(pass, "sun_sum").expect("read");
+    let got = run.floats(pass, "gloss_sum").expect("written");
+    let (heights, error) = (run.heights(), run.sample_error());
+    let [cols, _] = run.size();
+    if f32::from_bits(pushed(pass, COLOUR + 12)) > 0.0 {
+        run.specular = vec![[0.0; 3]; sums.len()];
+    }
+    let towards = {
+        let (sin, cos) = sun.azimuth_rad.sin_cos();
+        let (up, along) = sun.elevation_rad.sin_cos();
+        glam::DVec3::new(cos * along, sin * along, up)
+    };
+    let mut pairs = sun_arriving(run, pass, &sun, towards);
+    for (i, got) in got.chunks_exact(4).enumerate() {
+        let normal = normal_of(field_slope(&heights, (i % cols) as i32, (i / cols) as i32));
+        let phong = run.lobe(i);
+        let light = specular_reference::specular_on(normal, &sun, phong, sums[i].into());
+        let tolerance =
+            device_sun_specular(phong.exponent.into(), error.normal(), normal.dot(towards));
+        for (c, (got, sum)) in got.iter().zip(&mut run.specular[i]).enumerate() {
+            let colour = f64::from(sun.irradiance[c]);
+            let want = *sum + colour * light;
+            *sum = f64::from(*got);
+            let tolerance = colour * tolerance + 2.0 * EPSILON * want;
+            pairs.push(Pair { got: *sum, want, tolerance, at: [c, i / cols, i % cols] });
+        }
+    }
+    pairs
+}
+
+/// The same pass's series of the light that arrives, where it is bounced.
+fn sun_arriving(run: &mut Run, pass: &Pass, sun: &Sun, towards: Rgb) -> Vec<Pair> {
+    let order = constant(pass, "order") as usize;
+    if order == 0 {
+        return Vec::new();
+    }
+    let sums = run.floats(pass, "sun_sum").expect("read");
+    let got = run.all_series(pass, "arriving", order);
+    if f32::from_bits(pushed(pass, offsets::sun_specular_push::COLOUR + 12)) > 0.0 {
+        run.arriving = vec![vec![[0.0; 3]; order * order]; sums.len()];
+    }
+    let (heights, error) = (run.heights(), run.sample_error());
+    let [cols, _] = run.size();
+    let mut pairs = Vec::new();
+    for (i, (got, before)) in got.iter().zip(&run.arriving).enumerate() {
+        let normal = normal_of(field_slope(&heights, (i % cols) as i32, (i / cols) as i32));
+        let more = specular_reference::arriving(normal, sun, order, sums[i].into());
+        let want: Vec<_> = before
+            .iter()
+            .zip(&more)
+            .map(|(b, y)| [0, 1, 2].map(|c| b[c] + f64::from(sun.irradiance[c]) * y))
+            .collect();
+        let largest = sun.irradiance.iter().fold(0.0, |m: f32, v| m.max(*v));
+        let off = f64::from(largest) * device_sun_arriving(error.normal(), normal.dot(towards));
+        let tolerance = |want: f64| off + 2.0 * EPSILON * want.abs();
+        pairs.extend(paired((got, &want), tolerance, [i / cols, i % cols]));
+    }
+    run.arriving = got;
+    pairs
+}

@@ -1,0 +1,87 @@
+//! Passes and memory of bounced Phong specular.
+
+use ridgelight::plan::{self, Limits, Picture, Plan, missing_barriers};
+use ridgelight::scene::fractal;
+use ridgelight::scene::{
+    Albedo, Basis, Border, BounceEngine, BounceSpecular, Bounces, Lights, PhongSpecular, Quality,
+    Scene, Specular, Surface,
+};
+
+const SIDE: usize = 128;
+
+/// Two bounces of a grey surface under a sky.
+fn planned(specular: BounceSpecular, sh_order: u32) -> Plan {
+    let surface = Surface {
+        albedo: Albedo::Constant([0.3; 3]),
+        border: Border::Plane,
+        specular: Some(Specular::Constant(PhongSpecular { exponent: 5.0, scale: 0.5 })),
+    };
+    let lights = Lights { sky: Some([1.0; 3]), ..Lights::default() };
+    let scene = Scene { field: fractal(SIDE, 1).expect("a field"), surface, lights };
+    let engine = BounceEngine::Pyramid;
+    let bounces = Bounces { count: 2, engine, cutoff: 0.0, specular, ..Bounces::default() };
+    let quality =
+        Quality { azimuths: 8, basis: Basis::Sh, sh_order, bounces, ..Quality::default() };
+    let wanted = Picture { light_layers: true, ..Picture::default() };
+    plan::picture(&scene, &quality, &Limits::lavapipe(), wanted).expect("a plan")
+}
+
+fn bytes(plan: &Plan, names: &[&str]) -> u64 {
+    let all = plan.resources.iter().filter(|r| names.contains(&r.name.as_str()));
+    all.map(plan::Resource::bytes).sum()
+}
+
+/// Arriving light is reflected once a bounce; the last bounce is only gathered. Without vectors no direct light
+/// is needed as a series.
+#[test]
+fn each_bounce_is_computed_once() {
+    let has = |plan: &Plan, label: &str| plan.passes.iter().any(|p| p.label() == label);
+    for specular in [BounceSpecular::Vector, BounceSpecular::VectorF16, BounceSpecular::Scalar] {
+        let plan = planned(specular, 4);
+        let is_vector = specular != BounceSpecular::Scalar;
+        for label in [
+            "specular_exit direct",
+            "specular_exit bounce1",
+            "specular_exit bounce2",
+            "light_resolve bounces specular",
+        ] {
+            assert!(has(&plan, label), "{label}");
+        }
+        assert_eq!(has(&plan, "specular_visibility"), is_vector);
+        assert_eq!(has(&plan, "vector_reduce bounce1 level 1"), is_vector);
+        assert_eq!(has(&plan, "shade_reduce bounce2 level 1"), !is_vector);
+        assert!(!has(&plan, "bounce_gather bounce1"));
+        assert_eq!(missing_barriers(&plan.passes), vec![]);
+        assert!(plan.settings.contains(&("bounce_specular".into(), specular.name().into())));
+        let outputs: Vec<&str> = plan.outputs().map(|(_, r)| r.name.as_str()).collect();
+        assert_eq!(outputs[outputs.len() - 3..], ["indirect.1", "indirect.2", "indirect.specular"]);
+    }
+}
+
+/// Order 4 of one channel is 16 numbers, four texels of four; order 3 is 9, three texels. f16 takes half. The
+/// note states the images' bytes, but for the last row of all levels, which need not be full.
+#[test]
+fn vectors_take_the_planned_memory() {
+    let vectors = |plan: &Plan| bytes(plan, &["exit_vectors", "vector_levels"]);
+    let [four, three] = [4, 3].map(|order| vectors(&planned(BounceSpecular::Vector, order)));
+    let half = planned(BounceSpecular::VectorF16, 4);
+    assert_eq!(four, 2 * vectors(&half));
+    assert_eq!(4 * three, 3 * four);
+    let exit = bytes(&planned(BounceSpecular::Vector, 4), &["exit_vectors"]);
+    assert_eq!(exit, (SIDE * SIDE * 4 * 16) as u64);
+    let note = half.notes.iter().find(|n| n.starts_with("radiance by direction")).expect("a note");
+    let mebibytes = |at: usize| -> f64 {
+        let words: Vec<&str> = note.split([' ', ';']).filter(|w| !w.is_empty()).collect();
+        let units: Vec<usize> =
+            (0..words.len()).filter(|i| ["MiB", "KiB"].contains(&words[*i])).collect();
+        let size: f64 = words[units[at] - 1].parse().expect("a number");
+        size * if words[units[at]] == "KiB" { 1.0 / 1024.0 } else { 1.0 }
+    };
+    let [here, there] = [0, 1].map(mebibytes);
+    // The note rounds to a tenth.
+    assert!((there - 2.0 * here).abs() <= 0.2, "{note}");
+    let of_images = vectors(&half) as f64 / 1_048_576.0;
+    assert!(here <= of_images + 0.1 && here > 0.98 * of_images, "{note}: {of_images}");
+    let scalar = bytes(&planned(BounceSpecular::Scalar, 4), &["exit_upward", "shade_levels"]);
+    assert!(scalar < vectors(&half) / 2, "{scalar}");
+}
