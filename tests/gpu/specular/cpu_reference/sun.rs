@@ -18,7 +18,7 @@ pub(crate) fn sun_specular(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         pass.part.strip_prefix("sun").and_then(|n| n.parse().ok()).expect("sun and its number");
     let sun = run.scene.lights.suns[number - 1];
     let sums = run.floats(pass, "sun_sum").expect("read");
-    let got = run.floats(pass, "gloss_sum").expect("written");
+    let got = run.floats(pass, "specular_sum").expect("written");
     let (heights, error) = (run.heights(), run.sample_error());
     let [cols, _] = run.size();
     if f32::from_bits(pushed(pass, COLOUR + 12)) > 0.0 {
