@@ -19,7 +19,7 @@ pub(crate) fn derivative(polynomial: &[f64]) -> Polynomial {
 }
 
 /// The product of two.
-pub fn product(a: &[f64], b: &[f64]) -> Polynomial {
+pub(crate) fn product(a: &[f64], b: &[f64]) -> Polynomial {
     let mut out = vec![0.0; (a.len() + b.len()).saturating_sub(1)];
     for (i, x) in a.iter().enumerate() {
         for (j, y) in b.iter().enumerate() {

@@ -22,7 +22,7 @@ impl Triangles {
     ///
     /// If the points do not surround the centre, as on a hemisphere, the faces below it are omitted, as no point represents
     /// them.
-    pub fn of(points: &[DVec3]) -> Option<Self> {
+    pub(crate) fn of(points: &[DVec3]) -> Option<Self> {
         let first = tetrahedron(points)?;
         let centre = first.iter().map(|i| points[*i]).sum::<DVec3>() / 4.0;
         let mut faces: Vec<[usize; 3]> = (0..4)
@@ -53,7 +53,7 @@ impl Triangles {
 
     /// Keeps the triangles whose centres are not below a height; `points` are those of construction. Removes the lid over a cap
     /// without points.
-    pub fn above(mut self, points: &[DVec3], lowest_z: f64) -> Self {
+    pub(crate) fn above(mut self, points: &[DVec3], lowest_z: f64) -> Self {
         self.corners.retain(|face| {
             let sum: DVec3 = face.iter().map(|i| points[*i as usize]).sum();
             sum.z >= lowest_z * sum.length()
@@ -71,14 +71,14 @@ impl Triangles {
     ///
     /// # Panics
     /// If there are fewer points than at construction.
-    pub fn areas_sr(&self, points: &[DVec3]) -> Vec<f64> {
+    fn areas_sr(&self, points: &[DVec3]) -> Vec<f64> {
         self.corners.iter().map(|face| area_sr(face.map(|i| points[i as usize]))).collect()
     }
 
     /// A third of the solid angle of the triangles around each point, sr: the share of the sphere that it represents.
     ///
     /// # Panics
-    /// As [`areas_sr`](Self::areas_sr).
+    /// If there are fewer points than at construction.
     pub fn fans_sr(&self, points: &[DVec3]) -> Vec<f64> {
         let mut fans = vec![0.0; points.len()];
         for (face, area) in self.corners.iter().zip(self.areas_sr(points)) {
@@ -91,7 +91,7 @@ impl Triangles {
     /// intersection; they sum to 1. `None` where no triangle covers it.
     ///
     /// # Panics
-    /// As [`areas_sr`](Self::areas_sr).
+    /// As [`fans_sr`](Self::fans_sr).
     pub fn around(&self, points: &[DVec3], direction: DVec3) -> Option<[(u32, f64); 3]> {
         let shares = |face: &[u32; 3]| {
             let [a, b, c] = face.map(|i| points[i as usize]);
@@ -148,6 +148,6 @@ fn edges([a, b, c]: [usize; 3]) -> [[usize; 2]; 3] {
 }
 
 /// Solid angle of a spherical triangle, sr; negative if clockwise (Van Oosterom & Strackee 1983).
-pub fn area_sr([a, b, c]: [DVec3; 3]) -> f64 {
+fn area_sr([a, b, c]: [DVec3; 3]) -> f64 {
     2.0 * a.dot(b.cross(c)).atan2(1.0 + a.dot(b) + b.dot(c) + c.dot(a))
 }

@@ -1,6 +1,5 @@
 pub(super) mod copy;
 pub(super) mod frame;
-pub(super) mod host_image;
 pub(super) mod look;
 pub(super) mod read;
 pub(super) mod scattering;

@@ -103,7 +103,6 @@ pub use allocator::{Allocation, Allocator, Blocks, MemoryRequest, MemoryUse};
 #[doc(hidden)]
 pub use headless::frame::Owned;
 pub use headless::frame::{Frame, Pixels};
-pub use headless::host_image::{HostBuffer, HostImage};
 pub use headless::look::ViewPixels;
 #[doc(hidden)]
 pub use headless::look::view_inputs;

@@ -20,17 +20,17 @@ pub struct Axis {
 
 impl Axis {
     /// Texels of the field.
-    pub fn texels(self) -> u64 {
+    pub(crate) fn texels(self) -> u64 {
         u64::from(self.lanes) * u64::from(self.steps)
     }
 
     /// Columns and rows.
-    pub fn size(self) -> [u32; 2] {
+    pub(crate) fn size(self) -> [u32; 2] {
         if self.marches_rows { [self.lanes, self.steps] } else { [self.steps, self.lanes] }
     }
 
     /// Name in labels.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         if self.marches_rows { "rows" } else { "cols" }
     }
 }

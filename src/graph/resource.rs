@@ -43,7 +43,7 @@ impl Format {
     }
 
     /// Name in SPIR-V; sRGB, which SPIR-V lacks, is named in the same style.
-    pub fn spirv(self) -> &'static str {
+    pub(crate) fn spirv(self) -> &'static str {
         match self {
             Format::R32Float => "R32f",
             Format::Rgba16Float => "Rgba16f",
@@ -136,7 +136,7 @@ impl Resource {
     }
 
     /// Whether a binding of this kind can take this resource.
-    pub fn fits(&self, binding: BindingKind) -> bool {
+    pub(crate) fn fits(&self, binding: BindingKind) -> bool {
         match (self.kind, binding) {
             (Kind::Buffer { texels, .. }, BindingKind::StorageBuffer) => !texels,
             (Kind::Buffer { texels, .. }, BindingKind::TexelBuffer) => texels,

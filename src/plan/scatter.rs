@@ -55,7 +55,7 @@ const MOST_AT_ONCE: u64 = 64;
 /// ([`Renderer::replace_plan`](crate::gpu::Renderer::replace_plan)) if both plans have the same number.
 ///
 /// # Errors
-/// As [`Scatter::check`]; a field of unknown heights; a plan beyond the memory limits.
+/// A number of [`Scatter`] or of its curvature out of range; a field of unknown heights; a plan beyond the memory limits.
 pub fn scatter(
     scene: &Scene,
     directions: &Directions,

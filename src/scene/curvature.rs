@@ -83,7 +83,7 @@ impl Curvature {
 
     /// The curvature times `factor`.
     #[must_use]
-    pub fn times(self, factor: f64) -> Self {
+    pub(crate) fn times(self, factor: f64) -> Self {
         Self { per_m: self.per_m.map(|k| factor * k) }
     }
 

@@ -28,7 +28,7 @@ pub struct Sun {
     pub azimuth_rad: f64,
     /// Elevation of the centre above horizontal, radians, [0..π/2].
     pub elevation_rad: f64,
-    /// Angular diameter, radians, [0..π/2]; below [`POINT_DIAMETER_RAD`] a point with hard shadows.
+    /// Angular diameter, radians, [0..π/2]; below 0.01° (1.75e-4) a point with hard shadows.
     pub diameter_rad: f64,
     /// Irradiance on a surface that faces it, unoccluded, linear RGB.
     pub irradiance: [f32; 3],
@@ -67,7 +67,7 @@ const PLACE_LIMIT: f64 = 1e15;
 
 /// Angular diameter below which a sun is treated as a point, radians: 0.01°. Its penumbra is 9 cm wide at half a
 /// kilometre. The f32 slopes of its limbs would no longer resolve the widths of its chords.
-pub const POINT_DIAMETER_RAD: f64 = 1.75e-4;
+pub(super) const POINT_DIAMETER_RAD: f64 = 1.75e-4;
 
 /// Largest radiance or irradiance of a light: products with Phong specular and SH series stay within f32.
 const BRIGHTEST: f32 = 1e36;

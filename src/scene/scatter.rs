@@ -50,18 +50,18 @@ impl Default for Scatter {
 
 impl Scatter {
     /// Range of [`bounces`](Self::bounces).
-    pub const BOUNCES: RangeInclusive<u32> = 1..=64;
+    pub(crate) const BOUNCES: RangeInclusive<u32> = 1..=64;
     /// Range of [`paths`](Self::paths).
     pub const PATHS: RangeInclusive<u32> = 1..=4096;
     /// Range of [`first_path`](Self::first_path).
-    pub const FIRST_PATH: RangeInclusive<u32> = 0..=1 << 24;
+    pub(crate) const FIRST_PATH: RangeInclusive<u32> = 0..=1 << 24;
 
     /// Checks every range and the scene. Returns the estimated occlusion change of the curved base; that of a flat one is 0.
     ///
     /// # Errors
     /// A setting out of range, by name; specular with key lights or sphere lights, which paths cannot mirror; specular on a
     /// curved base; a base that [`Curvature::check`] rejects.
-    pub fn check(&self, scene: &Scene) -> Result<OcclusionChange> {
+    pub(crate) fn check(&self, scene: &Scene) -> Result<OcclusionChange> {
         if !(self.direct_specular && self.bounces == 0) {
             within("bounces", self.bounces, Self::BOUNCES)?;
         }

@@ -22,7 +22,8 @@ impl Surface {
     /// Checks ranges and sizes for a field of `grid_points` grid points.
     ///
     /// # Errors
-    /// As [`Albedo::check`]; an exponent or a scale out of range; albedo plus scale above 1 in any channel at any texel.
+    /// An albedo outside [0..1]; a map without one value per grid point; an exponent or a scale out of range; albedo
+    /// plus scale above 1 in any channel at any texel.
     pub fn check(&self, grid_points: usize) -> Result<()> {
         self.albedo.check(grid_points)?;
         match &self.specular {
@@ -149,7 +150,7 @@ impl Albedo {
     ///
     /// # Errors
     /// A channel outside [0..1] or not finite; a map that does not have one colour per grid point.
-    pub fn check(&self, grid_points: usize) -> Result<()> {
+    pub(crate) fn check(&self, grid_points: usize) -> Result<()> {
         let good = |c: &[f32; 3]| c.iter().all(|v| (0.0..=1.0).contains(v));
         match self {
             Albedo::Constant(c) if !good(c) => {

@@ -48,7 +48,7 @@ impl VisiblePoints {
     }
 
     /// Number of layers.
-    pub fn layers(directions: usize, is_small: bool) -> usize {
+    pub(crate) fn layers(directions: usize, is_small: bool) -> usize {
         if is_small { directions.div_ceil(2) } else { directions }
     }
 

@@ -1,7 +1,7 @@
-//! An image that an engine draws into, and its texels: for the tests of the core and of the C ABI.
+//! Images and buffers that an engine owns: for the tests of the core and of the C ABI.
 
 use ash::vk;
-use ridgelight::gpu::{Host, ImageArg, ImageState};
+use ridgelight::gpu::{BufferArg, Headless, Host, ImageArg, ImageState};
 
 pub(crate) const FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 pub(crate) const SIZE: [u32; 2] = [20, 12];
@@ -14,6 +14,11 @@ pub(crate) struct Target {
     buffer: vk::Buffer,
     memory: [vk::DeviceMemory; 2],
 }
+
+const MAPPED: vk::MemoryPropertyFlags = vk::MemoryPropertyFlags::from_raw(
+    vk::MemoryPropertyFlags::HOST_VISIBLE.as_raw()
+        | vk::MemoryPropertyFlags::HOST_COHERENT.as_raw(),
+);
 
 fn memory(
     host: &Host,
@@ -62,9 +67,7 @@ impl Target {
             let view = device.create_image_view(&view, None).expect("a view");
             let buffer = device.create_buffer(&bytes, None).expect("a buffer");
             let needs = device.get_buffer_memory_requirements(buffer);
-            let seen =
-                vk::MemoryPropertyFlags::HOST_VISIBLE | vk::MemoryPropertyFlags::HOST_COHERENT;
-            let of_buffer = memory(host, needs, seen);
+            let of_buffer = memory(host, needs, MAPPED);
             device.bind_buffer_memory(buffer, of_buffer, 0).expect("bound");
             Self { image, view, buffer, memory: [of_image, of_buffer] }
         }
@@ -147,5 +150,140 @@ fn range() -> vk::ImageSubresourceRange {
         level_count: 1,
         layer_count: 1,
         ..Default::default()
+    }
+}
+
+/// An image of the engine that a renderer reads, in GENERAL.
+pub(crate) struct Input {
+    image: vk::Image,
+    memory: vk::DeviceMemory,
+    arg: ImageArg,
+}
+
+impl Input {
+    /// Holds `texels`, row by row, packed as in Vulkan. `None` where the device cannot sample the format.
+    pub(crate) fn new(
+        gpu: &Headless,
+        format: vk::Format,
+        [width, height]: [u32; 2],
+        texels: &[u8],
+    ) -> Option<Self> {
+        let host = gpu.host();
+        let (device, physical) = (&host.device, host.physical_device);
+        // SAFETY: the physical device is the instance's.
+        let known =
+            unsafe { host.instance.get_physical_device_format_properties(physical, format) };
+        if !known.optimal_tiling_features.contains(vk::FormatFeatureFlags::SAMPLED_IMAGE) {
+            return None;
+        }
+        let info = vk::ImageCreateInfo::default()
+            .image_type(vk::ImageType::TYPE_2D)
+            .format(format)
+            .extent(vk::Extent3D { width, height, depth: 1 })
+            .mip_levels(1)
+            .array_layers(1)
+            .samples(vk::SampleCountFlags::TYPE_1)
+            .usage(vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST);
+        // SAFETY: what is made here is of the device, bound once and destroyed by `end`.
+        let (image, memory, view) = unsafe {
+            let image = device.create_image(&info, None).expect("an image");
+            let needs = device.get_image_memory_requirements(image);
+            let memory = memory(host, needs, vk::MemoryPropertyFlags::empty());
+            device.bind_image_memory(image, memory, 0).expect("bound");
+            let view = vk::ImageViewCreateInfo::default()
+                .image(image)
+                .view_type(vk::ImageViewType::TYPE_2D)
+                .format(format)
+                .subresource_range(range());
+            (image, memory, device.create_image_view(&view, None).expect("a view"))
+        };
+        let (before, extent) = (ImageState::ANY_USE, [width, height, 1]);
+        let arg = ImageArg { image, view, format, extent, before, after: before };
+        let staging = Staging::new(host, texels);
+        let layers = vk::ImageSubresourceLayers {
+            aspect_mask: vk::ImageAspectFlags::COLOR,
+            layer_count: 1,
+            ..Default::default()
+        };
+        let region = [vk::BufferImageCopy::default()
+            .image_subresource(layers)
+            .image_extent(vk::Extent3D { width, height, depth: 1 })];
+        gpu.run(|commands| {
+            let unknown = ImageState { layout: vk::ImageLayout::UNDEFINED, ..before };
+            gpu.transition(commands, &ImageArg { before: unknown, ..arg });
+            let (from, to) = (staging.buffer, vk::ImageLayout::GENERAL);
+            // SAFETY: the image is in GENERAL, the buffer holds its texels.
+            unsafe { device.cmd_copy_buffer_to_image(commands, from, image, to, &region) };
+            gpu.transition(commands, &arg);
+            Ok(())
+        })
+        .expect("filled");
+        staging.end(host);
+        Some(Self { image, memory, arg })
+    }
+
+    pub(crate) fn arg(&self) -> ImageArg {
+        self.arg
+    }
+
+    pub(crate) fn end(self, host: &Host) {
+        // SAFETY: made by `new`, no longer used.
+        unsafe {
+            host.device.destroy_image_view(self.arg.view, None);
+            host.device.destroy_image(self.image, None);
+            host.device.free_memory(self.memory, None);
+        }
+    }
+}
+
+/// A mapped buffer of the engine that a renderer copies from.
+pub(crate) struct Staging {
+    buffer: vk::Buffer,
+    memory: vk::DeviceMemory,
+    bytes: u64,
+}
+
+impl Staging {
+    pub(crate) fn new(host: &Host, contents: &[u8]) -> Self {
+        let (device, bytes) = (&host.device, contents.len() as u64);
+        let info =
+            vk::BufferCreateInfo::default().size(bytes).usage(vk::BufferUsageFlags::TRANSFER_SRC);
+        // SAFETY: what is made here is of the device, bound once and destroyed by `end`.
+        let (buffer, memory) = unsafe {
+            let buffer = device.create_buffer(&info, None).expect("a buffer");
+            let memory = memory(host, device.get_buffer_memory_requirements(buffer), MAPPED);
+            device.bind_buffer_memory(buffer, memory, 0).expect("bound");
+            (buffer, memory)
+        };
+        let made = Self { buffer, memory, bytes };
+        made.fill(host, contents);
+        made
+    }
+
+    /// Overwrites it; the device must not be using it.
+    pub(crate) fn fill(&self, host: &Host, contents: &[u8]) {
+        assert_eq!(contents.len() as u64, self.bytes);
+        let flags = vk::MemoryMapFlags::empty();
+        // SAFETY: the queue is idle; only this function maps the memory, which is as long.
+        unsafe {
+            let at = host.device.map_memory(self.memory, 0, vk::WHOLE_SIZE, flags).expect("mapped");
+            let at = std::slice::from_raw_parts_mut(at.cast::<u8>(), contents.len());
+            at.copy_from_slice(contents);
+            host.device.unmap_memory(self.memory);
+        }
+    }
+
+    pub(crate) fn arg(&self) -> BufferArg {
+        let ImageState { stage, access, .. } = ImageState::ANY_USE;
+        let (buffer, bytes) = (self.buffer, self.bytes);
+        BufferArg { buffer, bytes, offset: 0, row_bytes: 0, stage, access }
+    }
+
+    pub(crate) fn end(self, host: &Host) {
+        // SAFETY: made by `new`, no longer used.
+        unsafe {
+            host.device.destroy_buffer(self.buffer, None);
+            host.device.free_memory(self.memory, None);
+        }
     }
 }

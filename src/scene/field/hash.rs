@@ -36,7 +36,7 @@ impl HeightField {
 
 impl Directions {
     /// A hash that identifies the set: FNV-1a of all vectors, in order, and the lowest height (f64, little-endian).
-    pub fn hash(&self) -> u64 {
+    pub(crate) fn hash(&self) -> u64 {
         let numbers = self.vectors().iter().flat_map(|v| v.to_array()).chain([self.lowest_z()]);
         let bytes = numbers.flat_map(f64::to_le_bytes);
         bytes.fold(OFFSET, |state, byte| (state ^ u64::from(byte)).wrapping_mul(PRIME))

@@ -9,7 +9,7 @@ use ridgelight::scene::fractal;
 use ridgelight::scene::{Border, Camera, Lens, Quality};
 
 use super::borrowed::{framed, packed, planned, scene};
-use crate::target::{FORMAT, SIZE, Target};
+use crate::target::{FORMAT, SIZE, Staging, Target};
 use crate::{Device, under_sky};
 
 /// Formats that each input may have in a buffer.
@@ -75,14 +75,14 @@ fn buffers_are_lit_as_images_are() {
             };
             let bytes = packed(&contents[which], format.vk());
             assert_eq!(bytes.len() as u64, own, "{name} {format:?}");
-            let lent = gpu.lend_buffer(name, &bytes).expect("a buffer");
+            let lent = Staging::new(gpu.host(), &bytes);
             let mut given = images.clone();
             given[which] = lent.arg().into();
             let lit = drawn_over(gpu, &mut frame, &mut renderer, &given);
             assert!(lit == right, "{name} {format:?}");
             drawn.push(format);
             renderer.destroy();
-            gpu.take_back_buffer(lent);
+            lent.end(gpu.host());
         }
     }
     println!("{drawn:?}");
@@ -105,7 +105,7 @@ fn buffers_are_lit_as_images_are() {
         bytes.resize(bytes.len().next_multiple_of(16), 0xff);
     }
     assert_eq!(all.internal_bytes(), plan.internal_bytes() + input_bytes(&plan));
-    let lent = gpu.lend_buffer("all", &bytes).expect("a buffer");
+    let lent = Staging::new(gpu.host(), &bytes);
     let whole = lent.arg();
     let given: Vec<BufferArg> = places
         .into_iter()
@@ -123,7 +123,7 @@ fn buffers_are_lit_as_images_are() {
     .expect("recorded and run");
     assert!(gpu.pixels(&frame, 0).expect("pixels").values == right, "again");
     renderer.destroy();
-    gpu.take_back_buffer(lent);
+    lent.end(gpu.host());
     gpu.end(frame);
 }
 
@@ -141,7 +141,7 @@ fn wrong_buffers_are_refused_by_name() {
     let frame = framed(gpu, &scene);
     let [cols, rows] = [plan.size[0], plan.size[1]].map(u64::from);
     let count = (cols * rows * 4) as usize;
-    let lent = gpu.lend_buffer("heights", &vec![0; count]).expect("a buffer");
+    let lent = Staging::new(gpu.host(), &vec![0; count]);
     let right = lent.arg();
     let mut plan_of_buffer = taking(&plan, "heights", Format::R32Float);
     let mut renderer = Renderer::new(gpu.host(), plan_of_buffer.clone(), 1).expect("a renderer");
@@ -198,7 +198,7 @@ fn wrong_buffers_are_refused_by_name() {
     let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
     let error = gpu.frame(plan_of_buffer, &contents).err().expect("no frame").to_string();
     assert!(error.contains("heights: found an input in a buffer"), "{error}");
-    gpu.take_back_buffer(lent);
+    lent.end(gpu.host());
     gpu.end(frame);
 }
 
@@ -229,7 +229,7 @@ fn edits_and_cameras_go_on_from_what_was_copied() {
     assert!(before != after);
 
     let bytes = |values: &[f32]| packed_floats(values);
-    let mut lent = gpu.lend_buffer("heights", &bytes(&heights)).expect("a buffer");
+    let lent = Staging::new(gpu.host(), &bytes(&heights));
     let taken = taking(&plan, "heights", Format::R32Float);
     assert!(taken.resources.iter().any(|r| r.owner == Owner::InputBuffer));
     let mut renderer = Renderer::new(gpu.host(), taken, 2).expect("a renderer");
@@ -242,7 +242,7 @@ fn edits_and_cameras_go_on_from_what_was_copied() {
         let at = row * 40 + 9;
         alone[at..at + 5].copy_from_slice(&raised[at..at + 5]);
     }
-    lent.contents().copy_from_slice(&bytes(&alone));
+    lent.fill(gpu.host(), &bytes(&alone));
     gpu.run(|commands| renderer.record_edit(commands, 0, &given, &outputs, edited)).expect("run");
     assert!(gpu.pixels(&frame, 0).expect("pixels").values == after, "the edit");
 
@@ -258,7 +258,7 @@ fn edits_and_cameras_go_on_from_what_was_copied() {
     let target = Target::new(&host);
     let mut looking = ViewRenderer::new(&host, &view, FORMAT, 1).expect("a renderer");
     // Copied, viewed, and copied again: each waits for the other.
-    lent.contents().copy_from_slice(&bytes(&raised));
+    lent.fill(gpu.host(), &bytes(&raised));
     gpu.run(|commands| {
         renderer.record(commands, 0, &given, &outputs)?;
         let drawn = ViewOutputs { picture: target.arg(), depth: None };
@@ -272,7 +272,7 @@ fn edits_and_cameras_go_on_from_what_was_copied() {
     target.end(&host);
     assert!(renderer.taken("albedo").is_none());
     renderer.destroy();
-    gpu.take_back_buffer(lent);
+    lent.end(gpu.host());
     gpu.end(frame);
 }
 

@@ -9,6 +9,7 @@ use ridgelight::scene::{
 
 use super::borrowed::packed;
 use crate::Device;
+use crate::target::{Input, Staging};
 
 /// The colours of the sky, two suns and a key light: 0 and 1, which every format holds.
 type Colours = [[f32; 3]; 4];
@@ -133,16 +134,16 @@ fn colours_come_in_formats_and_buffers() {
         gpu.draw(&mut frame).expect("drawn");
         assert!(gpu.pixels(&frame, 0).expect("pixels").values != right, "the other colours");
         let bytes = packed(&texels(FIRST), format.vk());
-        let lent = gpu.lend("light_colours", format.vk(), [4, 1], &bytes).expect("an image");
+        let lent = Input::new(gpu, format.vk(), [4, 1], &bytes).expect("an image");
         let given = [frame.inputs()[0], lent.arg()];
         gpu.run(|commands| frame.renderer().record(commands, 0, &given, &outputs)).expect("run");
         assert!(gpu.pixels(&frame, 0).expect("pixels").values == right, "{format:?}");
-        gpu.take_back(lent);
+        lent.end(gpu.host());
 
         gpu.draw(&mut frame).expect("drawn");
         let mut taking = plan.clone();
         taking.take_buffer("light_colours", format).expect("an input");
-        let lent = gpu.lend_buffer("light_colours", &bytes).expect("a buffer");
+        let lent = Staging::new(gpu.host(), &bytes);
         let given = [frame.inputs()[0].into(), lent.arg().into()];
         let made = ridgelight::gpu::Renderer::new(gpu.host(), taking, 1);
         let mut renderer = made.expect("a renderer");
@@ -152,7 +153,7 @@ fn colours_come_in_formats_and_buffers() {
         .expect("run");
         assert!(gpu.pixels(&frame, 0).expect("pixels").values == right, "{format:?}, a buffer");
         renderer.destroy();
-        gpu.take_back_buffer(lent);
+        lent.end(gpu.host());
     }
     gpu.end(frame);
 }

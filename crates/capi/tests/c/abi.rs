@@ -12,7 +12,7 @@ use ridgelight::plan::{self, Picture, View, ViewOptions};
 use ridgelight::scene::{Camera, HeightField, Lens, Lights, Quality, Scene, Surface};
 use ridgelight_c::*;
 
-use crate::target::{FORMAT, SIZE, Target};
+use crate::target::{FORMAT, SIZE, Staging, Target};
 
 pub(super) const SIDE: usize = 24;
 
@@ -269,7 +269,7 @@ fn a_buffer_of_c_is_lit_as_an_image_is() {
     let mut rows = vec![f32::NAN; 1];
     texels.chunks(SIDE).for_each(|row| rows.extend(row.iter().chain(&[f32::NAN; 2])));
     let bytes: Vec<u8> = rows.iter().flat_map(|v| v.to_ne_bytes()).collect();
-    let lent = gpu.lend_buffer("heights", &bytes).expect("a buffer");
+    let lent = Staging::new(gpu.host(), &bytes);
     let given = lent.arg();
     let (mut plan, mut renderer) = (ptr::null_mut(), ptr::null_mut());
     let (argument, setting) = (RidgelightResult::Argument, RidgelightResult::Setting);
@@ -315,7 +315,7 @@ fn a_buffer_of_c_is_lit_as_an_image_is() {
         ridgelight_renderer_destroy(renderer);
         ridgelight_plan_destroy(plan);
     }
-    gpu.take_back_buffer(lent);
+    lent.end(gpu.host());
     gpu.end(frame);
     assert_eq!(gpu.take_messages(), [""; 0]);
 }
@@ -352,7 +352,7 @@ fn a_camera_of_c_draws_the_bytes_of_rust() {
     let lent = gpu.host().clone();
     let target = Target::new(&lent);
     let bytes: Vec<u8> = field.heights_m().iter().flat_map(|v| v.to_ne_bytes()).collect();
-    let buffer = gpu.lend_buffer("heights", &bytes).expect("a buffer");
+    let buffer = Staging::new(gpu.host(), &bytes);
     let camera = RidgelightCamera {
         samples: 1,
         size: SIZE,
@@ -437,7 +437,7 @@ fn a_camera_of_c_draws_the_bytes_of_rust() {
         ridgelight_plan_destroy(plan);
     }
     target.end(&lent);
-    gpu.take_back_buffer(buffer);
+    buffer.end(gpu.host());
     gpu.end(frame);
     assert_eq!(gpu.take_messages(), [""; 0]);
 }

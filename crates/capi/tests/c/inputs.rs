@@ -9,7 +9,7 @@ use ridgelight::scene::{HeightField, Lights, Quality, Scene, Sun, Surface};
 use ridgelight_c::*;
 
 use crate::abi::{SIDE, device, good, heights, image, refused, scene, view_by_rust, zeroed};
-use crate::target::{FORMAT, SIZE, Target};
+use crate::target::{FORMAT, Input, SIZE, Target};
 
 fn bytes(values: &[f32]) -> Vec<u8> {
     values.iter().flat_map(|v| v.to_ne_bytes()).collect()
@@ -59,7 +59,7 @@ fn voids_of_c_are_filled_and_masked() {
     whole.has_voids = false;
     assert!(gpu.look(&frame, &whole, None).expect("a picture").radiance != right, "holes are seen");
     let numbers: Vec<f32> = marks.iter().map(|mark| f32::from(*mark)).collect();
-    let lent = gpu.lend("voids", vk::Format::R32_SFLOAT, [side; 2], &bytes(&numbers));
+    let lent = Input::new(&gpu, vk::Format::R32_SFLOAT, [side; 2], &bytes(&numbers));
     let lent = lent.expect("an image");
     let of_device = gpu.host().clone();
     let target = Target::new(&of_device);
@@ -103,7 +103,7 @@ fn voids_of_c_are_filled_and_masked() {
     }
     assert!(target.texels(&of_device) == right);
     target.end(&of_device);
-    gpu.take_back(lent);
+    lent.end(gpu.host());
     gpu.end(frame);
     assert_eq!(gpu.take_messages(), [""; 0]);
 }
@@ -133,7 +133,7 @@ fn colours_of_c_come_on_the_device() {
     gpu.refill(&frame, 0, texels).expect("the heights again");
     let colours = [0.25, 0.5, 1.0, 1.0, 3.0, 2.0, 1.0, 1.0];
     let format = vk::Format::R32G32B32A32_SFLOAT;
-    let lent = gpu.lend("light_colours", format, [2, 1], &bytes(&colours)).expect("an image");
+    let lent = Input::new(&gpu, format, [2, 1], &bytes(&colours)).expect("an image");
     let (mut plan, mut renderer) = (ptr::null_mut(), ptr::null_mut());
     let of_c = RidgelightSun { azimuth_rad: 1.0, elevation_rad: 0.5, ..zeroed() };
     // Whatever is not 0: that there is one.
@@ -158,7 +158,7 @@ fn colours_of_c_come_on_the_device() {
         ridgelight_plan_destroy(plan);
     }
     assert!(gpu.pixels(&frame, 0).expect("pixels") == right);
-    gpu.take_back(lent);
+    lent.end(gpu.host());
     gpu.end(frame);
     assert_eq!(gpu.take_messages(), [""; 0]);
 }

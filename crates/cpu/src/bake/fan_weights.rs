@@ -7,7 +7,6 @@
 use glam::DVec3;
 
 use crate::bent_directions::Fans;
-use ridgelight::basis::triangles::area_sr;
 
 /// Solid angle of a direction's triangles over that on the flat field, 0 or more; 1 for a direction without any.
 pub fn weight(fans: &Fans, bent: &[DVec3], i: usize) -> f64 {
@@ -16,4 +15,9 @@ pub fn weight(fans: &Fans, bent: &[DVec3], i: usize) -> f64 {
         .map(|pair| area_sr([bent[i], bent[pair[0] as usize], bent[pair[1] as usize]]))
         .sum();
     if fans.flat_sr[i] > 0.0 { (sum / fans.flat_sr[i]).max(0.0) } else { 1.0 }
+}
+
+/// Solid angle of a spherical triangle, sr; negative if clockwise (Van Oosterom & Strackee 1983).
+pub fn area_sr([a, b, c]: [DVec3; 3]) -> f64 {
+    2.0 * a.dot(b.cross(c)).atan2(1.0 + a.dot(b) + b.dot(c) + c.dot(a))
 }
