@@ -40,7 +40,7 @@ pub use horizon::{
     pyramid_march, scalar_sweep, surface_sweep, sweep_fuse,
 };
 pub use rays::{height_bounds, height_cells};
-pub use reference::{indirect, key, light, lit, oracle, path_trace, profile, sphere};
+pub use reference::{indirect, light, lit, oracle, path_trace, profile, sphere};
 pub use sh::{
     env_rotation, env_wedges, harmonics, light_matrix, sh_shade, sh_visibility, sh_wedges,
 };

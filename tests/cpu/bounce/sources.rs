@@ -4,7 +4,8 @@ use ridgelight::scene::{
     Border, HeightField, KeyLight, Lights, PhongSpecular, Scene, Specular, SphereLight, Sun,
 };
 use ridgelight_cpu::indirect::{Fineness, ground_truth as truth, light};
-use ridgelight_cpu::light::sun;
+use ridgelight_cpu::light::sun_of;
+use ridgelight_cpu::oracle::Oracle;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use super::{COARSE, red, rough, under_sky};
@@ -82,7 +83,8 @@ fn a_distant_sphere_light_is_a_sun() {
             };
             let scene = under_sphere_light(rough.clone(), Border::Plane, place, radius);
             let light = direct(&scene)[row * 7 + col];
-            let expected = sun(&rough, Border::Plane, row, col, &disc, FINE.strips)[0];
+            let expected =
+                sun_of(&Oracle::one_ray(&rough, Border::Plane), row, col, &disc, FINE.strips)[0];
             let expected = expected * PI * share * share;
             assert!(
                 (light - expected).abs() < 1e-12,

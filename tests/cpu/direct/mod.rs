@@ -5,7 +5,8 @@ mod suns_and_keys;
 
 use glam::DVec3;
 use ridgelight::scene::{Border, Environment, HeightField, Sun};
-use ridgelight_cpu::light::{ENVIRONMENT_STRIPS, environment, normal, sky, slice, sun};
+use ridgelight_cpu::light::{ENVIRONMENT_STRIPS, environment_of, normal, sky_of, slice, sun_of};
+use ridgelight_cpu::oracle::Oracle;
 
 use crate::{BORDERS, field};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -108,7 +109,10 @@ fn flat_ground_sees_all_of_the_sky() {
         for border in BORDERS {
             for (row, col) in [(0, 0), (rows - 1, cols - 1), (rows / 2, cols / 2)] {
                 for azimuths in [1, 3, 64] {
-                    assert!((sky(&flat, border, row, col, azimuths) - 1.0).abs() < 1e-14);
+                    assert!(
+                        (sky_of(&Oracle::one_ray(&flat, border), row, col, azimuths) - 1.0).abs()
+                            < 1e-14
+                    );
                 }
             }
         }
@@ -123,9 +127,9 @@ fn a_tilted_plane_sees_its_share_of_the_sky() {
         let tilted = plane(9, 9, [1.0, 1.0], east, north);
         let cos_tilt = 1.0 / (1.0 + east * east + north * north).sqrt();
         let tolerance = circle_tolerance(1024);
-        let open = sky(&tilted, Border::Open, 4, 4, 1024);
+        let open = sky_of(&Oracle::one_ray(&tilted, Border::Open), 4, 4, 1024);
         assert!((open - 1.0).abs() < tolerance, "{open}");
-        let above = sky(&tilted, Border::Plane, 4, 4, 1024);
+        let above = sky_of(&Oracle::one_ray(&tilted, Border::Plane), 4, 4, 1024);
         assert!((above - 0.5 * (1.0 + cos_tilt)).abs() < tolerance, "{above} {cos_tilt}");
     }
 }
@@ -137,7 +141,7 @@ fn a_tilted_plane_sees_its_share_of_the_sky() {
 fn a_canyon_has_the_cosine_of_its_walls() {
     for t in [0.25, 1.0, 2.0] {
         let canyon = field(1, 16, [2.0, 1.0], |_, c| if c == 0 { 16.0 * t } else { 0.0 });
-        let answer = sky(&canyon, Border::Periodic, 0, 8, 256);
+        let answer = sky_of(&Oracle::one_ray(&canyon, Border::Periodic), 0, 8, 256);
         assert!((answer - 1.0 / (1.0 + t * t).sqrt()).abs() < 1e-12, "{t} {answer}");
     }
 }
@@ -148,7 +152,7 @@ fn a_canyon_has_the_cosine_of_its_walls() {
 fn a_wall_leaves_half_of_one_plus_its_cosine() {
     for t in [0.5, 2.0] {
         let wall = field(801, 4, [1.0, 1.0], |_, c| if c == 3 { 2.0 * t } else { 0.0 });
-        let answer = sky(&wall, Border::Plane, 400, 1, 1024);
+        let answer = sky_of(&Oracle::one_ray(&wall, Border::Plane), 400, 1, 1024);
         let expected = 0.5 * (1.0 + 1.0 / (1.0 + t * t).sqrt());
         let end = t * t * (2.0_f64 / 400.0).powi(3) / (1.5 * PI);
         // cos²h is 1 - t²cos²φ near the wall's line: its derivative is continuous there.
@@ -167,7 +171,7 @@ fn a_circular_basin_has_the_squared_cosine() {
             let rho = (r as f64 - 63.0).hypot(c as f64 - 63.0);
             if rho >= radius { radius * b.tan() } else { 0.0 }
         });
-        let answer = sky(&basin, Border::Plane, 63, 63, 64);
+        let answer = sky_of(&Oracle::one_ray(&basin, Border::Plane), 63, 63, 64);
         let tolerance = 0.5 * 2_f64.sqrt() / (radius - 2_f64.sqrt());
         assert!((answer - b.cos().powi(2)).abs() < tolerance, "{b} {answer}");
     }
@@ -199,7 +203,7 @@ fn a_spherical_pit_is_lit_the_same_everywhere() {
         let bent = 2.0 * (5.0 / 12.0) * 3.0 * alpha.sin() / (sphere * alpha.cos().powi(3)).powi(2)
             * alpha.cos();
         let tolerance = 2.0 * 0.385 * 2_f64.sqrt() / nearest + bent + circle_tolerance(128);
-        let answer = sky(&pit, Border::Plane, row, col, 128);
+        let answer = sky_of(&Oracle::one_ray(&pit, Border::Plane), row, col, 128);
         assert!((albedo * answer - radiance).abs() < albedo * tolerance, "{row} {col} {answer}");
     }
 }
@@ -210,8 +214,8 @@ fn a_constant_environment_is_a_sky() {
     let tilted = plane(9, 9, [1.0, 1.0], 0.75, -0.5);
     let env = Environment::new(7, 5, vec![[1.0, 2.0, 0.0]; 35], 0.3).unwrap();
     for border in BORDERS {
-        let [r, g, b] = environment(&tilted, border, 4, 4, &env);
-        let expected = sky(&tilted, border, 4, 4, ENVIRONMENT_STRIPS);
+        let [r, g, b] = environment_of(&Oracle::one_ray(&tilted, border), 4, 4, &env);
+        let expected = sky_of(&Oracle::one_ray(&tilted, border), 4, 4, ENVIRONMENT_STRIPS);
         assert!(
             (r - expected).abs() < 2.0 * circle_tolerance(ENVIRONMENT_STRIPS),
             "{r} {expected}"
@@ -231,7 +235,7 @@ fn an_environment_texel_weighs_its_projected_solid_angle() {
         let env = Environment::new(6, 8, texels, 1.0).unwrap();
         let above = |r: usize| (PI * r as f64 / 8.0).min(FRAC_PI_2).sin().powi(2);
         let expected = (above(row + 1) - above(row)) / 6.0;
-        let [r, _, b] = environment(&flat, Border::Plane, 1, 1, &env);
+        let [r, _, b] = environment_of(&Oracle::one_ray(&flat, Border::Plane), 1, 1, &env);
         assert!((r - 1e6 * expected).abs() <= 1e-8 && (b - expected).abs() <= 1e-14, "{row} {col}");
     }
 }
@@ -253,7 +257,7 @@ fn environment_columns_run_clockwise_from_the_west() {
         let quarter = FRAC_PI_2 / 2.0;
         // Elevations π/4..π/2: ∫cos² = π/8 - 1/4, ∫sin cos = 1/4.
         let expected = (along * (quarter / 2.0 - 0.25) + n.z * FRAC_PI_2 * 0.25) / PI;
-        let [answer, ..] = environment(&tilted, Border::Plane, 1, 1, &env);
+        let [answer, ..] = environment_of(&Oracle::one_ray(&tilted, Border::Plane), 1, 1, &env);
         // Midpoint rule over a quarter circle in steps h: relative h²/24 of a sinusoid.
         let step = TAU / ENVIRONMENT_STRIPS as f64;
         assert!((answer - expected).abs() < step * step / 24.0, "{turn} {answer} {expected}");
@@ -273,12 +277,18 @@ fn extremes_give_finite_numbers() {
         {
             let field = field(5, 5, [cell; 2], |r, c| if (r, c) == (2, 2) { height } else { 0.0 });
             for i in 0..25 {
-                let light = sky(&field, border, i / 5, i % 5, 64);
+                let light = sky_of(&Oracle::one_ray(&field, border), i / 5, i % 5, 64);
                 assert!((0.0..=1.0 + 1e-12).contains(&light), "{border:?} {height} {cell} {light}");
                 if height.abs() / cell < 1e-5 {
                     assert!((light - 1.0).abs() < 10.0 * height.abs() / cell);
                 }
-                let [low, ..] = sun(&field, border, i / 5, i % 5, &sun_at(1.0, 0.1, 0.01), 16);
+                let [low, ..] = sun_of(
+                    &Oracle::one_ray(&field, border),
+                    i / 5,
+                    i % 5,
+                    &sun_at(1.0, 0.1, 0.01),
+                    16,
+                );
                 assert!((0.0..=1.0 + 1e-6).contains(&low));
             }
         }
@@ -293,6 +303,6 @@ fn a_void_is_lit_as_it_is_filled() {
     let mut heights = vec![7.0; 25];
     heights[12] = f64::NAN;
     let holed = HeightField::new(5, 5, &heights, [1.0, 1.0], Some(voids)).unwrap();
-    assert!((sky(&holed, Border::Plane, 2, 2, 8) - 1.0).abs() < 1e-14);
-    assert!((sky(&holed, Border::Plane, 2, 1, 8) - 1.0).abs() < 1e-14);
+    assert!((sky_of(&Oracle::one_ray(&holed, Border::Plane), 2, 2, 8) - 1.0).abs() < 1e-14);
+    assert!((sky_of(&Oracle::one_ray(&holed, Border::Plane), 2, 1, 8) - 1.0).abs() < 1e-14);
 }

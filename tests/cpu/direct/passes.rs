@@ -7,7 +7,6 @@ use ridgelight::scene::{Environment, KeyLight, Sun};
 use ridgelight_cpu::env_tables::{EnvTables, bottom_rad, env_tables};
 use ridgelight_cpu::env_wedges::env_wedges;
 use ridgelight_cpu::height_transpose::{heights_by_col, heights_by_row};
-use ridgelight_cpu::key::key_of;
 use ridgelight_cpu::light;
 use ridgelight_cpu::light_resolve::{LightSum, add_to_radiance, light_resolve};
 use ridgelight_cpu::oracle::Oracle;
@@ -228,7 +227,7 @@ fn an_environment_lights_planes_as_the_reference_does() {
                     let tables = tables(&env, swept.azimuths, 129, border);
                     env_shade(swept, &tables)[3 * 8 + 4]
                 });
-                let truth = light::environment(&tilted, border, 3, 4, &env);
+                let truth = light::environment_of(&Oracle::one_ray(&tilted, border), 3, 4, &env);
                 let (w, h, g2) = (TAU / 128.0, PI / 128.0, east * east + north * north);
                 let most = f64::from(brightest);
                 // Flat under either border all rows end at nodes, and wedges do not matter.
@@ -271,7 +270,8 @@ fn suns_are_those_of_the_reference() {
             let mut azimuths = across_sun(&sun, slices, rough.cell_m());
             let got = lit(&rough, border, &mut azimuths, |s| sun_shade(s, shape));
             for (i, got) in got.into_iter().enumerate() {
-                let truth = light::sun(&rough, border, i / 7, i % 7, &sun, 2048)[0];
+                let truth =
+                    light::sun_of(&Oracle::one_ray(&rough, border), i / 7, i % 7, &sun, 2048)[0];
                 let tolerance = if diameter == 0.0 {
                     16.0 * EPSILON
                 } else {
@@ -312,7 +312,7 @@ fn key_lights_are_those_of_the_reference() {
             let tolerance = key.width_rad / PI
                 * (march_slope(relief, 2.0) + wedge * wedge / 24.0 * FRAC_PI_2 + 8.0 * EPSILON);
             for (i, got) in got.into_iter().enumerate() {
-                let truth = key_of(&oracle, i / 7, i % 7, &key, slices as usize)[0];
+                let truth = light::key_of(&oracle, i / 7, i % 7, &key, slices as usize)[0];
                 assert!((got - truth).abs() <= tolerance, "{key:?} {border:?} {i}: {got} {truth}");
             }
         }

@@ -2,8 +2,7 @@
 
 use glam::DVec3;
 use ridgelight::scene::{Border, KeyLight};
-use ridgelight_cpu::key::key_of;
-use ridgelight_cpu::light::{sky, sun};
+use ridgelight_cpu::light::{key_of, sky_of, sun_of};
 use ridgelight_cpu::oracle::Oracle;
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -33,7 +32,7 @@ fn a_free_sun_lights_by_the_cosine_of_its_centre() {
                 f64::sin(elevation),
             );
             let disc = sun_at(azimuth, elevation, diameter);
-            let [r, g, _] = sun(&ground, Border::Plane, 2, 2, &disc, 256);
+            let [r, g, _] = sun_of(&Oracle::one_ray(&ground, Border::Plane), 2, 2, &disc, 256);
             // Smooth and periodic in the strips' variable: only rounding is left. The smallest disc's
             // chords are differences of angles near 1 of size 1e-6.
             assert!((r - e * n.dot(s)).abs() < 1e-9, "{disc:?} {r} {}", e * n.dot(s));
@@ -52,13 +51,17 @@ fn a_half_set_sun_gives_its_upper_half() {
         let a = 0.5 * diameter;
         let expected = (a - f64::sin(a) * f64::cos(a)) / (PI * f64::sin(a).powi(2));
         for border in BORDERS {
-            let [r, ..] = sun(&flat, border, 2, 2, &sun_at(2.0, 0.0, diameter), 512);
+            let [r, ..] =
+                sun_of(&Oracle::one_ray(&flat, border), 2, 2, &sun_at(2.0, 0.0, diameter), 512);
             let e = f64::from(PI as f32) / PI;
             // a - sin a cos a cancels: 2a³/3 from terms of size a, relative rounding 1e-16/a².
             assert!((r - e * expected).abs() < 1e-10 * expected.max(1e-3), "{r} {expected}");
         }
     }
-    assert_eq!(sun(&flat, Border::Plane, 2, 2, &sun_at(2.0, 0.0, 0.0), 1)[0], 0.0);
+    assert_eq!(
+        sun_of(&Oracle::one_ray(&flat, Border::Plane), 2, 2, &sun_at(2.0, 0.0, 0.0), 1)[0],
+        0.0
+    );
 }
 
 /// A point sun passes a wall's top between one hair below and one above it; a disc whose lower half
@@ -68,7 +71,13 @@ fn a_wall_casts_hard_and_soft_shadows() {
     let wall = field(401, 8, [1.0, 1.0], |_, c| if c == 7 { 5.0 } else { 0.0 });
     let top = 1_f64.atan(); // 5 m at 5 m
     let at = |elevation, diameter| {
-        sun(&wall, Border::Plane, 200, 2, &sun_at(0.0, elevation, diameter), 64)[0]
+        sun_of(
+            &Oracle::one_ray(&wall, Border::Plane),
+            200,
+            2,
+            &sun_at(0.0, elevation, diameter),
+            64,
+        )[0]
     };
     assert_eq!(at(top - 1e-9, 0.0), 0.0);
     let free = f64::from(PI as f32) / PI * (top + 1e-9).sin();
@@ -130,7 +139,7 @@ fn a_key_of_the_whole_sky_is_the_sky() {
         let all = key(5.0 + 180.0, 360.0, [low, 90.0]);
         for place in 0..42 {
             let (row, col) = (place / 7, place % 7);
-            let expected = 2.0 * sky(&rough, border, row, col, 36);
+            let expected = 2.0 * sky_of(&Oracle::one_ray(&rough, border), row, col, 36);
             let [r, ..] = key_of(&oracle, row, col, &all, 36);
             assert!((r - expected).abs() < 1e-12, "{border:?} {place}: {r} {expected}");
         }

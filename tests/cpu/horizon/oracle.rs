@@ -2,9 +2,7 @@
 
 use proptest::prelude::*;
 use ridgelight::scene::{Border, HeightField};
-use ridgelight_cpu::oracle::{
-    Oracle, PERIOD_CAP, elevation_rad, grid_direction, horizon, horizon_along,
-};
+use ridgelight_cpu::oracle::{Oracle, PERIOD_CAP, grid_direction};
 
 use crate::{BORDERS, field};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -22,15 +20,23 @@ fn flat_ground_has_its_horizon_at_zero_and_no_unique_occluder() {
     let flat = field(9, 9, [2.0, 3.0], |_, _| 17.0);
     for border in BORDERS {
         for k in 0..16 {
-            let met = horizon(&flat, border, 4, 4, TAU * k as f64 / 16.0).unwrap();
+            let met = Oracle::one_ray(&flat, border).horizon(4, 4, TAU * k as f64 / 16.0).unwrap();
             assert_eq!(met.slope, 0.0);
             assert!(!met.unique);
         }
     }
-    assert_eq!(elevation_rad(&flat, Border::Open, 0, 0, PI), -FRAC_PI_2, "leaves at once");
-    assert_eq!(elevation_rad(&flat, Border::Plane, 0, 0, PI), 0.0);
-    assert_eq!(horizon(&flat, Border::Plane, 0, 4, FRAC_PI_2), None, "north of the first row");
-    assert!(horizon(&flat, Border::Plane, 0, 4, PI).is_some(), "along the edge");
+    assert_eq!(
+        Oracle::one_ray(&flat, Border::Open).elevation_rad(0, 0, PI),
+        -FRAC_PI_2,
+        "leaves at once"
+    );
+    assert_eq!(Oracle::one_ray(&flat, Border::Plane).elevation_rad(0, 0, PI), 0.0);
+    assert_eq!(
+        Oracle::one_ray(&flat, Border::Plane).horizon(0, 4, FRAC_PI_2),
+        None,
+        "north of the first row"
+    );
+    assert!(Oracle::one_ray(&flat, Border::Plane).horizon(0, 4, PI).is_some(), "along the edge");
 }
 
 /// A plane of slope s rising towards azimuth u: along azimuth φ, tan h = s·cos(φ - u), also with
@@ -51,9 +57,9 @@ fn a_ramp_has_slope_times_cosine_at_every_azimuth() {
             for k in 0..64 {
                 let azimuth = TAU * k as f64 / 64.0;
                 let expected = s * (azimuth - up).cos();
-                let met = horizon(&ramp, Border::Open, 6, 8, azimuth).unwrap();
+                let met = Oracle::one_ray(&ramp, Border::Open).horizon(6, 8, azimuth).unwrap();
                 assert!((met.slope - expected).abs() <= tolerance, "{cell:?} {s} {k} {met:?}");
-                let plane = elevation_rad(&ramp, Border::Plane, 6, 8, azimuth);
+                let plane = Oracle::one_ray(&ramp, Border::Plane).elevation_rad(6, 8, azimuth);
                 assert_eq!(plane, met.slope.atan().max(0.0));
             }
         }
@@ -73,7 +79,7 @@ fn a_wall_is_seen_at_its_height_over_its_distance() {
             if d * azimuth.tan().abs() > 19.0 * 0.5 {
                 continue; // leaves through the north or south edge before the wall
             }
-            let met = horizon(&wall, Border::Plane, 20, col, azimuth).unwrap();
+            let met = Oracle::one_ray(&wall, Border::Plane).horizon(20, col, azimuth).unwrap();
             assert!((met.slope - 8.0 / d).abs() < 1e-12 * met.slope, "{col} {degrees} {met:?}");
             // From the foot itself the flank is in line with the top.
             if col != 19 {
@@ -83,9 +89,9 @@ fn a_wall_is_seen_at_its_height_over_its_distance() {
         }
     }
     // West of the wall nothing: 0 under plane, the flat ground's 0 under open.
-    assert_eq!(elevation_rad(&wall, Border::Open, 20, 10, PI), 0.0);
+    assert_eq!(Oracle::one_ray(&wall, Border::Open).elevation_rad(20, 10, PI), 0.0);
     // On the top, 1 column from the brink, looking west: the brink itself, level.
-    assert_eq!(horizon(&wall, Border::Open, 20, 21, PI).unwrap().slope, 0.0);
+    assert_eq!(Oracle::one_ray(&wall, Border::Open).horizon(20, 21, PI).unwrap().slope, 0.0);
 }
 
 /// One sample of height H on a plain: from any sample on an exact line to it (columns p, rows q
@@ -98,14 +104,9 @@ fn a_single_spike_is_seen_from_its_whole_line() {
     for (p, q) in [(1, 0), (0, 1), (1, 1), (1, -1), (2, 1), (-3, 2), (5, -7), (-1, -1), (0, -1)] {
         for steps in 1..=4 {
             let (row, col) = (30 - q * steps, 33 - p * steps);
-            let met = horizon_along(
-                &spike,
-                Border::Plane,
-                row as usize,
-                col as usize,
-                [f64::from(p), f64::from(q)],
-            )
-            .unwrap();
+            let met = Oracle::one_ray(&spike, Border::Plane)
+                .horizon_along(row as usize, col as usize, [f64::from(p), f64::from(q)])
+                .unwrap();
             let d = (f64::from(p * steps) * cell[0]).hypot(f64::from(q * steps) * cell[1]);
             assert!((met.slope - 50.0 / d).abs() < 1e-14 * met.slope, "{p} {q} {steps} {met:?}");
             assert_eq!((met.row, met.col), (30.0, 33.0));
@@ -114,7 +115,7 @@ fn a_single_spike_is_seen_from_its_whole_line() {
     }
     // Beside the line by less than a cell: a lower point of the spike's flank. From 10 columns west,
     // aimed 0.25 rows low at the spike's column: height 50·0.75 there.
-    let met = horizon_along(&spike, Border::Plane, 30, 23, [10.0, 0.25]).unwrap();
+    let met = Oracle::one_ray(&spike, Border::Plane).horizon_along(30, 23, [10.0, 0.25]).unwrap();
     assert!(met.slope * (10.0 * 3.0_f64).hypot(0.25 * 2.0) >= 50.0 * 0.75);
 }
 
@@ -125,12 +126,12 @@ fn a_single_spike_is_seen_from_its_whole_line() {
 fn the_cell_is_split_along_the_row_and_column_diagonal() {
     // Looking from (1, 0) to (0, 1) across the split (0, 0)-(1, 1).
     let ridge = field(2, 2, [1.0, 1.0], |r, c| if r == c { 1.0 } else { 0.0 });
-    let met = horizon_along(&ridge, Border::Open, 1, 0, [1.0, -1.0]).unwrap();
+    let met = Oracle::one_ray(&ridge, Border::Open).horizon_along(1, 0, [1.0, -1.0]).unwrap();
     assert!((met.slope - 1.0 / 0.5_f64.sqrt()).abs() < 1e-15 && met.unique);
     assert_eq!((met.row, met.col), (0.5, 0.5));
     // The other way round the split is a valley: the far corner, level with the receiver, wins.
     let valley = field(2, 2, [1.0, 1.0], |r, c| if r == c { 0.0 } else { 1.0 });
-    let met = horizon_along(&valley, Border::Open, 1, 0, [1.0, -1.0]).unwrap();
+    let met = Oracle::one_ray(&valley, Border::Open).horizon_along(1, 0, [1.0, -1.0]).unwrap();
     assert_eq!((met.slope, met.row, met.col), (0.0, 0.0, 1.0));
 }
 
@@ -144,7 +145,7 @@ fn on_a_dome_the_adjacent_sample_wins() {
         -(x * x + y * y)
     });
     for col in 0..40_usize {
-        let met = horizon(&dome, Border::Open, 20, col, 0.0).unwrap();
+        let met = Oracle::one_ray(&dome, Border::Open).horizon(20, col, 0.0).unwrap();
         assert_eq!(met.slope, -(2.0 * (col as f64 - 20.0) + 1.0));
         assert_eq!((met.col, met.distance_m), ((col + 1) as f64, 1.0));
         assert!(met.unique);
@@ -161,7 +162,8 @@ fn a_funnel_has_the_same_horizon_along_all_axes() {
         // Heights up to 14.2 m are rounded to f32 and met from 2 m on.
         let rounding = 2.0 * 14.2 / 2f64.powi(24) / 2.0;
         for k in 0..4 {
-            let met = horizon(&cone, Border::Open, 10, 10, FRAC_PI_2 * k as f64).unwrap();
+            let met =
+                Oracle::one_ray(&cone, Border::Open).horizon(10, 10, FRAC_PI_2 * k as f64).unwrap();
             assert!((met.slope - s).abs() < rounding);
         }
         // Off the axes linear interpolation of a funnel lies above it (of a cone below) by at most
@@ -170,7 +172,9 @@ fn a_funnel_has_the_same_horizon_along_all_axes() {
         // bent down least, has its highest slope or a higher one.
         let most = if s > 0.0 { s / 2.0 } else { -s * 4.0 / 1600.0 };
         for k in 0..32 {
-            let met = horizon(&cone, Border::Open, 10, 10, TAU * k as f64 / 32.0).unwrap();
+            let met = Oracle::one_ray(&cone, Border::Open)
+                .horizon(10, 10, TAU * k as f64 / 32.0)
+                .unwrap();
             let steeper = (met.slope - s) * s.signum();
             assert!((-rounding..=most + rounding).contains(&steeper), "{k} {steeper}");
         }
@@ -191,7 +195,9 @@ fn rotated_and_transposed_fields_have_rotated_horizons() {
         for (p, q) in [(1, 0), (0, -1), (3, 1), (-2, 5), (-1, -1), (1, -1), (7, -4)] {
             let direction = [f64::from(p), f64::from(q)];
             let slope = |f: &HeightField, r, c, d| {
-                horizon_along(f, Border::Open, r, c, d).map_or(f64::NEG_INFINITY, |h| h.slope)
+                Oracle::one_ray(f, Border::Open)
+                    .horizon_along(r, c, d)
+                    .map_or(f64::NEG_INFINITY, |h| h.slope)
             };
             let here = slope(&original, row, col, direction);
             let turned =
@@ -204,8 +210,12 @@ fn rotated_and_transposed_fields_have_rotated_horizons() {
         }
         for k in 0..4 {
             let azimuth = FRAC_PI_2 * k as f64;
-            let here = horizon(&original, Border::Plane, row, col, azimuth);
-            let there = horizon(&quarter, Border::Plane, cols - 1 - col, row, azimuth + FRAC_PI_2);
+            let here = Oracle::one_ray(&original, Border::Plane).horizon(row, col, azimuth);
+            let there = Oracle::one_ray(&quarter, Border::Plane).horizon(
+                cols - 1 - col,
+                row,
+                azimuth + FRAC_PI_2,
+            );
             assert_eq!(here.map(|h| h.slope), there.map(|h| h.slope));
         }
     }
@@ -219,18 +229,18 @@ fn degenerate_sizes_have_horizons() {
     let column = field(5, 1, [1.0, 2.0], |r, _| if r == 3 { 3.0 } else { 0.0 });
     for k in 0..32 {
         let azimuth = TAU * k as f64 / 32.0;
-        assert_eq!(horizon(&one, Border::Open, 0, 0, azimuth), None);
-        assert_eq!(elevation_rad(&one, Border::Periodic, 0, 0, azimuth), 0.0);
+        assert_eq!(Oracle::one_ray(&one, Border::Open).horizon(0, 0, azimuth), None);
+        assert_eq!(Oracle::one_ray(&one, Border::Periodic).elevation_rad(0, 0, azimuth), 0.0);
         // 3 m at 3 columns of 2 m: only straight east; every other azimuth leaves the line.
         let east = if k == 0 { (0.5_f64).atan() } else { 0.0 };
-        assert_eq!(elevation_rad(&row, Border::Plane, 0, 0, azimuth), east);
+        assert_eq!(Oracle::one_ray(&row, Border::Plane).elevation_rad(0, 0, azimuth), east);
         let south = if k == 24 { (0.5_f64).atan() } else { 0.0 };
-        assert_eq!(elevation_rad(&column, Border::Plane, 0, 0, azimuth), south);
+        assert_eq!(Oracle::one_ray(&column, Border::Plane).elevation_rad(0, 0, azimuth), south);
     }
     // 2 × 3, aimed from a corner at the opposite one: 2 columns and 1 row of 1 m, 4 m up.
     let six = field(2, 3, [1.0, 1.0], |r, c| if (r, c) == (0, 2) { 4.0 } else { 0.0 });
     let azimuth = 1_f64.atan2(2.0);
-    let met = horizon(&six, Border::Open, 1, 0, azimuth).unwrap();
+    let met = Oracle::one_ray(&six, Border::Open).horizon(1, 0, azimuth).unwrap();
     assert!((met.slope - 4.0 / 5_f64.sqrt()).abs() < 1e-12, "{met:?}");
 }
 
@@ -239,10 +249,10 @@ fn degenerate_sizes_have_horizons() {
 #[test]
 fn the_margin_is_that_over_the_best_other_place() {
     let row = field(1, 5, [1.0, 1.0], |_, c| [0.0, 0.5, 3.0, 3.0, 1.0][c]);
-    let met = horizon(&row, Border::Plane, 0, 0, 0.0).unwrap();
+    let met = Oracle::one_ray(&row, Border::Plane).horizon(0, 0, 0.0).unwrap();
     assert_eq!((met.slope, met.col, met.margin, met.unique), (1.5, 2.0, 0.5, true));
     let row = field(1, 5, [1.0, 1.0], |_, c| [0.0, 0.5, 3.0, 4.5, 4.0][c]);
-    let met = horizon(&row, Border::Plane, 0, 0, 0.0).unwrap();
+    let met = Oracle::one_ray(&row, Border::Plane).horizon(0, 0, 0.0).unwrap();
     assert_eq!((met.slope, met.margin, met.unique), (1.5, 0.0, false));
 }
 
@@ -256,7 +266,7 @@ fn corners_are_hit_whatever_the_rounding() {
             let cell = [0.3, 0.7];
             let corner = field(q + 1, p + 1, cell, |r, c| if (r, c) == (0, p) { 1.0 } else { 0.0 });
             let (x, y) = (p as f64 * cell[0], q as f64 * cell[1]);
-            let met = horizon(&corner, Border::Open, q, 0, y.atan2(x)).unwrap();
+            let met = Oracle::one_ray(&corner, Border::Open).horizon(q, 0, y.atan2(x)).unwrap();
             assert!((met.slope * x.hypot(y) - 1.0).abs() < 1e-12, "{p} {q} {met:?}");
         }
     }
@@ -267,19 +277,19 @@ fn corners_are_hit_whatever_the_rounding() {
 #[test]
 fn a_periodic_field_occludes_across_its_seam() {
     let ridge = field(4, 10, [1.0, 1.0], |_, c| if c == 2 { 5.0 } else { 0.0 });
-    let met = horizon(&ridge, Border::Periodic, 1, 5, 0.0).unwrap();
+    let met = Oracle::one_ray(&ridge, Border::Periodic).horizon(1, 5, 0.0).unwrap();
     assert_eq!((met.slope, met.col, met.row), (5.0 / 7.0, 12.0, 1.0));
     assert!(met.unique);
     for k in 0..9 {
-        assert_eq!(elevation_rad(&ridge, Border::Periodic, 0, 2, k as f64), 0.0);
+        assert_eq!(Oracle::one_ray(&ridge, Border::Periodic).elevation_rad(0, 2, k as f64), 0.0);
     }
     // Shifting the field by any amount changes nothing.
     let shifted = field(7, 9, [1.0, 3.0], |r, c| noise((r + 3) % 7, (c + 4) % 9));
     let original = field(7, 9, [1.0, 3.0], noise);
     for k in 0..40 {
         let azimuth = TAU * (k as f64 + 0.3) / 40.0;
-        let a = elevation_rad(&original, Border::Periodic, 5, 6, azimuth);
-        let b = elevation_rad(&shifted, Border::Periodic, 2, 2, azimuth);
+        let a = Oracle::one_ray(&original, Border::Periodic).elevation_rad(5, 6, azimuth);
+        let b = Oracle::one_ray(&shifted, Border::Periodic).elevation_rad(2, 2, azimuth);
         // Coordinates up to the cap of 64·27 m are rounded at 2e-13, heights are 1 m a cell.
         assert!((a - b).abs() < 1e-11, "{a} {b}");
     }
@@ -295,7 +305,7 @@ fn voids_occlude_as_they_are_filled() {
     let mut voids = vec![false; 49];
     voids[3 * 7 + 2] = true;
     let holed = HeightField::new(7, 7, &heights, [1.0, 1.0], Some(voids)).unwrap();
-    let met = horizon(&holed, Border::Plane, 3, 0, 0.0).unwrap();
+    let met = Oracle::one_ray(&holed, Border::Plane).horizon(3, 0, 0.0).unwrap();
     assert_eq!((met.slope, met.col), (1.0, 6.0));
 }
 
@@ -329,7 +339,7 @@ proptest! {
                 h(i, j) * (1.0 - u) + h(i + 1, j + 1) * v + h(i, j + 1) * (u - v)
             }
         };
-        let met = horizon(&rough, Border::Open, row, col, azimuth);
+        let met = Oracle::one_ray(&rough, Border::Open).horizon(row, col, azimuth);
         let oracle = Oracle::new(&rough, Border::Open);
         // Ending early changes no part of the answer.
         prop_assert_eq!(met, oracle.horizon(row, col, azimuth));

@@ -7,7 +7,7 @@ use ridgelight::scene::{
     Albedo, Border, HeightField, KeyLight, Lights, Method, Quality, Scene, Surface,
 };
 use ridgelight_cpu::indirect::{Fineness, ground_truth as truth};
-use ridgelight_cpu::key::key_of;
+use ridgelight_cpu::light::key_of;
 use ridgelight_cpu::oracle::Oracle;
 use ridgelight_cpu::tolerance::{ShadeError, device_march_slope};
 

@@ -16,9 +16,9 @@ use ridgelight::scene::{
     Quality, Scene, Specular, SphereLight, Surface,
 };
 use ridgelight::{Error, Result};
+use ridgelight_cpu::light;
 use ridgelight_cpu::oracle::Oracle;
 use ridgelight_cpu::sphere::sphere_of;
-use ridgelight_cpu::{key, light};
 
 /// The oracle computes whole fields up to this side, and a piece of [`PIECE`]² of larger ones.
 const WHOLE: usize = 128;
@@ -118,7 +118,7 @@ fn light_at(scene: &Scene, oracle: &Oracle, place: usize) -> ([f64; 4], f64) {
     let environment =
         environment.as_ref().map_or(0.0, |e| tint(light::environment_of(oracle, row, col, e)));
     let suns = suns.iter().map(|s| tint(light::sun_of(oracle, row, col, s, TRUE_STRIPS)));
-    let keys = keys.iter().map(|k| tint(key::key_of(oracle, row, col, k, TRUE_STRIPS)));
+    let keys = keys.iter().map(|k| tint(light::key_of(oracle, row, col, k, TRUE_STRIPS)));
     let sphere_light = |s: &SphereLight| {
         let share = sphere_of(oracle, row, col, s, TRUE_SLICES);
         tint(s.radiance.map(|c| f64::from(c) * share))

@@ -1,9 +1,9 @@
 //! Direct light of a sphere light: the shader's own slices, each from the oracle's profile in f64, where the shader
 //! marches over blocks of cells.
 
-use crate::light::{Receiver, normal};
+use crate::light::{Site, diffuse_at};
 use crate::oracle::Oracle;
-use crate::sphere::{away_m, sphere_on};
+use crate::sphere::towards_m;
 use ridgelight::scene::SphereLight;
 use std::f64::consts::PI;
 
@@ -18,16 +18,16 @@ pub fn sphere_at(
     row: usize,
     col: usize,
 ) -> f64 {
-    let receivers = [Receiver::diffuse(normal(oracle.field(), oracle.border(), row, col))];
     let [narrow, around] = sphere.slices(slices, oracle.field().cell_m());
-    let away = away_m(oracle, row, col, sphere);
+    let [east, north] = towards_m(oracle, row, col, sphere);
+    let away = east.hypot(north);
     let count = if sphere.radius_m < away {
         let wide = f64::from(around) * (sphere.radius_m / away).asin() / PI;
         narrow.max((wide - 0.001).ceil() as u32)
     } else {
         around
     };
-    sphere_on(oracle, row, col, &receivers, sphere, count as usize)[0]
+    Site::of(oracle, [row, col], &diffuse_at(oracle, row, col)).sphere(sphere, count as usize)[0]
 }
 
 /// [`sphere_at`] of every grid point, row-major.

@@ -20,11 +20,9 @@
 //! first order along shadow edges; second order in the step between azimuths. [`ground_truth`] measures both by halving
 //! both.
 
-use crate::key::key_on;
-use crate::light::{Receiver, Slice, environment_on, normal, sun_on};
+use crate::light::{Receiver, Site, Slice, normal};
 use crate::oracle::Oracle;
 use crate::profile::VisibleInterval;
-use crate::sphere::sphere_on;
 use glam::DVec3;
 use ridgelight::scene::{Albedo, Border, HeightField, Lights, Scene, Specular, SphereLight};
 use ridgelight::{Error, Result};
@@ -212,7 +210,8 @@ fn at_all(
         let here = [at / oracle.field().cols(), at % oracle.field().cols()];
         let receivers: Vec<Receiver> = place.iter().map(|(_, receiver)| *receiver).collect();
         let visibility = gather(oracle, here, &receivers, fineness.azimuths);
-        let arriving = arriving(oracle, here, &receivers, &visibility, lights, fineness.strips);
+        let site = Site::of(oracle, here, &receivers);
+        let arriving = arriving(site, &visibility, lights, fineness.strips);
         for (((target, _), visibility), light) in place.iter().zip(visibility).zip(arriving) {
             (rows[*target], direct[*target]) = (visibility, light);
         }
@@ -296,14 +295,11 @@ pub(crate) fn mean_distance_m(slice: &Slice, interval: &VisibleInterval) -> f64 
 
 /// Light straight from its sources at each receiver of a grid point, for albedo 1.
 fn arriving(
-    oracle: &Oracle,
-    here: [usize; 2],
-    receivers: &[Receiver],
+    site: Site,
     visibility: &[Visibility],
     lights: &Lights,
     strips: usize,
 ) -> Vec<[f64; 3]> {
-    let [row, col] = here;
     let sky = lights.sky.unwrap_or_default().map(f64::from);
     let mut sums: Vec<[f64; 3]> = visibility.iter().map(|of| sky.map(|s| s * of.sky)).collect();
     let mut add = |more: Vec<[f64; 3]>| {
@@ -312,17 +308,17 @@ fn arriving(
         }
     };
     if let Some(environment) = &lights.environment {
-        add(environment_on(oracle, row, col, receivers, environment, strips));
+        add(site.environment(environment, strips));
     }
     for sun in &lights.suns {
-        add(sun_on(oracle, row, col, receivers, sun, strips));
+        add(site.sun(sun, strips));
     }
     for key in &lights.keys {
-        let shares = key_on(oracle, row, col, receivers, key, strips);
+        let shares = site.key(key, strips);
         add(shares.iter().map(|share| key.radiance.map(|l| share * f64::from(l))).collect());
     }
     for sphere in &lights.sphere_lights {
-        let shares = sphere_on(oracle, row, col, receivers, sphere, strips);
+        let shares = site.sphere(sphere, strips);
         add(shares.iter().map(|share| sphere.radiance.map(|l| share * f64::from(l))).collect());
     }
     sums

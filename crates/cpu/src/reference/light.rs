@@ -1,4 +1,4 @@
-//! Direct light from infinity at one grid point, in f64, by deterministic quadrature over the oracle's horizons.
+//! Direct light from infinity, suns and key lights at one grid point, in f64, by deterministic quadrature over the oracle's horizons.
 //!
 //! Everything here is exit radiance of a diffuse surface of albedo 1:
 //! (1/π) ∫ L(e) V(e) max(N·e, 0) de, so a flat, unoccluded grid point under a sky of radiance 1 gives 1.
@@ -10,10 +10,10 @@ use crate::oracle::Oracle;
 use glam::DVec3;
 pub use ridgelight::basis::light::slice;
 pub use ridgelight::scene::normal;
-use ridgelight::scene::{Border, Environment, HeightField, Sun};
+use ridgelight::scene::{Environment, KeyLight, Sun};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// Least number of azimuths of [`environment`]: narrow images have several per column.
+/// Least number of azimuths of [`environment_of`]: narrow images have several per column.
 pub const ENVIRONMENT_STRIPS: usize = 512;
 
 /// Weight of incident light: over the hemisphere about the normal N, by the cosine to it (diffuse, albedo 1), or by
@@ -107,8 +107,7 @@ const GAUSS_4: [(f64, f64); 4] = [
 /// One azimuth at one grid point: the incident light above its horizon.
 pub(crate) fn lit(
     oracle: &Oracle,
-    row: usize,
-    col: usize,
+    [row, col]: [usize; 2],
     receiver: Receiver,
     azimuth_rad: f64,
 ) -> Slice {
@@ -118,190 +117,147 @@ pub(crate) fn lit(
 /// Exit radiance under a uniform sky of radiance 1: (1/π)(2π/m) Σ of the slices to the zenith.
 ///
 /// Azimuths are φ_k = 2πk/m. The sky continues below horizontal where the border is `open`.
-///
-/// # Panics
-/// When `row` or `col` lies outside the field.
-pub fn sky(field: &HeightField, border: Border, row: usize, col: usize, azimuths: usize) -> f64 {
-    sky_of(&Oracle::for_one_place(field, border), row, col, azimuths)
-}
-
-/// [`sky`] by an existing oracle of the field.
-///
-/// # Panics
-/// When `row` or `col` lies outside the field.
 pub fn sky_of(oracle: &Oracle, row: usize, col: usize, azimuths: usize) -> f64 {
-    let normal = normal(oracle.field(), oracle.border(), row, col);
     let m = azimuths.max(1);
-    let sum: f64 = (0..m)
-        .map(|k| {
-            let azimuth = TAU * k as f64 / m as f64;
-            lit(oracle, row, col, Receiver::diffuse(normal), azimuth).light(-FRAC_PI_2, FRAC_PI_2)
-        })
-        .sum();
-    2.0 / m as f64 * sum
+    let all = (0..m).map(|k| (TAU * k as f64 / m as f64, 1.0, [-FRAC_PI_2, FRAC_PI_2]));
+    2.0 / m as f64 * Site::of(oracle, [row, col], &diffuse_at(oracle, row, col)).sums(all)[0]
 }
 
-/// Exit radiance under an environment, linear RGB: a sum over all its texels.
-///
-/// One azimuth at the centre of each column of texels or, in images narrower than [`ENVIRONMENT_STRIPS`], at the
-/// centres of equal parts of it (midpoint rule). In elevation each texel is clipped at the horizon exactly and
-/// integrated in closed form.
-///
-/// # Panics
-/// When `row` or `col` lies outside the field.
-pub fn environment(
-    field: &HeightField,
-    border: Border,
-    row: usize,
-    col: usize,
-    env: &Environment,
-) -> [f64; 3] {
-    environment_of(&Oracle::for_one_place(field, border), row, col, env)
-}
-
-/// [`environment`] by an existing oracle of the field.
-///
-/// # Panics
-/// When `row` or `col` lies outside the field.
+/// Exit radiance under an environment, linear RGB: [`Site::environment`] with at least [`ENVIRONMENT_STRIPS`] azimuths.
 pub fn environment_of(oracle: &Oracle, row: usize, col: usize, env: &Environment) -> [f64; 3] {
     let parts = ENVIRONMENT_STRIPS.div_ceil(env.width());
-    environment_on(oracle, row, col, &[diffuse_at(oracle, row, col)], env, parts)[0]
+    Site::of(oracle, [row, col], &diffuse_at(oracle, row, col)).environment(env, parts)[0]
 }
 
-/// [`environment`] for receivers other than the grid point's diffuse one, with that many equal parts per column of
-/// texels.
-pub(crate) fn environment_on(
-    oracle: &Oracle,
-    row: usize,
-    col: usize,
-    receivers: &[Receiver],
-    env: &Environment,
-    parts: usize,
-) -> Vec<[f64; 3]> {
-    let (width, height) = (env.width(), env.height());
-    let strips = width * parts;
-    let mut sums = vec![[0.0; 3]; receivers.len()];
-    for strip in 0..strips {
-        // Columns run clockwise from azimuth π; the rotation is counter-clockwise.
-        let azimuth = PI - TAU * (strip as f64 + 0.5) / strips as f64 + env.rotation_rad();
-        let horizon = oracle.elevation_rad(row, col, azimuth);
-        for (receiver, sum) in receivers.iter().zip(&mut sums) {
-            let lit = receiver.slice(azimuth).above(horizon);
-            for texel_row in 0..height {
-                let high = FRAC_PI_2 - PI * texel_row as f64 / height as f64;
-                let low = FRAC_PI_2 - PI * (texel_row + 1) as f64 / height as f64;
-                if high <= lit.low {
-                    break;
-                }
-                let light = lit.light(low, high);
-                let texel = env.texels()[texel_row * width + strip / parts];
-                for (s, t) in sum.iter_mut().zip(texel) {
-                    *s += f64::from(t) * light;
-                }
-            }
-        }
-    }
-    sums.iter().map(|sum| sum.map(|s| s * 2.0 / strips as f64)).collect()
-}
-
-/// Exit radiance under one sun, linear RGB.
-///
-/// A disc of angular radius a and radiance L gives a surface that faces it L π sin²a, so L = irradiance / (π sin²a).
-/// `strips` azimuths across the disc, each with its chord of elevations clipped at the horizon exactly. Diameter 0: a
-/// point, dark where its elevation is not above the horizon.
-///
-/// # Panics
-/// When `row` or `col` lies outside the field.
-pub fn sun(
-    field: &HeightField,
-    border: Border,
-    row: usize,
-    col: usize,
-    sun: &Sun,
-    strips: usize,
-) -> [f64; 3] {
-    sun_of(&Oracle::for_one_place(field, border), row, col, sun, strips)
-}
-
-/// [`sun`] by an existing oracle of the field.
-///
-/// # Panics
-/// When `row` or `col` lies outside the field.
+/// Exit radiance under one sun, linear RGB: [`Site::sun`].
 pub fn sun_of(oracle: &Oracle, row: usize, col: usize, sun: &Sun, strips: usize) -> [f64; 3] {
-    sun_on(oracle, row, col, &[diffuse_at(oracle, row, col)], sun, strips)[0]
+    Site::of(oracle, [row, col], &diffuse_at(oracle, row, col)).sun(sun, strips)[0]
 }
 
-/// [`sun`] for receivers other than the grid point's diffuse one.
-pub(crate) fn sun_on(
-    oracle: &Oracle,
-    row: usize,
-    col: usize,
-    receivers: &[Receiver],
-    sun: &Sun,
-    strips: usize,
-) -> Vec<[f64; 3]> {
-    let radius = 0.5 * sun.diameter_rad;
-    let shares = if radius > 0.0 {
-        let mut disc = disc(oracle, row, col, receivers, sun, strips.max(1));
-        disc.iter_mut().for_each(|d| *d /= PI * radius.sin().powi(2));
-        disc
-    } else {
-        let horizon = oracle.elevation_rad(row, col, sun.azimuth_rad);
-        let lit = receivers.iter().map(|r| r.slice(sun.azimuth_rad).above(horizon));
-        lit.map(|l| l.at(sun.elevation_rad)).collect()
-    };
-    shares.iter().map(|share| sun.irradiance.map(|e| f64::from(e) * share / PI)).collect()
+/// Exit radiance under a key light, linear RGB: [`Site::key`].
+pub fn key_of(oracle: &Oracle, row: usize, col: usize, key: &KeyLight, strips: usize) -> [f64; 3] {
+    let share = Site::of(oracle, [row, col], &diffuse_at(oracle, row, col)).key(key, strips)[0];
+    key.radiance.map(|l| share * f64::from(l))
 }
 
 /// The diffuse receiver of a grid point.
-fn diffuse_at(oracle: &Oracle, row: usize, col: usize) -> Receiver {
-    Receiver::diffuse(normal(oracle.field(), oracle.border(), row, col))
+pub(crate) fn diffuse_at(oracle: &Oracle, row: usize, col: usize) -> [Receiver; 1] {
+    [Receiver::diffuse(normal(oracle.field(), oracle.border(), row, col))]
 }
 
-/// ∫ V max(N·e, 0) de over the sun's disc (for a Phong lobe, π times its weights' integral).
-///
-/// At azimuth δ from the centre's, a direction of elevation ω is within a of the centre
-/// (elevation s) when sin ω sin s + cos ω cos s cos δ = R cos(ω - ω_m) ≥ cos a, with
-/// R² = sin²s + cos²s cos²δ and tan ω_m = sin s / (cos s cos δ). The half chord w has
-/// sin²w = 1 - cos²a/R² = (sin²a - cos²s sin²δ) / R². A disc that holds the zenith is met along every
-/// azimuth; another one up to sin δ = sin a / cos s, where δ = δ_max sin u makes the chord's square
-/// root smooth and the midpoint rule in u quick.
-fn disc(
-    oracle: &Oracle,
-    row: usize,
-    col: usize,
-    receivers: &[Receiver],
-    sun: &Sun,
-    strips: usize,
-) -> Vec<f64> {
-    let radius = 0.5 * sun.diameter_rad;
-    let (sin_s, cos_s) = sun.elevation_rad.sin_cos();
-    let sin_a = radius.sin();
-    let holds_zenith = sun.elevation_rad + radius >= FRAC_PI_2;
-    let widest = if holds_zenith { PI } else { (sin_a / cos_s).min(1.0).asin() };
-    let mut sums = vec![0.0; receivers.len()];
-    for i in 0..strips {
-        let centre = (i as f64 + 0.5) / strips as f64 * 2.0 - 1.0;
-        let (offset, weight) = if holds_zenith {
-            (widest * centre, 2.0 * widest / strips as f64)
-        } else {
-            let u = FRAC_PI_2 * centre;
-            (widest * u.sin(), widest * u.cos() * PI / strips as f64)
-        };
-        let (sin_d, cos_d) = offset.sin_cos();
-        let reach = sin_s.hypot(cos_s * cos_d);
-        let squared = sin_a.powi(2) - (cos_s * sin_d).powi(2);
-        if squared <= 0.0 {
-            continue;
-        }
-        let half = (squared.sqrt() / reach).min(1.0).asin();
-        let middle = sin_s.atan2(cos_s * cos_d);
-        let azimuth = sun.azimuth_rad + offset;
-        let horizon = oracle.elevation_rad(row, col, azimuth);
-        for (receiver, sum) in receivers.iter().zip(&mut sums) {
-            let lit = receiver.slice(azimuth).above(horizon);
-            *sum += weight * lit.light(middle - half, (middle + half).min(FRAC_PI_2));
-        }
+/// Receivers at one grid point, which share its horizons.
+#[derive(Clone, Copy)]
+pub struct Site<'a> {
+    pub(crate) oracle: &'a Oracle<'a>,
+    pub(crate) place: [usize; 2],
+    pub(crate) receivers: &'a [Receiver],
+}
+
+impl<'a> Site<'a> {
+    /// At a row and column.
+    pub fn of(oracle: &'a Oracle, place: [usize; 2], receivers: &'a [Receiver]) -> Self {
+        Self { oracle, place, receivers }
     }
-    sums
+
+    /// π times each receiver's light of radiance 1, of azimuths with their weights and the light's elevations there:
+    /// these are clipped at the horizon exactly.
+    fn sums(&self, strips: impl Iterator<Item = (f64, f64, [f64; 2])>) -> Vec<f64> {
+        let mut sums = vec![0.0; self.receivers.len()];
+        for (azimuth, weight, [low, high]) in strips {
+            let horizon = self.oracle.elevation_rad(self.place[0], self.place[1], azimuth);
+            for (receiver, sum) in self.receivers.iter().zip(&mut sums) {
+                *sum += weight * receiver.slice(azimuth).above(horizon).light(low, high);
+            }
+        }
+        sums
+    }
+
+    /// Light of a key light of radiance 1: `strips` azimuths in the middles of equal parts of the light.
+    ///
+    /// Without occlusion, the rule over azimuths has an error of (width / strips)² / 24 of the contribution of the
+    /// normal's horizontal part, and none for its vertical one.
+    pub fn key(&self, key: &KeyLight, strips: usize) -> Vec<f64> {
+        let width = key.width_rad / strips as f64;
+        let azimuth = |i| key.azimuth_rad + width * (i as f64 + 0.5) - key.width_rad / 2.0;
+        let sums = self.sums((0..strips).map(|i| (azimuth(i), width, key.elevations_rad)));
+        sums.iter().map(|s| s / PI).collect()
+    }
+
+    /// Light of an environment, linear RGB: a sum over all its texels.
+    ///
+    /// One azimuth at the centre of each of `parts` equal parts of a column of texels (midpoint rule). In elevation
+    /// each texel is clipped at the horizon exactly and integrated in closed form.
+    pub(crate) fn environment(&self, env: &Environment, parts: usize) -> Vec<[f64; 3]> {
+        let (width, height) = (env.width(), env.height());
+        let strips = width * parts;
+        let mut sums = vec![[0.0; 3]; self.receivers.len()];
+        for strip in 0..strips {
+            // Columns run clockwise from azimuth π; the rotation is counter-clockwise.
+            let azimuth = PI - TAU * (strip as f64 + 0.5) / strips as f64 + env.rotation_rad();
+            let horizon = self.oracle.elevation_rad(self.place[0], self.place[1], azimuth);
+            for (receiver, sum) in self.receivers.iter().zip(&mut sums) {
+                let lit = receiver.slice(azimuth).above(horizon);
+                for texel_row in 0..height {
+                    let high = FRAC_PI_2 - PI * texel_row as f64 / height as f64;
+                    let low = FRAC_PI_2 - PI * (texel_row + 1) as f64 / height as f64;
+                    if high <= lit.low {
+                        break;
+                    }
+                    let light = lit.light(low, high);
+                    let texel = env.texels()[texel_row * width + strip / parts];
+                    (0..3).for_each(|c| sum[c] += f64::from(texel[c]) * light);
+                }
+            }
+        }
+        sums.iter().map(|sum| sum.map(|s| s * 2.0 / strips as f64)).collect()
+    }
+
+    /// Light of one sun, linear RGB.
+    ///
+    /// A disc of angular radius a and radiance L gives a surface that faces it L π sin²a, so L = irradiance / (π
+    /// sin²a). `strips` azimuths across the disc. Diameter 0: a point, dark where its elevation is not above the
+    /// horizon.
+    pub(crate) fn sun(&self, sun: &Sun, strips: usize) -> Vec<[f64; 3]> {
+        let radius = 0.5 * sun.diameter_rad;
+        let shares = if radius > 0.0 {
+            let mut disc = self.disc(sun, strips.max(1));
+            disc.iter_mut().for_each(|d| *d /= PI * radius.sin().powi(2));
+            disc
+        } else {
+            let at = |r: &Receiver| lit(self.oracle, self.place, *r, sun.azimuth_rad);
+            self.receivers.iter().map(|r| at(r).at(sun.elevation_rad)).collect()
+        };
+        shares.iter().map(|share| sun.irradiance.map(|e| f64::from(e) * share / PI)).collect()
+    }
+
+    /// ∫ V max(N·e, 0) de over the sun's disc (for a Phong lobe, π times its weights' integral).
+    ///
+    /// At azimuth δ from the centre's, a direction of elevation ω is within a of the centre (elevation s) when sin ω
+    /// sin s + cos ω cos s cos δ = R cos(ω - ω_m) ≥ cos a, with R² = sin²s + cos²s cos²δ and tan ω_m = sin s / (cos s
+    /// cos δ). The half chord w has sin²w = 1 - cos²a/R² = (sin²a - cos²s sin²δ) / R². A disc that holds the zenith is
+    /// met along every azimuth; another one up to sin δ = sin a / cos s, where δ = δ_max sin u makes the chord's
+    /// square root smooth and the midpoint rule in u quick.
+    fn disc(&self, sun: &Sun, strips: usize) -> Vec<f64> {
+        let radius = 0.5 * sun.diameter_rad;
+        let (sin_s, cos_s) = sun.elevation_rad.sin_cos();
+        let sin_a = radius.sin();
+        let holds_zenith = sun.elevation_rad + radius >= FRAC_PI_2;
+        let widest = if holds_zenith { PI } else { (sin_a / cos_s).min(1.0).asin() };
+        self.sums((0..strips).filter_map(|i| {
+            let centre = (i as f64 + 0.5) / strips as f64 * 2.0 - 1.0;
+            let (offset, weight) = if holds_zenith {
+                (widest * centre, 2.0 * widest / strips as f64)
+            } else {
+                let u = FRAC_PI_2 * centre;
+                (widest * u.sin(), widest * u.cos() * PI / strips as f64)
+            };
+            let (sin_d, cos_d) = offset.sin_cos();
+            let reach = sin_s.hypot(cos_s * cos_d);
+            let squared = sin_a.powi(2) - (cos_s * sin_d).powi(2);
+            let half = (squared.max(0.0).sqrt() / reach).min(1.0).asin();
+            let middle = sin_s.atan2(cos_s * cos_d);
+            let ends = [middle - half, (middle + half).min(FRAC_PI_2)];
+            (squared > 0.0).then_some((sun.azimuth_rad + offset, weight, ends))
+        }))
+    }
 }

@@ -2,8 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use crate::key;
-use crate::light::{self, ENVIRONMENT_STRIPS, Receiver};
+use crate::light::{self, ENVIRONMENT_STRIPS};
 use crate::oracle::Oracle;
 use crate::sphere::sphere_of;
 use ridgelight::scene::{Albedo, Environment, KeyLight, Scene};
@@ -63,7 +62,8 @@ impl<'a> Lit<'a> {
         });
         let environment = self.columns.as_ref().map(|c| c.light(oracle, row, col));
         let suns = lights.suns.iter().map(|s| light::sun_of(oracle, row, col, s, self.strips));
-        let keys = lights.keys.iter().map(|k| key::key_of(oracle, row, col, k, self.key_strips(k)));
+        let keys =
+            lights.keys.iter().map(|k| light::key_of(oracle, row, col, k, self.key_strips(k)));
         let spheres = lights.sphere_lights.iter().map(|sphere| {
             let share = sphere_of(oracle, row, col, sphere, self.strips);
             sphere.radiance.map(|c| f64::from(c) * share)
@@ -134,15 +134,14 @@ impl<'a> Columns<'a> {
     /// parts of it, clipped at the horizon exactly.
     fn light(&self, oracle: &Oracle, row: usize, col: usize) -> [f64; 3] {
         let (width, height) = (self.environment.width(), self.environment.height());
-        let normal = light::normal(oracle.field(), oracle.border(), row, col);
-        let receiver = Receiver::diffuse(normal);
+        let [receiver] = light::diffuse_at(oracle, row, col);
         let mut all = [0.0; 3];
         for (column, &parts) in self.parts.iter().enumerate() {
             let weight = 2.0 / (width * parts) as f64;
             for part in 0..parts {
                 let across = column as f64 + (part as f64 + 0.5) / parts as f64;
                 let azimuth = PI - TAU * across / width as f64 + self.environment.rotation_rad();
-                let lit = light::lit(oracle, row, col, receiver, azimuth);
+                let lit = light::lit(oracle, [row, col], receiver, azimuth);
                 let low = ((FRAC_PI_2 - lit.low) / PI * height as f64).max(0.0);
                 let above = (low as usize).min(self.rows);
                 let [a, b] = self.sums[column * (self.rows + 1) + above];
@@ -165,6 +164,7 @@ impl<'a> Columns<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::light::Site;
     use ridgelight::scene::{Border, HeightField, Lights, Surface};
 
     const SIDE: usize = 9;
@@ -190,10 +190,9 @@ mod tests {
             let lit = Lit::of(&scene);
             assert_eq!(lit.rays(), 1024);
             for (row, col) in [(0, 0), (4, 4), (8, 3), (2, 7)] {
-                let normal = light::normal(&scene.field, border, row, col);
-                let receivers = [Receiver::diffuse(normal)];
                 let oracle = Oracle::new(&scene.field, border);
-                let all = light::environment_on(&oracle, row, col, &receivers, &environment, 64);
+                let receivers = light::diffuse_at(&oracle, row, col);
+                let all = Site::of(&oracle, [row, col], &receivers).environment(&environment, 64);
                 for (got, want) in lit.at(row, col).iter().zip(all[0]) {
                     assert!((got - want).abs() < 1e-6 * (1.0 + want), "{got} {want}");
                 }
@@ -213,9 +212,8 @@ mod tests {
         let oracle = Oracle::new(&scene.field, Border::Plane);
         for place in [10, 40, 44, 70] {
             let (row, col) = (place / SIDE, place % SIDE);
-            let receivers =
-                [Receiver::diffuse(light::normal(&scene.field, Border::Plane, row, col))];
-            let want = light::environment_on(&oracle, row, col, &receivers, &environment, 1024);
+            let receivers = light::diffuse_at(&oracle, row, col);
+            let want = Site::of(&oracle, [row, col], &receivers).environment(&environment, 1024);
             let free = 2.0 / 16.0 * 1e5;
             let got = lit.at(row, col)[0];
             assert!((got - want[0][0]).abs() < free / 1024.0, "{got} {}", want[0][0]);

@@ -2,7 +2,6 @@
 //! and the CPU reference of the `path_trace` pass.
 
 pub mod indirect;
-pub mod key;
 pub mod light;
 pub mod lit;
 pub mod oracle;

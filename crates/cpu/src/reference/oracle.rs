@@ -68,7 +68,7 @@ impl<'a> Oracle<'a> {
     }
 
     /// For one ray: scans all heights only where the ray would not end without it.
-    pub(crate) fn for_one_place(field: &'a HeightField, border: Border) -> Self {
+    pub fn one_ray(field: &'a HeightField, border: Border) -> Self {
         match border {
             Border::Periodic => Self::new(field, border),
             Border::Plane | Border::Open => Self { field, border, highest_m: f64::INFINITY },
@@ -274,48 +274,6 @@ pub fn grid_direction(field: &HeightField, azimuth_rad: f64) -> [f64; 2] {
     let cos = if cos.abs() < 1e-15 { 0.0 } else { cos };
     let sin = if sin.abs() < 1e-15 { 0.0 } else { sin };
     [cos / cell_x, -sin / cell_y]
-}
-
-/// [`Oracle::horizon`] for one ray.
-///
-/// # Panics
-/// When `row` or `col` lies outside the field.
-pub fn horizon(
-    field: &HeightField,
-    border: Border,
-    row: usize,
-    col: usize,
-    azimuth_rad: f64,
-) -> Option<Horizon> {
-    Oracle::for_one_place(field, border).horizon(row, col, azimuth_rad)
-}
-
-/// [`Oracle::horizon_along`] for one ray.
-///
-/// # Panics
-/// When `row` or `col` lies outside the field.
-pub fn horizon_along(
-    field: &HeightField,
-    border: Border,
-    row: usize,
-    col: usize,
-    grid_direction: [f64; 2],
-) -> Option<Horizon> {
-    Oracle::for_one_place(field, border).horizon_along(row, col, grid_direction)
-}
-
-/// [`Oracle::elevation_rad`] for one ray.
-///
-/// # Panics
-/// When `row` or `col` lies outside the field.
-pub fn elevation_rad(
-    field: &HeightField,
-    border: Border,
-    row: usize,
-    col: usize,
-    azimuth_rad: f64,
-) -> f64 {
-    elevation_of(border, horizon(field, border, row, col, azimuth_rad))
 }
 
 /// The elevation of an oracle's result under a border; see [`Oracle::elevation_rad`].

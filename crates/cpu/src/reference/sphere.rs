@@ -4,70 +4,57 @@
 //! the sphere (or, from inside, leaves it) before it hits the surface. Both can change only where the disc's circle
 //! crosses the profile, so one test decides between those elevations.
 
-use crate::light::{Receiver, normal};
+use crate::light::{Site, diffuse_at};
 use crate::oracle::Oracle;
 use crate::profile::VisibleInterval;
 use ridgelight::scene::SphereLight;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// Exit radiance of receivers at a grid point under a sphere light of radiance 1.
-///
-/// `strips` azimuths: over the sphere's width, spaced so that the disc's square root is smooth, or over the circle
-/// where the grid point lies below or above it. The sphere is not repeated under `periodic`.
-///
-/// # Panics
-/// When `row` or `col` lies outside the field.
-pub fn sphere_on(
-    oracle: &Oracle,
-    row: usize,
-    col: usize,
-    receivers: &[Receiver],
-    sphere: &SphereLight,
-    strips: usize,
-) -> Vec<f64> {
-    let field = oracle.field();
-    let [cell_x, cell_y] = field.cell_m();
-    let [x, y, z] = sphere.position_m;
-    let east = x - col as f64 * cell_x;
-    let north = y - (field.rows() - 1 - row) as f64 * cell_y;
-    let up = z - field.base_m() - oracle.vertex(row as f64, col as f64);
-    let (away, middle) = (east.hypot(north), north.atan2(east));
-    let widest = (sphere.radius_m / away).asin();
-    let mut sums = vec![0.0; receivers.len()];
-    let mut intervals = Vec::new();
-    for i in 0..strips {
-        let centre = (i as f64 + 0.5) / strips as f64 * 2.0 - 1.0;
-        let (offset, weight) = if sphere.radius_m < away {
-            let u = FRAC_PI_2 * centre;
-            // Narrow discs are cos u wide: midpoints sum cos² exactly, except that a single one counts it twice.
-            let alone = if strips > 1 { 1.0 } else { 0.5 };
-            (widest * u.sin(), alone * widest * u.cos() * PI / strips as f64)
-        } else {
-            (PI * centre, TAU / strips as f64)
-        };
-        let azimuth = middle + offset;
-        let across = away * offset.sin();
-        let squared = sphere.radius_m * sphere.radius_m - across * across;
-        if squared <= 0.0 {
-            continue;
+impl Site<'_> {
+    /// Exit radiance of its receivers under a sphere light of radiance 1.
+    ///
+    /// `strips` azimuths: over the sphere's width, spaced so that the disc's square root is smooth, or over the circle
+    /// where the grid point lies below or above it. The sphere is not repeated under `periodic`.
+    pub fn sphere(&self, sphere: &SphereLight, strips: usize) -> Vec<f64> {
+        let Self { oracle, place: [row, col], receivers } = *self;
+        let [east, north] = towards_m(oracle, row, col, sphere);
+        let up = sphere.position_m[2] - oracle.field().base_m();
+        let up = up - oracle.vertex(row as f64, col as f64);
+        let (away, middle) = (east.hypot(north), north.atan2(east));
+        let widest = (sphere.radius_m / away).asin();
+        let mut sums = vec![0.0; receivers.len()];
+        let mut intervals = Vec::new();
+        for i in 0..strips {
+            let centre = (i as f64 + 0.5) / strips as f64 * 2.0 - 1.0;
+            let (offset, weight) = if sphere.radius_m < away {
+                let u = FRAC_PI_2 * centre;
+                // Narrow discs are cos u wide: midpoints sum cos² exactly, except that a single one counts it twice.
+                let alone = if strips > 1 { 1.0 } else { 0.5 };
+                (widest * u.sin(), alone * widest * u.cos() * PI / strips as f64)
+            } else {
+                (PI * centre, TAU / strips as f64)
+            };
+            let azimuth = middle + offset;
+            let across = away * offset.sin();
+            let squared = sphere.radius_m * sphere.radius_m - across * across;
+            if squared <= 0.0 {
+                continue;
+            }
+            let disc = Disc { along: away * offset.cos(), up, radius: squared.sqrt() };
+            oracle.visible_intervals(row, col, azimuth, &mut intervals);
+            let visible = disc.visible(&intervals);
+            for (receiver, sum) in receivers.iter().zip(&mut sums) {
+                let slice = receiver.slice(azimuth);
+                let light = visible.iter().map(|[low, high]| weight * slice.light(*low, *high));
+                *sum += light.sum::<f64>();
+            }
         }
-        let disc = Disc { along: away * offset.cos(), up, radius: squared.sqrt() };
-        oracle.visible_intervals(row, col, azimuth, &mut intervals);
-        let visible = disc.visible(&intervals);
-        for (receiver, sum) in receivers.iter().zip(&mut sums) {
-            let slice = receiver.slice(azimuth);
-            *sum +=
-                visible.iter().map(|[low, high]| weight * slice.light(*low, *high)).sum::<f64>();
-        }
+        sums.iter().map(|s| s / PI).collect()
     }
-    sums.iter().map(|s| s / PI).collect()
 }
 
 /// Exit radiance of a diffuse grid point of albedo 1 under a sphere light of radiance 1, by `strips` azimuths over
 /// the sphere, or four times as many over the circle.
-///
-/// # Panics
-/// When `row` or `col` lies outside the field.
 pub fn sphere_of(
     oracle: &Oracle,
     row: usize,
@@ -75,18 +62,18 @@ pub fn sphere_of(
     sphere: &SphereLight,
     strips: usize,
 ) -> f64 {
-    let receivers = [Receiver::diffuse(normal(oracle.field(), oracle.border(), row, col))];
-    let is_narrow = away_m(oracle, row, col, sphere) > 2.0 * sphere.radius_m;
+    let [east, north] = towards_m(oracle, row, col, sphere);
+    let is_narrow = east.hypot(north) > 2.0 * sphere.radius_m;
     let strips = if is_narrow { strips } else { 4 * strips };
-    sphere_on(oracle, row, col, &receivers, sphere, strips)[0]
+    Site::of(oracle, [row, col], &diffuse_at(oracle, row, col)).sphere(sphere, strips)[0]
 }
 
-/// Horizontal vector from a grid point to the sphere's centre.
-pub(crate) fn away_m(oracle: &Oracle, row: usize, col: usize, sphere: &SphereLight) -> f64 {
+/// Horizontal vector from a grid point to the sphere's centre: east, north.
+pub(crate) fn towards_m(oracle: &Oracle, row: usize, col: usize, sphere: &SphereLight) -> [f64; 2] {
     let field = oracle.field();
     let [cell_x, cell_y] = field.cell_m();
     let [x, y, _] = sphere.position_m;
-    (x - col as f64 * cell_x).hypot(y - (field.rows() - 1 - row) as f64 * cell_y)
+    [x - col as f64 * cell_x, y - (field.rows() - 1 - row) as f64 * cell_y]
 }
 
 /// The sphere's cut with a vertical plane through the grid point, which is the origin.

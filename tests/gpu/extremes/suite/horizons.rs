@@ -4,7 +4,7 @@
 use std::f64::consts::FRAC_PI_4;
 
 use ridgelight::scene::{Border, HeightField, Lights};
-use ridgelight_cpu::oracle;
+use ridgelight_cpu::oracle::Oracle;
 
 use super::{About, Asks, Case, Found, Method, Probe, field, largest, never, none, white};
 
@@ -300,7 +300,7 @@ fn rough([rows, cols]: [usize; 2]) -> Case {
                     continue;
                 }
                 let direction = [col_step, row_step];
-                let met = oracle::horizon_along(f, Border::Plane, row, col, direction);
+                let met = Oracle::one_ray(f, Border::Plane).horizon_along(row, col, direction);
                 let slope = met.map_or(0.0, |m| m.slope.max(0.0));
                 let step = if k % 2 == 0 { 1.5 } else { 1.0 };
                 probes.extend(found.slope([k, row, col], slope, (largest, step)));

@@ -8,11 +8,9 @@ use ridgelight::Result;
 use ridgelight::scene::{
     Border, Fuse, HeightField, KeyLight, Lights, Quality, Scene, SphereLight, Surface,
 };
-use ridgelight_cpu::key::key_on;
-use ridgelight_cpu::light::{Receiver, normal};
+use ridgelight_cpu::light::{Receiver, Site, normal};
 use ridgelight_cpu::lit::Lit;
 use ridgelight_cpu::oracle::Oracle;
-use ridgelight_cpu::sphere::sphere_on;
 
 use crate::common::args::Args;
 use crate::common::frames::{Colours, drawn, error, open, to_f32};
@@ -90,6 +88,7 @@ fn unshadowed(scene: &Scene, row: usize, col: usize) -> [f64; 3] {
     let height = field.base_m() + f64::from(field.heights_m()[row * SIDE + col]);
     let alone = HeightField::new(1, 1, &[height], field.cell_m(), None).expect("one grid point");
     let oracle = Oracle::new(&alone, Border::Open);
+    let site = Site::of(&oracle, [0, 0], &receiver);
     let mut sum = [0.0; 3];
     let mut add = |share: f64, colour: [f32; 3]| {
         (0..3).for_each(|c| sum[c] += share * f64::from(colour[c]));
@@ -99,13 +98,13 @@ fn unshadowed(scene: &Scene, row: usize, col: usize) -> [f64; 3] {
         add((1.0 + facing.z) / 2.0, colour);
     }
     for key in &lights.keys {
-        add(key_on(&oracle, 0, 0, &receiver, key, STRIPS)[0], key.radiance);
+        add(site.key(key, STRIPS)[0], key.radiance);
     }
     for sphere in &lights.sphere_lights {
         let [x, y, z] = sphere.position_m;
         let away = [x - col as f64, y - (SIDE - 1 - row) as f64, z];
         let moved = SphereLight { position_m: away, ..*sphere };
-        add(sphere_on(&oracle, 0, 0, &receiver, &moved, STRIPS)[0], sphere.radiance);
+        add(site.sphere(&moved, STRIPS)[0], sphere.radiance);
     }
     sum
 }
