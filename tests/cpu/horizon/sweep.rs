@@ -3,7 +3,7 @@
 use super::*;
 use proptest::prelude::*;
 use ridgelight::plan::azimuths::even;
-use ridgelight_cpu::horizon_sweep::{height_scale, line_height};
+use ridgelight_cpu::horizon_sweep::height_scale;
 use ridgelight_cpu::lattice;
 use ridgelight_cpu::lattice::{line_number, line_position};
 use ridgelight_cpu::shared::sweep::{March, NO_SLOPE, on_field};
@@ -14,7 +14,7 @@ fn line_samples(march: &March, y: i32, step: i32) -> Vec<(i32, f32)> {
     (0..=step)
         .map(|s| (s, y - (step - s) * march.azimuth.shear))
         .filter(|&(_, y)| march.periodic() || on_field(y, march.lanes))
-        .map(|(s, y)| (s, line_height(march, y, s)))
+        .map(|(s, y)| (s, march.line_height(y, s)))
         .collect()
 }
 

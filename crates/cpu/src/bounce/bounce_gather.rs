@@ -6,11 +6,10 @@ use crate::basis::nlp;
 use crate::basis::occlusion;
 use crate::light::{Receiver as Place, Slice, normal};
 use crate::oracle::grid_direction;
-use crate::pyramid_march::Stored;
+use crate::pyramid_march::{LevelHeights, Stored};
 use crate::shade_expand::shade_at;
 use crate::shared::bounced::{Along, Cast, NEARLY_RAD, radiance};
-use crate::shared::levels::LevelTexels;
-use crate::shared::sweep::{Heights, wrapped};
+use crate::shared::sweep::Heights;
 use glam::DVec3;
 use ridgelight::plan::pyramid::Pyramid;
 use ridgelight::plan::sweep::warm_up;
@@ -43,7 +42,7 @@ pub struct BounceGather<'a> {
 /// A march from a grid point: whole steps along columns or rows, interpolated along the other axis.
 pub(crate) struct March {
     here: [f64; 2],
-    by_x: bool,
+    pub(crate) by_x: bool,
     forward: f64,
     shear: f64,
     step_m: f64,
@@ -201,8 +200,8 @@ impl BounceGather<'_> {
             if whole > visited {
                 at = whole.min(march.reach);
                 let level = (next + 1).saturating_sub(fine).min(levels);
-                let own = self.height(march, level, march.here);
-                let rise = self.height(march, level, march.place(at)) - own;
+                let height = |place| self.levels().height(level, march.by_x, place);
+                let rise = height(march.place(at)) - height(march.here);
                 angle = (rise / (f64::from(at) * march.step_m)).atan();
                 visited = whole;
             }
@@ -221,42 +220,15 @@ impl BounceGather<'_> {
         }
     }
 
-    /// The two grid points on a march step's grid line around a place, and the fraction between.
-    pub(crate) fn beside(&self, march: &March, [x, y]: [f64; 2]) -> ([usize; 2], f64) {
-        let [cols, rows] = self.pyramid.size.map(|n| n as i32);
-        let inside = |i: i32, n: i32| {
-            if self.pyramid.periodic { wrapped(i, n) } else { i.clamp(0, n - 1) }
-        };
-        let at = |x: i32, y: i32| (inside(y, rows) * cols + inside(x, cols)) as usize;
-        if march.by_x {
-            let (x, low) = (x.round() as i32, y.floor());
-            ([at(x, low as i32), at(x, low as i32 + 1)], y - low)
-        } else {
-            let (y, low) = (y.round() as i32, x.floor());
-            ([at(low as i32, y), at(low as i32 + 1, y)], x - low)
-        }
-    }
-
-    fn height(&self, march: &March, level: u32, place: [f64; 2]) -> f64 {
-        if let (Stored::Levels(texels), 1..) = (self.stored, level) {
-            let of = self.pyramid.level(level);
-            let at = [0, 1].map(|i| place[i] as f32 * of.per_grid_point[i]);
-            return f64::from(LevelTexels { pyramid: self.pyramid, texels }.spline_at(&of, at));
-        }
-        let grid_points = self.pyramid.size[0] as usize * self.pyramid.size[1] as usize;
-        let (two, t) = self.beside(march, place);
-        let [low, high] = two.map(|i| match self.stored {
-            Stored::Stack(stack) if level > 0 => stack[(level as usize - 1) * grid_points + i],
-            _ => self.field.heights_m()[i],
-        });
-        f64::from(low) + t * (f64::from(high) - f64::from(low))
+    pub(crate) fn levels(&self) -> LevelHeights<'_> {
+        LevelHeights { field: self.field, pyramid: self.pyramid, stored: self.stored }
     }
 
     pub(crate) fn radiance(&self, march: &March, (place, level): ([f64; 2], u32)) -> [f64; 3] {
         if let (Stored::Levels(_), 1..) = (self.stored, level) {
             return shade_at(self.shade, self.shade_texels, level, place);
         }
-        let (two, t) = self.beside(march, place);
+        let (two, t) = self.levels().beside(march.by_x, place);
         let cols = self.pyramid.size[0] as usize;
         let [low, high] = two.map(|i| match level {
             0 => self.exit[i],

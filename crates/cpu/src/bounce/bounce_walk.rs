@@ -163,13 +163,7 @@ impl<'a> Walk<'a> {
     }
 
     fn leaving(&self, lane: i32, step: i32) -> DVec3 {
-        let inside = |i: i32, n: i32| {
-            if self.march.periodic() { wrapped(i, n) } else { i.clamp(0, n - 1) }
-        };
-        let lane_at = self.march.lane_position(inside(lane, self.march.lanes));
-        let march_at = self.march.march_position(inside(step, self.march.steps));
-        let by_row = self.march.azimuth.marches_rows();
-        let (col, row) = if by_row { (lane_at, march_at) } else { (march_at, lane_at) };
+        let [col, row] = self.march.grid_point(lane, step);
         let texel = self.exit[row as usize * self.march.heights.cols + col as usize];
         DVec3::from_array(texel.map(f64::from))
     }

@@ -1,6 +1,6 @@
 //! One more bounce at a node, from the visibility cache that the first bounce has filled.
 
-use crate::shared::sweep::{CELL_SHIFT, March, wrapped};
+use crate::shared::sweep::{CELL_SHIFT, March};
 use ridgelight::plan::azimuths::CELL;
 use std::f64::consts::FRAC_PI_2;
 
@@ -27,12 +27,8 @@ pub fn cast_part(wedge_rad: f64) -> f64 {
 pub fn cast_of(march: &March, word: u32, [col, row]: [i32; 2]) -> Cast {
     let (lane, step) = march.of_grid_point(col, row);
     let steps = (word & 0xffff) as i32;
-    let inside = |i: i32, n: i32| if march.periodic() { wrapped(i, n) } else { i.clamp(0, n - 1) };
     let nearest = (lane * CELL - steps * march.azimuth.shear + CELL / 2) >> CELL_SHIFT;
-    let lane_at = march.lane_position(inside(nearest, march.lanes));
-    let march_at = march.march_position(inside(step - steps, march.steps));
-    let by_row = march.azimuth.marches_rows();
-    let (col, row) = if by_row { (lane_at, march_at) } else { (march_at, lane_at) };
+    let [col, row] = march.grid_point(nearest, step - steps);
     let weight = f64::from(word >> 16) * cast_part(march.azimuth.wedge_rad.into());
     Cast { grid_point: row as usize * march.heights.cols + col as usize, steps, weight }
 }

@@ -91,7 +91,7 @@ impl SpecularGather<'_> {
     /// Texels of a level around a position, with their bilinear weights.
     fn taps(&self, march: &March, (place, number): ([f64; 2], u32)) -> Vec<(usize, f64)> {
         if number == 0 {
-            let ([low, high], t) = self.gather.beside(march, place);
+            let ([low, high], t) = self.gather.levels().beside(march.by_x, place);
             return vec![(low, 1.0 - t), (high, t)];
         }
         let shade = self.gather.shade;

@@ -12,7 +12,7 @@ use std::f64::consts::PI;
 /// Outside the field.
 pub fn sky_at(swept: &Swept, col: i32, row: i32) -> f64 {
     let mut sky = 0.0;
-    swept.add_all(col, row, |_, azimuth, lowest, normal| {
+    swept.add_all([col, row], true, |_, azimuth, lowest, normal| {
         sky += wedge_of_sky(azimuth, lowest, normal);
     });
     sky
@@ -34,7 +34,7 @@ pub fn wedge_of_sky(azimuth: &Azimuth, lowest: f64, normal: DVec3) -> f64 {
 /// Outside the field.
 pub fn environment_at(swept: &Swept, tables: &EnvTables, col: i32, row: i32) -> [f64; 3] {
     let mut environment = DVec3::ZERO;
-    swept.add_all(col, row, |index, _, lowest, normal| {
+    swept.add_all([col, row], true, |index, _, lowest, normal| {
         environment += tables.light(index, lowest, normal);
     });
     environment.to_array()

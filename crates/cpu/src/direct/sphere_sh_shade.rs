@@ -6,7 +6,7 @@ use crate::basis::turned;
 use crate::light::normal;
 use crate::light_matrix::light_matrix;
 use crate::oracle::Oracle;
-use crate::pyramid_march::{Stored, Within};
+use crate::pyramid_march::{LevelHeights, Stored};
 use crate::sh_shade::light_on;
 use crate::sh_visibility::{Series, visibility_along};
 use crate::sh_wedges::wedges_around;
@@ -114,8 +114,13 @@ impl<'a> SphereSh<'a> {
     fn free(&self, [row, col]: [usize; 2], azimuth_rad: f64, within_m: f64) -> f64 {
         match &self.pyramid {
             None => self.oracle.slope_within(row, col, azimuth_rad, within_m),
-            Some((pyramid, stored)) => Within { oracle: &self.oracle, pyramid, stored: *stored }
-                .slope([row, col], azimuth_rad, within_m),
+            Some((pyramid, stored)) => {
+                LevelHeights { field: self.oracle.field(), pyramid, stored: *stored }.slope(
+                    [row, col],
+                    azimuth_rad,
+                    within_m,
+                )
+            }
         }
     }
 }

@@ -10,7 +10,7 @@ use std::f64::consts::PI;
 /// Outside the field.
 pub fn sun_at(swept: &Swept, shape: Shape, col: i32, row: i32) -> f64 {
     let mut sun = 0.0;
-    swept.add_all(col, row, |_, azimuth, lowest, normal| {
+    swept.add_all([col, row], true, |_, azimuth, lowest, normal| {
         let along = |cos: f32, sin: f32| normal.x * f64::from(cos) + normal.y * f64::from(sin);
         let [flat_part, vertical] = match shape {
             Shape::Patch => [

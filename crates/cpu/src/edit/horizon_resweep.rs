@@ -5,7 +5,7 @@
 //! the other lines they recompute the same values.
 
 use crate::dirty_mark;
-use crate::horizon_sweep::{SweepOptions, line_height, stored};
+use crate::horizon_sweep::{SweepOptions, stored};
 use crate::lattice::Lattice;
 use crate::shared::sweep::{CELL_SHIFT, Heights, March, on_field};
 use ridgelight::plan::Rectangle;
@@ -72,7 +72,7 @@ pub fn horizon_resweep(
             (slot, march.march_position(step), azimuth.layer)
         };
         let vertex = |step: i32| {
-            (stored(line_height(&march, y0 + step * shear, step), options.packed), step as f32)
+            (stored(march.line_height(y0 + step * shear, step), options.packed), step as f32)
         };
         // The hull where the line enters, newest vertex first.
         let mut hull: Vec<(f32, f32)> = Vec::new();
@@ -87,7 +87,7 @@ pub fn horizon_resweep(
         let (mut touched, mut standing) = (-1, -1);
         for step in (entered..steps).take_while(|&s| stands(s)) {
             let y = y0 + step * shear;
-            let (h, x) = (line_height(&march, y, step), step as f32);
+            let (h, x) = (march.line_height(y, step), step as f32);
             while let [.., under, top] = hull[..] {
                 if (under.0 - h) * (x - top.1) < (top.0 - h) * (x - under.1) {
                     break;
@@ -125,8 +125,7 @@ fn mark(march: &March, y: i32, step: i32, spacing: i32, dirty: &mut [u32]) {
     let first = ((y - spacing + CELL - 1) >> CELL_SHIFT).max(0);
     let last = ((y + spacing) >> CELL_SHIFT).min(march.lanes - 1);
     for lane in first..=last {
-        let at = [march.lane_position(lane), march.march_position(step)].map(|v| v as usize);
-        let at = if march.azimuth.marches_rows() { at } else { [at[1], at[0]] };
+        let at = march.grid_point(lane, step).map(|v| v as usize);
         let (word, bit) = dirty_mark::place(at, march.heights.cols);
         dirty[word] |= bit;
     }

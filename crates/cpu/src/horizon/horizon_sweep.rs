@@ -4,7 +4,7 @@
 //! The shader's variants differ only in their hull storage; here it is a vector.
 
 use crate::lattice::Lattice;
-use crate::shared::sweep::{CELL_SHIFT, Heights, March, NO_SLOPE, PER_CELL, on_field, wrapped};
+use crate::shared::sweep::{CELL_SHIFT, Heights, March, NO_SLOPE, on_field, wrapped};
 use half::f16;
 use ridgelight::plan::azimuths::{Azimuth, CELL};
 
@@ -32,20 +32,6 @@ impl Default for SweepOptions {
 pub fn height_scale(heights: &[f32]) -> f32 {
     let largest = heights.iter().fold(0.0_f32, |m, h| m.max(h.abs()));
     if largest > 0.0 { 1.0 / largest } else { 1.0 }
-}
-
-/// The height of the surface at a lane position and a step of the march.
-pub fn line_height(march: &March, y: i32, step: i32) -> f32 {
-    let cell = y >> CELL_SHIFT;
-    let (step, lane, next) = if march.periodic() {
-        (step % march.steps, wrapped(cell, march.lanes), wrapped(cell + 1, march.lanes))
-    } else {
-        let lane = cell.clamp(0, march.lanes - 1);
-        (step, lane, (lane + 1).min(march.lanes - 1))
-    };
-    let t = (y & (CELL - 1)) as f32 * PER_CELL;
-    let h = march.height_at(lane, step);
-    h + t * (march.height_at(next, step) - h)
 }
 
 /// A height after packing.
@@ -78,7 +64,7 @@ pub fn horizon_sweep(
         hull.clear();
         for step in 0..total {
             if periodic || on_field(y, lanes) {
-                let h = line_height(&march, y, step);
+                let h = march.line_height(y, step);
                 let x = step as f32;
                 // Pop while the deeper vertex subtends at least the slope of the newer one.
                 while let [.., under, top] = hull[..] {

@@ -3,11 +3,11 @@
 //! 2009, eq. 14-17).
 
 use crate::lattice::Lattice;
-use crate::oracle::Oracle;
 use crate::shared::levels::LevelTexels;
-use crate::shared::sweep::{CELL_SHIFT, Heights, March, NO_SLOPE, PER_CELL, wrapped};
+use crate::shared::sweep::{CELL_SHIFT, Heights, March, NO_SLOPE, PER_CELL, inside};
 use ridgelight::plan::azimuths::{Azimuth, CELL, FLIPS_LANES};
 use ridgelight::plan::pyramid::Pyramid;
+use ridgelight::scene::HeightField;
 
 /// Storage of the levels besides the field itself.
 #[derive(Clone, Copy, Debug)]
@@ -53,42 +53,28 @@ pub struct PyramidMarch<'a> {
 }
 
 impl PyramidMarch<'_> {
-    /// Column and row of a lane and step, wrapped where the field repeats, else clamped.
-    fn texel_of(&self, lane: i32, step: i32) -> (i32, i32) {
-        let march = &self.march;
-        let inside = |i: i32, n: i32| {
-            if self.pyramid.periodic { wrapped(i, n) } else { i.clamp(0, n - 1) }
-        };
-        let lane = march.lane_position(inside(lane, march.lanes));
-        let step = march.march_position(inside(step, march.steps));
-        if march.azimuth.marches_rows() { (lane, step) } else { (step, lane) }
-    }
-
     /// Height of level `number` where a line crosses a march step, `f` past the lane `cell`.
     fn height(&self, number: u32, (cell, f): (i32, f32), step: i32) -> f32 {
-        let [cols, rows] = self.pyramid.size.map(|n| n as usize);
-        let on_line = |texel: &dyn Fn((i32, i32)) -> f32| {
-            let h = texel(self.texel_of(cell, step));
-            h + f * (texel(self.texel_of(cell + 1, step)) - h)
-        };
-        match self.stored {
-            _ if number == 0 => on_line(&|(col, row)| self.march.heights.at(col, row)),
-            Stored::Stack(stack) => {
-                let first = (number as usize - 1) * rows * cols;
-                on_line(&|(col, row)| stack[first + row as usize * cols + col as usize])
-            }
-            Stored::Levels(texels) => {
-                let march = &self.march;
-                let level = self.pyramid.level(number);
+        let march = &self.march;
+        let grid_points = march.heights.heights_m.len();
+        let heights = match self.stored {
+            Stored::Levels(texels) if number > 0 => {
                 let flips = march.azimuth.flags & FLIPS_LANES != 0;
                 let from_end = (march.lanes - 1 - cell) as f32 - f;
                 let lane = if flips { from_end } else { cell as f32 + f };
                 let step = march.march_position(step) as f32;
-                let [x, y] = if march.azimuth.marches_rows() { [lane, step] } else { [step, lane] };
-                let place = [x * level.per_grid_point[0], y * level.per_grid_point[1]];
-                LevelTexels { pyramid: self.pyramid, texels }.spline_at(&level, place)
+                let place = if march.azimuth.marches_rows() { [lane, step] } else { [step, lane] };
+                return LevelTexels { pyramid: self.pyramid, texels }.spline_at(number, place);
             }
-        }
+            Stored::Stack(stack) if number > 0 => &stack[(number as usize - 1) * grid_points..],
+            _ => march.heights.heights_m,
+        };
+        let texel = |lane: i32| {
+            let [col, row] = march.grid_point(lane, step);
+            heights[row as usize * march.heights.cols + col as usize]
+        };
+        let h = texel(cell);
+        h + f * (texel(cell + 1) - h)
     }
 
     /// Rise of a level from a grid point to `whole` steps along.
@@ -156,52 +142,49 @@ pub fn pyramid_march(
     }
 }
 
-/// Horizons of a pyramid up to a distance, in any direction: `within.glsl`.
+/// Heights of a field and its pyramid's levels on the field's grid lines.
 #[derive(Clone, Copy, Debug)]
-pub struct Within<'a> {
-    /// Of the field.
-    pub oracle: &'a Oracle<'a>,
-    /// Its levels.
-    pub pyramid: &'a Pyramid,
-    /// Their heights.
-    pub stored: Stored<'a>,
+pub(crate) struct LevelHeights<'a> {
+    pub(crate) field: &'a HeightField,
+    pub(crate) pyramid: &'a Pyramid,
+    pub(crate) stored: Stored<'a>,
 }
 
-impl Within<'_> {
-    /// Height of a level where a line crosses between columns (`crosses_row`) or between rows.
-    fn height(&self, number: u32, [x, y]: [f64; 2], crosses_row: bool) -> f64 {
+impl LevelHeights<'_> {
+    /// The two grid points around a place on a column (`by_x`) or on a row, and the fraction between.
+    pub(crate) fn beside(&self, by_x: bool, [x, y]: [f64; 2]) -> ([usize; 2], f64) {
         let [cols, rows] = self.pyramid.size.map(|n| n as i32);
-        let inside = |i: i32, n: i32| {
-            if self.pyramid.periodic { wrapped(i, n) } else { i.clamp(0, n - 1) }
+        let periodic = self.pyramid.periodic;
+        let at = |x: i32, y: i32| {
+            (inside(y, rows, periodic) * cols + inside(x, cols, periodic)) as usize
         };
-        let on_line = |of: &dyn Fn(usize) -> f32| {
-            let texel = |col: i32, row: i32| {
-                f64::from(of((inside(row, rows) * cols + inside(col, cols)) as usize))
-            };
-            let [col, row] = [x, y].map(|v| v.floor() as i32);
-            let [beside, f] = if crosses_row {
-                [texel(col + 1, row), x - x.floor()]
-            } else {
-                [texel(col, row + 1), y - y.floor()]
-            };
-            let h = texel(col, row);
-            h + f * (beside - h)
-        };
-        match self.stored {
-            _ if number == 0 => on_line(&|i| self.oracle.field().heights_m()[i]),
-            Stored::Stack(stack) => {
-                let first = (number - 1) as usize * (cols * rows) as usize;
-                on_line(&|i| stack[first + i])
-            }
-            Stored::Levels(texels) => {
-                let level = self.pyramid.level(number);
-                let place =
-                    [x as f32 * level.per_grid_point[0], y as f32 * level.per_grid_point[1]];
-                LevelTexels { pyramid: self.pyramid, texels }.spline_at(&level, place).into()
-            }
+        if by_x {
+            let (x, low) = (x.round() as i32, y.floor());
+            ([at(x, low as i32), at(x, low as i32 + 1)], y - low)
+        } else {
+            let (y, low) = (y.round() as i32, x.floor());
+            ([at(low as i32, y), at(low as i32 + 1, y)], x - low)
         }
     }
 
+    /// Height of a level there.
+    pub(crate) fn height(&self, level: u32, by_x: bool, place: [f64; 2]) -> f64 {
+        let grid_points = self.field.heights_m().len();
+        let heights = match self.stored {
+            Stored::Levels(texels) if level > 0 => {
+                let of = LevelTexels { pyramid: self.pyramid, texels };
+                return of.spline_at(level, place.map(|p| p as f32)).into();
+            }
+            Stored::Stack(stack) if level > 0 => &stack[(level as usize - 1) * grid_points..],
+            _ => self.field.heights_m(),
+        };
+        let (two, t) = self.beside(by_x, place);
+        let [low, high] = two.map(|i| f64::from(heights[i]));
+        low + t * (high - low)
+    }
+
+    /// `within.glsl`: the horizon of a pyramid up to a distance, in any direction.
+    ///
     /// Slope of the lowest visible direction up to a distance; -∞ where the march leaves the field at once.
     ///
     /// The spline over the angles is evaluated up to the distance. It includes the two lookups beyond that it depends
@@ -209,8 +192,8 @@ impl Within<'_> {
     ///
     /// # Panics
     /// When levels lack texels.
-    pub fn slope(&self, [row, col]: [usize; 2], azimuth_rad: f64, within_m: f64) -> f64 {
-        let [cell_x, cell_y] = self.oracle.field().cell_m();
+    pub(crate) fn slope(&self, [row, col]: [usize; 2], azimuth_rad: f64, within_m: f64) -> f64 {
+        let [cell_x, cell_y] = self.field.cell_m();
         let (sin, cos) = azimuth_rad.sin_cos();
         let direction = [cos / cell_x, -sin / cell_y];
         let scale = direction[0].abs().max(direction[1].abs());
@@ -227,7 +210,7 @@ impl Within<'_> {
         if reach <= 0 {
             return f64::NEG_INFINITY;
         }
-        let crosses_row = advance[1].abs() >= advance[0].abs();
+        let by_x = advance[0].abs() > advance[1].abs();
         let end = f64::from(self.pyramid.level_step) * (within_m * scale).max(1e-6).log2();
         let (mut back, mut before, mut angle) = (1.0_f32, 0, 0.0);
         let mut blocked = BlockedWithin { angles: [0.0; 4], taken: 0, end, highest: 0.0 };
@@ -238,8 +221,7 @@ impl Within<'_> {
                 let number = (i + 1).saturating_sub(self.pyramid.fine_samples());
                 let number = number.min(self.pyramid.levels());
                 let place = [0, 1].map(|k| here[k] + at * advance[k]);
-                let rise = self.height(number, place, crosses_row)
-                    - self.height(number, here, crosses_row);
+                let rise = self.height(number, by_x, place) - self.height(number, by_x, here);
                 angle = (rise * scale / at).atan();
             }
             blocked.take(angle);

@@ -26,7 +26,7 @@ pub struct Series {
 /// Outside the field.
 pub fn visibility_at(swept: &Swept, series: Series, col: i32, row: i32) -> Vec<f64> {
     let mut lowest = Vec::new();
-    swept.add_visible(col, row, series.receiver == Receiver::Plane, |_, azimuth, slope, _| {
+    swept.add_all([col, row], series.receiver == Receiver::Plane, |_, azimuth, slope, _| {
         lowest.push((*azimuth, slope));
     });
     visibility_above(series, &lowest)

@@ -1,13 +1,8 @@
 //! `field.glsl`: the slope of the surface at a grid point.
 
-use super::sweep::Heights;
+use super::sweep::{Heights, inside};
 use glam::{DVec2, DVec3};
 use ridgelight::scene::Border;
-
-/// Index of a neighbour along one axis: wrapped where the field repeats, else clamped.
-fn neighbour(i: i32, n: i32, wraps: bool) -> i32 {
-    if wraps { (i + n) % n } else { i.clamp(0, n - 1) }
-}
 
 /// Slope of the surface at a grid point towards east and north: the mean over the adjoining quads, which is the
 /// direction of the sum of their unnormalised normals. Where a field is one grid point wide there is no quad across
@@ -20,7 +15,7 @@ pub fn field_slope(heights: &Heights, col: i32, row: i32) -> DVec2 {
     let (cols, rows) = (heights.cols as i32, heights.rows as i32);
     // Neighbours, how many quads lie to each side (0 or 1), and what the lines across weigh.
     let axis = |i: i32, n: i32| {
-        let near = [neighbour(i - 1, n, wraps), i, neighbour(i + 1, n, wraps)];
+        let near = [inside(i - 1, n, wraps), i, inside(i + 1, n, wraps)];
         let quads = |exists: bool| f64::from(u8::from((wraps || exists) && n > 1));
         let (before, after) = (quads(i > 0), quads(i < n - 1));
         let both = before + after;

@@ -1,7 +1,7 @@
 //! `fuse.glsl`: resamples the lattice of a sweep at the field's grid points.
 
 use super::segment::met_within;
-use super::sweep::{CELL_SHIFT, LOWEST_MET, March, NO_SLOPE, PER_CELL, on_field, wrapped};
+use super::sweep::{LOWEST_MET, March, NO_SLOPE, PER_CELL, on_field, wrapped};
 use crate::lattice::Lattice;
 use ridgelight::plan::azimuths::CELL;
 use ridgelight::scene::Fuse;
@@ -18,62 +18,10 @@ pub struct Found {
 /// No horizon.
 pub const NOTHING: Found = Found { slope: NO_SLOPE, steps: 0.0 };
 
-/// A grid point's surroundings in march and lane coordinates of one octant of azimuths: heights one step towards the
-/// horizon, straight, and to the lower lane; and of the lower lane's neighbour.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Octant {
-    /// The grid point itself.
-    pub own: f32,
-    /// One step towards the horizon.
-    pub ahead: f32,
-    /// One step towards the horizon, one lane lower.
-    pub ahead_low: f32,
-    /// One lane lower.
-    pub low: f32,
-    /// Whether there is a step towards the horizon.
-    pub ahead_exists: bool,
-    /// Whether there is a lower lane.
-    pub low_exists: bool,
-    /// The cell's diagonal runs between `ahead` and `low`.
-    pub split_crosses: bool,
-}
-
 /// The height of the surface at a lane position and a march step; `None` outside the field.
 pub fn surface_on_line(march: &March, y: i32, step: i32) -> Option<f32> {
-    let (lanes, steps) = (march.lanes, march.steps);
-    let (mut cell, mut step) = (y >> CELL_SHIFT, step);
-    let mut next = (cell + 1).min(lanes - 1);
-    if march.periodic() {
-        cell = wrapped(cell, lanes);
-        next = (cell + 1) % lanes;
-        step = wrapped(step, steps);
-    } else if !on_field(y, lanes) || step < 0 {
-        return None;
-    }
-    let at = march.march_position(step);
-    let ha = march.fetch(march.lane_position(cell), at);
-    let hb = march.fetch(march.lane_position(next), at);
-    Some(ha + (y & (CELL - 1)) as f32 * PER_CELL * (hb - ha))
-}
-
-/// The grid point's surroundings for all azimuths that share its march axis and flips.
-pub fn octant_around(march: &March, lane: i32, step: i32, own: f32) -> Octant {
-    let (lanes, steps) = (march.lanes, march.steps);
-    let ahead_exists = march.periodic() || step > 0;
-    let low_exists = march.periodic() || lane > 0;
-    let here = march.march_position(step);
-    let ahead = march.march_position(if ahead_exists { (step + steps - 1) % steps } else { step });
-    let middle = march.lane_position(lane);
-    let low = march.lane_position(if low_exists { (lane + lanes - 1) % lanes } else { lane });
-    Octant {
-        own,
-        ahead: march.fetch(middle, ahead),
-        ahead_low: march.fetch(low, ahead),
-        low: march.fetch(low, here),
-        ahead_exists,
-        low_exists,
-        split_crosses: !march.split_along(),
-    }
+    let is_there = march.periodic() || (on_field(y, march.lanes) && step >= 0);
+    is_there.then(|| march.line_height(y, step))
 }
 
 /// The higher of two horizons.
@@ -81,34 +29,29 @@ fn higher(a: Found, b: Found) -> Found {
     if b.slope > a.slope { b } else { a }
 }
 
-/// Horizon of the grid point's own line within its first step: its crossing with the next grid line, and with the
-/// cell's diagonal where that lies across. Nearly everything that unit steps miss lies here.
-pub fn first_crossings(march: &March, o: &Octant) -> Found {
+/// Horizon of the line of a grid point (lane, step) of height `own` within its first step: its crossing with the next
+/// grid line, and with the cell's diagonal where that lies across. Nearly everything that unit steps miss lies here.
+fn first_crossings(march: &March, (lane, step): (i32, i32), own: f32) -> Found {
     let azimuth = &march.azimuth;
-    let shear = azimuth.shear as f32 * PER_CELL;
-    if !o.ahead_exists || (azimuth.shear > 0 && !o.low_exists) {
+    if !march.periodic() && (step == 0 || (azimuth.shear > 0 && lane == 0)) {
         return NOTHING;
     }
-    let rise = (o.ahead - o.own) + shear * (o.ahead_low - o.ahead);
+    let [ahead, ahead_low] = [lane, lane - 1].map(|lane| march.height_at(lane, step - 1));
+    let rise = (ahead - own) + azimuth.shear as f32 * PER_CELL * (ahead_low - ahead);
     let found = Found { slope: rise / azimuth.step_m, steps: 1.0 };
-    split_slope(march, o).map_or(found, |split| higher(found, split))
+    split_crossing(march, (lane, step), own).map_or(found, |split| higher(found, split))
 }
 
-/// Where the grid point's own line crosses the diagonal of its cell, if it does within its first step.
-fn split_slope(march: &March, o: &Octant) -> Option<Found> {
-    let shear = march.azimuth.shear as f32 * PER_CELL;
-    if !(o.split_crosses && o.low_exists && o.ahead_exists) {
+/// Where that line crosses the diagonal of the grid point's cell, if it does within its first step.
+pub fn split_crossing(march: &March, (lane, step): (i32, i32), own: f32) -> Option<Found> {
+    if march.split_along() || !(march.periodic() || (lane > 0 && step > 0)) {
         return None;
     }
     // (1, 0) to (0, 1) is crossed by (u, u * shear) at u = 1 / (1 + shear).
-    let u = 1.0 / (1.0 + shear);
-    let rise = (o.low - o.own) + u * (o.ahead - o.low);
+    let u = 1.0 / (1.0 + march.azimuth.shear as f32 * PER_CELL);
+    let [low, ahead] = [(lane - 1, step), (lane, step - 1)].map(|(l, s)| march.height_at(l, s));
+    let rise = (low - own) + u * (ahead - low);
     Some(Found { slope: rise / (u * march.azimuth.step_m), steps: u })
-}
-
-/// The same for a grid point (lane, step) of height `own`.
-pub fn split_crossing(march: &March, (lane, step): (i32, i32), own: f32) -> Option<Found> {
-    split_slope(march, &octant_around(march, lane, step, own))
 }
 
 /// The surface at a proposed distance, relative to a height at lane position y.
@@ -190,9 +133,8 @@ pub fn fused(
     march: &March,
     (fuse, line_shift, warm_up): (Option<Fuse>, u32, i32),
     (lane, step): (i32, i32),
-    o: &Octant,
 ) -> Found {
-    let y = lane * CELL;
+    let (y, own) = (lane * CELL, march.height_at(lane, step));
     let Some(fuse) = fuse else {
         let texel = lattice.texel(lane, march.march_position(step), march.azimuth.layer);
         return Found { slope: lattice.slopes[texel], steps: lattice.distances[texel] };
@@ -207,7 +149,7 @@ pub fn fused(
     // A proposal one step back is the first crossing itself.
     let aimed = |texel: Option<usize>| match back(texel) {
         0 | 1 => NOTHING,
-        back => surface_at(march, y, back, step, o.own),
+        back => surface_at(march, y, back, step, own),
     };
 
     // Ridges that unit steps miss stand beside a proposal.
@@ -222,22 +164,19 @@ pub fn fused(
         best
     };
 
+    let first = || first_crossings(march, (lane, step), own);
+    let both_aimed = || higher(higher(first(), aimed(before_texel)), aimed(after_texel));
     let nearest = if takes_after { after_texel } else { before_texel };
     let (a, b) = match fuse {
         Fuse::Nearest => return slope(nearest),
-        Fuse::AimedNearest => return higher(first_crossings(march, o), aimed(nearest)),
-        Fuse::Aimed => {
-            let found = higher(first_crossings(march, o), aimed(before_texel));
-            return higher(found, aimed(after_texel));
-        }
+        Fuse::AimedNearest => return higher(first(), aimed(nearest)),
+        Fuse::Aimed => return both_aimed(),
         Fuse::AimedAround => {
-            let found = higher(first_crossings(march, o), aimed(before_texel));
-            let found = higher(found, aimed(after_texel));
-            return higher(higher(found, around(before_texel)), around(after_texel));
+            return higher(higher(both_aimed(), around(before_texel)), around(after_texel));
         }
         Fuse::Own => (
-            surface_at(march, after, back(after_texel), step, o.own),
-            surface_at(march, before, back(before_texel), step, o.own),
+            surface_at(march, after, back(after_texel), step, own),
+            surface_at(march, before, back(before_texel), step, own),
         ),
         Fuse::Slopes => (slope(after_texel), slope(before_texel)),
     };

@@ -2,7 +2,7 @@
 //! azimuths come in their own.
 
 use super::field::{field_slope, normal_of};
-use super::fuse::{Found, fused, octant_around};
+use super::fuse::{Found, fused};
 use super::sweep::{Heights, March};
 use crate::lattice::Lattices;
 use glam::{DVec2, DVec3};
@@ -34,32 +34,18 @@ impl Swept<'_> {
     /// Outside the field.
     pub fn found(&self, azimuth: &Azimuth, col: i32, row: i32) -> Found {
         let march = March::new(self.heights, azimuth);
-        let (lane, step) = march.of_grid_point(col, row);
-        let own = self.heights.at(col, row);
         let settings =
             (self.fuse, self.line_shift, self.warm_up[usize::from(azimuth.marches_rows())]);
-        let around = octant_around(&march, lane, step, own);
-        fused(self.lattices.of(azimuth), &march, settings, (lane, step), &around)
+        fused(self.lattices.of(azimuth), &march, settings, march.of_grid_point(col, row))
     }
 
     /// Hands every azimuth's number, direction, lowest slope and the normal to `add_light`.
     ///
-    /// The lowest slope is that of the lowest direction above both the horizon and the grid point's own plane.
-    ///
-    /// # Panics
-    /// Outside the field.
-    pub fn add_all(&self, col: i32, row: i32, add_light: impl FnMut(usize, &Azimuth, f64, DVec3)) {
-        self.add_visible(col, row, true, add_light);
-    }
-
-    /// The same, the lowest slope with or without the grid point's own plane.
-    ///
-    /// # Panics
-    /// Outside the field.
-    pub fn add_visible(
+    /// The lowest slope is that of the lowest direction above the horizon and, if requested, the grid point's own
+    /// plane.
+    pub fn add_all(
         &self,
-        col: i32,
-        row: i32,
+        [col, row]: [i32; 2],
         own_plane_hides: bool,
         mut add_light: impl FnMut(usize, &Azimuth, f64, DVec3),
     ) {

@@ -1,7 +1,7 @@
 //! `levels.glsl` and `spline.glsl`: the B-spline of a height pyramid's level.
 
 use super::sweep::wrapped;
-use ridgelight::plan::pyramid::{Level, Pyramid};
+use ridgelight::plan::pyramid::Pyramid;
 
 /// Texels of all levels besides the field itself, as in `height_levels`.
 #[derive(Clone, Copy, Debug)]
@@ -36,14 +36,13 @@ pub fn spline_taps(place: f32, count: u32, periodic: bool) -> ([u32; 4], [f32; 4
 }
 
 impl LevelTexels<'_> {
-    /// Height of a level at a place in its texels (column, row).
-    ///
-    /// # Panics
-    /// When there are fewer texels than the level needs.
-    pub fn spline_at(&self, level: &Level, place: [f32; 2]) -> f32 {
+    /// Height of level `number` at a place in grid points (column, row).
+    pub fn spline_at(&self, number: u32, place: [f32; 2]) -> f32 {
+        let level = self.pyramid.level(number);
         let [cols, rows] = level.size;
-        let (x, x_weight) = spline_taps(place[0], cols, self.pyramid.periodic);
-        let (y, y_weight) = spline_taps(place[1], rows, self.pyramid.periodic);
+        let at = [0, 1].map(|i| place[i] * level.per_grid_point[i]);
+        let (x, x_weight) = spline_taps(at[0], cols, self.pyramid.periodic);
+        let (y, y_weight) = spline_taps(at[1], rows, self.pyramid.periodic);
         let mut sum = 0.0;
         for (row, weight) in y.iter().zip(y_weight) {
             let first = level.first as usize + (row * cols) as usize;

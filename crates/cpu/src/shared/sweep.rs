@@ -93,24 +93,24 @@ impl<'a> March<'a> {
         (self.lane_position(lane), self.march_position(march))
     }
 
-    /// Height at a position along the lane axis and one along the march axis.
-    pub fn fetch(&self, lane_at: i32, march_at: i32) -> f32 {
-        if self.azimuth.marches_rows() {
-            self.heights.at(lane_at, march_at)
-        } else {
-            self.heights.at(march_at, lane_at)
-        }
+    /// Column and row of a lane and step, wrapped where the field repeats, else clamped.
+    pub fn grid_point(&self, lane: i32, step: i32) -> [i32; 2] {
+        let lane = self.lane_position(inside(lane, self.lanes, self.periodic()));
+        let step = self.march_position(inside(step, self.steps, self.periodic()));
+        if self.azimuth.marches_rows() { [lane, step] } else { [step, lane] }
     }
 
-    /// Height of a lane at a step, wrapped where the field repeats, else clamped.
+    /// Height of the grid point of a lane and step.
     pub fn height_at(&self, lane: i32, step: i32) -> f32 {
-        let inside = |i: i32, n: i32| {
-            if self.periodic() { wrapped(i, n) } else { i.clamp(0, n - 1) }
-        };
-        self.fetch(
-            self.lane_position(inside(lane, self.lanes)),
-            self.march_position(inside(step, self.steps)),
-        )
+        let [col, row] = self.grid_point(lane, step);
+        self.heights.at(col, row)
+    }
+
+    /// Height of the surface at a lane position and a step.
+    pub fn line_height(&self, y: i32, step: i32) -> f32 {
+        let lane = inside(y >> CELL_SHIFT, self.lanes, self.periodic());
+        let h = self.height_at(lane, step);
+        h + (y & (CELL - 1)) as f32 * PER_CELL * (self.height_at(lane + 1, step) - h)
     }
 
     /// Whether cell diagonals run from (0, 0) to (1, 1) in march and lane coordinates.
@@ -123,6 +123,11 @@ impl<'a> March<'a> {
 pub fn wrapped(i: i32, n: i32) -> i32 {
     let r = i % n;
     if r < 0 { r + n } else { r }
+}
+
+/// Index `i` of `n`: wrapped where the field repeats, else clamped.
+pub fn inside(i: i32, n: i32, repeats: bool) -> i32 {
+    if repeats { wrapped(i, n) } else { i.clamp(0, n - 1) }
 }
 
 /// Whether a lane position lies on the field.

@@ -4,7 +4,7 @@
 use super::{ARC_TANGENT, EPSILON, device_level, device_spline};
 use crate::shared::bounced::{Along, Cast, NEARLY_RAD, light_and_weight};
 use crate::shared::field::field_slope;
-use crate::shared::sweep::{Heights, wrapped};
+use crate::shared::sweep::{Heights, inside};
 use ridgelight::scene::{Border, HeightField, Receiver};
 
 /// Properties of a field that errors depend on.
@@ -63,13 +63,8 @@ impl Land {
         let [x, y] = field.cell_m();
         let mut steepest = 0.0_f64;
         for (down, right) in (0..9).map(|i| (i / 3 - 1, i % 3 - 1)) {
-            let [r, c] = [(row + down, field.rows()), (col + right, field.cols())].map(|(i, n)| {
-                if border == Border::Periodic {
-                    wrapped(i, n as i32)
-                } else {
-                    i.clamp(0, n as i32 - 1)
-                }
-            });
+            let [r, c] = [(row + down, field.rows()), (col + right, field.cols())]
+                .map(|(i, n)| inside(i, n as i32, border == Border::Periodic));
             let rise = f64::from(heights.at(c, r)) - f64::from(heights.at(col, row));
             steepest = steepest.max(rise.abs() / x.min(y));
         }

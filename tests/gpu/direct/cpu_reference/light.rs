@@ -153,7 +153,7 @@ pub(crate) fn sun_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         // A point sun within the horizon's error may be hidden or not.
         let grazes = |col: i32, row: i32| {
             let mut any = false;
-            swept.add_all(col, row, |_, azimuth, lowest, _| {
+            swept.add_all([col, row], true, |_, azimuth, lowest, _| {
                 let off = lowest - f64::from(azimuth.high_slope);
                 any |= off.abs() <= error.lowest_slope();
             });

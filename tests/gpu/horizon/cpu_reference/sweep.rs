@@ -9,7 +9,7 @@ use ridgelight_cpu::height_transpose::{heights_by_col, heights_by_row};
 use ridgelight_cpu::horizon_march as march_reference;
 use ridgelight_cpu::horizon_march::MarchOptions;
 use ridgelight_cpu::horizon_sweep as sweep_reference;
-use ridgelight_cpu::horizon_sweep::{SweepOptions, height_scale, line_height};
+use ridgelight_cpu::horizon_sweep::{SweepOptions, height_scale};
 use ridgelight_cpu::lattice::{Lattice, line_number, line_position, slots};
 use ridgelight_cpu::shared::sweep::{LOWEST_MET, March, on_field};
 use ridgelight_cpu::surface_sweep as surface_reference;
@@ -72,7 +72,7 @@ pub(crate) fn stored(run: &mut Run, pass: &Pass, binding: &str, texel: usize) ->
 
 /// Slope of the texel of a line `back` steps before, in f64; none without an occluder.
 fn slope_of(march: &March, y: i32, step: i32, back: i32) -> Option<f64> {
-    let at = |n: i32| f64::from(line_height(march, y - n * march.azimuth.shear, step - n));
+    let at = |n: i32| f64::from(march.line_height(y - n * march.azimuth.shear, step - n));
     (back > 0).then(|| (at(back) - at(0)) / (f64::from(back) * f64::from(march.azimuth.step_m)))
 }
 

@@ -69,7 +69,7 @@ fn wanted_of(
             .collect();
         let at = |p: &usize| {
             let (mut light, mut bound) = (DVec3::ZERO, DVec3::ZERO);
-            swept.add_all((p % cols) as i32, (p / cols) as i32, |k, _, lowest, normal| {
+            swept.add_all([p % cols, p / cols].map(|i| i as i32), true, |k, _, lowest, normal| {
                 light += tables.light(k, lowest, normal);
                 bound += ShadeError::wedge_looked_up(error, &tables, (k, lowest, normal), &off[k]);
             });

@@ -185,7 +185,7 @@ fn aimed(
         let at = |p: &usize| {
             let (col, row) = ((p % cols) as i32, (p / cols) as i32);
             let mut grazes = false;
-            swept.add_all(col, row, |_, azimuth, lowest, _| {
+            swept.add_all([col, row], true, |_, azimuth, lowest, _| {
                 let off = lowest - f64::from(azimuth.high_slope);
                 grazes |= shape == Shape::Point && off.abs() <= error.lowest_slope();
             });
