@@ -4,7 +4,7 @@ use ridgelight::basis::slice::Slices;
 use ridgelight::basis::zonal::clamped_cosine;
 use ridgelight::scene::KeyLight;
 use ridgelight_cpu::basis::azimuth::Blend;
-use ridgelight_cpu::basis::key::KeyHarmonics;
+use ridgelight_cpu::basis::key::{azimuths, nlp, visible, visible_nlp};
 use ridgelight_cpu::basis::turned;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -20,11 +20,11 @@ fn free() -> Vec<f64> {
 fn a_free_light_is_its_rectangle() {
     for count in [2, 3, 9] {
         for blend in [Blend::Linear, Blend::BSpline] {
-            let seen = KEY.visible(&Slices::new(4), blend, &vec![0.1; count]);
+            let seen = visible(&KEY, &Slices::new(4), blend, &vec![0.1; count]);
             within(&seen, &free(), 1e-14);
         }
     }
-    assert_eq!(KEY.azimuths(3), [2.0, 2.4, 2.8]);
+    assert_eq!(azimuths(&KEY, 3), [2.0, 2.4, 2.8]);
 }
 
 /// A level horizon within it cuts it there; one above it leaves nothing, with NLP as well.
@@ -32,12 +32,12 @@ fn a_free_light_is_its_rectangle() {
 fn a_horizon_cuts_the_light() {
     let slices = Slices::new(4);
     let cut = project(4, [FRAC_PI_2 - 0.9, FRAC_PI_2 - 0.6], [2.0, 2.8], |_, _| 1.0);
-    within(&KEY.visible(&slices, Blend::Linear, &[0.6; 3]), &cut, 1e-14);
+    within(&visible(&KEY, &slices, Blend::Linear, &[0.6; 3]), &cut, 1e-14);
     for horizon in [0.9, 1.2, FRAC_PI_2] {
-        assert_eq!(KEY.visible(&slices, Blend::Linear, &[horizon; 3]), [0.0; 16]);
-        assert_eq!(KEY.visible_nlp(4, Blend::Linear, &[horizon; 3]), [0.0; 16]);
+        assert_eq!(visible(&KEY, &slices, Blend::Linear, &[horizon; 3]), [0.0; 16]);
+        assert_eq!(visible_nlp(&KEY, 4, Blend::Linear, &[horizon; 3]), [0.0; 16]);
     }
-    assert_eq!(KEY.nlp(4, -1.0), KEY.nlp(4, 0.3));
+    assert_eq!(nlp(&KEY, 4, -1.0), nlp(&KEY, 4, 0.3));
 }
 
 /// As one horizon rises the light never increases, and band 0 falls linearly with the slices' share.
@@ -47,7 +47,7 @@ fn light_falls_as_a_horizon_rises() {
     let mut last = f64::INFINITY;
     for step in 0..40 {
         let horizon = 0.2 + 0.02 * f64::from(step);
-        let solid = KEY.visible(&slices, Blend::Linear, &[0.4, horizon, 0.7])[0];
+        let solid = visible(&KEY, &slices, Blend::Linear, &[0.4, horizon, 0.7])[0];
         assert!(solid <= last + 1e-15, "{horizon}");
         last = solid;
     }
@@ -57,12 +57,12 @@ fn light_falls_as_a_horizon_rises() {
 #[test]
 fn nlp_lose_nothing_zonal() {
     let horizons = [0.2, 0.5, 0.8];
-    let exact = KEY.visible(&Slices::new(4), Blend::Linear, &horizons);
-    let nlp = KEY.visible_nlp(4, Blend::Linear, &horizons);
+    let exact = visible(&KEY, &Slices::new(4), Blend::Linear, &horizons);
+    let by_nlp = visible_nlp(&KEY, 4, Blend::Linear, &horizons);
     for l in 0..4 {
-        within(&[nlp[index(l, 0)]], &[exact[index(l, 0)]], 1e-14);
+        within(&[by_nlp[index(l, 0)]], &[exact[index(l, 0)]], 1e-14);
     }
-    let apart = exact.iter().zip(&nlp).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    let apart = exact.iter().zip(&by_nlp).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     assert!(apart > 1e-4, "what NLP lose at odd m is seen: {apart}");
 }
 
@@ -72,7 +72,7 @@ fn nlp_lose_nothing_zonal() {
 fn the_whole_sky_is_a_key_light() {
     let elevations_rad = [0.0, FRAC_PI_2];
     let whole = KeyLight { azimuth_rad: PI, width_rad: TAU, elevations_rad, ..KEY };
-    let seen = whole.visible(&Slices::new(6), Blend::Linear, &[-0.3; 9]);
+    let seen = visible(&whole, &Slices::new(6), Blend::Linear, &[-0.3; 9]);
     let sky = ridgelight_cpu::basis::sky(6);
     for l in 0..6 {
         within(&[seen[index(l, 0)]], &[sky[l]], 1e-13);

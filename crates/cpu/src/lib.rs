@@ -24,25 +24,13 @@ mod specular;
 pub mod tolerance;
 mod view;
 
-pub use bake::{
-    bent_directions, ellipse_fit, facet_mask, fan_weights, scatter_gather, visible_points,
-};
-pub use bounce::{
-    bounce_gather, bounce_march, bounce_shade, bounce_walk, cache_gather, shade_expand,
-    shade_reduce, specular_gather, vector_reduce,
-};
-pub use direct::{
-    env_tables, light_resolve, sky_shade, soft_sphere, sphere_sh_shade, sphere_shade, sun_shade,
-};
-pub use edit::{dirty_list, dirty_mark, horizon_resweep};
-pub use horizon::{
-    height_expand, height_reduce, height_transpose, horizon_march, horizon_sweep, lattice,
-    pyramid_march, scalar_sweep, surface_sweep, sweep_fuse,
-};
-pub use rays::{height_bounds, height_cells};
-pub use reference::{indirect, light, lit, oracle, path_trace, profile, sphere};
-pub use sh::{
-    env_rotation, env_wedges, harmonics, light_matrix, sh_shade, sh_visibility, sh_wedges,
-};
-pub use specular::{specular_exit, specular_visibility, sun_specular};
-pub use view::{map_draw, picture_tone, sky_draw, terrain_draw};
+pub use bake::*;
+pub use bounce::*;
+pub use direct::*;
+pub use edit::*;
+pub use horizon::*;
+pub use rays::*;
+pub use reference::*;
+pub use sh::*;
+pub use specular::*;
+pub use view::*;

@@ -13,7 +13,7 @@ use ridgelight::gpu::Headless;
 use ridgelight::plan::REFERENCE_BATCH;
 use ridgelight::scene::{Border, KeyLight, Lights, Quality, Scene, Surface};
 use ridgelight_cpu::basis::azimuth::Blend;
-use ridgelight_cpu::basis::key::KeyHarmonics as _;
+use ridgelight_cpu::basis::key;
 use ridgelight_cpu::basis::turned;
 use ridgelight_cpu::oracle::Oracle;
 
@@ -68,10 +68,10 @@ fn profile(gpu: &mut Headless, elevations: [f64; 2]) -> Result<Profile> {
     let oracle = Oracle::new(&scene.field, Border::Plane);
     let cosine = turned(&clamped_cosine(ORDER), glam::DVec3::Z);
     let by_harmonics = |col: usize| {
-        let azimuths = key.azimuths(AZIMUTHS);
+        let azimuths = key::azimuths(&key, AZIMUTHS);
         let horizons: Vec<f64> =
             azimuths.iter().map(|a| oracle.elevation_rad(ROWS / 2, col, *a)).collect();
-        let visible = key.visible_nlp(ORDER, Blend::BSpline, &horizons);
+        let visible = key::visible_nlp(&key, ORDER, Blend::BSpline, &horizons);
         visible.iter().zip(&cosine).map(|(a, b)| a * b).sum::<f64>() / PI / free
     };
     let harmonics = columns().map(by_harmonics).collect();

@@ -186,8 +186,9 @@ fn one(gpu: &mut Headless, land: &Land, lights: &Directions) -> Result<Vec<Ellip
         let (cells, ms) = truth.errors(lights, |k, at| fitted[at].holds(lights.vectors()[k]));
         println!("| ellipses of {count} | {seen_ms:.1} | {fit_ms:.1} | {ms:.3} | 12 | {cells} |");
         if count == COUNTS[COUNTS.len() - 1] {
-            let begun: Vec<Ellipse> =
-                (0..points).map(|at| start(&sky_directions(&found, at))).collect();
+            let begun: Vec<Ellipse> = (0..points)
+                .map(|at| start(&sky_directions(&found, found.directions().vectors(), at)))
+                .collect();
             let (cells, _) = truth.errors(lights, |k, at| begun[at].holds(lights.vectors()[k]));
             println!("| covariances of {count} | | | | 12 | {cells} |");
         }

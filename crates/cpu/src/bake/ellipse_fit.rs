@@ -85,19 +85,14 @@ pub const MOVES: [(f64, f64); 8] = [
     (1.0, 1.0),
 ];
 
-/// Sky visibility of a grid point above horizontal.
-pub fn sky_directions(points: &VisiblePoints, grid_point: usize) -> Vec<SkyDirection> {
-    let all = points.directions().vectors().iter().enumerate().filter(|(_, e)| e.z > 0.0);
-    all.map(|(i, e)| (*e, points.point(i, grid_point) == VisiblePoint::Sky)).collect()
-}
-
-/// The same on a curved base surface, where a grid point's directions are `bent`.
-pub fn bent_sky_directions(
+/// Sky visibility of a grid point above horizontal; `directions` are those of the points, or bent on a curved base
+/// surface.
+pub fn sky_directions(
     points: &VisiblePoints,
-    bent: &[DVec3],
+    directions: &[DVec3],
     grid_point: usize,
 ) -> Vec<SkyDirection> {
-    let all = bent.iter().enumerate().filter(|(_, e)| e.z > 0.0);
+    let all = directions.iter().enumerate().filter(|(_, e)| e.z > 0.0);
     all.map(|(i, e)| (*e, points.point(i, grid_point) == VisiblePoint::Sky)).collect()
 }
 

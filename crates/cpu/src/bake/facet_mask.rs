@@ -2,7 +2,7 @@
 //! of the same surface refined threefold (`HeightField::finer`).
 
 use crate::oracle::Oracle;
-use crate::visible_points::possible_points;
+use crate::visible_points::possible_within;
 use glam::DVec3;
 use ridgelight::Result;
 use ridgelight::plan::DIRECTIONS_A_WORD;
@@ -29,7 +29,7 @@ pub fn sky_is_visible(
     e: DVec3,
     elevation_rad: f64,
 ) -> [bool; 2] {
-    let all = possible_points(finer, middle(facet, cells_x), e, elevation_rad, 0.0);
+    let all = possible_within(finer, middle(facet, cells_x), e, |_| elevation_rad, 0.0);
     let is_sky = |point: &VisiblePoint| *point == VisiblePoint::Sky;
     let own = is_sky(&all[0]);
     [own, all.iter().any(|point| is_sky(point) != own)]

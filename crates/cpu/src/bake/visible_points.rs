@@ -34,21 +34,7 @@ pub fn visible_points(
 /// # Panics
 /// The grid point lies outside the field.
 pub fn visible_point(oracle: &Oracle, here: [usize; 2], e: DVec3) -> VisiblePoint {
-    possible_points(oracle, here, e, 0.0, 0.0)[0]
-}
-
-/// All possible visible points for an elevation error of `elevation_rad`: see [`possible_within`].
-///
-/// # Panics
-/// The grid point lies outside the field.
-pub fn possible_points(
-    oracle: &Oracle,
-    here: [usize; 2],
-    e: DVec3,
-    elevation_rad: f64,
-    of_way: f64,
-) -> Vec<VisiblePoint> {
-    possible_within(oracle, here, e, |_| elevation_rad, of_way)
+    possible_within(oracle, here, e, |_| 0.0, 0.0)[0]
 }
 
 /// All possible visible points where the elevation of each visible interval's upper end has an error of

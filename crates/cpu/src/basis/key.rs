@@ -10,56 +10,34 @@ use ridgelight::scene::KeyLight;
 use super::azimuth::{Blend, assemble, assemble_nlp, swath};
 use super::occlusion;
 
-/// Spherical harmonics of the visible part of a key light.
-pub trait KeyHarmonics {
-    /// Azimuths of the horizons: `count` of them from end to end (NS09: 3).
-    ///
-    /// # Panics
-    /// When `count` is below 2.
-    fn azimuths(&self, count: usize) -> Vec<f64>;
-
-    /// NLP coefficients of the visible part above a horizon: v̂(high) - v̂(low) (NS09 eq. 11, §6).
-    fn nlp(&self, order: usize, horizon_rad: f64) -> Vec<f64>;
-
-    /// Y_lm of the light of radiance 1 above horizons at [`azimuths`](Self::azimuths): n² coefficients.
-    ///
-    /// # Panics
-    /// When there are fewer than 2 horizons.
-    fn visible(&self, slices: &Slices, blend: Blend, horizons_rad: &[f64]) -> Vec<f64>;
-
-    /// [`visible`](Self::visible) by NLP, as in the paper.
-    ///
-    /// # Panics
-    /// When there are fewer than 2 horizons.
-    fn visible_nlp(&self, order: usize, blend: Blend, horizons_rad: &[f64]) -> Vec<f64>;
+/// Azimuths of the horizons: `count` of them, 2 or more, from end to end (NS09: 3).
+pub fn azimuths(key: &KeyLight, count: usize) -> Vec<f64> {
+    assert!(count >= 2, "{count} azimuths across a light");
+    let step = key.width_rad / (count - 1) as f64;
+    (0..count).map(|k| first_rad(key) + step * k as f64).collect()
 }
 
-impl KeyHarmonics for KeyLight {
-    fn azimuths(&self, count: usize) -> Vec<f64> {
-        assert!(count >= 2, "{count} azimuths across a light");
-        let step = self.width_rad / (count - 1) as f64;
-        (0..count).map(|k| first_rad(self) + step * k as f64).collect()
-    }
+/// NLP coefficients of the visible part above a horizon: v̂(high) - v̂(low) (NS09 eq. 11, §6).
+pub fn nlp(key: &KeyLight, order: usize, horizon_rad: f64) -> Vec<f64> {
+    let below = |elevation: f64| occlusion(order, elevation.sin(), elevation.cos());
+    let [low, high] = visible_elevations(key, horizon_rad).map(below);
+    high.iter().zip(low).map(|(h, l)| h - l).collect()
+}
 
-    fn nlp(&self, order: usize, horizon_rad: f64) -> Vec<f64> {
-        let below = |elevation: f64| occlusion(order, elevation.sin(), elevation.cos());
-        let [low, high] = visible_elevations(self, horizon_rad).map(below);
-        high.iter().zip(low).map(|(h, l)| h - l).collect()
-    }
+/// Y_lm of the light of radiance 1 above horizons at [`azimuths`], 2 or more: n² coefficients.
+pub fn visible(key: &KeyLight, slices: &Slices, blend: Blend, horizons_rad: &[f64]) -> Vec<f64> {
+    let visible = horizons_rad.iter().map(|&horizon| {
+        let [low, high] = visible_elevations(key, horizon);
+        slices.between(low, high)
+    });
+    let weights = weights(key, slices.order(), blend, horizons_rad.len());
+    assemble(slices.order(), &weights, &visible.collect::<Vec<_>>())
+}
 
-    fn visible(&self, slices: &Slices, blend: Blend, horizons_rad: &[f64]) -> Vec<f64> {
-        let visible = horizons_rad.iter().map(|&horizon| {
-            let [low, high] = visible_elevations(self, horizon);
-            slices.between(low, high)
-        });
-        let weights = weights(self, slices.order(), blend, horizons_rad.len());
-        assemble(slices.order(), &weights, &visible.collect::<Vec<_>>())
-    }
-
-    fn visible_nlp(&self, order: usize, blend: Blend, horizons_rad: &[f64]) -> Vec<f64> {
-        let visible: Vec<_> = horizons_rad.iter().map(|h| self.nlp(order, *h)).collect();
-        assemble_nlp(order, &weights(self, order, blend, horizons_rad.len()), &visible)
-    }
+/// [`visible`] by NLP, as in the paper.
+pub fn visible_nlp(key: &KeyLight, order: usize, blend: Blend, horizons_rad: &[f64]) -> Vec<f64> {
+    let visible: Vec<_> = horizons_rad.iter().map(|h| nlp(key, order, *h)).collect();
+    assemble_nlp(order, &weights(key, order, blend, horizons_rad.len()), &visible)
 }
 
 /// The light's visible elevations above a horizon; two equal values where none is visible.

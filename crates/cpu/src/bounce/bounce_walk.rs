@@ -5,7 +5,6 @@
 //! lies below the straight line between the two. For a receiver farther along, if something nearer hides both ends,
 //! it hides everything between; where the far end rises above it, the points between are visited.
 
-use crate::lattice::Lattice;
 use crate::shared::bounced::{Along, Cast, NEARLY_RAD, light_and_weight};
 use crate::shared::field::{field_slope, normal_of};
 use crate::shared::fuse::{nearest_texel, split_crossing, surface_on_line};
@@ -65,8 +64,7 @@ pub fn walked_along(swept: &Swept, exit: &[[f32; 3]], col: i32, row: i32) -> (Ve
 /// A grid point's own line in one azimuth.
 struct Walk<'a> {
     march: March<'a>,
-    lattice: &'a Lattice,
-    settings: (u32, i32),
+    swept: &'a Swept<'a>,
     exit: &'a [[f32; 3]],
     lane: i32,
     step: i32,
@@ -132,16 +130,14 @@ impl Progress {
 }
 
 impl<'a> Walk<'a> {
-    fn new(swept: &Swept<'a>, exit: &'a [[f32; 3]], azimuth: &Azimuth, col: i32, row: i32) -> Self {
+    fn new(swept: &'a Swept, exit: &'a [[f32; 3]], azimuth: &Azimuth, col: i32, row: i32) -> Self {
         let march = March::new(swept.heights, azimuth);
         let (lane, step) = march.of_grid_point(col, row);
         let gradient = field_slope(&swept.heights, col, row);
         let direction = DVec2::new(azimuth.cos_phi.into(), azimuth.sin_phi.into());
-        let warm_up = swept.warm_up[usize::from(azimuth.marches_rows())];
         Self {
             march,
-            lattice: swept.lattices.of(azimuth),
-            settings: (swept.line_shift, warm_up),
+            swept,
             exit,
             lane,
             step,
@@ -181,8 +177,9 @@ impl<'a> Walk<'a> {
         if self.march.periodic() {
             (y, step) = (wrapped(y, self.march.lanes * CELL), wrapped(step, self.march.steps));
         }
-        nearest_texel(self.lattice, &self.march, self.settings, y, step)
-            .map_or(0, |texel| i32::from(self.lattice.occluders[texel]))
+        nearest_texel(self.swept, &self.march, y, step).map_or(0, |texel| {
+            i32::from(self.swept.lattices.of(&self.march.azimuth).occluders[texel])
+        })
     }
 
     fn walked(&self) -> Progress {
@@ -200,7 +197,7 @@ impl<'a> Walk<'a> {
         };
         let mut progress = Progress { along, turns: 0, faces, passed, reached: self.plane };
 
-        let mut reach = self.step + self.settings.1;
+        let mut reach = self.step + self.swept.warm_up(azimuth);
         if !self.march.periodic() && azimuth.shear > 0 {
             reach = reach.min(self.lane * CELL / azimuth.shear);
         }

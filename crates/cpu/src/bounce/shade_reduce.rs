@@ -1,21 +1,8 @@
 //! One level of the pyramid of exit radiance from the level an octave finer, as `height_reduce`, but clamped to the
 //! range of its source.
 
-use crate::shared::sweep::wrapped;
+use crate::shared::levels::held_between;
 use ridgelight::plan::pyramid::Pyramid;
-
-/// Two neighbouring texels of an axis, and the fraction between them; beyond the ends the last is held.
-fn between(place: f32, count: u32, periodic: bool) -> ([usize; 2], f64) {
-    let count = count as i32;
-    let cell = place.floor() as i32;
-    if periodic {
-        let two = [cell, cell + 1].map(|i| wrapped(i, count) as usize);
-        return (two, f64::from(place - cell as f32));
-    }
-    let held = cell.clamp(0, (count - 2).max(0));
-    let t = f64::from(place - held as f32).clamp(0.0, 1.0);
-    ([held as usize, (held + 1).min(count - 1) as usize], t)
-}
 
 /// R, G, B of level `number` from the grid points' exit radiance and the texels of the levels before it.
 ///
@@ -33,8 +20,8 @@ pub fn shade_reduce(
     let [width, height] = source.size;
     let source_of = if from == 0 { exit } else { &texels[source.first as usize..] };
     let bilinear = |place: [f32; 2]| {
-        let (x, t) = between(place[0], width, pyramid.periodic);
-        let (y, u) = between(place[1], height, pyramid.periodic);
+        let (x, t) = held_between(place[0], width, pyramid.periodic);
+        let (y, u) = held_between(place[1], height, pyramid.periodic);
         let row = |y: usize| {
             let [low, high] = x.map(|x| source_of[y * width as usize + x]);
             [0, 1, 2].map(|c| low[c] + t * (high[c] - low[c]))

@@ -3,7 +3,7 @@
 
 use crate::bounce_gather::{BounceGather, March};
 use crate::shared::bounced::{Along, radiance};
-use crate::shared::sweep::wrapped;
+use crate::shared::levels::held_between;
 use glam::DVec3;
 use ridgelight::basis::azimuth::around;
 use ridgelight::basis::bands;
@@ -96,25 +96,12 @@ impl SpecularGather<'_> {
         }
         let shade = self.gather.shade;
         let level = shade.level(number);
-        let [cols, rows] = level.size.map(|n| n as i32);
+        let [cols, rows] = level.size;
         let at = [0, 1].map(|i| place[i] as f32 * level.per_grid_point[i]);
-        let two = |place: f32, count: i32| {
-            let cell = place.floor() as i32;
-            if shade.periodic {
-                let at = [cell, cell + 1].map(|i| wrapped(i, count));
-                return (at, f64::from(place - cell as f32));
-            }
-            let held = cell.clamp(0, (count - 2).max(0));
-            ([held, (held + 1).min(count - 1)], f64::from(place - held as f32).clamp(0.0, 1.0))
-        };
-        let ((x, t), (y, u)) = (two(at[0], cols), two(at[1], rows));
-        let texel = |i: usize, j: usize| level.first as usize + (y[j] * cols + x[i]) as usize;
-        let mut taps = Vec::new();
-        for j in 0..2 {
-            for i in 0..2 {
-                taps.push((texel(i, j), [1.0 - t, t][i] * [1.0 - u, u][j]));
-            }
-        }
-        taps
+        let (x, t) = held_between(at[0], cols, shade.periodic);
+        let (y, u) = held_between(at[1], rows, shade.periodic);
+        let texel = |i: usize, j: usize| level.first as usize + y[j] * cols as usize + x[i];
+        let tap = |(i, j)| (texel(i, j), [1.0 - t, t][i] * [1.0 - u, u][j]);
+        [(0, 0), (1, 0), (0, 1), (1, 1)].map(tap).to_vec()
     }
 }

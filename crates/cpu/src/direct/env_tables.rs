@@ -30,16 +30,10 @@ impl EnvTables {
     /// # Panics
     /// Outside the tables.
     pub fn light(&self, azimuth: usize, lowest: f64, normal: DVec3) -> DVec3 {
-        let (nodes, bottom) = (self.nodes, self.bottom_rad);
-        let place = (lowest.atan() - bottom) / (FRAC_PI_2 - bottom) * (nodes - 1) as f64;
-        let node = (place.max(0.0) as usize).min(nodes - 2);
-        let t = (place - node as f64).clamp(0.0, 1.0);
-        let moment = |m| self.at(azimuth, m, node).lerp(self.at(azimuth, m, node + 1), t);
-        normal.x * moment(0) + normal.y * moment(1) + normal.z * moment(2)
+        let [[x, _], [y, _], [z, _]] = self.looked_up(azimuth, lowest, 0.0);
+        normal.x * x + normal.y * y + normal.z * z
     }
-}
 
-impl EnvTables {
     /// Three moments above the direction of slope `lowest`; and for each its largest change between two nodes, for an
     /// elevation error of `off_rad`.
     ///

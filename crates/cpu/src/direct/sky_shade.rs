@@ -28,24 +28,18 @@ pub fn wedge_of_sky(azimuth: &Azimuth, lowest: f64, normal: DVec3) -> f64 {
     (flat_part * moments[0] + normal.z * wedge * moments[1]) / PI
 }
 
-/// Exit radiance of one grid point of albedo 1 under an environment, RGB.
-///
-/// # Panics
-/// Outside the field.
-pub fn environment_at(swept: &Swept, tables: &EnvTables, col: i32, row: i32) -> [f64; 3] {
-    let mut environment = DVec3::ZERO;
-    swept.add_all([col, row], true, |index, _, lowest, normal| {
-        environment += tables.light(index, lowest, normal);
-    });
-    environment.to_array()
-}
-
 /// `sky_sum` of all azimuths: [`sky_at`] for every grid point, row-major.
 pub fn sky_shade(swept: &Swept) -> Vec<f64> {
     swept.per_grid_point(|col, row| sky_at(swept, col, row))
 }
 
-/// `env_sum` of all azimuths: [`environment_at`] for every grid point, row-major.
+/// `env_sum` of all azimuths: exit radiance of every grid point of albedo 1 under an environment, RGB, row-major.
 pub fn env_shade(swept: &Swept, tables: &EnvTables) -> Vec<[f64; 3]> {
-    swept.per_grid_point(|col, row| environment_at(swept, tables, col, row))
+    swept.per_grid_point(|col, row| {
+        let mut environment = DVec3::ZERO;
+        swept.add_all([col, row], true, |index, _, lowest, normal| {
+            environment += tables.light(index, lowest, normal);
+        });
+        environment.to_array()
+    })
 }

@@ -38,12 +38,5 @@ pub fn horizon_march(
     lattice: &mut Lattice,
 ) {
     let march = March::new(heights, azimuth);
-    for step in 0..march.steps {
-        for lane in 0..march.lanes {
-            let found = marched(&march, lane, step, options);
-            let texel = lattice.texel(lane, march.march_position(step), azimuth.layer);
-            lattice.slopes[texel] = found.slope;
-            lattice.distances[texel] = found.steps;
-        }
-    }
+    lattice.fill(&march, |lane, step| marched(&march, lane, step, options));
 }

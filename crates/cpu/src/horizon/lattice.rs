@@ -1,6 +1,7 @@
 //! Result of a sweep: one value per line and march step.
 
-use crate::shared::sweep::{CELL_SHIFT, NO_SLOPE, wrapped};
+use crate::shared::fuse::Found;
+use crate::shared::sweep::{CELL_SHIFT, March, NO_SLOPE, wrapped};
 use ridgelight::plan::azimuths::{Azimuth, CELL};
 use ridgelight::scene::Border;
 
@@ -47,6 +48,15 @@ impl Lattice {
             occluders: vec![0; words],
             slopes: vec![NO_SLOPE; words],
             distances: vec![0.0; words],
+        }
+    }
+
+    /// Slopes and distances of every grid point of a march, one slot a lane; `of` takes a lane and a step.
+    pub fn fill(&mut self, march: &March, of: impl Fn(i32, i32) -> Found) {
+        for (step, lane) in (0..march.steps).flat_map(|s| (0..march.lanes).map(move |l| (s, l))) {
+            let texel = self.texel(lane, march.march_position(step), march.azimuth.layer);
+            let found = of(lane, step);
+            (self.slopes[texel], self.distances[texel]) = (found.slope, found.steps);
         }
     }
 

@@ -3,6 +3,7 @@
 //! 2009, eq. 14-17).
 
 use crate::lattice::Lattice;
+use crate::shared::fuse::Found;
 use crate::shared::levels::LevelTexels;
 use crate::shared::sweep::{CELL_SHIFT, Heights, March, NO_SLOPE, PER_CELL, inside};
 use ridgelight::plan::azimuths::{Azimuth, CELL, FLIPS_LANES};
@@ -134,12 +135,10 @@ pub fn pyramid_march(
     lattice: &mut Lattice,
 ) {
     let march = PyramidMarch { march: March::new(heights, azimuth), pyramid, stored };
-    for step in 0..march.march.steps {
-        for lane in 0..march.march.lanes {
-            let texel = lattice.texel(lane, march.march.march_position(step), azimuth.layer);
-            lattice.slopes[texel] = march.slope(lane, step, warm_up);
-        }
-    }
+    lattice.fill(&march.march, |lane, step| Found {
+        slope: march.slope(lane, step, warm_up),
+        steps: 0.0,
+    });
 }
 
 /// Heights of a field and its pyramid's levels on the field's grid lines.

@@ -117,7 +117,7 @@ impl<'a> Oracle<'a> {
         let (row, col) = (row as f64, col as f64);
         let own_m = self.vertex(row, col);
         let cap_m = cap_m(self.field);
-        let mut best = Best::default();
+        let mut best = Best::NONE;
         // Columns, rows, diagonals: crossing j of a family lies at t = j / |its lines per t|.
         // Multiplying before dividing keeps crossings of integer directions on their vertices.
         for (family, lines_per_t) in
@@ -157,7 +157,7 @@ impl<'a> Oracle<'a> {
                         self.vertex(c + k, c)
                     }),
                 };
-                best.offer((h - own_m) / distance_m, distance_m, r, c);
+                best.offer((h - own_m) / distance_m, [distance_m, r, c]);
             }
         }
         best.horizon()
@@ -214,47 +214,36 @@ impl<'a> Oracle<'a> {
 /// The best vertex so far and the best slope at any other place.
 struct Best {
     slope: f64,
-    distance_m: f64,
-    row: f64,
-    col: f64,
+    /// Distance, row, column.
+    at: [f64; 3],
     runner_up: f64,
     largest_slope: f64,
 }
 
-impl Default for Best {
-    fn default() -> Self {
-        let none = f64::NEG_INFINITY;
-        Self {
-            slope: none,
-            distance_m: 0.0,
-            row: 0.0,
-            col: 0.0,
-            runner_up: none,
-            largest_slope: 0.0,
-        }
-    }
-}
-
 impl Best {
+    const NONE: Self = Self {
+        slope: f64::NEG_INFINITY,
+        runner_up: f64::NEG_INFINITY,
+        at: [0.0; 3],
+        largest_slope: 0.0,
+    };
+
     /// The order of offers does not matter: a former best is at least the runner-up, and stays so unless the winner
     /// is at the same place.
-    fn offer(&mut self, slope: f64, distance_m: f64, row: f64, col: f64) {
+    fn offer(&mut self, slope: f64, at: [f64; 3]) {
         self.largest_slope = self.largest_slope.max(slope.abs());
-        let elsewhere = (row - self.row).abs() + (col - self.col).abs() > ONE_PLACE_CELLS;
-        let beaten = if slope > self.slope {
-            let beaten = self.slope;
-            (self.slope, self.distance_m, self.row, self.col) = (slope, distance_m, row, col);
-            beaten
-        } else {
-            slope
-        };
+        let elsewhere = (at[1] - self.at[1]).abs() + (at[2] - self.at[2]).abs() > ONE_PLACE_CELLS;
+        let beaten = slope.min(self.slope);
+        if slope > self.slope {
+            (self.slope, self.at) = (slope, at);
+        }
         if elsewhere {
             self.runner_up = self.runner_up.max(beaten);
         }
     }
 
     fn horizon(&self) -> Option<Horizon> {
-        let Self { slope, distance_m, row, col, runner_up, largest_slope } = *self;
+        let Self { slope, at: [distance_m, row, col], runner_up, largest_slope } = *self;
         (slope > f64::NEG_INFINITY).then(|| {
             let margin = slope - runner_up;
             let unique = margin > TIE_TOLERANCE * largest_slope;

@@ -14,8 +14,8 @@ mod traced;
 use std::ops::Range;
 
 use crate::shared::random::{net_point, shuffled, words_of};
-use crate::shared::trace::{What, trace};
-use crate::shared::walk::{Ground, ray_from};
+use crate::shared::trace::{Met, What, trace};
+use crate::shared::walk::{Ground, Ray, ray_from};
 use crate::tolerance::near::{Near, Near3, all, any, dot, minus, plus, product};
 use environment::Environment;
 use place::Place;
@@ -60,6 +60,11 @@ fn colour(of: [f32; 4]) -> Near3 {
 
 fn largest(of: Near3) -> Near {
     of[0].max(of[1]).max(of[2])
+}
+
+/// Beyond every field.
+fn far() -> Near {
+    Near::of(1e30)
 }
 
 fn one() -> Near {
@@ -159,6 +164,16 @@ impl<'a> Tracer<'a> {
         all
     }
 
+    fn ray(&self, from: &Place, e: Near3) -> Ray {
+        ray_from(&self.ground, from.base, from.offset, from.own, e)
+    }
+
+    fn followed(&self, ray: &Ray, t_end: Near, sum: &mut Traced) -> Met {
+        let met = trace(&self.ground, ray, t_end);
+        sum.crossed[sum.reflected] += met.crossed;
+        met
+    }
+
     /// Adds the contribution of one path.
     fn path_light(
         &self,
@@ -202,11 +217,9 @@ impl<'a> Tracer<'a> {
                     continue;
                 }
                 sum.ray(is_sent);
-                let ray = ray_from(&self.ground, place.base, place.offset, place.own, light.e);
-                let far = Near::of(1e30);
-                let t_end = light.end_m.map_or(far, |end| end * ray.scale.min(Near::of(1e6)));
-                let met = trace(&self.ground, &ray, t_end);
-                sum.crossed[sum.reflected] += met.crossed;
+                let ray = self.ray(&place, light.e);
+                let t_end = light.end_m.map_or(far(), |end| end * ray.scale.min(Near::of(1e6)));
+                let met = self.followed(&ray, t_end, sum);
                 let is_free = met.what.map(|what| what == What::Free);
                 let in_view = match light.end_m {
                     None => is_free,
@@ -229,9 +242,7 @@ impl<'a> Tracer<'a> {
                 let is_sent = all([counts, of.facing.above(Near::ZERO), is_some(brought)]);
                 if is_sent != Some(false) {
                     sum.ray(is_sent);
-                    let ray = ray_from(&self.ground, place.base, place.offset, place.own, e);
-                    let met = trace(&self.ground, &ray, Near::of(1e30));
-                    sum.crossed[sum.reflected] += met.crossed;
+                    let met = self.followed(&self.ray(&place, e), far(), sum);
                     let is_free = met.what.map(|what| what == What::Free);
                     let brought = product(carried, brought);
                     sum.add(brought, all([is_sent, is_free]), most(carried, 0));
@@ -249,9 +260,8 @@ impl<'a> Tracer<'a> {
                 }
                 Some(true) => sum.ray(Some(true)),
             }
-            let ray = ray_from(&self.ground, place.base, place.offset, place.own, e);
-            let met = trace(&self.ground, &ray, Near::of(1e30));
-            sum.crossed[sum.reflected] += met.crossed;
+            let ray = self.ray(&place, e);
+            let met = self.followed(&ray, far(), sum);
             let scattered = product(carried, of.scattered);
             let Some(what) = met.what else {
                 let (arriving, all) = (self.most_arriving(left), most(carried, left));

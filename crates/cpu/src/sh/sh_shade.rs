@@ -3,6 +3,7 @@
 use crate::basis::receiver;
 use crate::shared::field::{field_slope, normal_of};
 use crate::shared::sweep::Heights;
+use crate::specular_visibility::specular_visibility;
 use glam::{DVec2, DVec3};
 use ridgelight::basis::bands;
 use ridgelight::basis::harmonics::evaluate;
@@ -84,6 +85,6 @@ pub fn specular_on(
 }
 
 fn times(rows: &[f64], visibility: &[f64], matrix: &[Vec<DVec3>]) -> DVec3 {
-    let share = |row: &[DVec3]| row.iter().zip(visibility).map(|(m, v)| *v * *m).sum::<DVec3>();
-    rows.iter().zip(matrix).map(|(r, row)| *r * share(row)).sum()
+    let shares = specular_visibility(visibility, matrix);
+    rows.iter().zip(shares).map(|(r, share)| *r * DVec3::from_array(share)).sum()
 }

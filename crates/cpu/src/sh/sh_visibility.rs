@@ -20,18 +20,6 @@ pub struct Series {
     pub receiver: Receiver,
 }
 
-/// The series of one grid point.
-///
-/// # Panics
-/// Outside the field.
-pub fn visibility_at(swept: &Swept, series: Series, col: i32, row: i32) -> Vec<f64> {
-    let mut lowest = Vec::new();
-    swept.add_all([col, row], series.receiver == Receiver::Plane, |_, azimuth, slope, _| {
-        lowest.push((*azimuth, slope));
-    });
-    visibility_above(series, &lowest)
-}
-
 /// The series of visibility above these slopes along azimuths, each independently.
 ///
 /// # Panics
@@ -72,7 +60,13 @@ pub fn visibility_along(series: Series, rays: &[[f64; 3]]) -> Vec<f64> {
     }
 }
 
-/// `visibility` of all azimuths: [`visibility_at`] for every grid point, row-major.
+/// `visibility` of all azimuths: the series of every grid point, row-major.
 pub fn sh_visibility(swept: &Swept, series: Series) -> Vec<Vec<f64>> {
-    swept.per_grid_point(|col, row| visibility_at(swept, series, col, row))
+    swept.per_grid_point(|col, row| {
+        let mut lowest = Vec::new();
+        swept.add_all([col, row], series.receiver == Receiver::Plane, |_, azimuth, slope, _| {
+            lowest.push((*azimuth, slope));
+        });
+        visibility_above(series, &lowest)
+    })
 }

@@ -1,8 +1,8 @@
 //! `fuse.glsl`: resamples the lattice of a sweep at the field's grid points.
 
+use super::gather::Swept;
 use super::segment::met_within;
 use super::sweep::{LOWEST_MET, March, NO_SLOPE, PER_CELL, on_field, wrapped};
-use crate::lattice::Lattice;
 use ridgelight::plan::azimuths::CELL;
 use ridgelight::scene::Fuse;
 
@@ -79,14 +79,9 @@ struct Around {
     takes_after: bool,
 }
 
-fn lines_around(
-    lattice: &Lattice,
-    march: &March,
-    (line_shift, warm_up): (u32, i32),
-    y: i32,
-    step: i32,
-) -> Around {
-    let (azimuth, lanes) = (&march.azimuth, march.lanes);
+fn lines_around(swept: &Swept, march: &March, y: i32, step: i32) -> Around {
+    let (azimuth, lanes, line_shift) = (&march.azimuth, march.lanes, swept.line_shift);
+    let (lattice, warm_up) = (swept.lattices.of(azimuth), swept.warm_up(azimuth));
     let at = march.march_position(step);
     let wraps = march.periodic();
     let spacing = 1_i32 << line_shift;
@@ -112,14 +107,8 @@ fn lines_around(
 ///
 /// # Panics
 /// When the lattice is not that of the azimuth and `line_shift`.
-pub fn nearest_texel(
-    lattice: &Lattice,
-    march: &March,
-    settings: (u32, i32),
-    y: i32,
-    step: i32,
-) -> Option<usize> {
-    let around = lines_around(lattice, march, settings, y, step);
+pub fn nearest_texel(swept: &Swept, march: &March, y: i32, step: i32) -> Option<usize> {
+    let around = lines_around(swept, march, y, step);
     if around.takes_after { around.after_texel } else { around.before_texel }
 }
 
@@ -128,19 +117,15 @@ pub fn nearest_texel(
 ///
 /// # Panics
 /// When the lattice is not that of the azimuth and `line_shift`.
-pub fn fused(
-    lattice: &Lattice,
-    march: &March,
-    (fuse, line_shift, warm_up): (Option<Fuse>, u32, i32),
-    (lane, step): (i32, i32),
-) -> Found {
+pub fn fused(swept: &Swept, march: &March, (lane, step): (i32, i32)) -> Found {
+    let (lattice, warm_up) = (swept.lattices.of(&march.azimuth), swept.warm_up(&march.azimuth));
     let (y, own) = (lane * CELL, march.height_at(lane, step));
-    let Some(fuse) = fuse else {
+    let Some(fuse) = swept.fuse else {
         let texel = lattice.texel(lane, march.march_position(step), march.azimuth.layer);
         return Found { slope: lattice.slopes[texel], steps: lattice.distances[texel] };
     };
-    let lines = lines_around(lattice, march, (line_shift, warm_up), y, step);
-    let Around { before, after, before_texel, after_texel, t, takes_after } = lines;
+    let Around { before, after, before_texel, after_texel, t, takes_after } =
+        lines_around(swept, march, y, step);
     let slope = |texel: Option<usize>| Found {
         slope: texel.map_or(NO_SLOPE, |i| sloped(lattice.slopes[i])),
         steps: 0.0,

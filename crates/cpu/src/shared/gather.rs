@@ -34,9 +34,12 @@ impl Swept<'_> {
     /// Outside the field.
     pub fn found(&self, azimuth: &Azimuth, col: i32, row: i32) -> Found {
         let march = March::new(self.heights, azimuth);
-        let settings =
-            (self.fuse, self.line_shift, self.warm_up[usize::from(azimuth.marches_rows())]);
-        fused(self.lattices.of(azimuth), &march, settings, march.of_grid_point(col, row))
+        fused(self, &march, march.of_grid_point(col, row))
+    }
+
+    /// Steps marched before the first that was written.
+    pub fn warm_up(&self, azimuth: &Azimuth) -> i32 {
+        self.warm_up[usize::from(azimuth.marches_rows())]
     }
 
     /// Hands every azimuth's number, direction, lowest slope and the normal to `add_light`.

@@ -12,6 +12,23 @@ pub struct LevelTexels<'a> {
     pub texels: &'a [f32],
 }
 
+/// Two neighbouring texels of an axis of `count`, and the fraction between them; beyond the ends the last two are
+/// extrapolated linearly.
+pub fn between(place: f32, count: u32, periodic: bool) -> ([usize; 2], f32) {
+    let (count, cell) = (count as i32, place.floor() as i32);
+    if periodic {
+        return ([cell, cell + 1].map(|i| wrapped(i, count) as usize), place - cell as f32);
+    }
+    let held = cell.clamp(0, (count - 2).max(0));
+    ([held, (held + 1).min(count - 1)].map(|i| i as usize), place - held as f32)
+}
+
+/// The same; beyond the ends the last texel is held.
+pub fn held_between(place: f32, count: u32, periodic: bool) -> ([usize; 2], f64) {
+    let (two, t) = between(place, count, periodic);
+    (two, f64::from(t).clamp(0.0, 1.0))
+}
+
 /// Four neighbouring texels of an axis of `count` and their weights at a position in texels: the uniform cubic
 /// B-spline; beyond the ends coefficients continue by point reflection.
 pub fn spline_taps(place: f32, count: u32, periodic: bool) -> ([u32; 4], [f32; 4]) {

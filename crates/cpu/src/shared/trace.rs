@@ -22,7 +22,7 @@ pub enum What {
 }
 
 /// Kind and position of a hit.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Met {
     /// None where rounding decides.
     pub what: Option<What>,
@@ -36,19 +36,6 @@ pub struct Met {
     pub lower: Option<bool>,
     /// At every test against the surface, the number of cells crossed plus one.
     pub crossed: f64,
-}
-
-impl Met {
-    fn nothing(what: Option<What>) -> Self {
-        Self {
-            what,
-            t: Near::ZERO,
-            cell: [0; 2],
-            offset: [Near::ZERO; 2],
-            lower: None,
-            crossed: 0.0,
-        }
-    }
 }
 
 /// Between two cells' edges: where the ray crosses the diagonal.
@@ -65,7 +52,7 @@ pub fn trace(ground: &Ground, ray: &Ray, t_end: Near) -> Met {
 }
 
 fn followed(ground: &Ground, ray: &Ray, t_end: Near, crossed: &mut f64) -> Met {
-    let Some(mut walk) = Walk::from(ground, ray) else { return Met::nothing(None) };
+    let Some(mut walk) = Walk::from(ground, ray) else { return Met::default() };
     let rises = ray.rise.above(Near::ZERO);
     let far = Near::of(1e30);
     let t_over = match rises {
@@ -88,11 +75,12 @@ fn followed(ground: &Ground, ray: &Ray, t_end: Near, crossed: &mut f64) -> Met {
                 Border::Open => false,
                 Border::Periodic => t_end.v >= f64::from(REACH_CELLS),
             };
-            return Met::nothing(match (meets_ground, rises) {
+            let what = match (meets_ground, rises) {
                 (false, _) | (true, Some(true)) => Some(What::Free),
                 (true, Some(false)) => Some(What::Level),
                 (true, None) => None,
-            });
+            };
+            return Met { what, ..Met::default() };
         }
         may_have_ended |= is_before_end.is_none();
         let block = walk.block(ground, ray);
@@ -111,10 +99,10 @@ fn followed(ground: &Ground, ray: &Ray, t_end: Near, crossed: &mut f64) -> Met {
             Some(true) if !may_have_ended && walk.t.v > may_have_passed => {
                 return hit(ground, ray, &walk, ahead);
             }
-            _ => return Met::nothing(None),
+            _ => return Met::default(),
         }
     }
-    Met::nothing(Some(What::Lost))
+    Met { what: Some(What::Lost), ..Met::default() }
 }
 
 /// Whether the surface is not below the ray at the cell's diagonal or its far edge.
@@ -185,12 +173,6 @@ fn hit(ground: &Ground, ray: &Ray, walk: &Walk, t_next: Near) -> Met {
     let between = [0, 1].map(|i| from[i] + middle * ray.advance[i]);
     let is_sure = [is_split, is_first, begins].iter().all(Option::is_some);
     let lower = between[1].above(between[0]).filter(|_| is_sure);
-    Met {
-        what: Some(What::Hit),
-        t: t_hit,
-        cell,
-        offset: ray.place(from, t_hit),
-        lower,
-        crossed: 0.0,
-    }
+    let offset = ray.place(from, t_hit);
+    Met { what: Some(What::Hit), t: t_hit, cell, offset, lower, crossed: 0.0 }
 }

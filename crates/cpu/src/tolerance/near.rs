@@ -13,7 +13,7 @@ const QUOTIENT: f64 = 5.0;
 const ROOT: f64 = 9.0;
 
 /// A value in f64, and a bound on a device's error.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Near {
     /// The value.
     pub v: f64,

@@ -37,7 +37,9 @@ pub(crate) fn ellipse_fit(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     } else {
         let words = run.words(pass, "visible_points").expect("bound");
         let points = VisiblePoints::new(field, border, directions, words).expect("all whole");
-        (0..field.heights_m().len()).map(|at| sky_directions(&points, at)).collect()
+        (0..field.heights_m().len())
+            .map(|at| sky_directions(&points, points.directions().vectors(), at))
+            .collect()
     };
     let least = f64::from(f32::from_bits(pushed(pass, LEAST_RADIUS)));
     let [axes, radii] =

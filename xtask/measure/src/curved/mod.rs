@@ -21,7 +21,7 @@ use ridgelight::scene::{
 };
 use ridgelight_bake::CurvedEllipses;
 use ridgelight_cpu::bent_directions::{Draped, Fans};
-use ridgelight_cpu::ellipse_fit::{Ellipse, bent_sky_directions, fit};
+use ridgelight_cpu::ellipse_fit::{Ellipse, fit, sky_directions};
 use ridgelight_cpu::fan_weights::weight;
 
 use crate::bake::light::five_ellipses;
@@ -149,7 +149,7 @@ fn row(gpu: &mut Headless, flat: &Flat, per_m: f64) -> Result<Row> {
     let vectors = points.directions().vectors();
     let bent: Vec<Vec<DVec3>> = (0..field.heights_m().len()).map(|at| adapted.bent(at)).collect();
     let fitted: Vec<Ellipse> =
-        all.iter().map(|at| fit(&bent_sky_directions(points, &bent[*at], *at)).0).collect();
+        all.iter().map(|at| fit(&sky_directions(points, &bent[*at], *at)).0).collect();
     let between: Vec<CurvedEllipses> =
         all.iter().map(|at| CurvedEllipses::of(&five[*at], STEPS)).collect();
     let shadows = [

@@ -3,7 +3,7 @@
 use crate::tolerance::near::{Near, Near3, plus};
 
 /// Contribution of some paths of a grid point.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Traced {
     /// The sum of their light.
     pub light: Near3,
@@ -17,19 +17,6 @@ pub struct Traced {
     pub crossed: [f64; 3],
     /// Current index in it.
     pub(super) reflected: usize,
-}
-
-impl Default for Traced {
-    fn default() -> Self {
-        Self {
-            light: [Near::ZERO; 3],
-            rays: Near::ZERO,
-            doubts: [0; 3],
-            in_doubt: [0.0; 3],
-            crossed: [0.0; 3],
-            reflected: 0,
-        }
-    }
 }
 
 impl Traced {
