@@ -7,6 +7,9 @@
 //! [`path_trace`] follows the same random paths as its shader and carries the f32 error bound of every value along.
 //! The ground truth is independent of the shaders: [`oracle`] tests every triangle by brute force, [`indirect`]
 //! computes direct and indirect light by quadrature, without Monte Carlo noise.
+//!
+//! Functions panic where arguments do not fit together: a grid point outside its field, levels or lattices that lack
+//! texels, a series whose length is not a square. Their own pages name only other panics.
 
 #![deny(clippy::missing_errors_doc)]
 

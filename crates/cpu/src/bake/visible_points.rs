@@ -9,9 +9,6 @@ use std::f64::consts::FRAC_PI_2;
 
 /// Visibility, 0 to 1, of a light [`around`](VisiblePoints::around) which these directions lie: the weight of those in which the
 /// sky is visible.
-///
-/// # Panics
-/// Outside the field.
 pub fn lit_share(points: &VisiblePoints, around: &[(usize, f64); 3], grid_point: usize) -> f64 {
     let is_sky = |i: usize| points.point(i, grid_point) == VisiblePoint::Sky;
     around.iter().filter(|c| is_sky(c.0)).map(|c| c.1).sum()
@@ -30,9 +27,6 @@ pub fn visible_points(
 }
 
 /// The visible point of the grid point (row, column) in one direction.
-///
-/// # Panics
-/// The grid point lies outside the field.
 pub fn visible_point(oracle: &Oracle, here: [usize; 2], e: DVec3) -> VisiblePoint {
     possible_within(oracle, here, e, |_| 0.0, 0.0)[0]
 }
@@ -43,9 +37,6 @@ pub fn visible_point(oracle: &Oracle, here: [usize; 2], e: DVec3) -> VisiblePoin
 ///
 /// Along an azimuth the visible intervals of the surface are stacked in elevation. The elevations within the error
 /// cover part of each interval that they cross, and the sky beyond the last.
-///
-/// # Panics
-/// The grid point lies outside the field.
 pub fn possible_within(
     oracle: &Oracle,
     [row, col]: [usize; 2],

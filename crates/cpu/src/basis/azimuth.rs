@@ -136,9 +136,6 @@ pub fn swath(
 }
 
 /// Spherical harmonics of slices along azimuths, each with its weights: n² coefficients.
-///
-/// # Panics
-/// If the numbers of slices and weights differ, or their sizes are not those of `order`.
 pub fn assemble(order: usize, weights: &[Vec<f64>], slices: &[Vec<f64>]) -> Vec<f64> {
     assert_eq!(weights.len(), slices.len(), "weights and slices");
     bands(order)
@@ -151,9 +148,6 @@ pub fn assemble(order: usize, weights: &[Vec<f64>], slices: &[Vec<f64>]) -> Vec<
 
 /// [`assemble`] from NLP coefficients: weighted and summed first, n (2n-1) products per azimuth, and converted to slices
 /// once.
-///
-/// # Panics
-/// As [`assemble`].
 pub fn assemble_nlp(order: usize, weights: &[Vec<f64>], nlps: &[Vec<f64>]) -> Vec<f64> {
     assert_eq!(weights.len(), nlps.len(), "weights and NLP vectors");
     let elevations = from_nlp(order);

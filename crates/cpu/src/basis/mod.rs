@@ -42,9 +42,6 @@ pub fn nlp_value(coefficients: &[f64], z: f64) -> f64 {
 }
 
 /// The function rotated counter-clockwise about z: f'(φ) = f(φ - angle).
-///
-/// # Panics
-/// If the number of `coefficients` is not a square.
 pub fn rotate_z(coefficients: &[f64], angle_rad: f64) -> Vec<f64> {
     bands(order_of(coefficients))
         .map(|(l, m)| {
@@ -128,9 +125,6 @@ fn slope(l: usize) -> Vec<f64> {
 }
 
 /// The product of two series, truncated to their order.
-///
-/// # Panics
-/// If `triples` have a higher order than `a` or `b`.
 pub fn product(triples: &[Triple], a: &[f64], b: &[f64]) -> Vec<f64> {
     let mut out = vec![0.0; a.len()];
     for triple in triples {
@@ -153,9 +147,6 @@ pub fn receiver([x, y, z]: [f64; 3]) -> [f64; 9] {
 ///
 /// If U is the product of V and L ([`light_matrix`](ridgelight::basis::product::light_matrix) times V), then V, L and the lobe are all truncated, and the product
 /// lacks bands of V: sharper lobes lose more.
-///
-/// # Panics
-/// If the number of coefficients in `arriving` is not a square.
 pub fn specular(arriving: &[f64], direction: DVec3, exponent: f64) -> f64 {
     let order = arriving.len().isqrt();
     let kept = phong_bands(order, exponent);
@@ -164,18 +155,12 @@ pub fn specular(arriving: &[f64], direction: DVec3, exponent: f64) -> f64 {
 }
 
 /// The value of a series at a unit direction: Σ of coefficients times Y.
-///
-/// # Panics
-/// If the number of `coefficients` is not a square.
 pub fn reconstruct(coefficients: &[f64], direction: DVec3) -> f64 {
     let values = evaluate(order_of(coefficients), direction);
     coefficients.iter().zip(values).map(|(c, y)| c * y).sum()
 }
 
 /// The function rotated by half a turn about a unit axis: its value at o is the old one at 2 (a·o) a - o.
-///
-/// # Panics
-/// If the number of `coefficients` is not a square.
 pub fn half_turn(coefficients: &[f64], axis: DVec3) -> Vec<f64> {
     let order = order_of(coefficients);
     let mut out = vec![0.0; coefficients.len()];
@@ -188,9 +173,6 @@ pub fn half_turn(coefficients: &[f64], axis: DVec3) -> Vec<f64> {
 
 /// A zonal function about z (n coefficients of Y_l0) rotated to a unit axis: z_l √(4π/(2l+1)) Y_lm (Sloan, Luna & Snyder
 /// 2005).
-///
-/// # Panics
-/// If there are none, or more than [`MAX_ORDER`](ridgelight::basis::MAX_ORDER).
 pub fn turned(zonal: &[f64], axis: DVec3) -> Vec<f64> {
     let values = evaluate(zonal.len(), axis);
     bands(zonal.len())

@@ -13,9 +13,6 @@ use super::{order_of, reconstruct};
 /// -f/(f_κ - f); the result is the largest such t over the sphere, as Sloan (Deringing Spherical Harmonics, 2017) finds the
 /// mildest of another family. t = 1, the whole of [`nonnegative`], if f_κ is negative too: then f is not a series of light.
 /// Several colours share the smallest factors; otherwise hues shift.
-///
-/// # Panics
-/// If the number of `coefficients` is not a square.
 pub fn mildest(coefficients: &[f64]) -> Vec<f64> {
     let whole = nonnegative(order_of(coefficients));
     let windowed = apply(&whole, coefficients);
@@ -71,9 +68,6 @@ fn climb(f: impl Fn([f64; 2]) -> f64, start: (f64, [f64; 2]), step: f64) -> f64 
 }
 
 /// Coefficients times the factors of their bands.
-///
-/// # Panics
-/// If there are fewer factors than bands.
 pub fn apply(factors: &[f64], coefficients: &[f64]) -> Vec<f64> {
     bands(order_of(coefficients)).zip(coefficients).map(|((l, _), c)| factors[l] * c).collect()
 }

@@ -98,17 +98,11 @@ impl Gathered {
 
 impl BounceGather<'_> {
     /// Light of one more bounce at a grid point, for albedo 1.
-    ///
-    /// # Panics
-    /// Outside the field; when levels lack texels.
     pub fn light(&self, row: usize, col: usize) -> [f64; 3] {
         radiance(&self.casts_along([row, col]))
     }
 
     /// Its parts, azimuth by azimuth; distances are the steps to the nearest lookup that contributes to an elevation.
-    ///
-    /// # Panics
-    /// As [`Self::light`].
     pub fn casts_along(&self, place: [usize; 2]) -> Vec<Along> {
         self.casts_of(place, |march, _, of| self.radiance(march, of))
     }

@@ -9,9 +9,6 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// Light of one more bounce at a grid point, for albedo 1, from the exit radiance of all grid points, in `azimuths`
 /// at the middles of equal parts of the circle. Weights of a whole hemisphere sum to 1.
-///
-/// # Panics
-/// Outside the field, or where `exit` is not one colour per grid point.
 pub fn bounce_march(
     oracle: &Oracle,
     exit: &[[f64; 3]],
@@ -23,9 +20,6 @@ pub fn bounce_march(
 }
 
 /// Its visible intervals, azimuth by azimuth.
-///
-/// # Panics
-/// As [`bounce_march`].
 pub fn visible_intervals_along(
     oracle: &Oracle,
     exit: &[[f64; 3]],

@@ -10,9 +10,6 @@ pub const LEAST_SHARE: f64 = 1.0 / 256.0;
 
 /// Light of one grid point, for albedo 1, from that of all nodes and from all grid points' light under a sky of
 /// radiance 1.
-///
-/// # Panics
-/// Outside the field; where a node or a grid point has no value.
 pub fn bounce_shade(
     heights: &Heights,
     nodes: Nodes,

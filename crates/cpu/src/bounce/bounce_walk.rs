@@ -34,9 +34,6 @@ impl Walked {
 }
 
 /// One grid point, from the exit radiance of all.
-///
-/// # Panics
-/// Outside the field, or where `exit` is not one colour per grid point.
 pub fn bounce_walk(swept: &Swept, exit: &[[f32; 3]], col: i32, row: i32) -> Walked {
     let (all, turns) = walked_along(swept, exit, col, row);
     let (light, whole) = light_and_weight(&all);
@@ -47,9 +44,6 @@ pub fn bounce_walk(swept: &Swept, exit: &[[f32; 3]], col: i32, row: i32) -> Walk
 }
 
 /// Its visible intervals, azimuth by azimuth, distances in march steps; and the count of points visited.
-///
-/// # Panics
-/// As [`bounce_walk`].
 pub fn walked_along(swept: &Swept, exit: &[[f32; 3]], col: i32, row: i32) -> (Vec<Along>, u32) {
     let mut turns = 0;
     let along = |azimuth| {

@@ -34,9 +34,6 @@ pub fn cast_of(march: &March, word: u32, [col, row]: [i32; 2]) -> Cast {
 }
 
 /// Radiance times weight; not yet divided by the sum for whole hemispheres.
-///
-/// # Panics
-/// A cast refers to a grid point outside the field.
 pub fn cache_gather<'a>(casts: impl IntoIterator<Item = &'a Cast>, exit: &[[f64; 3]]) -> [f64; 3] {
     casts.into_iter().fold([0.0; 3], |sum, cast| {
         [0, 1, 2].map(|c| sum[c] + cast.weight * exit[cast.grid_point][c])

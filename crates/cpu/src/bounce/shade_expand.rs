@@ -4,9 +4,6 @@ use crate::shared::levels::spline_taps;
 use ridgelight::plan::pyramid::Pyramid;
 
 /// R, G, B of level `number` at a position in grid points (column, row), from the texels of all levels.
-///
-/// # Panics
-/// When there are fewer texels than the level needs.
 pub fn shade_at(pyramid: &Pyramid, texels: &[[f64; 3]], number: u32, place: [f64; 2]) -> [f64; 3] {
     let level = pyramid.level(number);
     let [cols, rows] = level.size;
@@ -25,9 +22,6 @@ pub fn shade_at(pyramid: &Pyramid, texels: &[[f64; 3]], number: u32, place: [f64
 }
 
 /// The same at every grid point, row-major.
-///
-/// # Panics
-/// When there are fewer texels than the level needs.
 pub fn shade_expand(pyramid: &Pyramid, texels: &[[f64; 3]], number: u32) -> Vec<[f64; 3]> {
     let [cols, rows] = pyramid.size;
     let at = |i: u32| [f64::from(i % cols), f64::from(i / cols)];

@@ -5,9 +5,6 @@ use crate::shared::levels::held_between;
 use ridgelight::plan::pyramid::Pyramid;
 
 /// R, G, B of level `number` from the grid points' exit radiance and the texels of the levels before it.
-///
-/// # Panics
-/// When there are fewer texels than the source needs.
 pub fn shade_reduce(
     exit: &[[f64; 3]],
     pyramid: &Pyramid,

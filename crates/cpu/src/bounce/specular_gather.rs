@@ -36,17 +36,11 @@ pub struct Arriving {
 
 impl SpecularGather<'_> {
     /// Incident light at a grid point.
-    ///
-    /// # Panics
-    /// Outside the field; when levels lack texels.
     pub fn arriving(&self, place: [usize; 2]) -> Arriving {
         self.of(&self.casts_along(place))
     }
 
     /// Its parts, azimuth by azimuth, as [`BounceGather::casts_along`].
-    ///
-    /// # Panics
-    /// As [`Self::arriving`].
     pub fn casts_along(&self, place: [usize; 2]) -> Vec<Along> {
         self.gather.casts_of(place, |march, e, of| self.radiance(march, -e, of))
     }

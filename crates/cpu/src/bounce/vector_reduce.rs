@@ -6,9 +6,6 @@ use crate::specular_gather::Series;
 use ridgelight::plan::pyramid::Pyramid;
 
 /// Series of level `number` from those of the grid points and of the texels of the levels before it.
-///
-/// # Panics
-/// When there are fewer texels than the source needs; when there are no grid points.
 pub fn vector_reduce(
     exit: &[Series],
     pyramid: &Pyramid,

@@ -18,17 +18,11 @@ pub struct EnvTables {
 
 impl EnvTables {
     /// One moment (cos, sin, vertical) of one azimuth above one node.
-    ///
-    /// # Panics
-    /// Outside the tables.
     pub fn at(&self, azimuth: usize, moment: usize, node: usize) -> DVec3 {
         self.texels[(azimuth * 3 + moment) * self.nodes + node]
     }
 
     /// Exit radiance of albedo 1 from one azimuth's wedge, above the direction of slope `lowest`.
-    ///
-    /// # Panics
-    /// Outside the tables.
     pub fn light(&self, azimuth: usize, lowest: f64, normal: DVec3) -> DVec3 {
         let [[x, _], [y, _], [z, _]] = self.looked_up(azimuth, lowest, 0.0);
         normal.x * x + normal.y * y + normal.z * z
@@ -36,9 +30,6 @@ impl EnvTables {
 
     /// Three moments above the direction of slope `lowest`; and for each its largest change between two nodes, for an
     /// elevation error of `off_rad`.
-    ///
-    /// # Panics
-    /// Outside the tables.
     pub fn looked_up(&self, azimuth: usize, lowest: f64, off_rad: f64) -> [[DVec3; 2]; 3] {
         let (nodes, bottom) = (self.nodes, self.bottom_rad);
         let place = |elevation: f64| {

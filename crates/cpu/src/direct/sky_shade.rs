@@ -7,9 +7,6 @@ use ridgelight::plan::Azimuth;
 use std::f64::consts::PI;
 
 /// Exit radiance of one grid point of albedo 1 under a sky of radiance 1.
-///
-/// # Panics
-/// Outside the field.
 pub fn sky_at(swept: &Swept, col: i32, row: i32) -> f64 {
     let mut sky = 0.0;
     swept.add_all([col, row], true, |_, azimuth, lowest, normal| {

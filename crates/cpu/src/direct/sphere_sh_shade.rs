@@ -55,9 +55,6 @@ impl<'a> SphereSh<'a> {
     }
 
     /// The light of one grid point.
-    ///
-    /// # Panics
-    /// When `row` or `col` lies outside the field.
     pub fn at(&self, sphere: &SphereLight, row: usize, col: usize) -> Soft {
         let field = self.oracle.field();
         let [cell_x, cell_y] = field.cell_m();

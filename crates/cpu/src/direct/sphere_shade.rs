@@ -8,9 +8,6 @@ use ridgelight::scene::SphereLight;
 use std::f64::consts::PI;
 
 /// Exit radiance of a grid point for a sphere light of radiance 1 and albedo 1; `slices` is the setting.
-///
-/// # Panics
-/// When `row` or `col` lies outside the field.
 pub fn sphere_at(
     oracle: &Oracle,
     sphere: &SphereLight,

@@ -5,9 +5,6 @@ use ridgelight::plan::azimuths::Shape;
 use std::f64::consts::PI;
 
 /// Exit radiance of one grid point of albedo 1, for irradiance 1 of a sun or radiance 1 of a key light.
-///
-/// # Panics
-/// Outside the field.
 pub fn sun_at(swept: &Swept, shape: Shape, col: i32, row: i32) -> f64 {
     let mut sun = 0.0;
     swept.add_all([col, row], true, |_, azimuth, lowest, normal| {

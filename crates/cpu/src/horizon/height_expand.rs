@@ -3,9 +3,6 @@
 use crate::shared::levels::LevelTexels;
 
 /// Level `number` at every grid point, row after row.
-///
-/// # Panics
-/// When there are fewer texels than the level needs.
 pub fn height_expand(levels: &LevelTexels, number: u32) -> Vec<f32> {
     let [cols, rows] = levels.pyramid.size;
     let texel = |i: u32| levels.spline_at(number, [(i % cols) as f32, (i / cols) as f32]);

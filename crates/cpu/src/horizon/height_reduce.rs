@@ -6,9 +6,6 @@ use crate::shared::sweep::Heights;
 use ridgelight::plan::pyramid::Pyramid;
 
 /// The texels of level `number` from those of all levels; only its source's are read.
-///
-/// # Panics
-/// When there are fewer texels than the source needs.
 pub fn height_reduce(
     heights: &Heights,
     pyramid: &Pyramid,

@@ -1,9 +1,6 @@
 //! The heights in the layout of sweeps, one copy per march axis, lanes contiguous.
 
 /// `heights_by_col`: for marches along columns, `[col][row]`.
-///
-/// # Panics
-/// When there are fewer than `cols` × `rows` heights.
 pub fn heights_by_col(heights: &[f32], cols: usize, rows: usize) -> Vec<f32> {
     (0..cols * rows).map(|i| heights[(i % rows) * cols + i / rows]).collect()
 }

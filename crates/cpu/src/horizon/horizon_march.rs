@@ -28,9 +28,6 @@ pub fn marched(march: &March, lane: i32, step: i32, options: MarchOptions) -> Fo
 }
 
 /// Marches from every grid point in one azimuth: `slopes` and `distances` of its layer, one slot a lane.
-///
-/// # Panics
-/// When the lattice is not one slot a lane.
 pub fn horizon_march(
     heights: Heights,
     azimuth: &Azimuth,

@@ -40,9 +40,6 @@ pub(crate) fn stored(h: f32, packed: Option<f32>) -> f32 {
 }
 
 /// Sweeps one azimuth into its layer of its march axis's lattice: `occluders` and `slopes`.
-///
-/// # Panics
-/// When the lattice is too small for the field and the options.
 pub fn horizon_sweep(
     heights: Heights,
     azimuth: &Azimuth,

@@ -61,9 +61,6 @@ impl Lattice {
     }
 
     /// Where a texel lies in the vectors.
-    ///
-    /// # Panics
-    /// Outside the lattice.
     pub fn texel(&self, slot: i32, march: i32, layer: u32) -> usize {
         let (slot, march, layer) = (slot as usize, march as usize, layer as usize);
         assert!(

@@ -86,9 +86,6 @@ impl PyramidMarch<'_> {
     }
 
     /// Slope of the horizon of a grid point; [`NO_SLOPE`] where the march leaves the field at once.
-    ///
-    /// # Panics
-    /// Outside the field; when levels lack texels.
     pub fn slope(&self, lane: i32, step: i32, warm_up: i32) -> f32 {
         let azimuth = &self.march.azimuth;
         let across = lane * CELL / azimuth.shear.max(1);
@@ -123,9 +120,6 @@ impl PyramidMarch<'_> {
 }
 
 /// Marches from every grid point in one azimuth: `slopes` of its layer, one slot a lane.
-///
-/// # Panics
-/// When the lattice is not one slot a lane, or levels lack texels.
 pub fn pyramid_march(
     heights: Heights,
     azimuth: &Azimuth,
@@ -188,9 +182,6 @@ impl LevelHeights<'_> {
     ///
     /// The spline over the angles is evaluated up to the distance. It includes the two lookups beyond that it depends
     /// on there (NS09 eq. 14-17; the thesis, eq. 4.24, 4.25).
-    ///
-    /// # Panics
-    /// When levels lack texels.
     pub(crate) fn slope(&self, [row, col]: [usize; 2], azimuth_rad: f64, within_m: f64) -> f64 {
         let [cell_x, cell_y] = self.field.cell_m();
         let (sin, cos) = azimuth_rad.sin_cos();

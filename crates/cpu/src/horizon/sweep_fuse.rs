@@ -19,9 +19,6 @@ pub struct FusedHorizon {
 }
 
 /// One grid point in one azimuth.
-///
-/// # Panics
-/// Outside the field.
 pub fn fused_horizon(swept: &Swept, azimuth: &Azimuth, col: i32, row: i32) -> FusedHorizon {
     let found = swept.found(azimuth, col, row);
     let open = swept.heights.border == Border::Open;

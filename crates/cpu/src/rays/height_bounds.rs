@@ -2,9 +2,6 @@
 
 /// Highest corner of the cells of each block of 4^level by 4^level, row-major: `cells` are the first `cells_x` of
 /// each of the first `cells_y` rows of `cols`.
-///
-/// # Panics
-/// When there are fewer cells.
 pub fn height_bounds(
     cells: &[[f32; 4]],
     cols: usize,

@@ -51,9 +51,6 @@ impl<'a> Lit<'a> {
     }
 
     /// Exit radiance of a grid point including its albedo, linear RGB.
-    ///
-    /// # Panics
-    /// When `row` or `col` lies outside the field.
     pub fn at(&self, row: usize, col: usize) -> [f64; 3] {
         let (lights, oracle) = (&self.scene.lights, &self.oracle);
         let sky = lights.sky.map(|colour| {

@@ -88,9 +88,6 @@ impl<'a> Oracle<'a> {
     /// The horizon along an azimuth (radians, counter-clockwise from east).
     ///
     /// `None` when the ray leaves the field at once.
-    ///
-    /// # Panics
-    /// When `row` or `col` lies outside the field.
     pub fn horizon(&self, row: usize, col: usize, azimuth_rad: f64) -> Option<Horizon> {
         self.horizon_along(row, col, grid_direction(self.field, azimuth_rad))
     }
@@ -98,9 +95,6 @@ impl<'a> Oracle<'a> {
     /// The horizon along (columns, rows) of any length: small integers stay exact.
     ///
     /// `None` when the ray leaves the field at once, or has no direction (0, infinite, NaN).
-    ///
-    /// # Panics
-    /// When `row` or `col` lies outside the field.
     pub fn horizon_along(&self, row: usize, col: usize, direction: [f64; 2]) -> Option<Horizon> {
         let [cols_per_t, rows_per_t] = direction;
         let [cell_x, cell_y] = self.field.cell_m();
@@ -168,9 +162,6 @@ impl<'a> Oracle<'a> {
     /// `plane`: at least 0, the ground continues at horizontal. `open`: -π/2 where nothing is hit. `periodic`: at
     /// least 0, because the repetitions' slopes (h - own height) / D reach 0 in the limit D → ∞ whatever their
     /// heights.
-    ///
-    /// # Panics
-    /// When `row` or `col` lies outside the field.
     pub fn elevation_rad(&self, row: usize, col: usize, azimuth_rad: f64) -> f64 {
         elevation_of(self.border, self.horizon(row, col, azimuth_rad))
     }

@@ -147,9 +147,6 @@ impl<'a> Tracer<'a> {
 
     /// Contribution of some of a batch's paths to a grid point with some of the lights; `slot` is its index among the
     /// sums.
-    ///
-    /// # Panics
-    /// The grid point lies outside the field.
     pub fn traced(
         &self,
         grid_point: usize,

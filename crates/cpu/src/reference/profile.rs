@@ -76,9 +76,6 @@ impl Oracle<'_> {
     ///
     /// Nothing where the ray leaves the field at once. Under `periodic` a ray without a hit at its own height after
     /// [`cap_m`] extends its last visible interval up to horizontal.
-    ///
-    /// # Panics
-    /// When `row` or `col` lies outside the field.
     pub fn visible_intervals(
         &self,
         row: usize,
@@ -90,9 +87,6 @@ impl Oracle<'_> {
     }
 
     /// The same with all surface that is hidden by less than `nearly_rad`, as intervals of equal ends.
-    ///
-    /// # Panics
-    /// When `row` or `col` lies outside the field.
     pub fn nearly_visible(
         &self,
         row: usize,
@@ -151,9 +145,6 @@ impl Oracle<'_> {
 
     /// Slope of the lowest visible direction along an azimuth over the surface up to a distance; the grid point's own
     /// piece occludes at any distance. -∞ where the ray leaves the field at once.
-    ///
-    /// # Panics
-    /// When `row` or `col` lies outside the field.
     pub fn slope_within(&self, row: usize, col: usize, azimuth_rad: f64, within_m: f64) -> f64 {
         let mut intervals = Vec::new();
         self.visible_intervals(row, col, azimuth_rad, &mut intervals);

@@ -6,9 +6,6 @@ use std::f64::consts::{FRAC_1_PI, PI, TAU};
 
 /// ∫ over azimuth of L times 1/√2π, cos mφ/√π and sin mφ/√π, m below `order`, of the first `rows` rows:
 /// `[row][m + order - 1]`, each column's integral exact.
-///
-/// # Panics
-/// When there are not as many rows.
 pub fn env_rotation(environment: &Environment, rows: usize, order: usize) -> Vec<Vec<DVec3>> {
     let step = TAU / environment.width() as f64;
     let weight = |turn: isize, col: usize| {

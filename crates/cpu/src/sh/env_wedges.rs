@@ -6,9 +6,6 @@ use ridgelight::scene::{Border, Environment};
 use std::f64::consts::{PI, TAU};
 
 /// Integrals over an azimuth's wedge of L cos φ, L sin φ and L in one row of the environment.
-///
-/// # Panics
-/// When the environment has no such row.
 pub fn wedge_row(env: &Environment, azimuth: &Azimuth, row: usize) -> [DVec3; 3] {
     let width = env.width() as i64;
     // Columns run clockwise from west: column x begins at azimuth pi + rotation - 2 pi x / width.

@@ -38,9 +38,6 @@ pub fn row_weights((height, rows): (usize, usize), order: usize, is_fitted: bool
 
 /// The series of an environment of `height` rows, whose first rows' sums are `turns`
 /// ([`crate::env_rotation`]): its integrals with Y_lm, or where `is_fitted` the best fit above ground.
-///
-/// # Panics
-/// When the sums are of another order.
 pub fn series(turns: &[Vec<DVec3>], height: usize, order: usize, is_fitted: bool) -> Vec<DVec3> {
     let weights = row_weights((height, turns.len()), order, is_fitted);
     bands(order)
@@ -58,9 +55,6 @@ pub fn add_sky(series: &mut [DVec3], sky: [f32; 3]) {
 }
 
 /// Exit radiance's matrix `[receiver][coefficient]` from the environment's series.
-///
-/// # Panics
-/// When the series is not of the receiver's order.
 pub fn light_matrix(quality: &Quality, series: &[DVec3]) -> Vec<Vec<DVec3>> {
     matrix(quality, series, |triples, order, light| match quality.receiver {
         Receiver::Plane => plane(triples, order, light),
@@ -69,9 +63,6 @@ pub fn light_matrix(quality: &Quality, series: &[DVec3]) -> Vec<Vec<DVec3>> {
 }
 
 /// The matrix from visibility to incident light, both as series: `[incident coefficient][visibility coefficient]`.
-///
-/// # Panics
-/// When the series is not of the quality's order.
 pub fn specular_matrix(quality: &Quality, series: &[DVec3]) -> Vec<Vec<DVec3>> {
     matrix(quality, series, |triples, _, light| product::light_matrix(triples, light))
 }

@@ -17,9 +17,6 @@ pub const OFF_PLANE: f64 = 0.25;
 
 /// The nodes around a grid point, as (column, row) among them, with their weights: bilinear, reduced where node and
 /// grid point lie off each other's planes. They sum to 1.
-///
-/// # Panics
-/// Outside the field.
 pub fn nodes_around(heights: &Heights, nodes: Nodes, [col, row]: [i32; 2]) -> [([u32; 2], f64); 4] {
     let size = [heights.cols as u32, heights.rows as u32];
     let [cell_x, cell_y] = heights.cell_m.map(f64::from);
@@ -44,9 +41,6 @@ pub fn nodes_around(heights: &Heights, nodes: Nodes, [col, row]: [i32; 2]) -> [(
 }
 
 /// Exit radiance of one grid point of albedo 1, before clamping at 0; `matrix` is [`crate::light_matrix`]'s.
-///
-/// # Panics
-/// Outside the field, or a matrix of neither receiver.
 pub fn light_at(
     heights: &Heights,
     visibility: &[f64],
@@ -57,9 +51,6 @@ pub fn light_at(
 }
 
 /// The same on a surface of this normal.
-///
-/// # Panics
-/// A matrix of neither receiver.
 pub fn light_on(normal: DVec3, visibility: &[f64], matrix: &[Vec<DVec3>]) -> DVec3 {
     let all = receiver(normal.to_array());
     let rows = if matrix.len() == 3 { &all[1..4] } else { &all[..matrix.len()] };
@@ -68,9 +59,6 @@ pub fn light_on(normal: DVec3, visibility: &[f64], matrix: &[Vec<DVec3>]) -> DVe
 
 /// What a lobe on a surface of this normal mirrors straight upwards; `matrix` is
 /// [`crate::light_matrix::specular_matrix`]'s.
-///
-/// # Panics
-/// A matrix of no order.
 pub fn specular_on(
     normal: DVec3,
     phong: PhongSpecular,

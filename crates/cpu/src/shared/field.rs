@@ -7,9 +7,6 @@ use ridgelight::scene::Border;
 /// Slope of the surface at a grid point towards east and north: the mean over the adjoining quads, which is the
 /// direction of the sum of their unnormalised normals. Where a field is one grid point wide there is no quad across
 /// it, and the slope across is 0.
-///
-/// # Panics
-/// Outside the field.
 pub fn field_slope(heights: &Heights, col: i32, row: i32) -> DVec2 {
     let wraps = heights.border == Border::Periodic;
     let (cols, rows) = (heights.cols as i32, heights.rows as i32);

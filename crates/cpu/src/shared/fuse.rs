@@ -104,9 +104,6 @@ fn lines_around(swept: &Swept, march: &March, y: i32, step: i32) -> Around {
 
 /// Index of the nearest swept line's value at a lane position and a step of the field; none where no line is on the
 /// field.
-///
-/// # Panics
-/// When the lattice is not that of the azimuth and `line_shift`.
 pub fn nearest_texel(swept: &Swept, march: &March, y: i32, step: i32) -> Option<usize> {
     let around = lines_around(swept, march, y, step);
     if around.takes_after { around.after_texel } else { around.before_texel }
@@ -114,9 +111,6 @@ pub fn nearest_texel(swept: &Swept, march: &March, y: i32, step: i32) -> Option<
 
 /// Slope of the horizon at a grid point (lane, step) and its distance in march steps: 0, unknown, where slopes are
 /// read. Without a mode, the lattice holds one value per grid point.
-///
-/// # Panics
-/// When the lattice is not that of the azimuth and `line_shift`.
 pub fn fused(swept: &Swept, march: &March, (lane, step): (i32, i32)) -> Found {
     let (lattice, warm_up) = (swept.lattices.of(&march.azimuth), swept.warm_up(&march.azimuth));
     let (y, own) = (lane * CELL, march.height_at(lane, step));

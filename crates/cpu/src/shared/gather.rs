@@ -29,9 +29,6 @@ pub struct Swept<'a> {
 
 impl Swept<'_> {
     /// Horizon of a grid point in one azimuth.
-    ///
-    /// # Panics
-    /// Outside the field.
     pub fn found(&self, azimuth: &Azimuth, col: i32, row: i32) -> Found {
         let march = March::new(self.heights, azimuth);
         fused(self, &march, march.of_grid_point(col, row))

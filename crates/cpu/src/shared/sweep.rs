@@ -43,9 +43,6 @@ impl<'a> Heights<'a> {
     }
 
     /// `texelFetch(heights, ivec2(col, row), 0).x`.
-    ///
-    /// # Panics
-    /// Outside the field.
     pub fn at(&self, col: i32, row: i32) -> f32 {
         self.heights_m[row as usize * self.cols + col as usize]
     }

@@ -17,9 +17,6 @@ fn smoothed(arriving: &Series, phong: PhongSpecular, channel: usize) -> Vec<f64>
 }
 
 /// Phong specular straight upwards, clamped at 0.
-///
-/// # Panics
-/// A series of no order.
 pub fn mirrored(arriving: &Series, normal: DVec3, phong: PhongSpecular) -> [f64; 3] {
     let mirror = 2.0 * normal.z * normal - DVec3::Z;
     [0, 1, 2].map(|c| reconstruct(&smoothed(arriving, phong, c), mirror).max(0.0))
@@ -27,9 +24,6 @@ pub fn mirrored(arriving: &Series, normal: DVec3, phong: PhongSpecular) -> [f64;
 
 /// Exit radiance by direction, without the diffuse part: incident light, smoothed by the lobe, at the mirror
 /// direction about the normal.
-///
-/// # Panics
-/// A series of no order.
 pub fn exit_series(
     arriving: &Series,
     normal: DVec3,

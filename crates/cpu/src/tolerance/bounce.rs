@@ -54,9 +54,6 @@ impl Land {
     /// A component of the gradient has differences of neighbours, at most 2 of the steepest around the grid point, each
     /// rounded, weighted exactly and summed twice, over a quotient's 5 ε: 8 ε; two of them √2 of that, which turn a
     /// normal that leans by the gradient itself by less. `inversesqrt` and products 8 ε.
-    ///
-    /// # Panics
-    /// Outside the field.
     pub fn normal_at(field: &HeightField, border: Border, [row, col]: [usize; 2]) -> f64 {
         let heights = Heights::of(field, border);
         let (row, col) = (row as i32, col as i32);

@@ -191,9 +191,6 @@ pub struct SphereGeometry {
 
 impl SphereGeometry {
     /// For a grid point, by its index in the field's heights.
-    ///
-    /// # Panics
-    /// Outside the field.
     pub fn of(field: &HeightField, sphere: &SphereLight, grid_point: usize) -> Self {
         let (cols, heights) = (field.cols(), field.heights_m());
         let [cell_x, cell_y] = field.cell_m();
