@@ -27,6 +27,9 @@ mod specular;
 pub mod tolerance;
 mod view;
 
+/// Linear red, green and blue.
+pub type Rgb = [f64; 3];
+
 pub use bake::*;
 pub use bounce::*;
 pub use direct::*;

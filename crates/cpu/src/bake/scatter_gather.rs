@@ -1,5 +1,6 @@
 //! Light scattered between mutually visible grid points, in f64: one step of a path, and the mean over all paths.
 
+use crate::Rgb;
 use crate::light::normal;
 use glam::DVec3;
 use ridgelight::scene::{Albedo, Curvature, PhongSpecular, Scene, VisiblePoint, VisiblePoints};
@@ -9,11 +10,11 @@ use std::f64::consts::{PI, TAU};
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Gathered {
     /// Radiance, R, G, B.
-    pub light: [f64; 3],
+    pub light: Rgb,
     /// The diffuse radiance for a cosine of 1.
-    pub facing: [f64; 3],
+    pub facing: Rgb,
     /// The Phong specular radiance at its peak.
-    pub mirrored: [f64; 3],
+    pub mirrored: Rgb,
     /// Cosine to the Phong lobe's axis.
     pub along: f64,
 }
@@ -50,7 +51,7 @@ impl<'a> GridPoints<'a> {
     }
 
     /// Of a grid point.
-    pub fn albedo(&self, at: usize) -> [f64; 3] {
+    pub fn albedo(&self, at: usize) -> Rgb {
         match &self.scene.surface.albedo {
             Albedo::Constant(colour) => colour.map(f64::from),
             Albedo::Map(map) => map[at].map(f64::from),
@@ -69,7 +70,7 @@ impl<'a> GridPoints<'a> {
         at: usize,
         (e, solid_sr): (DVec3, f64),
         back: DVec3,
-        [diffuse, mirrored]: [[f64; 3]; 2],
+        [diffuse, mirrored]: [Rgb; 2],
     ) -> Gathered {
         let (n, albedo) = (self.normals[at], self.albedo(at));
         let cosine = n.dot(e).max(0.0);
@@ -93,12 +94,7 @@ impl<'a> GridPoints<'a> {
 
 /// The mean of all paths' scattered light, for a field without Phong specular: the limit of the estimate. Every
 /// bounce sums over all directions; `direct` is each grid point's own light.
-pub fn expected(
-    scene: &Scene,
-    points: &VisiblePoints,
-    direct: &[[f64; 3]],
-    bounces: u32,
-) -> Vec<[f64; 3]> {
+pub fn expected(scene: &Scene, points: &VisiblePoints, direct: &[Rgb], bounces: u32) -> Vec<Rgb> {
     let grid_points = GridPoints::of(scene);
     let share = points.directions().share_sr();
     let mut leaving = direct.to_vec();

@@ -2,6 +2,7 @@
 //! per level. Each knot and midpoint of the B-spline over their elevations that rises above all before contributes
 //! its radiance over the newly visible elevations (Nowrouzezahrai & Snyder 2009, eq. 6-17).
 
+use crate::Rgb;
 use crate::basis::nlp;
 use crate::basis::occlusion;
 use crate::light::{Receiver as Place, Slice, normal};
@@ -30,9 +31,9 @@ pub struct BounceGather<'a> {
     /// Levels of exit radiance.
     pub shade: &'a Pyramid,
     /// Their texels.
-    pub shade_texels: &'a [[f64; 3]],
+    pub shade_texels: &'a [Rgb],
     /// Exit radiance of the grid points.
-    pub exit: &'a [[f64; 3]],
+    pub exit: &'a [Rgb],
     /// Whether the cosine is exact, or three bands of it with four Legendre coefficients a slice.
     pub receiver: Receiver,
     /// Azimuths, at the middles of equal parts of the circle.
@@ -73,7 +74,7 @@ impl Gathered {
         occlusion(4, angle.sin(), angle.cos()).iter().zip(bands).map(|(o, b)| o * b).sum()
     }
 
-    fn cast(&mut self, angle: f64, distance: f64, radiance: impl Fn() -> [f64; 3]) {
+    fn cast(&mut self, angle: f64, distance: f64, radiance: impl Fn() -> Rgb) {
         if angle <= self.top - NEARLY_RAD {
             return;
         }
@@ -98,7 +99,7 @@ impl Gathered {
 
 impl BounceGather<'_> {
     /// Light of one more bounce at a grid point, for albedo 1.
-    pub fn light(&self, row: usize, col: usize) -> [f64; 3] {
+    pub fn light(&self, row: usize, col: usize) -> Rgb {
         radiance(&self.casts_along([row, col]))
     }
 
@@ -111,7 +112,7 @@ impl BounceGather<'_> {
     pub(crate) fn casts_of(
         &self,
         [row, col]: [usize; 2],
-        radiance: impl Fn(&March, DVec3, ([f64; 2], u32)) -> [f64; 3],
+        radiance: impl Fn(&March, DVec3, ([f64; 2], u32)) -> Rgb,
     ) -> Vec<Along> {
         let border = self.heights.border;
         let place = Place::diffuse(normal(self.field, border, row, col));
@@ -166,7 +167,7 @@ impl BounceGather<'_> {
         &self,
         gathered: &mut Gathered,
         march: &March,
-        radiance: impl Fn(f64, ([f64; 2], u32)) -> [f64; 3],
+        radiance: impl Fn(f64, ([f64; 2], u32)) -> Rgb,
     ) {
         if march.reach <= 0 {
             return;
@@ -218,7 +219,7 @@ impl BounceGather<'_> {
         LevelHeights { field: self.field, pyramid: self.pyramid, stored: self.stored }
     }
 
-    pub(crate) fn radiance(&self, march: &March, (place, level): ([f64; 2], u32)) -> [f64; 3] {
+    pub(crate) fn radiance(&self, march: &March, (place, level): ([f64; 2], u32)) -> Rgb {
         if let (Stored::Levels(_), 1..) = (self.stored, level) {
             return shade_at(self.shade, self.shade_texels, level, place);
         }

@@ -1,5 +1,6 @@
 //! Indirect light at every grid point, exact except for the azimuth count.
 
+use crate::Rgb;
 use crate::indirect::mean_distance_m;
 use crate::light::{Receiver, normal};
 use crate::oracle::Oracle;
@@ -9,20 +10,14 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// Light of one more bounce at a grid point, for albedo 1, from the exit radiance of all grid points, in `azimuths`
 /// at the middles of equal parts of the circle. Weights of a whole hemisphere sum to 1.
-pub fn bounce_march(
-    oracle: &Oracle,
-    exit: &[[f64; 3]],
-    azimuths: u32,
-    row: usize,
-    col: usize,
-) -> [f64; 3] {
+pub fn bounce_march(oracle: &Oracle, exit: &[Rgb], azimuths: u32, row: usize, col: usize) -> Rgb {
     radiance(&visible_intervals_along(oracle, exit, azimuths, [row, col]))
 }
 
 /// Its visible intervals, azimuth by azimuth.
 pub fn visible_intervals_along(
     oracle: &Oracle,
-    exit: &[[f64; 3]],
+    exit: &[Rgb],
     azimuths: u32,
     [row, col]: [usize; 2],
 ) -> Vec<Along> {

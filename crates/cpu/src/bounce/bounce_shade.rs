@@ -1,6 +1,7 @@
 //! Indirect light at every grid point: the ground's share of its own hemisphere, times the mean radiance of the
 //! ground visible from the nodes around it.
 
+use crate::Rgb;
 use crate::sh_shade::nodes_around;
 use crate::shared::sweep::Heights;
 use ridgelight::plan::Nodes;
@@ -13,9 +14,9 @@ pub const LEAST_SHARE: f64 = 1.0 / 256.0;
 pub fn bounce_shade(
     heights: &Heights,
     nodes: Nodes,
-    (light, sky_share): (&[[f64; 3]], &[f64]),
+    (light, sky_share): (&[Rgb], &[f64]),
     [col, row]: [i32; 2],
-) -> [f64; 3] {
+) -> Rgb {
     let size = [heights.cols as u32, heights.rows as u32];
     let across = nodes.count(size[0]);
     let share = |col: u32, row: u32| {

@@ -5,6 +5,7 @@
 //! lies below the straight line between the two. For a receiver farther along, if something nearer hides both ends,
 //! it hides everything between; where the far end rises above it, the points between are visited.
 
+use crate::Rgb;
 use crate::shared::bounced::{Along, Cast, NEARLY_RAD, light_and_weight};
 use crate::shared::field::{field_slope, normal_of};
 use crate::shared::fuse::{nearest_texel, split_crossing, surface_on_line};
@@ -28,7 +29,7 @@ pub struct Walked {
 
 impl Walked {
     /// Exit radiance for albedo 1. Weights of a whole hemisphere sum to 1: uniform incident radiance is preserved.
-    pub fn radiance(&self) -> [f64; 3] {
+    pub fn radiance(&self) -> Rgb {
         (self.light / self.whole).to_array()
     }
 }

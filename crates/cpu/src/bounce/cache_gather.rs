@@ -1,5 +1,6 @@
 //! One more bounce at a node, from the visibility cache that the first bounce has filled.
 
+use crate::Rgb;
 use crate::shared::sweep::{CELL_SHIFT, March};
 use ridgelight::plan::azimuths::CELL;
 use std::f64::consts::FRAC_PI_2;
@@ -34,7 +35,7 @@ pub fn cast_of(march: &March, word: u32, [col, row]: [i32; 2]) -> Cast {
 }
 
 /// Radiance times weight; not yet divided by the sum for whole hemispheres.
-pub fn cache_gather<'a>(casts: impl IntoIterator<Item = &'a Cast>, exit: &[[f64; 3]]) -> [f64; 3] {
+pub fn cache_gather<'a>(casts: impl IntoIterator<Item = &'a Cast>, exit: &[Rgb]) -> Rgb {
     casts.into_iter().fold([0.0; 3], |sum, cast| {
         [0, 1, 2].map(|c| sum[c] + cast.weight * exit[cast.grid_point][c])
     })

@@ -1,10 +1,11 @@
 //! Every level of the pyramid of exit radiance at the field's own grid points, by its B-spline.
 
+use crate::Rgb;
 use crate::shared::levels::spline_taps;
 use ridgelight::plan::pyramid::Pyramid;
 
 /// R, G, B of level `number` at a position in grid points (column, row), from the texels of all levels.
-pub fn shade_at(pyramid: &Pyramid, texels: &[[f64; 3]], number: u32, place: [f64; 2]) -> [f64; 3] {
+pub fn shade_at(pyramid: &Pyramid, texels: &[Rgb], number: u32, place: [f64; 2]) -> Rgb {
     let level = pyramid.level(number);
     let [cols, rows] = level.size;
     let at = [0, 1].map(|i| place[i] as f32 * level.per_grid_point[i]);
@@ -22,7 +23,7 @@ pub fn shade_at(pyramid: &Pyramid, texels: &[[f64; 3]], number: u32, place: [f64
 }
 
 /// The same at every grid point, row-major.
-pub fn shade_expand(pyramid: &Pyramid, texels: &[[f64; 3]], number: u32) -> Vec<[f64; 3]> {
+pub fn shade_expand(pyramid: &Pyramid, texels: &[Rgb], number: u32) -> Vec<Rgb> {
     let [cols, rows] = pyramid.size;
     let at = |i: u32| [f64::from(i % cols), f64::from(i / cols)];
     (0..cols * rows).map(|i| shade_at(pyramid, texels, number, at(i))).collect()

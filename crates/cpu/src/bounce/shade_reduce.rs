@@ -1,16 +1,12 @@
 //! One level of the pyramid of exit radiance from the level an octave finer, as `height_reduce`, but clamped to the
 //! range of its source.
 
+use crate::Rgb;
 use crate::shared::levels::held_between;
 use ridgelight::plan::pyramid::Pyramid;
 
 /// R, G, B of level `number` from the grid points' exit radiance and the texels of the levels before it.
-pub fn shade_reduce(
-    exit: &[[f64; 3]],
-    pyramid: &Pyramid,
-    number: u32,
-    texels: &[[f64; 3]],
-) -> Vec<[f64; 3]> {
+pub fn shade_reduce(exit: &[Rgb], pyramid: &Pyramid, number: u32, texels: &[Rgb]) -> Vec<Rgb> {
     let from = pyramid.source(number);
     let (level, source) = (pyramid.level(number), pyramid.level(from));
     let ratio = pyramid.ratio(number);
@@ -40,7 +36,7 @@ pub fn shade_reduce(
 }
 
 /// The texels of all levels besides the grid points themselves.
-pub fn shade_levels(exit: &[[f64; 3]], pyramid: &Pyramid) -> Vec<[f64; 3]> {
+pub fn shade_levels(exit: &[Rgb], pyramid: &Pyramid) -> Vec<Rgb> {
     let mut all = Vec::new();
     for number in 1..=pyramid.levels() {
         let made = shade_reduce(exit, pyramid, number, &all);

@@ -1,6 +1,7 @@
 //! Indirect light at every grid point: for diffuse ground as [`bounce_gather`](crate::bounce_gather) with an exact
 //! cosine, and as a series of spherical harmonics for the Phong specular.
 
+use crate::Rgb;
 use crate::bounce_gather::{BounceGather, March};
 use crate::shared::bounced::{Along, radiance};
 use crate::shared::levels::held_between;
@@ -12,7 +13,7 @@ use ridgelight::basis::slice::{Slices, slice_index};
 use std::f64::consts::TAU;
 
 /// Coefficients of a series, R, G, B.
-pub type Series = Vec<[f64; 3]>;
+pub type Series = Vec<Rgb>;
 
 /// Heights, levels and series.
 #[derive(Clone, Copy, Debug)]
@@ -29,7 +30,7 @@ pub struct SpecularGather<'a> {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Arriving {
     /// Light of one more bounce of a diffuse grid point, for albedo 1.
-    pub diffuse: [f64; 3],
+    pub diffuse: Rgb,
     /// n² coefficients.
     pub series: Series,
 }
@@ -66,7 +67,7 @@ impl SpecularGather<'_> {
     }
 
     /// Exit radiance of a point in a direction, clamped at 0.
-    fn radiance(&self, march: &March, towards: DVec3, of: ([f64; 2], u32)) -> [f64; 3] {
+    fn radiance(&self, march: &March, towards: DVec3, of: ([f64; 2], u32)) -> Rgb {
         let Some([exit, levels]) = self.vectors else { return self.gather.radiance(march, of) };
         let values = evaluate(self.order, towards);
         let of_texel = |series: &Series| {

@@ -1,5 +1,6 @@
 //! Exit radiance under a uniform sky and an environment, from a grid point's horizons.
 
+use crate::Rgb;
 use crate::env_tables::EnvTables;
 use crate::shared::gather::{Swept, elevation_moments};
 use glam::DVec3;
@@ -31,7 +32,7 @@ pub fn sky_shade(swept: &Swept) -> Vec<f64> {
 }
 
 /// `env_sum` of all azimuths: exit radiance of every grid point of albedo 1 under an environment, RGB, row-major.
-pub fn env_shade(swept: &Swept, tables: &EnvTables) -> Vec<[f64; 3]> {
+pub fn env_shade(swept: &Swept, tables: &EnvTables) -> Vec<Rgb> {
     swept.per_grid_point(|col, row| {
         let mut environment = DVec3::ZERO;
         swept.add_all([col, row], true, |index, _, lowest, normal| {

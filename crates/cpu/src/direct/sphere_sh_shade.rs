@@ -10,6 +10,7 @@ use crate::pyramid_march::{LevelHeights, Stored};
 use crate::sh_shade::light_on;
 use crate::sh_visibility::{Series, visibility_along};
 use crate::sh_wedges::wedges_around;
+use crate::sphere::towards_m;
 use glam::{DVec2, DVec3};
 use ridgelight::basis::wedge::WedgeTable;
 use ridgelight::plan::pyramid::Pyramid;
@@ -57,20 +58,13 @@ impl<'a> SphereSh<'a> {
     /// The light of one grid point.
     pub fn at(&self, sphere: &SphereLight, row: usize, col: usize) -> Soft {
         let field = self.oracle.field();
-        let [cell_x, cell_y] = field.cell_m();
-        let [x, y, z] = sphere.position_m;
+        let [east, north] = towards_m(&self.oracle, row, col, sphere);
         let own = self.oracle.vertex(row as f64, col as f64);
-        let to = DVec3::new(
-            x - col as f64 * cell_x,
-            y - (field.rows() - 1 - row) as f64 * cell_y,
-            z - field.base_m() - own,
-        );
+        let to = DVec3::new(east, north, sphere.position_m[2] - field.base_m() - own);
         let normal = normal(field, self.oracle.border(), row, col);
         let visibility = self.visibility(sphere.radius_m, to, normal, [row, col]);
-        Soft {
-            light: light_of(&self.quality, sphere.radius_m, to, normal, &visibility),
-            visibility,
-        }
+        let light = light_of(&self.quality, sphere.radius_m, to, normal, &visibility);
+        Soft { light, visibility }
     }
 
     /// The visibility series up to the sphere's distance.

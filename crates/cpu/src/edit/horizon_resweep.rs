@@ -5,7 +5,7 @@
 //! the other lines they recompute the same values.
 
 use crate::dirty_mark;
-use crate::horizon_sweep::{SweepOptions, stored};
+use crate::horizon_sweep::{SweepOptions, pop_hidden, stored};
 use crate::lattice::Lattice;
 use crate::shared::sweep::{CELL_SHIFT, Heights, March, on_field};
 use ridgelight::plan::Rectangle;
@@ -67,9 +67,9 @@ pub fn horizon_resweep(
         else {
             continue;
         };
-        let texel = |step: i32| {
+        let texel = |lattice: &Lattice, step: i32| {
             let slot = (y0 + step * shear) >> options.line_shift;
-            (slot, march.march_position(step), azimuth.layer)
+            lattice.texel(slot, march.march_position(step), azimuth.layer)
         };
         let vertex = |step: i32| {
             (stored(march.line_height(y0 + step * shear, step), options.packed), step as f32)
@@ -79,8 +79,7 @@ pub fn horizon_resweep(
         let mut step = entered - 1;
         while step >= 0 && stands(step) {
             hull.push(vertex(step));
-            let (slot, position, layer) = texel(step);
-            let back = i32::from(lattice.occluders[lattice.texel(slot, position, layer)]);
+            let back = i32::from(lattice.occluders[texel(lattice, step)]);
             step = if back > 0 { step - back } else { -1 };
         }
         hull.reverse();
@@ -88,19 +87,13 @@ pub fn horizon_resweep(
         for step in (entered..steps).take_while(|&s| stands(s)) {
             let y = y0 + step * shear;
             let (h, x) = (march.line_height(y, step), step as f32);
-            while let [.., under, top] = hull[..] {
-                if (under.0 - h) * (x - top.1) < (top.0 - h) * (x - under.1) {
-                    break;
-                }
-                hull.pop();
-            }
+            pop_hidden(&mut hull, h, x);
             let back = hull.last().map_or(0, |top| step - top.1 as i32);
             hull.push(vertex(step));
             swept += 1;
-            let (slot, position, layer) = texel(step);
-            let at = lattice.texel(slot, position, layer);
-            let changed =
-                i32::from(std::mem::replace(&mut lattice.occluders[at], back as u16)) != back;
+            let at = texel(lattice, step);
+            let before = std::mem::replace(&mut lattice.occluders[at], back as u16);
+            let changed = i32::from(before) != back;
             let met = if back > 0 { step - back } else { -1 };
             if changed || (met >= 0 && reach.has(y - back * shear, met)) {
                 mark(&march, y, step, spacing, dirty);

@@ -39,6 +39,17 @@ pub(crate) fn stored(h: f32, packed: Option<f32>) -> f32 {
     packed.map_or(h, |scale| f16::from_f32(h * scale).to_f32() / scale)
 }
 
+/// Pops vertices (height, step) while the deeper one subtends at least the slope of the newer one from height `h` at
+/// step `x`.
+pub(crate) fn pop_hidden(hull: &mut Vec<(f32, f32)>, h: f32, x: f32) {
+    while let [.., under, top] = hull[..] {
+        if (under.0 - h) * (x - top.1) < (top.0 - h) * (x - under.1) {
+            break;
+        }
+        hull.pop();
+    }
+}
+
 /// Sweeps one azimuth into its layer of its march axis's lattice: `occluders` and `slopes`.
 pub fn horizon_sweep(
     heights: Heights,
@@ -63,15 +74,7 @@ pub fn horizon_sweep(
             if periodic || on_field(y, lanes) {
                 let h = march.line_height(y, step);
                 let x = step as f32;
-                // Pop while the deeper vertex subtends at least the slope of the newer one.
-                while let [.., under, top] = hull[..] {
-                    let deeper = (under.0 - h) * (x - top.1);
-                    let newer = (top.0 - h) * (x - under.1);
-                    if deeper < newer {
-                        break;
-                    }
-                    hull.pop();
-                }
+                pop_hidden(&mut hull, h, x);
                 if step >= options.warm_up {
                     let slots = lattice.width as i32;
                     let slot = y >> line_shift;

@@ -17,13 +17,7 @@ fn rise_over(march: &March, own: f32, y: i32, step: i32, u: f32) -> f32 {
         f -= 1.0;
         cell += 1;
     }
-    let corners = [
-        march.height_at(cell, step),
-        march.height_at(cell, step + 1),
-        march.height_at(cell + 1, step),
-        march.height_at(cell + 1, step + 1),
-    ];
-    surface_rise(corners, own, u, f, march.split_along())
+    surface_rise(march.cell_heights(cell, step), own, u, f, march.split_along())
 }
 
 /// A vertex of the hull: height, and position as whole step and fraction, so that differences of near positions stay

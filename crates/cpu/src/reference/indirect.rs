@@ -20,6 +20,7 @@
 //! first order along shadow edges; second order in the step between azimuths. [`ground_truth`] measures both by halving
 //! both.
 
+use crate::Rgb;
 use crate::light::{Receiver, Site, Slice, normal};
 use crate::oracle::Oracle;
 use crate::profile::VisibleInterval;
@@ -49,7 +50,7 @@ impl Fineness {
 }
 
 /// Exit radiance of every grid point, linear RGB, row-major.
-pub type Picture = Vec<[f64; 3]>;
+pub type Picture = Vec<Rgb>;
 
 /// Radiance and its error estimate.
 #[derive(Clone, Debug, PartialEq)]
@@ -106,13 +107,13 @@ pub fn light(scene: &Scene, bounces: usize, fineness: Fineness) -> Result<Vec<Pi
         Albedo::Map(colours) => <[f32; 3]>::map(colours[at], f64::from),
     };
     let channels = [0, 1, 2].map(|i| divide(field, surface.border, divisions, |at| albedo(at)[i]));
-    let corner_albedo: Vec<[f64; 3]> = (0..corners)
+    let corner_albedo: Vec<Rgb> = (0..corners)
         .map(|corner| {
             let [r, c] = oracle.corners(corner / 3)[corner % 3];
             [0, 1, 2].map(|i| channels[i][r * fine.cols() + c])
         })
         .collect();
-    let towards_above = |arrived: &[[f64; 3]], at: usize| {
+    let towards_above = |arrived: &[Rgb], at: usize| {
         let scale =
             surface.specular.as_ref().map_or(0.0, |specular| f64::from(specular.at(at).scale));
         let diffuse = product(albedo(at), arrived[corners + at]);
@@ -123,7 +124,7 @@ pub fn light(scene: &Scene, bounces: usize, fineness: Fineness) -> Result<Vec<Pi
     let mut picture: Picture = (0..grid_points).map(|at| towards_above(&arrived, at)).collect();
     let mut pictures = vec![picture.clone()];
     for _ in 0..bounces {
-        let leaving: Vec<[f64; 3]> =
+        let leaving: Vec<Rgb> =
             corner_albedo.iter().zip(&arrived).map(|(a, b)| product(*a, *b)).collect();
         arrived = rows.iter().map(|row| row.of(&leaving)).collect();
         for (at, sum) in picture.iter_mut().enumerate() {
@@ -135,28 +136,22 @@ pub fn light(scene: &Scene, bounces: usize, fineness: Fineness) -> Result<Vec<Pi
     Ok(pictures)
 }
 
-fn product(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+fn product(a: Rgb, b: Rgb) -> Rgb {
     [0, 1, 2].map(|i| a[i] * b[i])
 }
 
 /// Visibility of one receiver: weights of the corners' radiances and of a sky of radiance 1.
 #[derive(Clone, Debug, Default)]
 struct Visibility {
-    corners: Vec<u32>,
-    weights: Vec<f64>,
+    corners: Vec<(u32, f64)>,
     sky: f64,
 }
 
 impl Visibility {
-    fn of(&self, radiance: &[[f64; 3]]) -> [f64; 3] {
-        let mut sum = [0.0; 3];
-        for (corner, weight) in self.corners.iter().zip(&self.weights) {
-            let [r, g, b] = radiance[*corner as usize];
-            sum[0] += weight * r;
-            sum[1] += weight * g;
-            sum[2] += weight * b;
-        }
-        sum
+    fn of(&self, radiance: &[Rgb]) -> Rgb {
+        self.corners.iter().fold([0.0; 3], |sum, (corner, weight)| {
+            [0, 1, 2].map(|c| sum[c] + weight * radiance[*corner as usize][c])
+        })
     }
 }
 
@@ -203,7 +198,7 @@ fn at_all(
     places: &[Vec<(usize, Receiver)>],
     lights: &Lights,
     fineness: Fineness,
-) -> (Vec<Visibility>, Vec<[f64; 3]>) {
+) -> (Vec<Visibility>, Vec<Rgb>) {
     let count = places.iter().map(Vec::len).sum();
     let (mut rows, mut direct) = (vec![Visibility::default(); count], vec![[0.0; 3]; count]);
     for (at, place) in places.iter().enumerate() {
@@ -265,7 +260,7 @@ fn gather(
                     for (j, share) in shares.into_iter().enumerate().filter(|(_, s)| *s > 0.0) {
                         let corner = 3 * interval.triangle + j;
                         if dense[i][corner] == 0.0 {
-                            all[i].corners.push(corner as u32);
+                            all[i].corners.push((corner as u32, 0.0));
                         }
                         dense[i][corner] += weight * share;
                     }
@@ -276,8 +271,7 @@ fn gather(
     for (i, visibility) in all.iter_mut().enumerate() {
         let is_specular = receivers[i].phong_lobe.is_some();
         let scale = if is_specular { 2.0 / azimuths as f64 } else { 1.0 / totals[i] };
-        visibility.weights =
-            visibility.corners.iter().map(|c| scale * dense[i][*c as usize]).collect();
+        visibility.corners.iter_mut().for_each(|(c, w)| *w = scale * dense[i][*c as usize]);
         visibility.sky *= scale;
     }
     all
@@ -294,15 +288,10 @@ pub(crate) fn mean_distance_m(slice: &Slice, interval: &VisibleInterval) -> f64 
 }
 
 /// Light straight from its sources at each receiver of a grid point, for albedo 1.
-fn arriving(
-    site: Site,
-    visibility: &[Visibility],
-    lights: &Lights,
-    strips: usize,
-) -> Vec<[f64; 3]> {
+fn arriving(site: Site, visibility: &[Visibility], lights: &Lights, strips: usize) -> Vec<Rgb> {
     let sky = lights.sky.unwrap_or_default().map(f64::from);
-    let mut sums: Vec<[f64; 3]> = visibility.iter().map(|of| sky.map(|s| s * of.sky)).collect();
-    let mut add = |more: Vec<[f64; 3]>| {
+    let mut sums: Vec<Rgb> = visibility.iter().map(|of| sky.map(|s| s * of.sky)).collect();
+    let mut add = |more: Vec<Rgb>| {
         for (sum, more) in sums.iter_mut().zip(more) {
             *sum = [0, 1, 2].map(|i| sum[i] + more[i]);
         }

@@ -6,6 +6,7 @@
 //! N·e = A cos ω + B sin ω with A = N_x cos φ + N_y sin φ, B = N_z. The integrand in ω is therefore
 //! A cos²ω + B sin ω cos ω: see [`slice()`]. A Phong lobe has its own: see [`Receiver`].
 
+use crate::Rgb;
 use crate::oracle::Oracle;
 use glam::DVec3;
 pub use ridgelight::basis::light::slice;
@@ -124,18 +125,18 @@ pub fn sky_of(oracle: &Oracle, row: usize, col: usize, azimuths: usize) -> f64 {
 }
 
 /// Exit radiance under an environment, linear RGB: [`Site::environment`] with at least [`ENVIRONMENT_STRIPS`] azimuths.
-pub fn environment_of(oracle: &Oracle, row: usize, col: usize, env: &Environment) -> [f64; 3] {
+pub fn environment_of(oracle: &Oracle, row: usize, col: usize, env: &Environment) -> Rgb {
     let parts = ENVIRONMENT_STRIPS.div_ceil(env.width());
     Site::of(oracle, [row, col], &diffuse_at(oracle, row, col)).environment(env, parts)[0]
 }
 
 /// Exit radiance under one sun, linear RGB: [`Site::sun`].
-pub fn sun_of(oracle: &Oracle, row: usize, col: usize, sun: &Sun, strips: usize) -> [f64; 3] {
+pub fn sun_of(oracle: &Oracle, row: usize, col: usize, sun: &Sun, strips: usize) -> Rgb {
     Site::of(oracle, [row, col], &diffuse_at(oracle, row, col)).sun(sun, strips)[0]
 }
 
 /// Exit radiance under a key light, linear RGB: [`Site::key`].
-pub fn key_of(oracle: &Oracle, row: usize, col: usize, key: &KeyLight, strips: usize) -> [f64; 3] {
+pub fn key_of(oracle: &Oracle, row: usize, col: usize, key: &KeyLight, strips: usize) -> Rgb {
     let share = Site::of(oracle, [row, col], &diffuse_at(oracle, row, col)).key(key, strips)[0];
     key.radiance.map(|l| share * f64::from(l))
 }
@@ -187,7 +188,7 @@ impl<'a> Site<'a> {
     ///
     /// One azimuth at the centre of each of `parts` equal parts of a column of texels (midpoint rule). In elevation
     /// each texel is clipped at the horizon exactly and integrated in closed form.
-    pub(crate) fn environment(&self, env: &Environment, parts: usize) -> Vec<[f64; 3]> {
+    pub(crate) fn environment(&self, env: &Environment, parts: usize) -> Vec<Rgb> {
         let (width, height) = (env.width(), env.height());
         let strips = width * parts;
         let mut sums = vec![[0.0; 3]; self.receivers.len()];
@@ -217,7 +218,7 @@ impl<'a> Site<'a> {
     /// A disc of angular radius a and radiance L gives a surface that faces it L π sin²a, so L = irradiance / (π
     /// sin²a). `strips` azimuths across the disc. Diameter 0: a point, dark where its elevation is not above the
     /// horizon.
-    pub(crate) fn sun(&self, sun: &Sun, strips: usize) -> Vec<[f64; 3]> {
+    pub(crate) fn sun(&self, sun: &Sun, strips: usize) -> Vec<Rgb> {
         let radius = 0.5 * sun.diameter_rad;
         let shares = if radius > 0.0 {
             let mut disc = self.disc(sun, strips.max(1));

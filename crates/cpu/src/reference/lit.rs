@@ -1,5 +1,6 @@
 //! All direct light at single grid points of a scene, in f64: the reference for images.
 
+use crate::Rgb;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use crate::light::{self, ENVIRONMENT_STRIPS};
@@ -51,7 +52,7 @@ impl<'a> Lit<'a> {
     }
 
     /// Exit radiance of a grid point including its albedo, linear RGB.
-    pub fn at(&self, row: usize, col: usize) -> [f64; 3] {
+    pub fn at(&self, row: usize, col: usize) -> Rgb {
         let (lights, oracle) = (&self.scene.lights, &self.oracle);
         let sky = lights.sky.map(|colour| {
             let share = light::sky_of(oracle, row, col, self.azimuths);
@@ -129,7 +130,7 @@ impl<'a> Columns<'a> {
 
     /// Exit radiance of a white diffuse grid point, linear RGB: in each column's azimuths at the centres of equal
     /// parts of it, clipped at the horizon exactly.
-    fn light(&self, oracle: &Oracle, row: usize, col: usize) -> [f64; 3] {
+    fn light(&self, oracle: &Oracle, row: usize, col: usize) -> Rgb {
         let (width, height) = (self.environment.width(), self.environment.height());
         let [receiver] = light::diffuse_at(oracle, row, col);
         let mut all = [0.0; 3];

@@ -136,19 +136,24 @@ impl Harmonics {
         Visibility { values, errors }
     }
 
+    /// Errors of all products, and their magnitudes: each row's with its share of either.
+    fn sums(&self, of: &Visibility, shares: impl Iterator<Item = [f64; 2]>) -> [DVec3; 2] {
+        let (mut off, mut summed) = (DVec3::ZERO, DVec3::ZERO);
+        for ((share, row), errors) in shares.zip(&self.matrix).zip(&self.errors) {
+            for (k, (entry, error)) in row.iter().zip(errors).enumerate() {
+                let (value, error_of) = (of.values[k].abs(), of.errors[k]);
+                off += share[0] * (entry.abs() * error_of + *error * (value + error_of));
+                summed += share[1] * entry.abs() * value;
+            }
+        }
+        [off, summed]
+    }
+
     /// Exit radiance of albedo 1, clamped at 0 where harmonics ring, and a device's error in it.
     pub fn light(&self, normal: DVec3, visibility: &Visibility, error: &ShadeError) -> [DVec3; 2] {
         let all = receiver(normal.to_array());
         let rows = if self.matrix.len() == 3 { &all[1..4] } else { &all[..self.matrix.len()] };
-        let (mut off, mut summed) = (DVec3::ZERO, DVec3::ZERO);
-        for ((polynomial, row), errors) in rows.iter().zip(&self.matrix).zip(&self.errors) {
-            for (k, (entry, error)) in row.iter().zip(errors).enumerate() {
-                let (value, of_visibility) = (visibility.values[k].abs(), visibility.errors[k]);
-                off += polynomial.abs()
-                    * (entry.abs() * of_visibility + *error * (value + of_visibility));
-                summed += entry.abs() * value;
-            }
-        }
+        let [off, summed] = self.sums(visibility, rows.iter().map(|row| [row.abs(), 1.0]));
         let tolerance = off + device_sh_shade(self.series.order, error.normal()) * summed;
         let light = light_on(normal, &visibility.values, &self.matrix);
         [light.max(DVec3::ZERO), tolerance]
@@ -163,17 +168,10 @@ impl Harmonics {
         error: &ShadeError,
     ) -> [DVec3; 2] {
         let order = self.series.order;
-        let (mut off, mut summed) = (DVec3::ZERO, DVec3::ZERO);
         let mirrored = evaluate(order, 2.0 * normal.z * normal - DVec3::Z);
         let kept = phong_bands(order, phong.exponent.into());
-        for (k, (l, _)) in bands(order).enumerate() {
-            let share = (kept[l] * mirrored[k]).abs();
-            for (j, (entry, error)) in self.matrix[k].iter().zip(&self.errors[k]).enumerate() {
-                let (value, of_visibility) = (visibility.values[j].abs(), visibility.errors[j]);
-                off += share * (entry.abs() * of_visibility + *error * (value + of_visibility));
-                summed += kept[l] * entry.abs() * value;
-            }
-        }
+        let rows = bands(order).zip(&mirrored).map(|((l, _), y)| [(kept[l] * y).abs(), kept[l]]);
+        let [off, summed] = self.sums(visibility, rows);
         let tolerance = off + device_sh_specular(order, error.normal()) * summed;
         let light = specular_on(normal, phong, &visibility.values, &self.matrix);
         [light.max(DVec3::ZERO), f64::from(phong.scale) * tolerance]

@@ -1,6 +1,8 @@
 //! Indirect light at a grid point, as every method of bounces sums it: along each azimuth the visible surface, from
 //! below upwards.
 
+use crate::Rgb;
+
 /// Surface hidden by no more than this, radians, is included without weight: rounding may make it visible.
 pub const NEARLY_RAD: f64 = 1e-3;
 
@@ -29,9 +31,9 @@ pub struct Cast {
     /// Weight of a radian at the upper one.
     pub facing: f64,
     /// R, G, B.
-    pub radiance: [f64; 3],
+    pub radiance: Rgb,
     /// Possible difference of that radiance, where the surface point is slightly nearer or farther.
-    pub spread: [f64; 3],
+    pub spread: Rgb,
     /// Distance of its upper end: metres for visible intervals of the exact march, else march steps.
     pub distance: f64,
     /// For the exact march: the largest rise from the grid point to the terrain around, and the steepest slope of
@@ -42,7 +44,7 @@ pub struct Cast {
 }
 
 /// Radiance times weight, and the weight of whole hemispheres.
-pub fn light_and_weight(all: &[Along]) -> ([f64; 3], f64) {
+pub fn light_and_weight(all: &[Along]) -> (Rgb, f64) {
     let casts = all.iter().flat_map(|along| &along.casts);
     let sum = casts
         .fold([0.0; 3], |sum, cast| [0, 1, 2].map(|c| sum[c] + cast.weight * cast.radiance[c]));
@@ -50,7 +52,7 @@ pub fn light_and_weight(all: &[Along]) -> ([f64; 3], f64) {
 }
 
 /// Exit radiance for albedo 1. Weights of a whole hemisphere sum to 1: uniform incident radiance is preserved.
-pub fn radiance(all: &[Along]) -> [f64; 3] {
+pub fn radiance(all: &[Along]) -> Rgb {
     let (sum, whole) = light_and_weight(all);
     sum.map(|s| s.max(0.0) / whole)
 }

@@ -56,15 +56,13 @@ pub fn split_crossing(march: &March, (lane, step): (i32, i32), own: f32) -> Opti
 
 /// The surface at a proposed distance, relative to a height at lane position y.
 fn surface_at(march: &March, y: i32, back: u16, step: i32, own: f32) -> Found {
-    let steps = i32::from(back);
-    let Some(h) = (back > 0)
-        .then(|| surface_on_line(march, y - steps * march.azimuth.shear, step - steps))
-        .flatten()
-    else {
+    if back == 0 {
         return NOTHING;
-    };
+    }
+    let whole = i32::from(back);
+    let h = surface_on_line(march, y - whole * march.azimuth.shear, step - whole);
     let steps = f32::from(back);
-    Found { slope: (h - own) / (steps * march.azimuth.step_m), steps }
+    h.map_or(NOTHING, |h| Found { slope: (h - own) / (steps * march.azimuth.step_m), steps })
 }
 
 /// The swept lines around a position: before it (or through it) and after it, where they are on the field.

@@ -49,13 +49,7 @@ pub fn met_within(
             f -= 1.0;
             low += 1;
         }
-        let corners = [
-            march.height_at(low, at),
-            march.height_at(low, at + 1),
-            march.height_at(low + 1, at),
-            march.height_at(low + 1, at + 1),
-        ];
-        offer(surface_rise(corners, own, u, f, split_along), back as f32 - u);
+        offer(surface_rise(march.cell_heights(low, at), own, u, f, split_along), back as f32 - u);
     }
     true
 }

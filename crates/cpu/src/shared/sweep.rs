@@ -103,6 +103,11 @@ impl<'a> March<'a> {
         self.heights.at(col, row)
     }
 
+    /// Heights of a cell's corners: at a lane and step, one step on, one lane on, and both.
+    pub fn cell_heights(&self, lane: i32, step: i32) -> [f32; 4] {
+        [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(l, s)| self.height_at(lane + l, step + s))
+    }
+
     /// Height of the surface at a lane position and a step.
     pub fn line_height(&self, y: i32, step: i32) -> f32 {
         let lane = inside(y >> CELL_SHIFT, self.lanes, self.periodic());

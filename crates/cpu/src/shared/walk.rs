@@ -68,6 +68,15 @@ impl Ground {
         let at = (y >> shift) as usize * across + (x >> shift) as usize;
         Near::given(self.levels[level as usize - 1][at])
     }
+
+    fn is_beyond(&self, at: [i32; 2]) -> bool {
+        (0..2).any(|i| at[i] < 0 || at[i] >= self.size[i])
+    }
+
+    /// Clamped.
+    pub(super) fn within(&self, at: [i32; 2]) -> [i32; 2] {
+        [0, 1].map(|i| at[i].clamp(0, self.size[i] - 1))
+    }
 }
 
 /// A ray from a point on the surface.
@@ -130,9 +139,9 @@ pub(super) struct Walk {
 
 /// The current block.
 pub(super) struct Block {
+    /// Its cells, as the traversal counts them: not wrapped.
     low: [i32; 2],
     high: [i32; 2],
-    wrap: [i32; 2],
     pub ahead: Near,
     by_x: bool,
 }
@@ -165,19 +174,20 @@ impl Walk {
 
     pub fn block(&self, ground: &Ground, ray: &Ray) -> Block {
         let bits = LEVEL_BITS * self.level;
-        let low = self.at.map(|at| (at >> bits) << bits);
-        let high = [0, 1].map(|i| (low[i] + (1 << bits)).min(ground.size[i]));
+        let first = self.at.map(|at| (at >> bits) << bits);
         let is_periodic = ground.border == Border::Periodic;
         let wrap = [0, 1].map(|i| if is_periodic { self.at[i] - self.cell[i] } else { 0 });
+        let low = [0, 1].map(|i| first[i] - wrap[i]);
+        let high = [0, 1].map(|i| (first[i] + (1 << bits)).min(ground.size[i]) - wrap[i]);
         let to_edge = [0, 1].map(|i| {
-            let edge = if self.onward[i] { high[i] } else { low[i] } - wrap[i] - ray.base[i];
+            let edge = if self.onward[i] { high[i] } else { low[i] } - ray.base[i];
             if ray.advance[i].v == 0.0 {
                 return Near::of(1e30);
             }
             (Near::given(edge as f32) - ray.offset[i]) * (Near::of(1.0) / ray.advance[i])
         });
         let ahead = to_edge[0].min(to_edge[1]).max(self.t);
-        Block { low, high, wrap, ahead, by_x: to_edge[0].v <= to_edge[1].v }
+        Block { low, high, ahead, by_x: to_edge[0].v <= to_edge[1].v }
     }
 
     /// Steps to the next block of the level where this one is `clear`. Goes to a coarser level on entering a coarser
@@ -187,7 +197,7 @@ impl Walk {
         let mut next = self.cell;
         if clear {
             for (i, to) in next.iter_mut().enumerate() {
-                let [low, high] = [block.low[i] - block.wrap[i], block.high[i] - block.wrap[i]];
+                let [low, high] = [block.low[i], block.high[i]];
                 let across = if self.onward[i] { high } else { low - 1 };
                 let place = (ray.offset[i].v + block.ahead.v * ray.advance[i].v).floor() as i32;
                 let other = (place + ray.base[i]).clamp(low, high - 1);
@@ -209,16 +219,5 @@ impl Walk {
             self.leaves |= !is_periodic && ground.is_beyond(at);
         }
         (self.cell, self.at) = (next, at);
-    }
-}
-
-impl Ground {
-    fn is_beyond(&self, at: [i32; 2]) -> bool {
-        (0..2).any(|i| at[i] < 0 || at[i] >= self.size[i])
-    }
-
-    /// Clamped.
-    pub(super) fn within(&self, at: [i32; 2]) -> [i32; 2] {
-        [0, 1].map(|i| at[i].clamp(0, self.size[i] - 1))
     }
 }

@@ -2,6 +2,7 @@
 //! intervals.
 
 use super::{ARC_TANGENT, EPSILON, device_level, device_spline};
+use crate::Rgb;
 use crate::shared::bounced::{Along, Cast, NEARLY_RAD, light_and_weight};
 use crate::shared::field::field_slope;
 use crate::shared::sweep::{Heights, inside};
@@ -99,9 +100,9 @@ pub struct Slices {
 #[derive(Clone, Copy, Debug)]
 pub struct BounceError {
     /// Radiance times weight, R, G, B.
-    pub sum: [f64; 3],
+    pub sum: Rgb,
     /// Exit radiance for albedo 1.
-    pub light: [f64; 3],
+    pub light: Rgb,
 }
 
 impl BounceError {
@@ -161,6 +162,11 @@ impl BounceError {
     }
 }
 
+/// The largest magnitude of a colour.
+fn largest(of: Rgb) -> f64 {
+    of.iter().fold(0.0, |m, l| m.max(l.abs()))
+}
+
 /// What `bounce_march` errs by where a visible interval ends.
 ///
 /// A direction is turned by 40 ε: a quotient of 5 ε and its difference from a half, times π, as halves of turns, and
@@ -182,8 +188,7 @@ pub fn march_error(cell_m: [f64; 2], along: &Along, cast: &Cast) -> CastError {
     let rise = 8.0 * cast.rise_m / cast.distance.max(0.5 * cell);
     let of_slope = rise + 2.0 * place * cast.steepest + 20.0 * slope.abs();
     let width = cast.high_rad - cast.low_rad;
-    let brightest = cast.radiance.iter().fold(0.0_f64, |m, l| m.max(l.abs()));
-    let spread = cast.spread.iter().fold(0.0_f64, |m, l| m.max(*l));
+    let [brightest, spread] = [cast.radiance, cast.spread].map(largest);
     let cells = cast.distance / cell;
     CastError {
         elevation_rad: EPSILON * (of_slope / (1.0 + slope * slope) + 1.0),
@@ -200,8 +205,7 @@ pub fn march_error(cell_m: [f64; 2], along: &Along, cast: &Cast) -> CastError {
 /// by its cosine, sine and width of f32.
 pub fn walk_error(wedge_rad: f64, cast: &Cast) -> CastError {
     let slope = cast.high_rad.tan();
-    let brightest = cast.radiance.iter().fold(0.0_f64, |m, l| m.max(l.abs()));
-    let spread = cast.spread.iter().fold(0.0_f64, |m, l| m.max(*l));
+    let [brightest, spread] = [cast.radiance, cast.spread].map(largest);
     CastError {
         elevation_rad: 8.0 * EPSILON * slope.abs() / (1.0 + slope * slope),
         end: wedge_rad * (0.5 * ARC_TANGENT + 9.0 * EPSILON),

@@ -52,7 +52,7 @@ fn may_be_met(ways: &Ways, rise_m: f64) -> Vec<Way> {
         }
         passed.push((way, off));
     }
-    if ways.is_cut() {
+    if ways.is_cut {
         possible.push(ways.far());
         return possible;
     }

@@ -60,8 +60,8 @@ pub struct Ways {
     climb_m: f64,
     /// Repetitions tested along the faster axis.
     turns: std::ops::RangeInclusive<i64>,
-    /// Whether there are more, beyond a right angle of the base.
-    is_cut: bool,
+    /// Whether there are more: the hit may lie beyond a right angle of the base.
+    pub is_cut: bool,
 }
 
 impl Ways {
@@ -170,11 +170,6 @@ impl Ways {
             }
         }
         if self.is_cut { self.far() } else { nearest.unwrap_or(self.whole(self.gap)) }
-    }
-
-    /// Whether the hit may lie beyond a right angle of the base.
-    pub fn is_cut(&self) -> bool {
-        self.is_cut
     }
 
     /// Hits so far away that the base has turned away.

@@ -57,14 +57,8 @@ impl Tracer<'_> {
                 solid = Near::of(2.0 * PI) * cone;
                 // From inside no shadow ray is traced.
                 if shines == Some(false) {
-                    let (e, brought) = (above, [Near::ZERO; 3]);
-                    return Some(ActiveLights {
-                        e,
-                        brought,
-                        reflected: Some(false),
-                        shines,
-                        end_m,
-                    });
+                    let (reflected, brought) = (Some(false), [Near::ZERO; 3]);
+                    return Some(ActiveLights { e: above, brought, reflected, shines, end_m });
                 }
             }
             direction_about(towards, off, u[1])?
