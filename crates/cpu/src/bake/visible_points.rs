@@ -99,14 +99,9 @@ pub fn possible_within(
 }
 
 /// The grid point nearest to a position on a visible interval, offset by `off` rows and columns.
-fn met(
-    oracle: &Oracle,
-    interval: &VisibleInterval,
-    distance_m: f64,
-    off: [f64; 2],
-) -> VisiblePoint {
+fn met(oracle: &Oracle, interval: &VisibleInterval, at_m: f64, off: [f64; 2]) -> VisiblePoint {
     let (rows, cols) = (oracle.field().rows(), oracle.field().cols());
-    let [_, second, third] = interval.corner_weights(distance_m);
+    let [_, second, third] = interval.corner_weights(at_m);
     let [[row, col], ..] = oracle.corners(interval.triangle);
     let is_lower = !interval.triangle.is_multiple_of(2);
     let [down, right] = if is_lower { [second + third, third] } else { [third, second + third] };

@@ -6,19 +6,14 @@ use crate::shared::sweep::Heights;
 use ridgelight::plan::pyramid::Pyramid;
 
 /// The texels of level `number` from those of all levels; only its source's are read.
-pub fn height_reduce(
-    heights: &Heights,
-    pyramid: &Pyramid,
-    number: u32,
-    texels: &[f32],
-) -> Vec<f32> {
+pub fn height_reduce(field: &Heights, pyramid: &Pyramid, number: u32, texels: &[f32]) -> Vec<f32> {
     let from = pyramid.source(number);
     let (level, source) = (pyramid.level(number), pyramid.level(from));
     let ratio = pyramid.ratio(number);
     let beside = ratio.map(|r| 0.5 * (r - 1.0));
     let source_at = |x: usize, y: usize| {
         if from == 0 {
-            heights.at(x as i32, y as i32)
+            field.at(x as i32, y as i32)
         } else {
             texels[source.first as usize + y * source.size[0] as usize + x]
         }

@@ -17,7 +17,6 @@ const BAND: usize = 8;
 pub struct ScalarSweep<'a> {
     field: &'a HeightField,
     side: usize,
-    threads: usize,
     slopes: Vec<f32>,
     spans: Vec<[u32; 2]>,
     /// One per thread: height and step of a hull's vertices.
@@ -69,14 +68,9 @@ impl Lattice {
         if high <= low {
             return [0, 0];
         }
-        let (mut first, mut end) = (low as u32, (high as u32 + 2).min(side as u32));
-        while first < end && !inside(first) {
-            first += 1;
-        }
-        while end > first && !inside(end - 1) {
-            end -= 1;
-        }
-        [first, end]
+        let end = (high as u32 + 2).min(side as u32);
+        let first = (low as u32..end).find(|i| inside(*i)).unwrap_or(end);
+        [first, (first..end).rev().find(|i| inside(*i)).map_or(first, |last| last + 1)]
     }
 }
 
@@ -88,7 +82,6 @@ impl<'a> ScalarSweep<'a> {
         Self {
             field,
             side,
-            threads,
             slopes: vec![f32::NEG_INFINITY; side * side],
             spans: vec![[0, 0]; side],
             stacks: vec![vec![[0.0; 2]; side]; threads],
@@ -98,7 +91,7 @@ impl<'a> ScalarSweep<'a> {
 
     /// Threads used: one per core.
     pub fn threads(&self) -> usize {
-        self.threads
+        self.stacks.len()
     }
 
     /// Slopes of the horizons in one azimuth (radians, counter-clockwise from east), for
@@ -134,11 +127,6 @@ impl<'a> ScalarSweep<'a> {
                 });
             }
         });
-    }
-
-    /// Lines of the lattice, and steps of each.
-    pub fn side(&self) -> usize {
-        self.side
     }
 
     /// The first step of a line that lies on the field, and the slopes from there on: the steepest slope to an
@@ -224,7 +212,7 @@ mod tests {
         sweep.sweep(azimuth_rad);
         let highest = field.heights_m().iter().fold(0.0_f32, |m, h| m.max(h.abs()));
         let tolerance = 16.0 * f32::EPSILON * (highest / sweep.lattice.step_m).max(1.0);
-        for line in 0..sweep.side() {
+        for line in 0..sweep.side {
             let (first, slopes) = sweep.line(line);
             let heights: Vec<f64> = (0..slopes.len())
                 .map(|i| {

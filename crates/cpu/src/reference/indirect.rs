@@ -99,7 +99,7 @@ pub fn light(scene: &Scene, bounces: usize, fineness: Fineness) -> Result<Vec<Pi
     let oracle = Oracle::new(&fine, surface.border);
     let places = places(&oracle, field, divisions, surface.specular.as_ref());
     let corners = corner_count(&oracle);
-    let lights = divided_lights(lights, field, surface.border, divisions);
+    let lights = moved_lights(lights, field, surface.border, divisions);
 
     let (rows, mut arrived) = at_all(&oracle, &places, &lights, fineness);
     let albedo = |at: usize| match &surface.albedo {
@@ -143,13 +143,14 @@ fn product(a: Rgb, b: Rgb) -> Rgb {
 /// Visibility of one receiver: weights of the corners' radiances and of a sky of radiance 1.
 #[derive(Clone, Debug, Default)]
 struct Visibility {
-    corners: Vec<(u32, f64)>,
+    corners: Vec<u32>,
+    weights: Vec<f64>,
     sky: f64,
 }
 
 impl Visibility {
     fn of(&self, radiance: &[Rgb]) -> Rgb {
-        self.corners.iter().fold([0.0; 3], |sum, (corner, weight)| {
+        self.corners.iter().zip(&self.weights).fold([0.0; 3], |sum, (corner, weight)| {
             [0, 1, 2].map(|c| sum[c] + weight * radiance[*corner as usize][c])
         })
     }
@@ -204,8 +205,8 @@ fn at_all(
     for (at, place) in places.iter().enumerate() {
         let here = [at / oracle.field().cols(), at % oracle.field().cols()];
         let receivers: Vec<Receiver> = place.iter().map(|(_, receiver)| *receiver).collect();
-        let visibility = gather(oracle, here, &receivers, fineness.azimuths);
         let site = Site::of(oracle, here, &receivers);
+        let visibility = gather(site, fineness.azimuths);
         let arriving = arriving(site, &visibility, lights, fineness.strips);
         for (((target, _), visibility), light) in place.iter().zip(visibility).zip(arriving) {
             (rows[*target], direct[*target]) = (visibility, light);
@@ -233,12 +234,8 @@ fn triangle_normal(oracle: &Oracle, triangle: usize) -> DVec3 {
 /// Weights of a diffuse receiver are scaled so that those of its whole hemisphere sum to 1. The rule over azimuths
 /// alone misses this by less the more azimuths and the gentler the slope. Uniform incident radiance is preserved, and
 /// energy is not gained.
-fn gather(
-    oracle: &Oracle,
-    here: [usize; 2],
-    receivers: &[Receiver],
-    azimuths: usize,
-) -> Vec<Visibility> {
+fn gather(site: Site, azimuths: usize) -> Vec<Visibility> {
+    let Site { oracle, place: [row, col], receivers } = site;
     let corners = corner_count(oracle);
     let mut dense = vec![vec![0.0; corners]; receivers.len()];
     let mut all = vec![Visibility::default(); receivers.len()];
@@ -246,7 +243,7 @@ fn gather(
     let mut intervals = Vec::new();
     for k in 0..azimuths {
         let azimuth = TAU * (k as f64 + 0.5) / azimuths as f64;
-        oracle.visible_intervals(here[0], here[1], azimuth, &mut intervals);
+        oracle.visible_intervals(row, col, azimuth, &mut intervals);
         let met = intervals.last().map_or(-FRAC_PI_2, |last| last.high_rad);
         let horizon = if oracle.border() == Border::Open { met } else { met.max(0.0) };
         for (i, receiver) in receivers.iter().enumerate() {
@@ -260,7 +257,7 @@ fn gather(
                     for (j, share) in shares.into_iter().enumerate().filter(|(_, s)| *s > 0.0) {
                         let corner = 3 * interval.triangle + j;
                         if dense[i][corner] == 0.0 {
-                            all[i].corners.push((corner as u32, 0.0));
+                            all[i].corners.push(corner as u32);
                         }
                         dense[i][corner] += weight * share;
                     }
@@ -271,7 +268,8 @@ fn gather(
     for (i, visibility) in all.iter_mut().enumerate() {
         let is_specular = receivers[i].phong_lobe.is_some();
         let scale = if is_specular { 2.0 / azimuths as f64 } else { 1.0 / totals[i] };
-        visibility.corners.iter_mut().for_each(|(c, w)| *w = scale * dense[i][*c as usize]);
+        visibility.weights =
+            visibility.corners.iter().map(|c| scale * dense[i][*c as usize]).collect();
         visibility.sky *= scale;
     }
     all
@@ -354,12 +352,7 @@ fn divided_field(field: &HeightField, border: Border, divisions: usize) -> Resul
 
 /// Positions count from the southernmost row, which division of the last, wrapping cells of a `periodic` field moves
 /// south.
-fn divided_lights(
-    lights: &Lights,
-    field: &HeightField,
-    border: Border,
-    divisions: usize,
-) -> Lights {
+fn moved_lights(lights: &Lights, field: &HeightField, border: Border, divisions: usize) -> Lights {
     let moved = match border {
         Border::Periodic => field.cell_m()[1] * (1.0 - 1.0 / divisions as f64),
         Border::Plane | Border::Open => 0.0,

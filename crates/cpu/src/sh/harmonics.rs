@@ -61,22 +61,9 @@ pub struct Harmonics {
 }
 
 impl Harmonics {
-    /// The light's matrix of a quality.
-    pub fn new(environment: &Environment, border: Border, quality: &Quality) -> Self {
-        Self::of(Some(environment), None, border, quality)
-    }
-
-    /// The same for Phong specular, from all bands of visibility, for an environment and a sky.
-    pub fn of_specular(
-        environment: Option<&Environment>,
-        sky: [f32; 3],
-        border: Border,
-        quality: &Quality,
-    ) -> Self {
-        Self::of(environment, Some(sky), border, quality)
-    }
-
-    fn of(
+    /// The light's matrix of a quality; `specular`: for Phong specular, from all bands of visibility, of an environment
+    /// and a sky of this radiance.
+    pub fn of(
         environment: Option<&Environment>,
         specular: Option<[f32; 3]>,
         border: Border,
@@ -159,7 +146,7 @@ impl Harmonics {
         [light.max(DVec3::ZERO), tolerance]
     }
 
-    /// Phong specular straight upwards, from the matrix [`of_specular`](Self::of_specular), and a device's error in it.
+    /// Phong specular straight upwards, from the matrix [of Phong specular](Self::of), and a device's error in it.
     pub fn mirrored(
         &self,
         normal: DVec3,

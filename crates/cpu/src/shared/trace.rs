@@ -106,25 +106,19 @@ fn followed(ground: &Ground, ray: &Ray, t_end: Near, crossed: &mut f64) -> Met {
 }
 
 /// Whether the surface is not below the ray at the cell's diagonal or its far edge.
-fn blocked(
-    ground: &Ground,
-    ray: &Ray,
-    walk: &Walk,
-    ahead: Near,
-    crossed: &mut f64,
-) -> Option<bool> {
-    let corners = ground.corners(ground.within(walk.at));
-    let from = from(ray, walk);
+fn blocked(ground: &Ground, ray: &Ray, at: &Walk, ahead: Near, crossed: &mut f64) -> Option<bool> {
+    let corners = ground.corners(ground.within(at.at));
+    let from = from(ray, at);
     let t_split = split(ray, from);
     let over_split = over_diagonal(ground, ray, corners, from, t_split);
-    let is_between = all([t_split.above(walk.t), ahead.above(t_split)]);
+    let is_between = all([t_split.above(at.t), ahead.above(t_split)]);
     let in_split = all([is_between, over_split.at_most(Near::ZERO)]);
     let over_exit = over(ground, ray, corners, from, ahead);
     *crossed += 1.0 + ahead.v;
     if is_between != Some(false) {
         *crossed += 1.0 + t_split.v.clamp(0.0, ahead.v);
     }
-    any([in_split, all([ahead.above(walk.t), over_exit.at_most(Near::ZERO)])])
+    any([in_split, all([ahead.above(at.t), over_exit.at_most(Near::ZERO)])])
 }
 
 /// Height of the ray over the surface at t.

@@ -127,7 +127,7 @@ fn series_above(
 ) -> [f64; 2] {
     let quality = &found.method.quality;
     let environment = found.scene.lights.environment.as_ref().expect("an environment");
-    let harmonics = Harmonics::new(environment, found.scene.surface.border, quality);
+    let harmonics = Harmonics::of(Some(environment), None, found.scene.surface.border, quality);
     let error = ShadeError::new(slope_error, 0.0, 1.0, found.azimuths.len());
     let mut seen = harmonics.visibility(lowest, &error);
     if quality.subsample > 1 {

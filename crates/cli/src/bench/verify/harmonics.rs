@@ -185,7 +185,7 @@ impl Wanted {
     /// The environment's light at the places, from the visibility of their nodes.
     fn of(scene: &Scene, quality: &Quality, places: &[Place], nodes: &[Place]) -> Self {
         let environment = scene.lights.environment.as_ref().expect("an environment");
-        let harmonics = Harmonics::new(environment, scene.surface.border, quality);
+        let harmonics = Harmonics::of(Some(environment), None, scene.surface.border, quality);
         Self::lit(scene, quality, [places, nodes], &harmonics, |place, visibility, error| {
             let albedo = DVec3::from_array(albedo_of(scene, place.index));
             let [light, off] = harmonics.light(place.normal, visibility, error);

@@ -88,7 +88,7 @@ fn wanted_of(
         true => {
             let border = scene.surface.border;
             let sky = sky.unwrap_or_default();
-            let harmonics = Harmonics::of_specular(environment.as_ref(), sky, border, quality);
+            let harmonics = Harmonics::of(environment.as_ref(), Some(sky), border, quality);
             Wanted::lit(scene, quality, [places, nodes], &harmonics, |place, visibility, error| {
                 harmonics.mirrored(place.normal, specular.at(place.index), visibility, error)
             })

@@ -50,13 +50,14 @@ pub struct Ways {
     cell_m: [f64; 2],
     by_rows: bool,
     e: DVec3,
-    /// Heights relative to the grid point, of its neighbours in the east, south, west, north, south-east and
-    /// north-west.
+    /// Heights relative to the grid point, of its neighbours along the faster and the slower axis, back along either,
+    /// along both and back along both.
     around: [f64; 6],
     rise_m: f64,
     is_periodic: bool,
-    /// Columns and rows, towards east and south, per cell of the faster axis.
-    advance: DVec2,
+    /// Cells along the faster and the slower axis, towards east or south, per cell of the faster.
+    ahead: f64,
+    aside: f64,
     climb_m: f64,
     /// Repetitions tested along the faster axis.
     turns: std::ops::RangeInclusive<i64>,
@@ -78,16 +79,18 @@ impl Ways {
         let height = |at: i64| f64::from(field.heights_m()[at as usize]);
         let place = |at: usize| [at as i64 % cols, at as i64 / cols];
         let [[x, y], [to_x, to_y]] = [here, there].map(place);
-        let neighbour = |[right, down]: [i64; 2]| {
+        let pace = [e.x / cell_x, -e.y / cell_y];
+        let by_rows = pace[1].abs() > pace[0].abs();
+        let swap = |[a, b]: [i64; 2]| if by_rows { [b, a] } else { [a, b] };
+        let neighbour = |to: [i64; 2]| {
+            let [right, down] = swap(to);
             let at = (to_y + down).rem_euclid(rows) * cols + (to_x + right).rem_euclid(cols);
             height(at) - height(there as i64)
         };
         let around = [[1, 0], [0, 1], [-1, 0], [0, -1], [1, 1], [-1, -1]].map(neighbour);
         let rise_m = height(there as i64) - height(here as i64);
-        let pace = DVec2::new(e.x / cell_x, -e.y / cell_y);
-        let by_rows = pace.y.abs() > pace.x.abs();
-        let swap = |[a, b]: [i64; 2]| if by_rows { [b, a] } else { [a, b] };
-        let main = pace.x.abs().max(pace.y.abs()).max(1e-30);
+        let main = pace[0].abs().max(pace[1].abs()).max(1e-30);
+        let [ahead, aside] = if by_rows { [pace[1], pace[0]] } else { pace }.map(|p| p / main);
         let [gap, size] = [[to_x - x, to_y - y], [cols, rows]].map(swap);
         let mut ways = Self {
             gap,
@@ -98,7 +101,8 @@ impl Ways {
             around,
             rise_m,
             is_periodic: is_periodic && e.truncate().length_squared() >= 1e-12,
-            advance: pace / main,
+            ahead,
+            aside,
             climb_m: e.z / main,
             turns: 0..=0,
             is_cut: false,
@@ -121,11 +125,7 @@ impl Ways {
             };
             (self.rise_m + rise) / climb
         };
-        let [low, high] = [
-            self.around.iter().copied().fold(0.0, f64::min),
-            self.around.iter().copied().fold(0.0, f64::max),
-        ];
-        let [a, b] = [level(low), level(high)];
+        let [a, b] = [f64::min, f64::max].map(|end| level(self.around.into_iter().fold(0.0, end)));
         // One more cell for half a square and roundings.
         let turn = |cells: f64| {
             ((cells.clamp(-2.0, f64::from(REACH_CELLS)) - first) / size).floor() as i64
@@ -139,11 +139,7 @@ impl Ways {
     /// Cells to the nearest repetition ahead, negative towards west or north.
     fn first(&self) -> i64 {
         let [gap, size] = [self.gap[0], self.size[0]];
-        if self.ahead() > 0.0 { gap.rem_euclid(size) } else { -(-gap).rem_euclid(size) }
-    }
-
-    fn ahead(&self) -> f64 {
-        if self.by_rows { self.advance.y } else { self.advance.x }
+        if self.ahead > 0.0 { gap.rem_euclid(size) } else { -(-gap).rem_euclid(size) }
     }
 
     /// All possible hits, nearest first; `half_side` as [`HALF_SIDE`]. On a field that does not repeat, the grid
@@ -183,8 +179,8 @@ impl Ways {
             return [Some(self.gap), None];
         }
         let [size, other_size] = self.size;
-        let main = self.first() + if self.ahead() > 0.0 { k * size } else { -k * size };
-        let turns = (main.abs() as f64 * self.aside() - self.gap[1] as f64) / other_size as f64;
+        let main = self.first() + if self.ahead > 0.0 { k * size } else { -k * size };
+        let turns = (main.abs() as f64 * self.aside - self.gap[1] as f64) / other_size as f64;
         let gaps = |turns: f64| Some([main, self.gap[1] + turns as i64 * other_size]);
         // Within the width of a column or row, a ray moves sideways by at most one. Only on fields two grid points
         // wide or less does it cross two.
@@ -192,43 +188,36 @@ impl Ways {
             return [gaps((turns + 0.5).floor()), None];
         }
         let [low, high] = [turns.floor(), turns.floor() + 1.0];
-        if self.aside() < 0.0 { [gaps(high), gaps(low)] } else { [gaps(low), gaps(high)] }
-    }
-
-    /// Columns or rows of the slower axis per cell of the faster.
-    fn aside(&self) -> f64 {
-        if self.by_rows { self.advance.x } else { self.advance.y }
+        if self.aside < 0.0 { [gaps(high), gaps(low)] } else { [gaps(low), gaps(high)] }
     }
 
     /// Where the ray crosses the square around a grid point.
     fn way(&self, gaps: [i64; 2], half_side: f64) -> Option<Way> {
         let [main, other] = gaps.map(|gap| gap as f64);
         let cells = main.abs();
-        let beside = cells * self.aside() - other;
+        let beside = cells * self.aside - other;
         // Cells from the closest approach, along the faster axis; starts at the ray start.
         let (mut from, mut to) = ((-half_side).max(-cells), half_side);
-        if self.aside() == 0.0 {
+        if self.aside == 0.0 {
             if beside.abs() > half_side {
                 return None;
             }
         } else {
-            let [a, b] =
-                [(-half_side - beside) / self.aside(), (half_side - beside) / self.aside()];
+            let [a, b] = [(-half_side - beside) / self.aside, (half_side - beside) / self.aside];
             (from, to) = (from.max(a.min(b)), to.min(a.max(b)));
         }
         if from > to {
             return None;
         }
-        let start = if self.by_rows { DVec2::new(beside, 0.0) } else { DVec2::new(0.0, beside) };
-        let over = |u: f64| {
-            (cells + u) * self.climb_m - self.rise_m - self.risen(start + u * self.advance)
-        };
+        let (start, advance) = (DVec2::new(0.0, beside), DVec2::new(self.ahead, self.aside));
+        let over =
+            |u: f64| (cells + u) * self.climb_m - self.rise_m - self.risen(start + u * advance);
         // Linear between grid lines and the diagonal.
         let kink = |at: f64, pace: f64| if pace == 0.0 { to } else { (-at / pace).clamp(from, to) };
         let mut least = over(to);
         // The ray starts on the grid point's own surface.
         if gaps != [0, 0] {
-            let (p, a) = (start, self.advance);
+            let (p, a) = (start, advance);
             for u in [from, kink(p.x, a.x), kink(p.y, a.y), kink(p.x - p.y, a.x - a.y)] {
                 least = least.min(over(u));
             }
@@ -236,17 +225,16 @@ impl Ways {
         Some(Way { over_m: least, ..self.whole(gaps) })
     }
 
-    /// Height of the surface above the grid point, within a cell, by columns east and rows south: six triangles meet
-    /// there.
+    /// Height of the surface above the grid point, within a cell, along the faster and the slower axis: six triangles
+    /// meet there.
     fn risen(&self, at: DVec2) -> f64 {
-        let [east, south, west, north, south_east, north_west] = self.around;
         let [x, y] = [at.x.abs(), at.y.abs()];
-        let along = if at.x >= 0.0 { east } else { west };
-        let down = if at.y >= 0.0 { south } else { north };
+        let along = self.around[if at.x >= 0.0 { 0 } else { 2 }];
+        let down = self.around[if at.y >= 0.0 { 1 } else { 3 }];
         if (at.x >= 0.0) != (at.y >= 0.0) {
             return x * along + y * down;
         }
-        let (both, corner) = (x.min(y), if at.x >= 0.0 { south_east } else { north_west });
+        let (both, corner) = (x.min(y), self.around[if at.x >= 0.0 { 4 } else { 5 }]);
         both * corner + (x - both) * along + (y - both) * down
     }
 
