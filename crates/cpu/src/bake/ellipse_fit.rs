@@ -73,18 +73,6 @@ pub const LAST_STEP: f64 = 1.0 / 64.0;
 /// See [`FIRST_STEP`].
 pub const MOST_STEPS: usize = 48;
 
-/// Moves of centre and radius along an axis, in steps: either end, both ends to one side, both ends apart.
-pub const MOVES: [(f64, f64); 8] = [
-    (-1.0, -1.0),
-    (0.0, -1.0),
-    (1.0, -1.0),
-    (-1.0, 0.0),
-    (1.0, 0.0),
-    (-1.0, 1.0),
-    (0.0, 1.0),
-    (1.0, 1.0),
-];
-
 /// Sky visibility of a grid point above horizontal; `directions` are those of the points, or bent on a curved base
 /// surface.
 pub fn sky_directions(
@@ -168,9 +156,13 @@ pub fn fit(sky: &[SkyDirection]) -> (Ellipse, i64) {
     }
 }
 
-/// One step away, in the order in which ties are resolved.
+/// One step away, in the order in which ties are resolved: along either axis every move of the centre, then of the
+/// radius, by a step back, none or one on.
 pub fn neighbours(of: &Ellipse, step: f64, least: f64) -> impl Iterator<Item = Ellipse> {
     let of = *of;
-    let moves = (0..2).flat_map(|across| MOVES.map(|by| (across, by)));
-    moves.map(move |(across, (by, grow))| of.moved(across, (by * step, grow * step), least))
+    let moves = (0..18).filter(|i| i % 9 != 4);
+    moves.map(move |i: usize| {
+        let [by, grow] = [i % 3, i % 9 / 3].map(|k| (k as f64 - 1.0) * step);
+        of.moved(i / 9, (by, grow), least)
+    })
 }

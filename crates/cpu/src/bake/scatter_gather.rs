@@ -1,9 +1,9 @@
 //! Light scattered between mutually visible grid points, in f64: one step of a path, and the mean over all paths.
 
 use crate::Rgb;
-use crate::light::normal;
+use crate::light::{albedo_at, normal};
 use glam::DVec3;
-use ridgelight::scene::{Albedo, Curvature, PhongSpecular, Scene, VisiblePoint, VisiblePoints};
+use ridgelight::scene::{Curvature, PhongSpecular, Scene, VisiblePoint, VisiblePoints};
 use std::f64::consts::{PI, TAU};
 
 /// Scattered light of one grid point, from one incident direction with a solid angle.
@@ -52,10 +52,7 @@ impl<'a> GridPoints<'a> {
 
     /// Of a grid point.
     pub fn albedo(&self, at: usize) -> Rgb {
-        match &self.scene.surface.albedo {
-            Albedo::Constant(colour) => colour.map(f64::from),
-            Albedo::Map(map) => map[at].map(f64::from),
-        }
+        albedo_at(&self.scene.surface, at)
     }
 
     /// Of a grid point, where there is Phong specular.

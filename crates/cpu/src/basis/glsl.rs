@@ -181,11 +181,7 @@ pub fn glsl_harmonics() -> String {
         };
         writeln!(text, "    vec4 c{m} = {c};\n    vec4 s{m} = {s};").unwrap();
     }
-    for (l, m) in parts(MAX_ORDER) {
-        let indent = if l < 2 { "    " } else { "        " };
-        if m == 0 && l >= 2 {
-            writeln!(text, "    if (ORDER > {l}) {{").unwrap();
-        }
+    by_band(&mut text, |text, indent, l, m| {
         let norm = if m == 0 { 0.5 * FRAC_1_PI } else { FRAC_1_PI }.sqrt();
         let scaled: Vec<f64> = associated(l, m).iter().map(|c| c * norm).collect();
         let polynomial = horner(&scaled).replace("sin_", "z");
@@ -197,26 +193,30 @@ pub fn glsl_harmonics() -> String {
             writeln!(text, "{indent}harmonics[{}] = s{m} * t;", index(l, -m)).unwrap();
             writeln!(text, "{indent}harmonics[{}] = c{m} * t;", index(l, m)).unwrap();
         }
-        if m == l && l >= 2 {
-            writeln!(text, "    }}").unwrap();
-        }
-    }
+    });
     text + "}\n"
 }
 
 /// Adds each part of a slice, times its weights, to its one or two coefficients.
 fn add_parts(text: &mut String, slice: &[String]) {
-    for ((l, m), part) in parts(MAX_ORDER).zip(slice) {
-        let indent = if l < 2 { "    " } else { "        " };
+    let mut slice = slice.iter();
+    by_band(text, |text, indent, l, m| {
+        writeln!(text, "{indent}t = {};", slice.next().expect("every part")).unwrap();
+        for m in BTreeSet::from([-(m as isize), m as isize]) {
+            writeln!(text, "{indent}series[{}] += turn[{}] * t;", index(l, m), 5 + m).unwrap();
+        }
+    });
+}
+
+/// Writes all parts (l, m), with an indent, bands above 1 for orders that have them.
+fn by_band(text: &mut String, mut write: impl FnMut(&mut String, &str, usize, usize)) {
+    for (l, m) in parts(MAX_ORDER) {
         if m == 0 && l >= 2 {
             writeln!(text, "    if (ORDER > {l}) {{").unwrap();
         }
-        writeln!(text, "{indent}t = {part};").unwrap();
-        for m in std::collections::BTreeSet::from([-(m as isize), m as isize]) {
-            writeln!(text, "{indent}series[{}] += turn[{}] * t;", index(l, m), 5 + m).unwrap();
-        }
+        write(text, if l < 2 { "    " } else { "        " }, l, m);
         if m == l && l >= 2 {
-            writeln!(text, "    }}").unwrap();
+            *text += "    }\n";
         }
     }
 }

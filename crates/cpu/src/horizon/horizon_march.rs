@@ -3,7 +3,7 @@
 
 use crate::lattice::Lattice;
 use crate::shared::fuse::{Found, NOTHING};
-use crate::shared::segment::met_within;
+use crate::shared::surface::met_within;
 use crate::shared::sweep::{Heights, March};
 use ridgelight::plan::azimuths::Azimuth;
 

@@ -83,11 +83,10 @@ pub fn horizon_sweep(
                         march.march_position(if periodic { step % steps } else { step }),
                         azimuth.layer,
                     );
-                    let met = hull
-                        .last()
-                        .map_or(NO_SLOPE, |top| (top.0 - h) / ((x - top.1) * azimuth.step_m));
-                    lattice.occluders[texel] =
-                        hull.last().map_or(0, |top| (step - top.1 as i32) as u16);
+                    let (back, met) = hull.last().map_or((0, NO_SLOPE), |top| {
+                        (step - top.1 as i32, (top.0 - h) / ((x - top.1) * azimuth.step_m))
+                    });
+                    lattice.occluders[texel] = back as u16;
                     lattice.slopes[texel] = if options.slopes_f16 {
                         f16::from_f32(met.clamp(-65504.0, 65504.0)).to_f32()
                     } else {

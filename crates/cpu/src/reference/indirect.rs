@@ -21,11 +21,11 @@
 //! both.
 
 use crate::Rgb;
-use crate::light::{Receiver, Site, Slice, normal};
+use crate::light::{Receiver, Site, Slice, albedo_at, normal};
 use crate::oracle::Oracle;
 use crate::profile::VisibleInterval;
 use glam::DVec3;
-use ridgelight::scene::{Albedo, Border, HeightField, Lights, Scene, Specular, SphereLight};
+use ridgelight::scene::{Border, HeightField, Lights, Scene, Specular, SphereLight};
 use ridgelight::{Error, Result};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -102,10 +102,7 @@ pub fn light(scene: &Scene, bounces: usize, fineness: Fineness) -> Result<Vec<Pi
     let lights = moved_lights(lights, field, surface.border, divisions);
 
     let (rows, mut arrived) = at_all(&oracle, &places, &lights, fineness);
-    let albedo = |at: usize| match &surface.albedo {
-        Albedo::Constant(colour) => colour.map(f64::from),
-        Albedo::Map(colours) => <[f32; 3]>::map(colours[at], f64::from),
-    };
+    let albedo = |at: usize| albedo_at(surface, at);
     let channels = [0, 1, 2].map(|i| divide(field, surface.border, divisions, |at| albedo(at)[i]));
     let corner_albedo: Vec<Rgb> = (0..corners)
         .map(|corner| {

@@ -11,11 +11,19 @@ use crate::oracle::Oracle;
 use glam::DVec3;
 pub use ridgelight::basis::light::slice;
 pub use ridgelight::scene::normal;
-use ridgelight::scene::{Environment, KeyLight, Sun};
+use ridgelight::scene::{Albedo, Environment, KeyLight, Sun, Surface};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Least number of azimuths of [`environment_of`]: narrow images have several per column.
 pub const ENVIRONMENT_STRIPS: usize = 512;
+
+/// Albedo of a grid point.
+pub(crate) fn albedo_at(surface: &Surface, grid_point: usize) -> Rgb {
+    match &surface.albedo {
+        Albedo::Constant(colour) => colour.map(f64::from),
+        Albedo::Map(map) => map[grid_point].map(f64::from),
+    }
+}
 
 /// Weight of incident light: over the hemisphere about the normal N, by the cosine to it (diffuse, albedo 1), or by
 /// the Phong lobe (n+1)/(2π) max(e·r, 0)ⁿ about a direction r.

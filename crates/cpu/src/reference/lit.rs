@@ -6,7 +6,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use crate::light::{self, ENVIRONMENT_STRIPS};
 use crate::oracle::Oracle;
 use crate::sphere::sphere_of;
-use ridgelight::scene::{Albedo, Environment, KeyLight, Scene};
+use ridgelight::scene::{Environment, KeyLight, Scene};
 
 /// Azimuths of a sky, strips across a sun or a sphere light; the same across a key light, or the sky's density.
 const AZIMUTHS: usize = 720;
@@ -66,13 +66,10 @@ impl<'a> Lit<'a> {
             let share = sphere_of(oracle, row, col, sphere, self.strips);
             sphere.radiance.map(|c| f64::from(c) * share)
         });
-        let albedo = match &self.scene.surface.albedo {
-            Albedo::Constant(c) => *c,
-            Albedo::Map(map) => map[row * self.scene.field.cols() + col],
-        };
+        let albedo = light::albedo_at(&self.scene.surface, row * self.scene.field.cols() + col);
         let mut all = [0.0; 3];
         for light in sky.into_iter().chain(environment).chain(suns).chain(keys).chain(spheres) {
-            (0..3).for_each(|c| all[c] += light[c] * f64::from(albedo[c]));
+            (0..3).for_each(|c| all[c] += light[c] * albedo[c]);
         }
         all
     }

@@ -1,7 +1,7 @@
 //! `fuse.glsl`: resamples the lattice of a sweep at the field's grid points.
 
 use super::gather::Swept;
-use super::segment::met_within;
+use super::surface::met_within;
 use super::sweep::{LOWEST_MET, March, NO_SLOPE, PER_CELL, on_field, wrapped};
 use ridgelight::plan::azimuths::CELL;
 use ridgelight::scene::Fuse;

@@ -7,7 +7,6 @@ pub mod gather;
 pub mod levels;
 pub mod phong_lobe;
 pub mod random;
-pub mod segment;
 pub mod surface;
 pub mod sweep;
 pub mod trace;

@@ -1,6 +1,10 @@
 //! `surface.glsl`: the surface between two march steps, in local coordinates of a line: u along the
 //! march from the earlier step, f across the lanes from the line's cell, both from 0 to 1.
 
+use super::fuse::Found;
+use super::sweep::{CELL_SHIFT, March, PER_CELL};
+use ridgelight::plan::azimuths::CELL;
+
 /// No crossing: beyond the end of the segment.
 pub const NO_CROSSING: f32 = 2.0;
 
@@ -49,4 +53,53 @@ pub fn surface_rise(corners: [f32; 4], own: f32, u: f32, f: f32, split_along: bo
     } else {
         (h11 - own) + (1.0 - u) * (h01 - h11) + (1.0 - f) * (h10 - h11)
     }
+}
+
+/// Raises `best` to the highest point that the grid point (lane, step) has `back` steps ahead and, if requested, at
+/// the crossings with lane lines and diagonals from there to the step before. Returns whether any of that lies on the
+/// field.
+pub fn met_within(
+    march: &March,
+    (lane, step): (i32, i32),
+    back: i32,
+    all_crossings: bool,
+    best: &mut Found,
+) -> bool {
+    let (azimuth, periodic) = (&march.azimuth, march.periodic());
+    let y = lane * CELL - back * azimuth.shear;
+    if !periodic && y + azimuth.shear <= 0 && azimuth.shear > 0 {
+        return false;
+    }
+    let own = march.height_at(lane, step);
+    let mut offer = |rise: f32, steps: f32| {
+        let slope = rise / (steps * azimuth.step_m);
+        if slope > best.slope {
+            *best = Found { slope, steps };
+        }
+    };
+    let cell = y >> CELL_SHIFT;
+    let f0 = (y & (CELL - 1)) as f32 * PER_CELL;
+    let at = step - back;
+    if periodic || y >= 0 {
+        let h = march.height_at(cell, at);
+        let slant = if f0 > 0.0 { f0 * (march.height_at(cell + 1, at) - h) } else { 0.0 };
+        offer((h - own) + slant, back as f32);
+    }
+    if !all_crossings {
+        return true;
+    }
+    let split_along = march.split_along();
+    let advance = azimuth.shear as f32 * PER_CELL;
+    for u in segment_crossings(f0, advance, split_along) {
+        if u > 1.0 || (!periodic && y as f32 + u * (azimuth.shear as f32) < -0.5) {
+            continue;
+        }
+        let (mut f, mut low) = (f0 + u * advance, cell);
+        if f > 1.0 {
+            f -= 1.0;
+            low += 1;
+        }
+        offer(surface_rise(march.cell_heights(low, at), own, u, f, split_along), back as f32 - u);
+    }
+    true
 }
