@@ -14,8 +14,6 @@ pub mod near;
 mod points;
 mod specular;
 
-use std::f64::consts::PI;
-
 use crate::bounce_shade::LEAST_SHARE;
 pub use bend::{bent, fan_weight, over, way};
 pub use bounce::{BounceError, CastError, Gathered, Land, Slices, march_error, walk_error};
@@ -28,6 +26,7 @@ pub use specular::{
     device_arriving, device_specular_exit, device_specular_visibility, device_sun_arriving,
     stored_f16,
 };
+use std::f64::consts::PI;
 
 /// The largest relative error of one rounding to f32.
 pub const EPSILON: f64 = 1.0 / (1 << 24) as f64;

@@ -97,7 +97,6 @@ fn hills(rows: usize, cols: usize) -> HeightField {
 #[test]
 fn repetitions_match_ray_tracing() {
     let (mut met, mut far, mut grazed) = (0, 0, 0);
-    let mut intervals = Vec::new();
     for [rows, cols] in [[7, 40], [40, 7], [2, 30], [31, 1]] {
         let (field, border) = (hills(rows, cols), Border::Periodic);
         let oracle = Oracle::new(&field, border);
@@ -112,7 +111,7 @@ fn repetitions_match_ray_tracing() {
                 let VisiblePoint::GridPoint(there) = visible_point(&oracle, at, e) else {
                     continue;
                 };
-                oracle.visible_intervals(at[0], at[1], e.y.atan2(e.x), &mut intervals);
+                let intervals = oracle.visible_intervals(at[0], at[1], e.y.atan2(e.x));
                 let elevation = e.z.atan2(plan);
                 let interval = intervals.iter().find(|s| elevation < s.high_rad).expect("met");
                 let want = interval.distance_m(elevation);

@@ -11,13 +11,12 @@ use crate::{BORDERS, field};
 #[test]
 fn visible_intervals_fill_the_angle_below_the_horizon() {
     let field = rough(7, 9, [1.0, 2.0], 3.0);
-    let mut seen = Vec::new();
     for border in BORDERS {
         let oracle = Oracle::new(&field, border);
         let height = |[r, c]: [usize; 2]| f64::from(field.heights_m()[r * 9 + c]);
         for (row, col, k) in (0..7 * 9 * 13).map(|i| (i / 9 % 7, i % 9, i / 63)) {
             let azimuth = TAU * (k as f64 + 0.3) / 13.0;
-            oracle.visible_intervals(row, col, azimuth, &mut seen);
+            let seen = oracle.visible_intervals(row, col, azimuth);
             let horizon = oracle.elevation_rad(row, col, azimuth);
             let mut reached = -FRAC_PI_2;
             for interval in &seen {
@@ -70,8 +69,7 @@ fn visible_intervals_fill_the_angle_below_the_horizon() {
 fn a_step_shows_its_floor_and_its_face() {
     let step = field(5, 8, [1.0, 1.0], |_, c| if c > 4 { 2.0 } else { 0.0 });
     let oracle = Oracle::new(&step, ridgelight::scene::Border::Plane);
-    let mut seen = Vec::new();
-    oracle.visible_intervals(2, 2, 1e-4, &mut seen);
+    let seen = oracle.visible_intervals(2, 2, 1e-4);
     let floor = seen[0];
     assert_eq!((floor.low_rad, floor.high_rad), (-FRAC_PI_2, 0.0));
     // Heights over distances that are longer by 1/cos 1e-4.

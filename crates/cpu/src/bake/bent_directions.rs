@@ -17,7 +17,6 @@
 pub mod ways;
 
 use glam::DVec3;
-
 use ridgelight::basis::triangles::Triangles;
 use ridgelight::scene::{Border, Curvature, HeightField, VisiblePoint, VisiblePoints};
 use ways::Ways;

@@ -4,9 +4,8 @@
 //! weighted by the growth of the triangles around it. Folded triangles count negative, as they overlap others; the
 //! sum over all directions stays that of the sphere.
 
-use glam::DVec3;
-
 use crate::bent_directions::Fans;
+use glam::DVec3;
 
 /// Solid angle of a direction's triangles over that on the flat field, 0 or more; 1 for a direction without any.
 pub fn weight(fans: &Fans, bent: &[DVec3], i: usize) -> f64 {

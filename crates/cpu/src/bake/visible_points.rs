@@ -50,8 +50,7 @@ pub fn possible_within(
         return vec![if e.z > 0.0 { VisiblePoint::Sky } else { own }];
     }
     let elevation = e.z.atan2(e.x.hypot(e.y));
-    let mut intervals = Vec::new();
-    oracle.visible_intervals(row, col, e.y.atan2(e.x), &mut intervals);
+    let intervals = oracle.visible_intervals(row, col, e.y.atan2(e.x));
     let free = intervals.last().map_or(-FRAC_PI_2, |last| last.high_rad);
     let beyond = |elevation: f64| match oracle.border() {
         Border::Plane | Border::Periodic if elevation <= 0.0 => VisiblePoint::Ground,

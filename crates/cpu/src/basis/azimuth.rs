@@ -5,14 +5,12 @@
 //! Σ_k slice_k(l, |m|) w_k(m), w_k(m) = ∫ Φ_m times the bump that belongs to azimuth k. The 2n - 1
 //! weights of an azimuth take the place of a blend matrix, a rotation about z and a sum.
 
-use std::f64::consts::TAU;
-
+use super::from_nlp;
 use ridgelight::basis::azimuth::around;
 use ridgelight::basis::bands;
 use ridgelight::basis::quadrature::points;
 use ridgelight::basis::slice::slice_index;
-
-use super::from_nlp;
+use std::f64::consts::TAU;
 
 /// How slices are blended from one azimuth to the next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

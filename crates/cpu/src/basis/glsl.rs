@@ -1,15 +1,13 @@
 //! Generated GLSL: products of two varying series, the numbers of a slice, and sums of slices.
 
-use std::collections::{BTreeMap, BTreeSet};
-use std::f64::consts::FRAC_1_PI;
-use std::fmt::Write as _;
-
+use super::{from_nlp, occlusion_polynomials};
 use ridgelight::basis::legendre::associated;
 use ridgelight::basis::product::{orders, triples};
 use ridgelight::basis::slice::{Above, Slices, parts};
 use ridgelight::basis::{MAX_ORDER, bands, index};
-
-use super::{from_nlp, occlusion_polynomials};
+use std::collections::{BTreeMap, BTreeSet};
+use std::f64::consts::FRAC_1_PI;
+use std::fmt::Write as _;
 
 /// The second factor of a [`glsl_product`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -4,11 +4,10 @@
 //! of [horizon, π/2] with the light's. The light is uniform, so light times visibility is this visibility times a
 //! radiance: a sum of slices, without a product of two series.
 
-use ridgelight::basis::slice::Slices;
-use ridgelight::scene::KeyLight;
-
 use super::azimuth::{Blend, assemble, assemble_nlp, swath};
 use super::occlusion;
+use ridgelight::basis::slice::Slices;
+use ridgelight::scene::KeyLight;
 
 /// Azimuths of the horizons: `count` of them, 2 or more, from end to end (NS09: 3).
 pub fn azimuths(key: &KeyLight, count: usize) -> Vec<f64> {

@@ -1,8 +1,6 @@
 //! Basis functions that the CPU references and tests use beyond those of [`ridgelight::basis`], and the GLSL that is
 //! generated from formulas.
 
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
-
 use glam::DVec3;
 use ridgelight::basis::harmonics::{evaluate, product_rule};
 use ridgelight::basis::legendre::{associated, legendre, value};
@@ -11,6 +9,7 @@ use ridgelight::basis::quadrature::integral;
 use ridgelight::basis::slice::parts;
 use ridgelight::basis::zonal::phong_bands;
 use ridgelight::basis::{bands, index};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 pub mod azimuth;
 pub mod glsl;

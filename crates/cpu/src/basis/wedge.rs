@@ -1,8 +1,7 @@
 //! Look-up in the table of wedges, as `sh_wedges` does it.
 
-use std::f64::consts::FRAC_PI_2;
-
 use ridgelight::basis::wedge::WedgeTable;
+use std::f64::consts::FRAC_PI_2;
 
 /// A table of wedges at two horizons: interpolates the four nearest texels bilinearly. Horizons outside the table are clamped to its edge.
 pub fn look_up(table: &WedgeTable, horizon_rad: [f64; 2]) -> Vec<f64> {

@@ -1,11 +1,10 @@
 //! The mildest window of one series.
 
+use super::{order_of, reconstruct};
 use glam::DVec3;
 use ridgelight::basis::bands;
 use ridgelight::basis::window::nonnegative;
 use std::f64::consts::{PI, TAU};
-
-use super::{order_of, reconstruct};
 
 /// The mildest window, between none and [`nonnegative`], that makes this series non-negative.
 ///

@@ -24,12 +24,11 @@ pub fn visible_intervals_along(
     let field = oracle.field();
     assert_eq!(exit.len(), field.rows() * field.cols());
     let receiver = Receiver::diffuse(normal(field, oracle.border(), row, col));
-    let mut intervals = Vec::new();
     let along = |k: u32| {
         let azimuth_rad = TAU * (f64::from(k) + 0.5) / f64::from(azimuths);
         let slice = receiver.slice(azimuth_rad);
         let whole = slice.light(-FRAC_PI_2, FRAC_PI_2);
-        oracle.nearly_visible(row, col, azimuth_rad, NEARLY_RAD, &mut intervals);
+        let intervals = oracle.nearly_visible([row, col], azimuth_rad, NEARLY_RAD);
         let casts = intervals.iter().filter(|interval| interval.high_rad > slice.low - NEARLY_RAD);
         let cast = |interval: &crate::profile::VisibleInterval| {
             let from = oracle.corners(interval.triangle).map(|[r, c]| exit[r * field.cols() + c]);

@@ -1,15 +1,14 @@
 //! Tolerance of a sphere light by spherical harmonics against its CPU reference: the f32 error at any order, sphere
 //! and field. The truncation error of the harmonics is not part of it.
 
-use glam::DVec3;
-use std::f64::consts::PI;
-
 use crate::basis::receiver;
 use crate::light_matrix::light_matrix;
 use crate::sphere_sh_shade::BEYOND;
 use crate::tolerance::{ARC_TANGENT, EPSILON, ShadeError, SphereGeometry};
+use glam::DVec3;
 use ridgelight::basis::bands;
 use ridgelight::scene::{Quality, Receiver, Wedges};
+use std::f64::consts::PI;
 
 /// Contributions of visibility and sphere coefficients to the light, for a quality.
 #[derive(Clone, Debug)]

@@ -4,10 +4,9 @@
 //! four grid points, the hull as a stack, results in a lattice rotated with the lines. All cores, f32, no manual
 //! vectorisation, no rotation back.
 
+use ridgelight::scene::HeightField;
 use std::f64::consts::TAU;
 use std::sync::Mutex;
-
-use ridgelight::scene::HeightField;
 
 /// Lines per work item of a thread.
 const BAND: usize = 8;
@@ -116,9 +115,8 @@ impl<'a> ScalarSweep<'a> {
             for stack in &mut self.stacks {
                 let work = &work;
                 scope.spawn(move || {
-                    loop {
-                        let next = work.lock().map_or(None, |mut bands| bands.next());
-                        let Some((band, (slopes, spans))) = next else { break };
+                    let next = || work.lock().map_or(None, |mut bands| bands.next());
+                    while let Some((band, (slopes, spans))) = next() {
                         let lines = slopes.chunks_mut(side).zip(spans).enumerate();
                         for (i, (slopes, span)) in lines {
                             *span = sweep_line(field, &lattice, band * BAND + i, stack, slopes);

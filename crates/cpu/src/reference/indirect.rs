@@ -237,10 +237,9 @@ fn gather(site: Site, azimuths: usize) -> Vec<Visibility> {
     let mut dense = vec![vec![0.0; corners]; receivers.len()];
     let mut all = vec![Visibility::default(); receivers.len()];
     let mut totals = vec![0.0; receivers.len()];
-    let mut intervals = Vec::new();
     for k in 0..azimuths {
         let azimuth = TAU * (k as f64 + 0.5) / azimuths as f64;
-        oracle.visible_intervals(row, col, azimuth, &mut intervals);
+        let intervals = oracle.visible_intervals(row, col, azimuth);
         let met = intervals.last().map_or(-FRAC_PI_2, |last| last.high_rad);
         let horizon = if oracle.border() == Border::Open { met } else { met.max(0.0) };
         for (i, receiver) in receivers.iter().enumerate() {

@@ -1,12 +1,11 @@
 //! All direct light at single grid points of a scene, in f64: the reference for images.
 
 use crate::Rgb;
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
-
 use crate::light::{self, ENVIRONMENT_STRIPS};
 use crate::oracle::Oracle;
 use crate::sphere::sphere_of;
 use ridgelight::scene::{Environment, KeyLight, Scene};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Azimuths of a sky, strips across a sun or a sphere light; the same across a key light, or the sky's density.
 const AZIMUTHS: usize = 720;

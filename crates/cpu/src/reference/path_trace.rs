@@ -11,8 +11,6 @@ mod lights;
 mod place;
 mod traced;
 
-use std::ops::Range;
-
 use crate::shared::random::{net_point, shuffled, words_of};
 use crate::shared::trace::{Met, What, trace};
 use crate::shared::walk::{Ground, Ray, ray_from};
@@ -21,6 +19,7 @@ use environment::Environment;
 use place::Place;
 use ridgelight::plan::{REFERENCE_BATCH, max_path_light, reference_inputs};
 use ridgelight::scene::{Albedo, Scene, Specular};
+use std::ops::Range;
 pub use traced::Traced;
 
 const BITS: u32 = REFERENCE_BATCH.ilog2();

@@ -72,7 +72,7 @@ impl Oracle<'_> {
         [[row, col], between, [below, right]]
     }
 
-    /// Writes the visible intervals along an azimuth into `intervals`, from below upwards.
+    /// The visible intervals along an azimuth, from below upwards.
     ///
     /// Nothing where the ray leaves the field at once. Under `periodic` a ray without a hit at its own height after
     /// [`cap_m`] extends its last visible interval up to horizontal.
@@ -81,21 +81,18 @@ impl Oracle<'_> {
         row: usize,
         col: usize,
         azimuth_rad: f64,
-        intervals: &mut Vec<VisibleInterval>,
-    ) {
-        self.nearly_visible(row, col, azimuth_rad, 0.0, intervals);
+    ) -> Vec<VisibleInterval> {
+        self.nearly_visible([row, col], azimuth_rad, 0.0)
     }
 
     /// The same with all surface that is hidden by less than `nearly_rad`, as intervals of equal ends.
     pub fn nearly_visible(
         &self,
-        row: usize,
-        col: usize,
+        [row, col]: [usize; 2],
         azimuth_rad: f64,
         nearly_rad: f64,
-        intervals: &mut Vec<VisibleInterval>,
-    ) {
-        intervals.clear();
+    ) -> Vec<VisibleInterval> {
+        let mut intervals: Vec<VisibleInterval> = Vec::new();
         let field = self.field();
         let (rows, cols) = (field.rows(), field.cols());
         assert!(
@@ -141,13 +138,13 @@ impl Oracle<'_> {
         {
             last.high_rad = last.high_rad.max(0.0);
         }
+        intervals
     }
 
     /// Slope of the lowest visible direction along an azimuth over the surface up to a distance; the grid point's own
     /// piece occludes at any distance. -∞ where the ray leaves the field at once.
     pub fn slope_within(&self, row: usize, col: usize, azimuth_rad: f64, within_m: f64) -> f64 {
-        let mut intervals = Vec::new();
-        self.visible_intervals(row, col, azimuth_rad, &mut intervals);
+        let intervals = self.visible_intervals(row, col, azimuth_rad);
         let slope = |interval: &VisibleInterval| {
             let [near, far] = interval.span_m;
             let end = if near == 0.0 { far } else { far.min(within_m) };

@@ -23,7 +23,6 @@ impl Site<'_> {
         let (away, middle) = (east.hypot(north), north.atan2(east));
         let widest = (sphere.radius_m / away).asin();
         let mut sums = vec![0.0; receivers.len()];
-        let mut intervals = Vec::new();
         for i in 0..strips {
             let centre = (i as f64 + 0.5) / strips as f64 * 2.0 - 1.0;
             let (offset, weight) = if sphere.radius_m < away {
@@ -41,8 +40,7 @@ impl Site<'_> {
                 continue;
             }
             let disc = Disc { along: away * offset.cos(), up, radius: squared.sqrt() };
-            oracle.visible_intervals(row, col, azimuth, &mut intervals);
-            let visible = disc.visible(&intervals);
+            let visible = disc.visible(&oracle.visible_intervals(row, col, azimuth));
             for (receiver, sum) in receivers.iter().zip(&mut sums) {
                 let slice = receiver.slice(azimuth);
                 let light = visible.iter().map(|[low, high]| weight * slice.light(*low, *high));

@@ -1,10 +1,6 @@
 //! Light by spherical harmonics in f64 from given horizons, and the tolerance of a device against it: the f32 error
 //! at any order, environment and field. The truncation error of the harmonics is in neither.
 
-use std::f64::consts::TAU;
-
-use glam::DVec3;
-
 use crate::basis::receiver;
 use crate::env_rotation::env_rotation;
 use crate::light_matrix::{add_sky, is_fitted, light_matrix, row_weights, series, specular_matrix};
@@ -14,6 +10,7 @@ use crate::sh_wedges::sh_wedges;
 use crate::tolerance::{
     ShadeError, device_light_matrix, device_sh_shade, device_sh_specular, device_turn,
 };
+use glam::DVec3;
 use ridgelight::basis::bands;
 use ridgelight::basis::harmonics::evaluate;
 use ridgelight::basis::wedge::WedgeTable;
@@ -21,6 +18,7 @@ use ridgelight::basis::zonal::phong_bands;
 use ridgelight::plan::Azimuth;
 use ridgelight::plan::lowest_rad;
 use ridgelight::scene::{Border, Environment, PhongSpecular, Quality, Wedges};
+use std::f64::consts::TAU;
 
 /// Visibility of a grid point: coefficients, and a device's error in each.
 #[derive(Clone, Debug, PartialEq)]

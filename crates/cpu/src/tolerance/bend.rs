@@ -1,10 +1,9 @@
 //! Tolerances of directions on curved base surfaces against their CPU references.
 
-use glam::{DVec2, DVec3};
-
 use super::EPSILON;
 use crate::bent_directions::ways::Way;
 use crate::bent_directions::{Fans, MAX_TURN_RAD};
+use glam::{DVec2, DVec3};
 use ridgelight::scene::Curvature;
 
 /// By how much `bent_directions` may be off beside a way that ends `to_m` away, m: components of the way err by 2 ε of themselves

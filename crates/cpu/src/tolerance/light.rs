@@ -1,17 +1,15 @@
 //! Tolerances of light through horizons, and of sphere lights.
 
-use std::f64::consts::{FRAC_PI_2, PI};
-
-use glam::DVec3;
-
 use super::{ARC_TANGENT, EPSILON, device_table, device_wedge_row};
 use crate::basis::from_nlp;
 use crate::basis::occlusion_polynomials;
 use crate::env_tables::EnvTables;
 use crate::sh_shade::OFF_PLANE;
+use glam::DVec3;
 use ridgelight::basis::MAX_ORDER;
 use ridgelight::basis::slice::{Slices, slice_index};
 use ridgelight::scene::{HeightField, SphereLight, Wedges};
+use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Errors of a grid point's light through its horizons.
 #[derive(Clone, Copy, Debug)]

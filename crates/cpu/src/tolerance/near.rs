@@ -1,9 +1,8 @@
 //! Running error analysis (Higham 2002, "Accuracy and Stability of Numerical Algorithms", §3.3): every f64 value
 //! carries a bound on its f32 error. It shows for each branch whether f32 takes the same one.
 
-use std::ops::{Add, Div, Mul, Neg, Sub};
-
 use super::{ARC_TANGENT, EPSILON};
+use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// The smallest number that every device keeps; what is smaller may be taken for 0.
 const SMALLEST: f64 = 1.0 / (1_u128 << 126) as f64;

@@ -1,9 +1,8 @@
 //! Tolerances of Phong specular.
 
-use std::f64::consts::PI;
-
 use super::{CastError, EPSILON, Slices, device_sh_specular};
 use crate::shared::bounced::{Along, Cast};
+use std::f64::consts::PI;
 
 /// A coefficient of `specular_visibility`, of the magnitudes of all products that it sums: one rounding each and one a sum.
 pub fn device_specular_visibility(order: usize) -> f64 {

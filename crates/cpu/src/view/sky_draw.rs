@@ -1,10 +1,8 @@
 //! Background of a view in a direction, in f64.
 
-use std::f64::consts::{PI, TAU};
-
 use glam::DVec3;
-
 use ridgelight::scene::{Border, Environment, Scene};
+use std::f64::consts::{PI, TAU};
 
 /// Radiance from a direction, of any length. `background` applies where there is neither ground nor sky.
 pub fn sky_draw(scene: &Scene, background: [f32; 3], direction: DVec3) -> [f64; 3] {

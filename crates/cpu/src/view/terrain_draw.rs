@@ -2,7 +2,6 @@
 //! with the recorded passes, no matrix.
 
 use glam::DVec3;
-
 use ridgelight::scene::{Camera, HeightField, Lens};
 
 /// A visible point of the surface.

@@ -6,9 +6,8 @@
 //! within half a cell of the grid point in its first repetition whose surface, six flat triangles around the grid
 //! point, the ray touches.
 
-use glam::{DVec2, DVec3};
-
 use super::MAX_TURN_RAD;
+use glam::{DVec2, DVec3};
 use ridgelight::scene::{Border, Curvature, HeightField};
 
 /// Search range, in columns or rows along the faster axis of the direction: the reach of rays (`walk.glsl`).

@@ -1,11 +1,10 @@
 //! An environment: importance sampling, and radiance by direction.
 
-use std::f64::consts::PI;
-
 use super::lights::{at_turn, mix};
 use super::{Traced, colour};
 use crate::shared::random::on_circle;
 use crate::tolerance::near::{Near, Near3, angle, plus, times};
+use std::f64::consts::PI;
 
 /// Radiance and sampling density.
 pub(super) struct Environment {

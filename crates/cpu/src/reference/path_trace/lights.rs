@@ -1,11 +1,10 @@
 //! Direct light of suns, key lights and sphere lights at a path vertex.
 
-use std::f64::consts::PI;
-
 use super::place::Place;
 use super::{Tracer, colour, given, one};
 use crate::shared::random::{direction_about, on_circle};
 use crate::tolerance::near::{Near, Near3, dot, minus, product};
+use std::f64::consts::PI;
 
 /// A direction of a light and its possible contribution.
 pub(super) struct ActiveLights {

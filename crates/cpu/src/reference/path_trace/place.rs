@@ -1,13 +1,12 @@
 //! Vertices of a path and their reflection.
 
-use std::f64::consts::PI;
-
 use super::{Tracer, given, largest, one};
 use crate::shared::phong_lobe::phong_lobe;
 use crate::shared::random::{direction_about, on_circle};
 use crate::shared::trace::Met;
 use crate::tolerance::near::{Near, Near3, dot, minus, normalize, plus, times};
 use ridgelight::scene::{Albedo, Border, Specular};
+use std::f64::consts::PI;
 
 /// A path vertex.
 pub(super) struct Place {
