@@ -8,7 +8,7 @@ use ridgelight_cpu::env_tables::{EnvTables, bottom_rad, env_tables};
 use ridgelight_cpu::env_wedges::env_wedges;
 use ridgelight_cpu::height_transpose::{heights_by_col, heights_by_row};
 use ridgelight_cpu::light;
-use ridgelight_cpu::light_resolve::{LightSum, add_to_radiance, light_resolve};
+use ridgelight_cpu::light_resolve::{add_to_radiance, light_resolve};
 use ridgelight_cpu::oracle::Oracle;
 use ridgelight_cpu::shared::field::{field_slope, normal_of};
 use ridgelight_cpu::shared::gather::{Swept, elevation_moments};
@@ -322,10 +322,9 @@ fn key_lights_are_those_of_the_reference() {
 #[test]
 fn layers_are_sums_times_colour_times_albedo() {
     let map = [[0.5, 1.0, 0.0], [0.25, 0.5, 1.0]];
-    let layer = light_resolve(LightSum::Scalar(&[2.0, 4.0]), [1.0, 2.0, 3.0], Some(&map));
+    let layer = light_resolve([[2.0; 3], [4.0; 3]], [1.0, 2.0, 3.0], Some(&map));
     assert_eq!(layer, [[1.0, 4.0, 0.0], [1.0, 4.0, 12.0]]);
-    let mut radiance =
-        light_resolve(LightSum::Colour(&[[1.0, 2.0, 3.0]; 2]), [2.0, 1.0, 0.5], None);
+    let mut radiance = light_resolve([[1.0, 2.0, 3.0]; 2], [2.0, 1.0, 0.5], None);
     assert_eq!(radiance, [[2.0, 2.0, 1.5]; 2]);
     add_to_radiance(&mut radiance, &layer);
     assert_eq!(radiance, [[3.0, 6.0, 1.5], [3.0, 6.0, 13.5]]);

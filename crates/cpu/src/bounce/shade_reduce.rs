@@ -2,7 +2,7 @@
 //! range of its source.
 
 use crate::Rgb;
-use crate::shared::levels::held_between;
+use crate::shared::levels::{all_levels, held_between};
 use ridgelight::plan::pyramid::Pyramid;
 
 /// R, G, B of level `number` from the grid points' exit radiance and the texels of the levels before it.
@@ -37,10 +37,5 @@ pub fn shade_reduce(exit: &[Rgb], pyramid: &Pyramid, number: u32, texels: &[Rgb]
 
 /// The texels of all levels besides the grid points themselves.
 pub fn shade_levels(exit: &[Rgb], pyramid: &Pyramid) -> Vec<Rgb> {
-    let mut all = Vec::new();
-    for number in 1..=pyramid.levels() {
-        let made = shade_reduce(exit, pyramid, number, &all);
-        all.extend(made);
-    }
-    all
+    all_levels(pyramid, |number, texels| shade_reduce(exit, pyramid, number, texels))
 }

@@ -58,7 +58,7 @@ impl<'a> SphereSh<'a> {
     /// The light of one grid point.
     pub fn at(&self, sphere: &SphereLight, row: usize, col: usize) -> Soft {
         let field = self.oracle.field();
-        let [east, north] = towards_m(&self.oracle, row, col, sphere);
+        let [east, north] = towards_m(field, row, col, sphere);
         let own = self.oracle.vertex(row as f64, col as f64);
         let to = DVec3::new(east, north, sphere.position_m[2] - field.base_m() - own);
         let normal = normal(field, self.oracle.border(), row, col);

@@ -1,7 +1,7 @@
 //! One level of a height pyramid from the level an octave finer: each texel is the mean of four bilinear samples
 //! around its position (Nowrouzezahrai & Snyder 2009, §9).
 
-use crate::shared::levels::between;
+use crate::shared::levels::{all_levels, between};
 use crate::shared::sweep::Heights;
 use ridgelight::plan::pyramid::Pyramid;
 
@@ -41,10 +41,5 @@ pub fn height_reduce(field: &Heights, pyramid: &Pyramid, number: u32, texels: &[
 
 /// The texels of all levels besides the field itself.
 pub fn height_levels(heights: &Heights, pyramid: &Pyramid) -> Vec<f32> {
-    let mut all = Vec::new();
-    for number in 1..=pyramid.levels() {
-        let made = height_reduce(heights, pyramid, number, &all);
-        all.extend(made);
-    }
-    all
+    all_levels(pyramid, |number, texels| height_reduce(heights, pyramid, number, texels))
 }

@@ -7,7 +7,7 @@
 use crate::light::{Site, diffuse_at};
 use crate::oracle::Oracle;
 use crate::profile::VisibleInterval;
-use ridgelight::scene::SphereLight;
+use ridgelight::scene::{HeightField, SphereLight};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 impl Site<'_> {
@@ -17,7 +17,7 @@ impl Site<'_> {
     /// where the grid point lies below or above it. The sphere is not repeated under `periodic`.
     pub fn sphere(&self, sphere: &SphereLight, strips: usize) -> Vec<f64> {
         let Self { oracle, place: [row, col], receivers } = *self;
-        let [east, north] = towards_m(oracle, row, col, sphere);
+        let [east, north] = towards_m(oracle.field(), row, col, sphere);
         let up = sphere.position_m[2] - oracle.field().base_m();
         let up = up - oracle.vertex(row as f64, col as f64);
         let (away, middle) = (east.hypot(north), north.atan2(east));
@@ -60,15 +60,19 @@ pub fn sphere_of(
     sphere: &SphereLight,
     strips: usize,
 ) -> f64 {
-    let [east, north] = towards_m(oracle, row, col, sphere);
+    let [east, north] = towards_m(oracle.field(), row, col, sphere);
     let is_narrow = east.hypot(north) > 2.0 * sphere.radius_m;
     let strips = if is_narrow { strips } else { 4 * strips };
     Site::of(oracle, [row, col], &diffuse_at(oracle, row, col)).sphere(sphere, strips)[0]
 }
 
 /// Horizontal vector from a grid point to the sphere's centre: east, north.
-pub(crate) fn towards_m(oracle: &Oracle, row: usize, col: usize, sphere: &SphereLight) -> [f64; 2] {
-    let field = oracle.field();
+pub(crate) fn towards_m(
+    field: &HeightField,
+    row: usize,
+    col: usize,
+    sphere: &SphereLight,
+) -> [f64; 2] {
     let [cell_x, cell_y] = field.cell_m();
     let [x, y, _] = sphere.position_m;
     [x - col as f64 * cell_x, y - (field.rows() - 1 - row) as f64 * cell_y]

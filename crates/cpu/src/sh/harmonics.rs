@@ -31,20 +31,18 @@ pub struct Visibility {
 
 impl Visibility {
     /// Visibility of a grid point from that of nodes, each with its weight.
-    pub fn between<'a>(
-        nodes: impl Iterator<Item = (&'a Visibility, f64)> + Clone,
-        error: &ShadeError,
-    ) -> Self {
+    pub fn between<'a>(nodes: impl Iterator<Item = (&'a Self, f64)>, error: &ShadeError) -> Self {
         let counted = error.node_weight();
-        let sum = |of: &dyn Fn(&Visibility, usize) -> f64, k: usize| {
-            nodes.clone().map(|(node, weight)| weight * of(node, k)).sum()
-        };
-        let count = nodes.clone().next().map_or(0, |(node, _)| node.values.len());
-        let off = |node: &Visibility, k: usize| node.errors[k] + counted * node.values[k].abs();
-        Self {
-            values: (0..count).map(|k| sum(&|node, k| node.values[k], k)).collect(),
-            errors: (0..count).map(|k| sum(&off, k)).collect(),
+        let mut sum = Self { values: Vec::new(), errors: Vec::new() };
+        for (node, weight) in nodes {
+            sum.values.resize(node.values.len(), 0.0);
+            sum.errors.resize(node.values.len(), 0.0);
+            for (k, value) in node.values.iter().enumerate() {
+                sum.values[k] += weight * value;
+                sum.errors[k] += weight * (node.errors[k] + counted * value.abs());
+            }
         }
+        sum
     }
 }
 
@@ -71,11 +69,7 @@ impl Harmonics {
         let light_order = if specular.is_some() { order } else { quality.light_order() };
         let (height, fitted) =
             (environment.map_or(1, Environment::height), is_fitted(quality, border));
-        let rows = match environment {
-            Some(_) if fitted => height.div_ceil(2),
-            Some(_) => height,
-            None => 0,
-        };
+        let rows = environment.map_or(0, |_| if fitted { height.div_ceil(2) } else { height });
         let turns = environment.map_or(Vec::new(), |e| env_rotation(e, rows, light_order));
         let mut light = series(&turns, height, light_order, fitted);
         let matrix = match specular {

@@ -12,6 +12,15 @@ pub struct LevelTexels<'a> {
     pub texels: &'a [f32],
 }
 
+/// The texels of all levels, each made from its number and those before it.
+pub fn all_levels<T>(pyramid: &Pyramid, reduce: impl Fn(u32, &[T]) -> Vec<T>) -> Vec<T> {
+    (1..=pyramid.levels()).fold(Vec::new(), |mut all, number| {
+        let made = reduce(number, &all);
+        all.extend(made);
+        all
+    })
+}
+
 /// Two neighbouring texels of an axis of `count`, and the fraction between them; beyond the ends the last two are
 /// extrapolated linearly.
 pub fn between(place: f32, count: u32, periodic: bool) -> ([usize; 2], f32) {

@@ -5,6 +5,7 @@ use crate::basis::from_nlp;
 use crate::basis::occlusion_polynomials;
 use crate::env_tables::EnvTables;
 use crate::sh_shade::OFF_PLANE;
+use crate::sphere::towards_m;
 use glam::DVec3;
 use ridgelight::basis::MAX_ORDER;
 use ridgelight::basis::slice::{Slices, slice_index};
@@ -192,10 +193,8 @@ impl SphereGeometry {
     pub fn of(field: &HeightField, sphere: &SphereLight, grid_point: usize) -> Self {
         let (cols, heights) = (field.cols(), field.heights_m());
         let [cell_x, cell_y] = field.cell_m();
-        let [x, y, z] = sphere.position_m;
-        let east = x - (grid_point % cols) as f64 * cell_x;
-        let north = y - (field.rows() - 1 - grid_point / cols) as f64 * cell_y;
-        let over = z - field.base_m();
+        let [east, north] = towards_m(field, grid_point / cols, grid_point % cols, sphere);
+        let over = sphere.position_m[2] - field.base_m();
         let up = over - f64::from(heights[grid_point]);
         let all = heights.iter().map(|h| f64::from(*h));
         let (low, high) = all.fold((f64::MAX, f64::MIN), |(l, h), v| (l.min(v), h.max(v)));

@@ -3,10 +3,10 @@
 use ridgelight::plan::Map;
 use ridgelight::scene::Tone;
 
-/// The four bytes of each pixel, row after row; `radiance` and `voids` are the field's, one per grid point.
+/// The four bytes of each pixel, row after row; `shaded` (radiance) and `voids` are the field's, one per grid point.
 pub fn map_draw(
     map: &Map,
-    radiance: &[[f32; 3]],
+    shaded: &[[f32; 3]],
     voids: Option<&[bool]>,
     tone: Tone,
 ) -> Vec<[u8; 4]> {
@@ -22,7 +22,7 @@ pub fn map_draw(
         if voids.is_some_and(|v| v[at]) {
             return None;
         }
-        let [r, g, b] = radiance[at].map(|light| tone.code(light));
+        let [r, g, b] = shaded[at].map(|light| tone.code(light));
         Some(if map.swaps { [b, g, r, 255] } else { [r, g, b, 255] })
     };
     let row = |y: u32| (0..width).map(move |x| pixel(x, y).unwrap_or(Map::BEYOND));

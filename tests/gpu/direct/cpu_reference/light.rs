@@ -7,7 +7,6 @@ use ridgelight::scene::{Albedo, Border, Environment, SphereLight};
 use ridgelight_cpu::env_tables as tables_reference;
 use ridgelight_cpu::env_tables::{EnvTables, bottom_rad};
 use ridgelight_cpu::light_resolve as resolve_reference;
-use ridgelight_cpu::light_resolve::LightSum;
 use ridgelight_cpu::oracle::Oracle;
 use ridgelight_cpu::shared::gather::Swept;
 use ridgelight_cpu::shared::sweep::Heights;
@@ -230,11 +229,11 @@ pub(crate) fn light_resolve(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let layer = if constant(pass, "sum_has_colour") == 1 {
         let sum = run.floats(pass, "colour_sum").expect("read");
         let sum: Vec<[f64; 3]> = sum.chunks_exact(4).map(|t| rgb(t).to_array()).collect();
-        resolve_reference::light_resolve(LightSum::Colour(&sum), colour, map)
+        resolve_reference::light_resolve(sum, colour, map)
     } else {
         let sum = run.floats(pass, "scalar_sum").expect("read");
         let sum: Vec<f64> = sum.into_iter().map(f64::from).collect();
-        resolve_reference::light_resolve(LightSum::Scalar(&sum), colour, map)
+        resolve_reference::light_resolve(sum.iter().map(|l| [*l; 3]), colour, map)
     };
     if pushed(pass, CLEARS) == 1 {
         run.radiance = vec![[0.0; 3]; layer.len()];
