@@ -196,7 +196,7 @@ impl<'a> Site<'a> {
     ///
     /// One azimuth at the centre of each of `parts` equal parts of a column of texels (midpoint rule). In elevation
     /// each texel is clipped at the horizon exactly and integrated in closed form.
-    pub(crate) fn environment(&self, env: &Environment, parts: usize) -> Vec<Rgb> {
+    pub fn environment(&self, env: &Environment, parts: usize) -> Vec<Rgb> {
         let (width, height) = (env.width(), env.height());
         let strips = width * parts;
         let mut sums = vec![[0.0; 3]; self.receivers.len()];
@@ -226,7 +226,7 @@ impl<'a> Site<'a> {
     /// A disc of angular radius a and radiance L gives a surface that faces it L π sin²a, so L = irradiance / (π
     /// sin²a). `strips` azimuths across the disc. Diameter 0: a point, dark where its elevation is not above the
     /// horizon.
-    pub(crate) fn sun(&self, sun: &Sun, strips: usize) -> Vec<Rgb> {
+    pub fn sun(&self, sun: &Sun, strips: usize) -> Vec<Rgb> {
         let radius = 0.5 * sun.diameter_rad;
         let shares = if radius > 0.0 {
             let mut disc = self.disc(sun, strips.max(1));
