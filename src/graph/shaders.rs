@@ -70,6 +70,78 @@ pub(crate) struct Specialised {
     pub constants: Vec<u32>,
 }
 
+/// A type of specialisation constants.
+trait Word {
+    fn word(self) -> u32;
+}
+
+impl Word for u32 {
+    fn word(self) -> u32 {
+        self
+    }
+}
+
+impl Word for i32 {
+    fn word(self) -> u32 {
+        self.cast_unsigned()
+    }
+}
+
+impl Word for bool {
+    fn word(self) -> u32 {
+        u32::from(self)
+    }
+}
+
+impl Word for f32 {
+    fn word(self) -> u32 {
+        self.to_bits()
+    }
+}
+
+/// A shader: its name, bytes of push constants, first word of SPIR-V and their count; each binding; then the struct of its
+/// specialisation constants with their ids and defaults. The host dispatches it only through that struct.
+macro_rules! shader {
+    (
+        $(#[$doc:meta])*
+        $constant:ident: $name:literal, push $push:literal, words $first:literal $count:literal,
+        $($binding:literal $access:ident $variable:literal $kind:ident $({ $($flag:tt)* })?,)*
+        $shape:ident $({ $($id:literal $field:ident: $type:ty = $default:literal,)* })? $(;)?
+    ) => {
+        $(#[$doc])*
+        pub const $constant: Shader = Shader {
+            name: $name,
+            push_bytes: $push,
+            bindings: &[$(Binding {
+                binding: $binding,
+                name: $variable,
+                kind: BindingKind::$kind $({ $($flag)* })?,
+                written: shader!(@$access),
+            },)*],
+            constants: &[$($(Constant { id: $id, name: stringify!($field) },)*)?],
+            words: words_at($first, $count),
+        };
+
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug)]
+        pub(crate) struct $shape { $($(pub $field: $type,)*)? }
+
+        impl Default for $shape {
+            fn default() -> Self {
+                Self { $($($field: $default,)*)? }
+            }
+        }
+
+        impl From<$shape> for Specialised {
+            fn from(_of: $shape) -> Self {
+                Self { shader: &$constant, constants: vec![$($(_of.$field.word(),)*)?] }
+            }
+        }
+    };
+    (@reads) => { false };
+    (@writes) => { true };
+}
+
 /// SPIR-V of all shaders, one after the other.
 static WORDS: [u32; WORD_COUNT] =
     words_of(include_bytes!(concat!(env!("OUT_DIR"), "/shaders.spv")));

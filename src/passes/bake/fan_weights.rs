@@ -36,7 +36,7 @@ pub(crate) fn plan(
     let count = directions.end - directions.start;
     let rays = u64::from(cols) * u64::from(rows) * u64::from(count);
     builder.pass(
-        shaders::FanWeights,
+        shaders::FanWeights {},
         part,
         "the solid angle of each direction on the curved base",
         [cols.div_ceil(8), rows.div_ceil(8), count],

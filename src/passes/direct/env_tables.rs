@@ -35,7 +35,7 @@ pub(crate) fn plan(
     let rows_kept = environment.rows_above_ground(border) as u32;
     let words = u64::from(azimuths) * 3 * u64::from(rows_kept + nodes);
     builder.pass(
-        shaders::EnvTables,
+        shaders::EnvTables {},
         "",
         format!("light above each of {nodes} elevations, so that shading looks up instead of integrating"),
         [1, azimuths.div_ceil(4), 1],

@@ -28,7 +28,7 @@ pub(crate) fn plan(builder: &mut Builder, size: [u32; 2], [dirty, list]: [Resour
     let all = u64::from(across) * u64::from(down);
     let [cols, rows] = size.map(|n| n as i32);
     builder.pass(
-        shaders::DirtyList,
+        shaders::DirtyList {},
         "",
         "light is summed only where a texel is marked",
         [across.div_ceil(8), down.div_ceil(8), 1],

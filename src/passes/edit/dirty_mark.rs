@@ -23,7 +23,7 @@ pub(crate) fn plan(builder: &mut Builder, size: [u32; 2], [dirty, list]: [Resour
     let all = u64::from(across) * u64::from(down);
     let [cols, rows] = size.map(|n| n as i32);
     let pass = builder.pass(
-        shaders::DirtyMark,
+        shaders::DirtyMark {},
         "",
         "texels whose own surface was edited; clears the mask of the last edit",
         [across.div_ceil(8), down.div_ceil(8), 1],

@@ -31,7 +31,7 @@ pub(crate) fn plan(
     let [across, down] = [cells_x, cells_y].map(|n| n.div_ceil(1 << (2 * level)));
     let blocks = u64::from(across) * u64::from(down);
     builder.pass(
-        shaders::HeightBounds,
+        shaders::HeightBounds {},
         &format!("level {level}"),
         "so that rays above a block skip it",
         [across.div_ceil(8), down.div_ceil(8), 1],

@@ -32,7 +32,7 @@ pub(crate) fn plan(
     let count = 2 * sh.light_order - 1;
     let texels = (environment.width() * sh.rows) as u64;
     builder.pass(
-        shaders::EnvRotation,
+        shaders::EnvRotation {},
         sh.part(),
         format!("the environment around each row, up to Fourier order {}", sh.light_order - 1),
         [((sh.rows * count) as u32).div_ceil(32), 1, 1],

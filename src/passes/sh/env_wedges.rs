@@ -31,7 +31,7 @@ pub(crate) fn plan(
     let texels = u64::from(width) * u64::from(kept);
     let turn = environment.rotation_rad().rem_euclid(std::f64::consts::TAU);
     let pass = builder.pass(
-        shaders::EnvWedges,
+        shaders::EnvWedges {},
         "",
         format!(
             "the environment's light in each azimuth's wedge: {kept} of {} rows can be visible",

@@ -42,7 +42,7 @@ pub(crate) fn plan(
     bound.extend(turns.map(|t| ("env_rotation", t)));
     let [r, g, b] = sky.unwrap_or_default();
     builder.pass(
-        shaders::LightMatrix,
+        shaders::LightMatrix {},
         sh.part(),
         format!("light of order {light_order} times visibility: {receivers} × {}", order * order),
         [1, 1, 1],
