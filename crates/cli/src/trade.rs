@@ -21,19 +21,20 @@ use ridgelight::plan::{self, Picture};
 use ridgelight::scene::{Bounces, Quality};
 use ridgelight::{Error, Result};
 use ridgelight_io as files;
-use ridgelight_trade::trade::{Place, Rule, ladders, places, refused, start_of};
+use ridgelight_trade::trade::{Place, ladders, places, refused, start_of};
 
 use crate::args::TradeArgs;
+use crate::render::auto;
 use crate::setup::{self, Outcome};
 use ground_truth::GroundTruth;
-use picture::Tones;
 use report::Report;
 use rig::{Budget, Rig};
+use walk::Walk;
 
 const FILES: [&str; 3] = ["trade.html", "trade.json", "trade.csv"];
 
 pub fn run(args: &TradeArgs) -> Result<Outcome> {
-    let rule = rule(args)?;
+    let goal = auto::goal(args.max_error, args.time_budget)?;
     let budget = budget(args)?;
     check_folder(&args.output)?;
     if let Some(json) = &args.global.json {
@@ -91,7 +92,6 @@ pub fn run(args: &TradeArgs) -> Result<Outcome> {
         None => GroundTruth::draw(&mut rig)?,
     };
     let ground_truth_s = rig.spent();
-    let tones = Tones::of(&ground_truth);
     bar.set_message("scattering over visible points");
     let baked = baked::measure(&mut rig, &ground_truth, &start)?;
     let mut ladders = ladders(&scene, args.bounces);
@@ -104,16 +104,14 @@ pub fn run(args: &TradeArgs) -> Result<Outcome> {
         _ => None,
     };
     let refused = refused(&ladders, &places, why);
-    let (walk, recommended) = walk::walk(
-        &mut rig,
-        (&ground_truth, &tones),
-        (&ladders, &places, refused),
-        (&start, rule),
-        &bar,
-    )?;
+    let mut walk = Walk::new(&ladders, &places, &start, ground_truth.floor());
+    for (place, why) in refused {
+        walk.give_up(place, why, false);
+    }
+    let recommended = walk.run(&mut rig, &ground_truth, goal, &bar)?;
     bar.set_message("timing hull storage of the recommended settings");
     let best = &walk.points[recommended.point];
-    let draw_s = best.ratio * walk.baseline_ns() * 1e-9;
+    let draw_s = best.ratio() * walk.baseline_ns() * 1e-9;
     let hulls = hull::places(&mut rig, &places[best.place].quality, draw_s)?;
     bar.finish_and_clear();
     let mut about = vec![
@@ -126,16 +124,13 @@ pub fn run(args: &TradeArgs) -> Result<Outcome> {
     about.extend(scene_metadata);
     let report = Report {
         about,
-        ground_truth: &ground_truth,
+        ground_truth_png: picture::light_png(&scene.field, &ground_truth.planes, &ground_truth)?,
+        ground_truth,
         ground_truth_s,
-        ground_truth_png: picture::light_png(&scene.field, &ground_truth.planes, &tones)?,
-        tones: &tones,
-        hulls: &hulls,
-        baked: &baked,
-        ladders: &ladders,
-        places: &places,
-        walk: &walk,
-        rule: walk.in_baselines(rule),
+        hulls,
+        baked,
+        walk,
+        goal,
         recommended,
         budget,
         spent_s: rig.spent(),
@@ -146,15 +141,6 @@ pub fn run(args: &TradeArgs) -> Result<Outcome> {
         crate::say!("{}", args.output.join(FILES[0]).display());
     }
     Ok(if recommended.holds { Outcome::Done } else { Outcome::Beyond })
-}
-
-fn rule(args: &TradeArgs) -> Result<Rule> {
-    for (flag, value) in [("--max-error", args.max_error), ("--time-budget", args.time_budget)] {
-        value.map_or(Ok(()), |x| crate::render::check_positive(flag, x))?;
-    }
-    let most = args.max_error.map(Rule::MaxError);
-    let longest = args.time_budget.map(|ms| Rule::MaxCost(ms * 1e6));
-    Ok(most.or(longest).unwrap_or(Rule::Knee))
 }
 
 fn budget(args: &TradeArgs) -> Result<Budget> {

@@ -44,7 +44,7 @@ pub fn page(report: &Report) -> String {
             ("ground_truth", text(report.ground_truth_text())),
             ("drift", text(report.drift_text())),
             ("summary", text(report.summary())),
-            ("tones", text(report.tones.text())),
+            ("tones", text(report.ground_truth.tones.text())),
             ("cards", cards(report)),
             ("rows", rows(report)),
             ("assumption", text(Report::assumption())),
@@ -107,14 +107,14 @@ fn cards(report: &Report) -> String {
 fn rows(report: &Report) -> String {
     let front = report.walk.search.frontier();
     let mut points: Vec<&Point> = report.walk.points.iter().collect();
-    points.sort_by(|a, b| a.ratio.total_cmp(&b.ratio));
+    points.sort_by(|a, b| a.ratio().total_cmp(&b.ratio()));
     let row = |p: &&Point| {
         let kind = match (p.place == report.recommended().place, front.contains(&p.place)) {
             (true, _) => "best",
             (_, true) => "on",
             _ => "",
         };
-        let (t, d) = (&p.total_ns, &p.distance);
+        let (t, d) = (p.total_ns(), &p.distance);
         let drawn = format!(
             "{} draws: median {}, {} – {}; the baseline paired with them {}. ",
             p.totals_ns.len(),
@@ -128,9 +128,9 @@ fn rows(report: &Report) -> String {
         let cells = [
             report.time_text(p),
             report.error_text(p),
-            percent(d.mean_shift),
-            percent(d.p99),
-            percent(d.worst),
+            percent(d.relative_mean_shift),
+            percent(d.relative_p99),
+            percent(d.relative_worst),
             format!("{}, {}", d.worst_row, d.worst_col),
             p.pictures.as_ref().map_or_else(String::new, |p| digits(p.flip.mean)),
             format!("{:.1} MiB", p.bytes as f64 / 1_048_576.0),
@@ -147,7 +147,7 @@ fn rows(report: &Report) -> String {
 }
 
 fn ruled_out(report: &Report) -> String {
-    let groups = report.others().skipped();
+    let groups = report.walk.skipped();
     let mut all: String = groups
         .iter()
         .take(GROUPS)
@@ -168,14 +168,13 @@ fn ruled_out(report: &Report) -> String {
 }
 
 fn not_tried(report: &Report) -> String {
-    let others = report.others();
-    let open = others.not_tried();
+    let open = report.walk.not_tried();
     let mut all: String = open
         .iter()
         .take(GROUPS)
         .map(|i| {
             let flags = code(&report.flags(*i));
-            format!("<li>{flags}: expected {}\n", escaped(&others.expected_text(*i)))
+            format!("<li>{flags}: expected {}\n", escaped(&report.walk.expected_text(*i)))
         })
         .collect();
     let rest = open.len().saturating_sub(GROUPS);
@@ -204,7 +203,7 @@ fn ladders(report: &Report) -> String {
             escaped(ladder.slower)
         )
     };
-    report.ladders.iter().map(row).collect()
+    report.walk.ladders.iter().map(row).collect()
 }
 
 /// Flags that wrap between flags only.

@@ -1,10 +1,11 @@
 //! Hull storage: the one setting that changes no pixel. It is timed for the recommended settings
 //! only.
 
+use ridgelight::gpu::Frame;
 use ridgelight::plan::Plan;
 use ridgelight::scene::{Hull, Quality};
 use ridgelight::{Error, Result};
-use ridgelight_trade::statistics::Summary;
+use ridgelight_trade::statistics::median;
 
 use super::rig::Rig;
 use super::walk::KEPT;
@@ -33,17 +34,11 @@ pub struct Place {
 pub fn places(rig: &mut Rig, quality: &Quality, draw_s: f64) -> Result<Vec<Place>> {
     let planned = rig.plan(rig.scene, quality)?;
     let Some(home) = home(&planned) else { return Ok(Vec::new()) };
-    let mut own = rig.frame(quality)?;
-    let drawn = rig.gpu.draw(&mut own).and_then(|_| rig.radiance(&own));
-    let measured = |rig: &mut Rig| -> Result<Vec<Place>> {
-        let right = drawn?;
-        let all = [
-            ("private", Hull::Private),
-            ("shared", Hull::Shared),
-            ("occluder-list", Hull::OccluderList),
-        ];
-        let one = |(name, hull)| {
-            let is_own = home == name;
+    rig.with_frame(quality, |rig, own| {
+        rig.gpu.draw(own)?;
+        let right = rig.radiance(own)?;
+        let one = |hull: Hull| {
+            let (name, is_own) = (hull.name(), home == hull.name());
             let none = |why: String| Ok(Place { name, is_own, ratio: Err(why) });
             if 3.0 * draw_s > rig.left().max(rig.share(KEPT) / 3.0) {
                 return none("too slow for the rest of the budget".to_owned());
@@ -52,15 +47,12 @@ pub fn places(rig: &mut Rig, quality: &Quality, draw_s: f64) -> Result<Vec<Place
                 Ok(frame) => frame,
                 Err(error) => return none(error.to_string()),
             };
-            let ratio = ratio(rig, &mut frame, &mut own, &right);
+            let ratio = ratio(rig, &mut frame, own, &right);
             rig.gpu.end(frame);
-            ratio.map(|ratio| Place { name, is_own, ratio: Ok(ratio) })
+            Ok(Place { name, is_own, ratio: Ok(ratio?) })
         };
-        all.into_iter().map(one).collect()
-    };
-    let all = measured(rig);
-    rig.gpu.end(own);
-    all
+        [Hull::Private, Hull::Shared, Hull::OccluderList].into_iter().map(one).collect()
+    })
 }
 
 /// Hull storage of a plan; brute force, exact sweeps and pyramids have no hull.
@@ -68,12 +60,7 @@ fn home(plan: &Plan) -> Option<&str> {
     plan.settings.iter().find(|(name, _)| name == "hull").map(|(_, place)| place.as_str())
 }
 
-fn ratio(
-    rig: &mut Rig,
-    frame: &mut ridgelight::gpu::Frame,
-    own: &mut ridgelight::gpu::Frame,
-    right: &[Vec<f32>],
-) -> Result<f64> {
+fn ratio(rig: &mut Rig, frame: &mut Frame, own: &mut Frame, right: &[Vec<f32>]) -> Result<f64> {
     rig.gpu.draw(frame)?;
     let bits =
         |planes: &[Vec<f32>]| planes.iter().flatten().map(|v| v.to_bits()).collect::<Vec<_>>();
@@ -85,11 +72,9 @@ fn ratio(
     }
     let mut ratios = Vec::new();
     while ratios.len() < DRAWS && (ratios.is_empty() || rig.left() > 0.0) {
-        let [ns, beside] = [rig.gpu.draw(frame)?, rig.gpu.draw(own)?]
-            .map(|times| times.iter().map(|t| t.ns).sum::<f64>());
-        ratios.push(ns / beside);
+        ratios.push(rig.draw_ns(frame)? / rig.draw_ns(own)?);
     }
-    Ok(Summary::of(&ratios).map_or(1.0, |s| s.median))
+    Ok(median(&ratios).unwrap_or(1.0))
 }
 
 /// A sentence; none without a hull or without time.

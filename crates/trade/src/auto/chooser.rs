@@ -6,6 +6,7 @@ use super::candidates::{candidates, is_exact, is_finer};
 use super::model::{Costs, Model};
 use super::probes::Measured;
 use super::statistics::Statistics;
+use crate::trade::Goal;
 use ridgelight::scene::{BounceEngine, Bounces, Quality, Scene};
 
 /// Most frames to try, and most exact ones beyond them.
@@ -28,15 +29,6 @@ const DEAREST_CONTROL: f64 = 6.0;
 const NEARLY: f64 = 2.0;
 /// Frames expected to take longer are not rendered: half a minute.
 const LONGEST_NS: f64 = 30e9;
-
-/// The goal of a choice.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Goal {
-    /// The fastest of at most this relative RMSE, above 0.
-    MaxError(f64),
-    /// The most accurate of at most this time per frame, ns, above 0.
-    MaxCost(f64),
-}
 
 impl Goal {
     /// Whether a trial reaches the goal: an error by its bound, not by its estimate.

@@ -1,10 +1,10 @@
 //! The whole choice, for a caller that can render: render, measure, render again.
 
-use super::chooser::{Chooser, Goal, Trial};
+use super::chooser::{Chooser, Trial};
 use super::model::{Expected, PARTS, Part};
 use super::probes::{Probes, Traced, apart, unsampled_bounce_error};
 use super::statistics::Statistics;
-use crate::trade::start;
+use crate::trade::{Goal, start};
 use ridgelight::plan::REFERENCE_BATCH;
 use ridgelight::scene::{
     Basis, Bounces, Fuse, Hull, Levels, LightBasis, Lines, Method, Precision, Quality, Receiver,

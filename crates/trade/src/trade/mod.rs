@@ -8,7 +8,7 @@ mod search;
 #[cfg(test)]
 mod tests;
 
-pub use frontier::{Recommendation, Rule, Value, frontier, recommend};
+pub use frontier::{Goal, Recommendation, Value, frontier, recommend};
 pub(crate) use ladders::have_slices;
 pub use ladders::{Ladder, Place, ladders, places, start, start_of};
 pub use refused::refused;

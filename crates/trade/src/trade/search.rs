@@ -49,7 +49,7 @@ pub enum Skip {
         worse_than: Option<usize>,
     },
     /// It costs at least as much as `than`, which was abandoned.
-    TooDear {
+    TooSlow {
         /// The abandoned place.
         than: usize,
     },
@@ -201,7 +201,7 @@ impl Search {
         }
         let than = self.too_slow.iter().copied().find(|&p| self.is_below(p, place, Side::Cost));
         if let Some(than) = than {
-            return Some(Skip::TooDear { than });
+            return Some(Skip::TooSlow { than });
         }
         let [cost, error] = self.bounds[place];
         let (cost, slower_than) = cost?;

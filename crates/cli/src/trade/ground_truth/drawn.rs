@@ -6,6 +6,7 @@ use ridgelight::scene::{Fuse, Lights, Lines, Method, Quality, Scene};
 use ridgelight::{Error, Result};
 use ridgelight_trade::auto::{Probes, apart};
 
+use super::super::picture::Tones;
 use super::super::rig::Rig;
 use super::GroundTruth;
 use crate::terminal::percent;
@@ -71,6 +72,7 @@ impl GroundTruth {
         }
         let field = &scene.field;
         let mut ground_truth = Self {
+            tones: Tones::of(&whole),
             planes: whole,
             cols: field.cols(),
             rows: field.rows(),
@@ -79,7 +81,7 @@ impl GroundTruth {
             own_error: None,
             noise: 0.0,
         };
-        let steps = ground_truth.distance(&halved)?.rmse;
+        let steps = ground_truth.distance(&halved)?.relative_rmse;
         let unsure = apart(&ground_truth.planes, &halved, ground_truth.cols);
         let probes = probes(scene, &unsure, rig.share(PROBING))?;
         let off = probes.error(&ground_truth.planes, None, Probes::ONE_BOUND);

@@ -131,7 +131,7 @@ fn ladders_have_their_range_and_default() {
         assert!(counts.windows(2).all(|two| two[0] < two[1]), "{counts:?}");
         for (step, count) in counts.iter().enumerate() {
             let mut quality = start();
-            (ladder.set)(&mut quality, step);
+            ladder.set(&mut quality, step);
             quality.check().unwrap();
             assert_eq!(quality == start(), step == ladder.default, "{count}");
         }
