@@ -6,9 +6,10 @@
 
 use super::statistics::quantiles;
 use ridgelight::{Error, Result};
+use serde::Serialize;
 
 /// Error of a plane of radiance, in its own unit unless stated otherwise.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ImageError {
     /// Values compared.
     pub count: usize,
@@ -97,7 +98,7 @@ impl ImageError {
 }
 
 /// Error of horizons, in degrees.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct HorizonError {
     /// Horizons compared.
     pub count: usize,
@@ -106,15 +107,15 @@ pub struct HorizonError {
     /// Horizons that are NaN in exactly one.
     pub mismatched: usize,
     /// Mean of |difference|.
-    pub mean: f64,
+    pub mean_deg: f64,
     /// Median of |difference|.
-    pub median: f64,
+    pub median_deg: f64,
     /// 99th percentile of |difference|.
-    pub p99: f64,
+    pub p99_deg: f64,
     /// 99.9th percentile of |difference|.
-    pub p999: f64,
+    pub p999_deg: f64,
     /// Largest |difference|.
-    pub worst: f64,
+    pub worst_deg: f64,
     /// Azimuth (index), row and column of the largest |difference|.
     pub worst_at: [usize; 3],
 }
@@ -136,24 +137,24 @@ impl HorizonError {
         let magnitudes = pairs.magnitudes();
         let count = magnitudes.len();
         let mean = magnitudes.iter().sum::<f64>() / count as f64;
-        let [median, p99, p999] =
+        let [median_deg, p99_deg, p999_deg] =
             quantiles(magnitudes, [0.5, 0.99, 0.999]).unwrap_or_default().map(f64::to_degrees);
         Ok(Self {
             count,
             masked,
             mismatched,
-            mean: mean.to_degrees(),
-            median,
-            p99,
-            p999,
-            worst: worst.to_degrees(),
+            mean_deg: mean.to_degrees(),
+            median_deg,
+            p99_deg,
+            p999_deg,
+            worst_deg: worst.to_degrees(),
             worst_at: [at / plane, at % plane / cols, at % cols],
         })
     }
 
     /// Whether the worst error is at most `bound_degrees` and no horizon is NaN on one side only.
     pub fn within(&self, bound_degrees: f64) -> bool {
-        self.mismatched == 0 && self.worst <= bound_degrees
+        self.mismatched == 0 && self.worst_deg <= bound_degrees
     }
 }
 
@@ -297,8 +298,11 @@ mod tests {
             reference.iter().enumerate().map(|(i, r)| r + off(i).to_radians()).collect();
         let e = HorizonError::of(&result, &reference, 10, 50).unwrap();
         let near = |a: f64, b: f64| (a - b).abs() < 1e-12;
-        assert!(near(e.mean, 0.4995) && near(e.median, 0.4995), "{e:?}");
-        assert!(near(e.p99, 0.98901) && near(e.p999, 0.998001) && near(e.worst, 0.999), "{e:?}");
+        assert!(near(e.mean_deg, 0.4995) && near(e.median_deg, 0.4995), "{e:?}");
+        assert!(
+            near(e.p99_deg, 0.98901) && near(e.p999_deg, 0.998001) && near(e.worst_deg, 0.999),
+            "{e:?}"
+        );
         assert_eq!(e.worst_at, [1, 9, 49]);
         assert!(e.within(1.0) && !e.within(0.99));
         let mut holed = result;

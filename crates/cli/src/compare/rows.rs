@@ -5,6 +5,7 @@ use std::fmt;
 use ridgelight::{Error, Result};
 use ridgelight_trade::error::{HorizonError, ImageError};
 use ridgelight_trade::flip::FlipError;
+use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::pairs::{Pair, Pairs, unlike};
@@ -101,15 +102,7 @@ pub fn channel(args: &CompareArgs, pairs: &Pairs, pair: &Pair) -> Result<Row> {
         e.masked,
         e.mismatched
     );
-    let json = json!({
-        "channel": name, "mean_reference": e.mean_reference,
-        "rmse": e.rmse, "relative_rmse": e.relative_rmse,
-        "mean_shift": e.mean_shift, "relative_mean_shift": e.relative_mean_shift,
-        "p99": e.p99, "relative_p99": e.relative_p99,
-        "worst": e.worst, "relative_worst": e.relative_worst,
-        "worst_row": e.worst_row, "worst_col": e.worst_col,
-        "count": e.count, "masked": e.masked, "mismatched": e.mismatched,
-    });
+    let json = named("channel", name, &e);
     let unit = " of the mean of B";
     let place = format!("{unit}, at row {}, column {}", e.worst_row, e.worst_col);
     let figures = vec![
@@ -129,10 +122,7 @@ pub fn picture(args: &CompareArgs, pairs: &Pairs, layer: &str, map: &[f32]) -> R
         "mean {:.6}  weighted quartiles {q1:.4} {q2:.4} {q3:.4}  99 % {:.4}  worst {:.4} at row {}, column {}; {} compared, {} masked",
         e.mean, e.p99, e.worst, e.worst_row, e.worst_col, e.count, e.masked
     );
-    let json = json!({
-        "layer": layer, "mean": e.mean, "weighted_quartiles": e.weighted_quartiles, "p99": e.p99, "worst": e.worst,
-        "worst_row": e.worst_row, "worst_col": e.worst_col, "count": e.count, "masked": e.masked,
-    });
+    let json = named("layer", layer, &e);
     let figures = vec![("--max-flip", e.mean, String::new())];
     Ok(Row { name, text, json, figures, mismatched: 0 })
 }
@@ -147,19 +137,30 @@ pub fn horizons(args: &CompareArgs, pairs: &Pairs) -> Result<Row> {
     let [azimuth, row, col] = e.worst_at;
     let text = format!(
         "mean {:.5}°  median {:.5}°  99 % {:.4}°  99.9 % {:.4}°  worst {:.4}° at azimuth {azimuth}, row {row}, column {col}; {} compared, {} masked, {} masked in one only",
-        e.mean, e.median, e.p99, e.p999, e.worst, e.count, e.masked, e.mismatched
+        e.mean_deg,
+        e.median_deg,
+        e.p99_deg,
+        e.p999_deg,
+        e.worst_deg,
+        e.count,
+        e.masked,
+        e.mismatched
     );
-    let json = json!({
-        "mean_deg": e.mean, "median_deg": e.median, "p99_deg": e.p99, "p999_deg": e.p999, "worst_deg": e.worst,
-        "worst_at": e.worst_at, "count": e.count, "masked": e.masked, "mismatched": e.mismatched,
-    });
+    let json = json!(e);
     let place = format!("°, at azimuth {azimuth}, row {row}, column {col}");
     let figures = vec![
-        ("--max-median-deg", e.median, "°".to_owned()),
-        ("--max-p999-deg", e.p999, "°".to_owned()),
-        ("--max-worst-deg", e.worst, place),
+        ("--max-median-deg", e.median_deg, "°".to_owned()),
+        ("--max-p999-deg", e.p999_deg, "°".to_owned()),
+        ("--max-worst-deg", e.worst_deg, place),
     ];
     Ok(Row { name: "horizons".to_owned(), text, json, figures, mismatched: e.mismatched })
+}
+
+/// The figures of a channel or layer.
+fn named(kind: &str, name: &str, figures: &impl Serialize) -> Value {
+    let mut json = json!(figures);
+    json[kind] = name.into();
+    json
 }
 
 /// The error of a channel without shared data, which is the files' fault.

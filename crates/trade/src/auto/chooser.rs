@@ -97,15 +97,10 @@ impl<'a> Chooser<'a> {
         match self.goal {
             Goal::MaxError(most) => self.next_within(most),
             Goal::MaxCost(most) => {
-                let affordable = self.open().filter(|q| self.cost(q) <= most).copied();
-                let next = affordable.min_by(|a, b| self.error(a).total_cmp(&self.error(b)));
-                match self.best() {
-                    Some(best) => {
-                        next.filter(|q| self.error(q) < (1.0 - WORTH) * best.measured.error)
-                    }
-                    None => next.or_else(|| {
-                        self.open().min_by(|a, b| self.cost(a).total_cmp(&self.cost(b))).copied()
-                    }),
+                let next = self.least(|q| self.cost(q) <= most, Self::error);
+                match self.best().map(|best| (1.0 - WORTH) * best.measured.error) {
+                    Some(worth) => next.filter(|q| self.error(q) < worth),
+                    None => next.or_else(|| self.least(|_| true, Self::cost)),
                 }
             }
         }
@@ -137,10 +132,8 @@ impl<'a> Chooser<'a> {
     fn control(&self, most: f64) -> Option<Quality> {
         let Some(holds) = self.fastest_within(most) else { return self.most_accurate() };
         let affordable = |q: &Quality| self.cost(q) <= DEAREST_CONTROL * self.cost(&holds);
-        self.fastest_within(most / CONTROL).filter(affordable).or_else(|| {
-            let all = self.open().filter(|q| affordable(q));
-            all.min_by(|a, b| self.error(a).total_cmp(&self.error(b))).copied()
-        })
+        let fine = self.fastest_within(most / CONTROL).filter(affordable);
+        fine.or_else(|| self.least(affordable, Self::error))
     }
 
     /// Records nanoseconds of a frame by pass label; [`judged`](Self::judged) records its error.
@@ -180,13 +173,8 @@ impl<'a> Chooser<'a> {
         if self.trials.len() >= TRIALS + RESORTS || self.trials.iter().any(is_held) {
             return None;
         }
-        let exact = || self.open().filter(|q| is_surest(q));
-        let least = exact().map(|q| self.error(q)).min_by(f64::total_cmp)?;
-        let enough = (most / CONTROL).max(least);
-        exact()
-            .filter(|q| self.error(q) <= enough)
-            .min_by(|a, b| self.cost(a).total_cmp(&self.cost(b)))
-            .copied()
+        let enough = (most / CONTROL).max(self.error(&self.least(is_surest, Self::error)?));
+        self.least(|q| is_surest(q) && self.error(q) <= enough, Self::cost)
     }
 
     /// The fastest rendered settings well within the error, else those of the least error.
@@ -303,16 +291,23 @@ impl<'a> Chooser<'a> {
     }
 
     fn fastest_within(&self, most: f64) -> Option<Quality> {
-        self.open()
-            .filter(|q| self.error(q) <= most)
-            .min_by(|a, b| self.cost(a).total_cmp(&self.cost(b)))
-            .copied()
+        self.least(|q| self.error(q) <= most, Self::cost)
+    }
+
+    /// Open settings with the least cost or error of some.
+    fn least(
+        &self,
+        is_wanted: impl Fn(&Quality) -> bool,
+        of: fn(&Self, &Quality) -> f64,
+    ) -> Option<Quality> {
+        let wanted = self.open().filter(|q| is_wanted(q));
+        wanted.min_by(|a, b| of(self, a).total_cmp(&of(self, b))).copied()
     }
 
     /// The fastest of those nearly as accurate as the best.
     fn most_accurate(&self) -> Option<Quality> {
-        let least = self.open().map(|q| self.error(q)).min_by(f64::total_cmp)?;
-        self.fastest_within(NEARLY * least)
+        let best = self.least(|_| true, Self::error)?;
+        self.fastest_within(NEARLY * self.error(&best))
     }
 }
 
