@@ -392,7 +392,7 @@ pub fn piece(scene: &Scene) -> Result<Scene> {
 }
 
 #[cfg(test)]
-mod tests {
+pub mod tests {
     use super::*;
     use ridgelight::scene::fractal;
 
