@@ -10,20 +10,13 @@ const TEMPLATE: &str = include_str!("page.html");
 pub fn page(report: &Report) -> String {
     let of = |name: &str| report.about.iter().find(|(k, _)| k == name).map_or("", |(_, v)| v);
     let input = of("input").rsplit(['/', '\\']).next().unwrap_or_default();
-    let about = report
-        .about
-        .iter()
-        .map(|(k, v)| format!("<tr><th>{}<td>{}\n", escaped(k), escaped(v)))
-        .collect::<String>();
+    let about = |(k, v): &(String, String)| format!("<tr><th>{}<td>{}\n", escaped(k), escaped(v));
     let lines =
-        |all: Vec<String>| all.iter().map(|l| format!("<li>{}\n", escaped(l))).collect::<String>();
-    let breaks: Vec<String> =
-        report.walk.search.breaks().iter().map(|b| report.break_text(b)).collect();
-    let broken = if breaks.is_empty() {
-        "<p>All ladders were monotonic.".to_owned()
-    } else {
-        let held = "<p>Ladders that were not monotonic, and ruled nothing out from then on:";
-        format!("{held}<ul>{}</ul>", lines(breaks))
+        |all: &[String]| all.iter().map(|l| format!("<li>{}\n", escaped(l))).collect::<String>();
+    let held = "<p>Ladders that were not monotonic, and ruled nothing out from then on:";
+    let broken = match lines(&report.breaks()) {
+        none if none.is_empty() => "<p>All ladders were monotonic.".to_owned(),
+        lines => format!("{held}<ul>{lines}</ul>"),
     };
     let recommended = report.recommended();
     let headline = format!(
@@ -52,7 +45,7 @@ pub fn page(report: &Report) -> String {
             ("ruled_out", ruled_out(report)),
             ("not_tried", not_tried(report)),
             ("settings", ladders(report)),
-            ("about", about),
+            ("about", report.about.iter().map(about).collect()),
             ("version", env!("CARGO_PKG_VERSION").to_owned()),
         ],
     )
@@ -181,10 +174,9 @@ fn not_tried(report: &Report) -> String {
     if rest > 0 {
         all += &format!("<li>{rest} more; trade.json counts them by setting and value\n");
     }
-    if all.is_empty() {
-        "<li>none: every setting was measured, ruled out or given up\n".to_owned()
-    } else {
-        all
+    match all.is_empty() {
+        true => "<li>none: every setting was measured, ruled out or given up\n".to_owned(),
+        false => all,
     }
 }
 
@@ -196,10 +188,7 @@ fn ladders(report: &Report) -> String {
             escaped(ladder.name),
             ladder.steps.iter().map(|s| code(s)).collect::<Vec<_>>().join(" "),
             code(&ladder.steps[ladder.default]),
-            range.map_or_else(
-                || "as listed".to_owned(),
-                |r| format!("{} to {}", r.start(), r.end())
-            ),
+            range.map_or("as listed".into(), |r| format!("{} to {}", r.start(), r.end())),
             escaped(ladder.slower)
         )
     };
@@ -223,15 +212,8 @@ fn short_percent(share: f64) -> String {
 
 /// Escapes text for HTML content and quoted attributes.
 pub fn escaped(text: &str) -> String {
-    text.chars()
-        .map(|c| match c {
-            '&' => "&amp;".to_owned(),
-            '<' => "&lt;".to_owned(),
-            '>' => "&gt;".to_owned(),
-            '"' => "&quot;".to_owned(),
-            c => c.to_string(),
-        })
-        .collect()
+    let marks = [("&", "&amp;"), ("<", "&lt;"), (">", "&gt;"), ("\"", "&quot;")];
+    marks.iter().fold(text.to_owned(), |text, (mark, escape)| text.replace(mark, escape))
 }
 
 /// RFC 4648, section 4.

@@ -94,7 +94,12 @@ impl Report<'_> {
         )
     }
 
-    pub fn break_text(&self, found: &Break) -> String {
+    /// Ladders that broke their order, in words.
+    pub fn breaks(&self) -> Vec<String> {
+        self.walk.search.breaks().iter().map(|found| self.break_text(found)).collect()
+    }
+
+    fn break_text(&self, found: &Break) -> String {
         let names: Vec<&str> = found.ladders.iter().map(|k| self.walk.ladders[*k].name).collect();
         let value = |i: usize| {
             let value = self.walk.search.value(i);
@@ -252,8 +257,6 @@ impl Report<'_> {
             .iter()
             .map(|h| json!({ "hull": h.name, "time_ratio": h.ratio.as_ref().ok(), "why_none": h.ratio.as_ref().err() }))
             .collect();
-        let breaks: Vec<String> =
-            self.walk.search.breaks().iter().map(|b| self.break_text(b)).collect();
         let (budget_s, evaluations) = match self.budget {
             Budget::Seconds(seconds) => (Some(seconds), None),
             Budget::Evaluations(most) => (None, Some(most)),
@@ -272,7 +275,7 @@ impl Report<'_> {
                 "point": self.recommended.point, "flags": self.flags(self.recommended().place),
                 "holds": self.recommended.holds, "why": self.why(),
             },
-            "hulls": hulls, "baked": self.baked_json(), "baked_refused": self.baked_refused_json(), "drift": self.drift_text(), "ladders_broken": breaks,
+            "hulls": hulls, "baked": self.baked_json(), "baked_refused": self.baked_refused_json(), "drift": self.drift_text(), "ladders_broken": self.breaks(),
             "left_out": self.walk.counts_json(), "ruled_out": self.walk.ruled_out_json(), "not_tried": self.walk.not_tried_json(),
         })
     }

@@ -304,7 +304,7 @@ fn probes_measure_errors_and_controls_reduce_noise() {
     let measured = error(&all, std::slice::from_ref(&bright), None);
     assert!((measured.error / expected - 1.0).abs() < 1e-3, "{measured:?} {expected}");
     let few = Probes::of(&scene, 64, 1, &[]).unwrap();
-    assert_eq!(few.len(), 64);
+    assert_eq!(few.count(), 64);
     let rough = draw(&scene, &Quality { azimuths: 8, ..Quality::default() }).unwrap().planes;
     let ground_truth = error(&all, &rough, None).error;
     let [alone, helped] = [None, Some(right.as_slice())].map(|c| error(&few, &rough, c));

@@ -128,7 +128,7 @@ impl<'a> Judge<'a> {
         };
         let known = scene.field.rows() * scene.field.cols()
             - scene.field.voids().map_or(0, |v| v.iter().filter(|v| **v).count());
-        let judging = known.min(CONFIRMING_PROBES * judge.probes.len());
+        let judging = known.min(CONFIRMING_PROBES * judge.probes.count());
         let noise = |batches: u32, error: f64| {
             let share = f64::from(FIRST_BATCHES) / f64::from(batches);
             judge.probes.path_noise(error, share, judging, Probes::EIGHT_BOUNDS)
@@ -175,7 +175,7 @@ impl<'a> Judge<'a> {
         // Of both halves, mixed (Steele, Lea & Flood 2014).
         let seed = (self.seed ^ (self.seed >> 32)).wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 32;
         let traced = (bounced.trace)(probes.places(), self.batches, seed as u32)?;
-        let of = (self.batches * REFERENCE_BATCH, probes.len());
+        let of = (self.batches * REFERENCE_BATCH, probes.count());
         let unsampled =
             unsampled_bounce_error(self.scene, bounced.count, of, Probes::UNSAMPLED_PROBABILITY);
         probes.add_bounced(&traced, unsampled);
@@ -190,9 +190,9 @@ impl<'a> Judge<'a> {
         self.judge(chooser);
         while chooser.is_undecided()
             && !self.probes.is_whole()
-            && self.probes.len() < MOST_PROBES * self.step
+            && self.probes.count() < MOST_PROBES * self.step
         {
-            let more = self.fresh(self.probes.len())?;
+            let more = self.fresh(self.probes.count())?;
             self.probes.extend(&more);
             self.judge(chooser);
         }
@@ -309,7 +309,7 @@ pub fn choose<'a>(
             return Ok(Chosen {
                 trial,
                 expected: chooser.expected(&quality),
-                probes: fresh.len(),
+                probes: fresh.count(),
                 paths: if count > 0 { judge.batches * REFERENCE_BATCH } else { 0 },
                 confidence: (is_aimed || fresh.is_whole()).then_some(Probes::CONFIDENCE),
                 trials: chooser.trials().to_vec(),
@@ -318,7 +318,7 @@ pub fn choose<'a>(
         judge.probes.extend(&fresh);
         judge.judge(&mut chooser);
     }
-    Err(out_of_reach(goal, &chooser, judge.probes.len(), scene))
+    Err(out_of_reach(goal, &chooser, judge.probes.count(), scene))
 }
 
 fn out_of_reach(goal: Goal, chooser: &Chooser, probes: usize, scene: &Scene) -> Error {

@@ -91,7 +91,7 @@ impl GroundTruth {
                 doubling the counts at least halves it; at {} probes, most of them where the two \
                 differ, its error against the f64 oracle is {}, {}; the larger of the two is used",
             percent(steps),
-            probes.len(),
+            probes.count(),
             percent(off.error),
             if probes.is_whole() {
                 "at every grid point".to_owned()
@@ -109,10 +109,14 @@ impl GroundTruth {
 fn probes(scene: &Scene, unsure: &[f64], most_s: f64) -> Result<Probes> {
     let begun = Instant::now();
     let few = Probes::of(scene, FEWEST_PROBES, SEED, unsure)?;
-    let each = begun.elapsed().as_secs_f64() / few.len() as f64;
+    let each = begun.elapsed().as_secs_f64() / few.count() as f64;
     let left = (most_s - begun.elapsed().as_secs_f64()).max(0.0);
     let fit = ((left / each) as usize).min(Probes::affordable(scene));
-    if few.is_whole() || fit <= few.len() { Ok(few) } else { Probes::of(scene, fit, SEED, unsure) }
+    if few.is_whole() || fit <= few.count() {
+        Ok(few)
+    } else {
+        Probes::of(scene, fit, SEED, unsure)
+    }
 }
 
 /// All counts, halved so many times.
@@ -201,7 +205,7 @@ mod tests {
             let scene = Scene { field: field.unwrap(), surface: Surface::default(), lights };
             probes(&scene, &vec![0.0; side * side], most_s).unwrap()
         };
-        assert_eq!(of(16, 0.0).len(), FEWEST_PROBES);
+        assert_eq!(of(16, 0.0).count(), FEWEST_PROBES);
         assert!(of(12, f64::INFINITY).is_whole() && of(5, 0.0).is_whole());
     }
 

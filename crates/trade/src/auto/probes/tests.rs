@@ -213,12 +213,12 @@ fn noise_does_not_bias_the_error() {
                 let mean = [0.25 + NOISE * of(7); 3];
                 Traced { mean, standard_error: [NOISE * batches.sqrt(); 3] }
             };
-            let traced: Vec<Traced> = (0..probes.len()).map(traced).collect();
+            let traced: Vec<Traced> = (0..probes.count()).map(traced).collect();
             probes.add_bounced(&traced, [0.0; 3]);
             let measured = probes.error(&picture, control, Probes::FOUR_BOUNDS);
             held += u64::from(measured.at_most >= rms);
             mean += measured.error.powi(2) / rms.powi(2) / SEEDS as f64;
-            let steady = Probes { noise: vec![0.0; probes.len()], ..probes.clone() };
+            let steady = Probes { noise: vec![0.0; probes.count()], ..probes.clone() };
             bare += steady.error(&picture, None, 0.0).error.powi(2) / rms.powi(2) / SEEDS as f64;
             // √(z √(4 (d² s² + s⁴) / probes)), of a mean light of 1, s⁴ as of eight batches (1 +
             // 2/7) times as much. χ² / 7 of seven has a fourth moment of 7·9·11·13 / 7⁴: the
