@@ -9,6 +9,7 @@ use ridgelight::scene::{Bounces, Directions, Quality, Scatter, VisiblePoints};
 use ridgelight::{Error, Result};
 use ridgelight_trade::error::ImageError;
 use ridgelight_trade::statistics::median;
+use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::ground_truth::GroundTruth;
@@ -39,6 +40,7 @@ pub struct Baked {
 }
 
 /// A variant that the device or the memory budget refused.
+#[derive(Serialize)]
 pub struct Refused {
     pub what: String,
     pub why: String,
@@ -215,21 +217,16 @@ impl Report<'_> {
         let error = self.error(recommended);
         let as_near = self.baked.measured.iter().filter(|b| off(b) <= error);
         let cheapest = as_near.min_by(|a, b| a.ratio.total_cmp(&b.ratio));
+        let nearest = percent(self.baked.measured.iter().map(off).fold(f64::INFINITY, f64::min));
         let verdict = match cheapest {
-            Some(b) => format!(
-                "{} directions with {} paths are as accurate as the recommended settings, in {} \
-                    × the time",
-                b.directions,
-                b.paths,
-                digits(b.ratio / recommended.ratio())
+            Some(Baked { directions, paths, ratio, .. }) => format!(
+                "{directions} directions with {paths} paths are as accurate as the recommended \
+                    settings, in {} × the time",
+                digits(ratio / recommended.ratio())
             ),
-            None => {
-                let nearest = self.baked.measured.iter().map(off).fold(f64::INFINITY, f64::min);
-                format!(
-                    "none is as accurate as the recommended settings; the best has an error of {}",
-                    percent(nearest)
-                )
-            }
+            None => format!(
+                "none is as accurate as the recommended settings; the best has an error of {nearest}"
+            ),
         };
         let about = format!(
             "For a static field, visible points can be found once and bounces scattered over \
@@ -249,11 +246,6 @@ impl Report<'_> {
             })
         };
         self.baked.measured.iter().map(of).collect()
-    }
-
-    pub fn baked_refused_json(&self) -> Vec<Value> {
-        let of = |refused: &Refused| json!({ "what": refused.what, "why": refused.why });
-        self.baked.refused.iter().map(of).collect()
     }
 }
 

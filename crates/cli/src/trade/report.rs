@@ -1,6 +1,6 @@
 //! The results as text, CSV and JSON.
 
-use ridgelight_trade::trade::{Break, Goal, Recommendation, SLACK, Side};
+use ridgelight_trade::trade::{Break, Goal, Ladder, Recommendation, SLACK, Side};
 use serde_json::{Value, json};
 
 use super::baked::Tried;
@@ -112,14 +112,9 @@ impl Report<'_> {
             Side::Cost => "slower steps were faster",
             Side::Error => "slower steps were less accurate",
         };
-        format!(
-            "{}: {what}: {} ({}) against {} ({})",
-            names.join(", "),
-            self.flags(found.lower),
-            value(found.lower),
-            self.flags(found.higher),
-            value(found.higher)
-        )
+        let of = |i: usize| format!("{} ({})", self.flags(i), value(i));
+        let (names, lower, higher) = (names.join(", "), of(found.lower), of(found.higher));
+        format!("{names}: {what}: {lower} against {higher}")
     }
 
     pub fn summary(&self) -> String {
@@ -217,11 +212,8 @@ impl Report<'_> {
 
     fn point_json(&self, point: &Point) -> Value {
         let (t, d) = (point.total_ns(), &point.distance);
-        let passes: Vec<Value> = point
-            .passes
-            .iter()
-            .map(|(pass, ns)| json!({ "pass": pass, "median_ns": ns }))
-            .collect();
+        let pass = |(pass, ns): &(String, f64)| json!({ "pass": pass, "median_ns": ns });
+        let passes: Vec<Value> = point.passes.iter().map(pass).collect();
         json!({
             "flags": self.flags(point.place), "settings": setup::typed(&point.settings),
             "time_ns": self.time_ns(point), "median_ns": t.median, "p10_ns": t.p10, "p90_ns": t.p90, "min_ns": t.min,
@@ -241,22 +233,16 @@ impl Report<'_> {
         let position = |place: usize| self.walk.points.iter().position(|p| p.place == place);
         let front: Vec<usize> =
             self.walk.search.frontier().iter().filter_map(|f| position(*f)).collect();
-        let ladders: Vec<Value> = self
-            .walk
-            .ladders
-            .iter()
-            .map(|k| {
-                json!({
-                    "name": k.name, "fast_to_slow": k.steps, "default": k.steps[k.default],
-                    "range": k.range.as_ref().map(|r| [r.start(), r.end()]), "slower": k.slower,
-                })
+        let ladder = |k: &Ladder| {
+            json!({
+                "name": k.name, "fast_to_slow": k.steps, "default": k.steps[k.default],
+                "range": k.range.as_ref().map(|r| [r.start(), r.end()]), "slower": k.slower,
             })
-            .collect();
-        let hulls: Vec<Value> = self
-            .hulls
-            .iter()
-            .map(|h| json!({ "hull": h.name, "time_ratio": h.ratio.as_ref().ok(), "why_none": h.ratio.as_ref().err() }))
-            .collect();
+        };
+        let hull = |h: &hull::Place| {
+            let (ratio, why) = (h.ratio.as_ref().ok(), h.ratio.as_ref().err());
+            json!({ "hull": h.name, "time_ratio": ratio, "why_none": why })
+        };
         let (budget_s, evaluations) = match self.budget {
             Budget::Seconds(seconds) => (Some(seconds), None),
             Budget::Evaluations(most) => (None, Some(most)),
@@ -268,14 +254,14 @@ impl Report<'_> {
                 "how": self.ground_truth.quality_of, "seconds": self.ground_truth_s,
             },
             "budget_s": budget_s, "evaluations": evaluations, "spent_s": self.spent_s,
-            "settings": ladders,
+            "settings": self.walk.ladders.iter().map(ladder).collect::<Vec<_>>(),
             "points": self.walk.points.iter().map(|p| self.point_json(p)).collect::<Vec<_>>(),
             "frontier": front,
             "recommendation": {
                 "point": self.recommended.point, "flags": self.flags(self.recommended().place),
                 "holds": self.recommended.holds, "why": self.why(),
             },
-            "hulls": hulls, "baked": self.baked_json(), "baked_refused": self.baked_refused_json(), "drift": self.drift_text(), "ladders_broken": self.breaks(),
+            "hulls": self.hulls.iter().map(hull).collect::<Vec<_>>(), "baked": self.baked_json(), "baked_refused": self.baked.refused, "drift": self.drift_text(), "ladders_broken": self.breaks(),
             "left_out": self.walk.counts_json(), "ruled_out": self.walk.ruled_out_json(), "not_tried": self.walk.not_tried_json(),
         })
     }
