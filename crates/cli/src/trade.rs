@@ -63,18 +63,11 @@ pub fn run(args: &TradeArgs) -> Result<Outcome> {
     let planned = |limits: &plan::Limits| plan::picture(&scene, &start, limits, Picture::default());
     setup::check_plan(&args.global, planned)?;
     if let Some(path) = args.reference.as_deref().filter(|p| setup::extension(p) != "exr") {
-        let found = path.display().to_string();
-        return Err(Error::setting(
-            "--reference",
-            found,
-            "an .exr: other formats clip bright values",
-        ));
+        let expected = "an .exr: other formats clip bright values";
+        return Err(Error::setting("--reference", path.display().to_string(), expected));
     }
-    let mut scene_metadata = setup::asked(
-        &args.input.path,
-        &args.surface.field,
-        Some((&args.lights, &args.surface, &scene)),
-    );
+    let lit = Some((&args.lights, &args.surface, &scene));
+    let mut scene_metadata = setup::asked(&args.input.path, &args.surface.field, lit);
     if args.bounces > 0 {
         scene_metadata.push(("bounces".to_owned(), args.bounces.to_string()));
     }
@@ -87,10 +80,7 @@ pub fn run(args: &TradeArgs) -> Result<Outcome> {
 
     let bar = crate::terminal::progress(args.global.quiet, "computing the ground truth");
     let mut rig = Rig::new(gpu, limits, &scene, budget);
-    let ground_truth = match given {
-        Some(ground_truth) => ground_truth,
-        None => GroundTruth::draw(&mut rig)?,
-    };
+    let ground_truth = given.map_or_else(|| GroundTruth::draw(&mut rig), Ok)?;
     let ground_truth_s = rig.spent();
     bar.set_message("scattering over visible points");
     let baked = baked::measure(&mut rig, &ground_truth, &start)?;
@@ -114,16 +104,17 @@ pub fn run(args: &TradeArgs) -> Result<Outcome> {
     let draw_s = best.ratio() * walk.baseline_ns() * 1e-9;
     let hulls = hull::places(&mut rig, &places[best.place].quality, draw_s)?;
     bar.finish_and_clear();
-    let mut about = vec![
-        ("device".to_owned(), rig.gpu.report().name.clone()),
-        ("driver".to_owned(), rig.gpu.report().driver.clone()),
-        ("rows".to_owned(), scene.field.rows().to_string()),
-        ("cols".to_owned(), scene.field.cols().to_string()),
-        ("cell_m".to_owned(), format!("{},{}", scene.field.cell_m()[0], scene.field.cell_m()[1])),
+    let (field, device) = (&scene.field, rig.gpu.report());
+    let about = [
+        ("device", device.name.clone()),
+        ("driver", device.driver.clone()),
+        ("rows", field.rows().to_string()),
+        ("cols", field.cols().to_string()),
+        ("cell_m", format!("{},{}", field.cell_m()[0], field.cell_m()[1])),
     ];
-    about.extend(scene_metadata);
+    let about = about.map(|(name, value)| (name.to_owned(), value)).into_iter();
     let report = Report {
-        about,
+        about: about.chain(scene_metadata).collect(),
         ground_truth_png: picture::light_png(&scene.field, &ground_truth.planes, &ground_truth)?,
         ground_truth,
         ground_truth_s,

@@ -20,7 +20,6 @@ pub struct GroundTruth {
     /// One plane or three, row-major, NaN at voids.
     pub planes: Vec<Vec<f32>>,
     cols: usize,
-    rows: usize,
     /// Its source, and how its own error was found.
     pub about: String,
     pub quality_of: String,
@@ -33,6 +32,11 @@ pub struct GroundTruth {
 }
 
 impl GroundTruth {
+    fn new(planes: Vec<Vec<f32>>, cols: usize, about: String) -> Self {
+        let (tones, quality_of) = (Tones::of(&planes), String::new());
+        Self { planes, cols, about, quality_of, own_error: None, noise: 0.0, tones }
+    }
+
     /// Smaller errors cannot be distinguished.
     pub fn floor(&self) -> f64 {
         self.own_error.unwrap_or(0.0)
@@ -69,16 +73,8 @@ impl GroundTruth {
         let count = planes[0].iter().filter(known).count().max(1) as f64;
         let mean = planes.iter().flatten().filter(known).map(|v| f64::from(*v)).sum::<f64>()
             / (count * planes.len() as f64);
-        let mut ground_truth = Self {
-            tones: Tones::of(&planes),
-            planes,
-            cols,
-            rows,
-            about: path.display().to_string(),
-            quality_of: format!("it has no layer {NOISE_LAYER}, so its noise is unknown"),
-            own_error: None,
-            noise: 0.0,
-        };
+        let mut ground_truth = Self::new(planes, cols, path.display().to_string());
+        ground_truth.quality_of = format!("it has no layer {NOISE_LAYER}, so its noise is unknown");
         if let Some(errors) = errors {
             // A texel's channels share paths, so their errors are correlated.
             let variance = |i: usize| {
@@ -114,15 +110,12 @@ impl GroundTruth {
         let mut e = ImageError::of(&all(planes), &all(&self.planes), self.cols)?;
         if e.mismatched > 0 {
             let found = format!("{} texels that have data in only one of the two", e.mismatched);
-            return Err(Error::setting(
-                "--reference",
-                found,
-                "the same scene, with the same voids",
-            ));
+            let expected = "the same scene, with the same voids";
+            return Err(Error::setting("--reference", found, expected));
         }
         e.relative_rmse = (e.relative_rmse.powi(2) - self.noise).max(0.0).sqrt();
         // Channels are stacked.
-        e.worst_row %= self.rows;
+        e.worst_row %= self.planes[0].len() / self.cols;
         Ok(e)
     }
 }
@@ -153,9 +146,7 @@ mod tests {
     use super::*;
 
     fn ground_truth(planes: Vec<Vec<f32>>, noise: f64) -> GroundTruth {
-        let (about, quality_of) = (String::new(), String::new());
-        let tones = Tones::of(&planes);
-        GroundTruth { planes, cols: 2, rows: 2, about, quality_of, own_error: None, noise, tones }
+        GroundTruth { noise, ..GroundTruth::new(planes, 2, String::new()) }
     }
 
     /// Mean 2; differences 0, 0, 0, 0.4 in each channel: RMSE 0.2, a tenth of the mean. Noise of
