@@ -187,15 +187,13 @@ fn within(
     if error <= bound {
         return Ok((error, bound));
     }
-    Err(Error::Device {
-        doing: format!("verifying before timing (fuse {})", quality.fuse.name()),
-        reason: format!(
-            "{what} has an error of {:.2} % against {ground_truth}, above the bound of {:.2} %: times \
-                would be meaningless",
-            100.0 * error,
-            100.0 * bound
-        ),
-    })
+    let [error, bound] = [error, bound].map(|share| format!("{:.2} %", 100.0 * share));
+    let doing = format!("verifying before timing (fuse {})", quality.fuse.name());
+    let reason = format!(
+        "{what} has an error of {error} against {ground_truth}, above the bound of {bound}: times \
+            would be meaningless"
+    );
+    Err(Error::Device { doing, reason })
 }
 
 /// Bounds of the relative RMSE of sky, environment, suns and key lights, and sphere lights.
@@ -282,17 +280,10 @@ pub fn piece(scene: &Scene) -> Result<Scene> {
         sphere_light.position_m[0] -= west;
         sphere_light.position_m[1] -= south;
     }
-    Ok(Scene {
-        field: HeightField::new(
-            range(rows).len(),
-            range(cols).len(),
-            &heights,
-            field.cell_m(),
-            None,
-        )?,
-        surface: Surface { albedo, border: scene.surface.border, specular: phong },
-        lights,
-    })
+    let size = (range(rows).len(), range(cols).len());
+    let field = HeightField::new(size.0, size.1, &heights, field.cell_m(), None)?;
+    let surface = Surface { albedo, border: scene.surface.border, specular: phong };
+    Ok(Scene { field, surface, lights })
 }
 
 #[cfg(test)]

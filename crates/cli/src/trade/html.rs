@@ -144,17 +144,17 @@ fn ruled_out(report: &Report) -> String {
     let mut all: String = groups
         .iter()
         .take(GROUPS)
-        .map(|g| {
-            let some: Vec<String> =
-                g.places.iter().take(EXAMPLES).map(|i| code(&report.flags(*i))).collect();
-            let more = g.places.len().saturating_sub(EXAMPLES);
+        .map(|(why, places)| {
+            let some = places.iter().take(EXAMPLES).map(|i| code(&report.flags(*i)));
+            let some = some.collect::<Vec<_>>().join(", ");
+            let more = places.len().saturating_sub(EXAMPLES);
             let more = if more > 0 { format!(" and {more} more") } else { String::new() };
-            format!("<li>{} ({}): {}{more}\n", escaped(&g.why), g.places.len(), some.join(", "))
+            format!("<li>{} ({}): {some}{more}\n", escaped(why), places.len())
         })
         .collect();
     let rest = groups.len().saturating_sub(GROUPS);
     if rest > 0 {
-        let count: usize = groups[GROUPS..].iter().map(|g| g.places.len()).sum();
+        let count: usize = groups[GROUPS..].iter().map(|g| g.1.len()).sum();
         all += &format!("<li>{rest} more reasons, for {count} settings\n");
     }
     if all.is_empty() { "<li>nothing\n".to_owned() } else { all }

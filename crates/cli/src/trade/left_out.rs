@@ -13,12 +13,6 @@ use crate::terminal::percent;
 pub const GROUPS: usize = 40;
 pub const EXAMPLES: usize = 6;
 
-/// Unmeasured places that share a reason.
-pub struct Group {
-    pub why: String,
-    pub places: Vec<usize>,
-}
-
 impl Walk<'_> {
     pub fn flags(&self, place: usize) -> String {
         self.places[place].flags(self.ladders)
@@ -31,11 +25,8 @@ impl Walk<'_> {
                     Some(worse) => format!("no more accurate than {}", self.flags(*worse)),
                     None => "no error that the ground truth can resolve".to_owned(),
                 };
-                let slower = self.flags(*slower_than);
-                format!(
-                    "not faster than {slower} and {error}: {} is better in both",
-                    self.flags(*by)
-                )
+                let (slower, by) = (self.flags(*slower_than), self.flags(*by));
+                format!("not faster than {slower} and {error}: {by} is better in both")
             }
             Skip::TooSlow { than } => {
                 format!("slower than {}, which was too slow", self.flags(*than))
@@ -43,8 +34,8 @@ impl Walk<'_> {
         }
     }
 
-    /// Ruled-out places by reason, the largest groups first.
-    pub fn skipped(&self) -> Vec<Group> {
+    /// Reasons and the places that each rules out, the largest groups first.
+    pub fn skipped(&self) -> Vec<(String, Vec<usize>)> {
         let mut groups: BTreeMap<String, Vec<usize>> = BTreeMap::new();
         for place in 0..self.places.len() {
             if let Some(skip) = self.search.skip(place) {
@@ -54,9 +45,8 @@ impl Walk<'_> {
         for (place, why) in &self.given_up {
             groups.entry(why.clone()).or_default().push(*place);
         }
-        let mut all: Vec<Group> =
-            groups.into_iter().map(|(why, places)| Group { why, places }).collect();
-        all.sort_by_key(|g| std::cmp::Reverse(g.places.len()));
+        let mut all: Vec<_> = groups.into_iter().collect();
+        all.sort_by_key(|(_, places)| std::cmp::Reverse(places.len()));
         all
     }
 
@@ -77,10 +67,9 @@ impl Walk<'_> {
 
     /// The largest groups of ruled-out settings, some of each spelt out.
     pub fn ruled_out_json(&self) -> Vec<Value> {
-        let of = |group: &Group| {
-            let some: Vec<String> =
-                group.places.iter().take(EXAMPLES).map(|i| self.flags(*i)).collect();
-            json!({ "why": group.why, "count": group.places.len(), "settings": some })
+        let of = |(why, places): &(String, Vec<usize>)| {
+            let some: Vec<String> = places.iter().take(EXAMPLES).map(|i| self.flags(*i)).collect();
+            json!({ "why": why, "count": places.len(), "settings": some })
         };
         self.skipped().iter().take(GROUPS).map(of).collect()
     }
@@ -99,28 +88,17 @@ impl Walk<'_> {
 
     /// Counts of settings by outcome: in total, and for each step of each setting where it matters.
     pub fn counts_json(&self) -> Value {
-        #[derive(Clone, Copy, PartialEq)]
-        enum Kind {
-            Measured,
-            RuledOut,
-            NotTried,
-        }
-        let search = &self.search;
-        let kind = |place: usize| match search.value(place) {
-            Some(_) => Kind::Measured,
-            None if search.is_open(place) => Kind::NotTried,
-            None => Kind::RuledOut,
+        const KINDS: [&str; 3] = ["measured", "ruled_out", "not_tried"];
+        let kind = |place: usize| match self.search.value(place) {
+            Some(_) => KINDS[0],
+            None if self.search.is_open(place) => KINDS[2],
+            None => KINDS[1],
         };
-        let kinds: Vec<Kind> = (0..self.places.len()).map(kind).collect();
-        let counted = |has: &dyn Fn(&Place) -> bool| {
-            let count = |of: Kind| {
-                let all = self.places.iter().zip(&kinds);
-                all.filter(|(place, kind)| **kind == of && has(place)).count()
-            };
-            json!({
-                "measured": count(Kind::Measured), "ruled_out": count(Kind::RuledOut),
-                "not_tried": count(Kind::NotTried),
-            })
+        let kinds: Vec<&str> = (0..self.places.len()).map(kind).collect();
+        let counted = |has: &dyn Fn(&Place) -> bool| -> Value {
+            let all = || self.places.iter().zip(&kinds).filter(|(place, _)| has(place));
+            let count = |of: &str| all().filter(|(_, kind)| **kind == of).count();
+            KINDS.iter().map(|of| ((*of).to_owned(), json!(count(of)))).collect()
         };
         let by_step = |(k, ladder): (usize, &Ladder)| {
             let steps = ladder.steps.iter().enumerate().map(|(s, spelt)| {

@@ -118,7 +118,7 @@ impl Report<'_> {
     }
 
     pub fn summary(&self) -> String {
-        let skipped: usize = self.walk.skipped().iter().map(|g| g.places.len()).sum();
+        let skipped: usize = self.walk.skipped().iter().map(|g| g.1.len()).sum();
         let open = self.walk.not_tried().len();
         let of = match self.budget {
             Budget::Seconds(all) => format!(" of {all:.1} s"),

@@ -109,32 +109,27 @@ impl Report<'_> {
     /// What was not measured, why, and what it could have changed.
     fn left_out(&self) -> String {
         let (open, groups) = (self.walk.not_tried(), self.walk.skipped());
-        let skipped: usize = groups.iter().map(|g| g.places.len()).sum();
+        let skipped: usize = groups.iter().map(|g| g.1.len()).sum();
         let mut text = format!(
             "Of {} settings, {} were measured, {skipped} ruled out or given up",
             self.walk.places.len(),
             self.walk.points.len()
         );
-        if let Some(largest) = groups.first() {
-            let [count, first] = [largest.places.len(), largest.places[0]];
-            let others = if count > 1 { format!(" and {} more", count - 1) } else { String::new() };
-            text += &format!(" ({}{others}: {})", self.flags(first), largest.why);
+        if let Some((why, largest)) = groups.first() {
+            let more = largest.len() - 1;
+            let others = if more > 0 { format!(" and {more} more") } else { String::new() };
+            text += &format!(" ({}{others}: {why})", self.flags(largest[0]));
         }
         let promising = open.iter().filter(|i| self.walk.search.merit(**i) > 0.0).count();
-        text += &match open.first() {
-            None => "; none were left.".to_owned(),
-            Some(best) if promising > 0 => format!(
-                ", {} not tried for lack of time. {promising} of these are expected to beat the \
-                    frontier, most of all {} ({}): a larger --budget may find better ones.",
-                open.len(),
-                self.flags(*best),
-                self.walk.expected_text(*best)
-            ),
-            Some(_) => format!(
-                ", {} not tried for lack of time. None of these is expected to beat the frontier.",
-                open.len()
-            ),
-        };
-        text
+        let Some(best) = open.first() else { return text + "; none were left." };
+        text += &format!(", {} not tried for lack of time. ", open.len());
+        if promising == 0 {
+            return text + "None of these is expected to beat the frontier.";
+        }
+        let (best, expected) = (self.flags(*best), self.walk.expected_text(*best));
+        text + &format!(
+            "{promising} of these are expected to beat the frontier, most of all {best} \
+                ({expected}): a larger --budget may find better ones."
+        )
     }
 }

@@ -146,14 +146,15 @@ impl<'a> Chooser<'a> {
     /// Records errors of all rendered settings, in order; none where one is unchanged.
     pub fn judged(&mut self, measured: &[Option<Measured>]) {
         self.model = self.first_guess.clone();
-        let mut trials = std::mem::take(&mut self.trials);
-        for (trial, measured) in trials.iter_mut().zip(measured) {
+        for (trial, measured) in self.trials.iter_mut().zip(measured) {
             trial.measured = measured.unwrap_or(trial.measured);
             if trial.measured != Measured::UNKNOWN {
-                self.learn(trial);
+                let Measured { error, at_most } = trial.measured;
+                // `at_most` is 2.7 or more standard deviations above, in ln about that much of it.
+                let spread = (at_most / error.max(1e-6)).max(1.0).ln() / 2.7;
+                self.model.learn(&trial.quality, error, spread);
             }
         }
-        self.trials = trials;
     }
 
     /// Records error and nanoseconds of settings rendered again.
@@ -196,13 +197,6 @@ impl<'a> Chooser<'a> {
 
     fn reached(&self) -> impl Iterator<Item = &Trial> {
         self.trials.iter().filter(|t| self.goal.is_reached(t))
-    }
-
-    fn learn(&mut self, trial: &Trial) {
-        let Measured { error, at_most } = trial.measured;
-        // `at_most` is 2.7 or more standard deviations above, in ln about that much of it.
-        let spread = (at_most / error.max(1e-6)).max(1.0).ln() / 2.7;
-        self.model.learn(&trial.quality, error, spread);
     }
 
     /// Whether some rendered settings may improve on [`best`](Self::best), by their estimate: more

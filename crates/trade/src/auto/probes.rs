@@ -247,15 +247,12 @@ impl Probes {
         let at =
             |planes: &[Vec<f32>], c: usize, i: usize| f64::from(planes[c.min(planes.len() - 1)][i]);
         let (mut squares, mut sum, mut values) = (0.0, 0.0, 0.0_f64);
-        for c in 0..3 {
-            for i in 0..picture[0].len() {
-                let (t, k) = (at(picture, c, i), at(control, c, i));
-                if !k.is_nan() {
-                    squares += (t - k).powi(2);
-                    sum += k;
-                    values += 1.0;
-                }
-            }
+        let all = (0..3).flat_map(|c| (0..picture[0].len()).map(move |i| (c, i)));
+        let both = all.map(|(c, i)| (at(picture, c, i), at(control, c, i)));
+        for (t, k) in both.filter(|(_, k)| !k.is_nan()) {
+            squares += (t - k).powi(2);
+            sum += k;
+            values += 1.0;
         }
         let count = self.places.len() as f64;
         let (mut rest, mut shift, mut path_variance) = (Vec::new(), 0.0, 0.0);
