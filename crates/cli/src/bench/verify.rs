@@ -14,8 +14,8 @@ use glam::Vec3Swizzles as _;
 use ridgelight::gpu::{Headless, Pixels};
 use ridgelight::plan::{self, Limits, Picture, Plan};
 use ridgelight::scene::{
-    Albedo, Basis, Border, Bounces, Fuse, HeightField, LightBasis, Lights, Method, Precision,
-    Quality, Scene, Specular, Surface,
+    Albedo, Basis, Border, Bounces, Fuse, HeightField, LightBasis, Method, Precision, Quality,
+    Scene, Specular, Surface,
 };
 use ridgelight::{Error, Result};
 
@@ -289,7 +289,7 @@ pub fn piece(scene: &Scene) -> Result<Scene> {
 #[cfg(test)]
 pub mod tests {
     use super::*;
-    use ridgelight::scene::fractal;
+    use ridgelight::scene::{Lights, fractal};
     use ridgelight_cpu::light;
     use ridgelight_cpu::oracle::Oracle;
 

@@ -162,9 +162,9 @@ pub fn ladders(scene: &Scene, bounces: u32) -> Vec<Ladder> {
     let stored = "radiance by direction, then in full precision: specular bounces";
     let by = &["bounce_specular: scalar vector-f16 vector"];
     add(bounces > 0 && has_specular, Ladder::new("bounce specular", by, stored));
-    let seen = "one lookup per level of pyramids; every visible interval of the surface";
+    let visible = "one lookup per level of pyramids; every visible interval of the surface";
     let by = &["bounce_engine: pyramid auto brute-force"];
-    add(bounces > 0 && !has_specular, Ladder::new("bounce engine", by, seen));
+    add(bounces > 0 && !has_specular, Ladder::new("bounce engine", by, visible));
     let narrow = "more azimuths of bounces: narrow bright features";
     let azimuths = &["bounce_azimuths: 8 16 32 64"];
     add(bounces > 0, Ladder::new("bounce azimuths", azimuths, narrow));
