@@ -243,5 +243,38 @@ pub fn places(ladders: &[Ladder], start: &Quality) -> Vec<Place> {
     all
 }
 
+/// Places that are refused whatever their counts are, with the reason.
+///
+/// `why` is called for places that differ from the defaults in one or two choices: no known refusal
+/// needs three, and none depends on a count within its range. Every place with a refused
+/// combination is refused, too.
+pub fn refused(
+    ladders: &[Ladder],
+    places: &[Place],
+    mut why: impl FnMut(&Place) -> Option<String>,
+) -> Vec<(usize, String)> {
+    let mut known: Vec<(Vec<(usize, usize)>, String)> = Vec::new();
+    let others = |place: &Place| -> Vec<(usize, usize)> {
+        let steps = place.steps.iter().enumerate().filter_map(|(k, s)| Some((k, (*s)?)));
+        steps.filter(|(k, s)| ladders[*k].default != *s).collect()
+    };
+    let has = |place: &Place, steps: &[(usize, usize)]| {
+        steps.iter().all(|(ladder, step)| place.steps[*ladder] == Some(*step))
+    };
+    for count in 1..=2 {
+        for place in places {
+            let steps = others(place);
+            let is_choice = steps.iter().all(|(ladder, _)| ladders[*ladder].range.is_none());
+            let is_known = known.iter().any(|(of, _)| has(place, of));
+            if steps.len() == count && is_choice && !is_known {
+                known.extend(why(place).map(|why| (steps, why)));
+            }
+        }
+    }
+    let of = |place: &Place| known.iter().find(|(steps, _)| has(place, steps));
+    let all = places.iter().enumerate();
+    all.filter_map(|(i, place)| Some((i, of(place)?.1.clone()))).collect()
+}
+
 #[cfg(test)]
 mod tests;
