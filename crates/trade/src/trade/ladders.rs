@@ -71,7 +71,8 @@ fn pairs(text: &str) -> impl Iterator<Item = (&str, &str)> {
     std::iter::from_fn(move || Some((words.next()?, words.next()?)))
 }
 
-fn has_no_lines(quality: &Quality) -> bool {
+/// Whether horizons are not found along lines a distance apart.
+pub(crate) fn has_no_lines(quality: &Quality) -> bool {
     matches!(quality.method, Method::BruteForce | Method::Pyramid) || quality.lines == Lines::Exact
 }
 

@@ -8,6 +8,6 @@ mod search;
 mod tests;
 
 pub use frontier::{Goal, Recommendation, Value, frontier, recommend};
-pub(crate) use ladders::have_slices;
 pub use ladders::{Ladder, Place, ladders, places, refused, start, start_of};
+pub(crate) use ladders::{has_no_lines, have_slices};
 pub use search::{Break, SLACK, Search, Side, Skip};

@@ -137,7 +137,7 @@ fn series(scene: &Scene, quality: &Quality, levels: &[f32], places: &[usize]) ->
         let albedo = DVec3::from_array(albedo_of(scene, place));
         [albedo * light, albedo * (off + 4.0 * EPSILON * light)]
     });
-    (wanted, ringing.len())
+    (wanted, places.iter().filter(|p| ringing.contains(*p)).count())
 }
 
 /// Error of slopes towards a sphere light: of the surface, or of a pyramid's levels.
