@@ -1,7 +1,6 @@
 use std::ops::Range;
 
-use crate::graph::shaders;
-use crate::graph::{Builder, ResourceId};
+use crate::graph::{Builder, ResourceId, shaders};
 use crate::scene::REACH_CELLS;
 use crate::scene::{Border, Curvature, HeightField, VisiblePoints};
 

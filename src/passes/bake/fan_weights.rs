@@ -1,7 +1,6 @@
 use std::ops::Range;
 
-use crate::graph::shaders;
-use crate::graph::{Builder, ResourceId};
+use crate::graph::{Builder, ResourceId, shaders};
 use crate::scene::HeightField;
 
 /// Some directions of every grid point. `bound` are the directions on the curved base surface, the fans from

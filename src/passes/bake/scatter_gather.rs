@@ -1,7 +1,6 @@
 use std::ops::Range;
 
-use crate::graph::shaders;
-use crate::graph::{Builder, ResourceId};
+use crate::graph::{Builder, ResourceId, shaders};
 use crate::scene::{Albedo, Curvature, HeightField, PhongSpecular, Specular, VisiblePoints};
 
 /// Where the light of visible points comes from; numbered as in the shader.

@@ -1,7 +1,6 @@
 use std::ops::Range;
 
-use crate::graph::shaders;
-use crate::graph::{Builder, ResourceId};
+use crate::graph::{Builder, ResourceId, shaders};
 use crate::passes::blocks::Blocks;
 use crate::scene::{Border, HeightField};
 

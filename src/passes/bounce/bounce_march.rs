@@ -1,5 +1,4 @@
-use crate::graph::Builder;
-use crate::graph::shaders;
+use crate::graph::{Builder, shaders};
 use crate::passes::blocks::Blocks;
 use crate::passes::bounce_nodes::NodeSum;
 use crate::passes::bounces::Bounce;

@@ -1,5 +1,4 @@
-use crate::graph::shaders;
-use crate::graph::{Builder, ResourceId};
+use crate::graph::{Builder, ResourceId, shaders};
 use crate::passes::bounce_gather::Pyramids;
 use crate::passes::bounced_specular::{BouncedSpecular, ExitLight, Vectors};
 use crate::passes::bounces::Bounce;

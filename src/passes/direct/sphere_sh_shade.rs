@@ -1,5 +1,4 @@
-use crate::graph::shaders;
-use crate::graph::{Builder, Rectangle, ResourceId};
+use crate::graph::{Builder, Rectangle, ResourceId, shaders};
 use crate::passes::blocks::Blocks;
 use crate::passes::sphere_sh::SphereSh;
 use crate::scene::{Border, HeightField, Levels, Receiver, Scene, SphereLight, Wedges};

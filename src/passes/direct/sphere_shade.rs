@@ -1,8 +1,7 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::ops::Range;
 
-use crate::graph::shaders;
-use crate::graph::{Builder, Rectangle, ResourceId};
+use crate::graph::{Builder, Rectangle, ResourceId, shaders};
 use crate::passes::blocks::Blocks;
 use crate::passes::spheres::texels_within;
 use crate::scene::{HeightField, Scene, SphereLight};

@@ -1,6 +1,5 @@
-use crate::graph::shaders;
 use crate::graph::shaders::offsets;
-use crate::graph::{Builder, ResourceId};
+use crate::graph::{Builder, ResourceId, shaders};
 use crate::passes::dirty_mark;
 
 /// Byte offset in the list of the workgroup counts for the passes that light it.

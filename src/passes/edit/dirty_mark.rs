@@ -1,5 +1,4 @@
-use crate::graph::shaders;
-use crate::graph::{Builder, Reach, Rectangle, ResourceId};
+use crate::graph::{Builder, Reach, Rectangle, ResourceId, shaders};
 
 /// Size of the mask in words; each marks eight columns of four rows.
 pub(crate) fn words([cols, rows]: [u32; 2]) -> [u32; 2] {

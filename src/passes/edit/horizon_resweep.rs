@@ -1,5 +1,4 @@
-use crate::graph::shaders;
-use crate::graph::{Builder, Reach, Rectangle, ResourceId};
+use crate::graph::{Builder, Reach, Rectangle, ResourceId, shaders};
 use crate::passes::batch::Batch;
 use crate::passes::sweep::LineSweep;
 

@@ -1,5 +1,4 @@
-use crate::graph::shaders;
-use crate::graph::{Builder, ResourceId};
+use crate::graph::{Builder, ResourceId, shaders};
 use crate::passes::pyramid::Pyramid;
 
 /// All levels at the field's own resolution.

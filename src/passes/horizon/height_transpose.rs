@@ -1,5 +1,4 @@
-use crate::graph::shaders;
-use crate::graph::{Axis, Builder, Reach, Rectangle, ResourceId};
+use crate::graph::{Axis, Builder, Reach, Rectangle, ResourceId, shaders};
 use crate::scene::Border;
 
 /// Heights transposed for one axis, four lanes per texel.

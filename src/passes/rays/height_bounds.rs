@@ -1,5 +1,4 @@
-use crate::graph::shaders;
-use crate::graph::{Builder, ResourceId};
+use crate::graph::{Builder, ResourceId, shaders};
 
 /// The maximum height of each block of 4^level by 4^level cells.
 pub(crate) fn plan(

@@ -1,5 +1,4 @@
-use crate::graph::shaders;
-use crate::graph::{Builder, ResourceId};
+use crate::graph::{Builder, ResourceId, shaders};
 use crate::scene::{Border, HeightField};
 
 /// Heights by cell, as rays read them. Clears the sums of `paths`, where there are any.

@@ -1,5 +1,4 @@
-use crate::graph::shaders;
-use crate::graph::{Builder, ResourceId};
+use crate::graph::{Builder, ResourceId, shaders};
 use crate::scene::{Border, Environment};
 
 /// The environment summed over each azimuth's wedge, row by row.

@@ -1,5 +1,4 @@
-use crate::graph::shaders;
-use crate::graph::{Builder, ResourceId};
+use crate::graph::{Builder, ResourceId, shaders};
 use crate::passes::sh_layout::Sh;
 
 /// The matrix from an SH series of visibility to light, for the environment and for a sky that SH light.

@@ -1,5 +1,4 @@
-use crate::graph::shaders;
-use crate::graph::{Axis, Builder, ResourceId};
+use crate::graph::{Axis, Builder, ResourceId, shaders};
 use crate::passes::sh_layout::{Sh, WedgeTexels};
 use crate::scene::Border;
 

@@ -1,5 +1,4 @@
-use crate::graph::shaders;
-use crate::graph::{Builder, ResourceId};
+use crate::graph::{Builder, ResourceId, shaders};
 use crate::passes::bounced_specular::BouncedSpecular;
 
 /// Incoming light from all directions, as an SH series.

@@ -1,5 +1,4 @@
-use crate::graph::shaders;
-use crate::graph::{Axis, Builder, ResourceId};
+use crate::graph::{Axis, Builder, ResourceId, shaders};
 use crate::passes::PhongSource;
 use crate::passes::bounced_specular::BouncedSpecular;
 use crate::scene::{Border, Sun};

@@ -1,5 +1,4 @@
-use crate::graph::shaders;
-use crate::graph::{Builder, ResourceId};
+use crate::graph::{Builder, ResourceId, shaders};
 use crate::{Error, Result};
 
 /// The part of a lit field that a screen shows from above, north up, and its scale.
