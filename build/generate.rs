@@ -1,8 +1,7 @@
 //! Writes `shaders.rs` and `shaders.spv`: each shader's place in the SPIR-V, its bindings and its specialisation
-//! constants, as a `shader!` of src/graph/shaders.rs.
+//! constants, as a `shader!` of src/graph/shaders.rs; then the structs of push constants, as its `layouts!`.
 //!
-//! A shader has the name of its file; a `.vert` is `NAME_VERT`, a `.frag` is `NAME_FRAG`. `same_layout!`
-//! (src/graph/shaders.rs) checks the host's structs against the offsets at compile time.
+//! A shader has the name of its file; a `.vert` is `NAME_VERT`, a `.frag` is `NAME_FRAG`.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -18,7 +17,7 @@ pub(crate) fn core(out: &Path) {
     let mut table = String::from(
         "// Written by build.rs from the SPIR-V of shaders_glsl/; committed by tools/shaders. Not edited by hand.\n\n",
     );
-    let mut layouts = Layouts::new();
+    let mut layouts = Layouts::default();
     let mut all_words = Vec::new();
     let (mut names, mut graphics) = (Vec::new(), Vec::new());
     for path in shaders_in(folder) {
@@ -104,23 +103,38 @@ fn add_shader(
     writeln!(table, "    }}\n}}\n").unwrap();
 }
 
+/// The `layouts!` of src/graph/shaders.rs.
 fn add_layouts(table: &mut String, layouts: &Layouts) {
-    writeln!(table, "/// Byte offsets of struct members as the shaders see them.").unwrap();
-    writeln!(
-        table,
-        "#[allow(missing_docs, reason = \"each is the offset of the member it names\")]"
-    )
-    .unwrap();
-    writeln!(table, "pub mod offsets {{").unwrap();
-    for (structure, members) in layouts {
-        writeln!(table, "    /// `{structure}`.\n    pub mod {} {{", snake(structure)).unwrap();
-        for (member, offset) in members {
-            writeln!(table, "        pub const {}: usize = {offset};", member.to_uppercase())
-                .unwrap();
-        }
+    writeln!(table, "layouts! {{").unwrap();
+    for (structure, members) in &layouts.pushes {
+        writeln!(table, "    push {structure} {} {{", snake(structure)).unwrap();
+        let fields = members.iter().map(|reflect::Member { offset, name, of_type }| {
+            format!("{offset} {} {}: {of_type},", name.to_uppercase(), name.to_lowercase())
+        });
+        add_wrapped(table, fields);
+        writeln!(table, "    }}").unwrap();
+    }
+    for (structure, members) in &layouts.others {
+        writeln!(table, "    other {structure} {} {{", snake(structure)).unwrap();
+        let offsets = members.iter().map(|(name, at)| format!("{at} {},", name.to_uppercase()));
+        add_wrapped(table, offsets);
         writeln!(table, "    }}").unwrap();
     }
     writeln!(table, "}}").unwrap();
+}
+
+/// Parts on lines of at most 100 columns.
+fn add_wrapped(table: &mut String, parts: impl Iterator<Item = String>) {
+    let mut column = 0;
+    for part in parts {
+        if column == 0 || column + 1 + part.len() > 100 {
+            table.push_str(if column == 0 { "       " } else { "\n       " });
+            column = 7;
+        }
+        write!(table, " {part}").unwrap();
+        column += 1 + part.len();
+    }
+    table.push('\n');
 }
 
 pub(crate) fn snake(name: &str) -> String {

@@ -17,7 +17,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/bounce_gather.comp`.
-    BOUNCE_GATHER: "bounce_gather", push 64, words 8160 11636,
+    BOUNCE_GATHER: "bounce_gather", push 64, words 8160 11634,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "height_levels" SampledImage { uint: false, layered: false },
     2 reads "level_table" SampledImage { uint: true, layered: false },
@@ -41,7 +41,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/bounce_march.comp`.
-    BOUNCE_MARCH: "bounce_march", push 44, words 19796 12304,
+    BOUNCE_MARCH: "bounce_march", push 44, words 19794 12330,
     0 reads "cells" SampledImage { uint: false, layered: false },
     1 reads "maxima" SampledImage { uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -59,7 +59,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/bounce_shade.comp`.
-    BOUNCE_SHADE: "bounce_shade", push 16, words 32100 2678,
+    BOUNCE_SHADE: "bounce_shade", push 16, words 32124 2678,
     0 reads "ground" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "sky_share" StorageImage { format: "R32f", uint: false, layered: false },
     2 reads "node_sum" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -71,7 +71,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/bounce_walk.comp`.
-    BOUNCE_WALK: "bounce_walk", push 40, words 34778 13812,
+    BOUNCE_WALK: "bounce_walk", push 40, words 34802 13812,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 reads "occluders" StorageImage { format: "Rg32ui", uint: true, layered: true },
@@ -91,7 +91,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/cache_gather.comp`.
-    CACHE_GATHER: "cache_gather", push 16, words 48590 3639,
+    CACHE_GATHER: "cache_gather", push 16, words 48614 3639,
     0 reads "visibility_cache" StorageImage { format: "Rgba32ui", uint: true, layered: true },
     1 reads "azimuths" TexelBuffer,
     2 reads "exit_radiance" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -107,7 +107,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/edit/dirty_list.comp`.
-    DIRTY_LIST: "dirty_list", push 8, words 52229 874,
+    DIRTY_LIST: "dirty_list", push 8, words 52253 874,
     0 reads "dirty_texels" StorageBuffer,
     1 writes "edit_list" StorageBuffer,
     DirtyList;
@@ -115,7 +115,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/edit/dirty_mark.comp`.
-    DIRTY_MARK: "dirty_mark", push 24, words 53103 1323,
+    DIRTY_MARK: "dirty_mark", push 24, words 53127 1323,
     0 writes "dirty_texels" StorageBuffer,
     1 writes "edit_list" StorageBuffer,
     DirtyMark;
@@ -123,7 +123,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bake/ellipse_fit.comp`.
-    ELLIPSE_FIT: "ellipse_fit", push 24, words 54426 5049,
+    ELLIPSE_FIT: "ellipse_fit", push 24, words 54450 5049,
     0 reads "visible_points" SampledImage { uint: true, layered: true },
     1 reads "directions" TexelBuffer,
     2 writes "ellipse_axes" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -137,7 +137,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/env_rotation.comp`.
-    ENV_ROTATION: "env_rotation", push 16, words 59475 949,
+    ENV_ROTATION: "env_rotation", push 16, words 59499 949,
     0 reads "environment" SampledImage { uint: false, layered: false },
     1 reads "constants" TexelBuffer,
     2 writes "env_rotation" StorageBuffer,
@@ -146,7 +146,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/env_tables.comp`.
-    ENV_TABLES: "env_tables", push 20, words 60424 1463,
+    ENV_TABLES: "env_tables", push 20, words 60448 1463,
     0 reads "wedge_rows" StorageBuffer,
     1 writes "env_tables" StorageImage { format: "Rgba32f", uint: false, layered: true },
     EnvTables;
@@ -154,7 +154,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/env_wedges.comp`.
-    ENV_WEDGES: "env_wedges", push 12, words 61887 2151,
+    ENV_WEDGES: "env_wedges", push 12, words 61911 2151,
     0 reads "environment" SampledImage { uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "wedge_rows" StorageBuffer,
@@ -163,7 +163,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bake/facet_mask.comp`.
-    FACET_MASK: "facet_mask", push 48, words 64038 9115,
+    FACET_MASK: "facet_mask", push 48, words 64062 9133,
     0 reads "cells" SampledImage { uint: false, layered: false },
     1 reads "maxima" SampledImage { uint: false, layered: false },
     2 reads "directions" TexelBuffer,
@@ -176,7 +176,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bake/fan_weights.comp`.
-    FAN_WEIGHTS: "fan_weights", push 16, words 73153 1842,
+    FAN_WEIGHTS: "fan_weights", push 16, words 73195 1842,
     0 reads "bent" SampledImage { uint: false, layered: true },
     1 reads "fans" TexelBuffer,
     2 writes "fan_weights" StorageImage { format: "R32f", uint: false, layered: true },
@@ -185,7 +185,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/rays/height_bounds.comp`.
-    HEIGHT_BOUNDS: "height_bounds", push 16, words 74995 1109,
+    HEIGHT_BOUNDS: "height_bounds", push 16, words 75037 1109,
     0 reads "cells" SampledImage { uint: false, layered: false },
     1 writes "maxima" StorageImage { format: "R32f", uint: false, layered: false },
     HeightBounds;
@@ -193,7 +193,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/rays/height_cells.comp`.
-    HEIGHT_CELLS: "height_cells", push 16, words 76104 2514,
+    HEIGHT_CELLS: "height_cells", push 16, words 76146 2514,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 writes "cells" StorageImage { format: "Rgba32f", uint: false, layered: false },
     2 writes "ground" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -207,7 +207,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/height_expand.comp`.
-    HEIGHT_EXPAND: "height_expand", push 12, words 78618 2496,
+    HEIGHT_EXPAND: "height_expand", push 12, words 78660 2496,
     0 reads "height_levels" SampledImage { uint: false, layered: false },
     1 reads "level_table" SampledImage { uint: true, layered: false },
     2 writes "height_stack" StorageImage { format: "R32f", uint: false, layered: true },
@@ -218,7 +218,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/height_reduce.comp`.
-    HEIGHT_REDUCE: "height_reduce", push 48, words 81114 2860,
+    HEIGHT_REDUCE: "height_reduce", push 48, words 81156 2858,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 writes "height_levels" StorageImage { format: "R32f", uint: false, layered: false },
     2 writes "level_table" StorageImage { format: "Rgba32ui", uint: true, layered: false },
@@ -230,7 +230,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/height_transpose.comp`.
-    HEIGHT_TRANSPOSE: "height_transpose", push 24, words 83974 978,
+    HEIGHT_TRANSPOSE: "height_transpose", push 24, words 84014 978,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 writes "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     HeightTranspose {
@@ -241,7 +241,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/horizon_march.comp`.
-    HORIZON_MARCH: "horizon_march", push 16, words 84952 5456,
+    HORIZON_MARCH: "horizon_march", push 16, words 84992 5456,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "slopes" StorageImage { format: "Unknown", uint: true, layered: true },
@@ -255,7 +255,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/edit/horizon_resweep.comp`.
-    HORIZON_RESWEEP: "horizon_resweep", push 32, words 90408 8882,
+    HORIZON_RESWEEP: "horizon_resweep", push 32, words 90448 8882,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "occluders" StorageImage { format: "Rg32ui", uint: true, layered: true },
@@ -269,7 +269,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/horizon_sweep.comp`.
-    HORIZON_SWEEP: "horizon_sweep", push 20, words 99290 9430,
+    HORIZON_SWEEP: "horizon_sweep", push 20, words 99330 9430,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "lane_heights" SampledImage { uint: false, layered: false },
     2 reads "azimuths" TexelBuffer,
@@ -295,7 +295,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/light_matrix.comp`.
-    LIGHT_MATRIX: "light_matrix", push 48, words 108720 1843,
+    LIGHT_MATRIX: "light_matrix", push 48, words 108760 1854,
     0 reads "env_rotation" StorageBuffer,
     1 reads "constants" TexelBuffer,
     2 writes "light_matrix" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -304,7 +304,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/light_resolve.comp`.
-    LIGHT_RESOLVE: "light_resolve", push 32, words 110563 1991,
+    LIGHT_RESOLVE: "light_resolve", push 32, words 110614 1991,
     0 reads "scalar_sum" SampledImage { uint: false, layered: false },
     1 reads "colour_sum" SampledImage { uint: false, layered: false },
     2 reads "albedo_map" SampledImage { uint: false, layered: false },
@@ -328,7 +328,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/map_draw.comp`.
-    MAP_DRAW: "map_draw", push 36, words 112554 1576,
+    MAP_DRAW: "map_draw", push 36, words 112605 1576,
     0 reads "radiance" SampledImage { uint: false, layered: false },
     1 reads "tone_steps" SampledImage { uint: false, layered: false },
     2 reads "voids" SampledImage { uint: false, layered: false },
@@ -341,7 +341,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/reference/path_trace.comp`.
-    PATH_TRACE: "path_trace", push 120, words 114130 22914,
+    PATH_TRACE: "path_trace", push 120, words 114181 22928,
     0 reads "cells" SampledImage { uint: false, layered: false },
     1 reads "maxima" SampledImage { uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -378,7 +378,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/picture_tone.frag`.
-    PICTURE_TONE_FRAG: "picture_tone_frag", push 4, words 137044 455,
+    PICTURE_TONE_FRAG: "picture_tone_frag", push 4, words 137109 455,
     0 reads "radiance" SampledImage { uint: false, layered: false },
     PictureToneFrag {
         0 encodes: bool = true,
@@ -387,13 +387,13 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/picture_tone.vert`.
-    PICTURE_TONE_VERT: "picture_tone_vert", push 0, words 137499 266,
+    PICTURE_TONE_VERT: "picture_tone_vert", push 0, words 137564 266,
     PictureToneVert;
 }
 
 shader! {
     /// `shaders_glsl/horizon/pyramid_march.comp`.
-    PYRAMID_MARCH: "pyramid_march", push 32, words 137765 9025,
+    PYRAMID_MARCH: "pyramid_march", push 32, words 137830 9025,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "slopes" StorageImage { format: "Unknown", uint: true, layered: true },
@@ -410,7 +410,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bake/scatter_gather.comp`.
-    SCATTER_GATHER: "scatter_gather", push 80, words 146790 4664,
+    SCATTER_GATHER: "scatter_gather", push 80, words 146855 4664,
     0 reads "ground" SampledImage { uint: false, layered: false },
     1 reads "direct" SampledImage { uint: false, layered: false },
     2 reads "visible_points" SampledImage { uint: true, layered: true },
@@ -437,7 +437,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/sh_shade.comp`.
-    SH_SHADE: "sh_shade", push 24, words 151454 12958,
+    SH_SHADE: "sh_shade", push 24, words 151519 12958,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "visibility" SampledImage { uint: false, layered: true },
     2 reads "light_matrix" SampledImage { uint: false, layered: false },
@@ -456,7 +456,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/sh_visibility.comp`.
-    SH_VISIBILITY: "sh_visibility", push 32, words 164412 29808,
+    SH_VISIBILITY: "sh_visibility", push 32, words 164477 29808,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rg32ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -481,7 +481,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/sh_wedges.comp`.
-    SH_WEDGES: "sh_wedges", push 36, words 194220 7777,
+    SH_WEDGES: "sh_wedges", push 36, words 194285 7777,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "horizon_angles" SampledImage { uint: false, layered: true },
     2 reads "constants" TexelBuffer,
@@ -498,7 +498,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/shade_expand.comp`.
-    SHADE_EXPAND: "shade_expand", push 12, words 201997 2397,
+    SHADE_EXPAND: "shade_expand", push 12, words 202062 2397,
     0 reads "shade_levels" SampledImage { uint: false, layered: false },
     1 reads "shade_table" SampledImage { uint: true, layered: false },
     2 writes "shade_stack" StorageImage { format: "Unknown", uint: false, layered: true },
@@ -509,7 +509,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/shade_reduce.comp`.
-    SHADE_REDUCE: "shade_reduce", push 48, words 204394 2919,
+    SHADE_REDUCE: "shade_reduce", push 48, words 204459 2918,
     0 reads "exit_radiance" SampledImage { uint: false, layered: false },
     1 writes "shade_levels" StorageImage { format: "Rgba32f", uint: false, layered: false },
     2 writes "shade_table" StorageImage { format: "Rgba32ui", uint: true, layered: false },
@@ -522,7 +522,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/sky_draw.frag`.
-    SKY_DRAW_FRAG: "sky_draw_frag", push 84, words 207313 1269,
+    SKY_DRAW_FRAG: "sky_draw_frag", push 84, words 207377 1269,
     0 reads "environment" SampledImage { uint: false, layered: false },
     SkyDrawFrag {
         0 has_environment: bool = false,
@@ -531,13 +531,13 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/sky_draw.vert`.
-    SKY_DRAW_VERT: "sky_draw_vert", push 0, words 208582 289,
+    SKY_DRAW_VERT: "sky_draw_vert", push 0, words 208646 289,
     SkyDrawVert;
 }
 
 shader! {
     /// `shaders_glsl/direct/sky_shade.comp`.
-    SKY_SHADE: "sky_shade", push 32, words 208871 22806,
+    SKY_SHADE: "sky_shade", push 32, words 208935 22806,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rg32ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -561,7 +561,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/specular_exit.comp`.
-    SPECULAR_EXIT: "specular_exit", push 28, words 231677 6438,
+    SPECULAR_EXIT: "specular_exit", push 28, words 231741 6438,
     0 reads "arriving" SampledImage { uint: false, layered: true },
     1 reads "ground" SampledImage { uint: false, layered: false },
     2 reads "exit_radiance" SampledImage { uint: false, layered: false },
@@ -584,7 +584,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/specular_gather.comp`.
-    SPECULAR_GATHER: "specular_gather", push 64, words 238115 20114,
+    SPECULAR_GATHER: "specular_gather", push 64, words 238179 20112,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "height_levels" SampledImage { uint: false, layered: false },
     2 reads "level_table" SampledImage { uint: true, layered: false },
@@ -612,7 +612,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/specular_visibility.comp`.
-    SPECULAR_VISIBILITY: "specular_visibility", push 8, words 258229 1238,
+    SPECULAR_VISIBILITY: "specular_visibility", push 8, words 258291 1238,
     0 reads "visibility" SampledImage { uint: false, layered: true },
     1 reads "light_matrix" SampledImage { uint: false, layered: false },
     2 writes "arriving" StorageImage { format: "Rgba32f", uint: false, layered: true },
@@ -624,7 +624,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/sphere_sh_shade.comp`.
-    SPHERE_SH_SHADE: "sphere_sh_shade", push 128, words 259467 27590,
+    SPHERE_SH_SHADE: "sphere_sh_shade", push 128, words 259529 27634,
     0 reads "cells" SampledImage { uint: false, layered: false },
     1 reads "maxima" SampledImage { uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -650,7 +650,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/sphere_shade.comp`.
-    SPHERE_SHADE: "sphere_shade", push 112, words 287057 14302,
+    SPHERE_SHADE: "sphere_shade", push 112, words 287163 14335,
     0 reads "cells" SampledImage { uint: false, layered: false },
     1 reads "maxima" SampledImage { uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -665,7 +665,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/sun_shade.comp`.
-    SUN_SHADE: "sun_shade", push 32, words 301359 22088,
+    SUN_SHADE: "sun_shade", push 32, words 301498 22088,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rg32ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -686,7 +686,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/sun_specular.comp`.
-    SUN_SPECULAR: "sun_specular", push 56, words 323447 7945,
+    SUN_SPECULAR: "sun_specular", push 56, words 323586 7945,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "sun_sum" SampledImage { uint: false, layered: false },
     2 writes "specular_sum" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -703,7 +703,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/surface_sweep.comp`.
-    SURFACE_SWEEP: "surface_sweep", push 16, words 331392 6812,
+    SURFACE_SWEEP: "surface_sweep", push 16, words 331531 6812,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "slopes" StorageImage { format: "Unknown", uint: true, layered: true },
@@ -717,7 +717,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/sweep_fuse.comp`.
-    SWEEP_FUSE: "sweep_fuse", push 20, words 338204 18089,
+    SWEEP_FUSE: "sweep_fuse", push 20, words 338343 18089,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rg32ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -737,7 +737,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/terrain_draw.frag`.
-    TERRAIN_DRAW_FRAG: "terrain_draw_frag", push 92, words 356293 1129,
+    TERRAIN_DRAW_FRAG: "terrain_draw_frag", push 92, words 356432 1129,
     1 reads "radiance" SampledImage { uint: false, layered: false },
     2 reads "voids" SampledImage { uint: false, layered: false },
     TerrainDrawFrag {
@@ -748,14 +748,14 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/terrain_draw.vert`.
-    TERRAIN_DRAW_VERT: "terrain_draw_vert", push 92, words 357422 916,
+    TERRAIN_DRAW_VERT: "terrain_draw_vert", push 92, words 357561 916,
     0 reads "heights" SampledImage { uint: false, layered: false },
     TerrainDrawVert;
 }
 
 shader! {
     /// `shaders_glsl/bounce/vector_reduce.comp`.
-    VECTOR_REDUCE: "vector_reduce", push 48, words 358338 2966,
+    VECTOR_REDUCE: "vector_reduce", push 48, words 358477 2964,
     0 reads "exit_vectors" SampledImage { uint: false, layered: true },
     1 reads "vector_source" SampledImage { uint: false, layered: true },
     2 writes "vector_levels" StorageImage { format: "Unknown", uint: false, layered: true },
@@ -768,7 +768,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bake/visible_points.comp`.
-    VISIBLE_POINTS: "visible_points", push 48, words 361304 9659,
+    VISIBLE_POINTS: "visible_points", push 48, words 361441 9687,
     0 reads "cells" SampledImage { uint: false, layered: false },
     1 reads "maxima" SampledImage { uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -842,546 +842,229 @@ pub static GRAPHICS: &[Shader] = &[
     TERRAIN_DRAW_VERT,
 ];
 
-/// Byte offsets of struct members as the shaders see them.
-#[allow(missing_docs, reason = "each is the offset of the member it names")]
-pub mod offsets {
-    /// `BentDirectionsPush`.
-    pub mod bent_directions_push {
-        pub const CELL_X_M: usize = 20;
-        pub const CELL_Y_M: usize = 24;
-        pub const COLS: usize = 0;
-        pub const CURVATURE_X: usize = 28;
-        pub const CURVATURE_Y: usize = 32;
-        pub const FIRST_DIRECTION: usize = 16;
-        pub const FIRST_FAN: usize = 12;
-        pub const FIRST_TEXEL: usize = 8;
-        pub const ROWS: usize = 4;
+layouts! {
+    push BentDirectionsPush bent_directions_push {
+        0 COLS cols: i32, 4 ROWS rows: i32, 8 FIRST_TEXEL first_texel: i32,
+        12 FIRST_FAN first_fan: i32, 16 FIRST_DIRECTION first_direction: i32,
+        20 CELL_X_M cell_x_m: f32, 24 CELL_Y_M cell_y_m: f32, 28 CURVATURE_X curvature_x: f32,
+        32 CURVATURE_Y curvature_y: f32,
     }
-    /// `BounceGatherPush`.
-    pub mod bounce_gather_push {
-        pub const AZIMUTHS: usize = 16;
-        pub const CELL_X_M: usize = 8;
-        pub const CELL_Y_M: usize = 12;
-        pub const COLS: usize = 0;
-        pub const FINE_SAMPLES: usize = 36;
-        pub const FIRST_AZIMUTH: usize = 20;
-        pub const GROWTH: usize = 44;
-        pub const LAST_AZIMUTH: usize = 24;
-        pub const ROWS: usize = 4;
-        pub const SHADE_FINE: usize = 48;
-        pub const SHADE_SHIFT: usize = 52;
-        pub const STEP_HEIGHT: usize = 60;
-        pub const STEP_SHADE: usize = 56;
-        pub const WARM_UP_COLS: usize = 28;
-        pub const WARM_UP_ROWS: usize = 32;
-        pub const WIDTH_SHIFT: usize = 40;
+    push BounceMarchPush bounce_march_push {
+        0 LAND land: LandPush, 32 AZIMUTHS azimuths: i32, 36 FIRST_AZIMUTH first_azimuth: i32,
+        40 LAST_AZIMUTH last_azimuth: i32,
     }
-    /// `BounceMarchPush`.
-    pub mod bounce_march_push {
-        pub const AZIMUTHS: usize = 32;
-        pub const CELL_X_M: usize = 24;
-        pub const CELL_Y_M: usize = 28;
-        pub const CELLS_X: usize = 8;
-        pub const CELLS_Y: usize = 12;
-        pub const COLS: usize = 0;
-        pub const FIRST_AZIMUTH: usize = 36;
-        pub const LAST_AZIMUTH: usize = 40;
-        pub const PADDED_ROWS: usize = 16;
-        pub const ROWS: usize = 4;
-        pub const TOP_LEVEL: usize = 20;
+    push BounceShadePush bounce_shade_push {
+        0 COLS cols: i32, 4 ROWS rows: i32, 8 CELL_X_M cell_x_m: f32, 12 CELL_Y_M cell_y_m: f32,
     }
-    /// `BounceShadePush`.
-    pub mod bounce_shade_push {
-        pub const CELL_X_M: usize = 8;
-        pub const CELL_Y_M: usize = 12;
-        pub const COLS: usize = 0;
-        pub const ROWS: usize = 4;
+    push BounceWalkPush bounce_walk_push {
+        0 COLS cols: i32, 4 ROWS rows: i32, 8 CELL_X_M cell_x_m: f32, 12 CELL_Y_M cell_y_m: f32,
+        16 WARM_UP warm_up: i32, 20 FIRST_AZIMUTH first_azimuth: u32,
+        24 AZIMUTH_COUNT azimuth_count: u32, 28 CLEARS clears: u32, 32 IS_LAST is_last: u32,
+        36 BEGIN begin: u32,
     }
-    /// `BounceWalkPush`.
-    pub mod bounce_walk_push {
-        pub const AZIMUTH_COUNT: usize = 24;
-        pub const BEGIN: usize = 36;
-        pub const CELL_X_M: usize = 8;
-        pub const CELL_Y_M: usize = 12;
-        pub const CLEARS: usize = 28;
-        pub const COLS: usize = 0;
-        pub const FIRST_AZIMUTH: usize = 20;
-        pub const IS_LAST: usize = 32;
-        pub const ROWS: usize = 4;
-        pub const WARM_UP: usize = 16;
+    push CacheGatherPush cache_gather_push {
+        0 COLS cols: i32, 4 ROWS rows: i32, 8 BEGIN begin: u32, 12 COUNT count: u32,
     }
-    /// `CacheGatherPush`.
-    pub mod cache_gather_push {
-        pub const BEGIN: usize = 8;
-        pub const COLS: usize = 0;
-        pub const COUNT: usize = 12;
-        pub const ROWS: usize = 4;
+    push DirtyListPush dirty_list_push {
+        0 COLS cols: i32, 4 ROWS rows: i32,
     }
-    /// `DirtyListPush`.
-    pub mod dirty_list_push {
-        pub const COLS: usize = 0;
-        pub const ROWS: usize = 4;
+    push DirtyMarkPush dirty_mark_push {
+        0 COLS cols: i32, 4 ROWS rows: i32, 8 FIRST_COL first_col: i32, 12 FIRST_ROW first_row: i32,
+        16 LAST_COL last_col: i32, 20 LAST_ROW last_row: i32,
     }
-    /// `DirtyMarkPush`.
-    pub mod dirty_mark_push {
-        pub const COLS: usize = 0;
-        pub const FIRST_COL: usize = 8;
-        pub const FIRST_ROW: usize = 12;
-        pub const LAST_COL: usize = 16;
-        pub const LAST_ROW: usize = 20;
-        pub const ROWS: usize = 4;
+    push EllipseFitPush ellipse_fit_push {
+        0 COLS cols: i32, 4 ROWS rows: i32, 8 FIRST_DIRECTION first_direction: i32,
+        12 END_DIRECTION end_direction: i32, 16 FIRST_ROW first_row: i32,
+        20 LEAST_RADIUS least_radius: f32,
     }
-    /// `DirtyTexels`.
-    pub mod dirty_texels {
-        pub const DIRTY_TEXELS: usize = 0;
+    push EnvRotationPush env_rotation_push {
+        0 WIDTH width: i32, 4 ROWS rows: i32, 8 TURNS turns: i32, 12 COLUMN_FIRST column_first: i32,
     }
-    /// `EditList`.
-    pub mod edit_list {
-        pub const DIRTY_WORDS: usize = 32;
-        pub const LIGHT_GROUPS: usize = 8;
-        pub const RESOLVE_GROUPS: usize = 20;
-        pub const SWEPT_STEPS: usize = 0;
-        pub const WORD_COUNT: usize = 4;
+    push EnvTablesPush env_tables_push {
+        0 HEIGHT height: i32, 4 ROWS rows: i32, 8 NODES nodes: i32,
+        12 AZIMUTH_COUNT azimuth_count: i32, 16 BOTTOM_RAD bottom_rad: f32,
     }
-    /// `EllipseFitPush`.
-    pub mod ellipse_fit_push {
-        pub const COLS: usize = 0;
-        pub const END_DIRECTION: usize = 12;
-        pub const FIRST_DIRECTION: usize = 8;
-        pub const FIRST_ROW: usize = 16;
-        pub const LEAST_RADIUS: usize = 20;
-        pub const ROWS: usize = 4;
+    push EnvWedgesPush env_wedges_push {
+        0 WIDTH width: i32, 4 ROWS rows: i32, 8 ROTATION_RAD rotation_rad: f32,
     }
-    /// `EnvRotation`.
-    pub mod env_rotation {
-        pub const ENV_ROTATION: usize = 0;
+    push FacetMaskPush facet_mask_push {
+        0 LAND land: LandPush, 32 HIGHEST_M highest_m: f32, 36 FIRST_LAYER first_layer: i32,
+        40 FIRST_DIRECTION first_direction: i32, 44 END_DIRECTION end_direction: i32,
     }
-    /// `EnvRotationPush`.
-    pub mod env_rotation_push {
-        pub const COLUMN_FIRST: usize = 12;
-        pub const ROWS: usize = 4;
-        pub const TURNS: usize = 8;
-        pub const WIDTH: usize = 0;
+    push FanWeightsPush fan_weights_push {
+        0 COLS cols: i32, 4 ROWS rows: i32, 8 FIRST_FAN first_fan: i32,
+        12 FIRST_DIRECTION first_direction: i32,
     }
-    /// `EnvTablesPush`.
-    pub mod env_tables_push {
-        pub const AZIMUTH_COUNT: usize = 12;
-        pub const BOTTOM_RAD: usize = 16;
-        pub const HEIGHT: usize = 0;
-        pub const NODES: usize = 8;
-        pub const ROWS: usize = 4;
+    push GatherPush gather_push {
+        0 COLS cols: i32, 4 ROWS rows: i32, 8 CELL_X_M cell_x_m: f32, 12 CELL_Y_M cell_y_m: f32,
+        16 AZIMUTHS azimuths: i32, 20 FIRST_AZIMUTH first_azimuth: i32,
+        24 LAST_AZIMUTH last_azimuth: i32, 28 WARM_UP_COLS warm_up_cols: i32,
+        32 WARM_UP_ROWS warm_up_rows: i32, 36 FINE_SAMPLES fine_samples: i32,
+        40 WIDTH_SHIFT width_shift: i32, 44 GROWTH growth: f32, 48 SHADE_FINE shade_fine: i32,
+        52 SHADE_SHIFT shade_shift: i32, 56 STEP_SHADE step_shade: i32,
+        60 STEP_HEIGHT step_height: i32,
     }
-    /// `EnvWedgesPush`.
-    pub mod env_wedges_push {
-        pub const ROTATION_RAD: usize = 8;
-        pub const ROWS: usize = 4;
-        pub const WIDTH: usize = 0;
+    push HeightBoundsPush height_bounds_push {
+        0 CELLS_X cells_x: i32, 4 CELLS_Y cells_y: i32, 8 PADDED_ROWS padded_rows: i32,
+        12 LEVEL level: i32,
     }
-    /// `FacetMaskPush`.
-    pub mod facet_mask_push {
-        pub const CELL_X_M: usize = 24;
-        pub const CELL_Y_M: usize = 28;
-        pub const CELLS_X: usize = 8;
-        pub const CELLS_Y: usize = 12;
-        pub const COLS: usize = 0;
-        pub const END_DIRECTION: usize = 44;
-        pub const FIRST_DIRECTION: usize = 40;
-        pub const FIRST_LAYER: usize = 36;
-        pub const HIGHEST_M: usize = 32;
-        pub const PADDED_ROWS: usize = 16;
-        pub const ROWS: usize = 4;
-        pub const TOP_LEVEL: usize = 20;
+    push HeightCellsPush height_cells_push {
+        0 COLS cols: i32, 4 ROWS rows: i32, 8 CELL_X_M cell_x_m: f32, 12 CELL_Y_M cell_y_m: f32,
     }
-    /// `FanWeightsPush`.
-    pub mod fan_weights_push {
-        pub const COLS: usize = 0;
-        pub const FIRST_DIRECTION: usize = 12;
-        pub const FIRST_FAN: usize = 8;
-        pub const ROWS: usize = 4;
+    push HeightExpandPush height_expand_push {
+        0 COLS cols: i32, 4 ROWS rows: i32, 8 WIDTH_SHIFT width_shift: i32,
     }
-    /// `HeightBoundsPush`.
-    pub mod height_bounds_push {
-        pub const CELLS_X: usize = 0;
-        pub const CELLS_Y: usize = 4;
-        pub const LEVEL: usize = 12;
-        pub const PADDED_ROWS: usize = 8;
+    push HeightTransposePush height_transpose_push {
+        0 LANES lanes: i32, 4 STEPS steps: i32, 8 FIRST_COL first_col: i32,
+        12 FIRST_ROW first_row: i32, 16 LAST_COL last_col: i32, 20 LAST_ROW last_row: i32,
     }
-    /// `HeightCellsPush`.
-    pub mod height_cells_push {
-        pub const CELL_X_M: usize = 8;
-        pub const CELL_Y_M: usize = 12;
-        pub const COLS: usize = 0;
-        pub const ROWS: usize = 4;
+    push HorizonResweepPush horizon_resweep_push {
+        0 LANES lanes: i32, 4 STEPS steps: i32, 8 FIRST_AZIMUTH first_azimuth: u32,
+        12 HEIGHT_SCALE height_scale: f32, 16 FIRST_COL first_col: i32, 20 FIRST_ROW first_row: i32,
+        24 LAST_COL last_col: i32, 28 LAST_ROW last_row: i32,
     }
-    /// `HeightExpandPush`.
-    pub mod height_expand_push {
-        pub const COLS: usize = 0;
-        pub const ROWS: usize = 4;
-        pub const WIDTH_SHIFT: usize = 8;
+    push HorizonSweepPush horizon_sweep_push {
+        0 LANES lanes: i32, 4 STEPS steps: i32, 8 WARM_UP warm_up: i32,
+        12 FIRST_AZIMUTH first_azimuth: u32, 16 HEIGHT_SCALE height_scale: f32,
     }
-    /// `HeightReducePush`.
-    pub mod height_reduce_push {
-        pub const COLS: usize = 0;
-        pub const FIRST: usize = 8;
-        pub const LEVEL: usize = 40;
-        pub const PER_GRID_POINT_X: usize = 32;
-        pub const PER_GRID_POINT_Y: usize = 36;
-        pub const RATIO_X: usize = 24;
-        pub const RATIO_Y: usize = 28;
-        pub const ROWS: usize = 4;
-        pub const SOURCE_COLS: usize = 12;
-        pub const SOURCE_FIRST: usize = 20;
-        pub const SOURCE_ROWS: usize = 16;
-        pub const WIDTH_SHIFT: usize = 44;
+    push LandPush land_push {
+        0 COLS cols: i32, 4 ROWS rows: i32, 8 CELLS_X cells_x: i32, 12 CELLS_Y cells_y: i32,
+        16 PADDED_ROWS padded_rows: i32, 20 TOP_LEVEL top_level: i32, 24 CELL_X_M cell_x_m: f32,
+        28 CELL_Y_M cell_y_m: f32,
     }
-    /// `HeightTransposePush`.
-    pub mod height_transpose_push {
-        pub const FIRST_COL: usize = 8;
-        pub const FIRST_ROW: usize = 12;
-        pub const LANES: usize = 0;
-        pub const LAST_COL: usize = 16;
-        pub const LAST_ROW: usize = 20;
-        pub const STEPS: usize = 4;
+    push LightMatrixPush light_matrix_push {
+        0 ROWS rows: i32, 4 LIGHT_ORDER light_order: i32, 8 ORDER order: i32,
+        12 RECEIVERS receivers: i32, 16 ROW_FIRST row_first: i32, 20 MATRIX_FIRST matrix_first: i32,
+        24 PADS pads: [i32; 2], 32 SKY sky: [f32; 4],
     }
-    /// `HorizonResweepPush`.
-    pub mod horizon_resweep_push {
-        pub const FIRST_AZIMUTH: usize = 8;
-        pub const FIRST_COL: usize = 16;
-        pub const FIRST_ROW: usize = 20;
-        pub const HEIGHT_SCALE: usize = 12;
-        pub const LANES: usize = 0;
-        pub const LAST_COL: usize = 24;
-        pub const LAST_ROW: usize = 28;
-        pub const STEPS: usize = 4;
+    push LightResolvePush light_resolve_push {
+        0 COLS cols: i32, 4 ROWS rows: i32, 8 CLEARS clears: u32, 12 TEXEL texel: i32,
+        16 COLOUR colour: [f32; 4],
     }
-    /// `HorizonSweepPush`.
-    pub mod horizon_sweep_push {
-        pub const FIRST_AZIMUTH: usize = 12;
-        pub const HEIGHT_SCALE: usize = 16;
-        pub const LANES: usize = 0;
-        pub const STEPS: usize = 4;
-        pub const WARM_UP: usize = 8;
+    push MapDrawPush map_draw_push {
+        0 WIDTH width: i32, 4 HEIGHT height: i32, 8 COLS cols: i32, 12 ROWS rows: i32,
+        16 FIRST_COL first_col: f32, 20 FIRST_ROW first_row: f32,
+        24 GRID_POINTS_PER_PIXEL grid_points_per_pixel: f32, 28 SWAPS swaps: u32,
+        32 BEYOND beyond: u32,
     }
-    /// `LightMatrixPush`.
-    pub mod light_matrix_push {
-        pub const LIGHT_ORDER: usize = 4;
-        pub const MATRIX_FIRST: usize = 20;
-        pub const ORDER: usize = 8;
-        pub const RECEIVERS: usize = 12;
-        pub const ROW_FIRST: usize = 16;
-        pub const ROWS: usize = 0;
-        pub const SKY: usize = 32;
+    push MarchPush march_push {
+        0 LANES lanes: i32, 4 STEPS steps: i32, 8 WARM_UP warm_up: i32,
+        12 FIRST_AZIMUTH first_azimuth: u32,
     }
-    /// `LightResolvePush`.
-    pub mod light_resolve_push {
-        pub const CLEARS: usize = 8;
-        pub const COLOUR: usize = 16;
-        pub const COLS: usize = 0;
-        pub const ROWS: usize = 4;
-        pub const TEXEL: usize = 12;
+    push PathTracePush path_trace_push {
+        0 LAND land: LandPush, 32 HIGHEST_M highest_m: f32, 36 ROTATION_TURNS rotation_turns: f32,
+        40 EXPONENT exponent: f32, 44 SPECULAR_SCALE specular_scale: f32, 48 BOUNCES bounces: i32,
+        52 SUNS suns: i32, 56 LIGHT_COUNT light_count: i32, 60 SEED seed: u32,
+        64 ALBEDO albedo: [f32; 4], 80 SKY sky: [f32; 4], 96 FIRST_ROW first_row: i32,
+        100 KEYS keys: i32, 104 FIRST_PATH first_path: i32, 108 LAST_PATH last_path: i32,
+        112 FIRST_LIGHT first_light: i32, 116 LAST_LIGHT last_light: i32,
     }
-    /// `LostLines`.
-    pub mod lost_lines {
-        pub const LOST_LINES: usize = 0;
+    push PictureTonePush picture_tone_push {
+        0 EXPOSURE exposure: f32,
     }
-    /// `LostRays`.
-    pub mod lost_rays {
-        pub const LOST_RAYS: usize = 0;
+    push PyramidMarchPush pyramid_march_push {
+        0 LANES lanes: i32, 4 STEPS steps: i32, 8 WARM_UP warm_up: i32,
+        12 FIRST_AZIMUTH first_azimuth: u32, 16 AZIMUTH_COUNT azimuth_count: u32,
+        20 FINE_SAMPLES fine_samples: i32, 24 WIDTH_SHIFT width_shift: i32, 28 GROWTH growth: f32,
     }
-    /// `MapDrawPush`.
-    pub mod map_draw_push {
-        pub const BEYOND: usize = 32;
-        pub const COLS: usize = 8;
-        pub const FIRST_COL: usize = 16;
-        pub const FIRST_ROW: usize = 20;
-        pub const GRID_POINTS_PER_PIXEL: usize = 24;
-        pub const HEIGHT: usize = 4;
-        pub const ROWS: usize = 12;
-        pub const SWAPS: usize = 28;
-        pub const WIDTH: usize = 0;
+    push ReducePush reduce_push {
+        0 COLS cols: i32, 4 ROWS rows: i32, 8 FIRST first: i32, 12 SOURCE_COLS source_cols: i32,
+        16 SOURCE_ROWS source_rows: i32, 20 SOURCE_FIRST source_first: i32, 24 RATIO_X ratio_x: f32,
+        28 RATIO_Y ratio_y: f32, 32 PER_GRID_POINT_X per_grid_point_x: f32,
+        36 PER_GRID_POINT_Y per_grid_point_y: f32, 40 LEVEL level: i32,
+        44 WIDTH_SHIFT width_shift: i32,
     }
-    /// `MarchPush`.
-    pub mod march_push {
-        pub const FIRST_AZIMUTH: usize = 12;
-        pub const LANES: usize = 0;
-        pub const STEPS: usize = 4;
-        pub const WARM_UP: usize = 8;
+    push ScatterGatherPush scatter_gather_push {
+        0 COLS cols: i32, 4 ROWS rows: i32, 8 FIRST_LINK first_link: i32, 12 STEPS steps: i32,
+        16 STEP step: i32, 20 FIRST_PATH first_path: i32, 24 PATHS paths: i32,
+        28 FIRST_DIRECTION first_direction: i32, 32 FIRST_SUN first_sun: i32, 36 SUNS suns: i32,
+        40 WEIGHT_SR weight_sr: f32, 44 EXPONENT exponent: f32,
+        48 SPECULAR_SCALE specular_scale: f32, 52 FIRST_VIEW first_view: i32,
+        56 CURVATURE_X curvature_x: f32, 60 CURVATURE_Y curvature_y: f32,
+        64 ALBEDO albedo: [f32; 4],
     }
-    /// `PathTracePush`.
-    pub mod path_trace_push {
-        pub const ALBEDO: usize = 64;
-        pub const BOUNCES: usize = 48;
-        pub const CELL_X_M: usize = 24;
-        pub const CELL_Y_M: usize = 28;
-        pub const CELLS_X: usize = 8;
-        pub const CELLS_Y: usize = 12;
-        pub const COLS: usize = 0;
-        pub const EXPONENT: usize = 40;
-        pub const FIRST_LIGHT: usize = 112;
-        pub const FIRST_PATH: usize = 104;
-        pub const FIRST_ROW: usize = 96;
-        pub const HIGHEST_M: usize = 32;
-        pub const KEYS: usize = 100;
-        pub const LAST_LIGHT: usize = 116;
-        pub const LAST_PATH: usize = 108;
-        pub const LIGHT_COUNT: usize = 56;
-        pub const PADDED_ROWS: usize = 16;
-        pub const ROTATION_TURNS: usize = 36;
-        pub const ROWS: usize = 4;
-        pub const SEED: usize = 60;
-        pub const SKY: usize = 80;
-        pub const SPECULAR_SCALE: usize = 44;
-        pub const SUNS: usize = 52;
-        pub const TOP_LEVEL: usize = 20;
+    push ShShadePush sh_shade_push {
+        0 COLS cols: i32, 4 ROWS rows: i32, 8 CELL_X_M cell_x_m: f32, 12 CELL_Y_M cell_y_m: f32,
+        16 SPECULAR specular: [f32; 2],
     }
-    /// `PictureTonePush`.
-    pub mod picture_tone_push {
-        pub const EXPOSURE: usize = 0;
+    push ShWedgesPush sh_wedges_push {
+        0 COLS cols: i32, 4 ROWS rows: i32, 8 CELL_X_M cell_x_m: f32, 12 CELL_Y_M cell_y_m: f32,
+        16 AZIMUTH_COUNT azimuth_count: i32, 20 AZIMUTH_FIRST azimuth_first: i32,
+        24 TABLE_FIRST table_first: i32, 28 SIDE side: i32, 32 LOWEST_RAD lowest_rad: f32,
     }
-    /// `PyramidMarchPush`.
-    pub mod pyramid_march_push {
-        pub const AZIMUTH_COUNT: usize = 16;
-        pub const FINE_SAMPLES: usize = 20;
-        pub const FIRST_AZIMUTH: usize = 12;
-        pub const GROWTH: usize = 28;
-        pub const LANES: usize = 0;
-        pub const STEPS: usize = 4;
-        pub const WARM_UP: usize = 8;
-        pub const WIDTH_SHIFT: usize = 24;
+    push ShadeExpandPush shade_expand_push {
+        0 COLS cols: i32, 4 ROWS rows: i32, 8 WIDTH_SHIFT width_shift: i32,
     }
-    /// `ScatterGatherPush`.
-    pub mod scatter_gather_push {
-        pub const ALBEDO: usize = 64;
-        pub const COLS: usize = 0;
-        pub const CURVATURE_X: usize = 56;
-        pub const CURVATURE_Y: usize = 60;
-        pub const EXPONENT: usize = 44;
-        pub const FIRST_DIRECTION: usize = 28;
-        pub const FIRST_LINK: usize = 8;
-        pub const FIRST_PATH: usize = 20;
-        pub const FIRST_SUN: usize = 32;
-        pub const FIRST_VIEW: usize = 52;
-        pub const PATHS: usize = 24;
-        pub const ROWS: usize = 4;
-        pub const SPECULAR_SCALE: usize = 48;
-        pub const STEP: usize = 16;
-        pub const STEPS: usize = 12;
-        pub const SUNS: usize = 36;
-        pub const WEIGHT_SR: usize = 40;
+    push ShadePush shade_push {
+        0 COLS cols: i32, 4 ROWS rows: i32, 8 CELL_X_M cell_x_m: f32, 12 CELL_Y_M cell_y_m: f32,
+        16 WARM_UP warm_up: i32, 20 FIRST_AZIMUTH first_azimuth: u32,
+        24 AZIMUTH_COUNT azimuth_count: u32, 28 CLEARS clears: u32,
     }
-    /// `ShShadePush`.
-    pub mod sh_shade_push {
-        pub const CELL_X_M: usize = 8;
-        pub const CELL_Y_M: usize = 12;
-        pub const COLS: usize = 0;
-        pub const ROWS: usize = 4;
-        pub const SPECULAR: usize = 16;
+    push SkyDrawPush sky_draw_push {
+        0 FORWARD forward: [f32; 4], 16 RIGHT right: [f32; 4], 32 DOWN down: [f32; 4],
+        48 ABOVE above: [f32; 4], 64 BELOW below: [f32; 4], 80 ROTATION_TURNS rotation_turns: f32,
     }
-    /// `ShWedgesPush`.
-    pub mod sh_wedges_push {
-        pub const AZIMUTH_COUNT: usize = 16;
-        pub const AZIMUTH_FIRST: usize = 20;
-        pub const CELL_X_M: usize = 8;
-        pub const CELL_Y_M: usize = 12;
-        pub const COLS: usize = 0;
-        pub const LOWEST_RAD: usize = 32;
-        pub const ROWS: usize = 4;
-        pub const SIDE: usize = 28;
-        pub const TABLE_FIRST: usize = 24;
+    push SpecularExitPush specular_exit_push {
+        0 COLS cols: i32, 4 ROWS rows: i32, 8 BEGINS begins: u32, 12 FIRST_TEXEL first_texel: i32,
+        16 FOURS fours: i32, 20 EXPONENT exponent: f32, 24 SCALE scale: f32,
     }
-    /// `ShadeExpandPush`.
-    pub mod shade_expand_push {
-        pub const COLS: usize = 0;
-        pub const ROWS: usize = 4;
-        pub const WIDTH_SHIFT: usize = 8;
+    push SpecularVisibilityPush specular_visibility_push {
+        0 COLS cols: i32, 4 ROWS rows: i32,
     }
-    /// `ShadePush`.
-    pub mod shade_push {
-        pub const AZIMUTH_COUNT: usize = 24;
-        pub const CELL_X_M: usize = 8;
-        pub const CELL_Y_M: usize = 12;
-        pub const CLEARS: usize = 28;
-        pub const COLS: usize = 0;
-        pub const FIRST_AZIMUTH: usize = 20;
-        pub const ROWS: usize = 4;
-        pub const WARM_UP: usize = 16;
+    push SphereShShadePush sphere_sh_shade_push {
+        0 LAND land: LandPush, 32 FIRST first: [i32; 2], 40 BASE base: [i32; 2],
+        48 OFFSET offset: [f32; 2], 56 UP_M up_m: f32, 60 RADIUS_M radius_m: f32,
+        64 REACH_M reach_m: f32, 68 AZIMUTHS azimuths: i32, 72 FIRST_AZIMUTH first_azimuth: i32,
+        76 LAST_AZIMUTH last_azimuth: i32, 80 ENTRY_FIRST entry_first: i32,
+        84 ENTRY_COUNT entry_count: i32, 88 TABLE_FIRST table_first: i32, 92 SIDE side: i32,
+        96 FINE_SAMPLES fine_samples: i32, 100 WIDTH_SHIFT width_shift: i32, 104 GROWTH growth: f32,
+        108 LEVEL_STEP level_step: f32, 112 RADIANCE radiance: [f32; 4],
     }
-    /// `ShadeReducePush`.
-    pub mod shade_reduce_push {
-        pub const COLS: usize = 0;
-        pub const FIRST: usize = 8;
-        pub const LEVEL: usize = 40;
-        pub const PER_GRID_POINT_X: usize = 32;
-        pub const PER_GRID_POINT_Y: usize = 36;
-        pub const RATIO_X: usize = 24;
-        pub const RATIO_Y: usize = 28;
-        pub const ROWS: usize = 4;
-        pub const SOURCE_COLS: usize = 12;
-        pub const SOURCE_FIRST: usize = 20;
-        pub const SOURCE_ROWS: usize = 16;
-        pub const WIDTH_SHIFT: usize = 44;
+    push SphereShadePush sphere_shade_push {
+        0 LAND land: LandPush, 32 FIRST first: [i32; 2], 40 BASE base: [i32; 2],
+        48 OFFSET offset: [f32; 2], 56 UP_M up_m: f32, 60 RADIUS_M radius_m: f32,
+        64 REACH_M reach_m: f32, 68 SLICES slices: i32, 72 SLICES_AROUND slices_around: i32,
+        76 FIRST_SLICE first_slice: i32, 80 LAST_SLICE last_slice: i32, 84 PADS pads: [i32; 3],
+        96 RADIANCE radiance: [f32; 4],
     }
-    /// `SkyDrawPush`.
-    pub mod sky_draw_push {
-        pub const ABOVE: usize = 48;
-        pub const BELOW: usize = 64;
-        pub const DOWN: usize = 32;
-        pub const FORWARD: usize = 0;
-        pub const RIGHT: usize = 16;
-        pub const ROTATION_TURNS: usize = 80;
+    push SunSpecularPush sun_specular_push {
+        0 COLS cols: i32, 4 ROWS rows: i32, 8 CELL_X_M cell_x_m: f32, 12 CELL_Y_M cell_y_m: f32,
+        16 TOWARDS towards: [f32; 4], 32 COLOUR colour: [f32; 4], 48 SPECULAR specular: [f32; 2],
     }
-    /// `SpecularExitPush`.
-    pub mod specular_exit_push {
-        pub const BEGINS: usize = 8;
-        pub const COLS: usize = 0;
-        pub const EXPONENT: usize = 20;
-        pub const FIRST_TEXEL: usize = 12;
-        pub const FOURS: usize = 16;
-        pub const ROWS: usize = 4;
-        pub const SCALE: usize = 24;
+    push SweepFusePush sweep_fuse_push {
+        0 COLS cols: i32, 4 ROWS rows: i32, 8 WARM_UP warm_up: i32,
+        12 FIRST_AZIMUTH first_azimuth: u32, 16 FIRST_LAYER first_layer: u32,
     }
-    /// `SpecularGatherPush`.
-    pub mod specular_gather_push {
-        pub const AZIMUTHS: usize = 16;
-        pub const CELL_X_M: usize = 8;
-        pub const CELL_Y_M: usize = 12;
-        pub const COLS: usize = 0;
-        pub const FINE_SAMPLES: usize = 36;
-        pub const FIRST_AZIMUTH: usize = 20;
-        pub const GROWTH: usize = 44;
-        pub const LAST_AZIMUTH: usize = 24;
-        pub const ROWS: usize = 4;
-        pub const SHADE_FINE: usize = 48;
-        pub const SHADE_SHIFT: usize = 52;
-        pub const STEP_HEIGHT: usize = 60;
-        pub const STEP_SHADE: usize = 56;
-        pub const WARM_UP_COLS: usize = 28;
-        pub const WARM_UP_ROWS: usize = 32;
-        pub const WIDTH_SHIFT: usize = 40;
+    push TerrainDrawPush terrain_draw_push {
+        0 CLIP_PER_COL clip_per_col: [f32; 4], 16 CLIP_PER_ROW clip_per_row: [f32; 4],
+        32 CLIP_PER_METRE clip_per_metre: [f32; 4], 48 CLIP_AT_ORIGIN clip_at_origin: [f32; 4],
+        64 ORIGIN_COL origin_col: i32, 68 ORIGIN_ROW origin_row: i32, 72 ORIGIN_M origin_m: f32,
+        76 COLS cols: i32, 80 ROWS rows: i32, 84 MESH_STEP mesh_step: i32,
+        88 TILES_ACROSS tiles_across: i32,
     }
-    /// `SpecularVisibilityPush`.
-    pub mod specular_visibility_push {
-        pub const COLS: usize = 0;
-        pub const ROWS: usize = 4;
+    push VisiblePointsPush visible_points_push {
+        0 LAND land: LandPush, 32 HIGHEST_M highest_m: f32, 36 FIRST_LAYER first_layer: i32,
+        40 FIRST_DIRECTION first_direction: i32, 44 END_DIRECTION end_direction: i32,
     }
-    /// `SphereShShadePush`.
-    pub mod sphere_sh_shade_push {
-        pub const AZIMUTHS: usize = 68;
-        pub const BASE: usize = 40;
-        pub const CELL_X_M: usize = 24;
-        pub const CELL_Y_M: usize = 28;
-        pub const CELLS_X: usize = 8;
-        pub const CELLS_Y: usize = 12;
-        pub const COLS: usize = 0;
-        pub const ENTRY_COUNT: usize = 84;
-        pub const ENTRY_FIRST: usize = 80;
-        pub const FINE_SAMPLES: usize = 96;
-        pub const FIRST: usize = 32;
-        pub const FIRST_AZIMUTH: usize = 72;
-        pub const GROWTH: usize = 104;
-        pub const LAST_AZIMUTH: usize = 76;
-        pub const LEVEL_STEP: usize = 108;
-        pub const OFFSET: usize = 48;
-        pub const PADDED_ROWS: usize = 16;
-        pub const RADIANCE: usize = 112;
-        pub const RADIUS_M: usize = 60;
-        pub const REACH_M: usize = 64;
-        pub const ROWS: usize = 4;
-        pub const SIDE: usize = 92;
-        pub const TABLE_FIRST: usize = 88;
-        pub const TOP_LEVEL: usize = 20;
-        pub const UP_M: usize = 56;
-        pub const WIDTH_SHIFT: usize = 100;
+    other DirtyTexels dirty_texels {
+        0 DIRTY_TEXELS,
     }
-    /// `SphereShadePush`.
-    pub mod sphere_shade_push {
-        pub const BASE: usize = 40;
-        pub const CELL_X_M: usize = 24;
-        pub const CELL_Y_M: usize = 28;
-        pub const CELLS_X: usize = 8;
-        pub const CELLS_Y: usize = 12;
-        pub const COLS: usize = 0;
-        pub const FIRST: usize = 32;
-        pub const FIRST_SLICE: usize = 76;
-        pub const LAST_SLICE: usize = 80;
-        pub const OFFSET: usize = 48;
-        pub const PADDED_ROWS: usize = 16;
-        pub const RADIANCE: usize = 96;
-        pub const RADIUS_M: usize = 60;
-        pub const REACH_M: usize = 64;
-        pub const ROWS: usize = 4;
-        pub const SLICES: usize = 68;
-        pub const SLICES_AROUND: usize = 72;
-        pub const TOP_LEVEL: usize = 20;
-        pub const UP_M: usize = 56;
+    other EditList edit_list {
+        32 DIRTY_WORDS, 8 LIGHT_GROUPS, 20 RESOLVE_GROUPS, 0 SWEPT_STEPS, 4 WORD_COUNT,
     }
-    /// `SunSpecularPush`.
-    pub mod sun_specular_push {
-        pub const CELL_X_M: usize = 8;
-        pub const CELL_Y_M: usize = 12;
-        pub const COLOUR: usize = 32;
-        pub const COLS: usize = 0;
-        pub const ROWS: usize = 4;
-        pub const SPECULAR: usize = 48;
-        pub const TOWARDS: usize = 16;
+    other EnvRotation env_rotation {
+        0 ENV_ROTATION,
     }
-    /// `SweepFusePush`.
-    pub mod sweep_fuse_push {
-        pub const COLS: usize = 0;
-        pub const FIRST_AZIMUTH: usize = 12;
-        pub const FIRST_LAYER: usize = 16;
-        pub const ROWS: usize = 4;
-        pub const WARM_UP: usize = 8;
+    other LostLines lost_lines {
+        0 LOST_LINES,
     }
-    /// `TerrainDrawPush`.
-    pub mod terrain_draw_push {
-        pub const CLIP_AT_ORIGIN: usize = 48;
-        pub const CLIP_PER_COL: usize = 0;
-        pub const CLIP_PER_METRE: usize = 32;
-        pub const CLIP_PER_ROW: usize = 16;
-        pub const COLS: usize = 76;
-        pub const MESH_STEP: usize = 84;
-        pub const ORIGIN_COL: usize = 64;
-        pub const ORIGIN_M: usize = 72;
-        pub const ORIGIN_ROW: usize = 68;
-        pub const ROWS: usize = 80;
-        pub const TILES_ACROSS: usize = 88;
+    other LostRays lost_rays {
+        0 LOST_RAYS,
     }
-    /// `VectorReducePush`.
-    pub mod vector_reduce_push {
-        pub const COLS: usize = 0;
-        pub const FIRST: usize = 8;
-        pub const LEVEL: usize = 40;
-        pub const PER_GRID_POINT_X: usize = 32;
-        pub const PER_GRID_POINT_Y: usize = 36;
-        pub const RATIO_X: usize = 24;
-        pub const RATIO_Y: usize = 28;
-        pub const ROWS: usize = 4;
-        pub const SOURCE_COLS: usize = 12;
-        pub const SOURCE_FIRST: usize = 20;
-        pub const SOURCE_ROWS: usize = 16;
-        pub const WIDTH_SHIFT: usize = 44;
-    }
-    /// `VisiblePointsPush`.
-    pub mod visible_points_push {
-        pub const CELL_X_M: usize = 24;
-        pub const CELL_Y_M: usize = 28;
-        pub const CELLS_X: usize = 8;
-        pub const CELLS_Y: usize = 12;
-        pub const COLS: usize = 0;
-        pub const END_DIRECTION: usize = 44;
-        pub const FIRST_DIRECTION: usize = 40;
-        pub const FIRST_LAYER: usize = 36;
-        pub const HIGHEST_M: usize = 32;
-        pub const PADDED_ROWS: usize = 16;
-        pub const ROWS: usize = 4;
-        pub const TOP_LEVEL: usize = 20;
-    }
-    /// `WedgeRows`.
-    pub mod wedge_rows {
-        pub const WEDGE_ROWS: usize = 0;
+    other WedgeRows wedge_rows {
+        0 WEDGE_ROWS,
     }
 }
 
 /// Words of all shaders together.
-const WORD_COUNT: usize = 370963;
+const WORD_COUNT: usize = 371128;

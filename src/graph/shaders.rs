@@ -1,4 +1,4 @@
-//! The compiled shaders with their bindings and specialisation constants, reflected by `build.rs`.
+//! The compiled shaders with their bindings, specialisation constants and push constants, reflected by `build.rs`.
 
 /// Kind of a binding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -142,6 +142,38 @@ macro_rules! shader {
     (@writes) => { true };
 }
 
+/// The structs that shaders share with the host, by member: its byte offset, its name and the field's. Those of push
+/// constants are Rust structs, too, checked to lie in memory as the shaders read them.
+macro_rules! layouts {
+    (
+        $(push $push:ident $push_module:ident {
+            $($at:literal $member:ident $field:ident: $type:ty,)*
+        })*
+        $(other $other:ident $other_module:ident { $($offset:literal $name:ident,)* })*
+    ) => {
+        $(
+            #[repr(C)]
+            #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+            pub(crate) struct $push { $(pub $field: $type,)* }
+
+            const _: () = { $(assert!(std::mem::offset_of!($push, $field) == $at);)* };
+        )*
+
+        /// Byte offsets of struct members as the shaders see them.
+        #[allow(missing_docs, reason = "each is the offset of the member it names")]
+        pub mod offsets {
+            $(
+                #[doc = concat!("`", stringify!($push), "`.")]
+                pub mod $push_module { $(pub const $member: usize = $at;)* }
+            )*
+            $(
+                #[doc = concat!("`", stringify!($other), "`.")]
+                pub mod $other_module { $(pub const $name: usize = $offset;)* }
+            )*
+        }
+    };
+}
+
 /// SPIR-V of all shaders, one after the other.
 static WORDS: [u32; WORD_COUNT] =
     words_of(include_bytes!(concat!(env!("OUT_DIR"), "/shaders.spv")));
@@ -163,22 +195,3 @@ const fn words_at(first: usize, count: usize) -> &'static [u32] {
 }
 
 include!(concat!(env!("OUT_DIR"), "/shaders.rs"));
-
-/// Checks at compile time that a host struct lies in memory as the shaders read it.
-macro_rules! same_layout {
-    ($host:ty, [$($shader:ident),+ $(,)?], { $($fields:tt)+ }) => {
-        $crate::graph::shaders::same_layout!(@each $host, [$($shader),+], { $($fields)+ });
-    };
-    (@each $host:ty, [$($shader:ident),+], $fields:tt) => {
-        $($crate::graph::shaders::same_layout!(@one $host, $shader, $fields);)+
-    };
-    (@one $host:ty, $shader:ident, { $($fields:tt)+ }) => {
-        $crate::graph::shaders::same_layout!($host, $shader, $($fields)+);
-    };
-    ($host:ty, $shader:ident, $($field:ident = $member:ident),+ $(,)?) => {
-        const _: () = {
-            $(assert!(std::mem::offset_of!($host, $field) == $crate::graph::shaders::offsets::$shader::$member);)+
-        };
-    };
-}
-pub(crate) use same_layout;

@@ -96,7 +96,7 @@ pub(crate) fn bounce_march(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 /// A level, and its entry in the table.
 pub(crate) fn shade_reduce(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let shade = run.shade();
-    let number = pushed(pass, offsets::shade_reduce_push::LEVEL);
+    let number = pushed(pass, offsets::reduce_push::LEVEL);
     let level = shade.level(number);
     let exit = run.exit(pass);
     let texels = colours(&run.floats(pass, "shade_levels").expect("written"));
@@ -131,7 +131,7 @@ pub(crate) fn shade_expand(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 
 /// The bounced light, from the device's own levels, in one dispatch.
 pub(crate) fn bounce_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
-    use offsets::bounce_gather_push::{AZIMUTHS, FIRST_AZIMUTH, LAST_AZIMUTH};
+    use offsets::gather_push::{AZIMUTHS, FIRST_AZIMUTH, LAST_AZIMUTH};
     let azimuths = pushed(pass, AZIMUTHS);
     assert_eq!([pushed(pass, FIRST_AZIMUTH), pushed(pass, LAST_AZIMUTH)], [0, azimuths]);
     let (shade, receiver) = (run.shade(), run.quality.receiver);

@@ -169,7 +169,7 @@ pub(crate) fn specular_exit(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 pub(crate) fn vector_reduce(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let order = run.quality.sh_order as usize;
     let shade = run.shade();
-    let number = pushed(pass, offsets::vector_reduce_push::LEVEL);
+    let number = pushed(pass, offsets::reduce_push::LEVEL);
     let level = shade.level(number);
     let exit = run.all_series(pass, "exit_vectors", order);
     let texels = run.all_series(pass, "vector_levels", order);
@@ -186,7 +186,7 @@ pub(crate) fn vector_reduce(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 
 /// The arriving light, from the device's own levels, in one dispatch.
 pub(crate) fn specular_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
-    use offsets::specular_gather_push::{AZIMUTHS, FIRST_AZIMUTH, LAST_AZIMUTH};
+    use offsets::gather_push::{AZIMUTHS, FIRST_AZIMUTH, LAST_AZIMUTH};
     let azimuths = pushed(pass, AZIMUTHS);
     assert_eq!([pushed(pass, FIRST_AZIMUTH), pushed(pass, LAST_AZIMUTH)], [0, azimuths]);
     let order = constant(pass, "order") as usize;
