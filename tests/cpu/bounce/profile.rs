@@ -11,16 +11,16 @@ use crate::{BORDERS, field};
 #[test]
 fn visible_intervals_fill_the_angle_below_the_horizon() {
     let field = rough(7, 9, [1.0, 2.0], 3.0);
-    let mut seen = Vec::new();
+    let mut visible = Vec::new();
     for border in BORDERS {
         let oracle = Oracle::new(&field, border);
         let height = |[r, c]: [usize; 2]| f64::from(field.heights_m()[r * 9 + c]);
         for (row, col, k) in (0..7 * 9 * 13).map(|i| (i / 9 % 7, i % 9, i / 63)) {
             let azimuth = TAU * (k as f64 + 0.3) / 13.0;
-            oracle.visible_intervals(row, col, azimuth, &mut seen);
+            oracle.visible_intervals(row, col, azimuth, &mut visible);
             let horizon = oracle.elevation_rad(row, col, azimuth);
             let mut reached = -FRAC_PI_2;
-            for interval in &seen {
+            for interval in &visible {
                 assert_eq!(interval.low_rad, reached);
                 assert!(interval.high_rad > interval.low_rad);
                 reached = interval.high_rad;
@@ -43,7 +43,7 @@ fn visible_intervals_fill_the_angle_below_the_horizon() {
                     assert!(distance > 0.0 || rise.abs() < 1e-12);
                 }
             }
-            if !seen.is_empty() {
+            if !visible.is_empty() {
                 let above = reached.max(if border == ridgelight::scene::Border::Open {
                     reached
                 } else {
@@ -70,13 +70,13 @@ fn visible_intervals_fill_the_angle_below_the_horizon() {
 fn a_step_shows_its_floor_and_its_face() {
     let step = field(5, 8, [1.0, 1.0], |_, c| if c > 4 { 2.0 } else { 0.0 });
     let oracle = Oracle::new(&step, ridgelight::scene::Border::Plane);
-    let mut seen = Vec::new();
-    oracle.visible_intervals(2, 2, 1e-4, &mut seen);
-    let floor = seen[0];
+    let mut visible = Vec::new();
+    oracle.visible_intervals(2, 2, 1e-4, &mut visible);
+    let floor = visible[0];
     assert_eq!((floor.low_rad, floor.high_rad), (-FRAC_PI_2, 0.0));
     // Heights over distances that are longer by 1/cos 1e-4.
-    assert!((seen.last().unwrap().high_rad.tan() - 2.0 / 3.0).abs() < 1e-7);
+    assert!((visible.last().unwrap().high_rad.tan() - 2.0 / 3.0).abs() < 1e-7);
     let half = 0.5_f64.atan();
-    let face = seen.iter().find(|s| s.low_rad < half && half < s.high_rad).unwrap();
+    let face = visible.iter().find(|s| s.low_rad < half && half < s.high_rad).unwrap();
     assert!((face.distance_m(half) - 4.0 / 1.5).abs() < 1e-7, "2 (D - 2) = D / 2");
 }
