@@ -1,14 +1,13 @@
-//! Writes `shaders.rs` and `shaders.spv`: each shader's place in the SPIR-V, its bindings, and a struct of its
-//! specialisation constants. The host dispatches it only through that struct.
+//! Writes `shaders.rs` and `shaders.spv`: each shader's place in the SPIR-V, its bindings and its specialisation
+//! constants, as a `shader!` of src/graph/shaders.rs; then the structs of push constants, as its `layouts!`.
 //!
-//! A shader has the name of its file; a `.vert` is `NAME_VERT`, a `.frag` is `NAME_FRAG`. `same_layout!`
-//! (src/graph/shaders.rs) checks the host's structs against the offsets at compile time.
+//! A shader has the name of its file; a `.vert` is `NAME_VERT`, a `.frag` is `NAME_FRAG`.
 
 use std::fmt::Write as _;
 use std::path::Path;
 
 use super::compile::{compile, shaders_in, stage};
-use super::reflect::{self, Constant, Layouts, Reflection, reflect};
+use super::reflect::{self, Layouts, Reflection, reflect};
 use super::write;
 
 /// The library's shaders.
@@ -18,7 +17,7 @@ pub(crate) fn core(out: &Path) {
     let mut table = String::from(
         "// Written by build.rs from the SPIR-V of shaders_glsl/; committed by tools/shaders. Not edited by hand.\n\n",
     );
-    let mut layouts = Layouts::new();
+    let mut layouts = Layouts::default();
     let mut all_words = Vec::new();
     let (mut names, mut graphics) = (Vec::new(), Vec::new());
     for path in shaders_in(folder) {
@@ -27,7 +26,6 @@ pub(crate) fn core(out: &Path) {
         let found = reflect(&name, &words, &mut layouts);
         let source = path.to_string_lossy().replace('\\', "/");
         add_shader(&mut table, (&name, &source), [all_words.len(), words.len()], &found);
-        add_constants(&mut table, &name, &source, &found);
         all_words.extend(words);
         if stage(&path) == Some("comp") { names.push(name) } else { graphics.push(name) }
     }
@@ -71,113 +69,72 @@ fn name_of(path: &Path) -> String {
     }
 }
 
+/// A `shader!` of src/graph/shaders.rs.
 fn add_shader(
     table: &mut String,
     (name, source): (&str, &str),
     [first, count]: [usize; 2],
     found: &Reflection,
 ) {
-    writeln!(table, "/// `{source}`.").unwrap();
-    writeln!(table, "pub const {}: Shader = Shader {{", name.to_uppercase()).unwrap();
-    writeln!(table, "    name: {name:?},\n    push_bytes: {},", found.push_bytes).unwrap();
-    writeln!(table, "    bindings: &[").unwrap();
-    for (binding, reflect::Binding { name, kind, written }) in &found.bindings {
-        writeln!(
-            table,
-            "        Binding {{ binding: {binding}, name: {name:?}, kind: BindingKind::{kind}, written: {written} }},"
-        )
+    let (constant, structure) = (name.to_uppercase(), pascal(name));
+    writeln!(table, "shader! {{").unwrap();
+    writeln!(table, "    /// `{source}`.").unwrap();
+    writeln!(table, "    {constant}: {name:?}, push {}, words {first} {count},", found.push_bytes)
         .unwrap();
+    for (binding, reflect::Binding { name, kind, written }) in &found.bindings {
+        let access = if *written { "writes" } else { "reads" };
+        writeln!(table, "    {binding} {access} {name:?} {kind},").unwrap();
     }
-    writeln!(table, "    ],\n    constants: &[").unwrap();
+    if found.constants.is_empty() {
+        writeln!(table, "    {structure};\n}}\n").unwrap();
+        return;
+    }
+    writeln!(table, "    {structure} {{").unwrap();
     for (id, constant) in &found.constants {
         let name = constant.name.to_lowercase();
-        writeln!(table, "        Constant {{ id: {id}, name: {name:?} }},").unwrap();
-    }
-    writeln!(table, "    ],\n    words: words_at({first}, {count}),\n}};\n").unwrap();
-}
-
-/// The struct of a shader's specialisation constants, its defaults, and its words in the order of their
-/// numbers.
-fn add_constants(table: &mut String, name: &str, source: &str, found: &Reflection) {
-    let (shader, structure) = (name.to_uppercase(), pascal(name));
-    let all: Vec<Field> = found.constants.values().map(Field::of).collect();
-    writeln!(table, "/// `{source}` with its specialisation constants.").unwrap();
-    let derives = match all.iter().all(|field| field.is_zero) {
-        true => "Clone, Copy, Debug, Default",
-        false => "Clone, Copy, Debug",
-    };
-    writeln!(table, "#[derive({derives})]").unwrap();
-    if all.is_empty() {
-        writeln!(table, "pub(crate) struct {structure};\n").unwrap();
-    } else {
-        writeln!(table, "pub(crate) struct {structure} {{").unwrap();
-        for Field { name, of_type, default, .. } in &all {
-            writeln!(table, "    /// `{}`, by default {default}.", name.to_uppercase()).unwrap();
-            writeln!(table, "    pub {name}: {of_type},").unwrap();
-        }
-        writeln!(table, "}}\n").unwrap();
-    }
-    if !all.iter().all(|field| field.is_zero) {
-        writeln!(table, "impl Default for {structure} {{\n    fn default() -> Self {{").unwrap();
-        writeln!(table, "        Self {{").unwrap();
-        for Field { name, default, .. } in &all {
-            writeln!(table, "            {name}: {default},").unwrap();
-        }
-        writeln!(table, "        }}\n    }}\n}}\n").unwrap();
-    }
-    let given = if all.is_empty() { "_" } else { "of" };
-    writeln!(table, "impl From<{structure}> for Specialised {{").unwrap();
-    writeln!(table, "    fn from({given}: {structure}) -> Self {{").unwrap();
-    writeln!(table, "        Self {{ shader: &{shader}, constants: vec![").unwrap();
-    for Field { word, .. } in &all {
-        writeln!(table, "            {word},").unwrap();
-    }
-    writeln!(table, "        ] }}\n    }}\n}}\n").unwrap();
-}
-
-/// A specialisation constant as a field of Rust.
-struct Field {
-    name: String,
-    of_type: &'static str,
-    default: String,
-    is_zero: bool,
-    /// The word passed to Vulkan.
-    word: String,
-}
-
-impl Field {
-    fn of(constant: &Constant) -> Self {
-        let name = constant.name.to_lowercase();
-        let (of_type, default, is_zero, word) = match constant.default {
-            reflect::Default::Bool(is) => {
-                ("bool", is.to_string(), !is, format!("u32::from(of.{name})"))
-            }
-            reflect::Default::Int(n) => ("i32", n.to_string(), n == 0, format!("of.{name} as u32")),
-            reflect::Default::Uint(n) => ("u32", n.to_string(), n == 0, format!("of.{name}")),
-            reflect::Default::Float(x) => {
-                ("f32", format!("{x:?}"), x == 0.0, format!("of.{name}.to_bits()"))
-            }
+        let (of_type, default) = match constant.default {
+            reflect::Default::Bool(is) => ("bool", is.to_string()),
+            reflect::Default::Int(n) => ("i32", n.to_string()),
+            reflect::Default::Uint(n) => ("u32", n.to_string()),
+            reflect::Default::Float(x) => ("f32", format!("{x:?}")),
         };
-        Self { name, of_type, default, is_zero, word }
+        writeln!(table, "        {id} {name}: {of_type} = {default},").unwrap();
     }
+    writeln!(table, "    }}\n}}\n").unwrap();
 }
 
+/// The `layouts!` of src/graph/shaders.rs.
 fn add_layouts(table: &mut String, layouts: &Layouts) {
-    writeln!(table, "/// Byte offsets of struct members as the shaders see them.").unwrap();
-    writeln!(table, "pub mod offsets {{").unwrap();
-    for (structure, members) in layouts {
-        writeln!(table, "    /// `{structure}`.\n    pub mod {} {{", snake(structure)).unwrap();
-        for (member, offset) in members {
-            writeln!(
-                table,
-                "        /// Bytes.\n        pub const {}: usize = {offset};",
-                member.to_uppercase()
-            )
-            .unwrap();
-        }
+    writeln!(table, "layouts! {{").unwrap();
+    for (structure, members) in &layouts.pushes {
+        writeln!(table, "    push {structure} {} {{", snake(structure)).unwrap();
+        let fields = members.iter().map(|reflect::Member { offset, name, of_type }| {
+            format!("{offset} {} {}: {of_type},", name.to_uppercase(), name.to_lowercase())
+        });
+        add_wrapped(table, fields);
+        writeln!(table, "    }}").unwrap();
+    }
+    for (structure, members) in &layouts.others {
+        writeln!(table, "    other {structure} {} {{", snake(structure)).unwrap();
+        let offsets = members.iter().map(|(name, at)| format!("{at} {},", name.to_uppercase()));
+        add_wrapped(table, offsets);
         writeln!(table, "    }}").unwrap();
     }
     writeln!(table, "}}").unwrap();
+}
+
+/// Parts on lines of at most 100 columns.
+fn add_wrapped(table: &mut String, parts: impl Iterator<Item = String>) {
+    let mut column = 0;
+    for part in parts {
+        if column == 0 || column + 1 + part.len() > 100 {
+            table.push_str(if column == 0 { "       " } else { "\n       " });
+            column = 7;
+        }
+        write!(table, " {part}").unwrap();
+        column += 1 + part.len();
+    }
+    table.push('\n');
 }
 
 pub(crate) fn snake(name: &str) -> String {

@@ -36,21 +36,40 @@ pub(crate) struct Reflection {
     pub(crate) constants: BTreeMap<u32, Constant>,
 }
 
-/// Byte offsets by structure and member, of all shaders.
-pub(crate) type Layouts = BTreeMap<String, BTreeMap<String, u32>>;
+/// One member of a struct of push constants.
+#[derive(PartialEq)]
+pub(crate) struct Member {
+    pub offset: u32,
+    pub name: String,
+    /// As Rust text.
+    pub of_type: String,
+}
 
-/// Reflects one shader and adds the offsets of its structs. Structs of one name must have one layout in all
+/// Structs of all shaders by name.
+#[derive(Default)]
+pub(crate) struct Layouts {
+    /// Push constants, and the structs in them.
+    pub pushes: BTreeMap<String, Vec<Member>>,
+    /// Byte offsets by member, of all others.
+    pub others: BTreeMap<String, BTreeMap<String, u32>>,
+}
+
+/// Reflects one shader and adds the layouts of its structs. Structs of one name must have one layout in all
 /// shaders.
 pub(crate) fn reflect(name: &str, words: &[u32], layouts: &mut Layouts) -> Reflection {
     let module = rspirv::dr::load_words(words).unwrap_or_else(|e| fail(&format!("{name}: {e:?}")));
     let d = Decorations { module: &module };
-    let (push_bytes, bindings) = variables(name, &d);
+    let (push_bytes, bindings) = variables(name, &d, layouts);
     add_layouts(name, &d, layouts);
     Reflection { push_bytes, bindings, constants: constants(name, &d) }
 }
 
-/// Size of the push constants, and the bindings by number.
-fn variables(name: &str, d: &Decorations<'_>) -> (u32, BTreeMap<u32, Binding>) {
+/// Size of the push constants, whose structs it adds, and the bindings by number.
+fn variables(
+    name: &str,
+    d: &Decorations<'_>,
+    layouts: &mut Layouts,
+) -> (u32, BTreeMap<u32, Binding>) {
     let mut bindings = BTreeMap::new();
     let mut push_bytes = 0;
     for variable in &d.module.types_global_values {
@@ -62,11 +81,7 @@ fn variables(name: &str, d: &Decorations<'_>) -> (u32, BTreeMap<u32, Binding>) {
         let Operand::StorageClass(class) = pointer.operands[0] else { continue };
         let pointee = d.ty(id(&pointer.operands[1]));
         if class == StorageClass::PushConstant {
-            let structure = pointee.result_id.expect("a struct has an id");
-            push_bytes = pointee.operands.iter().enumerate().fold(0, |end, (m, member)| {
-                let offset = d.of_member(structure, m as u32, Decoration::Offset).unwrap_or(0);
-                end.max(offset + size_of_type(d, id(member)))
-            });
+            (_, push_bytes) = push_type(name, d, id(&pointer.operands[1]), layouts);
             continue;
         }
         let Some(binding) = d.of(target, Decoration::Binding) else { continue };
@@ -112,6 +127,39 @@ fn variables(name: &str, d: &Decorations<'_>) -> (u32, BTreeMap<u32, Binding>) {
     (push_bytes, bindings)
 }
 
+/// Rust type and size of push constants or of a part of them. Adds the structs.
+fn push_type(name: &str, d: &Decorations<'_>, target: u32, layouts: &mut Layouts) -> (String, u32) {
+    let ty = d.ty(target);
+    let mut array = |count: u32| {
+        let (element, bytes) = push_type(name, d, id(&ty.operands[0]), layouts);
+        (format!("[{element}; {count}]"), bytes * count)
+    };
+    match ty.class.opcode {
+        Op::TypeFloat => ("f32".to_owned(), 4),
+        Op::TypeInt if literal(&ty.operands[1]) == 1 => ("i32".to_owned(), 4),
+        Op::TypeInt => ("u32".to_owned(), 4),
+        Op::TypeVector => array(literal(&ty.operands[1])),
+        Op::TypeArray => array(literal(&d.ty(id(&ty.operands[1])).operands[0])),
+        Op::TypeStruct => {
+            let structure = d.name(target);
+            let mut bytes = 0;
+            let member = |(m, operand)| {
+                let (of_type, size) = push_type(name, d, id(operand), layouts);
+                let offset = d.of_member(target, m as u32, Decoration::Offset).unwrap_or(0);
+                bytes = offset + size;
+                Member { offset, name: d.member_name(target, m as u32), of_type }
+            };
+            let members: Vec<Member> = ty.operands.iter().enumerate().map(member).collect();
+            if layouts.pushes.get(&structure).is_some_and(|known| *known != members) {
+                fail(&format!("{name}: {structure} has another layout than in an earlier shader"));
+            }
+            layouts.pushes.insert(structure.clone(), members);
+            (structure, bytes)
+        }
+        other => fail(&format!("{name}: a push constant holds a {other:?}")),
+    }
+}
+
 fn add_layouts(name: &str, d: &Decorations<'_>, layouts: &mut Layouts) {
     for structure in &d.module.types_global_values {
         if structure.class.opcode != Op::TypeStruct {
@@ -119,14 +167,15 @@ fn add_layouts(name: &str, d: &Decorations<'_>, layouts: &mut Layouts) {
         }
         let target = structure.result_id.expect("a struct has an id");
         let type_name = d.name(target);
-        if type_name.is_empty() || type_name.starts_with("gl_") {
+        let is_push = layouts.pushes.contains_key(&type_name);
+        if type_name.is_empty() || type_name.starts_with("gl_") || is_push {
             continue;
         }
         for m in 0..structure.operands.len() as u32 {
             let Some(offset) = d.of_member(target, m, Decoration::Offset) else { continue };
             let member = d.member_name(target, m);
             let known =
-                layouts.entry(type_name.clone()).or_default().insert(member.clone(), offset);
+                layouts.others.entry(type_name.clone()).or_default().insert(member.clone(), offset);
             if known.is_some_and(|k| k != offset) {
                 fail(&format!(
                     "{name}: {type_name}.{member} has another offset than in an earlier shader"
@@ -259,14 +308,5 @@ impl Decorations<'_> {
             .iter()
             .find(|i| i.result_id == Some(target))
             .unwrap_or_else(|| fail("SPIR-V: a type is missing"))
-    }
-}
-
-fn size_of_type(d: &Decorations, target: u32) -> u32 {
-    let ty = d.ty(target);
-    match ty.class.opcode {
-        Op::TypeInt | Op::TypeFloat => literal(&ty.operands[0]) / 8,
-        Op::TypeVector => size_of_type(d, id(&ty.operands[0])) * literal(&ty.operands[1]),
-        other => fail(&format!("a push constant holds a {other:?}: scalars and vectors only")),
     }
 }

@@ -22,15 +22,10 @@ layout(binding = 1) uniform texture2D maxima;
 layout(binding = 2) uniform textureBuffer directions;
 layout(binding = 3, r32ui) uniform writeonly uimage2DArray facet_mask;
 
+#include "rays/land.glsl"
+
 layout(push_constant) uniform FacetMaskPush {
-    int cols;
-    int rows;
-    int cells_x;
-    int cells_y;
-    int padded_rows;
-    int top_level;
-    float cell_x_m;
-    float cell_y_m;
+    LandPush land;
     float highest_m;
     int first_layer;
     int first_direction;  // texel in directions
@@ -42,8 +37,8 @@ layout(push_constant) uniform FacetMaskPush {
 void main() {
     ivec2 at = ivec2(gl_GlobalInvocationID.xy);
     int layer = first_layer + int(gl_WorkGroupID.z);
-    bool alive = at.x < cells_x && at.y < cells_y;
-    ivec2 here = min(at, ivec2(cells_x, cells_y) - 1);
+    bool alive = at.x < land.cells_x && at.y < land.cells_y;
+    ivec2 here = min(at, ivec2(land.cells_x, land.cells_y) - 1);
     vec4 corners = texelFetch(cells, here, 0);
     uint word = 0u;
     for (int bit = 0; bit < 2 * FACET_DIRECTIONS; bit++) {
@@ -54,7 +49,7 @@ void main() {
         vec2 middle = is_south ? vec2(1.0, 2.0) / 3.0 : vec2(2.0, 1.0) / 3.0;
         float third = is_south ? corners.z : corners.y;
         float own = third + ((corners.x - third) + (corners.w - third)) / 3.0;
-        Met met = trace(ray_from(here, middle, own, e, vec2(cell_x_m, cell_y_m)), 1e30, counts);
+        Met met = trace(ray_from(here, middle, own, e, vec2(land.cell_x_m, land.cell_y_m)), 1e30, counts);
         word |= counts && met.what == RAY_FREE ? 1u << bit : 0u;
         word |= counts && met.what == RAY_LOST ? FACET_LOST : 0u;
     }

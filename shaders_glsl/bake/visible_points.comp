@@ -25,15 +25,10 @@ layout(binding = 2) uniform texture2D ground;
 layout(binding = 3) uniform textureBuffer directions;
 layout(binding = 4, r32ui) uniform writeonly uimage2DArray visible_points;
 
+#include "rays/land.glsl"
+
 layout(push_constant) uniform VisiblePointsPush {
-    int cols;
-    int rows;
-    int cells_x;
-    int cells_y;
-    int padded_rows;
-    int top_level;
-    float cell_x_m;
-    float cell_y_m;
+    LandPush land;
     float highest_m;
     int first_layer;      // of the image
     int first_direction;  // first direction of the image: texel in directions
@@ -44,10 +39,10 @@ layout(push_constant) uniform VisiblePointsPush {
 
 uint visible_along(int i, ivec2 here, float own, bool alive) {
     vec3 e = texelFetch(directions, min(i, end_direction - 1)).xyz;
-    Met met = trace(ray_from(here, vec2(0.0), own, e, vec2(cell_x_m, cell_y_m)), 1e30, alive && i < end_direction);
-    ivec2 size = ivec2(cols, rows);
+    Met met = trace(ray_from(here, vec2(0.0), own, e, vec2(land.cell_x_m, land.cell_y_m)), 1e30, alive && i < end_direction);
+    ivec2 size = ivec2(land.cols, land.rows);
     ivec2 near = met.cell + ivec2(floor(met.offset + 0.5));
-    near = BORDER == BORDER_PERIODIC ? near - ivec2(near.x >= cols ? cols : 0, near.y >= rows ? rows : 0)
+    near = BORDER == BORDER_PERIODIC ? near - ivec2(near.x >= land.cols ? land.cols : 0, near.y >= land.rows ? land.rows : 0)
                                      : min(near, size - 1);
     uint point = met.what == RAY_HIT ? uint(near.y << 16 | near.x) : POINT_SKY;
     point = met.what == RAY_GROUND ? POINT_GROUND : point;
@@ -57,8 +52,8 @@ uint visible_along(int i, ivec2 here, float own, bool alive) {
 void main() {
     ivec2 at = ivec2(gl_GlobalInvocationID.xy);
     int layer = first_layer + int(gl_WorkGroupID.z);
-    bool alive = at.x < cols && at.y < rows;
-    ivec2 here = min(at, ivec2(cols, rows) - 1);
+    bool alive = at.x < land.cols && at.y < land.rows;
+    ivec2 here = min(at, ivec2(land.cols, land.rows) - 1);
     float own = texelFetch(ground, here, 0).x;
     uint word = 0u;
     for (int k = 0; k < (SMALL ? 2 : 1); k++) {

@@ -30,15 +30,10 @@ layout(binding = 2) uniform texture2D ground;
 layout(binding = 3) uniform texture2D exit_radiance;
 layout(binding = 4, rgba32f) uniform image2D bounce_sum;
 
+#include "rays/land.glsl"
+
 layout(push_constant) uniform BounceMarchPush {
-    int cols;
-    int rows;
-    int cells_x;
-    int cells_y;
-    int padded_rows;
-    int top_level;
-    float cell_x_m;
-    float cell_y_m;
+    LandPush land;
     int azimuths;       // in the circle, at the middles of equal parts
     int first_azimuth;  // of this dispatch
     int last_azimuth;   // exclusive
@@ -105,8 +100,8 @@ void add_piece(vec2 begin, vec2 end, vec2 place, vec2 advance) {
 
 // March over the surface as far as any of it may be visible.
 void march(Ray ray, bool going) {
-    ivec2 cells_of = ivec2(cells_x, cells_y);
-    float highest = texelFetch(maxima, ivec2(0, level_top(top_level, padded_rows)), 0).x - ray.own;
+    ivec2 cells_of = ivec2(land.cells_x, land.cells_y);
+    float highest = texelFetch(maxima, ivec2(0, level_top(land.top_level, land.padded_rows)), 0).x - ray.own;
     float step_m = 1.0 / ray.scale;
     Walk walk = walk_from(ray);
     going = going && !walk.leaves;
@@ -119,7 +114,7 @@ void march(Ray ray, bool going) {
         ivec2 fetched = clamp(walk.at, ivec2(0), cells_of - 1);
         vec4 corners = texelFetch(cells, fetched, 0);
         int shown = max(walk.level, 1);
-        float top = texelFetch(maxima, (fetched >> (LEVEL_BITS * shown)) + ivec2(0, level_top(shown, padded_rows)), 0).x - ray.own;
+        float top = texelFetch(maxima, (fetched >> (LEVEL_BITS * shown)) + ivec2(0, level_top(shown, land.padded_rows)), 0).x - ray.own;
         float rise = reached * step_m;
         bool is_cell = walk.level == 0;
         bool clear = is_cell || min(walk.t * rise, block.ahead * rise) >= top;
@@ -146,7 +141,7 @@ void march(Ray ray, bool going) {
         float steepest = is_split ? split_slope : exit_slope;
         bool opens = going && is_cell && block.ahead > walk.t && steepest > reached;
         if (subgroupAny(opens)) {
-            ivec2 size = ivec2(cols, rows);
+            ivec2 size = ivec2(land.cols, land.rows);
             ivec2 next = fetched + 1;
             next *= ivec2(lessThan(next, size));
             corners_of[0] = radiance_at(fetched);
@@ -162,7 +157,7 @@ void march(Ray ray, bool going) {
             indirect = opens ? indirect : indirect_before;
             last_radiance = opens ? last_radiance : last_before;
         }
-        walk_on(walk, ray, block, going, clear, top_level);
+        walk_on(walk, ray, block, going, clear, land.top_level);
         bool is_over = reached >= 0.0 && walk.t > 0.0 && walk.t * reached * step_m >= highest;
         going = going && !walk.leaves && !is_over && (BORDER != BORDER_PERIODIC || walk.t < REACH_CELLS);
     }
@@ -170,9 +165,9 @@ void march(Ray ray, bool going) {
 
 void main() {
     ivec2 at = ivec2(gl_GlobalInvocationID.xy);
-    ivec2 nodes = ivec2(node_count(cols, NODE_STRIDE), node_count(rows, NODE_STRIDE));
+    ivec2 nodes = ivec2(node_count(land.cols, NODE_STRIDE), node_count(land.rows, NODE_STRIDE));
     bool exists = at.x < nodes.x && at.y < nodes.y;
-    ivec2 here = min(at * NODE_STRIDE, ivec2(cols, rows) - 1);
+    ivec2 here = min(at * NODE_STRIDE, ivec2(land.cols, land.rows) - 1);
     vec4 own = texelFetch(ground, here, 0);
     float up = inversesqrt(1.0 + own.y * own.y + own.z * own.z);
     bool is_line = THIN_ROWS || THIN_COLS;
@@ -192,7 +187,7 @@ void main() {
         reached = own_slope;
         indirect = vec3(0.0);
         last_radiance = vec3(0.0);
-        march(ray_from(here, vec2(0.0), own.x, vec3(e, 0.0), vec2(cell_x_m, cell_y_m)), exists && !is_line);
+        march(ray_from(here, vec2(0.0), own.x, vec3(e, 0.0), vec2(land.cell_x_m, land.cell_y_m)), exists && !is_line);
         if (BORDER == BORDER_PERIODIC) {
             // A ray without a hit up to horizontal continues over the same terrain forever.
             float rest = max(light_between(facing, direction_of(min(reached, 0.0)), vec2(1.0, 0.0)), 0.0);

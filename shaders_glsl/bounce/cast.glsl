@@ -2,10 +2,28 @@
 // distances that grow by 2^(1/k) and are rounded to whole march steps. The knots and midpoints of the B-spline over
 // their elevations contribute light (Nowrouzezahrai & Snyder 2009, eq. 6-17).
 //
-// The including shader declares the constants PERIODIC, STACK, LEVELS, SHADE_LEVELS and GREY, the images heights,
-// height_levels, level_table, height_stack, exit_radiance, shade_levels, shade_table and shade_stack, and the numbers
-// cols, rows, warm_up_cols, warm_up_rows, fine_samples, width_shift, growth, shade_fine, shade_shift, step_shade and
-// step_height. It defines cast_light.
+// The including shader declares the constants PERIODIC, STACK, LEVELS, SHADE_LEVELS and GREY, and the images heights,
+// height_levels, level_table, height_stack, exit_radiance, shade_levels, shade_table and shade_stack. It defines
+// cast_light.
+layout(push_constant) uniform GatherPush {
+    int cols;
+    int rows;
+    float cell_x_m;
+    float cell_y_m;
+    int azimuths;       // in the circle, at the middles of equal parts
+    int first_azimuth;  // of this dispatch
+    int last_azimuth;   // exclusive
+    int warm_up_cols;   // grid points marched beyond the field, along columns: whole periods, or 0
+    int warm_up_rows;
+    int fine_samples;   // lookups in the field itself
+    int width_shift;
+    float growth;       // of distances: 2^(1/k)
+    int shade_fine;     // the same for radiance
+    int shade_shift;
+    int step_shade;     // levels per octave of radiance, and of heights
+    int step_height;
+};
+
 #include "shared/angle.glsl"
 #include "bounce/cosine.glsl"
 #include "shared/spline.glsl"

@@ -16,21 +16,6 @@ layout(binding = 0) uniform texture2D exit_radiance;
 layout(binding = 1, rgba32f) uniform image2D shade_levels;
 layout(binding = 2, rgba32ui) uniform writeonly uimage2D shade_table;
 
-layout(push_constant) uniform ShadeReducePush {
-    int cols;
-    int rows;
-    int first;
-    int source_cols;
-    int source_rows;
-    int source_first;
-    float ratio_x;  // source texels per texel
-    float ratio_y;
-    float per_grid_point_x;
-    float per_grid_point_y;
-    int level;
-    int width_shift;
-};
-
 const bool HOLDS_ENDS = true;
 #define TEXEL vec4
 #include "shared/reduce.glsl"

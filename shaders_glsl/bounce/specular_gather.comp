@@ -39,25 +39,6 @@ layout(binding = 10) uniform texture2DArray exit_vectors;
 layout(binding = 11) uniform texture2DArray vector_levels;
 layout(binding = 12, rgba32f) uniform image2DArray arriving;
 
-layout(push_constant) uniform SpecularGatherPush {
-    int cols;
-    int rows;
-    float cell_x_m;
-    float cell_y_m;
-    int azimuths;       // in the circle, at the middles of equal parts
-    int first_azimuth;  // of this dispatch
-    int last_azimuth;   // exclusive
-    int warm_up_cols;   // grid points marched beyond the field, along columns: whole periods, or 0
-    int warm_up_rows;
-    int fine_samples;   // lookups in the field itself
-    int width_shift;
-    float growth;       // of distances: 2^(1/k)
-    int shade_fine;     // the same for radiance
-    int shade_shift;
-    int step_shade;     // levels per octave of radiance, and of heights
-    int step_height;
-};
-
 #include "bounce/cast.glsl"
 
 const int COUNT = ORDER * ORDER;

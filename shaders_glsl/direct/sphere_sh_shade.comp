@@ -49,15 +49,10 @@ layout(binding = 6) uniform texture2D height_levels;
 layout(binding = 7) uniform utexture2D level_table;
 layout(binding = 8) uniform texture2DArray height_stack;
 
+#include "rays/land.glsl"
+
 layout(push_constant) uniform SphereShShadePush {
-    int cols;
-    int rows;
-    int cells_x;
-    int cells_y;
-    int padded_rows;
-    int top_level;
-    float cell_x_m;
-    float cell_y_m;
+    LandPush land;
     ivec2 first;       // as in sphere_shade
     ivec2 base;
     vec2 offset;
@@ -202,7 +197,7 @@ float own_slope(vec2 one) {
 // Slope of the lowest visible direction up to a distance, ignoring the grid point's own plane.
 float free_above(vec2 one, float within_m, bool alive) {
     vec2 e = turned(towards, one);
-    Ray ray = ray_from(here, vec2(0.0), own.x, vec3(e, 0.0), vec2(cell_x_m, cell_y_m));
+    Ray ray = ray_from(here, vec2(0.0), own.x, vec3(e, 0.0), vec2(land.cell_x_m, land.cell_y_m));
     if (BY_PYRAMID) {
         return pyramid_within(here, ray, within_m, alive);
     }
@@ -270,11 +265,11 @@ float product() {
 
 void main() {
     ivec2 at = first + ivec2(gl_GlobalInvocationID.xy);
-    bool exists = at.x < cols && at.y < rows;
-    here = min(at, ivec2(cols, rows) - 1);
+    bool exists = at.x < land.cols && at.y < land.rows;
+    here = min(at, ivec2(land.cols, land.rows) - 1);
     own = texelFetch(ground, here, 0);
     vec2 cells_to = vec2(base - here) + offset;
-    vec2 flat_m = vec2(cells_to.x * cell_x_m, -cells_to.y * cell_y_m);
+    vec2 flat_m = vec2(cells_to.x * land.cell_x_m, -cells_to.y * land.cell_y_m);
     float up = up_m - own.x;
     float away = length(flat_m);
     float distance_m = length(vec2(away, up));

@@ -26,15 +26,10 @@ layout(binding = 1) uniform texture2D maxima;
 layout(binding = 2) uniform texture2D ground;
 layout(binding = 3, rgba32f) uniform image2D sphere_sum;
 
+#include "rays/land.glsl"
+
 layout(push_constant) uniform SphereShadePush {
-    int cols;
-    int rows;
-    int cells_x;
-    int cells_y;
-    int padded_rows;
-    int top_level;
-    float cell_x_m;
-    float cell_y_m;
+    LandPush land;
     ivec2 first;       // grid point of the dispatch: column, row
     ivec2 base;        // of the sphere's centre: whole cells east of the first column, south of the first row
     vec2 offset;       // the remaining fraction of a cell
@@ -45,6 +40,7 @@ layout(push_constant) uniform SphereShadePush {
     int slices_around; // for one that surrounds it; wide ones use the same count per radian
     int first_slice;
     int last_slice;    // exclusive
+    int pads[3];
     vec4 radiance;     // w: 1 where the sum begins
 };
 
@@ -134,8 +130,8 @@ void add_piece(vec2 begin, vec2 end) {
 
 // March over the surface from the grid point to the disc's far end.
 void march(Ray ray, bool going) {
-    ivec2 cells_of = ivec2(cells_x, cells_y);
-    float highest = texelFetch(maxima, ivec2(0, level_top(top_level, padded_rows)), 0).x - ray.own;
+    ivec2 cells_of = ivec2(land.cells_x, land.cells_y);
+    float highest = texelFetch(maxima, ivec2(0, level_top(land.top_level, land.padded_rows)), 0).x - ray.own;
     float step_m = 1.0 / ray.scale;
     float near_m = tangent2 > 0.0 ? disc.x - disc_radius : -1.0;
     float t_end = (disc.x + disc_radius) * ray.scale;
@@ -153,7 +149,7 @@ void march(Ray ray, bool going) {
         ivec2 fetched = clamp(walk.at, ivec2(0), cells_of - 1);
         vec4 corners = texelFetch(cells, fetched, 0);
         int shown = max(walk.level, 1);
-        float top = texelFetch(maxima, (fetched >> (LEVEL_BITS * shown)) + ivec2(0, level_top(shown, padded_rows)), 0).x - ray.own;
+        float top = texelFetch(maxima, (fetched >> (LEVEL_BITS * shown)) + ivec2(0, level_top(shown, land.padded_rows)), 0).x - ray.own;
         float rise = reached * step_m;
         bool is_cell = walk.level == 0;
         bool clear = is_cell || min(walk.t * rise, block.ahead * rise) >= top;
@@ -185,7 +181,7 @@ void march(Ray ray, bool going) {
             reached = reached_before;
         }
         reached = has_piece ? max(reached, steepest) : reached;
-        walk_on(walk, ray, block, going, clear, top_level);
+        walk_on(walk, ray, block, going, clear, land.top_level);
         bool is_over = reached >= high_slope || (reached > 0.0 && walk.t * reached * step_m >= highest);
         going = going && !walk.leaves && walk.t < t_end && !is_over;
     }
@@ -225,7 +221,7 @@ float slice_light(ivec2 here, vec4 own, vec2 towards, float away, float up, vec2
     flat_part = -own_slope * normal_up;
     reached = max(low_slope, own_slope);
     visible_light = 0.0;
-    march(ray_from(here, vec2(0.0), own.x, vec3(e, 0.0), vec2(cell_x_m, cell_y_m)), alive && reached < high_slope);
+    march(ray_from(here, vec2(0.0), own.x, vec3(e, 0.0), vec2(land.cell_x_m, land.cell_y_m)), alive && reached < high_slope);
     vec2 visible_from = from_axis(reached);
     vec2 lowest = reached > low_slope ? visible_from : low;
     float rest = light_between(lowest, high);
@@ -235,11 +231,11 @@ float slice_light(ivec2 here, vec4 own, vec2 towards, float away, float up, vec2
 
 void main() {
     ivec2 at = first + ivec2(gl_GlobalInvocationID.xy);
-    bool exists = at.x < cols && at.y < rows;
-    ivec2 here = min(at, ivec2(cols, rows) - 1);
+    bool exists = at.x < land.cols && at.y < land.rows;
+    ivec2 here = min(at, ivec2(land.cols, land.rows) - 1);
     vec4 own = texelFetch(ground, here, 0);
     vec2 cells_to = vec2(base - here) + offset;
-    vec2 flat_m = vec2(cells_to.x * cell_x_m, -cells_to.y * cell_y_m);
+    vec2 flat_m = vec2(cells_to.x * land.cell_x_m, -cells_to.y * land.cell_y_m);
     float up = up_m - own.x;
     float away = length(flat_m);
     float distance_m = length(vec2(away, up));

@@ -15,21 +15,6 @@ layout(binding = 0) uniform texture2D heights;
 layout(binding = 1, r32f) uniform image2D height_levels;
 layout(binding = 2, rgba32ui) uniform writeonly uimage2D level_table;
 
-layout(push_constant) uniform HeightReducePush {
-    int cols;
-    int rows;
-    int first;
-    int source_cols;
-    int source_rows;
-    int source_first;
-    float ratio_x;  // source texels per texel
-    float ratio_y;
-    float per_grid_point_x;
-    float per_grid_point_y;
-    int level;
-    int width_shift;
-};
-
 const bool HOLDS_ENDS = false;
 #define TEXEL float
 #include "shared/reduce.glsl"

@@ -1,5 +1,5 @@
 // First hit of a ray on the triangulated surface. Needs bindings cells and maxima, constants BORDER, THIN_ROWS,
-// THIN_COLS, MOST_STEPS, and push constants cells_x, cells_y, padded_rows, top_level, highest_m before it.
+// THIN_COLS, MOST_STEPS, and push constants land, highest_m before it.
 //
 // The hit lies before the first crossing (see walk.glsl) at which the surface is not below the ray. The start is
 // excluded: only crossings at t > 0 count. If the surface rises faster than the ray within the very first triangle,
@@ -22,7 +22,7 @@ struct Met {
 
 // First hit of a ray before t_end.
 Met trace(Ray ray, float t_end, bool going) {
-    ivec2 cells_of = ivec2(cells_x, cells_y);
+    ivec2 cells_of = ivec2(land.cells_x, land.cells_y);
     Walk walk = walk_from(ray);
     // From here on a rising ray is above everything.
     float t_over = ray.rise > 0.0 ? max(highest_m - ray.own, 0.0) / ray.rise : 1e30;
@@ -40,7 +40,7 @@ Met trace(Ray ray, float t_end, bool going) {
         ivec2 fetched = clamp(walk.at, ivec2(0), cells_of - 1);
         vec4 corners = texelFetch(cells, fetched, 0);
         int shown = max(walk.level, 1);
-        float top = texelFetch(maxima, (fetched >> (LEVEL_BITS * shown)) + ivec2(0, level_top(shown, padded_rows)), 0).x - ray.own;
+        float top = texelFetch(maxima, (fetched >> (LEVEL_BITS * shown)) + ivec2(0, level_top(shown, land.padded_rows)), 0).x - ray.own;
         // The cell: its diagonal and its far edge.
         vec2 from = ray.offset + vec2(ray.base - walk.cell);
         vec2 exit = clamp(from + ahead * ray.advance, 0.0, 1.0);
@@ -56,7 +56,7 @@ Met trace(Ray ray, float t_end, bool going) {
         hit = hit || hits;
         t_next = going ? ahead : t_next;
         going = going && !hits;
-        walk_on(walk, ray, block, going, clear, top_level);
+        walk_on(walk, ray, block, going, clear, land.top_level);
         going = going && !walk.leaves && walk.t < t_end;
         // All lanes leave together, as in horizon_sweep; tested last, as llvmpipe completes an iteration.
         if (!subgroupAny(going)) {

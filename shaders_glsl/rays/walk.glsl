@@ -1,5 +1,5 @@
 // Traversal of the field's cells by a ray, with block skipping. Needs constants BORDER, THIN_ROWS, THIN_COLS and push
-// constants cells_x, cells_y before it.
+// constants `land` before it.
 //
 // A ray starts at a point of the surface: cell `base` (within the field), `offset` in it (0 .. 1 towards east and
 // south), height `own`. Coordinates are relative to the start, so short rays stay exact however large the field.
@@ -57,7 +57,7 @@ struct Block {
 };
 
 Walk walk_from(Ray ray) {
-    ivec2 cells_of = ivec2(cells_x, cells_y);
+    ivec2 cells_of = ivec2(land.cells_x, land.cells_y);
     bvec2 onward = greaterThanEqual(ray.advance, vec2(0.0));
     // On a grid line a ray belongs to the cell that it enters; along the last line, to the last cell.
     ivec2 cell = ray.base;
@@ -79,7 +79,7 @@ Walk walk_from(Ray ray) {
 }
 
 Block block_of(Walk walk, Ray ray) {
-    ivec2 cells_of = ivec2(cells_x, cells_y);
+    ivec2 cells_of = ivec2(land.cells_x, land.cells_y);
     bvec2 onward = greaterThanEqual(ray.advance, vec2(0.0));
     bvec2 along_line = equal(ray.advance, vec2(0.0));
     vec2 inverse = mix(1.0 / ray.advance, vec2(1e30), along_line);
@@ -97,7 +97,7 @@ Block block_of(Walk walk, Ray ray) {
 // Steps to the next block of the level, exactly across the edge and never back along the other axis, if this one is
 // `clear`. Goes to a coarser level on entering a coarser block, else to a finer one.
 void walk_on(inout Walk walk, Ray ray, Block block, bool going, bool clear, int top_level) {
-    ivec2 cells_of = ivec2(cells_x, cells_y);
+    ivec2 cells_of = ivec2(land.cells_x, land.cells_y);
     bvec2 onward = greaterThanEqual(ray.advance, vec2(0.0));
     int bits = LEVEL_BITS * walk.level;
     ivec2 low = block.low - block.wrap;

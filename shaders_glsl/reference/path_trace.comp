@@ -63,15 +63,10 @@ layout(binding = 13) uniform texture2D phong_map;
 // Column and row of the grid points of a list, -1 past its end. The sums and images have its size.
 layout(binding = 14) uniform texture2D places;
 
+#include "rays/land.glsl"
+
 layout(push_constant) uniform PathTracePush {
-    int cols;
-    int rows;
-    int cells_x;
-    int cells_y;
-    int padded_rows;
-    int top_level;
-    float cell_x_m;
-    float cell_y_m;
+    LandPush land;
     float highest_m;
     float rotation_turns;  // of the environment
     float exponent;        // Phong exponent, where it is constant
@@ -156,12 +151,12 @@ Place place_of(Met met, vec3 e) {
     place.base = met.cell;
     place.offset = met.offset;
     place.own = corners.x + met.offset.x * east + met.offset.y * south;
-    place.normal = normalize(vec3(-east / cell_x_m, south / cell_y_m, 1.0));
+    place.normal = normalize(vec3(-east / land.cell_x_m, south / land.cell_y_m, 1.0));
     place.albedo = albedo.rgb;
     place.specular = vec2(exponent, specular_scale);
     place.mirror = e - 2.0 * dot(e, place.normal) * place.normal;
     // Cells of a repeating field connect its last grid points to its first.
-    ivec2 next = ivec2((met.cell.x + 1) % cols, (met.cell.y + 1) % rows);
+    ivec2 next = ivec2((met.cell.x + 1) % land.cols, (met.cell.y + 1) % land.rows);
     ivec2 third = met.lower ? ivec2(met.cell.x, next.y) : ivec2(next.x, met.cell.y);
     float far = met.lower ? met.offset.x : met.offset.y;
     float near = 1.0 - (met.lower ? met.offset.y : met.offset.x);
@@ -221,7 +216,7 @@ void points_of(uint index, uvec3 key, uint r, bool is_first, out vec2 u, out vec
 
 // Light of one path that starts at the grid point. Adds to rays: traced and lost counts.
 vec3 path_light(Place place, uint index, uvec3 key, bool alive, inout uvec2 rays) {
-    vec2 cell_m = vec2(cell_x_m, cell_y_m);
+    vec2 cell_m = vec2(land.cell_x_m, land.cell_y_m);
     ivec2 env_size = HAS_ENVIRONMENT ? textureSize(environment, 0) : ivec2(1);
     vec3 light = vec3(0.0);
     vec3 carried = vec3(1.0);
@@ -234,8 +229,8 @@ vec3 path_light(Place place, uint index, uvec3 key, bool alive, inout uvec2 rays
         uint first_ray = uint(bounce * (light_count + 2));
         // At the seam of a repeating field stands its first grid point.
         vec2 from = vec2(place.base) + place.offset;
-        from = BORDER == BORDER_PERIODIC ? mix(from, vec2(0.0), equal(from, vec2(cols, rows))) : from;
-        vec3 centre = vec3(from.x * cell_x_m, (float(rows - 1) - from.y) * cell_y_m, place.own);
+        from = BORDER == BORDER_PERIODIC ? mix(from, vec2(0.0), equal(from, vec2(land.cols, land.rows))) : from;
+        vec3 centre = vec3(from.x * land.cell_x_m, (float(land.rows - 1) - from.y) * land.cell_y_m, place.own);
         if (HAS_LIGHTS) {
             int r = first_light;
             for (; r < last_light; r++) {
@@ -335,7 +330,7 @@ vec3 path_light(Place place, uint index, uvec3 key, bool alive, inout uvec2 rays
 
 void main() {
     ivec2 at = ivec2(gl_GlobalInvocationID.xy) + ivec2(0, first_row);
-    ivec2 size = AT_PLACES ? textureSize(places, 0) : ivec2(cols, rows);
+    ivec2 size = AT_PLACES ? textureSize(places, 0) : ivec2(land.cols, land.rows);
     bool alive = at.x < size.x && at.y < size.y;
     // Texel of the sums, and of the grid point.
     ivec2 slot = min(at, size - 1);
@@ -363,7 +358,7 @@ void main() {
     place.mirror = 2.0 * place.normal.z * place.normal - vec3(0.0, 0.0, 1.0);
     vec4 before = imageLoad(batch_mean, slot);
     // A grid point listed twice gets different paths each time.
-    uvec3 key = uvec3(uint(slot.y * cols + slot.x), uint(before.w), seed);
+    uvec3 key = uvec3(uint(slot.y * land.cols + slot.x), uint(before.w), seed);
     uvec2 rays = uvec2(0u);
     vec3 sum = vec3(0.0);
     int i = first_path;

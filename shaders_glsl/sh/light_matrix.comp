@@ -19,6 +19,7 @@ layout(push_constant) uniform LightMatrixPush {
     int receivers;    // rows of the matrix
     int row_first;    // in constants: weights of four rows per texel, (l, m) after (l, m), m from 0
     int matrix_first; // in constants: entry after entry, four coefficients a texel
+    ivec2 pads;
     vec4 sky;         // radiance of a sky included in this matrix
 };
 

@@ -8,8 +8,8 @@ const float WITHIN_CELLS = 8192.0;
 
 // Of the triangulated surface. The grid point's own triangle occludes at any distance.
 float surface_within(Ray ray, float reach_m, bool going) {
-    ivec2 cells_of = ivec2(cells_x, cells_y);
-    float highest = texelFetch(maxima, ivec2(0, level_top(top_level, padded_rows)), 0).x - ray.own;
+    ivec2 cells_of = ivec2(land.cells_x, land.cells_y);
+    float highest = texelFetch(maxima, ivec2(0, level_top(land.top_level, land.padded_rows)), 0).x - ray.own;
     float step_m = 1.0 / ray.scale;
     float t_end = reach_m * ray.scale;
     if (BORDER == BORDER_PERIODIC) {
@@ -27,7 +27,7 @@ float surface_within(Ray ray, float reach_m, bool going) {
         ivec2 fetched = clamp(walk.at, ivec2(0), cells_of - 1);
         vec4 corners = texelFetch(cells, fetched, 0);
         int shown = max(walk.level, 1);
-        float top = texelFetch(maxima, (fetched >> (LEVEL_BITS * shown)) + ivec2(0, level_top(shown, padded_rows)), 0).x - ray.own;
+        float top = texelFetch(maxima, (fetched >> (LEVEL_BITS * shown)) + ivec2(0, level_top(shown, land.padded_rows)), 0).x - ray.own;
         float rise = reached * step_m;
         bool is_cell = walk.level == 0;
         bool clear = is_cell || min(walk.t * rise, block.ahead * rise) >= top;
@@ -51,7 +51,7 @@ float surface_within(Ray ray, float reach_m, bool going) {
         bool has_exit = in_cell && t_exit > begin;
         reached = has_middle ? max(reached, middle_slope) : reached;
         reached = has_exit ? max(reached, exit_slope) : reached;
-        walk_on(walk, ray, block, going, clear, top_level);
+        walk_on(walk, ray, block, going, clear, land.top_level);
         bool is_over = reached > 0.0 && walk.t * reached * step_m >= highest;
         going = going && !walk.leaves && walk.t < t_end && !is_over;
     }
@@ -62,8 +62,8 @@ float surface_within(Ray ray, float reach_m, bool going) {
 float own_heights[LEVELS + 1];
 
 ivec2 texel_within(ivec2 at) {
-    ivec2 round_ = ivec2(wrapped(at.x, cols), wrapped(at.y, rows));
-    ivec2 held = clamp(at, ivec2(0), ivec2(cols, rows) - 1);
+    ivec2 round_ = ivec2(wrapped(at.x, land.cols), wrapped(at.y, land.rows));
+    ivec2 held = clamp(at, ivec2(0), ivec2(land.cols, land.rows) - 1);
     return PERIODIC ? round_ : held;
 }
 
@@ -129,7 +129,7 @@ void take_within(float angle, float u_end, bool on) {
 // (Nowrouzezahrai & Snyder 2009, eq. 14-17; the thesis, eq. 4.24, 4.25). Includes the two lookups beyond that it
 // depends on, so that it is continuous where the distance passes a lookup's.
 float pyramid_within(ivec2 here, Ray ray, float reach_m, bool going) {
-    vec2 last = vec2(cols - 1, rows - 1) - vec2(here);
+    vec2 last = vec2(land.cols - 1, land.rows - 1) - vec2(here);
     vec2 room = mix(vec2(here), last, greaterThan(ray.advance, vec2(0.0)));
     vec2 steps = mix(room / abs(ray.advance), vec2(1e8), lessThan(abs(ray.advance), vec2(1e-8)));
     // Slightly more, so that rounding does not leave the field a step early.

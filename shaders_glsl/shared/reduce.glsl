@@ -1,8 +1,23 @@
-#include "shared/levels.glsl"
-
 // A level's texel: the mean of four bilinear samples of its source around its position (Nowrouzezahrai & Snyder 2009,
 // section 9: repeated bilinear decimation). The including shader defines TEXEL, declares the constants PERIODIC and
-// HOLDS_ENDS and `source_cols`, `source_rows`, and has `TEXEL source_at(int x, int y)`.
+// HOLDS_ENDS, and has `TEXEL source_at(int x, int y)`.
+
+#include "shared/levels.glsl"
+
+layout(push_constant) uniform ReducePush {
+    int cols;
+    int rows;
+    int first;
+    int source_cols;
+    int source_rows;
+    int source_first;
+    float ratio_x;  // source texels per texel
+    float ratio_y;
+    float per_grid_point_x;
+    float per_grid_point_y;
+    int level;
+    int width_shift;
+};
 
 TEXEL source_at(int x, int y);
 

@@ -1,4 +1,4 @@
-//! The compiled shaders with their bindings and specialisation constants, reflected by `build.rs`.
+//! The compiled shaders with their bindings, specialisation constants and push constants, reflected by `build.rs`.
 
 /// Kind of a binding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -70,6 +70,110 @@ pub(crate) struct Specialised {
     pub constants: Vec<u32>,
 }
 
+/// A type of specialisation constants.
+trait Word {
+    fn word(self) -> u32;
+}
+
+impl Word for u32 {
+    fn word(self) -> u32 {
+        self
+    }
+}
+
+impl Word for i32 {
+    fn word(self) -> u32 {
+        self.cast_unsigned()
+    }
+}
+
+impl Word for bool {
+    fn word(self) -> u32 {
+        u32::from(self)
+    }
+}
+
+impl Word for f32 {
+    fn word(self) -> u32 {
+        self.to_bits()
+    }
+}
+
+/// A shader: its name, bytes of push constants, first word of SPIR-V and their count; each binding; then the struct of its
+/// specialisation constants with their ids and defaults. The host dispatches it only through that struct.
+macro_rules! shader {
+    (
+        $(#[$doc:meta])*
+        $constant:ident: $name:literal, push $push:literal, words $first:literal $count:literal,
+        $($binding:literal $access:ident $variable:literal $kind:ident $({ $($flag:tt)* })?,)*
+        $shape:ident $({ $($id:literal $field:ident: $type:ty = $default:literal,)* })? $(;)?
+    ) => {
+        $(#[$doc])*
+        pub const $constant: Shader = Shader {
+            name: $name,
+            push_bytes: $push,
+            bindings: &[$(Binding {
+                binding: $binding,
+                name: $variable,
+                kind: BindingKind::$kind $({ $($flag)* })?,
+                written: shader!(@$access),
+            },)*],
+            constants: &[$($(Constant { id: $id, name: stringify!($field) },)*)?],
+            words: words_at($first, $count),
+        };
+
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug)]
+        pub(crate) struct $shape { $($(pub $field: $type,)*)? }
+
+        impl Default for $shape {
+            fn default() -> Self {
+                Self { $($($field: $default,)*)? }
+            }
+        }
+
+        impl From<$shape> for Specialised {
+            fn from(_of: $shape) -> Self {
+                Self { shader: &$constant, constants: vec![$($(_of.$field.word(),)*)?] }
+            }
+        }
+    };
+    (@reads) => { false };
+    (@writes) => { true };
+}
+
+/// The structs that shaders share with the host, by member: its byte offset, its name and the field's. Those of push
+/// constants are Rust structs, too, checked to lie in memory as the shaders read them.
+macro_rules! layouts {
+    (
+        $(push $push:ident $push_module:ident {
+            $($at:literal $member:ident $field:ident: $type:ty,)*
+        })*
+        $(other $other:ident $other_module:ident { $($offset:literal $name:ident,)* })*
+    ) => {
+        $(
+            #[repr(C)]
+            #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+            pub(crate) struct $push { $(pub $field: $type,)* }
+
+            const _: () = { $(assert!(std::mem::offset_of!($push, $field) == $at);)* };
+        )*
+
+        /// Byte offsets of struct members as the shaders see them.
+        #[allow(missing_docs, reason = "each is the offset of the member it names")]
+        pub mod offsets {
+            $(
+                #[doc = concat!("`", stringify!($push), "`.")]
+                pub mod $push_module { $(pub const $member: usize = $at;)* }
+            )*
+            $(
+                #[doc = concat!("`", stringify!($other), "`.")]
+                pub mod $other_module { $(pub const $name: usize = $offset;)* }
+            )*
+        }
+    };
+}
+
 /// SPIR-V of all shaders, one after the other.
 static WORDS: [u32; WORD_COUNT] =
     words_of(include_bytes!(concat!(env!("OUT_DIR"), "/shaders.spv")));
@@ -91,22 +195,3 @@ const fn words_at(first: usize, count: usize) -> &'static [u32] {
 }
 
 include!(concat!(env!("OUT_DIR"), "/shaders.rs"));
-
-/// Checks at compile time that a host struct lies in memory as the shaders read it.
-macro_rules! same_layout {
-    ($host:ty, [$($shader:ident),+ $(,)?], { $($fields:tt)+ }) => {
-        $crate::graph::shaders::same_layout!(@each $host, [$($shader),+], { $($fields)+ });
-    };
-    (@each $host:ty, [$($shader:ident),+], $fields:tt) => {
-        $($crate::graph::shaders::same_layout!(@one $host, $shader, $fields);)+
-    };
-    (@one $host:ty, $shader:ident, { $($fields:tt)+ }) => {
-        $crate::graph::shaders::same_layout!($host, $shader, $($fields)+);
-    };
-    ($host:ty, $shader:ident, $($field:ident = $member:ident),+ $(,)?) => {
-        const _: () = {
-            $(assert!(std::mem::offset_of!($host, $field) == $crate::graph::shaders::offsets::$shader::$member);)+
-        };
-    };
-}
-pub(crate) use same_layout;

@@ -1,5 +1,5 @@
 //! Passes, one file per shader: bindings, size, reason and cost of each dispatch. A folder per technique.
-//! This file holds the push constants that several passes share.
+//! This file fills the push constants that several passes share.
 
 pub(crate) mod bake;
 pub(crate) mod bounce;
@@ -35,10 +35,9 @@ pub(crate) use sh::{
 };
 pub(crate) use specular::{bounced_specular, specular_exit, specular_visibility, sun_specular};
 pub use view::map_draw;
-pub(crate) use view::{picture_tone, sky_draw, terrain_draw};
+pub(crate) use view::terrain_draw;
 
-use crate::graph::ResourceId;
-use crate::graph::shaders::same_layout;
+use crate::graph::{ResourceId, shaders};
 use crate::passes::batch::Batch;
 use crate::passes::blocks::Blocks;
 use crate::passes::pyramid::Pyramid;
@@ -52,34 +51,8 @@ pub(crate) struct PhongSource {
     pub map: Option<ResourceId>,
 }
 
-/// Push constants of the passes that add light through a batch's horizons.
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct ShadePush {
-    cols: i32,
-    rows: i32,
-    cell_x_m: f32,
-    cell_y_m: f32,
-    warm_up: i32,
-    first_azimuth: u32,
-    azimuth_count: u32,
-    clears: u32,
-}
-
-same_layout!(
-    ShadePush,
-    shade_push,
-    cols = COLS,
-    rows = ROWS,
-    cell_x_m = CELL_X_M,
-    cell_y_m = CELL_Y_M,
-    warm_up = WARM_UP,
-    first_azimuth = FIRST_AZIMUTH,
-    azimuth_count = AZIMUTH_COUNT,
-    clears = CLEARS,
-);
-
-impl ShadePush {
+/// Of the passes that add light through a batch's horizons.
+impl shaders::ShadePush {
     pub(crate) fn of(batch: &Batch, cell_m: [f64; 2]) -> Self {
         let [cols, rows] = batch.axis.size();
         Self {
@@ -95,26 +68,8 @@ impl ShadePush {
     }
 }
 
-/// Push constants of the passes that march over the field's own heights, cell by cell.
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct MarchPush {
-    lanes: i32,
-    steps: i32,
-    warm_up: i32,
-    first_azimuth: u32,
-}
-
-same_layout!(
-    MarchPush,
-    march_push,
-    lanes = LANES,
-    steps = STEPS,
-    warm_up = WARM_UP,
-    first_azimuth = FIRST_AZIMUTH,
-);
-
-impl MarchPush {
+/// Of the passes that march over the field's own heights, cell by cell.
+impl shaders::MarchPush {
     pub(crate) fn of(batch: &Batch) -> Self {
         let axis = batch.axis;
         Self {
@@ -126,36 +81,8 @@ impl MarchPush {
     }
 }
 
-/// First push constants of the passes whose rays traverse blocks of cells: what `walk.glsl` reads.
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct LandPush {
-    cols: i32,
-    rows: i32,
-    cells_x: i32,
-    cells_y: i32,
-    padded_rows: i32,
-    top_level: i32,
-    cell_x_m: f32,
-    cell_y_m: f32,
-}
-
-same_layout!(
-    LandPush,
-    [sphere_shade_push, sphere_sh_shade_push, bounce_march_push],
-    {
-        cols = COLS,
-        rows = ROWS,
-        cells_x = CELLS_X,
-        cells_y = CELLS_Y,
-        padded_rows = PADDED_ROWS,
-        top_level = TOP_LEVEL,
-        cell_x_m = CELL_X_M,
-        cell_y_m = CELL_Y_M,
-    }
-);
-
-impl LandPush {
+/// The first ones of the passes whose rays traverse blocks of cells: what `walk.glsl` reads.
+impl shaders::LandPush {
     pub(crate) fn of(field: &HeightField, blocks: &Blocks) -> Self {
         let [cell_x, cell_y] = field.cell_m();
         Self {
@@ -171,45 +98,23 @@ impl LandPush {
     }
 }
 
-/// Push constants of the passes that make a pyramid level from a finer one.
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct ReducePush {
-    size: [i32; 2],
-    first: i32,
-    source_size: [i32; 2],
-    source_first: i32,
-    ratio: [f32; 2],
-    per_grid_point: [f32; 2],
-    level: i32,
-    width_shift: i32,
-}
-
-same_layout!(
-    ReducePush,
-    [height_reduce_push, shade_reduce_push, vector_reduce_push],
-    {
-        size = COLS,
-        first = FIRST,
-        source_size = SOURCE_COLS,
-        source_first = SOURCE_FIRST,
-        ratio = RATIO_X,
-        per_grid_point = PER_GRID_POINT_X,
-        level = LEVEL,
-        width_shift = WIDTH_SHIFT,
-    }
-);
-
-impl ReducePush {
+/// Of the passes that make a pyramid level from a finer one.
+impl shaders::ReducePush {
     pub(crate) fn of(pyramid: &Pyramid, number: u32) -> Self {
         let (level, source) = (pyramid.level(number), pyramid.level(pyramid.source(number)));
+        let [ratio_x, ratio_y] = pyramid.ratio(number);
+        let [per_grid_point_x, per_grid_point_y] = level.per_grid_point;
         Self {
-            size: level.size.map(|n| n as i32),
+            cols: level.size[0] as i32,
+            rows: level.size[1] as i32,
             first: level.first as i32,
-            source_size: source.size.map(|n| n as i32),
+            source_cols: source.size[0] as i32,
+            source_rows: source.size[1] as i32,
             source_first: source.first as i32,
-            ratio: pyramid.ratio(number),
-            per_grid_point: level.per_grid_point,
+            ratio_x,
+            ratio_y,
+            per_grid_point_x,
+            per_grid_point_y,
             level: number as i32,
             width_shift: pyramid.width_shift() as i32,
         }

@@ -9,9 +9,9 @@ use glam::{DMat4, DVec3, DVec4};
 
 use super::Plan;
 use crate::graph::bytes_text;
+use crate::graph::shaders::{SkyDrawPush, TerrainDrawPush};
 use crate::graph::{Format, Limits};
-use crate::passes::sky_draw::SkyDrawPush;
-use crate::passes::terrain_draw::{TILE, TerrainDrawPush};
+use crate::passes::terrain_draw::TILE;
 use crate::scene::{Border, Camera, Lens, Scene, corners};
 use crate::{Error, Result};
 

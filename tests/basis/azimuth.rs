@@ -11,14 +11,14 @@ const BLENDS: [Blend; 2] = [Blend::Linear, Blend::BSpline];
 
 #[test]
 fn blend_matrices_are_the_reference() {
-    for sample in reference("nlp_to_sh").as_array().unwrap() {
-        let width = number(&sample["delta_phi"]);
+    for entry in reference("nlp_to_sh").as_array().unwrap() {
+        let width = number(&entry["delta_phi"]);
         for (blend, name, columns) in
             [(Blend::Linear, "linear_16x8", 8), (Blend::BSpline, "bspline_16x16", 16)]
         {
             let matrix = blend_matrix(4, blend, width);
             assert_eq!(matrix.len(), 16);
-            for (row, expected) in matrix.iter().zip(sample[name].as_array().unwrap()) {
+            for (row, expected) in matrix.iter().zip(entry[name].as_array().unwrap()) {
                 assert_eq!(row.len(), columns);
                 same(row, &numbers(expected));
             }
@@ -76,13 +76,13 @@ fn weights_all_around_are_wedges_turned_and_summed() {
 fn a_level_horizon_is_a_cap() {
     for order in ORDERS {
         for (count, elevation) in [(order, 0.3), (8, -0.9), (31, 1.2), (32, 0.0)] {
-            let seen = vec![Slices::new(order).above(elevation); count];
+            let visible = vec![Slices::new(order).above(elevation); count];
             let cap = ridgelight_cpu::basis::cap(order, PI / 2.0 - elevation);
             let mut expected = vec![0.0; order * order];
             (0..order).for_each(|l| expected[index(l, 0)] = cap[l]);
             for blend in BLENDS {
                 within(
-                    &assemble(order, &circle(order, Some(blend), count), &seen),
+                    &assemble(order, &circle(order, Some(blend), count), &visible),
                     &expected,
                     1e-13,
                 );
@@ -191,13 +191,17 @@ fn a_blend_all_around_damps_each_turn() {
 fn a_smooth_horizon_converges_fastest_without_a_blend() {
     let order = 4;
     let slices = Slices::new(order);
-    let seen = |count: usize, blend| {
+    let visible = |count: usize, blend| {
         let above = |k| slices.above(0.6 + 0.4 * (TAU * k as f64 / count as f64).cos());
         assemble(order, &circle(order, blend, count), &(0..count).map(above).collect::<Vec<_>>())
     };
-    let truth = seen(512, None);
+    let ground_truth = visible(512, None);
     let apart = |count, blend| -> f64 {
-        seen(count, blend).iter().zip(&truth).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+        visible(count, blend)
+            .iter()
+            .zip(&ground_truth)
+            .map(|(a, b)| (a - b).abs())
+            .fold(0.0, f64::max)
     };
     assert!(apart(32, None) < 1e-13, "{:e}", apart(32, None));
     let linear = Some(Blend::Linear);

@@ -11,9 +11,9 @@ use std::f64::consts::PI;
 
 #[test]
 fn values_are_the_reference() {
-    for sample in reference("sh_samples").as_array().unwrap() {
-        let at = direction(number(&sample["theta"]), number(&sample["phi"]));
-        same(&evaluate(4, at), &numbers(&sample["Y16"]));
+    for entry in reference("sh_samples").as_array().unwrap() {
+        let at = direction(number(&entry["theta"]), number(&entry["phi"]));
+        same(&evaluate(4, at), &numbers(&entry["Y16"]));
     }
 }
 

@@ -20,8 +20,8 @@ fn free() -> Vec<f64> {
 fn a_free_light_is_its_rectangle() {
     for count in [2, 3, 9] {
         for blend in [Blend::Linear, Blend::BSpline] {
-            let seen = visible(&KEY, &Slices::new(4), blend, &vec![0.1; count]);
-            within(&seen, &free(), 1e-14);
+            let in_sight = visible(&KEY, &Slices::new(4), blend, &vec![0.1; count]);
+            within(&in_sight, &free(), 1e-14);
         }
     }
     assert_eq!(azimuths(&KEY, 3), [2.0, 2.4, 2.8]);
@@ -63,7 +63,7 @@ fn nlp_lose_nothing_zonal() {
         within(&[by_nlp[index(l, 0)]], &[exact[index(l, 0)]], 1e-14);
     }
     let apart = exact.iter().zip(&by_nlp).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-    assert!(apart > 1e-4, "what NLP lose at odd m is seen: {apart}");
+    assert!(apart > 1e-4, "what NLP lose at odd m is visible: {apart}");
 }
 
 /// All around and from horizontal to the zenith it is the sky, whose cosine-weighted integral is π: the cosine's
@@ -72,12 +72,12 @@ fn nlp_lose_nothing_zonal() {
 fn the_whole_sky_is_a_key_light() {
     let elevations_rad = [0.0, FRAC_PI_2];
     let whole = KeyLight { azimuth_rad: PI, width_rad: TAU, elevations_rad, ..KEY };
-    let seen = visible(&whole, &Slices::new(6), Blend::Linear, &[-0.3; 9]);
+    let in_sight = visible(&whole, &Slices::new(6), Blend::Linear, &[-0.3; 9]);
     let sky = ridgelight_cpu::basis::sky(6);
     for l in 0..6 {
-        within(&[seen[index(l, 0)]], &[sky[l]], 1e-13);
+        within(&[in_sight[index(l, 0)]], &[sky[l]], 1e-13);
     }
     let cosine = turned(&clamped_cosine(6), glam::DVec3::Z);
-    let exit: f64 = seen.iter().zip(&cosine).map(|(a, b)| a * b).sum::<f64>() / PI;
+    let exit: f64 = in_sight.iter().zip(&cosine).map(|(a, b)| a * b).sum::<f64>() / PI;
     within(&[exit], &[1.0], 1e-13);
 }

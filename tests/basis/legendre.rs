@@ -24,9 +24,9 @@ fn gauss_rule_is_exact_to_its_degree() {
 
 #[test]
 fn occlusion_is_the_reference() {
-    for sample in reference("nlp_occlusion").as_array().unwrap() {
-        let (sin, cos) = number(&sample["sigma"]).sin_cos();
-        let expected = numbers(&sample["order6"]);
+    for entry in reference("nlp_occlusion").as_array().unwrap() {
+        let (sin, cos) = number(&entry["sigma"]).sin_cos();
+        let expected = numbers(&entry["order6"]);
         for order in ORDERS {
             same(&occlusion(order, sin, cos), &expected[..order]);
         }

@@ -28,7 +28,7 @@ fn lowest(normal: DVec3) -> Vec<f64> {
         .collect()
 }
 
-fn seen(order: usize, lowest: &[f64]) -> Vec<f64> {
+fn visible(order: usize, lowest: &[f64]) -> Vec<f64> {
     let slices = Slices::new(order);
     let all: Vec<Vec<f64>> = lowest.iter().map(|w| slices.above(*w)).collect();
     assemble(order, &circle(order, None, AZIMUTHS), &all)
@@ -52,9 +52,9 @@ fn directly(light: &[f64], lowest: &[f64], normal: DVec3) -> f64 {
     (0..AZIMUTHS).map(slice).sum::<f64>() * step / PI
 }
 
-fn exit(matrix: &[Vec<f64>], rows: &[f64], seen: &[f64]) -> f64 {
+fn exit(matrix: &[Vec<f64>], rows: &[f64], visible: &[f64]) -> f64 {
     assert_eq!(matrix.len(), rows.len());
-    let row = |row: &[f64]| row.iter().zip(seen).map(|(m, v)| m * v).sum::<f64>();
+    let row = |row: &[f64]| row.iter().zip(visible).map(|(m, v)| m * v).sum::<f64>();
     matrix.iter().zip(rows).map(|(m, r)| r * row(m)).sum()
 }
 
@@ -68,10 +68,10 @@ fn a_plane_receives_all_of_a_light_of_one_order_less() {
         let matrix = plane(&triples(order), order, &light);
         let horizons = lowest(normal);
         let want = directly(&light, &horizons, normal);
-        let got = exit(&matrix, rows, &seen(order, &horizons));
+        let got = exit(&matrix, rows, &visible(order, &horizons));
         within(&[got], &[want], 1e-11);
         // Visibility of one order less loses part of it, but for the constant light's.
-        let mut shorter = seen(order, &horizons);
+        let mut shorter = visible(order, &horizons);
         shorter[(order - 1) * (order - 1)..].fill(0.0);
         assert!((exit(&matrix, rows, &shorter) - want).abs() > 1e-4, "order {order}");
     }

@@ -52,11 +52,11 @@ fn products_turn_with_their_factors() {
 fn a_lights_matrix_is_its_product() {
     for order in ORDERS {
         let triples = triples(order);
-        let (light, seen) = (noise(9, order * order), noise(10, order * order));
+        let (light, visible) = (noise(9, order * order), noise(10, order * order));
         let matrix = light_matrix(&triples, &light);
         let by_matrix: Vec<f64> =
-            matrix.iter().map(|row| row.iter().zip(&seen).map(|(m, v)| m * v).sum()).collect();
-        within(&by_matrix, &product(&triples, &light, &seen), 1e-13);
+            matrix.iter().map(|row| row.iter().zip(&visible).map(|(m, v)| m * v).sum()).collect();
+        within(&by_matrix, &product(&triples, &light, &visible), 1e-13);
         for (i, row) in matrix.iter().enumerate() {
             for (j, entry) in row.iter().enumerate() {
                 assert_eq!(entry.to_bits(), matrix[j][i].to_bits(), "{i} {j}");
@@ -70,11 +70,11 @@ fn a_lights_matrix_is_its_product() {
 #[test]
 fn light_through_visibility_on_a_receiver() {
     let up = |zonal: Vec<f64>| turned(&zonal, DVec3::Z);
-    let (sky, seen) = (up(ridgelight_cpu::basis::sky(4)), up(ridgelight_cpu::basis::sky(4)));
+    let (sky, visible) = (up(ridgelight_cpu::basis::sky(4)), up(ridgelight_cpu::basis::sky(4)));
     let cosine = up(zonal::clamped_cosine(4));
     let triples = triples(4);
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>() / PI;
-    let exit = dot(&product(&triples, &sky, &seen), &cosine);
-    within(&[dot(&product(&triples, &seen, &cosine), &sky)], &[exit], 1e-14);
+    let exit = dot(&product(&triples, &sky, &visible), &cosine);
+    within(&[dot(&product(&triples, &visible, &cosine), &sky)], &[exit], 1e-14);
     assert!((exit - 1.0).abs() < 0.05, "{exit}");
 }

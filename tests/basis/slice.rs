@@ -91,15 +91,15 @@ fn nlp_lose_part_of_odd_m_and_less_with_order() {
     for order in 2..=6 {
         let exact = Slices::new(order).above(0.5);
         let (sin, cos) = 0.5_f64.sin_cos();
-        let mut seen: Vec<f64> = occlusion(order, sin, cos).iter().map(|b| -b).collect();
-        seen[0] += 2.0_f64.sqrt();
+        let mut visible: Vec<f64> = occlusion(order, sin, cos).iter().map(|b| -b).collect();
+        visible[0] += 2.0_f64.sqrt();
         let row = &from_nlp(order)[slice_index(1, 1)];
         let lost =
-            row.iter().zip(&seen).map(|(e, c)| e * c).sum::<f64>() - exact[slice_index(1, 1)];
+            row.iter().zip(&visible).map(|(e, c)| e * c).sum::<f64>() - exact[slice_index(1, 1)];
         assert!(lost.abs() <= last, "order {order}: {lost}");
         last = lost.abs();
         if order == 2 {
-            assert!(last > 1e-3, "the loss is seen: {last}");
+            assert!(last > 1e-3, "the loss is visible: {last}");
         }
     }
 }

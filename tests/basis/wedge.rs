@@ -9,10 +9,10 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 #[test]
 fn wedges_are_the_reference() {
-    for sample in reference("sn08_wedge").as_array().unwrap() {
-        let horizon = [number(&sample["omega_l"]), number(&sample["omega_r"])];
-        let got = wedge(&Slices::new(4), horizon, number(&sample["delta_phi"]));
-        same(&got, &numbers(&sample["sh16"]));
+    for entry in reference("sn08_wedge").as_array().unwrap() {
+        let horizon = [number(&entry["omega_l"]), number(&entry["omega_r"])];
+        let got = wedge(&Slices::new(4), horizon, number(&entry["delta_phi"]));
+        same(&got, &numbers(&entry["sh16"]));
     }
 }
 
@@ -119,8 +119,8 @@ fn wedges_and_slices_meet_as_azimuths_grow() {
     let horizon = |phi: f64| 0.5 + 0.3 * (2.0 * phi).cos();
     let apart = |count: usize| {
         let width = TAU / count as f64;
-        let seen: Vec<_> = (0..count).map(|k| slices.above(horizon(width * k as f64))).collect();
-        let blended = assemble(order, &circle(order, Some(Blend::Linear), count), &seen);
+        let visible: Vec<_> = (0..count).map(|k| slices.above(horizon(width * k as f64))).collect();
+        let blended = assemble(order, &circle(order, Some(Blend::Linear), count), &visible);
         let mut summed = [0.0; 16];
         for k in 0..count {
             let phi = width * k as f64;

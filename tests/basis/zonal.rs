@@ -16,9 +16,9 @@ fn clamped_cosine_is_the_reference() {
 
 #[test]
 fn caps_are_the_reference() {
-    for sample in reference("zh_cap").as_array().unwrap() {
-        let half = number(&sample["half_angle"]);
-        let expected = numbers(&sample["zh"]);
+    for entry in reference("zh_cap").as_array().unwrap() {
+        let half = number(&entry["half_angle"]);
+        let expected = numbers(&entry["zh"]);
         same(&cap(4, half), &expected);
         // Small discs keep their digits.
         if half < 0.1 {
@@ -58,7 +58,7 @@ fn a_distant_sphere_light_is_a_point() {
             assert!((z - point).abs() <= tolerance, "{distance}: {z:e} {point:e}");
         }
     }
-    assert_eq!(sphere(3, 0.0, 0.0), [0.0; 3], "a point that is nowhere seen");
+    assert_eq!(sphere(3, 0.0, 0.0), [0.0; 3], "a point visible from nowhere");
     assert_eq!(sphere(3, 1.0, f64::INFINITY), [0.0; 3]);
 }
 
@@ -109,9 +109,9 @@ fn the_sky_is_the_upper_half() {
 #[test]
 fn phong_is_its_lobe() {
     for exponent in [0.0, 1.0, 2.5, 30.0, 1e4_f64] {
-        let lobe = phong(6, exponent);
-        within(&[lobe[0]], &[1.0 / (4.0 * PI).sqrt()], 1e-16);
-        for (l, coefficient) in lobe.iter().enumerate() {
+        let phong_specular = phong(6, exponent);
+        within(&[phong_specular[0]], &[1.0 / (4.0 * PI).sqrt()], 1e-16);
+        for (l, coefficient) in phong_specular.iter().enumerate() {
             let width = (8.0 / (exponent + 1.0).sqrt()).min(FRAC_PI_2);
             let direct: f64 = (0..8)
                 .map(|i| {

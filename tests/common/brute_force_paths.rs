@@ -9,7 +9,7 @@ use std::f64::consts::{PI, TAU};
 pub struct Paths<'a> {
     scene: &'a Scene,
     /// Whether hit ground reflects by its Phong lobe, too.
-    lobes: bool,
+    phong_maps: bool,
     /// Corners of triangles, each counter-clockwise from above, with their texels.
     triangles: Vec<[(DVec3, usize); 3]>,
     state: u64,
@@ -18,12 +18,12 @@ pub struct Paths<'a> {
 /// The start of a ray: a texel, or a point inside a triangle.
 #[derive(Clone, Copy)]
 enum Place {
-    Sample(usize),
+    Texel(usize),
     Inside(usize),
 }
 
 impl<'a> Paths<'a> {
-    pub fn new(scene: &'a Scene, lobes: bool) -> Self {
+    pub fn new(scene: &'a Scene, phong_maps: bool) -> Self {
         let field = &scene.field;
         let (rows, cols) = (field.rows(), field.cols());
         let [cell_x, cell_y] = field.cell_m();
@@ -39,7 +39,7 @@ impl<'a> Paths<'a> {
                 [[nw, se, ne], [nw, sw, se]]
             })
             .collect();
-        Self { scene, lobes, triangles, state: 0x9E37_79B9_7F4A_7C15 }
+        Self { scene, phong_maps, triangles, state: 0x9E37_79B9_7F4A_7C15 }
     }
 
     fn random(&mut self) -> f64 {
@@ -80,8 +80,8 @@ impl<'a> Paths<'a> {
         for (i, corners) in self.triangles.iter().enumerate() {
             let own = match place {
                 Place::Inside(own) => own == i,
-                Place::Sample(own) => {
-                    let here = corners.iter().any(|(_, sample)| *sample == own);
+                Place::Texel(own) => {
+                    let here = corners.iter().any(|(_, grid_point)| *grid_point == own);
                     // In the azimuth of this triangle, and not above it: a hit at once.
                     let beside = from + DVec3::new(e.x, e.y, 0.0) * 1e-6;
                     let towards = self.meets(i, beside + DVec3::Z * 1e3, -DVec3::Z).is_some();
@@ -114,25 +114,25 @@ impl<'a> Paths<'a> {
         [0, 1, 2].map(|i| sky[i] + f64::from(texel[i]))
     }
 
-    pub fn albedo(&self, sample: usize) -> [f64; 3] {
+    pub fn albedo(&self, grid_point: usize) -> [f64; 3] {
         match &self.scene.surface.albedo {
             Albedo::Constant(colour) => colour.map(f64::from),
-            Albedo::Map(colours) => <[f32; 3]>::map(colours[sample], f64::from),
+            Albedo::Map(colours) => <[f32; 3]>::map(colours[grid_point], f64::from),
         }
     }
 
     /// Exponent and scale.
-    pub fn lobe(&self, sample: usize) -> [f64; 2] {
+    pub fn phong_specular(&self, grid_point: usize) -> [f64; 2] {
         let none = PhongSpecular { exponent: 0.0, scale: 0.0 };
         let PhongSpecular { exponent, scale } =
-            self.scene.surface.specular.as_ref().map_or(none, |l| l.at(sample));
+            self.scene.surface.specular.as_ref().map_or(none, |l| l.at(grid_point));
         [exponent, scale].map(f64::from)
     }
 
     /// The position of a texel.
-    pub fn place(&self, sample: usize) -> DVec3 {
+    pub fn place(&self, grid_point: usize) -> DVec3 {
         let all = self.triangles.iter().flatten();
-        all.clone().find_map(|(at, own)| (*own == sample).then_some(*at)).expect("a sample")
+        all.clone().find_map(|(at, own)| (*own == grid_point).then_some(*at)).expect("a texel")
     }
 
     /// Values of a triangle's texels, linear between them.
@@ -144,19 +144,19 @@ impl<'a> Paths<'a> {
     ) -> [f64; N] {
         let above = at + DVec3::Z * 1e3;
         let (u, v) = self.meets(triangle, above, -DVec3::Z).map_or((0.0, 0.0), |(_, u, v)| (u, v));
-        let [a, b, c] = self.triangles[triangle].map(|(_, sample)| of(self, sample));
+        let [a, b, c] = self.triangles[triangle].map(|(_, grid_point)| of(self, grid_point));
         std::array::from_fn(|i| (1.0 - u - v) * a[i] + u * b[i] + v * c[i])
     }
 
     /// The light of one path from a first direction: zero, or light after so many bounces.
     pub fn follow(
         &mut self,
-        sample: usize,
+        grid_point: usize,
         from: DVec3,
         first: DVec3,
         bounces: usize,
     ) -> (usize, [f64; 3]) {
-        let (mut place, mut from, mut e) = (Place::Sample(sample), from, first);
+        let (mut place, mut from, mut e) = (Place::Texel(grid_point), from, first);
         let mut left = [1.0; 3];
         for bounce in 0..=bounces {
             let Some((triangle, at, onto)) = self.met(place, from, e) else {
@@ -164,18 +164,18 @@ impl<'a> Paths<'a> {
                 return (bounce, [0, 1, 2].map(|i| left[i] * sky[i]));
             };
             let up = self.up(triangle);
-            let [exponent, scale] = self.within(triangle, at, Self::lobe);
-            let has_lobe = self.lobes && scale > 0.0;
-            let chance = if has_lobe { 0.5 } else { 1.0 };
-            if has_lobe && self.random() < 0.5 {
+            let [exponent, scale] = self.within(triangle, at, Self::phong_specular);
+            let has_specular = self.phong_maps && scale > 0.0;
+            let noise = if has_specular { 0.5 } else { 1.0 };
+            if has_specular && self.random() < 0.5 {
                 e = self.about(e - 2.0 * e.dot(up) * up, exponent);
                 if e.dot(up) <= 0.0 {
                     return (0, [0.0; 3]);
                 }
-                left = left.map(|l| l * scale / chance);
+                left = left.map(|l| l * scale / noise);
             } else {
                 let albedo = self.within(triangle, at, Self::albedo);
-                left = [0, 1, 2].map(|i| left[i] * albedo[i] / chance);
+                left = [0, 1, 2].map(|i| left[i] * albedo[i] / noise);
                 e = self.about(up, 1.0);
             }
             (place, from) = (onto, at);
@@ -186,23 +186,23 @@ impl<'a> Paths<'a> {
     /// Means and their standard errors of so many paths from a texel, for all numbers of bounces up to the given one.
     pub fn light(
         &mut self,
-        sample: usize,
+        grid_point: usize,
         up: DVec3,
         bounces: usize,
         paths: u32,
     ) -> Vec<[[f64; 3]; 2]> {
         let (from, albedo, [exponent, scale]) =
-            (self.place(sample), self.albedo(sample), self.lobe(sample));
+            (self.place(grid_point), self.albedo(grid_point), self.phong_specular(grid_point));
         let mut sums = vec![[[0.0; 3]; 2]; bounces + 1];
         for _ in 0..paths {
             let mut brought = vec![[0.0; 3]; bounces + 1];
             let e = self.about(up, 1.0);
-            let (bounce, light) = self.follow(sample, from, e, bounces);
+            let (bounce, light) = self.follow(grid_point, from, e, bounces);
             (0..3).for_each(|i| brought[bounce][i] += albedo[i] * light[i]);
             if scale > 0.0 {
                 let e = self.about(2.0 * up.z * up - DVec3::Z, exponent);
                 if e.dot(up) > 0.0 {
-                    let (bounce, light) = self.follow(sample, from, e, bounces);
+                    let (bounce, light) = self.follow(grid_point, from, e, bounces);
                     (0..3).for_each(|i| brought[bounce][i] += scale * light[i]);
                 }
             }

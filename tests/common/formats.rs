@@ -49,7 +49,7 @@ pub fn png(
     colour: u8,
     depth: u8,
     chunks: &[(&[u8; 4], &[u8])],
-    samples: &[u8],
+    grid_points: &[u8],
 ) -> Vec<u8> {
     assert!(colour::ALL.contains(&colour), "PNG knows no colour type {colour}");
     let mut bytes = b"\x89PNG\r\n\x1a\n".to_vec();
@@ -66,8 +66,8 @@ pub fn png(
     }
     chunks.iter().for_each(|(name, data)| chunk(name, data));
     // Each row behind the number of its filter, none; all in one stored DEFLATE block.
-    let rows: Vec<u8> = samples
-        .chunks(samples.len() / rows as usize)
+    let rows: Vec<u8> = grid_points
+        .chunks(grid_points.len() / rows as usize)
         .flat_map(|row| [&[0], row].concat())
         .collect();
     let length = u16::try_from(rows.len()).unwrap();
@@ -105,7 +105,7 @@ pub enum Tag<'a> {
 pub fn tiff<C>(
     cols: u32,
     rows: u32,
-    samples: &[C::Inner],
+    grid_points: &[C::Inner],
     compression: tiff::encoder::Compression,
     predictor: tiff::tags::Predictor,
     tags: &[(u16, Tag)],
@@ -130,7 +130,7 @@ where
         }
         .unwrap();
     }
-    image.write_data(samples).unwrap();
+    image.write_data(grid_points).unwrap();
     bytes.into_inner()
 }
 
@@ -154,7 +154,8 @@ pub fn geotiff() -> Vec<u8> {
 /// An EXR of named f32 channels.
 pub fn exr(cols: usize, rows: usize, channels: &[(&str, exr::prelude::FlatSamples)]) -> Vec<u8> {
     use exr::prelude::*;
-    let list = channels.iter().map(|(name, samples)| AnyChannel::new(*name, samples.clone()));
+    let list =
+        channels.iter().map(|(name, grid_points)| AnyChannel::new(*name, grid_points.clone()));
     let layer = Layer::new(
         (cols, rows),
         LayerAttributes::default(),

@@ -26,13 +26,14 @@ pub fn head(
     name: &str,
     bounces: usize,
     light: &str,
-    truth: &GroundTruth,
+    ground_truth: &GroundTruth,
     channel: usize,
 ) -> String {
-    let count = truth.radiance[bounces].len();
+    let count = ground_truth.radiance[bounces].len();
     let mean =
         |picture: &[[f64; 3]]| picture.iter().map(|v| v[channel]).sum::<f64>() / count as f64;
-    let [light_mean, stated] = [&truth.radiance[bounces], &truth.error[bounces]].map(|p| mean(p));
+    let [light_mean, stated] =
+        [&ground_truth.radiance[bounces], &ground_truth.error[bounces]].map(|p| mean(p));
     format!("| {name} | {bounces} | {light} | {count} | {light_mean:.5} | {stated:.5} | ")
 }
 

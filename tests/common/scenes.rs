@@ -146,7 +146,7 @@ impl Agreement {
     /// arithmetic error of the picture as a share of a value.
     pub fn of<const N: usize>(
         [picture, standard_error]: [&[[f64; N]]; 2],
-        [truth, stated]: [&[[f64; N]]; 2],
+        [ground_truth, stated]: [&[[f64; N]]; 2],
         paths: f64,
         rounding: f64,
     ) -> Self {
@@ -156,11 +156,11 @@ impl Agreement {
         };
         let (mut squares, mut worst, mut mean) = (0.0, 0.0_f64, 0.0_f64);
         for i in 0..N {
-            let brightest = truth.iter().fold(0.0_f64, |m, v| m.max(v[i]));
+            let brightest = ground_truth.iter().fold(0.0_f64, |m, v| m.max(v[i]));
             let (mut off_sum, mut allowed_sum, mut variance) = (0.0, 0.0, 0.0);
             for (at, got) in picture.iter().enumerate() {
-                let off = got[i] - truth[at][i];
-                let allowed = stated[at][i] + rounding * truth[at][i].abs();
+                let off = got[i] - ground_truth[at][i];
+                let allowed = stated[at][i] + rounding * ground_truth[at][i].abs();
                 let rare = brightest * off.abs() / (3.0 * paths);
                 let here_variance = standard_error[at][i].powi(2) + rare;
                 let here = z(off, allowed, here_variance.sqrt());

@@ -11,8 +11,8 @@ use glam::DVec3;
 /// turned away, |x| > z, both fill 2 w z together: this one's visible part is 2 z / (z + |x|), at its top.
 pub fn wall(e: DVec3, side: f64) -> [f64; 2] {
     let share = (e.z + side * e.x).max(0.0);
-    let seen = if e.x.abs() > e.z { 2.0 * e.z / (e.z + e.x.abs()) } else { 1.0 };
-    [if share > 0.0 { seen } else { 0.0 }, share]
+    let visible = if e.x.abs() > e.z { 2.0 * e.z / (e.z + e.x.abs()) } else { 1.0 };
+    [if share > 0.0 { visible } else { 0.0 }, share]
 }
 
 /// For ρ = 1: the jointly visible part of each wall, min(u_l, u_v), of half the plan: f = 1/(π l_z v_z) Σ ½

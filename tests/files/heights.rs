@@ -161,9 +161,9 @@ fn exr_channels_and_sample_types() {
     let f32 = FlatSamples::F32(HEIGHTS.map(f32::from).to_vec());
     let u32 = FlatSamples::U32(HEIGHTS.map(|h| h as u32).to_vec());
     let zero = FlatSamples::F32(vec![0.0; 12]);
-    for samples in [f16, f32.clone(), u32] {
+    for texels in [f16, f32.clone(), u32] {
         for name in ["Y", "Z", "R", "height", "anything"] {
-            let field = parse("a.exr", &exr(4, 3, &[(name, samples.clone())])).unwrap();
+            let field = parse("a.exr", &exr(4, 3, &[(name, texels.clone())])).unwrap();
             assert_eq!(absolute(&field), expected(), "{name}");
         }
     }
@@ -206,14 +206,14 @@ fn tiff_sample_types_compressions_and_predictors() {
     }
     macro_rules! all {
         ($($colour:ident $kind:ty),*) => { $(
-            let samples = HEIGHTS.map(|h| h as $kind);
+            let texels = HEIGHTS.map(|h| h as $kind);
             for compression in [
                 Compression::Uncompressed,
                 Compression::Lzw,
                 Compression::Deflate(DeflateLevel::Balanced),
                 Compression::Packbits,
             ] {
-                check(tiff::<colortype::$colour>(4, 3, &samples, compression, Predictor::None, &[]));
+                check(tiff::<colortype::$colour>(4, 3, &texels, compression, Predictor::None, &[]));
             }
         )* };
     }
@@ -311,7 +311,7 @@ fn sizes_are_known_from_headers() {
             _ => Some([ROWS, COLS]),
         };
         assert_eq!(size(name, &bytes), expected, "{name}");
-        // The samples are last, but for TIFF's, whose header stands behind them.
+        // The texels are last, but for TIFF's, whose header stands behind them.
         let cut = match name {
             "a.png" => 24,
             "a.asc" => bytes.len() - 36,

@@ -20,12 +20,12 @@ fn visible_points_round_trip() {
     for (rows, cols) in [(5, 7), (2, 256), (1, 1)] {
         let (field, border) = (waves(rows, cols, 1.0), Border::Plane);
         let directions = Directions::fibonacci(9, -1.0, 2).expect("directions");
-        let seen = visible_points(&field, border, &directions);
-        let samples = rows * cols;
-        assert!(seen.contains(&VisiblePoint::Sky) && seen.contains(&VisiblePoint::Ground));
-        let points = VisiblePoints::from_points(&field, border, directions, &seen).unwrap();
-        for (i, point) in seen.iter().enumerate() {
-            assert_eq!(points.point(i / samples, i % samples), *point);
+        let visible = visible_points(&field, border, &directions);
+        let texels = rows * cols;
+        assert!(visible.contains(&VisiblePoint::Sky) && visible.contains(&VisiblePoint::Ground));
+        let points = VisiblePoints::from_points(&field, border, directions, &visible).unwrap();
+        for (i, point) in visible.iter().enumerate() {
+            assert_eq!(points.point(i / texels, i % texels), *point);
         }
         write_visible_points(&path, &points).unwrap();
         assert_eq!(read_visible_points(&path, &field, border).unwrap(), points);
@@ -43,13 +43,13 @@ fn the_last_texel_of_a_small_field_is_no_void_marker() {
         let directions = Directions::fibonacci(5, -1.0, 0).expect("directions");
         let kinds = [side * side - 1, side * side - side, side - 1].map(VisiblePoint::GridPoint);
         let kinds = [&kinds[..], &[VisiblePoint::Sky, VisiblePoint::Ground]].concat();
-        let seen: Vec<_> = (0..5 * side * side).map(|i| kinds[i % 5]).collect();
-        let points =
-            VisiblePoints::from_points(&field, Border::Plane, directions, &seen).expect("points");
+        let visible: Vec<_> = (0..5 * side * side).map(|i| kinds[i % 5]).collect();
+        let points = VisiblePoints::from_points(&field, Border::Plane, directions, &visible)
+            .expect("points");
         write_visible_points(&path, &points).unwrap();
         let read = read_visible_points(&path, &field, Border::Plane).unwrap();
         assert_eq!(read, points);
-        for (i, point) in seen.iter().enumerate() {
+        for (i, point) in visible.iter().enumerate() {
             assert_eq!(read.point(i / (side * side), i % (side * side)), *point);
         }
     }
@@ -61,8 +61,8 @@ fn points_of_another_field_are_refused() {
     let path = folder.path().join("points.npz");
     let (field, border) = (waves(5, 7, 1.0), Border::Open);
     let directions = Directions::fibonacci(4, -1.0, 0).expect("directions");
-    let seen = visible_points(&field, border, &directions);
-    let points = VisiblePoints::from_points(&field, border, directions, &seen).unwrap();
+    let visible = visible_points(&field, border, &directions);
+    let points = VisiblePoints::from_points(&field, border, directions, &visible).unwrap();
     write_visible_points(&path, &points).unwrap();
     let mut heights: Vec<f64> = field.heights_m().iter().map(|h| f64::from(*h)).collect();
     heights[3] += 1.0;
@@ -103,9 +103,9 @@ fn malformed_visible_points_are_refused() {
     assert!(of(vec![0xfffd_0000; 70]).unwrap_err().contains("direction 1"));
     // Row 256 has the same byte as row 0.
     for outside in [35, 7 * 256, usize::MAX] {
-        let mut seen = vec![VisiblePoint::Sky; 4 * 35];
-        seen[36] = VisiblePoint::GridPoint(outside);
-        let said = VisiblePoints::from_points(&field, Border::Plane, directions.clone(), &seen);
+        let mut visible = vec![VisiblePoint::Sky; 4 * 35];
+        visible[36] = VisiblePoint::GridPoint(outside);
+        let said = VisiblePoints::from_points(&field, Border::Plane, directions.clone(), &visible);
         let said = said.unwrap_err().to_string();
         assert!(said.contains("direction 1, grid point 1"), "{said}");
     }

@@ -190,7 +190,7 @@ fn a_concave_field_that_stays_is_not_swept() {
 fn valleys_stay_in_the_plan() {
     let level = |_: usize, _: usize| 0.0;
     assert!(field(5, 5, [1.0, 3.0], level).is_concave(Border::Plane));
-    // A dent of one sample, and creases along rows, columns and diagonals.
+    // A dent of one texel, and creases along rows, columns and diagonals.
     let dents: [fn(usize, usize) -> f64; 4] = [
         |r, c| f64::from(u8::from((r, c) != (2, 2))),
         |r, _| (r as f64 - 2.0).abs(),

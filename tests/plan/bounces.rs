@@ -77,10 +77,10 @@ fn bounces_at_nodes() {
         ];
         for (engine, name) in engines {
             let plan = drawn(&scene, &quality(engine, 3, stride), ROOMY);
-            let samples = plan.passes.iter().filter(|p| p.name() == name).map(|p| p.texels);
+            let grid_points = plan.passes.iter().filter(|p| p.name() == name).map(|p| p.texels);
             let walks_once = engine == BounceEngine::Sweep;
             let later = if walks_once { 0 } else { 2 * nodes(2 * stride) };
-            assert_eq!(samples.sum::<u64>(), (nodes(stride) + later) * 8, "{name} {stride}");
+            assert_eq!(grid_points.sum::<u64>(), (nodes(stride) + later) * 8, "{name} {stride}");
             assert_eq!(count(&plan, "bounce_shade"), 3);
             assert_eq!(count(&plan, "cache_gather"), if walks_once { 2 } else { 0 });
             assert_eq!(missing_barriers(&plan.passes), vec![]);

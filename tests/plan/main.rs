@@ -173,7 +173,7 @@ fn every_plan_has_all_its_barriers_and_needs_each() {
                 let missing = missing_barriers(&passes);
                 assert!(
                     missing.iter().any(|m| m.1 >= i),
-                    "none seen missing before {i} of\n{plan}"
+                    "none visible missing before {i} of\n{plan}"
                 );
                 removed += 1;
             }
@@ -281,8 +281,8 @@ fn key_lights() {
     }
     let lit = picture(&dropped, Border::Open);
     assert_eq!(lit.azimuths.len(), 8 + 8);
-    let seen: Vec<_> = labels(&lit).into_iter().filter(|l| l.contains("key")).collect();
-    assert_eq!(seen, ["horizon_sweep key2", "sun_shade key2", "light_resolve key2"]);
+    let visible: Vec<_> = labels(&lit).into_iter().filter(|l| l.contains("key")).collect();
+    assert_eq!(visible, ["horizon_sweep key2", "sun_shade key2", "light_resolve key2"]);
     let outputs: Vec<&str> = lit.outputs().map(|(_, r)| r.name.as_str()).collect();
     assert_eq!(outputs, ["radiance", "direct.sky", "direct.key2"]);
     assert!(lit.settings.contains(&("sun_azimuths".into(), "8".into())));
@@ -373,10 +373,10 @@ fn without_shadows_nothing_is_swept() {
         let [usual, off] = [false, true].map(drawn);
         let outputs = |plan: &Plan| plan.outputs().map(|(_, r)| r.clone()).collect::<Vec<_>>();
         assert_eq!(outputs(&usual), outputs(&off));
-        let seen = ["horizon_sweep", "horizon_march", "pyramid_march", "bounce"];
+        let visible = ["horizon_sweep", "horizon_march", "pyramid_march", "bounce"];
         let sweeps = |plan: &Plan| {
             let names = plan.passes.iter().map(plan::Pass::name);
-            names.filter(|name| seen.iter().any(|s| name.starts_with(s))).count()
+            names.filter(|name| visible.iter().any(|s| name.starts_with(s))).count()
         };
         assert!(sweeps(&usual) > 0 && sweeps(&off) == 0, "{method:?}: {:?}", short(&off));
         assert!(missing_barriers(&off.passes).is_empty());

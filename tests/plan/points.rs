@@ -183,9 +183,9 @@ fn points_of_other_directions_are_refused() {
     let plan = plan::scatter(&scene, &own, &Scatter::default(), &Limits::lavapipe());
     let plan = plan.expect("a plan");
     let inputs = |directions: Directions| {
-        let seen = vec![VisiblePoint::Sky; 12 * directions.count()];
+        let in_sight = vec![VisiblePoint::Sky; 12 * directions.count()];
         let border = scene.surface.border;
-        let points = VisiblePoints::from_points(&scene.field, border, directions, &seen);
+        let points = VisiblePoints::from_points(&scene.field, border, directions, &in_sight);
         let direct = [[1.0; 3]; 12];
         plan::scatter_inputs(&plan, &scene, &points.expect("points"), &direct)
     };
@@ -256,12 +256,12 @@ fn scatter_without_light_takes_one_pass() {
         assert!(plan.notes.iter().any(|note| note.contains(why)), "{:?}", plan.notes);
         let kept: Vec<_> = plan.resources.iter().map(|r| r.name.as_str()).collect();
         assert_eq!((plan.inputs().count(), kept), (0, vec!["scattered"]));
-        let seen = vec![VisiblePoint::Sky; scene.field.heights_m().len() * 20];
+        let in_sight = vec![VisiblePoint::Sky; scene.field.heights_m().len() * 20];
         let points = VisiblePoints::from_points(
             &scene.field,
             scene.surface.border,
             directions.clone(),
-            &seen,
+            &in_sight,
         );
         let direct = vec![[1.0; 3]; scene.field.heights_m().len()];
         let inputs = plan::scatter_inputs(&plan, &scene, &points.expect("points"), &direct);

@@ -23,7 +23,7 @@ fn a_reference() {
     for after in [of(5, 5, 1, 0), of(5, 5, 0, 1)] {
         assert_eq!(after.passes_after(&before, &[]), [0, 1, 2]);
     }
-    // In bands of 2^24 paths' vertices, in eights of rows: 512 samples a row, 64 paths, two vertices.
+    // In bands of 2^24 paths' vertices, in eights of rows: 512 texels a row, 64 paths, two vertices.
     let bands = of(515, 512, 1, 0);
     let parts =
         ["rows 0..256", "rows 256..512", "rows 512..515"].map(|p| format!("path_trace {p}"));
@@ -58,9 +58,9 @@ fn environments_are_importance_sampled() {
 
 /// A list of 600 texels of a field 512 wide takes two rows; its sums have that size, the heights that of the field.
 #[test]
-fn a_reference_at_some_samples() {
+fn a_reference_at_some_texels() {
     let scene = under_sky(flat(515, 512));
-    let of = |samples| plan::reference_at(&scene, 1, 0, samples, &Limits::lavapipe());
+    let of = |grid_points| plan::reference_at(&scene, 1, 0, grid_points, &Limits::lavapipe());
     let plan = of(600).expect("a plan");
     let size = |name: &str| match plan.resources[plan.find(name).expect("there").0].kind {
         plan::Kind::Image { width, height, .. } => [width, height],
@@ -75,8 +75,8 @@ fn a_reference_at_some_samples() {
     let texels = plan::listed_places(&scene, &[0, 513, 513]).expect("of the field");
     assert_eq!(texels[..12], [0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0]);
     assert_eq!((texels.len(), &texels[12..14]), (4 * 512, &[-1.0, -1.0][..]));
-    for samples in [0, 515 * 512 + 1] {
-        let refused = of(samples).unwrap_err().to_string();
+    for grid_points in [0, 515 * 512 + 1] {
+        let refused = of(grid_points).unwrap_err().to_string();
         assert!(refused.contains("1 to 263680"), "{refused}");
     }
     let refused = plan::listed_places(&scene, &[263_679, 263_680]).unwrap_err().to_string();

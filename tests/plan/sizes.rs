@@ -5,7 +5,7 @@ use ridgelight::plan::Limits;
 use super::{is, sky};
 
 #[test]
-fn a_single_sample() {
+fn a_single_texel() {
     is(
         &sky(1, 1, 4, &Limits::lavapipe()),
         "

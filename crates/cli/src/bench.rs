@@ -28,9 +28,7 @@ const LARGEST_SIZE: usize = 32_768;
 
 pub fn run(args: &BenchArgs) -> Result<Outcome> {
     for (flag, path) in [("--json", &args.global.json), ("--trace", &args.trace)] {
-        if let Some(path) = path {
-            setup::check_output(flag, path, &["json"])?;
-        }
+        path.as_ref().map_or(Ok(()), |path| setup::check_output(flag, path, &["json"]))?;
     }
     if !(1..=100_000).contains(&args.runs) {
         let found = args.runs.to_string();
@@ -81,13 +79,10 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
         }
         all.extend(table);
     } else {
-        let contents = plan::picture_inputs(&scene);
-        let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
-        let mut frame = gpu.frame(plan, &contents)?;
-        let timed = time(&gpu, &mut frame, args, quality.azimuths, &bar);
-        let plan = frame.plan().clone();
-        gpu.end(frame);
-        let (table, last) = timed?;
+        let inputs = plan::picture_inputs(&scene);
+        let (table, last) = gpu.with_frame(plan.clone(), &inputs, |gpu, frame| {
+            time(gpu, frame, args, quality.azimuths, &bar)
+        })?;
         if let Some(path) = &args.trace {
             files::write_json(path, &rows::trace(&device, &driver, &plan, &last))?;
         }
@@ -124,12 +119,12 @@ fn check_specular(scene: &Scene, quality: &Quality, args: &BenchArgs) -> Result<
     if scene.surface.specular.is_none() {
         return Ok(());
     }
-    let (with, expected) = match () {
-        () if quality.bounces.count > 0 => {
-            ("--bounces", "none: check bounces of specular light with `reference` and `compare`")
-        }
-        () if !args.sizes.is_empty() => ("--sizes", "none: its errors cover diffuse light only"),
-        () => return Ok(()),
+    let (with, expected) = if quality.bounces.count > 0 {
+        ("--bounces", "none: check bounces of specular light with `reference` and `compare`")
+    } else if !args.sizes.is_empty() {
+        ("--sizes", "none: its errors cover diffuse light only")
+    } else {
+        return Ok(());
     };
     Err(Error::setting(format!("--specular with bench {with}"), "Phong specular", expected))
 }
@@ -157,20 +152,13 @@ fn check_names(wanted: &[String], plan: &Plan, forms: bool) -> Result<()> {
     let mut known: Vec<&str> = plan.passes.iter().map(Pass::name).collect();
     known.dedup();
     if forms {
-        known.extend([
-            "horizon_sweep",
-            "sky_shade",
-            "surface_sweep",
-            "pyramid_march",
-            "horizon_march",
-        ]);
+        known.extend(["horizon_sweep", "sky_shade", "surface_sweep"]);
+        known.extend(["pyramid_march", "horizon_march"]);
     }
     known.sort_unstable();
     known.dedup();
-    match wanted
-        .iter()
-        .find(|w| !known.contains(&w.as_str()) && !plan.passes.iter().any(|p| named(&p.label(), w)))
-    {
+    let is_label = |w: &str| plan.passes.iter().any(|p| named(&p.label(), w));
+    match wanted.iter().find(|w| !known.contains(&w.as_str()) && !is_label(w)) {
         Some(none) => Err(Error::setting("--passes", none.as_str(), known.join(", "))),
         None => Ok(()),
     }
@@ -181,15 +169,26 @@ fn enough(begun: Instant, runs: usize) -> bool {
     runs >= FEWEST && begun.elapsed() > ROW_TIME
 }
 
-/// Whole frames, after one to warm up.
-fn flow(gpu: &Headless, frame: &mut Frame, most: usize) -> Result<Vec<Vec<Timing>>> {
-    gpu.draw(frame)?;
+/// Runs of these passes, after one to warm up.
+fn repeated(
+    gpu: &Headless,
+    frame: &mut Frame,
+    passes: &[usize],
+    most: usize,
+) -> Result<Vec<Vec<Timing>>> {
+    gpu.draw_passes(frame, passes)?;
     let begun = Instant::now();
     let mut runs = Vec::new();
     while runs.len() < most && !enough(begun, runs.len()) {
-        runs.push(gpu.draw(frame)?);
+        runs.push(gpu.draw_passes(frame, passes)?);
     }
     Ok(runs)
+}
+
+/// Whole frames.
+fn flow(gpu: &Headless, frame: &mut Frame, most: usize) -> Result<Vec<Vec<Timing>>> {
+    let all: Vec<usize> = (0..frame.plan().passes.len()).collect();
+    repeated(gpu, frame, &all, most)
 }
 
 /// Rows of a frame in both modes, and its last run.
@@ -201,12 +200,11 @@ fn time(
     bar: &indicatif::ProgressBar,
 ) -> Result<(Vec<Row>, Vec<Timing>)> {
     let plan = frame.plan().clone();
-    let wanted: Vec<usize> = (0..plan.passes.len())
-        .filter(|i| {
-            let label = plan.passes[*i].label();
-            args.passes.is_empty() || args.passes.iter().any(|w| named(&label, w))
-        })
-        .collect();
+    let is_wanted = |i: &usize| {
+        let label = plan.passes[*i].label();
+        args.passes.is_empty() || args.passes.iter().any(|w| named(&label, w))
+    };
+    let wanted: Vec<usize> = (0..plan.passes.len()).filter(is_wanted).collect();
     let every: Vec<&Pass> = plan.passes.iter().collect();
     let mut rows = Vec::new();
     bar.set_message("frames in flow");
@@ -224,12 +222,7 @@ fn time(
     for &i in &wanted {
         let pass = &plan.passes[i];
         bar.set_message(format!("{} alone", pass.label()));
-        let mut alone = Vec::new();
-        let begun = Instant::now();
-        gpu.draw_passes(frame, &[i])?;
-        while alone.len() < args.runs && !enough(begun, alone.len()) {
-            alone.push(gpu.draw_passes(frame, &[i])?);
-        }
+        let alone = repeated(gpu, frame, &[i], args.runs)?;
         let times = sums(&alone, |_| true);
         fewest = fewest.min(times.len());
         totals.iter_mut().zip(&times).for_each(|(total, ns)| *total += ns);

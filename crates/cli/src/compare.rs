@@ -9,7 +9,7 @@ use ridgelight_io::{Channels, Layer};
 
 use crate::args::CompareArgs;
 use crate::setup::{self, Outcome};
-use pairs::{Pairs, difference};
+use pairs::{Pair, Pairs};
 use rows::{Excess, Row};
 
 pub fn run(args: &CompareArgs) -> Result<Outcome> {
@@ -22,22 +22,19 @@ pub fn run(args: &CompareArgs) -> Result<Outcome> {
     let pairs = Pairs::of(args, &a, &b)?;
     let bar = crate::terminal::progress(args.quiet, "comparing");
     let mut maps = Vec::new();
-    let (channels, pictures) = if args.horizons {
-        (vec![rows::horizons(args, &pairs)?], Vec::new())
+    let (mut channels, mut pictures) = (Vec::new(), Vec::new());
+    if args.horizons {
+        channels.push(rows::horizons(args, &pairs)?);
     } else {
-        let channels = pairs
-            .channels
-            .iter()
-            .map(|pair| rows::channel(args, &pairs, pair))
-            .collect::<Result<_>>()?;
-        let mut pictures = Vec::new();
+        for pair in &pairs.channels {
+            channels.push(rows::channel(args, &pairs, pair)?);
+        }
         for picture in pairs.pictures() {
             let map = picture.flip(args, &pairs)?;
             pictures.push(rows::picture(args, &pairs, &picture.layer, &map)?);
             maps.push((picture.layer, map));
         }
-        (channels, pictures)
-    };
+    }
     bar.finish_and_clear();
     let rows = || channels.iter().chain(&pictures);
     let mut beyond: Vec<Excess> = pairs.lost.iter().map(|name| Excess::lost(name)).collect();
@@ -55,23 +52,29 @@ pub fn run(args: &CompareArgs) -> Result<Outcome> {
         write_difference(path, &pairs, &maps)?;
     }
     if let Some(path) = &args.json {
-        files::write_json(path, &figures(args, &pairs, &channels, &pictures, &beyond))?;
+        let of = |rows: &[Row]| rows.iter().map(|row| row.json.clone()).collect::<Vec<_>>();
+        let figures = serde_json::json!({
+            "rows": of(&channels),
+            "flip": of(&pictures),
+            "exposure": args.exposure,
+            "pixels_per_degree": pairs::pixels_per_degree(args),
+            "only_in_a": pairs.only_a,
+            "only_in_b": pairs.only_b,
+            "beyond": !beyond.is_empty(),
+            "excesses": beyond,
+        });
+        files::write_json(path, &figures)?;
     }
     Ok(if beyond.is_empty() { Outcome::Done } else { Outcome::Beyond })
 }
 
 /// Checks arguments before a file is read.
 fn check(args: &CompareArgs) -> Result<()> {
-    if let Some(path) = &args.diff {
-        setup::check_output("--diff", path, &["exr", "npy"])?;
+    let outputs = [("--diff", args.diff.as_deref()), ("--json", args.json.as_deref())];
+    for ((flag, path), kinds) in outputs.into_iter().zip([&["exr", "npy"][..], &["json"]]) {
+        path.map_or(Ok(()), |path| setup::check_output(flag, path, kinds))?;
     }
-    if let Some(path) = &args.json {
-        setup::check_output("--json", path, &["json"])?;
-    }
-    setup::check_distinct(
-        &[("--diff", args.diff.as_deref()), ("--json", args.json.as_deref())],
-        &[&args.result, &args.reference],
-    )?;
+    setup::check_distinct(&outputs, &[&args.result, &args.reference])?;
     for (flag, bound) in args.bounds.all() {
         if let Some(bound) = bound.filter(|x| x.is_nan() || *x < 0.0) {
             return Err(Error::setting(flag, bound.to_string(), "0 or more"));
@@ -87,44 +90,20 @@ fn check(args: &CompareArgs) -> Result<()> {
     Ok(())
 }
 
-fn figures(
-    args: &CompareArgs,
-    pairs: &Pairs,
-    channels: &[Row],
-    pictures: &[Row],
-    beyond: &[Excess],
-) -> serde_json::Value {
-    let of = |rows: &[Row]| rows.iter().map(|row| row.json.clone()).collect::<Vec<_>>();
-    let excesses: Vec<_> = beyond.iter().map(Excess::json).collect();
-    serde_json::json!({
-        "rows": of(channels),
-        "flip": of(pictures),
-        "exposure": args.exposure,
-        "pixels_per_degree": pairs::pixels_per_degree(args),
-        "only_in_a": pairs.only_a,
-        "only_in_b": pairs.only_b,
-        "beyond": !beyond.is_empty(),
-        "excesses": excesses,
-    })
-}
-
 /// A ꟻLIP map per layer, by the layer's name.
 fn write_difference(path: &Path, pairs: &Pairs, maps: &[(String, Vec<f32>)]) -> Result<()> {
-    let differences: Vec<Vec<f32>> = pairs
-        .channels
-        .iter()
-        .map(|pair| pair.a.iter().zip(pair.b).map(|(a, b)| difference(*a, *b)).collect())
-        .collect();
+    // Equal infinities have no difference.
+    let difference = |(a, b): (&f32, &f32)| if a == b { 0.0 } else { a - b };
+    let of = |pair: &Pair| pair.a.iter().zip(pair.b).map(difference).collect();
+    let differences: Vec<Vec<f32>> = pairs.channels.iter().map(of).collect();
     let (rows, cols) = (pairs.rows, pairs.cols);
     if setup::extension(path) == "npy" {
         let shape = [differences.len(), rows, cols];
         return files::write_npy_f32(path, &shape, differences.iter().map(Vec::as_slice));
     }
     let layer = |name: &str, channels| Layer { name: name.to_owned(), channels };
-    let mut layers: Vec<Layer> = pairs
-        .channels
-        .iter()
-        .zip(&differences)
+    let planes = pairs.channels.iter().zip(&differences);
+    let mut layers: Vec<Layer> = planes
         .map(|(pair, plane)| layer("difference", Channels::Scalar(pair.name, plane)))
         .collect();
     layers.extend(maps.iter().map(|(name, map)| layer("flip", Channels::Scalar(name, map))));

@@ -1,6 +1,6 @@
 //! `render`: lights a field and writes a picture.
 
-mod auto;
+pub mod auto;
 pub mod camera;
 
 use ridgelight::gpu::{Headless, Pixels};
@@ -42,7 +42,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
         ));
     }
     camera::check_layers(args)?;
-    let goal = auto::goal(&args.auto)?;
+    let goal = auto::goal(args.auto.max_error, args.auto.time_budget)?;
     auto::say_idle(&args.auto, args.global.quiet);
     let mut quality = args.quality.quality()?;
     let field = setup::field(&args.input.path, &args.surface.field, &args.global)?;

@@ -2,7 +2,7 @@
 
 mod settings_used;
 
-use ridgelight::gpu::{self, Headless, HeadlessOptions};
+use ridgelight::gpu::{self, Headless, HeadlessOptions, Pixels, Timing};
 use ridgelight::plan::{Limits, Picture, Plan};
 use ridgelight::scene::{Albedo, Border, HeightField, Lights, Scene, Specular, Surface, setting};
 use ridgelight::{Error, Result};
@@ -159,6 +159,26 @@ pub fn mask_voids(field: &HeightField, planes: &mut [f32], channels: usize) {
             }
         }
     }
+}
+
+/// Radiance of a picture: one plane where all is grey, else three; voids are NaN.
+pub fn planes(pixels: &Pixels, field: &HeightField) -> Vec<Vec<f32>> {
+    let channel = |c: usize| {
+        let all = pixels.values.iter().skip(c).step_by(pixels.channels);
+        let mut plane: Vec<f32> = all.copied().collect();
+        mask_voids(field, &mut plane, 1);
+        plane
+    };
+    (0..pixels.channels.min(3)).map(channel).collect()
+}
+
+/// Nanoseconds of all passes.
+pub fn total_ns(times: &[Timing]) -> f64 {
+    times.iter().map(|t| t.ns).sum()
+}
+
+pub fn no_timestamps() -> Error {
+    Error::Device { doing: "timing a frame".into(), reason: "the device has no timestamps".into() }
 }
 
 pub fn extension(path: &Path) -> String {

@@ -21,19 +21,20 @@ use ridgelight::plan::{self, Picture};
 use ridgelight::scene::{Bounces, Quality};
 use ridgelight::{Error, Result};
 use ridgelight_io as files;
-use ridgelight_trade::trade::{Place, Rule, ladders, places, refused, start_of};
+use ridgelight_trade::trade::{Place, ladders, places, refused, start_of};
 
 use crate::args::TradeArgs;
+use crate::render::auto;
 use crate::setup::{self, Outcome};
 use ground_truth::GroundTruth;
-use picture::Tones;
 use report::Report;
 use rig::{Budget, Rig};
+use walk::Walk;
 
 const FILES: [&str; 3] = ["trade.html", "trade.json", "trade.csv"];
 
 pub fn run(args: &TradeArgs) -> Result<Outcome> {
-    let rule = rule(args)?;
+    let goal = auto::goal(args.max_error, args.time_budget)?;
     let budget = budget(args)?;
     check_folder(&args.output)?;
     if let Some(json) = &args.global.json {
@@ -62,18 +63,11 @@ pub fn run(args: &TradeArgs) -> Result<Outcome> {
     let planned = |limits: &plan::Limits| plan::picture(&scene, &start, limits, Picture::default());
     setup::check_plan(&args.global, planned)?;
     if let Some(path) = args.reference.as_deref().filter(|p| setup::extension(p) != "exr") {
-        let found = path.display().to_string();
-        return Err(Error::setting(
-            "--reference",
-            found,
-            "an .exr: other formats clip bright values",
-        ));
+        let expected = "an .exr: other formats clip bright values";
+        return Err(Error::setting("--reference", path.display().to_string(), expected));
     }
-    let mut scene_metadata = setup::asked(
-        &args.input.path,
-        &args.surface.field,
-        Some((&args.lights, &args.surface, &scene)),
-    );
+    let lit = Some((&args.lights, &args.surface, &scene));
+    let mut scene_metadata = setup::asked(&args.input.path, &args.surface.field, lit);
     if args.bounces > 0 {
         scene_metadata.push(("bounces".to_owned(), args.bounces.to_string()));
     }
@@ -86,12 +80,8 @@ pub fn run(args: &TradeArgs) -> Result<Outcome> {
 
     let bar = crate::terminal::progress(args.global.quiet, "computing the ground truth");
     let mut rig = Rig::new(gpu, limits, &scene, budget);
-    let ground_truth = match given {
-        Some(ground_truth) => ground_truth,
-        None => GroundTruth::draw(&mut rig)?,
-    };
+    let ground_truth = given.map_or_else(|| GroundTruth::draw(&mut rig), Ok)?;
     let ground_truth_s = rig.spent();
-    let tones = Tones::of(&ground_truth);
     bar.set_message("scattering over visible points");
     let baked = baked::measure(&mut rig, &ground_truth, &start)?;
     let mut ladders = ladders(&scene, args.bounces);
@@ -104,38 +94,34 @@ pub fn run(args: &TradeArgs) -> Result<Outcome> {
         _ => None,
     };
     let refused = refused(&ladders, &places, why);
-    let (walk, recommended) = walk::walk(
-        &mut rig,
-        (&ground_truth, &tones),
-        (&ladders, &places, refused),
-        (&start, rule),
-        &bar,
-    )?;
+    let mut walk = Walk::new(&ladders, &places, &start, ground_truth.floor());
+    for (place, why) in refused {
+        walk.give_up(place, why, false);
+    }
+    let recommended = walk.run(&mut rig, &ground_truth, goal, &bar)?;
     bar.set_message("timing hull storage of the recommended settings");
     let best = &walk.points[recommended.point];
-    let draw_s = best.ratio * walk.baseline_ns() * 1e-9;
+    let draw_s = best.ratio() * walk.baseline_ns() * 1e-9;
     let hulls = hull::places(&mut rig, &places[best.place].quality, draw_s)?;
     bar.finish_and_clear();
-    let mut about = vec![
-        ("device".to_owned(), rig.gpu.report().name.clone()),
-        ("driver".to_owned(), rig.gpu.report().driver.clone()),
-        ("rows".to_owned(), scene.field.rows().to_string()),
-        ("cols".to_owned(), scene.field.cols().to_string()),
-        ("cell_m".to_owned(), format!("{},{}", scene.field.cell_m()[0], scene.field.cell_m()[1])),
+    let (field, device) = (&scene.field, rig.gpu.report());
+    let about = [
+        ("device", device.name.clone()),
+        ("driver", device.driver.clone()),
+        ("rows", field.rows().to_string()),
+        ("cols", field.cols().to_string()),
+        ("cell_m", format!("{},{}", field.cell_m()[0], field.cell_m()[1])),
     ];
-    about.extend(scene_metadata);
+    let about = about.map(|(name, value)| (name.to_owned(), value)).into_iter();
     let report = Report {
-        about,
-        ground_truth: &ground_truth,
+        about: about.chain(scene_metadata).collect(),
+        ground_truth_png: picture::light_png(&scene.field, &ground_truth.planes, &ground_truth)?,
+        ground_truth,
         ground_truth_s,
-        ground_truth_png: picture::light_png(&scene.field, &ground_truth.planes, &tones)?,
-        tones: &tones,
-        hulls: &hulls,
-        baked: &baked,
-        ladders: &ladders,
-        places: &places,
-        walk: &walk,
-        rule: walk.in_baselines(rule),
+        hulls,
+        baked,
+        walk,
+        goal,
         recommended,
         budget,
         spent_s: rig.spent(),
@@ -146,15 +132,6 @@ pub fn run(args: &TradeArgs) -> Result<Outcome> {
         crate::say!("{}", args.output.join(FILES[0]).display());
     }
     Ok(if recommended.holds { Outcome::Done } else { Outcome::Beyond })
-}
-
-fn rule(args: &TradeArgs) -> Result<Rule> {
-    for (flag, value) in [("--max-error", args.max_error), ("--time-budget", args.time_budget)] {
-        value.map_or(Ok(()), |x| crate::render::check_positive(flag, x))?;
-    }
-    let most = args.max_error.map(Rule::MaxError);
-    let longest = args.time_budget.map(|ms| Rule::MaxCost(ms * 1e6));
-    Ok(most.or(longest).unwrap_or(Rule::Knee))
 }
 
 fn budget(args: &TradeArgs) -> Result<Budget> {

@@ -10,6 +10,7 @@ mod eye;
 use super::statistics::quantiles;
 use eye::Eye;
 use ridgelight::{Error, Result};
+use serde::Serialize;
 use std::f64::consts::PI;
 use std::sync::Mutex;
 
@@ -81,7 +82,7 @@ pub fn map(
 }
 
 /// A picture's [`map`] as statistics, each in [0..1].
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct FlipError {
     /// Pixels compared.
     pub count: usize,

@@ -27,6 +27,11 @@ impl Summary {
     }
 }
 
+/// The median; `None` for no values or a NaN.
+pub fn median(samples: &[f64]) -> Option<f64> {
+    Some(Summary::of(samples)?.median)
+}
+
 /// Quantiles `shares`, each in [0..1]; sorts the values. `None` for no values.
 ///
 /// Quantile q of n values is at rank q·(n - 1) counted from 0, linear between neighbours (type 7 of

@@ -154,7 +154,7 @@ impl Screen {
     ///
     /// # Errors
     /// As there.
-    pub fn frame(&mut self, plan: Plan, contents: &[&[f32]]) -> Result<Frame> {
+    pub fn frame(&mut self, plan: Plan, contents: &[impl AsRef<[f32]>]) -> Result<Frame> {
         let frame = self.gpu.frame_in_flight(plan, contents, SLOTS)?;
         let darkened = frame.outputs.iter().try_for_each(|image| {
             let texels = image.extent.iter().map(|n| *n as usize).product::<usize>();

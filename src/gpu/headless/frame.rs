@@ -75,7 +75,7 @@ impl Headless {
     ///
     /// # Errors
     /// Contents of another size, or a device out of memory.
-    pub fn frame(&mut self, plan: Plan, contents: &[&[f32]]) -> Result<Frame> {
+    pub fn frame(&mut self, plan: Plan, contents: &[impl AsRef<[f32]>]) -> Result<Frame> {
         self.frame_in_flight(plan, contents, 1)
     }
 
@@ -84,7 +84,7 @@ impl Headless {
     pub fn frame_in_flight(
         &mut self,
         plan: Plan,
-        contents: &[&[f32]],
+        contents: &[impl AsRef<[f32]>],
         slots: usize,
     ) -> Result<Frame> {
         if let Some((_, taken)) = plan.inputs().find(|(_, r)| r.owner == Owner::InputBuffer) {
@@ -117,7 +117,7 @@ impl Headless {
     pub fn with_frame<T>(
         &mut self,
         plan: Plan,
-        contents: &[&[f32]],
+        contents: &[impl AsRef<[f32]>],
         work: impl FnOnce(&mut Self, &mut Frame) -> Result<T>,
     ) -> Result<T> {
         let mut frame = self.frame(plan, contents)?;
@@ -131,7 +131,7 @@ impl Headless {
         frame: &mut Frame,
         inputs: &[Resource],
         outputs: &[Resource],
-        contents: &[&[f32]],
+        contents: &[impl AsRef<[f32]>],
     ) -> Result<()> {
         if inputs.len() != contents.len() {
             return Err(Error::setting(
@@ -149,7 +149,7 @@ impl Headless {
             frame.outputs.push(image);
         }
         for (image, values) in frame.inputs.iter().zip(contents) {
-            self.upload(image, values)?;
+            self.upload(image, values.as_ref())?;
         }
         self.run(|commands| {
             for image in &frame.outputs {

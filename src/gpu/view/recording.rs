@@ -7,7 +7,7 @@ use super::super::renderer::transition;
 use super::pipelines::{Drawing, STAGES};
 use super::{LABELS, ViewInputs, ViewOutputs, ViewRenderer};
 use crate::gpu::{ImageArg, ImageState};
-use crate::passes::picture_tone::PictureTonePush;
+use crate::graph::shaders::PictureTonePush;
 use crate::passes::terrain_draw::TILE;
 use crate::plan::View;
 

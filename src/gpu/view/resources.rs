@@ -29,7 +29,7 @@ impl ViewRenderer {
             &self.host,
             &Recipe {
                 shaders: [
-                    shaders::TerrainDrawVert.into(),
+                    shaders::TerrainDrawVert {}.into(),
                     shaders::TerrainDrawFrag { is_grey, has_voids: self.shape.has_voids }.into(),
                 ],
                 format: drawn,
@@ -41,7 +41,7 @@ impl ViewRenderer {
             &self.host,
             &Recipe {
                 shaders: [
-                    shaders::SkyDrawVert.into(),
+                    shaders::SkyDrawVert {}.into(),
                     shaders::SkyDrawFrag { has_environment: self.shape.environment.is_some() }
                         .into(),
                 ],
@@ -56,7 +56,7 @@ impl ViewRenderer {
                 &self.host,
                 &Recipe {
                     shaders: [
-                        shaders::PictureToneVert.into(),
+                        shaders::PictureToneVert {}.into(),
                         shaders::PictureToneFrag { encodes: curve == Curve::Encode }.into(),
                     ],
                     format: self.format,

@@ -1,34 +1,8 @@
 use std::ops::Range;
 
-use crate::graph::shaders;
-use crate::graph::shaders::same_layout;
-use crate::graph::{Builder, ResourceId};
+use crate::graph::{Builder, ResourceId, shaders};
 use crate::scene::REACH_CELLS;
 use crate::scene::{Border, Curvature, HeightField, VisiblePoints};
-
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct BentDirectionsPush {
-    cols: i32,
-    rows: i32,
-    first_texel: i32,
-    first_fan: i32,
-    first_direction: i32,
-    cell_m: [f32; 2],
-    curvature: [f32; 2],
-}
-
-same_layout!(
-    BentDirectionsPush,
-    bent_directions_push,
-    cols = COLS,
-    rows = ROWS,
-    first_texel = FIRST_TEXEL,
-    first_fan = FIRST_FAN,
-    first_direction = FIRST_DIRECTION,
-    cell_m = CELL_X_M,
-    curvature = CURVATURE_X,
-);
 
 /// Some directions of every grid point, on the curved base surface. `texels` are the first texel of the
 /// directions and of the fans. `bound` are the visible points, the ground, both buffers and the output.
@@ -41,6 +15,7 @@ pub(crate) fn plan(
     bound: &[(&str, ResourceId)],
 ) {
     let [cols, rows] = [field.cols() as u32, field.rows() as u32];
+    let [cell_x, cell_y] = field.cell_m();
     let count = directions.end - directions.start;
     let rays = u64::from(cols) * u64::from(rows) * u64::from(count);
     let is_small = VisiblePoints::is_small(field.rows(), field.cols());
@@ -53,14 +28,16 @@ pub(crate) fn plan(
         part,
         "on the curved base, the direction to each visible point of the flat one",
         [cols.div_ceil(8), rows.div_ceil(8), count],
-        &BentDirectionsPush {
+        &shaders::BentDirectionsPush {
             cols: cols as i32,
             rows: rows as i32,
             first_texel: first_texel as i32,
             first_fan: first_fan as i32,
             first_direction: directions.start as i32,
-            cell_m: field.cell_m().map(|c| c as f32),
-            curvature: curvature.per_m.map(|k| k as f32),
+            cell_x_m: cell_x as f32,
+            cell_y_m: cell_y as f32,
+            curvature_x: curvature.per_m[0] as f32,
+            curvature_y: curvature.per_m[1] as f32,
         },
         bound,
         rays * (4 + 4 + 16),

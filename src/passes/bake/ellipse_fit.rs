@@ -1,32 +1,8 @@
 use std::ops::Range;
 
-use crate::graph::shaders;
-use crate::graph::shaders::same_layout;
-use crate::graph::{Builder, ResourceId};
+use crate::graph::{Builder, ResourceId, shaders};
 use crate::scene::least_radius;
 use crate::scene::{Directions, HeightField, VisiblePoints};
-
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct EllipseFitPush {
-    cols: i32,
-    rows: i32,
-    first_direction: i32,
-    end_direction: i32,
-    first_row: i32,
-    least_radius: f32,
-}
-
-same_layout!(
-    EllipseFitPush,
-    ellipse_fit_push,
-    cols = COLS,
-    rows = ROWS,
-    first_direction = FIRST_DIRECTION,
-    end_direction = END_DIRECTION,
-    first_row = FIRST_ROW,
-    least_radius = LEAST_RADIUS,
-);
 
 /// The ellipses of some rows. `bound` are the visible points, the directions (flat or on a curved base surface)
 /// and the output. `base` names the base in the label.
@@ -47,7 +23,7 @@ pub(crate) fn plan(
         &format!("{base}rows {}..{}", rows.start, rows.end),
         "the ellipse of directions in which the sky is visible",
         [cols.div_ceil(8), height.div_ceil(8), 1],
-        &EllipseFitPush {
+        &shaders::EllipseFitPush {
             cols: cols as i32,
             rows: rows.end as i32,
             first_direction: first as i32,

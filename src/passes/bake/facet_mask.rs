@@ -1,34 +1,11 @@
 use std::ops::Range;
 
-use crate::graph::shaders;
-use crate::graph::shaders::same_layout;
-use crate::graph::{Builder, ResourceId};
-use crate::passes::LandPush;
+use crate::graph::{Builder, ResourceId, shaders};
 use crate::passes::blocks::Blocks;
 use crate::scene::{Border, HeightField};
 
 /// Directions whose bits share one word, as in `facets.glsl`.
 pub const DIRECTIONS_A_WORD: usize = 15;
-
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct FacetMaskPush {
-    land: LandPush,
-    highest_m: f32,
-    first_layer: i32,
-    first_direction: i32,
-    end_direction: i32,
-}
-
-same_layout!(
-    FacetMaskPush,
-    facet_mask_push,
-    land = COLS,
-    highest_m = HIGHEST_M,
-    first_layer = FIRST_LAYER,
-    first_direction = FIRST_DIRECTION,
-    end_direction = END_DIRECTION,
-);
 
 /// Some layers of the image. `texels` are those of all directions in the buffer "directions".
 pub(crate) fn plan(
@@ -46,8 +23,8 @@ pub(crate) fn plan(
         &format!("layers {}..{}", layers.start, layers.end),
         "which triangles are visible from each direction",
         [cells_x.div_ceil(8), cells_y.div_ceil(8), layers.end - layers.start],
-        &FacetMaskPush {
-            land: LandPush::of(field, blocks),
+        &shaders::FacetMaskPush {
+            land: shaders::LandPush::of(field, blocks),
             highest_m,
             first_layer: layers.start as i32,
             first_direction: texels.start as i32,

@@ -1,27 +1,7 @@
 use std::ops::Range;
 
-use crate::graph::shaders;
-use crate::graph::shaders::same_layout;
-use crate::graph::{Builder, ResourceId};
+use crate::graph::{Builder, ResourceId, shaders};
 use crate::scene::HeightField;
-
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct FanWeightsPush {
-    cols: i32,
-    rows: i32,
-    first_fan: i32,
-    first_direction: i32,
-}
-
-same_layout!(
-    FanWeightsPush,
-    fan_weights_push,
-    cols = COLS,
-    rows = ROWS,
-    first_fan = FIRST_FAN,
-    first_direction = FIRST_DIRECTION,
-);
 
 /// Some directions of every grid point. `bound` are the directions on the curved base surface, the fans from
 /// texel `first_fan`, and the output.
@@ -36,11 +16,11 @@ pub(crate) fn plan(
     let count = directions.end - directions.start;
     let rays = u64::from(cols) * u64::from(rows) * u64::from(count);
     builder.pass(
-        shaders::FanWeights,
+        shaders::FanWeights {},
         part,
         "the solid angle of each direction on the curved base",
         [cols.div_ceil(8), rows.div_ceil(8), count],
-        &FanWeightsPush {
+        &shaders::FanWeightsPush {
             cols: cols as i32,
             rows: rows as i32,
             first_fan: first_fan as i32,

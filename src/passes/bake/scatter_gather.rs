@@ -1,51 +1,7 @@
 use std::ops::Range;
 
-use crate::graph::shaders;
-use crate::graph::shaders::same_layout;
-use crate::graph::{Builder, ResourceId};
+use crate::graph::{Builder, ResourceId, shaders};
 use crate::scene::{Albedo, Curvature, HeightField, PhongSpecular, Specular, VisiblePoints};
-
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct ScatterGatherPush {
-    cols: i32,
-    rows: i32,
-    first_link: i32,
-    steps: i32,
-    step: i32,
-    first_path: i32,
-    paths: i32,
-    first_direction: i32,
-    first_sun: i32,
-    suns: i32,
-    weight_sr: f32,
-    exponent: f32,
-    specular_scale: f32,
-    first_view: i32,
-    curvature: [f32; 2],
-    albedo: [f32; 4],
-}
-
-same_layout!(
-    ScatterGatherPush,
-    scatter_gather_push,
-    cols = COLS,
-    rows = ROWS,
-    first_link = FIRST_LINK,
-    steps = STEPS,
-    step = STEP,
-    first_path = FIRST_PATH,
-    paths = PATHS,
-    first_direction = FIRST_DIRECTION,
-    first_sun = FIRST_SUN,
-    suns = SUNS,
-    weight_sr = WEIGHT_SR,
-    exponent = EXPONENT,
-    specular_scale = SPECULAR_SCALE,
-    first_view = FIRST_VIEW,
-    curvature = CURVATURE_X,
-    albedo = ALBEDO,
-);
 
 /// Where the light of visible points comes from; numbered as in the shader.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -127,7 +83,7 @@ pub(crate) fn plan(
         &part,
         why,
         [cols.div_ceil(8), rows.div_ceil(8), if sums { views } else { count }],
-        &ScatterGatherPush {
+        &shaders::ScatterGatherPush {
             cols: cols as i32,
             rows: rows as i32,
             first_link: steps.texels[0] as i32 + (2 * paths.start * steps.count) as i32,
@@ -142,7 +98,8 @@ pub(crate) fn plan(
             exponent: specular.exponent,
             specular_scale: specular.scale,
             first_view: steps.texels[2] as i32,
-            curvature: steps.curvature.per_m.map(|k| k as f32),
+            curvature_x: steps.curvature.per_m[0] as f32,
+            curvature_y: steps.curvature.per_m[1] as f32,
             albedo,
         },
         bound,
@@ -164,7 +121,11 @@ pub(crate) fn plan_nothing(
         "nothing",
         "no light: nothing is scattered",
         [cols.div_ceil(8), rows.div_ceil(8), views],
-        &ScatterGatherPush { cols: cols as i32, rows: rows as i32, ..bytemuck::Zeroable::zeroed() },
+        &shaders::ScatterGatherPush {
+            cols: cols as i32,
+            rows: rows as i32,
+            ..bytemuck::Zeroable::zeroed()
+        },
         &[("scattered", scattered)],
         16 * grid_points * u64::from(views),
         grid_points * u64::from(views),

@@ -1,31 +1,8 @@
 use std::ops::Range;
 
-use crate::graph::shaders;
-use crate::graph::shaders::same_layout;
-use crate::graph::{Builder, ResourceId};
-use crate::passes::LandPush;
+use crate::graph::{Builder, ResourceId, shaders};
 use crate::passes::blocks::Blocks;
 use crate::scene::{Border, HeightField};
-
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct VisiblePointsPush {
-    land: LandPush,
-    highest_m: f32,
-    first_layer: i32,
-    first_direction: i32,
-    end_direction: i32,
-}
-
-same_layout!(
-    VisiblePointsPush,
-    visible_points_push,
-    land = COLS,
-    highest_m = HIGHEST_M,
-    first_layer = FIRST_LAYER,
-    first_direction = FIRST_DIRECTION,
-    end_direction = END_DIRECTION,
-);
 
 /// The visible points in the directions of some layers of an image. `texels` are those of the image's
 /// directions in the buffer "directions".
@@ -54,8 +31,8 @@ pub(crate) fn plan(
         part,
         "the visible point of each grid point in each direction",
         [cols.div_ceil(8), rows.div_ceil(8), count],
-        &VisiblePointsPush {
-            land: LandPush::of(field, blocks),
+        &shaders::VisiblePointsPush {
+            land: shaders::LandPush::of(field, blocks),
             highest_m,
             first_layer: layers.start as i32,
             first_direction: texels.start as i32,

@@ -1,8 +1,6 @@
 use std::ops::Range;
 
-use crate::graph::shaders;
-use crate::graph::shaders::same_layout;
-use crate::graph::{Builder, ResourceId};
+use crate::graph::{Builder, ResourceId, shaders};
 use crate::passes::bounce_nodes::NodeSum;
 use crate::passes::bounces::Bounce;
 use crate::passes::pyramid::Pyramid;
@@ -11,52 +9,8 @@ use crate::passes::sphere_shade::MOST_TURNS;
 use crate::passes::sweep::warm_up;
 use crate::scene::{HeightField, Levels, Receiver};
 
-/// Push constants of this pass and of `specular_gather`.
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-pub(crate) struct GatherPush {
-    cols: i32,
-    rows: i32,
-    cell_x_m: f32,
-    cell_y_m: f32,
-    azimuths: i32,
-    first_azimuth: i32,
-    last_azimuth: i32,
-    warm_up_cols: i32,
-    warm_up_rows: i32,
-    fine_samples: i32,
-    width_shift: i32,
-    growth: f32,
-    shade_fine: i32,
-    shade_shift: i32,
-    step_shade: i32,
-    step_height: i32,
-}
-
-same_layout!(
-    GatherPush,
-    [bounce_gather_push, specular_gather_push],
-    {
-        cols = COLS,
-        rows = ROWS,
-        cell_x_m = CELL_X_M,
-        cell_y_m = CELL_Y_M,
-        azimuths = AZIMUTHS,
-        first_azimuth = FIRST_AZIMUTH,
-        last_azimuth = LAST_AZIMUTH,
-        warm_up_cols = WARM_UP_COLS,
-        warm_up_rows = WARM_UP_ROWS,
-        fine_samples = FINE_SAMPLES,
-        width_shift = WIDTH_SHIFT,
-        growth = GROWTH,
-        shade_fine = SHADE_FINE,
-        shade_shift = SHADE_SHIFT,
-        step_shade = STEP_SHADE,
-        step_height = STEP_HEIGHT,
-    }
-);
-
-impl GatherPush {
+/// Of this pass and of `specular_gather`.
+impl shaders::GatherPush {
     /// Push constants for `range` of `azimuths`.
     pub(crate) fn of(field: &HeightField, of: &Pyramids, azimuths: u32, range: Range<u32>) -> Self {
         let [cell_x, cell_y] = field.cell_m();
@@ -180,7 +134,7 @@ pub(crate) fn plan(
                 }
             ),
             [across.div_ceil(8), along.div_ceil(8), 1],
-            &GatherPush::of(field, of, azimuths, first..last),
+            &shaders::GatherPush::of(field, of, azimuths, first..last),
             &bound,
             grid_points * (2 * 16 + march_samples * (4 + 16)),
             grid_points * u64::from(count),

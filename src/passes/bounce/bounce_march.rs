@@ -1,30 +1,9 @@
-use crate::graph::Builder;
-use crate::graph::shaders;
-use crate::graph::shaders::same_layout;
-use crate::passes::LandPush;
+use crate::graph::{Builder, shaders};
 use crate::passes::blocks::Blocks;
 use crate::passes::bounce_nodes::NodeSum;
 use crate::passes::bounces::Bounce;
 use crate::passes::sphere_shade::MOST_TURNS;
 use crate::scene::Scene;
-
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct BounceMarchPush {
-    land: LandPush,
-    azimuths: i32,
-    first_azimuth: i32,
-    last_azimuth: i32,
-}
-
-same_layout!(
-    BounceMarchPush,
-    bounce_march_push,
-    land = COLS,
-    azimuths = AZIMUTHS,
-    first_azimuth = FIRST_AZIMUTH,
-    last_azimuth = LAST_AZIMUTH,
-);
 
 /// Gathers bounced light at every grid point, or at every node, by brute force. As many dispatches as its
 /// azimuths need.
@@ -60,8 +39,8 @@ pub(crate) fn plan(
             &part,
             format!("{}, every visible interval along {count} azimuths", bounce.why),
             [across.div_ceil(8), along.div_ceil(8), 1],
-            &BounceMarchPush {
-                land: LandPush::of(field, blocks),
+            &shaders::BounceMarchPush {
+                land: shaders::LandPush::of(field, blocks),
                 azimuths: azimuths as i32,
                 first_azimuth: first as i32,
                 last_azimuth: last as i32,

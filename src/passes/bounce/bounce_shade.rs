@@ -1,26 +1,6 @@
-use crate::graph::shaders;
-use crate::graph::shaders::same_layout;
-use crate::graph::{Builder, ResourceId};
+use crate::graph::{Builder, ResourceId, shaders};
 use crate::passes::bounces::Bounce;
 use crate::scene::HeightField;
-
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct BounceShadePush {
-    cols: i32,
-    rows: i32,
-    cell_x_m: f32,
-    cell_y_m: f32,
-}
-
-same_layout!(
-    BounceShadePush,
-    bounce_shade_push,
-    cols = COLS,
-    rows = ROWS,
-    cell_x_m = CELL_X_M,
-    cell_y_m = CELL_Y_M,
-);
 
 /// Irradiance at every grid point, from that at the nodes around it.
 pub(crate) fn plan(
@@ -38,7 +18,7 @@ pub(crate) fn plan(
         &bounce.name,
         "mean radiance of the ground visible from nodes, times each texel's own share of ground",
         [size[0].div_ceil(8), size[1].div_ceil(8), 1],
-        &BounceShadePush {
+        &shaders::BounceShadePush {
             cols: size[0] as i32,
             rows: size[1] as i32,
             cell_x_m: cell_x as f32,

@@ -1,42 +1,10 @@
-use crate::graph::shaders;
-use crate::graph::shaders::same_layout;
-use crate::graph::{Builder, ResourceId};
+use crate::graph::{Builder, ResourceId, shaders};
 use crate::passes::batch::Batch;
 use crate::passes::bounce_nodes::NodeSum;
 use crate::passes::bounces::Bounce;
 use crate::passes::nodes::Nodes;
 use crate::passes::sphere_shade::MOST_TURNS;
 use crate::scene::Border;
-
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct BounceWalkPush {
-    cols: i32,
-    rows: i32,
-    cell_x_m: f32,
-    cell_y_m: f32,
-    warm_up: i32,
-    first_azimuth: u32,
-    azimuth_count: u32,
-    clears: u32,
-    is_last: u32,
-    begin: u32,
-}
-
-same_layout!(
-    BounceWalkPush,
-    bounce_walk_push,
-    cols = COLS,
-    rows = ROWS,
-    cell_x_m = CELL_X_M,
-    cell_y_m = CELL_Y_M,
-    warm_up = WARM_UP,
-    first_azimuth = FIRST_AZIMUTH,
-    azimuth_count = AZIMUTH_COUNT,
-    clears = CLEARS,
-    is_last = IS_LAST,
-    begin = BEGIN,
-);
 
 /// What a walk reads: heights and the results of a sweep.
 pub(crate) struct Swept {
@@ -118,7 +86,7 @@ pub(crate) fn plan(
                 &format!("{part}{which}{turn}"),
                 format!("{}, visible intervals along {} azimuths", bounce.why, last - first),
                 [along.div_ceil(8), across.div_ceil(8), 1],
-                &BounceWalkPush {
+                &shaders::BounceWalkPush {
                     cols: cols as i32,
                     rows: rows as i32,
                     cell_x_m: cell_m[0] as f32,

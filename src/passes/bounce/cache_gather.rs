@@ -1,28 +1,8 @@
-use crate::graph::shaders;
-use crate::graph::shaders::same_layout;
-use crate::graph::{Builder, ResourceId};
+use crate::graph::{Builder, ResourceId, shaders};
 use crate::passes::bounce_nodes::NodeSum;
 use crate::passes::bounces::Bounce;
 use crate::scene::Border;
 use std::ops::Range;
-
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct CacheGatherPush {
-    cols: i32,
-    rows: i32,
-    begin: u32,
-    count: u32,
-}
-
-same_layout!(
-    CacheGatherPush,
-    cache_gather_push,
-    cols = COLS,
-    rows = ROWS,
-    begin = BEGIN,
-    count = COUNT,
-);
 
 /// One more bounce at every node, from the visibility cache that the first bounce left along some of the
 /// `azimuths` where it was `walked`, at every second node.
@@ -46,7 +26,12 @@ pub(crate) fn plan(
         &bounce.name,
         format!("{}, by the visibility cache of {count} azimuths", bounce.why),
         [nodes_x.div_ceil(8), nodes_y.div_ceil(8), 1],
-        &CacheGatherPush { cols: size[0] as i32, rows: size[1] as i32, begin: circle.start, count },
+        &shaders::CacheGatherPush {
+            cols: size[0] as i32,
+            rows: size[1] as i32,
+            begin: circle.start,
+            count,
+        },
         &[
             ("visibility_cache", visibility_cache),
             ("azimuths", azimuths),

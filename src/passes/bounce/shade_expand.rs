@@ -1,24 +1,6 @@
-use crate::graph::shaders;
-use crate::graph::shaders::same_layout;
-use crate::graph::{Builder, ResourceId};
+use crate::graph::{Builder, ResourceId, shaders};
 use crate::passes::bounces::Bounce;
 use crate::passes::pyramid::Pyramid;
-
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct ShadeExpandPush {
-    cols: i32,
-    rows: i32,
-    width_shift: i32,
-}
-
-same_layout!(
-    ShadeExpandPush,
-    shade_expand_push,
-    cols = COLS,
-    rows = ROWS,
-    width_shift = WIDTH_SHIFT,
-);
 
 /// Every level of exit radiance at every grid point.
 pub(crate) fn plan(
@@ -34,7 +16,7 @@ pub(crate) fn plan(
         &bounce.name,
         format!("{} levels of radiance at every texel, by B-splines", pyramid.levels()),
         [cols.div_ceil(8), rows.div_ceil(8), pyramid.levels()],
-        &ShadeExpandPush {
+        &shaders::ShadeExpandPush {
             cols: cols as i32,
             rows: rows as i32,
             width_shift: pyramid.width_shift() as i32,

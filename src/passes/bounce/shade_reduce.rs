@@ -1,6 +1,4 @@
-use crate::graph::shaders;
-use crate::graph::{Builder, ResourceId};
-use crate::passes::ReducePush;
+use crate::graph::{Builder, ResourceId, shaders};
 use crate::passes::bounces::Bounce;
 use crate::passes::pyramid::Pyramid;
 
@@ -25,7 +23,7 @@ pub(crate) fn plan(
         &format!("{} level {number}", bounce.name),
         format!("radiance every {apart:.1} texels"),
         [cols.div_ceil(8), rows.div_ceil(8), 1],
-        &ReducePush::of(pyramid, number),
+        &shaders::ReducePush::of(pyramid, number),
         &[("exit_radiance", bounce.exit), ("shade_levels", levels), ("shade_table", table)],
         16 * (level.texels() + source.texels()),
         level.texels(),

@@ -1,6 +1,5 @@
-use crate::graph::shaders;
-use crate::graph::{Builder, ResourceId};
-use crate::passes::bounce_gather::{GatherPush, Pyramids};
+use crate::graph::{Builder, ResourceId, shaders};
+use crate::passes::bounce_gather::Pyramids;
 use crate::passes::bounced_specular::{BouncedSpecular, ExitLight, Vectors};
 use crate::passes::bounces::Bounce;
 use crate::passes::sphere_shade::MOST_TURNS;
@@ -78,7 +77,7 @@ pub(crate) fn plan(
                 }
             ),
             [cols.div_ceil(8), rows.div_ceil(8), 1],
-            &GatherPush::of(field, of, azimuths, first..last),
+            &shaders::GatherPush::of(field, of, azimuths, first..last),
             &bound,
             grid_points * (2 * 16 + 2 * 16 * u64::from(layers) + rays * (4 + ray_bytes)),
             grid_points * u64::from(count),

@@ -1,6 +1,4 @@
-use crate::graph::shaders;
-use crate::graph::{Builder, ResourceId};
-use crate::passes::ReducePush;
+use crate::graph::{Builder, ResourceId, shaders};
 use crate::passes::bounced_specular::BouncedSpecular;
 use crate::passes::pyramid::Pyramid;
 
@@ -22,7 +20,7 @@ pub(crate) fn plan(
         &format!("{name} level {number}"),
         format!("radiance by direction every {apart:.1} texels"),
         [cols.div_ceil(8), rows.div_ceil(8), layers],
-        &ReducePush::of(pyramid, number),
+        &shaders::ReducePush::of(pyramid, number),
         &[
             ("exit_vectors", exit),
             ("vector_source", levels),

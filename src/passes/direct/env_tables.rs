@@ -1,27 +1,5 @@
-use crate::graph::shaders;
-use crate::graph::shaders::same_layout;
-use crate::graph::{Builder, ResourceId};
+use crate::graph::{Builder, ResourceId, shaders};
 use crate::scene::{Border, Environment};
-
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct EnvTablesPush {
-    height: i32,
-    rows: i32,
-    nodes: i32,
-    azimuth_count: i32,
-    bottom_rad: f32,
-}
-
-same_layout!(
-    EnvTablesPush,
-    env_tables_push,
-    height = HEIGHT,
-    rows = ROWS,
-    nodes = NODES,
-    azimuth_count = AZIMUTH_COUNT,
-    bottom_rad = BOTTOM_RAD,
-);
 
 /// Tabulates the light of each azimuth's wedge above each elevation.
 pub(crate) fn plan(
@@ -35,11 +13,11 @@ pub(crate) fn plan(
     let rows_kept = environment.rows_above_ground(border) as u32;
     let words = u64::from(azimuths) * 3 * u64::from(rows_kept + nodes);
     builder.pass(
-        shaders::EnvTables,
+        shaders::EnvTables {},
         "",
         format!("light above each of {nodes} elevations, so that shading looks up instead of integrating"),
         [1, azimuths.div_ceil(4), 1],
-        &EnvTablesPush {
+        &shaders::EnvTablesPush {
             height: environment.height() as i32,
             rows: rows_kept as i32,
             nodes: nodes as i32,

@@ -1,27 +1,5 @@
-use crate::graph::shaders;
-use crate::graph::shaders::same_layout;
-use crate::graph::{Builder, ResourceId};
+use crate::graph::{Builder, ResourceId, shaders};
 use crate::passes::dirty_list;
-
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct LightResolvePush {
-    cols: i32,
-    rows: i32,
-    clears: u32,
-    texel: i32,
-    colour: [f32; 4],
-}
-
-same_layout!(
-    LightResolvePush,
-    light_resolve_push,
-    cols = COLS,
-    rows = ROWS,
-    clears = CLEARS,
-    texel = TEXEL,
-    colour = COLOUR,
-);
 
 /// One light's sum and where it is added.
 pub(crate) struct Light {
@@ -69,7 +47,7 @@ pub(crate) fn plan(builder: &mut Builder, [cols, rows]: [u32; 2], part: &str, li
         part,
         "the light's sum, coloured, into the picture",
         [cols.div_ceil(8), rows.div_ceil(8), 1],
-        &LightResolvePush {
+        &shaders::LightResolvePush {
             cols: cols as i32,
             rows: rows as i32,
             clears: u32::from(light.radiance.is_some_and(|r| r.1)),

@@ -1,6 +1,4 @@
-use crate::graph::shaders;
-use crate::graph::{Builder, ResourceId};
-use crate::passes::ShadePush;
+use crate::graph::{Builder, ResourceId, shaders};
 use crate::passes::batch::Batch;
 use crate::passes::dirty_list;
 use crate::passes::sweep::Sweep;
@@ -58,7 +56,7 @@ pub(crate) fn plan(
             _ => "environment from its tables",
         },
         [axis.steps.div_ceil(8), axis.lanes.div_ceil(4 * 16), 1],
-        &ShadePush::of(batch, cell_m),
+        &shaders::ShadePush::of(batch, cell_m),
         &bound,
         axis.texels() * (4 + sums + u64::from(batch.count) * sweep.lattice_bytes()),
         axis.texels() * u64::from(batch.count),

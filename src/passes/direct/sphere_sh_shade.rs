@@ -1,61 +1,10 @@
-use crate::graph::shaders;
-use crate::graph::shaders::same_layout;
-use crate::graph::{Builder, Rectangle, ResourceId};
+use crate::graph::{Builder, Rectangle, ResourceId, shaders};
 use crate::passes::blocks::Blocks;
 use crate::passes::sphere_sh::SphereSh;
 use crate::scene::{Border, HeightField, Levels, Receiver, Scene, SphereLight, Wedges};
 use crate::{Error, Result};
 
-use crate::passes::LandPush;
 use crate::passes::sphere_shade::{MOST_TURNS, SphereShading, place_of};
-
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct SphereShShadePush {
-    land: LandPush,
-    first: [i32; 2],
-    base: [i32; 2],
-    offset: [f32; 2],
-    up_m: f32,
-    radius_m: f32,
-    reach_m: f32,
-    azimuths: i32,
-    first_azimuth: i32,
-    last_azimuth: i32,
-    entry_first: i32,
-    entry_count: i32,
-    table_first: i32,
-    side: i32,
-    fine_samples: i32,
-    width_shift: i32,
-    growth: f32,
-    level_step: f32,
-    radiance: [f32; 4],
-}
-
-same_layout!(
-    SphereShShadePush,
-    sphere_sh_shade_push,
-    land = COLS,
-    first = FIRST,
-    base = BASE,
-    offset = OFFSET,
-    up_m = UP_M,
-    radius_m = RADIUS_M,
-    reach_m = REACH_M,
-    azimuths = AZIMUTHS,
-    first_azimuth = FIRST_AZIMUTH,
-    last_azimuth = LAST_AZIMUTH,
-    entry_first = ENTRY_FIRST,
-    entry_count = ENTRY_COUNT,
-    table_first = TABLE_FIRST,
-    side = SIDE,
-    fine_samples = FINE_SAMPLES,
-    width_shift = WIDTH_SHIFT,
-    growth = GROWTH,
-    level_step = LEVEL_STEP,
-    radiance = RADIANCE,
-);
 
 /// As in `within.glsl`.
 const WITHIN_CELLS: u32 = 8192;
@@ -184,8 +133,8 @@ fn dispatch(
             }
         },
         [cols.div_ceil(8), rows.div_ceil(8), 1],
-        &SphereShShadePush {
-            land: LandPush::of(field, blocks),
+        &shaders::SphereShShadePush {
+            land: shaders::LandPush::of(field, blocks),
             first: [col as i32, row as i32],
             base,
             offset,

@@ -1,48 +1,10 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::ops::Range;
 
-use crate::graph::shaders;
-use crate::graph::shaders::same_layout;
-use crate::graph::{Builder, Rectangle, ResourceId};
-use crate::passes::LandPush;
+use crate::graph::{Builder, Rectangle, ResourceId, shaders};
 use crate::passes::blocks::Blocks;
 use crate::passes::spheres::texels_within;
 use crate::scene::{HeightField, Scene, SphereLight};
-
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct SphereShadePush {
-    land: LandPush,
-    first: [i32; 2],
-    base: [i32; 2],
-    offset: [f32; 2],
-    up_m: f32,
-    radius_m: f32,
-    reach_m: f32,
-    slices: i32,
-    slices_around: i32,
-    first_slice: i32,
-    last_slice: i32,
-    pads: [i32; 3],
-    radiance: [f32; 4],
-}
-
-same_layout!(
-    SphereShadePush,
-    sphere_shade_push,
-    land = COLS,
-    first = FIRST,
-    base = BASE,
-    offset = OFFSET,
-    up_m = UP_M,
-    radius_m = RADIUS_M,
-    reach_m = REACH_M,
-    slices = SLICES,
-    slices_around = SLICES_AROUND,
-    first_slice = FIRST_SLICE,
-    last_slice = LAST_SLICE,
-    radiance = RADIANCE,
-);
 
 /// llvmpipe ends all loops of an invocation together after 65,535 iterations.
 pub(crate) const MOST_TURNS: u32 = 60_000;
@@ -152,8 +114,8 @@ fn dispatch(
         part,
         "slices of the sphere light above the horizon",
         [cols.div_ceil(8), rows.div_ceil(8), 1],
-        &SphereShadePush {
-            land: LandPush::of(field, blocks),
+        &shaders::SphereShadePush {
+            land: shaders::LandPush::of(field, blocks),
             first: [col as i32, row as i32],
             base,
             offset,

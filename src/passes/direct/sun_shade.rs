@@ -1,6 +1,4 @@
-use crate::graph::shaders;
-use crate::graph::{Builder, ResourceId};
-use crate::passes::ShadePush;
+use crate::graph::{Builder, ResourceId, shaders};
 use crate::passes::azimuths::Shape;
 use crate::passes::batch::Batch;
 use crate::passes::dirty_list;
@@ -45,7 +43,7 @@ pub(crate) fn plan(
             Shape::Patch => "the part of its elevations above the horizon",
         },
         [axis.steps.div_ceil(8), axis.lanes.div_ceil(4 * 16), 1],
-        &ShadePush::of(batch, cell_m),
+        &shaders::ShadePush::of(batch, cell_m),
         &bound,
         axis.texels() * (12 + u64::from(batch.count) * sweep.lattice_bytes()),
         axis.texels() * u64::from(batch.count),

@@ -1,16 +1,6 @@
-use crate::graph::shaders;
-use crate::graph::shaders::{offsets, same_layout};
-use crate::graph::{Builder, ResourceId};
+use crate::graph::shaders::offsets;
+use crate::graph::{Builder, ResourceId, shaders};
 use crate::passes::dirty_mark;
-
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct DirtyListPush {
-    cols: i32,
-    rows: i32,
-}
-
-same_layout!(DirtyListPush, dirty_list_push, cols = COLS, rows = ROWS);
 
 /// Byte offset in the list of the workgroup counts for the passes that light it.
 pub(crate) const LIGHT_GROUPS_AT: u64 = offsets::edit_list::LIGHT_GROUPS as u64;
@@ -28,11 +18,11 @@ pub(crate) fn plan(builder: &mut Builder, size: [u32; 2], [dirty, list]: [Resour
     let all = u64::from(across) * u64::from(down);
     let [cols, rows] = size.map(|n| n as i32);
     builder.pass(
-        shaders::DirtyList,
+        shaders::DirtyList {},
         "",
         "light is summed only where a texel is marked",
         [across.div_ceil(8), down.div_ceil(8), 1],
-        &DirtyListPush { cols, rows },
+        &shaders::DirtyListPush { cols, rows },
         &[("dirty_texels", dirty), ("edit_list", list)],
         8 * all,
         32 * all,

@@ -1,16 +1,4 @@
-use crate::graph::shaders;
-use crate::graph::shaders::same_layout;
-use crate::graph::{Builder, Reach, Rectangle, ResourceId};
-
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct DirtyMarkPush {
-    cols: i32,
-    rows: i32,
-    rectangle: [i32; 4],
-}
-
-same_layout!(DirtyMarkPush, dirty_mark_push, cols = COLS, rows = ROWS, rectangle = FIRST_COL);
+use crate::graph::{Builder, Reach, Rectangle, ResourceId, shaders};
 
 /// Size of the mask in words; each marks eight columns of four rows.
 pub(crate) fn words([cols, rows]: [u32; 2]) -> [u32; 2] {
@@ -22,12 +10,13 @@ pub(crate) fn plan(builder: &mut Builder, size: [u32; 2], [dirty, list]: [Resour
     let [across, down] = words(size);
     let all = u64::from(across) * u64::from(down);
     let [cols, rows] = size.map(|n| n as i32);
+    let [first_col, first_row, last_col, last_row] = Rectangle::whole(size).words();
     let pass = builder.pass(
-        shaders::DirtyMark,
+        shaders::DirtyMark {},
         "",
         "texels whose own surface was edited; clears the mask of the last edit",
         [across.div_ceil(8), down.div_ceil(8), 1],
-        &DirtyMarkPush { cols, rows, rectangle: Rectangle::whole(size).words() },
+        &shaders::DirtyMarkPush { cols, rows, first_col, first_row, last_col, last_row },
         &[("dirty_texels", dirty), ("edit_list", list)],
         4 * all,
         32 * all,

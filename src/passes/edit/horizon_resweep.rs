@@ -1,28 +1,6 @@
-use crate::graph::shaders;
-use crate::graph::shaders::same_layout;
-use crate::graph::{Builder, Reach, Rectangle, ResourceId};
+use crate::graph::{Builder, Reach, Rectangle, ResourceId, shaders};
 use crate::passes::batch::Batch;
 use crate::passes::sweep::LineSweep;
-
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct HorizonResweepPush {
-    lanes: i32,
-    steps: i32,
-    first_azimuth: u32,
-    height_scale: f32,
-    rectangle: [i32; 4],
-}
-
-same_layout!(
-    HorizonResweepPush,
-    horizon_resweep_push,
-    lanes = LANES,
-    steps = STEPS,
-    first_azimuth = FIRST_AZIMUTH,
-    height_scale = HEIGHT_SCALE,
-    rectangle = FIRST_COL,
-);
 
 /// What the sweep of an edit reads and writes.
 pub(crate) struct Images {
@@ -42,17 +20,21 @@ pub(crate) fn plan(
     images: &Images,
 ) {
     let axis = batch.axis;
+    let [first_col, first_row, last_col, last_row] = Rectangle::whole(axis.size()).words();
     let pass = builder.pass(
         shaders::HorizonResweep { line_shift: sweep.line_shift as i32, hull_packed: sweep.packed },
         part,
         "lines that cross the edit, until it has left their hulls",
         [batch.most_lines.div_ceil(32), 1, batch.count],
-        &HorizonResweepPush {
+        &shaders::HorizonResweepPush {
             lanes: axis.lanes as i32,
             steps: axis.steps as i32,
             first_azimuth: batch.first,
             height_scale: sweep.height_scale,
-            rectangle: Rectangle::whole(axis.size()).words(),
+            first_col,
+            first_row,
+            last_col,
+            last_row,
         },
         &[
             ("heights", images.heights),

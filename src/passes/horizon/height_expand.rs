@@ -1,16 +1,5 @@
-use crate::graph::shaders;
-use crate::graph::shaders::same_layout;
-use crate::graph::{Builder, ResourceId};
+use crate::graph::{Builder, ResourceId, shaders};
 use crate::passes::pyramid::Pyramid;
-
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct HeightExpandPush {
-    size: [i32; 2],
-    width_shift: i32,
-}
-
-same_layout!(HeightExpandPush, height_expand_push, size = COLS, width_shift = WIDTH_SHIFT);
 
 /// All levels at the field's own resolution.
 pub(crate) fn plan(
@@ -25,8 +14,9 @@ pub(crate) fn plan(
         "",
         "so that a march reads levels like the field",
         [cols.div_ceil(8), rows.div_ceil(8), pyramid.levels()],
-        &HeightExpandPush {
-            size: pyramid.size.map(|n| n as i32),
+        &shaders::HeightExpandPush {
+            cols: cols as i32,
+            rows: rows as i32,
             width_shift: pyramid.width_shift() as i32,
         },
         &[("height_levels", levels), ("level_table", table), ("height_stack", stack)],

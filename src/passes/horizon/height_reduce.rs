@@ -1,6 +1,4 @@
-use crate::graph::shaders;
-use crate::graph::{Builder, ResourceId};
-use crate::passes::ReducePush;
+use crate::graph::{Builder, ResourceId, shaders};
 use crate::passes::pyramid::Pyramid;
 
 /// One level from the one an octave finer.
@@ -20,7 +18,7 @@ pub(crate) fn plan(
         &format!("level {number}"),
         format!("every {apart:.1} texels, for marches {away:.0} steps away"),
         [cols.div_ceil(8), rows.div_ceil(8), 1],
-        &ReducePush::of(pyramid, number),
+        &shaders::ReducePush::of(pyramid, number),
         &[("heights", heights), ("height_levels", levels), ("level_table", table)],
         4 * (level.texels() + source.texels()),
         level.texels(),

@@ -1,23 +1,5 @@
-use crate::graph::shaders;
-use crate::graph::shaders::same_layout;
-use crate::graph::{Axis, Builder, Reach, Rectangle, ResourceId};
+use crate::graph::{Axis, Builder, Reach, Rectangle, ResourceId, shaders};
 use crate::scene::Border;
-
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct HeightTransposePush {
-    lanes: i32,
-    steps: i32,
-    rectangle: [i32; 4],
-}
-
-same_layout!(
-    HeightTransposePush,
-    height_transpose_push,
-    lanes = LANES,
-    steps = STEPS,
-    rectangle = FIRST_COL,
-);
 
 /// Heights transposed for one axis, four lanes per texel.
 pub(crate) fn plan(
@@ -28,6 +10,7 @@ pub(crate) fn plan(
     lane_heights: ResourceId,
 ) {
     let quads = axis.lanes.div_ceil(4);
+    let [first_col, first_row, last_col, last_row] = Rectangle::whole(axis.size()).words();
     let pass = builder.pass(
         shaders::HeightTranspose {
             marches_rows: axis.marches_rows,
@@ -36,10 +19,13 @@ pub(crate) fn plan(
         axis.name(),
         "so that one fetch reads four neighbouring lanes",
         [quads.div_ceil(8), axis.steps.div_ceil(8), 1],
-        &HeightTransposePush {
+        &shaders::HeightTransposePush {
             lanes: axis.lanes as i32,
             steps: axis.steps as i32,
-            rectangle: Rectangle::whole(axis.size()).words(),
+            first_col,
+            first_row,
+            last_col,
+            last_row,
         },
         &[("heights", heights), ("lane_heights", lane_heights)],
         8 * axis.texels(),

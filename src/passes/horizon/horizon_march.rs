@@ -1,6 +1,4 @@
-use crate::graph::shaders;
-use crate::graph::{Builder, ResourceId};
-use crate::passes::MarchPush;
+use crate::graph::{Builder, ResourceId, shaders};
 use crate::passes::batch::Batch;
 use crate::passes::nodes::Nodes;
 
@@ -25,7 +23,7 @@ pub(crate) fn plan(
         part,
         format!("brute-force horizons of {} azimuths along {}", batch.count, axis.name()),
         [lanes.div_ceil(8), steps.div_ceil(8), batch.count],
-        &MarchPush::of(batch),
+        &shaders::MarchPush::of(batch),
         &[("heights", heights), ("azimuths", azimuths), ("slopes", slopes)],
         grid_points * 8,
         grid_points,

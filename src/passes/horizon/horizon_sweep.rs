@@ -1,28 +1,6 @@
-use crate::graph::shaders;
-use crate::graph::shaders::same_layout;
-use crate::graph::{Builder, ResourceId};
+use crate::graph::{Builder, ResourceId, shaders};
 use crate::passes::batch::Batch;
 use crate::passes::sweep::{HullStorage, LineSweep};
-
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct HorizonSweepPush {
-    lanes: i32,
-    steps: i32,
-    warm_up: i32,
-    first_azimuth: u32,
-    height_scale: f32,
-}
-
-same_layout!(
-    HorizonSweepPush,
-    horizon_sweep_push,
-    lanes = LANES,
-    steps = STEPS,
-    warm_up = WARM_UP,
-    first_azimuth = FIRST_AZIMUTH,
-    height_scale = HEIGHT_SCALE,
-);
 
 /// What a sweep reads and writes.
 pub(crate) struct Images {
@@ -109,7 +87,7 @@ fn run(
             )
         },
         [lines.div_ceil(4 * sweep.group_size), 1, batch.count],
-        &HorizonSweepPush {
+        &shaders::HorizonSweepPush {
             lanes: axis.lanes as i32,
             steps: axis.steps as i32,
             warm_up: axis.warm_up as i32,

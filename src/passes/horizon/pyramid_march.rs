@@ -1,36 +1,8 @@
-use crate::graph::shaders;
-use crate::graph::shaders::same_layout;
-use crate::graph::{Builder, ResourceId};
+use crate::graph::{Builder, ResourceId, shaders};
 use crate::passes::batch::Batch;
 use crate::passes::nodes::Nodes;
 use crate::passes::pyramid::Pyramid;
 use crate::scene::Levels;
-
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct PyramidMarchPush {
-    lanes: i32,
-    steps: i32,
-    warm_up: i32,
-    first_azimuth: u32,
-    azimuth_count: u32,
-    fine_samples: i32,
-    width_shift: i32,
-    growth: f32,
-}
-
-same_layout!(
-    PyramidMarchPush,
-    pyramid_march_push,
-    lanes = LANES,
-    steps = STEPS,
-    warm_up = WARM_UP,
-    first_azimuth = FIRST_AZIMUTH,
-    azimuth_count = AZIMUTH_COUNT,
-    fine_samples = FINE_SAMPLES,
-    width_shift = WIDTH_SHIFT,
-    growth = GROWTH,
-);
 
 /// Output of a pyramid's passes; nothing where every sample reads the field itself.
 #[derive(Clone, Copy)]
@@ -77,7 +49,7 @@ pub(crate) fn plan(
         part,
         format!("horizons of {} azimuths, {} samples each", batch.count, pyramid.samples()),
         [lanes.div_ceil(8), steps.div_ceil(8), 1],
-        &PyramidMarchPush {
+        &shaders::PyramidMarchPush {
             lanes: axis.lanes as i32,
             steps: axis.steps as i32,
             warm_up: axis.warm_up as i32,

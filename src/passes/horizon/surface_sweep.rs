@@ -1,6 +1,4 @@
-use crate::graph::shaders;
-use crate::graph::{Builder, ResourceId};
-use crate::passes::MarchPush;
+use crate::graph::{Builder, ResourceId, shaders};
 use crate::passes::batch::Batch;
 
 /// Exact sweeps along grid vectors: the hull holds every crossing of every line.
@@ -24,7 +22,7 @@ pub(crate) fn plan(
         part,
         format!("exact horizons of {} azimuths along {}", batch.count, axis.name()),
         [batch.most_lines.div_ceil(group_size), 1, batch.count],
-        &MarchPush::of(batch),
+        &shaders::MarchPush::of(batch),
         &[("heights", heights), ("azimuths", azimuths), ("slopes", slopes)],
         batch.line_texels * 4 + axis.texels() * u64::from(batch.count) * 4,
         batch.line_texels,

@@ -1,29 +1,7 @@
-use crate::graph::shaders;
-use crate::graph::shaders::same_layout;
-use crate::graph::{Builder, ResourceId};
+use crate::graph::{Builder, ResourceId, shaders};
 use crate::passes::batch::Batch;
 use crate::passes::sweep::Sweep;
 use crate::scene::Border;
-
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct SweepFusePush {
-    cols: i32,
-    rows: i32,
-    warm_up: i32,
-    first_azimuth: u32,
-    first_layer: u32,
-}
-
-same_layout!(
-    SweepFusePush,
-    sweep_fuse_push,
-    cols = COLS,
-    rows = ROWS,
-    warm_up = WARM_UP,
-    first_azimuth = FIRST_AZIMUTH,
-    first_layer = FIRST_LAYER,
-);
 
 /// Horizons at grid points, as elevations.
 pub(crate) fn plan(
@@ -54,7 +32,7 @@ pub(crate) fn plan(
         part,
         "from the lines back to grid points",
         [axis.steps.div_ceil(8), axis.lanes.div_ceil(4 * 16), batch.count],
-        &SweepFusePush {
+        &shaders::SweepFusePush {
             cols: cols as i32,
             rows: rows as i32,
             warm_up: axis.warm_up as i32,

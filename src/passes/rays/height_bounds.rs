@@ -1,24 +1,4 @@
-use crate::graph::shaders;
-use crate::graph::shaders::same_layout;
-use crate::graph::{Builder, ResourceId};
-
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct HeightBoundsPush {
-    cells_x: i32,
-    cells_y: i32,
-    padded_rows: i32,
-    level: i32,
-}
-
-same_layout!(
-    HeightBoundsPush,
-    height_bounds_push,
-    cells_x = CELLS_X,
-    cells_y = CELLS_Y,
-    padded_rows = PADDED_ROWS,
-    level = LEVEL,
-);
+use crate::graph::{Builder, ResourceId, shaders};
 
 /// The maximum height of each block of 4^level by 4^level cells.
 pub(crate) fn plan(
@@ -31,11 +11,11 @@ pub(crate) fn plan(
     let [across, down] = [cells_x, cells_y].map(|n| n.div_ceil(1 << (2 * level)));
     let blocks = u64::from(across) * u64::from(down);
     builder.pass(
-        shaders::HeightBounds,
+        shaders::HeightBounds {},
         &format!("level {level}"),
         "so that rays above a block skip it",
         [across.div_ceil(8), down.div_ceil(8), 1],
-        &HeightBoundsPush {
+        &shaders::HeightBoundsPush {
             cells_x: cells_x as i32,
             cells_y: cells_y as i32,
             padded_rows: padded_rows as i32,

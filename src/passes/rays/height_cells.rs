@@ -1,25 +1,5 @@
-use crate::graph::shaders;
-use crate::graph::shaders::same_layout;
-use crate::graph::{Builder, ResourceId};
+use crate::graph::{Builder, ResourceId, shaders};
 use crate::scene::{Border, HeightField};
-
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct HeightCellsPush {
-    cols: i32,
-    rows: i32,
-    cell_x_m: f32,
-    cell_y_m: f32,
-}
-
-same_layout!(
-    HeightCellsPush,
-    height_cells_push,
-    cols = COLS,
-    rows = ROWS,
-    cell_x_m = CELL_X_M,
-    cell_y_m = CELL_Y_M,
-);
 
 /// Heights by cell, as rays read them. Clears the sums of `paths`, where there are any.
 pub(crate) fn plan(
@@ -42,7 +22,7 @@ pub(crate) fn plan(
         "",
         "so that one fetch reads a cell; light needs the normals of texels",
         [cols.div_ceil(8), rows.div_ceil(8), 1],
-        &HeightCellsPush {
+        &shaders::HeightCellsPush {
             cols: cols as i32,
             rows: rows as i32,
             cell_x_m: field.cell_m()[0] as f32,

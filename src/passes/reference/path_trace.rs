@@ -1,9 +1,6 @@
 use std::ops::Range;
 
-use crate::graph::shaders;
-use crate::graph::shaders::same_layout;
-use crate::graph::{Builder, ResourceId};
-use crate::passes::LandPush;
+use crate::graph::{Builder, ResourceId, shaders};
 use crate::passes::blocks::Blocks;
 use crate::scene::{Albedo, PhongSpecular, Scene, Specular};
 
@@ -13,50 +10,6 @@ const SET_BITS: u32 = 6;
 
 /// Paths per texel that one run of the pass adds.
 pub(crate) const BATCH_PATHS: u32 = 1 << SET_BITS;
-
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct PathTracePush {
-    land: LandPush,
-    highest_m: f32,
-    rotation_turns: f32,
-    exponent: f32,
-    specular_scale: f32,
-    bounces: i32,
-    suns: i32,
-    light_count: i32,
-    seed: u32,
-    albedo: [f32; 4],
-    sky: [f32; 4],
-    first_row: i32,
-    keys: i32,
-    first_path: i32,
-    last_path: i32,
-    first_light: i32,
-    last_light: i32,
-}
-
-same_layout!(
-    PathTracePush,
-    path_trace_push,
-    land = COLS,
-    highest_m = HIGHEST_M,
-    rotation_turns = ROTATION_TURNS,
-    exponent = EXPONENT,
-    specular_scale = SPECULAR_SCALE,
-    bounces = BOUNCES,
-    suns = SUNS,
-    light_count = LIGHT_COUNT,
-    seed = SEED,
-    albedo = ALBEDO,
-    sky = SKY,
-    first_row = FIRST_ROW,
-    keys = KEYS,
-    first_path = FIRST_PATH,
-    last_path = LAST_PATH,
-    first_light = FIRST_LIGHT,
-    last_light = LAST_LIGHT,
-);
 
 /// llvmpipe ends all loops of an invocation together after 65,535 iterations.
 const MOST_TURNS: u32 = 60_000;
@@ -146,8 +99,8 @@ pub(crate) fn plan(
             ),
         },
         [cols.div_ceil(8), (band.end - band.start).div_ceil(8), 1],
-        &PathTracePush {
-            land: LandPush::of(field, blocks),
+        &shaders::PathTracePush {
+            land: shaders::LandPush::of(field, blocks),
             highest_m,
             rotation_turns: lights.environment.as_ref().map_or(0.0, turns),
             exponent: specular.exponent,

@@ -1,26 +1,6 @@
-use crate::graph::shaders;
-use crate::graph::shaders::same_layout;
-use crate::graph::{Builder, ResourceId};
+use crate::graph::{Builder, ResourceId, shaders};
 use crate::passes::sh_layout::Sh;
 use crate::scene::Environment;
-
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct EnvRotationPush {
-    width: i32,
-    rows: i32,
-    turns: i32,
-    column_first: i32,
-}
-
-same_layout!(
-    EnvRotationPush,
-    env_rotation_push,
-    width = WIDTH,
-    rows = ROWS,
-    turns = TURNS,
-    column_first = COLUMN_FIRST,
-);
 
 /// The environment's Fourier sums around each of its rows.
 pub(crate) fn plan(
@@ -32,11 +12,11 @@ pub(crate) fn plan(
     let count = 2 * sh.light_order - 1;
     let texels = (environment.width() * sh.rows) as u64;
     builder.pass(
-        shaders::EnvRotation,
+        shaders::EnvRotation {},
         sh.part(),
         format!("the environment around each row, up to Fourier order {}", sh.light_order - 1),
         [((sh.rows * count) as u32).div_ceil(32), 1, 1],
-        &EnvRotationPush {
+        &shaders::EnvRotationPush {
             width: environment.width() as i32,
             rows: sh.rows as i32,
             turns: count as i32,

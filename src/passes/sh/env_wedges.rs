@@ -1,23 +1,5 @@
-use crate::graph::shaders;
-use crate::graph::shaders::same_layout;
-use crate::graph::{Builder, ResourceId};
+use crate::graph::{Builder, ResourceId, shaders};
 use crate::scene::{Border, Environment};
-
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct EnvWedgesPush {
-    width: i32,
-    rows: i32,
-    rotation_rad: f32,
-}
-
-same_layout!(
-    EnvWedgesPush,
-    env_wedges_push,
-    width = WIDTH,
-    rows = ROWS,
-    rotation_rad = ROTATION_RAD,
-);
 
 /// The environment summed over each azimuth's wedge, row by row.
 pub(crate) fn plan(
@@ -31,14 +13,18 @@ pub(crate) fn plan(
     let texels = u64::from(width) * u64::from(kept);
     let turn = environment.rotation_rad().rem_euclid(std::f64::consts::TAU);
     let pass = builder.pass(
-        shaders::EnvWedges,
+        shaders::EnvWedges {},
         "",
         format!(
             "the environment's light in each azimuth's wedge: {kept} of {} rows can be visible",
             environment.height()
         ),
         [kept.div_ceil(8), azimuths, 1],
-        &EnvWedgesPush { width: width as i32, rows: kept as i32, rotation_rad: turn as f32 },
+        &shaders::EnvWedgesPush {
+            width: width as i32,
+            rows: kept as i32,
+            rotation_rad: turn as f32,
+        },
         &[("environment", image), ("azimuths", directions), ("wedge_rows", rows)],
         texels * 16 + u64::from(azimuths) * u64::from(kept) * 48,
         texels,

@@ -1,32 +1,5 @@
-use crate::graph::shaders;
-use crate::graph::shaders::same_layout;
-use crate::graph::{Builder, ResourceId};
+use crate::graph::{Builder, ResourceId, shaders};
 use crate::passes::sh_layout::Sh;
-
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct LightMatrixPush {
-    rows: i32,
-    light_order: i32,
-    order: i32,
-    receivers: i32,
-    row_first: i32,
-    matrix_first: i32,
-    pads: [i32; 2],
-    sky: [f32; 4],
-}
-
-same_layout!(
-    LightMatrixPush,
-    light_matrix_push,
-    rows = ROWS,
-    light_order = LIGHT_ORDER,
-    order = ORDER,
-    receivers = RECEIVERS,
-    row_first = ROW_FIRST,
-    matrix_first = MATRIX_FIRST,
-    sky = SKY,
-);
 
 /// The matrix from an SH series of visibility to light, for the environment and for a sky that SH light.
 pub(crate) fn plan(
@@ -42,11 +15,11 @@ pub(crate) fn plan(
     bound.extend(turns.map(|t| ("env_rotation", t)));
     let [r, g, b] = sky.unwrap_or_default();
     builder.pass(
-        shaders::LightMatrix,
+        shaders::LightMatrix {},
         sh.part(),
         format!("light of order {light_order} times visibility: {receivers} × {}", order * order),
         [1, 1, 1],
-        &LightMatrixPush {
+        &shaders::LightMatrixPush {
             rows: rows as i32,
             light_order: light_order as i32,
             order: order as i32,

@@ -1,29 +1,7 @@
-use crate::graph::shaders;
-use crate::graph::shaders::same_layout;
-use crate::graph::{Axis, Builder, ResourceId};
+use crate::graph::{Axis, Builder, ResourceId, shaders};
 use crate::passes::PhongSource;
 use crate::passes::sh_layout::{Lit, Sh};
 use crate::scene::Border;
-
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct ShShadePush {
-    cols: i32,
-    rows: i32,
-    cell_x_m: f32,
-    cell_y_m: f32,
-    specular: [f32; 2],
-}
-
-same_layout!(
-    ShShadePush,
-    sh_shade_push,
-    cols = COLS,
-    rows = ROWS,
-    cell_x_m = CELL_X_M,
-    cell_y_m = CELL_Y_M,
-    specular = SPECULAR,
-);
 
 /// Light from visibility and the light's matrix, with normals of full resolution.
 pub(crate) fn plan(
@@ -65,7 +43,7 @@ pub(crate) fn plan(
             Lit::Specular => "visibility times the light's matrix; a Phong lobe of as many bands",
         },
         [axis.steps.div_ceil(8), axis.lanes.div_ceil(4 * 16), 1],
-        &ShShadePush {
+        &shaders::ShShadePush {
             cols: cols as i32,
             rows: rows as i32,
             cell_x_m: cell_m[0] as f32,

@@ -1,6 +1,4 @@
-use crate::graph::shaders;
-use crate::graph::{Builder, ResourceId};
-use crate::passes::ShadePush;
+use crate::graph::{Builder, ResourceId, shaders};
 use crate::passes::batch::Batch;
 use crate::passes::nodes::Nodes;
 use crate::passes::sh_layout::Sh;
@@ -57,7 +55,7 @@ pub(crate) fn plan(
             Wedges::Table => unreachable!("sh_wedges looks up two azimuths at once"),
         },
         [steps.div_ceil(8), lanes.div_ceil(4 * 16), 1],
-        &ShadePush::of(batch, cell_m),
+        &shaders::ShadePush::of(batch, cell_m),
         &bound,
         nodes * (4 + kept + u64::from(batch.count) * sweep.lattice_bytes()),
         nodes * u64::from(batch.count),

@@ -1,36 +1,6 @@
-use crate::graph::shaders;
-use crate::graph::shaders::same_layout;
-use crate::graph::{Axis, Builder, ResourceId};
+use crate::graph::{Axis, Builder, ResourceId, shaders};
 use crate::passes::sh_layout::{Sh, WedgeTexels};
 use crate::scene::Border;
-
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct ShWedgesPush {
-    cols: i32,
-    rows: i32,
-    cell_x_m: f32,
-    cell_y_m: f32,
-    azimuth_count: i32,
-    azimuth_first: i32,
-    table_first: i32,
-    side: i32,
-    lowest_rad: f32,
-}
-
-same_layout!(
-    ShWedgesPush,
-    sh_wedges_push,
-    cols = COLS,
-    rows = ROWS,
-    cell_x_m = CELL_X_M,
-    cell_y_m = CELL_Y_M,
-    azimuth_count = AZIMUTH_COUNT,
-    azimuth_first = AZIMUTH_FIRST,
-    table_first = TABLE_FIRST,
-    side = SIDE,
-    lowest_rad = LOWEST_RAD,
-);
 
 /// What the pass reads and writes.
 pub(crate) struct Images {
@@ -71,7 +41,7 @@ pub(crate) fn plan(
         "env",
         format!("visibility as SH, from a table of {0} × {0} wedges", table.side),
         [steps.div_ceil(8), lanes.div_ceil(4 * 16), 1],
-        &ShWedgesPush {
+        &shaders::ShWedgesPush {
             cols: cols as i32,
             rows: rows as i32,
             cell_x_m: cell_m[0] as f32,

@@ -1,32 +1,6 @@
-use crate::graph::shaders;
-use crate::graph::shaders::same_layout;
-use crate::graph::{Builder, ResourceId};
+use crate::graph::{Builder, ResourceId, shaders};
 use crate::passes::PhongSource;
 use crate::passes::bounced_specular::{BouncedSpecular, ExitLight, Vectors};
-
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct SpecularExitPush {
-    cols: i32,
-    rows: i32,
-    begins: u32,
-    first_texel: i32,
-    fours: i32,
-    exponent: f32,
-    scale: f32,
-}
-
-same_layout!(
-    SpecularExitPush,
-    specular_exit_push,
-    cols = COLS,
-    rows = ROWS,
-    begins = BEGINS,
-    first_texel = FIRST_TEXEL,
-    fours = FOURS,
-    exponent = EXPONENT,
-    scale = SCALE,
-);
 
 /// The light that leaves a surface.
 pub(crate) struct ExitRadiance {
@@ -94,7 +68,7 @@ pub(crate) fn plan(
         &outgoing.name,
         why,
         [cols.div_ceil(8), rows.div_ceil(8), 1],
-        &SpecularExitPush {
+        &shaders::SpecularExitPush {
             cols: cols as i32,
             rows: rows as i32,
             begins: u32::from(outgoing.bounce == 1),

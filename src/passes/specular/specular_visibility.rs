@@ -1,16 +1,5 @@
-use crate::graph::shaders;
-use crate::graph::shaders::same_layout;
-use crate::graph::{Builder, ResourceId};
+use crate::graph::{Builder, ResourceId, shaders};
 use crate::passes::bounced_specular::BouncedSpecular;
-
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct SpecularVisibilityPush {
-    cols: i32,
-    rows: i32,
-}
-
-same_layout!(SpecularVisibilityPush, specular_visibility_push, cols = COLS, rows = ROWS);
 
 /// Incoming light from all directions, as an SH series.
 pub(crate) fn plan(
@@ -26,7 +15,7 @@ pub(crate) fn plan(
         "",
         "visibility times the light, for bounces",
         [cols.div_ceil(8), rows.div_ceil(8), 1],
-        &SpecularVisibilityPush { cols: cols as i32, rows: rows as i32 },
+        &shaders::SpecularVisibilityPush { cols: cols as i32, rows: rows as i32 },
         &[
             ("visibility", visibility),
             ("light_matrix", light_matrix),

@@ -1,33 +1,7 @@
-use crate::graph::shaders;
-use crate::graph::shaders::same_layout;
-use crate::graph::{Axis, Builder, ResourceId};
+use crate::graph::{Axis, Builder, ResourceId, shaders};
 use crate::passes::PhongSource;
 use crate::passes::bounced_specular::BouncedSpecular;
 use crate::scene::{Border, Sun};
-
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct SunSpecularPush {
-    cols: i32,
-    rows: i32,
-    cell_x_m: f32,
-    cell_y_m: f32,
-    towards: [f32; 4],
-    colour: [f32; 4],
-    specular: [f32; 2],
-}
-
-same_layout!(
-    SunSpecularPush,
-    sun_specular_push,
-    cols = COLS,
-    rows = ROWS,
-    cell_x_m = CELL_X_M,
-    cell_y_m = CELL_Y_M,
-    towards = TOWARDS,
-    colour = COLOUR,
-    specular = SPECULAR,
-);
 
 /// Specular reflection of a sun, scaled by the visible part that diffuse shading found. `begins`: the sum
 /// begins with it.
@@ -60,7 +34,7 @@ pub(crate) fn plan(
         name,
         "the Phong lobe towards the sun, times the sun's visible part",
         [axis.steps.div_ceil(8), axis.lanes.div_ceil(4 * 16), 1],
-        &SunSpecularPush {
+        &shaders::SunSpecularPush {
             cols: cols as i32,
             rows: rows as i32,
             cell_x_m: cell_m[0] as f32,

@@ -1,6 +1,4 @@
-use crate::graph::shaders;
-use crate::graph::shaders::same_layout;
-use crate::graph::{Builder, ResourceId};
+use crate::graph::{Builder, ResourceId, shaders};
 use crate::{Error, Result};
 
 /// The part of a lit field that a screen shows from above, north up, and its scale.
@@ -45,28 +43,6 @@ impl Map {
     }
 }
 
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct MapDrawPush {
-    size: [i32; 2],
-    field: [i32; 2],
-    corner: [f32; 2],
-    grid_points_per_pixel: f32,
-    swaps: u32,
-    beyond: u32,
-}
-
-same_layout!(
-    MapDrawPush,
-    map_draw_push,
-    size = WIDTH,
-    field = COLS,
-    corner = FIRST_COL,
-    grid_points_per_pixel = GRID_POINTS_PER_PIXEL,
-    swaps = SWAPS,
-    beyond = BEYOND,
-);
-
 /// One texel per pixel, or fewer or more.
 pub(crate) fn plan(builder: &mut Builder, map: &Map, bound: &[(&str, ResourceId)]) {
     let [width, height] = map.size;
@@ -76,10 +52,13 @@ pub(crate) fn plan(builder: &mut Builder, map: &Map, bound: &[(&str, ResourceId)
         "",
         "radiance, tone-mapped for a screen",
         [width.div_ceil(8), height.div_ceil(8), 1],
-        &MapDrawPush {
-            size: map.size.map(|n| n as i32),
-            field: map.field.map(|n| n as i32),
-            corner: map.corner,
+        &shaders::MapDrawPush {
+            width: width as i32,
+            height: height as i32,
+            cols: map.field[0] as i32,
+            rows: map.field[1] as i32,
+            first_col: map.corner[0],
+            first_row: map.corner[1],
             grid_points_per_pixel: map.grid_points_per_pixel,
             swaps: u32::from(map.swaps),
             beyond: u32::from_le_bytes(Map::BEYOND),

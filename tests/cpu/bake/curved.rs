@@ -268,9 +268,9 @@ fn fan_weights_are_solid_angles_between_curved_walls() {
     let net = directions.triangles().expect("a net");
     let fans = Fans::of(&net, directions.vectors());
     let border = Border::Periodic;
-    let seen = visible_points(&field, border, &directions);
+    let visible = visible_points(&field, border, &directions);
     let share = directions.share_sr();
-    let points = VisiblePoints::from_points(&field, border, directions, &seen).expect("points");
+    let points = VisiblePoints::from_points(&field, border, directions, &visible).expect("points");
     for per_m in [0.0, 0.05, 0.02, -0.02, -0.05] {
         let curvature = Curvature { per_m: [per_m, 0.0] };
         let draped = Draped { field: &field, border, points: &points, fans: &fans, curvature };
@@ -323,9 +323,9 @@ fn a_flat_base_changes_nothing() {
     let directions = Directions::fibonacci(200, -1.0, 0).expect("directions");
     let net = directions.triangles().expect("a net");
     let fans = Fans::of(&net, directions.vectors());
-    let seen = visible_points(&field, Border::Periodic, &directions);
+    let visible = visible_points(&field, Border::Periodic, &directions);
     let points =
-        VisiblePoints::from_points(&field, Border::Periodic, directions, &seen).expect("points");
+        VisiblePoints::from_points(&field, Border::Periodic, directions, &visible).expect("points");
     let draped = Draped {
         field: &field,
         border: Border::Periodic,
@@ -352,7 +352,7 @@ fn a_flat_base_changes_nothing() {
     }
 }
 
-fn seen(lit: impl Fn(DVec3) -> bool) -> Vec<SkyDirection> {
+fn visible(lit: impl Fn(DVec3) -> bool) -> Vec<SkyDirection> {
     let directions = Directions::fibonacci(1000, 0.0, 0).expect("directions");
     directions.vectors().iter().map(|e| (*e, lit(*e))).collect()
 }
@@ -362,7 +362,7 @@ fn seen(lit: impl Fn(DVec3) -> bool) -> Vec<SkyDirection> {
 #[test]
 fn ellipses_widen_and_narrow_with_curvature() {
     let step = 0.02;
-    let fitted = |k: f64| fit(&seen(|e| e.x.abs() < e.z * opening(k).tan())).0;
+    let fitted = |k: f64| fit(&visible(|e| e.x.abs() < e.z * opening(k).tan())).0;
     let five = [fitted(0.0), fitted(step), fitted(-step), fitted(0.0), fitted(0.0)];
     let between = CurvedEllipses::of(&five, [step; 2]);
     for k in [-0.02, -0.013, -0.005, 0.0, 0.004, 0.01, 0.02] {
@@ -389,7 +389,7 @@ fn a_flat_base_changes_no_ellipse() {
         axis: DVec2::from_angle(0.7),
         inverse_radii: [2.0, 5.0],
     };
-    let lights = seen(|_| true);
+    let lights = visible(|_| true);
     for own in [patch, Ellipse::WHOLE, Ellipse::EMPTY] {
         let between =
             CurvedEllipses::of(&[own, patch, Ellipse::EMPTY, Ellipse::WHOLE, patch], [0.1, 0.2]);

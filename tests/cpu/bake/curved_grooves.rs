@@ -13,7 +13,7 @@ mod light;
 #[path = "../../../xtask/measure/src/curved/mesh.rs"]
 mod mesh;
 
-use light::{ALBEDO, BOUNCES, Looks};
+use light::{ALBEDO, BOUNCES, BentRays};
 use mesh::Mesh;
 
 const PERIOD: usize = 16;
@@ -38,10 +38,10 @@ fn curved_grooves_err_by_about_the_stated_error() {
     let surface = Surface { border, albedo: Albedo::Constant([ALBEDO as f32; 3]), specular: None };
     let scene = Scene { field: field.clone(), surface, lights: Lights::default() };
     let directions = Directions::fibonacci(COUNT, -1.0, 0).expect("directions");
-    let seen = visible_points(&field, border, &directions);
+    let visible = visible_points(&field, border, &directions);
     let net = directions.triangles().expect("a net");
     let fans = Fans::of(&net, directions.vectors());
-    let points = VisiblePoints::from_points(&field, border, directions, &seen).expect("points");
+    let points = VisiblePoints::from_points(&field, border, directions, &visible).expect("points");
     let lights = Directions::fibonacci(200, 0.0, 7).expect("lights");
     let own: Vec<f64> = (0..ROWS * COLS).map(|at| light::shines(at % COLS, PERIOD)).collect();
     let compared: Vec<usize> = COMPARED.collect();
@@ -77,8 +77,8 @@ fn curved_grooves_err_by_about_the_stated_error() {
             on_flat = [wrong, unsure];
         }
         let alike = (COLS / PERIOD) as f64;
-        let chance = 3.0 * (alike * 3.0 / 16.0 * (on_flat[1] + unsure)).sqrt();
-        let allowed = on_flat[0] + said.shadows * all + chance;
+        let noise = 3.0 * (alike * 3.0 / 16.0 * (on_flat[1] + unsure)).sqrt();
+        let allowed = on_flat[0] + said.shadows * all + noise;
         println!(
             "{radius}: wrong {:.4}, as flat {:.4}; said {:.4}, allowed {:.4}",
             wrong / all,
@@ -94,13 +94,14 @@ fn curved_grooves_err_by_about_the_stated_error() {
 
         let weigh = |bent: &Vec<DVec3>| (0..COUNT).map(|i| weight(&fans, bent, i)).collect();
         let weights = Some(bent.iter().map(weigh).collect());
-        let found = light::scattered(&scene, &points, curvature, &Looks { bent, weights }, &own);
-        let as_flat = Looks { bent: vec![vectors.to_vec(); ROWS * COLS], weights: None };
+        let found = light::scattered(&scene, &points, curvature, &BentRays { bent, weights }, &own);
+        let as_flat = BentRays { bent: vec![vectors.to_vec(); ROWS * COLS], weights: None };
         let as_flat = light::scattered(&scene, &points, Curvature::FLAT, &as_flat, &own);
-        let truth = light::truth(&mesh, &field, &compared).expect("rays");
+        let ground_truth = light::ground_truth(&mesh, &field, &compared).expect("rays");
         for (k, bounces) in BOUNCES.into_iter().enumerate() {
             let off = |found: &[f64]| {
-                let off = compared.iter().zip(&truth).map(|(at, t)| (found[*at] - t[k]).abs());
+                let off =
+                    compared.iter().zip(&ground_truth).map(|(at, t)| (found[*at] - t[k]).abs());
                 off.sum::<f64>() / compared.len() as f64
             };
             let (off, as_flat) = (off(&found[k]), off(&as_flat[k]));

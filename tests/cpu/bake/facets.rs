@@ -36,8 +36,8 @@ pub fn table(facets: &Facets, radiance: impl Fn(usize) -> ExitRadiance) -> Brdf 
     facets.check().expect("a plane in the aggregate");
     let directions = facets.directions().vectors().to_vec();
     let of = |(light, e): (usize, &DVec3)| {
-        let seen = facets.radiance_from_all(&radiance(light));
-        seen.into_iter().map(|mean| mean.map(|m| m / e.z)).collect::<Vec<_>>()
+        let visible = facets.radiance_from_all(&radiance(light));
+        visible.into_iter().map(|mean| mean.map(|m| m / e.z)).collect::<Vec<_>>()
     };
     let values = directions.iter().enumerate().flat_map(of).collect();
     Brdf::from_values(directions, values).expect("a table")
@@ -101,7 +101,9 @@ fn grooves_match_their_closed_form() {
         caught += usize::from(off(got / facets.closure(light)) > 1.0);
         tight += usize::from(off(got * vectors[light].z) > 1.0);
     }
-    println!("{worst:.3} of what is allowed; other irradiances are seen in {caught} and {tight}");
+    println!(
+        "{worst:.3} of what is allowed; other irradiances are visible in {caught} and {tight}"
+    );
     assert!(worst <= 1.0, "{worst}");
     assert!(caught > 100 && tight > 5000, "{caught} {tight}");
     // Light and view are not exchanged: from the east the eastern walls are dark.
@@ -136,17 +138,17 @@ fn max_reflectance(scene: &Scene, times: usize, weights: &[f64], facets: &Facets
 
 /// The largest reflectance by texels instead of triangles: with the texels' own visibility and smoothed
 /// normals, and the plane's share of light.
-fn most_of_samples(scene: &Scene, directions: &Directions, weights: &[f64]) -> f64 {
+fn most_of_texels(scene: &Scene, directions: &Directions, weights: &[f64]) -> f64 {
     let field = &scene.field;
-    let seen = visible_points(field, Border::Periodic, directions);
+    let visible = visible_points(field, Border::Periodic, directions);
     let count = field.heights_m().len();
     let normals: Vec<DVec3> = (0..count)
         .map(|i| normal(field, Border::Periodic, i / field.cols(), i % field.cols()))
         .collect();
     let share = |direction: usize, at: usize| {
-        let is_seen = seen[direction * count + at] == VisiblePoint::Sky;
+        let is_visible = visible[direction * count + at] == VisiblePoint::Sky;
         let towards = normals[at].dot(directions.vectors()[direction]).max(0.0) / normals[at].z;
-        if is_seen { towards } else { 0.0 }
+        if is_visible { towards } else { 0.0 }
     };
     let means: Vec<f64> = (0..directions.count())
         .map(|i| (0..count).map(|at| share(i, at)).sum::<f64>() / count as f64)
@@ -188,8 +190,8 @@ fn reflected_energy_is_at_most_incident_energy() {
             "{name}: {largest} {most}"
         );
         if name == "grooves" {
-            let of_samples = most_of_samples(&scene, facets.directions(), &weights);
-            assert!(of_samples > 1.01 * most, "cannot fail: {of_samples} {most}");
+            let at_texels = most_of_texels(&scene, facets.directions(), &weights);
+            assert!(at_texels > 1.01 * most, "cannot fail: {at_texels} {most}");
         }
         assert!(table.unreciprocal() < 1e-14, "{name}: {}", table.unreciprocal());
     }
@@ -226,10 +228,10 @@ impl Shares {
     fn of(scene: &Scene, points: &VisiblePoints, facets: &Facets, weights: &[f64]) -> Self {
         const BOUNCES: usize = 20;
         let field = &scene.field;
-        let samples = field.heights_m().len();
+        let grid_points = field.heights_m().len();
         let share = points.directions().share_sr() / PI;
         // gathered[i][j]: the light that texel i reflects where texel j has radiance 1.
-        let mut gathered = vec![vec![0.0; samples]; samples];
+        let mut gathered = vec![vec![0.0; grid_points]; grid_points];
         for (i, row) in gathered.iter_mut().enumerate() {
             let n = normal(field, Border::Periodic, i / field.cols(), i % field.cols());
             for (d, e) in points.directions().vectors().iter().enumerate() {
@@ -244,31 +246,34 @@ impl Shares {
             radiance[facet] = [1.0; 3];
             radiance
         };
-        let seen = |light: &ExitRadiance| -> f64 {
+        let visible = |light: &ExitRadiance| -> f64 {
             facets.radiance_from_all(light).iter().zip(weights).map(|(l, w)| w * l[0]).sum()
         };
-        let of_sample = |sample: usize| {
-            let mut samples = vec![[0.0; 3]; samples];
-            samples[sample] = [1.0; 3];
+        let at_texel = |grid_point: usize| {
+            let mut grid_points = vec![[0.0; 3]; grid_points];
+            grid_points[grid_point] = [1.0; 3];
             let mut light = ExitRadiance::from(vec![[0.0; 3]; count]);
-            facets.add_grid_points(&samples, &mut light);
+            facets.add_grid_points(&grid_points, &mut light);
             light
         };
-        let left: Vec<f64> = (0..samples).map(|j| seen(&of_sample(j))).collect();
+        let left: Vec<f64> = (0..grid_points).map(|j| visible(&at_texel(j))).collect();
         let before = |later: &[f64]| -> Vec<f64> {
-            let of = |j: usize| (0..samples).map(|i| gathered[i][j] * later[i]).sum();
-            (0..samples).map(of).collect()
+            let of = |j: usize| (0..grid_points).map(|i| gathered[i][j] * later[i]).sum();
+            (0..grid_points).map(of).collect()
         };
-        let (mut step, mut scattered) = (left.clone(), vec![0.0; samples]);
+        let (mut step, mut scattered) = (left.clone(), vec![0.0; grid_points]);
         for _ in 0..BOUNCES {
             step = before(&step);
             scattered.iter_mut().zip(&step).for_each(|(sum, step)| *sum += step);
         }
         // Walls at right angles: the area is √2 of the plan, counted by triangles and by texels.
         let sent = |of: usize| PI * 2_f64.sqrt() / of as f64;
-        let of_others = before(&vec![1.0; samples]);
-        let unsent: Vec<f64> =
-            of_others.iter().zip(&left).map(|(o, l)| (o + l / sent(samples) - 1.0).abs()).collect();
+        let of_others = before(&vec![1.0; grid_points]);
+        let unsent: Vec<f64> = of_others
+            .iter()
+            .zip(&left)
+            .map(|(o, l)| (o + l / sent(grid_points) - 1.0).abs())
+            .collect();
         // The share that is not sent, at once and in what others gather later.
         let mut later = unsent.clone();
         for _ in 0..2 * BOUNCES {
@@ -276,13 +281,13 @@ impl Shares {
         }
         let unsent_later = before(&later);
         let most = of_others.iter().copied().fold(0.0, f64::max);
-        let each = sent(samples) / sent(count);
+        let each = sent(grid_points) / sent(count);
         let of_facet = |facet: usize| {
             let radiance = only(facet);
             let reflected: Vec<f64> =
                 facets.to_grid_points(&radiance).iter().map(|l| f64::from(l[0])).collect();
             let sum = |of: &[f64]| reflected.iter().zip(of).map(|(l, s)| l * s).sum::<f64>();
-            let at_once = seen(&ExitRadiance::from(radiance)) / sent(count);
+            let at_once = visible(&ExitRadiance::from(radiance)) / sent(count);
             let all = at_once + sum(&scattered) / sent(count);
             let unsent = (at_once + each * sum(&of_others) - 1.0).abs();
             (all, unsent + each * sum(&unsent_later) + most.powi(BOUNCES as i32))
@@ -304,14 +309,14 @@ fn scattered_light_conserves_energy() {
     let mut scene = scene(2, 16, |_, c| c.abs_diff(8) as f64);
     scene.surface.albedo = Albedo::Constant([1.0; 3]);
     let around = Directions::fibonacci(AROUND, -1.0, 0).expect("directions");
-    let seen = visible_points(&scene.field, Border::Periodic, &around);
-    let points = VisiblePoints::from_points(&scene.field, Border::Periodic, around, &seen);
+    let visible = visible_points(&scene.field, Border::Periodic, &around);
+    let points = VisiblePoints::from_points(&scene.field, Border::Periodic, around, &visible);
     let points = points.expect("points");
     let facets = facets(&scene, 3, above(VIEWS));
     let lit = |light: usize, bounces: u32| {
         let mut radiance = facets.lit_from(light);
-        let samples = facets.to_grid_points(radiance.alike());
-        let direct: Vec<_> = samples.iter().map(|s| s.map(f64::from)).collect();
+        let grid_points = facets.to_grid_points(radiance.alike());
+        let direct: Vec<_> = grid_points.iter().map(|s| s.map(f64::from)).collect();
         let more = expected(&scene, &points, &direct, bounces);
         let more: Vec<_> = more.iter().map(|s| s.map(|v| v as f32)).collect();
         facets.add_grid_points(&more, &mut radiance);

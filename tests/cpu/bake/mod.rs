@@ -197,15 +197,15 @@ fn maps_agree_with_cpu_references() {
     let field = HeightField::new(17, 17, &heights, [1.0, 1.5], None).unwrap();
     for border in [Border::Plane, Border::Open, Border::Periodic] {
         let (oracle, normals) = (Oracle::new(&field, border), normals(&field, border));
-        let (count, samples) = (16, 17 * 17);
+        let (count, texels) = (16, 17 * 17);
         let width_rad = TAU / count as f64;
         let kinds: [Box<dyn HorizonMap>; 2] = [Box::new(SkyView), Box::new(ShVisibility::new(4))];
-        let mut sums = kinds.map(|kind| HorizonSums::new(kind, samples));
-        let mut horizons = vec![Vec::new(); samples];
+        let mut sums = kinds.map(|kind| HorizonSums::new(kind, texels));
+        let mut horizons = vec![Vec::new(); texels];
         for k in 0..count {
             let azimuth_rad = width_rad * f64::from(k);
             let at = |i: usize| oracle.elevation_rad(i / 17, i % 17, azimuth_rad) as f32;
-            let elevations: Vec<f32> = (0..samples).map(at).collect();
+            let elevations: Vec<f32> = (0..texels).map(at).collect();
             for (i, elevation) in elevations.iter().enumerate() {
                 let elevation = f64::from(*elevation).clamp(-FRAC_PI_2, FRAC_PI_2);
                 horizons[i].push([azimuth_rad, width_rad, elevation.tan()]);
@@ -214,7 +214,7 @@ fn maps_agree_with_cpu_references() {
             sums.iter_mut().for_each(|sum| sum.add(ray, &elevations, &normals).unwrap());
         }
         let [view, series] = sums.map(|sum| sum.end(&normals).unwrap());
-        for i in (0..samples).step_by(7) {
+        for i in (0..texels).step_by(7) {
             let (row, col) = (i / 17, i % 17);
             assert_eq!(normals[i], normal(&field, border, row, col));
             // Elevations of f32, 2^-23 of at most π/2, change a sum by no more than twice that, besides its own

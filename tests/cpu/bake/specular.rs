@@ -14,13 +14,13 @@ use crate::v_grooves::{groove_bound, wall};
 fn scene(
     rows: usize,
     cols: usize,
-    (albedo, lobe): (f32, Specular),
+    (albedo, phong_specular): (f32, Specular),
     height: impl Fn(usize) -> f64,
 ) -> Scene {
     let all: Vec<f64> = (0..rows * cols).map(|i| height(i % cols)).collect();
     let field = HeightField::new(rows, cols, &all, [1.0; 2], None).expect("a field");
     let albedo = Albedo::Constant([albedo; 3]);
-    let surface = Surface { border: Border::Periodic, albedo, specular: Some(lobe) };
+    let surface = Surface { border: Border::Periodic, albedo, specular: Some(phong_specular) };
     Scene { field, surface, lights: Lights::default() }
 }
 
@@ -115,7 +115,7 @@ fn specular_of_grooves_matches_its_integral() {
     }
 }
 
-/// Under light of 1 from all sides a view receives ρ + s at most, and exactly that from level ground seen from
+/// Under light of 1 from all sides a view receives ρ + s at most, and exactly that from level ground visible from
 /// straight above. Sums over steps of h, of a function that changes within 1/(n + 2) radians, err by (n + 2)²
 /// h²/24 of it; grooves also by their triangles' share of the view. A light at grazing angles has no such
 /// bound: (n + 1)/(n + 2) of s leaves straight up, more than arrives.
@@ -125,10 +125,10 @@ fn specular_is_bounded_by_the_view() {
     let (weights, last) = (angles.projected_sr(), angles.count() - 1);
     let step: f64 = TAU / 32.0;
     for n in [1.0, 6.0] {
-        let lobe = || (0.4, one(n as f32, 0.6));
+        let phong_specular = || (0.4, one(n as f32, 0.6));
         let allowed = (n + 2.0_f64).powi(2) * step * step / 24.0;
-        let level = scene(2, 2, lobe(), |_| 0.0);
-        let grooves = scene(2, WALL, lobe(), |c| c.abs_diff(WALL / 2) as f64);
+        let level = scene(2, 2, phong_specular(), |_| 0.0);
+        let grooves = scene(2, WALL, phong_specular(), |c| c.abs_diff(WALL / 2) as f64);
         for (name, scene) in [("level", level), ("grooves", grooves)] {
             let facets = facets(&scene, angles.directions().expect("directions"));
             let table = table(&facets);
@@ -206,11 +206,11 @@ fn the_sharpest_exponent_ignores_texels_without_specular() {
 /// triangles. Diagonals run from the north-west to the south-east.
 #[test]
 fn specular_maps_are_averaged_over_corners() {
-    let lobes: Vec<PhongSpecular> = (0..12)
+    let phong_maps: Vec<PhongSpecular> = (0..12)
         .map(|i| PhongSpecular { exponent: 3.0 * (i * 5 % 7) as f32, scale: 0.1 * (i % 5) as f32 })
         .collect();
-    let of = |r: usize, c: usize| lobes[r % 3 * 4 + c % 4];
-    let scene = scene(3, 4, (0.2, Specular::Map(lobes.clone())), |_| 1.0);
+    let of = |r: usize, c: usize| phong_maps[r % 3 * 4 + c % 4];
+    let scene = scene(3, 4, (0.2, Specular::Map(phong_maps.clone())), |_| 1.0);
     let facets = facets(&scene, Directions::fibonacci(20, 0.0, 0).expect("directions"));
     let table = table(&facets);
     let e = table.directions();

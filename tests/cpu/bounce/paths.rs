@@ -1,7 +1,7 @@
 //! The quadrature against brute-force path tracing. Both evaluate indirect Phong specular towards straight above only.
 
 use ridgelight::scene::{Albedo, Border, Environment, Lights, PhongSpecular, Specular};
-use ridgelight_cpu::indirect::{Fineness, ground_truth as truth};
+use ridgelight_cpu::indirect::{Fineness, ground_truth as expected_light};
 use ridgelight_cpu::light::normal;
 
 use super::{rough, under_sky};
@@ -27,20 +27,21 @@ fn brute_force_paths_match_the_quadrature() {
     let bounces = 3;
     for (name, scene) in [("plane", plane), ("open", open)] {
         let said =
-            truth(&scene, bounces, Fineness { azimuths: 32, divisions: 1, strips: 16 }).unwrap();
+            expected_light(&scene, bounces, Fineness { azimuths: 32, divisions: 1, strips: 16 })
+                .unwrap();
         let mut paths = Paths::new(&scene, false);
-        for sample in [6, 12, 19] {
-            let up = normal(&scene.field, scene.surface.border, sample / 5, sample % 5);
-            let light = paths.light(sample, up, bounces, 12_000);
+        for texel in [6, 12, 19] {
+            let up = normal(&scene.field, scene.surface.border, texel / 5, texel % 5);
+            let light = paths.light(texel, up, bounces, 12_000);
             for (b, [mean, sigma]) in light.iter().enumerate() {
                 for i in 0..3 {
                     let (mean, sigma) = (mean[i], sigma[i]);
-                    let off = mean - said.radiance[b][sample][i];
-                    let stated = said.error[b][sample][i];
+                    let off = mean - said.radiance[b][texel][i];
+                    let stated = said.error[b][texel][i];
                     println!(
-                        "{name} {sample} bounce {b} channel {i}: {mean:.4} off {off:+.4}, σ {sigma:.4}, stated {stated:.4}"
+                        "{name} {texel} bounce {b} channel {i}: {mean:.4} off {off:+.4}, σ {sigma:.4}, stated {stated:.4}"
                     );
-                    assert!(off.abs() <= 4.0 * sigma + stated, "{name} {sample} {b} {i}");
+                    assert!(off.abs() <= 4.0 * sigma + stated, "{name} {texel} {b} {i}");
                 }
             }
         }

@@ -23,8 +23,8 @@ fn the_closed_form_matches_the_quadrature() {
 fn slices_of_a_pit_match_reference_numbers() {
     let all: serde_json::Value =
         serde_json::from_str(include_str!("../../basis/reference_numbers.json")).unwrap();
-    for sample in all["spherical_pit"].as_array().unwrap() {
-        let number = |name: &str| sample[name].as_f64().unwrap();
+    for entry in all["spherical_pit"].as_array().unwrap() {
+        let number = |name: &str| entry[name].as_f64().unwrap();
         let (alpha, albedo) = (number("alpha"), number("albedo"));
         for from_bottom in [0.0, 0.3 * alpha, 0.9 * alpha] {
             // On a sphere of radius 1 about the origin; its normal points there.
@@ -41,7 +41,7 @@ fn slices_of_a_pit_match_reference_numbers() {
                 ground += 2.0 / f64::from(azimuths) * slice(a, b, (-a).atan2(b), rim);
             }
             let direct = albedo * sky;
-            let bounces = sample["bounces"].as_u64().unwrap();
+            let bounces = entry["bounces"].as_u64().unwrap();
             let got = (0..bounces).fold(direct, |light, _| direct + albedo * ground * light);
             let limit = direct / (1.0 - albedo * ground);
             for (got, want) in [(got, number("radiance")), (limit, number("limit"))] {

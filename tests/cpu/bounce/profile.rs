@@ -16,10 +16,10 @@ fn visible_intervals_fill_the_angle_below_the_horizon() {
         let height = |[r, c]: [usize; 2]| f64::from(field.heights_m()[r * 9 + c]);
         for (row, col, k) in (0..7 * 9 * 13).map(|i| (i / 9 % 7, i % 9, i / 63)) {
             let azimuth = TAU * (k as f64 + 0.3) / 13.0;
-            let seen = oracle.visible_intervals(row, col, azimuth);
+            let visible = oracle.visible_intervals(row, col, azimuth);
             let horizon = oracle.elevation_rad(row, col, azimuth);
             let mut reached = -FRAC_PI_2;
-            for interval in &seen {
+            for interval in &visible {
                 assert_eq!(interval.low_rad, reached);
                 assert!(interval.high_rad > interval.low_rad);
                 reached = interval.high_rad;
@@ -42,7 +42,7 @@ fn visible_intervals_fill_the_angle_below_the_horizon() {
                     assert!(distance > 0.0 || rise.abs() < 1e-12);
                 }
             }
-            if !seen.is_empty() {
+            if !visible.is_empty() {
                 let above = reached.max(if border == ridgelight::scene::Border::Open {
                     reached
                 } else {
@@ -69,12 +69,12 @@ fn visible_intervals_fill_the_angle_below_the_horizon() {
 fn a_step_shows_its_floor_and_its_face() {
     let step = field(5, 8, [1.0, 1.0], |_, c| if c > 4 { 2.0 } else { 0.0 });
     let oracle = Oracle::new(&step, ridgelight::scene::Border::Plane);
-    let seen = oracle.visible_intervals(2, 2, 1e-4);
-    let floor = seen[0];
+    let visible = oracle.visible_intervals(2, 2, 1e-4);
+    let floor = visible[0];
     assert_eq!((floor.low_rad, floor.high_rad), (-FRAC_PI_2, 0.0));
     // Heights over distances that are longer by 1/cos 1e-4.
-    assert!((seen.last().unwrap().high_rad.tan() - 2.0 / 3.0).abs() < 1e-7);
+    assert!((visible.last().unwrap().high_rad.tan() - 2.0 / 3.0).abs() < 1e-7);
     let half = 0.5_f64.atan();
-    let face = seen.iter().find(|s| s.low_rad < half && half < s.high_rad).unwrap();
+    let face = visible.iter().find(|s| s.low_rad < half && half < s.high_rad).unwrap();
     assert!((face.distance_m(half) - 4.0 / 1.5).abs() < 1e-7, "2 (D - 2) = D / 2");
 }

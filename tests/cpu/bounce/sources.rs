@@ -3,7 +3,7 @@
 use ridgelight::scene::{
     Border, HeightField, KeyLight, Lights, PhongSpecular, Scene, Specular, SphereLight, Sun,
 };
-use ridgelight_cpu::indirect::{Fineness, ground_truth as truth, light};
+use ridgelight_cpu::indirect::{Fineness, ground_truth as expected_light, light};
 use ridgelight_cpu::light::sun_of;
 use ridgelight_cpu::oracle::Oracle;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -195,7 +195,8 @@ fn phong_specular_has_closed_forms() {
 #[test]
 fn the_stated_error_bounds_the_error() {
     let scene = under_sky(rough(6, 6, [1.0, 1.0], 3.0), Border::Plane, 0.8);
-    let stated = truth(&scene, 2, Fineness { azimuths: 16, divisions: 1, strips: 4 }).unwrap();
+    let stated =
+        expected_light(&scene, 2, Fineness { azimuths: 16, divisions: 1, strips: 4 }).unwrap();
     let finest = Fineness { azimuths: 64, divisions: 4, strips: 16 };
     let exact = light(&scene, 2, finest).unwrap();
     for (b, exact) in exact.iter().enumerate() {

@@ -1,6 +1,6 @@
 //! The quadrature of the scenes that the path tracer is compared on.
 
-use ridgelight_cpu::indirect::{Fineness, ground_truth as truth};
+use ridgelight_cpu::indirect::{Fineness, ground_truth as expected_light};
 
 use crate::reference_page::{FINENESS, MOST_BOUNCES, closed_forms, head, light_names};
 use crate::scenes::{Agreement, scenes};
@@ -27,19 +27,21 @@ fn stated_errors_are_small_on_every_scene() {
     println!("{:34} bounces  mean radiance (sky, sun, sphere)    rms of stated error", "scene");
     let page = page();
     for (name, scene) in scenes() {
-        let truth = truth(&scene, MOST_BOUNCES, FINENESS).unwrap();
+        let expected_light = expected_light(&scene, MOST_BOUNCES, FINENESS).unwrap();
         for b in 0..=MOST_BOUNCES {
             for (channel, light) in light_names(&scene).into_iter().enumerate() {
-                let head = head(name, b, light, &truth, channel);
+                let head = head(name, b, light, &expected_light, channel);
                 let Some([_, _, mean, rms, worst]) = figures(&page, &head) else {
                     panic!("run tools/reference: docs/measured/reference.md lacks {head}");
                 };
-                let count = truth.radiance[b].len();
+                let count = expected_light.radiance[b].len();
                 let published = Agreement { rms, worst, mean, count };
                 assert!(published.holds(), "{head}: {published:?}");
             }
         }
-        for (b, (picture, error)) in truth.radiance.iter().zip(&truth.error).enumerate() {
+        for (b, (picture, error)) in
+            expected_light.radiance.iter().zip(&expected_light.error).enumerate()
+        {
             let n = picture.len() as f64;
             let mean = [0, 1, 2].map(|i| picture.iter().map(|v| v[i]).sum::<f64>() / n);
             let rms =
@@ -58,8 +60,8 @@ fn closed_forms_are_published() {
     let page = page();
     for closed in closed_forms() {
         let head = closed.head();
-        let samples = closed.scene.field.heights_m().len();
-        assert!(!closed.known.is_empty() && closed.known.iter().all(|k| k.0 < samples), "{head}");
+        let texels = closed.scene.field.heights_m().len();
+        assert!(!closed.known.is_empty() && closed.known.iter().all(|k| k.0 < texels), "{head}");
         let Some([_, _, _, z]) = figures(&page, &head) else {
             panic!("run tools/reference: docs/measured/reference.md lacks {head}");
         };
@@ -74,8 +76,9 @@ fn closed_forms_are_published() {
 #[test]
 fn agreement_separates_noise_from_error() {
     let scene = scenes().remove(7).1;
-    let truth = truth(&scene, 1, Fineness { azimuths: 24, divisions: 1, strips: 12 }).unwrap();
-    let (right, stated) = (&truth.radiance[1], &truth.error[1]);
+    let expected_light =
+        expected_light(&scene, 1, Fineness { azimuths: 24, divisions: 1, strips: 12 }).unwrap();
+    let (right, stated) = (&expected_light.radiance[1], &expected_light.error[1]);
     let sigma = vec![[1e-3; 3]; right.len()];
     // Sums of twelve uniform numbers: standard deviation 1.
     let mut state = 7_u64;

@@ -93,7 +93,7 @@ fn walks_match_every_step_along_swept_lines() {
     }
 }
 
-/// RMSE over the mean of the truth.
+/// RMSE over the mean of the ground truth.
 fn relative(got: &[f64], want: &[f64]) -> f64 {
     let squares: f64 = got.iter().zip(want).map(|(a, b)| (a - b).powi(2)).sum();
     let mean = want.iter().sum::<f64>() / want.len() as f64;

@@ -46,7 +46,7 @@ fn the_slice_matches_simpsons_rule() {
     assert_eq!(slice(1.0, 1.0, 0.6, 0.5), 0.0);
 }
 
-/// A plane of gradient g has the normal (-g, 1)/|..| at every sample: inside, edge, corner.
+/// A plane of gradient g has the normal (-g, 1)/|..| at every texel: inside, edge, corner.
 #[test]
 fn normals_of_a_plane_are_its_normal_everywhere() {
     let tilted = plane(5, 4, [2.0, 0.5], 0.25, -1.5);
@@ -63,7 +63,7 @@ fn normals_of_a_plane_are_its_normal_everywhere() {
 
 /// Gradients counted by hand. A spike of height 4 at the middle of 3 × 3: at its east neighbour two quads touch the
 /// spike, each with an edge falling 4 of its two: mean over 2 quads of (−4 + 0)/2 = −2 east; north they cancel.
-/// Periodic adds two quads across the seam that rise towards nothing: their west-side samples are the neighbour itself
+/// Periodic adds two quads across the seam that rise towards nothing: their west-side texels are the neighbour itself
 /// (0), so −1. A lone row is central inside and one-sided at its ends.
 #[test]
 fn normals_count_the_quads_that_exist() {
@@ -160,7 +160,7 @@ fn a_wall_leaves_half_of_one_plus_its_cosine() {
     }
 }
 
-/// A circular basin of radius R with rim elevation b, seen from the middle of its floor: cos²b.
+/// A circular basin of radius R with rim elevation b, visible from the middle of its floor: cos²b.
 /// On the grid the rim's crest along a ray is met between R - √2 and R + √2 cells, so its elevation is
 /// off by at most Δ = sin b cos b·√2/(R - √2) and cos²b by sin 2b·Δ ≤ (√2/2)/(R - √2).
 #[test]

@@ -58,8 +58,11 @@ fn normals_are_those_of_the_reference() {
             let heights = Heights::of(&rough, border);
             for (row, col) in (0..rows).flat_map(|r| (0..cols).map(move |c| (r, c))) {
                 let normal = normal_of(field_slope(&heights, col as i32, row as i32));
-                let truth = light::normal(&rough, border, row, col);
-                assert!((normal - truth).length() < 1e-14, "{rows} {cols} {border:?} {row} {col}");
+                let ground_truth = light::normal(&rough, border, row, col);
+                assert!(
+                    (normal - ground_truth).length() < 1e-14,
+                    "{rows} {cols} {border:?} {row} {col}"
+                );
             }
         }
     }
@@ -78,11 +81,11 @@ fn the_sky_is_the_closed_form_over_the_oracles_horizons() {
         let (_, relief) = extent(&rough);
         let tolerance = 2.0 * march_slope(relief, 2.0) + 16.0 * EPSILON;
         // A march misses ground beyond 512 cells, two metres wide or more.
-        let unseen = if border == Border::Periodic { relief / (512.0 * 2.0) } else { 0.0 };
+        let hidden = if border == Border::Periodic { relief / (512.0 * 2.0) } else { 0.0 };
         for (i, sky) in sky.into_iter().enumerate() {
             let (row, col) = (i / 8, i % 8);
             let n = light::normal(&rough, border, row, col);
-            let truth: f64 = azimuths
+            let ground_truth: f64 = azimuths
                 .iter()
                 .map(|a| {
                     let (x, y) = (f64::from(a.cos_phi), f64::from(a.sin_phi));
@@ -93,16 +96,19 @@ fn the_sky_is_the_closed_form_over_the_oracles_horizons() {
                 })
                 .sum();
             assert!(
-                (sky - truth).abs() <= tolerance + 2.0 * unseen,
-                "{border:?} {i} {sky} {truth}"
+                (sky - ground_truth).abs() <= tolerance + 2.0 * hidden,
+                "{border:?} {i} {sky} {ground_truth}"
             );
             // The reference takes the normal at a wedge's centre: a factor sinc(w/2) of its
-            // horizontal part; and azimuths as asked for, 2.4e-5 rad aside at most in these cells,
+            // horizontal part; and azimuths as requested, 2.4e-5 rad aside at most in these cells,
             // across which the surface rises by relief / 2 m at most, times the wedges' 2.
             let reference = light::sky_of(&oracle, row, col, 24);
             let aside = 2.0 * 2.4e-5 * relief / 2.0;
             let wedge = (TAU / 24.0 / 2.0_f64).powi(2) / 6.0 * 2.0;
-            assert!((truth - reference).abs() <= wedge + aside, "{i} {truth} {reference}");
+            assert!(
+                (ground_truth - reference).abs() <= wedge + aside,
+                "{i} {ground_truth} {reference}"
+            );
         }
     }
 }
@@ -163,7 +169,7 @@ fn tables_of_all_azimuths_add_up_to_the_environment() {
                 for node in [0, 7, nodes - 1] {
                     let bottom = bottom_rad(border);
                     let low = bottom + (FRAC_PI_2 - bottom) * node as f64 / (nodes - 1) as f64;
-                    let mut truth = [DVec3::ZERO; 3];
+                    let mut ground_truth = [DVec3::ZERO; 3];
                     for (i, texel) in env.texels().iter().enumerate() {
                         let (row, col) = ((i / 16) as f64, (i % 16) as f64);
                         let top = FRAC_PI_2 - PI * row / 8.0;
@@ -171,19 +177,19 @@ fn tables_of_all_azimuths_add_up_to_the_environment() {
                         let east = PI - TAU * (col + 1.0) / 16.0 + env.rotation_rad();
                         let west = east + TAU / 16.0;
                         let l = DVec3::from_array(texel.map(f64::from)) / PI;
-                        truth[0] +=
+                        ground_truth[0] +=
                             l * (west.sin() - east.sin()) * light::slice(1.0, 0.0, end, top);
-                        truth[1] +=
+                        ground_truth[1] +=
                             l * (east.cos() - west.cos()) * light::slice(1.0, 0.0, end, top);
-                        truth[2] += l * (TAU / 16.0) * light::slice(0.0, 1.0, end, top);
+                        ground_truth[2] += l * (TAU / 16.0) * light::slice(0.0, 1.0, end, top);
                     }
-                    for (moment, truth) in truth.into_iter().enumerate() {
+                    for (moment, ground_truth) in ground_truth.into_iter().enumerate() {
                         let sum: DVec3 =
                             (0..azimuths.len()).map(|k| tables.at(k, moment, node)).sum();
                         let room = azimuths.len() as f64 * 2.0 * PI * EPSILON * 30.0;
                         assert!(
-                            (sum - truth).abs().max_element() <= room,
-                            "{moment} {node} {sum} {truth}"
+                            (sum - ground_truth).abs().max_element() <= room,
+                            "{moment} {node} {sum} {ground_truth}"
                         );
                     }
                 }
@@ -227,15 +233,19 @@ fn an_environment_lights_planes_as_the_reference_does() {
                     let tables = tables(&env, swept.azimuths, 129, border);
                     env_shade(swept, &tables)[3 * 8 + 4]
                 });
-                let truth = light::environment_of(&Oracle::one_ray(&tilted, border), 3, 4, &env);
+                let ground_truth =
+                    light::environment_of(&Oracle::one_ray(&tilted, border), 3, 4, &env);
                 let (w, h, g2) = (TAU / 128.0, PI / 128.0, east * east + north * north);
                 let most = f64::from(brightest);
                 // Flat under either border all rows end at nodes, and wedges do not matter.
                 let room = if g2 == 0.0 { 0.0 } else { 2.0 * (w * w * g2 + h * h / 8.0) };
                 let strips = (TAU / light::ENVIRONMENT_STRIPS as f64).powi(2);
-                for (got, truth) in got.into_iter().zip(truth) {
+                for (got, ground_truth) in got.into_iter().zip(ground_truth) {
                     let tolerance = most * (room + strips + 128.0 * 4.0 * EPSILON);
-                    assert!((got - truth).abs() <= tolerance, "{east} {border:?} {got} {truth}");
+                    assert!(
+                        (got - ground_truth).abs() <= tolerance,
+                        "{east} {border:?} {got} {ground_truth}"
+                    );
                 }
             }
         }
@@ -270,14 +280,17 @@ fn suns_are_those_of_the_reference() {
             let mut azimuths = across_sun(&sun, slices, rough.cell_m());
             let got = lit(&rough, border, &mut azimuths, |s| sun_shade(s, shape));
             for (i, got) in got.into_iter().enumerate() {
-                let truth =
+                let ground_truth =
                     light::sun_of(&Oracle::one_ray(&rough, border), i / 7, i % 7, &sun, 2048)[0];
                 let tolerance = if diameter == 0.0 {
                     16.0 * EPSILON
                 } else {
                     4.0 / 128.0_f64.powf(1.5) + march_slope(relief, 2.0) / sun.diameter_rad
                 };
-                assert!((got - truth).abs() <= tolerance, "{sun:?} {border:?} {i}: {got} {truth}");
+                assert!(
+                    (got - ground_truth).abs() <= tolerance,
+                    "{sun:?} {border:?} {i}: {got} {ground_truth}"
+                );
             }
         }
     }
@@ -312,8 +325,11 @@ fn key_lights_are_those_of_the_reference() {
             let tolerance = key.width_rad / PI
                 * (march_slope(relief, 2.0) + wedge * wedge / 24.0 * FRAC_PI_2 + 8.0 * EPSILON);
             for (i, got) in got.into_iter().enumerate() {
-                let truth = light::key_of(&oracle, i / 7, i % 7, &key, slices as usize)[0];
-                assert!((got - truth).abs() <= tolerance, "{key:?} {border:?} {i}: {got} {truth}");
+                let ground_truth = light::key_of(&oracle, i / 7, i % 7, &key, slices as usize)[0];
+                assert!(
+                    (got - ground_truth).abs() <= tolerance,
+                    "{key:?} {border:?} {i}: {got} {ground_truth}"
+                );
             }
         }
     }

@@ -84,7 +84,7 @@ fn a_small_edit_of_a_rough_field_sweeps_little_and_of_a_dome_is_still_right() {
             let options = SweepOptions::default();
             let [count, all] = resweep(before, &after, rectangle, options).unwrap();
             // Nine lines of 200 an azimuth, and at first only texels behind the edit.
-            assert!(i == 1 || count * 20 < all, "{count} of {all} samples, raised by {by}");
+            assert!(i == 1 || count * 20 < all, "{count} of {all} texels, raised by {by}");
         }
     }
 }

@@ -79,12 +79,13 @@ fn importance_sampled_azimuths_beat_even_ones_where_occlusion_cuts_bright_light(
         let cols = field.cols();
         let places: Vec<usize> = (0..field.rows() * cols).step_by(331).collect();
         let oracle = Oracle::new(&field, BORDER);
-        let truth = |p: &usize| environment_of(&oracle, p / cols, p % cols, &sky);
-        let truth: Vec<f64> = places.iter().map(|p| truth(p).iter().sum::<f64>() / 3.0).collect();
+        let ground_truth = |p: &usize| environment_of(&oracle, p / cols, p % cols, &sky);
+        let ground_truth: Vec<f64> =
+            places.iter().map(|p| ground_truth(p).iter().sum::<f64>() / 3.0).collect();
         let rmse = |azimuths: &[Azimuth]| {
             let found = lit(&field, &sky, azimuths, &places);
-            let squares = found.iter().zip(&truth).map(|(a, b)| (a - b).powi(2));
-            (squares.sum::<f64>() / truth.len() as f64).sqrt()
+            let squares = found.iter().zip(&ground_truth).map(|(a, b)| (a - b).powi(2));
+            (squares.sum::<f64>() / ground_truth.len() as f64).sqrt()
         };
         let evenly = even(COUNT, cell_m);
         let drawn = rmse(&towards_light(&sky, 0.0, BORDER, COUNT, cell_m));

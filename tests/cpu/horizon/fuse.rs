@@ -43,7 +43,7 @@ fn each_mode(
     }
 }
 
-fn samples(field: &HeightField) -> impl Iterator<Item = (i32, i32)> {
+fn texels(field: &HeightField) -> impl Iterator<Item = (i32, i32)> {
     let cols = field.cols();
     (0..field.rows() * cols).map(move |i| ((i % cols) as i32, (i / cols) as i32))
 }
@@ -66,16 +66,16 @@ fn aimed_modes_are_lower_bounds() {
                 let mut azimuths = even(20, rough.cell_m());
                 each_mode(&rough, border, &mut azimuths, options, |swept, fuse| {
                     for (azimuth, (col, row)) in
-                        swept.azimuths.iter().flat_map(|a| samples(&rough).map(move |s| (a, s)))
+                        swept.azimuths.iter().flat_map(|a| texels(&rough).map(move |s| (a, s)))
                     {
                         let found = swept.found(azimuth, col, row);
                         let vector = grid_vector(azimuth);
-                        let truth = oracle.horizon_along(row as usize, col as usize, vector);
-                        let bound = truth.map_or(-1e9, |t| t.slope);
+                        let ground_truth = oracle.horizon_along(row as usize, col as usize, vector);
+                        let bound = ground_truth.map_or(-1e9, |t| t.slope);
                         let tolerance = aimed_slope(largest, azimuth.step_m.into());
                         assert!(
                             !aims(fuse) || f64::from(found.slope) <= bound + tolerance,
-                            "{fuse:?} {border:?} {line_shift} ({row}, {col}) {azimuth:?} {found:?} {truth:?}"
+                            "{fuse:?} {border:?} {line_shift} ({row}, {col}) {azimuth:?} {found:?} {ground_truth:?}"
                         );
                     }
                 });
@@ -102,7 +102,7 @@ fn on_axes_and_diagonals_every_mode_is_the_march() {
             let all = marched(&rough, border, &mut azimuths.clone(), warm_up, true);
             each_mode(&rough, border, &mut azimuths, SweepOptions::default(), |swept, fuse| {
                 for (azimuth, (col, row)) in
-                    swept.azimuths.iter().flat_map(|a| samples(&rough).map(move |s| (a, s)))
+                    swept.azimuths.iter().flat_map(|a| texels(&rough).map(move |s| (a, s)))
                 {
                     let march = March::new(swept.heights, azimuth);
                     let (lane, step) = march.of_grid_point(col, row);
@@ -134,10 +134,10 @@ fn errors_fall_from_mode_to_mode() {
     let rough = fractal(128, 3).unwrap();
     let oracle = Oracle::new(&rough, Border::Plane);
     let mut azimuths = even(32, rough.cell_m());
-    let picked: Vec<(i32, i32)> = samples(&rough)
+    let picked: Vec<(i32, i32)> = texels(&rough)
         .filter(|(c, r)| (c * 7 + r * 11) % 29 == 0 || (c * r == 0 && (c + r) % 9 == 0))
         .collect();
-    let truth: Vec<f64> = azimuths
+    let ground_truth: Vec<f64> = azimuths
         .iter()
         .flat_map(|a| {
             picked
@@ -155,12 +155,12 @@ fn errors_fall_from_mode_to_mode() {
     each_mode(&rough, Border::Plane, &mut azimuths, SweepOptions::default(), |swept, fuse| {
         let pairs = swept.azimuths.iter().flat_map(|a| picked.iter().map(move |s| (a, s)));
         let mut sum = 0.0;
-        for ((azimuth, (col, row)), truth) in pairs.zip(&truth) {
-            let off = fused_horizon(swept, azimuth, *col, *row).angle_rad - truth;
+        for ((azimuth, (col, row)), ground_truth) in pairs.zip(&ground_truth) {
+            let off = fused_horizon(swept, azimuth, *col, *row).angle_rad - ground_truth;
             assert!(!aims(fuse) || off <= tolerance, "{fuse:?} ({row}, {col}) {off}");
             sum += off.abs();
         }
-        errors.push((sum / truth.len() as f64).to_degrees());
+        errors.push((sum / ground_truth.len() as f64).to_degrees());
     });
     println!("mean errors {errors:?}");
     let [nearest, slopes, own, aimed_nearest, aimed, around] = errors[..] else { unreachable!() };
@@ -185,17 +185,18 @@ fn a_ridge_between_steps_is_met() {
         }
         for azimuth in swept.azimuths {
             let march = March::new(swept.heights, azimuth);
-            for (col, row) in samples(&roof) {
+            for (col, row) in texels(&roof) {
                 let (lane, step) = march.of_grid_point(col, row);
                 let options = MarchOptions { all_crossings: true, warm_up: 0 };
-                let truth = march_of(&march, lane, step, options).slope;
+                let ground_truth = march_of(&march, lane, step, options).slope;
                 let found = swept.found(azimuth, col, row).slope;
                 let tolerance = march_slope(relief, azimuth.step_m.into());
                 // Where nothing rises the horizon is the far edge's.
-                let is_met = truth <= 0.0 || f64::from((found - truth).abs()) <= tolerance;
+                let is_met =
+                    ground_truth <= 0.0 || f64::from((found - ground_truth).abs()) <= tolerance;
                 assert!(
                     is_met || fuse == Fuse::Aimed,
-                    "({row}, {col}) {azimuth:?} {found} {truth}"
+                    "({row}, {col}) {azimuth:?} {found} {ground_truth}"
                 );
                 missed += usize::from(!is_met);
             }
@@ -215,7 +216,7 @@ fn the_lines_beside_a_sample_are_the_nearest_there_are() {
             let mut azimuths = even(20, rough.cell_m());
             each_mode(&rough, border, &mut azimuths, options, |swept, fuse| {
                 for (azimuth, (col, row)) in
-                    swept.azimuths.iter().flat_map(|a| samples(&rough).map(move |s| (a, s)))
+                    swept.azimuths.iter().flat_map(|a| texels(&rough).map(move |s| (a, s)))
                 {
                     let march = March::new(swept.heights, azimuth);
                     let (lane, step) = march.of_grid_point(col, row);
@@ -302,7 +303,7 @@ fn a_ramp_has_its_slope_up_to_the_edge() {
         let options = SweepOptions { line_shift, ..SweepOptions::default() };
         each_mode(&ramp, Border::Open, &mut even(24, ramp.cell_m()), options, |swept, fuse| {
             for (azimuth, (col, row)) in
-                swept.azimuths.iter().flat_map(|a| samples(&ramp).map(move |s| (a, s)))
+                swept.azimuths.iter().flat_map(|a| texels(&ramp).map(move |s| (a, s)))
             {
                 let found = swept.found(azimuth, col, row).slope;
                 let vector = grid_vector(azimuth);
@@ -345,7 +346,7 @@ fn direct_hands_on_slopes_and_distances() {
     let oracle = Oracle::new(&rough, Border::Open);
     let (largest, _) = extent(&rough);
     for azimuth in &azimuths {
-        for (col, row) in samples(&rough) {
+        for (col, row) in texels(&rough) {
             let Found { slope, steps } = swept.found(azimuth, col, row);
             let tolerance = 10.0 * sweep_slope(largest, azimuth.step_m.into());
             let place = (row as usize, col as usize);
@@ -362,7 +363,7 @@ fn rotated_fields_have_rotated_horizons() {
     let h = |r: usize, c: usize| 9.0 * noise(5, r, c);
     let original = field(rows, cols, [1.0, 2.0], h);
     let half = field(rows, cols, [1.0, 2.0], |r, c| h(rows - 1 - r, cols - 1 - c));
-    // Counter-clockwise: sample (r, c) goes to (cols - 1 - c, r).
+    // Counter-clockwise: texel (r, c) goes to (cols - 1 - c, r).
     let quarter = field(cols, rows, [2.0, 1.0], |r, c| h(c, cols - 1 - r));
     let count = 16_usize;
     let all = |field: &HeightField| {
@@ -376,7 +377,7 @@ fn rotated_fields_have_rotated_horizons() {
     let (here, turned, quartered) = (all(&original), all(&half), all(&quarter));
     for (mode, fuse) in FUSES.into_iter().enumerate() {
         for k in 0..count {
-            for (c, r) in samples(&original).map(|(c, r)| (c as usize, r as usize)) {
+            for (c, r) in texels(&original).map(|(c, r)| (c as usize, r as usize)) {
                 let a = here[mode][(k * rows + r) * cols + c].found.slope;
                 let opposite = (k + count / 2) % count;
                 let b = turned[mode][(opposite * rows + rows - 1 - r) * cols + cols - 1 - c];

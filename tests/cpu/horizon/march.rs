@@ -82,8 +82,11 @@ fn a_fractal_field_within_a_ten_thousandth_of_a_degree() {
             let slope =
                 lattice.slopes[lattice.texel(lane, march.march_position(step), azimuth.layer)];
             let angle = if slope <= -1e9 { -FRAC_PI_2 } else { f64::from(slope).atan() };
-            let truth = oracle.elevation_rad(row, col, azimuth.swept_rad(rough.cell_m()));
-            assert!((angle.max(0.0) - truth).abs().to_degrees() < 1e-4, "{row} {col} {azimuth:?}");
+            let ground_truth = oracle.elevation_rad(row, col, azimuth.swept_rad(rough.cell_m()));
+            assert!(
+                (angle.max(0.0) - ground_truth).abs().to_degrees() < 1e-4,
+                "{row} {col} {azimuth:?}"
+            );
         }
     }
 }

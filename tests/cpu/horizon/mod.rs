@@ -108,19 +108,21 @@ pub(crate) fn check_exact(
     tolerance: f64,
     reach_steps: Option<i32>,
 ) -> Result<(), String> {
-    let truth = oracle.horizon_along(row, col, grid_vector(azimuth));
-    let says = || format!("({row}, {col}) {azimuth:?}: {slope} at {steps}, truth {truth:?}");
-    let Some(truth) = truth else {
+    let ground_truth = oracle.horizon_along(row, col, grid_vector(azimuth));
+    let says =
+        || format!("({row}, {col}) {azimuth:?}: {slope} at {steps}, ground truth {ground_truth:?}");
+    let Some(ground_truth) = ground_truth else {
         return if slope <= -1e9 { Ok(()) } else { Err(says()) };
     };
     let step_m = f64::from(azimuth.step_m);
-    let off = f64::from(slope) - truth.slope;
-    let seen = reach_steps.is_none_or(|reach| truth.distance_m <= f64::from(reach) * step_m);
-    if off > tolerance || (seen && off < -tolerance) {
+    let off = f64::from(slope) - ground_truth.slope;
+    let visible =
+        reach_steps.is_none_or(|reach| ground_truth.distance_m <= f64::from(reach) * step_m);
+    if off > tolerance || (visible && off < -tolerance) {
         return Err(format!("{}, off {off:e} of {tolerance:e}", says()));
     }
-    let apart = (f64::from(steps) - truth.distance_m / step_m).abs();
-    if seen && truth.margin > 2.0 * tolerance && apart > 2e-3 {
+    let apart = (f64::from(steps) - ground_truth.distance_m / step_m).abs();
+    if visible && ground_truth.margin > 2.0 * tolerance && apart > 2e-3 {
         return Err(says());
     }
     Ok(())

@@ -94,7 +94,7 @@ fn a_wall_is_seen_at_its_height_over_its_distance() {
     assert_eq!(Oracle::one_ray(&wall, Border::Open).horizon(20, 21, PI).unwrap().slope, 0.0);
 }
 
-/// One sample of height H on a plain: from any sample on an exact line to it (columns p, rows q
+/// One texel of height H on a plain: from any texel on an exact line to it (columns p, rows q
 /// away), tan h = H / (its distance): over the last edge before it the surface rises linearly from 0
 /// to H, and (rise / distance) grows to the spike.
 #[test]
@@ -136,7 +136,7 @@ fn the_cell_is_split_along_the_row_and_column_diagonal() {
 }
 
 /// A dome of heights strictly concave along every line: the slope of the chord falls with distance,
-/// so the first vertex wins, the adjacent sample on axis-aligned lines. h = -x² from sample i to its
+/// so the first vertex wins, the adjacent texel on axis-aligned lines. h = -x² from texel i to its
 /// neighbour i + 1: slope -(2i + 1).
 #[test]
 fn on_a_dome_the_adjacent_sample_wins() {
@@ -152,7 +152,7 @@ fn on_a_dome_the_adjacent_sample_wins() {
     }
 }
 
-/// A cone -s·ρ of slope s around a sample: from its tip every vertex is at slope -s on axes (linear),
+/// A cone -s·ρ of slope s around a texel: from its tip every vertex is at slope -s on axes (linear),
 /// and the elevation is -atan s under open, 0 under plane. A funnel s·ρ: atan s along the axes.
 #[test]
 fn a_funnel_has_the_same_horizon_along_all_axes() {
@@ -189,7 +189,7 @@ fn rotated_and_transposed_fields_have_rotated_horizons() {
     let original = field(rows, cols, [1.0, 2.0], noise);
     let half_turn = field(rows, cols, [1.0, 2.0], |r, c| noise(rows - 1 - r, cols - 1 - c));
     let transposed = field(cols, rows, [2.0, 1.0], |r, c| noise(c, r));
-    // A quarter turn counter-clockwise: east becomes north, sample (r, c) goes to (cols-1-c, r).
+    // A quarter turn counter-clockwise: east becomes north, texel (r, c) goes to (cols-1-c, r).
     let quarter = field(cols, rows, [2.0, 1.0], |r, c| noise(c, cols - 1 - r));
     for (row, col) in [(0, 0), (11, 15), (22, 30), (3, 29), (17, 2)] {
         for (p, q) in [(1, 0), (0, -1), (3, 1), (-2, 5), (-1, -1), (1, -1), (7, -4)] {
@@ -244,7 +244,7 @@ fn degenerate_sizes_have_horizons() {
     assert!((met.slope - 4.0 / 5_f64.sqrt()).abs() < 1e-12, "{met:?}");
 }
 
-/// Slopes 1/2, 3/2, 1, 1/4 at the four samples: the best beats the third by 1/2, in either direction
+/// Slopes 1/2, 3/2, 1, 1/4 at the four texels: the best beats the third by 1/2, in either direction
 /// of the walk; with 2 in place of 3/2's neighbour the margin is that of the pair.
 #[test]
 fn the_margin_is_that_over_the_best_other_place() {
@@ -272,7 +272,7 @@ fn corners_are_hit_whatever_the_rounding() {
     }
 }
 
-/// Periodic: a ridge line every 10 columns of height 5, seen from 7 columns west of it at 5/7, from 3 columns east of
+/// Periodic: a ridge line every 10 columns of height 5, visible from 7 columns west of it at 5/7, from 3 columns east of
 /// it looking east at 5/7 too, across the seam. On the ridge everything is at most level: 0.
 #[test]
 fn a_periodic_field_occludes_across_its_seam() {

@@ -24,7 +24,7 @@ fn swept_surface(
     lattices
 }
 
-/// Every `stride`-th sample against the oracle; the largest error in degrees.
+/// Every `stride`-th texel against the oracle; the largest error in degrees.
 fn check(
     field: &HeightField,
     border: Border,
@@ -47,10 +47,10 @@ fn check(
             let texel = lattice.texel(lane, march.march_position(step), azimuth.layer);
             let found = (lattice.slopes[texel], lattice.distances[texel]);
             check_exact(&oracle, (row, col), azimuth, found, tolerance, reach)?;
-            if let Some(truth) = oracle.horizon_along(row, col, grid_vector(azimuth))
+            if let Some(ground_truth) = oracle.horizon_along(row, col, grid_vector(azimuth))
                 && reach.is_none()
             {
-                worst = worst.max((f64::from(found.0).atan() - truth.slope.atan()).abs());
+                worst = worst.max((f64::from(found.0).atan() - ground_truth.slope.atan()).abs());
             }
         }
     }

@@ -18,7 +18,7 @@ fn line_samples(march: &March, y: i32, step: i32) -> Vec<(i32, f32)> {
         .collect()
 }
 
-/// Calls `check` with every lattice texel's samples and what it holds.
+/// Calls `check` with the texels of every lattice point and what it holds.
 fn every_texel(
     field: &HeightField,
     border: Border,
@@ -39,10 +39,10 @@ fn every_texel(
                 if !march.periodic() && !on_field(y, march.lanes) {
                     continue;
                 }
-                let samples = line_samples(&march, y, total);
+                let texels = line_samples(&march, y, total);
                 let texel = lattice.texel(slot, march.march_position(step), azimuth.layer);
                 let back = i32::from(lattice.occluders[texel]);
-                check(azimuth, &samples, back, lattice.slopes[texel])
+                check(azimuth, &texels, back, lattice.slopes[texel])
                     .map_err(|e| format!("{azimuth:?} step {step} slot {slot}: {e}"))?;
             }
         }
@@ -52,11 +52,11 @@ fn every_texel(
 
 /// On heights and shears whose lines are exact in f32 every comparison is: the farthest of the
 /// highest is met, and its slope has the bits of the formula.
-fn exact(azimuth: &Azimuth, samples: &[(i32, f32)], back: i32, slope: f32) -> Result<(), String> {
-    let &(step, own) = samples.last().unwrap();
+fn exact(azimuth: &Azimuth, texels: &[(i32, f32)], back: i32, slope: f32) -> Result<(), String> {
+    let &(step, own) = texels.last().unwrap();
     let rise = |h: f32| f64::from(h) - f64::from(own);
     // Cross products of exact rises with whole distances: ties go to the farther.
-    let best = samples[..samples.len() - 1].iter().copied().reduce(|best, new| {
+    let best = texels[..texels.len() - 1].iter().copied().reduce(|best, new| {
         let (new_d, best_d) = (f64::from(step - new.0), f64::from(step - best.0));
         if rise(new.1) * best_d > rise(best.1) * new_d { new } else { best }
     });
@@ -105,13 +105,13 @@ proptest! {
         });
         let (largest, _) = extent(&rough);
         let options = SweepOptions { line_shift, ..SweepOptions::default() };
-        let near = |azimuth: &Azimuth, samples: &[(i32, f32)], back: i32, slope: f32| {
-            let truth = highest(azimuth, samples);
+        let near = |azimuth: &Azimuth, texels: &[(i32, f32)], back: i32, slope: f32| {
+            let ground_truth = highest(azimuth, texels);
             let tolerance = sweep_slope(largest, azimuth.step_m.into());
-            let off = (f64::from(slope) - truth).abs();
-            let nothing = samples.len() == 1;
+            let off = (f64::from(slope) - ground_truth).abs();
+            let nothing = texels.len() == 1;
             let ok = if nothing { back == 0 && slope == NO_SLOPE } else { off <= tolerance };
-            if ok { Ok(()) } else { Err(format!("{slope} at {back}, truth {truth}")) }
+            if ok { Ok(()) } else { Err(format!("{slope} at {back}, ground truth {ground_truth}")) }
         };
         let mut azimuths = even(count, rough.cell_m());
         prop_assert_eq!(every_texel(&rough, border, &mut azimuths, options, near), Ok(()));
@@ -140,22 +140,22 @@ proptest! {
             packed: Some(height_scale(rough.heights_m())),
             ..SweepOptions::default()
         };
-        let near = |azimuth: &Azimuth, samples: &[(i32, f32)], back: i32, slope: f32| {
+        let near = |azimuth: &Azimuth, texels: &[(i32, f32)], back: i32, slope: f32| {
             let step_m = f64::from(azimuth.step_m);
             let tolerance = 2.0 * largest / 2048.0 / step_m + sweep_slope(largest, step_m);
-            let truth = highest(azimuth, samples);
-            let ok = samples.len() == 1 || (f64::from(slope) - truth).abs() <= tolerance;
-            if ok { Ok(()) } else { Err(format!("{slope} at {back}, truth {truth}")) }
+            let ground_truth = highest(azimuth, texels);
+            let ok = texels.len() == 1 || (f64::from(slope) - ground_truth).abs() <= tolerance;
+            if ok { Ok(()) } else { Err(format!("{slope} at {back}, ground truth {ground_truth}")) }
         };
         let mut azimuths = even(count, rough.cell_m());
         prop_assert_eq!(every_texel(&rough, Border::Plane, &mut azimuths, options, near), Ok(()));
     }
 }
 
-/// The highest slope over all earlier samples, in f64 from the line's f32 heights.
-fn highest(azimuth: &Azimuth, samples: &[(i32, f32)]) -> f64 {
-    let &(step, own) = samples.last().unwrap();
-    samples[..samples.len() - 1]
+/// The highest slope over all earlier texels, in f64 from the line's f32 heights.
+fn highest(azimuth: &Azimuth, texels: &[(i32, f32)]) -> f64 {
+    let &(step, own) = texels.last().unwrap();
+    texels[..texels.len() - 1]
         .iter()
         .map(|&(s, h)| {
             (f64::from(h) - f64::from(own)) / (f64::from(step - s) * f64::from(azimuth.step_m))
@@ -163,7 +163,7 @@ fn highest(azimuth: &Azimuth, samples: &[(i32, f32)]) -> f64 {
         .fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// Axis and diagonal lines pass through the samples.
+/// Axis and diagonal lines pass through the texels.
 fn check_exact_fields(h: impl Fn(usize, usize) -> f64) {
     let shape = field(31, 37, [1.0, 1.0], h);
     let mut azimuths = even(8, shape.cell_m());
@@ -171,7 +171,7 @@ fn check_exact_fields(h: impl Fn(usize, usize) -> f64) {
     assert_eq!(checked, Ok(()));
 }
 
-/// -(x² + y²): strictly concave along every line, so every sample stays on the hull and meets the one before it.
+/// -(x² + y²): strictly concave along every line, so every texel stays on the hull and meets the one before it.
 #[test]
 fn on_a_dome_the_hull_is_as_deep_as_the_line() {
     let dome = |r: usize, c: usize| -((r as f64 - 15.0).powi(2) + (c as f64 - 18.0).powi(2));
@@ -182,7 +182,7 @@ fn on_a_dome_the_hull_is_as_deep_as_the_line() {
     assert!(lattices.cols.occluders.iter().chain(&lattices.rows.occluders).all(|b| *b <= 1));
 }
 
-/// On a ramp every sample is in line with all before it: ties are popped, the first of the line is
+/// On a ramp every texel is in line with all before it: ties are popped, the first of the line is
 /// met, and the hull stays two deep.
 #[test]
 fn ties_are_popped() {

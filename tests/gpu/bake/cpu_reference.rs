@@ -59,8 +59,8 @@ pub fn point_cases() -> Vec<Case> {
         on("points along the grid", rough(9, 8, 64), Border::Open, along_the_grid()),
         on("points of a line", rough(1, 29, 65), Border::Plane, sphere(16)),
         on("points of a column that repeats", rough(13, 1, 66), Border::Periodic, sphere(16)),
-        on("points of one sample", rough(1, 1, 67), Border::Open, sphere(5)),
-        on("points of one sample that repeats", rough(1, 1, 68), Border::Periodic, sphere(6)),
+        on("points of one texel", rough(1, 1, 67), Border::Open, sphere(5)),
+        on("points of one texel that repeats", rough(1, 1, 68), Border::Periodic, sphere(6)),
         on("points past voids", holed(), Border::Plane, sphere(12)),
         on("points in whole words", long(3, 257), Border::Plane, sphere(9)),
         on("points in whole words of a line", long(263, 1), Border::Periodic, sphere(8)),
@@ -139,7 +139,7 @@ pub fn ellipse_cases() -> Vec<Case> {
         of("ellipses of a field that repeats", rough(7, 11, 93), Border::Periodic, above(33)),
         of("ellipses of a shaft", deep, Border::Plane, above(16)),
         of("ellipses of whole words", long, Border::Plane, above(17)),
-        of("an ellipse of one sample", rough(1, 1, 94), Border::Open, sphere(5)),
+        of("an ellipse of one texel", rough(1, 1, 94), Border::Open, sphere(5)),
         bent("ellipses on curved bases", hills(11, 9), Border::Plane, sphere(40), [0.01, 1e-3]),
         bent(
             "ellipses of a field that repeats on curved bases",
@@ -192,14 +192,14 @@ pub fn scatter_cases() -> Vec<Case> {
     let map = Albedo::Map((0..72).map(|_| [next() as f32, 0.5, 0.9]).collect());
     let grey =
         |border| Surface { border, albedo: Albedo::Constant([0.6, 0.3, 0.9]), specular: None };
-    let lobes =
+    let phong_maps =
         (0..72).map(|i| PhongSpecular { exponent: 1.0 + i as f32, scale: next() as f32 * 0.1 });
     let black = Surface { albedo: Albedo::Constant([0.0; 3]), ..Surface::default() };
     let mapped = Surface { border: Border::Open, albedo: map, specular: None };
-    let glossy = Surface {
+    let shiny = Surface {
         border: Border::Plane,
         albedo: Albedo::Constant([0.4, 0.3, 0.2]),
-        specular: Some(Specular::Map(lobes.collect())),
+        specular: Some(Specular::Map(phong_maps.collect())),
     };
     let sun = |azimuth_rad, elevation_rad| Sun {
         azimuth_rad,
@@ -255,18 +255,18 @@ pub fn scatter_cases() -> Vec<Case> {
         of(
             "lobes towards views",
             rough(8, 9, 77),
-            glossy.clone(),
+            shiny.clone(),
             lights.clone(),
             (17, Scatter { direct_specular: true, ..scatter(1, 20) }, false),
         ),
         of(
             "their own light alone",
             rough(8, 9, 79),
-            glossy.clone(),
+            shiny.clone(),
             lights.clone(),
             (17, Scatter { direct_specular: true, ..scatter(0, 12) }, false),
         ),
-        of("lobes", rough(8, 9, 77), glossy, lights, (17, scatter(2, 20), false)),
+        of("lobes", rough(8, 9, 77), shiny, lights, (17, scatter(2, 20), false)),
         of("a lobe under nothing", rough(5, 7, 78), one, none(), (8, scatter(1, 9), false)),
     ]
 }

@@ -42,8 +42,8 @@ fn walls_scatter_as_far_as_the_base_opens_them() {
     scene.surface.albedo = Albedo::Constant([0.5; 3]);
     let directions = Directions::fibonacci(COUNT, -1.0, 0).expect("directions");
     let plan = plan::visible_points(&scene.field, BORDER, &directions, &device.limits());
-    let seen = device.draw(plan.expect("a plan"), &[scene.field.heights_m()]);
-    let words = seen.iter().flat_map(|image| image.values.iter().map(|v| v.to_bits())).collect();
+    let visible = device.draw(plan.expect("a plan"), &[scene.field.heights_m()]);
+    let words = visible.iter().flat_map(|image| image.values.iter().map(|v| v.to_bits())).collect();
     let points = VisiblePoints::new(&scene.field, BORDER, directions, words).expect("points");
     let direct = vec![[0.5; 3]; 4 * HALF];
     let share = |per_m: f64| 1.0 - opening(per_m).sin();
@@ -98,13 +98,13 @@ fn views_between_walls_are_those_of_the_opening() {
         let (mut held, mut out, mut near) = (0, 0, 0);
         for v in views.vectors() {
             let reach = |by: f64| (v.x / (half + by)).powi(2) + (v.y / (1.0 + by)).powi(2);
-            let is_seen = between.holds(curvature, *v);
+            let is_visible = between.holds(curvature, *v);
             if reach(-off) <= 1.0 {
                 held += 1;
-                assert!(is_seen, "{per_m}: {v} is hidden");
+                assert!(is_visible, "{per_m}: {v} is hidden");
             } else if reach(off) > 1.0 {
                 out += 1;
-                assert!(!is_seen, "{per_m}: {v} is seen");
+                assert!(!is_visible, "{per_m}: {v} is visible");
             } else {
                 near += 1;
             }
@@ -161,15 +161,15 @@ fn wrong_curvatures_are_refused_by_name() {
         assert!(fitted(steps).is_some_and(|said| said.contains("curvatures of ellipses")));
     }
     assert!(fitted([1e-3, 0.2]).is_some_and(|said| said.contains("curvature of the base")));
-    let mut glossy = scene.clone();
-    glossy.surface.albedo = Albedo::Constant([0.8; 3]);
-    glossy.surface.specular =
+    let mut shiny = scene.clone();
+    shiny.surface.albedo = Albedo::Constant([0.8; 3]);
+    shiny.surface.specular =
         Some(ridgelight::scene::Specular::Constant(ridgelight::scene::PhongSpecular {
             exponent: 5.0,
             scale: 0.1,
         }));
     let scatter = Scatter { curvature: Curvature { per_m: [1e-3, 0.0] }, ..Scatter::default() };
-    let said = plan::scatter(&glossy, &directions, &scatter, &limits).unwrap_err().to_string();
+    let said = plan::scatter(&shiny, &directions, &scatter, &limits).unwrap_err().to_string();
     assert!(said.contains("specular") && said.contains("diffuse"), "{said}");
     // More directions than an image has layers.
     let few = plan::Limits { image_layers: 63, ..limits };

@@ -185,12 +185,12 @@ fn promised(manifest: &serde_json::Value, kind: &str) -> Vec<(String, f64, f64)>
 fn worst(
     promised: &[(String, f64, f64)],
     found: &[f32],
-    truth: &Planes,
+    ground_truth: &Planes,
     slack: f64,
 ) -> (f64, String) {
-    let samples = truth.rows * truth.cols;
+    let texels = ground_truth.rows * ground_truth.cols;
     let at = |plane: usize, i: usize| {
-        (f64::from(found[plane * samples + i]), f64::from(truth.planes[plane][i]))
+        (f64::from(found[plane * texels + i]), f64::from(ground_truth.planes[plane][i]))
     };
     let mut worst = (0.0, String::new());
     for (of, absolute, relative) in promised {
@@ -203,7 +203,7 @@ fn worst(
                 worst = (share, of.clone());
             }
         };
-        for i in 0..samples {
+        for i in 0..texels {
             let each = |plane| at(plane, i);
             match of.as_str() {
                 "direction" => {
@@ -214,12 +214,12 @@ fn worst(
                 }
                 "cone's half-angle" => hold(each(3).0, each(3).1),
                 "components of the direction" => (0..3).for_each(|p| hold(each(p).0, each(p).1)),
-                "sine of the elevation" => (0..truth.planes.len()).for_each(|p| {
+                "sine of the elevation" => (0..ground_truth.planes.len()).for_each(|p| {
                     let (sine, elevation) = each(p);
                     hold(sine, elevation.sin());
                 }),
                 "elevation" | "share" | "coefficient" | "number" | "row and column" | "colour" => {
-                    (0..truth.planes.len()).for_each(|p| hold(each(p).0, each(p).1));
+                    (0..ground_truth.planes.len()).for_each(|p| hold(each(p).0, each(p).1));
                 }
                 other => panic!("no test of {other}"),
             }
@@ -253,7 +253,7 @@ fn decoders_keep_the_errors_that_manifests_state() {
             assert_eq!(written, lines + decoder.body, "{stem}.glsl");
             let bits: Vec<u32> = constants.iter().map(|(_, c)| c.bits()).collect();
 
-            let mut truth = read_planes(&path("npy")).expect("values");
+            let mut ground_truth = read_planes(&path("npy")).expect("values");
             let texture = std::fs::read(path("ktx2")).expect("a texture");
             let promised = promised(&manifest, decoder.kind);
             // An azimuth is within m 2^-22 of a step of the requested one, across which horizons change by no more
@@ -263,46 +263,55 @@ fn decoders_keep_the_errors_that_manifests_state() {
             let slack =
                 if is_horizon { across * f64::from(AZIMUTHS) / f64::from(1 << 22) } else { 0.0 };
             match decoder.kind {
-                "horizon" => lowest = truth.planes.iter().flatten().copied().fold(lowest, f32::min),
-                "bent-normal" => widest = truth.planes[3].iter().copied().fold(widest, f32::max),
+                "horizon" => {
+                    lowest = ground_truth.planes.iter().flatten().copied().fold(lowest, f32::min)
+                }
+                "bent-normal" => {
+                    widest = ground_truth.planes[3].iter().copied().fold(widest, f32::max)
+                }
                 _ => {}
             }
             let found = decode(gpu, decoder, &bits, &texture, 0.0);
-            let (share, of) = worst(&promised, &found, &truth, slack);
+            let (share, of) = worst(&promised, &found, &ground_truth, slack);
             println!("{} {}: {share:.3} of the bound of the {of}", decoder.kind, encoding.name);
             assert!(share <= 1.0, "{} {}: {share} of {of}", decoder.kind, encoding.name);
 
             // The comparison fails for an error of three bounds.
             let mut off = found.clone();
             let (_, absolute, relative) = promised[promised.len() - 1].clone();
-            let last = truth.planes.len() * truth.rows * truth.cols - 1;
+            let last = ground_truth.planes.len() * ground_truth.rows * ground_truth.cols - 1;
             let is_sine = promised[0].0.starts_with("sine");
-            let value =
-                f64::from(truth.planes[truth.planes.len() - 1].last().copied().expect("some"));
+            let value = f64::from(
+                ground_truth.planes[ground_truth.planes.len() - 1].last().copied().expect("some"),
+            );
             let value = if is_sine { value.sin() } else { value };
             off[last] = (value
                 + 3.0 * (absolute + relative * value.abs() + slack)
                 + 1e-6 * value.abs().max(1.0)) as f32;
-            assert!(worst(&promised, &off, &truth, slack).0 > 1.0, "{}: cannot fail", decoder.kind);
+            assert!(
+                worst(&promised, &off, &ground_truth, slack).0 > 1.0,
+                "{}: cannot fail",
+                decoder.kind
+            );
 
             if decoder.kind == "ellipse" {
-                lit_as_stated(&found, &truth, promised[0].2);
+                lit_as_stated(&found, &ground_truth, promised[0].2);
             }
             if decoder.kind == "curved-ellipse" {
-                curved_as_stated(&found, &truth, promised[0].2);
+                curved_as_stated(&found, &ground_truth, promised[0].2);
             }
             if decoder.kind == "visible-points" {
-                shared_as_stated(&found, &truth);
+                shared_as_stated(&found, &ground_truth);
             }
             // Between two azimuths both count equally.
             if is_horizon && !is_sine {
                 let found = decode(gpu, decoder, &bits, &texture, 0.5);
-                let first = truth.planes.clone();
-                for (k, plane) in truth.planes.iter_mut().enumerate() {
+                let first = ground_truth.planes.clone();
+                for (k, plane) in ground_truth.planes.iter_mut().enumerate() {
                     let next = &first[(k + 1) % first.len()];
                     plane.iter_mut().zip(next).for_each(|(a, b)| *a = 0.5 * (*a + b));
                 }
-                let (share, of) = worst(&promised, &found, &truth, slack);
+                let (share, of) = worst(&promised, &found, &ground_truth, slack);
                 assert!(share <= 1.0, "between azimuths, {}: {share} of {of}", encoding.name);
             }
         }
@@ -314,18 +323,19 @@ fn decoders_keep_the_errors_that_manifests_state() {
 /// The last plane is the ellipses' test for a light, except where the stated error of a number (centre up to 4, radii)
 /// may move the light over the edge: 1 / radius times that of the centre and the axis' 1.6 at most, and of itself,
 /// squared.
-fn lit_as_stated(found: &[f32], truth: &Planes, share: f64) {
-    let (samples, light) = (truth.rows * truth.cols, glam::DVec3::new(0.6, 0.48, 0.64));
+fn lit_as_stated(found: &[f32], ground_truth: &Planes, share: f64) {
+    let (texels, light) =
+        (ground_truth.rows * ground_truth.cols, glam::DVec3::new(0.6, 0.48, 0.64));
     let mut counts = [0; 2];
-    for i in 0..samples {
-        let of = |plane: usize| truth.planes[plane][i];
+    for i in 0..texels {
+        let of = |plane: usize| ground_truth.planes[plane][i];
         let ellipse = bake::Ellipse::of_texels([0, 1, 2, 3].map(of), [of(4), of(5)]);
         let [a, b] = ellipse.inverse_radii;
         let centre = ellipse.centre.length();
         let place = (1.0 + 3.0 * centre) * (a + b);
         if (ellipse.reach(light) - 1.0).abs() > 4.0 * share * (1.0 + place) {
             let is_lit = ellipse.holds(light);
-            assert_eq!(found[6 * samples + i], f32::from(u8::from(is_lit)), "{i}: {ellipse:?}");
+            assert_eq!(found[6 * texels + i], f32::from(u8::from(is_lit)), "{i}: {ellipse:?}");
             counts[usize::from(is_lit)] += 1;
         }
     }
@@ -335,13 +345,14 @@ fn lit_as_stated(found: &[f32], truth: &Planes, share: f64) {
 /// The last plane is the test between five ellipses on a base with half of their curvature: |adj P v| ≤ det P, except
 /// where the stated error of a number n may move it over the edge: three numbers move each of P's by 2 n at most and
 /// the centre's, so that |adj P v| errs by 2 n (|v| + 2 max P) and det P by 4 n max P.
-fn curved_as_stated(found: &[f32], truth: &Planes, share: f64) {
-    let (samples, light) = (truth.rows * truth.cols, glam::DVec3::new(0.6, 0.48, 0.64));
+fn curved_as_stated(found: &[f32], ground_truth: &Planes, share: f64) {
+    let (texels, light) =
+        (ground_truth.rows * ground_truth.cols, glam::DVec3::new(0.6, 0.48, 0.64));
     let curvature =
         ridgelight::scene::Curvature { per_m: [0.5 * CURVATURES[0], -0.5 * CURVATURES[1]] };
     let mut counts = [0; 2];
-    for i in 0..samples {
-        let of = |plane: usize| f64::from(truth.planes[plane][i]);
+    for i in 0..texels {
+        let of = |plane: usize| f64::from(ground_truth.planes[plane][i]);
         let numbers = std::array::from_fn(|k| {
             [of(4 * k), of(4 * k + 1), of(4 * k + 2), of(4 * k + 3), of(20 + k)]
         });
@@ -355,7 +366,7 @@ fn curved_as_stated(found: &[f32], truth: &Planes, share: f64) {
         let off = 2.0 * n * (v[0].hypot(v[1]) + 4.0 * largest);
         if (length - area).abs() > off && area.abs() > off {
             let is_lit = five.holds(curvature, light);
-            assert_eq!(found[25 * samples + i], f32::from(u8::from(is_lit)), "{i}: {five:?}");
+            assert_eq!(found[25 * texels + i], f32::from(u8::from(is_lit)), "{i}: {five:?}");
             counts[usize::from(is_lit)] += 1;
         }
     }
@@ -364,13 +375,13 @@ fn curved_as_stated(found: &[f32], truth: &Planes, share: f64) {
 
 /// The last plane is the visible share of a light between the first three directions with weights 0.5, 0.3 and 0.2:
 /// sums over those that see the sky, a rounding each.
-fn shared_as_stated(found: &[f32], truth: &Planes) {
-    let samples = truth.rows * truth.cols;
+fn shared_as_stated(found: &[f32], ground_truth: &Planes) {
+    let texels = ground_truth.rows * ground_truth.cols;
     let mut stated = std::collections::BTreeSet::new();
-    for i in 0..samples {
-        let sees_sky = |k: &usize| truth.planes[2 * k][i] == -1.0;
-        let want: f64 = (0..3).filter(sees_sky).map(|k| [0.5, 0.3, 0.2][k]).sum();
-        let got = f64::from(found[2 * DIRECTIONS * samples + i]);
+    for i in 0..texels {
+        let shows_sky = |k: &usize| ground_truth.planes[2 * k][i] == -1.0;
+        let want: f64 = (0..3).filter(shows_sky).map(|k| [0.5, 0.3, 0.2][k]).sum();
+        let got = f64::from(found[2 * DIRECTIONS * texels + i]);
         assert!((got - want).abs() <= 3.0 / f64::from(1 << 24), "{i}: {got} {want}");
         stated.insert((10.0 * want).round() as u32);
     }

@@ -84,7 +84,7 @@ fn scatter_paths_tend_to_the_mean_of_all_directions() {
         // A seventh of the light less would fail.
         biased = biased.max((mean - 0.85 * want).abs() / bound);
     }
-    println!("{worst:.2} of what is allowed; {biased:.2} of 0.85 of the truth");
+    println!("{worst:.2} of what is allowed; {biased:.2} of 0.85 of the ground truth");
     assert!(worst <= 1.0 && biased > 1.0, "{worst} {biased}");
 }
 
@@ -125,16 +125,16 @@ fn scattering_in_pits_matches_its_closed_form() {
             // Towards the rim N·e is half the chord over the radius, sin α at most; and no point is brighter than in
             // the limit.
             let most = alpha.sin() * pit_radiance(alpha, rho, 1000);
-            let chance = rho * most * by_directions(1024) / (1.0 - again);
+            let spread = rho * most * by_directions(1024) / (1.0 - again);
             let mut worst = 0.0_f64;
             for (i, bound) in &grid {
                 let off = (light[*i][0] - known).abs();
-                worst = worst.max(off / (2.0 * bound + chance));
+                worst = worst.max(off / (2.0 * bound + spread));
             }
             println!("{alpha}, {albedo}, {bounces} bounces: {worst:.2} of what is allowed");
             assert!(worst <= 1.0, "{alpha} {albedo} {bounces}: {worst}");
             // The comparison fails without light.
-            let least = grid.iter().map(|(_, bound)| 2.0 * bound + chance).fold(f64::MAX, f64::min);
+            let least = grid.iter().map(|(_, bound)| 2.0 * bound + spread).fold(f64::MAX, f64::min);
             assert!(known > least, "{known} {least}");
         }
     }
@@ -198,14 +198,14 @@ fn scattering_in_grooves_matches_its_closed_form() {
     assert!((from_the_other_wall(3.0, |_| 1.0) - (1.0 - groove_sky(3.0))).abs() < 1e-6);
     let points = points(&mut device, &scene, &sphere(1024));
     let grid = 0.5 * 0.5 * (0.5 * 2_f64.sqrt()) / (4.0 * WALL);
-    let chance = 0.5 * 0.5 * by_directions(1024);
+    let spread = 0.5 * 0.5 * by_directions(1024);
     let scatter = Scatter { bounces: 1, paths: 1024, ..Scatter::default() };
     let first = scattered(&mut device, &scene, &points, &direct, &scatter);
     let second = expected(&scene, &points, &f64s(&direct), 2);
     for i in (0..count).filter(|i| !(i % HALF).is_multiple_of(HALF)) {
         let (one, two) = (once(s_of(i)), once(s_of(i)) + twice(s_of(i)));
         // A second bounce also carries a quarter of the first one's error.
-        let allowed = grid + chance;
+        let allowed = grid + spread;
         assert!((first[i][0] - one).abs() <= allowed, "{i}: {} {one} {allowed}", first[i][0]);
         let off = (second[i][0] - two).abs();
         assert!(off <= 1.25 * allowed, "{i}: {} {two} {allowed}", second[i][0]);
@@ -273,9 +273,9 @@ fn specular_scattering_of_walls_matches_its_integral() {
             column if column < HALF => share,
             _ => 0.25,
         };
-        let lobes = (0..count).map(|i| PhongSpecular { exponent, scale: scale(i) }).collect();
+        let phong_maps = (0..count).map(|i| PhongSpecular { exponent, scale: scale(i) }).collect();
         scene.surface.albedo = Albedo::Constant([albedo; 3]);
-        scene.surface.specular = Some(Specular::Map(lobes));
+        scene.surface.specular = Some(Specular::Map(phong_maps));
         let points = points(&mut device, &scene, &sphere(COUNT));
         let view = glam::DVec3::new(-towards.x, 0.0, towards.z);
         let paths = COUNT as u32;
@@ -284,8 +284,8 @@ fn specular_scattering_of_walls_matches_its_integral() {
         let peak = (n + 1.0) / (2.0 * PI);
         let lit = 0.25 * peak * f64::from(irradiance);
         let reflected = |own: f64, other: f64| {
-            let lobe = f64::from(share) * peak * own.powf(n);
-            (f64::from(albedo) / PI * own + lobe) * lit * other.powf(n)
+            let phong_specular = f64::from(share) * peak * own.powf(n);
+            (f64::from(albedo) / PI * own + phong_specular) * lit * other.powf(n)
         };
         let at = |u: f64, v: f64| reflected(u.sin() * v.cos(), u.cos() * v.cos());
         // Midpoints.
@@ -307,8 +307,8 @@ fn specular_scattering_of_walls_matches_its_integral() {
             assert!(off <= allowed, "{exponent} {share} {i}: {} {want} {allowed}", light[i][0]);
             (got, known, most) = (got + light[i][0], known + want, most.max(allowed));
         }
-        let samples = (4 * (HALF - 1)) as f64;
-        let (got, known) = (got / samples, known / samples);
+        let grid_points = (4 * (HALF - 1)) as f64;
+        let (got, known) = (got / grid_points, known / grid_points);
         println!("{exponent}, {share}: {got:.6} of {known:.6}, within {most:.6} each");
         // The comparison fails for a tenth less of specular, of cosine or of the weight of a direction.
         assert!((0.9 * got - known).abs() > 0.5 * most, "{exponent}: a tenth less would do");
@@ -384,12 +384,12 @@ fn scattering_is_refused_by_name() {
     );
     assert!(said(Scatter { view: glam::DVec3::ZERO, ..Scatter::default() }).contains("view"));
     let mut device = Device::new();
-    let seen = points(&mut device, &scene, &sphere(16));
+    let visible = points(&mut device, &scene, &sphere(16));
     let direct = vec![[1.0; 3]; scene.field.heights_m().len()];
     for count in [14, 18] {
         let scatter = Scatter::default();
         let plan = plan::scatter(&scene, &sphere(count), &scatter, &Limits::lavapipe());
-        let inputs = plan::scatter_inputs(&plan.expect("a plan"), &scene, &seen, &direct);
+        let inputs = plan::scatter_inputs(&plan.expect("a plan"), &scene, &visible, &direct);
         let said = inputs.unwrap_err().to_string();
         assert!(said.contains("directions"), "{said}");
     }

@@ -140,10 +140,11 @@ fn lights_in_turn_are_each_alone() {
         let lights = Lights { suns: vec![sun], ..Lights::default() };
         let lit = Scene { lights, ..scene.clone() };
         let direct = facets.lit_from(light);
-        let samples = facets.to_grid_points(direct.alike());
+        let grid_points = facets.to_grid_points(direct.alike());
         for view in wanted(light) {
             let towards = Scatter { view: above.vectors()[view], ..scatter };
-            let more = gpu.scattered(&lit, &points, &samples, &towards, &limits).expect("light");
+            let more =
+                gpu.scattered(&lit, &points, &grid_points, &towards, &limits).expect("light");
             let alone = direct.clone().scattering(view, vec![more]);
             let [got, known] = [&leaving, &alone].map(|light| facets.radiance_from(view, light));
             assert_eq!(got, known, "{light} {view}");

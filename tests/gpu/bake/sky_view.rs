@@ -41,8 +41,8 @@ fn sky_view_of_bundled_terrain_is_the_oracles() {
     let picks: Vec<usize> = (0..300).map(|_| (next() * (SIDE * SIDE) as f64) as usize).collect();
     let worst = |view: &[f32]| {
         let off = |i: &usize| {
-            let truth = light::sky_of(&oracle, i / SIDE, i % SIDE, AZIMUTHS as usize);
-            (f64::from(view[*i]) - truth).abs()
+            let ground_truth = light::sky_of(&oracle, i / SIDE, i % SIDE, AZIMUTHS as usize);
+            (f64::from(view[*i]) - ground_truth).abs()
         };
         picks.iter().map(off).fold(0.0, f64::max)
     };

@@ -57,7 +57,7 @@ pub(crate) fn walks() -> Vec<Case> {
             true,
         ),
         case(
-            "walks, one sample",
+            "walks, one texel",
             grey(rough(1, 1, 34), Border::Plane),
             walked(1, 4, Lines::Cell),
             false,
@@ -97,17 +97,32 @@ pub(crate) fn bounced_light() -> Vec<Case> {
     };
     use BounceEngine::{BruteForce, Pyramid};
     let rough = |rows, cols| rough(rows, cols, 36);
-    let lobe = case("a bowl by a lobe", bowl(13), Border::Plane, Pyramid, Levels::Stack);
-    let lobe = Case { quality: Quality { receiver: Receiver::Cosine, ..lobe.quality }, ..lobe };
+    let phong_specular = case("a bowl, specular", bowl(13), Border::Plane, Pyramid, Levels::Stack);
+    let phong_specular = Case {
+        quality: Quality { receiver: Receiver::Cosine, ..phong_specular.quality },
+        ..phong_specular
+    };
     vec![
-        case("every stretch, grey", rough(7, 9), Border::Plane, BruteForce, Levels::Stack),
-        case("every stretch, colours", rough(6, 5), Border::Open, BruteForce, Levels::Stack),
-        case("every stretch of a bowl", bowl(13), Border::Plane, BruteForce, Levels::Stack),
+        case("every visible interval, grey", rough(7, 9), Border::Plane, BruteForce, Levels::Stack),
+        case(
+            "every visible interval, colours",
+            rough(6, 5),
+            Border::Open,
+            BruteForce,
+            Levels::Stack,
+        ),
+        case(
+            "every visible interval of a bowl",
+            bowl(13),
+            Border::Plane,
+            BruteForce,
+            Levels::Stack,
+        ),
         case("radiance by a stack, grey", rough(11, 13), Border::Plane, Pyramid, Levels::Stack),
         case("radiance by a stack", rough(9, 12), Border::Open, Pyramid, Levels::Stack),
         case("radiance by levels", rough(10, 12), Border::Periodic, Pyramid, Levels::Pyramid),
         case("a bowl by levels", bowl(13), Border::Plane, Pyramid, Levels::Pyramid),
-        lobe,
+        phong_specular,
     ]
 }
 
@@ -138,7 +153,7 @@ pub(crate) fn node_cases() -> Vec<Case> {
         case("walks at nodes, colours", (14, 17), Border::Open, (Sweep, 3, 2)),
         case("walks at nodes, grey", (12, 8), Border::Periodic, (Sweep, 2, 4)),
         case("walks at nodes, outside black", (9, 11), Border::Plane, (Sweep, 1, 2)),
-        case("every stretch at nodes", (6, 7), Border::Open, (BruteForce, 1, 2)),
+        case("every visible interval at nodes", (6, 7), Border::Open, (BruteForce, 1, 2)),
         case("pyramids at nodes", (10, 13), Border::Plane, (Pyramid, 1, 4)),
     ]
 }

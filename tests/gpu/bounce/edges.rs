@@ -73,7 +73,7 @@ fn periodic_fields_bounce_across_the_seam() {
         };
         let third =
             |all: &[f32]| -> f64 { all[2 * SIDE..3 * SIDE].iter().map(|v| f64::from(*v)).sum() };
-        // Fine levels, which a wall one sample thick takes.
+        // Fine levels, which a wall one texel thick takes.
         let (level_step, level_offset) = (8, 4);
         let bounces = Bounces { level_step, level_offset, ..quality.bounces };
         let quality = Quality { bounces, level_step, level_offset, ..quality };
@@ -137,8 +137,8 @@ fn fields_one_sample_wide() {
                 let line = field(rows, cols, [1.0, 1.0], |r, c| height(r + c));
                 let all = bounced(&mut gpu, &lit(line, border), &quality(engine, 1, 4));
                 let most = all[0].iter().fold(0.0_f32, |m, v| m.max(*v));
-                let is_seen = engine == BounceEngine::Sweep && rows * cols > 1;
-                assert_eq!(most > 0.0, is_seen, "{engine:?} {border:?} {rows} × {cols}: {most}");
+                let is_visible = engine == BounceEngine::Sweep && rows * cols > 1;
+                assert_eq!(most > 0.0, is_visible, "{engine:?} {border:?} {rows} × {cols}: {most}");
             }
         }
         let row = field(1, LONG, [1.0, 1.0], |_, c| height(c));

@@ -84,7 +84,7 @@ fn scenes(border: Border) -> Vec<(&'static str, Scene)> {
         ("wild", of(rough(100.0), grey())),
         ("tilted", of(field(6, 7, [2.0, 1.0], |r, c| c as f64 - 0.5 * r as f64), grey())),
         ("fractal", of(fractal(16, 2).unwrap(), grey())),
-        ("one sample", of(field(1, 1, [1.0, 1.0], |_, _| 3.0), grey())),
+        ("one texel", of(field(1, 1, [1.0, 1.0], |_, _| 3.0), grey())),
         ("two rows", of(field(2, 5, [1.0, 1.0], |r, c| ((r * 3 + c) % 4) as f64), grey())),
     ]
 }
@@ -117,7 +117,7 @@ fn brute_force_matches_the_cpu_reference() {
     for (border, azimuths) in [(Border::Plane, 8), (Border::Open, 4), (Border::Periodic, 4)] {
         // Each is a pipeline of its own, and rays over repetitions are long.
         let is_drawn = |(name, _): &(&str, Scene)| match border {
-            Border::Plane => ["rough", "fractal", "two rows", "one sample"].contains(name),
+            Border::Plane => ["rough", "fractal", "two rows", "one texel"].contains(name),
             Border::Open => ["wild", "tilted"].contains(name),
             Border::Periodic => *name == "rough",
         };
@@ -301,9 +301,9 @@ fn bounces_tend_to_the_quadrature() {
         scene.surface.albedo = Albedo::Constant([0.8; 3]);
         scene
     };
-    let truth = scene_of(halved(&steep));
+    let ground_truth = scene_of(halved(&steep));
     let fineness = Fineness { azimuths: 32, divisions: 2, strips: 8 };
-    let pictures = indirect::light(&truth, 3, fineness).unwrap();
+    let pictures = indirect::light(&ground_truth, 3, fineness).unwrap();
     let bounced: Vec<[f64; 3]> =
         (0..23 * 23).map(|i| [0, 1, 2].map(|c| pictures[3][i][c] - pictures[0][i][c])).collect();
     let at = |every: usize, of: &[[f64; 3]], side: usize| -> Vec<[f64; 3]> {
@@ -321,7 +321,7 @@ fn bounces_tend_to_the_quadrature() {
         })
         .collect();
     println!(
-        "bounces are {:.2} % and, with half the cell, {:.2} % off",
+        "errors of bounces: {:.2} % and, with half the cell, {:.2} %",
         100.0 * errors[0],
         100.0 * errors[1]
     );
@@ -374,10 +374,12 @@ fn a_mountain_matches_the_path_traced_reference() {
         (0..SIDE * SIDE).map(|i| finer[i / SIDE * 2 * side + i % SIDE * 2]).collect();
     let direct = drawn(&mut gpu, &scene, &brute(0, 32)).swap_remove(0);
     let [light, error] = traced(&mut gpu, &scene, 2, 1, 16);
-    let chance = rms(&error, &vec![[0.0; 3]; error.len()]);
-    let bound = 2.6 * rms(&bounced(&ours), &finer) + 2.0 * chance;
+    let monte_carlo_noise = rms(&error, &vec![[0.0; 3]; error.len()]);
+    let bound = 2.6 * rms(&bounced(&ours), &finer) + 2.0 * monte_carlo_noise;
     let [off, without] = [&ours[0], &direct].map(|of| rms(of, &light));
-    println!("{off:.5} off, of {bound:.5}; chance {chance:.5}, without bounces {without:.5}");
+    println!(
+        "{off:.5} off, of {bound:.5}; Monte Carlo noise {monte_carlo_noise:.5}, without bounces {without:.5}"
+    );
     assert!(off <= bound && without > 2.0 * bound, "{off} {bound} {without}");
 }
 

@@ -73,7 +73,7 @@ fn nodes_are_lit_as_they_are_by_themselves() {
             assert!(off <= bound, "{engine:?} {stride}: {at}: {off:e} of {bound:e}");
         }
         let off = found[1].iter().zip(&whole[1]).fold(0.0_f64, |m, (a, b)| m.max((a - b).abs()));
-        assert!(off > 1e-3, "{engine:?}: every sample is as at nodes");
+        assert!(off > 1e-3, "{engine:?}: every texel is as at nodes");
     }
 }
 

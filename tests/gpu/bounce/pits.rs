@@ -55,7 +55,7 @@ fn bounces_of(engine: BounceEngine) -> Bounces {
     Bounces { count: LIMIT as u32, engine, azimuths: 32, cutoff: 0.0, ..Bounces::default() }
 }
 
-/// RMSE over the closed form, %, of the samples that have a bound.
+/// RMSE over the closed form, %, of the texels that have a bound.
 fn rmse(light: &[f64], bounds: &[(usize, f64)], expected: f64) -> f64 {
     let squares: f64 = bounds.iter().map(|(i, _)| (light[*i] - expected).powi(2)).sum();
     100.0 * (squares / bounds.len() as f64).sqrt() / expected
@@ -94,7 +94,7 @@ fn exact_engines_match_the_closed_form_of_pits() {
     }
 }
 
-/// A pit whose rim has no staircase as seen from its middle: texels of the plain beside the pit's stand on the cone
+/// A pit whose rim has no staircase as visible from its middle: texels of the plain beside the pit's stand on the cone
 /// from the pit's lowest point through its rim, which rises by tan(α/2).
 fn rimmed_pit(rim: f64, alpha: f64) -> HeightField {
     let (sphere, middle) = (rim / alpha.sin(), rim.ceil() + 1.0);
@@ -116,7 +116,7 @@ fn rimmed_pit(rim: f64, alpha: f64) -> HeightField {
 /// The change of sky at a point of that pit, `away` from its axis, on the grid.
 ///
 /// A ray leaves the pit's texels between two of the cone's, δ ≤ √2 cells behind the rim. The surface is as high there
-/// as the cone, δ tan(α/2), and a chord's arrow of s² / 8D more, s² ≤ 2, times the same slope. The rim, at D, is seen
+/// as the cone, δ tan(α/2), and a chord's arrow of s² / 8D more, s² ≤ 2, times the same slope. The rim, at D, is visible
 /// at ω: ground that stands by h over its line of sight at D changes the horizon by h cos²ω / D, and the sky by N·e
 /// cos ω of that. Flat triangles instead of the sphere: second order in a cell over R.
 fn sky_changed(away: f64, rim: f64, alpha: f64) -> f64 {
@@ -165,7 +165,7 @@ fn exact_bounces_of_pits_are_within_a_five_hundredth() {
         }
         let stairs = bounced(&mut gpu, &pit_of(pit(FAR, alpha), albedo), of(0, 64));
         let error = rmse(&stairs[0], &bounds, pit_radiance(alpha, rho, 0));
-        assert!(error > MOST, "{alpha} {albedo}: the staircase is not seen: {error}");
+        assert!(error > MOST, "{alpha} {albedo}: the staircase is not visible: {error}");
     }
 }
 

@@ -109,8 +109,8 @@ impl Case {
     pub fn points(&self) -> Option<VisiblePoints> {
         let Wanted::Scatter(directions, ..) = &self.wanted else { return None };
         let (field, border) = (&self.scene.field, self.scene.surface.border);
-        let seen = visible_points(field, border, directions);
-        let points = VisiblePoints::from_points(field, border, directions.clone(), &seen);
+        let visible = visible_points(field, border, directions);
+        let points = VisiblePoints::from_points(field, border, directions.clone(), &visible);
         Some(points.expect("points of the field"))
     }
 
@@ -124,8 +124,8 @@ impl Case {
         }
         if let Wanted::Scatter(..) = self.wanted {
             let mut next = random(71);
-            let samples = self.scene.field.heights_m().len();
-            let direct: Vec<_> = (0..samples).map(|_| [next() as f32, 1.0, 0.2]).collect();
+            let grid_points = self.scene.field.heights_m().len();
+            let direct: Vec<_> = (0..grid_points).map(|_| [next() as f32, 1.0, 0.2]).collect();
             let (plan, points) = (self.plan(&Limits::lavapipe()), self.points().expect("points"));
             return plan::scatter_inputs(&plan, &self.scene, &points, &direct).expect("inputs");
         }

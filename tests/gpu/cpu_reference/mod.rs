@@ -165,7 +165,7 @@ pub(crate) fn check_all(cases: &[Case]) {
 fn every_shader_has_a_cpu_reference_and_a_case() {
     let cases: Vec<Case> = [
         horizon::sweeps(),
-        horizon::samples(),
+        horizon::texels(),
         horizon::pyramids(),
         direct::pictures(),
         reference::references(),

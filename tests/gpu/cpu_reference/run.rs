@@ -127,8 +127,8 @@ impl<'a> Run<'a> {
         [self.scene.field.cols(), self.scene.field.rows()]
     }
 
-    pub fn lobe(&self, sample: usize) -> PhongSpecular {
-        self.scene.surface.specular.as_ref().expect("a lobe").at(sample)
+    pub fn phong_specular(&self, grid_point: usize) -> PhongSpecular {
+        self.scene.surface.specular.as_ref().expect("a specular").at(grid_point)
     }
 
     pub fn directions(&self) -> Directions {
@@ -159,15 +159,15 @@ impl<'a> Run<'a> {
         [low.abs().max(high.abs()), high - low]
     }
 
-    /// What errs at a sample whatever its horizons.
-    pub fn sample_error(&self) -> ShadeError {
+    /// What errs at a texel whatever its horizons.
+    pub fn texel_error(&self) -> ShadeError {
         let [x, y] = self.scene.field.cell_m();
         ShadeError::new(0.0, self.relief()[1], x.min(y), 1)
     }
 
     /// How far a normal may be turned, radians.
     pub fn normal_error(&self) -> f64 {
-        self.sample_error().normal()
+        self.texel_error().normal()
     }
 
     pub fn warm_up(&self, marches_rows: bool) -> i32 {

@@ -122,7 +122,8 @@ pub(crate) fn pictures() -> Vec<Case> {
         ..Quality { sun_azimuths: 8, sh_order: 6, ..soft_levels }
     };
     let windowed = Quality { window: Window::Hann, fuse: Fuse::Own, ..sh(4) };
-    let lobe = Quality { receiver: Receiver::Cosine, window: Window::Nonnegative, ..sh(2) };
+    let phong_specular =
+        Quality { receiver: Receiver::Cosine, window: Window::Nonnegative, ..sh(2) };
     let subsampled = |subsample, sh_order| Quality { subsample, ..sh(sh_order) };
     let by_table =
         Quality { wedges: Wedges::Table, method: Method::BruteForce, ..subsampled(2, 6) };
@@ -209,14 +210,14 @@ pub(crate) fn pictures() -> Vec<Case> {
         picture("harmonics by Legendre", colourful.clone(), nlp, false, false),
         picture("harmonics of order 3", on_a_plane.clone(), sh(3), false, true),
         picture(
-            "harmonics at every second sample",
+            "harmonics at every second texel",
             on_a_plane.clone(),
             subsampled(2, 5),
             false,
             false,
         ),
         picture(
-            "harmonics at every fourth sample",
+            "harmonics at every fourth texel",
             colourful.clone(),
             subsampled(4, 4),
             false,
@@ -226,9 +227,9 @@ pub(crate) fn pictures() -> Vec<Case> {
         picture("harmonics by wedges of a sphere", colourful, open_wedges, false, false),
         picture("harmonics of marches from nodes", on_a_plane.clone(), marched, false, false),
         picture("harmonics of a pyramid's nodes", repeated, smoothed, false, false),
-        picture("harmonics of order 2", on_a_plane, lobe, false, false),
+        picture("harmonics of order 2", on_a_plane, phong_specular, false, false),
         picture("a lobe", mirrored, sh(5), true, false),
-        picture("a lobe at every second sample", mirrored_sky, subsampled(2, 3), false, false),
+        picture("a specular at every second texel", mirrored_sky, subsampled(2, 3), false, false),
     ]
 }
 

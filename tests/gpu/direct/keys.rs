@@ -6,7 +6,7 @@ use ridgelight::scene::fractal;
 use ridgelight::scene::{
     Albedo, Border, HeightField, KeyLight, Lights, Method, Quality, Scene, Surface,
 };
-use ridgelight_cpu::indirect::{Fineness, ground_truth as truth};
+use ridgelight_cpu::indirect::{Fineness, ground_truth as expected_light};
 use ridgelight_cpu::light::key_of;
 use ridgelight_cpu::oracle::Oracle;
 use ridgelight_cpu::tolerance::{ShadeError, device_march_slope};
@@ -69,7 +69,7 @@ fn a_key_of_the_whole_sky_is_the_sky() {
         let error = ShadeError::new(0.0, high - low, rough.cell_m()[0], 16);
         let tolerance = error.sky() + error.sun(TAU);
         for (i, (a, b)) in of_key.values.iter().zip(&of_sky.values).enumerate() {
-            assert!(f64::from((a - b).abs()) <= tolerance, "{method:?} sample {i}: {a} {b}");
+            assert!(f64::from((a - b).abs()) <= tolerance, "{method:?} texel {i}: {a} {b}");
         }
         assert!(of_sky.values.iter().any(|v| *v < 0.9), "something is hidden");
     }
@@ -127,13 +127,13 @@ fn a_key_over_bundled_terrain_is_the_oracles() {
     let relief = heights().fold(f64::MIN, f64::max) - heights().fold(f64::MAX, f64::min);
     let mut next = random(7);
     let picks: Vec<usize> = (0..400).map(|_| (next() * 65_536.0) as usize).collect();
-    let truth: Vec<f64> =
+    let expected_light: Vec<f64> =
         picks.iter().map(|i| key_of(&oracle, i / 256, i % 256, &key, 8)[0]).collect();
     let scene = under_key(field.clone(), Border::Plane, key);
     let off = |gpu: &mut Device, method: Method| -> Vec<f64> {
         let picture = gpu.picture(&scene, &Quality { method, ..Quality::default() });
         let at = |(i, want): (&usize, &f64)| (f64::from(picture.values[*i]) - want).abs();
-        picks.iter().zip(&truth).map(at).collect()
+        picks.iter().zip(&expected_light).map(at).collect()
     };
     let wedge = key.width_rad / 8.0;
     let error = ShadeError::new(device_march_slope(relief, 66.0), relief, 66.0, 8);
@@ -141,7 +141,7 @@ fn a_key_over_bundled_terrain_is_the_oracles() {
     let worst = off(&mut gpu, Method::BruteForce).into_iter().fold(0.0, f64::max);
     let swept = off(&mut gpu, Method::Sweep);
     let mean = swept.iter().sum::<f64>() / swept.len() as f64;
-    let light = truth.iter().sum::<f64>() / truth.len() as f64;
+    let light = expected_light.iter().sum::<f64>() / expected_light.len() as f64;
     println!("brute worst {worst:.2e} of {bound:.2e}; sweep mean {mean:.2e}; light {light:.2e}");
     assert!(worst <= bound, "{worst} {bound}");
     assert!(mean <= key.width_rad / PI * 0.3_f64.to_radians(), "{mean}");
@@ -149,7 +149,7 @@ fn a_key_over_bundled_terrain_is_the_oracles() {
     let turned = KeyLight { azimuth_rad: key.azimuth_rad + 0.3, ..key };
     let far = picks
         .iter()
-        .zip(&truth)
+        .zip(&expected_light)
         .map(|(i, want)| (key_of(&oracle, i / 256, i % 256, &turned, 8)[0] - want).abs());
     assert!(far.sum::<f64>() / picks.len() as f64 > key.width_rad / PI * 0.3_f64.to_radians());
 }
@@ -175,12 +175,12 @@ fn paths_to_keys_agree_with_the_quadrature() {
         scene.surface.albedo = Albedo::Constant([0.7; 3]);
         scene.lights = Lights { keys, ..Lights::default() };
         let fineness = Fineness { azimuths: 24, divisions: 1, strips: 48 };
-        let truth = truth(&scene, 2, fineness).expect("a truth");
+        let expected_light = expected_light(&scene, 2, fineness).expect("a ground truth");
         for b in [0, 2] {
             let [light, error] = &traced(&mut device, &scene, b as u32, 1, BATCHES);
             let paths = (BATCHES as u32 * ridgelight::plan::REFERENCE_BATCH) as f64;
             let against = |b: usize| {
-                let right = [&truth.radiance[b][..], &truth.error[b]];
+                let right = [&expected_light.radiance[b][..], &expected_light.error[b]];
                 Agreement::of([light, error], right, paths, 1e-5)
             };
             let of = against(b);

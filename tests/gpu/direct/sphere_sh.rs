@@ -33,12 +33,12 @@ fn by_sh(sh_order: u32, sun_azimuths: u32) -> Quality {
 }
 
 /// The bound of the device's error against the CPU reference at a texel, for radiance 1.
-fn reference_bound(scene: &Scene, quality: &Quality, sample: usize, seen: &[f64]) -> f64 {
+fn reference_bound(scene: &Scene, quality: &Quality, texel: usize, visible: &[f64]) -> f64 {
     let (field, light) = (&scene.field, &scene.lights.sphere_lights[0]);
-    let at = SphereGeometry::of(field, light, sample);
-    let n = normal(field, scene.surface.border, sample / field.cols(), sample % field.cols());
+    let at = SphereGeometry::of(field, light, texel);
+    let n = normal(field, scene.surface.border, texel / field.cols(), texel % field.cols());
     let slope = slope_error(&at, quality, false);
-    SphereShError::new(quality).tolerance(&at, slope, n, seen)
+    SphereShError::new(quality).tolerance(&at, slope, n, visible)
 }
 
 /// Σ of a sphere light's coefficients times those of the clamped cosine's first bands times P_l of the angle between:
@@ -71,9 +71,9 @@ fn uneven(quality: &Quality, radius_m: f64, to: glam::DVec3, low_rad: f64) -> f6
     let order = quality.sh_order as usize;
     let above = Slices::new(order).above(low_rad);
     let light = |place: usize| {
-        let mut seen = vec![0.0; order * order];
-        seen[place] = 1.0;
-        light_of(quality, radius_m, to, glam::DVec3::Z, &seen).abs()
+        let mut visible = vec![0.0; order * order];
+        visible[place] = 1.0;
+        light_of(quality, radius_m, to, glam::DVec3::Z, &visible).abs()
     };
     bands(order)
         .enumerate()
@@ -169,9 +169,9 @@ fn sphere_sh_at_the_extremes_matches_the_cpu_reference() {
                     continue;
                 }
                 for (i, got) in found.iter().enumerate() {
-                    let seen = SphereGeometry::of(&land, light, i);
+                    let visible = SphereGeometry::of(&land, light, i);
                     // Rounding decides whether it is inside or outside.
-                    if (seen.distance_m / light.radius_m - 1.0).abs() < 1e-6 {
+                    if (visible.distance_m / light.radius_m - 1.0).abs() < 1e-6 {
                         continue;
                     }
                     let want = reference.at(light, i / cols, i % cols);
@@ -215,16 +215,16 @@ fn more_azimuths_tend_to_the_floor_of_the_order() {
     let scene = under(&land, Border::Plane, vec![sphere_light([16.0, 16.0, 4.0], 1.5)]);
     let oracle = Oracle::new(&land, Border::Plane);
     let light = scene.lights.sphere_lights[0];
-    let truth: Vec<f64> =
+    let ground_truth: Vec<f64> =
         (0..33 * 33).map(|i| sphere_of(&oracle, i / 33, i % 33, &light, 64)).collect();
     let mut floors = Vec::new();
     for order in [2, 4, 6] {
         let mut drawn = |azimuths| values(&gpu.picture(&scene, &by_sh(order, azimuths)));
         let floor = drawn(256);
         let off: Vec<f64> = [2, 8, 32].map(|m| rmse(&drawn(m), &floor)).into();
-        println!("order {order}: {off:.4?} from the floor, {:.4} off", rmse(&floor, &truth));
+        println!("order {order}: {off:.4?} from the floor, {:.4} off", rmse(&floor, &ground_truth));
         assert!(off.windows(2).all(|w| w[1] <= 0.5 * w[0]), "order {order}: {off:?}");
-        floors.push(rmse(&floor, &truth));
+        floors.push(rmse(&floor, &ground_truth));
     }
     assert!(floors.windows(2).all(|w| w[1] < w[0]), "{floors:?}");
 }
@@ -242,14 +242,14 @@ fn popped(gpu: &mut Device, quality: &Quality, steps: usize) -> f64 {
         let up = 6.0 * (4.0 * FRAC_PI_2 * t).cos() + 1.0;
         let light = sphere_light([-3.0 + 21.0 * t, 11.0 - 6.0 * t, land.base_m() + up], 2.2);
         let found = values(&gpu.picture(&under(&land, Border::Plane, vec![light]), quality));
-        let truth = |i: usize| sphere_of(&oracle, i / 16, i % 16, &light, 24);
+        let ground_truth = |i: usize| sphere_of(&oracle, i / 16, i % 16, &light, 24);
         let is_within = |i: usize| SphereGeometry::of(&land, &light, i).distance_m < light.radius_m;
-        let state = |i: usize| ([found[i], truth(i)], is_within(i));
+        let state = |i: usize| ([found[i], ground_truth(i)], is_within(i));
         let now: Vec<_> = (0..256).step_by(7).map(state).collect();
         for ((a, was_within), (b, is_within)) in before.iter().zip(&now) {
-            let [by_sh, truth] = [0, 1].map(|k| (b[k] - a[k]).abs());
-            let off = if was_within == is_within { truth } else { a[1].max(b[1]) };
-            most = most.max(by_sh - truth - 0.1 * off);
+            let [by_sh, ground_truth] = [0, 1].map(|k| (b[k] - a[k]).abs());
+            let off = if was_within == is_within { ground_truth } else { a[1].max(b[1]) };
+            most = most.max(by_sh - ground_truth - 0.1 * off);
         }
         before = now;
     }
@@ -264,7 +264,7 @@ fn a_moving_sphere_light_by_sh_pops_no_more_than_the_ground_truth() {
     for quality in [by_sh(4, 8), Quality { wedges: Wedges::Table, wedge_side: 17, ..by_sh(4, 16) }]
     {
         let [long, short] = [40, 320].map(|steps| popped(&mut gpu, &quality, steps));
-        println!("{long:.4} more than the truth, {short:.4} in steps an eighth as long");
+        println!("{long:.4} more than the ground truth, {short:.4} in steps an eighth as long");
         assert!(short <= 0.5 * long, "{:?}: {long} {short}", quality.wedges);
     }
 }
@@ -290,12 +290,12 @@ fn wrong_harmonics_are_not_within_their_bound() {
     for (which, (oracle, light, settings)) in wrong.into_iter().enumerate() {
         let reference = SphereSh::new(*oracle, None, settings);
         let right = SphereSh::new(Oracle::new(&land, Border::Plane), None, quality);
-        let seen = found.iter().enumerate().filter(|(i, got)| {
+        let visible = found.iter().enumerate().filter(|(i, got)| {
             let bound =
                 reference_bound(&scene, &quality, *i, &right.at(&light, i / 11, i % 11).visibility);
             (*got - reference.at(&light, i / 11, i % 11).light.max(0.0)).abs() > bound
         });
-        let seen = seen.count();
-        assert!(seen > 60, "{which}: {seen} of 99");
+        let visible = visible.count();
+        assert!(visible > 60, "{which}: {visible} of 99");
     }
 }

@@ -31,7 +31,7 @@ fn all(slices: u32) -> Quality {
     Quality { sun_azimuths: slices, light_cutoff: 0.0, ..Quality::default() }
 }
 
-/// One value of each sample, which is finite and not negative.
+/// One value of each texel, which is finite and not negative.
 pub(crate) fn values(pixels: &Pixels) -> Vec<f64> {
     assert_eq!(pixels.channels, 1);
     let all: Vec<f64> = pixels.values.iter().map(|v| f64::from(*v)).collect();
@@ -40,24 +40,24 @@ pub(crate) fn values(pixels: &Pixels) -> Vec<f64> {
 }
 
 /// RMSE of a picture over the mean of the oracle's, at some texels.
-fn relative_rmse(pixels: &Pixels, scene: &Scene, samples: usize) -> f64 {
+fn relative_rmse(pixels: &Pixels, scene: &Scene, texels: usize) -> f64 {
     let (values, lit) = (values(pixels), Lit::of(scene));
     let (cols, mut next) = (scene.field.cols(), random(3));
     let (mut squares, mut sum) = (0.0, 0.0);
-    for _ in 0..samples {
+    for _ in 0..texels {
         let i = (next() * values.len() as f64) as usize;
-        let truth = lit.at(i / cols, i % cols)[0];
-        squares += (values[i] - truth).powi(2);
-        sum += truth;
+        let ground_truth = lit.at(i / cols, i % cols)[0];
+        squares += (values[i] - ground_truth).powi(2);
+        sum += ground_truth;
     }
-    (squares / samples as f64).sqrt() / (sum / samples as f64)
+    (squares / texels as f64).sqrt() / (sum / texels as f64)
 }
 
 /// Sphere lights with the hardest numbers, about a texel of rough ground of a relief over 500 m.
 pub(crate) fn awkward([x, y, z]: [f64; 3], relief: f64) -> [(&'static str, SphereLight); 10] {
     [
-        ("at a sample", sphere_light([x, y, z], 2.5)),
-        ("touching a sample", sphere_light([x, y, z + 1.0], 1.0)),
+        ("at a texel", sphere_light([x, y, z], 2.5)),
+        ("touching a texel", sphere_light([x, y, z + 1.0], 1.0)),
         ("in the ground", sphere_light([x + 0.3, y - 0.4, 500.0 - 20.0], 4.0)),
         ("over the ground", sphere_light([x, y, 500.0 + relief + 9.0], 3.0)),
         ("tiny", sphere_light([x + 0.7, y + 0.2, z + 0.5], 1e-5)),
@@ -80,10 +80,10 @@ fn a_sphere_light_over_level_ground() {
         let scene = under(&level, Border::Plane, vec![light]);
         let found = values(&gpu.picture(&scene, &all(16)));
         for (i, got) in found.iter().enumerate() {
-            let seen = SphereGeometry::of(&level, &light, i);
+            let visible = SphereGeometry::of(&level, &light, i);
             let up = place[2] - 71.0;
-            let want = radius * radius * up / seen.distance_m.powi(3);
-            let bound = seen.tolerance() + 1e-6 * want;
+            let want = radius * radius * up / visible.distance_m.powi(3);
+            let bound = visible.tolerance() + 1e-6 * want;
             assert!((got - want).abs() <= bound, "{place:?} {i}: {got} {want} {bound:e}");
         }
     }
@@ -101,13 +101,13 @@ fn a_sphere_light_half_in_the_ground_and_samples_inside_it() {
     let found = values(&gpu.picture(&scene, &all(64)));
     let mut inside = 0;
     for (i, got) in found.iter().enumerate() {
-        let seen = SphereGeometry::of(&level, &light, i);
-        let a = (light.radius_m / seen.distance_m).min(1.0).asin();
-        let is_inside = seen.distance_m < light.radius_m;
+        let visible = SphereGeometry::of(&level, &light, i);
+        let a = (light.radius_m / visible.distance_m).min(1.0).asin();
+        let is_inside = visible.distance_m < light.radius_m;
         let want = if is_inside { 1.0 } else { (a - a.sin() * a.cos()) / PI };
         // Midpoints of a chord's half angle, whose third derivative is 1/√ at a graze: 1/slices^1.5.
         let rule = if is_inside { 0.0 } else { want / 64_f64.powf(1.5) };
-        let bound = seen.tolerance() + rule;
+        let bound = visible.tolerance() + rule;
         assert!((got - want).abs() <= bound, "{i}: {got} {want} {bound:e}");
         inside += usize::from(is_inside);
     }
@@ -127,13 +127,13 @@ fn a_wall_hides_half_of_a_sphere_light() {
         let scene = under(&wall, Border::Plane, vec![light]);
         let found = values(&gpu.picture(&scene, &all(32)));
         let i = 40 * 41 + 10;
-        let seen = SphereGeometry::of(&wall, &light, i);
-        let a = (radius / seen.distance_m).asin();
+        let visible = SphereGeometry::of(&wall, &light, i);
+        let a = (radius / visible.distance_m).asin();
         // Up is the sine of the elevation along c, its cosine along n.
-        let [sin, cos] = [8.0 / seen.distance_m, 20.0 / seen.distance_m];
+        let [sin, cos] = [8.0 / visible.distance_m, 20.0 / visible.distance_m];
         let half = sin * PI * a.sin().powi(2) / 2.0 + cos * (a - a.sin() * a.cos());
         let (got, want) = (found[i], half / PI);
-        let bound = seen.tolerance() + want / 32_f64.powi(2);
+        let bound = visible.tolerance() + want / 32_f64.powi(2);
         assert!((got - want).abs() <= bound, "{radius}: {got} {want} {bound:e}");
         // From half as far the wall hides it, from twice as far it hides nothing.
         assert!(found[40 * 41 + 17] == 0.0, "{}", found[40 * 41 + 17]);
@@ -248,13 +248,13 @@ fn sphere_lights_at_the_extremes_match_the_oracle() {
                     continue;
                 }
                 for (i, got) in found.iter().enumerate() {
-                    let seen = SphereGeometry::of(&field, light, i);
+                    let visible = SphereGeometry::of(&field, light, i);
                     // Rounding decides whether it is inside or outside.
-                    if (seen.distance_m / light.radius_m - 1.0).abs() < 1e-6 {
+                    if (visible.distance_m / light.radius_m - 1.0).abs() < 1e-6 {
                         continue;
                     }
                     let want = sphere_at(&oracle, light, 4, i / cols, i % cols);
-                    let bound = seen.tolerance() + 1e-6 * want;
+                    let bound = visible.tolerance() + 1e-6 * want;
                     assert!(
                         (got - want).abs() <= bound,
                         "{rows} × {cols}, {relief}, {border:?}, {name}, {i}: {got} {want} {bound:e}"
@@ -272,7 +272,7 @@ fn sphere_lights_at_the_extremes_match_the_oracle() {
 fn a_moving_sphere_light_pops_no_more_than_the_ground_truth() {
     const STEPS: usize = 40;
     // Weber's fraction: smaller changes of a light are invisible.
-    const SEEN_AT_ONCE: f64 = 0.01;
+    const VISIBLE_AT_ONCE: f64 = 0.01;
     let mut gpu = Device::new();
     let land = fractal(16, 2).unwrap();
     let oracle = Oracle::new(&land, Border::Plane);
@@ -289,14 +289,14 @@ fn a_moving_sphere_light_pops_no_more_than_the_ground_truth() {
         let found = values(&gpu.picture(&scene, &quality));
         let mut now = Vec::new();
         for i in (0..256).step_by(3) {
-            let seen = SphereGeometry::of(&land, &light, i);
+            let visible = SphereGeometry::of(&land, &light, i);
             let same = sphere_at(&oracle, &light, slices, i / 16, i % 16);
-            let truth = sphere_of(&oracle, i / 16, i % 16, &light, 64);
-            let bound = seen.tolerance() + 1e-6 * same;
+            let ground_truth = sphere_of(&oracle, i / 16, i % 16, &light, 64);
+            let bound = visible.tolerance() + 1e-6 * same;
             assert!((found[i] - same).abs() <= bound, "step {step}, {i}: {} {same}", found[i]);
-            squares += (found[i] - truth).powi(2);
-            sum += truth;
-            now.push([found[i], truth, bound]);
+            squares += (found[i] - ground_truth).powi(2);
+            sum += ground_truth;
+            now.push([found[i], ground_truth, bound]);
         }
         for (a, b) in before.iter().zip(&now) {
             popped = popped.max((b[0] - a[0]).abs() - (b[1] - a[1]).abs());
@@ -305,9 +305,12 @@ fn a_moving_sphere_light_pops_no_more_than_the_ground_truth() {
     }
     let count = (STEPS * 256_usize.div_ceil(3)) as f64;
     let error = (squares / count).sqrt() / (sum / count);
-    println!("{:.3} % RMSE, pops {popped:.4} of its radiance more than the truth", 100.0 * error);
+    println!(
+        "{:.3} % RMSE, pops {popped:.4} of its radiance more than the ground truth",
+        100.0 * error
+    );
     assert!(error <= HALF_SLICE, "{error}");
-    assert!(popped <= SEEN_AT_ONCE, "{popped}");
+    assert!(popped <= VISIBLE_AT_ONCE, "{popped}");
 }
 
 /// A narrow sphere light over level ground gives (r / d)² cos θ, with however few slices: a disc of half-width w is

@@ -28,15 +28,15 @@ pub(crate) fn draw(run: &mut Run) -> Edit {
     let [cols, rows] = run.size().map(|n| n as u32);
     let rectangle =
         Rectangle { col: cols / 3, row: rows / 4, cols: cols / 4 + 1, rows: rows / 3 + 1 };
-    let samples = run.heights().heights_m;
-    let mut before = samples.to_vec();
+    let texels = run.heights().heights_m;
+    let mut before = texels.to_vec();
     for row in rectangle.row..rectangle.row + rectangle.rows {
         let first = (row * cols + rectangle.col) as usize;
         before[first..first + rectangle.cols as usize].iter_mut().for_each(|h| *h -= 3.0);
     }
     run.gpu.refill(&run.frame, 0, &before).expect("refilled");
     run.gpu.draw(&mut run.frame).expect("drawn");
-    run.gpu.refill(&run.frame, 0, samples).expect("refilled");
+    run.gpu.refill(&run.frame, 0, texels).expect("refilled");
     run.gpu.draw_edit(&mut run.frame, rectangle).expect("drawn");
     Edit { rectangle, before, dirty: Vec::new() }
 }

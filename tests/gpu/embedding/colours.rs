@@ -103,7 +103,7 @@ fn colours_of_the_device_light_as_the_scenes_do() {
     let by_edit = gpu.pixels(&frame, 0).expect("pixels").values;
     gpu.draw(&mut frame).expect("drawn");
     assert!(by_edit == gpu.pixels(&frame, 0).expect("pixels").values);
-    assert!(by_edit != right[1][0].1, "the edit is seen");
+    assert!(by_edit != right[1][0].1, "the edit is visible");
     gpu.end(frame);
 }
 
@@ -171,10 +171,10 @@ fn colours_that_are_summed_up_are_the_scenes() {
     let sphere_light = SphereLight { position_m: [1.0; 3], radius_m: 1.0, radiance: [1.0; 3] };
     with_sphere_light.lights.sphere_lights = vec![sphere_light];
     refuse(&with_sphere_light, "a sphere light");
-    let mut with_lobe = scene(FIRST);
-    with_lobe.surface.specular =
+    let mut with_specular = scene(FIRST);
+    with_specular.surface.specular =
         Some(Specular::Constant(PhongSpecular { exponent: 9.0, scale: 0.25 }));
-    refuse(&with_lobe, "specular");
+    refuse(&with_specular, "specular");
     let lone = Scene { lights: Lights::default(), ..scene(FIRST) };
     refuse(&lone, "nothing that has one");
 }

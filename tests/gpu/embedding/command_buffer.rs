@@ -177,31 +177,31 @@ fn two_renderers_in_one_buffer_are_each_what_they_are_alone() {
     let contents = contents(&scene);
     let gpu = device.gpu.as_mut().expect("alive");
     let mut lit = frame(gpu, &picture, &contents);
-    let mut seen = frame(gpu, &horizons, &contents[..1]);
+    let mut visible = frame(gpu, &horizons, &contents[..1]);
     gpu.draw(&mut lit).expect("drawn");
-    gpu.draw(&mut seen).expect("drawn");
-    let alone = [outputs(gpu, &lit), outputs(gpu, &seen)];
+    gpu.draw(&mut visible).expect("drawn");
+    let alone = [outputs(gpu, &lit), outputs(gpu, &visible)];
 
     // Other heights in between, so that stale contents cannot pass.
     let flat = vec![1.0; contents[0].len()];
     gpu.refill(&lit, 0, &flat).expect("other heights");
-    gpu.refill(&seen, 0, &flat).expect("other heights");
+    gpu.refill(&visible, 0, &flat).expect("other heights");
     gpu.draw(&mut lit).expect("drawn");
-    gpu.draw(&mut seen).expect("drawn");
-    assert!(outputs(gpu, &lit) != alone[0] && outputs(gpu, &seen) != alone[1]);
+    gpu.draw(&mut visible).expect("drawn");
+    assert!(outputs(gpu, &lit) != alone[0] && outputs(gpu, &visible) != alone[1]);
     gpu.refill(&lit, 0, &contents[0]).expect("the heights again");
 
     // Both read one image: the first leaves it as the second expects it.
     let (inputs, lit_outputs) = (lit.inputs(), lit.outputs());
-    let seen_outputs = seen.outputs();
+    let view_outputs = visible.outputs();
     let both = gpu.run(|commands| {
         lit.renderer().record(commands, 0, &inputs, &lit_outputs)?;
-        seen.renderer().record(commands, 0, &inputs[..1], &seen_outputs)
+        visible.renderer().record(commands, 0, &inputs[..1], &view_outputs)
     });
     both.expect("recorded and run");
-    assert_eq!([outputs(gpu, &lit), outputs(gpu, &seen)], alone);
+    assert_eq!([outputs(gpu, &lit), outputs(gpu, &visible)], alone);
     gpu.end(lit);
-    gpu.end(seen);
+    gpu.end(visible);
 }
 
 /// Everything that `record` refuses, with a word of its error.

@@ -15,7 +15,7 @@ fn wrong_contents_are_refused_by_name_and_the_device_goes_on() {
     let gpu = device.gpu.as_mut().expect("alive");
     let error = gpu.frame(plan.clone(), &[&[0.0; 63]]).err().expect("63 values are not 64");
     assert!(error.to_string().contains("heights"), "{error}");
-    let error = gpu.frame(plan.clone(), &[]).err().expect("an input is missing");
+    let error = gpu.frame(plan.clone(), &[] as &[&[f32]]).err().expect("an input is missing");
     assert!(error.to_string().contains("inputs"), "{error}");
     let mut frame = gpu.frame(plan, &[&[0.0; 64]]).expect("a frame");
     gpu.draw(&mut frame).expect("drawn");

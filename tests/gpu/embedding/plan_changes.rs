@@ -99,13 +99,13 @@ fn passes_after_a_change_match_all_passes() {
                     // The second sun's sum reuses the memory of the first's, which is computed again.
                     let label = |i: &usize| frame.plan().passes[*i].label();
                     let is_of_light = |label: &str| {
-                        let seen =
+                        let visible =
                             label.starts_with("sh_visibility") || label.starts_with("sky_shade");
-                        !seen && !label.contains(" sky ")
+                        !visible && !label.contains(" sky ")
                     };
                     let light_alone = passes.iter().all(|i| is_of_light(&label(i)));
-                    let keeps_seen = form.1 && form.0.basis == Basis::Sh;
-                    assert!(light_alone == keeps_seen, "{form:?}");
+                    let keeps_visible = form.1 && form.0.basis == Basis::Sh;
+                    assert!(light_alone == keeps_visible, "{form:?}");
                     passes
                 }
                 _ => {

@@ -22,7 +22,7 @@ pub fn judged(case: &Case, method: &Method) -> Judged {
     }
 }
 
-/// Cases that share methods, but not their passes: horizons are asked for, or light.
+/// Cases that share methods, but not their passes: horizons are requested, or light.
 fn group(case: &Case) -> (About, bool) {
     (case.about, matches!(case.asks, Asks::Light))
 }

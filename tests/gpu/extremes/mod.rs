@@ -194,8 +194,8 @@ fn unjudged_cases_are_listed() {
     for case in suite::cases() {
         let unjudged: Vec<_> = methods.iter().filter(|m| (case.unjudged)(m)).collect();
         let is_known = [
-            "a single-sample spike of 1e6 cells",
-            "a single-sample pit of 1e6 cells",
+            "a single-texel spike of 1e6 cells",
+            "a single-texel pit of 1e6 cells",
             "bounced by a spike of 1e6 cells",
             "bounced in a pit of 1e6 cells",
             "bounced and mirrored by a spike of 1e6 cells, lobes of 0 and 1e4 in turn",

@@ -16,7 +16,7 @@ fn flat_ground_under_the_sky_is_its_albedo() {
                 for (i, v) in picture.values.iter().enumerate() {
                     // A sum of 16 terms, each rounded: 16 half-ulps.
                     let is_one = (v - 1.0).abs() < 16.0 * f32::EPSILON;
-                    assert!(is_one, "{rows}×{cols} {border:?} {method:?} sample {i}: {v}");
+                    assert!(is_one, "{rows}×{cols} {border:?} {method:?} texel {i}: {v}");
                 }
             }
         }
@@ -41,7 +41,7 @@ fn a_ramp_has_its_slope_in_every_azimuth() {
                 let expected = (slope * phi.cos()).max(0.0).atan();
                 // The middle: its line reaches the edge in every azimuth.
                 let at = found[k as usize * 41 * 41 + 20 * 41 + 20];
-                // Heights reach 1200 slope, each rounded to 2^-24 of that, seen across 10 m at least;
+                // Heights reach 1200 slope, each rounded to 2^-24 of that, visible across 10 m at least;
                 // 1.6e-5 rad of azimuth; 1.2e-7 rad of arc tangent.
                 let rounding = 4.0 * 1200.0 * slope * 2.0_f64.powi(-24)
                     / 10.0

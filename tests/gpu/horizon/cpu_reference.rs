@@ -104,7 +104,7 @@ pub(crate) fn sweeps() -> Vec<Case> {
 }
 
 /// `surface_sweep` and `horizon_march`: one value a texel, with its occluder.
-pub(crate) fn samples() -> Vec<Case> {
+pub(crate) fn texels() -> Vec<Case> {
     let exact = Quality { azimuths: 12, lines: Lines::Exact, ..Quality::default() };
     let brute = Quality { azimuths: 12, method: Method::BruteForce, ..Quality::default() };
     vec![
@@ -119,25 +119,25 @@ pub(crate) fn samples() -> Vec<Case> {
 /// texels wide, or with no level but themselves.
 pub(crate) fn pyramids() -> Vec<Case> {
     let base = Quality { azimuths: 12, method: Method::Pyramid, ..Quality::default() };
-    let looks =
+    let steps =
         |levels, level_step, level_offset| Quality { levels, level_step, level_offset, ..base };
     let on = |name, field, border, quality| horizons(name, field, border, quality, false);
     use Levels::{Pyramid, Stack};
     vec![
-        on("stack", rough(37, 23, 31), Border::Plane, looks(Stack, 3, 0)),
-        on("stack, periodic", rough(11, 14, 32), Border::Periodic, looks(Stack, 2, 1)),
-        on("levels", rough(23, 41, 33), Border::Open, looks(Pyramid, 4, 1)),
-        on("levels, periodic", rough(13, 9, 34), Border::Periodic, looks(Pyramid, 5, 0)),
-        on("levels, 16 an octave", rough(17, 31, 35), Border::Plane, looks(Pyramid, 16, 0)),
-        on("levels, one sample across", rough(1, 29, 36), Border::Plane, looks(Pyramid, 1, 0)),
+        on("stack", rough(37, 23, 31), Border::Plane, steps(Stack, 3, 0)),
+        on("stack, periodic", rough(11, 14, 32), Border::Periodic, steps(Stack, 2, 1)),
+        on("levels", rough(23, 41, 33), Border::Open, steps(Pyramid, 4, 1)),
+        on("levels, periodic", rough(13, 9, 34), Border::Periodic, steps(Pyramid, 5, 0)),
+        on("levels, 16 an octave", rough(17, 31, 35), Border::Plane, steps(Pyramid, 16, 0)),
+        on("levels, one texel across", rough(1, 29, 36), Border::Plane, steps(Pyramid, 1, 0)),
         on(
             "stack of a column that repeats",
             rough(23, 1, 37),
             Border::Periodic,
-            looks(Stack, 1, 0),
+            steps(Stack, 1, 0),
         ),
-        on("the field alone", rough(2, 3, 38), Border::Plane, looks(Stack, 4, 2)),
-        on("one sample", rough(1, 1, 39), Border::Open, looks(Stack, 1, 0)),
+        on("the field alone", rough(2, 3, 38), Border::Plane, steps(Stack, 4, 2)),
+        on("one texel", rough(1, 1, 39), Border::Open, steps(Stack, 1, 0)),
     ]
 }
 
@@ -152,7 +152,7 @@ fn sweeps_in_every_form_match() {
 
 #[test]
 fn sweeps_of_one_value_a_sample_match() {
-    check_all(&samples());
+    check_all(&texels());
 }
 
 #[test]

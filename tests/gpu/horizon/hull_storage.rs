@@ -43,7 +43,7 @@ fn hulls_deeper_than_their_storage_lose_nothing() {
         for i in 0..plane {
             let (a, b) = (swept[k * plane + i], exact[k * plane + i]);
             // Heights of 500 in f32 (3e-5) over one cell, twice: both round.
-            assert!((a - b).abs() < 2.0 * 3.1e-5, "azimuth {k}, sample {i}: {a} {b}");
+            assert!((a - b).abs() < 2.0 * 3.1e-5, "azimuth {k}, texel {i}: {a} {b}");
         }
     }
 }

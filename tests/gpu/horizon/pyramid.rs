@@ -28,10 +28,10 @@ fn a_ramp_is_its_own_horizon_at_every_level() {
     for slope in [1e-3, 0.3, 40.0] {
         let ramp = field(ROWS, COLS, cell, |_, c| slope * 30.0 * c as f64);
         let highest = ramp.heights_m().iter().fold(0.0, |m, h| f64::from(h.abs()).max(m));
-        for (stored, looks) in
+        for (stored, steps) in
             STORED.iter().flat_map(|s| [[1, 0], [4, 2], [16, 0], [3, 1]].map(|l| (*s, l)))
         {
-            let found = gpu.horizons(&ramp, Border::Open, &quality(24, stored, looks));
+            let found = gpu.horizons(&ramp, Border::Open, &quality(24, stored, steps));
             for (k, azimuth) in even(24, cell).iter().enumerate() {
                 // The marched azimuth, which differs from the requested one by 1/32768 cell a step at most.
                 let expected = slope * azimuth.swept_rad(cell).cos();
@@ -47,7 +47,7 @@ fn a_ramp_is_its_own_horizon_at_every_level() {
                     let is_nothing = at < -1.57;
                     assert!(
                         is_nothing || (at - expected.atan()).abs() <= bound,
-                        "slope {slope} {stored:?} {looks:?} azimuth {k} sample {i}: {at} {expected}"
+                        "slope {slope} {stored:?} {steps:?} azimuth {k} texel {i}: {at} {expected}"
                     );
                     // From the middle there is ground in every azimuth.
                     assert!(!is_nothing || i != ROWS / 2 * COLS + COLS / 2, "azimuth {k}");
@@ -85,14 +85,14 @@ fn the_tip_of_a_pit_sees_its_sides() {
     let slope = 0.8;
     let pit =
         field(SIDE, SIDE, [1.0, 1.0], |r, c| slope * (r as f64 - 16.0).hypot(c as f64 - 16.0));
-    for (stored, looks) in STORED.iter().flat_map(|s| [[1, 0], [4, 2], [8, 4]].map(|l| (*s, l))) {
-        let found = gpu.horizons(&pit, Border::Plane, &quality(32, stored, looks));
+    for (stored, steps) in STORED.iter().flat_map(|s| [[1, 0], [4, 2], [8, 4]].map(|l| (*s, l))) {
+        let found = gpu.horizons(&pit, Border::Plane, &quality(32, stored, steps));
         for k in 0..32 {
             let at = f64::from(found[k * SIDE * SIDE + 16 * SIDE + 16]);
             let bound = 2.0 * ARC_TANGENT + pyramid_angle(slope) + 2e-6;
             let above = if k % 4 == 0 { 0.0 } else { slope / 8.0 };
             let [low, high] = [slope.atan() - bound, (slope + above).atan() + bound];
-            assert!(low <= at && at <= high, "{stored:?} {looks:?} azimuth {k}: {at}");
+            assert!(low <= at && at <= high, "{stored:?} {steps:?} azimuth {k}: {at}");
         }
     }
 }
@@ -106,8 +106,8 @@ fn mean_error(gpu: &mut Device, field: &HeightField, quality: &Quality) -> f64 {
     let (mut sum, mut number) = (0.0, 0);
     for (k, i) in (0..count).flat_map(|k| (0..plane).step_by(7).map(move |i| (k, i))) {
         let phi = TAU * k as f64 / count as f64;
-        let truth = oracle.elevation_rad(i / field.cols(), i % field.cols(), phi);
-        sum += (f64::from(found[k * plane + i]) - truth).abs();
+        let ground_truth = oracle.elevation_rad(i / field.cols(), i % field.cols(), phi);
+        sum += (f64::from(found[k * plane + i]) - ground_truth).abs();
         number += 1;
     }
     sum / f64::from(number)
@@ -120,7 +120,7 @@ fn more_and_finer_levels_tend_to_the_oracle() {
     let rough = fractal(65, 3).expect("a field");
     for stored in STORED {
         let path = [[1, 0], [2, 1], [4, 2], [8, 3], [16, 4]];
-        let errors = path.map(|looks| mean_error(&mut gpu, &rough, &quality(16, stored, looks)));
+        let errors = path.map(|steps| mean_error(&mut gpu, &rough, &quality(16, stored, steps)));
         println!("{stored:?}: {:?}°", errors.map(f64::to_degrees));
         assert!(errors.windows(2).all(|pair| pair[1] < pair[0]), "{stored:?}: {errors:?}");
     }
@@ -131,15 +131,15 @@ fn more_and_finer_levels_tend_to_the_oracle() {
 fn both_stores_hold_the_same_levels() {
     let mut gpu = Device::new();
     let rough = fractal(65, 4).expect("a field");
-    let looks = [4, 1];
+    let steps = [4, 1];
     let [stack, levels] =
-        STORED.map(|stored| gpu.horizons(&rough, Border::Periodic, &quality(16, stored, looks)));
-    let truth_error = mean_error(&mut gpu, &rough, &quality(16, Levels::Stack, looks));
+        STORED.map(|stored| gpu.horizons(&rough, Border::Periodic, &quality(16, stored, steps)));
+    let ground_truth_error = mean_error(&mut gpu, &rough, &quality(16, Levels::Stack, steps));
     let apart: f64 = stack.iter().zip(&levels).map(|(a, b)| f64::from((a - b).abs())).sum::<f64>();
     let mean = apart / stack.len() as f64;
-    println!("{mean} rad apart, {truth_error} from the truth");
+    println!("{mean} rad apart, {ground_truth_error} from the ground truth");
     // Bilinear interpolation errs by an eighth of the second difference over a texel, of levels whose texels are
     // 2^(1/4) field texels or more apart and whose splines are smooth over two: less than the levels' own error.
-    assert!(mean < 0.1 * truth_error, "{mean} of {truth_error}");
+    assert!(mean < 0.1 * ground_truth_error, "{mean} of {ground_truth_error}");
     assert!(mean > 0.0, "the two stores are one");
 }

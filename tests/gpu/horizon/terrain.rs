@@ -10,7 +10,7 @@ use crate::{Device, bundled, random, under_sky};
 /// The published figures of the bundled field, which `cargo measure accuracy` measures.
 const PUBLISHED: &str = include_str!("../../../benches/results/accuracy_mt_washington_256.txt");
 /// The number of texels behind them: for horizons, for the sky.
-const PUBLISHED_SAMPLES: [f64; 2] = [4000.0, 500.0];
+const PUBLISHED_TEXELS: [f64; 2] = [4000.0, 500.0];
 
 /// A figure of a row of the published table, by its column's name.
 fn published(lines: Lines, fuse: Fuse, column: &str) -> f64 {
@@ -47,7 +47,7 @@ fn errors(
     gpu: &mut Device,
     field: &HeightField,
     quality: &Quality,
-    samples: usize,
+    texels: usize,
 ) -> (Vec<f64>, f64) {
     let found = gpu.horizons(field, Border::Plane, quality);
     let azimuths = plan::circle_rad(quality, field.cell_m()).expect("azimuths");
@@ -58,27 +58,27 @@ fn errors(
     let mean = |_| {
         let i = (next() * plane as f64) as usize;
         let error = |(k, phi): (usize, &f64)| {
-            let truth = oracle.elevation_rad(i / field.cols(), i % field.cols(), *phi);
-            (f64::from(found[k * plane + i]) - truth).abs().to_degrees()
+            let ground_truth = oracle.elevation_rad(i / field.cols(), i % field.cols(), *phi);
+            (f64::from(found[k * plane + i]) - ground_truth).abs().to_degrees()
         };
         let all: Vec<f64> = azimuths.iter().enumerate().map(error).collect();
         worst = all.iter().copied().fold(worst, f64::max);
         all.iter().sum::<f64>() / all.len() as f64
     };
-    ((0..samples).map(mean).collect(), worst)
+    ((0..texels).map(mean).collect(), worst)
 }
 
 /// Every published figure of the default and its neighbours holds, within the standard error of so few texels; the
 /// comparison fails for a form with several times the error.
 #[test]
 fn horizons_of_bundled_terrain_match_the_published_errors() {
-    const SAMPLES: usize = 200;
+    const TEXELS: usize = 200;
     let mut gpu = Device::new();
     let field = bundled();
     // As many azimuths as in the published table: those along the grid err less.
     let base = Quality { azimuths: 64, ..Quality::default() };
     let mut estimate = |lines: Lines, fuse: Fuse| {
-        let (all, worst) = errors(&mut gpu, &field, &Quality { lines, fuse, ..base }, SAMPLES);
+        let (all, worst) = errors(&mut gpu, &field, &Quality { lines, fuse, ..base }, TEXELS);
         let of = Estimate::of(&all);
         println!(
             "{lines:?} {fuse:?}: mean {:.4}° ± {:.4}°, published {}°, worst {worst:.2}°",
@@ -89,7 +89,7 @@ fn horizons_of_bundled_terrain_match_the_published_errors() {
         of
     };
     let holds =
-        |of: &Estimate, figure: f64| of.is_within(figure, SAMPLES as f64, PUBLISHED_SAMPLES[0]);
+        |of: &Estimate, figure: f64| of.is_within(figure, TEXELS as f64, PUBLISHED_TEXELS[0]);
     for (lines, fuse) in [
         (Lines::Cell, Fuse::AimedNearest),
         (Lines::TwoCells, Fuse::AimedNearest),
@@ -111,18 +111,18 @@ fn horizons_of_bundled_terrain_match_the_published_errors() {
 /// The light of a uniform sky likewise, by its mean square.
 #[test]
 fn the_sky_over_bundled_terrain_is_the_oracles() {
-    const SAMPLES: usize = 400;
+    const TEXELS: usize = 400;
     let mut gpu = Device::new();
     let field = bundled();
     let picture = gpu.picture(&under_sky(field.clone(), Border::Plane), &Quality::default());
     let oracle = Oracle::new(&field, Border::Plane);
     let mut next = random(2);
-    let picks: Vec<usize> = (0..SAMPLES).map(|_| (next() * 65_536.0) as usize).collect();
+    let picks: Vec<usize> = (0..TEXELS).map(|_| (next() * 65_536.0) as usize).collect();
     // The oracle is slow unoptimised: on all cores.
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    let truth: Vec<f64> = std::thread::scope(|scope| {
+    let ground_truth: Vec<f64> = std::thread::scope(|scope| {
         let sky = |i: &usize| light::sky_of(&oracle, i / 256, i % 256, 360);
-        let parts = picks.chunks(SAMPLES.div_ceil(threads));
+        let parts = picks.chunks(TEXELS.div_ceil(threads));
         let all: Vec<_> = parts
             .map(|part| scope.spawn(move || part.iter().map(sky).collect::<Vec<_>>()))
             .collect();
@@ -130,17 +130,17 @@ fn the_sky_over_bundled_terrain_is_the_oracles() {
     });
     let squares: Vec<f64> = picks
         .iter()
-        .zip(&truth)
-        .map(|(&i, truth)| (f64::from(picture.values[i]) - truth).powi(2))
+        .zip(&ground_truth)
+        .map(|(&i, ground_truth)| (f64::from(picture.values[i]) - ground_truth).powi(2))
         .collect();
     let of = Estimate::of(&squares);
-    let mean = truth.iter().sum::<f64>() / SAMPLES as f64;
+    let mean = ground_truth.iter().sum::<f64>() / TEXELS as f64;
     let figure = published(Lines::Cell, Fuse::AimedNearest, "sky RMSE %") / 100.0;
     println!("sky: relative RMSE {:.5} %", 100.0 * of.mean.sqrt() / mean);
     let square = (figure * mean).powi(2);
-    assert!(of.is_within(square, SAMPLES as f64, PUBLISHED_SAMPLES[1]), "{}", of.mean.sqrt());
+    assert!(of.is_within(square, TEXELS as f64, PUBLISHED_TEXELS[1]), "{}", of.mean.sqrt());
     assert!(
-        !of.is_within(square / 9.0, SAMPLES as f64, PUBLISHED_SAMPLES[1]),
+        !of.is_within(square / 9.0, TEXELS as f64, PUBLISHED_TEXELS[1]),
         "passes three times the error"
     );
 }

@@ -5,7 +5,7 @@ use ridgelight::plan::{Pass, REFERENCE_BATCH, unsampled_light_error};
 use ridgelight::scene::{
     Albedo, Border, Lights, PhongSpecular, Quality, Scene, Specular, SphereLight, Sun, Surface,
 };
-use ridgelight_cpu::indirect::{Fineness, ground_truth as truth};
+use ridgelight_cpu::indirect::{Fineness, ground_truth as expected_light};
 use ridgelight_cpu::path_trace::{Traced, Tracer};
 use ridgelight_cpu::tolerance::EPSILON;
 use ridgelight_cpu::tolerance::near::Near;
@@ -67,10 +67,10 @@ fn one_part(run: &mut Run, pass: &Pass, before: &[f32], spread: &[f32], pairs: &
         let at = [c, slot / cols, slot % cols];
         pairs.push(Pair { got: got.into(), want: want.v, tolerance: want.off, at });
     };
-    for (slot, sample) in listed.iter().enumerate() {
+    for (slot, texel) in listed.iter().enumerate() {
         let batch = before[4 * slot + 3];
         let ranges = (first_path..last_path, first_light..last_light);
-        let more = tracer.traced(*sample, (slot as u32, batch as u32), ranges);
+        let more = tracer.traced(*texel, (slot as u32, batch as u32), ranges);
         let all = &mut run.batches[slot];
         all.join(&more);
         let rays = all.rays;
@@ -162,8 +162,8 @@ pub(crate) fn quadrature(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     }
     let bounces = pushed(pass, offsets::path_trace_push::BOUNCES) as usize;
     let fineness = Fineness { azimuths: 24, divisions: 1, strips: 8 };
-    let truth = truth(run.scene, bounces, fineness).expect("a truth");
-    let (want, stated) = (&truth.radiance[bounces], &truth.error[bounces]);
+    let expected_light = expected_light(run.scene, bounces, fineness).expect("a ground truth");
+    let (want, stated) = (&expected_light.radiance[bounces], &expected_light.error[bounces]);
     let light = run.floats(pass, "radiance").expect("written");
     let error = run.floats(pass, "standard_error").expect("written");
     let [cols, _] = run.size();
@@ -221,10 +221,11 @@ fn reference(name: &'static str, scene: Scene, wanted: Wanted) -> Case {
     Case { name, scene, quality: Quality::default(), wanted, loses_lines: false }
 }
 
-fn with_lobes(mut scene: Scene) -> Scene {
-    let lobe = |i: usize| PhongSpecular { exponent: (i % 12) as f32, scale: (i % 3) as f32 * 0.05 };
+fn with_specular_maps(mut scene: Scene) -> Scene {
+    let phong_specular =
+        |i: usize| PhongSpecular { exponent: (i % 12) as f32, scale: (i % 3) as f32 * 0.05 };
     let count = scene.field.heights_m().len();
-    scene.surface.specular = Some(Specular::Map((0..count).map(lobe).collect()));
+    scene.surface.specular = Some(Specular::Map((0..count).map(phong_specular).collect()));
     scene
 }
 
@@ -232,10 +233,10 @@ fn with_lobes(mut scene: Scene) -> Scene {
 pub(crate) fn references() -> Vec<Case> {
     let [all, repeated] = of_all_lights();
     // The quadrature does not model specular at hit points.
-    let lobes = with_lobes(all.clone());
+    let phong_maps = with_specular_maps(all.clone());
     vec![
         reference("all lights", all, Wanted::Reference(1)),
-        reference("lobes in all lights", lobes, Wanted::Reference(0)),
+        reference("lobes in all lights", phong_maps, Wanted::Reference(0)),
         reference("periodic", repeated, Wanted::Reference(2)),
     ]
 }
@@ -260,13 +261,21 @@ pub(crate) fn paths() -> Vec<Case> {
             irradiance: [0.01, 0.02, 0.03],
         })
         .collect();
-    let mut glossy = with_lobes(level.clone());
-    glossy.surface.specular =
+    let mut shiny = with_specular_maps(level.clone());
+    shiny.surface.specular =
         Some(Specular::Constant(PhongSpecular { exponent: 100.0, scale: 0.05 }));
     vec![
-        reference("lobes that are met", with_lobes(all.clone()), Wanted::Reference(1)),
-        reference("lobes that repeat", with_lobes(repeated.clone()), Wanted::Reference(1)),
-        reference("a sharp lobe on a plane", glossy, Wanted::Reference(1)),
+        reference(
+            "specular maps that are met",
+            with_specular_maps(all.clone()),
+            Wanted::Reference(1),
+        ),
+        reference(
+            "a specular map that repeats",
+            with_specular_maps(repeated.clone()),
+            Wanted::Reference(1),
+        ),
+        reference("sharp specular on a plane", shiny, Wanted::Reference(1)),
         reference("bounced light of a list", all, Wanted::ReferenceAt(1, 40)),
         reference("many suns", many, Wanted::Reference(1)),
         reference("on a plane", level, Wanted::Reference(2)),

@@ -33,11 +33,15 @@ fn suns_along_lines_of_samples_are_the_oracles() {
                 scene.lights = Lights { suns: vec![sun], ..Lights::default() };
                 let [light, _] = traced(&mut device, &scene, 0, 1, 1);
                 for (i, found) in light.iter().enumerate() {
-                    let truth = light::sun_of(&oracle, i / cols, i % cols, &sun, 1)[0];
+                    let ground_truth = light::sun_of(&oracle, i / cols, i % cols, &sun, 1)[0];
                     let says =
-                        format!("{border:?} {rows}×{cols} {azimuth}° {elevation}° sample {i}");
+                        format!("{border:?} {rows}×{cols} {azimuth}° {elevation}° texel {i}");
                     // A direction and a normal of f32, irradiance 3.
-                    assert!((found[0] - truth).abs() < 1e-6, "{says}: {} for {truth}", found[0]);
+                    assert!(
+                        (found[0] - ground_truth).abs() < 1e-6,
+                        "{says}: {} for {ground_truth}",
+                        found[0]
+                    );
                 }
             }
         }

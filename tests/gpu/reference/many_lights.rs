@@ -52,19 +52,20 @@ fn many_sphere_lights_are_their_sum() {
     let mut sky = scene.clone();
     sky.lights = Lights { sky: scene.lights.sky, ..Lights::default() };
     let [open, open_error] = traced(&mut device, &sky, 0, 2, BATCHES);
-    let (mut truth, mut stated) = (Vec::new(), Vec::new());
+    let (mut ground_truth, mut stated) = (Vec::new(), Vec::new());
     for i in 0..SIDE * SIDE {
         let (fine, coarse) = (of(i, 16), of(i, 8));
-        truth.push([fine[0], fine[1], open[i][2]]);
+        ground_truth.push([fine[0], fine[1], open[i][2]]);
         stated.push([0, 1, 2].map(|c| {
             // Three standard errors of the other trace.
             (fine[c] - coarse[c]).abs() + 3.0 * if c == 2 { open_error[i][2] } else { 0.0 }
         }));
     }
     let paths = (BATCHES as u32 * plan::REFERENCE_BATCH) as f64;
-    let agrees =
-        |truth: &[[f64; 3]]| Agreement::of([&light, &error], [truth, &stated], paths, 1e-5);
-    let found = agrees(&truth);
+    let agrees = |ground_truth: &[[f64; 3]]| {
+        Agreement::of([&light, &error], [ground_truth, &stated], paths, 1e-5)
+    };
+    let found = agrees(&ground_truth);
     println!(
         "{parts} parts: rms {:.3}, worst {:.2}, mean {:.2}",
         found.rms, found.worst, found.mean
@@ -72,7 +73,7 @@ fn many_sphere_lights_are_their_sum() {
     assert!(found.holds(), "{found:?}");
     // The comparison fails for one sphere light of 120 less.
     let sphere_light = scene.lights.sphere_lights[17];
-    let mut less = truth.clone();
+    let mut less = ground_truth.clone();
     for (i, sum) in less.iter_mut().enumerate() {
         let light = sphere_of(&oracle, i / SIDE, i % SIDE, &sphere_light, 16);
         (0..2).for_each(|c| sum[c] -= light * f64::from(sphere_light.radiance[c]));

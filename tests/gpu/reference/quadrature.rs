@@ -2,7 +2,7 @@
 
 use ridgelight::plan::{self, Plan};
 use ridgelight::scene::{Albedo, Border, Environment, Lights, Scene, Sun, Surface};
-use ridgelight_cpu::indirect::{Fineness, ground_truth as truth};
+use ridgelight_cpu::indirect::{Fineness, ground_truth as expected_light};
 
 use crate::scenes::{Agreement, scenes};
 use crate::{Device, field, under_sky};
@@ -54,13 +54,13 @@ pub(crate) fn traced_by(
 }
 
 /// Bounced light alone of some texels, some of them twice.
-fn traced_at(device: &mut Device, scene: &Scene, bounces: u32, samples: &[usize]) -> Traced {
+fn traced_at(device: &mut Device, scene: &Scene, bounces: u32, grid_points: &[usize]) -> Traced {
     let limits = device.limits();
-    let plan = plan::reference_at(scene, bounces, 1, samples.len(), &limits).expect("a plan");
-    let list = plan::listed_places(scene, samples).expect("of the field");
+    let plan = plan::reference_at(scene, bounces, 1, grid_points.len(), &limits).expect("a plan");
+    let list = plan::listed_places(scene, grid_points).expect("of the field");
     let ([light, error], lost) = traced_by(device, scene, plan, BATCHES, &[list]);
     assert_eq!(lost, 0, "rays were lost");
-    [light, error].map(|texels| texels[..samples.len()].to_vec())
+    [light, error].map(|texels| texels[..grid_points.len()].to_vec())
 }
 
 /// Indirect light alone is the quadrature's with bounces less its own without, at any listed texel, under lights of
@@ -70,18 +70,18 @@ fn paths_from_listed_samples_bring_indirect_light() {
     let mut device = Device::new();
     for (name, scene) in scenes() {
         let fineness = Fineness { azimuths: 24, divisions: 1, strips: 12 };
-        let truth = truth(&scene, 2, fineness).expect("a truth");
-        let count = truth.radiance[0].len();
+        let expected_light = expected_light(&scene, 2, fineness).expect("a ground truth");
+        let count = expected_light.radiance[0].len();
         // From the last texel, then others; some are in both lists.
         let first: Vec<usize> = (1..count).rev().step_by(2).collect();
         let listed: Vec<usize> = first.iter().copied().chain((0..count).step_by(3)).collect();
         let at = |picture: &[[f64; 3]]| listed.iter().map(|i| picture[*i]).collect::<Vec<_>>();
-        let (all, straight) = (at(&truth.radiance[2]), at(&truth.radiance[0]));
+        let (all, straight) = (at(&expected_light.radiance[2]), at(&expected_light.radiance[0]));
         let bounced: Vec<_> =
             all.iter().zip(&straight).map(|(a, s)| [0, 1, 2].map(|c| a[c] - s[c])).collect();
         // Both pictures' errors are of the same quadrature; rounding is a share of all light, not of indirect light:
         // rounding decides whether rays that graze a slope hit it.
-        let stated = at(&truth.error[2]);
+        let stated = at(&expected_light.error[2]);
         let error = stated.iter().zip(&all);
         let error: Vec<_> = error.map(|(e, a)| [0, 1, 2].map(|c| e[c] + 1e-5 * a[c])).collect();
         let both = traced_at(&mut device, &scene, 2, &listed);
@@ -114,9 +114,9 @@ fn paths_agree_with_the_quadrature_on_every_scene() {
     let mut device = Device::new();
     for (name, scene) in scenes() {
         let fineness = Fineness { azimuths: 24, divisions: 1, strips: 12 };
-        let truth = truth(&scene, 2, fineness).expect("a truth");
+        let expected_light = expected_light(&scene, 2, fineness).expect("a ground truth");
         let agreement = |[light, error]: &Traced, b: usize| {
-            let right = [&truth.radiance[b][..], &truth.error[b]];
+            let right = [&expected_light.radiance[b][..], &expected_light.error[b]];
             Agreement::of([light, error], right, PATHS, 1e-5)
         };
         for b in [0, 2] {
@@ -128,7 +128,7 @@ fn paths_agree_with_the_quadrature_on_every_scene() {
             );
             assert!(of.holds(), "{name}, {b} bounces: {of:?}");
             // Convex ground sees little or nothing of itself.
-            let sum = |b: usize| truth.radiance[b].iter().flatten().sum::<f64>();
+            let sum = |b: usize| expected_light.radiance[b].iter().flatten().sum::<f64>();
             if b == 0 && sum(2) > 1.01 * sum(0) {
                 let wrong = agreement(both, 2);
                 assert!(!wrong.holds(), "{name}: passes without bounces: {wrong:?}");
@@ -199,7 +199,7 @@ fn standard_errors_predict_the_difference_of_two_seeds() {
         .filter(|z| z.is_finite())
         .collect();
     let count = squares.len() as f64;
-    assert!(count > 500.0, "{count} samples with noise");
+    assert!(count > 500.0, "{count} texels with noise");
     let mean = squares.iter().sum::<f64>() / count;
     let expected = (BATCHES - 1) as f64 / (BATCHES - 3) as f64;
     println!("mean z² {mean:.3}, expected {expected:.3}, of {count}");
@@ -226,13 +226,13 @@ fn unsampled_light_counts_as_error() {
     };
     scene.lights = Lights { suns: vec![sun], ..Lights::default() };
     let fineness = Fineness { azimuths: 48, divisions: 1, strips: 16 };
-    let truth = truth(&scene, 1, fineness).expect("a truth");
+    let expected_light = expected_light(&scene, 1, fineness).expect("a ground truth");
     let [light, error] = traced(&mut device, &scene, 1, 1, FEW);
-    let unsampled =
-        (0..light.len()).filter(|i| error[*i][0] == 0.0 && truth.radiance[1][*i][0] > 1e-3);
-    assert!(unsampled.count() > 0, "every sample has met the light");
+    let unsampled = (0..light.len())
+        .filter(|i| error[*i][0] == 0.0 && expected_light.radiance[1][*i][0] > 1e-3);
+    assert!(unsampled.count() > 0, "every texel has met the light");
     let against = |sigma: &[[f64; 3]]| {
-        let right = [&truth.radiance[1][..], &truth.error[1]];
+        let right = [&expected_light.radiance[1][..], &expected_light.error[1]];
         Agreement::of([&light, sigma], right, f64::INFINITY, 1e-5)
     };
     let unsampled = plan::unsampled_light_error(&scene, 1, FEW as u32 * plan::REFERENCE_BATCH);

@@ -169,7 +169,7 @@ pub(crate) fn sh_wedges(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let table = WedgeTable::new(order, side, lowest_rad, TAU / count as f64);
     let got = device_series(run, pass, order);
     assert_eq!(got.len(), (cols * rows) as usize);
-    let (heights, error) = (run.heights(), run.sample_error());
+    let (heights, error) = (run.heights(), run.texel_error());
     let mut pairs = Vec::new();
     for (i, got) in got.iter().enumerate() {
         let node = [i as u32 % cols, i as u32 / cols];
@@ -220,7 +220,7 @@ fn node_surfaces(run: &mut Run, pass: &Pass, nodes: Nodes) -> Vec<Pair> {
 
 pub(crate) fn sh_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let order = constant(pass, "order") as usize;
-    let seen = device_series(run, pass, order);
+    let visible = device_series(run, pass, order);
     let matrix = texels(run, pass, "light_matrix");
     let matrix: Vec<Vec<DVec3>> = matrix.chunks_exact(order * order).map(<[_]>::to_vec).collect();
     let got = run.floats(pass, "env_sum").expect("written");
@@ -229,41 +229,41 @@ pub(crate) fn sh_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     }
     let [cols, _] = run.size();
     let heights = run.heights();
-    let error = run.sample_error();
+    let error = run.texel_error();
     let nodes = Nodes { stride: constant(pass, "node_stride") };
     let across = nodes.size(run.plan.size)[0];
     let none = vec![0.0; order * order];
-    let seen: Vec<Visibility> =
-        seen.into_iter().map(|values| Visibility { values, errors: none.clone() }).collect();
+    let visible: Vec<Visibility> =
+        visible.into_iter().map(|values| Visibility { values, errors: none.clone() }).collect();
     let mut pairs = Vec::new();
     for (i, got) in got.chunks_exact(4).enumerate() {
         let at = [0, i / cols, i % cols];
         let place = [(i % cols) as i32, (i / cols) as i32];
         let between;
-        let seen = if nodes.stride == 1 {
-            &seen[i]
+        let visible = if nodes.stride == 1 {
+            &visible[i]
         } else {
             let around = nodes_around(&heights, nodes, place);
-            let node = |[col, row]: [u32; 2]| &seen[(row * across + col) as usize];
+            let node = |[col, row]: [u32; 2]| &visible[(row * across + col) as usize];
             between = Visibility::between(around.iter().map(|(at, w)| (node(*at), *w)), &error);
             &between
         };
         let is_specular = constant(pass, "receiver") == 2;
         let want = if is_specular {
             let normal = normal_of(field_slope(&heights, place[0], place[1]));
-            specular_on(normal, run.lobe(i), &seen.values, &matrix)
+            specular_on(normal, run.phong_specular(i), &visible.values, &matrix)
         } else {
-            light_at(&heights, &seen.values, &matrix, place)
+            light_at(&heights, &visible.values, &matrix, place)
         };
         // The sum of magnitudes, where every polynomial of the normal is 2 at most.
         let summed: DVec3 = matrix
             .iter()
-            .flat_map(|row| row.iter().zip(&seen.values).map(|(m, v)| m.abs() * v.abs()))
+            .flat_map(|row| row.iter().zip(&visible.values).map(|(m, v)| m.abs() * v.abs()))
             .sum();
         // The weights of nodes err, too, times polynomials of 2.
         let counted: DVec3 = matrix
             .iter()
-            .flat_map(|row| row.iter().zip(&seen.errors).map(|(m, e)| 2.0 * m.abs() * *e))
+            .flat_map(|row| row.iter().zip(&visible.errors).map(|(m, e)| 2.0 * m.abs() * *e))
             .sum();
         let of_sum = if is_specular { device_sh_specular } else { device_sh_shade };
         let tolerance = of_sum(order, error.normal()) * summed + counted;

@@ -101,8 +101,8 @@ fn on_terrain_interpolating_visibility_is_better_than_interpolating_light() {
             let (([left, right], x), ([top, bottom], y)) =
                 (nodes.around(col, 256), nodes.around(row, 256));
             let at = |node_y, node_x, c: usize| {
-                let sample = nodes.place(node_y, 256) * 256 + nodes.place(node_x, 256);
-                f64::from(whole[3 * sample as usize + c])
+                let grid_point = nodes.place(node_y, 256) * 256 + nodes.place(node_x, 256);
+                f64::from(whole[3 * grid_point as usize + c])
             };
             between.extend((0..3).map(|c| {
                 let along = |r| at(r, left, c) * (1.0 - x) + at(r, right, c) * x;
@@ -110,10 +110,10 @@ fn on_terrain_interpolating_visibility_is_better_than_interpolating_light() {
             }));
         }
         let error = |of: &[f32]| ImageError::of(of, &whole, 256).expect("comparable").relative_rmse;
-        let [seen, lit] = [error(&light(&mut gpu, &scene, &harmonics(stride))), error(&between)];
-        println!("{stride}: {:.3} %, light interpolated {:.3} %", 100.0 * seen, 100.0 * lit);
-        assert!(before < seen && seen < lit, "{stride}: {seen} of {lit}");
-        before = seen;
+        let [visible, lit] = [error(&light(&mut gpu, &scene, &harmonics(stride))), error(&between)];
+        println!("{stride}: {:.3} %, light interpolated {:.3} %", 100.0 * visible, 100.0 * lit);
+        assert!(before < visible && visible < lit, "{stride}: {visible} of {lit}");
+        before = visible;
     }
 }
 
@@ -138,15 +138,15 @@ fn memory_and_work_are_those_of_the_nodes() {
             let bytes = |name: &str| plan.resources[plan.find(name).expect(name).0].bytes();
             assert_eq!(bytes("visibility"), nodes * 4 * 16);
             assert_eq!(plan.find("nodes").is_some(), stride > 1);
-            let samples = |name: &str| -> u64 {
+            let grid_points = |name: &str| -> u64 {
                 plan.passes.iter().filter(|p| p.name() == name).map(|p| p.texels).sum()
             };
-            assert_eq!(samples("sh_visibility"), nodes * 16);
-            assert_eq!(samples("sh_shade"), 13 * 9);
+            assert_eq!(grid_points("sh_visibility"), nodes * 16);
+            assert_eq!(grid_points("sh_shade"), 13 * 9);
             let marched = if has_sun { 13 * 9 * 17 } else { nodes * 16 };
             match method {
-                Method::BruteForce => assert_eq!(samples("horizon_march"), marched),
-                Method::Pyramid => assert_eq!(samples("pyramid_march"), marched),
+                Method::BruteForce => assert_eq!(grid_points("horizon_march"), marched),
+                Method::Pyramid => assert_eq!(grid_points("pyramid_march"), marched),
                 Method::Sweep | Method::Auto => {}
             }
             let reported = plan.settings.iter().find(|s| s.0 == "subsample").expect("reported");

@@ -78,7 +78,7 @@ fn white() -> Environment {
 }
 
 /// Under a white environment.
-fn seen_in(field: HeightField, border: Border) -> Scene {
+fn visible_in(field: HeightField, border: Border) -> Scene {
     let lights = Lights { environment: Some(white()), ..Lights::default() };
     Scene { field, surface: Surface { border, ..Surface::default() }, lights }
 }
@@ -114,16 +114,16 @@ fn series(gpu: &mut Device, scene: &Scene, quality: &Quality) -> Vec<f64> {
 #[test]
 fn occlusion_by_legendre_coefficients() {
     let mut gpu = Device::new();
-    for sample in reference("nlp_occlusion") {
-        let sigma = number(&sample["sigma"]);
+    for entry in reference("nlp_occlusion") {
+        let sigma = number(&entry["sigma"]);
         let (ground, border) = match sigma {
             s if s < -1.5 => (field(1, 1, [1.0, 1.0], |_, _| 0.0), Border::Open),
             s if s > 1.5 => (bowl(1e6), Border::Open),
             s => (bowl(s.tan()), Border::Open),
         };
-        let scene = seen_in(ground, border);
+        let scene = visible_in(ground, border);
         let got = series(&mut gpu, &scene, &harmonics(4, 6, Wedges::Nlp));
-        let mut want: Vec<f64> = numbers(&sample["order6"]).iter().map(|below| -below).collect();
+        let mut want: Vec<f64> = numbers(&entry["order6"]).iter().map(|below| -below).collect();
         want[0] += SQRT_2;
         let got: Vec<f64> = (0..6).map(|l| got[index(l, 0)] / TAU.sqrt()).collect();
         // At the zenith the norm is 0.
@@ -140,11 +140,11 @@ fn blend_matrices_all_around() {
     let mut gpu = Device::new();
     let mut next = random(3);
     let noise: Vec<f64> = (0..25).map(|_| next()).collect();
-    let scene = seen_in(field(5, 5, [1.0, 1.0], |r, c| noise[r * 5 + c]), Border::Plane);
+    let scene = visible_in(field(5, 5, [1.0, 1.0], |r, c| noise[r * 5 + c]), Border::Plane);
     let oracle = Oracle::new(&scene.field, Border::Plane);
-    for sample in reference("nlp_to_sh") {
-        let count = number(&sample["m"]) as usize;
-        let width = number(&sample["delta_phi"]);
+    for entry in reference("nlp_to_sh") {
+        let count = number(&entry["m"]) as usize;
+        let width = number(&entry["delta_phi"]);
         let got = series(&mut gpu, &scene, &harmonics(count as u32, 4, Wedges::Nlp));
         let above: Vec<Vec<f64>> = (0..count)
             .map(|k| {
@@ -159,7 +159,7 @@ fn blend_matrices_all_around() {
             (Blend::BSpline, "bspline_16x16", &[count - 1, 0, 1, 2], 4),
         ] {
             let matrix: Vec<Vec<f64>> =
-                sample[name].as_array().expect("rows").iter().map(numbers).collect();
+                entry[name].as_array().expect("rows").iter().map(numbers).collect();
             let mut want = vec![0.0; 16];
             for j in 0..count {
                 let stacked: Vec<f64> =
@@ -197,7 +197,7 @@ fn bands_of_the_clamped_cosine() {
         (0..rows).map(|i| matrix[4 * (i * order * order + i)]).collect()
     };
     let quality = harmonics(4, 4, Wedges::Slices);
-    let matrix = image(&mut gpu, &seen_in(level(), Border::Open), &quality, "light_matrix");
+    let matrix = image(&mut gpu, &visible_in(level(), Border::Open), &quality, "light_matrix");
     let normal = DVec3::new(0.3, -0.5, 0.8).normalize();
     let (values, polynomials) = (evaluate(3, normal), polynomials(normal.to_array()));
     let got: Vec<f64> = diagonal(&matrix, 4, 9)
@@ -222,14 +222,14 @@ fn bands_of_the_clamped_cosine() {
 #[test]
 fn caps() {
     let mut gpu = Device::new();
-    for sample in reference("zh_cap") {
-        let half = number(&sample["half_angle"]);
-        let zh = numbers(&sample["zh"]);
+    for entry in reference("zh_cap") {
+        let half = number(&entry["half_angle"]);
+        let zh = numbers(&entry["zh"]);
         let ground = match half {
             a if a > 3.0 => field(1, 1, [1.0, 1.0], |_, _| 0.0),
             a => bowl((FRAC_PI_2 - a).tan()),
         };
-        let scene = seen_in(ground, Border::Open);
+        let scene = visible_in(ground, Border::Open);
         let got = series(&mut gpu, &scene, &harmonics(4, 4, Wedges::Slices));
         let mut want = vec![0.0; 16];
         zh.iter().enumerate().for_each(|(l, v)| want[index(l, 0)] = *v);
@@ -250,7 +250,7 @@ fn caps() {
     }
 }
 
-/// `sn08_wedge` through `sh_wedges`: on level ground every wedge lies between two horizons of 0, a texel of the table,
+/// `sn08_wedge` through `sh_wedges`: on level ground every wedge lies between two horizons of 0, an entry of the table,
 /// and over the circle turns cancel: 32 times its Y_l0 are left. Other horizons lie between texels, where a table errs
 /// by [`WedgeTable::error`](ridgelight::basis::wedge::WedgeTable::error), 1e-5 of a wedge at 256 horizons a side: no
 /// look-up is exact to 1e-6; the test against the CPU reference checks the kernel's look-up.
@@ -258,7 +258,7 @@ fn caps() {
 fn wedges_of_level_horizons() {
     let mut gpu = Device::new();
     let wedge = numbers(&reference("sn08_wedge")[0]["sh16"]);
-    let scene = seen_in(field(1, 1, [1.0, 1.0], |_, _| 0.0), Border::Plane);
+    let scene = visible_in(field(1, 1, [1.0, 1.0], |_, _| 0.0), Border::Plane);
     let got = series(&mut gpu, &scene, &harmonics(32, 4, Wedges::Table));
     let mut want = vec![0.0; 16];
     (0..4).for_each(|l| want[index(l, 0)] = 32.0 * wedge[index(l, 0)]);
@@ -271,28 +271,28 @@ fn wedges_of_level_horizons() {
 #[test]
 fn the_bottom_of_a_pit() {
     let mut gpu = Device::new();
-    let samples = reference("spherical_pit");
-    let direct = samples.iter().filter(|s| s["bounces"] == 0);
-    for sample in direct {
-        let rise = (0.5 * number(&sample["alpha"])).tan();
+    let grid_points = reference("spherical_pit");
+    let direct = grid_points.iter().filter(|s| s["bounces"] == 0);
+    for entry in direct {
+        let rise = (0.5 * number(&entry["alpha"])).tan();
         let mut scene = under_sky(bowl(rise), Border::Plane);
-        scene.surface.albedo = Albedo::Constant([number(&sample["albedo"]) as f32; 3]);
+        scene.surface.albedo = Albedo::Constant([number(&entry["albedo"]) as f32; 3]);
         let quality = Quality { method: Method::BruteForce, azimuths: 4, ..Quality::default() };
         let got = f64::from(gpu.picture(&scene, &quality).values[4]);
-        let want = number(&sample["radiance"]);
+        let want = number(&entry["radiance"]);
         near("spherical_pit", &[got], &[want], want, NEAR);
     }
 }
 
-/// `sh_samples` through `sh_shade`'s lobe, which is turned to the mirror direction of the view by its Y_lm: a plane
-/// that reflects straight above to the sample direction, under a sky of radiance 1 and nothing below. The plane's
+/// `sh_samples` through `sh_shade`'s specular, which is turned to the mirror direction of the view by its Y_lm: a plane
+/// that reflects straight above to the sampled direction, under a sky of radiance 1 and nothing below. The plane's
 /// visibility is computed in f64; Y_lm are the reference's.
 #[test]
 fn values_of_harmonics() {
     let mut gpu = Device::new();
-    for sample in reference("sh_samples") {
-        let (theta, phi) = (number(&sample["theta"]), number(&sample["phi"]));
-        let values = numbers(&sample["Y16"]);
+    for entry in reference("sh_samples") {
+        let (theta, phi) = (number(&entry["theta"]), number(&entry["phi"]));
+        let values = numbers(&entry["Y16"]);
         let tilt = (0.5 * theta).tan();
         let (north, east) = (-tilt * phi.sin(), -tilt * phi.cos());
         let plane = field(3, 3, [1.0, 1.0], |r, c| east * c as f64 + north * (2.0 - r as f64));
@@ -309,12 +309,15 @@ fn values_of_harmonics() {
             };
             let lowest: Vec<_> = plan.expect("a plan").azimuths.iter().map(along).collect();
             let how = Series { order: 4, wedges: Wedges::Slices, receiver: Receiver::Cosine };
-            let seen = visibility_above(how, &lowest);
-            let lobe = zonal::phong(4, exponent.into());
+            let visible = visibility_above(how, &lowest);
+            let phong_specular = zonal::phong(4, exponent.into());
             let terms: Vec<f64> = bands(4)
                 .enumerate()
                 .map(|(i, (l, _))| {
-                    lobe[l] * (4.0 * PI / (2 * l + 1) as f64).sqrt() * values[i] * seen[i]
+                    phong_specular[l]
+                        * (4.0 * PI / (2 * l + 1) as f64).sqrt()
+                        * values[i]
+                        * visible[i]
                 })
                 .collect();
             let got = image(&mut gpu, &scene, &quality, "specular_sum")[4 * 4];

@@ -41,18 +41,18 @@ fn layer<'a>(all: &'a [(String, Vec<[f64; 3]>)], name: &str) -> &'a [[f64; 3]] {
     &all.iter().find(|(n, _)| n == name).unwrap_or_else(|| panic!("no layer {name}")).1
 }
 
-/// A field that sees much of itself, with another Phong lobe at each texel.
+/// A field that sees much of itself, with its own specular at each texel.
 fn lobed() -> Scene {
     let mut next = random(61);
     let noise: Vec<f64> = (0..25).map(|_| next()).collect();
     let mut scene =
         under_sky(field(5, 5, [1.0, 1.25], |r, c| 2.5 * noise[r * 5 + c]), Border::Open);
-    let lobe = |i: usize| PhongSpecular {
+    let phong_specular = |i: usize| PhongSpecular {
         exponent: (i * 7 % 30) as f32,
         scale: 0.3 + 0.1 * (i % 4) as f32,
     };
     scene.surface.albedo = Albedo::Constant([0.3, 0.1, 0.4]);
-    scene.surface.specular = Some(Specular::Map((0..25).map(lobe).collect()));
+    scene.surface.specular = Some(Specular::Map((0..25).map(phong_specular).collect()));
     let texels = (0..18_u8).map(|i| [f32::from(i % 5), 1.0, f32::from(i % 3)]).collect();
     let environment = Environment::new(6, 3, texels, 0.9).expect("an environment");
     scene.lights = Lights { environment: Some(environment), ..Lights::default() };
@@ -69,15 +69,15 @@ fn paths_reflect_by_phong_specular_at_every_hit() {
     let mut apart = [0.0_f64; 2];
     for bounces in [1, 3] {
         let [light, error] = traced(&mut gpu, &scene, bounces, 5, 64);
-        for (k, has_lobes) in [true, false].into_iter().enumerate() {
-            let mut paths = Paths::new(&scene, has_lobes);
-            for sample in [6, 7, 12, 18] {
-                let up = normal(&scene.field, Border::Open, sample / 5, sample % 5);
-                let counted = paths.light(sample, up, bounces as usize, 12_000);
+        for (k, has_specular) in [true, false].into_iter().enumerate() {
+            let mut paths = Paths::new(&scene, has_specular);
+            for texel in [6, 7, 12, 18] {
+                let up = normal(&scene.field, Border::Open, texel / 5, texel % 5);
+                let counted = paths.light(texel, up, bounces as usize, 12_000);
                 let [mean, sigma] = counted[bounces as usize];
                 for c in 0..3 {
-                    let both = sigma[c].hypot(error[sample][c]);
-                    apart[k] = apart[k].max((light[sample][c] - mean[c]).abs() / both);
+                    let both = sigma[c].hypot(error[texel][c]);
+                    apart[k] = apart[k].max((light[texel][c] - mean[c]).abs() / both);
                 }
             }
         }
@@ -141,26 +141,26 @@ fn phong_exponent_one_is_a_cosine() {
     });
     let mut scene = under_sky(yard, Border::Open);
     scene.surface.albedo = Albedo::Constant([0.5; 3]);
-    let lobe =
+    let phong_specular =
         |i: usize| PhongSpecular { exponent: 1.0, scale: if i == MIDDLE { 0.25 } else { 0.0 } };
-    scene.surface.specular = Some(Specular::Map((0..144).map(lobe).collect()));
+    scene.surface.specular = Some(Specular::Map((0..144).map(phong_specular).collect()));
     for order in [3, 6] {
         let missing = missing_cosine(order as usize);
         let mut first = 0.0;
         for specular in [BounceSpecular::Vector, BounceSpecular::VectorF16, BounceSpecular::Scalar]
         {
             let all = drawn(&mut gpu, &scene, &bounce_quality(2, specular, order));
-            let [glossy, one, two] =
+            let [shiny, one, two] =
                 ["indirect.specular", "indirect.1", "indirect.2"].map(|name| layer(&all, name));
             // Of 0.5 diffusely and 0.25 by the lobe; of the bounced light, at most 3/4 of the sky's 1.
             let want = 0.5 * (one[MIDDLE][0] + two[MIDDLE][0]);
-            let off = (glossy[MIDDLE][0] - want).abs();
+            let off = (shiny[MIDDLE][0] - want).abs();
             // f32 is exact to 1e-5, f16 to half a thousandth.
             let rounded = if specular == BounceSpecular::VectorF16 { 1e-3 } else { 1e-5 };
             let bound = 0.25 * missing * 0.75 + rounded;
             println!("order {order}, {}: {off:.5} of {want:.4}, bound {bound:.4}", specular.name());
             assert!(off <= bound && want > 2.0 * bound, "{off} of {want}");
-            let others = glossy.iter().enumerate().filter(|(i, _)| *i != MIDDLE);
+            let others = shiny.iter().enumerate().filter(|(i, _)| *i != MIDDLE);
             assert!(others.into_iter().all(|(_, v)| v[0] == 0.0), "lobes of nothing");
             first = if first == 0.0 { one[MIDDLE][0] } else { first };
             assert!((one[MIDDLE][0] - first).abs() <= rounded * first, "{first}");
@@ -219,10 +219,10 @@ fn radiance_by_direction_is_nearer_to_the_path_traced_reference() {
         |specular, order| Quality { method: Method::Auto, ..bounce_quality(2, specular, order) };
     let [coarse, vector] = [2, 4].map(|order| off(&bounce_quality(BounceSpecular::Vector, order)));
     let scalar = off(&bounce_quality(BounceSpecular::Scalar, 4));
-    let chance = (noise / count).sqrt() / bounced;
+    let spread = (noise / count).sqrt() / bounced;
     println!(
-        "bounced {bounced:.4}: vector {vector:.3}, of order 2 {coarse:.3}, scalar {scalar:.3} off; chance {chance:.3}"
+        "bounced {bounced:.4}: vector {vector:.3}, of order 2 {coarse:.3}, scalar {scalar:.3} off; Monte Carlo noise {spread:.3}"
     );
-    assert!(vector + chance < coarse.min(scalar), "{vector} {coarse} {scalar}");
-    assert!(scalar + chance < 1.0, "{scalar}");
+    assert!(vector + spread < coarse.min(scalar), "{vector} {coarse} {scalar}");
+    assert!(scalar + spread < 1.0, "{scalar}");
 }

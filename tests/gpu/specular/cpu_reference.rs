@@ -14,15 +14,15 @@ use crate::cpu_reference::{Case, Wanted, check_all, noisy_environment, rough};
 /// Bounced Phong specular: series of odd and even orders, colours and grey, as f32 and f16, and one number a texel.
 pub(crate) fn cases() -> Vec<Case> {
     let case = |name, field: HeightField, border, specular, sh_order, levels, lights| {
-        let samples = field.heights_m().len();
+        let texels = field.heights_m().len();
         let is_map = specular == BounceSpecular::Vector;
-        let lobe =
+        let phong_specular =
             |i: usize| PhongSpecular { exponent: (i % 40) as f32, scale: (i % 3) as f32 * 0.2 };
         let albedo = |i: usize| [0.5, (i % 5) as f32 / 10.0, 0.3];
         let (albedo, phong) = if is_map {
             (
-                Albedo::Map((0..samples).map(albedo).collect()),
-                Specular::Map((0..samples).map(lobe).collect()),
+                Albedo::Map((0..texels).map(albedo).collect()),
+                Specular::Map((0..texels).map(phong_specular).collect()),
             )
         } else {
             (
@@ -79,8 +79,16 @@ pub(crate) fn cases() -> Vec<Case> {
             levels,
             sky(),
         ),
-        case("as seen from above", rough(10, 9, 54), Border::Open, Scalar, 2, levels, all),
-        case("as seen from above, grey", rough(7, 9, 55), Border::Plane, Scalar, 3, stack, alone),
+        case("as visible from above", rough(10, 9, 54), Border::Open, Scalar, 2, levels, all),
+        case(
+            "as visible from above, grey",
+            rough(7, 9, 55),
+            Border::Plane,
+            Scalar,
+            3,
+            stack,
+            alone,
+        ),
     ]
 }
 

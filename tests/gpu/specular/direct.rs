@@ -19,7 +19,7 @@ use crate::reference::quadrature::traced;
 use crate::{Device, field, random, under_sky};
 
 /// Phong specular without a diffuse part.
-fn glossy(field: HeightField, exponent: f32, scale: f32) -> Scene {
+fn shiny(field: HeightField, exponent: f32, scale: f32) -> Scene {
     let mut scene = under_sky(field, Border::Plane);
     scene.surface.albedo = Albedo::Constant([0.0; 3]);
     scene.surface.specular = Some(Specular::Constant(PhongSpecular { exponent, scale }));
@@ -37,7 +37,7 @@ fn level_ground_reflects_its_hemisphere() {
     let mut gpu = Device::new();
     let order = 4;
     for exponent in [0.0, 5.0, 20.0, 1e4] {
-        let scene = glossy(field(3, 5, [1.0, 2.0], |_, _| 4.0), exponent, 0.25);
+        let scene = shiny(field(3, 5, [1.0, 2.0], |_, _| 4.0), exponent, 0.25);
         let wanted = Picture { light_layers: true, ..Picture::default() };
         let plan = plan::picture(&scene, &sh(order), &gpu.limits(), wanted).expect("a plan");
         let all = gpu.draw(plan, &[scene.field.heights_m()]);
@@ -59,7 +59,7 @@ fn level_ground_reflects_its_hemisphere() {
 fn the_narrowest_and_the_widest_lobe_keep_their_digits() {
     let mut gpu = Device::new();
     for (off, exponent) in [(0.0, 1e4), (0.004, 1e4), (0.2, 30.0), (0.7, 1.0), (0.5, 0.0)] {
-        let mut scene = glossy(field(3, 3, [1.0, 1.0], |_, _| 2.0), exponent, 0.6);
+        let mut scene = shiny(field(3, 3, [1.0, 1.0], |_, _| 2.0), exponent, 0.6);
         let sun = Sun {
             azimuth_rad: 1.0,
             elevation_rad: FRAC_PI_2 - off,
@@ -93,7 +93,7 @@ fn suns_in_a_lobe_are_the_quadratures() {
             diameter_rad,
             irradiance,
         };
-        let mut scene = glossy(rough, exponent, 0.5);
+        let mut scene = shiny(rough, exponent, 0.5);
         // Two, which add up.
         let suns = vec![sun(2.0, 0.3, [2.0, 0.0, 0.0]), sun(-0.4, 1.5, [0.0, 1.0, 3.0])];
         scene.lights = Lights { suns, ..Lights::default() };
@@ -101,10 +101,10 @@ fn suns_in_a_lobe_are_the_quadratures() {
             Quality { method: Method::BruteForce, sun_azimuths: 32, ..Quality::default() };
         let picture = gpu.picture(&scene, &quality);
         let fineness = Fineness { azimuths: 8, divisions: 1, strips: 256 };
-        let truth = light(&scene, 0, fineness).expect("a truth").remove(0);
+        let ground_truth = light(&scene, 0, fineness).expect("a ground truth").remove(0);
         let (peak, radius) = ((n + 1.0) / (2.0 * PI), 0.5 * diameter_rad);
         let mut lit = 0;
-        for (i, want) in truth.iter().enumerate() {
+        for (i, want) in ground_truth.iter().enumerate() {
             for (c, want) in want.iter().enumerate() {
                 let got = f64::from(picture.values[i * picture.channels + c]);
                 let irradiance: f64 =
@@ -115,11 +115,14 @@ fn suns_in_a_lobe_are_the_quadratures() {
                 let of_sum = 10.0 * PI * error.sun(if radius > 0.0 { PI } else { 1.0 }) * peak;
                 let bound = 0.5 * irradiance * (rounded + uneven + of_sum);
                 let off = (got - want).abs();
-                assert!(off <= bound, "{diameter_rad} {n}: sample {i}: {off:e} of {bound:e}");
+                assert!(off <= bound, "{diameter_rad} {n}: texel {i}: {off:e} of {bound:e}");
                 lit += usize::from(*want > bound);
             }
         }
-        println!("{diameter_rad} {n}: {lit} of {} are above the noise of dark", 3 * truth.len());
+        println!(
+            "{diameter_rad} {n}: {lit} of {} are above the noise of dark",
+            3 * ground_truth.len()
+        );
         assert!(lit >= 10, "cannot fail");
     }
 }
@@ -136,22 +139,22 @@ fn higher_orders_are_nearer_to_the_path_traced_reference() {
     let options = HeightOptions { cell_m: Some([66.0, 92.6]), ..HeightOptions::default() };
     let whole = files::read_heights(&path, &options).expect("the bundled field");
     let height = |r: usize, c: usize| f64::from(whole.heights_m()[(r + 120) * 256 + c + 120]);
-    let scene = glossy(field(SIDE, SIDE, whole.cell_m(), height), 5.0, 1.0);
-    let [truth, standard] = traced(&mut gpu, &scene, 0, 1, BATCHES);
-    let count = truth.len() as f64;
+    let scene = shiny(field(SIDE, SIDE, whole.cell_m(), height), 5.0, 1.0);
+    let [ground_truth, standard] = traced(&mut gpu, &scene, 0, 1, BATCHES);
+    let count = ground_truth.len() as f64;
     let noise = standard.iter().map(|e| e[0] * e[0]).sum::<f64>() / count;
     // The mean of squares d² less the noise's σ², and its own standard error from 4 d²σ² + 2 σ⁴.
     let squares = |gpu: &mut Device, order: u32| {
         let got = gpu.picture(&scene, &sh(order)).values;
         let (mut sum, mut spread) = (0.0, 0.0);
-        for ((got, want), error) in got.iter().zip(&truth).zip(&standard) {
+        for ((got, want), error) in got.iter().zip(&ground_truth).zip(&standard) {
             let (off2, noise2) = ((f64::from(*got) - want[0]).powi(2), error[0] * error[0]);
             sum += off2;
             spread += 4.0 * off2 * noise2 + 2.0 * noise2 * noise2;
         }
         [sum / count - noise, spread.sqrt() / count]
     };
-    let mean = truth.iter().map(|t| t[0]).sum::<f64>() / count;
+    let mean = ground_truth.iter().map(|t| t[0]).sum::<f64>() / count;
     let all = [2, 4].map(|order| squares(&mut gpu, order));
     for (order, [square, error]) in [2, 4].iter().zip(all) {
         let rmse = square.max(0.0).sqrt();

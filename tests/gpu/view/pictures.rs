@@ -25,7 +25,7 @@ fn pictures_match_ray_casting() {
         let camera = around(&scene, compass, elevation, lens, &options);
         let shot = shoot(&mut device, scene, camera, options);
         let held = shot.check();
-        let ground = shot.seen.distances_m.iter().filter(|d| d.is_finite()).count();
+        let ground = shot.visible.distances_m.iter().filter(|d| d.is_finite()).count();
         println!("{lens:?}, {compass}°, {elevation}°: {held} of 768 held, {ground} of ground");
         assert!(held > 600 && ground > 170, "{held}, {ground}");
     }
@@ -63,10 +63,10 @@ fn a_picture_from_elsewhere_is_refused() {
     };
     assert!(compared(&shot));
     shot.camera.azimuth_rad += 0.02;
-    assert!(!compared(&shot), "0.02 rad were not seen");
+    assert!(!compared(&shot), "0.02 rad were not visible");
     shot.camera.azimuth_rad -= 0.02;
     shot.options.mesh_step = 2;
-    assert!(!compared(&shot), "another mesh was not seen");
+    assert!(!compared(&shot), "another mesh was not visible");
 }
 
 #[test]
@@ -138,14 +138,14 @@ fn a_level_field_from_straight_above_is_its_map() {
     };
     let options = ViewOptions { size: [cols, rows], samples: 1, ..ViewOptions::default() };
     let shot = shoot(&mut device, scene, camera, options);
-    for (i, (got, want)) in shot.seen.radiance.iter().zip(&shot.lit).enumerate() {
+    for (i, (got, want)) in shot.visible.radiance.iter().zip(&shot.lit).enumerate() {
         let (row, col) = (i as u32 / cols, i as u32 % cols);
         let is_edge = row == 0 || col == 0 || row == rows - 1 || col == cols - 1;
         for k in (0..3).filter(|_| !is_edge) {
             // A vertex and a middle with an error of one rounding of the picture, within one cell.
             let off = (got[k] - want[k]).abs();
             assert!(f64::from(off) <= 24.0 * ROUNDING, "({row}, {col}): {got:?} for {want:?}");
-            let far = f64::from(shot.seen.distances_m[i]);
+            let far = f64::from(shot.visible.distances_m[i]);
             assert!((far - 100.0).abs() <= 100.0 * ROUNDING, "{far}");
         }
     }
@@ -214,7 +214,7 @@ fn a_pixel_half_covered_is_half_as_bright() {
         }
         let middle = if samples == 1 { [0.0, 1.0] } else { [0.5, 0.5] };
         let shot = shoot(&mut device, scene.clone(), camera, options);
-        for (i, got) in shot.seen.radiance.iter().enumerate() {
+        for (i, got) in shot.visible.radiance.iter().enumerate() {
             let want = match i % 9 {
                 0..=3 => [0.0; 2],
                 4 => middle,

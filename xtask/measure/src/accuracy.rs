@@ -143,9 +143,9 @@ fn pyramids(gpu: &mut Headless, ground: &Ground) -> Result<()> {
         println!(
             "| {level_step} | {level_offset} | {} | {mib:.1} | {:.3} | {:.3} | {:.2} | {:.3} | {:+.3} | {made:.1} | {marched:.1} | {:.1} |",
             levels.name(),
-            e.mean,
-            e.median,
-            e.p99,
+            e.mean_deg,
+            e.median_deg,
+            e.p99_deg,
             100.0 * light.relative_rmse,
             100.0 * light.relative_mean_shift,
             (made + marched) / middle_run(&beside, "horizon_sweep")
@@ -198,11 +198,11 @@ fn sweeps(gpu: &mut Headless, ground: &Ground, oracle: &Oracle) -> Result<String
         let of = |name| middle_run(&picture, name) / 64.0 / mega;
         println!(
             "| {names} | {:.5} | {:.5} | {:.4} | {:.4} | {:.4} ({row}, {col}) | {:.4} | {:.2} | {:.2} |",
-            e.mean,
-            e.median,
-            e.p99,
-            e.p999,
-            e.worst,
+            e.mean_deg,
+            e.median_deg,
+            e.p99_deg,
+            e.p999_deg,
+            e.worst_deg,
             100.0 * light.relative_rmse,
             of("horizon_sweep") + of("surface_sweep") + of("horizon_march"),
             of("sky_shade")

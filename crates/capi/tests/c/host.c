@@ -1,11 +1,11 @@
-/* Ridgelight in a Vulkan program of its own, by C. Writes the light of every sample, row by row, as floats. */
+/* Ridgelight in a Vulkan program of its own, by C. Writes the light of every texel, row by row, as floats. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "ridgelight.h"
 
-enum { ROWS = 48, COLS = 64, SAMPLES = ROWS * COLS };
+enum { ROWS = 48, COLS = 64, TEXELS = ROWS * COLS };
 
 static void must(int ok, const char *what) {
     if (!ok) {
@@ -81,7 +81,7 @@ int main(int argc, char **argv) {
         .commandPool = pool, .commandBufferCount = 1};
     VkCommandBuffer commands;
     VK(vkAllocateCommandBuffers(device, &commands_info, &commands));
-    VkBufferCreateInfo buffer_info = {.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = 4 * SAMPLES,
+    VkBufferCreateInfo buffer_info = {.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = 4 * TEXELS,
         .usage = VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT};
     VkBuffer buffer;
     VK(vkCreateBuffer(device, &buffer_info, NULL, &buffer));
@@ -91,7 +91,7 @@ int main(int argc, char **argv) {
     VK(vkBindBufferMemory(device, buffer, memory, 0));
     float *texels;
     VK(vkMapMemory(device, memory, 0, VK_WHOLE_SIZE, 0, (void **)&texels));
-    for (int i = 0; i < SAMPLES; i++) texels[i] = (i / COLS * 31 + i % COLS * 17) % 7 - 3;
+    for (int i = 0; i < TEXELS; i++) texels[i] = (i / COLS * 31 + i % COLS * 17) % 7 - 3;
 
     /* Once for a scene: a plan, its renderer, and the engine's images. */
     RidgelightHost host = {.struct_size = sizeof host, .queue_family = family, .instance = instance,
@@ -136,7 +136,7 @@ int main(int argc, char **argv) {
     VK(vkQueueWaitIdle(queue));
 
     FILE *out = fopen(argv[1], "wb");
-    must(out && fwrite(texels, 4, SAMPLES, out) == SAMPLES && !fclose(out), argv[1]);
+    must(out && fwrite(texels, 4, TEXELS, out) == TEXELS && !fclose(out), argv[1]);
     ridgelight_renderer_destroy(renderer);
     ridgelight_plan_destroy(plan);
     return 0;

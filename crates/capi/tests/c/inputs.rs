@@ -57,7 +57,10 @@ fn voids_of_c_are_filled_and_masked() {
     let right = gpu.look(&frame, &view_of_rust, Some(&voids)).expect("a picture").radiance;
     let mut whole = view_of_rust;
     whole.has_voids = false;
-    assert!(gpu.look(&frame, &whole, None).expect("a picture").radiance != right, "holes are seen");
+    assert!(
+        gpu.look(&frame, &whole, None).expect("a picture").radiance != right,
+        "holes are visible"
+    );
     let numbers: Vec<f32> = marks.iter().map(|mark| f32::from(*mark)).collect();
     let lent = Input::new(&gpu, vk::Format::R32_SFLOAT, [side; 2], &bytes(&numbers));
     let lent = lent.expect("an image");

@@ -41,51 +41,32 @@ fn forms(quality: &Quality) -> Vec<Form> {
         precision: Precision::F32,
         ..*quality
     };
-    let form = |name: String, quality: Quality, shades: bool, slow: bool| Form {
-        name,
-        quality,
-        shades,
-        slow,
-    };
     let mut all = Vec::new();
-    for (hull, place) in [
-        (Hull::Private, "private"),
-        (Hull::Shared, "shared"),
-        (Hull::OccluderList, "occluder-list"),
-    ] {
+    let mut add = |name: String, quality: Quality, [shades, slow]: [bool; 2]| {
+        all.push(Form { name, quality, shades, slow });
+    };
+    for hull in [Hull::Private, Hull::Shared, Hull::OccluderList] {
         for precision in [Precision::F32, Precision::Packed] {
-            let name = format!("horizon_sweep {place} {}", precision.name());
-            all.push(form(name, Quality { hull, precision, ..base }, false, false));
+            let name = format!("horizon_sweep {} {}", hull.name(), precision.name());
+            add(name, Quality { hull, precision, ..base }, [false; 2]);
         }
     }
-    for lines in
-        [Lines::QuarterCell, Lines::HalfCell, Lines::Cell, Lines::TwoCells, Lines::FourCells]
-    {
+    use Lines::{Cell, Exact, FourCells, HalfCell, QuarterCell, TwoCells};
+    for lines in [QuarterCell, HalfCell, Cell, TwoCells, FourCells] {
         let name = format!("horizon_sweep lines {}", lines.name());
-        all.push(form(name, Quality { lines, ..base }, false, false));
+        add(name, Quality { lines, ..base }, [false; 2]);
     }
     use Fuse::{Aimed, AimedAround, AimedNearest, Nearest, Own, Slopes};
     for fuse in [Nearest, Slopes, Own, AimedNearest, Aimed, AimedAround] {
-        let name = format!("sky_shade {}", fuse.name());
-        all.push(form(name, Quality { fuse, ..base }, true, false));
+        add(format!("sky_shade {}", fuse.name()), Quality { fuse, ..base }, [true, false]);
     }
-    all.push(form(
-        "surface_sweep exact".into(),
-        Quality { lines: Lines::Exact, ..base },
-        false,
-        true,
-    ));
+    add("surface_sweep exact".into(), Quality { lines: Exact, ..base }, [false, true]);
     for levels in [Levels::Stack, Levels::Pyramid] {
         let name = format!("pyramid_march {}", levels.name());
-        let method = Method::Pyramid;
-        all.push(form(name, Quality { method, levels, ..base }, false, false));
+        add(name, Quality { method: Method::Pyramid, levels, ..base }, [false; 2]);
     }
-    all.push(form(
-        "horizon_march brute".into(),
-        Quality { method: Method::BruteForce, ..base },
-        false,
-        true,
-    ));
+    let brute = Quality { method: Method::BruteForce, ..base };
+    add("horizon_march brute".into(), brute, [false, true]);
     all
 }
 
@@ -121,20 +102,15 @@ pub fn run(
         };
         let shade = |p: &Pass| p.name() == "sky_shade";
         let after = |p: &Pass| ["sky_shade", "sweep_fuse", "light_resolve"].contains(&p.name());
-        let timed: Vec<usize> = (0..plan.passes.len())
-            .filter(|i| {
-                let pass = &plan.passes[*i];
-                if form.shades { shade(pass) } else { !after(pass) }
-            })
-            .collect();
+        let is_timed = |p: &Pass| if form.shades { shade(p) } else { !after(p) };
+        let timed: Vec<usize> =
+            (0..plan.passes.len()).filter(|i| is_timed(&plan.passes[*i])).collect();
         let contents = plan::picture_inputs(scene);
         let inputs = if form.slow { &contents[..1] } else { &contents[..] };
-        let inputs: Vec<&[f32]> = inputs.iter().map(Vec::as_slice).collect();
-        let mut frame = gpu.frame(plan, &inputs)?;
         let count = if form.slow { most.min(SLOW_RUNS) } else { most };
-        let rows = in_turn(gpu, &mut frame, &mut scalar, &timed, (azimuths, count), &form, bar);
-        gpu.end(frame);
-        all.push(rows?);
+        all.push(gpu.with_frame(plan, inputs, |gpu, frame| {
+            in_turn(gpu, frame, &mut scalar, &timed, (azimuths, count), &form, bar)
+        })?);
     }
     Ok(all)
 }
@@ -168,14 +144,8 @@ fn in_turn(
     }
     let plan = frame.plan();
     let passes: Vec<&Pass> = timed.iter().map(|i| &plan.passes[*i]).collect();
-    let mut ours = Row::of(
-        &form.name,
-        "isolated",
-        plan,
-        &passes,
-        azimuths,
-        (runs.len(), &sums(&runs, |_| true)),
-    );
+    let times = (runs.len(), &sums(&runs, |_| true)[..]);
+    let mut ours = Row::of(&form.name, "isolated", plan, &passes, azimuths, times);
     ours.settings.push(("scalar_beside".into(), format!("scalar_sweep with {}", form.name)));
     let rival = Row {
         pass: format!("scalar_sweep with {}", form.name),

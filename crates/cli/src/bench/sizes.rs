@@ -26,25 +26,22 @@ pub fn run(
     for &size in sizes {
         let scene = Scene { field: fractal(size, 1)?, ..scene.clone() };
         let ground_truth = GroundTruth::of(&scene);
-        let contents = plan::picture_inputs(&scene);
-        let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
+        let inputs = plan::picture_inputs(&scene);
         for &count in azimuths {
             bar.set_message(format!("{size}², {count} azimuths"));
             let quality = Quality { azimuths: count, ..*quality };
             let plan = plan::picture(&scene, &quality, limits, Picture::default())?;
-            let mut frame = gpu.frame(plan, &contents)?;
-            let drawn =
-                flow(gpu, &mut frame, most).and_then(|runs| Ok((runs, gpu.pixels(&frame, 0)?)));
-            let kept = frame.plan().clone();
-            gpu.end(frame);
-            let (runs, pixels) = drawn?;
-            let passes: Vec<_> = kept.passes.iter().collect();
+            let (runs, pixels) = gpu.with_frame(plan.clone(), &inputs, |gpu, frame| {
+                Ok((flow(gpu, frame, most)?, gpu.pixels(frame, 0)?))
+            })?;
+            let passes: Vec<_> = plan.passes.iter().collect();
             let times = sums(&runs, |_| true);
-            let mut row = Row::of("total", "in_flow", &kept, &passes, count, (runs.len(), &times));
-            row.settings.push(("device_bytes".into(), kept.bytes().to_string()));
-            row.settings
-                .push(("light_error".into(), format!("{:.6}", ground_truth.error(&pixels))));
-            row.settings.push(("passes".into(), kept.passes.len().to_string()));
+            let mut row = Row::of("total", "in_flow", &plan, &passes, count, (runs.len(), &times));
+            row.settings.extend([
+                ("device_bytes".into(), plan.bytes().to_string()),
+                ("light_error".into(), format!("{:.6}", ground_truth.error(&pixels))),
+                ("passes".into(), plan.passes.len().to_string()),
+            ]);
             rows.push(row);
         }
     }

@@ -52,14 +52,13 @@ pub fn check_horizons(path: &Path, file: &Planes) -> Result<()> {
         degrees.is_some_and(|d| (0.0..=360.0).contains(&d))
     };
     let expected = "horizon channels horizon.000.000 and so on, with the azimuth in degrees";
-    match extension(path).as_str() {
-        "npy" => {}
-        "exr" => {
-            if let Some(other) = file.names.iter().find(|name| !is_azimuth(name)) {
-                return wrong("channels".into(), other.clone(), expected);
-            }
+    let other = file.names.iter().find(|name| !is_azimuth(name));
+    match (extension(path).as_str(), other) {
+        ("npy", _) | ("exr", None) => {}
+        ("exr", Some(other)) => return wrong("channels".into(), other.clone(), expected),
+        (kind, _) => {
+            return wrong("name".into(), format!("the extension .{kind}"), "an .exr or .npy");
         }
-        other => return wrong("name".into(), format!("the extension .{other}"), "an .exr or .npy"),
     }
     for (name, plane) in file.names.iter().zip(&file.planes) {
         // Vulkan allows atan an error of 4096 units in the last place.
@@ -72,11 +71,6 @@ pub fn check_horizons(path: &Path, file: &Planes) -> Result<()> {
         }
     }
     Ok(())
-}
-
-/// The result's difference from the reference; equal infinities have none.
-pub fn difference(a: f32, b: f32) -> f32 {
-    if a == b { 0.0 } else { a - b }
 }
 
 pub fn pixels_per_degree(args: &CompareArgs) -> f64 {
@@ -114,14 +108,10 @@ impl<'a> Pairs<'a> {
         let only = |p: &'a Planes, other: &Planes| -> Vec<&'a str> {
             p.names.iter().filter(|n| place(other, n).is_none()).map(String::as_str).collect()
         };
-        let channels: Vec<_> = a
-            .names
-            .iter()
-            .zip(&a.planes)
-            .filter_map(|(name, plane)| {
-                Some(Pair { name, a: plane, b: &b.planes[place(b, name)?] })
-            })
-            .collect();
+        let pair = |(name, a): (&'a String, &'a Vec<f32>)| {
+            Some(Pair { name, a, b: &b.planes[place(b, name)?] })
+        };
+        let channels: Vec<_> = a.names.iter().zip(&a.planes).filter_map(pair).collect();
         if channels.is_empty() {
             let expected = format!("at least one of {}", b.names.join(" "));
             return Err(unlike(args, "channels", a.names.join(" "), expected));

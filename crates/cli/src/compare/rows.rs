@@ -5,6 +5,7 @@ use std::fmt;
 use ridgelight::{Error, Result};
 use ridgelight_trade::error::{HorizonError, ImageError};
 use ridgelight_trade::flip::FlipError;
+use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::pairs::{Pair, Pairs, unlike};
@@ -21,37 +22,36 @@ pub struct Row {
 }
 
 /// A value above its bound.
+#[derive(Serialize)]
 pub struct Excess {
     /// None for what no bound allows: voids in one file only, a missing channel.
-    bound: Option<(&'static str, f64)>,
-    row: String,
+    bound: Option<&'static str>,
+    limit: Option<f64>,
+    /// Name of the row.
+    of: String,
     /// None for a missing channel.
     found: Option<f64>,
+    #[serde(skip)]
     unit: String,
 }
 
 impl Excess {
     /// For a channel of the reference that the result lacks.
     pub fn lost(channel: &str) -> Self {
-        Self { bound: None, row: channel.to_owned(), found: None, unit: String::new() }
-    }
-
-    pub fn json(&self) -> Value {
-        json!({
-            "bound": self.bound.map(|b| b.0), "limit": self.bound.map(|b| b.1), "of": self.row, "found": self.found,
-        })
+        let (of, unit) = (channel.to_owned(), String::new());
+        Self { bound: None, limit: None, of, found: None, unit }
     }
 }
 
 impl fmt::Display for Excess {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        match self.bound {
+        match self.bound.zip(self.limit) {
             Some((flag, limit)) => write!(f, "{flag} {limit}")?,
             None => write!(f, "any bound")?,
         }
         match self.found {
-            Some(found) => write!(f, ": {} has {found}{}", self.row, self.unit),
-            None => write!(f, ": {} is not in A", self.row),
+            Some(found) => write!(f, ": {} has {found}{}", self.of, self.unit),
+            None => write!(f, ": {} is not in A", self.of),
         }
     }
 }
@@ -62,18 +62,18 @@ pub fn beyond<'a>(
 ) -> Vec<Excess> {
     let mut all = Vec::new();
     for row in rows {
-        let mut excess = |bound, found, unit: &str| {
-            let (row, found) = (row.name.clone(), Some(found));
-            all.push(Excess { bound, row, found, unit: unit.to_owned() });
+        let mut excess = |bound, limit, found, unit: &str| {
+            let (of, unit) = (row.name.clone(), unit.to_owned());
+            all.push(Excess { bound, limit, of, found: Some(found), unit });
         };
         if row.mismatched > 0 {
-            excess(None, row.mismatched as f64, " masked in one only");
+            excess(None, None, row.mismatched as f64, " masked in one only");
         }
         for (flag, found, unit) in &row.figures {
             let limit = bounds.iter().find(|bound| bound.0 == *flag).and_then(|bound| bound.1);
             // NaN exceeds every bound.
-            if let Some(limit) = limit.filter(|limit| found.is_nan() || found > limit) {
-                excess(Some((*flag, limit)), *found, unit);
+            if limit.is_some_and(|limit| found.is_nan() || *found > limit) {
+                excess(Some(*flag), limit, *found, unit);
             }
         }
     }
@@ -84,32 +84,20 @@ pub fn channel(args: &CompareArgs, pairs: &Pairs, pair: &Pair) -> Result<Row> {
     let name = pair.name;
     let e = ImageError::of(pair.a, pair.b, pairs.cols)
         .map_err(|e| nothing(args, &format!("channel {name}"), e))?;
-    let percent = |x: f64| format!("{} %", number(100.0 * x));
+    let both = |x: f64, share: f64| format!("{} ({} %", number(x), number(100.0 * share));
     let text = format!(
-        "RMSE {} ({} of the mean)  mean shift {} ({})  99 % {} ({})  worst {} ({}) at row {}, column {}; {} compared, {} masked, {} masked in one only",
-        number(e.rmse),
-        percent(e.relative_rmse),
-        number(e.mean_shift),
-        percent(e.relative_mean_shift),
-        number(e.p99),
-        percent(e.relative_p99),
-        number(e.worst),
-        percent(e.relative_worst),
+        "RMSE {} of the mean)  mean shift {})  99 % {})  worst {}) at row {}, column {}; {} compared, {} masked, {} masked in one only",
+        both(e.rmse, e.relative_rmse),
+        both(e.mean_shift, e.relative_mean_shift),
+        both(e.p99, e.relative_p99),
+        both(e.worst, e.relative_worst),
         e.worst_row,
         e.worst_col,
         e.count,
         e.masked,
         e.mismatched
     );
-    let json = json!({
-        "channel": name, "mean_reference": e.mean_reference,
-        "rmse": e.rmse, "relative_rmse": e.relative_rmse,
-        "mean_shift": e.mean_shift, "relative_mean_shift": e.relative_mean_shift,
-        "p99": e.p99, "relative_p99": e.relative_p99,
-        "worst": e.worst, "relative_worst": e.relative_worst,
-        "worst_row": e.worst_row, "worst_col": e.worst_col,
-        "count": e.count, "masked": e.masked, "mismatched": e.mismatched,
-    });
+    let json = named("channel", name, &e);
     let unit = " of the mean of B";
     let place = format!("{unit}, at row {}, column {}", e.worst_row, e.worst_col);
     let figures = vec![
@@ -129,10 +117,7 @@ pub fn picture(args: &CompareArgs, pairs: &Pairs, layer: &str, map: &[f32]) -> R
         "mean {:.6}  weighted quartiles {q1:.4} {q2:.4} {q3:.4}  99 % {:.4}  worst {:.4} at row {}, column {}; {} compared, {} masked",
         e.mean, e.p99, e.worst, e.worst_row, e.worst_col, e.count, e.masked
     );
-    let json = json!({
-        "layer": layer, "mean": e.mean, "weighted_quartiles": e.weighted_quartiles, "p99": e.p99, "worst": e.worst,
-        "worst_row": e.worst_row, "worst_col": e.worst_col, "count": e.count, "masked": e.masked,
-    });
+    let json = named("layer", layer, &e);
     let figures = vec![("--max-flip", e.mean, String::new())];
     Ok(Row { name, text, json, figures, mismatched: 0 })
 }
@@ -147,19 +132,30 @@ pub fn horizons(args: &CompareArgs, pairs: &Pairs) -> Result<Row> {
     let [azimuth, row, col] = e.worst_at;
     let text = format!(
         "mean {:.5}°  median {:.5}°  99 % {:.4}°  99.9 % {:.4}°  worst {:.4}° at azimuth {azimuth}, row {row}, column {col}; {} compared, {} masked, {} masked in one only",
-        e.mean, e.median, e.p99, e.p999, e.worst, e.count, e.masked, e.mismatched
+        e.mean_deg,
+        e.median_deg,
+        e.p99_deg,
+        e.p999_deg,
+        e.worst_deg,
+        e.count,
+        e.masked,
+        e.mismatched
     );
-    let json = json!({
-        "mean_deg": e.mean, "median_deg": e.median, "p99_deg": e.p99, "p999_deg": e.p999, "worst_deg": e.worst,
-        "worst_at": e.worst_at, "count": e.count, "masked": e.masked, "mismatched": e.mismatched,
-    });
+    let json = json!(e);
     let place = format!("°, at azimuth {azimuth}, row {row}, column {col}");
     let figures = vec![
-        ("--max-median-deg", e.median, "°".to_owned()),
-        ("--max-p999-deg", e.p999, "°".to_owned()),
-        ("--max-worst-deg", e.worst, place),
+        ("--max-median-deg", e.median_deg, "°".to_owned()),
+        ("--max-p999-deg", e.p999_deg, "°".to_owned()),
+        ("--max-worst-deg", e.worst_deg, place),
     ];
     Ok(Row { name: "horizons".to_owned(), text, json, figures, mismatched: e.mismatched })
+}
+
+/// The figures of a channel or layer.
+fn named(kind: &str, name: &str, figures: &impl Serialize) -> Value {
+    let mut json = json!(figures);
+    json[kind] = name.into();
+    json
 }
 
 /// The error of a channel without shared data, which is the files' fault.

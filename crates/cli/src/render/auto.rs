@@ -3,17 +3,17 @@
 use std::cell::RefCell;
 use std::time::{Duration, Instant};
 
+use ridgelight::Result;
 use ridgelight::gpu::{Headless, Timing};
 use ridgelight::plan::{self, Limits, Picture};
 use ridgelight::scene::{Hull, Quality, Scene};
-use ridgelight::{Error, Result};
 use ridgelight_trade::auto;
 use ridgelight_trade::auto::{Bounced, Chosen, Drawn, Goal, Measured, Probes, Traced};
 
 use crate::args::AutoArgs;
 use crate::idle;
 use crate::reference;
-use crate::setup;
+use crate::setup::{self, total_ns};
 use crate::terminal::{digits, percent};
 
 /// Draws of each setting after one that compiles; the median counts. Slow settings get fewer.
@@ -23,13 +23,12 @@ const TIMING: Duration = Duration::from_secs(2);
 const LONG: Duration = Duration::from_secs(10);
 
 /// The requested goal, if any.
-pub fn goal(args: &AutoArgs) -> Result<Option<Goal>> {
-    for (flag, value) in [("--max-error", args.max_error), ("--time-budget", args.time_budget)] {
+pub fn goal(max_error: Option<f64>, time_budget: Option<f64>) -> Result<Option<Goal>> {
+    for (flag, value) in [("--max-error", max_error), ("--time-budget", time_budget)] {
         value.map_or(Ok(()), |x| super::check_positive(flag, x))?;
     }
-    let error = args.max_error.map(Goal::MaxError);
-    let cost = args.time_budget.map(|ms| Goal::MaxCost(ms * 1e6));
-    Ok(error.or(cost))
+    let cost = time_budget.map(|ms| Goal::MaxCost(ms * 1e6));
+    Ok(max_error.map(Goal::MaxError).or(cost))
 }
 
 /// Notes that a seed without a goal changes nothing.
@@ -76,15 +75,9 @@ fn draw(
     contents: &[Vec<f32>],
 ) -> Result<Drawn> {
     let plan = plan::picture(scene, quality, limits, wanted)?;
-    let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
-    let (times, pixels) = gpu.with_frame(plan, &contents, |gpu, frame| {
-        Ok((timed(gpu, frame)?, gpu.pixels(frame, 0)?))
-    })?;
-    let stride = pixels.channels;
-    let mut planes: Vec<Vec<f32>> = (0..stride.min(3))
-        .map(|c| pixels.values.iter().skip(c).step_by(stride).copied().collect())
-        .collect();
-    planes.iter_mut().for_each(|plane| setup::mask_voids(&scene.field, plane, 1));
+    let (times, pixels) = gpu
+        .with_frame(plan, contents, |gpu, frame| Ok((timed(gpu, frame)?, gpu.pixels(frame, 0)?)))?;
+    let planes = setup::planes(&pixels, &scene.field);
     Ok(Drawn { planes, passes: times.into_iter().map(|t| (t.label, t.ns)).collect() })
 }
 
@@ -99,16 +92,12 @@ fn timed(gpu: &Headless, frame: &mut ridgelight::gpu::Frame) -> Result<Vec<Timin
             runs.push(gpu.draw(frame)?);
         }
     }
-    let total = |times: &[Timing]| times.iter().map(|t| t.ns).sum::<f64>();
-    runs.sort_by(|a, b| total(a).total_cmp(&total(b)));
+    runs.sort_by(|a, b| total_ns(a).total_cmp(&total_ns(b)));
     let middle = runs.swap_remove(runs.len() / 2);
-    if total(&middle) > 0.0 {
-        return Ok(middle);
+    match total_ns(&middle) > 0.0 {
+        true => Ok(middle),
+        false => Err(setup::no_timestamps()),
     }
-    Err(Error::Device {
-        doing: "timing a frame".into(),
-        reason: "the device has no timestamps".into(),
-    })
 }
 
 /// Indirect light at some texels by so many batches of paths of a seed.
@@ -124,7 +113,6 @@ fn trace(
     let passes: Vec<usize> = (0..plan.passes.len()).filter(is_traced).collect();
     let mut contents = plan::reference_inputs(scene);
     contents.push(plan::listed_places(scene, places)?);
-    let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
     let [means, errors] = gpu.with_frame(plan, &contents, |gpu, frame| {
         gpu.draw(frame)?;
         for _ in 1..batches {

@@ -3,18 +3,20 @@
 
 use std::time::Instant;
 
-use ridgelight::gpu::{Frame, Timing};
+use ridgelight::gpu::{Frame, Headless};
 use ridgelight::plan;
 use ridgelight::scene::{Bounces, Directions, Quality, Scatter, VisiblePoints};
 use ridgelight::{Error, Result};
-use ridgelight_trade::statistics::Summary;
+use ridgelight_trade::error::ImageError;
+use ridgelight_trade::statistics::median;
+use serde::Serialize;
 use serde_json::{Value, json};
 
-use super::ground_truth::{Distance, GroundTruth};
+use super::ground_truth::GroundTruth;
 use super::point::Point;
 use super::report::{Report, ms};
 use super::rig::Rig;
-use crate::setup;
+use crate::setup::{self, total_ns};
 use crate::terminal::{digits, percent};
 
 const DIRECTIONS: [usize; 3] = [64, 256, 1024];
@@ -34,10 +36,11 @@ pub struct Baked {
     pub bytes: u64,
     /// Median of a frame's time over that of the baseline drawn next to it.
     pub ratio: f64,
-    pub distance: Distance,
+    pub distance: ImageError,
 }
 
 /// A variant that the device or the memory budget refused.
+#[derive(Serialize)]
 pub struct Refused {
     pub what: String,
     pub why: String,
@@ -88,16 +91,17 @@ pub fn measure(rig: &mut Rig, ground_truth: &GroundTruth, start: &Quality) -> Re
         return Ok(tried);
     }
     let bounces = Bounces { count: 0, ..start.bounces };
-    let mut own = rig.frame(start)?;
-    let direct = rig.frame(&Quality { bounces, ..*start });
-    let measured = tried.made("direct light".to_owned(), direct).and_then(|direct| {
-        let Some(mut direct) = direct else { return Ok(()) };
-        let measured = fill(rig, ground_truth, start.bounces, [&mut own, &mut direct], &mut tried);
-        rig.gpu.end(direct);
-        measured
-    });
-    rig.gpu.end(own);
-    measured.map(|()| tried)
+    rig.with_frame(start, |rig, own| {
+        let direct = rig.frame(&Quality { bounces, ..*start });
+        if let Some(mut direct) = tried.made("direct light".to_owned(), direct)? {
+            let frames = [own, &mut direct];
+            let filled = fill(rig, ground_truth, start.bounces, frames, &mut tried);
+            rig.gpu.end(direct);
+            filled?;
+        }
+        Ok(())
+    })?;
+    Ok(tried)
 }
 
 fn fill(
@@ -112,7 +116,7 @@ fn fill(
     let fits = |more_s: f64| begun.elapsed().as_secs_f64() + more_s <= most_s;
     rig.gpu.draw(own)?;
     rig.gpu.draw(direct)?;
-    let light = colours(rig, direct)?;
+    let light = colours(&mut rig.gpu, direct)?;
     let mut found_s = 0.0;
     for count in DIRECTIONS {
         // Time is proportional to the number of directions.
@@ -160,48 +164,33 @@ fn scattered(
     rig: &mut Rig,
     scatter: &Scatter,
     points: &VisiblePoints,
-    others: [&mut Frame; 2],
+    [own, direct]: [&mut Frame; 2],
     light: &[[f32; 3]],
 ) -> Result<(f64, Vec<Vec<f32>>)> {
     let plan = plan::scatter(rig.scene, points.directions(), scatter, &rig.limits)?;
     let contents = plan::scatter_inputs(&plan, rig.scene, points, light)?;
-    let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
-    let mut frame = rig.gpu.frame(plan, &contents)?;
-    let drawn = timed(rig, &mut frame, others, light);
-    rig.gpu.end(frame);
-    drawn
-}
-
-fn sum(times: &[Timing]) -> f64 {
-    times.iter().map(|t| t.ns).sum()
-}
-
-/// The first output of a frame, voids still filled.
-fn colours(rig: &mut Rig, frame: &Frame) -> Result<Vec<[f32; 3]>> {
-    let pixels = rig.gpu.pixels(frame, 0)?;
-    let texel = |t: &[f32]| [0, 1, 2].map(|c: usize| t[c.min(t.len() - 1)]);
-    Ok(pixels.values.chunks_exact(pixels.channels).map(texel).collect())
-}
-
-/// Time of both frames relative to the baseline's, and their radiance.
-fn timed(
-    rig: &mut Rig,
-    frame: &mut Frame,
-    [own, direct]: [&mut Frame; 2],
-    light: &[[f32; 3]],
-) -> Result<(f64, Vec<Vec<f32>>)> {
-    rig.gpu.draw(frame)?;
-    let scattered = colours(rig, frame)?;
-    let mut ratios = Vec::new();
-    for _ in 0..DRAWS {
-        let beside = sum(&rig.gpu.draw(own)?);
-        let both = sum(&rig.gpu.draw(direct)?) + sum(&rig.gpu.draw(frame)?);
-        ratios.push(both / beside);
-    }
+    let (ratios, scattered) = rig.gpu.with_frame(plan, &contents, |gpu, frame| {
+        gpu.draw(frame)?;
+        let scattered = colours(gpu, frame)?;
+        let mut ratios = Vec::new();
+        for _ in 0..DRAWS {
+            let beside = total_ns(&gpu.draw(own)?);
+            let both = total_ns(&gpu.draw(direct)?) + total_ns(&gpu.draw(frame)?);
+            ratios.push(both / beside);
+        }
+        Ok((ratios, scattered))
+    })?;
     let plane = |c: usize| light.iter().zip(&scattered).map(|(a, b)| a[c] + b[c]).collect();
     let mut planes: Vec<Vec<f32>> = (0..3).map(plane).collect();
     planes.iter_mut().for_each(|plane| setup::mask_voids(&rig.scene.field, plane, 1));
-    Ok((Summary::of(&ratios).map_or(1.0, |s| s.median), planes))
+    Ok((median(&ratios).unwrap_or(1.0), planes))
+}
+
+/// The first output of a frame, voids still filled.
+fn colours(gpu: &mut Headless, frame: &Frame) -> Result<Vec<[f32; 3]>> {
+    let pixels = gpu.pixels(frame, 0)?;
+    let texel = |t: &[f32]| [0, 1, 2].map(|c: usize| t[c.min(t.len() - 1)]);
+    Ok(pixels.values.chunks_exact(pixels.channels).map(texel).collect())
 }
 
 impl Report<'_> {
@@ -212,7 +201,7 @@ impl Report<'_> {
             return refused.collect();
         }
         // Errors are at least the ground truth's own.
-        let off = |baked: &Baked| baked.distance.rmse.max(self.ground_truth.floor());
+        let off = |baked: &Baked| baked.distance.relative_rmse.max(self.ground_truth.floor());
         let row = |baked: &Baked| {
             format!(
                 "{} directions, {} paths: {} per frame, error {}; visible points take {} once, \
@@ -228,21 +217,16 @@ impl Report<'_> {
         let error = self.error(recommended);
         let as_near = self.baked.measured.iter().filter(|b| off(b) <= error);
         let cheapest = as_near.min_by(|a, b| a.ratio.total_cmp(&b.ratio));
+        let nearest = percent(self.baked.measured.iter().map(off).fold(f64::INFINITY, f64::min));
         let verdict = match cheapest {
-            Some(b) => format!(
-                "{} directions with {} paths are as accurate as the recommended settings, in {} \
-                    × the time",
-                b.directions,
-                b.paths,
-                digits(b.ratio / recommended.ratio)
+            Some(Baked { directions, paths, ratio, .. }) => format!(
+                "{directions} directions with {paths} paths are as accurate as the recommended \
+                    settings, in {} × the time",
+                digits(ratio / recommended.ratio())
             ),
-            None => {
-                let nearest = self.baked.measured.iter().map(off).fold(f64::INFINITY, f64::min);
-                format!(
-                    "none is as accurate as the recommended settings; the best has an error of {}",
-                    percent(nearest)
-                )
-            }
+            None => format!(
+                "none is as accurate as the recommended settings; the best has an error of {nearest}"
+            ),
         };
         let about = format!(
             "For a static field, visible points can be found once and bounces scattered over \
@@ -257,16 +241,11 @@ impl Report<'_> {
             json!({
                 "directions": baked.directions, "paths": baked.paths, "found_once_ns": 1e9 * baked.found_s, "bytes": baked.bytes,
                 "time_ns": baked.ratio * self.walk.baseline_ns(),
-                "relative_rmse": baked.distance.rmse.max(self.ground_truth.floor()),
-                "mean_shift": baked.distance.mean_shift,
+                "relative_rmse": baked.distance.relative_rmse.max(self.ground_truth.floor()),
+                "mean_shift": baked.distance.relative_mean_shift,
             })
         };
         self.baked.measured.iter().map(of).collect()
-    }
-
-    pub fn baked_refused_json(&self) -> Vec<Value> {
-        let of = |refused: &Refused| json!({ "what": refused.what, "why": refused.why });
-        self.baked.refused.iter().map(of).collect()
     }
 }
 

@@ -10,6 +10,7 @@ use ridgelight_io as files;
 use ridgelight_io::Planes;
 use ridgelight_trade::error::ImageError;
 
+use super::picture::Tones;
 use crate::terminal::percent;
 
 /// The layer of a reference that holds one standard deviation of its Monte Carlo noise.
@@ -19,7 +20,6 @@ pub struct GroundTruth {
     /// One plane or three, row-major, NaN at voids.
     pub planes: Vec<Vec<f32>>,
     cols: usize,
-    rows: usize,
     /// Its source, and how its own error was found.
     pub about: String,
     pub quality_of: String,
@@ -27,21 +27,16 @@ pub struct GroundTruth {
     pub own_error: Option<f64>,
     /// Mean variance of its noise over the square of its mean.
     noise: f64,
-}
-
-/// Error of settings relative to the ground truth's mean, over all channels.
-#[derive(Clone, Copy, Debug)]
-pub struct Distance {
-    /// RMSE, with the ground truth's noise subtracted.
-    pub rmse: f64,
-    pub mean_shift: f64,
-    pub p99: f64,
-    pub worst: f64,
-    pub worst_row: usize,
-    pub worst_col: usize,
+    /// The grey scale of pictures.
+    pub tones: Tones,
 }
 
 impl GroundTruth {
+    fn new(planes: Vec<Vec<f32>>, cols: usize, about: String) -> Self {
+        let (tones, quality_of) = (Tones::of(&planes), String::new());
+        Self { planes, cols, about, quality_of, own_error: None, noise: 0.0, tones }
+    }
+
     /// Smaller errors cannot be distinguished.
     pub fn floor(&self) -> f64 {
         self.own_error.unwrap_or(0.0)
@@ -78,15 +73,8 @@ impl GroundTruth {
         let count = planes[0].iter().filter(known).count().max(1) as f64;
         let mean = planes.iter().flatten().filter(known).map(|v| f64::from(*v)).sum::<f64>()
             / (count * planes.len() as f64);
-        let mut ground_truth = Self {
-            planes,
-            cols,
-            rows,
-            about: path.display().to_string(),
-            quality_of: format!("it has no layer {NOISE_LAYER}, so its noise is unknown"),
-            own_error: None,
-            noise: 0.0,
-        };
+        let mut ground_truth = Self::new(planes, cols, path.display().to_string());
+        ground_truth.quality_of = format!("it has no layer {NOISE_LAYER}, so its noise is unknown");
         if let Some(errors) = errors {
             // A texel's channels share paths, so their errors are correlated.
             let variance = |i: usize| {
@@ -113,30 +101,22 @@ impl GroundTruth {
         Ok(ground_truth)
     }
 
-    /// The error of planes.
-    pub fn distance(&self, planes: &[Vec<f32>]) -> Result<Distance> {
+    /// The error of planes over all channels, with the noise subtracted from the relative RMSE.
+    pub fn distance(&self, planes: &[Vec<f32>]) -> Result<ImageError> {
         let channels = planes.len().max(self.planes.len());
         let all = |planes: &[Vec<f32>]| -> Vec<f32> {
             (0..channels).flat_map(|c| planes[c.min(planes.len() - 1)].iter().copied()).collect()
         };
-        let e = ImageError::of(&all(planes), &all(&self.planes), self.cols)?;
+        let mut e = ImageError::of(&all(planes), &all(&self.planes), self.cols)?;
         if e.mismatched > 0 {
             let found = format!("{} texels that have data in only one of the two", e.mismatched);
-            return Err(Error::setting(
-                "--reference",
-                found,
-                "the same scene, with the same voids",
-            ));
+            let expected = "the same scene, with the same voids";
+            return Err(Error::setting("--reference", found, expected));
         }
-        let relative = |x: f64| if x == 0.0 { 0.0 } else { x / e.mean_reference.abs() };
-        Ok(Distance {
-            rmse: (e.relative_rmse.powi(2) - self.noise).max(0.0).sqrt(),
-            mean_shift: e.relative_mean_shift,
-            p99: relative(e.p99),
-            worst: relative(e.worst),
-            worst_row: e.worst_row % self.rows,
-            worst_col: e.worst_col,
-        })
+        e.relative_rmse = (e.relative_rmse.powi(2) - self.noise).max(0.0).sqrt();
+        // Channels are stacked.
+        e.worst_row %= self.planes[0].len() / self.cols;
+        Ok(e)
     }
 }
 
@@ -166,8 +146,7 @@ mod tests {
     use super::*;
 
     fn ground_truth(planes: Vec<Vec<f32>>, noise: f64) -> GroundTruth {
-        let (about, quality_of) = (String::new(), String::new());
-        GroundTruth { planes, cols: 2, rows: 2, about, quality_of, own_error: None, noise }
+        GroundTruth { noise, ..GroundTruth::new(planes, 2, String::new()) }
     }
 
     /// Mean 2; differences 0, 0, 0, 0.4 in each channel: RMSE 0.2, a tenth of the mean. Noise of
@@ -177,12 +156,15 @@ mod tests {
         let colour = vec![vec![2.0; 4]; 3];
         let grey = [vec![2.0, 2.0, 2.0, 2.4]];
         let found = ground_truth(colour.clone(), 0.0).distance(&grey).unwrap();
-        assert!((found.rmse - 0.1).abs() < 1e-7, "{found:?}");
-        assert!((found.mean_shift - 0.05).abs() < 1e-7 && (found.worst - 0.2).abs() < 1e-7);
+        assert!((found.relative_rmse - 0.1).abs() < 1e-7, "{found:?}");
+        assert!(
+            (found.relative_mean_shift - 0.05).abs() < 1e-7
+                && (found.relative_worst - 0.2).abs() < 1e-7
+        );
         assert_eq!([found.worst_row, found.worst_col], [1, 1]);
         let less = ground_truth(colour.clone(), 0.0036).distance(&grey).unwrap();
-        assert!((less.rmse - 0.08).abs() < 1e-7, "{less:?}");
-        assert_eq!(ground_truth(colour, 0.02).distance(&grey).unwrap().rmse, 0.0);
+        assert!((less.relative_rmse - 0.08).abs() < 1e-7, "{less:?}");
+        assert_eq!(ground_truth(colour, 0.02).distance(&grey).unwrap().relative_rmse, 0.0);
         let holed = [vec![2.0, f32::NAN, 2.0, 2.0]];
         let error = ground_truth(vec![vec![2.0; 4]], 0.0).distance(&holed).unwrap_err();
         assert!(error.to_string().contains("1 texels"), "{error}");

@@ -10,20 +10,13 @@ const TEMPLATE: &str = include_str!("page.html");
 pub fn page(report: &Report) -> String {
     let of = |name: &str| report.about.iter().find(|(k, _)| k == name).map_or("", |(_, v)| v);
     let input = of("input").rsplit(['/', '\\']).next().unwrap_or_default();
-    let about = report
-        .about
-        .iter()
-        .map(|(k, v)| format!("<tr><th>{}<td>{}\n", escaped(k), escaped(v)))
-        .collect::<String>();
+    let about = |(k, v): &(String, String)| format!("<tr><th>{}<td>{}\n", escaped(k), escaped(v));
     let lines =
-        |all: Vec<String>| all.iter().map(|l| format!("<li>{}\n", escaped(l))).collect::<String>();
-    let breaks: Vec<String> =
-        report.walk.search.breaks().iter().map(|b| report.break_text(b)).collect();
-    let broken = if breaks.is_empty() {
-        "<p>All ladders were monotonic.".to_owned()
-    } else {
-        let held = "<p>Ladders that were not monotonic, and ruled nothing out from then on:";
-        format!("{held}<ul>{}</ul>", lines(breaks))
+        |all: &[String]| all.iter().map(|l| format!("<li>{}\n", escaped(l))).collect::<String>();
+    let held = "<p>Ladders that were not monotonic, and ruled nothing out from then on:";
+    let broken = match lines(&report.breaks()) {
+        none if none.is_empty() => "<p>All ladders were monotonic.".to_owned(),
+        lines => format!("{held}<ul>{lines}</ul>"),
     };
     let recommended = report.recommended();
     let headline = format!(
@@ -44,7 +37,7 @@ pub fn page(report: &Report) -> String {
             ("ground_truth", text(report.ground_truth_text())),
             ("drift", text(report.drift_text())),
             ("summary", text(report.summary())),
-            ("tones", text(report.tones.text())),
+            ("tones", text(report.ground_truth.tones.text())),
             ("cards", cards(report)),
             ("rows", rows(report)),
             ("assumption", text(Report::assumption())),
@@ -52,7 +45,7 @@ pub fn page(report: &Report) -> String {
             ("ruled_out", ruled_out(report)),
             ("not_tried", not_tried(report)),
             ("settings", ladders(report)),
-            ("about", about),
+            ("about", report.about.iter().map(about).collect()),
             ("version", env!("CARGO_PKG_VERSION").to_owned()),
         ],
     )
@@ -107,14 +100,14 @@ fn cards(report: &Report) -> String {
 fn rows(report: &Report) -> String {
     let front = report.walk.search.frontier();
     let mut points: Vec<&Point> = report.walk.points.iter().collect();
-    points.sort_by(|a, b| a.ratio.total_cmp(&b.ratio));
+    points.sort_by(|a, b| a.ratio().total_cmp(&b.ratio()));
     let row = |p: &&Point| {
         let kind = match (p.place == report.recommended().place, front.contains(&p.place)) {
             (true, _) => "best",
             (_, true) => "on",
             _ => "",
         };
-        let (t, d) = (&p.total_ns, &p.distance);
+        let (t, d) = (p.total_ns(), &p.distance);
         let drawn = format!(
             "{} draws: median {}, {} – {}; the baseline paired with them {}. ",
             p.totals_ns.len(),
@@ -128,9 +121,9 @@ fn rows(report: &Report) -> String {
         let cells = [
             report.time_text(p),
             report.error_text(p),
-            percent(d.mean_shift),
-            percent(d.p99),
-            percent(d.worst),
+            percent(d.relative_mean_shift),
+            percent(d.relative_p99),
+            percent(d.relative_worst),
             format!("{}, {}", d.worst_row, d.worst_col),
             p.pictures.as_ref().map_or_else(String::new, |p| digits(p.flip.mean)),
             format!("{:.1} MiB", p.bytes as f64 / 1_048_576.0),
@@ -147,45 +140,43 @@ fn rows(report: &Report) -> String {
 }
 
 fn ruled_out(report: &Report) -> String {
-    let groups = report.others().skipped();
+    let groups = report.walk.skipped();
     let mut all: String = groups
         .iter()
         .take(GROUPS)
-        .map(|g| {
-            let some: Vec<String> =
-                g.places.iter().take(EXAMPLES).map(|i| code(&report.flags(*i))).collect();
-            let more = g.places.len().saturating_sub(EXAMPLES);
+        .map(|(why, places)| {
+            let some = places.iter().take(EXAMPLES).map(|i| code(&report.flags(*i)));
+            let some = some.collect::<Vec<_>>().join(", ");
+            let more = places.len().saturating_sub(EXAMPLES);
             let more = if more > 0 { format!(" and {more} more") } else { String::new() };
-            format!("<li>{} ({}): {}{more}\n", escaped(&g.why), g.places.len(), some.join(", "))
+            format!("<li>{} ({}): {some}{more}\n", escaped(why), places.len())
         })
         .collect();
     let rest = groups.len().saturating_sub(GROUPS);
     if rest > 0 {
-        let count: usize = groups[GROUPS..].iter().map(|g| g.places.len()).sum();
+        let count: usize = groups[GROUPS..].iter().map(|g| g.1.len()).sum();
         all += &format!("<li>{rest} more reasons, for {count} settings\n");
     }
     if all.is_empty() { "<li>nothing\n".to_owned() } else { all }
 }
 
 fn not_tried(report: &Report) -> String {
-    let others = report.others();
-    let open = others.not_tried();
+    let open = report.walk.not_tried();
     let mut all: String = open
         .iter()
         .take(GROUPS)
         .map(|i| {
             let flags = code(&report.flags(*i));
-            format!("<li>{flags}: expected {}\n", escaped(&others.expected_text(*i)))
+            format!("<li>{flags}: expected {}\n", escaped(&report.walk.expected_text(*i)))
         })
         .collect();
     let rest = open.len().saturating_sub(GROUPS);
     if rest > 0 {
         all += &format!("<li>{rest} more; trade.json counts them by setting and value\n");
     }
-    if all.is_empty() {
-        "<li>none: every setting was measured, ruled out or given up\n".to_owned()
-    } else {
-        all
+    match all.is_empty() {
+        true => "<li>none: every setting was measured, ruled out or given up\n".to_owned(),
+        false => all,
     }
 }
 
@@ -197,14 +188,11 @@ fn ladders(report: &Report) -> String {
             escaped(ladder.name),
             ladder.steps.iter().map(|s| code(s)).collect::<Vec<_>>().join(" "),
             code(&ladder.steps[ladder.default]),
-            range.map_or_else(
-                || "as listed".to_owned(),
-                |r| format!("{} to {}", r.start(), r.end())
-            ),
+            range.map_or("as listed".into(), |r| format!("{} to {}", r.start(), r.end())),
             escaped(ladder.slower)
         )
     };
-    report.ladders.iter().map(row).collect()
+    report.walk.ladders.iter().map(row).collect()
 }
 
 /// Flags that wrap between flags only.
@@ -224,15 +212,8 @@ fn short_percent(share: f64) -> String {
 
 /// Escapes text for HTML content and quoted attributes.
 pub fn escaped(text: &str) -> String {
-    text.chars()
-        .map(|c| match c {
-            '&' => "&amp;".to_owned(),
-            '<' => "&lt;".to_owned(),
-            '>' => "&gt;".to_owned(),
-            '"' => "&quot;".to_owned(),
-            c => c.to_string(),
-        })
-        .collect()
+    let marks = [("&", "&amp;"), ("<", "&lt;"), (">", "&gt;"), ("\"", "&quot;")];
+    marks.iter().fold(text.to_owned(), |text, (mark, escape)| text.replace(mark, escape))
 }
 
 /// RFC 4648, section 4.

@@ -1,10 +1,10 @@
 //! Hull storage: the one setting that changes no pixel. It is timed for the recommended settings
 //! only.
 
-use ridgelight::plan::Plan;
+use ridgelight::gpu::Frame;
 use ridgelight::scene::{Hull, Quality};
 use ridgelight::{Error, Result};
-use ridgelight_trade::statistics::Summary;
+use ridgelight_trade::statistics::median;
 
 use super::rig::Rig;
 use super::walk::KEPT;
@@ -32,18 +32,14 @@ pub struct Place {
 /// A storage that changes the picture.
 pub fn places(rig: &mut Rig, quality: &Quality, draw_s: f64) -> Result<Vec<Place>> {
     let planned = rig.plan(rig.scene, quality)?;
-    let Some(home) = home(&planned) else { return Ok(Vec::new()) };
-    let mut own = rig.frame(quality)?;
-    let drawn = rig.gpu.draw(&mut own).and_then(|_| rig.radiance(&own));
-    let measured = |rig: &mut Rig| -> Result<Vec<Place>> {
-        let right = drawn?;
-        let all = [
-            ("private", Hull::Private),
-            ("shared", Hull::Shared),
-            ("occluder-list", Hull::OccluderList),
-        ];
-        let one = |(name, hull)| {
-            let is_own = home == name;
+    // Brute force, exact sweeps and pyramids have no hull.
+    let home = planned.settings.iter().find(|(name, _)| name == "hull").map(|(_, hull)| hull);
+    let Some(home) = home else { return Ok(Vec::new()) };
+    rig.with_frame(quality, |rig, own| {
+        rig.gpu.draw(own)?;
+        let right = rig.radiance(own)?;
+        let one = |hull: Hull| {
+            let (name, is_own) = (hull.name(), hull.name() == home);
             let none = |why: String| Ok(Place { name, is_own, ratio: Err(why) });
             if 3.0 * draw_s > rig.left().max(rig.share(KEPT) / 3.0) {
                 return none("too slow for the rest of the budget".to_owned());
@@ -52,28 +48,15 @@ pub fn places(rig: &mut Rig, quality: &Quality, draw_s: f64) -> Result<Vec<Place
                 Ok(frame) => frame,
                 Err(error) => return none(error.to_string()),
             };
-            let ratio = ratio(rig, &mut frame, &mut own, &right);
+            let ratio = ratio(rig, &mut frame, own, &right);
             rig.gpu.end(frame);
-            ratio.map(|ratio| Place { name, is_own, ratio: Ok(ratio) })
+            Ok(Place { name, is_own, ratio: Ok(ratio?) })
         };
-        all.into_iter().map(one).collect()
-    };
-    let all = measured(rig);
-    rig.gpu.end(own);
-    all
+        [Hull::Private, Hull::Shared, Hull::OccluderList].into_iter().map(one).collect()
+    })
 }
 
-/// Hull storage of a plan; brute force, exact sweeps and pyramids have no hull.
-fn home(plan: &Plan) -> Option<&str> {
-    plan.settings.iter().find(|(name, _)| name == "hull").map(|(_, place)| place.as_str())
-}
-
-fn ratio(
-    rig: &mut Rig,
-    frame: &mut ridgelight::gpu::Frame,
-    own: &mut ridgelight::gpu::Frame,
-    right: &[Vec<f32>],
-) -> Result<f64> {
+fn ratio(rig: &mut Rig, frame: &mut Frame, own: &mut Frame, right: &[Vec<f32>]) -> Result<f64> {
     rig.gpu.draw(frame)?;
     let bits =
         |planes: &[Vec<f32>]| planes.iter().flatten().map(|v| v.to_bits()).collect::<Vec<_>>();
@@ -85,11 +68,9 @@ fn ratio(
     }
     let mut ratios = Vec::new();
     while ratios.len() < DRAWS && (ratios.is_empty() || rig.left() > 0.0) {
-        let [ns, beside] = [rig.gpu.draw(frame)?, rig.gpu.draw(own)?]
-            .map(|times| times.iter().map(|t| t.ns).sum::<f64>());
-        ratios.push(ns / beside);
+        ratios.push(rig.draw_ns(frame)? / rig.draw_ns(own)?);
     }
-    Ok(Summary::of(&ratios).map_or(1.0, |s| s.median))
+    Ok(median(&ratios).unwrap_or(1.0))
 }
 
 /// A sentence; none without a hull or without time.
@@ -124,34 +105,6 @@ pub fn text(places: &[Place]) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use ridgelight::plan::{self, Limits, Picture};
-    use ridgelight::scene::{HeightField, Lights, Lines, Method, Scene, SphereLight, Surface};
-
-    #[test]
-    fn sweeps_along_lines_alone_have_a_hull() {
-        let field = HeightField::new(9, 9, &[0.0; 81], [1.0; 2], None).unwrap();
-        let lights = Lights { sky: Some([1.0; 3]), ..Lights::default() };
-        let scene = Scene { field, surface: Surface::default(), lights };
-        let base = Quality { method: Method::Sweep, ..Quality::default() };
-        for (quality, has_hull) in [
-            (base, true),
-            (Quality { hull: Hull::OccluderList, ..base }, true),
-            (Quality { lines: Lines::Exact, ..base }, false),
-            (Quality { method: Method::BruteForce, ..base }, false),
-            (Quality { method: Method::Pyramid, ..base }, false),
-        ] {
-            let limits = Limits::boundless(true, 1 << 30);
-            let plan = plan::picture(&scene, &quality, &limits, Picture::default()).unwrap();
-            assert_eq!(home(&plan).is_some(), has_hull, "{quality:?}");
-        }
-        // Sphere lights march to their occluders; they use no sweep.
-        let light = SphereLight { position_m: [4.0, 4.0, 3.0], radius_m: 1.0, radiance: [1.0; 3] };
-        let lights = Lights { sphere_lights: vec![light], ..Lights::default() };
-        let scene = Scene { lights, ..scene };
-        let limits = Limits::boundless(true, 1 << 30);
-        let plan = plan::picture(&scene, &base, &limits, Picture::default()).unwrap();
-        assert!(home(&plan).is_none(), "{:?}", plan.settings);
-    }
 
     /// A ratio of 0.97 is not worth a flag; 0.8 is, unless the planner's choice repeated at 1.3 ×
     /// or 1/1.3 of its own time.
@@ -165,11 +118,7 @@ mod tests {
             ];
             text(&places).unwrap()
         };
-        assert!(
-            said(1.0, 0.97).ends_with("Advice: keep the planner's choice."),
-            "{}",
-            said(1.0, 0.97)
-        );
+        assert!(said(1.0, 0.97).ends_with("Advice: keep the planner's choice."));
         assert!(said(1.0, 0.8).ends_with("Advice: add --hull shared."));
         assert!(said(1.3, 0.8).ends_with("choice.") && said(1.0 / 1.3, 0.75).ends_with("choice."));
         let all = said(1.0, 0.8);

@@ -13,21 +13,7 @@ use crate::terminal::percent;
 pub const GROUPS: usize = 40;
 pub const EXAMPLES: usize = 6;
 
-/// The settings, and what is known of them.
-#[derive(Clone, Copy)]
-pub struct LeftOut<'a> {
-    pub ladders: &'a [Ladder],
-    pub places: &'a [Place],
-    pub walk: &'a Walk,
-}
-
-/// Unmeasured places that share a reason.
-pub struct Group {
-    pub why: String,
-    pub places: Vec<usize>,
-}
-
-impl LeftOut<'_> {
+impl Walk<'_> {
     pub fn flags(&self, place: usize) -> String {
         self.places[place].flags(self.ladders)
     }
@@ -39,38 +25,34 @@ impl LeftOut<'_> {
                     Some(worse) => format!("no more accurate than {}", self.flags(*worse)),
                     None => "no error that the ground truth can resolve".to_owned(),
                 };
-                let slower = self.flags(*slower_than);
-                format!(
-                    "not faster than {slower} and {error}: {} is better in both",
-                    self.flags(*by)
-                )
+                let (slower, by) = (self.flags(*slower_than), self.flags(*by));
+                format!("not faster than {slower} and {error}: {by} is better in both")
             }
-            Skip::TooDear { than } => {
+            Skip::TooSlow { than } => {
                 format!("slower than {}, which was too slow", self.flags(*than))
             }
         }
     }
 
-    /// Ruled-out places by reason, the largest groups first.
-    pub fn skipped(&self) -> Vec<Group> {
+    /// Reasons and the places that each rules out, the largest groups first.
+    pub fn skipped(&self) -> Vec<(String, Vec<usize>)> {
         let mut groups: BTreeMap<String, Vec<usize>> = BTreeMap::new();
         for place in 0..self.places.len() {
-            if let Some(skip) = self.walk.search.skip(place) {
+            if let Some(skip) = self.search.skip(place) {
                 groups.entry(self.skip_text(&skip)).or_default().push(place);
             }
         }
-        for (place, why) in &self.walk.given_up {
+        for (place, why) in &self.given_up {
             groups.entry(why.clone()).or_default().push(*place);
         }
-        let mut all: Vec<Group> =
-            groups.into_iter().map(|(why, places)| Group { why, places }).collect();
-        all.sort_by_key(|g| std::cmp::Reverse(g.places.len()));
+        let mut all: Vec<_> = groups.into_iter().collect();
+        all.sort_by_key(|(_, places)| std::cmp::Reverse(places.len()));
         all
     }
 
     /// Places that the budget left open, the most promising first.
     pub fn not_tried(&self) -> Vec<usize> {
-        let search = &self.walk.search;
+        let search = &self.search;
         let open = (0..self.places.len()).filter(|i| search.is_open(*i));
         let mut open: Vec<(f64, usize)> = open.map(|i| (search.merit(i), i)).collect();
         open.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -78,17 +60,16 @@ impl LeftOut<'_> {
     }
 
     pub fn expected_text(&self, place: usize) -> String {
-        let value = self.walk.search.predicted(place);
-        let time = ms(value.cost * self.walk.baseline_ns());
+        let value = self.search.predicted(place);
+        let time = ms(value.cost * self.baseline_ns());
         format!("{time}, {}", percent(value.error))
     }
 
     /// The largest groups of ruled-out settings, some of each spelt out.
     pub fn ruled_out_json(&self) -> Vec<Value> {
-        let of = |group: &Group| {
-            let some: Vec<String> =
-                group.places.iter().take(EXAMPLES).map(|i| self.flags(*i)).collect();
-            json!({ "why": group.why, "count": group.places.len(), "settings": some })
+        let of = |(why, places): &(String, Vec<usize>)| {
+            let some: Vec<String> = places.iter().take(EXAMPLES).map(|i| self.flags(*i)).collect();
+            json!({ "why": why, "count": places.len(), "settings": some })
         };
         self.skipped().iter().take(GROUPS).map(of).collect()
     }
@@ -96,9 +77,9 @@ impl LeftOut<'_> {
     /// The most promising untried settings.
     pub fn not_tried_json(&self) -> Vec<Value> {
         let of = |place: &usize| {
-            let expected = self.walk.search.predicted(*place);
+            let expected = self.search.predicted(*place);
             json!({
-                "flags": self.flags(*place), "expected_ns": expected.cost * self.walk.baseline_ns(),
+                "flags": self.flags(*place), "expected_ns": expected.cost * self.baseline_ns(),
                 "expected_relative_rmse": expected.error,
             })
         };
@@ -107,28 +88,17 @@ impl LeftOut<'_> {
 
     /// Counts of settings by outcome: in total, and for each step of each setting where it matters.
     pub fn counts_json(&self) -> Value {
-        #[derive(Clone, Copy, PartialEq)]
-        enum Kind {
-            Measured,
-            RuledOut,
-            NotTried,
-        }
-        let search = &self.walk.search;
-        let kind = |place: usize| match search.value(place) {
-            Some(_) => Kind::Measured,
-            None if search.is_open(place) => Kind::NotTried,
-            None => Kind::RuledOut,
+        const KINDS: [&str; 3] = ["measured", "ruled_out", "not_tried"];
+        let kind = |place: usize| match self.search.value(place) {
+            Some(_) => KINDS[0],
+            None if self.search.is_open(place) => KINDS[2],
+            None => KINDS[1],
         };
-        let kinds: Vec<Kind> = (0..self.places.len()).map(kind).collect();
-        let counted = |has: &dyn Fn(&Place) -> bool| {
-            let count = |of: Kind| {
-                let all = self.places.iter().zip(&kinds);
-                all.filter(|(place, kind)| **kind == of && has(place)).count()
-            };
-            json!({
-                "measured": count(Kind::Measured), "ruled_out": count(Kind::RuledOut),
-                "not_tried": count(Kind::NotTried),
-            })
+        let kinds: Vec<&str> = (0..self.places.len()).map(kind).collect();
+        let counted = |has: &dyn Fn(&Place) -> bool| -> Value {
+            let all = || self.places.iter().zip(&kinds).filter(|(place, _)| has(place));
+            let count = |of: &str| all().filter(|(_, kind)| **kind == of).count();
+            KINDS.iter().map(|of| ((*of).to_owned(), json!(count(of)))).collect()
         };
         let by_step = |(k, ladder): (usize, &Ladder)| {
             let steps = ladder.steps.iter().enumerate().map(|(s, spelt)| {
@@ -150,7 +120,7 @@ impl LeftOut<'_> {
 mod tests {
     use super::*;
     use ridgelight::scene::{Bounces, HeightField, Lights, Quality, Scene, Sun, Surface};
-    use ridgelight_trade::trade::{Search, Value as Measured, ladders, places, start_of};
+    use ridgelight_trade::trade::{Value as Measured, ladders, places, start_of};
 
     /// A sky and a sun with bounces have over a hundred thousand settings. With four measured,
     /// nearly all are ruled out or open. The report stays below 64 KiB (40 settings and 40 reasons
@@ -169,23 +139,14 @@ mod tests {
         let start = Quality { bounces, ..start_of(&scene) };
         let places = places(&ladders, &start);
         assert!(places.len() > 100_000, "{}", places.len());
-        let baseline = places.iter().position(|p| p.quality == start).unwrap();
-        let steps = places.iter().map(|p| p.steps.clone()).collect();
-        let mut walk = Walk {
-            search: Search::new(steps, baseline, 1e-4),
-            points: Vec::new(),
-            given_up: Vec::new(),
-            baseline,
-            out_of_time: true,
-        };
+        let mut walk = Walk::new(&ladders, &places, &start, 1e-4);
+        let baseline = walk.baseline;
         for (i, place) in [baseline, 0, places.len() / 2, 7].into_iter().enumerate() {
             let (cost, error) = (1.0 + i as f64, 0.1 / (1.0 + i as f64));
             walk.search.measured(place, Measured { cost, error });
         }
-        walk.search.give_up(9, false);
-        walk.given_up.push((9, "refused".to_owned()));
-        let left = LeftOut { ladders: &ladders, places: &places, walk: &walk };
-        let counts = left.counts_json();
+        walk.give_up(9, "refused".to_owned(), false);
+        let counts = walk.counts_json();
         let number = |of: &Value, name: &str| of[name].as_u64().unwrap() as usize;
         let kinds = ["measured", "ruled_out", "not_tried"];
         let sum = |of: &Value| kinds.iter().map(|kind| number(of, kind)).sum::<usize>();
@@ -195,7 +156,7 @@ mod tests {
             let steps = ladder["steps"].as_array().unwrap();
             assert_eq!(steps.iter().map(sum).sum::<usize>(), busy, "{}", ladder["name"]);
         }
-        let (out, open) = (left.ruled_out_json(), left.not_tried_json());
+        let (out, open) = (walk.ruled_out_json(), walk.not_tried_json());
         assert_eq!(open.len(), GROUPS);
         let given_up = out.iter().find(|g| g["why"] == "refused").unwrap();
         assert_eq!(number(given_up, "count"), 1);

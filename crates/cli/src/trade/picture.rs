@@ -4,8 +4,7 @@ use ridgelight::Result;
 use ridgelight::scene::HeightField;
 use ridgelight::scene::Tone;
 use ridgelight_io as files;
-use ridgelight_trade::flip;
-use ridgelight_trade::flip::{FlipError, PIXELS_PER_DEGREE};
+use ridgelight_trade::flip::{self, FlipError, PIXELS_PER_DEGREE};
 use ridgelight_trade::statistics::quantiles;
 
 use super::ground_truth::GroundTruth;
@@ -23,14 +22,9 @@ pub struct Tones {
 }
 
 impl Tones {
-    pub fn of(ground_truth: &GroundTruth) -> Self {
-        let mut known: Vec<f64> = ground_truth
-            .planes
-            .iter()
-            .flatten()
-            .map(|v| f64::from(*v))
-            .filter(|v| v.is_finite())
-            .collect();
+    pub fn of(planes: &[Vec<f32>]) -> Self {
+        let mut known: Vec<f64> =
+            planes.iter().flatten().map(|v| f64::from(*v)).filter(|v| v.is_finite()).collect();
         let mean = known.iter().sum::<f64>() / known.len().max(1) as f64;
         let [low, high] = quantiles(&mut known, [0.005, 0.99]).unwrap_or([0.0, 1.0]);
         let white = if high > 0.0 { high } else { 1.0 };
@@ -68,9 +62,9 @@ pub fn pictures(
     field: &HeightField,
     planes: &[Vec<f32>],
     ground_truth: &GroundTruth,
-    tones: &Tones,
     p99: f64,
 ) -> Result<Pictures> {
+    let tones = &ground_truth.tones;
     let scale = round_up(p99);
     let mean = |planes: &[Vec<f32>], i: usize| {
         planes.iter().map(|p| f64::from(p[i])).sum::<f64>() / planes.len() as f64
@@ -94,7 +88,7 @@ pub fn pictures(
     let map =
         flip::map(&toned(planes), &toned(&ground_truth.planes), field.cols(), PIXELS_PER_DEGREE)?;
     let flip = FlipError::of(&map, field.cols())?;
-    Ok(Pictures { light: light_png(field, planes, tones)?, difference, scale, flip })
+    Ok(Pictures { light: light_png(field, planes, ground_truth)?, difference, scale, flip })
 }
 
 /// The least of 1, 2 and 5 times a power of ten that is no less, so that scales are comparable.
@@ -133,7 +127,12 @@ fn downsized<T>(
 }
 
 /// A PNG of radiance between the tones' black and white.
-pub fn light_png(field: &HeightField, planes: &[Vec<f32>], tones: &Tones) -> Result<Vec<u8>> {
+pub fn light_png(
+    field: &HeightField,
+    planes: &[Vec<f32>],
+    ground_truth: &GroundTruth,
+) -> Result<Vec<u8>> {
+    let tones = &ground_truth.tones;
     let last = planes.len() - 1;
     let texels = downsized(field, |grid_points| {
         let (mut sum, mut count) = ([0.0_f64; 3], 0.0_f64);

@@ -63,38 +63,35 @@ pub fn svg(report: &Report) -> String {
     let mut svg = format!(
         "<svg viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\" aria-label=\"time against error\">\n"
     );
+    let (base, edge) = (HEIGHT - bottom, WIDTH - right);
     for (value, shown) in x.ticks() {
         let at = x.at(value);
-        svg +=
-            &format!("<line class=grid x1={at:.1} x2={at:.1} y1={} y2={top} />", HEIGHT - bottom);
+        svg += &format!("<line class=grid x1={at:.1} x2={at:.1} y1={base} y2={top} />");
         if shown {
-            let text = number(value);
-            let low = HEIGHT - bottom + 18.0;
+            let (text, low) = (number(value), base + 18.0);
             svg += &format!("<text x={at:.1} y={low} text-anchor=middle>{text}</text>\n");
         }
     }
     for (value, shown) in y.ticks() {
         let at = y.at(value);
-        svg += &format!("<line class=grid x1={left} x2={} y1={at:.1} y2={at:.1} />", WIDTH - right);
+        svg += &format!("<line class=grid x1={left} x2={edge} y1={at:.1} y2={at:.1} />");
         if shown {
-            let text = number(value);
-            let (x, y) = (left - 8.0, at + 4.0);
+            let (text, x, y) = (number(value), left - 8.0, at + 4.0);
             svg += &format!("<text x={x} y={y:.1} text-anchor=end>{text}</text>\n");
         }
     }
-    let (middle, low) = ((left + WIDTH - right) / 2.0, HEIGHT - 12.0);
+    let (middle, low) = ((left + edge) / 2.0, HEIGHT - 12.0);
     svg += &format!("<text class=name x={middle} y={low} text-anchor=middle>ms per frame</text>\n");
-    let half = (top + HEIGHT - bottom) / 2.0;
+    let half = (top + base) / 2.0;
     svg += &format!(
         "<text class=name transform=\"translate(16 {half}) rotate(-90)\" text-anchor=middle>relative \
          RMSE, %</text>\n"
     );
     if own > 0.0 {
-        let (at, end) = (y.at(100.0 * own), WIDTH - right);
+        let (at, low) = (y.at(100.0 * own), y.at(100.0 * own) + 14.0);
         svg += &format!(
-            "<line class=own x1={left} x2={end} y1={at:.1} y2={at:.1} /><text class=small \
-                x={end} y={:.1} text-anchor=end>the ground truth's own error</text>\n",
-            at + 14.0
+            "<line class=own x1={left} x2={edge} y1={at:.1} y2={at:.1} /><text class=small \
+                x={edge} y={low:.1} text-anchor=end>the ground truth's own error</text>\n"
         );
     }
     let place = |p: &Point| (x.at(report.time_ns(p) * 1e-6), y.at(100.0 * report.error(p)));
@@ -125,29 +122,22 @@ pub fn svg(report: &Report) -> String {
             (false, true) => ("off base", 5.0),
             (false, false) => ("off", 4.0),
         };
-        let label = format!(
-            "{}: {}, {}",
-            report.flags(point.place),
-            report.time_text(point),
-            report.error_text(point)
-        );
+        let (time, error) = (report.time_text(point), report.error_text(point));
+        let label = escaped(&format!("{}: {time}, {error}", report.flags(point.place)));
         if point.place == best.place {
             svg += &format!("<circle class=ring cx={px:.1} cy={py:.1} r=11 />");
         }
         svg += &format!(
-            "<circle class=\"point {kind}\" cx={px:.1} cy={py:.1} r={size} tabindex=0><title>{}</title></circle>\n",
-            escaped(&label)
+            "<circle class=\"point {kind}\" cx={px:.1} cy={py:.1} r={size} tabindex=0><title>{label}</title></circle>\n"
         );
     }
     // The frontier has no point above and to the right; at the page's edge labels go to the left.
     for (point, class, name, down) in named {
         let (px, py) = place(point);
-        let (dx, anchor) =
-            if px > WIDTH - right - 120.0 { (-12.0, "end") } else { (12.0, "start") };
+        let (dx, anchor) = if px > edge - 120.0 { (-12.0, "end") } else { (12.0, "start") };
+        let (x, y) = (px + dx, py + down);
         svg += &format!(
-            "<text class=\"{class} halo\" x={:.1} y={:.1} text-anchor={anchor}>{name}</text>\n",
-            px + dx,
-            py + down
+            "<text class=\"{class} halo\" x={x:.1} y={y:.1} text-anchor={anchor}>{name}</text>\n"
         );
     }
     svg + "</svg>\n"

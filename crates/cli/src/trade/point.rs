@@ -2,15 +2,17 @@
 
 use std::time::Instant;
 
+use ridgelight::Result;
 use ridgelight::gpu::{Frame, Timing};
 use ridgelight::scene::Quality;
-use ridgelight::{Error, Result};
-use ridgelight_trade::statistics::Summary;
+use ridgelight_trade::error::ImageError;
+use ridgelight_trade::statistics::{Summary, median};
 use ridgelight_trade::trade::Value;
 
-use super::ground_truth::{Distance, GroundTruth};
+use super::ground_truth::GroundTruth;
 use super::picture::Pictures;
 use super::rig::Rig;
+use crate::setup::{self, total_ns};
 
 /// Timed draws after one to warm up. There are fewer, as the report states, once they take this
 /// share of the budget.
@@ -22,20 +24,18 @@ const COMPILING_S: f64 = 20.0;
 pub struct Point {
     /// Its index among the places of the search.
     pub place: usize,
-    /// Nanoseconds of all passes of each frame, and their statistics.
+    /// Nanoseconds of all passes of each frame, one or more.
     pub totals_ns: Vec<f64>,
-    pub total_ns: Summary,
     /// Median nanoseconds of each pass.
     pub passes: Vec<(String, f64)>,
-    pub distance: Distance,
+    pub distance: ImageError,
     /// Bytes on the device.
     pub bytes: u64,
     pub settings: Vec<(String, String)>,
     /// Begin and end of the measurement, seconds from the start.
     pub at_s: [f64; 2],
-    /// Median of each draw's time over that of the baseline drawn right after it, which cancels a
-    /// busy machine or a changing clock. 1 for the baseline itself.
-    pub ratio: f64,
+    /// Each draw's time over that of the baseline drawn right after it, which cancels a busy
+    /// machine or a changing clock. None for the baseline itself.
     ratios: Vec<f64>,
     /// Nanoseconds of those draws of the baseline.
     pub baseline_ns: Vec<f64>,
@@ -44,65 +44,66 @@ pub struct Point {
 }
 
 impl Point {
+    pub fn total_ns(&self) -> Summary {
+        Summary::of(&self.totals_ns).expect("one or more draws")
+    }
+
+    /// Median of the time over the baseline's.
+    pub fn ratio(&self) -> f64 {
+        median(&self.ratios).unwrap_or(1.0)
+    }
+
     /// Median nanoseconds of the paired draws of the baseline.
     pub fn baseline_median(&self) -> f64 {
-        Summary::of(&self.baseline_ns).map_or(0.0, |s| s.median)
+        median(&self.baseline_ns).unwrap_or(0.0)
     }
 
     /// Adds the times of a repeated measurement.
     pub fn add(&mut self, again: Point) {
         self.totals_ns.extend(again.totals_ns);
-        self.total_ns = Summary::of(&self.totals_ns).unwrap_or(self.total_ns);
         self.ratios.extend(again.ratios);
-        self.ratio = Summary::of(&self.ratios).map_or(self.ratio, |s| s.median);
         self.baseline_ns.extend(again.baseline_ns);
     }
 
     /// Its cost in frames of the baseline.
     pub fn value(&self) -> Value {
-        Value { cost: self.ratio, error: self.distance.rmse }
+        Value { cost: self.ratio(), error: self.distance.relative_rmse }
     }
 }
 
-/// A measurement: a point without pictures yet, its frame and its radiance.
-pub type Measured = (Point, Frame, Vec<Vec<f32>>);
+/// A point without pictures yet, and its radiance.
+pub type Measured = (Point, Vec<Vec<f32>>);
 
-/// Measures a quality paired with the baseline; without one for the baseline itself.
+/// Measures a quality paired with the baseline.
 pub fn measure(
     rig: &mut Rig,
     ground_truth: &GroundTruth,
     place: usize,
     quality: &Quality,
-    baseline: Option<&mut Frame>,
+    baseline: &mut Frame,
 ) -> Result<Measured> {
     let begun_s = rig.spent();
-    let mut frame = rig.frame(quality)?;
-    match fill(rig, ground_truth, place, begun_s, &mut frame, baseline) {
-        Ok((point, planes)) => Ok((point, frame, planes)),
-        Err(error) => {
-            rig.gpu.end(frame);
-            Err(error)
-        }
-    }
+    rig.with_frame(quality, |rig, frame| {
+        time(rig, ground_truth, (place, begun_s), frame, Some(baseline))
+    })
 }
 
-fn fill(
+/// Measures a frame; without a baseline that of the baseline itself.
+pub fn time(
     rig: &mut Rig,
     ground_truth: &GroundTruth,
-    place: usize,
-    begun_s: f64,
+    (place, begun_s): (usize, f64),
     frame: &mut Frame,
     mut baseline: Option<&mut Frame>,
-) -> Result<(Point, Vec<Vec<f32>>)> {
+) -> Result<Measured> {
     let first = rig.gpu.draw(frame)?;
     let planes = rig.radiance(frame)?;
     let distance = ground_truth.distance(&planes)?;
     let begun = Instant::now();
     let most = rig.share(TIMING);
-    let sum = |times: &[Timing]| times.iter().map(|t| t.ns).sum::<f64>();
     // The first draw compiles, for up to seconds. It is only timed if it takes far longer than that
     // and than the time left.
-    let long = sum(&first) * 1e-9 > rig.left().max(COMPILING_S);
+    let long = total_ns(&first) * 1e-9 > rig.left().max(COMPILING_S);
     let mut runs: Vec<Vec<Timing>> = if long { vec![first] } else { Vec::new() };
     let mut baseline_ns = Vec::new();
     while runs.len() < DRAWS {
@@ -112,44 +113,40 @@ fn fill(
             break;
         }
         runs.push(rig.gpu.draw(frame)?);
-        if let Some(baseline) = baseline.as_deref_mut() {
-            baseline_ns.push(sum(&rig.gpu.draw(baseline)?));
+        if let Some(baseline) = &mut baseline {
+            baseline_ns.push(rig.draw_ns(baseline)?);
         }
     }
     if let Some(baseline) = baseline.filter(|_| long) {
-        baseline_ns.push(sum(&rig.gpu.draw(baseline)?));
+        baseline_ns.push(rig.draw_ns(baseline)?);
     }
-    let totals: Vec<f64> = runs.iter().map(|r| sum(r)).collect();
-    let total_ns = Summary::of(&totals).filter(|s| s.min > 0.0).ok_or_else(|| Error::Device {
-        doing: "timing a frame".into(),
-        reason: "the device has no timestamps".into(),
-    })?;
-    let ratios: Vec<f64> = totals.iter().zip(&baseline_ns).map(|(ns, b)| ns / b).collect();
-    let ratio = Summary::of(&ratios).map_or(1.0, |s| s.median);
+    let totals_ns: Vec<f64> = runs.iter().map(|r| total_ns(r)).collect();
+    if !totals_ns.iter().all(|ns| *ns > 0.0) {
+        return Err(setup::no_timestamps());
+    }
+    let ratios: Vec<f64> = totals_ns.iter().zip(&baseline_ns).map(|(ns, b)| ns / b).collect();
     if baseline_ns.is_empty() {
-        baseline_ns.clone_from(&totals);
+        baseline_ns.clone_from(&totals_ns);
     }
-    let passes = (0..runs[0].len())
-        .map(|i| {
-            let times: Vec<f64> = runs.iter().map(|r| r[i].ns).collect();
-            (runs[0][i].label.clone(), Summary::of(&times).map_or(0.0, |s| s.median))
-        })
-        .collect();
-    let plan = frame.plan();
-    let (bytes, settings) = (plan.bytes(), plan.settings.clone());
+    let pass = |(i, timing): (usize, &Timing)| {
+        let times: Vec<f64> = runs.iter().map(|r| r[i].ns).collect();
+        (timing.label.clone(), median(&times).unwrap_or(0.0))
+    };
+    let passes = runs[0].iter().enumerate().map(pass).collect();
+    let (bytes, settings) = (frame.plan().bytes(), frame.plan().settings.clone());
+    let at_s = [begun_s, rig.spent()];
+    let pictures = None;
     let point = Point {
         place,
-        totals_ns: totals,
-        total_ns,
+        totals_ns,
         passes,
         distance,
         bytes,
         settings,
-        at_s: [begun_s, rig.spent()],
-        ratio,
+        at_s,
         ratios,
         baseline_ns,
-        pictures: None,
+        pictures,
     };
     Ok((point, planes))
 }

@@ -1,13 +1,11 @@
 //! The results as text, CSV and JSON.
 
-use ridgelight_trade::trade::{Break, Ladder, Place, Recommendation, Rule, SLACK, Side};
+use ridgelight_trade::trade::{Break, Goal, Ladder, Recommendation, SLACK, Side};
 use serde_json::{Value, json};
 
 use super::baked::Tried;
 use super::ground_truth::GroundTruth;
 use super::hull;
-use super::left_out::LeftOut;
-use super::picture::Tones;
 use super::point::Point;
 use super::rig::Budget;
 use super::walk::Walk;
@@ -17,16 +15,13 @@ use crate::terminal::{digits, percent};
 pub struct Report<'a> {
     /// Device, driver, field and lights, as (name, value).
     pub about: Vec<(String, String)>,
-    pub ground_truth: &'a GroundTruth,
+    pub ground_truth: GroundTruth,
     pub ground_truth_s: f64,
     pub ground_truth_png: Vec<u8>,
-    pub tones: &'a Tones,
-    pub hulls: &'a [hull::Place],
-    pub baked: &'a Tried,
-    pub ladders: &'a [Ladder],
-    pub places: &'a [Place],
-    pub walk: &'a Walk,
-    pub rule: Rule,
+    pub hulls: Vec<hull::Place>,
+    pub baked: Tried,
+    pub walk: Walk<'a>,
+    pub goal: Option<Goal>,
     /// Its point is a position in the walk's points.
     pub recommended: Recommendation,
     pub budget: Budget,
@@ -39,11 +34,7 @@ pub fn ms(ns: f64) -> String {
 
 impl Report<'_> {
     pub fn flags(&self, place: usize) -> String {
-        self.others().flags(place)
-    }
-
-    pub fn others(&self) -> LeftOut<'_> {
-        LeftOut { ladders: self.ladders, places: self.places, walk: self.walk }
+        self.walk.flags(place)
     }
 
     /// Points of the frontier, from fast to slow.
@@ -58,12 +49,12 @@ impl Report<'_> {
 
     /// Whether the ground truth cannot distinguish a point's error from none.
     pub fn is_at_most(&self, point: &Point) -> bool {
-        point.distance.rmse <= self.ground_truth.floor()
+        point.distance.relative_rmse <= self.ground_truth.floor()
     }
 
     /// Nanoseconds of a frame at the machine's median speed of the run.
     pub fn time_ns(&self, point: &Point) -> f64 {
-        point.ratio * self.walk.baseline_ns()
+        point.ratio() * self.walk.baseline_ns()
     }
 
     pub fn time_text(&self, point: &Point) -> String {
@@ -72,7 +63,7 @@ impl Report<'_> {
 
     /// A point's error, at least the ground truth's own.
     pub fn error(&self, point: &Point) -> f64 {
-        point.distance.rmse.max(self.ground_truth.floor())
+        point.distance.relative_rmse.max(self.ground_truth.floor())
     }
 
     pub fn error_text(&self, point: &Point) -> String {
@@ -103,8 +94,13 @@ impl Report<'_> {
         )
     }
 
-    pub fn break_text(&self, found: &Break) -> String {
-        let names: Vec<&str> = found.ladders.iter().map(|k| self.ladders[*k].name).collect();
+    /// Ladders that broke their order, in words.
+    pub fn breaks(&self) -> Vec<String> {
+        self.walk.search.breaks().iter().map(|found| self.break_text(found)).collect()
+    }
+
+    fn break_text(&self, found: &Break) -> String {
+        let names: Vec<&str> = found.ladders.iter().map(|k| self.walk.ladders[*k].name).collect();
         let value = |i: usize| {
             let value = self.walk.search.value(i);
             value.map_or_else(String::new, |v| match found.side {
@@ -116,20 +112,14 @@ impl Report<'_> {
             Side::Cost => "slower steps were faster",
             Side::Error => "slower steps were less accurate",
         };
-        format!(
-            "{}: {what}: {} ({}) against {} ({})",
-            names.join(", "),
-            self.flags(found.lower),
-            value(found.lower),
-            self.flags(found.higher),
-            value(found.higher)
-        )
+        let of = |i: usize| format!("{} ({})", self.flags(i), value(i));
+        let (names, lower, higher) = (names.join(", "), of(found.lower), of(found.higher));
+        format!("{names}: {what}: {lower} against {higher}")
     }
 
     pub fn summary(&self) -> String {
-        let others = self.others();
-        let skipped: usize = others.skipped().iter().map(|g| g.places.len()).sum();
-        let open = others.not_tried().len();
+        let skipped: usize = self.walk.skipped().iter().map(|g| g.1.len()).sum();
+        let open = self.walk.not_tried().len();
         let of = match self.budget {
             Budget::Seconds(all) => format!(" of {all:.1} s"),
             Budget::Evaluations(_) => String::new(),
@@ -181,7 +171,7 @@ impl Report<'_> {
     }
 
     pub fn csv(&self) -> String {
-        let names = self.ladders.iter().map(|k| k.name.replace(' ', "_")).collect::<Vec<_>>();
+        let names = self.walk.ladders.iter().map(|k| k.name.replace(' ', "_")).collect::<Vec<_>>();
         let mut text = format!(
             "settings,{},time_ms,median_ms,p10_ms,p90_ms,min_ms,draws,relative_rmse,at_most,mean_shift,p99,\
              worst,worst_row,worst_col,flip_mean,flip_p99,bytes,baseline_ms,frontier,recommended\n",
@@ -189,9 +179,9 @@ impl Report<'_> {
         );
         let front = self.walk.search.frontier();
         for point in &self.walk.points {
-            let (t, d) = (&point.total_ns, &point.distance);
-            let place = &self.places[point.place];
-            let steps = self.ladders.iter().zip(&place.steps).map(|(ladder, step)| {
+            let (t, d) = (point.total_ns(), &point.distance);
+            let place = &self.walk.places[point.place];
+            let steps = self.walk.ladders.iter().zip(&place.steps).map(|(ladder, step)| {
                 let spelt = step.map_or("", |s| ladder.steps[s].as_str());
                 spelt.split(' ').next_back().unwrap_or_default()
             });
@@ -204,7 +194,9 @@ impl Report<'_> {
             row.push(point.totals_ns.len().to_string());
             row.push(format!("{:e}", self.error(point)));
             row.push(self.is_at_most(point).to_string());
-            row.extend([d.mean_shift, d.p99, d.worst].map(|x| format!("{x:e}")));
+            row.extend(
+                [d.relative_mean_shift, d.relative_p99, d.relative_worst].map(|x| format!("{x:e}")),
+            );
             row.extend([d.worst_row, d.worst_col].map(|x| x.to_string()));
             let flip = point.pictures.as_ref().map(|p| [p.flip.mean, p.flip.p99]);
             row.extend(flip.map_or([const { String::new() }; 2], |f| f.map(|x| format!("{x:e}"))));
@@ -219,18 +211,15 @@ impl Report<'_> {
     }
 
     fn point_json(&self, point: &Point) -> Value {
-        let (t, d) = (&point.total_ns, &point.distance);
-        let passes: Vec<Value> = point
-            .passes
-            .iter()
-            .map(|(pass, ns)| json!({ "pass": pass, "median_ns": ns }))
-            .collect();
+        let (t, d) = (point.total_ns(), &point.distance);
+        let pass = |(pass, ns): &(String, f64)| json!({ "pass": pass, "median_ns": ns });
+        let passes: Vec<Value> = point.passes.iter().map(pass).collect();
         json!({
             "flags": self.flags(point.place), "settings": setup::typed(&point.settings),
             "time_ns": self.time_ns(point), "median_ns": t.median, "p10_ns": t.p10, "p90_ns": t.p90, "min_ns": t.min,
             "draws": point.totals_ns.len(), "passes": passes, "bytes": point.bytes,
             "relative_rmse": self.error(point), "at_most": self.is_at_most(point),
-            "mean_shift": d.mean_shift, "p99": d.p99, "worst": d.worst,
+            "mean_shift": d.relative_mean_shift, "p99": d.relative_p99, "worst": d.relative_worst,
             "worst_row": d.worst_row, "worst_col": d.worst_col,
             "flip": point.pictures.as_ref().map(|p| json!({
                 "mean": p.flip.mean, "weighted_quartiles": p.flip.weighted_quartiles, "p99": p.flip.p99,
@@ -244,24 +233,16 @@ impl Report<'_> {
         let position = |place: usize| self.walk.points.iter().position(|p| p.place == place);
         let front: Vec<usize> =
             self.walk.search.frontier().iter().filter_map(|f| position(*f)).collect();
-        let ladders: Vec<Value> = self
-            .ladders
-            .iter()
-            .map(|k| {
-                json!({
-                    "name": k.name, "fast_to_slow": k.steps, "default": k.steps[k.default],
-                    "range": k.range.as_ref().map(|r| [r.start(), r.end()]), "slower": k.slower,
-                })
+        let ladder = |k: &Ladder| {
+            json!({
+                "name": k.name, "fast_to_slow": k.steps, "default": k.steps[k.default],
+                "range": k.range.as_ref().map(|r| [r.start(), r.end()]), "slower": k.slower,
             })
-            .collect();
-        let hulls: Vec<Value> = self
-            .hulls
-            .iter()
-            .map(|h| json!({ "hull": h.name, "time_ratio": h.ratio.as_ref().ok(), "why_none": h.ratio.as_ref().err() }))
-            .collect();
-        let others = self.others();
-        let breaks: Vec<String> =
-            self.walk.search.breaks().iter().map(|b| self.break_text(b)).collect();
+        };
+        let hull = |h: &hull::Place| {
+            let (ratio, why) = (h.ratio.as_ref().ok(), h.ratio.as_ref().err());
+            json!({ "hull": h.name, "time_ratio": ratio, "why_none": why })
+        };
         let (budget_s, evaluations) = match self.budget {
             Budget::Seconds(seconds) => (Some(seconds), None),
             Budget::Evaluations(most) => (None, Some(most)),
@@ -273,15 +254,15 @@ impl Report<'_> {
                 "how": self.ground_truth.quality_of, "seconds": self.ground_truth_s,
             },
             "budget_s": budget_s, "evaluations": evaluations, "spent_s": self.spent_s,
-            "settings": ladders,
+            "settings": self.walk.ladders.iter().map(ladder).collect::<Vec<_>>(),
             "points": self.walk.points.iter().map(|p| self.point_json(p)).collect::<Vec<_>>(),
             "frontier": front,
             "recommendation": {
                 "point": self.recommended.point, "flags": self.flags(self.recommended().place),
                 "holds": self.recommended.holds, "why": self.why(),
             },
-            "hulls": hulls, "baked": self.baked_json(), "baked_refused": self.baked_refused_json(), "drift": self.drift_text(), "ladders_broken": breaks,
-            "left_out": others.counts_json(), "ruled_out": others.ruled_out_json(), "not_tried": others.not_tried_json(),
+            "hulls": self.hulls.iter().map(hull).collect::<Vec<_>>(), "baked": self.baked_json(), "baked_refused": self.baked.refused, "drift": self.drift_text(), "ladders_broken": self.breaks(),
+            "left_out": self.walk.counts_json(), "ruled_out": self.walk.ruled_out_json(), "not_tried": self.walk.not_tried_json(),
         })
     }
 }

@@ -23,7 +23,6 @@ pub struct Rig<'a> {
     pub gpu: Headless,
     pub limits: Limits,
     pub scene: &'a Scene,
-    contents: Vec<Vec<f32>>,
     begun: Instant,
     pub budget: Budget,
 }
@@ -32,8 +31,7 @@ impl<'a> Rig<'a> {
     pub fn new(gpu: Headless, limits: Limits, scene: &'a Scene, budget: Budget) -> Self {
         // Two frames exist at a time: the baseline's and the measured one.
         let limits = Limits { memory_budget: limits.memory_budget / 2, ..limits };
-        let contents = plan::picture_inputs(scene);
-        Self { gpu, limits, scene, contents, begun: Instant::now(), budget }
+        Self { gpu, limits, scene, begun: Instant::now(), budget }
     }
 
     /// Seconds since the start.
@@ -67,9 +65,24 @@ impl<'a> Rig<'a> {
     }
 
     pub fn frame(&mut self, quality: &Quality) -> Result<Frame> {
-        let plan = self.plan(self.scene, quality)?;
-        let contents: Vec<&[f32]> = self.contents.iter().map(Vec::as_slice).collect();
-        self.gpu.frame(plan, &contents)
+        self.gpu.frame(self.plan(self.scene, quality)?, &plan::picture_inputs(self.scene))
+    }
+
+    /// Makes a frame, passes it to `work` and frees it, also after an error.
+    pub fn with_frame<T>(
+        &mut self,
+        quality: &Quality,
+        work: impl FnOnce(&mut Self, &mut Frame) -> Result<T>,
+    ) -> Result<T> {
+        let mut frame = self.frame(quality)?;
+        let done = work(self, &mut frame);
+        self.gpu.end(frame);
+        done
+    }
+
+    /// Nanoseconds of all passes of a frame, drawn once.
+    pub fn draw_ns(&self, frame: &mut Frame) -> Result<f64> {
+        Ok(setup::total_ns(&self.gpu.draw(frame)?))
     }
 
     /// A frame's radiance: one plane where all is grey, else three; voids are NaN.
@@ -79,20 +92,13 @@ impl<'a> Rig<'a> {
     pub fn radiance(&mut self, frame: &Frame) -> Result<Vec<Vec<f32>>> {
         let pixels = self.gpu.pixels(frame, 0)?;
         crate::render::check_finite(&pixels, &self.scene.field)?;
-        let stride = pixels.channels;
-        let mut planes: Vec<Vec<f32>> = (0..stride.min(3))
-            .map(|c| pixels.values.iter().skip(c).step_by(stride).copied().collect())
-            .collect();
-        planes.iter_mut().for_each(|plane| setup::mask_voids(&self.scene.field, plane, 1));
-        Ok(planes)
+        Ok(setup::planes(&pixels, &self.scene.field))
     }
 
     /// The radiance of another scene of the same field, drawn once.
     pub fn draw_once(&mut self, scene: &Scene, quality: &Quality) -> Result<Vec<Vec<f32>>> {
         let plan = self.plan(scene, quality)?;
-        let contents = plan::picture_inputs(scene);
-        let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
-        let mut frame = self.gpu.frame(plan, &contents)?;
+        let mut frame = self.gpu.frame(plan, &plan::picture_inputs(scene))?;
         let drawn = self.gpu.draw(&mut frame).and_then(|_| self.radiance(&frame));
         self.gpu.end(frame);
         drawn
@@ -105,16 +111,13 @@ impl<'a> Rig<'a> {
         let few = Quality { azimuths: 8, sun_azimuths: 2, ..*quality };
         let plan = self.plan(&piece, &few)?;
         let azimuths = plan.azimuths.len() as f64;
-        let contents = plan::picture_inputs(&piece);
-        let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
-        let mut frame = self.gpu.frame(plan, &contents)?;
-        // The first draw compiles.
-        let first = self.gpu.draw(&mut frame);
-        let begun = Instant::now();
-        let second = first.and_then(|_| self.gpu.draw(&mut frame));
-        let seconds = begun.elapsed().as_secs_f64();
-        self.gpu.end(frame);
-        second?;
+        let seconds = self.gpu.with_frame(plan, &plan::picture_inputs(&piece), |gpu, frame| {
+            // The first draw compiles.
+            gpu.draw(frame)?;
+            let begun = Instant::now();
+            gpu.draw(frame)?;
+            Ok(begun.elapsed().as_secs_f64())
+        })?;
         let grid_points = |f: &HeightField| (f.rows() * f.cols()) as f64;
         let side = |f: &HeightField| f.rows().max(f.cols()) as f64;
         let (whole, part) = (&self.scene.field, &piece.field);

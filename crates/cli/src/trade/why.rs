@@ -1,7 +1,7 @@
 //! Sentences about the recommendation: what others would save or cost, its risks, what was left
 //! out.
 
-use ridgelight_trade::trade::Rule;
+use ridgelight_trade::trade::Goal;
 
 use super::hull;
 use super::point::Point;
@@ -16,44 +16,38 @@ impl Report<'_> {
     pub fn why(&self) -> Vec<String> {
         let point = self.recommended();
         let (front, mut all) = (self.frontier(), Vec::new());
-        let time = |cost: f64| ms(cost * self.walk.baseline_ns());
-        all.push(match (self.rule, self.recommended.holds) {
-            (Rule::Knee, _) => "Recommended: it has the least product of time and error on the \
-                frontier. From here, twice the time at best halves the error, and half the time \
-                at least doubles it. --max-error or --time-budget choose otherwise."
+        let holds = self.recommended.holds;
+        all.push(match self.goal {
+            None => "Recommended: it has the least product of time and error on the frontier. \
+                From here, twice the time at best halves the error, and half the time at least \
+                doubles it. --max-error or --time-budget choose otherwise."
                 .to_owned(),
-            (Rule::MaxError(most), true) => {
-                format!(
-                    "The fastest measured settings with an error of at most {} (--max-error).",
-                    percent(most)
-                )
-            }
-            (Rule::MaxError(most), false) => format!(
-                "No measured settings meet --max-error {}: these are the most accurate.",
-                percent(most)
-            ),
-            (Rule::MaxCost(most), true) => {
-                format!(
-                    "The most accurate measured settings within {} (--time-budget).",
-                    time(most)
-                )
-            }
-            (Rule::MaxCost(most), false) => {
-                format!(
-                    "No measured settings meet --time-budget {}: these are the fastest.",
-                    time(most)
-                )
-            }
+            Some(Goal::MaxError(most)) => match (holds, percent(most)) {
+                (true, most) => format!(
+                    "The fastest measured settings with an error of at most {most} (--max-error)."
+                ),
+                (false, most) => format!(
+                    "No measured settings meet --max-error {most}: these are the most accurate."
+                ),
+            },
+            Some(Goal::MaxCost(most)) => match (holds, ms(most)) {
+                (true, most) => {
+                    format!("The most accurate measured settings within {most} (--time-budget).")
+                }
+                (false, most) => format!(
+                    "No measured settings meet --time-budget {most}: these are the fastest."
+                ),
+            },
         });
         let here = front.iter().position(|p| p.place == point.place).unwrap_or(0);
         let ratio = |of: f64, to: f64| if to > 0.0 { digits(of / to) } else { "∞".into() };
-        let is_faster = |p: &&&Point| p.ratio <= WORTH * point.ratio;
+        let is_faster = |p: &&&Point| p.ratio() <= WORTH * point.ratio();
         if let Some(faster) = front[..here].iter().rev().find(is_faster) {
             all.push(format!(
                 "The next faster ones on the frontier, {}, save {} of the time and have {} × the \
                     error.",
                 self.flags(faster.place),
-                percent(1.0 - faster.ratio / point.ratio),
+                percent(1.0 - faster.ratio() / point.ratio()),
                 ratio(self.error(faster), self.error(point))
             ));
         }
@@ -63,9 +57,9 @@ impl Report<'_> {
                 "The next more accurate ones, {}, take {} × the time and have {} × the error: \
                     the recommended ones save {} of their time.",
                 self.flags(slower.place),
-                ratio(slower.ratio, point.ratio),
+                ratio(slower.ratio(), point.ratio()),
                 ratio(self.error(slower), self.error(point)),
-                percent(1.0 - point.ratio / slower.ratio)
+                percent(1.0 - point.ratio() / slower.ratio())
             ));
         }
         all.push(self.risk(point));
@@ -89,7 +83,7 @@ impl Report<'_> {
         });
         all.push(self.left_out());
         all.extend(self.baked_text(point));
-        all.extend(hull::text(self.hulls));
+        all.extend(hull::text(&self.hulls));
         all
     }
 
@@ -103,45 +97,39 @@ impl Report<'_> {
         format!(
             "Risk: one texel in a hundred has an error of more than {} of the mean, the worst {} \
                 at row {}, column {}; the mean is {} by {}.{flip}",
-            percent(d.p99),
-            percent(d.worst),
+            percent(d.relative_p99),
+            percent(d.relative_worst),
             d.worst_row,
             d.worst_col,
-            if d.mean_shift < 0.0 { "too dark" } else { "too bright" },
-            percent(d.mean_shift.abs()),
+            if d.relative_mean_shift < 0.0 { "too dark" } else { "too bright" },
+            percent(d.relative_mean_shift.abs()),
         )
     }
 
     /// What was not measured, why, and what it could have changed.
     fn left_out(&self) -> String {
-        let others = self.others();
-        let (open, groups) = (others.not_tried(), others.skipped());
-        let skipped: usize = groups.iter().map(|g| g.places.len()).sum();
+        let (open, groups) = (self.walk.not_tried(), self.walk.skipped());
+        let skipped: usize = groups.iter().map(|g| g.1.len()).sum();
         let mut text = format!(
             "Of {} settings, {} were measured, {skipped} ruled out or given up",
-            self.places.len(),
+            self.walk.places.len(),
             self.walk.points.len()
         );
-        if let Some(largest) = groups.first() {
-            let [count, first] = [largest.places.len(), largest.places[0]];
-            let others = if count > 1 { format!(" and {} more", count - 1) } else { String::new() };
-            text += &format!(" ({}{others}: {})", self.flags(first), largest.why);
+        if let Some((why, largest)) = groups.first() {
+            let more = largest.len() - 1;
+            let others = if more > 0 { format!(" and {more} more") } else { String::new() };
+            text += &format!(" ({}{others}: {why})", self.flags(largest[0]));
         }
         let promising = open.iter().filter(|i| self.walk.search.merit(**i) > 0.0).count();
-        text += &match open.first() {
-            None => "; none were left.".to_owned(),
-            Some(best) if promising > 0 => format!(
-                ", {} not tried for lack of time. {promising} of these are expected to beat the \
-                    frontier, most of all {} ({}): a larger --budget may find better ones.",
-                open.len(),
-                self.flags(*best),
-                others.expected_text(*best)
-            ),
-            Some(_) => format!(
-                ", {} not tried for lack of time. None of these is expected to beat the frontier.",
-                open.len()
-            ),
-        };
-        text
+        let Some(best) = open.first() else { return text + "; none were left." };
+        text += &format!(", {} not tried for lack of time. ", open.len());
+        if promising == 0 {
+            return text + "None of these is expected to beat the frontier.";
+        }
+        let (best, expected) = (self.flags(*best), self.walk.expected_text(*best));
+        text + &format!(
+            "{promising} of these are expected to beat the frontier, most of all {best} \
+                ({expected}): a larger --budget may find better ones."
+        )
     }
 }

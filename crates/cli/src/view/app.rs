@@ -156,7 +156,7 @@ impl<'a> App<'a> {
         }
     }
 
-    /// Whether an unseen change must be drawn.
+    /// Whether a change not yet shown must be drawn.
     fn is_due(&self) -> bool {
         let gathers = |compare: &Compare| compare.is_busy(&self.state);
         let compare = self.shown.as_ref().and_then(|shown| shown.compare.as_ref());

@@ -126,9 +126,9 @@ fn gpu_a_max_error_holds() {
     let oracle = Oracle::new(&field, Border::Plane);
     let (mut squares, mut sum, mut count) = (0.0, 0.0, 0.0_f64);
     for i in (0..SIDE * SIDE).step_by(3) {
-        let truth = light::sky_of(&oracle, i / SIDE, i % SIDE, 360);
-        squares += (f64::from(exr.planes[0][i]) - truth).powi(2);
-        sum += truth;
+        let expected_light = light::sky_of(&oracle, i / SIDE, i % SIDE, 360);
+        squares += (f64::from(exr.planes[0][i]) - expected_light).powi(2);
+        sum += expected_light;
         count += 1.0;
     }
     let off = (squares / count).sqrt() / (sum / count);
@@ -164,13 +164,14 @@ fn gpu_a_max_error_holds_with_bounces() {
     let lights = Lights { sky: Some([1.0; 3]), ..Lights::default() };
     let scene = Scene { field, surface, lights };
     let fineness = Fineness { azimuths: 32, divisions: 1, strips: 1 };
-    let truth = indirect::ground_truth(&scene, 2, fineness).unwrap();
+    let expected_light = indirect::ground_truth(&scene, 2, fineness).unwrap();
     let root = |of: &dyn Fn(usize) -> f64| {
         ((0..SIDE * SIDE).map(|i| of(i).powi(2)).sum::<f64>() / (SIDE * SIDE) as f64).sqrt()
     };
-    let mean = truth.radiance[2].iter().map(|t| t[0]).sum::<f64>() / (SIDE * SIDE) as f64;
-    let off = |b: usize| root(&|i| f64::from(exr.planes[0][i]) - truth.radiance[b][i][0]) / mean;
-    let own = root(&|i| truth.error[2][i][0]) / mean;
+    let mean = expected_light.radiance[2].iter().map(|t| t[0]).sum::<f64>() / (SIDE * SIDE) as f64;
+    let off =
+        |b: usize| root(&|i| f64::from(exr.planes[0][i]) - expected_light.radiance[b][i][0]) / mean;
+    let own = root(&|i| expected_light.error[2][i][0]) / mean;
     assert!(own < 0.25 * 0.02, "the quadrature may be {own} off");
     assert!(off(2) <= at_most + own, "{} of {at_most}, {own}", off(2));
     // Without bounces the goal is missed.

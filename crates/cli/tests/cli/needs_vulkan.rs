@@ -78,14 +78,14 @@ fn gpu_voids_are_nan_and_transparent() {
         let planes = read(&folder.path(file));
         for (name, plane) in planes.names.iter().zip(&planes.planes) {
             for (i, v) in plane.iter().enumerate() {
-                assert_eq!(v.is_nan(), i == VOID, "{file}, {name}, sample {i}: {v}");
+                assert_eq!(v.is_nan(), i == VOID, "{file}, {name}, texel {i}: {v}");
             }
         }
     }
     done(&folder, "render v.asc -o v.png");
     let png = read(&folder.path("v.png"));
     for (i, alpha) in plane(&png, "A").iter().enumerate() {
-        assert_eq!(*alpha, if i == VOID { 0.0 } else { 1.0 }, "sample {i}");
+        assert_eq!(*alpha, if i == VOID { 0.0 } else { 1.0 }, "texel {i}");
     }
     // Without a void there is no alpha.
     done(&folder, "render a.asc -o a.png");

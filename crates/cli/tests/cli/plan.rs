@@ -54,7 +54,7 @@ fn json_is_whole_and_refers_to_what_is_there() {
     assert_eq!(serde_json::from_slice::<serde_json::Value>(&file).unwrap(), plan);
 }
 
-const SEEN: [&str; 6] = ["--camera", "200,30", "--size", "20x10", "--samples", "4"];
+const VISIBLE: [&str; 6] = ["--camera", "200,30", "--size", "20x10", "--samples", "4"];
 
 /// 20 × 10 pixels of 4 MSAA samples: 16 bytes of colour and 4 of depth per sample, and per pixel. The field of 4 × 3 is one
 /// tile of 17 × 17 vertices.
@@ -62,7 +62,7 @@ const SEEN: [&str; 6] = ["--camera", "200,30", "--size", "20x10", "--samples", "
 fn a_camera_adds_its_passes_and_their_memory() {
     let folder = Folder::new();
     let run = |more: &[&str]| {
-        let run = folder.run_without_driver(&[&LIT[..], &SEEN, more].concat());
+        let run = folder.run_without_driver(&[&LIT[..], &VISIBLE, more].concat());
         assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
         run.out
     };

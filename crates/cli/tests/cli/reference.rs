@@ -143,7 +143,7 @@ fn gpu_voids_have_no_light() {
     done(&folder, "reference v.asc -o v.exr --spp 32 --quiet");
     for plane in read(&folder.path("v.exr")).planes {
         for (i, v) in plane.iter().enumerate() {
-            assert_eq!(v.is_nan(), i == 6, "sample {i}: {v}");
+            assert_eq!(v.is_nan(), i == 6, "texel {i}: {v}");
         }
     }
 }
@@ -153,14 +153,23 @@ fn gpu_voids_have_no_light() {
 fn gpu_trade_takes_the_reference() {
     let folder = Folder::new();
     write_ridge(&folder);
-    done(&folder, "reference field.npy -o truth.exr --spp 4096 --quiet");
-    let args =
-        ["trade", "field.npy", "-o", "out", "--evaluations", "1", "--reference", "truth.exr"];
+    done(&folder, "reference field.npy -o ground_truth.exr --spp 4096 --quiet");
+    let args = [
+        "trade",
+        "field.npy",
+        "-o",
+        "out",
+        "--evaluations",
+        "1",
+        "--reference",
+        "ground_truth.exr",
+    ];
     let run = folder.run(&args);
     assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
     let report = json(&folder.path("out/trade.json"));
-    let truth = read(&folder.path("truth.exr"));
-    let colours = |layer: &str| ["R", "G", "B"].map(|c| plane(&truth, &format!("{layer}{c}")));
+    let expected_light = read(&folder.path("ground_truth.exr"));
+    let colours =
+        |layer: &str| ["R", "G", "B"].map(|c| plane(&expected_light, &format!("{layer}{c}")));
     let all = |layer: &str| -> Vec<f64> {
         colours(layer).concat().iter().map(|v| f64::from(*v)).collect()
     };

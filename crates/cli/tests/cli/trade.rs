@@ -244,10 +244,12 @@ fn gpu_trade_of_a_small_field() {
 fn gpu_trade_against_a_reference() {
     let folder = Folder::new();
     write_peaks(&folder);
-    let truth = "render field.npy -o truth.exr --method brute-force --azimuths 256 --quiet";
-    succeeded(&folder, truth);
+    let expected_light =
+        "render field.npy -o ground_truth.exr --method brute-force --azimuths 256 --quiet";
+    succeeded(&folder, expected_light);
     let trade = |more: &str| {
-        let args = format!("trade field.npy -o out --evaluations 2 --reference truth.exr {more}");
+        let args =
+            format!("trade field.npy -o out --evaluations 2 --reference ground_truth.exr {more}");
         let run = folder.run_str(&args);
         assert_eq!(run.err, "", "{args}");
         (run, json(&folder.path("out/trade.json")))
@@ -279,14 +281,23 @@ fn gpu_trade_against_a_reference() {
     let before = folder.contents();
     for (args, said) in [
         (
-            "truth.exr --sun 90,20",
-            "truth.exr: header: sky: found 1,1,1, expected none (in this scene)",
+            "ground_truth.exr --sun 90,20",
+            "ground_truth.exr: header: sky: found 1,1,1, expected none (in this scene)",
         ),
-        ("truth.exr --sky 0.5", "truth.exr: header: sky: found 1,1,1, expected 0.5,0.5,0.5"),
-        ("truth.exr --cell 2", "truth.exr: header: cell_m: found 1,1, expected 2,2"),
-        ("truth.exr --z-scale 2", "truth.exr: header: base_m: found 0.89"),
-        ("truth.exr --border open", "truth.exr: header: border: found plane, expected open"),
-        ("truth.exr --albedo 0.5", "truth.exr: header: albedo: found 1, expected 0.5"),
+        (
+            "ground_truth.exr --sky 0.5",
+            "ground_truth.exr: header: sky: found 1,1,1, expected 0.5,0.5,0.5",
+        ),
+        ("ground_truth.exr --cell 2", "ground_truth.exr: header: cell_m: found 1,1, expected 2,2"),
+        ("ground_truth.exr --z-scale 2", "ground_truth.exr: header: base_m: found 0.89"),
+        (
+            "ground_truth.exr --border open",
+            "ground_truth.exr: header: border: found plane, expected open",
+        ),
+        (
+            "ground_truth.exr --albedo 0.5",
+            "ground_truth.exr: header: albedo: found 1, expected 0.5",
+        ),
         (
             "traced.exr --sky 0.5 --sun 90,20",
             "traced.exr: header: bounces: found 2, expected 0 (--bounces here)",
@@ -303,10 +314,10 @@ fn gpu_trade_against_a_reference() {
         assert!(run.err.contains(said), "{args}: {}", run.err);
     }
     assert!(folder.contents() == before);
-    let args = "trade a.asc -o other --reference truth.exr";
+    let args = "trade a.asc -o other --reference ground_truth.exr";
     let run = folder.run_str(args);
     assert!(
-        run.status == Some(1) && run.err.contains("truth.exr: size: found 16 × 16"),
+        run.status == Some(1) && run.err.contains("ground_truth.exr: size: found 16 × 16"),
         "{}",
         run.err
     );
@@ -324,7 +335,7 @@ fn gpu_trade_takes_specular() {
         .collect();
     folder.write("specular.npy", &npy("<f4", false, "(2, 16, 16)", &specular));
     let scene = "--sky 1 --sun 100,40 --albedo 0.5 --specular specular.npy --bounces 2";
-    let trace = format!("reference field.npy -o truth.exr --spp 512 --quiet {scene}");
+    let trace = format!("reference field.npy -o ground_truth.exr --spp 512 --quiet {scene}");
     succeeded(&folder, &trace);
     let bare = format!("trade field.npy -o out --evaluations 2 {scene}");
     let run = folder.run_str(&bare);
@@ -334,7 +345,7 @@ fn gpu_trade_takes_specular() {
         "{}",
         run.err
     );
-    succeeded(&folder, &format!("{bare} --reference truth.exr"));
+    succeeded(&folder, &format!("{bare} --reference ground_truth.exr"));
     let report = json(&folder.path("out/trade.json"));
     let flags = |list: &str| -> Vec<String> {
         let all = report[list].as_array().unwrap().iter();
@@ -358,10 +369,10 @@ fn gpu_trade_takes_specular() {
 fn write_bounced(folder: &Folder) -> &'static str {
     const SCENE: &str = "--sun 100,40 --albedo 0.8 --bounces 2";
     write_peaks(folder);
-    let truth = format!(
-        "render field.npy -o truth.exr --method brute-force --bounce-engine brute-force --quiet {SCENE}"
+    let expected_light = format!(
+        "render field.npy -o ground_truth.exr --method brute-force --bounce-engine brute-force --quiet {SCENE}"
     );
-    succeeded(folder, &truth);
+    succeeded(folder, &expected_light);
     SCENE
 }
 
@@ -371,7 +382,7 @@ fn gpu_trade_lists_bakes() {
     let folder = Folder::new();
     let scene = write_bounced(&folder);
     let args = format!(
-        "trade field.npy -o out --evaluations 2 --max-error 1 --reference truth.exr {scene}"
+        "trade field.npy -o out --evaluations 2 --max-error 1 --reference ground_truth.exr {scene}"
     );
     let run = succeeded(&folder, &args);
     assert!(run.out.contains("visible points can be found once"), "{}", run.out);
@@ -406,7 +417,7 @@ fn gpu_trade_lists_refused_bakes() {
     let folder = Folder::new();
     let scene = write_bounced(&folder);
     let args = format!(
-        "trade field.npy -o out --evaluations 2 --max-error 1 --reference truth.exr --memory-budget 300000 {scene}"
+        "trade field.npy -o out --evaluations 2 --max-error 1 --reference ground_truth.exr --memory-budget 300000 {scene}"
     );
     let run = succeeded(&folder, &args);
     let rows: Vec<&str> = run.out.lines().filter(|line| line.contains(": refused: ")).collect();

@@ -259,9 +259,10 @@ fn gpu_split_window_compares_with_the_reference() {
     for end in ["png", "exr"] {
         folder.done(&format!("render wall.asc {lit} -o ours.{end} --quiet"));
     }
-    folder.done("reference wall.asc --sun 90,30,0 --sky 0.3 -o truth.exr --spp 4096 --quiet");
+    folder
+        .done("reference wall.asc --sun 90,30,0 --sky 0.3 -o ground_truth.exr --spp 4096 --quiet");
     let split = folder.picture("split.png");
-    let [off, ours, truth] = [0, 66, 132].map(|first| crop(&split, first, 64));
+    let [off, ours, ground_truth] = [0, 66, 132].map(|first| crop(&split, first, 64));
     assert!(colours(&ours) == colours(&folder.picture("ours.png")), "ours");
     assert_same(&folder, "one.png", "ours.png");
     let level = code((0.3 + 0.5 / std::f64::consts::PI) as f32);
@@ -272,14 +273,14 @@ fn gpu_split_window_compares_with_the_reference() {
     }
     // In the shadow, 12 / tan 30° long.
     assert!(code(colours(&ours)[0][64 * 10 + 30]) < level - 16.0);
-    let exact = folder.picture("truth.exr");
+    let exact = folder.picture("ground_truth.exr");
     let named = |planes: &Planes, name: &str| {
         let at = planes.names.iter().position(|n| n == name).expect("a layer");
         planes.planes[at].clone()
     };
     let red = named(&exact, "R");
-    for (i, (shown, light)) in colours(&truth)[0].iter().zip(&red).enumerate() {
-        assert!((code(*shown) - code(*light)).abs() <= 1.0, "sample {i}");
+    for (i, (shown, light)) in colours(&ground_truth)[0].iter().zip(&red).enumerate() {
+        assert!((code(*shown) - code(*light)).abs() <= 1.0, "texel {i}");
     }
     let light = folder.picture("ours.exr");
     let ours = named(&light, if light.names.iter().any(|n| n == "Y") { "Y" } else { "R" });

@@ -1,7 +1,8 @@
 //! Expected errors and costs of bounces.
 
 use super::statistics::Statistics;
-use ridgelight::scene::{BounceEngine, Lines, Method, Quality, Scene};
+use crate::trade::has_no_lines;
+use ridgelight::scene::{BounceEngine, Quality, Scene};
 
 /// Parts of the error: pyramids instead of exact visibility, azimuths, interpolation between nodes,
 /// omitted bounces.
@@ -51,10 +52,8 @@ impl BouncedLight {
             return [0.0, 0.0, 0.0, left_out];
         }
         let has_levels = engine(quality) == BounceEngine::Pyramid;
-        let nodes = match quality.subsample {
-            1 => 0.0,
-            stride => f64::from(stride) / 2.0,
-        };
+        let stride = f64::from(quality.subsample);
+        let nodes = if quality.subsample == 1 { 0.0 } else { stride / 2.0 };
         let azimuths = 32.0 / f64::from(quality.bounces.azimuths);
         [f64::from(u8::from(has_levels)), azimuths, nodes, left_out]
     }
@@ -62,11 +61,9 @@ impl BouncedLight {
 
 /// The planner's choice: see [`BounceEngine::Auto`].
 pub(super) fn engine(quality: &Quality) -> BounceEngine {
-    let has_lines = quality.lines != Lines::Exact
-        && !matches!(quality.method, Method::BruteForce | Method::Pyramid);
     match quality.bounces.engine {
-        BounceEngine::Auto if has_lines => BounceEngine::Sweep,
-        BounceEngine::Auto => BounceEngine::BruteForce,
+        BounceEngine::Auto if has_no_lines(quality) => BounceEngine::BruteForce,
+        BounceEngine::Auto => BounceEngine::Sweep,
         chosen => chosen,
     }
 }
@@ -114,7 +111,7 @@ pub(super) fn work(scene: &Scene, quality: &Quality) -> [f64; ENGINES.len()] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use ridgelight::scene::Bounces;
+    use ridgelight::scene::{Bounces, Lines};
 
     /// A share of 0.1 and three requested bounces: without any, 1 + 0.1 + 0.01 of the first is
     /// omitted; with one, 0.1 + 0.01. Half the azimuths double the error; every fourth texel has

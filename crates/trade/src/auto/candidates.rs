@@ -29,17 +29,10 @@ const CUTOFFS: [f64; 5] = [1.0 / 16.0, 1.0 / 64.0, 1.0 / 256.0, 1.0 / 1024.0, 1.
 /// which suns and key lights cannot use. With bounces, which multiply the combinations, every
 /// second step of each count.
 pub(super) fn candidates(scene: &Scene, bounces: u32) -> Vec<Quality> {
-    let step = if bounces > 0 { 2 } else { 1 };
-    let of = |part: Part, values: &[u32], default: u32| -> Vec<u32> {
-        let few = || values.iter().step_by(step).copied().collect();
-        if part.is_in(scene) { few() } else { vec![default] }
-    };
     let plain = start();
-    let mut all = Vec::new();
-    if !Part::Geometry.is_in(scene) {
-        all.push(plain);
-    } else {
-        all.push(Quality { method: Method::BruteForce, ..plain });
+    let mut all = vec![plain];
+    if Part::Geometry.is_in(scene) {
+        all = vec![Quality { method: Method::BruteForce, ..plain }];
         if scene.lights.suns.is_empty() && scene.lights.keys.is_empty() {
             all.push(Quality { lines: Lines::Exact, ..plain });
         }
@@ -47,21 +40,23 @@ pub(super) fn candidates(scene: &Scene, bounces: u32) -> Vec<Quality> {
             all.extend(FUSES.map(|fuse| Quality { lines, fuse, ..plain }));
         }
     }
-    let times = |all: Vec<Quality>, values: Vec<u32>, set: fn(&mut Quality, u32)| {
-        let with = |quality: Quality| {
-            values.iter().map(move |v| {
-                let mut quality = quality;
-                set(&mut quality, *v);
+    let step = if bounces > 0 { 2 } else { 1 };
+    let mut times = |part: Part, values: &[u32], set: fn(&mut Quality, u32)| {
+        let with = |quality: &Quality| {
+            let of = |value: &u32| {
+                let mut quality = *quality;
+                set(&mut quality, *value);
                 quality
-            })
+            };
+            values.iter().step_by(step).map(of).collect::<Vec<_>>()
         };
-        all.into_iter().flat_map(with).collect::<Vec<_>>()
+        if part.is_in(scene) {
+            all = all.iter().flat_map(with).collect();
+        }
     };
-    all = times(all, of(Part::Azimuths, &AZIMUTHS, plain.azimuths), |q, v| q.azimuths = v);
-    all = times(all, of(Part::Table, &TABLES, plain.table_elevations), |q, v| {
-        q.table_elevations = v;
-    });
-    all = times(all, of(Part::Strips, &STRIPS, plain.sun_azimuths), |q, v| q.sun_azimuths = v);
+    times(Part::Azimuths, &AZIMUTHS, |q, v| q.azimuths = v);
+    times(Part::Table, &TABLES, |q, v| q.table_elevations = v);
+    times(Part::Strips, &STRIPS, |q, v| q.sun_azimuths = v);
     if bounces == 0 { all } else { with_bounces(scene, bounces, &all) }
 }
 
@@ -88,22 +83,17 @@ fn with_bounces(scene: &Scene, count: u32, all: &[Quality]) -> Vec<Quality> {
             }
         }
     }
-    let with = |q: &Quality| {
-        let (quality, is_exact) = (*q, is_exact(q));
-        // Without lines the planner itself uses brute force.
-        let is_other =
-            move |b: &&(Bounces, u32)| !is_exact || b.0.engine != BounceEngine::BruteForce;
-        bounced
-            .iter()
-            .filter(is_other)
-            .map(move |(bounces, subsample)| Quality {
-                bounces: *bounces,
-                subsample: *subsample,
-                ..quality
-            })
-            .collect::<Vec<_>>()
-    };
-    all.iter().flat_map(with).collect()
+    let mut both = Vec::new();
+    for quality in all {
+        let is_exact = is_exact(quality);
+        for &(bounces, subsample) in &bounced {
+            // Without lines the planner itself uses brute force.
+            if !is_exact || bounces.engine != BounceEngine::BruteForce {
+                both.push(Quality { bounces, subsample, ..*quality });
+            }
+        }
+    }
+    both
 }
 
 /// Whether horizons are exact.

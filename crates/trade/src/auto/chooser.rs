@@ -6,6 +6,7 @@ use super::candidates::{candidates, is_exact, is_finer};
 use super::model::{Costs, Model};
 use super::probes::Measured;
 use super::statistics::Statistics;
+use crate::trade::Goal;
 use ridgelight::scene::{BounceEngine, Bounces, Quality, Scene};
 
 /// Most frames to try, and most exact ones beyond them.
@@ -28,15 +29,6 @@ const DEAREST_CONTROL: f64 = 6.0;
 const NEARLY: f64 = 2.0;
 /// Frames expected to take longer are not rendered: half a minute.
 const LONGEST_NS: f64 = 30e9;
-
-/// The goal of a choice.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Goal {
-    /// The fastest of at most this relative RMSE, above 0.
-    MaxError(f64),
-    /// The most accurate of at most this time per frame, ns, above 0.
-    MaxCost(f64),
-}
 
 impl Goal {
     /// Whether a trial reaches the goal: an error by its bound, not by its estimate.
@@ -105,15 +97,10 @@ impl<'a> Chooser<'a> {
         match self.goal {
             Goal::MaxError(most) => self.next_within(most),
             Goal::MaxCost(most) => {
-                let affordable = self.open().filter(|q| self.cost(q) <= most).copied();
-                let next = affordable.min_by(|a, b| self.error(a).total_cmp(&self.error(b)));
-                match self.best() {
-                    Some(best) => {
-                        next.filter(|q| self.error(q) < (1.0 - WORTH) * best.measured.error)
-                    }
-                    None => next.or_else(|| {
-                        self.open().min_by(|a, b| self.cost(a).total_cmp(&self.cost(b))).copied()
-                    }),
+                let next = self.least(|q| self.cost(q) <= most, Self::error);
+                match self.best().map(|best| (1.0 - WORTH) * best.measured.error) {
+                    Some(worth) => next.filter(|q| self.error(q) < worth),
+                    None => next.or_else(|| self.least(|_| true, Self::cost)),
                 }
             }
         }
@@ -145,10 +132,8 @@ impl<'a> Chooser<'a> {
     fn control(&self, most: f64) -> Option<Quality> {
         let Some(holds) = self.fastest_within(most) else { return self.most_accurate() };
         let affordable = |q: &Quality| self.cost(q) <= DEAREST_CONTROL * self.cost(&holds);
-        self.fastest_within(most / CONTROL).filter(affordable).or_else(|| {
-            let all = self.open().filter(|q| affordable(q));
-            all.min_by(|a, b| self.error(a).total_cmp(&self.error(b))).copied()
-        })
+        let fine = self.fastest_within(most / CONTROL).filter(affordable);
+        fine.or_else(|| self.least(affordable, Self::error))
     }
 
     /// Records nanoseconds of a frame by pass label; [`judged`](Self::judged) records its error.
@@ -161,14 +146,15 @@ impl<'a> Chooser<'a> {
     /// Records errors of all rendered settings, in order; none where one is unchanged.
     pub fn judged(&mut self, measured: &[Option<Measured>]) {
         self.model = self.first_guess.clone();
-        let mut trials = std::mem::take(&mut self.trials);
-        for (trial, measured) in trials.iter_mut().zip(measured) {
+        for (trial, measured) in self.trials.iter_mut().zip(measured) {
             trial.measured = measured.unwrap_or(trial.measured);
             if trial.measured != Measured::UNKNOWN {
-                self.learn(trial);
+                let Measured { error, at_most } = trial.measured;
+                // `at_most` is 2.7 or more standard deviations above, in ln about that much of it.
+                let spread = (at_most / error.max(1e-6)).max(1.0).ln() / 2.7;
+                self.model.learn(&trial.quality, error, spread);
             }
         }
-        self.trials = trials;
     }
 
     /// Records error and nanoseconds of settings rendered again.
@@ -188,13 +174,8 @@ impl<'a> Chooser<'a> {
         if self.trials.len() >= TRIALS + RESORTS || self.trials.iter().any(is_held) {
             return None;
         }
-        let exact = || self.open().filter(|q| is_surest(q));
-        let least = exact().map(|q| self.error(q)).min_by(f64::total_cmp)?;
-        let enough = (most / CONTROL).max(least);
-        exact()
-            .filter(|q| self.error(q) <= enough)
-            .min_by(|a, b| self.cost(a).total_cmp(&self.cost(b)))
-            .copied()
+        let enough = (most / CONTROL).max(self.error(&self.least(is_surest, Self::error)?));
+        self.least(|q| is_surest(q) && self.error(q) <= enough, Self::cost)
     }
 
     /// The fastest rendered settings well within the error, else those of the least error.
@@ -216,13 +197,6 @@ impl<'a> Chooser<'a> {
 
     fn reached(&self) -> impl Iterator<Item = &Trial> {
         self.trials.iter().filter(|t| self.goal.is_reached(t))
-    }
-
-    fn learn(&mut self, trial: &Trial) {
-        let Measured { error, at_most } = trial.measured;
-        // `at_most` is 2.7 or more standard deviations above, in ln about that much of it.
-        let spread = (at_most / error.max(1e-6)).max(1.0).ln() / 2.7;
-        self.model.learn(&trial.quality, error, spread);
     }
 
     /// Whether some rendered settings may improve on [`best`](Self::best), by their estimate: more
@@ -311,16 +285,23 @@ impl<'a> Chooser<'a> {
     }
 
     fn fastest_within(&self, most: f64) -> Option<Quality> {
-        self.open()
-            .filter(|q| self.error(q) <= most)
-            .min_by(|a, b| self.cost(a).total_cmp(&self.cost(b)))
-            .copied()
+        self.least(|q| self.error(q) <= most, Self::cost)
+    }
+
+    /// Open settings with the least cost or error of some.
+    fn least(
+        &self,
+        is_wanted: impl Fn(&Quality) -> bool,
+        of: fn(&Self, &Quality) -> f64,
+    ) -> Option<Quality> {
+        let wanted = self.open().filter(|q| is_wanted(q));
+        wanted.min_by(|a, b| of(self, a).total_cmp(&of(self, b))).copied()
     }
 
     /// The fastest of those nearly as accurate as the best.
     fn most_accurate(&self) -> Option<Quality> {
-        let least = self.open().map(|q| self.error(q)).min_by(f64::total_cmp)?;
-        self.fastest_within(NEARLY * least)
+        let best = self.least(|_| true, Self::error)?;
+        self.fastest_within(NEARLY * self.error(&best))
     }
 }
 

@@ -16,7 +16,8 @@ mod statistics;
 mod tests;
 mod walk;
 
-pub use chooser::{Chooser, Goal, Trial};
+pub use crate::trade::Goal;
+pub use chooser::{Chooser, Trial};
 pub use model::{Costs, Expected, FEATURES, Model, PARTS, Part};
 pub use probes::{Measured, Probes, Traced, apart, unsampled_bounce_error};
 pub use statistics::Statistics;

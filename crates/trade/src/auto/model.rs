@@ -247,21 +247,9 @@ impl Costs {
     pub fn guessed(grid_points: usize) -> Self {
         let grid_points = grid_points as f64;
         // Tables: README's 2.2 ms for 64 azimuths of 512 elevations.
-        Self {
-            units_ns: [
-                grid_points,
-                grid_points,
-                grid_points,
-                67.0,
-                grid_points,
-                0.0,
-                grid_points,
-                grid_points,
-                grid_points,
-            ],
-            overheads_ns: [0.0; KINDS],
-            measured: Default::default(),
-        }
+        let [one, table, other] = [[grid_points; 3], [67.0, grid_points, 0.0], [grid_points; 3]];
+        let units_ns = [one, table, other].as_flattened().try_into().expect("nine kinds");
+        Self { units_ns, overheads_ns: [0.0; KINDS], measured: Default::default() }
     }
 
     fn work(scene: &Scene, quality: &Quality) -> [f64; KINDS] {
@@ -285,17 +273,8 @@ impl Costs {
         let sphere_slices =
             f64::from(quality.sun_azimuths) * scene.lights.sphere_lights.len() as f64;
         let [walk, march, gather] = bounced::work(scene, quality);
-        [
-            all * sweep,
-            all * exact,
-            all * shade,
-            table,
-            sphere_slices * SLICE,
-            1.0,
-            walk,
-            march,
-            gather,
-        ]
+        let [sweep, exact, shade] = [sweep, exact, shade].map(|each| all * each);
+        [sweep, exact, shade, table, sphere_slices * SLICE, 1.0, walk, march, gather]
     }
 
     /// Expected nanoseconds of a frame.

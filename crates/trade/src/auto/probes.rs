@@ -129,7 +129,7 @@ impl Probes {
     /// # Panics
     /// Another number of texels.
     pub fn add_bounced(&mut self, traced: &[Traced], unsampled: [f64; 3]) {
-        assert_eq!(traced.len(), self.len(), "one per probe");
+        assert_eq!(traced.len(), self.count(), "one per probe");
         for ((light, noise), more) in self.light.iter_mut().zip(&mut self.noise).zip(traced) {
             light.iter_mut().zip(more.mean).for_each(|(l, m)| *l += m);
             *noise += more.standard_error.iter().map(|e| e * e).sum::<f64>() / 3.0;
@@ -146,14 +146,14 @@ impl Probes {
         let square = (error * self.mean()).powi(2);
         let each = self.noise.iter().zip(&self.factors);
         let sum: f64 = each.map(|(n, f)| f.powi(2) * noise_variance(square, share * n)).sum();
-        self.relative(deviations * (sum / self.len() as f64 / count as f64).sqrt())
+        self.relative(deviations * (sum / self.count() as f64 / count as f64).sqrt())
     }
 
     /// Mean radiance.
     fn mean(&self) -> f64 {
         let each = self.light.iter().zip(&self.factors);
         let sum: f64 = each.map(|(l, f)| f * l.iter().sum::<f64>() / 3.0).sum();
-        (sum / self.len() as f64).abs()
+        (sum / self.count() as f64).abs()
     }
 
     /// The root of a mean square over the mean radiance.
@@ -170,7 +170,7 @@ impl Probes {
             *self = others.clone();
             return;
         }
-        let [own, more] = [self.len(), others.len()].map(|n| n as f64);
+        let [own, more] = [self.count(), others.count()].map(|n| n as f64);
         self.own_rms =
             ((own * self.own_rms.powi(2) + more * others.own_rms.powi(2)) / (own + more)).sqrt();
         self.places.extend(&others.places);
@@ -199,19 +199,14 @@ impl Probes {
         self.relative((self.own_rms.powi(2) - same.own_rms.powi(2)).max(0.0))
     }
 
-    /// Number of probes.
-    pub fn len(&self) -> usize {
+    /// Number of probes, 1 or more.
+    pub fn count(&self) -> usize {
         self.places.len()
     }
 
     /// Whether they are all texels without void.
     pub fn is_whole(&self) -> bool {
         self.is_whole
-    }
-
-    /// Always false: a field of voids only has no probes.
-    pub fn is_empty(&self) -> bool {
-        self.places.is_empty()
     }
 
     /// The relative RMSE of a picture: planes of one or three channels, row-major, NaN at voids.
@@ -237,14 +232,9 @@ impl Probes {
     ) -> Measured {
         let own = self.square(picture, picture, deviations);
         let better = control.map(|c| (c, self.square(c, c, deviations)));
-        let square = match better {
-            Some((c, of_control)) if of_control.estimate <= own.estimate => {
-                Some(self.square(picture, c, deviations))
-                    .filter(|s| s.estimate > 0.0)
-                    .unwrap_or(own)
-            }
-            _ => own,
-        };
+        let better = better.filter(|(_, of_control)| of_control.estimate <= own.estimate);
+        let square = better.map(|(c, _)| self.square(picture, c, deviations));
+        let square = square.filter(|s| s.estimate > 0.0).unwrap_or(own);
         let relative = |s: f64| if s == 0.0 { 0.0 } else { s.sqrt() / square.mean };
         let own = relative(self.own_rms.powi(2));
         let [error, at_most] = [square.estimate, square.at_most].map(|s| relative(s.max(0.0)));
@@ -257,15 +247,12 @@ impl Probes {
         let at =
             |planes: &[Vec<f32>], c: usize, i: usize| f64::from(planes[c.min(planes.len() - 1)][i]);
         let (mut squares, mut sum, mut values) = (0.0, 0.0, 0.0_f64);
-        for c in 0..3 {
-            for i in 0..picture[0].len() {
-                let (t, k) = (at(picture, c, i), at(control, c, i));
-                if !k.is_nan() {
-                    squares += (t - k).powi(2);
-                    sum += k;
-                    values += 1.0;
-                }
-            }
+        let all = (0..3).flat_map(|c| (0..picture[0].len()).map(move |i| (c, i)));
+        let both = all.map(|(c, i)| (at(picture, c, i), at(control, c, i)));
+        for (t, k) in both.filter(|(_, k)| !k.is_nan()) {
+            squares += (t - k).powi(2);
+            sum += k;
+            values += 1.0;
         }
         let count = self.places.len() as f64;
         let (mut rest, mut shift, mut path_variance) = (Vec::new(), 0.0, 0.0);

@@ -37,12 +37,11 @@ impl Statistics {
     /// Reads all heights and texels once, and traces 64 azimuths from 128 grid points.
     pub fn of(scene: &Scene) -> Self {
         let field = &scene.field;
-        let slope = slope(field, 1);
-        let far = slope_or(field, FAR, slope);
-        let [low, high] = field
-            .heights_m()
-            .iter()
-            .fold([f32::INFINITY, f32::NEG_INFINITY], |[l, h], v| [l.min(*v), h.max(*v)]);
+        let slope = slope_of(field, 1);
+        let has_far = field.rows().max(field.cols()) > FAR;
+        let far = if has_far { slope_of(field, FAR) } else { slope };
+        let heights = || field.heights_m().iter().copied();
+        let (low, high) = (heights().fold(f32::MAX, f32::min), heights().fold(f32::MIN, f32::max));
         let [cell_x, cell_y] = field.cell_m();
         let side = (field.cols() as f64 * cell_x).max(field.rows() as f64 * cell_y);
         let lights = &scene.lights;
@@ -171,7 +170,7 @@ fn golden(k: usize, count: usize) -> usize {
 
 /// Root mean square slope between grid points `apart`, along rows and columns; 0 where there are
 /// none.
-fn slope(field: &HeightField, apart: usize) -> f64 {
+fn slope_of(field: &HeightField, apart: usize) -> f64 {
     let (rows, cols, h) = (field.rows(), field.cols(), field.heights_m());
     let [cell_x, cell_y] = field.cell_m().map(|c| c * apart as f64);
     let (mut sum, mut count) = (0.0, 0.0_f64);
@@ -188,11 +187,6 @@ fn slope(field: &HeightField, apart: usize) -> f64 {
         }
     }
     (sum / count.max(1.0)).sqrt()
-}
-
-/// The same, or a fallback for a field too small for it.
-fn slope_or(field: &HeightField, apart: usize, other: f64) -> f64 {
-    if field.rows().max(field.cols()) > apart { slope(field, apart) } else { other }
 }
 
 /// Light of an environment on level ground of albedo 1, and the standard deviations over azimuth

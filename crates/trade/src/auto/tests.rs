@@ -49,6 +49,10 @@ fn whole(scene: &Scene) -> Probes {
     Probes::of(scene, SIDE * SIDE, 7, &[]).unwrap()
 }
 
+fn full() -> Error {
+    Error::Limit { what: "".into(), needs: "".into(), limit: "".into() }
+}
+
 fn chosen(goal: Goal) -> Result<Chosen> {
     let scene = scene();
     choose(&scene, goal, WHOLE, None, |quality| draw(&scene, quality))
@@ -104,7 +108,6 @@ fn a_time_budget_is_kept() {
     assert!(found.trial.ns <= 20e6);
     assert_eq!(found.trial.quality.azimuths, 16, "{found:?}");
     let scene = scene();
-    let full = || Error::Limit { what: "".into(), needs: "".into(), limit: "".into() };
     let small = choose(&scene, Goal::MaxCost(20e6), WHOLE, None, |quality| {
         if quality.azimuths > 12 { Err(full()) } else { draw(&scene, quality) }
     });
@@ -160,7 +163,6 @@ fn search_limits_and_bounds_are_reported() {
         Ok(drawn)
     });
     assert!(slow.unwrap_err().to_string().contains("take more than 30 s"));
-    let full = || Error::Limit { what: "".into(), needs: "".into(), limit: "".into() };
     for (probes, confidence) in [(40, None), (SIDE * SIDE, Some(Probes::CONFIDENCE))] {
         let mut frames = 0;
         let found = choose(&scene, Goal::MaxError(0.1), (probes, 7), None, |quality| {
@@ -304,7 +306,7 @@ fn probes_measure_errors_and_controls_reduce_noise() {
     let measured = error(&all, std::slice::from_ref(&bright), None);
     assert!((measured.error / expected - 1.0).abs() < 1e-3, "{measured:?} {expected}");
     let few = Probes::of(&scene, 64, 1, &[]).unwrap();
-    assert_eq!(few.len(), 64);
+    assert_eq!(few.count(), 64);
     let rough = draw(&scene, &Quality { azimuths: 8, ..Quality::default() }).unwrap().planes;
     let ground_truth = error(&all, &rough, None).error;
     let [alone, helped] = [None, Some(right.as_slice())].map(|c| error(&few, &rough, c));

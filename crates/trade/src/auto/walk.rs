@@ -1,15 +1,12 @@
 //! The whole choice, for a caller that can render: render, measure, render again.
 
-use super::chooser::{Chooser, Goal, Trial};
+use super::chooser::{Chooser, Trial};
 use super::model::{Expected, PARTS, Part};
 use super::probes::{Probes, Traced, apart, unsampled_bounce_error};
 use super::statistics::Statistics;
-use crate::trade::start;
+use crate::trade::{Goal, start};
 use ridgelight::plan::REFERENCE_BATCH;
-use ridgelight::scene::{
-    Basis, Bounces, Fuse, Hull, Levels, LightBasis, Lines, Method, Precision, Quality, Receiver,
-    Scene, Wedges, Window,
-};
+use ridgelight::scene::{Basis, Bounces, Lines, Method, Quality, Scene, setting};
 use ridgelight::{Error, Result};
 
 /// A rendered frame.
@@ -40,32 +37,19 @@ pub struct Chosen {
     pub trials: Vec<Trial>,
 }
 
-/// Settings of the first frames: probes are taken where their pictures differ most. The second are
-/// the defaults.
-const COARSE: Quality = Quality {
-    method: Method::Sweep,
-    azimuths: 8,
-    sun_azimuths: 2,
-    light_cutoff: 1.0 / 65536.0,
-    light_basis: LightBasis::Exact,
-    lines: Lines::FourCells,
-    fuse: Fuse::AimedNearest,
-    precision: Precision::F32,
-    hull: Hull::Auto,
-    table_elevations: 64,
-    // For pyramids only.
-    level_step: 4,
-    level_offset: 2,
-    levels: Levels::Stack,
-    basis: Basis::Table,
-    sh_order: 4,
-    wedges: Wedges::Slices,
-    receiver: Receiver::Plane,
-    window: Window::None,
-    subsample: 2,
-    wedge_side: 64,
-    bounces: Bounces { azimuths: 8, ..Bounces::DEFAULT },
-};
+/// Settings of the second frame; the first are the defaults. Probes are taken where the pictures of
+/// the two differ most.
+fn coarse() -> Quality {
+    Quality {
+        azimuths: 8,
+        sun_azimuths: 2,
+        lines: Lines::FourCells,
+        table_elevations: 64,
+        subsample: 2,
+        bounces: Bounces { azimuths: 8, ..Bounces::DEFAULT },
+        ..start()
+    }
+}
 
 /// Bounced light, which the choice must also get right.
 pub struct Bounced<'t> {
@@ -125,11 +109,11 @@ impl<'a> Judge<'a> {
         goal: Goal,
     ) -> Result<Self> {
         let probes = Probes::of(scene, step, seed, &unsure)?;
-        let batches = FIRST_BATCHES;
+        let direct = probes.clone();
         let mut judge = Self {
             scene,
             bounced,
-            batches,
+            batches: FIRST_BATCHES,
             unsure,
             step,
             seed,
@@ -137,15 +121,14 @@ impl<'a> Judge<'a> {
             pictures: vec![],
             control: 0,
         };
-        let direct = judge.probes.clone();
-        judge.trace_first()?;
+        judge.probes = judge.traced(direct.clone())?;
         let (wanted, error) = match goal {
             Goal::MaxError(most) => (NOISE_TARGET * most, most),
             Goal::MaxCost(_) => (TIMED_NOISE_TARGET, 0.0),
         };
         let known = scene.field.rows() * scene.field.cols()
             - scene.field.voids().map_or(0, |v| v.iter().filter(|v| **v).count());
-        let judging = known.min(CONFIRMING_PROBES * judge.probes.len());
+        let judging = known.min(CONFIRMING_PROBES * judge.probes.count());
         let noise = |batches: u32, error: f64| {
             let share = f64::from(FIRST_BATCHES) / f64::from(batches);
             judge.probes.path_noise(error, share, judging, Probes::EIGHT_BOUNDS)
@@ -174,8 +157,7 @@ impl<'a> Judge<'a> {
             .unwrap_or(MOST_BATCHES);
         if enough > FIRST_BATCHES {
             judge.batches = enough;
-            judge.probes = direct;
-            judge.trace_first()?;
+            judge.probes = judge.traced(direct)?;
         }
         Ok(judge)
     }
@@ -183,32 +165,21 @@ impl<'a> Judge<'a> {
     /// Probes of a new seed.
     fn fresh(&mut self, wanted: usize) -> Result<Probes> {
         self.seed = self.seed.wrapping_add(1 << 32);
-        let mut probes = Probes::of(self.scene, wanted, self.seed, &self.unsure)?;
-        self.trace(&mut probes)?;
-        Ok(probes)
-    }
-
-    fn trace_first(&mut self) -> Result<()> {
-        let mut probes = self.probes.clone();
-        self.trace(&mut probes)?;
-        self.probes = probes;
-        Ok(())
+        self.traced(Probes::of(self.scene, wanted, self.seed, &self.unsure)?)
     }
 
     /// Adds bounced light, where there is any, by new paths.
-    fn trace(&mut self, probes: &mut Probes) -> Result<()> {
-        let Some(bounced) = &mut self.bounced else { return Ok(()) };
+    fn traced(&mut self, mut probes: Probes) -> Result<Probes> {
+        let Some(bounced) = &mut self.bounced else { return Ok(probes) };
         self.seed = self.seed.wrapping_add(1 << 32);
         // Of both halves, mixed (Steele, Lea & Flood 2014).
         let seed = (self.seed ^ (self.seed >> 32)).wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 32;
         let traced = (bounced.trace)(probes.places(), self.batches, seed as u32)?;
-        let of = (self.batches * REFERENCE_BATCH, probes.len());
-        let probability = Probes::UNSAMPLED_PROBABILITY;
-        probes.add_bounced(
-            &traced,
-            unsampled_bounce_error(self.scene, bounced.count, of, probability),
-        );
-        Ok(())
+        let of = (self.batches * REFERENCE_BATCH, probes.count());
+        let unsampled =
+            unsampled_bounce_error(self.scene, bounced.count, of, Probes::UNSAMPLED_PROBABILITY);
+        probes.add_bounced(&traced, unsampled);
+        Ok(probes)
     }
 
     /// Measures a frame and, where it is the best control or probes were added, all others again.
@@ -217,15 +188,11 @@ impl<'a> Judge<'a> {
         self.pictures.push(Some(drawn.planes));
         chooser.drawn(quality, &drawn.passes);
         self.judge(chooser);
-        self.decide(chooser)
-    }
-
-    fn decide(&mut self, chooser: &mut Chooser<'_>) -> Result<()> {
         while chooser.is_undecided()
             && !self.probes.is_whole()
-            && self.probes.len() < MOST_PROBES * self.step
+            && self.probes.count() < MOST_PROBES * self.step
         {
-            let more = self.fresh(self.probes.len())?;
+            let more = self.fresh(self.probes.count())?;
             self.probes.extend(&more);
             self.judge(chooser);
         }
@@ -233,17 +200,13 @@ impl<'a> Judge<'a> {
     }
 
     fn judge(&mut self, chooser: &mut Chooser<'_>) {
-        let without_control =
-            |p: &Vec<Vec<f32>>| self.probes.error(p, None, Probes::ONE_BOUND).error;
-        let own = self
-            .pictures
-            .iter()
-            .enumerate()
-            .filter_map(|(i, p)| Some((i, without_control(p.as_ref()?))));
+        let errors = |control: Option<&[Vec<f32>]>| -> Vec<_> {
+            let measured = |p: &Vec<Vec<f32>>| self.probes.error(p, control, Probes::ONE_BOUND);
+            self.pictures.iter().map(|p| p.as_ref().map(measured)).collect()
+        };
+        let own = errors(None).into_iter().enumerate().filter_map(|(i, e)| Some((i, e?.error)));
         self.control = own.min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(i, _)| i);
-        let control = self.control();
-        let measured = |p: &Vec<Vec<f32>>| self.probes.error(p, control, Probes::ONE_BOUND);
-        let all: Vec<_> = self.pictures.iter().map(|p| p.as_ref().map(measured)).collect();
+        let all = errors(self.control());
         chooser.judged(&all);
         for (i, (picture, trial)) in self.pictures.iter_mut().zip(chooser.trials()).enumerate() {
             if i != self.control && !chooser.may_be_best(trial) {
@@ -286,7 +249,7 @@ pub fn choose<'a>(
     let count = bounced.as_ref().map_or(0, |b| b.count);
     let mut chooser = Chooser::new(scene, &Statistics::of(scene), goal, count);
     let (mut pilots, mut refused) = (Vec::new(), None);
-    for mut quality in [start(), COARSE] {
+    for mut quality in [start(), coarse()] {
         quality.bounces.count = count;
         match draw(&quality) {
             Err(limit @ Error::Limit { .. }) => {
@@ -314,10 +277,7 @@ pub fn choose<'a>(
             limit: format!(
                 "{}, the difference to half of its rays{}",
                 figures(own),
-                match count {
-                    0 => "",
-                    _ => ", or unsampled light",
-                }
+                if count > 0 { ", or unsampled light" } else { "" }
             ),
         });
     }
@@ -349,7 +309,7 @@ pub fn choose<'a>(
             return Ok(Chosen {
                 trial,
                 expected: chooser.expected(&quality),
-                probes: fresh.len(),
+                probes: fresh.count(),
                 paths: if count > 0 { judge.batches * REFERENCE_BATCH } else { 0 },
                 confidence: (is_aimed || fresh.is_whole()).then_some(Probes::CONFIDENCE),
                 trials: chooser.trials().to_vec(),
@@ -358,7 +318,7 @@ pub fn choose<'a>(
         judge.probes.extend(&fresh);
         judge.judge(&mut chooser);
     }
-    Err(out_of_reach(goal, &chooser, judge.probes.len(), scene))
+    Err(out_of_reach(goal, &chooser, judge.probes.count(), scene))
 }
 
 fn out_of_reach(goal: Goal, chooser: &Chooser, probes: usize, scene: &Scene) -> Error {
@@ -401,32 +361,27 @@ fn figures(x: f64) -> String {
 
 /// Chosen settings that affect the scene, as "`lines 1` `azimuths 64`".
 pub fn flags(quality: &Quality, scene: &Scene) -> String {
-    let mut all = match (quality.method, quality.lines) {
-        _ if !Part::Geometry.is_in(scene) => String::new(),
-        (Method::BruteForce, _) => "`method brute-force`".to_owned(),
-        (Method::Pyramid, _) => {
-            let Quality { level_step, level_offset, .. } = quality;
-            format!("`method pyramid` `level_step {level_step}` `level_offset {level_offset}`")
-        }
-        (_, Lines::Exact) => "`lines exact`".to_owned(),
-        (_, lines) => format!("`lines {}` `fuse {}`", lines.name(), quality.fuse.name()),
+    let geometry: &[&str] = match (quality.method, quality.lines) {
+        (Method::BruteForce, _) => &["method"],
+        (Method::Pyramid, _) => &["method", "level_step", "level_offset"],
+        (_, Lines::Exact) => &["lines"],
+        _ => &["lines", "fuse"],
     };
+    let mut names: Vec<&str> = Vec::new();
     for part in PARTS.into_iter().filter(|p| p.is_in(scene)) {
-        match part {
-            Part::Geometry => {}
-            Part::Azimuths => all += &format!(" `azimuths {}`", quality.azimuths),
-            Part::Table if quality.basis == Basis::Sh => {
-                all += &format!(" `basis sh` `sh_order {}`", quality.sh_order);
-            }
-            Part::Table => all += &format!(" `table_elevations {}`", quality.table_elevations),
-            Part::Strips => all += &format!(" `sun_azimuths {}`", quality.sun_azimuths),
-        }
+        names.extend(match part {
+            Part::Geometry => geometry,
+            Part::Azimuths => &["azimuths"],
+            Part::Table if quality.basis == Basis::Sh => &["basis", "sh_order"],
+            Part::Table => &["table_elevations"],
+            Part::Strips => &["sun_azimuths"],
+        });
     }
-    let Bounces { count, engine, azimuths, cutoff, .. } = quality.bounces;
-    if count > 0 {
-        all += &format!(" `bounces {count}` `bounce_engine {}`", engine.name());
-        all += &format!(" `bounce_azimuths {azimuths}` `bounce_cutoff {cutoff}`");
-        all += &format!(" `subsample {}`", quality.subsample);
+    if quality.bounces.count > 0 {
+        let bounces = ["bounces", "bounce_engine", "bounce_azimuths", "bounce_cutoff", "subsample"];
+        names.extend(bounces);
     }
-    all.trim_start().to_owned()
+    let all = names.iter().filter_map(|name| setting(name));
+    let all: Vec<_> = all.map(|s| format!("`{} {}`", s.name, s.get(quality))).collect();
+    all.join(" ")
 }

@@ -39,15 +39,12 @@ pub fn frontier(values: &[Value]) -> Vec<usize> {
     order
 }
 
-/// The rule for picking a point of the frontier.
+/// What settings have to reach.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Rule {
-    /// The least product of cost and error: the tangent of slope -1 on log axes. From there, twice
-    /// the cost nowhere halves the error, and half the cost nowhere only doubles it.
-    Knee,
-    /// The fastest of at most this error.
+pub enum Goal {
+    /// The fastest of at most this error (relative RMSE), above 0.
     MaxError(f64),
-    /// The most accurate of at most this cost.
+    /// The most accurate of at most this cost (time per frame, ns), above 0.
     MaxCost(f64),
 }
 
@@ -56,38 +53,23 @@ pub enum Rule {
 pub struct Recommendation {
     /// Its index in the values.
     pub point: usize,
-    /// Whether it keeps the rule's bound; where none does it is the nearest one.
+    /// Whether it reaches the goal; where none does it is the nearest one.
     pub holds: bool,
 }
 
-/// Picks by `rule`; none for no values.
-pub fn recommend(values: &[Value], rule: Rule) -> Option<Recommendation> {
+/// Picks for a `goal`; none for no values. Without a goal it picks the knee, the least product of
+/// cost and error: the tangent of slope -1 on log axes. From there, twice the cost nowhere halves
+/// the error, and half the cost nowhere only doubles it.
+pub fn recommend(values: &[Value], goal: Option<Goal>) -> Option<Recommendation> {
     let front = frontier(values);
-    let [first, last] = [*front.first()?, *front.last()?];
-    let found = match rule {
-        Rule::Knee => front
-            .iter()
-            .copied()
-            .min_by(|&a, &b| {
-                let sum = |i: usize| values[i].logs().iter().sum::<f64>();
-                sum(a).total_cmp(&sum(b))
-            })
-            .map(|point| (point, true)),
-        Rule::MaxError(most) => Some(
-            front
-                .iter()
-                .find(|&&i| values[i].error <= most)
-                .map_or((last, false), |&point| (point, true)),
-        ),
-        Rule::MaxCost(most) => Some(
-            front
-                .iter()
-                .rev()
-                .find(|&&i| values[i].cost <= most)
-                .map_or((first, false), |&point| (point, true)),
-        ),
+    let mut all = front.iter().copied();
+    let product = |i: usize| values[i].logs().iter().sum::<f64>();
+    let (found, nearest) = match goal {
+        None => (all.min_by(|a, b| product(*a).total_cmp(&product(*b))), front.first()),
+        Some(Goal::MaxError(most)) => (all.find(|i| values[*i].error <= most), front.last()),
+        Some(Goal::MaxCost(most)) => (all.rfind(|i| values[*i].cost <= most), front.first()),
     };
-    found.map(|(point, holds)| Recommendation { point, holds })
+    Some(Recommendation { point: found.unwrap_or(*nearest?), holds: found.is_some() })
 }
 
 #[cfg(test)]
@@ -124,24 +106,24 @@ mod tests {
     #[test]
     fn the_knee_is_the_least_product() {
         let all = values(&[(1.0, 8.0), (2.0, 3.0), (3.0, 2.5), (8.0, 1.0)]);
-        assert_eq!(recommend(&all, Rule::Knee), Some(Recommendation { point: 1, holds: true }));
+        assert_eq!(recommend(&all, None), Some(Recommendation { point: 1, holds: true }));
         let halved: Vec<Value> =
             all.iter().map(|v| Value { cost: v.cost / 2.0, error: v.error / 2.0 }).collect();
-        assert_eq!(recommend(&halved, Rule::Knee), recommend(&all, Rule::Knee));
+        assert_eq!(recommend(&halved, None), recommend(&all, None));
         // A result without error is worth any time; of several the fastest.
         let exact = values(&[(1.0, 8.0), (5.0, 0.0), (9.0, 0.0)]);
-        assert_eq!(recommend(&exact, Rule::Knee).unwrap().point, 1);
-        assert_eq!(recommend(&[], Rule::Knee), None);
+        assert_eq!(recommend(&exact, None).unwrap().point, 1);
+        assert_eq!(recommend(&[], None), None);
     }
 
     #[test]
     fn broken_bounds_are_reported() {
         let all = values(&[(1.0, 8.0), (2.0, 3.0), (3.0, 2.5), (8.0, 1.0), (4.0, 2.6)]);
-        let pick = |rule| recommend(&all, rule).map(|r| (r.point, r.holds)).unwrap();
-        assert_eq!(pick(Rule::MaxError(2.7)), (2, true));
-        assert_eq!(pick(Rule::MaxError(2.5)), (2, true));
-        assert_eq!(pick(Rule::MaxError(0.5)), (3, false));
-        assert_eq!(pick(Rule::MaxCost(7.9)), (2, true));
-        assert_eq!(pick(Rule::MaxCost(0.5)), (0, false));
+        let pick = |goal| recommend(&all, goal).map(|r| (r.point, r.holds)).unwrap();
+        assert_eq!(pick(Some(Goal::MaxError(2.7))), (2, true));
+        assert_eq!(pick(Some(Goal::MaxError(2.5))), (2, true));
+        assert_eq!(pick(Some(Goal::MaxError(0.5))), (3, false));
+        assert_eq!(pick(Some(Goal::MaxCost(7.9))), (2, true));
+        assert_eq!(pick(Some(Goal::MaxCost(0.5))), (0, false));
     }
 }

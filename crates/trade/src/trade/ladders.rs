@@ -4,8 +4,7 @@
 //! Hull storage has no ladder: it costs time and never changes the result.
 
 use ridgelight::scene::{
-    Basis, BounceEngine, BounceSpecular, Fuse, LightBasis, Lights, Lines, Method, Precision,
-    Quality, Scene, Values, setting,
+    Basis, Fuse, Lights, Lines, Method, Precision, Quality, Scene, Values, setting,
 };
 use std::ops::RangeInclusive;
 
@@ -23,47 +22,57 @@ pub struct Ladder {
     pub default: usize,
     /// What the slower end buys.
     pub slower: &'static str,
-    /// Applies a step to a quality.
-    set: fn(&mut Quality, usize),
-    /// Whether it has no effect beside the other settings.
-    idle: fn(&Quality) -> bool,
+    /// The steps as "name value", one or more.
+    values: Vec<String>,
+    /// Whether it has no effect beside the other settings; none for one that always has.
+    idle: Option<fn(&Quality) -> bool>,
 }
 
-const AZIMUTHS: [u32; 6] = [8, 16, 32, 64, 128, 256];
-const SUN_AZIMUTHS: [u32; 6] = [1, 2, 4, 8, 16, 32];
-const TABLE_ELEVATIONS: [u32; 6] = [32, 64, 128, 256, 512, 1024];
-const SH_ORDERS: [u32; 5] = [2, 3, 4, 5, 6];
-const SUBSAMPLES: [u32; 3] = [4, 2, 1];
-const LINES: [(Lines, &str); 6] = [
-    (Lines::FourCells, "4"),
-    (Lines::TwoCells, "2"),
-    (Lines::Cell, "1"),
-    (Lines::HalfCell, "1/2"),
-    (Lines::QuarterCell, "1/4"),
-    (Lines::Exact, "exact"),
-];
-const FUSES: [Fuse; 6] =
-    [Fuse::Nearest, Fuse::Slopes, Fuse::Own, Fuse::AimedNearest, Fuse::Aimed, Fuse::AimedAround];
-const LIGHT_BASES: [LightBasis; 2] = [LightBasis::Sh, LightBasis::Exact];
-const PRECISIONS: [Precision; 3] = [Precision::Packed, Precision::F16, Precision::F32];
+impl Ladder {
+    /// From `values` of settings: "name value value ..." each, from fast to slow.
+    fn new(name: &'static str, values: &[&str], slower: &'static str) -> Self {
+        let each = |of: &&str| {
+            let (setting, values) = of.rsplit_once(": ").expect("a setting and its values");
+            values.split(' ').map(|value| format!("{setting} {value}")).collect::<Vec<_>>()
+        };
+        let all: Vec<String> = values.iter().flat_map(each).collect();
+        let quoted = |(name, value)| format!("`{name} {value}`");
+        let steps = all.iter().map(|v| pairs(v).map(quoted).collect::<Vec<_>>().join(" "));
+        let range = match pairs(&all[0]).next().and_then(|(name, _)| setting(name)) {
+            Some(setting) => match &setting.values {
+                Values::Whole(range) => Some(range.clone()),
+                _ => None,
+            },
+            None => None,
+        };
+        Self { name, steps: steps.collect(), range, default: 0, slower, values: all, idle: None }
+    }
 
-const BOUNCE_ENGINES: [BounceEngine; 3] =
-    [BounceEngine::Pyramid, BounceEngine::Auto, BounceEngine::BruteForce];
-const BOUNCE_SPECULARS: [BounceSpecular; 3] =
-    [BounceSpecular::Scalar, BounceSpecular::VectorF16, BounceSpecular::Vector];
-const BOUNCE_AZIMUTHS: [u32; 4] = [8, 16, 32, 64];
-const LEVEL_STEPS: [u32; 5] = [1, 2, 4, 8, 16];
-const LEVEL_OFFSETS: [u32; 5] = [0, 1, 2, 3, 4];
+    fn idle_if(self, idle: fn(&Quality) -> bool) -> Self {
+        Self { idle: Some(idle), ..self }
+    }
 
-/// The range of a setting that counts.
-fn range(name: &str) -> Option<RangeInclusive<u32>> {
-    match &setting(name)?.values {
-        Values::Whole(range) => Some(range.clone()),
-        _ => None,
+    /// Applies a step to a quality.
+    fn set(&self, quality: &mut Quality, step: usize) {
+        for (name, value) in pairs(&self.values[step]) {
+            let setting = setting(name).expect("a setting");
+            setting.set(quality, value).expect("a value that it takes");
+        }
+    }
+
+    fn is_idle(&self, quality: &Quality) -> bool {
+        self.idle.is_some_and(|idle| idle(quality))
     }
 }
 
-fn has_no_lines(quality: &Quality) -> bool {
+/// The settings and values of "name value name value".
+fn pairs(text: &str) -> impl Iterator<Item = (&str, &str)> {
+    let mut words = text.split(' ');
+    std::iter::from_fn(move || Some((words.next()?, words.next()?)))
+}
+
+/// Whether horizons are not found along lines a distance apart.
+pub(crate) fn has_no_lines(quality: &Quality) -> bool {
     matches!(quality.method, Method::BruteForce | Method::Pyramid) || quality.lines == Lines::Exact
 }
 
@@ -98,188 +107,79 @@ fn has_specular(scene: &Scene) -> bool {
 /// at every texel.
 pub fn ladders(scene: &Scene, bounces: u32) -> Vec<Ladder> {
     let (lights, has_specular) = (&nonzero_lights(&scene.lights), has_specular(scene));
-    let spell =
-        |setting: &str, values: &[u32]| values.iter().map(|v| format!("`{setting} {v}`")).collect();
-    let mut all = vec![
-        Ladder {
-            name: "sweep",
-            steps: LINES
-                .iter()
-                .map(|(_, name)| format!("`lines {name}`"))
-                .chain(["pyramid", "brute-force"].map(|method| format!("`method {method}`")))
-                .collect(),
-            range: None,
-            default: 0,
-            slower: "closer lines, then every grid point on a line: small occluders; a pyramid of heights, \
-                     slower only; brute force",
-            set: |quality, step| match LINES.get(step) {
-                Some((lines, _)) => (quality.method, quality.lines) = (Method::Sweep, *lines),
-                None if step == LINES.len() => quality.method = Method::Pyramid,
-                None => quality.method = Method::BruteForce,
-            },
-            idle: |_| false,
-        },
-        Ladder {
-            name: "fuse",
-            steps: FUSES.iter().map(|f| format!("`fuse {}`", f.name())).collect(),
-            range: None,
-            default: 0,
-            slower: "more of the lines' results, then the surface itself, then all around there: horizons of each \
-                     grid point",
-            set: |quality, step| quality.fuse = FUSES[step],
-            idle: has_no_lines,
-        },
-        Ladder {
-            name: "precision",
-            steps: PRECISIONS.iter().map(|p| format!("`precision {}`", p.name())).collect(),
-            range: None,
-            default: 0,
-            slower: "more bits: heights on the hull, stored slopes",
-            set: |quality, step| quality.precision = PRECISIONS[step],
-            idle: has_no_lines,
-        },
-        Ladder {
-            name: "level step",
-            steps: spell("level_step", &LEVEL_STEPS),
-            range: range("level_step"),
-            default: 0,
-            slower: "more levels of a pyramid: occluders between two grid points",
-            set: |quality, step| quality.level_step = LEVEL_STEPS[step],
-            idle: has_no_levels,
-        },
-        Ladder {
-            name: "level offset",
-            steps: spell("level_offset", &LEVEL_OFFSETS),
-            range: range("level_offset"),
-            default: 0,
-            slower: "finer levels of a pyramid: sharp distant horizons",
-            set: |quality, step| quality.level_offset = LEVEL_OFFSETS[step],
-            idle: has_no_levels,
-        },
-    ];
+    let (has_sky, has_environment) = (lights.sky.is_some(), lights.environment.is_some());
+    let mut all = Vec::new();
+    let mut add = |is_in: bool, ladder: Ladder| all.extend(is_in.then_some(ladder));
     // Sphere lights compute their own visibility.
-    let are_none_aimed = lights.suns.is_empty() && lights.keys.is_empty();
-    if lights.sky.is_none() && lights.environment.is_none() && are_none_aimed {
-        all.clear();
-    }
-    if lights.sky.is_some() || lights.environment.is_some() {
-        all.push(Ladder {
-            name: "azimuths",
-            steps: spell("azimuths", &AZIMUTHS),
-            range: range("azimuths"),
-            default: 0,
-            slower: "more azimuths: sharp silhouettes",
-            set: |quality, step| quality.azimuths = AZIMUTHS[step],
-            idle: |_| false,
-        });
-    }
-    if have_slices(lights) {
-        all.push(Ladder {
-            name: "sun azimuths",
-            steps: spell("sun_azimuths", &SUN_AZIMUTHS),
-            range: range("sun_azimuths"),
-            default: 0,
-            slower: "more slices of a sun's disc, a key light or a sphere light: soft shadows",
-            set: |quality, step| quality.sun_azimuths = SUN_AZIMUTHS[step],
-            idle: |_| false,
-        });
-    }
-    if !lights.sphere_lights.is_empty() {
-        all.push(Ladder {
-            name: "light basis",
-            steps: LIGHT_BASES.iter().map(|b| format!("`light_basis {}`", b.name())).collect(),
-            range: None,
-            default: 0,
-            slower: "each slice of a sphere light exact: sharp shadows",
-            set: |quality, step| quality.light_basis = LIGHT_BASES[step],
-            idle: |_| false,
-        });
-    }
-    if lights.environment.is_some() && !has_specular {
-        all.push(Ladder {
-            name: "table elevations",
-            steps: spell("table_elevations", &TABLE_ELEVATIONS),
-            range: range("table_elevations"),
-            default: 0,
-            slower: "more elevations per table: small bright features",
-            set: |quality, step| quality.table_elevations = TABLE_ELEVATIONS[step],
-            idle: |quality| quality.basis == Basis::Sh,
-        });
-    }
-    if lights.environment.is_some() || (lights.sky.is_some() && has_specular) {
-        let orders = SH_ORDERS.map(|n| format!("`basis sh` `sh_order {n}`"));
-        let table = (!has_specular).then(|| "`basis table`".to_owned());
-        all.push(Ladder {
-            name: "basis",
-            steps: orders.into_iter().chain(table).collect(),
-            range: None,
-            default: 0,
-            slower: "higher orders of harmonics, then tables: the environment's detail",
-            set: |quality, step| match SH_ORDERS.get(step) {
-                Some(order) => (quality.basis, quality.sh_order) = (Basis::Sh, *order),
-                None => quality.basis = Basis::Table,
-            },
-            idle: |_| false,
-        });
-    }
-    let is_sampled_all = has_specular && bounces > 0;
-    if (lights.environment.is_some() || bounces > 0) && !is_sampled_all {
-        all.push(Ladder {
-            name: "sub-sampling",
-            steps: spell("subsample", &SUBSAMPLES),
-            range: None,
-            default: 0,
-            slower: "visibility and indirect light at more texels: sharp shadows",
-            set: |quality, step| quality.subsample = SUBSAMPLES[step],
-            idle: |quality| quality.basis != Basis::Sh && quality.bounces.count == 0,
-        });
-    }
-    if bounces > 0 {
-        all.extend(bounce_ladders(has_specular));
-    }
+    let is_aimed = !lights.suns.is_empty() || !lights.keys.is_empty();
+    let has_horizons = has_sky || has_environment || is_aimed;
+    let sweep = Ladder::new(
+        "sweep",
+        &["lines: 4 2 1 1/2 1/4 exact", "method: pyramid brute-force"],
+        "closer lines, then every grid point on a line: small occluders; a pyramid of heights, \
+         slower only; brute force",
+    );
+    add(has_horizons, sweep);
+    let fuse = Ladder::new(
+        "fuse",
+        &["fuse: nearest slopes own aimed-nearest aimed aimed-around"],
+        "more of the lines' results, then the surface itself, then all around there: horizons of each \
+         grid point",
+    );
+    add(has_horizons, fuse.idle_if(has_no_lines));
+    let stored = "more bits: heights on the hull, stored slopes";
+    let precision = Ladder::new("precision", &["precision: packed f16 f32"], stored);
+    add(has_horizons, precision.idle_if(has_no_lines));
+    let between = "more levels of a pyramid: occluders between two grid points";
+    let level_step = Ladder::new("level step", &["level_step: 1 2 4 8 16"], between);
+    add(has_horizons, level_step.idle_if(has_no_levels));
+    let distant = "finer levels of a pyramid: sharp distant horizons";
+    let level_offset = Ladder::new("level offset", &["level_offset: 0 1 2 3 4"], distant);
+    add(has_horizons, level_offset.idle_if(has_no_levels));
+    let sharp = "more azimuths: sharp silhouettes";
+    let azimuths = Ladder::new("azimuths", &["azimuths: 8 16 32 64 128 256"], sharp);
+    add(has_sky || has_environment, azimuths);
+    let soft = "more slices of a sun's disc, a key light or a sphere light: soft shadows";
+    let slices = Ladder::new("sun azimuths", &["sun_azimuths: 1 2 4 8 16 32"], soft);
+    add(have_slices(lights), slices);
+    let exact = "each slice of a sphere light exact: sharp shadows";
+    let light_basis = Ladder::new("light basis", &["light_basis: sh exact"], exact);
+    add(!lights.sphere_lights.is_empty(), light_basis);
+    let bright = "more elevations per table: small bright features";
+    let elevations = &["table_elevations: 32 64 128 256 512 1024"];
+    let table = Ladder::new("table elevations", elevations, bright);
+    add(has_environment && !has_specular, table.idle_if(|q| q.basis == Basis::Sh));
+    let detail = "higher orders of harmonics, then tables: the environment's detail";
+    let bases = &["basis sh sh_order: 2 3 4 5 6", "basis: table"];
+    let basis = Ladder::new("basis", &bases[..2 - usize::from(has_specular)], detail);
+    add(has_environment || (has_sky && has_specular), basis);
+    let dense = "visibility and indirect light at more texels: sharp shadows";
+    let subsample = Ladder::new("sub-sampling", &["subsample: 4 2 1"], dense);
+    let is_every = has_specular && bounces > 0;
+    add(
+        (has_environment || bounces > 0) && !is_every,
+        subsample.idle_if(|q| q.basis != Basis::Sh && q.bounces.count == 0),
+    );
+    let stored = "radiance by direction, then in full precision: specular bounces";
+    let by = &["bounce_specular: scalar vector-f16 vector"];
+    add(bounces > 0 && has_specular, Ladder::new("bounce specular", by, stored));
+    let visible = "one lookup per level of pyramids; every visible interval of the surface";
+    let by = &["bounce_engine: pyramid auto brute-force"];
+    add(bounces > 0 && !has_specular, Ladder::new("bounce engine", by, visible));
+    let narrow = "more azimuths of bounces: narrow bright features";
+    let azimuths = &["bounce_azimuths: 8 16 32 64"];
+    add(bounces > 0, Ladder::new("bounce azimuths", azimuths, narrow));
     let start = start_of(scene);
     for ladder in &mut all {
-        ladder.default = default_step(ladder, &start);
+        let is_default = |step: &usize| {
+            let mut quality = start;
+            ladder.set(&mut quality, *step);
+            quality == start
+        };
+        let default = (0..ladder.steps.len()).find(is_default);
+        ladder.default = default.expect("every default is on its ladder");
     }
     all
-}
-
-fn bounce_ladders(has_specular: bool) -> [Ladder; 2] {
-    let by = match has_specular {
-        true => Ladder {
-            name: "bounce specular",
-            steps: BOUNCE_SPECULARS
-                .iter()
-                .map(|g| format!("`bounce_specular {}`", g.name()))
-                .collect(),
-            range: None,
-            default: 0,
-            slower: "radiance by direction, then in full precision: specular bounces",
-            set: |quality, step| quality.bounces.specular = BOUNCE_SPECULARS[step],
-            idle: |_| false,
-        },
-        false => Ladder {
-            name: "bounce engine",
-            steps: BOUNCE_ENGINES.iter().map(|e| format!("`bounce_engine {}`", e.name())).collect(),
-            range: None,
-            default: 0,
-            slower: "one lookup per level of pyramids; every visible interval of the surface",
-            set: |quality, step| quality.bounces.engine = BOUNCE_ENGINES[step],
-            idle: |_| false,
-        },
-    };
-    [
-        by,
-        Ladder {
-            name: "bounce azimuths",
-            steps: BOUNCE_AZIMUTHS.iter().map(|m| format!("`bounce_azimuths {m}`")).collect(),
-            range: range("bounce_azimuths"),
-            default: 0,
-            slower: "more azimuths of bounces: narrow bright features",
-            set: |quality, step| quality.bounces.azimuths = BOUNCE_AZIMUTHS[step],
-            idle: |_| false,
-        },
-    ]
 }
 
 /// The start of the defaults: sweeps and tables, to which they resolve.
@@ -293,15 +193,6 @@ pub fn start_of(scene: &Scene) -> Quality {
     let is_specular = has_specular(scene) && (sky.is_some() || environment.is_some());
     let basis = if is_specular { Basis::Sh } else { Basis::Table };
     Quality { basis, ..start() }
-}
-
-fn default_step(ladder: &Ladder, start: &Quality) -> usize {
-    let is_default = |step: &usize| {
-        let mut quality = *start;
-        (ladder.set)(&mut quality, *step);
-        quality == *start
-    };
-    (0..ladder.steps.len()).find(is_default).expect("every default is on its ladder")
 }
 
 /// Settings, and their step on each ladder.
@@ -324,35 +215,66 @@ impl Place {
 
 /// Every distinct combination of steps, from fast to slow; other settings as in `start`.
 pub fn places(ladders: &[Ladder], start: &Quality) -> Vec<Place> {
-    let mut all = Vec::new();
-    let mut steps = vec![0; ladders.len()];
-    'next: loop {
-        let mut quality = *start;
-        ladders.iter().zip(&steps).for_each(|(k, s)| (k.set)(&mut quality, *s));
-        let idle: Vec<bool> = ladders.iter().map(|k| (k.idle)(&quality)).collect();
-        let stores_slopes = matches!(quality.fuse, Fuse::Nearest | Fuse::Slopes);
-        // Where no slopes are stored, f16 is f32.
-        let is_other = quality.precision == Precision::F16 && !stores_slopes;
-        let is_repeated = idle.iter().zip(&steps).any(|(idle, s)| *idle && *s > 0);
-        if !is_repeated && (!is_other || has_no_lines(&quality)) {
-            let mut quality = *start;
-            for ((ladder, step), _) in
-                ladders.iter().zip(&steps).zip(&idle).filter(|(_, idle)| !**idle)
-            {
-                (ladder.set)(&mut quality, *step);
+    // Ladders that always have an effect decide which others have one.
+    let mut order: Vec<usize> = (0..ladders.len()).collect();
+    order.sort_by_key(|k| ladders[*k].idle.is_some());
+    let mut all = vec![Place { quality: *start, steps: vec![None; ladders.len()] }];
+    for k in order {
+        let ladder = &ladders[k];
+        let with = |place: Place| {
+            let set = |step: usize| {
+                let mut place = place.clone();
+                ladder.set(&mut place.quality, step);
+                place.steps[k] = Some(step);
+                place
+            };
+            match ladder.is_idle(&place.quality) {
+                true => vec![place],
+                false => (0..ladder.steps.len()).map(set).collect(),
             }
-            let steps = steps.iter().zip(&idle).map(|(s, idle)| (!idle).then_some(*s)).collect();
-            all.push(Place { quality, steps });
-        }
-        for (step, ladder) in steps.iter_mut().zip(ladders) {
-            *step += 1;
-            if *step < ladder.steps.len() {
-                continue 'next;
-            }
-            *step = 0;
-        }
-        return all;
+        };
+        all = all.into_iter().flat_map(with).collect();
     }
+    // Where no slopes are stored, f16 is f32.
+    all.retain(|Place { quality, .. }| {
+        let stores_slopes = matches!(quality.fuse, Fuse::Nearest | Fuse::Slopes);
+        quality.precision != Precision::F16 || stores_slopes || has_no_lines(quality)
+    });
+    all.sort_by_cached_key(|p| p.steps.iter().rev().map(|s| s.unwrap_or(0)).collect::<Vec<_>>());
+    all
+}
+
+/// Places that are refused whatever their counts are, with the reason.
+///
+/// `why` is called for places that differ from the defaults in one or two choices: no known refusal
+/// needs three, and none depends on a count within its range. Every place with a refused
+/// combination is refused, too.
+pub fn refused(
+    ladders: &[Ladder],
+    places: &[Place],
+    mut why: impl FnMut(&Place) -> Option<String>,
+) -> Vec<(usize, String)> {
+    let mut known: Vec<(Vec<(usize, usize)>, String)> = Vec::new();
+    let others = |place: &Place| -> Vec<(usize, usize)> {
+        let steps = place.steps.iter().enumerate().filter_map(|(k, s)| Some((k, (*s)?)));
+        steps.filter(|(k, s)| ladders[*k].default != *s).collect()
+    };
+    let has = |place: &Place, steps: &[(usize, usize)]| {
+        steps.iter().all(|(ladder, step)| place.steps[*ladder] == Some(*step))
+    };
+    for count in 1..=2 {
+        for place in places {
+            let steps = others(place);
+            let is_choice = steps.iter().all(|(ladder, _)| ladders[*ladder].range.is_none());
+            let is_known = known.iter().any(|(of, _)| has(place, of));
+            if steps.len() == count && is_choice && !is_known {
+                known.extend(why(place).map(|why| (steps, why)));
+            }
+        }
+    }
+    let of = |place: &Place| known.iter().find(|(steps, _)| has(place, steps));
+    let all = places.iter().enumerate();
+    all.filter_map(|(i, place)| Some((i, of(place)?.1.clone()))).collect()
 }
 
 #[cfg(test)]

@@ -3,13 +3,11 @@
 
 mod frontier;
 mod ladders;
-mod refused;
 mod search;
 #[cfg(test)]
 mod tests;
 
-pub use frontier::{Recommendation, Rule, Value, frontier, recommend};
-pub(crate) use ladders::have_slices;
-pub use ladders::{Ladder, Place, ladders, places, start, start_of};
-pub use refused::refused;
+pub use frontier::{Goal, Recommendation, Value, frontier, recommend};
+pub use ladders::{Ladder, Place, ladders, places, refused, start, start_of};
+pub(crate) use ladders::{has_no_lines, have_slices};
 pub use search::{Break, SLACK, Search, Side, Skip};

@@ -49,7 +49,7 @@ pub enum Skip {
         worse_than: Option<usize>,
     },
     /// It costs at least as much as `than`, which was abandoned.
-    TooDear {
+    TooSlow {
         /// The abandoned place.
         than: usize,
     },
@@ -88,12 +88,10 @@ impl Search {
     /// # Panics
     /// `start` out of range, or places of different numbers of ladders.
     pub fn new(steps: Vec<Steps>, start: usize, floor: f64) -> Self {
-        let ladders = steps[start].len();
+        let (count, ladders) = (steps.len(), steps[start].len());
         assert!(steps.iter().all(|s| s.len() == ladders), "one step per ladder");
-        let count = steps.len();
-        let most =
-            |ladder: usize| steps.iter().filter_map(|s| s[ladder]).max().map_or(0, |s| s + 1);
-        let alone = (0..ladders).map(|ladder| vec![None; most(ladder) + 1]).collect();
+        let most = |ladder: usize| steps.iter().filter_map(|s| s[ladder]).max();
+        let alone = (0..ladders).map(|k| vec![None; most(k).map_or(1, |s| s + 2)]).collect();
         Self {
             steps,
             start,
@@ -201,7 +199,7 @@ impl Search {
         }
         let than = self.too_slow.iter().copied().find(|&p| self.is_below(p, place, Side::Cost));
         if let Some(than) = than {
-            return Some(Skip::TooDear { than });
+            return Some(Skip::TooSlow { than });
         }
         let [cost, error] = self.bounds[place];
         let (cost, slower_than) = cost?;
@@ -268,26 +266,20 @@ impl Search {
     /// another.
     fn is_below(&self, a: usize, b: usize, side: Side) -> bool {
         let trusted = &self.trusted[side as usize];
-        let pairs = self.steps[a].iter().zip(&self.steps[b]).zip(trusted);
-        let mut compared = pairs.map(|((a, b), trusted)| match (a, b) {
-            (Some(a), Some(b)) => a == b || (*trusted && a < b),
-            _ => true,
-        });
-        compared.all(|below| below)
+        let mut pairs = self.steps[a].iter().zip(&self.steps[b]).zip(trusted);
+        pairs.all(|((a, b), trusted)| a.zip(*b).is_none_or(|(a, b)| a == b || (*trusted && a < b)))
     }
 
     /// Updates the bounds of all places by a measured one.
     fn bound_by(&mut self, from: usize) {
         let Some(value) = self.values[from] else { return };
         for place in 0..self.steps.len() {
-            let below =
-                [self.is_below(from, place, Side::Cost), self.is_below(place, from, Side::Error)];
-            let bounds = &mut self.bounds[place];
-            for ((bound, new), _) in
-                bounds.iter_mut().zip([value.cost, value.error]).zip(below).filter(|(_, b)| *b)
-            {
-                if bound.is_none_or(|(old, _)| new > old) {
-                    *bound = Some((new, from));
+            let costs_more = self.is_below(from, place, Side::Cost);
+            let errs_more = self.is_below(place, from, Side::Error);
+            let found = [costs_more.then_some(value.cost), errs_more.then_some(value.error)];
+            for (bound, new) in self.bounds[place].iter_mut().zip(found) {
+                if new.is_some_and(|new| bound.is_none_or(|(old, _)| new > old)) {
+                    *bound = new.map(|new| (new, from));
                 }
             }
         }
@@ -299,24 +291,18 @@ impl Search {
         // Nearest pairs first: they identify the ladder best.
         let mut others = self.measured.clone();
         others.sort_by_key(|&i| self.differing(i, new).count());
-        for other in others {
-            for (lower, higher) in [(new, other), (other, new)] {
-                for side in [Side::Cost, Side::Error] {
-                    let ladders: Vec<usize> = self.differing(lower, higher).collect();
-                    let (Some(low), Some(high)) = (self.values[lower], self.values[higher]) else {
-                        continue;
-                    };
-                    let is_broken = match side {
-                        Side::Cost => low.cost > high.cost * (1.0 + SLACK),
-                        Side::Error => high.error > low.error * (1.0 + SLACK),
-                    };
-                    if !is_broken || ladders.is_empty() || !self.is_below(lower, higher, side) {
-                        continue;
-                    }
-                    for ladder in &ladders {
-                        self.trusted[side as usize][*ladder] = false;
-                    }
-                    self.breaks.push(Break { ladders, side, lower, higher });
+        let pairs = others.into_iter().flat_map(|other| [(new, other), (other, new)]);
+        for (lower, higher) in pairs {
+            let ladders: Vec<usize> = self.differing(lower, higher).collect();
+            let Some((low, high)) = self.values[lower].zip(self.values[higher]) else { continue };
+            for side in [Side::Cost, Side::Error] {
+                let is_broken = match side {
+                    Side::Cost => low.cost > high.cost * (1.0 + SLACK),
+                    Side::Error => high.error > low.error * (1.0 + SLACK),
+                };
+                if is_broken && !ladders.is_empty() && self.is_below(lower, higher, side) {
+                    ladders.iter().for_each(|k| self.trusted[side as usize][*k] = false);
+                    self.breaks.push(Break { ladders: ladders.clone(), side, lower, higher });
                     any = true;
                 }
             }

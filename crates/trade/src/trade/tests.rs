@@ -195,8 +195,8 @@ fn a_place_too_slow_excludes_slower_ones() {
     search.measured(at(0, 0), Value { cost: 1.0, error: 1.0 });
     search.give_up(at(1, 1), true);
     search.give_up(at(0, 1), false);
-    assert_eq!(search.skip(at(2, 1)), Some(Skip::TooDear { than: at(1, 1) }));
-    assert_eq!(search.skip(at(3, 0)), Some(Skip::TooDear { than: at(1, 1) }));
+    assert_eq!(search.skip(at(2, 1)), Some(Skip::TooSlow { than: at(1, 1) }));
+    assert_eq!(search.skip(at(3, 0)), Some(Skip::TooSlow { than: at(1, 1) }));
     assert!(!search.is_open(at(1, 1)) && search.is_open(at(0, 2)) && search.is_open(at(2, 0)));
 }
 

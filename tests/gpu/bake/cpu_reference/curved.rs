@@ -22,16 +22,16 @@ fn fans_of(directions: &Directions) -> Fans {
 }
 
 /// The pass's output for each texel, direction after direction: the direction, and its weight.
-pub(crate) fn of_samples(run: &mut Run, pass: &Pass, count: usize) -> Vec<Vec<(DVec3, f64)>> {
+pub(crate) fn at_texels(run: &mut Run, pass: &Pass, count: usize) -> Vec<Vec<(DVec3, f64)>> {
     let texels = run.floats(pass, "bent").expect("bound");
     let [cols, rows] = run.size();
-    let samples = cols * rows;
+    let grid_points = cols * rows;
     let of = |i: usize, at: usize| {
         let [x, y, z, what] =
-            std::array::from_fn(|c| f64::from(texels[4 * (i * samples + at) + c]));
+            std::array::from_fn(|c| f64::from(texels[4 * (i * grid_points + at) + c]));
         (DVec3::new(x, y, z), what)
     };
-    (0..samples).map(|at| (0..count).map(|i| of(i, at)).collect()).collect()
+    (0..grid_points).map(|at| (0..count).map(|i| of(i, at)).collect()).collect()
 }
 
 /// The hits that the device may choose: all possible ones up to the first certain one; where none is certain, the
@@ -74,7 +74,7 @@ pub(crate) fn bent_directions(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let fans = fans_of(&directions);
     let (field, border) = (&run.scene.field, run.border());
     let draped = Draped { field, border, points: &points, fans: &fans, curvature };
-    let got = of_samples(run, pass, directions.count());
+    let got = at_texels(run, pass, directions.count());
     let [cols, rows] = run.size();
     let vectors = directions.vectors();
     let mut pairs = Vec::new();
@@ -119,15 +119,15 @@ pub(crate) fn fan_weights(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let fans = fans_of(&directions);
     let first = pushed(pass, fan_weights_push::FIRST_DIRECTION) as usize;
     let count = pass.groups[2] as usize;
-    let bent = of_samples(run, pass, directions.count());
+    let bent = at_texels(run, pass, directions.count());
     let weights = run.floats(pass, "fan_weights").expect("written");
     let [cols, rows] = run.size();
-    let samples = rows * cols;
+    let grid_points = rows * cols;
     let mut pairs = Vec::new();
-    for (at, looks) in bent.iter().enumerate() {
-        let e: Vec<DVec3> = looks.iter().map(|look| look.0).collect();
+    for (at, aimed) in bent.iter().enumerate() {
+        let e: Vec<DVec3> = aimed.iter().map(|look| look.0).collect();
         for i in first..first + count {
-            let got = weights[i * samples + at].into();
+            let got = weights[i * grid_points + at].into();
             let (want, tolerance) = (weight(&fans, &e, i), fan_weight(&fans, &e, i));
             pairs.push(Pair { got, want, tolerance, at: [i, at / cols, at % cols] });
         }

@@ -29,11 +29,11 @@ pub(crate) fn ellipse_fit(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let directions = run.directions();
     let is_bent = constant(pass, "bent") == 1;
     let all: Vec<Vec<SkyDirection>> = if is_bent {
-        let looks = super::curved::of_samples(run, pass, directions.count());
+        let aimed = super::curved::at_texels(run, pass, directions.count());
         let above = |of: &Vec<(DVec3, f64)>| {
             of.iter().filter(|(e, _)| e.z > 0.0).map(|(e, what)| (*e, *what == 0.0)).collect()
         };
-        looks.iter().map(above).collect()
+        aimed.iter().map(above).collect()
     } else {
         let words = run.words(pass, "visible_points").expect("bound");
         let points = VisiblePoints::new(field, border, directions, words).expect("all whole");
@@ -52,7 +52,7 @@ pub(crate) fn ellipse_fit(run: &mut Run, pass: &Pass) -> Vec<Pair> {
             [&axes, &radii].map(|all| <[f32; 4]>::try_from(&all[4 * at..4 * at + 4]).expect("4"));
         let found = Ellipse::of_texels(axes, [radii[0], radii[1]]);
         let [got, step] = [radii[2], radii[3]].map(f64::from);
-        let mut own = of_sample(&all[at], least, found, (got, step));
+        let mut own = at_texel(&all[at], least, found, (got, step));
         own.iter_mut().for_each(|pair| pair.at = [0, at / cols, at % cols]);
         pairs.extend(own);
     }
@@ -60,17 +60,17 @@ pub(crate) fn ellipse_fit(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 }
 
 /// The pairs of a texel with these visible directions, this ellipse, this score and last step.
-fn of_sample(
-    seen: &[SkyDirection],
+fn at_texel(
+    visible: &[SkyDirection],
     least: f64,
     found: Ellipse,
     (got, step): (f64, f64),
 ) -> Vec<Pair> {
-    let lit = seen.iter().filter(|s| s.1).count();
+    let lit = visible.iter().filter(|s| s.1).count();
     let same = |got: f64, want: f64, tolerance: f64| Pair { got, want, tolerance, at: [0; 3] };
-    let edge = |e: &Ellipse| on_edge(e, seen, ellipse_reach(e));
-    let mut pairs = vec![same(got, score(&found, seen) as f64, edge(&found))];
-    let is_known = lit == 0 || lit == seen.len();
+    let edge = |e: &Ellipse| on_edge(e, visible, ellipse_reach(e));
+    let mut pairs = vec![same(got, score(&found, visible) as f64, edge(&found))];
+    let is_known = lit == 0 || lit == visible.len();
     if is_known || step == 0.0 {
         let is_whole = if is_known { lit > 0 } else { found.inverse_radii == [0.0; 2] };
         let want = if is_whole { Ellipse::WHOLE } else { Ellipse::EMPTY };
@@ -82,9 +82,9 @@ fn of_sample(
         return pairs;
     }
     // In the device's own axis where it has one: any axis is right where the moments are a circle's.
-    let (mean, [xx, xy, yy]) = moments(seen);
+    let (mean, [xx, xy, yy]) = moments(visible);
     let along = |a: DVec2| a.x * a.x * xx + 2.0 * a.x * a.y * xy + a.y * a.y * yy;
-    let moment = ellipse_moment(seen.len());
+    let moment = ellipse_moment(visible.len());
     if step > 0.0 {
         let (a, b) = (found.axis, found.axis.perp());
         let mixed = a.x * b.x * xx + (a.x * b.y + a.y * b.x) * xy + a.y * b.y * yy;
@@ -93,13 +93,13 @@ fn of_sample(
         pairs.push(short(along(a), along(b), 4.0 * moment + 1e-6));
         let radii = [a, b].map(|a| (2.0 * along(a).max(0.0).sqrt()).max(least));
         let begun = Ellipse { centre: mean, axis: a, inverse_radii: radii.map(|r| 1.0 / r) };
-        let off = on_edge(&begun, seen, ellipse_start(&begun, seen.len()));
-        pairs.push(short(got, score(&begun, seen) as f64, off));
+        let off = on_edge(&begun, visible, ellipse_start(&begun, visible.len()));
+        pairs.push(short(got, score(&begun, visible) as f64, off));
     }
-    pairs.push(short(got, (2 * lit) as f64 - seen.len() as f64, 0.0));
+    pairs.push(short(got, (2 * lit) as f64 - visible.len() as f64, 0.0));
     if step > 0.0 && step < LAST_STEP {
         for other in neighbours(&found, LAST_STEP, least) {
-            pairs.push(short(got, score(&other, seen) as f64, edge(&other)));
+            pairs.push(short(got, score(&other, visible) as f64, edge(&other)));
         }
     }
     pairs
@@ -112,10 +112,11 @@ fn another_ellipse_fails() {
     use ridgelight_cpu::ellipse_fit::fit;
     let directions = Directions::fibonacci(64, 0.0, 0).expect("directions");
     let lit = |e: &glam::DVec3| e.x > 0.1 && e.y.abs() < 0.7;
-    let seen: Vec<SkyDirection> = directions.vectors().iter().map(|e| (*e, lit(e))).collect();
-    let (own, score) = fit(&seen);
+    let visible: Vec<SkyDirection> = directions.vectors().iter().map(|e| (*e, lit(e))).collect();
+    let (own, score) = fit(&visible);
     let worst = |found: Ellipse, score: f64| {
-        let pairs = of_sample(&seen, least_radius(seen.len()), found, (score, 0.5 * LAST_STEP));
+        let pairs =
+            at_texel(&visible, least_radius(visible.len()), found, (score, 0.5 * LAST_STEP));
         pairs.iter().map(Pair::ratio).fold(0.0, f64::max)
     };
     assert!(worst(own, score as f64) <= 1.0);
@@ -123,6 +124,6 @@ fn another_ellipse_fails() {
     let turned = Ellipse { axis: DVec2::from_angle(0.1).rotate(own.axis), ..own };
     assert!(worst(turned, score as f64) > 1.0, "an axis");
     let shifted = Ellipse { centre: own.centre + 0.2, ..own };
-    let of_shifted = ridgelight_cpu::ellipse_fit::score(&shifted, &seen) as f64;
+    let of_shifted = ridgelight_cpu::ellipse_fit::score(&shifted, &visible) as f64;
     assert!(worst(shifted, of_shifted) > 1.0, "no best");
 }

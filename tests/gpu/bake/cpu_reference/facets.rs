@@ -31,7 +31,7 @@ pub(crate) fn facet_mask(run: &mut Run, pass: &Pass) -> Vec<Pair> {
             let word = words[i / DIRECTIONS_A_WORD * cells_x * cells_y + facet / 2];
             let got = word >> (2 * (i % DIRECTIONS_A_WORD) + facet % 2) & 1 == 1;
             let want = if is_unsure { got } else { want };
-            let [got, want] = [got, want].map(|is_seen| f64::from(u8::from(is_seen)));
+            let [got, want] = [got, want].map(|is_visible| f64::from(u8::from(is_visible)));
             pairs.push(Pair { got, want, tolerance: 0.0, at: [i, facet / 2, facet % 2] });
         }
     }

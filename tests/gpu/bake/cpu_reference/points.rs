@@ -36,7 +36,7 @@ pub(crate) fn visible_points(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         for at in 0..rows * cols {
             let here = [at / cols, at % cols];
             let own = f64::from(field.heights_m()[at]);
-            let off = |stretch: &_| crossing_elevation(&oracle, stretch, own);
+            let off = |interval: &_| crossing_elevation(&oracle, interval, own);
             let possible = possible_within(&oracle, here, *e, off, MET_SHARE);
             let got = points.point(i, at);
             let want = if possible.contains(&got) { got } else { possible[0] };

@@ -92,11 +92,11 @@ pub(crate) fn scatter_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         per_m: [push::CURVATURE_X, push::CURVATURE_Y]
             .map(|o| f64::from(f32::from_bits(pushed(pass, o)))),
     };
-    let samples = GridPoints::of(run.scene).on(curvature);
+    let grid_points = GridPoints::of(run.scene).on(curvature);
     // On a curved base, the device's own directions and weights.
     let bent = (curvature != Curvature::FLAT).then(|| {
-        let looks = super::curved::of_samples(run, pass, points.directions().count());
-        (looks, run.floats(pass, "fan_weights").expect("bound"))
+        let aimed = super::curved::at_texels(run, pass, points.directions().count());
+        (aimed, run.floats(pass, "fan_weights").expect("bound"))
     });
     let [cols, rows] = run.size();
     let count = rows * cols;
@@ -109,39 +109,39 @@ pub(crate) fn scatter_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         // Slopes of a field that is scaled by s in height turn by as much as before, s or 1/s times; a quotient and a
         // sum more.
         let height = f64::from(run.scene.field.heights_m()[at]);
-        let stretch = curvature.per_m.map(|k| (1.0 + k * height).max(1.0 / (1.0 + k * height)));
+        let interval = curvature.per_m.map(|k| (1.0 + k * height).max(1.0 / (1.0 + k * height)));
         let flat = Land::normal_at(&run.scene.field, run.border(), here);
         let turned = match &bent {
             None => flat,
-            Some(_) => stretch[0].max(stretch[1]) * (flat + 8.0 * EPSILON),
+            Some(_) => interval[0].max(interval[1]) * (flat + 8.0 * EPSILON),
         };
-        let n = samples.specular(at).map_or(1.0, |phong| f64::from(phong.exponent));
+        let n = grid_points.specular(at).map_or(1.0, |phong| f64::from(phong.exponent));
         let off = |of: &Gathered, e: DVec3| {
             let mut off = gathered(of, n, turned);
             // A lobe ends at the texel's own plane.
-            if samples.normal(at).dot(e).abs() <= turned + 6.0 * EPSILON {
+            if grid_points.normal(at).dot(e).abs() <= turned + 6.0 * EPSILON {
                 off = [0, 1, 2].map(|c| off[c] + of.mirrored[c]);
             }
             off
         };
         let mut sum = Sum::default();
         for (path, (e, direction, sky, back)) in links.iter().enumerate() {
-            let seen = points.point(*direction, at);
-            let arrives = match (seen, source) {
+            let visible = points.point(*direction, at);
+            let arrives = match (visible, source) {
                 (VisiblePoint::GridPoint(there), 1) => direct[there],
                 (VisiblePoint::GridPoint(there), 2) => carried[path * count + there],
                 _ => [0.0; 3],
             };
             let back = if sums { &of_views[view] } else { back };
-            let sees_sky = (!sums || direct_specular) && seen == VisiblePoint::Sky;
-            let mirrored = if sees_sky { *sky } else { arrives };
+            let shows_sky = (!sums || direct_specular) && visible == VisiblePoint::Sky;
+            let mirrored = if shows_sky { *sky } else { arrives };
             let (e, weight) = match &bent {
                 None => (*e, weight),
-                Some((looks, weights)) => {
-                    (looks[at][*direction].0, weight * f64::from(weights[direction * count + at]))
+                Some((aimed, weights)) => {
+                    (aimed[at][*direction].0, weight * f64::from(weights[direction * count + at]))
                 }
             };
-            let of = samples.scattered(at, (e, weight), *back, [arrives, mirrored]);
+            let of = grid_points.scattered(at, (e, weight), *back, [arrives, mirrored]);
             let mut of_path = Sum::default();
             of_path.add(of.light, off(&of, e));
             if !sums {
@@ -151,7 +151,8 @@ pub(crate) fn scatter_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
                 for (i, (e, irradiance)) in shining.iter().enumerate() {
                     let lit = sun_points.as_ref().expect("suns").point(i, at) == VisiblePoint::Sky;
                     if lit {
-                        let of = samples.scattered(at, (*e, 1.0), *back, [[0.0; 3], *irradiance]);
+                        let of =
+                            grid_points.scattered(at, (*e, 1.0), *back, [[0.0; 3], *irradiance]);
                         of_path.add(of.light, off(&of, *e));
                     }
                 }

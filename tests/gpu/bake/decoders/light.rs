@@ -100,8 +100,8 @@ fn in_order(manifest: &serde_json::Value, kind: &str, mut read: Planes) -> Plane
 
 /// Error of a value read between two angles instead of at one: places are within 8 roundings of a count of steps,
 /// along four axes, and no difference is larger than the largest value.
-fn beside(truth: &Planes) -> f64 {
-    let most = truth.planes.iter().flatten().fold(0.0_f32, |m, v| m.max(v.abs()));
+fn beside(ground_truth: &Planes) -> f64 {
+    let most = ground_truth.planes.iter().flatten().fold(0.0_f32, |m, v| m.max(v.abs()));
     4.0 * 8.0 * ANGLES.azimuths as f64 / f64::from(1 << 24) * f64::from(most)
 }
 
@@ -123,28 +123,34 @@ fn decoders_of_light_keep_the_errors_that_manifests_state() {
             let is_code = |line: &&str| !line.is_empty() && !line.starts_with("//");
             assert!(decoder.body.lines().filter(is_code).count() <= 20, "{stem}");
             let bits: Vec<u32> = constants.iter().map(|(_, c)| c.bits()).collect();
-            let truth =
+            let ground_truth =
                 in_order(&manifest, decoder.kind, read_planes(&path("exr")).expect("values"));
             let texture = std::fs::read(path("ktx2")).expect("a texture");
             let promised = promised(&manifest, decoder.kind);
             let is_between = ["brdf", "brdf-factors"].contains(&decoder.kind);
-            let slack = if is_between { beside(&truth) } else { 0.0 };
+            let slack = if is_between { beside(&ground_truth) } else { 0.0 };
             let found = decode(gpu, &decoder, &bits, &texture, 0.0);
-            let (share, of) = worst(&promised, &found, &truth, slack);
+            let (share, of) = worst(&promised, &found, &ground_truth, slack);
             println!("{} {}: {share:.3} of the bound of the {of}", decoder.kind, encoding.name);
             assert!(share <= 1.0, "{} {}: {share} of {of}", decoder.kind, encoding.name);
             // The comparison can fail, and not everything is 0.
             let mut off = found.clone();
-            let most = (0..truth.planes.len() * truth.rows * truth.cols)
+            let most = (0..ground_truth.planes.len() * ground_truth.rows * ground_truth.cols)
                 .max_by(|a, b| found[*a].total_cmp(&found[*b]))
                 .expect("values");
             off[most] *= 1.01;
-            assert!(worst(&promised, &off, &truth, slack).0 > 1.0, "{}: cannot fail", decoder.kind);
+            assert!(
+                worst(&promised, &off, &ground_truth, slack).0 > 1.0,
+                "{}: cannot fail",
+                decoder.kind
+            );
             match decoder.kind {
-                "brdf" => {
-                    between(&decode(gpu, &decoder, &bits, &texture, 0.5), &truth, promised[0].2)
-                }
-                "brdf-factors" => products(&found, &truth, promised[0].2),
+                "brdf" => between(
+                    &decode(gpu, &decoder, &bits, &texture, 0.5),
+                    &ground_truth,
+                    promised[0].2,
+                ),
+                "brdf-factors" => products(&found, &ground_truth, promised[0].2),
                 _ => {}
             }
         }
@@ -152,11 +158,11 @@ fn decoders_of_light_keep_the_errors_that_manifests_state() {
 }
 
 /// Halfway to the next azimuths of light and view the table is the mean of four pairs.
-fn between(found: &[f32], truth: &Planes, share: f64) {
+fn between(found: &[f32], ground_truth: &Planes, share: f64) {
     let count = ANGLES.count();
     let next = |i: usize| i / ANGLES.azimuths * ANGLES.azimuths + (i + 1) % ANGLES.azimuths;
     for (light, view) in (0..count * count).map(|i| (i / count, i % count)) {
-        for (c, plane) in truth.planes.iter().enumerate() {
+        for (c, plane) in ground_truth.planes.iter().enumerate() {
             let corners = [
                 (light, view),
                 (next(light), view),
@@ -165,7 +171,7 @@ fn between(found: &[f32], truth: &Planes, share: f64) {
             ];
             let sum: f64 = corners.iter().map(|(l, v)| f64::from(plane[l * count + v])).sum();
             let got = f64::from(found[c * count * count + light * count + view]);
-            let allowed = 0.25 * sum * (share + 1e-6) + beside(truth);
+            let allowed = 0.25 * sum * (share + 1e-6) + beside(ground_truth);
             assert!((got - 0.25 * sum).abs() <= allowed, "{light} {view}: {got} {}", 0.25 * sum);
         }
     }
@@ -173,7 +179,7 @@ fn between(found: &[f32], truth: &Planes, share: f64) {
 
 /// The sum over factors of a light of the grid and a view between: products of decoded values, each with its share of
 /// error.
-fn products(found: &[f32], truth: &Planes, share: f64) {
+fn products(found: &[f32], ground_truth: &Planes, share: f64) {
     let (size, view) = (ANGLES.count(), [0.5_f64, 2.0]);
     let e = glam::DVec3::new(
         view[0].sin() * view[1].cos(),
@@ -185,15 +191,15 @@ fn products(found: &[f32], truth: &Planes, share: f64) {
     for (i, c) in (0..3 * size).map(|i| (i / 3, i % 3)) {
         let (mut sum, mut all) = (0.0, 0.0);
         for k in 0..FACTORS {
-            let plane = &truth.planes[3 * k + c];
+            let plane = &ground_truth.planes[3 * k + c];
             let of_view: f64 = around.iter().map(|(i, part)| part * f64::from(plane[*i])).sum();
             let most = around.iter().map(|(i, _)| plane[*i].abs()).fold(0.0, f32::max);
             sum += f64::from(plane[i]) * of_view;
             all += f64::from(plane[i].abs() * most);
         }
         let got = f64::from(found[(3 * FACTORS + c) * size + i]);
-        let slack = beside(truth)
-            * truth.planes.iter().flatten().fold(0.0_f32, |m, v| m.max(v.abs())) as f64;
+        let slack = beside(ground_truth)
+            * ground_truth.planes.iter().flatten().fold(0.0_f32, |m, v| m.max(v.abs())) as f64;
         let allowed = 3.0 * (share + 1e-6) * all + 2.0 * FACTORS as f64 * slack;
         assert!((got - sum).abs() <= allowed, "{i}: {got} {sum} {allowed}");
     }

@@ -95,9 +95,9 @@ pub(super) fn decode(
     let reader = ktx2::Reader::new(texture).expect("a texture");
     let (header, texels) = (reader.header(), reader.levels().next().expect("a level").data);
     let (width, height) = (header.pixel_width, header.pixel_height);
-    let samples = (width * height) as usize;
+    let grid_points = (width * height) as usize;
     let upload = Buffer::new(host, &mut blocks, texels.len(), false);
-    let values = Buffer::new(host, &mut blocks, 4 * samples * decoder.planes, true);
+    let values = Buffer::new(host, &mut blocks, 4 * grid_points * decoder.planes, true);
     let (map, view, map_memory) = image(host, &mut blocks, &header, decoder.is_array);
     let entries: Vec<vk::SpecializationMapEntry> = (0..bits.len() as u32)
         .map(|i| vk::SpecializationMapEntry { constant_id: i, offset: 4 * i, size: 4 })
@@ -208,14 +208,14 @@ pub(super) fn decode(
             device.cmd_bind_pipeline(commands, point, pipeline);
             device.cmd_bind_descriptor_sets(commands, point, layout, 0, &[set], &[]);
             device.cmd_push_constants(commands, layout, vk::ShaderStageFlags::COMPUTE, 0, &push);
-            device.cmd_dispatch(commands, samples.div_ceil(64) as u32, 1, depth);
+            device.cmd_dispatch(commands, grid_points.div_ceil(64) as u32, 1, depth);
             let info = vk::DependencyInfo::default().memory_barriers(&host_reads);
             device.cmd_pipeline_barrier2(commands, &info);
             Ok(())
         })
         .expect("run");
         let found =
-            std::slice::from_raw_parts(values.mapped().cast::<f32>(), samples * decoder.planes);
+            std::slice::from_raw_parts(values.mapped().cast::<f32>(), grid_points * decoder.planes);
         let found = found.to_vec();
         device.destroy_descriptor_pool(pool, None);
         device.destroy_pipeline(pipeline, None);

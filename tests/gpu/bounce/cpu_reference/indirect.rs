@@ -29,11 +29,11 @@ impl Run<'_> {
         Pyramid { level_step: bounces.level_step, level_offset: bounces.level_offset, ..heights }
     }
 
-    /// The exit radiance of every sample.
+    /// The exit radiance of every texel.
     pub(crate) fn exit(&mut self, pass: &Pass) -> Vec<[f64; 3]> {
         let texels = self.floats(pass, "exit_radiance").expect("bound");
-        let samples = self.scene.field.heights_m().len();
-        match texels.len() / samples {
+        let grid_points = self.scene.field.heights_m().len();
+        match texels.len() / grid_points {
             1 => texels.iter().map(|v| [(*v).into(); 3]).collect(),
             _ => colours(&texels),
         }
@@ -96,7 +96,7 @@ pub(crate) fn bounce_march(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 /// A level, and its entry in the table.
 pub(crate) fn shade_reduce(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let shade = run.shade();
-    let number = pushed(pass, offsets::shade_reduce_push::LEVEL);
+    let number = pushed(pass, offsets::reduce_push::LEVEL);
     let level = shade.level(number);
     let exit = run.exit(pass);
     let texels = colours(&run.floats(pass, "shade_levels").expect("written"));
@@ -114,16 +114,16 @@ pub(crate) fn shade_expand(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let texels = colours(&run.floats(pass, "shade_levels").expect("written"));
     let stack = run.floats(pass, "shade_stack").expect("written");
     let [cols, rows] = run.size();
-    let samples = cols * rows;
+    let grid_points = cols * rows;
     let layers = shade.levels() as usize;
-    let stack = match stack.len() / (samples * layers) {
+    let stack = match stack.len() / (grid_points * layers) {
         1 => stack.iter().map(|v| [(*v).into(); 3]).collect(),
         _ => colours(&stack),
     };
     let tolerance = device_spline(brightest(&texels));
     let of = |number: u32| {
         let want = expand_reference::shade_expand(&shade, &texels, number);
-        let layer = &stack[(number as usize - 1) * samples..];
+        let layer = &stack[(number as usize - 1) * grid_points..];
         paired(layer, &want, tolerance, [number as usize, cols])
     };
     (1..=shade.levels()).flat_map(of).collect()
@@ -131,7 +131,7 @@ pub(crate) fn shade_expand(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 
 /// The bounced light, from the device's own levels, in one dispatch.
 pub(crate) fn bounce_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
-    use offsets::bounce_gather_push::{AZIMUTHS, FIRST_AZIMUTH, LAST_AZIMUTH};
+    use offsets::gather_push::{AZIMUTHS, FIRST_AZIMUTH, LAST_AZIMUTH};
     let azimuths = pushed(pass, AZIMUTHS);
     assert_eq!([pushed(pass, FIRST_AZIMUTH), pushed(pass, LAST_AZIMUTH)], [0, azimuths]);
     let (shade, receiver) = (run.shade(), run.quality.receiver);

@@ -115,11 +115,11 @@ pub(crate) fn cache_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         .collect();
     let mut pairs = Vec::new();
     for (node, ([row, col], got)) in places.iter().zip(texels.chunks_exact(4)).enumerate() {
-        let seen: Vec<&Cast> = sets.iter().flat_map(|set| &set[node]).collect();
+        let visible: Vec<&Cast> = sets.iter().flat_map(|set| &set[node]).collect();
         let whole = wholes[&[*row, *col]];
-        let want = gather_reference(seen.iter().copied(), &exit).map(|v| v / whole);
-        let weights: f64 = seen.iter().map(|c| c.weight).sum();
-        let terms = (seen.len() + 10) as f64;
+        let want = gather_reference(visible.iter().copied(), &exit).map(|v| v / whole);
+        let weights: f64 = visible.iter().map(|c| c.weight).sum();
+        let terms = (visible.len() + 10) as f64;
         let tolerance = terms * EPSILON * brightest(&exit) * weights / whole;
         let at = [0, *row, *col];
         pairs.extend((0..3).map(|c| Pair { got: got[c].into(), want: want[c], tolerance, at }));
@@ -135,7 +135,7 @@ pub(crate) fn bounce_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         run.floats(pass, "sky_share").expect("bound").into_iter().map(f64::from).collect();
     let got = colours(&run.floats(pass, "bounce_sum").expect("written"));
     let (heights, [cols, _]) = (run.heights(), run.size());
-    let relative = device_bounce_shade(&run.sample_error());
+    let relative = device_bounce_shade(&run.texel_error());
     let mut pairs = Vec::new();
     for (i, got) in got.iter().enumerate() {
         let place = [i % cols, i / cols].map(|n| n as i32);

@@ -194,14 +194,14 @@ pub(crate) fn sphere_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let [cols, _] = run.size();
     let mut sphere_lights = std::mem::take(&mut run.sphere_lights);
     for (i, (sum, tolerance)) in sphere_lights.iter_mut().enumerate() {
-        let seen = SphereGeometry::of(&run.scene.field, &sphere_light, i);
-        if seen.distance_m > reach {
+        let visible = SphereGeometry::of(&run.scene.field, &sphere_light, i);
+        if visible.distance_m > reach {
             continue;
         }
         let light = sphere_reference::sphere_at(&oracle, &sphere_light, slices, i / cols, i % cols);
         let brightest = sphere_light.radiance.iter().fold(0.0, |m: f32, v| m.max(*v));
         sum.iter_mut().zip(sphere_light.radiance).for_each(|(s, r)| *s += light * f64::from(r));
-        *tolerance += f64::from(brightest) * (seen.tolerance() + 4.0 * EPSILON);
+        *tolerance += f64::from(brightest) * (visible.tolerance() + 4.0 * EPSILON);
     }
     let got = run.floats(pass, "sphere_sum").expect("written");
     let texels = got.chunks_exact(4).zip(&sphere_lights).enumerate();

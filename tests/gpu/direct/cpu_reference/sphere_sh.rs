@@ -14,14 +14,14 @@ use ridgelight_cpu::tolerance::{EPSILON, SphereGeometry, device_pyramid_slope};
 use crate::cpu_reference::{Pair, Run, pushed};
 
 /// The error of slopes, at most the steepest of a pyramid.
-pub(crate) fn slope_error(seen: &SphereGeometry, quality: &Quality, is_pyramid: bool) -> f64 {
+pub(crate) fn slope_error(visible: &SphereGeometry, quality: &Quality, is_pyramid: bool) -> f64 {
     if !is_pyramid {
-        return device_surface_within(seen);
+        return device_surface_within(visible);
     }
-    let (largest, relief, step) = (seen.largest_m, seen.relief_m, seen.cell_m);
+    let (largest, relief, step) = (visible.largest_m, visible.relief_m, visible.cell_m);
     let steepest = relief / step;
     let march = device_pyramid_slope(steepest, largest, relief, step);
-    device_pyramid_within(seen, march, steepest, quality.level_step)
+    device_pyramid_within(visible, march, steepest, quality.level_step)
 }
 
 /// All azimuths of one sphere light, after the last batch: the sum of the sphere lights so far, and this one's light
@@ -54,13 +54,13 @@ pub(crate) fn sphere_sh_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     for (i, ((sum, tolerance), got)) in
         sphere_lights.iter_mut().zip(got.chunks_exact(4)).enumerate()
     {
-        let (seen, row, col) =
+        let (visible, row, col) =
             (SphereGeometry::of(&run.scene.field, &sphere_light, i), i / cols, i % cols);
-        if seen.distance_m <= reach {
+        if visible.distance_m <= reach {
             let by_sh = reference.at(&sphere_light, row, col);
             let n = normal(&run.scene.field, border, row, col);
-            let slope = slope_error(&seen, &quality, is_pyramid);
-            let off = errors.tolerance(&seen, slope, n, &by_sh.visibility);
+            let slope = slope_error(&visible, &quality, is_pyramid);
+            let off = errors.tolerance(&visible, slope, n, &by_sh.visibility);
             let brightest = sphere_light.radiance.iter().fold(0.0, |m: f32, v| m.max(*v));
             let light = by_sh.light.max(0.0);
             sum.iter_mut().zip(sphere_light.radiance).for_each(|(s, r)| *s += light * f64::from(r));

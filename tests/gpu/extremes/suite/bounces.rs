@@ -212,11 +212,11 @@ fn both(found: &Found) -> Vec<Probe> {
     let layers = ["direct.sun1", "indirect.1", "indirect.2"].map(|name| found.layer(name));
     let cols = found.scene.field.cols();
     let count = layers[0].len();
-    let looked = (0..count).step_by((count / PLACES).max(1) | 1).map(|i| [i / cols, i % cols]);
+    let chosen = (0..count).step_by((count / PLACES).max(1) | 1).map(|i| [i / cols, i % cols]);
     // And the middle, where spikes and pits stand.
-    let looked = looked.chain([[count / cols / 2, cols / 2]]);
-    let looked = looked.filter(|at| at.iter().all(|lane| found.method.has_line_at(*lane)));
-    let places: Vec<[usize; 2]> = looked.collect();
+    let chosen = chosen.chain([[count / cols / 2, cols / 2]]);
+    let chosen = chosen.filter(|at| at.iter().all(|lane| found.method.has_line_at(*lane)));
+    let places: Vec<[usize; 2]> = chosen.collect();
     let bounces = layers.windows(2).enumerate();
     bounces.flat_map(|(k, two)| one(found, &places, k, [&two[0], &two[1]])).collect()
 }
@@ -234,13 +234,13 @@ fn one(
     let probe = |&[row, col]: &[usize; 2]| {
         let i = row * found.scene.field.cols() + col;
         let albedo = f64::from(albedo[i][0]);
-        let (all, error) = ground.seen([row, col]);
-        let seen = radiance(&all)[0];
+        let (all, error) = ground.visible([row, col]);
+        let visible = radiance(&all)[0];
         let expected = match ground.levels.is_some() {
-            true => [seen; 2],
-            false => ends.map(|end| seen * end),
+            true => [visible; 2],
+            false => ends.map(|end| visible * end),
         };
-        let bound = error.light[0].min(ends[1]) + 4.0 * EPSILON * seen.max(expected[1]);
+        let bound = error.light[0].min(ends[1]) + 4.0 * EPSILON * visible.max(expected[1]);
         let expected = expected.map(|e| albedo * e);
         Probe { found: light[i], expected, bound: albedo * bound, at: [bounce + 1, row, col] }
     };
@@ -304,7 +304,7 @@ impl<'a> Ground<'a> {
     }
 
     /// With radiance 1 on all ground; for pyramids with its own radiance. And the error of the light, relative to it.
-    fn seen(&self, [row, col]: [usize; 2]) -> (Vec<Along>, BounceError) {
+    fn visible(&self, [row, col]: [usize; 2]) -> (Vec<Along>, BounceError) {
         let (field, border) = (&self.found.scene.field, self.found.scene.surface.border);
         let bounces = self.found.method.quality.bounces;
         let normal = Land::normal_at(field, border, [row, col]);

@@ -21,11 +21,11 @@ pub fn cases() -> Vec<Case> {
     let mut all = vec![
         spike("8848 m ± 1 cm: a spike of 1 cm", 8848.0, 0.01, square),
         pit("8848 m ± 1 cm: a pit of 1 cm", 8848.0, 0.01),
-        spike("a single-sample spike of 1e-6 cells", 0.0, 1e-6, square),
-        spike("a single-sample spike of 1 cell", 0.0, 1.0, square),
-        rounded_away(spike("a single-sample spike of 1e6 cells", 0.0, 1e6, square)),
-        pit("a single-sample pit of 1e-6 cells", 0.0, 1e-6),
-        rounded_away(pit("a single-sample pit of 1e6 cells", 0.0, 1e6)),
+        spike("a single-texel spike of 1e-6 cells", 0.0, 1e-6, square),
+        spike("a single-texel spike of 1 cell", 0.0, 1.0, square),
+        rounded_away(spike("a single-texel spike of 1e6 cells", 0.0, 1e6, square)),
+        pit("a single-texel pit of 1e-6 cells", 0.0, 1e-6),
+        rounded_away(pit("a single-texel pit of 1e6 cells", 0.0, 1e6)),
         spike("a spike of 1 in cells of 1 × 1000", 0.0, 1.0, [1.0, 1000.0]),
         spike("a spike of 1 in cells of 1000 × 1", 0.0, 1.0, [1000.0, 1.0]),
         voids(),
@@ -100,7 +100,7 @@ fn spike(name: &str, base: f64, height: f64, cell_m: [f64; 2]) -> Case {
     });
     let asks = if cell_m[0] == cell_m[1] { ALL_ROUND } else { ALONG_AXES };
     let expected =
-        "seen from n cells away along the grid and, in square cells, its diagonals: atan(S / d)";
+        "visible from n cells away along the grid and, in square cells, its diagonals: atan(S / d)";
     let bound = "the method's, all else being level: at distance d";
     // The base's rounding in f64 is 1e-16 of it, on a centimetre's 1e-2 less than f32's.
     horizons(name, (expected, bound), f, asks, move |found| sees_spike(found, height))
@@ -148,7 +148,7 @@ fn ramp(name: &str, slope: f64, cell_m: [f64; 2], of: u32) -> Case {
         let north = SIDE - 1 - r;
         slope * if is_east { cell_m[0] * c as f64 } else { cell_m[1] * north as f64 }
     });
-    let expected = "tan ω = s cos(φ - uphill), at least 0, in every azimuth; between the azimuth asked for and the one that 1/32768 of a cell a step can follow";
+    let expected = "tan ω = s cos(φ - uphill), at least 0, in every azimuth; between the azimuth requested and the one that 1/32768 of a cell a step can follow";
     let bound = "the method's, at one step, along a contour but for packed 0; own: a quarter of the rise from lane to lane over a step besides, as all that its two lines meet ties";
     let asks = Asks::Horizons { of, first: 0, count: of };
     horizons(name, (expected, bound), f, asks, move |found| {
@@ -180,13 +180,13 @@ fn ramp(name: &str, slope: f64, cell_m: [f64; 2], of: u32) -> Case {
 /// Rises are differences of equal numbers: 0, exactly, at any height.
 fn level() -> Case {
     let f = field([SIDE; 2], [1.0, 1.0], |_, _| 1e15);
-    let expected = "0 at every sample in every azimuth";
+    let expected = "0 at every texel in every azimuth";
     horizons("level ground at 1e15", (expected, "0"), f, ALL_ROUND, |found| {
         everywhere(found, 0..SIDE)
     })
 }
 
-/// Horizon 0 at every sample whose row and column are in a range.
+/// Horizon 0 at every texel whose row and column are in a range.
 fn everywhere(found: &Found, range: std::ops::Range<usize>) -> Vec<Probe> {
     let counts = found.method.level(largest(&found.scene.field));
     let mut probes = Vec::new();
@@ -284,7 +284,7 @@ fn hemisphere() -> Case {
 /// lines pass through them.
 fn rough([rows, cols]: [usize; 2]) -> Case {
     let f = field([rows, cols], [1.5, 1.0], |r, c| ((r * 37 + c * 101) % 11) as f64 * 0.5);
-    let expected = "the f64 oracle's, along the grid, at samples that a line runs through";
+    let expected = "the f64 oracle's, along the grid, at texels that a line runs through";
     let name = format!("{rows} × {cols} of rubble");
     horizons(name, (expected, "the method's, at one step"), f, ALONG_AXES, move |found| {
         let f = &found.scene.field;

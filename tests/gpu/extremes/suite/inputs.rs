@@ -34,7 +34,7 @@ pub const ALL: &[Input] = &[
         "heights: found nothing but no-data, expected at least one height",
     ),
     (
-        "no samples",
+        "no texels",
         || HeightField::new(0, 3, &[], [1.0; 2], None).map(|_| ()),
         "heights: found 0 values for 0 rows and 3 columns, expected rows × columns values, at least one",
     ),

@@ -129,11 +129,11 @@ fn series_above(
     let environment = found.scene.lights.environment.as_ref().expect("an environment");
     let harmonics = Harmonics::of(Some(environment), None, found.scene.surface.border, quality);
     let error = ShadeError::new(slope_error, 0.0, 1.0, found.azimuths.len());
-    let mut seen = harmonics.visibility(lowest, &error);
+    let mut visible = harmonics.visibility(lowest, &error);
     if quality.subsample > 1 {
-        seen = Visibility::between([(&seen, 1.0)].into_iter(), &error);
+        visible = Visibility::between([(&visible, 1.0)].into_iter(), &error);
     }
-    let [light, off] = harmonics.light(normal, &seen, &error);
+    let [light, off] = harmonics.light(normal, &visible, &error);
     [light.x, off.x]
 }
 

@@ -21,11 +21,11 @@ pub struct Method {
     pub about: About,
     pub quality: Quality,
     /// For methods along directions.
-    looks: Option<Looks>,
+    traced: Option<Traced>,
 }
 
 /// The directions of visible points, and the settings of scattering.
-pub struct Looks {
+pub struct Traced {
     pub directions: Directions,
     pub scatter: Scatter,
 }
@@ -69,14 +69,14 @@ pub fn all() -> Vec<Method> {
     .into_iter()
     .chain(bounces(&base))
     .chain(soft_spheres(&base))
-    .chain(lobes(&base))
+    .chain(phong_maps(&base))
     .chain(specular(&base))
-    .chain(looks(&base))
+    .chain(traced(&base))
     .collect()
 }
 
 /// Visible points along directions all over the sphere, along the grid, and slightly beside it.
-fn looks(base: &Quality) -> impl Iterator<Item = Method> + use<> {
+fn traced(base: &Quality) -> impl Iterator<Item = Method> + use<> {
     let base = *base;
     let sphere = |count| Directions::fibonacci(count, -1.0, 3).expect("directions");
     let above = |count| Directions::fibonacci(count, 0.0, 3).expect("directions");
@@ -97,7 +97,7 @@ fn looks(base: &Quality) -> impl Iterator<Item = Method> + use<> {
     ]
     .into_iter()
     .map(move |(name, about, directions, scatter)| Method {
-        looks: Some(Looks { directions, scatter }),
+        traced: Some(Traced { directions, scatter }),
         ..Method::of(name, about, base)
     })
 }
@@ -145,7 +145,7 @@ fn soft_spheres(base: &Quality) -> impl Iterator<Item = Method> + use<> {
 }
 
 /// Phong specular by harmonics of every order, and through horizons of every kind.
-fn lobes(base: &Quality) -> impl Iterator<Item = Method> + use<> {
+fn phong_maps(base: &Quality) -> impl Iterator<Item = Method> + use<> {
     let of = |sh_order| Quality { basis: Basis::Sh, sh_order, ..*base };
     [
         ("a lobe by harmonics, 2", of(2)),
@@ -175,7 +175,7 @@ fn specular(base: &Quality) -> impl Iterator<Item = Method> + use<> {
     [
         ("by direction, 4, stack", of(BounceSpecular::Vector, 4, Levels::Stack)),
         ("by direction, 3, levels", of(BounceSpecular::Vector, 3, Levels::Pyramid)),
-        ("as seen from above, 4", of(BounceSpecular::Scalar, 4, Levels::Stack)),
+        ("as visible from above, 4", of(BounceSpecular::Scalar, 4, Levels::Stack)),
     ]
     .into_iter()
     .map(|(name, quality)| Method::of(name, About::Specular, quality))
@@ -212,12 +212,12 @@ fn bounces(base: &Quality) -> impl Iterator<Item = Method> + use<> {
 
 impl Method {
     fn of(name: &'static str, about: About, quality: Quality) -> Self {
-        Self { name, about, quality, looks: None }
+        Self { name, about, quality, traced: None }
     }
 
     /// Its directions.
-    pub fn looks(&self) -> &Looks {
-        self.looks.as_ref().expect("a method of visible points")
+    pub fn traced(&self) -> &Traced {
+        self.traced.as_ref().expect("a method of visible points")
     }
 
     pub fn is_brute(&self) -> bool {

@@ -20,7 +20,7 @@ use ridgelight::gpu::{Headless, Pixels};
 use ridgelight::plan::{self, Azimuth, Picture, Plan};
 use ridgelight::scene::{Albedo, Border, HeightField, Lights, Scene, Surface, VisiblePoints};
 
-use methods::{Looks, Method};
+use methods::{Method, Traced};
 use reference::CpuReference;
 
 /// The output of a case.
@@ -189,12 +189,12 @@ impl Found<'_> {
 
     /// Visible points: the outputs of [`Asks::Points`].
     fn points(&self) -> VisiblePoints {
-        points_of(self.scene, self.looks(), &self.outputs)
+        points_of(self.scene, self.traced(), &self.outputs)
     }
 
     /// The method's directions.
-    fn looks(&self) -> &Looks {
-        self.method.looks()
+    fn traced(&self) -> &Traced {
+        self.method.traced()
     }
 
     /// Whether there is such a layer.
@@ -261,10 +261,10 @@ fn drawn(gpu: &mut Headless, plan: Plan, contents: &[Vec<f32>]) -> Result<Vec<Pi
     pixels.map_err(|e: ridgelight::Error| e.to_string())
 }
 
-fn points_of(scene: &Scene, looks: &Looks, outputs: &[Pixels]) -> VisiblePoints {
+fn points_of(scene: &Scene, traced: &Traced, outputs: &[Pixels]) -> VisiblePoints {
     let words = outputs.iter().flat_map(|image| image.values.iter().map(|v| v.to_bits())).collect();
     let points =
-        VisiblePoints::new(&scene.field, scene.surface.border, looks.directions.clone(), words);
+        VisiblePoints::new(&scene.field, scene.surface.border, traced.directions.clone(), words);
     points.expect("points of the field")
 }
 
@@ -274,7 +274,7 @@ pub fn probes(gpu: &mut Headless, case: &Case, method: &Method) -> Result<Vec<Pr
     let limits = gpu.report().limits;
     let heights = vec![field.heights_m().to_vec()];
     let mut quality = method.quality;
-    let seen = || plan::visible_points(field, border, &method.looks().directions, &limits);
+    let visible = || plan::visible_points(field, border, &method.traced().directions, &limits);
     let planned = match case.asks {
         Asks::Horizons { of, first, count } => {
             quality.azimuths = of;
@@ -284,10 +284,10 @@ pub fn probes(gpu: &mut Headless, case: &Case, method: &Method) -> Result<Vec<Pr
             let wanted = Picture { light_layers: true, ..Picture::default() };
             plan::picture(scene, &quality, &limits, wanted)
         }
-        Asks::Points => seen(),
-        Asks::Ellipses => plan::ellipses(field, border, &method.looks().directions, &limits),
+        Asks::Points => visible(),
+        Asks::Ellipses => plan::ellipses(field, border, &method.traced().directions, &limits),
         Asks::Scatter => {
-            let Looks { directions, scatter } = method.looks();
+            let Traced { directions, scatter } = method.traced();
             plan::scatter(scene, directions, scatter, &limits)
         }
     };
@@ -296,8 +296,8 @@ pub fn probes(gpu: &mut Headless, case: &Case, method: &Method) -> Result<Vec<Pr
         Asks::Horizons { .. } | Asks::Points | Asks::Ellipses => heights,
         Asks::Light => plan::picture_inputs(scene),
         Asks::Scatter => {
-            let words = drawn(gpu, seen().map_err(|e| e.to_string())?, &heights)?;
-            let points = points_of(scene, method.looks(), &words);
+            let words = drawn(gpu, visible().map_err(|e| e.to_string())?, &heights)?;
+            let points = points_of(scene, method.traced(), &words);
             let inputs = plan::scatter_inputs(&plan, scene, &points, &scatters::direct(scene));
             inputs.map_err(|e| e.to_string())?
         }
@@ -328,7 +328,7 @@ pub fn outcome(probes: Result<Vec<Probe>, String>) -> Outcome {
     let largest = probes.iter().fold(0.0_f64, |m, p| p.expected[1].abs().max(m));
     let tightest = probes.iter().fold(f64::INFINITY, |m, p| p.bound.min(m));
     Outcome::Measured {
-        worst: worst.expect("a case looks at something under every method"),
+        worst: worst.expect("a case checks something under every method"),
         largest_error: probes.iter().fold(0.0, |m, p| p.error().max(m)),
         tightest: if largest > 0.0 { tightest / largest } else { tightest },
         values: probes.len(),

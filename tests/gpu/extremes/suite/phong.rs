@@ -75,11 +75,11 @@ fn sky(name: &str, ground: HeightField, border: Border, exponent: f32, radiance:
         let error = ShadeError::new(0.0, 0.0, 1.0, quality.azimuths as usize);
         let bands = || phong(n, exponent.into()).into_iter().zip(cap(n, FRAC_PI_2)).enumerate();
         let all = f64::from(SCALE) * f64::from(radiance);
-        let expected: f64 = bands().map(|(_, (lobe, cap))| lobe * cap).sum();
+        let expected: f64 = bands().map(|(_, (phong_specular, cap))| phong_specular * cap).sum();
         let off: f64 = bands()
-            .map(|(l, (lobe, cap))| {
-                let seen = error.series(l, quality.wedges) + error.node_weight() * cap.abs();
-                lobe.abs() * (seen + device_sh_specular(n, error.normal()) * cap.abs())
+            .map(|(l, (phong_specular, cap))| {
+                let visible = error.series(l, quality.wedges) + error.node_weight() * cap.abs();
+                phong_specular.abs() * (visible + device_sh_specular(n, error.normal()) * cap.abs())
             })
             .sum();
         let places = match (rows, cols) {

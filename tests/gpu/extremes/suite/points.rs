@@ -21,14 +21,14 @@ pub fn cases() -> Vec<Case> {
             expected: expected.to_owned(),
             bound: bound.to_owned(),
             asks: asks(),
-            probes: Box::new(if about == About::Points { seen } else { ellipses }),
+            probes: Box::new(if about == About::Points { visible } else { ellipses }),
             unjudged: none,
             ..case
         };
         grounds.map(case).collect::<Vec<_>>()
     };
     let points = [
-        "the sample nearest to where the oracle's stretches of surface are met, as its number; -1 of the sky, -2 of the ground beyond",
+        "the texel nearest to where the oracle's visible intervals of surface are met, as its number; -1 of the sky, -2 of the ground beyond",
         "none: a neighbour, or what is behind an edge, only where the elevation of a crossing d away may be off, (16 H / d + 44 g) ε of its \
          slope and 12 ε, g the triangle's own, or a place by 32 ε of the way",
     ];
@@ -37,7 +37,7 @@ pub fn cases() -> Vec<Case> {
          nothing and of what the lit ones' moments say no more; the whole disc where all is lit, none where nothing is",
         "none, but for directions that may be lit or not, or lie on an edge (`ellipse_reach`)",
     ];
-    let mut all = of(About::Points, || Asks::Points, "points seen", points);
+    let mut all = of(About::Points, || Asks::Points, "points visible", points);
     all.extend(of(About::Ellipses, || Asks::Ellipses, "ellipses of the sky", fits));
     all
 }
@@ -95,8 +95,8 @@ impl<'a> Sight<'a> {
         let is_row = field.rows() == 1;
         let here = if is_row { [0, at] } else { [at, 0] };
         let mut all: Vec<VisiblePoint> = Vec::new();
-        for seen in possible(&Oracle::new(doubled, self.oracle.border()), here, e) {
-            let point = match seen {
+        for visible in possible(&Oracle::new(doubled, self.oracle.border()), here, e) {
+            let point = match visible {
                 VisiblePoint::GridPoint(there) if is_row => {
                     VisiblePoint::GridPoint(there % field.cols())
                 }
@@ -114,7 +114,13 @@ impl<'a> Sight<'a> {
 fn possible(oracle: &Oracle, here: [usize; 2], e: DVec3) -> Vec<VisiblePoint> {
     let field = oracle.field();
     let own = f64::from(field.heights_m()[here[0] * field.cols() + here[1]]);
-    possible_within(oracle, here, e, |stretch| crossing_elevation(oracle, stretch, own), MET_SHARE)
+    possible_within(
+        oracle,
+        here,
+        e,
+        |interval| crossing_elevation(oracle, interval, own),
+        MET_SHARE,
+    )
 }
 
 /// Some of them, and the middle, where spikes and pits stand.
@@ -123,7 +129,7 @@ pub fn places(found: &Found, about: usize) -> Vec<usize> {
     (0..count).step_by((count / about).max(1) | 1).chain([count / 2]).collect()
 }
 
-fn seen(found: &Found) -> Vec<Probe> {
+fn visible(found: &Found) -> Vec<Probe> {
     let field = &found.scene.field;
     let (sight, points) = (Sight::of(found.scene), found.points());
     let (mut all, mut known) = (Vec::new(), 0);
@@ -155,19 +161,19 @@ fn ellipses(found: &Found) -> Vec<Probe> {
         .flat_map(|at| {
             let texels = [&axes, &radii].map(|of| -> [f32; 4] { of[at] });
             let here = [0, at / field.cols(), at % field.cols()];
-            of_sample(found, &sight, at, texels).into_iter().map(move |p| Probe { at: here, ..p })
+            at_texel(found, &sight, at, texels).into_iter().map(move |p| Probe { at: here, ..p })
         })
         .collect()
 }
 
-fn of_sample(found: &Found, sight: &Sight, at: usize, [axes, radii]: [[f32; 4]; 2]) -> Vec<Probe> {
-    let vectors = found.looks().directions.vectors().iter().filter(|e| e.z > 0.0);
+fn at_texel(found: &Found, sight: &Sight, at: usize, [axes, radii]: [[f32; 4]; 2]) -> Vec<Probe> {
+    let vectors = found.traced().directions.vectors().iter().filter(|e| e.z > 0.0);
     // Lit, shadowed, or either.
-    let mut seen: Vec<(DVec3, Option<bool>)> = Vec::new();
+    let mut visible: Vec<(DVec3, Option<bool>)> = Vec::new();
     for e in vectors {
         let possible = sight.possible(at, *e);
         let lit = possible.iter().filter(|p| **p == VisiblePoint::Sky).count();
-        seen.push((*e, (lit == 0 || lit == possible.len()).then_some(lit > 0)));
+        visible.push((*e, (lit == 0 || lit == possible.len()).then_some(lit > 0)));
     }
     let ellipse = Ellipse::of_texels(axes, [radii[0], radii[1]]);
     let (got, step) = (f64::from(radii[2]), radii[3]);
@@ -184,14 +190,15 @@ fn of_sample(found: &Found, sight: &Sight, at: usize, [axes, radii]: [[f32; 4]; 
         }
     };
     let sum = |all: [f64; 2], one: [f64; 2]| [all[0] + one[0], all[1] + one[1]];
-    let said = seen.iter().map(counts).fold([0.0; 2], sum);
+    let said = visible.iter().map(counts).fold([0.0; 2], sum);
     let exact = |found: f64, expected: [f64; 2]| Probe { found, expected, bound: 0.0, at: [0; 3] };
-    let count = seen.len() as f64;
-    let whole = seen.iter().map(|s| if s.1 == Some(true) { 1.0 } else { -1.0 }).sum::<f64>();
+    let count = visible.len() as f64;
+    let whole = visible.iter().map(|s| if s.1 == Some(true) { 1.0 } else { -1.0 }).sum::<f64>();
     let mut probes = vec![exact(got, said), exact(got, [whole.max(0.0), count])];
-    let known: Vec<SkyDirection> = seen.iter().filter_map(|(e, lit)| Some((*e, (*lit)?))).collect();
+    let known: Vec<SkyDirection> =
+        visible.iter().filter_map(|(e, lit)| Some((*e, (*lit)?))).collect();
     let lit = known.iter().filter(|s| s.1).count();
-    if known.len() < seen.len() {
+    if known.len() < visible.len() {
         return probes;
     }
     if lit == 0 || lit == known.len() {

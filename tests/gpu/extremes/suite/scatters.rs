@@ -16,8 +16,8 @@ use super::{About, Asks, Case, Found, Probe, bounces, field, none, specular};
 
 const PLACES: usize = 12;
 
-const EXPECTED: &str = "the mean of the paths' light, each look-up that of what the oracle lets be seen there, least to most where it may be \
-     another; its own of each sample the zenith's sun on it, in steps from a quarter to all";
+const EXPECTED: &str = "the mean of the paths' light, each look-up that of what the oracle leaves visible there, least to most where it may be \
+     another; its own of each grid_point the zenith's sun on it, in steps from a quarter to all";
 const BOUND: &str = "of each look-up what normals, cosines and lobes err by (`gathered`), of what arrives and of itself; 2 ε a path";
 
 pub fn cases() -> Vec<Case> {
@@ -27,15 +27,15 @@ pub fn cases() -> Vec<Case> {
         scattered(name, case)
     });
     // Black ground whose lobes no direction reaches scatters nothing.
-    let is_seen = |case: &Case| !case.name.contains("albedo 0, lobes of 10000");
-    let glossy = specular::cases().into_iter().filter(is_seen).map(|case| {
+    let is_visible = |case: &Case| !case.name.contains("albedo 0, specular of 10000");
+    let shiny = specular::cases().into_iter().filter(is_visible).map(|case| {
         let name = format!("scattered: {}", case.name);
         let mut case = scattered(name, case);
         // Where paths leave, specular reflects a sky.
         case.scene.lights.sky = Some([1.0; 3]);
         case
     });
-    diffuse.chain(glossy).chain([level(), mirrors()]).collect()
+    diffuse.chain(shiny).chain([level(), mirrors()]).collect()
 }
 
 fn scattered(name: String, case: Case) -> Case {
@@ -58,9 +58,9 @@ fn mirrors() -> Case {
     let ground = field([6, 16], [1.0, 1.0], |_, c| c.abs_diff(8) as f64);
     let sun =
         Sun { azimuth_rad: 0.0, elevation_rad: 0.5 * PI, diameter_rad: 0.0, irradiance: [1.0; 3] };
-    let lobe = Specular::Constant(PhongSpecular { exponent: 1e4, scale: 0.25 });
+    let phong_specular = Specular::Constant(PhongSpecular { exponent: 1e4, scale: 0.25 });
     let albedo = Albedo::Constant([0.5; 3]);
-    let surface = Surface { albedo, border: Border::Periodic, specular: Some(lobe) };
+    let surface = Surface { albedo, border: Border::Periodic, specular: Some(phong_specular) };
     let lights = Lights { suns: vec![sun], ..Lights::default() };
     let name = "scattered between walls at right angles, lobes of 10000".to_owned();
     scattered(name, Case { scene: Scene { field: ground, surface, lights }, ..level() })
@@ -97,10 +97,10 @@ fn level() -> Case {
 
 /// Direct diffuse light of suns in the zenith, in four steps from texel to texel.
 pub fn direct(scene: &Scene) -> Vec<[f32; 3]> {
-    let samples = GridPoints::of(scene);
+    let grid_points = GridPoints::of(scene);
     let sun: f32 = scene.lights.suns.iter().map(|sun| sun.irradiance[0]).sum();
     let of = |at: usize| {
-        let facing = samples.albedo(at)[0] * samples.normal(at).z / PI;
+        let facing = grid_points.albedo(at)[0] * grid_points.normal(at).z / PI;
         [(f64::from(sun) * facing) as f32 * (1 + at % 4) as f32 / 4.0; 3]
     };
     (0..scene.field.heights_m().len()).map(of).collect()
@@ -116,7 +116,7 @@ struct Light {
 struct Chain<'a> {
     scene: &'a Scene,
     sight: Sight<'a>,
-    samples: GridPoints<'a>,
+    grid_points: GridPoints<'a>,
     direct: Vec<[f32; 3]>,
     /// Of each path's steps, in order: direction, sky.
     links: Vec<(DVec3, f64)>,
@@ -132,8 +132,8 @@ impl Chain<'_> {
     fn leaving(&self, path: usize, step: usize, at: usize, back: DVec3) -> Light {
         let (e, sky) = self.links[path * self.steps + step];
         let mut light = Light { ends: [f64::MAX, 0.0], off: 0.0 };
-        for seen in self.sight.possible(at, e) {
-            let arrives = match seen {
+        for visible in self.sight.possible(at, e) {
+            let arrives = match visible {
                 VisiblePoint::GridPoint(there) if step + 1 < self.steps => {
                     self.leaving(path, step + 1, there, -e)
                 }
@@ -144,13 +144,13 @@ impl Chain<'_> {
                 _ => Light::default(),
             };
             // Diffuse light of the sky is part of the direct light, as is the texel's own specular of it.
-            let of_sky = match seen {
+            let of_sky = match visible {
                 VisiblePoint::Sky if step > 0 => sky,
                 _ => 0.0,
             };
             let look = |light: f64, sky: f64| {
                 let arrives = [[light; 3], [light + sky; 3]];
-                self.samples.scattered(at, (e, self.weight_sr), back, arrives)
+                self.grid_points.scattered(at, (e, self.weight_sr), back, arrives)
             };
             let ends = arrives.ends.map(|light| look(light, of_sky).light[0]);
             let more = look(arrives.off, 0.0);
@@ -166,9 +166,9 @@ impl Chain<'_> {
             for sun in
                 self.scene.lights.suns.iter().filter(|_| self.scene.surface.specular.is_some())
             {
-                // Nothing stands over a sample.
+                // Nothing stands over a texel.
                 let arrives = [[0.0; 3], [f64::from(sun.irradiance[0]); 3]];
-                let of = self.samples.scattered(at, (DVec3::Z, 1.0), back, arrives);
+                let of = self.grid_points.scattered(at, (DVec3::Z, 1.0), back, arrives);
                 own += of.light[0];
                 off += self.off(at, DVec3::Z, &of);
             }
@@ -182,9 +182,9 @@ impl Chain<'_> {
     fn off(&self, at: usize, e: DVec3, of: &Gathered) -> f64 {
         let (field, border) = (&self.scene.field, self.scene.surface.border);
         let turned = Land::normal_at(field, border, [at / field.cols(), at % field.cols()]);
-        let n = self.samples.specular(at).map_or(1.0, |phong| f64::from(phong.exponent));
+        let n = self.grid_points.specular(at).map_or(1.0, |phong| f64::from(phong.exponent));
         let [off, ..] = gathered(of, n, turned);
-        let normal = self.samples.normal(at);
+        let normal = self.grid_points.normal(at);
         let apart = 4.0 * turned + 16.0 * EPSILON;
         // A lobe ends at the texel's own plane; for an exponent of 0 at 90° beside its middle, too.
         let on_edge = normal.dot(e).abs() <= apart || (n < 1.0 && of.along.abs() <= apart);
@@ -201,24 +201,28 @@ fn probes(found: &Found) -> Vec<Probe> {
     let steps = u32::from_ne_bytes(bytes) as usize;
     let texels = found.plan.constants.chunks_exact(8);
     let link = |t: &[f32]| (DVec3::new(t[0].into(), t[1].into(), t[2].into()), t[4].into());
-    let looks = found.looks();
-    let has_lobe = scene.surface.specular.as_ref().is_some_and(|lobe| lobe.largest().scale > 0.0);
+    let traced = found.traced();
+    let has_specular = scene
+        .surface
+        .specular
+        .as_ref()
+        .is_some_and(|phong_specular| phong_specular.largest().scale > 0.0);
     let chain = Chain {
         scene,
         sight: Sight::of(scene),
-        samples: GridPoints::of(scene),
+        grid_points: GridPoints::of(scene),
         direct: direct(scene),
         links: texels.map(link).collect(),
         steps,
-        weight_sr: looks.directions.share_sr() * looks.directions.count() as f64,
-        ends_in_direct: !has_lobe,
+        weight_sr: traced.directions.share_sr() * traced.directions.count() as f64,
+        ends_in_direct: !has_specular,
     };
     let probe = |at: usize| {
         let texel = all[at];
         let paths = texel[3] as usize;
         let mut sum = Light::default();
         for path in (0..paths).filter(|_| steps > 0) {
-            let of = chain.leaving(path, 0, at, looks.scatter.view);
+            let of = chain.leaving(path, 0, at, traced.scatter.view);
             sum.ends = [0, 1].map(|end| sum.ends[end] + of.ends[end]);
             sum.off += of.off;
         }

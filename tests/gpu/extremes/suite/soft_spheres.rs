@@ -59,9 +59,10 @@ fn probes(found: &Found) -> Vec<Probe> {
     let (rows, cols) = (field.rows(), field.cols());
     let at = |[row, col]: [usize; 2]| {
         let soft = reference.at(sphere_light, row, col);
-        let seen = SphereGeometry::of(field, sphere_light, row * cols + col);
-        let slope = slope_error(&seen, found.method, super::largest(field));
-        let off = errors.tolerance(&seen, slope, normal(field, border, row, col), &soft.visibility);
+        let visible = SphereGeometry::of(field, sphere_light, row * cols + col);
+        let slope = slope_error(&visible, found.method, super::largest(field));
+        let off =
+            errors.tolerance(&visible, slope, normal(field, border, row, col), &soft.visibility);
         let radiance = f64::from(sphere_light.radiance[0]);
         let light = soft.light.max(0.0);
         Probe {
@@ -76,13 +77,13 @@ fn probes(found: &Found) -> Vec<Probe> {
 }
 
 /// The error of slopes towards a sphere light, where a pyramid's levels, too, are the CPU reference's.
-fn slope_error(seen: &SphereGeometry, method: &Method, largest: f64) -> f64 {
+fn slope_error(visible: &SphereGeometry, method: &Method, largest: f64) -> f64 {
     if !method.is_pyramid() {
-        return device_surface_within(seen);
+        return device_surface_within(visible);
     }
-    let (relief, step) = (seen.relief_m, seen.cell_m);
+    let (relief, step) = (visible.relief_m, visible.cell_m);
     let steepest = relief / step;
     let march = device_pyramid_slope(steepest, largest, relief, step)
         + (1.0 + steepest * steepest) * device_pyramid_angle(largest, relief, step);
-    device_pyramid_within(seen, march, steepest, method.quality.level_step)
+    device_pyramid_within(visible, march, steepest, method.quality.level_step)
 }

@@ -34,7 +34,7 @@ const SIDE: usize = 33;
 /// The approximate number of compared texels.
 const PLACES: usize = 12;
 
-const EXPECTED: &str = "what the CPU reference sees of the sun's own harmonics, bounced by every sample's lobe and diffusely, mirrored to above";
+const EXPECTED: &str = "what the CPU reference sees of the sun's own harmonics, bounced by every texel's specular and diffusely, mirrored to above";
 const BOUND: &str = "series: what arrives, leaves and is gathered (`crates/cpu/src/tolerance/specular.rs`), a lobe's sum of them; 4 ε";
 
 const STEEP: &str = "bounced and mirrored by a spike of 1e6 cells, lobes of 0 and 1e4 in turn";
@@ -101,7 +101,7 @@ fn lobed(
         diameter_rad: 0.0,
         irradiance: [irradiance; 3],
     };
-    let samples = ground.heights_m().len();
+    let grid_points = ground.heights_m().len();
     let phong = |i: usize| PhongSpecular { exponent: exponents[i % 2], scale };
     let lights = Lights { suns: vec![sun], ..Lights::default() };
     let mut case = light(name, (EXPECTED, BOUND), (ground, border, lights), both);
@@ -109,7 +109,7 @@ fn lobed(
     case.scene.surface.albedo = Albedo::Constant([albedo; 3]);
     case.scene.surface.specular = Some(match exponents {
         [a, b] if a == b => Specular::Constant(phong(0)),
-        _ => Specular::Map((0..samples).map(phong).collect()),
+        _ => Specular::Map((0..grid_points).map(phong).collect()),
     });
     case
 }
@@ -143,17 +143,18 @@ fn without(name: &str, albedo: f32, is_bounced: bool) -> Case {
 struct Exit {
     normals: Vec<DVec3>,
     series: Vec<Series>,
-    /// As seen from above.
-    seen: Vec<[f64; 3]>,
+    /// As visible from above.
+    visible: Vec<[f64; 3]>,
     off: f64,
-    off_seen: f64,
+    off_visible: f64,
 }
 
 impl Exit {
     fn new(found: &Found, order: usize) -> Self {
         let (field, surface) = (&found.scene.field, &found.scene.surface);
         let (heights, sun) = (Heights::of(field, surface.border), &found.scene.lights.suns[0]);
-        let (Some(lobe), Albedo::Constant([albedo, ..])) = (&surface.specular, &surface.albedo)
+        let (Some(phong_specular), Albedo::Constant([albedo, ..])) =
+            (&surface.specular, &surface.albedo)
         else {
             unreachable!("each case has both");
         };
@@ -164,19 +165,19 @@ impl Exit {
         let mut exit = Self {
             normals: Vec::new(),
             series: Vec::new(),
-            seen: Vec::new(),
+            visible: Vec::new(),
             off: 0.0,
-            off_seen: 0.0,
+            off_visible: 0.0,
         };
         for i in 0..field.heights_m().len() {
             let at = [i / field.cols(), i % field.cols()];
             let normal = normal_of(field_slope(&heights, at[1] as i32, at[0] as i32));
             let error = Land::normal_at(field, surface.border, at);
-            let (phong, facing) = (lobe.at(i), normal.z);
+            let (phong, facing) = (phong_specular.at(i), normal.z);
             let diffuse = [bright * albedo * facing / PI; 3];
             let mirrored = bright * specular_on(normal, sun, phong, facing / PI);
             exit.series.push(exit_series(&arriving, normal, phong, diffuse));
-            exit.seen.push(diffuse.map(|d| d + mirrored));
+            exit.visible.push(diffuse.map(|d| d + mirrored));
             exit.normals.push(normal);
             let scale = f64::from(phong.scale) * bright;
             // An arriving coefficient is multiplied by at most √(n²) times its error; diffuse light by √4π.
@@ -184,9 +185,9 @@ impl Exit {
             let of_diffuse = 4.0 * (error * bright * albedo + 16.0 * EPSILON * diffuse[0]);
             let leaves = device_specular_exit(order, error) * magnitude;
             exit.off = exit.off.max(scale * (arrives + leaves) + of_diffuse);
-            let of_lobe = device_sun_specular(phong.exponent.into(), error, facing);
-            exit.off_seen =
-                exit.off_seen.max(scale * of_lobe + of_diffuse + 16.0 * EPSILON * mirrored);
+            let of_specular = device_sun_specular(phong.exponent.into(), error, facing);
+            exit.off_visible =
+                exit.off_visible.max(scale * of_specular + of_diffuse + 16.0 * EPSILON * mirrored);
         }
         exit
     }
@@ -198,7 +199,7 @@ fn both(found: &Found) -> Vec<Probe> {
     let (field, border) = (&found.scene.field, found.scene.surface.border);
     let order = quality.sh_order as usize;
     let exit = Exit::new(found, order);
-    let levels = OfPyramid::new(found, &exit.seen);
+    let levels = OfPyramid::new(found, &exit.visible);
     let mut texels: Vec<Series> = Vec::new();
     let is_vector = quality.bounces.specular != BounceSpecular::Scalar;
     if is_vector {
@@ -218,7 +219,7 @@ fn both(found: &Found) -> Vec<Probe> {
         },
         shade: &levels.shade,
         shade_texels: &levels.shade_texels,
-        exit: &exit.seen,
+        exit: &exit.visible,
         receiver: Receiver::Plane,
         azimuths: quality.bounces.azimuths,
     };
@@ -234,7 +235,7 @@ fn both(found: &Found) -> Vec<Probe> {
     };
     let (bright, off) = match is_vector {
         true => (exit.series.iter().map(largest).fold(0.0, f64::max), in_a_direction * exit.off),
-        false => (exit.seen.iter().fold(0.0, |m: f64, v| m.max(v[0])), exit.off_seen),
+        false => (exit.visible.iter().fold(0.0, |m: f64, v| m.max(v[0])), exit.off_visible),
     };
     let land = Land::of(field, border);
     let gathered = Gathered {
@@ -255,7 +256,7 @@ fn both(found: &Found) -> Vec<Probe> {
         CastError { radiance: here.radiance + order as f64 * here.elevation_rad * bright, ..here }
     };
     let layers = ["indirect.1", "indirect.specular"].map(|name| found.layer(name));
-    let (Some(lobe), Albedo::Constant([albedo, ..])) =
+    let (Some(phong_specular), Albedo::Constant([albedo, ..])) =
         (&found.scene.surface.specular, &found.scene.surface.albedo)
     else {
         return Vec::new();
@@ -271,14 +272,14 @@ fn both(found: &Found) -> Vec<Probe> {
             let want = reference.of(&all);
             let of_series = device_arriving(&all, of_exit, order, &slices);
             let of_light = BounceError::of(&all, |_, cast| turned(cast), &slices).light[0];
-            let phong = lobe.at(i);
+            let phong = phong_specular.at(i);
             let mirror = mirrored(&want.series, exit.normals[i], phong)[0];
             let coefficients = in_a_direction * of_series;
-            let of_lobe = coefficients + device_sh_specular(order, normal) * sum(&want.series);
+            let of_specular = coefficients + device_sh_specular(order, normal) * sum(&want.series);
             let albedo = f64::from(*albedo);
             let probes = [
                 (albedo * want.diffuse[0], albedo * of_light),
-                (mirror, f64::from(phong.scale) * of_lobe),
+                (mirror, f64::from(phong.scale) * of_specular),
             ];
             let probe = |k: usize| {
                 let (expected, bound) = probes[k];

@@ -93,7 +93,7 @@ fn slices(found: &Found, sphere_light: &SphereLight) -> f64 {
     f64::from(found.method.quality.sun_azimuths).min(most)
 }
 
-fn seen(found: &Found, sphere_light: &SphereLight, [row, col]: [usize; 2]) -> SphereGeometry {
+fn visible(found: &Found, sphere_light: &SphereLight, [row, col]: [usize; 2]) -> SphereGeometry {
     let field = &found.scene.field;
     SphereGeometry::of(field, sphere_light, row * field.cols() + col)
 }
@@ -113,10 +113,10 @@ fn probe(
     let nearest = |place: f64, count: usize| place.round().clamp(0.0, (count - 1) as f64) as usize;
     let foot = [rows - 1 - nearest(y, rows), nearest(x, cols)];
     let brightest =
-        (sphere_light.radius_m / seen(found, sphere_light, foot).distance_m).powi(2).min(1.0);
+        (sphere_light.radius_m / visible(found, sphere_light, foot).distance_m).powi(2).min(1.0);
     let lost = found.method.quality.light_cutoff * brightest;
     // A hidden sphere light has no rounding.
-    let error = if share > 0.0 { seen(found, sphere_light, at).tolerance() } else { 0.0 };
+    let error = if share > 0.0 { visible(found, sphere_light, at).tolerance() } else { 0.0 };
     Probe {
         found: found.light("direct.light1", at[0], at[1]),
         expected: [(share - lost).max(0.0), share].map(|s| radiance * s),
@@ -161,10 +161,10 @@ fn halves(border: Border) -> Case {
     let expected = "L (a - sin a cos a) / π with sin a = r/d; from within: L";
     case(name, expected, (level(), border), sphere_light, move |found| {
         let at = |place: [usize; 2]| {
-            let a = (sphere_light.radius_m / seen(found, &sphere_light, place).distance_m)
+            let a = (sphere_light.radius_m / visible(found, &sphere_light, place).distance_m)
                 .min(1.0)
                 .asin();
-            let is_inside = seen(found, &sphere_light, place).distance_m < sphere_light.radius_m;
+            let is_inside = visible(found, &sphere_light, place).distance_m < sphere_light.radius_m;
             let share = if is_inside { 1.0 } else { (a - a.sin() * a.cos()) / PI };
             let rule = if is_inside { 0.0 } else { slices(found, &sphere_light).powf(-1.5) };
             probe(found, &sphere_light, place, share, rule)
@@ -201,7 +201,7 @@ fn behind_a_wall(border: Border) -> Case {
     let name = "a sphere light behind a wall";
     let expected = "half hidden: L (sin ω sin²a / 2 + cos ω (a - sin a cos a) / π) with sin a = r/d, ω its middle's elevation; hidden: 0";
     case(name, expected, (wall, border), sphere_light, move |found| {
-        let distance = seen(found, &sphere_light, [40, 10]).distance_m;
+        let distance = visible(found, &sphere_light, [40, 10]).distance_m;
         let a = (sphere_light.radius_m / distance).asin();
         let half =
             8.0 / distance * PI * a.sin().powi(2) / 2.0 + 20.0 / distance * (a - a.sin() * a.cos());

@@ -24,12 +24,12 @@ use crate::cpu_reference::{Pair, Run, constant, fuse_of, pushed};
 /// Heights are moved, not changed.
 pub(crate) fn height_transpose(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let [cols, rows] = run.size();
-    let samples = run.heights().heights_m;
+    let texels = run.heights().heights_m;
     let by_row = constant(pass, "marches_rows") == 1;
     let (lanes, want) = if by_row {
-        (cols, heights_by_row(samples))
+        (cols, heights_by_row(texels))
     } else {
-        (rows, heights_by_col(samples, cols, rows))
+        (rows, heights_by_col(texels, cols, rows))
     };
     let periodic = run.border() == Border::Periodic;
     let width = lanes.next_multiple_of(4);
@@ -195,7 +195,7 @@ fn slope_at(march: &March, (lane, step): (i32, i32), back: f64) -> f64 {
 /// reference's, within both errors.
 fn place_pair(
     march: &March,
-    sample: (i32, i32),
+    grid_point: (i32, i32),
     back: f64,
     (want, tolerance): (f32, f64),
     at: [usize; 3],
@@ -203,7 +203,7 @@ fn place_pair(
     if want <= LOWEST_MET {
         return Pair { got: back, want: 0.0, tolerance: 0.0, at };
     }
-    let got = slope_at(march, sample, back);
+    let got = slope_at(march, grid_point, back);
     Pair { got, want: want.into(), tolerance: 2.0 * tolerance, at }
 }
 
@@ -214,15 +214,15 @@ pub(crate) fn marched(march: &March, nodes: Nodes) -> Vec<([i32; 2], [usize; 2])
     let all = (0..nodes.count(steps)).flat_map(|y| (0..nodes.count(lanes)).map(move |x| [y, x]));
     all.map(|[y, x]| {
         let [row, col] = [nodes.place(y, steps) as i32, nodes.place(x, lanes) as i32];
-        let sample = [march.march_position(row), march.lane_position(col)];
-        let place = if nodes.stride > 1 { [y, x] } else { sample.map(|i| i as u32) };
-        (sample, place.map(|i| i as usize))
+        let grid_point = [march.march_position(row), march.lane_position(col)];
+        let place = if nodes.stride > 1 { [y, x] } else { grid_point.map(|i| i as u32) };
+        (grid_point, place.map(|i| i as usize))
     })
     .collect()
 }
 
 /// Pairs passes that find one value a texel: [layer][step][lane], distances in the next layer.
-fn one_a_sample(
+fn one_a_texel(
     run: &mut Run,
     pass: &Pass,
     first: u32,
@@ -260,7 +260,7 @@ fn one_a_sample(
 pub(crate) fn surface_sweep(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let first = pushed(pass, offsets::march_push::FIRST_AZIMUTH);
     let stored = (constant(pass, "writes_distances") == 1, Nodes { stride: 1 });
-    one_a_sample(run, pass, first, stored, |run, azimuth, reference| {
+    one_a_texel(run, pass, first, stored, |run, azimuth, reference| {
         let warm_up = run.warm_up(azimuth.marches_rows());
         surface_reference::surface_sweep(run.heights(), azimuth, warm_up, reference);
         let vector = [azimuth.vector_march, azimuth.vector_lane];
@@ -272,7 +272,7 @@ pub(crate) fn horizon_march(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let first = pushed(pass, offsets::march_push::FIRST_AZIMUTH);
     let stored =
         (constant(pass, "writes_distances") == 1, Nodes { stride: constant(pass, "node_stride") });
-    one_a_sample(run, pass, first, stored, |run, azimuth, reference| {
+    one_a_texel(run, pass, first, stored, |run, azimuth, reference| {
         let warm_up = run.warm_up(azimuth.marches_rows());
         let options = MarchOptions { all_crossings: constant(pass, "all_crossings") == 1, warm_up };
         march_reference::horizon_march(run.heights(), azimuth, options, reference);
@@ -316,11 +316,11 @@ pub(crate) fn sweep_fuse(run: &mut Run, pass: &Pass) -> Vec<Pair> {
                     pairs.extend((!on_edge).then_some(pair));
                 } else {
                     let march = March::new(swept.heights, azimuth);
-                    let sample = march.of_grid_point(col as i32, row as i32);
+                    let grid_point = march.of_grid_point(col as i32, row as i32);
                     let steepest = 2.0 * largest / f64::from(azimuth.step_m);
                     let error = slope_error + 8.0 * EPSILON * steepest;
                     let back = got / f64::from(azimuth.step_m);
-                    pairs.push(place_pair(&march, sample, back, (slope, error), at));
+                    pairs.push(place_pair(&march, grid_point, back, (slope, error), at));
                 }
             }
         }

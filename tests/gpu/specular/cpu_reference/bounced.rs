@@ -15,7 +15,7 @@ use ridgelight_cpu::tolerance::{
     BounceError, CastError, EPSILON, Gathered, device_arriving, device_level, device_sh_specular,
     device_specular_exit, device_specular_visibility, stored_f16,
 };
-use ridgelight_cpu::{specular_visibility as seen_reference, vector_reduce as reduce_reference};
+use ridgelight_cpu::{specular_visibility as visible_reference, vector_reduce as reduce_reference};
 
 use crate::bounce::cpu_reference::indirect::{brightest, colours};
 use crate::cpu_reference::{Pair, Run, constant, pushed};
@@ -76,7 +76,7 @@ fn magnitude(series: &Series) -> f64 {
 
 pub(crate) fn specular_visibility(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let order = constant(pass, "order") as usize;
-    let seen = device_series(run, pass, order);
+    let visible = device_series(run, pass, order);
     let texels = run.floats(pass, "light_matrix").expect("bound");
     let entries: Vec<_> =
         texels.chunks_exact(4).map(crate::direct::cpu_reference::light::rgb).collect();
@@ -84,10 +84,10 @@ pub(crate) fn specular_visibility(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let got = run.all_series(pass, "arriving", order);
     let [cols, _] = run.size();
     let mut pairs = Vec::new();
-    for (i, (got, seen)) in got.iter().zip(&seen).enumerate() {
-        let want = seen_reference::specular_visibility(seen, &matrix);
+    for (i, (got, visible)) in got.iter().zip(&visible).enumerate() {
+        let want = visible_reference::specular_visibility(visible, &matrix);
         for (k, row) in matrix.iter().enumerate() {
-            let summed: glam::DVec3 = row.iter().zip(seen).map(|(m, v)| m.abs() * v.abs()).sum();
+            let summed: glam::DVec3 = row.iter().zip(visible).map(|(m, v)| m.abs() * v.abs()).sum();
             pairs.extend((0..3).map(|c| Pair {
                 got: got[k][c],
                 want: want[k][c],
@@ -113,24 +113,24 @@ pub(crate) fn specular_exit(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         .map(|i| normal_of(field_slope(&heights, (i % cols) as i32, (i / cols) as i32)))
         .collect();
     let mut pairs = Vec::new();
-    let mut seen = Vec::new();
+    let mut visible = Vec::new();
     if is_direct {
-        seen = colours(&run.floats(pass, "specular_direct").expect("bound"));
+        visible = colours(&run.floats(pass, "specular_direct").expect("bound"));
     } else {
         if pushed(pass, BEGINS) == 1 {
             run.specular = vec![[0.0; 3]; cols * rows];
         }
         let got = colours(&run.floats(pass, "specular_bounced").expect("written"));
         for (i, got) in got.iter().enumerate() {
-            let own = mirrored(&arriving[i], normals[i], run.lobe(i));
-            let off = f64::from(run.lobe(i).scale) * device_sh_specular(order, error);
+            let own = mirrored(&arriving[i], normals[i], run.phong_specular(i));
+            let off = f64::from(run.phong_specular(i).scale) * device_sh_specular(order, error);
             let tolerance = off * magnitude(&arriving[i]) + 2.0 * EPSILON * run.specular[i][0];
             pairs.extend([0, 1, 2].map(|c| {
                 let want = run.specular[i][c] + own[c];
                 let tolerance = tolerance + 2.0 * EPSILON * want;
                 Pair { got: got[c], want, tolerance, at: [c, i / cols, i % cols] }
             }));
-            seen.push([0, 1, 2].map(|c| got[c] - run.specular[i][c]));
+            visible.push([0, 1, 2].map(|c| got[c] - run.specular[i][c]));
         }
         run.specular = got;
     }
@@ -143,7 +143,7 @@ pub(crate) fn specular_exit(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         let channels = got.len() / (cols * rows);
         for (i, got) in got.chunks_exact(channels).enumerate() {
             for c in 0..channels.min(3) {
-                let want = diffuse[i][c] + seen[i][c];
+                let want = diffuse[i][c] + visible[i][c];
                 // The specular light is a difference of sums here.
                 let tolerance = 4.0 * EPSILON * (want + run.specular[i][c]);
                 let at = [c, i / cols, i % cols];
@@ -154,12 +154,12 @@ pub(crate) fn specular_exit(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     }
     let got = run.all_series(pass, "exit_vectors", order);
     for (i, got) in got.iter().enumerate() {
-        let phong = run.lobe(i);
+        let phong = run.phong_specular(i);
         let want = exit_series(&arriving[i], normals[i], phong, diffuse[i]);
         let bright = diffuse[i].iter().fold(0.0, |m: f64, v| v.max(m));
-        let of_lobe =
+        let of_specular =
             f64::from(phong.scale) * device_specular_exit(order, error) * magnitude(&arriving[i]);
-        let sum = of_lobe + 4.0 * EPSILON * 4.0 * bright;
+        let sum = of_specular + 4.0 * EPSILON * 4.0 * bright;
         let tolerance = |want: f64| sum + if halves == 1 { stored_f16(want) } else { 0.0 };
         pairs.extend(paired((got, &want), tolerance, [i / cols, i % cols]));
     }
@@ -169,7 +169,7 @@ pub(crate) fn specular_exit(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 pub(crate) fn vector_reduce(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let order = run.quality.sh_order as usize;
     let shade = run.shade();
-    let number = pushed(pass, offsets::vector_reduce_push::LEVEL);
+    let number = pushed(pass, offsets::reduce_push::LEVEL);
     let level = shade.level(number);
     let exit = run.all_series(pass, "exit_vectors", order);
     let texels = run.all_series(pass, "vector_levels", order);
@@ -186,7 +186,7 @@ pub(crate) fn vector_reduce(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 
 /// The arriving light, from the device's own levels, in one dispatch.
 pub(crate) fn specular_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
-    use offsets::specular_gather_push::{AZIMUTHS, FIRST_AZIMUTH, LAST_AZIMUTH};
+    use offsets::gather_push::{AZIMUTHS, FIRST_AZIMUTH, LAST_AZIMUTH};
     let azimuths = pushed(pass, AZIMUTHS);
     assert_eq!([pushed(pass, FIRST_AZIMUTH), pushed(pass, LAST_AZIMUTH)], [0, azimuths]);
     let order = constant(pass, "order") as usize;

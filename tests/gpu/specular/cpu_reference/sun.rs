@@ -19,7 +19,7 @@ pub(crate) fn sun_specular(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let sun = run.scene.lights.suns[number - 1];
     let sums = run.floats(pass, "sun_sum").expect("read");
     let got = run.floats(pass, "specular_sum").expect("written");
-    let (heights, error) = (run.heights(), run.sample_error());
+    let (heights, error) = (run.heights(), run.texel_error());
     let [cols, _] = run.size();
     if f32::from_bits(pushed(pass, COLOUR + 12)) > 0.0 {
         run.specular = vec![[0.0; 3]; sums.len()];
@@ -32,7 +32,7 @@ pub(crate) fn sun_specular(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let mut pairs = sun_arriving(run, pass, &sun, towards);
     for (i, got) in got.chunks_exact(4).enumerate() {
         let normal = normal_of(field_slope(&heights, (i % cols) as i32, (i / cols) as i32));
-        let phong = run.lobe(i);
+        let phong = run.phong_specular(i);
         let light = specular_reference::specular_on(normal, &sun, phong, sums[i].into());
         let tolerance =
             device_sun_specular(phong.exponent.into(), error.normal(), normal.dot(towards));
@@ -58,7 +58,7 @@ fn sun_arriving(run: &mut Run, pass: &Pass, sun: &Sun, towards: Rgb) -> Vec<Pair
     if f32::from_bits(pushed(pass, offsets::sun_specular_push::COLOUR + 12)) > 0.0 {
         run.arriving = vec![vec![[0.0; 3]; order * order]; sums.len()];
     }
-    let (heights, error) = (run.heights(), run.sample_error());
+    let (heights, error) = (run.heights(), run.texel_error());
     let [cols, _] = run.size();
     let mut pairs = Vec::new();
     for (i, (got, before)) in got.iter().zip(&run.arriving).enumerate() {

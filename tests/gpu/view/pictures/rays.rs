@@ -18,7 +18,7 @@ const SNAP: f64 = 0.5 / 16.0;
 pub(super) const ROUNDING: f64 = 1.0 / (1 << 20) as f64;
 
 /// Radiance, and distance, infinite where there is no ground.
-type Truth = ([f64; 3], f64);
+type GroundTruth = ([f64; 3], f64);
 
 pub(super) struct Shot {
     pub(super) scene: Scene,
@@ -26,7 +26,7 @@ pub(super) struct Shot {
     pub(super) options: ViewOptions,
     /// The lit field.
     pub(super) lit: Vec<[f32; 3]>,
-    pub(super) seen: ViewPixels,
+    pub(super) visible: ViewPixels,
 }
 
 pub(super) fn quality() -> Quality {
@@ -46,7 +46,7 @@ pub(super) fn shoot(
     let contents = plan::picture_inputs(&scene);
     let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
     let gpu = device.gpu.as_mut().expect("alive");
-    let (lit, seen) = gpu
+    let (lit, visible) = gpu
         .with_frame(plan, &contents, |gpu, frame| {
             gpu.draw(frame)?;
             let lit = gpu.pixels(frame, 0)?;
@@ -56,7 +56,7 @@ pub(super) fn shoot(
             Ok((lit, gpu.look(frame, &view, scene.field.voids())?))
         })
         .expect("a picture");
-    Shot { scene, camera, options, lit, seen }
+    Shot { scene, camera, options, lit, visible }
 }
 
 impl Shot {
@@ -66,7 +66,7 @@ impl Shot {
     }
 
     /// Radiance and distance at a place of the picture, in f64.
-    fn truth(&self, pixel: [f64; 2]) -> Truth {
+    fn ground_truth(&self, pixel: [f64; 2]) -> GroundTruth {
         match self.met(pixel) {
             Some(met) => (colour(&self.scene.field, &self.lit, &met), met.distance_m),
             None => {
@@ -85,22 +85,25 @@ impl Shot {
         let [width, height] = self.options.size;
         let away = SNAP + ROUNDING * f64::from(width.max(height));
         let mut held = 0;
-        for i in 0..self.seen.radiance.len() {
+        for i in 0..self.visible.radiance.len() {
             let at = [i % width as usize, i / width as usize].map(|v| v as f64 + 0.5);
             let around = [-1.0, 0.0, 1.0].map(|y| [-1.0, 0.0, 1.0].map(|x| [x * away, y * away]));
-            let truths: Vec<Truth> =
-                around.iter().flatten().map(|d| self.truth([at[0] + d[0], at[1] + d[1]])).collect();
-            let met = truths.iter().filter(|t| t.1.is_finite()).count();
-            if met != 0 && met != truths.len() {
+            let ground_truths: Vec<GroundTruth> = around
+                .iter()
+                .flatten()
+                .map(|d| self.ground_truth([at[0] + d[0], at[1] + d[1]]))
+                .collect();
+            let met = ground_truths.iter().filter(|t| t.1.is_finite()).count();
+            if met != 0 && met != ground_truths.len() {
                 continue;
             }
             held += 1;
-            let got = f64::from(self.seen.distances_m[i]);
-            assert_eq!(got.is_finite(), met > 0, "pixel {at:?}: {got} for {truths:?}");
+            let got = f64::from(self.visible.distances_m[i]);
+            assert_eq!(got.is_finite(), met > 0, "pixel {at:?}: {got} for {ground_truths:?}");
             let edge = f64::from(width.max(height));
-            let range = |of: &dyn Fn(&Truth) -> f64| {
-                let low = truths.iter().map(of).fold(f64::INFINITY, f64::min);
-                let high = truths.iter().map(of).fold(f64::NEG_INFINITY, f64::max);
+            let range = |of: &dyn Fn(&GroundTruth) -> f64| {
+                let low = ground_truths.iter().map(of).fold(f64::INFINITY, f64::min);
+                let high = ground_truths.iter().map(of).fold(f64::NEG_INFINITY, f64::max);
                 (low, high, (high - low) / away)
             };
             let check = |got: f64, (low, high, _): (f64, f64, f64), rounding: f64| {
@@ -122,7 +125,7 @@ impl Shot {
                 let turned = if met > 0 { 0.0 } else { PI * 4096.0 * f64::from(f32::EPSILON) };
                 let pixels = (turned + ROUNDING) * edge;
                 check(
-                    f64::from(self.seen.radiance[i][k]),
+                    f64::from(self.visible.radiance[i][k]),
                     light,
                     ROUNDING * light.1 + light.2 * pixels,
                 );

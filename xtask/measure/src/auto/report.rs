@@ -7,8 +7,8 @@ use ridgelight::gpu::Headless;
 use ridgelight::scene::{Fuse, Lines, Method, Quality, Scene};
 use ridgelight::{Error, Result};
 use ridgelight_io as files;
-use ridgelight_trade::auto::{Chosen, Goal, Measured, Probes, apart, choose, flags};
-use ridgelight_trade::trade::{Rule, Search, Value as Point, ladders, places, recommend, start};
+use ridgelight_trade::auto::{Chosen, Measured, Probes, apart, choose, flags};
+use ridgelight_trade::trade::{Goal, Search, Value as Point, ladders, places, recommend, start};
 use serde_json::{Value, json};
 
 use super::{Request, draw, ratio, scenes};
@@ -171,7 +171,7 @@ fn rows(gpu: &mut Headless, label: &str, scene: &Scene, seconds: f64) -> Result<
     let values: Vec<Point> = all.iter().map(|a| a.1).collect();
     let mut rows = Vec::new();
     for (most, (found, seconds)) in choices {
-        let best = recommend(&values, Rule::MaxError(most)).filter(|r| r.holds);
+        let best = recommend(&values, Some(Goal::MaxError(most))).filter(|r| r.holds);
         let best = best.map(|b| all[b.point].0);
         let mut row = json!({
             "scene": label, "asked": most, "seconds": seconds, "truth_own_error": truth.own.error,

@@ -26,7 +26,7 @@ pub fn shines(col: usize, period: usize) -> f64 {
 }
 
 /// What samples of the mesh scatter, of light reflected up to [`BOUNCES`] times.
-pub fn truth(mesh: &Mesh, field: &HeightField, samples: &[usize]) -> Result<Vec<[f64; 2]>> {
+pub fn ground_truth(mesh: &Mesh, field: &HeightField, samples: &[usize]) -> Result<Vec<[f64; 2]>> {
     let rays = Directions::fibonacci(RAYS, 0.0, 3)?;
     let normals = mesh.normals(field.cols());
     let mut seed = 1_u64;
@@ -76,7 +76,7 @@ fn by_cosine(normal: DVec3, u: f64, azimuth: f64) -> DVec3 {
 }
 
 /// Where samples see what they see, and what each direction counts for.
-pub struct Looks {
+pub struct BentRays {
     pub bent: Vec<Vec<DVec3>>,
     pub weights: Option<Vec<Vec<f64>>>,
 }
@@ -87,7 +87,7 @@ pub fn scattered(
     scene: &Scene,
     points: &VisiblePoints,
     curvature: Curvature,
-    looks: &Looks,
+    looks: &BentRays,
     own: &[f64],
 ) -> [Vec<f64>; 2] {
     let materials = GridPoints::of(scene).on(curvature);

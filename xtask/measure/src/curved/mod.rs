@@ -10,7 +10,7 @@ mod mesh;
 mod report;
 
 use glam::DVec3;
-use light::{ALBEDO, BOUNCES, Looks, RAYS};
+use light::{ALBEDO, BOUNCES, BentRays, RAYS};
 use mesh::Mesh;
 use report::{Row, Scattered, picture, table};
 use ridgelight::Result;
@@ -70,7 +70,7 @@ impl Flat {
         let net = directions.triangles()?;
         let all: Vec<usize> =
             COMPARED.into_iter().flat_map(|row| row * cols..(row + 1) * cols).collect();
-        let level = light::truth(&Mesh::bent(&field, 0.0), &field, &all)?;
+        let level = light::ground_truth(&Mesh::bent(&field, 0.0), &field, &all)?;
         Ok(Self {
             points,
             fans: Fans::of(&net, directions.vectors()),
@@ -143,7 +143,7 @@ fn row(gpu: &mut Headless, flat: &Flat, per_m: f64) -> Result<Row> {
     let refused = curvature.check(field, BORDER).err().map(|error| error.to_string());
     let mesh = Mesh::bent(field, per_m);
     let lit = flat.lit(&mesh);
-    let light = light::truth(&mesh, field, all)?;
+    let light = light::ground_truth(&mesh, field, all)?;
     let draped = |curvature| Draped { field, border: BORDER, points, fans, curvature };
     let (as_is, adapted) = (draped(Curvature::FLAT), draped(curvature));
     let vectors = points.directions().vectors();
@@ -162,14 +162,14 @@ fn row(gpu: &mut Headless, flat: &Flat, per_m: f64) -> Result<Row> {
     // The CPU reference, which refuses nothing; the device beside it where it may.
     let weigh = |bent: &Vec<DVec3>| (0..DIRECTIONS).map(|i| weight(fans, bent, i)).collect();
     let weights = bent.iter().map(weigh).collect();
-    let as_is = Looks { bent: vec![vectors.to_vec(); bent.len()], weights: None };
-    let turned = Looks { bent, weights: None };
-    let on_cpu = |curvature: Curvature, looks: &Looks| {
+    let as_is = BentRays { bent: vec![vectors.to_vec(); bent.len()], weights: None };
+    let turned = BentRays { bent, weights: None };
+    let on_cpu = |curvature: Curvature, looks: &BentRays| {
         let found = light::scattered(scene, points, curvature, looks, &flat.own);
         found.map(|light| all.iter().map(|at| light[*at]).collect::<Vec<f64>>())
     };
     let kinds = [on_cpu(Curvature::FLAT, &as_is), on_cpu(curvature, &turned)];
-    let weighed = on_cpu(curvature, &Looks { weights: Some(weights), ..turned });
+    let weighed = on_cpu(curvature, &BentRays { weights: Some(weights), ..turned });
     let truth = [0, 1].map(|k| light.iter().map(|light| light[k]).collect::<Vec<f64>>());
     let mut device = None;
     if refused.is_none() {

@@ -1,13 +1,11 @@
 //! Compares one bounce with the exact one over visible intervals in f64.
 
 use ridgelight::Result;
-use ridgelight::gpu::Headless;
-use ridgelight::plan::{self, Limits, Picture};
-use ridgelight::scene::{Albedo, BounceEngine, Bounces, Quality, Scene};
+use ridgelight::scene::{Albedo, BounceEngine, Bounces, Quality, Scene, Surface};
 use ridgelight_cpu::bounce_march::bounce_march;
 use ridgelight_cpu::oracle::Oracle;
 
-use super::{PLACES, percent, rms, within};
+use super::{Device, PLACES, colours, rms, sentence, within};
 
 /// Azimuths of the reference.
 const TRUE_AZIMUTHS: u32 = 256;
@@ -17,50 +15,31 @@ const TRUE_AZIMUTHS: u32 = 256;
 ///
 /// # Errors
 /// An error above its bound.
-pub fn check(
-    scene: &Scene,
-    gpu: &mut Headless,
-    quality: &Quality,
-    limits: &Limits,
-) -> Result<String> {
+pub(super) fn check(scene: &Scene, device: &mut Device) -> Result<String> {
     // An albedo of 0 has no bounce. Incoming light does not depend on it.
-    let scene = &white(scene);
+    let surface = Surface { albedo: Albedo::Constant([1.0; 3]), ..scene.surface.clone() };
+    let scene = &Scene { surface, ..scene.clone() };
+    let quality = device.quality;
     let [direct, lit] = [0, 1].map(|count| {
         let bounces = Bounces { count, cutoff: 0.0, ..quality.bounces };
-        let plan =
-            plan::picture(scene, &Quality { bounces, ..*quality }, limits, Picture::default())?;
-        let contents = plan::picture_inputs(scene);
-        let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
-        gpu.with_frame(plan, &contents, |gpu, frame| {
-            gpu.draw(frame)?;
-            gpu.pixels(frame, 0)
-        })
+        device.with(&Quality { bounces, ..*quality }).picture(scene)
     });
     let (direct, lit) = (direct?, lit?);
-    let colour = |pixels: &ridgelight::gpu::Pixels, at: usize| {
-        [0, 1, 2]
-            .map(|c| f64::from(pixels.values[at * pixels.channels + c.min(pixels.channels - 1)]))
-    };
     let count = direct.values.len() / direct.channels;
-    let exit: Vec<[f64; 3]> = (0..count).map(|at| colour(&direct, at)).collect();
+    let all: Vec<usize> = (0..count).collect();
+    let [exit, lit] = [&direct, &lit].map(|p| colours(p, &all));
+    let exit: Vec<[f64; 3]> = exit.into_iter().map(|v| v.to_array()).collect();
     let oracle = Oracle::new(&scene.field, scene.surface.border);
     let (cols, step) = (scene.field.cols(), (count / PLACES).max(1) | 1);
     let (mut off, mut all) = (Vec::new(), Vec::new());
     for at in (0..count).step_by(step) {
         let want = bounce_march(&oracle, &exit, TRUE_AZIMUTHS, at / cols, at % cols);
-        let got = colour(&lit, at);
-        off.extend((0..3).map(|c| got[c] - exit[at][c] - want[c]));
+        off.extend((0..3).map(|c| lit[at][c] - exit[at][c] - want[c]));
         all.extend(want);
     }
     let error = rms(off.into_iter()) / rms(all.into_iter()).max(f64::MIN_POSITIVE);
-    let (error, bound) = within("the bounce", "f64", error, bound(quality), quality)?;
-    Ok(format!("bounce error {} against f64 (RMSE; bound {})", percent(error), percent(bound)))
-}
-
-fn white(scene: &Scene) -> Scene {
-    let mut scene = scene.clone();
-    scene.surface.albedo = Albedo::Constant([1.0; 3]);
-    scene
+    let errors = within("the bounce", "f64", error, bound(quality), quality)?;
+    Ok(sentence("bounce", "f64", errors))
 }
 
 /// A quadrature over azimuths has an error proportional to the squared step where light is smooth

@@ -5,47 +5,34 @@ use std::f64::consts::{PI, TAU};
 
 use glam::DVec3;
 use ridgelight::Result;
-use ridgelight::gpu::Headless;
-use ridgelight::plan::{self, Azimuth, Limits, Picture, Plan};
+use ridgelight::plan::{Azimuth, Plan};
 use ridgelight::scene::{Border, Environment, Lights, Quality, Scene};
 use ridgelight_cpu::env_tables::{bottom_rad, env_tables};
 use ridgelight_cpu::env_wedges::env_wedges;
 use ridgelight_cpu::shared::gather::Swept;
 use ridgelight_cpu::tolerance::{ShadeError, device_resolved, device_table, device_wedge_row};
 
-use super::harmonics::Wanted;
 use super::sweeps::{lit, white};
-use super::{colours, percent};
+use super::{Device, Wanted, colours, sentence};
 
 /// The scene's environment on white ground, at some texels; none without an environment.
 pub(super) fn check(
     scene: &Scene,
     places: &[usize],
-    gpu: &mut Headless,
-    (quality, lines): (&Quality, u32),
-    limits: &Limits,
+    device: &mut Device,
+    lines: u32,
 ) -> Result<Option<String>> {
     let is_lit = |e: &&Environment| e.texels().iter().flatten().any(|v| *v > 0.0);
     let Some(environment) = scene.lights.environment.as_ref().filter(is_lit) else {
         return Ok(None);
     };
     let lights = Lights { environment: Some(environment.clone()), ..Lights::default() };
-    let scene = Scene { lights, ..white(scene) };
-    let plan = plan::picture(&scene, quality, limits, Picture::default())?;
-    let wanted = wanted_of(&scene, &plan, places, quality, lines);
-    let contents = plan::picture_inputs(&scene);
-    let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
-    let picture = gpu.with_frame(plan, &contents, |gpu, frame| {
-        gpu.draw(frame)?;
-        gpu.pixels(frame, 0)
-    })?;
-    let (error, bound) =
-        wanted.judge("the environment at one place", &colours(&picture, places), quality)?;
-    Ok(Some(format!(
-        "environment error {} against the CPU reference (RMSE; bound {})",
-        percent(error),
-        percent(bound)
-    )))
+    let scene = white(scene, lights);
+    let (plan, layers) = device.layers(&scene, false)?;
+    let wanted = wanted_of(&scene, &plan, places, device.quality, lines);
+    let found = colours(&layers[0], places);
+    let errors = wanted.judge("the environment at one place", &found, device.quality)?;
+    Ok(Some(sentence("environment", "the CPU reference", errors)))
 }
 
 /// Light of the CPU reference at each place, and its tolerance. Uses the plan's azimuths, which are denser where the environment is bright.
@@ -125,12 +112,12 @@ fn columns_of(environment: &Environment, azimuth: &Azimuth) -> impl Iterator<Ite
 #[cfg(test)]
 mod tests {
     use super::*;
-    use ridgelight::scene::fractal;
-    use ridgelight::scene::{Fuse, Surface};
+    use crate::bench::verify::tests::{places, scene};
+    use ridgelight::plan::{self, Limits, Picture};
+    use ridgelight::scene::Fuse;
 
-    /// Wrong light is refused, with and without a peak in an even environment: 1 % too dark, twice
-    /// the tolerance, of another fuse, of half the elevations, rotated by a column, of a neighbour,
-    /// of other colours, and NaN.
+    /// Wrong light is refused, with and without a peak in an even environment: of another fuse, of
+    /// half the elevations, rotated by a column.
     #[test]
     fn wrong_environments_are_refused() {
         for peak in [0.0, 3000.0] {
@@ -142,36 +129,18 @@ mod tests {
                 let texels = (0..64 * 32).map(texel).collect();
                 let environment = Environment::new(64, 32, texels, turn).unwrap();
                 let lights = Lights { environment: Some(environment), ..Lights::default() };
-                let field = fractal(48, 1).unwrap();
-                let scene = Scene { field, surface: Surface::default(), lights };
-                let places: Vec<usize> = (3..48 * 48).step_by(61).collect();
+                let scene = scene(48, lights);
                 let limits = Limits::lavapipe();
                 let plan = plan::picture(&scene, quality, &limits, Picture::default()).unwrap();
-                wanted_of(&scene, &plan, &places, quality, quality.lines.shift().unwrap())
+                wanted_of(&scene, &plan, &places(), quality, quality.lines.shift().unwrap())
             };
             let quality = Quality { azimuths: 16, ..Quality::default() };
-            let wanted = of(0.0, &quality);
-            let values = |wanted: &Wanted| wanted.0.iter().map(|w| w[0]).collect::<Vec<DVec3>>();
-            let right = values(&wanted);
-            let (error, bound) = wanted.judge("light", &right, &quality).unwrap();
-            println!("peak {peak}: bound {bound:e}");
-            assert!(error == 0.0 && bound < 0.005, "{bound}");
-            let mut turned = right.clone();
-            turned.rotate_left(1);
-            let mut holed = right.clone();
-            holed[3].y = f64::NAN;
             let wrong = [
-                ("dim", right.iter().map(|v| 0.99 * *v).collect()),
-                ("of another fuse", values(&of(0.0, &Quality { fuse: Fuse::Nearest, ..quality }))),
-                ("coarse", values(&of(0.0, &Quality { table_elevations: 32, ..quality }))),
-                ("turned", values(&of(TAU / 64.0, &quality))),
-                ("of a neighbour", turned),
-                ("of other colours", right.iter().map(|v| DVec3::new(v.z, v.y, v.x)).collect()),
-                ("NaN", holed),
+                ("fuse", of(0.0, &Quality { fuse: Fuse::Nearest, ..quality }).light()),
+                ("coarse", of(0.0, &Quality { table_elevations: 32, ..quality }).light()),
+                ("turned", of(TAU / 64.0, &quality).light()),
             ];
-            for (name, light) in wrong {
-                assert!(wanted.judge("light", &light, &quality).is_err(), "{name} passes: {peak}");
-            }
+            of(0.0, &quality).refuses(&quality, [0.005, 0.99], &wrong);
         }
     }
 }

@@ -7,8 +7,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use glam::{DVec2, DVec3};
 use ridgelight::Result;
-use ridgelight::gpu::{Headless, Pixels};
-use ridgelight::plan::{self, Azimuth, Limits, Nodes, Picture};
+use ridgelight::plan::{self, Azimuth, Nodes};
 use ridgelight::scene::{Border, Quality, Receiver, Scene};
 use ridgelight_cpu::harmonics::{Harmonics, Visibility};
 use ridgelight_cpu::sh_shade::nodes_around;
@@ -19,7 +18,7 @@ use ridgelight_cpu::tolerance::{
     ARC_TANGENT, ShadeError, device_fused_slope, device_resolved, two_devices,
 };
 
-use super::{Verifier, albedo_of, bounds, colours, judge, percent, rms, within};
+use super::{Device, Verifier, Wanted, albedo_of, bounds, colours, percent, rms, within};
 
 /// A place before it is lit.
 pub(super) struct Place {
@@ -59,15 +58,10 @@ impl Place {
 }
 
 /// Lights the piece of a verifier by harmonics. Returns a sentence with the error.
-pub(super) fn check(
-    verifier: &Verifier,
-    gpu: &mut Headless,
-    quality: &Quality,
-    limits: &Limits,
-) -> Result<String> {
-    let Verifier { scene, ground_truth } = verifier;
+pub(super) fn check(verifier: &Verifier, device: &mut Device) -> Result<String> {
+    let (Verifier { scene, ground_truth }, quality) = (verifier, device.quality);
     let border = scene.surface.border;
-    let all = with_nodes(scene, &ground_truth.places, gpu, quality, limits)?;
+    let all = with_nodes(scene, &ground_truth.places, device)?;
     let (places, nodes) = all.split_at(ground_truth.places.len());
     let sky =
         rms(places.iter().zip(&ground_truth.open).map(|(place, open)| place.sky(border) - open));
@@ -76,13 +70,14 @@ pub(super) fn check(
     let what = "a uniform sky through the horizons";
     let (sky, sky_bound) = within(what, "the oracle", sky / open, of_sky, quality)?;
 
-    let [whole, own] = draw(scene, gpu, quality, limits)?;
+    let (_, layers) = device.layers(scene, true)?;
+    let own = layers.iter().find(|p| p.name == "direct.env").expect("an environment");
     let wanted = Wanted::of(scene, quality, places, nodes);
     let what = format!("light of order {} at one place", quality.sh_order);
     let (series, series_bound) =
-        wanted.judge(&what, &colours(&own, &ground_truth.places), quality)?;
+        wanted.judge(&what, &colours(own, &ground_truth.places), quality)?;
 
-    let [whole_means, own_means] = [&whole, &own].map(|p| ground_truth.means(p));
+    let [whole_means, own_means] = [&layers[0], own].map(|p| ground_truth.means(p));
     let rest = whole_means.iter().zip(&own_means).zip(&ground_truth.expected);
     let rest = rms(rest.map(|((whole, own), [sky, _, suns, sphere_lights])| {
         whole - own - sky - suns - sphere_lights
@@ -100,7 +95,7 @@ pub(super) fn check(
         percent(series),
         percent(series_bound),
         quality.sh_order,
-        percent(ground_truth.error(&whole)),
+        percent(ground_truth.error(&layers[0])),
     ))
 }
 
@@ -115,38 +110,17 @@ fn around(heights: &Heights, quality: &Quality, index: usize) -> [(usize, f64); 
     })
 }
 
-/// The nodes of some places, in order.
-fn nodes_of(heights: &Heights, quality: &Quality, places: &[usize]) -> Vec<usize> {
-    if quality.subsample == 1 {
-        return places.to_vec();
-    }
-    let all = places.iter().flat_map(|p| around(heights, quality, *p).map(|(node, _)| node));
-    all.collect::<BTreeSet<_>>().into_iter().collect()
-}
-
 /// Places followed by their nodes, with the device's horizons.
-pub(super) fn with_nodes(
-    scene: &Scene,
-    of: &[usize],
-    gpu: &mut Headless,
-    quality: &Quality,
-    limits: &Limits,
-) -> Result<Vec<Place>> {
-    let heights = Heights::of(&scene.field, scene.surface.border);
-    let all = of.iter().copied().chain(nodes_of(&heights, quality, of));
-    places(scene, all.collect(), gpu, quality, limits)
-}
-
-/// Places with the device's horizons.
-fn places(
-    scene: &Scene,
-    places: Vec<usize>,
-    gpu: &mut Headless,
-    quality: &Quality,
-    limits: &Limits,
-) -> Result<Vec<Place>> {
-    let (field, border) = (&scene.field, scene.surface.border);
-    let mut all: Vec<Place> = places.iter().map(|p| Place::of(scene, *p)).collect();
+pub(super) fn with_nodes(scene: &Scene, of: &[usize], device: &mut Device) -> Result<Vec<Place>> {
+    let (field, border, quality) = (&scene.field, scene.surface.border, device.quality);
+    let heights = Heights::of(field, border);
+    let around = |p: &usize| around(&heights, quality, *p).map(|(node, _)| node);
+    let nodes = match quality.subsample {
+        1 => of.to_vec(),
+        _ => of.iter().flat_map(around).collect::<BTreeSet<_>>().into_iter().collect(),
+    };
+    let mut all: Vec<Place> = of.iter().chain(&nodes).map(|p| Place::of(scene, *p)).collect();
+    let limits = device.limits;
     let mut take = |k: u32, angles: &[f32], _: &[f32]| {
         let azimuth = plan::horizons(field, border, quality, limits, (k, 1), false)?.azimuths[0];
         for place in &mut all {
@@ -156,30 +130,9 @@ fn places(
         }
         Ok(())
     };
-    crate::horizon::for_each(gpu, field, border, quality, limits, false, &mut take)?;
+    crate::horizon::for_each(device.gpu, field, border, quality, limits, false, &mut take)?;
     Ok(all)
 }
-
-/// The picture, and its environment layer.
-fn draw(
-    scene: &Scene,
-    gpu: &mut Headless,
-    quality: &Quality,
-    limits: &Limits,
-) -> Result<[Pixels; 2]> {
-    let wanted = Picture { light_layers: true, ..Picture::default() };
-    let plan = plan::picture(scene, quality, limits, wanted)?;
-    let own = plan.outputs().position(|(_, r)| r.name == "direct.env").expect("an environment");
-    let contents = plan::picture_inputs(scene);
-    let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
-    gpu.with_frame(plan, &contents, |gpu, frame| {
-        gpu.draw(frame)?;
-        Ok([gpu.pixels(frame, 0)?, gpu.pixels(frame, own)?])
-    })
-}
-
-/// Light at each place by the same series in f64, and the tolerance of a device.
-pub(super) struct Wanted(pub Vec<[DVec3; 2]>);
 
 impl Wanted {
     /// The environment's light at the places, from the visibility of their nodes.
@@ -230,19 +183,13 @@ impl Wanted {
         };
         Self(places.iter().map(of).collect())
     }
-
-    pub fn judge(&self, what: &str, found: &[DVec3], quality: &Quality) -> Result<(f64, f64)> {
-        let pairs = |[want, bound]: &[DVec3; 2]| [0, 1, 2].map(|c| [want[c], bound[c]]);
-        let wanted: Vec<[f64; 2]> = self.0.iter().flat_map(pairs).collect();
-        judge(what, found.iter().flat_map(|v| v.to_array()), &wanted, quality)
-    }
 }
 
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
-    use ridgelight::scene::fractal;
-    use ridgelight::scene::{Basis, Environment, Lights, Surface, Wedges, Window};
+    use ridgelight::plan::Limits;
+    use ridgelight::scene::{Basis, Environment, Lights, Wedges, Window};
 
     /// A sunlit sky: 60 times brighter in the sun's texels.
     pub fn scene() -> Scene {
@@ -252,11 +199,8 @@ pub(super) mod tests {
             [1.0 + sun, 0.8 + 0.9 * sun, 0.5 + (i % 7) as f32 / 10.0 + 0.7 * sun]
         };
         let environment = Environment::new(32, 16, (0..32 * 16).map(texel).collect(), 0.4).unwrap();
-        Scene {
-            field: fractal(64, 1).unwrap(),
-            surface: Surface::default(),
-            lights: Lights { environment: Some(environment), ..Lights::default() },
-        }
+        let lights = Lights { environment: Some(environment), ..Lights::default() };
+        crate::bench::verify::tests::scene(64, lights)
     }
 
     /// Some places with the oracle's horizons.
@@ -278,13 +222,18 @@ pub(super) mod tests {
         (7..64 * 64).step_by(397).map(of).collect()
     }
 
-    /// Wrong light is refused for every order and form: slightly too dark, of the next order, of
-    /// the other receiver, without shadows, of a neighbour, of swapped colours, and NaN.
+    /// Wrong light is refused for every order and form: of the next order, of the other receiver,
+    /// without shadows.
     #[test]
     fn wrong_harmonics_are_refused() {
         let scene = scene();
         let base = Quality { basis: Basis::Sh, azimuths: 16, ..Quality::default() };
         let known = places(&scene, &base);
+        let free = |p: &Place| {
+            let horizons = p.horizons.iter().map(|(a, _)| (*a, -1e9)).collect();
+            Place { horizons, ..Place::of(&scene, p.index) }
+        };
+        let free: Vec<Place> = known.iter().map(free).collect();
         for sh_order in 2..=6 {
             for (wedges, receiver, window) in [
                 (Wedges::Slices, Receiver::Plane, Window::None),
@@ -294,47 +243,22 @@ pub(super) mod tests {
                 (Wedges::Table, Receiver::Plane, Window::None),
             ] {
                 let quality = Quality { sh_order, wedges, receiver, window, ..base };
-                let wanted = Wanted::of(&scene, &quality, &known, &known);
-                let light = |quality: &Quality, places: &[Place]| -> Vec<DVec3> {
-                    Wanted::of(&scene, quality, places, places).0.iter().map(|w| w[0]).collect()
+                let of = |quality: &Quality, places: &[Place]| {
+                    Wanted::of(&scene, quality, places, places)
                 };
-                let right = light(&quality, &known);
-                let (error, bound) = wanted.judge("light", &right, &quality).unwrap();
-                println!("order {sh_order} {wedges:?} {receiver:?} {window:?}: bound {bound:e}");
-                // f32 cancellation of the fits' weights, 60 and 100 times their light.
-                let [most, dim] = if sh_order > 4 { [0.05, 0.9] } else { [0.01, 0.98] };
-                assert!(error == 0.0 && bound < most, "{error} {bound}");
-                let free = |p: &Place| {
-                    let horizons = p.horizons.iter().map(|(a, _)| (*a, -1e9)).collect();
-                    Place { horizons, ..Place::of(&scene, p.index) }
-                };
-                let free: Vec<Place> = known.iter().map(free).collect();
                 let other = match receiver {
                     Receiver::Plane => Receiver::Cosine,
                     Receiver::Cosine => Receiver::Plane,
                 };
                 let next = if sh_order == 6 { 5 } else { sh_order + 1 };
-                let mut turned = right.clone();
-                turned.rotate_left(1);
-                let mut holed = right.clone();
-                holed[3].y = f64::NAN;
                 let wrong = [
-                    ("dim", right.iter().map(|v| dim * *v).collect()),
-                    ("black", vec![DVec3::ZERO; right.len()]),
-                    ("of the next order", light(&Quality { sh_order: next, ..quality }, &known)),
-                    (
-                        "of the other receiver",
-                        light(&Quality { receiver: other, ..quality }, &known),
-                    ),
-                    ("without shadows", light(&quality, &free)),
-                    ("of a neighbour", turned),
-                    ("of other colours", right.iter().map(|v| DVec3::new(v.z, v.y, v.x)).collect()),
-                    ("NaN", holed),
+                    ("order", of(&Quality { sh_order: next, ..quality }, &known).light()),
+                    ("receiver", of(&Quality { receiver: other, ..quality }, &known).light()),
+                    ("without shadows", of(&quality, &free).light()),
                 ];
-                for (name, light) in wrong {
-                    let refused = wanted.judge("light", &light, &quality);
-                    assert!(refused.is_err(), "{name} passes: {quality:?}");
-                }
+                // f32 cancellation of the fits' weights, 60 and 100 times their light.
+                let most = if sh_order > 4 { [0.05, 0.9] } else { [0.01, 0.98] };
+                of(&quality, &known).refuses(&quality, most, &wrong);
             }
         }
     }

@@ -1,10 +1,10 @@
 //! Compares a sky through swept horizons with the same sweeps and the same near search on the CPU.
 //! They may differ by f32 rounding only.
 
+use glam::DVec3;
 use ridgelight::Result;
-use ridgelight::gpu::{Headless, Pixels};
 use ridgelight::plan::azimuths::{Shape, even};
-use ridgelight::plan::{self, Axis, Azimuth, Limits, Pass, Picture, Plan};
+use ridgelight::plan::{Axis, Azimuth, Pass, Plan};
 use ridgelight::scene::{
     Albedo, Border, KeyLight, Lights, Lines, Method, Precision, Quality, Scene, Sun, Surface,
 };
@@ -16,7 +16,7 @@ use ridgelight_cpu::sky_shade::sky_at;
 use ridgelight_cpu::sun_shade::sun_at;
 use ridgelight_cpu::tolerance::{EPSILON, ShadeError, device_fused_slope};
 
-use super::{environments, percent, rms, within};
+use super::{Device, Wanted, colours, environments, sentence};
 
 /// A sky of radiance 1 and the scene's suns and key lights on white ground, at some texels. None
 /// where the CPU reference does not follow the sweeps: packed horizons are rounded, and lines of a
@@ -24,10 +24,9 @@ use super::{environments, percent, rms, within};
 pub(super) fn check(
     scene: &Scene,
     places: &[usize],
-    gpu: &mut Headless,
-    quality: &Quality,
-    limits: &Limits,
+    device: &mut Device,
 ) -> Result<Option<String>> {
+    let quality = device.quality;
     let lines = match quality.lines.shift() {
         Some(shift) if shift <= Lines::Cell.shift().unwrap_or(0) => shift,
         Some(shift) if scene.surface.border != Border::Periodic => shift,
@@ -37,38 +36,28 @@ pub(super) fn check(
     if !is_followed || quality.precision != Precision::F32 {
         return Ok(None);
     }
-    let aimed = check_aimed(scene, places, gpu, quality, limits, lines)?;
-    let around = environments::check(scene, places, gpu, (quality, lines), limits)?;
-    let sky = Lights { sky: Some([1.0; 3]), ..Lights::default() };
-    let scene = Scene { lights: sky, ..white(scene) };
-    let plan = plan::picture(&scene, quality, limits, Picture::default())?;
+    let aimed = check_aimed(scene, places, device, lines)?;
+    let around = environments::check(scene, places, device, lines)?;
+    let scene = white(scene, Lights { sky: Some([1.0; 3]), ..Lights::default() });
+    let (plan, layers) = device.layers(&scene, false)?;
     if !plan.passes.iter().any(|pass| pass.name() == "horizon_sweep") {
         return Ok(None);
     }
-    let picture = gpu.with_frame(plan, &[scene.field.heights_m()], |gpu, frame| {
-        gpu.draw(frame)?;
-        gpu.pixels(frame, 0)
-    })?;
-    let found: Vec<f64> =
-        places.iter().map(|p| picture.values[p * picture.channels].into()).collect();
-    let (want, bound) = wanted(&scene, places, quality, lines);
-    let (error, bound) = judge("the sky at one place", &found, &want, bound, quality)?;
-    let of_sky = format!(
-        "sky error {} against the CPU reference (RMSE; bound {})",
-        percent(error),
-        percent(bound)
-    );
-    let all: Vec<String> = [Some(of_sky), around, aimed].into_iter().flatten().collect();
+    let wanted = wanted(&scene, places, quality, lines);
+    let errors = wanted.judge("the sky at one place", &colours(&layers[0], places), quality)?;
+    let of_sky = Some(sentence("sky", "the CPU reference", errors));
+    let all: Vec<String> = [of_sky, around, aimed].into_iter().flatten().collect();
     Ok(Some(all.join("; ")))
 }
 
-/// Light of the CPU reference, and its tolerance at any place.
-fn wanted(scene: &Scene, places: &[usize], quality: &Quality, line_shift: u32) -> (Vec<f64>, f64) {
+/// Light of the CPU reference.
+fn wanted(scene: &Scene, places: &[usize], quality: &Quality, line_shift: u32) -> Wanted {
     let azimuths = even(quality.azimuths, scene.field.cell_m());
     let cols = scene.field.cols();
     lit(scene, azimuths, quality, line_shift, |swept, error| {
-        let want = places.iter().map(|p| sky_at(swept, (p % cols) as i32, (p / cols) as i32));
-        (want.collect(), error.sky())
+        let at = |p: &usize| sky_at(swept, (p % cols) as i32, (p / cols) as i32);
+        let both = |p| [at(p), error.sky()].map(DVec3::splat);
+        Wanted(places.iter().map(both).collect())
     })
 }
 
@@ -110,50 +99,36 @@ pub(super) fn lit<T>(
 fn check_aimed(
     scene: &Scene,
     places: &[usize],
-    gpu: &mut Headless,
-    quality: &Quality,
-    limits: &Limits,
+    device: &mut Device,
     lines: u32,
 ) -> Result<Option<String>> {
     let Lights { suns, keys, .. } = &scene.lights;
     let lit_by = |c: &[f32; 3]| c.iter().any(|v| *v > 0.0);
-    let suns: Vec<Sun> = suns.iter().filter(|s| lit_by(&s.irradiance)).copied().collect();
-    let keys: Vec<KeyLight> = keys.iter().filter(|k| lit_by(&k.radiance)).copied().collect();
+    let suns = suns.iter().filter(|s| lit_by(&s.irradiance));
+    let suns: Vec<_> = suns.map(|sun| Sun { irradiance: [1.0; 3], ..*sun }).collect();
+    let keys = keys.iter().filter(|k| lit_by(&k.radiance));
+    let keys: Vec<_> = keys.map(|key| KeyLight { radiance: [1.0; 3], ..*key }).collect();
     if suns.is_empty() && keys.is_empty() {
         return Ok(None);
     }
-    let suns = suns.into_iter().map(|sun| Sun { irradiance: [1.0; 3], ..sun }).collect();
-    let keys = keys.into_iter().map(|key| KeyLight { radiance: [1.0; 3], ..key }).collect();
-    let scene = &Scene { lights: Lights { suns, keys, ..Lights::default() }, ..white(scene) };
-    let wanted = Picture { light_layers: true, ..Picture::default() };
-    let plan = plan::picture(scene, quality, limits, wanted)?;
-    let (mut found, mut all, mut bound) = (Vec::new(), Vec::new(), 0.0_f64);
-    let (layers, plan) = gpu.with_frame(plan, &[scene.field.heights_m()], |gpu, frame| {
-        gpu.draw(frame)?;
-        let plan = frame.plan().clone();
-        let outputs = plan.outputs().count();
-        let layers: Result<Vec<Pixels>> = (0..outputs).map(|o| gpu.pixels(frame, o)).collect();
-        Ok((layers?, plan))
-    })?;
-    for layer in layers.iter().filter(|l| l.name.starts_with("direct.")) {
-        let Some((azimuths, shape)) = azimuths_of(&plan, layer.name.trim_start_matches("direct."))
-        else {
-            continue;
-        };
-        let (want, most) = aimed(scene, azimuths, places, quality, lines, shape);
-        for (place, want) in places.iter().zip(want) {
-            let Some(want) = want else { continue };
-            found.push(f64::from(layer.values[place * layer.channels]));
-            all.push(want);
+    let scene = &white(scene, Lights { suns, keys, ..Lights::default() });
+    let (plan, layers) = device.layers(scene, true)?;
+    let (mut found, mut all, mut most) = (Vec::new(), Vec::new(), DVec3::ZERO);
+    for layer in &layers {
+        let of = layer.name.strip_prefix("direct.").and_then(|light| azimuths_of(&plan, light));
+        let Some((azimuths, shape)) = of else { continue };
+        let wanted = aimed(scene, azimuths, places, device.quality, lines, shape);
+        for (got, wanted) in colours(layer, places).into_iter().zip(wanted) {
+            let Some([light, bound]) = wanted else { continue };
+            found.push(got);
+            all.push([light, bound]);
+            most = most.max(bound);
         }
-        bound = bound.max(most);
     }
-    let (error, bound) = judge("a sun at one place", &found, &all, bound, quality)?;
-    Ok(Some(format!(
-        "sun and key light error {} against the CPU reference (RMSE; bound {})",
-        percent(error),
-        percent(bound)
-    )))
+    // One tolerance for all of them.
+    all.iter_mut().for_each(|[_, bound]| *bound = most);
+    let errors = Wanted(all).judge("a sun at one place", &found, device.quality)?;
+    Ok(Some(sentence("sun and key light", "the CPU reference", errors)))
 }
 
 /// Azimuths that contain a light, and its shape there.
@@ -166,8 +141,8 @@ fn azimuths_of(plan: &Plan, light: &str) -> Option<(Vec<Azimuth>, Shape)> {
     Some((azimuths, [Shape::Disc, Shape::Point, Shape::Patch][shape as usize]))
 }
 
-/// A sun's light of the CPU reference at each place, none where a point sun may be visible or not;
-/// and its tolerance.
+/// A sun's light of the CPU reference at each place and its tolerance, none where a point sun may be
+/// visible or not.
 fn aimed(
     scene: &Scene,
     azimuths: Vec<Azimuth>,
@@ -175,128 +150,76 @@ fn aimed(
     quality: &Quality,
     line_shift: u32,
     shape: Shape,
-) -> (Vec<Option<f64>>, f64) {
+) -> Vec<Option<[DVec3; 2]>> {
     let cols = scene.field.cols();
     lit(scene, azimuths, quality, line_shift, |swept, error| {
         let weight = |a: &Azimuth| match shape {
             Shape::Patch => f64::from(a.wedge_rad),
             Shape::Disc | Shape::Point => f64::from(a.weight),
         };
+        // Two products and a sum make a layer of a sum.
+        let off = error.sun(swept.azimuths.iter().map(weight).sum()) + 4.0 * EPSILON;
         let at = |p: &usize| {
             let (col, row) = ((p % cols) as i32, (p / cols) as i32);
             let mut grazes = false;
             swept.add_all([col, row], true, |_, azimuth, lowest, _| {
-                let off = lowest - f64::from(azimuth.high_slope);
-                grazes |= shape == Shape::Point && off.abs() <= error.lowest_slope();
+                let beside = lowest - f64::from(azimuth.high_slope);
+                grazes |= shape == Shape::Point && beside.abs() <= error.lowest_slope();
             });
-            (!grazes).then(|| sun_at(swept, shape, col, row))
+            (!grazes).then(|| [sun_at(swept, shape, col, row), off].map(DVec3::splat))
         };
-        // Two products and a sum make a layer of a sum.
-        let weights = swept.azimuths.iter().map(weight).sum();
-        (places.iter().map(at).collect(), error.sun(weights) + 4.0 * EPSILON)
+        places.iter().map(at).collect()
     })
 }
 
-/// A scene's ground, white, without lights.
-pub(super) fn white(scene: &Scene) -> Scene {
-    let white = Surface {
-        albedo: Albedo::Constant([1.0; 3]),
-        border: scene.surface.border,
-        specular: None,
-    };
-    Scene { field: scene.field.clone(), surface: white, lights: Lights::default() }
-}
-
-/// RMSE over the root mean square, and the bound, where every place is within it.
-fn judge(
-    what: &str,
-    found: &[f64],
-    want: &[f64],
-    bound: f64,
-    quality: &Quality,
-) -> Result<(f64, f64)> {
-    let scale = rms(want.iter().copied()).max(f64::MIN_POSITIVE);
-    let off: Vec<f64> = found.iter().zip(want).map(|(a, b)| (a - b) / scale).collect();
-    for one in &off {
-        within(what, "the CPU reference", one.abs(), bound / scale, quality)?;
-    }
-    Ok((rms(off.into_iter()), bound / scale))
+/// A scene's ground, white, under other lights.
+pub(super) fn white(scene: &Scene, lights: Lights) -> Scene {
+    let albedo = Albedo::Constant([1.0; 3]);
+    let surface = Surface { albedo, border: scene.surface.border, specular: None };
+    Scene { field: scene.field.clone(), surface, lights }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bench::verify::tests::{places, scene};
+    use ridgelight::plan::{self, Limits, Picture};
     use ridgelight::scene::Fuse;
-    use ridgelight::scene::fractal;
 
-    /// Wrong light is refused: 0.1 % too dark, of another fuse, of lines twice as far apart, of one
-    /// more azimuth, of a neighbour, and NaN.
+    /// Wrong light is refused: of another fuse, of lines twice as far apart, of one more azimuth.
     #[test]
     fn wrong_skies_are_refused() {
-        let field = fractal(48, 1).unwrap();
-        let lights = Lights { sky: Some([1.0; 3]), ..Lights::default() };
-        let scene = Scene { field, surface: Surface::default(), lights };
-        let places: Vec<usize> = (3..48 * 48).step_by(61).collect();
+        let scene = scene(48, Lights { sky: Some([1.0; 3]), ..Lights::default() });
         let quality = Quality { azimuths: 16, ..Quality::default() };
         let shift = quality.lines.shift().unwrap();
-        let (right, bound) = wanted(&scene, &places, &quality, shift);
-        println!("bound {bound:e}");
-        assert!(bound < 1e-3, "{bound}");
-        assert!(judge("the sky", &right, &right, bound, &quality).is_ok());
-        let of = |quality: &Quality, shift| wanted(&scene, &places, quality, shift).0;
-        let mut turned = right.clone();
-        turned.rotate_left(1);
-        let mut holed = right.clone();
-        holed[3] = f64::NAN;
+        let of = |quality: &Quality, shift| wanted(&scene, &places(), quality, shift);
         let wrong = [
-            ("dim", right.iter().map(|v| 0.999 * v).collect()),
-            ("of another fuse", of(&Quality { fuse: Fuse::Nearest, ..quality }, shift)),
-            ("of wider lines", of(&quality, shift + 1)),
-            ("of an azimuth more", of(&Quality { azimuths: 17, ..quality }, shift)),
-            ("of a neighbour", turned),
-            ("NaN", holed),
+            ("fuse", of(&Quality { fuse: Fuse::Nearest, ..quality }, shift).light()),
+            ("wider lines", of(&quality, shift + 1).light()),
+            ("an azimuth more", of(&Quality { azimuths: 17, ..quality }, shift).light()),
         ];
-        for (name, light) in wrong {
-            assert!(judge("the sky", &light, &right, bound, &quality).is_err(), "{name} passes");
-        }
+        of(&quality, shift).refuses(&quality, [1e-3, 0.999], &wrong);
     }
 
-    /// The same of a sun 2° wide: 10 % too dark, 5° aside, half a degree above, of a neighbour,
-    /// NaN.
+    /// The same of a sun 2° wide: 5° aside, half a degree above.
     #[test]
     fn wrong_suns_are_refused() {
-        let field = fractal(48, 1).unwrap();
-        let places: Vec<usize> = (3..48 * 48).step_by(61).collect();
         let quality = Quality { sun_azimuths: 8, ..Quality::default() };
         let shift = quality.lines.shift().unwrap();
         let of = |azimuth_rad: f64, elevation_rad: f64| {
             let diameter_rad = 2_f64.to_radians();
             let sun = Sun { azimuth_rad, elevation_rad, diameter_rad, irradiance: [1.0; 3] };
-            let lights = Lights { suns: vec![sun], ..Lights::default() };
-            let scene = Scene { field: field.clone(), surface: Surface::default(), lights };
+            let scene = scene(48, Lights { suns: vec![sun], ..Lights::default() });
             let wanted = Picture { light_layers: true, ..Picture::default() };
             let plan = plan::picture(&scene, &quality, &Limits::lavapipe(), wanted).unwrap();
             let (azimuths, shape) = azimuths_of(&plan, "sun1").expect("a sun");
-            let (light, bound) = aimed(&scene, azimuths, &places, &quality, shift, shape);
-            (light.into_iter().map(|v| v.expect("no point")).collect::<Vec<f64>>(), bound)
+            let all = aimed(&scene, azimuths, &places(), &quality, shift, shape);
+            Wanted(all.into_iter().map(|both| both.expect("no point")).collect())
         };
-        let (right, bound) = of(1.0, 0.4);
-        println!("bound {bound:e}");
-        let refused = |light: &[f64]| judge("a sun", light, &right, bound, &quality).is_err();
-        assert!(!refused(&right) && bound < 0.01, "{bound}");
-        let mut turned = right.clone();
-        turned.rotate_left(1);
-        let mut holed = right.clone();
-        holed[3] = f64::NAN;
         let wrong = [
-            ("dim", right.iter().map(|v| 0.9 * v).collect()),
-            ("from beside", of(1.0 + 5_f64.to_radians(), 0.4).0),
-            ("from above", of(1.0, 0.41).0),
-            ("of a neighbour", turned),
-            ("NaN", holed),
+            ("from beside", of(1.0 + 5_f64.to_radians(), 0.4).light()),
+            ("from above", of(1.0, 0.41).light()),
         ];
-        for (name, light) in wrong {
-            assert!(refused(&light), "{name} passes");
-        }
+        of(1.0, 0.4).refuses(&quality, [0.01, 0.9], &wrong);
     }
 }

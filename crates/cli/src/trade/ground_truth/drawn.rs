@@ -30,30 +30,24 @@ impl GroundTruth {
     /// use as many slices as fit.
     pub fn draw(rig: &mut Rig) -> Result<Self> {
         let scene = rig.scene;
-        let all = &scene.lights;
-        let has_sky = all.sky.is_some() || all.environment.is_some();
-        let under = |lights: Lights| Scene { lights, ..scene.clone() };
-        let mut parts = Vec::new();
-        if !(all.suns.is_empty() && all.keys.is_empty()) {
-            let name = match (all.suns.is_empty(), all.keys.is_empty()) {
-                (_, true) => "suns",
-                (true, false) => "key lights",
-                (false, false) => "suns and key lights",
-            };
-            let (suns, keys) = (all.suns.clone(), all.keys.clone());
-            parts.push((name, under(Lights { suns, keys, ..Lights::default() })));
-        }
-        if !all.sphere_lights.is_empty() {
-            let spheres = all.sphere_lights.clone();
-            parts.push((
-                "sphere lights",
-                under(Lights { sphere_lights: spheres, ..Lights::default() }),
-            ));
-        }
-        if has_sky {
-            let (sky, environment) = (all.sky, all.environment.clone());
-            parts.push(("sky", under(Lights { sky, environment, ..Lights::default() })));
-        }
+        let Lights { sky, environment, suns, keys, sphere_lights } = scene.lights.clone();
+        let aimed = match (suns.is_empty(), keys.is_empty()) {
+            (_, true) => "suns",
+            (true, false) => "key lights",
+            (false, false) => "suns and key lights",
+        };
+        let none = Lights::default();
+        let has_sky = sky.is_some() || environment.is_some();
+        let parts = [
+            (!suns.is_empty() || !keys.is_empty(), aimed, Lights { suns, keys, ..none.clone() }),
+            (!sphere_lights.is_empty(), "sphere lights", Lights { sphere_lights, ..none.clone() }),
+            (has_sky, "sky", Lights { sky, environment, ..none }),
+        ];
+        let parts: Vec<(&str, Scene)> = parts
+            .into_iter()
+            .filter(|(is_there, ..)| *is_there)
+            .map(|(_, name, lights)| (name, Scene { lights, ..scene.clone() }))
+            .collect();
         let mut share = rig.share(DRAWING);
         let (mut whole, mut halved, mut about) = (Vec::new(), Vec::new(), Vec::new());
         let last = parts.len() - 1;
@@ -69,17 +63,8 @@ impl GroundTruth {
             about.push(format!("{name} by {}", used(rig, part, &quality)?));
             share -= begun.elapsed().as_secs_f64();
         }
-        let field = &scene.field;
-        let mut ground_truth = Self {
-            planes: whole,
-            cols: field.cols(),
-            rows: field.rows(),
-            about: about.join("; "),
-            quality_of: String::new(),
-            own_error: None,
-            noise: 0.0,
-        };
-        let steps = ground_truth.distance(&halved)?.rmse;
+        let mut ground_truth = Self::new(whole, scene.field.cols(), about.join("; "));
+        let steps = ground_truth.distance(&halved)?.relative_rmse;
         let unsure = apart(&ground_truth.planes, &halved, ground_truth.cols);
         let probes = probes(scene, &unsure, rig.share(PROBING))?;
         let off = probes.error(&ground_truth.planes, None, Probes::ONE_BOUND);
@@ -89,7 +74,7 @@ impl GroundTruth {
                 doubling the counts at least halves it; at {} probes, most of them where the two \
                 differ, its error against the f64 oracle is {}, {}; the larger of the two is used",
             percent(steps),
-            probes.len(),
+            probes.count(),
             percent(off.error),
             if probes.is_whole() {
                 "at every grid point".to_owned()
@@ -107,16 +92,21 @@ impl GroundTruth {
 fn probes(scene: &Scene, unsure: &[f64], most_s: f64) -> Result<Probes> {
     let begun = Instant::now();
     let few = Probes::of(scene, FEWEST_PROBES, SEED, unsure)?;
-    let each = begun.elapsed().as_secs_f64() / few.len() as f64;
+    let each = begun.elapsed().as_secs_f64() / few.count() as f64;
     let left = (most_s - begun.elapsed().as_secs_f64()).max(0.0);
     let fit = ((left / each) as usize).min(Probes::affordable(scene));
-    if few.is_whole() || fit <= few.len() { Ok(few) } else { Probes::of(scene, fit, SEED, unsure) }
+    let enough = few.is_whole() || fit <= few.count();
+    if enough { Ok(few) } else { Probes::of(scene, fit, SEED, unsure) }
 }
 
 /// All counts, halved so many times.
 fn counts(quality: &Quality, halvings: u32) -> Quality {
     let [azimuths, sun_azimuths, table_elevations] = MOST.map(|m| m >> halvings);
     Quality { azimuths, sun_azimuths, table_elevations, ..*quality }
+}
+
+fn two(quality: &Quality, halvings: u32) -> [Quality; 2] {
+    [halvings, halvings + 1].map(|h| counts(quality, h))
 }
 
 /// Settings, and the same with half the counts, that take at most so many seconds; the smallest
@@ -136,20 +126,19 @@ fn affordable(rig: &mut Rig, scene: &Scene, seconds: f64) -> Result<[Quality; 2]
         }
         let each = rig.seconds_per_azimuth(scene, &quality)?;
         for halvings in 0..=most {
-            let two = [halvings, halvings + 1].map(|h| counts(&quality, h));
-            let azimuths = |q: &Quality| Ok::<_, Error>(rig.plan(scene, q)?.azimuths.len() as f64);
-            if each * (azimuths(&two[0])? + azimuths(&two[1])?) <= seconds {
+            let two = two(&quality, halvings);
+            let [a, b] = two.map(|q| Ok::<_, Error>(rig.plan(scene, &q)?.azimuths.len() as f64));
+            if each * (a? + b?) <= seconds {
                 return Ok(two);
             }
         }
     }
-    Ok([HALVINGS, HALVINGS + 1].map(|h| counts(&dense, h)))
+    Ok(two(&dense, HALVINGS))
 }
 
 /// The same for sphere lights alone, with none culled.
 fn affordable_slices(rig: &mut Rig, scene: &Scene, seconds: f64) -> Result<[Quality; 2]> {
     let all = Quality { light_cutoff: 0.0, ..Quality::default() };
-    let two = |halvings: u32| [halvings, halvings + 1].map(|h| counts(&all, h));
     let few = counts(&all, HALVINGS + 1);
     rig.draw_once(scene, &few)?;
     let begun = Instant::now();
@@ -158,7 +147,8 @@ fn affordable_slices(rig: &mut Rig, scene: &Scene, seconds: f64) -> Result<[Qual
     let fits = |two: &[Quality; 2]| {
         each * two.iter().map(|q| f64::from(q.sun_azimuths)).sum::<f64>() <= seconds
     };
-    Ok((0..HALVINGS).map(two).find(fits).unwrap_or_else(|| two(HALVINGS)))
+    let each_two = (0..HALVINGS).map(|halvings| two(&all, halvings)).find(fits);
+    Ok(each_two.unwrap_or_else(|| two(&all, HALVINGS)))
 }
 
 /// Adds planes to a sum of none, one or three.
@@ -199,7 +189,7 @@ mod tests {
             let scene = Scene { field: field.unwrap(), surface: Surface::default(), lights };
             probes(&scene, &vec![0.0; side * side], most_s).unwrap()
         };
-        assert_eq!(of(16, 0.0).len(), FEWEST_PROBES);
+        assert_eq!(of(16, 0.0).count(), FEWEST_PROBES);
         assert!(of(12, f64::INFINITY).is_whole() && of(5, 0.0).is_whole());
     }
 

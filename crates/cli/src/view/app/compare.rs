@@ -31,7 +31,7 @@ pub(super) const MOST_PATHS: u32 = MOST_BATCHES * REFERENCE_BATCH;
 pub struct Compare {
     off: Option<Frame>,
     is_off_stale: bool,
-    truth: Option<Truth>,
+    path_traced: Option<PathTraced>,
     is_reference_stale: bool,
     /// When the scene changed last.
     changed: Instant,
@@ -40,7 +40,7 @@ pub struct Compare {
 }
 
 /// The path-traced reference, refined in every frame.
-struct Truth {
+struct PathTraced {
     frame: Frame,
     /// The first tracing pass, and the next.
     first_band: usize,
@@ -56,7 +56,7 @@ impl Compare {
         Self {
             off: None,
             is_off_stale: true,
-            truth: None,
+            path_traced: None,
             is_reference_stale: true,
             changed: Instant::now(),
             error: None,
@@ -76,7 +76,7 @@ impl Compare {
             replan(screen, &mut self.off, state.plan_off(limits)?, &state.scene)?;
         }
         if self.is_reference_stale && !state.is_moving() && self.changed.elapsed() > REST {
-            if let Some(old) = self.truth.take() {
+            if let Some(old) = self.path_traced.take() {
                 screen.end(old.frame)?;
             }
             let (scene, bounces) = (&state.scene, state.quality.bounces.count);
@@ -86,7 +86,8 @@ impl Compare {
             let contents = plan::reference_inputs(scene);
             let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
             let frame = screen.frame(plan, &contents)?;
-            self.truth = Some(Truth { frame, first_band, next: 0, bands: 1, batches: 0 });
+            self.path_traced =
+                Some(PathTraced { frame, first_band, next: 0, bands: 1, batches: 0 });
             self.is_reference_stale = false;
         }
         Ok(())
@@ -99,41 +100,41 @@ impl Compare {
             let count = if is_off_stale { frame.plan().passes.len() } else { 0 };
             (frame, (0..count).collect())
         });
-        let truth = self.truth.as_mut().map(|truth| {
-            let passes = (truth.next..truth.end()).collect();
-            (&mut truth.frame, passes)
+        let path_traced = self.path_traced.as_mut().map(|path_traced| {
+            let passes = (path_traced.next..path_traced.end()).collect();
+            (&mut path_traced.frame, passes)
         });
-        [off, truth]
+        [off, path_traced]
     }
 
     /// [`frames`](Self::frames) has been recorded; takes times of earlier path passes.
     pub fn drawn(&mut self, times: &[Timing]) {
         self.is_off_stale = false;
-        let Some(truth) = &mut self.truth else { return };
-        let end = truth.end();
-        if end == truth.frame.plan().passes.len() {
-            truth.batches += u32::from(truth.next < end);
-            truth.next = truth.first_band;
+        let Some(path_traced) = &mut self.path_traced else { return };
+        let end = path_traced.end();
+        if end == path_traced.frame.plan().passes.len() {
+            path_traced.batches += u32::from(path_traced.next < end);
+            path_traced.next = path_traced.first_band;
         } else {
-            truth.next = end;
+            path_traced.next = end;
         }
         let traced = || times.iter().filter(|t| t.label.starts_with("path_trace"));
         let ms = traced().map(|t| t.ns).sum::<f64>() / 1e6 / traced().count().max(1) as f64;
         if ms > 0.0 {
-            truth.bands = (BUDGET_MS / ms).clamp(1.0, 1e4) as usize;
+            path_traced.bands = (BUDGET_MS / ms).clamp(1.0, 1e4) as usize;
         }
     }
 
     /// Whether paths are still to be traced.
     pub fn is_busy(&self, state: &State) -> bool {
-        let has_all = self.truth.as_ref().is_some_and(|t| t.batches >= MOST_BATCHES);
+        let has_all = self.path_traced.as_ref().is_some_and(|t| t.batches >= MOST_BATCHES);
         !state.is_moving() && (self.is_reference_stale || !has_all)
     }
 
     /// Paths per texel of the current scene.
     pub fn paths(&self) -> u32 {
-        let fresh = self.truth.as_ref().filter(|_| !self.is_reference_stale);
-        fresh.map_or(0, |truth| truth.batches * REFERENCE_BATCH)
+        let fresh = self.path_traced.as_ref().filter(|_| !self.is_reference_stale);
+        fresh.map_or(0, |path_traced| path_traced.batches * REFERENCE_BATCH)
     }
 
     /// Labels below the three pictures.
@@ -152,8 +153,8 @@ impl Compare {
 
     /// Measures the error against the reference so far.
     pub fn find_error(&mut self, screen: &mut Screen, lit: &Frame, state: &State) -> Result<()> {
-        let Some(truth) =
-            self.truth.as_ref().filter(|t| !self.is_reference_stale && t.batches >= 2)
+        let Some(path_traced) =
+            self.path_traced.as_ref().filter(|t| !self.is_reference_stale && t.batches >= 2)
         else {
             let found = format!("{} paths", self.paths());
             let expected = format!("{} or more: wait a moment", 2 * REFERENCE_BATCH);
@@ -162,28 +163,28 @@ impl Compare {
         screen.wait()?;
         let gpu = screen.gpu();
         let ours = render::rgb(&gpu.pixels(lit, 0)?);
-        let [light, spread] = [0, 1].map(|output| gpu.pixels(&truth.frame, output));
+        let [light, spread] = [0, 1].map(|output| gpu.pixels(&path_traced.frame, output));
         let [light, spread] = [render::rgb(&light?), render::rgb(&spread?)];
         let is_void = |i: &usize| state.scene.field.voids().is_some_and(|v| v[*i]);
-        let samples: Vec<[[f64; 3]; 3]> = (0..ours.len())
+        let estimates: Vec<[[f64; 3]; 3]> = (0..ours.len())
             .filter(|i| !is_void(i))
             .map(|i| [0, 1, 2].map(|c| [ours[i][c], light[i][c], spread[i][c]].map(f64::from)))
             .collect();
         let unsampled =
             plan::unsampled_light_error(&state.scene, state.quality.bounces.count, self.paths());
-        let found = distance(&samples, f64::from(truth.batches), unsampled);
+        let found = distance(&estimates, f64::from(path_traced.batches), unsampled);
         let [rmse, error] = found.map(|share| 100.0 * share);
         self.error = Some(format!("RMSE {rmse:.3} % +- {error:.3} % against the reference"));
         Ok(())
     }
 
     pub fn end(self, screen: &mut Screen) -> Result<()> {
-        let frames = self.off.into_iter().chain(self.truth.map(|t| t.frame));
+        let frames = self.off.into_iter().chain(self.path_traced.map(|t| t.frame));
         frames.map(|frame| screen.end(frame)).fold(Ok(()), Result::and)
     }
 }
 
-impl Truth {
+impl PathTraced {
     /// After the last pass of this frame.
     fn end(&self) -> usize {
         let all = self.frame.plan().passes.len();
@@ -207,11 +208,11 @@ impl Truth {
 /// (normal noise). The root's error is that of its square over twice it, or the square's own root
 /// where that is less than its error. Unsampled light, R, G, B, can change the root by its own root
 /// mean square.
-fn distance(samples: &[[[f64; 3]; 3]], batches: f64, unsampled: [f64; 3]) -> [f64; 2] {
-    let count = 3.0 * samples.len().max(1) as f64;
+fn distance(estimates: &[[[f64; 3]; 3]], batches: f64, unsampled: [f64; 3]) -> [f64; 2] {
+    let count = 3.0 * estimates.len().max(1) as f64;
     let (mut square, mut mean, mut crossed, mut fourth) = (0.0, 0.0, 0.0, 0.0);
     let own = 1.0 / (batches - 1.0);
-    for channels in samples {
+    for channels in estimates {
         let difference: f64 = channels.iter().map(|[l, r, _]| (l - r).powi(2)).sum();
         let noise: f64 = channels.iter().map(|[.., s]| s * s).sum();
         let noise_squared = noise * noise / (1.0 + 2.0 * own);
@@ -260,14 +261,14 @@ mod tests {
         // √(0.3² / 3) over a mean of 2.
         assert!((error - 0.3 / 3.0_f64.sqrt() / 2.0).abs() < 1e-12, "{error}");
         let mut noise = noises();
-        let samples: Vec<[[f64; 3]; 3]> =
+        let estimates: Vec<[[f64; 3]; 3]> =
             (0..40_000).map(|_| [[1.2, 1.0 + 0.5 * noise(), 0.5]; 3]).collect();
-        let [rmse, error] = distance(&samples, f64::INFINITY, [0.0; 3]);
+        let [rmse, error] = distance(&estimates, f64::INFINITY, [0.0; 3]);
         let known = 0.25 * (2.0 + 4.0 * 0.04 / 0.25_f64).sqrt() / 200.0 / 0.4;
         assert!((error / known - 1.0).abs() < 0.1, "{error}, {known}");
         assert!((rmse - 0.2).abs() < 4.0 * error, "{rmse} +- {error}");
         // Without the deviation, the noise counts.
-        let silent: Vec<_> = samples.iter().map(|s| s.map(|[l, r, _]| [l, r, 0.0])).collect();
+        let silent: Vec<_> = estimates.iter().map(|s| s.map(|[l, r, _]| [l, r, 0.0])).collect();
         assert!(distance(&silent, f64::INFINITY, [0.0; 3])[0] > 0.5);
     }
 
@@ -283,17 +284,17 @@ mod tests {
         let known = ((4.0 * 0.04 * 0.25 + 4.0 * 0.0625) / f64::from(count)).sqrt();
         let (mut squares, mut stated) = (Vec::new(), 0.0);
         for _ in 0..400 {
-            let mut sample = || {
+            let mut estimate = || {
                 let [a, b] = [0; 2].map(|_| 1.0 + 0.5_f64.sqrt() * noise());
                 [[1.2, 0.5 * (a + b), 0.5 * (a - b).abs()]; 3]
             };
-            let samples: Vec<_> = (0..count).map(|_| sample()).collect();
-            let [root, error] = distance(&samples, 2.0, [0.0; 3]);
-            let mean = samples.iter().map(|s| s[0][1]).sum::<f64>() / f64::from(count);
+            let estimates: Vec<_> = (0..count).map(|_| estimate()).collect();
+            let [root, error] = distance(&estimates, 2.0, [0.0; 3]);
+            let mean = estimates.iter().map(|s| s[0][1]).sum::<f64>() / f64::from(count);
             let [root, error] = [root * mean, error * mean];
             let of_square = if root * root > known { error * 2.0 * root } else { error * error };
             stated += of_square.powi(2) / 400.0;
-            let raw = samples.iter().map(|s| (1.2 - s[0][1]).powi(2) - s[0][2].powi(2));
+            let raw = estimates.iter().map(|s| (1.2 - s[0][1]).powi(2) - s[0][2].powi(2));
             squares.push(raw.sum::<f64>() / f64::from(count));
         }
         let spread = (squares.iter().map(|s| (s - 0.04).powi(2)).sum::<f64>() / 400.0).sqrt();

@@ -244,7 +244,7 @@ impl OpenWindow {
         let heights = new.map(|at| (field.heights_m(), at));
 
         // From left to right: each with its heights and its passes.
-        let [off, truth] = compare.as_mut().map_or([None, None], |c| c.frames());
+        let [off, path_traced] = compare.as_mut().map_or([None, None], |c| c.frames());
         let mut frames = Vec::new();
         frames.extend(off.map(|(frame, passes)| {
             let heights = (!passes.is_empty()).then_some((field.heights_m(), whole));
@@ -252,7 +252,7 @@ impl OpenWindow {
         }));
         let at_ours = frames.len();
         frames.push((lit, heights, Vec::new()));
-        frames.extend(truth.map(|(frame, passes)| (frame, None, passes)));
+        frames.extend(path_traced.map(|(frame, passes)| (frame, None, passes)));
         let mut viewpoints: Vec<(Map, Option<View>)> = Vec::new();
         for (frame, ..) in &frames {
             let map = state.map(pane_size, swaps, has_colour(frame.plan()));

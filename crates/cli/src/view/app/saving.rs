@@ -23,9 +23,9 @@ impl App<'_> {
         let gpu = shown.screen.gpu();
         let pixels = gpu.pixels(lit, 0)?;
         if let Some(view) = view {
-            let seen = gpu.look(lit, &view, field.voids())?.radiance;
+            let radiance = gpu.look(lit, &view, field.voids())?.radiance;
             let (rows, cols) = (view.size[1] as usize, view.size[0] as usize);
-            let saved = files::write_png(&path, rows, cols, &seen, None, tone, &view.settings);
+            let saved = files::write_png(&path, rows, cols, &radiance, None, tone, &view.settings);
             return self.say(saved, &path);
         }
         let saved = render::check_finite(&pixels, field).and_then(|()| {

@@ -72,13 +72,13 @@ impl State {
     /// Takes hold of the sphere light at a pixel, or adds one there.
     pub(super) fn take_light(&mut self, size: [u32; 2], at: [f64; 2]) -> Wish {
         let off = |sphere_light: &SphereLight| {
-            let seen = self.viewpoint.pixel(
+            let on_screen = self.viewpoint.pixel(
                 &self.scene.field,
                 size,
                 sphere_light.position_m,
                 sphere_light.radius_m,
             );
-            let ([x, y], radius) = seen?;
+            let ([x, y], radius) = on_screen?;
             let off = (x - at[0]).hypot(y - at[1]);
             (off <= radius.max(GRIP)).then_some(off)
         };

@@ -122,12 +122,12 @@ mod tests {
     #[test]
     fn words_go_round_numbers_go_to_their_ends() {
         let (settings, mut asked) = (Settings::new(), Request::default());
-        let mut seen = Vec::new();
+        let mut visited = Vec::new();
         for _ in 0..4 {
             assert!(settings.turn("method", true, &mut asked).is_ok());
-            seen.extend(asked.first("method").map(str::to_owned));
+            visited.extend(asked.first("method").map(str::to_owned));
         }
-        assert_eq!(seen, ["sweep", "pyramid", "brute-force", "auto"]);
+        assert_eq!(visited, ["sweep", "pyramid", "brute-force", "auto"]);
         for _ in 0..4 {
             assert!(settings.turn("azimuths", true, &mut asked).is_ok());
         }

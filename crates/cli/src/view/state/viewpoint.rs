@@ -187,8 +187,9 @@ impl Viewpoint {
             let (corner, Place { grid_points_per_pixel, .. }) =
                 (self.corner(field, size), self.place(field, size));
             let [cell_x, cell_y] = field.cell_m();
-            let sample = [x / cell_x, (field.rows() - 1) as f64 - y / cell_y];
-            let at = std::array::from_fn(|i| (sample[i] + 0.5 - corner[i]) / grid_points_per_pixel);
+            let grid_point = [x / cell_x, (field.rows() - 1) as f64 - y / cell_y];
+            let at =
+                std::array::from_fn(|i| (grid_point[i] + 0.5 - corner[i]) / grid_points_per_pixel);
             return Some((at, length_m / cell_x / grid_points_per_pixel));
         };
         let [right, up, back] = camera.axes();

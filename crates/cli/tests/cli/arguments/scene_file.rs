@@ -76,13 +76,13 @@ fn gpu_cameras_stand_in_scene_files() {
                   "size": "9x7", "samples": 1, "background": [0.1, 0.2, 0.3] },
       "quality": { "azimuths": 8 }
     }"#;
-    folder.write("seen.json", text.as_bytes());
+    folder.write("visible.json", text.as_bytes());
     let render = |out: &str, args: &str| {
         let args: Vec<&str> = ["render", "-o", out].into_iter().chain(args.split(' ')).collect();
         let run = folder.run(&args);
         assert_eq!((run.status, run.err.as_str()), (Some(0), ""), "{args:?}");
     };
-    render("a.exr", "--scene seen.json --quiet");
+    render("a.exr", "--scene visible.json --quiet");
     let flags =
         "--camera 200,40 --look-at 45,30 --ortho --size 9x7 --samples 1 --background 0.1,0.2,0.3";
     render("b.exr", &format!("a.asc {flags} --azimuths 8 --quiet"));
@@ -90,7 +90,7 @@ fn gpu_cameras_stand_in_scene_files() {
     let [a, b] = [read("a.exr"), read("b.exr")];
     assert_eq!((a.cols, a.rows), (9, 7));
     assert_eq!(a, b);
-    planned(&folder, "--scene seen.json");
+    planned(&folder, "--scene visible.json");
     folder.write("off.json", text.replace("\"ortho\": true", "\"ortho\": 1").as_bytes());
     refused(
         &folder,

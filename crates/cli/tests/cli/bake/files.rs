@@ -132,7 +132,7 @@ fn a_plan_lists_sizes_and_memory() {
         let line = line.unwrap_or_else(|| panic!("{what} in\n{}", run.out));
         line.split_whitespace().next().unwrap().parse().unwrap()
     };
-    // 12 samples: 8 layers of 2 bytes; 1 of 2; 3 layers of 4 coefficients of 2.
+    // 12 texels: 8 layers of 2 bytes; 1 of 2; 3 layers of 4 coefficients of 2.
     for (file, texels) in
         [("horizon.ktx2", 192), ("sky_view.ktx2", 24), ("sh_visibility.ktx2", 288)]
     {
@@ -291,7 +291,7 @@ fn gpu_voids_are_nan_transparent_and_filled() {
         for format in ["exr", "npy"] {
             for plane in read(&path(&format!("{name}.{format}"))).planes {
                 for (i, v) in plane.iter().enumerate() {
-                    assert_eq!(v.is_nan(), i == VOID, "{name}.{format}, sample {i}: {v}");
+                    assert_eq!(v.is_nan(), i == VOID, "{name}.{format}, texel {i}: {v}");
                 }
             }
         }
@@ -300,7 +300,7 @@ fn gpu_voids_are_nan_transparent_and_filled() {
         let picture = read(&path(name));
         let alpha = crate::needs_vulkan::plane(&picture, "A");
         for (i, v) in alpha.iter().enumerate() {
-            assert_eq!(*v, if i == VOID { 0.0 } else { 1.0 }, "{name}, sample {i}");
+            assert_eq!(*v, if i == VOID { 0.0 } else { 1.0 }, "{name}, texel {i}");
         }
     }
     // In a texture: the value of the filled surface, which filters read, and 0 in the mask component.
@@ -314,7 +314,7 @@ fn gpu_voids_are_nan_transparent_and_filled() {
     assert!(sky.iter().all(|code| *code > 0), "{sky:?}");
     let bent = texels("bent_normal.ktx2");
     for (i, texel) in bent.as_chunks::<4>().0.iter().enumerate() {
-        assert_eq!(texel[3], if i == VOID { 0 } else { 65535 }, "sample {i}");
+        assert_eq!(texel[3], if i == VOID { 0 } else { 65535 }, "texel {i}");
     }
     let manifest = json(&path("manifest.json"));
     assert_eq!(manifest["field"]["voids"], 1);

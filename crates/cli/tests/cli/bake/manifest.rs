@@ -82,7 +82,7 @@ fn gpu_pictures_of_scattered_light_are_decoded() {
     done(&folder, &format!("bake v.asc -o out {words} --format png,npy"));
     let manifest = json(&folder.path("out/manifest.json"));
     let files = manifest["maps"][0]["files"].as_array().unwrap();
-    let (_, truth) = load(&folder.path("out/scatter.npy"));
+    let (_, ground_truth) = load(&folder.path("out/scatter.npy"));
     for (layer, name) in ["scatter_0000.png", "scatter_0001.png"].into_iter().enumerate() {
         let file = files.iter().find(|f| f["file"] == name).unwrap();
         let number = |value: &Value| value.as_f64().unwrap();
@@ -91,15 +91,15 @@ fn gpu_pictures_of_scattered_light_are_decoded() {
         assert!(file["decoding"].as_str().unwrap().ends_with("each times scale"));
         let bytes = std::fs::File::open(folder.path("out").join(name)).unwrap();
         let mut reader = png::Decoder::new(std::io::BufReader::new(bytes)).read_info().unwrap();
-        let mut samples = vec![0; reader.output_buffer_size().unwrap()];
-        reader.next_frame(&mut samples).unwrap();
+        let mut grid_points = vec![0; reader.output_buffer_size().unwrap()];
+        reader.next_frame(&mut grid_points).unwrap();
         let codes: Vec<u16> =
-            samples.as_chunks::<2>().0.iter().map(|b| u16::from_be_bytes(*b)).collect();
+            grid_points.as_chunks::<2>().0.iter().map(|b| u16::from_be_bytes(*b)).collect();
         let (mut worst, mut largest) = (0.0_f64, 0.0_f64);
         for (at, texel) in codes.as_chunks::<4>().0.iter().enumerate() {
             assert_eq!(texel[3], if at == VOID { 0 } else { 65535 });
             for (c, code) in texel[..3].iter().enumerate().filter(|_| at != VOID) {
-                let value = f64::from(truth[(3 * layer + c) * 12 + at]);
+                let value = f64::from(ground_truth[(3 * layer + c) * 12 + at]);
                 let got = scale * f64::from(*code) / 65535.0;
                 worst = worst.max((got - value).abs());
                 largest = largest.max(value);

@@ -100,11 +100,11 @@ fn gpu_the_sharpest_exponent_of_a_map_counts() {
     let run = folder.run(&words.split_whitespace().collect::<Vec<_>>());
     assert_eq!(run.status, Some(0), "{}", run.err);
     assert!(!run.err.contains("too coarse"), "{}", run.err);
-    let lobe = &json(&folder.path("out/manifest.json"))["maps"][0]["specular"];
+    let phong_specular = &json(&folder.path("out/manifest.json"))["maps"][0]["specular"];
     assert_eq!(
-        [lobe["exponent"].as_f64(), lobe["scale"].as_f64()],
+        [phong_specular["exponent"].as_f64(), phong_specular["scale"].as_f64()],
         [Some(2.0), Some(0.5)],
-        "{lobe}"
+        "{phong_specular}"
     );
 }
 
@@ -169,8 +169,8 @@ fn look_ups_of_specular_are_counted() {
     let line = format!("{}  rays of light-field: 100 paths of 0 steps", 32 * 100 * 8);
     assert!(none.contains(&line), "{line}: {none}");
     let large = said("large.npy --what light-field --angles 4x16 --bounces 3 --directions 16");
-    let looks = 1024_u64 * 1024 * 64 * (3 * 4 + 64);
-    let line = format!("{looks}  rays of light-field: 64 paths of 3 steps, walked 4 times,");
+    let ray_count = 1024_u64 * 1024 * 64 * (3 * 4 + 64);
+    let line = format!("{ray_count}  rays of light-field: 64 paths of 3 steps, walked 4 times,");
     assert!(large.contains(&line), "{line}: {large}");
 }
 
@@ -217,11 +217,11 @@ fn gpu_scattered_specular_is_added_to_its_picture() {
     write(&folder, "level.npy", [5, 4], |_, _| 2.0);
     write(&folder, "field.npy", [8, 8], |r, c| ((r * 5 + c * 3) % 7) as f32);
     let words = "--border periodic --albedo 0.4 --sun 200,70 --sky 0.5 --method brute-force";
-    let glossy = &format!("{words} --specular 20,0.5");
+    let shiny = &format!("{words} --specular 20,0.5");
     for name in ["level", "field"] {
         let bake = "--what scatter --bounces 2 --paths 64 --directions 64 --format npy";
-        done(&folder, &format!("bake {name}.npy -o {name} {glossy} {bake}"));
-        done(&folder, &format!("render {name}.npy -o {name}.lobe.exr {glossy}"));
+        done(&folder, &format!("bake {name}.npy -o {name} {shiny} {bake}"));
+        done(&folder, &format!("render {name}.npy -o {name}.specular.exr {shiny}"));
         done(&folder, &format!("render {name}.npy -o {name}.plain.exr {words}"));
         let (_, all) = load(&folder.path(name).join("scatter.npy"));
         let count = all.len() / 6;

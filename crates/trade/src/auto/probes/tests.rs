@@ -9,6 +9,12 @@ fn noise(k: u64) -> f64 {
     ((z ^ (z >> 29)) >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
 }
 
+/// Probes of some of the texels, under an even light.
+fn of(light: f64, (places, factors): (Vec<usize>, Vec<f64>), noise: f64) -> Probes {
+    let (light, noise) = (vec![[light; 3]; places.len()], vec![noise; places.len()]);
+    Probes { is_whole: false, noise, places, factors, light, own_rms: 0.0 }
+}
+
 /// Shares of seeds whose bound, and whose bare estimate, is at least the true error of a picture of
 /// light 1 with an `error` at each texel; and the mean of the estimate's square over it.
 fn covered(
@@ -19,21 +25,12 @@ fn covered(
 ) -> [f64; 3] {
     let count = SIDE * SIDE;
     let square = (0..count).map(|i| error_at(i).powi(2)).sum::<f64>() / count as f64;
-    let of = |scale: f64| vec![(0..count).map(|i| (1.0 + scale * error_at(i)) as f32).collect()];
-    let picture: Vec<Vec<f32>> = of(1.0);
-    let control: Option<Vec<Vec<f32>>> = control.map(of);
+    let drawn = |scale: f64| vec![(0..count).map(|i| (1.0 + scale * error_at(i)) as f32).collect()];
+    let picture: Vec<Vec<f32>> = drawn(1.0);
+    let control: Option<Vec<Vec<f32>>> = control.map(drawn);
     let mut sums = [0.0; 3];
     for seed in 0..SEEDS {
-        let (places, factors) = picks(unsure, probes, seed);
-        let light = vec![[1.0; 3]; places.len()];
-        let probes = Probes {
-            is_whole: false,
-            noise: vec![0.0; places.len()],
-            places,
-            factors,
-            light,
-            own_rms: 0.0,
-        };
+        let probes = of(1.0, picks(unsure, probes, seed), 0.0);
         let measured = probes.error(&picture, control.as_deref(), Probes::FOUR_BOUNDS);
         sums[0] += f64::from(u8::from(measured.at_most >= square.sqrt()));
         sums[1] += f64::from(u8::from(measured.error >= square.sqrt()));
@@ -102,16 +99,7 @@ fn a_better_picture_than_its_control_has_an_error() {
     let fine = vec![(0..count).map(|i| (1.0 + error_at(i)) as f32).collect::<Vec<f32>>()];
     let rms = ((0..count).map(|i| error_at(i).powi(2)).sum::<f64>() / count as f64).sqrt();
     for seed in 0..SEEDS {
-        let (places, factors) = picks(&vec![0.0; count], 200, seed);
-        let light = vec![[1.0; 3]; places.len()];
-        let probes = Probes {
-            is_whole: false,
-            noise: vec![0.0; places.len()],
-            places,
-            factors,
-            light,
-            own_rms: 0.0,
-        };
+        let probes = of(1.0, picks(&vec![0.0; count], 200, seed), 0.0);
         let measured = probes.error(&fine, Some(&rough), Probes::FOUR_BOUNDS);
         assert!((measured.error / rms - 1.0).abs() < 0.3 && measured.at_most < 1.5 * rms);
     }
@@ -150,24 +138,20 @@ fn normal(k: u64) -> f64 {
 #[test]
 fn path_noise_predicts_the_bound() {
     let count = SIDE * SIDE;
-    let of = |count: usize, noise: f64| Probes {
-        is_whole: true,
-        places: (0..count).collect(),
-        factors: vec![1.0; count],
-        // The mean of a square is then that of the error and that of the noise.
-        light: vec![[1.0; 3]; count],
-        noise: vec![noise; count],
-        own_rms: 0.0,
+    let whole = |count: usize, noise: f64| {
+        let all = ((0..count).collect(), vec![1.0; count]);
+        Probes { is_whole: true, ..of(1.0, all, noise) }
     };
+    // The mean of a square is that of the error and that of the noise.
     let offset = (0.04_f64.powi(2) + 4e-4).sqrt();
     let picture = vec![vec![(1.0 + offset) as f32; count]];
-    let probes = of(count, 4e-4);
+    let probes = whole(count, 4e-4);
     let measured = probes.error(&picture, None, Probes::FOUR_BOUNDS);
     let expected = probes.path_noise(0.04, 1.0, count, Probes::FOUR_BOUNDS);
     let near = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 1e-4, "{a} {b}");
     near(measured.error, 0.04);
     near(measured.at_most, 0.04_f64.hypot(expected));
-    let few = of(count / 4, 8e-4).path_noise(0.04, 0.5, count, Probes::FOUR_BOUNDS);
+    let few = whole(count / 4, 8e-4).path_noise(0.04, 0.5, count, Probes::FOUR_BOUNDS);
     near(few, expected);
 }
 
@@ -176,14 +160,7 @@ fn path_noise_predicts_the_bound() {
 /// nothing would remain.
 #[test]
 fn unsampled_light_is_relative_to_all_light() {
-    let direct = Probes {
-        is_whole: true,
-        places: vec![0, 1],
-        factors: vec![1.0; 2],
-        light: vec![[1.0; 3]; 2],
-        noise: vec![0.0; 2],
-        own_rms: 0.01,
-    };
+    let direct = Probes { own_rms: 0.01, ..of(1.0, (vec![0, 1], vec![1.0; 2]), 0.0) };
     let mut all = direct.clone();
     let traced = Traced { mean: [0.3; 3], standard_error: [0.0; 3] };
     all.add_bounced(&[traced; 2], [0.008; 3]);
@@ -223,33 +200,25 @@ fn noise_does_not_bias_the_error() {
     let count = SIDE * SIDE;
     let error_at = |i: usize| 0.07 * noise(i as u64);
     let rms = ((0..count).map(|i| error_at(i).powi(2)).sum::<f64>() / count as f64).sqrt();
-    let of = |scale: f64| vec![(0..count).map(|i| (1.0 + scale * error_at(i)) as f32).collect()];
-    let (picture, control): (Vec<Vec<f32>>, Vec<Vec<f32>>) = (of(1.0), of(0.5));
+    let drawn = |scale: f64| vec![(0..count).map(|i| (1.0 + scale * error_at(i)) as f32).collect()];
+    let (picture, control): (Vec<Vec<f32>>, Vec<Vec<f32>>) = (drawn(1.0), drawn(0.5));
     for (wanted, control) in [(300, None), (300, Some(&control[..])), (count, None)] {
         let (mut held, mut mean, mut bare) = (0_u64, 0.0, 0.0);
         for seed in 0..SEEDS {
-            let (places, factors) = picks(&vec![0.0; count], wanted, seed);
-            let is_whole = wanted == count;
-            let mut probes = Probes {
-                is_whole,
-                noise: vec![0.0; places.len()],
-                light: vec![[0.75; 3]; places.len()],
-                places,
-                factors,
-                own_rms: 0.0,
-            };
+            let mut probes = of(0.75, picks(&vec![0.0; count], wanted, seed), 0.0);
+            probes.is_whole = wanted == count;
             let traced = |k: usize| {
                 let of = |j: u64| normal((seed << 24) + 9 * k as u64 + j);
                 let batches = (0..7).map(|j| of(j).powi(2)).sum::<f64>() / 7.0;
                 let mean = [0.25 + NOISE * of(7); 3];
                 Traced { mean, standard_error: [NOISE * batches.sqrt(); 3] }
             };
-            let traced: Vec<Traced> = (0..probes.len()).map(traced).collect();
+            let traced: Vec<Traced> = (0..probes.count()).map(traced).collect();
             probes.add_bounced(&traced, [0.0; 3]);
             let measured = probes.error(&picture, control, Probes::FOUR_BOUNDS);
             held += u64::from(measured.at_most >= rms);
             mean += measured.error.powi(2) / rms.powi(2) / SEEDS as f64;
-            let steady = Probes { noise: vec![0.0; probes.len()], ..probes.clone() };
+            let steady = Probes { noise: vec![0.0; probes.count()], ..probes.clone() };
             bare += steady.error(&picture, None, 0.0).error.powi(2) / rms.powi(2) / SEEDS as f64;
             // √(z √(4 (d² s² + s⁴) / probes)), of a mean light of 1, s⁴ as of eight batches (1 +
             // 2/7) times as much. χ² / 7 of seven has a fourth moment of 7·9·11·13 / 7⁴: the

@@ -5,7 +5,7 @@ use ridgelight::scene::{Albedo, BounceEngine, Bounces};
 use ridgelight_cpu::indirect::{self, Fineness};
 
 /// Two bounces of an albedo of 0.8, by the f64 quadrature; the simulated paths have a noise of 5 %
-/// of it. Pictures are the ground ground_truth except for the settings of bounces: omitted bounces lack
+/// of it. Pictures are the ground truth except for the settings of bounces: omitted bounces lack
 /// all their light, and azimuths leave 32nds / azimuths · 10 % of the second bounce's light. The
 /// choice reaches the goal without noise and is faster than the defaults. A goal below the paths'
 /// noise is refused, as is one that all bounces do not reach.
@@ -67,18 +67,11 @@ fn choices_of_bounces_reach_the_goal() {
         let Trial { quality, measured, .. } = chosen.trial;
         assert!(measured.at_most <= most, "{most}: {measured:?}");
         assert!(true_error(&quality) <= most, "{most}: {} of {quality:?}", true_error(&quality));
-        assert!(
-            cost(&quality)
-                < cost(&Quality {
-                    bounces: Bounces { count: 2, ..Bounces::DEFAULT },
-                    ..Quality::default()
-                })
-        );
+        let bounces = Bounces { count: 2, ..Bounces::DEFAULT };
+        assert!(cost(&quality) < cost(&Quality { bounces, ..Quality::default() }));
         // The last count is that of the probes that measured the choice.
-        assert_eq!(
-            chosen.paths,
-            batches_used[batches_used.len() - 1] * ridgelight::plan::REFERENCE_BATCH
-        );
+        let last = batches_used[batches_used.len() - 1];
+        assert_eq!(chosen.paths, last * ridgelight::plan::REFERENCE_BATCH);
         assert!(batches_used.iter().all(|batches| (8..=256).contains(batches)), "{batches_used:?}");
         let azimuths: Vec<u32> = chosen.trials.iter().map(|t| t.quality.bounces.azimuths).collect();
         assert!(azimuths.iter().any(|a| *a != azimuths[0]), "{azimuths:?}");
@@ -87,10 +80,8 @@ fn choices_of_bounces_reach_the_goal() {
     }
     // Ten times the bounced light: with 256 batches 60 % of each texel remain.
     let refused = found(0.001, 10.0).0.unwrap_err().to_string();
-    assert!(
-        refused.contains("a goal of 0.00100: needs bounced light of that precision"),
-        "{refused}"
-    );
+    let said = "a goal of 0.00100: needs bounced light of that precision";
+    assert!(refused.contains(said), "{refused}");
     assert!(refused.contains("16384 paths from each of 144 texels"), "{refused}");
     // 128 azimuths leave 2.5 % of the first bounce.
     let refused = found(1e-4, 0.0).0.unwrap_err().to_string();

@@ -131,9 +131,33 @@ fn ladders_have_their_range_and_default() {
         assert!(counts.windows(2).all(|two| two[0] < two[1]), "{counts:?}");
         for (step, count) in counts.iter().enumerate() {
             let mut quality = start();
-            (ladder.set)(&mut quality, step);
+            ladder.set(&mut quality, step);
             quality.check().unwrap();
             assert_eq!(quality == start(), step == ladder.default, "{count}");
         }
     }
+}
+
+/// Under a sky and a sun exact lines are refused, and here packed heights with the slopes' fuse:
+/// every place with either, and no other, by few calls.
+#[test]
+fn refusals_cover_all_counts() {
+    let ladders = ladders(&scene(Lights { sky: Some([1.0; 3]), ..sun(0.01) }), 0);
+    let places = places(&ladders, &start());
+    let why = |Place { quality, .. }: &Place| {
+        let is_swept = !matches!(quality.method, Method::BruteForce | Method::Pyramid);
+        let two = quality.fuse == Fuse::Slopes && quality.precision == Precision::Packed;
+        let is_exact = quality.lines == Lines::Exact;
+        let why = if is_exact { "exact" } else { "packed" };
+        (is_swept && (is_exact || two)).then(|| why.to_owned())
+    };
+    let mut checked = 0;
+    let found = refused(&ladders, &places, |place| {
+        checked += 1;
+        why(place)
+    });
+    let all = places.iter().enumerate();
+    let expected: Vec<_> = all.filter_map(|(i, p)| Some((i, why(p)?))).collect();
+    assert_eq!(found, expected);
+    assert!(found.len() > 100 && checked < 60, "{} of {checked}", found.len());
 }

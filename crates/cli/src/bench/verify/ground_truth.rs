@@ -1,0 +1,106 @@
+//! The light that the oracle computes at some texels of a scene.
+
+use ridgelight::gpu::Pixels;
+use ridgelight::scene::{Lights, Scene, SphereLight};
+use ridgelight_cpu::light;
+use ridgelight_cpu::oracle::Oracle;
+use ridgelight_cpu::sphere::sphere_of;
+
+use super::{albedo_of, rms};
+
+/// About this many texels are compared, spread over the field.
+pub const PLACES: usize = 100;
+/// Azimuths of the oracle's sky.
+const TRUE_AZIMUTHS: usize = 360;
+/// Slices of the oracle's suns and key lights.
+const TRUE_STRIPS: usize = 32;
+/// Slices of the oracle's sphere lights.
+const TRUE_SLICES: usize = 64;
+
+/// The correct light of a scene at some of its texels.
+#[derive(Clone)]
+pub struct GroundTruth {
+    pub places: Vec<usize>,
+    /// Of sky, environment, suns and key lights, and sphere lights, each alone.
+    pub expected: Vec<[f64; 4]>,
+    /// The unoccluded share of a sky's light.
+    pub open: Vec<f64>,
+}
+
+impl GroundTruth {
+    pub fn of(scene: &Scene) -> Self {
+        let field = &scene.field;
+        let (cols, count) = (field.cols(), field.rows() * field.cols());
+        // A step without common factors visits rows and columns evenly. Includes the corners.
+        let step = (count / PLACES).max(1) | 1;
+        let mut places: Vec<usize> = (0..count).step_by(step).collect();
+        places.extend([cols - 1, count - cols, count - 1]);
+        let oracle = Oracle::new(field, scene.surface.border);
+        let (expected, open) = places.iter().map(|p| light_at(scene, &oracle, *p)).unzip();
+        Self { places, expected, open }
+    }
+
+    /// The same of all light but sphere lights'.
+    pub fn without_sphere_lights(&self) -> Self {
+        let rest = self
+            .expected
+            .iter()
+            .map(|[sky, environment, suns, _]| [*sky, *environment, *suns, 0.0]);
+        Self { places: self.places.clone(), expected: rest.collect(), open: self.open.clone() }
+    }
+
+    /// RMSE of a picture over the root mean square of the expected light.
+    pub fn error(&self, pixels: &Pixels) -> f64 {
+        self.error_of(&self.means(pixels))
+    }
+
+    /// Radiance of a picture at the places, mean of the colours.
+    pub fn means(&self, pixels: &Pixels) -> Vec<f64> {
+        let mean = |p: &usize| {
+            let texel = &pixels.values[p * pixels.channels..(p + 1) * pixels.channels];
+            let colours = &texel[..texel.len().min(3)];
+            colours.iter().map(|v| f64::from(*v)).sum::<f64>() / colours.len() as f64
+        };
+        self.places.iter().map(mean).collect()
+    }
+
+    /// The same for radiance at the places alone.
+    pub fn error_of(&self, radiance: &[f64]) -> f64 {
+        let all = self.expected.iter().map(|lights| lights.iter().sum());
+        rms(radiance.iter().zip(all).map(|(a, b): (_, f64)| a - b)) / self.scale()
+    }
+
+    /// Root mean squares of each kind of light.
+    pub fn scales(&self) -> [f64; 4] {
+        [0, 1, 2, 3].map(|light| rms(self.expected.iter().map(|lights| lights[light])))
+    }
+
+    pub fn scale(&self) -> f64 {
+        self.scales().iter().map(|s| s * s).sum::<f64>().sqrt().max(f64::MIN_POSITIVE)
+    }
+
+    /// Occluded share of a sky's light.
+    pub fn dark(&self) -> f64 {
+        1.0 - self.open.iter().sum::<f64>() / self.open.len() as f64
+    }
+}
+
+/// Light of sky, environment, suns and key lights, and sphere lights at a place, mean of the
+/// colours; and the unoccluded share of a sky's light.
+fn light_at(scene: &Scene, oracle: &Oracle, place: usize) -> ([f64; 4], f64) {
+    let (row, col) = (place / scene.field.cols(), place % scene.field.cols());
+    let albedo = albedo_of(scene, place);
+    let tint = |c: [f64; 3]| c.iter().zip(albedo).map(|(c, a)| c * a).sum::<f64>() / 3.0;
+    let Lights { sky, environment, suns, keys, sphere_lights: spheres } = &scene.lights;
+    let share = light::sky_of(oracle, row, col, TRUE_AZIMUTHS);
+    let sky = sky.map_or(0.0, |colour| tint(colour.map(|c| f64::from(c) * share)));
+    let environment =
+        environment.as_ref().map_or(0.0, |e| tint(light::environment_of(oracle, row, col, e)));
+    let suns = suns.iter().map(|s| tint(light::sun_of(oracle, row, col, s, TRUE_STRIPS)));
+    let keys = keys.iter().map(|k| tint(light::key_of(oracle, row, col, k, TRUE_STRIPS)));
+    let sphere_light = |s: &SphereLight| {
+        let share = sphere_of(oracle, row, col, s, TRUE_SLICES);
+        tint(s.radiance.map(|c| f64::from(c) * share))
+    };
+    ([sky, environment, suns.chain(keys).sum(), spheres.iter().map(sphere_light).sum()], share)
+}
