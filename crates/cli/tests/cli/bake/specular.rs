@@ -231,7 +231,7 @@ fn gpu_scattered_specular_is_added_to_its_picture() {
             let red = planes.names.iter().position(|name| ["R", "Y"].contains(&name.as_str()));
             planes.planes[red.unwrap()].clone()
         };
-        let (own, plain) = (picture("lobe"), picture("plain"));
+        let (own, plain) = (picture("specular"), picture("plain"));
         let sum = |of: &[f32]| of.iter().map(|v| f64::from(*v)).sum::<f64>() / of.len() as f64;
         assert!(sum(&own) > 1.02 * sum(&plain), "{name}: deaf");
         let scattered = noise(&folder, name)["mean_scattered"].as_f64().unwrap();
