@@ -43,7 +43,7 @@ impl Plan {
                 "an edit",
                 "a plan without passes for edits",
                 "Picture::keeps_horizons, a sweep along lines with fuse own, aimed-nearest or \
-                 aimed, and a border of plane or open",
+                 aimed, a border of plane or open, and no SH, bounces, specular or sphere lights",
             ));
         }
         let Rectangle { col, row, cols, rows } = rectangle;
