@@ -27,7 +27,7 @@ pub fn cases() -> Vec<Case> {
         scattered(name, case)
     });
     // Black ground whose lobes no direction reaches scatters nothing.
-    let is_visible = |case: &Case| !case.name.contains("albedo 0, specular of 10000");
+    let is_visible = |case: &Case| !case.name.contains("albedo 0, lobes of 10000");
     let shiny = specular::cases().into_iter().filter(is_visible).map(|case| {
         let name = format!("scattered: {}", case.name);
         let mut case = scattered(name, case);
