@@ -126,7 +126,7 @@ fn bake(
         let files = MapFiles::create(&args.output, wanted, making.map, field, &hash)?;
         all.push((making.source, files));
     }
-    let bar = crate::terminal::progress(args.global.quiet, "baking");
+    let bar = crate::setup::terminal::progress(args.global.quiet, "baking");
     let started = std::time::Instant::now();
     let (mut times, mut plan) = (Vec::new(), None);
     let normals = if has_horizons { normals(field, border) } else { Vec::new() };

@@ -56,7 +56,7 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
     }
     idle(args, &plan);
     let (device, driver) = (gpu.report().name.clone(), gpu.report().driver.clone());
-    let bar = crate::terminal::progress(args.global.quiet, "verifying against the oracle");
+    let bar = crate::setup::terminal::progress(args.global.quiet, "verifying against the oracle");
     let verifier = Verifier::new(&scene)?;
     let found = verifier.check(&mut gpu, &quality, &limits)?;
     let quiet = args.global.quiet;

@@ -20,7 +20,7 @@ pub fn run(args: &CompareArgs) -> Result<Outcome> {
         pairs::check_horizons(&args.reference, &b)?;
     }
     let pairs = Pairs::of(args, &a, &b)?;
-    let bar = crate::terminal::progress(args.quiet, "comparing");
+    let bar = crate::setup::terminal::progress(args.quiet, "comparing");
     let mut maps = Vec::new();
     let (mut channels, mut pictures) = (Vec::new(), Vec::new());
     if args.horizons {

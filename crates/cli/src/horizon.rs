@@ -137,7 +137,7 @@ pub fn run(args: &HorizonArgs) -> Result<Outcome> {
     let mut distances_file =
         args.distances.as_ref().map(|p| NpyWriter::create(p, &shape)).transpose()?;
     let mut planes: Vec<Vec<f32>> = Vec::new();
-    let bar = crate::terminal::progress(args.global.quiet, "horizons");
+    let bar = crate::setup::terminal::progress(args.global.quiet, "horizons");
     let (times, plan) = for_each(
         &mut gpu,
         &field,

@@ -35,7 +35,6 @@ mod reference;
 mod render;
 mod scene_file;
 mod setup;
-mod terminal;
 mod trade;
 #[cfg(feature = "window")]
 mod view;

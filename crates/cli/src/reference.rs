@@ -128,7 +128,7 @@ fn trace(
     let passes = frame.plan().passes.iter().enumerate();
     let bands: Vec<usize> = passes.filter(|(_, p)| p.name() == "path_trace").map(|b| b.0).collect();
     let wanted = args.spp.div_ceil(REFERENCE_BATCH).max(2);
-    let progress = crate::terminal::progress(args.global.quiet, "tracing");
+    let progress = crate::setup::terminal::progress(args.global.quiet, "tracing");
     let mut times = gpu.draw(frame)?;
     let mut batches = 1;
     loop {

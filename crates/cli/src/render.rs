@@ -62,7 +62,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
         Ok(plan)
     })?;
     let (mut gpu, limits) = setup::device(&args.global)?;
-    let progress = crate::terminal::progress(args.global.quiet, "lighting");
+    let progress = crate::setup::terminal::progress(args.global.quiet, "lighting");
     let mut chosen = None;
     if let Some(goal) = goal {
         let found = auto::choose(

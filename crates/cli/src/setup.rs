@@ -1,6 +1,7 @@
-//! From arguments to scenes, qualities and devices.
+//! From arguments to scenes, qualities and devices; what commands print while they run.
 
 mod settings_used;
+pub mod terminal;
 
 use ridgelight::gpu::{self, Headless, HeadlessOptions, Pixels, Timing};
 use ridgelight::plan::{Limits, Picture, Plan};

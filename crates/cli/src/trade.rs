@@ -78,7 +78,7 @@ pub fn run(args: &TradeArgs) -> Result<Outcome> {
     let given = args.reference.as_deref().map(read).transpose()?;
     let (gpu, limits) = setup::device(&args.global)?;
 
-    let bar = crate::terminal::progress(args.global.quiet, "computing the ground truth");
+    let bar = crate::setup::terminal::progress(args.global.quiet, "computing the ground truth");
     let mut rig = Rig::new(gpu, limits, &scene, budget);
     let ground_truth = given.map_or_else(|| GroundTruth::draw(&mut rig), Ok)?;
     let ground_truth_s = rig.spent();

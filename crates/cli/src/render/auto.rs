@@ -13,8 +13,8 @@ use ridgelight_trade::auto::{Bounced, Chosen, Drawn, Goal, Measured, Probes, Tra
 use crate::args::AutoArgs;
 use crate::idle;
 use crate::reference;
+use crate::setup::terminal::{digits, percent};
 use crate::setup::{self, total_ns};
-use crate::terminal::{digits, percent};
 
 /// Draws of each setting after one that compiles; the median counts. Slow settings get fewer.
 const DRAWS: usize = 3;

@@ -16,8 +16,8 @@ use super::ground_truth::GroundTruth;
 use super::point::Point;
 use super::report::{Report, ms};
 use super::rig::Rig;
+use crate::setup::terminal::{digits, percent};
 use crate::setup::{self, total_ns};
-use crate::terminal::{digits, percent};
 
 const DIRECTIONS: [usize; 3] = [64, 256, 1024];
 const PATHS: [u32; 3] = [40, 100, 400];

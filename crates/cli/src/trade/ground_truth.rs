@@ -11,7 +11,7 @@ use ridgelight_io::Planes;
 use ridgelight_trade::error::ImageError;
 
 use super::picture::Tones;
-use crate::terminal::percent;
+use crate::setup::terminal::percent;
 
 /// The layer of a reference that holds one standard deviation of its Monte Carlo noise.
 const NOISE_LAYER: &str = "standard_error";

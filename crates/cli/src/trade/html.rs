@@ -3,7 +3,7 @@
 use super::left_out::{EXAMPLES, GROUPS};
 use super::point::Point;
 use super::report::{Report, ms};
-use crate::terminal::{digits, percent};
+use crate::setup::terminal::{digits, percent};
 
 const TEMPLATE: &str = include_str!("page.html");
 

@@ -8,7 +8,7 @@ use ridgelight_trade::statistics::median;
 
 use super::rig::Rig;
 use super::walk::KEPT;
-use crate::terminal::digits;
+use crate::setup::terminal::digits;
 
 /// Timed draws with each storage, each paired with one of the planner's choice, after one to warm
 /// up.

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use super::report::ms;
 use super::walk::Walk;
-use crate::terminal::percent;
+use crate::setup::terminal::percent;
 
 /// Limits of a report: reasons and untried settings that it spells out; settings per reason.
 pub const GROUPS: usize = 40;

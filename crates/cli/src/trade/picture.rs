@@ -35,8 +35,9 @@ impl Tones {
 
     /// The grey scale, in words.
     pub fn text(&self) -> String {
-        let share =
-            |v: f32| crate::terminal::digits(f64::from(v) / self.mean.max(f64::MIN_POSITIVE));
+        let share = |v: f32| {
+            crate::setup::terminal::digits(f64::from(v) / self.mean.max(f64::MIN_POSITIVE))
+        };
         format!(
             "Light: black at {} and white at {} of the ground truth's mean radiance, its 0.5th \
                 and 99th percentiles.",

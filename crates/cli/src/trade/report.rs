@@ -10,7 +10,7 @@ use super::point::Point;
 use super::rig::Budget;
 use super::walk::Walk;
 use crate::setup;
-use crate::terminal::{digits, percent};
+use crate::setup::terminal::{digits, percent};
 
 pub struct Report<'a> {
     /// Device, driver, field and lights, as (name, value).

@@ -12,7 +12,7 @@ use super::picture;
 use super::point::{self, Point};
 use super::rig::{Budget, Rig};
 use crate::setup;
-use crate::terminal::digits;
+use crate::setup::terminal::digits;
 
 /// Share of the budget that one setting may take.
 const SLOWEST: f64 = 0.1;

@@ -6,7 +6,7 @@ use ridgelight_trade::trade::Goal;
 use super::hull;
 use super::point::Point;
 use super::report::{Report, ms};
-use crate::terminal::{digits, percent};
+use crate::setup::terminal::{digits, percent};
 
 /// Alternatives that change error or time by less than this factor are not mentioned.
 const WORTH: f64 = 0.9;

@@ -8,7 +8,7 @@ use ridgelight_trade::auto::{Probes, apart};
 
 use super::super::rig::Rig;
 use super::GroundTruth;
-use crate::terminal::percent;
+use crate::setup::terminal::percent;
 
 /// Shares of the budget for computing the ground truth, and for probing it.
 const DRAWING: f64 = 0.4;
