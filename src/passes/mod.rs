@@ -1,4 +1,5 @@
-//! Passes, one file per shader: bindings, size, reason and cost of each dispatch. A folder per technique.
+//! Passes, one file per shader: bindings, size, reason and cost of each dispatch. A folder per technique, whose `mod.rs`
+//! lists its passes. Elsewhere they have their own names without the folder: `passes::sky_shade`.
 //! This file fills the push constants that several passes share.
 
 pub(crate) mod bake;
@@ -12,30 +13,16 @@ pub(crate) mod sh;
 pub(crate) mod specular;
 pub(crate) mod view;
 
-pub use bake::facet_mask;
-pub(crate) use bake::{bent_directions, ellipse_fit, fan_weights, scatter_gather, visible_points};
-pub(crate) use bounce::{
-    bounce_gather, bounce_march, bounce_nodes, bounce_shade, bounce_walk, bounces, cache_gather,
-    shade_expand, shade_reduce, specular_gather, vector_reduce,
-};
-pub(crate) use direct::{
-    env_tables, light_resolve, sky_shade, sphere_sh, sphere_sh_shade, sphere_shade, spheres,
-    sun_shade,
-};
-pub(crate) use edit::{dirty_list, dirty_mark, edits, horizon_resweep};
-pub use horizon::{azimuths, batch, nodes, pyramid, sweep, sweeping};
-pub(crate) use horizon::{
-    height_expand, height_reduce, height_transpose, horizon_march, horizon_sweep, pyramid_march,
-    surface_sweep, sweep_fuse,
-};
-pub(crate) use rays::{blocks, height_bounds, height_cells};
-pub(crate) use reference::path_trace;
-pub(crate) use sh::{
-    env_rotation, env_wedges, light_matrix, sh_layout, sh_shade, sh_visibility, sh_wedges,
-};
-pub(crate) use specular::{bounced_specular, specular_exit, specular_visibility, sun_specular};
-pub use view::map_draw;
-pub(crate) use view::terrain_draw;
+pub use bake::*;
+pub(crate) use bounce::*;
+pub(crate) use direct::*;
+pub(crate) use edit::*;
+pub use horizon::*;
+pub(crate) use rays::*;
+pub(crate) use reference::*;
+pub use sh::*;
+pub(crate) use specular::*;
+pub use view::*;
 
 use crate::graph::{ResourceId, shaders};
 use crate::passes::batch::Batch;
