@@ -2,5 +2,7 @@
 //! Bounces by brute force, sphere lights, facet masks and the path tracer use it.
 
 pub(crate) mod blocks;
+/// For sphere lights and `reference`: the highest of each 4 × 4, 16 × 16, … cells.
 pub(crate) mod height_bounds;
+/// For sphere lights and `reference`: cells as rays read them.
 pub(crate) mod height_cells;

@@ -1,5 +1,8 @@
 //! Pictures: maps from above, and the mesh of the terrain.
 //! Dispatches and draws are recorded by `gpu::view` and the viewer.
 
+/// The field from above, as a map.
 pub mod map_draw;
+/// `--camera`: the ground as a mesh without vertex buffers. The background (`sky_draw`) and exposure with sRGB
+/// (`picture_tone`) have no more than push constants; `plan::view` makes them.
 pub(crate) mod terrain_draw;

@@ -14,8 +14,18 @@ use ridgelight::scene::{
     Scene, Specular, Sun, Surface,
 };
 
-use crate::cpu_reference::{Case, Wanted, check_all, noisy_environment, rough};
+use crate::cpu_reference::{Case, Reference, Wanted, check_all, noisy_environment, rough};
 use crate::{field, random};
+
+/// The passes of this room and their CPU references.
+pub(crate) const REFERENCES: &[Reference] = &[
+    ("visible_points", points::visible_points),
+    ("bent_directions", curved::bent_directions),
+    ("fan_weights", curved::fan_weights),
+    ("ellipse_fit", ellipses::ellipse_fit),
+    ("facet_mask", facets::facet_mask),
+    ("scatter_gather", scatter::scatter_gather),
+];
 
 fn on(name: &'static str, field: HeightField, border: Border, directions: Directions) -> Case {
     let surface = Surface { border, ..Surface::default() };

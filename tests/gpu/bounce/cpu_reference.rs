@@ -9,7 +9,18 @@ use ridgelight::scene::{
     Scene, Surface,
 };
 
-use crate::cpu_reference::{Case, Wanted, bowl, check_all, rough};
+use crate::cpu_reference::{Case, Reference, Wanted, bowl, check_all, rough};
+
+/// The passes of this room and their CPU references.
+pub(crate) const REFERENCES: &[Reference] = &[
+    ("bounce_gather", indirect::bounce_gather),
+    ("bounce_march", indirect::bounce_march),
+    ("bounce_shade", nodes::bounce_shade),
+    ("bounce_walk", indirect::bounce_walk),
+    ("cache_gather", nodes::cache_gather),
+    ("shade_expand", indirect::shade_expand),
+    ("shade_reduce", indirect::shade_reduce),
+];
 
 /// `bounce_walk`: colours and grey, every border, lines half a cell and two cells apart, single texels and lines of
 /// them, in batches.

@@ -53,61 +53,33 @@ pub(crate) fn worst(pairs: &[Pair]) -> Option<&Pair> {
     pairs.iter().max_by(|a, b| a.ratio().total_cmp(&b.ratio()))
 }
 
-type CpuReference = fn(&mut Run, &Pass) -> Vec<Pair>;
+pub(crate) type CpuReference = fn(&mut Run, &Pass) -> Vec<Pair>;
 
-/// Every pass's name and its CPU reference.
-const REFERENCES: &[(&str, CpuReference)] = &[
-    ("dirty_list", edit::dirty_list),
-    ("dirty_mark", edit::dirty_mark),
-    ("height_expand", horizon::pyramid::height_expand),
-    ("height_reduce", horizon::pyramid::height_reduce),
-    ("pyramid_march", horizon::pyramid::pyramid_march),
-    ("height_transpose", horizon::sweep::height_transpose),
-    ("horizon_resweep", edit::horizon_resweep),
-    ("height_cells", rays::height_cells),
-    ("height_bounds", rays::height_bounds),
-    ("path_trace", reference::path_trace),
-    ("visible_points", bake::points::visible_points),
-    ("bent_directions", bake::curved::bent_directions),
-    ("fan_weights", bake::curved::fan_weights),
-    ("ellipse_fit", bake::ellipses::ellipse_fit),
-    ("facet_mask", bake::facets::facet_mask),
-    ("scatter_gather", bake::scatter::scatter_gather),
-    ("horizon_sweep", horizon::sweep::horizon_sweep),
-    ("surface_sweep", horizon::sweep::surface_sweep),
-    ("horizon_march", horizon::sweep::horizon_march),
-    ("sweep_fuse", horizon::sweep::sweep_fuse),
-    ("env_wedges", sh::env_wedges),
-    ("env_tables", direct::light::env_tables),
-    ("env_rotation", sh::env_rotation),
-    ("light_matrix", sh::light_matrix),
-    ("sh_visibility", sh::sh_visibility),
-    ("sh_shade", sh::sh_shade),
-    ("sh_wedges", sh::sh_wedges),
-    ("sky_shade", direct::light::sky_shade),
-    ("sun_shade", direct::light::sun_shade),
-    ("sun_specular", specular::sun::sun_specular),
-    ("sphere_shade", direct::light::sphere_shade),
-    ("sphere_sh_shade", direct::sphere_sh::sphere_sh_shade),
-    ("light_resolve", direct::light::light_resolve),
-    ("bounce_gather", bounce::indirect::bounce_gather),
-    ("specular_exit", specular::bounced::specular_exit),
-    ("specular_gather", specular::bounced::specular_gather),
-    ("specular_visibility", specular::bounced::specular_visibility),
-    ("vector_reduce", specular::bounced::vector_reduce),
-    ("bounce_march", bounce::indirect::bounce_march),
-    ("bounce_shade", bounce::nodes::bounce_shade),
-    ("bounce_walk", bounce::indirect::bounce_walk),
-    ("cache_gather", bounce::nodes::cache_gather),
-    ("shade_expand", bounce::indirect::shade_expand),
-    ("shade_reduce", bounce::indirect::shade_reduce),
+/// A pass's name and its CPU reference.
+pub(crate) type Reference = (&'static str, CpuReference);
+
+/// Every room's passes.
+const ROOMS: [&[Reference]; 9] = [
+    horizon::REFERENCES,
+    edit::REFERENCES,
+    rays::REFERENCES,
+    reference::REFERENCES,
+    bake::REFERENCES,
+    sh::REFERENCES,
+    direct::REFERENCES,
+    specular::REFERENCES,
+    bounce::REFERENCES,
 ];
+
+fn references() -> impl Iterator<Item = &'static Reference> {
+    ROOMS.into_iter().flatten()
+}
 
 /// Compared with the CPU reference byte by byte over whole pictures: [`crate::view::map`].
 const ELSEWHERE: [&str; 1] = ["map_draw"];
 
 fn reference_of(pass: &Pass) -> CpuReference {
-    let reference = REFERENCES.iter().find(|t| t.0 == pass.name());
+    let reference = references().find(|t| t.0 == pass.name());
     reference.unwrap_or_else(|| panic!("{} has no test against a CPU reference", pass.name())).1
 }
 
@@ -190,14 +162,14 @@ fn every_shader_has_a_cpu_reference_and_a_case() {
         .collect();
     for shader in shaders::ALL.iter().filter(|s| !ELSEWHERE.contains(&s.name)) {
         assert!(
-            REFERENCES.iter().any(|t| t.0 == shader.name),
+            references().any(|t| t.0 == shader.name),
             "{} has no test against a CPU reference",
             shader.name
         );
         assert!(planned.contains(&shader.name), "no case runs {}", shader.name);
     }
     assert_eq!(
-        REFERENCES.len() + ELSEWHERE.len(),
+        references().count() + ELSEWHERE.len(),
         shaders::ALL.len(),
         "a CPU reference of no shader"
     );

@@ -9,8 +9,18 @@ use ridgelight::scene::{
     Receiver, Scene, Specular, SphereLight, Sun, Surface, Wedges, Window,
 };
 
-use crate::cpu_reference::{Case, Wanted, check_all, key, noisy_environment, rough};
+use crate::cpu_reference::{Case, Reference, Wanted, check_all, key, noisy_environment, rough};
 use crate::random;
+
+/// The passes of this room and their CPU references.
+pub(crate) const REFERENCES: &[Reference] = &[
+    ("env_tables", light::env_tables),
+    ("sky_shade", light::sky_shade),
+    ("sun_shade", light::sun_shade),
+    ("sphere_shade", light::sphere_shade),
+    ("sphere_sh_shade", sphere_sh::sphere_sh_shade),
+    ("light_resolve", light::light_resolve),
+];
 
 /// Everything that sums light: sky, environment, discs and a point; colours and a map, or all grey.
 pub(crate) fn pictures() -> Vec<Case> {

@@ -11,8 +11,12 @@ use ridgelight_cpu::horizon_sweep::SweepOptions;
 use ridgelight_cpu::lattice::{Lattice, line_number, line_position, slots};
 use ridgelight_cpu::shared::sweep::{Heights, March, on_field};
 
-use crate::cpu_reference::{Pair, Run, constant, pushed};
+use crate::cpu_reference::{Pair, Reference, Run, constant, pushed};
 use crate::horizon::cpu_reference::sweep::{Stored, stored};
+
+/// The passes of this room and their CPU references.
+pub(crate) const REFERENCES: &[Reference] =
+    &[("dirty_list", dirty_list), ("dirty_mark", dirty_mark), ("horizon_resweep", horizon_resweep)];
 
 /// An edit that is drawn.
 pub(crate) struct Edit {

@@ -8,8 +8,20 @@ use ridgelight::scene::{
     Surface,
 };
 
-use crate::cpu_reference::{Case, Wanted, check, check_all, rough};
+use crate::cpu_reference::{Case, Reference, Wanted, check, check_all, rough};
 use crate::{Device, field};
+
+/// The passes of this room and their CPU references.
+pub(crate) const REFERENCES: &[Reference] = &[
+    ("height_expand", pyramid::height_expand),
+    ("height_reduce", pyramid::height_reduce),
+    ("pyramid_march", pyramid::pyramid_march),
+    ("height_transpose", sweep::height_transpose),
+    ("horizon_sweep", sweep::horizon_sweep),
+    ("surface_sweep", sweep::surface_sweep),
+    ("horizon_march", sweep::horizon_march),
+    ("sweep_fuse", sweep::sweep_fuse),
+];
 
 /// A dome, whose texels all stay on the hull, before a cliff that pops them: deeper than the 64 entries that a line
 /// keeps in shared memory.

@@ -6,7 +6,11 @@ use ridgelight_cpu::height_bounds as bounds_reference;
 use ridgelight_cpu::height_cells as cells_reference;
 use ridgelight_cpu::tolerance::EPSILON;
 
-use crate::cpu_reference::{Pair, Run, pushed};
+use crate::cpu_reference::{Pair, Reference, Run, pushed};
+
+/// The passes of this room and their CPU references.
+pub(crate) const REFERENCES: &[Reference] =
+    &[("height_cells", height_cells), ("height_bounds", height_bounds)];
 
 /// Heights are moved, not changed. A slope is a weighted sum of six differences, of which each and its
 /// weight, the sums and the quotient round: 12 ε of the relief over a cell, or less.

@@ -11,9 +11,12 @@ use ridgelight_cpu::tolerance::EPSILON;
 use ridgelight_cpu::tolerance::near::Near;
 
 use crate::cpu_reference::{
-    Case, Pair, Run, Wanted, check_all, key, noisy_environment, pushed, rough, worst,
+    Case, Pair, Reference, Run, Wanted, check_all, key, noisy_environment, pushed, rough, worst,
 };
 use crate::{Device, random};
+
+/// The passes of this room and their CPU references.
+pub(crate) const REFERENCES: &[Reference] = &[("path_trace", path_trace)];
 
 /// Path by path, and then a second batch, from which the device has a mean and a standard error.
 pub(crate) fn path_trace(run: &mut Run, pass: &Pass) -> Vec<Pair> {

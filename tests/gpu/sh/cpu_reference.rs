@@ -20,8 +20,18 @@ use ridgelight_cpu::tolerance::{
     device_light_matrix, device_sh_shade, device_sh_specular, device_turn, device_wedge_row,
 };
 
-use crate::cpu_reference::{Pair, Run, constant, fuse_of, pushed};
+use crate::cpu_reference::{Pair, Reference, Run, constant, fuse_of, pushed};
 use crate::direct::cpu_reference::light::{rgb, so_far, wedge_rows};
+
+/// The passes of this room and their CPU references.
+pub(crate) const REFERENCES: &[Reference] = &[
+    ("env_wedges", env_wedges),
+    ("env_rotation", env_rotation),
+    ("light_matrix", light_matrix),
+    ("sh_visibility", sh_visibility),
+    ("sh_shade", sh_shade),
+    ("sh_wedges", sh_wedges),
+];
 
 fn environment<'a>(run: &Run<'a>) -> &'a Environment {
     run.scene.lights.environment.as_ref().expect("an environment")

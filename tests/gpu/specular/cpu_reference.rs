@@ -9,7 +9,16 @@ use ridgelight::scene::{
     PhongSpecular, Quality, Scene, Specular, Sun, Surface,
 };
 
-use crate::cpu_reference::{Case, Wanted, check_all, noisy_environment, rough};
+use crate::cpu_reference::{Case, Reference, Wanted, check_all, noisy_environment, rough};
+
+/// The passes of this room and their CPU references.
+pub(crate) const REFERENCES: &[Reference] = &[
+    ("sun_specular", sun::sun_specular),
+    ("specular_exit", bounced::specular_exit),
+    ("specular_gather", bounced::specular_gather),
+    ("specular_visibility", bounced::specular_visibility),
+    ("vector_reduce", bounced::vector_reduce),
+];
 
 /// Bounced Phong specular: series of odd and even orders, colours and grey, as f32 and f16, and one number a texel.
 pub(crate) fn cases() -> Vec<Case> {
