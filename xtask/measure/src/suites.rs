@@ -1,7 +1,12 @@
-//! Holds the path tracer to the f64 quadrature and to closed forms, and writes what was found as
-//! `docs/measured/reference.md`. See `tools/reference`.
-//! Fails where Monte Carlo noise does not explain a row.
+//! Pages that test suites make on named devices.
+//!
+//! `reference`: the path tracer against the f64 quadrature and closed forms, as
+//! `docs/measured/reference.md`; fails where Monte Carlo noise does not explain a row. See
+//! `tools/reference`. `extremes`: every case of `tests/gpu/extremes` with every method, as
+//! `out/extremes.md`; fails where a row is beyond its bound. See `tools/extremes`.
 
+#[path = "../../../tests/gpu/extremes/suite/mod.rs"]
+mod extreme;
 #[path = "../../../tests/common/fields.rs"]
 mod fields;
 #[path = "../../../tests/common/reference_page.rs"]
@@ -11,12 +16,13 @@ mod scenes;
 
 use std::path::Path;
 
+use extreme::page::{self, Column};
+use extreme::{inputs, methods};
 use reference_page::{Closed, FINENESS, MOST_BOUNCES, closed_forms, head, light_names};
 use ridgelight::gpu::{Headless, HeadlessOptions};
 use ridgelight::scene::Scene;
 use ridgelight::{Result, plan};
-use ridgelight_cpu::indirect;
-use ridgelight_cpu::indirect::GroundTruth;
+use ridgelight_cpu::indirect::{self, GroundTruth};
 use ridgelight_io as files;
 use scenes::{Agreement, scenes};
 
@@ -27,7 +33,7 @@ use crate::common::frames::{self, Colours};
 /// Batches of each picture, and a grid point's paths in them.
 const BATCHES: u32 = 64;
 const PATHS: f64 = (BATCHES * plan::REFERENCE_BATCH) as f64;
-/// What f32 may take from a value.
+/// f32 rounding, as a share of a value.
 const ROUNDING: f64 = 1e-5;
 
 const ABOUT: &str = "\
@@ -58,6 +64,9 @@ carry W at most (Bernstein's inequality; W: the brightest grid point). Expected 
 | z of the mean | below 1 in two of three rows | 4 |
 
 0 in every column: the light has no noise there, or reaches no grid point.
+
+| scene | bounces | light | n | quadrature | stated | paths | ± | z of the mean | rms z | worst z |
+|---|---|---|---|---|---|---|---|---|---|---|
 ";
 
 const CLOSED: &str = "
@@ -66,7 +75,20 @@ const CLOSED: &str = "
 Derived in `tests/common/reference_page.rs`. *grid* bounds the difference between flat triangles and the formula's surface;
 it is 0 except for the pit, whose rim is a staircase. *quadrature* is of the same triangles in f64; its own error is that
 of its 24 azimuths. z = (|paths - value| - grid, at least 0) / ±; bound 4.
+
+| scene | bounces | n | value | grid | quadrature | paths | ± | z |
+|---|---|---|---|---|---|---|---|---|
 ";
+
+fn open(name: &str) -> Result<Headless> {
+    Headless::new(&HeadlessOptions { device: Some(name.to_owned()), validation: false })
+}
+
+/// Writes a page; fails with each complaint.
+fn write(path: &str, page: &str, complaints: &[String]) -> Outcome {
+    files::write_text(Path::new(path), page)?;
+    if complaints.is_empty() { Ok(()) } else { Err(complaints.join("\n").into()) }
+}
 
 /// Mean of a channel and one standard error of it.
 fn mean([light, error]: [&[[f64; 1]]; 2]) -> [f64; 2] {
@@ -80,17 +102,16 @@ fn row(
     head: &str,
     channel: usize,
     [light, error]: &[Colours; 2],
-    truth: &GroundTruth,
+    quadrature: &GroundTruth,
     bounces: usize,
 ) -> (String, bool) {
     let one = |picture: &[[f64; 3]]| picture.iter().map(|v| [v[channel]]).collect::<Vec<_>>();
     let (light, error) = (one(light), one(error));
-    let (right, stated) = (one(&truth.radiance[bounces]), one(&truth.error[bounces]));
+    let (right, stated) = (one(&quadrature.radiance[bounces]), one(&quadrature.error[bounces]));
     let of = Agreement::of([&light, &error], [&right, &stated], PATHS, ROUNDING);
-    let [mean, off] = mean([&light, &error]);
-    let row =
-        format!("{head}{mean:.5} | {off:.5} | {:.2} | {:.3} | {:.2} |", of.mean, of.rms, of.worst);
-    (row, of.holds())
+    let [mean, sigma] = mean([&light, &error]);
+    let z = format!("{:.2} | {:.3} | {:.2} |", of.mean, of.rms, of.worst);
+    (format!("{head}{mean:.5} | {sigma:.5} | {z}"), of.holds())
 }
 
 /// The row of a closed form; whether noise explains it.
@@ -101,28 +122,20 @@ fn closed_row(
 ) -> (String, bool) {
     let of =
         |picture: &[[f64; 3]]| closed.known.iter().map(|k| [picture[k.0][0]]).collect::<Vec<_>>();
-    let [found, off] = mean([&of(light), &of(error)]);
+    let [found, sigma] = mean([&of(light), &of(error)]);
     let [value, grid] = closed.means();
     let [in_f64, _] = mean([&of(quadrature), &[]]);
-    let z = match (found - value).abs() - grid - ROUNDING * value {
-        beyond if beyond <= 0.0 => 0.0,
-        beyond => beyond / off,
-    };
-    (format!("{}{in_f64:.6} | {found:.6} | {off:.6} | {z:.2} |", closed.head()), z <= 4.0)
+    let beyond = ((found - value).abs() - grid - ROUNDING * value).max(0.0);
+    let z = if beyond > 0.0 { beyond / sigma } else { 0.0 };
+    (format!("{}{in_f64:.6} | {found:.6} | {sigma:.6} | {z:.2} |", closed.head()), z <= 4.0)
 }
 
-pub fn run(mut args: Args) -> Outcome {
-    let device = args.word().ok_or("expected a device")?;
+pub fn reference(mut args: Args) -> Outcome {
+    let mut gpu = open(&args.word().ok_or("expected a device")?)?;
     args.end()?;
-    let options = HeadlessOptions { device: Some(device), validation: false };
-    let mut gpu = Headless::new(&options)?;
-    let mut page = format!(
-        "{ABOUT}\n{PATHS} paths per grid point on *{}*.\n{SCENES}\n\
-         | scene | bounces | light | n | quadrature | stated | paths | ± | z of the mean | rms z | worst z |\n\
-         |---|---|---|---|---|---|---|---|---|---|---|\n",
-        frames::device(&gpu)
-    );
-    let mut wrong = Vec::new();
+    let device = frames::device(&gpu);
+    let mut page = format!("{ABOUT}\n{PATHS} paths per grid point on *{device}*.\n{SCENES}");
+    let mut wrong = vec!["beyond their bounds:".to_owned()];
     let mut add = |page: &mut String, (row, holds): (String, bool)| {
         *page += &row;
         page.push('\n');
@@ -130,30 +143,55 @@ pub fn run(mut args: Args) -> Outcome {
             wrong.push(row);
         }
     };
-    // Seeds of their own: no row shares its paths with another of its scene.
+    // Each row has a seed of its own: no row shares its paths with another of its scene.
     let mut traced = |scene: &Scene, bounces: usize| -> Result<[Colours; 2]> {
         let seed = 1 + bounces as u32;
         Ok(frames::traced_at(&mut gpu, scene, (bounces as u32, seed), &[BATCHES])?.remove(0))
     };
     for (name, scene) in scenes() {
-        let truth = indirect::ground_truth(&scene, MOST_BOUNCES, FINENESS)?;
+        let quadrature = indirect::ground_truth(&scene, MOST_BOUNCES, FINENESS)?;
         for bounces in 0..=MOST_BOUNCES {
             let found = traced(&scene, bounces)?;
             for (channel, light) in light_names(&scene).into_iter().enumerate() {
-                let head = head(name, bounces, light, &truth, channel);
-                add(&mut page, row(&head, channel, &found, &truth, bounces));
+                let head = head(name, bounces, light, &quadrature, channel);
+                add(&mut page, row(&head, channel, &found, &quadrature, bounces));
             }
         }
     }
     page += CLOSED;
-    page += "\n| scene | bounces | n | value | grid | quadrature | paths | ± | z |\n|---|---|---|---|---|---|---|---|---|\n";
     for closed in closed_forms() {
         let found = traced(&closed.scene, closed.bounces)?;
         let bounces = indirect::light(&closed.scene, closed.bounces, FINENESS)?;
-        let last = bounces.last().map_or(&[][..], Vec::as_slice);
-        add(&mut page, closed_row(&closed, &found, last));
+        add(&mut page, closed_row(&closed, &found, bounces.last().map_or(&[][..], Vec::as_slice)));
     }
-    files::write_text(Path::new("docs/measured/reference.md"), &page)?;
-    let all = wrong.join("\n");
-    if wrong.is_empty() { Ok(()) } else { Err(format!("beyond their bounds:\n{all}").into()) }
+    let complaints = if wrong.len() > 1 { &wrong[..] } else { &[] };
+    write("docs/measured/reference.md", &page, complaints)
+}
+
+pub fn extremes(args: Args) -> Outcome {
+    if args.0.is_empty() {
+        return Err("expected a device".into());
+    }
+    let (cases, methods) = (extreme::cases(), methods::all());
+    let (mut all, mut complaints) = (Vec::new(), Vec::new());
+    for name in args.0 {
+        let mut gpu = open(&name)?;
+        let driver = frames::device(&gpu);
+        let rows = extreme::run(&mut gpu, &cases, &methods, true);
+        let values: usize = rows.iter().map(|r| r.outcome.values()).sum();
+        println!("{name}: {} rows, {values} values", rows.len());
+        let wrong = rows.iter().filter_map(|r| extreme::complaint(r, &cases, &methods));
+        complaints.extend(wrong.map(|complaint| format!("{name}: {complaint}")));
+        all.push(Column { name, driver, rows });
+    }
+    for (name, offer, sentence) in inputs::ALL {
+        if inputs::said(*offer) != *sentence {
+            complaints.push(format!("{name}: {}", inputs::said(*offer)));
+        }
+    }
+    let page = page::text(&cases, &methods, &all);
+    let missing = page::missing(&page, &cases, &methods);
+    complaints.extend(missing.into_iter().map(|part| format!("the page lacks {part}")));
+    std::fs::create_dir_all("out")?;
+    write("out/extremes.md", &page, &complaints)
 }
