@@ -63,7 +63,7 @@ type Counts = [usize; 3];
 /// command refuses on 1.
 fn rows(
     name: &str,
-    run: &dyn Fn(&str, &[&str], &Path) -> Result<Option<String>>,
+    run: impl Fn(&str, &[&str], &Path) -> Result<Option<String>>,
     work: &Path,
     counts: &mut Counts,
 ) -> Result<()> {
@@ -132,7 +132,7 @@ fn all_rows(program: &str, work: &Path, folder: Option<&Path>) -> Result<()> {
                     _ => Err(format!("{call:?}: {reason}").into()),
                 }
             };
-            rows(&format!("{name} | {light}"), &run, work, &mut counts)?;
+            rows(&format!("{name} | {light}"), run, work, &mut counts)?;
         }
     }
     let [held, chosen, requested] = counts;

@@ -113,10 +113,10 @@ fn forms() -> Vec<(&'static str, String, Quality)> {
     type Form = (&'static str, fn(u32, u32) -> Quality);
     const FORMS: [Form; 2] = [("table of all around", thesis), ("across", across)];
     let mut all = Vec::new();
-    let mut add = |figure, azimuths, step| {
+    let mut add = |figure: &'static str, azimuths, step| {
         for (name, form) in FORMS {
             let quality = form(azimuths, step);
-            let method = if figure == "" { Method::Auto } else { quality.method };
+            let method = if figure.is_empty() { Method::Auto } else { quality.method };
             all.push((figure, name.to_owned(), Quality { method, ..quality }));
         }
     };

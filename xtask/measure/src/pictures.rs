@@ -94,7 +94,7 @@ pub fn terrain(mut args: Args) -> Outcome {
     scene.lights.suns = vec![inputs::sun(90.0 - 185.0, 11.0, [26.0, 19.0, 12.0])];
     let bounces = Bounces { count: 1, engine: BounceEngine::Sweep, ..Bounces::default() };
     let quality = Quality { azimuths: 64, sun_azimuths: 8, bounces, ..Quality::default() };
-    let options = ViewOptions { size: [1200, 500], samples: 4, ..ViewOptions::default() };
+    let options = ViewOptions { size: [1200, 500], ..ViewOptions::default() };
     // From the east, above the ravines.
     let camera = Camera {
         target_m: [8200.0, 12400.0, 1150.0],

@@ -1,9 +1,8 @@
 //! Errors of Phong specular by SH against the path tracer: direct light by exponent, receiver and
-//! order (`lobe`), and indirect light by direction and as from straight above (`gloss`; NS09,
-//! figure 5).
+//! order, and indirect light by direction and as from straight above (NS09, figure 5).
 //!
 //! Both light the middle SIDE² (64) grid points of the bundled mountain by the bundled sky without its
-//! sun. `gloss`: three times as steep, two bounces; first specular alone, then with diffuse ground. N
+//! sun. Indirect: three times as steep, two bounces; first specular alone, then with diffuse ground. N
 //! (1024) paths per grid point are the reference; the RMSE contains their noise. The stated noise is
 //! an upper bound, because paths with and without bounces begin alike. The picture: indirect light of
 //! specular alone, a row for each exponent: path-traced, vector of order 4, scalar, vector of order 6.
@@ -52,7 +51,7 @@ fn ground(args: &mut Args, steeper: f64) -> Result<(HeightField, Environment)> {
     Ok((inputs::middle(&inputs::mountain(steeper)?, side)?, inputs::sky_without_sun()?))
 }
 
-pub fn lobe(mut args: Args) -> Outcome {
+pub fn direct(mut args: Args) -> Outcome {
     let ground = ground(&mut args, 1.0)?;
     let mut gpu = args.open()?;
     println!(
@@ -84,7 +83,7 @@ pub fn lobe(mut args: Args) -> Outcome {
     Ok(())
 }
 
-pub fn gloss(mut args: Args) -> Outcome {
+pub fn indirect(mut args: Args) -> Outcome {
     let (output, paths) = (args.path("-o")?, args.number("--spp", 1024_u32)?);
     let ground = ground(&mut args, 3.0)?;
     let mut gpu = args.open()?;

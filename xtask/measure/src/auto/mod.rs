@@ -114,9 +114,8 @@ pub fn run(mut args: Args) -> Outcome {
     let mut gpu = args.open()?;
     let scenes = scenes(&folder, side, is_fitted)?;
     let of = (side, &scenes[..]);
-    Ok(if is_fitted {
-        fit::fit(&mut gpu, of)?;
-    } else {
-        report::report(&mut gpu, of, seconds, json.as_deref())?;
-    })
+    match is_fitted {
+        true => Ok(fit::fit(&mut gpu, of)?),
+        false => Ok(report::report(&mut gpu, of, seconds, json.as_deref())?),
+    }
 }

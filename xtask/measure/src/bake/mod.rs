@@ -133,9 +133,8 @@ fn series(sky: &Environment) -> Vec<[f64; 3]> {
 /// south by SH, and the field under the bundled sky by transfer.
 fn picture(all: &[Baked], sky: &Environment) -> Vec<Texels> {
     let planes = |kind: &str| &all.iter().find(|b| b.kind == kind).expect("baked").planes;
-    let of = |texel: &dyn Fn(usize) -> [f32; 3]| -> Texels {
-        (0..SIDE * SIDE).map(|i| texel(i)).collect()
-    };
+    let of =
+        |texel: &dyn Fn(usize) -> [f32; 3]| -> Texels { (0..SIDE * SIDE).map(texel).collect() };
     let grey = |plane: &[f32], scale: f32| of(&|i| [(plane[i] * scale).max(0.0).powf(2.2); 3]);
     let (bent, visible, transfer) =
         (planes("bent-normal"), planes("sh-visibility"), planes("sh-transfer"));

@@ -99,7 +99,7 @@ impl Geometry {
         let reach = corners.iter().flat_map(|c| [c.dot(right).abs(), c.dot(up).abs()]);
         let height_m = 2.0 * reach.fold(0.0, f64::max);
         camera.lens = Lens::Orthographic { height_m };
-        let options = ViewOptions { size: [SIDE; 2], samples: 4, ..ViewOptions::default() };
+        let options = ViewOptions { size: [SIDE; 2], ..ViewOptions::default() };
         let limits = gpu.report().limits;
         let view = View::new(&self.scene, self.frame.plan(), &camera, &options, &limits)?;
         let pixels = gpu.look(&self.frame, &view, None)?;
