@@ -8,9 +8,9 @@ use ridgelight_cpu::bent_directions::{Draped, Fans};
 use ridgelight_cpu::fan_weights::weight;
 use ridgelight_cpu::visible_points::visible_points;
 
-#[path = "../../../xtask/measure/src/curved/light.rs"]
+#[path = "../../common/bent_light.rs"]
 mod light;
-#[path = "../../../xtask/measure/src/curved/mesh.rs"]
+#[path = "../../common/bent_mesh.rs"]
 mod mesh;
 
 use light::{ALBEDO, BOUNCES, BentDirections};

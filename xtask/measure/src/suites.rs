@@ -10,7 +10,7 @@ mod extreme;
 #[path = "../../../tests/common/fields.rs"]
 mod fields;
 #[path = "../../../tests/common/reference_page.rs"]
-mod reference_page;
+pub mod reference_page;
 #[path = "../../../tests/common/scenes.rs"]
 mod scenes;
 

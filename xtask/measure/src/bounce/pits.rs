@@ -10,32 +10,21 @@ use ridgelight_cpu::oracle::Oracle;
 use super::{ENGINES, quality};
 use crate::common::frames::{Colours, drawn, rms};
 use crate::common::{head, inputs};
+use crate::suites::reference_page::{pit, pit_radiance};
 
-/// The spherical pit of half-angle `alpha`, its rim so many cells from the middle of a field that ends
-/// two beyond. With `is_cone`, grid points of the plain beside the pit lie on the cone from its lowest
-/// point through its rim, which hides the rim's staircase from the middle.
-fn pit(rim: f64, alpha: f64, is_cone: bool) -> Result<HeightField> {
-    let (sphere, middle) = (rim / alpha.sin(), rim.ceil() + 1.0);
-    let side = 2 * middle as usize + 1;
+/// The pit, but grid points of the plain beside it lie on the cone from its lowest point through its
+/// rim, which hides the rim's staircase from the middle.
+fn pit_with_cone(rim: f64, alpha: f64) -> Result<HeightField> {
+    let pit = pit(rim, alpha);
+    let (side, middle) = (pit.cols(), rim.ceil() + 1.0);
     let away = |r: f64, c: f64| (r - middle).hypot(c - middle);
     inputs::field(side, side, |row, col| {
         let (r, c) = (row as f64, col as f64);
         let mut around = (0..9).map(|k| (r + f64::from(k / 3) - 1.0, c + f64::from(k % 3) - 1.0));
-        let is_beside = is_cone && around.any(|(r, c)| away(r, c) <= rim);
-        match away(r, c) - rim {
-            ..=0.0 => -(sphere * sphere - away(r, c).powi(2)).sqrt(),
-            beyond if is_beside => beyond * (0.5 * alpha).tan() - sphere * alpha.cos(),
-            _ => -sphere * alpha.cos(),
-        }
+        let is_beside = around.any(|(r, c)| away(r, c) <= rim);
+        let rise = if is_beside { (away(r, c) - rim).max(0.0) * (0.5 * alpha).tan() } else { 0.0 };
+        pit.base_m() + f64::from(pit.heights_m()[row * side + col]) + rise
     })
-}
-
-/// From every point of the pit the sky has a share s = (1 + cos α)/2, and the pit, equally bright,
-/// 1 - s.
-fn closed_form(alpha: f64, albedo: f64, bounces: u32) -> f64 {
-    let share = 0.5 * (1.0 + alpha.cos());
-    let again = albedo * (1.0 - share);
-    albedo * share * (1.0 - again.powi(bounces as i32 + 1)) / (1.0 - again)
 }
 
 /// Radiance with each number of bounces up to `most` by f64 quadrature on the field, in 32 azimuths:
@@ -69,13 +58,13 @@ pub fn run(gpu: &mut Headless, rim: u32) -> Result<()> {
     for (alpha, albedo, is_cone) in
         [(0.8, 0.5_f32, false), (0.8, 0.5, true), (1.2, 0.9, false), (1.2, 0.9, true)]
     {
-        let field = pit(rim, alpha, is_cone)?;
+        let field = if is_cone { pit_with_cone(rim, alpha)? } else { pit(rim, alpha) };
         let (side, middle) = (field.cols(), (field.cols() / 2) as f64);
         let in_f64 = quadrature(&field, albedo.into(), 4);
         let lights = Lights { sky: Some([1.0; 3]), ..Lights::default() };
         let scene = Scene { field, surface: inputs::matte([albedo; 3], Border::Plane), lights };
         for (count, azimuths) in [(0, 64), (1, 64), (4, 64), (4, 256)] {
-            let expected = closed_form(alpha, albedo.into(), count);
+            let expected = pit_radiance(alpha, albedo.into(), count as usize);
             let error = |light: &dyn Fn(usize) -> f64| {
                 let away = |n: usize| n as f64 - middle;
                 let inner =

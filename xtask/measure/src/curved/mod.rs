@@ -6,7 +6,9 @@
 //! and adapted to the curvature. Shadows: 200 lights of each grid point's own hemisphere. Scattered
 //! light: walls that face east emit, all walls scatter it, once and up to three times.
 
+#[path = "../../../../tests/common/bent_light.rs"]
 mod light;
+#[path = "../../../../tests/common/bent_mesh.rs"]
 mod mesh;
 mod report;
 

@@ -1,12 +1,12 @@
-//! Memory and time of each stage, by size, engine, sub-sampling and wedges (NS09, table 1).
+//! Memory and time, by size, engine, sub-sampling and wedges (NS09, table 1).
 
 use ridgelight::Result;
-use ridgelight::gpu::{Headless, Timing};
-use ridgelight::plan::{Picture, Plan};
+use ridgelight::gpu::Headless;
+use ridgelight::plan::Picture;
 use ridgelight::scene::{Basis, Levels, Method, Quality, Scene, Wedges, fractal};
 
 use crate::common::args::Args;
-use crate::common::frames::{bytes, total, with_picture};
+use crate::common::frames::{bytes, ms, total, with_picture};
 use crate::common::{Outcome, cells, head, inputs, median};
 
 /// NS09's settings: 32 azimuths, four levels per octave, order 4.
@@ -27,42 +27,26 @@ fn rows() -> Vec<(String, Quality)> {
     all
 }
 
-/// Medians of a frame's stages, ms: horizons, visibility, the light's matrix, shading; of the whole,
-/// and of a frame whose light alone is new.
-fn stages(plan: &Plan, whole: &[Vec<Timing>], relit: &[Vec<Timing>]) -> [f64; 6] {
-    let horizons =
-        ["height_transpose", "height_reduce", "height_expand", "horizon_sweep", "pyramid_march"];
-    let of: [&[&str]; 4] = [
-        &horizons,
-        &["sh_visibility", "sweep_fuse", "sh_wedges"],
-        &["env_rotation", "light_matrix"],
-        &["sh_shade", "light_resolve"],
-    ];
-    let sum = |run: &Vec<Timing>, names: &[&str]| -> f64 {
-        let all = run.iter().zip(&plan.passes);
-        all.filter(|(_, p)| names.contains(&p.name())).map(|(t, _)| t.ns * 1e-6).sum()
-    };
-    let [a, b, c, d] = of.map(|names| median(whole.iter().map(|run| sum(run, names)).collect()));
-    let [e, f] = [whole, relit].map(|runs| median(runs.iter().map(|run| total(run)).collect()));
-    [a, b, c, d, e, f]
-}
-
-/// The cells of a row: MB of all internal images, of levels and of visibility; ms of the stages.
+/// The cells of a row: MB of all internal images, of levels and of visibility; medians of horizons, of a
+/// frame, and of a frame whose light alone is new, ms.
 fn measured(gpu: &mut Headless, scene: &Scene, quality: &Quality, runs: usize) -> Result<String> {
     let wanted = Picture { keeps_horizons: true, ..Picture::default() };
     with_picture(gpu, scene, quality, wanted, |gpu, frame| {
         let plan = frame.plan().clone();
         let environment = plan.find("environment").expect("an environment");
         let new_light = plan.passes_after(&plan, &[environment]);
-        let (mut whole, mut relit) = (Vec::new(), Vec::new());
+        let mut times = [(); 3].map(|()| Vec::new());
         for _ in 0..runs {
-            whole.push(gpu.draw(frame)?);
-            relit.push(gpu.draw_passes(frame, &new_light)?);
+            let whole = gpu.draw(frame)?;
+            let horizons = ["height_", "horizon_sweep", "pyramid_march"];
+            times[0].push(horizons.iter().map(|name| ms(&whole, name)).sum());
+            times[1].push(total(&whole));
+            times[2].push(total(&gpu.draw_passes(frame, &new_light)?));
         }
         let levels = bytes(&plan, &["height_levels", "level_table", "height_stack"]);
         let visibility = bytes(&plan, &["visibility", "nodes"]);
         let mb = [plan.internal_bytes(), levels, visibility].map(|b| b as f64 * 1e-6);
-        Ok(format!("{} | {}", cells(1, mb), cells(2, stages(&plan, &whole, &relit))))
+        Ok(format!("{} | {}", cells(1, mb), cells(2, times.map(median))))
     })
 }
 
@@ -76,8 +60,7 @@ pub fn run(mut args: Args) -> Outcome {
     for side in [256, 512, 1024].into_iter().filter(|side| *side <= largest) {
         let scene = inputs::under(fractal(side, 1)?, inputs::sky(0.0)?);
         head(&format!(
-            "| {side}² | MB | levels MB | visibility MB | horizons ms | visibility ms | light ms | shade ms | frame ms | \
-             new light ms |"
+            "| {side}² | MB | levels MB | visibility MB | horizons ms | frame ms | new light ms |"
         ));
         for (name, quality) in rows() {
             println!("| {name} | {} |", measured(&mut gpu, &scene, &quality, runs)?);
