@@ -3,7 +3,7 @@
 //! Horizons: 64 azimuths at N (4000) random grid points against the f64 oracle on the triangulated
 //! surface. Sky: the light of a uniform sky at N / 8 points against the oracle in 360 azimuths.
 //! Environment: at N / 20 points against the quadrature of all its pixels. `--pyramids`: the same of
-//! pyramids alone, the path of NS09 figure 10 first, each drawn in turn with the default's sweep.
+//! pyramids alone, the path of NS09 figure 10 first.
 
 use std::path::Path;
 
@@ -120,7 +120,7 @@ impl Ground<'_> {
 fn pyramids(gpu: &mut Headless, ground: &Ground) -> Result<()> {
     println!();
     head(
-        "| k | o | stored | levels MiB | mean ° | median ° | 99 % ° | sky RMSE % | mean shift % | levels ms | march ms | × sweep |",
+        "| k | o | stored | levels MiB | mean ° | median ° | 99 % ° | sky RMSE % | mean shift % |",
     );
     let even = ground.horizons(&Quality::default())?;
     for (i, (level_step, level_offset)) in LEVEL_STEPS.into_iter().zip(LEVEL_OFFSETS).enumerate() {
@@ -129,25 +129,18 @@ fn pyramids(gpu: &mut Headless, ground: &Ground) -> Result<()> {
         let quality = Quality { method, level_step, level_offset, levels, ..Quality::default() };
         let [angles, _] = horizons(gpu, ground.field, &quality, &ground.picks, false)?;
         let e = ground.error(&angles, &even)?;
-        let found = drawn(gpu, &ground.sky, &quality, RUNS)?;
-        let default = drawn(gpu, &ground.sky, &Quality::default(), RUNS)?;
+        let found = drawn(gpu, &ground.sky, &quality, 0)?;
         let [rmse, shift] = ground.sky_error(&found)?;
         let bytes = found.bytes(&["height_levels", "level_table", "height_stack"]);
-        let of = |name| ms(found.middle(), name);
-        let (made, marched) = (of("height_reduce") + of("height_expand"), of("pyramid_march"));
         println!(
-            "| {level_step} | {level_offset} | {} | {:.1} | {:.3} | {:.3} | {:.2} | {rmse:.3} | {shift:+.3} | {made:.1} | {marched:.1} | {:.1} |",
+            "| {level_step} | {level_offset} | {} | {:.1} | {:.3} | {:.3} | {:.2} | {rmse:.3} | {shift:+.3} |",
             levels.name(),
             bytes as f64 / 1_048_576.0,
             e.mean,
             e.median,
-            e.p99,
-            (made + marched) / ms(default.middle(), "horizon_sweep")
+            e.p99
         );
     }
-    println!(
-        "ms of 64 azimuths; × sweep: of levels and march over the default sweep's, drawn in turn."
-    );
     Ok(())
 }
 

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use ridgelight::gpu::{Frame, Headless, Pixels, Timing};
 use ridgelight::plan::{self, Picture, Plan, Resource};
-use ridgelight::scene::{Border, Directions, HeightField, Method, Quality, Scene, VisiblePoints};
+use ridgelight::scene::{Method, Quality, Scene};
 use ridgelight::{Error, Result};
 use ridgelight_trade::error::ImageError;
 
@@ -209,21 +209,6 @@ pub fn traced(
     batches: u32,
 ) -> Result<[Colours; 2]> {
     Ok(traced_at(gpu, scene, (bounces, 1), &[batches])?.remove(0))
-}
-
-/// Visible points, and the milliseconds of finding them; small fields are warmed up first.
-pub fn visible(
-    gpu: &mut Headless,
-    (field, border): (&HeightField, Border),
-    directions: &Directions,
-) -> Result<(VisiblePoints, f64)> {
-    let limits = gpu.report().limits;
-    if field.rows() * field.cols() < 1 << 18 {
-        gpu.visible_points((field, border), directions, &limits)?;
-    }
-    gpu.take_timings();
-    let points = gpu.visible_points((field, border), directions, &limits)?;
-    Ok((points, total(&gpu.take_timings())))
 }
 
 pub fn minus(a: &Colours, b: &Colours) -> Colours {

@@ -9,16 +9,11 @@ use std::path::Path;
 
 use ridgelight::Result;
 use ridgelight::gpu::Headless;
-use ridgelight::plan::{self, REFERENCE_BATCH};
-use ridgelight::scene::{
-    Albedo, Border, Directions, Lights, Scatter, Scene, Surface, VisiblePoints,
-};
+use ridgelight::plan::REFERENCE_BATCH;
+use ridgelight::scene::{Albedo, Border, Directions, Lights, Scatter, Scene, Surface};
 
 use crate::common::args::Args;
-use crate::common::frames::{
-    Colours, add, colours, device, error, mean, minus, rms_of, slices, to_f32, total, traced,
-    visible,
-};
+use crate::common::frames::{Colours, add, device, error, mean, minus, rms_of, to_f32, traced};
 use crate::common::plot::{self, Texels};
 use crate::common::{Outcome, head, inputs};
 
@@ -45,24 +40,6 @@ fn scenes(folder: Option<&Path>, side: usize) -> Result<Vec<(&'static str, Scene
     Ok(all)
 }
 
-/// Scattered light, and its milliseconds.
-fn scattered(
-    gpu: &mut Headless,
-    scene: &Scene,
-    points: &VisiblePoints,
-    direct: &[[f32; 3]],
-    paths: u32,
-) -> Result<(Colours, f64)> {
-    let scatter = Scatter { bounces: BOUNCES, paths, ..Scatter::default() };
-    let plan = plan::scatter(scene, points.directions(), &scatter, &gpu.report().limits)?;
-    let contents = plan::scatter_inputs(&plan, scene, points, direct)?;
-    gpu.with_frame(plan, &slices(&contents), |gpu, frame| {
-        gpu.draw(frame)?;
-        let ms = total(&gpu.draw(frame)?);
-        Ok((colours(&gpu.pixels(frame, 0)?), ms))
-    })
-}
-
 /// Direct light, with scattered light, and path-traced.
 fn one(gpu: &mut Headless, name: &str, scene: &Scene, batches: u32) -> Result<[Colours; 3]> {
     let [direct, _] = traced(gpu, scene, 0, batches)?;
@@ -76,19 +53,19 @@ fn one(gpu: &mut Headless, name: &str, scene: &Scene, batches: u32) -> Result<[C
         batches * REFERENCE_BATCH,
         100.0 * rms_of(&deviation) / mean(&reference),
     );
-    head("| directions | MB | ms to find | paths | RMSE, % of scattered | of all | ms |");
+    head("| directions | paths | RMSE, % of scattered | of all |");
+    let (limits, ground) = (gpu.report().limits, (&scene.field, scene.surface.border));
     let mut lit = direct.clone();
     for count in DIRECTIONS {
         let directions = Directions::fibonacci(count, -1.0, 0)?;
-        let (points, found_ms) = visible(gpu, (&scene.field, scene.surface.border), &directions)?;
-        let mb = 4.0 * points.words().len() as f64 / 1e6;
+        let points = gpu.visible_points(ground, &directions, &limits)?;
         for paths in PATHS {
-            let (light, ms) = scattered(gpu, scene, &points, &to_f32(&direct), paths)?;
+            let scatter = Scatter { bounces: BOUNCES, paths, ..Scatter::default() };
+            let light = gpu.scattered(scene, &points, &to_f32(&direct), &scatter, &limits)?;
+            let light = light.iter().map(|t| t.map(f64::from)).collect();
             let rmse = error(&light, &reference)?;
-            println!(
-                "| {count} | {mb:.1} | {found_ms:.1} | {paths} | {rmse:.2} | {:.2} | {ms:.2} |",
-                rmse * mean(&reference) / mean(&all)
-            );
+            let of_all = rmse * mean(&reference) / mean(&all);
+            println!("| {count} | {paths} | {rmse:.2} | {of_all:.2} |");
             lit.clone_from(&direct);
             add(&mut lit, 1.0, &light);
         }
