@@ -29,6 +29,7 @@ use scenes::{Agreement, scenes};
 use crate::common::Outcome;
 use crate::common::args::Args;
 use crate::common::frames::{self, Colours};
+use crate::pages::with;
 
 /// Batches of each picture, and a grid point's paths in them.
 const BATCHES: u32 = 64;
@@ -36,46 +37,13 @@ const PATHS: f64 = (BATCHES * plan::REFERENCE_BATCH) as f64;
 /// f32 rounding, as a share of a value.
 const ROUNDING: f64 = 1e-5;
 
-const ABOUT: &str = "\
-# The reference against the oracle and closed forms
-
-`ridgelight reference` is a path tracer on the device. This page compares it with an f64 quadrature, which shares no
-code with it, and with scenes whose radiance is a formula. `tools/reference` makes this page. The test
-`tests/gpu/reference/quadrature.rs` makes the same comparison on the driver at hand, and `tests/cpu/bounce` checks that the quadrature's
-figures here are those of the code.
-";
-
-const SCENES: &str = "
-## Against the quadrature
-
-Scenes of `tests/common/scenes.rs`. Sky, sun and a sphere light each light a colour channel of their own, so each light is judged
-alone. *paths* is the mean radiance over all grid points. *±* is one standard error of that mean: √(Σσ²)/n, with σ of each
-grid point from the spread between its batches. *quadrature* is the same mean in f64. *stated* is the mean of its stated
-error, the difference to half the fineness.
-
-z of a grid point = (|paths - quadrature| - stated, at least 0) / σ; z of the mean likewise, with the sums. σ also holds
-events too rare to have been sampled, which no spread contains: σ² + W·|difference| / 3N for N paths per grid point that
-carry W at most (Bernstein's inequality; W: the brightest grid point). Expected of n grid points with normal noise:
-
-| | expected | bound |
-|---|---|---|
-| rms z | 1, or less where *stated* or rare events are not small beside σ | 1 + 4 / √(2n), four of its own standard deviations |
-| worst z | about √(2 ln n): 2.4 of 16, 3.3 of 200 | 6: one in 50,000 tables of 10,000 grid points |
-| z of the mean | below 1 in two of three rows | 4 |
-
-0 in every column: the light has no noise there, or reaches no grid point.
-
+/// The page's prose; only what stands between its marks is written.
+const PAGE: &str = "docs/measured/reference.md";
+const SCENES: &str = "\
 | scene | bounces | light | n | quadrature | stated | paths | ± | z of the mean | rms z | worst z |
 |---|---|---|---|---|---|---|---|---|---|---|
 ";
-
-const CLOSED: &str = "
-## Against closed forms
-
-Derived in `tests/common/reference_page.rs`. *grid* bounds the difference between flat triangles and the formula's surface;
-it is 0 except for the pit, whose rim is a staircase. *quadrature* is of the same triangles in f64; its own error is that
-of its 24 azimuths. z = (|paths - value| - grid, at least 0) / ±; bound 4.
-
+const CLOSED: &str = "\
 | scene | bounces | n | value | grid | quadrature | paths | ± | z |
 |---|---|---|---|---|---|---|---|---|
 ";
@@ -134,11 +102,10 @@ pub fn reference(mut args: Args) -> Outcome {
     let mut gpu = open(&args.word().ok_or("expected a device")?)?;
     args.end()?;
     let device = frames::device(&gpu);
-    let mut page = format!("{ABOUT}\n{PATHS} paths per grid point on *{device}*.\n{SCENES}");
     let mut wrong = vec!["beyond their bounds:".to_owned()];
-    let mut add = |page: &mut String, (row, holds): (String, bool)| {
-        *page += &row;
-        page.push('\n');
+    let mut add = |rows: &mut String, (row, holds): (String, bool)| {
+        *rows += &row;
+        rows.push('\n');
         if !holds {
             wrong.push(row);
         }
@@ -148,24 +115,34 @@ pub fn reference(mut args: Args) -> Outcome {
         let seed = 1 + bounces as u32;
         Ok(frames::traced_at(&mut gpu, scene, (bounces as u32, seed), &[BATCHES])?.remove(0))
     };
+    let mut rows = SCENES.to_owned();
     for (name, scene) in scenes() {
         let quadrature = indirect::ground_truth(&scene, MOST_BOUNCES, FINENESS)?;
         for bounces in 0..=MOST_BOUNCES {
             let found = traced(&scene, bounces)?;
             for (channel, light) in light_names(&scene).into_iter().enumerate() {
                 let head = head(name, bounces, light, &quadrature, channel);
-                add(&mut page, row(&head, channel, &found, &quadrature, bounces));
+                add(&mut rows, row(&head, channel, &found, &quadrature, bounces));
             }
         }
     }
-    page += CLOSED;
+    let mut closed_rows = CLOSED.to_owned();
     for closed in closed_forms() {
         let found = traced(&closed.scene, closed.bounces)?;
         let bounces = indirect::light(&closed.scene, closed.bounces, FINENESS)?;
-        add(&mut page, closed_row(&closed, &found, bounces.last().map_or(&[][..], Vec::as_slice)));
+        add(
+            &mut closed_rows,
+            closed_row(&closed, &found, bounces.last().map_or(&[][..], Vec::as_slice)),
+        );
     }
     let complaints = if wrong.len() > 1 { &wrong[..] } else { &[] };
-    write("docs/measured/reference.md", &page, complaints)
+    let path = Path::new(PAGE);
+    let device = format!("{PATHS} paths per grid point on *{device}*.\n");
+    let mut page = std::fs::read_to_string(path)?;
+    for (name, part) in [("device", device), ("scenes", rows), ("closed forms", closed_rows)] {
+        page = with(path, &page, name, &part)?;
+    }
+    write(PAGE, &page, complaints)
 }
 
 pub fn extremes(args: Args) -> Outcome {

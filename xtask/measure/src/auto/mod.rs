@@ -57,8 +57,7 @@ fn cropped(field: &HeightField, side: usize) -> Result<HeightField> {
 fn lights(folder: &Path) -> Result<Vec<(String, Lights)>> {
     let sky = |radiance: f32| Lights { sky: Some([radiance; 3]), ..Lights::default() };
     let sun = |elevation_rad: f64, irradiance: f32| {
-        let sun = inputs::sun(0.0, elevation_rad.to_degrees(), [irradiance; 3]);
-        vec![ridgelight::scene::Sun { azimuth_rad: 2.5, elevation_rad, ..sun }]
+        vec![inputs::sun(2.5_f64.to_degrees(), elevation_rad.to_degrees(), [irradiance; 3])]
     };
     let of = |path: &Path, rotation_rad: f64| -> Result<Lights> {
         let environment = Some(read_environment(path, rotation_rad)?);

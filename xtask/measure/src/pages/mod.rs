@@ -329,8 +329,8 @@ const PAGES: [(&str, &[Section]); 7] = [
     ("docs/baking.md", &[("brdf", brdf), ("bake", bake), ("curved", curved)]),
 ];
 
-/// `page` with what stands between the marks of `name` replaced.
-fn with(path: &Path, page: &str, name: &str, new: &str) -> Result<String> {
+/// `page` with the text between the marks of `name` replaced.
+pub fn with(path: &Path, page: &str, name: &str, new: &str) -> Result<String> {
     let (begin, end) = (format!("<!-- begin {name} -->\n"), format!("<!-- end {name} -->"));
     let parts = page.split_once(&begin).and_then(|(before, rest)| {
         let (_, after) = rest.split_once(&end)?;
