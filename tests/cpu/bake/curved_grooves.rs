@@ -8,12 +8,12 @@ use ridgelight_cpu::bent_directions::{Draped, Fans};
 use ridgelight_cpu::fan_weights::weight;
 use ridgelight_cpu::visible_points::visible_points;
 
-#[path = "../../../xtask/measure/src/curved/light.rs"]
+#[path = "../../common/bent_light.rs"]
 mod light;
-#[path = "../../../xtask/measure/src/curved/mesh.rs"]
+#[path = "../../common/bent_mesh.rs"]
 mod mesh;
 
-use light::{ALBEDO, BOUNCES, BentRays};
+use light::{ALBEDO, BOUNCES, BentDirections};
 use mesh::Mesh;
 
 const PERIOD: usize = 16;
@@ -43,7 +43,7 @@ fn curved_grooves_err_by_about_the_stated_error() {
     let fans = Fans::of(&net, directions.vectors());
     let points = VisiblePoints::from_points(&field, border, directions, &visible).expect("points");
     let lights = Directions::fibonacci(200, 0.0, 7).expect("lights");
-    let own: Vec<f64> = (0..ROWS * COLS).map(|at| light::shines(at % COLS, PERIOD)).collect();
+    let own: Vec<f64> = (0..ROWS * COLS).map(|at| light::emitted(at % COLS, PERIOD)).collect();
     let compared: Vec<usize> = COMPARED.collect();
     let mut level = [0.0; 2];
     let mut on_flat = [0.0; 2];
@@ -94,10 +94,11 @@ fn curved_grooves_err_by_about_the_stated_error() {
 
         let weigh = |bent: &Vec<DVec3>| (0..COUNT).map(|i| weight(&fans, bent, i)).collect();
         let weights = Some(bent.iter().map(weigh).collect());
-        let found = light::scattered(&scene, &points, curvature, &BentRays { bent, weights }, &own);
-        let as_flat = BentRays { bent: vec![vectors.to_vec(); ROWS * COLS], weights: None };
+        let adapted = BentDirections { bent, weights };
+        let found = light::scattered(&scene, &points, curvature, &adapted, &own);
+        let as_flat = BentDirections { bent: vec![vectors.to_vec(); ROWS * COLS], weights: None };
         let as_flat = light::scattered(&scene, &points, Curvature::FLAT, &as_flat, &own);
-        let ground_truth = light::ground_truth(&mesh, &field, &compared).expect("rays");
+        let ground_truth = light::path_traced(&mesh, &field, &compared).expect("rays");
         for (k, bounces) in BOUNCES.into_iter().enumerate() {
             let off = |found: &[f64]| {
                 let off =

@@ -1,39 +1,31 @@
 //! Errors and times of horizons and light: the tables of docs/accuracy.md.
 //!
-//! Horizons: 64 azimuths at N (4000) random grid points against the f64 oracle on the triangulated surface.
-//! Sky: the light of a uniform sky at N / 8 points against the oracle in 360 azimuths. Environment: at N / 20
-//! points against the quadrature of all its pixels. Pyramids: the same as of sweeps, the path of NS09 figure 10
-//! first, each drawn in turn with the default's sweep; `--pyramids`: these alone.
+//! Horizons: 64 azimuths at N (4000) random grid points against the f64 oracle on the triangulated
+//! surface. Sky: the light of a uniform sky at N / 8 points against the oracle in 360 azimuths.
+//! Environment: at N / 20 points against the quadrature of all its pixels. `--pyramids`: the same of
+//! pyramids alone, the path of NS09 figure 10 first.
 
 use std::path::Path;
 
 use ridgelight::Result;
 use ridgelight::gpu::Headless;
-use ridgelight::plan::{self, Picture};
-use ridgelight::scene::{
-    Border, Fuse, HeightField, Levels, Lights, Lines, Method, Quality, Scene, Surface,
-};
+use ridgelight::plan;
+use ridgelight::scene::{Border, Fuse, HeightField, Levels, Lights, Lines, Method, Quality, Scene};
 use ridgelight_cpu::light;
 use ridgelight_cpu::oracle::{Horizon, ONE_PLACE_CELLS, Oracle, elevation_of};
 use ridgelight_io as files;
 use ridgelight_trade::error::{HorizonError, ImageError};
 
 use crate::common::args::Args;
-use crate::common::frames::{Drawn, bytes, drawn, ms, open};
-use crate::common::{Outcome, head, inputs};
+use crate::common::frames::{Drawn, drawn, ms};
+use crate::common::{Outcome, cells, head, inputs, xorshift};
 
+/// The median of three draws after the first.
+const RUNS: usize = 3;
+/// Grid points, rows and columns.
 type Picks = [[usize; 2]];
 
-/// Of three draws after the first the one in the middle.
-const RUNS: usize = 3;
-
-fn middle_run(drawn: &Drawn, name: &str) -> f64 {
-    let mut runs: Vec<_> = drawn.runs.iter().collect();
-    runs.sort_by(|a, b| ms(a, "").total_cmp(&ms(b, "")));
-    ms(runs[runs.len() / 2], name)
-}
-
-/// Elevations at the picked grid points, by azimuth and pick, and where wanted distances, metres.
+/// Elevations at the picked grid points, by azimuth and pick, and metres to the occluders if requested.
 fn horizons(
     gpu: &mut Headless,
     field: &HeightField,
@@ -65,31 +57,20 @@ fn horizons(
     Ok(found)
 }
 
-/// The oracle at the picked grid points, by azimuth and pick.
-fn truth(oracle: &Oracle, azimuths: &[f64], picks: &Picks) -> Vec<Option<Horizon>> {
-    let at =
-        |phi: &f64| picks.iter().map(|[r, c]| oracle.horizon(*r, *c, *phi)).collect::<Vec<_>>();
-    azimuths.iter().flat_map(at).collect()
-}
-
-fn elevations(horizons: &[Option<Horizon>]) -> Vec<f32> {
-    horizons.iter().map(|h| elevation_of(Border::Plane, *h) as f32).collect()
-}
-
 /// How often an exact sweep names the oracle's occluder, where that is unique.
-fn occluders(field: &HeightField, found: &[Vec<f32>; 2], truth: &[Option<Horizon>]) -> String {
+fn occluders(field: &HeightField, found: &[Vec<f32>; 2], oracle: &[Option<Horizon>]) -> String {
     let one_place_m = ONE_PLACE_CELLS * field.cell_m()[0].max(field.cell_m()[1]);
     let (mut unique, mut same, mut lost) = (0_usize, 0_usize, 0.0_f64);
-    for ((angle, distance), truth) in found[0].iter().zip(&found[1]).zip(truth) {
-        // Where the ground beyond the edge is the horizon, nothing is met.
-        let Some(met) = truth.filter(|h| h.unique && h.slope > 0.0) else { continue };
+    for ((angle, distance), horizon) in found[0].iter().zip(&found[1]).zip(oracle) {
+        // Where the ground beyond the edge is the horizon, nothing is hit.
+        let Some(hit) = horizon.filter(|h| h.unique && h.slope > 0.0) else { continue };
         unique += 1;
-        // A distance is f32 steps times f32 metres a step.
-        let rounding = 4.0 * f64::from(f32::EPSILON) * met.distance_m;
-        if (f64::from(*distance) - met.distance_m).abs() <= one_place_m + rounding {
+        // A distance is f32 steps times f32 metres per step.
+        let rounding = 4.0 * f64::from(f32::EPSILON) * hit.distance_m;
+        if (f64::from(*distance) - hit.distance_m).abs() <= one_place_m + rounding {
             same += 1;
         } else {
-            lost = lost.max((met.slope.atan() - f64::from(*angle)).abs().to_degrees());
+            lost = lost.max((hit.slope.atan() - f64::from(*angle)).abs().to_degrees());
         }
     }
     format!(
@@ -97,67 +78,73 @@ fn occluders(field: &HeightField, found: &[Vec<f32>; 2], truth: &[Option<Horizon
     )
 }
 
-/// Levels an octave of each row, and its offset; of the last two a pyramid is stored, of the others a stack.
+/// Level step and offset of each row. The last two rows store a pyramid, the others a stack.
 const LEVEL_STEPS: [u32; 15] = [1, 2, 4, 8, 16, 1, 2, 8, 16, 4, 4, 4, 4, 4, 16];
 const LEVEL_OFFSETS: [u32; 15] = [0, 1, 2, 3, 4, 2, 2, 2, 2, 0, 1, 3, 4, 2, 4];
 
-/// A field, where its horizons and its light are compared, and their ground truths.
-struct Ground {
-    field: HeightField,
+/// A field, where its horizons and its light are compared, and the oracle's values.
+struct Ground<'a> {
+    field: &'a HeightField,
+    oracle: Oracle<'a>,
     picks: Vec<[usize; 2]>,
-    even: Vec<Option<Horizon>>,
     sky: Scene,
-    sky_truth: Vec<f64>,
+    sky_light: Vec<f64>,
 }
 
-impl Ground {
-    fn sky_error(&self, found: &Drawn) -> Result<ImageError> {
-        let count = self.sky_truth.len();
+impl Ground<'_> {
+    /// Relative RMSE and mean shift under the sky, %.
+    fn sky_error(&self, found: &Drawn) -> Result<[f64; 2]> {
+        let count = self.sky_light.len();
         let of = |[r, c]: &[usize; 2]| found.light[r * self.field.cols() + c][0];
         let ours: Vec<f64> = self.picks[..count].iter().map(of).collect();
-        ImageError::of(&ours, &self.sky_truth, count)
+        let error = ImageError::of(&ours, &self.sky_light, count)?;
+        Ok([error.relative_rmse, error.relative_mean_shift].map(|share| 100.0 * share))
+    }
+
+    /// The oracle's horizons at the picks in the azimuths of some settings.
+    fn horizons(&self, quality: &Quality) -> Result<Vec<Option<Horizon>>> {
+        let azimuths = plan::circle_rad(quality, self.field.cell_m())?;
+        let at = |phi: &f64| {
+            self.picks.iter().map(|[r, c]| self.oracle.horizon(*r, *c, *phi)).collect::<Vec<_>>()
+        };
+        Ok(azimuths.iter().flat_map(at).collect())
+    }
+
+    fn error(&self, angles: &[f32], oracle: &[Option<Horizon>]) -> Result<HorizonError> {
+        let elevation = |h: &Option<Horizon>| elevation_of(Border::Plane, *h) as f32;
+        let elevations: Vec<f32> = oracle.iter().map(elevation).collect();
+        HorizonError::of(angles, &elevations, 1, self.picks.len())
     }
 }
 
 fn pyramids(gpu: &mut Headless, ground: &Ground) -> Result<()> {
-    let Ground { field, picks, sky, .. } = ground;
     println!();
     head(
-        "| k | o | stored | levels MiB | mean ° | median ° | 99 % ° | sky RMSE % | mean shift % | levels ms | march ms | × sweep |",
+        "| k | o | stored | levels MiB | mean ° | median ° | 99 % ° | sky RMSE % | mean shift % |",
     );
-    let elevations = elevations(&ground.even);
+    let even = ground.horizons(&Quality::default())?;
     for (i, (level_step, level_offset)) in LEVEL_STEPS.into_iter().zip(LEVEL_OFFSETS).enumerate() {
         let levels = if i < 13 { Levels::Stack } else { Levels::Pyramid };
         let method = Method::Pyramid;
         let quality = Quality { method, level_step, level_offset, levels, ..Quality::default() };
-        let [angles, _] = horizons(gpu, field, &quality, picks, false)?;
-        let e = HorizonError::of(&angles, &elevations, 1, picks.len())?;
-        let found = drawn(gpu, sky, &quality, RUNS)?;
-        let beside = drawn(gpu, sky, &Quality::default(), RUNS)?;
-        let light = ground.sky_error(&found)?;
-        let plan = plan::picture(sky, &quality, &gpu.report().limits, Picture::default())?;
-        let mib =
-            bytes(&plan, &["height_levels", "level_table", "height_stack"]) as f64 / 1_048_576.0;
-        let made = middle_run(&found, "height_reduce") + middle_run(&found, "height_expand");
-        let marched = middle_run(&found, "pyramid_march");
+        let [angles, _] = horizons(gpu, ground.field, &quality, &ground.picks, false)?;
+        let e = ground.error(&angles, &even)?;
+        let found = drawn(gpu, &ground.sky, &quality, 0)?;
+        let [rmse, shift] = ground.sky_error(&found)?;
+        let bytes = found.bytes(&["height_levels", "level_table", "height_stack"]);
         println!(
-            "| {level_step} | {level_offset} | {} | {mib:.1} | {:.3} | {:.3} | {:.2} | {:.3} | {:+.3} | {made:.1} | {marched:.1} | {:.1} |",
+            "| {level_step} | {level_offset} | {} | {:.1} | {:.3} | {:.3} | {:.2} | {rmse:.3} | {shift:+.3} |",
             levels.name(),
+            bytes as f64 / 1_048_576.0,
             e.mean_deg,
             e.median_deg,
-            e.p99_deg,
-            100.0 * light.relative_rmse,
-            100.0 * light.relative_mean_shift,
-            (made + marched) / middle_run(&beside, "horizon_sweep")
+            e.p99_deg
         );
     }
-    println!(
-        "ms of 64 azimuths; × sweep: of levels and march over the default sweep's, drawn in turn."
-    );
     Ok(())
 }
 
-fn sweeps(gpu: &mut Headless, ground: &Ground, oracle: &Oracle) -> Result<String> {
+fn sweeps(gpu: &mut Headless, ground: &Ground) -> Result<()> {
     let Ground { field, picks, .. } = ground;
     let mega = (field.rows() * field.cols()) as f64 / 1e6;
     head(
@@ -171,58 +158,50 @@ fn sweeps(gpu: &mut Headless, ground: &Ground, oracle: &Oracle) -> Result<String
         rows.extend(fuses.map(|fuse| (Method::Sweep, lines, fuse)));
     }
     rows.push((Method::Sweep, Lines::Exact, Fuse::AimedNearest));
-    // Brute force costs a side's length for each grid point.
+    // Brute force takes a time proportional to the side for each grid point.
     if mega * (field.cols().max(field.rows()) as f64) < 200.0 {
         rows.push((Method::BruteForce, Lines::Cell, Fuse::AimedNearest));
     }
+    let even = ground.horizons(&Quality::default())?;
     let mut same_occluders = String::new();
     for (method, lines, fuse) in rows {
         let quality = Quality { method, lines, fuse, ..Quality::default() };
         let is_exact = lines == Lines::Exact;
         let found = horizons(gpu, field, &quality, picks, is_exact)?;
-        let circle = plan::circle_rad(&quality, field.cell_m())?;
-        let own = is_exact.then(|| truth(oracle, &circle, picks));
-        let met = own.as_ref().unwrap_or(&ground.even);
-        let e = HorizonError::of(&found[0], &elevations(met), 1, picks.len())?;
-        if is_exact {
-            same_occluders = occluders(field, &found, met);
+        let own = if is_exact { Some(ground.horizons(&quality)?) } else { None };
+        let e = ground.error(&found[0], own.as_ref().unwrap_or(&even))?;
+        if let Some(own) = &own {
+            same_occluders = occluders(field, &found, own);
         }
         let picture = drawn(gpu, &ground.sky, &quality, RUNS)?;
-        let light = ground.sky_error(&picture)?;
+        let [rmse, _] = ground.sky_error(&picture)?;
         let [row, col] = picks[e.worst_at[2]];
         let names = match (method, lines) {
             (Method::BruteForce, _) => "brute | ".to_owned(),
             (_, Lines::Exact) => "exact | ".to_owned(),
             _ => format!("{} | {}", lines.name(), fuse.name()),
         };
-        let of = |name| middle_run(&picture, name) / 64.0 / mega;
+        let of = |name| ms(picture.middle(), name) / 64.0 / mega;
         println!(
-            "| {names} | {:.5} | {:.5} | {:.4} | {:.4} | {:.4} ({row}, {col}) | {:.4} | {:.2} | {:.2} |",
-            e.mean_deg,
-            e.median_deg,
-            e.p99_deg,
-            e.p999_deg,
-            e.worst_deg,
-            100.0 * light.relative_rmse,
+            "| {names} | {} | {} ({row}, {col}) | {rmse:.4} | {:.2} | {:.2} |",
+            cells(5, [e.mean_deg, e.median_deg]),
+            cells(4, [e.p99_deg, e.p999_deg, e.worst_deg]),
             of("horizon_sweep") + of("surface_sweep") + of("horizon_march"),
             of("sky_shade")
         );
     }
-    Ok(same_occluders)
+    println!(
+        "\n{same_occluders}\nms per azimuth and million grid points. Exact horizons are in the azimuths of grid vectors near the even ones."
+    );
+    Ok(())
 }
 
-fn environment(
-    gpu: &mut Headless,
-    ground: &Ground,
-    oracle: &Oracle,
-    path: &Path,
-    count: usize,
-) -> Result<()> {
+fn environment(gpu: &mut Headless, ground: &Ground, path: &Path, count: usize) -> Result<()> {
     let environment = files::read_environment(path, 0.0)?;
-    let (field, picks) = (&ground.field, &ground.picks[..count]);
-    let of = |[r, c]: &[usize; 2]| light::environment_of(oracle, *r, *c, &environment);
-    let truth: Vec<[f64; 3]> = picks.iter().map(of).collect();
-    let scene = inputs::under(field.clone(), environment.clone());
+    let picks = &ground.picks[..count];
+    let of = |[r, c]: &[usize; 2]| light::environment_of(&ground.oracle, *r, *c, &environment);
+    let oracle: Vec<[f64; 3]> = picks.iter().map(of).collect();
+    let scene = inputs::under(ground.field.clone(), environment.clone());
     println!();
     head(
         "| azimuths | environment RMSE % | mean shift % | tables ms | sweep ms | shade ms | frame ms |",
@@ -231,48 +210,41 @@ fn environment(
         let quality = Quality { azimuths, table_elevations: 512, ..Quality::default() };
         let found = drawn(gpu, &scene, &quality, RUNS)?;
         let ours: Vec<[f64; 3]> =
-            picks.iter().map(|[r, c]| found.light[r * field.cols() + c]).collect();
-        let e = ImageError::of(ours.as_flattened(), truth.as_flattened(), 3)?;
-        let times = ["env_", "horizon_sweep", "sky_shade", ""].map(|name| middle_run(&found, name));
+            picks.iter().map(|[r, c]| found.light[r * ground.field.cols() + c]).collect();
+        let e = ImageError::of(ours.as_flattened(), oracle.as_flattened(), 3)?;
+        let times = ["env_", "horizon_sweep", "sky_shade", ""].map(|name| ms(found.middle(), name));
         println!(
             "| {azimuths} | {:.3} | {:+.3} | {} |",
             100.0 * e.relative_rmse,
             100.0 * e.relative_mean_shift,
-            times.map(|ms| format!("{ms:.1}")).join(" | ")
+            cells(1, times)
         );
     }
     Ok(())
 }
 
 pub fn run(mut args: Args) -> Outcome {
-    let env = args.path("--env")?;
-    let count = args.number("--points", 4000_usize)?.max(40);
-    let pyramids_alone = args.has("--pyramids");
-    let field = inputs::field_asked(&mut args)?;
-    args.end()?;
-    let mut gpu = open()?;
-    let oracle = Oracle::new(&field, Border::Plane);
-    let mut next = inputs::xorshift(0x9E37_79B9_7F4A_7C15);
+    let (count, env) = (args.number("--points", 4000_usize)?.max(40), args.path("--env")?);
+    let has_pyramids = args.has("--pyramids");
+    let field = &inputs::requested_field(&mut args)?;
+    let mut gpu = args.open()?;
+    let oracle = Oracle::new(field, Border::Plane);
+    let mut next = xorshift(0x9E37_79B9_7F4A_7C15);
     let picks: Vec<[usize; 2]> =
         (0..count).map(|_| [next() % field.rows(), next() % field.cols()]).collect();
-    let sky_truth =
+    let sky_light =
         picks[..count / 8].iter().map(|[r, c]| light::sky_of(&oracle, *r, *c, 360)).collect();
     let lights = Lights { sky: Some([1.0; 3]), ..Lights::default() };
-    let sky = Scene { field: field.clone(), surface: Surface::default(), lights };
+    let sky = inputs::lit_by(field.clone(), lights);
     let [cols, rows] = [field.cols(), field.rows()];
     println!("{cols} × {rows} grid points, 64 azimuths, {}\n", gpu.report().name);
-    let even = truth(&oracle, &plan::circle_rad(&Quality::default(), field.cell_m())?, &picks);
-    let ground = Ground { field: field.clone(), picks, even, sky, sky_truth };
-    if pyramids_alone {
+    let ground = Ground { field, oracle, picks, sky, sky_light };
+    if has_pyramids {
         return Ok(pyramids(&mut gpu, &ground)?);
     }
-    let same_occluders = sweeps(&mut gpu, &ground, &oracle)?;
-    pyramids(&mut gpu, &ground)?;
-    println!(
-        "\n{same_occluders}\nms per azimuth and million grid points. Exact horizons are in the azimuths of grid vectors near the even ones."
-    );
+    sweeps(&mut gpu, &ground)?;
     match env {
-        Some(path) => Ok(environment(&mut gpu, &ground, &oracle, &path, count / 20)?),
+        Some(path) => Ok(environment(&mut gpu, &ground, &path, count / 20)?),
         None => Ok(()),
     }
 }

@@ -1,28 +1,27 @@
-//! Sphere lights: times and errors over a fractal field, by their number and radius; and by SH beside the exact
-//! form on the scene of cones of the thesis on local lights, its figures 6.1 and 6.2 with errors.
+//! Sphere lights: times and errors over a fractal field, by their number and radius (`lights`); and by
+//! SH on the scene of cones of the thesis on local lights, its figures 6.1 and 6.2 with errors
+//! (`cones`).
 
 use ridgelight::Result;
-use ridgelight::gpu::Headless;
 use ridgelight::scene::{
     Basis, Border, HeightField, LightBasis, Lights, Method, Quality, Receiver, Scene, SphereLight,
-    Surface, Wedges, fractal,
+    Wedges, fractal,
 };
 use ridgelight_cpu::lit::Lit;
 use ridgelight_cpu::oracle::Oracle;
 use ridgelight_cpu::sphere::sphere_of;
 
 use crate::common::args::Args;
-use crate::common::frames::{device, drawn, error_of, open};
-use crate::common::panels::{self, Panel};
+use crate::common::frames::{device, drawn, error_of};
+use crate::common::plot::{self, Texels};
 use crate::common::{Outcome, head, inputs};
 
 const COUNTS: [usize; 3] = [1, 8, 64];
-/// In cells of 1 m.
 const RADII_M: [f64; 2] = [0.25, 4.0];
-/// The lights' height over the ground.
+/// The lights' height over the ground, in cells of 1 m.
 const ABOVE_M: f64 = 12.0;
-/// Draws after the first.
-const DRAWS: usize = 5;
+/// Runs after the first.
+const RUNS: usize = 5;
 /// Grid points compared with the oracle.
 const PLACES: usize = 60;
 
@@ -31,11 +30,10 @@ fn sphere(position_m: [f64; 3], radius_m: f64) -> SphereLight {
 }
 
 fn scene(field: &HeightField, sphere_lights: Vec<SphereLight>) -> Scene {
-    let lights = Lights { sphere_lights, ..Lights::default() };
-    Scene { field: field.clone(), surface: Surface::default(), lights }
+    inputs::lit_by(field.clone(), Lights { sphere_lights, ..Lights::default() })
 }
 
-/// On a lattice.
+/// Lights on a square lattice.
 fn lattice(field: &HeightField, count: usize, radius_m: f64) -> Vec<SphereLight> {
     let (across, side) = ((count as f64).sqrt().ceil() as usize, field.cols());
     let light = |i: usize| {
@@ -49,19 +47,18 @@ fn lattice(field: &HeightField, count: usize, radius_m: f64) -> Vec<SphereLight>
 
 pub fn run(mut args: Args) -> Outcome {
     let side = args.word().map_or(Ok(512), |text| text.parse())?;
-    args.end()?;
-    let mut gpu = open()?;
+    let mut gpu = args.open()?;
     let field = fractal(side, 1)?;
     println!("{}: {side}², {ABOVE_M} m above a fractal in cells of 1 m\n", device(&gpu));
-    head("| lights | radius m | frame ms | ms a light | RMSE % |");
+    head("| lights | radius m | frame ms | ms per light | RMSE % |");
     for (radius_m, count) in RADII_M.into_iter().flat_map(|r| COUNTS.map(|c| (r, c))) {
         let scene = scene(&field, lattice(&field, count, radius_m));
-        let found = drawn(&mut gpu, &scene, &Quality::default(), DRAWS)?;
+        let found = drawn(&mut gpu, &scene, &Quality::default(), RUNS)?;
         let lit = Lit::of(&scene);
-        let places = || (1..=PLACES).map(|k| inputs::spread(k, side * side));
-        let truth: Vec<f64> = places().map(|i| lit.at(i / side, i % side)[0]).collect();
-        let ours: Vec<f64> = places().map(|i| found.light[i][0]).collect();
-        let (ms, error) = (found.ms(), error_of(&ours, &truth));
+        let places: Vec<usize> = (1..=PLACES).map(|k| inputs::spread(k, side * side)).collect();
+        let exact: Vec<f64> = places.iter().map(|i| lit.at(i / side, i % side)[0]).collect();
+        let ours: Vec<f64> = places.iter().map(|i| found.light[*i][0]).collect();
+        let (ms, error) = (found.ms(), error_of(&ours, &exact)?);
         println!("| {count} | {radius_m} | {ms:.1} | {:.1} | {error:.3} |", ms / count as f64);
     }
     Ok(())
@@ -70,7 +67,7 @@ pub fn run(mut args: Args) -> Outcome {
 /// Of the scene of cones: grid points a side, in cells of 1 m.
 const SIDE: usize = 256;
 const CONES: usize = 12;
-/// First column and row of the detail that is drawn, and its grid points a side: one cone and its shadow.
+/// First column and row of the detail in the picture, and its side: one cone and its shadow.
 const DETAIL: [usize; 2] = [178, 62];
 const DETAIL_SIDE: usize = 56;
 const CONE_PLACES: usize = 1000;
@@ -89,8 +86,8 @@ fn cone_field() -> Result<HeightField> {
     })
 }
 
-/// As in the thesis: a pyramid with levels four octaves finer than the default, wedges of all around from a
-/// table, a clamped cosine.
+/// As in the thesis: a pyramid with levels four octaves finer than the default, wedges of all azimuths
+/// from a table, a clamped cosine.
 fn thesis(azimuths: u32, level_step: u32) -> Quality {
     Quality {
         method: Method::Pyramid,
@@ -111,28 +108,24 @@ fn across(azimuths: u32, level_step: u32) -> Quality {
     Quality { wedges: Wedges::Slices, receiver: Receiver::Plane, ..thesis(azimuths, level_step) }
 }
 
-fn on_surface(quality: Quality) -> Quality {
-    Quality { method: Method::Auto, ..quality }
-}
-
 /// Figure, form and settings of each row.
 fn forms() -> Vec<(&'static str, String, Quality)> {
     type Form = (&'static str, fn(u32, u32) -> Quality);
     const FORMS: [Form; 2] = [("table of all around", thesis), ("across", across)];
-    let of = |azimuths: &'static [u32], steps: &'static [u32]| {
-        let settings = move || azimuths.iter().flat_map(|m| steps.iter().map(move |k| (*m, *k)));
-        FORMS.iter().flat_map(move |form| settings().map(move |(m, k)| (form.0, form.1(m, k))))
-    };
     let mut all = Vec::new();
-    let mut add = |figure, name: &str, quality| all.push((figure, name.to_owned(), quality));
-    of(&[4, 8, 32], &[4]).for_each(|(name, quality)| add("6.1", name, quality));
-    of(&[32], &[1, 2, 3, 4]).for_each(|(name, quality)| add("6.2", name, quality));
-    for azimuths in [&[4], &[8], &[32]] {
-        of(azimuths, &[4]).for_each(|(name, quality)| add("", name, on_surface(quality)));
-    }
+    let mut add = |figure: &'static str, azimuths, step| {
+        for (name, form) in FORMS {
+            let quality = form(azimuths, step);
+            let method = if figure.is_empty() { Method::Auto } else { quality.method };
+            all.push((figure, name.to_owned(), Quality { method, ..quality }));
+        }
+    };
+    [4, 8, 32].into_iter().for_each(|azimuths| add("6.1", azimuths, 4));
+    [1, 2, 3, 4].into_iter().for_each(|step| add("6.2", 32, step));
+    [4, 8, 32].into_iter().for_each(|azimuths| add("", azimuths, 4));
     for sh_order in [2, 3, 5, 6] {
-        let quality = Quality { sh_order, ..on_surface(across(32, 4)) };
-        add("", &format!("across, order {sh_order}"), quality);
+        let quality = Quality { sh_order, method: Method::Auto, ..across(32, 4) };
+        all.push(("", format!("across, order {sh_order}"), quality));
     }
     all
 }
@@ -145,45 +138,40 @@ fn detail(light: impl Fn(usize) -> f64) -> Vec<f64> {
 
 pub fn cones(mut args: Args) -> Outcome {
     let output = args.path("-o")?;
-    args.end()?;
-    let (mut gpu, field) = (open()?, cone_field()?);
+    let (mut gpu, field) = (args.open()?, cone_field()?);
     println!(
         "{}\n{SIDE}²: {CONES} cones on a circle, a light of radius 5 m 12 m above the ground, cells of 1 m\n",
         device(&gpu)
     );
     let scene = scene(&field, vec![sphere([128.0, 128.0, 12.0], 5.0)]);
     let (oracle, light) = (Oracle::new(&field, Border::Plane), scene.lights.sphere_lights[0]);
-    let truth = |i: usize| sphere_of(&oracle, i / SIDE, i % SIDE, &light, 64);
+    let oracle_at = |i: usize| sphere_of(&oracle, i / SIDE, i % SIDE, &light, 64);
     let places: Vec<usize> = (1..=CONE_PLACES).map(|k| inputs::spread(k, SIDE * SIDE)).collect();
-    let right: Vec<f64> = places.iter().map(|i| truth(*i)).collect();
-    let true_detail = detail(truth);
-    head(
-        "| figure | horizons | form | azimuths | level step | ms | RMSE % | in the detail | beside the exact form |",
-    );
-    type Found = ([f64; 2], Vec<f64>, Vec<f64>);
-    let of = |gpu: &mut Headless, quality: &Quality| -> Result<Found> {
-        let found = drawn(gpu, &scene, quality, DRAWS)?;
+    let right: Vec<f64> = places.iter().map(|i| oracle_at(*i)).collect();
+    let right_detail = detail(oracle_at);
+    head("| figure | horizons | form | azimuths | level step | ms | RMSE % | in the detail |");
+    let mut of = |name: &str, quality: &Quality| -> Result<Vec<f64>> {
+        let found = drawn(&mut gpu, &scene, quality, RUNS)?;
         let at: Vec<f64> = places.iter().map(|i| found.light[*i][0]).collect();
         let own = detail(|i| found.light[i][0]);
-        Ok(([found.ms(), error_of(&at, &right)], at, own))
+        println!(
+            "| {name} | {:.1} | {:.2} | {:.2} |",
+            found.ms(),
+            error_of(&at, &right)?,
+            error_of(&own, &right_detail)?
+        );
+        Ok(own)
     };
-    let ([ms, error], exact, exact_detail) = of(&mut gpu, &Quality::default())?;
-    let in_detail = error_of(&exact_detail, &true_detail);
-    println!("| | surface | exact slices | 8 | | {ms:.1} | {error:.2} | {in_detail:.2} | 0 |");
-    // The rows of the picture: figure 6.1 between the ground truth and the exact form, and figure 6.2.
-    let mut rows = [vec![true_detail.clone()], Vec::new()];
+    let exact_detail = of("| surface | exact slices | 8 | ", &Quality::default())?;
+    // The rows of the picture: figure 6.1 between the oracle and the exact form, and figure 6.2.
+    let mut rows = [vec![right_detail.clone()], Vec::new()];
     for (figure, form, quality) in forms() {
-        let ([ms, error], at, own) = of(&mut gpu, &quality)?;
         let (horizons, step) = match quality.method {
             Method::Pyramid => ("pyramid", quality.level_step.to_string()),
             _ => ("surface", String::new()),
         };
-        println!(
-            "| {figure} | {horizons} | {form} | {} | {step} | {ms:.1} | {error:.2} | {:.2} | {:.2} |",
-            quality.sun_azimuths,
-            error_of(&own, &true_detail),
-            error_of(&at, &exact)
-        );
+        let name = format!("{figure} | {horizons} | {form} | {} | {step}", quality.sun_azimuths);
+        let own = of(&name, &quality)?;
         match figure {
             "6.1" => rows[0].push(own),
             "6.2" => rows[1].push(own),
@@ -192,21 +180,20 @@ pub fn cones(mut args: Args) -> Outcome {
     }
     rows[0].push(exact_detail);
     let Some(path) = output else { return Ok(()) };
-    // Each detail above its difference to the ground truth: red where there is too much light, blue too little.
-    let white = true_detail.iter().copied().fold(0.0, f64::max);
-    let grey = |values: &Vec<f64>| -> Panel {
+    // Each detail above its difference to the oracle: red where there is too much light, blue too little.
+    let white = right_detail.iter().copied().fold(0.0, f64::max);
+    let grey = |values: &Vec<f64>| -> Texels {
         values.iter().map(|v| [(v / white).clamp(0.0, 1.0) as f32; 3]).collect()
     };
-    let difference = |values: &Vec<f64>| -> Panel {
+    let difference = |values: &Vec<f64>| -> Texels {
         // Half of the brightest is the full colour, as in the thesis.
-        let share =
-            |(v, right): (&f64, &f64)| ((v - right) / (0.5 * white)).clamp(-1.0, 1.0) as f32;
+        let share = |v: &f64, right: &f64| ((v - right) / (0.5 * white)).clamp(-1.0, 1.0) as f32;
         let colour = |s: f32| if s > 0.0 { [s, 0.0, 0.0] } else { [0.0, -0.4 * s, -s] };
-        values.iter().zip(&true_detail).map(|pair| colour(share(pair))).collect()
+        values.iter().zip(&right_detail).map(|(v, right)| colour(share(v, right))).collect()
     };
-    let picture: Vec<Vec<Panel>> = rows
-        .iter()
-        .flat_map(|row| [row.iter().map(grey).collect(), row.iter().map(difference).collect()])
-        .collect();
-    Ok(panels::write(&path, &picture, DETAIL_SIDE, 2, 1.0)?)
+    let both = |row: &Vec<Vec<f64>>| {
+        [row.iter().map(grey).collect(), row.iter().map(difference).collect()]
+    };
+    let picture: Vec<Vec<Texels>> = rows.iter().flat_map(both).collect();
+    Ok(plot::png(&path, &picture, DETAIL_SIDE, 2, 1.0)?)
 }

@@ -7,17 +7,21 @@ mod bake;
 mod bounce;
 mod common;
 mod curved;
-mod extremes;
 mod goals;
 mod lights;
 mod pages;
 mod pictures;
-mod reference;
 mod scatter;
 mod shadow_edge;
 mod shadows;
-mod soft;
+mod soft {
+    //! Pyramids and SH against exact horizons and tables: errors, memory, times.
+    pub mod converge;
+    pub mod rivals;
+    pub mod sizes;
+}
 mod specular;
+mod suites;
 
 use std::path::Path;
 use std::process::ExitCode;
@@ -29,31 +33,31 @@ type Program = (&'static str, &'static str, fn(Args) -> Outcome);
 
 const PROGRAMS: [Program; 26] = [
     ("accuracy", "FIELD [--cell X,Y] [--env FILE] [--points N] [--pyramids]", accuracy::run),
-    ("auto", "FOLDER [--fit] [--side N] [--seconds S] [--only TEXT] [--json FILE]", auto::run),
+    ("auto", "FOLDER [--fit] [--side N] [--seconds S] [--json FILE]", auto::run),
     ("bake", "-o PICTURE.png --json FILE", bake::run),
-    ("bleed", "-o PICTURE.png", pictures::bleed::run),
+    ("bleed", "-o PICTURE.png", pictures::bleed),
     ("bounce", "[FOLDER] [--side N] [--spp N] [--rim N] [-o FILE.svg]", bounce::run),
     ("bounce-table", "[--side N] [--runs K]", bounce::table::run),
     ("brdf", "[FOLDER] [-o PICTURE.png]", scatter::brdf::run),
     ("cones", "[-o PICTURE.png]", lights::cones),
     ("curved", "[-o FILE.svg]", curved::run),
-    ("extremes", "DEVICE...", extremes::run),
+    ("extremes", "DEVICE...", suites::extremes),
     ("fractal", "SIDE FIELD.npy", fractal),
-    ("gloss", "[SIDE] [--spp N] [-o PICTURE.png]", specular::gloss),
+    ("gloss", "[SIDE] [--spp N] [-o PICTURE.png]", specular::indirect),
     ("goals", "PROGRAM [FOLDER]", goals::run),
     ("lights", "[SIDE]", lights::run),
-    ("lobe", "[SIDE]", specular::lobe),
+    ("lobe", "[SIDE]", specular::direct),
     ("pages", "[--check]", pages::run),
-    ("picture", "-o PICTURE.png --json FILE", pictures::picture::run),
-    ("reference", "DEVICE", reference::run),
+    ("picture", "-o PICTURE.png --json FILE", pictures::picture),
+    ("reference", "DEVICE", suites::reference),
     ("rivals", "FOLDER [--side N] [--runs K] [-o FILE.svg]", soft::rivals::run),
     ("scatter", "[FOLDER] [--side N] [--spp N] [-o PICTURE.png]", scatter::run),
     ("shadow-edge", "[-o FILE.svg]", shadow_edge::run),
     ("shadows", "[FOLDER] [--side N] [-o PICTURE.png]", shadows::run),
     ("soft", "FIELD [--cell X,Y] [--env FILE] [--side N] [-o FILE.svg]", soft::converge::run),
     ("soft-sizes", "[--largest N] [--runs K]", soft::sizes::run),
-    ("terrain", "-o PICTURE.png --json FILE", pictures::terrain::run),
-    ("town", "-o PICTURE.png", pictures::town::run),
+    ("terrain", "-o PICTURE.png --json FILE", pictures::terrain),
+    ("town", "-o PICTURE.png", pictures::town),
 ];
 
 /// Writes the fractal field of `ridgelight bench --size N` as a file.

@@ -1,9 +1,9 @@
-//! The light across the shadow edge of a wall under a key light, without and with its restriction in
-//! elevation (NS09, supplement §1), beside the reference: a table and a plot.
+//! The light across the shadow edge of a wall under a key light, with and without its restriction in
+//! elevation (NS09, supplement §1), against the path-traced reference: a table and a plot.
 //!
-//! Ours: sums over 3 slices (NS09's number) and over 8, the default. As in NS09: horizons in 3 azimuths from
-//! end to end, blended B-splines of normalised Legendre coefficients, SH of order 4, a clamped cosine. The
-//! reference: path-traced. All as shares of the light of free ground.
+//! Ours: sums over 3 slices (NS09's number) and over 8, the default. As in NS09: horizons in 3 azimuths
+//! across the light, blended B-splines of normalised Legendre coefficients, SH of order 4, a clamped
+//! cosine. All as shares of the light of unshadowed ground.
 
 use std::f64::consts::PI;
 
@@ -11,14 +11,14 @@ use ridgelight::Result;
 use ridgelight::basis::zonal::clamped_cosine;
 use ridgelight::gpu::Headless;
 use ridgelight::plan::REFERENCE_BATCH;
-use ridgelight::scene::{Border, KeyLight, Lights, Quality, Scene, Surface};
+use ridgelight::scene::{Border, KeyLight, Lights, Quality};
 use ridgelight_cpu::basis::azimuth::Blend;
 use ridgelight_cpu::basis::key;
 use ridgelight_cpu::basis::turned;
 use ridgelight_cpu::oracle::Oracle;
 
 use crate::common::args::Args;
-use crate::common::frames::{Colours, drawn, open, rms, traced};
+use crate::common::frames::{Colours, drawn, rms, traced};
 use crate::common::plot::{self, Panel, Style, curve};
 use crate::common::{Outcome, inputs};
 
@@ -38,8 +38,8 @@ const LIGHTS: [(&str, [f64; 2]); 2] = [
     ("20° to 30°: restricted in elevation", [20.0, 30.0]),
 ];
 
-/// Shares of the light of free ground along the middle row, behind the wall: 3 slices, 8 slices, SH of
-/// order 4, the reference and its standard error.
+/// Along the middle row, behind the wall: 3 slices, 8 slices, SH of order 4, the reference and its
+/// standard error.
 type Profile = [Vec<f64>; 5];
 
 fn profile(gpu: &mut Headless, elevations: [f64; 2]) -> Result<Profile> {
@@ -49,11 +49,8 @@ fn profile(gpu: &mut Headless, elevations: [f64; 2]) -> Result<Profile> {
         elevations_rad: elevations.map(f64::to_radians),
         radiance: [1.0; 3],
     };
-    let scene = Scene {
-        field: inputs::field(ROWS, COLS, |_, col| if col == WALL { HEIGHT_M } else { 0.0 })?,
-        surface: Surface::default(),
-        lights: Lights { keys: vec![key], ..Lights::default() },
-    };
+    let field = inputs::field(ROWS, COLS, |_, col| if col == WALL { HEIGHT_M } else { 0.0 })?;
+    let scene = inputs::lit_by(field, Lights { keys: vec![key], ..Lights::default() });
     let free = key.level_irradiance() / PI;
     // The wall's own foot leans: its slope ends a cell away.
     let columns = || WALL + 2..COLS;
@@ -67,19 +64,19 @@ fn profile(gpu: &mut Headless, elevations: [f64; 2]) -> Result<Profile> {
     let (three, eight) = (ours(3)?, ours(8)?);
     let oracle = Oracle::new(&scene.field, Border::Plane);
     let cosine = turned(&clamped_cosine(ORDER), glam::DVec3::Z);
-    let by_harmonics = |col: usize| {
+    let by_sh = |col: usize| {
         let azimuths = key::azimuths(&key, AZIMUTHS);
         let horizons: Vec<f64> =
             azimuths.iter().map(|a| oracle.elevation_rad(ROWS / 2, col, *a)).collect();
         let visible = key::visible_nlp(&key, ORDER, Blend::BSpline, &horizons);
         visible.iter().zip(&cosine).map(|(a, b)| a * b).sum::<f64>() / PI / free
     };
-    let harmonics = columns().map(by_harmonics).collect();
-    let [reference, error] = traced(gpu, &scene, 0, BATCHES)?.map(|light| middle(&light));
-    Ok([three, eight, harmonics, reference, error])
+    let sh = columns().map(by_sh).collect();
+    let [reference, deviation] = traced(gpu, &scene, 0, BATCHES)?.map(|light| middle(&light));
+    Ok([three, eight, sh, reference, deviation])
 }
 
-/// Behind the wall, in its heights.
+/// From the wall, in wall heights.
 fn distance(i: usize) -> f64 {
     (i + 2) as f64 / HEIGHT_M
 }
@@ -89,16 +86,14 @@ fn table(name: &str, profile: &Profile) {
     let count = profile[0].len();
     // Every second grid point near the wall, every tenth farther away.
     for i in (0..count).filter(|i| if *i < 40 { i % 2 == 0 } else { i % 10 == 8 }) {
-        let [three, eight, harmonics, reference, error] = [0, 1, 2, 3, 4].map(|k| profile[k][i]);
-        println!(
-            "{:12.1} {three:9.4} {eight:9.4} {harmonics:8.4} {reference:10.4} {error:8.4}",
-            distance(i)
-        );
+        let [three, eight, sh, reference, deviation] = profile.each_ref().map(|all| all[i]);
+        let x = distance(i);
+        println!("{x:12.1} {three:9.4} {eight:9.4} {sh:8.4} {reference:10.4} {deviation:8.4}");
     }
-    let [three, eight, harmonics] =
+    let [three, eight, sh] =
         [0, 1, 2].map(|k| rms(profile[k].iter().zip(&profile[3]).map(|(a, b)| a - b)));
     println!(
-        "RMSE over all {count} grid points: 3 slices {three:.4}, 8 slices {eight:.4}, order 4 {harmonics:.4}"
+        "RMSE over all {count} grid points: 3 slices {three:.4}, 8 slices {eight:.4}, order 4 {sh:.4}"
     );
 }
 
@@ -112,16 +107,16 @@ fn panel(name: &str, profile: &Profile) -> Panel {
         curve("ours, 3 slices", 0, Style::Line, points(0, 1)),
         curve("SH of order 4, as in NS09", 1, Style::Dashes, points(2, 1)),
     ];
-    let axes = ["distance behind the wall, in its heights", "share of the light of free ground"];
+    let axes =
+        ["distance behind the wall, in wall heights", "share of the light of unshadowed ground"];
     Panel { linear: Some([10.0, 1.2]), ..Panel::new(name, axes, curves) }
 }
 
 pub fn run(mut args: Args) -> Outcome {
     let output = args.path("-o")?;
-    args.end()?;
-    let mut gpu = open()?;
+    let mut gpu = args.open()?;
     println!(
-        "Wall {HEIGHT_M} m high on level ground, key light behind it, 20° wide; shares of the light of free ground;\n\
+        "Wall {HEIGHT_M} m high on level ground, key light behind it, 20° wide; shares of the light of unshadowed ground;\n\
          reference: {} paths per grid point; {}",
         BATCHES * REFERENCE_BATCH,
         gpu.report().name
@@ -132,5 +127,5 @@ pub fn run(mut args: Args) -> Outcome {
         table(name, &profile);
         panels.push(panel(name, &profile));
     }
-    plot::write(output.as_deref(), &panels)
+    Ok(plot::write(output.as_deref(), &panels)?)
 }

@@ -1,5 +1,5 @@
-//! The picture of docs/baking.md, maps of the bundled mountain, three times as steep; and the stated error of each encoding
-//! beside the worst error measured.
+//! The picture of docs/baking.md, maps of the bundled mountain, three times as steep; and the stated
+//! error of each encoding with the worst measured error.
 
 pub mod light;
 
@@ -22,8 +22,8 @@ use ridgelight_io as files;
 use serde_json::{Value, json};
 
 use crate::common::args::Args;
-use crate::common::frames::open;
-use crate::common::{Outcome, head, inputs, panels};
+use crate::common::plot::{self, Texels};
+use crate::common::{Outcome, head, inputs};
 
 const SIDE: usize = 256;
 const STEEPER: f64 = 3.0;
@@ -35,7 +35,7 @@ const LIT_SIDE: usize = 64;
 pub struct Baked {
     kind: &'static str,
     channels: String,
-    /// What the number of bytes is of.
+    /// The unit of the number of bytes.
     each: &'static str,
     encodings: &'static [Encoding],
     planes: Vec<Vec<f32>>,
@@ -67,7 +67,7 @@ fn all(field: &HeightField, horizons: Vec<Vec<f32>>) -> Result<Vec<Baked>> {
     let mut all = Vec::new();
     for (kind, channels, encodings, map) in maps {
         let planes = baked(field, &horizons, map)?;
-        all.push(Baked::of(kind, channels, "a sample", encodings, planes));
+        all.push(Baked::of(kind, channels, "a texel", encodings, planes));
     }
     all.insert(0, Baked::of("horizon", "1", "an azimuth", &bake::HORIZON, horizons));
     Ok(all)
@@ -90,16 +90,16 @@ fn rows(baked: &Baked) -> Vec<Value> {
                 }
             }
         }
-        let bounds = encoding.bounds.iter().zip(worst).map(|(bound, (off, share))| {
+        let bounds = encoding.bounds.iter().zip(worst).map(|(bound, (error, share))| {
             json!({
                 "of": bound.of, "unit": bound.unit, "at_most": bound.absolute(component),
-                "and_of_the_value": bound.relative(component), "worst": off, "share": share,
+                "and_of_the_value": bound.relative(component), "worst": error, "share": share,
             })
         });
         // Three components have a fourth beside them.
         let components = encoding.components.next_power_of_two();
         let texels = match baked.each {
-            "a sample" => baked.planes.len().div_ceil(encoding.values),
+            "a texel" => baked.planes.len().div_ceil(encoding.values),
             _ => 1,
         };
         json!({
@@ -111,7 +111,7 @@ fn rows(baked: &Baked) -> Vec<Value> {
     baked.encodings.iter().map(row).collect()
 }
 
-/// Light as harmonics.
+/// The environment as SH.
 fn series(sky: &Environment) -> Vec<[f64; 3]> {
     let (width, height) = (sky.width(), sky.height());
     let mut sums = vec![[0.0; 3]; ORDER * ORDER];
@@ -122,58 +122,44 @@ fn series(sky: &Environment) -> Vec<[f64; 3]> {
         let weight = level * PI / height as f64 * TAU / width as f64;
         let y = evaluate(ORDER, DVec3::new(level * cos, level * sin, up));
         for (sum, y) in sums.iter_mut().zip(y) {
-            for (s, t) in sum.iter_mut().zip(texel) {
-                *s += weight * y * f64::from(*t);
-            }
+            (0..3).for_each(|c| sum[c] += weight * y * f64::from(texel[c]));
         }
     }
     sums
 }
 
-/// Six pictures, greys as values, not as light: the horizon towards the west (white 45°), visible sky, sky view; the bent
-/// normal (red east, green north, blue up), the visibility of light from 20° above the south by SH, and the field under
-/// the bundled sky by transfer.
-fn picture(all: &[Baked], sky: &Environment) -> Vec<panels::Panel> {
+/// Six pictures; greys are values, not light: the horizon towards the west (white 45°), visible sky, sky
+/// view; the bent normal (red east, green north, blue up), the visibility of light from 20° above the
+/// south by SH, and the field under the bundled sky by transfer.
+fn picture(all: &[Baked], sky: &Environment) -> Vec<Texels> {
     let planes = |kind: &str| &all.iter().find(|b| b.kind == kind).expect("baked").planes;
-    let grey = |plane: &[f32], scale: f32| {
-        plane.iter().map(|v| [(v * scale).max(0.0).powf(2.2); 3]).collect::<Vec<_>>()
-    };
-    let west = &planes("horizon")[AZIMUTHS as usize / 2];
-    let bent = planes("bent-normal");
-    let normals: Vec<[f32; 3]> = (0..SIDE * SIDE)
-        .map(|i| [0, 1, 2].map(|k| 0.5 + 0.5 * bent[k][i]).map(|v: f32| v.powf(2.2)))
-        .collect();
-    let towards = {
-        let (up, level) = 20_f64.to_radians().sin_cos();
-        evaluate(ORDER, DVec3::new(0.0, -level, up))
-    };
-    let visible = planes("sh-visibility");
-    let seen: Vec<f32> = (0..SIDE * SIDE)
-        .map(|i| visible.iter().zip(&towards).map(|(v, y)| v[i] * *y as f32).sum())
-        .collect();
-    let (transfer, light) = (planes("sh-transfer"), series(sky));
-    let lit: Vec<[f32; 3]> = (0..SIDE * SIDE)
-        .map(|i| {
-            [0, 1, 2]
-                .map(|c| transfer.iter().zip(&light).map(|(t, l)| t[i] * l[c] as f32).sum::<f32>())
-        })
-        .collect();
+    let of =
+        |texel: &dyn Fn(usize) -> [f32; 3]| -> Texels { (0..SIDE * SIDE).map(texel).collect() };
+    let grey = |plane: &[f32], scale: f32| of(&|i| [(plane[i] * scale).max(0.0).powf(2.2); 3]);
+    let (bent, visible, transfer) =
+        (planes("bent-normal"), planes("sh-visibility"), planes("sh-transfer"));
+    let (up, level) = 20_f64.to_radians().sin_cos();
+    let towards = evaluate(ORDER, DVec3::new(0.0, -level, up));
+    let visibility = |i: usize| visible.iter().zip(&towards).map(|(v, y)| v[i] * *y as f32).sum();
+    let visibility: Vec<f32> = (0..SIDE * SIDE).map(visibility).collect();
+    let light = series(sky);
+    let lit = of(&|i| {
+        [0, 1, 2].map(|c| transfer.iter().zip(&light).map(|(t, l)| t[i] * l[c] as f32).sum())
+    });
     let mean = lit.as_flattened().iter().sum::<f32>() / (3 * lit.len()) as f32;
-    let lit: Vec<[f32; 3]> = lit.iter().map(|t| t.map(|v| 0.35 * v / mean)).collect();
     vec![
-        grey(west, 1.0 / std::f32::consts::FRAC_PI_4),
+        grey(&planes("horizon")[AZIMUTHS as usize / 2], 1.0 / std::f32::consts::FRAC_PI_4),
         grey(&planes("visible-sky")[0], 1.0),
         grey(&planes("sky-view")[0], 1.0),
-        normals,
-        grey(&seen, 1.0),
-        lit,
+        of(&|i| [0, 1, 2].map(|k| (0.5 + 0.5 * bent[k][i]).powf(2.2))),
+        grey(&visibility, 1.0),
+        lit.iter().map(|t| t.map(|v| 0.35 * v / mean)).collect(),
     ]
 }
 
 pub fn run(mut args: Args) -> Outcome {
     let (output, json) = (args.needed("-o")?, args.needed("--json")?);
-    args.end()?;
-    let mut gpu = open()?;
+    let mut gpu = args.open()?;
     let field = inputs::middle(&inputs::mountain(STEEPER)?, SIDE)?;
     let horizons = horizons(&mut gpu, &field)?;
     let mut all = all(&field, horizons)?;
@@ -184,17 +170,17 @@ pub fn run(mut args: Args) -> Outcome {
         "{}: {SIDE}² grid points, {AZIMUTHS} azimuths, exact in each; maps of light {LIT_SIDE}² grid points that repeat\n",
         gpu.report().name
     );
-    head("| kind | encoding | bytes | of | at most | worst here | share of what is promised |");
+    head("| kind | encoding | bytes | of | at most | worst here | share of the bound |");
     for row in &rows {
-        let word = |of: &Value, key: &str| of[key].as_str().unwrap_or_default().to_owned();
         for bound in row["bounds"].as_array().into_iter().flatten() {
+            let word = |value: &Value| value.as_str().unwrap_or_default().to_owned();
             let number = |key: &str| bound[key].as_f64().unwrap_or_default();
             println!(
                 "| {} | {} | {} | {} | {:.2e} | {:.2e} | {:.3} |",
-                word(row, "kind"),
-                word(row, "encoding"),
+                word(&row["kind"]),
+                word(&row["encoding"]),
                 row["bytes"],
-                word(bound, "of"),
+                word(&bound["of"]),
                 number("at_most"),
                 number("worst"),
                 number("share")
@@ -208,6 +194,6 @@ pub fn run(mut args: Args) -> Outcome {
     });
     files::write_json(&json, &figures)?;
     let pictures = picture(&all, &inputs::sky_without_sun()?);
-    let rows: Vec<_> = pictures.chunks(3).map(<[panels::Panel]>::to_vec).collect();
-    Ok(panels::write(&output, &rows, SIDE, 1, Tone::default().exposure)?)
+    let rows: Vec<_> = pictures.chunks(3).map(<[Texels]>::to_vec).collect();
+    Ok(plot::png(&output, &rows, SIDE, 1, Tone::default().exposure)?)
 }

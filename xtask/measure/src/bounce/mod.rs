@@ -1,167 +1,173 @@
-//! Errors of each engine of bounces, and their times.
+//! Errors and times of each bounce engine: on spherical pits against their closed form, on real fields
+//! against path-traced references.
 //!
-//! First spherical pits, their rim N (30) cells from the middle, beside their closed form: RMSE relative to the
-//! radiance, at grid points up to half of the rim's distance, with what f64 leaves on the same field, and of a rim
-//! without a staircase. Then the middle N² (64) grid points of real fields under environments, for two albedos, one
-//! and three bounces, beside N (8192) paths per grid point: the indirect light, and all light; and three bounces of
-//! albedo 0.8 under each field's first environment by azimuths, as FILE.svg shows them. FOLDER has `height/` and
-//! `env/`; without it, the bundled mountain and sky. Milliseconds are those of the passes for bounces, sweeps included.
+//! Fields: the middle N² (64) grid points of FOLDER's under two environments, else of the bundled
+//! mountain under the bundled sky; two albedos, one and three bounces, N (8192) paths per grid point.
+//! FILE.svg shows three bounces of albedo 0.8 under each field's first environment by azimuths.
+//! Milliseconds are those of the passes for bounces, sweeps included.
 
-mod real;
+mod pits;
 pub mod table;
 
-use std::path::PathBuf;
+use std::path::Path;
 
 use ridgelight::Result;
 use ridgelight::gpu::Headless;
-use ridgelight::plan::Picture;
-use ridgelight::scene::{
-    Border, BounceEngine, Bounces, HeightField, Lights, Method, Quality, Scene,
-};
-use ridgelight_cpu::bounce_march::bounce_march;
-use ridgelight_cpu::light::sky_of;
-use ridgelight_cpu::oracle::Oracle;
+use ridgelight::plan::{self, Picture, REFERENCE_BATCH};
+use ridgelight::scene::{Albedo, BounceEngine, Bounces, Environment, HeightField, Quality, Scene};
 
 use crate::common::args::Args;
-use crate::common::frames::{Colours, add, colours, device, open, rms, total, with_picture};
-use crate::common::{Outcome, head, inputs, median, plot};
+use crate::common::frames::{
+    Colours, add, device, drawn_in_layers, error, mean, minus, rms_of, traced_at,
+};
+use crate::common::plot::{self, Panel, Style, curve};
+use crate::common::{Outcome, head, inputs};
 
 const ENGINES: [BounceEngine; 3] =
     [BounceEngine::BruteForce, BounceEngine::Sweep, BounceEngine::Pyramid];
-
-struct Drawn {
-    whole: Colours,
-    /// All bounces.
-    bounced: Colours,
-    ms: f64,
-}
-
-/// The median time of draws after the first: of five, of one where it takes half a second.
-fn drawn(gpu: &mut Headless, scene: &Scene, quality: &Quality) -> Result<Drawn> {
-    let wanted = Picture { light_layers: true, ..Picture::default() };
-    with_picture(gpu, scene, quality, wanted, |gpu, frame| {
-        let plan = frame.plan();
-        let layers: Vec<String> = plan.outputs().map(|(_, r)| r.name.clone()).collect();
-        let is_direct = |part: &str| part.starts_with("env") || part.starts_with("sky");
-        let first = plan.passes.iter().rposition(|p| is_direct(&p.part)).map_or(0, |i| i + 1);
-        let mut draw = || -> Result<f64> { Ok(total(&gpu.draw(frame)?[first..])) };
-        let draws = if draw()? < 500.0 { 5 } else { 1 };
-        let ms = median((0..draws).map(|_| draw()).collect::<Result<_>>()?);
-        let whole = colours(&gpu.pixels(frame, 0)?);
-        let mut bounced = vec![[0.0; 3]; whole.len()];
-        for (i, _) in layers.iter().enumerate().filter(|(_, name)| name.starts_with("indirect.")) {
-            add(&mut bounced, 1.0, &colours(&gpu.pixels(frame, i)?));
-        }
-        Ok(Drawn { whole, bounced, ms })
-    })
-}
+/// Most bounces that are drawn.
+const MOST: u32 = 3;
 
 /// As many azimuths of direct light as of bounces.
-fn quality(bounces: Bounces) -> Quality {
-    Quality { azimuths: bounces.azimuths, bounces, ..Quality::default() }
+fn quality(engine: BounceEngine, count: u32, azimuths: u32) -> Quality {
+    let bounces = Bounces { count, engine, azimuths, cutoff: 0.0, ..Bounces::default() };
+    Quality { azimuths, bounces, ..Quality::default() }
 }
 
-/// The spherical pit of half-angle `alpha`, its rim so many cells from the middle of a field that ends two beyond. Where
-/// `is_cone` grid points of the plain beside the pit's stand on the cone from its lowest point through its rim, so that
-/// the middle sees no staircase.
-fn pit(rim: f64, alpha: f64, is_cone: bool) -> Result<HeightField> {
-    let (sphere, middle) = (rim / alpha.sin(), rim.ceil() + 1.0);
-    let side = 2 * middle as usize + 1;
-    let away = |r: f64, c: f64| (r - middle).hypot(c - middle);
-    inputs::field(side, side, |row, col| {
-        let (r, c) = (row as f64, col as f64);
-        let mut around = (0..9).map(|k| (r + f64::from(k / 3) - 1.0, c + f64::from(k % 3) - 1.0));
-        let is_beside = is_cone && around.any(|(r, c)| away(r, c) <= rim);
-        match away(r, c) - rim {
-            ..=0.0 => -(sphere * sphere - away(r, c).powi(2)).sqrt(),
-            beyond if is_beside => beyond * (0.5 * alpha).tan() - sphere * alpha.cos(),
-            _ => -sphere * alpha.cos(),
-        }
-    })
+type Named<T> = Vec<(&'static str, T)>;
+
+fn fields_and_skies(
+    folder: Option<&Path>,
+    side: usize,
+) -> Result<(Named<HeightField>, Named<Environment>)> {
+    let Some(folder) = folder else {
+        let mountain = inputs::middle(&inputs::mountain(1.0)?, side)?;
+        return Ok((vec![("Mt Washington", mountain)], vec![("sky", inputs::sky(0.0)?)]));
+    };
+    let fields = [
+        ("Mt Washington", "mt_washington_256.png"),
+        ("White Mountains", inputs::WHITE_MOUNTAINS),
+        ("Mt Rainier", inputs::RAINIER),
+        ("moss", inputs::MOSS),
+    ];
+    let field = |(name, file)| Ok((name, inputs::middle(&inputs::field_of(folder, file)?, side)?));
+    let environment = |(name, file)| Ok((name, inputs::environment_of(folder, file)?));
+    let environments = [("sky", "sky_512x256.hdr"), ("room", "lab.hdr")];
+    Ok((
+        fields.into_iter().map(field).collect::<Result<_>>()?,
+        environments.into_iter().map(environment).collect::<Result<_>>()?,
+    ))
 }
 
-/// All points of the pit see the sky with s = (1 + cos α)/2 and the pit, equally bright, with 1 - s.
-fn pit_radiance(alpha: f64, albedo: f64, bounces: u32) -> f64 {
-    let share = 0.5 * (1.0 + alpha.cos());
-    let again = albedo * (1.0 - share);
-    albedo * share * (1.0 - again.powi(bounces as i32 + 1)) / (1.0 - again)
-}
+/// Path-traced radiance of a scene of albedo 1, by half of the paths and by all: without bounces, then
+/// each bounce alone.
+struct Reference([Vec<Colours>; 2]);
 
-/// Radiance under a sky of 1 with so many bounces and fewer by quadrature in f64 on the field itself, in 32 azimuths:
-/// its difference to the closed form is the field's.
-fn quadrature(field: &HeightField, albedo: f64, bounces: u32) -> Vec<Vec<f64>> {
-    const AZIMUTHS: u32 = 32;
-    let oracle = Oracle::new(field, Border::Plane);
-    let places = || (0..field.rows() * field.cols()).map(|i| (i / field.cols(), i % field.cols()));
-    let sky = places().map(|(r, c)| [albedo * sky_of(&oracle, r, c, AZIMUTHS as usize); 3]);
-    let mut layer: Colours = sky.collect();
-    let mut all = vec![layer.iter().map(|l| l[0]).collect::<Vec<f64>>()];
-    for _ in 0..bounces {
-        let indirect = places().map(|(r, c)| bounce_march(&oracle, &layer, AZIMUTHS, r, c));
-        layer = indirect.map(|l| l.map(|l| albedo * l)).collect();
-        let before = all.last().expect("direct light");
-        all.push(before.iter().zip(&layer).map(|(sum, l)| sum + l[0]).collect());
+impl Reference {
+    /// Paths with more bounces begin alike, so what they do not share is the last bounce's own.
+    fn of(gpu: &mut Headless, scene: &Scene, paths: u32) -> Result<Self> {
+        let half = paths.div_ceil(2 * REFERENCE_BATCH).max(1);
+        let all = (0..=MOST).map(|count| traced_at(gpu, scene, (count, 1), &[half, 2 * half]));
+        let all = all.collect::<Result<Vec<_>>>()?;
+        let layers = |which: usize| {
+            let light = |k: usize| &all[k][which][0];
+            let later = (1..all.len()).map(|k| minus(light(k), light(k - 1)));
+            std::iter::once(light(0).clone()).chain(later).collect()
+        };
+        Ok(Self([layers(0), layers(1)]))
     }
-    all
+
+    /// Light reflected `first` to `last` times again, for an albedo a: a^(k+1) of bounce k; and its
+    /// Monte Carlo noise, %. Half of the difference of two halves is the error of all by one.
+    fn light(&self, albedo: f32, first: u32, last: u32) -> (Colours, f64) {
+        let [half, all] = self.0.each_ref().map(|layers| {
+            let mut sum = vec![[0.0; 3]; layers[0].len()];
+            for k in first..=last {
+                add(&mut sum, f64::from(albedo).powi(k as i32 + 1), &layers[k as usize]);
+            }
+            sum
+        });
+        let noise = 100.0 * rms_of(&minus(&half, &all)) / mean(&all);
+        (all, noise)
+    }
 }
 
-fn pits(gpu: &mut Headless, rim: u32) -> Result<()> {
-    println!(
-        "Spherical pits under a sky of 1, rim {rim} cells away, as it falls on the grid and on a cone that hides its \
-         staircase from the middle: RMSE relative to the closed form, %; f64: of quadrature on the field, which is the field's own\n"
-    );
-    head(
-        "| half-angle | albedo | rim | bounces | azimuths | f64 | brute, brute's sky | brute | sweep | pyramid |",
-    );
-    let rim = f64::from(rim) + 0.5;
-    for (alpha, albedo, is_cone) in
-        [(0.8, 0.5_f32, false), (0.8, 0.5, true), (1.2, 0.9, false), (1.2, 0.9, true)]
-    {
-        let field = pit(rim, alpha, is_cone)?;
-        let side = field.cols();
-        let truth = quadrature(&field, albedo.into(), 4);
-        let surface = inputs::matte([albedo; 3], Border::Plane);
-        let lights = Lights { sky: Some([1.0; 3]), ..Lights::default() };
-        let scene = Scene { field, surface, lights };
-        for (count, azimuths) in [(0, 64), (1, 64), (4, 64), (4, 256)] {
-            let expected = pit_radiance(alpha, albedo.into(), count);
-            let middle = (side / 2) as f64;
-            let inner = |i: &usize| {
-                let [r, c] = [i / side, i % side].map(|n| n as f64 - middle);
-                r.hypot(c) <= 0.5 * rim
-            };
-            let error = |light: &dyn Fn(usize) -> f64| {
-                let inner = (0..side * side).filter(inner);
-                format!("{:.3}", 100.0 * rms(inner.map(|i| light(i) - expected)) / expected)
-            };
-            let mut cells = vec![error(&|i| truth[count as usize][i])];
-            let ways = [(Method::BruteForce, BounceEngine::BruteForce)];
-            for (method, engine) in ways.into_iter().chain(ENGINES.map(|e| (Method::Auto, e))) {
-                let bounces =
-                    Bounces { count, engine, azimuths, cutoff: 0.0, ..Bounces::default() };
-                let quality = Quality { method, ..quality(bounces) };
-                let whole = drawn(gpu, &scene, &quality)?.whole;
-                cells.push(error(&|i| whole[i][0]));
-            }
-            let rim = if is_cone { "cone" } else { "grid" };
+/// The planner's choice.
+fn picked(gpu: &Headless, scene: &Scene, count: u32) -> Result<String> {
+    let auto = quality(BounceEngine::Auto, count, 64);
+    let plan = plan::picture(scene, &auto, &gpu.report().limits, Picture::default())?;
+    let engine = plan.settings.into_iter().find(|(name, _)| name == "bounce_engine");
+    Ok(engine.map_or_else(|| "none".to_owned(), |(_, engine)| engine))
+}
+
+fn rows(gpu: &mut Headless, names: &str, scene: &mut Scene, reference: &Reference) -> Result<()> {
+    for (albedo, count) in [(0.3_f32, 1), (0.3, MOST), (0.8, 1), (0.8, MOST)] {
+        scene.surface.albedo = Albedo::Constant([albedo; 3]);
+        let (indirect, indirect_noise) = reference.light(albedo, 1, count);
+        let (whole, noise) = reference.light(albedo, 0, count);
+        let (picked, mut first) = (picked(gpu, scene, count)?, None);
+        for engine in ENGINES {
+            let found = drawn_in_layers(gpu, scene, &quality(engine, count, 64))?;
+            let ms = found.bounces_ms();
+            let mark = if picked == engine.name() { ", picked" } else { "" };
             println!(
-                "| {alpha} | {albedo} | {rim} | {count} | {azimuths} | {} |",
-                cells.join(" | ")
+                "| {names} | {albedo} | {count} | {}{mark} | {:.2} | {indirect_noise:.2} | {:.3} | {noise:.3} | {ms:.1} | {:.3} |",
+                engine.name(),
+                error(&found.indirect, &indirect)?,
+                error(&found.light, &whole)?,
+                ms / *first.get_or_insert(ms),
             );
         }
     }
-    println!();
     Ok(())
+}
+
+/// Three bounces of albedo 0.8 by azimuths: each engine's error over its time.
+fn panel(gpu: &mut Headless, title: &str, scene: &Scene, reference: &Reference) -> Result<Panel> {
+    let (indirect, noise) = reference.light(0.8, 1, MOST);
+    let (mut curves, mut ends) = (Vec::new(), [f64::MAX, 0.0_f64]);
+    for (colour, engine) in ENGINES.into_iter().enumerate() {
+        let mut points = Vec::new();
+        for azimuths in [8, 16, 32, 64] {
+            let found = drawn_in_layers(gpu, scene, &quality(engine, MOST, azimuths))?;
+            let ms = found.bounces_ms();
+            ends = [ends[0].min(ms), ends[1].max(ms)];
+            points.push([ms, error(&found.indirect, &indirect)?]);
+        }
+        let name = format!("{}, 8 to 64 azimuths", engine.name());
+        curves.push(curve(&name, colour, Style::Dotted, points));
+    }
+    let points = ends.map(|ms| [ms, noise]).to_vec();
+    curves.push(curve("noise of the reference", 4, Style::Dashes, points));
+    Ok(Panel::new(title, ["ms of three bounces", "indirect light, relative RMSE %"], curves))
 }
 
 pub fn run(mut args: Args) -> Outcome {
     let (side, paths) = (args.number("--side", 64)?, args.number("--spp", 8192)?);
-    let (rim, output) = (args.number("--rim", 30)?, args.path("-o")?);
-    let folder = args.word().map(PathBuf::from);
-    args.end()?;
-    let mut gpu = open()?;
+    let (rim, output, folder) = (args.number("--rim", 30)?, args.path("-o")?, args.folder());
+    let mut gpu = args.open()?;
     println!("{}\n", device(&gpu));
-    pits(&mut gpu, rim)?;
-    let panels = real::run(&mut gpu, folder.as_deref(), side, paths)?;
-    plot::write(output.as_deref(), &panels)
+    pits::run(&mut gpu, rim)?;
+    let (fields, environments) = fields_and_skies(folder.as_deref(), side)?;
+    println!(
+        "The middle {side}² grid points, 64 azimuths, against {paths} paths per grid point: relative RMSE, %; noise: of the \
+         paths, by the difference of their halves; picked: by the planner\n"
+    );
+    head(
+        "| field | light | albedo | bounces | engine | bounced | noise | whole | noise | ms | over brute force |",
+    );
+    let mut panels = Vec::new();
+    for (name, field) in &fields {
+        for (i, (light, environment)) in environments.iter().enumerate() {
+            let mut scene = inputs::under(field.clone(), environment.clone());
+            scene.surface.albedo = Albedo::Constant([1.0; 3]);
+            let reference = Reference::of(&mut gpu, &scene, paths)?;
+            rows(&mut gpu, &format!("{name} | {light}"), &mut scene, &reference)?;
+            if i == 0 {
+                let title = format!("{name}, {light}");
+                panels.push(panel(&mut gpu, &title, &scene, &reference)?);
+            }
+        }
+    }
+    Ok(plot::write(output.as_deref(), &panels)?)
 }

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::str::FromStr;
 
+use ridgelight::gpu::{Headless, HeadlessOptions};
 use ridgelight::{Error, Result};
 
 pub struct Args(pub Vec<String>);
@@ -14,41 +15,37 @@ impl Args {
         at.map(|at| self.0.remove(at)).is_some()
     }
 
-    /// The word after a flag; takes both.
-    pub fn text(&mut self, flag: &str) -> Result<Option<String>> {
+    /// The value of a flag; takes both.
+    pub fn value<T: FromStr>(&mut self, flag: &str) -> Result<Option<T>> {
         let Some(at) = self.0.iter().position(|word| word == flag) else { return Ok(None) };
-        if at + 1 == self.0.len() {
-            return Err(Error::setting(flag, "nothing", "a value"));
-        }
         self.0.remove(at);
-        Ok(Some(self.0.remove(at)))
+        let text = if at < self.0.len() { self.0.remove(at) } else { String::new() };
+        let wrong = |_| Error::setting(flag, format!("{text:?}"), "a value");
+        text.parse().map(Some).map_err(wrong)
     }
 
+    /// The path of a flag.
     pub fn path(&mut self, flag: &str) -> Result<Option<PathBuf>> {
-        Ok(self.text(flag)?.map(PathBuf::from))
+        self.value(flag)
     }
 
-    /// The same of a flag that must be there.
+    /// The path of a required flag.
     pub fn needed(&mut self, flag: &str) -> Result<PathBuf> {
         self.path(flag)?.ok_or_else(|| Error::setting(flag, "nothing", "a path"))
     }
 
     pub fn number<T: FromStr>(&mut self, flag: &str, default: T) -> Result<T> {
-        let Some(text) = self.text(flag)? else { return Ok(default) };
-        text.parse().map_err(|_| Error::setting(flag, text, "a number"))
+        Ok(self.value(flag)?.unwrap_or(default))
     }
 
-    /// Numbers with commas between them.
-    pub fn numbers<const N: usize>(&mut self, flag: &str) -> Result<Option<[f64; N]>> {
-        let Some(text) = self.text(flag)? else { return Ok(None) };
-        let all: Vec<f64> = text.split(',').filter_map(|part| part.parse().ok()).collect();
-        let wrong = |_| Error::setting(flag, text, format!("{N} numbers with commas between"));
-        all.try_into().map(Some).map_err(wrong)
-    }
-
-    /// The next word that stands alone; ask for flags first.
+    /// The next word without a flag; take flags first.
     pub fn word(&mut self) -> Option<String> {
         (!self.0.is_empty()).then(|| self.0.remove(0))
+    }
+
+    /// The next word as a path.
+    pub fn folder(&mut self) -> Option<PathBuf> {
+        self.word().map(PathBuf::from)
     }
 
     /// Fails where a word is left over.
@@ -57,5 +54,11 @@ impl Args {
             [] => Ok(()),
             left => Err(Error::setting("arguments", left.join(" "), "none beyond the usage")),
         }
+    }
+
+    /// Fails where a word is left over; opens the device that the environment offers first.
+    pub fn open(self) -> Result<Headless> {
+        self.end()?;
+        Headless::new(&HeadlessOptions::default())
     }
 }

@@ -1,10 +1,10 @@
-//! Frames on a device of our own, what is read from them, and its errors.
+//! Frames, their times, and their errors.
 
 use std::time::{Duration, Instant};
 
-use ridgelight::gpu::{Frame, Headless, HeadlessOptions, Pixels, Timing};
+use ridgelight::gpu::{Frame, Headless, Pixels, Timing};
 use ridgelight::plan::{self, Picture, Plan, Resource};
-use ridgelight::scene::{Border, Directions, HeightField, Quality, Scene, VisiblePoints};
+use ridgelight::scene::{Method, Quality, Scene};
 use ridgelight::{Error, Result};
 use ridgelight_trade::error::ImageError;
 
@@ -13,12 +13,7 @@ use super::median;
 /// Linear RGB of all grid points.
 pub type Colours = Vec<[f64; 3]>;
 
-/// The device that the environment offers first.
-pub fn open() -> Result<Headless> {
-    Headless::new(&HeadlessOptions::default())
-}
-
-/// Its name and driver.
+/// The device's name and driver.
 pub fn device(gpu: &Headless) -> String {
     format!("{}, {}", gpu.report().name, gpu.report().driver)
 }
@@ -27,8 +22,7 @@ pub fn slices(all: &[Vec<f32>]) -> Vec<&[f32]> {
     all.iter().map(Vec::as_slice).collect()
 }
 
-/// A picture's frame; give it back with [`Headless::end`].
-pub fn frame(gpu: &mut Headless, scene: &Scene, quality: &Quality) -> Result<Frame> {
+fn frame(gpu: &mut Headless, scene: &Scene, quality: &Quality) -> Result<Frame> {
     let plan = plan::picture(scene, quality, &gpu.report().limits, Picture::default())?;
     gpu.frame(plan, &slices(&plan::picture_inputs(scene)))
 }
@@ -48,10 +42,14 @@ pub fn with_picture<T>(
 /// No more runs once they took so long together.
 const LONGEST: Duration = Duration::from_secs(20);
 
-/// A picture, and the passes of each run after the first, which compiles; of the first where it is alone.
+/// A picture, and the passes of each run after the first, which compiles; of the first where it is
+/// alone.
 pub struct Drawn {
     pub light: Colours,
+    /// All bounces; black without [`drawn_in_layers`].
+    pub indirect: Colours,
     pub runs: Vec<Vec<Timing>>,
+    pub plan: Plan,
 }
 
 impl Drawn {
@@ -59,18 +57,89 @@ impl Drawn {
     pub fn ms(&self) -> f64 {
         median(self.runs.iter().map(|run| total(run)).collect())
     }
+
+    /// The run of median time.
+    pub fn middle(&self) -> &[Timing] {
+        let mut runs: Vec<_> = self.runs.iter().collect();
+        runs.sort_by(|a, b| total(a).total_cmp(&total(b)));
+        runs[runs.len() / 2]
+    }
+
+    /// The median of the passes that follow direct light.
+    pub fn bounces_ms(&self) -> f64 {
+        let is_direct = |part: &str| part.starts_with("env") || part.starts_with("sky");
+        let first = self.plan.passes.iter().rposition(|p| is_direct(&p.part)).map_or(0, |i| i + 1);
+        median(self.runs.iter().map(|run| total(&run[first..])).collect())
+    }
+
+    /// Bytes of the resources of these names.
+    pub fn bytes(&self, names: &[&str]) -> u64 {
+        bytes(&self.plan, names)
+    }
 }
 
-pub fn drawn(gpu: &mut Headless, scene: &Scene, quality: &Quality, runs: usize) -> Result<Drawn> {
-    with_picture(gpu, scene, quality, Picture::default(), |gpu, frame| {
+fn drawn_as(
+    gpu: &mut Headless,
+    scene: &Scene,
+    quality: &Quality,
+    runs: usize,
+    wanted: Picture,
+) -> Result<Drawn> {
+    with_picture(gpu, scene, quality, wanted, |gpu, frame| {
         let first = gpu.draw(frame)?;
         let (begun, mut all) = (Instant::now(), Vec::new());
         while all.len() < runs && begun.elapsed() < LONGEST {
             all.push(gpu.draw(frame)?);
         }
         let runs = if all.is_empty() { vec![first] } else { all };
-        Ok(Drawn { light: colours(&gpu.pixels(frame, 0)?), runs })
+        let (plan, light) = (frame.plan().clone(), colours(&gpu.pixels(frame, 0)?));
+        let mut indirect = vec![[0.0; 3]; light.len()];
+        for (i, (_, output)) in plan.outputs().enumerate() {
+            if output.name.starts_with("indirect.") {
+                add(&mut indirect, 1.0, &colours(&gpu.pixels(frame, i)?));
+            }
+        }
+        Ok(Drawn { light, indirect, runs, plan })
     })
+}
+
+pub fn drawn(gpu: &mut Headless, scene: &Scene, quality: &Quality, runs: usize) -> Result<Drawn> {
+    drawn_as(gpu, scene, quality, runs, Picture::default())
+}
+
+/// A picture of five runs with its indirect light.
+pub fn drawn_in_layers(gpu: &mut Headless, scene: &Scene, quality: &Quality) -> Result<Drawn> {
+    drawn_as(gpu, scene, quality, 5, Picture { light_layers: true, ..Picture::default() })
+}
+
+/// Milliseconds of frames of these settings, drawn in turn: a row for each turn after the first.
+pub fn in_turn<const N: usize>(
+    gpu: &mut Headless,
+    scene: &Scene,
+    all: [&Quality; N],
+    turns: usize,
+) -> Result<Vec<[f64; N]>> {
+    let mut frames = Vec::new();
+    for quality in all {
+        frames.push(frame(gpu, scene, quality)?);
+    }
+    let mut rows = Vec::new();
+    for _ in 0..=turns {
+        let mut row = [0.0; N];
+        for (ms, frame) in row.iter_mut().zip(&mut frames) {
+            *ms = total(&gpu.draw(frame)?);
+        }
+        rows.push(row);
+    }
+    frames.into_iter().for_each(|frame| gpu.end(frame));
+    Ok(rows.split_off(1))
+}
+
+/// The light of exact horizons: every crossing in 256 azimuths, by tables of 1024 elevations.
+pub fn exact_light(gpu: &mut Headless, scene: &Scene) -> Result<Colours> {
+    let method = Method::BruteForce;
+    let quality = Quality { method, azimuths: 256, table_elevations: 1024, ..Quality::default() };
+    Ok(drawn(gpu, scene, &quality, 0)?.light)
 }
 
 /// Milliseconds of a frame.
@@ -142,21 +211,6 @@ pub fn traced(
     Ok(traced_at(gpu, scene, (bounces, 1), &[batches])?.remove(0))
 }
 
-/// Visible points, and the milliseconds of finding them; of small fields once more, warmed up.
-pub fn visible(
-    gpu: &mut Headless,
-    (field, border): (&HeightField, Border),
-    directions: &Directions,
-) -> Result<(VisiblePoints, f64)> {
-    let limits = gpu.report().limits;
-    if field.rows() * field.cols() < 1 << 18 {
-        gpu.visible_points((field, border), directions, &limits)?;
-    }
-    gpu.take_timings();
-    let points = gpu.visible_points((field, border), directions, &limits)?;
-    Ok((points, total(&gpu.take_timings())))
-}
-
 pub fn minus(a: &Colours, b: &Colours) -> Colours {
     a.iter().zip(b).map(|(a, b)| [0, 1, 2].map(|c| a[c] - b[c])).collect()
 }
@@ -170,19 +224,22 @@ pub fn mean(light: &Colours) -> f64 {
     light.as_flattened().iter().sum::<f64>() / (3 * light.len()) as f64
 }
 
-pub fn rms(values: impl Iterator<Item = f64>) -> f64 {
-    let (squares, count) = values.fold((0.0, 0.0), |(s, n), v| (s + v * v, n + 1.0));
+pub fn rms(values: impl IntoIterator<Item = f64>) -> f64 {
+    let (squares, count) = values.into_iter().fold((0.0, 0.0), |(s, n), v| (s + v * v, n + 1.0));
     f64::sqrt(squares / f64::max(count, 1.0))
+}
+
+/// The rms of all channels.
+pub fn rms_of(light: &Colours) -> f64 {
+    rms(light.as_flattened().iter().copied())
 }
 
 /// RMSE relative to the mean of the reference, %.
 pub fn error(found: &Colours, reference: &Colours) -> Result<f64> {
-    let error = ImageError::of(found.as_flattened(), reference.as_flattened(), 3)?;
-    Ok(100.0 * error.relative_rmse)
+    error_of(found.as_flattened(), reference.as_flattened())
 }
 
 /// The same of values.
-pub fn error_of(found: &[f64], reference: &[f64]) -> f64 {
-    let rmse = rms(found.iter().zip(reference).map(|(a, b)| a - b));
-    100.0 * rmse * reference.len() as f64 / reference.iter().sum::<f64>()
+pub fn error_of(found: &[f64], reference: &[f64]) -> Result<f64> {
+    Ok(100.0 * ImageError::of(found, reference, reference.len())?.relative_rmse)
 }

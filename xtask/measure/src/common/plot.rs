@@ -1,11 +1,11 @@
-//! Curves as one SVG of panels side by side.
+//! Pictures: curves as one SVG of panels side by side, texels as one PNG of panels in rows.
 
 use std::fmt::Write as _;
 use std::path::Path;
 
+use ridgelight::Result;
+use ridgelight::scene::Tone;
 use ridgelight_io as files;
-
-use super::Outcome;
 
 /// How a curve is drawn.
 #[derive(Clone, Copy, PartialEq)]
@@ -142,7 +142,7 @@ fn draw(svg: &mut String, panel: &Panel, left: f64) -> std::fmt::Result {
 }
 
 /// All panels side by side, where a path is given.
-pub fn write(path: Option<&Path>, panels: &[Panel]) -> Outcome {
+pub fn write(path: Option<&Path>, panels: &[Panel]) -> Result<()> {
     let Some(path) = path else { return Ok(()) };
     let [width, height] = [SIZE[0] * panels.len() as f64, SIZE[1]];
     let mut svg = format!(
@@ -154,5 +154,33 @@ pub fn write(path: Option<&Path>, panels: &[Panel]) -> Outcome {
     for (i, panel) in panels.iter().enumerate() {
         draw(&mut svg, panel, SIZE[0] * i as f64).expect("text");
     }
-    Ok(files::write_text(path, &(svg + "</svg>\n"))?)
+    files::write_text(path, &(svg + "</svg>\n"))
+}
+
+/// White pixels between pictures.
+const GAP: usize = 4;
+
+pub type Texels = Vec<[f32; 3]>;
+
+/// Pictures of `cols` columns and one size, in rows; `zoom` pixels per texel.
+pub fn png(
+    path: &Path,
+    rows: &[Vec<Texels>],
+    cols: usize,
+    zoom: usize,
+    exposure: f32,
+) -> Result<()> {
+    let size = [rows[0][0].len() / cols * zoom, cols * zoom];
+    let across = rows.iter().map(Vec::len).max().unwrap_or(0);
+    let [height, width] = [rows.len() * (size[0] + GAP) - GAP, across * (size[1] + GAP) - GAP];
+    let mut all = vec![[1.0 / exposure; 3]; width * height];
+    for (j, row) in rows.iter().enumerate() {
+        for (i, texels) in row.iter().enumerate() {
+            for (y, x) in (0..size[0]).flat_map(|y| (0..size[1]).map(move |x| (y, x))) {
+                let at = (j * (size[0] + GAP) + y) * width + i * (size[1] + GAP) + x;
+                all[at] = texels[y / zoom * cols + x / zoom];
+            }
+        }
+    }
+    files::write_png(path, height, width, &all, None, Tone { exposure }, &[])
 }

@@ -1,53 +1,54 @@
 //! Tables and curves of all bases.
 
+use ridgelight::Result;
 use ridgelight::scene::OcclusionChange;
 
 use super::STEPS;
 use super::light::BOUNCES;
 use crate::common::frames::error_of;
-use crate::common::head;
 use crate::common::plot::{self, Panel, Style};
+use crate::common::{cells, head};
 
 /// Errors on a base, percent.
 pub struct Row {
     pub curvature: f64,
     /// Share of lights that arrive.
     pub lit: f64,
-    /// By directions as they are and adapted; by flat ellipses, between five, and fitted here.
+    /// By directions unchanged and adapted; by flat ellipses, between five, and fitted here.
     pub shadows: [f64; 5],
     /// Of light scattered once and several times.
     pub light: [Scattered; 2],
     /// Of the device several times; of bases that it does not refuse.
     pub device: Option<f64>,
-    /// What `Curvature::check` finds.
+    /// The prediction of `Curvature::check`.
     pub changed: OcclusionChange,
     pub refused: Option<String>,
 }
 
 pub struct Scattered {
-    /// On the base, by rays, of each compared grid point; and by turned and weighed directions.
-    pub truth: Vec<f64>,
-    pub weighed: Vec<f64>,
-    /// Their sum over that on the flat base.
+    /// Of each compared grid point: path-traced, and by rotated and reweighted directions.
+    pub reference: Vec<f64>,
+    pub reweighted: Vec<f64>,
+    /// The reference's sum over that on the flat base.
     pub over_flat: f64,
-    /// By directions as they are, turned, and turned and weighed.
+    /// By directions unchanged, rotated, and rotated and reweighted.
     pub errors: [f64; 3],
 }
 
-/// The error of light between that of three bases, those that ellipses are fitted at, as on an object whose base varies.
-fn between(rows: &[Row], row: &Row, k: usize) -> f64 {
+/// The error of light interpolated between the three bases that ellipses are fitted at, as on an object
+/// whose base varies.
+fn between(rows: &[Row], row: &Row, k: usize) -> Result<f64> {
     let end = if row.curvature < 0.0 { -STEPS[1] } else { STEPS[0] };
     let of = |curvature: f64| {
         let at = rows.iter().find(|r| r.curvature == curvature).expect("a row of each");
-        &at.light[k].weighed
+        &at.light[k].reweighted
     };
-    let share = row.curvature / end;
-    let mixed =
-        of(0.0).iter().zip(of(end)).map(|(flat, end)| (flat + share * (end - flat)).max(0.0));
-    error_of(&mixed.collect::<Vec<_>>(), &row.light[k].truth)
+    let (share, pairs) = (row.curvature / end, of(0.0).iter().zip(of(end)));
+    let mixed: Vec<f64> = pairs.map(|(flat, end)| (flat + share * (end - flat)).max(0.0)).collect();
+    error_of(&mixed, &row.light[k].reference)
 }
 
-pub fn table(rows: &[Row]) {
+pub fn table(rows: &[Row]) -> Result<()> {
     let radius = |row: &Row| match row.curvature {
         0.0 => "flat".to_owned(),
         k => format!("{:+.0}", 1.0 / k),
@@ -57,36 +58,32 @@ pub fn table(rows: &[Row]) {
         "| radius, cells | lit, % | wrong by flat directions, % | adapted | predicted, of lights | by flat ellipses | between five | fitted here | |",
     );
     for row in rows {
-        let [by_flat, adapted, ellipses @ ..] = row.shadows.map(|v| format!("{v:.2}"));
-        println!(
-            "| {} | {:.1} | {by_flat} | {adapted} | {:.2} | {} | {} |",
-            radius(row),
-            row.lit,
-            100.0 * row.changed.shadows,
-            ellipses.join(" | "),
-            refused(row)
-        );
+        let [flat, adapted, ellipses @ ..] = row.shadows;
+        let all = [flat, adapted, 100.0 * row.changed.shadows].into_iter().chain(ellipses);
+        println!("| {} | {:.1} | {} | {} |", radius(row), row.lit, cells(2, all), refused(row));
     }
     println!();
     head(&format!(
-        "| radius, cells | scattered once, over flat | error by flat directions, % | turned | turned and weighed | between three | predicted, of light | \
-         up to {} times, over flat | error by flat directions, % | turned | turned and weighed | between three | device | |",
+        "| radius, cells | scattered once, over flat | error by flat directions, % | rotated | rotated and reweighted | between three | predicted, of light | \
+         up to {} times, over flat | error by flat directions, % | rotated | rotated and reweighted | between three | device | |",
         BOUNCES[1]
     ));
     for row in rows {
-        let [once, more] = [0, 1].map(|k| {
+        let part = |k: usize| -> Result<String> {
             let Scattered { over_flat, errors, .. } = &row.light[k];
-            let errors = errors.map(|v| format!("{v:.2}")).join(" | ");
-            format!("{over_flat:.3} | {errors} | {:.2}", between(rows, row, k))
-        });
+            let errors = errors.iter().copied().chain([between(rows, row, k)?]);
+            Ok(format!("{over_flat:.3} | {}", cells(2, errors)))
+        };
+        let (radius, light) = (radius(row), 100.0 * row.changed.light);
         let device = row.device.map_or(String::new(), |error| format!("{error:.2}"));
-        let light = 100.0 * row.changed.light;
         println!(
-            "| {} | {once} | {light:.2} | {more} | {device} | {} |",
-            radius(row),
+            "| {radius} | {} | {light:.2} | {} | {device} | {} |",
+            part(0)?,
+            part(1)?,
             refused(row)
         );
     }
+    Ok(())
 }
 
 /// Name, colour, style and value of a curve.
@@ -100,10 +97,10 @@ const SHADOWS: [Line; 4] = [
 ];
 const LIGHT: [Line; 5] = [
     ("directions of the flat field", 0, Style::Dashes, |r| r.light[0].errors[0]),
-    ("turned", 1, Style::Dotted, |r| r.light[0].errors[1]),
-    ("turned and weighed", 2, Style::Dotted, |r| r.light[0].errors[2]),
+    ("rotated", 1, Style::Dotted, |r| r.light[0].errors[1]),
+    ("rotated and reweighted", 2, Style::Dotted, |r| r.light[0].errors[2]),
     ("up to 3 times, flat directions", 3, Style::Dashes, |r| r.light[1].errors[0]),
-    ("up to 3 times, turned and weighed", 3, Style::Dotted, |r| r.light[1].errors[2]),
+    ("up to 3 times, rotated and reweighted", 3, Style::Dotted, |r| r.light[1].errors[2]),
 ];
 
 /// Errors over curvature, outwards and inwards.

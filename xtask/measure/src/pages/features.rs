@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::Result;
-use super::figures::{RESULTS, cells, text, wrong};
+use super::figures::{RESULTS, cells, fill, result, wrong};
 
 /// Mode | kind | file of benches/results | measured error. `{A;B@2}` is cell 2, counted from 0, of the first row
 /// that begins with the cells A and B; `{max@2}` the largest number of column 2; `{after TEXT}` the word
@@ -25,8 +25,8 @@ const MODES: [&str; 17] = [
     "sphere light by SH, order 4 | approximate | lights_cones | {;surface;across;32@6} %",
     "3 bounces, `sweep` | approximate | bounce | {Mt Rainier;sky;0.8;3;sweep, picked@5} % of the indirect light (reference \
      noise {Mt Rainier;sky;0.8;3;sweep, picked@6} %), {Mt Rainier;sky;0.8;3;sweep, picked@7} % of all light",
-    "3 bounces, `brute-force` | approximate | bounce | {Mt Rainier;sky;0.8;3;brute@5} % of the indirect light (reference \
-     noise {Mt Rainier;sky;0.8;3;brute@6} %), {Mt Rainier;sky;0.8;3;brute@7} % of all light",
+    "3 bounces, `brute-force` | approximate | bounce | {Mt Rainier;sky;0.8;3;brute-force@5} % of the indirect light (reference \
+     noise {Mt Rainier;sky;0.8;3;brute-force@6} %), {Mt Rainier;sky;0.8;3;brute-force@7} % of all light",
     "3 bounces, `pyramid` | approximate | bounce | {Mt Rainier;sky;0.8;3;pyramid@5} % of the indirect light (reference \
      noise {Mt Rainier;sky;0.8;3;pyramid@6} %), {Mt Rainier;sky;0.8;3;pyramid@7} % of all light",
     "Phong specular, exponent 1, 5, 20 | approximate | lobe | {1;plane;4@3}, {5;plane;4@3}, {20;plane;4@3} %",
@@ -35,11 +35,10 @@ const MODES: [&str; 17] = [
     "edit of a rectangle | exact | edits | the same bits as a whole frame",
 ];
 
-/// What a place between braces stands for.
+/// The figure of a place between braces.
 fn figure(file: &str, place: &str) -> Result<String> {
-    let path = PathBuf::from(RESULTS).join(format!("{file}.txt"));
-    let text = text(&path)?;
-    let missing = || wrong(&path, "nothing", place);
+    let (text, _) = result(&format!("{file}.txt"))?;
+    let missing = || wrong(&PathBuf::from(RESULTS).join(format!("{file}.txt")), "nothing", place);
     if let Some(before) = place.strip_prefix("after ") {
         let rest = text.rsplit_once(before).ok_or_else(missing)?.1;
         return Ok(rest.split([' ', ',']).next().unwrap_or_default().to_owned());
@@ -68,13 +67,7 @@ pub fn features() -> Result<String> {
     for mode in MODES {
         let parts: Vec<&str> = mode.splitn(4, " | ").collect();
         let [mode, kind, file, error] = parts[..] else { unreachable!("four parts: {mode}") };
-        let mut pieces = error.split('{');
-        let mut measured = pieces.next().unwrap_or_default().to_owned();
-        for piece in pieces {
-            let (place, rest) = piece.split_once('}').unwrap_or((piece, ""));
-            measured += &figure(file, place)?;
-            measured += rest;
-        }
+        let measured = fill(error, |place| figure(file, place))?;
         out += &format!("| {mode} | {kind} | [{measured}](benches/results/{file}.txt) |\n");
     }
     Ok(out)

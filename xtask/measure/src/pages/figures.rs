@@ -51,6 +51,27 @@ impl Figures {
         Ok(all.try_into().expect("as many names as keys"))
     }
 
+    /// A text whose places `{KEY}` are numbers, `{KEY:2}` with two decimals, `{KEY%2}` times 100; and the
+    /// caption.
+    pub fn fill(&self, of: &Value, text: &str) -> Result<String> {
+        let filled = fill(text, |place| {
+            let at = place.find([':', '%']).unwrap_or(place.len());
+            let (value, form) = (self.number(of, &place[..at])?, &place[at..]);
+            let decimals = |text: &str| text.parse::<usize>().map_err(|e| format!("{place}: {e}"));
+            Ok(match form.split_at(form.len().min(1)) {
+                (":", digits) => format!("{value:.*}", decimals(digits)?),
+                ("%", digits) => format!("{:.*}", decimals(digits)?, 100.0 * value),
+                _ => value.to_string(),
+            })
+        })?;
+        Ok(filled + &self.caption()?)
+    }
+
+    /// A text in today's words.
+    pub fn now(&self, text: &str) -> String {
+        in_todays_words(&self.path, text.to_owned()).unwrap_or_default()
+    }
+
     pub fn word<'a>(&self, of: &'a Value, key: &str) -> Result<&'a str> {
         of[key].as_str().ok_or_else(|| self.missing(key))
     }
@@ -74,7 +95,36 @@ pub fn made(path: &Path) -> Result<String> {
     Ok(if is_dated { format!("; {first}") } else { String::new() })
 }
 
-/// What is not known is not 0.
-pub fn percent(value: Option<f64>) -> String {
-    value.map_or_else(|| "error not measured".to_owned(), |v| format!("{:.2} %", 100.0 * v))
+/// A text with each `{PLACE}` replaced.
+pub fn fill(text: &str, value: impl Fn(&str) -> Result<String>) -> Result<String> {
+    let mut pieces = text.split('{');
+    let mut out = pieces.next().unwrap_or_default().to_owned();
+    for piece in pieces {
+        let (place, rest) = piece.split_once('}').unwrap_or((piece, ""));
+        out += &value(place)?;
+        out += rest;
+    }
+    Ok(out)
+}
+
+/// Replaces the words that have changed since a result was made, which `benches/results/words.tsv` lists: file,
+/// old words, today's.
+fn in_todays_words(path: &Path, mut text: String) -> Result<String> {
+    let list = Path::new(RESULTS).join("words.tsv");
+    for line in self::text(&list)?.lines() {
+        let parts: Vec<&str> = line.split('\t').collect();
+        let [name, old, new] = parts[..] else { return Err(wrong(&list, line, "three columns")) };
+        if path.ends_with(name) {
+            text = text.replace(old, new);
+        }
+    }
+    Ok(text)
+}
+
+/// A text of the results in today's words, without its first line; and that line.
+pub fn result(name: &str) -> Result<(String, String)> {
+    let path = Path::new(RESULTS).join(name);
+    let whole = text(&path)?;
+    let body = whole.split_once('\n').unwrap_or_default().1;
+    Ok((in_todays_words(&path, body.to_owned())?, made(&path)?))
 }

@@ -13,41 +13,38 @@ const README_LINES: usize = 250;
 const TOP: [&str; 4] =
     ["README.md", "CONTRIBUTING.md", "CHANGELOG.md", "benches/results/README.md"];
 
-/// One sentence for everything that is wrong.
+/// A sentence for each error.
 pub fn complaints() -> Result<Vec<String>> {
-    let mut pages = all(Path::new("docs"), "md")?;
+    let mut pages = files_in(Path::new("docs"), "md")?;
     pages.extend(TOP.map(PathBuf::from));
     pages.sort();
-    let texts = pages.iter().map(|page| text(page)).collect::<Result<Vec<_>>>()?;
-    let mut out = Vec::new();
-
-    let mut linked = Vec::new();
-    for (page, own) in pages.iter().zip(&texts) {
-        for link in links(own) {
+    let (mut out, mut linked) = (Vec::new(), Vec::new());
+    for page in &pages {
+        let (name, own) = (page.display(), text(page)?);
+        // Links to files of the repository, outside blocks of code.
+        let prose = own.split("```").step_by(2).flat_map(|part| part.split("](").skip(1));
+        let links = prose.filter_map(|rest| Some(rest.split_once(')')?.0));
+        for link in links.filter(|link| !link.starts_with("http")) {
             let (file, anchor) = link.split_once('#').unwrap_or((link, ""));
             let target = if file.is_empty() { page.clone() } else { beside(page, file) };
             if !target.exists() {
-                out.push(format!("{} links to {link}, which does not exist", page.display()));
-                continue;
+                out.push(format!("{name} links to {link}, which does not exist"));
+            } else if !anchor.is_empty() && !headings(&text(&target)?).any(|h| h == anchor) {
+                let target = target.display();
+                out.push(format!("{name} links to {link}: {target} has no such heading"));
+            } else {
+                linked.push((page, target));
             }
-            if !anchor.is_empty() && !headings(&text(&target)?).any(|h| h == anchor) {
-                let page = page.display();
-                out.push(format!(
-                    "{page} links to {link}: {} has no such heading",
-                    target.display()
-                ));
-            }
-            linked.push((page.clone(), target));
         }
     }
-    for picture in all(Path::new("docs/pictures"), "")? {
+    for picture in files_in(Path::new("docs/pictures"), "")? {
         if !linked.iter().any(|(_, target)| *target == picture) {
             out.push(format!("no page shows {}", picture.display()));
         }
     }
     let summary = Path::new("docs/SUMMARY.md");
     for page in pages.iter().filter(|page| page.starts_with("docs") && *page != summary) {
-        if !linked.iter().any(|(from, target)| from == summary && target == page) {
+        if !linked.iter().any(|(from, target)| *from == summary && target == page) {
             out.push(format!("{} does not list {}", summary.display(), page.display()));
         }
     }
@@ -61,14 +58,14 @@ pub fn complaints() -> Result<Vec<String>> {
     Ok(out)
 }
 
-/// Files under a folder whose extension this is, or of any.
-fn all(folder: &Path, extension: &str) -> Result<Vec<PathBuf>> {
+/// Files under a folder with this extension, or with any.
+fn files_in(folder: &Path, extension: &str) -> Result<Vec<PathBuf>> {
     let failed = |e: std::io::Error| format!("{}: {e}", folder.display());
     let mut out = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(failed)? {
         let path = entry.map_err(failed)?.path();
         if path.is_dir() {
-            out.extend(all(&path, extension)?);
+            out.extend(files_in(&path, extension)?);
         } else if extension.is_empty() || path.extension().is_some_and(|e| e == extension) {
             out.push(path);
         }
@@ -76,23 +73,12 @@ fn all(folder: &Path, extension: &str) -> Result<Vec<PathBuf>> {
     Ok(out)
 }
 
-/// Links to files of the repository, outside blocks of code.
-fn links(text: &str) -> impl Iterator<Item = &str> {
-    let prose = text.split("```").step_by(2);
-    prose
-        .flat_map(|part| part.split("](").skip(1))
-        .filter_map(|rest| Some(rest.split_once(')')?.0))
-        .filter(|link| !link.starts_with("http"))
-}
-
-/// A path as it is written on a page.
+/// The path of a link on a page.
 fn beside(page: &Path, link: &str) -> PathBuf {
     let mut path = page.parent().unwrap_or(Path::new("")).to_path_buf();
     for part in Path::new(link).components() {
         match part {
-            std::path::Component::ParentDir if path.file_name().is_some() => {
-                path.pop();
-            }
+            std::path::Component::ParentDir if path.file_name().is_some() => _ = path.pop(),
             other => path.push(other),
         }
     }

@@ -2,14 +2,13 @@
 //! `<!-- end NAME -->`. Also checks README.md's size, the links of every page, that docs/SUMMARY.md lists
 //! every page and that some page shows every picture. See `tools/readme`.
 
-mod brdf;
 mod features;
 mod figures;
 mod links;
 
 use std::path::Path;
 
-use figures::{Figures, RESULTS, cells, made, percent, text, wrong};
+use figures::{Figures, RESULTS, cells, result, text, wrong};
 use ridgelight_io as files;
 use serde_json::Value;
 
@@ -24,31 +23,24 @@ const ACCURACY: &str = "accuracy_N44W072.txt";
 
 fn picture() -> Result<String> {
     let figures = Figures::read("picture")?;
-    let keys = "azimuths reference_azimuths ours_ms reference_ms off_error ours_error cols rows";
-    let [azimuths, true_azimuths, ours_ms, reference_ms, unshadowed, ours, cols, rows] =
-        figures.numbers(&figures.all, keys)?;
-    let [unshadowed, ours] = [unshadowed, ours].map(|error| percent(Some(error)));
-    Ok(format!(
+    figures.fill(
+        &figures.all,
         "![A mountain without shadows, as Ridgelight lights it, and its reference](docs/pictures/demo.png)\n\n\
-         | without shadows | Ridgelight, {azimuths} azimuths | brute force, {true_azimuths} azimuths |\n|:-:|:-:|:-:|\n\
-         | | {ours_ms:.1} ms | {reference_ms:.1} ms |\n| error {unshadowed} | error {ours} | the reference |\n\n\
-         {cols} × {rows} grid points (SRTM) under the bundled sky and a sun 10° high. Error: RMSE relative to the mean.\n{}",
-        figures.caption()?
-    ))
+         | without shadows | Ridgelight, {azimuths} azimuths | brute force, {reference_azimuths} azimuths |\n|:-:|:-:|:-:|\n\
+         | | {ours_ms:1} ms | {reference_ms:1} ms |\n| error {off_error%2} % | error {ours_error%2} % | the reference |\n\n\
+         {cols} × {rows} grid points (SRTM) under the bundled sky and a sun 10° high. Error: RMSE relative to the mean.\n",
+    )
 }
 
 fn camera() -> Result<String> {
     let figures = Figures::read("terrain")?;
-    let keys = "field_cols field_rows azimuths bounces cols rows samples lit_ms drawn_ms";
-    let [field_cols, field_rows, azimuths, bounces, cols, rows, samples, lit, drawn] =
-        figures.numbers(&figures.all, keys)?;
-    Ok(format!(
+    figures.fill(
+        &figures.all,
         "![A mountain range under a low sun, from a camera](pictures/terrain.png)\n\n\
          Mt Washington and the Presidential Range, {field_cols} × {field_rows} grid points (SRTM), under the bundled sky and a \
-         low sun. {azimuths} azimuths, {bounces} bounce. Lit in {lit:.1} ms; drawn at {cols} × {rows} with {samples} MSAA \
-         samples in {drawn:.1} ms. Coloured by height; no vertical exaggeration (`cargo measure terrain`).\n{}",
-        figures.caption()?
-    ))
+         low sun. {azimuths} azimuths, {bounces} bounce. Lit in {lit_ms:1} ms; drawn at {cols} × {rows} with {samples} MSAA \
+         samples in {drawn_ms:1} ms. Coloured by height; no vertical exaggeration (`cargo measure terrain`).\n", // MSAA
+    )
 }
 
 /// Programs that an integrator would write, whole.
@@ -66,7 +58,7 @@ const HOSTS: [(&str, &str, &str); 3] = [
     ),
 ];
 
-/// Where a program's own engine begins, if it has this line.
+/// The line that begins a program's own engine.
 const ENGINE: &str = "// What follows an engine has already.";
 
 /// Lines of code: neither empty nor a comment alone.
@@ -111,7 +103,8 @@ fn sizes() -> Result<String> {
             let settings = &row["settings"];
             let mb = figures.number(settings, "device_bytes")? * 1e-6;
             let ms = figures.number(row, "median_ns")? * 1e-6;
-            let error = percent(settings["light_error"].as_f64());
+            let error = settings["light_error"].as_f64().map(|v| format!("{:.2} %", 100.0 * v));
+            let error = error.as_deref().unwrap_or("error not measured");
             out += &format!(" {ms:.1} ms, {mb:.1} MB, {error} |");
         }
         out.push('\n');
@@ -141,30 +134,13 @@ fn forms() -> Result<String> {
     Ok(format!("{out}\n{}", figures.caption()?))
 }
 
-/// A text of the results, without its first line, in words that have changed since it was made.
-fn result(name: &str, words: &[(&str, &str)]) -> Result<(String, String)> {
-    let path = Path::new(RESULTS).join(name);
-    let text = text(&path)?;
-    let (_, mut body) = text.split_once('\n').map(|(a, b)| (a, b.to_owned())).unwrap_or_default();
-    for (old, new) in words {
-        body = body.replace(old, new);
-    }
-    Ok((body, made(&path)?))
-}
-
 fn found<T>(name: &str, part: Option<T>, expected: &str) -> Result<T> {
     part.ok_or_else(|| wrong(&Path::new(RESULTS).join(name), "another text", expected))
 }
 
 /// The tables of [`ACCURACY`], as `cargo measure accuracy` printed them.
 fn accuracy() -> Result<String> {
-    let words = [
-        (" samples, ", " grid points, "),
-        ("the angle is at most", "the angle error is at most"),
-        ("° off", "°"),
-        ("ms an azimuth and megasample", "ms per azimuth and million grid points"),
-    ];
-    let (tables, made) = result(ACCURACY, &words)?;
+    let (tables, made) = result(ACCURACY)?;
     let is_right = tables.contains(" grid points, ") && tables.contains("\n| ");
     found(ACCURACY, is_right.then_some(()), "the text of cargo measure accuracy")?;
     let name = ACCURACY.trim_start_matches("accuracy_").trim_end_matches(".txt");
@@ -173,15 +149,7 @@ fn accuracy() -> Result<String> {
 
 /// The last paragraph of examples/edits.
 fn edits() -> Result<String> {
-    let words = [
-        ("all line samples swept", "all points on lines swept"),
-        ("of the samples lit again", "of the texels shaded again"),
-        (
-            "faster than everything, and each time the same bits",
-            "faster than a whole frame, with the same bits",
-        ),
-    ];
-    let (body, made) = result("edits.txt", &words)?;
+    let (body, made) = result("edits.txt")?;
     let expected = "the text of examples/edits";
     let (_, summary) = found("edits.txt", body.trim_end().rsplit_once("\n\n"), expected)?;
     let device = body.lines().next().and_then(|line| line.rsplit_once(": "));
@@ -191,8 +159,7 @@ fn edits() -> Result<String> {
 
 /// What bounces add to a frame, as `cargo measure bounce-table` printed it.
 fn bounces() -> Result<String> {
-    let words = [("| brute |", "| brute-force |"), ("the paper, GTX 285", "NS09 table 1, GTX 285")];
-    let (body, made) = result("bounce_table.txt", &words)?;
+    let (body, made) = result("bounce_table.txt")?;
     let table = body.split("\n\n").find(|part| part.starts_with("| engine | bounce azimuths |"));
     let head = "| engine | bounce azimuths | MB | no bounces, ms | time of 1 | 2 | 3 bounces | third over first | error of the \
                 indirect light, % | error of all light, % |";
@@ -209,9 +176,7 @@ fn with_head(name: &str, table: &str, head: &str) -> Result<String> {
 
 /// How often `render --max-error` holds with bounces, as `cargo measure goals` counts it.
 fn goals() -> Result<String> {
-    let words =
-        [("chosen hold", "chosen settings meet the goal"), (" refused", " requests were refused")];
-    let (body, made) = result("goals.txt", &words)?;
+    let (body, made) = result("goals.txt")?;
     let counted = body.trim_end().rsplit_once("\n\n").map(|(_, last)| last);
     let counted = counted.filter(|last| last.ends_with("refused"));
     let counted = found("goals.txt", counted, "the text of cargo measure goals")?;
@@ -221,26 +186,54 @@ fn goals() -> Result<String> {
 /// What `cargo measure auto` found of `render --max-error`.
 fn auto() -> Result<String> {
     let figures = Figures::read("auto")?;
-    let [pairs, side, seconds] = figures.numbers(&figures.all, "pairs side trade_seconds")?;
-    let keys = "held chosen within_stated_bound refused asked refused_though_found \
-                ratio_median ratio_90 ratio_worst within_1.3 ratios";
-    let [held, chosen, bound, refused, asked, though_found, median, most, worst, within, ratios] =
-        figures.numbers(&figures.all["summary"], keys)?;
-    let of = |row: &Value| (row["scene"].to_string(), row["settings"].as_str().map(str::to_owned));
-    let mut different: Vec<_> = figures.rows().iter().map(of).filter(|of| of.1.is_some()).collect();
-    different.sort_unstable();
-    different.dedup();
-    Ok(format!(
+    let mut of = figures.all.clone();
+    for (key, value) in figures.all["summary"].as_object().into_iter().flatten() {
+        of[key] = value.clone();
+    }
+    of["share"] = (figures.number(&of, "held")? / figures.number(&of, "chosen")?).into();
+    let choice =
+        |row: &Value| Some((row["scene"].to_string(), row["settings"].as_str()?.to_owned()));
+    let different: std::collections::BTreeSet<_> =
+        figures.rows().iter().filter_map(choice).collect();
+    of["different"] = different.len().into();
+    figures.fill(
+        &of,
         "Errors of 5, 2, 1, 0.5 and 0.2 % were requested for {pairs} pairs of a field (its middle {side}²) and lights. No \
-         constant was fitted on these pairs. {held} of {chosen} choices meet the goal ({:.1} %). {} of them differ from \
-         each other; {bound} are within the bound that they state. {refused} of {asked} requests were refused, {though_found} \
-         of them although settings that meet the goal had been drawn. The rival is the cheapest setting that truly meets the \
-         goal, of all that a `trade` walk of {seconds} s and the choices drew. Time over that of the rival: median \
-         {median:.2}, 90th percentile {most:.2}, worst {worst:.2}; at most 1.3 in {within} of {ratios}.\n\n{}",
-        100.0 * held / chosen,
-        different.len(),
-        figures.caption()?
-    ))
+         constant was fitted on these pairs. {held} of {chosen} choices meet the goal ({share%1} %). {different} of them differ from \
+         each other; {within_stated_bound} are within the bound that they state. {refused} of {asked} requests were refused, \
+         {refused_though_found} of them although settings that meet the goal had been drawn. The rival is the cheapest setting \
+         that truly meets the goal, of all that a `trade` walk of {trade_seconds} s and the choices drew. Time over that of the \
+         rival: median {ratio_median:2}, 90th percentile {ratio_90:2}, worst {ratio_worst:2}; at most 1.3 in {within_1.3} of \
+         {ratios}.\n\n",
+    )
+}
+
+/// Geometry against its aggregates, of brdf.txt: mean radiance and errors for each field and light.
+fn brdf() -> Result<String> {
+    let (body, made) = result("brdf.txt")?;
+    let mut out = String::from(
+        "| field | light | mean radiance of the geometry | error of its triangles, % | of the table, % | of 8 factors, % | \
+         reflected, at most % | not reciprocal, % | table between its directions, % | 8 factors between them, % |\n\
+         |---|---|---|---|---|---|---|---|---|---|\n",
+    );
+    let (mut name, mut first) = ("", Vec::new());
+    for row in body.lines().filter(|line| line.starts_with("| ")).map(cells) {
+        match (row[0], row.len()) {
+            ("direct" | "all", 8) => {
+                let own = first.iter().find(|own: &&Vec<&str>| own[0] == row[0]);
+                let own = found("brdf.txt", own, "a table before its pairs")?;
+                let all = [row[1], row[2], row[4], row[6], own[3], own[1], own[5], own[9]];
+                out += &format!("| {name} | {} | {} |\n", row[0], all.join(" | "));
+            }
+            ("direct" | "all", 14) => first.push(row),
+            ("direct" | "all", _) => found("brdf.txt", None, "rows of 8 or 14 cells")?,
+            (head, _) if head.ends_with("pairs") => {}
+            (head, _) => (name, first) = (head, Vec::new()),
+        }
+    }
+    found("brdf.txt", first.first(), "rows of pairs")?;
+    let device = body.lines().next().unwrap_or_default();
+    Ok(out + &format!("\n50 pairs of light and view (`cargo measure brdf`). {device}{made}.\n"))
 }
 
 /// The encoding of each map of `bake` and its error; angles in degrees.
@@ -270,29 +263,29 @@ fn bake() -> Result<String> {
             stated.push(format!("{}: {most}", figures.word(bound, "of")?));
             worst.push(shown(measured));
         }
-        let each = word("each")?.replace("a sample", "a texel").replace("an angle", "a direction");
         out += &format!(
             "| {} | {} | {} | {} {} | {} | {} |\n",
             word("kind")?,
-            word("channels")?.replace("angles", "directions"),
+            word("channels")?,
             word("encoding")?,
             figures.number(row, "bytes")?,
-            each.replace("angle", "direction"),
+            figures.now(word("each")?),
             stated.join("; "),
             worst.join("; ")
         );
     }
-    let [steeper, azimuths, side] = figures.numbers(&figures.all, "steeper azimuths lit_side")?;
-    Ok(format!(
-        "{out}\nErrors of decoding a .ktx2 or .png. Worst measured: on the bundled mountain, {steeper} times as steep, \
-         {azimuths} azimuths; for maps of light on its middle {side}² texels, repeated (`cargo measure bake`).\n{}",
-        figures.caption()?
-    ))
+    figures.fill(
+        &figures.all,
+        &format!(
+            "{out}\nErrors of decoding a .ktx2 or .png. Worst measured: on the bundled mountain, {{steeper}} times as steep, \
+             {{azimuths}} azimuths; for maps of light on its middle {{lit_side}}² texels, repeated (`cargo measure bake`).\n"
+        ),
+    )
 }
 
 /// What `cargo measure curved` found: the bases that are not refused.
 fn curved() -> Result<String> {
-    let (body, made) = result("curved.txt", &[])?;
+    let (body, made) = result("curved.txt")?;
     let is_refused = |row: &&str| row.ends_with(" refused |");
     let tables: Vec<&str> = body.split("\n\n").filter(|part| part.starts_with('|')).collect();
     let two = <[&str; 2]>::try_from(tables).ok();
@@ -333,11 +326,11 @@ const PAGES: [(&str, &[Section]); 7] = [
     ("docs/methods.md", &[("forms", forms)]),
     ("docs/accuracy.md", &[("accuracy", accuracy), ("bounces", bounces)]),
     ("docs/choosing-settings.md", &[("auto", auto), ("goals", goals)]),
-    ("docs/baking.md", &[("brdf", brdf::brdf), ("bake", bake), ("curved", curved)]),
+    ("docs/baking.md", &[("brdf", brdf), ("bake", bake), ("curved", curved)]),
 ];
 
-/// `page` with what stands between the marks of `name` replaced.
-fn with(path: &Path, page: &str, name: &str, new: &str) -> Result<String> {
+/// `page` with the text between the marks of `name` replaced.
+pub fn with(path: &Path, page: &str, name: &str, new: &str) -> Result<String> {
     let (begin, end) = (format!("<!-- begin {name} -->\n"), format!("<!-- end {name} -->"));
     let parts = page.split_once(&begin).and_then(|(before, rest)| {
         let (_, after) = rest.split_once(&end)?;

@@ -1,11 +1,13 @@
-//! The BRDFs of whole fields, with and without scattered light, beside their own geometry.
+//! The BRDFs of whole fields, with and without scattered light, against their own geometry.
 //!
-//! Periodic fields. A table over a grid of angles: its error of reciprocity, how much leaves, and the error of 64 pairs
-//! between its angles by the table itself, by sums of products of functions of one direction, and by SH. Then 50 other
-//! pairs: the geometry, path-traced over repetitions of the field and drawn by an orthographic camera, its mean over one
-//! repetition; the field's triangles for that pair; the table; factors.
+//! Fields repeat. A table over a grid of angles: its error of reciprocity, what it reflects, and the
+//! error of 64 pairs between its angles by the table itself, by sums of products of functions of one
+//! direction, and by SH. Then 50 other pairs: the geometry, path-traced over repetitions of the field
+//! and drawn by an orthographic camera, its mean over one repetition; the field's triangles for that
+//! pair; the table; factors. The picture is figure 9 of Heidrich et al. 2000: a strip bent across its
+//! grooves, as geometry and by its BRDF, without and with scattered light.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use glam::DVec3;
 use ridgelight::gpu::Headless;
@@ -15,23 +17,21 @@ use ridgelight::scene::{
     VisiblePoints,
 };
 use ridgelight::{Error, Result};
-use ridgelight_bake::{
-    Angles, Brdf, BrdfHarmonics, ExitRadiance, Facets, Factors, facets, lit_from, pairs,
-};
+use ridgelight_bake::{Angles, Brdf, BrdfHarmonics, Facets, Factors, facets, pairs};
 
-use super::geometry::{Geometry, sun};
-use super::strip;
+use super::geometry::Geometry;
+use crate::bake::light::lit_from_each;
 use crate::common::args::Args;
-use crate::common::frames::{device, open, rms};
-use crate::common::{Outcome, head, inputs};
+use crate::common::frames::{device, rms};
+use crate::common::{Outcome, cells, head, inputs, plot};
 
-pub const ANGLES: Angles = Angles { zeniths: 8, azimuths: 16 };
+const ANGLES: Angles = Angles { zeniths: 8, azimuths: 16 };
 /// Pairs between the angles, and pairs whose geometry is drawn.
 const BETWEEN: usize = 64;
 const PAIRS: usize = 50;
 /// Of scattered light.
 const DIRECTIONS: usize = 256;
-pub const SCATTER: Scatter = Scatter {
+const SCATTER: Scatter = Scatter {
     bounces: 4,
     paths: 256,
     first_path: 0,
@@ -43,65 +43,49 @@ pub const SCATTER: Scatter = Scatter {
 };
 const FACTORS: [usize; 5] = [1, 2, 4, 8, 16];
 /// Kept as `bake --what brdf-factors` keeps them.
-pub const KEPT: usize = 8;
+const KEPT: usize = 8;
 const ORDERS: [usize; 3] = [2, 4, 6];
-/// Lights and views of pairs, lower than which a camera sees many repetitions at once.
+/// Below this elevation of a light or view a camera shows many repetitions at once.
 const LOWEST_DEG: f64 = 15.0;
+/// Direct light and all light.
+const KINDS: [(bool, &str); 2] = [(false, "direct"), (true, "all")];
 
-/// A scene, and how finely it is sampled.
-pub struct Aggregate<'a> {
-    pub scene: &'a Scene,
+/// A scene whose far field is measured.
+struct Aggregate<'a> {
+    scene: &'a Scene,
     /// Visible points all around.
-    pub around: VisiblePoints,
-    /// Triangles that each cell is cut into, along an edge.
-    pub times: usize,
-    /// And each for its geometry.
-    pub geometry: usize,
-    pub limits: Limits,
+    around: VisiblePoints,
+    /// Each cell is cut into `times`² more for triangles, and `geometry`² more for its geometry.
+    times: usize,
+    geometry: usize,
+    limits: Limits,
 }
 
-impl Aggregate<'_> {
-    pub fn of<'a>(gpu: &mut Headless, scene: &'a Scene, geometry: usize) -> Result<Aggregate<'a>> {
+impl<'a> Aggregate<'a> {
+    fn of(gpu: &mut Headless, scene: &'a Scene, geometry: usize) -> Result<Self> {
         let limits = gpu.report().limits;
-        let border = scene.surface.border;
         let directions = Directions::fibonacci(DIRECTIONS, -1.0, 0)?;
-        let around = gpu.visible_points((&scene.field, border), &directions, &limits)?;
+        let ground = (&scene.field, scene.surface.border);
+        let around = gpu.visible_points(ground, &directions, &limits)?;
         let times = if scene.field.heights_m().len() > 2048 { 2 } else { 4 };
         Ok(Aggregate { scene, around, times, geometry, limits })
     }
 
-    /// Radiance of all triangles under each light in turn.
-    pub fn each(
-        &self,
-        gpu: &mut Headless,
-        facets: &Facets,
-        lights: usize,
-        is_scattered: bool,
-        mut take: impl FnMut(usize, &ExitRadiance),
-    ) -> Result<()> {
-        let scatter = is_scattered.then_some((&self.around, &SCATTER));
-        // What is diffuse leaves towards all views alike.
-        let of = (facets, 0..lights, &(|_| 0_usize..0) as &dyn Fn(usize) -> _);
-        lit_from(gpu, self.scene, of, scatter, &self.limits, &mut |light, l| {
-            take(light, &l);
-            Ok(())
-        })
-    }
-
-    pub fn table(&self, gpu: &mut Headless, is_scattered: bool) -> Result<(Brdf, Facets)> {
+    fn table(&self, gpu: &mut Headless, is_scattered: bool) -> Result<(Brdf, Facets)> {
         let directions = ANGLES.directions()?;
         let facets = facets(gpu, self.scene, self.times, &directions, &self.limits)?;
         facets.check()?;
         let mut values = Vec::new();
-        self.each(gpu, &facets, directions.count(), is_scattered, |light, radiance| {
+        let scatter = is_scattered.then_some((&self.around, &SCATTER));
+        lit_from_each(gpu, self.scene, (&facets, ANGLES.count()), scatter, |light, radiance| {
             let z = directions.vectors()[light].z;
             values.extend(facets.radiance_from_all(radiance).into_iter().map(|m| m.map(|v| v / z)));
         })?;
         Ok((Brdf::from_values(directions.vectors().to_vec(), values)?, facets))
     }
 
-    /// Of pairs, lights first, each its own: f, 1/sr.
-    pub fn pairs(
+    /// f of each pair, 1/sr; lights come first.
+    fn pairs(
         &self,
         gpu: &mut Headless,
         pairs: &Directions,
@@ -110,17 +94,33 @@ impl Aggregate<'_> {
         let count = pairs.count() / 2;
         let facets = facets(gpu, self.scene, self.times, pairs, &self.limits)?;
         let mut all = Vec::new();
-        self.each(gpu, &facets, count, is_scattered, |light, radiance| {
+        let scatter = is_scattered.then_some((&self.around, &SCATTER));
+        lit_from_each(gpu, self.scene, (&facets, count), scatter, |light, radiance| {
             let z = pairs.vectors()[light].z;
             all.push(facets.radiance_from(count + light, radiance).map(|m| m / z));
         })?;
         Ok(all)
     }
+
+    /// `work` on the geometry, lit from a direction, for a view.
+    fn with_geometry<T>(
+        &self,
+        gpu: &mut Headless,
+        pair: [DVec3; 2],
+        is_scattered: bool,
+        work: impl FnOnce(&Geometry, &mut Headless) -> Result<T>,
+    ) -> Result<T> {
+        let bounces = if is_scattered { SCATTER.bounces } else { 0 };
+        let geometry = Geometry::of(gpu, (self.scene, self.geometry), pair, bounces)?;
+        let done = work(&geometry, gpu);
+        geometry.end(gpu);
+        done
+    }
 }
 
-/// One groove of the paper's figure 2, 32 wide: walls at right angles, those that look west red, the others white. Many columns
-/// and few rows, as along it nothing changes.
-pub fn groove() -> Result<Scene> {
+/// One groove of the paper's figure 2, 32 wide: walls at right angles, those that face west red, the
+/// others white. Many columns and few rows, because nothing changes along it.
+fn groove() -> Result<Scene> {
     const ROWS: usize = 8;
     const COLS: usize = 128;
     let heights: Vec<f64> =
@@ -149,7 +149,7 @@ fn drawn_pairs() -> Result<Directions> {
 }
 
 /// Rms of differences over rms, %.
-fn left(found: &[[f64; 3]], known: &[[f64; 3]]) -> f64 {
+fn relative(found: &[[f64; 3]], known: &[[f64; 3]]) -> f64 {
     let pairs = found.as_flattened().iter().zip(known.as_flattened());
     let known = rms(known.as_flattened().iter().copied());
     100.0 * rms(pairs.map(|(a, b)| a - b)) / known.max(f64::MIN_POSITIVE)
@@ -173,10 +173,8 @@ fn moss(folder: &Path) -> Result<Scene> {
 }
 
 pub fn run(mut args: Args) -> Outcome {
-    let output = args.path("-o")?;
-    let folder = args.word().map(PathBuf::from);
-    args.end()?;
-    let mut gpu = open()?;
+    let (output, folder) = (args.path("-o")?, args.folder());
+    let mut gpu = args.open()?;
     println!(
         "{}\n\nA table of {} × {} angles for lights and for views, {} bounces by {DIRECTIONS} directions and {} paths\n",
         device(&gpu),
@@ -185,30 +183,29 @@ pub fn run(mut args: Args) -> Outcome {
         SCATTER.bounces,
         SCATTER.paths
     );
-    let mut scenes = vec![("groove", groove()?, 1)];
+    let groove = groove()?;
+    let aggregate = Aggregate::of(&mut gpu, &groove, 1)?;
+    one(&mut gpu, "groove", &aggregate)?;
     if let Some(folder) = folder {
-        scenes.push(("moss", moss(&folder)?, 4));
+        let moss = moss(&folder)?;
+        let aggregate = Aggregate::of(&mut gpu, &moss, 4)?;
+        one(&mut gpu, "moss", &aggregate)?;
     }
-    for (name, scene, geometry) in scenes {
-        let aggregate = Aggregate::of(&mut gpu, &scene, geometry)?;
-        one(&mut gpu, name, &aggregate)?;
-    }
-    output.map_or(Ok(()), |path| Ok(strip::picture(&mut gpu, &path)?))
+    output.map_or(Ok(()), |path| Ok(picture(&mut gpu, &aggregate, &path)?))
 }
 
 fn one(gpu: &mut Headless, name: &str, aggregate: &Aggregate) -> Result<()> {
-    let scene = aggregate.scene;
-    let between = pairs(BETWEEN, 0)?;
-    let weights = ANGLES.projected_sr();
+    let field = &aggregate.scene.field;
+    let (between, weights) = (pairs(BETWEEN, 0)?, ANGLES.projected_sr());
     head(&format!(
         "| {name}, {} × {} | not reciprocal, % | reflected, %: least | most | closure, worst % | left of {BETWEEN} pairs between, %: table | {} | {} |",
-        scene.field.cols(),
-        scene.field.rows(),
+        field.cols(),
+        field.rows(),
         FACTORS.map(|n| format!("{n} factors")).join(" | "),
         ORDERS.map(|n| format!("order {n}")).join(" | ")
     ));
     let mut series = Vec::new();
-    for (is_scattered, label) in [(false, "direct"), (true, "all")] {
+    for (is_scattered, label) in KINDS {
         let (table, facets) = aggregate.table(gpu, is_scattered)?;
         let reflected = (0..ANGLES.count()).flat_map(|light| table.reflected(light, &weights));
         let [least, most] = reflected.fold([f64::MAX, 0.0_f64], |[l, m], r| [l.min(r), m.max(r)]);
@@ -217,9 +214,10 @@ fn one(gpu: &mut Headless, name: &str, aggregate: &Aggregate) -> Result<()> {
         let of = |value: &dyn Fn(DVec3, DVec3) -> [f64; 3]| {
             let (lights, views) = between.vectors().split_at(BETWEEN);
             let found: Vec<_> = lights.iter().zip(views).map(|(l, v)| value(*l, *v)).collect();
-            format!("{:.1}", left(&found, &known))
+            relative(&found, &known)
         };
-        let mut row = vec![of(&|l, v| table.between(&ANGLES, l, v))];
+        let mut row = vec![100.0 * least, 100.0 * most, 100.0 * closure.fold(0.0, f64::max)];
+        row.push(of(&|l, v| table.between(&ANGLES, l, v)));
         for count in FACTORS {
             let factors = Factors::of(&table, ANGLES, count, false)?;
             row.push(of(&|l, v| factors.at(l, v)));
@@ -228,49 +226,83 @@ fn one(gpu: &mut Headless, name: &str, aggregate: &Aggregate) -> Result<()> {
             let harmonics = BrdfHarmonics::of(&table, ANGLES, order, false)?;
             row.push(of(&|l, v| harmonics.at(l, v)));
         }
-        println!(
-            "| {label} | {:.3} | {:.1} | {:.1} | {:.1} | {} |",
-            100.0 * table.unreciprocal(),
-            100.0 * least,
-            100.0 * most,
-            100.0 * closure.fold(0.0, f64::max),
-            row.join(" | ")
-        );
+        println!("| {label} | {:.3} | {} |", 100.0 * table.unreciprocal(), cells(1, row));
         series.push((Factors::of(&table, ANGLES, KEPT, false)?, table));
     }
     println!();
-    far(gpu, aggregate, &series)
+    drawn(gpu, aggregate, &series)
 }
 
-/// Mean radiance of pairs that no table knows.
-fn far(gpu: &mut Headless, aggregate: &Aggregate, series: &[(Factors, Brdf)]) -> Result<()> {
+/// Mean radiance of pairs that no table contains.
+fn drawn(gpu: &mut Headless, aggregate: &Aggregate, series: &[(Factors, Brdf)]) -> Result<()> {
     let pairs = drawn_pairs()?;
     let (lights, views) = pairs.vectors().split_at(PAIRS);
     head(&format!(
         "| {PAIRS} pairs | mean radiance of the geometry | error of triangles, % | rms | of the table, % | rms | of {KEPT} factors, % | rms |"
     ));
-    for (is_scattered, label) in [(false, "direct"), (true, "all")] {
+    for ((is_scattered, label), (factors, table)) in KINDS.into_iter().zip(series) {
         let own = aggregate.pairs(gpu, &pairs, is_scattered)?;
-        let (factors, table) = &series[usize::from(is_scattered)];
-        let mut means = [[0.0; 4]; PAIRS];
+        let mut means = Vec::new();
         for (i, (l, v)) in lights.iter().zip(views).enumerate() {
-            let bounces = if is_scattered { SCATTER.bounces } else { 0 };
-            let geometry =
-                Geometry::of(gpu, (aggregate.scene, aggregate.geometry), &[*v], sun(*l), bounces)?;
-            let drawn = geometry.mean(gpu, *v)?;
-            geometry.end(gpu);
+            let drawn =
+                aggregate.with_geometry(gpu, [*l, *v], is_scattered, |g, gpu| g.mean(gpu, *v))?;
             let by = [own[i], table.between(&ANGLES, *l, *v), factors.at(*l, *v)];
             let [a, b, c] = by.map(|f| f.map(|f| f * l.z));
-            means[i] = [drawn, a, b, c].map(|rgb| rgb.iter().sum::<f64>() / 3.0);
+            means.push([drawn, a, b, c].map(|rgb| rgb.iter().sum::<f64>() / 3.0));
         }
-        let sum = |k: usize| means.iter().map(|m| m[k]).sum::<f64>() / PAIRS as f64;
+        let mean = |k: usize| means.iter().map(|m| m[k]).sum::<f64>() / PAIRS as f64;
         let cell = |k: usize| {
-            let squares = means.iter().map(|m| (m[k] - m[0]).powi(2)).sum::<f64>();
-            let rms = (squares / PAIRS as f64).sqrt() / sum(0);
-            format!("{:+.2} | {:.2}", 100.0 * (sum(k) / sum(0) - 1.0), 100.0 * rms)
+            let rms = rms(means.iter().map(|m| m[k] - m[0])) / mean(0);
+            format!("{:+.2} | {:.2}", 100.0 * (mean(k) / mean(0) - 1.0), 100.0 * rms)
         };
-        println!("| {label} | {:.4} | {} | {} | {} |", sum(0), cell(1), cell(2), cell(3));
+        println!("| {label} | {:.4} | {} | {} | {} |", mean(0), cell(1), cell(2), cell(3));
     }
     println!();
     Ok(())
+}
+
+/// Rows of the picture from above: geometry, its mean, and the BRDF's, of direct light; the same of all.
+/// Light comes from the upper left, the view from the middle's normal; where the light would be below a
+/// patch's horizon the patch is black.
+fn picture(gpu: &mut Headless, aggregate: &Aggregate, path: &Path) -> Result<()> {
+    /// Patches, and pixels along the edge of each.
+    const PATCHES: usize = 16;
+    const PIXELS: usize = 48;
+    /// Of the first and the last patch's normal, from the middle's.
+    const BENT_DEG: f64 = 60.0;
+    let width = PATCHES * PIXELS;
+    let mut rows = vec![vec![vec![[0.0_f32; 3]; width * PIXELS]]; 6];
+    let (light, view) = (DVec3::new(-0.5, 0.3, 0.8).normalize(), DVec3::Z);
+    for (kind, (is_scattered, _)) in KINDS.into_iter().enumerate() {
+        let (table, _) = aggregate.table(gpu, is_scattered)?;
+        for patch in 0..PATCHES {
+            let bent = (2.0 * (patch as f64 + 0.5) / PATCHES as f64 - 1.0) * BENT_DEG.to_radians();
+            // Into the frame of a patch whose normal is rotated by so much towards the east.
+            let [l, v] = [light, view].map(|e| {
+                let (sin, cos) = bent.sin_cos();
+                DVec3::new(cos * e.x - sin * e.z, e.y, sin * e.x + cos * e.z)
+            });
+            if l.z <= 0.0 {
+                continue;
+            }
+            let ((picture, places), mean) =
+                aggregate.with_geometry(gpu, [l, v], is_scattered, |geometry, gpu| {
+                    Ok((geometry.view(gpu, v)?, geometry.mean(gpu, v)?))
+                })?;
+            let mut place = |row: usize, y: usize, x: usize, colour: [f32; 3]| {
+                rows[3 * kind + row][0][y * width + patch * PIXELS + x] = colour;
+            };
+            for (colour, at) in picture.radiance.iter().zip(places) {
+                let Some([x, y]) = at else { continue };
+                let pixel = |p: f64| ((p * PIXELS as f64) as usize).min(PIXELS - 1);
+                place(0, PIXELS - 1 - pixel(y), pixel(x), *colour);
+            }
+            let of_table = table.between(&ANGLES, l, v).map(|f| (f * l.z) as f32);
+            for i in 0..PIXELS * PIXELS {
+                place(1, i / PIXELS, i % PIXELS, mean.map(|m| m as f32));
+                place(2, i / PIXELS, i % PIXELS, of_table);
+            }
+        }
+    }
+    plot::png(path, &rows, width, 1, 4.0)
 }

@@ -1,4 +1,4 @@
-//! A field that repeats as geometry: repetitions of it, lit by light paths, before a distant orthographic camera.
+//! A repeating field as geometry: repetitions of it, path-traced, before a distant orthographic camera.
 
 use glam::DVec3;
 use ridgelight::gpu::{Frame, Headless, ViewPixels};
@@ -11,8 +11,8 @@ use crate::common::frames::slices;
 /// Pixels along the picture's edges.
 const SIDE: u32 = 400;
 
-/// Of irradiance 1 facing it, a point.
-pub fn sun(e: DVec3) -> Sun {
+/// A point of irradiance 1 facing it.
+fn sun(e: DVec3) -> Sun {
     Sun {
         azimuth_rad: e.y.atan2(e.x),
         elevation_rad: e.z.asin(),
@@ -32,13 +32,13 @@ pub struct Geometry {
 }
 
 impl Geometry {
-    /// As many repetitions as the views need around one in the middle, by 64 light paths a sample; the scene's triangles cut so
-    /// many times finer, as samples beside an edge are lit by the mean of its two slopes.
+    /// As many repetitions as a view needs around one in the middle, by 64 paths per grid point, under a
+    /// sun in direction `light`. Cells are cut into `times`² more: a grid point beside an edge is lit by
+    /// the mean of its two slopes.
     pub fn of(
         gpu: &mut Headless,
         (scene, times): (&Scene, usize),
-        views: &[DVec3],
-        sun: Sun,
+        [light, view]: [DVec3; 2],
         bounces: u32,
     ) -> Result<Self> {
         let scene = scene.finer(times)?;
@@ -47,11 +47,8 @@ impl Geometry {
         let period_m = [cols as f64 * field.cell_m()[0], rows as f64 * field.cell_m()[1]];
         let heights = || field.heights_m().iter().map(|h| f64::from(*h));
         let (low, high) = (heights().fold(f64::MAX, f64::min), heights().fold(f64::MIN, f64::max));
-        // What stands at the lowest or the highest place is seen that far beside where it stands in the middle's plane.
-        let beside = |along: fn(&DVec3) -> f64| {
-            views.iter().map(|v| 0.5 * (high - low) * along(v).abs() / v.z).fold(0.0, f64::max)
-        };
-        let beside = [beside(|v| v.x), beside(|v| v.y)];
+        // From the lowest or the highest place a view shifts by so much against the middle's plane.
+        let beside = [view.x, view.y].map(|along| 0.5 * (high - low) * along.abs() / view.z);
         // And a cell, by which the last repetition's mesh is shorter.
         let margin = [0, 1].map(|i| 2.0 * (beside[i] + field.cell_m()[i]) / period_m[i]);
         let repeats = margin.map(|m| 1 + m.ceil() as usize);
@@ -67,16 +64,12 @@ impl Geometry {
         surface.border = Border::Periodic;
         let middle_m = field.base_m() + 0.5 * (low + high);
         let field = HeightField::new(rows * repeats[1], wide, &all, field.cell_m(), None)?;
-        let lights = Lights { suns: vec![sun], ..Lights::default() };
+        let lights = Lights { suns: vec![sun(light)], ..Lights::default() };
         let scene = Scene { field, surface, lights };
         let plan = plan::reference(&scene, bounces, 1, &gpu.report().limits)?;
         let contents = plan::reference_inputs(&scene);
         let mut frame = gpu.frame(plan, &slices(&contents))?;
-        let drawn = gpu.draw(&mut frame);
-        if let Err(error) = drawn {
-            gpu.end(frame);
-            return Err(error);
-        }
+        gpu.draw(&mut frame)?;
         Ok(Self { scene, frame, period_m, repeats, middle_m })
     }
 
@@ -84,8 +77,9 @@ impl Geometry {
         gpu.end(self.frame);
     }
 
-    /// The picture from `v`, one repetition of the plane just in it, and for each pixel where in that it lies, if in it.
-    pub fn look(
+    /// The picture from `v`, one repetition of the plane just in it, and for each pixel where in that
+    /// repetition it lies, if in it.
+    pub fn view(
         &self,
         gpu: &mut Headless,
         v: DVec3,
@@ -105,10 +99,10 @@ impl Geometry {
         let reach = corners.iter().flat_map(|c| [c.dot(right).abs(), c.dot(up).abs()]);
         let height_m = 2.0 * reach.fold(0.0, f64::max);
         camera.lens = Lens::Orthographic { height_m };
-        let options = ViewOptions { size: [SIDE; 2], samples: 4, ..ViewOptions::default() };
+        let options = ViewOptions { size: [SIDE; 2], ..ViewOptions::default() };
         let limits = gpu.report().limits;
         let view = View::new(&self.scene, self.frame.plan(), &camera, &options, &limits)?;
-        let seen = gpu.look(&self.frame, &view, None)?;
+        let pixels = gpu.look(&self.frame, &view, None)?;
         let pixel = height_m / f64::from(SIDE);
         let (sin, cos) = camera.azimuth_rad.sin_cos();
         let place = |i: u32| {
@@ -120,14 +114,14 @@ impl Geometry {
             let within = [d[0] / x + 0.5, d[1] / y + 0.5];
             within.iter().all(|p| (0.0..1.0).contains(p)).then_some(within)
         };
-        Ok((seen, (0..SIDE * SIDE).map(place).collect()))
+        Ok((pixels, (0..SIDE * SIDE).map(place).collect()))
     }
 
     /// Mean radiance over one repetition of the plane.
     pub fn mean(&self, gpu: &mut Headless, v: DVec3) -> Result<[f64; 3]> {
-        let (seen, places) = self.look(gpu, v)?;
+        let (view, places) = self.view(gpu, v)?;
         let (mut sum, mut count) = ([0.0; 3], 0.0);
-        let pixels = seen.radiance.iter().zip(&seen.distances_m).zip(&places);
+        let pixels = view.radiance.iter().zip(&view.distances_m).zip(&places);
         for ((light, distance), _) in pixels.filter(|(_, place)| place.is_some()) {
             if !distance.is_finite() {
                 let reason = "no ground where there should be some".into();
