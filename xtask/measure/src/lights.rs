@@ -113,16 +113,18 @@ fn forms() -> Vec<(&'static str, String, Quality)> {
     type Form = (&'static str, fn(u32, u32) -> Quality);
     const FORMS: [Form; 2] = [("table of all around", thesis), ("across", across)];
     let mut all = Vec::new();
-    let mut add = |figure: &'static str, azimuths, step| {
+    let mut add = |figure: &'static str, settings: &[(u32, u32)]| {
         for (name, form) in FORMS {
-            let quality = form(azimuths, step);
-            let method = if figure.is_empty() { Method::Auto } else { quality.method };
-            all.push((figure, name.to_owned(), Quality { method, ..quality }));
+            for (azimuths, step) in settings {
+                let quality = form(*azimuths, *step);
+                let method = if figure.is_empty() { Method::Auto } else { quality.method };
+                all.push((figure, name.to_owned(), Quality { method, ..quality }));
+            }
         }
     };
-    [4, 8, 32].into_iter().for_each(|azimuths| add("6.1", azimuths, 4));
-    [1, 2, 3, 4].into_iter().for_each(|step| add("6.2", 32, step));
-    [4, 8, 32].into_iter().for_each(|azimuths| add("", azimuths, 4));
+    add("6.1", &[(4, 4), (8, 4), (32, 4)]);
+    add("6.2", &[(32, 1), (32, 2), (32, 3), (32, 4)]);
+    [4, 8, 32].into_iter().for_each(|azimuths| add("", &[(azimuths, 4)]));
     for sh_order in [2, 3, 5, 6] {
         let quality = Quality { sh_order, method: Method::Auto, ..across(32, 4) };
         all.push(("", format!("across, order {sh_order}"), quality));
