@@ -104,9 +104,9 @@ impl HorizonSums {
         Self { map, texels, sums: Vec::new() }
     }
 
-    /// Size of the sums in bytes.
+    /// Size of the sums and of the values in bytes.
     pub fn bytes(map: &dyn HorizonMap, texels: usize) -> u64 {
-        8 * map.sums() as u64 * texels as u64
+        (8 * map.sums() + 4 * map.values()) as u64 * texels as u64
     }
 
     /// Adds an azimuth: elevations of the horizon, radians, and unit normals, row-major.
