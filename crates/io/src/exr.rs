@@ -1,8 +1,8 @@
 //! OpenEXR: reads any channel of any flat file; writes one part with f32 channels and ZIP.
 
+use crate::atomic::{Temporary, Written};
 use crate::heights::Raster;
 use crate::open;
-use crate::write::atomic::{Temporary, Written};
 use ::exr::block::{self, UncompressedBlock, reader::ChunksReader, writer::ChunksWriter};
 use ::exr::meta::attribute::{AttributeValue, ChannelDescription, LineOrder, SampleType, Text};
 use ::exr::meta::{BlockDescription, MetaData, header::Header};

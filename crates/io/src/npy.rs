@@ -1,8 +1,8 @@
 //! NumPy arrays: a reader of every integer and float type, a streaming writer of f32.
 
+use crate::atomic::{Temporary, Written};
 use crate::heights::Raster;
 use crate::open;
-use crate::write::atomic::{Temporary, Written};
 use half::f16;
 use ridgelight::scene::HeightField;
 use ridgelight::{Error, Result};

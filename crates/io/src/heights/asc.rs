@@ -1,7 +1,6 @@
 //! ESRI ASCII grids: `key value` lines, then rows from north to south.
 
-use crate::heights::Raster;
-use crate::heights::geo::{Cell, looks_like_degrees};
+use crate::heights::{Cell, Raster, looks_like_degrees};
 use crate::open;
 use ridgelight::{Error, Result};
 use std::path::Path;

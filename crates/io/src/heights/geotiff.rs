@@ -1,7 +1,7 @@
 //! The GeoTIFF tags for the cell size (OGC 19-008r4), and GDAL's no-data tag.
 
-use crate::heights::geo::{Cell, looks_like_degrees};
 use crate::heights::tif::Tiff;
+use crate::heights::{Cell, looks_like_degrees};
 use crate::open;
 use ridgelight::{Error, Result};
 use std::path::Path;
