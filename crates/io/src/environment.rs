@@ -78,13 +78,8 @@ pub fn parse_environment(name: &Path, bytes: &[u8], rotation_rad: f64) -> Result
         let unit = |i: usize| (2.0 * i as f64 + 1.0) / cols as f64 - 1.0;
         check(name, &picture, |r, c| unit(r).hypot(unit(c)) <= 1.0)?;
         cube::from_angular(&picture)
-    } else if cols.is_multiple_of(4) && rows * 4 == cols * 3 {
-        let side = cols / 4;
-        check(name, &picture, |r, c| r / side == 1 || c / side == 1)?;
-        limit(name, side)?;
-        cube::from_cross(&picture)
-    } else if rows.is_multiple_of(4) && cols * 4 == rows * 3 {
-        let side = cols / 3;
+    } else if rows * 4 == cols * 3 || cols * 4 == rows * 3 {
+        let side = rows.max(cols) / 4;
         check(name, &picture, |r, c| r / side == 1 || c / side == 1)?;
         limit(name, side)?;
         cube::from_cross(&picture)

@@ -146,22 +146,13 @@ impl<'a> ExrFile<'a> {
 
 /// Samples of one line, in native byte order as the decoder leaves them.
 fn unpack<T>(bytes: &[u8], kind: SampleType, target: &mut [T], narrow: &impl Fn(f64) -> T) {
-    match kind {
-        SampleType::F16 => {
-            for (t, b) in target.iter_mut().zip(bytes.as_chunks::<2>().0) {
-                *t = narrow(f16::from_ne_bytes(*b).to_f64());
-            }
-        }
-        SampleType::F32 => {
-            for (t, b) in target.iter_mut().zip(bytes.as_chunks::<4>().0) {
-                *t = narrow(f64::from(f32::from_ne_bytes(*b)));
-            }
-        }
-        SampleType::U32 => {
-            for (t, b) in target.iter_mut().zip(bytes.as_chunks::<4>().0) {
-                *t = narrow(f64::from(u32::from_ne_bytes(*b)));
-            }
-        }
+    let (halves, words) = (bytes.as_chunks::<2>().0, bytes.as_chunks::<4>().0);
+    for (i, t) in target.iter_mut().enumerate() {
+        *t = narrow(match kind {
+            SampleType::F16 => f16::from_ne_bytes(halves[i]).to_f64(),
+            SampleType::F32 => f64::from(f32::from_ne_bytes(words[i])),
+            SampleType::U32 => f64::from(u32::from_ne_bytes(words[i])),
+        });
     }
 }
 
