@@ -257,6 +257,13 @@ pub struct Layer<'a> {
     pub channels: Channels<'a>,
 }
 
+impl<'a> Layer<'a> {
+    /// One channel without a prefix.
+    pub fn scalar(name: &'a str, values: &'a [f32]) -> Self {
+        Self { name: String::new(), channels: Channels::Scalar(name, values) }
+    }
+}
+
 /// The samples of a [`Layer`], row-major, NaN allowed.
 #[derive(Clone, Copy, Debug)]
 pub enum Channels<'a> {

@@ -9,9 +9,7 @@ use ridgelight::Result;
 use ridgelight::scene::HeightField;
 use ridgelight_bake::Encoding;
 use ridgelight_io as files;
-use ridgelight_io::{
-    Channels, Component, Ktx2Writer, Layer, NpyWriter, TexelFormat, Written, write_exr_aside,
-};
+use ridgelight_io::{Component, Ktx2Writer, NpyWriter, TexelFormat, Written};
 use serde_json::Value as Json;
 
 use super::kinds::{Kind, Map};
@@ -356,46 +354,6 @@ impl<'a> MapFiles<'a> {
             }
         }
         (texels, picture)
-    }
-
-    /// Finishes all files under temporary names. Formats that can, store `metadata`.
-    pub fn complete(mut self, metadata: &[(String, String)]) -> Result<Whole<'a>> {
-        // In the order of the formats.
-        let mut pictures = Some(std::mem::take(&mut self.waiting));
-        for (open, format) in
-            std::mem::take(&mut self.open).into_iter().zip(self.wanted.formats.clone())
-        {
-            let path = self.folder.join(self.wanted.file(&self.map, format, 0));
-            let file = match open {
-                Open::Exr(planes) => self.exr(&path, &planes, metadata)?,
-                Open::Npy(writer) => writer.close()?,
-                Open::Ktx2(writer) => writer.close()?,
-                Open::Png => {
-                    self.waiting.extend(pictures.take().into_iter().flatten());
-                    continue;
-                }
-            };
-            self.waiting.push(Waiting { file, path, format, scale: 1.0 });
-        }
-        Ok(Whole(self))
-    }
-
-    fn exr(
-        &self,
-        path: &Path,
-        planes: &[Vec<f32>],
-        metadata: &[(String, String)],
-    ) -> Result<Written> {
-        let layers = planes.iter().zip(&self.map.planes).map(|(plane, name)| Layer {
-            name: String::new(),
-            channels: Channels::Scalar(name, plane),
-        });
-        let layers: Vec<Layer> = layers.collect();
-        // Stores f32 values; the encoding's entry does not apply. The field's hash is in the
-        // metadata.
-        let all = [metadata, &self.texts[..1]].concat();
-        let [cols, rows] = self.size();
-        write_exr_aside(path, rows, cols, &layers, &all)
     }
 }
 

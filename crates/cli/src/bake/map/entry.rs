@@ -1,13 +1,52 @@
 //! A map's notes, its entries in the manifest, and the move of its files to their names.
 
+use std::path::Path;
+
 use ridgelight::{Error, Result};
 use ridgelight_io as files;
-use ridgelight_io::Component;
+use ridgelight_io::{Component, Layer, Written};
 use serde_json::{Value as Json, json};
 
-use super::{Format, MapFiles, Waiting};
+use super::{Format, MapFiles, Open, Waiting};
 
-impl MapFiles<'_> {
+impl<'a> MapFiles<'a> {
+    /// Finishes all files under temporary names. Formats that can, store `metadata`.
+    pub fn complete(mut self, metadata: &[(String, String)]) -> Result<Whole<'a>> {
+        // In the order of the formats.
+        let mut pictures = Some(std::mem::take(&mut self.waiting));
+        for (open, format) in
+            std::mem::take(&mut self.open).into_iter().zip(self.wanted.formats.clone())
+        {
+            let path = self.folder.join(self.wanted.file(&self.map, format, 0));
+            let file = match open {
+                Open::Exr(planes) => self.exr(&path, &planes, metadata)?,
+                Open::Npy(writer) => writer.close()?,
+                Open::Ktx2(writer) => writer.close()?,
+                Open::Png => {
+                    self.waiting.extend(pictures.take().into_iter().flatten());
+                    continue;
+                }
+            };
+            self.waiting.push(Waiting { file, path, format, scale: 1.0 });
+        }
+        Ok(Whole(self))
+    }
+
+    fn exr(
+        &self,
+        path: &Path,
+        planes: &[Vec<f32>],
+        metadata: &[(String, String)],
+    ) -> Result<Written> {
+        let layers = planes.iter().zip(&self.map.planes);
+        let layers: Vec<_> = layers.map(|(plane, name)| Layer::scalar(name, plane)).collect();
+        // Stores f32 values; the encoding's entry does not apply. The field's hash is in the
+        // metadata.
+        let all = [metadata, &self.texts[..1]].concat();
+        let [cols, rows] = self.size();
+        files::write_exr_aside(path, rows, cols, &layers, &all)
+    }
+
     /// The map's notes, with one about values outside their range.
     pub fn notes(&self) -> Vec<String> {
         let mut all = self.remarks.clone();
