@@ -157,12 +157,7 @@ impl Brdf {
     /// [`Facets`](super::Facets). It is a sum, not an integral: it is meaningless for a Phong lobe
     /// narrower than the spacing of the directions.
     pub fn reflected(&self, light: usize, projected_sr: &[f64]) -> [f64; 3] {
-        let mut sum = [0.0; 3];
-        for (view, weight) in projected_sr.iter().enumerate() {
-            let value = self.at(light, view);
-            (0..3).for_each(|c| sum[c] += value[c] * weight);
-        }
-        sum
+        self.summed(|view| (light, view), projected_sr)
     }
 
     /// Radiance of a view under a light of 1 from all sides, R, G, B: the sum over all lights,
@@ -172,8 +167,13 @@ impl Brdf {
     /// lobe counts for its density times a direction's solid angle, many times 1 at its centre and
     /// 0 beside it.
     pub fn gathered(&self, view: usize, projected_sr: &[f64]) -> [f64; 3] {
+        self.summed(|light| (light, view), projected_sr)
+    }
+
+    fn summed(&self, pair: impl Fn(usize) -> (usize, usize), weights: &[f64]) -> [f64; 3] {
         let mut sum = [0.0; 3];
-        for (light, weight) in projected_sr.iter().enumerate() {
+        for (i, weight) in weights.iter().enumerate() {
+            let (light, view) = pair(i);
             let value = self.at(light, view);
             (0..3).for_each(|c| sum[c] += value[c] * weight);
         }

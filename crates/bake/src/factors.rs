@@ -47,45 +47,37 @@ impl Factors {
         }
         let roots: Vec<f64> = angles.projected_sr().iter().map(|w| w.sqrt()).collect();
         let mut values = vec![vec![[0.0; 3]; size]; count];
-        if has_specular {
-            let mut views = values.clone();
-            for channel in [0, 1, 2] {
-                let of = |i: usize| {
-                    let (a, b) = (i / size, i % size);
-                    table.at(a, b)[channel] * roots[a] * roots[b]
-                };
-                let matrix: Vec<f64> = (0..size * size).map(of).collect();
-                let turned: Vec<f64> =
-                    (0..size * size).map(|i| matrix[i % size * size + i / size]).collect();
-                // Eigenvectors of MᵀM are b, its eigenvalues σ², and M b is σ a.
-                let twice = |v: &[f64]| times(&turned, &times(&matrix, v));
-                for (k, (square, vector)) in largest(&twice, size, count).into_iter().enumerate() {
-                    let scale = square.max(0.0).powf(0.25);
-                    let other = times(&matrix, &vector);
-                    let shrink = if scale > f64::MIN_POSITIVE { 1.0 / scale } else { 0.0 };
-                    for i in 0..size {
-                        values[k][i][channel] = shrink * other[i] / roots[i];
-                        views[k][i][channel] = scale * vector[i] / roots[i];
-                    }
-                }
-            }
-            return Ok(Self { angles, values, of_views: Some(views) });
-        }
+        let mut views = values.clone();
         for channel in [0, 1, 2] {
             let of = |i: usize| {
                 let (a, b) = (i / size, i % size);
-                let both = table.at(a, b)[channel] + table.at(b, a)[channel];
-                0.5 * both * roots[a] * roots[b]
+                let [own, other] = [(a, b), (b, a)].map(|(a, b)| table.at(a, b)[channel]);
+                (if has_specular { own } else { 0.5 * (own + other) }) * roots[a] * roots[b]
             };
             let matrix: Vec<f64> = (0..size * size).map(of).collect();
-            let once = |v: &[f64]| times(&matrix, v);
-            for (k, (value, vector)) in largest(&once, size, count).into_iter().enumerate() {
-                let scale = value.max(0.0).sqrt();
-                let texels = values[k].iter_mut().zip(vector.iter().zip(&roots));
-                texels.for_each(|(texel, (v, root))| texel[channel] = scale * v / root);
+            if !has_specular {
+                let once = |v: &[f64]| times(&matrix, v);
+                for (k, (value, vector)) in largest(&once, size, count).into_iter().enumerate() {
+                    let scale = value.max(0.0).sqrt();
+                    (0..size).for_each(|i| values[k][i][channel] = scale * vector[i] / roots[i]);
+                }
+                continue;
+            }
+            let turned: Vec<f64> =
+                (0..size * size).map(|i| matrix[i % size * size + i / size]).collect();
+            // Eigenvectors of MᵀM are b, its eigenvalues σ², and M b is σ a.
+            let twice = |v: &[f64]| times(&turned, &times(&matrix, v));
+            for (k, (square, vector)) in largest(&twice, size, count).into_iter().enumerate() {
+                let scale = square.max(0.0).powf(0.25);
+                let other = times(&matrix, &vector);
+                let shrink = if scale > f64::MIN_POSITIVE { 1.0 / scale } else { 0.0 };
+                for i in 0..size {
+                    values[k][i][channel] = shrink * other[i] / roots[i];
+                    views[k][i][channel] = scale * vector[i] / roots[i];
+                }
             }
         }
-        Ok(Self { angles, values, of_views: None })
+        Ok(Self { angles, values, of_views: has_specular.then_some(views) })
     }
 
     /// g: one per product, R, G, B of all angles. Also h unless [`of_views`](Self::of_views) holds

@@ -64,20 +64,12 @@ impl HorizonMap for ShVisibility {
         self.0.places.len()
     }
 
-    fn values(&self) -> usize {
-        self.0.places.len()
-    }
-
     fn azimuth_factors(&self, ray: Ray) -> Vec<f64> {
         self.0.azimuth_factors(ray)
     }
 
     fn add(&self, factors: &[f64], _: DVec3, elevation_rad: f64, sums: &mut [f64]) {
         self.0.add(factors, elevation_rad, sums);
-    }
-
-    fn end(&self, _: DVec3, sums: &[f64], values: &mut [f64]) {
-        values.copy_from_slice(sums);
     }
 }
 

@@ -16,7 +16,6 @@
 
 #![deny(clippy::missing_errors_doc)]
 
-mod bent;
 mod brdf;
 mod brdf_harmonics;
 mod curved;
@@ -35,7 +34,6 @@ use ridgelight::scene::{Border, HeightField};
 use ridgelight::{Error, Result};
 use ridgelight_cpu::light::normal;
 
-pub use bent::BentNormal;
 pub use brdf::{Angles, Brdf, pairs};
 pub use brdf_harmonics::BrdfHarmonics;
 pub use curved::CurvedEllipses;
@@ -48,7 +46,7 @@ pub use factors::Factors;
 pub use far_field::{facets, lit_from};
 pub use harmonics::{MAX_TRANSFER_ORDER, ShTransfer, ShVisibility};
 pub use ridgelight_cpu::ellipse_fit::Ellipse;
-pub use sky::{SkyView, VisibleSky};
+pub use sky::{BentNormal, SkyView, VisibleSky};
 
 /// One azimuth of a circle and its angular width, radians, counter-clockwise from east.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,7 +63,9 @@ pub trait HorizonMap: Send + Sync {
     fn sums(&self) -> usize;
 
     /// Number of values per texel, in the order of [`end`](Self::end).
-    fn values(&self) -> usize;
+    fn values(&self) -> usize {
+        self.sums()
+    }
 
     /// Factors of an azimuth that all texels share.
     fn azimuth_factors(&self, ray: Ray) -> Vec<f64>;
@@ -73,8 +73,10 @@ pub trait HorizonMap: Send + Sync {
     /// Adds the unoccluded part above an elevation, [-π/2..π/2], for a unit normal.
     fn add(&self, factors: &[f64], normal: DVec3, elevation_rad: f64, sums: &mut [f64]);
 
-    /// The texel's values.
-    fn end(&self, normal: DVec3, sums: &[f64], values: &mut [f64]);
+    /// The texel's values: the sums themselves unless the map overrides this.
+    fn end(&self, _normal: DVec3, sums: &[f64], values: &mut [f64]) {
+        values.copy_from_slice(sums);
+    }
 }
 
 /// Unit normals of all texels, row-major: [`normal`].
@@ -104,9 +106,9 @@ impl HorizonSums {
         Self { map, texels, sums: Vec::new() }
     }
 
-    /// Size of the sums in bytes.
+    /// Size of the sums and of the values in bytes.
     pub fn bytes(map: &dyn HorizonMap, texels: usize) -> u64 {
-        8 * map.sums() as u64 * texels as u64
+        (8 * map.sums() + 4 * map.values()) as u64 * texels as u64
     }
 
     /// Adds an azimuth: elevations of the horizon, radians, and unit normals, row-major.

@@ -3,20 +3,20 @@
 mod folder;
 mod job;
 mod kinds;
-mod manifest;
 mod map;
 mod request;
 
+use std::cell::OnceCell;
 use std::io::Write as _;
 use std::path::PathBuf;
 
 use ridgelight::Result;
 use ridgelight::gpu::{Headless, Timing};
 use ridgelight::plan::{self, Limits, Plan};
-use ridgelight::scene::Quality;
-use ridgelight_bake::{Encoding, Ray, normals};
+use ridgelight::scene::{HeightField, Method, Quality, Scene};
+use ridgelight_bake::{Encoding, HorizonSums, Ray, normals};
 use ridgelight_io as files;
-use serde_json::json;
+use serde_json::{Value, json};
 
 use crate::args::BakeArgs;
 use crate::setup::{self, Outcome};
@@ -25,7 +25,7 @@ pub use folder::check_new;
 use folder::{check_folder, check_memory, parent, remove_old, take_manifest};
 use job::{Job, first};
 pub use kinds::Kind;
-use kinds::{DirectionsJob, Lit, Request, Source};
+use kinds::Source;
 pub use map::Format;
 use map::{MapFiles, Whole};
 pub use request::{help, kind_named, packing};
@@ -49,37 +49,26 @@ pub fn run(args: &BakeArgs) -> Result<Outcome> {
     let quality = request::quality(args)?;
     let field = setup::field(&args.input.path, &args.surface.field, &args.global)?;
     let scene = setup::scene(field, &args.surface, &args.lights)?;
-    let (border, grid_points) = (scene.surface.border, scene.field.heights_m().len());
-    let (directions, angles) = (request::directions(args)?, request::angles(args)?);
-    let has_specular =
-        scene.surface.specular.as_ref().is_some_and(|specular| specular.largest().scale > 0.0);
-    let making = wanted.iter().map(|w| {
-        let (quality, directions, encoding) = (&quality, &directions, w.encoding);
-        let curvature = args.curvature;
-        (w.kind.begin)(&Request {
-            border,
-            quality,
-            directions,
-            angles,
-            curvature,
-            encoding,
-            has_texels: w.formats.contains(&Format::Ktx2),
-            has_specular,
-            grid_points,
-        })
+    let around = request::directions(args)?;
+    let mut job = Job {
+        scene: &scene,
+        quality: &quality,
+        // Of a machine without a device; the device's own replace them once it is open.
+        limits: Limits::boundless(true, u64::MAX),
+        scatter: request::scatter(args, &quality),
+        around: &around,
+        angles: request::angles(args)?,
+        curvature: args.curvature,
+        seed: args.seed.unwrap_or(0),
+        table: OnceCell::new(),
+        maps: Vec::new(),
+    };
+    let maps = wanted.into_iter().map(|wanted| {
+        let map = (wanted.kind.map)(&job, &wanted)?;
+        Ok((wanted, map))
     });
-    let making = making.collect::<Result<Vec<_>>>()?;
-    request::check_uses(args, making.iter().map(|m| &m.source))?;
-    let scatter = request::scatter(args, &quality);
-    // Limits for a machine without a device; the device's own replace them once it is open.
-    let limits = Limits::boundless(true, u64::MAX);
-    let (quality, around) = (&quality, &directions);
-    let seed = args.seed.unwrap_or(0);
-    let curvature = args.curvature;
-    let table = std::cell::OnceCell::new();
-    let lit =
-        Lit { scene: &scene, quality, limits, scatter, around, angles, curvature, seed, table };
-    let mut job = Job { lit, wanted, making };
+    job.maps = maps.collect::<Result<_>>()?;
+    request::check_uses(args)?;
     let files = job.files();
     let paths: Vec<PathBuf> = files.iter().map(|(name, _)| args.output.join(name)).collect();
     let mut outputs: Vec<_> = paths.iter().map(|path| ("-o", Some(path.as_path()))).collect();
@@ -95,14 +84,14 @@ pub fn run(args: &BakeArgs) -> Result<Outcome> {
     let room: Vec<_> = room.iter().map(|(path, bytes)| (path.as_path(), *bytes)).collect();
     files::check_room(&room)?;
     let (mut gpu, limits) = setup::device(&args.global)?;
-    job.lit.limits = limits;
+    job.limits = limits;
     job.check_layers(&limits)?;
     check_memory(job.host_bytes(&limits))?;
     let used = job.used(&limits)?;
     let why = |setting: &str| job.idle_reason(setting);
     idle::say_why(args.global.quiet, &args.quality.written, &used, &why);
     if !args.global.quiet {
-        request::say_idle_light(args, &job.wanted, job.lit.scatter.is_some());
+        request::say_idle_light(args, job.scatter.is_some());
     }
     let _folder = files::ResultFolder::create(&args.output)?;
     bake(args, job, &mut gpu, &used)
@@ -110,22 +99,26 @@ pub fn run(args: &BakeArgs) -> Result<Outcome> {
 
 fn bake(
     args: &BakeArgs,
-    job: Job<'_>,
+    mut job: Job<'_>,
     gpu: &mut Headless,
     used: &[(String, String)],
 ) -> Result<Outcome> {
-    let (has_horizons, traces_directions) = (job.has_horizons(), job.traces_directions());
-    let is_light = job.wanted.iter().any(|w| request::is_light(w.kind));
-    let Job { lit, wanted, making } = job;
-    let Lit { quality, around: directions, curvature, limits, .. } = lit;
-    let (field, border) = (&lit.scene.field, lit.scene.surface.border);
+    let has_horizons = job.has(Kind::has_horizons);
+    let traces_directions = job.has(|kind| !kind.has_horizons());
+    let is_light = job.has(Kind::is_light);
+    let maps = std::mem::take(&mut job.maps);
+    let Job { scene, quality, around, limits, .. } = job;
+    let (field, border) = (&scene.field, job.border());
     let hash = format!("{:016x}", field.hash(border));
-    let count = wanted.len();
-    let mut all = Vec::new();
-    for (wanted, making) in wanted.into_iter().zip(making) {
-        let files = MapFiles::create(&args.output, wanted, making.map, field, &hash)?;
-        all.push((making.source, files));
-    }
+    let count = maps.len();
+    let all = maps.into_iter().map(|map| {
+        let sums = match map.0.kind.source {
+            Source::Sums(of) => Some(HorizonSums::new(of(&job), job.grid_points())),
+            _ => None,
+        };
+        Ok((MapFiles::create(&args.output, map, field, &hash)?, sums))
+    });
+    let mut all: Vec<(MapFiles, Option<HorizonSums>)> = all.collect::<Result<_>>()?;
     let bar = crate::setup::terminal::progress(args.global.quiet, "baking");
     let started = std::time::Instant::now();
     let (mut times, mut plan) = (Vec::new(), None);
@@ -136,20 +129,21 @@ fn bake(
         let mut each = |k: u32, elevations: &[f32], _: &[f32]| {
             bar.set_message(format!("baking: azimuth {} of {}", k + 1, azimuths.len()));
             let ray = Ray { azimuth_rad: azimuths[k as usize], width_rad };
-            all.iter_mut().try_for_each(|(source, files)| match source {
-                Source::Horizons(maker) => maker.add(ray, elevations, &normals, files),
-                Source::Directions(_) | Source::Light(_) => Ok(()),
+            all.iter_mut().try_for_each(|(files, sums)| match (files.kind().source, sums) {
+                (Source::Horizons, _) => files.take(&[elevations]),
+                (_, Some(sums)) => sums.add(ray, elevations, &normals),
+                _ => Ok(()),
             })
         };
         let found = horizon::for_each(gpu, field, border, quality, &limits, false, &mut each)?;
         (times, plan) = (found.0, Some(found.1));
     }
-    for (source, files) in &mut all {
-        match source {
-            Source::Horizons(_) => {}
+    for (files, _) in &mut all {
+        match files.kind().source {
+            Source::Horizons | Source::Sums(_) => {}
             Source::Directions(of) => {
                 bar.set_message("baking: visible points".to_owned());
-                let own = (of.plan)(field, border, directions, curvature, &limits)?;
+                let own = (of.plan)(&job, &limits)?;
                 let count = own.outputs().count();
                 plan.get_or_insert_with(|| own.clone());
                 let outputs = gpu.with_frame(own, &[field.heights_m()], |gpu, frame| {
@@ -157,15 +151,13 @@ fn bake(
                     let outputs = (0..count).map(|output| Ok(gpu.pixels(frame, output)?.values));
                     outputs.collect::<Result<Vec<_>>>()
                 })?;
-                let outputs = &outputs;
-                let traced = DirectionsJob { field, border, directions, curvature, outputs };
-                (of.take)(&traced, files)?;
+                (of.take)(&job, &outputs, files)?;
             }
             Source::Light(of) => {
-                let kind = files.kind();
+                let kind = files.kind().name;
                 let say = |what: String| bar.set_message(format!("baking {kind}: {what}"));
-                plan.get_or_insert(first((of.plans)(&lit, &limits)?));
-                (of.make)(gpu, &lit, files, &say)?;
+                plan.get_or_insert(first((of.plans)(&job, &limits)?));
+                (of.make)(gpu, &job, files, &say)?;
             }
         }
     }
@@ -180,21 +172,22 @@ fn bake(
     let is_more = |name: &str| metadata.iter().all(|(known, _)| known != name);
     let more: Vec<_> = used.iter().filter(|(name, _)| is_more(name)).cloned().collect();
     metadata.extend(more);
-    let lights = is_light.then_some((&args.lights, &args.surface, lit.scene));
+    let lights = is_light.then_some((&args.lights, &args.surface, scene));
     metadata.extend(setup::asked(&args.input.path, &args.surface.field, lights));
     metadata.push(("field_hash".into(), hash));
     let mut whole = Vec::new();
     // A note that applies to several kinds is printed once.
     let mut notes: Vec<(String, Vec<&str>)> = Vec::new();
-    for (i, (source, mut files)) in all.into_iter().enumerate() {
+    for (i, (mut files, sums)) in all.into_iter().enumerate() {
         bar.set_message(format!("writing {} of {count}", i + 1));
-        if let Source::Horizons(maker) = source {
-            maker.end(&normals, &mut files)?;
+        if let Some(sums) = sums {
+            files.take_all(&sums.end(&normals)?)?;
         }
         for note in files.notes() {
+            let kind = files.kind().name;
             match notes.iter_mut().find(|(known, _)| *known == note) {
-                Some((_, kinds)) => kinds.push(files.kind()),
-                None => notes.push((note, vec![files.kind()])),
+                Some((_, kinds)) => kinds.push(kind),
+                None => notes.push((note, vec![kind])),
             }
         }
         whole.push(files.complete(&metadata)?);
@@ -209,12 +202,11 @@ fn bake(
     bar.finish_and_clear();
     let seconds = started.elapsed().as_secs_f64();
     metadata.push(("seconds".into(), format!("{seconds:.3}")));
-    let mut manifest = manifest::describe(&metadata, &times, field, quality, &maps);
-    if !has_horizons {
-        manifest["horizons"] = serde_json::Value::Null;
-    }
+    let mut manifest = setup::as_json(&metadata, &times);
+    describe(&mut manifest, field, has_horizons.then_some(quality));
+    manifest["maps"] = maps.into();
     if traces_directions {
-        let vectors = directions.vectors().iter();
+        let vectors = around.vectors().iter();
         manifest["directions"] = vectors.map(|e| json!([e.x, e.y, e.z])).collect();
     }
     files::write_json(&args.output.join(MANIFEST), &manifest)?;
@@ -223,14 +215,40 @@ fn bake(
         files::write_json(json, &manifest)?;
     }
     if !args.global.quiet {
-        say_done(args, (lit.scene, quality, count), (&times, has_horizons, seconds), gpu);
+        say_done(args, (scene, quality, count), (&times, has_horizons, seconds), gpu);
     }
     Ok(Outcome::Done)
 }
 
+/// Adds what holds for all maps to a manifest.
+fn describe(manifest: &mut Value, field: &HeightField, horizons: Option<&Quality>) {
+    let hash = manifest["settings"]["field_hash"].clone();
+    manifest["field"] = json!({
+        "rows": field.rows(), "cols": field.cols(), "cell_m": field.cell_m(), "base_m": field.base_m(),
+        "voids": field.voids().map_or(0, |v| v.iter().filter(|v| **v).count()), "hash": hash,
+        "hash_is": "64-bit FNV-1a of the text ridgelight field 1, rows and columns (u64), cells (f64), the \
+            border (a byte: 0 plane, 1 open, 2 periodic), heights above the base (f32, -0 as 0) \
+            and, if the field has voids, a byte per grid point, 1 at voids; little-endian",
+        "first_row": "north", "first_column": "west",
+    });
+    manifest["horizons"] = match horizons.map(|quality| quality.method) {
+        None => Value::Null,
+        Some(Method::BruteForce) => {
+            "every crossing along each azimuth from each grid point: exact but for f32 rounding"
+                .into()
+        }
+        Some(_) => {
+            "found by the method in settings, whose error is not part of the files' errors".into()
+        }
+    };
+    manifest["error_is"] = "decoding error of a file: the computed value lies within at_most plus \
+        and_of_the_value times the value; the error between azimuths is not included"
+        .into();
+}
+
 fn say_done(
     args: &BakeArgs,
-    (scene, quality, count): (&ridgelight::scene::Scene, &Quality, usize),
+    (scene, quality, count): (&Scene, &Quality, usize),
     (times, has_horizons, seconds): (&[Timing], bool, f64),
     gpu: &Headless,
 ) {
@@ -268,13 +286,10 @@ fn say_plan(args: &BakeArgs, job: &Job) -> Result<Outcome> {
     let device = plans.iter().map(Plan::bytes).max().unwrap_or(0);
     crate::say!("{device:>14}  peak memory on {name}, one batch of azimuths or one kind at a time");
     crate::say!("{:>14}  memory of this process", job.host_bytes(&limits));
-    let names: Vec<&str> = job.wanted.iter().map(|w| w.kind.name).collect();
     // Kinds of one table share its rays: list them once.
-    let is_table = |name: &&str| name.starts_with("brdf");
-    let first = names.iter().position(is_table);
-    let own = names.iter().enumerate().filter(|(i, name)| !is_table(name) || first == Some(*i));
-    let own = own.map(|(_, name)| name);
-    for (count, what) in own.filter_map(|name| kinds::rays(&job.lit, name, &limits)) {
+    let first = job.kinds().position(Kind::is_table);
+    let own = job.kinds().enumerate().filter(|(i, kind)| !kind.is_table() || first == Some(*i));
+    for (count, what) in own.filter_map(|(_, kind)| kinds::rays(job, kind, &limits)) {
         crate::say!("{count:>14}  {what}");
     }
     Ok(Outcome::Done)

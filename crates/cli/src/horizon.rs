@@ -3,7 +3,7 @@ use ridgelight::plan::{self, Limits, Plan};
 use ridgelight::scene::{Border, HeightField, Lines, Method, Quality};
 use ridgelight::{Error, Result};
 use ridgelight_io as files;
-use ridgelight_io::{Channels, Layer, NpyWriter};
+use ridgelight_io::{Layer, NpyWriter};
 
 use crate::args::HorizonArgs;
 use crate::idle;
@@ -132,10 +132,9 @@ pub fn run(args: &HorizonArgs) -> Result<Outcome> {
     let (mut gpu, limits) = setup::device(&args.global)?;
     let used = used(&field, border, &quality, &limits, distances)?;
     idle::say(args.global.quiet, &args.quality.written, &used);
-    let mut angles_file =
-        if is_npy { Some(NpyWriter::create(&args.output, &shape)?) } else { None };
-    let mut distances_file =
-        args.distances.as_ref().map(|p| NpyWriter::create(p, &shape)).transpose()?;
+    let begin = |path: &std::path::PathBuf| NpyWriter::create(path, &shape);
+    let mut angles_file = Some(&args.output).filter(|_| is_npy).map(begin).transpose()?;
+    let mut distances_file = args.distances.as_ref().map(begin).transpose()?;
     let mut planes: Vec<Vec<f32>> = Vec::new();
     let bar = crate::setup::terminal::progress(args.global.quiet, "horizons");
     let (times, plan) = for_each(
@@ -147,16 +146,17 @@ pub fn run(args: &HorizonArgs) -> Result<Outcome> {
         distances,
         &mut |k, angles, distances| {
             bar.set_message(format!("horizons: azimuth {} of {}", k + 1, shape[0]));
-            let mut angles = angles.to_vec();
-            setup::mask_voids(&field, &mut angles, 1);
+            let masked = |plane: &[f32]| {
+                let mut plane = plane.to_vec();
+                setup::mask_voids(&field, &mut plane, 1);
+                plane
+            };
             match &mut angles_file {
-                Some(file) => file.write(&angles)?,
-                None => planes.push(angles),
+                Some(file) => file.write(&masked(angles))?,
+                None => planes.push(masked(angles)),
             }
             if let Some(file) = &mut distances_file {
-                let mut distances = distances.to_vec();
-                setup::mask_voids(&field, &mut distances, 1);
-                file.write(&distances)?;
+                file.write(&masked(distances))?;
             }
             Ok(())
         },
@@ -166,23 +166,14 @@ pub fn run(args: &HorizonArgs) -> Result<Outcome> {
     let mut metadata = setup::metadata(&gpu, &field, &plan, &times);
     metadata.push(("azimuths".into(), quality.azimuths.to_string()));
     metadata.extend(setup::asked(&args.input.path, &args.surface, None));
-    if let Some(file) = angles_file {
-        file.finish()?;
-    } else {
-        let names: Vec<String> = (0..planes.len())
-            .map(|k| format!("horizon.{:07.3}", azimuths[k].to_degrees()))
-            .collect();
-        let layers: Vec<Layer> = planes
-            .iter()
-            .zip(&names)
-            .map(|(plane, name)| Layer {
-                name: String::new(),
-                channels: Channels::Scalar(name, plane),
-            })
-            .collect();
+    if angles_file.is_none() {
+        let name = |azimuth: &f64| format!("horizon.{:07.3}", azimuth.to_degrees());
+        let names: Vec<String> = azimuths.iter().map(name).collect();
+        let layers = planes.iter().zip(&names).map(|(plane, name)| Layer::scalar(name, plane));
+        let layers: Vec<Layer> = layers.collect();
         files::write_exr(&args.output, field.rows(), field.cols(), &layers, &metadata)?;
     }
-    if let Some(file) = distances_file {
+    for file in [angles_file, distances_file].into_iter().flatten() {
         file.finish()?;
     }
     if let Some(json) = &args.global.json {

@@ -8,9 +8,7 @@ use crate::args::flag;
 
 /// Prints a note for each `written` setting that is not among the `used`.
 pub fn say(quiet: bool, written: &[(String, String)], used: &[(String, String)]) {
-    if !quiet {
-        notes(written, used).iter().for_each(|line| print(line));
-    }
+    say_why(quiet, written, used, &|_| None);
 }
 
 /// The same, with reasons of the command itself.
@@ -21,16 +19,12 @@ pub fn say_why(
     why: &dyn Fn(&str) -> Option<String>,
 ) {
     if !quiet {
-        lines(written, used, why).iter().for_each(|line| print(line));
+        notes(written, used, why).iter().for_each(|line| print(line));
     }
 }
 
 /// One line per note.
-pub fn notes(written: &[(String, String)], used: &[(String, String)]) -> Vec<String> {
-    lines(written, used, &|_| None)
-}
-
-fn lines(
+pub fn notes(
     written: &[(String, String)],
     used: &[(String, String)],
     why: &dyn Fn(&str) -> Option<String>,

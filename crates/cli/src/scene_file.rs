@@ -180,7 +180,7 @@ fn all(path: &Path, renamed: &mut Renamed) -> Result<Vec<Given>> {
                     .iter()
                     .map(|item| Ok((item.line(), item.key.clone(), item.parts(parts)?.into())))
                     .collect::<Result<Vec<_>>>()?,
-                _ => vec![(found.line(), found.key.clone(), found.value(&key.kind, folder)?)],
+                _ => vec![(found.line(), found.key.clone(), found.value(key, folder)?)],
             };
             given.extend(values.into_iter().map(|(line, place, value)| Given {
                 id: key.id,
@@ -195,7 +195,7 @@ fn all(path: &Path, renamed: &mut Renamed) -> Result<Vec<Given>> {
 }
 
 fn read(path: &Path) -> Result<String> {
-    let io = |source| Error::Io { path: path.to_owned(), source };
+    let io = |source| Error::io(path, source);
     let bytes = std::fs::metadata(path).map_err(io)?.len();
     if bytes > LARGEST {
         return Err(Error::Limit {

@@ -1,13 +1,14 @@
-//! Environments and albedo maps.
+//! Environments, and maps of albedo and Phong specular.
 
 mod cube;
 pub mod hdr;
 
 use crate::exr;
 use crate::open::{self, Format};
+use crate::planes::{Planes, read_planes};
 use crate::png;
 use cube::Picture;
-use ridgelight::scene::{Albedo, Environment};
+use ridgelight::scene::{Albedo, Environment, PhongSpecular, Specular};
 use ridgelight::{Error, Result};
 use std::path::{Path, PathBuf};
 
@@ -77,13 +78,8 @@ pub fn parse_environment(name: &Path, bytes: &[u8], rotation_rad: f64) -> Result
         let unit = |i: usize| (2.0 * i as f64 + 1.0) / cols as f64 - 1.0;
         check(name, &picture, |r, c| unit(r).hypot(unit(c)) <= 1.0)?;
         cube::from_angular(&picture)
-    } else if cols.is_multiple_of(4) && rows * 4 == cols * 3 {
-        let side = cols / 4;
-        check(name, &picture, |r, c| r / side == 1 || c / side == 1)?;
-        limit(name, side)?;
-        cube::from_cross(&picture)
-    } else if rows.is_multiple_of(4) && cols * 4 == rows * 3 {
-        let side = cols / 3;
+    } else if rows * 4 == cols * 3 || cols * 4 == rows * 3 {
+        let side = rows.max(cols) / 4;
         check(name, &picture, |r, c| r / side == 1 || c / side == 1)?;
         limit(name, side)?;
         cube::from_cross(&picture)
@@ -211,6 +207,46 @@ pub fn read_albedo(path: &Path, rows: usize, cols: usize) -> Result<Albedo> {
             Err(Error::file(path, place, format!("albedo {:?}", texels[i]), "channels from 0 to 1"))
         }
         None => Ok(Albedo::Map(texels)),
+    }
+}
+
+/// Reads the Phong exponent and scale of each of `rows` × `cols` grid points: `.exr` channels "R"
+/// and "G", other channels ignored, or an `.npy` array [2, rows, cols]. A `.png` is refused: its
+/// values end at 1, exponents do not.
+///
+/// # Errors
+/// Another format, size or number of channels; an exponent or a scale out of range (with row and
+/// column).
+pub fn read_specular(path: &Path, rows: usize, cols: usize) -> Result<Specular> {
+    if !matches!(Format::of_name(path), Some(Format::Exr | Format::Npy)) {
+        let found = path.extension().map_or("none".into(), |e| format!(".{}", e.display()));
+        let expected = ".exr or .npy, which hold exponents above 1";
+        return Err(Error::file(path, "extension", found, expected));
+    }
+    // The signature is checked here.
+    let Planes { rows: map_rows, cols: map_cols, names, planes } = read_planes(path)?;
+    let of = |wanted: [&str; 2]| wanted.map(|name| names.iter().position(|n| n == name));
+    let places = match of(["R", "G"]) {
+        [None, None] if names.len() == 2 => of(["0", "1"]),
+        places => places,
+    };
+    let [Some(exponents), Some(scales)] = places else {
+        let expected = "R (exponent) and G (scale), or two planes of an array";
+        return Err(Error::file(path, "channels", names.join(", "), expected));
+    };
+    if (map_rows, map_cols) != (rows, cols) {
+        let found = format!("{map_cols} × {map_rows} texels");
+        return Err(Error::file(path, "size", found, format!("{cols} × {rows}, as the heights")));
+    }
+    let all = planes[exponents].iter().zip(&planes[scales]);
+    let map: Vec<PhongSpecular> =
+        all.map(|(e, s)| PhongSpecular { exponent: *e, scale: *s }).collect();
+    match map.iter().enumerate().find_map(|(i, phong)| Some((i, phong.out_of_range()?))) {
+        Some((i, (what, found, expected))) => {
+            let place = format!("row {}, column {}", i / cols, i % cols);
+            Err(Error::file(path, place, format!("{what} {found}"), expected))
+        }
+        None => Ok(Specular::Map(map)),
     }
 }
 

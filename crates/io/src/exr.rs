@@ -1,8 +1,8 @@
 //! OpenEXR: reads any channel of any flat file; writes one part with f32 channels and ZIP.
 
+use crate::atomic::{Temporary, Written};
 use crate::heights::Raster;
 use crate::open;
-use crate::write::atomic::{Temporary, Written};
 use ::exr::block::{self, UncompressedBlock, reader::ChunksReader, writer::ChunksWriter};
 use ::exr::meta::attribute::{AttributeValue, ChannelDescription, LineOrder, SampleType, Text};
 use ::exr::meta::{BlockDescription, MetaData, header::Header};
@@ -146,22 +146,13 @@ impl<'a> ExrFile<'a> {
 
 /// Samples of one line, in native byte order as the decoder leaves them.
 fn unpack<T>(bytes: &[u8], kind: SampleType, target: &mut [T], narrow: &impl Fn(f64) -> T) {
-    match kind {
-        SampleType::F16 => {
-            for (t, b) in target.iter_mut().zip(bytes.as_chunks::<2>().0) {
-                *t = narrow(f16::from_ne_bytes(*b).to_f64());
-            }
-        }
-        SampleType::F32 => {
-            for (t, b) in target.iter_mut().zip(bytes.as_chunks::<4>().0) {
-                *t = narrow(f64::from(f32::from_ne_bytes(*b)));
-            }
-        }
-        SampleType::U32 => {
-            for (t, b) in target.iter_mut().zip(bytes.as_chunks::<4>().0) {
-                *t = narrow(f64::from(u32::from_ne_bytes(*b)));
-            }
-        }
+    let (halves, words) = (bytes.as_chunks::<2>().0, bytes.as_chunks::<4>().0);
+    for (i, t) in target.iter_mut().enumerate() {
+        *t = narrow(match kind {
+            SampleType::F16 => f16::from_ne_bytes(halves[i]).to_f64(),
+            SampleType::F32 => f64::from(f32::from_ne_bytes(words[i])),
+            SampleType::U32 => f64::from(u32::from_ne_bytes(words[i])),
+        });
     }
 }
 
@@ -264,6 +255,13 @@ pub struct Layer<'a> {
     pub name: String,
     /// The samples.
     pub channels: Channels<'a>,
+}
+
+impl<'a> Layer<'a> {
+    /// One channel without a prefix.
+    pub fn scalar(name: &'a str, values: &'a [f32]) -> Self {
+        Self { name: String::new(), channels: Channels::Scalar(name, values) }
+    }
 }
 
 /// The samples of a [`Layer`], row-major, NaN allowed.

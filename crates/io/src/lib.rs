@@ -9,31 +9,29 @@
 
 #![deny(clippy::missing_errors_doc)]
 
+mod atomic;
+mod component;
 mod environment;
 mod exr;
 mod heights;
+mod ktx2;
 mod npy;
 mod npz;
 mod open;
 mod planes;
 mod png;
-mod specular;
 mod visible_points;
-mod write;
 
-pub use environment::{parse_environment, read_albedo, read_environment};
+pub use atomic::{
+    ResultFolder, Written, abandon_unfinished, check_room, check_writable, write_json, write_text,
+};
+pub use component::Component;
+pub use environment::{parse_environment, read_albedo, read_environment, read_specular};
 pub use exr::{Channels, Layer, read_metadata, write_exr, write_exr_aside};
 pub use heights::size::height_size;
 pub use heights::{HeightOptions, parse_heights, read_heights};
+pub use ktx2::{Ktx2Writer, TexelFormat};
 pub use npy::{NpyWriter, write_npy_f32, write_npy_heights};
 pub use planes::{Planes, parse_planes, read_planes};
-pub use png::{encode_png, write_png};
-pub use specular::read_specular;
+pub use png::{encode_png, write_codes_aside, write_png};
 pub use visible_points::{read_visible_points, write_visible_points};
-pub use write::atomic::{
-    ResultFolder, Written, abandon_unfinished, check_writable, write_json, write_text,
-};
-pub use write::codes::write_codes_aside;
-pub use write::component::Component;
-pub use write::ktx2::{Ktx2Writer, TexelFormat};
-pub use write::room::check_room;

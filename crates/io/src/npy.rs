@@ -1,8 +1,8 @@
 //! NumPy arrays: a reader of every integer and float type, a streaming writer of f32.
 
+use crate::atomic::{Temporary, Written};
 use crate::heights::Raster;
 use crate::open;
-use crate::write::atomic::{Temporary, Written};
 use half::f16;
 use ridgelight::scene::HeightField;
 use ridgelight::{Error, Result};
@@ -210,7 +210,8 @@ impl NpyWriter {
         let left = shape.iter().try_fold(1_usize, |n, d| n.checked_mul(*d)).ok_or_else(|| {
             Error::setting("shape", format!("{shape:?}"), "a product within the address space")
         })?;
-        let file = begin(path, "<f4", shape)?;
+        let mut file = Temporary::create(path)?;
+        file.write(&header("<f4", shape)?)?;
         Ok(Self { file, shape: shape.to_vec(), left })
     }
 
@@ -257,13 +258,6 @@ impl NpyWriter {
     }
 }
 
-/// A file with an array's header, before its values.
-fn begin(path: &Path, descr: &str, shape: &[usize]) -> Result<Temporary> {
-    let mut file = Temporary::create(path)?;
-    file.write(&header(descr, shape)?)?;
-    Ok(file)
-}
-
 /// Writes a field's absolute heights as an array of little-endian f64, in its length unit, with
 /// voids as NaN (read it with no-data NaN). A field read back has the same heights to a rounding of
 /// f32, relative to its own base height.
@@ -271,16 +265,12 @@ fn begin(path: &Path, descr: &str, shape: &[usize]) -> Result<Temporary> {
 /// # Errors
 /// A write error.
 pub fn write_npy_heights(path: &Path, field: &HeightField) -> Result<()> {
-    let mut file = begin(path, "<f8", &[field.rows(), field.cols()])?;
-    let is_void = |i: usize| field.voids().is_some_and(|v| v[i]);
-    for (n, heights) in field.heights_m().chunks(4096).enumerate() {
-        let absolute = |(i, h): (usize, &f32)| match is_void(4096 * n + i) {
-            true => f64::NAN,
-            false => field.base_m() + f64::from(*h),
-        };
-        let bytes: Vec<u8> =
-            heights.iter().enumerate().flat_map(|h| absolute(h).to_le_bytes()).collect();
-        file.write(&bytes)?;
+    let mut file = Temporary::create(path)?;
+    file.write(&header("<f8", &[field.rows(), field.cols()])?)?;
+    for (i, height) in field.heights_m().iter().enumerate() {
+        let is_void = field.voids().is_some_and(|v| v[i]);
+        let absolute = if is_void { f64::NAN } else { field.base_m() + f64::from(*height) };
+        file.write(&absolute.to_le_bytes())?;
     }
     file.finish()
 }

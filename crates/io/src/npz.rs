@@ -1,7 +1,6 @@
 //! NumPy archives: a ZIP of `.npy` members with heights, and their cell size in scalars.
 
-use crate::heights::Raster;
-use crate::heights::geo::{Cell, looks_like_degrees};
+use crate::heights::{Cell, Raster, looks_like_degrees};
 use crate::npy::{self, Array};
 use crate::open;
 use ridgelight::{Error, Result};

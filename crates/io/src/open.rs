@@ -13,6 +13,7 @@ const FILE_LIMIT: u64 = 16 * SAMPLE_LIMIT;
 pub(crate) const DEFLATE_RATIO: u64 = 1032;
 
 /// A file format that this crate reads.
+/// In the order of [`FORMATS`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Format {
     Png,
@@ -25,65 +26,42 @@ pub(crate) enum Format {
     Hdr,
 }
 
+/// What messages call a format, its extensions (lower case), and its signatures.
+type About = (Format, &'static str, &'static [&'static str], &'static [&'static [u8]]);
+
+/// SRTM tiles have no signature. Read as a tile, each signature would be a height above 18 000 m or
+/// below -30 000 m, so no tile is mistaken for another format.
+const FORMATS: [About; 8] = [
+    (Format::Png, "a PNG", &["png"], &[b"\x89PNG\r\n\x1a\n"]),
+    (Format::Exr, "an OpenEXR file", &["exr"], &[b"\x76\x2f\x31\x01"]),
+    (Format::Tiff, "a TIFF", &["tif", "tiff"], &[b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"]),
+    (Format::Hgt, "an SRTM tile", &["hgt"], &[]),
+    (Format::Asc, "an ESRI ASCII grid", &["asc"], &[]),
+    (Format::Npy, "an NPY array", &["npy"], &[b"\x93NUMPY"]),
+    (Format::Npz, "a ZIP archive (NPZ)", &["npz"], &[b"PK\x03\x04"]),
+    (Format::Hdr, "a Radiance HDR picture", &["hdr", "pic"], &[b"#?"]),
+];
+
 impl Format {
     /// With its article, for messages.
     fn named(self) -> &'static str {
-        match self {
-            Format::Png => "a PNG",
-            Format::Exr => "an OpenEXR file",
-            Format::Tiff => "a TIFF",
-            Format::Hgt => "an SRTM tile",
-            Format::Asc => "an ESRI ASCII grid",
-            Format::Npy => "an NPY array",
-            Format::Npz => "a ZIP archive (NPZ)",
-            Format::Hdr => "a Radiance HDR picture",
-        }
+        FORMATS[self as usize].1
     }
 
-    /// The usual extension, for messages.
-    fn extensions(self) -> &'static str {
-        match self {
-            Format::Png => ".png",
-            Format::Exr => ".exr",
-            Format::Tiff => ".tif .tiff",
-            Format::Hgt => ".hgt",
-            Format::Asc => ".asc",
-            Format::Npy => ".npy",
-            Format::Npz => ".npz",
-            Format::Hdr => ".hdr .pic",
-        }
+    /// The usual extensions, for messages.
+    fn extensions(self) -> String {
+        FORMATS[self as usize].2.iter().map(|e| format!(" .{e}")).collect()
     }
 
     /// By the name's extension, case-insensitive.
     pub fn of_name(path: &Path) -> Option<Self> {
-        match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {
-            "png" => Some(Format::Png),
-            "exr" => Some(Format::Exr),
-            "tif" | "tiff" => Some(Format::Tiff),
-            "hgt" => Some(Format::Hgt),
-            "asc" => Some(Format::Asc),
-            "npy" => Some(Format::Npy),
-            "npz" => Some(Format::Npz),
-            "hdr" | "pic" => Some(Format::Hdr),
-            _ => None,
-        }
+        let extension = path.extension()?.to_str()?.to_ascii_lowercase();
+        Some(FORMATS.iter().find(|about| about.2.contains(&extension.as_str()))?.0)
     }
 
-    /// By signature. SRTM tiles have none. Read as a tile, each signature would be a height above
-    /// 18 000 m or below -30 000 m, so no tile is mistaken for another format.
     fn of_bytes(bytes: &[u8]) -> Option<Self> {
-        const STARTS: [(&[u8], Format); 9] = [
-            (b"\x89PNG\r\n\x1a\n", Format::Png),
-            (b"\x76\x2f\x31\x01", Format::Exr),
-            (b"II*\0", Format::Tiff),
-            (b"MM\0*", Format::Tiff),
-            (b"II+\0", Format::Tiff),
-            (b"MM\0+", Format::Tiff),
-            (b"\x93NUMPY", Format::Npy),
-            (b"PK\x03\x04", Format::Npz),
-            (b"#?", Format::Hdr),
-        ];
-        STARTS.iter().find(|(start, _)| bytes.starts_with(start)).map(|(_, format)| *format)
+        let has = |about: &&About| about.3.iter().any(|start| bytes.starts_with(start));
+        Some(FORMATS.iter().find(has)?.0)
     }
 }
 
@@ -94,8 +72,8 @@ pub(crate) fn format(path: &Path, bytes: &[u8], accepted: &[Format]) -> Result<F
             Some(extension) => format!("the extension .{}", extension.display()),
             None => "no extension".into(),
         };
-        let names: Vec<_> = accepted.iter().map(|f| f.extensions()).collect();
-        Error::file(path, "name", found, format!("one of {}", names.join(" ")))
+        let names: String = accepted.iter().map(|f| f.extensions()).collect();
+        Error::file(path, "name", found, format!("one of{names}"))
     })?;
     if bytes.is_empty() {
         return Err(Error::file(path, "header", "an empty file", format.named()));

@@ -1,9 +1,9 @@
-//! PNG: grey heights, colour maps, and pictures of results.
+//! PNG: grey heights, colour maps, pictures of results, and samples that are numbers.
 
+use crate::atomic::{Temporary, Written};
 use crate::heights::Raster;
 use crate::open;
-use crate::write::atomic::Temporary;
-use ::png::{BitDepth, ColorType as Kind, Encoder, EncodingError};
+use ::png::{BitDepth, ColorType as Kind, Encoder, ScaledFloat};
 use image::codecs::png::PngDecoder;
 use image::{ColorType, ImageDecoder, ImageError, Limits};
 use ridgelight::scene::Tone;
@@ -172,11 +172,6 @@ pub fn encode_png(
         let place = format!("picture at row {}, column {}", i / cols, i % cols);
         return Err(Error::setting(place, "NaN", "a number, or a transparent pixel"));
     }
-    let side = |n: usize| {
-        u32::try_from(n).map_err(|_| Error::setting("picture", n.to_string(), "a side below 2³²"))
-    };
-    let (width, height) = (side(cols)?, side(rows)?);
-
     let mut samples = Vec::with_capacity(rgb.len() * if transparent.is_some() { 4 } else { 3 });
     for (i, texel) in rgb.iter().enumerate() {
         let hidden = hidden(i);
@@ -186,32 +181,88 @@ pub fn encode_png(
         }
     }
     let kind = if transparent.is_some() { Kind::Rgba } else { Kind::Rgb };
-    let mut png = Vec::new();
-    packed(&mut png, [width, height], kind, &samples, metadata)
-        .map_err(|e| Error::setting("picture", open::complaint(e), "one that PNG can hold"))?;
-    Ok(png)
+    packed([cols, rows], (kind, BitDepth::Eight), Meaning::Colours, &samples, metadata)
+}
+
+/// Writes samples of 8 or 16 bits (big-endian) unchanged. 1 to 4 channels are grey, grey with
+/// alpha, RGB and RGBA.
+///
+/// The file waits beside its destination. Its gAMA chunk is 1 (linear). `metadata` becomes text
+/// chunks, as in [`write_png`].
+///
+/// # Errors
+/// Samples that are not `rows`·`cols` pixels, other channel counts or depths, names that PNG does
+/// not allow, a destination that cannot be written.
+pub fn write_codes_aside(
+    path: &Path,
+    [cols, rows]: [usize; 2],
+    (channels, bits): (usize, u32),
+    samples: &[u8],
+    metadata: &[(String, String)],
+) -> Result<Written> {
+    let colour = match channels {
+        1 => Kind::Grayscale,
+        2 => Kind::GrayscaleAlpha,
+        3 => Kind::Rgb,
+        4 => Kind::Rgba,
+        n => return Err(Error::setting("channels", n.to_string(), "1 to 4")),
+    };
+    let depth = match bits {
+        8 => BitDepth::Eight,
+        16 => BitDepth::Sixteen,
+        n => return Err(Error::setting("bits a sample", n.to_string(), "8 or 16")),
+    };
+    let expected = rows * cols * channels * bits as usize / 8;
+    if samples.len() != expected {
+        let found = format!("{} bytes", samples.len());
+        return Err(Error::setting("samples", found, format!("{expected}")));
+    }
+    let png = packed([cols, rows], (colour, depth), Meaning::Numbers, samples, metadata)?;
+    let mut file = Temporary::create(path)?;
+    file.write(&png)?;
+    file.close()
+}
+
+/// What samples are.
+#[derive(PartialEq)]
+enum Meaning {
+    /// sRGB. Texts are tEXt where they are ASCII.
+    Colours,
+    /// Linear: a gAMA chunk of 1.
+    Numbers,
 }
 
 fn packed(
-    png: &mut Vec<u8>,
-    [width, height]: [u32; 2],
-    kind: Kind,
+    [cols, rows]: [usize; 2],
+    (kind, depth): (Kind, BitDepth),
+    meaning: Meaning,
     samples: &[u8],
     metadata: &[(String, String)],
-) -> std::result::Result<(), EncodingError> {
-    let mut encoder = Encoder::new(png, width, height);
+) -> Result<Vec<u8>> {
+    let side = |n: usize| {
+        let wrong = || Error::setting("picture", n.to_string(), "a side of 1 to 2³¹");
+        u32::try_from(n).ok().filter(|n| *n > 0).ok_or_else(wrong)
+    };
+    let mut png = Vec::new();
+    let mut encoder = Encoder::new(&mut png, side(cols)?, side(rows)?);
     encoder.set_color(kind);
-    encoder.set_depth(BitDepth::Eight);
-    for (name, text) in metadata {
-        if text.is_ascii() {
-            encoder.add_text_chunk(name.clone(), text.clone())?;
-        } else {
-            encoder.add_itxt_chunk(name.clone(), text.clone())?;
-        }
+    encoder.set_depth(depth);
+    if meaning == Meaning::Numbers {
+        encoder.set_source_gamma(ScaledFloat::new(1.0));
     }
-    let mut writer = encoder.write_header()?;
-    writer.write_image_data(samples)?;
-    writer.finish()
+    let write = || {
+        for (name, text) in metadata {
+            match meaning == Meaning::Colours && text.is_ascii() {
+                true => encoder.add_text_chunk(name.clone(), text.clone())?,
+                false => encoder.add_itxt_chunk(name.clone(), text.clone())?,
+            }
+        }
+        let mut writer = encoder.write_header()?;
+        writer.write_image_data(samples)?;
+        writer.finish()
+    };
+    write().map_err(|e| Error::setting("picture", open::complaint(e), "one that PNG can hold"))?;
+    Ok(png)
 }
 
 #[cfg(test)]

@@ -6,10 +6,10 @@
 //! [N, 3] f8: east, north, up. `lowest_direction_z` f8. `field_hash` [8] u1, little-endian: hash of
 //! the source field.
 
+use crate::atomic::Temporary;
 use crate::npy::{self, Array};
 use crate::npz;
 use crate::open;
-use crate::write::atomic::Temporary;
 use glam::DVec3;
 use ridgelight::scene::{Border, Directions, HeightField, VisiblePoint, VisiblePoints};
 use ridgelight::{Error, Result};

@@ -26,7 +26,7 @@ use std::path::{Path, PathBuf};
 use ridgelight::gpu::Pixels;
 use ridgelight::{Error, Result};
 use ridgelight_io as files;
-use ridgelight_io::{Channels, Layer, Planes};
+use ridgelight_io::{Layer, Planes};
 
 /// Planes of an image of `rows` × `cols` texels: R, G and B of a colour without its alpha, Y of one
 /// channel, or 0, 1, 2 … of layers.
@@ -171,11 +171,7 @@ fn write(path: &Path, planes: &Planes) -> Result<()> {
 
 fn write_exr(path: &Path, planes: &Planes) -> Result<()> {
     let all = planes.names.iter().zip(&planes.planes);
-    let layer = |name: &String, values| Layer {
-        name: name.clone(),
-        channels: Channels::Scalar("", values),
-    };
-    let layers: Vec<Layer> = all.map(|(name, values)| layer(name, values)).collect();
+    let layers: Vec<Layer> = all.map(|(name, values)| Layer::scalar(name, values)).collect();
     files::write_exr(path, planes.rows, planes.cols, &layers, &[])
 }
 

@@ -1,34 +1,79 @@
-//! A bake before anything runs: its files, memory, plans and settings.
+//! A bake before anything runs: its scene, files, memory, plans and settings.
 
-use ridgelight::plan::{Limits, Plan};
+use std::cell::OnceCell;
+
+use ridgelight::gpu::Headless;
+use ridgelight::plan::{self, Limits, Plan};
+use ridgelight::scene::{Border, Directions, HeightField, Quality, Scatter, Scene, VisiblePoints};
 use ridgelight::{Error, Result};
+use ridgelight_bake::{Angles, HorizonSums};
 
-use super::kinds::{self, Lit, Making, OfDirections, Source};
+use super::kinds::{self, Kind, Map, OfDirections, Say, Source, Table};
 use super::map::{Format, Wanted};
 use super::{MANIFEST, request};
 use crate::horizon;
 
 /// What is known before anything runs.
 pub struct Job<'a> {
-    pub lit: Lit<'a>,
-    pub wanted: Vec<Wanted>,
-    pub making: Vec<Making>,
+    pub scene: &'a Scene,
+    pub quality: &'a Quality,
+    pub limits: Limits,
+    /// Scattered light; none without bounces.
+    pub scatter: Option<Scatter>,
+    /// Directions in which texels find visible points.
+    pub around: &'a Directions,
+    /// Of lights and views.
+    pub angles: Angles,
+    /// Outward and inward curvature of the base surface, 1/m.
+    pub curvature: Option<[f64; 2]>,
+    /// Of the light and view pairs between the table's angles.
+    pub seed: u32,
+    /// The table that `brdf`, `brdf-factors` and `brdf-harmonics` share, made on first use.
+    pub table: OnceCell<Table>,
+    pub maps: Vec<(Wanted, Map)>,
 }
 
 impl Job<'_> {
-    fn grid_points(&self) -> usize {
-        self.lit.scene.field.heights_m().len()
+    pub fn field(&self) -> &HeightField {
+        &self.scene.field
+    }
+
+    pub fn border(&self) -> Border {
+        self.scene.surface.border
+    }
+
+    pub fn grid_points(&self) -> usize {
+        self.field().heights_m().len()
+    }
+
+    pub fn sh_order(&self) -> usize {
+        self.quality.sh_order as usize
+    }
+
+    /// Plans the visible points of scattered light.
+    pub fn points_plan(&self, limits: &Limits) -> Result<Plan> {
+        plan::visible_points(self.field(), self.border(), self.around, limits)
+    }
+
+    /// Visible points of scattered light.
+    pub fn points(&self, gpu: &mut Headless, say: Say) -> Result<VisiblePoints> {
+        say(format!("visible points in {} directions", self.around.count()));
+        gpu.visible_points((self.field(), self.border()), self.around, &self.limits)
+    }
+
+    pub fn kinds(&self) -> impl Iterator<Item = &'static Kind> {
+        self.maps.iter().map(|(wanted, _)| wanted.kind)
     }
 
     /// Every file and an upper bound of its bytes.
     pub fn files(&self) -> Vec<(String, u64)> {
-        let pairs = self.wanted.iter().zip(&self.making);
+        let maps = self.maps.iter();
         let mut all: Vec<_> =
-            pairs.flat_map(|(w, m)| w.files(&m.map, self.grid_points())).collect();
+            maps.flat_map(|(wanted, map)| wanted.files(map, self.grid_points())).collect();
         // The manifest: each file and its decoding, each plane's name, each direction's three
         // numbers.
-        let planes: usize = self.making.iter().map(|m| m.map.planes.len()).sum();
-        let directions = self.lit.around.count() + self.making.len() * self.lit.angles.count();
+        let planes: usize = self.maps.iter().map(|(_, map)| map.planes.len()).sum();
+        let directions = self.around.count() + self.maps.len() * self.angles.count();
         let listed = 2048 * all.len() + 80 * planes + 160 * directions;
         all.push((MANIFEST.into(), 65_536 + listed as u64));
         all
@@ -37,37 +82,41 @@ impl Job<'_> {
     /// Bytes in this process: sums, planes that wait for their files, normals, and azimuths read
     /// back.
     pub fn host_bytes(&self, limits: &Limits) -> u64 {
-        let (grid_points, field) = (self.grid_points(), &self.lit.scene.field);
-        let of = |(w, m): (&Wanted, &Making)| {
-            m.source.bytes(&self.lit) + w.held_bytes(&m.map, grid_points)
+        let grid_points = self.grid_points();
+        let of_kind = |kind: &Kind| match kind.source {
+            Source::Horizons => 0,
+            Source::Sums(map) => HorizonSums::bytes(&*map(self), grid_points),
+            Source::Directions(of) => (of.bytes)(self) * grid_points as u64,
+            Source::Light(of) => (of.bytes)(self),
         };
-        let pairs = self.wanted.iter().zip(&self.making);
-        let azimuths = u64::from(horizon::at_once(field, limits).min(self.lit.quality.azimuths));
-        pairs.map(of).sum::<u64>() + (24 + 4 * azimuths) * grid_points as u64
+        let maps = self.maps.iter();
+        let maps = maps.map(|(w, map)| of_kind(w.kind) + w.held_bytes(map, grid_points));
+        let azimuths = horizon::at_once(self.field(), limits).min(self.quality.azimuths);
+        maps.sum::<u64>() + (24 + 4 * u64::from(azimuths)) * grid_points as u64
     }
 
     /// Kinds that trace directions.
     fn of_directions(&self) -> impl Iterator<Item = OfDirections> {
-        self.making.iter().filter_map(|m| match m.source {
+        self.kinds().filter_map(|kind| match kind.source {
             Source::Directions(of) => Some(of),
-            Source::Horizons(_) | Source::Light(_) => None,
+            _ => None,
         })
     }
 
     /// Refuses a .ktx2 with more layers than an image of the device can have.
     pub fn check_layers(&self, limits: &Limits) -> Result<()> {
-        for (wanted, making) in self.wanted.iter().zip(&self.making) {
-            let layers = wanted.layers(&making.map);
-            let is_read = wanted.formats.contains(&Format::Ktx2) && making.map.is_array;
-            if !is_read || layers <= limits.image_layers as usize {
+        let most = limits.image_layers;
+        for (wanted, map) in &self.maps {
+            let layers = wanted.layers(map);
+            let is_read = wanted.formats.contains(&Format::Ktx2) && map.is_array;
+            if !is_read || layers <= most as usize {
                 continue;
             }
-            let flag = match &making.source {
-                Source::Horizons(_) => "--azimuths",
+            let flag = match wanted.kind.source {
+                Source::Horizons | Source::Sums(_) => "--azimuths",
                 Source::Directions(_) => "--directions",
                 Source::Light(_) => "--angles",
             };
-            let most = limits.image_layers;
             return Err(Error::Limit {
                 what: format!("the .ktx2 of {}", wanted.kind.name),
                 needs: format!("{layers} layers"),
@@ -79,47 +128,37 @@ impl Job<'_> {
 
     /// Why a flag changes nothing, where the kinds know better than the plans.
     pub fn idle_reason(&self, setting: &str) -> Option<String> {
-        let names: Vec<&str> = self.wanted.iter().map(|w| w.kind.name).collect();
-        let has_light = self.wanted.iter().any(|w| request::is_light(w.kind));
-        let is_of_bounces = setting.starts_with("bounce");
-        if is_of_bounces && !has_light {
-            return Some(format!("without a kind that scatters light: {}", request::lights()));
+        if setting.starts_with("bounce") {
+            return Some(match self.has(Kind::is_light) {
+                false => format!("without a kind that scatters light: {}", request::lights()),
+                true => "for these kinds: --paths scatter the light".into(),
+            });
         }
-        if is_of_bounces {
-            return Some("for these kinds: --paths scatter the light".into());
-        }
-        (!self.has_horizons() && !self.has_direct()).then(|| format!("for {}", names.join(", ")))
+        let names: Vec<&str> = self.kinds().map(|kind| kind.name).collect();
+        (!self.has(Kind::has_horizons) && !self.has(Kind::is_lit))
+            .then(|| format!("for {}", names.join(", ")))
     }
 
-    /// Kinds that the scene's lights illuminate.
-    fn has_direct(&self) -> bool {
-        self.wanted.iter().any(|w| request::is_lit(w.kind))
-    }
-
-    pub fn has_horizons(&self) -> bool {
-        self.making.iter().any(|m| matches!(m.source, Source::Horizons(_)))
-    }
-
-    pub fn traces_directions(&self) -> bool {
-        self.making.iter().any(|m| !matches!(m.source, Source::Horizons(_)))
+    /// Whether any kind is so.
+    pub fn has(&self, of: fn(&Kind) -> bool) -> bool {
+        self.kinds().any(of)
     }
 
     /// Plans of one batch of azimuths, if any, then of each kind of directions and of light.
     pub fn plans(&self, limits: &Limits) -> Result<Vec<Plan>> {
         self.check_layers(limits)?;
-        let (field, border) = (&self.lit.scene.field, self.lit.scene.surface.border);
         let mut all = Vec::new();
-        if self.has_horizons() {
-            let (most, quality) = (horizon::at_once(field, limits), self.lit.quality);
-            all.push(horizon::plan_from(field, border, quality, limits, (0, most), false)?);
+        if self.has(Kind::has_horizons) {
+            let batch = (0, horizon::at_once(self.field(), limits));
+            let (field, border) = (self.field(), self.border());
+            all.push(horizon::plan_from(field, border, self.quality, limits, batch, false)?);
         }
         for of in self.of_directions() {
-            let Lit { around, curvature, .. } = self.lit;
-            all.push((of.plan)(field, border, around, curvature, limits)?);
+            all.push((of.plan)(self, limits)?);
         }
-        for making in &self.making {
-            if let Source::Light(of) = making.source {
-                all.extend((of.plans)(&self.lit, limits)?);
+        for kind in self.kinds() {
+            if let Source::Light(of) = kind.source {
+                all.extend((of.plans)(self, limits)?);
             }
         }
         Ok(all)
@@ -127,39 +166,37 @@ impl Job<'_> {
 
     /// Settings used: those of the first plan and those that its kinds add.
     pub fn used(&self, limits: &Limits) -> Result<Vec<(String, String)>> {
-        let Lit { scene, quality, .. } = &self.lit;
-        let mut used = match self.has_horizons() {
-            true => horizon::used(&scene.field, scene.surface.border, quality, limits, false)?,
+        let has_horizons = self.has(Kind::has_horizons);
+        let mut used = match has_horizons {
+            true => horizon::used(self.field(), self.border(), self.quality, limits, false)?,
             false => first(self.plans(limits)?).settings,
         };
-        let has = |of: fn(&str) -> bool| self.wanted.iter().any(|w| of(w.kind.name));
-        if has(|name| name.starts_with("sh-") || name == "brdf-harmonics") {
-            used.push(("sh_order".into(), quality.sh_order.to_string()));
+        let has_scatter = self.has(|kind| kind.name == "scatter");
+        if self.has(|kind| kind.name.starts_with("sh-") || kind.name == "brdf-harmonics") {
+            used.push(("sh_order".into(), self.quality.sh_order.to_string()));
         }
-        let is_light = self.wanted.iter().any(|w| request::is_light(w.kind));
+        let is_light = self.has(Kind::is_light);
         if is_light {
-            let bounces = self.lit.scatter.map_or(0, |scatter| scatter.bounces);
+            let bounces = self.scatter.map_or(0, |scatter| scatter.bounces);
             used.retain(|(name, _)| name != "bounces");
             used.push(("bounces".into(), bounces.to_string()));
         }
-        if let Some(scatter) = self.lit.scatter.filter(|_| is_light) {
+        if let Some(scatter) = self.scatter.filter(|_| is_light) {
             // A plan counts the directions of its part.
             used.retain(|(name, _)| !["paths", "seed"].contains(&name.as_str()));
             used.push(("paths".into(), scatter.paths.to_string()));
             used.push(("seed".into(), scatter.seed.to_string()));
-            if has(|name| name == "scatter") {
-                let traced = kinds::paths(&self.lit, limits)?;
-                used.push(("paths_used".into(), traced.to_string()));
+            if has_scatter {
+                used.push(("paths_used".into(), kinds::paths(self, limits)?.to_string()));
             }
         }
-        if self.has_direct() {
+        if self.has(Kind::is_lit) {
             // The bounce engine of paths is not a horizon method.
-            used.retain(|(name, _)| name != "method" || self.has_horizons());
+            used.retain(|(name, _)| name != "method" || has_horizons);
             // Light fields find specular light along paths.
-            let is_whole = has(|name| name == "scatter");
-            let diffuse = if is_whole { None } else { Some(kinds::diffuse(&self.lit)) };
-            let scene = diffuse.as_ref().unwrap_or(scene);
-            let direct = kinds::direct_plan(&self.lit, scene, limits)?.settings;
+            let diffuse = (!has_scatter).then(|| kinds::diffuse(self));
+            let scene = diffuse.as_ref().unwrap_or(self.scene);
+            let direct = kinds::direct_plan(self, scene, limits)?.settings;
             let is_new = |(name, _): &(String, String)| used.iter().all(|(n, _)| n != name);
             let more: Vec<_> = direct.into_iter().filter(is_new).collect();
             used.extend(more);

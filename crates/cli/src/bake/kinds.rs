@@ -1,51 +1,21 @@
-//! The kinds of map. Each has a static entry in [`KINDS`].
+//! The kinds of map: names, help, encodings, file formats, decoders and where values come from.
 
-mod bent_normal;
-mod brdf;
-mod brdf_factors;
-mod brdf_harmonics;
-mod btf;
-mod curved_ellipse;
-mod ellipse;
+mod directions;
 mod far_field;
-mod harmonics;
-mod horizon;
-mod light_field;
-mod scatter;
-mod sky;
-mod visible_points;
+mod horizons;
+mod light;
+mod reflection;
 
-use std::cell::OnceCell;
-
-use glam::DVec3;
 use ridgelight::Result;
 use ridgelight::gpu::Headless;
 use ridgelight::plan::{Limits, Plan};
-use ridgelight::scene::{Border, Directions, HeightField, Quality, Scatter, Scene};
-use ridgelight_bake::{Angles, Encoding, HorizonMap, HorizonSums, Ray};
+use ridgelight_bake::{self as bake, Encoding, HorizonMap};
 
-use super::map::{Format, MapFiles};
+use super::job::Job;
+use super::map::{Format, MapFiles, Wanted};
 pub use far_field::{diffuse, direct_plan, rays};
-pub use scatter::paths;
-
-/// All kinds, in the order of --help.
-pub static KINDS: [&Kind; 15] = [
-    &horizon::KIND,
-    &sky::SKY_VIEW,
-    &sky::VISIBLE_SKY,
-    &bent_normal::KIND,
-    &harmonics::SH_VISIBILITY,
-    &harmonics::SH_TRANSFER,
-    &ellipse::KIND,
-    &curved_ellipse::KIND,
-    &visible_points::KIND,
-    &scatter::KIND,
-    &brdf::KIND,
-    &brdf_factors::KIND,
-    &brdf_harmonics::KIND,
-    &btf::KIND,
-    &light_field::KIND,
-];
+pub use light::paths;
+pub use reflection::Table;
 
 /// A kind of map.
 pub struct Kind {
@@ -59,25 +29,9 @@ pub struct Kind {
     pub formats: &'static [Format],
     /// GLSL that reads the .ktx2, without the constants of a [`Map`].
     pub decoder: &'static str,
-    /// Starts a map of this kind.
-    pub begin: fn(&Request) -> Result<Making>,
-}
-
-/// The request for a kind.
-pub struct Request<'a> {
-    pub border: Border,
-    pub quality: &'a Quality,
-    pub directions: &'a Directions,
-    pub angles: Angles,
-    /// Outward and inward curvature of the base surface, 1/m.
-    pub curvature: Option<[f64; 2]>,
-    pub encoding: &'static Encoding,
-    /// Whether a .ktx2 is written: its components may hold a smaller range than f32.
-    pub has_texels: bool,
-    /// Whether the surface has Phong specular.
-    pub has_specular: bool,
-    /// Of the field.
-    pub grid_points: usize,
+    /// Lays out a map of this kind and refuses settings that it cannot hold.
+    pub map: fn(&Job, &Wanted) -> Result<Map>,
+    pub source: Source,
 }
 
 /// The layout of a map in its files.
@@ -105,6 +59,7 @@ impl Map {
 }
 
 /// One value of a texel.
+#[derive(Clone, Copy)]
 pub struct Value {
     pub name: &'static str,
     pub about: &'static str,
@@ -114,44 +69,28 @@ pub struct Value {
     pub range: [f64; 2],
 }
 
-/// A kind that is being made.
-pub struct Making {
-    pub map: Map,
-    pub source: Source,
-}
-
 /// The input of a kind.
+#[derive(Clone, Copy)]
 pub enum Source {
-    Horizons(Box<dyn Maker>),
+    /// The horizons themselves, a layer for each azimuth.
+    Horizons,
+    /// A sum over the azimuths of the horizons.
+    Sums(fn(&Job) -> Box<dyn HorizonMap>),
+    /// Visibility along directions.
     Directions(OfDirections),
     Light(OfLight),
 }
 
-impl Source {
-    /// Bytes that it holds until the end.
-    pub fn bytes(&self, lit: &Lit) -> u64 {
-        match self {
-            Source::Horizons(maker) => maker.bytes(),
-            Source::Directions(of) => {
-                (of.bytes)(lit.around) * lit.scene.field.heights_m().len() as u64
-            }
-            Source::Light(of) => (of.bytes)(lit),
-        }
-    }
-}
-
-/// Plans visibility along directions, for base surfaces of two curvatures (outward and inward,
-/// 1/m).
-pub type PlanOf = fn(&HeightField, Border, &Directions, Option<[f64; 2]>, &Limits) -> Result<Plan>;
-
 /// A kind that the device computes from visibility along directions.
 #[derive(Clone, Copy)]
 pub struct OfDirections {
-    pub plan: PlanOf,
+    /// Whether directions below horizontal count: a curved base surface can raise them above.
+    pub needs_sphere: bool,
+    pub plan: fn(&Job, &Limits) -> Result<Plan>,
     /// Bytes per texel that wait for the files.
-    pub bytes: fn(&Directions) -> u64,
-    /// Writes the files.
-    pub take: fn(&DirectionsJob, &mut MapFiles) -> Result<()>,
+    pub bytes: fn(&Job) -> u64,
+    /// Writes the files from the plan's outputs, 32 bits per component.
+    pub take: fn(&Job, &[Vec<f32>], &mut MapFiles) -> Result<()>,
 }
 
 /// Reports progress.
@@ -160,13 +99,220 @@ pub type Say<'a> = &'a dyn Fn(String);
 /// A kind that is light. It needs several plans.
 #[derive(Clone, Copy)]
 pub struct OfLight {
+    /// Whether the scene's lights illuminate it.
+    pub is_lit: bool,
     /// The plans, to state their memory.
-    pub plans: fn(&Lit, &Limits) -> Result<Vec<Plan>>,
+    pub plans: fn(&Job, &Limits) -> Result<Vec<Plan>>,
     /// Bytes that it holds until the end.
-    pub bytes: fn(&Lit) -> u64,
+    pub bytes: fn(&Job) -> u64,
     /// Writes the files and reports progress.
-    pub make: fn(&mut Headless, &Lit, &mut MapFiles, Say) -> Result<()>,
+    pub make: fn(&mut Headless, &Job, &mut MapFiles, Say) -> Result<()>,
 }
+
+impl Kind {
+    /// The stem of its file names.
+    pub fn stem(&self) -> String {
+        self.name.replace('-', "_")
+    }
+
+    /// Whether it is light.
+    pub fn is_light(&self) -> bool {
+        matches!(self.source, Source::Light(_))
+    }
+
+    /// Whether the scene's lights illuminate it.
+    pub fn is_lit(&self) -> bool {
+        matches!(self.source, Source::Light(of) if of.is_lit)
+    }
+
+    /// Whether it comes from horizons; the others trace directions.
+    pub fn has_horizons(&self) -> bool {
+        matches!(self.source, Source::Horizons | Source::Sums(_))
+    }
+
+    /// Whether it is the table of reflectance, in full or in short.
+    pub fn is_table(&self) -> bool {
+        self.name.starts_with("brdf")
+    }
+
+    /// Whether its pictures store floats with a scale each.
+    pub fn is_scaled(&self) -> bool {
+        self.name == "scatter"
+    }
+}
+
+macro_rules! decoder {
+    ($stem:literal) => {
+        include_str!(concat!("../../../../shaders_glsl/decode/", $stem, ".glsl"))
+    };
+}
+
+const TABLE: OfLight = OfLight {
+    is_lit: false,
+    plans: far_field::plans,
+    bytes: reflection::bytes,
+    make: reflection::make_table,
+};
+
+/// All kinds, in the order of --help.
+pub static KINDS: [Kind; 15] = [
+    Kind {
+        name: "horizon",
+        about: "horizon elevations along --azimuths directions: a layer each",
+        encodings: &bake::HORIZON,
+        formats: &[Format::Ktx2],
+        decoder: decoder!("horizon"),
+        map: horizons::horizon,
+        source: Source::Horizons,
+    },
+    Kind {
+        name: "sky-view",
+        about: "radiance of white ground under a uniform sky of radiance 1: the unoccluded \
+            cosine-weighted share of the hemisphere about the normal",
+        encodings: &bake::SHARE,
+        formats: &[Format::Ktx2, Format::Png],
+        decoder: decoder!("sky_view"),
+        map: |_, _| Ok(horizons::share("sky_view", "1/π ∫ V max(N·e, 0) de")),
+        source: Source::Sums(|_| Box::new(bake::SkyView)),
+    },
+    Kind {
+        name: "visible-sky",
+        about: "unoccluded share of the upper hemisphere's solid angle, for any normal: the mean of \
+            1 - sin(horizon)",
+        encodings: &bake::SHARE,
+        formats: &[Format::Ktx2, Format::Png],
+        decoder: decoder!("visible_sky"),
+        map: |_, _| Ok(horizons::share("visible_sky", "1/2π ∫ V de over the upper hemisphere")),
+        source: Source::Sums(|_| Box::new(bake::VisibleSky)),
+    },
+    Kind {
+        name: "bent-normal",
+        about: "mean unoccluded direction, and the half-angle of the cone with the unoccluded solid \
+            angle",
+        encodings: &bake::BENT_NORMAL,
+        formats: &[Format::Ktx2, Format::Png],
+        decoder: decoder!("bent_normal"),
+        map: horizons::bent_normal,
+        source: Source::Sums(|_| Box::new(bake::BentNormal)),
+    },
+    Kind {
+        name: "sh-visibility",
+        about: "visibility as SH of --sh-order: ∫ V Y de",
+        encodings: &bake::COEFFICIENTS,
+        formats: &[Format::Ktx2, Format::Exr],
+        decoder: decoder!("sh_visibility"),
+        map: horizons::sh_visibility,
+        source: Source::Sums(|job| Box::new(bake::ShVisibility::new(job.sh_order()))),
+    },
+    Kind {
+        name: "sh-transfer",
+        about: "diffuse transfer of --sh-order 2 to 5: with SH light L, Σ t L is the radiance of \
+            white ground",
+        encodings: &bake::COEFFICIENTS,
+        formats: &[Format::Ktx2, Format::Exr],
+        decoder: decoder!("sh_transfer"),
+        map: horizons::sh_transfer,
+        source: Source::Sums(|job| Box::new(bake::ShTransfer::new(job.sh_order()))),
+    },
+    Kind {
+        name: "ellipse",
+        about: "six numbers for a shadow test: the ellipse in the hemisphere's plan view that holds \
+            the visible sky, fitted to --directions",
+        encodings: &bake::ELLIPSE,
+        formats: &[Format::Ktx2],
+        decoder: decoder!("ellipse"),
+        map: directions::ellipse,
+        source: Source::Directions(directions::ELLIPSE),
+    },
+    Kind {
+        name: "curved-ellipse",
+        about: "ellipses of visible sky for any small curvature of the base surface, for shadows and \
+            view visibility: five per texel, fitted to --directions on a flat base and at \
+            --curvature along both axes, with linear interpolation between",
+        encodings: &bake::CURVED_ELLIPSE,
+        formats: &[Format::Ktx2],
+        decoder: decoder!("curved_ellipse"),
+        map: directions::curved_ellipse,
+        source: Source::Directions(directions::CURVED_ELLIPSE),
+    },
+    Kind {
+        name: "visible-points",
+        about: "row and column of the grid point visible from each grid point in each of \
+            --directions: a layer each",
+        encodings: &bake::POINTS,
+        formats: &[Format::Ktx2],
+        decoder: decoder!("visible_points"),
+        map: directions::visible_points,
+        source: Source::Directions(directions::VISIBLE_POINTS),
+    },
+    Kind {
+        name: "scatter",
+        about: "exit radiance under the scene's lights with indirect light by --bounces and --paths, \
+            and its standard error",
+        encodings: &bake::RADIANCE,
+        formats: &[Format::Ktx2, Format::Exr],
+        decoder: decoder!("scatter"),
+        map: light::scatter,
+        source: Source::Light(light::SCATTER),
+    },
+    Kind {
+        name: "brdf",
+        about: "far-field reflectance of periodic ground: a table over all pairs of --angles lights \
+            and views; --bounces 0 omits indirect light",
+        encodings: &bake::REFLECTED,
+        formats: &[Format::Ktx2, Format::Npy],
+        decoder: decoder!("brdf"),
+        map: reflection::brdf,
+        source: Source::Light(TABLE),
+    },
+    Kind {
+        name: "brdf-factors",
+        about: "brdf in short: eight functions g of one direction, as layers over --angles, with \
+            brdf = Σ g(light) g(view); with --specular Σ g(light) h(view), which adds eight layers; \
+            the manifest states its error",
+        encodings: &bake::REFLECTED,
+        formats: &[Format::Ktx2, Format::Npy],
+        decoder: decoder!("brdf_factors"),
+        map: reflection::factors,
+        source: Source::Light(OfLight { make: reflection::make_factors, ..TABLE }),
+    },
+    Kind {
+        name: "brdf-harmonics",
+        about: "brdf, smooth between all directions: weights of the products of SH of --sh-order of \
+            light and view; the manifest states its error",
+        encodings: &bake::HARMONIC_WEIGHTS,
+        formats: &[Format::Ktx2, Format::Npy],
+        decoder: decoder!("brdf_harmonics"),
+        map: reflection::harmonics,
+        source: Source::Light(OfLight { make: reflection::make_harmonics, ..TABLE }),
+    },
+    Kind {
+        name: "btf",
+        about: "an image in the field's own texels for each pair of --angles lights and views: \
+            radiance under a light of irradiance 1 facing it, and the share of the view that each \
+            texel fills; --bounces 0 omits indirect light",
+        encodings: &bake::TEXELS,
+        formats: &[Format::Ktx2],
+        decoder: decoder!("btf"),
+        map: reflection::btf,
+        source: Source::Light(OfLight {
+            bytes: far_field::bytes_of_views,
+            make: reflection::make_btf,
+            ..TABLE
+        }),
+    },
+    Kind {
+        name: "light-field",
+        about: "an image in the field's own texels for each of --angles views under the scene's \
+            lights: radiance, and the share of the view that each texel fills; specular reflects \
+            suns as points and the sky along --directions",
+        encodings: &bake::TEXELS,
+        formats: &[Format::Ktx2],
+        decoder: decoder!("light_field"),
+        map: light::light_field,
+        source: Source::Light(light::LIGHT_FIELD),
+    },
+];
 
 /// A whole number among a plan's settings; the plan must have it.
 fn number(plan: &Plan, name: &str) -> u32 {
@@ -174,87 +320,16 @@ fn number(plan: &Plan, name: &str) -> u32 {
     of.and_then(|(_, value)| value.parse().ok()).expect("plans of scattered light state it")
 }
 
-/// What light is computed from.
-pub struct Lit<'a> {
-    pub scene: &'a Scene,
-    pub quality: &'a Quality,
-    pub limits: Limits,
-    /// Scattered light; none without bounces.
-    pub scatter: Option<Scatter>,
-    /// Directions in which texels find visible points.
-    pub around: &'a Directions,
-    /// Of lights and views.
-    pub angles: Angles,
-    /// Curvatures of the base surface.
-    pub curvature: Option<[f64; 2]>,
-    /// Light and view pairs between the table's angles.
-    pub seed: u32,
-    /// The table that `brdf`, `brdf-factors` and `brdf-harmonics` share, made on first use.
-    pub table: OnceCell<brdf::Table>,
+/// One channel of all texels.
+fn plane<const N: usize, T: Copy + Into<f64>>(texels: &[[T; N]], channel: usize) -> Vec<f32> {
+    texels.iter().map(|texel| texel[channel].into() as f32).collect()
 }
 
-/// The result of a plan.
-pub struct DirectionsJob<'a> {
-    pub field: &'a HeightField,
-    pub border: Border,
-    pub directions: &'a Directions,
-    pub curvature: Option<[f64; 2]>,
-    /// Components of each output, 32 bits each.
-    pub outputs: &'a [Vec<f32>],
-}
-
-/// Makes a map from the horizons of a circle of azimuths.
-pub trait Maker {
-    /// Bytes that it holds until the end.
-    fn bytes(&self) -> u64;
-
-    /// Takes one azimuth, in circle order: elevations (rad) and unit normals of all texels.
-    fn add(
-        &mut self,
-        ray: Ray,
-        elevations_rad: &[f32],
-        normals: &[DVec3],
-        files: &mut MapFiles,
-    ) -> Result<()>;
-
-    /// Writes what remains after the last azimuth.
-    fn end(self: Box<Self>, normals: &[DVec3], files: &mut MapFiles) -> Result<()>;
-}
-
-/// A kind that is a sum over azimuths.
-struct Sums {
-    summing: HorizonSums,
-    bytes: u64,
-}
-
-impl Sums {
-    fn begin(what: Box<dyn HorizonMap>, request: &Request, map: Map) -> Making {
-        // The sums, and the values computed from them.
-        let bytes = HorizonSums::bytes(&*what, request.grid_points)
-            + 4 * (what.values() * request.grid_points) as u64;
-        let summing = HorizonSums::new(what, request.grid_points);
-        Making { map, source: Source::Horizons(Box::new(Self { summing, bytes })) }
-    }
-}
-
-impl Maker for Sums {
-    fn bytes(&self) -> u64 {
-        self.bytes
-    }
-
-    fn add(
-        &mut self,
-        ray: Ray,
-        elevations_rad: &[f32],
-        normals: &[DVec3],
-        _: &mut MapFiles,
-    ) -> Result<()> {
-        self.summing.add(ray, elevations_rad, normals)
-    }
-
-    fn end(self: Box<Self>, normals: &[DVec3], files: &mut MapFiles) -> Result<()> {
-        let planes = self.summing.end(normals)?;
-        let planes: Vec<&[f32]> = planes.iter().map(Vec::as_slice).collect();
-        planes.chunks(files.planes_at_once()).try_for_each(|layer| files.take(layer))
-    }
+/// Writes a layer of texels, a plane per channel.
+fn take<const N: usize, T: Copy + Into<f64>>(
+    files: &mut MapFiles,
+    texels: &[[T; N]],
+) -> Result<()> {
+    let planes: [Vec<f32>; N] = std::array::from_fn(|channel| plane(texels, channel));
+    files.take(&planes.each_ref().map(Vec::as_slice))
 }

@@ -1,29 +1,121 @@
-//! A map's open files. Values go to all of them layer by layer.
+//! A map's files. Values go to all of them layer by layer.
 
-mod coded;
-mod notes;
-mod wanted;
-mod whole;
+mod entry;
 
 use std::path::{Path, PathBuf};
 
+use clap::ValueEnum;
 use ridgelight::Result;
 use ridgelight::scene::HeightField;
+use ridgelight_bake::Encoding;
 use ridgelight_io as files;
-use ridgelight_io::{Ktx2Writer, NpyWriter, Written};
+use ridgelight_io::{Component, Ktx2Writer, NpyWriter, TexelFormat, Written};
 use serde_json::Value as Json;
 
-use super::kinds::Map;
-use super::request;
-pub use wanted::{Format, Wanted, stem};
-pub use whole::Whole;
+use super::kinds::{Kind, Map};
+pub use entry::Whole;
 
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    Exr,
+    Png,
+    Npy,
+    Ktx2,
+}
+
+impl Format {
+    pub fn name(self) -> &'static str {
+        ["exr", "png", "npy", "ktx2"][self as usize]
+    }
+
+    /// Whether it can hold the encoded kind.
+    pub fn takes(self, kind: &Kind, encoding: &Encoding) -> bool {
+        let is_picture = encoding.component.is_normalised() && encoding.components < 4;
+        self != Format::Png || is_picture || kind.is_scaled()
+    }
+}
+
+/// A requested kind, its encoding and its formats.
+pub struct Wanted {
+    pub kind: &'static Kind,
+    pub encoding: &'static Encoding,
+    pub formats: Vec<Format>,
+}
+
+impl Wanted {
+    pub fn layers(&self, map: &Map) -> usize {
+        map.planes.len().div_ceil(self.encoding.values)
+    }
+
+    fn texels(&self) -> TexelFormat {
+        // Three components become four: devices need not sample three-component textures.
+        let count = self.encoding.components;
+        let count = if count == 3 { 4 } else { count };
+        TexelFormat { component: self.encoding.component, count }
+    }
+
+    /// The file name of a format; of a layer's picture in PNG.
+    fn file(&self, map: &Map, format: Format, layer: usize) -> String {
+        let (stem, end) = (self.kind.stem(), format.name());
+        let is_layer = map.is_array && format == Format::Png;
+        if is_layer { format!("{stem}_{layer:04}.{end}") } else { format!("{stem}.{end}") }
+    }
+
+    /// Every file and an upper bound of its bytes.
+    pub fn files(&self, map: &Map, grid_points: usize) -> Vec<(String, u64)> {
+        let (layers, grid_points) = (self.layers(map), map.texels(grid_points) as u64);
+        let (values, texel) =
+            (4 * map.planes.len() as u64 * grid_points, self.texels().bytes() as u64);
+        // ZIP adds little to incompressible data.
+        let zipped = |bytes: u64| bytes / 100 * 101 + 65_536;
+        let of = |format: &Format| match format {
+            Format::Exr => (1, zipped(values)),
+            Format::Npy => (1, values + 256),
+            Format::Ktx2 => (1, texel * layers as u64 * grid_points + 1024),
+            Format::Png => (layers, zipped((texel + 2) * grid_points)),
+        };
+        let all = self.formats.iter().flat_map(|format| {
+            let (count, bytes) = of(format);
+            (0..count).map(move |k| (self.file(map, *format, k), bytes))
+        });
+        let decoder = (format!("{}.glsl", self.kind.stem()), self.decoder(map).len() as u64);
+        all.chain([decoder]).collect()
+    }
+
+    /// Bytes that the files hold before they are written; formats that stream hold one layer.
+    pub fn held_bytes(&self, map: &Map, grid_points: usize) -> u64 {
+        let texel = self.texels().bytes();
+        let of = |format: &Format| match format {
+            Format::Exr => 4 * map.planes.len(),
+            // Pixels, and the compressed copy.
+            Format::Png => 2 * (texel + 2),
+            Format::Npy | Format::Ktx2 => texel,
+        };
+        (map.texels(grid_points) * self.formats.iter().map(of).sum::<usize>()) as u64
+    }
+
+    /// GLSL: the constants, then the decoder.
+    fn decoder(&self, map: &Map) -> String {
+        let constants: String = map.constants.iter().map(|line| format!("{line}\n")).collect();
+        constants + self.kind.decoder
+    }
+}
+
+/// A file that takes all layers; a picture takes one.
 enum Open {
-    Exr(PathBuf, Vec<Vec<f32>>),
-    Npy(PathBuf, NpyWriter),
-    Ktx2(PathBuf, Ktx2Writer),
-    /// One per layer, each with its scale.
-    Png(Vec<(PathBuf, Written, f64)>),
+    Exr(Vec<Vec<f32>>),
+    Npy(NpyWriter),
+    Ktx2(Ktx2Writer),
+    Png,
+}
+
+/// A finished file under a temporary name.
+struct Waiting {
+    file: Written,
+    path: PathBuf,
+    format: Format,
+    /// Scale of a picture's values.
+    scale: f64,
 }
 
 /// A map's files, invisible under their final names until [`Whole::place`].
@@ -34,6 +126,7 @@ pub struct MapFiles<'a> {
     folder: PathBuf,
     texts: Vec<(String, String)>,
     open: Vec<Open>,
+    waiting: Vec<Waiting>,
     taken: usize,
     /// Count of values outside their stated range, and the largest excess.
     beyond: (u64, f64),
@@ -45,8 +138,7 @@ impl<'a> MapFiles<'a> {
     /// Opens all files.
     pub fn create(
         folder: &Path,
-        wanted: Wanted,
-        map: Map,
+        (wanted, map): (Wanted, Map),
         field: &'a HeightField,
         hash: &str,
     ) -> Result<Self> {
@@ -59,11 +151,10 @@ impl<'a> MapFiles<'a> {
         ]
         .map(|(name, text)| (name.to_owned(), text.to_owned()))
         .into();
-        let path = |format: Format| folder.join(format!("{}.{}", stem(wanted.kind), format.name()));
-        let layers = map.is_array.then(|| wanted.layers(&map));
         let open = wanted.formats.iter().map(|format| {
+            let path = folder.join(wanted.file(&map, *format, 0));
             Ok(match format {
-                Format::Exr => Open::Exr(path(*format), Vec::new()),
+                Format::Exr => Open::Exr(Vec::new()),
                 Format::Npy => {
                     let mut shape = vec![map.planes.len(), size[1], size[0]];
                     if map.planes.len() == 1 && !map.is_array {
@@ -72,27 +163,33 @@ impl<'a> MapFiles<'a> {
                     if !map.axes.is_empty() {
                         shape = map.axes.iter().map(|axis| axis.1).collect();
                     }
-                    Open::Npy(path(*format), NpyWriter::create(&path(*format), &shape)?)
+                    Open::Npy(NpyWriter::create(&path, &shape)?)
                 }
                 Format::Ktx2 => {
-                    let path = path(*format);
+                    let layers = map.is_array.then(|| wanted.layers(&map));
                     let texels = wanted.texels();
-                    let writer = Ktx2Writer::create(&path, texels, size, layers, &texts)?;
-                    Open::Ktx2(path, writer)
+                    Open::Ktx2(Ktx2Writer::create(&path, texels, size, layers, &texts)?)
                 }
-                Format::Png => Open::Png(Vec::new()),
+                Format::Png => Open::Png,
             })
         });
-        let open = open.collect::<Result<_>>()?;
-        let folder = folder.to_owned();
-        let (entries, remarks) = (Vec::new(), Vec::new());
-        let (taken, beyond) = (0, (0, 0.0));
-        Ok(Self { wanted, map, field, folder, texts, open, taken, beyond, entries, remarks })
+        Ok(Self {
+            open: open.collect::<Result<_>>()?,
+            wanted,
+            map,
+            field,
+            folder: folder.to_owned(),
+            texts,
+            waiting: Vec::new(),
+            taken: 0,
+            beyond: (0, 0.0),
+            entries: Vec::new(),
+            remarks: Vec::new(),
+        })
     }
 
-    /// Its name for `--what`.
-    pub fn kind(&self) -> &'static str {
-        self.wanted.kind.name
+    pub fn kind(&self) -> &'static Kind {
+        self.wanted.kind
     }
 
     /// Adds an entry to the kind's part of the manifest.
@@ -115,18 +212,19 @@ impl<'a> MapFiles<'a> {
         self.map.size.unwrap_or([self.field.cols(), self.field.rows()])
     }
 
-    /// Planes that one layer encodes.
-    pub fn planes_at_once(&self) -> usize {
-        self.wanted.encoding.values
+    /// Takes all layers.
+    pub fn take_all(&mut self, planes: &[Vec<f32>]) -> Result<()> {
+        let planes: Vec<&[f32]> = planes.iter().map(Vec::as_slice).collect();
+        planes.chunks(self.wanted.encoding.values).try_for_each(|layer| self.take(layer))
     }
 
-    /// Takes a layer: [`planes_at_once`](Self::planes_at_once) planes, fewer in the last.
+    /// Takes a layer: as many planes as a texel has values, fewer in the last.
     pub fn take(&mut self, planes: &[&[f32]]) -> Result<()> {
         self.count_beyond(planes);
         let scale = if self.is_scaled() { self.largest(planes) } else { 1.0 };
         let (texels, picture) = self.coded(planes, scale);
         let (voids, field) = (self.voids(), self.field);
-        let masked = |plane: &[f32]| {
+        let masked = |plane: &&[f32]| {
             let mut plane = plane.to_vec();
             if voids.is_some() {
                 crate::setup::mask_voids(field, &mut plane, 1);
@@ -136,20 +234,16 @@ impl<'a> MapFiles<'a> {
         let (size, form, texts) = (self.size(), self.picture_form(), self.picture_texts(scale));
         for open in &mut self.open {
             match open {
-                Open::Exr(_, kept) => kept.extend(planes.iter().map(|plane| masked(plane))),
-                Open::Npy(_, writer) => {
-                    for plane in planes {
-                        match voids {
-                            None => writer.write(plane)?,
-                            Some(_) => writer.write(&masked(plane))?,
-                        }
-                    }
+                Open::Exr(kept) => kept.extend(planes.iter().map(masked)),
+                Open::Npy(writer) => {
+                    planes.iter().try_for_each(|plane| writer.write(&masked(plane)))?;
                 }
-                Open::Ktx2(_, writer) => writer.write(&texels)?,
-                Open::Png(kept) => {
-                    let path = self.folder.join(self.wanted.picture(&self.map, self.taken));
+                Open::Ktx2(writer) => writer.write(&texels)?,
+                Open::Png => {
+                    let name = self.wanted.file(&self.map, Format::Png, self.taken);
+                    let path = self.folder.join(name);
                     let file = files::write_codes_aside(&path, size, form, &picture, &texts)?;
-                    kept.push((path, file, scale));
+                    self.waiting.push(Waiting { file, path, format: Format::Png, scale });
                 }
             }
         }
@@ -179,8 +273,94 @@ impl<'a> MapFiles<'a> {
         self.wanted.formats.contains(&format)
     }
 
-    /// Channels of a picture: components, and alpha where there are voids.
-    fn channels(&self) -> usize {
-        self.wanted.encoding.components + usize::from(self.voids().is_some())
+    /// Whether its pictures store floats: 16 bits, scaled to each picture's largest value.
+    fn is_scaled(&self) -> bool {
+        self.has(Format::Png) && !self.wanted.encoding.component.is_normalised()
+    }
+
+    /// The component type of its pictures.
+    fn picture_component(&self) -> Component {
+        if self.is_scaled() { Component::Unorm16 } else { self.wanted.encoding.component }
+    }
+
+    /// Channels and bits of its pictures: components, and alpha where there are voids.
+    fn picture_form(&self) -> (usize, u32) {
+        let channels = self.wanted.encoding.components + usize::from(self.voids().is_some());
+        (channels, 8 * self.picture_component().bytes() as u32)
+    }
+
+    /// Text metadata of its pictures.
+    fn picture_texts(&self, scale: f64) -> Vec<(String, String)> {
+        let mut texts = self.texts.clone();
+        if self.is_scaled() {
+            texts.retain(|(name, _)| name != "ridgelight.encoding");
+            texts.push(("ridgelight.encoding".into(), "unorm16, times ridgelight.scale".into()));
+            texts.push(("ridgelight.scale".into(), scale.to_string()));
+        }
+        texts
+    }
+
+    /// The largest finite value of a layer outside voids; 1 if none is positive.
+    fn largest(&self, planes: &[&[f32]]) -> f64 {
+        let voids = self.voids();
+        let own = |plane: &&[f32]| {
+            let all = plane.iter().enumerate().filter(|(i, _)| !voids.is_some_and(|v| v[*i]));
+            all.map(|(_, v)| *v).filter(|v| v.is_finite()).fold(0.0, f32::max)
+        };
+        let largest = planes.iter().map(own).fold(0.0, f32::max);
+        if largest > 0.0 { largest.into() } else { 1.0 }
+    }
+
+    /// A layer's texels, and its picture's pixels: signed components as (v + 1)/2, divided by
+    /// `scale`, 16 bits big-endian.
+    fn coded(&self, planes: &[&[f32]], scale: f64) -> (Vec<u8>, Vec<u8>) {
+        let (encoding, voids) = (self.wanted.encoding, self.voids());
+        let (component, of_picture) = (encoding.component, self.picture_component());
+        let has_alpha = self.wanted.texels().count > encoding.components;
+        let (has_texels, has_picture) = (self.has(Format::Ktx2), self.has(Format::Png));
+        let (grid_points, (channels, bits)) = (self.size().iter().product(), self.picture_form());
+        let reserve = |is_wanted: bool, each: usize| {
+            Vec::with_capacity(if is_wanted { each * grid_points } else { 0 })
+        };
+        let mut texels = reserve(has_texels, self.wanted.texels().bytes());
+        let mut picture = reserve(has_picture, channels * bits as usize / 8);
+        if !has_texels && !has_picture {
+            return (texels, picture);
+        }
+        let (mut values, mut parts) = ([0.0; 4], [0.0; 4]);
+        let (values, parts) = (&mut values[..encoding.values], &mut parts[..encoding.components]);
+        for at in 0..grid_points {
+            for (value, plane) in values.iter_mut().zip(planes) {
+                *value = f64::from(plane[at]);
+            }
+            (encoding.encode)(values, parts);
+            let is_void = voids.is_some_and(|v| v[at]);
+            let alpha = if is_void { 0.0 } else { 1.0 };
+            if has_texels {
+                parts.iter().for_each(|part| component.put(*part, &mut texels));
+                if has_alpha {
+                    component.put(alpha, &mut texels);
+                }
+            }
+            if has_picture {
+                for part in parts.iter() {
+                    let part = part / scale;
+                    let part = if of_picture.is_signed() { 0.5 + 0.5 * part } else { part };
+                    put(&mut picture, of_picture, if is_void { 0.0 } else { part });
+                }
+                if voids.is_some() {
+                    put(&mut picture, of_picture, alpha);
+                }
+            }
+        }
+        (texels, picture)
+    }
+}
+
+/// Appends a pixel value with as many bits as the component, 16 bits big-endian.
+fn put(picture: &mut Vec<u8>, component: Component, value: f64) {
+    match component.bytes() {
+        1 => Component::Unorm8.put(value, picture),
+        _ => picture.extend((Component::Unorm16.code(value) as u16).to_be_bytes()),
     }
 }

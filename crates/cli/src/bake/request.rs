@@ -6,9 +6,8 @@ use ridgelight_bake::{Angles, encoding_named};
 
 use super::Packing;
 use super::kinds::{KINDS, Kind, Source};
-use super::map::Wanted;
+use super::map::{Format, Wanted};
 use crate::args::BakeArgs;
-use crate::bake::Format;
 use crate::idle;
 
 /// Default of --directions.
@@ -16,7 +15,7 @@ pub const DIRECTIONS: u32 = 256;
 
 /// Parses a name of `--what`.
 pub fn kind_named(name: &str) -> std::result::Result<&'static Kind, String> {
-    KINDS.into_iter().find(|kind| kind.name == name).ok_or_else(|| {
+    KINDS.iter().find(|kind| kind.name == name).ok_or_else(|| {
         let all: Vec<&str> = KINDS.iter().map(|kind| kind.name).collect();
         format!("expected one of {}", all.join(", "))
     })
@@ -36,7 +35,7 @@ pub fn packing(text: &str) -> std::result::Result<Packing, String> {
 /// The list of kinds below the flags.
 pub fn help() -> String {
     let mut text = String::from("Kinds and their encodings:\n");
-    for kind in KINDS {
+    for kind in &KINDS {
         let names: Vec<&str> = kind.encodings.iter().map(|e| e.name).collect();
         let formats: Vec<&str> = kind.formats.iter().map(|f| f.name()).collect();
         text += &format!(
@@ -122,61 +121,44 @@ pub fn quality(args: &BakeArgs) -> Result<Quality> {
     Ok(quality)
 }
 
-/// Kinds that also need visibility below horizontal: a curved base surface can raise it above.
-const NEED_BELOW_HORIZON: [&str; 2] = ["visible-points", "curved-ellipse"];
-
 /// Directions of the kinds that trace some. Ellipses of flat bases use none below horizontal.
 pub fn directions(args: &BakeArgs) -> Result<Directions> {
-    let traces_sphere =
-        args.what.iter().any(|kind| NEED_BELOW_HORIZON.contains(&kind.name) || is_light(kind));
-    let lowest_z = if traces_sphere { -1.0 } else { 0.0 };
+    let needs_sphere = |kind: &&Kind| match kind.source {
+        Source::Horizons | Source::Sums(_) => false,
+        Source::Directions(of) => of.needs_sphere,
+        Source::Light(_) => true,
+    };
+    let lowest_z = if args.what.iter().any(needs_sphere) { -1.0 } else { 0.0 };
     Directions::fibonacci(args.directions.unwrap_or(DIRECTIONS) as usize, lowest_z, 0)
 }
 
-/// Kinds that are light: `scatter` by texels, the others by triangles along --angles.
-const LIGHTS: [&str; 6] =
-    ["scatter", "brdf", "brdf-factors", "brdf-harmonics", "btf", "light-field"];
-
-/// Kinds that the scene's lights illuminate.
-const LIT: [&str; 2] = ["scatter", "light-field"];
-
-/// Kinds that are light, in words.
-pub fn lights() -> String {
-    either(&LIGHTS)
-}
-
-/// Some names, in words.
-fn either(names: &[&str]) -> String {
+/// Names of some kinds, in words.
+fn either(is_one: fn(&Kind) -> bool) -> String {
+    let names: Vec<&str> = KINDS.iter().filter(|kind| is_one(kind)).map(|kind| kind.name).collect();
     let (last, others) = names.split_last().expect("a name");
     format!("{} or {last}", others.join(", "))
 }
 
-/// Whether the kind is light.
-pub fn is_light(kind: &Kind) -> bool {
-    LIGHTS.contains(&kind.name)
+/// Kinds that are light, in words.
+pub fn lights() -> String {
+    either(Kind::is_light)
 }
 
-/// Whether its pictures store floats with a scale each.
-pub fn is_scaled(kind: &Kind) -> bool {
-    kind.name == "scatter"
-}
-
-/// Whether the scene's lights illuminate it.
-pub fn is_lit(kind: &Kind) -> bool {
-    LIT.contains(&kind.name)
+/// Whether it is light along --angles.
+fn has_angles(kind: &Kind) -> bool {
+    kind.is_light() && kind.name != "scatter"
 }
 
 /// Notes flags of lights and surface that the requested kinds do not use.
-pub fn say_idle_light(args: &BakeArgs, wanted: &[Wanted], scatters: bool) {
-    let has = |of: fn(&Kind) -> bool| wanted.iter().any(|w| of(w.kind));
-    let groups: [(&[&str], bool, &[&str]); 2] = [
-        (&["sky", "env", "env_rotate", "sun", "key", "sphere_light"], has(is_lit), &LIT),
-        (&["albedo", "specular"], has(is_light), &LIGHTS),
+pub fn say_idle_light(args: &BakeArgs, scatters: bool) {
+    let groups: [(&[&str], fn(&Kind) -> bool); 2] = [
+        (&["sky", "env", "env_rotate", "sun", "key", "sphere_light"], Kind::is_lit),
+        (&["albedo", "specular"], Kind::is_light),
     ];
-    for (names, is_used, by) in groups {
-        let is_own = |(name, _): &&(String, String)| !is_used && names.contains(&name.as_str());
+    for (names, is_one) in groups.iter().filter(|(_, of)| !args.what.iter().any(|kind| of(kind))) {
+        let is_own = |(name, _): &&(String, String)| names.contains(&name.as_str());
         for (name, value) in args.quality.written.iter().filter(is_own) {
-            idle::note(name, value, &format!("without {}", either(by)));
+            idle::note(name, value, &format!("without {}", either(*is_one)));
         }
     }
     if let (Some(paths), false) = (args.paths, scatters) {
@@ -214,29 +196,27 @@ pub fn angles(args: &BakeArgs) -> Result<Angles> {
 const MOST_PICTURES: usize = 1 << 16;
 
 /// Refuses flags that none of the kinds use.
-pub fn check_uses<'a>(args: &BakeArgs, sources: impl Iterator<Item = &'a Source>) -> Result<()> {
-    let traces_directions = sources.into_iter().any(|s| !matches!(s, Source::Horizons(_)));
-    if let Some(count) = args.directions.filter(|_| !traces_directions) {
+pub fn check_uses(args: &BakeArgs) -> Result<()> {
+    let has = |of: fn(&Kind) -> bool| args.what.iter().any(|kind| of(kind));
+    if let Some(count) = args.directions.filter(|_| !has(|kind| !kind.has_horizons())) {
         let expected =
             "--what ellipse, visible-points or a kind of light: only these trace directions";
         return Err(Error::setting("--directions", count.to_string(), expected));
     }
-    let has_light = args.what.iter().any(|kind| is_light(kind));
-    let has_angles = args.what.iter().any(|kind| is_light(kind) && kind.name != "scatter");
-    let found = |name: &str, value: String, is_used: bool, by: &str| match is_used {
-        true => Ok(()),
-        false => Err(Error::setting(name, value, format!("--what {by}: no other kind uses it"))),
-    };
-    if let Some([outwards, inwards]) = args.curvature {
-        let is_used = args.what.iter().any(|kind| kind.name == "curved-ellipse");
-        found("--curvature", format!("{outwards},{inwards}"), is_used, "curved-ellipse")?;
-    }
-    if let Some([zeniths, azimuths]) = args.angles {
-        found("--angles", format!("{zeniths}x{azimuths}"), has_angles, &either(&LIGHTS[1..]))?;
-    }
-    for (name, value) in [("--paths", args.paths), ("--seed", args.seed)] {
-        if let Some(value) = value {
-            found(name, value.to_string(), has_light, &lights())?;
+    let [curvature, angles] = [
+        args.curvature.map(|[outwards, inwards]| format!("{outwards},{inwards}")),
+        args.angles.map(|[zeniths, azimuths]| format!("{zeniths}x{azimuths}")),
+    ];
+    let [paths, seed] = [args.paths, args.seed].map(|value| value.map(|v| v.to_string()));
+    let (is_curved, is_light) = (has(|kind| kind.name == "curved-ellipse"), has(Kind::is_light));
+    for (name, value, is_used, by) in [
+        ("--curvature", curvature, is_curved, "curved-ellipse".to_owned()),
+        ("--angles", angles, has(has_angles), either(has_angles)),
+        ("--paths", paths, is_light, lights()),
+        ("--seed", seed, is_light, lights()),
+    ] {
+        if let Some(value) = value.filter(|_| !is_used) {
+            return Err(Error::setting(name, value, format!("--what {by}: no other kind uses it")));
         }
     }
     // Some kinds split them into parts.

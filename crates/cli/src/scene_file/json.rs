@@ -8,7 +8,7 @@ use ridgelight::{Error, Result};
 use serde::de::{Deserializer as _, MapAccess, Visitor};
 use serde_json::value::RawValue;
 
-use super::keys::{Kind, Numbers, Part};
+use super::keys::{Key, Kind, Numbers, Part};
 
 /// A value, or a member with its value.
 pub struct Found<'t> {
@@ -46,11 +46,10 @@ impl<'t> Found<'t> {
     /// # Errors
     /// Line and column where the text is not JSON.
     pub fn root(path: &'t Path, text: &'t str) -> Result<Self> {
-        let raw = serde_json::from_str(text).map_err(|error| Error::File {
-            path: path.to_owned(),
-            place: format!("line {}, column {}", error.line(), error.column()),
-            found: error.to_string().split(" at line").next().unwrap_or_default().to_owned(),
-            expected: "JSON".into(),
+        let raw = serde_json::from_str(text).map_err(|error| {
+            let place = format!("line {}, column {}", error.line(), error.column());
+            let found = error.to_string();
+            Error::file(path, place, found.split(" at line").next().unwrap_or_default(), "JSON")
         })?;
         Ok(Self { path, text, raw, key: String::new() })
     }
@@ -68,12 +67,7 @@ impl<'t> Found<'t> {
 
     fn error(&self, found: &str, expected: &str) -> Error {
         let key = if self.key.is_empty() { "the whole" } else { &self.key };
-        Error::File {
-            path: self.path.to_owned(),
-            place: format!("line {}, {key}", self.line()),
-            found: found.to_owned(),
-            expected: expected.to_owned(),
-        }
+        Error::file(self.path, format!("line {}, {key}", self.line()), found, expected)
     }
 
     fn wrong(&self, expected: &str) -> Error {
@@ -169,27 +163,22 @@ impl<'t> Found<'t> {
     ///
     /// # Errors
     /// A value of another kind.
-    pub fn value(&self, kind: &Kind, folder: &Path) -> Result<OsString> {
+    pub fn value(&self, key: &Key, folder: &Path) -> Result<OsString> {
         let file = || self.string().map(|name| folder.join(name).into_os_string());
-        match kind {
-            Kind::Numbers(numbers) => Ok(self.numbers(*numbers)?.into()),
+        if let Some(file) = file().filter(|_| key.or_file) {
+            return Ok(file);
+        }
+        match key.kind {
+            Kind::Numbers(numbers) => match self.numbers(numbers) {
+                Err(_) if key.or_file => Err(self.wrong("a number, 3 in a list, or a file's name")),
+                text => Ok(text?.into()),
+            },
             Kind::Word => self
                 .string()
                 .or_else(|| self.number())
                 .map(OsString::from)
                 .ok_or_else(|| self.wrong("a word or a number")),
             Kind::File => file().ok_or_else(|| self.wrong("a file's name")),
-            Kind::ColourOrFile => match file() {
-                Some(file) => Ok(file),
-                None => self
-                    .numbers(Numbers::Colour)
-                    .map(OsString::from)
-                    .map_err(|_| self.wrong("a number, 3 in a list, or a file's name")),
-            },
-            Kind::PartsOrFile(parts) => match file() {
-                Some(file) => Ok(file),
-                None => Ok(self.parts(parts)?.into()),
-            },
             Kind::Parts(parts) | Kind::List(parts) => Ok(self.parts(parts)?.into()),
             Kind::Switch => match serde_json::from_str(self.raw.get()) {
                 Ok(is_on) => Ok(if is_on { "true" } else { "false" }.into()),

@@ -17,12 +17,8 @@ pub enum Kind {
     Numbers(Numbers),
     /// True sets the flag; false leaves it out.
     Switch,
-    /// A colour, or a path.
-    ColourOrFile,
     /// An object with the flag's comma-separated values.
     Parts(&'static [Part]),
-    /// Such an object, or a path.
-    PartsOrFile(&'static [Part]),
     /// A list of such objects, one flag each.
     List(&'static [Part]),
 }
@@ -53,10 +49,12 @@ pub struct Key {
     /// The id of the argument: the flag with `_` for `-`.
     pub id: &'static str,
     pub kind: Kind,
+    /// Whether a path stands for such a value, too.
+    pub or_file: bool,
 }
 
 const fn key(name: &'static str, id: &'static str, kind: Kind) -> Key {
-    Key { name, id, kind }
+    Key { name, id, kind, or_file: false }
 }
 
 pub const fn part(name: &'static str, numbers: Numbers) -> Part {
@@ -77,8 +75,8 @@ const FIELD: [Key; 5] = [
     key("nodata", "nodata", Kind::Word),
 ];
 const SURFACE: [Key; 2] = [
-    key("albedo", "albedo", Kind::ColourOrFile),
-    key("specular", "specular", Kind::PartsOrFile(&SPECULAR)),
+    Key { or_file: true, ..key("albedo", "albedo", Kind::Numbers(Numbers::Colour)) },
+    Key { or_file: true, ..key("specular", "specular", Kind::Parts(&SPECULAR)) },
 ];
 const LIGHT: [Key; 3] = [
     key("sky", "sky", Kind::Numbers(Numbers::Colour)),

@@ -58,14 +58,18 @@ fn value(key: &Key, render: &clap::Command) -> Value {
         }
         Kind::File => json!({ "type": "string" }),
         Kind::Numbers(count) => numbers(count),
-        Kind::ColourOrFile => {
-            json!({ "anyOf": [{ "type": "string" }, { "type": "number" }, list(3, 3)] })
-        }
-        Kind::PartsOrFile(parts) => json!({ "anyOf": [{ "type": "string" }, object(parts)] }),
         Kind::Parts(parts) => object(parts),
         Kind::Switch => json!({ "type": "boolean" }),
         Kind::List(parts) => json!({ "type": "array", "items": object(parts) }),
     };
+    if key.or_file {
+        let mut forms = match value.get_mut("anyOf").map(Value::take) {
+            Some(Value::Array(forms)) => forms,
+            _ => vec![value.clone()],
+        };
+        forms.insert(0, json!({ "type": "string" }));
+        value = json!({ "anyOf": forms });
+    }
     let help = arg.get_long_help().or(arg.get_help());
     value["description"] = help.map(ToString::to_string).unwrap_or_default().into();
     value

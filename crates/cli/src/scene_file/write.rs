@@ -53,17 +53,12 @@ impl Request {
         let id = if key.id == INPUT { "path" } else { key.id };
         let (_, words) = self.0.iter().find(|(known, _)| known == id)?;
         let first = words.first()?;
+        let file = || key.or_file.then(|| first.as_str().into());
         let value = match key.kind {
             Kind::Word | Kind::File => first.as_str().into(),
-            Kind::Numbers(count) => numbers(first, count)?,
-            Kind::ColourOrFile => {
-                numbers(first, Numbers::Colour).unwrap_or_else(|| first.as_str().into())
-            }
+            Kind::Numbers(count) => numbers(first, count).or_else(file)?,
             Kind::Switch => true.into(),
-            Kind::Parts(parts) => object(first, parts)?,
-            Kind::PartsOrFile(parts) => {
-                object(first, parts).unwrap_or_else(|| first.as_str().into())
-            }
+            Kind::Parts(parts) => object(first, parts).or_else(file)?,
             Kind::List(parts) => words.iter().map(|w| object(w, parts)).collect::<Option<_>>()?,
         };
         Some((key.name.to_owned(), value))

@@ -1,42 +1,37 @@
 //! ESRI ASCII grids: `key value` lines, then rows from north to south.
 
-use crate::heights::Raster;
-use crate::heights::geo::{Cell, looks_like_degrees};
+use crate::heights::{Cell, Raster, looks_like_degrees};
 use crate::open;
 use ridgelight::{Error, Result};
+use std::collections::HashMap;
 use std::path::Path;
 
-/// The header's keys, case-insensitive. Positions are those of the south-west cell's south-west
-/// corner, or of its centre.
-#[derive(Default)]
-struct Header {
-    ncols: Option<f64>,
-    nrows: Option<f64>,
-    corner: [Option<f64>; 2],
-    centre: [Option<f64>; 2],
-    cell: [Option<f64>; 2],
-    nodata: Option<f64>,
-}
+/// The header's keys, case-insensitive, with "center" also spelled "centre"; `cellsize` is both
+/// `dx` and `dy`. Positions are those of the south-west cell's south-west corner, or of its centre.
+const KEYS: [&str; 10] = [
+    "ncols",
+    "nrows",
+    "xllcorner",
+    "yllcorner",
+    "xllcenter",
+    "yllcenter",
+    "dx",
+    "dy",
+    "cellsize",
+    "nodata_value",
+];
+
+/// Values by key.
+struct Header(HashMap<String, f64>);
 
 impl Header {
-    fn slot(&mut self, key: &str) -> Option<&mut Option<f64>> {
-        Some(match key {
-            "ncols" => &mut self.ncols,
-            "nrows" => &mut self.nrows,
-            "xllcorner" => &mut self.corner[0],
-            "yllcorner" => &mut self.corner[1],
-            "xllcenter" | "xllcentre" => &mut self.centre[0],
-            "yllcenter" | "yllcentre" => &mut self.centre[1],
-            "dx" => &mut self.cell[0],
-            "dy" => &mut self.cell[1],
-            "nodata_value" => &mut self.nodata,
-            _ => return None,
-        })
+    fn get(&self, key: &str) -> Option<f64> {
+        self.0.get(key).copied()
     }
 
     /// Cells of unknown unit are degrees where [`looks_like_degrees`] holds, else metres.
     fn cell(&self, path: &Path, rows: usize, cols: usize) -> Result<Cell> {
-        let cell = match self.cell {
+        let cell = match [self.get("dx"), self.get("dy")] {
             [None, None] => return Ok(Cell::Unknown),
             [Some(x), Some(y)] => [x, y],
             _ => {
@@ -48,9 +43,12 @@ impl Header {
             let found = format!("{:?} × {:?}", cell[0], cell[1]);
             return Err(Error::file(path, "header: cellsize", found, "positive lengths"));
         }
-        let west_south =
-            [0, 1].map(|i| self.corner[i].or(self.centre[i].map(|c| c - cell[i] / 2.0)));
-        let [Some(west), Some(south)] = west_south else { return Ok(Cell::Metres(cell)) };
+        let corner = |axis: &str, cell: f64| {
+            let centre = self.get(&format!("{axis}llcenter"));
+            self.get(&format!("{axis}llcorner")).or(centre.map(|c| c - cell / 2.0))
+        };
+        let west_south = (corner("x", cell[0]), corner("y", cell[1]));
+        let (Some(west), Some(south)) = west_south else { return Ok(Cell::Metres(cell)) };
         let (width, height) = (cols as f64 * cell[0], rows as f64 * cell[1]);
         if looks_like_degrees([west, west + width], [south, south + height], cell) {
             return Ok(Cell::Degrees { cell, latitude: south + height / 2.0 });
@@ -65,7 +63,7 @@ pub(crate) fn heights(path: &Path, bytes: &[u8]) -> Result<Raster> {
         Error::file(path, format!("byte {}", e.valid_up_to()), "bytes that are no text", "text")
     })?;
     let mut words = text.split_ascii_whitespace().peekable();
-    let mut header = Header::default();
+    let mut header = Header(HashMap::new());
     while let Some(key) =
         words.next_if(|w| w.starts_with(|c: char| c.is_ascii_alphabetic()) && number(w).is_none())
     {
@@ -73,23 +71,24 @@ pub(crate) fn heights(path: &Path, bytes: &[u8]) -> Result<Raster> {
         let word = words.next().unwrap_or("the end of the file");
         let value =
             number(word).ok_or_else(|| Error::file(path, place(), shortened(word), "a number"))?;
-        match key.to_ascii_lowercase().as_str() {
-            "cellsize" => header.cell = [Some(value); 2],
-            lower => {
-                let expected = "ncols, nrows, xllcorner or xllcenter, yllcorner or yllcenter, \
-                                cellsize or dx and dy, NODATA_value";
-                *header.slot(lower).ok_or_else(|| {
-                    Error::file(path, "header", format!("the key {}", shortened(key)), expected)
-                })? = Some(value);
-            }
+        let lower = key.to_ascii_lowercase().replace("centre", "center");
+        if !KEYS.contains(&lower.as_str()) {
+            let expected = "ncols, nrows, xllcorner or xllcenter, yllcorner or yllcenter, \
+                            cellsize or dx and dy, NODATA_value";
+            let found = format!("the key {}", shortened(key));
+            return Err(Error::file(path, "header", found, expected));
+        }
+        match lower.as_str() {
+            "cellsize" => header.0.extend(["dx", "dy"].map(|key| (key.to_owned(), value))),
+            _ => _ = header.0.insert(lower, value),
         }
     }
-    let count = |name: &str, value: Option<f64>| match value {
+    let count = |name: &str| match header.get(name) {
         Some(v) if v.fract() == 0.0 && (0.0..1e15).contains(&v) => Ok(v as u64),
         Some(v) => Err(Error::file(path, format!("header: {name}"), format!("{v:?}"), "a count")),
         None => Err(Error::file(path, "header", format!("no {name}"), "ncols and nrows")),
     };
-    let (rows, cols) = (count("nrows", header.nrows)?, count("ncols", header.ncols)?);
+    let (rows, cols) = (count("nrows")?, count("ncols")?);
     let (rows, cols) = open::size(path, "header", rows, cols)?;
     // Each number takes at least a digit and a blank: 8 bytes of memory for 2 of text.
     let claimed = 8 * rows as u64 * cols as u64;
@@ -108,7 +107,7 @@ pub(crate) fn heights(path: &Path, bytes: &[u8]) -> Result<Raster> {
         return Err(Error::file(path, "after the last row", shortened(word), expected));
     }
     let cell = header.cell(path, rows, cols)?;
-    Ok(Raster { cell, nodata: header.nodata, ..Raster::bare(rows, cols, values) })
+    Ok(Raster { cell, nodata: header.get("nodata_value"), ..Raster::bare(rows, cols, values) })
 }
 
 /// A number as these files write them; `nan` is accepted, so that it can mark no data.

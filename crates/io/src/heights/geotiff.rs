@@ -1,7 +1,7 @@
 //! The GeoTIFF tags for the cell size (OGC 19-008r4), and GDAL's no-data tag.
 
-use crate::heights::geo::{Cell, looks_like_degrees};
 use crate::heights::tif::Tiff;
+use crate::heights::{Cell, looks_like_degrees};
 use crate::open;
 use ridgelight::{Error, Result};
 use std::path::Path;
@@ -48,8 +48,8 @@ pub(crate) fn read(path: &Path, tiff: &mut Tiff, rows: usize, cols: usize) -> Re
     let span = [last(cols) * grid.cell[0], last(rows) * grid.cell[1]];
     let degrees = || -> Result<Cell> {
         let Some([_, north]) = grid.origin else {
-            let place = format!("tag {TIEPOINT}");
-            return Err(Error::file(path, place, "nothing", "the latitude of a grid in degrees"));
+            let expected = "the latitude of a grid in degrees";
+            return Err(wrong(path, TIEPOINT, "nothing", expected));
         };
         Ok(Cell::Degrees { cell: grid.cell, latitude: north - span[1] / 2.0 })
     };
@@ -87,10 +87,14 @@ pub(crate) fn read(path: &Path, tiff: &mut Tiff, rows: usize, cols: usize) -> Re
     Ok(Geo { cell, unit_m, nodata })
 }
 
+fn wrong(path: &Path, tag: u16, found: impl Into<String>, expected: &str) -> Error {
+    Error::file(path, format!("tag {tag}"), found, expected)
+}
+
 /// A tag's value, `None` where absent. Its count is checked against the file's size before the
 /// decoder allocates memory.
 fn find(path: &Path, tiff: &mut Tiff, tag: u16, expected: &str) -> Result<Option<Value>> {
-    let wrong = |found: String| Error::file(path, format!("tag {tag}"), found, expected);
+    let wrong = |found: String| wrong(path, tag, found, expected);
     let held = tiff.inner().get_ref().len() as u64;
     let tag = Tag::from_u16_exhaustive(tag);
     match tiff.image_ifd().directory().get(tag) {
@@ -104,7 +108,7 @@ fn find(path: &Path, tiff: &mut Tiff, tag: u16, expected: &str) -> Result<Option
 
 /// The numbers of a tag, `None` where absent.
 fn doubles(path: &Path, tiff: &mut Tiff, tag: u16) -> Result<Option<Vec<f64>>> {
-    let wrong = |e| Error::file(path, format!("tag {tag}"), open::complaint(e), "numbers");
+    let wrong = |e| wrong(path, tag, open::complaint(e), "numbers");
     let value = find(path, tiff, tag, "numbers")?;
     value.map(|v| v.into_f64_vec().map_err(wrong)).transpose()
 }
@@ -114,28 +118,24 @@ fn grid(path: &Path, tiff: &mut Tiff) -> Result<Option<Grid>> {
     let (tag, cell, origin) = if let Some(m) = doubles(path, tiff, TRANSFORMATION)? {
         let &[xi, xj, _, x0, yi, yj, _, y0, ..] = m.as_slice() else {
             let found = format!("{} numbers", m.len());
-            return Err(Error::file(path, format!("tag {TRANSFORMATION}"), found, "16 numbers"));
+            return Err(wrong(path, TRANSFORMATION, found, "16 numbers"));
         };
         if xj != 0.0 || yi != 0.0 {
-            return Err(Error::file(
-                path,
-                format!("tag {TRANSFORMATION}"),
-                "a rotated or sheared grid",
-                "columns to the east and rows to the south (warp it first)",
-            ));
+            let expected = "columns to the east and rows to the south (warp it first)";
+            return Err(wrong(path, TRANSFORMATION, "a rotated or sheared grid", expected));
         }
         (TRANSFORMATION, [xi, -yj], Some([x0, y0]))
     } else if let Some(scale) = doubles(path, tiff, PIXEL_SCALE)? {
         let &[x, y, ..] = scale.as_slice() else {
             let found = format!("{} numbers", scale.len());
-            return Err(Error::file(path, format!("tag {PIXEL_SCALE}"), found, "3 numbers"));
+            return Err(wrong(path, PIXEL_SCALE, found, "3 numbers"));
         };
         let origin = match doubles(path, tiff, TIEPOINT)?.as_deref() {
             None => None,
             Some([i, j, _, east, north, ..]) => Some([east - i * x, north + j * y]),
             Some(other) => {
                 let found = format!("{} numbers", other.len());
-                return Err(Error::file(path, format!("tag {TIEPOINT}"), found, "6 numbers"));
+                return Err(wrong(path, TIEPOINT, found, "6 numbers"));
             }
         };
         (PIXEL_SCALE, [x, y], origin)
@@ -143,19 +143,15 @@ fn grid(path: &Path, tiff: &mut Tiff) -> Result<Option<Grid>> {
         return Ok(None);
     };
     if !cell.iter().all(|c| c.is_finite() && *c > 0.0) {
-        return Err(Error::file(
-            path,
-            format!("tag {tag}"),
-            format!("cells of {:?} × {:?}", cell[0], cell[1]),
-            "positive sizes, north up",
-        ));
+        let found = format!("cells of {:?} × {:?}", cell[0], cell[1]);
+        return Err(wrong(path, tag, found, "positive sizes, north up"));
     }
     Ok(Some(Grid { cell, origin }))
 }
 
 fn nodata(path: &Path, tiff: &mut Tiff) -> Result<Option<f64>> {
     let expected = "a number, or nan";
-    let wrong = |found: String| Error::file(path, format!("tag {GDAL_NODATA}"), found, expected);
+    let wrong = |found: String| wrong(path, GDAL_NODATA, found, expected);
     let Some(value) = find(path, tiff, GDAL_NODATA, expected)? else { return Ok(None) };
     let text = value.into_string().map_err(|e| wrong(open::complaint(e)))?;
     let text = text.trim_matches(|c: char| c.is_whitespace() || c == '\0');
@@ -173,10 +169,9 @@ impl Keys {
     fn read(path: &Path, tiff: &mut Tiff) -> Result<Self> {
         let expected = "GeoKeys: four shorts each";
         let shorts = match find(path, tiff, KEY_DIRECTORY, expected)? {
-            Some(value) => value.into_u16_vec().map_err(|e| {
-                let place = format!("tag {KEY_DIRECTORY}");
-                Error::file(path, place, open::complaint(e), expected)
-            })?,
+            Some(value) => value
+                .into_u16_vec()
+                .map_err(|e| wrong(path, KEY_DIRECTORY, open::complaint(e), expected))?,
             None => Vec::new(),
         };
         // The first four are version and count.

@@ -1,7 +1,6 @@
 //! SRTM tiles: a square of big-endian 16-bit metres, row 0 in the north, without a header.
 
-use crate::heights::Raster;
-use crate::heights::geo::Cell;
+use crate::heights::{Cell, Raster};
 use crate::open;
 use ridgelight::{Error, Result};
 use std::path::Path;

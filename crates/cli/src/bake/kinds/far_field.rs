@@ -15,12 +15,13 @@ use ridgelight_bake::{Angles, ExitRadiance, Facets};
 use ridgelight_io::Component;
 use serde_json::json;
 
-use super::super::map::MapFiles;
-use super::{Lit, Request, Say, Value, brdf, light_field, number};
+use super::{Job, Kind, Map, MapFiles, Say, Value, Wanted, light, number, reflection};
+use crate::bake::map::Format;
 
 /// The largest value that the files hold: of f32, or less in a .ktx2.
-pub fn largest(request: &Request) -> f64 {
-    let is_half = request.encoding.component == Component::F16 && request.has_texels;
+pub fn largest(wanted: &Wanted) -> f64 {
+    let has_texels = wanted.formats.contains(&Format::Ktx2);
+    let is_half = wanted.encoding.component == Component::F16 && has_texels;
     if is_half { 65_504.0 } else { f64::from(f32::MAX) }
 }
 
@@ -42,9 +43,15 @@ pub fn constants(prefix: &str, angles: Angles) -> Vec<String> {
     ]
 }
 
-/// A texel of a picture of one view.
-pub fn texel(about: &'static str, unit: &'static str, request: &Request) -> Vec<Value> {
-    let range = [0.0, largest(request)];
+/// Pictures of views, each under a name.
+pub fn views(
+    job: &Job,
+    wanted: &Wanted,
+    names: impl Iterator<Item = String>,
+    about: &'static str,
+    unit: &'static str,
+) -> Map {
+    let range = [0.0, largest(wanted)];
     let colour = |name| Value { name, about, unit, range };
     let share = Value {
         name: "share",
@@ -54,31 +61,39 @@ pub fn texel(about: &'static str, unit: &'static str, request: &Request) -> Vec<
         unit: "",
         range,
     };
-    vec![colour("red"), colour("green"), colour("blue"), share]
+    Map {
+        planes: names
+            .flat_map(|name| ["R", "G", "B", "share"].map(|c| format!("{name}.{c}")))
+            .collect(),
+        values: vec![colour("red"), colour("green"), colour("blue"), share],
+        is_array: true,
+        constants: constants(&wanted.kind.stem().to_uppercase(), job.angles),
+        ..Map::default()
+    }
 }
 
 /// The largest exponent and the largest scale of all Phong specular that reflects anything.
-pub fn specular(lit: &Lit) -> Option<PhongSpecular> {
-    let largest = lit.scene.surface.specular.as_ref().map(|specular| specular.largest());
+pub fn specular(job: &Job) -> Option<PhongSpecular> {
+    let largest = job.scene.surface.specular.as_ref().map(|specular| specular.largest());
     largest.filter(|phong| phong.scale > 0.0)
 }
 
 /// The same scene without Phong specular.
-pub fn diffuse(lit: &Lit) -> Scene {
-    let surface = Surface { specular: None, ..lit.scene.surface.clone() };
-    Scene { surface, ..lit.scene.clone() }
+pub fn diffuse(job: &Job) -> Scene {
+    let surface = Surface { specular: None, ..job.scene.surface.clone() };
+    Scene { surface, ..job.scene.clone() }
 }
 
 /// Direct light of all texels; specular towards straight above.
-pub fn direct_plan(lit: &Lit, scene: &Scene, limits: &Limits) -> Result<Plan> {
-    let bounces = Bounces { count: 0, ..lit.quality.bounces };
-    let quality = Quality { bounces, ..*lit.quality };
+pub fn direct_plan(job: &Job, scene: &Scene, limits: &Limits) -> Result<Plan> {
+    let bounces = Bounces { count: 0, ..job.quality.bounces };
+    let quality = Quality { bounces, ..*job.quality };
     let still = Picture { still: true, ..Picture::default() };
     plan::picture(scene, &quality, limits, still)
 }
 
-pub fn direct(gpu: &mut Headless, lit: &Lit, scene: &Scene) -> Result<Vec<[f32; 3]>> {
-    let plan = direct_plan(lit, scene, &lit.limits)?;
+pub fn direct(gpu: &mut Headless, job: &Job, scene: &Scene) -> Result<Vec<[f32; 3]>> {
+    let plan = direct_plan(job, scene, &job.limits)?;
     let contents = plan::picture_inputs(scene);
     let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
     gpu.with_frame(plan, &contents, |gpu, frame| {
@@ -90,17 +105,22 @@ pub fn direct(gpu: &mut Headless, lit: &Lit, scene: &Scene) -> Result<Vec<[f32; 
 }
 
 /// Bytes for triangles and texels in so many directions.
-pub fn bytes(lit: &Lit, directions: usize) -> u64 {
-    let grid_points = lit.scene.field.heights_m().len();
-    let facets = 2 * grid_points * times(&lit.scene.field).pow(2);
+pub fn bytes(job: &Job, directions: usize) -> u64 {
+    let grid_points = job.grid_points();
+    let facets = 2 * grid_points * times(job.field()).pow(2);
     let words = 2 * directions.div_ceil(DIRECTIONS_A_WORD) * 4;
     // Slopes, albedo, specular, words before and after unpacking, two radiances; all texels of one
     // view, visible points.
     let of_facets = facets * (16 + 24 + 16 + words + 48);
     // Specular light scattered towards each view, as read back and as kept.
-    let towards = if specular(lit).is_some() && lit.scatter.is_some() { 28 } else { 0 };
-    let of_grid_points = grid_points * (200 + (36 + towards) * directions + 8 * lit.around.count());
+    let towards = if specular(job).is_some() && job.scatter.is_some() { 28 } else { 0 };
+    let of_grid_points = grid_points * (200 + (36 + towards) * directions + 8 * job.around.count());
     (of_facets + of_grid_points) as u64
+}
+
+/// [`bytes`] for all views.
+pub fn bytes_of_views(job: &Job) -> u64 {
+    bytes(job, job.angles.count())
 }
 
 /// The refined field of triangles. Errors state the original size and cell.
@@ -122,47 +142,46 @@ fn finer(field: &HeightField, border: Border) -> Result<HeightField> {
 
 /// Scattered light of one light, towards as many views as are traced together where specular
 /// depends on the view.
-fn scatter_plan(lit: &Lit, scatter: &Scatter, limits: &Limits) -> Result<Plan> {
-    if specular(lit).is_none() {
-        return plan::scatter(lit.scene, lit.around, scatter, limits);
+fn scatter_plan(job: &Job, scatter: &Scatter, limits: &Limits) -> Result<Plan> {
+    if specular(job).is_none() {
+        return plan::scatter(job.scene, job.around, scatter, limits);
     }
     // Replaces the scene's lights; every sun takes the same work.
     let sun = Sun { azimuth_rad: 0.0, elevation_rad: 1.0, diameter_rad: 0.0, irradiance: [1.0; 3] };
     let lights = Lights { suns: vec![sun], ..Lights::default() };
-    let scene = Scene { lights, ..lit.scene.clone() };
-    let views = lit.angles.directions()?;
+    let scene = Scene { lights, ..job.scene.clone() };
+    let views = job.angles.directions()?;
     let at_once = plan::views_at_once(&scene.field, views.count(), limits);
-    plan::scatter_views(&scene, lit.around, scatter, &views.vectors()[..at_once], limits)
+    plan::scatter_views(&scene, job.around, scatter, &views.vectors()[..at_once], limits)
 }
 
 /// Visibility of triangles.
-pub fn mask_plan(lit: &Lit, limits: &Limits) -> Result<Plan> {
-    let (field, border) = (&lit.scene.field, lit.scene.surface.border);
-    plan::facet_mask(&finer(field, border)?, border, &lit.angles.directions()?, limits)
+pub fn mask_plan(job: &Job, limits: &Limits) -> Result<Plan> {
+    let (field, border) = (job.field(), job.border());
+    plan::facet_mask(&finer(field, border)?, border, &job.angles.directions()?, limits)
 }
 
-pub fn plans(lit: &Lit, limits: &Limits) -> Result<Vec<Plan>> {
-    let (field, border) = (&lit.scene.field, lit.scene.surface.border);
-    let mut all = vec![mask_plan(lit, limits)?];
-    if let Some(scatter) = &lit.scatter {
-        all.push(plan::visible_points(field, border, lit.around, limits)?);
-        all.push(scatter_plan(lit, scatter, limits)?);
+pub fn plans(job: &Job, limits: &Limits) -> Result<Vec<Plan>> {
+    let mut all = vec![mask_plan(job, limits)?];
+    if let Some(scatter) = &job.scatter {
+        all.push(job.points_plan(limits)?);
+        all.push(scatter_plan(job, scatter, limits)?);
     }
     Ok(all)
 }
 
 /// Upper bound of visibility rays along paths, where specular scatters differently towards each
 /// view, and a description.
-pub fn rays(lit: &Lit, name: &str, limits: &Limits) -> Option<(u128, String)> {
-    specular(lit)?;
-    let views = lit.angles.count();
+pub fn rays(job: &Job, kind: &Kind, limits: &Limits) -> Option<(u128, String)> {
+    specular(job)?;
+    let (views, name) = (job.angles.count(), kind.name);
     let (scatter, lights, pairs) = match name {
-        "brdf" | "brdf-factors" | "brdf-harmonics" => (lit.scatter?, views, brdf::PAIRS),
-        "btf" => (lit.scatter?, views, 0),
-        "light-field" => (light_field::paths(lit), 1, 0),
+        "light-field" => (light::view_paths(job), 1, 0),
+        "btf" => (job.scatter?, views, 0),
+        _ if kind.is_table() => (job.scatter?, views, reflection::PAIRS),
         _ => return None,
     };
-    let field = &lit.scene.field;
+    let field = job.field();
     // Views that do not fit into one batch walk the paths again.
     let walks = views.div_ceil(plan::views_at_once(field, views, limits));
     let (paths, steps) = (scatter.paths, scatter.bounces);
@@ -185,27 +204,27 @@ pub fn rays(lit: &Lit, name: &str, limits: &Limits) -> Option<(u128, String)> {
     ))
 }
 
-pub fn facets(gpu: &mut Headless, lit: &Lit, directions: &Directions, say: Say) -> Result<Facets> {
+pub fn facets(gpu: &mut Headless, job: &Job, directions: &Directions, say: Say) -> Result<Facets> {
     say(format!("triangle visibility from {} directions", directions.count()));
-    ridgelight_bake::facets(gpu, lit.scene, times(&lit.scene.field), directions, &lit.limits)
+    ridgelight_bake::facets(gpu, job.scene, times(job.field()), directions, &job.limits)
 }
 
 /// Radiance of all triangles under a light of irradiance 1 from each given direction. Specular goes
 /// towards those views that the light has.
 pub fn each_light(
     gpu: &mut Headless,
-    lit: &Lit,
+    job: &Job,
     facets: &Facets,
     (lights, views): (Range<usize>, &dyn Fn(usize) -> Range<usize>),
     take: &mut dyn FnMut(usize, ExitRadiance) -> Result<()>,
 ) -> Result<()> {
-    let of = (facets, lights, views);
-    let Some(scatter) = &lit.scatter else {
-        return ridgelight_bake::lit_from(gpu, lit.scene, of, None, &lit.limits, take);
+    let points = match job.scatter {
+        Some(_) => Some(job.points(gpu, &|_| ())?),
+        None => None,
     };
-    let border = lit.scene.surface.border;
-    let points = gpu.visible_points((&lit.scene.field, border), lit.around, &lit.limits)?;
-    ridgelight_bake::lit_from(gpu, lit.scene, of, Some((&points, scatter)), &lit.limits, take)
+    let of = (facets, lights, views);
+    let scatter = points.as_ref().zip(job.scatter.as_ref());
+    ridgelight_bake::lit_from(gpu, job.scene, of, scatter, &job.limits, take)
 }
 
 /// Paths that were walked.
@@ -216,9 +235,9 @@ pub struct Walked {
 }
 
 /// Paths of lights that face the field from one direction each.
-pub fn walked(lit: &Lit) -> Result<Option<Walked>> {
-    let Some(scatter) = &lit.scatter else { return Ok(None) };
-    let plan = scatter_plan(lit, scatter, &lit.limits)?;
+pub fn walked(job: &Job) -> Result<Option<Walked>> {
+    let Some(scatter) = &job.scatter else { return Ok(None) };
+    let plan = scatter_plan(job, scatter, &job.limits)?;
     Ok(Some(Walked { plan, mirrors_sky: false }))
 }
 
@@ -226,12 +245,12 @@ pub fn walked(lit: &Lit) -> Result<Option<Walked>> {
 /// linear between the angles.
 pub fn add_entries(
     files: &mut MapFiles,
-    lit: &Lit,
+    job: &Job,
     facets: &Facets,
     walked: Option<&Walked>,
     is_linear: bool,
 ) -> Result<()> {
-    let angles = lit.angles;
+    let angles = job.angles;
     let directions = facets.directions().vectors().iter().map(|e| json!([e.x, e.y, e.z]));
     let thetas = (0..angles.zeniths).map(|k| facets.directions().vectors()[k * angles.azimuths].z);
     let phis = (0..angles.azimuths).map(|j| 360.0 * j as f64 / angles.azimuths as f64);
@@ -256,7 +275,7 @@ pub fn add_entries(
     }
     let closures = shown.into_iter().map(|i| facets.closure(i));
     let worst = closures.map(|c| (c - 1.0).abs()).fold(0.0, f64::max);
-    let (worst, are) = match lit.scene.surface.border {
+    let (worst, are) = match job.border() {
         Border::Periodic => (
             Some(worst),
             "flat, visible or hidden as their middles are; worst_closure is the error of the \
@@ -276,17 +295,17 @@ pub fn add_entries(
     );
     let scattered = walked.map(|Walked { plan, .. }| {
         let [bounces, paths, seed] = ["bounces", "paths", "seed"].map(|name| number(plan, name));
-        json!({ "bounces": bounces, "paths": paths, "seed": seed, "directions": lit.around.count() })
+        json!({ "bounces": bounces, "paths": paths, "seed": seed, "directions": job.around.count() })
     });
     files.add_entry("scattered", scattered.into());
-    report_specular(files, lit, facets, walked, is_linear);
+    report_specular(files, job, facets, walked, is_linear);
     Ok(())
 }
 
 /// The sharpest specular of all triangles (means of their corners) and texels (which light paths
 /// hit).
-fn sharpest(lit: &Lit, facets: &Facets) -> Option<PhongSpecular> {
-    let grid_points = match &lit.scene.surface.specular {
+fn sharpest(job: &Job, facets: &Facets) -> Option<PhongSpecular> {
+    let grid_points = match &job.scene.surface.specular {
         Some(Specular::Constant(phong)) => std::slice::from_ref(phong),
         Some(Specular::Map(map)) => map,
         None => &[],
@@ -308,22 +327,22 @@ fn apart_deg(angles: &Angles) -> f64 {
 
 /// Whether the angles' spacing exceeds the sharpest lobe's half width, so that sums over them are
 /// no integrals.
-pub fn is_coarse(lit: &Lit, facets: &Facets) -> bool {
-    sharpest(lit, facets).is_some_and(|phong| apart_deg(&lit.angles) > half_width_deg(&phong))
+pub fn is_coarse(job: &Job, facets: &Facets) -> bool {
+    sharpest(job, facets).is_some_and(|phong| apart_deg(&job.angles) > half_width_deg(&phong))
 }
 
 /// Half width of the sharpest Phong lobe, and the spacing of the directions within it.
 fn report_specular(
     files: &mut MapFiles,
-    lit: &Lit,
+    job: &Job,
     facets: &Facets,
     walked: Option<&Walked>,
     is_linear: bool,
 ) {
-    let Some(phong) = sharpest(lit, facets) else { return };
-    let (half, angles) = (half_width_deg(&phong), apart_deg(&lit.angles));
+    let Some(phong) = sharpest(job, facets) else { return };
+    let (half, angles) = (half_width_deg(&phong), apart_deg(&job.angles));
     // Each of N directions stands for 4π/N.
-    let around = (4.0 * PI / lit.around.count() as f64).sqrt().to_degrees();
+    let around = (4.0 * PI / job.around.count() as f64).sqrt().to_degrees();
     let mirrored = walked.and_then(|Walked { plan, mirrors_sky }| {
         let scatters = number(plan, "paths") > 0 && number(plan, "bounces") > 0;
         match (scatters, *mirrors_sky) {
@@ -357,14 +376,14 @@ fn report_specular(
         }),
     );
     if angles > half {
-        let Angles { zeniths, azimuths } = lit.angles;
+        let Angles { zeniths, azimuths } = job.angles;
         files.remark(format!(
             "specular lobes fall to half at {half:.1}°, but --angles {zeniths}x{azimuths} are up \
                 to {angles:.1}° apart: too coarse, unless slopes widen the highlights"
         ));
     }
     if let Some(what) = mirrored.filter(|_| around > half) {
-        let count = lit.around.count();
+        let count = job.around.count();
         files.remark(format!(
             "specular lobes fall to half at {half:.1}°, but --directions {count} are \
                 {around:.1}° apart: specular {what} is rough"

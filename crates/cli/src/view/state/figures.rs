@@ -137,7 +137,7 @@ impl State {
         let all = self.settings.list(&self.asked);
         let chosen = all.filter(|(id, _, is_chosen)| *is_chosen && self.asked.first(id).is_some());
         let written: Vec<_> = chosen.map(|(id, word, _)| (id.to_owned(), word)).collect();
-        lines.extend(idle::notes(&written, &plan.settings));
+        lines.extend(idle::notes(&written, &plan.settings, &|_| None));
         lines
     }
 }

@@ -2,7 +2,7 @@
 //! without array layers.
 
 use crate::Component;
-use crate::write::atomic::{Temporary, Written};
+use crate::atomic::{Temporary, Written};
 use ridgelight::{Error, Result};
 use std::path::Path;
 

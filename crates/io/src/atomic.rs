@@ -1,4 +1,4 @@
-//! Output files that are complete or absent.
+//! Output files that are complete or absent, and room for them on their disks.
 
 use crate::open::complaint;
 use ridgelight::{Error, Result};
@@ -137,17 +137,13 @@ impl Temporary {
             }
             Err(_) => path.to_owned(),
         };
-        let directory = match destination.parent() {
-            Some(parent) if !parent.as_os_str().is_empty() => parent,
-            _ => Path::new("."),
-        };
         let mut builder = tempfile::Builder::new();
         builder.prefix(".ridgelight-");
         // Temporary files are private by default. A result is as readable as any new file.
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
         let mut all = unfinished();
-        let file = builder.tempfile_in(directory).map_err(|e| {
+        let file = builder.tempfile_in(folder_of(&destination)).map_err(|e| {
             // The system's reason, without the temporary name.
             let reason = e.get_ref().and_then(|e| e.source()).map_or(e.to_string(), complaint);
             let reason = reason.split(" at path ").next().unwrap_or_default().to_owned();
@@ -212,4 +208,66 @@ pub fn write_text(path: &Path, text: &str) -> Result<()> {
 pub fn write_json(path: &Path, value: &serde_json::Value) -> Result<()> {
     // The alternate form of a value's Display is its pretty-printed text.
     write_text(path, &format!("{value:#}\n"))
+}
+
+fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+/// Refuses files that together exceed the free space of their disks. Each is a destination and its
+/// size in bytes. Without information from the system nothing is refused.
+///
+/// # Errors
+/// The first file without room, as [`Error::Limit`].
+pub fn check_room(files: &[(&Path, u64)]) -> Result<()> {
+    let disks: Vec<_> = files.iter().map(|(path, _)| free(path)).collect();
+    for ((path, _), disk) in files.iter().zip(&disks) {
+        let Some((id, available)) = disk else { continue };
+        let on_it = files.iter().zip(&disks).filter(|(_, d)| d.is_some_and(|d| d.0 == *id));
+        let needed = on_it.fold(0_u64, |sum, ((_, bytes), _)| sum.saturating_add(*bytes));
+        if needed > *available {
+            return Err(Error::Limit {
+                what: path.display().to_string(),
+                needs: format!("{needed} bytes on its disk"),
+                limit: format!("{available} that are free"),
+            });
+        }
+    }
+    Ok(())
+}
+
+/// The disk of `path`, and its bytes free to this user.
+#[cfg(unix)]
+fn free(path: &Path) -> Option<(u64, u64)> {
+    let folder = folder_of(path);
+    let about = rustix::fs::statvfs(folder).ok()?;
+    let id = std::os::unix::fs::MetadataExt::dev(&std::fs::metadata(folder).ok()?);
+    Some((id, about.f_bavail.saturating_mul(about.f_frsize)))
+}
+
+#[cfg(not(unix))]
+fn free(_: &Path) -> Option<(u64, u64)> {
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[cfg(unix)]
+    #[test]
+    fn what_fits_is_taken_and_what_does_not_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let [a, b] = ["a.npy", "b.npy"].map(|name| folder.path().join(name));
+        check_room(&[(&a, 1), (&b, 1)]).unwrap();
+        let said = check_room(&[(&a, 1 << 62)]).unwrap_err().to_string();
+        assert!(said.contains("a.npy: needs 4611686018427387904 bytes on its disk"), "{said}");
+        // Two files that fit alone do not fit together.
+        let (_, free) = free(&a).unwrap();
+        let most = free / 4 * 3;
+        check_room(&[(&a, most)]).unwrap();
+        assert!(check_room(&[(&a, most), (&b, most)]).is_err());
+        // A missing folder is reported when the file is made.
+        check_room(&[(&folder.path().join("no/a.npy"), 1 << 62)]).unwrap();
+    }
 }
