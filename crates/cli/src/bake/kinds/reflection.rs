@@ -130,7 +130,7 @@ fn table<'a>(gpu: &mut Headless, job: &'a Job, say: Say) -> Result<&'a Table> {
         let made = compute_table(gpu, job, say)?;
         return Ok(job.table.get_or_init(|| made));
     }
-    Ok(job.table.get().expect("just seen"))
+    Ok(job.table.get().expect("set above"))
 }
 
 /// Every light's table row by row.
