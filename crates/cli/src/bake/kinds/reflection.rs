@@ -126,11 +126,11 @@ pub struct Table {
 
 /// The table of this bake, computed on first use.
 fn table<'a>(gpu: &mut Headless, job: &'a Job, say: Say) -> Result<&'a Table> {
-    if job.table.get().is_none() {
-        let made = compute_table(gpu, job, say)?;
-        return Ok(job.table.get_or_init(|| made));
+    if let Some(known) = job.table.get() {
+        return Ok(known);
     }
-    Ok(job.table.get().expect("just seen"))
+    let made = compute_table(gpu, job, say)?;
+    Ok(job.table.get_or_init(|| made))
 }
 
 /// Every light's table row by row.
