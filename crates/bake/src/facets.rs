@@ -326,22 +326,11 @@ impl Facets {
 
     /// Runs over all directions on all processors.
     fn of_all<T: Send>(&self, of: impl Fn(usize) -> T + Sync) -> Vec<T> {
-        let count = self.directions.count();
-        let threads = std::thread::available_parallelism().map_or(1, usize::from);
-        let part = count.div_ceil(threads);
-        std::thread::scope(|scope| {
-            let parts: Vec<_> = (0..count)
-                .step_by(part)
-                .map(|first| {
-                    let of = &of;
-                    scope.spawn(move || -> Vec<T> {
-                        (first..count.min(first + part)).map(of).collect()
-                    })
-                })
-                .collect();
-            let done = parts.into_iter().flat_map(|part| part.join().expect("no part panics"));
-            done.collect()
-        })
+        let mut all: Vec<Option<T>> = (0..self.directions.count()).map(|_| None).collect();
+        crate::in_parts((&mut all, 1, 1), |first, part| {
+            part.iter_mut().enumerate().for_each(|(i, one)| *one = Some(of(first + i)));
+        });
+        all.into_iter().flatten().collect()
     }
 }
 

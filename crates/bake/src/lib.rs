@@ -84,7 +84,7 @@ pub fn normals(field: &HeightField, border: Border) -> Vec<DVec3> {
     let cols = field.cols();
     let count = field.rows() * cols;
     let mut all = vec![DVec3::Z; count];
-    in_parts(count, &mut all, 1, |first, part| {
+    in_parts((&mut all, 1, MIN_PART), |first, part| {
         for (i, n) in part.iter_mut().enumerate() {
             *n = normal(field, border, (first + i) / cols, (first + i) % cols);
         }
@@ -126,7 +126,7 @@ impl HorizonSums {
             self.sums = zeros(texels, count)?;
         }
         let factors = map.azimuth_factors(ray);
-        in_parts(texels, &mut self.sums, count, |first, part| {
+        in_parts((&mut self.sums, count, MIN_PART), |first, part| {
             for (i, sums) in part.chunks_exact_mut(count).enumerate() {
                 let at = first + i;
                 // π/2 in f32 is slightly above π/2.
@@ -180,16 +180,15 @@ fn zeros<T: Clone + Default>(texels: usize, each: usize) -> Result<Vec<T>> {
 /// Smallest number of texels that is worth a thread.
 const MIN_PART: usize = 1024;
 
-/// Runs `work(first texel, its part)` on all processors; a texel has `each` values.
+/// Runs `work(first, its part)` on all processors, in parts of at least `least`; each of them has
+/// `each` values.
 fn in_parts<T: Send>(
-    texels: usize,
-    values: &mut [T],
-    each: usize,
+    (values, each, least): (&mut [T], usize, usize),
     work: impl Fn(usize, &mut [T]) + Sync,
 ) {
     let threads = thread::available_parallelism().map_or(1, usize::from);
-    let part = texels.div_ceil(threads).max(MIN_PART);
-    if texels <= part {
+    let part = (values.len() / each).div_ceil(threads).max(least);
+    if values.len() <= part * each {
         return work(0, values);
     }
     thread::scope(|scope| {

@@ -27,7 +27,7 @@ use job::{Job, first};
 pub use kinds::Kind;
 use kinds::Source;
 pub use map::Format;
-use map::{MapFiles, Whole};
+use map::MapFiles;
 pub use request::{help, kind_named, packing};
 
 /// Describes the folder's contents. It is written last.
@@ -190,7 +190,8 @@ fn bake(
                 None => notes.push((note, vec![kind])),
             }
         }
-        whole.push(files.complete(&metadata)?);
+        files.complete(&metadata)?;
+        whole.push(files);
     }
     for (note, kinds) in notes.iter().filter(|_| !args.global.quiet) {
         let say = || writeln!(std::io::stderr(), "note: {}: {note}", kinds.join(", "));
@@ -198,7 +199,7 @@ fn bake(
     }
     // An earlier manifest describes files that are about to be replaced.
     let before = take_manifest(&args.output)?;
-    let maps = whole.into_iter().map(Whole::place).collect::<Result<Vec<_>>>()?;
+    let maps = whole.into_iter().map(MapFiles::place).collect::<Result<Vec<_>>>()?;
     bar.finish_and_clear();
     let seconds = started.elapsed().as_secs_f64();
     metadata.push(("seconds".into(), format!("{seconds:.3}")));

@@ -31,7 +31,8 @@ pub fn takes_signal() -> bool {
 
 pub fn run(args: &ReferenceArgs) -> Result<Outcome> {
     check(args)?;
-    let scene = scene(args)?;
+    let field = setup::field(&args.input.path, &args.surface.field, &args.global)?;
+    let scene = setup::scene(field, &args.surface, &args.lights)?;
     let plan = |limits: &Limits| plan::reference(&scene, args.bounces, args.seed, limits);
     setup::check_plan(&args.global, plan)?;
     // From here on a signal ends the tracing only.
@@ -97,11 +98,6 @@ fn check(args: &ReferenceArgs) -> Result<()> {
         return Err(Error::setting("--spp", args.spp.to_string(), format!("at most {most}")));
     }
     args.until_error.map_or(Ok(()), |e| crate::render::check_positive("--until-error", e))
-}
-
-fn scene(args: &ReferenceArgs) -> Result<Scene> {
-    let field = setup::field(&args.input.path, &args.surface.field, &args.global)?;
-    setup::scene(field, &args.surface, &args.lights)
 }
 
 /// The result of the paths.

@@ -98,7 +98,6 @@ impl<'a> ExrFile<'a> {
         let plane_of = |part: usize, channel: usize| {
             wanted.iter().position(|&w| (channels[w].0, channels[w].1) == (part, channel))
         };
-
         let wrong = |e: ExrError| {
             Error::file(path, "image data", open::complaint(e), "blocks as the header describes")
         };

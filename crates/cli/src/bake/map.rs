@@ -13,7 +13,6 @@ use ridgelight_io::{Component, Ktx2Writer, NpyWriter, TexelFormat, Written};
 use serde_json::Value as Json;
 
 use super::kinds::{Kind, Map};
-pub use entry::Whole;
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Format {
@@ -118,7 +117,7 @@ struct Waiting {
     scale: f64,
 }
 
-/// A map's files, invisible under their final names until [`Whole::place`].
+/// A map's files, invisible under their final names until [`place`](Self::place).
 pub struct MapFiles<'a> {
     wanted: Wanted,
     map: Map,

@@ -132,8 +132,11 @@ pub fn directions(args: &BakeArgs) -> Result<Directions> {
     Directions::fibonacci(args.directions.unwrap_or(DIRECTIONS) as usize, lowest_z, 0)
 }
 
+/// Whether a kind is one of some.
+type Is = fn(&Kind) -> bool;
+
 /// Names of some kinds, in words.
-fn either(is_one: fn(&Kind) -> bool) -> String {
+fn either(is_one: Is) -> String {
     let names: Vec<&str> = KINDS.iter().filter(|kind| is_one(kind)).map(|kind| kind.name).collect();
     let (last, others) = names.split_last().expect("a name");
     format!("{} or {last}", others.join(", "))
@@ -151,7 +154,7 @@ fn has_angles(kind: &Kind) -> bool {
 
 /// Notes flags of lights and surface that the requested kinds do not use.
 pub fn say_idle_light(args: &BakeArgs, scatters: bool) {
-    let groups: [(&[&str], fn(&Kind) -> bool); 2] = [
+    let groups: [(&[&str], Is); 2] = [
         (&["sky", "env", "env_rotate", "sun", "key", "sphere_light"], Kind::is_lit),
         (&["albedo", "specular"], Kind::is_light),
     ];
@@ -197,7 +200,7 @@ const MOST_PICTURES: usize = 1 << 16;
 
 /// Refuses flags that none of the kinds use.
 pub fn check_uses(args: &BakeArgs) -> Result<()> {
-    let has = |of: fn(&Kind) -> bool| args.what.iter().any(|kind| of(kind));
+    let has = |of: Is| args.what.iter().any(|kind| of(kind));
     if let Some(count) = args.directions.filter(|_| !has(|kind| !kind.has_horizons())) {
         let expected =
             "--what ellipse, visible-points or a kind of light: only these trace directions";

@@ -126,11 +126,11 @@ pub struct Table {
 
 /// The table of this bake, computed on first use.
 fn table<'a>(gpu: &mut Headless, job: &'a Job, say: Say) -> Result<&'a Table> {
-    if job.table.get().is_none() {
-        let made = compute_table(gpu, job, say)?;
-        return Ok(job.table.get_or_init(|| made));
+    if let Some(known) = job.table.get() {
+        return Ok(known);
     }
-    Ok(job.table.get().expect("set above"))
+    let made = compute_table(gpu, job, say)?;
+    Ok(job.table.get_or_init(|| made))
 }
 
 /// Every light's table row by row.
@@ -250,7 +250,7 @@ fn add_entries(
     files.add_entry("reflected", json!({ "least": least, "most": most, "is": is }));
     files.add_entry("unreciprocal", table.brdf.unreciprocal().into());
     if table.facets.has_specular() {
-        let [least, most] = range(&|view| table.brdf.gathered(view, &weights));
+        let [low, high] = range(&|view| table.brdf.gathered(view, &weights));
         let is = if is_coarse {
             "radiance of a view under light of 1 from all sides, over all views and colours, \
                 summed over --angles: the sharpest specular lobe is narrower than their spacing, \
@@ -261,7 +261,7 @@ fn add_entries(
                 worst_closure; at grazing angles one light may reflect more than arrives, \
                 because Phong specular has no cosine"
         };
-        files.add_entry("gathered", json!({ "least": least, "most": most, "is": is }));
+        files.add_entry("gathered", json!({ "least": low, "most": high, "is": is }));
         if most > 1.0 && !is_coarse {
             files.remark(format!(
                 "at grazing angles up to {most:.2} of a light's irradiance is reflected: Phong \

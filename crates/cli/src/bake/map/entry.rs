@@ -9,9 +9,9 @@ use serde_json::{Value as Json, json};
 
 use super::{Format, MapFiles, Open, Waiting};
 
-impl<'a> MapFiles<'a> {
+impl MapFiles<'_> {
     /// Finishes all files under temporary names. Formats that can, store `metadata`.
-    pub fn complete(mut self, metadata: &[(String, String)]) -> Result<Whole<'a>> {
+    pub fn complete(&mut self, metadata: &[(String, String)]) -> Result<()> {
         // In the order of the formats.
         let mut pictures = Some(std::mem::take(&mut self.waiting));
         for (open, format) in
@@ -29,7 +29,7 @@ impl<'a> MapFiles<'a> {
             };
             self.waiting.push(Waiting { file, path, format, scale: 1.0 });
         }
-        Ok(Whole(self))
+        Ok(())
     }
 
     fn exr(
@@ -155,25 +155,19 @@ impl<'a> MapFiles<'a> {
         }
         entry
     }
-}
 
-/// A map with all files finished.
-pub struct Whole<'a>(pub(super) MapFiles<'a>);
-
-impl Whole<'_> {
-    /// Moves all files to their names. Returns the map's manifest entry.
-    pub fn place(self) -> Result<Json> {
-        let mut map = self.0;
+    /// Moves all finished files to their names. Returns the map's manifest entry.
+    pub fn place(mut self) -> Result<Json> {
         let mut files = Vec::new();
-        for waiting in std::mem::take(&mut map.waiting) {
+        for waiting in std::mem::take(&mut self.waiting) {
             let about = std::fs::metadata(waiting.file.path());
             let bytes = about.map_err(|e| Error::io(&waiting.path, e))?.len();
-            files.push(map.file_entry(&waiting, bytes));
+            files.push(self.file_entry(&waiting, bytes));
             waiting.file.place()?;
         }
-        let decoder = format!("{}.glsl", map.wanted.kind.stem());
-        let text = map.wanted.decoder(&map.map);
-        files::write_text(&map.folder.join(&decoder), &text)?;
-        Ok(map.entry(files, &decoder))
+        let decoder = format!("{}.glsl", self.wanted.kind.stem());
+        let text = self.wanted.decoder(&self.map);
+        files::write_text(&self.folder.join(&decoder), &text)?;
+        Ok(self.entry(files, &decoder))
     }
 }
