@@ -108,11 +108,10 @@ pub(crate) fn bounced_light() -> Vec<Case> {
     };
     use BounceEngine::{BruteForce, Pyramid};
     let rough = |rows, cols| rough(rows, cols, 36);
-    let phong_specular = case("a bowl, specular", bowl(13), Border::Plane, Pyramid, Levels::Stack);
-    let phong_specular = Case {
-        quality: Quality { receiver: Receiver::Cosine, ..phong_specular.quality },
-        ..phong_specular
-    };
+    let by_cosine =
+        case("a bowl, cosine receiver", bowl(13), Border::Plane, Pyramid, Levels::Stack);
+    let by_cosine =
+        Case { quality: Quality { receiver: Receiver::Cosine, ..by_cosine.quality }, ..by_cosine };
     vec![
         case("every visible interval, grey", rough(7, 9), Border::Plane, BruteForce, Levels::Stack),
         case(
@@ -133,7 +132,7 @@ pub(crate) fn bounced_light() -> Vec<Case> {
         case("radiance by a stack", rough(9, 12), Border::Open, Pyramid, Levels::Stack),
         case("radiance by levels", rough(10, 12), Border::Periodic, Pyramid, Levels::Pyramid),
         case("a bowl by levels", bowl(13), Border::Plane, Pyramid, Levels::Pyramid),
-        phong_specular,
+        by_cosine,
     ]
 }
 

@@ -1,4 +1,4 @@
-//! Direct and indirect light of small fields, in f64, by deterministic quadrature: the ground ground_truth of the GPU's path
+//! Direct and indirect light of small fields, in f64, by deterministic quadrature: the ground truth of the GPU's path
 //! tracer, which follows the definition below and shares no code.
 //!
 //! - A result is the exit radiance of a grid point, towards straight above where there is Phong specular, with the

@@ -20,7 +20,7 @@ found, the bound that it must keep, and the error as a share of the bound. Made 
 test `extremes` of `tests/gpu` holds every row to its bound on the driver at hand.
 
 Angles in radians; lights in exit radiance. Errors are distances from what is expected; *worst* is the
-largest of all values chosen at, *share* the largest of error over bound, which may stand elsewhere.
+largest of all values, *share* the largest of error over bound, which may stand elsewhere.
 Methods are named by their lines' distance in cells and their fuse (`--lines`, `--fuse`), hull and
 precision where they are not the default's. ε = 2^-24; m azimuths. *The method's* bound of a
 horizon, at the distance d of what makes it, with heights up to H:
@@ -30,7 +30,7 @@ horizon, at the distance d of what makes it, with heights up to H:
 | brute | (2 + 76 + 208) ε H / d: heights in, march, device |
 | exact | (2 + 540 + 40 (1 + march / lane)) ε H / d along the grid vector (march, lane) |
 | all others | (2 + 38 + 256) ε H / d and 6 ε of the slope: heights in, sweep, fuse |
-| pyramid | on planes (2 + 144) ε H / d: heights in, levels; elsewhere what is expected is not the ground_truth but what the CPU reference finds in f32 from the same heights, within the angle (232 H + 12 R) ε / step and 6e-6 of the steepest that it may be, R / step or 1, R highest less lowest |
+| pyramid | on planes (2 + 144) ε H / d: heights in, levels; elsewhere what is expected is not the ground truth but what the CPU reference finds in f32 from the same heights, within the angle (232 H + 12 R) ε / step and 6e-6 of the steepest that it may be, R / step or 1, R highest less lowest |
 | f16 besides | 2^-10 of the slope and 2^-24; slopes beyond 65 504 are that |
 | packed besides | 2^-9 H / d and 100 ε H / d |
 | harmonics | as all others: they change an environment's light alone, by what f32 may do to their *series* (`crates/cpu/src/sh/harmonics.rs`); by *nlp* and *table* what is expected of an environment is what the series keeps of it, in f64 |

@@ -17,7 +17,7 @@ use super::{About, Asks, Case, Found, Probe, bounces, field, none, specular};
 const PLACES: usize = 12;
 
 const EXPECTED: &str = "the mean of the paths' light, each look-up that of what the oracle leaves visible there, least to most where it may be \
-     another; its own of each grid_point the zenith's sun on it, in steps from a quarter to all";
+     another; its own of each texel the zenith's sun on it, in steps from a quarter to all";
 const BOUND: &str = "of each look-up what normals, cosines and lobes err by (`gathered`), of what arrives and of itself; 2 ε a path";
 
 pub fn cases() -> Vec<Case> {
