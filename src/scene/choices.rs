@@ -50,7 +50,7 @@ impl Lines {
 }
 
 words! {
-    /// How lines' results are combined at the texels between them (TW10's fuse), from the fastest to the most exact.
+    /// How the results of lines are interpolated to the texels between them (TW10's fuse).
     pub enum Fuse = AimedNearest {
         /// Slope of the nearer line
         Nearest = "nearest",
@@ -62,7 +62,7 @@ words! {
         ///
         /// Also the first crossings of that line. Never above the true horizon.
         AimedNearest = "aimed-nearest",
-        /// The same for both lines' occluders; takes the higher
+        /// The same for the occluders of both lines; takes the higher
         Aimed = "aimed",
         /// The same, and every crossing of the texel's own line within two steps of either, for low suns
         ///
@@ -111,7 +111,7 @@ words! {
         ///
         /// Read bilinearly; each level takes the memory of the field.
         Stack = "stack",
-        /// Every level at its own resolution: a few times the field's memory in all
+        /// Every level at its own resolution: a few times the memory of the field in all
         ///
         /// Its B-spline is evaluated at every read: slow.
         Pyramid = "pyramid",
@@ -121,7 +121,7 @@ words! {
 words! {
     /// Basis of an environment. A uniform sky is always in closed form.
     pub enum Basis = Auto {
-        /// The planner's choice: table
+        /// The planner's choice: sh with specular, else table
         Auto = "auto",
         /// Tables of the light above each elevation, for each azimuth
         ///
@@ -202,7 +202,7 @@ words! {
         ///
         /// In closed form. Time per texel grows with the side of the field.
         BruteForce = "brute-force",
-        /// The visible intervals at every march step, from the visibility cache of a sweep along lines
+        /// The visible intervals at every march step, from the stored occluders of a sweep along lines
         ///
         /// On the texel's own lines, found in the hull tree (Timonen 2012). Needs such a sweep.
         Sweep = "sweep",
@@ -211,7 +211,8 @@ words! {
         /// Heights as [`Method::Pyramid`], and a pyramid of exit radiance (Nowrouzezahrai & Snyder 2009). Time is
         /// proportional to the texels and to the logarithm of the side.
         Pyramid = "pyramid",
-        /// The planner's choice: sweep where horizons come from a sweep along lines, else brute-force
+        /// The planner's choice: pyramid with specular, else sweep where horizons come from a sweep along lines, else
+        /// brute-force
         ///
         /// On four real fields under two environments `Sweep` took 0.1 to 0.4 of the time of `BruteForce` with the same
         /// error against the path-traced reference (`cargo measure bounce`).

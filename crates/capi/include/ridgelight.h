@@ -221,8 +221,9 @@ typedef struct RidgelightQuality {
     // Distance between the lines of a sweep: 1 exact, 2 a quarter of a cell, 3 half a cell, 4 a cell (default),
     // 5 two cells, 6 four cells. Wider: faster, small occluders missed between lines.
     uint32_t lines;
-    // How the lines' results come back to grid points: 1 nearest, 2 slopes, 3 own, 4 aimed-nearest (default),
-    // 5 aimed, 6 aimed-around. Later: slower, smaller error.
+    // How the results of lines are interpolated to grid points: 1 nearest, 2 slopes, 3 own, 4 aimed-nearest
+    // (default), 5 aimed, 6 aimed-around. aimed-nearest is as fast as nearest and more exact than the first three.
+    // aimed and aimed-around are slower and more exact.
     uint32_t fuse;
     // Precision of stored sweep results: 1 f32 (default), 2 f16. (A packed hull would need the heights
     // beforehand.)
