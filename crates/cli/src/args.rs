@@ -31,8 +31,8 @@ use values::bytes;
 pub use values::{SpecularArg, albedo_colour, numbers};
 pub use view::ViewArgs;
 
-/// Renders height fields on Vulkan: exact horizons under sky, environment, suns, key lights and sphere lights, and
-/// indirect light.
+/// Lights height fields on Vulkan by sky, environment, suns, key lights, sphere lights and indirect light, with
+/// shadows from horizons.
 #[derive(Parser)]
 #[command(version, max_term_width = 100)]
 pub struct Cli {
@@ -221,7 +221,7 @@ pub struct HorizonArgs {
     /// Output: .npy (f32 [azimuths, rows, cols]) or .exr (one channel per azimuth)
     #[arg(short, long, value_name = "OUT.{npy,exr}", help_heading = "Output")]
     pub output: PathBuf,
-    /// Write the distance to each horizon's occluder too, metres, 0 where there is none (.npy)
+    /// Also write the distance to each horizon's occluder, metres, 0 where there is none (.npy)
     #[arg(long, value_name = "OUT.npy", help_heading = "Output")]
     pub distances: Option<PathBuf>,
     #[command(flatten)]
@@ -256,7 +256,7 @@ pub struct BenchArgs {
     /// Height field; without one, a fractal of --size
     #[arg(value_name = "INPUT", help_heading = "Input")]
     pub input: Option<PathBuf>,
-    /// Side of a fixed fractal field, texels
+    /// Side of the fractal field, texels
     #[arg(long, help_heading = "Input", default_value_t = 1024, value_name = "N")]
     pub size: usize,
     #[command(flatten)]
@@ -273,7 +273,7 @@ pub struct BenchArgs {
     /// Fewer are faster and noisier.
     #[arg(long, default_value_t = 20, value_name = "K", help_heading = "Quality")]
     pub runs: usize,
-    /// Time every form of the sweep too, brute force, and a scalar sweep on the CPU
+    /// Also time every form of the sweep, brute force, and a scalar sweep on the CPU
     #[arg(long, help_heading = "Output")]
     pub forms: bool,
     /// Time whole frames of fractal fields of these sides instead
@@ -302,7 +302,7 @@ pub struct TradeArgs {
     pub input: Input,
     /// Output folder for trade.html, trade.json and trade.csv
     ///
-    /// Made where it is missing; refused where it holds anything else.
+    /// Created if it is missing; refused if it contains anything else.
     #[arg(short, long, value_name = "DIR", help_heading = "Output")]
     pub output: PathBuf,
     #[command(flatten)]
@@ -334,9 +334,9 @@ pub struct TradeArgs {
     /// Does the same work on every machine.
     #[arg(long, help_heading = "Quality", value_name = "N", conflicts_with = "budget", value_parser = clap::value_parser!(u32).range(1..), allow_negative_numbers = true)]
     pub evaluations: Option<u32>,
-    /// Recommend the fastest settings of at most this relative RMSE (0.01 is 1 %)
+    /// Recommend the fastest settings within this relative RMSE (0.01 is 1 %)
     ///
-    /// Exit status 1 where no settings reach it.
+    /// Exit status 1 if no settings reach it.
     #[arg(
         long,
         help_heading = "Quality",
@@ -345,9 +345,9 @@ pub struct TradeArgs {
         conflicts_with = "time_budget"
     )]
     pub max_error: Option<f64>,
-    /// Recommend the most accurate settings of at most this GPU time a frame, milliseconds
+    /// Recommend the most accurate settings within this GPU time per frame, milliseconds
     ///
-    /// Exit status 1 where no settings reach it.
+    /// Exit status 1 if no settings reach it.
     #[arg(long, help_heading = "Quality", value_name = "MS", allow_negative_numbers = true)]
     pub time_budget: Option<f64>,
     #[command(flatten)]
@@ -373,15 +373,15 @@ pub struct Input {
 pub struct GlobalArgs {
     /// Device: part of its name, or its number in `ridgelight devices`
     ///
-    /// Default the first GPU that has what is needed, else a software driver.
+    /// Default the first GPU that meets the requirements, else a software driver.
     #[arg(long, value_name = "NAME|INDEX")]
     pub device: Option<String>,
     /// Largest memory of images and buffers, as 512MiB or 2GiB; default half of the device's
     ///
-    /// Less makes the planner choose slower settings, or refuse.
+    /// With less, the planner chooses slower settings or refuses the scene.
     #[arg(long, hide_short_help = true, value_name = "SIZE", value_parser = bytes, allow_negative_numbers = true)]
     pub memory_budget: Option<u64>,
-    /// Write settings used, times and figures as JSON
+    /// Write the settings used, times and figures as JSON
     #[arg(long, hide_short_help = true, help_heading = "Output", value_name = "FILE")]
     pub json: Option<PathBuf>,
     /// Print only errors
@@ -389,7 +389,7 @@ pub struct GlobalArgs {
     pub quiet: bool,
     /// Read field, lights and settings from a JSON file
     ///
-    /// docs/scene.schema.json describes it. The command ignores keys that it has no flag for. Flags override the file.
+    /// docs/scene.schema.json describes it. Keys without a flag of the command are ignored. Flags override the file.
     #[arg(long, help_heading = "Input", value_name = "FILE.json")]
     pub scene: Option<PathBuf>,
 }

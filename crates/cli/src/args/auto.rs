@@ -12,16 +12,16 @@ fn chosen() -> impl Iterator<Item = &'static str> {
 #[derive(Args)]
 #[command(next_help_heading = "Quality")]
 pub struct AutoArgs {
-    /// Choose the fastest settings of at most this error (0.01 is 1 %)
+    /// Choose the fastest settings within this error (0.01 is 1 %)
     ///
     /// The error is the RMSE over the mean light. It is bounded with 95 % confidence by exact light at 192 to 3000 texels
     /// that the choice does not use. With --bounces, path tracing gives the exact light.
     ///
-    /// Renders up to 16 frames, up to 18 where two hold exact horizons, and the chosen one again. Skips settings expected
-    /// to take more than 30 s. Where no settings reach the error, the command is refused and names the nearest.
+    /// Renders up to 16 frames, or 18 if two have exact horizons, and the chosen one again. Skips settings expected to
+    /// take more than 30 s. If no settings reach the error, the command is refused and names the closest ones.
     #[arg(long, value_name = "E", allow_negative_numbers = true, conflicts_with = "time_budget", conflicts_with_all = chosen())]
     pub max_error: Option<f64>,
-    /// Choose the most accurate settings of at most this GPU time a frame on this device
+    /// Choose the most accurate settings within this GPU time per frame on this device
     ///
     /// Renders the chosen frame again to check the time, and reports its error.
     #[arg(long, value_name = "MS", allow_negative_numbers = true, hide_short_help = true, conflicts_with_all = chosen())]

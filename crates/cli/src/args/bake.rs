@@ -21,8 +21,8 @@ pub struct BakeArgs {
     pub input: Input,
     /// Output folder for maps, GLSL decoders and manifest.json
     ///
-    /// Made where it is missing. manifest.json describes every channel, its decoding and its largest error. An earlier bake of
-    /// the same kinds is replaced; any other content is refused.
+    /// Created if it is missing. manifest.json describes every channel, its decoding and its largest error. An earlier bake
+    /// of the same kinds is replaced; any other content is refused.
     #[arg(short, long, value_name = "DIR", help_heading = "Output")]
     pub output: PathBuf,
     /// Kinds of maps to bake, from the list below
@@ -30,8 +30,8 @@ pub struct BakeArgs {
     pub what: Vec<&'static Kind>,
     /// File formats of each map. Default each kind's
     ///
-    /// exr and npy hold values in f32; ktx2 and png hold the values of --encoding. An exr is held in memory until the end;
-    /// the others are written as they come.
+    /// exr and npy hold values in f32; ktx2 and png hold the values of --encoding. An exr stays in memory until the end;
+    /// the others are written as they are computed.
     #[arg(long, value_name = "LIST", value_delimiter = ',', help_heading = "Output")]
     pub format: Vec<Format>,
     /// Packing of a kind in .ktx2 and .png, as horizon=unorm16-sin; default the first in the list below
@@ -39,8 +39,8 @@ pub struct BakeArgs {
     pub encoding: Vec<bake::Packing>,
     /// Directions of ellipse, curved-ellipse, visible-points and scattered light, 4 to 4096 [default: 256]
     ///
-    /// A spherical Fibonacci set, on the upper hemisphere for ellipses alone, else on the whole sphere. Fewer are coarser;
-    /// each takes one word a texel on the device.
+    /// A spherical Fibonacci set: on the upper hemisphere for ellipses alone, else on the whole sphere. Fewer are coarser;
+    /// each takes one word per texel on the device.
     #[arg(long, value_name = "N", value_parser = whole, allow_negative_numbers = true, help_heading = "Quality", hide_short_help = true)]
     pub directions: Option<u32>,
     /// Zenith angles times azimuths of lights and views, 2..64 x 4..256, 4096 in all [default: 8x16, with btf 3x8]
@@ -51,7 +51,7 @@ pub struct BakeArgs {
     pub angles: Option<[usize; 2]>,
     /// Curvatures that curved-ellipse is fitted at, outwards and inwards, 1/m, above 0; one number for both
     ///
-    /// Stronger ones stay accurate on stronger bends and are less accurate in between. A curvature that would change
+    /// Stronger curvatures stay accurate on stronger bends, and are less accurate in between. A curvature that would change
     /// visibility is refused.
     #[arg(long, value_name = "OUT[,IN]", value_parser = curvatures, allow_hyphen_values = true, help_heading = "Quality", hide_short_help = true)]
     pub curvature: Option<[f64; 2]>,

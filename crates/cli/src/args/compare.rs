@@ -3,9 +3,9 @@ use std::path::PathBuf;
 use clap::Args;
 
 const AFTER_HELP: &str = "\
-Channels that both files have are compared by name, in linear light; a .png is decoded from sRGB. Channels of one file \
-only are listed. A channel that A lacks fails the command, except an alpha of 1 everywhere and a reference's \
-standard_error. Voids are NaN, or alpha 0. A void in both files is masked and counted; a void in one file only fails \
+Channels that both files have are compared by name, in linear light; a .png is decoded from sRGB. Channels of only one \
+file are listed. A channel that A lacks fails the command, except an alpha of 1 everywhere and a reference's \
+standard_error. Voids are NaN, or alpha 0. A void in both files is masked and counted; a void in only one file fails \
 the command.
 
 FLIP (Andersson et al. 2020) measures the visible difference of two pictures when one replaces the other: 0 is none, 1 \

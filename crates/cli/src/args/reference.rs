@@ -26,8 +26,8 @@ pub struct ReferenceArgs {
     pub bounces: u32,
     /// Stop at this standard error relative to the mean (0.01 is 1 %)
     ///
-    /// The bound covers unsampled light. Stops after 512 paths at the earliest. If --spp ends first, the command writes the
-    /// file, warns, and exits with status 1.
+    /// The bound includes unsampled light. Stops after 512 paths at the earliest. If --spp ends the run first, the command
+    /// writes the file, warns, and exits with status 1.
     #[arg(long, value_name = "E", allow_negative_numbers = true, help_heading = "Quality")]
     pub until_error: Option<f64>,
     /// Seed of the paths, 0 to 4294967295

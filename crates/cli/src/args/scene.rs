@@ -13,7 +13,7 @@ use crate::lights::LIGHTS;
 pub struct LightArgs {
     /// Uniform sky: radiance, or R,G,B
     ///
-    /// Default 1 where no other light is given.
+    /// Default 1 if no other light is given.
     #[arg(long, value_name = "RADIANCE", value_parser = colour, allow_negative_numbers = true)]
     pub sky: Option<[f32; 3]>,
     /// Environment map: .hdr or .exr
@@ -108,9 +108,9 @@ pub struct SurfaceArgs {
     pub albedo: String,
     /// Phong specular: exponent 0 to 10000, scale 0 to 1
     ///
-    /// The Phong lobe lies about the mirror direction of a view from straight above. SCALE and --albedo add up to 1 at
-    /// most. A file has the size of the field and holds both: .exr R and G, or .npy [2, rows, cols]. `render` lights it by
-    /// sky, suns and, with --basis sh, environment; `reference` by all lights.
+    /// The Phong lobe lies about the mirror direction of a view from straight above. SCALE plus --albedo is at most 1. A
+    /// file has the size of the field and holds both: .exr R and G, or .npy [2, rows, cols]. `render` reflects sky, suns
+    /// and, with --basis sh, the environment; `reference` reflects all lights.
     #[arg(
         long,
         value_name = "EXPONENT,SCALE|FILE",
