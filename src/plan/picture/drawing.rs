@@ -7,10 +7,9 @@ use crate::passes::blocks::Blocks;
 use crate::passes::bounces::{Bouncing, bounce_name};
 use crate::passes::edits::Edits;
 use crate::passes::sphere_sh::SphereSh;
-use crate::passes::spheres::light_name;
 use crate::passes::sweeping::{Lists, Sweeping, part};
 use crate::passes::{self, light_resolve};
-use crate::scene::{Albedo, Border, Quality, Scene};
+use crate::scene::{Albedo, Border, NearLight, Quality, Scene};
 use crate::{Error, Result};
 
 /// A picture while its passes are added.
@@ -220,13 +219,12 @@ impl Drawing<'_> {
         } else {
             blocks.record(&mut self.builder, field, heights, None);
         }
-        let names: Vec<String> =
-            self.active.sphere_lights.active.iter().map(|(i, _)| light_name(*i)).collect();
+        let names: Vec<String> = self.active.near.active.iter().map(NearLight::label).collect();
         for (index, name) in names.iter().enumerate() {
             let layer = self.images.sphere_layers[index];
             let Some(blocks) = &self.blocks else { return };
             let begins = index == 0 || layer.is_some();
-            let (spheres, builder) = (&self.active.sphere_lights, &mut self.builder);
+            let (spheres, builder) = (&self.active.near, &mut self.builder);
             if let Some(soft) = &self.soft {
                 let lit = (self.scene, blocks, soft);
                 spheres.record_soft(builder, lit, heights, (index, begins), sum);

@@ -27,8 +27,8 @@ pub(super) fn quality(
     if !active.keys.is_empty() {
         return refuse("specular under a key light", alone);
     }
-    if !active.sphere_lights.active.is_empty() {
-        return refuse("specular under a sphere light", alone);
+    if let Some(light) = active.near.active.first() {
+        return refuse(&format!("specular under a {}", light.of.name), alone);
     }
     let quality = bounced(*quality, notes)?;
     match quality.basis {
