@@ -192,15 +192,16 @@ fn of_all_lights() -> [Scene; 2] {
         SphereLight { position_m: [9.0, 7.0, 912.0], radius_m: 3.0, radiance: [0.1, 0.4, 2.0] };
     let mut next = random(21);
     let map = (0..7 * 9).map(|_| [0.8 * next() as f32, 0.5, 0.1]).collect();
+    let sky = Lights { sky: Some([0.3, 0.5, 0.9]), ..Lights::default() };
     let all = Scene {
         field: rough(7, 9, 22),
         surface: Surface { border: Border::Open, albedo: Albedo::Map(map), specular: None },
         lights: Lights {
-            sky: Some([0.3, 0.5, 0.9]),
             environment: Some(noisy_environment(23)),
             suns: vec![sun(0.2), sun(0.0)],
             keys: vec![key(-0.4, 0.5, [1.0, 0.3, 0.0]), key(0.9, 1.2, [0.0, 0.4, 2.0])],
             sphere_lights: vec![sphere_light],
+            ..sky
         },
     };
     let repeated = Scene {
