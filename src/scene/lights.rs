@@ -52,15 +52,17 @@ pub struct SphereLight {
 
 /// A type of light near the field: its names and what supports it. The planner's messages, labels and checks follow.
 #[derive(Debug, PartialEq, Eq)]
-pub struct NearType {
+pub(crate) struct NearType {
     /// In messages, before its number.
-    pub name: &'static str,
+    pub(crate) name: &'static str,
     /// In labels and layers, before its number.
-    pub label: &'static str,
+    pub(crate) label: &'static str,
+    /// What `sphere_shade` does for it, as plans print it.
+    pub(crate) shaded_by: &'static str,
     /// Whether the path-traced reference supports it.
-    pub by_paths: bool,
+    pub(crate) by_paths: bool,
     /// Whether `light_basis sh` supports it.
-    pub by_sh: bool,
+    pub(crate) by_sh: bool,
 }
 
 /// What a scene without lights lacks.
@@ -68,28 +70,38 @@ pub(crate) const ANY_LIGHT: &str =
     "at least one of sky, environment, sun, key light and sphere light";
 
 /// Sphere lights.
-pub const SPHERE_LIGHT: NearType =
-    NearType { name: "sphere light", label: "light", by_paths: true, by_sh: true };
+pub(crate) const SPHERE_LIGHT: NearType = NearType {
+    name: "sphere light",
+    label: "light",
+    shaded_by: "slices of the sphere light above the horizon",
+    by_paths: true,
+    by_sh: true,
+};
 
 /// A light near the field, as all passes and checks take it.
 #[derive(Clone, Copy, Debug)]
 pub struct NearLight {
     /// Its type.
-    pub of: &'static NearType,
+    pub(crate) of: &'static NearType,
     /// Its position among the scene's lights of its type, from 0.
-    pub position: usize,
+    pub(crate) position: usize,
     /// Place, size and radiance.
     pub sphere: SphereLight,
 }
 
 impl NearLight {
+    /// Whether `light_basis sh` supports its type.
+    pub fn is_by_sh(&self) -> bool {
+        self.of.by_sh
+    }
+
     /// Its name in messages: "sphere light 1" is the scene's first.
-    pub fn name(&self) -> String {
+    pub(crate) fn name(&self) -> String {
         format!("{} {}", self.of.name, self.position + 1)
     }
 
     /// Its name in labels and layers: "light1" is the scene's first.
-    pub fn label(&self) -> String {
+    pub(crate) fn label(&self) -> String {
         format!("{}{}", self.of.label, self.position + 1)
     }
 }

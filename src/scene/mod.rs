@@ -59,7 +59,7 @@ pub use field::normal::normal;
 pub use field::{HeightField, fill_voids};
 pub(crate) use lights::ANY_LIGHT;
 pub use lights::key::KeyLight;
-pub use lights::{Lights, NearLight, NearType, SPHERE_LIGHT, SphereLight, Sun};
+pub use lights::{Lights, NearLight, SphereLight, Sun};
 pub use quality::{Bounces, Quality, SETTINGS, setting};
 pub use scatter::Scatter;
 pub(crate) use scatter::check_view;

@@ -114,7 +114,7 @@ impl Spheres {
         let (rectangle, reach_m) = self.regions[index];
         // The first light writes all of the sum.
         let rectangle = if begins { whole(field) } else { rectangle };
-        SphereShading { slices, rectangle, reach_m, begins }
+        SphereShading { why: self.active[index].of.shaded_by, slices, rectangle, reach_m, begins }
     }
 }
 

@@ -134,7 +134,7 @@ pub fn ladders(scene: &Scene, bounces: u32) -> Vec<Ladder> {
     add(have_slices(lights), slices);
     let exact = "each slice of a sphere light exact: sharp shadows";
     let light_basis = Ladder::new("light basis", &["light_basis: sh exact"], exact);
-    let by_sh = lights.near().next().is_some() && lights.near().all(|light| light.of.by_sh);
+    let by_sh = lights.near().next().is_some() && lights.near().all(|light| light.is_by_sh());
     add(by_sh, light_basis);
     let bright = "more elevations per table: small bright features";
     let elevations = &["table_elevations: 32 64 128 256 512 1024"];

@@ -43,7 +43,8 @@ fn slices(scene: &Scene, places: &[usize], quality: &Quality) -> Wanted {
     let cols = scene.field.cols();
     summed(scene, places, |light, p| {
         let share = sphere_at(&oracle, light, quality.sun_azimuths, p / cols, p % cols);
-        let off = SphereGeometry::of(&scene.field, light, p).tolerance() + 4.0 * EPSILON;
+        let geometry = SphereGeometry::of(&scene.field, light, p);
+        let off = geometry.tolerance() + 4.0 * EPSILON * share;
         [DVec3::splat(share), DVec3::splat(off)]
     })
 }

@@ -30,8 +30,8 @@ impl GroundTruth {
     /// use as many slices as fit.
     pub fn draw(rig: &mut Rig) -> Result<Self> {
         let scene = rig.scene;
-        let (near, near_alone) = (scene.lights.near().next(), scene.lights.near_alone());
-        let nears = near.map_or(String::new(), |light| format!("{}s", light.of.name));
+        let near = scene.lights.near_alone();
+        let is_near = near.near().next().is_some();
         let Lights { sky, environment, suns, keys, .. } = scene.lights.clone();
         let aimed = match (suns.is_empty(), keys.is_empty()) {
             (_, true) => "suns",
@@ -42,7 +42,7 @@ impl GroundTruth {
         let has_sky = sky.is_some() || environment.is_some();
         let parts = [
             (!suns.is_empty() || !keys.is_empty(), aimed, Lights { suns, keys, ..none.clone() }),
-            (near.is_some(), &nears, near_alone),
+            (is_near, "lights near the field", near),
             (has_sky, "sky", Lights { sky, environment, ..none }),
         ];
         let parts: Vec<(&str, Scene)> = parts
