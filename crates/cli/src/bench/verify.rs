@@ -316,7 +316,7 @@ pub mod tests {
                 ("of a neighbour", turned),
                 ("NaN", holed),
             ]);
-            if right[0].x != right[0].z {
+            if right.iter().any(|v| v.x != v.z) {
                 all.push(("of other colours", right.iter().map(|v| v.zyx()).collect()));
             }
             for (name, light) in all {

@@ -95,6 +95,12 @@ fn old_keys_of_scene_files_warn_once() {
             warning("surface.phong", "surface.specular"),
         ]
     );
+    // An old flag overrides the file's key, as the new one does.
+    let [overridden, warned] = planned(&folder, "--scene new.json --phong 20,0.3 --hull list");
+    assert!(warned.contains(&warning("--phong", "--specular")), "{warned}");
+    assert_ne!(overridden, expected);
+    let with_new = "--scene new.json --specular 20,0.3 --hull occluder-list";
+    assert_eq!(overridden, planned(&folder, with_new)[0]);
     for (name, key) in [("b.json", "balls"), ("s.json", "sphere_lights")] {
         let text =
             format!(r#"{{ "field": {{ "file": "a.asc" }}, "lights": {{ "{key}": {sphere} }} }}"#);
