@@ -79,7 +79,7 @@ fn add_shader(
     let (constant, structure) = (name.to_uppercase(), pascal(name));
     writeln!(table, "shader! {{").unwrap();
     writeln!(table, "    /// `{source}`.").unwrap();
-    writeln!(table, "    {constant}: {name:?}, push {}, words {first} {count},", found.push_bytes)
+    writeln!(table, "    {constant}: {name:?}, push {}, words {first} {count},", found.push)
         .unwrap();
     for (binding, reflect::Binding { name, kind, written }) in &found.bindings {
         let access = if *written { "writes" } else { "reads" };
@@ -106,8 +106,8 @@ fn add_shader(
 /// The `layouts!` of src/graph/shaders.rs.
 fn add_layouts(table: &mut String, layouts: &Layouts) {
     writeln!(table, "layouts! {{").unwrap();
-    for (structure, members) in &layouts.pushes {
-        writeln!(table, "    push {structure} {} {{", snake(structure)).unwrap();
+    for (structure, (bytes, members)) in &layouts.pushes {
+        writeln!(table, "    push {structure} {} {bytes} {{", snake(structure)).unwrap();
         let fields = members.iter().map(|reflect::Member { offset, name, of_type }| {
             format!("{offset} {} {}: {of_type},", name.to_uppercase(), name.to_lowercase())
         });

@@ -83,7 +83,7 @@ fn old_keys_of_scene_files_warn_once() {
     );
     let [plan, warned] = planned(&folder, "--scene old.json");
     let [expected, silent] = planned(&folder, "--scene new.json");
-    assert_eq!((plan, silent.as_str()), (expected, ""));
+    assert_eq!((&plan, silent.as_str()), (&expected, ""));
     let mut lines: Vec<&str> = warned.split_inclusive('\n').collect();
     lines.sort_unstable();
     assert_eq!(
