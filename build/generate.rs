@@ -107,16 +107,16 @@ fn add_shader(
 fn add_layouts(table: &mut String, layouts: &Layouts) {
     writeln!(table, "layouts! {{").unwrap();
     for (structure, (bytes, members)) in &layouts.pushes {
-        writeln!(table, "    push {structure} {} {bytes} {{", snake(structure)).unwrap();
+        writeln!(table, "    push {structure} {bytes} {{").unwrap();
         let fields = members.iter().map(|reflect::Member { offset, name, of_type }| {
-            format!("{offset} {} {}: {of_type},", name.to_uppercase(), name.to_lowercase())
+            format!("{offset} {}: {of_type},", name.to_lowercase())
         });
         add_wrapped(table, fields);
         writeln!(table, "    }}").unwrap();
     }
     for (structure, members) in &layouts.others {
-        writeln!(table, "    other {structure} {} {{", snake(structure)).unwrap();
-        let offsets = members.iter().map(|(name, at)| format!("{at} {},", name.to_uppercase()));
+        writeln!(table, "    other {structure} {{").unwrap();
+        let offsets = members.iter().map(|(name, at)| format!("{at} {},", name.to_lowercase()));
         add_wrapped(table, offsets);
         writeln!(table, "    }}").unwrap();
     }

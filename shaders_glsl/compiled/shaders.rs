@@ -843,226 +843,189 @@ pub static GRAPHICS: &[Shader] = &[
 ];
 
 layouts! {
-    push BentDirectionsPush bent_directions_push 36 {
-        0 COLS cols: i32, 4 ROWS rows: i32, 8 FIRST_TEXEL first_texel: i32,
-        12 FIRST_FAN first_fan: i32, 16 FIRST_DIRECTION first_direction: i32,
-        20 CELL_X_M cell_x_m: f32, 24 CELL_Y_M cell_y_m: f32, 28 CURVATURE_X curvature_x: f32,
-        32 CURVATURE_Y curvature_y: f32,
+    push BentDirectionsPush 36 {
+        0 cols: i32, 4 rows: i32, 8 first_texel: i32, 12 first_fan: i32, 16 first_direction: i32,
+        20 cell_x_m: f32, 24 cell_y_m: f32, 28 curvature_x: f32, 32 curvature_y: f32,
     }
-    push BounceMarchPush bounce_march_push 44 {
-        0 LAND land: LandPush, 32 AZIMUTHS azimuths: i32, 36 FIRST_AZIMUTH first_azimuth: i32,
-        40 LAST_AZIMUTH last_azimuth: i32,
+    push BounceMarchPush 44 {
+        0 land: LandPush, 32 azimuths: i32, 36 first_azimuth: i32, 40 last_azimuth: i32,
     }
-    push BounceShadePush bounce_shade_push 16 {
-        0 COLS cols: i32, 4 ROWS rows: i32, 8 CELL_X_M cell_x_m: f32, 12 CELL_Y_M cell_y_m: f32,
+    push BounceShadePush 16 {
+        0 cols: i32, 4 rows: i32, 8 cell_x_m: f32, 12 cell_y_m: f32,
     }
-    push BounceWalkPush bounce_walk_push 40 {
-        0 COLS cols: i32, 4 ROWS rows: i32, 8 CELL_X_M cell_x_m: f32, 12 CELL_Y_M cell_y_m: f32,
-        16 WARM_UP warm_up: i32, 20 FIRST_AZIMUTH first_azimuth: u32,
-        24 AZIMUTH_COUNT azimuth_count: u32, 28 CLEARS clears: u32, 32 IS_LAST is_last: u32,
-        36 BEGIN begin: u32,
+    push BounceWalkPush 40 {
+        0 cols: i32, 4 rows: i32, 8 cell_x_m: f32, 12 cell_y_m: f32, 16 warm_up: i32,
+        20 first_azimuth: u32, 24 azimuth_count: u32, 28 clears: u32, 32 is_last: u32,
+        36 begin: u32,
     }
-    push CacheGatherPush cache_gather_push 16 {
-        0 COLS cols: i32, 4 ROWS rows: i32, 8 BEGIN begin: u32, 12 COUNT count: u32,
+    push CacheGatherPush 16 {
+        0 cols: i32, 4 rows: i32, 8 begin: u32, 12 count: u32,
     }
-    push DirtyListPush dirty_list_push 8 {
-        0 COLS cols: i32, 4 ROWS rows: i32,
+    push DirtyListPush 8 {
+        0 cols: i32, 4 rows: i32,
     }
-    push DirtyMarkPush dirty_mark_push 24 {
-        0 COLS cols: i32, 4 ROWS rows: i32, 8 FIRST_COL first_col: i32, 12 FIRST_ROW first_row: i32,
-        16 LAST_COL last_col: i32, 20 LAST_ROW last_row: i32,
+    push DirtyMarkPush 24 {
+        0 cols: i32, 4 rows: i32, 8 first_col: i32, 12 first_row: i32, 16 last_col: i32,
+        20 last_row: i32,
     }
-    push EllipseFitPush ellipse_fit_push 24 {
-        0 COLS cols: i32, 4 ROWS rows: i32, 8 FIRST_DIRECTION first_direction: i32,
-        12 END_DIRECTION end_direction: i32, 16 FIRST_ROW first_row: i32,
-        20 LEAST_RADIUS least_radius: f32,
+    push EllipseFitPush 24 {
+        0 cols: i32, 4 rows: i32, 8 first_direction: i32, 12 end_direction: i32, 16 first_row: i32,
+        20 least_radius: f32,
     }
-    push EnvRotationPush env_rotation_push 16 {
-        0 WIDTH width: i32, 4 ROWS rows: i32, 8 TURNS turns: i32, 12 COLUMN_FIRST column_first: i32,
+    push EnvRotationPush 16 {
+        0 width: i32, 4 rows: i32, 8 turns: i32, 12 column_first: i32,
     }
-    push EnvTablesPush env_tables_push 20 {
-        0 HEIGHT height: i32, 4 ROWS rows: i32, 8 NODES nodes: i32,
-        12 AZIMUTH_COUNT azimuth_count: i32, 16 BOTTOM_RAD bottom_rad: f32,
+    push EnvTablesPush 20 {
+        0 height: i32, 4 rows: i32, 8 nodes: i32, 12 azimuth_count: i32, 16 bottom_rad: f32,
     }
-    push EnvWedgesPush env_wedges_push 12 {
-        0 WIDTH width: i32, 4 ROWS rows: i32, 8 ROTATION_RAD rotation_rad: f32,
+    push EnvWedgesPush 12 {
+        0 width: i32, 4 rows: i32, 8 rotation_rad: f32,
     }
-    push FacetMaskPush facet_mask_push 48 {
-        0 LAND land: LandPush, 32 HIGHEST_M highest_m: f32, 36 FIRST_LAYER first_layer: i32,
-        40 FIRST_DIRECTION first_direction: i32, 44 END_DIRECTION end_direction: i32,
+    push FacetMaskPush 48 {
+        0 land: LandPush, 32 highest_m: f32, 36 first_layer: i32, 40 first_direction: i32,
+        44 end_direction: i32,
     }
-    push FanWeightsPush fan_weights_push 16 {
-        0 COLS cols: i32, 4 ROWS rows: i32, 8 FIRST_FAN first_fan: i32,
-        12 FIRST_DIRECTION first_direction: i32,
+    push FanWeightsPush 16 {
+        0 cols: i32, 4 rows: i32, 8 first_fan: i32, 12 first_direction: i32,
     }
-    push GatherPush gather_push 64 {
-        0 COLS cols: i32, 4 ROWS rows: i32, 8 CELL_X_M cell_x_m: f32, 12 CELL_Y_M cell_y_m: f32,
-        16 AZIMUTHS azimuths: i32, 20 FIRST_AZIMUTH first_azimuth: i32,
-        24 LAST_AZIMUTH last_azimuth: i32, 28 WARM_UP_COLS warm_up_cols: i32,
-        32 WARM_UP_ROWS warm_up_rows: i32, 36 FINE_SAMPLES fine_samples: i32,
-        40 WIDTH_SHIFT width_shift: i32, 44 GROWTH growth: f32, 48 SHADE_FINE shade_fine: i32,
-        52 SHADE_SHIFT shade_shift: i32, 56 STEP_SHADE step_shade: i32,
-        60 STEP_HEIGHT step_height: i32,
+    push GatherPush 64 {
+        0 cols: i32, 4 rows: i32, 8 cell_x_m: f32, 12 cell_y_m: f32, 16 azimuths: i32,
+        20 first_azimuth: i32, 24 last_azimuth: i32, 28 warm_up_cols: i32, 32 warm_up_rows: i32,
+        36 fine_samples: i32, 40 width_shift: i32, 44 growth: f32, 48 shade_fine: i32,
+        52 shade_shift: i32, 56 step_shade: i32, 60 step_height: i32,
     }
-    push HeightBoundsPush height_bounds_push 16 {
-        0 CELLS_X cells_x: i32, 4 CELLS_Y cells_y: i32, 8 PADDED_ROWS padded_rows: i32,
-        12 LEVEL level: i32,
+    push HeightBoundsPush 16 {
+        0 cells_x: i32, 4 cells_y: i32, 8 padded_rows: i32, 12 level: i32,
     }
-    push HeightCellsPush height_cells_push 16 {
-        0 COLS cols: i32, 4 ROWS rows: i32, 8 CELL_X_M cell_x_m: f32, 12 CELL_Y_M cell_y_m: f32,
+    push HeightCellsPush 16 {
+        0 cols: i32, 4 rows: i32, 8 cell_x_m: f32, 12 cell_y_m: f32,
     }
-    push HeightExpandPush height_expand_push 12 {
-        0 COLS cols: i32, 4 ROWS rows: i32, 8 WIDTH_SHIFT width_shift: i32,
+    push HeightExpandPush 12 {
+        0 cols: i32, 4 rows: i32, 8 width_shift: i32,
     }
-    push HeightTransposePush height_transpose_push 24 {
-        0 LANES lanes: i32, 4 STEPS steps: i32, 8 FIRST_COL first_col: i32,
-        12 FIRST_ROW first_row: i32, 16 LAST_COL last_col: i32, 20 LAST_ROW last_row: i32,
+    push HeightTransposePush 24 {
+        0 lanes: i32, 4 steps: i32, 8 first_col: i32, 12 first_row: i32, 16 last_col: i32,
+        20 last_row: i32,
     }
-    push HorizonResweepPush horizon_resweep_push 32 {
-        0 LANES lanes: i32, 4 STEPS steps: i32, 8 FIRST_AZIMUTH first_azimuth: u32,
-        12 HEIGHT_SCALE height_scale: f32, 16 FIRST_COL first_col: i32, 20 FIRST_ROW first_row: i32,
-        24 LAST_COL last_col: i32, 28 LAST_ROW last_row: i32,
+    push HorizonResweepPush 32 {
+        0 lanes: i32, 4 steps: i32, 8 first_azimuth: u32, 12 height_scale: f32, 16 first_col: i32,
+        20 first_row: i32, 24 last_col: i32, 28 last_row: i32,
     }
-    push HorizonSweepPush horizon_sweep_push 20 {
-        0 LANES lanes: i32, 4 STEPS steps: i32, 8 WARM_UP warm_up: i32,
-        12 FIRST_AZIMUTH first_azimuth: u32, 16 HEIGHT_SCALE height_scale: f32,
+    push HorizonSweepPush 20 {
+        0 lanes: i32, 4 steps: i32, 8 warm_up: i32, 12 first_azimuth: u32, 16 height_scale: f32,
     }
-    push LandPush land_push 32 {
-        0 COLS cols: i32, 4 ROWS rows: i32, 8 CELLS_X cells_x: i32, 12 CELLS_Y cells_y: i32,
-        16 PADDED_ROWS padded_rows: i32, 20 TOP_LEVEL top_level: i32, 24 CELL_X_M cell_x_m: f32,
-        28 CELL_Y_M cell_y_m: f32,
+    push LandPush 32 {
+        0 cols: i32, 4 rows: i32, 8 cells_x: i32, 12 cells_y: i32, 16 padded_rows: i32,
+        20 top_level: i32, 24 cell_x_m: f32, 28 cell_y_m: f32,
     }
-    push LightMatrixPush light_matrix_push 48 {
-        0 ROWS rows: i32, 4 LIGHT_ORDER light_order: i32, 8 ORDER order: i32,
-        12 RECEIVERS receivers: i32, 16 ROW_FIRST row_first: i32, 20 MATRIX_FIRST matrix_first: i32,
-        24 PADS pads: [i32; 2], 32 SKY sky: [f32; 4],
+    push LightMatrixPush 48 {
+        0 rows: i32, 4 light_order: i32, 8 order: i32, 12 receivers: i32, 16 row_first: i32,
+        20 matrix_first: i32, 24 pads: [i32; 2], 32 sky: [f32; 4],
     }
-    push LightResolvePush light_resolve_push 32 {
-        0 COLS cols: i32, 4 ROWS rows: i32, 8 CLEARS clears: u32, 12 TEXEL texel: i32,
-        16 COLOUR colour: [f32; 4],
+    push LightResolvePush 32 {
+        0 cols: i32, 4 rows: i32, 8 clears: u32, 12 texel: i32, 16 colour: [f32; 4],
     }
-    push MapDrawPush map_draw_push 36 {
-        0 WIDTH width: i32, 4 HEIGHT height: i32, 8 COLS cols: i32, 12 ROWS rows: i32,
-        16 FIRST_COL first_col: f32, 20 FIRST_ROW first_row: f32,
-        24 GRID_POINTS_PER_PIXEL grid_points_per_pixel: f32, 28 SWAPS swaps: u32,
-        32 BEYOND beyond: u32,
+    push MapDrawPush 36 {
+        0 width: i32, 4 height: i32, 8 cols: i32, 12 rows: i32, 16 first_col: f32,
+        20 first_row: f32, 24 grid_points_per_pixel: f32, 28 swaps: u32, 32 beyond: u32,
     }
-    push MarchPush march_push 16 {
-        0 LANES lanes: i32, 4 STEPS steps: i32, 8 WARM_UP warm_up: i32,
-        12 FIRST_AZIMUTH first_azimuth: u32,
+    push MarchPush 16 {
+        0 lanes: i32, 4 steps: i32, 8 warm_up: i32, 12 first_azimuth: u32,
     }
-    push PathTracePush path_trace_push 120 {
-        0 LAND land: LandPush, 32 HIGHEST_M highest_m: f32, 36 ROTATION_TURNS rotation_turns: f32,
-        40 EXPONENT exponent: f32, 44 SPECULAR_SCALE specular_scale: f32, 48 BOUNCES bounces: i32,
-        52 SUNS suns: i32, 56 LIGHT_COUNT light_count: i32, 60 SEED seed: u32,
-        64 ALBEDO albedo: [f32; 4], 80 SKY sky: [f32; 4], 96 FIRST_ROW first_row: i32,
-        100 KEYS keys: i32, 104 FIRST_PATH first_path: i32, 108 LAST_PATH last_path: i32,
-        112 FIRST_LIGHT first_light: i32, 116 LAST_LIGHT last_light: i32,
+    push PathTracePush 120 {
+        0 land: LandPush, 32 highest_m: f32, 36 rotation_turns: f32, 40 exponent: f32,
+        44 specular_scale: f32, 48 bounces: i32, 52 suns: i32, 56 light_count: i32, 60 seed: u32,
+        64 albedo: [f32; 4], 80 sky: [f32; 4], 96 first_row: i32, 100 keys: i32,
+        104 first_path: i32, 108 last_path: i32, 112 first_light: i32, 116 last_light: i32,
     }
-    push PictureTonePush picture_tone_push 4 {
-        0 EXPOSURE exposure: f32,
+    push PictureTonePush 4 {
+        0 exposure: f32,
     }
-    push PyramidMarchPush pyramid_march_push 32 {
-        0 LANES lanes: i32, 4 STEPS steps: i32, 8 WARM_UP warm_up: i32,
-        12 FIRST_AZIMUTH first_azimuth: u32, 16 AZIMUTH_COUNT azimuth_count: u32,
-        20 FINE_SAMPLES fine_samples: i32, 24 WIDTH_SHIFT width_shift: i32, 28 GROWTH growth: f32,
+    push PyramidMarchPush 32 {
+        0 lanes: i32, 4 steps: i32, 8 warm_up: i32, 12 first_azimuth: u32, 16 azimuth_count: u32,
+        20 fine_samples: i32, 24 width_shift: i32, 28 growth: f32,
     }
-    push ReducePush reduce_push 48 {
-        0 COLS cols: i32, 4 ROWS rows: i32, 8 FIRST first: i32, 12 SOURCE_COLS source_cols: i32,
-        16 SOURCE_ROWS source_rows: i32, 20 SOURCE_FIRST source_first: i32, 24 RATIO_X ratio_x: f32,
-        28 RATIO_Y ratio_y: f32, 32 PER_GRID_POINT_X per_grid_point_x: f32,
-        36 PER_GRID_POINT_Y per_grid_point_y: f32, 40 LEVEL level: i32,
-        44 WIDTH_SHIFT width_shift: i32,
+    push ReducePush 48 {
+        0 cols: i32, 4 rows: i32, 8 first: i32, 12 source_cols: i32, 16 source_rows: i32,
+        20 source_first: i32, 24 ratio_x: f32, 28 ratio_y: f32, 32 per_grid_point_x: f32,
+        36 per_grid_point_y: f32, 40 level: i32, 44 width_shift: i32,
     }
-    push ScatterGatherPush scatter_gather_push 80 {
-        0 COLS cols: i32, 4 ROWS rows: i32, 8 FIRST_LINK first_link: i32, 12 STEPS steps: i32,
-        16 STEP step: i32, 20 FIRST_PATH first_path: i32, 24 PATHS paths: i32,
-        28 FIRST_DIRECTION first_direction: i32, 32 FIRST_SUN first_sun: i32, 36 SUNS suns: i32,
-        40 WEIGHT_SR weight_sr: f32, 44 EXPONENT exponent: f32,
-        48 SPECULAR_SCALE specular_scale: f32, 52 FIRST_VIEW first_view: i32,
-        56 CURVATURE_X curvature_x: f32, 60 CURVATURE_Y curvature_y: f32,
-        64 ALBEDO albedo: [f32; 4],
+    push ScatterGatherPush 80 {
+        0 cols: i32, 4 rows: i32, 8 first_link: i32, 12 steps: i32, 16 step: i32,
+        20 first_path: i32, 24 paths: i32, 28 first_direction: i32, 32 first_sun: i32, 36 suns: i32,
+        40 weight_sr: f32, 44 exponent: f32, 48 specular_scale: f32, 52 first_view: i32,
+        56 curvature_x: f32, 60 curvature_y: f32, 64 albedo: [f32; 4],
     }
-    push ShShadePush sh_shade_push 24 {
-        0 COLS cols: i32, 4 ROWS rows: i32, 8 CELL_X_M cell_x_m: f32, 12 CELL_Y_M cell_y_m: f32,
-        16 SPECULAR specular: [f32; 2],
+    push ShShadePush 24 {
+        0 cols: i32, 4 rows: i32, 8 cell_x_m: f32, 12 cell_y_m: f32, 16 specular: [f32; 2],
     }
-    push ShWedgesPush sh_wedges_push 36 {
-        0 COLS cols: i32, 4 ROWS rows: i32, 8 CELL_X_M cell_x_m: f32, 12 CELL_Y_M cell_y_m: f32,
-        16 AZIMUTH_COUNT azimuth_count: i32, 20 AZIMUTH_FIRST azimuth_first: i32,
-        24 TABLE_FIRST table_first: i32, 28 SIDE side: i32, 32 LOWEST_RAD lowest_rad: f32,
+    push ShWedgesPush 36 {
+        0 cols: i32, 4 rows: i32, 8 cell_x_m: f32, 12 cell_y_m: f32, 16 azimuth_count: i32,
+        20 azimuth_first: i32, 24 table_first: i32, 28 side: i32, 32 lowest_rad: f32,
     }
-    push ShadeExpandPush shade_expand_push 12 {
-        0 COLS cols: i32, 4 ROWS rows: i32, 8 WIDTH_SHIFT width_shift: i32,
+    push ShadeExpandPush 12 {
+        0 cols: i32, 4 rows: i32, 8 width_shift: i32,
     }
-    push ShadePush shade_push 32 {
-        0 COLS cols: i32, 4 ROWS rows: i32, 8 CELL_X_M cell_x_m: f32, 12 CELL_Y_M cell_y_m: f32,
-        16 WARM_UP warm_up: i32, 20 FIRST_AZIMUTH first_azimuth: u32,
-        24 AZIMUTH_COUNT azimuth_count: u32, 28 CLEARS clears: u32,
+    push ShadePush 32 {
+        0 cols: i32, 4 rows: i32, 8 cell_x_m: f32, 12 cell_y_m: f32, 16 warm_up: i32,
+        20 first_azimuth: u32, 24 azimuth_count: u32, 28 clears: u32,
     }
-    push SkyDrawPush sky_draw_push 84 {
-        0 FORWARD forward: [f32; 4], 16 RIGHT right: [f32; 4], 32 DOWN down: [f32; 4],
-        48 ABOVE above: [f32; 4], 64 BELOW below: [f32; 4], 80 ROTATION_TURNS rotation_turns: f32,
+    push SkyDrawPush 84 {
+        0 forward: [f32; 4], 16 right: [f32; 4], 32 down: [f32; 4], 48 above: [f32; 4],
+        64 below: [f32; 4], 80 rotation_turns: f32,
     }
-    push SpecularExitPush specular_exit_push 28 {
-        0 COLS cols: i32, 4 ROWS rows: i32, 8 BEGINS begins: u32, 12 FIRST_TEXEL first_texel: i32,
-        16 FOURS fours: i32, 20 EXPONENT exponent: f32, 24 SCALE scale: f32,
+    push SpecularExitPush 28 {
+        0 cols: i32, 4 rows: i32, 8 begins: u32, 12 first_texel: i32, 16 fours: i32,
+        20 exponent: f32, 24 scale: f32,
     }
-    push SpecularVisibilityPush specular_visibility_push 8 {
-        0 COLS cols: i32, 4 ROWS rows: i32,
+    push SpecularVisibilityPush 8 {
+        0 cols: i32, 4 rows: i32,
     }
-    push SphereShShadePush sphere_sh_shade_push 128 {
-        0 LAND land: LandPush, 32 FIRST first: [i32; 2], 40 BASE base: [i32; 2],
-        48 OFFSET offset: [f32; 2], 56 UP_M up_m: f32, 60 RADIUS_M radius_m: f32,
-        64 REACH_M reach_m: f32, 68 AZIMUTHS azimuths: i32, 72 FIRST_AZIMUTH first_azimuth: i32,
-        76 LAST_AZIMUTH last_azimuth: i32, 80 ENTRY_FIRST entry_first: i32,
-        84 ENTRY_COUNT entry_count: i32, 88 TABLE_FIRST table_first: i32, 92 SIDE side: i32,
-        96 FINE_SAMPLES fine_samples: i32, 100 WIDTH_SHIFT width_shift: i32, 104 GROWTH growth: f32,
-        108 LEVEL_STEP level_step: f32, 112 RADIANCE radiance: [f32; 4],
+    push SphereShShadePush 128 {
+        0 land: LandPush, 32 first: [i32; 2], 40 base: [i32; 2], 48 offset: [f32; 2], 56 up_m: f32,
+        60 radius_m: f32, 64 reach_m: f32, 68 azimuths: i32, 72 first_azimuth: i32,
+        76 last_azimuth: i32, 80 entry_first: i32, 84 entry_count: i32, 88 table_first: i32,
+        92 side: i32, 96 fine_samples: i32, 100 width_shift: i32, 104 growth: f32,
+        108 level_step: f32, 112 radiance: [f32; 4],
     }
-    push SphereShadePush sphere_shade_push 112 {
-        0 LAND land: LandPush, 32 FIRST first: [i32; 2], 40 BASE base: [i32; 2],
-        48 OFFSET offset: [f32; 2], 56 UP_M up_m: f32, 60 RADIUS_M radius_m: f32,
-        64 REACH_M reach_m: f32, 68 SLICES slices: i32, 72 SLICES_AROUND slices_around: i32,
-        76 FIRST_SLICE first_slice: i32, 80 LAST_SLICE last_slice: i32, 84 PADS pads: [i32; 3],
-        96 RADIANCE radiance: [f32; 4],
+    push SphereShadePush 112 {
+        0 land: LandPush, 32 first: [i32; 2], 40 base: [i32; 2], 48 offset: [f32; 2], 56 up_m: f32,
+        60 radius_m: f32, 64 reach_m: f32, 68 slices: i32, 72 slices_around: i32,
+        76 first_slice: i32, 80 last_slice: i32, 84 pads: [i32; 3], 96 radiance: [f32; 4],
     }
-    push SunSpecularPush sun_specular_push 56 {
-        0 COLS cols: i32, 4 ROWS rows: i32, 8 CELL_X_M cell_x_m: f32, 12 CELL_Y_M cell_y_m: f32,
-        16 TOWARDS towards: [f32; 4], 32 COLOUR colour: [f32; 4], 48 SPECULAR specular: [f32; 2],
+    push SunSpecularPush 56 {
+        0 cols: i32, 4 rows: i32, 8 cell_x_m: f32, 12 cell_y_m: f32, 16 towards: [f32; 4],
+        32 colour: [f32; 4], 48 specular: [f32; 2],
     }
-    push SweepFusePush sweep_fuse_push 20 {
-        0 COLS cols: i32, 4 ROWS rows: i32, 8 WARM_UP warm_up: i32,
-        12 FIRST_AZIMUTH first_azimuth: u32, 16 FIRST_LAYER first_layer: u32,
+    push SweepFusePush 20 {
+        0 cols: i32, 4 rows: i32, 8 warm_up: i32, 12 first_azimuth: u32, 16 first_layer: u32,
     }
-    push TerrainDrawPush terrain_draw_push 92 {
-        0 CLIP_PER_COL clip_per_col: [f32; 4], 16 CLIP_PER_ROW clip_per_row: [f32; 4],
-        32 CLIP_PER_METRE clip_per_metre: [f32; 4], 48 CLIP_AT_ORIGIN clip_at_origin: [f32; 4],
-        64 ORIGIN_COL origin_col: i32, 68 ORIGIN_ROW origin_row: i32, 72 ORIGIN_M origin_m: f32,
-        76 COLS cols: i32, 80 ROWS rows: i32, 84 MESH_STEP mesh_step: i32,
-        88 TILES_ACROSS tiles_across: i32,
+    push TerrainDrawPush 92 {
+        0 clip_per_col: [f32; 4], 16 clip_per_row: [f32; 4], 32 clip_per_metre: [f32; 4],
+        48 clip_at_origin: [f32; 4], 64 origin_col: i32, 68 origin_row: i32, 72 origin_m: f32,
+        76 cols: i32, 80 rows: i32, 84 mesh_step: i32, 88 tiles_across: i32,
     }
-    push VisiblePointsPush visible_points_push 48 {
-        0 LAND land: LandPush, 32 HIGHEST_M highest_m: f32, 36 FIRST_LAYER first_layer: i32,
-        40 FIRST_DIRECTION first_direction: i32, 44 END_DIRECTION end_direction: i32,
+    push VisiblePointsPush 48 {
+        0 land: LandPush, 32 highest_m: f32, 36 first_layer: i32, 40 first_direction: i32,
+        44 end_direction: i32,
     }
-    other DirtyTexels dirty_texels {
-        0 DIRTY_TEXELS,
+    other DirtyTexels {
+        0 dirty_texels,
     }
-    other EditList edit_list {
-        32 DIRTY_WORDS, 8 LIGHT_GROUPS, 20 RESOLVE_GROUPS, 0 SWEPT_STEPS, 4 WORD_COUNT,
+    other EditList {
+        32 dirty_words, 8 light_groups, 20 resolve_groups, 0 swept_steps, 4 word_count,
     }
-    other EnvRotation env_rotation {
-        0 ENV_ROTATION,
+    other EnvRotation {
+        0 env_rotation,
     }
-    other LostLines lost_lines {
-        0 LOST_LINES,
+    other LostLines {
+        0 lost_lines,
     }
-    other LostRays lost_rays {
-        0 LOST_RAYS,
+    other LostRays {
+        0 lost_rays,
     }
-    other WedgeRows wedge_rows {
-        0 WEDGE_ROWS,
+    other WedgeRows {
+        0 wedge_rows,
     }
 }
 

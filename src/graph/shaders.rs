@@ -115,7 +115,7 @@ macro_rules! shader {
         $shape:ident $({ $($id:literal $field:ident: $type:ty = $default:literal,)* })? $(;)?
     ) => {
         $(#[$doc])*
-        pub const $constant: Shader = Shader {
+        pub(crate) const $constant: Shader = Shader {
             name: $name,
             push_bytes: size_of::<$push>() as u32,
             bindings: &[$(Binding {
@@ -156,10 +156,8 @@ macro_rules! shader {
 /// constants are Rust structs, too, checked to lie in memory as the shaders read them.
 macro_rules! layouts {
     (
-        $(push $push:ident $push_module:ident $bytes:literal {
-            $($at:literal $member:ident $field:ident: $type:ty,)*
-        })*
-        $(other $other:ident $other_module:ident { $($offset:literal $name:ident,)* })*
+        $(push $push:ident $bytes:literal { $($at:literal $field:ident: $type:ty,)* })*
+        $(other $other:ident { $($offset:literal $name:ident,)* })*
     ) => {
         $(
             #[repr(C)]
@@ -172,19 +170,40 @@ macro_rules! layouts {
             };
         )*
 
-        /// Byte offsets of struct members as the shaders see them.
-        #[allow(missing_docs, reason = "each is the offset of the member it names")]
-        pub mod offsets {
-            $(
-                #[doc = concat!("`", stringify!($push), "`.")]
-                pub mod $push_module { $(pub const $member: usize = $at;)* }
-            )*
-            $(
-                #[doc = concat!("`", stringify!($other), "`.")]
-                pub mod $other_module { $(pub const $name: usize = $offset;)* }
-            )*
-        }
+        const OFFSETS: &[(&str, &[(&str, usize)])] = &[
+            $((stringify!($push), &[$((stringify!($field), $at)),*]),)*
+            $((stringify!($other), &[$((stringify!($name), $offset)),*]),)*
+        ];
     };
+}
+
+/// Byte offset of a member, as the shaders see it, of a struct that they share with the host.
+///
+/// # Panics
+/// Without such a member; at compile time in a constant.
+pub const fn offset(structure: &str, member: &str) -> usize {
+    let mut i = 0;
+    while i < OFFSETS.len() {
+        let (name, members) = OFFSETS[i];
+        let mut m = 0;
+        while is_same(name, structure) && m < members.len() {
+            if is_same(members[m].0, member) {
+                return members[m].1;
+            }
+            m += 1;
+        }
+        i += 1;
+    }
+    panic!("no such member");
+}
+
+const fn is_same(a: &str, b: &str) -> bool {
+    let (a, b) = (a.as_bytes(), b.as_bytes());
+    let mut i = 0;
+    while i < a.len() && i < b.len() && a[i] == b[i] {
+        i += 1;
+    }
+    i == a.len() && i == b.len()
 }
 
 /// SPIR-V of all shaders, one after the other.

@@ -381,7 +381,7 @@ mod tests {
     #[test]
     fn every_setting_has_a_field() {
         for setting in SETTINGS {
-            let default = setting.get(&Quality::DEFAULT);
+            let default = setting.get(&Quality::default());
             let has_zero = matches!(&setting.values, Values::Whole(r) if *r.start() == 0);
             let is_shifted = has_zero && default != "0";
             let field = format!("{}{}", setting.name, if is_shifted { "_plus_1" } else { "" });
@@ -403,7 +403,7 @@ mod tests {
             };
             let found = arrives(&with(&field, value)).ok().unwrap();
             assert_eq!(setting.get(&found), wanted, "{field}");
-            let changed = SETTINGS.iter().filter(|s| s.get(&found) != s.get(&Quality::DEFAULT));
+            let changed = SETTINGS.iter().filter(|s| s.get(&found) != s.get(&Quality::default()));
             assert_eq!(changed.map(|s| s.name).collect::<Vec<_>>(), [setting.name]);
         }
     }

@@ -188,7 +188,7 @@ fn within(
         return Ok((error, bound));
     }
     let [error, bound] = [error, bound].map(|share| format!("{:.2} %", 100.0 * share));
-    let doing = format!("verifying before timing (fuse {})", quality.fuse.name());
+    let doing = format!("verifying before timing (fuse {})", quality.fuse);
     let reason = format!(
         "{what} has an error of {error} against {ground_truth}, above the bound of {bound}: times \
             would be meaningless"

@@ -123,7 +123,7 @@ fn settings_page() -> String {
             };
             let default = match &setting.values {
                 Values::Share => "1/65536".to_owned(),
-                _ => setting.get(&Quality::DEFAULT),
+                _ => setting.get(&Quality::default()),
             };
             let effect = format!("{}. {}", setting.summary(), setting.trade());
             let row = [&format!("`{}`", setting.name), &values, &default, effect.trim_end()];
@@ -175,7 +175,7 @@ fn the_page_of_the_command_line_lists_the_lights() {
 #[test]
 fn the_page_of_settings_follows_from_their_definitions() {
     for share in ["light_cutoff", "bounce_cutoff"] {
-        assert_eq!(setting(share).unwrap().get(&Quality::DEFAULT), (1.0 / 65536.0).to_string());
+        assert_eq!(setting(share).unwrap().get(&Quality::default()), (1.0 / 65536.0).to_string());
     }
     is_kept("settings.md", &settings_page());
 }
