@@ -13,8 +13,8 @@ pub fn prepare(host: &Host, scene: &Scene) -> ridgelight::Result<Renderer> {
     Renderer::new(host, plan, 2)
 }
 
-/// Each frame, in the engine's command buffer: heights (R32F) that were copied to an image become light (R32F
-/// under grey lights, else RGBA32F) in another, which is to be copied from.
+/// Each frame, in the engine's command buffer: heights (R32F) that were copied to an image become light in another,
+/// which is to be copied from. Here all light is grey, so it is R32F; coloured light is RGBA32F.
 pub fn record(
     renderer: &mut Renderer,
     commands: vk::CommandBuffer,

@@ -169,7 +169,7 @@ fn traced(
         ("batch_spread", batch_spread),
         ("lost_rays", lost_rays),
     ]);
-    blocks.record(&mut builder, field, heights, Some([batch_mean, lost_rays]));
+    blocks.plan(&mut builder, field, heights, Some([batch_mean, lost_rays]));
     let rows = summed[1];
     let parts = path_trace::parts(scene, &blocks, bounces);
     if parts.len() > 1 {

@@ -202,7 +202,7 @@ words! {
         ///
         /// In closed form. Time per texel grows with the side of the field.
         BruteForce = "brute-force",
-        /// The visible intervals at every march step, from the visibility cache of a sweep along lines
+        /// The visible intervals of each march step, as a sweep along lines has stored them
         ///
         /// On the texel's own lines, found in the hull tree (Timonen 2012). Needs such a sweep.
         Sweep = "sweep",

@@ -48,7 +48,7 @@ settings! {
 
         /// Interpolate the results of lines to texels in this way
         ///
-        /// Listed from the fastest to the most exact.
+        /// The three aimed modes are several times as exact as the others; among them, the later is slower and more exact.
         Expert "fuse" fuse: Fuse = Fuse::AimedNearest, Fuse::WORDS;
 
         /// Precision of what a sweep stores

@@ -77,7 +77,7 @@ impl Spheres {
     }
 
     /// As [`record`](Self::record), by spherical harmonics.
-    pub(crate) fn record_soft(
+    pub(crate) fn plan_soft(
         &self,
         builder: &mut Builder,
         lit: (&Scene, &Blocks, &SphereSh),
@@ -91,7 +91,7 @@ impl Spheres {
     }
 
     /// The passes of the active light at `index`; `begins`: the sum begins with it.
-    pub(crate) fn record(
+    pub(crate) fn plan(
         &self,
         builder: &mut Builder,
         (scene, blocks): (&Scene, &Blocks),

@@ -127,7 +127,7 @@ impl Drawing<'_> {
     }
 
     /// Specular exit radiance of bounce `k`; 0 is direct light.
-    pub(super) fn record_specular_exit(&mut self, bouncing: &Bouncing, k: usize) {
+    pub(super) fn plan_specular_exit(&mut self, bouncing: &Bouncing, k: usize) {
         let (Some(specular), Some(phong)) = (bouncing.specular, self.phong()) else { return };
         let (Some(blocks), Some(specular_direct)) = (&self.blocks, self.images.specular_sum) else {
             return;
