@@ -95,12 +95,6 @@ fn old_keys_of_scene_files_warn_once() {
             warning("surface.phong", "surface.specular"),
         ]
     );
-    // An old flag overrides the file's key, as the new one does.
-    let [overridden, warned] = planned(&folder, "--scene new.json --phong 20,0.3 --hull list");
-    assert!(warned.contains(&warning("--phong", "--specular")), "{warned}");
-    assert_ne!(overridden, expected);
-    let with_new = "--scene new.json --specular 20,0.3 --hull occluder-list";
-    assert_eq!(overridden, planned(&folder, with_new)[0]);
     for (name, key) in [("b.json", "balls"), ("s.json", "sphere_lights")] {
         let text =
             format!(r#"{{ "field": {{ "file": "a.asc" }}, "lights": {{ "{key}": {sphere} }} }}"#);
@@ -108,6 +102,12 @@ fn old_keys_of_scene_files_warn_once() {
     }
     let [old, _] = planned(&folder, "--scene b.json");
     assert_eq!(old, planned(&folder, "--scene s.json")[0]);
+    // An old flag overrides the file's key, as the new one does.
+    let with = |flag: &str| format!("--scene s.json {flag} 1,2,30,4,5 {flag} 2,2,30,4,5");
+    let [overridden, warned] = planned(&folder, &with("--light"));
+    assert_eq!(warned, warning("--light", "--sphere-light"));
+    assert_ne!(overridden, old);
+    assert_eq!(overridden, planned(&folder, &with("--sphere-light"))[0]);
 }
 
 #[test]
