@@ -6,15 +6,15 @@ use ridgelight::gpu::{self, Host, ImageArg, ImageState, Renderer};
 use ridgelight::plan::{self, Picture};
 use ridgelight::scene::{Quality, Scene};
 
-/// Once for a scene: plans, and makes what the plan needs on the engine's device, for two frames in flight.
+/// Once per scene: plans, and creates the plan's resources on the engine's device, for two frames in flight.
 pub fn prepare(host: &Host, scene: &Scene) -> ridgelight::Result<Renderer> {
     let limits = gpu::limits(&host.instance, host.physical_device);
     let plan = plan::picture(scene, &Quality::default(), &limits, Picture::default())?;
     Renderer::new(host, plan, 2)
 }
 
-/// Each frame, in the engine's command buffer: heights (R32F) that were copied to an image become light in another,
-/// which is to be copied from. Here all light is grey, so it is R32F; coloured light is RGBA32F.
+/// Each frame, in the engine's command buffer: reads heights from an image that a copy has filled, and writes light
+/// to another that a copy will read. Both are R32F because all colours are grey; otherwise the light is RGBA32F.
 pub fn record(
     renderer: &mut Renderer,
     commands: vk::CommandBuffer,
@@ -32,7 +32,7 @@ pub fn record(
     renderer.record(commands, frame_in_flight, &inputs, &outputs)
 }
 
-/// How the images come, and how the light is to be left.
+/// The states of the images before the recording, and of the light after it.
 const FILLED: ImageState = ImageState {
     stage: vk::PipelineStageFlags2::COPY,
     access: vk::AccessFlags2::TRANSFER_WRITE,
