@@ -79,7 +79,7 @@ fn add_shader(
     let (constant, structure) = (name.to_uppercase(), pascal(name));
     writeln!(table, "shader! {{").unwrap();
     writeln!(table, "    /// `{source}`.").unwrap();
-    writeln!(table, "    {constant}: {name:?}, push {}, words {first} {count},", found.push_bytes)
+    writeln!(table, "    {constant}: {name:?}, push {}, words {first} {count},", found.push)
         .unwrap();
     for (binding, reflect::Binding { name, kind, written }) in &found.bindings {
         let access = if *written { "writes" } else { "reads" };
@@ -106,17 +106,17 @@ fn add_shader(
 /// The `layouts!` of src/graph/shaders.rs.
 fn add_layouts(table: &mut String, layouts: &Layouts) {
     writeln!(table, "layouts! {{").unwrap();
-    for (structure, members) in &layouts.pushes {
-        writeln!(table, "    push {structure} {} {{", snake(structure)).unwrap();
+    for (structure, (bytes, members)) in &layouts.pushes {
+        writeln!(table, "    push {structure} {bytes} {{").unwrap();
         let fields = members.iter().map(|reflect::Member { offset, name, of_type }| {
-            format!("{offset} {} {}: {of_type},", name.to_uppercase(), name.to_lowercase())
+            format!("{offset} {}: {of_type},", name.to_lowercase())
         });
         add_wrapped(table, fields);
         writeln!(table, "    }}").unwrap();
     }
     for (structure, members) in &layouts.others {
-        writeln!(table, "    other {structure} {} {{", snake(structure)).unwrap();
-        let offsets = members.iter().map(|(name, at)| format!("{at} {},", name.to_uppercase()));
+        writeln!(table, "    other {structure} {{").unwrap();
+        let offsets = members.iter().map(|(name, at)| format!("{at} {},", name.to_lowercase()));
         add_wrapped(table, offsets);
         writeln!(table, "    }}").unwrap();
     }

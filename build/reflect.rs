@@ -31,7 +31,8 @@ pub(crate) struct Constant {
 
 /// Reflection of a shader; bindings and constants by number.
 pub(crate) struct Reflection {
-    pub push_bytes: u32,
+    /// Struct of its push constants; `()` without any.
+    pub push: String,
     pub bindings: BTreeMap<u32, Binding>,
     pub(crate) constants: BTreeMap<u32, Constant>,
 }
@@ -48,8 +49,8 @@ pub(crate) struct Member {
 /// Structs of all shaders by name.
 #[derive(Default)]
 pub(crate) struct Layouts {
-    /// Push constants, and the structs in them.
-    pub pushes: BTreeMap<String, Vec<Member>>,
+    /// Bytes and members of push constants, and of the structs in them.
+    pub pushes: BTreeMap<String, (u32, Vec<Member>)>,
     /// Byte offsets by member, of all others.
     pub others: BTreeMap<String, BTreeMap<String, u32>>,
 }
@@ -59,19 +60,19 @@ pub(crate) struct Layouts {
 pub(crate) fn reflect(name: &str, words: &[u32], layouts: &mut Layouts) -> Reflection {
     let module = rspirv::dr::load_words(words).unwrap_or_else(|e| fail(&format!("{name}: {e:?}")));
     let d = Decorations { module: &module };
-    let (push_bytes, bindings) = variables(name, &d, layouts);
+    let (push, bindings) = variables(name, &d, layouts);
     add_layouts(name, &d, layouts);
-    Reflection { push_bytes, bindings, constants: constants(name, &d) }
+    Reflection { push, bindings, constants: constants(name, &d) }
 }
 
-/// Size of the push constants, whose structs it adds, and the bindings by number.
+/// Struct of the push constants, which it adds, and the bindings by number.
 fn variables(
     name: &str,
     d: &Decorations<'_>,
     layouts: &mut Layouts,
-) -> (u32, BTreeMap<u32, Binding>) {
+) -> (String, BTreeMap<u32, Binding>) {
     let mut bindings = BTreeMap::new();
-    let mut push_bytes = 0;
+    let mut push = "()".to_owned();
     for variable in &d.module.types_global_values {
         if variable.class.opcode != Op::Variable {
             continue;
@@ -81,7 +82,7 @@ fn variables(
         let Operand::StorageClass(class) = pointer.operands[0] else { continue };
         let pointee = d.ty(id(&pointer.operands[1]));
         if class == StorageClass::PushConstant {
-            (_, push_bytes) = push_type(name, d, id(&pointer.operands[1]), layouts);
+            (push, _) = push_type(name, d, id(&pointer.operands[1]), layouts);
             continue;
         }
         let Some(binding) = d.of(target, Decoration::Binding) else { continue };
@@ -124,7 +125,7 @@ fn variables(
         let name = Some(d.name(target)).filter(|n| !n.is_empty()).unwrap_or(block);
         bindings.insert(binding, Binding { name, kind, written });
     }
-    (push_bytes, bindings)
+    (push, bindings)
 }
 
 /// Rust type and size of push constants or of a part of them. Adds the structs.
@@ -132,6 +133,10 @@ fn push_type(name: &str, d: &Decorations<'_>, target: u32, layouts: &mut Layouts
     let ty = d.ty(target);
     let mut array = |count: u32| {
         let (element, bytes) = push_type(name, d, id(&ty.operands[0]), layouts);
+        // Rust's arrays have no gaps.
+        if d.of(target, Decoration::ArrayStride).is_some_and(|stride| stride != bytes) {
+            fail(&format!("{name}: a push constant is an array with gaps; use vec4 or scalars"));
+        }
         (format!("[{element}; {count}]"), bytes * count)
     };
     match ty.class.opcode {
@@ -145,15 +150,19 @@ fn push_type(name: &str, d: &Decorations<'_>, target: u32, layouts: &mut Layouts
             let mut bytes = 0;
             let member = |(m, operand)| {
                 let (of_type, size) = push_type(name, d, id(operand), layouts);
-                let offset = d.of_member(target, m as u32, Decoration::Offset).unwrap_or(0);
-                bytes = offset + size;
-                Member { offset, name: d.member_name(target, m as u32), of_type }
+                let member = d.member_name(target, m as u32);
+                let Some(offset) = d.of_member(target, m as u32, Decoration::Offset) else {
+                    fail(&format!("{name}: {structure}.{member} has no offset"))
+                };
+                bytes = bytes.max(offset + size);
+                Member { offset, name: member, of_type }
             };
             let members: Vec<Member> = ty.operands.iter().enumerate().map(member).collect();
-            if layouts.pushes.get(&structure).is_some_and(|known| *known != members) {
+            let layout = (bytes, members);
+            if layouts.pushes.get(&structure).is_some_and(|known| *known != layout) {
                 fail(&format!("{name}: {structure} has another layout than in an earlier shader"));
             }
-            layouts.pushes.insert(structure.clone(), members);
+            layouts.pushes.insert(structure.clone(), layout);
             (structure, bytes)
         }
         other => fail(&format!("{name}: a push constant holds a {other:?}")),

@@ -4,7 +4,7 @@
 //! `cargo run --release --example edits -- [SIDE [BRUSH [EDITS [SEED]]]]`: grid points a side of the field
 //! (4096), of the brush (64), how many edits at random places (10), and the generator's seed (1).
 
-use ridgelight::gpu::shaders::offsets;
+use ridgelight::gpu::shaders::offset;
 use ridgelight::gpu::{Frame, Headless, HeadlessOptions, Timing};
 use ridgelight::plan::{self, Limits, Picture, Rectangle};
 use ridgelight::scene::fractal;
@@ -105,7 +105,7 @@ fn edit_all(gpu: &mut Headless, frame: &mut Frame, scene: &Scene, asked: &Reques
         gpu.refill(frame, 0, &heights)?;
         let times = gpu.draw_edit(frame, at)?;
         let swept =
-            4.0 * f64::from(words(gpu, frame, "edit_list")?[offsets::edit_list::SWEPT_STEPS / 4]);
+            4.0 * f64::from(words(gpu, frame, "edit_list")?[offset("EditList", "swept_steps") / 4]);
         let marks = words(gpu, frame, "dirty_texels")?;
         let marked: f64 = marks.iter().map(|w| f64::from(w.count_ones())).sum();
         let lit = marked / (side * side) as f64;

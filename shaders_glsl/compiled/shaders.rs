@@ -2,7 +2,7 @@
 
 shader! {
     /// `shaders_glsl/bake/bent_directions.comp`.
-    BENT_DIRECTIONS: "bent_directions", push 36, words 0 8160,
+    BENT_DIRECTIONS: "bent_directions", push BentDirectionsPush, words 0 8160,
     0 reads "visible_points" SampledImage { uint: true, layered: true },
     1 reads "ground" SampledImage { uint: false, layered: false },
     2 reads "directions" TexelBuffer,
@@ -17,7 +17,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/bounce_gather.comp`.
-    BOUNCE_GATHER: "bounce_gather", push 64, words 8160 11634,
+    BOUNCE_GATHER: "bounce_gather", push GatherPush, words 8160 11634,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "height_levels" SampledImage { uint: false, layered: false },
     2 reads "level_table" SampledImage { uint: true, layered: false },
@@ -41,7 +41,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/bounce_march.comp`.
-    BOUNCE_MARCH: "bounce_march", push 44, words 19794 12330,
+    BOUNCE_MARCH: "bounce_march", push BounceMarchPush, words 19794 12330,
     0 reads "cells" SampledImage { uint: false, layered: false },
     1 reads "maxima" SampledImage { uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -59,7 +59,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/bounce_shade.comp`.
-    BOUNCE_SHADE: "bounce_shade", push 16, words 32124 2678,
+    BOUNCE_SHADE: "bounce_shade", push BounceShadePush, words 32124 2678,
     0 reads "ground" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "sky_share" StorageImage { format: "R32f", uint: false, layered: false },
     2 reads "node_sum" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -71,7 +71,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/bounce_walk.comp`.
-    BOUNCE_WALK: "bounce_walk", push 40, words 34802 13812,
+    BOUNCE_WALK: "bounce_walk", push BounceWalkPush, words 34802 13812,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 reads "occluders" StorageImage { format: "Rg32ui", uint: true, layered: true },
@@ -91,7 +91,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/cache_gather.comp`.
-    CACHE_GATHER: "cache_gather", push 16, words 48614 3639,
+    CACHE_GATHER: "cache_gather", push CacheGatherPush, words 48614 3639,
     0 reads "visibility_cache" StorageImage { format: "Rgba32ui", uint: true, layered: true },
     1 reads "azimuths" TexelBuffer,
     2 reads "exit_radiance" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -107,7 +107,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/edit/dirty_list.comp`.
-    DIRTY_LIST: "dirty_list", push 8, words 52253 874,
+    DIRTY_LIST: "dirty_list", push DirtyListPush, words 52253 874,
     0 reads "dirty_texels" StorageBuffer,
     1 writes "edit_list" StorageBuffer,
     DirtyList;
@@ -115,7 +115,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/edit/dirty_mark.comp`.
-    DIRTY_MARK: "dirty_mark", push 24, words 53127 1323,
+    DIRTY_MARK: "dirty_mark", push DirtyMarkPush, words 53127 1323,
     0 writes "dirty_texels" StorageBuffer,
     1 writes "edit_list" StorageBuffer,
     DirtyMark;
@@ -123,7 +123,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bake/ellipse_fit.comp`.
-    ELLIPSE_FIT: "ellipse_fit", push 24, words 54450 5049,
+    ELLIPSE_FIT: "ellipse_fit", push EllipseFitPush, words 54450 5049,
     0 reads "visible_points" SampledImage { uint: true, layered: true },
     1 reads "directions" TexelBuffer,
     2 writes "ellipse_axes" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -137,7 +137,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/env_rotation.comp`.
-    ENV_ROTATION: "env_rotation", push 16, words 59499 949,
+    ENV_ROTATION: "env_rotation", push EnvRotationPush, words 59499 949,
     0 reads "environment" SampledImage { uint: false, layered: false },
     1 reads "constants" TexelBuffer,
     2 writes "env_rotation" StorageBuffer,
@@ -146,7 +146,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/env_tables.comp`.
-    ENV_TABLES: "env_tables", push 20, words 60448 1463,
+    ENV_TABLES: "env_tables", push EnvTablesPush, words 60448 1463,
     0 reads "wedge_rows" StorageBuffer,
     1 writes "env_tables" StorageImage { format: "Rgba32f", uint: false, layered: true },
     EnvTables;
@@ -154,7 +154,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/env_wedges.comp`.
-    ENV_WEDGES: "env_wedges", push 12, words 61911 2151,
+    ENV_WEDGES: "env_wedges", push EnvWedgesPush, words 61911 2151,
     0 reads "environment" SampledImage { uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "wedge_rows" StorageBuffer,
@@ -163,7 +163,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bake/facet_mask.comp`.
-    FACET_MASK: "facet_mask", push 48, words 64062 9133,
+    FACET_MASK: "facet_mask", push FacetMaskPush, words 64062 9133,
     0 reads "cells" SampledImage { uint: false, layered: false },
     1 reads "maxima" SampledImage { uint: false, layered: false },
     2 reads "directions" TexelBuffer,
@@ -176,7 +176,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bake/fan_weights.comp`.
-    FAN_WEIGHTS: "fan_weights", push 16, words 73195 1842,
+    FAN_WEIGHTS: "fan_weights", push FanWeightsPush, words 73195 1842,
     0 reads "bent" SampledImage { uint: false, layered: true },
     1 reads "fans" TexelBuffer,
     2 writes "fan_weights" StorageImage { format: "R32f", uint: false, layered: true },
@@ -185,7 +185,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/rays/height_bounds.comp`.
-    HEIGHT_BOUNDS: "height_bounds", push 16, words 75037 1109,
+    HEIGHT_BOUNDS: "height_bounds", push HeightBoundsPush, words 75037 1109,
     0 reads "cells" SampledImage { uint: false, layered: false },
     1 writes "maxima" StorageImage { format: "R32f", uint: false, layered: false },
     HeightBounds;
@@ -193,7 +193,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/rays/height_cells.comp`.
-    HEIGHT_CELLS: "height_cells", push 16, words 76146 2514,
+    HEIGHT_CELLS: "height_cells", push HeightCellsPush, words 76146 2514,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 writes "cells" StorageImage { format: "Rgba32f", uint: false, layered: false },
     2 writes "ground" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -207,7 +207,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/height_expand.comp`.
-    HEIGHT_EXPAND: "height_expand", push 12, words 78660 2496,
+    HEIGHT_EXPAND: "height_expand", push HeightExpandPush, words 78660 2496,
     0 reads "height_levels" SampledImage { uint: false, layered: false },
     1 reads "level_table" SampledImage { uint: true, layered: false },
     2 writes "height_stack" StorageImage { format: "R32f", uint: false, layered: true },
@@ -218,7 +218,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/height_reduce.comp`.
-    HEIGHT_REDUCE: "height_reduce", push 48, words 81156 2858,
+    HEIGHT_REDUCE: "height_reduce", push ReducePush, words 81156 2858,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 writes "height_levels" StorageImage { format: "R32f", uint: false, layered: false },
     2 writes "level_table" StorageImage { format: "Rgba32ui", uint: true, layered: false },
@@ -230,7 +230,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/height_transpose.comp`.
-    HEIGHT_TRANSPOSE: "height_transpose", push 24, words 84014 978,
+    HEIGHT_TRANSPOSE: "height_transpose", push HeightTransposePush, words 84014 978,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 writes "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     HeightTranspose {
@@ -241,7 +241,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/horizon_march.comp`.
-    HORIZON_MARCH: "horizon_march", push 16, words 84992 5456,
+    HORIZON_MARCH: "horizon_march", push MarchPush, words 84992 5456,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "slopes" StorageImage { format: "Unknown", uint: true, layered: true },
@@ -255,7 +255,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/edit/horizon_resweep.comp`.
-    HORIZON_RESWEEP: "horizon_resweep", push 32, words 90448 8882,
+    HORIZON_RESWEEP: "horizon_resweep", push HorizonResweepPush, words 90448 8882,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "occluders" StorageImage { format: "Rg32ui", uint: true, layered: true },
@@ -269,7 +269,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/horizon_sweep.comp`.
-    HORIZON_SWEEP: "horizon_sweep", push 20, words 99330 9430,
+    HORIZON_SWEEP: "horizon_sweep", push HorizonSweepPush, words 99330 9430,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "lane_heights" SampledImage { uint: false, layered: false },
     2 reads "azimuths" TexelBuffer,
@@ -295,7 +295,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/light_matrix.comp`.
-    LIGHT_MATRIX: "light_matrix", push 48, words 108760 1854,
+    LIGHT_MATRIX: "light_matrix", push LightMatrixPush, words 108760 1854,
     0 reads "env_rotation" StorageBuffer,
     1 reads "constants" TexelBuffer,
     2 writes "light_matrix" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -304,7 +304,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/light_resolve.comp`.
-    LIGHT_RESOLVE: "light_resolve", push 32, words 110614 1991,
+    LIGHT_RESOLVE: "light_resolve", push LightResolvePush, words 110614 1991,
     0 reads "scalar_sum" SampledImage { uint: false, layered: false },
     1 reads "colour_sum" SampledImage { uint: false, layered: false },
     2 reads "albedo_map" SampledImage { uint: false, layered: false },
@@ -328,7 +328,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/map_draw.comp`.
-    MAP_DRAW: "map_draw", push 36, words 112605 1576,
+    MAP_DRAW: "map_draw", push MapDrawPush, words 112605 1576,
     0 reads "radiance" SampledImage { uint: false, layered: false },
     1 reads "tone_steps" SampledImage { uint: false, layered: false },
     2 reads "voids" SampledImage { uint: false, layered: false },
@@ -341,7 +341,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/reference/path_trace.comp`.
-    PATH_TRACE: "path_trace", push 120, words 114181 22928,
+    PATH_TRACE: "path_trace", push PathTracePush, words 114181 22928,
     0 reads "cells" SampledImage { uint: false, layered: false },
     1 reads "maxima" SampledImage { uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -378,7 +378,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/picture_tone.frag`.
-    PICTURE_TONE_FRAG: "picture_tone_frag", push 4, words 137109 455,
+    PICTURE_TONE_FRAG: "picture_tone_frag", push PictureTonePush, words 137109 455,
     0 reads "radiance" SampledImage { uint: false, layered: false },
     PictureToneFrag {
         0 encodes: bool = true,
@@ -387,13 +387,13 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/picture_tone.vert`.
-    PICTURE_TONE_VERT: "picture_tone_vert", push 0, words 137564 266,
+    PICTURE_TONE_VERT: "picture_tone_vert", push (), words 137564 266,
     PictureToneVert;
 }
 
 shader! {
     /// `shaders_glsl/horizon/pyramid_march.comp`.
-    PYRAMID_MARCH: "pyramid_march", push 32, words 137830 9025,
+    PYRAMID_MARCH: "pyramid_march", push PyramidMarchPush, words 137830 9025,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "slopes" StorageImage { format: "Unknown", uint: true, layered: true },
@@ -410,7 +410,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bake/scatter_gather.comp`.
-    SCATTER_GATHER: "scatter_gather", push 80, words 146855 4664,
+    SCATTER_GATHER: "scatter_gather", push ScatterGatherPush, words 146855 4664,
     0 reads "ground" SampledImage { uint: false, layered: false },
     1 reads "direct" SampledImage { uint: false, layered: false },
     2 reads "visible_points" SampledImage { uint: true, layered: true },
@@ -437,7 +437,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/sh_shade.comp`.
-    SH_SHADE: "sh_shade", push 24, words 151519 12958,
+    SH_SHADE: "sh_shade", push ShShadePush, words 151519 12958,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "visibility" SampledImage { uint: false, layered: true },
     2 reads "light_matrix" SampledImage { uint: false, layered: false },
@@ -456,7 +456,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/sh_visibility.comp`.
-    SH_VISIBILITY: "sh_visibility", push 32, words 164477 29808,
+    SH_VISIBILITY: "sh_visibility", push ShadePush, words 164477 29808,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rg32ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -481,7 +481,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/sh_wedges.comp`.
-    SH_WEDGES: "sh_wedges", push 36, words 194285 7777,
+    SH_WEDGES: "sh_wedges", push ShWedgesPush, words 194285 7777,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "horizon_angles" SampledImage { uint: false, layered: true },
     2 reads "constants" TexelBuffer,
@@ -498,7 +498,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/shade_expand.comp`.
-    SHADE_EXPAND: "shade_expand", push 12, words 202062 2397,
+    SHADE_EXPAND: "shade_expand", push ShadeExpandPush, words 202062 2397,
     0 reads "shade_levels" SampledImage { uint: false, layered: false },
     1 reads "shade_table" SampledImage { uint: true, layered: false },
     2 writes "shade_stack" StorageImage { format: "Unknown", uint: false, layered: true },
@@ -509,7 +509,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/shade_reduce.comp`.
-    SHADE_REDUCE: "shade_reduce", push 48, words 204459 2918,
+    SHADE_REDUCE: "shade_reduce", push ReducePush, words 204459 2918,
     0 reads "exit_radiance" SampledImage { uint: false, layered: false },
     1 writes "shade_levels" StorageImage { format: "Rgba32f", uint: false, layered: false },
     2 writes "shade_table" StorageImage { format: "Rgba32ui", uint: true, layered: false },
@@ -522,7 +522,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/sky_draw.frag`.
-    SKY_DRAW_FRAG: "sky_draw_frag", push 84, words 207377 1269,
+    SKY_DRAW_FRAG: "sky_draw_frag", push SkyDrawPush, words 207377 1269,
     0 reads "environment" SampledImage { uint: false, layered: false },
     SkyDrawFrag {
         0 has_environment: bool = false,
@@ -531,13 +531,13 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/sky_draw.vert`.
-    SKY_DRAW_VERT: "sky_draw_vert", push 0, words 208646 289,
+    SKY_DRAW_VERT: "sky_draw_vert", push (), words 208646 289,
     SkyDrawVert;
 }
 
 shader! {
     /// `shaders_glsl/direct/sky_shade.comp`.
-    SKY_SHADE: "sky_shade", push 32, words 208935 22806,
+    SKY_SHADE: "sky_shade", push ShadePush, words 208935 22806,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rg32ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -561,7 +561,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/specular_exit.comp`.
-    SPECULAR_EXIT: "specular_exit", push 28, words 231741 6438,
+    SPECULAR_EXIT: "specular_exit", push SpecularExitPush, words 231741 6438,
     0 reads "arriving" SampledImage { uint: false, layered: true },
     1 reads "ground" SampledImage { uint: false, layered: false },
     2 reads "exit_radiance" SampledImage { uint: false, layered: false },
@@ -584,7 +584,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/specular_gather.comp`.
-    SPECULAR_GATHER: "specular_gather", push 64, words 238179 20112,
+    SPECULAR_GATHER: "specular_gather", push GatherPush, words 238179 20112,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "height_levels" SampledImage { uint: false, layered: false },
     2 reads "level_table" SampledImage { uint: true, layered: false },
@@ -612,7 +612,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/specular_visibility.comp`.
-    SPECULAR_VISIBILITY: "specular_visibility", push 8, words 258291 1238,
+    SPECULAR_VISIBILITY: "specular_visibility", push SpecularVisibilityPush, words 258291 1238,
     0 reads "visibility" SampledImage { uint: false, layered: true },
     1 reads "light_matrix" SampledImage { uint: false, layered: false },
     2 writes "arriving" StorageImage { format: "Rgba32f", uint: false, layered: true },
@@ -624,7 +624,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/sphere_sh_shade.comp`.
-    SPHERE_SH_SHADE: "sphere_sh_shade", push 128, words 259529 27634,
+    SPHERE_SH_SHADE: "sphere_sh_shade", push SphereShShadePush, words 259529 27634,
     0 reads "cells" SampledImage { uint: false, layered: false },
     1 reads "maxima" SampledImage { uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -650,7 +650,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/sphere_shade.comp`.
-    SPHERE_SHADE: "sphere_shade", push 112, words 287163 14335,
+    SPHERE_SHADE: "sphere_shade", push SphereShadePush, words 287163 14335,
     0 reads "cells" SampledImage { uint: false, layered: false },
     1 reads "maxima" SampledImage { uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -665,7 +665,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/sun_shade.comp`.
-    SUN_SHADE: "sun_shade", push 32, words 301498 22088,
+    SUN_SHADE: "sun_shade", push ShadePush, words 301498 22088,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rg32ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -686,7 +686,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/sun_specular.comp`.
-    SUN_SPECULAR: "sun_specular", push 56, words 323586 7945,
+    SUN_SPECULAR: "sun_specular", push SunSpecularPush, words 323586 7945,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "sun_sum" SampledImage { uint: false, layered: false },
     2 writes "specular_sum" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -703,7 +703,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/surface_sweep.comp`.
-    SURFACE_SWEEP: "surface_sweep", push 16, words 331531 6812,
+    SURFACE_SWEEP: "surface_sweep", push MarchPush, words 331531 6812,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "slopes" StorageImage { format: "Unknown", uint: true, layered: true },
@@ -717,7 +717,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/sweep_fuse.comp`.
-    SWEEP_FUSE: "sweep_fuse", push 20, words 338343 18089,
+    SWEEP_FUSE: "sweep_fuse", push SweepFusePush, words 338343 18089,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rg32ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -737,7 +737,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/terrain_draw.frag`.
-    TERRAIN_DRAW_FRAG: "terrain_draw_frag", push 92, words 356432 1129,
+    TERRAIN_DRAW_FRAG: "terrain_draw_frag", push TerrainDrawPush, words 356432 1129,
     1 reads "radiance" SampledImage { uint: false, layered: false },
     2 reads "voids" SampledImage { uint: false, layered: false },
     TerrainDrawFrag {
@@ -748,14 +748,14 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/terrain_draw.vert`.
-    TERRAIN_DRAW_VERT: "terrain_draw_vert", push 92, words 357561 916,
+    TERRAIN_DRAW_VERT: "terrain_draw_vert", push TerrainDrawPush, words 357561 916,
     0 reads "heights" SampledImage { uint: false, layered: false },
     TerrainDrawVert;
 }
 
 shader! {
     /// `shaders_glsl/bounce/vector_reduce.comp`.
-    VECTOR_REDUCE: "vector_reduce", push 48, words 358477 2964,
+    VECTOR_REDUCE: "vector_reduce", push ReducePush, words 358477 2964,
     0 reads "exit_vectors" SampledImage { uint: false, layered: true },
     1 reads "vector_source" SampledImage { uint: false, layered: true },
     2 writes "vector_levels" StorageImage { format: "Unknown", uint: false, layered: true },
@@ -768,7 +768,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bake/visible_points.comp`.
-    VISIBLE_POINTS: "visible_points", push 48, words 361441 9687,
+    VISIBLE_POINTS: "visible_points", push VisiblePointsPush, words 361441 9687,
     0 reads "cells" SampledImage { uint: false, layered: false },
     1 reads "maxima" SampledImage { uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -843,226 +843,189 @@ pub static GRAPHICS: &[Shader] = &[
 ];
 
 layouts! {
-    push BentDirectionsPush bent_directions_push {
-        0 COLS cols: i32, 4 ROWS rows: i32, 8 FIRST_TEXEL first_texel: i32,
-        12 FIRST_FAN first_fan: i32, 16 FIRST_DIRECTION first_direction: i32,
-        20 CELL_X_M cell_x_m: f32, 24 CELL_Y_M cell_y_m: f32, 28 CURVATURE_X curvature_x: f32,
-        32 CURVATURE_Y curvature_y: f32,
+    push BentDirectionsPush 36 {
+        0 cols: i32, 4 rows: i32, 8 first_texel: i32, 12 first_fan: i32, 16 first_direction: i32,
+        20 cell_x_m: f32, 24 cell_y_m: f32, 28 curvature_x: f32, 32 curvature_y: f32,
     }
-    push BounceMarchPush bounce_march_push {
-        0 LAND land: LandPush, 32 AZIMUTHS azimuths: i32, 36 FIRST_AZIMUTH first_azimuth: i32,
-        40 LAST_AZIMUTH last_azimuth: i32,
+    push BounceMarchPush 44 {
+        0 land: LandPush, 32 azimuths: i32, 36 first_azimuth: i32, 40 last_azimuth: i32,
     }
-    push BounceShadePush bounce_shade_push {
-        0 COLS cols: i32, 4 ROWS rows: i32, 8 CELL_X_M cell_x_m: f32, 12 CELL_Y_M cell_y_m: f32,
+    push BounceShadePush 16 {
+        0 cols: i32, 4 rows: i32, 8 cell_x_m: f32, 12 cell_y_m: f32,
     }
-    push BounceWalkPush bounce_walk_push {
-        0 COLS cols: i32, 4 ROWS rows: i32, 8 CELL_X_M cell_x_m: f32, 12 CELL_Y_M cell_y_m: f32,
-        16 WARM_UP warm_up: i32, 20 FIRST_AZIMUTH first_azimuth: u32,
-        24 AZIMUTH_COUNT azimuth_count: u32, 28 CLEARS clears: u32, 32 IS_LAST is_last: u32,
-        36 BEGIN begin: u32,
+    push BounceWalkPush 40 {
+        0 cols: i32, 4 rows: i32, 8 cell_x_m: f32, 12 cell_y_m: f32, 16 warm_up: i32,
+        20 first_azimuth: u32, 24 azimuth_count: u32, 28 clears: u32, 32 is_last: u32,
+        36 begin: u32,
     }
-    push CacheGatherPush cache_gather_push {
-        0 COLS cols: i32, 4 ROWS rows: i32, 8 BEGIN begin: u32, 12 COUNT count: u32,
+    push CacheGatherPush 16 {
+        0 cols: i32, 4 rows: i32, 8 begin: u32, 12 count: u32,
     }
-    push DirtyListPush dirty_list_push {
-        0 COLS cols: i32, 4 ROWS rows: i32,
+    push DirtyListPush 8 {
+        0 cols: i32, 4 rows: i32,
     }
-    push DirtyMarkPush dirty_mark_push {
-        0 COLS cols: i32, 4 ROWS rows: i32, 8 FIRST_COL first_col: i32, 12 FIRST_ROW first_row: i32,
-        16 LAST_COL last_col: i32, 20 LAST_ROW last_row: i32,
+    push DirtyMarkPush 24 {
+        0 cols: i32, 4 rows: i32, 8 first_col: i32, 12 first_row: i32, 16 last_col: i32,
+        20 last_row: i32,
     }
-    push EllipseFitPush ellipse_fit_push {
-        0 COLS cols: i32, 4 ROWS rows: i32, 8 FIRST_DIRECTION first_direction: i32,
-        12 END_DIRECTION end_direction: i32, 16 FIRST_ROW first_row: i32,
-        20 LEAST_RADIUS least_radius: f32,
+    push EllipseFitPush 24 {
+        0 cols: i32, 4 rows: i32, 8 first_direction: i32, 12 end_direction: i32, 16 first_row: i32,
+        20 least_radius: f32,
     }
-    push EnvRotationPush env_rotation_push {
-        0 WIDTH width: i32, 4 ROWS rows: i32, 8 TURNS turns: i32, 12 COLUMN_FIRST column_first: i32,
+    push EnvRotationPush 16 {
+        0 width: i32, 4 rows: i32, 8 turns: i32, 12 column_first: i32,
     }
-    push EnvTablesPush env_tables_push {
-        0 HEIGHT height: i32, 4 ROWS rows: i32, 8 NODES nodes: i32,
-        12 AZIMUTH_COUNT azimuth_count: i32, 16 BOTTOM_RAD bottom_rad: f32,
+    push EnvTablesPush 20 {
+        0 height: i32, 4 rows: i32, 8 nodes: i32, 12 azimuth_count: i32, 16 bottom_rad: f32,
     }
-    push EnvWedgesPush env_wedges_push {
-        0 WIDTH width: i32, 4 ROWS rows: i32, 8 ROTATION_RAD rotation_rad: f32,
+    push EnvWedgesPush 12 {
+        0 width: i32, 4 rows: i32, 8 rotation_rad: f32,
     }
-    push FacetMaskPush facet_mask_push {
-        0 LAND land: LandPush, 32 HIGHEST_M highest_m: f32, 36 FIRST_LAYER first_layer: i32,
-        40 FIRST_DIRECTION first_direction: i32, 44 END_DIRECTION end_direction: i32,
+    push FacetMaskPush 48 {
+        0 land: LandPush, 32 highest_m: f32, 36 first_layer: i32, 40 first_direction: i32,
+        44 end_direction: i32,
     }
-    push FanWeightsPush fan_weights_push {
-        0 COLS cols: i32, 4 ROWS rows: i32, 8 FIRST_FAN first_fan: i32,
-        12 FIRST_DIRECTION first_direction: i32,
+    push FanWeightsPush 16 {
+        0 cols: i32, 4 rows: i32, 8 first_fan: i32, 12 first_direction: i32,
     }
-    push GatherPush gather_push {
-        0 COLS cols: i32, 4 ROWS rows: i32, 8 CELL_X_M cell_x_m: f32, 12 CELL_Y_M cell_y_m: f32,
-        16 AZIMUTHS azimuths: i32, 20 FIRST_AZIMUTH first_azimuth: i32,
-        24 LAST_AZIMUTH last_azimuth: i32, 28 WARM_UP_COLS warm_up_cols: i32,
-        32 WARM_UP_ROWS warm_up_rows: i32, 36 FINE_SAMPLES fine_samples: i32,
-        40 WIDTH_SHIFT width_shift: i32, 44 GROWTH growth: f32, 48 SHADE_FINE shade_fine: i32,
-        52 SHADE_SHIFT shade_shift: i32, 56 STEP_SHADE step_shade: i32,
-        60 STEP_HEIGHT step_height: i32,
+    push GatherPush 64 {
+        0 cols: i32, 4 rows: i32, 8 cell_x_m: f32, 12 cell_y_m: f32, 16 azimuths: i32,
+        20 first_azimuth: i32, 24 last_azimuth: i32, 28 warm_up_cols: i32, 32 warm_up_rows: i32,
+        36 fine_samples: i32, 40 width_shift: i32, 44 growth: f32, 48 shade_fine: i32,
+        52 shade_shift: i32, 56 step_shade: i32, 60 step_height: i32,
     }
-    push HeightBoundsPush height_bounds_push {
-        0 CELLS_X cells_x: i32, 4 CELLS_Y cells_y: i32, 8 PADDED_ROWS padded_rows: i32,
-        12 LEVEL level: i32,
+    push HeightBoundsPush 16 {
+        0 cells_x: i32, 4 cells_y: i32, 8 padded_rows: i32, 12 level: i32,
     }
-    push HeightCellsPush height_cells_push {
-        0 COLS cols: i32, 4 ROWS rows: i32, 8 CELL_X_M cell_x_m: f32, 12 CELL_Y_M cell_y_m: f32,
+    push HeightCellsPush 16 {
+        0 cols: i32, 4 rows: i32, 8 cell_x_m: f32, 12 cell_y_m: f32,
     }
-    push HeightExpandPush height_expand_push {
-        0 COLS cols: i32, 4 ROWS rows: i32, 8 WIDTH_SHIFT width_shift: i32,
+    push HeightExpandPush 12 {
+        0 cols: i32, 4 rows: i32, 8 width_shift: i32,
     }
-    push HeightTransposePush height_transpose_push {
-        0 LANES lanes: i32, 4 STEPS steps: i32, 8 FIRST_COL first_col: i32,
-        12 FIRST_ROW first_row: i32, 16 LAST_COL last_col: i32, 20 LAST_ROW last_row: i32,
+    push HeightTransposePush 24 {
+        0 lanes: i32, 4 steps: i32, 8 first_col: i32, 12 first_row: i32, 16 last_col: i32,
+        20 last_row: i32,
     }
-    push HorizonResweepPush horizon_resweep_push {
-        0 LANES lanes: i32, 4 STEPS steps: i32, 8 FIRST_AZIMUTH first_azimuth: u32,
-        12 HEIGHT_SCALE height_scale: f32, 16 FIRST_COL first_col: i32, 20 FIRST_ROW first_row: i32,
-        24 LAST_COL last_col: i32, 28 LAST_ROW last_row: i32,
+    push HorizonResweepPush 32 {
+        0 lanes: i32, 4 steps: i32, 8 first_azimuth: u32, 12 height_scale: f32, 16 first_col: i32,
+        20 first_row: i32, 24 last_col: i32, 28 last_row: i32,
     }
-    push HorizonSweepPush horizon_sweep_push {
-        0 LANES lanes: i32, 4 STEPS steps: i32, 8 WARM_UP warm_up: i32,
-        12 FIRST_AZIMUTH first_azimuth: u32, 16 HEIGHT_SCALE height_scale: f32,
+    push HorizonSweepPush 20 {
+        0 lanes: i32, 4 steps: i32, 8 warm_up: i32, 12 first_azimuth: u32, 16 height_scale: f32,
     }
-    push LandPush land_push {
-        0 COLS cols: i32, 4 ROWS rows: i32, 8 CELLS_X cells_x: i32, 12 CELLS_Y cells_y: i32,
-        16 PADDED_ROWS padded_rows: i32, 20 TOP_LEVEL top_level: i32, 24 CELL_X_M cell_x_m: f32,
-        28 CELL_Y_M cell_y_m: f32,
+    push LandPush 32 {
+        0 cols: i32, 4 rows: i32, 8 cells_x: i32, 12 cells_y: i32, 16 padded_rows: i32,
+        20 top_level: i32, 24 cell_x_m: f32, 28 cell_y_m: f32,
     }
-    push LightMatrixPush light_matrix_push {
-        0 ROWS rows: i32, 4 LIGHT_ORDER light_order: i32, 8 ORDER order: i32,
-        12 RECEIVERS receivers: i32, 16 ROW_FIRST row_first: i32, 20 MATRIX_FIRST matrix_first: i32,
-        24 PADS pads: [i32; 2], 32 SKY sky: [f32; 4],
+    push LightMatrixPush 48 {
+        0 rows: i32, 4 light_order: i32, 8 order: i32, 12 receivers: i32, 16 row_first: i32,
+        20 matrix_first: i32, 24 pads: [i32; 2], 32 sky: [f32; 4],
     }
-    push LightResolvePush light_resolve_push {
-        0 COLS cols: i32, 4 ROWS rows: i32, 8 CLEARS clears: u32, 12 TEXEL texel: i32,
-        16 COLOUR colour: [f32; 4],
+    push LightResolvePush 32 {
+        0 cols: i32, 4 rows: i32, 8 clears: u32, 12 texel: i32, 16 colour: [f32; 4],
     }
-    push MapDrawPush map_draw_push {
-        0 WIDTH width: i32, 4 HEIGHT height: i32, 8 COLS cols: i32, 12 ROWS rows: i32,
-        16 FIRST_COL first_col: f32, 20 FIRST_ROW first_row: f32,
-        24 GRID_POINTS_PER_PIXEL grid_points_per_pixel: f32, 28 SWAPS swaps: u32,
-        32 BEYOND beyond: u32,
+    push MapDrawPush 36 {
+        0 width: i32, 4 height: i32, 8 cols: i32, 12 rows: i32, 16 first_col: f32,
+        20 first_row: f32, 24 grid_points_per_pixel: f32, 28 swaps: u32, 32 beyond: u32,
     }
-    push MarchPush march_push {
-        0 LANES lanes: i32, 4 STEPS steps: i32, 8 WARM_UP warm_up: i32,
-        12 FIRST_AZIMUTH first_azimuth: u32,
+    push MarchPush 16 {
+        0 lanes: i32, 4 steps: i32, 8 warm_up: i32, 12 first_azimuth: u32,
     }
-    push PathTracePush path_trace_push {
-        0 LAND land: LandPush, 32 HIGHEST_M highest_m: f32, 36 ROTATION_TURNS rotation_turns: f32,
-        40 EXPONENT exponent: f32, 44 SPECULAR_SCALE specular_scale: f32, 48 BOUNCES bounces: i32,
-        52 SUNS suns: i32, 56 LIGHT_COUNT light_count: i32, 60 SEED seed: u32,
-        64 ALBEDO albedo: [f32; 4], 80 SKY sky: [f32; 4], 96 FIRST_ROW first_row: i32,
-        100 KEYS keys: i32, 104 FIRST_PATH first_path: i32, 108 LAST_PATH last_path: i32,
-        112 FIRST_LIGHT first_light: i32, 116 LAST_LIGHT last_light: i32,
+    push PathTracePush 120 {
+        0 land: LandPush, 32 highest_m: f32, 36 rotation_turns: f32, 40 exponent: f32,
+        44 specular_scale: f32, 48 bounces: i32, 52 suns: i32, 56 light_count: i32, 60 seed: u32,
+        64 albedo: [f32; 4], 80 sky: [f32; 4], 96 first_row: i32, 100 keys: i32,
+        104 first_path: i32, 108 last_path: i32, 112 first_light: i32, 116 last_light: i32,
     }
-    push PictureTonePush picture_tone_push {
-        0 EXPOSURE exposure: f32,
+    push PictureTonePush 4 {
+        0 exposure: f32,
     }
-    push PyramidMarchPush pyramid_march_push {
-        0 LANES lanes: i32, 4 STEPS steps: i32, 8 WARM_UP warm_up: i32,
-        12 FIRST_AZIMUTH first_azimuth: u32, 16 AZIMUTH_COUNT azimuth_count: u32,
-        20 FINE_SAMPLES fine_samples: i32, 24 WIDTH_SHIFT width_shift: i32, 28 GROWTH growth: f32,
+    push PyramidMarchPush 32 {
+        0 lanes: i32, 4 steps: i32, 8 warm_up: i32, 12 first_azimuth: u32, 16 azimuth_count: u32,
+        20 fine_samples: i32, 24 width_shift: i32, 28 growth: f32,
     }
-    push ReducePush reduce_push {
-        0 COLS cols: i32, 4 ROWS rows: i32, 8 FIRST first: i32, 12 SOURCE_COLS source_cols: i32,
-        16 SOURCE_ROWS source_rows: i32, 20 SOURCE_FIRST source_first: i32, 24 RATIO_X ratio_x: f32,
-        28 RATIO_Y ratio_y: f32, 32 PER_GRID_POINT_X per_grid_point_x: f32,
-        36 PER_GRID_POINT_Y per_grid_point_y: f32, 40 LEVEL level: i32,
-        44 WIDTH_SHIFT width_shift: i32,
+    push ReducePush 48 {
+        0 cols: i32, 4 rows: i32, 8 first: i32, 12 source_cols: i32, 16 source_rows: i32,
+        20 source_first: i32, 24 ratio_x: f32, 28 ratio_y: f32, 32 per_grid_point_x: f32,
+        36 per_grid_point_y: f32, 40 level: i32, 44 width_shift: i32,
     }
-    push ScatterGatherPush scatter_gather_push {
-        0 COLS cols: i32, 4 ROWS rows: i32, 8 FIRST_LINK first_link: i32, 12 STEPS steps: i32,
-        16 STEP step: i32, 20 FIRST_PATH first_path: i32, 24 PATHS paths: i32,
-        28 FIRST_DIRECTION first_direction: i32, 32 FIRST_SUN first_sun: i32, 36 SUNS suns: i32,
-        40 WEIGHT_SR weight_sr: f32, 44 EXPONENT exponent: f32,
-        48 SPECULAR_SCALE specular_scale: f32, 52 FIRST_VIEW first_view: i32,
-        56 CURVATURE_X curvature_x: f32, 60 CURVATURE_Y curvature_y: f32,
-        64 ALBEDO albedo: [f32; 4],
+    push ScatterGatherPush 80 {
+        0 cols: i32, 4 rows: i32, 8 first_link: i32, 12 steps: i32, 16 step: i32,
+        20 first_path: i32, 24 paths: i32, 28 first_direction: i32, 32 first_sun: i32, 36 suns: i32,
+        40 weight_sr: f32, 44 exponent: f32, 48 specular_scale: f32, 52 first_view: i32,
+        56 curvature_x: f32, 60 curvature_y: f32, 64 albedo: [f32; 4],
     }
-    push ShShadePush sh_shade_push {
-        0 COLS cols: i32, 4 ROWS rows: i32, 8 CELL_X_M cell_x_m: f32, 12 CELL_Y_M cell_y_m: f32,
-        16 SPECULAR specular: [f32; 2],
+    push ShShadePush 24 {
+        0 cols: i32, 4 rows: i32, 8 cell_x_m: f32, 12 cell_y_m: f32, 16 specular: [f32; 2],
     }
-    push ShWedgesPush sh_wedges_push {
-        0 COLS cols: i32, 4 ROWS rows: i32, 8 CELL_X_M cell_x_m: f32, 12 CELL_Y_M cell_y_m: f32,
-        16 AZIMUTH_COUNT azimuth_count: i32, 20 AZIMUTH_FIRST azimuth_first: i32,
-        24 TABLE_FIRST table_first: i32, 28 SIDE side: i32, 32 LOWEST_RAD lowest_rad: f32,
+    push ShWedgesPush 36 {
+        0 cols: i32, 4 rows: i32, 8 cell_x_m: f32, 12 cell_y_m: f32, 16 azimuth_count: i32,
+        20 azimuth_first: i32, 24 table_first: i32, 28 side: i32, 32 lowest_rad: f32,
     }
-    push ShadeExpandPush shade_expand_push {
-        0 COLS cols: i32, 4 ROWS rows: i32, 8 WIDTH_SHIFT width_shift: i32,
+    push ShadeExpandPush 12 {
+        0 cols: i32, 4 rows: i32, 8 width_shift: i32,
     }
-    push ShadePush shade_push {
-        0 COLS cols: i32, 4 ROWS rows: i32, 8 CELL_X_M cell_x_m: f32, 12 CELL_Y_M cell_y_m: f32,
-        16 WARM_UP warm_up: i32, 20 FIRST_AZIMUTH first_azimuth: u32,
-        24 AZIMUTH_COUNT azimuth_count: u32, 28 CLEARS clears: u32,
+    push ShadePush 32 {
+        0 cols: i32, 4 rows: i32, 8 cell_x_m: f32, 12 cell_y_m: f32, 16 warm_up: i32,
+        20 first_azimuth: u32, 24 azimuth_count: u32, 28 clears: u32,
     }
-    push SkyDrawPush sky_draw_push {
-        0 FORWARD forward: [f32; 4], 16 RIGHT right: [f32; 4], 32 DOWN down: [f32; 4],
-        48 ABOVE above: [f32; 4], 64 BELOW below: [f32; 4], 80 ROTATION_TURNS rotation_turns: f32,
+    push SkyDrawPush 84 {
+        0 forward: [f32; 4], 16 right: [f32; 4], 32 down: [f32; 4], 48 above: [f32; 4],
+        64 below: [f32; 4], 80 rotation_turns: f32,
     }
-    push SpecularExitPush specular_exit_push {
-        0 COLS cols: i32, 4 ROWS rows: i32, 8 BEGINS begins: u32, 12 FIRST_TEXEL first_texel: i32,
-        16 FOURS fours: i32, 20 EXPONENT exponent: f32, 24 SCALE scale: f32,
+    push SpecularExitPush 28 {
+        0 cols: i32, 4 rows: i32, 8 begins: u32, 12 first_texel: i32, 16 fours: i32,
+        20 exponent: f32, 24 scale: f32,
     }
-    push SpecularVisibilityPush specular_visibility_push {
-        0 COLS cols: i32, 4 ROWS rows: i32,
+    push SpecularVisibilityPush 8 {
+        0 cols: i32, 4 rows: i32,
     }
-    push SphereShShadePush sphere_sh_shade_push {
-        0 LAND land: LandPush, 32 FIRST first: [i32; 2], 40 BASE base: [i32; 2],
-        48 OFFSET offset: [f32; 2], 56 UP_M up_m: f32, 60 RADIUS_M radius_m: f32,
-        64 REACH_M reach_m: f32, 68 AZIMUTHS azimuths: i32, 72 FIRST_AZIMUTH first_azimuth: i32,
-        76 LAST_AZIMUTH last_azimuth: i32, 80 ENTRY_FIRST entry_first: i32,
-        84 ENTRY_COUNT entry_count: i32, 88 TABLE_FIRST table_first: i32, 92 SIDE side: i32,
-        96 FINE_SAMPLES fine_samples: i32, 100 WIDTH_SHIFT width_shift: i32, 104 GROWTH growth: f32,
-        108 LEVEL_STEP level_step: f32, 112 RADIANCE radiance: [f32; 4],
+    push SphereShShadePush 128 {
+        0 land: LandPush, 32 first: [i32; 2], 40 base: [i32; 2], 48 offset: [f32; 2], 56 up_m: f32,
+        60 radius_m: f32, 64 reach_m: f32, 68 azimuths: i32, 72 first_azimuth: i32,
+        76 last_azimuth: i32, 80 entry_first: i32, 84 entry_count: i32, 88 table_first: i32,
+        92 side: i32, 96 fine_samples: i32, 100 width_shift: i32, 104 growth: f32,
+        108 level_step: f32, 112 radiance: [f32; 4],
     }
-    push SphereShadePush sphere_shade_push {
-        0 LAND land: LandPush, 32 FIRST first: [i32; 2], 40 BASE base: [i32; 2],
-        48 OFFSET offset: [f32; 2], 56 UP_M up_m: f32, 60 RADIUS_M radius_m: f32,
-        64 REACH_M reach_m: f32, 68 SLICES slices: i32, 72 SLICES_AROUND slices_around: i32,
-        76 FIRST_SLICE first_slice: i32, 80 LAST_SLICE last_slice: i32, 84 PADS pads: [i32; 3],
-        96 RADIANCE radiance: [f32; 4],
+    push SphereShadePush 112 {
+        0 land: LandPush, 32 first: [i32; 2], 40 base: [i32; 2], 48 offset: [f32; 2], 56 up_m: f32,
+        60 radius_m: f32, 64 reach_m: f32, 68 slices: i32, 72 slices_around: i32,
+        76 first_slice: i32, 80 last_slice: i32, 84 pads: [i32; 3], 96 radiance: [f32; 4],
     }
-    push SunSpecularPush sun_specular_push {
-        0 COLS cols: i32, 4 ROWS rows: i32, 8 CELL_X_M cell_x_m: f32, 12 CELL_Y_M cell_y_m: f32,
-        16 TOWARDS towards: [f32; 4], 32 COLOUR colour: [f32; 4], 48 SPECULAR specular: [f32; 2],
+    push SunSpecularPush 56 {
+        0 cols: i32, 4 rows: i32, 8 cell_x_m: f32, 12 cell_y_m: f32, 16 towards: [f32; 4],
+        32 colour: [f32; 4], 48 specular: [f32; 2],
     }
-    push SweepFusePush sweep_fuse_push {
-        0 COLS cols: i32, 4 ROWS rows: i32, 8 WARM_UP warm_up: i32,
-        12 FIRST_AZIMUTH first_azimuth: u32, 16 FIRST_LAYER first_layer: u32,
+    push SweepFusePush 20 {
+        0 cols: i32, 4 rows: i32, 8 warm_up: i32, 12 first_azimuth: u32, 16 first_layer: u32,
     }
-    push TerrainDrawPush terrain_draw_push {
-        0 CLIP_PER_COL clip_per_col: [f32; 4], 16 CLIP_PER_ROW clip_per_row: [f32; 4],
-        32 CLIP_PER_METRE clip_per_metre: [f32; 4], 48 CLIP_AT_ORIGIN clip_at_origin: [f32; 4],
-        64 ORIGIN_COL origin_col: i32, 68 ORIGIN_ROW origin_row: i32, 72 ORIGIN_M origin_m: f32,
-        76 COLS cols: i32, 80 ROWS rows: i32, 84 MESH_STEP mesh_step: i32,
-        88 TILES_ACROSS tiles_across: i32,
+    push TerrainDrawPush 92 {
+        0 clip_per_col: [f32; 4], 16 clip_per_row: [f32; 4], 32 clip_per_metre: [f32; 4],
+        48 clip_at_origin: [f32; 4], 64 origin_col: i32, 68 origin_row: i32, 72 origin_m: f32,
+        76 cols: i32, 80 rows: i32, 84 mesh_step: i32, 88 tiles_across: i32,
     }
-    push VisiblePointsPush visible_points_push {
-        0 LAND land: LandPush, 32 HIGHEST_M highest_m: f32, 36 FIRST_LAYER first_layer: i32,
-        40 FIRST_DIRECTION first_direction: i32, 44 END_DIRECTION end_direction: i32,
+    push VisiblePointsPush 48 {
+        0 land: LandPush, 32 highest_m: f32, 36 first_layer: i32, 40 first_direction: i32,
+        44 end_direction: i32,
     }
-    other DirtyTexels dirty_texels {
-        0 DIRTY_TEXELS,
+    other DirtyTexels {
+        0 dirty_texels,
     }
-    other EditList edit_list {
-        32 DIRTY_WORDS, 8 LIGHT_GROUPS, 20 RESOLVE_GROUPS, 0 SWEPT_STEPS, 4 WORD_COUNT,
+    other EditList {
+        32 dirty_words, 8 light_groups, 20 resolve_groups, 0 swept_steps, 4 word_count,
     }
-    other EnvRotation env_rotation {
-        0 ENV_ROTATION,
+    other EnvRotation {
+        0 env_rotation,
     }
-    other LostLines lost_lines {
-        0 LOST_LINES,
+    other LostLines {
+        0 lost_lines,
     }
-    other LostRays lost_rays {
-        0 LOST_RAYS,
+    other LostRays {
+        0 lost_rays,
     }
-    other WedgeRows wedge_rows {
-        0 WEDGE_ROWS,
+    other WedgeRows {
+        0 wedge_rows,
     }
 }
 

@@ -1,4 +1,4 @@
-use crate::graph::shaders::Specialised;
+use crate::graph::shaders::{Specialise, Specialised};
 use crate::graph::{Format, Kind, Owner, Pass, Resource, ResourceId};
 
 /// Collects the resources and passes of a plan.
@@ -48,20 +48,19 @@ impl Builder {
 
     /// Adds a dispatch of a shader with its constants. `bound` names the bound resources; other bindings are unused.
     #[expect(clippy::too_many_arguments, reason = "a pass is all of this")]
-    pub(crate) fn pass<P: bytemuck::Pod>(
+    pub(crate) fn pass<S: Specialise>(
         &mut self,
-        of: impl Into<Specialised>,
+        of: S,
         part: &str,
         why: impl Into<String>,
         groups: [u32; 3],
-        push: &P,
+        push: &S::Push,
         bound: &[(&str, ResourceId)],
         bytes: u64,
         texels: u64,
     ) -> &mut Pass {
         let Specialised { shader, constants } = of.into();
         let push = bytemuck::bytes_of(push).to_vec();
-        assert_eq!(push.len(), shader.push_bytes as usize, "{}: push constants", shader.name);
         for (name, id) in bound {
             let binding = shader.bindings.iter().find(|b| b.name == *name);
             let binding = binding.unwrap_or_else(|| panic!("{} binds no {name}", shader.name));

@@ -70,6 +70,12 @@ pub(crate) struct Specialised {
     pub constants: Vec<u32>,
 }
 
+/// The struct of a shader's specialisation constants.
+pub(crate) trait Specialise: Into<Specialised> {
+    /// Its push constants; `()` without any.
+    type Push: bytemuck::Pod;
+}
+
 /// A type of specialisation constants.
 trait Word {
     fn word(self) -> u32;
@@ -99,19 +105,19 @@ impl Word for f32 {
     }
 }
 
-/// A shader: its name, bytes of push constants, first word of SPIR-V and their count; each binding; then the struct of its
+/// A shader: its name, struct of push constants, first word of SPIR-V and their count; each binding; then the struct of its
 /// specialisation constants with their ids and defaults. The host dispatches it only through that struct.
 macro_rules! shader {
     (
         $(#[$doc:meta])*
-        $constant:ident: $name:literal, push $push:literal, words $first:literal $count:literal,
+        $constant:ident: $name:literal, push $push:ty, words $first:literal $count:literal,
         $($binding:literal $access:ident $variable:literal $kind:ident $({ $($flag:tt)* })?,)*
         $shape:ident $({ $($id:literal $field:ident: $type:ty = $default:literal,)* })? $(;)?
     ) => {
         $(#[$doc])*
-        pub const $constant: Shader = Shader {
+        pub(crate) const $constant: Shader = Shader {
             name: $name,
-            push_bytes: $push,
+            push_bytes: size_of::<$push>() as u32,
             bindings: &[$(Binding {
                 binding: $binding,
                 name: $variable,
@@ -132,6 +138,10 @@ macro_rules! shader {
             }
         }
 
+        impl Specialise for $shape {
+            type Push = $push;
+        }
+
         impl From<$shape> for Specialised {
             fn from(_of: $shape) -> Self {
                 Self { shader: &$constant, constants: vec![$($(_of.$field.word(),)*)?] }
@@ -146,32 +156,54 @@ macro_rules! shader {
 /// constants are Rust structs, too, checked to lie in memory as the shaders read them.
 macro_rules! layouts {
     (
-        $(push $push:ident $push_module:ident {
-            $($at:literal $member:ident $field:ident: $type:ty,)*
-        })*
-        $(other $other:ident $other_module:ident { $($offset:literal $name:ident,)* })*
+        $(push $push:ident $bytes:literal { $($at:literal $field:ident: $type:ty,)* })*
+        $(other $other:ident { $($offset:literal $name:ident,)* })*
     ) => {
         $(
             #[repr(C)]
             #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
             pub(crate) struct $push { $(pub $field: $type,)* }
 
-            const _: () = { $(assert!(std::mem::offset_of!($push, $field) == $at);)* };
+            const _: () = {
+                assert!(size_of::<$push>() == $bytes);
+                $(assert!(std::mem::offset_of!($push, $field) == $at);)*
+            };
         )*
 
-        /// Byte offsets of struct members as the shaders see them.
-        #[allow(missing_docs, reason = "each is the offset of the member it names")]
-        pub mod offsets {
-            $(
-                #[doc = concat!("`", stringify!($push), "`.")]
-                pub mod $push_module { $(pub const $member: usize = $at;)* }
-            )*
-            $(
-                #[doc = concat!("`", stringify!($other), "`.")]
-                pub mod $other_module { $(pub const $name: usize = $offset;)* }
-            )*
-        }
+        const OFFSETS: &[(&str, &[(&str, usize)])] = &[
+            $((stringify!($push), &[$((stringify!($field), $at)),*]),)*
+            $((stringify!($other), &[$((stringify!($name), $offset)),*]),)*
+        ];
     };
+}
+
+/// Byte offset of a member, as the shaders see it, of a struct that they share with the host.
+///
+/// # Panics
+/// Without such a member; at compile time in a constant.
+pub const fn offset(structure: &str, member: &str) -> usize {
+    let mut i = 0;
+    while i < OFFSETS.len() {
+        let (name, members) = OFFSETS[i];
+        let mut m = 0;
+        while is_same(name, structure) && m < members.len() {
+            if is_same(members[m].0, member) {
+                return members[m].1;
+            }
+            m += 1;
+        }
+        i += 1;
+    }
+    panic!("no such member");
+}
+
+const fn is_same(a: &str, b: &str) -> bool {
+    let (a, b) = (a.as_bytes(), b.as_bytes());
+    let mut i = 0;
+    while i < a.len() && i < b.len() && a[i] == b[i] {
+        i += 1;
+    }
+    i == a.len() && i == b.len()
 }
 
 /// SPIR-V of all shaders, one after the other.

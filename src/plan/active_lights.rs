@@ -5,7 +5,7 @@ use crate::passes::spheres::Spheres;
 use crate::passes::sweep::Sweep;
 use crate::passes::sweeping::circle;
 use crate::scene::{
-    Albedo, Basis, Border, Environment, KeyLight, Lights, Quality, Scene, Specular, Sun,
+    ANY_LIGHT, Albedo, Basis, Border, Environment, KeyLight, Lights, Quality, Scene, Specular, Sun,
 };
 use crate::{Error, Result};
 
@@ -17,7 +17,7 @@ pub(super) struct ActiveLights<'a> {
     pub suns: Vec<(usize, &'a Sun)>,
     /// With their positions in the scene.
     pub keys: Vec<(usize, &'a KeyLight)>,
-    pub sphere_lights: Spheres<'a>,
+    pub near: Spheres,
     /// The surface's Phong specular, where its scale is above 0.
     pub specular: Option<&'a Specular>,
     /// Whether the sky-view factor is requested as an image.
@@ -59,11 +59,10 @@ impl<'a> ActiveLights<'a> {
             && environment.is_none()
             && lights.suns.is_empty()
             && lights.keys.is_empty()
-            && lights.sphere_lights.is_empty()
+            && lights.near().next().is_none()
             && !wanted.sky_view
         {
-            let expected = "at least one of sky, environment, sun, key light and sphere light";
-            return Err(Error::setting("lights", "none", expected));
+            return Err(Error::setting("lights", "none", ANY_LIGHT));
         }
         if lights.sky.is_some() && sky.is_none() {
             notes.push("sky dropped: its radiance is 0".into());
@@ -75,12 +74,12 @@ impl<'a> ActiveLights<'a> {
         for (i, _) in suns.iter().filter(|(_, s)| s.is_point() && s.diameter_rad > 0.0) {
             notes.push(format!("sun {} is lit as a point: it is less than 0.01° wide", i + 1));
         }
-        let (lit_spheres, dark): (Vec<_>, Vec<_>) =
-            lights.sphere_lights.iter().enumerate().partition(|(_, s)| lit(&s.radiance));
-        for (i, _) in dark {
-            notes.push(format!("sphere light {} dropped: its radiance is 0", i + 1));
+        let (lit_near, dark): (Vec<_>, Vec<_>) =
+            lights.near().partition(|light| lit(&light.sphere.radiance));
+        for light in dark {
+            notes.push(format!("{} dropped: its radiance is 0", light.name()));
         }
-        let sphere_lights = Spheres::of(field, lit_spheres, quality.light_cutoff, notes)?;
+        let near = Spheres::of(field, lit_near, quality.light_cutoff, notes)?;
         let specular = surface.specular.as_ref().filter(|specular| specular.largest().scale > 0.0);
         if surface.specular.is_some() && specular.is_none() {
             notes.push("specular dropped: its scale is 0".into());
@@ -91,7 +90,7 @@ impl<'a> ActiveLights<'a> {
             && sky.is_none_or(|c| grey(&c))
             && suns.iter().all(|(_, s)| grey(&s.irradiance))
             && keys.iter().all(|(_, k)| grey(&k.radiance))
-            && sphere_lights.active.iter().all(|(_, s)| grey(&s.radiance))
+            && near.active.iter().all(|light| grey(&light.sphere.radiance))
             && matches!(&surface.albedo, Albedo::Constant(c) if grey(c));
         let has_sky_view = wanted.sky_view;
         if has_texels {
@@ -99,24 +98,14 @@ impl<'a> ActiveLights<'a> {
         }
         let first_sun = usize::from(lights.sky.is_some());
         let texels = has_texels.then_some([first_sun, first_sun + lights.suns.len()]);
-        Ok(Self {
-            sky,
-            environment,
-            suns,
-            keys,
-            sphere_lights,
-            specular,
-            has_sky_view,
-            is_grey,
-            texels,
-        })
+        Ok(Self { sky, environment, suns, keys, near, specular, has_sky_view, is_grey, texels })
     }
 
     /// Checks that colours can be on the device: each must be the factor of one light's sum. Sums of sphere lights and
     /// specular series contain their colours.
     fn check_texels(Scene { surface, lights, .. }: &Scene) -> Result<()> {
-        let found = if !lights.sphere_lights.is_empty() {
-            "a sphere light"
+        let found = if let Some(light) = lights.near().next() {
+            &format!("a {}", light.of.name)
         } else if surface.specular.is_some() {
             "specular"
         } else if Self::texels_of(lights) == 0 {
@@ -141,7 +130,7 @@ impl<'a> ActiveLights<'a> {
     /// Whether no light is active, so the picture is black.
     pub(super) fn is_dark(&self) -> bool {
         let has_sky = self.sky.is_some() || self.environment.is_some();
-        !has_sky && self.aimed().next().is_none() && self.sphere_lights.active.is_empty()
+        !has_sky && self.aimed().next().is_none() && self.near.active.is_empty()
     }
 
     /// The key lights that can be visible.

@@ -50,7 +50,7 @@ impl Bends {
     }
 
     /// Records the passes that fill [`bent`](Self::bent); `points` and `ground` are those of the flat field.
-    pub(super) fn record(
+    pub(super) fn plan(
         &self,
         builder: &mut Builder,
         (field, border): (&HeightField, Border),

@@ -1,6 +1,6 @@
 use super::Plan;
 use super::bend::Bends;
-use super::visible_points::{check_field, images, one_image, record, texels};
+use super::visible_points::{check_field, images, one_image, plan_batch, texels};
 use crate::graph::{Builder, Format, Limits, Owner, ResourceId};
 use crate::passes::blocks::Blocks;
 use crate::passes::ellipse_fit as pass;
@@ -70,7 +70,7 @@ pub fn curved_ellipses(
         changed.iter().zip(names).map(|(changed, name)| format!("the base bent {name}: {changed}"));
     for ((curvature, name), outputs) in four.into_iter().zip(names).zip(&outputs[1..]) {
         let points = [begun.points, begun.ground];
-        bends.record(&mut begun.builder, (field, border), curvature, points);
+        bends.plan(&mut begun.builder, (field, border), curvature, points);
         begun.fit((Some(bends.bent), &format!("{name}, ")), *outputs);
     }
     let method = "ellipses of visible sky on curved bases";
@@ -108,10 +108,10 @@ impl<'a> Begun<'a> {
         let all = images(&mut builder, size, directions.count(), Owner::Internal, limits)?;
         let points = one_image(field, directions, &all, limits)?;
         let blocks = Blocks::make(&mut builder, size, border);
-        blocks.record(&mut builder, field, heights, None);
+        blocks.plan(&mut builder, field, heights, None);
         let (buffer, first) = builder.constants(&texels(directions));
         let image = all.into_iter().next().expect("one image");
-        record(&mut builder, (field, border), &blocks, (buffer, first), directions, image);
+        plan_batch(&mut builder, (field, border), &blocks, (buffer, first), directions, image);
         let ground = blocks.images.ground;
         Ok(Self { field, border, directions, size, builder, points, ground, buffer, first })
     }

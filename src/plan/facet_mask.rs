@@ -51,7 +51,7 @@ pub fn facet_mask(
     }
     let extent = [cells_x, cells_y, layers];
     let image = builder.image("facet_mask", Owner::Output, Format::R32Uint, extent, true);
-    blocks.record(&mut builder, field, heights, None);
+    blocks.plan(&mut builder, field, heights, None);
     let (buffer, first) = builder.constants(&texels(directions));
     let layer_rays = layer_bytes / 2 * DIRECTIONS_A_WORD as u64;
     let at_once = (BAND_RAYS / layer_rays).clamp(1, layers.into()) as u32;

@@ -63,7 +63,7 @@ pub fn horizons(
     let batches = &lists.batches[0];
     for batch in batches {
         let part = part("", batch, batches);
-        sweeping.record(&mut builder, batch, &part);
+        sweeping.plan(&mut builder, batch, &part);
         let written = sweeping.written(batch);
         let ids = [sweeping.lane_heights(batch), sweeping.azimuths, angles];
         passes::sweep_fuse::plan(

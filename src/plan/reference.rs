@@ -7,7 +7,7 @@ use crate::graph::{Builder, Format, Limits, Owner, ResourceId};
 use crate::passes::blocks::Blocks;
 use crate::passes::path_trace::{self, BATCH_PATHS};
 use crate::plan::reference::choice::{choice_density, environment_cdf, max_path_light};
-use crate::scene::{Albedo, Border, KeyLight, Lights, PhongSpecular, Scene, Specular};
+use crate::scene::{ANY_LIGHT, Albedo, Border, KeyLight, Lights, PhongSpecular, Scene, Specular};
 use crate::{Error, Result};
 
 /// Paths per texel in one batch of a [`reference`](reference()).
@@ -106,14 +106,17 @@ fn traced(
     let Scene { field, surface, lights } = scene;
     lights.check()?;
     surface.check(field.rows() * field.cols())?;
+    if let Some(light) = lights.near().find(|light| !light.of.by_paths) {
+        let expected = "lights that the path-traced reference supports";
+        return Err(Error::setting("lights", light.name(), expected));
+    }
     if bounces > MOST_BOUNCES {
         let expected = format!("a whole number from 0 to {MOST_BOUNCES}");
         return Err(Error::setting("bounces", bounces.to_string(), expected));
     }
     let count = lights.suns.len() + lights.keys.len() + lights.sphere_lights.len();
     if count == 0 && lights.sky.is_none() && lights.environment.is_none() {
-        let expected = "at least one of sky, environment, sun, key light and sphere light";
-        return Err(Error::setting("lights", "none", expected));
+        return Err(Error::setting("lights", "none", ANY_LIGHT));
     }
     if count > limits.image_side as usize {
         return Err(Error::Limit {
@@ -166,7 +169,7 @@ fn traced(
         ("batch_spread", batch_spread),
         ("lost_rays", lost_rays),
     ]);
-    blocks.record(&mut builder, field, heights, Some([batch_mean, lost_rays]));
+    blocks.plan(&mut builder, field, heights, Some([batch_mean, lost_rays]));
     let rows = summed[1];
     let parts = path_trace::parts(scene, &blocks, bounces);
     if parts.len() > 1 {

@@ -8,7 +8,7 @@ use glam::DVec3;
 
 use super::Plan;
 use super::bend::Bends;
-use super::visible_points::{images, one_image, record, texels};
+use super::visible_points::{images, one_image, plan_batch, texels};
 use crate::graph::bytes_text;
 use crate::graph::{Builder, Format, Limits, Owner, ResourceId};
 use crate::passes::blocks::Blocks;
@@ -116,8 +116,8 @@ pub fn scatter_views(
         bound.push(("ground", blocks.images.ground));
         let suns = wanted.towards_suns()?;
         match &suns {
-            Some(_) => blocks.record(&mut builder, field, heights, None),
-            None => blocks.record_ground(&mut builder, field, heights, None),
+            Some(_) => blocks.plan(&mut builder, field, heights, None),
+            None => blocks.plan_ground(&mut builder, field, heights, None),
         }
         let steps = wanted.steps();
         let order = order(directions.vectors(), scatter, wanted.paths, steps);
@@ -131,7 +131,7 @@ pub fn scatter_views(
         if let Some(suns) = &suns {
             let all = images_of_suns(&mut builder, size, suns, limits)?;
             let (_, first) = builder.constants(&texels(suns));
-            record(
+            plan_batch(
                 &mut builder,
                 (field, surface.border),
                 &blocks,
@@ -145,7 +145,7 @@ pub fn scatter_views(
             let one = one_image(field, directions, &points, limits)?;
             let bends = Bends::make(&mut builder, size, directions, limits)?;
             let ids = [one, blocks.images.ground];
-            bends.record(&mut builder, (field, surface.border), scatter.curvature, ids);
+            bends.plan(&mut builder, (field, surface.border), scatter.curvature, ids);
             bound.push(("bent", bends.bent));
             bound.push(("fan_weights", bends.weigh(&mut builder, field)));
         }

@@ -36,10 +36,10 @@ pub fn visible_points(
     let is_small = VisiblePoints::is_small(field.rows(), field.cols());
     let images = images(&mut builder, size, directions.count(), Owner::Output, limits)?;
     let blocks = Blocks::make(&mut builder, size, border);
-    blocks.record(&mut builder, field, heights, None);
+    blocks.plan(&mut builder, field, heights, None);
     let (buffer, first) = builder.constants(&texels(directions));
     for (image, layers) in images {
-        record(
+        plan_batch(
             &mut builder,
             (field, border),
             &blocks,
@@ -161,7 +161,7 @@ pub(super) fn texels(directions: &Directions) -> Vec<f32> {
 }
 
 /// The dispatches that fill an image; the texels of its directions begin at `first` in the buffer.
-pub(super) fn record(
+pub(super) fn plan_batch(
     builder: &mut Builder,
     (field, border): (&HeightField, Border),
     blocks: &Blocks,

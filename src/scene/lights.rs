@@ -50,7 +50,91 @@ pub struct SphereLight {
     pub radiance: [f32; 3],
 }
 
+/// A type of light near the field: its names and what supports it. The planner's messages, labels and checks follow.
+#[derive(Debug, PartialEq, Eq)]
+pub(crate) struct NearType {
+    /// In messages, before its number.
+    pub(crate) name: &'static str,
+    /// In labels and layers, before its number.
+    pub(crate) label: &'static str,
+    /// What `sphere_shade` does for it, as plans print it.
+    pub(crate) shaded_by: &'static str,
+    /// Whether the path-traced reference supports it.
+    pub(crate) by_paths: bool,
+    /// Whether `light_basis sh` supports it.
+    pub(crate) by_sh: bool,
+}
+
+/// What a scene without lights lacks.
+pub(crate) const ANY_LIGHT: &str =
+    "at least one of sky, environment, sun, key light and sphere light";
+
+/// Sphere lights.
+pub(crate) const SPHERE_LIGHT: NearType = NearType {
+    name: "sphere light",
+    label: "light",
+    shaded_by: "slices of the sphere light above the horizon",
+    by_paths: true,
+    by_sh: true,
+};
+
+/// A light near the field, as all passes and checks take it.
+#[derive(Clone, Copy, Debug)]
+pub struct NearLight {
+    /// Its type.
+    pub(crate) of: &'static NearType,
+    /// Its position among the scene's lights of its type, from 0.
+    pub(crate) position: usize,
+    /// Place, size and radiance.
+    pub sphere: SphereLight,
+}
+
+impl NearLight {
+    /// Whether `light_basis sh` supports its type.
+    pub fn is_by_sh(&self) -> bool {
+        self.of.by_sh
+    }
+
+    /// Its name in messages: "sphere light 1" is the scene's first.
+    pub(crate) fn name(&self) -> String {
+        format!("{} {}", self.of.name, self.position + 1)
+    }
+
+    /// Its name in labels and layers: "light1" is the scene's first.
+    pub(crate) fn label(&self) -> String {
+        format!("{}{}", self.of.label, self.position + 1)
+    }
+}
+
+/// The least radius over the distance to the nearest grid point: the elevations of both limbs have an f32 error
+/// of 6e-8, an eighth of it.
+const NARROWEST: f64 = 5e-7;
+
 impl SphereLight {
+    /// The largest of its channels.
+    fn strongest(&self) -> f64 {
+        f64::from(self.radiance.iter().fold(0.0, |m: f32, v| m.max(*v)))
+    }
+
+    /// The most exit radiance that it gives at a distance from its centre, whatever the heights: L (r/d)².
+    pub(crate) fn most_at(&self, distance_m: f64) -> f64 {
+        self.strongest() * (self.radius_m / distance_m.max(self.radius_m)).powi(2)
+    }
+
+    /// Distance from its centre beyond which it gives less than this.
+    pub(crate) fn reach_m(&self, exit_radiance: f64) -> f64 {
+        match exit_radiance > 0.0 {
+            true => self.radius_m * (self.strongest() / exit_radiance).sqrt(),
+            false => f64::INFINITY,
+        }
+    }
+
+    /// The least radius that f32 resolves, where this one is less, from the most that it gives to the nearest grid point.
+    pub(crate) fn too_narrow(&self, on_nearest: f64) -> Option<f64> {
+        let seems = (on_nearest / self.strongest()).sqrt();
+        (seems < NARROWEST).then(|| self.radius_m * NARROWEST / seems)
+    }
+
     /// Vertical slices for a setting: first where the sphere is narrow from a texel, then where it surrounds the texel.
     ///
     /// Narrow: the setting, but at most eight per cell of the sphere's width, as the surface is flat within a cell; at
@@ -93,6 +177,42 @@ impl Sun {
 }
 
 impl Lights {
+    /// The lights near the field, type by type.
+    pub fn near(&self) -> impl Iterator<Item = NearLight> {
+        let sphere = |(position, sphere): (usize, &SphereLight)| NearLight {
+            of: &SPHERE_LIGHT,
+            position,
+            sphere: *sphere,
+        };
+        self.sphere_lights.iter().enumerate().map(sphere)
+    }
+
+    /// Only the lights near the field.
+    pub fn near_alone(&self) -> Self {
+        Self { sphere_lights: self.sphere_lights.clone(), ..Self::default() }
+    }
+
+    /// The lights near the field moved by so much, east and north.
+    pub fn moved(&self, [east_m, north_m]: [f64; 2]) -> Self {
+        let mut moved = self.clone();
+        for position_m in moved.sphere_lights.iter_mut().map(|sphere| &mut sphere.position_m) {
+            position_m[0] += east_m;
+            position_m[1] += north_m;
+        }
+        moved
+    }
+
+    /// Without the lights of radiance 0.
+    pub fn lit(&self) -> Self {
+        let is_lit = |colour: &[f32; 3]| colour.iter().any(|v| *v > 0.0);
+        let mut kept = self.clone();
+        kept.sky = self.sky.filter(is_lit);
+        kept.suns.retain(|sun| is_lit(&sun.irradiance));
+        kept.keys.retain(|key| is_lit(&key.radiance));
+        kept.sphere_lights.retain(|sphere| is_lit(&sphere.radiance));
+        kept
+    }
+
     /// Checks every range.
     ///
     /// # Errors

@@ -58,7 +58,7 @@ pub use field::fractal::fractal;
 pub use field::normal::normal;
 pub use field::{HeightField, fill_voids};
 pub use lights::key::KeyLight;
-pub use lights::{Lights, SphereLight, Sun};
+pub use lights::*;
 pub use quality::{Bounces, Quality, SETTINGS, setting};
 pub use scatter::Scatter;
 pub(crate) use scatter::check_view;

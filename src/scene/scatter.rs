@@ -72,7 +72,7 @@ impl Scatter {
         check_view(self.view)?;
         scene.lights.check()?;
         scene.surface.check(scene.field.rows() * scene.field.cols())?;
-        let others = scene.lights.keys.len() + scene.lights.sphere_lights.len();
+        let others = scene.lights.keys.len() + scene.lights.near().count();
         if scene.surface.specular.is_some() && others > 0 {
             return Err(Error::setting(
                 "scattered light",

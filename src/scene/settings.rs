@@ -174,10 +174,16 @@ macro_rules! words {
             pub(super) const WORDS: Values = Values::Words(&[$(Word::new($word, concat!($($doc, "\n"),*))),*]);
 
             /// Its word on the command line and in JSON.
-            pub fn name(self) -> &'static str {
+            pub(crate) fn name(self) -> &'static str {
                 match self {
                     $( $Enum::$Variant => $word, )*
                 }
+            }
+        }
+
+        impl std::fmt::Display for $Enum {
+            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.pad(self.name())
             }
         }
 
@@ -227,7 +233,7 @@ macro_rules! settings {
 
             impl $Struct {
                 /// All settings at their defaults.
-                pub const DEFAULT: Self =
+                pub(crate) const DEFAULT: Self =
                     Self { $( $field: $default, )* $( $inner: $Inner::DEFAULT, )? };
             }
 

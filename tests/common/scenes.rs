@@ -14,15 +14,14 @@ pub fn scenes() -> Vec<(&'static str, Scene)> {
         |x, y, z| SphereLight { position_m: [x, y, z], radius_m: 1.5, radiance: [0.0, 0.0, 9.0] };
     let apart = |place| Lights {
         sky: Some([1.0, 0.0, 0.0]),
-        environment: None,
         suns: vec![Sun {
             azimuth_rad: 2.0,
             elevation_rad: 0.7,
             diameter_rad: 0.3,
             irradiance: [0.0, 3.0, 0.0],
         }],
-        keys: Vec::new(),
         sphere_lights: vec![place],
+        ..Lights::default()
     };
     let grey = |border| Surface { albedo: Albedo::Constant([0.7; 3]), border, specular: None };
     let cone =

@@ -1,8 +1,10 @@
 //! Plans as text, at odd sizes and in bands.
 
-use ridgelight::plan::Limits;
+use ridgelight::plan::{self, Limits, Picture};
 
-use super::{is, sky};
+use ridgelight::scene::{Hull, Lights, Lines, Method, Quality, Scene, SphereLight};
+
+use super::{flat, is, sky, under_sky};
 
 #[test]
 fn a_single_texel() {
@@ -188,4 +190,29 @@ fn a_large_field_in_bands() {
         lost_lines 12288
         ",
     );
+}
+
+/// Only sweeps along lines have a hull in storage of its own.
+#[test]
+fn sweeps_along_lines_alone_have_a_hull() {
+    let base = Quality { method: Method::Sweep, ..Quality::default() };
+    let mut scene = under_sky(flat(9, 9));
+    let has_hull = |scene: &Scene, quality: &Quality| {
+        let limits = Limits::boundless(true, 1 << 30);
+        let plan = plan::picture(scene, quality, &limits, Picture::default()).expect("a plan");
+        plan.settings.iter().any(|(name, _)| name == "hull")
+    };
+    for (quality, expected) in [
+        (base, true),
+        (Quality { hull: Hull::OccluderList, ..base }, true),
+        (Quality { lines: Lines::Exact, ..base }, false),
+        (Quality { method: Method::BruteForce, ..base }, false),
+        (Quality { method: Method::Pyramid, ..base }, false),
+    ] {
+        assert_eq!(has_hull(&scene, &quality), expected, "{quality:?}");
+    }
+    // A sphere light marches to its own occluders: no sweep, whatever the method.
+    let sphere = SphereLight { position_m: [4.0, 4.0, 3.0], radius_m: 1.0, radiance: [1.0; 3] };
+    scene.lights = Lights { sphere_lights: vec![sphere], ..Lights::default() };
+    assert!(!has_hull(&scene, &base));
 }

@@ -52,7 +52,7 @@ fn each_bounce_is_computed_once() {
         assert_eq!(has(&plan, "shade_reduce bounce2 level 1"), !is_vector);
         assert!(!has(&plan, "bounce_gather bounce1"));
         assert_eq!(missing_barriers(&plan.passes), vec![]);
-        assert!(plan.settings.contains(&("bounce_specular".into(), specular.name().into())));
+        assert!(plan.settings.contains(&("bounce_specular".into(), specular.to_string())));
         let outputs: Vec<&str> = plan.outputs().map(|(_, r)| r.name.as_str()).collect();
         assert_eq!(outputs[outputs.len() - 3..], ["indirect.1", "indirect.2", "indirect.specular"]);
     }

@@ -300,6 +300,18 @@ pub struct RidgelightQuality {
 // SAFETY: numbers; the size is first.
 unsafe impl SizeFirst for RidgelightQuality {}
 
+/// Calls a macro with every setting's field.
+macro_rules! each_field {
+    ($call:ident) => {
+        $call! {
+            method azimuths sun_azimuths lines fuse precision hull level_step level_offset_plus_1
+            levels table_elevations basis sh_order wedges receiver window subsample wedge_side
+            light_basis light_cutoff bounces bounce_engine bounce_azimuths bounce_level_step
+            bounce_level_offset_plus_1 bounce_cutoff bounce_specular
+        }
+    };
+}
+
 /// The quality that a struct describes; null is the default.
 ///
 /// # Safety
@@ -312,21 +324,17 @@ pub(crate) unsafe fn quality(from: *const RidgelightQuality) -> Done<Quality> {
     // SAFETY: as the caller says.
     let q = unsafe { read(from, "quality") }?;
     // 0 is the default. Words count from 1. Numbers that may be 0 have 1 added; a share below 0 is 0.
-    macro_rules! fields {
+    macro_rules! values {
         ($($field:ident)*) => { [$((stringify!($field), f64::from(q.$field))),*] };
     }
-    let given = fields! {
-        method azimuths sun_azimuths lines fuse precision hull level_step level_offset_plus_1 levels
-        table_elevations basis sh_order wedges receiver window subsample wedge_side light_basis
-        light_cutoff bounces bounce_engine bounce_azimuths bounce_level_step
-        bounce_level_offset_plus_1 bounce_cutoff bounce_specular
-    };
     let mut quality = default;
-    for (field, value) in given.into_iter().filter(|(_, value)| *value != 0.0) {
+    for (field, value) in each_field!(values).into_iter().filter(|(_, value)| *value != 0.0) {
         let name = field.strip_suffix("_plus_1");
         let setting = setting(name.unwrap_or(field)).expect("a field for each setting");
         let text = match &setting.values {
-            Values::Share => value.max(0.0).to_string(),
+            // NaN stays NaN, which the setting refuses.
+            Values::Share if value < 0.0 => "0".to_owned(),
+            Values::Share => value.to_string(),
             Values::Words(words) => {
                 // A packed hull would need the heights beforehand.
                 let count = words.len() - usize::from(field == "precision");
@@ -348,17 +356,99 @@ mod tests {
     use super::*;
     use ridgelight::scene::SETTINGS;
 
-    /// A setting without a field could not be reached from C.
+    /// A struct with one value in one field, all others 0.
+    fn with(field: &str, value: f64) -> RidgelightQuality {
+        // SAFETY: plain numbers, of which 0 is valid.
+        let mut q: RidgelightQuality = unsafe { std::mem::zeroed() };
+        q.struct_size = size_of::<RidgelightQuality>() as u32;
+        macro_rules! set {
+            ($($name:ident)*) => {
+                match field {
+                    $(stringify!($name) => q.$name = value as _,)*
+                    _ => panic!("no field {field}"),
+                }
+            };
+        }
+        each_field!(set);
+        q
+    }
+
+    fn arrives(q: &RidgelightQuality) -> Done<Quality> {
+        // SAFETY: the struct lives and states its size.
+        unsafe { quality(q) }
+    }
+
+    /// A value of each setting but the default arrives from its field.
     #[test]
     fn every_setting_has_a_field() {
-        let (_, quality) =
-            include_str!("scene.rs").split_once("pub struct RidgelightQuality {").unwrap();
-        let (quality, _) = quality.split_once('}').unwrap();
         for setting in SETTINGS {
+            let default = setting.get(&Quality::default());
             let has_zero = matches!(&setting.values, Values::Whole(r) if *r.start() == 0);
-            let is_shifted = has_zero && setting.get(&Quality::DEFAULT) != "0";
-            let field = format!("pub {}{}:", setting.name, if is_shifted { "_plus_1" } else { "" });
-            assert!(quality.contains(&field), "{field}");
+            let is_shifted = has_zero && default != "0";
+            let field = format!("{}{}", setting.name, if is_shifted { "_plus_1" } else { "" });
+            let (value, wanted) = match &setting.values {
+                Values::Words(words) => {
+                    let other = words.iter().position(|word| word.name != default).unwrap();
+                    (other as f64 + 1.0, words[other].name.to_owned())
+                }
+                Values::Share => (0.125, "0.125".to_owned()),
+                Values::Whole(range) => {
+                    let other = range.clone().find(|n| n.to_string() != default).unwrap();
+                    let value = f64::from(other.max(1)) + f64::from(u8::from(is_shifted));
+                    (value, other.max(1).to_string())
+                }
+                Values::OneOf(numbers) => {
+                    let last = *numbers.last().unwrap();
+                    (f64::from(last), last.to_string())
+                }
+            };
+            let found = arrives(&with(&field, value)).ok().unwrap();
+            assert_eq!(setting.get(&found), wanted, "{field}");
+            let changed = SETTINGS.iter().filter(|s| s.get(&found) != s.get(&Quality::default()));
+            assert_eq!(changed.map(|s| s.name).collect::<Vec<_>>(), [setting.name]);
+        }
+    }
+
+    /// A number means what ridgelight.h says, whatever the order of the library's words.
+    #[test]
+    fn constants_mean_what_the_header_says() {
+        let header = include_str!("../include/ridgelight.h").replace("\n    //", "");
+        for setting in SETTINGS {
+            let Values::Words(words) = &setting.values else { continue };
+            let (before, _) = header.split_once(&format!("uint32_t {};", setting.name)).unwrap();
+            let (_, says) = before.rsplit_once(';').unwrap();
+            for (i, word) in words.iter().enumerate() {
+                let found = arrives(&with(setting.name, i as f64 + 1.0));
+                if setting.name == "precision" && word.name == "packed" {
+                    assert!(found.is_err());
+                    continue;
+                }
+                assert_eq!(setting.get(&found.ok().unwrap()), word.name);
+                let said = match (setting.name, word.name) {
+                    ("lines", "1/4") => "a quarter of a cell",
+                    ("lines", "1/2") => "half a cell",
+                    ("lines", "1") => "a cell",
+                    ("lines", "2") => "two cells",
+                    ("lines", "4") => "four cells",
+                    (_, name) => name,
+                };
+                let is_end = |c: char| !c.is_alphanumeric() && c != '-';
+                let wanted = format!("{} {said}", i + 1);
+                let is_said = says.split(&wanted).skip(1).any(|rest| rest.starts_with(is_end));
+                assert!(is_said, "{}: {} {} not in {says}", setting.name, i + 1, word.name);
+            }
+            assert!(arrives(&with(setting.name, words.len() as f64 + 1.0)).is_err());
+        }
+    }
+
+    #[test]
+    fn shares_that_are_no_numbers_are_refused() {
+        for field in ["light_cutoff", "bounce_cutoff"] {
+            for value in [f64::NAN, f64::INFINITY, 1.5] {
+                assert!(arrives(&with(field, value)).is_err(), "{field} {value}");
+            }
+            let none = arrives(&with(field, f64::NEG_INFINITY)).ok().unwrap();
+            assert_eq!(setting(field).unwrap().get(&none), "0");
         }
     }
 }

@@ -96,6 +96,8 @@ impl Cli {
         let mut parser = parser();
         let mut words: Vec<OsString> = std::env::args_os().collect();
         let mut renamed = Renamed::default();
+        // Before, so that the command line's flags override the file's; after, as the file may have old values.
+        renamed.replace(&parser, &mut words);
         let scene = SceneFile::add_to(&parser, &mut words, &mut renamed).map_err(Refused::Scene)?;
         renamed.replace(&parser, &mut words);
         let parsed = parser.try_get_matches_from_mut(words);

@@ -233,7 +233,7 @@ pub fn check_distinct(outputs: &[(&str, Option<&Path>)], inputs: &[&Path]) -> Re
 }
 
 /// Phrases and settings of library messages whose flag has another name.
-const FLAGS: [(&str, &str); 20] = [
+const FLAGS: [(&str, &str); 19] = [
     ("sky radiance", "--sky"),
     ("specular", "--specular"),
     ("albedo", "--albedo"),
@@ -241,7 +241,6 @@ const FLAGS: [(&str, &str); 20] = [
     ("cell size", "--cell"),
     ("environment rotation", "--env-rotate"),
     ("distances to the horizon", "--distances"),
-    ("lights", "--sky, --env, --sun, --key, --sphere-light"),
     ("pixels per degree", "--pixels-per-degree"),
     ("camera: look-at point", "--look-at"),
     ("camera: field of view", "--fov"),
@@ -263,6 +262,10 @@ const SAME: [&str; 6] = ["memory_budget", "max_error", "time_budget", "border", 
 fn flag_of(name: &str) -> Option<String> {
     if setting(name).is_some() || SAME.contains(&name) {
         return Some(flag(name));
+    }
+    if name == "lights" {
+        let all = ["sky", "env"].into_iter().chain(LIGHTS.iter().map(|light| light.id));
+        return Some(all.map(flag).collect::<Vec<_>>().join(", "));
     }
     let light = LIGHTS.iter().find_map(|light| {
         let rest = name.strip_prefix(&light.id.replace('_', " "))?;

@@ -13,7 +13,6 @@ const FILE_LIMIT: u64 = 16 * SAMPLE_LIMIT;
 pub(crate) const DEFLATE_RATIO: u64 = 1032;
 
 /// A file format that this crate reads.
-/// In the order of [`FORMATS`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Format {
     Png,
@@ -43,14 +42,18 @@ const FORMATS: [About; 8] = [
 ];
 
 impl Format {
+    fn about(self) -> &'static About {
+        FORMATS.iter().find(|about| about.0 == self).expect("a row for each format")
+    }
+
     /// With its article, for messages.
     fn named(self) -> &'static str {
-        FORMATS[self as usize].1
+        self.about().1
     }
 
     /// The usual extensions, for messages.
     fn extensions(self) -> String {
-        FORMATS[self as usize].2.iter().map(|e| format!(" .{e}")).collect()
+        self.about().2.iter().map(|e| format!(" .{e}")).collect()
     }
 
     /// By the name's extension, case-insensitive.

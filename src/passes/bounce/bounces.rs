@@ -152,7 +152,7 @@ impl Bouncing {
         let Some(blocks) = blocks else { return };
         let pyramids = match &self.engine {
             Engine::Brute if is_recorded => return,
-            Engine::Brute => return blocks.record(builder, &scene.field, heights, None),
+            Engine::Brute => return blocks.plan(builder, &scene.field, heights, None),
             Engine::Sweep if self.at_nodes.is_none() => return,
             Engine::Sweep => None,
             Engine::Pyramid(pyramids) => Some(pyramids),
@@ -164,13 +164,13 @@ impl Bouncing {
         }
         let Some(pyramids) = pyramids else { return };
         if let Some(images) = pyramids.height_images.as_ref().filter(|_| pyramids.fills_heights) {
-            pyramids.heights.record(builder, heights, images);
+            pyramids.heights.plan(builder, heights, images);
         }
     }
 
     /// The passes of bounce `k`, from 1; bounce 1 reads `direct`. Returns the irradiance, and the image for its
     /// exit radiance.
-    pub(crate) fn record(
+    pub(crate) fn plan(
         &self,
         builder: &mut Builder,
         scene: &Scene,
@@ -279,7 +279,7 @@ fn walk(
         let is_shared =
             batches.iter().filter(|b| sweeping.occluders(b) == Some(occluders)).count() > 1;
         if k == 1 || is_shared {
-            sweeping.record(builder, batch, &part);
+            sweeping.plan(builder, batch, &part);
         }
         let field = (scene.surface.border, scene.field.cell_m());
         if let Some(at) = at_nodes.filter(|at| at.finds_share && k == 1) {

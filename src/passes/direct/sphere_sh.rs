@@ -47,7 +47,7 @@ impl SphereSh {
             let pyramid = Pyramid::new(quality, size, border);
             let levels = levels.or_else(|| {
                 let images = pyramid.images(builder);
-                images.inspect(|images| pyramid.record(builder, heights, images))
+                images.inspect(|images| pyramid.plan(builder, heights, images))
             });
             (pyramid, levels)
         });

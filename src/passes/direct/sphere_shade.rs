@@ -11,6 +11,8 @@ pub(crate) const MOST_TURNS: u32 = 60_000;
 
 /// How and where a sphere light is shaded.
 pub(crate) struct SphereShading {
+    /// What the plan prints.
+    pub why: &'static str,
     /// Slices across the light.
     pub slices: u32,
     /// Grid points that it may reach, and their largest distance.
@@ -112,7 +114,7 @@ fn dispatch(
             most_steps: blocks.most_steps() as i32,
         },
         part,
-        "slices of the sphere light above the horizon",
+        shading.why,
         [cols.div_ceil(8), rows.div_ceil(8), 1],
         &shaders::SphereShadePush {
             land: shaders::LandPush::of(field, blocks),

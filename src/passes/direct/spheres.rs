@@ -1,11 +1,11 @@
-//! Sphere lights: the grid points that each may reach, and their passes.
+//! Lights near the field: the grid points that each may reach, and their passes.
 
 use crate::graph::{Builder, Rectangle, ResourceId};
 use crate::passes::blocks::Blocks;
 use crate::passes::sphere_sh::SphereSh;
 use crate::passes::sphere_sh_shade;
 use crate::passes::sphere_shade::{self, SphereShading};
-use crate::scene::{HeightField, Scene, SphereLight};
+use crate::scene::{HeightField, NearLight, Scene, SphereLight};
 use crate::{Error, Result};
 
 /// Parts of the field along either side, whose loss is bounded together.
@@ -15,18 +15,13 @@ const HALVINGS: u32 = 32;
 /// Largest number of lights in a plan: the threshold is at least the permitted loss divided by this.
 const MOST_LIGHTS: f64 = 1e18;
 
-/// The least radius over the distance to the nearest grid point: the elevations of both limbs have an f32 error
-/// of 6e-8, an eighth of it.
-const NARROWEST: f64 = 5e-7;
-
-/// Sphere lights that reach any grid point.
-pub(crate) struct Spheres<'a> {
-    /// With their positions in the scene.
-    pub active: Vec<(usize, &'a SphereLight)>,
+/// Lights near the field that reach any grid point.
+pub(crate) struct Spheres {
+    pub active: Vec<NearLight>,
     regions: Vec<(Rectangle, f32)>,
 }
 
-impl<'a> Spheres<'a> {
+impl Spheres {
     /// Of `lit`, the sphere lights that reach the field. Each reaches as far as it may give more than a
     /// threshold, whatever the heights.
     ///
@@ -36,47 +31,40 @@ impl<'a> Spheres<'a> {
     /// that each may give).
     pub(crate) fn of(
         field: &HeightField,
-        lit: Vec<(usize, &'a SphereLight)>,
+        lit: Vec<NearLight>,
         cutoff: f64,
         notes: &mut Vec<String>,
     ) -> Result<Self> {
-        for (i, light) in &lit {
-            let seems = (on_nearest(field, light) / strongest(light)).sqrt();
-            if seems < NARROWEST {
+        for light in &lit {
+            let sphere = &light.sphere;
+            if let Some(least_m) = sphere.too_narrow(on_nearest(field, sphere)) {
                 return Err(Error::setting(
-                    format!("sphere light {}: radius", i + 1),
-                    light.radius_m.to_string(),
+                    format!("{}: radius", light.name()),
+                    sphere.radius_m.to_string(),
                     format!(
-                        "{} at least: half a millionth of the way to the nearest grid point",
-                        { light.radius_m * NARROWEST / seems }
+                        "{least_m} at least: half a millionth of the way to the nearest grid point"
                     ),
                 ));
             }
         }
-        let brightest = lit.iter().map(|(_, light)| on_nearest(field, light)).fold(0.0, f64::max);
+        let brightest = lit.iter().map(|l| on_nearest(field, &l.sphere)).fold(0.0, f64::max);
         let most = cutoff * brightest;
         let threshold = threshold(field, &lit, most);
         let mut spheres = Self { active: Vec::new(), regions: Vec::new() };
         let mut is_cut = false;
-        for (i, light) in lit {
-            let reach = if threshold > 0.0 {
-                light.radius_m * (strongest(light) / threshold).sqrt()
-            } else {
-                f64::INFINITY
-            };
-            match texels_within(field, light, reach) {
+        for light in lit {
+            let reach = light.sphere.reach_m(threshold);
+            match texels_within(field, &light.sphere, reach) {
                 Some(lit_texels) => {
                     is_cut |= lit_texels != whole(field);
-                    spheres.active.push((i, light));
+                    spheres.active.push(light);
                     // Slightly more, so that no rounding drops a texel that counts.
                     spheres
                         .regions
                         .push((lit_texels, (reach * (1.0 + 1e-6)).min(f64::from(f32::MAX)) as f32));
                 }
-                None => notes.push(format!(
-                    "sphere light {} dropped: it gives less than {threshold:.3e}",
-                    i + 1
-                )),
+                None => notes
+                    .push(format!("{} dropped: it gives less than {threshold:.3e}", light.name())),
             }
         }
         if is_cut {
@@ -89,7 +77,7 @@ impl<'a> Spheres<'a> {
     }
 
     /// As [`record`](Self::record), by spherical harmonics.
-    pub(crate) fn record_soft(
+    pub(crate) fn plan_soft(
         &self,
         builder: &mut Builder,
         lit: (&Scene, &Blocks, &SphereSh),
@@ -97,13 +85,13 @@ impl<'a> Spheres<'a> {
         (index, begins): (usize, bool),
         sum: ResourceId,
     ) {
-        let (position, light) = self.active[index];
+        let light = &self.active[index];
         let shading = self.shading(&lit.0.field, index, lit.2.azimuths, begins);
-        sphere_sh_shade::plan(builder, lit, heights, &light_name(position), light, &shading, sum);
+        sphere_sh_shade::plan(builder, lit, heights, &light.label(), &light.sphere, &shading, sum);
     }
 
     /// The passes of the active light at `index`; `begins`: the sum begins with it.
-    pub(crate) fn record(
+    pub(crate) fn plan(
         &self,
         builder: &mut Builder,
         (scene, blocks): (&Scene, &Blocks),
@@ -111,9 +99,9 @@ impl<'a> Spheres<'a> {
         begins: bool,
         sum: ResourceId,
     ) {
-        let (position, light) = self.active[index];
+        let light = &self.active[index];
         let shading = self.shading(&scene.field, index, slices, begins);
-        sphere_shade::plan(builder, scene, blocks, &light_name(position), light, &shading, sum);
+        sphere_shade::plan(builder, scene, blocks, &light.label(), &light.sphere, &shading, sum);
     }
 
     fn shading(
@@ -126,26 +114,12 @@ impl<'a> Spheres<'a> {
         let (rectangle, reach_m) = self.regions[index];
         // The first light writes all of the sum.
         let rectangle = if begins { whole(field) } else { rectangle };
-        SphereShading { slices, rectangle, reach_m, begins }
+        SphereShading { why: self.active[index].of.shaded_by, slices, rectangle, reach_m, begins }
     }
-}
-
-/// Name in labels and layers: "light1" is the scene's first.
-pub(crate) fn light_name(position: usize) -> String {
-    format!("light{}", position + 1)
 }
 
 fn whole(field: &HeightField) -> Rectangle {
     Rectangle::whole([field.cols() as u32, field.rows() as u32])
-}
-
-fn strongest(light: &SphereLight) -> f64 {
-    f64::from(light.radiance.iter().fold(0.0, |m: f32, v| m.max(*v)))
-}
-
-/// The most that a sphere light gives at a distance.
-fn at(light: &SphereLight, distance: f64) -> f64 {
-    strongest(light) * (light.radius_m / distance.max(light.radius_m)).powi(2)
 }
 
 /// The most that it gives to the nearest grid point in plan.
@@ -158,18 +132,18 @@ fn on_nearest(field: &HeightField, light: &SphereLight) -> f64 {
     let row = rows - 1 - up as usize;
     let height = field.base_m() + f64::from(field.heights_m()[row * cols + col as usize]);
     let [east, north] = [x - col * cell_x, y - up * cell_y];
-    at(light, (east * east + north * north + (z - height).powi(2)).sqrt())
+    light.most_at((east * east + north * north + (z - height).powi(2)).sqrt())
 }
 
 /// The largest threshold with which no grid point loses more than `most`.
-fn threshold(field: &HeightField, lit: &[(usize, &SphereLight)], most: f64) -> f64 {
+fn threshold(field: &HeightField, lit: &[NearLight], most: f64) -> f64 {
     if most <= 0.0 {
         return 0.0;
     }
     let given: Vec<Vec<f64>> = (0..PARTS * PARTS)
         .map(|part| {
             lit.iter()
-                .map(|(_, light)| in_part(field, light, [part / PARTS, part % PARTS]))
+                .map(|light| in_part(field, &light.sphere, [part / PARTS, part % PARTS]))
                 .collect()
         })
         .collect();
@@ -197,7 +171,7 @@ fn in_part(field: &HeightField, light: &SphereLight, part: [usize; 2]) -> f64 {
     let [cell_x, cell_y] = field.cell_m();
     let east = beside(x, cell_x, field.cols(), part[1]);
     let north = beside(y, cell_y, field.rows(), part[0]);
-    at(light, east.hypot(north))
+    light.most_at(east.hypot(north))
 }
 
 /// The grid points within `reach` of a sphere light's centre in plan, if any.
@@ -245,7 +219,8 @@ mod tests {
     fn the_threshold_follows_the_permitted_loss() {
         let field = fractal(64, 1).unwrap();
         let lights = [light(10.0, 20.0, 1.0), light(40.0, 40.0, 1.0), light(11.0, 21.0, 1.0)];
-        let lit = |n: usize| lights[..n].iter().enumerate().collect::<Vec<_>>();
+        let near = Lights { sphere_lights: lights.to_vec(), ..Lights::default() };
+        let lit = |n: usize| near.near().take(n).collect::<Vec<_>>();
         let one = threshold(&field, &lit(1), 1e-3);
         assert!((one / 1e-3 - 1.0).abs() < 1e-6, "{one}");
         let three = threshold(&field, &lit(3), 1e-3);
@@ -282,7 +257,8 @@ mod tests {
         let of = |radius: f64| {
             let far = light(10.0, 20.0, radius);
             let far = SphereLight { position_m: [10.0, 20.0, 1e6], ..far };
-            Spheres::of(&field, vec![(0, &far)], 0.0, &mut Vec::new()).map(drop)
+            let lights = Lights { sphere_lights: vec![far], ..Lights::default() };
+            Spheres::of(&field, lights.near().collect(), 0.0, &mut Vec::new()).map(drop)
         };
         assert!(of(0.51).is_ok());
         let message = of(0.49).unwrap_err().to_string();

@@ -1,15 +1,15 @@
-use crate::graph::shaders::offsets;
+use crate::graph::shaders::offset;
 use crate::graph::{Builder, ResourceId, shaders};
 use crate::passes::dirty_mark;
 
 /// Byte offset in the list of the workgroup counts for the passes that light it.
-pub(crate) const LIGHT_GROUPS_AT: u64 = offsets::edit_list::LIGHT_GROUPS as u64;
-pub(crate) const RESOLVE_GROUPS_AT: u64 = offsets::edit_list::RESOLVE_GROUPS as u64;
+pub(crate) const LIGHT_GROUPS_AT: u64 = offset("EditList", "light_groups") as u64;
+pub(crate) const RESOLVE_GROUPS_AT: u64 = offset("EditList", "resolve_groups") as u64;
 
 /// Bytes of the list: every word of the mask may be on it.
 pub(crate) fn bytes(size: [u32; 2]) -> u64 {
     let [across, down] = dirty_mark::words(size).map(u64::from);
-    offsets::edit_list::DIRTY_WORDS as u64 + 4 * across * down
+    offset("EditList", "dirty_words") as u64 + 4 * across * down
 }
 
 /// Lists the words of the mask that are not 0, for the passes that light them.

@@ -158,7 +158,7 @@ impl Pyramid {
     }
 
     /// Passes that fill them from the heights.
-    pub(crate) fn record(&self, builder: &mut Builder, heights: ResourceId, images: &Images) {
+    pub(crate) fn plan(&self, builder: &mut Builder, heights: ResourceId, images: &Images) {
         let Images { levels, table, stack } = *images;
         for level in 1..=self.levels() {
             passes::height_reduce::plan(builder, self, level, [heights, levels, table]);

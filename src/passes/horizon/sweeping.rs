@@ -64,7 +64,7 @@ impl Sweeping {
     }
 
     /// Passes that update heights by lanes and lattices after an edit, and mark the texels that change.
-    pub(crate) fn record_edit<'a>(
+    pub(crate) fn plan_edit<'a>(
         &self,
         builder: &mut Builder,
         border: Border,
@@ -91,7 +91,7 @@ impl Sweeping {
         }
     }
 
-    pub(crate) fn record(&self, builder: &mut Builder, batch: &Batch, part: &str) {
+    pub(crate) fn plan(&self, builder: &mut Builder, batch: &Batch, part: &str) {
         let lattice = self.lattice_of(batch);
         match &self.sweep {
             Sweep::Lines(lines) => {
@@ -241,7 +241,7 @@ pub(crate) fn prepare(
         }
     }
     if let (Sweep::Pyramid(pyramid), Some(images)) = (&sweep, &levels) {
-        pyramid.record(builder, heights, images);
+        pyramid.plan(builder, heights, images);
     }
     // Lines one cell apart pass four neighbouring lanes alike.
     let quads = matches!(sweep, Sweep::Lines(LineSweep { line_shift: 15, .. }))

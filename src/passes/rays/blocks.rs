@@ -45,14 +45,14 @@ impl Blocks {
     }
 
     /// The passes that fill the images. `paths` are the sums that a path tracer starts from.
-    pub(crate) fn record(
+    pub(crate) fn plan(
         &self,
         builder: &mut Builder,
         field: &HeightField,
         heights: ResourceId,
         paths: Option<[ResourceId; 2]>,
     ) {
-        self.record_ground(builder, field, heights, paths);
+        self.plan_ground(builder, field, heights, paths);
         let BlockImages { cells, maxima, .. } = self.images;
         for level in 1..=self.top_level {
             height_bounds::plan(builder, self.cells, self.padded_rows, level, [cells, maxima]);
@@ -60,7 +60,7 @@ impl Blocks {
     }
 
     /// The same without the levels: for passes that need only the ground.
-    pub(crate) fn record_ground(
+    pub(crate) fn plan_ground(
         &self,
         builder: &mut Builder,
         field: &HeightField,

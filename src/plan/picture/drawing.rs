@@ -7,10 +7,9 @@ use crate::passes::blocks::Blocks;
 use crate::passes::bounces::{Bouncing, bounce_name};
 use crate::passes::edits::Edits;
 use crate::passes::sphere_sh::SphereSh;
-use crate::passes::spheres::light_name;
 use crate::passes::sweeping::{Lists, Sweeping, part};
 use crate::passes::{self, light_resolve};
-use crate::scene::{Albedo, Border, Quality, Scene};
+use crate::scene::{Albedo, Border, NearLight, Quality, Scene};
 use crate::{Error, Result};
 
 /// A picture while its passes are added.
@@ -79,7 +78,7 @@ impl Drawing<'_> {
         passes::dirty_mark::plan(&mut self.builder, size, ids);
         let batches = lists.batches.iter().flatten();
         if let Some(sweeping) = &self.sweeping {
-            sweeping.record_edit(&mut self.builder, border, batches, ids);
+            sweeping.plan_edit(&mut self.builder, border, batches, ids);
         }
         passes::dirty_list::plan(&mut self.builder, size, ids);
     }
@@ -95,7 +94,7 @@ impl Drawing<'_> {
             let part = part("sky", batch, batches);
             let builder = &mut self.builder;
             if self.edited.is_none() {
-                sweeping.record(builder, batch, &part);
+                sweeping.plan(builder, batch, &part);
             }
             let (lane_heights, lattice) = (sweeping.lane_heights(batch), sweeping.lattice(batch));
             let (azimuths, sweep) = (sweeping.azimuths, &sweeping.sweep);
@@ -185,7 +184,7 @@ impl Drawing<'_> {
                 let Some(sweeping) = &self.sweeping else { return };
                 let builder = &mut self.builder;
                 if self.edited.is_none() {
-                    sweeping.record(builder, batch, &part);
+                    sweeping.plan(builder, batch, &part);
                 }
                 let lanes = sweeping.lane_heights(batch);
                 let ids = [lanes, sweeping.azimuths, sum];
@@ -216,23 +215,22 @@ impl Drawing<'_> {
         let (Some(sum), Some(blocks)) = (self.images.sphere_sum, &self.blocks) else { return };
         let (field, heights) = (&self.scene.field, self.images.heights);
         if self.soft.as_ref().is_some_and(|s| s.pyramid.is_some()) {
-            blocks.record_ground(&mut self.builder, field, heights, None);
+            blocks.plan_ground(&mut self.builder, field, heights, None);
         } else {
-            blocks.record(&mut self.builder, field, heights, None);
+            blocks.plan(&mut self.builder, field, heights, None);
         }
-        let names: Vec<String> =
-            self.active.sphere_lights.active.iter().map(|(i, _)| light_name(*i)).collect();
+        let names: Vec<String> = self.active.near.active.iter().map(NearLight::label).collect();
         for (index, name) in names.iter().enumerate() {
             let layer = self.images.sphere_layers[index];
             let Some(blocks) = &self.blocks else { return };
             let begins = index == 0 || layer.is_some();
-            let (spheres, builder) = (&self.active.sphere_lights, &mut self.builder);
+            let (spheres, builder) = (&self.active.near, &mut self.builder);
             if let Some(soft) = &self.soft {
                 let lit = (self.scene, blocks, soft);
-                spheres.record_soft(builder, lit, heights, (index, begins), sum);
+                spheres.plan_soft(builder, lit, heights, (index, begins), sum);
             } else {
                 let (lit, of) = ((self.scene, blocks), (index, quality.sun_azimuths));
-                spheres.record(builder, lit, of, begins, sum);
+                spheres.plan(builder, lit, of, begins, sum);
             }
             if layer.is_some() {
                 self.resolve(name, sum, None, layer);
@@ -252,13 +250,13 @@ impl Drawing<'_> {
         let ground_alone = self.soft.as_ref().is_some_and(|s| s.pyramid.is_some());
         let begun = (heights, sphere_sum.is_some() && !ground_alone);
         bouncing.prepare(&mut self.builder, self.scene, self.blocks.as_ref(), begun);
-        self.record_specular_exit(&bouncing, 0);
+        self.plan_specular_exit(&bouncing, 0);
         for k in 1..=bouncing.count() {
             let ids = [heights, radiance];
             let traced = (self.blocks.as_ref(), self.sweeping.as_ref().zip(batches));
-            let (sum, exit) = bouncing.record(&mut self.builder, self.scene, traced, k, ids);
+            let (sum, exit) = bouncing.plan(&mut self.builder, self.scene, traced, k, ids);
             self.resolve(&bounce_name(k), sum, None, exit);
-            self.record_specular_exit(&bouncing, k);
+            self.plan_specular_exit(&bouncing, k);
         }
         self.bounced_specular(&bouncing);
     }

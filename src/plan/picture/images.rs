@@ -5,7 +5,6 @@ use super::Picture;
 use crate::graph::{Builder, Format, Owner, ResourceId};
 use crate::passes::azimuths::Azimuth;
 use crate::passes::sh_layout::{Sh, WedgeTexels};
-use crate::passes::spheres::light_name;
 use crate::scene::{Albedo, Border, Environment, Quality, Scene, Specular, Wedges};
 
 /// Images of the field's size, and the environment.
@@ -68,8 +67,8 @@ impl Images {
         let sky_layer = layer(active.sky.is_some(), "sky");
         let env_layer = layer(environment.is_some(), "env");
         let aimed_layers = active.aimed().map(|light| layer(true, &light.name)).collect();
-        let spheres = &active.sphere_lights.active;
-        let sphere_layers = spheres.iter().map(|(i, _)| layer(true, &light_name(*i))).collect();
+        let spheres = &active.near.active;
+        let sphere_layers = spheres.iter().map(|light| layer(true, &light.label())).collect();
         let has_specular = active.specular.is_some();
         let specular_layer = layer(has_specular, "specular");
         let view = wanted.sky_view;

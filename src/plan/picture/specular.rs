@@ -27,8 +27,8 @@ pub(super) fn quality(
     if !active.keys.is_empty() {
         return refuse("specular under a key light", alone);
     }
-    if !active.sphere_lights.active.is_empty() {
-        return refuse("specular under a sphere light", alone);
+    if let Some(light) = active.near.active.first() {
+        return refuse(&format!("specular under a {}", light.of.name), alone);
     }
     let quality = bounced(*quality, notes)?;
     match quality.basis {
@@ -127,7 +127,7 @@ impl Drawing<'_> {
     }
 
     /// Specular exit radiance of bounce `k`; 0 is direct light.
-    pub(super) fn record_specular_exit(&mut self, bouncing: &Bouncing, k: usize) {
+    pub(super) fn plan_specular_exit(&mut self, bouncing: &Bouncing, k: usize) {
         let (Some(specular), Some(phong)) = (bouncing.specular, self.phong()) else { return };
         let (Some(blocks), Some(specular_direct)) = (&self.blocks, self.images.specular_sum) else {
             return;

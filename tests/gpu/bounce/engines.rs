@@ -406,7 +406,7 @@ fn pyramids_tend_to_brute_force() {
     let mut error = |step, offset, receiver| {
         let quality = by_pyramids(step, offset, receiver, 1);
         let off = relative(&drawn(&mut gpu, &scene, &quality)[1], &want);
-        println!("k {step}, o {offset}, {}: {:.1} %", receiver.name(), 100.0 * off);
+        println!("k {step}, o {offset}, {}: {:.1} %", receiver, 100.0 * off);
         off
     };
     let [usual, fine] = [(4, 2), (8, 4)].map(|(k, o)| error(k, o, Receiver::Plane));

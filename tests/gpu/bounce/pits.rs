@@ -89,7 +89,7 @@ fn exact_engines_match_the_closed_form_of_pits() {
                 }
                 said.push(format!("{:.2}", rmse(&all[count], &bounds[count], expected)));
             }
-            println!("{alpha}, {albedo}, {}: {} %", engine.name(), said.join(", "));
+            println!("{alpha}, {albedo}, {}: {} %", engine, said.join(", "));
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The passes that follow an edit up to its horizons. `edits` compares the light after them with that of all passes,
 //! bit by bit.
 
-use ridgelight::gpu::shaders::offsets;
+use ridgelight::gpu::shaders::offset;
 use ridgelight::plan::{Azimuth, Pass, Rectangle};
 use ridgelight_cpu::dirty_list as list_reference;
 use ridgelight_cpu::dirty_mark as mark_reference;
@@ -64,7 +64,7 @@ pub(crate) fn dirty_mark(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 /// Occluders are those of the CPU reference, which marks the texels that it reaches.
 pub(crate) fn horizon_resweep(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let occluders = stored(run, pass, "occluders", 2).expect("written");
-    let first = pushed(pass, offsets::horizon_resweep_push::FIRST_AZIMUTH) as usize;
+    let first = pushed(pass, offset("HorizonResweepPush", "first_azimuth")) as usize;
     let options =
         SweepOptions { line_shift: constant(pass, "line_shift"), ..SweepOptions::default() };
     let mut pairs = Vec::new();
@@ -114,14 +114,15 @@ pub(crate) fn dirty_list(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let want = run.edit.as_ref().expect("drawn").dirty.clone();
     let words = run.words(pass, "edit_list").expect("written");
     let at = |offset: usize| words[offset / 4] as usize;
-    let mut listed =
-        words[offsets::edit_list::DIRTY_WORDS / 4..][..at(offsets::edit_list::WORD_COUNT)].to_vec();
+    let mut listed = words[offset("EditList", "dirty_words") / 4..]
+        [..at(offset("EditList", "word_count"))]
+        .to_vec();
     listed.sort_unstable();
     let listed_by_reference = list_reference::dirty_list(&want);
     let groups = |a: usize| [at(a), at(a + 4), at(a + 8)];
     // Sixteen words a group that lights, two a group that resolves; fewer groups than a row holds.
     for (at, words) in
-        [(offsets::edit_list::LIGHT_GROUPS, 16), (offsets::edit_list::RESOLVE_GROUPS, 2)]
+        [(offset("EditList", "light_groups"), 16), (offset("EditList", "resolve_groups"), 2)]
     {
         assert_eq!(groups(at), [listed_by_reference.len().div_ceil(words), 1, 1]);
     }

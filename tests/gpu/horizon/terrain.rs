@@ -17,7 +17,7 @@ fn published(lines: Lines, fuse: Fuse, column: &str) -> f64 {
     let cells = |line: &'static str| line.split('|').map(str::trim).collect::<Vec<_>>();
     let rows: Vec<_> = PUBLISHED.lines().filter(|l| l.starts_with('|')).map(cells).collect();
     let at = rows[0].iter().position(|name| *name == column).expect("a column");
-    let is_row = |row: &&Vec<&str>| [row[1], row[2]] == [lines.name(), fuse.name()];
+    let is_row = |row: &&Vec<&str>| [row[1], row[2]] == [lines.to_string(), fuse.to_string()];
     rows.iter().find(is_row).expect("a row")[at].parse().expect("a figure")
 }
 

@@ -1,6 +1,6 @@
 //! Cells and blocks of heights, which rays traverse.
 
-use ridgelight::gpu::shaders::offsets;
+use ridgelight::gpu::shaders::offset;
 use ridgelight::plan::Pass;
 use ridgelight_cpu::height_bounds as bounds_reference;
 use ridgelight_cpu::height_cells as cells_reference;
@@ -42,7 +42,10 @@ pub(crate) fn height_cells(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 
 /// The highest is one of the heights.
 pub(crate) fn height_bounds(run: &mut Run, pass: &Pass) -> Vec<Pair> {
-    use offsets::height_bounds_push::{CELLS_X, CELLS_Y, LEVEL, PADDED_ROWS};
+    const CELLS_X: usize = offset("HeightBoundsPush", "cells_x");
+    const CELLS_Y: usize = offset("HeightBoundsPush", "cells_y");
+    const LEVEL: usize = offset("HeightBoundsPush", "level");
+    const PADDED_ROWS: usize = offset("HeightBoundsPush", "padded_rows");
     let [x, y, level, padded] = [CELLS_X, CELLS_Y, LEVEL, PADDED_ROWS].map(|o| pushed(pass, o));
     let cells = cells_reference::cells(&run.scene.field, run.border());
     let [cols, _] = run.size();

@@ -1,6 +1,6 @@
 //! The passes of the path tracer.
 
-use ridgelight::gpu::shaders::offsets;
+use ridgelight::gpu::shaders::offset;
 use ridgelight::plan::{Pass, REFERENCE_BATCH, unsampled_light_error};
 use ridgelight::scene::{
     Albedo, Border, Lights, PhongSpecular, Quality, Scene, Specular, SphereLight, Sun, Surface,
@@ -40,15 +40,14 @@ pub(crate) fn path_trace(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 
 /// The sums added by one dispatch, given those before the batch.
 fn one_part(run: &mut Run, pass: &Pass, before: &[f32], spread: &[f32], pairs: &mut Vec<Pair>) {
-    use offsets::path_trace_push as push;
     let [bounces, seed, first_path, last_path, first_light, last_light, lights] = [
-        push::BOUNCES,
-        push::SEED,
-        push::FIRST_PATH,
-        push::LAST_PATH,
-        push::FIRST_LIGHT,
-        push::LAST_LIGHT,
-        push::LIGHT_COUNT,
+        offset("PathTracePush", "bounces"),
+        offset("PathTracePush", "seed"),
+        offset("PathTracePush", "first_path"),
+        offset("PathTracePush", "last_path"),
+        offset("PathTracePush", "first_light"),
+        offset("PathTracePush", "last_light"),
+        offset("PathTracePush", "light_count"),
     ]
     .map(|o| pushed(pass, o));
     let [cols, rows] = run.size();
@@ -163,7 +162,7 @@ pub(crate) fn quadrature(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     for _ in drawn..BATCHES {
         run.gpu.draw_passes(&mut run.frame, &[last]).expect("drawn on");
     }
-    let bounces = pushed(pass, offsets::path_trace_push::BOUNCES) as usize;
+    let bounces = pushed(pass, offset("PathTracePush", "bounces")) as usize;
     let fineness = Fineness { azimuths: 24, divisions: 1, strips: 8 };
     let expected_light = expected_light(run.scene, bounces, fineness).expect("a ground truth");
     let (want, stated) = (&expected_light.radiance[bounces], &expected_light.error[bounces]);
@@ -192,15 +191,16 @@ fn of_all_lights() -> [Scene; 2] {
         SphereLight { position_m: [9.0, 7.0, 912.0], radius_m: 3.0, radiance: [0.1, 0.4, 2.0] };
     let mut next = random(21);
     let map = (0..7 * 9).map(|_| [0.8 * next() as f32, 0.5, 0.1]).collect();
+    let sky = Lights { sky: Some([0.3, 0.5, 0.9]), ..Lights::default() };
     let all = Scene {
         field: rough(7, 9, 22),
         surface: Surface { border: Border::Open, albedo: Albedo::Map(map), specular: None },
         lights: Lights {
-            sky: Some([0.3, 0.5, 0.9]),
             environment: Some(noisy_environment(23)),
             suns: vec![sun(0.2), sun(0.0)],
             keys: vec![key(-0.4, 0.5, [1.0, 0.3, 0.0]), key(0.9, 1.2, [0.0, 0.4, 2.0])],
             sphere_lights: vec![sphere_light],
+            ..sky
         },
     };
     let repeated = Scene {

@@ -1,5 +1,6 @@
 //! More lights than llvmpipe's limit of loop iterations of one invocation: a batch of paths comes in parts.
 
+use ridgelight::gpu::shaders::offset;
 use ridgelight::plan;
 use ridgelight::scene::fractal;
 use ridgelight::scene::{Border, Lights, Scene, SphereLight};
@@ -85,7 +86,8 @@ fn many_sphere_lights_are_their_sum() {
 /// and nothing is lost.
 #[test]
 fn parts_of_a_batch_are_the_batch() {
-    use ridgelight::gpu::shaders::offsets::path_trace_push::{LAST_LIGHT, LAST_PATH};
+    const LAST_LIGHT: usize = offset("PathTracePush", "last_light");
+    const LAST_PATH: usize = offset("PathTracePush", "last_path");
     const SPHERE_LIGHTS: usize = 30;
     let mut device = Device::new();
     let scene = under_sphere_lights(SPHERE_LIGHTS);

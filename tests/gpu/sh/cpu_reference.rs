@@ -1,10 +1,10 @@
 //! The passes of spherical harmonics.
 
+use ridgelight::gpu::shaders::offset;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use glam::{DVec2, DVec3};
 use ridgelight::basis::wedge::WedgeTable;
-use ridgelight::gpu::shaders::offsets;
 use ridgelight::plan::{Azimuth, Nodes, Pass};
 use ridgelight::scene::{Border, Environment, Receiver, Wedges};
 use ridgelight_cpu::env_rotation as turns_reference;
@@ -69,7 +69,8 @@ pub(crate) fn env_wedges(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 }
 
 pub(crate) fn env_rotation(run: &mut Run, pass: &Pass) -> Vec<Pair> {
-    use offsets::env_rotation_push::{ROWS, TURNS};
+    const ROWS: usize = offset("EnvRotationPush", "rows");
+    const TURNS: usize = offset("EnvRotationPush", "turns");
     let [rows, turns] = [ROWS, TURNS].map(|at| pushed(pass, at) as usize);
     let got = texels(run, pass, "env_rotation");
     let environment = environment(run);
@@ -87,7 +88,10 @@ pub(crate) fn env_rotation(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 }
 
 pub(crate) fn light_matrix(run: &mut Run, pass: &Pass) -> Vec<Pair> {
-    use offsets::light_matrix_push::{LIGHT_ORDER, ORDER, ROWS, SKY};
+    const LIGHT_ORDER: usize = offset("LightMatrixPush", "light_order");
+    const ORDER: usize = offset("LightMatrixPush", "order");
+    const ROWS: usize = offset("LightMatrixPush", "rows");
+    const SKY: usize = offset("LightMatrixPush", "sky");
     let [rows, light_order, order] = [ROWS, LIGHT_ORDER, ORDER].map(|at| pushed(pass, at) as usize);
     let turns: Vec<Vec<DVec3>> = if rows > 0 {
         let all = texels(run, pass, "env_rotation");
@@ -128,7 +132,9 @@ pub(crate) fn device_series(run: &mut Run, pass: &Pass, order: usize) -> Vec<Vec
 }
 
 pub(crate) fn sh_visibility(run: &mut Run, pass: &Pass) -> Vec<Pair> {
-    use offsets::shade_push::{AZIMUTH_COUNT, CLEARS, FIRST_AZIMUTH};
+    const AZIMUTH_COUNT: usize = offset("ShadePush", "azimuth_count");
+    const CLEARS: usize = offset("ShadePush", "clears");
+    const FIRST_AZIMUTH: usize = offset("ShadePush", "first_azimuth");
     let (range, error) = so_far(run, pass, [FIRST_AZIMUTH, AZIMUTH_COUNT, CLEARS]);
     let order = constant(pass, "order") as usize;
     let series = Series {

@@ -134,7 +134,7 @@ fn pyramids(gpu: &mut Headless, ground: &Ground) -> Result<()> {
         let bytes = found.bytes(&["height_levels", "level_table", "height_stack"]);
         println!(
             "| {level_step} | {level_offset} | {} | {:.1} | {:.3} | {:.3} | {:.2} | {rmse:.3} | {shift:+.3} |",
-            levels.name(),
+            levels,
             bytes as f64 / 1_048_576.0,
             e.mean_deg,
             e.median_deg,
@@ -179,7 +179,7 @@ fn sweeps(gpu: &mut Headless, ground: &Ground) -> Result<()> {
         let names = match (method, lines) {
             (Method::BruteForce, _) => "brute | ".to_owned(),
             (_, Lines::Exact) => "exact | ".to_owned(),
-            _ => format!("{} | {}", lines.name(), fuse.name()),
+            _ => format!("{} | {}", lines, fuse),
         };
         let of = |name| ms(picture.middle(), name) / 64.0 / mega;
         println!(

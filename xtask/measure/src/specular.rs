@@ -73,10 +73,7 @@ pub fn direct(mut args: Args) -> Outcome {
                 let light = drawn(&mut gpu, &scene, &quality, 0)?.light;
                 let error = error(&light, &reference)?;
                 let rmse = (error * error - noise * noise).max(0.0).sqrt();
-                println!(
-                    "| {exponent} | {} | {sh_order} | {rmse:.2} | {noise:.3} |",
-                    receiver.name()
-                );
+                println!("| {exponent} | {} | {sh_order} | {rmse:.2} | {noise:.3} |", receiver);
             }
         }
     }
@@ -116,7 +113,7 @@ pub fn indirect(mut args: Args) -> Outcome {
                 let found = drawn_in_layers(&mut gpu, &scene, &quality)?;
                 println!(
                     "| {albedo} | {scale} | {exponent} | {} | {sh_order} | {:.1} | {noise:.1} | {:.2} | {:.1} | {:.2} |",
-                    specular.name(),
+                    specular,
                     error(&found.indirect, &reference)?,
                     error(&found.light, &all)?,
                     found.ms(),

@@ -23,7 +23,7 @@ impl QualityArgs {
     /// # Errors
     /// The first value that its setting does not take.
     pub fn quality(&self) -> Result<Quality> {
-        let mut quality = Quality::DEFAULT;
+        let mut quality = Quality::default();
         for (setting, value) in &self.values {
             setting.set(&mut quality, value)?;
         }
@@ -53,7 +53,7 @@ fn arg(setting: &'static Setting) -> Arg {
     let value_name = setting.name.to_uppercase();
     let arg = Arg::new(setting.name)
         .long(setting.name.replace('_', "-"))
-        .default_value(setting.get(&Quality::DEFAULT))
+        .default_value(setting.get(&Quality::default()))
         .help_heading(if setting.audience == Audience::Expert { "Expert" } else { "Quality" })
         .hide_short_help(setting.audience != Audience::Everyone);
     // Without a second paragraph, the short help is the long one.
@@ -96,7 +96,7 @@ impl FromArgMatches for QualityArgs {
     fn from_arg_matches(matches: &ArgMatches) -> std::result::Result<Self, clap::Error> {
         let value = |setting: &'static Setting| {
             let value = matches.get_one::<String>(setting.name).cloned();
-            (setting, value.unwrap_or_else(|| setting.get(&Quality::DEFAULT)))
+            (setting, value.unwrap_or_else(|| setting.get(&Quality::default())))
         };
         let values = SETTINGS.iter().map(value).collect();
         Ok(Self { values, written: Vec::new(), has_bounces: false })

@@ -154,10 +154,10 @@ fn has_angles(kind: &Kind) -> bool {
 
 /// Notes flags of lights and surface that the requested kinds do not use.
 pub fn say_idle_light(args: &BakeArgs, scatters: bool) {
-    let groups: [(&[&str], Is); 2] = [
-        (&["sky", "env", "env_rotate", "sun", "key", "sphere_light"], Kind::is_lit),
-        (&["albedo", "specular"], Kind::is_light),
-    ];
+    let lights: Vec<&str> = crate::lights::LIGHTS.iter().map(|light| light.id).collect();
+    let lights = [&["sky", "env", "env_rotate"][..], &lights].concat();
+    let groups: [(&[&str], Is); 2] =
+        [(&lights, Kind::is_lit), (&["albedo", "specular"], Kind::is_light)];
     for (names, is_one) in groups.iter().filter(|(_, of)| !args.what.iter().any(|kind| of(kind))) {
         let is_own = |(name, _): &&(String, String)| names.contains(&name.as_str());
         for (name, value) in args.quality.written.iter().filter(is_own) {

@@ -47,22 +47,22 @@ fn forms(quality: &Quality) -> Vec<Form> {
     };
     for hull in [Hull::Private, Hull::Shared, Hull::OccluderList] {
         for precision in [Precision::F32, Precision::Packed] {
-            let name = format!("horizon_sweep {} {}", hull.name(), precision.name());
+            let name = format!("horizon_sweep {} {}", hull, precision);
             add(name, Quality { hull, precision, ..base }, [false; 2]);
         }
     }
     use Lines::{Cell, Exact, FourCells, HalfCell, QuarterCell, TwoCells};
     for lines in [QuarterCell, HalfCell, Cell, TwoCells, FourCells] {
-        let name = format!("horizon_sweep lines {}", lines.name());
+        let name = format!("horizon_sweep lines {}", lines);
         add(name, Quality { lines, ..base }, [false; 2]);
     }
     use Fuse::{Aimed, AimedAround, AimedNearest, Nearest, Own, Slopes};
     for fuse in [Nearest, Slopes, Own, AimedNearest, Aimed, AimedAround] {
-        add(format!("sky_shade {}", fuse.name()), Quality { fuse, ..base }, [true, false]);
+        add(format!("sky_shade {}", fuse), Quality { fuse, ..base }, [true, false]);
     }
     add("surface_sweep exact".into(), Quality { lines: Exact, ..base }, [false, true]);
     for levels in [Levels::Stack, Levels::Pyramid] {
-        let name = format!("pyramid_march {}", levels.name());
+        let name = format!("pyramid_march {}", levels);
         add(name, Quality { method: Method::Pyramid, levels, ..base }, [false; 2]);
     }
     let brute = Quality { method: Method::BruteForce, ..base };

@@ -82,7 +82,7 @@ impl Verifier {
 
     fn check_direct(&self, device: &mut Device) -> Result<String> {
         let (scene, quality) = (&self.scene, device.quality);
-        if quality.light_basis == LightBasis::Sh && !scene.lights.sphere_lights.is_empty() {
+        if quality.light_basis == LightBasis::Sh && scene.lights.near().next().is_some() {
             let found = sphere_lights::check(scene, &self.ground_truth, device)?;
             let Some(scene) = sphere_lights::without(scene) else { return Ok(found) };
             let rest = Self { scene, ground_truth: self.ground_truth.without_sphere_lights() };
@@ -188,7 +188,7 @@ fn within(
         return Ok((error, bound));
     }
     let [error, bound] = [error, bound].map(|share| format!("{:.2} %", 100.0 * share));
-    let doing = format!("verifying before timing (fuse {})", quality.fuse.name());
+    let doing = format!("verifying before timing (fuse {})", quality.fuse);
     let reason = format!(
         "{what} has an error of {error} against {ground_truth}, above the bound of {bound}: times \
             would be meaningless"
@@ -275,11 +275,7 @@ pub fn piece(scene: &Scene) -> Result<Scene> {
     // Lights of the piece are relative to its western column and southern row.
     let west = range(cols).start as f64 * field.cell_m()[0];
     let south = (rows - range(rows).end) as f64 * field.cell_m()[1];
-    let mut lights = scene.lights.clone();
-    for sphere_light in &mut lights.sphere_lights {
-        sphere_light.position_m[0] -= west;
-        sphere_light.position_m[1] -= south;
-    }
+    let lights = scene.lights.moved([-west, -south]);
     let size = (range(rows).len(), range(cols).len());
     let field = HeightField::new(size.0, size.1, &heights, field.cell_m(), None)?;
     let surface = Surface { albedo, border: scene.surface.border, specular: phong };
@@ -320,7 +316,7 @@ pub mod tests {
                 ("of a neighbour", turned),
                 ("NaN", holed),
             ]);
-            if right[0].x != right[0].z {
+            if right.iter().any(|v| v.x != v.z) {
                 all.push(("of other colours", right.iter().map(|v| v.zyx()).collect()));
             }
             for (name, light) in all {

@@ -5,7 +5,8 @@ use ridgelight::scene::{Audience, Quality, SETTINGS, Values, setting};
 use serde_json::{Value, json};
 
 use super::keys::{INPUT, Key, Kind, Numbers, Part, groups};
-use crate::args::Cli;
+use crate::args::{Cli, flag};
+use crate::lights::LIGHTS;
 
 fn list(least: usize, most: usize) -> Value {
     json!({ "type": "array", "items": { "type": "number" }, "minItems": least, "maxItems": most })
@@ -122,7 +123,7 @@ fn settings_page() -> String {
             };
             let default = match &setting.values {
                 Values::Share => "1/65536".to_owned(),
-                _ => setting.get(&Quality::DEFAULT),
+                _ => setting.get(&Quality::default()),
             };
             let effect = format!("{}. {}", setting.summary(), setting.trade());
             let row = [&format!("`{}`", setting.name), &values, &default, effect.trim_end()];
@@ -130,6 +131,21 @@ fn settings_page() -> String {
         }
     }
     page
+}
+
+/// The table of lights in docs/command-line.md, from the one that their flags follow from.
+fn lights_table() -> String {
+    let mut table = "\n| flag | list | light |\n|---|---|---|\n".to_owned();
+    for light in &LIGHTS {
+        let name = flag(light.id);
+        let row = [
+            format!("`{name} {}`", light.value_name),
+            format!("`{}`", light.list),
+            format!("{}. {}", light.help, light.long_help),
+        ];
+        table += &format!("| {} |\n", row.map(|cell| cell.replace('|', "\\|")).join(" | "));
+    }
+    table + "\n"
 }
 
 fn is_kept(name: &str, text: &str) {
@@ -147,9 +163,19 @@ fn the_schema_that_is_kept_is_of_the_keys_that_are_read() {
 }
 
 #[test]
+fn the_page_of_the_command_line_lists_the_lights() {
+    let path = format!("{}/../../docs/command-line.md", env!("CARGO_MANIFEST_DIR"));
+    let page = std::fs::read_to_string(path).unwrap();
+    let (before, rest) = page.split_once("<!-- begin lights -->\n").unwrap();
+    let (_, after) = rest.split_once("<!-- end lights -->").unwrap();
+    let marked = ["<!-- begin lights -->\n", &lights_table(), "<!-- end lights -->"].concat();
+    is_kept("command-line.md", &[before, &marked, after].concat());
+}
+
+#[test]
 fn the_page_of_settings_follows_from_their_definitions() {
     for share in ["light_cutoff", "bounce_cutoff"] {
-        assert_eq!(setting(share).unwrap().get(&Quality::DEFAULT), (1.0 / 65536.0).to_string());
+        assert_eq!(setting(share).unwrap().get(&Quality::default()), (1.0 / 65536.0).to_string());
     }
     is_kept("settings.md", &settings_page());
 }

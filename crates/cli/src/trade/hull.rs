@@ -18,7 +18,7 @@ const WORTH: f64 = 0.95;
 
 /// The recommended settings with one hull storage.
 pub struct Place {
-    pub name: &'static str,
+    pub hull: Hull,
     /// Whether it is the planner's own choice, whose ratio shows how much times vary.
     pub is_own: bool,
     /// Median time ratio to the planner's choice, or why there is none.
@@ -39,8 +39,8 @@ pub fn places(rig: &mut Rig, quality: &Quality, draw_s: f64) -> Result<Vec<Place
         rig.gpu.draw(own)?;
         let right = rig.radiance(own)?;
         let one = |hull: Hull| {
-            let (name, is_own) = (hull.name(), hull.name() == home);
-            let none = |why: String| Ok(Place { name, is_own, ratio: Err(why) });
+            let is_own = hull.to_string() == *home;
+            let none = |why: String| Ok(Place { hull, is_own, ratio: Err(why) });
             if 3.0 * draw_s > rig.left().max(rig.share(KEPT) / 3.0) {
                 return none("too slow for the rest of the budget".to_owned());
             }
@@ -50,7 +50,7 @@ pub fn places(rig: &mut Rig, quality: &Quality, draw_s: f64) -> Result<Vec<Place
             };
             let ratio = ratio(rig, &mut frame, own, &right);
             rig.gpu.end(frame);
-            Ok(Place { name, is_own, ratio: Ok(ratio?) })
+            Ok(Place { hull, is_own, ratio: Ok(ratio?) })
         };
         [Hull::Private, Hull::Shared, Hull::OccluderList].into_iter().map(one).collect()
     })
@@ -80,7 +80,7 @@ pub fn text(places: &[Place]) -> Option<String> {
     let spread = timed.iter().find(|(p, _)| p.is_own).map_or(1.0, |(_, r)| r.max(r.recip()));
     let (best, ratio) = timed.iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
     let advice = if !best.is_own && ratio * spread < WORTH {
-        format!("add --hull {}", best.name)
+        format!("add --hull {}", best.hull)
     } else {
         "keep the planner's choice".to_owned()
     };
@@ -88,11 +88,11 @@ pub fn text(places: &[Place]) -> Option<String> {
         .iter()
         .map(|(p, ratio)| {
             let own = if p.is_own { " (measured twice)" } else { "" };
-            format!("{} {} ×{own}", p.name, digits(*ratio))
+            format!("{} {} ×{own}", p.hull, digits(*ratio))
         })
         .collect();
     let untimed = places.iter().filter_map(|p| {
-        Some(format!("; --hull {} was not timed: {}", p.name, p.ratio.as_ref().err()?))
+        Some(format!("; --hull {} was not timed: {}", p.hull, p.ratio.as_ref().err()?))
     });
     Some(format!(
         "Hull storage changes the time but not the picture (bit-identical here). Time relative \
@@ -112,9 +112,9 @@ mod tests {
     fn advice_needs_a_gain_above_the_noise() {
         let said = |own: f64, other: f64| {
             let places = [
-                Place { name: "private", is_own: true, ratio: Ok(own) },
-                Place { name: "shared", is_own: false, ratio: Ok(other) },
-                Place { name: "occluder-list", is_own: false, ratio: Err("late".to_owned()) },
+                Place { hull: Hull::Private, is_own: true, ratio: Ok(own) },
+                Place { hull: Hull::Shared, is_own: false, ratio: Ok(other) },
+                Place { hull: Hull::OccluderList, is_own: false, ratio: Err("late".to_owned()) },
             ];
             text(&places).unwrap()
         };

@@ -241,7 +241,7 @@ impl Report<'_> {
         };
         let hull = |h: &hull::Place| {
             let (ratio, why) = (h.ratio.as_ref().ok(), h.ratio.as_ref().err());
-            json!({ "hull": h.name, "time_ratio": ratio, "why_none": why })
+            json!({ "hull": h.hull.to_string(), "time_ratio": ratio, "why_none": why })
         };
         let (budget_s, evaluations) = match self.budget {
             Budget::Seconds(seconds) => (Some(seconds), None),

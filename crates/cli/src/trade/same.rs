@@ -61,7 +61,8 @@ const NO_SETTINGS: &str = "no settings of this search compute such light";
 
 /// Light that no settings compute if the scene has none.
 fn gives_none(name: &str) -> bool {
-    matches!(name, "bounces" | "specular") || is_numbered(name, "sphere_light")
+    let is_near = LIGHTS.iter().any(|light| !light.is_aimed && light.is_key(name));
+    matches!(name, "bounces" | "specular") || is_near
 }
 
 fn is_scene(name: &str) -> bool {

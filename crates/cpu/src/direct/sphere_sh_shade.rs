@@ -10,7 +10,7 @@ use crate::pyramid_march::{LevelHeights, Stored};
 use crate::sh_shade::light_on;
 use crate::sh_visibility::{Series, visibility_along};
 use crate::sh_wedges::wedges_around;
-use crate::sphere::towards_m;
+use crate::shared::field::towards_m;
 use glam::{DVec2, DVec3};
 use ridgelight::basis::wedge::WedgeTable;
 use ridgelight::plan::pyramid::Pyramid;

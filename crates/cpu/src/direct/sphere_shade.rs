@@ -3,7 +3,7 @@
 
 use crate::light::{Site, diffuse_at};
 use crate::oracle::Oracle;
-use crate::sphere::towards_m;
+use crate::shared::field::towards_m;
 use ridgelight::scene::SphereLight;
 use std::f64::consts::PI;
 

@@ -25,7 +25,7 @@ use crate::light::{Receiver, Site, Slice, albedo_at, normal};
 use crate::oracle::Oracle;
 use crate::profile::VisibleInterval;
 use glam::DVec3;
-use ridgelight::scene::{Border, HeightField, Lights, Scene, Specular, SphereLight};
+use ridgelight::scene::{Border, HeightField, Lights, NearLight, Scene, Specular};
 use ridgelight::{Error, Result};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -300,8 +300,8 @@ fn arriving(site: Site, visibility: &[Visibility], lights: &Lights, strips: usiz
         let shares = site.key(key, strips);
         add(shares.iter().map(|share| key.radiance.map(|l| share * f64::from(l))).collect());
     }
-    for sphere in &lights.sphere_lights {
-        let shares = site.sphere(sphere, strips);
+    for NearLight { sphere, .. } in lights.near() {
+        let shares = site.sphere(&sphere, strips);
         add(shares.iter().map(|share| sphere.radiance.map(|l| share * f64::from(l))).collect());
     }
     sums
@@ -353,9 +353,5 @@ fn moved_lights(lights: &Lights, field: &HeightField, border: Border, divisions:
         Border::Periodic => field.cell_m()[1] * (1.0 - 1.0 / divisions as f64),
         Border::Plane | Border::Open => 0.0,
     };
-    let move_one = |sphere: &SphereLight| {
-        let [x, y, z] = sphere.position_m;
-        SphereLight { position_m: [x, y + moved, z], ..*sphere }
-    };
-    Lights { sphere_lights: lights.sphere_lights.iter().map(move_one).collect(), ..lights.clone() }
+    lights.moved([0.0, moved])
 }

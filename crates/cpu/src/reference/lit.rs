@@ -4,7 +4,7 @@ use crate::Rgb;
 use crate::light::{self, ENVIRONMENT_STRIPS};
 use crate::oracle::Oracle;
 use crate::sphere::sphere_of;
-use ridgelight::scene::{Environment, KeyLight, Scene};
+use ridgelight::scene::{Environment, KeyLight, NearLight, Scene};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Azimuths of a sky, strips across a sun or a sphere light; the same across a key light, or the sky's density.
@@ -47,7 +47,7 @@ impl<'a> Lit<'a> {
         let sky = if lights.sky.is_some() { self.azimuths } else { 0 };
         let environment = self.columns.as_ref().map_or(0, |c| c.parts.iter().sum());
         let keys: usize = lights.keys.iter().map(|k| self.key_strips(k)).sum();
-        sky + environment + (lights.suns.len() + lights.sphere_lights.len()) * self.strips + keys
+        sky + environment + (lights.suns.len() + lights.near().count()) * self.strips + keys
     }
 
     /// Exit radiance of a grid point including its albedo, linear RGB.
@@ -61,13 +61,13 @@ impl<'a> Lit<'a> {
         let suns = lights.suns.iter().map(|s| light::sun_of(oracle, row, col, s, self.strips));
         let keys =
             lights.keys.iter().map(|k| light::key_of(oracle, row, col, k, self.key_strips(k)));
-        let spheres = lights.sphere_lights.iter().map(|sphere| {
-            let share = sphere_of(oracle, row, col, sphere, self.strips);
+        let near = lights.near().map(|NearLight { sphere, .. }| {
+            let share = sphere_of(oracle, row, col, &sphere, self.strips);
             sphere.radiance.map(|c| f64::from(c) * share)
         });
         let albedo = light::albedo_at(&self.scene.surface, row * self.scene.field.cols() + col);
         let mut all = [0.0; 3];
-        for light in sky.into_iter().chain(environment).chain(suns).chain(keys).chain(spheres) {
+        for light in sky.into_iter().chain(environment).chain(suns).chain(keys).chain(near) {
             (0..3).for_each(|c| all[c] += light[c] * albedo[c]);
         }
         all

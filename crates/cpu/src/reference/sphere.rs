@@ -7,7 +7,8 @@
 use crate::light::{Site, diffuse_at};
 use crate::oracle::Oracle;
 use crate::profile::VisibleInterval;
-use ridgelight::scene::{HeightField, SphereLight};
+use crate::shared::field::towards_m;
+use ridgelight::scene::SphereLight;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 impl Site<'_> {
@@ -64,18 +65,6 @@ pub fn sphere_of(
     let is_narrow = east.hypot(north) > 2.0 * sphere.radius_m;
     let strips = if is_narrow { strips } else { 4 * strips };
     Site::of(oracle, [row, col], &diffuse_at(oracle, row, col)).sphere(sphere, strips)[0]
-}
-
-/// Horizontal vector from a grid point to the sphere's centre: east, north.
-pub(crate) fn towards_m(
-    field: &HeightField,
-    row: usize,
-    col: usize,
-    sphere: &SphereLight,
-) -> [f64; 2] {
-    let [cell_x, cell_y] = field.cell_m();
-    let [x, y, _] = sphere.position_m;
-    [x - col as f64 * cell_x, y - (field.rows() - 1 - row) as f64 * cell_y]
 }
 
 /// The sphere's cut with a vertical plane through the grid point, which is the origin.

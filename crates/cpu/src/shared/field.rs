@@ -2,7 +2,7 @@
 
 use super::sweep::{Heights, inside};
 use glam::{DVec2, DVec3};
-use ridgelight::scene::Border;
+use ridgelight::scene::{Border, HeightField, SphereLight};
 
 /// Slope of the surface at a grid point towards east and north: the mean over the adjoining quads, which is the
 /// direction of the sum of their unnormalised normals. Where a field is one grid point wide there is no quad across
@@ -39,4 +39,16 @@ pub fn field_slope(heights: &Heights, col: i32, row: i32) -> DVec2 {
 /// The unit normal of a surface that rises by `slope` towards east and north.
 pub fn normal_of(slope: DVec2) -> DVec3 {
     DVec3::new(-slope.x, -slope.y, 1.0).normalize()
+}
+
+/// Horizontal vector from a grid point to the sphere's centre: east, north.
+pub(crate) fn towards_m(
+    field: &HeightField,
+    row: usize,
+    col: usize,
+    sphere: &SphereLight,
+) -> [f64; 2] {
+    let [cell_x, cell_y] = field.cell_m();
+    let [x, y, _] = sphere.position_m;
+    [x - col as f64 * cell_x, y - (field.rows() - 1 - row) as f64 * cell_y]
 }

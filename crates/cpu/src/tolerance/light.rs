@@ -5,7 +5,7 @@ use crate::basis::from_nlp;
 use crate::basis::occlusion_polynomials;
 use crate::env_tables::EnvTables;
 use crate::sh_shade::OFF_PLANE;
-use crate::sphere::towards_m;
+use crate::shared::field::towards_m;
 use glam::DVec3;
 use ridgelight::basis::MAX_ORDER;
 use ridgelight::basis::slice::{Slices, slice_index};

@@ -65,14 +65,14 @@ fn with_bounces(scene: &Scene, count: u32, all: &[Quality]) -> Vec<Quality> {
     let albedo = scene.surface.max_reflectance();
     let mut cutoffs: Vec<f64> = Vec::new();
     for cutoff in CUTOFFS {
-        let drawn = |cutoff| Bounces { count, cutoff, ..Bounces::DEFAULT }.needed_bounces(albedo);
+        let drawn = |cutoff| Bounces { count, cutoff, ..Bounces::default() }.needed_bounces(albedo);
         if cutoffs.last().is_none_or(|last| drawn(*last) != drawn(cutoff)) {
             cutoffs.push(cutoff);
         }
     }
     let mut bounced = Vec::new();
     for cutoff in cutoffs {
-        let none = Bounces { count, cutoff, ..Bounces::DEFAULT };
+        let none = Bounces { count, cutoff, ..Bounces::default() };
         if none.needed_bounces(albedo) == 0 {
             bounced.push((none, 1));
             continue;

@@ -56,7 +56,7 @@ impl Part {
         match self {
             Part::Geometry => {
                 let are_none_aimed = lights.suns.is_empty() && lights.keys.is_empty();
-                Part::Azimuths.is_in(scene) || !are_none_aimed || lights.sphere_lights.is_empty()
+                Part::Azimuths.is_in(scene) || !are_none_aimed || lights.near().next().is_none()
             }
             Part::Azimuths => {
                 lights.sky.is_some_and(|s| s != [0.0; 3]) || lights.environment.is_some()
@@ -270,8 +270,7 @@ impl Costs {
             None => [0.0, EXACT[0] + EXACT[1] * all / side],
         };
         let shade = SHADE[fuse_row(quality.fuse)][spacing];
-        let sphere_slices =
-            f64::from(quality.sun_azimuths) * scene.lights.sphere_lights.len() as f64;
+        let sphere_slices = f64::from(quality.sun_azimuths) * scene.lights.near().count() as f64;
         let [walk, march, gather] = bounced::work(scene, quality);
         let [sweep, exact, shade] = [sweep, exact, shade].map(|each| all * each);
         [sweep, exact, shade, table, sphere_slices * SLICE, 1.0, walk, march, gather]

@@ -46,7 +46,7 @@ fn coarse() -> Quality {
         lines: Lines::FourCells,
         table_elevations: 64,
         subsample: 2,
-        bounces: Bounces { azimuths: 8, ..Bounces::DEFAULT },
+        bounces: Bounces { azimuths: 8, ..Bounces::default() },
         ..start()
     }
 }

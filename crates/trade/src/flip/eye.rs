@@ -222,3 +222,114 @@ fn convolved(window: &[f64], width: usize, reach: usize, across: &[f64], down: &
     }
     all
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::{PIXELS_PER_DEGREE, map};
+    use super::*;
+
+    /// Error of two uniform pictures: filters do not change them, and there are no features.
+    fn flat(a: [f32; 3], b: [f32; 3]) -> f64 {
+        let errors = map(&[a; 35], &[b; 35], 7, PIXELS_PER_DEGREE).unwrap();
+        assert!(errors.iter().all(|e| (e - errors[0]).abs() < 1e-6), "{errors:?}");
+        errors[0].into()
+    }
+
+    /// §4.1.4 of a distance, with the largest from L*a*b* of sRGB's green and blue in published
+    /// tables: (87.735, -86.183, 83.179) and (32.297, 79.188, -107.860); Hunt: a*, b* · L*/100.
+    fn mapped(hyab: f64) -> f64 {
+        let (green, blue) = ([87.735, -86.183, 83.179], [32.297, 79.188, -107.860]);
+        let hunt = |c: [f64; 3]| [c[0], c[1] * c[0] / 100.0, c[2] * c[0] / 100.0];
+        let ([l, a, b], [m, c, d]) = (hunt(green), hunt(blue));
+        let largest = (l - m + ((a - c).powi(2) + (b - d).powi(2)).sqrt()).powf(0.7);
+        let share = hyab.powf(0.7) / largest;
+        if share < 0.4 { 0.95 * share / 0.4 } else { 0.95 + 0.05 * (share - 0.4) / 0.6 }
+    }
+
+    /// Tables round L*a*b* to 0.001 and their white to 1e-4, which changes a* and b* by at most
+    /// 500e-4/3: 1e-4 of a distance of 203, times an error of at most 1.
+    const TABLES: f64 = 1e-4;
+
+    #[test]
+    fn colours_have_their_known_errors() {
+        // The maximum by definition.
+        assert!((flat([0.0, 1.0, 0.0], [0.0, 0.0, 1.0]) - 1.0).abs() < 1e-7);
+        // L* 100 and 0.
+        assert!((flat([1.0; 3], [0.0; 3]) - mapped(100.0)).abs() < TABLES);
+        // Luminance t³ has L* 116 t - 16: 53.6 and 42, below the knee; 100 and 42 above it.
+        let grey = |t: f32| [t.powi(3); 3];
+        assert!((flat(grey(0.6), grey(0.5)) - mapped(11.6)).abs() < TABLES);
+        assert!((flat(grey(1.0), grey(0.5)) - mapped(58.0)).abs() < TABLES);
+        assert!(
+            (mapped(11.6) - 0.32).abs() < 0.01 && mapped(58.0) > 0.95,
+            "both sides of the knee"
+        );
+        // Below (6/29)³, L* is linear, 903.3 times luminance: 0.9033 at 0.001.
+        assert!((flat([0.001; 3], [0.0; 3]) - mapped(0.9033)).abs() < TABLES);
+        // sRGB's red in tables: (53.241, 80.092, 67.203); Hunt: 0.53241 of a* and b*.
+        let red = (53.241 - 42.0) + 0.53241 * f64::hypot(80.092, 67.203);
+        assert!((flat([1.0, 0.0, 0.0], grey(0.5)) - mapped(red)).abs() < TABLES);
+    }
+
+    /// A grating of f cycles per degree keeps S(f) of its contrast. In two dimensions the weights a
+    /// √(π/b) multiply Gaussians of area b/π: shares a √b. Filters end at three deviations of the
+    /// widest Gaussian, an error of at most erfc(3/√2) = 0.0027 of it.
+    #[test]
+    fn contrast_sensitivity_is_that_of_the_formula() {
+        let eye = Eye::new(PIXELS_PER_DEGREE);
+        let cols = 200;
+        let width = cols + 2 * eye.reach;
+        for f in [0.0, 2.0, 4.0, 8.0, 16.0] {
+            let wave = |c: usize| (2.0 * PI * f * c as f64 / PIXELS_PER_DEGREE).cos();
+            let row: Vec<f64> = (0..width).map(wave).collect();
+            let window = row.repeat(2 * eye.reach + 1);
+            for (channel, parts) in [ACHROMATIC, RED_GREEN, BLUE_YELLOW].iter().enumerate() {
+                let shares: f64 = parts.iter().map(|[a, b]| a * b.sqrt()).sum();
+                let s: f64 =
+                    parts.iter().map(|[a, b]| a * b.sqrt() * (-b * f * f).exp()).sum::<f64>()
+                        / shares;
+                let mut through = vec![0.0; cols];
+                for (share, line) in &eye.sensitivity[channel] {
+                    let part = convolved(&window, width, eye.reach, line, line);
+                    through.iter_mut().zip(part).for_each(|(t, p)| *t += share * p);
+                }
+                for (c, t) in through.iter().enumerate() {
+                    let expected = s * wave(c + eye.reach);
+                    assert!((t - expected).abs() < 2.0 * 0.0027, "{f} {channel} {t} {expected}");
+                }
+            }
+        }
+    }
+
+    /// Black left of column 20 and white from there on: the weights on one side sum to 1, so both
+    /// columns at the step have an edge of 1. A black band in white where the point filter is
+    /// negative (|x| < σ = 2.75): the rest sum to 1, and its centre has no edge.
+    #[test]
+    fn features_have_their_known_strength() {
+        let eye = Eye::new(PIXELS_PER_DEGREE);
+        let filtered = |white: &dyn Fn(usize) -> bool| {
+            let picture: Vec<[f32; 3]> =
+                (0..40 * 5).map(|i| [f32::from(white(i % 40)); 3]).collect();
+            eye.filtered(&picture, &[false; 200], 40, (0, 5))
+        };
+        let near = |a: f64, b: f64| (a - b).abs() < 1e-12;
+        let step = filtered(&|col| col >= 20);
+        for row in 0..5 {
+            assert!(near(step[row * 40 + 19].edge, 1.0) && near(step[row * 40 + 20].edge, 1.0));
+            for far in [0, 39] {
+                let s = &step[row * 40 + far];
+                assert!(near(s.edge, 0.0) && near(s.point, 0.0), "{} {}", s.edge, s.point);
+            }
+        }
+        let band = filtered(&|col: usize| col.abs_diff(20) > 2);
+        assert!(near(band[60].point, 1.0) && near(band[60].edge, 0.0));
+        // Against uniform white, an edge or point of 1 is a difference of (1/√2)^0.5 (§4.2.2), so
+        // the colour difference has the exponent 1 - 0.8409; the colour is the same here.
+        let plain = |edge| Filtered { colour: DVec3::new(50.0, 0.0, 0.0), edge, point: 0.0 };
+        let dark = |edge| Filtered { colour: DVec3::new(40.0, 0.0, 0.0), edge, point: 0.0 };
+        let (without, with) =
+            (eye.difference(&plain(0.0), &dark(0.0)), eye.difference(&plain(1.0), &dark(0.0)));
+        assert!(near(with, without.powf(1.0 - 0.5_f64.powf(0.25))), "{without} {with}");
+        assert!(near(with, eye.difference(&plain(0.0), &dark(1.0))) && with > without);
+    }
+}

@@ -82,19 +82,8 @@ fn has_no_levels(quality: &Quality) -> bool {
 
 /// Whether some lights are integrated in slices: suns that are not points, key lights, sphere lights.
 pub(crate) fn have_slices(lights: &Lights) -> bool {
-    let have_others = !lights.keys.is_empty() || !lights.sphere_lights.is_empty();
+    let have_others = !lights.keys.is_empty() || lights.near().any(|l| l.sphere.radius_m > 0.0);
     have_others || lights.suns.iter().any(|s| !s.is_point())
-}
-
-/// The lights with radiance above 0: for others no setting changes anything.
-fn nonzero_lights(lights: &Lights) -> Lights {
-    let is_lit = |c: &[f32; 3]| c.iter().any(|v| *v > 0.0);
-    let mut kept = lights.clone();
-    kept.sky = lights.sky.filter(is_lit);
-    kept.suns.retain(|sun| is_lit(&sun.irradiance));
-    kept.keys.retain(|key| is_lit(&key.radiance));
-    kept.sphere_lights.retain(|light| is_lit(&light.radiance));
-    kept
 }
 
 /// Whether the surface has Phong specular.
@@ -106,7 +95,8 @@ fn has_specular(scene: &Scene) -> bool {
 /// without an environment. Phong specular is lit by harmonics only; its bounces use pyramids only,
 /// at every texel.
 pub fn ladders(scene: &Scene, bounces: u32) -> Vec<Ladder> {
-    let (lights, has_specular) = (&nonzero_lights(&scene.lights), has_specular(scene));
+    // No setting changes anything about lights of radiance 0.
+    let (lights, has_specular) = (&scene.lights.lit(), has_specular(scene));
     let (has_sky, has_environment) = (lights.sky.is_some(), lights.environment.is_some());
     let mut all = Vec::new();
     let mut add = |is_in: bool, ladder: Ladder| all.extend(is_in.then_some(ladder));
@@ -144,7 +134,8 @@ pub fn ladders(scene: &Scene, bounces: u32) -> Vec<Ladder> {
     add(have_slices(lights), slices);
     let exact = "each slice of a sphere light exact: sharp shadows";
     let light_basis = Ladder::new("light basis", &["light_basis: sh exact"], exact);
-    add(!lights.sphere_lights.is_empty(), light_basis);
+    let by_sh = lights.near().next().is_some() && lights.near().all(|light| light.is_by_sh());
+    add(by_sh, light_basis);
     let bright = "more elevations per table: small bright features";
     let elevations = &["table_elevations: 32 64 128 256 512 1024"];
     let table = Ladder::new("table elevations", elevations, bright);
@@ -189,7 +180,7 @@ pub fn start() -> Quality {
 
 /// The start for a scene: Phong specular is lit by harmonics.
 pub fn start_of(scene: &Scene) -> Quality {
-    let Lights { sky, environment, .. } = nonzero_lights(&scene.lights);
+    let Lights { sky, environment, .. } = scene.lights.lit();
     let is_specular = has_specular(scene) && (sky.is_some() || environment.is_some());
     let basis = if is_specular { Basis::Sh } else { Basis::Table };
     Quality { basis, ..start() }

@@ -1,7 +1,7 @@
 //! Visible points on curved bases.
 
 use glam::DVec3;
-use ridgelight::gpu::shaders::offsets::{bent_directions_push as push, fan_weights_push};
+use ridgelight::gpu::shaders::offset;
 use ridgelight::plan::Pass;
 use ridgelight::scene::{Curvature, Directions, VisiblePoint, VisiblePoints};
 use ridgelight_cpu::bent_directions::ways::{HALF_SIDE, Way, Ways};
@@ -70,7 +70,13 @@ pub(crate) fn bent_directions(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let directions = run.bent_directions();
     let points = flat(run, pass, directions.clone());
     let float = |o: usize| f64::from(f32::from_bits(pushed(pass, o)));
-    let curvature = Curvature { per_m: [push::CURVATURE_X, push::CURVATURE_Y].map(float) };
+    let curvature = Curvature {
+        per_m: [
+            offset("BentDirectionsPush", "curvature_x"),
+            offset("BentDirectionsPush", "curvature_y"),
+        ]
+        .map(float),
+    };
     let fans = fans_of(&directions);
     let (field, border) = (&run.scene.field, run.border());
     let draped = Draped { field, border, points: &points, fans: &fans, curvature };
@@ -117,7 +123,7 @@ pub(crate) fn bent_directions(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 pub(crate) fn fan_weights(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let directions = run.bent_directions();
     let fans = fans_of(&directions);
-    let first = pushed(pass, fan_weights_push::FIRST_DIRECTION) as usize;
+    let first = pushed(pass, offset("FanWeightsPush", "first_direction")) as usize;
     let count = pass.groups[2] as usize;
     let bent = at_texels(run, pass, directions.count());
     let weights = run.floats(pass, "fan_weights").expect("written");

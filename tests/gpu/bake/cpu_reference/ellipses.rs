@@ -1,7 +1,7 @@
 //! Ellipses of visible sky: the properties of a search by scores, whichever of equal paths it took.
 
 use glam::{DVec2, DVec3};
-use ridgelight::gpu::shaders::offsets::ellipse_fit_push::{FIRST_ROW, LEAST_RADIUS, ROWS};
+use ridgelight::gpu::shaders::offset;
 use ridgelight::plan::Pass;
 use ridgelight::scene::VisiblePoints;
 use ridgelight_cpu::ellipse_fit::{
@@ -10,6 +10,10 @@ use ridgelight_cpu::ellipse_fit::{
 use ridgelight_cpu::tolerance::{ellipse_moment, ellipse_reach, ellipse_start};
 
 use crate::cpu_reference::{Pair, Run, constant, pushed};
+
+const FIRST_ROW: usize = offset("EllipseFitPush", "first_row");
+const LEAST_RADIUS: usize = offset("EllipseFitPush", "least_radius");
+const ROWS: usize = offset("EllipseFitPush", "rows");
 
 /// Directions that may lie on either side of an ellipse's edge.
 fn on_edge(ellipse: &Ellipse, of: &[SkyDirection], reach: f64) -> f64 {

@@ -1,6 +1,6 @@
 //! Visible points.
 
-use ridgelight::gpu::shaders::offsets::visible_points_push::{END_DIRECTION, FIRST_DIRECTION};
+use ridgelight::gpu::shaders::offset;
 use ridgelight::plan::Pass;
 use ridgelight::scene::{Directions, VisiblePoint, VisiblePoints};
 use ridgelight_cpu::oracle::Oracle;
@@ -8,6 +8,9 @@ use ridgelight_cpu::tolerance::{MET_SHARE, crossing_elevation};
 use ridgelight_cpu::visible_points::possible_within;
 
 use crate::cpu_reference::{Pair, Run, pushed};
+
+const END_DIRECTION: usize = offset("VisiblePointsPush", "end_direction");
+const FIRST_DIRECTION: usize = offset("VisiblePointsPush", "first_direction");
 
 fn number(point: VisiblePoint) -> f64 {
     match point {

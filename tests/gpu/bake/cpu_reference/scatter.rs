@@ -1,7 +1,7 @@
 //! Steps of scattered light.
 
 use glam::DVec3;
-use ridgelight::gpu::shaders::offsets::scatter_gather_push as push;
+use ridgelight::gpu::shaders::offset;
 use ridgelight::plan::Pass;
 use ridgelight::scene::{Curvature, Directions, VisiblePoint, VisiblePoints};
 use ridgelight_cpu::scatter_gather::{Gathered, GridPoints};
@@ -29,17 +29,17 @@ impl Sum {
 /// One look-up after the other as in the CPU reference, from the device's inputs.
 pub(crate) fn scatter_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let [first_link, steps, step, first_path, paths, first_sun, suns, first_view] = [
-        push::FIRST_LINK,
-        push::STEPS,
-        push::STEP,
-        push::FIRST_PATH,
-        push::PATHS,
-        push::FIRST_SUN,
-        push::SUNS,
-        push::FIRST_VIEW,
+        offset("ScatterGatherPush", "first_link"),
+        offset("ScatterGatherPush", "steps"),
+        offset("ScatterGatherPush", "step"),
+        offset("ScatterGatherPush", "first_path"),
+        offset("ScatterGatherPush", "paths"),
+        offset("ScatterGatherPush", "first_sun"),
+        offset("ScatterGatherPush", "suns"),
+        offset("ScatterGatherPush", "first_view"),
     ]
     .map(|o| pushed(pass, o) as usize);
-    let weight = f64::from(f32::from_bits(pushed(pass, push::WEIGHT_SR)));
+    let weight = f64::from(f32::from_bits(pushed(pass, offset("ScatterGatherPush", "weight_sr"))));
     let (source, sums) = (constant(pass, "source"), constant(pass, "sums") == 1);
     let direct_specular = paths > 0 && constant(pass, "direct_specular") == 1;
     let points = run.points.clone().expect("a case with points");
@@ -89,8 +89,11 @@ pub(crate) fn scatter_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         return got.into_iter().enumerate().map(pair).collect();
     }
     let curvature = Curvature {
-        per_m: [push::CURVATURE_X, push::CURVATURE_Y]
-            .map(|o| f64::from(f32::from_bits(pushed(pass, o)))),
+        per_m: [
+            offset("ScatterGatherPush", "curvature_x"),
+            offset("ScatterGatherPush", "curvature_y"),
+        ]
+        .map(|o| f64::from(f32::from_bits(pushed(pass, o)))),
     };
     let grid_points = GridPoints::of(run.scene).on(curvature);
     // On a curved base, the device's own directions and weights.

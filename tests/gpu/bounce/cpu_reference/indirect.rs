@@ -1,8 +1,8 @@
 //! The passes of indirect diffuse light.
 
+use ridgelight::gpu::shaders::offset;
 use std::collections::HashSet;
 
-use ridgelight::gpu::shaders::offsets;
 use ridgelight::plan::pyramid::Pyramid;
 use ridgelight::plan::{Nodes, Pass};
 use ridgelight::scene::{Fuse, Levels};
@@ -75,7 +75,9 @@ fn paired(got: &[[f64; 3]], want: &[[f64; 3]], tolerance: f64, at: [usize; 2]) -
 
 /// All visible intervals along every azimuth, in one dispatch.
 pub(crate) fn bounce_march(run: &mut Run, pass: &Pass) -> Vec<Pair> {
-    use offsets::bounce_march_push::{AZIMUTHS, FIRST_AZIMUTH, LAST_AZIMUTH};
+    const AZIMUTHS: usize = offset("BounceMarchPush", "azimuths");
+    const FIRST_AZIMUTH: usize = offset("BounceMarchPush", "first_azimuth");
+    const LAST_AZIMUTH: usize = offset("BounceMarchPush", "last_azimuth");
     let azimuths = pushed(pass, AZIMUTHS);
     assert_eq!([pushed(pass, FIRST_AZIMUTH), pushed(pass, LAST_AZIMUTH)], [0, azimuths]);
     let exit = run.exit(pass);
@@ -96,7 +98,7 @@ pub(crate) fn bounce_march(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 /// A level, and its entry in the table.
 pub(crate) fn shade_reduce(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let shade = run.shade();
-    let number = pushed(pass, offsets::reduce_push::LEVEL);
+    let number = pushed(pass, offset("ReducePush", "level"));
     let level = shade.level(number);
     let exit = run.exit(pass);
     let texels = colours(&run.floats(pass, "shade_levels").expect("written"));
@@ -131,7 +133,9 @@ pub(crate) fn shade_expand(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 
 /// The bounced light, from the device's own levels, in one dispatch.
 pub(crate) fn bounce_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
-    use offsets::gather_push::{AZIMUTHS, FIRST_AZIMUTH, LAST_AZIMUTH};
+    const AZIMUTHS: usize = offset("GatherPush", "azimuths");
+    const FIRST_AZIMUTH: usize = offset("GatherPush", "first_azimuth");
+    const LAST_AZIMUTH: usize = offset("GatherPush", "last_azimuth");
     let azimuths = pushed(pass, AZIMUTHS);
     assert_eq!([pushed(pass, FIRST_AZIMUTH), pushed(pass, LAST_AZIMUTH)], [0, azimuths]);
     let (shade, receiver) = (run.shade(), run.quality.receiver);
@@ -183,7 +187,10 @@ pub(crate) fn bounce_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 
 /// The sum so far; after the last azimuths, the bounced light.
 pub(crate) fn bounce_walk(run: &mut Run, pass: &Pass) -> Vec<Pair> {
-    use offsets::bounce_walk_push::{AZIMUTH_COUNT, CLEARS, FIRST_AZIMUTH, IS_LAST};
+    const AZIMUTH_COUNT: usize = offset("BounceWalkPush", "azimuth_count");
+    const CLEARS: usize = offset("BounceWalkPush", "clears");
+    const FIRST_AZIMUTH: usize = offset("BounceWalkPush", "first_azimuth");
+    const IS_LAST: usize = offset("BounceWalkPush", "is_last");
     let word = |offset| pushed(pass, offset) as usize;
     let first = word(FIRST_AZIMUTH);
     if word(CLEARS) == 1 {

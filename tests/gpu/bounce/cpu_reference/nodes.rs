@@ -1,10 +1,10 @@
 //! Bounces at nodes.
 
+use ridgelight::gpu::shaders::offset;
 use std::collections::HashMap;
 use std::f64::consts::TAU;
 use std::ops::Range;
 
-use ridgelight::gpu::shaders::offsets;
 use ridgelight::plan::{Nodes, Pass};
 use ridgelight::scene::{Border, Fuse};
 use ridgelight_cpu::bounce_shade::bounce_shade as shade_reference;
@@ -32,7 +32,7 @@ pub(crate) fn places(run: &Run, nodes: Nodes) -> Vec<[usize; 2]> {
 /// lie where their mean does, within a texel: it stands half a step away, and across it as much again.
 pub(crate) fn casts(run: &mut Run, pass: &Pass, azimuths: Range<usize>) -> Vec<Pair> {
     let places = &places(run, Nodes { stride: 2 * constant(pass, "node_stride") });
-    let begin = pushed(pass, offsets::bounce_walk_push::BEGIN) as usize;
+    let begin = pushed(pass, offset("BounceWalkPush", "begin")) as usize;
     let Some(sets) = visibility_caches(run, pass, begin, places) else {
         return Vec::new();
     };
@@ -97,7 +97,8 @@ fn visibility_caches(
 
 /// From the device's own visibility caches: a product and a sum for each, with weights that are products themselves.
 pub(crate) fn cache_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
-    use offsets::cache_gather_push::{BEGIN, COUNT};
+    const BEGIN: usize = offset("CacheGatherPush", "begin");
+    const COUNT: usize = offset("CacheGatherPush", "count");
     let places = places(run, Nodes { stride: constant(pass, "node_stride") });
     let begin = pushed(pass, BEGIN) as usize;
     let sets = visibility_caches(run, pass, begin, &places).expect("bound");

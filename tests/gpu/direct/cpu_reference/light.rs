@@ -1,6 +1,6 @@
 //! The passes that sum light.
 
-use ridgelight::gpu::shaders::offsets;
+use ridgelight::gpu::shaders::offset;
 use ridgelight::plan::Pass;
 use ridgelight::plan::azimuths::{Azimuth, Shape};
 use ridgelight::scene::{Albedo, Border, Environment, SphereLight};
@@ -60,8 +60,8 @@ fn device_tables(run: &mut Run, pass: &Pass) -> EnvTables {
 pub(crate) fn env_tables(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let rows = wedge_rows(run, pass);
     let got = device_tables(run, pass);
-    let height = pushed(pass, offsets::env_tables_push::HEIGHT) as usize;
-    let azimuths = pushed(pass, offsets::env_tables_push::AZIMUTH_COUNT) as usize;
+    let height = pushed(pass, offset("EnvTablesPush", "height")) as usize;
+    let azimuths = pushed(pass, offset("EnvTablesPush", "azimuth_count")) as usize;
     let want = tables_reference::env_tables(&rows, (height, azimuths), got.nodes, got.bottom_rad);
     assert_eq!(got.texels.len(), want.texels.len());
     let (nodes, pieces) = (got.nodes, (height + got.nodes) as f64);
@@ -101,7 +101,9 @@ pub(crate) fn so_far(
 }
 
 pub(crate) fn sky_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
-    use offsets::shade_push::{AZIMUTH_COUNT, CLEARS, FIRST_AZIMUTH};
+    const AZIMUTH_COUNT: usize = offset("ShadePush", "azimuth_count");
+    const CLEARS: usize = offset("ShadePush", "clears");
+    const FIRST_AZIMUTH: usize = offset("ShadePush", "first_azimuth");
     let (range, error) = so_far(run, pass, [FIRST_AZIMUTH, AZIMUTH_COUNT, CLEARS]);
     let [cols, _] = run.size();
     let at = |i: usize| [range.len(), i / cols, i % cols];
@@ -136,7 +138,9 @@ pub(crate) fn sky_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 }
 
 pub(crate) fn sun_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
-    use offsets::shade_push::{AZIMUTH_COUNT, CLEARS, FIRST_AZIMUTH};
+    const AZIMUTH_COUNT: usize = offset("ShadePush", "azimuth_count");
+    const CLEARS: usize = offset("ShadePush", "clears");
+    const FIRST_AZIMUTH: usize = offset("ShadePush", "first_azimuth");
     let (range, error) = so_far(run, pass, [FIRST_AZIMUTH, AZIMUTH_COUNT, CLEARS]);
     let shape = [Shape::Disc, Shape::Point, Shape::Patch][constant(pass, "shape") as usize];
     let is_point = shape == Shape::Point;
@@ -180,7 +184,10 @@ pub(crate) fn sphere_light_of(run: &Run, pass: &Pass) -> SphereLight {
 
 /// Slices of one sphere light, paired after the last.
 pub(crate) fn sphere_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
-    use offsets::sphere_shade_push::{LAST_SLICE, RADIANCE, REACH_M, SLICES_AROUND};
+    const LAST_SLICE: usize = offset("SphereShadePush", "last_slice");
+    const RADIANCE: usize = offset("SphereShadePush", "radiance");
+    const REACH_M: usize = offset("SphereShadePush", "reach_m");
+    const SLICES_AROUND: usize = offset("SphereShadePush", "slices_around");
     let slices = run.quality.sun_azimuths;
     if f32::from_bits(pushed(pass, RADIANCE + 12)) > 0.0 {
         run.sphere_lights = vec![([0.0; 3], 0.0); run.scene.field.heights_m().len()];
@@ -215,7 +222,9 @@ pub(crate) fn sphere_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 }
 
 pub(crate) fn light_resolve(run: &mut Run, pass: &Pass) -> Vec<Pair> {
-    use offsets::light_resolve_push::{CLEARS, COLOUR, TEXEL};
+    const CLEARS: usize = offset("LightResolvePush", "clears");
+    const COLOUR: usize = offset("LightResolvePush", "colour");
+    const TEXEL: usize = offset("LightResolvePush", "texel");
     let mut colour = [0, 4, 8].map(|c| f32::from_bits(pushed(pass, COLOUR + c)));
     if constant(pass, "colour_is_texel") == 1 {
         let texels = run.floats(pass, "light_colours").expect("read");

@@ -1,6 +1,6 @@
 //! Sphere lights by spherical harmonics.
 
-use ridgelight::gpu::shaders::offsets;
+use ridgelight::gpu::shaders::offset;
 use ridgelight::plan::Pass;
 use ridgelight::plan::pyramid::Pyramid;
 use ridgelight::scene::Quality;
@@ -27,7 +27,10 @@ pub(crate) fn slope_error(visible: &SphereGeometry, quality: &Quality, is_pyrami
 /// All azimuths of one sphere light, after the last batch: the sum of the sphere lights so far, and this one's light
 /// before it is clamped at 0.
 pub(crate) fn sphere_sh_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
-    use offsets::sphere_sh_shade_push::{AZIMUTHS, LAST_AZIMUTH, RADIANCE, REACH_M};
+    const AZIMUTHS: usize = offset("SphereShShadePush", "azimuths");
+    const LAST_AZIMUTH: usize = offset("SphereShShadePush", "last_azimuth");
+    const RADIANCE: usize = offset("SphereShShadePush", "radiance");
+    const REACH_M: usize = offset("SphereShShadePush", "reach_m");
     if f32::from_bits(pushed(pass, RADIANCE + 12)) > 0.0 {
         run.sphere_lights = vec![([0.0; 3], 0.0); run.scene.field.heights_m().len()];
     }

@@ -168,7 +168,7 @@ fn specular(base: &Quality) -> impl Iterator<Item = Method> + use<> {
             cutoff: 0.0,
             level_offset: 1,
             specular,
-            ..Bounces::DEFAULT
+            ..Bounces::default()
         };
         Quality { basis: Basis::Sh, sh_order, levels, level_offset: 1, bounces, ..base }
     };
@@ -185,8 +185,13 @@ fn specular(base: &Quality) -> impl Iterator<Item = Method> + use<> {
 /// along the grid and not.
 fn bounces(base: &Quality) -> impl Iterator<Item = Method> + use<> {
     let base = *base;
-    let of =
-        |engine, azimuths| Bounces { count: 2, engine, azimuths, cutoff: 0.0, ..Bounces::DEFAULT };
+    let of = |engine, azimuths| Bounces {
+        count: 2,
+        engine,
+        azimuths,
+        cutoff: 0.0,
+        ..Bounces::default()
+    };
     let bounced = |engine, azimuths| Quality { bounces: of(engine, azimuths), ..base };
     let walked = |lines| Quality { lines, ..bounced(BounceEngine::Sweep, 4) };
     let stack = bounced(BounceEngine::Pyramid, 4);

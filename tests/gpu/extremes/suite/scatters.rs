@@ -1,10 +1,10 @@
 //! Light scattered between visible points at the extremes: the device's paths, over the oracle's visible points, in
 //! f64.
 
+use ridgelight::gpu::shaders::offset;
 use std::f64::consts::PI;
 
 use glam::DVec3;
-use ridgelight::gpu::shaders::offsets::scatter_gather_push::STEPS;
 use ridgelight::scene::{
     Albedo, Border, Lights, PhongSpecular, Scene, Specular, Sun, Surface, VisiblePoint,
 };
@@ -13,6 +13,8 @@ use ridgelight_cpu::tolerance::{EPSILON, Land, gathered};
 
 use super::points::{Sight, places, renamed};
 use super::{About, Asks, Case, Found, Probe, bounces, field, none, specular};
+
+const STEPS: usize = offset("ScatterGatherPush", "steps");
 
 const PLACES: usize = 12;
 

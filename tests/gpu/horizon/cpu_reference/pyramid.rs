@@ -1,6 +1,6 @@
 //! The passes of a height pyramid.
 
-use ridgelight::gpu::shaders::offsets;
+use ridgelight::gpu::shaders::offset;
 use ridgelight::plan::pyramid::{Level, Pyramid};
 use ridgelight::plan::{Azimuth, Nodes, Pass};
 use ridgelight_cpu::lattice::Lattice;
@@ -22,7 +22,7 @@ impl Run<'_> {
 /// A level, and its entry in the table.
 pub(crate) fn height_reduce(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let pyramid = run.pyramid();
-    let number = pushed(pass, offsets::reduce_push::LEVEL);
+    let number = pushed(pass, offset("ReducePush", "level"));
     let level = pyramid.level(number);
     let texels = run.floats(pass, "height_levels").expect("written");
     let table = run.words(pass, "level_table").expect("written");

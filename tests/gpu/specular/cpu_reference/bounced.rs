@@ -1,7 +1,7 @@
 //! The passes of indirect Phong specular.
 
 use half::f16;
-use ridgelight::gpu::shaders::offsets;
+use ridgelight::gpu::shaders::offset;
 use ridgelight::plan::pyramid::Pyramid;
 use ridgelight::plan::{Format, Kind, Pass};
 use ridgelight::scene::{Levels, Receiver};
@@ -101,7 +101,7 @@ pub(crate) fn specular_visibility(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 }
 
 pub(crate) fn specular_exit(run: &mut Run, pass: &Pass) -> Vec<Pair> {
-    use offsets::specular_exit_push::BEGINS;
+    const BEGINS: usize = offset("SpecularExitPush", "begins");
     let [order, direct, has_bounces, vectors, halves] =
         ["order", "is_direct", "is_bounced", "vectors", "halves"]
             .map(|name| constant(pass, name) as usize);
@@ -169,7 +169,7 @@ pub(crate) fn specular_exit(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 pub(crate) fn vector_reduce(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let order = run.quality.sh_order as usize;
     let shade = run.shade();
-    let number = pushed(pass, offsets::reduce_push::LEVEL);
+    let number = pushed(pass, offset("ReducePush", "level"));
     let level = shade.level(number);
     let exit = run.all_series(pass, "exit_vectors", order);
     let texels = run.all_series(pass, "vector_levels", order);
@@ -186,7 +186,9 @@ pub(crate) fn vector_reduce(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 
 /// The arriving light, from the device's own levels, in one dispatch.
 pub(crate) fn specular_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
-    use offsets::gather_push::{AZIMUTHS, FIRST_AZIMUTH, LAST_AZIMUTH};
+    const AZIMUTHS: usize = offset("GatherPush", "azimuths");
+    const FIRST_AZIMUTH: usize = offset("GatherPush", "first_azimuth");
+    const LAST_AZIMUTH: usize = offset("GatherPush", "last_azimuth");
     let azimuths = pushed(pass, AZIMUTHS);
     assert_eq!([pushed(pass, FIRST_AZIMUTH), pushed(pass, LAST_AZIMUTH)], [0, azimuths]);
     let order = constant(pass, "order") as usize;

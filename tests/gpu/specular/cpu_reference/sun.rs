@@ -1,6 +1,6 @@
 //! Direct Phong specular of suns, and the light of suns that bounces reflect.
 
-use ridgelight::gpu::shaders::offsets;
+use ridgelight::gpu::shaders::offset;
 use ridgelight::plan::Pass;
 use ridgelight::scene::Sun;
 use ridgelight_cpu::shared::field::{field_slope, normal_of};
@@ -13,7 +13,7 @@ use crate::direct::cpu_reference::light::Rgb;
 
 /// From the device's own sun, added to what is there.
 pub(crate) fn sun_specular(run: &mut Run, pass: &Pass) -> Vec<Pair> {
-    use offsets::sun_specular_push::COLOUR;
+    const COLOUR: usize = offset("SunSpecularPush", "colour");
     let number: usize =
         pass.part.strip_prefix("sun").and_then(|n| n.parse().ok()).expect("sun and its number");
     let sun = run.scene.lights.suns[number - 1];
@@ -55,7 +55,7 @@ fn sun_arriving(run: &mut Run, pass: &Pass, sun: &Sun, towards: Rgb) -> Vec<Pair
     }
     let sums = run.floats(pass, "sun_sum").expect("read");
     let got = run.all_series(pass, "arriving", order);
-    if f32::from_bits(pushed(pass, offsets::sun_specular_push::COLOUR + 12)) > 0.0 {
+    if f32::from_bits(pushed(pass, offset("SunSpecularPush", "colour") + 12)) > 0.0 {
         run.arriving = vec![vec![[0.0; 3]; order * order]; sums.len()];
     }
     let (heights, error) = (run.heights(), run.texel_error());

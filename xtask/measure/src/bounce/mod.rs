@@ -109,10 +109,10 @@ fn rows(gpu: &mut Headless, names: &str, scene: &mut Scene, reference: &Referenc
         for engine in ENGINES {
             let found = drawn_in_layers(gpu, scene, &quality(engine, count, 64))?;
             let ms = found.bounces_ms();
-            let mark = if picked == engine.name() { ", picked" } else { "" };
+            let mark = if picked == engine.to_string() { ", picked" } else { "" };
             println!(
                 "| {names} | {albedo} | {count} | {}{mark} | {:.2} | {indirect_noise:.2} | {:.3} | {noise:.3} | {ms:.1} | {:.3} |",
-                engine.name(),
+                engine,
                 error(&found.indirect, &indirect)?,
                 error(&found.light, &whole)?,
                 ms / *first.get_or_insert(ms),
@@ -134,7 +134,7 @@ fn panel(gpu: &mut Headless, title: &str, scene: &Scene, reference: &Reference) 
             ends = [ends[0].min(ms), ends[1].max(ms)];
             points.push([ms, error(&found.indirect, &indirect)?]);
         }
-        let name = format!("{}, 8 to 64 azimuths", engine.name());
+        let name = format!("{}, 8 to 64 azimuths", engine);
         curves.push(curve(&name, colour, Style::Dotted, points));
     }
     let points = ends.map(|ms| [ms, noise]).to_vec();

@@ -69,7 +69,7 @@ fn table(gpu: &mut Headless, side: usize, runs: usize) -> Result<()> {
         let found = drawn_in_layers(gpu, &scene, &all[3])?;
         println!(
             "| {} | {azimuths} | {:.1} | {:.1} | {:.2} | {:.2} | {:.2} | {:.3} | {:.2} | {:.3} |",
-            engine.name(),
+            engine,
             found.plan.internal_bytes() as f64 * 1e-6,
             ms[0],
             ms[1] / ms[0],
@@ -104,7 +104,7 @@ fn subsampled(gpu: &mut Headless) -> Result<()> {
             let found = drawn_in_layers(gpu, &scene, &Quality { subsample, ..quality })?;
             println!(
                 "| {} | {count} | {subsample}× | {:.2} | {:.3} | {:.1} | {:.3} |",
-                engine.name(),
+                engine,
                 error(&found.indirect, &every.indirect)?,
                 error(&found.light, &every.light)?,
                 found.bounces_ms(),

@@ -35,7 +35,7 @@ fn candidates() -> Vec<(usize, String, Quality)> {
     let sweeps =
         [(Lines::FourCells, base.fuse), (Lines::Cell, base.fuse), (Lines::Cell, Fuse::AimedAround)];
     let sweeps = sweeps.map(|(lines, fuse)| {
-        let name = format!("lines {} {}", lines.name(), fuse.name());
+        let name = format!("lines {} {}", lines, fuse);
         (0, name, Quality { lines, fuse, ..base })
     });
     let pyramids = [(1, 0), (4, 2)].map(|(level_step, level_offset)| {

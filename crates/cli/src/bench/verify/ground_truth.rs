@@ -1,7 +1,7 @@
 //! The light that the oracle computes at some texels of a scene.
 
 use ridgelight::gpu::Pixels;
-use ridgelight::scene::{Lights, Scene, SphereLight};
+use ridgelight::scene::{Lights, Scene};
 use ridgelight_cpu::light;
 use ridgelight_cpu::oracle::Oracle;
 use ridgelight_cpu::sphere::sphere_of;
@@ -91,16 +91,16 @@ fn light_at(scene: &Scene, oracle: &Oracle, place: usize) -> ([f64; 4], f64) {
     let (row, col) = (place / scene.field.cols(), place % scene.field.cols());
     let albedo = albedo_of(scene, place);
     let tint = |c: [f64; 3]| c.iter().zip(albedo).map(|(c, a)| c * a).sum::<f64>() / 3.0;
-    let Lights { sky, environment, suns, keys, sphere_lights: spheres } = &scene.lights;
+    let Lights { sky, environment, suns, keys, .. } = &scene.lights;
     let share = light::sky_of(oracle, row, col, TRUE_AZIMUTHS);
     let sky = sky.map_or(0.0, |colour| tint(colour.map(|c| f64::from(c) * share)));
     let environment =
         environment.as_ref().map_or(0.0, |e| tint(light::environment_of(oracle, row, col, e)));
     let suns = suns.iter().map(|s| tint(light::sun_of(oracle, row, col, s, TRUE_STRIPS)));
     let keys = keys.iter().map(|k| tint(light::key_of(oracle, row, col, k, TRUE_STRIPS)));
-    let sphere_light = |s: &SphereLight| {
-        let share = sphere_of(oracle, row, col, s, TRUE_SLICES);
-        tint(s.radiance.map(|c| f64::from(c) * share))
-    };
-    ([sky, environment, suns.chain(keys).sum(), spheres.iter().map(sphere_light).sum()], share)
+    let near = scene.lights.near().map(|light| {
+        let share = sphere_of(oracle, row, col, &light.sphere, TRUE_SLICES);
+        tint(light.sphere.radiance.map(|c| f64::from(c) * share))
+    });
+    ([sky, environment, suns.chain(keys).sum(), near.sum()], share)
 }

@@ -26,12 +26,11 @@ pub(super) fn check_slices(
     places: &[usize],
     device: &mut Device,
 ) -> Result<Option<String>> {
-    let mut sphere_lights = scene.lights.sphere_lights.clone();
-    sphere_lights.retain(|light| light.radiance.iter().any(|v| *v > 0.0));
-    if sphere_lights.is_empty() {
+    let lights = scene.lights.near_alone().lit();
+    if lights.near().next().is_none() {
         return Ok(None);
     }
-    let scene = white(scene, Lights { sphere_lights, ..Lights::default() });
+    let scene = white(scene, lights);
     let found = colours(&device.picture(&scene)?, places);
     let wanted = slices(&scene, places, device.quality);
     let errors = wanted.judge("sphere light at one place", &found, device.quality)?;
@@ -44,7 +43,8 @@ fn slices(scene: &Scene, places: &[usize], quality: &Quality) -> Wanted {
     let cols = scene.field.cols();
     summed(scene, places, |light, p| {
         let share = sphere_at(&oracle, light, quality.sun_azimuths, p / cols, p % cols);
-        let off = SphereGeometry::of(&scene.field, light, p).tolerance() + 4.0 * EPSILON;
+        let geometry = SphereGeometry::of(&scene.field, light, p);
+        let off = geometry.tolerance() + 4.0 * EPSILON * share;
         [DVec3::splat(share), DVec3::splat(off)]
     })
 }
@@ -55,10 +55,10 @@ fn summed(
     places: &[usize],
     mut of: impl FnMut(&SphereLight, usize) -> [DVec3; 2],
 ) -> Wanted {
-    let lights = &scene.lights.sphere_lights;
+    let lights: Vec<_> = scene.lights.near().map(|light| light.sphere).collect();
     let mut at = |p: &usize| {
         let mut sum = [DVec3::ZERO; 2];
-        for light in lights {
+        for light in &lights {
             let radiance = DVec3::from_array(light.radiance.map(f64::from));
             let found = of(light, *p);
             sum = [0, 1].map(|i| sum[i] + radiance * found[i]);
@@ -74,7 +74,7 @@ pub(super) fn check(
     ground_truth: &GroundTruth,
     device: &mut Device,
 ) -> Result<String> {
-    let lights = Lights { sphere_lights: scene.lights.sphere_lights.clone(), ..Lights::default() };
+    let lights = scene.lights.near_alone();
     let (scene, quality) = (&Scene { lights, ..scene.clone() }, device.quality);
     // The plan bounds the light of culled sphere lights.
     let all = Quality { light_cutoff: 0.0, ..*quality };

@@ -30,7 +30,9 @@ impl GroundTruth {
     /// use as many slices as fit.
     pub fn draw(rig: &mut Rig) -> Result<Self> {
         let scene = rig.scene;
-        let Lights { sky, environment, suns, keys, sphere_lights } = scene.lights.clone();
+        let near = scene.lights.near_alone();
+        let is_near = near.near().next().is_some();
+        let Lights { sky, environment, suns, keys, .. } = scene.lights.clone();
         let aimed = match (suns.is_empty(), keys.is_empty()) {
             (_, true) => "suns",
             (true, false) => "key lights",
@@ -40,7 +42,7 @@ impl GroundTruth {
         let has_sky = sky.is_some() || environment.is_some();
         let parts = [
             (!suns.is_empty() || !keys.is_empty(), aimed, Lights { suns, keys, ..none.clone() }),
-            (!sphere_lights.is_empty(), "sphere lights", Lights { sphere_lights, ..none.clone() }),
+            (is_near, "lights near the field", near),
             (has_sky, "sky", Lights { sky, environment, ..none }),
         ];
         let parts: Vec<(&str, Scene)> = parts
@@ -54,7 +56,7 @@ impl GroundTruth {
         for (i, (name, part)) in parts.iter().enumerate() {
             let begun = Instant::now();
             let seconds = if i < last { 0.5 * share } else { share };
-            let [quality, half] = match part.lights.sphere_lights.is_empty() {
+            let [quality, half] = match part.lights.near().next().is_none() {
                 true => affordable(rig, part, seconds)?,
                 false => affordable_slices(rig, part, seconds)?,
             };

@@ -51,7 +51,7 @@ impl Settings {
         let next = next(setting, &word(setting, asked), ahead);
         let mut wanted = asked.clone();
         wanted.set(name, vec![next]);
-        let mut quality = Quality::DEFAULT;
+        let mut quality = Quality::default();
         for setting in SETTINGS {
             said(setting.set(&mut quality, &word(setting, &wanted)))?;
         }
@@ -67,7 +67,7 @@ pub fn said<T>(result: Result<T>) -> std::result::Result<T, Refused> {
 
 /// A setting's value: the user's, or the default.
 fn word(setting: &Setting, asked: &Request) -> String {
-    asked.first(setting.name).map_or_else(|| setting.get(&Quality::DEFAULT), str::to_owned)
+    asked.first(setting.name).map_or_else(|| setting.get(&Quality::default()), str::to_owned)
 }
 
 /// The value after, or before. Long ranges go in factors of two.

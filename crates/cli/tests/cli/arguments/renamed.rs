@@ -83,7 +83,7 @@ fn old_keys_of_scene_files_warn_once() {
     );
     let [plan, warned] = planned(&folder, "--scene old.json");
     let [expected, silent] = planned(&folder, "--scene new.json");
-    assert_eq!((plan, silent.as_str()), (expected, ""));
+    assert_eq!((&plan, silent.as_str()), (&expected, ""));
     let mut lines: Vec<&str> = warned.split_inclusive('\n').collect();
     lines.sort_unstable();
     assert_eq!(
@@ -102,6 +102,12 @@ fn old_keys_of_scene_files_warn_once() {
     }
     let [old, _] = planned(&folder, "--scene b.json");
     assert_eq!(old, planned(&folder, "--scene s.json")[0]);
+    // An old flag overrides the file's key, as the new one does.
+    let with = |flag: &str| format!("--scene s.json {flag} 1,2,30,4,5 {flag} 2,2,30,4,5");
+    let [overridden, warned] = planned(&folder, &with("--light"));
+    assert_eq!(warned, warning("--light", "--sphere-light"));
+    assert_ne!(overridden, old);
+    assert_eq!(overridden, planned(&folder, &with("--sphere-light"))[0]);
 }
 
 #[test]

@@ -67,7 +67,7 @@ fn choices_of_bounces_reach_the_goal() {
         let Trial { quality, measured, .. } = chosen.trial;
         assert!(measured.at_most <= most, "{most}: {measured:?}");
         assert!(true_error(&quality) <= most, "{most}: {} of {quality:?}", true_error(&quality));
-        let bounces = Bounces { count: 2, ..Bounces::DEFAULT };
+        let bounces = Bounces { count: 2, ..Bounces::default() };
         assert!(cost(&quality) < cost(&Quality { bounces, ..Quality::default() }));
         // The last count is that of the probes that measured the choice.
         let last = batches_used[batches_used.len() - 1];
