@@ -99,9 +99,9 @@ fn schema() -> Value {
 
 /// The table of docs/settings.md.
 fn settings_page() -> String {
-    let mut page = "# Settings\n\nEvery setting trades time for accuracy. One definition in `src/scene/quality.rs` gives the flag of \
+    let mut page = "# Settings\n\nSettings trade time and memory for accuracy. One definition in `src/scene/quality.rs` gives the flag of \
                     the command line (`--sun-azimuths`), the JSON key (`sun_azimuths`), the field of `RidgelightQuality` and \
-                    the viewer's entry. [Choosing settings](choosing-settings.md) says which to change first.\n"
+                    the viewer's entry. [Choosing settings](choosing-settings.md) explains which to change first.\n"
         .to_owned();
     let groups = [
         ("For everyone", Audience::Everyone),
