@@ -1,8 +1,7 @@
 //! Bounces at edges, across the seam of periodic fields, at voids and on single lines of texels, by every engine.
 
 use ridgelight::scene::{
-    Albedo, Border, BounceEngine, BounceSpecular, Bounces, HeightField, Levels, Lights, Quality,
-    Scene, Sun,
+    Albedo, Border, BounceEngine, Bounces, HeightField, Levels, Lights, Quality, Scene, Sun,
 };
 use ridgelight_cpu::tolerance::EPSILON;
 
@@ -17,9 +16,15 @@ const LOW: Sun =
 /// A number of bounces without cutoff; one level an octave, whose texels lie on the field's.
 fn quality(engine: BounceEngine, count: u32, azimuths: u32) -> Quality {
     let (level_step, level_offset) = (1, 1);
-    let specular = BounceSpecular::Vector;
-    let bounces =
-        Bounces { count, engine, azimuths, cutoff: 0.0, level_step, level_offset, specular };
+    let bounces = Bounces {
+        count,
+        engine,
+        azimuths,
+        cutoff: 0.0,
+        level_step,
+        level_offset,
+        ..Bounces::default()
+    };
     let levels = Levels::Pyramid;
     Quality { azimuths, bounces, levels, level_step, level_offset, ..Quality::default() }
 }

@@ -39,15 +39,16 @@ pub(crate) fn cases() -> Vec<Case> {
                 Specular::Constant(PhongSpecular { exponent: 6.0, scale: 0.5 }),
             )
         };
+        let all = Bounces { cutoff: 0.0, ..Bounces::default() };
         let bounces = Bounces {
             count: 2,
             engine: BounceEngine::Pyramid,
             // None along the field's edge, where rounding decides.
             azimuths: 8,
-            cutoff: 0.0,
             level_step: 2,
             level_offset: 0,
             specular,
+            ..all
         };
         let base = Quality { azimuths: 8, level_step: 3, level_offset: 0, ..Quality::default() };
         Case {
