@@ -72,7 +72,7 @@ pub(crate) const ANY_LIGHT: &str =
 /// Sphere lights.
 pub(crate) const SPHERE_LIGHT: NearType = NearType {
     name: "sphere light",
-    label: "light",
+    label: "sphere_light",
     shaded_by: "slices of the sphere light above the horizon",
     by_paths: true,
     by_sh: true,
@@ -100,7 +100,7 @@ impl NearLight {
         format!("{} {}", self.of.name, self.position + 1)
     }
 
-    /// Its name in labels and layers: "light1" is the scene's first.
+    /// Its name in labels and layers: "sphere_light1" is the scene's first.
     pub(crate) fn label(&self) -> String {
         format!("{}{}", self.of.label, self.position + 1)
     }

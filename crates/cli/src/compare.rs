@@ -7,14 +7,19 @@ use ridgelight::{Error, Result};
 use ridgelight_io as files;
 use ridgelight_io::{Channels, Layer};
 
-use crate::args::CompareArgs;
+use crate::args::{CompareArgs, Renamed};
 use crate::setup::{self, Outcome};
 use pairs::{Pair, Pairs};
 use rows::{Excess, Row};
 
 pub fn run(args: &CompareArgs) -> Result<Outcome> {
     check(args)?;
-    let (a, b) = (pairs::read(&args.result)?, pairs::read(&args.reference)?);
+    let mut renamed = Renamed::default();
+    let [a, b] = [&args.result, &args.reference].map(|path| pairs::read(path, &mut renamed));
+    let (a, b) = (a?, b?);
+    if !args.quiet {
+        renamed.warn();
+    }
     if args.horizons {
         pairs::check_horizons(&args.result, &a)?;
         pairs::check_horizons(&args.reference, &b)?;

@@ -1,4 +1,4 @@
-//! Old names of flags, values and scene file keys. Each is accepted with a warning for one release.
+//! Old names of flags, values, scene file keys and layers. Each is accepted with a warning for one release.
 
 use std::ffi::OsString;
 use std::io::Write as _;
@@ -17,6 +17,9 @@ pub const RENAMED: [(&str, &str); 10] = [
     ("lights.balls", "lights.sphere_lights"),
 ];
 
+/// Old and new layer of the Nth sphere light.
+const LAYER: (&str, &str) = ("direct.lightN", "direct.sphere_lightN");
+
 /// Old names that were found.
 #[derive(Default)]
 pub struct Renamed(Vec<(&'static str, &'static str)>);
@@ -25,10 +28,23 @@ impl Renamed {
     /// The new name of an old one.
     pub fn new_name(&mut self, name: &str) -> Option<&'static str> {
         let pair = RENAMED.into_iter().find(|(old, _)| *old == name)?;
+        self.found(pair);
+        Some(pair.1)
+    }
+
+    /// The new name of an old channel of a picture, "direct.light1.R".
+    pub fn new_channel(&mut self, name: &str) -> Option<String> {
+        let [old, new] = [LAYER.0, LAYER.1].map(|layer| layer.trim_end_matches('N'));
+        let rest = name.strip_prefix(old)?;
+        rest.split('.').next()?.parse::<u32>().ok()?;
+        self.found(LAYER);
+        Some(format!("{new}{rest}"))
+    }
+
+    fn found(&mut self, pair: (&'static str, &'static str)) {
         if !self.0.contains(&pair) {
             self.0.push(pair);
         }
-        Some(pair.1)
     }
 
     /// Replaces old flags and values in the words of a command line. A flag is old only where the command has the new

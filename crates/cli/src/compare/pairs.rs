@@ -7,7 +7,7 @@ use ridgelight_io as files;
 use ridgelight_io::Planes;
 use ridgelight_trade::flip;
 
-use crate::args::CompareArgs;
+use crate::args::{CompareArgs, Renamed};
 use crate::setup::extension;
 
 /// A channel of both.
@@ -28,9 +28,14 @@ pub struct Pairs<'a> {
     pub lost: Vec<&'a str>,
 }
 
-/// Every plane of a file; a transparent pixel is NaN in all of them.
-pub fn read(path: &Path) -> Result<Planes> {
+/// Every plane of a file, old names of layers replaced; a transparent pixel is NaN in all of them.
+pub fn read(path: &Path, renamed: &mut Renamed) -> Result<Planes> {
     let mut file = files::read_planes(path)?;
+    for name in &mut file.names {
+        if let Some(new) = renamed.new_channel(name) {
+            *name = new;
+        }
+    }
     if let Some(alpha) = file.names.iter().position(|name| name == "A") {
         let alpha = file.planes[alpha].clone();
         for plane in &mut file.planes {

@@ -180,6 +180,40 @@ fn pictures_have_their_known_flip() {
     assert!((at(" --pixels-per-degree 67.02064") - default).abs() < 1e-6);
 }
 
+/// The layer of a sphere light has the name of its metadata; a file of an earlier release has the old one.
+#[test]
+fn an_old_layer_is_the_new_one() {
+    let folder = Folder::new();
+    let (one, two) = ([1.0; 12], [2.0; 12]);
+    let channels = |layer: &str, of_light| {
+        let names = ["R", "G", "B"].map(|c| format!("{layer}.{c}"));
+        let all: Vec<_> = names.iter().map(|name| (name.as_str(), of_light)).collect();
+        write(&folder, &format!("{layer}.exr"), &[&[("R", one)][..], &all].concat());
+    };
+    channels("direct.light1", one);
+    channels("direct.sphere_light1", two);
+    channels("direct.lights", one);
+    let of = |files: &str| {
+        folder.run_without_driver(&["compare", &format!("{files}.exr"), "direct.sphere_light1.exr"])
+    };
+    let old = of("direct.light1");
+    let warning = "warning: direct.lightN is now direct.sphere_lightN; the old name goes away in the next release\n";
+    assert_eq!((old.status, old.err.as_str()), (Some(0), warning));
+    assert!(
+        !old.out.contains("only in") && old.out.contains("direct.sphere_light1.R: "),
+        "{}",
+        old.out
+    );
+    let new = of("direct.sphere_light1");
+    assert_eq!((new.status, new.err.as_str()), (Some(0), ""));
+    let other = of("direct.lights");
+    assert!(
+        other.err.is_empty() && other.out.contains("only in direct.lights.exr"),
+        "{}",
+        other.out
+    );
+}
+
 /// A layer of one file only is listed and not compared. One that the result lacks fails every bound; an extra one does not. The
 /// bound applies to the worst of the others.
 #[test]

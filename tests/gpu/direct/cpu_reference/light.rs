@@ -177,8 +177,8 @@ pub(crate) fn sun_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 }
 
 pub(crate) fn sphere_light_of(run: &Run, pass: &Pass) -> SphereLight {
-    let name = pass.part.split(' ').next().and_then(|part| part.strip_prefix("light"));
-    let number: usize = name.and_then(|n| n.parse().ok()).expect("light and its number");
+    let name = pass.part.split(' ').next().and_then(|part| part.strip_prefix("sphere_light"));
+    let number: usize = name.and_then(|n| n.parse().ok()).expect("sphere_light and its number");
     run.scene.lights.sphere_lights[number - 1]
 }
 

@@ -66,7 +66,7 @@ fn probes(found: &Found) -> Vec<Probe> {
         let radiance = f64::from(sphere_light.radiance[0]);
         let light = soft.light.max(0.0);
         Probe {
-            found: found.light("direct.light1", row, col),
+            found: found.light("direct.sphere_light1", row, col),
             expected: [radiance * light; 2],
             bound: radiance * (off + 4.0 * EPSILON * light),
             at: [0, row, col],

@@ -118,7 +118,7 @@ fn probe(
     // A hidden sphere light has no rounding.
     let error = if share > 0.0 { visible(found, sphere_light, at).tolerance() } else { 0.0 };
     Probe {
-        found: found.light("direct.light1", at[0], at[1]),
+        found: found.light("direct.sphere_light1", at[0], at[1]),
         expected: [(share - lost).max(0.0), share].map(|s| radiance * s),
         bound: radiance * (error + rule * share + 4.0 * EPSILON * share),
         at: [0, at[0], at[1]],
