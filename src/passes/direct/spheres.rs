@@ -236,7 +236,7 @@ mod tests {
         names.dedup();
         let each = ["sphere_shade", "light_resolve"];
         assert_eq!(names, [&["height_cells", "height_bounds"][..], &each, &each].concat());
-        assert!(plan.edit_passes.is_empty() && plan.find("direct.light2").is_some());
+        assert!(plan.edit_passes.is_empty() && plan.find("direct.sphere_light2").is_some());
         assert!(plan.notes.iter().all(|n| !n.contains("light")), "{:?}", plan.notes);
     }
 
