@@ -151,7 +151,6 @@ fn every_field_of_a_scene_arrives() {
         ..unsafe { std::mem::zeroed() }
     };
     // SAFETY: arrays of this function, of these sizes, or null.
-    // SAFETY: arrays of this function, of these sizes, or null.
     let of = |given: &RidgelightScene| unsafe { scene(given) }.ok().expect("a scene");
     let found = of(&given);
     let (field, surface, lights) = (&found.field, &found.surface, &found.lights);
