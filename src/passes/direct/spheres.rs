@@ -76,7 +76,7 @@ impl Spheres {
         Ok(spheres)
     }
 
-    /// As [`record`](Self::record), by spherical harmonics.
+    /// As [`plan`](Self::plan), by spherical harmonics.
     pub(crate) fn plan_soft(
         &self,
         builder: &mut Builder,
