@@ -104,8 +104,10 @@ fn edit_all(gpu: &mut Headless, frame: &mut Frame, scene: &Scene, asked: &Reques
         brush(&mut heights, side, at, if i % 2 == 0 { 1.0 } else { -1.0 });
         gpu.refill(frame, 0, &heights)?;
         let times = gpu.draw_edit(frame, at)?;
-        let swept =
-            4.0 * f64::from(words(gpu, frame, "edit_list")?[offset("EditList", "swept_steps") / 4]);
+        let swept = 4.0
+            * f64::from(
+                words(gpu, frame, "edit_list")?[const { offset("EditList", "swept_steps") } / 4],
+            );
         let marks = words(gpu, frame, "dirty_texels")?;
         let marked: f64 = marks.iter().map(|w| f64::from(w.count_ones())).sum();
         let lit = marked / (side * side) as f64;

@@ -49,7 +49,7 @@ impl Bends {
         Ok(Self { buffer, texels: [first, first_fan], count, bent })
     }
 
-    /// Records the passes that fill [`bent`](Self::bent); `points` and `ground` are those of the flat field.
+    /// Plans the passes that fill [`bent`](Self::bent); `points` and `ground` are those of the flat field.
     pub(super) fn plan(
         &self,
         builder: &mut Builder,
@@ -72,7 +72,7 @@ impl Bends {
         }
     }
 
-    /// Records the passes that weigh the directions; returns their image.
+    /// Plans the passes that weigh the directions; returns their image.
     pub(super) fn weigh(&self, builder: &mut Builder, field: &HeightField) -> ResourceId {
         let extent = [field.cols() as u32, field.rows() as u32, self.count];
         let weights = builder.image("fan_weights", Owner::Internal, Format::R32Float, extent, true);

@@ -71,12 +71,6 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     let size = limits.check_size(field.rows(), field.cols())?;
     let mut notes = Vec::new();
     let active = ActiveLights::of(scene, quality, wanted, &mut notes)?;
-    if quality.light_basis == LightBasis::Sh
-        && let Some(light) = active.near.active.iter().find(|light| !light.of.by_sh)
-    {
-        let found = format!("`light_basis sh` with a {}", light.of.name);
-        return Err(Error::setting("light_basis", found, "`light_basis exact`"));
-    }
     let quality = &if wanted.unshadowed { without_bounces(quality) } else { *quality };
     let quality = &specular::quality(quality, &active, &mut notes)?;
     let mut sweep = Sweep::choose(field, surface.border, quality, limits, false, &mut notes)?;

@@ -106,10 +106,6 @@ fn traced(
     let Scene { field, surface, lights } = scene;
     lights.check()?;
     surface.check(field.rows() * field.cols())?;
-    if let Some(light) = lights.near().find(|light| !light.of.by_paths) {
-        let expected = "lights that the path-traced reference supports";
-        return Err(Error::setting("lights", light.name(), expected));
-    }
     if bounces > MOST_BOUNCES {
         let expected = format!("a whole number from 0 to {MOST_BOUNCES}");
         return Err(Error::setting("bounces", bounces.to_string(), expected));

@@ -50,19 +50,13 @@ pub struct SphereLight {
     pub radiance: [f32; 3],
 }
 
-/// A type of light near the field: its names and what supports it. The planner's messages, labels and checks follow.
+/// A type of light near the field: its name and how it is shaded. The planner's messages, labels and checks follow.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct NearType {
     /// In messages, before its number.
     pub(crate) name: &'static str,
-    /// In labels and layers, before its number.
-    pub(crate) label: &'static str,
     /// What `sphere_shade` does for it, as plans print it.
     pub(crate) shaded_by: &'static str,
-    /// Whether the path-traced reference supports it.
-    pub(crate) by_paths: bool,
-    /// Whether `light_basis sh` supports it.
-    pub(crate) by_sh: bool,
 }
 
 /// What a scene without lights lacks.
@@ -70,13 +64,8 @@ pub(crate) const ANY_LIGHT: &str =
     "at least one of sky, environment, sun, key light and sphere light";
 
 /// Sphere lights.
-pub(crate) const SPHERE_LIGHT: NearType = NearType {
-    name: "sphere light",
-    label: "sphere_light",
-    shaded_by: "slices of the sphere light above the horizon",
-    by_paths: true,
-    by_sh: true,
-};
+pub(crate) const SPHERE_LIGHT: NearType =
+    NearType { name: "sphere light", shaded_by: "slices of the sphere light above the horizon" };
 
 /// A light near the field, as all passes and checks take it.
 #[derive(Clone, Copy, Debug)]
@@ -90,11 +79,6 @@ pub struct NearLight {
 }
 
 impl NearLight {
-    /// Whether `light_basis sh` supports its type.
-    pub fn is_by_sh(&self) -> bool {
-        self.of.by_sh
-    }
-
     /// Its name in messages: "sphere light 1" is the scene's first.
     pub(crate) fn name(&self) -> String {
         format!("{} {}", self.of.name, self.position + 1)
@@ -102,7 +86,7 @@ impl NearLight {
 
     /// Its name in labels and layers: "sphere_light1" is the scene's first.
     pub(crate) fn label(&self) -> String {
-        format!("{}{}", self.of.label, self.position + 1)
+        format!("{}{}", self.of.name.replace(' ', "_"), self.position + 1)
     }
 }
 

@@ -141,23 +141,23 @@ impl Bouncing {
         self.exits.len()
     }
 
-    /// The passes before the first bounce. `is_recorded`: those of the blocks have been recorded.
+    /// The passes before the first bounce. `is_planned`: those of the blocks are in the plan.
     pub(crate) fn prepare(
         &self,
         builder: &mut Builder,
         scene: &Scene,
         blocks: Option<&Blocks>,
-        (heights, is_recorded): (ResourceId, bool),
+        (heights, is_planned): (ResourceId, bool),
     ) {
         let Some(blocks) = blocks else { return };
         let pyramids = match &self.engine {
-            Engine::Brute if is_recorded => return,
+            Engine::Brute if is_planned => return,
             Engine::Brute => return blocks.plan(builder, &scene.field, heights, None),
             Engine::Sweep if self.at_nodes.is_none() => return,
             Engine::Sweep => None,
             Engine::Pyramid(pyramids) => Some(pyramids),
         };
-        if !is_recorded {
+        if !is_planned {
             let of = (&scene.field, scene.surface.border);
             let ids = [heights, blocks.images.cells, blocks.images.ground];
             height_cells::plan(builder, of, ids, None);

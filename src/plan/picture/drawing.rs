@@ -1,4 +1,4 @@
-//! Records the passes of a picture, light by light.
+//! Plans the passes of a picture, light by light.
 
 use super::super::active_lights::{ActiveLights, Aimed, Colour};
 use super::images::{Harmonics, Images, Tables};
@@ -241,7 +241,7 @@ impl Drawing<'_> {
         }
     }
 
-    /// Records the bounces, each from the exit radiance of the previous one.
+    /// Plans the bounces, each from the exit radiance of the previous one.
     fn bounces(&mut self, lists: &Lists) {
         let Some(bouncing) = self.bouncing.take() else { return };
         let batches = lists.batches.last().map(Vec::as_slice);

@@ -64,7 +64,7 @@ pub(crate) fn dirty_mark(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 /// Occluders are those of the CPU reference, which marks the texels that it reaches.
 pub(crate) fn horizon_resweep(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let occluders = stored(run, pass, "occluders", 2).expect("written");
-    let first = pushed(pass, offset("HorizonResweepPush", "first_azimuth")) as usize;
+    let first = pushed(pass, const { offset("HorizonResweepPush", "first_azimuth") }) as usize;
     let options =
         SweepOptions { line_shift: constant(pass, "line_shift"), ..SweepOptions::default() };
     let mut pairs = Vec::new();
@@ -114,16 +114,17 @@ pub(crate) fn dirty_list(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let want = run.edit.as_ref().expect("drawn").dirty.clone();
     let words = run.words(pass, "edit_list").expect("written");
     let at = |offset: usize| words[offset / 4] as usize;
-    let mut listed = words[offset("EditList", "dirty_words") / 4..]
-        [..at(offset("EditList", "word_count"))]
+    let mut listed = words[const { offset("EditList", "dirty_words") } / 4..]
+        [..at(const { offset("EditList", "word_count") })]
         .to_vec();
     listed.sort_unstable();
     let listed_by_reference = list_reference::dirty_list(&want);
     let groups = |a: usize| [at(a), at(a + 4), at(a + 8)];
     // Sixteen words a group that lights, two a group that resolves; fewer groups than a row holds.
-    for (at, words) in
-        [(offset("EditList", "light_groups"), 16), (offset("EditList", "resolve_groups"), 2)]
-    {
+    for (at, words) in [
+        (const { offset("EditList", "light_groups") }, 16),
+        (const { offset("EditList", "resolve_groups") }, 2),
+    ] {
         assert_eq!(groups(at), [listed_by_reference.len().div_ceil(words), 1, 1]);
     }
     assert_eq!(listed.len(), listed_by_reference.len(), "words that mark anything");

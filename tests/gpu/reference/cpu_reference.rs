@@ -41,13 +41,13 @@ pub(crate) fn path_trace(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 /// The sums added by one dispatch, given those before the batch.
 fn one_part(run: &mut Run, pass: &Pass, before: &[f32], spread: &[f32], pairs: &mut Vec<Pair>) {
     let [bounces, seed, first_path, last_path, first_light, last_light, lights] = [
-        offset("PathTracePush", "bounces"),
-        offset("PathTracePush", "seed"),
-        offset("PathTracePush", "first_path"),
-        offset("PathTracePush", "last_path"),
-        offset("PathTracePush", "first_light"),
-        offset("PathTracePush", "last_light"),
-        offset("PathTracePush", "light_count"),
+        const { offset("PathTracePush", "bounces") },
+        const { offset("PathTracePush", "seed") },
+        const { offset("PathTracePush", "first_path") },
+        const { offset("PathTracePush", "last_path") },
+        const { offset("PathTracePush", "first_light") },
+        const { offset("PathTracePush", "last_light") },
+        const { offset("PathTracePush", "light_count") },
     ]
     .map(|o| pushed(pass, o));
     let [cols, rows] = run.size();
@@ -162,7 +162,7 @@ pub(crate) fn quadrature(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     for _ in drawn..BATCHES {
         run.gpu.draw_passes(&mut run.frame, &[last]).expect("drawn on");
     }
-    let bounces = pushed(pass, offset("PathTracePush", "bounces")) as usize;
+    let bounces = pushed(pass, const { offset("PathTracePush", "bounces") }) as usize;
     let fineness = Fineness { azimuths: 24, divisions: 1, strips: 8 };
     let expected_light = expected_light(run.scene, bounces, fineness).expect("a ground truth");
     let (want, stated) = (&expected_light.radiance[bounces], &expected_light.error[bounces]);

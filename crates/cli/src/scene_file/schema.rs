@@ -135,13 +135,17 @@ fn settings_page() -> String {
 
 /// The table of lights in docs/command-line.md, from the one that their flags follow from.
 fn lights_table() -> String {
-    let mut table = "\n| flag | list | light |\n|---|---|---|\n".to_owned();
+    let mut table = "\n| flag | key in scene files | light |\n|---|---|---|\n".to_owned();
     for light in &LIGHTS {
         let name = flag(light.id);
         let row = [
             format!("`{name} {}`", light.value_name),
             format!("`{}`", light.list),
-            format!("{}. {}", light.help, light.long_help),
+            format!(
+                "{}. {}",
+                light.help,
+                light.long_help.split(" Repeat the flag").next().unwrap()
+            ),
         ];
         table += &format!("| {} |\n", row.map(|cell| cell.replace('|', "\\|")).join(" | "));
     }

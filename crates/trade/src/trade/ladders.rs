@@ -82,7 +82,7 @@ fn has_no_levels(quality: &Quality) -> bool {
 
 /// Whether some lights are integrated in slices: suns that are not points, key lights, sphere lights.
 pub(crate) fn have_slices(lights: &Lights) -> bool {
-    let have_others = !lights.keys.is_empty() || lights.near().any(|l| l.sphere.radius_m > 0.0);
+    let have_others = !lights.keys.is_empty() || lights.near().next().is_some();
     have_others || lights.suns.iter().any(|s| !s.is_point())
 }
 
@@ -134,8 +134,7 @@ pub fn ladders(scene: &Scene, bounces: u32) -> Vec<Ladder> {
     add(have_slices(lights), slices);
     let exact = "each slice of a sphere light exact: sharp shadows";
     let light_basis = Ladder::new("light basis", &["light_basis: sh exact"], exact);
-    let by_sh = lights.near().next().is_some() && lights.near().all(|light| light.is_by_sh());
-    add(by_sh, light_basis);
+    add(lights.near().next().is_some(), light_basis);
     let bright = "more elevations per table: small bright features";
     let elevations = &["table_elevations: 32 64 128 256 512 1024"];
     let table = Ladder::new("table elevations", elevations, bright);

@@ -72,8 +72,8 @@ pub(crate) fn bent_directions(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let float = |o: usize| f64::from(f32::from_bits(pushed(pass, o)));
     let curvature = Curvature {
         per_m: [
-            offset("BentDirectionsPush", "curvature_x"),
-            offset("BentDirectionsPush", "curvature_y"),
+            const { offset("BentDirectionsPush", "curvature_x") },
+            const { offset("BentDirectionsPush", "curvature_y") },
         ]
         .map(float),
     };
@@ -123,7 +123,7 @@ pub(crate) fn bent_directions(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 pub(crate) fn fan_weights(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let directions = run.bent_directions();
     let fans = fans_of(&directions);
-    let first = pushed(pass, offset("FanWeightsPush", "first_direction")) as usize;
+    let first = pushed(pass, const { offset("FanWeightsPush", "first_direction") }) as usize;
     let count = pass.groups[2] as usize;
     let bent = at_texels(run, pass, directions.count());
     let weights = run.floats(pass, "fan_weights").expect("written");

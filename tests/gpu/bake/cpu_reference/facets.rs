@@ -13,7 +13,7 @@ use crate::cpu_reference::{Pair, Run, pushed};
 pub(crate) fn facet_mask(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let (field, border) = (&run.scene.field, run.border());
     let directions = run.directions();
-    let first = pushed(pass, offset("FacetMaskPush", "first_layer")) as usize;
+    let first = pushed(pass, const { offset("FacetMaskPush", "first_layer") }) as usize;
     let layers = pass.groups[2] as usize;
     let words = run.words(pass, "facet_mask").expect("written");
     let finer = field.finer(border, 3).expect("a finer field");

@@ -29,17 +29,18 @@ impl Sum {
 /// One look-up after the other as in the CPU reference, from the device's inputs.
 pub(crate) fn scatter_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let [first_link, steps, step, first_path, paths, first_sun, suns, first_view] = [
-        offset("ScatterGatherPush", "first_link"),
-        offset("ScatterGatherPush", "steps"),
-        offset("ScatterGatherPush", "step"),
-        offset("ScatterGatherPush", "first_path"),
-        offset("ScatterGatherPush", "paths"),
-        offset("ScatterGatherPush", "first_sun"),
-        offset("ScatterGatherPush", "suns"),
-        offset("ScatterGatherPush", "first_view"),
+        const { offset("ScatterGatherPush", "first_link") },
+        const { offset("ScatterGatherPush", "steps") },
+        const { offset("ScatterGatherPush", "step") },
+        const { offset("ScatterGatherPush", "first_path") },
+        const { offset("ScatterGatherPush", "paths") },
+        const { offset("ScatterGatherPush", "first_sun") },
+        const { offset("ScatterGatherPush", "suns") },
+        const { offset("ScatterGatherPush", "first_view") },
     ]
     .map(|o| pushed(pass, o) as usize);
-    let weight = f64::from(f32::from_bits(pushed(pass, offset("ScatterGatherPush", "weight_sr"))));
+    let weight =
+        f64::from(f32::from_bits(pushed(pass, const { offset("ScatterGatherPush", "weight_sr") })));
     let (source, sums) = (constant(pass, "source"), constant(pass, "sums") == 1);
     let direct_specular = paths > 0 && constant(pass, "direct_specular") == 1;
     let points = run.points.clone().expect("a case with points");
@@ -90,8 +91,8 @@ pub(crate) fn scatter_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     }
     let curvature = Curvature {
         per_m: [
-            offset("ScatterGatherPush", "curvature_x"),
-            offset("ScatterGatherPush", "curvature_y"),
+            const { offset("ScatterGatherPush", "curvature_x") },
+            const { offset("ScatterGatherPush", "curvature_y") },
         ]
         .map(|o| f64::from(f32::from_bits(pushed(pass, o)))),
     };

@@ -98,7 +98,7 @@ pub(crate) fn bounce_march(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 /// A level, and its entry in the table.
 pub(crate) fn shade_reduce(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let shade = run.shade();
-    let number = pushed(pass, offset("ReducePush", "level"));
+    let number = pushed(pass, const { offset("ReducePush", "level") });
     let level = shade.level(number);
     let exit = run.exit(pass);
     let texels = colours(&run.floats(pass, "shade_levels").expect("written"));

@@ -32,7 +32,7 @@ pub(crate) fn places(run: &Run, nodes: Nodes) -> Vec<[usize; 2]> {
 /// lie where their mean does, within a texel: it stands half a step away, and across it as much again.
 pub(crate) fn casts(run: &mut Run, pass: &Pass, azimuths: Range<usize>) -> Vec<Pair> {
     let places = &places(run, Nodes { stride: 2 * constant(pass, "node_stride") });
-    let begin = pushed(pass, offset("BounceWalkPush", "begin")) as usize;
+    let begin = pushed(pass, const { offset("BounceWalkPush", "begin") }) as usize;
     let Some(sets) = visibility_caches(run, pass, begin, places) else {
         return Vec::new();
     };

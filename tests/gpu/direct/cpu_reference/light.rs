@@ -60,8 +60,8 @@ fn device_tables(run: &mut Run, pass: &Pass) -> EnvTables {
 pub(crate) fn env_tables(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let rows = wedge_rows(run, pass);
     let got = device_tables(run, pass);
-    let height = pushed(pass, offset("EnvTablesPush", "height")) as usize;
-    let azimuths = pushed(pass, offset("EnvTablesPush", "azimuth_count")) as usize;
+    let height = pushed(pass, const { offset("EnvTablesPush", "height") }) as usize;
+    let azimuths = pushed(pass, const { offset("EnvTablesPush", "azimuth_count") }) as usize;
     let want = tables_reference::env_tables(&rows, (height, azimuths), got.nodes, got.bottom_rad);
     assert_eq!(got.texels.len(), want.texels.len());
     let (nodes, pieces) = (got.nodes, (height + got.nodes) as f64);

@@ -22,7 +22,7 @@ impl Run<'_> {
 /// A level, and its entry in the table.
 pub(crate) fn height_reduce(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let pyramid = run.pyramid();
-    let number = pushed(pass, offset("ReducePush", "level"));
+    let number = pushed(pass, const { offset("ReducePush", "level") });
     let level = pyramid.level(number);
     let texels = run.floats(pass, "height_levels").expect("written");
     let table = run.words(pass, "level_table").expect("written");

@@ -91,7 +91,7 @@ pub(crate) fn horizon_sweep(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let slopes = stored(run, pass, "slopes", if slope_format == 1 { 4 } else { 2 });
     let packed =
         (constant(pass, "hull_packed") == 1).then(|| height_scale(run.heights().heights_m));
-    let first = pushed(pass, offset("HorizonSweepPush", "first_azimuth")) as usize;
+    let first = pushed(pass, const { offset("HorizonSweepPush", "first_azimuth") }) as usize;
     let mut pairs = Vec::new();
     for k in first..first + pass.groups[2] as usize {
         let azimuth = run.plan.azimuths[k];
@@ -258,7 +258,7 @@ fn one_a_texel(
 }
 
 pub(crate) fn surface_sweep(run: &mut Run, pass: &Pass) -> Vec<Pair> {
-    let first = pushed(pass, offset("MarchPush", "first_azimuth"));
+    let first = pushed(pass, const { offset("MarchPush", "first_azimuth") });
     let stored = (constant(pass, "writes_distances") == 1, Nodes { stride: 1 });
     one_a_texel(run, pass, first, stored, |run, azimuth, reference| {
         let warm_up = run.warm_up(azimuth.marches_rows());
@@ -269,7 +269,7 @@ pub(crate) fn surface_sweep(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 }
 
 pub(crate) fn horizon_march(run: &mut Run, pass: &Pass) -> Vec<Pair> {
-    let first = pushed(pass, offset("MarchPush", "first_azimuth"));
+    let first = pushed(pass, const { offset("MarchPush", "first_azimuth") });
     let stored =
         (constant(pass, "writes_distances") == 1, Nodes { stride: constant(pass, "node_stride") });
     one_a_texel(run, pass, first, stored, |run, azimuth, reference| {
@@ -284,8 +284,8 @@ pub(crate) fn sweep_fuse(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let (fuse, line_shift) = fuse_of(pass);
     let angles = run.floats(pass, "horizon_angles").expect("written");
     let distances = run.floats(pass, "horizon_distances");
-    let first = pushed(pass, offset("SweepFusePush", "first_azimuth")) as usize;
-    let layer = pushed(pass, offset("SweepFusePush", "first_layer")) as usize;
+    let first = pushed(pass, const { offset("SweepFusePush", "first_azimuth") }) as usize;
+    let layer = pushed(pass, const { offset("SweepFusePush", "first_layer") }) as usize;
     let [cols, rows] = run.size();
     let [largest, _] = run.relief();
     let range = first..first + pass.groups[2] as usize;

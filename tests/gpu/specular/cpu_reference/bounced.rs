@@ -169,7 +169,7 @@ pub(crate) fn specular_exit(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 pub(crate) fn vector_reduce(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let order = run.quality.sh_order as usize;
     let shade = run.shade();
-    let number = pushed(pass, offset("ReducePush", "level"));
+    let number = pushed(pass, const { offset("ReducePush", "level") });
     let level = shade.level(number);
     let exit = run.all_series(pass, "exit_vectors", order);
     let texels = run.all_series(pass, "vector_levels", order);

@@ -55,7 +55,7 @@ fn sun_arriving(run: &mut Run, pass: &Pass, sun: &Sun, towards: Rgb) -> Vec<Pair
     }
     let sums = run.floats(pass, "sun_sum").expect("read");
     let got = run.all_series(pass, "arriving", order);
-    if f32::from_bits(pushed(pass, offset("SunSpecularPush", "colour") + 12)) > 0.0 {
+    if f32::from_bits(pushed(pass, const { offset("SunSpecularPush", "colour") } + 12)) > 0.0 {
         run.arriving = vec![vec![[0.0; 3]; order * order]; sums.len()];
     }
     let (heights, error) = (run.heights(), run.texel_error());

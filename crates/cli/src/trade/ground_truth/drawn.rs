@@ -42,7 +42,7 @@ impl GroundTruth {
         let has_sky = sky.is_some() || environment.is_some();
         let parts = [
             (!suns.is_empty() || !keys.is_empty(), aimed, Lights { suns, keys, ..none.clone() }),
-            (is_near, "lights near the field", near),
+            (is_near, "sphere lights", near),
             (has_sky, "sky", Lights { sky, environment, ..none }),
         ];
         let parts: Vec<(&str, Scene)> = parts
