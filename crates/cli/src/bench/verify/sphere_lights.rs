@@ -151,9 +151,9 @@ fn slope_error(geometry: &SphereGeometry, quality: &Quality, largest: f64) -> f6
     device_pyramid_within(geometry, march, steepest, quality.level_step)
 }
 
-/// A scene without its sphere lights; none without other lights.
+/// A scene without its lights near the field; none without other lights.
 pub(super) fn without(scene: &Scene) -> Option<Scene> {
-    let lights = Lights { sphere_lights: Vec::<SphereLight>::new(), ..scene.lights.clone() };
+    let lights = scene.lights.without_near();
     let Lights { sky, environment, suns, keys, .. } = &lights;
     let shines = sky.is_some() || environment.is_some() || !suns.is_empty() || !keys.is_empty();
     shines.then(|| Scene { lights, ..scene.clone() })
