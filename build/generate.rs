@@ -137,17 +137,6 @@ fn add_wrapped(table: &mut String, parts: impl Iterator<Item = String>) {
     table.push('\n');
 }
 
-pub(crate) fn snake(name: &str) -> String {
-    let mut out = String::new();
-    for (i, c) in name.chars().enumerate() {
-        if c.is_uppercase() && i > 0 {
-            out.push('_');
-        }
-        out.extend(c.to_lowercase());
-    }
-    out
-}
-
 /// `sun_shade` as `SunShade`.
 fn pascal(name: &str) -> String {
     let words = name.split('_').map(|word| {

@@ -82,7 +82,7 @@ fn variables(
         let Operand::StorageClass(class) = pointer.operands[0] else { continue };
         let pointee = d.ty(id(&pointer.operands[1]));
         if class == StorageClass::PushConstant {
-            (push, _) = push_type(name, d, id(&pointer.operands[1]), layouts);
+            (push, _) = push_type(name, d, (id(&pointer.operands[1]), None), layouts);
             continue;
         }
         let Some(binding) = d.of(target, Decoration::Binding) else { continue };
@@ -121,21 +121,31 @@ fn variables(
             }
         };
         // A block without an instance name has the name of its type.
-        let block = super::generate::snake(&d.name(pointee.result_id.expect("a type has an id")));
+        let block = snake(&d.name(pointee.result_id.expect("a type has an id")));
         let name = Some(d.name(target)).filter(|n| !n.is_empty()).unwrap_or(block);
         bindings.insert(binding, Binding { name, kind, written });
     }
     (push, bindings)
 }
 
-/// Rust type and size of push constants or of a part of them. Adds the structs.
-fn push_type(name: &str, d: &Decorations<'_>, target: u32, layouts: &mut Layouts) -> (String, u32) {
+/// Rust type and bytes of push constants or of a part of them, up to the end of its last member. Adds the structs.
+///
+/// `target` is a type, and where it holds matrices, the stride of their columns. Rust has neither gaps between elements
+/// nor rows of matrices first: both are refused.
+fn push_type(
+    name: &str,
+    d: &Decorations<'_>,
+    (target, columns): (u32, Option<u32>),
+    layouts: &mut Layouts,
+) -> (String, u32) {
     let ty = d.ty(target);
-    let mut array = |count: u32| {
-        let (element, bytes) = push_type(name, d, id(&ty.operands[0]), layouts);
-        // Rust's arrays have no gaps.
-        if d.of(target, Decoration::ArrayStride).is_some_and(|stride| stride != bytes) {
-            fail(&format!("{name}: a push constant is an array with gaps; use vec4 or scalars"));
+    let mut array = |count: u32, stride: Option<(&str, Option<u32>)>| {
+        let (element, bytes) = push_type(name, d, (id(&ty.operands[0]), columns), layouts);
+        if let Some((what, found)) = stride
+            && found != Some(bytes)
+        {
+            let found = found.map_or_else(|| "none".to_owned(), |n| n.to_string());
+            fail(&format!("{name}: push constants: {what}: found {found}, expected {bytes}"));
         }
         (format!("[{element}; {count}]"), bytes * count)
     };
@@ -143,27 +153,38 @@ fn push_type(name: &str, d: &Decorations<'_>, target: u32, layouts: &mut Layouts
         Op::TypeFloat => ("f32".to_owned(), 4),
         Op::TypeInt if literal(&ty.operands[1]) == 1 => ("i32".to_owned(), 4),
         Op::TypeInt => ("u32".to_owned(), 4),
-        Op::TypeVector => array(literal(&ty.operands[1])),
-        Op::TypeArray => array(literal(&d.ty(id(&ty.operands[1])).operands[0])),
+        Op::TypeVector => array(literal(&ty.operands[1]), None),
+        Op::TypeMatrix => array(literal(&ty.operands[1]), Some(("MatrixStride", columns))),
+        Op::TypeArray => {
+            let count = literal(&d.ty(id(&ty.operands[1])).operands[0]);
+            array(count, Some(("ArrayStride", d.of(target, Decoration::ArrayStride))))
+        }
         Op::TypeStruct => {
             let structure = d.name(target);
-            let mut bytes = 0;
+            let mut end = 0;
             let member = |(m, operand)| {
-                let (of_type, size) = push_type(name, d, id(operand), layouts);
                 let member = d.member_name(target, m as u32);
-                let Some(offset) = d.of_member(target, m as u32, Decoration::Offset) else {
-                    fail(&format!("{name}: {structure}.{member} has no offset"))
+                let of = |decoration| d.of_member(target, m as u32, decoration);
+                let Some(offset) = of(Decoration::Offset) else {
+                    fail(&format!("{name}: {structure}.{member}: found no Offset, expected one"))
                 };
-                bytes = bytes.max(offset + size);
+                if of(Decoration::RowMajor).is_some() {
+                    fail(&format!(
+                        "{name}: {structure}.{member}: found RowMajor, expected ColMajor"
+                    ));
+                }
+                let of_member = (id(operand), of(Decoration::MatrixStride));
+                let (of_type, size) = push_type(name, d, of_member, layouts);
+                end = end.max(offset + size);
                 Member { offset, name: member, of_type }
             };
             let members: Vec<Member> = ty.operands.iter().enumerate().map(member).collect();
-            let layout = (bytes, members);
+            let layout = (end, members);
             if layouts.pushes.get(&structure).is_some_and(|known| *known != layout) {
                 fail(&format!("{name}: {structure} has another layout than in an earlier shader"));
             }
             layouts.pushes.insert(structure.clone(), layout);
-            (structure, bytes)
+            (structure, end)
         }
         other => fail(&format!("{name}: a push constant holds a {other:?}")),
     }
@@ -235,6 +256,18 @@ fn constants(name: &str, d: &Decorations<'_>) -> BTreeMap<u32, Constant> {
         }
     }
     constants
+}
+
+/// `SunShade` as `sun_shade`.
+pub(crate) fn snake(name: &str) -> String {
+    let mut out = String::new();
+    for (i, c) in name.chars().enumerate() {
+        if c.is_uppercase() && i > 0 {
+            out.push('_');
+        }
+        out.extend(c.to_lowercase());
+    }
+    out
 }
 
 fn id(operand: &Operand) -> u32 {
