@@ -129,7 +129,7 @@ impl ViewRenderer {
     /// flight (1 or more).
     ///
     /// `format` is R32G32B32A32 or R16G16B16A16 SFLOAT for linear radiance; or a screen format, which gets
-    /// radiance times exposure, clipped and sRGB-encoded, as in a PNG: R8G8B8A8, B8G8R8A8 or A8B8G8R8_PACK32,
+    /// radiance times exposure through the tone curve, as in a PNG: R8G8B8A8, B8G8R8A8 or A8B8G8R8_PACK32,
     /// UNORM or SRGB, or 10 bits per colour.
     ///
     /// # Errors

@@ -64,7 +64,7 @@ pub use scatter::Scatter;
 pub(crate) use scatter::check_view;
 pub use settings::{Audience, Setting, Values, Word};
 pub use surface::{Albedo, Border, PhongSpecular, Specular, Surface};
-pub use tone::{Tone, picture_tone};
+pub use tone::Tone;
 pub use visible::{LOST_RAY, VisiblePoint, VisiblePoints};
 
 /// A height field, its surface and the lights.

@@ -1,30 +1,45 @@
 //! How radiance becomes a channel of a picture.
 
-/// Channel of a pixel, [0..1]: radiance times `exposure`, clipped to [0..1] (NaN gives 0), sRGB-encoded (IEC 61966-2-1).
-pub fn picture_tone(radiance: f32, exposure: f32) -> f64 {
-    let light = (f64::from(radiance) * f64::from(exposure)).clamp(0.0, 1.0).max(0.0);
-    if light <= 0.003_130_8 { 12.92 * light } else { 1.055 * light.powf(1.0 / 2.4) - 0.055 }
-}
-
-/// The tone curve: radiance times `exposure`, clipped to [0..1], sRGB-encoded.
+/// The tone curve: radiance times `exposure`, a shoulder, sRGB-encoded (IEC 61966-2-1).
 ///
-/// It has no shoulder: values that are not clipped decode back to radiance, to the step of 8 bits.
+/// Below the shoulder, codes decode back to radiance, to the step of 8 bits. Above it, at x with s the shoulder, the
+/// curve is 1 - (1 - s)² / (x + 1 - 2 s). This hyperbola continues the line with its slope and reaches 1 at infinity:
+/// Reinhard's x / (1 + x), scaled and moved (E. Reinhard et al., Photographic tone reproduction for digital images,
+/// 2002, eq. 3).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tone {
-    /// The factor before clipping, finite and 0 or more; 1 by default. Radiance 1/exposure is white.
+    /// The factor before the curve, finite and 0 or more; 1 by default.
     pub exposure: f32,
+    /// Where the shoulder begins, 0 to 1; 1, the default, clips.
+    pub shoulder: f32,
 }
 
 impl Default for Tone {
     fn default() -> Self {
-        Self { exposure: 1.0 }
+        Self { exposure: 1.0, shoulder: 1.0 }
     }
 }
 
 impl Tone {
+    /// The curve of all pictures of light: the shoulder is 0.8, code 231.
+    pub fn picture(exposure: f32) -> Self {
+        Self { exposure, shoulder: 0.8 }
+    }
+
+    /// Channel of a pixel, [0..1]. Negative radiance and NaN give 0.
+    pub fn channel(self, radiance: f32) -> f64 {
+        let light = (f64::from(radiance) * f64::from(self.exposure)).max(0.0);
+        let (shoulder, rest) = (f64::from(self.shoulder), 1.0 - f64::from(self.shoulder));
+        let light = match light > shoulder {
+            true => 1.0 - rest * rest / (light - shoulder + rest),
+            false => light,
+        };
+        if light <= 0.003_130_8 { 12.92 * light } else { 1.055 * light.powf(1.0 / 2.4) - 0.055 }
+    }
+
     /// The 8-bit code of a radiance. Negative gives 0, infinity 255. The caller has to catch NaN.
     pub fn code(self, radiance: f32) -> u8 {
-        (255.0 * picture_tone(radiance, self.exposure)).round() as u8
+        (255.0 * self.channel(radiance)).round() as u8
     }
 
     /// The smallest radiance of each 8-bit code; 0 for the first, NaN where no radiance reaches the code. The code of a

@@ -649,7 +649,7 @@ enum RidgelightResult ridgelight_timings(const struct RidgelightRenderer *render
 
 // Makes the resources for pictures of a scene's light, for `slots` frames in flight (0: 1); `plan` lights it.
 // `format` is R32G32B32A32 or R16G16B16A16 SFLOAT for linear radiance; or a screen format of 8 or 10 bits per
-// colour, UNORM or SRGB, which gets exposure, clip and sRGB. `allocator` may be null.
+// colour, UNORM or SRGB, which gets exposure, tone curve and sRGB. `allocator` may be null.
 //
 // The device needs dynamicRendering of Vulkan 1.3 besides ridgelight_requirements, and the host's family needs
 // graphics.

@@ -28,7 +28,7 @@ pub use reference::ReferenceArgs;
 pub use renamed::Renamed;
 pub use scene::{BorderName, FieldArgs, LightArgs, SurfaceArgs};
 use values::bytes;
-pub use values::{SpecularArg, albedo_colour, numbers};
+pub use values::{SkyArg, SpecularArg, albedo_colour, numbers};
 pub use view::ViewArgs;
 
 /// Lights height fields on Vulkan by sky, environment, suns, key lights, sphere lights and indirect light, with
@@ -202,16 +202,18 @@ pub struct RenderArgs {
         help_heading = "Output"
     )]
     pub layers: Vec<Layer>,
-    /// Multiply radiance of a .png before sRGB, which clips at 1
+    /// Factor on the radiance of a .png. Default: automatic
+    ///
+    /// By default the 99th percentile of the picture's luminance becomes 0.8. Then all pictures have the same tone curve:
+    /// linear up to 0.8, compressed towards 1 above, sRGB-encoded. Give a factor to pictures that you compare.
     #[arg(
         long,
         hide_short_help = true,
         help_heading = "Output",
-        default_value_t = 1.0,
         value_name = "FACTOR",
         allow_negative_numbers = true
     )]
-    pub exposure: f32,
+    pub exposure: Option<f32>,
     #[command(flatten)]
     pub global: GlobalArgs,
 }

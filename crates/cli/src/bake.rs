@@ -48,7 +48,7 @@ pub fn run(args: &BakeArgs) -> Result<Outcome> {
     }
     let quality = request::quality(args)?;
     let field = setup::field(&args.input.path, &args.surface.field, &args.global)?;
-    let scene = setup::scene(field, &args.surface, &args.lights)?;
+    let scene = setup::scene(field, &args.surface, &args.lights, setup::Unlit::Sky)?;
     let around = request::directions(args)?;
     let mut job = Job {
         scene: &scene,

@@ -17,7 +17,12 @@ pub fn run(args: &PlanArgs) -> Result<Outcome> {
     }
     let quality = args.quality.quality()?;
     let field = setup::field(&args.input.path, &args.surface.field, &args.global)?;
-    let scene = setup::scene(field, &args.surface, &args.lights)?;
+    let scene = setup::scene(
+        field,
+        &args.surface,
+        &args.lights,
+        setup::Unlit::of(&quality, args.camera.compass_deg()),
+    )?;
     let camera_view = camera::requested(&args.camera, &scene)?;
     let (name, limits) = limits(&args.global)?;
     let plan = plan::picture(&scene, &quality, &limits, setup::wanted(&[]))?;

@@ -32,7 +32,7 @@ pub fn takes_signal() -> bool {
 pub fn run(args: &ReferenceArgs) -> Result<Outcome> {
     check(args)?;
     let field = setup::field(&args.input.path, &args.surface.field, &args.global)?;
-    let scene = setup::scene(field, &args.surface, &args.lights)?;
+    let scene = setup::scene(field, &args.surface, &args.lights, setup::Unlit::Daylight(None))?;
     let plan = |limits: &Limits| plan::reference(&scene, args.bounces, args.seed, limits);
     setup::check_plan(&args.global, plan)?;
     // From here on a signal ends the tracing only.

@@ -14,9 +14,12 @@ use ridgelight_io::{Channels, Layer as FileLayer};
 use crate::args::{Layer, RenderArgs};
 use crate::idle;
 use crate::setup::{self, Outcome};
+use crate::sky;
+use crate::tint::Tint;
 
-/// Linear radiance that sRGB encodes as 240 of 255.
-const NEARLY_WHITE: f32 = 0.87;
+/// Where automatic exposure puts the luminance that a share of the pixels does not exceed.
+const EXPOSED: f64 = 0.8;
+const EXPOSED_SHARE: f64 = 0.99;
 
 pub fn run(args: &RenderArgs) -> Result<Outcome> {
     setup::check_output("-o", &args.output, &["exr", "png"])?;
@@ -25,7 +28,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
     }
     let outputs = [("-o", Some(args.output.as_path())), ("--json", args.global.json.as_deref())];
     setup::check_distinct(&outputs, &setup::inputs(&args.input.path, &args.lights, &args.surface))?;
-    check_positive("--exposure", args.exposure)?;
+    args.exposure.map_or(Ok(()), |exposure| check_positive("--exposure", exposure))?;
     let is_exr = setup::extension(&args.output) == "exr";
     if !is_exr && !args.layers.is_empty() {
         return Err(Error::setting(
@@ -34,7 +37,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
             "an .exr output: a .png has no layers",
         ));
     }
-    if is_exr && args.exposure != 1.0 {
+    if is_exr && args.exposure.is_some() {
         return Err(Error::setting(
             "--exposure",
             "an .exr output",
@@ -46,7 +49,17 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
     auto::say_idle(&args.auto, args.global.quiet);
     let mut quality = args.quality.quality()?;
     let field = setup::field(&args.input.path, &args.surface.field, &args.global)?;
-    let scene = setup::scene(field, &args.surface, &args.lights)?;
+    let mut scene = setup::scene(
+        field,
+        &args.surface,
+        &args.lights,
+        setup::Unlit::of(&quality, args.camera.compass_deg()),
+    )?;
+    let tint = match is_exr {
+        true => args.surface.tint.unwrap_or(Tint::None),
+        false => setup::tint(&mut scene, &args.surface),
+    };
+    let scene = scene;
     if goal.is_some() {
         setup::check_diffuse(&scene, "--max-error or --time-budget")?;
     }
@@ -125,23 +138,25 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
     let mean_horizon =
         if horizon { Some(mean_horizon(&mut gpu, &scene, &quality, &limits)?) } else { None };
     progress.finish_and_clear();
+    let mut shown = None;
     let (rows, cols) = (scene.field.rows(), scene.field.cols());
     if let (Some(camera_view), Some(camera_pixels)) = (&camera_view, &camera_pixels) {
-        camera::write(args, camera_view, camera_pixels, &metadata)?;
+        if !is_exr {
+            let exposure = args.exposure.unwrap_or_else(|| exposure(&camera_pixels.radiance, None));
+            shown = Some(exposure);
+            metadata.push(("exposure".to_owned(), exposure.to_string()));
+        }
+        camera::write(args, camera_view, camera_pixels, shown, &metadata)?;
     } else if is_exr {
         write_exr(args, &scene.field, &pixels, mean_horizon.as_deref(), &metadata)?;
     } else {
         let picture = rgb(&pixels[0]);
-        let tone = Tone { exposure: args.exposure };
         let voids = scene.field.voids();
+        let exposure = args.exposure.unwrap_or_else(|| exposure(&picture, voids));
+        shown = Some(exposure);
+        metadata.push(("exposure".to_owned(), exposure.to_string()));
+        let tone = Tone::picture(exposure);
         files::write_png(&args.output, rows, cols, &picture, voids, tone, &metadata)?;
-        let white = |texel: &&[f32; 3]| texel.iter().all(|v| v * args.exposure >= NEARLY_WHITE);
-        if !args.global.quiet && 10 * picture.iter().filter(white).count() > 9 * picture.len() {
-            crate::say!(
-                "Note: nearly all of the picture is white. Use --sun 315,30 --sky 0.3 or a lower \
-                    --exposure to see relief."
-            );
-        }
     }
     if let Some(json) = &args.global.json {
         files::write_json(json, &setup::as_json(&metadata, &times))?;
@@ -157,6 +172,14 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
                 gpu.report().name
             );
         }
+        if let Some(light) = setup::default_light(&args.lights, &scene) {
+            crate::say!("Light: {light} (default).");
+        }
+        if let Some(exposure) = shown {
+            let tint = tint.name();
+            let by = if args.exposure.is_none() { "automatic" } else { "given" };
+            crate::say!("Picture: --tint {tint} --exposure {exposure} ({by}).");
+        }
         for sentence in chosen.iter().flat_map(|(goal, c)| auto::sentences(*goal, c, &scene)) {
             crate::say!("{sentence}");
         }
@@ -167,6 +190,20 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
 pub fn check_positive<T: Copy + Into<f64> + ToString>(flag: &str, x: T) -> Result<()> {
     let is_positive = x.into().is_finite() && x.into() > 0.0;
     is_positive.then_some(()).ok_or_else(|| Error::setting(flag, x.to_string(), "a number above 0"))
+}
+
+/// The exposure that puts the 99th percentile of luminance at 0.8; voids do not count. 1 where that is dark.
+fn exposure(picture: &[[f32; 3]], voids: Option<&[bool]>) -> f32 {
+    let texels = picture.iter().enumerate().filter(|(i, _)| !voids.is_some_and(|v| v[*i]));
+    let mut all: Vec<f64> = texels.map(|(_, t)| sky::luminance(t.map(f64::from))).collect();
+    if all.is_empty() {
+        return 1.0;
+    }
+    let at = (EXPOSED_SHARE * (all.len() - 1) as f64).round() as usize;
+    let (_, bright, _) = all.select_nth_unstable_by(at, f64::total_cmp);
+    // Four digits: a factor that can be typed.
+    let exposure = format!("{:.3e}", EXPOSED / *bright).parse::<f32>().unwrap_or(1.0);
+    if exposure.is_finite() && exposure > 0.0 { exposure } else { 1.0 }
 }
 
 /// Refuses light that overflows, although each light is finite.

@@ -5,17 +5,20 @@ pub mod terminal;
 
 use ridgelight::gpu::{self, Headless, HeadlessOptions, Pixels, Timing};
 use ridgelight::plan::{Limits, Picture, Plan};
-use ridgelight::scene::{Albedo, Border, HeightField, Lights, Scene, Specular, Surface, setting};
+use ridgelight::scene::{
+    Albedo, Border, HeightField, Lights, Lines, Quality, Scene, Specular, Surface, setting,
+};
 use ridgelight::{Error, Result};
 use ridgelight_io as files;
 use ridgelight_io::HeightOptions;
 use std::path::{Path, PathBuf};
 
 use crate::args::{
-    BorderName, FieldArgs, GlobalArgs, Layer, LightArgs, SpecularArg, SurfaceArgs, albedo_colour,
-    flag,
+    BorderName, FieldArgs, GlobalArgs, Layer, LightArgs, SkyArg, SpecularArg, SurfaceArgs,
+    albedo_colour, flag,
 };
-use crate::lights::LIGHTS;
+use crate::lights::{LIGHTS, light};
+use crate::tint::Tint;
 pub use settings_used::{as_json, asked, metadata, typed};
 
 /// How a command ended without an error.
@@ -61,10 +64,35 @@ pub fn field(path: &Path, surface: &FieldArgs, global: &GlobalArgs) -> Result<He
     files::read_heights(path, &options)
 }
 
-pub fn scene(field: HeightField, surface: &SurfaceArgs, lights: &LightArgs) -> Result<Scene> {
-    let albedo = match albedo_colour(&surface.albedo) {
-        Some(colour) => Albedo::Constant(colour),
-        None => files::read_albedo(Path::new(&surface.albedo), field.rows(), field.cols())?,
+/// The light of a scene without lights.
+#[derive(Clone, Copy)]
+pub enum Unlit {
+    /// A uniform sky of radiance 1.
+    Sky,
+    /// A sun and a clear sky, before a camera at a compass azimuth or on a map.
+    Daylight(Option<f64>),
+}
+
+impl Unlit {
+    /// Daylight, but a sky where lines must be exact: a sun's azimuths are no grid vectors.
+    pub fn of(quality: &Quality, camera_deg: Option<f64>) -> Self {
+        if quality.lines == Lines::Exact { Self::Sky } else { Self::Daylight(camera_deg) }
+    }
+}
+
+pub fn scene(
+    field: HeightField,
+    surface: &SurfaceArgs,
+    lights: &LightArgs,
+    unlit: Unlit,
+) -> Result<Scene> {
+    let tint = surface.tint.and_then(|tint| crate::tint::albedo(&field, tint));
+    let albedo = match (tint, albedo_colour(surface.albedo())) {
+        (Some(tint), _) => tint,
+        (None, Some(colour)) => Albedo::Constant(colour),
+        (None, None) => {
+            files::read_albedo(Path::new(surface.albedo()), field.rows(), field.cols())?
+        }
     };
     let specular = match &surface.specular {
         None => None,
@@ -73,20 +101,55 @@ pub fn scene(field: HeightField, surface: &SurfaceArgs, lights: &LightArgs) -> R
             Some(files::read_specular(path, field.rows(), field.cols())?)
         }
     };
-    let environment = match &lights.env {
-        // The compass turns clockwise, the library counter-clockwise.
-        Some(path) => Some(files::read_environment(path, -lights.env_rotate.to_radians())?),
-        None => None,
-    };
     Ok(Scene {
         surface: Surface { albedo, border: border(&surface.field), specular },
-        lights: Lights {
-            sky: if lights.is_empty() { Some([1.0; 3]) } else { lights.sky },
-            environment,
-            ..lights.others.0.clone()
-        },
+        lights: lights_of(lights, unlit)?,
         field,
     })
+}
+
+/// Tints a picture whose colours the command line does not give; returns its tint.
+pub fn tint(scene: &mut Scene, surface: &SurfaceArgs) -> Tint {
+    let is_default = surface.tint.is_none() && surface.albedo.is_none();
+    if is_default && let Some(albedo) = crate::tint::albedo(&scene.field, Tint::Land) {
+        scene.surface.albedo = albedo;
+        return Tint::Land;
+    }
+    surface.tint.unwrap_or(Tint::None)
+}
+
+fn lights_of(args: &LightArgs, unlit: Unlit) -> Result<Lights> {
+    let mut lights = args.others.0.clone();
+    let sky = match unlit {
+        _ if !args.is_empty() => args.sky,
+        Unlit::Sky => Some(SkyArg::Uniform([1.0; 3])),
+        Unlit::Daylight(camera_deg) => {
+            let sun = crate::sky::default_sun(camera_deg);
+            crate::lights::light("sun").add(&mut lights, &sun).expect("words of a sun");
+            Some(SkyArg::Clear)
+        }
+    };
+    match sky {
+        None => {}
+        Some(SkyArg::Uniform(radiance)) => lights.sky = Some(radiance),
+        Some(SkyArg::Clear) => {
+            let expected = "a --sun, whose sky it is, and no --env";
+            let sun = lights.suns.first().filter(|_| args.env.is_none());
+            let sun = sun.ok_or_else(|| Error::setting("--sky", "clear", expected))?;
+            lights.environment = Some(crate::sky::clear(sun)?);
+        }
+    }
+    if let Some(path) = &args.env {
+        // The compass turns clockwise, the library counter-clockwise.
+        lights.environment = Some(files::read_environment(path, -args.env_rotate.to_radians())?);
+    }
+    Ok(lights)
+}
+
+/// The default light as flags, where the command line gives none.
+pub fn default_light(args: &LightArgs, scene: &Scene) -> Option<String> {
+    let sun = light("sun").words(&scene.lights).into_iter().next();
+    sun.filter(|_| args.is_empty()).map(|words| format!("--sun {words} --sky clear"))
 }
 
 pub fn border(surface: &FieldArgs) -> Border {
@@ -143,7 +206,7 @@ pub fn inputs<'a>(
     lights: &'a LightArgs,
     surface: &'a SurfaceArgs,
 ) -> Vec<&'a Path> {
-    let albedo = albedo_colour(&surface.albedo).is_none().then_some(Path::new(&surface.albedo));
+    let albedo = albedo_colour(surface.albedo()).is_none().then_some(Path::new(surface.albedo()));
     let specular = match &surface.specular {
         Some(SpecularArg::File(path)) => Some(path.as_path()),
         _ => None,

@@ -48,7 +48,7 @@ pub fn run(args: &TradeArgs) -> Result<Outcome> {
     outputs.push(("--json", args.global.json.as_deref()));
     setup::check_distinct(&outputs, &inputs)?;
     let field = setup::field(&args.input.path, &args.surface.field, &args.global)?;
-    let scene = setup::scene(field, &args.surface, &args.lights)?;
+    let scene = setup::scene(field, &args.surface, &args.lights, setup::Unlit::Daylight(None))?;
     if args.reference.is_none() && scene.surface.specular.is_some() {
         let expected = "--reference: only a path-traced reference has specular light";
         return Err(Error::setting("--specular with trade", "Phong specular", expected));

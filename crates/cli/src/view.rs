@@ -29,7 +29,9 @@ pub fn run(args: &ViewArgs) -> Result<Outcome> {
     crate::render::check_positive("--exposure", args.exposure)?;
     let quality = args.quality.quality()?;
     let field = setup::field(&args.input.path, &args.surface.field, &args.global)?;
-    let scene = setup::scene(field, &args.surface, &args.lights)?;
+    let unlit = setup::Unlit::of(&quality, None);
+    let mut scene = setup::scene(field, &args.surface, &args.lights, unlit)?;
+    setup::tint(&mut scene, &args.surface);
     let still = setup::wanted(&[]);
     let picture = |limits: &Limits| plan::picture(&scene, &quality, limits, still);
     setup::check_plan(&args.global, picture)?;

@@ -272,7 +272,7 @@ mod tests {
     #[test]
     fn steps_are_where_codes_change() {
         for exposure in [1.0, 0.37, 1e-3, 250.0] {
-            let tone = Tone { exposure };
+            let tone = Tone::picture(exposure);
             let steps = tone.steps();
             assert_eq!(steps[0], 0.0);
             for (code, step) in steps.iter().enumerate().skip(1) {
@@ -281,8 +281,8 @@ mod tests {
             }
         }
         // No radiance has a code above 0, but at the least exposure infinity has every code.
-        assert!(Tone { exposure: 0.0 }.steps()[1..].iter().all(|s| s.is_nan()));
-        assert!(Tone { exposure: 1e-45 }.steps()[1..].iter().all(|s| s.is_infinite()));
+        assert!(Tone::picture(0.0).steps()[1..].iter().all(|s| s.is_nan()));
+        assert!(Tone::picture(1e-45).steps()[1..].iter().all(|s| s.is_infinite()));
     }
 
     #[test]
@@ -295,11 +295,19 @@ mod tests {
 
     #[test]
     fn tone_is_a_factor_and_a_clip() {
-        let tone = Tone { exposure: 2.0 };
+        let tone = Tone { exposure: 2.0, ..Tone::default() };
         assert_eq!(
             [-1.0, 0.0, 0.5, 9.0, f32::INFINITY].map(|v| tone.code(v)),
             [0, 0, 255, 255, 255]
         );
+        // The shoulder at x: 1 - 0.04 / (x - 0.6). At 0.8 it meets the line with slope 1, at 1 it is 0.9.
+        let picture = Tone::picture(1.0);
+        for (light, shown) in [(0.5, 0.5), (0.8, 0.8), (0.801, 0.800_995), (1.0, 0.9), (4.6, 0.99)]
+        {
+            assert_eq!(picture.code(light), Tone::default().code(shown), "{light}");
+            assert!((picture.channel(light) - Tone::default().channel(shown)).abs() < 1e-6);
+        }
+        assert_eq!(picture.code(f32::INFINITY), 255);
         // Middle grey: linear 0.214 041 is sRGB 0.5; code 127.5 rounds to 128 or 127.
         assert!((127..=128).contains(&tone.code(0.107_020_5)));
     }

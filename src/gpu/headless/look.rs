@@ -68,7 +68,7 @@ impl Headless {
         })
     }
 
-    /// The same for a screen of four bytes per pixel: radiance times `exposure`, clipped and sRGB-encoded, in
+    /// The same for a screen of four bytes per pixel: radiance times `exposure` through the tone curve, in
     /// the format's channel order.
     ///
     /// # Errors

@@ -96,7 +96,7 @@ impl View {
         };
         let tone = for_screen.then(|| ViewPass {
             pass: "picture_tone",
-            why: "the picture is of codes: exposure, clip, sRGB".to_owned(),
+            why: "the picture is of codes: exposure, tone curve, sRGB".to_owned(),
             vertices: 3,
             bytes: pixels * (COLOUR_BYTES + 4),
             reads: vec!["picture_radiance"],

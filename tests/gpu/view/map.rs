@@ -71,7 +71,7 @@ fn maps_match_the_cpu_reference_to_the_bit() {
     let far = Map { size: [19, 30], corner: [5.0, -8.0], grid_points_per_pixel: 1.7, ..grey };
     let voids: Vec<bool> = (0..37 * 23).map(|i| i % 11 == 3).collect();
     for (map, exposure) in [(at_once, 1.0), (grey, 0.0), (near, 3.7), (far, 1e-3)] {
-        let tone = Tone { exposure };
+        let tone = Tone::picture(exposure);
         let mut light = light(tone, 37 * 23);
         if !map.has_colour {
             light.iter_mut().for_each(|c| *c = [c[0]; 3]);
@@ -81,7 +81,7 @@ fn maps_match_the_cpu_reference_to_the_bit() {
         let got = drawn(&mut device, (&map, tone), &light, voids);
         assert!(got == want, "{map:?}: {} pixels differ", differing(&got, &want));
         // The comparison can fail.
-        let brighter = map_draw(&map, &light, voids, Tone { exposure: 1.1 * exposure + 0.1 });
+        let brighter = map_draw(&map, &light, voids, Tone::picture(1.1 * exposure + 0.1));
         assert!(differing(&brighter, &want) > 10, "{map:?}");
     }
 }

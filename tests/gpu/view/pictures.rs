@@ -248,7 +248,7 @@ fn screen_formats_match_float_pictures() {
         Ok((linear, shown))
     });
     let (linear, shown) = drawn.expect("pictures");
-    let tone = Tone { exposure };
+    let tone = Tone::picture(exposure);
     // The CPU reference, where the shader encodes: either code beside the value, within the error of powers: 3 units
     // of a logarithm of up to 9 over 2.4, as many of its exponential, and a rounding of each other step.
     let power = 32.0 * f64::from(f32::EPSILON);

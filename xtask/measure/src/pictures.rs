@@ -117,7 +117,7 @@ pub fn terrain(mut args: Args) -> Outcome {
         Ok((picture, lit, drawn))
     })?;
     let [cols, rows] = options.size.map(|n| n as usize);
-    files::write_png(&output, rows, cols, &view.radiance, None, Tone { exposure: 0.95 }, &[])?;
+    files::write_png(&output, rows, cols, &view.radiance, None, Tone::picture(0.95), &[])?;
     let report = gpu.report();
     let figures = serde_json::json!({
         "device": report.name, "driver": report.driver, "cols": cols, "rows": rows,

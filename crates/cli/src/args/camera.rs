@@ -74,6 +74,13 @@ pub struct CameraArgs {
     pub background: [f32; 3],
 }
 
+impl CameraArgs {
+    /// The camera's compass azimuth, if there is a camera.
+    pub fn compass_deg(&self) -> Option<f64> {
+        self.camera.map(|at| at.azimuth)
+    }
+}
+
 /// Compass azimuth and elevation, degrees, and a distance.
 #[derive(Clone, Copy)]
 pub struct CameraAt {

@@ -5,17 +5,20 @@ use std::path::PathBuf;
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches, ValueEnum};
 use ridgelight::scene::Lights;
 
-use super::values::{SpecularArg, cell, colour, specular};
+use super::values::{SkyArg, SpecularArg, cell, sky, specular};
 use crate::lights::LIGHTS;
+use crate::tint::Tint;
 
 #[derive(Args)]
 #[command(next_help_heading = "Lights")]
 pub struct LightArgs {
-    /// Uniform sky: radiance, or R,G,B
+    /// Sky: clear, or the radiance of a uniform sky
     ///
-    /// Default 1 if no other light is given.
-    #[arg(long, value_name = "RADIANCE", value_parser = colour, allow_negative_numbers = true)]
-    pub sky: Option<[f32; 3]>,
+    /// RADIANCE is one number or R,G,B. clear is the sky around the first --sun (Preetham 1999, turbidity 2.5), as bright as
+    /// that sun demands. Without any light, commands print and use a sun from the north-west and this sky; `bake`, `bench` and
+    /// --lines exact use a uniform sky of radiance 1.
+    #[arg(long, value_name = "RADIANCE|clear", value_parser = sky, allow_negative_numbers = true)]
+    pub sky: Option<SkyArg>,
     /// Environment map: .hdr or .exr
     ///
     /// Equirectangular, angular map, cube cross or cube faces, at infinity.
@@ -95,17 +98,22 @@ impl LightArgs {
 pub struct SurfaceArgs {
     #[command(flatten)]
     pub field: FieldArgs,
-    /// Diffuse reflectance, 0 to 1: number, R,G,B or .png/.exr
+    /// Diffuse reflectance, 0 to 1. Default 1
     ///
-    /// An image has the size of the field.
+    /// One number, R,G,B, or a .png or .exr image. An image has the size of the field.
     #[arg(
         long,
         value_name = "VALUE|FILE",
-        default_value = "1",
         allow_negative_numbers = true,
         help_heading = "Surface"
     )]
-    pub albedo: String,
+    pub albedo: Option<String>,
+    /// Albedo by height or slope: none, elevation, slope or land
+    ///
+    /// Default land for a .png and the window, else none. Colours span the heights from the 2nd to the 98th percentile, and
+    /// slopes from 0 to 60 degrees.
+    #[arg(long, conflicts_with = "albedo", hide_possible_values = true, help_heading = "Surface")]
+    pub tint: Option<Tint>,
     /// Phong specular: exponent 0 to 10000, scale 0 to 1
     ///
     /// The Phong lobe lies about the mirror direction of a view from straight above. SCALE plus --albedo is at most 1. A
@@ -120,6 +128,13 @@ pub struct SurfaceArgs {
         help_heading = "Surface"
     )]
     pub specular: Option<SpecularArg>,
+}
+
+impl SurfaceArgs {
+    /// The text of --albedo, or its default.
+    pub fn albedo(&self) -> &str {
+        self.albedo.as_deref().unwrap_or("1")
+    }
 }
 
 #[derive(Args)]

@@ -27,6 +27,22 @@ pub fn colour(text: &str) -> Result<[f32; 3], String> {
     }
 }
 
+/// A sky of one radiance, or the clear sky around the first sun.
+#[derive(Clone, Copy, PartialEq)]
+pub enum SkyArg {
+    Uniform([f32; 3]),
+    Clear,
+}
+
+pub fn sky(text: &str) -> Result<SkyArg, String> {
+    match text {
+        "clear" => Ok(SkyArg::Clear),
+        numbers => colour(numbers)
+            .map(SkyArg::Uniform)
+            .map_err(|error| format!("{error}; the word is clear")),
+    }
+}
+
 pub fn albedo_colour(text: &str) -> Option<[f32; 3]> {
     colour(text).ok()
 }

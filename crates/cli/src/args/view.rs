@@ -21,7 +21,7 @@ pub struct ViewArgs {
     pub surface: SurfaceArgs,
     #[command(flatten)]
     pub quality: QualityArgs,
-    /// Multiply radiance before sRGB, which clips at 1
+    /// Factor on radiance before the tone curve
     #[arg(
         long,
         hide_short_help = true,

@@ -9,7 +9,6 @@ use ridgelight_io as files;
 use ridgelight_io::{Channels, Layer as FileLayer};
 
 use crate::args::{CameraArgs, Layer, RenderArgs};
-use crate::setup;
 
 /// A camera and the options of its view.
 pub struct CameraView {
@@ -121,11 +120,12 @@ pub fn write(
     args: &RenderArgs,
     camera_view: &CameraView,
     pixels: &ViewPixels,
+    exposure: Option<f32>,
     metadata: &[(String, String)],
 ) -> Result<()> {
     let [cols, rows] = camera_view.options.size.map(|n| n as usize);
-    if setup::extension(&args.output) != "exr" {
-        let tone = Tone { exposure: args.exposure };
+    if let Some(exposure) = exposure {
+        let tone = Tone::picture(exposure);
         return files::write_png(&args.output, rows, cols, &pixels.radiance, None, tone, metadata);
     }
     let main = |channels| FileLayer { name: String::new(), channels };

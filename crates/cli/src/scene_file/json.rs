@@ -8,7 +8,7 @@ use ridgelight::{Error, Result};
 use serde::de::{Deserializer as _, MapAccess, Visitor};
 use serde_json::value::RawValue;
 
-use super::keys::{Key, Kind, Numbers, Part};
+use super::keys::{Key, Kind, Numbers, Or, Part};
 
 /// A value, or a member with its value.
 pub struct Found<'t> {
@@ -165,13 +165,24 @@ impl<'t> Found<'t> {
     /// A value of another kind.
     pub fn value(&self, key: &Key, folder: &Path) -> Result<OsString> {
         let file = || self.string().map(|name| folder.join(name).into_os_string());
-        if let Some(file) = file().filter(|_| key.or_file) {
-            return Ok(file);
+        let text = match key.or {
+            Or::Nothing => None,
+            Or::File => file(),
+            Or::Word(word) => self.string().filter(|text| text == word).map(OsString::from),
+        };
+        if let Some(text) = text {
+            return Ok(text);
         }
         match key.kind {
             Kind::Numbers(numbers) => match self.numbers(numbers) {
-                Err(_) if key.or_file => Err(self.wrong("a number, 3 in a list, or a file's name")),
-                text => Ok(text?.into()),
+                Ok(text) => Ok(text.into()),
+                Err(error) => Err(match key.or {
+                    Or::Nothing => error,
+                    Or::File => self.wrong("a number, 3 in a list, or a file's name"),
+                    Or::Word(word) => {
+                        self.wrong(&format!("a number, 3 in a list, or the word {word}"))
+                    }
+                }),
             },
             Kind::Word => self
                 .string()

@@ -49,12 +49,21 @@ pub struct Key {
     /// The id of the argument: the flag with `_` for `-`.
     pub id: &'static str,
     pub kind: Kind,
-    /// Whether a path stands for such a value, too.
-    pub or_file: bool,
+    /// What may stand in place of such a value.
+    pub or: Or,
+}
+
+/// A text in place of numbers or parts.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Or {
+    Nothing,
+    /// A path.
+    File,
+    Word(&'static str),
 }
 
 const fn key(name: &'static str, id: &'static str, kind: Kind) -> Key {
-    Key { name, id, kind, or_file: false }
+    Key { name, id, kind, or: Or::Nothing }
 }
 
 pub const fn part(name: &'static str, numbers: Numbers) -> Part {
@@ -74,12 +83,13 @@ const FIELD: [Key; 5] = [
     key("border", "border", Kind::Word),
     key("nodata", "nodata", Kind::Word),
 ];
-const SURFACE: [Key; 2] = [
-    Key { or_file: true, ..key("albedo", "albedo", Kind::Numbers(Numbers::Colour)) },
-    Key { or_file: true, ..key("specular", "specular", Kind::Parts(&SPECULAR)) },
+const SURFACE: [Key; 3] = [
+    Key { or: Or::File, ..key("albedo", "albedo", Kind::Numbers(Numbers::Colour)) },
+    Key { or: Or::File, ..key("specular", "specular", Kind::Parts(&SPECULAR)) },
+    key("tint", "tint", Kind::Word),
 ];
 const LIGHT: [Key; 3] = [
-    key("sky", "sky", Kind::Numbers(Numbers::Colour)),
+    Key { or: Or::Word("clear"), ..key("sky", "sky", Kind::Numbers(Numbers::Colour)) },
     key("environment", "env", Kind::File),
     key("environment_rotate_deg", "env_rotate", NUMBER),
 ];

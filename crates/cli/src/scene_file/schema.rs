@@ -4,7 +4,7 @@ use clap::CommandFactory as _;
 use ridgelight::scene::{Audience, Quality, SETTINGS, Values, setting};
 use serde_json::{Value, json};
 
-use super::keys::{INPUT, Key, Kind, Numbers, Part, groups};
+use super::keys::{INPUT, Key, Kind, Numbers, Or, Part, groups};
 use crate::args::{Cli, flag};
 use crate::lights::LIGHTS;
 
@@ -63,12 +63,17 @@ fn value(key: &Key, render: &clap::Command) -> Value {
         Kind::Switch => json!({ "type": "boolean" }),
         Kind::List(parts) => json!({ "type": "array", "items": object(parts) }),
     };
-    if key.or_file {
+    let text = match key.or {
+        Or::Nothing => None,
+        Or::File => Some(json!({ "type": "string" })),
+        Or::Word(word) => Some(json!({ "const": word })),
+    };
+    if let Some(text) = text {
         let mut forms = match value.get_mut("anyOf").map(Value::take) {
             Some(Value::Array(forms)) => forms,
             _ => vec![value.clone()],
         };
-        forms.insert(0, json!({ "type": "string" }));
+        forms.insert(0, text);
         value = json!({ "anyOf": forms });
     }
     let help = arg.get_long_help().or(arg.get_help());

@@ -4,7 +4,7 @@ use clap::ArgMatches;
 use clap::parser::ValueSource;
 use serde_json::{Map, Value};
 
-use super::keys::{INPUT, Key, Kind, Numbers, Part, groups};
+use super::keys::{INPUT, Key, Kind, Numbers, Or, Part, groups};
 
 /// Flags of the command line and the scene file, by id, and the values of each.
 #[derive(Clone, Debug, Default)]
@@ -53,12 +53,12 @@ impl Request {
         let id = if key.id == INPUT { "path" } else { key.id };
         let (_, words) = self.0.iter().find(|(known, _)| known == id)?;
         let first = words.first()?;
-        let file = || key.or_file.then(|| first.as_str().into());
+        let text = || (key.or != Or::Nothing).then(|| first.as_str().into());
         let value = match key.kind {
             Kind::Word | Kind::File => first.as_str().into(),
-            Kind::Numbers(count) => numbers(first, count).or_else(file)?,
+            Kind::Numbers(count) => numbers(first, count).or_else(text)?,
             Kind::Switch => true.into(),
-            Kind::Parts(parts) => object(first, parts).or_else(file)?,
+            Kind::Parts(parts) => object(first, parts).or_else(text)?,
             Kind::List(parts) => words.iter().map(|w| object(w, parts)).collect::<Option<_>>()?,
         };
         Some((key.name.to_owned(), value))

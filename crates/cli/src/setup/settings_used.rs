@@ -8,6 +8,7 @@ use ridgelight::scene::{HeightField, Scene};
 
 use crate::args::{FieldArgs, LightArgs, SpecularArg, SurfaceArgs};
 use crate::lights::LIGHTS;
+use crate::tint::Tint;
 
 /// Used settings and times.
 pub fn metadata(
@@ -53,7 +54,10 @@ pub fn asked(
         all.push(("nodata".to_owned(), nodata.to_string()));
     }
     let Some((args, surface, scene)) = lit else { return all };
-    all.push(("albedo".to_owned(), surface.albedo.clone()));
+    match surface.tint {
+        Some(tint) if tint != Tint::None => all.push(("tint".to_owned(), tint.name())),
+        _ => all.push(("albedo".to_owned(), surface.albedo().to_owned())),
+    }
     let specular = surface.specular.as_ref().map(|specular| match specular {
         SpecularArg::Constant(one) => format!("{},{}", one.exponent, one.scale),
         SpecularArg::File(path) => path.display().to_string(),
@@ -61,6 +65,8 @@ pub fn asked(
     all.extend(specular.map(|text| ("specular".to_owned(), text)));
     if let Some(sky) = &scene.lights.sky {
         all.push(("sky".to_owned(), numbers(sky)));
+    } else if scene.lights.environment.is_some() && args.env.is_none() {
+        all.push(("sky".to_owned(), "clear".to_owned()));
     }
     if let Some(path) = &args.env {
         all.push(("env".to_owned(), path.display().to_string()));

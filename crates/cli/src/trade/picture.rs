@@ -150,7 +150,7 @@ fn encode(field: &HeightField, texels: &[[f32; 3]], exposure: f32) -> Result<Vec
     let [rows, cols] = small(field).0;
     let empty = downsized(field, |grid_points| grid_points.next().is_none());
     let transparent = empty.contains(&true).then_some(&empty[..]);
-    files::encode_png(rows, cols, texels, transparent, Tone { exposure }, &[])
+    files::encode_png(rows, cols, texels, transparent, Tone { exposure, ..Tone::default() }, &[])
 }
 
 #[cfg(test)]

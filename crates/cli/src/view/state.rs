@@ -124,7 +124,7 @@ impl State {
     }
 
     pub fn tone(&self) -> Tone {
-        Tone { exposure: self.exposure }
+        Tone::picture(self.exposure)
     }
 
     pub fn is_moving(&self) -> bool {

@@ -68,7 +68,10 @@ fn gpu_cameras_write_pictures_and_depth() {
     let folder = Folder::new();
     write_field(&folder, 16, |_, _| 3.0);
     let above = "--camera 180,90,16 --ortho --size 16x16";
-    done(&folder, &format!("render field.npy -o v.exr --json v.json {above} --layers depth"));
+    done(
+        &folder,
+        &format!("render field.npy -o v.exr --sky 1 --json v.json {above} --layers depth"),
+    );
     let exr = read(&folder.path("v.exr"));
     assert_eq!(exr.names, ["B", "G", "R", "Z"]);
     let (green, far) = (plane(&exr, "G"), plane(&exr, "Z"));

@@ -86,7 +86,7 @@ fn gpu_a_max_error_holds() {
     let folder = Folder::new();
     write_field(&folder, SIDE, peaks);
     let most = 0.01;
-    let args = "render field.npy -o out.exr --json out.json --max-error 0.01";
+    let args = "render field.npy -o out.exr --sky 1 --json out.json --max-error 0.01";
     let run = succeeded(&folder, args);
     for said in [
         "expected error",
@@ -141,8 +141,7 @@ fn gpu_a_max_error_holds() {
 fn gpu_a_max_error_holds_with_bounces() {
     let folder = Folder::new();
     write_field(&folder, SIDE, peaks);
-    let args =
-        "render field.npy -o out.exr --json out.json --albedo 0.7 --bounces 2 --max-error 0.02";
+    let args = "render field.npy --sky 1 -o out.exr --json out.json --albedo 0.7 --bounces 2 --max-error 0.02";
     let run = succeeded(&folder, args);
     for said in ["--bounces 2", "--bounce-azimuths", "paths each", "at most"] {
         assert!(run.out.contains(said), "{said}: {}", run.out);

@@ -14,7 +14,7 @@ fn gpu_light_that_is_no_number_is_refused() {
     let before = folder.contents();
     for args in [
         "render field.npy -o out.exr",
-        "render field.npy -o out.png --json out.json",
+        "render field.npy -o out.png --albedo 1 --json out.json",
         "trade field.npy -o out --evaluations 1",
     ] {
         let args = format!("{args}{suns}");

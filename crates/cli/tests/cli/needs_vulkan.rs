@@ -8,10 +8,12 @@ use crate::formats::{colour, hdr, npy, png};
 use crate::{Folder, read, succeeded};
 
 /// Runs a command that must succeed with an empty standard error (progress is for terminals) and one line on standard
-/// output.
+/// output, beside the light and the tone of a picture.
 pub fn done(folder: &Folder, args: &str) {
     let run = succeeded(folder, args);
-    assert_eq!(run.out.lines().count(), usize::from(!args.contains("--quiet")), "{}", run.out);
+    let is_result = |line: &&str| !line.starts_with("Light: ") && !line.starts_with("Picture: ");
+    let results = run.out.lines().filter(is_result).count();
+    assert_eq!(results, usize::from(!args.contains("--quiet")), "{}", run.out);
     let hidden = folder
         .contents()
         .into_keys()
@@ -55,7 +57,7 @@ fn gpu_voids_are_nan_and_transparent() {
     let folder = Folder::new();
     folder.write("v.asc", b"ncols 4 nrows 3 cellsize 1 nodata_value -9 0 0 0 0 0 5 -9 0 0 0 0 0");
     const VOID: usize = 4 + 2;
-    done(&folder, "render v.asc -o v.exr --layers lights,sky-view,horizon");
+    done(&folder, "render v.asc --sky 1 -o v.exr --layers lights,sky-view,horizon");
     let exr = read(&folder.path("v.exr"));
     assert_eq!(
         exr.names,
@@ -67,7 +69,7 @@ fn gpu_voids_are_nan_and_transparent() {
     for engine in ["brute-force", "sweep", "pyramid"] {
         let bounces =
             format!("--bounces 2 --bounce-engine {engine} --bounce-cutoff 0 --layers lights");
-        done(&folder, &format!("render v.asc -o {engine}.exr {bounces}"));
+        done(&folder, &format!("render v.asc -o {engine}.exr --sky 1 {bounces}"));
         assert!(
             read(&folder.path(&format!("{engine}.exr"))).names.contains(&"indirect.2.R".into())
         );
@@ -82,16 +84,16 @@ fn gpu_voids_are_nan_and_transparent() {
             }
         }
     }
-    done(&folder, "render v.asc -o v.png");
+    done(&folder, "render v.asc -o v.png --sky 1 --exposure 1 --tint none");
     let png = read(&folder.path("v.png"));
     for (i, alpha) in plane(&png, "A").iter().enumerate() {
         assert_eq!(*alpha, if i == VOID { 0.0 } else { 1.0 }, "texel {i}");
     }
     // Without a void there is no alpha.
-    done(&folder, "render a.asc -o a.png");
+    done(&folder, "render a.asc -o a.png --sky 1 --exposure 1 --tint none");
     assert!(!read(&folder.path("a.png")).names.contains(&"A".to_owned()));
     // --nodata marks a void that the file does not: height 101 of 0 to 120.
-    done(&folder, "render a.npy -o n.exr --nodata 101");
+    done(&folder, "render a.npy -o n.exr --sky 1 --nodata 101");
     let marked = read(&folder.path("n.exr"));
     assert_eq!(marked.planes[0].iter().position(|v| v.is_nan()), Some(9));
 }
@@ -100,7 +102,7 @@ fn gpu_voids_are_nan_and_transparent() {
 fn gpu_default_sky_is_one() {
     let folder = Folder::new();
     write_field(&folder, 5, |_, _| 7.0);
-    done(&folder, "render field.npy -o flat.exr");
+    done(&folder, "render field.npy -o flat.exr --lines exact");
     // Flat and white under radiance 1 from the whole sky: exit radiance 1.
     for v in read(&folder.path("flat.exr")).planes.concat() {
         assert!((v - 1.0).abs() < 1e-5, "{v}");
@@ -313,7 +315,8 @@ fn gpu_settings_really_used_are_written() {
     assert!(passes.iter().all(|p| p["ns"].as_f64().is_some_and(|ns| ns >= 0.0)), "{passes:?}");
     assert!(passes.iter().any(|p| p["pass"] == "sun_shade sun1"), "{passes:?}");
 
-    // A .png holds the same without times.
+    // A .png holds the same without times, and its exposure.
+    let exposure = "exposure".to_owned();
     done(
         &folder,
         "render a.asc -o out.png --sun 135,30 --sky 0.25 --albedo 0.5 --z-scale 2 --cell 10,20 --azimuths 16",
@@ -323,7 +326,9 @@ fn gpu_settings_really_used_are_written() {
     let texts = &png.info().uncompressed_latin1_text;
     let texts: std::collections::BTreeMap<_, _> =
         texts.iter().map(|t| (t.keyword.clone(), t.text.clone())).collect();
-    assert_eq!(texts.keys().collect::<Vec<_>>(), exr.keys().collect::<Vec<_>>());
+    let mut names: Vec<_> = exr.keys().chain([&exposure]).collect();
+    names.sort();
+    assert_eq!(texts.keys().collect::<Vec<_>>(), names);
     for (name, value) in exr.iter().filter(|(name, _)| !name.starts_with("gpu_ms")) {
         assert_eq!(texts.get(name), Some(value), "{name}");
     }
@@ -342,13 +347,13 @@ fn gpu_outputs_replace_what_was_there() {
         folder.write(name, b"what was here before");
     }
     done(&folder, "render a.asc -o out.png --quiet");
-    done(&folder, "render a.asc -o out.exr");
+    done(&folder, "render a.asc --sky 1 -o out.exr");
     done(&folder, "horizon a.asc -o out.npy --azimuths 4");
     assert_eq!(read(&folder.path("out.png")).names, ["R", "G", "B"]);
     assert_eq!(read(&folder.path("out.exr")).cols, 4);
     assert_eq!(read(&folder.path("out.npy")).planes.len(), 4);
     // A sufficient budget gives the same image.
-    done(&folder, "render a.asc -o small.exr --memory-budget 8KiB");
+    done(&folder, "render a.asc --sky 1 -o small.exr --memory-budget 8KiB");
     assert_eq!(read(&folder.path("small.exr")), read(&folder.path("out.exr")));
 }
 

@@ -89,9 +89,9 @@ fn gpu_reference_writes_light_and_its_error() {
     }
     let passes = report["passes"].as_array().unwrap();
     assert!(passes.iter().any(|p| p["pass"] == "path_trace"), "{passes:?}");
-    // Without a sphere light the sky is the default.
+    // Without a light the sun and the sky are the default.
     done(&folder, "reference a.asc -o sky.exr --spp 1");
-    assert_eq!(attributes(&folder.path("sky.exr"))["sky"], "1,1,1");
+    assert_eq!(attributes(&folder.path("sky.exr"))["sky"], "clear");
 }
 
 #[test]
@@ -111,7 +111,7 @@ fn gpu_reference_stops_at_an_error() {
 fn gpu_unsampled_light_counts_as_error() {
     let folder = Folder::new();
     write_field(&folder, 5, |_, _| 7.0);
-    let args = "reference field.npy -o out.exr --until-error 0.005 --spp";
+    let args = "reference field.npy --sky 1 -o out.exr --until-error 0.005 --spp";
     let of = |spp: &str| folder.run_str(&format!("{args} {spp}"));
     let error = || -> f64 {
         attributes(&folder.path("out.exr"))["relative_standard_error"].parse().unwrap()
@@ -153,12 +153,14 @@ fn gpu_voids_have_no_light() {
 fn gpu_trade_takes_the_reference() {
     let folder = Folder::new();
     write_ridge(&folder);
-    done(&folder, "reference field.npy -o ground_truth.exr --spp 4096 --quiet");
+    done(&folder, "reference field.npy --sky 1 -o ground_truth.exr --spp 4096 --quiet");
     let args = [
         "trade",
         "field.npy",
         "-o",
         "out",
+        "--sky",
+        "1",
         "--evaluations",
         "1",
         "--reference",

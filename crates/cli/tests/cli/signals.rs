@@ -99,7 +99,8 @@ fn gpu_an_interrupted_bake_leaves_nothing() {
 fn gpu_an_interrupted_reference_writes_what_it_has() {
     let folder = Folder::new();
     write_field(&folder, 16, |r, c| ((7 * r + 3 * c) % 11) as f32);
-    let args = "reference field.npy -o out.exr --spp 1000000000 --bounces 64 --json out.json";
+    let args =
+        "reference field.npy --sky 1 -o out.exr --spp 1000000000 --bounces 64 --json out.json";
     let child = started(&folder, args);
     // The handler is installed before the device opens.
     let maps = format!("/proc/{}/maps", child.id());

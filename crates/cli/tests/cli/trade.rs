@@ -139,7 +139,7 @@ fn kept_tables_have_frontiers() {
 fn gpu_trade_of_a_small_field() {
     let folder = Folder::new();
     write_peaks(&folder);
-    let args = "trade field.npy -o report --json copy.json --evaluations 4";
+    let args = "trade field.npy --sky 1 -o report --json copy.json --evaluations 4";
     let run = succeeded(&folder, args);
     let report = json(&folder.path("report/trade.json"));
     assert_eq!(
@@ -245,11 +245,12 @@ fn gpu_trade_against_a_reference() {
     let folder = Folder::new();
     write_peaks(&folder);
     let expected_light =
-        "render field.npy -o ground_truth.exr --method brute-force --azimuths 256 --quiet";
+        "render field.npy --sky 1 -o ground_truth.exr --method brute-force --azimuths 256 --quiet";
     succeeded(&folder, expected_light);
     let trade = |more: &str| {
-        let args =
-            format!("trade field.npy -o out --evaluations 2 --reference ground_truth.exr {more}");
+        let args = format!(
+            "trade field.npy --sky 1 -o out --evaluations 2 --reference ground_truth.exr {more}"
+        );
         let run = folder.run_str(&args);
         assert_eq!(run.err, "", "{args}");
         (run, json(&folder.path("out/trade.json")))
@@ -295,7 +296,7 @@ fn gpu_trade_against_a_reference() {
             "ground_truth.exr: header: border: found plane, expected open",
         ),
         (
-            "ground_truth.exr --albedo 0.5",
+            "ground_truth.exr --sky 1 --albedo 0.5",
             "ground_truth.exr: header: albedo: found 1, expected 0.5",
         ),
         (

@@ -13,13 +13,13 @@ fn gpu_brushes_are_undone_and_saved() {
         picture raised.png\nscene raised.json\nkey 4\ndrag left 30,20 12,6\nframes 3\npicture eroded.png\n\
         scene eroded.json\nkey z\nkey z\nkey z\nframes 2\ntext undone.txt\npicture undone.png\nscene undone.json\n\
         key y\nkey y\nframes 1\npicture again.png\n";
-    folder.view(&display, &format!("hills.asc {LIT} --size 64x48"), script);
+    folder.view(&display, &format!("hills.asc {LIT} --tint none --size 64x48"), script);
     let text = |name: &str| std::fs::read_to_string(folder.0.path().join(name)).unwrap();
     let said = text("raised.txt");
     assert!(said.contains("undo 1, redo 0") && said.contains("edit of "), "{said}");
     let said = text("undone.txt");
     assert!(said.contains("undo 0, redo 2") && said.contains("nothing to undo"), "{said}");
-    folder.done(&format!("render hills.asc {LIT} -o render.png --quiet"));
+    folder.done(&format!("render hills.asc {LIT} --tint none -o render.png --quiet"));
     assert_same(&folder, "undone.png", "render.png");
     assert_same(&folder, "again.png", "eroded.png");
     for name in ["raised", "eroded"] {

@@ -70,8 +70,10 @@ impl Folder {
     }
 
     /// Runs a command that must succeed. Returns its standard output.
+    /// A command; pictures have the exposure of the window.
     fn done(&self, args: &str) -> String {
-        succeed(self.command(args))
+        let exposure = if args.contains(".png") { " --exposure 1" } else { "" };
+        succeed(self.command(&format!("{args}{exposure}")))
     }
 
     /// A window driven by a script, under validation where the tests have it.
@@ -252,7 +254,7 @@ fn gpu_split_window_compares_with_the_reference() {
     let heights: Vec<&str> = (0..64 * 24).map(height).collect();
     let text = format!("ncols 64 nrows 24 cellsize 1 {}", heights.join(" "));
     folder.write("wall.asc", text.as_bytes());
-    let lit = "--sun 90,30,0 --sky 0.3 --azimuths 8";
+    let lit = "--sun 90,30,0 --sky 0.3 --azimuths 8 --albedo 1";
     let script = "key h\nkey h\nkey c\nkey r\nframes 2\npaths 4096\nscreenshot split.png\nkey h\nkey r\nframes 1\n\
         text split.txt\nkey h\nkey h\nkey 2\nframes 2\nkey 1\nkey c\nsize 64,24\nframes 1\nscreenshot one.png\n";
     folder.view(&display, &format!("wall.asc {lit} --size 196x24"), script);
@@ -260,7 +262,7 @@ fn gpu_split_window_compares_with_the_reference() {
         folder.done(&format!("render wall.asc {lit} -o ours.{end} --quiet"));
     }
     folder
-        .done("reference wall.asc --sun 90,30,0 --sky 0.3 -o ground_truth.exr --spp 4096 --quiet");
+        .done("reference wall.asc --albedo 1 --sun 90,30,0 --sky 0.3 -o ground_truth.exr --spp 4096 --quiet");
     let split = folder.picture("split.png");
     let [off, ours, ground_truth] = [0, 66, 132].map(|first| crop(&split, first, 64));
     assert!(colours(&ours) == colours(&folder.picture("ours.png")), "ours");

@@ -182,5 +182,5 @@ pub fn png(
             }
         }
     }
-    files::write_png(path, height, width, &all, None, Tone { exposure }, &[])
+    files::write_png(path, height, width, &all, None, Tone { exposure, ..Tone::default() }, &[])
 }

@@ -412,14 +412,15 @@ fn help_gives_units_and_defaults() {
     ];
     let lit: &[(&str, &[&str])] = &[
         ("--sphere-light", &["X,Y,Z,RADIUS,RADIANCE", "metres"]),
-        ("--sky", &["Default 1"]),
+        ("--sky", &["uniform sky of radiance 1"]),
         ("--env-rotate", &["clockwise", "degrees", "[default: 0]"]),
         ("--sun", &["degrees", "default 0.53", "default 1"]),
-        ("--albedo", &["0 to 1", "[default: 1]"]),
+        ("--albedo", &["0 to 1", "Default 1"]),
         ("--specular", &["0 to 10000", "0 to 1", ".npy", "--basis sh"]),
     ];
     let render: &[(&str, &[&str])] = &[
-        ("--exposure", &["[default: 1]"]),
+        ("--exposure", &["99th percentile", "0.8"]),
+        ("--tint", &["none, elevation, slope or land", "Default land"]),
         ("--layers", &["lights", "sky-view", "horizon"]),
         ("--max-error", &["0.01 is 1 %", "95 % confidence", "refused"]),
         ("--time-budget", &["<MS>", "GPU time"]),

@@ -6,7 +6,10 @@ use crate::{Folder, Run};
 
 /// Plans `field` with `flags`, without a driver.
 fn plan(folder: &Folder, field: &str, flags: &str) -> Run {
-    let args = format!("plan {field} {flags}");
+    // The default light has a sun and an environment.
+    let is_lit = ["--sun ", "--key", "--env", "--sky"].iter().any(|light| flags.contains(light));
+    let sky = if is_lit { "" } else { "--sky 1" };
+    let args = format!("plan {field} {sky} {flags}");
     let run = folder.run_without_driver(&args.split_whitespace().collect::<Vec<_>>());
     assert_eq!(run.status, Some(0), "{args}: {}", run.err);
     assert!(run.out.contains("border"), "{args}: {}", run.out);

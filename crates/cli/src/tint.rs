@@ -1,0 +1,193 @@
+//! `--tint`: albedo of heights or slopes, for pictures.
+//!
+//! Colours are in Oklch (B. Ottosson, A perceptual color space for image processing, 2020). Lightness runs evenly from one
+//! end to the other, so equal steps look equal, and the order survives every kind of colour blindness.
+
+use clap::ValueEnum;
+use ridgelight::scene::{Albedo, HeightField};
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Tint {
+    /// No tint: --albedo
+    None,
+    /// Height, violet to yellow
+    Elevation,
+    /// Slope, light where level and dark from 60 degrees on
+    Slope,
+    /// Height, muted: blue-green lowland to sand and nearly white summits
+    Land,
+}
+
+impl Tint {
+    /// Its word on the command line.
+    pub fn name(self) -> String {
+        self.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default()
+    }
+}
+
+/// Chroma and hue (degrees) where lightness has covered a share of its range.
+struct Palette {
+    lightness: [f64; 2],
+    stops: &'static [[f64; 3]],
+}
+
+const LAND: Palette = Palette {
+    lightness: [0.36, 0.93],
+    stops: &[
+        [0.0, 0.035, 200.0],
+        [0.35, 0.049, 130.0],
+        [0.7, 0.05, 85.0],
+        [0.8, 0.05, 82.0],
+        [1.0, 0.02, 75.0],
+    ],
+};
+const ELEVATION: Palette = Palette {
+    lightness: [0.36, 0.93],
+    stops: &[[0.0, 0.11, 300.0], [0.5, 0.09, 210.0], [1.0, 0.11, 100.0]],
+};
+const SLOPE: Palette = Palette {
+    lightness: [0.93, 0.36],
+    stops: &[[0.0, 0.02, 90.0], [0.5, 0.08, 60.0], [1.0, 0.06, 25.0]],
+};
+/// Slope of the palette's end, degrees.
+const STEEPEST_DEG: f64 = 60.0;
+/// Shares of grid points below the lowest and above the highest colour: single peaks and pits do not decide.
+const TAILS: f64 = 0.02;
+
+/// The albedo of a tint; none for [`Tint::None`].
+pub fn albedo(field: &HeightField, tint: Tint) -> Option<Albedo> {
+    let colours = match tint {
+        Tint::None => return None,
+        Tint::Elevation => of_heights(field, &ELEVATION),
+        Tint::Land => of_heights(field, &LAND),
+        Tint::Slope => {
+            let slopes = (0..field.rows() * field.cols()).map(|i| slope_deg(field, i));
+            slopes.map(|slope| SLOPE.at(slope / STEEPEST_DEG)).collect()
+        }
+    };
+    Some(Albedo::Map(colours))
+}
+
+fn of_heights(field: &HeightField, palette: &Palette) -> Vec<[f32; 3]> {
+    let [lowest, highest] = range(field);
+    let share = |h: &f32| (f64::from(*h) - lowest) / (highest - lowest).max(1e-9);
+    field.heights_m().iter().map(|h| palette.at(share(h))).collect()
+}
+
+/// The heights where the tails begin; voids do not count.
+fn range(field: &HeightField) -> [f64; 2] {
+    let is_void = |i: usize| field.voids().is_some_and(|v| v[i]);
+    let heights = field.heights_m().iter().enumerate();
+    let mut all: Vec<f32> = heights.filter(|(i, _)| !is_void(*i)).map(|(_, h)| *h).collect();
+    if all.is_empty() {
+        return [0.0; 2];
+    }
+    let last = (all.len() - 1) as f64;
+    [TAILS, 1.0 - TAILS].map(|share| {
+        let (_, found, _) =
+            all.select_nth_unstable_by((share * last).round() as usize, f32::total_cmp);
+        f64::from(*found)
+    })
+}
+
+/// Slope at a grid point by central differences, one-sided at the edge.
+fn slope_deg(field: &HeightField, i: usize) -> f64 {
+    let (rows, cols) = (field.rows(), field.cols());
+    let (row, col) = (i / cols, i % cols);
+    let at = |row: usize, col: usize| f64::from(field.heights_m()[row * cols + col]);
+    let across = |before: usize, after: usize, cell_m: f64, rise: f64| match after - before {
+        0 => 0.0,
+        cells => rise / (cells as f64 * cell_m),
+    };
+    let [west, east] = [col.saturating_sub(1), (col + 1).min(cols - 1)];
+    let [north, south] = [row.saturating_sub(1), (row + 1).min(rows - 1)];
+    let [cell_x, cell_y] = field.cell_m();
+    let x = across(west, east, cell_x, at(row, east) - at(row, west));
+    let y = across(north, south, cell_y, at(south, col) - at(north, col));
+    x.hypot(y).atan().to_degrees()
+}
+
+impl Palette {
+    /// Linear RGB at a share, clamped to 0..1.
+    fn at(&self, share: f64) -> [f32; 3] {
+        let share = if share.is_nan() { 0.0 } else { share.clamp(0.0, 1.0) };
+        let end = self.stops.iter().position(|stop| stop[0] >= share).unwrap_or(1).max(1);
+        let [from, to] = [self.stops[end - 1], self.stops[end]];
+        let part = (share - from[0]) / (to[0] - from[0]);
+        let between = |k: usize| from[k] + part * (to[k] - from[k]);
+        let lightness = self.lightness[0] + share * (self.lightness[1] - self.lightness[0]);
+        let (chroma, hue) = (between(1), between(2).to_radians());
+        linear_rgb(lightness, chroma * hue.cos(), chroma * hue.sin())
+    }
+}
+
+/// Oklab to linear sRGB, clipped to its gamut.
+fn linear_rgb(lightness: f64, a: f64, b: f64) -> [f32; 3] {
+    let [l, m, s] = [
+        lightness + 0.396_337_777_4 * a + 0.215_803_757_3 * b,
+        lightness - 0.105_561_345_8 * a - 0.063_854_172_8 * b,
+        lightness - 0.089_484_177_5 * a - 1.291_485_548 * b,
+    ]
+    .map(|v: f64| v.powi(3));
+    [
+        4.076_741_662_1 * l - 3.307_711_591_3 * m + 0.230_969_929_2 * s,
+        -1.268_438_004_6 * l + 2.609_757_401_1 * m - 0.341_319_396_5 * s,
+        -0.004_196_086_3 * l - 0.703_418_614_7 * m + 1.707_614_701_0 * s,
+    ]
+    .map(|v| v.clamp(0.0, 1.0) as f32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// CIE lightness of linear RGB, 0 to 1.
+    fn lightness(rgb: [f32; 3]) -> f64 {
+        let y = crate::sky::luminance(rgb.map(f64::from));
+        1.16 * y.cbrt() - 0.16
+    }
+
+    /// Eleven colours: each step of CIE lightness is within a third of the mean step, in one direction.
+    #[test]
+    fn palettes_are_even() {
+        for palette in [&LAND, &ELEVATION, &SLOPE] {
+            let all: Vec<f64> =
+                (0..=10).map(|i| lightness(palette.at(f64::from(i) / 10.0))).collect();
+            let mean = (all[10] - all[0]) / 10.0;
+            for pair in all.windows(2) {
+                let step = (pair[1] - pair[0]) / mean;
+                assert!((0.66..1.34).contains(&step), "{all:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn white_and_black_are_white_and_black() {
+        for (lightness, want) in [(1.0, 1.0), (0.0, 0.0)] {
+            let found = linear_rgb(lightness, 0.0, 0.0);
+            assert!(found.iter().all(|v| (v - want).abs() < 1e-5), "{found:?}");
+        }
+    }
+
+    /// A plane that rises 1 m a metre to the east: 45 degrees everywhere, edges too.
+    #[test]
+    fn slopes_are_those_of_a_plane() {
+        let heights = (0..12).map(|i| f64::from(i % 4) * 2.0).collect::<Vec<_>>();
+        let field = HeightField::new(3, 4, &heights, [2.0, 5.0], None).unwrap();
+        for i in 0..12 {
+            assert!((slope_deg(&field, i) - 45.0).abs() < 1e-6);
+        }
+        let Some(Albedo::Map(map)) = albedo(&field, Tint::Slope) else { panic!("a map") };
+        assert_eq!(map, vec![SLOPE.at(0.75); 12]);
+    }
+
+    #[test]
+    fn level_fields_and_voids_have_colours() {
+        let field = HeightField::new(2, 2, &[7.0; 4], [1.0; 2], None).unwrap();
+        for tint in [Tint::Land, Tint::Elevation, Tint::Slope] {
+            let Some(Albedo::Map(map)) = albedo(&field, tint) else { panic!("a map") };
+            assert!(map.as_flattened().iter().all(|v| (0.0..=1.0).contains(v)));
+        }
+        assert!(albedo(&field, Tint::None).is_none());
+    }
+}
