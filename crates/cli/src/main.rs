@@ -35,8 +35,6 @@ mod reference;
 mod render;
 mod scene_file;
 mod setup;
-mod sky;
-mod tint;
 mod trade;
 #[cfg(feature = "window")]
 mod view;

@@ -13,9 +13,9 @@ use ridgelight_io::{Channels, Layer as FileLayer};
 
 use crate::args::{Layer, RenderArgs};
 use crate::idle;
+use crate::setup::sky;
+use crate::setup::tint::Tint;
 use crate::setup::{self, Outcome};
-use crate::sky;
-use crate::tint::Tint;
 
 /// Where automatic exposure puts the luminance that a share of the pixels does not exceed.
 const EXPOSED: f64 = 0.8;
@@ -57,7 +57,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
     )?;
     let tint = match is_exr {
         true => args.surface.tint.unwrap_or(Tint::None),
-        false => setup::tint(&mut scene, &args.surface),
+        false => setup::tinted(&mut scene, &args.surface),
     };
     let scene = scene;
     if goal.is_some() {

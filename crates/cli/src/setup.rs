@@ -1,7 +1,9 @@
 //! From arguments to scenes, qualities and devices; what commands print while they run.
 
 mod settings_used;
+pub mod sky;
 pub mod terminal;
+pub mod tint;
 
 use ridgelight::gpu::{self, Headless, HeadlessOptions, Pixels, Timing};
 use ridgelight::plan::{Limits, Picture, Plan};
@@ -18,8 +20,8 @@ use crate::args::{
     albedo_colour, flag,
 };
 use crate::lights::{LIGHTS, light};
-use crate::tint::Tint;
 pub use settings_used::{as_json, asked, metadata, typed};
+use tint::Tint;
 
 /// How a command ended without an error.
 pub enum Outcome {
@@ -86,7 +88,7 @@ pub fn scene(
     lights: &LightArgs,
     unlit: Unlit,
 ) -> Result<Scene> {
-    let tint = surface.tint.and_then(|tint| crate::tint::albedo(&field, tint));
+    let tint = surface.tint.and_then(|tint| tint::albedo(&field, tint));
     let albedo = match (tint, albedo_colour(surface.albedo())) {
         (Some(tint), _) => tint,
         (None, Some(colour)) => Albedo::Constant(colour),
@@ -109,9 +111,9 @@ pub fn scene(
 }
 
 /// Tints a picture whose colours the command line does not give; returns its tint.
-pub fn tint(scene: &mut Scene, surface: &SurfaceArgs) -> Tint {
+pub fn tinted(scene: &mut Scene, surface: &SurfaceArgs) -> Tint {
     let is_default = surface.tint.is_none() && surface.albedo.is_none();
-    if is_default && let Some(albedo) = crate::tint::albedo(&scene.field, Tint::Land) {
+    if is_default && let Some(albedo) = tint::albedo(&scene.field, Tint::Land) {
         scene.surface.albedo = albedo;
         return Tint::Land;
     }
@@ -124,7 +126,7 @@ fn lights_of(args: &LightArgs, unlit: Unlit) -> Result<Lights> {
         _ if !args.is_empty() => args.sky,
         Unlit::Sky => Some(SkyArg::Uniform([1.0; 3])),
         Unlit::Daylight(camera_deg) => {
-            let sun = crate::sky::default_sun(camera_deg);
+            let sun = sky::default_sun(camera_deg);
             crate::lights::light("sun").add(&mut lights, &sun).expect("words of a sun");
             Some(SkyArg::Clear)
         }
@@ -136,7 +138,7 @@ fn lights_of(args: &LightArgs, unlit: Unlit) -> Result<Lights> {
             let expected = "a --sun, whose sky it is, and no --env";
             let sun = lights.suns.first().filter(|_| args.env.is_none());
             let sun = sun.ok_or_else(|| Error::setting("--sky", "clear", expected))?;
-            lights.environment = Some(crate::sky::clear(sun)?);
+            lights.environment = Some(sky::clear(sun)?);
         }
     }
     if let Some(path) = &args.env {

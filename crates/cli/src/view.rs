@@ -31,7 +31,7 @@ pub fn run(args: &ViewArgs) -> Result<Outcome> {
     let field = setup::field(&args.input.path, &args.surface.field, &args.global)?;
     let unlit = setup::Unlit::of(&quality, None);
     let mut scene = setup::scene(field, &args.surface, &args.lights, unlit)?;
-    setup::tint(&mut scene, &args.surface);
+    setup::tinted(&mut scene, &args.surface);
     let still = setup::wanted(&[]);
     let picture = |limits: &Limits| plan::picture(&scene, &quality, limits, still);
     setup::check_plan(&args.global, picture)?;

@@ -1,4 +1,4 @@
-//! Golden images for tests: on failure the result, the golden and their difference are written to files.
+//! Synthetic terrains ([`terrain`]) and golden images for tests: on failure the result, the golden and their difference are written to files.
 //!
 //! `RIDGELIGHT_BLESS=1` writes the result as the new golden instead. It is refused where `CI` is set.
 //!
@@ -19,6 +19,8 @@
 //! single passes) to one golden per driver.
 
 #![deny(clippy::missing_errors_doc)]
+
+pub mod terrain;
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};

@@ -7,7 +7,7 @@ use ridgelight::scene::Lights;
 
 use super::values::{SkyArg, SpecularArg, cell, sky, specular};
 use crate::lights::LIGHTS;
-use crate::tint::Tint;
+use crate::setup::tint::Tint;
 
 #[derive(Args)]
 #[command(next_help_heading = "Lights")]

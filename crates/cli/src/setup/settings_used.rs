@@ -8,7 +8,7 @@ use ridgelight::scene::{HeightField, Scene};
 
 use crate::args::{FieldArgs, LightArgs, SpecularArg, SurfaceArgs};
 use crate::lights::LIGHTS;
-use crate::tint::Tint;
+use crate::setup::tint::Tint;
 
 /// Used settings and times.
 pub fn metadata(

@@ -23,6 +23,7 @@ mod goals;
 mod library_messages;
 mod light;
 mod needs_vulkan;
+mod pictures;
 mod plan;
 mod reference;
 mod signals;

@@ -143,7 +143,7 @@ mod tests {
 
     /// CIE lightness of linear RGB, 0 to 1.
     fn lightness(rgb: [f32; 3]) -> f64 {
-        let y = crate::sky::luminance(rgb.map(f64::from));
+        let y = crate::setup::sky::luminance(rgb.map(f64::from));
         1.16 * y.cbrt() - 0.16
     }
 

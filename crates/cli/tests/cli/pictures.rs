@@ -1,0 +1,97 @@
+//! Pictures of a command line without flags.
+
+use ridgelight::scene::{HeightField, fractal};
+use ridgelight_testing::terrain;
+
+use crate::{Folder, succeeded};
+
+/// Shares of the pixels with less light.
+const TAILS: [f64; 2] = [0.05, 0.95];
+/// Least difference of codes between them.
+const SPAN: f64 = 120.0;
+
+/// Rec. 709 luminance of each pixel, in codes; transparent pixels do not count.
+fn luminances(folder: &Folder, name: &str) -> Vec<f64> {
+    let picture = image::open(folder.path(name)).unwrap().to_rgba8();
+    let visible = picture.pixels().filter(|pixel| pixel.0[3] > 0);
+    let weights = [0.2126, 0.7152, 0.0722];
+    visible.map(|pixel| (0..3).map(|c| weights[c] * f64::from(pixel.0[c])).sum()).collect()
+}
+
+/// The codes at the tails, and the shares of black and white.
+fn spread(mut codes: Vec<f64>) -> ([f64; 2], [f64; 2]) {
+    codes.sort_by(f64::total_cmp);
+    let tails = TAILS.map(|share| codes[(share * (codes.len() - 1) as f64).round() as usize]);
+    let share =
+        |is: fn(f64) -> bool| codes.iter().filter(|v| is(**v)).count() as f64 / codes.len() as f64;
+    (tails, [share(|v| v < 0.5), share(|v| v > 254.5)])
+}
+
+fn write(folder: &Folder, name: &str, field: &HeightField) -> String {
+    ridgelight_io::write_npy_heights(&folder.path(name), field).unwrap();
+    format!("{name} --cell {},{}", field.cell_m()[0], field.cell_m()[1])
+}
+
+/// Any terrain has contrast without a flag. Mountains are the bundled field, the others are synthetic.
+#[test]
+fn gpu_default_pictures_have_contrast() {
+    const SIDE: usize = 256;
+    let folder = Folder::new();
+    let mountains = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/mt_washington_256.png");
+    std::fs::copy(mountains, folder.path("mountains.png")).unwrap();
+    let made = [
+        ("hills.npy", fractal(SIDE, 4)),
+        ("escarpment.npy", terrain::escarpment(SIDE)),
+        ("dunes.npy", terrain::dunes(SIDE)),
+        ("coast.npy", terrain::coast(SIDE)),
+        ("city.npy", terrain::city(SIDE)),
+    ];
+    let mut inputs = vec!["mountains.png --cell 66,92.6".to_owned()];
+    inputs.extend(made.map(|(name, field)| write(&folder, name, &field.unwrap())));
+    for input in inputs {
+        let run = succeeded(&folder, &format!("render {input} -o out.png"));
+        assert!(run.out.contains("Light: --sun 315,35,3,"), "{}", run.out);
+        assert!(run.out.contains("--sky clear (default)"), "{}", run.out);
+        assert!(run.out.contains("Picture: --tint land --exposure "), "{}", run.out);
+        let ([dark, light], clipped) = spread(luminances(&folder, "out.png"));
+        println!("{input}: {dark:.0} to {light:.0}, {clipped:?} black and white");
+        assert!(light - dark >= SPAN, "{input}: {dark} to {light}");
+        assert!(clipped.iter().all(|share| *share < 0.01), "{input}: {clipped:?}");
+    }
+    // The measure can fail: a uniform sky on level ground.
+    succeeded(&folder, "render coast.npy --cell 30 --sky 1 --tint none -o out.png");
+    let ([dark, light], _) = spread(luminances(&folder, "out.png"));
+    assert!(light - dark < 10.0, "{dark} to {light}");
+}
+
+/// The printed flags give the same picture.
+#[test]
+fn gpu_default_light_is_that_of_its_flags() {
+    let folder = Folder::new();
+    let input = write(&folder, "city.npy", &terrain::city(64).unwrap());
+    let run = succeeded(&folder, &format!("render {input} -o default.png"));
+    let line = |name: &str| {
+        let line = run.out.lines().find_map(|line| line.strip_prefix(name)).unwrap();
+        line.split(" (").next().unwrap().trim().to_owned()
+    };
+    let flags = format!("{} {}", line("Light: "), line("Picture: "));
+    succeeded(&folder, &format!("render {input} {flags} -o asked.png --quiet"));
+    let [default, asked] =
+        ["default.png", "asked.png"].map(|name| image::open(folder.path(name)).unwrap().to_rgb8());
+    assert!(default == asked, "{flags}");
+}
+
+/// A level field of albedo 1 under a sky of radiance 1 has radiance 1: 0.8 at any exposure that is not given.
+#[test]
+fn gpu_exposure_is_of_the_99th_percentile() {
+    let folder = Folder::new();
+    let field = HeightField::new(8, 8, &[3.0; 64], [1.0; 2], None).unwrap();
+    let input = write(&folder, "level.npy", &field);
+    for sky in ["1", "1e-6", "3e7"] {
+        let args = format!("render {input} --sky {sky} --tint none -o out.png --quiet");
+        succeeded(&folder, &args);
+        // sRGB of 0.8 is 230.9; the exposure has four digits.
+        let codes = luminances(&folder, "out.png");
+        assert!(codes.iter().all(|code| (*code - 231.0).abs() <= 1.0), "{sky}: {codes:?}");
+    }
+}
