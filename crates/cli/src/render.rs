@@ -142,7 +142,11 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
     let (rows, cols) = (scene.field.rows(), scene.field.cols());
     if let (Some(camera_view), Some(camera_pixels)) = (&camera_view, &camera_pixels) {
         if !is_exr {
-            let exposure = args.exposure.unwrap_or_else(|| exposure(&camera_pixels.radiance, None));
+            // The background would decide on the terrain's exposure.
+            let around: Vec<bool> =
+                camera_pixels.distances_m.iter().map(|d| !d.is_finite()).collect();
+            let picture = &camera_pixels.radiance;
+            let exposure = args.exposure.unwrap_or_else(|| exposure(picture, Some(&around)));
             shown = Some(exposure);
             metadata.push(("exposure".to_owned(), exposure.to_string()));
         }
@@ -192,9 +196,10 @@ pub fn check_positive<T: Copy + Into<f64> + ToString>(flag: &str, x: T) -> Resul
     is_positive.then_some(()).ok_or_else(|| Error::setting(flag, x.to_string(), "a number above 0"))
 }
 
-/// The exposure that puts the 99th percentile of luminance at 0.8; voids do not count. 1 where that is dark.
-fn exposure(picture: &[[f32; 3]], voids: Option<&[bool]>) -> f32 {
-    let texels = picture.iter().enumerate().filter(|(i, _)| !voids.is_some_and(|v| v[*i]));
+/// The exposure that puts the 99th percentile of luminance at 0.8, of the pixels that are not left out. 1 where that is
+/// dark.
+fn exposure(picture: &[[f32; 3]], left_out: Option<&[bool]>) -> f32 {
+    let texels = picture.iter().enumerate().filter(|(i, _)| !left_out.is_some_and(|v| v[*i]));
     let mut all: Vec<f64> = texels.map(|(_, t)| sky::luminance(t.map(f64::from))).collect();
     if all.is_empty() {
         return 1.0;

@@ -7,11 +7,13 @@ use super::values::{colour, numbers, whole};
 #[derive(Args)]
 #[command(next_help_heading = "Camera")]
 pub struct CameraArgs {
-    /// Perspective view instead of the map
+    /// View from a camera instead of the map
     ///
-    /// AZ and EL are the compass azimuth and the elevation of the camera from the look-at point, degrees. DISTANCE is in
-    /// metres; by default the whole field fits. With --ortho, DISTANCE is the height of the picture in metres.
-    #[arg(long, value_name = "AZ,EL[,DISTANCE]", value_parser = camera, allow_hyphen_values = true)]
+    /// Without a value the camera stands in the south, 30 degrees above the horizontal. FROM is south, north-east and so on,
+    /// "from 45 up 30", or AZ,EL[,DISTANCE]: the compass azimuth and the elevation of the camera from the look-at point,
+    /// degrees, and the distance in metres; by default the whole field fits. With --ortho, DISTANCE is the height of the
+    /// picture in metres.
+    #[arg(long, value_name = "FROM", value_parser = camera, num_args = 0..=1, default_missing_value = "south")]
     pub camera: Option<CameraAt>,
     /// Look-at point, metres. Default the middle of the field
     ///
@@ -33,7 +35,7 @@ pub struct CameraArgs {
     #[arg(long, hide_short_help = true, requires = "camera", conflicts_with = "fov")]
     pub ortho: bool,
     /// Width and height of the picture, pixels
-    #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = size, requires = "camera")]
+    #[arg(long, value_name = "WxH", default_value = "2048x1152", value_parser = size, requires = "camera")]
     pub size: Size,
     /// MSAA samples per pixel: 1, 2, 4 or 8
     ///
@@ -100,13 +102,59 @@ pub struct LookAt {
 /// Columns and rows.
 pub type Size = [u32; 2];
 
+/// Elevation of a camera that is given by its direction alone, degrees.
+const ELEVATION: f64 = 30.0;
+/// Clockwise from north, 45 degrees apart.
+const DIRECTIONS: [&str; 8] =
+    ["north", "north-east", "east", "south-east", "south", "south-west", "west", "north-west"];
+
 fn camera(text: &str) -> Result<CameraAt, String> {
-    match *numbers(text)?.as_slice() {
-        [azimuth, elevation] => Ok(CameraAt { azimuth, elevation, distance_m: None }),
+    let at = |azimuth, elevation| CameraAt { azimuth, elevation, distance_m: None };
+    let named = text.to_lowercase();
+    if let Some(eighth) = DIRECTIONS.iter().position(|name| *name == named) {
+        return Ok(at(45.0 * eighth as f64, ELEVATION));
+    }
+    let wrong = |error: &str| {
+        format!("{error}; expected south, \"from 45 up 30\", AZ,EL or AZ,EL,DISTANCE")
+    };
+    let number = |word: &str| word.parse().map_err(|_| wrong(&format!("{word:?} is no number")));
+    match named.split_whitespace().collect::<Vec<_>>().as_slice() {
+        ["from", azimuth] => return Ok(at(number(azimuth)?, ELEVATION)),
+        ["from", azimuth, "up", elevation] => return Ok(at(number(azimuth)?, number(elevation)?)),
+        _ => {}
+    }
+    match *numbers(text).map_err(|error| wrong(&error))?.as_slice() {
+        [azimuth, elevation] => Ok(at(azimuth, elevation)),
         [azimuth, elevation, distance] => {
-            Ok(CameraAt { azimuth, elevation, distance_m: Some(distance) })
+            Ok(CameraAt { distance_m: Some(distance), ..at(azimuth, elevation) })
         }
-        _ => Err("expected AZ,EL or AZ,EL,DISTANCE".into()),
+        _ => Err(wrong("wrong count of numbers")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cameras_have_names_and_numbers() {
+        for (text, azimuth, elevation, distance_m) in [
+            ("south", 180.0, 30.0, None),
+            ("North-West", 315.0, 30.0, None),
+            ("from 45", 45.0, 30.0, None),
+            ("from 45 up 20.5", 45.0, 20.5, None),
+            ("-10,40", -10.0, 40.0, None),
+            ("200,15,900", 200.0, 15.0, Some(900.0)),
+        ] {
+            let found = camera(text).unwrap();
+            let found = (found.azimuth, found.elevation, found.distance_m);
+            assert_eq!(found, (azimuth, elevation, distance_m), "{text}");
+        }
+        for text in ["", "up", "from", "from x", "from 1 up", "dem.tif", "1", "1,2,3,4", "southish"]
+        {
+            let error = camera(text).err().unwrap();
+            assert!(error.contains("expected south"), "{text}: {error}");
+        }
     }
 }
 

@@ -66,7 +66,12 @@ pub fn clear(sun: &Sun) -> Result<Environment> {
         let azimuth = PI - around;
         let lit = sky.radiance(above.max(0.0), azimuth - sun.azimuth_rad).map(|v| v * scale);
         let haze = (1.0 + above.to_degrees() / HAZE_DEG).clamp(0.0, 1.0);
-        std::array::from_fn(|c| (haze * lit[c] + (1.0 - haze) * ground[c]) as f32)
+        // Haze loses the horizon's colour within a few degrees.
+        let (colour, grey) = (haze.powi(8), luminance(lit));
+        std::array::from_fn(|c| {
+            let haze_light = colour * lit[c] + (1.0 - colour) * grey;
+            (haze * haze_light + (1.0 - haze) * ground[c]) as f32
+        })
     });
     Environment::new(WIDTH, HEIGHT, texels.collect(), 0.0)
 }

@@ -8,8 +8,8 @@ fn cameras_out_of_range_are_refused() {
     let folder = Folder::new();
     folder.write("line.asc", b"ncols 4 nrows 1 cellsize 1 0 1 2 3");
     let cases = [
-        ("--camera 90", &["--camera", "expected AZ,EL"][..]),
-        ("--camera 1,2,3,4", &["--camera", "expected AZ,EL"]),
+        ("--camera 90", &["--camera", "expected south"][..]),
+        ("--camera 1,2,3,4", &["--camera", "expected south"]),
         ("--camera x,45", &["--camera", "no number"]),
         ("--camera nan,45", &["--camera: azimuth: found NaN"]),
         ("--camera 0,91", &["--camera: elevation: found 91°", "-90° to 90°"]),
