@@ -43,8 +43,8 @@ pub enum Lens {
 const LENGTHS: std::ops::RangeInclusive<f64> = 1e-9..=1e15;
 
 impl Camera {
-    /// A camera whose image, `aspect` times as wide as high, just holds the field. The target defaults to the centre of the
-    /// field. The height of an orthographic lens is set to fit.
+    /// A camera whose image, `aspect` times as wide as high, just holds the field. Without a target, the field's box fills
+    /// the middle of the image; the height of an orthographic lens is set to fit.
     pub fn around(
         field: &HeightField,
         target_m: Option<[f64; 3]>,
@@ -66,6 +66,9 @@ impl Camera {
                 let needed =
                     |p: DVec3| p.dot(back) + p.dot(up).abs().max(p.dot(right).abs() / aspect) / tan;
                 camera.distance_m = largest(&needed);
+                if target_m.is_none() {
+                    camera.enclose(&corners, [tan * aspect, tan]);
+                }
             }
             Lens::Orthographic { height_m } => {
                 *height_m = 2.0 * largest(&|p| p.dot(up).abs().max(p.dot(right).abs() / aspect));
@@ -74,6 +77,28 @@ impl Camera {
             }
         }
         camera
+    }
+
+    /// Moves the eye to where four planes through it hold the corners as closely as they can; `tangents` are those of half
+    /// the fields of view. The target stays at the depth of the field's middle.
+    ///
+    /// A corner p lies within both planes of an image axis, of tangent t, where ±(p - eye)·axis ≤ t (eye - p)·back. The two
+    /// sums of largest corners give the axis' middle and the least depth of the eye; the larger depth serves both axes.
+    fn enclose(&mut self, corners: &[DVec3; 8], tangents: [f64; 2]) {
+        let [right, up, back] = self.axes();
+        let middle = DVec3::from(self.target_m);
+        let [across, high] = [(right, tangents[0]), (up, tangents[1])].map(|(axis, tangent)| {
+            let [after, before] = [1.0, -1.0].map(|sign| {
+                let reach = corners.map(|corner| {
+                    let from = corner - middle;
+                    sign * from.dot(axis) + tangent * from.dot(back)
+                });
+                reach.into_iter().fold(f64::NEG_INFINITY, f64::max)
+            });
+            [(after - before) / 2.0, (after + before) / (2.0 * tangent)]
+        });
+        self.target_m = (middle + across[0] * right + high[0] * up).to_array();
+        self.distance_m = across[1].max(high[1]);
     }
 
     /// Unit vectors right, up and back (out of the image): right-handed.
@@ -172,5 +197,34 @@ mod tests {
             panic!("another lens")
         };
         assert!((height_m - 4.0).abs() < 1e-14, "{height_m}");
+    }
+
+    /// Tangents of the corners' directions, over those of the image's edges: corners stand at both edges of one axis, none
+    /// beyond any.
+    #[test]
+    fn oblique_views_fill_the_image() {
+        let heights: Vec<f64> = (0..35).map(|i| f64::from(i % 5)).collect();
+        let field = HeightField::new(5, 7, &heights, [3.0, 2.0], None).unwrap();
+        for (azimuth, elevation, aspect) in [(0.3, 0.4, 1.7), (-1.5, 0.1, 1.0), (2.0, 1.2, 0.4)] {
+            let lens = Lens::Perspective { fov_rad: 0.7 };
+            let camera = Camera::around(&field, None, [azimuth, elevation], lens, aspect);
+            let [right, up, back] = camera.axes();
+            let tan = 0.35_f64.tan();
+            let places = corners(&field).map(|corner| {
+                let from = corner - camera.eye_m();
+                let depth = -from.dot(back);
+                [from.dot(right) / depth / tan / aspect, from.dot(up) / depth / tan]
+            });
+            let edges = [0, 1].map(|k| {
+                let all = places.map(|place| place[k]);
+                [
+                    all.iter().fold(9.0_f64, |m, v| m.min(*v)),
+                    all.iter().fold(-9.0, |m: f64, v| m.max(*v)),
+                ]
+            });
+            let is_within = edges.as_flattened().iter().all(|v| v.abs() < 1.0 + 1e-12);
+            let is_filled = |[low, high]: [f64; 2]| (low + 1.0).abs() + (high - 1.0).abs() < 1e-12;
+            assert!(is_within && (is_filled(edges[0]) || is_filled(edges[1])), "{edges:?}");
+        }
     }
 }

@@ -1,4 +1,4 @@
-//! Checks and counts of the repository: `cargo xtask layers | words | size | surface [--check]`.
+//! Checks and counts of the repository: `cargo xtask layers | words | size | surface | gallery [--check]`.
 
 mod layers;
 mod size;
@@ -14,7 +14,8 @@ const USAGE: &str = "usage: cargo xtask COMMAND
                      --check fails on a circle, an upward import or an old page
   words              coined words that tools/words.txt forbids; fails where there is one
   size               lines of Rust and GLSL, files a folder, README, dependencies of an embedder
-  surface [--check]  public items of the core, as kept in tools/surface.txt";
+  surface [--check]  public items of the core, as kept in tools/surface.txt
+  gallery            docs/gallery.md and its pictures, by the release program";
 
 fn main() -> ExitCode {
     let root =
@@ -26,6 +27,7 @@ fn main() -> ExitCode {
         ["layers", "--check"] => layers::check(root),
         ["words"] => words::check(root),
         ["size"] => size::print(root),
+        ["gallery"] => gallery(root),
         ["surface"] => surface::write(root),
         ["surface", "--check"] => surface::check(root),
         _ => {
@@ -43,4 +45,30 @@ fn main() -> ExitCode {
             ExitCode::FAILURE
         }
     }
+}
+
+/// Builds the program and the one that calls it, and runs them.
+fn gallery(root: &Path) -> Result<String, String> {
+    let cargo = |words: &[&str]| {
+        let mut command = std::process::Command::new(env!("CARGO"));
+        command.args(words).current_dir(root);
+        let status = command.status().map_err(|e| format!("cargo {}: {e}", words.join(" ")))?;
+        if status.success() { Ok(()) } else { Err(format!("cargo {} failed", words.join(" "))) }
+    };
+    cargo(&["build", "--release", "--locked", "--package", "ridgelight-cli"])?;
+    let target =
+        std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), Into::into);
+    let program = target.join("release/ridgelight");
+    let program = program.to_str().ok_or("the target folder is no UTF-8")?;
+    cargo(&[
+        "run",
+        "--release",
+        "--quiet",
+        "--package",
+        "ridgelight-measure",
+        "--",
+        "gallery",
+        program,
+    ])?;
+    Ok("wrote docs/gallery.md\n".to_owned())
 }

@@ -120,6 +120,74 @@ pub fn escarpment(side: usize) -> Result<HeightField> {
     })
 }
 
+/// Craters on a plain, cells of 20 m: simple bowls with raised rims, depth a fifth of the diameter (R. J. Pike, 1977), the
+/// youngest last.
+///
+/// # Errors
+/// A side of 0.
+pub fn craters(side: usize) -> Result<HeightField> {
+    const COUNT: usize = 220;
+    let rough = Waves::new(17, [120.0, 4.0], 1.0);
+    let mut random = Random(23);
+    let bowls: Vec<[f64; 3]> = (0..COUNT)
+        .map(|i| {
+            // Areas per size fall with the square of the diameter.
+            let radius = if i == COUNT - 1 { 0.22 } else { 0.012 / (random.next() + 0.02).sqrt() };
+            let place = if i == COUNT - 1 { [0.46, 0.52] } else { [random.next(), random.next()] };
+            [place[0] * side as f64, place[1] * side as f64, radius * side as f64]
+        })
+        .collect();
+    field(side, 20.0, |x, y| {
+        let plain = 4.0 * rough.at(x, y);
+        bowls.iter().fold(plain, |height, [east, south, radius]| {
+            let away = (x - east).hypot(y - south) / radius;
+            let depth = 0.4 * 20.0 * radius;
+            let rim = 0.18 * depth * (-((away - 1.0) / 0.25).powi(2)).exp();
+            let bowl = if away < 1.0 { depth * (away * away - 1.0) } else { 0.0 };
+            // A bowl replaces what was there; its rim lies upon it.
+            let kept = if away < 1.0 { height * (0.2 + 0.8 * away * away) } else { height };
+            kept + bowl + rim
+        })
+    })
+}
+
+/// Bumpy ground such as moss, cells of 1 mm, up to about 60 mm high.
+///
+/// # Errors
+/// A side of 0.
+pub fn cushions(side: usize) -> Result<HeightField> {
+    let (large, small) = (Waves::new(29, [160.0, 30.0], 1.0), Waves::new(31, [9.0, 3.0], 0.5));
+    field(side, 0.001, |x, y| {
+        let cushion = 1.0 - large.at(x, y).abs().min(1.6) / 1.6;
+        0.001 * (42.0 * cushion.sqrt() + 4.0 * small.at(x, y))
+    })
+}
+
+/// Waves of deep water at a time in seconds, cells of 0.5 m: each travels with its own speed, √(g λ / 2 π).
+///
+/// # Errors
+/// A side of 0.
+pub fn waves(side: usize, time_s: f64) -> Result<HeightField> {
+    const CELL_M: f64 = 0.5;
+    const GRAVITY: f64 = 9.81;
+    let mut random = Random(37);
+    let all: Vec<[f64; 4]> = (0..40)
+        .map(|i| {
+            let length = 60.0 * 0.92_f64.powi(i);
+            let number = TAU / length;
+            // Around the wind's direction.
+            let angle = 0.6 + 1.2 * (random.next() - 0.5);
+            let phase = TAU * random.next() - (GRAVITY * number).sqrt() * time_s;
+            [number * angle.cos(), number * angle.sin(), phase, 0.011 * length]
+        })
+        .collect();
+    field(side, CELL_M, |x, y| {
+        let wave =
+            |[a, b, phase, high]: &[f64; 4]| high * (a * x * CELL_M + b * y * CELL_M + phase).sin();
+        all.iter().map(wave).sum()
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -136,6 +204,9 @@ mod tests {
             (coast(256), [-1e-5, 1e-5], [8.0, 40.0]),
             (city(256), [-1e-5, 1e-5], [20.0, 60.1]),
             (escarpment(256), [-20.0, 10.0], [100.0, 150.0]),
+            (craters(256), [-800.0, -200.0], [20.0, 300.0]),
+            (cushions(256), [-0.02, 0.01], [0.03, 0.07]),
+            (waves(256, 1.5), [-6.0, -1.0], [1.0, 6.0]),
         ] {
             let [low, high] = range(&made.unwrap());
             assert!((lowest[0]..=lowest[1]).contains(&low), "{low}");

@@ -7,6 +7,7 @@ mod bake;
 mod bounce;
 mod common;
 mod curved;
+mod gallery;
 mod goals;
 mod lights;
 mod pages;
@@ -23,7 +24,6 @@ mod soft {
 mod specular;
 mod suites;
 
-use std::path::Path;
 use std::process::ExitCode;
 
 use common::Outcome;
@@ -31,7 +31,7 @@ use common::args::Args;
 
 type Program = (&'static str, &'static str, fn(Args) -> Outcome);
 
-const PROGRAMS: [Program; 26] = [
+const PROGRAMS: [Program; 27] = [
     ("accuracy", "FIELD [--cell X,Y] [--env FILE] [--points N] [--pyramids]", accuracy::run),
     ("auto", "FOLDER [--fit] [--side N] [--seconds S] [--json FILE]", auto::run),
     ("bake", "-o PICTURE.png --json FILE", bake::run),
@@ -42,7 +42,8 @@ const PROGRAMS: [Program; 26] = [
     ("cones", "[-o PICTURE.png]", lights::cones),
     ("curved", "[-o FILE.svg]", curved::run),
     ("extremes", "DEVICE...", suites::extremes),
-    ("fractal", "SIDE FIELD.npy", fractal),
+    ("field", "NAME SIDE FIELD.npy", gallery::field),
+    ("gallery", "PROGRAM", gallery::run),
     ("gloss", "[SIDE] [--spp N] [-o PICTURE.png]", specular::indirect),
     ("goals", "PROGRAM [FOLDER]", goals::run),
     ("lights", "[SIDE]", lights::run),
@@ -59,15 +60,6 @@ const PROGRAMS: [Program; 26] = [
     ("terrain", "-o PICTURE.png --json FILE", pictures::terrain),
     ("town", "-o PICTURE.png", pictures::town),
 ];
-
-/// Writes the fractal field of `ridgelight bench --size N` as a file.
-fn fractal(mut args: Args) -> Outcome {
-    let (Some(side), Some(path)) = (args.word(), args.word()) else {
-        return Err("expected SIDE FIELD.npy".into());
-    };
-    let field = ridgelight::scene::fractal(side.parse()?, 1)?;
-    Ok(ridgelight_io::write_npy_heights(Path::new(&path), &field)?)
-}
 
 fn main() -> ExitCode {
     let mut args = Args(std::env::args().skip(1).collect());
