@@ -27,7 +27,7 @@ impl Tone {
     }
 
     /// Channel of a pixel, [0..1]. Negative radiance and NaN give 0.
-    pub fn channel(self, radiance: f32) -> f64 {
+    fn channel(self, radiance: f32) -> f64 {
         let light = (f64::from(radiance) * f64::from(self.exposure)).max(0.0);
         let (shoulder, rest) = (f64::from(self.shoulder), 1.0 - f64::from(self.shoulder));
         let light = match light > shoulder {

@@ -305,7 +305,6 @@ mod tests {
         for (light, shown) in [(0.5, 0.5), (0.8, 0.8), (0.801, 0.800_995), (1.0, 0.9), (4.6, 0.99)]
         {
             assert_eq!(picture.code(light), Tone::default().code(shown), "{light}");
-            assert!((picture.channel(light) - Tone::default().channel(shown)).abs() < 1e-6);
         }
         assert_eq!(picture.code(f32::INFINITY), 255);
         // Middle grey: linear 0.214 041 is sRGB 0.5; code 127.5 rounds to 128 or 127.

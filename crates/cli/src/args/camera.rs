@@ -132,6 +132,22 @@ fn camera(text: &str) -> Result<CameraAt, String> {
     }
 }
 
+fn place(text: &str) -> Result<LookAt, String> {
+    match *numbers(text)?.as_slice() {
+        [east_m, north_m] => Ok(LookAt { east_m, north_m, height_m: None }),
+        [east_m, north_m, height] => Ok(LookAt { east_m, north_m, height_m: Some(height) }),
+        _ => Err("expected X,Y or X,Y,Z".into()),
+    }
+}
+
+fn size(text: &str) -> Result<Size, String> {
+    let sides: Vec<u32> = text.split(['x', 'X', '×']).filter_map(|s| s.parse().ok()).collect();
+    match (sides.as_slice(), text.split(['x', 'X', '×']).count()) {
+        (&[width, height], 2) => Ok([width, height]),
+        _ => Err("expected WIDTHxHEIGHT, as 1280x720".into()),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -155,21 +171,5 @@ mod tests {
             let error = camera(text).err().unwrap();
             assert!(error.contains("expected south"), "{text}: {error}");
         }
-    }
-}
-
-fn place(text: &str) -> Result<LookAt, String> {
-    match *numbers(text)?.as_slice() {
-        [east_m, north_m] => Ok(LookAt { east_m, north_m, height_m: None }),
-        [east_m, north_m, height] => Ok(LookAt { east_m, north_m, height_m: Some(height) }),
-        _ => Err("expected X,Y or X,Y,Z".into()),
-    }
-}
-
-fn size(text: &str) -> Result<Size, String> {
-    let sides: Vec<u32> = text.split(['x', 'X', '×']).filter_map(|s| s.parse().ok()).collect();
-    match (sides.as_slice(), text.split(['x', 'X', '×']).count()) {
-        (&[width, height], 2) => Ok([width, height]),
-        _ => Err("expected WIDTHxHEIGHT, as 1280x720".into()),
     }
 }
