@@ -8,7 +8,7 @@ use ridgelight::plan::{Limits, Picture, Plan};
 use ridgelight::scene::{Albedo, Border, HeightField, Lights, Scene, Specular, Surface, setting};
 use ridgelight::{Error, Result};
 use ridgelight_io as files;
-use ridgelight_io::HeightOptions;
+use ridgelight_io::{Georeference, HeightOptions};
 use std::path::{Path, PathBuf};
 
 use crate::args::{
@@ -51,6 +51,15 @@ fn check_size(path: &Path, global: &GlobalArgs) -> Result<()> {
 }
 
 pub fn field(path: &Path, surface: &FieldArgs, global: &GlobalArgs) -> Result<HeightField> {
+    Ok(georeferenced(path, surface, global)?.0)
+}
+
+/// A field, and its position where the file states it.
+pub fn georeferenced(
+    path: &Path,
+    surface: &FieldArgs,
+    global: &GlobalArgs,
+) -> Result<(HeightField, Option<Georeference>)> {
     if !surface.z_scale.is_finite() || surface.z_scale == 0.0 {
         let expected = "a finite number other than 0";
         return Err(Error::setting("--z-scale", surface.z_scale.to_string(), expected));
@@ -58,7 +67,7 @@ pub fn field(path: &Path, surface: &FieldArgs, global: &GlobalArgs) -> Result<He
     let options =
         HeightOptions { cell_m: surface.cell, z_scale: surface.z_scale, nodata: surface.nodata };
     check_size(path, global)?;
-    files::read_heights(path, &options)
+    files::read_georeferenced(path, &options)
 }
 
 pub fn scene(field: HeightField, surface: &SurfaceArgs, lights: &LightArgs) -> Result<Scene> {
@@ -184,6 +193,11 @@ pub fn no_timestamps() -> Error {
 
 pub fn extension(path: &Path) -> String {
     path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default()
+}
+
+/// Whether a name is that of a GeoTIFF.
+pub fn is_geotiff(path: &Path) -> bool {
+    ["tif", "tiff"].contains(&extension(path).as_str())
 }
 
 /// Refuses an output file that cannot be written, before the work.

@@ -3,7 +3,7 @@
 use crate::open::complaint;
 use ridgelight::{Error, Result};
 use std::fs;
-use std::io::{BufWriter, Write};
+use std::io::{BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use tempfile::TempPath;
@@ -159,6 +159,12 @@ impl Temporary {
     /// Appends bytes.
     pub fn write(&mut self, bytes: &[u8]) -> Result<()> {
         self.stream.write_all(bytes).map_err(|e| Error::io(&self.whole.path, e))
+    }
+
+    /// Continues at a place in the file.
+    pub fn seek(&mut self, place: u64) -> Result<()> {
+        let moved = self.stream.seek(SeekFrom::Start(place));
+        moved.map(drop).map_err(|e| Error::io(&self.whole.path, e))
     }
 
     /// The stream, for encoders.

@@ -1,5 +1,7 @@
 //! OpenEXR: reads any channel of any flat file; writes one part with f32 channels and ZIP.
 
+mod attributes;
+
 use crate::atomic::{Temporary, Written};
 use crate::heights::Raster;
 use crate::open;
@@ -261,6 +263,14 @@ impl<'a> Layer<'a> {
     pub fn scalar(name: &'a str, values: &'a [f32]) -> Self {
         Self { name: String::new(), channels: Channels::Scalar(name, values) }
     }
+
+    /// The full name of one of its channels.
+    pub(crate) fn channel(&self, name: &str) -> String {
+        match (self.name.as_str(), name) {
+            ("", name) | (name, "") => name.to_owned(),
+            (layer, name) => format!("{layer}.{name}"),
+        }
+    }
 }
 
 /// The samples of a [`Layer`], row-major, NaN allowed.
@@ -318,10 +328,7 @@ pub fn write_exr_aside(
             let place = format!("layer \"{}\"", layer.name);
             return Err(Error::setting(place, found, "rows × columns pixels"));
         }
-        let full = |name: &str| match (layer.name.as_str(), name) {
-            ("", name) | (name, "") => name.to_owned(),
-            (layer, name) => format!("{layer}.{name}"),
-        };
+        let full = |name: &str| layer.channel(name);
         match layer.channels {
             Channels::Rgb(_) => {
                 columns
@@ -366,6 +373,7 @@ pub fn write_exr_aside(
     // An attribute with a reserved name and the wrong type would make the file unreadable, so the
     // file is read back first.
     std::io::Write::flush(file.stream()).map_err(|e| Error::io(path, e))?;
+    attributes::sort(file.stream().get_mut()).map_err(|e| Error::io(path, e))?;
     MetaData::read_from_file(file.name(), true).map_err(wrong)?;
     file.close()
 }

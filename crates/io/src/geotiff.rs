@@ -4,11 +4,13 @@
 //! writes both, but not GDAL's metadata, which holds the names and units of bands.
 
 mod directory;
+mod layers;
 mod tiles;
 
 use crate::atomic::{Temporary, Written, folder_of};
 use crate::georeference::Georeference;
 use directory::{Directory, Values};
+pub use layers::write_geotiff;
 use ridgelight::{Error, Result};
 use std::fs::File;
 use std::io::{self, Seek, SeekFrom, Write};

@@ -32,7 +32,7 @@ pub use component::Component;
 pub use environment::{parse_environment, read_albedo, read_environment, read_specular};
 pub use exr::{Channels, Layer, read_metadata, write_exr, write_exr_aside};
 pub use georeference::{GeoKeys, Georeference};
-pub use geotiff::{Band, GeoTiffWriter};
+pub use geotiff::{Band, GeoTiffWriter, write_geotiff};
 pub use heights::size::height_size;
 pub use heights::{HeightOptions, parse_heights, read_georeferenced, read_heights};
 pub use ktx2::{Ktx2Writer, TexelFormat};

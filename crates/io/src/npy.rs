@@ -197,6 +197,8 @@ pub(crate) fn header(descr: &str, shape: &[usize]) -> Result<Vec<u8>> {
 pub struct NpyWriter {
     file: Temporary,
     shape: Vec<usize>,
+    /// Bytes before the values.
+    start: u64,
     left: usize,
 }
 
@@ -211,8 +213,9 @@ impl NpyWriter {
             Error::setting("shape", format!("{shape:?}"), "a product within the address space")
         })?;
         let mut file = Temporary::create(path)?;
-        file.write(&header("<f4", shape)?)?;
-        Ok(Self { file, shape: shape.to_vec(), left })
+        let header = header("<f4", shape)?;
+        file.write(&header)?;
+        Ok(Self { file, shape: shape.to_vec(), start: header.len() as u64, left })
     }
 
     /// Appends values in order; NaN is allowed.
@@ -232,6 +235,21 @@ impl NpyWriter {
             self.file.write(&bytes)?;
         }
         Ok(())
+    }
+
+    /// Writes one of the planes along the first axis, in any order, each once.
+    ///
+    /// # Errors
+    /// As [`write`](Self::write); a plane that the shape does not have.
+    pub fn write_plane(&mut self, plane: usize, values: &[f32]) -> Result<()> {
+        let length: usize = self.shape.iter().skip(1).product();
+        if values.len() != length || plane >= self.shape.first().copied().unwrap_or(1) {
+            let found = format!("{} values for plane {plane}", values.len());
+            let expected = format!("{length} values for each plane");
+            return Err(Error::setting(format!("the shape {:?}", self.shape), found, expected));
+        }
+        self.file.seek(self.start + 4 * (plane * length) as u64)?;
+        self.write(values)
     }
 
     /// Moves the file to its destination.
