@@ -32,7 +32,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
         return Err(Error::setting(
             "--layers",
             "a .png output",
-            "an .exr or .tif output: a .png has no layers",
+            "an .exr output, or a .tif without --camera: a .png has no layers",
         ));
     }
     if !is_png && args.exposure != 1.0 {
@@ -163,7 +163,11 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
         }
     }
     if let Some(json) = &args.global.json {
-        files::write_json(json, &setup::as_json(&metadata, &times))?;
+        let mut report = setup::as_json(&metadata, &times);
+        if let Some((goal, chosen)) = &chosen {
+            report["settings"]["tried"] = auto::tried(*goal, chosen, &scene, true).into();
+        }
+        files::write_json(json, &report)?;
     }
     if !args.global.quiet {
         if let Some(camera_view) = &camera_view {

@@ -1,6 +1,7 @@
 //! OpenEXR: reads any channel of any flat file; writes one part with f32 channels and ZIP.
 
 mod attributes;
+mod layer;
 
 use crate::atomic::{Temporary, Written};
 use crate::heights::Raster;
@@ -10,6 +11,7 @@ use ::exr::meta::attribute::{AttributeValue, ChannelDescription, LineOrder, Samp
 use ::exr::meta::{BlockDescription, MetaData, header::Header};
 use ::exr::prelude::{Compression, Error as ExrError, Vec2};
 use half::f16;
+pub use layer::{Channels, Layer};
 use ridgelight::{Error, Result};
 use std::{collections::HashSet, io::Cursor, path::Path};
 
@@ -246,49 +248,6 @@ pub(crate) fn colour(path: &Path, bytes: &[u8]) -> Result<(usize, usize, Vec<[f3
 /// A file that cannot be read or is no OpenEXR file.
 pub fn read_metadata(path: &Path) -> Result<Vec<(String, String)>> {
     Ok(ExrFile::open(path, &open::read(path)?)?.texts())
-}
-
-/// One layer of a picture to write.
-#[derive(Clone, Debug)]
-pub struct Layer<'a> {
-    /// Prefix of the channels' names with a dot, as compositors expect: "direct.sky" gives
-    /// "direct.sky.R". Empty for the main layer, whose channels have no prefix.
-    pub name: String,
-    /// The samples.
-    pub channels: Channels<'a>,
-}
-
-impl<'a> Layer<'a> {
-    /// One channel without a prefix.
-    pub fn scalar(name: &'a str, values: &'a [f32]) -> Self {
-        Self { name: String::new(), channels: Channels::Scalar(name, values) }
-    }
-
-    /// The full name of one of its channels.
-    pub(crate) fn channel(&self, name: &str) -> String {
-        match (self.name.as_str(), name) {
-            ("", name) | (name, "") => name.to_owned(),
-            (layer, name) => format!("{layer}.{name}"),
-        }
-    }
-}
-
-/// The samples of a [`Layer`], row-major, NaN allowed.
-#[derive(Clone, Copy, Debug)]
-pub enum Channels<'a> {
-    /// Linear red, green and blue as R, G and B.
-    Rgb(&'a [[f32; 3]]),
-    /// One value per pixel under a name, as "Y" or "Z". An empty name leaves only the layer's.
-    Scalar(&'a str, &'a [f32]),
-}
-
-impl Channels<'_> {
-    fn len(&self) -> usize {
-        match self {
-            Channels::Rgb(texels) => texels.len(),
-            Channels::Scalar(_, values) => values.len(),
-        }
-    }
 }
 
 /// Writes all layers as channels of one part, f32, ZIP-compressed, so that every viewer opens it.

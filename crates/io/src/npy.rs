@@ -308,3 +308,24 @@ pub fn write_npy_f32<'a>(
     }
     writer.finish()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn planes_come_in_any_order() {
+        let folder = tempfile::tempdir().unwrap();
+        let [a, b] = ["a.npy", "b.npy"].map(|name| folder.path().join(name));
+        let planes = [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]];
+        write_npy_f32(&a, &[2, 1, 3], planes.iter().map(|plane| plane.as_slice())).unwrap();
+        let mut writer = NpyWriter::create(&b, &[2, 1, 3]).unwrap();
+        writer.write_plane(1, &planes[1]).unwrap();
+        let error = writer.write_plane(2, &planes[0]).unwrap_err().to_string();
+        assert!(error.contains("plane 2"), "{error}");
+        assert!(writer.write_plane(0, &planes[0][..2]).is_err());
+        writer.write_plane(0, &planes[0]).unwrap();
+        writer.finish().unwrap();
+        assert_eq!(std::fs::read(a).unwrap(), std::fs::read(b).unwrap());
+    }
+}

@@ -6,8 +6,9 @@ use std::num::NonZero;
 
 /// The side of a tile of a large image.
 pub(super) const TILE: usize = 512;
-/// zlib's default: the next levels take twice the time for 1 % of the size.
-const LEVEL: u32 = 6;
+/// zlib's fastest. Measured on the eight bands of a render of 1201 x 1201: level 6, its default, is 3 %
+/// smaller and takes 3.5 times as long (0.46 s and 1.59 s on two cores).
+const LEVEL: u32 = 1;
 
 /// Columns and rows of an image or a tile.
 pub(super) type Size = [usize; 2];
