@@ -176,10 +176,11 @@ Examples:
 pub struct RenderArgs {
     #[command(flatten)]
     pub input: Input,
-    /// Output: .exr (linear, layers) or .png (sRGB)
+    /// Output: .png (sRGB), .tif or .exr (linear, layers)
     ///
-    /// Both store the settings used as metadata.
-    #[arg(short, long, value_name = "OUT.{exr,png}", help_heading = "Output")]
+    /// All store the settings used as metadata. A .tif is a GeoTIFF and lies where the input lies. A .png of a georeferenced input has a world
+    /// file (.pgw) beside it.
+    #[arg(short, long, value_name = "OUT.{png,tif,exr}", help_heading = "Output")]
     pub output: PathBuf,
     #[command(flatten)]
     pub lights: LightArgs,
@@ -191,7 +192,7 @@ pub struct RenderArgs {
     pub auto: AutoArgs,
     #[command(flatten)]
     pub camera: CameraArgs,
-    /// Add layers to an .exr
+    /// Add layers to a .tif or .exr
     ///
     /// lights is one layer per light, horizon the mean elevation, depth (with --camera) the distance Z along the view.
     #[arg(
@@ -222,11 +223,13 @@ pub struct RenderArgs {
 pub struct HorizonArgs {
     #[command(flatten)]
     pub input: Input,
-    /// Output: .npy (f32 [azimuths, rows, cols]) or .exr (one channel per azimuth)
-    #[arg(short, long, value_name = "OUT.{npy,exr}", help_heading = "Output")]
+    /// Output: .tif, .npy or .exr; a layer per azimuth
+    ///
+    /// A GeoTIFF with a band, f32 [azimuths, rows, cols], or a channel per azimuth. Elevations are in radians. Azimuths are in compass order: 0 is north, then clockwise. Names are azimuth_000.0 and so on.
+    #[arg(short, long, value_name = "OUT.{tif,npy,exr}", help_heading = "Output")]
     pub output: PathBuf,
-    /// Also write the distance to each horizon's occluder, metres, 0 where there is none (.npy)
-    #[arg(long, value_name = "OUT.npy", help_heading = "Output")]
+    /// Also write the distance to each horizon's occluder, metres, 0 where there is none
+    #[arg(long, value_name = "OUT.{tif,npy}", help_heading = "Output")]
     pub distances: Option<PathBuf>,
     #[command(flatten)]
     pub surface: FieldArgs,

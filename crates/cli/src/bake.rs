@@ -47,7 +47,8 @@ pub fn run(args: &BakeArgs) -> Result<Outcome> {
         setup::check_output("--json", json, &["json"])?;
     }
     let quality = request::quality(args)?;
-    let field = setup::field(&args.input.path, &args.surface.field, &args.global)?;
+    let (field, georeference) =
+        setup::georeferenced(&args.input.path, &args.surface.field, &args.global)?;
     let scene = setup::scene(field, &args.surface, &args.lights, setup::Unlit::Sky)?;
     let around = request::directions(args)?;
     let mut job = Job {
@@ -94,12 +95,12 @@ pub fn run(args: &BakeArgs) -> Result<Outcome> {
         request::say_idle_light(args, job.scatter.is_some());
     }
     let _folder = files::ResultFolder::create(&args.output)?;
-    bake(args, job, &mut gpu, &used)
+    bake(args, (job, georeference), &mut gpu, &used)
 }
 
 fn bake(
     args: &BakeArgs,
-    mut job: Job<'_>,
+    (mut job, georeference): (Job<'_>, Option<files::Georeference>),
     gpu: &mut Headless,
     used: &[(String, String)],
 ) -> Result<Outcome> {
@@ -116,7 +117,8 @@ fn bake(
             Source::Sums(of) => Some(HorizonSums::new(of(&job), job.grid_points())),
             _ => None,
         };
-        Ok((MapFiles::create(&args.output, map, field, &hash)?, sums))
+        let at = georeference.as_ref();
+        Ok((MapFiles::create(&args.output, map, field, &hash, at)?, sums))
     });
     let mut all: Vec<(MapFiles, Option<HorizonSums>)> = all.collect::<Result<_>>()?;
     let bar = crate::setup::terminal::progress(args.global.quiet, "baking");
@@ -163,7 +165,7 @@ fn bake(
     }
     times.extend(gpu.take_timings());
     let plan = plan.expect("--what has a kind");
-    let mut metadata = setup::metadata(gpu, field, &plan, &times);
+    let mut metadata = setup::metadata(gpu, field, &plan);
     // A plan lists the settings of its part only.
     metadata.retain(|(name, _)| {
         let is_part = ["paths", "seed", "azimuths", "sh_order"].contains(&name.as_str());
@@ -202,8 +204,8 @@ fn bake(
     let maps = whole.into_iter().map(MapFiles::place).collect::<Result<Vec<_>>>()?;
     bar.finish_and_clear();
     let seconds = started.elapsed().as_secs_f64();
-    metadata.push(("seconds".into(), format!("{seconds:.3}")));
-    let mut manifest = setup::as_json(&metadata, &times);
+    // Times are in --json only: two runs write the same folder.
+    let mut manifest = json!({ "settings": setup::typed(&metadata) });
     describe(&mut manifest, field, has_horizons.then_some(quality));
     manifest["maps"] = maps.into();
     if traces_directions {
@@ -213,6 +215,11 @@ fn bake(
     files::write_json(&args.output.join(MANIFEST), &manifest)?;
     remove_old(&args.output, before)?;
     if let Some(json) = &args.global.json {
+        metadata.push(("seconds".into(), format!("{seconds:.3}")));
+        let timed = setup::as_json(&metadata, &times);
+        for key in ["settings", "passes"] {
+            manifest[key] = timed[key].clone();
+        }
         files::write_json(json, &manifest)?;
     }
     if !args.global.quiet {

@@ -1,13 +1,19 @@
+//! `horizon`: writes the horizon of every texel.
+
+mod compass;
+
 use ridgelight::gpu::{Headless, Timing};
 use ridgelight::plan::{self, Limits, Plan};
 use ridgelight::scene::{Border, HeightField, Lines, Method, Quality};
 use ridgelight::{Error, Result};
 use ridgelight_io as files;
-use ridgelight_io::{Layer, NpyWriter};
+use ridgelight_io::{Band, GeoTiffWriter, Georeference, Layer, NpyWriter};
+use std::path::{Path, PathBuf};
 
 use crate::args::HorizonArgs;
 use crate::idle;
 use crate::setup::{self, Outcome};
+pub use compass::Compass;
 
 /// Limit of the bytes that one batch of azimuths reads back.
 const OUTPUT_BYTES: u64 = 256 << 20;
@@ -91,10 +97,65 @@ pub fn for_each(
     }
 }
 
+/// A file of one layer for each azimuth.
+enum LayerFile {
+    Npy(NpyWriter),
+    Tif(GeoTiffWriter),
+    /// Its path, size and layers, held until the end.
+    Exr(PathBuf, [usize; 2], Vec<(String, Vec<f32>)>),
+}
+
+impl LayerFile {
+    fn create(
+        path: &Path,
+        [count, rows, cols]: [usize; 3],
+        names: Vec<String>,
+        unit: &str,
+        georeference: Option<&Georeference>,
+    ) -> Result<Self> {
+        match setup::extension(path).as_str() {
+            "npy" => Ok(Self::Npy(NpyWriter::create(path, &[count, rows, cols])?)),
+            "exr" => {
+                let layers = names.into_iter().map(|name| (name, Vec::new())).collect();
+                Ok(Self::Exr(path.to_owned(), [rows, cols], layers))
+            }
+            _ => {
+                let bands = names.into_iter().map(|name| Band { name, unit: unit.to_owned() });
+                let georeference = georeference.cloned();
+                let file =
+                    GeoTiffWriter::create(path, [rows, cols], bands.collect(), georeference)?;
+                Ok(Self::Tif(file))
+            }
+        }
+    }
+
+    fn write(&mut self, layer: usize, plane: Vec<f32>) -> Result<()> {
+        match self {
+            Self::Npy(file) => file.write_plane(layer, &plane),
+            Self::Tif(file) => file.write(layer, &plane),
+            Self::Exr(_, _, layers) => {
+                layers[layer].1 = plane;
+                Ok(())
+            }
+        }
+    }
+
+    fn finish(self, metadata: &[(String, String)]) -> Result<()> {
+        match self {
+            Self::Npy(file) => file.finish(),
+            Self::Tif(file) => file.finish(metadata),
+            Self::Exr(path, [rows, cols], layers) => {
+                let layers = layers.iter().map(|(name, plane)| Layer::scalar(name, plane));
+                files::write_exr(&path, rows, cols, &layers.collect::<Vec<_>>(), metadata)
+            }
+        }
+    }
+}
+
 pub fn run(args: &HorizonArgs) -> Result<Outcome> {
-    setup::check_output("-o", &args.output, &["npy", "exr"])?;
+    setup::check_output("-o", &args.output, &["npy", "tif", "tiff", "exr"])?;
     if let Some(path) = &args.distances {
-        setup::check_output("--distances", path, &["npy"])?;
+        setup::check_output("--distances", path, &["npy", "tif", "tiff"])?;
     }
     if let Some(json) = &args.global.json {
         setup::check_output("--json", json, &["json"])?;
@@ -112,10 +173,11 @@ pub fn run(args: &HorizonArgs) -> Result<Outcome> {
         return Err(Error::setting(
             "--lines exact",
             "an .npy output without --json",
-            "--json FILE beside it: exact azimuths are not 2πk/M, and a .npy cannot say what they are",
+            "--json FILE beside it, or a .tif: exact azimuths are uneven, and a .npy cannot name them",
         ));
     }
-    let field = setup::field(&args.input.path, &args.surface, &args.global)?;
+    let (field, georeference) =
+        setup::georeferenced(&args.input.path, &args.surface, &args.global)?;
     let border = setup::border(&args.surface);
     let distances = args.distances.is_some();
     setup::check_plan(&args.global, |limits| {
@@ -123,19 +185,20 @@ pub fn run(args: &HorizonArgs) -> Result<Outcome> {
         plan_from(&field, border, &quality, limits, (0, most), distances)
     })?;
     let shape = [quality.azimuths as usize, field.rows(), field.cols()];
-    if is_npy {
-        let bytes = 4 * shape.iter().product::<usize>() as u64;
-        let outputs = [Some(args.output.as_path()), args.distances.as_deref()];
-        let outputs: Vec<_> = outputs.into_iter().flatten().map(|path| (path, bytes)).collect();
-        files::check_room(&outputs)?;
-    }
+    let outputs = [Some(args.output.as_path()), args.distances.as_deref()];
+    let bytes = 4 * shape.iter().product::<usize>() as u64;
+    let outputs = outputs.into_iter().flatten().filter(|path| setup::extension(path) == "npy");
+    files::check_room(&outputs.map(|path| (path, bytes)).collect::<Vec<_>>())?;
     let (mut gpu, limits) = setup::device(&args.global)?;
     let used = used(&field, border, &quality, &limits, distances)?;
     idle::say(args.global.quiet, &args.quality.written, &used);
-    let begin = |path: &std::path::PathBuf| NpyWriter::create(path, &shape);
-    let mut angles_file = Some(&args.output).filter(|_| is_npy).map(begin).transpose()?;
-    let mut distances_file = args.distances.as_ref().map(begin).transpose()?;
-    let mut planes: Vec<Vec<f32>> = Vec::new();
+    let azimuths = plan::circle_rad(&quality, field.cell_m())?;
+    let compass = Compass::of(&azimuths);
+    let create = |path: &Path, unit: &str| {
+        LayerFile::create(path, shape, compass.names(), unit, georeference.as_ref())
+    };
+    let mut angles_file = create(&args.output, "rad")?;
+    let mut distances_file = args.distances.as_ref().map(|path| create(path, "m")).transpose()?;
     let bar = crate::setup::terminal::progress(args.global.quiet, "horizons");
     let (times, plan) = for_each(
         &mut gpu,
@@ -151,34 +214,27 @@ pub fn run(args: &HorizonArgs) -> Result<Outcome> {
                 setup::mask_voids(&field, &mut plane, 1);
                 plane
             };
-            match &mut angles_file {
-                Some(file) => file.write(&masked(angles))?,
-                None => planes.push(masked(angles)),
-            }
-            if let Some(file) = &mut distances_file {
-                file.write(&masked(distances))?;
-            }
-            Ok(())
+            let layer = compass.layer_of[k as usize];
+            angles_file.write(layer, masked(angles))?;
+            distances_file.as_mut().map_or(Ok(()), |file| file.write(layer, masked(distances)))
         },
     )?;
     bar.finish_and_clear();
-    let azimuths = plan::circle_rad(&quality, field.cell_m())?;
-    let mut metadata = setup::metadata(&gpu, &field, &plan, &times);
+    let mut metadata = setup::metadata(&gpu, &field, &plan);
     metadata.push(("azimuths".into(), quality.azimuths.to_string()));
     metadata.extend(setup::asked(&args.input.path, &args.surface, None));
-    if angles_file.is_none() {
-        let name = |azimuth: &f64| format!("horizon.{:07.3}", azimuth.to_degrees());
-        let names: Vec<String> = azimuths.iter().map(name).collect();
-        let layers = planes.iter().zip(&names).map(|(plane, name)| Layer::scalar(name, plane));
-        let layers: Vec<Layer> = layers.collect();
-        files::write_exr(&args.output, field.rows(), field.cols(), &layers, &metadata)?;
-    }
-    for file in [angles_file, distances_file].into_iter().flatten() {
-        file.finish()?;
+    let named = "compass degrees, clockwise from north, to the horizon";
+    metadata.push(("azimuth_names".into(), named.into()));
+    for (file, values) in [
+        (Some(angles_file), "elevation of the horizon, rad"),
+        (distances_file, "distance to the horizon's occluder, m; 0 without one"),
+    ] {
+        let about = [metadata.as_slice(), &[("values".into(), values.into())]].concat();
+        file.map_or(Ok(()), |file| file.finish(&about))?;
     }
     if let Some(json) = &args.global.json {
         let mut value = setup::as_json(&metadata, &times);
-        value["azimuths_rad"] = azimuths.clone().into();
+        value["azimuths_deg"] = compass.degrees.into();
         files::write_json(json, &value)?;
     }
     if !args.global.quiet {

@@ -8,7 +8,7 @@ use ridgelight::plan::{self, Limits, REFERENCE_BATCH};
 use ridgelight::scene::Scene;
 use ridgelight::{Error, Result};
 use ridgelight_io as files;
-use ridgelight_io::{Channels, Layer};
+use ridgelight_io::{Channels, Georeference, Layer};
 
 use crate::args::ReferenceArgs;
 use crate::setup::{self, Outcome};
@@ -31,7 +31,8 @@ pub fn takes_signal() -> bool {
 
 pub fn run(args: &ReferenceArgs) -> Result<Outcome> {
     check(args)?;
-    let field = setup::field(&args.input.path, &args.surface.field, &args.global)?;
+    let (field, georeference) =
+        setup::georeferenced(&args.input.path, &args.surface.field, &args.global)?;
     let scene = setup::scene(field, &args.surface, &args.lights, setup::Unlit::Daylight(None))?;
     let plan = |limits: &Limits| plan::reference(&scene, args.bounces, args.seed, limits);
     setup::check_plan(&args.global, plan)?;
@@ -42,8 +43,9 @@ pub fn run(args: &ReferenceArgs) -> Result<Outcome> {
     let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
     let mut frame = gpu.frame(plan(&limits)?, &contents)?;
     let traced = trace(args, &scene, &mut gpu, &mut frame);
-    let traced =
-        traced.and_then(|traced| write(args, &scene, &gpu, &frame, &traced).map(|()| traced));
+    let traced = traced.and_then(|traced| {
+        write(args, (&scene, georeference.as_ref()), &gpu, &frame, &traced).map(|()| traced)
+    });
     IS_TRACING.store(false, Ordering::SeqCst);
     gpu.end(frame);
     let traced = traced?;
@@ -83,7 +85,7 @@ pub fn run(args: &ReferenceArgs) -> Result<Outcome> {
 }
 
 fn check(args: &ReferenceArgs) -> Result<()> {
-    setup::check_output("-o", &args.output, &["exr"])?;
+    setup::check_output("-o", &args.output, &["exr", "tif", "tiff"])?;
     if let Some(json) = &args.global.json {
         setup::check_output("--json", json, &["json"])?;
     }
@@ -227,12 +229,12 @@ pub fn none_lost(count: u32) -> Result<()> {
 
 fn write(
     args: &ReferenceArgs,
-    scene: &Scene,
+    (scene, georeference): (&Scene, Option<&Georeference>),
     gpu: &Headless,
     frame: &Frame,
     traced: &Traced,
 ) -> Result<()> {
-    let mut metadata = setup::metadata(gpu, &scene.field, frame.plan(), &traced.times);
+    let mut metadata = setup::metadata(gpu, &scene.field, frame.plan());
     let lit = Some((&args.lights, &args.surface, scene));
     metadata.extend(setup::asked(&args.input.path, &args.surface.field, lit));
     let mut add = |name: &str, value: String| metadata.push((name.to_owned(), value));
@@ -247,11 +249,24 @@ fn write(
     for (_, texels) in &mut layers {
         setup::mask_voids(&scene.field, texels.as_flattened_mut(), 3);
     }
-    let layers = layers
+    let layers: Vec<Layer> = layers
         .iter()
-        .map(|(name, texels)| Layer { name: (*name).into(), channels: Channels::Rgb(texels) });
+        .map(|(name, texels)| Layer { name: (*name).into(), channels: Channels::Rgb(texels) })
+        .collect();
     let (rows, cols) = (scene.field.rows(), scene.field.cols());
-    files::write_exr(&args.output, rows, cols, &layers.collect::<Vec<_>>(), &metadata)?;
+    match setup::is_geotiff(&args.output) {
+        true => {
+            files::write_geotiff(
+                &args.output,
+                [rows, cols],
+                &layers,
+                &[],
+                georeference,
+                &metadata,
+            )?;
+        }
+        false => files::write_exr(&args.output, rows, cols, &layers, &metadata)?,
+    }
     match &args.global.json {
         Some(json) => files::write_json(json, &setup::as_json(&metadata, &traced.times)),
         None => Ok(()),

@@ -9,7 +9,7 @@ use ridgelight::scene::Tone;
 use ridgelight::scene::{HeightField, Quality, Scene};
 use ridgelight::{Error, Result};
 use ridgelight_io as files;
-use ridgelight_io::{Channels, Layer as FileLayer};
+use ridgelight_io::{Channels, Georeference, Layer as FileLayer};
 
 use crate::args::{Layer, RenderArgs};
 use crate::idle;
@@ -22,42 +22,48 @@ const EXPOSED: f64 = 0.8;
 const EXPOSED_SHARE: f64 = 0.99;
 
 pub fn run(args: &RenderArgs) -> Result<Outcome> {
-    setup::check_output("-o", &args.output, &["exr", "png"])?;
+    setup::check_output("-o", &args.output, &["exr", "tif", "tiff", "png"])?;
     if let Some(json) = &args.global.json {
         setup::check_output("--json", json, &["json"])?;
     }
+    let is_png = setup::extension(&args.output) == "png";
+    let is_tif = setup::is_geotiff(&args.output);
     let outputs = [("-o", Some(args.output.as_path())), ("--json", args.global.json.as_deref())];
     setup::check_distinct(&outputs, &setup::inputs(&args.input.path, &args.lights, &args.surface))?;
     args.exposure.map_or(Ok(()), |exposure| check_positive("--exposure", exposure))?;
-    let is_exr = setup::extension(&args.output) == "exr";
-    if !is_exr && !args.layers.is_empty() {
+    if is_png && !args.layers.is_empty() {
         return Err(Error::setting(
             "--layers",
             "a .png output",
-            "an .exr output: a .png has no layers",
+            "an .exr output, or a .tif without --camera: a .png has no layers",
         ));
     }
-    if is_exr && args.exposure.is_some() {
+    if !is_png && args.exposure.is_some() {
+        let kind = if is_tif { "a .tif" } else { "an .exr" };
         return Err(Error::setting(
             "--exposure",
-            "an .exr output",
-            "a .png output: an .exr keeps linear radiance",
+            format!("{kind} output"),
+            format!("a .png output: {kind} keeps linear radiance"),
+        ));
+    }
+    if is_tif && args.camera.camera.is_some() {
+        return Err(Error::setting(
+            "--camera",
+            "a .tif output",
+            "an .exr or .png output: a .tif is a map",
         ));
     }
     camera::check_layers(args)?;
     let goal = auto::goal(args.auto.max_error, args.auto.time_budget)?;
     auto::say_idle(&args.auto, args.global.quiet);
     let mut quality = args.quality.quality()?;
-    let field = setup::field(&args.input.path, &args.surface.field, &args.global)?;
-    let mut scene = setup::scene(
-        field,
-        &args.surface,
-        &args.lights,
-        setup::Unlit::of(&quality, args.camera.compass_deg()),
-    )?;
-    let tint = match is_exr {
-        true => args.surface.tint.unwrap_or(Tint::None),
-        false => setup::tinted(&mut scene, &args.surface),
+    let (field, georeference) =
+        setup::georeferenced(&args.input.path, &args.surface.field, &args.global)?;
+    let unlit = setup::Unlit::of(&quality, args.camera.compass_deg());
+    let mut scene = setup::scene(field, &args.surface, &args.lights, unlit)?;
+    let tint = match is_png {
+        true => setup::tinted(&mut scene, &args.surface),
+        false => args.surface.tint.unwrap_or(Tint::None),
     };
     let scene = scene;
     if goal.is_some() {
@@ -118,7 +124,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
                     .iter()
                     .flat_map(|camera_pixels| camera_pixels.timings.iter().cloned()),
             );
-            let mut metadata = setup::metadata(gpu, &scene.field, frame.plan(), &times);
+            let mut metadata = setup::metadata(gpu, &scene.field, frame.plan());
             if let Some(share) = gpu.negative_share(frame)? {
                 metadata.push(("negative_share".to_owned(), share.to_string()));
             }
@@ -141,7 +147,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
     let mut shown = None;
     let (rows, cols) = (scene.field.rows(), scene.field.cols());
     if let (Some(camera_view), Some(camera_pixels)) = (&camera_view, &camera_pixels) {
-        if !is_exr {
+        if is_png {
             // The background would decide on the terrain's exposure.
             let around: Vec<bool> =
                 camera_pixels.distances_m.iter().map(|d| !d.is_finite()).collect();
@@ -151,8 +157,16 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
             metadata.push(("exposure".to_owned(), exposure.to_string()));
         }
         camera::write(args, camera_view, camera_pixels, shown, &metadata)?;
-    } else if is_exr {
-        write_exr(args, &scene.field, &pixels, mean_horizon.as_deref(), &metadata)?;
+    } else if !is_png {
+        let georeference = georeference.as_ref();
+        write_floats(
+            args,
+            &scene.field,
+            georeference,
+            &pixels,
+            mean_horizon.as_deref(),
+            &metadata,
+        )?;
     } else {
         let picture = rgb(&pixels[0]);
         let voids = scene.field.voids();
@@ -161,9 +175,14 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
         metadata.push(("exposure".to_owned(), exposure.to_string()));
         let tone = Tone::picture(exposure);
         files::write_png(&args.output, rows, cols, &picture, voids, tone, &metadata)?;
+        write_world(args, georeference.as_ref())?;
     }
     if let Some(json) = &args.global.json {
-        files::write_json(json, &setup::as_json(&metadata, &times))?;
+        let mut report = setup::as_json(&metadata, &times);
+        if let Some((goal, chosen)) = &chosen {
+            report["settings"]["tried"] = auto::tried(*goal, chosen, &scene, true).into();
+        }
+        files::write_json(json, &report)?;
     }
     if !args.global.quiet {
         if let Some(camera_view) = &camera_view {
@@ -258,9 +277,30 @@ fn mean_horizon(
     Ok(sum.iter().map(|s| (s / f64::from(quality.azimuths)) as f32).collect())
 }
 
-fn write_exr(
+/// Writes the world file beside a PNG: where its pixels lie, without the coordinate reference
+/// system.
+fn write_world(args: &RenderArgs, georeference: Option<&Georeference>) -> Result<()> {
+    let path = args.output.with_extension("pgw");
+    match georeference {
+        Some(georeference) => files::write_text(&path, &georeference.world_file()),
+        None => {
+            if path.exists() && !args.global.quiet {
+                crate::say!(
+                    "Note: {} is not of this picture, because {} states no position.",
+                    path.display(),
+                    args.input.path.display()
+                );
+            }
+            Ok(())
+        }
+    }
+}
+
+/// Writes an EXR or a GeoTIFF.
+fn write_floats(
     args: &RenderArgs,
     field: &HeightField,
+    georeference: Option<&Georeference>,
     pixels: &[Pixels],
     horizon: Option<&[f32]>,
     metadata: &[(String, String)],
@@ -298,5 +338,10 @@ fn write_exr(
             channels: Channels::Scalar("horizon_mean", &masked_horizon),
         });
     }
-    files::write_exr(&args.output, field.rows(), field.cols(), &layers, metadata)
+    let (rows, cols) = (field.rows(), field.cols());
+    if !setup::is_geotiff(&args.output) {
+        return files::write_exr(&args.output, rows, cols, &layers, metadata);
+    }
+    let units = [("horizon_mean", "rad")];
+    files::write_geotiff(&args.output, [rows, cols], &layers, &units, georeference, metadata)
 }

@@ -12,7 +12,7 @@ use ridgelight::scene::{
 };
 use ridgelight::{Error, Result};
 use ridgelight_io as files;
-use ridgelight_io::HeightOptions;
+use ridgelight_io::{Georeference, HeightOptions};
 use std::path::{Path, PathBuf};
 
 use crate::args::{
@@ -56,6 +56,15 @@ fn check_size(path: &Path, global: &GlobalArgs) -> Result<()> {
 }
 
 pub fn field(path: &Path, surface: &FieldArgs, global: &GlobalArgs) -> Result<HeightField> {
+    Ok(georeferenced(path, surface, global)?.0)
+}
+
+/// A field, and its position where the file states it.
+pub fn georeferenced(
+    path: &Path,
+    surface: &FieldArgs,
+    global: &GlobalArgs,
+) -> Result<(HeightField, Option<Georeference>)> {
     if !surface.z_scale.is_finite() || surface.z_scale == 0.0 {
         let expected = "a finite number other than 0";
         return Err(Error::setting("--z-scale", surface.z_scale.to_string(), expected));
@@ -63,7 +72,7 @@ pub fn field(path: &Path, surface: &FieldArgs, global: &GlobalArgs) -> Result<He
     let options =
         HeightOptions { cell_m: surface.cell, z_scale: surface.z_scale, nodata: surface.nodata };
     check_size(path, global)?;
-    files::read_heights(path, &options)
+    files::read_georeferenced(path, &options)
 }
 
 /// The light of a scene without lights.
@@ -249,6 +258,11 @@ pub fn no_timestamps() -> Error {
 
 pub fn extension(path: &Path) -> String {
     path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default()
+}
+
+/// Whether a name is that of a GeoTIFF.
+pub fn is_geotiff(path: &Path) -> bool {
+    ["tif", "tiff"].contains(&extension(path).as_str())
 }
 
 /// Refuses an output file that cannot be written, before the work.

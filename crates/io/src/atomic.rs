@@ -3,7 +3,7 @@
 use crate::open::complaint;
 use ridgelight::{Error, Result};
 use std::fs;
-use std::io::{BufWriter, Write};
+use std::io::{BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use tempfile::TempPath;
@@ -161,6 +161,12 @@ impl Temporary {
         self.stream.write_all(bytes).map_err(|e| Error::io(&self.whole.path, e))
     }
 
+    /// Continues at a place in the file.
+    pub fn seek(&mut self, place: u64) -> Result<()> {
+        let moved = self.stream.seek(SeekFrom::Start(place));
+        moved.map(drop).map_err(|e| Error::io(&self.whole.path, e))
+    }
+
     /// The stream, for encoders.
     pub fn stream(&mut self) -> &mut BufWriter<fs::File> {
         &mut self.stream
@@ -210,7 +216,7 @@ pub fn write_json(path: &Path, value: &serde_json::Value) -> Result<()> {
     write_text(path, &format!("{value:#}\n"))
 }
 
-fn folder_of(path: &Path) -> &Path {
+pub(crate) fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 

@@ -1,5 +1,8 @@
 //! OpenEXR: reads any channel of any flat file; writes one part with f32 channels and ZIP.
 
+mod attributes;
+mod layer;
+
 use crate::atomic::{Temporary, Written};
 use crate::heights::Raster;
 use crate::open;
@@ -8,6 +11,7 @@ use ::exr::meta::attribute::{AttributeValue, ChannelDescription, LineOrder, Samp
 use ::exr::meta::{BlockDescription, MetaData, header::Header};
 use ::exr::prelude::{Compression, Error as ExrError, Vec2};
 use half::f16;
+pub use layer::{Channels, Layer};
 use ridgelight::{Error, Result};
 use std::{collections::HashSet, io::Cursor, path::Path};
 
@@ -246,41 +250,6 @@ pub fn read_metadata(path: &Path) -> Result<Vec<(String, String)>> {
     Ok(ExrFile::open(path, &open::read(path)?)?.texts())
 }
 
-/// One layer of a picture to write.
-#[derive(Clone, Debug)]
-pub struct Layer<'a> {
-    /// Prefix of the channels' names with a dot, as compositors expect: "direct.sky" gives
-    /// "direct.sky.R". Empty for the main layer, whose channels have no prefix.
-    pub name: String,
-    /// The samples.
-    pub channels: Channels<'a>,
-}
-
-impl<'a> Layer<'a> {
-    /// One channel without a prefix.
-    pub fn scalar(name: &'a str, values: &'a [f32]) -> Self {
-        Self { name: String::new(), channels: Channels::Scalar(name, values) }
-    }
-}
-
-/// The samples of a [`Layer`], row-major, NaN allowed.
-#[derive(Clone, Copy, Debug)]
-pub enum Channels<'a> {
-    /// Linear red, green and blue as R, G and B.
-    Rgb(&'a [[f32; 3]]),
-    /// One value per pixel under a name, as "Y" or "Z". An empty name leaves only the layer's.
-    Scalar(&'a str, &'a [f32]),
-}
-
-impl Channels<'_> {
-    fn len(&self) -> usize {
-        match self {
-            Channels::Rgb(texels) => texels.len(),
-            Channels::Scalar(_, values) => values.len(),
-        }
-    }
-}
-
 /// Writes all layers as channels of one part, f32, ZIP-compressed, so that every viewer opens it.
 ///
 /// `metadata` becomes string attributes of the file, in UTF-8.
@@ -318,10 +287,7 @@ pub fn write_exr_aside(
             let place = format!("layer \"{}\"", layer.name);
             return Err(Error::setting(place, found, "rows × columns pixels"));
         }
-        let full = |name: &str| match (layer.name.as_str(), name) {
-            ("", name) | (name, "") => name.to_owned(),
-            (layer, name) => format!("{layer}.{name}"),
-        };
+        let full = |name: &str| layer.channel(name);
         match layer.channels {
             Channels::Rgb(_) => {
                 columns
@@ -366,6 +332,7 @@ pub fn write_exr_aside(
     // An attribute with a reserved name and the wrong type would make the file unreadable, so the
     // file is read back first.
     std::io::Write::flush(file.stream()).map_err(|e| Error::io(path, e))?;
+    attributes::sort(file.stream().get_mut()).map_err(|e| Error::io(path, e))?;
     MetaData::read_from_file(file.name(), true).map_err(wrong)?;
     file.close()
 }

@@ -7,6 +7,7 @@ pub mod size;
 pub mod tif;
 
 use crate::exr;
+use crate::georeference::Georeference;
 use crate::npy;
 use crate::npz;
 use crate::open::{self, Format};
@@ -47,6 +48,8 @@ pub(crate) struct Raster {
     pub nodata: Option<f64>,
     /// The file's own mask of voids, if any.
     pub voids: Option<Vec<bool>>,
+    /// Where the grid lies, if the file states it.
+    pub georeference: Option<Georeference>,
 }
 
 impl Raster {
@@ -61,6 +64,7 @@ impl Raster {
             unit_m: 1.0,
             nodata: None,
             voids: None,
+            georeference: None,
         }
     }
 }
@@ -91,11 +95,31 @@ pub fn read_heights(path: &Path, options: &HeightOptions) -> Result<HeightField>
     parse_heights(path, &open::read(path)?, options)
 }
 
+/// [`read_heights`], with the position of the field where the file states it: GeoTIFF, `.hgt` with
+/// its corner in its name, `.asc`.
+///
+/// # Errors
+/// As [`read_heights`].
+pub fn read_georeferenced(
+    path: &Path,
+    options: &HeightOptions,
+) -> Result<(HeightField, Option<Georeference>)> {
+    parse_georeferenced(path, &open::read(path)?, options)
+}
+
 /// [`read_heights`] from bytes in memory. `name` sets the format and appears in messages.
 ///
 /// # Errors
 /// As [`read_heights`], except file access.
 pub fn parse_heights(name: &Path, bytes: &[u8], options: &HeightOptions) -> Result<HeightField> {
+    Ok(parse_georeferenced(name, bytes, options)?.0)
+}
+
+fn parse_georeferenced(
+    name: &Path,
+    bytes: &[u8],
+    options: &HeightOptions,
+) -> Result<(HeightField, Option<Georeference>)> {
     check(options)?;
     const ACCEPTED: [Format; 7] = [
         Format::Png,
@@ -106,7 +130,7 @@ pub fn parse_heights(name: &Path, bytes: &[u8], options: &HeightOptions) -> Resu
         Format::Npy,
         Format::Npz,
     ];
-    let raster = match open::format(name, bytes, &ACCEPTED)? {
+    let mut raster = match open::format(name, bytes, &ACCEPTED)? {
         Format::Png => png::heights(name, bytes),
         Format::Exr => exr::heights(name, bytes),
         Format::Tiff => tif::heights(name, bytes),
@@ -115,7 +139,8 @@ pub fn parse_heights(name: &Path, bytes: &[u8], options: &HeightOptions) -> Resu
         Format::Npz => npz::heights(name, bytes),
         Format::Npy | Format::Hdr => npy::heights(name, bytes),
     }?;
-    finish(name, raster, options)
+    let georeference = raster.georeference.take();
+    Ok((finish(name, raster, options)?, georeference))
 }
 
 fn check(options: &HeightOptions) -> Result<()> {
@@ -133,7 +158,7 @@ fn check(options: &HeightOptions) -> Result<()> {
 
 /// Marks voids, converts heights and cells to metres and makes the field.
 fn finish(path: &Path, raster: Raster, options: &HeightOptions) -> Result<HeightField> {
-    let Raster { rows, cols, mut values, single, cell, unit_m, nodata, mut voids } = raster;
+    let Raster { rows, cols, mut values, single, cell, unit_m, nodata, mut voids, .. } = raster;
     if let Some(nodata) = options.nodata.or(nodata) {
         let marks = voids.get_or_insert_with(|| vec![false; values.len()]);
         for (mark, value) in marks.iter_mut().zip(&values) {

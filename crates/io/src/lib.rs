@@ -1,4 +1,5 @@
-//! Readers and writers: height fields, environments, albedo maps in; EXR, PNG, NPY, KTX2, JSON and text out.
+//! Readers and writers: height fields, environments, albedo maps in; GeoTIFF, EXR, PNG, NPY, KTX2, JSON
+//! and text out.
 //!
 //! Error messages name the file, the place in it, what was found and what was expected
 //! ([`Error::File`](ridgelight::Error::File)). An output is complete or absent: it is written
@@ -13,6 +14,8 @@ mod atomic;
 mod component;
 mod environment;
 mod exr;
+mod georeference;
+mod geotiff;
 mod heights;
 mod ktx2;
 mod npy;
@@ -28,8 +31,10 @@ pub use atomic::{
 pub use component::Component;
 pub use environment::{parse_environment, read_albedo, read_environment, read_specular};
 pub use exr::{Channels, Layer, read_metadata, write_exr, write_exr_aside};
+pub use georeference::{GeoKeys, Georeference};
+pub use geotiff::{Band, GeoTiffWriter, write_geotiff};
 pub use heights::size::height_size;
-pub use heights::{HeightOptions, parse_heights, read_heights};
+pub use heights::{HeightOptions, parse_heights, read_georeferenced, read_heights};
 pub use ktx2::{Ktx2Writer, TexelFormat};
 pub use npy::{NpyWriter, write_npy_f32, write_npy_heights};
 pub use planes::{Planes, parse_planes, read_planes};

@@ -197,6 +197,8 @@ pub(crate) fn header(descr: &str, shape: &[usize]) -> Result<Vec<u8>> {
 pub struct NpyWriter {
     file: Temporary,
     shape: Vec<usize>,
+    /// Bytes before the values.
+    start: u64,
     left: usize,
 }
 
@@ -211,8 +213,9 @@ impl NpyWriter {
             Error::setting("shape", format!("{shape:?}"), "a product within the address space")
         })?;
         let mut file = Temporary::create(path)?;
-        file.write(&header("<f4", shape)?)?;
-        Ok(Self { file, shape: shape.to_vec(), left })
+        let header = header("<f4", shape)?;
+        file.write(&header)?;
+        Ok(Self { file, shape: shape.to_vec(), start: header.len() as u64, left })
     }
 
     /// Appends values in order; NaN is allowed.
@@ -232,6 +235,21 @@ impl NpyWriter {
             self.file.write(&bytes)?;
         }
         Ok(())
+    }
+
+    /// Writes one of the planes along the first axis, in any order, each once.
+    ///
+    /// # Errors
+    /// As [`write`](Self::write); a plane that the shape does not have.
+    pub fn write_plane(&mut self, plane: usize, values: &[f32]) -> Result<()> {
+        let length: usize = self.shape.iter().skip(1).product();
+        if values.len() != length || plane >= self.shape.first().copied().unwrap_or(1) {
+            let found = format!("{} values for plane {plane}", values.len());
+            let expected = format!("{length} values for each plane");
+            return Err(Error::setting(format!("the shape {:?}", self.shape), found, expected));
+        }
+        self.file.seek(self.start + 4 * (plane * length) as u64)?;
+        self.write(values)
     }
 
     /// Moves the file to its destination.
@@ -289,4 +307,25 @@ pub fn write_npy_f32<'a>(
         writer.write(chunk)?;
     }
     writer.finish()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn planes_come_in_any_order() {
+        let folder = tempfile::tempdir().unwrap();
+        let [a, b] = ["a.npy", "b.npy"].map(|name| folder.path().join(name));
+        let planes = [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]];
+        write_npy_f32(&a, &[2, 1, 3], planes.iter().map(|plane| plane.as_slice())).unwrap();
+        let mut writer = NpyWriter::create(&b, &[2, 1, 3]).unwrap();
+        writer.write_plane(1, &planes[1]).unwrap();
+        let error = writer.write_plane(2, &planes[0]).unwrap_err().to_string();
+        assert!(error.contains("plane 2"), "{error}");
+        assert!(writer.write_plane(0, &planes[0][..2]).is_err());
+        writer.write_plane(0, &planes[0]).unwrap();
+        writer.finish().unwrap();
+        assert_eq!(std::fs::read(a).unwrap(), std::fs::read(b).unwrap());
+    }
 }

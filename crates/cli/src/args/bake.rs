@@ -30,7 +30,7 @@ pub struct BakeArgs {
     pub what: Vec<&'static Kind>,
     /// File formats of each map. Default each kind's
     ///
-    /// exr and npy hold values in f32; ktx2 and png hold the values of --encoding. An exr stays in memory until the end;
+    /// exr, tif (GeoTIFF) and npy hold values in f32; ktx2 and png hold the values of --encoding. An exr stays in memory until the end;
     /// the others are written as they are computed.
     #[arg(long, value_name = "LIST", value_delimiter = ',', help_heading = "Output")]
     pub format: Vec<Format>,

@@ -77,9 +77,9 @@ pub struct CameraArgs {
 }
 
 impl CameraArgs {
-    /// The camera's compass azimuth, if there is a camera.
+    /// The camera's compass azimuth, if there is a camera; others are refused later.
     pub fn compass_deg(&self) -> Option<f64> {
-        self.camera.map(|at| at.azimuth)
+        self.camera.map(|at| at.azimuth).filter(|azimuth| azimuth.is_finite())
     }
 }
 

@@ -9,10 +9,10 @@ use super::{GlobalArgs, Input, LightArgs, SurfaceArgs};
 pub struct ReferenceArgs {
     #[command(flatten)]
     pub input: Input,
-    /// Output .exr: radiance and its standard error
+    /// Output, .exr or .tif: radiance and its standard error
     ///
-    /// Channels R, G, B and standard_error.R, standard_error.G, standard_error.B. `trade --reference` reads the file.
-    #[arg(short, long, value_name = "OUT.exr", help_heading = "Output")]
+    /// Channels R, G, B and standard_error.R, standard_error.G, standard_error.B. `trade --reference` reads the .exr.
+    #[arg(short, long, value_name = "OUT.{exr,tif}", help_heading = "Output")]
     pub output: PathBuf,
     /// Paths per texel, in batches of 64, at least 128
     ///

@@ -10,6 +10,7 @@ use ridgelight::Result;
 use ridgelight::gpu::Headless;
 use ridgelight::plan::{Limits, Plan};
 use ridgelight_bake::{self as bake, Encoding, HorizonMap};
+use ridgelight_io::Band;
 
 use super::job::Job;
 use super::map::{Format, MapFiles, Wanted};
@@ -37,7 +38,8 @@ pub struct Kind {
 /// The layout of a map in its files.
 #[derive(Default)]
 pub struct Map {
-    /// A plane per value: the channel names of an .exr and the order in an .npy.
+    /// A plane per value: the channel names of an .exr. Layers of textures and pictures have this order; for files of
+    /// floats see [`places`](Self::places).
     pub planes: Vec<String>,
     /// What the planes hold, in turn; one entry where all hold the same.
     pub values: Vec<Value>,
@@ -52,6 +54,34 @@ pub struct Map {
 }
 
 impl Map {
+    /// The place of each plane in an .npy and a .tif: azimuths are in compass order, all others in the order of planes.
+    pub fn places(&self, kind: &Kind) -> Vec<usize> {
+        let mut places = vec![0; self.planes.len()];
+        for (place, plane) in self.order(kind).into_iter().enumerate() {
+            places[plane] = place;
+        }
+        places
+    }
+
+    /// The inverse of [`places`](Self::places).
+    pub fn order(&self, kind: &Kind) -> Vec<usize> {
+        let mut order: Vec<usize> = (0..self.planes.len()).collect();
+        if kind.is_of_azimuths() {
+            // Their names have leading zeros.
+            order.sort_by_key(|plane| &self.planes[*plane]);
+        }
+        order
+    }
+
+    /// Names and units of the bands of a .tif.
+    pub fn bands(&self, kind: &Kind) -> Vec<Band> {
+        let band = |plane: usize| Band {
+            name: self.planes[plane].clone(),
+            unit: self.values[plane % self.values.len()].unit.to_owned(),
+        };
+        self.order(kind).into_iter().map(band).collect()
+    }
+
     /// Texels of a plane, for a field of `grid_points` grid points.
     pub fn texels(&self, grid_points: usize) -> usize {
         self.size.map_or(grid_points, |[cols, rows]| cols * rows)
@@ -113,6 +143,11 @@ impl Kind {
     /// The stem of its file names.
     pub fn stem(&self) -> String {
         self.name.replace('-', "_")
+    }
+
+    /// Whether its planes are azimuths.
+    pub fn is_of_azimuths(&self) -> bool {
+        matches!(self.source, Source::Horizons)
     }
 
     /// Whether it is light.

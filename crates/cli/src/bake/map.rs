@@ -9,7 +9,9 @@ use ridgelight::Result;
 use ridgelight::scene::HeightField;
 use ridgelight_bake::Encoding;
 use ridgelight_io as files;
-use ridgelight_io::{Component, Ktx2Writer, NpyWriter, TexelFormat, Written};
+use ridgelight_io::{
+    Component, GeoTiffWriter, Georeference, Ktx2Writer, NpyWriter, TexelFormat, Written,
+};
 use serde_json::Value as Json;
 
 use super::kinds::{Kind, Map};
@@ -20,11 +22,12 @@ pub enum Format {
     Png,
     Npy,
     Ktx2,
+    Tif,
 }
 
 impl Format {
     pub fn name(self) -> &'static str {
-        ["exr", "png", "npy", "ktx2"][self as usize]
+        ["exr", "png", "npy", "ktx2", "tif"][self as usize]
     }
 
     /// Whether it can hold the encoded kind.
@@ -69,6 +72,8 @@ impl Wanted {
         let zipped = |bytes: u64| bytes / 100 * 101 + 65_536;
         let of = |format: &Format| match format {
             Format::Exr => (1, zipped(values)),
+            // With overviews, each a quarter of the one before.
+            Format::Tif => (1, zipped(values / 3 * 4)),
             Format::Npy => (1, values + 256),
             Format::Ktx2 => (1, texel * layers as u64 * grid_points + 1024),
             Format::Png => (layers, zipped((texel + 2) * grid_points)),
@@ -89,6 +94,8 @@ impl Wanted {
             // Pixels, and the compressed copy.
             Format::Png => 2 * (texel + 2),
             Format::Npy | Format::Ktx2 => texel,
+            // A plane and its overviews, and their compressed copies.
+            Format::Tif => 12,
         };
         (map.texels(grid_points) * self.formats.iter().map(of).sum::<usize>()) as u64
     }
@@ -105,6 +112,7 @@ enum Open {
     Exr(Vec<Vec<f32>>),
     Npy(NpyWriter),
     Ktx2(Ktx2Writer),
+    Tif(GeoTiffWriter),
     Png,
 }
 
@@ -127,6 +135,8 @@ pub struct MapFiles<'a> {
     open: Vec<Open>,
     waiting: Vec<Waiting>,
     taken: usize,
+    /// The place of each plane in an .npy and a .tif.
+    places: Vec<usize>,
     /// Count of values outside their stated range, and the largest excess.
     beyond: (u64, f64),
     entries: Vec<(&'static str, Json)>,
@@ -140,6 +150,7 @@ impl<'a> MapFiles<'a> {
         (wanted, map): (Wanted, Map),
         field: &'a HeightField,
         hash: &str,
+        georeference: Option<&Georeference>,
     ) -> Result<Self> {
         let size = map.size.unwrap_or([field.cols(), field.rows()]);
         let texts: Vec<(String, String)> = [
@@ -169,11 +180,18 @@ impl<'a> MapFiles<'a> {
                     let texels = wanted.texels();
                     Open::Ktx2(Ktx2Writer::create(&path, texels, size, layers, &texts)?)
                 }
+                Format::Tif => {
+                    // A table's texels are no places.
+                    let place = georeference.filter(|_| map.size.is_none()).cloned();
+                    let bands = map.bands(wanted.kind);
+                    Open::Tif(GeoTiffWriter::create(&path, [size[1], size[0]], bands, place)?)
+                }
                 Format::Png => Open::Png,
             })
         });
         Ok(Self {
             open: open.collect::<Result<_>>()?,
+            places: map.places(wanted.kind),
             wanted,
             map,
             field,
@@ -230,14 +248,23 @@ impl<'a> MapFiles<'a> {
             }
             plane
         };
+        let first = self.taken * self.wanted.encoding.values;
         let (size, form, texts) = (self.size(), self.picture_form(), self.picture_texts(scale));
         for open in &mut self.open {
             match open {
                 Open::Exr(kept) => kept.extend(planes.iter().map(masked)),
+                Open::Npy(writer) if self.wanted.kind.is_of_azimuths() => {
+                    let mut own = self.places[first..].iter().zip(planes);
+                    own.try_for_each(|(at, plane)| writer.write_plane(*at, &masked(plane)))?;
+                }
                 Open::Npy(writer) => {
                     planes.iter().try_for_each(|plane| writer.write(&masked(plane)))?;
                 }
                 Open::Ktx2(writer) => writer.write(&texels)?,
+                Open::Tif(writer) => {
+                    let mut own = self.places[first..].iter().zip(planes);
+                    own.try_for_each(|(band, plane)| writer.write(*band, &masked(plane)))?;
+                }
                 Open::Png => {
                     let name = self.wanted.file(&self.map, Format::Png, self.taken);
                     let path = self.folder.join(name);

@@ -87,7 +87,7 @@ pub fn wanted(args: &BakeArgs) -> Result<Vec<Wanted>> {
             return Err(Error::setting(
                 "--format",
                 format!("{} with {} of {}", format.name(), encoding.name, kind.name),
-                "exr, npy or ktx2: a picture holds up to three components of 8 or 16 bits",
+                "exr, tif, npy or ktx2: a picture holds up to three components of 8 or 16 bits",
             ));
         }
         if let Some(twice) = (1..formats.len()).find(|i| formats[..*i].contains(&formats[*i])) {

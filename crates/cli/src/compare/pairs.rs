@@ -53,10 +53,12 @@ pub fn check_horizons(path: &Path, file: &Planes) -> Result<()> {
         Err(Error::File { path: path.to_owned(), place, found, expected: expected.to_owned() })
     };
     let is_azimuth = |name: &&String| {
-        let degrees = name.strip_prefix("horizon.").and_then(|d| d.parse::<f64>().ok());
+        // Until 0.1 the names were horizon.000.000 and so on, counter-clockwise from east.
+        let degrees = name.strip_prefix("azimuth_").or_else(|| name.strip_prefix("horizon."));
+        let degrees = degrees.and_then(|d| d.parse::<f64>().ok());
         degrees.is_some_and(|d| (0.0..=360.0).contains(&d))
     };
-    let expected = "horizon channels horizon.000.000 and so on, with the azimuth in degrees";
+    let expected = "horizon channels azimuth_000.0 and so on, with the azimuth in degrees";
     let other = file.names.iter().find(|name| !is_azimuth(name));
     match (extension(path).as_str(), other) {
         ("npy", _) | ("exr", None) => {}

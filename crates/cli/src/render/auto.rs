@@ -8,7 +8,7 @@ use ridgelight::gpu::{Headless, Timing};
 use ridgelight::plan::{self, Limits, Picture};
 use ridgelight::scene::{Hull, Quality, Scene};
 use ridgelight_trade::auto;
-use ridgelight_trade::auto::{Bounced, Chosen, Drawn, Goal, Measured, Probes, Traced};
+use ridgelight_trade::auto::{Bounced, Chosen, Drawn, Goal, Measured, Probes, Traced, Trial};
 
 use crate::args::AutoArgs;
 use crate::idle;
@@ -145,12 +145,6 @@ pub fn metadata(
         Goal::MaxError(most) => ("max_error", most.to_string()),
         Goal::MaxCost(ns) => ("time_budget_ms", (ns / 1e6).to_string()),
     };
-    let tried = chosen.trials.iter().map(|t| {
-        let holds = if goal.is_reached(t) { "reached" } else { "missed" };
-        let Measured { error, at_most } = t.measured;
-        let error = format!("{} (at most {})", percent(error), percent(at_most));
-        format!("{}: {error}, {:.3} ms, {holds}", flags(&t.quality, scene), t.ns / 1e6)
-    });
     let measured = &chosen.trial.measured;
     let confidence = chosen.confidence.map_or_else(|| "none".to_owned(), |c| c.to_string());
     [
@@ -163,10 +157,22 @@ pub fn metadata(
         ("error_probes", chosen.probes.to_string()),
         ("error_paths", chosen.paths.to_string()),
         ("seed", seed.to_string()),
-        ("tried", tried.collect::<Vec<_>>().join("; ")),
+        ("tried", tried(goal, chosen, scene, false)),
     ]
     .map(|(name, value)| (name.to_owned(), value))
     .to_vec()
+}
+
+/// The settings that were tried, and what they reached. Times are for `--json` only.
+pub fn tried(goal: Goal, chosen: &Chosen, scene: &Scene, has_times: bool) -> String {
+    let of = |t: &Trial| {
+        let holds = if goal.is_reached(t) { "reached" } else { "missed" };
+        let Measured { error, at_most } = t.measured;
+        let error = format!("{} (at most {})", percent(error), percent(at_most));
+        let time = if has_times { format!(" {:.3} ms,", t.ns / 1e6) } else { String::new() };
+        format!("{}: {error},{time} {holds}", flags(&t.quality, scene))
+    };
+    chosen.trials.iter().map(of).collect::<Vec<_>>().join("; ")
 }
 
 /// The choice and its error in words; then how many slower or faster settings missed the goal.

@@ -1,4 +1,4 @@
-//! Requested and used settings and times, for metadata and --json.
+//! Requested and used settings for metadata, and times for --json.
 
 use std::path::Path;
 
@@ -10,16 +10,12 @@ use crate::args::{FieldArgs, LightArgs, SpecularArg, SurfaceArgs};
 use crate::lights::LIGHTS;
 use crate::setup::tint::Tint;
 
-/// Used settings and times.
-pub fn metadata(
-    gpu: &Headless,
-    field: &HeightField,
-    plan: &Plan,
-    times: &[Timing],
-) -> Vec<(String, String)> {
+/// Used settings. No times: two runs write the same bytes.
+pub fn metadata(gpu: &Headless, field: &HeightField, plan: &Plan) -> Vec<(String, String)> {
     let report = gpu.report();
     let mut all = vec![
         ("ridgelight".to_owned(), env!("CARGO_PKG_VERSION").to_owned()),
+        ("commit".to_owned(), env!("RIDGELIGHT_COMMIT").to_owned()),
         ("device".to_owned(), report.name.clone()),
         ("driver".to_owned(), report.driver.clone()),
         ("rows".to_owned(), field.rows().to_string()),
@@ -30,12 +26,6 @@ pub fn metadata(
     ];
     all.extend(plan.settings.iter().cloned());
     all.extend(plan.notes.iter().enumerate().map(|(i, n)| (format!("note{}", i + 1), n.clone())));
-    let total: f64 = times.iter().map(|t| t.ns).sum();
-    if !times.is_empty() {
-        all.push(("gpu_ms".to_owned(), format!("{:.3}", total / 1e6)));
-        let each = times.iter().map(|t| format!("{} {:.3}", t.label, t.ns / 1e6));
-        all.push(("gpu_ms_of_passes".to_owned(), each.collect::<Vec<_>>().join("; ")));
-    }
     all
 }
 
@@ -82,7 +72,7 @@ pub fn asked(
 /// Settings as JSON: numbers, lists of comma-separated numbers, and text. Files, devices and `--lines` (1, 1/2, exact) are
 /// always text.
 pub fn typed(settings: &[(String, String)]) -> serde_json::Map<String, serde_json::Value> {
-    const WORDS: [&str; 6] = ["ridgelight", "device", "driver", "input", "env", "lines"];
+    const WORDS: [&str; 7] = ["ridgelight", "commit", "device", "driver", "input", "env", "lines"];
     let typed = |name: &str, text: &str| {
         let number = |t: &str| serde_json::from_str::<serde_json::Number>(t).ok();
         let all: Option<Vec<_>> = text.split(',').map(number).collect();
@@ -97,10 +87,16 @@ pub fn typed(settings: &[(String, String)]) -> serde_json::Map<String, serde_jso
     settings.iter().map(|(name, text)| (name.clone(), typed(name, text))).collect()
 }
 
+/// Settings and times, for `--json`.
 pub fn as_json(metadata: &[(String, String)], times: &[Timing]) -> serde_json::Value {
+    let mut settings = typed(metadata);
+    if !times.is_empty() {
+        let total: f64 = times.iter().map(|t| t.ns).sum();
+        settings.insert("gpu_ms".to_owned(), ((total / 1e3).round() / 1e3).into());
+    }
     let passes: Vec<_> =
         times.iter().map(|t| serde_json::json!({ "pass": t.label, "ns": t.ns })).collect();
-    serde_json::json!({ "settings": typed(metadata), "passes": passes })
+    serde_json::json!({ "settings": settings, "passes": passes })
 }
 
 #[cfg(test)]

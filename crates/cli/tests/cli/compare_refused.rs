@@ -12,44 +12,40 @@ fn files_without_horizons_are_refused() {
     let level = [0.25_f32; 12];
     write(&folder, "a1.npy", &[("", level); 4]);
     // Azimuths of other names are other azimuths.
-    write(&folder, "h.exr", &[("horizon.000.000", level), ("horizon.090.000", level)]);
-    write(&folder, "i.exr", &[("horizon.000.000", level), ("horizon.089.000", level)]);
+    write(&folder, "h.exr", &[("azimuth_000.0", level), ("azimuth_090.0", level)]);
+    write(&folder, "i.exr", &[("azimuth_000.0", level), ("azimuth_089.0", level)]);
     refused(
         &folder,
         &[
-            (
-                "compare h.exr i.exr --horizons",
-                1,
-                &["h.exr: channels: found horizon.090.000", "089"],
-            ),
+            ("compare h.exr i.exr --horizons", 1, &["h.exr: channels: found azimuth_090.0", "089"]),
             ("compare a1.npy h.exr --horizons", 1, &["a1.npy: number of channels: found 4", "2"]),
         ],
     );
     write(&folder, "rgb.exr", &[("R", level), ("G", level), ("B", level)]);
     write(&folder, "mean.exr", &[("horizon_mean", level)]);
-    write(&folder, "far.exr", &[("horizon.000.000", level), ("horizon.361", level)]);
-    write(&folder, "more.exr", &[("horizon.000.000", level), ("sky_view", level)]);
+    write(&folder, "far.exr", &[("azimuth_000.0", level), ("azimuth_361", level)]);
+    write(&folder, "more.exr", &[("azimuth_000.0", level), ("sky_view", level)]);
     let mut steep = level;
     steep[6] = 1.6;
-    write(&folder, "steep.exr", &[("horizon.000.000", level), ("horizon.090.000", steep)]);
+    write(&folder, "steep.exr", &[("azimuth_000.0", level), ("azimuth_090.0", steep)]);
     write(&folder, "steep.npy", &[("", level), ("", steep)]);
     write(&folder, "level.npy", &[("", level), ("", level)]);
     folder.write("a1.png", &png(4, 3, colour::GREY, 8, &[], &[0; 12]));
-    write(&folder, "up.exr", &[("horizon.000.000", [std::f32::consts::FRAC_PI_2; 12])]);
+    write(&folder, "up.exr", &[("azimuth_000.0", [std::f32::consts::FRAC_PI_2; 12])]);
     assert_eq!(run(&folder, "compare up.exr up.exr --horizons").status, Some(0));
-    let named = "expected horizon channels horizon.000.000";
+    let named = "expected horizon channels azimuth_000.0";
     let radians = "expected an elevation, -π/2 to π/2 radians";
     refused(
         &folder,
         &[
             ("compare rgb.exr rgb.exr --horizons", 1, &["rgb.exr: channels: found B", named]),
             ("compare mean.exr mean.exr --horizons", 1, &["found horizon_mean", named]),
-            ("compare far.exr far.exr --horizons", 1, &["found horizon.361", named]),
+            ("compare far.exr far.exr --horizons", 1, &["found azimuth_361", named]),
             ("compare h.exr more.exr --horizons", 1, &["more.exr: channels: found sky_view"]),
             (
                 "compare h.exr steep.exr --horizons",
                 1,
-                &["steep.exr: channel horizon.090.000 at row 1, column 2: found 1.6", radians],
+                &["steep.exr: channel azimuth_090.0 at row 1, column 2: found 1.6", radians],
             ),
             ("compare steep.npy level.npy --horizons", 1, &["steep.npy: channel 1 at row 1"]),
             ("compare a1.png a1.png --horizons", 1, &["a1.png: name: found the extension .png"]),

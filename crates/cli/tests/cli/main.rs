@@ -19,6 +19,7 @@ mod compare;
 mod compare_refused;
 #[path = "../../../../tests/common/formats.rs"]
 mod formats;
+mod geotiff;
 mod goals;
 mod library_messages;
 mod light;

@@ -222,7 +222,7 @@ fn gpu_env_rotate_turns_clockwise() {
 
 /// A wall 10 high along column 12 of a level field.
 #[test]
-fn gpu_horizons_begin_in_the_east() {
+fn gpu_horizons_begin_in_the_north() {
     let folder = Folder::new();
     write_field(&folder, 17, |_, c| if c == 12 { 10.0 } else { 0.0 });
     done(&folder, "horizon field.npy -o h.npy --azimuths 8 --distances far.npy --json h.json");
@@ -234,36 +234,36 @@ fn gpu_horizons_begin_in_the_east() {
     let (angles, far) = (read(&folder.path("h.npy")), read(&folder.path("far.npy")));
     let at = |k: usize, r: usize, c: usize| angles.planes[k][r * 17 + c];
     for row in 0..17 {
-        // East of (row, 4) the wall is 8 away, west there is none; and the other way round.
-        assert!((at(0, row, 4) - (10_f32 / 8.0).atan()).abs() < 1e-5, "{}", at(0, row, 4));
-        assert!((at(4, row, 15) - (10_f32 / 3.0).atan()).abs() < 1e-5, "{}", at(4, row, 15));
-        assert!((far.planes[0][row * 17 + 4] - 8.0).abs() < 1e-3);
-        for (k, col) in [(4, 4), (2, 4), (6, 4), (0, 15), (2, 15)] {
+        // East (k = 2) of (row, 4) the wall is 8 away, west (6) there is none; and the other way
+        // round.
+        assert!((at(2, row, 4) - (10_f32 / 8.0).atan()).abs() < 1e-5, "{}", at(2, row, 4));
+        assert!((at(6, row, 15) - (10_f32 / 3.0).atan()).abs() < 1e-5, "{}", at(6, row, 15));
+        assert!((far.planes[2][row * 17 + 4] - 8.0).abs() < 1e-3);
+        for (k, col) in [(6, 4), (0, 4), (4, 4), (2, 15), (0, 15)] {
             assert_eq!(at(k, row, col), 0.0, "azimuth {k}, row {row}, column {col}");
             assert_eq!(far.planes[k][row * 17 + col], 0.0);
         }
     }
-    // Counter-clockwise: k = 1 is the north-east. From the south-west corner's row the wall is met
+    // Clockwise: k = 1 is the north-east. From the south-west corner's row the wall is met
     // 8 columns east and 8 rows north; from row 4 the diagonal leaves the field before.
     assert!((at(1, 16, 4) - (10_f32 / 128_f32.sqrt()).atan()).abs() < 1e-5, "{}", at(1, 16, 4));
     assert_eq!(at(1, 4, 4), 0.0);
-    assert!((at(7, 0, 4) - (10_f32 / 128_f32.sqrt()).atan()).abs() < 1e-5, "{}", at(7, 0, 4));
-    let rad: Vec<f64> =
-        serde_json::from_value(json(&folder.path("h.json"))["azimuths_rad"].take()).unwrap();
-    for (k, azimuth) in rad.iter().enumerate() {
-        assert!((azimuth - k as f64 * std::f64::consts::FRAC_PI_4).abs() < 1e-12, "{rad:?}");
-    }
+    // k = 3 is the south-east.
+    assert!((at(3, 0, 4) - (10_f32 / 128_f32.sqrt()).atan()).abs() < 1e-5, "{}", at(3, 0, 4));
+    let degrees: Vec<f64> =
+        serde_json::from_value(json(&folder.path("h.json"))["azimuths_deg"].take()).unwrap();
+    assert_eq!(degrees, [0.0, 45.0, 90.0, 135.0, 180.0, 225.0, 270.0, 315.0]);
 
     done(&folder, "horizon field.npy -o h.exr --azimuths 8");
     let exr = read(&folder.path("h.exr"));
-    let names: Vec<_> = (0..8).map(|k| format!("horizon.{:03}.000", 45 * k)).collect();
+    let names: Vec<_> = (0..8).map(|k| format!("azimuth_{:03}.0", 45 * k)).collect();
     assert_eq!(exr.names, names);
     assert_eq!(exr.planes, angles.planes);
     done(&folder, "compare h.npy h.npy --horizons");
 
     // Exact azimuths are uneven; the JSON file lists them.
     done(&folder, "horizon field.npy -o x.npy --azimuths 8 --lines exact --json x.json");
-    assert_eq!(json(&folder.path("x.json"))["azimuths_rad"].as_array().unwrap().len(), 8);
+    assert_eq!(json(&folder.path("x.json"))["azimuths_deg"].as_array().unwrap().len(), 8);
     assert_eq!(read(&folder.path("x.npy")).planes.len(), 8);
 }
 
@@ -292,9 +292,11 @@ fn gpu_settings_really_used_are_written() {
     ] {
         assert_eq!(exr.get(name).map(String::as_str), Some(value), "{name}");
     }
-    for name in ["device", "driver", "device_bytes", "gpu_ms", "gpu_ms_of_passes", "lines"] {
+    for name in ["commit", "device", "driver", "device_bytes", "lines"] {
         assert!(exr.get(name).is_some_and(|v| !v.is_empty()), "{name} in {exr:?}");
     }
+    // Times are in --json only.
+    assert!(!exr.keys().any(|name| name.contains("_ms") || name.contains("seconds")), "{exr:?}");
     // The JSON file holds the same as numbers, and each pass's time.
     let plain = |value: &serde_json::Value| match value {
         serde_json::Value::String(text) => text.clone(),
@@ -329,7 +331,7 @@ fn gpu_settings_really_used_are_written() {
     let mut names: Vec<_> = exr.keys().chain([&exposure]).collect();
     names.sort();
     assert_eq!(texts.keys().collect::<Vec<_>>(), names);
-    for (name, value) in exr.iter().filter(|(name, _)| !name.starts_with("gpu_ms")) {
+    for (name, value) in &exr {
         assert_eq!(texts.get(name), Some(value), "{name}");
     }
 

@@ -83,7 +83,7 @@ fn gpu_reference_writes_light_and_its_error() {
         assert_eq!(report["settings"][name], value, "{name}");
     }
     for name in
-        ["device", "gpu_ms", "relative_standard_error", "unsampled_standard_error", "device_bytes"]
+        ["device", "commit", "relative_standard_error", "unsampled_standard_error", "device_bytes"]
     {
         assert!(settings.get(name).is_some_and(|v| !v.is_empty()), "{name} in {settings:?}");
     }

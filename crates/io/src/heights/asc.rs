@@ -1,5 +1,6 @@
 //! ESRI ASCII grids: `key value` lines, then rows from north to south.
 
+use crate::georeference::{GeoKeys, Georeference};
 use crate::heights::{Cell, Raster, looks_like_degrees};
 use crate::open;
 use ridgelight::{Error, Result};
@@ -29,6 +30,23 @@ impl Header {
         self.0.get(key).copied()
     }
 
+    /// West and south of the outer corner, where the header has them.
+    fn corner(&self, cell: [f64; 2]) -> Option<[f64; 2]> {
+        let corner = |axis: &str, cell: f64| {
+            let centre = self.get(&format!("{axis}llcenter"));
+            self.get(&format!("{axis}llcorner")).or(centre.map(|c| c - cell / 2.0))
+        };
+        Some([corner("x", cell[0])?, corner("y", cell[1])?])
+    }
+
+    /// The position; the header names no coordinate reference system.
+    fn georeference(&self, rows: usize) -> Option<Georeference> {
+        let cell = [self.get("dx")?, self.get("dy")?];
+        let [west, south] = self.corner(cell)?;
+        let corner = [west, south + rows as f64 * cell[1]];
+        Some(Georeference { corner, cell, keys: GeoKeys::default() })
+    }
+
     /// Cells of unknown unit are degrees where [`looks_like_degrees`] holds, else metres.
     fn cell(&self, path: &Path, rows: usize, cols: usize) -> Result<Cell> {
         let cell = match [self.get("dx"), self.get("dy")] {
@@ -43,12 +61,7 @@ impl Header {
             let found = format!("{:?} × {:?}", cell[0], cell[1]);
             return Err(Error::file(path, "header: cellsize", found, "positive lengths"));
         }
-        let corner = |axis: &str, cell: f64| {
-            let centre = self.get(&format!("{axis}llcenter"));
-            self.get(&format!("{axis}llcorner")).or(centre.map(|c| c - cell / 2.0))
-        };
-        let west_south = (corner("x", cell[0]), corner("y", cell[1]));
-        let (Some(west), Some(south)) = west_south else { return Ok(Cell::Metres(cell)) };
+        let Some([west, south]) = self.corner(cell) else { return Ok(Cell::Metres(cell)) };
         let (width, height) = (cols as f64 * cell[0], rows as f64 * cell[1]);
         if looks_like_degrees([west, west + width], [south, south + height], cell) {
             return Ok(Cell::Degrees { cell, latitude: south + height / 2.0 });
@@ -107,7 +120,9 @@ pub(crate) fn heights(path: &Path, bytes: &[u8]) -> Result<Raster> {
         return Err(Error::file(path, "after the last row", shortened(word), expected));
     }
     let cell = header.cell(path, rows, cols)?;
-    Ok(Raster { cell, nodata: header.get("nodata_value"), ..Raster::bare(rows, cols, values) })
+    let georeference = header.georeference(rows);
+    let nodata = header.get("nodata_value");
+    Ok(Raster { cell, nodata, georeference, ..Raster::bare(rows, cols, values) })
 }
 
 /// A number as these files write them; `nan` is accepted, so that it can mark no data.

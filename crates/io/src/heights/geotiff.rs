@@ -1,5 +1,6 @@
 //! The GeoTIFF tags for the cell size (OGC 19-008r4), and GDAL's no-data tag.
 
+use crate::georeference::{GeoKeys, Georeference};
 use crate::heights::tif::Tiff;
 use crate::heights::{Cell, looks_like_degrees};
 use crate::open;
@@ -12,6 +13,7 @@ const TIEPOINT: u16 = 33922;
 const TRANSFORMATION: u16 = 34264;
 const KEY_DIRECTORY: u16 = 34735;
 const KEY_DOUBLES: u16 = 34736;
+const KEY_ASCII: u16 = 34737;
 const GDAL_NODATA: u16 = 42113;
 
 const MODEL_TYPE: u16 = 1024;
@@ -27,6 +29,7 @@ pub(crate) struct Geo {
     /// Metres in a unit of height.
     pub unit_m: f64,
     pub nodata: Option<f64>,
+    pub georeference: Option<Georeference>,
 }
 
 /// Grid coordinates of a north-up raster.
@@ -41,7 +44,7 @@ pub(crate) fn read(path: &Path, tiff: &mut Tiff, rows: usize, cols: usize) -> Re
     let keys = Keys::read(path, tiff)?;
     let unit_m = keys.length(path, VERTICAL_UNIT)?.unwrap_or(1.0);
     let Some(grid) = grid(path, tiff)? else {
-        return Ok(Geo { cell: Cell::Unknown, unit_m, nodata });
+        return Ok(Geo { cell: Cell::Unknown, unit_m, nodata, georeference: None });
     };
     // Raster position (0, 0) is the corner of the first pixel, or its centre (RasterType 2).
     let last = |n: usize| if keys.short(RASTER_TYPE) == Some(2) { n - 1 } else { n } as f64;
@@ -84,7 +87,10 @@ pub(crate) fn read(path: &Path, tiff: &mut Tiff, rows: usize, cols: usize) -> Re
             return Err(Error::file(path, place, format!("model type {model}"), expected));
         }
     };
-    Ok(Geo { cell, unit_m, nodata })
+    let georeference = grid
+        .origin
+        .map(|origin| Georeference::at_origin(origin, grid.cell, keys.copied(path, tiff)));
+    Ok(Geo { cell, unit_m, nodata, georeference })
 }
 
 fn wrong(path: &Path, tag: u16, found: impl Into<String>, expected: &str) -> Error {
@@ -179,6 +185,25 @@ impl Keys {
         let entries = chunks.iter().skip(1).copied().collect();
         let doubles = doubles(path, tiff, KEY_DOUBLES)?.unwrap_or_default();
         Ok(Self { entries, doubles })
+    }
+
+    /// All keys, for files to write. Text that cannot be read is left out with its keys.
+    fn copied(&self, path: &Path, tiff: &mut Tiff) -> GeoKeys {
+        let text = find(path, tiff, KEY_ASCII, "text").ok().flatten();
+        let ascii = text.and_then(|text| text.into_string().ok()).unwrap_or_default();
+        let ascii = ascii.trim_end_matches('\0').to_owned();
+        let is_held = |[_, location, count, value]: &[u16; 4]| {
+            let end = usize::from(*count) + usize::from(*value);
+            match *location {
+                0 => true,
+                KEY_DOUBLES => end <= self.doubles.len(),
+                KEY_ASCII => end <= ascii.len() + 1,
+                // Some writers keep shorts behind the entries.
+                _ => false,
+            }
+        };
+        let entries = self.entries.iter().copied().filter(is_held).collect();
+        GeoKeys { entries, doubles: self.doubles.clone(), ascii }
     }
 
     /// The value of a key that is one short, held in the entry itself.

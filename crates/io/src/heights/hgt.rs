@@ -1,5 +1,6 @@
 //! SRTM tiles: a square of big-endian 16-bit metres, row 0 in the north, without a header.
 
+use crate::georeference::{GeoKeys, Georeference};
 use crate::heights::{Cell, Raster};
 use crate::open;
 use ridgelight::{Error, Result};
@@ -22,12 +23,15 @@ pub(crate) fn heights(path: &Path, bytes: &[u8], cell_known: bool) -> Result<Ras
         ));
     }
     open::size(path, "file size", side as u64, side as u64)?;
-    let cell = match south_edge(path) {
-        Some(south) => {
-            let cell = 1.0 / (side - 1) as f64;
-            Cell::Degrees { cell: [cell, cell], latitude: south + 0.5 }
+    let (cell, georeference) = match corner(path) {
+        Some([south, west]) => {
+            let cell = [1.0 / (side - 1) as f64; 2];
+            let north_west = [west, south + 1.0];
+            let keys = GeoKeys::wgs84_points();
+            let at = Georeference::at_origin(north_west, cell, keys);
+            (Cell::Degrees { cell, latitude: south + 0.5 }, Some(at))
         }
-        None if cell_known => Cell::Unknown,
+        None if cell_known => (Cell::Unknown, None),
         None => {
             return Err(Error::file(
                 path,
@@ -39,17 +43,20 @@ pub(crate) fn heights(path: &Path, bytes: &[u8], cell_known: bool) -> Result<Ras
     };
     let values =
         bytes.chunks_exact(2).map(|b| f64::from(i16::from_be_bytes([b[0], b[1]]))).collect();
-    Ok(Raster { cell, nodata: Some(VOID), ..Raster::bare(side, side, values) })
+    Ok(Raster { cell, nodata: Some(VOID), georeference, ..Raster::bare(side, side, values) })
 }
 
-/// The latitude of the tile's southern edge from a name like `N44W072` or `s05e110`.
-fn south_edge(path: &Path) -> Option<f64> {
+/// Latitude and longitude of the tile's south-west grid point, from a name like `N44W072` or `s05e110`.
+fn corner(path: &Path) -> Option<[f64; 2]> {
     let stem = path.file_stem()?.to_str()?.to_ascii_uppercase();
     let rest = stem.strip_prefix(['N', 'S'])?;
-    let digits = rest.find(['W', 'E'])?;
-    let latitude: u8 = rest.get(..digits)?.parse().ok()?;
-    let south = f64::from(latitude) * if stem.starts_with('S') { -1.0 } else { 1.0 };
-    (-90.0..90.0).contains(&south).then_some(south)
+    let (latitude, rest) = rest.split_at(rest.find(['W', 'E'])?);
+    let latitude = f64::from(latitude.parse::<u8>().ok()?);
+    let south = latitude * if stem.starts_with('S') { -1.0 } else { 1.0 };
+    let end = rest[1..].find(|c: char| !c.is_ascii_digit()).map_or(rest.len(), |end| 1 + end);
+    let longitude = f64::from(rest[1..end].parse::<u8>().ok()?);
+    let west = longitude * if rest.starts_with('W') { -1.0 } else { 1.0 };
+    ((-90.0..90.0).contains(&south) && (-180.0..180.0).contains(&west)).then_some([south, west])
 }
 
 #[cfg(test)]
@@ -58,17 +65,19 @@ mod tests {
 
     #[test]
     fn reads_the_corner_from_the_name() {
-        for (name, south) in [
-            ("N44W072.hgt", Some(44.0)),
-            ("s05e110.hgt", Some(-5.0)),
-            ("dir/N00E006.SRTMGL1.hgt", Some(0.0)),
+        for (name, south_west) in [
+            ("N44W072.hgt", Some([44.0, -72.0])),
+            ("s05e110.hgt", Some([-5.0, 110.0])),
+            ("dir/N00E006.SRTMGL1.hgt", Some([0.0, 6.0])),
             ("tile.hgt", None),
             ("N.hgt", None),
             ("NW.hgt", None),
             ("N95E000.hgt", None),
+            ("N45E.hgt", None),
+            ("N45E180.hgt", None),
             ("Nörd44W072.hgt", None),
         ] {
-            assert_eq!(south_edge(Path::new(name)), south, "{name}");
+            assert_eq!(corner(Path::new(name)), south_west, "{name}");
         }
     }
 
@@ -79,6 +88,8 @@ mod tests {
         let raster = heights(Path::new("N44W072.hgt"), &bytes, false).unwrap();
         assert_eq!((raster.rows, raster.cols, raster.values[5]), (3, 3, 6.0));
         assert_eq!(raster.cell, Cell::Degrees { cell: [0.5, 0.5], latitude: 44.5 });
+        // The outermost grid points lie on the tile's edges, so pixels reach half a cell beyond.
+        assert_eq!(raster.georeference.unwrap().corner, [-72.25, 45.25]);
         assert!(heights(Path::new("a.hgt"), &bytes, false).is_err());
         assert!(heights(Path::new("a.hgt"), &bytes, true).is_ok());
         assert!(heights(Path::new("N44W072.hgt"), &bytes[1..], false).is_err());

@@ -54,6 +54,7 @@ pub(crate) fn heights(path: &Path, bytes: &[u8]) -> Result<Raster> {
         cell: geo.cell,
         unit_m: geo.unit_m,
         nodata: geo.nodata,
+        georeference: geo.georeference,
         ..Raster::bare(rows, cols, values)
     })
 }

@@ -1,6 +1,6 @@
 //! Kinds from the horizons of a circle of azimuths.
 
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use ridgelight::scene::Border;
 use ridgelight::{Error, Result};
@@ -8,6 +8,7 @@ use ridgelight_bake::MAX_TRANSFER_ORDER;
 use ridgelight_io::Component;
 
 use super::{Job, Map, Value, Wanted};
+use crate::horizon::Compass;
 
 pub fn horizon(job: &Job, wanted: &Wanted) -> Result<Map> {
     let (encoding, count) = (wanted.encoding, job.quality.azimuths);
@@ -21,13 +22,15 @@ pub fn horizon(job: &Job, wanted: &Wanted) -> Result<Map> {
     }
     let is_angle = encoding.component != Component::F32 && !encoding.name.ends_with("-sin");
     let scale = if is_angle { FRAC_PI_2 } else { 1.0 };
-    let degrees = |k| 360.0 * f64::from(k) / f64::from(count);
+    let azimuths: Vec<f64> = (0..count).map(|k| TAU * f64::from(k) / f64::from(count)).collect();
+    let compass = Compass::of(&azimuths);
+    let names = compass.names();
     Ok(Map {
-        planes: (0..count).map(|k| format!("horizon.{:07.3}", degrees(k))).collect(),
+        planes: compass.layer_of.iter().map(|layer| names[*layer].clone()).collect(),
         values: vec![Value {
             name: "elevation",
-            about: "horizon elevation above horizontal, along 2π k / azimuths counter-clockwise \
-                from east in plane or layer k",
+            about: "horizon elevation above horizontal, in planes by compass degrees; layer k of a \
+                .ktx2, and its picture, along 2π k / azimuths counter-clockwise from east",
             unit: "rad",
             range: [if is_open { -FRAC_PI_2 } else { 0.0 }, FRAC_PI_2],
         }],

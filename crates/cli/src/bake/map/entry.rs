@@ -22,6 +22,7 @@ impl MapFiles<'_> {
                 Open::Exr(planes) => self.exr(&path, &planes, metadata)?,
                 Open::Npy(writer) => writer.close()?,
                 Open::Ktx2(writer) => writer.close()?,
+                Open::Tif(writer) => writer.close(&[metadata, &self.texts[..1]].concat())?,
                 Open::Png => {
                     self.waiting.extend(pictures.take().into_iter().flatten());
                     continue;
@@ -76,9 +77,11 @@ impl MapFiles<'_> {
         let values = self.map.values.iter();
         let values = values
             .map(|v| json!({ "name": v.name, "about": v.about, "unit": v.unit, "range": v.range }));
+        let order = self.map.order(self.wanted.kind);
+        let planes: Vec<_> = order.iter().map(|plane| &self.map.planes[*plane]).collect();
         let mut entry = json!({
             "kind": self.wanted.kind.name, "about": self.wanted.kind.about,
-            "values": values.collect::<Vec<_>>(), "planes": self.map.planes,
+            "values": values.collect::<Vec<_>>(), "planes": planes,
             "encoding": self.wanted.encoding.name, "decoder": decoder, "files": files,
         });
         if self.beyond.0 > 0 {
@@ -102,7 +105,7 @@ impl MapFiles<'_> {
         let (encoding, texels) = (self.wanted.encoding, self.wanted.texels());
         let is_scaled = format == Format::Png && self.is_scaled();
         let holds = match format {
-            Format::Exr | Format::Npy => "f32".to_owned(),
+            Format::Exr | Format::Npy | Format::Tif => "f32".to_owned(),
             Format::Ktx2 => texels.vulkan().map_or("", |(_, name)| name).to_owned(),
             Format::Png => {
                 let (channels, bits) = self.picture_form();
@@ -110,7 +113,7 @@ impl MapFiles<'_> {
             }
         };
         let decoding = match format {
-            Format::Exr | Format::Npy => "the values themselves".to_owned(),
+            Format::Exr | Format::Npy | Format::Tif => "the values themselves".to_owned(),
             _ if is_scaled => format!("{}, each times scale", encoding.decoding),
             Format::Png if encoding.component.is_signed() => {
                 format!("{}, with 2v - 1 in place of a pixel value v (0 to 1)", encoding.decoding)
@@ -121,7 +124,9 @@ impl MapFiles<'_> {
         let bound = |of: &str, unit: &str, most: f64, share: f64| json!({ "of": of, "unit": unit, "at_most": most, "and_of_the_value": share });
         let bounds: Vec<Json> = match format {
             // Rounding from f64 to f32.
-            Format::Exr | Format::Npy => vec![bound("value", "", 0.0, 1.0 / f64::from(1 << 24))],
+            Format::Exr | Format::Npy | Format::Tif => {
+                vec![bound("value", "", 0.0, 1.0 / f64::from(1 << 24))]
+            }
             Format::Ktx2 | Format::Png => {
                 let of = |b: &ridgelight_bake::Bound| {
                     bound(b.of, b.unit, scale * b.absolute(component), b.relative(component))
@@ -144,7 +149,7 @@ impl MapFiles<'_> {
         }
         if self.voids().is_some() {
             entry["voids"] = match format {
-                Format::Exr | Format::Npy => "NaN",
+                Format::Exr | Format::Npy | Format::Tif => "NaN",
                 Format::Png => "transparent: alpha is the last channel",
                 Format::Ktx2 if texels.count > encoding.components => {
                     "values of the ground filled in from around; a is 0 there, else 1"

@@ -29,7 +29,7 @@ impl App<'_> {
             return self.say(saved, &path);
         }
         let saved = render::check_finite(&pixels, field).and_then(|()| {
-            let metadata = setup::metadata(gpu, field, lit.plan(), &shown.figures.light);
+            let metadata = setup::metadata(gpu, field, lit.plan());
             let (rows, cols) = (field.rows(), field.cols());
             let picture = render::rgb(&pixels);
             files::write_png(&path, rows, cols, &picture, field.voids(), tone, &metadata)

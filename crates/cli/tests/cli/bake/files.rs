@@ -273,7 +273,7 @@ fn gpu_horizons_are_those_of_the_command_horizon() {
     let (kept, baked) = (read(&folder.path("h.npy")), read(&folder.path("out/horizon.npy")));
     assert_eq!(kept.planes, baked.planes);
     let layers = read(&folder.path("out/horizon.exr"));
-    assert_eq!(layers.names[1], "horizon.045.000");
+    assert_eq!(layers.names[1], "azimuth_045.0");
     assert_eq!(layers.planes, baked.planes);
 }
 

@@ -37,16 +37,16 @@ fn gpu_paths_are_those_that_were_traced() {
     assert!(manifest["maps"][0]["triangles"]["worst_closure"].is_number(), "{manifest}");
 }
 
-/// Runs of a pass in the manifest; 0 for a missing pass.
-fn runs(manifest: &Value, pass: &str) -> u32 {
-    let rows = manifest["passes"].as_array().unwrap().iter();
+/// Runs of a pass in a report; 0 for a missing pass.
+fn runs(report: &Value, pass: &str) -> u32 {
+    let rows = report["passes"].as_array().unwrap().iter();
     let rows = rows.inspect(|row| assert!(row["ns"].is_number(), "{row}"));
     let labels = rows.map(|row| row["pass"].as_str().unwrap());
     let own = labels.filter_map(|label| label.strip_prefix(pass)?.strip_suffix(" runs"));
     own.map(|count| count.trim().parse::<u32>().unwrap()).sum()
 }
 
-/// Both kinds of tables share the slow passes, and the manifest holds their times: masks of up to fifteen directions, and of the
+/// Both kinds of tables share the slow passes, and --json holds their times: masks of up to fifteen directions, and of the
 /// ends of 64 pairs; one frame per light, and per pair.
 #[test]
 fn gpu_tables_are_made_once_and_timed() {
@@ -56,10 +56,13 @@ fn gpu_tables_are_made_once_and_timed() {
     for kinds in ["brdf", "brdf-factors", "brdf,brdf-factors"] {
         let words = "--border periodic --angles 2x4 --bounces 1 --paths 4 --directions 8";
         let out = kinds.replace(',', "_");
-        done(&folder, &format!("bake field.npy -o {out} --what {kinds} {words} --format npy"));
-        let manifest = json(&folder.path(&out).join("manifest.json"));
-        all.push(["facet_mask", "visible_points", "scatter_gather"].map(|p| runs(&manifest, p)));
-        assert!(manifest["settings"]["gpu_ms"].as_f64().unwrap() > 0.0);
+        done(
+            &folder,
+            &format!("bake field.npy -o {out} --what {kinds} {words} --format npy --json t.json"),
+        );
+        let report = json(&folder.path("t.json"));
+        all.push(["facet_mask", "visible_points", "scatter_gather"].map(|p| runs(&report, p)));
+        assert!(report["settings"]["gpu_ms"].as_f64().unwrap() > 0.0);
     }
     // Eight lights of the table, 64 in between.
     assert_eq!(all[0], [1 + 1, 1 + 1, 8 + 64]);

@@ -1,0 +1,202 @@
+//! GeoTIFF and world files of maps: read back by this project's reader, and by GDAL.
+
+use crate::needs_vulkan::done;
+use crate::{Folder, formats, read};
+use serde_json::{Value, json};
+use std::path::Path;
+use std::process::Command;
+
+/// UTM zone 33 north, cells of 10 m x 20 m, the first pixel's corner at 500 km east, 5,100 km north.
+/// Written by GDAL: see tests/files/gdal/write.sh.
+const UTM: &[u8] = include_bytes!("../../../../tests/files/gdal/utm.tif");
+/// The same, PixelIsPoint, with NAVD88 heights in feet as its vertical reference.
+const POINT: &[u8] = include_bytes!("../../../../tests/files/gdal/utm_point_feet.tif");
+
+fn folder() -> Folder {
+    let folder = Folder::new();
+    folder.write("utm.tif", UTM);
+    folder.write("point.tif", POINT);
+    folder
+}
+
+/// Outputs lie where the inputs lie, whichever way the input states positions.
+#[test]
+fn gpu_maps_lie_where_the_input_lies() {
+    let folder = folder();
+    for input in ["utm", "point"] {
+        done(&folder, &format!("render {input}.tif -o o.tif --layers sky-view --azimuths 8"));
+        let of = |name: &str| {
+            let options = ridgelight_io::HeightOptions::default();
+            ridgelight_io::read_georeferenced(&folder.path(name), &options).unwrap()
+        };
+        let (field, at) = of(&format!("{input}.tif"));
+        let at = at.unwrap();
+        assert_eq!((at.corner, at.cell), ([500_000.0, 5_100_000.0], [10.0, 20.0]));
+        // A reader of heights refuses several bands, so the horizon of one azimuth set is baked.
+        done(
+            &folder,
+            &format!("bake {input}.tif -o baked --what sky-view --azimuths 8 --format tif"),
+        );
+        let (map, placed) = of("baked/sky_view.tif");
+        let placed = placed.unwrap();
+        assert_eq!((placed.corner, placed.cell), (at.corner, at.cell));
+        assert_eq!(placed.keys, at.keys.horizontal());
+        assert_eq!((map.rows(), map.cols()), (field.rows(), field.cols()));
+    }
+}
+
+#[test]
+fn gpu_a_picture_has_a_world_file() {
+    let folder = folder();
+    done(&folder, "render utm.tif -o o.png --azimuths 8");
+    let world = std::fs::read_to_string(folder.path("o.pgw")).unwrap();
+    assert_eq!(world, "10\n0\n0\n-20\n500005\n5099990\n");
+    // A picture without a position leaves the file alone and warns.
+    let run = folder.run_str("render a.npy -o o.png --azimuths 8");
+    assert_eq!(run.status, Some(0), "{}", run.err);
+    assert!(run.out.contains("o.pgw is not of this picture"), "{}", run.out);
+    assert_eq!(std::fs::read_to_string(folder.path("o.pgw")).unwrap(), world);
+    done(&folder, "render a.npy -o p.png --azimuths 8");
+    assert!(!folder.path("p.pgw").exists());
+}
+
+#[test]
+fn gpu_two_runs_write_the_same_bytes() {
+    let folder = folder();
+    let bytes = |name: &str| std::fs::read(folder.path(name)).unwrap();
+    for name in ["o.tif", "o.exr", "o.png", "h.tif", "h.exr", "h.npy", "r.tif", "r.exr"] {
+        let command = match &name[..1] {
+            "o" => "render utm.tif --sky 0.5 --sun 200,30 --azimuths 8",
+            "h" => "horizon utm.tif --azimuths 8",
+            _ => "reference utm.tif --spp 128",
+        };
+        let runs = [0, 1].map(|_| {
+            done(&folder, &format!("{command} -o {name}"));
+            bytes(name)
+        });
+        assert!(runs[0] == runs[1], "{name}");
+    }
+    let bakes = [0, 1].map(|_| {
+        let kinds = "--what horizon,bent-normal,ellipse,scatter --directions 16 --azimuths 8";
+        let formats = "--format exr,npy,ktx2,tif --paths 8";
+        done(&folder, &format!("bake utm.tif -o baked {kinds} {formats} --method sweep"));
+        let files = std::fs::read_dir(folder.path("baked")).unwrap();
+        let mut files: Vec<_> = files
+            .map(|file| {
+                let path = file.unwrap().path();
+                (path.file_name().unwrap().to_owned(), std::fs::read(path).unwrap())
+            })
+            .collect();
+        files.sort();
+        files
+    });
+    // Four formats and a decoder of each kind, and the manifest.
+    assert_eq!(bakes[0].len(), 4 * 5 + 1);
+    for (first, second) in bakes[0].iter().zip(&bakes[1]) {
+        assert!(first == second, "{:?}", first.0);
+    }
+}
+
+fn gdalinfo(path: &Path) -> Value {
+    let output = Command::new("gdalinfo").arg("-json").arg(path).output();
+    let output = output.expect("gdalinfo: run tools/setup --tests");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+/// All values of all bands, by GDAL: its ENVI driver writes plain floats.
+fn gdal_values(path: &Path) -> Vec<f32> {
+    let plain = path.with_extension("envi");
+    let mut command = Command::new("gdal_translate");
+    command.args(["-q", "-of", "ENVI", "-co", "INTERLEAVE=BSQ"]).arg(path).arg(&plain);
+    assert!(command.status().expect("gdal_translate: run tools/setup --tests").success());
+    let bytes = std::fs::read(plain).unwrap();
+    bytes.as_chunks::<4>().0.iter().map(|b| f32::from_le_bytes(*b)).collect()
+}
+
+/// What GDAL's validator, which Debian's gdal-bin brings, reports of a file; `Ok` without an error or a warning.
+fn checked_cog(path: &Path) -> Result<(), String> {
+    let mut command = Command::new("/usr/bin/python3");
+    command.args(["-m", "osgeo_utils.samples.validate_cloud_optimized_geotiff"]);
+    let output = command.arg("--full-check=yes").arg(path).output().unwrap();
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    let is_valid = output.status.success() && !text.contains("warning");
+    if is_valid { Ok(()) } else { Err(text) }
+}
+
+fn coordinate_system(info: &Value) -> &str {
+    info["coordinateSystem"]["wkt"].as_str().unwrap()
+}
+
+#[test]
+#[ignore = "needs GDAL: Debian's gdal-bin"]
+fn gdal_finds_maps_in_place_with_names_and_units() {
+    let folder = folder();
+    let input = gdalinfo(&folder.path("utm.tif"));
+    for name in ["utm", "point"] {
+        done(&folder, &format!("horizon {name}.tif -o h.tif --azimuths 8 --distances d.tif"));
+        for (file, unit) in [("h.tif", "rad"), ("d.tif", "m")] {
+            let info = gdalinfo(&folder.path(file));
+            checked_cog(&folder.path(file)).unwrap();
+            assert_eq!(info["geoTransform"], input["geoTransform"], "{name}");
+            // Without the vertical reference of point.tif.
+            assert_eq!(coordinate_system(&info), coordinate_system(&input), "{name}");
+            let kind = if name == "point" { "Point" } else { "Area" };
+            assert_eq!(info["metadata"][""]["AREA_OR_POINT"], kind);
+            assert!(info["metadata"][""]["commit"].is_string(), "{info}");
+            let bands = info["bands"].as_array().unwrap();
+            assert_eq!(bands.len(), 8);
+            for (k, band) in bands.iter().enumerate() {
+                assert_eq!(band["description"], format!("azimuth_{:03}.0", 45 * k));
+                assert_eq!((&band["unit"], &band["type"]), (&json!(unit), &json!("Float32")));
+                assert_eq!(band["noDataValue"], "NaN");
+            }
+        }
+    }
+}
+
+#[test]
+#[ignore = "needs GDAL: Debian's gdal-bin"]
+fn gdal_reads_every_value_and_overviews() {
+    let folder = folder();
+    // Beyond one tile, and no multiple of one; heights with voids.
+    let (rows, cols) = (521_usize, 1031);
+    let heights: Vec<u8> = (0..rows * cols)
+        .map(|i| if i % 97 == 5 { f32::NAN } else { ((i * 7919) % 613) as f32 })
+        .flat_map(f32::to_le_bytes)
+        .collect();
+    folder.write("big.npy", &formats::npy("<f4", false, &format!("({rows}, {cols})"), &heights));
+    // The comparator fails where it should: strips, and no overviews.
+    done(&folder, "render big.npy --nodata nan --azimuths 4 -o o.tif");
+    let strips = folder.path("strips.tif");
+    let mut command = Command::new("gdal_translate");
+    command.arg("-q").arg(folder.path("o.tif")).arg(&strips);
+    assert!(command.status().unwrap().success());
+    let error = checked_cog(&strips).unwrap_err();
+    assert!(error.contains("not tiled"), "{error}");
+
+    for (input, overviews) in [("big.npy --nodata nan", 2), ("utm.tif", 0), ("a.npy", 0)] {
+        for layers in ["", " --layers lights,sky-view,horizon"] {
+            let command = format!("render {input} --sky 0.5 --sun 200,20 --azimuths 4{layers}");
+            done(&folder, &format!("{command} -o o.tif"));
+            done(&folder, &format!("{command} -o o.exr"));
+            let (path, exr) = (folder.path("o.tif"), read(&folder.path("o.exr")));
+            checked_cog(&path).unwrap();
+            let (info, values) = (gdalinfo(&path), gdal_values(&path));
+            let bands = info["bands"].as_array().unwrap();
+            assert_eq!(bands.len(), exr.names.len());
+            let colours = [0, 1, 2].map(|i| &bands[i]["colorInterpretation"]);
+            assert_eq!(colours, [&json!("Red"), &json!("Green"), &json!("Blue")]);
+            let plane = exr.rows * exr.cols;
+            for (i, band) in bands.iter().enumerate() {
+                let name = band["description"].as_str().unwrap();
+                let own = exr.names.iter().position(|n| n == name).unwrap();
+                let bits = |values: &[f32]| values.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
+                let found = bits(&values[i * plane..(i + 1) * plane]);
+                assert!(found == bits(&exr.planes[own]), "{command}: {name}");
+                let count = band["overviews"].as_array().map_or(0, Vec::len);
+                assert_eq!(count, overviews, "{command}");
+            }
+        }
+    }
+}

@@ -1,0 +1,98 @@
+//! Where a grid lies on the Earth: its coordinate reference system and the position of its pixels.
+
+/// The vertical keys of GeoTIFF (OGC 19-008r4, §7.5): CRS, citation, datum and unit.
+const VERTICAL_KEYS: std::ops::RangeInclusive<u16> = 4096..=4099;
+const MODEL_TYPE: u16 = 1024;
+const RASTER_TYPE: u16 = 1025;
+const GEODETIC_CRS: u16 = 2048;
+
+/// The position of a north-up grid, in the coordinates of its file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Georeference {
+    /// East and north of the outer corner of the first pixel (row 0, column 0).
+    pub corner: [f64; 2],
+    /// Width and height of a pixel, both positive; rows run south.
+    pub cell: [f64; 2],
+    /// The coordinate reference system; empty where the file names none.
+    pub keys: GeoKeys,
+}
+
+/// The GeoKeys of a GeoTIFF, as they were read.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct GeoKeys {
+    /// Entries of the directory (tag 34735) without its header: key, location, count, value.
+    pub entries: Vec<[u16; 4]>,
+    /// Parameters that are floats (tag 34736).
+    pub doubles: Vec<f64>,
+    /// Parameters that are text (tag 34737).
+    pub ascii: String,
+}
+
+impl GeoKeys {
+    /// Longitude and latitude on WGS 84 (EPSG:4326), each value at the centre of its pixel.
+    pub fn wgs84_points() -> Self {
+        let entries =
+            vec![[MODEL_TYPE, 0, 1, 2], [RASTER_TYPE, 0, 1, 2], [GEODETIC_CRS, 0, 1, 4326]];
+        Self { entries, ..Self::default() }
+    }
+
+    /// Whether positions in the file are those of pixel centres (PixelIsPoint).
+    pub fn is_point(&self) -> bool {
+        self.entries.contains(&[RASTER_TYPE, 0, 1, 2])
+    }
+
+    /// Without the vertical reference: a map of light or angles holds no heights, and GDAL reports
+    /// a vertical unit as the unit of each band.
+    pub fn horizontal(&self) -> Self {
+        let mut keys = self.clone();
+        keys.entries.retain(|entry| !VERTICAL_KEYS.contains(&entry[0]));
+        keys
+    }
+}
+
+impl Georeference {
+    /// The georeference of a file whose raster position (0, 0) is at `origin`: the first pixel's
+    /// centre for PixelIsPoint, else its corner.
+    pub fn at_origin(origin: [f64; 2], cell: [f64; 2], keys: GeoKeys) -> Self {
+        let half = if keys.is_point() { 0.5 } else { 0.0 };
+        let corner = [origin[0] - half * cell[0], origin[1] + half * cell[1]];
+        Self { corner, cell, keys }
+    }
+
+    /// The inverse of [`at_origin`](Self::at_origin).
+    pub fn origin(&self) -> [f64; 2] {
+        let half = if self.keys.is_point() { 0.5 } else { 0.0 };
+        [self.corner[0] + half * self.cell[0], self.corner[1] - half * self.cell[1]]
+    }
+
+    /// The text of a world file, as ESRI defined it: six lines, the last two the centre of the
+    /// first pixel.
+    pub fn world_file(&self) -> String {
+        let [width, height] = self.cell;
+        let [east, north] = [self.corner[0] + 0.5 * width, self.corner[1] - 0.5 * height];
+        format!("{width}\n0\n0\n{}\n{east}\n{north}\n", -height)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_point_is_the_centre_of_its_pixel() {
+        let area = Georeference::at_origin([500.0, 900.0], [10.0, 20.0], GeoKeys::default());
+        assert_eq!((area.corner, area.origin()), ([500.0, 900.0], [500.0, 900.0]));
+        let point = Georeference::at_origin([7.0, 46.0], [0.5, 0.25], GeoKeys::wgs84_points());
+        assert_eq!((point.corner, point.origin()), ([6.75, 46.125], [7.0, 46.0]));
+        // The centre of the first pixel, whichever way the file states positions.
+        assert_eq!(area.world_file(), "10\n0\n0\n-20\n505\n890\n");
+        assert_eq!(point.world_file(), "0.5\n0\n0\n-0.25\n7\n46\n");
+    }
+
+    #[test]
+    fn heights_leave_with_their_unit() {
+        let mut keys = GeoKeys::wgs84_points();
+        keys.entries.extend([[4096, 0, 1, 5703], [4099, 0, 1, 9002]]);
+        assert_eq!(keys.horizontal(), GeoKeys::wgs84_points());
+    }
+}
