@@ -97,8 +97,12 @@ impl Camera {
             });
             [(after - before) / 2.0, (after + before) / (2.0 * tangent)]
         });
-        self.target_m = (middle + across[0] * right + high[0] * up).to_array();
-        self.distance_m = across[1].max(high[1]);
+        let target = middle + across[0] * right + high[0] * up;
+        // Angles that are no numbers are refused by `check`, under their own names.
+        if target.is_finite() {
+            self.target_m = target.to_array();
+            self.distance_m = across[1].max(high[1]);
+        }
     }
 
     /// Unit vectors right, up and back (out of the image): right-handed.

@@ -124,8 +124,8 @@ const ENTRIES: [Entry; 12] = [
         shown: Shown::Picture,
     },
     Entry {
-        name: "glossy",
-        title: "Glossy ground",
+        name: "specular",
+        title: "Specular ground",
         about: "Synthetic waves with Phong specular of exponent 12, viewed from above.",
         made: Some(("waves", 512)),
         command: "render FIELD --albedo 0.03,0.07,0.09 --specular 12,0.35 --sun 315,60,8,3 --sky 0.4,0.55,0.8",
