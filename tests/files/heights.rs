@@ -4,6 +4,7 @@ use crate::formats::*;
 use crate::{absolute, expected, one_sentence, parse};
 use exr::prelude::FlatSamples;
 use ridgelight::Error;
+use ridgelight::scene::HeightField;
 use ridgelight_io::*;
 use std::path::Path;
 use tiff::encoder::{Compression, DeflateLevel, colortype};
@@ -326,4 +327,44 @@ fn sizes_are_known_from_headers() {
     assert_eq!(size("a.npy", &npy("<f4", false, "(2, 3, 4)", &[])), None);
     assert_eq!(height_size(folder.path()), None);
     assert_eq!(height_size(&folder.path().join("missing.png")), None);
+}
+
+/// GDAL's files of one hill, tests/files/gdal/write.sh: 5 rows, 7 columns, cells of 10 and 20 units.
+fn gdal(name: &str) -> HeightField {
+    let path = format!("{}/tests/files/gdal/{name}.tif", env!("CARGO_MANIFEST_DIR"));
+    ridgelight_io::read_heights(Path::new(&path), &HeightOptions::default()).unwrap()
+}
+
+fn hill(row: i32, col: i32) -> f64 {
+    f64::from(100 - 9 * (col - 3).pow(2) - 7 * (row - 2).pow(2))
+}
+
+fn assert_hill(field: &HeightField, height: impl Fn(f64) -> f64) {
+    assert_eq!([field.rows(), field.cols()], [5, 7]);
+    for (i, found) in field.heights_m().iter().enumerate() {
+        let expected = height(hill(i as i32 / 7, i as i32 % 7));
+        assert_eq!(field.base_m() + f64::from(*found), expected, "{i}");
+    }
+}
+
+#[test]
+fn gdal_compressions_and_scales_are_read() {
+    for name in ["utm", "zstd", "mercator"] {
+        assert_hill(&gdal(name), |height| height);
+    }
+    assert_hill(&gdal("scaled"), |stored| 1000.0 + 0.5 * stored);
+    assert_eq!(gdal("zstd").cell_m(), [10.0, 20.0]);
+}
+
+/// At northing y the latitude is atan(sinh(y / a)), and a metre of the grid is cos(latitude) metres on a sphere; the
+/// ellipsoid's radii differ from a sphere's by 1/298.
+#[test]
+fn web_mercator_metres_are_shortened() {
+    let latitude = (5_621_471.0_f64 / 6_378_137.0).sinh().atan();
+    assert!((latitude.to_degrees() - 45.0).abs() < 1.0);
+    let cell = gdal("mercator").cell_m();
+    for (found, grid) in cell.into_iter().zip([10.0, 20.0]) {
+        let ratio = found / (grid * latitude.cos());
+        assert!((ratio - 1.0).abs() < 1.0 / 298.0, "{ratio}");
+    }
 }

@@ -5,6 +5,7 @@ pub mod geotiff;
 mod hgt;
 pub mod size;
 pub mod tif;
+mod unpack;
 
 use crate::exr;
 use crate::georeference::Georeference;
@@ -45,6 +46,8 @@ pub(crate) struct Raster {
     pub cell: Cell,
     /// Metres in the file's unit of height.
     pub unit_m: f64,
+    /// A height is the value times the first, plus the second.
+    pub scale: [f64; 2],
     pub nodata: Option<f64>,
     /// The file's own mask of voids, if any.
     pub voids: Option<Vec<bool>>,
@@ -62,6 +65,7 @@ impl Raster {
             single: false,
             cell: Cell::Unknown,
             unit_m: 1.0,
+            scale: [1.0, 0.0],
             nodata: None,
             voids: None,
             georeference: None,
@@ -81,8 +85,11 @@ impl Raster {
 /// | `.npy` | 2-D, integers or floats of any size, order and endianness | 1 × 1 | |
 /// | `.npz` | `elevation`, `heights`, `height`, `z` or the only 2-D array | `dx`, `dy` | |
 ///
+/// Any of them may be packed: `.gz`, as `dem.tif.gz`, or a `.zip` that holds one of them, as `N44W072.hgt.zip`. A TIFF's
+/// scale and offset (GDAL's metadata) apply to its values.
+///
 /// Row 0 is the north. Cells in degrees are converted to metres by the WGS84 ellipsoid at the
-/// latitude of the field's centre (one size for the whole field). A header without a unit (`.asc`,
+/// latitude of the field's centre (one size for the whole field); so are the metres of Web Mercator, which are too long by 1/cos latitude. A header without a unit (`.asc`,
 /// `.npz`, a TIFF without GeoKeys) is in degrees when its corners are longitudes and latitudes and
 /// its cell is below 0.1, else in metres. A TIFF whose vertical unit is feet is converted to
 /// metres.
@@ -130,6 +137,11 @@ fn parse_georeferenced(
         Format::Npy,
         Format::Npz,
     ];
+    let unpacked = unpack::unpacked(name, bytes)?;
+    let (name, bytes) = match &unpacked {
+        Some((name, bytes)) => (name.as_path(), bytes.as_slice()),
+        None => (name, bytes),
+    };
     let mut raster = match open::format(name, bytes, &ACCEPTED)? {
         Format::Png => png::heights(name, bytes),
         Format::Exr => exr::heights(name, bytes),
@@ -158,7 +170,8 @@ fn check(options: &HeightOptions) -> Result<()> {
 
 /// Marks voids, converts heights and cells to metres and makes the field.
 fn finish(path: &Path, raster: Raster, options: &HeightOptions) -> Result<HeightField> {
-    let Raster { rows, cols, mut values, single, cell, unit_m, nodata, mut voids, .. } = raster;
+    let Raster { rows, cols, mut values, single, cell, unit_m, scale, nodata, mut voids, .. } =
+        raster;
     if let Some(nodata) = options.nodata.or(nodata) {
         let marks = voids.get_or_insert_with(|| vec![false; values.len()]);
         for (mark, value) in marks.iter_mut().zip(&values) {
@@ -180,8 +193,8 @@ fn finish(path: &Path, raster: Raster, options: &HeightOptions) -> Result<Height
         }
     };
     let factor = unit_m * options.z_scale;
-    if factor != 1.0 {
-        values.iter_mut().for_each(|v| *v *= factor);
+    if factor != 1.0 || scale != [1.0, 0.0] {
+        values.iter_mut().for_each(|v| *v = factor * (*v * scale[0] + scale[1]));
     }
     HeightField::new(rows, cols, &values, cell_m, voids).map_err(|error| match error {
         Error::Setting { name, found, expected } => Error::file(path, name, found, expected),

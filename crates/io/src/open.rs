@@ -8,7 +8,7 @@ pub(crate) const SIDE_LIMIT: u64 = 1 << 16;
 /// The most samples (of one channel) that are read.
 pub(crate) const SAMPLE_LIMIT: u64 = 1 << 30;
 /// The largest file that is read: the most samples there may be, as f64, twice over.
-const FILE_LIMIT: u64 = 16 * SAMPLE_LIMIT;
+pub(crate) const FILE_LIMIT: u64 = 16 * SAMPLE_LIMIT;
 /// DEFLATE's greatest expansion: a match of 258 bytes for two bits (RFC 1951, §3.2.5).
 pub(crate) const DEFLATE_RATIO: u64 = 1032;
 

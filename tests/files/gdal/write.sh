@@ -16,5 +16,10 @@ write() { # CRS OUT OPTIONS...
     gdal_translate -q -ot Float32 -a_srs "$crs" -a_ullr 500000 5100000 500070 5099900 "$@" "$scratch/hill.asc" "$out"
 }
 write EPSG:32633 utm.tif
+write EPSG:32633 zstd.tif -co COMPRESS=ZSTD -co PREDICTOR=3
+write EPSG:32633 scaled.tif -ot Int16 -co COMPRESS=DEFLATE -co PREDICTOR=2 -a_scale 0.5 -a_offset 1000
+# Its cells are of 10 and 20 units at about 45 degrees north.
+rm -f mercator.tif
+gdal_translate -q -ot Float32 -a_srs EPSG:3857 -a_ullr 1500000 5621521 1500070 5621421 "$scratch/hill.asc" mercator.tif
 # EPSG:6360 is NAVD88 height in US survey feet.
 write EPSG:32633+6360 utm_point_feet.tif -mo AREA_OR_POINT=Point

@@ -14,6 +14,7 @@ const TRANSFORMATION: u16 = 34264;
 const KEY_DIRECTORY: u16 = 34735;
 const KEY_DOUBLES: u16 = 34736;
 const KEY_ASCII: u16 = 34737;
+const GDAL_METADATA: u16 = 42112;
 const GDAL_NODATA: u16 = 42113;
 
 const MODEL_TYPE: u16 = 1024;
@@ -22,12 +23,19 @@ const ANGULAR_UNIT: u16 = 2054;
 const LINEAR_UNIT: u16 = 3076;
 const LINEAR_UNIT_SIZE: u16 = 3077;
 const VERTICAL_UNIT: u16 = 4099;
+const PROJECTED_CRS: u16 = 3072;
+
+/// Pseudo-Mercator on a sphere of the Earth's equatorial radius (EPSG:3857, and 3785 before).
+const WEB_MERCATOR: [u16; 2] = [3857, 3785];
+const EQUATOR_M: f64 = 6_378_137.0;
 
 /// Values of the tags.
 pub(crate) struct Geo {
     pub cell: Cell,
     /// Metres in a unit of height.
     pub unit_m: f64,
+    /// A height is the value times the first, plus the second.
+    pub scale: [f64; 2],
     pub nodata: Option<f64>,
     pub georeference: Option<Georeference>,
 }
@@ -41,10 +49,11 @@ struct Grid {
 
 pub(crate) fn read(path: &Path, tiff: &mut Tiff, rows: usize, cols: usize) -> Result<Geo> {
     let nodata = nodata(path, tiff)?;
+    let scale = scale(path, tiff)?;
     let keys = Keys::read(path, tiff)?;
     let unit_m = keys.length(path, VERTICAL_UNIT)?.unwrap_or(1.0);
     let Some(grid) = grid(path, tiff)? else {
-        return Ok(Geo { cell: Cell::Unknown, unit_m, nodata, georeference: None });
+        return Ok(Geo { cell: Cell::Unknown, unit_m, scale, nodata, georeference: None });
     };
     // Raster position (0, 0) is the corner of the first pixel, or its centre (RasterType 2).
     let last = |n: usize| if keys.short(RASTER_TYPE) == Some(2) { n - 1 } else { n } as f64;
@@ -65,6 +74,13 @@ pub(crate) fn read(path: &Path, tiff: &mut Tiff, rows: usize, cols: usize) -> Re
                 return Err(Error::file(path, place, format!("unit {unit}"), "9102 (degree)"));
             }
         },
+        Some(1) if keys.short(PROJECTED_CRS).is_some_and(|crs| WEB_MERCATOR.contains(&crs)) => {
+            let Some([_, north]) = grid.origin else {
+                let expected = "the northing of a grid in Web Mercator";
+                return Err(wrong(path, TIEPOINT, "nothing", expected));
+            };
+            web_mercator(grid.cell, north - span[1] / 2.0)
+        }
         Some(1) => {
             let unit = keys.length(path, LINEAR_UNIT)?.unwrap_or(1.0);
             Cell::Metres(grid.cell.map(|c| c * unit))
@@ -90,7 +106,7 @@ pub(crate) fn read(path: &Path, tiff: &mut Tiff, rows: usize, cols: usize) -> Re
     let georeference = grid
         .origin
         .map(|origin| Georeference::at_origin(origin, grid.cell, keys.copied(path, tiff)));
-    Ok(Geo { cell, unit_m, nodata, georeference })
+    Ok(Geo { cell, unit_m, scale, nodata, georeference })
 }
 
 fn wrong(path: &Path, tag: u16, found: impl Into<String>, expected: &str) -> Error {
@@ -153,6 +169,34 @@ fn grid(path: &Path, tiff: &mut Tiff) -> Result<Option<Grid>> {
         return Err(wrong(path, tag, found, "positive sizes, north up"));
     }
     Ok(Some(Grid { cell, origin }))
+}
+
+/// Cells in the middle of a grid in Web Mercator, as degrees: y is R asinh(tan φ), so a step of y is one of φ times
+/// R / cos φ.
+fn web_mercator(cell: [f64; 2], northing_m: f64) -> Cell {
+    let latitude = (northing_m / EQUATOR_M).sinh().atan();
+    let degrees = (1.0 / EQUATOR_M).to_degrees();
+    let cell = [cell[0] * degrees, cell[1] * degrees * latitude.cos()];
+    Cell::Degrees { cell, latitude: latitude.to_degrees() }
+}
+
+/// Scale and offset of the first band in GDAL's metadata: `<Item name="SCALE" sample="0" role="scale">0.1</Item>`.
+fn scale(path: &Path, tiff: &mut Tiff) -> Result<[f64; 2]> {
+    let expected = "numbers for scale and offset";
+    let Some(value) = find(path, tiff, GDAL_METADATA, expected)? else { return Ok([1.0, 0.0]) };
+    let Ok(text) = value.into_string() else { return Ok([1.0, 0.0]) };
+    let item = |role: &str, default: f64| {
+        let is_it = |item: &&str| {
+            let head = item.split('>').next().unwrap_or_default();
+            head.contains(&format!("role=\"{role}\"")) && head.contains("sample=\"0\"")
+        };
+        let Some(item) = text.split("<Item ").find(is_it) else { return Ok(default) };
+        let body = item.split(['>', '<']).nth(1).unwrap_or_default().trim();
+        let number = body.parse().ok().filter(|n: &f64| n.is_finite());
+        let short: String = body.chars().filter(|c| !c.is_control()).take(24).collect();
+        number.ok_or_else(|| wrong(path, GDAL_METADATA, format!("{role} {short:?}"), expected))
+    };
+    Ok([item("scale", 1.0)?, item("offset", 0.0)?])
 }
 
 fn nodata(path: &Path, tiff: &mut Tiff) -> Result<Option<f64>> {

@@ -11,8 +11,8 @@ use tiff::{ColorType, TiffError, tags::Tag};
 
 pub(crate) type Tiff<'a> = Decoder<Cursor<&'a [u8]>>;
 
-/// The first image of the file: strips or tiles, uncompressed, PackBits, LZW or DEFLATE, with any
-/// predictor.
+/// The first image of the file: strips or tiles, uncompressed, PackBits, LZW, DEFLATE or Zstandard,
+/// with any predictor.
 pub(crate) fn heights(path: &Path, bytes: &[u8]) -> Result<Raster> {
     let header = |e: TiffError| Error::file(path, "header", open::complaint(e), "a whole TIFF");
     let mut tiff = Decoder::new(Cursor::new(bytes)).map_err(header)?;
@@ -53,6 +53,7 @@ pub(crate) fn heights(path: &Path, bytes: &[u8]) -> Result<Raster> {
         single,
         cell: geo.cell,
         unit_m: geo.unit_m,
+        scale: geo.scale,
         nodata: geo.nodata,
         georeference: geo.georeference,
         ..Raster::bare(rows, cols, values)
@@ -66,6 +67,8 @@ fn ratio(method: u16) -> u64 {
         8 | 32946 => open::DEFLATE_RATIO,
         // PackBits: a run of 128 in two bytes. LZW: 12-bit codes for strings below 4096 bytes.
         32773 => 64,
+        // Zstandard: a block of 128 KiB of one byte in 4 bytes (RFC 8878, §3.1.1.2).
+        50000 => (128 << 10) / 4,
         _ => 4096 * 8 / 12,
     }
 }
