@@ -354,6 +354,13 @@ fn gdal_compressions_and_scales_are_read() {
     }
     assert_hill(&gdal("scaled"), |stored| 1000.0 + 0.5 * stored);
     assert_eq!(gdal("zstd").cell_m(), [10.0, 20.0]);
+    // Its vertical reference, EPSG:6360, is in US survey feet: heights round to f32.
+    let field = gdal("utm_point_feet");
+    for (i, found) in field.heights_m().iter().enumerate() {
+        let expected = hill(i as i32 / 7, i as i32 % 7) * 1200.0 / 3937.0;
+        let height = field.base_m() + f64::from(*found);
+        assert!((height - expected).abs() < 1e-5, "{i}: {height} for {expected}");
+    }
 }
 
 /// At northing y the latitude is atan(sinh(y / a)), and a metre of the grid is cos(latitude) metres on a sphere; the

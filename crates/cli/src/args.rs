@@ -144,6 +144,8 @@ impl Cli {
 pub enum Command {
     /// Render a height field, from straight above or from a camera
     Render(RenderArgs),
+    /// Describe a height field: size, position, heights, memory of common jobs
+    Info(InfoArgs),
     /// Write the horizon of every texel: f32 [azimuths, rows, cols], elevation in radians
     Horizon(HorizonArgs),
     /// Print the passes, their reasons, traffic and memory; runs nothing
@@ -215,6 +217,16 @@ pub struct RenderArgs {
         allow_negative_numbers = true
     )]
     pub exposure: Option<f32>,
+    #[command(flatten)]
+    pub global: GlobalArgs,
+}
+
+#[derive(Args)]
+pub struct InfoArgs {
+    #[command(flatten)]
+    pub input: Input,
+    #[command(flatten)]
+    pub surface: FieldArgs,
     #[command(flatten)]
     pub global: GlobalArgs,
 }

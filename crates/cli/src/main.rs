@@ -80,6 +80,7 @@ fn main() -> ExitCode {
     end_cleanly_on_signals();
     let done = match &command {
         args::Command::Render(args) => render::run(args),
+        args::Command::Info(args) => plan::info::run(args),
         args::Command::Horizon(args) => horizon::run(args),
         args::Command::Plan(args) => plan::run(args),
         args::Command::Bench(args) => bench::run(args),

@@ -1,5 +1,7 @@
 //! `plan` and `devices`: what would run, and on which device.
 
+pub mod info;
+
 use ridgelight::Result;
 use ridgelight::gpu;
 use ridgelight::plan::{self, Limits, Plan, View};

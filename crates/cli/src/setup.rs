@@ -65,6 +65,15 @@ pub fn georeferenced(
     surface: &FieldArgs,
     global: &GlobalArgs,
 ) -> Result<(HeightField, Option<Georeference>)> {
+    let files::FieldFile { field, georeference, notes } = read(path, surface, global)?;
+    for note in notes.iter().filter(|_| !global.quiet) {
+        crate::say!("Note: {}.", flags_in(note));
+    }
+    Ok((field, georeference))
+}
+
+/// A field and its notes, unsaid.
+pub fn read(path: &Path, surface: &FieldArgs, global: &GlobalArgs) -> Result<files::FieldFile> {
     if !surface.z_scale.is_finite() || surface.z_scale == 0.0 {
         let expected = "a finite number other than 0";
         return Err(Error::setting("--z-scale", surface.z_scale.to_string(), expected));
@@ -72,7 +81,7 @@ pub fn georeferenced(
     let options =
         HeightOptions { cell_m: surface.cell, z_scale: surface.z_scale, nodata: surface.nodata };
     check_size(path, global)?;
-    files::read_georeferenced(path, &options)
+    files::read_field(path, &options)
 }
 
 /// The light of a scene without lights.

@@ -53,6 +53,8 @@ pub(crate) struct Raster {
     pub voids: Option<Vec<bool>>,
     /// Where the grid lies, if the file states it.
     pub georeference: Option<Georeference>,
+    /// Whether the values are whole numbers of 8 bits.
+    pub is_8_bit: bool,
 }
 
 impl Raster {
@@ -69,7 +71,40 @@ impl Raster {
             nodata: None,
             voids: None,
             georeference: None,
+            is_8_bit: false,
         }
+    }
+}
+
+impl Raster {
+    /// What was assumed or converted.
+    fn notes(&self, options: &HeightOptions) -> Vec<String> {
+        let mut notes = Vec::new();
+        match self.cell {
+            _ if options.cell_m.is_some() => {}
+            Cell::Unknown => {
+                notes.push("the file has no cell size: `cell_m` 1 is assumed".to_owned());
+            }
+            Cell::Metres(_) => {}
+            Cell::Degrees { cell, latitude } => {
+                let [east, north] = metres_a_degree(latitude);
+                notes.push(format!(
+                    "cells of {:.1} x {:.1} m, from degrees or Mercator metres at latitude {latitude:.2}",
+                    cell[0] * east,
+                    cell[1] * north
+                ));
+            }
+        }
+        if self.unit_m != 1.0 {
+            notes.push(format!("heights are in units of {} m and become metres", self.unit_m));
+        }
+        if self.is_8_bit {
+            notes.push(
+                "heights are whole numbers of 8 bits, as of a picture: slopes have steps"
+                    .to_owned(),
+            );
+        }
+        notes
     }
 }
 
@@ -102,16 +137,23 @@ pub fn read_heights(path: &Path, options: &HeightOptions) -> Result<HeightField>
     parse_heights(path, &open::read(path)?, options)
 }
 
-/// [`read_heights`], with the position of the field where the file states it: GeoTIFF, `.hgt` with
-/// its corner in its name, `.asc`.
+/// A height field and what its file states or lacks.
+#[derive(Clone, Debug)]
+pub struct FieldFile {
+    /// The heights.
+    pub field: HeightField,
+    /// The position: GeoTIFF, `.hgt` with its corner in its name, `.asc`.
+    pub georeference: Option<Georeference>,
+    /// What was assumed or converted, a sentence each.
+    pub notes: Vec<String>,
+}
+
+/// [`read_heights`], with the position and what was assumed.
 ///
 /// # Errors
 /// As [`read_heights`].
-pub fn read_georeferenced(
-    path: &Path,
-    options: &HeightOptions,
-) -> Result<(HeightField, Option<Georeference>)> {
-    parse_georeferenced(path, &open::read(path)?, options)
+pub fn read_field(path: &Path, options: &HeightOptions) -> Result<FieldFile> {
+    parse_field(path, &open::read(path)?, options)
 }
 
 /// [`read_heights`] from bytes in memory. `name` sets the format and appears in messages.
@@ -119,14 +161,10 @@ pub fn read_georeferenced(
 /// # Errors
 /// As [`read_heights`], except file access.
 pub fn parse_heights(name: &Path, bytes: &[u8], options: &HeightOptions) -> Result<HeightField> {
-    Ok(parse_georeferenced(name, bytes, options)?.0)
+    Ok(parse_field(name, bytes, options)?.field)
 }
 
-fn parse_georeferenced(
-    name: &Path,
-    bytes: &[u8],
-    options: &HeightOptions,
-) -> Result<(HeightField, Option<Georeference>)> {
+fn parse_field(name: &Path, bytes: &[u8], options: &HeightOptions) -> Result<FieldFile> {
     check(options)?;
     const ACCEPTED: [Format; 7] = [
         Format::Png,
@@ -152,7 +190,39 @@ fn parse_georeferenced(
         Format::Npy | Format::Hdr => npy::heights(name, bytes),
     }?;
     let georeference = raster.georeference.take();
-    Ok((finish(name, raster, options)?, georeference))
+    let mut notes = raster.notes(options);
+    let field = finish(name, raster, options)?;
+    notes.extend(about(&field));
+    Ok(FieldFile { field, georeference, notes })
+}
+
+/// The Earth's mean radius, metres.
+const EARTH_M: f64 = 6_371_000.0;
+/// Fields as wide as this get a note on the curvature: it drops 7.8 m over them.
+const WIDE_M: f64 = 10_000.0;
+
+/// What a reader of results should know about a field: its voids and its width.
+fn about(field: &HeightField) -> Vec<String> {
+    let mut notes = Vec::new();
+    if let Some(voids) = field.voids() {
+        let share = voids.iter().filter(|v| **v).count() as f64 / voids.len() as f64;
+        let half = if share >= 0.5 { "; half of the field or more is empty" } else { "" };
+        notes.push(format!(
+            "{:.3} % of the grid points are voids; their heights are filled from neighbours, their results left out{half}",
+            100.0 * share
+        ));
+    }
+    let [cell_x, cell_y] = field.cell_m();
+    let [width, height] = [cell_x * (field.cols() - 1) as f64, cell_y * (field.rows() - 1) as f64];
+    let widest = width.max(height);
+    if widest > WIDE_M {
+        let drop = widest * widest / (2.0 * EARTH_M);
+        notes.push(format!(
+            "the Earth's curvature drops {drop:.0} m over the {:.0} km of this field; it is not modelled",
+            widest / 1000.0
+        ));
+    }
+    notes
 }
 
 fn check(options: &HeightOptions) -> Result<()> {

@@ -34,7 +34,7 @@ pub use exr::{Channels, Layer, read_metadata, write_exr, write_exr_aside};
 pub use georeference::{GeoKeys, Georeference};
 pub use geotiff::{Band, GeoTiffWriter, write_geotiff};
 pub use heights::size::height_size;
-pub use heights::{HeightOptions, parse_heights, read_georeferenced, read_heights};
+pub use heights::{FieldFile, HeightOptions, parse_heights, read_field, read_heights};
 pub use ktx2::{Ktx2Writer, TexelFormat};
 pub use npy::{NpyWriter, write_npy_f32, write_npy_heights};
 pub use planes::{Planes, parse_planes, read_planes};

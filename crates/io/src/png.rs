@@ -85,7 +85,7 @@ pub(crate) fn heights(path: &Path, bytes: &[u8]) -> Result<Raster> {
     } else {
         (png.values.into_iter().map(f64::from).collect(), None)
     };
-    Ok(Raster { voids, ..Raster::bare(png.rows, png.cols, values) })
+    Ok(Raster { voids, is_8_bit: png.depth == 8, ..Raster::bare(png.rows, png.cols, values) })
 }
 
 /// A picture in linear light.

@@ -91,7 +91,7 @@ fn range(field: &HeightField) -> [f64; 2] {
 }
 
 /// Slope at a grid point by central differences, one-sided at the edge.
-fn slope_deg(field: &HeightField, i: usize) -> f64 {
+pub fn slope_deg(field: &HeightField, i: usize) -> f64 {
     let (rows, cols) = (field.rows(), field.cols());
     let (row, col) = (i / cols, i % cols);
     let at = |row: usize, col: usize| f64::from(field.heights_m()[row * cols + col]);

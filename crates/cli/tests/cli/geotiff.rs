@@ -27,7 +27,8 @@ fn gpu_maps_lie_where_the_input_lies() {
         done(&folder, &format!("render {input}.tif -o o.tif --layers sky-view --azimuths 8"));
         let of = |name: &str| {
             let options = ridgelight_io::HeightOptions::default();
-            ridgelight_io::read_georeferenced(&folder.path(name), &options).unwrap()
+            let read = ridgelight_io::read_field(&folder.path(name), &options).unwrap();
+            (read.field, read.georeference)
         };
         let (field, at) = of(&format!("{input}.tif"));
         let at = at.unwrap();

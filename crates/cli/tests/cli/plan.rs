@@ -148,3 +148,51 @@ fn a_reader_that_goes_away_is_no_panic() {
         assert_ne!(output.status.code(), Some(101), "{args:?}");
     }
 }
+
+/// Level ground with a void at its first grid point, in degrees at the equator: a cell of 0.01 degrees is 1.113 km wide.
+#[test]
+fn info_states_what_a_file_holds() {
+    let folder = Folder::new();
+    let rows: Vec<String> = (0..4)
+        .map(|row| {
+            (0..6).map(|col| if row + col == 0 { "-9" } else { "7" }.to_owned() + " ").collect()
+        })
+        .collect();
+    let head = "ncols 6\nnrows 4\nxllcorner 10\nyllcorner -0.02\ncellsize 0.01\nNODATA_value -9\n";
+    folder.write("level.asc", (head.to_owned() + &rows.join("\n")).as_bytes());
+    let run = folder.run_without_driver(&["info", "level.asc", "--json", "info.json"]);
+    assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
+    for said in [
+        "level.asc: 6 x 4 grid points",
+        "extent     10 to 10.06 east, -0.02 to 0.02 north",
+        "heights    7.000 to 7.000 m",
+        "voids      4.167 %",
+        "at latitude 0.00.",
+        "Note: 4.167 % of the grid points are voids",
+        "Start with: ridgelight render level.asc -o picture.png",
+    ] {
+        assert!(run.out.contains(said), "{said}: {}", run.out);
+    }
+    let text = std::fs::read_to_string(folder.path("info.json")).unwrap();
+    let facts: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let number = |value: &serde_json::Value| value.as_f64().unwrap();
+    assert!((number(&facts["cell_m"][0]) - 1113.2).abs() < 0.1, "{}", facts["cell_m"]);
+    assert_eq!((number(&facts["void_share"]), number(&facts["steep_share"])), (1.0 / 24.0, 0.0));
+    assert!(number(&facts["device_bytes"]["render"]) > 0.0);
+
+    // A pyramid of pixels: all slopes are 2 m a metre; the heights of an 8-bit picture are marked.
+    let steep: Vec<u8> = (0..25).map(|i| 10 * (i % 5)).collect();
+    image::GrayImage::from_raw(5, 5, steep).unwrap().save(folder.path("steep.png")).unwrap();
+    let run = folder.run_without_driver(&["info", "steep.png", "--cell", "5"]);
+    assert!(run.out.contains("100.000 % beyond 45 degrees"), "{}", run.out);
+    assert!(run.out.contains("whole numbers of 8 bits"), "{}", run.out);
+    let run = folder.run_without_driver(&["info", "steep.png"]);
+    assert!(
+        run.out.contains("Note: the file has no cell size: --cell 1 is assumed."),
+        "{}",
+        run.out
+    );
+    // Four cells of 16.7 km: (66.8 km)² / (2 · 6371 km) = 350 m.
+    let run = folder.run_without_driver(&["info", "steep.png", "--cell", "16700"]);
+    assert!(run.out.contains("drops 350 m over the 67 km"), "{}", run.out);
+}

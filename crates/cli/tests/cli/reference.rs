@@ -111,7 +111,7 @@ fn gpu_reference_stops_at_an_error() {
 fn gpu_unsampled_light_counts_as_error() {
     let folder = Folder::new();
     write_field(&folder, 5, |_, _| 7.0);
-    let args = "reference field.npy --sky 1 -o out.exr --until-error 0.005 --spp";
+    let args = "reference field.npy --cell 1 --sky 1 -o out.exr --until-error 0.005 --spp";
     let of = |spp: &str| folder.run_str(&format!("{args} {spp}"));
     let error = || -> f64 {
         attributes(&folder.path("out.exr"))["relative_standard_error"].parse().unwrap()

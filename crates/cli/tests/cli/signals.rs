@@ -54,8 +54,7 @@ fn gpu_an_interrupted_command_leaves_no_file() {
     folder.write("out.npy", b"what was here before");
     let before = folder.contents();
     for signal in ["INT", "TERM"] {
-        let args =
-            "horizon field.npy -o out.npy --distances far.npy --azimuths 1024 --method brute-force";
+        let args = "horizon field.npy --cell 1 -o out.npy --distances far.npy --azimuths 1024 --method brute-force";
         let child = started(&folder, args);
         // Both files are begun, so that the comparison below can fail.
         let began = wait_until(|| folder.contents().len() == before.len() + 2);
@@ -76,7 +75,7 @@ fn gpu_an_interrupted_bake_leaves_nothing() {
     let words = "--what horizon --azimuths 1024 --method sweep --format png,ktx2";
     for signal in ["INT", "TERM"] {
         let before = folder.contents();
-        let child = started(&folder, &format!("bake field.npy -o out {words}"));
+        let child = started(&folder, &format!("bake field.npy --cell 1 -o out {words}"));
         // The folder, the texture and more than one picture.
         let began = wait_until(|| folder.contents().len() >= before.len() + 4);
         assert!(began, "no file was begun");
@@ -99,8 +98,7 @@ fn gpu_an_interrupted_bake_leaves_nothing() {
 fn gpu_an_interrupted_reference_writes_what_it_has() {
     let folder = Folder::new();
     write_field(&folder, 16, |r, c| ((7 * r + 3 * c) % 11) as f32);
-    let args =
-        "reference field.npy --sky 1 -o out.exr --spp 1000000000 --bounces 64 --json out.json";
+    let args = "reference field.npy --cell 1 --sky 1 -o out.exr --spp 1000000000 --bounces 64 --json out.json";
     let child = started(&folder, args);
     // The handler is installed before the device opens.
     let maps = format!("/proc/{}/maps", child.id());

@@ -140,7 +140,8 @@ fn a_position_is_read_back() {
     let mut writer = GeoTiffWriter::create(&path, [2, 3], bands(1), Some(at)).unwrap();
     writer.write(0, &[1.0; 6]).unwrap();
     writer.finish(&[]).unwrap();
-    let (field, at) = crate::read_georeferenced(&path, &crate::HeightOptions::default()).unwrap();
+    let crate::FieldFile { field, georeference: at, .. } =
+        crate::read_field(&path, &crate::HeightOptions::default()).unwrap();
     let at = at.unwrap();
     assert_eq!(field.cell_m(), [30.0, 20.0]);
     assert_eq!((at.corner, at.cell), ([499_985.0, 5_100_010.0], [30.0, 20.0]));

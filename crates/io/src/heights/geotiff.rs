@@ -22,6 +22,7 @@ const RASTER_TYPE: u16 = 1025;
 const ANGULAR_UNIT: u16 = 2054;
 const LINEAR_UNIT: u16 = 3076;
 const LINEAR_UNIT_SIZE: u16 = 3077;
+const VERTICAL_CRS: u16 = 4096;
 const VERTICAL_UNIT: u16 = 4099;
 const PROJECTED_CRS: u16 = 3072;
 
@@ -51,7 +52,8 @@ pub(crate) fn read(path: &Path, tiff: &mut Tiff, rows: usize, cols: usize) -> Re
     let nodata = nodata(path, tiff)?;
     let scale = scale(path, tiff)?;
     let keys = Keys::read(path, tiff)?;
-    let unit_m = keys.length(path, VERTICAL_UNIT)?.unwrap_or(1.0);
+    let of_crs = keys.short(VERTICAL_CRS).and_then(vertical_unit);
+    let unit_m = keys.length(path, VERTICAL_UNIT)?.or(of_crs).unwrap_or(1.0);
     let Some(grid) = grid(path, tiff)? else {
         return Ok(Geo { cell: Cell::Unknown, unit_m, scale, nodata, georeference: None });
     };
@@ -107,6 +109,17 @@ pub(crate) fn read(path: &Path, tiff: &mut Tiff, rows: usize, cols: usize) -> Re
         .origin
         .map(|origin| Georeference::at_origin(origin, grid.cell, keys.copied(path, tiff)));
     Ok(Geo { cell, unit_m, scale, nodata, georeference })
+}
+
+/// Metres in the unit of a vertical coordinate reference system of the EPSG registry: those in feet.
+fn vertical_unit(crs: u16) -> Option<f64> {
+    match crs {
+        // NAVD88 and NGVD29 heights in US survey feet.
+        6360 | 5702 => Some(1200.0 / 3937.0),
+        // NAVD88 height in feet.
+        8228 => Some(0.3048),
+        _ => None,
+    }
 }
 
 fn wrong(path: &Path, tag: u16, found: impl Into<String>, expected: &str) -> Error {

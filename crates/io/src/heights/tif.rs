@@ -55,6 +55,7 @@ pub(crate) fn heights(path: &Path, bytes: &[u8]) -> Result<Raster> {
         unit_m: geo.unit_m,
         scale: geo.scale,
         nodata: geo.nodata,
+        is_8_bit: bits == 8,
         georeference: geo.georeference,
         ..Raster::bare(rows, cols, values)
     })

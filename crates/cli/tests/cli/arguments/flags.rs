@@ -526,6 +526,7 @@ fn short_help_fits_one_screen() {
         "bench",
         "compare",
         "devices",
+        "info",
         "trade",
         "reference",
         "bake",

@@ -1,0 +1,144 @@
+//! `info`: what a file of heights holds, and what common jobs on it need.
+
+use ridgelight::plan::{self, Limits, Picture};
+use ridgelight::scene::{HeightField, Lights, Quality, Scene, Surface};
+use ridgelight::{Error, Result};
+use ridgelight_io as files;
+use ridgelight_io::{FieldFile, Georeference};
+use serde_json::{Value, json};
+
+use crate::args::InfoArgs;
+use crate::setup::{self, Outcome};
+
+/// Slopes beyond this are counted.
+const STEEP_DEG: f64 = 45.0;
+/// The codes of a projected and of a geographic coordinate reference system (OGC 19-008r4).
+const CRS_KEYS: [u16; 2] = [3072, 2048];
+
+pub fn run(args: &InfoArgs) -> Result<Outcome> {
+    if let Some(json) = &args.global.json {
+        setup::check_output("--json", json, &["json"])?;
+        setup::check_distinct(&[("--json", Some(json))], &[&args.input.path])?;
+    }
+    let FieldFile { field, georeference, notes } =
+        setup::read(&args.input.path, &args.surface, &args.global)?;
+    let facts = facts(&field, georeference.as_ref(), &notes)?;
+    if let Some(json) = &args.global.json {
+        files::write_json(json, &facts)?;
+    }
+    if !args.global.quiet {
+        say(args, &facts);
+    }
+    Ok(Outcome::Done)
+}
+
+fn facts(field: &HeightField, at: Option<&Georeference>, notes: &[String]) -> Result<Value> {
+    let (rows, cols) = (field.rows(), field.cols());
+    let [cell_x, cell_y] = field.cell_m();
+    let is_void = |i: usize| field.voids().is_some_and(|v| v[i]);
+    let heights = field.heights_m().iter().enumerate().filter(|(i, _)| !is_void(*i));
+    let [lowest, highest] =
+        heights.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], (_, h)| {
+            let height = field.base_m() + f64::from(*h);
+            [low.min(height), high.max(height)]
+        });
+    let slopes = (0..rows * cols).filter(|i| !is_void(*i));
+    let [count, steep] = slopes.fold([0_u64; 2], |[count, steep], i| {
+        let is_steep = setup::tint::slope_deg(field, i) > STEEP_DEG;
+        [count + 1, steep + u64::from(is_steep)]
+    });
+    let voids = (rows * cols) as u64 - count;
+    let memory = jobs(field)?.map(|(name, bytes)| (name.to_owned(), Value::from(bytes)));
+    let extent = at.map(|at| {
+        let [west, north] = at.corner;
+        [west, north - rows as f64 * at.cell[1], west + cols as f64 * at.cell[0], north]
+    });
+    Ok(json!({
+        "rows": rows,
+        "cols": cols,
+        "crs": at.and_then(crs),
+        "cell_m": [cell_x, cell_y],
+        "size_m": [cell_x * cols as f64, cell_y * rows as f64],
+        "extent": extent,
+        "heights_m": [lowest, highest],
+        "void_share": voids as f64 / (rows * cols) as f64,
+        "steep_share": steep as f64 / count.max(1) as f64,
+        "device_bytes": serde_json::Map::from_iter(memory),
+        "notes": notes.iter().map(|note| setup::flags_in(note)).collect::<Vec<_>>(),
+    }))
+}
+
+/// The EPSG code, or the first text of the keys.
+fn crs(at: &Georeference) -> Option<String> {
+    let code = |key: u16| {
+        let entry = at.keys.entries.iter().find(|e| e[0] == key && e[1] == 0)?;
+        (1..32767).contains(&entry[3]).then(|| format!("EPSG:{}", entry[3]))
+    };
+    let named = || {
+        let name = at.keys.ascii.split('|').next().unwrap_or_default().trim();
+        (!name.is_empty()).then(|| name.to_owned())
+    };
+    CRS_KEYS.into_iter().find_map(code).or_else(named)
+}
+
+/// Device memory of common jobs, as the planner counts it for a device without limits.
+fn jobs(field: &HeightField) -> Result<[(&'static str, u64); 3]> {
+    let scene = |lights| Scene { field: field.clone(), surface: Surface::default(), lights };
+    let limits = Limits::boundless(true, 1 << 50);
+    let bytes = |scene: &Scene, quality: &Quality, sky_view: bool| {
+        let wanted = Picture { sky_view, still: true, ..Picture::default() };
+        Ok::<u64, Error>(plan::picture(scene, quality, &limits, wanted)?.bytes())
+    };
+    let sky = scene(Lights { sky: Some([1.0; 3]), ..Lights::default() });
+    let mut daylight = Lights::default();
+    let sun = setup::sky::default_sun(None);
+    crate::lights::light("sun").add(&mut daylight, &sun).expect("words of a sun");
+    daylight.environment = Some(setup::sky::clear(&daylight.suns[0])?);
+    let mut bounced = Quality::default();
+    bounced.bounces.count = 1;
+    Ok([
+        ("render", bytes(&scene(daylight), &Quality::default(), false)?),
+        ("sky_view", bytes(&sky, &Quality::default(), true)?),
+        ("render_bounces_1", bytes(&sky, &bounced, false)?),
+    ])
+}
+
+fn say(args: &InfoArgs, facts: &Value) {
+    let number = |value: &Value| value.as_f64().unwrap_or(f64::NAN);
+    let pair = |name: &str| [number(&facts[name][0]), number(&facts[name][1])];
+    let path = args.input.path.display();
+    let [rows, cols] = ["rows", "cols"].map(|name| facts[name].as_u64().unwrap_or(0));
+    crate::say!("{path}: {cols} x {rows} grid points");
+    let line = |name: &str, text: String| crate::say!("  {name:<10} {text}");
+    line("CRS", facts["crs"].as_str().unwrap_or("not stated").to_owned());
+    let [x, y] = pair("cell_m");
+    line("cell", format!("{x:.6} x {y:.6} m"));
+    let [width, height] = pair("size_m");
+    line("size", format!("{:.3} x {:.3} km", width / 1e3, height / 1e3));
+    if let Some(extent) = facts["extent"].as_array() {
+        let [west, south, east, north] = [0, 1, 2, 3].map(|i| number(&extent[i]));
+        line("extent", format!("{west} to {east} east, {south} to {north} north"));
+    }
+    let [lowest, highest] = pair("heights_m");
+    line("heights", format!("{lowest:.3} to {highest:.3} m"));
+    line("voids", format!("{:.3} %", 100.0 * number(&facts["void_share"])));
+    line("steep", format!("{:.3} % beyond 45 degrees", 100.0 * number(&facts["steep_share"])));
+    let memory = |name: &str| number(&facts["device_bytes"][name]) / f64::from(1 << 20);
+    line(
+        "memory",
+        format!(
+            "render {:.0} MiB, sky view {:.0} MiB, render --bounces 1 {:.0} MiB",
+            memory("render"),
+            memory("sky_view"),
+            memory("render_bounces_1")
+        ),
+    );
+    for note in facts["notes"].as_array().into_iter().flatten() {
+        crate::say!("Note: {}.", note.as_str().unwrap_or_default());
+    }
+    let cell = match args.surface.cell {
+        Some([x, y]) => format!(" --cell {x},{y}"),
+        None => String::new(),
+    };
+    crate::say!("Start with: ridgelight render {path}{cell} -o picture.png");
+}
