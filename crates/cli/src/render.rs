@@ -135,6 +135,10 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
         &args.surface.field,
         Some((&args.lights, &args.surface, &scene)),
     ));
+    if tint != Tint::None && args.surface.tint.is_none() {
+        metadata.retain(|(name, _)| name != "albedo");
+        metadata.push(("tint".to_owned(), tint.name()));
+    }
     if let Some((goal, chosen)) = &chosen {
         metadata.extend(auto::metadata((*goal, args.auto.seed.unwrap_or(0)), chosen, &scene));
     }
@@ -195,9 +199,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
                 gpu.report().name
             );
         }
-        if let Some(light) = setup::default_light(&args.lights, &scene) {
-            crate::say!("Light: {light} (default).");
-        }
+        setup::say_light(args.global.quiet, &args.lights, &scene);
         if let Some(exposure) = shown {
             let tint = tint.name();
             let by = if args.exposure.is_none() { "automatic" } else { "given" };

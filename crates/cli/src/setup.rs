@@ -8,7 +8,7 @@ pub mod tint;
 use ridgelight::gpu::{self, Headless, HeadlessOptions, Pixels, Timing};
 use ridgelight::plan::{Limits, Picture, Plan};
 use ridgelight::scene::{
-    Albedo, Border, HeightField, Lights, Lines, Quality, Scene, Specular, Surface, setting,
+    Albedo, Border, HeightField, Lights, Lines, Quality, Scene, Specular, Sun, Surface, setting,
 };
 use ridgelight::{Error, Result};
 use ridgelight_io as files;
@@ -138,6 +138,10 @@ pub fn tinted(scene: &mut Scene, surface: &SurfaceArgs) -> Tint {
     surface.tint.unwrap_or(Tint::None)
 }
 
+/// Radiance of the sky of a scene whose only lights are suns that have set, over their irradiance: no light at all is
+/// refused.
+const NIGHT: f32 = 1e-6;
+
 fn lights_of(args: &LightArgs, unlit: Unlit) -> Result<Lights> {
     let mut lights = args.others.0.clone();
     let sky = match unlit {
@@ -156,8 +160,20 @@ fn lights_of(args: &LightArgs, unlit: Unlit) -> Result<Lights> {
             let expected = "a --sun, whose sky it is, and no --env";
             let sun = lights.suns.first().filter(|_| args.env.is_none());
             let sun = sun.ok_or_else(|| Error::setting("--sky", "clear", expected))?;
-            lights.environment = Some(sky::clear(sun)?);
+            if sun.elevation_rad >= 0.0 {
+                lights.environment = Some(sky::clear(sun)?);
+            }
         }
+    }
+    // A sun that has set is night, not an error.
+    let has_set = |sun: &Sun| (-std::f64::consts::FRAC_PI_2..0.0).contains(&sun.elevation_rad);
+    let night = lights.suns.iter().find(|sun| has_set(sun)).map(|sun| sun.irradiance);
+    lights.suns.retain(|sun| !has_set(sun));
+    let has_sky = lights.sky.is_some() || lights.environment.is_some() || args.env.is_some();
+    let has_others = !lights.suns.is_empty() || !lights.keys.is_empty();
+    let is_dark = !has_sky && !has_others && lights.near().next().is_none();
+    if let Some(irradiance) = night.filter(|_| is_dark) {
+        lights.sky = Some(irradiance.map(|c| NIGHT * c));
     }
     if let Some(path) = &args.env {
         // The compass turns clockwise, the library counter-clockwise.
@@ -166,10 +182,24 @@ fn lights_of(args: &LightArgs, unlit: Unlit) -> Result<Lights> {
     Ok(lights)
 }
 
-/// The default light as flags, where the command line gives none.
-pub fn default_light(args: &LightArgs, scene: &Scene) -> Option<String> {
-    let sun = light("sun").words(&scene.lights).into_iter().next();
-    sun.filter(|_| args.is_empty()).map(|words| format!("--sun {words} --sky clear"))
+/// Prints the light as flags, where the command line gives none, and suns that have set.
+pub fn say_light(quiet: bool, args: &LightArgs, scene: &Scene) {
+    if quiet {
+        return;
+    }
+    let set = args.others.0.suns.iter().filter(|sun| sun.elevation_rad < 0.0).count();
+    if set > 0 {
+        let (suns, are) = if set == 1 { ("sun", "is") } else { ("suns", "are") };
+        crate::say!(
+            "Note: {set} {suns} {are} below the horizontal: night. A scene without other lights gets a faint sky."
+        );
+    }
+    if args.is_empty() {
+        match light("sun").words(&scene.lights).first() {
+            Some(sun) => crate::say!("Light: --sun {sun} --sky clear (default)."),
+            None => crate::say!("Light: --sky 1 (default)."),
+        }
+    }
 }
 
 pub fn border(surface: &FieldArgs) -> Border {

@@ -128,6 +128,7 @@ pub fn run(args: &TradeArgs) -> Result<Outcome> {
     };
     write(args, &report)?;
     if !args.global.quiet {
+        setup::say_light(false, &args.lights, &scene);
         report.print();
         crate::say!("{}", args.output.join(FILES[0]).display());
     }

@@ -95,3 +95,44 @@ fn gpu_exposure_is_of_the_99th_percentile() {
         assert!(codes.iter().all(|code| (*code - 231.0).abs() <= 1.0), "{sky}: {codes:?}");
     }
 }
+
+/// A sun below the horizontal is night: no error, and no light but a sky of a millionth of its irradiance. The most exit
+/// radiance under a sky is its radiance.
+#[test]
+fn gpu_a_sun_that_has_set_is_night() {
+    let folder = Folder::new();
+    let input = write(&folder, "dunes.npy", &terrain::dunes(32).unwrap());
+    for sky in ["", " --sky clear"] {
+        let run = succeeded(&folder, &format!("render {input} --sun 10,-5{sky} -o night.exr"));
+        assert!(run.out.contains("Note: 1 sun is below the horizontal"), "{}", run.out);
+        let night = ridgelight_io::read_planes(&folder.path("night.exr")).unwrap();
+        let all = night.planes.concat();
+        assert!(all.iter().all(|v| *v > 0.0 && *v < 1.01e-6), "{sky}");
+    }
+    succeeded(&folder, &format!("render {input} --sun 10,-5 --sky 0.5 -o dusk.exr --quiet"));
+    succeeded(&folder, &format!("render {input} --sky 0.5 -o sky.exr --quiet"));
+    let [dusk, sky] = ["dusk.exr", "sky.exr"]
+        .map(|name| ridgelight_io::read_planes(&folder.path(name)).unwrap().planes);
+    assert!(dusk == sky);
+    let run = folder.run_str(&format!("render {input} --sun 10,-95 -o wrong.exr"));
+    assert_eq!(run.status, Some(2), "{}", run.err);
+}
+
+/// A .png states the tint that it has.
+#[test]
+fn gpu_the_tint_is_in_the_metadata() {
+    let folder = Folder::new();
+    let input = write(&folder, "dunes.npy", &terrain::dunes(16).unwrap());
+    for (flags, tint, albedo) in [
+        ("", Some("land"), None),
+        (" --tint none", None, Some("1")),
+        (" --albedo 0.5", None, Some("0.5")),
+    ] {
+        succeeded(&folder, &format!("render {input}{flags} -o out.png --quiet"));
+        let file = std::io::BufReader::new(std::fs::File::open(folder.path("out.png")).unwrap());
+        let png = png::Decoder::new(file).read_info().unwrap();
+        let texts = &png.info().uncompressed_latin1_text;
+        let text = |name: &str| texts.iter().find(|t| t.keyword == name).map(|t| t.text.as_str());
+        assert_eq!((text("tint"), text("albedo")), (tint, albedo), "{flags}");
+    }
+}

@@ -126,7 +126,7 @@ fn lights() {
             ("--sun 1,2,3,4,5", 2, &["--sun", "expected AZ,EL"]),
             ("--sun 1,2,3,4,5,6,7", 2, &["--sun", "expected AZ,EL"]),
             ("--sun x,y", 2, &["--sun", "no number"]),
-            ("--sun 0,-1", 2, &["--sun 1: elevation: found -1°", "0° to 90°"]),
+            ("--sun 0,-91", 2, &["--sun 1: elevation: found -91°", "0° to 90°"]),
             ("--sun 0,91", 2, &["--sun 1: elevation: found 91°"]),
             ("--sun 0,nan", 2, &["--sun 1: elevation: found NaN"]),
             ("--sun nan,45", 2, &["--sun 1: azimuth: found NaN"]),
