@@ -48,7 +48,7 @@ pub fn help() -> String {
     }
     text += "\n\
 Each .ktx2 has one mip level. It is an array where a map has several layers, such as one per azimuth or four coefficients. \
-Its first row is north. --method auto is brute-force here: exact in every azimuth. --method sweep is faster and approximate.\n\n\
+Its first row is north. --method auto is sweep here; brute-force is exact in every azimuth, and its time grows with the cube of the side.\n\n\
 With --specular, the kinds brdf, brdf-factors, brdf-harmonics and btf reflect each light at the triangles. Indirect light \
 towards each view reuses the paths of the light except for their last step. --plan prints the number of rays; --bounces 0 \
 needs none. scatter then views the ground from straight above. light-field reflects the sky along --directions; with \
@@ -108,7 +108,8 @@ pub fn wanted(args: &BakeArgs) -> Result<Vec<Wanted>> {
 pub fn quality(args: &BakeArgs) -> Result<Quality> {
     let mut quality = args.quality.quality()?;
     if quality.method == Method::Auto {
-        quality.method = Method::BruteForce;
+        let is_exact = quality.lines == Lines::Exact;
+        quality.method = if is_exact { Method::BruteForce } else { Method::Sweep };
     }
     if quality.lines == Lines::Exact && quality.method != Method::BruteForce {
         return Err(Error::setting(

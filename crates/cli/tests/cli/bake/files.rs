@@ -214,7 +214,7 @@ fn gpu_every_file_is_there_and_listed() {
     assert_eq!(net.len(), 14, "{net:?}");
     assert!(net.iter().flat_map(|t| t.as_array().unwrap()).all(|i| i.as_u64().unwrap() < 9));
     assert!(manifests[0]["directions"].is_null() && manifests[2]["horizons"].is_null());
-    assert_eq!(manifests[0]["settings"]["method"], "brute-force");
+    assert_eq!(manifests[0]["settings"]["method"], "sweep");
     // The hash is the field's, whatever is baked, and stands in the files.
     let hash = manifests[0]["field"]["hash"].as_str().unwrap().to_owned();
     assert_eq!(manifests[1]["field"]["hash"], hash.as_str());
