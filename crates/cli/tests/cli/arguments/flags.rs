@@ -509,8 +509,7 @@ fn help_gives_units_and_defaults() {
     }
     // Every kind is listed with the ways to pack it.
     let help = folder.run_without_driver(&["bake", "--help"]).out;
-    for said in ["visible-sky:", "unorm16-sin", "snorm16-xyz", "--method auto is brute-force here"]
-    {
+    for said in ["visible-sky:", "unorm16-sin", "snorm16-xyz", "--method auto is sweep here"] {
         assert!(help.contains(said), "{said} in\n{help}");
     }
 }
