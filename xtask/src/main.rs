@@ -15,7 +15,7 @@ const USAGE: &str = "usage: cargo xtask COMMAND
   words              coined words that tools/words.txt forbids; fails where there is one
   size               lines of Rust and GLSL, files a folder, README, dependencies of an embedder
   surface [--check]  public items of the core, as kept in tools/surface.txt
-  gallery            docs/gallery.md and its pictures, by the release program";
+  gallery            docs/gallery/index.md and its pictures, by the release program";
 
 fn main() -> ExitCode {
     let root =
@@ -70,5 +70,5 @@ fn gallery(root: &Path) -> Result<String, String> {
         "gallery",
         program,
     ])?;
-    Ok("wrote docs/gallery.md\n".to_owned())
+    Ok("wrote docs/gallery/index.md\n".to_owned())
 }

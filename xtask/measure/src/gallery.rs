@@ -1,4 +1,4 @@
-//! docs/gallery.md: twelve pictures, each of one command line. `cargo xtask gallery`.
+//! docs/gallery/index.md: twelve pictures, each of one command line. `cargo xtask gallery`.
 
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
@@ -15,7 +15,7 @@ use crate::common::Outcome;
 use crate::common::args::Args;
 
 const FOLDER: &str = "docs/gallery";
-const PAGE: &str = "docs/gallery.md";
+const PAGE: &str = "docs/gallery/index.md";
 const QUALITY: u8 = 88;
 const MOUNTAINS: &str = "assets/mt_washington_256.png --cell 66,92.6";
 
@@ -212,7 +212,7 @@ pub fn run(mut args: Args) -> Outcome {
         let words = words.replace("from 230 up 25", "\"from 230 up 25\"");
         let Entry { name, title, about, .. } = entry;
         page += &format!(
-            "\n## {title}\n\n![{title}](gallery/{name}.jpg)\n\n{about} {ms:.0} ms.\n\n\
+            "\n## {title}\n\n![{title}]({name}.jpg)\n\n{about} {ms:.0} ms.\n\n\
              ```sh\nridgelight {words} -o {name}.{ending}\n```\n"
         );
         println!("{name}: {ms:.0} ms");
