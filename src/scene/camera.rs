@@ -79,29 +79,50 @@ impl Camera {
         camera
     }
 
-    /// Moves the eye to where four planes through it hold the corners as closely as they can; `tangents` are those of half
-    /// the fields of view. The target stays at the depth of the field's middle.
+    /// Moves the eye as near as the corners allow, and centres their image; `tangents` are those of half the fields of view.
+    /// The target stays at the depth of the field's middle.
     ///
     /// A corner p lies within both planes of an image axis, of tangent t, where ±(p - eye)·axis ≤ t (eye - p)·back. The two
-    /// sums of largest corners give the axis' middle and the least depth of the eye; the larger depth serves both axes.
+    /// sums of largest corners give the least depth of the eye for the axis; the larger depth serves both. The other axis
+    /// then has room: moving the eye along it moves all corners' images the other way, and bisection centres them.
     fn enclose(&mut self, corners: &[DVec3; 8], tangents: [f64; 2]) {
         let [right, up, back] = self.axes();
         let middle = DVec3::from(self.target_m);
-        let [across, high] = [(right, tangents[0]), (up, tangents[1])].map(|(axis, tangent)| {
-            let [after, before] = [1.0, -1.0].map(|sign| {
+        let axes = [(right, tangents[0]), (up, tangents[1])];
+        // Largest reach after and before the middle along an axis.
+        let reaches = axes.map(|(axis, tangent)| {
+            [1.0, -1.0].map(|sign| {
                 let reach = corners.map(|corner| {
                     let from = corner - middle;
                     sign * from.dot(axis) + tangent * from.dot(back)
                 });
                 reach.into_iter().fold(f64::NEG_INFINITY, f64::max)
-            });
-            [(after - before) / 2.0, (after + before) / (2.0 * tangent)]
+            })
         });
-        let target = middle + across[0] * right + high[0] * up;
+        let depths = [0, 1].map(|k| (reaches[k][0] + reaches[k][1]) / (2.0 * tangents[k]));
+        let depth = depths[0].max(depths[1]);
+        let [across, high] = [0, 1].map(|k| {
+            let (axis, tangent) = axes[k];
+            // The eye's range, of no width for the axis that decides.
+            let (mut low, mut end) =
+                (reaches[k][0] - tangent * depth, tangent * depth - reaches[k][1]);
+            for _ in 0..f64::MANTISSA_DIGITS {
+                let eye = 0.5 * (low + end);
+                let places = corners.map(|corner| {
+                    let from = corner - middle;
+                    (from.dot(axis) - eye) / (depth - from.dot(back))
+                });
+                let sum = places.iter().fold(f64::INFINITY, |m, v| m.min(*v))
+                    + places.iter().fold(f64::NEG_INFINITY, |m, v| m.max(*v));
+                if sum > 0.0 { low = eye } else { end = eye }
+            }
+            0.5 * (low + end)
+        });
+        let target = middle + across * right + high * up;
         // Angles that are no numbers are refused by `check`, under their own names.
         if target.is_finite() {
             self.target_m = target.to_array();
-            self.distance_m = across[1].max(high[1]);
+            self.distance_m = depth;
         }
     }
 
@@ -204,7 +225,7 @@ mod tests {
     }
 
     /// Tangents of the corners' directions, over those of the image's edges: corners stand at both edges of one axis, none
-    /// beyond any.
+    /// beyond any, and opposite sides are equally far from the middle.
     #[test]
     fn oblique_views_fill_the_image() {
         let heights: Vec<f64> = (0..35).map(|i| f64::from(i % 5)).collect();
@@ -229,6 +250,7 @@ mod tests {
             let is_within = edges.as_flattened().iter().all(|v| v.abs() < 1.0 + 1e-12);
             let is_filled = |[low, high]: [f64; 2]| (low + 1.0).abs() + (high - 1.0).abs() < 1e-12;
             assert!(is_within && (is_filled(edges[0]) || is_filled(edges[1])), "{edges:?}");
+            assert!(edges.iter().all(|[low, high]| (low + high).abs() < 1e-12), "{edges:?}");
         }
     }
 }

@@ -237,7 +237,7 @@ pub struct HorizonArgs {
     pub input: Input,
     /// Output: .tif, .npy or .exr; a layer per azimuth
     ///
-    /// A GeoTIFF with a band, f32 [azimuths, rows, cols], or a channel per azimuth. Elevations are in radians. Azimuths are in compass order: 0 is north, then clockwise. Names are azimuth_000.0 and so on.
+    /// A band of a GeoTIFF, a layer of an array [azimuths, rows, cols] or a channel of an EXR, in f32. Elevations are in radians. Azimuths are in compass order: 0 is north, then clockwise. Names are azimuth_000.0 and so on.
     #[arg(short, long, value_name = "OUT.{tif,npy,exr}", help_heading = "Output")]
     pub output: PathBuf,
     /// Also write the distance to each horizon's occluder, metres, 0 where there is none

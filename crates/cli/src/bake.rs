@@ -49,7 +49,8 @@ pub fn run(args: &BakeArgs) -> Result<Outcome> {
     let quality = request::quality(args)?;
     let (field, georeference) =
         setup::georeferenced(&args.input.path, &args.surface.field, &args.global)?;
-    let scene = setup::scene(field, &args.surface, &args.lights, setup::Unlit::Sky)?;
+    let scene =
+        setup::scene(field, &args.surface, &args.lights, setup::Unlit::Sky, args.global.quiet)?;
     let around = request::directions(args)?;
     let mut job = Job {
         scene: &scene,

@@ -46,7 +46,8 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
         Some(path) => setup::field(path, &args.surface.field, &args.global)?,
         None => fractal(*args.sizes.first().unwrap_or(&args.size), 1)?,
     };
-    let scene = setup::scene(field, &args.surface, &args.lights, setup::Unlit::Sky)?;
+    let scene =
+        setup::scene(field, &args.surface, &args.lights, setup::Unlit::Sky, args.global.quiet)?;
     check_specular(&scene, &quality, args)?;
     let (mut gpu, limits) = setup::device(&args.global)?;
     let plan = plan::picture(&scene, &quality, &limits, Picture::default())?;

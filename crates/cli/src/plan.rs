@@ -24,6 +24,7 @@ pub fn run(args: &PlanArgs) -> Result<Outcome> {
         &args.surface,
         &args.lights,
         setup::Unlit::of(&quality, args.camera.compass_deg()),
+        args.global.quiet,
     )?;
     let camera_view = camera::requested(&args.camera, &scene)?;
     let (name, limits) = limits(&args.global)?;

@@ -33,7 +33,13 @@ pub fn run(args: &ReferenceArgs) -> Result<Outcome> {
     check(args)?;
     let (field, georeference) =
         setup::georeferenced(&args.input.path, &args.surface.field, &args.global)?;
-    let scene = setup::scene(field, &args.surface, &args.lights, setup::Unlit::Daylight(None))?;
+    let scene = setup::scene(
+        field,
+        &args.surface,
+        &args.lights,
+        setup::Unlit::Daylight(None),
+        args.global.quiet,
+    )?;
     let plan = |limits: &Limits| plan::reference(&scene, args.bounces, args.seed, limits);
     setup::check_plan(&args.global, plan)?;
     // From here on a signal ends the tracing only.
@@ -64,7 +70,7 @@ pub fn run(args: &ReferenceArgs) -> Result<Outcome> {
             traced.times.iter().map(|t| t.ns).sum::<f64>() / 1e6,
             gpu.report().name
         );
-        setup::say_light(false, &args.lights, &scene);
+        setup::say_light(&args.lights, &scene);
         if let Some(wanted) = missed {
             let least = 2 * REFERENCE_BATCH;
             let whole = match paths == args.spp {

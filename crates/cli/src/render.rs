@@ -60,7 +60,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
     let (field, georeference) =
         setup::georeferenced(&args.input.path, &args.surface.field, &args.global)?;
     let unlit = setup::Unlit::of(&quality, args.camera.compass_deg());
-    let mut scene = setup::scene(field, &args.surface, &args.lights, unlit)?;
+    let mut scene = setup::scene(field, &args.surface, &args.lights, unlit, args.global.quiet)?;
     let tint = match is_png {
         true => setup::tinted(&mut scene, &args.surface),
         false => args.surface.tint.unwrap_or(Tint::None),
@@ -199,7 +199,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
                 gpu.report().name
             );
         }
-        setup::say_light(args.global.quiet, &args.lights, &scene);
+        setup::say_light(&args.lights, &scene);
         if let Some(exposure) = shown {
             let tint = tint.name();
             let by = if args.exposure.is_none() { "automatic" } else { "given" };
@@ -287,11 +287,11 @@ fn write_world(args: &RenderArgs, georeference: Option<&Georeference>) -> Result
         Some(georeference) => files::write_text(&path, &georeference.world_file()),
         None => {
             if path.exists() && !args.global.quiet {
-                crate::say!(
-                    "Note: {} is not of this picture, because {} states no position.",
+                setup::note(&format!(
+                    "{}: not of this picture, because {} states no position",
                     path.display(),
                     args.input.path.display()
-                );
+                ));
             }
             Ok(())
         }

@@ -13,6 +13,7 @@ use ridgelight::scene::{
 use ridgelight::{Error, Result};
 use ridgelight_io as files;
 use ridgelight_io::{Georeference, HeightOptions};
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use crate::args::{
@@ -66,10 +67,16 @@ pub fn georeferenced(
     global: &GlobalArgs,
 ) -> Result<(HeightField, Option<Georeference>)> {
     let files::FieldFile { field, georeference, notes } = read(path, surface, global)?;
-    for note in notes.iter().filter(|_| !global.quiet) {
-        crate::say!("Note: {}.", flags_in(note));
+    if !global.quiet {
+        notes.iter().for_each(|text| note(&format!("{}: {}", path.display(), flags_in(text))));
     }
     Ok((field, georeference))
+}
+
+/// A note on standard error: standard output is for results, which programs read.
+pub fn note(text: &str) {
+    // A closed standard error is no reason to end.
+    let _ = writeln!(std::io::stderr(), "note: {text}");
 }
 
 /// A field and its notes, unsaid.
@@ -105,7 +112,15 @@ pub fn scene(
     surface: &SurfaceArgs,
     lights: &LightArgs,
     unlit: Unlit,
+    quiet: bool,
 ) -> Result<Scene> {
+    let set = lights.others.0.suns.iter().filter(|sun| sun.elevation_rad < 0.0).count();
+    if set > 0 && !quiet {
+        let suns = if set == 1 { "sun is" } else { "suns are" };
+        note(&format!(
+            "night: {set} {suns} below the horizontal; a scene without other lights gets a faint sky"
+        ));
+    }
     let tint = surface.tint.and_then(|tint| tint::albedo(&field, tint));
     let albedo = match (tint, albedo_colour(surface.albedo())) {
         (Some(tint), _) => tint,
@@ -182,18 +197,8 @@ fn lights_of(args: &LightArgs, unlit: Unlit) -> Result<Lights> {
     Ok(lights)
 }
 
-/// Prints the light as flags, where the command line gives none, and suns that have set.
-pub fn say_light(quiet: bool, args: &LightArgs, scene: &Scene) {
-    if quiet {
-        return;
-    }
-    let set = args.others.0.suns.iter().filter(|sun| sun.elevation_rad < 0.0).count();
-    if set > 0 {
-        let (suns, are) = if set == 1 { ("sun", "is") } else { ("suns", "are") };
-        crate::say!(
-            "Note: {set} {suns} {are} below the horizontal: night. A scene without other lights gets a faint sky."
-        );
-    }
+/// Prints the light as flags, where the command line gives none.
+pub fn say_light(args: &LightArgs, scene: &Scene) {
     if args.is_empty() {
         match light("sun").words(&scene.lights).first() {
             Some(sun) => crate::say!("Light: --sun {sun} --sky clear (default)."),

@@ -48,7 +48,13 @@ pub fn run(args: &TradeArgs) -> Result<Outcome> {
     outputs.push(("--json", args.global.json.as_deref()));
     setup::check_distinct(&outputs, &inputs)?;
     let field = setup::field(&args.input.path, &args.surface.field, &args.global)?;
-    let scene = setup::scene(field, &args.surface, &args.lights, setup::Unlit::Daylight(None))?;
+    let scene = setup::scene(
+        field,
+        &args.surface,
+        &args.lights,
+        setup::Unlit::Daylight(None),
+        args.global.quiet,
+    )?;
     if args.reference.is_none() && scene.surface.specular.is_some() {
         let expected = "--reference: only a path-traced reference has specular light";
         return Err(Error::setting("--specular with trade", "Phong specular", expected));
@@ -128,7 +134,7 @@ pub fn run(args: &TradeArgs) -> Result<Outcome> {
     };
     write(args, &report)?;
     if !args.global.quiet {
-        setup::say_light(false, &args.lights, &scene);
+        setup::say_light(&args.lights, &scene);
         report.print();
         crate::say!("{}", args.output.join(FILES[0]).display());
     }

@@ -30,7 +30,7 @@ pub fn run(args: &ViewArgs) -> Result<Outcome> {
     let quality = args.quality.quality()?;
     let field = setup::field(&args.input.path, &args.surface.field, &args.global)?;
     let unlit = setup::Unlit::of(&quality, None);
-    let mut scene = setup::scene(field, &args.surface, &args.lights, unlit)?;
+    let mut scene = setup::scene(field, &args.surface, &args.lights, unlit, args.global.quiet)?;
     setup::tinted(&mut scene, &args.surface);
     let still = setup::wanted(&[]);
     let picture = |limits: &Limits| plan::picture(&scene, &quality, limits, still);

@@ -83,24 +83,24 @@ fn crs(at: &Georeference) -> Option<String> {
 
 /// Device memory of common jobs, as the planner counts it for a device without limits.
 fn jobs(field: &HeightField) -> Result<[(&'static str, u64); 3]> {
-    let scene = |lights| Scene { field: field.clone(), surface: Surface::default(), lights };
+    let sky = Lights { sky: Some([1.0; 3]), ..Lights::default() };
+    let mut scene = Scene { field: field.clone(), surface: Surface::default(), lights: sky };
     let limits = Limits::boundless(true, 1 << 50);
     let bytes = |scene: &Scene, quality: &Quality, sky_view: bool| {
         let wanted = Picture { sky_view, still: true, ..Picture::default() };
         Ok::<u64, Error>(plan::picture(scene, quality, &limits, wanted)?.bytes())
     };
-    let sky = scene(Lights { sky: Some([1.0; 3]), ..Lights::default() });
     let mut daylight = Lights::default();
     let sun = setup::sky::default_sun(None);
     crate::lights::light("sun").add(&mut daylight, &sun).expect("words of a sun");
     daylight.environment = Some(setup::sky::clear(&daylight.suns[0])?);
     let mut bounced = Quality::default();
     bounced.bounces.count = 1;
-    Ok([
-        ("render", bytes(&scene(daylight), &Quality::default(), false)?),
-        ("sky_view", bytes(&sky, &Quality::default(), true)?),
-        ("render_bounces_1", bytes(&sky, &bounced, false)?),
-    ])
+    let sky_view = bytes(&scene, &Quality::default(), true)?;
+    let bounces = bytes(&scene, &bounced, false)?;
+    scene.lights = daylight;
+    let render = bytes(&scene, &Quality::default(), false)?;
+    Ok([("render", render), ("sky_view", sky_view), ("render_bounces_1", bounces)])
 }
 
 fn say(args: &InfoArgs, facts: &Value) {
@@ -134,7 +134,7 @@ fn say(args: &InfoArgs, facts: &Value) {
         ),
     );
     for note in facts["notes"].as_array().into_iter().flatten() {
-        crate::say!("Note: {}.", note.as_str().unwrap_or_default());
+        crate::say!("  {:<10} {}", "note", note.as_str().unwrap_or_default());
     }
     let cell = match args.surface.cell {
         Some([x, y]) => format!(" --cell {x},{y}"),

@@ -66,8 +66,8 @@ fn gives_none(name: &str) -> bool {
 }
 
 fn is_scene(name: &str) -> bool {
-    const NAMES: [&str; 8] =
-        ["cell_m", "base_m", "z_scale", "border", "albedo", "sky", "env", "env_rotate_deg"];
+    const NAMES: [&str; 9] =
+        ["cell_m", "base_m", "z_scale", "border", "albedo", "tint", "sky", "env", "env_rotate_deg"];
     NAMES.contains(&name) || is_aimed(name) || gives_none(name)
 }
 

@@ -55,7 +55,7 @@ fn gpu_a_picture_has_a_world_file() {
     // A picture without a position leaves the file alone and warns.
     let run = folder.run_str("render a.npy -o o.png --azimuths 8");
     assert_eq!(run.status, Some(0), "{}", run.err);
-    assert!(run.out.contains("o.pgw is not of this picture"), "{}", run.out);
+    assert!(run.notes.contains("note: o.pgw: not of this picture"), "{}", run.notes);
     assert_eq!(std::fs::read_to_string(folder.path("o.pgw")).unwrap(), world);
     done(&folder, "render a.npy -o p.png --azimuths 8");
     assert!(!folder.path("p.pgw").exists());

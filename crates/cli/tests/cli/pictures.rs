@@ -104,7 +104,7 @@ fn gpu_a_sun_that_has_set_is_night() {
     let input = write(&folder, "dunes.npy", &terrain::dunes(32).unwrap());
     for sky in ["", " --sky clear"] {
         let run = succeeded(&folder, &format!("render {input} --sun 10,-5{sky} -o night.exr"));
-        assert!(run.out.contains("Note: 1 sun is below the horizontal"), "{}", run.out);
+        assert!(run.notes.starts_with("note: night: 1 sun is below"), "{}", run.notes);
         let night = ridgelight_io::read_planes(&folder.path("night.exr")).unwrap();
         let all = night.planes.concat();
         assert!(all.iter().all(|v| *v > 0.0 && *v < 1.01e-6), "{sky}");

@@ -167,8 +167,8 @@ fn info_states_what_a_file_holds() {
         "extent     10 to 10.06 east, -0.02 to 0.02 north",
         "heights    7.000 to 7.000 m",
         "voids      4.167 %",
-        "at latitude 0.00.",
-        "Note: 4.167 % of the grid points are voids",
+        "at latitude 0.00",
+        "note       4.167 % of the grid points are voids",
         "Start with: ridgelight render level.asc -o picture.png",
     ] {
         assert!(run.out.contains(said), "{said}: {}", run.out);
@@ -188,11 +188,28 @@ fn info_states_what_a_file_holds() {
     assert!(run.out.contains("whole numbers of 8 bits"), "{}", run.out);
     let run = folder.run_without_driver(&["info", "steep.png"]);
     assert!(
-        run.out.contains("Note: the file has no cell size: --cell 1 is assumed."),
+        run.out.contains("note       the file has no cell size: --cell 1 is assumed"),
         "{}",
         run.out
     );
     // Four cells of 16.7 km: (66.8 km)² / (2 · 6371 km) = 350 m.
     let run = folder.run_without_driver(&["info", "steep.png", "--cell", "16700"]);
     assert!(run.out.contains("drops 350 m over the 67 km"), "{}", run.out);
+}
+
+/// Notes go to standard error, so that a program can read standard output.
+#[test]
+fn notes_leave_standard_output_to_results() {
+    let folder = Folder::new();
+    crate::needs_vulkan::write_field(&folder, 4, |_, _| 1.0);
+    for sun in ["", " --sun 10,-5"] {
+        let args = format!("plan field.npy --format json --sky 1{sun}");
+        let run = folder.run_without_driver(&args.split(' ').collect::<Vec<_>>());
+        serde_json::from_str::<serde_json::Value>(&run.out).unwrap();
+        assert!(run.notes.contains("note: field.npy: the file has no cell size"), "{}", run.notes);
+        assert_eq!(run.notes.contains("note: night: "), !sun.is_empty(), "{}", run.notes);
+        let run =
+            folder.run_without_driver(&format!("{args} --quiet").split(' ').collect::<Vec<_>>());
+        assert_eq!(run.notes, "");
+    }
 }

@@ -276,6 +276,7 @@ fn gpu_trade_against_a_reference() {
     let stated: f64 = stated.unwrap().parse().expect(why);
     assert!((stated / 1e-6 - 1.0).abs() < 0.01, "{why}");
     // The ground truth of another scene is refused, and nothing is written.
+    succeeded(&folder, "render field.npy --sky 1 --tint land -o tinted.exr --quiet");
     let trace =
         "reference field.npy -o traced.exr --spp 1 --sky 0.5 --sun 90,20 --bounces 2 --quiet";
     succeeded(&folder, trace);
@@ -295,6 +296,8 @@ fn gpu_trade_against_a_reference() {
             "ground_truth.exr --border open",
             "ground_truth.exr: header: border: found plane, expected open",
         ),
+        ("ground_truth.exr --sky 1 --tint slope", "ground_truth.exr: header: "),
+        ("tinted.exr --sky 1 --tint slope", "tinted.exr: header: tint: found land, expected slope"),
         (
             "ground_truth.exr --sky 1 --albedo 0.5",
             "ground_truth.exr: header: albedo: found 1, expected 0.5",
