@@ -328,7 +328,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/map_draw.comp`.
-    MAP_DRAW: "map_draw", push MapDrawPush, words 112605 1576,
+    MAP_DRAW: "map_draw", push MapDrawPush, words 112605 3843,
     0 reads "radiance" SampledImage { uint: false, layered: false },
     1 reads "tone_steps" SampledImage { uint: false, layered: false },
     2 reads "voids" SampledImage { uint: false, layered: false },
@@ -341,7 +341,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/reference/path_trace.comp`.
-    PATH_TRACE: "path_trace", push PathTracePush, words 114181 22928,
+    PATH_TRACE: "path_trace", push PathTracePush, words 116448 22928,
     0 reads "cells" SampledImage { uint: false, layered: false },
     1 reads "maxima" SampledImage { uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -378,7 +378,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/picture_tone.frag`.
-    PICTURE_TONE_FRAG: "picture_tone_frag", push PictureTonePush, words 137109 565,
+    PICTURE_TONE_FRAG: "picture_tone_frag", push PictureTonePush, words 139376 565,
     0 reads "radiance" SampledImage { uint: false, layered: false },
     PictureToneFrag {
         0 encodes: bool = true,
@@ -387,13 +387,41 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/picture_tone.vert`.
-    PICTURE_TONE_VERT: "picture_tone_vert", push (), words 137674 266,
+    PICTURE_TONE_VERT: "picture_tone_vert", push (), words 139941 266,
     PictureToneVert;
 }
 
 shader! {
+    /// `shaders_glsl/view/preview_gather.comp`.
+    PREVIEW_GATHER: "preview_gather", push PreviewGatherPush, words 140207 1649,
+    0 reads "heights" SampledImage { uint: false, layered: false },
+    1 reads "coarse_radiance" SampledImage { uint: false, layered: false },
+    2 reads "coarse_sun" SampledImage { uint: false, layered: false },
+    3 reads "coarse_albedo" SampledImage { uint: false, layered: false },
+    4 writes "gathered" StorageImage { format: "Rgba32f", uint: false, layered: false },
+    PreviewGather {
+        0 grey: bool = false,
+        1 has_sun: bool = false,
+        2 albedo_is_map: bool = false,
+    }
+}
+
+shader! {
+    /// `shaders_glsl/view/preview_shade.comp`.
+    PREVIEW_SHADE: "preview_shade", push PreviewShadePush, words 141856 1714,
+    0 reads "heights" SampledImage { uint: false, layered: false },
+    1 reads "albedo" SampledImage { uint: false, layered: false },
+    2 reads "gathered" StorageImage { format: "Rgba32f", uint: false, layered: false },
+    3 writes "radiance" StorageImage { format: "Rgba32f", uint: false, layered: false },
+    PreviewShade {
+        0 has_sun: bool = false,
+        1 albedo_is_map: bool = false,
+    }
+}
+
+shader! {
     /// `shaders_glsl/horizon/pyramid_march.comp`.
-    PYRAMID_MARCH: "pyramid_march", push PyramidMarchPush, words 137940 9025,
+    PYRAMID_MARCH: "pyramid_march", push PyramidMarchPush, words 143570 9025,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "slopes" StorageImage { format: "Unknown", uint: true, layered: true },
@@ -410,7 +438,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bake/scatter_gather.comp`.
-    SCATTER_GATHER: "scatter_gather", push ScatterGatherPush, words 146965 4664,
+    SCATTER_GATHER: "scatter_gather", push ScatterGatherPush, words 152595 4664,
     0 reads "ground" SampledImage { uint: false, layered: false },
     1 reads "direct" SampledImage { uint: false, layered: false },
     2 reads "visible_points" SampledImage { uint: true, layered: true },
@@ -437,7 +465,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/sh_shade.comp`.
-    SH_SHADE: "sh_shade", push ShShadePush, words 151629 12958,
+    SH_SHADE: "sh_shade", push ShShadePush, words 157259 12958,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "visibility" SampledImage { uint: false, layered: true },
     2 reads "light_matrix" SampledImage { uint: false, layered: false },
@@ -456,7 +484,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/sh_visibility.comp`.
-    SH_VISIBILITY: "sh_visibility", push ShadePush, words 164587 29808,
+    SH_VISIBILITY: "sh_visibility", push ShadePush, words 170217 29808,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rg32ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -481,7 +509,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/sh_wedges.comp`.
-    SH_WEDGES: "sh_wedges", push ShWedgesPush, words 194395 7777,
+    SH_WEDGES: "sh_wedges", push ShWedgesPush, words 200025 7777,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "horizon_angles" SampledImage { uint: false, layered: true },
     2 reads "constants" TexelBuffer,
@@ -498,7 +526,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/shade_expand.comp`.
-    SHADE_EXPAND: "shade_expand", push ShadeExpandPush, words 202172 2397,
+    SHADE_EXPAND: "shade_expand", push ShadeExpandPush, words 207802 2397,
     0 reads "shade_levels" SampledImage { uint: false, layered: false },
     1 reads "shade_table" SampledImage { uint: true, layered: false },
     2 writes "shade_stack" StorageImage { format: "Unknown", uint: false, layered: true },
@@ -509,7 +537,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/shade_reduce.comp`.
-    SHADE_REDUCE: "shade_reduce", push ReducePush, words 204569 2918,
+    SHADE_REDUCE: "shade_reduce", push ReducePush, words 210199 2918,
     0 reads "exit_radiance" SampledImage { uint: false, layered: false },
     1 writes "shade_levels" StorageImage { format: "Rgba32f", uint: false, layered: false },
     2 writes "shade_table" StorageImage { format: "Rgba32ui", uint: true, layered: false },
@@ -522,7 +550,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/sky_draw.frag`.
-    SKY_DRAW_FRAG: "sky_draw_frag", push SkyDrawPush, words 207487 1269,
+    SKY_DRAW_FRAG: "sky_draw_frag", push SkyDrawPush, words 213117 1269,
     0 reads "environment" SampledImage { uint: false, layered: false },
     SkyDrawFrag {
         0 has_environment: bool = false,
@@ -531,13 +559,13 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/sky_draw.vert`.
-    SKY_DRAW_VERT: "sky_draw_vert", push (), words 208756 289,
+    SKY_DRAW_VERT: "sky_draw_vert", push (), words 214386 289,
     SkyDrawVert;
 }
 
 shader! {
     /// `shaders_glsl/direct/sky_shade.comp`.
-    SKY_SHADE: "sky_shade", push ShadePush, words 209045 22806,
+    SKY_SHADE: "sky_shade", push ShadePush, words 214675 22806,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rg32ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -561,7 +589,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/specular_exit.comp`.
-    SPECULAR_EXIT: "specular_exit", push SpecularExitPush, words 231851 6438,
+    SPECULAR_EXIT: "specular_exit", push SpecularExitPush, words 237481 6438,
     0 reads "arriving" SampledImage { uint: false, layered: true },
     1 reads "ground" SampledImage { uint: false, layered: false },
     2 reads "exit_radiance" SampledImage { uint: false, layered: false },
@@ -584,7 +612,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/specular_gather.comp`.
-    SPECULAR_GATHER: "specular_gather", push GatherPush, words 238289 20112,
+    SPECULAR_GATHER: "specular_gather", push GatherPush, words 243919 20112,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "height_levels" SampledImage { uint: false, layered: false },
     2 reads "level_table" SampledImage { uint: true, layered: false },
@@ -612,7 +640,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/specular_visibility.comp`.
-    SPECULAR_VISIBILITY: "specular_visibility", push SpecularVisibilityPush, words 258401 1238,
+    SPECULAR_VISIBILITY: "specular_visibility", push SpecularVisibilityPush, words 264031 1238,
     0 reads "visibility" SampledImage { uint: false, layered: true },
     1 reads "light_matrix" SampledImage { uint: false, layered: false },
     2 writes "arriving" StorageImage { format: "Rgba32f", uint: false, layered: true },
@@ -624,7 +652,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/sphere_sh_shade.comp`.
-    SPHERE_SH_SHADE: "sphere_sh_shade", push SphereShShadePush, words 259639 27634,
+    SPHERE_SH_SHADE: "sphere_sh_shade", push SphereShShadePush, words 265269 27634,
     0 reads "cells" SampledImage { uint: false, layered: false },
     1 reads "maxima" SampledImage { uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -650,7 +678,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/sphere_shade.comp`.
-    SPHERE_SHADE: "sphere_shade", push SphereShadePush, words 287273 14335,
+    SPHERE_SHADE: "sphere_shade", push SphereShadePush, words 292903 14335,
     0 reads "cells" SampledImage { uint: false, layered: false },
     1 reads "maxima" SampledImage { uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -665,7 +693,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/sun_shade.comp`.
-    SUN_SHADE: "sun_shade", push ShadePush, words 301608 22088,
+    SUN_SHADE: "sun_shade", push ShadePush, words 307238 22088,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rg32ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -686,7 +714,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/sun_specular.comp`.
-    SUN_SPECULAR: "sun_specular", push SunSpecularPush, words 323696 7945,
+    SUN_SPECULAR: "sun_specular", push SunSpecularPush, words 329326 7945,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "sun_sum" SampledImage { uint: false, layered: false },
     2 writes "specular_sum" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -703,7 +731,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/surface_sweep.comp`.
-    SURFACE_SWEEP: "surface_sweep", push MarchPush, words 331641 6812,
+    SURFACE_SWEEP: "surface_sweep", push MarchPush, words 337271 6812,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "slopes" StorageImage { format: "Unknown", uint: true, layered: true },
@@ -717,7 +745,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/sweep_fuse.comp`.
-    SWEEP_FUSE: "sweep_fuse", push SweepFusePush, words 338453 18089,
+    SWEEP_FUSE: "sweep_fuse", push SweepFusePush, words 344083 18089,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rg32ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -737,7 +765,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/terrain_draw.frag`.
-    TERRAIN_DRAW_FRAG: "terrain_draw_frag", push TerrainDrawPush, words 356542 1129,
+    TERRAIN_DRAW_FRAG: "terrain_draw_frag", push TerrainDrawPush, words 362172 1129,
     1 reads "radiance" SampledImage { uint: false, layered: false },
     2 reads "voids" SampledImage { uint: false, layered: false },
     TerrainDrawFrag {
@@ -748,14 +776,14 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/terrain_draw.vert`.
-    TERRAIN_DRAW_VERT: "terrain_draw_vert", push TerrainDrawPush, words 357671 916,
+    TERRAIN_DRAW_VERT: "terrain_draw_vert", push TerrainDrawPush, words 363301 916,
     0 reads "heights" SampledImage { uint: false, layered: false },
     TerrainDrawVert;
 }
 
 shader! {
     /// `shaders_glsl/bounce/vector_reduce.comp`.
-    VECTOR_REDUCE: "vector_reduce", push ReducePush, words 358587 2964,
+    VECTOR_REDUCE: "vector_reduce", push ReducePush, words 364217 2964,
     0 reads "exit_vectors" SampledImage { uint: false, layered: true },
     1 reads "vector_source" SampledImage { uint: false, layered: true },
     2 writes "vector_levels" StorageImage { format: "Unknown", uint: false, layered: true },
@@ -768,7 +796,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bake/visible_points.comp`.
-    VISIBLE_POINTS: "visible_points", push VisiblePointsPush, words 361551 9687,
+    VISIBLE_POINTS: "visible_points", push VisiblePointsPush, words 367181 9687,
     0 reads "cells" SampledImage { uint: false, layered: false },
     1 reads "maxima" SampledImage { uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -811,6 +839,8 @@ pub static ALL: &[Shader] = &[
     LIGHT_RESOLVE,
     MAP_DRAW,
     PATH_TRACE,
+    PREVIEW_GATHER,
+    PREVIEW_SHADE,
     PYRAMID_MARCH,
     SCATTER_GATHER,
     SH_SHADE,
@@ -925,9 +955,10 @@ layouts! {
     push LightResolvePush 32 {
         0 cols: i32, 4 rows: i32, 8 clears: u32, 12 texel: i32, 16 colour: [f32; 4],
     }
-    push MapDrawPush 36 {
+    push MapDrawPush 44 {
         0 width: i32, 4 height: i32, 8 cols: i32, 12 rows: i32, 16 first_col: f32,
         20 first_row: f32, 24 grid_points_per_pixel: f32, 28 swaps: u32, 32 beyond: u32,
+        36 places: i32, 40 is_smooth: u32,
     }
     push MarchPush 16 {
         0 lanes: i32, 4 steps: i32, 8 warm_up: i32, 12 first_azimuth: u32,
@@ -940,6 +971,13 @@ layouts! {
     }
     push PictureTonePush 4 {
         0 exposure: f32,
+    }
+    push PreviewGatherPush 48 {
+        0 sun: [f32; 4], 16 most: [f32; 4], 32 cell_m: [f32; 2], 40 cols: i32, 44 rows: i32,
+    }
+    push PreviewShadePush 60 {
+        0 sun: [f32; 4], 16 most: [f32; 4], 32 cell_m: [f32; 2], 40 cols: i32, 44 rows: i32,
+        48 coarse_cols: i32, 52 coarse_rows: i32, 56 ratio: f32,
     }
     push PyramidMarchPush 32 {
         0 lanes: i32, 4 steps: i32, 8 warm_up: i32, 12 first_azimuth: u32, 16 azimuth_count: u32,
@@ -1030,4 +1068,4 @@ layouts! {
 }
 
 /// Words of all shaders together.
-const WORD_COUNT: usize = 371238;
+const WORD_COUNT: usize = 376868;

@@ -7,6 +7,7 @@
 //! | [`horizons()`] | horizon elevations of every texel along every azimuth |
 //! | [`reference()`] | the path-traced reference, slowly, with its standard error |
 //! | [`map()`] | the lit field from above, tone mapped |
+//! | [`preview()`] | the light of a coarse grid on the slopes of a fine one |
 //! | [`View::new`] | a camera view of the lit field; graphics passes of [`ViewRenderer`](crate::gpu::ViewRenderer) |
 //!
 //! Each takes [`Limits`], of a device ([`gpu::limits`](crate::gpu::limits)) or fixed ones:
@@ -42,6 +43,7 @@ mod finish;
 mod horizons;
 mod map;
 mod picture;
+mod preview;
 mod print;
 mod reference;
 pub(crate) mod scatter;
@@ -53,6 +55,7 @@ pub use facet_mask::facet_mask;
 pub use horizons::horizons;
 pub use map::map;
 pub use picture::{Picture, picture, picture_inputs};
+pub use preview::preview;
 #[doc(hidden)]
 pub use reference::choice::max_path_light;
 pub use reference::{

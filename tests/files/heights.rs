@@ -39,7 +39,12 @@ fn every_format_gives_the_same_heights() {
 
 #[test]
 fn options_overrule_the_file() {
-    let options = HeightOptions { cell_m: Some([2.0, 3.0]), z_scale: 0.5, nodata: Some(100.0) };
+    let options = HeightOptions {
+        cell_m: Some([2.0, 3.0]),
+        z_scale: 0.5,
+        nodata: Some(100.0),
+        ..HeightOptions::default()
+    };
     for (name, bytes) in height_files() {
         let field = parse_heights(Path::new(name), &bytes, &options).unwrap();
         assert_eq!(field.cell_m(), [2.0, 3.0], "{name}");
@@ -247,6 +252,15 @@ fn geotiff_places_and_units() {
     assert_eq!(own.unwrap(), [60.0, 40.0]);
     // Heights in feet.
     let vertical = [1, 1, 0, 2, 1024, 0, 1, 1, 4099, 0, 1, 9002];
+    // By the code of the projected system alone, New York Long Island in US survey feet; a unit of
+    // the file overrules it.
+    let feet = [1, 1, 0, 2, 1024, 0, 1, 1, 3072, 0, 1, 2263];
+    let metres = [1, 1, 0, 3, 1024, 0, 1, 1, 3072, 0, 1, 2263, 3076, 0, 1, 9001];
+    let [of_code, of_file] = [&feet[..], &metres].map(|keys| {
+        let cell = cell(&[scale(), tie(), (34735, Tag::Shorts(keys))]).unwrap();
+        cell[0] / 30.0
+    });
+    assert!((of_code - 1200.0 / 3937.0).abs() < 1e-12 && of_file == 1.0, "{of_code} {of_file}");
     let field = parse("a.tif", &with(&[scale(), tie(), (34735, Tag::Shorts(&vertical))])).unwrap();
     assert!((absolute(&field)[8] - 30.48).abs() < 1e-5);
     // Without keys, small numbers are degrees: the middle of 3 rows of 0.01° from 60.015° is 60°,
@@ -297,6 +311,29 @@ fn geotiff_places_and_units() {
 }
 
 /// Sizes come from the header alone; the files hold nothing else.
+/// A plane of a 3-D array is chosen, never assumed; formats with one band have a first and no second.
+#[test]
+fn a_plane_is_chosen_by_its_number() {
+    let values: Vec<u8> = (0..2 * 12).flat_map(|i| (i as f32).to_le_bytes()).collect();
+    let cube = npy("<f4", false, "(2, 3, 4)", &values);
+    let read = |name: &str, bytes: &[u8], band| {
+        parse_heights(Path::new(name), bytes, &HeightOptions { band, ..Default::default() })
+    };
+    for (band, first) in [(1, 0.0), (2, 12.0)] {
+        let field = read("a.npy", &cube, Some(band)).unwrap();
+        assert_eq!((field.rows(), field.cols(), absolute(&field)[0]), (3, 4, first));
+    }
+    let error = read("a.npy", &cube, Some(3)).unwrap_err().to_string();
+    assert!(error.contains("found 2 bands, expected a band 3"), "{error}");
+    let error = read("a.npy", &cube, None).unwrap_err().to_string();
+    assert!(error.contains("3 dimensions") && error.contains("`band`"), "{error}");
+    for (name, bytes) in height_files() {
+        assert!(read(name, &bytes, Some(1)).is_ok(), "{name}");
+        let error = read(name, &bytes, Some(2)).unwrap_err().to_string();
+        assert!(error.contains("a band 2"), "{name}: {error}");
+    }
+}
+
 #[test]
 fn sizes_are_known_from_headers() {
     let folder = tempfile::tempdir().unwrap();

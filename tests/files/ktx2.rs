@@ -92,6 +92,47 @@ fn another_reader_finds_what_was_written() {
     }
 }
 
+/// Blocks and mip levels: the reader describes each format alike, and finds each level's bytes, the smallest level first in the
+/// file (§3.9).
+#[test]
+fn blocks_and_levels_are_found() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.ktx2");
+    use ridgelight_io::Block::{Bc4, Bc5, Bc6h, Bc7};
+    for block in [Bc4, Bc5, Bc6h, Bc7] {
+        // 13 × 6, 6 × 3, 3 × 1 and 1 × 1 texels: 8, 2, 1 and 1 blocks.
+        let (size, layers, blocks) = ([13, 6], 3, [8, 2, 1, 1]);
+        let create = |levels: usize| {
+            let count = (Some(layers), levels);
+            Ktx2Writer::with_levels(&path, block.into(), size, count, &[])
+        };
+        assert!(create(0).is_err() && create(5).is_err());
+        let mut writer = create(4).unwrap();
+        let level = |n: usize, k: usize| vec![(16 * n + k) as u8; blocks[n] * block.bytes()];
+        for layer in 0..layers {
+            (0..4).for_each(|n| writer.write_level(n, &level(n, layer)).unwrap());
+        }
+        assert!(writer.write_level(3, &[0]).is_err() && writer.write_level(4, &[]).is_err());
+        writer.finish().unwrap();
+        let reader = Reader::new(std::fs::read(&path).unwrap()).unwrap();
+        let header = reader.header();
+        let vulkan = header.format.unwrap();
+        assert_eq!((vulkan.value(), header.level_count), (block.vulkan().0, 4));
+        let (mut expected, type_size) = Basic::from_format(vulkan).expect("a known format");
+        expected.color_primaries = None;
+        assert_eq!(header.type_size, type_size);
+        let [Block::Basic(found)] = reader.dfd_blocks() else { panic!("{block:?}: one block") };
+        assert_eq!(found.to_vec(), expected.to_vec(), "{block:?}: {found:?}");
+        let levels: Vec<_> = reader.levels().collect();
+        for (n, found) in levels.iter().enumerate() {
+            let expected: Vec<u8> = (0..layers).flat_map(|k| level(n, k)).collect();
+            assert!(found.data == expected, "{block:?}, level {n}");
+        }
+        let places: Vec<*const u8> = levels.iter().map(|level| level.data.as_ptr()).collect();
+        assert!(places.iter().rev().is_sorted(), "the smallest level first");
+    }
+}
+
 /// Places and order by the specification, which readers need not check: §3.4 and §3.8 (sections follow each other, at
 /// multiples of 4), §3.9.7 (a level at a multiple of both a texel and 4), §3.11 (keys by code point).
 #[test]

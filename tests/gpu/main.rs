@@ -89,6 +89,7 @@ mod view {
     mod in_flight;
     mod map;
     mod pictures;
+    mod preview;
 }
 
 use std::path::Path;

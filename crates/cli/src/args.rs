@@ -12,7 +12,7 @@ mod values;
 mod view;
 
 use std::ffi::OsString;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{
     Arg, ArgAction, ArgMatches, Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum,
@@ -383,8 +383,24 @@ pub struct DevicesArgs {
 #[derive(Args)]
 pub struct Input {
     /// Height field: PNG, EXR, TIFF or GeoTIFF, SRTM .hgt, ESRI .asc, NPY, NPZ
-    #[arg(value_name = "INPUT", help_heading = "Input")]
-    pub path: PathBuf,
+    ///
+    /// Also packed, as .gz or .zip. Several files become one field: each is placed by its position. They need the same
+    /// coordinate reference system and cells. Where they overlap, the first file counts.
+    #[arg(value_name = "INPUT", required = true, num_args = 1.., help_heading = "Input")]
+    pub path: Vec<PathBuf>,
+}
+
+impl Input {
+    /// The first file, which names windows and pictures.
+    pub fn first(&self) -> &Path {
+        self.path.first().map_or(Path::new(""), PathBuf::as_path)
+    }
+
+    /// All files, for messages and metadata.
+    pub fn names(&self) -> String {
+        let names = self.path.iter().map(|path| path.display().to_string());
+        names.collect::<Vec<_>>().join(", ")
+    }
 }
 
 #[derive(Args)]

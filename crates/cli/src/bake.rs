@@ -1,15 +1,17 @@
 //! `bake`: maps of a static field, for engines.
 
+mod estimate;
 mod folder;
 mod job;
 mod kinds;
 mod map;
 mod request;
+mod stages;
 
 use std::cell::OnceCell;
-use std::io::Write as _;
 use std::path::PathBuf;
 
+use glam::DVec3;
 use ridgelight::Result;
 use ridgelight::gpu::{Headless, Timing};
 use ridgelight::plan::{self, Limits, Plan};
@@ -21,14 +23,16 @@ use serde_json::{Value, json};
 use crate::args::BakeArgs;
 use crate::setup::{self, Outcome};
 use crate::{horizon, idle};
+use estimate::Estimate;
 pub use folder::check_new;
 use folder::{check_folder, check_memory, parent, remove_old, take_manifest};
-use job::{Job, first};
-pub use kinds::Kind;
-use kinds::Source;
+use job::{HORIZONS, Job, first};
+pub use kinds::{Kind, Normals};
+use kinds::{Map, SKY_VIEW, Source};
 pub use map::Format;
-use map::MapFiles;
+use map::{MapFiles, Wanted};
 pub use request::{help, kind_named, packing};
+use stages::{FILES, Stages};
 
 /// Describes the folder's contents. It is written last.
 const MANIFEST: &str = "manifest.json";
@@ -51,7 +55,7 @@ pub fn run(args: &BakeArgs) -> Result<Outcome> {
         setup::georeferenced(&args.input.path, &args.surface.field, &args.global)?;
     let scene =
         setup::scene(field, &args.surface, &args.lights, setup::Unlit::Sky, args.global.quiet)?;
-    let around = request::directions(args)?;
+    let around = request::directions(args, args.directions.unwrap_or(request::DIRECTIONS))?;
     let mut job = Job {
         scene: &scene,
         quality: &quality,
@@ -61,15 +65,13 @@ pub fn run(args: &BakeArgs) -> Result<Outcome> {
         around: &around,
         angles: request::angles(args)?,
         curvature: args.curvature,
+        normals: args.normals.unwrap_or_default(),
+        pairs: kinds::PAIRS,
         seed: args.seed.unwrap_or(0),
         table: OnceCell::new(),
         maps: Vec::new(),
     };
-    let maps = wanted.into_iter().map(|wanted| {
-        let map = (wanted.kind.map)(&job, &wanted)?;
-        Ok((wanted, map))
-    });
-    job.maps = maps.collect::<Result<_>>()?;
+    job.lay_out(wanted)?;
     request::check_uses(args)?;
     let files = job.files();
     let paths: Vec<PathBuf> = files.iter().map(|(name, _)| args.output.join(name)).collect();
@@ -99,6 +101,115 @@ pub fn run(args: &BakeArgs) -> Result<Outcome> {
     bake(args, (job, georeference), &mut gpu, &used)
 }
 
+/// A map's files, and its sums over horizons.
+type Open<'a> = (MapFiles<'a>, Option<HorizonSums>);
+
+/// Opens the files of all maps.
+fn open<'a>(
+    args: &BakeArgs,
+    job: &Job<'a>,
+    maps: Vec<(Wanted, Map)>,
+    georeference: Option<&files::Georeference>,
+) -> Result<Vec<Open<'a>>> {
+    let (field, hash) = (job.field(), job.hash());
+    let maps = maps.into_iter().map(|map| {
+        let sums = match map.0.kind.source {
+            Source::Sums(of) => Some(HorizonSums::new(of(job), job.grid_points())),
+            _ => None,
+        };
+        Ok((MapFiles::create(&args.output, map, field, &hash, georeference)?, sums))
+    });
+    maps.collect()
+}
+
+/// Computes all maps and gives their values to their files, except sums over horizons. Returns the
+/// times of passes, the first plan and the normals of texels, which the sums need.
+fn compute(
+    gpu: &mut Headless,
+    job: &Job,
+    all: &mut [Open],
+    stages: &Stages,
+) -> Result<(Vec<Timing>, Plan, Vec<DVec3>)> {
+    let Job { quality, limits, .. } = *job;
+    let (field, border) = (job.field(), job.border());
+    let (mut times, mut plan, mut all_normals) = (Vec::new(), None, Vec::new());
+    if all.iter().any(|(files, _)| files.kind().reads_horizons()) {
+        stages.of_kind("");
+        stages.begin(HORIZONS);
+        all_normals = normals(field, border);
+        let azimuths = plan::circle_rad(quality, field.cell_m())?;
+        let width_rad = std::f64::consts::TAU / azimuths.len() as f64;
+        let mut each = |k: u32, elevations: &[f32], _: &[f32]| {
+            stages.show(&format!("azimuth {} of {}", k + 1, azimuths.len()));
+            let ray = Ray { azimuth_rad: azimuths[k as usize], width_rad };
+            all.iter_mut().try_for_each(|(files, sums)| match (files.kind().source, sums) {
+                (Source::Horizons, _) => files.take(&[elevations]),
+                (_, Some(sums)) => sums.add(ray, elevations, &all_normals),
+                _ => Ok(()),
+            })
+        };
+        let found = horizon::for_each(gpu, field, border, quality, &limits, false, &mut each)?;
+        (times, plan) = (found.0, Some(found.1));
+    }
+    for (files, _) in all {
+        stages.of_kind(files.kind().name);
+        match files.kind().source {
+            Source::Horizons | Source::Sums(_) => {}
+            Source::SkyView => {
+                stages.begin("");
+                let own = kinds::sky_view_plan(job, &limits)?;
+                plan.get_or_insert_with(|| own.clone());
+                let layer = own.outputs().position(|(_, image)| image.name == SKY_VIEW);
+                let layer = layer.expect("a layer that was requested");
+                let texels = gpu.with_frame(own, &[field.heights_m()], |gpu, frame| {
+                    times.extend(gpu.draw(frame)?);
+                    Ok(gpu.pixels(frame, layer)?.values)
+                })?;
+                files.take(&[&texels])?;
+            }
+            Source::Directions(of) => {
+                stages.begin("");
+                let own = (of.plan)(job, &limits)?;
+                let count = own.outputs().count();
+                plan.get_or_insert_with(|| own.clone());
+                let outputs = gpu.with_frame(own, &[field.heights_m()], |gpu, frame| {
+                    times.extend(gpu.draw(frame)?);
+                    let outputs = (0..count).map(|output| Ok(gpu.pixels(frame, output)?.values));
+                    outputs.collect::<Result<Vec<_>>>()
+                })?;
+                (of.take)(job, &outputs, files)?;
+            }
+            Source::Light(of) => {
+                plan.get_or_insert(first((of.plans)(job, &limits)?));
+                (of.make)(gpu, job, files, stages)?;
+            }
+        }
+    }
+    times.extend(gpu.take_timings());
+    Ok((times, plan.expect("--what has a kind"), all_normals))
+}
+
+/// Finishes all files under temporary names.
+fn finish<'a>(
+    all: Vec<Open<'a>>,
+    normals: &[DVec3],
+    metadata: &[(String, String)],
+    stages: &Stages,
+) -> Result<Vec<MapFiles<'a>>> {
+    stages.of_kind("");
+    stages.begin(FILES);
+    let count = all.len();
+    let whole = all.into_iter().enumerate().map(|(i, (mut files, sums))| {
+        stages.show(&format!("map {} of {count}", i + 1));
+        if let Some(sums) = sums {
+            files.take_all(&sums.end(normals)?)?;
+        }
+        files.complete(metadata)?;
+        Ok(files)
+    });
+    whole.collect()
+}
+
 fn bake(
     args: &BakeArgs,
     (mut job, georeference): (Job<'_>, Option<files::Georeference>),
@@ -108,64 +219,21 @@ fn bake(
     let has_horizons = job.has(Kind::has_horizons);
     let traces_directions = job.has(|kind| !kind.has_horizons());
     let is_light = job.has(Kind::is_light);
+    let bar = crate::setup::terminal::progress(args.global.quiet, "estimating the time");
+    let is_shown = !args.global.quiet || args.global.json.is_some();
+    let estimate = if is_shown { Estimate::of(gpu, args, &job).ok() } else { None };
+    if let Some(estimate) = estimate.as_ref().filter(|_| !args.global.quiet) {
+        bar.suspend(|| setup::note(&estimate.text()));
+    }
+    let stages = Stages::new(bar.clone(), job.stages()?);
     let maps = std::mem::take(&mut job.maps);
-    let Job { scene, quality, around, limits, .. } = job;
-    let (field, border) = (&scene.field, job.border());
-    let hash = format!("{:016x}", field.hash(border));
     let count = maps.len();
-    let all = maps.into_iter().map(|map| {
-        let sums = match map.0.kind.source {
-            Source::Sums(of) => Some(HorizonSums::new(of(&job), job.grid_points())),
-            _ => None,
-        };
-        let at = georeference.as_ref();
-        Ok((MapFiles::create(&args.output, map, field, &hash, at)?, sums))
-    });
-    let mut all: Vec<(MapFiles, Option<HorizonSums>)> = all.collect::<Result<_>>()?;
-    let bar = crate::setup::terminal::progress(args.global.quiet, "baking");
     let started = std::time::Instant::now();
-    let (mut times, mut plan) = (Vec::new(), None);
-    let normals = if has_horizons { normals(field, border) } else { Vec::new() };
-    if has_horizons {
-        let azimuths = plan::circle_rad(quality, field.cell_m())?;
-        let width_rad = std::f64::consts::TAU / azimuths.len() as f64;
-        let mut each = |k: u32, elevations: &[f32], _: &[f32]| {
-            bar.set_message(format!("baking: azimuth {} of {}", k + 1, azimuths.len()));
-            let ray = Ray { azimuth_rad: azimuths[k as usize], width_rad };
-            all.iter_mut().try_for_each(|(files, sums)| match (files.kind().source, sums) {
-                (Source::Horizons, _) => files.take(&[elevations]),
-                (_, Some(sums)) => sums.add(ray, elevations, &normals),
-                _ => Ok(()),
-            })
-        };
-        let found = horizon::for_each(gpu, field, border, quality, &limits, false, &mut each)?;
-        (times, plan) = (found.0, Some(found.1));
-    }
-    for (files, _) in &mut all {
-        match files.kind().source {
-            Source::Horizons | Source::Sums(_) => {}
-            Source::Directions(of) => {
-                bar.set_message("baking: visible points".to_owned());
-                let own = (of.plan)(&job, &limits)?;
-                let count = own.outputs().count();
-                plan.get_or_insert_with(|| own.clone());
-                let outputs = gpu.with_frame(own, &[field.heights_m()], |gpu, frame| {
-                    times.extend(gpu.draw(frame)?);
-                    let outputs = (0..count).map(|output| Ok(gpu.pixels(frame, output)?.values));
-                    outputs.collect::<Result<Vec<_>>>()
-                })?;
-                (of.take)(&job, &outputs, files)?;
-            }
-            Source::Light(of) => {
-                let kind = files.kind().name;
-                let say = |what: String| bar.set_message(format!("baking {kind}: {what}"));
-                plan.get_or_insert(first((of.plans)(&job, &limits)?));
-                (of.make)(gpu, &job, files, &say)?;
-            }
-        }
-    }
-    times.extend(gpu.take_timings());
-    let plan = plan.expect("--what has a kind");
+    let mut all = open(args, &job, maps, georeference.as_ref())?;
+    let (times, plan, normals) = compute(gpu, &job, &mut all, &stages)?;
+    let hash = job.hash();
+    let Job { scene, quality, around, .. } = job;
+    let field = &scene.field;
     let mut metadata = setup::metadata(gpu, field, &plan);
     // A plan lists the settings of its part only.
     metadata.retain(|(name, _)| {
@@ -176,33 +244,16 @@ fn bake(
     let more: Vec<_> = used.iter().filter(|(name, _)| is_more(name)).cloned().collect();
     metadata.extend(more);
     let lights = is_light.then_some((&args.lights, &args.surface, scene));
-    metadata.extend(setup::asked(&args.input.path, &args.surface.field, lights));
+    metadata.extend(setup::asked(&args.input, &args.surface.field, lights));
     metadata.push(("field_hash".into(), hash));
-    let mut whole = Vec::new();
-    // A note that applies to several kinds is printed once.
-    let mut notes: Vec<(String, Vec<&str>)> = Vec::new();
-    for (i, (mut files, sums)) in all.into_iter().enumerate() {
-        bar.set_message(format!("writing {} of {count}", i + 1));
-        if let Some(sums) = sums {
-            files.take_all(&sums.end(&normals)?)?;
-        }
-        for note in files.notes() {
-            let kind = files.kind().name;
-            match notes.iter_mut().find(|(known, _)| *known == note) {
-                Some((_, kinds)) => kinds.push(kind),
-                None => notes.push((note, vec![kind])),
-            }
-        }
-        files.complete(&metadata)?;
-        whole.push(files);
-    }
-    for (note, kinds) in notes.iter().filter(|_| !args.global.quiet) {
-        let say = || writeln!(std::io::stderr(), "note: {}: {note}", kinds.join(", "));
-        let _ = bar.suspend(say);
+    let whole = finish(all, &normals, &metadata, &stages)?;
+    if !args.global.quiet {
+        bar.suspend(|| say_notes(&whole));
     }
     // An earlier manifest describes files that are about to be replaced.
     let before = take_manifest(&args.output)?;
     let maps = whole.into_iter().map(MapFiles::place).collect::<Result<Vec<_>>>()?;
+    let stages = stages.finish();
     bar.finish_and_clear();
     let seconds = started.elapsed().as_secs_f64();
     // Times are in --json only: two runs write the same folder.
@@ -221,12 +272,30 @@ fn bake(
         for key in ["settings", "passes"] {
             manifest[key] = timed[key].clone();
         }
+        manifest["estimate"] = estimate.map(|estimate| estimate.json(&stages)).into();
         files::write_json(json, &manifest)?;
     }
     if !args.global.quiet {
         say_done(args, (scene, quality, count), (&times, has_horizons, seconds), gpu);
     }
     Ok(Outcome::Done)
+}
+
+/// Prints the notes of all maps. A note that applies to several kinds is printed once.
+fn say_notes(maps: &[MapFiles]) {
+    let mut notes: Vec<(String, Vec<&str>)> = Vec::new();
+    for files in maps {
+        let kind = files.kind().name;
+        for note in files.notes() {
+            match notes.iter_mut().find(|(known, _)| *known == note) {
+                Some((_, kinds)) => kinds.push(kind),
+                None => notes.push((note, vec![kind])),
+            }
+        }
+    }
+    for (note, kinds) in notes {
+        setup::note(&format!("{}: {note}", kinds.join(", ")));
+    }
 }
 
 /// Adds what holds for all maps to a manifest.

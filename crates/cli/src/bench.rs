@@ -43,7 +43,7 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
     }
     let quality = args.quality.quality()?;
     let field = match &args.input {
-        Some(path) => setup::field(path, &args.surface.field, &args.global)?,
+        Some(path) => setup::field(std::slice::from_ref(path), &args.surface.field, &args.global)?,
         None => fractal(*args.sizes.first().unwrap_or(&args.size), 1)?,
     };
     let scene =

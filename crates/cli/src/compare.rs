@@ -89,7 +89,7 @@ fn check(args: &CompareArgs) -> Result<()> {
     if args.exposure != 1.0
         && [&args.result, &args.reference].iter().all(|path| setup::extension(path) == "png")
     {
-        let expected = "at least one .exr or .hdr: a .png has no exposure";
+        let expected = "at least one .exr, .tif or .hdr: a .png has no exposure";
         return Err(Error::setting("--exposure", "two .png files", expected));
     }
     Ok(())

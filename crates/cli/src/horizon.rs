@@ -165,7 +165,8 @@ pub fn run(args: &HorizonArgs) -> Result<Outcome> {
         ("--distances", args.distances.as_deref()),
         ("--json", args.global.json.as_deref()),
     ];
-    setup::check_distinct(&outputs, &[&args.input.path])?;
+    let inputs: Vec<&Path> = args.input.path.iter().map(PathBuf::as_path).collect();
+    setup::check_distinct(&outputs, &inputs)?;
     let quality = args.quality.quality()?;
     let is_npy = setup::extension(&args.output) == "npy";
     let is_exact = quality.lines == Lines::Exact && quality.method != Method::BruteForce;
@@ -222,7 +223,7 @@ pub fn run(args: &HorizonArgs) -> Result<Outcome> {
     bar.finish_and_clear();
     let mut metadata = setup::metadata(&gpu, &field, &plan);
     metadata.push(("azimuths".into(), quality.azimuths.to_string()));
-    metadata.extend(setup::asked(&args.input.path, &args.surface, None));
+    metadata.extend(setup::asked(&args.input, &args.surface, None));
     let named = "compass degrees, clockwise from north, to the horizon";
     metadata.push(("azimuth_names".into(), named.into()));
     for (file, values) in [

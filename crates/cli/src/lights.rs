@@ -122,7 +122,6 @@ pub static LIGHTS: [Light; 3] = [
 ];
 
 /// The light type of an id.
-#[cfg(feature = "window")]
 pub fn light(id: &str) -> &'static Light {
     LIGHTS.iter().find(|light| light.id == id).expect("a light of the table")
 }

@@ -243,7 +243,7 @@ fn write(
 ) -> Result<()> {
     let mut metadata = setup::metadata(gpu, &scene.field, frame.plan());
     let lit = Some((&args.lights, &args.surface, scene));
-    metadata.extend(setup::asked(&args.input.path, &args.surface.field, lit));
+    metadata.extend(setup::asked(&args.input, &args.surface.field, lit));
     let mut add = |name: &str, value: String| metadata.push((name.to_owned(), value));
     add("spp", (traced.batches * REFERENCE_BATCH).to_string());
     add("relative_standard_error", traced.error.to_string());

@@ -131,7 +131,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
             Ok((times, pixels, camera_pixels, metadata))
         })?;
     metadata.extend(setup::asked(
-        &args.input.path,
+        &args.input,
         &args.surface.field,
         Some((&args.lights, &args.surface, &scene)),
     ));
@@ -219,7 +219,7 @@ pub fn check_positive<T: Copy + Into<f64> + ToString>(flag: &str, x: T) -> Resul
 
 /// The exposure that puts the 99th percentile of luminance at 0.8, of the pixels that are not left out. 1 where that is
 /// dark.
-fn exposure(picture: &[[f32; 3]], left_out: Option<&[bool]>) -> f32 {
+pub fn exposure(picture: &[[f32; 3]], left_out: Option<&[bool]>) -> f32 {
     let texels = picture.iter().enumerate().filter(|(i, _)| !left_out.is_some_and(|v| v[*i]));
     let mut all: Vec<f64> = texels.map(|(_, t)| sky::luminance(t.map(f64::from))).collect();
     if all.is_empty() {
@@ -290,7 +290,7 @@ fn write_world(args: &RenderArgs, georeference: Option<&Georeference>) -> Result
                 setup::note(&format!(
                     "{}: not of this picture, because {} states no position",
                     path.display(),
-                    args.input.path.display()
+                    args.input.first().display()
                 ));
             }
             Ok(())

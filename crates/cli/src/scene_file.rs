@@ -180,6 +180,11 @@ fn all(path: &Path, renamed: &mut Renamed) -> Result<Vec<Given>> {
                     .iter()
                     .map(|item| Ok((item.line(), item.key.clone(), item.parts(parts)?.into())))
                     .collect::<Result<Vec<_>>>()?,
+                Kind::Files if found.items().is_ok_and(|items| !items.is_empty()) => found
+                    .items()?
+                    .iter()
+                    .map(|item| Ok((item.line(), item.key.clone(), item.value(key, folder)?)))
+                    .collect::<Result<Vec<_>>>()?,
                 _ => vec![(found.line(), found.key.clone(), found.value(key, folder)?)],
             };
             given.extend(values.into_iter().map(|(line, place, value)| Given {

@@ -56,19 +56,23 @@ fn check_size(path: &Path, global: &GlobalArgs) -> Result<()> {
     })
 }
 
-pub fn field(path: &Path, surface: &FieldArgs, global: &GlobalArgs) -> Result<HeightField> {
-    Ok(georeferenced(path, surface, global)?.0)
+pub fn field(paths: &[PathBuf], surface: &FieldArgs, global: &GlobalArgs) -> Result<HeightField> {
+    Ok(georeferenced(paths, surface, global)?.0)
 }
 
 /// A field, and its position where the file states it.
 pub fn georeferenced(
-    path: &Path,
+    paths: &[PathBuf],
     surface: &FieldArgs,
     global: &GlobalArgs,
 ) -> Result<(HeightField, Option<Georeference>)> {
-    let files::FieldFile { field, georeference, notes } = read(path, surface, global)?;
+    let files::FieldFile { field, georeference, notes } = read(paths, surface, global)?;
     if !global.quiet {
-        notes.iter().for_each(|text| note(&format!("{}: {}", path.display(), flags_in(text))));
+        let name = match paths {
+            [first, _, ..] => format!("{} and {} more", first.display(), paths.len() - 1),
+            _ => paths.iter().map(|path| path.display().to_string()).collect(),
+        };
+        notes.iter().for_each(|text| note(&format!("{name}: {}", flags_in(text))));
     }
     Ok((field, georeference))
 }
@@ -80,15 +84,27 @@ pub fn note(text: &str) {
 }
 
 /// A field and its notes, unsaid.
-pub fn read(path: &Path, surface: &FieldArgs, global: &GlobalArgs) -> Result<files::FieldFile> {
+pub fn read(
+    paths: &[PathBuf],
+    surface: &FieldArgs,
+    global: &GlobalArgs,
+) -> Result<files::FieldFile> {
     if !surface.z_scale.is_finite() || surface.z_scale == 0.0 {
         let expected = "a finite number other than 0";
         return Err(Error::setting("--z-scale", surface.z_scale.to_string(), expected));
     }
-    let options =
-        HeightOptions { cell_m: surface.cell, z_scale: surface.z_scale, nodata: surface.nodata };
-    check_size(path, global)?;
-    files::read_field(path, &options)
+    let options = HeightOptions {
+        cell_m: surface.cell,
+        z_scale: surface.z_scale,
+        nodata: surface.nodata,
+        band: surface.band,
+        bbox: surface.bbox,
+    };
+    // A box cuts a field of any size to one that fits.
+    if surface.bbox.is_none() {
+        paths.iter().try_for_each(|path| check_size(path, global))?;
+    }
+    files::read_mosaic(paths, &options)
 }
 
 /// The light of a scene without lights.
@@ -257,7 +273,7 @@ pub fn wanted(layers: &[Layer]) -> Picture {
 
 /// Input files of a command.
 pub fn inputs<'a>(
-    field: &'a Path,
+    field: &'a [PathBuf],
     lights: &'a LightArgs,
     surface: &'a SurfaceArgs,
 ) -> Vec<&'a Path> {
@@ -266,7 +282,8 @@ pub fn inputs<'a>(
         Some(SpecularArg::File(path)) => Some(path.as_path()),
         _ => None,
     };
-    [Some(field), lights.env.as_deref(), albedo, specular].into_iter().flatten().collect()
+    let others = [lights.env.as_deref(), albedo, specular];
+    field.iter().map(PathBuf::as_path).chain(others.into_iter().flatten()).collect()
 }
 
 /// Sets void texels to NaN in every plane.
@@ -379,7 +396,8 @@ const FLAGS: [(&str, &str); 19] = [
 ];
 
 /// Settings whose flag is their name with `-` for `_`, beside those of quality.
-const SAME: [&str; 6] = ["memory_budget", "max_error", "time_budget", "border", "nodata", "paths"];
+const SAME: [&str; 8] =
+    ["memory_budget", "max_error", "time_budget", "border", "nodata", "band", "bbox", "paths"];
 
 /// The flag of a library name, as "azimuths" or "sun 2: elevation".
 fn flag_of(name: &str) -> Option<String> {
@@ -426,6 +444,10 @@ pub fn in_flags(error: Error) -> Error {
         },
         Error::Limit { what, needs, limit } => {
             Error::Limit { what: flags_in(&what), needs: flags_in(&needs), limit: flags_in(&limit) }
+        }
+        // What was found may be a text of the file.
+        Error::File { path, place, found, expected } => {
+            Error::File { path, place, found, expected: flags_in(&expected) }
         }
         other => other,
     }

@@ -73,7 +73,7 @@ pub fn run(args: &TradeArgs) -> Result<Outcome> {
         return Err(Error::setting("--reference", path.display().to_string(), expected));
     }
     let lit = Some((&args.lights, &args.surface, &scene));
-    let mut scene_metadata = setup::asked(&args.input.path, &args.surface.field, lit);
+    let mut scene_metadata = setup::asked(&args.input, &args.surface.field, lit);
     if args.bounces > 0 {
         scene_metadata.push(("bounces".to_owned(), args.bounces.to_string()));
     }

@@ -2,9 +2,12 @@
 
 mod app;
 mod brush;
+mod gui;
+mod marks;
 mod moving;
 mod panel;
 mod script;
+mod smaller;
 mod state;
 mod strokes;
 
@@ -26,7 +29,7 @@ pub fn run(args: &ViewArgs) -> Result<Outcome> {
         let inputs = setup::inputs(&args.input.path, &args.lights, &args.surface);
         setup::check_distinct(&[("--json", Some(json.as_path()))], &inputs)?;
     }
-    crate::render::check_positive("--exposure", args.exposure)?;
+    args.exposure.map_or(Ok(()), |e| crate::render::check_positive("--exposure", e))?;
     let quality = args.quality.quality()?;
     let field = setup::field(&args.input.path, &args.surface.field, &args.global)?;
     let unlit = setup::Unlit::of(&quality, None);

@@ -5,6 +5,10 @@ const VERTICAL_KEYS: std::ops::RangeInclusive<u16> = 4096..=4099;
 const MODEL_TYPE: u16 = 1024;
 const RASTER_TYPE: u16 = 1025;
 const GEODETIC_CRS: u16 = 2048;
+const PROJECTED_CRS: u16 = 3072;
+/// The keys of a geographic and of a projected reference system, and the citations among them.
+const HORIZONTAL_KEYS: [std::ops::RangeInclusive<u16>; 2] = [2048..=3071, 3072..=4095];
+const CITATIONS: [u16; 2] = [2049, 3073];
 
 /// The position of a north-up grid, in the coordinates of its file.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,6 +45,53 @@ impl GeoKeys {
         self.entries.contains(&[RASTER_TYPE, 0, 1, 2])
     }
 
+    /// The EPSG code of the horizontal reference system, if the keys hold one.
+    pub fn epsg(&self) -> Option<u16> {
+        [PROJECTED_CRS, GEODETIC_CRS].into_iter().find_map(|key| {
+            let entry = self.entries.iter().find(|e| e[0] == key && e[1] == 0)?;
+            // 32767 is a system that other keys define; above are private codes.
+            Some(entry[3]).filter(|code| (1..32767).contains(code))
+        })
+    }
+
+    /// The code or the name of the horizontal reference system.
+    pub fn crs(&self) -> Option<String> {
+        let named = || {
+            let name = self.ascii.split('|').next().unwrap_or_default().trim();
+            (!name.is_empty()).then(|| name.to_owned())
+        };
+        self.defined_by_code().map(|code| format!("EPSG:{code}")).or_else(named)
+    }
+
+    /// [`epsg`](Self::epsg), but not of the geographic system that a projection of one's own uses.
+    fn defined_by_code(&self) -> Option<u16> {
+        let is_own = self.entries.iter().any(|e| e[0] == PROJECTED_CRS && e[3] == 32767);
+        self.epsg().filter(|_| !is_own)
+    }
+
+    /// Whether both state the same horizontal reference system, or none.
+    pub fn is_same_crs(&self, other: &Self) -> bool {
+        if let (Some(ours), Some(theirs)) = (self.defined_by_code(), other.defined_by_code()) {
+            return ours == theirs;
+        }
+        self.parameters() == other.parameters()
+    }
+
+    /// Keys of the horizontal reference system with their numbers; texts are left out.
+    fn parameters(&self) -> Vec<(u16, Vec<f64>)> {
+        let number = |[key, location, count, value]: &[u16; 4]| {
+            let is_one = HORIZONTAL_KEYS.iter().any(|keys| keys.contains(key));
+            let at = usize::from(*value);
+            let numbers = match *location {
+                0 => vec![f64::from(*value)],
+                34736 => self.doubles.get(at..at + usize::from(*count))?.to_vec(),
+                _ => return None,
+            };
+            (is_one && !CITATIONS.contains(key)).then_some((*key, numbers))
+        };
+        self.entries.iter().filter_map(number).collect()
+    }
+
     /// Without the vertical reference: a map of light or angles holds no heights, and GDAL reports
     /// a vertical unit as the unit of each band.
     pub fn horizontal(&self) -> Self {
@@ -63,6 +114,12 @@ impl Georeference {
     pub fn origin(&self) -> [f64; 2] {
         let half = if self.keys.is_point() { 0.5 } else { 0.0 };
         [self.corner[0] + half * self.cell[0], self.corner[1] - half * self.cell[1]]
+    }
+
+    /// West, south, east and north of a grid's outer edges.
+    pub fn extent(&self, rows: usize, cols: usize) -> [f64; 4] {
+        let [west, north] = self.corner;
+        [west, north - rows as f64 * self.cell[1], west + cols as f64 * self.cell[0], north]
     }
 
     /// The text of a world file, as ESRI defined it: six lines, the last two the centre of the

@@ -1,8 +1,8 @@
-//! KTX 2.0 textures (Khronos KTX File Format Specification 2.0): one uncompressed level, with or
-//! without array layers.
+//! KTX 2.0 textures (Khronos KTX File Format Specification 2.0), with or without mip levels, array
+//! layers and block compression.
 
-use crate::Component;
 use crate::atomic::{Temporary, Written};
+use crate::{Block, Component};
 use ridgelight::{Error, Result};
 use std::path::Path;
 
@@ -86,13 +86,108 @@ impl TexelFormat {
     }
 }
 
+/// What an image of a texture holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Texels {
+    /// One texel after the other.
+    Plain(TexelFormat),
+    /// Compressed blocks.
+    Blocks(Block),
+}
+
+impl From<TexelFormat> for Texels {
+    fn from(format: TexelFormat) -> Self {
+        Self::Plain(format)
+    }
+}
+
+impl From<Block> for Texels {
+    fn from(block: Block) -> Self {
+        Self::Blocks(block)
+    }
+}
+
+impl Texels {
+    /// As [`TexelFormat::vulkan`].
+    pub fn vulkan(self) -> Option<(u32, &'static str)> {
+        match self {
+            Texels::Plain(format) => format.vulkan(),
+            Texels::Blocks(block) => Some(block.vulkan()),
+        }
+    }
+
+    /// Bytes of a texel or a block.
+    fn unit(self) -> usize {
+        match self {
+            Texels::Plain(format) => format.bytes(),
+            Texels::Blocks(block) => block.bytes(),
+        }
+    }
+
+    /// Bytes of an image, unless it is too large for any file.
+    pub fn image_bytes(self, [cols, rows]: [usize; 2]) -> Option<u64> {
+        let units = match self {
+            Texels::Plain(_) => [cols, rows],
+            Texels::Blocks(_) => [cols, rows].map(|n| n.div_ceil(4)),
+        };
+        (units[0] as u64).checked_mul(units[1] as u64)?.checked_mul(self.unit() as u64)
+    }
+
+    /// Size of a component in bytes; 1 for blocks (§3.3).
+    fn type_size(self) -> u32 {
+        match self {
+            Texels::Plain(format) => format.component.bytes() as u32,
+            Texels::Blocks(_) => 1,
+        }
+    }
+
+    fn descriptor(self) -> Vec<u8> {
+        match self {
+            Texels::Plain(format) => format.descriptor(),
+            Texels::Blocks(block) => block_descriptor(block),
+        }
+    }
+}
+
+/// The basic descriptor of a block format (Data Format Specification 1.3, §5.6): blocks of 4 × 4,
+/// and a sample for each part of a block.
+fn block_descriptor(block: Block) -> Vec<u8> {
+    // Colour model, bits of a sample, samples, qualifiers, and the number that stands for 1.
+    let (model, bits, samples, qualifiers, one): (u32, u32, u32, u32, u32) = match block {
+        Block::Bc4 => (131, 64, 1, 0, u32::MAX),
+        Block::Bc5 => (132, 64, 2, 0, u32::MAX),
+        Block::Bc6h => (133, 128, 1, 0x80, 1_f32.to_bits()),
+        Block::Bc7 => (134, 128, 1, 0, u32::MAX),
+    };
+    let size = 24 + 16 * samples;
+    // As for plain texels; the block's sides are stored less one.
+    let (linear, sides) = (1 << 16, 3 | (3 << 8));
+    let mut words =
+        vec![4 + size, 0, 2 | (size << 16), model | linear, sides, block.bytes() as u32, 0];
+    for i in 0..samples {
+        words.extend([(i * bits) | ((bits - 1) << 16) | ((i | qualifiers) << 24), 0, 0, one]);
+    }
+    words.iter().flat_map(|word| word.to_le_bytes()).collect()
+}
+
+/// Sides of a mip level.
+pub(crate) fn level_size(size: [usize; 2], level: usize) -> [usize; 2] {
+    size.map(|n| (n >> level).max(1))
+}
+
+/// The largest number of mip levels.
+pub(crate) fn most_levels([cols, rows]: [usize; 2]) -> usize {
+    cols.max(rows).max(1).ilog2() as usize + 1
+}
+
 /// Writes a texture layer by layer, so that it may be larger than memory.
 ///
 /// The destination is untouched until [`finish`](Self::finish); dropping the writer leaves nothing.
 #[derive(Debug)]
 pub struct Ktx2Writer {
     file: Temporary,
-    left: u64,
+    /// Of each mip level: the place of its next byte, and how many are missing.
+    levels: Vec<[u64; 2]>,
 }
 
 impl Ktx2Writer {
@@ -106,13 +201,28 @@ impl Ktx2Writer {
     /// directory that cannot be written.
     pub fn create(
         path: &Path,
-        format: TexelFormat,
-        [cols, rows]: [usize; 2],
+        texels: impl Into<Texels>,
+        size: [usize; 2],
         layers: Option<usize>,
         texts: &[(String, String)],
     ) -> Result<Self> {
-        let Some((vulkan, _)) = format.vulkan() else {
-            let found = format!("{} of {:?}", format.count, format.component);
+        Self::with_levels(path, texels.into(), size, (layers, 1), texts)
+    }
+
+    /// As [`create`](Self::create), with mip levels: each has half the sides of the one before,
+    /// rounded down to at least 1.
+    ///
+    /// # Errors
+    /// As [`create`](Self::create); no level, or more than down to one texel.
+    pub fn with_levels(
+        path: &Path,
+        texels: Texels,
+        size: [usize; 2],
+        (layers, levels): (Option<usize>, usize),
+        texts: &[(String, String)],
+    ) -> Result<Self> {
+        let Some((vulkan, _)) = texels.vulkan() else {
+            let found = format!("{texels:?}");
             return Err(Error::setting("texels", found, "1, 2 or 4 components"));
         };
         let side = |what: &str, n: usize| {
@@ -120,30 +230,45 @@ impl Ktx2Writer {
             u32::try_from(n).ok().filter(|n| *n > 0).ok_or_else(found)
         };
         let layer_count = layers.map_or(Ok(0), |n| side("layers", n))?;
-        let sides = [side("columns", cols)?, side("rows", rows)?];
-        let level = (cols as u64).checked_mul(rows as u64).and_then(|n| {
-            n.checked_mul(u64::from(layer_count.max(1)))?.checked_mul(format.bytes() as u64)
-        });
-        let level = level.ok_or_else(|| {
-            Error::setting("texture", format!("{cols} × {rows} × {layer_count}"), "below 2⁶⁴ bytes")
+        let sides = [side("columns", size[0])?, side("rows", size[1])?];
+        if !(1..=most_levels(size)).contains(&levels) {
+            let expected = format!("1 to {}", most_levels(size));
+            return Err(Error::setting("mip levels", levels.to_string(), expected));
+        }
+        let bytes = |level: usize| {
+            let image = texels.image_bytes(level_size(size, level));
+            image.and_then(|n| n.checked_mul(u64::from(layer_count.max(1))))
+        };
+        let bytes: Option<Vec<u64>> = (0..levels).map(bytes).collect();
+        // Each level is at most the first, and at most 32 follow.
+        let bytes = bytes.filter(|all| all[0].checked_mul(64).is_some()).ok_or_else(|| {
+            let found = format!("{} × {} × {layer_count}", size[0], size[1]);
+            Error::setting("texture", found, "below 2⁵⁸ bytes")
         })?;
-        let (descriptor, keys) = (format.descriptor(), keys(texts)?);
-        let descriptor_at = HEADER_BYTES + LEVEL_BYTES;
+        let (descriptor, keys) = (texels.descriptor(), keys(texts)?);
+        let descriptor_at = HEADER_BYTES + LEVEL_BYTES * levels;
         let keys_at = descriptor_at + descriptor.len();
-        // Texels begin at a multiple of both 4 and a texel's bytes, which are powers of two
-        // (§3.9.7).
-        let texels_at = (keys_at + keys.len()).next_multiple_of(format.bytes().max(4));
+        // A level begins at a multiple of both 4 and the bytes of a texel or a block, which are
+        // powers of two (§3.9.7). The smallest is first.
+        let align = texels.unit().max(4) as u64;
+        let mut places = vec![[0; 2]; levels];
+        let mut end = (keys_at + keys.len()) as u64;
+        for level in (0..levels).rev() {
+            let at = end.next_multiple_of(align);
+            places[level] = [at, bytes[level]];
+            end = at + bytes[level];
+        }
         let mut head = IDENTIFIER.to_vec();
-        let (depth, faces, levels, supercompression) = (0, 1, 1, 0);
+        let (depth, faces, supercompression) = (0, 1, 0);
         let words = [
             vulkan,
-            format.component.bytes() as u32,
+            texels.type_size(),
             sides[0],
             sides[1],
             depth,
             layer_count,
             faces,
-            levels,
+            levels as u32,
             supercompression,
             descriptor_at as u32,
             descriptor.len() as u32,
@@ -151,24 +276,39 @@ impl Ktx2Writer {
             keys.len() as u32,
         ];
         head.extend(words.iter().flat_map(|word| word.to_le_bytes()));
-        // No supercompression data; the level's offset, length and uncompressed length.
-        let longs = [0, 0, texels_at as u64, level, level];
-        head.extend(longs.iter().flat_map(|long: &u64| long.to_le_bytes()));
+        // No supercompression data; each level's offset, length and uncompressed length.
+        let longs = [0, 0].into_iter().chain(places.iter().flat_map(|[at, n]| [*at, *n, *n]));
+        head.extend(longs.flat_map(|long: u64| long.to_le_bytes()));
         head.extend(descriptor);
         head.extend(keys);
-        head.resize(texels_at, 0);
+        head.resize(places[levels - 1][0] as usize, 0);
         let mut file = Temporary::create(path)?;
         file.write(&head)?;
-        Ok(Self { file, left: level })
+        Ok(Self { file, levels: places })
     }
 
-    /// Appends texels, layers in order and rows from the top.
+    /// Appends texels of the first level, layers in order and rows from the top.
     ///
     /// # Errors
     /// More texels than the texture holds; a write error.
     pub fn write(&mut self, texels: &[u8]) -> Result<()> {
-        let found = || Error::setting("texels", "more bytes", format!("{} more", self.left));
-        self.left = self.left.checked_sub(texels.len() as u64).ok_or_else(found)?;
+        self.write_level(0, texels)
+    }
+
+    /// Appends texels or blocks of a mip level, layers in order and rows from the top.
+    ///
+    /// # Errors
+    /// A level that the texture lacks; more texels than it holds; a write error.
+    pub fn write_level(&mut self, level: usize, texels: &[u8]) -> Result<()> {
+        let count = self.levels.len();
+        let own = self.levels.get_mut(level).ok_or_else(|| {
+            Error::setting("mip levels", format!("level {level}"), format!("below {count}"))
+        })?;
+        let [at, left] = *own;
+        let found = || Error::setting("texels", "more bytes", format!("{left} more"));
+        let less = left.checked_sub(texels.len() as u64).ok_or_else(found)?;
+        *own = [at + texels.len() as u64, less];
+        self.file.seek(at)?;
         self.file.write(texels)
     }
 
@@ -185,8 +325,9 @@ impl Ktx2Writer {
     /// # Errors
     /// Fewer texels than the texture holds; a write error.
     pub fn close(self) -> Result<Written> {
-        if self.left > 0 {
-            let found = format!("{} bytes too few", self.left);
+        let left: u64 = self.levels.iter().map(|[_, left]| left).sum();
+        if left > 0 {
+            let found = format!("{left} bytes too few");
             return Err(Error::setting("texels", found, "all of them before the end"));
         }
         self.file.close()

@@ -1,4 +1,4 @@
-//! Readers and writers: height fields, environments, albedo maps in; GeoTIFF, EXR, PNG, NPY, KTX2, JSON
+//! Readers and writers: height fields, environments, albedo maps in; GeoTIFF, EXR, PNG, NPY, KTX2, DDS, JSON
 //! and text out.
 //!
 //! Error messages name the file, the place in it, what was found and what was expected
@@ -11,7 +11,9 @@
 #![deny(clippy::missing_errors_doc)]
 
 mod atomic;
+mod blocks;
 mod component;
+mod dds;
 mod environment;
 mod exr;
 mod georeference;
@@ -28,14 +30,16 @@ mod visible_points;
 pub use atomic::{
     ResultFolder, Written, abandon_unfinished, check_room, check_writable, write_json, write_text,
 };
+pub use blocks::Block;
 pub use component::Component;
+pub use dds::DdsWriter;
 pub use environment::{parse_environment, read_albedo, read_environment, read_specular};
 pub use exr::{Channels, Layer, read_metadata, write_exr, write_exr_aside};
 pub use georeference::{GeoKeys, Georeference};
 pub use geotiff::{Band, GeoTiffWriter, write_geotiff};
 pub use heights::size::height_size;
-pub use heights::{FieldFile, HeightOptions, parse_heights, read_field, read_heights};
-pub use ktx2::{Ktx2Writer, TexelFormat};
+pub use heights::{FieldFile, HeightOptions, parse_heights, read_field, read_heights, read_mosaic};
+pub use ktx2::{Ktx2Writer, TexelFormat, Texels};
 pub use npy::{NpyWriter, write_npy_f32, write_npy_heights};
 pub use planes::{Planes, parse_planes, read_planes};
 pub use png::{encode_png, write_codes_aside, write_png};

@@ -1,7 +1,7 @@
 //! NumPy arrays: a reader of every integer and float type, a streaming writer of f32.
 
 use crate::atomic::{Temporary, Written};
-use crate::heights::Raster;
+use crate::heights::{Raster, tif};
 use crate::open;
 use half::f16;
 use ridgelight::scene::HeightField;
@@ -153,9 +153,24 @@ pub(crate) fn tuple(text: &str) -> Option<Vec<usize>> {
     inner.split(',').map(|n| n.trim().trim_end_matches('L').parse().ok()).collect()
 }
 
-/// A 2-D array; its cell size is unknown.
-pub(crate) fn heights(path: &Path, bytes: &[u8]) -> Result<Raster> {
-    raster(path, "", &Array::parse(path, "", bytes)?)
+/// A 2-D array, or the plane `band` (from 1 on) of a 3-D one; its cell size is unknown.
+pub(crate) fn heights(path: &Path, bytes: &[u8], band: Option<u32>) -> Result<Raster> {
+    let array = Array::parse(path, "", bytes)?;
+    match (array.shape.as_slice(), band) {
+        (&[planes, rows, cols], Some(band)) => {
+            let index = (band as usize).checked_sub(1).filter(|index| *index < planes);
+            let index = index.ok_or_else(|| tif::no_band(path, band, planes))?;
+            let (rows, cols) = open::size(path, "header: shape", rows as u64, cols as u64)?;
+            let values = array.values().skip(index * rows * cols).take(rows * cols).collect();
+            Ok(Raster { single: array.single(), ..Raster::bare(rows, cols, values) })
+        }
+        ([_, _], Some(band)) if band != 1 => Err(tif::no_band(path, band, 1)),
+        ([_, _, _], None) => {
+            let expected = "two: rows and columns; or three with a choice by `band`";
+            Err(Error::file(path, "header: shape", "3 dimensions", expected))
+        }
+        _ => raster(path, "", &array),
+    }
 }
 
 /// A 2-D array as a raster; `inside` as in [`Array::parse`].

@@ -76,7 +76,10 @@ pub(crate) fn format(path: &Path, bytes: &[u8], accepted: &[Format]) -> Result<F
             None => "no extension".into(),
         };
         let names: String = accepted.iter().map(|f| f.extensions()).collect();
-        Error::file(path, "name", found, format!("one of{names}"))
+        // Height fields alone may be packed.
+        let packed =
+            if accepted.contains(&Format::Hgt) { ", or one packed as .gz or .zip" } else { "" };
+        Error::file(path, "name", found, format!("one of{names}{packed}"))
     })?;
     if bytes.is_empty() {
         return Err(Error::file(path, "header", "an empty file", format.named()));
@@ -192,7 +195,11 @@ mod tests {
             ("a.png", &b"II*\0"[..], "a.png: first bytes: found a TIFF, expected a PNG"),
             ("a.png", b"GIF8", "found 47 49 46 38"),
             ("a.hgt", b"PK\x03\x04", "found a ZIP archive"),
-            ("a.npy", b"\x93NUMPY", "the extension .npy"),
+            (
+                "a.npy",
+                b"\x93NUMPY",
+                "the extension .npy, expected one of .png .tif .tiff .hgt, or one packed as .gz or .zip",
+            ),
             ("a", b"", "no extension"),
             ("a.png", b"", "an empty file"),
         ] {

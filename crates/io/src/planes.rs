@@ -2,6 +2,7 @@
 
 use crate::environment::hdr;
 use crate::exr;
+use crate::heights::{geotiff, tif};
 use crate::npy::Array;
 use crate::open::{self, Format};
 use crate::png;
@@ -25,7 +26,9 @@ pub struct Planes {
 ///
 /// `.exr`: all channels under their names ("direct.sky.R"), at full resolution. `.npy`: a 2-D array
 /// as the plane "0", a 3-D one [k, rows, cols] as "0" to "k-1". `.hdr`: "R", "G", "B". `.png`: "R",
-/// "G", "B" or "Y" decoded from sRGB to linear light, and "A" (0 to 1) where there is alpha.
+/// "G", "B" or "Y" decoded from sRGB to linear light, and "A" (0 to 1) where there is alpha. `.tif`: the
+/// bands under their names in GDAL's metadata, else "band1" and so on; scale and offset apply, and no
+/// data is NaN.
 ///
 /// # Errors
 /// A file that cannot be read or decoded; other dimensions; sizes beyond 65 536 a side or 2³⁰
@@ -39,7 +42,9 @@ pub fn read_planes(path: &Path) -> Result<Planes> {
 /// # Errors
 /// As [`read_planes`], except file access.
 pub fn parse_planes(name: &Path, bytes: &[u8]) -> Result<Planes> {
-    match open::format(name, bytes, &[Format::Exr, Format::Npy, Format::Png, Format::Hdr])? {
+    const ACCEPTED: [Format; 5] =
+        [Format::Exr, Format::Tiff, Format::Npy, Format::Png, Format::Hdr];
+    match open::format(name, bytes, &ACCEPTED)? {
         Format::Exr => {
             let file = exr::ExrFile::open(name, bytes)?;
             let names: Vec<String> = file.names().into_iter().map(str::to_owned).collect();
@@ -47,6 +52,7 @@ pub fn parse_planes(name: &Path, bytes: &[u8]) -> Result<Planes> {
             let (rows, cols, planes) = file.planes(&all, |v| v as f32)?;
             Ok(Planes { rows, cols, names, planes })
         }
+        Format::Tiff => from_tiff(name, bytes),
         Format::Npy => from_npy(name, bytes),
         Format::Hdr => {
             let (rows, cols, rgb) = hdr::colour(name, bytes)?;
@@ -72,6 +78,29 @@ fn channels(rgb: &[[f32; 3]], grey: bool, alpha: Option<Vec<f32>>) -> (Vec<Strin
         planes.push(alpha);
     }
     (names, planes)
+}
+
+fn from_tiff(path: &Path, bytes: &[u8]) -> Result<Planes> {
+    let mut image = tif::Image::open(path, bytes)?;
+    let (rows, cols, bands) = (image.rows, image.cols, image.bands);
+    let nodata = geotiff::nodata(path, &mut image.tiff)?;
+    let mut names = Vec::with_capacity(bands);
+    let mut scales = Vec::with_capacity(bands);
+    for band in 0..bands {
+        let name = geotiff::band_name(path, &mut image.tiff, band)?;
+        names.push(name.unwrap_or_else(|| format!("band{}", band + 1)));
+        scales.push(geotiff::scale(path, &mut image.tiff, band)?);
+    }
+    let is_void = |value: f64| nodata.is_some_and(|nodata| value as f32 == nodata as f32);
+    let known = |value: f64| if is_void(value) { f32::NAN } else { value as f32 };
+    let (mut planes, _) = image.read(0..bands, nodata.unwrap_or(0.0), known)?;
+    for (plane, [scale, offset]) in planes.iter_mut().zip(scales) {
+        if [scale, offset] != [1.0, 0.0] {
+            let scaled = |v: &mut f32| *v = (f64::from(*v) * scale + offset) as f32;
+            plane.iter_mut().for_each(scaled);
+        }
+    }
+    Ok(Planes { rows, cols, names, planes })
 }
 
 fn from_npy(path: &Path, bytes: &[u8]) -> Result<Planes> {

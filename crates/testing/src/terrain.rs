@@ -151,18 +151,6 @@ pub fn craters(side: usize) -> Result<HeightField> {
     })
 }
 
-/// Bumpy ground such as moss, cells of 1 mm, up to about 60 mm high.
-///
-/// # Errors
-/// A side of 0.
-pub fn cushions(side: usize) -> Result<HeightField> {
-    let (large, small) = (Waves::new(29, [160.0, 30.0], 1.0), Waves::new(31, [9.0, 3.0], 0.5));
-    field(side, 0.001, |x, y| {
-        let cushion = 1.0 - large.at(x, y).abs().min(1.6) / 1.6;
-        0.001 * (42.0 * cushion.sqrt() + 4.0 * small.at(x, y))
-    })
-}
-
 /// Waves of deep water at a time in seconds, cells of 0.5 m: each travels with its own speed, √(g λ / 2 π).
 ///
 /// # Errors
@@ -205,7 +193,6 @@ mod tests {
             (city(256), [-1e-5, 1e-5], [20.0, 60.1]),
             (escarpment(256), [-20.0, 10.0], [100.0, 150.0]),
             (craters(256), [-800.0, -200.0], [20.0, 300.0]),
-            (cushions(256), [-0.02, 0.01], [0.03, 0.07]),
             (waves(256, 1.5), [-6.0, -1.0], [1.0, 6.0]),
         ] {
             let [low, high] = range(&made.unwrap());

@@ -2,13 +2,15 @@
 
 use ash::{khr, vk};
 
-use ridgelight::gpu::{Headless, failed};
+use ridgelight::gpu::{Headless, failed, whole};
 use ridgelight::{Error, Result};
 
 /// A swapchain and the semaphores that its pictures wait for before presentation.
 pub(super) struct Chain {
     pub swapchain: vk::SwapchainKHR,
     pub images: Vec<vk::Image>,
+    /// A view of each.
+    pub views: Vec<vk::ImageView>,
     pub finished: Vec<vk::Semaphore>,
     /// Columns and rows.
     pub size: [u32; 2],
@@ -16,7 +18,7 @@ pub(super) struct Chain {
     pub is_readable: bool,
     /// Whether the window has changed, so that another swapchain is better or needed.
     pub is_stale: bool,
-    format: vk::Format,
+    pub format: vk::Format,
 }
 
 /// Formats that are presented without conversion, by preference, and whether blue comes first.
@@ -81,6 +83,17 @@ impl Chain {
         if !known.supported_usage_flags.contains(into) {
             return Err(lacks("takes none by copying"));
         }
+        // SAFETY: as above.
+        let modes =
+            unsafe { loader.get_physical_device_surface_present_modes(physical_device, surface) };
+        let modes = modes.map_err(failed("asking a window how it presents"))?;
+        // FIFO, which every window has, makes pictures wait for a refresh: slow ones would lose one more.
+        let mailbox = vk::PresentModeKHR::MAILBOX;
+        let is_slow = gpu.report().limits.is_cpu;
+        let is_better = is_slow && modes.contains(&mailbox);
+        let mode = if is_better { mailbox } else { vk::PresentModeKHR::FIFO };
+        // Every surface has images to draw into.
+        let usage = into | vk::ImageUsageFlags::COLOR_ATTACHMENT;
         let is_readable = known.supported_usage_flags.contains(from);
         let most = if known.max_image_count == 0 { u32::MAX } else { known.max_image_count };
         let alphas = known.supported_composite_alpha;
@@ -93,18 +106,25 @@ impl Chain {
             .image_color_space(vk::ColorSpaceKHR::SRGB_NONLINEAR)
             .image_extent(vk::Extent2D { width: size[0], height: size[1] })
             .image_array_layers(1)
-            .image_usage(if is_readable { into | from } else { into })
+            .image_usage(if is_readable { usage | from } else { usage })
             .pre_transform(known.current_transform)
             .composite_alpha(if alphas.contains(opaque) { opaque } else { any })
-            .present_mode(vk::PresentModeKHR::FIFO)
+            .present_mode(mode)
             .clipped(true)
             .old_swapchain(old.map_or_else(Default::default, |c| c.swapchain));
         // SAFETY: the surface supports what `info` asks for; the old swapchain, if any, is its own.
         let swapchain = unsafe { swapchains.create_swapchain(&info, None) }
             .map_err(failed(format!("making pictures of {} × {}", size[0], size[1])))?;
-        let (images, finished) = (Vec::new(), Vec::new());
-        let mut chain =
-            Self { swapchain, images, finished, size, is_readable, is_stale: false, format };
+        let mut chain = Self {
+            swapchain,
+            images: Vec::new(),
+            views: Vec::new(),
+            finished: Vec::new(),
+            size,
+            is_readable,
+            is_stale: false,
+            format,
+        };
         match chain.fill(gpu, swapchains) {
             Ok(()) => Ok(chain),
             Err(result) => {
@@ -126,6 +146,13 @@ impl Chain {
             // SAFETY: the device is alive.
             self.finished.push(unsafe { gpu.host().device.create_semaphore(&info, None)? });
             gpu.host().name(*image, "window");
+            let view = vk::ImageViewCreateInfo::default()
+                .image(*image)
+                .view_type(vk::ImageViewType::TYPE_2D)
+                .format(self.format)
+                .subresource_range(whole(1));
+            // SAFETY: the image is the swapchain's, of this format.
+            self.views.push(unsafe { gpu.host().device.create_image_view(&view, None)? });
         }
         Ok(())
     }
@@ -141,6 +168,9 @@ impl Chain {
         unsafe {
             for semaphore in self.finished {
                 gpu.host().device.destroy_semaphore(semaphore, None);
+            }
+            for view in self.views {
+                gpu.host().device.destroy_image_view(view, None);
             }
             swapchains.destroy_swapchain(self.swapchain, None);
         }

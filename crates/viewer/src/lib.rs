@@ -1,9 +1,10 @@
-//! Pictures of a lit field in a window.
+//! Pictures of a lit field in a window, and shapes of egui over them.
 
 #![deny(clippy::missing_errors_doc)]
 
 mod chain;
 mod drawer;
+mod painter;
 mod queue;
 mod recording;
 mod slot;
@@ -12,16 +13,22 @@ use std::any::Any;
 use std::sync::Arc;
 
 use ash::{khr, vk};
+use egui::TexturesDelta;
 use raw_window_handle::{HasDisplayHandle, HasWindowHandle};
 
-use ridgelight::gpu::{Frame, Headless, HeadlessOptions, SurfaceSource, Timing, Work, failed};
+use ridgelight::gpu::{
+    Frame, Headless, HeadlessOptions, ImageArg, SurfaceSource, Timing, Work, failed,
+};
 use ridgelight::plan::{Map, Plan, Rectangle, View};
 use ridgelight::scene::Tone;
 use ridgelight::{Error, Result};
 
 use chain::Chain;
 use drawer::Drawer;
+use painter::Painter;
 use slot::Slot;
+
+pub use painter::Overlay;
 
 /// Frames in flight.
 const SLOTS: usize = 2;
@@ -36,19 +43,9 @@ pub struct Screen {
     next: usize,
     /// One per pane of the last picture.
     drawers: Vec<Drawer>,
+    painter: Painter,
     /// Outlives its surface, which is destroyed with the device.
     _window: Arc<dyn Any>,
-}
-
-/// Opaque pixels over a picture.
-#[derive(Clone, Copy, Debug)]
-pub struct Panel<'a> {
-    /// Column and row of its upper left corner in the picture.
-    pub at: [u32; 2],
-    /// Columns and rows, pixels; parts outside the picture are cut off.
-    pub size: [u32; 2],
-    /// Red, green, blue and 255, row after row.
-    pub pixels: &'a [[u8; 4]],
 }
 
 /// How a lit field is viewed.
@@ -81,8 +78,8 @@ pub struct PresentOptions<'a> {
     pub tone: Tone,
     /// The field's voids, if any.
     pub voids: Option<&'a [bool]>,
-    /// Drawn over the picture, in this order.
-    pub panels: &'a [Panel<'a>],
+    /// Drawn over the picture.
+    pub overlay: Overlay<'a>,
     /// Whether the picture is read back, which waits for it.
     pub keeps: bool,
 }
@@ -135,8 +132,9 @@ impl Screen {
         let host = gpu.host();
         let swapchains = khr::swapchain::Device::new(&host.instance, &host.device);
         let (slots, _window) = (Vec::new(), window as Arc<dyn Any>);
+        let (drawers, painter) = (Vec::new(), Painter::default());
         let mut screen =
-            Self { gpu, swapchains, chain: None, slots, next: 0, drawers: Vec::new(), _window };
+            Self { gpu, swapchains, chain: None, slots, next: 0, drawers, painter, _window };
         for _ in 0..SLOTS {
             let slot = Slot::new(&screen.gpu)?;
             screen.slots.push(slot);
@@ -226,6 +224,12 @@ impl Screen {
         Ok(Some(size))
     }
 
+    /// Takes textures of overlays, once each: `textures_delta` of egui's output. They are uploaded with the next picture,
+    /// also where a picture has failed since, and those to be freed are kept for one more picture.
+    pub fn set_textures(&mut self, delta: TexturesDelta) {
+        self.painter.set_textures(delta);
+    }
+
     /// Whether blue comes first in the bytes of its pictures; known after the first one.
     pub fn swaps(&self) -> bool {
         self.chain.as_ref().is_some_and(Chain::swaps)
@@ -244,6 +248,46 @@ impl Screen {
             Some((entry, instance, surface)) => surface.renew(entry, instance),
             None => Ok(()),
         }
+    }
+
+    /// Whether all submitted work has run, so that [`draw`](Self::draw) and [`light`](Self::light) do not wait.
+    ///
+    /// # Errors
+    /// A lost device.
+    pub fn is_idle(&self) -> Result<bool> {
+        let device = &self.gpu.host().device;
+        for slot in self.slots.iter().filter(|slot| slot.is_in_flight) {
+            // SAFETY: the fence is the slot's.
+            if !unsafe { device.get_fence_status(slot.done) }.map_err(failed("asking a frame"))? {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    /// Lights a frame without a picture, and does not wait. The first inputs are the frame's own; `borrowed` are the last
+    /// ones, images of other frames. Returns the slot that holds its GPU times once
+    /// [`is_idle`](Self::is_idle) is true: `Renderer::timings` of the frame's renderer.
+    ///
+    /// # Errors
+    /// Heights beyond the field, passes that the plan lacks, a device out of memory or lost. The frame must then be lit
+    /// again.
+    pub fn light(
+        &mut self,
+        frame: &mut Frame,
+        heights: Option<(&[f32], Rectangle)>,
+        (work, borrowed): (Work<'_>, &[ImageArg]),
+    ) -> Result<usize> {
+        let slot = self.next;
+        self.slots[slot].settle(&self.gpu)?;
+        self.slots[slot].was_lit.clear();
+        let lit = self.record_light(slot, frame, heights, (work, borrowed));
+        if let Err(error) = lit.and_then(|()| self.submit(slot, None)) {
+            frame.renderer().forget();
+            return Err(error);
+        }
+        self.next = (slot + 1) % SLOTS;
+        Ok(slot)
     }
 
     /// Lights the frames of a picture's panes, draws and presents it. None where there was no picture to draw
@@ -292,6 +336,7 @@ impl Drop for Screen {
     fn drop(&mut self) {
         // A lost device has finished with everything.
         let _ = self.wait();
+        self.painter.end();
         for drawer in self.drawers.drain(..) {
             drawer.end(&mut self.gpu);
         }

@@ -43,7 +43,7 @@ impl Screen {
         options: &PresentOptions<'_>,
     ) -> Result<bool> {
         self.record(slot, image, panes, options)?;
-        self.submit(slot, image)?;
+        self.submit(slot, Some(image))?;
         self.present(slot, image)
     }
 
@@ -58,19 +58,20 @@ impl Screen {
         self.slots[slot].give_up(&self.gpu);
     }
 
-    fn submit(&mut self, slot: usize, image: usize) -> Result<()> {
+    /// Runs a slot's commands, which draw into an acquired picture or only light a frame.
+    pub(super) fn submit(&mut self, slot: usize, image: Option<usize>) -> Result<()> {
         let (device, slot) = (&self.gpu.host().device, &mut self.slots[slot]);
-        let chain = self.chain.as_ref().expect("acquired from");
         let stage = vk::PipelineStageFlags2::ALL_TRANSFER;
         let wait = [vk::SemaphoreSubmitInfo::default().semaphore(slot.acquired).stage_mask(stage)];
+        let finished = self.chain.as_ref().zip(image).map(|(chain, image)| chain.finished[image]);
         let signal = [vk::SemaphoreSubmitInfo::default()
-            .semaphore(chain.finished[image])
+            .semaphore(finished.unwrap_or_default())
             .stage_mask(vk::PipelineStageFlags2::ALL_COMMANDS)];
         let commands = [vk::CommandBufferSubmitInfo::default().command_buffer(slot.commands)];
-        let submit = [vk::SubmitInfo2::default()
-            .wait_semaphore_infos(&wait)
-            .command_buffer_infos(&commands)
-            .signal_semaphore_infos(&signal)];
+        let mut submit = [vk::SubmitInfo2::default().command_buffer_infos(&commands)];
+        if finished.is_some() {
+            submit = submit.map(|s| s.wait_semaphore_infos(&wait).signal_semaphore_infos(&signal));
+        }
         // SAFETY: everything is this device's; the slot is free.
         unsafe {
             device

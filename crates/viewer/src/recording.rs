@@ -4,20 +4,40 @@ use ash::vk;
 
 use super::drawer::{COPIED, Drawer};
 use super::slot::{Slot, fitting};
-use super::{Pane, Panel, PresentOptions, Screen, Viewpoint};
-use ridgelight::gpu::{Backed, Frame, MemoryUse, Work, failed, whole};
+use super::{Overlay, Pane, PresentOptions, Screen, Viewpoint};
+use ridgelight::gpu::{
+    Backed, Frame, Headless, ImageArg, ImageState, MemoryUse, Work, failed, whole,
+};
 use ridgelight::plan::Rectangle;
 use ridgelight::{Error, Result};
 
-/// State of the window's picture between the copies into it.
-const FILLED: (vk::ImageLayout, vk::AccessFlags2) =
-    (vk::ImageLayout::TRANSFER_DST_OPTIMAL, vk::AccessFlags2::TRANSFER_WRITE);
-const READ: (vk::ImageLayout, vk::AccessFlags2) =
-    (vk::ImageLayout::TRANSFER_SRC_OPTIMAL, vk::AccessFlags2::TRANSFER_READ);
-const NEW: (vk::ImageLayout, vk::AccessFlags2) =
-    (vk::ImageLayout::UNDEFINED, vk::AccessFlags2::NONE);
-const SHOWN: (vk::ImageLayout, vk::AccessFlags2) =
-    (vk::ImageLayout::PRESENT_SRC_KHR, vk::AccessFlags2::NONE);
+/// States of the window's picture: between the copies into it, and those before and after.
+const FILLED: ImageState = ImageState {
+    stage: vk::PipelineStageFlags2::ALL_TRANSFER,
+    access: vk::AccessFlags2::TRANSFER_WRITE,
+    layout: vk::ImageLayout::TRANSFER_DST_OPTIMAL,
+};
+const READ: ImageState = ImageState {
+    access: vk::AccessFlags2::TRANSFER_READ,
+    layout: vk::ImageLayout::TRANSFER_SRC_OPTIMAL,
+    ..FILLED
+};
+/// Shapes are blended with it.
+const DRAWN: ImageState = ImageState {
+    stage: vk::PipelineStageFlags2::COLOR_ATTACHMENT_OUTPUT,
+    access: vk::AccessFlags2::from_raw(
+        vk::AccessFlags2::COLOR_ATTACHMENT_READ.as_raw()
+            | vk::AccessFlags2::COLOR_ATTACHMENT_WRITE.as_raw(),
+    ),
+    layout: vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL,
+};
+const NEW: ImageState =
+    ImageState { access: vk::AccessFlags2::NONE, layout: vk::ImageLayout::UNDEFINED, ..FILLED };
+const SHOWN: ImageState = ImageState {
+    access: vk::AccessFlags2::NONE,
+    layout: vk::ImageLayout::PRESENT_SRC_KHR,
+    ..FILLED
+};
 
 impl Screen {
     /// Uploads the panes' data; the slot is free.
@@ -29,6 +49,7 @@ impl Screen {
     ) -> Result<()> {
         let chain = self.chain.as_ref().expect("draw checks");
         let (size, swaps, is_readable) = (chain.size, chain.swaps(), chain.is_readable);
+        let format = chain.format;
         for pane in panes.iter_mut() {
             check(pane, size, swaps)?;
             let (inputs, outputs) = (pane.frame.inputs(), pane.frame.outputs());
@@ -36,34 +57,14 @@ impl Screen {
         }
         let columns: Vec<[u32; 2]> = panes.iter().map(|pane| [pane.left, pane.size()[0]]).collect();
         check_apart(&columns)?;
-        for (n, panel) in options.panels.iter().enumerate() {
-            check_panel(n, panel)?;
-        }
         let gpu = &mut self.gpu;
         let of_slot = &mut self.slots[slot];
         of_slot.heights.resize_with(of_slot.heights.len().max(panes.len()), || None);
         for (pane, place) in panes.iter().zip(&mut of_slot.heights) {
-            let Some((heights, at)) = pane.heights else { continue };
-            let cols = pane.frame.plan().size[0] as usize;
-            let bytes = 4 * u64::from(at.cols) * u64::from(at.rows);
-            let named = ("heights of a frame", bytes);
-            let mut to = mapped(fitting(gpu, place, named, MemoryUse::Upload)?)?;
-            for row in at.row..at.row + at.rows {
-                let from = row as usize * cols + at.col as usize;
-                let row: &[u8] = bytemuck::cast_slice(&heights[from..from + at.cols as usize]);
-                let (here, after) = to.split_at_mut(row.len());
-                here.copy_from_slice(row);
-                to = after;
-            }
+            stage(gpu, place, pane.heights, pane.frame)?;
         }
-        let bytes: u64 = options.panels.iter().map(|panel| 4 * panel.pixels.len() as u64).sum();
-        if bytes > 0 {
-            let named = ("text of a frame", bytes);
-            let to = mapped(fitting(gpu, &mut of_slot.text, named, MemoryUse::Upload)?)?;
-            let pixels = options.panels.iter().flat_map(|panel| panel.pixels);
-            for (to, pixel) in to.as_chunks_mut::<4>().0.iter_mut().zip(pixels) {
-                *to = ordered(*pixel, swaps);
-            }
+        if !options.overlay.primitives.is_empty() {
+            self.painter.prepare(gpu, (of_slot.pool, format))?;
         }
         if options.keeps {
             if !is_readable {
@@ -107,19 +108,37 @@ impl Screen {
             if let (Some((_, at)), Some(from)) = (pane.heights, &self.slots[slot].heights[n]) {
                 self.copy_heights(commands, (from.buffer, at), pane.frame);
             }
-            let (inputs, outputs) = (pane.frame.inputs(), pane.frame.outputs());
-            let renderer = pane.frame.renderer();
-            match pane.work {
-                Work::Passes([]) => {}
-                Work::Passes(passes) => {
-                    renderer.record_passes(commands, slot, &inputs, &outputs, passes)?;
-                }
-                Work::Edit(at) => renderer.record_edit(commands, slot, &inputs, &outputs, at)?,
-            }
+            record_work(pane.frame, commands, slot, (pane.work, &[]))?;
             let shown = (&*pane.frame, pane.viewpoint, options.tone.exposure);
             self.drawers[n].record(&self.gpu, commands, slot, shown)?;
         }
-        self.fill(slot, image, panes, options);
+        self.fill(slot, image, panes, options)?;
+        // SAFETY: recording was begun above.
+        unsafe { self.gpu.host().device.end_command_buffer(commands) }
+            .map_err(failed("recording a frame"))
+    }
+
+    /// Records work on a frame alone, without a picture.
+    pub(super) fn record_light(
+        &mut self,
+        slot: usize,
+        frame: &mut Frame,
+        heights: Option<(&[f32], Rectangle)>,
+        (work, borrowed): (Work<'_>, &[ImageArg]),
+    ) -> Result<()> {
+        check_heights(heights, frame)?;
+        let (inputs, outputs) = (inputs_of(frame, borrowed)?, frame.outputs());
+        frame.renderer().check_recording(slot, &inputs, &outputs, work)?;
+        let of_slot = &mut self.slots[slot];
+        if of_slot.heights.is_empty() {
+            of_slot.heights.push(None);
+        }
+        stage(&mut self.gpu, &mut of_slot.heights[0], heights, frame)?;
+        let commands = self.begin(slot)?;
+        if let (Some((_, at)), Some(from)) = (heights, &self.slots[slot].heights[0]) {
+            self.copy_heights(commands, (from.buffer, at), frame);
+        }
+        record_work(frame, commands, slot, (work, borrowed))?;
         // SAFETY: recording was begun above.
         unsafe { self.gpu.host().device.end_command_buffer(commands) }
             .map_err(failed("recording a frame"))
@@ -170,19 +189,25 @@ impl Screen {
         }
     }
 
-    /// Copies pictures and text into the window's image, and back to the host where requested.
-    fn fill(&self, slot: usize, image: usize, panes: &[Pane<'_>], options: &PresentOptions<'_>) {
-        let (device, slot) = (&self.gpu.host().device, &self.slots[slot]);
+    /// Copies pictures into the window's image, draws the overlay over them, and copies back to the host where requested.
+    fn fill(
+        &mut self,
+        slot: usize,
+        image: usize,
+        panes: &[Pane<'_>],
+        options: &PresentOptions<'_>,
+    ) -> Result<()> {
+        let (device, commands) = (&self.gpu.host().device, self.slots[slot].commands);
         let chain = self.chain.as_ref().expect("acquired from");
-        let (to, commands) = (chain.images[image], slot.commands);
-        let change = |from: (vk::ImageLayout, vk::AccessFlags2), to_state| {
-            self.change(commands, to, from, to_state);
-        };
+        let to = chain.images[image];
+        let change = |from, to_state| self.change(commands, to, from, to_state);
         change(NEW, FILLED);
         if !matches!(panes, [one] if one.size() == chain.size) {
             let black = vk::ClearColorValue { float32: [0.0, 0.0, 0.0, 1.0] };
             // SAFETY: `commands` is being recorded; the image is in this layout.
-            unsafe { device.cmd_clear_color_image(commands, to, FILLED.0, &black, &[whole(1)]) };
+            unsafe {
+                device.cmd_clear_color_image(commands, to, FILLED.layout, &black, &[whole(1)])
+            };
             change(FILLED, FILLED);
         }
         for (pane, drawer) in panes.iter().zip(&self.drawers) {
@@ -196,56 +221,76 @@ impl Screen {
             let (from, layout) = (drawer.picture(), COPIED.layout);
             // SAFETY: `commands` is being recorded; texels of both images are four bytes; the pane was checked
             // to be within the image, and has the size of its picture.
-            unsafe { device.cmd_copy_image(commands, from, layout, to, FILLED.0, &copy) };
+            unsafe { device.cmd_copy_image(commands, from, layout, to, FILLED.layout, &copy) };
         }
-        let mut offset = 0;
-        for panel in options.panels {
-            if let (Some(region), Some(from)) = (text(panel, chain.size, offset), &slot.text) {
-                change(FILLED, FILLED);
-                // SAFETY: the buffer holds the panel's pixels from the offset on, the region is cut to the image.
-                unsafe {
-                    let (from, region) = (from.buffer, [region]);
-                    device.cmd_copy_buffer_to_image(commands, from, to, FILLED.0, &region);
-                }
-            }
-            offset += 4 * panel.pixels.len() as u64;
+        let (size, mut last) = (chain.size, FILLED);
+        if !options.overlay.primitives.is_empty() {
+            change(FILLED, DRAWN);
+            self.draw_over(commands, image, options.overlay)?;
+            last = DRAWN;
         }
-        let whole_image = copied(chain.size);
-        let mut last = FILLED;
-        if let (true, Some(back)) = (options.keeps, &slot.readback) {
-            change(FILLED, READ);
+        if let (true, Some(back)) = (options.keeps, &self.slots[slot].readback) {
+            self.change(commands, to, last, READ);
             let written = [vk::MemoryBarrier2::default()
                 .src_stage_mask(vk::PipelineStageFlags2::COPY)
                 .src_access_mask(vk::AccessFlags2::TRANSFER_WRITE)
                 .dst_stage_mask(vk::PipelineStageFlags2::HOST)
                 .dst_access_mask(vk::AccessFlags2::HOST_READ)];
             let info = vk::DependencyInfo::default().memory_barriers(&written);
+            let device = &self.gpu.host().device;
             // SAFETY: the buffer holds a picture.
             unsafe {
-                let region = [whole_image];
-                device.cmd_copy_image_to_buffer(commands, to, READ.0, back.buffer, &region);
+                let region = [copied(size)];
+                device.cmd_copy_image_to_buffer(commands, to, READ.layout, back.buffer, &region);
                 device.cmd_pipeline_barrier2(commands, &info);
             }
             last = READ;
         }
-        change(last, SHOWN);
+        self.change(commands, to, last, SHOWN);
+        Ok(())
     }
 
-    /// A barrier between copies; the first follows the wait for the picture's semaphore.
+    /// Draws shapes into the window's image, which is in [`DRAWN`].
+    fn draw_over(
+        &mut self,
+        commands: vk::CommandBuffer,
+        image: usize,
+        overlay: Overlay<'_>,
+    ) -> Result<()> {
+        let chain = self.chain.as_ref().expect("acquired from");
+        let size @ [width, height] = chain.size;
+        let into = [vk::RenderingAttachmentInfo::default()
+            .image_view(chain.views[image])
+            .image_layout(DRAWN.layout)
+            .load_op(vk::AttachmentLoadOp::LOAD)
+            .store_op(vk::AttachmentStoreOp::STORE)];
+        let info = vk::RenderingInfo::default()
+            .render_area(vk::Extent2D { width, height }.into())
+            .layer_count(1)
+            .color_attachments(&into);
+        // SAFETY: `commands` is being recorded; the view is of the acquired image, of this size.
+        unsafe { self.gpu.host().device.cmd_begin_rendering(commands, &info) };
+        self.painter.record(commands, size, overlay)?;
+        // SAFETY: begun above.
+        unsafe { self.gpu.host().device.cmd_end_rendering(commands) };
+        Ok(())
+    }
+
+    /// A barrier between uses; the first follows the wait for the picture's semaphore.
     fn change(
         &self,
         commands: vk::CommandBuffer,
         image: vk::Image,
-        from: (vk::ImageLayout, vk::AccessFlags2),
-        to: (vk::ImageLayout, vk::AccessFlags2),
+        from: ImageState,
+        to: ImageState,
     ) {
         let barrier = [vk::ImageMemoryBarrier2::default()
-            .src_stage_mask(vk::PipelineStageFlags2::ALL_TRANSFER)
-            .src_access_mask(from.1)
-            .dst_stage_mask(vk::PipelineStageFlags2::ALL_TRANSFER)
-            .dst_access_mask(to.1)
-            .old_layout(from.0)
-            .new_layout(to.0)
+            .src_stage_mask(from.stage)
+            .src_access_mask(from.access)
+            .dst_stage_mask(to.stage)
+            .dst_access_mask(to.access)
+            .old_layout(from.layout)
+            .new_layout(to.layout)
             .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
             .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
             .image(image)
@@ -271,6 +316,55 @@ impl Screen {
     }
 }
 
+/// The frame's inputs, the last of them borrowed.
+fn inputs_of(frame: &Frame, borrowed: &[ImageArg]) -> Result<Vec<ImageArg>> {
+    let mut inputs = frame.inputs();
+    let Some(own) = inputs.len().checked_sub(borrowed.len()) else {
+        let (found, most) = (borrowed.len().to_string(), inputs.len());
+        return Err(Error::setting("borrowed inputs", found, format!("{most} at most")));
+    };
+    inputs.truncate(own);
+    inputs.extend(borrowed);
+    Ok(inputs)
+}
+
+fn record_work(
+    frame: &mut Frame,
+    commands: vk::CommandBuffer,
+    slot: usize,
+    (work, borrowed): (Work<'_>, &[ImageArg]),
+) -> Result<()> {
+    let (inputs, outputs) = (inputs_of(frame, borrowed)?, frame.outputs());
+    let renderer = frame.renderer();
+    match work {
+        Work::Passes([]) => Ok(()),
+        Work::Passes(passes) => renderer.record_passes(commands, slot, &inputs, &outputs, passes),
+        Work::Edit(at) => renderer.record_edit(commands, slot, &inputs, &outputs, at),
+    }
+}
+
+/// Heights of a rectangle, row after row, in a buffer that replaces none or a smaller one.
+fn stage(
+    gpu: &mut Headless,
+    place: &mut Option<Backed>,
+    heights: Option<(&[f32], Rectangle)>,
+    frame: &Frame,
+) -> Result<()> {
+    let Some((heights, at)) = heights else { return Ok(()) };
+    let cols = frame.plan().size[0] as usize;
+    let bytes = 4 * u64::from(at.cols) * u64::from(at.rows);
+    let named = ("heights of a frame", bytes);
+    let mut to = mapped(fitting(gpu, place, named, MemoryUse::Upload)?)?;
+    for row in at.row..at.row + at.rows {
+        let from = row as usize * cols + at.col as usize;
+        let row: &[u8] = bytemuck::cast_slice(&heights[from..from + at.cols as usize]);
+        let (here, after) = to.split_at_mut(row.len());
+        here.copy_from_slice(row);
+        to = after;
+    }
+    Ok(())
+}
+
 fn ordered([r, g, b, a]: [u8; 4], swaps: bool) -> [u8; 4] {
     if swaps { [b, g, r, a] } else { [r, g, b, a] }
 }
@@ -290,23 +384,28 @@ impl Pane<'_> {
     }
 }
 
+/// Whether new heights are within their frame's field.
+fn check_heights(heights: Option<(&[f32], Rectangle)>, frame: &Frame) -> Result<()> {
+    let Some((heights, at)) = heights else { return Ok(()) };
+    let [cols, rows] = frame.plan().size;
+    let within = |first: u32, count: u32, all: u32| {
+        first.checked_add(count).is_some_and(|end| end <= all) && count > 0
+    };
+    let grid_points = cols as usize * rows as usize;
+    if heights.len() == grid_points
+        && within(at.col, at.cols, cols)
+        && within(at.row, at.rows, rows)
+    {
+        return Ok(());
+    }
+    let found = format!("{} heights, new in {at:?}", heights.len());
+    let expected = format!("{grid_points}, new within {cols} × {rows}");
+    Err(Error::setting("heights", found, expected))
+}
+
 /// Whether a pane is within a picture and its heights within its field.
 fn check(pane: &Pane<'_>, size: [u32; 2], swaps: bool) -> Result<()> {
-    let plan = pane.frame.plan();
-    let field @ [cols, rows] = plan.size;
-    if let Some((heights, at)) = pane.heights {
-        let within = |first: u32, count: u32, all: u32| {
-            first.checked_add(count).is_some_and(|end| end <= all) && count > 0
-        };
-        let grid_points = cols as usize * rows as usize;
-        if heights.len() != grid_points
-            || !(within(at.col, at.cols, cols) && within(at.row, at.rows, rows))
-        {
-            let found = format!("{} heights, new in {at:?}", heights.len());
-            let expected = format!("{grid_points}, new within {} × {}", field[0], field[1]);
-            return Err(Error::setting("heights", found, expected));
-        }
-    }
+    check_heights(pane.heights, pane.frame)?;
     let [width, height] = pane.size();
     let is_ordered = match pane.viewpoint {
         Viewpoint::Map(map) => map.swaps == swaps,
@@ -337,17 +436,6 @@ fn check_apart(columns: &[[u32; 2]]) -> Result<()> {
     Ok(())
 }
 
-/// Whether a panel, by its index in the options, has a pixel per place.
-fn check_panel(n: usize, panel: &Panel<'_>) -> Result<()> {
-    let [width, height] = panel.size;
-    let expected = u64::from(width) * u64::from(height);
-    if panel.pixels.len() as u64 == expected {
-        return Ok(());
-    }
-    let expected = format!("{expected} of {width} × {height}");
-    Err(Error::setting(format!("panel {n}: pixels"), panel.pixels.len().to_string(), expected))
-}
-
 /// All of an image of one layer, rows packed.
 fn copied([width, height]: [u32; 2]) -> vk::BufferImageCopy {
     vk::BufferImageCopy::default()
@@ -358,17 +446,6 @@ fn copied([width, height]: [u32; 2]) -> vk::BufferImageCopy {
             layer_count: 1,
         })
         .image_extent(vk::Extent3D { width, height, depth: 1 })
-}
-
-/// A panel's part of a picture, from an offset of the buffer; none where it is outside.
-fn text(panel: &Panel<'_>, size: [u32; 2], offset: u64) -> Option<vk::BufferImageCopy> {
-    let [width, height] = panel.size;
-    let left = |i: usize| size[i].saturating_sub(panel.at[i]).min(panel.size[i]);
-    let shown = [left(0), left(1)];
-    let [x, y] = panel.at.map(|at| at as i32);
-    let region = copied(shown).buffer_row_length(width).buffer_image_height(height);
-    let region = region.image_offset(vk::Offset3D { x, y, z: 0 }).buffer_offset(offset);
-    (!shown.contains(&0)).then_some(region)
 }
 
 #[cfg(test)]
@@ -382,14 +459,5 @@ mod tests {
         let refused = check_apart(&[[0, 8], [20, 2], [7, 8]]).unwrap_err().to_string();
         assert!(refused.contains("pane 2: columns: found 7 to 15, over 0 to 8"), "{refused}");
         assert!(check_apart(&[[3, 2], [0, 20]]).is_err());
-    }
-
-    #[test]
-    fn panels_have_a_pixel_a_place() {
-        let pixels = [[0_u8; 4]; 6];
-        let panel = Panel { at: [0; 2], size: [3, 2], pixels: &pixels };
-        check_panel(0, &panel).expect("whole");
-        let refused = check_panel(1, &Panel { size: [2, 2], ..panel }).unwrap_err().to_string();
-        assert!(refused.contains("panel 1: pixels: found 6, expected 4 of 2 × 2"), "{refused}");
     }
 }

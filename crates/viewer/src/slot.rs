@@ -15,9 +15,8 @@ pub(super) struct Slot {
     pub is_in_flight: bool,
     /// Signalled when its picture may be drawn into; null until [`acquired`](Self::acquired) makes it.
     pub acquired: vk::Semaphore,
-    /// Heights of each pane, text, and the picture that is read back: made when first needed.
+    /// Heights of each pane, and the picture that is read back: made when first needed.
     pub heights: Vec<Option<Backed>>,
-    pub text: Option<Backed>,
     pub readback: Option<Backed>,
     /// Whether the last picture lit each of its panes.
     pub was_lit: Vec<bool>,
@@ -37,7 +36,6 @@ impl Slot {
             is_in_flight: false,
             acquired: vk::Semaphore::null(),
             heights: Vec::new(),
-            text: None,
             readback: None,
             was_lit: Vec::new(),
         };
@@ -103,8 +101,7 @@ impl Slot {
     }
 
     pub fn free(&mut self, gpu: &mut Headless) {
-        let others = [&mut self.text, &mut self.readback];
-        let all = self.heights.iter_mut().chain(others);
+        let all = self.heights.iter_mut().chain([&mut self.readback]);
         for mut backed in all.filter_map(Option::take) {
             gpu.memory.free(&mut backed);
         }

@@ -14,8 +14,11 @@ pub struct Map {
     pub size: [u32; 2],
     /// Column and row of the field at the picture's upper left corner, within ±1e6; 0, 0 is the field's.
     pub corner: [f32; 2],
-    /// Texels per pixel, [1e-3..1e3]: a pixel shows the texel at its middle.
+    /// Texels per pixel along a side, [1e-3..1e3]: up to 1 a pixel shows the texel at its middle, beyond that the mean
+    /// of several.
     pub grid_points_per_pixel: f32,
+    /// Whether pixels between the centres of texels have light between theirs (bilinear), below 2 texels per pixel.
+    pub is_smooth: bool,
     /// Whether the order of a pixel's four bytes is B, G, R, A instead of R, G, B, A.
     pub swaps: bool,
 }
@@ -23,6 +26,15 @@ pub struct Map {
 impl Map {
     /// The four bytes of pixels beyond the field.
     pub const BEYOND: [u8; 4] = [0x20, 0x20, 0x20, 0xff];
+
+    /// Places per pixel along a side: the power of two not below the texels per pixel, 8 at most.
+    fn places(&self) -> u32 {
+        if self.is_smooth && self.grid_points_per_pixel < 2.0 {
+            return 1;
+        }
+        let needed = self.grid_points_per_pixel.clamp(1.0, 8.0).ceil();
+        (needed as u32).next_power_of_two()
+    }
 
     /// # Errors
     /// The value out of range, by name.
@@ -62,6 +74,8 @@ pub(crate) fn plan(builder: &mut Builder, map: &Map, bound: &[(&str, ResourceId)
             grid_points_per_pixel: map.grid_points_per_pixel,
             swaps: u32::from(map.swaps),
             beyond: u32::from_le_bytes(Map::BEYOND),
+            places: map.places() as i32,
+            is_smooth: u32::from(map.is_smooth),
         },
         bound,
         pixels * if map.has_colour { 20 } else { 8 },

@@ -3,6 +3,8 @@
 
 /// The field from above, as a map.
 pub mod map_draw;
+/// Light of a coarse grid on a finer one.
+pub(crate) mod preview;
 /// `--camera`: the ground as a mesh without vertex buffers. The background (`sky_draw`) and exposure with sRGB
 /// (`picture_tone`) have no more than push constants; `plan::view` makes them.
 pub(crate) mod terrain_draw;

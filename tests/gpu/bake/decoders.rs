@@ -98,7 +98,11 @@ fn all() -> [Decoder; 9] {
         let is_octahedral = encoding.name.ends_with("-octahedral");
         let scale = if encoding.name == "f32" { 1.0 } else { PI };
         let octahedral = ("BENT_OCTAHEDRAL", Constant::Bool(is_octahedral));
-        vec![octahedral, ("BENT_CONE_SCALE", Constant::Float(scale))]
+        vec![
+            octahedral,
+            ("BENT_CONE_SCALE", Constant::Float(scale)),
+            ("BENT_Y", Constant::Float(1.0)),
+        ]
     };
     let curved = |_: &Encoding| {
         let [outwards, inwards] = CURVATURES.map(Constant::Float);

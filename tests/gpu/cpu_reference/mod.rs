@@ -75,8 +75,8 @@ fn references() -> impl Iterator<Item = &'static Reference> {
     ROOMS.into_iter().flatten()
 }
 
-/// Compared with the CPU reference byte by byte over whole pictures: [`crate::view::map`].
-const ELSEWHERE: [&str; 1] = ["map_draw"];
+/// Compared with their CPU references over whole pictures: [`crate::view`].
+const ELSEWHERE: [&str; 3] = ["map_draw", "preview_gather", "preview_shade"];
 
 fn reference_of(pass: &Pass) -> CpuReference {
     let reference = references().find(|t| t.0 == pass.name());

@@ -57,6 +57,7 @@ fn maps_match_the_cpu_reference_to_the_bit() {
         size: field,
         corner: [0.0; 2],
         grid_points_per_pixel: 1.0,
+        is_smooth: false,
         swaps: false,
     };
     let grey = Map { has_colour: false, ..at_once };
@@ -69,8 +70,12 @@ fn maps_match_the_cpu_reference_to_the_bit() {
         ..at_once
     };
     let far = Map { size: [19, 30], corner: [5.0, -8.0], grid_points_per_pixel: 1.7, ..grey };
+    let farther = Map { grid_points_per_pixel: 3.3, size: [13, 9], ..near };
+    let smooth = Map { is_smooth: true, ..near };
     let voids: Vec<bool> = (0..37 * 23).map(|i| i % 11 == 3).collect();
-    for (map, exposure) in [(at_once, 1.0), (grey, 0.0), (near, 3.7), (far, 1e-3)] {
+    for (map, exposure) in
+        [(at_once, 1.0), (grey, 0.0), (near, 3.7), (far, 1e-3), (farther, 1.3), (smooth, 0.6)]
+    {
         let tone = Tone::picture(exposure);
         let mut light = light(tone, 37 * 23);
         if !map.has_colour {
@@ -79,7 +84,11 @@ fn maps_match_the_cpu_reference_to_the_bit() {
         let voids = map.has_voids.then_some(voids.as_slice());
         let want = map_draw(&map, &light, voids, tone);
         let got = drawn(&mut device, (&map, tone), &light, voids);
-        assert!(got == want, "{map:?}: {} pixels differ", differing(&got, &want));
+        // Smooth maps compute the curve instead of searching its steps.
+        let most = u8::from(map.is_smooth && map.grid_points_per_pixel < 2.0);
+        let is_near = |(a, b): (&[u8; 4], &[u8; 4])| (0..4).all(|i| a[i].abs_diff(b[i]) <= most);
+        let is_same = got.iter().zip(&want).all(is_near);
+        assert!(is_same, "{map:?}: {} pixels differ", differing(&got, &want));
         // The comparison can fail.
         let brighter = map_draw(&map, &light, voids, Tone::picture(1.1 * exposure + 0.1));
         assert!(differing(&brighter, &want) > 10, "{map:?}");

@@ -46,7 +46,7 @@ const ENTRIES: [Entry; 12] = [
     Entry {
         name: "dawn",
         title: "Mountains at dawn",
-        about: "Mt Washington (SRTM). The sun is 5 degrees high; the sky is the clear sky around it.",
+        about: "Mt Washington (SRTM). The sun is 6 degrees high; the sky is the clear sky around it.",
         made: None,
         command: "render FIELD --sun 80,6,0.53,3,2,1 --sky clear --camera \"from 150 up 20\" --size 1024x576",
         shown: Shown::Picture,
@@ -70,9 +70,9 @@ const ENTRIES: [Entry; 12] = [
     Entry {
         name: "moss",
         title: "Moss with bounces",
-        about: "Synthetic cushions, green. Three bounces light the gaps.",
-        made: Some(("cushions", 512)),
-        command: "render FIELD --sun 315,30,8,1.5 --sky 0.6 --albedo 0.2,0.3,0.11 --bounces 3",
+        about: "A displacement map of moss (ambientCG), each pixel half a millimetre. Two bounces light the gaps.",
+        made: None,
+        command: "render assets/moss_384.png --cell 0.0005 --z-scale 6e-7 --sun 315,25,4,2.2,2,1.6 --sky 0.35,0.4,0.5 --albedo 0.16,0.22,0.06 --bounces 2 --exposure 3.4",
         shown: Shown::Picture,
     },
     Entry {
@@ -147,7 +147,6 @@ fn terrain_of(name: &str, side: usize, time_s: f64) -> Result<HeightField> {
         "city" => terrain::city(side),
         "coast" => terrain::coast(side),
         "craters" => terrain::craters(side),
-        "cushions" => terrain::cushions(side),
         "dunes" => terrain::dunes(side),
         "escarpment" => terrain::escarpment(side),
         "fractal" => fractal(side, 1),
@@ -155,7 +154,7 @@ fn terrain_of(name: &str, side: usize, time_s: f64) -> Result<HeightField> {
         _ => Err(ridgelight::Error::setting(
             "NAME",
             name,
-            "city, coast, craters, cushions, dunes, escarpment, fractal or waves",
+            "city, coast, craters, dunes, escarpment, fractal or waves",
         )),
     }
 }

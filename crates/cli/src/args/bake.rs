@@ -4,7 +4,7 @@ use clap::Args;
 
 use super::values::{curvatures, grid, whole};
 use super::{GlobalArgs, Input, LightArgs, QualityArgs, SurfaceArgs};
-use crate::bake::{self, Format, Kind};
+use crate::bake::{self, Format, Kind, Normals};
 
 #[derive(Args)]
 #[command(
@@ -30,13 +30,30 @@ pub struct BakeArgs {
     pub what: Vec<&'static Kind>,
     /// File formats of each map. Default each kind's
     ///
-    /// exr, tif (GeoTIFF) and npy hold values in f32; ktx2 and png hold the values of --encoding. An exr stays in memory until the end;
+    /// exr, tif (GeoTIFF) and npy hold values in f32; ktx2, dds and png hold the values of --encoding. An exr stays in memory until the end;
     /// the others are written as they are computed.
     #[arg(long, value_name = "LIST", value_delimiter = ',', help_heading = "Output")]
     pub format: Vec<Format>,
-    /// Packing of a kind in .ktx2 and .png, as horizon=unorm16-sin; default the first in the list below
+    /// Packing of a kind in .ktx2, .dds and .png, as horizon=unorm16-sin; default the first in the list below
     #[arg(long, value_name = "KIND=ENCODING,…", value_delimiter = ',', value_parser = bake::packing, help_heading = "Output", hide_short_help = true)]
     pub encoding: Vec<bake::Packing>,
+    /// Compress textures in blocks: BC4 for one component, BC7 for bent-normal, BC6H for scatter and brdf
+    ///
+    /// Applies to ktx2 and dds, whose encoding is then unorm8 or f16. A texel takes 1/2 to 1 byte. The error is measured, printed and
+    /// put into manifest.json.
+    #[arg(long, help_heading = "Output", hide_short_help = true)]
+    pub compress: bool,
+    /// Write all mip levels of textures, each the mean of the one before
+    ///
+    /// For kinds from horizons, and for scatter. Adds a third to the size.
+    #[arg(long, help_heading = "Output", hide_short_help = true)]
+    pub mips: bool,
+    /// Axes of bent-normal in textures and pictures: opengl has y to the first row (Unity, Godot), directx y to the last row
+    /// (Unreal) [default: opengl]
+    ///
+    /// x is east and z up in both. exr, npy and tif always have y to the first row, which is north.
+    #[arg(long, value_name = "WORD", help_heading = "Output", hide_short_help = true)]
+    pub normals: Option<Normals>,
     /// Directions of ellipse, curved-ellipse, visible-points and scattered light, 4 to 4096 [default: 256]
     ///
     /// A spherical Fibonacci set: on the upper hemisphere for ellipses alone, else on the whole sphere. Fewer are coarser;

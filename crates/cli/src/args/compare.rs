@@ -20,7 +20,7 @@ Exit status: 0 within all bounds, 1 beyond one or failed (each bound is named wi
 #[derive(Args)]
 #[command(after_help = AFTER_HELP)]
 pub struct CompareArgs {
-    /// Result: .exr, .png, .hdr or .npy
+    /// Result: .exr, .tif, .png, .hdr or .npy
     #[arg(value_name = "A", help_heading = "Input")]
     pub result: PathBuf,
     /// Expected result, of the same size
@@ -31,7 +31,7 @@ pub struct CompareArgs {
     pub horizons: bool,
     /// Multiply radiance for FLIP, clipped at 1
     ///
-    /// For .exr and .hdr; a .png is used as it is.
+    /// For .exr, .tif and .hdr; a .png is used as it is.
     #[arg(
         long,
         help_heading = "Output",

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches, ValueEnum};
 use ridgelight::scene::Lights;
 
-use super::values::{SkyArg, SpecularArg, cell, sky, specular};
+use super::values::{SkyArg, SpecularArg, bbox, cell, sky, specular, whole};
 use crate::lights::LIGHTS;
 use crate::setup::tint::Tint;
 
@@ -166,6 +166,30 @@ pub struct FieldArgs {
         help_heading = "Input"
     )]
     pub nodata: Option<f64>,
+    /// Band of a TIFF that holds the heights, from 1. Default 1
+    ///
+    /// Also the plane of an NPY with three dimensions, where it has no default.
+    #[arg(
+        long,
+        value_name = "N",
+        value_parser = whole,
+        allow_negative_numbers = true,
+        hide_short_help = true,
+        help_heading = "Input"
+    )]
+    pub band: Option<u32>,
+    /// Cut the field to a box in the coordinates of its reference system
+    ///
+    /// Cells that the box touches are kept. Outputs lie where the part lies.
+    #[arg(
+        long,
+        value_name = "XMIN,YMIN,XMAX,YMAX",
+        value_parser = bbox,
+        allow_hyphen_values = true,
+        hide_short_help = true,
+        help_heading = "Input"
+    )]
+    pub bbox: Option<[f64; 4]>,
     /// Surface beyond the edge of the field
     #[arg(long, default_value = "plane", hide_short_help = true)]
     pub border: BorderName,

@@ -93,6 +93,13 @@ pub fn cell(text: &str) -> Result<[f64; 2], String> {
     }
 }
 
+/// A box: west, south, east, north.
+pub fn bbox(text: &str) -> Result<[f64; 4], String> {
+    let all = numbers(text)?;
+    let count = all.len();
+    all.try_into().map_err(|_| format!("{count} numbers, expected XMIN,YMIN,XMAX,YMAX"))
+}
+
 pub fn bytes(text: &str) -> Result<u64, String> {
     let digits = text.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(text.len());
     let (number, unit) = text.split_at(digits);

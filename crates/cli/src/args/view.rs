@@ -21,16 +21,15 @@ pub struct ViewArgs {
     pub surface: SurfaceArgs,
     #[command(flatten)]
     pub quality: QualityArgs,
-    /// Factor on radiance before the tone curve
+    /// Factor on radiance before the tone curve [default: puts the 99th percentile of luminance at 0.8]
     #[arg(
         long,
         hide_short_help = true,
         help_heading = "Output",
-        default_value_t = 1.0,
         value_name = "FACTOR",
         allow_negative_numbers = true
     )]
-    pub exposure: f32,
+    pub exposure: Option<f32>,
     /// Width and height of the window, pixels
     #[arg(long, help_heading = "Output", default_value = "1024x768", value_name = "WxH", value_parser = pixels)]
     pub size: Pixels,

@@ -4,14 +4,20 @@ use std::cell::OnceCell;
 
 use ridgelight::gpu::Headless;
 use ridgelight::plan::{self, Limits, Plan};
-use ridgelight::scene::{Border, Directions, HeightField, Quality, Scatter, Scene, VisiblePoints};
+use ridgelight::scene::{
+    Border, Directions, HeightField, Method, Quality, Scatter, Scene, VisiblePoints,
+};
 use ridgelight::{Error, Result};
 use ridgelight_bake::{Angles, HorizonSums};
 
-use super::kinds::{self, Kind, Map, OfDirections, Say, Source, Table};
-use super::map::{Format, Wanted};
+use super::kinds::{self, Kind, Map, Normals, OfDirections, Source, Table};
+use super::map::Wanted;
+use super::stages::{FILES, Stage};
 use super::{MANIFEST, request};
 use crate::horizon;
+
+/// The stage that finds the horizons of all kinds that read them.
+pub const HORIZONS: &str = "horizons";
 
 /// What is known before anything runs.
 pub struct Job<'a> {
@@ -26,16 +32,86 @@ pub struct Job<'a> {
     pub angles: Angles,
     /// Outward and inward curvature of the base surface, 1/m.
     pub curvature: Option<[f64; 2]>,
-    /// Of the light and view pairs between the table's angles.
+    /// The axes of normals in textures and pictures.
+    pub normals: Normals,
+    /// Light and view pairs at which a table is tested between its angles.
+    pub pairs: usize,
+    /// Of these pairs.
     pub seed: u32,
     /// The table that `brdf`, `brdf-factors` and `brdf-harmonics` share, made on first use.
     pub table: OnceCell<Table>,
     pub maps: Vec<(Wanted, Map)>,
 }
 
-impl Job<'_> {
-    pub fn field(&self) -> &HeightField {
+impl<'a> Job<'a> {
+    pub fn field(&self) -> &'a HeightField {
         &self.scene.field
+    }
+
+    /// The field's hash, as the manifest and the textures state it.
+    pub fn hash(&self) -> String {
+        format!("{:016x}", self.field().hash(self.border()))
+    }
+
+    /// Lays out a map for each kind.
+    pub fn lay_out(&mut self, wanted: Vec<Wanted>) -> Result<()> {
+        let maps = wanted.into_iter().map(|wanted| {
+            let map = (wanted.kind.map)(self, &wanted)?;
+            Ok((wanted, map))
+        });
+        self.maps = maps.collect::<Result<_>>()?;
+        Ok(())
+    }
+
+    /// The least number of angles that the kinds can store.
+    pub fn least_angles(&self) -> usize {
+        let least = self.kinds().map(|kind| match kind.name {
+            "brdf-factors" => kinds::FACTORS,
+            "brdf-harmonics" => self.sh_order().pow(2),
+            _ => 1,
+        });
+        least.max().unwrap_or(1)
+    }
+
+    /// The stages, with their work, in the order in which they first run.
+    pub fn stages(&self) -> Result<Vec<Stage>> {
+        let texels = self.grid_points() as f64;
+        // A brute-force march is as long as the field.
+        let (across, unit) = match self.quality.method {
+            Method::BruteForce => {
+                let side = self.field().rows().max(self.field().cols());
+                (side as f64, "texels x azimuths x cells of the longer side")
+            }
+            _ => (1.0, "texels x azimuths"),
+        };
+        let horizons = texels * f64::from(self.quality.azimuths) * across;
+        let mut all = Vec::new();
+        if self.has(Kind::reads_horizons) {
+            all.push(Stage::new(HORIZONS, horizons, unit));
+        }
+        let mut has_table = false;
+        for kind in self.kinds() {
+            let name = kind.name;
+            match kind.source {
+                Source::Horizons | Source::Sums(_) => {}
+                Source::SkyView => all.push(Stage::new(name, horizons, unit)),
+                Source::Directions(_) => {
+                    let rays = texels * self.around.count() as f64;
+                    all.push(Stage::new(name, rays, "texels x directions"));
+                }
+                Source::Light(of) => {
+                    let own = (of.stages)(self, kind.is_table() && has_table)?;
+                    has_table |= kind.is_table();
+                    let named = own.into_iter();
+                    all.extend(named.map(|s| Stage { name: format!("{name}: {}", s.name), ..s }));
+                }
+            }
+        }
+        let maps = self.maps.iter();
+        let values =
+            maps.map(|(_, map)| (map.planes.len() * map.texels(self.grid_points())) as f64);
+        all.push(Stage::new(FILES, values.sum(), "values"));
+        Ok(all)
     }
 
     pub fn border(&self) -> Border {
@@ -56,8 +132,7 @@ impl Job<'_> {
     }
 
     /// Visible points of scattered light.
-    pub fn points(&self, gpu: &mut Headless, say: Say) -> Result<VisiblePoints> {
-        say(format!("visible points in {} directions", self.around.count()));
+    pub fn points(&self, gpu: &mut Headless) -> Result<VisiblePoints> {
         gpu.visible_points((self.field(), self.border()), self.around, &self.limits)
     }
 
@@ -68,8 +143,9 @@ impl Job<'_> {
     /// Every file and an upper bound of its bytes.
     pub fn files(&self) -> Vec<(String, u64)> {
         let maps = self.maps.iter();
-        let mut all: Vec<_> =
-            maps.flat_map(|(wanted, map)| wanted.files(map, self.grid_points())).collect();
+        let mut all: Vec<_> = maps
+            .flat_map(|(wanted, map)| wanted.files(map, [self.field().cols(), self.field().rows()]))
+            .collect();
         // The manifest: each file and its decoding, each plane's name, each direction's three
         // numbers.
         let planes: usize = self.maps.iter().map(|(_, map)| map.planes.len()).sum();
@@ -86,6 +162,8 @@ impl Job<'_> {
         let of_kind = |kind: &Kind| match kind.source {
             Source::Horizons => 0,
             Source::Sums(map) => HorizonSums::bytes(&*map(self), grid_points),
+            // The layer, and its copy without voids.
+            Source::SkyView => 8 * grid_points as u64,
             Source::Directions(of) => (of.bytes)(self) * grid_points as u64,
             Source::Light(of) => (of.bytes)(self),
         };
@@ -108,17 +186,17 @@ impl Job<'_> {
         let most = limits.image_layers;
         for (wanted, map) in &self.maps {
             let layers = wanted.layers(map);
-            let is_read = wanted.formats.contains(&Format::Ktx2) && map.is_array;
+            let is_read = wanted.formats.iter().any(|f| f.is_texture()) && map.is_array;
             if !is_read || layers <= most as usize {
                 continue;
             }
             let flag = match wanted.kind.source {
-                Source::Horizons | Source::Sums(_) => "--azimuths",
+                Source::Horizons | Source::Sums(_) | Source::SkyView => "--azimuths",
                 Source::Directions(_) => "--directions",
                 Source::Light(_) => "--angles",
             };
             return Err(Error::Limit {
-                what: format!("the .ktx2 of {}", wanted.kind.name),
+                what: format!("the texture of {}", wanted.kind.name),
                 needs: format!("{layers} layers"),
                 limit: format!("{most} on this device; use fewer {flag} or --format npy"),
             });
@@ -148,10 +226,13 @@ impl Job<'_> {
     pub fn plans(&self, limits: &Limits) -> Result<Vec<Plan>> {
         self.check_layers(limits)?;
         let mut all = Vec::new();
-        if self.has(Kind::has_horizons) {
+        if self.has(Kind::reads_horizons) {
             let batch = (0, horizon::at_once(self.field(), limits));
             let (field, border) = (self.field(), self.border());
             all.push(horizon::plan_from(field, border, self.quality, limits, batch, false)?);
+        }
+        if self.has(|kind| matches!(kind.source, Source::SkyView)) {
+            all.push(kinds::sky_view_plan(self, limits)?);
         }
         for of in self.of_directions() {
             all.push((of.plan)(self, limits)?);

@@ -6,6 +6,7 @@ mod horizons;
 mod light;
 mod reflection;
 
+use clap::ValueEnum;
 use ridgelight::Result;
 use ridgelight::gpu::Headless;
 use ridgelight::plan::{Limits, Plan};
@@ -14,9 +15,11 @@ use ridgelight_io::Band;
 
 use super::job::Job;
 use super::map::{Format, MapFiles, Wanted};
+use super::stages::{Stage, Stages};
 pub use far_field::{diffuse, direct_plan, rays};
+pub use horizons::{SKY_VIEW, sky_view_plan};
 pub use light::paths;
-pub use reflection::Table;
+pub use reflection::{FACTORS, PAIRS, Table};
 
 /// A kind of map.
 pub struct Kind {
@@ -35,6 +38,39 @@ pub struct Kind {
     pub source: Source,
 }
 
+/// Which way y of a normal points in textures and pictures, as engines name it. x points along a
+/// row and z out of the ground.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Normals {
+    /// y to the first row, which is north, as Unity and Godot read it.
+    #[default]
+    Opengl,
+    /// y to the last row, which is south, as Unreal reads it.
+    Directx,
+}
+
+impl Normals {
+    /// The factor of y, which is north.
+    pub fn y(self) -> f64 {
+        match self {
+            Normals::Opengl => 1.0,
+            Normals::Directx => -1.0,
+        }
+    }
+
+    /// For the manifest.
+    pub fn describe(self) -> serde_json::Value {
+        let (convention, y) = match self {
+            Normals::Opengl => ("OpenGL, +Y", "north, to the first row"),
+            Normals::Directx => ("DirectX, -Y", "south, to the last row"),
+        };
+        serde_json::json!({
+            "convention": convention, "x": "east, to the last column", "y": y, "z": "up, out of the ground",
+            "of": "ktx2 and png, before the decoder's flip; other formats hold x east, y north, z up",
+        })
+    }
+}
+
 /// The layout of a map in its files.
 #[derive(Default)]
 pub struct Map {
@@ -47,10 +83,14 @@ pub struct Map {
     pub is_array: bool,
     /// GLSL constants that the decoder needs.
     pub constants: Vec<String>,
+    /// The axes of the normals that its textures and pictures hold.
+    pub normals: Option<Normals>,
     /// Columns and rows, where they are not the field's.
     pub size: Option<[usize; 2]>,
     /// Axes of an .npy other than planes, rows and columns: names and counts, the fastest last.
     pub axes: Vec<(&'static str, usize)>,
+    /// f32 roundings that the values went through one after another, where they are many.
+    pub roundings: u32,
 }
 
 impl Map {
@@ -106,6 +146,8 @@ pub enum Source {
     Horizons,
     /// A sum over the azimuths of the horizons.
     Sums(fn(&Job) -> Box<dyn HorizonMap>),
+    /// The sky-view factor, which the device sums as it does for `render`.
+    SkyView,
     /// Visibility along directions.
     Directions(OfDirections),
     Light(OfLight),
@@ -123,8 +165,14 @@ pub struct OfDirections {
     pub take: fn(&Job, &[Vec<f32>], &mut MapFiles) -> Result<()>,
 }
 
-/// Reports progress.
-pub type Say<'a> = &'a dyn Fn(String);
+/// The names of stages that several kinds have.
+pub mod stage {
+    pub const DIRECT: &str = "direct light";
+    pub const POINTS: &str = "visible points";
+    pub const SCATTERED: &str = "scattered light";
+    pub const TRIANGLES: &str = "triangle visibility";
+    pub const LIGHTS: &str = "lights";
+}
 
 /// A kind that is light. It needs several plans.
 #[derive(Clone, Copy)]
@@ -135,8 +183,11 @@ pub struct OfLight {
     pub plans: fn(&Job, &Limits) -> Result<Vec<Plan>>,
     /// Bytes that it holds until the end.
     pub bytes: fn(&Job) -> u64,
-    /// Writes the files and reports progress.
-    pub make: fn(&mut Headless, &Job, &mut MapFiles, Say) -> Result<()>,
+    /// The stages of [`make`](Self::make), and their work; where another kind has made the table,
+    /// without those of the table.
+    pub stages: fn(&Job, bool) -> Result<Vec<Stage>>,
+    /// Writes the files and reports each stage.
+    pub make: fn(&mut Headless, &Job, &mut MapFiles, &Stages) -> Result<()>,
 }
 
 impl Kind {
@@ -162,12 +213,28 @@ impl Kind {
 
     /// Whether it comes from horizons; the others trace directions.
     pub fn has_horizons(&self) -> bool {
+        self.reads_horizons() || matches!(self.source, Source::SkyView)
+    }
+
+    /// Whether the horizons are read back for it.
+    pub fn reads_horizons(&self) -> bool {
         matches!(self.source, Source::Horizons | Source::Sums(_))
     }
 
     /// Whether it is the table of reflectance, in full or in short.
     pub fn is_table(&self) -> bool {
         self.name.starts_with("brdf")
+    }
+
+    /// Whether compressed blocks can hold it, by the range and the meaning of its values. Factors are
+    /// negative in part, and indices of points are exact.
+    pub fn compresses(&self) -> bool {
+        !["brdf-factors", "visible-points"].contains(&self.name)
+    }
+
+    /// Whether the mean of several texels is the value of their area.
+    pub fn has_means(&self) -> bool {
+        self.has_horizons() || self.name == "scatter"
     }
 
     /// Whether its pictures store floats with a scale each.
@@ -186,6 +253,7 @@ const TABLE: OfLight = OfLight {
     is_lit: false,
     plans: far_field::plans,
     bytes: reflection::bytes,
+    stages: reflection::table_stages,
     make: reflection::make_table,
 };
 
@@ -207,8 +275,8 @@ pub static KINDS: [Kind; 15] = [
         encodings: &bake::SHARE,
         formats: &[Format::Ktx2, Format::Png],
         decoder: decoder!("sky_view"),
-        map: |_, _| Ok(horizons::share("sky_view", "1/π ∫ V max(N·e, 0) de")),
-        source: Source::Sums(|_| Box::new(bake::SkyView)),
+        map: horizons::sky_view,
+        source: Source::SkyView,
     },
     Kind {
         name: "visible-sky",
@@ -309,7 +377,11 @@ pub static KINDS: [Kind; 15] = [
         formats: &[Format::Ktx2, Format::Npy],
         decoder: decoder!("brdf_factors"),
         map: reflection::factors,
-        source: Source::Light(OfLight { make: reflection::make_factors, ..TABLE }),
+        source: Source::Light(OfLight {
+            stages: reflection::factors_stages,
+            make: reflection::make_factors,
+            ..TABLE
+        }),
     },
     Kind {
         name: "brdf-harmonics",
@@ -319,7 +391,11 @@ pub static KINDS: [Kind; 15] = [
         formats: &[Format::Ktx2, Format::Npy],
         decoder: decoder!("brdf_harmonics"),
         map: reflection::harmonics,
-        source: Source::Light(OfLight { make: reflection::make_harmonics, ..TABLE }),
+        source: Source::Light(OfLight {
+            stages: reflection::harmonics_stages,
+            make: reflection::make_harmonics,
+            ..TABLE
+        }),
     },
     Kind {
         name: "btf",
@@ -332,6 +408,7 @@ pub static KINDS: [Kind; 15] = [
         map: reflection::btf,
         source: Source::Light(OfLight {
             bytes: far_field::bytes_of_views,
+            stages: reflection::btf_stages,
             make: reflection::make_btf,
             ..TABLE
         }),

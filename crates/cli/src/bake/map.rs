@@ -1,6 +1,7 @@
 //! A map's files. Values go to all of them layer by layer.
 
 mod entry;
+mod textures;
 
 use std::path::{Path, PathBuf};
 
@@ -10,11 +11,13 @@ use ridgelight::scene::HeightField;
 use ridgelight_bake::Encoding;
 use ridgelight_io as files;
 use ridgelight_io::{
-    Component, GeoTiffWriter, Georeference, Ktx2Writer, NpyWriter, TexelFormat, Written,
+    Block, Component, DdsWriter, GeoTiffWriter, Georeference, Ktx2Writer, NpyWriter, TexelFormat,
+    Texels, Written,
 };
 use serde_json::Value as Json;
 
 use super::kinds::{Kind, Map};
+use textures::Measured;
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Format {
@@ -23,11 +26,17 @@ pub enum Format {
     Npy,
     Ktx2,
     Tif,
+    Dds,
 }
 
 impl Format {
     pub fn name(self) -> &'static str {
-        ["exr", "png", "npy", "ktx2", "tif"][self as usize]
+        ["exr", "png", "npy", "ktx2", "tif", "dds"][self as usize]
+    }
+
+    /// Whether it holds packed texels for a device.
+    pub fn is_texture(self) -> bool {
+        matches!(self, Format::Ktx2 | Format::Dds)
     }
 
     /// Whether it can hold the encoded kind.
@@ -42,11 +51,27 @@ pub struct Wanted {
     pub kind: &'static Kind,
     pub encoding: &'static Encoding,
     pub formats: Vec<Format>,
+    /// The block compression of its textures.
+    pub block: Option<Block>,
+    /// Whether its textures have all mip levels.
+    pub has_mips: bool,
 }
 
 impl Wanted {
     pub fn layers(&self, map: &Map) -> usize {
         map.planes.len().div_ceil(self.encoding.values)
+    }
+
+    /// What its textures hold.
+    fn stored(&self) -> Texels {
+        self.block.map_or(Texels::Plain(self.texels()), Texels::Blocks)
+    }
+
+    /// Sizes of the mip levels of its textures.
+    fn level_sizes(&self, size: [usize; 2]) -> Vec<[usize; 2]> {
+        let last = size[0].max(size[1]).ilog2() as usize;
+        let last = if self.has_mips { last } else { 0 };
+        (0..=last).map(|level| size.map(|n| (n >> level).max(1))).collect()
     }
 
     fn texels(&self) -> TexelFormat {
@@ -64,8 +89,9 @@ impl Wanted {
     }
 
     /// Every file and an upper bound of its bytes.
-    pub fn files(&self, map: &Map, grid_points: usize) -> Vec<(String, u64)> {
-        let (layers, grid_points) = (self.layers(map), map.texels(grid_points) as u64);
+    pub fn files(&self, map: &Map, field: [usize; 2]) -> Vec<(String, u64)> {
+        let size = map.size.unwrap_or(field);
+        let (layers, grid_points) = (self.layers(map), (size[0] * size[1]) as u64);
         let (values, texel) =
             (4 * map.planes.len() as u64 * grid_points, self.texels().bytes() as u64);
         // ZIP adds little to incompressible data.
@@ -75,7 +101,16 @@ impl Wanted {
             // With overviews, each a quarter of the one before.
             Format::Tif => (1, zipped(values / 3 * 4)),
             Format::Npy => (1, values + 256),
-            Format::Ktx2 => (1, texel * layers as u64 * grid_points + 1024),
+            Format::Ktx2 | Format::Dds => {
+                let levels = self.level_sizes(size);
+                // Texts and, of a .ktx2, the places of the levels and the gaps before them.
+                let head = 1024 + 64 * levels.len() as u64;
+                let images = levels
+                    .into_iter()
+                    .map(|size| self.stored().image_bytes(size).unwrap_or(u64::MAX));
+                let layer = images.fold(0, u64::saturating_add);
+                (1, layer.saturating_mul(layers as u64).saturating_add(head))
+            }
             Format::Png => (layers, zipped((texel + 2) * grid_points)),
         };
         let all = self.formats.iter().flat_map(|format| {
@@ -93,7 +128,10 @@ impl Wanted {
             Format::Exr => 4 * map.planes.len(),
             // Pixels, and the compressed copy.
             Format::Png => 2 * (texel + 2),
-            Format::Npy | Format::Ktx2 => texel,
+            Format::Npy => texel,
+            // The values of a layer, coded and compressed, and those of its mip levels.
+            Format::Ktx2 | Format::Dds if self.block.is_some() || self.has_mips => 64 + 2 * texel,
+            Format::Ktx2 | Format::Dds => texel + 4 * self.encoding.values,
             // A plane and its overviews, and their compressed copies.
             Format::Tif => 12,
         };
@@ -112,6 +150,7 @@ enum Open {
     Exr(Vec<Vec<f32>>),
     Npy(NpyWriter),
     Ktx2(Ktx2Writer),
+    Dds(DdsWriter),
     Tif(GeoTiffWriter),
     Png,
 }
@@ -139,6 +178,8 @@ pub struct MapFiles<'a> {
     places: Vec<usize>,
     /// Count of values outside their stated range, and the largest excess.
     beyond: (u64, f64),
+    /// Errors of compressed textures.
+    measured: Measured,
     entries: Vec<(&'static str, Json)>,
     remarks: Vec<String>,
 }
@@ -177,8 +218,13 @@ impl<'a> MapFiles<'a> {
                 }
                 Format::Ktx2 => {
                     let layers = map.is_array.then(|| wanted.layers(&map));
-                    let texels = wanted.texels();
-                    Open::Ktx2(Ktx2Writer::create(&path, texels, size, layers, &texts)?)
+                    let count = (layers, wanted.level_sizes(size).len());
+                    let stored = wanted.stored();
+                    Open::Ktx2(Ktx2Writer::with_levels(&path, stored, size, count, &texts)?)
+                }
+                Format::Dds => {
+                    let count = (wanted.layers(&map), wanted.level_sizes(size).len());
+                    Open::Dds(DdsWriter::create(&path, wanted.stored(), size, count)?)
                 }
                 Format::Tif => {
                     // A table's texels are no places.
@@ -200,6 +246,7 @@ impl<'a> MapFiles<'a> {
             waiting: Vec::new(),
             taken: 0,
             beyond: (0, 0.0),
+            measured: Measured::default(),
             entries: Vec::new(),
             remarks: Vec::new(),
         })
@@ -239,7 +286,8 @@ impl<'a> MapFiles<'a> {
     pub fn take(&mut self, planes: &[&[f32]]) -> Result<()> {
         self.count_beyond(planes);
         let scale = if self.is_scaled() { self.largest(planes) } else { 1.0 };
-        let (texels, picture) = self.coded(planes, scale);
+        let levels = self.levels(planes);
+        let picture = self.picture(planes, scale);
         let (voids, field) = (self.voids(), self.field);
         let masked = |plane: &&[f32]| {
             let mut plane = plane.to_vec();
@@ -260,7 +308,11 @@ impl<'a> MapFiles<'a> {
                 Open::Npy(writer) => {
                     planes.iter().try_for_each(|plane| writer.write(&masked(plane)))?;
                 }
-                Open::Ktx2(writer) => writer.write(&texels)?,
+                Open::Ktx2(writer) => {
+                    let mut own = levels.iter().enumerate();
+                    own.try_for_each(|(level, texels)| writer.write_level(level, texels))?;
+                }
+                Open::Dds(writer) => levels.iter().try_for_each(|texels| writer.write(texels))?,
                 Open::Tif(writer) => {
                     let mut own = self.places[first..].iter().zip(planes);
                     own.try_for_each(|(band, plane)| writer.write(*band, &masked(plane)))?;
@@ -284,8 +336,9 @@ impl<'a> MapFiles<'a> {
         for (at, plane) in planes.iter().enumerate() {
             let [low, high] = values[(first + at) % values.len()].range;
             // Allows f32 rounding, where π/2 is above the real one, and the device's function
-            // errors.
-            let rounding = 8.0 * f64::from(f32::EPSILON) * low.abs().max(high.abs());
+            // errors. n terms summed one after another round by at most n half steps of the sum.
+            let roundings = f64::from(self.map.roundings.max(8));
+            let rounding = roundings * f64::from(f32::EPSILON) * low.abs().max(high.abs());
             for (i, value) in plane.iter().enumerate() {
                 let beyond = (f64::from(*value) - high).max(low - f64::from(*value));
                 if beyond > rounding && !voids.is_some_and(|v| v[i]) {
@@ -293,6 +346,10 @@ impl<'a> MapFiles<'a> {
                 }
             }
         }
+    }
+
+    fn has_textures(&self) -> bool {
+        self.wanted.formats.iter().any(|format| format.is_texture())
     }
 
     fn has(&self, format: Format) -> bool {
@@ -337,49 +394,40 @@ impl<'a> MapFiles<'a> {
         if largest > 0.0 { largest.into() } else { 1.0 }
     }
 
-    /// A layer's texels, and its picture's pixels: signed components as (v + 1)/2, divided by
-    /// `scale`, 16 bits big-endian.
-    fn coded(&self, planes: &[&[f32]], scale: f64) -> (Vec<u8>, Vec<u8>) {
-        let (encoding, voids) = (self.wanted.encoding, self.voids());
-        let (component, of_picture) = (encoding.component, self.picture_component());
-        let has_alpha = self.wanted.texels().count > encoding.components;
-        let (has_texels, has_picture) = (self.has(Format::Ktx2), self.has(Format::Png));
-        let (grid_points, (channels, bits)) = (self.size().iter().product(), self.picture_form());
-        let reserve = |is_wanted: bool, each: usize| {
-            Vec::with_capacity(if is_wanted { each * grid_points } else { 0 })
-        };
-        let mut texels = reserve(has_texels, self.wanted.texels().bytes());
-        let mut picture = reserve(has_picture, channels * bits as usize / 8);
-        if !has_texels && !has_picture {
-            return (texels, picture);
+    /// The components of a texel from its values.
+    fn encode(&self, values: &mut [f64], parts: &mut [f64]) {
+        if let Some(normals) = self.map.normals {
+            values[1] *= normals.y();
+        }
+        (self.wanted.encoding.encode)(values, parts);
+    }
+
+    /// A picture's pixels: signed components as (v + 1)/2, divided by `scale`, 16 bits big-endian.
+    fn picture(&self, planes: &[&[f32]], scale: f64) -> Vec<u8> {
+        let (encoding, voids, component) =
+            (self.wanted.encoding, self.voids(), self.picture_component());
+        let mut picture = Vec::new();
+        if !self.has(Format::Png) {
+            return picture;
         }
         let (mut values, mut parts) = ([0.0; 4], [0.0; 4]);
         let (values, parts) = (&mut values[..encoding.values], &mut parts[..encoding.components]);
-        for at in 0..grid_points {
+        for at in 0..self.size().iter().product() {
             for (value, plane) in values.iter_mut().zip(planes) {
                 *value = f64::from(plane[at]);
             }
-            (encoding.encode)(values, parts);
+            self.encode(values, parts);
             let is_void = voids.is_some_and(|v| v[at]);
-            let alpha = if is_void { 0.0 } else { 1.0 };
-            if has_texels {
-                parts.iter().for_each(|part| component.put(*part, &mut texels));
-                if has_alpha {
-                    component.put(alpha, &mut texels);
-                }
+            for part in parts.iter() {
+                let part = part / scale;
+                let part = if component.is_signed() { 0.5 + 0.5 * part } else { part };
+                put(&mut picture, component, if is_void { 0.0 } else { part });
             }
-            if has_picture {
-                for part in parts.iter() {
-                    let part = part / scale;
-                    let part = if of_picture.is_signed() { 0.5 + 0.5 * part } else { part };
-                    put(&mut picture, of_picture, if is_void { 0.0 } else { part });
-                }
-                if voids.is_some() {
-                    put(&mut picture, of_picture, alpha);
-                }
+            if voids.is_some() {
+                put(&mut picture, component, if is_void { 0.0 } else { 1.0 });
             }
         }
-        (texels, picture)
+        picture
     }
 }
 

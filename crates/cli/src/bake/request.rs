@@ -2,7 +2,8 @@
 
 use ridgelight::scene::{Directions, Lines, Method, Quality, Scatter};
 use ridgelight::{Error, Result};
-use ridgelight_bake::{Angles, encoding_named};
+use ridgelight_bake::{Angles, Encoding, encoding_named};
+use ridgelight_io::Block;
 
 use super::Packing;
 use super::kinds::{KINDS, Kind, Source};
@@ -47,7 +48,7 @@ pub fn help() -> String {
         );
     }
     text += "\n\
-Each .ktx2 has one mip level. It is an array where a map has several layers, such as one per azimuth or four coefficients. \
+Each .ktx2 and .dds has one mip level without --mips. It is an array where a map has several layers, such as one per azimuth or four coefficients. \
 Its first row is north. --method auto is sweep here; brute-force is exact in every azimuth, and its time grows with the cube of the side.\n\n\
 With --specular, the kinds brdf, brdf-factors, brdf-harmonics and btf reflect each light at the triangles. Indirect light \
 towards each view reuses the paths of the light except for their last step. --plan prints the number of rays; --bounces 0 \
@@ -74,7 +75,22 @@ pub fn wanted(args: &BakeArgs) -> Result<Vec<Wanted>> {
             return Err(Error::setting("--what", format!("{} twice", kind.name), "each kind once"));
         }
         let mut packings = args.encoding.iter().filter(|p| p.kind.name == kind.name);
-        let encoding = packings.next().map_or(&kind.encodings[0], |p| p.encoding);
+        let block = |e: &Encoding| Block::of(e.component, e.components);
+        let fits = |e: &&Encoding| block(e).is_some() && kind.compresses();
+        let default = if args.compress { kind.encodings.iter().find(fits) } else { None };
+        let default = default.unwrap_or(&kind.encodings[0]);
+        let encoding = packings.next().map_or(default, |p| p.encoding);
+        if args.compress && !fits(&encoding) {
+            let found = format!("with {} of {}", encoding.name, kind.name);
+            let expected = "encodings in unorm8, or in f16 of scatter and brdf; no other kind is \
+                stored in compressed blocks";
+            return Err(Error::setting("--compress", found, expected));
+        }
+        if args.mips && !kind.has_means() {
+            let expected =
+                format!("kinds whose values can be averaged: {}", either(Kind::has_means));
+            return Err(Error::setting("--mips", format!("with {}", kind.name), expected));
+        }
         if packings.next().is_some() {
             let found = format!("two of {}", kind.name);
             return Err(Error::setting("--encoding", found, "one per kind"));
@@ -87,14 +103,22 @@ pub fn wanted(args: &BakeArgs) -> Result<Vec<Wanted>> {
             return Err(Error::setting(
                 "--format",
                 format!("{} with {} of {}", format.name(), encoding.name, kind.name),
-                "exr, tif, npy or ktx2: a picture holds up to three components of 8 or 16 bits",
+                "exr, tif, npy, ktx2 or dds: a picture holds up to three components of 8 or 16 bits",
             ));
         }
         if let Some(twice) = (1..formats.len()).find(|i| formats[..*i].contains(&formats[*i])) {
             let found = format!("{} twice", formats[twice].name());
             return Err(Error::setting("--format", found, "each once"));
         }
-        all.push(Wanted { kind, encoding, formats });
+        let is_texture = formats.iter().any(|format| format.is_texture());
+        let block = block(encoding).filter(|_| args.compress && is_texture);
+        all.push(Wanted { kind, encoding, formats, block, has_mips: args.mips });
+    }
+    let has_textures = all.iter().any(|w| w.formats.iter().any(|format| format.is_texture()));
+    for (flag, is_set) in [("--compress", args.compress), ("--mips", args.mips)] {
+        if is_set && !has_textures {
+            return Err(Error::setting(flag, "no texture", "--format ktx2 or dds"));
+        }
     }
     if let Some(idle) =
         args.encoding.iter().find(|p| all.iter().all(|w| w.kind.name != p.kind.name))
@@ -123,14 +147,14 @@ pub fn quality(args: &BakeArgs) -> Result<Quality> {
 }
 
 /// Directions of the kinds that trace some. Ellipses of flat bases use none below horizontal.
-pub fn directions(args: &BakeArgs) -> Result<Directions> {
+pub fn directions(args: &BakeArgs, count: u32) -> Result<Directions> {
     let needs_sphere = |kind: &&Kind| match kind.source {
-        Source::Horizons | Source::Sums(_) => false,
+        Source::Horizons | Source::Sums(_) | Source::SkyView => false,
         Source::Directions(of) => of.needs_sphere,
         Source::Light(_) => true,
     };
     let lowest_z = if args.what.iter().any(needs_sphere) { -1.0 } else { 0.0 };
-    Directions::fibonacci(args.directions.unwrap_or(DIRECTIONS) as usize, lowest_z, 0)
+    Directions::fibonacci(count as usize, lowest_z, 0)
 }
 
 /// Whether a kind is one of some.
@@ -211,9 +235,11 @@ pub fn check_uses(args: &BakeArgs) -> Result<()> {
         args.curvature.map(|[outwards, inwards]| format!("{outwards},{inwards}")),
         args.angles.map(|[zeniths, azimuths]| format!("{zeniths}x{azimuths}")),
     ];
+    let normals = args.normals.map(|normals| format!("{normals:?}").to_lowercase());
     let [paths, seed] = [args.paths, args.seed].map(|value| value.map(|v| v.to_string()));
     let (is_curved, is_light) = (has(|kind| kind.name == "curved-ellipse"), has(Kind::is_light));
     for (name, value, is_used, by) in [
+        ("--normals", normals, has(|kind| kind.name == "bent-normal"), "bent-normal".to_owned()),
         ("--curvature", curvature, is_curved, "curved-ellipse".to_owned()),
         ("--angles", angles, has(has_angles), either(has_angles)),
         ("--paths", paths, is_light, lights()),

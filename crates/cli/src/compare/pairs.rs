@@ -61,10 +61,12 @@ pub fn check_horizons(path: &Path, file: &Planes) -> Result<()> {
     let expected = "horizon channels azimuth_000.0 and so on, with the azimuth in degrees";
     let other = file.names.iter().find(|name| !is_azimuth(name));
     match (extension(path).as_str(), other) {
-        ("npy", _) | ("exr", None) => {}
-        ("exr", Some(other)) => return wrong("channels".into(), other.clone(), expected),
+        ("npy", _) | ("exr" | "tif" | "tiff", None) => {}
+        ("exr" | "tif" | "tiff", Some(other)) => {
+            return wrong("channels".into(), other.clone(), expected);
+        }
         (kind, _) => {
-            return wrong("name".into(), format!("the extension .{kind}"), "an .exr or .npy");
+            return wrong("name".into(), format!("the extension .{kind}"), "a .tif, .exr or .npy");
         }
     }
     for (name, plane) in file.names.iter().zip(&file.planes) {

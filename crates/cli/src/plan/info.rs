@@ -7,18 +7,18 @@ use ridgelight_io as files;
 use ridgelight_io::{FieldFile, Georeference};
 use serde_json::{Value, json};
 
+use std::path::{Path, PathBuf};
+
 use crate::args::InfoArgs;
 use crate::setup::{self, Outcome};
 
 /// Slopes beyond this are counted.
 const STEEP_DEG: f64 = 45.0;
-/// The codes of a projected and of a geographic coordinate reference system (OGC 19-008r4).
-const CRS_KEYS: [u16; 2] = [3072, 2048];
-
 pub fn run(args: &InfoArgs) -> Result<Outcome> {
     if let Some(json) = &args.global.json {
         setup::check_output("--json", json, &["json"])?;
-        setup::check_distinct(&[("--json", Some(json))], &[&args.input.path])?;
+        let inputs: Vec<&Path> = args.input.path.iter().map(PathBuf::as_path).collect();
+        setup::check_distinct(&[("--json", Some(json))], &inputs)?;
     }
     let FieldFile { field, georeference, notes } =
         setup::read(&args.input.path, &args.surface, &args.global)?;
@@ -49,14 +49,11 @@ fn facts(field: &HeightField, at: Option<&Georeference>, notes: &[String]) -> Re
     });
     let voids = (rows * cols) as u64 - count;
     let memory = jobs(field)?.map(|(name, bytes)| (name.to_owned(), Value::from(bytes)));
-    let extent = at.map(|at| {
-        let [west, north] = at.corner;
-        [west, north - rows as f64 * at.cell[1], west + cols as f64 * at.cell[0], north]
-    });
+    let extent = at.map(|at| at.extent(rows, cols));
     Ok(json!({
         "rows": rows,
         "cols": cols,
-        "crs": at.and_then(crs),
+        "crs": at.and_then(|at| at.keys.crs()),
         "cell_m": [cell_x, cell_y],
         "size_m": [cell_x * cols as f64, cell_y * rows as f64],
         "extent": extent,
@@ -66,19 +63,6 @@ fn facts(field: &HeightField, at: Option<&Georeference>, notes: &[String]) -> Re
         "device_bytes": serde_json::Map::from_iter(memory),
         "notes": notes.iter().map(|note| setup::flags_in(note)).collect::<Vec<_>>(),
     }))
-}
-
-/// The EPSG code, or the first text of the keys.
-fn crs(at: &Georeference) -> Option<String> {
-    let code = |key: u16| {
-        let entry = at.keys.entries.iter().find(|e| e[0] == key && e[1] == 0)?;
-        (1..32767).contains(&entry[3]).then(|| format!("EPSG:{}", entry[3]))
-    };
-    let named = || {
-        let name = at.keys.ascii.split('|').next().unwrap_or_default().trim();
-        (!name.is_empty()).then(|| name.to_owned())
-    };
-    CRS_KEYS.into_iter().find_map(code).or_else(named)
 }
 
 /// Device memory of common jobs, as the planner counts it for a device without limits.
@@ -106,7 +90,7 @@ fn jobs(field: &HeightField) -> Result<[(&'static str, u64); 3]> {
 fn say(args: &InfoArgs, facts: &Value) {
     let number = |value: &Value| value.as_f64().unwrap_or(f64::NAN);
     let pair = |name: &str| [number(&facts[name][0]), number(&facts[name][1])];
-    let path = args.input.path.display();
+    let path = args.input.names();
     let [rows, cols] = ["rows", "cols"].map(|name| facts[name].as_u64().unwrap_or(0));
     crate::say!("{path}: {cols} x {rows} grid points");
     let line = |name: &str, text: String| crate::say!("  {name:<10} {text}");
@@ -136,9 +120,18 @@ fn say(args: &InfoArgs, facts: &Value) {
     for note in facts["notes"].as_array().into_iter().flatten() {
         crate::say!("  {:<10} {}", "note", note.as_str().unwrap_or_default());
     }
-    let cell = match args.surface.cell {
-        Some([x, y]) => format!(" --cell {x},{y}"),
-        None => String::new(),
-    };
-    crate::say!("Start with: ridgelight render {path}{cell} -o picture.png");
+    let mut command = "Start with: ridgelight render".to_owned();
+    for path in &args.input.path {
+        command += &format!(" {}", path.display());
+    }
+    if let Some([x, y]) = args.surface.cell {
+        command += &format!(" --cell {x},{y}");
+    }
+    if let Some(band) = args.surface.band {
+        command += &format!(" --band {band}");
+    }
+    if let Some([west, south, east, north]) = args.surface.bbox {
+        command += &format!(" --bbox {west},{south},{east},{north}");
+    }
+    crate::say!("{command} -o picture.png");
 }

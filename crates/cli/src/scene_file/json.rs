@@ -125,9 +125,10 @@ impl<'t> Found<'t> {
             Numbers::Pair => (&[2], "a number, or 2 in a list"),
             Numbers::Colour => (&[3], "a number, or 3 in a list"),
             Numbers::Three => (&[3], "3 numbers in a list"),
+            Numbers::Four => (&[4], "4 numbers in a list"),
             Numbers::TwoOrThree => (&[2, 3], "2 or 3 numbers in a list"),
         };
-        let is_list = matches!(numbers, Numbers::Three | Numbers::TwoOrThree);
+        let is_list = matches!(numbers, Numbers::Three | Numbers::Four | Numbers::TwoOrThree);
         if let Some(number) = self.number().filter(|_| !is_list) {
             return Ok(number);
         }
@@ -190,6 +191,7 @@ impl<'t> Found<'t> {
                 .map(OsString::from)
                 .ok_or_else(|| self.wrong("a word or a number")),
             Kind::File => file().ok_or_else(|| self.wrong("a file's name")),
+            Kind::Files => file().ok_or_else(|| self.wrong("a file's name, or several in a list")),
             Kind::Parts(parts) | Kind::List(parts) => Ok(self.parts(parts)?.into()),
             Kind::Switch => match serde_json::from_str(self.raw.get()) {
                 Ok(is_on) => Ok(if is_on { "true" } else { "false" }.into()),

@@ -14,6 +14,8 @@ pub enum Kind {
     Word,
     /// A path relative to the scene file's folder.
     File,
+    /// One path, or several in a list.
+    Files,
     Numbers(Numbers),
     /// True sets the flag; false leaves it out.
     Switch,
@@ -32,6 +34,7 @@ pub enum Numbers {
     /// One for grey, or three.
     Colour,
     Three,
+    Four,
     TwoOrThree,
 }
 
@@ -76,12 +79,14 @@ pub const fn or(part: Part, default: &'static str) -> Part {
 
 const NUMBER: Kind = Kind::Numbers(Numbers::One);
 const SPECULAR: [Part; 2] = [part("exponent", Numbers::One), part("scale", Numbers::One)];
-const FIELD: [Key; 5] = [
-    key("file", INPUT, Kind::File),
+const FIELD: [Key; 7] = [
+    key("file", INPUT, Kind::Files),
     key("cell_m", "cell", Kind::Numbers(Numbers::Pair)),
     key("z_scale", "z_scale", NUMBER),
     key("border", "border", Kind::Word),
     key("nodata", "nodata", Kind::Word),
+    key("band", "band", NUMBER),
+    key("bbox", "bbox", Kind::Numbers(Numbers::Four)),
 ];
 const SURFACE: [Key; 3] = [
     Key { or: Or::File, ..key("albedo", "albedo", Kind::Numbers(Numbers::Colour)) },

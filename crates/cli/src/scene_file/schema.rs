@@ -19,6 +19,7 @@ fn numbers(numbers: Numbers) -> Value {
         Numbers::Pair => json!({ "anyOf": [one, list(2, 2)] }),
         Numbers::Colour => json!({ "anyOf": [one, list(3, 3)] }),
         Numbers::Three => list(3, 3),
+        Numbers::Four => list(4, 4),
         Numbers::TwoOrThree => list(2, 3),
     }
 }
@@ -58,6 +59,10 @@ fn value(key: &Key, render: &clap::Command) -> Value {
             }
         }
         Kind::File => json!({ "type": "string" }),
+        Kind::Files => {
+            let one = json!({ "type": "string" });
+            json!({ "anyOf": [one, { "type": "array", "items": one, "minItems": 1 }] })
+        }
         Kind::Numbers(count) => numbers(count),
         Kind::Parts(parts) => object(parts),
         Kind::Switch => json!({ "type": "boolean" }),

@@ -4,6 +4,8 @@ use clap::ArgMatches;
 use clap::parser::ValueSource;
 use serde_json::{Map, Value};
 
+use crate::args::flag;
+
 use super::keys::{INPUT, Key, Kind, Numbers, Or, Part, groups};
 
 /// Flags of the command line and the scene file, by id, and the values of each.
@@ -37,6 +39,25 @@ impl Request {
         self.0.retain(|(known, _)| known != id);
     }
 
+    /// Words of a command line for the same: files first, then flags.
+    pub fn words(&self) -> Vec<String> {
+        let keys: Vec<Key> = groups().into_iter().flat_map(|(_, keys)| keys).collect();
+        let (mut files, mut flags) = (Vec::new(), Vec::new());
+        for (id, words) in &self.0 {
+            if id == INPUT {
+                files.clone_from(words);
+                continue;
+            }
+            let Some(key) = keys.iter().find(|key| key.id == id) else { continue };
+            let flag = flag(id);
+            match key.kind {
+                Kind::Switch => flags.push(flag),
+                _ => flags.extend(words.iter().map(|word| format!("{flag}={word}"))),
+            }
+        }
+        files.into_iter().chain(flags).collect()
+    }
+
     /// The scene file. Paths stay as they are.
     pub fn to_json(&self) -> Value {
         let mut all = Map::new();
@@ -55,7 +76,8 @@ impl Request {
         let first = words.first()?;
         let text = || (key.or != Or::Nothing).then(|| first.as_str().into());
         let value = match key.kind {
-            Kind::Word | Kind::File => first.as_str().into(),
+            Kind::Files if words.len() > 1 => words.clone().into(),
+            Kind::Word | Kind::File | Kind::Files => first.as_str().into(),
             Kind::Numbers(count) => numbers(first, count).or_else(text)?,
             Kind::Switch => true.into(),
             Kind::Parts(parts) => object(first, parts).or_else(text)?,
@@ -91,6 +113,7 @@ fn object(text: &str, parts: &[Part]) -> Option<Value> {
             Numbers::One => 1,
             Numbers::Pair => 2,
             Numbers::Three => 3,
+            Numbers::Four => 4,
             Numbers::TwoOrThree | Numbers::Colour => left.len(),
         };
         if left.is_empty() || count > left.len() {
@@ -102,4 +125,21 @@ fn object(text: &str, parts: &[Part]) -> Option<Value> {
         left = after;
     }
     Some(members.into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Each word stands with its flag, so that none is taken for another; flags that no scene file has are left out.
+    #[test]
+    fn requests_become_words_of_a_command_line() {
+        let mut asked = Request::default();
+        asked.set("sun", vec!["315,30".to_owned(), "90,-0".to_owned()]);
+        asked.set("path", vec!["a.tif".to_owned(), "b.tif".to_owned()]);
+        asked.set("sun_azimuths", vec!["16".to_owned()]);
+        asked.set("script", vec!["keys".to_owned()]);
+        let words = asked.words();
+        assert_eq!(words, ["a.tif", "b.tif", "--sun=315,30", "--sun=90,-0", "--sun-azimuths=16"]);
+    }
 }

@@ -1,12 +1,10 @@
 //! Requested and used settings for metadata, and times for --json.
 
-use std::path::Path;
-
 use ridgelight::gpu::{Headless, Timing};
 use ridgelight::plan::Plan;
 use ridgelight::scene::{HeightField, Scene};
 
-use crate::args::{FieldArgs, LightArgs, SpecularArg, SurfaceArgs};
+use crate::args::{FieldArgs, Input, LightArgs, SpecularArg, SurfaceArgs};
 use crate::lights::LIGHTS;
 use crate::setup::tint::Tint;
 
@@ -31,17 +29,23 @@ pub fn metadata(gpu: &Headless, field: &HeightField, plan: &Plan) -> Vec<(String
 
 /// Requested settings that no plan holds.
 pub fn asked(
-    input: &Path,
+    input: &Input,
     surface: &FieldArgs,
     lit: Option<(&LightArgs, &SurfaceArgs, &Scene)>,
 ) -> Vec<(String, String)> {
     let numbers = |c: &[f32; 3]| format!("{},{},{}", c[0], c[1], c[2]);
     let mut all = vec![
-        ("input".to_owned(), input.display().to_string()),
+        ("input".to_owned(), input.names()),
         ("z_scale".to_owned(), surface.z_scale.to_string()),
     ];
     if let Some(nodata) = surface.nodata {
         all.push(("nodata".to_owned(), nodata.to_string()));
+    }
+    if let Some(band) = surface.band {
+        all.push(("band".to_owned(), band.to_string()));
+    }
+    if let Some(bbox) = surface.bbox {
+        all.push(("bbox".to_owned(), bbox.map(|x| x.to_string()).join(",")));
     }
     let Some((args, surface, scene)) = lit else { return all };
     match surface.tint {

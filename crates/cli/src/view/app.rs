@@ -2,6 +2,8 @@
 
 mod compare;
 mod drawing;
+mod overlay;
+mod preview;
 mod saving;
 mod steps;
 
@@ -20,13 +22,17 @@ use winit::event_loop::{ActiveEventLoop, ControlFlow};
 use winit::keyboard::{Key, ModifiersState, NamedKey};
 use winit::window::{Window, WindowId};
 
+use super::gui::Gui;
 use super::script::{Button, Step};
 use super::state::{Figures, Light, State, Wish};
 use crate::args::ViewArgs;
 use compare::Compare;
+use preview::Preview;
 
 /// Interval between attempts of a window that shows nothing.
 const PAUSE: Duration = Duration::from_millis(50);
+/// Interval between questions to a device that is busy with a preview or its refinement.
+const GLANCE: Duration = Duration::from_millis(2);
 
 pub struct App<'a> {
     args: &'a ViewArgs,
@@ -51,6 +57,16 @@ pub struct App<'a> {
     blank: Option<(Instant, &'static str)>,
     /// How long it may, where a script draws.
     patience: Duration,
+    /// Whether slow light is previewed; scripts ask for it, as their pictures must not depend on time.
+    previews: bool,
+    /// The clipboard, once used: it serves other programs as long as this one runs.
+    clipboard: Option<arboard::Clipboard>,
+    /// When the first input came that no submitted picture shows.
+    asked: Option<Instant>,
+    /// The same for the picture that the device is drawing.
+    answering: Option<Instant>,
+    /// Milliseconds from input to picture since the last report.
+    answers: Vec<f64>,
 }
 
 /// A window and its frames.
@@ -60,6 +76,10 @@ struct OpenWindow {
     is_stale: bool,
     /// The last light that could be drawn.
     good: Option<Light>,
+    gui: Gui,
+    /// Places of the panel's parts by name, units of egui.
+    places: Vec<(String, egui::Rect)>,
+    preview: Preview,
     /// The comparison pictures, if shown.
     compare: Option<Compare>,
     figures: Figures,
@@ -79,6 +99,11 @@ impl<'a> App<'a> {
             args,
             state,
             shown: None,
+            previews: steps.is_none(),
+            clipboard: None,
+            asked: None,
+            answering: None,
+            answers: Vec::new(),
             steps,
             error: None,
             keys: ModifiersState::empty(),
@@ -102,7 +127,7 @@ impl<'a> App<'a> {
 
     fn open(&mut self, events: &ActiveEventLoop) -> Result<()> {
         let [width, height] = self.args.size;
-        let name = self.args.input.path.file_name().unwrap_or_default().to_string_lossy();
+        let name = self.args.input.first().file_name().unwrap_or_default().to_string_lossy();
         let attributes = Window::default_attributes()
             .with_title(format!("{name} - ridgelight"))
             .with_inner_size(PhysicalSize::new(width, height));
@@ -125,6 +150,9 @@ impl<'a> App<'a> {
             lit: None,
             is_stale: true,
             good: None,
+            gui: Gui::new(&window),
+            places: Vec::new(),
+            preview: Preview::new(limits.is_cpu),
             compare: None,
             figures: Figures::default(),
             last_edit: None,
@@ -142,7 +170,9 @@ impl<'a> App<'a> {
     fn close(&mut self) {
         let Some(mut shown) = self.shown.take() else { return };
         let beside = shown.compare.take().map_or(Ok(()), |old| old.end(&mut shown.screen));
-        let freed = shown.lit.take().map_or(Ok(()), |lit| shown.screen.end(lit)).and(beside);
+        let previews = shown.preview.end(&mut shown.screen);
+        let freed = shown.lit.take().map_or(Ok(()), |lit| shown.screen.end(lit));
+        let freed = freed.and(beside).and(previews);
         let said = shown.screen.gpu().take_messages();
         if self.args.validate {
             crate::say!("{} validation messages", said.len());
@@ -230,9 +260,13 @@ impl ApplicationHandler for App<'_> {
             Ok(false) => return events.exit(),
             Err(error) => return self.failed(events, error),
         }
+        let refines = self.uses_preview()
+            && (self.answering.is_some()
+                || self.shown.as_ref().is_some_and(|s| s.preview.is_busy()));
         let is_busy = self.is_due() || self.steps.is_some();
         events.set_control_flow(match (is_busy, self.blank) {
             (true, Some(_)) => ControlFlow::wait_duration(PAUSE),
+            _ if refines || self.uses_preview() && is_busy => ControlFlow::wait_duration(GLANCE),
             (true, None) => ControlFlow::Poll,
             (false, _) => ControlFlow::Wait,
         });
@@ -246,6 +280,9 @@ impl ApplicationHandler for App<'_> {
 impl App<'_> {
     /// Whether to go on.
     fn heard(&mut self, event: WindowEvent) -> Result<bool> {
+        if self.is_for_panel(&event)? {
+            return Ok(true);
+        }
         match event {
             WindowEvent::CloseRequested => return Ok(false),
             WindowEvent::Destroyed => {
@@ -341,6 +378,7 @@ impl App<'_> {
     /// Events that change no light.
     fn do_plainly(&mut self, wish: Wish) -> Result<bool> {
         if wish != Wish::Nothing {
+            self.asked.get_or_insert_with(Instant::now);
             self.due = self.due.max(1);
         }
         Ok(true)

@@ -24,12 +24,18 @@ pub enum Step {
     Scene(PathBuf),
     /// Saves the window's pixels.
     Screenshot(PathBuf),
-    /// Saves the text over them.
+    /// Saves the panel's text.
     Text(PathBuf),
+    /// Saves the places of the panel's parts.
+    Places(PathBuf),
     /// Draws until the reference has so many paths per texel.
     Paths(u32),
     /// Prints the frames so far and their milliseconds since the last report, after some words.
     Report(String),
+    /// Previews slow light from here on, as without a script.
+    Preview,
+    /// Draws until the light is the full one.
+    Rest,
     /// Waits for input until this file exists, as without a script.
     Wait(PathBuf),
     /// Draws what the input before that file has changed.
@@ -71,7 +77,7 @@ pub fn read(path: &Path) -> Result<Vec<Step>> {
                 found: line.to_owned(),
                 expected:
                     "key, drag, wheel, frames, size, lose, picture, scene, screenshot, text, \
-                        paths, report, wait or patience, with its values"
+                        places, paths, preview, rest, report, wait or patience, with its values"
                         .into(),
             }
         })?);
@@ -98,10 +104,13 @@ fn step(line: &str) -> Option<Step> {
         ["frames", count] => Step::Frames(count.parse().ok()?),
         ["size", size] => Step::Size(pair(size)?.map(|v| v as u32)),
         ["lose"] => Step::Lose,
+        ["preview"] => Step::Preview,
+        ["rest"] => Step::Rest,
         ["picture", file] => Step::Picture(file.into()),
         ["scene", file] => Step::Scene(file.into()),
         ["screenshot", file] => Step::Screenshot(file.into()),
         ["text", file] => Step::Text(file.into()),
+        ["places", file] => Step::Places(file.into()),
         ["paths", count] => Step::Paths(count.parse().ok()?),
         ["report", ..] => Step::Report(words[1..].join(" ")),
         ["wait", file] => Step::Wait(file.into()),

@@ -1,5 +1,6 @@
 //! The viewer's state: the shown scene, its lights, and what keys and drags change.
 
+mod changes;
 mod figures;
 mod lights;
 mod painting;
@@ -14,16 +15,20 @@ use ridgelight::{Error, Result};
 use super::brush::{Action, Brush};
 use super::moving::{Kind, Moving};
 use super::script::Button;
+use super::smaller::Blocks;
 use super::strokes::Strokes;
 use crate::args::ViewArgs;
+use crate::render::exposure;
 use crate::scene_file::Request;
 use settings::{Refused, Settings};
 use viewpoint::{FOV_DEG, Viewpoint};
 
-pub use figures::Figures;
+pub use changes::Change;
+pub use figures::{Figures, KEYS};
+pub use painting::Mark;
 pub use settings::said;
 
-/// The effect of a key.
+/// The effect of a key or of the panel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wish {
     Nothing,
@@ -37,15 +42,17 @@ pub enum Wish {
     Error,
     Picture,
     Scene,
+    /// Copies the command line of `render`.
+    Copy,
     End,
 }
 
 /// Settings and lights, and the words that they were given by.
 pub type Light = (Quality, Lights, Request);
 
-/// How much text is shown.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Text {
+/// How much of the panel is shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Text {
     Keys,
     Settings,
     Figures,
@@ -66,6 +73,10 @@ pub struct State {
     asked: Request,
     moving: Option<Moving>,
     exposure: f32,
+    /// Whether the exposure is to be found from the picture.
+    pub needs_exposure: bool,
+    /// Whether the environment is the clear sky around the first sun.
+    has_clear_sky: bool,
     viewpoint: Viewpoint,
     text: Text,
     settings: Settings,
@@ -87,12 +98,15 @@ pub struct State {
 
 impl State {
     pub fn new(args: &ViewArgs, scene: Scene, quality: Quality) -> Self {
+        let has_clear_sky = scene.lights.environment.is_some() && args.lights.env.is_none();
         let mut state = Self {
             scene,
             quality,
             asked: args.asked.clone(),
             moving: None,
-            exposure: args.exposure,
+            exposure: args.exposure.unwrap_or(1.0),
+            needs_exposure: args.exposure.is_none(),
+            has_clear_sky,
             viewpoint: Viewpoint::default(),
             text: Text::Keys,
             settings: Settings::new(),
@@ -123,12 +137,27 @@ impl State {
         }
     }
 
+    /// Takes the exposure that suits a picture.
+    pub fn expose(&mut self, picture: &[[f32; 3]], voids: Option<&[bool]>) {
+        (self.exposure, self.needs_exposure) = (exposure(picture, voids), false);
+    }
+
     pub fn tone(&self) -> Tone {
         Tone::picture(self.exposure)
     }
 
     pub fn is_moving(&self) -> bool {
         self.moving.is_some()
+    }
+
+    /// Whether there is a camera.
+    pub fn has_camera(&self) -> bool {
+        self.viewpoint.camera.is_some()
+    }
+
+    /// What moves.
+    pub fn moving_kind(&self) -> Option<Kind> {
+        self.moving.as_ref().map(|moving| moving.kind)
     }
 
     /// Whether heights differ from the file's.
@@ -213,9 +242,19 @@ impl State {
         self.viewpoint.map(&self.scene.field, size, swaps, has_colour)
     }
 
-    /// A camera view of a plan's light, if there is a camera.
-    pub fn view(&self, lit: &Plan, size: [u32; 2], limits: &Limits) -> Result<Option<View>> {
-        self.viewpoint.view(&self.scene, lit, size, limits)
+    /// A camera view of a plan's light, if there is a camera; of the full scene or of one in blocks.
+    pub fn view(
+        &self,
+        (scene, blocks): (&Scene, Option<Blocks>),
+        lit: &Plan,
+        size: [u32; 2],
+        limits: &Limits,
+    ) -> Result<Option<View>> {
+        let mut viewpoint = self.viewpoint;
+        if let (Some(camera), Some(blocks)) = (&mut viewpoint.camera, blocks) {
+            *camera = blocks.camera(&self.scene.field, camera);
+        }
+        viewpoint.view(scene, lit, size, limits)
     }
 
     /// Handles a key by its name: a letter, `left`, `shift+left`, `escape`.
@@ -241,8 +280,10 @@ impl State {
                 return self.say("a camera needs two rows and two columns");
             }
             "v" => self.viewpoint.begin_camera(field, size),
+            "e" | "d" if self.needs_exposure => {}
             "e" => self.exposure = (self.exposure * 1.25).clamp(1e-30, 1e30),
             "d" => self.exposure = (self.exposure * 0.8).clamp(1e-30, 1e30),
+            "a" => self.needs_exposure = true,
             "h" => {
                 self.text = match self.text {
                     Text::Keys | Text::Settings => Text::Figures,

@@ -46,6 +46,26 @@ fn gpu_maps_lie_where_the_input_lies() {
     }
 }
 
+/// A GeoTIFF and an EXR of one scene have the same channels; another scene differs.
+#[test]
+fn gpu_geotiffs_are_compared_by_band() {
+    let folder = folder();
+    let render = "render utm.tif --sky 0.5 --sun 200,20 --azimuths 8 --layers lights,sky-view";
+    done(&folder, &format!("{render} -o o.tif"));
+    done(&folder, &format!("{render} -o o.exr"));
+    for pair in ["o.tif o.exr", "o.exr o.tif"] {
+        let run = folder.run_str(&format!("compare {pair} --max-worst 0"));
+        assert_eq!((run.status, run.err.as_str()), (Some(0), ""), "{}", run.out);
+        assert!(run.out.contains("direct.sun1.G: RMSE 0.000000"), "{}", run.out);
+        assert!(!run.out.contains("not compared"), "{}", run.out);
+    }
+    done(&folder, "render utm.tif --sky 0.5 --sun 100,20 --azimuths 8 -o other.tif");
+    assert_eq!(folder.run_str("compare other.tif o.exr --max-worst 0").status, Some(1));
+    done(&folder, "horizon utm.tif --azimuths 8 -o h.tif");
+    done(&folder, "horizon utm.tif --azimuths 8 -o h.exr");
+    done(&folder, "compare h.tif h.exr --horizons --max-worst-deg 0");
+}
+
 #[test]
 fn gpu_a_picture_has_a_world_file() {
     let folder = folder();
@@ -98,7 +118,7 @@ fn gpu_two_runs_write_the_same_bytes() {
     }
 }
 
-fn gdalinfo(path: &Path) -> Value {
+pub fn gdalinfo(path: &Path) -> Value {
     let output = Command::new("gdalinfo").arg("-json").arg(path).output();
     let output = output.expect("gdalinfo: run tools/setup --tests");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
@@ -106,10 +126,13 @@ fn gdalinfo(path: &Path) -> Value {
 }
 
 /// All values of all bands, by GDAL: its ENVI driver writes plain floats.
-fn gdal_values(path: &Path) -> Vec<f32> {
+pub fn gdal_values(path: &Path) -> Vec<f32> {
     let plain = path.with_extension("envi");
     let mut command = Command::new("gdal_translate");
-    command.args(["-q", "-of", "ENVI", "-co", "INTERLEAVE=BSQ"]).arg(path).arg(&plain);
+    command
+        .args(["-q", "-ot", "Float32", "-of", "ENVI", "-co", "INTERLEAVE=BSQ"])
+        .arg(path)
+        .arg(&plain);
     assert!(command.status().expect("gdal_translate: run tools/setup --tests").success());
     let bytes = std::fs::read(plain).unwrap();
     bytes.as_chunks::<4>().0.iter().map(|b| f32::from_le_bytes(*b)).collect()

@@ -9,16 +9,20 @@ mod arguments {
     mod unused;
 }
 mod bake {
+    mod estimate;
     mod files;
     mod light;
     mod manifest;
     mod specular;
+    mod textures;
 }
 mod camera;
 mod compare;
 mod compare_refused;
+mod file_table;
 #[path = "../../../../tests/common/formats.rs"]
 mod formats;
+mod gdal_inputs;
 mod geotiff;
 mod goals;
 mod library_messages;
@@ -112,10 +116,13 @@ impl Folder {
 fn ran(mut command: Command) -> Run {
     let output = command.output().unwrap();
     let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("UTF-8");
-    // Notes on a file or on set suns: "note: dem.tif: ...", "note: night: ...". Those on flags and maps stay.
+    // Notes on a file, on set suns or on time: "note: dem.tif: ...", "note: night: ...". Those on flags and maps stay.
     let is_note = |line: &&str| {
         let what = line.strip_prefix("note: ").and_then(|rest| rest.split(' ').next());
-        what.is_some_and(|what| what == "night:" || what.ends_with(':') && what.contains('.'))
+        let is_of_file = |what: &str| what.ends_with(':') || line.contains(" more: ");
+        what.is_some_and(|what| {
+            ["night:", "estimate:"].contains(&what) || is_of_file(what) && what.contains('.')
+        })
     };
     let (notes, err): (Vec<_>, Vec<_>) = text(output.stderr)
         .split_inclusive('\n')

@@ -126,10 +126,10 @@ fn gpu_brushes_have_size_limits() {
 fn gpu_real_keys_and_mouse_events_work() {
     let (folder, display) = (Folder::new(), Display::new());
     folder.write("script", b"frames 2\nwait acted\nscene heard.json\n");
-    let mut view = folder.command(&format!("view hills.asc {LIT} --size 300x200 --script script"));
+    let mut view = folder.command(&format!("view hills.asc {LIT} --size 640x400 --script script"));
     let mut view = view.env("DISPLAY", &display.name).stdout(Stdio::null()).spawn().unwrap();
-    // Without a window manager the window does not get the keyboard by itself.
-    let act = "windowfocus --sync mousemove 100 100 key period key m key Tab key Tab key period mousedown 3 mousemove 120 100 mousemove 140 100 mouseup 3 key 2 mousemove 200 120 mousedown 1 mousemove 210 120 mouseup 1";
+    // Right of the panel. Without a window manager the window does not get the keyboard by itself.
+    let act = "windowfocus --sync mousemove 400 100 key period key m key Tab key Tab key period mousedown 3 mousemove 420 100 mousemove 440 100 mouseup 3 key 2 mousemove 450 200 mousedown 1 mousemove 470 200 mouseup 1";
     // `timeout` ends a wait for a window that never appears.
     let mut xdotool = Command::new("timeout");
     // Its title is this once it has drawn.
@@ -150,4 +150,92 @@ fn gpu_real_keys_and_mouse_events_work() {
     // The brush has changed the field.
     assert_eq!(scene["field"]["file"].as_str(), Some("heard.npy"), "{text}");
     assert!(folder.0.path().join("heard.npy").exists());
+}
+
+/// A window whose script saves the places of the panel's parts, then waits until `act`, the words
+/// of xdotool that it makes of those places, is done. Returns the scene that it saves then.
+fn acted(size: &str, act: impl Fn(&dyn Fn(&str) -> [i32; 4]) -> String) -> serde_json::Value {
+    let (folder, display) = (Folder::new(), Display::new());
+    folder.write(
+        "script",
+        b"key h\nframes 4\nplaces places\nwait acted\nframes 2\nscene scene.json\n",
+    );
+    let flag = if super::is_validated() { " --validate" } else { "" };
+    let args = format!("view hills.asc {LIT} --size {size} --exposure 1 --script script{flag}");
+    let mut view = folder.command(&args);
+    view.env("DISPLAY", &display.name).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut view = view.spawn().unwrap();
+    let file = folder.0.path().join("places");
+    let places = loop {
+        match std::fs::read_to_string(&file) {
+            Ok(text) if text.contains("keys (h)") => break text,
+            _ => std::thread::sleep(std::time::Duration::from_millis(20)),
+        }
+        assert!(view.try_wait().unwrap().is_none(), "ended before its panel was shown");
+    };
+    let place = |name: &str| {
+        let line = places.lines().find_map(|line| line.strip_prefix(&format!("{name}: ")));
+        let line = line.unwrap_or_else(|| panic!("{name} in {places}"));
+        let all: Vec<i32> = line.split(' ').map(|n| n.parse().unwrap()).collect();
+        <[i32; 4]>::try_from(all).unwrap()
+    };
+    let mut xdotool = Command::new("timeout");
+    xdotool.args(["1200", "xdotool", "search", "--sync", "--name", "hills.asc - ridgelight - "]);
+    xdotool.args(["windowfocus", "--sync"]).args(act(&place).split(' '));
+    let acted = xdotool.env("DISPLAY", &display.name).status();
+    folder.write("acted", b"");
+    let Output { status, stdout, stderr } = view.wait_with_output().unwrap();
+    assert!(acted.expect("xdotool: run tools/setup --tests").success());
+    let [out, said] = [stdout, stderr].map(|text| String::from_utf8(text).unwrap());
+    assert!(status.success() && said.is_empty(), "{status}: {said}");
+    assert_eq!(super::is_validated(), out.contains("0 validation messages"), "{out}");
+    let scene = std::fs::read(folder.0.path().join("scene.json")).unwrap();
+    serde_json::from_slice(&scene).unwrap()
+}
+
+/// From its place at 315, 30 to the east, halfway to the rim: 90, 45. A pixel is 90 / 48 degrees of
+/// elevation, and at half of the radius atan(1 / 24) of azimuth: the places are rounded to one.
+#[test]
+fn gpu_sun_is_dragged_on_the_compass() {
+    let scene = acted("700x500", |place| {
+        let [x, y, width, _] = place("compass");
+        let (from, to) = ([x - width / 4, y - width / 4], [x + width / 4, y]);
+        // Faster than frames, and released at once.
+        format!(
+            "mousemove {} {} mousedown 1 mousemove {} {y} mousemove {} {} mouseup 1",
+            from[0], from[1], x, to[0], to[1]
+        )
+    });
+    let sun = &scene["lights"]["suns"][0];
+    let [azimuth, elevation] =
+        ["azimuth_deg", "elevation_deg"].map(|name| sun[name].as_f64().unwrap());
+    assert!((azimuth - 90.0).abs() <= 1.0_f64.atan2(24.0).to_degrees() + 0.05, "{scene}");
+    assert!((elevation - 45.0).abs() <= 90.0 / 48.0 + 0.05, "{scene}");
+    // The field below the panel has heard nothing of it.
+    assert_eq!(scene["field"]["file"], "hills.asc");
+}
+
+/// A list is opened by a click and its next word is clicked; a number is typed into a field, whose
+/// digits are no keys of the window: 2 is the key of a brush, which a press on the field would use.
+#[test]
+fn gpu_settings_are_clicked_and_typed() {
+    let scene = acted("700x500", |place| {
+        let [x, y, _, height] = place("method");
+        let [right, middle, width, _] = place("azimuths");
+        // The value is behind the slider; the second word is in the list's second line.
+        let value = right + width / 2 - 12;
+        format!(
+            "mousemove {x} {y} click 1 sleep 1 mousemove {x} {} sleep 1 click 1 sleep 1 \
+            mousemove {value} {middle} click 1 sleep 1 key ctrl+a key 2 key 4 \
+            sleep 1 key Return sleep 1 mousemove 500 300 mousedown 1 mousemove 520 300 mouseup 1",
+            y + 2 * height + 10
+        )
+        .split_whitespace()
+        .collect::<Vec<_>>()
+        .join(" ")
+    });
+    let quality = &scene["quality"];
+    assert_eq!(quality["azimuths"].as_f64(), Some(24.0), "{scene}");
+    assert_eq!(quality["method"], "sweep", "{scene}");
+    assert_eq!(scene["field"]["file"], "hills.asc", "{scene}");
 }

@@ -81,11 +81,13 @@ impl Folder {
         silent(self.window(display, args, script))
     }
 
-    /// The command of such a window.
+    /// The command of such a window, with exposure 1 unless the arguments give one; "auto" is the default's.
     fn window(&self, display: &Display, args: &str, script: &str) -> Command {
         self.write("script", script.as_bytes());
         let flag = if is_validated() { " --validate" } else { "" };
-        let mut command = self.command(&format!("view {args} --script script{flag}"));
+        let exposure = if args.contains("--exposure") { "" } else { " --exposure 1" };
+        let args = args.strip_suffix(" --exposure auto").unwrap_or(args);
+        let mut command = self.command(&format!("view {args} --script script{flag}{exposure}"));
         command.env("DISPLAY", &display.name);
         command
     }
@@ -153,6 +155,59 @@ fn gpu_window_equals_render() {
     assert_same(&folder, "fourth.png", "third.png");
     // The comparison can fail.
     assert!(colours(&folder.picture("first.png")) != colours(&folder.picture("second.png")));
+}
+
+/// Light, tint and exposure of a user who gives none.
+#[test]
+fn gpu_default_window_equals_render() {
+    let (folder, display) = (Folder::new(), Display::new());
+    let script = "key h\nkey h\nframes 2\nscreenshot shot.png\n";
+    folder.view(&display, "hills.asc --size 64x48 --exposure auto", script);
+    succeed(folder.command("render hills.asc -o render.png --quiet"));
+    assert_same(&folder, "shot.png", "render.png");
+}
+
+/// A field whose light takes long: the first pictures after each turn of the sun are previews on slow devices, and the
+/// picture at rest is that of `render`, to a code where it was summed in other parts. On a fast device all are.
+#[test]
+fn gpu_previews_show_the_new_light() {
+    let (folder, display) = (Folder::new(), Display::new());
+    let side = 512;
+    let height = |i: usize| {
+        let [x, y] = [i % side, i / side].map(|n| n as f32 / 40.0);
+        (60.0 * (x.sin() + (0.7 * y).cos() + 0.4 * (2.3 * x + y).sin())).to_string()
+    };
+    let heights: Vec<String> = (0..side * side).map(height).collect();
+    let header = format!("ncols {side}\nnrows {side}\nxllcorner 0\nyllcorner 0\ncellsize 5\n");
+    folder.write("large.asc", format!("{header}{}\n", heights.join(" ")).as_bytes());
+    let script = "key h\nkey h\npreview\nframes 1\nrest\nframes 1\nscreenshot before.png\n\
+        key shift+right\nkey shift+right\nkey shift+right\nkey shift+right\nkey shift+right\nkey shift+right\n\
+        screenshot preview.png\nrest\nscreenshot full.png\nscene full.json\n\
+        key v\nkey shift+left\nkey shift+left\nscreenshot seen.png\nrest\nscreenshot seen_full.png\n\
+        key v\nkey 2\ndrag left 200,200 40,10\nscreenshot edit.png\nrest\nscreenshot edit_full.png\n\
+        key w\nframes 2\nkey w\nrest\n";
+    folder.view(&display, "large.asc --size 512x512", script);
+    folder.done("render --scene full.json -o render.png --quiet");
+    let picture = |name: &str| folder.picture(name);
+    let at_rest = apart(&picture("full.png"), &picture("render.png"));
+    assert!(at_rest <= 1.0, "{at_rest} codes");
+    // Relative to its own mean: a preview is near its own full light and far from the old one.
+    let error = |a: &str, b: &str| {
+        let (a, b) = (picture(a), picture(b));
+        let pairs = || colours(&a).concat().into_iter().zip(colours(&b).concat());
+        let square: f64 = pairs().map(|(a, b)| f64::from(a - b).powi(2)).sum();
+        let mean: f64 = pairs().map(|(_, b)| f64::from(b)).sum();
+        (square * pairs().count() as f64).sqrt() / mean
+    };
+    for (shown, full, most) in [
+        ("preview.png", "full.png", 0.05),
+        ("seen.png", "seen_full.png", 0.05),
+        ("edit.png", "edit_full.png", 0.05),
+    ] {
+        let found = error(shown, full);
+        assert!(found < most, "{shown}: {found}");
+    }
+    assert!(error("preview.png", "before.png") > 0.1);
 }
 
 /// The window and `render --camera` use the same passes. Codes are rounded here by the device after

@@ -3,5 +3,6 @@
 
 pub mod map_draw;
 pub mod picture_tone;
+pub mod preview;
 pub mod sky_draw;
 pub mod terrain_draw;

@@ -71,6 +71,22 @@ fn another_reader_finds_every_value() {
     }
 }
 
+/// All bands by their names, from files of several tiles.
+#[test]
+fn planes_are_read_back_with_their_names() {
+    for size in [[1, 1], [523, 1031]] {
+        for big in [false, true] {
+            let bytes = written(size, 3, big);
+            let read = crate::parse_planes(Path::new("a.tif"), &bytes).unwrap();
+            assert_eq!([read.cols, read.rows], size);
+            assert_eq!(read.names, ["b0", "b1", "b2"]);
+            for (band, found) in read.planes.iter().enumerate() {
+                assert_eq!(bits(found), bits(&plane(band, size)));
+            }
+        }
+    }
+}
+
 #[test]
 fn the_same_bands_are_the_same_bytes() {
     assert_eq!(written([600, 40], 3, false), written([600, 40], 3, false));

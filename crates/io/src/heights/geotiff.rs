@@ -2,7 +2,7 @@
 
 use crate::georeference::{GeoKeys, Georeference};
 use crate::heights::tif::Tiff;
-use crate::heights::{Cell, looks_like_degrees};
+use crate::heights::{Cell, looks_like_degrees, projection};
 use crate::open;
 use ridgelight::{Error, Result};
 use std::path::Path;
@@ -28,7 +28,6 @@ const PROJECTED_CRS: u16 = 3072;
 
 /// Pseudo-Mercator on a sphere of the Earth's equatorial radius (EPSG:3857, and 3785 before).
 const WEB_MERCATOR: [u16; 2] = [3857, 3785];
-const EQUATOR_M: f64 = 6_378_137.0;
 
 /// Values of the tags.
 pub(crate) struct Geo {
@@ -39,6 +38,8 @@ pub(crate) struct Geo {
     pub scale: [f64; 2],
     pub nodata: Option<f64>,
     pub georeference: Option<Georeference>,
+    /// What is converted or assumed.
+    pub notes: Vec<String>,
 }
 
 /// Grid coordinates of a north-up raster.
@@ -48,14 +49,23 @@ struct Grid {
     origin: Option<[f64; 2]>,
 }
 
-pub(crate) fn read(path: &Path, tiff: &mut Tiff, rows: usize, cols: usize) -> Result<Geo> {
+/// The tags of a file, with scale and offset of a band, which count from 0.
+pub(crate) fn read(
+    path: &Path,
+    tiff: &mut Tiff,
+    rows: usize,
+    cols: usize,
+    band: usize,
+) -> Result<Geo> {
     let nodata = nodata(path, tiff)?;
-    let scale = scale(path, tiff)?;
+    let scale = scale(path, tiff, band)?;
     let keys = Keys::read(path, tiff)?;
     let of_crs = keys.short(VERTICAL_CRS).and_then(vertical_unit);
-    let unit_m = keys.length(path, VERTICAL_UNIT)?.or(of_crs).unwrap_or(1.0);
+    let of_heights = keys.length(path, VERTICAL_UNIT)?.or(of_crs);
+    let unit_m = of_heights.unwrap_or(1.0);
+    let mut notes = Vec::new();
     let Some(grid) = grid(path, tiff)? else {
-        return Ok(Geo { cell: Cell::Unknown, unit_m, scale, nodata, georeference: None });
+        return Ok(Geo { cell: Cell::Unknown, unit_m, scale, nodata, georeference: None, notes });
     };
     // Raster position (0, 0) is the corner of the first pixel, or its centre (RasterType 2).
     let last = |n: usize| if keys.short(RASTER_TYPE) == Some(2) { n - 1 } else { n } as f64;
@@ -81,10 +91,19 @@ pub(crate) fn read(path: &Path, tiff: &mut Tiff, rows: usize, cols: usize) -> Re
                 let expected = "the northing of a grid in Web Mercator";
                 return Err(wrong(path, TIEPOINT, "nothing", expected));
             };
-            web_mercator(grid.cell, north - span[1] / 2.0)
+            Cell::Mercator { cell: grid.cell, northing_m: north - span[1] / 2.0 }
         }
         Some(1) => {
-            let unit = keys.length(path, LINEAR_UNIT)?.unwrap_or(1.0);
+            let of_crs = keys.short(PROJECTED_CRS).and_then(projection::unit_m);
+            let unit = keys.length(path, LINEAR_UNIT)?.or(of_crs).unwrap_or(1.0);
+            if unit != 1.0 {
+                notes.push(format!("cells are in units of {unit} m and become metres"));
+                if of_heights.is_none() {
+                    notes.push(format!(
+                        "heights are read as metres, as the file states no unit; for the unit of its cells use `z_scale {unit}`"
+                    ));
+                }
+            }
             Cell::Metres(grid.cell.map(|c| c * unit))
         }
         None | Some(0 | 32767) => match grid.origin {
@@ -108,7 +127,7 @@ pub(crate) fn read(path: &Path, tiff: &mut Tiff, rows: usize, cols: usize) -> Re
     let georeference = grid
         .origin
         .map(|origin| Georeference::at_origin(origin, grid.cell, keys.copied(path, tiff)));
-    Ok(Geo { cell, unit_m, scale, nodata, georeference })
+    Ok(Geo { cell, unit_m, scale, nodata, georeference, notes })
 }
 
 /// Metres in the unit of a vertical coordinate reference system of the EPSG registry: those in feet.
@@ -184,35 +203,49 @@ fn grid(path: &Path, tiff: &mut Tiff) -> Result<Option<Grid>> {
     Ok(Some(Grid { cell, origin }))
 }
 
-/// Cells in the middle of a grid in Web Mercator, as degrees: y is R asinh(tan φ), so a step of y is one of φ times
-/// R / cos φ.
-fn web_mercator(cell: [f64; 2], northing_m: f64) -> Cell {
-    let latitude = (northing_m / EQUATOR_M).sinh().atan();
-    let degrees = (1.0 / EQUATOR_M).to_degrees();
-    let cell = [cell[0] * degrees, cell[1] * degrees * latitude.cos()];
-    Cell::Degrees { cell, latitude: latitude.to_degrees() }
+/// GDAL's metadata: `<Item name="SCALE" sample="0" role="scale">0.1</Item>`.
+fn metadata(path: &Path, tiff: &mut Tiff) -> Result<String> {
+    let value = find(path, tiff, GDAL_METADATA, "text")?;
+    Ok(value.and_then(|value| value.into_string().ok()).unwrap_or_default())
 }
 
-/// Scale and offset of the first band in GDAL's metadata: `<Item name="SCALE" sample="0" role="scale">0.1</Item>`.
-fn scale(path: &Path, tiff: &mut Tiff) -> Result<[f64; 2]> {
-    let expected = "numbers for scale and offset";
-    let Some(value) = find(path, tiff, GDAL_METADATA, expected)? else { return Ok([1.0, 0.0]) };
-    let Ok(text) = value.into_string() else { return Ok([1.0, 0.0]) };
-    let item = |role: &str, default: f64| {
-        let is_it = |item: &&str| {
-            let head = item.split('>').next().unwrap_or_default();
-            head.contains(&format!("role=\"{role}\"")) && head.contains("sample=\"0\"")
-        };
-        let Some(item) = text.split("<Item ").find(is_it) else { return Ok(default) };
-        let body = item.split(['>', '<']).nth(1).unwrap_or_default().trim();
+/// What the metadata states of a band in a role: "scale", "offset", "description".
+fn item(metadata: &str, band: usize, role: &str) -> Option<String> {
+    let [role, sample] = [format!("role=\"{role}\""), format!("sample=\"{band}\"")];
+    let is_it = |item: &&str| {
+        let head = item.split('>').next().unwrap_or_default();
+        head.contains(&role) && head.contains(&sample)
+    };
+    let item = metadata.split("<Item ").find(is_it)?;
+    let mut text = item.split(['>', '<']).nth(1)?.trim().to_owned();
+    // The ampersand last: "&amp;lt;" stands for "&lt;".
+    for (code, c) in
+        [("&lt;", "<"), ("&gt;", ">"), ("&quot;", "\""), ("&apos;", "'"), ("&amp;", "&")]
+    {
+        text = text.replace(code, c);
+    }
+    Some(text)
+}
+
+/// Scale and offset of a band.
+pub(crate) fn scale(path: &Path, tiff: &mut Tiff, band: usize) -> Result<[f64; 2]> {
+    let text = metadata(path, tiff)?;
+    let number = |role: &str, default: f64| {
+        let Some(body) = item(&text, band, role) else { return Ok(default) };
         let number = body.parse().ok().filter(|n: &f64| n.is_finite());
         let short: String = body.chars().filter(|c| !c.is_control()).take(24).collect();
+        let expected = "numbers for scale and offset";
         number.ok_or_else(|| wrong(path, GDAL_METADATA, format!("{role} {short:?}"), expected))
     };
-    Ok([item("scale", 1.0)?, item("offset", 0.0)?])
+    Ok([number("scale", 1.0)?, number("offset", 0.0)?])
 }
 
-fn nodata(path: &Path, tiff: &mut Tiff) -> Result<Option<f64>> {
+/// The description of a band; bands count from 0.
+pub(crate) fn band_name(path: &Path, tiff: &mut Tiff, band: usize) -> Result<Option<String>> {
+    Ok(item(&metadata(path, tiff)?, band, "description").filter(|name| !name.is_empty()))
+}
+
+pub(crate) fn nodata(path: &Path, tiff: &mut Tiff) -> Result<Option<f64>> {
     let expected = "a number, or nan";
     let wrong = |found: String| wrong(path, GDAL_NODATA, found, expected);
     let Some(value) = find(path, tiff, GDAL_NODATA, expected)? else { return Ok(None) };

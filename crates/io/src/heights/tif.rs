@@ -1,64 +1,254 @@
 //! TIFF heights: one band of any integer or float type; [`geotiff`] reads its position.
 
-use crate::heights::Raster;
-use crate::heights::geotiff;
+use crate::heights::{Raster, geotiff, lzw};
 use crate::open;
 use half::f16;
 use ridgelight::{Error, Result};
+use std::ops::Range;
 use std::{io::Cursor, path::Path};
-use tiff::decoder::{Decoder, DecodingResult, Limits};
-use tiff::{ColorType, TiffError, tags::Tag};
+use tiff::decoder::{ChunkType, Decoder, DecodingResult, Limits};
+use tiff::tags::{ByteOrder, Tag};
+use tiff::{ColorType, TiffError};
 
 pub(crate) type Tiff<'a> = Decoder<Cursor<&'a [u8]>>;
 
-/// The first image of the file: strips or tiles, uncompressed, PackBits, LZW, DEFLATE or Zstandard,
-/// with any predictor.
-pub(crate) fn heights(path: &Path, bytes: &[u8]) -> Result<Raster> {
-    let header = |e: TiffError| Error::file(path, "header", open::complaint(e), "a whole TIFF");
-    let mut tiff = Decoder::new(Cursor::new(bytes)).map_err(header)?;
-    let (width, height) = tiff.dimensions().map_err(header)?;
-    let (rows, cols) = open::size(path, "header", height.into(), width.into())?;
-    let bits = match tiff.colortype().map_err(header)? {
-        ColorType::Gray(bits) | ColorType::Multiband { bit_depth: bits, num_samples: 1 } => bits,
-        other => {
-            let found = format!("{} colour channels ({other:?})", other.num_samples());
-            return Err(Error::file(path, "header", found, "one band of heights"));
+/// The first image of a file: strips or tiles, uncompressed, PackBits, LZW, DEFLATE or Zstandard, with
+/// any predictor; bands interleaved or one after the other.
+pub(crate) struct Image<'a> {
+    path: &'a Path,
+    pub tiff: Tiff<'a>,
+    pub rows: usize,
+    pub cols: usize,
+    pub bands: usize,
+    bits: u8,
+    color: ColorType,
+    /// Whether each chunk holds samples of one band.
+    is_planar: bool,
+    /// The file, and the compression by its TIFF number.
+    bytes: &'a [u8],
+    method: u16,
+    /// Interleaved in a strip or tile; the decoder of `tiff` leaves out those behind a colour.
+    samples: usize,
+    /// Of strips and tiles; tags are read before.
+    limits: Limits,
+}
+
+impl<'a> Image<'a> {
+    /// The header, whose claims are checked against the file's size.
+    pub fn open(path: &'a Path, bytes: &'a [u8]) -> Result<Self> {
+        let header = |e: TiffError| Error::file(path, "header", open::complaint(e), "a whole TIFF");
+        let mut tiff = Decoder::new(Cursor::new(bytes)).map_err(header)?;
+        let (width, height) = tiff.dimensions().map_err(header)?;
+        let (rows, cols) = open::size(path, "header", height.into(), width.into())?;
+        let color = tiff.colortype().map_err(header)?;
+        let bits = color.bit_depth();
+        if ![8, 16, 32, 64].contains(&bits) {
+            let found = format!("{bits} bits a sample");
+            return Err(Error::file(path, "header", found, "8, 16, 32 or 64 bits"));
         }
-    };
-    if ![8, 16, 32, 64].contains(&bits) {
-        let found = format!("{bits} bits a sample");
-        return Err(Error::file(path, "header", found, "8, 16, 32 or 64 bits"));
+        let mut number = |tag: Tag| tiff.find_tag_unsigned::<u16>(tag).map_err(header);
+        let is_planar = number(Tag::PlanarConfiguration)? == Some(2);
+        let method = number(Tag::Compression)?.unwrap_or(1);
+        let all = number(Tag::SamplesPerPixel)?.unwrap_or(1);
+        let image_bytes = rows as u64 * cols as u64 * u64::from(bits / 8) * u64::from(all);
+        open::plausible(path, "header", image_bytes, bytes.len(), ratio(method))?;
+        // The decoder leaves out interleaved samples behind those of a colour.
+        let bands = usize::from(if is_planar { all } else { color.num_samples() });
+        let samples = if is_planar {
+            1
+        } else if method == LZW {
+            usize::from(all)
+        } else {
+            bands
+        };
+        let mut limits = Limits::default();
+        let (width, height) = match tiff.get_chunk_type() {
+            // Planes from the second on are decoded with the padding of their last tiles.
+            ChunkType::Tile if is_planar => tiff.chunk_dimensions(),
+            _ => (0, 0),
+        };
+        let chunk_bytes =
+            (u64::from(width) * u64::from(height)).saturating_mul(u64::from(bits / 8));
+        open::plausible(path, "header", chunk_bytes, bytes.len(), ratio(method))?;
+        let most = image_bytes.max(chunk_bytes);
+        limits.decoding_buffer_size = usize::try_from(most).unwrap_or(usize::MAX);
+        // A compressed strip or tile is part of the file.
+        limits.intermediate_buffer_size = bytes.len();
+        Ok(Self {
+            path,
+            tiff,
+            rows,
+            cols,
+            bands,
+            bits,
+            color,
+            is_planar,
+            bytes,
+            method,
+            samples,
+            limits,
+        })
     }
-    let image_bytes = rows as u64 * cols as u64 * u64::from(bits / 8);
-    let method = tiff.find_tag_unsigned::<u16>(Tag::Compression).map_err(header)?.unwrap_or(1);
-    open::plausible(path, "header", image_bytes, bytes.len(), ratio(method))?;
 
-    let geo = geotiff::read(path, &mut tiff, rows, cols)?;
-
-    let mut limits = Limits::default();
-    limits.decoding_buffer_size = usize::try_from(image_bytes).unwrap_or(usize::MAX);
-    // A compressed strip or tile is part of the file.
-    limits.intermediate_buffer_size = bytes.len();
-    let mut tiff = tiff.with_limits(limits);
-    let image = tiff.read_image().map_err(|e| {
-        Error::file(path, "image data", open::complaint(e), "heights as the header describes")
-    })?;
-    let single = matches!(image, DecodingResult::F16(_) | DecodingResult::F32(_));
-    let values = widened(image);
-    if values.len() != rows * cols {
-        let found = format!("{} samples", values.len());
-        return Err(Error::file(path, "image data", found, format!("{}", rows * cols)));
+    /// The values of some bands, and whether they are 16- or 32-bit floats. Strips and tiles that the
+    /// file leaves out (GDAL's SPARSE_OK) hold `empty`.
+    pub fn read<T: Copy + Default>(
+        self,
+        bands: Range<usize>,
+        empty: f64,
+        of: impl Fn(f64) -> T,
+    ) -> Result<(Vec<Vec<T>>, bool)> {
+        let (path, rows, cols) = (self.path, self.rows, self.cols);
+        let wrong = |found: String| {
+            Error::file(path, "image data", found, "values as the header describes")
+        };
+        let decoded = |e: TiffError| wrong(open::complaint(e));
+        let mut tiff = self.tiff;
+        let [lengths, offsets] = match tiff.get_chunk_type() {
+            ChunkType::Strip => [Tag::StripByteCounts, Tag::StripOffsets],
+            ChunkType::Tile => [Tag::TileByteCounts, Tag::TileOffsets],
+        };
+        let mut words = |tag: Tag| -> Result<Vec<u64>> {
+            Ok(tiff.find_tag_unsigned_vec(tag).map_err(decoded)?.unwrap_or_default())
+        };
+        let (lengths, offsets) = (words(lengths)?, words(offsets)?);
+        let format = words(Tag::SampleFormat)?.first().map_or(1, |f| *f as u16);
+        let predictor = words(Tag::Predictor)?.first().map_or(1, |p| *p as u16);
+        let is_big_endian = tiff.byte_order() == ByteOrder::BigEndian;
+        let mut tiff = tiff.with_limits(self.limits);
+        let is_empty = |index: u32| lengths.get(index as usize) == Some(&0);
+        let (width, height) = tiff.chunk_dimensions();
+        let (width, height) = (width as usize, height as usize);
+        let across = cols.div_ceil(width);
+        let a_plane = across * rows.div_ceil(height);
+        let zeros = |_| open::zeros::<T>(path, rows * cols);
+        let mut planes = bands.clone().map(zeros).collect::<Result<Vec<_>>>()?;
+        let mut single = false;
+        let parts = if self.is_planar { bands.clone() } else { 0..1 };
+        for (part, chunk) in parts.flat_map(|part| (0..a_plane).map(move |chunk| (part, chunk))) {
+            let index = u32::try_from(part * a_plane + chunk)
+                .map_err(|_| wrong("more than 2^32 strips or tiles".into()))?;
+            let corner = [chunk / across * height, chunk % across * width];
+            let (inside, lines) = tiff.chunk_data_dimensions(index);
+            let lines = (lines as usize).min(rows - corner[0]);
+            let target = Target { corner, inside: inside as usize, lines, cols };
+            let (first, stride) = if self.is_planar { (0, 1) } else { (bands.start, self.samples) };
+            let planes = match self.is_planar {
+                true => &mut planes[part - bands.start..][..1],
+                false => &mut planes[..],
+            };
+            if is_empty(index) {
+                planes.iter_mut().for_each(|plane| target.fill(plane, of(empty)));
+                continue;
+            }
+            let values = if self.method == LZW {
+                let samples = self.samples;
+                let size = [width, height];
+                let inside = [target.inside, target.lines];
+                let bits = self.bits;
+                let layout =
+                    lzw::Layout { size, inside, samples, bits, format, predictor, is_big_endian };
+                let at = |all: &[u64]| usize::try_from(*all.get(index as usize)?).ok();
+                let chunk = at(&offsets).zip(at(&lengths)).and_then(|(offset, length)| {
+                    self.bytes.get(offset..offset.checked_add(length)?)
+                });
+                let chunk = chunk.ok_or_else(|| wrong("a strip or tile beyond the file".into()))?;
+                layout.decode(chunk).map_err(wrong)?
+            } else {
+                tiff.read_chunk(index).map_err(decoded)?
+            };
+            single = matches!(values, DecodingResult::F16(_) | DecodingResult::F32(_));
+            let needed = target.inside * target.lines * stride;
+            if length(&values) < needed {
+                let found = format!("{} values in a strip or tile of {needed}", length(&values));
+                return Err(wrong(found));
+            }
+            for (plane, first) in planes.iter_mut().zip(first..) {
+                each(&values, first, stride, |i, value| target.set(plane, i, of(value)));
+            }
+        }
+        Ok((planes, single))
     }
+
+    /// The index of the band that holds the heights, and a note where it was not requested.
+    fn band(&mut self, wanted: Option<u32>) -> Result<(usize, Option<String>)> {
+        let bands = self.bands;
+        let is_colour = !matches!(
+            self.color,
+            ColorType::Gray(_) | ColorType::GrayA(_) | ColorType::Multiband { .. }
+        );
+        match wanted {
+            Some(band) if (1..=bands).contains(&(band as usize)) => Ok((band as usize - 1, None)),
+            Some(band) => Err(no_band(self.path, band, bands)),
+            None if is_colour => {
+                let found = format!("{bands} colour channels ({:?})", self.color);
+                let expected = "one band of heights, or a choice by `band`";
+                Err(Error::file(self.path, "header", found, expected))
+            }
+            None if bands == 1 => Ok((0, None)),
+            None => {
+                let name = geotiff::band_name(self.path, &mut self.tiff, 0)?;
+                let name = name.map(|name| format!(" ({name})")).unwrap_or_default();
+                let note = format!("heights are band 1{name} of {bands}; `band` chooses another");
+                Ok((0, Some(note)))
+            }
+        }
+    }
+}
+
+/// The number of a compression in TIFFs.
+const LZW: u16 = 5;
+
+/// The error of a band that a file lacks; bands count from 1.
+pub(crate) fn no_band(path: &Path, band: u32, bands: usize) -> Error {
+    let bands = if bands == 1 { "1 band".to_owned() } else { format!("{bands} bands") };
+    Error::file(path, "header", bands, format!("a band {band}, which `band` requests"))
+}
+
+pub(crate) fn heights(path: &Path, bytes: &[u8], band: Option<u32>) -> Result<Raster> {
+    let mut image = Image::open(path, bytes)?;
+    let (band, note) = image.band(band)?;
+    let (rows, cols) = (image.rows, image.cols);
+    let geo = geotiff::read(path, &mut image.tiff, rows, cols, band)?;
+    let empty = geo.nodata.unwrap_or(0.0);
+    let is_8_bit = image.bits == 8;
+    let (mut planes, single) = image.read(band..band + 1, empty, |value| value)?;
     Ok(Raster {
         single,
         cell: geo.cell,
         unit_m: geo.unit_m,
         scale: geo.scale,
         nodata: geo.nodata,
-        is_8_bit: bits == 8,
+        is_8_bit,
         georeference: geo.georeference,
-        ..Raster::bare(rows, cols, values)
+        notes: note.into_iter().chain(geo.notes).collect(),
+        ..Raster::bare(rows, cols, planes.swap_remove(0))
     })
+}
+
+/// Where the values of a strip or tile belong in a plane.
+struct Target {
+    /// Row and column of its first value.
+    corner: [usize; 2],
+    /// Columns and rows of it inside the image.
+    inside: usize,
+    lines: usize,
+    /// Columns of the plane.
+    cols: usize,
+}
+
+impl Target {
+    /// Sets its value number `i`; those below the image are padding.
+    fn set<T>(&self, plane: &mut [T], i: usize, value: T) {
+        let (line, col) = (i / self.inside, i % self.inside);
+        if line < self.lines {
+            plane[(self.corner[0] + line) * self.cols + self.corner[1] + col] = value;
+        }
+    }
+
+    fn fill<T: Copy>(&self, plane: &mut [T], value: T) {
+        (0..self.inside * self.lines).for_each(|i| self.set(plane, i, value));
+    }
 }
 
 /// The greatest expansion of a compression method, by its TIFF number.
@@ -74,21 +264,42 @@ fn ratio(method: u16) -> u64 {
     }
 }
 
-fn widened(image: DecodingResult) -> Vec<f64> {
-    fn each<T>(samples: Vec<T>, wide: impl Fn(T) -> f64) -> Vec<f64> {
-        samples.into_iter().map(wide).collect()
+fn length(values: &DecodingResult) -> usize {
+    match values {
+        DecodingResult::U8(v) => v.len(),
+        DecodingResult::U16(v) => v.len(),
+        DecodingResult::U32(v) => v.len(),
+        DecodingResult::U64(v) => v.len(),
+        DecodingResult::I8(v) => v.len(),
+        DecodingResult::I16(v) => v.len(),
+        DecodingResult::I32(v) => v.len(),
+        DecodingResult::I64(v) => v.len(),
+        DecodingResult::F16(v) => v.len(),
+        DecodingResult::F32(v) => v.len(),
+        DecodingResult::F64(v) => v.len(),
     }
-    match image {
-        DecodingResult::U8(v) => each(v, f64::from),
-        DecodingResult::U16(v) => each(v, f64::from),
-        DecodingResult::U32(v) => each(v, f64::from),
-        DecodingResult::U64(v) => each(v, |s| s as f64),
-        DecodingResult::I8(v) => each(v, f64::from),
-        DecodingResult::I16(v) => each(v, f64::from),
-        DecodingResult::I32(v) => each(v, f64::from),
-        DecodingResult::I64(v) => each(v, |s| s as f64),
-        DecodingResult::F16(v) => each(v, f16::to_f64),
-        DecodingResult::F32(v) => each(v, f64::from),
-        DecodingResult::F64(v) => v,
+}
+
+/// Calls `take` with the number and the value of every `stride`-th sample from `first` on.
+fn each(values: &DecodingResult, first: usize, stride: usize, mut take: impl FnMut(usize, f64)) {
+    macro_rules! widened {
+        ($samples:expr, $wide:expr) => {
+            for (i, value) in $samples.iter().skip(first).step_by(stride).enumerate() {
+                take(i, $wide(*value));
+            }
+        };
+    }
+    match values {
+        DecodingResult::U8(v) => widened!(v, f64::from),
+        DecodingResult::U16(v) => widened!(v, f64::from),
+        DecodingResult::U32(v) => widened!(v, f64::from),
+        DecodingResult::U64(v) => widened!(v, |s| s as f64),
+        DecodingResult::I8(v) => widened!(v, f64::from),
+        DecodingResult::I16(v) => widened!(v, f64::from),
+        DecodingResult::I32(v) => widened!(v, f64::from),
+        DecodingResult::I64(v) => widened!(v, |s| s as f64),
+        DecodingResult::F16(v) => widened!(v, f16::to_f64),
+        DecodingResult::F32(v) => widened!(v, f64::from),
+        DecodingResult::F64(v) => widened!(v, |s| s),
     }
 }

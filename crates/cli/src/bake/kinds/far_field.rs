@@ -15,12 +15,13 @@ use ridgelight_bake::{Angles, ExitRadiance, Facets};
 use ridgelight_io::Component;
 use serde_json::json;
 
-use super::{Job, Kind, Map, MapFiles, Say, Value, Wanted, light, number, reflection};
-use crate::bake::map::Format;
+use super::{
+    Job, Kind, Map, MapFiles, Stage, Stages, Value, Wanted, light, number, reflection, stage,
+};
 
 /// The largest value that the files hold: of f32, or less in a .ktx2.
 pub fn largest(wanted: &Wanted) -> f64 {
-    let has_texels = wanted.formats.contains(&Format::Ktx2);
+    let has_texels = wanted.formats.iter().any(|format| format.is_texture());
     let is_half = wanted.encoding.component == Component::F16 && has_texels;
     if is_half { 65_504.0 } else { f64::from(f32::MAX) }
 }
@@ -204,24 +205,57 @@ pub fn rays(job: &Job, kind: &Kind, limits: &Limits) -> Option<(u128, String)> {
     ))
 }
 
-pub fn facets(gpu: &mut Headless, job: &Job, directions: &Directions, say: Say) -> Result<Facets> {
-    say(format!("triangle visibility from {} directions", directions.count()));
+/// The number of triangles.
+pub fn triangles(job: &Job) -> f64 {
+    let [cols, rows] = [job.field().cols(), job.field().rows()];
+    (2 * cols * rows * times(job.field()).pow(2)) as f64
+}
+
+/// Visibility of all triangles from `directions` of them.
+pub fn triangles_stage(job: &Job, directions: usize) -> Stage {
+    Stage::new(stage::TRIANGLES, triangles(job) * directions as f64, "triangles x directions")
+}
+
+/// Visible points, found so many times.
+pub fn points_stage(job: &Job, times: usize) -> Stage {
+    let work = (times * job.grid_points() * job.around.count()) as f64;
+    Stage::new(stage::POINTS, work, "texels x directions")
+}
+
+/// Work of one light towards so many views: sums over triangles, and steps of paths. With specular
+/// each path takes its last step towards every view.
+pub fn light_work(job: &Job, views: usize) -> Result<f64> {
+    let Some(Walked { plan, .. }) = walked(job)? else { return Ok(triangles(job) * views as f64) };
+    let [bounces, paths] = ["bounces", "paths"].map(|name| f64::from(number(&plan, name)));
+    let last = if specular(job).is_some() { views as f64 } else { 0.0 };
+    Ok(triangles(job) * views as f64 + job.grid_points() as f64 * paths * (bounces + last))
+}
+
+/// What [`light_work`] counts.
+pub const LIGHT_UNIT: &str = "lights x (triangles x views + texels x path steps)";
+
+pub fn facets(gpu: &mut Headless, job: &Job, directions: &Directions) -> Result<Facets> {
     ridgelight_bake::facets(gpu, job.scene, times(job.field()), directions, &job.limits)
 }
 
 /// Radiance of all triangles under a light of irradiance 1 from each given direction. Specular goes
-/// towards those views that the light has.
+/// towards those views that the light has. `name` is the stage after that of visible points.
 pub fn each_light(
     gpu: &mut Headless,
     job: &Job,
     facets: &Facets,
     (lights, views): (Range<usize>, &dyn Fn(usize) -> Range<usize>),
+    (stages, name): (&Stages, &str),
     take: &mut dyn FnMut(usize, ExitRadiance) -> Result<()>,
 ) -> Result<()> {
     let points = match job.scatter {
-        Some(_) => Some(job.points(gpu, &|_| ())?),
+        Some(_) => {
+            stages.begin(stage::POINTS);
+            Some(job.points(gpu)?)
+        }
         None => None,
     };
+    stages.begin(name);
     let of = (facets, lights, views);
     let scatter = points.as_ref().zip(job.scatter.as_ref());
     ridgelight_bake::lit_from(gpu, job.scene, of, scatter, &job.limits, take)

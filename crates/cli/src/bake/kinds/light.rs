@@ -6,8 +6,8 @@ use ridgelight::scene::Scatter;
 use ridgelight::{Error, Result, plan};
 use serde_json::json;
 
-use super::far_field::{self, Walked, direct, direct_plan, mask_plan};
-use super::{Job, Map, MapFiles, OfLight, Say, Value, Wanted, number, take};
+use super::far_field::{self, Walked, direct, direct_plan, mask_plan, points_stage};
+use super::{Job, Map, MapFiles, OfLight, Stage, Stages, Value, Wanted, number, stage, take};
 
 pub const SCATTER: OfLight = OfLight {
     is_lit: true,
@@ -19,6 +19,7 @@ pub const SCATTER: OfLight = OfLight {
         ])
     },
     bytes: |job| job.grid_points() as u64 * 212,
+    stages: scatter_stages,
     make: make_scatter,
 };
 
@@ -71,18 +72,41 @@ fn part(job: &Job, k: u32) -> Result<Scatter> {
     Ok(Scatter { paths: scatter.paths.div_ceil(PARTS), seed, ..scatter })
 }
 
-fn make_scatter(gpu: &mut Headless, job: &Job, files: &mut MapFiles, say: Say) -> Result<()> {
-    say("direct light".into());
+fn scatter_stages(job: &Job, _: bool) -> Result<Vec<Stage>> {
+    let bounces = job.scatter.map_or(0, |scatter| scatter.bounces);
+    let steps = f64::from(paths(job, &job.limits)?) * f64::from(bounces);
+    let texels = job.grid_points() as f64;
+    Ok(vec![direct_stage(job), points_stage(job, 1), scattered_stage(texels * steps)])
+}
+
+fn direct_stage(job: &Job) -> Stage {
+    let work = job.grid_points() as f64 * f64::from(job.quality.azimuths);
+    Stage::new(stage::DIRECT, work, "texels x azimuths")
+}
+
+fn scattered_stage(steps: f64) -> Stage {
+    Stage::new(stage::SCATTERED, steps, "texels x path steps")
+}
+
+fn make_scatter(
+    gpu: &mut Headless,
+    job: &Job,
+    files: &mut MapFiles,
+    stages: &Stages,
+) -> Result<()> {
+    stages.begin(stage::DIRECT);
     let lit = direct(gpu, job, job.scene)?;
     // With specular, bounces start from the diffuse light only: specular depends on the receiver.
     let diffuse = match far_field::specular(job) {
         Some(_) => direct(gpu, job, &far_field::diffuse(job))?,
         None => lit.clone(),
     };
-    let points = job.points(gpu, say)?;
+    stages.begin(stage::POINTS);
+    let points = job.points(gpu)?;
+    stages.begin(stage::SCATTERED);
     let mut sums = vec![[[0.0_f64; 2]; 3]; lit.len()];
     for k in 0..PARTS {
-        say(format!("scattered light, part {} of {PARTS}", k + 1));
+        stages.show(&format!("part {} of {PARTS}", k + 1));
         let light = gpu.scattered(job.scene, &points, &diffuse, &part(job, k)?, &job.limits)?;
         for (sum, v) in sums.as_flattened_mut().iter_mut().zip(light.as_flattened()) {
             let v = f64::from(*v);
@@ -136,6 +160,7 @@ pub const LIGHT_FIELD: OfLight = OfLight {
         Ok(all)
     },
     bytes: far_field::bytes_of_views,
+    stages: light_field_stages,
     make: make_light_field,
 };
 
@@ -163,23 +188,55 @@ pub fn view_paths(job: &Job) -> Scatter {
     Scatter { direct_specular: true, ..job.scatter.unwrap_or(alone) }
 }
 
-fn make_light_field(gpu: &mut Headless, job: &Job, files: &mut MapFiles, say: Say) -> Result<()> {
-    say("direct light".into());
+/// The stage that sums triangles towards each view.
+const VIEWS: &str = "views";
+
+fn light_field_stages(job: &Job, _: bool) -> Result<Vec<Stage>> {
+    let (views, texels) = (job.angles.count(), job.grid_points() as f64);
+    let steps = walked(job, &job.limits)?.map(|plan| {
+        let [bounces, paths] = ["bounces", "paths"].map(|name| f64::from(number(&plan, name)));
+        texels * paths * bounces
+    });
+    let mut all = vec![direct_stage(job)];
+    let has_specular = far_field::specular(job).is_some();
+    if let Some(steps) = steps.filter(|_| !has_specular) {
+        all.extend([points_stage(job, 1), scattered_stage(steps)]);
+    }
+    all.push(far_field::triangles_stage(job, views));
+    if has_specular {
+        let last = texels * f64::from(view_paths(job).paths) * views as f64;
+        all.extend([points_stage(job, 1), scattered_stage(steps.unwrap_or(0.0) + last)]);
+    } else {
+        let work = far_field::triangles(job) * views as f64;
+        all.push(Stage::new(VIEWS, work, "triangles x views"));
+    }
+    Ok(all)
+}
+
+fn make_light_field(
+    gpu: &mut Headless,
+    job: &Job,
+    files: &mut MapFiles,
+    stages: &Stages,
+) -> Result<()> {
+    stages.begin(stage::DIRECT);
     let mut light = direct(gpu, job, &far_field::diffuse(job))?;
     let has_specular = far_field::specular(job).is_some();
     if let Some(scatter) = job.scatter.as_ref().filter(|_| !has_specular) {
-        let points = job.points(gpu, say)?;
-        say("scattered light".into());
+        stages.begin(stage::POINTS);
+        let points = job.points(gpu)?;
+        stages.begin(stage::SCATTERED);
         let more = gpu.scattered(job.scene, &points, &light, scatter, &job.limits)?;
         for (own, more) in light.as_flattened_mut().iter_mut().zip(more.as_flattened()) {
             *own += more;
         }
     }
     let directions = job.angles.directions()?;
-    let facets = far_field::facets(gpu, job, &directions, say)?;
+    stages.begin(stage::TRIANGLES);
+    let facets = far_field::facets(gpu, job, &directions)?;
     let none = vec![[0.0; 3]; facets.count()].into();
     let mut take_view = |view: usize, light: &[[f32; 3]]| {
-        say(format!("view {} of {}", view + 1, directions.count()));
+        stages.show(&format!("view {} of {}", view + 1, directions.count()));
         let texels = facets.texels_from(view, &none).into_iter().zip(light);
         let texels = texels.map(|([.., share], light)| match share as f32 {
             share if share > 0.0 => [light[0], light[1], light[2], share],
@@ -188,9 +245,10 @@ fn make_light_field(gpu: &mut Headless, job: &Job, files: &mut MapFiles, say: Sa
         take(files, &texels.collect::<Vec<_>>())
     };
     if has_specular {
-        let points = job.points(gpu, say)?;
+        stages.begin(stage::POINTS);
+        let points = job.points(gpu)?;
         let of = (job.scene, &points, light.as_slice());
-        say("scattered light".into());
+        stages.begin(stage::SCATTERED);
         let (paths, views) = (view_paths(job), directions.vectors());
         gpu.scattered_towards(of, &paths, views, &job.limits, &mut |view, more| {
             let all = light.iter().zip(&more);
@@ -198,6 +256,7 @@ fn make_light_field(gpu: &mut Headless, job: &Job, files: &mut MapFiles, say: Sa
             take_view(view, &all.collect::<Vec<_>>())
         })?;
     } else {
+        stages.begin(VIEWS);
         (0..directions.count()).try_for_each(|view| take_view(view, &light))?;
     }
     let lights = &job.scene.lights;

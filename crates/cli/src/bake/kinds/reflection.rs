@@ -8,15 +8,15 @@ use ridgelight::{Error, Result};
 use ridgelight_bake::{self as bake, Brdf, BrdfHarmonics, Facets, Factors};
 use serde_json::json;
 
-use super::far_field::{each_light, is_coarse, largest, walked};
-use super::{Job, Map, MapFiles, Say, Value, Wanted, far_field, take};
+use super::far_field::{LIGHT_UNIT, each_light, is_coarse, largest, light_work, walked};
+use super::{Job, Map, MapFiles, Stage, Stages, Value, Wanted, far_field, stage, take};
 
 /// Light and view pairs at which the table is tested between its angles.
 pub const PAIRS: usize = 64;
 
 /// Factors of the table. More would remove less error than the table's own angular steps leave
 /// (`cargo measure brdf`).
-const COUNT: usize = 8;
+pub const FACTORS: usize = 8;
 
 /// Bytes in this process.
 pub fn bytes(job: &Job) -> u64 {
@@ -75,21 +75,21 @@ pub fn factors(job: &Job, wanted: &Wanted) -> Result<Map> {
         light times layer views + k for the view; views is 0 without --specular, else 8; \
         texel (j, k) is θ = (k + ½) π/2 / thetas, φ = 2π j / phis counter-clockwise from east";
     let mut constants = far_field::constants("BRDF", angles);
-    constants.push(format!("const int BRDF_FACTORS = {COUNT};"));
+    constants.push(format!("const int BRDF_FACTORS = {FACTORS};"));
     // Specular is not symmetric in light and view.
-    let views = if far_field::specular(job).is_some() { COUNT } else { 0 };
+    let views = if far_field::specular(job).is_some() { FACTORS } else { 0 };
     constants.push(format!("const int BRDF_VIEWS = {views};"));
     let size = Some([angles.azimuths, angles.zeniths]);
     let axes = vec![
-        ("factor", COUNT + views),
+        ("factor", FACTORS + views),
         ("channel", 3),
         ("theta", angles.zeniths),
         ("phi", angles.azimuths),
     ];
     let map = Map { is_array: true, constants, size, axes, ..Map::default() };
     let map = colours(job, wanted, (about, "1/√sr", -1.0), map)?;
-    match angles.count() < COUNT {
-        true => Err(too_few(job, "", format!("{COUNT} angles or more, one per factor"))),
+    match angles.count() < FACTORS {
+        true => Err(too_few(job, "", format!("{FACTORS} angles or more, one per factor"))),
         false => Ok(map),
     }
 }
@@ -116,6 +116,54 @@ pub fn harmonics(job: &Job, wanted: &Wanted) -> Result<Map> {
     }
 }
 
+/// The stage that tests the table between its angles.
+const BETWEEN: &str = "pairs between the angles";
+/// The stage that puts the table into a shorter form.
+const SHORT: &str = "shorter form";
+
+/// Stages of the light of all triangles towards --angles. `more` counts further
+/// directions of triangle visibility; visible points are found so many times.
+fn lights_stages(job: &Job, more: usize, times: usize) -> Result<Vec<Stage>> {
+    let lights = job.angles.count();
+    let mut all = vec![far_field::triangles_stage(job, lights + more)];
+    if job.scatter.is_some() {
+        all.push(far_field::points_stage(job, times));
+    }
+    all.push(Stage::new(stage::LIGHTS, lights as f64 * light_work(job, lights)?, LIGHT_UNIT));
+    Ok(all)
+}
+
+pub fn table_stages(job: &Job, is_made: bool) -> Result<Vec<Stage>> {
+    if is_made {
+        return Ok(Vec::new());
+    }
+    // A pair has two ends.
+    let mut all = lights_stages(job, 2 * job.pairs, 2)?;
+    all.push(Stage::new(BETWEEN, job.pairs as f64 * light_work(job, 1)?, LIGHT_UNIT));
+    Ok(all)
+}
+
+/// Those of the table, and its factors: each is an eigenvector of the table.
+pub fn factors_stages(job: &Job, is_made: bool) -> Result<Vec<Stage>> {
+    shorter_stages(job, is_made, FACTORS)
+}
+
+/// Those of the table, and its sums with the harmonics.
+pub fn harmonics_stages(job: &Job, is_made: bool) -> Result<Vec<Stage>> {
+    shorter_stages(job, is_made, job.sh_order().pow(2))
+}
+
+fn shorter_stages(job: &Job, is_made: bool, terms: usize) -> Result<Vec<Stage>> {
+    let values = (job.angles.count().pow(2) * terms) as f64;
+    let mut all = table_stages(job, is_made)?;
+    all.push(Stage::new(SHORT, values, "values of the table x terms"));
+    Ok(all)
+}
+
+pub fn btf_stages(job: &Job, _: bool) -> Result<Vec<Stage>> {
+    lights_stages(job, 0, 1)
+}
+
 /// The table, which three kinds store in different ways.
 pub struct Table {
     brdf: Brdf,
@@ -125,19 +173,20 @@ pub struct Table {
 }
 
 /// The table of this bake, computed on first use.
-fn table<'a>(gpu: &mut Headless, job: &'a Job, say: Say) -> Result<&'a Table> {
+fn table<'a>(gpu: &mut Headless, job: &'a Job, stages: &Stages) -> Result<&'a Table> {
     if let Some(known) = job.table.get() {
         return Ok(known);
     }
-    let made = compute_table(gpu, job, say)?;
+    let made = compute_table(gpu, job, stages)?;
     Ok(job.table.get_or_init(|| made))
 }
 
 /// Every light's table row by row.
-fn compute_table(gpu: &mut Headless, job: &Job, say: Say) -> Result<Table> {
+fn compute_table(gpu: &mut Headless, job: &Job, stages: &Stages) -> Result<Table> {
     let directions = job.angles.directions()?;
     let count = directions.count();
-    let facets = far_field::facets(gpu, job, &directions, say)?;
+    stages.begin(stage::TRIANGLES);
+    let facets = far_field::facets(gpu, job, &directions)?;
     facets.check().map_err(|error| match error {
         Error::Setting { name, found, expected } if name.starts_with("direction ") => {
             too_few(job, &format!(" with {name}, {found}"), expected)
@@ -145,49 +194,67 @@ fn compute_table(gpu: &mut Headless, job: &Job, say: Say) -> Result<Table> {
         other => other,
     })?;
     let mut values = Vec::with_capacity(count * count);
-    each_light(gpu, job, &facets, (0..count, &|_| 0..count), &mut |light, radiance| {
-        say(format!("light {} of {count}", light + 1));
+    let of = (0..count, &(|_| 0..count) as _);
+    each_light(gpu, job, &facets, of, (stages, stage::LIGHTS), &mut |light, radiance| {
+        stages.show(&format!("light {} of {count}", light + 1));
         let z = directions.vectors()[light].z;
         let of_views = facets.radiance_from_all(&radiance).into_iter();
         values.extend(of_views.map(|light| light.map(|v| v / z)));
         Ok(())
     })?;
     let brdf = Brdf::from_values(directions.vectors().to_vec(), values)?;
-    say(format!("{PAIRS} pairs between the angles"));
-    let pairs = bake::pairs(PAIRS, job.seed)?;
+    stages.begin(stage::TRIANGLES);
+    let count = job.pairs;
+    let pairs = bake::pairs(count, job.seed)?;
     let of_pairs = bake::facets(gpu, job.scene, facets.times(), &pairs, &job.limits)?;
-    let mut between = Vec::with_capacity(PAIRS);
-    let own = |light| PAIRS + light..PAIRS + light + 1;
-    each_light(gpu, job, &of_pairs, (0..PAIRS, &own), &mut |light, radiance| {
-        let [l, v] = [light, PAIRS + light].map(|i| pairs.vectors()[i]);
-        let mean = of_pairs.radiance_from(PAIRS + light, &radiance);
+    let mut between = Vec::with_capacity(count);
+    let own = |light: usize| count + light..count + light + 1;
+    let of = (0..count, &own as _);
+    each_light(gpu, job, &of_pairs, of, (stages, BETWEEN), &mut |light, radiance| {
+        let [l, v] = [light, count + light].map(|i| pairs.vectors()[i]);
+        let mean = of_pairs.radiance_from(count + light, &radiance);
         between.push(([l, v], mean.map(|m| m / l.z)));
         Ok(())
     })?;
     Ok(Table { brdf, facets, between })
 }
 
-pub fn make_table(gpu: &mut Headless, job: &Job, files: &mut MapFiles, say: Say) -> Result<()> {
-    let table = table(gpu, job, say)?;
+pub fn make_table(
+    gpu: &mut Headless,
+    job: &Job,
+    files: &mut MapFiles,
+    stages: &Stages,
+) -> Result<()> {
+    let table = table(gpu, job, stages)?;
     let count = job.angles.count();
     let texels = (0..count * count).map(|i| table.brdf.at(i / count, i % count));
     take(files, &texels.collect::<Vec<_>>())?;
     add_entries(job, table, (&|l, v| table.brdf.between(&job.angles, l, v), true), files)
 }
 
-pub fn make_factors(gpu: &mut Headless, job: &Job, files: &mut MapFiles, say: Say) -> Result<()> {
-    let table = table(gpu, job, say)?;
-    say("factors".into());
-    let factors = Factors::of(&table.brdf, job.angles, COUNT, table.facets.has_specular())?;
+pub fn make_factors(
+    gpu: &mut Headless,
+    job: &Job,
+    files: &mut MapFiles,
+    stages: &Stages,
+) -> Result<()> {
+    let table = table(gpu, job, stages)?;
+    stages.begin(SHORT);
+    let factors = Factors::of(&table.brdf, job.angles, FACTORS, table.facets.has_specular())?;
     let mut all = factors.values().iter().chain(factors.of_views().unwrap_or_default());
     all.try_for_each(|of_k| take(files, of_k))?;
     add_residual(job, table, factors.rows(), files);
     add_entries(job, table, (&|l, v| factors.at(l, v), true), files)
 }
 
-pub fn make_harmonics(gpu: &mut Headless, job: &Job, files: &mut MapFiles, say: Say) -> Result<()> {
-    let table = table(gpu, job, say)?;
-    say("harmonics".into());
+pub fn make_harmonics(
+    gpu: &mut Headless,
+    job: &Job,
+    files: &mut MapFiles,
+    stages: &Stages,
+) -> Result<()> {
+    let table = table(gpu, job, stages)?;
+    stages.begin(SHORT);
     let (order, has_specular) = (job.sh_order(), table.facets.has_specular());
     let harmonics = BrdfHarmonics::of(&table.brdf, job.angles, order, has_specular)?;
     take(files, harmonics.coefficients())?;
@@ -275,7 +342,7 @@ fn add_entries(
     files.add_entry(
         "between",
         json!({
-            "residual": residual(between), "pairs": PAIRS, "seed": job.seed,
+            "residual": residual(between), "pairs": job.pairs, "seed": job.seed,
             "is": format!(
                 "RMS of the stored value less the field's own, {}, over that value: seeded light \
                     and view pairs, each uniform in what a level plane receives",
@@ -294,11 +361,18 @@ pub fn btf(job: &Job, wanted: &Wanted) -> Result<Map> {
     Ok(far_field::views(job, wanted, names, about, "1/sr"))
 }
 
-pub fn make_btf(gpu: &mut Headless, job: &Job, files: &mut MapFiles, say: Say) -> Result<()> {
+pub fn make_btf(
+    gpu: &mut Headless,
+    job: &Job,
+    files: &mut MapFiles,
+    stages: &Stages,
+) -> Result<()> {
     let count = job.angles.count();
-    let facets = far_field::facets(gpu, job, &job.angles.directions()?, say)?;
-    each_light(gpu, job, &facets, (0..count, &|_| 0..count), &mut |light, radiance| {
-        say(format!("light {} of {count}", light + 1));
+    stages.begin(stage::TRIANGLES);
+    let facets = far_field::facets(gpu, job, &job.angles.directions()?)?;
+    let of = (0..count, &(|_| 0..count) as _);
+    each_light(gpu, job, &facets, of, (stages, stage::LIGHTS), &mut |light, radiance| {
+        stages.show(&format!("light {} of {count}", light + 1));
         let mut views = facets.texels_from_all(&radiance).into_iter();
         views.try_for_each(|texels| take(files, &texels))
     })?;

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use ridgelight::{Error, Result};
 use ridgelight_io as files;
-use ridgelight_io::{Component, Layer, Written};
+use ridgelight_io::{Block, Component, Layer, Written};
 use serde_json::{Value as Json, json};
 
 use super::{Format, MapFiles, Open, Waiting};
@@ -22,6 +22,7 @@ impl MapFiles<'_> {
                 Open::Exr(planes) => self.exr(&path, &planes, metadata)?,
                 Open::Npy(writer) => writer.close()?,
                 Open::Ktx2(writer) => writer.close()?,
+                Open::Dds(writer) => writer.close()?,
                 Open::Tif(writer) => writer.close(&[metadata, &self.texts[..1]].concat())?,
                 Open::Png => {
                     self.waiting.extend(pictures.take().into_iter().flatten());
@@ -48,20 +49,32 @@ impl MapFiles<'_> {
         files::write_exr_aside(path, rows, cols, &layers, &all)
     }
 
-    /// The map's notes, with one about values outside their range.
+    /// The map's notes, with those about compression and about values outside their range.
     pub fn notes(&self) -> Vec<String> {
         let mut all = self.remarks.clone();
+        if let Some(block) = self.wanted.block {
+            let each = self.wanted.encoding.bounds.iter().zip(self.measured.worst_and_rms());
+            let each = each.map(|(bound, [worst, rms])| {
+                let unit = if bound.unit.is_empty() { "" } else { " " };
+                format!(
+                    "{} at most {worst:.2e}{unit}{1}, RMS {rms:.2e}{unit}{1}",
+                    bound.of, bound.unit
+                )
+            });
+            let name = block.vulkan().1.trim_end_matches("_BLOCK");
+            all.push(format!("error of {name}: {}", each.collect::<Vec<_>>().join("; ")));
+        }
         let (count, most) = self.beyond;
         if count == 0 {
             return all;
         }
         let (kind, component) = (self.wanted.kind, self.wanted.encoding.component);
-        let has_codes = self.has(Format::Ktx2) || self.has(Format::Png);
+        let has_codes = self.has_textures() || self.has(Format::Png);
         let is_clamped = component.is_normalised() && has_codes;
-        let ends = if is_clamped { "; .ktx2 and .png clamp them" } else { "" };
+        let ends = if is_clamped { "; textures and .png clamp them" } else { "" };
         let cause = match kind.is_light() {
-            true if component == Component::F16 && self.has(Format::Ktx2) => {
-                format!(".ktx2 stores f16; use --encoding {}=f32", kind.name)
+            true if component == Component::F16 && self.has_textures() => {
+                format!("textures store f16; use --encoding {}=f32", kind.name)
             }
             true => "they exceed f32".to_owned(),
             false => "too few azimuths for such slopes".to_owned(),
@@ -88,6 +101,9 @@ impl MapFiles<'_> {
             let (count, most) = self.beyond;
             entry["beyond_range"] = json!({ "values": count, "at_most": most });
         }
+        if let Some(normals) = self.map.normals {
+            entry["normals"] = normals.describe();
+        }
         if !self.map.axes.is_empty() {
             let axes = self.map.axes.iter();
             entry["axes"] =
@@ -106,7 +122,9 @@ impl MapFiles<'_> {
         let is_scaled = format == Format::Png && self.is_scaled();
         let holds = match format {
             Format::Exr | Format::Npy | Format::Tif => "f32".to_owned(),
-            Format::Ktx2 => texels.vulkan().map_or("", |(_, name)| name).to_owned(),
+            Format::Ktx2 | Format::Dds => {
+                self.wanted.stored().vulkan().map_or("", |(_, name)| name).to_owned()
+            }
             Format::Png => {
                 let (channels, bits) = self.picture_form();
                 format!("{} of {bits} bits", ["Y", "YA", "RGB", "RGBA"][channels - 1])
@@ -127,7 +145,17 @@ impl MapFiles<'_> {
             Format::Exr | Format::Npy | Format::Tif => {
                 vec![bound("value", "", 0.0, 1.0 / f64::from(1 << 24))]
             }
-            Format::Ktx2 | Format::Png => {
+            Format::Ktx2 | Format::Dds if self.wanted.block.is_some() => {
+                let all = encoding.bounds.iter().zip(self.measured.worst_and_rms());
+                let of = |(b, [worst, rms]): (&ridgelight_bake::Bound, [f64; 2])| {
+                    let mut entry = bound(b.of, b.unit, worst, 0.0);
+                    entry["rms"] = json!(rms);
+                    entry["is"] = "measured over the first mip level of this file".into();
+                    entry
+                };
+                all.map(of).collect()
+            }
+            Format::Ktx2 | Format::Dds | Format::Png => {
                 let of = |b: &ridgelight_bake::Bound| {
                     bound(b.of, b.unit, scale * b.absolute(component), b.relative(component))
                 };
@@ -141,6 +169,9 @@ impl MapFiles<'_> {
         if is_scaled {
             entry["scale"] = json!(scale);
         }
+        if format.is_texture() {
+            entry["mip_levels"] = self.wanted.level_sizes(self.size()).len().into();
+        }
         if format == Format::Ktx2 && component.is_normalised() && component.bytes() == 2 {
             entry["sampled"] = format!(
                 "check VkFormatProperties of VK_FORMAT_{holds}: Vulkan does not require it"
@@ -151,10 +182,13 @@ impl MapFiles<'_> {
             entry["voids"] = match format {
                 Format::Exr | Format::Npy | Format::Tif => "NaN",
                 Format::Png => "transparent: alpha is the last channel",
-                Format::Ktx2 if texels.count > encoding.components => {
+                Format::Ktx2 | Format::Dds
+                    if texels.count > encoding.components
+                        && self.wanted.block != Some(Block::Bc6h) =>
+                {
                     "values of the ground filled in from around; a is 0 there, else 1"
                 }
-                Format::Ktx2 => "values of the ground filled in from around",
+                Format::Ktx2 | Format::Dds => "values of the ground filled in from around",
             }
             .into();
         }

@@ -1,20 +1,23 @@
 //! Frames.
 
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use ridgelight::gpu::{Frame, Work};
 use ridgelight::plan::{self, Format, Kind, Map, Plan, Rectangle, View};
-use ridgelight::scene::Scene;
+use ridgelight::scene::{HeightField, Scene};
 use ridgelight::{Error, Result};
-use ridgelight_viewer::{Pane, PaneTimes, Panel, PresentOptions, Screen, Viewpoint};
+use ridgelight_viewer::{Pane, PaneTimes, PresentOptions, Screen, Viewpoint};
 
-use super::super::panel::{self, Drawn};
 use super::super::state::{Light, State, Wish};
 use super::compare::Compare;
 use super::{App, OpenWindow};
+use crate::render;
 
 /// Shortest interval between updates of the window's title.
 const TITLE_FRAMES: u64 = 16;
+
+/// Interval between statements of progress.
+const PROGRESS: Duration = Duration::from_millis(500);
 
 /// Between pictures side by side, pixels.
 const GAP: u32 = 2;
@@ -22,14 +25,24 @@ const GAP: u32 = 2;
 impl App<'_> {
     /// Does what a key requested; false ends.
     pub(super) fn grant(&mut self, wish: Wish, before: Light) -> Result<bool> {
+        if wish != Wish::Nothing {
+            self.asked.get_or_insert_with(Instant::now);
+        }
+        let uses_preview = self.uses_preview();
         match wish {
             Wish::Nothing => {}
             Wish::Show => self.due = self.due.max(1),
             Wish::Heights => self.due = 3,
             Wish::Light => {
                 if let Some(shown) = &mut self.shown {
-                    match self.state.plan(&shown.limits) {
-                        Ok(_) => shown.is_stale = true,
+                    // A large field takes long to plan; where it cannot be, drawing falls back.
+                    let planned = if uses_preview {
+                        Ok(())
+                    } else {
+                        self.state.plan(&shown.limits).map(|_| ())
+                    };
+                    match planned {
+                        Ok(()) => shown.is_stale = true,
                         Err(why) => self.state.go_back(before, why),
                     }
                 }
@@ -38,6 +51,7 @@ impl App<'_> {
             Wish::Error => self.find_error(),
             Wish::Picture => self.save_picture(None)?,
             Wish::Scene => self.save_scene(None)?,
+            Wish::Copy => self.copy_command(),
             Wish::End => return Ok(false),
         }
         Ok(true)
@@ -57,31 +71,107 @@ impl App<'_> {
         }
     }
 
+    /// Whether slow light is previewed now.
+    pub(super) fn uses_preview(&self) -> bool {
+        let needs = |shown: &OpenWindow| shown.preview.is_needed(&self.state);
+        self.previews && self.shown.as_ref().is_some_and(needs)
+    }
+
+    /// Draws what is due, or goes on with the light at rest; never waits for the device.
+    pub(super) fn advance(&mut self) -> Result<()> {
+        if !self.uses_preview() {
+            return if self.is_due() { self.draw(false).map(|_| ()) } else { Ok(()) };
+        }
+        if !self.is_ready()? {
+            return Ok(());
+        }
+        if self.is_due() {
+            return self.draw(false).map(|_| ());
+        }
+        self.refine()
+    }
+
+    /// Whether the device has nothing to do; notes how long the last picture took.
+    pub(super) fn is_ready(&mut self) -> Result<bool> {
+        let Some(shown) = &mut self.shown else { return Ok(false) };
+        if !shown.screen.is_idle()? {
+            return Ok(false);
+        }
+        if let Some(asked) = self.answering.take() {
+            let ms = asked.elapsed().as_secs_f64() * 1e3;
+            shown.figures.answer_ms = Some(ms);
+            self.answers.push(ms);
+        }
+        Ok(true)
+    }
+
+    /// Goes on with the full light.
+    pub(super) fn refine(&mut self) -> Result<()> {
+        let Some(shown) = &mut self.shown else { return Ok(()) };
+        let OpenWindow { screen, preview, lit, limits, .. } = shown;
+        match preview.refine(screen, &self.state, (lit, limits)) {
+            // The panel states the progress.
+            Ok(false) => {
+                let is_old = self.last.is_some_and(|last| last.elapsed() > PROGRESS);
+                if preview.is_busy() && is_old {
+                    self.due = self.due.max(1);
+                }
+            }
+            Ok(true) => {
+                shown.good = Some(self.state.light());
+                self.due = self.due.max(1);
+            }
+            Err(why) => return self.fall_back(why),
+        }
+        Ok(())
+    }
+
     /// Draws a frame. Returns its pixels if they are kept; none where the window has no area or is
     /// not ready.
     pub(super) fn draw(&mut self, keeps: bool) -> Result<Option<Vec<[u8; 4]>>> {
+        let uses_preview = self.uses_preview();
         let Some(shown) = &mut self.shown else { return Ok(None) };
         let Some(size) = shown.screen.size(shown.inner)? else {
             return Ok(self.stay_blank("it has no area"));
         };
         shown.size = size;
         let moves = self.state.is_moving();
-        if moves {
+        if moves && !uses_preview {
             self.state.step()?;
         }
-        let edited = self.state.take_edited();
-        if shown.is_stale || moves || edited.is_some() {
+        let mut edited = self.state.take_edited();
+        if uses_preview {
+            let relights = shown.is_stale || moves;
+            if relights || edited.is_some() {
+                let OpenWindow { screen, preview, limits, .. } = shown;
+                let change = (edited.take(), relights);
+                if let Err(why) = preview.restart(screen, &self.state, limits, change) {
+                    return self.fall_back(why).map(|()| None);
+                }
+                shown.is_stale = false;
+            }
+        } else {
+            shown.is_stale |= shown.preview.leave();
+        }
+        if !uses_preview && (shown.is_stale || moves || edited.is_some()) {
             if let Err(why) = shown.light(&self.state) {
                 return self.fall_back(why).map(|()| None);
             }
             shown.is_stale |= moves;
             shown.compare.iter_mut().for_each(Compare::scene_changed);
         }
+        if self.state.needs_exposure
+            && let Err(why) = shown.expose(&mut self.state)
+        {
+            return self.fall_back(why).map(|()| None);
+        }
         if let Err(why) = shown.show_beside(&self.state) {
             self.state.is_split = false;
             self.state.go_back(self.state.light(), why);
         }
-        let drawn = match shown.draw(&self.state, edited, mean(&self.spent), keeps) {
+        shown.update_figures(mean(&self.spent));
+        let (changes, asks) = shown.run_panel(&self.state);
+        let drawn = match shown.draw(&self.state, edited, keeps) {
             Ok(drawn) => drawn,
             Err(why) => return self.fall_back(why).map(|()| None),
         };
@@ -90,10 +180,12 @@ impl App<'_> {
             return Ok(self.stay_blank("it accepts no frames"));
         };
         self.blank = None;
+        self.answering = self.answering.or(self.asked.take());
         self.count();
-        if !is_taken {
+        if !is_taken || asks {
             self.due = self.due.max(1);
         }
+        self.change(changes)?;
         Ok(Some(pixels))
     }
 
@@ -131,7 +223,7 @@ impl App<'_> {
         if self.frames % TITLE_FRAMES == 1
             && let Some(shown) = &self.shown
         {
-            let name = self.args.input.path.file_name().unwrap_or_default().to_string_lossy();
+            let name = self.args.input.first().file_name().unwrap_or_default().to_string_lossy();
             let ms: f64 = shown.figures.ms();
             shown.window.set_title(&format!("{name} - ridgelight - {ms:.1} ms"));
         }
@@ -142,6 +234,11 @@ impl App<'_> {
 fn mean(spent: &[f64]) -> Option<f64> {
     let last = &spent[spent.len().saturating_sub(20)..];
     (!last.is_empty()).then(|| last.iter().sum::<f64>() / last.len() as f64)
+}
+
+/// All of a field.
+pub(super) fn whole(field: &HeightField) -> Rectangle {
+    Rectangle { col: 0, row: 0, cols: field.cols() as u32, rows: field.rows() as u32 }
 }
 
 fn has_colour(plan: &Plan) -> bool {
@@ -173,7 +270,7 @@ pub(super) fn replan(
         }
         screen.wait()?;
         match screen.gpu().replace_plan(lit, plan.clone()) {
-            Ok(_) => return Ok(true),
+            Ok(_) => return refilled(screen, lit, scene).map(|()| true),
             Err(Error::Setting { .. }) => {}
             Err(other) => return Err(other),
         }
@@ -187,11 +284,41 @@ pub(super) fn replan(
     Ok(true)
 }
 
+/// Gives a frame the scene's environment: a clear sky follows its sun.
+pub(super) fn refilled(screen: &mut Screen, lit: &Frame, scene: &Scene) -> Result<()> {
+    let input = lit.plan().inputs().position(|(_, input)| input.name == "environment");
+    let Some((input, environment)) = input.zip(scene.lights.environment.as_ref()) else {
+        return Ok(());
+    };
+    let texels: Vec<f32> =
+        environment.texels().iter().flat_map(|t| [t[0], t[1], t[2], 1.0]).collect();
+    screen.gpu().refill(lit, input, &texels)
+}
+
 impl OpenWindow {
     /// Switches to the requested light.
     fn light(&mut self, state: &State) -> Result<()> {
         let plan = state.plan(&self.limits)?;
         self.is_stale |= replan(&mut self.screen, &mut self.lit, plan, &state.scene)?;
+        Ok(())
+    }
+
+    /// Finds the exposure of the light that is shown next.
+    fn expose(&mut self, state: &mut State) -> Result<()> {
+        let Self { screen, preview, lit, .. } = self;
+        if let Some((lit, scene, _)) = preview.lit() {
+            let pixels = screen.gpu().pixels(lit, 0)?;
+            state.expose(&render::rgb(&pixels), scene.field.voids());
+            return Ok(());
+        }
+        let Some(lit) = lit else { return Ok(()) };
+        let all: Vec<usize> = (0..lit.plan().passes.len()).collect();
+        let field = &state.scene.field;
+        let heights = Some((field.heights_m(), whole(field)));
+        screen.light(lit, heights, (Work::Passes(&all), &[]))?;
+        let picture = render::rgb(&screen.gpu().pixels(lit, 0)?);
+        let voids = field.voids().map(<[bool]>::to_vec);
+        state.expose(&picture, voids.as_deref());
         Ok(())
     }
 
@@ -204,50 +331,54 @@ impl OpenWindow {
         compare.prepare(&mut self.screen, state, &self.limits)
     }
 
+    /// Takes the values that the panel shows.
+    fn update_figures(&mut self, frame_ms: Option<f64>) {
+        self.figures.frame_ms = frame_ms;
+        self.figures.compared = self.compare.as_ref().map_or_else(Vec::new, Compare::lines);
+        self.figures.preview = self.preview.line();
+        self.figures.progress = self.preview.progress(self.lit.as_ref());
+        self.figures.full_s = self.preview.full_s;
+        if let Some(times) = self.preview.take_times() {
+            self.figures.light = times;
+        }
+    }
+
     /// Pixels if they are kept, and whether the window accepted them; none where it was not ready.
     fn draw(
         &mut self,
         state: &State,
         edited: Option<Rectangle>,
-        frame_ms: Option<f64>,
         keeps: bool,
     ) -> Result<Option<(Vec<[u8; 4]>, bool)>> {
-        let field = &state.scene.field;
-        let (size, swaps) = (self.size, self.screen.swaps());
-        let (lefts, pane_size) = places(size, self.compare.is_some());
-        self.figures.frame_ms = frame_ms;
-        self.figures.compared = self.compare.as_ref().map_or_else(Vec::new, Compare::lines);
-        let Some(lit) = &mut self.lit else { return Ok(None) };
-        let scale = if self.window.scale_factor() >= 1.5 { 2 } else { 1 };
-        let letters = panel::letters(size[0], scale);
-        let text = panel::draw(&state.lines(lit.plan(), &self.figures, letters), scale);
+        let swaps = self.screen.swaps();
+        let (lefts, pane_size) = places(self.size, self.compare.is_some());
+        let smaller = self.preview.lit();
+        let is_preview = smaller.is_some();
+        let (lit, scene, blocks) = match (smaller, &mut self.lit) {
+            (Some((lit, scene, blocks)), _) => (lit, scene, Some(blocks)),
+            (None, Some(lit)) => (lit, &state.scene, None),
+            (None, None) => return Ok(None),
+        };
+        let field = &scene.field;
         // If only one picture fits, it is the main one.
         let mut compare = self.compare.as_mut().filter(|_| lefts.len() > 1);
-        let labels = compare.as_ref().map(|c| c.labels()).filter(|_| text.size[0] > 0);
-        let drawn = panels(state, text, (&lefts, pane_size), labels.as_ref(), scale);
-        let panels: Vec<Panel<'_>> = drawn
-            .iter()
-            .map(|(at, d)| Panel { at: *at, size: d.size, pixels: &d.pixels })
-            .collect();
-
-        let whole =
-            Rectangle { col: 0, row: 0, cols: field.cols() as u32, rows: field.rows() as u32 };
+        let all_of_it = whole(field);
         let has_edits = !self.is_stale && !lit.plan().edit_passes.is_empty();
         let edit = edited.filter(|_| has_edits);
         let all: Vec<usize> = (0..lit.plan().passes.len()).collect();
         let work = match edit {
             Some(at) => Work::Edit(at),
-            None if self.is_stale || edited.is_some() => Work::Passes(&all),
+            None if !is_preview && (self.is_stale || edited.is_some()) => Work::Passes(&all),
             None => Work::Passes(&[]),
         };
-        let new = if self.is_stale { Some(whole) } else { edited };
+        let new = if self.is_stale { Some(all_of_it) } else { edited }.filter(|_| !is_preview);
         let heights = new.map(|at| (field.heights_m(), at));
 
         // From left to right: each with its heights and its passes.
         let [off, path_traced] = compare.as_mut().map_or([None, None], |c| c.frames());
         let mut frames = Vec::new();
         frames.extend(off.map(|(frame, passes)| {
-            let heights = (!passes.is_empty()).then_some((field.heights_m(), whole));
+            let heights = (!passes.is_empty()).then_some((field.heights_m(), all_of_it));
             (frame, heights, passes)
         }));
         let at_ours = frames.len();
@@ -256,7 +387,9 @@ impl OpenWindow {
         let mut viewpoints: Vec<(Map, Option<View>)> = Vec::new();
         for (frame, ..) in &frames {
             let map = state.map(pane_size, swaps, has_colour(frame.plan()));
-            viewpoints.push((map, state.view(frame.plan(), pane_size, &self.limits)?));
+            let map = blocks.map_or(map, |blocks| blocks.map(&map, field));
+            let view = state.view((scene, blocks), frame.plan(), pane_size, &self.limits)?;
+            viewpoints.push((map, view));
         }
         let mut panes: Vec<Pane<'_>> = Vec::new();
         let of_panes = frames.iter_mut().zip(&viewpoints).zip(&lefts).enumerate();
@@ -269,15 +402,15 @@ impl OpenWindow {
                 left: *left,
             });
         }
-        let options =
-            PresentOptions { tone: state.tone(), voids: field.voids(), panels: &panels, keeps };
+        let overlay = self.gui.overlay();
+        let options = PresentOptions { tone: state.tone(), voids: field.voids(), overlay, keeps };
         let Some(mut done) = self.screen.draw(&mut panes, &options)? else { return Ok(None) };
         if let Some(compare) = compare {
             compare.drawn(done.timings.get(2).map_or(&[], |times| times.light.as_slice()));
         }
         self.last_edit = edit.or(self.last_edit);
         self.stated(std::mem::take(&mut done.timings[at_ours]));
-        if std::mem::take(&mut self.is_stale) && !state.is_moving() {
+        if !is_preview && std::mem::take(&mut self.is_stale) && !state.is_moving() {
             self.good = Some(state.light());
         }
         Ok(Some((done.pixels.unwrap_or_default(), done.is_taken)))
@@ -296,34 +429,4 @@ impl OpenWindow {
             self.figures.drawing = drawing;
         }
     }
-}
-
-/// What is drawn over the pictures, and where: marks, labels, and the text.
-fn panels(
-    state: &State,
-    text: Drawn,
-    (lefts, [width, height]): (&[u32], [u32; 2]),
-    labels: Option<&[String; 3]>,
-    scale: usize,
-) -> Vec<([u32; 2], Drawn)> {
-    let mut all = Vec::new();
-    for mark in state.marks([width, height]) {
-        let drawn = panel::square(mark.half, mark.colour, mark.is_chosen);
-        let [x, y] = [0, 1].map(|i| mark.at[i].floor() - f64::from(drawn.size[i] / 2));
-        let (right, below) =
-            (width.saturating_sub(drawn.size[0]), height.saturating_sub(drawn.size[1]));
-        if x < 0.0 || y < 0.0 || x > f64::from(right) || y > f64::from(below) {
-            continue;
-        }
-        all.extend(lefts.iter().map(|left| ([left + x as u32, y as u32], drawn.clone())));
-    }
-    for (label, left) in labels.into_iter().flatten().zip(lefts) {
-        let letters = panel::letters(width, scale);
-        let drawn = panel::draw(&[label.chars().take(letters).collect()], scale);
-        all.push(([*left, height.saturating_sub(drawn.size[1])], drawn));
-    }
-    if text.size[0] > 0 {
-        all.push(([0, 0], text));
-    }
-    all
 }

@@ -19,7 +19,8 @@ impl App<'_> {
         shown.screen.wait()?;
         let field = &self.state.scene.field;
         let tone = self.state.tone();
-        let view = self.state.view(lit.plan(), shown.size, &shown.limits)?;
+        let view =
+            self.state.view((&self.state.scene, None), lit.plan(), shown.size, &shown.limits)?;
         let gpu = shown.screen.gpu();
         let pixels = gpu.pixels(lit, 0)?;
         if let Some(view) = view {
@@ -50,6 +51,35 @@ impl App<'_> {
         self.say(saved.and_then(|()| files::write_json(&path, &scene)), &path)
     }
 
+    /// Copies the command line of `render` for the picture; prints it where there is no clipboard.
+    pub(super) fn copy_command(&mut self) {
+        self.due = self.due.max(1);
+        let Some(shown) = &self.shown else { return };
+        if self.state.has_other_heights() {
+            let message = "the heights are no longer the file's: save the scene instead";
+            self.state.message = Some(message.to_owned());
+            return;
+        }
+        let mut words = vec!["ridgelight".to_owned(), "render".to_owned()];
+        words.extend(self.state.asked(shown.size, &shown.limits, None).words());
+        words.push(format!("--exposure={}", self.state.exposure()));
+        words.extend(["-o".to_owned(), self.free_name("png").display().to_string()]);
+        let line = words.iter().map(|word| quoted(word)).collect::<Vec<_>>().join(" ");
+        let copied = match &mut self.clipboard {
+            Some(clipboard) => clipboard.set_text(&line),
+            none => arboard::Clipboard::new()
+                .and_then(|clipboard| none.insert(clipboard).set_text(&line)),
+        };
+        let message = match copied {
+            Ok(()) => "copied the command line",
+            Err(_) => {
+                crate::say!("{line}");
+                "no clipboard here: printed the command line"
+            }
+        };
+        self.state.message = Some(message.to_owned());
+    }
+
     /// Saves the window's pixels.
     pub(super) fn save_pixels(&mut self, path: &Path, pixels: &[[u8; 4]]) -> Result<()> {
         let [width, height] = self.size();
@@ -78,9 +108,31 @@ impl App<'_> {
 
     /// A free name in this folder, after the field's.
     fn free_name(&self, extension: &str) -> PathBuf {
-        let stem = self.args.input.path.file_stem().unwrap_or_default().to_string_lossy();
+        let stem = self.args.input.first().file_stem().unwrap_or_default().to_string_lossy();
         let name = |n: u32| PathBuf::from(format!("{stem}-view-{n}.{extension}"));
         let is_free = |path: &PathBuf| !path.exists() && !path.with_extension("npy").exists();
         (1..).map(name).find(is_free).expect("some number is free")
+    }
+}
+
+/// A word as a POSIX shell takes it.
+fn quoted(word: &str) -> String {
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_=+,./:@%".contains(c);
+    if !word.is_empty() && word.chars().all(is_plain) {
+        return word.to_owned();
+    }
+    format!("'{}'", word.replace('\'', "'\\''"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::quoted;
+
+    #[test]
+    fn words_of_a_shell_are_quoted() {
+        assert_eq!(quoted("--sun=315,30"), "--sun=315,30");
+        assert_eq!(quoted("my dem.tif"), "'my dem.tif'");
+        assert_eq!(quoted("it's"), "'it'\\''s'");
+        assert_eq!(quoted(""), "''");
     }
 }

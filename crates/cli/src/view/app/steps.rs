@@ -23,9 +23,7 @@ impl App<'_> {
             return Ok(true);
         }
         if self.steps.is_none() {
-            if self.is_due() {
-                self.draw(false)?;
-            }
+            self.advance()?;
             return Ok(true);
         }
         let Some(step) = self.steps.as_mut().and_then(|steps| steps.pop_front()) else {
@@ -43,7 +41,7 @@ impl App<'_> {
             Step::Wheel(notches, at) => return self.wheel(notches, at),
             Step::Frames(0) => None,
             Step::Frames(left) => {
-                let is_drawn = self.draw(false)?.is_some();
+                let is_drawn = self.picture(false)?.is_some();
                 self.check_shown("frames")?;
                 Some(Step::Frames(left - u32::from(is_drawn)))
             }
@@ -60,7 +58,17 @@ impl App<'_> {
             }
             Step::Picture(path) => self.save_picture(Some(&path)).map(|()| None)?,
             Step::Scene(path) => self.save_scene(Some(&path)).map(|()| None)?,
-            Step::Screenshot(path) => match self.draw(true)? {
+            Step::Preview => {
+                self.previews = true;
+                None
+            }
+            Step::Rest => {
+                self.advance()?;
+                let preview = self.shown.as_ref().is_some_and(|shown| shown.preview.is_busy());
+                let is_busy = self.uses_preview() && (preview || self.answering.is_some());
+                (is_busy || self.is_due()).then_some(Step::Rest)
+            }
+            Step::Screenshot(path) => match self.picture(true)? {
                 Some(pixels) => self.save_pixels(&path, &pixels).map(|()| None)?,
                 None => {
                     self.check_shown("screenshot")?;
@@ -69,6 +77,10 @@ impl App<'_> {
             },
             Step::Text(path) => {
                 let text = self.text();
+                files::write_text(&path, &text).map(|()| None)?
+            }
+            Step::Places(path) => {
+                let text = self.places();
                 files::write_text(&path, &text).map(|()| None)?
             }
             Step::Paths(count) => {
@@ -89,7 +101,7 @@ impl App<'_> {
                 // Asked before the loop takes input once more: what came before the file is then heard.
                 let is_there = path.exists();
                 if self.is_due() {
-                    self.draw(false)?;
+                    self.advance()?;
                 } else {
                     std::thread::sleep(Duration::from_millis(5));
                 }
@@ -110,6 +122,12 @@ impl App<'_> {
             steps.push_front(again);
         }
         Ok(true)
+    }
+
+    /// Draws a picture; none where the device is busy with the last one of a preview.
+    fn picture(&mut self, keeps: bool) -> Result<Option<Vec<[u8; 4]>>> {
+        let is_ready = !self.uses_preview() || self.is_ready()?;
+        if is_ready { self.draw(keeps) } else { Ok(None) }
     }
 
     /// Refuses a window that has shown nothing for too long.
@@ -158,29 +176,54 @@ impl App<'_> {
         Ok(Some(Step::Resizing(wanted, until)))
     }
 
-    /// The text over the picture.
+    /// The text of the panel.
     fn text(&self) -> String {
         let Some(OpenWindow { lit: Some(lit), figures, .. }) = &self.shown else {
             return String::new();
         };
-        let lines = self.state.lines(lit.plan(), figures, usize::MAX);
+        let lines = self.state.lines(lit.plan(), figures);
         lines.iter().map(|line| format!("{line}\n")).collect()
+    }
+
+    /// Names of the panel's parts, and the pixel in the middle and the size of each.
+    fn places(&self) -> String {
+        let Some(OpenWindow { places, window, .. }) = &self.shown else { return String::new() };
+        let scale = window.scale_factor() as f32;
+        let line = |(name, rect): &(String, egui::Rect)| {
+            let (at, size) = (rect.center() * scale, rect.size() * scale);
+            format!("{name}: {:.0} {:.0} {:.0} {:.0}\n", at.x, at.y, size.x, size.y)
+        };
+        places.iter().map(line).collect()
     }
 
     fn report(&mut self, what: &str) {
         let what = if what.is_empty() { String::new() } else { format!("{what}: ") };
         let spent = std::mem::take(&mut self.spent);
-        let mut sorted = spent.clone();
-        sorted.sort_by(f64::total_cmp);
-        let middle = sorted.get(sorted.len() / 2).copied().unwrap_or(0.0);
+        let middle = median(spent.clone());
         let passes = self.shown.as_ref().map_or(0.0, |shown| shown.figures.ms());
         let resident = resident_kib().map_or_else(|| "unknown".into(), |kib| kib.to_string());
+        let answers = std::mem::take(&mut self.answers);
+        let full_s = self.shown.as_ref().and_then(|shown| shown.preview.full_s);
+        let error = self.shown.as_ref().and_then(|shown| shown.preview.error);
+        if let (Some(slowest), Some(full_s)) = (answers.iter().copied().reduce(f64::max), full_s) {
+            let share = error.map_or_else(String::new, |e| format!(", RMSE {:.2} %", 100.0 * e));
+            crate::say!(
+                "{what}input to preview, median of {} {:.1} ms, longest {slowest:.1} ms; full light after {full_s:.2} s{share}",
+                answers.len(),
+                median(answers.clone()),
+            );
+        }
         crate::say!(
             "{what}frames {}, median of {} {middle:.3} ms, passes {passes:.3} ms, resident KiB {resident}",
             self.frames,
             spent.len()
         );
     }
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(0.0)
 }
 
 /// Memory of this process, as Linux reports it.

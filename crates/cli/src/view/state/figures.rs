@@ -1,7 +1,8 @@
-//! The text over the picture: figures, settings, and keys.
+//! The text of the panel: figures, settings, and keys.
 
 use ridgelight::gpu::Timing;
 use ridgelight::plan::{Plan, Rectangle};
+use ridgelight::scene::Setting;
 
 use super::lights::compass;
 use super::{State, Text, Tool};
@@ -9,13 +10,13 @@ use crate::idle;
 use crate::view::brush::Action;
 
 /// The keys, as listed on the screen and in docs/viewer.md.
-const KEYS: [&str; 21] = [
+pub const KEYS: [&str; 21] = [
     "V                 from above, from a camera",
     "arrows, drag      move the map, turn the camera",
     "I J K L           move either; middle drag",
     "+ - or wheel      nearer, farther     Home    all of it",
     "Shift+arrows      the sun (there is one from then on); right drag",
-    "E D               brighter, darker",
+    "E D  A            brighter, darker; exposure of the picture",
     "C                 without shadows | ours | path-traced reference",
     "R                 error against the reference, with C",
     "M  B              method, bounces",
@@ -44,6 +45,13 @@ pub struct Figures {
     pub edit: Option<(Rectangle, f64)>,
     /// Milliseconds from frame to frame.
     pub frame_ms: Option<f64>,
+    /// How the shown light was computed, where it is not the full one.
+    pub preview: Option<String>,
+    /// The share of the full light that is done, where it is being computed.
+    pub progress: Option<f32>,
+    /// Milliseconds from the last input to its picture, and seconds to the full light.
+    pub answer_ms: Option<f64>,
+    pub full_s: Option<f64>,
     /// Result of the comparison.
     pub compared: Vec<String>,
 }
@@ -53,6 +61,11 @@ impl Figures {
         self.light.iter().chain(&self.drawing)
     }
 
+    /// Nanoseconds by pass name, in order of first appearance.
+    pub fn passes(&self) -> Vec<(&str, f64)> {
+        by_pass(self.times())
+    }
+
     /// Milliseconds of all passes.
     pub fn ms(&self) -> f64 {
         self.times().map(|t| t.ns).sum::<f64>() / 1e6
@@ -60,15 +73,50 @@ impl Figures {
 }
 
 impl State {
-    /// The text over the picture, in lines of so many letters; none where it is hidden.
-    pub fn lines(&self, plan: &Plan, figures: &Figures, letters: usize) -> Vec<String> {
+    /// The panel as lines of text; none where it is hidden.
+    pub fn lines(&self, plan: &Plan, figures: &Figures) -> Vec<String> {
         if self.text == Text::Nothing {
             return Vec::new();
         }
+        let mut lines = self.lines_of_light();
+        lines.extend(self.tool_line());
+        let total = figures.ms();
+        let frame = figures.frame_ms.map_or_else(String::new, |ms| format!("  frame {ms:.1} ms"));
+        lines.push(format!("passes {total:.2} ms{frame}  memory {:.1} MiB", mib(plan)));
+        for (name, ns) in figures.passes() {
+            lines.push(format!("  {name:<18}{:>9.2} ms", ns / 1e6));
+        }
+        lines.extend(self.lines_of_progress(figures));
+        if self.text == Text::Settings {
+            lines.push(String::new());
+            lines.extend(self.setting_lines());
+            lines.extend(self.notes(plan));
+        }
+        lines.extend(self.message.clone());
+        if self.text == Text::Keys {
+            lines.push(String::new());
+            lines.extend(KEYS.iter().map(|line| (*line).to_owned()));
+        }
+        lines
+    }
+
+    /// The field, the tool, and the time of all passes: what the panel's other parts do not show.
+    pub fn lines_beside_widgets(&self, plan: &Plan, figures: &Figures) -> Vec<String> {
+        let field = &self.scene.field;
+        let mut lines =
+            vec![format!("{} x {}  memory {:.1} MiB", field.cols(), field.rows(), mib(plan))];
+        lines.extend(self.tool_line());
+        let frame = figures.frame_ms.map_or_else(String::new, |ms| format!("  frame {ms:.1} ms"));
+        lines.push(format!("passes {:.2} ms{frame}", figures.ms()));
+        lines
+    }
+
+    /// Field, settings and sun.
+    fn lines_of_light(&self) -> Vec<String> {
         let field = &self.scene.field;
         let word = |id: &str| {
-            let mut all = self.settings.list(&self.asked);
-            all.find(|(name, ..)| *name == id).map_or(String::new(), |(_, word, _)| word)
+            let mut all = self.settings();
+            all.find(|(setting, ..)| setting.name == id).map_or(String::new(), |(_, word, _)| word)
         };
         let mut lines = vec![format!(
             "{} x {}  method {}  azimuths {}  bounces {}",
@@ -82,29 +130,31 @@ impl State {
             let (azimuth, elevation) = compass(sun);
             lines.push(format!("sun {azimuth:.2}, {elevation:.2}  exposure {:.3}", self.exposure));
         }
-        lines.extend(self.tool_line());
-        let total = figures.ms();
-        let frame = figures.frame_ms.map_or_else(String::new, |ms| format!("  frame {ms:.1} ms"));
-        let mib = plan.bytes() as f64 / f64::from(1 << 20);
-        lines.push(format!("passes {total:.2} ms{frame}  memory {mib:.1} MiB"));
-        for (name, ns) in by_pass(figures.times()) {
-            lines.push(format!("  {name:<18}{:>9.2} ms", ns / 1e6));
-        }
+        lines
+    }
+
+    /// The last edit, the preview and the comparison.
+    pub fn lines_of_progress(&self, figures: &Figures) -> Vec<String> {
+        let mut lines = Vec::new();
         if let (Tool::Brush(_), Some((at, ms))) = (self.tool, &figures.edit) {
             let Rectangle { cols, rows, .. } = at;
             lines.push(format!("  edit of {cols} x {rows}, light {ms:.2} ms"));
         }
+        lines.extend(figures.preview.clone());
+        let progress = figures.progress.map(|done| format!("full light: {:.0} %", 100.0 * done));
+        lines.extend(progress);
+        if let Some(ms) = figures.answer_ms {
+            let full =
+                figures.full_s.map_or_else(String::new, |s| format!(", full light after {s:.2} s"));
+            lines.push(format!("input to picture {ms:.0} ms{full}"));
+        }
         lines.extend(figures.compared.iter().cloned());
-        if self.text == Text::Settings {
-            lines.push(String::new());
-            lines.extend(self.setting_lines(plan));
-        }
-        lines.extend(self.message.clone());
-        if self.text == Text::Keys {
-            lines.push(String::new());
-            lines.extend(KEYS.iter().map(|line| (*line).to_owned()));
-        }
-        lines.iter().flat_map(|line| wrapped(line, letters)).collect()
+        lines
+    }
+
+    /// All settings with their values, and whether each is the chosen one.
+    pub fn settings(&self) -> impl Iterator<Item = (&'static Setting, String, bool)> {
+        self.settings.list(&self.asked)
     }
 
     fn tool_line(&self) -> Option<String> {
@@ -127,34 +177,28 @@ impl State {
         ))
     }
 
-    /// All settings with the chosen one marked, and why it changes nothing if so.
-    fn setting_lines(&self, plan: &Plan) -> Vec<String> {
-        let mut lines = Vec::new();
-        for (name, word, is_chosen) in self.settings.list(&self.asked) {
+    /// All settings with the chosen one marked.
+    fn setting_lines(&self) -> Vec<String> {
+        let line = |(setting, word, is_chosen): (&Setting, String, bool)| {
             let mark = if is_chosen { '>' } else { ' ' };
-            lines.push(format!("{mark} {name:<22}{word}"));
-        }
-        let all = self.settings.list(&self.asked);
-        let chosen = all.filter(|(id, _, is_chosen)| *is_chosen && self.asked.first(id).is_some());
-        let written: Vec<_> = chosen.map(|(id, word, _)| (id.to_owned(), word)).collect();
-        lines.extend(idle::notes(&written, &plan.settings, &|_| None));
-        lines
+            format!("{mark} {:<22}{word}", setting.name)
+        };
+        self.settings().map(line).collect()
+    }
+
+    /// Why the chosen setting changes nothing, if so.
+    pub fn notes(&self, plan: &Plan) -> Vec<String> {
+        let chosen = self.settings().filter(|(setting, _, is_chosen)| {
+            *is_chosen && self.asked.first(setting.name).is_some()
+        });
+        let written: Vec<_> =
+            chosen.map(|(setting, word, _)| (setting.name.to_owned(), word)).collect();
+        idle::notes(&written, &plan.settings, &|_| None)
     }
 }
 
-/// Breaks a line after at most so many letters, at spaces where possible.
-fn wrapped(line: &str, letters: usize) -> Vec<String> {
-    let letters = letters.max(16);
-    let mut rest: Vec<char> = line.chars().collect();
-    let mut pieces = Vec::new();
-    while rest.len() > letters {
-        let space = rest[..letters].iter().rposition(|c| *c == ' ').filter(|at| *at > letters / 2);
-        let after = rest.split_off(space.map_or(letters, |at| at + 1));
-        pieces.push(rest.iter().collect());
-        rest = "    ".chars().chain(after).collect();
-    }
-    pieces.push(rest.iter().collect());
-    pieces
+fn mib(plan: &Plan) -> f64 {
+    plan.bytes() as f64 / f64::from(1 << 20)
 }
 
 /// Times summed by pass name, in order of first appearance.
@@ -180,16 +224,5 @@ mod tests {
         let page = include_str!("../../../../../docs/viewer.md");
         let listed: Vec<&str> = page.lines().filter(|line| KEYS.contains(line)).collect();
         assert_eq!(listed, KEYS);
-    }
-
-    #[test]
-    fn long_lines_go_on_below() {
-        assert_eq!(wrapped("short", 20), ["short"]);
-        let pieces = wrapped("twenty letters a line, and then as many again", 20);
-        assert_eq!(pieces, ["twenty letters a ", "    line, and then ", "    as many again"]);
-        assert_eq!(
-            wrapped(&"x".repeat(30), 20),
-            ["x".repeat(20), format!("    {}", "x".repeat(10))]
-        );
     }
 }

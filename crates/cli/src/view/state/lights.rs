@@ -5,6 +5,7 @@ use ridgelight::scene::{SphereLight, Sun};
 use super::viewpoint::height;
 use super::{State, Wish, hundredths};
 use crate::lights::light;
+use crate::setup::sky;
 
 /// Colours that a sphere light cycles through; its brightest channel stays.
 const COLOURS: [[f32; 3]; 6] = [
@@ -27,16 +28,35 @@ const GRIP: f64 = 8.0;
 impl State {
     /// Turns the first sun by degrees; adds one where there is none.
     pub(super) fn turn_sun(&mut self, clockwise: f64, up: f64) -> Wish {
-        let lights = &mut self.scene.lights;
-        match lights.suns.first_mut() {
+        match self.scene.lights.suns.first() {
             Some(sun) => {
                 let (azimuth, elevation) = compass(sun);
-                let azimuth = hundredths((azimuth + clockwise).rem_euclid(360.0)) % 360.0;
-                let elevation = hundredths((elevation + up).clamp(0.0, 90.0));
-                sun.azimuth_rad = (90.0 - azimuth).to_radians();
-                sun.elevation_rad = elevation.to_radians();
+                self.point_sun([azimuth + clockwise, elevation + up])
             }
-            None => light("sun").add(lights, "315,30").expect("a sun"),
+            None => {
+                light("sun").add(&mut self.scene.lights, "315,30").expect("a sun");
+                self.ask_for("sun")
+            }
+        }
+    }
+
+    /// Turns the first sun to a compass azimuth and an elevation, degrees; adds one where there is
+    /// none.
+    pub(super) fn point_sun(&mut self, [azimuth, elevation]: [f64; 2]) -> Wish {
+        let lights = &mut self.scene.lights;
+        if lights.suns.is_empty() {
+            light("sun").add(lights, "315,30").expect("a sun");
+        }
+        let sun = &mut lights.suns[0];
+        let azimuth = hundredths(azimuth.rem_euclid(360.0)) % 360.0;
+        let elevation = hundredths(elevation.clamp(0.0, 90.0));
+        sun.azimuth_rad = (90.0 - azimuth).to_radians();
+        sun.elevation_rad = elevation.to_radians();
+        if self.has_clear_sky {
+            match sky::clear(sun) {
+                Ok(sky) => lights.environment = Some(sky),
+                Err(why) => return self.say(&why.to_string()),
+            }
         }
         self.ask_for("sun")
     }
@@ -44,6 +64,10 @@ impl State {
     /// Keeps the lights of a type as the user would write them.
     fn ask_for(&mut self, id: &str) -> Wish {
         // The first explicit light replaces the default of a scene without lights.
+        if self.has_clear_sky {
+            self.asked.set("sky", vec!["clear".to_owned()]);
+            self.asked.set("sun", light("sun").words(&self.scene.lights));
+        }
         if let Some([r, g, b]) = self.scene.lights.sky {
             self.asked.set("sky", vec![format!("{r},{g},{b}")]);
         }

@@ -1,4 +1,4 @@
-//! Settings by keys: the command line's settings, values and errors.
+//! Settings by keys and by the panel: the command line's settings, values and errors.
 
 use ridgelight::Result;
 use ridgelight::scene::{Quality, SETTINGS, Setting, Values, setting};
@@ -6,7 +6,7 @@ use ridgelight::scene::{Quality, SETTINGS, Setting, Values, setting};
 use crate::scene_file::Request;
 use crate::setup;
 
-/// The setting that keys change.
+/// The setting that keys change; the panel chooses what it changes.
 pub struct Settings {
     chosen: usize,
 }
@@ -31,10 +31,10 @@ impl Settings {
         SETTINGS[self.chosen].name
     }
 
-    /// Names and values, and whether each is the chosen one.
-    pub fn list(&self, asked: &Request) -> impl Iterator<Item = (&'static str, String, bool)> {
+    /// All with their values, and whether each is the chosen one.
+    pub fn list(&self, asked: &Request) -> impl Iterator<Item = (&'static Setting, String, bool)> {
         let all = SETTINGS.iter().enumerate();
-        all.map(move |(n, setting)| (setting.name, word(setting, asked), n == self.chosen))
+        all.map(move |(n, setting)| (setting, word(setting, asked), n == self.chosen))
     }
 
     /// Gives a setting its next or previous value.
@@ -48,16 +48,34 @@ impl Settings {
         asked: &mut Request,
     ) -> std::result::Result<Quality, Refused> {
         let setting = setting(name).ok_or_else(|| Refused(format!("no setting {name}")))?;
-        let next = next(setting, &word(setting, asked), ahead);
-        let mut wanted = asked.clone();
-        wanted.set(name, vec![next]);
-        let mut quality = Quality::default();
-        for setting in SETTINGS {
-            said(setting.set(&mut quality, &word(setting, &wanted)))?;
-        }
-        *asked = wanted;
-        Ok(quality)
+        valued(name, next(setting, &word(setting, asked), ahead), asked)
     }
+
+    /// Gives a setting a value, and chooses it.
+    ///
+    /// # Errors
+    /// The command line's error.
+    pub fn set(
+        &mut self,
+        name: &str,
+        value: String,
+        asked: &mut Request,
+    ) -> std::result::Result<Quality, Refused> {
+        let at = SETTINGS.iter().position(|setting| setting.name == name);
+        self.chosen = at.ok_or_else(|| Refused(format!("no setting {name}")))?;
+        valued(name, value, asked)
+    }
+}
+
+fn valued(name: &str, value: String, asked: &mut Request) -> std::result::Result<Quality, Refused> {
+    let mut wanted = asked.clone();
+    wanted.set(name, vec![value]);
+    let mut quality = Quality::default();
+    for setting in SETTINGS {
+        said(setting.set(&mut quality, &word(setting, &wanted)))?;
+    }
+    *asked = wanted;
+    Ok(quality)
 }
 
 /// The command line's spelling.

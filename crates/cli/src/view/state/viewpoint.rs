@@ -44,6 +44,7 @@ impl Viewpoint {
             size,
             corner: self.corner(field, size).map(|c| c as f32),
             grid_points_per_pixel: grid_points_per_pixel as f32,
+            is_smooth: false,
             swaps,
         }
     }

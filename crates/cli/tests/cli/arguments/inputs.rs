@@ -108,7 +108,7 @@ fn what_is_no_file_or_has_no_format() {
             ("folder.png".into(), 1, vec!["folder.png", "a directory"]),
             ("missing.png".into(), 1, vec!["missing.png"]),
             ("no/folder.png".into(), 1, vec!["no/folder.png"]),
-            ("a.xyz".into(), 1, vec!["a.xyz", ".xyz", ".npy"]),
+            ("a.xyz".into(), 1, vec!["a.xyz", ".xyz", ".npy", "packed as .gz or .zip"]),
             ("plain".into(), 1, vec!["plain", "no extension"]),
             // A file name of two lines still gives one line of error.
             missing("two\nlines.png"),

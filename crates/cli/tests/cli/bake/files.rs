@@ -334,7 +334,6 @@ fn gpu_extremes() {
     folder.write("steep.asc", b"ncols 2 nrows 2 cellsize 1 0 1e6 1e6 2e6");
     let kinds =
         "horizon,sky-view,visible-sky,bent-normal,sh-visibility,sh-transfer,ellipse,visible-points";
-    let mut ever = 0;
     for field in ["one", "row", "column", "flat", "steep"] {
         for border in ["plane", "open", "periodic"] {
             let out = format!("{field}_{border}");
@@ -357,18 +356,16 @@ fn gpu_extremes() {
                     for value in plane.iter().map(|v| f64::from(*v)) {
                         assert!(value.is_finite(), "{out}, {name}: {value}");
                         let off = (value - high).max(low - value);
-                        // Rounding of f32 and of the device's functions.
+                        // Rounding of f32, also of a sum of four azimuths, and of the device's functions.
                         if off > 8.0 * f64::from(f32::EPSILON) * low.abs().max(high.abs()) {
                             beyond = (beyond.0 + 1, beyond.1.max(off));
                         }
                     }
                 }
-                // Four azimuths are a coarse sum, which the manifest reports. A wall along φ, occluded by its own plane alone, has
-                // 1/π π/2 π/2 Σ max(cos(φ + kπ/2), 0) of a share, π/4 (cos φ + sin φ) at most: π √2/4 = 1.111. Σ π/2 Y² is at
-                // most twice its integral, as of cos² 2φ at four azimuths: coefficients are within √2 of their ranges,
-                // 3.545 at most. Others are within theirs.
+                // Four azimuths are a coarse sum, which the manifest reports. Σ π/2 Y² is at most twice its integral, as of
+                // cos² 2φ at four azimuths: coefficients are within √2 of their ranges, 3.545 at most. Others are within theirs:
+                // a sky view integrates the cosine over each azimuth's width, so that no part of it counts twice.
                 let most = match name.as_str() {
-                    "sky_view" => 0.1108,
                     "sh_visibility" | "sh_transfer" => 3.545 * (SQRT_2 - 1.0),
                     _ => 0.0,
                 };
@@ -378,11 +375,9 @@ fn gpu_extremes() {
                 // Ranges and this went through decimals.
                 let off = beyond_range["at_most"].as_f64().unwrap_or(0.0) - beyond.1;
                 assert!(off.abs() < 1e-12, "{out}, {name}: {off} from {}", beyond.1);
-                ever += beyond.0;
             }
         }
     }
-    assert!(ever > 0, "upright ground passes 1 by four azimuths");
     // The whole sky is visible from a level texel, to the nearest f32.
     let one = |name: &str| read(&folder.path("one_plane").join(name)).planes[0][0];
     assert_eq!([one("sky_view.npy"), one("visible_sky.npy")], [1.0, 1.0]);

@@ -276,7 +276,7 @@ fn gpu_requested_settings_of_scattered_light_are_listed() {
     for what in [
         "--lines exact changes nothing with --method brute-force",
         "--bounce-engine pyramid changes nothing for these kinds",
-        ".ktx2 stores f16; use --encoding scatter=f32",
+        "textures store f16; use --encoding scatter=f32",
     ] {
         assert!(said.contains(what), "{said}");
     }

@@ -8,6 +8,7 @@ layout(local_size_x = 64) in;
 
 layout(constant_id = 0) const bool BENT_OCTAHEDRAL = true;
 layout(constant_id = 1) const float BENT_CONE_SCALE = 1.0;
+layout(constant_id = 2) const float BENT_Y = 1.0;
 layout(binding = 0) uniform sampler2D map;
 layout(std430, binding = 1) writeonly buffer Values {
     float values[];

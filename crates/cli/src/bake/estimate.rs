@@ -1,0 +1,125 @@
+//! How long a bake will take, from a small part of its work on a piece of the field.
+
+use std::cell::OnceCell;
+
+use indicatif::ProgressBar;
+use ridgelight::Result;
+use ridgelight::gpu::Headless;
+use ridgelight::scene::{Quality, Scatter};
+use ridgelight_bake::Angles;
+use serde_json::{Value, json};
+
+use super::job::Job;
+use super::stages::{Stage, Stages, total};
+use super::{compute, finish, open, request};
+use crate::args::BakeArgs;
+use crate::bench::verify;
+use crate::setup::terminal::digits;
+
+/// A trial has one in so many directions, paths, and pairs of light and view.
+const PART: usize = 16;
+/// Azimuths take less time than the start of a frame; a trial has one in so many.
+const AZIMUTHS_PART: u32 = 4;
+
+/// The expected time of a bake.
+pub struct Estimate {
+    /// The bake's stages with estimated seconds.
+    stages: Vec<Stage>,
+    /// The same stages of the trial, as measured.
+    trial: Vec<Stage>,
+    /// Seconds that the bake spends once, for example on pipelines, whatever its work.
+    once: f64,
+    /// Seconds of the trial itself.
+    took: f64,
+    /// Upper bound of the bytes on disk.
+    bytes: u64,
+}
+
+impl Estimate {
+    /// Runs a part of the bake on a piece of the field, twice. Only the first run makes pipelines;
+    /// the times of the second are proportional to the work.
+    ///
+    /// # Errors
+    /// Those of the bake. Some may apply to the piece alone.
+    pub fn of(gpu: &mut Headless, args: &BakeArgs, job: &Job) -> Result<Self> {
+        let cold = total(&trial(gpu, args, job)?);
+        let trial = trial(gpu, args, job)?;
+        let warm = total(&trial);
+        let mut stages = job.stages()?;
+        for (stage, measured) in stages.iter_mut().zip(&trial) {
+            if measured.work > 0.0 {
+                stage.seconds = measured.seconds / measured.work * stage.work;
+            }
+        }
+        let bytes = job.files().iter().map(|(_, bytes)| bytes).sum();
+        Ok(Self { stages, trial, once: (cold - warm).max(0.0), took: cold + warm, bytes })
+    }
+
+    fn seconds(&self) -> f64 {
+        self.once + total(&self.stages)
+    }
+
+    /// For the terminal.
+    pub fn text(&self) -> String {
+        let megabytes = self.bytes as f64 / 1e6;
+        let [seconds, megabytes] = [self.seconds(), megabytes].map(digits);
+        format!("estimate: about {seconds} s, at most {megabytes} MB on disk")
+    }
+
+    /// For --json, with the seconds that each stage then took.
+    pub fn json(&self, ran: &[Stage]) -> Value {
+        let stages = self.stages.iter().zip(&self.trial).zip(ran);
+        let stages = stages.map(|((stage, trial), ran)| {
+            json!({
+                "stage": stage.name, "unit": stage.unit, "work": stage.work, "estimated_s": stage.seconds,
+                "seconds": ran.seconds, "trial": { "work": trial.work, "seconds": trial.seconds },
+            })
+        });
+        json!({
+            "seconds": self.seconds(), "seconds_once": self.once, "bytes_at_most": self.bytes,
+            "trial_seconds": self.took, "stages": stages.collect::<Vec<_>>(),
+        })
+    }
+}
+
+/// One run of a part of the bake on a piece of the field. Its files never get their names.
+fn trial(gpu: &mut Headless, args: &BakeArgs, job: &Job) -> Result<Vec<Stage>> {
+    let piece = verify::piece(job.scene)?;
+    let part = |count: u32, part: u32, least: u32| count.div_ceil(part).max(least).min(count);
+    let azimuths = part(job.quality.azimuths, AZIMUTHS_PART, 4);
+    let quality = Quality { azimuths, ..*job.quality };
+    // An odd number of directions would have a horizontal one.
+    let directions = part(job.around.count() as u32, PART as u32, 4).next_multiple_of(2);
+    let around = request::directions(args, directions)?;
+    let scatter = job.scatter.map(|s| Scatter { paths: part(s.paths, PART as u32, 8), ..s });
+    let mut small = Job {
+        scene: &piece,
+        quality: &quality,
+        limits: job.limits,
+        scatter,
+        around: &around,
+        angles: fewer(job),
+        curvature: job.curvature,
+        normals: job.normals,
+        pairs: job.pairs.div_ceil(PART),
+        seed: job.seed,
+        table: OnceCell::new(),
+        maps: Vec::new(),
+    };
+    small.lay_out(request::wanted(args)?)?;
+    let stages = Stages::new(ProgressBar::hidden(), small.stages()?);
+    let maps = std::mem::take(&mut small.maps);
+    let mut all = open(args, &small, maps, None)?;
+    let (_, _, normals) = compute(gpu, &small, &mut all, &stages)?;
+    finish(all, &normals, &[], &stages)?;
+    // The bake's own passes are counted from here.
+    gpu.take_timings();
+    Ok(stages.finish())
+}
+
+/// About one in [`PART`] of the angles, and as many as the kinds need.
+fn fewer(job: &Job) -> Angles {
+    let wanted = (job.angles.count() / PART).max(job.least_angles());
+    let few = Angles { zeniths: 2, azimuths: wanted.div_ceil(2).max(4) };
+    if few.count() < job.angles.count() { few } else { job.angles }
+}

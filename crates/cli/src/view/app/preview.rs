@@ -1,0 +1,509 @@
+//! Answers to input: the light of a coarse grid on the slopes of a finer one; and the full light in parts once input
+//! rests.
+
+use std::ops::Range;
+use std::time::{Duration, Instant};
+
+use ridgelight::Result;
+use ridgelight::gpu::{Frame, ImageArg, Timing, Work};
+use ridgelight::plan::{self, Limits, Picture, Plan, Rectangle};
+use ridgelight::scene::{Albedo, Method, Quality, Scene};
+use ridgelight_viewer::Screen;
+
+use super::super::brush::together;
+use super::super::moving::Moving;
+use super::super::smaller::Blocks;
+use super::super::state::State;
+use super::drawing::{refilled, replan, whole};
+use crate::render;
+use crate::setup::total_ns;
+
+/// GPU time of a preview's coarse light, and of the fine slopes that it is put on: with drawing and copies 15 pictures a
+/// second.
+const COARSE_MS: f64 = 14.0;
+const FINE_MS: f64 = 28.0;
+/// The part of a coarse light's time that does not grow with its grid: tables of the sky, starts of passes.
+const FIXED_MS: f64 = 5.0;
+/// GPU time of a part of the full light.
+const PART_MS: f64 = 40.0;
+/// Full light that takes no longer needs no preview.
+const ANSWER_MS: f64 = 50.0;
+/// Azimuths of a preview. On a smooth field 8 change its light by 0.1 to 0.3 %, a coarser grid by some percent.
+const AZIMUTHS: u32 = 8;
+/// Shortest side of a coarser grid, grid points.
+const LEAST_GRID: usize = 32;
+/// Refinement begins when input has rested for so long.
+const REST: Duration = Duration::from_millis(120);
+
+/// Shares of the time aimed at where a preview keeps its grids: while input goes on, and at rest.
+const DRAGGED: Range<f64> = 0.0..3.0;
+const RESTED: Range<f64> = 0.4..1.4;
+
+/// What a device does in a millisecond: texels times azimuths of coarse and of full light, texels of fine slopes.
+#[derive(Clone, Copy)]
+struct Rates {
+    coarse: f64,
+    full: f64,
+    fine: f64,
+}
+
+/// Before anything was measured: lavapipe on two cores; a GPU.
+const CPU_RATES: Rates = Rates { coarse: 1e5, full: 1e5, fine: 5.5e4 };
+const GPU_RATES: Rates = Rates { coarse: 2e7, full: 2e7, fine: 2e7 };
+
+/// What comes next.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Next {
+    /// Plans the full light.
+    Begin,
+    /// Its passes from this one on.
+    Passes(usize),
+    Nothing,
+}
+
+/// A scene on a coarser grid.
+struct Level {
+    blocks: Blocks,
+    scene: Scene,
+    lit: Option<Frame>,
+    /// The field without movement, in movement.
+    moving: Option<Moving>,
+    /// How often it was lit: the first time says little about the next.
+    runs: u32,
+}
+
+/// Slots whose GPU times are still to be read.
+#[derive(Clone, Copy)]
+enum Running {
+    Preview { coarse: usize, fine: usize },
+    Full(usize),
+}
+
+pub struct Preview {
+    /// The coarse light, and the grid that shows it.
+    levels: Option<[Level; 2]>,
+    /// Whether the preview is shown.
+    is_shown: bool,
+    next: Next,
+    /// Since when the input rests.
+    changed: Instant,
+    rates: Rates,
+    running: Option<Running>,
+    /// Times of the passes of the refinement so far.
+    times: Vec<Timing>,
+    complete_times: Option<Vec<Timing>>,
+    /// Edited since the full light was computed, if nothing else has changed.
+    edited: Option<Rectangle>,
+    is_full_stale: bool,
+    /// Seconds from the last input to the full light.
+    pub full_s: Option<f64>,
+    /// Error against the full light when both were last computed: RMSE over the mean.
+    pub error: Option<f64>,
+}
+
+impl Preview {
+    pub fn new(is_cpu: bool) -> Self {
+        Self {
+            levels: None,
+            is_shown: false,
+            next: Next::Nothing,
+            changed: Instant::now(),
+            rates: if is_cpu { CPU_RATES } else { GPU_RATES },
+            running: None,
+            times: Vec::new(),
+            complete_times: None,
+            edited: None,
+            is_full_stale: true,
+            full_s: None,
+            error: None,
+        }
+    }
+
+    /// Whether full light is too slow to answer input.
+    pub fn is_needed(&self, state: &State) -> bool {
+        let field = &state.scene.field;
+        let ms = work(&state.scene, &state.quality, 1) / self.rates.full;
+        !state.is_split && field.rows().min(field.cols()) >= 2 * LEAST_GRID && ms > ANSWER_MS
+    }
+
+    /// Shows the full light from now on. Returns whether it must be computed.
+    pub fn leave(&mut self) -> bool {
+        (self.is_shown, self.next) = (false, Next::Nothing);
+        let is_stale = self.is_full_stale || self.edited.is_some();
+        (self.is_full_stale, self.edited) = (false, None);
+        is_stale
+    }
+
+    /// Whether work is left for a picture at rest.
+    pub fn is_busy(&self) -> bool {
+        self.next != Next::Nothing
+    }
+
+    /// The preview, where it is shown.
+    pub fn lit(&mut self) -> Option<(&mut Frame, &Scene, Blocks)> {
+        let [_, fine] = self.levels.as_mut().filter(|_| self.is_shown)?;
+        let Level { lit, scene, blocks, .. } = fine;
+        lit.as_mut().map(|lit| (lit, &*scene, *blocks))
+    }
+
+    /// How the shown light was computed.
+    pub fn line(&self) -> Option<String> {
+        let levels = self.levels.as_ref().filter(|_| self.is_shown)?;
+        let [coarse, fine] = levels
+            .each_ref()
+            .map(|level| format!("{} x {}", level.scene.field.cols(), level.scene.field.rows()));
+        let error =
+            self.error.map_or_else(String::new, |e| format!(", RMSE about {:.1} %", 100.0 * e));
+        Some(format!("preview: light of {coarse}, slopes of {fine}{error}"))
+    }
+
+    /// The share of the full light that is done, where it is being computed.
+    pub fn progress(&self, full: Option<&Frame>) -> Option<f32> {
+        match self.next {
+            Next::Nothing => None,
+            Next::Begin => Some(0.0),
+            Next::Passes(done) => {
+                Some(done as f32 / full.map_or(1, |lit| lit.plan().passes.len().max(1)) as f32)
+            }
+        }
+    }
+
+    /// Lights the preview with the state's lights and heights; the full light follows later.
+    pub fn restart(
+        &mut self,
+        screen: &mut Screen,
+        state: &State,
+        limits: &Limits,
+        (edited, relights): (Option<Rectangle>, bool),
+    ) -> Result<()> {
+        self.read_times(state, &mut None);
+        self.edited = match (edited, self.edited) {
+            (Some(a), Some(b)) => Some(together(a, b)),
+            (a, b) => a.or(b),
+        };
+        self.is_full_stale |= relights;
+        self.times.clear();
+        self.fit(screen, state, DRAGGED)?;
+        self.changed = Instant::now();
+        let [coarse, fine] = self.levels.as_mut().expect("made by fit");
+        coarse.take(state, edited)?;
+        fine.take(state, edited)?;
+        // Both are planned first: new environments wait for the device.
+        coarse.plan_light(screen, state, limits)?;
+        let borrowed = fine.plan_slopes(screen, coarse, state.has_camera(), limits)?;
+        let slots = [coarse.run(screen, &[])?, fine.run(screen, &borrowed)?];
+        self.running = Some(Running::Preview { coarse: slots[0], fine: slots[1] });
+        self.is_shown = true;
+        self.next = if state.is_moving() { Next::Nothing } else { Next::Begin };
+        Ok(())
+    }
+
+    /// Makes the levels, of a size that fits the time.
+    fn fit(&mut self, screen: &mut Screen, state: &State, kept_at: Range<f64>) -> Result<()> {
+        let field = &state.scene.field;
+        let quality = coarser(&state.quality);
+        let Rates { coarse, fine, .. } = self.rates;
+        let texels = (field.rows() * field.cols()) as f64;
+        let of_coarse =
+            |side: usize| (FIXED_MS + work(&state.scene, &quality, side) / coarse) / COARSE_MS;
+        let of_fine = |side: usize| texels / (side * side) as f64 / fine / FINE_MS;
+        let most = (field.rows().min(field.cols()) / LEAST_GRID).max(1);
+        let least =
+            |share: &dyn Fn(usize) -> f64| (1..most).find(|s| share(*s) <= 1.0).unwrap_or(most);
+        let fine = least(&of_fine);
+        // A coarse cell is a whole number of fine ones.
+        let wanted = [least(&of_coarse).max(fine).next_multiple_of(fine), fine];
+        let kept = self.levels.as_ref().map(|levels| levels.each_ref().map(|l| l.blocks.side));
+        // Other grids take a third of a second: only where they are worth that, least of all in a drag.
+        let is_kept = kept.is_some_and(|kept| {
+            let fits = |share: f64| kept_at.contains(&share);
+            kept == wanted || kept[0] <= most && fits(of_coarse(kept[0])) && fits(of_fine(kept[1]))
+        });
+        if !is_kept {
+            self.end(screen)?;
+            let level = |side: usize| Level::new(state, side);
+            self.levels = Some([level(wanted[0])?, level(wanted[1])?]);
+        }
+        Ok(())
+    }
+
+    /// Goes on with the full light, by a part that keeps the device busy for about [`PART_MS`]. The device is idle.
+    /// Returns whether the full light is complete.
+    pub fn refine(
+        &mut self,
+        screen: &mut Screen,
+        state: &State,
+        (full, limits): (&mut Option<Frame>, &Limits),
+    ) -> Result<bool> {
+        self.read_times(state, full);
+        match self.next {
+            Next::Nothing => Ok(false),
+            Next::Begin if self.changed.elapsed() < REST => Ok(false),
+            Next::Begin => self.begin_full(screen, state, (full, limits)).map(|()| false),
+            Next::Passes(done) => {
+                let lit = full.as_mut().expect("planned");
+                if done < lit.plan().passes.len() {
+                    return self.run_part(screen, state, (lit, done)).map(|()| false);
+                }
+                self.complete(screen, state, (lit, limits)).map(|()| true)
+            }
+        }
+    }
+
+    /// Plans the full light, or edits it at once.
+    fn begin_full(
+        &mut self,
+        screen: &mut Screen,
+        state: &State,
+        (full, limits): (&mut Option<Frame>, &Limits),
+    ) -> Result<()> {
+        let plan = in_parts(state, limits, self.rates.full)?;
+        let is_new = replan(screen, full, plan, &state.scene)?;
+        let lit = full.as_mut().expect("made by replan");
+        let field = &state.scene.field;
+        let can_edit = !is_new && !self.is_full_stale && !lit.plan().edit_passes.is_empty();
+        if let (Some(at), true) = (self.edited, can_edit) {
+            let heights = Some((field.heights_m(), at));
+            self.running =
+                Some(Running::Full(screen.light(lit, heights, (Work::Edit(at), &[]))?));
+            self.next = Next::Passes(lit.plan().passes.len());
+            return Ok(());
+        }
+        self.is_full_stale = true;
+        self.next = Next::Passes(0);
+        Ok(())
+    }
+
+    fn run_part(
+        &mut self,
+        screen: &mut Screen,
+        state: &State,
+        (lit, done): (&mut Frame, usize),
+    ) -> Result<()> {
+        let passes = lit.plan().passes.len();
+        let ms = work(&state.scene, &state.quality, 1) / self.rates.full / passes as f64;
+        let count = (PART_MS / ms).clamp(1.0, passes as f64) as usize;
+        let part: Vec<usize> = (done..(done + count).min(passes)).collect();
+        let field = &state.scene.field;
+        let heights = (done == 0).then(|| (field.heights_m(), whole(field)));
+        let slot = screen.light(lit, heights, (Work::Passes(&part), &[]))?;
+        self.running = Some(Running::Full(slot));
+        self.next = Next::Passes(done + part.len());
+        Ok(())
+    }
+
+    /// Shows the full light, and measures the preview against it.
+    fn complete(
+        &mut self,
+        screen: &mut Screen,
+        state: &State,
+        (lit, limits): (&Frame, &Limits),
+    ) -> Result<()> {
+        (self.is_shown, self.next) = (false, Next::Nothing);
+        (self.edited, self.is_full_stale) = (None, false);
+        self.full_s = Some(self.changed.elapsed().as_secs_f64());
+        if let Some([_, Level { blocks, lit: Some(fine), .. }]) = &self.levels {
+            let full = render::rgb(&screen.gpu().pixels(lit, 0)?);
+            let ours = render::rgb(&screen.gpu().pixels(fine, 0)?);
+            self.error = error(blocks, state.scene.field.voids(), &ours, &full);
+        }
+        // For the next input, while there is time.
+        self.fit(screen, state, RESTED)?;
+        let [coarse, fine] = self.levels.as_mut().expect("made by fit");
+        coarse.plan_light(screen, state, limits)?;
+        fine.plan_slopes(screen, coarse, true, limits).map(|_| ())
+    }
+
+    /// Takes the times of the last part, and learns from them how fast the device is.
+    fn read_times(&mut self, state: &State, full: &mut Option<Frame>) {
+        let learn = |rate: &mut f64, work: f64, times: &[Timing], fixed_ms: f64| {
+            let ms = (total_ns(times) / 1e6 - fixed_ms).max(0.2 * fixed_ms);
+            if ms > 0.0 {
+                *rate = (*rate * (work / ms)).sqrt();
+            }
+        };
+        match self.running.take() {
+            None => {}
+            Some(Running::Full(slot)) => {
+                let Some(lit) = full else { return };
+                self.times.extend(lit.renderer().timings(slot).unwrap_or_default());
+                let is_whole = self.next == Next::Passes(lit.plan().passes.len());
+                if is_whole {
+                    if self.is_full_stale {
+                        let work = work(&state.scene, &state.quality, 1);
+                        learn(&mut self.rates.full, work, &self.times, 0.0);
+                    }
+                    self.complete_times = Some(std::mem::take(&mut self.times));
+                }
+            }
+            Some(Running::Preview { coarse, fine }) => {
+                let levels = self.levels.as_mut().filter(|levels| levels[0].runs > 1);
+                let Some([of_coarse, of_fine]) = levels else { return };
+                let times = |level: &mut Level, slot: usize| {
+                    let lit = level.lit.as_mut();
+                    lit.and_then(|lit| lit.renderer().timings(slot)).unwrap_or_default()
+                };
+                let quality = coarser(&state.quality);
+                let work = work(&of_coarse.scene, &quality, 1);
+                let [coarse, fine] = [times(of_coarse, coarse), times(of_fine, fine)];
+                learn(&mut self.rates.coarse, work, &coarse, FIXED_MS);
+                let field = &of_fine.scene.field;
+                let texels = (field.rows() * field.cols()) as f64;
+                learn(&mut self.rates.fine, texels, &fine, 0.0);
+                self.complete_times = Some([coarse, fine].concat());
+            }
+        }
+    }
+
+    /// Times of the passes of the last complete preview or full light, once.
+    pub fn take_times(&mut self) -> Option<Vec<Timing>> {
+        self.complete_times.take()
+    }
+
+    pub fn end(&mut self, screen: &mut Screen) -> Result<()> {
+        self.running = None;
+        let frames = self.levels.take().into_iter().flatten().filter_map(|level| level.lit);
+        frames.map(|lit| screen.end(lit)).fold(Ok(()), Result::and)
+    }
+}
+
+impl Level {
+    fn new(state: &State, side: usize) -> Result<Self> {
+        let blocks = Blocks::of(&state.scene.field, side);
+        Ok(Self { blocks, scene: blocks.scene(&state.scene)?, lit: None, moving: None, runs: 0 })
+    }
+
+    /// Takes the state's lights and heights.
+    fn take(&mut self, state: &State, edited: Option<Rectangle>) -> Result<()> {
+        self.blocks.take_lights(&state.scene, &mut self.scene);
+        match (state.moving_kind(), &mut self.moving) {
+            (Some(kind), Some(moving)) if moving.kind == kind => {
+                self.scene.field = moving.next()?;
+            }
+            (Some(kind), moving) => {
+                let still = self.blocks.field(&state.scene.field)?;
+                self.scene.field = moving.insert(Moving::over(still, kind)).next()?;
+            }
+            (None, moving) if moving.is_some() => {
+                *moving = None;
+                self.scene.field = self.blocks.field(&state.scene.field)?;
+            }
+            (None, _) => {
+                if let Some(at) = edited {
+                    self.blocks.edit(&state.scene.field, &mut self.scene.field, at)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Runs all passes. The slot holds their times.
+    fn run(&mut self, screen: &mut Screen, borrowed: &[ImageArg]) -> Result<usize> {
+        self.runs += 1;
+        let lit = self.lit.as_mut().expect("planned");
+        let all: Vec<usize> = (0..lit.plan().passes.len()).collect();
+        let heights = Some((self.scene.field.heights_m(), whole(&self.scene.field)));
+        screen.light(lit, heights, (Work::Passes(&all), borrowed))
+    }
+
+    /// Plans the light of a coarse grid.
+    fn plan_light(&mut self, screen: &mut Screen, state: &State, limits: &Limits) -> Result<()> {
+        let wanted = Picture { light_layers: true, ..Picture::default() };
+        let plan = plan::picture(&self.scene, &coarser(&state.quality), limits, wanted)?;
+        replan(screen, &mut self.lit, plan, &self.scene).map(|_| ())
+    }
+
+    /// Plans a coarse grid's light on the slopes of this one. Returns the images that it borrows.
+    fn plan_slopes(
+        &mut self,
+        screen: &mut Screen,
+        coarse: &Level,
+        has_camera: bool,
+        limits: &Limits,
+    ) -> Result<Vec<ImageArg>> {
+        let of_coarse = coarse.lit.as_ref().expect("lit before");
+        let plan = plan::preview(&self.scene, &coarse.scene, of_coarse.plan(), limits)?;
+        let (inputs, outputs) = (of_coarse.inputs(), of_coarse.outputs());
+        let mut borrowed = vec![inputs[0], outputs[0]];
+        if !coarse.scene.lights.suns.is_empty() {
+            let mut named = of_coarse.plan().outputs();
+            let at = named.position(|(_, output)| output.name.starts_with("direct.sun"));
+            borrowed.extend(at.map(|at| outputs[at]));
+        }
+        if matches!(coarse.scene.surface.albedo, Albedo::Map(_)) {
+            let at = of_coarse.plan().inputs().position(|(_, input)| input.name == "albedo");
+            borrowed.extend(at.map(|at| inputs[at]));
+        }
+        let fits = self.lit.as_ref().is_some_and(|lit| lit.plan().resources == plan.resources);
+        match self.lit.as_mut().filter(|_| fits) {
+            Some(lit) => {
+                screen.gpu().replace_plan(lit, plan)?;
+                // Behind the ground; the light comes from the coarse grid.
+                if has_camera {
+                    refilled(screen, lit, &self.scene)?;
+                }
+            }
+            None => {
+                if let Some(old) = self.lit.take() {
+                    screen.end(old)?;
+                }
+                // Borrowed images need no contents.
+                let mut contents = plan::picture_inputs(&self.scene);
+                contents.truncate(plan.inputs().count() - borrowed.len());
+                let own = plan.inputs().skip(contents.len());
+                let empty: Vec<Vec<f32>> =
+                    own.map(|(_, input)| vec![0.0; (input.bytes() / 4) as usize]).collect();
+                contents.extend(empty);
+                self.lit = Some(screen.frame(plan, &contents)?);
+            }
+        }
+        Ok(borrowed)
+    }
+}
+
+/// RMSE over the mean, R, G, B of the means of blocks.
+fn error(
+    blocks: &Blocks,
+    voids: Option<&[bool]>,
+    ours: &[[f32; 3]],
+    full: &[[f32; 3]],
+) -> Option<f64> {
+    let full = blocks.means(|i| {
+        let is_void = voids.is_some_and(|voids| voids[i]);
+        if is_void { [0.0; 4] } else { [full[i][0], full[i][1], full[i][2], 1.0].map(f64::from) }
+    });
+    let (mut square, mut mean, mut count) = (0.0, 0.0, 0.0);
+    for (ours, full) in ours.iter().zip(&full).filter(|(_, full)| full[3] > 0.0) {
+        for c in 0..3 {
+            let want = full[c] / full[3];
+            square += (f64::from(ours[c]) - want).powi(2);
+            mean += want;
+            count += 1.0;
+        }
+    }
+    (mean > 0.0).then(|| (square / count).sqrt() / (mean / count))
+}
+
+/// The user's settings with fewer azimuths and the default method, as the others are slow.
+fn coarser(quality: &Quality) -> Quality {
+    Quality { azimuths: quality.azimuths.min(AZIMUTHS), method: Method::default(), ..*quality }
+}
+
+/// Texels times azimuths, with a sun as eight, on blocks of `side` grid points.
+fn work(scene: &Scene, quality: &Quality, side: usize) -> f64 {
+    let texels = (scene.field.rows() * scene.field.cols()) as f64 / (side * side) as f64;
+    let lights = &scene.lights;
+    let has_sky = lights.sky.is_some() || lights.environment.is_some() || quality.bounces.count > 0;
+    let of_sky = if has_sky { f64::from(quality.azimuths) } else { 0.0 };
+    let others = lights.suns.len() + lights.keys.len() + lights.sphere_lights.len() + 1;
+    texels * (of_sky * f64::from(1 + 2 * quality.bounces.count) + 8.0 * others as f64)
+}
+
+/// The full light in passes of few azimuths, so that input never waits long.
+fn in_parts(state: &State, limits: &Limits, rate: f64) -> Result<Plan> {
+    let texels = (state.scene.field.rows() * state.scene.field.cols()) as f64;
+    // A sweep and its shading share the time.
+    let azimuths = (2.0 * PART_MS * rate / texels).clamp(1.0, 1e6) as u32;
+    let image_layers = limits.image_layers.min(azimuths.next_power_of_two());
+    state.plan(&Limits { image_layers, ..*limits }).or_else(|_| state.plan(limits))
+}

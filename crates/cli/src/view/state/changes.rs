@@ -1,0 +1,63 @@
+//! What the panel changes.
+
+use super::lights::compass;
+use super::settings::Refused;
+use super::{State, Text, Wish, hundredths};
+
+/// A change that the panel asks for.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Change {
+    /// The same as a key.
+    Key(&'static str),
+    /// Opens one of the lists.
+    Text(Text),
+    /// Turns the first sun to a compass azimuth and an elevation, degrees.
+    Sun([f64; 2]),
+    Exposure(f32),
+    /// Gives a setting a value, by its name.
+    Setting(&'static str, String),
+    /// Copies the command line.
+    Copy,
+}
+
+impl State {
+    /// Does it, as [`key`](Self::key) for a picture of a size.
+    pub fn change(&mut self, change: Change, size: [u32; 2]) -> Wish {
+        self.message = None;
+        match change {
+            Change::Key(name) => return self.key(name, size),
+            Change::Text(text) => self.text = text,
+            Change::Sun(to) => return self.point_sun(to),
+            Change::Exposure(exposure) => {
+                (self.exposure, self.needs_exposure) = (exposure.clamp(1e-30, 1e30), false);
+            }
+            Change::Setting(name, word) => {
+                return match self.settings.set(name, word, &mut self.asked) {
+                    Ok(quality) => {
+                        self.quality = quality;
+                        Wish::Light
+                    }
+                    Err(Refused(why)) => self.say(&why),
+                };
+            }
+            Change::Copy => return Wish::Copy,
+        }
+        Wish::Show
+    }
+
+    /// The first sun's compass azimuth and elevation, degrees.
+    pub fn sun(&self) -> Option<[f64; 2]> {
+        self.scene.lights.suns.first().map(|sun| {
+            let (azimuth, elevation) = compass(sun);
+            [azimuth, elevation].map(hundredths)
+        })
+    }
+
+    pub fn exposure(&self) -> f32 {
+        self.exposure
+    }
+
+    pub fn text(&self) -> Text {
+        self.text
+    }
+}

@@ -1,0 +1,381 @@
+//! Height files written by GDAL: what is read is what GDAL reads.
+
+use crate::Folder;
+use crate::geotiff::{gdal_values, gdalinfo};
+use crate::needs_vulkan::done;
+use ridgelight::scene::HeightField;
+use ridgelight_io::{HeightOptions, read_field};
+use serde_json::json;
+use std::path::Path;
+use std::process::Command;
+
+/// Runs a tool of GDAL in the folder, with arguments between blanks.
+pub fn tool(folder: &Folder, command: &str) {
+    let mut words = command.split_whitespace();
+    let name = words.next().unwrap();
+    let mut tool = Command::new(name);
+    tool.current_dir(folder.path("")).args(words);
+    let output = tool.output().unwrap_or_else(|_| panic!("{name}: run tools/setup --tests"));
+    assert!(output.status.success(), "{command}: {}", String::from_utf8_lossy(&output.stderr));
+}
+
+/// An ESRI grid of whole numbers from 1 to 250, another for each `salt`, as text.
+pub fn grid([cols, rows]: [usize; 2], corner: [f64; 2], cell: f64, salt: usize) -> String {
+    let [west, south] = corner;
+    let mut text = format!(
+        "ncols {cols}\nnrows {rows}\nxllcorner {west}\nyllcorner {south}\ncellsize {cell}\n"
+    );
+    for i in 0..rows * cols {
+        text += &format!("{} ", 1 + (i * 7919 + salt * 104_729) % 250);
+    }
+    text
+}
+
+/// Absolute heights; whole numbers are exact in a field.
+fn absolute(field: &HeightField) -> Vec<f32> {
+    field.heights_m().iter().map(|h| (field.base_m() + f64::from(*h)) as f32).collect()
+}
+
+fn heights(path: &Path, options: &HeightOptions) -> Vec<f32> {
+    let read = read_field(path, options).unwrap_or_else(|error| panic!("{error}"));
+    absolute(&read.field)
+}
+
+/// Every band of files of several bands, interleaved or one after the other, in strips and in tiles.
+#[test]
+#[ignore = "needs GDAL: Debian's gdal-bin"]
+fn gdal_bands_have_the_values_that_gdal_reads() {
+    let folder = Folder::new();
+    for salt in 0..5 {
+        let text = grid([37, 29], [500_000.0, 4_900_000.0], 30.0, salt);
+        folder.write(&format!("{salt}.asc"), text.as_bytes());
+        tool(&folder, &format!("gdal_translate -q {salt}.asc odd{salt}.tif"));
+    }
+    let all = (0..5).map(|salt| format!(" odd{salt}.tif")).collect::<String>();
+    tool(&folder, &format!("gdalbuildvrt -q -separate odd.vrt{all}"));
+    let mut read = 0;
+    for kind in ["Byte", "Int16", "Float32", "Float64"] {
+        for layout in ["PIXEL", "BAND"] {
+            for tiles in ["NO", "YES -co BLOCKXSIZE=16 -co BLOCKYSIZE=16"] {
+                for packed in ["NONE", "LZW", "LZW -co PREDICTOR=2", "DEFLATE", "ZSTD"] {
+                    let options = format!("-co INTERLEAVE={layout} -co TILED={tiles}");
+                    let command = format!(
+                        "gdal_translate -q -ot {kind} {options} -co COMPRESS={packed} odd.vrt b.tif"
+                    );
+                    tool(&folder, &command);
+                    let path = folder.path("b.tif");
+                    let values = gdal_values(&path);
+                    let size = values.len() / 5;
+                    for band in 0..5 {
+                        let options =
+                            HeightOptions { band: Some(band as u32 + 1), ..Default::default() };
+                        let plane = &values[band * size..(band + 1) * size];
+                        assert!(heights(&path, &options) == plane, "{command}: band {band}");
+                        read += 1;
+                    }
+                    assert_ne!(values[..size], values[size..2 * size]);
+                }
+            }
+        }
+    }
+    assert_eq!(read, 5 * 4 * 20);
+}
+
+/// Larger tiles that reach beyond the image, of which `tiff` 0.11 cannot read some (its issue 395).
+#[test]
+#[ignore = "needs GDAL: Debian's gdal-bin"]
+fn gdal_lzw_tiles_beyond_the_edge_are_read() {
+    let folder = Folder::new();
+    let text = grid([333, 277], [500_000.0, 4_900_000.0], 30.0, 0);
+    folder.write("a.asc", text.as_bytes());
+    for kind in ["Byte", "Int16", "Int32", "Float32", "Float64"] {
+        for options in ["", "-co PREDICTOR=2", "-co ENDIANNESS=BIG", "-co PREDICTOR=3"] {
+            let is_float = kind.starts_with('F');
+            if options.ends_with("=3") && !is_float
+                || options == "-co PREDICTOR=2" && kind == "Float64"
+            {
+                continue;
+            }
+            let tiled = "-co TILED=YES -co COMPRESS=LZW";
+            tool(&folder, &format!("gdal_translate -q -ot {kind} {tiled} {options} a.asc b.tif"));
+            let path = folder.path("b.tif");
+            assert!(
+                heights(&path, &HeightOptions::default()) == gdal_values(&path),
+                "{kind} {options}"
+            );
+        }
+    }
+}
+
+/// Without a choice the first band is read with a note; a picture of colours is refused.
+#[test]
+#[ignore = "needs GDAL: Debian's gdal-bin"]
+fn gdal_several_bands_get_a_note_and_colours_are_refused() {
+    let folder = Folder::new();
+    for salt in 0..3 {
+        let text = grid([9, 7], [500_000.0, 4_900_000.0], 30.0, salt);
+        folder.write(&format!("{salt}.asc"), text.as_bytes());
+    }
+    tool(&folder, "gdalbuildvrt -q -separate all.vrt 0.asc 1.asc 2.asc");
+    tool(&folder, "gdal_translate -q -ot Float32 all.vrt several.tif");
+    tool(&folder, "gdal_translate -q -ot Byte all.vrt colours.tif");
+    let run = folder.run_str("plan several.tif");
+    assert_eq!(run.status, Some(0), "{}", run.err);
+    let note = "several.tif: heights are band 1 of 3; --band chooses another";
+    assert!(run.notes.contains(note), "{}", run.notes);
+    assert!(!folder.run_str("plan several.tif --band 1").notes.contains("band 1 of"));
+    let plane = |name: &str, band| {
+        heights(&folder.path(name), &HeightOptions { band, ..Default::default() })
+    };
+    assert_eq!(plane("several.tif", None), plane("0.asc", None));
+    assert_eq!(plane("several.tif", Some(3)), plane("2.asc", None));
+    assert_eq!(plane("colours.tif", Some(2)), plane("1.asc", None));
+    let says = ["3 colour channels", "one band of heights, or a choice by --band"];
+    crate::refused(
+        &folder,
+        &[
+            ("plan colours.tif", 1, &says),
+            ("plan several.tif --band 4", 1, &["3 bands", "a band 4"]),
+            ("plan 0.asc --band 2", 1, &["1 band,", "a band 2, which --band requests"]),
+            ("plan several.tif --band 0", 2, &["--band", "1 or more"]),
+        ],
+    );
+}
+
+/// Tiles that GDAL leaves out have the no-data value.
+#[test]
+#[ignore = "needs GDAL: Debian's gdal-bin"]
+fn gdal_sparse_tiles_are_voids() {
+    let folder = Folder::new();
+    let mut text = "ncols 64\nnrows 32\ncellsize 30\nnodata_value -9\n".to_owned();
+    for i in 0..64 * 32 {
+        text += if i % 64 < 20 { "7 " } else { "-9 " };
+    }
+    folder.write("half.asc", text.as_bytes());
+    let tiles = "-co TILED=YES -co BLOCKXSIZE=16 -co BLOCKYSIZE=16 -co COMPRESS=DEFLATE";
+    tool(&folder, &format!("gdal_translate -q -co SPARSE_OK=TRUE {tiles} half.asc sparse.tif"));
+    tool(&folder, &format!("gdal_translate -q {tiles} half.asc whole.tif"));
+    let [sparse, whole] = ["sparse.tif", "whole.tif"].map(|name| folder.path(name));
+    let length = |path: &Path| std::fs::metadata(path).unwrap().len();
+    assert!(length(&sparse) < length(&whole), "GDAL left out no tile");
+    let read = |path| read_field(path, &HeightOptions::default()).unwrap().field;
+    assert_eq!(read(&sparse), read(&whole));
+    assert_eq!(read(&sparse).voids().unwrap().iter().filter(|v| **v).count(), 44 * 32);
+}
+
+/// Cuts a field into tiles, some of which overlap, and leaves out one corner.
+fn tiles_of(folder: &Folder, extra: &str) -> [&'static str; 4] {
+    let text = grid([60, 50], [500_000.0, 4_900_000.0], 30.0, 1);
+    folder.write("whole.asc", text.as_bytes());
+    let srs = "-q -ot Int16 -a_srs EPSG:32618";
+    tool(folder, &format!("gdal_translate {srs} {extra} whole.asc whole.tif"));
+    let windows = ["0 0 30 25", "28 0 32 25", "0 25 30 20", "30 25 20 20"];
+    let names = ["t0.tif", "t1.tif", "t2.tif", "t3.tif"];
+    for (window, name) in windows.iter().zip(names) {
+        tool(folder, &format!("gdal_translate -q -srcwin {window} whole.tif {name}"));
+    }
+    names
+}
+
+/// GDAL's mosaic of the same files, and of a box of it: same values, voids and positions.
+#[test]
+#[ignore = "needs GDAL: Debian's gdal-bin"]
+fn gdal_mosaics_and_boxes_have_the_same_values_and_positions() {
+    let boxes = [
+        None,
+        // On edges of cells; across a gap; one cell.
+        Some([500_300.0, 4_900_300.0, 501_200.0, 4_901_200.0]),
+        Some([500_900.0, 4_900_150.0, 501_800.0, 4_900_600.0]),
+        Some([501_170.0, 4_900_900.0, 501_200.0, 4_900_930.0]),
+    ];
+    for extra in ["", "-mo AREA_OR_POINT=Point"] {
+        let folder = Folder::new();
+        let names = tiles_of(&folder, extra);
+        tool(&folder, &format!("gdalbuildvrt -q -vrtnodata -9999 all.vrt {}", names.join(" ")));
+        for bbox in boxes {
+            let window = match bbox {
+                Some([west, south, east, north]) => {
+                    format!(" -projwin {west} {north} {east} {south}")
+                }
+                None => String::new(),
+            };
+            tool(&folder, &format!("gdal_translate -q{window} all.vrt expected.tif"));
+            let expected = gdal_values(&folder.path("expected.tif"));
+            let options = HeightOptions { bbox, ..Default::default() };
+            let paths = names.map(|name| folder.path(name));
+            let read = ridgelight_io::read_mosaic(&paths, &options).unwrap();
+            let heights = absolute(&read.field);
+            let voids = read.field.voids();
+            assert_eq!(heights.len(), expected.len(), "{bbox:?}");
+            for (i, (height, expected)) in heights.iter().zip(&expected).enumerate() {
+                let is_void = voids.is_some_and(|voids| voids[i]);
+                assert_eq!(is_void, *expected == -9999.0, "{bbox:?}: {i}");
+                assert!(is_void || height == expected, "{bbox:?}: {i}");
+            }
+            let at = read.georeference.unwrap();
+            let info = gdalinfo(&folder.path("expected.tif"));
+            assert_eq!(
+                info["geoTransform"],
+                json!([at.corner[0], 30.0, 0.0, at.corner[1], 0.0, -30.0])
+            );
+        }
+    }
+}
+
+/// Outputs of commands lie where GDAL's part of the mosaic lies.
+#[test]
+#[ignore = "needs GDAL: Debian's gdal-bin"]
+fn gdal_finds_outputs_of_a_mosaic_in_place() {
+    let folder = Folder::new();
+    let names = tiles_of(&folder, "").join(" ");
+    tool(&folder, "gdal_translate -q -projwin 500300 4901200 501200 4900300 whole.tif part.tif");
+    let part = gdalinfo(&folder.path("part.tif"));
+    let bbox = "--bbox 500300,4900300,501200,4901200 --azimuths 8";
+    done(&folder, &format!("render {names} {bbox} --sky 0.5 -o o.tif"));
+    done(&folder, &format!("render {names} {bbox} --sky 0.5 -o o.png"));
+    done(&folder, &format!("horizon {names} {bbox} -o h.tif"));
+    done(&folder, &format!("bake {names} {bbox} --what sky-view --format tif -o baked"));
+    done(
+        &folder,
+        &format!("reference {names} --bbox 500300,4900300,501200,4901200 --spp 128 -o r.tif"),
+    );
+    for name in ["o.tif", "h.tif", "baked/sky_view.tif", "r.tif", "o.png"] {
+        let info = gdalinfo(&folder.path(name));
+        assert_eq!(info["geoTransform"], part["geoTransform"], "{name}");
+        assert_eq!(info["size"], part["size"], "{name}");
+    }
+    // Nothing of the field outside the box is left: the same picture as of GDAL's part.
+    done(&folder, "render part.tif --azimuths 8 --sky 0.5 -o p.tif");
+    assert_eq!(gdal_values(&folder.path("o.tif")), gdal_values(&folder.path("p.tif")));
+}
+
+/// Tiles of SRTM share the grid points of their edges.
+#[test]
+#[ignore = "needs GDAL: Debian's gdal-bin"]
+fn gdal_joins_srtm_tiles_as_we_do() {
+    let folder = Folder::new();
+    let names = ["N44W072.hgt", "N44W071.hgt", "N45W072.hgt"];
+    // Of 1201 x 1201 points, and the height of a point follows from its place on Earth.
+    for (name, [south, west]) in names.iter().zip([[0_u64, 0], [0, 1], [1, 0]]) {
+        let place = |i: u64| [south * 1200 + 1200 - i / 1201, west * 1200 + i % 1201];
+        let height = |[y, x]: [u64; 2]| ((7 * y + 3 * x) % 2000) as u16;
+        let bytes: Vec<u8> =
+            (0..1201 * 1201).flat_map(|i| height(place(i)).to_be_bytes()).collect();
+        folder.write(name, &bytes);
+    }
+    tool(&folder, &format!("gdalbuildvrt -q -vrtnodata -32768 all.vrt {}", names.join(" ")));
+    let expected = gdal_values(&folder.path("all.vrt"));
+    let paths = names.map(|name| folder.path(name));
+    let read = ridgelight_io::read_mosaic(&paths, &HeightOptions::default()).unwrap();
+    assert_eq!((read.field.rows(), read.field.cols()), (2401, 2401));
+    let voids = read.field.voids().unwrap();
+    let heights = absolute(&read.field);
+    for (i, expected) in expected.iter().enumerate() {
+        assert!(
+            voids[i] == (*expected == -32768.0) && (voids[i] || heights[i] == *expected),
+            "{i}"
+        );
+    }
+    let transform = gdalinfo(&folder.path("all.vrt"))["geoTransform"].clone();
+    let at = read.georeference.unwrap();
+    for (k, own) in [(0, at.corner[0]), (3, at.corner[1]), (1, at.cell[0])] {
+        assert!((transform[k].as_f64().unwrap() - own).abs() < 1e-9, "{transform}");
+    }
+    assert!(!read.notes.iter().any(|note| note.contains("differ")), "{:?}", read.notes);
+    assert!(read.notes.iter().any(|note| note.contains("24.9")), "{:?}", read.notes);
+}
+
+#[test]
+fn a_scene_file_lists_the_files_of_a_field_and_its_box() {
+    let folder = Folder::new();
+    for (name, west) in [("t0.asc", 0.0), ("t1.asc", 150.0)] {
+        folder.write(name, grid([5, 4], [5e5 + west, 4.9e6], 30.0, 0).as_bytes());
+    }
+    let scene = r#"{ "field": { "file": ["t0.asc", "t1.asc"], "bbox": [500030, 4900000, 500300, 4900060] } }"#;
+    folder.write("scene.json", scene.as_bytes());
+    let [own, of_scene] =
+        ["t0.asc t1.asc --bbox 500030,4900000,500300,4900060", "--scene scene.json"].map(|args| {
+            let run = folder.run_str(&format!("info {args} --json i.json"));
+            assert_eq!((run.status, run.err.as_str()), (Some(0), ""), "{args}");
+            std::fs::read_to_string(folder.path("i.json")).unwrap()
+        });
+    assert_eq!(own, of_scene);
+    let facts: serde_json::Value = serde_json::from_str(&own).unwrap();
+    assert_eq!((&facts["cols"], &facts["rows"]), (&json!(9), &json!(2)));
+    assert_eq!(facts["extent"], json!([500_030.0, 4_900_000.0, 500_300.0, 4_900_060.0]));
+    std::fs::remove_file(folder.path("i.json")).unwrap();
+    crate::refused(
+        &folder,
+        &[
+            ("plan t0.asc a.npy", 1, &["a.npy", "georeference"]),
+            ("plan a.npy --bbox 0,0,1,1", 1, &["a.npy", "georeference", "--bbox"]),
+            (
+                "plan t0.asc --bbox 0,0,1,1",
+                2,
+                &["--bbox", "extent is 500000,4900000,500150,4900120"],
+            ),
+            ("plan t0.asc --bbox 1,0,0,1", 2, &["--bbox", "each minimum below its maximum"]),
+            ("plan t0.asc --bbox 1,2,3", 2, &["3 numbers"]),
+            ("render t0.asc t1.asc -o t1.asc.png --json t1.asc", 2, &["--json"]),
+        ],
+    );
+}
+
+/// The directions of grid north, by GDAL's coordinates of two points, and cells in feet.
+#[test]
+#[ignore = "needs GDAL: Debian's gdal-bin"]
+fn gdal_agrees_on_grid_north_and_on_feet() {
+    let folder = Folder::new();
+    // UTM in both hemispheres, two Lambert conics, the British grid, a polar stereographic.
+    let places = [
+        (32618, [700_000.0, 4_900_000.0], 1.0),
+        (32718, [300_000.0, 6_900_000.0], 1.0),
+        (2263, [1_200_000.0, 200_000.0], 1200.0 / 3937.0),
+        (2265, [1_500_000.0, 400_000.0], 0.3048),
+        (2154, [900_000.0, 6_500_000.0], 1.0),
+        (27700, [300_000.0, 200_000.0], 1.0),
+        (3413, [-600_000.0, -1_500_000.0], 1.0),
+    ];
+    for (code, [x, y], unit) in places {
+        folder.write("a.asc", grid([4, 4], [x - 60.0, y - 60.0], 30.0, 0).as_bytes());
+        tool(&folder, &format!("gdal_translate -q -a_srs EPSG:{code} a.asc a.tif"));
+        let run = folder.run_str("info a.tif --json i.json");
+        assert_eq!(run.status, Some(0), "{}", run.err);
+        let facts = std::fs::read_to_string(folder.path("i.json")).unwrap();
+        let facts: serde_json::Value = serde_json::from_str(&facts).unwrap();
+        let cell = facts["cell_m"][0].as_f64().unwrap();
+        assert!((cell / (30.0 * unit) - 1.0).abs() < 1e-9, "{code}: {cell}");
+        // The geographic system of the same datum, by name: no shift.
+        let ellipsoid = geographic(&folder, code);
+        let place = |y: f64| {
+            let command =
+                format!("echo {x} {y} | gdaltransform -s_srs EPSG:{code} -t_srs '{ellipsoid}'");
+            let output = Command::new("sh").args(["-c", &command]).output().unwrap();
+            let text = String::from_utf8(output.stdout).unwrap();
+            let numbers: Vec<f64> = text.split_whitespace().map(|n| n.parse().unwrap()).collect();
+            [numbers[0], numbers[1]]
+        };
+        let ([west, south], [east, north]) = (place(y - 500.0 / unit), place(y + 500.0 / unit));
+        // The radii of the ellipsoids of these systems differ by less than 2e-4, their ratio by 1e-5.
+        let phi = ((south + north) / 2.0).to_radians();
+        let squared = 1.0 - 0.006_694_38 * phi.sin().powi(2);
+        let radii = squared / (1.0 - 0.006_694_38);
+        let expected = ((east - west) * phi.cos() * radii).atan2(north - south).to_degrees();
+        let notes = facts["notes"].to_string();
+        let side = if expected > 0.0 { "east" } else { "west" };
+        let note = format!("grid north, {:.2} degrees {side} of true north", expected.abs());
+        assert!(notes.contains(&note), "{code}: {note} is not in {notes}");
+        assert_eq!(notes.contains("cells are in units of"), unit != 1.0, "{notes}");
+        assert_eq!(notes.contains("heights are read as metres"), unit != 1.0, "{notes}");
+    }
+}
+
+/// Longitude and latitude on the ellipsoid of a projected system, as PROJ's text.
+fn geographic(folder: &Folder, code: u32) -> String {
+    let mut command = Command::new("gdalsrsinfo");
+    command.current_dir(folder.path("")).args(["-o", "proj4", &format!("EPSG:{code}")]);
+    let text = String::from_utf8(command.output().unwrap().stdout).unwrap();
+    let is_figure = |term: &&str| term.starts_with("+datum") || term.starts_with("+ellps");
+    let figure: Vec<&str> = text.split_whitespace().filter(is_figure).collect();
+    format!("+proj=longlat {} +no_defs", figure.join(" "))
+}

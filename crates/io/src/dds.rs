@@ -1,0 +1,128 @@
+//! DDS textures with the header of DirectX 10.
+
+use std::path::Path;
+
+use ddsfile::{AlphaMode, D3D10ResourceDimension, DxgiFormat, Header, Header10};
+use ridgelight::{Error, Result};
+
+use crate::atomic::{Temporary, Written};
+use crate::ktx2::{level_size, most_levels};
+use crate::{Block, Component, TexelFormat, Texels};
+
+/// The DXGI format of texels; none for other counts of components.
+fn dxgi(texels: Texels) -> Option<DxgiFormat> {
+    use Component::{F16, F32, Snorm8, Snorm16, Unorm8, Unorm16};
+    let TexelFormat { component, count } = match texels {
+        Texels::Blocks(Block::Bc4) => return Some(DxgiFormat::BC4_UNorm),
+        Texels::Blocks(Block::Bc5) => return Some(DxgiFormat::BC5_UNorm),
+        Texels::Blocks(Block::Bc6h) => return Some(DxgiFormat::BC6H_UF16),
+        Texels::Blocks(Block::Bc7) => return Some(DxgiFormat::BC7_UNorm),
+        Texels::Plain(format) => format,
+    };
+    Some(match (component, count) {
+        (Unorm8, 1) => DxgiFormat::R8_UNorm,
+        (Snorm8, 1) => DxgiFormat::R8_SNorm,
+        (Unorm8, 2) => DxgiFormat::R8G8_UNorm,
+        (Snorm8, 2) => DxgiFormat::R8G8_SNorm,
+        (Unorm8, 4) => DxgiFormat::R8G8B8A8_UNorm,
+        (Snorm8, 4) => DxgiFormat::R8G8B8A8_SNorm,
+        (Unorm16, 1) => DxgiFormat::R16_UNorm,
+        (Snorm16, 1) => DxgiFormat::R16_SNorm,
+        (F16, 1) => DxgiFormat::R16_Float,
+        (Unorm16, 2) => DxgiFormat::R16G16_UNorm,
+        (Snorm16, 2) => DxgiFormat::R16G16_SNorm,
+        (F16, 2) => DxgiFormat::R16G16_Float,
+        (Unorm16, 4) => DxgiFormat::R16G16B16A16_UNorm,
+        (Snorm16, 4) => DxgiFormat::R16G16B16A16_SNorm,
+        (F16, 4) => DxgiFormat::R16G16B16A16_Float,
+        (F32, 1) => DxgiFormat::R32_Float,
+        (F32, 2) => DxgiFormat::R32G32_Float,
+        (F32, 4) => DxgiFormat::R32G32B32A32_Float,
+        _ => return None,
+    })
+}
+
+/// Writes a texture layer by layer, each with all its mip levels, the largest first.
+///
+/// The destination is untouched until [`close`](Self::close) and the placing of its result.
+#[derive(Debug)]
+pub struct DdsWriter {
+    file: Temporary,
+    left: u64,
+}
+
+impl DdsWriter {
+    /// Begins a texture of `rows` × `cols` texels, the top row first, with layers and mip levels.
+    ///
+    /// # Errors
+    /// An invalid format; sides, layers or levels out of range; a directory that cannot be written.
+    pub fn create(
+        path: &Path,
+        texels: Texels,
+        size: [usize; 2],
+        (layers, levels): (usize, usize),
+    ) -> Result<Self> {
+        let format = dxgi(texels).ok_or_else(|| {
+            Error::setting("texels", format!("{texels:?}"), "1, 2 or 4 components")
+        })?;
+        let side = |what: &str, n: usize| {
+            let found = || Error::setting(what, n.to_string(), "1 to 4294967295");
+            u32::try_from(n).ok().filter(|n| *n > 0).ok_or_else(found)
+        };
+        let (cols, rows) = (side("columns", size[0])?, side("rows", size[1])?);
+        let layers = side("layers", layers)?;
+        if !(1..=most_levels(size)).contains(&levels) {
+            let expected = format!("1 to {}", most_levels(size));
+            return Err(Error::setting("mip levels", levels.to_string(), expected));
+        }
+        let too_large = || {
+            let found = format!("{cols} × {rows} × {layers}");
+            Error::setting("texture", found, "rows and images below 2³² bytes")
+        };
+        // The header has the bytes of a row, or of the first image of blocks, in 32 bits.
+        let first = texels.image_bytes(size).filter(|n| u32::try_from(*n).is_ok());
+        first.ok_or_else(too_large)?;
+        let images = (0..levels).map(|level| texels.image_bytes(level_size(size, level)));
+        let left = images.sum::<Option<u64>>().and_then(|n| n.checked_mul(layers.into()));
+        let left = left.ok_or_else(too_large)?;
+        let header =
+            Header::new_dxgi(rows, cols, None, format, Some(levels as u32), Some(layers), None);
+        let unexpected =
+            |error: ddsfile::Error| Error::setting("texels", error.to_string(), "a DXGI format");
+        let header10 = Header10::new(
+            format,
+            false,
+            D3D10ResourceDimension::Texture2D,
+            layers,
+            AlphaMode::Custom,
+        );
+        let mut head = b"DDS ".to_vec();
+        header.map_err(unexpected)?.write(&mut head).map_err(unexpected)?;
+        header10.write(&mut head).map_err(unexpected)?;
+        let mut file = Temporary::create(path)?;
+        file.write(&head)?;
+        Ok(Self { file, left })
+    }
+
+    /// Appends images: of each layer all levels, rows from the top.
+    ///
+    /// # Errors
+    /// More than the texture holds; a write error.
+    pub fn write(&mut self, texels: &[u8]) -> Result<()> {
+        let found = || Error::setting("texels", "more bytes", format!("{} more", self.left));
+        self.left = self.left.checked_sub(texels.len() as u64).ok_or_else(found)?;
+        self.file.write(texels)
+    }
+
+    /// Ends the file, which waits beside its destination.
+    ///
+    /// # Errors
+    /// Fewer texels than the texture holds; a write error.
+    pub fn close(self) -> Result<Written> {
+        if self.left > 0 {
+            let found = format!("{} bytes too few", self.left);
+            return Err(Error::setting("texels", found, "all of them before the end"));
+        }
+        self.file.close()
+    }
+}

@@ -1,0 +1,117 @@
+//! Projected coordinate reference systems of the EPSG registry: their unit, and where true north is.
+
+use super::raster::metres_a_degree;
+use crate::georeference::{GeoKeys, Georeference};
+use proj4rs::{Proj, transform::transform};
+
+/// A smaller angle gets no note: a fifth of the sun's diameter.
+const NOTED_DEG: f64 = 0.1;
+/// Half the length of the line to grid north whose direction is measured. Its curvature cancels to second order.
+const HALF_LINE_M: f64 = 500.0;
+
+/// The system of a code, without a shift to another datum, and longitudes and latitudes on its ellipsoid.
+fn systems(code: u16) -> Option<[Proj; 2]> {
+    let text = crs_definitions::from_code(code)?.proj4;
+    // Other directions of axes are not those of a raster.
+    if text.contains("+proj=longlat") || text.contains("+axis") {
+        return None;
+    }
+    let with = |first: &str, is_kept: &dyn Fn(&str) -> bool| {
+        let terms = text.split_whitespace().filter(|term| is_kept(term));
+        let terms: Vec<&str> = std::iter::once(first).chain(terms).collect();
+        Proj::from_proj_string(&terms.join(" ")).ok()
+    };
+    let name = |term: &str| term.split('=').next().unwrap_or_default().to_owned();
+    let is_shift = |term: &str| ["+towgs84", "+nadgrids"].contains(&name(term).as_str());
+    let is_figure =
+        |term: &str| ["+datum", "+ellps", "+a", "+b", "+rf", "+pm"].contains(&name(term).as_str());
+    let projected = with("", &|term| !is_shift(term))?;
+    Some([projected, with("+proj=longlat", &is_figure)?])
+}
+
+/// Metres in the horizontal unit of a projected system.
+pub(super) fn unit_m(code: u16) -> Option<f64> {
+    let [projected, _] = systems(code)?;
+    Some(projected.to_meter()).filter(|unit| unit.is_finite() && *unit > 0.0)
+}
+
+/// The angle from true north to grid north, clockwise, at a position in the units of the system.
+fn convergence_deg(code: u16, [x, y]: [f64; 2]) -> Option<f64> {
+    let [projected, geographic] = systems(code)?;
+    let half = HALF_LINE_M / projected.to_meter();
+    let at = |y: f64| {
+        let mut point = (x, y, 0.0);
+        transform(&projected, &geographic, &mut point).ok()?;
+        Some([point.0.to_degrees(), point.1.to_degrees()])
+    };
+    let ([west, south], [east, north]) = (at(y - half)?, at(y + half)?);
+    let [a_longitude, a_latitude] = metres_a_degree((south + north) / 2.0);
+    // Across the 180th meridian, longitudes change sign.
+    let right = ((east - west + 540.0).rem_euclid(360.0) - 180.0) * a_longitude;
+    let angle = right.atan2((north - south) * a_latitude).to_degrees();
+    angle.is_finite().then_some(angle)
+}
+
+/// Where grid north is not true north, in the middle of a field.
+pub(super) fn north_note(at: &Georeference, rows: usize, cols: usize) -> Option<String> {
+    let [west, south, east, north] = at.extent(rows, cols);
+    let code = projected_code(&at.keys)?;
+    let angle = convergence_deg(code, [(west + east) / 2.0, (south + north) / 2.0])?;
+    let (side, change) = if angle > 0.0 { ("east", "subtract") } else { ("west", "add") };
+    let size = angle.abs();
+    (size >= NOTED_DEG).then(|| {
+        format!(
+            "azimuths are from grid north, {size:.2} degrees {side} of true north at the centre: \
+             {change} {size:.2} for true azimuths"
+        )
+    })
+}
+
+fn projected_code(keys: &GeoKeys) -> Option<u16> {
+    keys.epsg().filter(|code| keys.entries.iter().any(|e| e[0] == 3072 && e[3] == *code))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn units_follow_from_codes() {
+        // New York Long Island, US survey feet and metres; North Dakota North, international feet.
+        let survey = 1200.0 / 3937.0;
+        for (code, unit) in
+            [(2263, survey), (32118, 1.0), (2265, 0.3048), (32618, 1.0), (2154, 1.0)]
+        {
+            assert!((unit_m(code).unwrap() / unit - 1.0).abs() < 1e-12, "{code}");
+        }
+        assert_eq!([unit_m(4326), unit_m(1)], [None, None]);
+    }
+
+    /// Lambert's conic: n times the longitude from the central meridian (Snyder 1987, eq. 15-4).
+    #[test]
+    fn a_lambert_conic_turns_by_n_times_the_longitude() {
+        // Lambert-93: n of the parallels 44 and 49 degrees on GRS 80 is 0.7256077650 (IGN, NTG_71); PROJ puts this
+        // position at 5.56464179202727 degrees east, and the central meridian is 3 degrees east.
+        let expected = 0.725_607_765 * (5.564_641_792_027_27 - 3.0);
+        let found = convergence_deg(2154, [900_000.0, 6_500_000.0]).unwrap();
+        // The line of 1 km deviates to third order: (500 m / 6371 km)² of the angle, 6e-9.
+        assert!((found - expected).abs() < 1e-5, "{found} for {expected}");
+        assert!(convergence_deg(2154, [700_000.0, 6_500_000.0]).unwrap().abs() < 1e-9);
+    }
+
+    /// The transverse Mercator of a sphere has tan γ = tan Δλ sin φ: the ellipsoid's differs by less
+    /// than e² times Δλ² of it.
+    #[test]
+    fn utm_turns_as_the_closed_form() {
+        // PROJ puts the position at these degrees.
+        let (longitude, latitude) = (-72.495_936_223_768_f64, 44.225_784_263_498_1_f64);
+        let away = (longitude + 75.0).to_radians();
+        let expected = (away.tan() * latitude.to_radians().sin()).atan().to_degrees();
+        let found = convergence_deg(32618, [700_000.0, 4_900_000.0]).unwrap();
+        let bound = 0.0067 * away * away * expected;
+        assert!((found - expected).abs() < bound + 1e-5, "{found} for {expected}");
+        // South of the equator the sign changes.
+        let found = convergence_deg(32718, [700_000.0, 5_100_000.0]).unwrap();
+        assert!((found + expected).abs() < bound + 1e-5, "{found}");
+    }
+}

@@ -1,0 +1,198 @@
+//! A decoded grid: values, cells and position, before they become a height field.
+
+use super::HeightOptions;
+use crate::georeference::Georeference;
+use ridgelight::{Error, Result};
+use std::path::Path;
+
+/// A decoded grid, before interpretation.
+pub(crate) struct Raster {
+    pub rows: usize,
+    pub cols: usize,
+    /// Row-major, row 0 in the north, in the file's unit.
+    pub values: Vec<f64>,
+    /// Whether the file holds 16- or 32-bit floats. A no-data value printed in decimal is then
+    /// rounded to that type before it is compared.
+    pub single: bool,
+    pub cell: Cell,
+    /// Metres in the file's unit of height.
+    pub unit_m: f64,
+    /// A height is the value times the first, plus the second.
+    pub scale: [f64; 2],
+    pub nodata: Option<f64>,
+    /// The file's own mask of voids, if any.
+    pub voids: Option<Vec<bool>>,
+    /// Where the grid lies, if the file states it.
+    pub georeference: Option<Georeference>,
+    /// Whether the values are whole numbers of 8 bits.
+    pub is_8_bit: bool,
+    /// What the reader chose.
+    pub notes: Vec<String>,
+}
+
+impl Raster {
+    /// Values without further information.
+    pub fn bare(rows: usize, cols: usize, values: Vec<f64>) -> Self {
+        Self {
+            rows,
+            cols,
+            values,
+            single: false,
+            cell: Cell::Unknown,
+            unit_m: 1.0,
+            scale: [1.0, 0.0],
+            nodata: None,
+            voids: None,
+            georeference: None,
+            is_8_bit: false,
+            notes: Vec::new(),
+        }
+    }
+}
+
+impl Raster {
+    /// Marks voids and converts heights to metres, with notes on what was converted.
+    pub fn interpret(&mut self, options: &HeightOptions) {
+        if let Some(nodata) = options.nodata.or(self.nodata.take()) {
+            let single = self.single;
+            let marks = self.voids.get_or_insert_with(|| vec![false; self.values.len()]);
+            for (mark, value) in marks.iter_mut().zip(&self.values) {
+                *mark |= *value == nodata
+                    || value.is_nan() && nodata.is_nan()
+                    || single && nodata.is_finite() && *value as f32 == nodata as f32;
+            }
+        }
+        let (factor, [scale, offset]) = (self.unit_m * options.z_scale, self.scale);
+        if factor != 1.0 || self.scale != [1.0, 0.0] {
+            self.values.iter_mut().for_each(|v| *v = factor * (*v * scale + offset));
+        }
+        if self.unit_m != 1.0 {
+            let unit_m = self.unit_m;
+            self.notes.push(format!("heights are in units of {unit_m} m and become metres"));
+        }
+        if self.is_8_bit {
+            let note = "heights are whole numbers of 8 bits, as of a picture: slopes have steps";
+            self.notes.push(note.to_owned());
+        }
+    }
+
+    /// What is assumed of the cells.
+    pub fn cell_note(&self) -> Option<String> {
+        match (self.cell, self.cell.degrees()) {
+            (Cell::Unknown, _) => {
+                Some("the file has no cell size: `cell_m` 1 is assumed".to_owned())
+            }
+            (_, Some((latitude, cell))) => {
+                let [east, north] = metres_a_degree(latitude);
+                Some(format!(
+                    "cells of {:.1} x {:.1} m, from degrees or Mercator metres at latitude {latitude:.2}",
+                    cell[0] * east,
+                    cell[1] * north
+                ))
+            }
+            _ => None,
+        }
+    }
+}
+
+/// The cell size in a file.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Cell {
+    /// Not in the file.
+    Unknown,
+    /// Columns and rows, metres.
+    Metres([f64; 2]),
+    /// Columns and rows, degrees, on a field whose centre is at this latitude (degrees).
+    Degrees { cell: [f64; 2], latitude: f64 },
+    /// Columns and rows in the metres of Web Mercator, on a field whose centre has this northing.
+    Mercator { cell: [f64; 2], northing_m: f64 },
+}
+
+/// The radius of Web Mercator's sphere.
+const EQUATOR_M: f64 = 6_378_137.0;
+
+impl Cell {
+    /// The same cells in a field whose centre has this northing, in the file's unit.
+    pub fn about(self, northing: f64) -> Self {
+        match self {
+            Self::Degrees { cell, .. } => Self::Degrees { cell, latitude: northing },
+            Self::Mercator { cell, .. } => Self::Mercator { cell, northing_m: northing },
+            other => other,
+        }
+    }
+
+    /// The latitude of the centre in degrees, and the cells in degrees.
+    fn degrees(self) -> Option<(f64, [f64; 2])> {
+        match self {
+            Self::Degrees { cell, latitude } => Some((latitude, cell)),
+            // y is R asinh(tan φ), so a step of y is one of φ times R / cos φ.
+            Self::Mercator { cell, northing_m } => {
+                let latitude = (northing_m / EQUATOR_M).sinh().atan();
+                let degrees = (1.0 / EQUATOR_M).to_degrees();
+                let cell = [cell[0] * degrees, cell[1] * degrees * latitude.cos()];
+                Some((latitude.to_degrees(), cell))
+            }
+            Self::Unknown | Self::Metres(_) => None,
+        }
+    }
+
+    /// Metres, 1 where unknown.
+    pub fn metres(self, path: &Path) -> Result<[f64; 2]> {
+        match (self, self.degrees()) {
+            (Self::Metres(cell), _) => Ok(cell),
+            (_, Some((latitude, cell))) if (-90.0..=90.0).contains(&latitude) => {
+                let [east, north] = metres_a_degree(latitude);
+                Ok([cell[0] * east, cell[1] * north])
+            }
+            (_, Some((latitude, _))) => {
+                let found = format!("latitude {latitude:?} in the field's middle");
+                Err(Error::file(path, "georeference", found, "a latitude within ±90°"))
+            }
+            (_, None) => Ok([1.0, 1.0]),
+        }
+    }
+}
+
+/// Metres in a degree of longitude and in a degree of latitude at `latitude` degrees.
+///
+/// The Fourier series of the radii of curvature of the WGS84 ellipsoid, as printed by the US
+/// National Geospatial-Intelligence Agency; within 0.1 m per degree of the closed form (tested).
+pub(crate) fn metres_a_degree(latitude: f64) -> [f64; 2] {
+    let phi = latitude.to_radians();
+    let east = 111_412.84 * phi.cos() - 93.5 * (3.0 * phi).cos() + 0.118 * (5.0 * phi).cos();
+    let north = 111_132.92 - 559.82 * (2.0 * phi).cos() + 1.175 * (4.0 * phi).cos()
+        - 0.0023 * (6.0 * phi).cos();
+    [east, north]
+}
+
+/// Whether a header without a unit is in degrees: every corner is a longitude and latitude (±360,
+/// ±90) *and* the cell is below 0.1. A projected grid with so small a cell at the origin of its
+/// projection would be mistaken for degrees; the caller can override the cell size.
+pub(crate) fn looks_like_degrees(x: [f64; 2], y: [f64; 2], cell: [f64; 2]) -> bool {
+    x.iter().all(|x| x.abs() <= 360.0)
+        && y.iter().all(|y| y.abs() <= 90.0)
+        && cell.iter().all(|c| *c > 0.0 && *c < 0.1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_degree_follows_the_ellipsoid() {
+        // WGS84: a = 6378137 m, 1/f = 298.257223563. Meridian radius a(1-e²)/(1-e² sin²)^1.5,
+        // parallel radius a cos/(1-e² sin²)^0.5.
+        let (a, f) = (6_378_137.0_f64, 1.0 / 298.257_223_563_f64);
+        let e2 = f * (2.0 - f);
+        for latitude in [-90.0, -60.0, -30.0, 0.0, 10.0, 44.5, 45.0, 60.0, 80.0, 89.9] {
+            let phi = f64::to_radians(latitude);
+            let w = 1.0 - e2 * phi.sin().powi(2);
+            let degree = std::f64::consts::PI / 180.0;
+            let expected =
+                [a * phi.cos() / w.sqrt() * degree, a * (1.0 - e2) / w.powf(1.5) * degree];
+            for (got, expected) in metres_a_degree(latitude).iter().zip(expected) {
+                assert!((got - expected).abs() < 0.1, "{latitude}: {got} for {expected}");
+            }
+        }
+    }
+}
