@@ -39,7 +39,7 @@ const float HALF_CODE = 0.21223;
 const float SHOULDER = 0.8;
 const float REST = 1.0 - SHOULDER;
 
-// The curve of pictures says where to look; the steps decide, whatever their curve. Smooth maps need no exact codes.
+// The tone curve gives a first guess, which the steps correct. Smooth maps keep the guess, as they need no exact codes.
 uint code(float radiance, float exposure) {
     float light = max(radiance * exposure, 0.0);
     light = light <= SHOULDER ? light : 1.0 - REST * REST / (light - SHOULDER + REST);

@@ -29,7 +29,7 @@ layout(push_constant) uniform PreviewGatherPush {
 
 #include "view/preview.glsl"
 
-// Below this cosine the sun does not say whether it reaches the ground.
+// The least cosine to the sun to divide by.
 const float GRAZING = 1e-3;
 // Albedo below which light is not divided by it.
 const float DARK = 1e-3;
@@ -48,7 +48,7 @@ void main() {
     vec3 albedo = ALBEDO_IS_MAP ? texelFetch(coarse_albedo, at, 0).rgb : vec3(1.0);
     albedo = max(albedo, vec3(DARK));
     float facing = max(dot(normal, sun.xyz), GRAZING);
-    // The sun's light is its share times its colour, the albedo and the cosine: any channel that it has tells the share.
+    // of_sun = share * lit in every channel: the share follows from any channel where lit is not 0.
     vec3 lit = albedo * most.rgb * facing;
     vec3 shares = mix(of_sun / lit, vec3(0.0), lessThanEqual(lit, vec3(0.0)));
     float share = clamp(max(shares.r, max(shares.g, shares.b)), 0.0, 1.0);

@@ -75,5 +75,5 @@ fn check_sun(lit: &Plan) -> Result<()> {
     let found = lit.outputs().any(|(_, output)| output.name.starts_with("direct.sun"));
     found
         .then_some(())
-        .ok_or_else(|| Error::setting("coarse plan", "no image of the sun", "light layers"))
+        .ok_or_else(|| Error::setting("coarse plan", "no image of the sun", "`light_layers`"))
 }

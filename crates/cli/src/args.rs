@@ -384,8 +384,8 @@ pub struct DevicesArgs {
 pub struct Input {
     /// Height field: PNG, EXR, TIFF or GeoTIFF, SRTM .hgt, ESRI .asc, NPY, NPZ
     ///
-    /// Also packed, as .gz or .zip. Several files become one field: each is placed by its position. They need the same
-    /// coordinate reference system and cells. Where they overlap, the first file counts.
+    /// A file can be packed as .gz or .zip. Several files are joined to one field by their positions. They need the same
+    /// coordinate reference system and cell size. Where they overlap, the first file with a height is used.
     #[arg(value_name = "INPUT", required = true, num_args = 1.., help_heading = "Input")]
     pub path: Vec<PathBuf>,
 }

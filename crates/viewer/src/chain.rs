@@ -87,7 +87,7 @@ impl Chain {
         let modes =
             unsafe { loader.get_physical_device_surface_present_modes(physical_device, surface) };
         let modes = modes.map_err(failed("asking a window how it presents"))?;
-        // FIFO, which every window has, makes pictures wait for a refresh: slow ones would lose one more.
+        // Every surface supports FIFO, where pictures wait for a refresh. A slow one of a CPU device would wait for one more.
         let mailbox = vk::PresentModeKHR::MAILBOX;
         let is_slow = gpu.report().limits.is_cpu;
         let is_better = is_slow && modes.contains(&mailbox);

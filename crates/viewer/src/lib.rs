@@ -258,15 +258,16 @@ impl Screen {
         let device = &self.gpu.host().device;
         for slot in self.slots.iter().filter(|slot| slot.is_in_flight) {
             // SAFETY: the fence is the slot's.
-            if !unsafe { device.get_fence_status(slot.done) }.map_err(failed("asking a frame"))? {
+            if !unsafe { device.get_fence_status(slot.done) }.map_err(failed("polling a frame"))? {
                 return Ok(false);
             }
         }
         Ok(true)
     }
 
-    /// Lights a frame without a picture, and does not wait. The first inputs are the frame's own; `borrowed` are the last
-    /// ones, images of other frames. Returns the slot that holds its GPU times once
+    /// Computes the light of a frame without presenting it. Waits only if the slot's previous work still runs. The first
+    /// inputs are the frame's own; `borrowed` are the last ones, images of other frames. Returns the slot that holds its GPU
+    /// times once
     /// [`is_idle`](Self::is_idle) is true: `Renderer::timings` of the frame's renderer.
     ///
     /// # Errors

@@ -62,7 +62,7 @@ const ENTRIES: [Entry; 12] = [
     Entry {
         name: "city",
         title: "City roofs, sky view",
-        about: "Synthetic. A uniform sky: each roof and street has the share of the sky that it sees.",
+        about: "Synthetic. A uniform sky: each roof and street has the share of the sky that is visible from it.",
         made: Some(("city", 640)),
         command: "render FIELD --sky 1 --tint none",
         shown: Shown::Picture,

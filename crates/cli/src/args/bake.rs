@@ -48,10 +48,10 @@ pub struct BakeArgs {
     /// For kinds from horizons, and for scatter. Adds a third to the size.
     #[arg(long, help_heading = "Output", hide_short_help = true)]
     pub mips: bool,
-    /// Axes of bent-normal in textures and pictures: opengl has y to the first row (Unity, Godot), directx y to the last row
-    /// (Unreal) [default: opengl]
+    /// Axes of bent-normal in textures and pictures: +y points to the first row with opengl (Unity, Godot), to the last row
+    /// with directx (Unreal) [default: opengl]
     ///
-    /// x is east and z up in both. exr, npy and tif always have y to the first row, which is north.
+    /// In both, +x points east and +z up. In exr, npy and tif, +y always points to the first row, which is north.
     #[arg(long, value_name = "WORD", help_heading = "Output", hide_short_help = true)]
     pub normals: Option<Normals>,
     /// Directions of ellipse, curved-ellipse, visible-points and scattered light, 4 to 4096 [default: 256]

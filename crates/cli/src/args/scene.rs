@@ -166,9 +166,9 @@ pub struct FieldArgs {
         help_heading = "Input"
     )]
     pub nodata: Option<f64>,
-    /// Band of a TIFF that holds the heights, from 1. Default 1
+    /// TIFF band that holds the heights, counted from 1. Default 1
     ///
-    /// Also the plane of an NPY with three dimensions, where it has no default.
+    /// For a 3-D NPY: the plane, counted from 1, without a default.
     #[arg(
         long,
         value_name = "N",
@@ -180,7 +180,7 @@ pub struct FieldArgs {
     pub band: Option<u32>,
     /// Cut the field to a box in the coordinates of its reference system
     ///
-    /// Cells that the box touches are kept. Outputs lie where the part lies.
+    /// Keeps the cells that the box touches. Outputs have the position of the cut field.
     #[arg(
         long,
         value_name = "XMIN,YMIN,XMAX,YMAX",

@@ -18,7 +18,7 @@ use crate::setup::terminal::digits;
 
 /// A trial has one in so many directions, paths, and pairs of light and view.
 const PART: usize = 16;
-/// Azimuths take less time than the start of a frame; a trial has one in so many.
+/// A trial has one in so many azimuths. With fewer, the start of a frame would take more time than they do.
 const AZIMUTHS_PART: u32 = 4;
 
 /// The expected time of a bake.

@@ -66,7 +66,7 @@ impl Normals {
         };
         serde_json::json!({
             "convention": convention, "x": "east, to the last column", "y": y, "z": "up, out of the ground",
-            "of": "ktx2 and png, before the decoder's flip; other formats hold x east, y north, z up",
+            "of": "ktx2, dds and png, before the decoder is applied; other formats hold x east, y north, z up",
         })
     }
 }

@@ -48,7 +48,7 @@ pub fn help() -> String {
         );
     }
     text += "\n\
-Each .ktx2 and .dds has one mip level without --mips. It is an array where a map has several layers, such as one per azimuth or four coefficients. \
+Each .ktx2 and .dds has one mip level, or all with --mips. It is an array where a map has several layers, such as one per azimuth or four coefficients. \
 Its first row is north. --method auto is sweep here; brute-force is exact in every azimuth, and its time grows with the cube of the side.\n\n\
 With --specular, the kinds brdf, brdf-factors, brdf-harmonics and btf reflect each light at the triangles. Indirect light \
 towards each view reuses the paths of the light except for their last step. --plan prints the number of rays; --bounces 0 \

@@ -171,7 +171,7 @@ impl Panel {
             if self.slider(ui, "exposure", slider) {
                 self.changes.push(Change::Exposure(exposure));
             }
-            if ui.small_button("auto").on_hover_text("Exposure of the picture (A)").clicked() {
+            if ui.small_button("auto").on_hover_text("Automatic exposure (A)").clicked() {
                 self.changes.push(Change::Key("a"));
             }
         });

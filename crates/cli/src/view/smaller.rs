@@ -152,8 +152,8 @@ impl Blocks {
         }
     }
 
-    /// Where the coarser grid's origin lies in the full one: the centre of its south-western block, whose last row of
-    /// blocks may be cut.
+    /// Position of the coarser grid's origin in the full one: the centre of its south-western block, as if the field's edge
+    /// did not cut the block.
     fn origin_m(&self, field: &HeightField) -> [f64; 2] {
         let [cell_x, cell_y] = field.cell_m();
         let (side, [_, rows]) = (self.side as f64, self.size());

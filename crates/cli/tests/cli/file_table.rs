@@ -20,7 +20,7 @@ const ROWS: [Row; 7] = [
         file: "`.tif`, `.tiff`",
         example: "utm.tif",
         heights: "a band of 8- to 64-bit integers or 16- to 64-bit floats, with GDAL's scale and offset; strips or tiles; \
-                  none, LZW, DEFLATE, Zstandard or PackBits, any predictor; BigTIFF",
+                  uncompressed, LZW, DEFLATE, Zstandard or PackBits, any predictor; BigTIFF",
         nodata: "GDAL's tag",
         unit: "vertical unit, or feet by vertical EPSG code",
         by_gdal: "values, bands, position, feet, grid north",

@@ -2,7 +2,7 @@
 
 use ridgelight::scene::{HeightField, Sun};
 
-/// As the shader's: below this cosine the sun does not say whether it reaches the ground.
+/// As in the shader: the least cosine to the sun to divide by.
 const GRAZING: f64 = 1e-3;
 /// As the shader's: albedo below which light is not divided by it.
 const DARK: f64 = 1e-3;

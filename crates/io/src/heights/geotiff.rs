@@ -49,7 +49,7 @@ struct Grid {
     origin: Option<[f64; 2]>,
 }
 
-/// The tags of a file, with scale and offset of a band, which count from 0.
+/// The tags of a file, with scale and offset of a band; bands count from 0.
 pub(crate) fn read(
     path: &Path,
     tiff: &mut Tiff,

@@ -127,7 +127,7 @@ fn unpacked(compressed: &[u8], most: usize) -> Result<Vec<u8>, String> {
         match part.status {
             Ok(LzwStatus::Ok) if part.consumed_in + part.consumed_out > 0 => {}
             Ok(_) => break,
-            Err(_) => return Err("a code that LZW does not have there".into()),
+            Err(_) => return Err("an invalid LZW code".into()),
         }
     }
     bytes.truncate(written);

@@ -44,7 +44,8 @@ pub(super) fn joined(mut tiles: Vec<Tile>) -> Result<Raster> {
     let held: usize = tiles.iter().map(|(_, tile)| tile.values.len()).sum();
     if (rows * cols) as u64 > SPREAD * held as u64 {
         let found = format!("{cols} x {rows} grid points, {held} of them in files");
-        return Err(Error::file(&first, place, found, "files that lie near each other"));
+        let expected = format!("at most {SPREAD} times as many grid points as the files hold");
+        return Err(Error::file(&first, place, found, expected));
     }
     let mut whole = Raster::bare(rows, cols, open::zeros(&first, rows * cols)?);
     let mut sums = Sums::default();
@@ -80,7 +81,7 @@ pub(super) fn joined(mut tiles: Vec<Tile>) -> Result<Raster> {
     whole.notes.extend(sums.note());
     if gaps > 0 {
         let share = 100.0 * gaps as f64 / is_held.len() as f64;
-        whole.notes.push(format!("{share:.3} % of the files' common extent is in no file: voids"));
+        whole.notes.push(format!("{share:.3} % of the joined extent is in no file: voids there"));
     }
     whole.voids = Some(voids);
     whole.cell = cell;

@@ -62,7 +62,7 @@ pub(super) fn north_note(at: &Georeference, rows: usize, cols: usize) -> Option<
     (size >= NOTED_DEG).then(|| {
         format!(
             "azimuths are from grid north, {size:.2} degrees {side} of true north at the centre: \
-             {change} {size:.2} for true azimuths"
+             to enter a true azimuth, {change} {size:.2}"
         )
     })
 }

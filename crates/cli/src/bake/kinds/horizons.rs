@@ -59,8 +59,7 @@ pub fn sky_view(job: &Job, _: &Wanted) -> Result<Map> {
     Ok(Map { roundings: job.quality.azimuths, ..map })
 }
 
-/// Plans the sky-view layer of `render`. Reading every horizon back to sum it here took four times
-/// as long at 1024 × 1024.
+/// Plans the sky-view layer of `render`: summed on the device, as reading every horizon back takes longer.
 pub fn sky_view_plan(job: &Job, limits: &Limits) -> Result<Plan> {
     // Its only input is the heights: no environment, no map of albedo.
     let surface = Surface { border: job.border(), ..Surface::default() };

@@ -129,8 +129,7 @@ impl MapFiles<'_> {
 mod tests {
     use super::*;
 
-    /// A level of an odd side averages shares of texels: of 1, 2, 3 and halves, (1 + 2/2) / 1.5 and (2/2 + 3) / 1.5 is not
-    /// it, but 3 to 1 is their mean; means stay.
+    /// Each texel is the mean of the texels that it covers, weighted by the covered share: 3 texels to 1, 4 to 2, 5 to 2.
     #[test]
     fn levels_are_means() {
         assert_eq!(reduced(&[1.0, 2.0, 3.0], [3, 1], [1, 1]), [2.0]);

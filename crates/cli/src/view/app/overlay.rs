@@ -72,8 +72,8 @@ impl App<'_> {
         Ok(true)
     }
 
-    /// egui takes the pointer's last place in a pass for that of a button's event: passes before and after the event
-    /// keep a fast drag where it began.
+    /// egui takes the pointer's last position in a pass as the position of a button event. A pass before the event and one
+    /// after it let a fast drag begin where the button went down.
     fn hear_button(&mut self, event: &WindowEvent) -> Result<bool> {
         self.run_panel()?;
         if let Some(OpenWindow { gui, window, .. }) = &mut self.shown {

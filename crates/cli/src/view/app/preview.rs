@@ -18,8 +18,8 @@ use super::drawing::{refilled, replan, whole};
 use crate::render;
 use crate::setup::total_ns;
 
-/// GPU time of a preview's coarse light, and of the fine slopes that it is put on: with drawing and copies 15 pictures a
-/// second.
+/// Intended GPU times of a preview's coarse light and of its shading on the finer grid: with drawing and copies, 15 pictures
+/// per second.
 const COARSE_MS: f64 = 14.0;
 const FINE_MS: f64 = 28.0;
 /// The part of a coarse light's time that does not grow with its grid: tables of the sky, starts of passes.
@@ -68,7 +68,7 @@ struct Level {
     lit: Option<Frame>,
     /// The field without movement, in movement.
     moving: Option<Moving>,
-    /// How often it was lit: the first time says little about the next.
+    /// How often it was lit. The time of the first run is not measured, as it does not predict later ones.
     runs: u32,
 }
 

@@ -56,7 +56,7 @@ impl App<'_> {
         self.due = self.due.max(1);
         let Some(shown) = &self.shown else { return };
         if self.state.has_other_heights() {
-            let message = "the heights are no longer the file's: save the scene instead";
+            let message = "brushes or motion changed the heights: save the scene (S) instead";
             self.state.message = Some(message.to_owned());
             return;
         }
@@ -74,7 +74,7 @@ impl App<'_> {
             Ok(()) => "copied the command line",
             Err(_) => {
                 crate::say!("{line}");
-                "no clipboard here: printed the command line"
+                "no clipboard: the command line is on standard output"
             }
         };
         self.state.message = Some(message.to_owned());

@@ -16,7 +16,7 @@ pub const KEYS: [&str; 21] = [
     "I J K L           move either; middle drag",
     "+ - or wheel      nearer, farther     Home    all of it",
     "Shift+arrows      the sun (there is one from then on); right drag",
-    "E D  A            brighter, darker; exposure of the picture",
+    "E D  A            brighter, darker; automatic exposure",
     "C                 without shadows | ours | path-traced reference",
     "R                 error against the reference, with C",
     "M  B              method, bounces",

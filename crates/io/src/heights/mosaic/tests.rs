@@ -64,7 +64,7 @@ fn gaps_and_differences_are_noted() {
     assert_eq!((gap.rows, gap.cols), (4, 5));
     assert_eq!(voids.iter().filter(|v| **v).count(), 12);
     assert!(!voids[0] && voids[2] && !voids[13]);
-    assert_eq!(gap.notes, ["60.000 % of the files' common extent is in no file: voids"]);
+    assert_eq!(gap.notes, ["60.000 % of the joined extent is in no file: voids there"]);
 
     let mut other = tile("b", [0, 1], [2, 2]);
     other.1.values[0] = 4.0;
