@@ -76,6 +76,8 @@ struct OpenWindow {
     is_stale: bool,
     /// The last light that could be drawn.
     good: Option<Light>,
+    /// Whether that light is being recomputed after a refusal.
+    has_fallen_back: bool,
     gui: Gui,
     /// Places of the panel's parts by name, units of egui.
     places: Vec<(String, egui::Rect)>,
@@ -150,6 +152,7 @@ impl<'a> App<'a> {
             lit: None,
             is_stale: true,
             good: None,
+            has_fallen_back: false,
             gui: Gui::new(&window),
             places: Vec::new(),
             preview: Preview::new(limits.is_cpu),

@@ -28,21 +28,15 @@ impl App<'_> {
         if wish != Wish::Nothing {
             self.asked.get_or_insert_with(Instant::now);
         }
-        let uses_preview = self.uses_preview();
         match wish {
             Wish::Nothing => {}
             Wish::Show => self.due = self.due.max(1),
             Wish::Heights => self.due = 3,
             Wish::Light => {
                 if let Some(shown) = &mut self.shown {
-                    // A large field takes long to plan; where it cannot be, drawing falls back.
-                    let planned = if uses_preview {
-                        Ok(())
-                    } else {
-                        self.state.plan(&shown.limits).map(|_| ())
-                    };
-                    match planned {
-                        Ok(()) => shown.is_stale = true,
+                    // Also with previews: their coarse plan accepts settings that the full one refuses.
+                    match self.state.plan(&shown.limits) {
+                        Ok(_) => (shown.is_stale, shown.has_fallen_back) = (true, false),
                         Err(why) => self.state.go_back(before, why),
                     }
                 }
@@ -118,7 +112,7 @@ impl App<'_> {
                 }
             }
             Ok(true) => {
-                shown.good = Some(self.state.light());
+                (shown.good, shown.has_fallen_back) = (Some(self.state.light()), false);
                 self.due = self.due.max(1);
             }
             Err(why) => return self.fall_back(why),
@@ -148,6 +142,8 @@ impl App<'_> {
                 if let Err(why) = preview.restart(screen, &self.state, limits, change) {
                     return self.fall_back(why).map(|()| None);
                 }
+                // The full light of later settings may be refused before any has been complete.
+                shown.good.get_or_insert_with(|| self.state.light());
                 shown.is_stale = false;
             }
         } else {
@@ -190,12 +186,14 @@ impl App<'_> {
     }
 
     /// Handles a refusal that the plan did not predict: returns to the last light that could be
-    /// drawn and recomputes it, once.
+    /// drawn and recomputes it. A second refusal before any light is complete is an error.
     fn fall_back(&mut self, why: Error) -> Result<()> {
         let Some(shown) = &mut self.shown else { return Err(why) };
         // The comparison pictures restart too.
         let freed = shown.compare.take().map_or(Ok(()), |old| old.end(&mut shown.screen));
-        let (Some(good), Ok(())) = (shown.good.take(), freed) else { return Err(why) };
+        let is_again = std::mem::replace(&mut shown.has_fallen_back, true);
+        let good = shown.good.clone().filter(|_| !is_again);
+        let (Some(good), Ok(())) = (good, freed) else { return Err(why) };
         self.state.go_back(good, why);
         shown.is_stale = true;
         self.due = self.due.max(1);
@@ -410,8 +408,14 @@ impl OpenWindow {
         }
         self.last_edit = edit.or(self.last_edit);
         self.stated(std::mem::take(&mut done.timings[at_ours]));
-        if !is_preview && std::mem::take(&mut self.is_stale) && !state.is_moving() {
-            self.good = Some(state.light());
+        if state.is_moving() {
+            self.has_fallen_back = false;
+        }
+        if !is_preview && std::mem::take(&mut self.is_stale) {
+            self.has_fallen_back = false;
+            if !state.is_moving() {
+                self.good = Some(state.light());
+            }
         }
         Ok(Some((done.pixels.unwrap_or_default(), done.is_taken)))
     }
