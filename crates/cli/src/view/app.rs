@@ -59,6 +59,8 @@ pub struct App<'a> {
     patience: Duration,
     /// Whether slow light is previewed; scripts ask for it, as their pictures must not depend on time.
     previews: bool,
+    /// Whether a picture is to be saved once the full light is complete.
+    saves_picture: bool,
     /// The clipboard, once used: it serves other programs as long as this one runs.
     clipboard: Option<arboard::Clipboard>,
     /// When the first input came that no submitted picture shows.
@@ -102,6 +104,7 @@ impl<'a> App<'a> {
             state,
             shown: None,
             previews: steps.is_none(),
+            saves_picture: false,
             clipboard: None,
             asked: None,
             answering: None,

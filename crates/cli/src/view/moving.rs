@@ -47,9 +47,28 @@ impl Moving {
         Self { kind, still, height_m, frames: 0 }
     }
 
-    /// The field one frame later.
-    pub fn next(&mut self) -> Result<HeightField> {
+    /// The same movement over another grid of the field.
+    pub fn over_other(&self, still: HeightField) -> Self {
+        Self { still, ..*self }
+    }
+
+    /// Moves on by one frame.
+    pub fn step(&mut self) {
         self.frames += 1;
+    }
+
+    /// Moves to another's frame.
+    pub fn follow(&mut self, other: &Self) {
+        self.frames = other.frames;
+    }
+
+    /// The field without movement.
+    pub fn still(&self) -> &HeightField {
+        &self.still
+    }
+
+    /// The field at the current frame.
+    pub fn field(&self) -> Result<HeightField> {
         let seconds = f64::from(self.frames) * FRAME_S;
         let field = &self.still;
         let (cols, [cell_x, cell_y]) = (field.cols(), field.cell_m());
@@ -117,7 +136,8 @@ mod tests {
         let mut moving = Moving::over(still.clone(), Kind::Ridge);
         let mut field = still.clone();
         for _ in 0..90 {
-            field = moving.next().unwrap();
+            moving.step();
+            field = moving.field().unwrap();
         }
         let heights: Vec<f64> =
             field.heights_m().iter().map(|h| f64::from(*h) + field.base_m() - 5.0).collect();

@@ -7,9 +7,11 @@ mod painting;
 mod settings;
 mod viewpoint;
 
+use std::borrow::Cow;
+
 use ridgelight::plan::{self, Limits, Map, Picture, Plan, Rectangle, View};
 use ridgelight::scene::Tone;
-use ridgelight::scene::{Camera, Lights, Quality, Scene};
+use ridgelight::scene::{Camera, HeightField, Lights, Quality, Scene};
 use ridgelight::{Error, Result};
 
 use super::brush::{Action, Brush};
@@ -155,9 +157,9 @@ impl State {
         self.viewpoint.camera.is_some()
     }
 
-    /// What moves.
-    pub fn moving_kind(&self) -> Option<Kind> {
-        self.moving.as_ref().map(|moving| moving.kind)
+    /// The movement, if there is one.
+    pub fn moving(&self) -> Option<&Moving> {
+        self.moving.as_ref()
     }
 
     /// Whether heights differ from the file's.
@@ -229,12 +231,24 @@ impl State {
         plan::picture(&self.scene, &self.quality, limits, wanted)
     }
 
-    /// The field of the next frame, if it moves.
-    pub fn step(&mut self) -> Result<()> {
+    /// Moves on by one frame, if the field moves. With `has_heights` the scene takes its heights; a preview moves its own
+    /// grids.
+    pub fn step(&mut self, has_heights: bool) -> Result<()> {
         if let Some(moving) = &mut self.moving {
-            self.scene.field = moving.next()?;
+            moving.step();
+            if has_heights {
+                self.scene.field = moving.field()?;
+            }
         }
         Ok(())
+    }
+
+    /// The field as it is shown, on its full grid.
+    pub fn field_shown(&self) -> Result<Cow<'_, HeightField>> {
+        match &self.moving {
+            Some(moving) => moving.field().map(Cow::Owned),
+            None => Ok(Cow::Borrowed(&self.scene.field)),
+        }
     }
 
     /// The map section in a picture of a size.

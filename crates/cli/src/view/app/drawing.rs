@@ -43,7 +43,7 @@ impl App<'_> {
                 self.due = 3;
             }
             Wish::Error => self.find_error(),
-            Wish::Picture => self.save_picture(None)?,
+            Wish::Picture => self.request_picture()?,
             Wish::Scene => self.save_scene(None)?,
             Wish::Copy => self.copy_command(),
             Wish::End => return Ok(false),
@@ -114,6 +114,7 @@ impl App<'_> {
             Ok(true) => {
                 (shown.good, shown.has_fallen_back) = (Some(self.state.light()), false);
                 self.due = self.due.max(1);
+                return self.save_requested();
             }
             Err(why) => return self.fall_back(why),
         }
@@ -130,9 +131,7 @@ impl App<'_> {
         };
         shown.size = size;
         let moves = self.state.is_moving();
-        if moves && !uses_preview {
-            self.state.step()?;
-        }
+        self.state.step(!uses_preview)?;
         let mut edited = self.state.take_edited();
         if uses_preview {
             let relights = shown.is_stale || moves;
@@ -182,6 +181,7 @@ impl App<'_> {
             self.due = self.due.max(1);
         }
         self.change(changes)?;
+        self.save_requested()?;
         Ok(Some(pixels))
     }
 

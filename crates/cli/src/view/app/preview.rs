@@ -134,6 +134,11 @@ impl Preview {
         is_stale
     }
 
+    /// Whether the full light is not the current one where no preview is shown.
+    pub fn is_old(&self) -> bool {
+        self.is_shown || self.edited.is_some()
+    }
+
     /// Whether work is left for a picture at rest.
     pub fn is_busy(&self) -> bool {
         self.next != Next::Nothing
@@ -376,13 +381,15 @@ impl Level {
     /// Takes the state's lights and heights.
     fn take(&mut self, state: &State, edited: Option<Rectangle>) -> Result<()> {
         self.blocks.take_lights(&state.scene, &mut self.scene);
-        match (state.moving_kind(), &mut self.moving) {
-            (Some(kind), Some(moving)) if moving.kind == kind => {
-                self.scene.field = moving.next()?;
-            }
-            (Some(kind), moving) => {
-                let still = self.blocks.field(&state.scene.field)?;
-                self.scene.field = moving.insert(Moving::over(still, kind)).next()?;
+        match (state.moving(), &mut self.moving) {
+            (Some(full), moving) => {
+                if edited.is_some() || moving.as_ref().is_none_or(|moving| moving.kind != full.kind) {
+                    let still = self.blocks.field(full.still())?;
+                    *moving = Some(full.over_other(still));
+                }
+                let moving = moving.as_mut().expect("made above");
+                moving.follow(full);
+                self.scene.field = moving.field()?;
             }
             (None, moving) if moving.is_some() => {
                 *moving = None;

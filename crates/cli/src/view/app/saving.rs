@@ -2,14 +2,62 @@
 
 use std::path::{Path, PathBuf};
 
-use ridgelight::Result;
+use ridgelight::{Error, Result};
 use ridgelight::scene::Tone;
 use ridgelight_io as files;
 
-use super::App;
+use super::{App, OpenWindow};
 use crate::{render, setup};
 
 impl App<'_> {
+    /// Saves a picture under a free name, now or once the full light is complete.
+    pub(super) fn request_picture(&mut self) -> Result<()> {
+        match self.check_picture() {
+            Err(why) => {
+                self.state.message = Some(format!("not saved: {why}"));
+                self.due = self.due.max(1);
+            }
+            Ok(true) => return self.save_picture(None),
+            Ok(false) => {
+                self.saves_picture = true;
+                if self.uses_preview() {
+                    let message = "the picture will be saved when the full light is complete";
+                    if self.state.message.as_deref() != Some(message) {
+                        self.state.message = Some(message.to_owned());
+                        self.due = self.due.max(1);
+                    }
+                } else {
+                    self.due = self.due.max(1);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Saves a picture that was requested before its light was complete.
+    pub(super) fn save_requested(&mut self) -> Result<()> {
+        let is_wanted = std::mem::take(&mut self.saves_picture);
+        if is_wanted { self.request_picture() } else { Ok(()) }
+    }
+
+    /// Whether the full light is that of the current settings.
+    ///
+    /// # Errors
+    /// Moving heights with previews, which never have it.
+    pub(super) fn check_picture(&self) -> Result<bool> {
+        let previews = self.uses_preview();
+        if previews && self.state.is_moving() {
+            let expected = "key w or key g first, which stops it";
+            return Err(Error::setting("picture", "a moving field with previews", expected));
+        }
+        let shown = self.shown.as_ref();
+        let is_old = |shown: &OpenWindow| {
+            let is_old = shown.is_stale || shown.lit.is_none() || self.state.is_edited();
+            is_old || shown.preview.is_busy() || !previews && shown.preview.is_old()
+        };
+        Ok(!shown.is_some_and(is_old) || self.state.is_moving())
+    }
+
     /// Saves the lit field, one pixel per texel, or the camera's picture, to a file or to a free
     /// name.
     pub(super) fn save_picture(&mut self, path: Option<&Path>) -> Result<()> {
@@ -46,8 +94,8 @@ impl App<'_> {
         let name = heights.as_ref().and_then(|h| h.file_name()).map(|n| n.to_string_lossy());
         let asked = self.state.asked(shown.size, &shown.limits, name.as_deref());
         let scene = asked.to_json();
-        let field = &self.state.scene.field;
-        let saved = heights.iter().try_for_each(|h| files::write_npy_heights(h, field));
+        let save = |h: &PathBuf| files::write_npy_heights(h, &*self.state.field_shown()?);
+        let saved = heights.iter().try_for_each(save);
         self.say(saved.and_then(|()| files::write_json(&path, &scene)), &path)
     }
 

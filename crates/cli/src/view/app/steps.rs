@@ -56,7 +56,15 @@ impl App<'_> {
                 }
                 None
             }
-            Step::Picture(path) => self.save_picture(Some(&path)).map(|()| None)?,
+            Step::Picture(path) => {
+                if self.check_picture()? {
+                    self.save_picture(Some(&path)).map(|()| None)?
+                } else {
+                    self.advance()?;
+                    self.check_shown("picture")?;
+                    Some(Step::Picture(path))
+                }
+            }
             Step::Scene(path) => self.save_scene(Some(&path)).map(|()| None)?,
             Step::Preview => {
                 self.previews = true;

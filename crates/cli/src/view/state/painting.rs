@@ -110,6 +110,11 @@ impl State {
         self.edited.take()
     }
 
+    /// Whether heights have changed since then.
+    pub fn is_edited(&self) -> bool {
+        self.edited.is_some()
+    }
+
     /// The taken rectangle could not be drawn.
     pub fn give_back_edited(&mut self, at: Rectangle) {
         self.edit(at);
