@@ -32,8 +32,9 @@ pub enum Step {
     Paths(u32),
     /// Prints the frames so far and their milliseconds since the last report, after some words.
     Report(String),
-    /// Previews slow light from here on, as without a script.
-    Preview,
+    /// Previews slow light from here on, as without a script; with two numbers all light, and on grids of blocks of so many
+    /// grid points: coarse light, slopes.
+    Preview(Option<[usize; 2]>),
     /// Draws until the light is the full one.
     Rest,
     /// Waits for input until this file exists, as without a script.
@@ -104,7 +105,13 @@ fn step(line: &str) -> Option<Step> {
         ["frames", count] => Step::Frames(count.parse().ok()?),
         ["size", size] => Step::Size(pair(size)?.map(|v| v as u32)),
         ["lose"] => Step::Lose,
-        ["preview"] => Step::Preview,
+        ["preview"] => Step::Preview(None),
+        ["preview", sides] => {
+            let [coarse, fine] = pair(sides)?.map(|side| side as usize);
+            // A coarse cell is a whole number of fine ones.
+            let is_right = fine > 0 && coarse >= fine && coarse.is_multiple_of(fine);
+            Step::Preview(Some(is_right.then_some([coarse, fine])?))
+        }
         ["rest"] => Step::Rest,
         ["picture", file] => Step::Picture(file.into()),
         ["scene", file] => Step::Scene(file.into()),
@@ -140,6 +147,8 @@ mod tests {
         assert_eq!(read(&path).unwrap(), steps);
         std::fs::write(&path, "lose\njump\n").unwrap();
         assert!(read(&path).unwrap_err().to_string().contains("line 2: found jump"));
+        std::fs::write(&path, "preview 3,2\n").unwrap();
+        assert!(read(&path).unwrap_err().to_string().contains("found preview 3,2"));
         std::fs::write(&path, "patience nan\n").unwrap();
         assert!(read(&path).unwrap_err().to_string().contains("found patience nan"));
     }

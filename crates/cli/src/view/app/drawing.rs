@@ -147,6 +147,7 @@ impl App<'_> {
             }
         } else {
             shown.is_stale |= shown.preview.leave();
+            edited.into_iter().for_each(|at| shown.preview.miss(at));
         }
         if !uses_preview && (shown.is_stale || moves || edited.is_some()) {
             if let Err(why) = shown.light(&self.state) {

@@ -91,10 +91,16 @@ pub struct Preview {
     running: Option<Running>,
     /// Times of the passes of the refinement so far.
     times: Vec<Timing>,
+    /// Whether the device gave no times of some part of it.
+    lacks_times: bool,
     complete_times: Option<Vec<Timing>>,
     /// Edited since the full light was computed, if nothing else has changed.
     edited: Option<Rectangle>,
+    /// Edited while no preview was in use: the levels lack it.
+    missed: Option<Rectangle>,
     is_full_stale: bool,
+    /// Sides of the levels' blocks where a script gives them: coarse light, slopes. Times then decide nothing.
+    fixed: Option<[usize; 2]>,
     /// Seconds from the last input to the full light.
     pub full_s: Option<f64>,
     /// Error against the full light when both were last computed: RMSE over the mean.
@@ -111,9 +117,12 @@ impl Preview {
             rates: if is_cpu { CPU_RATES } else { GPU_RATES },
             running: None,
             times: Vec::new(),
+            lacks_times: false,
             complete_times: None,
             edited: None,
+            missed: None,
             is_full_stale: true,
+            fixed: None,
             full_s: None,
             error: None,
         }
@@ -123,7 +132,18 @@ impl Preview {
     pub fn is_needed(&self, state: &State) -> bool {
         let field = &state.scene.field;
         let ms = work(&state.scene, &state.quality, 1) / self.rates.full;
-        !state.is_split && field.rows().min(field.cols()) >= 2 * LEAST_GRID && ms > ANSWER_MS
+        let is_slow = self.fixed.is_some() || ms > ANSWER_MS;
+        !state.is_split && field.rows().min(field.cols()) >= 2 * LEAST_GRID && is_slow
+    }
+
+    /// Fixes the grids by the sides of their blocks: coarse light, slopes.
+    pub fn fix(&mut self, sides: Option<[usize; 2]>) {
+        self.fixed = sides;
+    }
+
+    /// An edit that no preview shows.
+    pub fn miss(&mut self, at: Rectangle) {
+        self.missed = Some(self.missed.map_or(at, |all| together(all, at)));
     }
 
     /// Shows the full light from now on. Returns whether it must be computed.
@@ -188,8 +208,11 @@ impl Preview {
         };
         self.is_full_stale |= relights;
         self.times.clear();
+        self.lacks_times = false;
         self.fit(screen, state, DRAGGED)?;
         self.changed = Instant::now();
+        let missed = self.missed.take();
+        let edited = edited.zip(missed).map(|(a, b)| together(a, b)).or(edited).or(missed);
         let [coarse, fine] = self.levels.as_mut().expect("made by fit");
         coarse.take(state, edited)?;
         fine.take(state, edited)?;
@@ -218,10 +241,11 @@ impl Preview {
         let fine = least(&of_fine);
         // A coarse cell is a whole number of fine ones.
         let wanted = [least(&of_coarse).max(fine).next_multiple_of(fine), fine];
+        let wanted = self.fixed.unwrap_or(wanted);
         let kept = self.levels.as_ref().map(|levels| levels.each_ref().map(|l| l.blocks.side));
         // Other grids take a third of a second: only where they are worth that, least of all in a drag.
         let is_kept = kept.is_some_and(|kept| {
-            let fits = |share: f64| kept_at.contains(&share);
+            let fits = |share: f64| self.fixed.is_none() && kept_at.contains(&share);
             kept == wanted || kept[0] <= most && fits(of_coarse(kept[0])) && fits(of_fine(kept[1]))
         });
         if !is_kept {
@@ -321,7 +345,12 @@ impl Preview {
 
     /// Takes the times of the last part, and learns from them how fast the device is.
     fn read_times(&mut self, state: &State, full: &mut Option<Frame>) {
+        let learns = self.fixed.is_none();
         let learn = |rate: &mut f64, work: f64, times: &[Timing], fixed_ms: f64| {
+            // Devices without timestamps give none.
+            if times.is_empty() || !learns {
+                return;
+            }
             let ms = (total_ns(times) / 1e6 - fixed_ms).max(0.2 * fixed_ms);
             if ms > 0.0 {
                 *rate = (*rate * (work / ms)).sqrt();
@@ -331,10 +360,13 @@ impl Preview {
             None => {}
             Some(Running::Full(slot)) => {
                 let Some(lit) = full else { return };
-                self.times.extend(lit.renderer().timings(slot).unwrap_or_default());
+                match lit.renderer().timings(slot) {
+                    Some(times) => self.times.extend(times),
+                    None => self.lacks_times = true,
+                }
                 let is_whole = self.next == Next::Passes(lit.plan().passes.len());
                 if is_whole {
-                    if self.is_full_stale {
+                    if self.is_full_stale && !self.lacks_times {
                         let work = work(&state.scene, &state.quality, 1);
                         learn(&mut self.rates.full, work, &self.times, 0.0);
                     }

@@ -66,8 +66,11 @@ impl App<'_> {
                 }
             }
             Step::Scene(path) => self.save_scene(Some(&path)).map(|()| None)?,
-            Step::Preview => {
+            Step::Preview(sides) => {
                 self.previews = true;
+                if let Some(shown) = &mut self.shown {
+                    shown.preview.fix(sides);
+                }
                 None
             }
             Step::Rest => {
