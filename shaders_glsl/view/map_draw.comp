@@ -1,5 +1,5 @@
 // Computes: a shaded field from above as 8-bit sRGB, by thresholds of radiance: a code is the number of thresholds
-// reached, so that every pixel equals the host's bit for bit; of smooth maps to one code.
+// reached, so that every pixel equals the host's bit for bit.
 // Reads: radiance, tone_steps (texel k: the least radiance of code k, NaN where no radiance has it), voids.
 // Writes: picture, four bytes per pixel.
 // One invocation is one pixel: the texel at its middle; the mean of PLACES x PLACES texels where a pixel covers
@@ -34,21 +34,18 @@ float tone_step(uint code) {
     return texelFetch(tone_steps, ivec2(int(code), 0), 0).x;
 }
 
-// Radiance of code 128, half a code lower, where the curve is sRGB's.
-const float HALF_CODE = 0.21223;
+// Linear light of sRGB 127.5/255, the threshold of code 128.
+const float HALF_CODE = 0.214041;
 const float SHOULDER = 0.8;
 const float REST = 1.0 - SHOULDER;
 
-// The tone curve gives a first guess, which the steps correct. Smooth maps keep the guess, as they need no exact codes.
+// sRGB with the shoulder of a picture's tone gives a first guess, which the steps correct: they are those of any curve.
 uint code(float radiance, float exposure) {
     float light = max(radiance * exposure, 0.0);
     light = light <= SHOULDER ? light : 1.0 - REST * REST / (light - SHOULDER + REST);
     float bright = 255.0 * (1.055 * pow(max(light, 1e-9), 1.0 / 2.4) - 0.055);
     float guess = light <= 0.0031308 ? 255.0 * 12.92 * light : bright;
     uint reached = guess >= 0.0 && guess <= 255.0 ? uint(guess + 0.5) : 0u;
-    if (is_smooth != 0u) {
-        return reached;
-    }
     while (reached > 0u && !(radiance >= tone_step(reached))) {
         reached--;
     }

@@ -22,6 +22,7 @@ layout(binding = 4, rgba32f) uniform writeonly image2D gathered;
 layout(push_constant) uniform PreviewGatherPush {
     vec4 sun;       // direction east, north, up
     vec4 most;      // radiance of a white texel that faces the sun
+    vec4 colour;    // albedo where it is no map
     vec2 cell_m;
     int cols;
     int rows;
@@ -45,7 +46,7 @@ void main() {
     if (HAS_SUN) {
         of_sun = GREY ? texelFetch(coarse_sun, at, 0).xxx : texelFetch(coarse_sun, at, 0).rgb;
     }
-    vec3 albedo = ALBEDO_IS_MAP ? texelFetch(coarse_albedo, at, 0).rgb : vec3(1.0);
+    vec3 albedo = ALBEDO_IS_MAP ? texelFetch(coarse_albedo, at, 0).rgb : colour.rgb;
     albedo = max(albedo, vec3(DARK));
     float facing = max(dot(normal, sun.xyz), GRAZING);
     // of_sun = share * lit in every channel: the share follows from any channel where lit is not 0.

@@ -18,6 +18,7 @@ layout(binding = 3, rgba32f) uniform writeonly image2D radiance;
 layout(push_constant) uniform PreviewShadePush {
     vec4 sun;      // direction east, north, up
     vec4 most;     // radiance of a white texel that faces the sun
+    vec4 colour;   // albedo where it is no map
     vec2 cell_m;
     int cols;
     int rows;
@@ -45,8 +46,6 @@ void main() {
     if (HAS_SUN) {
         light += most.rgb * (sky.a * max(dot(normal, sun.xyz), 0.0));
     }
-    if (ALBEDO_IS_MAP) {
-        light *= texelFetch(albedo, at, 0).rgb;
-    }
+    light *= ALBEDO_IS_MAP ? texelFetch(albedo, at, 0).rgb : colour.rgb;
     imageStore(radiance, at, vec4(light, 1.0));
 }

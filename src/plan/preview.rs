@@ -9,7 +9,7 @@ use crate::{Error, Result};
 /// albedo. For pictures that must appear at once; exact only where both grids have the same slopes.
 ///
 /// `coarse` is the plan of the coarse scene with one image per light ([`Picture::light_layers`](super::Picture)). The
-/// first sun is the sun; other lights count as sky. Cells of the coarse grid are a whole number of fine ones wide, and
+/// first sun with irradiance, number n, is the sun, whose image is `direct.sun{n}`; other lights count as sky. Cells of the coarse grid are a whole number of fine ones wide, and
 /// both begin at the north-western corner.
 ///
 /// Inputs, in order: "heights" of the fine grid; "environment" if the scene has one, for [`View`](super::View); "albedo"
@@ -25,9 +25,11 @@ pub fn preview(fine: &Scene, coarse: &Scene, lit: &Plan, limits: &Limits) -> Res
         cell_m: field.cell_m(),
     };
     let grids = [grid(&fine.field), grid(&coarse.field)];
-    let sun = coarse.lights.suns.first();
+    let mut suns = (1..).zip(&coarse.lights.suns);
+    let sun = suns.find(|(_, sun)| sun.irradiance.iter().any(|e| *e > 0.0));
+    sun.map_or(Ok(()), |(n, _)| check_sun(lit, n))?;
+    let sun = sun.map(|(_, sun)| sun);
     let has_albedo = matches!(fine.surface.albedo, Albedo::Map(_));
-    sun.map_or(Ok(()), |_| check_sun(lit))?;
     let radiance = lit.find("radiance").map(|id| lit.resources[id.0].kind);
     let grey = matches!(radiance, Some(Kind::Image { format: Format::R32Float, .. }));
 
@@ -59,21 +61,23 @@ pub fn preview(fine: &Scene, coarse: &Scene, lit: &Plan, limits: &Limits) -> Res
     let gathered_light = image("gathered", Owner::Internal, four, coarse_grid);
     let radiance = image("radiance", Owner::Output, four, fine_grid);
     gathered.push(("gathered", gathered_light));
-    preview::plan_gather(&mut builder, coarse_grid, sun, [grey, has_albedo], &gathered);
+    let coarse_albedo = (&coarse.surface.albedo, grey);
+    preview::plan_gather(&mut builder, coarse_grid, sun, coarse_albedo, &gathered);
     let mut shaded = vec![("heights", heights)];
     shaded.extend(albedo.map(|albedo| ("albedo", albedo)));
     shaded.extend([("gathered", gathered_light), ("radiance", radiance)]);
-    preview::plan_shade(&mut builder, grids, sun, has_albedo, &shaded);
+    preview::plan_shade(&mut builder, grids, sun, &fine.surface.albedo, &shaded);
     Plan::finish(builder, size, Vec::new(), Vec::new(), Vec::new(), Vec::new(), limits)
 }
 
-/// Whether a plan has an image of a sun.
+/// Whether a plan has the image of the sun of this number.
 ///
 /// # Errors
 /// A plan without it.
-fn check_sun(lit: &Plan) -> Result<()> {
-    let found = lit.outputs().any(|(_, output)| output.name.starts_with("direct.sun"));
+fn check_sun(lit: &Plan, n: usize) -> Result<()> {
+    let name = format!("direct.sun{n}");
+    let found = lit.outputs().any(|(_, output)| output.name == name);
     found
         .then_some(())
-        .ok_or_else(|| Error::setting("coarse plan", "no image of the sun", "`light_layers`"))
+        .ok_or_else(|| Error::setting("coarse plan", "no image of its sun", "`light_layers`"))
 }

@@ -1,7 +1,7 @@
 //! Light of a coarse grid on a finer one.
 
 use crate::graph::{Builder, ResourceId, shaders};
-use crate::scene::Sun;
+use crate::scene::{Albedo, Sun};
 
 /// A grid: columns and rows, and the sides of a cell.
 #[derive(Clone, Copy, Debug)]
@@ -34,22 +34,35 @@ fn most(sun: Option<&Sun>) -> [f32; 4] {
     [most[0], most[1], most[2], 1.0]
 }
 
+/// A constant albedo; 1 where it is a map.
+fn colour(albedo: &Albedo) -> [f32; 4] {
+    match albedo {
+        Albedo::Constant([r, g, b]) => [*r, *g, *b, 1.0],
+        Albedo::Map(_) => [1.0; 4],
+    }
+}
+
 /// Takes the slopes out of the coarse grid's light.
 pub(crate) fn plan_gather(
     builder: &mut Builder,
     coarse: Grid,
     sun: Option<&Sun>,
-    [grey, has_albedo]: [bool; 2],
+    (albedo, grey): (&Albedo, bool),
     bound: &[(&str, ResourceId)],
 ) {
     builder.pass(
-        shaders::PreviewGather { grey, has_sun: sun.is_some(), albedo_is_map: has_albedo },
+        shaders::PreviewGather {
+            grey,
+            has_sun: sun.is_some(),
+            albedo_is_map: matches!(albedo, Albedo::Map(_)),
+        },
         "",
         "light without slopes, on the coarse grid",
         coarse.groups(),
         &shaders::PreviewGatherPush {
             sun: direction(sun),
             most: most(sun),
+            colour: colour(albedo),
             cell_m: coarse.cell_m.map(|c| c as f32),
             cols: coarse.size[0] as i32,
             rows: coarse.size[1] as i32,
@@ -65,17 +78,21 @@ pub(crate) fn plan_shade(
     builder: &mut Builder,
     [fine, coarse]: [Grid; 2],
     sun: Option<&Sun>,
-    has_albedo: bool,
+    albedo: &Albedo,
     bound: &[(&str, ResourceId)],
 ) {
     builder.pass(
-        shaders::PreviewShade { has_sun: sun.is_some(), albedo_is_map: has_albedo },
+        shaders::PreviewShade {
+            has_sun: sun.is_some(),
+            albedo_is_map: matches!(albedo, Albedo::Map(_)),
+        },
         "",
         "light of the coarse grid on the slopes of the fine one",
         fine.groups(),
         &shaders::PreviewShadePush {
             sun: direction(sun),
             most: most(sun),
+            colour: colour(albedo),
             cell_m: fine.cell_m.map(|c| c as f32),
             cols: fine.size[0] as i32,
             rows: fine.size[1] as i32,

@@ -84,11 +84,7 @@ fn maps_match_the_cpu_reference_to_the_bit() {
         let voids = map.has_voids.then_some(voids.as_slice());
         let want = map_draw(&map, &light, voids, tone);
         let got = drawn(&mut device, (&map, tone), &light, voids);
-        // Smooth maps compute the curve instead of searching its steps.
-        let most = u8::from(map.is_smooth && map.grid_points_per_pixel < 2.0);
-        let is_near = |(a, b): (&[u8; 4], &[u8; 4])| (0..4).all(|i| a[i].abs_diff(b[i]) <= most);
-        let is_same = got.iter().zip(&want).all(is_near);
-        assert!(is_same, "{map:?}: {} pixels differ", differing(&got, &want));
+        assert!(got == want, "{map:?}: {} pixels differ", differing(&got, &want));
         // The comparison can fail.
         let brighter = map_draw(&map, &light, voids, Tone::picture(1.1 * exposure + 0.1));
         assert!(differing(&brighter, &want) > 10, "{map:?}");

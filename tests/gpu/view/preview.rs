@@ -2,7 +2,7 @@
 
 use ridgelight::plan::{self, Limits, Picture};
 use ridgelight::scene::{Albedo, HeightField, Lights, Quality, Scene, Sun, Surface};
-use ridgelight_cpu::preview::{self, Coarse};
+use ridgelight_cpu::preview::{self, Coarse, Colours};
 use ridgelight_cpu::tolerance::EPSILON;
 
 use crate::{Device, random};
@@ -51,19 +51,29 @@ fn previews_match_the_cpu_reference() {
     let count = coarse_size[0] * coarse_size[1];
     let least = (0..count).map(facing).fold(1.0, f64::min);
     assert!(least > 0.1, "{least}");
-    for (has_sun, grey) in [(true, true), (true, false), (false, false)] {
+    // The constant colour is none of a grey scene, so that its channels differ.
+    let constant = [0.5, 0.3, 0.2];
+    for (has_sun, grey, has_map) in [
+        (true, true, false),
+        (true, false, true),
+        (true, false, false),
+        (false, false, true),
+        (false, false, false),
+    ] {
         let colour = if grey { [1.0; 3] } else { [1.0, 0.8, 0.6] };
-        let suns = if has_sun { vec![sun] } else { Vec::new() };
+        // A black sun, which has no image, comes first.
+        let black = Sun { azimuth_rad: 0.3, irradiance: [0.0; 3], ..sun };
+        let suns = if has_sun { vec![black, sun] } else { Vec::new() };
         let lights = Lights { sky: Some(colour), suns, ..Lights::default() };
         let albedo = |size: [usize; 2], seed: u64| colours(size[0] * size[1], false, seed);
         let [fine_albedo, coarse_albedo] = [albedo(FINE, 3), albedo(coarse_size, 4)];
         let scene = |field: &HeightField, albedo: &[[f32; 3]]| Scene {
             field: field.clone(),
             surface: Surface {
-                albedo: if grey {
-                    Albedo::Constant([1.0; 3])
-                } else {
-                    Albedo::Map(albedo.to_vec())
+                albedo: match (grey, has_map) {
+                    (true, _) => Albedo::Constant([1.0; 3]),
+                    (_, true) => Albedo::Map(albedo.to_vec()),
+                    _ => Albedo::Constant(constant),
                 },
                 ..Surface::default()
             },
@@ -80,7 +90,11 @@ fn previews_match_the_cpu_reference() {
         let shares = colours(count, true, 5);
         let of_sun: Vec<[f32; 3]> = (0..count)
             .map(|i| {
-                let albedo = if grey { [1.0; 3] } else { coarse_albedo[i] };
+                let albedo = match (grey, has_map) {
+                    (true, _) => [1.0; 3],
+                    (_, true) => coarse_albedo[i],
+                    _ => constant,
+                };
                 let lit = sun.irradiance[0] / std::f32::consts::PI * facing(i) as f32;
                 albedo.map(|a| if has_sun { shares[i][0] * a * lit } else { 0.0 })
             })
@@ -95,14 +109,14 @@ fn previews_match_the_cpu_reference() {
             colours.iter().flat_map(four).collect()
         };
         let mut contents = vec![fine.heights_m().to_vec()];
-        if !grey {
+        if has_map {
             contents.push(texels(&fine_albedo, false));
         }
         contents.extend([coarse.heights_m().to_vec(), texels(&radiance, grey)]);
         if has_sun {
             contents.push(texels(&of_sun, grey));
         }
-        if !grey {
+        if has_map {
             contents.push(texels(&coarse_albedo, false));
         }
         let pixels = gpu
@@ -116,9 +130,14 @@ fn previews_match_the_cpu_reference() {
             let radiance: Vec<[f32; 3]> =
                 radiance.iter().map(|c| c.map(|v| v * (1.0 + blend) as f32)).collect();
             let sun = has_sun.then_some((of_sun.as_slice(), &sun));
-            let albedo = (!grey).then_some(coarse_albedo.as_slice());
+            let colours = |map| match (grey, has_map) {
+                (true, _) => Colours::Constant([1.0; 3]),
+                (_, true) => Colours::Map(map),
+                _ => Colours::Constant(constant),
+            };
+            let albedo = colours(coarse_albedo.as_slice());
             let coarse = Coarse { field: &coarse, radiance: &radiance, sun, albedo };
-            preview::preview(&fine, (!grey).then_some(fine_albedo.as_slice()), &coarse)
+            preview::preview(&fine, colours(fine_albedo.as_slice()), &coarse)
         };
         // No cosine, albedo or light above is more than 1, and the least albedo 0.2.
         let most = 1.0 / 0.2 / least;
@@ -131,7 +150,7 @@ fn previews_match_the_cpu_reference() {
             got.zip(want).map(texel).fold(0.0, f64::max)
         };
         let found = apart(&light(0.0));
-        assert!(found <= tolerance, "{has_sun} {grey}: {found}, {tolerance}");
+        assert!(found <= tolerance, "{has_sun} {grey} {has_map}: {found}, {tolerance}");
         // The comparison can fail.
         assert!(apart(&light(1e-3)) > tolerance);
     }

@@ -7,22 +7,40 @@ const GRAZING: f64 = 1e-3;
 /// As the shader's: albedo below which light is not divided by it.
 const DARK: f64 = 1e-3;
 
-/// The light of a coarse grid, R, G, B of each grid point: all of it, the first sun's, and the albedo.
+/// The light of a coarse grid, R, G, B of each grid point: all of it, the sun's, and the albedo.
 pub struct Coarse<'a> {
     /// The coarse heights; its cells are whole numbers of fine ones.
     pub field: &'a HeightField,
     /// All light.
     pub radiance: &'a [[f32; 3]],
-    /// Of the first sun, and the sun.
+    /// Of the first sun with irradiance, and that sun.
     pub sun: Option<(&'a [[f32; 3]], &'a Sun)>,
-    /// None: 1.
-    pub albedo: Option<&'a [[f32; 3]]>,
+    /// Its albedo.
+    pub albedo: Colours<'a>,
+}
+
+/// Albedo of a grid.
+#[derive(Clone, Copy)]
+pub enum Colours<'a> {
+    /// The same everywhere.
+    Constant([f32; 3]),
+    /// One per grid point.
+    Map(&'a [[f32; 3]]),
+}
+
+impl Colours<'_> {
+    fn at(&self, i: usize, c: usize) -> f64 {
+        f64::from(match self {
+            Self::Constant(colour) => colour[c],
+            Self::Map(all) => all[i][c],
+        })
+    }
 }
 
 /// Exit radiance of the fine grid.
 pub fn preview(
     fine: &HeightField,
-    albedo: Option<&[[f32; 3]]>,
+    albedo: Colours<'_>,
     coarse: &Coarse<'_>,
 ) -> Vec<[f64; 3]> {
     let towards = coarse.sun.map_or([0.0, 0.0, 1.0], |(_, sun)| direction(sun));
@@ -34,7 +52,7 @@ pub fn preview(
             let facing = dot(normal, towards).max(GRAZING);
             let of = |c: usize| {
                 let sun = coarse.sun.map_or(0.0, |(light, _)| f64::from(light[i][c]));
-                let albedo = coarse.albedo.map_or(1.0, |a| f64::from(a[i][c])).max(DARK);
+                let albedo = coarse.albedo.at(i, c).max(DARK);
                 let lit = albedo * most[c] * facing;
                 let share = if lit > 0.0 { sun / lit } else { 0.0 };
                 let sky = (f64::from(coarse.radiance[i][c]) - sun) / (albedo * (1.0 + normal[2]));
@@ -52,7 +70,7 @@ pub fn preview(
             let facing = dot(normal, towards).max(0.0);
             std::array::from_fn(|c| {
                 let all = light[c] * (1.0 + normal[2]) + light[3] * most[c] * facing;
-                all * albedo.map_or(1.0, |a| f64::from(a[i][c]))
+                all * albedo.at(i, c)
             })
         })
         .collect()
@@ -120,9 +138,10 @@ mod tests {
         let of_sun: Vec<[f32; 3]> =
             (0..30).map(|i| sun.irradiance.map(|e| (f64::from(e) * lit(i)) as f32)).collect();
         let radiance: Vec<[f32; 3]> = of_sun.iter().map(|s| s.map(|v| v + 0.25)).collect();
-        let coarse =
-            Coarse { field: &field, radiance: &radiance, sun: Some((&of_sun, &sun)), albedo: None };
-        for (found, want) in preview(&field, None, &coarse).iter().zip(&radiance) {
+        let white = Colours::Constant([1.0; 3]);
+        let sun = Some((of_sun.as_slice(), &sun));
+        let coarse = Coarse { field: &field, radiance: &radiance, sun, albedo: white };
+        for (found, want) in preview(&field, white, &coarse).iter().zip(&radiance) {
             for c in 0..3 {
                 assert!((found[c] - f64::from(want[c])).abs() < 4.0 * f64::from(f32::EPSILON));
             }

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use ridgelight::Result;
 use ridgelight::gpu::{Frame, ImageArg, Timing, Work};
 use ridgelight::plan::{self, Limits, Picture, Plan, Rectangle};
-use ridgelight::scene::{Albedo, Method, Quality, Scene};
+use ridgelight::scene::{Albedo, Lines, Method, Quality, Scene};
 use ridgelight_viewer::Screen;
 
 use super::super::brush::together;
@@ -464,9 +464,11 @@ impl Level {
         let plan = plan::preview(&self.scene, &coarse.scene, of_coarse.plan(), limits)?;
         let (inputs, outputs) = (of_coarse.inputs(), of_coarse.outputs());
         let mut borrowed = vec![inputs[0], outputs[0]];
-        if !coarse.scene.lights.suns.is_empty() {
-            let mut named = of_coarse.plan().outputs();
-            let at = named.position(|(_, output)| output.name.starts_with("direct.sun"));
+        if plan.inputs().any(|(_, input)| input.name == "coarse_sun") {
+            let mut suns = (1..).zip(&coarse.scene.lights.suns);
+            let lit = suns.find(|(_, sun)| sun.irradiance.iter().any(|e| *e > 0.0));
+            let name = lit.map(|(n, _): (usize, _)| format!("direct.sun{n}")).unwrap_or_default();
+            let at = of_coarse.plan().outputs().position(|(_, output)| output.name == name);
             borrowed.extend(at.map(|at| outputs[at]));
         }
         if matches!(coarse.scene.surface.albedo, Albedo::Map(_)) {
@@ -523,9 +525,15 @@ fn error(
     (mean > 0.0).then(|| (square / count).sqrt() / (mean / count))
 }
 
-/// The user's settings with fewer azimuths and the default method, as the others are slow.
+/// The user's settings with fewer azimuths and the default method, as the others are slow, and with the default lines,
+/// as some need another method.
 fn coarser(quality: &Quality) -> Quality {
-    Quality { azimuths: quality.azimuths.min(AZIMUTHS), method: Method::default(), ..*quality }
+    Quality {
+        azimuths: quality.azimuths.min(AZIMUTHS),
+        method: Method::default(),
+        lines: Lines::default(),
+        ..*quality
+    }
 }
 
 /// Texels times azimuths, with a sun as eight, on blocks of `side` grid points.
