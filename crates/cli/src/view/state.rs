@@ -181,6 +181,7 @@ impl State {
         heights: Option<&str>,
     ) -> Request {
         let mut asked = self.asked.clone();
+        self.write_lights(&mut asked);
         if let Some(heights) = heights {
             let field = &self.scene.field;
             let [x, y] = field.cell_m();

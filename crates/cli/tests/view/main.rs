@@ -167,11 +167,33 @@ fn gpu_default_window_equals_render() {
     assert_same(&folder, "shot.png", "render.png");
 }
 
-/// A field whose light takes long: the first pictures after each turn of the sun are previews on slow devices, and the
-/// picture at rest is that of `render`, to a code where it was summed in other parts. On a fast device all are.
+/// The sun of a scene without lights depends on the camera that `render` begins with; the window's does not turn with its
+/// camera. Its scene has the lights in use, from above and from a camera, also after every light of the user is deleted.
 #[test]
-fn gpu_previews_show_the_new_light() {
+fn gpu_default_light_is_saved() {
     let (folder, display) = (Folder::new(), Display::new());
+    let script = "key h\nkey h\nframes 2\npicture map.png\nscene map.json\nkey v\nframes 1\npicture seen.png\n\
+        scene seen.json\nkey o\nkey x\nframes 1\nscene deleted.json\npicture deleted.png\n";
+    folder.view(&display, "hills.asc --size 96x60", script);
+    for name in ["map", "seen", "deleted"] {
+        folder.done(&format!("render --scene {name}.json -o {name}_r.png --quiet"));
+        assert_same(&folder, &format!("{name}.png"), &format!("{name}_r.png"));
+    }
+    folder.done("render hills.asc -o default.png --quiet");
+    assert_same(&folder, "map.png", "default.png");
+}
+
+/// RMSE of a picture over its own mean.
+fn error(folder: &Folder, shown: &str, full: &str) -> f64 {
+    let (a, b) = (folder.picture(shown), folder.picture(full));
+    let pairs = || colours(&a).concat().into_iter().zip(colours(&b).concat());
+    let square: f64 = pairs().map(|(a, b)| f64::from(a - b).powi(2)).sum();
+    let mean: f64 = pairs().map(|(_, b)| f64::from(b)).sum();
+    (square * pairs().count() as f64).sqrt() / mean
+}
+
+/// A field of 512 x 512, "large.asc".
+fn write_large(folder: &Folder) {
     let side = 512;
     let height = |i: usize| {
         let [x, y] = [i % side, i / side].map(|n| n as f32 / 40.0);
@@ -180,34 +202,84 @@ fn gpu_previews_show_the_new_light() {
     let heights: Vec<String> = (0..side * side).map(height).collect();
     let header = format!("ncols {side}\nnrows {side}\nxllcorner 0\nyllcorner 0\ncellsize 5\n");
     folder.write("large.asc", format!("{header}{}\n", heights.join(" ")).as_bytes());
-    let script = "key h\nkey h\npreview\nframes 1\nrest\nframes 1\nscreenshot before.png\n\
+}
+
+/// The first pictures after each input are previews, on grids that the script fixes: near their own full light and far
+/// from the old one. The picture at rest is that of `render`, to a code where it was summed in other parts.
+#[test]
+fn gpu_previews_show_the_new_light() {
+    let (folder, display) = (Folder::new(), Display::new());
+    write_large(&folder);
+    let script = "key h\nkey h\npreview 3,1\nframes 1\nrest\nframes 1\nscreenshot before.png\n\
         key shift+right\nkey shift+right\nkey shift+right\nkey shift+right\nkey shift+right\nkey shift+right\n\
-        screenshot preview.png\nrest\nscreenshot full.png\nscene full.json\n\
-        key v\nkey shift+left\nkey shift+left\nscreenshot seen.png\nrest\nscreenshot seen_full.png\n\
-        key v\nkey 2\ndrag left 200,200 40,10\nscreenshot edit.png\nrest\nscreenshot edit_full.png\n\
-        key w\nframes 2\nkey w\nrest\n";
+        screenshot preview.png\npicture saved.png\nscreenshot full.png\nscene full.json\n\
+        key v\nframes 1\nscreenshot seen_before.png\nkey shift+left\nkey shift+left\nkey shift+left\nkey shift+left\n\
+        screenshot seen.png\nrest\nscreenshot seen_full.png\n\
+        key v\nkey 2\nscreenshot unedited.png\ndrag left 200,200 40,10\nscreenshot edit.png\nrest\nscreenshot edit_full.png\n\
+        key w\nframes 2\nscene moved.json\nkey w\nrest\n\
+        key tab\nkey tab\nkey tab\nkey tab\nkey tab\nkey ,\nkey ,\nkey ,\ntext refused.txt\nkey .\nkey .\nframes 1\nrest\n";
     folder.view(&display, "large.asc --size 512x512", script);
     folder.done("render --scene full.json -o render.png --quiet");
     let picture = |name: &str| folder.picture(name);
-    let at_rest = apart(&picture("full.png"), &picture("render.png"));
-    assert!(at_rest <= 1.0, "{at_rest} codes");
-    // Relative to its own mean: a preview is near its own full light and far from the old one.
-    let error = |a: &str, b: &str| {
-        let (a, b) = (picture(a), picture(b));
-        let pairs = || colours(&a).concat().into_iter().zip(colours(&b).concat());
-        let square: f64 = pairs().map(|(a, b)| f64::from(a - b).powi(2)).sum();
-        let mean: f64 = pairs().map(|(_, b)| f64::from(b)).sum();
-        (square * pairs().count() as f64).sqrt() / mean
-    };
-    for (shown, full, most) in [
-        ("preview.png", "full.png", 0.05),
-        ("seen.png", "seen_full.png", 0.05),
-        ("edit.png", "edit_full.png", 0.05),
-    ] {
-        let found = error(shown, full);
-        assert!(found < most, "{shown}: {found}");
+    // Requested with the preview shown, saved with the full light.
+    for name in ["saved.png", "full.png"] {
+        let at_rest = apart(&picture(name), &picture("render.png"));
+        assert!(at_rest <= 1.0, "{name}: {at_rest} codes");
     }
-    assert!(error("preview.png", "before.png") > 0.1);
+    for (shown, full, old) in [
+        ("preview.png", "full.png", "before.png"),
+        ("seen.png", "seen_full.png", "seen_before.png"),
+        ("edit.png", "edit_full.png", "unedited.png"),
+    ] {
+        let [new, old] = [full, old].map(|other| error(&folder, shown, other));
+        assert!(new < 0.05 && old > 2.0 * new, "{shown}: {new}, {old}");
+    }
+    // A stroke of radius 160 m from column 200, row 200, 40 right and 10 down. The light far from it is the same.
+    let (edit, unedited) = (picture("edit.png"), picture("unedited.png"));
+    let reached = |from: usize, to: usize, margin: usize, at: usize| {
+        (from - margin..to + margin).contains(&at)
+    };
+    let (mut inside, mut outside) = (0.0_f64, 0.0_f64);
+    for (a, b) in colours(&edit).iter().zip(colours(&unedited)) {
+        for (i, (a, b)) in a.iter().zip(b).enumerate() {
+            let off = (code(*a) - code(*b)).abs();
+            let is_in = |margin| {
+                reached(168, 272, margin, i % 512) && reached(168, 242, margin, i / 512)
+            };
+            // The brush's ring was in the upper left corner before.
+            let is_ring = i % 512 < 36 && i / 512 < 36;
+            if is_in(0) {
+                inside = inside.max(off);
+            } else if !is_in(96) && !is_ring {
+                outside = outside.max(off);
+            }
+        }
+    }
+    assert!(inside > 32.0 && outside <= 4.0, "{inside}, {outside} codes");
+    let refused = std::fs::read_to_string(folder.0.path().join("refused.txt")).unwrap();
+    assert!(refused.contains("--lines"), "{refused}");
+    // Saved heights are those of the same frame without previews.
+    folder.view(&display, "large.asc --size 512x512", "key w\nframes 2\nscene plain.json\n");
+    let heights = |name: &str| std::fs::read(folder.0.path().join(name)).unwrap();
+    assert!(heights("moved.npy") == heights("plain.npy"));
+}
+
+/// Strokes of the comparison, which has no previews, are in later previews.
+#[test]
+fn gpu_previews_have_the_strokes_of_the_comparison() {
+    let (folder, display) = (Folder::new(), Display::new());
+    write_large(&folder);
+    let stroke = "key 2\nframes 1\ndrag left 50,100 30,5\nframes 1\n";
+    let picture = |name: &str, stroke: &str| {
+        let script = format!(
+            "key h\nkey h\npreview 4,2\nframes 1\nkey c\nframes 1\n{stroke}key c\n\
+             key shift+right\nscreenshot {name}\n"
+        );
+        folder.view(&display, "large.asc --sun 315,35 --sky 0.3 --azimuths 8 --size 512x512", &script);
+        folder.picture(name)
+    };
+    let (with, without) = (picture("with.png", stroke), picture("without.png", "key 2\nframes 1\n"));
+    assert!(apart(&with, &without) > 32.0);
 }
 
 /// The window and `render --camera` use the same passes. Codes are rounded here by the device after

@@ -4,7 +4,8 @@ use ridgelight::scene::{SphereLight, Sun};
 
 use super::viewpoint::height;
 use super::{State, Wish, hundredths};
-use crate::lights::light;
+use crate::lights::{LIGHTS, light};
+use crate::scene_file::Request;
 use crate::setup::sky;
 
 /// Colours that a sphere light cycles through; its brightest channel stays.
@@ -64,15 +65,31 @@ impl State {
     /// Keeps the lights of a type as the user would write them.
     fn ask_for(&mut self, id: &str) -> Wish {
         // The first explicit light replaces the default of a scene without lights.
+        let mut asked = self.asked.clone();
+        self.write_default(&mut asked);
+        asked.set(id, light(id).words(&self.scene.lights));
+        self.asked = asked;
+        Wish::Light
+    }
+
+    /// Writes the sky, and the sun of a clear one. The defaults depend on the viewpoint and on settings that may have
+    /// changed.
+    fn write_default(&self, asked: &mut Request) {
         if self.has_clear_sky {
-            self.asked.set("sky", vec!["clear".to_owned()]);
-            self.asked.set("sun", light("sun").words(&self.scene.lights));
+            asked.set("sky", vec!["clear".to_owned()]);
+            asked.set("sun", light("sun").words(&self.scene.lights));
         }
         if let Some([r, g, b]) = self.scene.lights.sky {
-            self.asked.set("sky", vec![format!("{r},{g},{b}")]);
+            asked.set("sky", vec![format!("{r},{g},{b}")]);
         }
-        self.asked.set(id, light(id).words(&self.scene.lights));
-        Wish::Light
+    }
+
+    /// Writes the lights in use where the user has given none.
+    pub(super) fn write_lights(&self, asked: &mut Request) {
+        let flags = LIGHTS.iter().map(|light| light.id).chain(["sky", "env"]);
+        if flags.into_iter().all(|id| asked.first(id).is_none()) {
+            self.write_default(asked);
+        }
     }
 
     /// The chosen sphere light, if any.
