@@ -100,6 +100,8 @@ pub struct Presented {
     pub timings: Vec<PaneTimes>,
     /// Red, green, blue, 255 of each pixel, row after row, where they were requested.
     pub pixels: Option<Vec<[u8; 4]>>,
+    /// The slot of this picture, for [`Screen::is_finished`].
+    pub slot: usize,
     /// Whether the window presented it. False where the window has changed meanwhile, or lost its surface: draw
     /// again.
     pub is_taken: bool,
@@ -250,19 +252,30 @@ impl Screen {
         }
     }
 
-    /// Whether all submitted work has run, so that [`draw`](Self::draw) and [`light`](Self::light) do not wait.
+    /// Whether all submitted work has run, so that the next [`draw`](Self::draw) or [`light`](Self::light) does not wait.
     ///
     /// # Errors
     /// A lost device.
     pub fn is_idle(&self) -> Result<bool> {
-        let device = &self.gpu.host().device;
-        for slot in self.slots.iter().filter(|slot| slot.is_in_flight) {
-            // SAFETY: the fence is the slot's.
-            if !unsafe { device.get_fence_status(slot.done) }.map_err(failed("polling a frame"))? {
+        for slot in 0..self.slots.len() {
+            if !self.is_finished(slot)? {
                 return Ok(false);
             }
         }
         Ok(true)
+    }
+
+    /// Whether the last work of a slot has run.
+    ///
+    /// # Errors
+    /// A lost device.
+    pub fn is_finished(&self, slot: usize) -> Result<bool> {
+        let Some(slot) = self.slots.get(slot).filter(|slot| slot.is_in_flight) else {
+            return Ok(true);
+        };
+        let device = &self.gpu.host().device;
+        // SAFETY: the fence is the slot's.
+        unsafe { device.get_fence_status(slot.done) }.map_err(failed("polling a frame"))
     }
 
     /// Computes the light of a frame without presenting it. Waits only if the slot's previous work still runs. The first
@@ -329,7 +342,7 @@ impl Screen {
         self.slots[slot].was_lit = panes.iter().map(|pane| !pane.work.is_none()).collect();
         self.next = (slot + 1) % SLOTS;
         let pixels = if options.keeps { Some(self.read_back(slot, (size, swaps))?) } else { None };
-        Ok(Some(Presented { timings, pixels, is_taken }))
+        Ok(Some(Presented { timings, pixels, slot, is_taken }))
     }
 }
 

@@ -65,8 +65,8 @@ pub struct App<'a> {
     clipboard: Option<arboard::Clipboard>,
     /// When the first input came that no submitted picture shows.
     asked: Option<Instant>,
-    /// The same for the picture that the device is drawing.
-    answering: Option<Instant>,
+    /// The same for a picture that the device is drawing, and that picture's slot.
+    answering: Option<(Instant, usize)>,
     /// Milliseconds from input to picture since the last report.
     answers: Vec<f64>,
 }
@@ -266,14 +266,14 @@ impl ApplicationHandler for App<'_> {
             Ok(false) => return events.exit(),
             Err(error) => return self.failed(events, error),
         }
-        let refines = self.uses_preview()
-            && (self.answering.is_some()
-                || self.shown.as_ref().is_some_and(|s| s.preview.is_busy()));
+        let uses_preview = self.uses_preview();
+        let refines = uses_preview && self.shown.as_ref().is_some_and(|s| s.preview.is_busy());
         let is_busy = self.is_due() || self.steps.is_some();
         events.set_control_flow(match (is_busy, self.blank) {
             (true, Some(_)) => ControlFlow::wait_duration(PAUSE),
-            _ if refines || self.uses_preview() && is_busy => ControlFlow::wait_duration(GLANCE),
+            _ if refines || uses_preview && is_busy => ControlFlow::wait_duration(GLANCE),
             (true, None) => ControlFlow::Poll,
+            _ if self.answering.is_some() => ControlFlow::wait_duration(GLANCE),
             (false, _) => ControlFlow::Wait,
         });
     }

@@ -77,6 +77,8 @@ pub struct State {
     exposure: f32,
     /// Whether the exposure is to be found from the picture.
     pub needs_exposure: bool,
+    /// Whether the exposure is a preview's, to be found again from the full light.
+    pub has_coarse_exposure: bool,
     /// Whether the environment is the clear sky around the first sun.
     has_clear_sky: bool,
     viewpoint: Viewpoint,
@@ -108,6 +110,7 @@ impl State {
             moving: None,
             exposure: args.exposure.unwrap_or(1.0),
             needs_exposure: args.exposure.is_none(),
+            has_coarse_exposure: false,
             has_clear_sky,
             viewpoint: Viewpoint::default(),
             text: Text::Keys,
@@ -139,9 +142,16 @@ impl State {
         }
     }
 
-    /// Takes the exposure that suits a picture.
-    pub fn expose(&mut self, picture: &[[f32; 3]], voids: Option<&[bool]>) {
+    /// Takes the exposure that suits a picture, of coarse light or of the full one.
+    pub fn expose(&mut self, picture: &[[f32; 3]], voids: Option<&[bool]>, is_coarse: bool) {
         (self.exposure, self.needs_exposure) = (exposure(picture, voids), false);
+        self.has_coarse_exposure = is_coarse;
+    }
+
+    /// Takes the user's exposure.
+    fn set_exposure(&mut self, exposure: f32) {
+        (self.exposure, self.needs_exposure) = (exposure.clamp(1e-30, 1e30), false);
+        self.has_coarse_exposure = false;
     }
 
     pub fn tone(&self) -> Tone {
@@ -296,8 +306,8 @@ impl State {
             }
             "v" => self.viewpoint.begin_camera(field, size),
             "e" | "d" if self.needs_exposure => {}
-            "e" => self.exposure = (self.exposure * 1.25).clamp(1e-30, 1e30),
-            "d" => self.exposure = (self.exposure * 0.8).clamp(1e-30, 1e30),
+            "e" => self.set_exposure(self.exposure * 1.25),
+            "d" => self.set_exposure(self.exposure * 0.8),
             "a" => self.needs_exposure = true,
             "h" => {
                 self.text = match self.text {

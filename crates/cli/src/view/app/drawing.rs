@@ -6,7 +6,7 @@ use ridgelight::gpu::{Frame, Work};
 use ridgelight::plan::{self, Format, Kind, Map, Plan, Rectangle, View};
 use ridgelight::scene::{HeightField, Scene};
 use ridgelight::{Error, Result};
-use ridgelight_viewer::{Pane, PaneTimes, PresentOptions, Screen, Viewpoint};
+use ridgelight_viewer::{Pane, PaneTimes, PresentOptions, Presented, Screen, Viewpoint};
 
 use super::super::state::{Light, State, Wish};
 use super::compare::Compare;
@@ -71,7 +71,8 @@ impl App<'_> {
         self.previews && self.shown.as_ref().is_some_and(needs)
     }
 
-    /// Draws what is due, or goes on with the light at rest; never waits for the device.
+    /// Draws what is due, or goes on with the light at rest. With previews it begins only while the device is
+    /// idle. It can still wait: a preview is three submissions, of which two are in flight.
     pub(super) fn advance(&mut self) -> Result<()> {
         if !self.uses_preview() {
             return if self.is_due() { self.draw(false).map(|_| ()) } else { Ok(()) };
@@ -87,16 +88,23 @@ impl App<'_> {
 
     /// Whether the device has nothing to do; notes how long the last picture took.
     pub(super) fn is_ready(&mut self) -> Result<bool> {
-        let Some(shown) = &mut self.shown else { return Ok(false) };
-        if !shown.screen.is_idle()? {
-            return Ok(false);
-        }
-        if let Some(asked) = self.answering.take() {
+        self.note_answer(None)?;
+        self.shown.as_ref().map_or(Ok(false), |shown| shown.screen.is_idle())
+    }
+
+    /// Notes the time from input to its picture, once the device has drawn that; `reused` is a slot whose last picture it has
+    /// drawn.
+    pub(super) fn note_answer(&mut self, reused: Option<usize>) -> Result<()> {
+        let (Some((asked, slot)), Some(shown)) = (self.answering, &mut self.shown) else {
+            return Ok(());
+        };
+        if reused == Some(slot) || shown.screen.is_finished(slot)? {
+            self.answering = None;
             let ms = asked.elapsed().as_secs_f64() * 1e3;
             shown.figures.answer_ms = Some(ms);
             self.answers.push(ms);
         }
-        Ok(true)
+        Ok(())
     }
 
     /// Goes on with the full light.
@@ -112,6 +120,11 @@ impl App<'_> {
                 }
             }
             Ok(true) => {
+                if self.state.has_coarse_exposure
+                    && let Err(why) = shown.expose(&mut self.state, false)
+                {
+                    return self.fall_back(why);
+                }
                 (shown.good, shown.has_fallen_back) = (Some(self.state.light()), false);
                 self.due = self.due.max(1);
                 return self.save_requested();
@@ -124,6 +137,7 @@ impl App<'_> {
     /// Draws a frame. Returns its pixels if they are kept; none where the window has no area or is
     /// not ready.
     pub(super) fn draw(&mut self, keeps: bool) -> Result<Option<Vec<[u8; 4]>>> {
+        self.note_answer(None)?;
         let uses_preview = self.uses_preview();
         let Some(shown) = &mut self.shown else { return Ok(None) };
         let Some(size) = shown.screen.size(shown.inner)? else {
@@ -157,7 +171,7 @@ impl App<'_> {
             shown.compare.iter_mut().for_each(Compare::scene_changed);
         }
         if self.state.needs_exposure
-            && let Err(why) = shown.expose(&mut self.state)
+            && let Err(why) = shown.expose(&mut self.state, edited.is_some())
         {
             return self.fall_back(why).map(|()| None);
         }
@@ -171,19 +185,22 @@ impl App<'_> {
             Ok(drawn) => drawn,
             Err(why) => return self.fall_back(why).map(|()| None),
         };
-        let Some((pixels, is_taken)) = drawn else {
+        let Some(Presented { pixels, slot, is_taken, .. }) = drawn else {
             edited.into_iter().for_each(|at| self.state.give_back_edited(at));
             return Ok(self.stay_blank("it accepts no frames"));
         };
         self.blank = None;
-        self.answering = self.answering.or(self.asked.take());
+        self.note_answer(Some(slot))?;
+        if self.answering.is_none() {
+            self.answering = self.asked.take().map(|asked| (asked, slot));
+        }
         self.count();
         if !is_taken || asks {
             self.due = self.due.max(1);
         }
         self.change(changes)?;
         self.save_requested()?;
-        Ok(Some(pixels))
+        Ok(Some(pixels.unwrap_or_default()))
     }
 
     /// Handles a refusal that the plan did not predict: returns to the last light that could be
@@ -302,23 +319,40 @@ impl OpenWindow {
         Ok(())
     }
 
-    /// Finds the exposure of the light that is shown next.
-    fn expose(&mut self, state: &mut State) -> Result<()> {
+    /// Finds the exposure of the light that is shown next, which is computed first if it is stale or its heights are edited.
+    fn expose(&mut self, state: &mut State, is_edited: bool) -> Result<()> {
         let Self { screen, preview, lit, .. } = self;
         if let Some((lit, scene, _)) = preview.lit() {
             let pixels = screen.gpu().pixels(lit, 0)?;
-            state.expose(&render::rgb(&pixels), scene.field.voids());
+            state.expose(&render::rgb(&pixels), scene.field.voids(), true);
             return Ok(());
         }
         let Some(lit) = lit else { return Ok(()) };
-        let all: Vec<usize> = (0..lit.plan().passes.len()).collect();
         let field = &state.scene.field;
-        let heights = Some((field.heights_m(), whole(field)));
-        screen.light(lit, heights, (Work::Passes(&all), &[]))?;
+        if self.is_stale || is_edited {
+            let all: Vec<usize> = (0..lit.plan().passes.len()).collect();
+            let heights = Some((field.heights_m(), whole(field)));
+            let slot = screen.light(lit, heights, (Work::Passes(&all), &[]))?;
+            screen.wait()?;
+            if let Some(times) = lit.renderer().timings(slot) {
+                self.figures.light = times;
+            }
+        }
         let picture = render::rgb(&screen.gpu().pixels(lit, 0)?);
         let voids = field.voids().map(<[bool]>::to_vec);
-        state.expose(&picture, voids.as_deref());
+        state.expose(&picture, voids.as_deref(), false);
+        if std::mem::take(&mut self.is_stale) {
+            self.has_complete(state);
+        }
         Ok(())
+    }
+
+    /// The state's light is complete.
+    fn has_complete(&mut self, state: &State) {
+        self.has_fallen_back = false;
+        if !state.is_moving() {
+            self.good = Some(state.light());
+        }
     }
 
     /// Makes or frees the comparison pictures.
@@ -342,13 +376,13 @@ impl OpenWindow {
         }
     }
 
-    /// Pixels if they are kept, and whether the window accepted them; none where it was not ready.
+    /// None where the window was not ready.
     fn draw(
         &mut self,
         state: &State,
         edited: Option<Rectangle>,
         keeps: bool,
-    ) -> Result<Option<(Vec<[u8; 4]>, bool)>> {
+    ) -> Result<Option<Presented>> {
         let swaps = self.screen.swaps();
         let (lefts, pane_size) = places(self.size, self.compare.is_some());
         let smaller = self.preview.lit();
@@ -413,12 +447,9 @@ impl OpenWindow {
             self.has_fallen_back = false;
         }
         if !is_preview && std::mem::take(&mut self.is_stale) {
-            self.has_fallen_back = false;
-            if !state.is_moving() {
-                self.good = Some(state.light());
-            }
+            self.has_complete(state);
         }
-        Ok(Some((done.pixels.unwrap_or_default(), done.is_taken)))
+        Ok(Some(done))
     }
 
     /// Times of an earlier frame, whose passes tell whether it was an edit.

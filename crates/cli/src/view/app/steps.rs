@@ -22,6 +22,7 @@ impl App<'_> {
         if self.shown.is_none() {
             return Ok(true);
         }
+        self.note_answer(None)?;
         if self.steps.is_none() {
             self.advance()?;
             return Ok(true);
@@ -76,7 +77,7 @@ impl App<'_> {
             Step::Rest => {
                 self.advance()?;
                 let preview = self.shown.as_ref().is_some_and(|shown| shown.preview.is_busy());
-                let is_busy = self.uses_preview() && (preview || self.answering.is_some());
+                let is_busy = self.uses_preview() && preview || self.answering.is_some();
                 (is_busy || self.is_due()).then_some(Step::Rest)
             }
             Step::Screenshot(path) => match self.picture(true)? {
@@ -216,10 +217,11 @@ impl App<'_> {
         let answers = std::mem::take(&mut self.answers);
         let full_s = self.shown.as_ref().and_then(|shown| shown.preview.full_s);
         let error = self.shown.as_ref().and_then(|shown| shown.preview.error);
-        if let (Some(slowest), Some(full_s)) = (answers.iter().copied().reduce(f64::max), full_s) {
+        if let Some(slowest) = answers.iter().copied().reduce(f64::max) {
+            let full = full_s.map_or_else(String::new, |s| format!("; full light after {s:.2} s"));
             let share = error.map_or_else(String::new, |e| format!(", RMSE {:.2} %", 100.0 * e));
             crate::say!(
-                "{what}input to preview, median of {} {:.1} ms, longest {slowest:.1} ms; full light after {full_s:.2} s{share}",
+                "{what}input to picture, median of {} {:.1} ms, longest {slowest:.1} ms{full}{share}",
                 answers.len(),
                 median(answers.clone()),
             );

@@ -28,9 +28,7 @@ impl State {
             Change::Key(name) => return self.key(name, size),
             Change::Text(text) => self.text = text,
             Change::Sun(to) => return self.point_sun(to),
-            Change::Exposure(exposure) => {
-                (self.exposure, self.needs_exposure) = (exposure.clamp(1e-30, 1e30), false);
-            }
+            Change::Exposure(exposure) => self.set_exposure(exposure),
             Change::Setting(name, word) => {
                 return match self.settings.set(name, word, &mut self.asked) {
                     Ok(quality) => {
