@@ -32,6 +32,8 @@ pub struct Gui {
 impl Gui {
     pub fn new(window: &Window) -> Self {
         let context = egui::Context::default();
+        // A press and a release are a click however long a picture takes between them.
+        context.options_mut(|options| options.input_options.max_click_duration = f64::INFINITY);
         set_style(&context);
         let id = egui::ViewportId::ROOT;
         let scale = Some(window.scale_factor() as f32);

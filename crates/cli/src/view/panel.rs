@@ -99,6 +99,9 @@ impl Panel {
         for note in state.notes(plan) {
             ui.label(RichText::new(note).color(FAINT));
         }
+        if ui.ctx().egui_wants_keyboard_input() {
+            self.places.push(("typing".to_owned(), ui.min_rect()));
+        }
         ui.separator();
         if self.fold(ui, "More settings (Tab)", (state.text(), Text::Settings)) {
             expert.iter().for_each(|of| self.setting(ui, of));
@@ -220,6 +223,8 @@ impl Panel {
                     self.slider(ui, setting.name, slider).then(|| share.to_string())
                 }
             };
+            let line = ui.min_rect();
+            self.places.push((format!("{} = {word}", setting.name), line));
             if let Some(new) = new.filter(|new| new != word) {
                 self.changes.push(Change::Setting(setting.name, new));
             }
@@ -230,7 +235,11 @@ impl Panel {
     fn slider(&mut self, ui: &mut Ui, name: &str, slider: Slider<'_>) -> bool {
         // A value that nobody touches stays as it is: neither clamped nor rounded.
         let slider = slider.clamping(egui::SliderClamping::Edits).update_while_editing(false);
+        let (rail, gap) = (ui.spacing().slider_width, ui.spacing().item_spacing.x);
         let response = ui.add(slider);
+        let mut value = response.rect;
+        value.min.x = (value.min.x + rail + gap).min(value.max.x);
+        self.places.push((format!("{name} value"), value));
         self.places.push((name.to_owned(), response.rect));
         response.changed()
     }

@@ -28,6 +28,8 @@ pub enum Step {
     Text(PathBuf),
     /// Saves the places of the panel's parts.
     Places(PathBuf),
+    /// Draws and waits for input until the panel has a part of a name and is settled; then saves the places.
+    Shown(PathBuf, String),
     /// Draws until the reference has so many paths per texel.
     Paths(u32),
     /// Prints the frames so far and their milliseconds since the last report, after some words.
@@ -78,7 +80,7 @@ pub fn read(path: &Path) -> Result<Vec<Step>> {
                 found: line.to_owned(),
                 expected:
                     "key, drag, wheel, frames, size, lose, picture, scene, screenshot, text, \
-                        places, paths, preview, rest, report, wait or patience, with its values"
+                        places, shown, paths, preview, rest, report, wait or patience, with its values"
                         .into(),
             }
         })?);
@@ -118,6 +120,7 @@ fn step(line: &str) -> Option<Step> {
         ["screenshot", file] => Step::Screenshot(file.into()),
         ["text", file] => Step::Text(file.into()),
         ["places", file] => Step::Places(file.into()),
+        ["shown", file, _, ..] => Step::Shown(file.into(), words[2..].join(" ")),
         ["paths", count] => Step::Paths(count.parse().ok()?),
         ["report", ..] => Step::Report(words[1..].join(" ")),
         ["wait", file] => Step::Wait(file.into()),

@@ -152,40 +152,53 @@ fn gpu_real_keys_and_mouse_events_work() {
     assert!(folder.0.path().join("heard.npy").exists());
 }
 
-/// A window whose script saves the places of the panel's parts, then waits until `act`, the words
-/// of xdotool that it makes of those places, is done. Returns the scene that it saves then.
-fn acted(size: &str, act: impl Fn(&dyn Fn(&str) -> [i32; 4]) -> String) -> serde_json::Value {
+/// Places of the panel's parts by name: the middle, the width and the height of each.
+struct Places(String);
+
+impl Places {
+    fn of(&self, name: &str) -> [i32; 4] {
+        let line = self.0.lines().find_map(|line| line.strip_prefix(&format!("{name}: ")));
+        let line = line.unwrap_or_else(|| panic!("{name} in {}", self.0));
+        let all: Vec<i32> = line.split(' ').map(|n| n.parse().unwrap()).collect();
+        <[i32; 4]>::try_from(all).unwrap()
+    }
+}
+
+/// A part of the panel that a test waits for, and the words of xdotool that follow from the places then.
+type Act<'a> = (&'a str, &'a dyn Fn(&Places) -> String);
+
+/// A window whose script waits for a part of the panel before each act. Returns the scene that it saves after the last.
+fn acted(size: &str, acts: &[Act<'_>]) -> serde_json::Value {
     let (folder, display) = (Folder::new(), Display::new());
-    folder.write(
-        "script",
-        b"key h\nframes 4\nplaces places\nwait acted\nframes 2\nscene scene.json\n",
+    let waits = acts.iter().enumerate().map(|(n, (part, _))| format!("shown places{n} {part}\n"));
+    let script = format!(
+        "key h\nframes 4\n{}wait acted\nframes 2\nscene scene.json\n",
+        waits.collect::<String>()
     );
+    folder.write("script", script.as_bytes());
     let flag = if super::is_validated() { " --validate" } else { "" };
     let args = format!("view hills.asc {LIT} --size {size} --exposure 1 --script script{flag}");
     let mut view = folder.command(&args);
     view.env("DISPLAY", &display.name).stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut view = view.spawn().unwrap();
-    let file = folder.0.path().join("places");
-    let places = loop {
-        match std::fs::read_to_string(&file) {
-            Ok(text) if text.contains("keys (h)") => break text,
-            _ => std::thread::sleep(std::time::Duration::from_millis(20)),
-        }
-        assert!(view.try_wait().unwrap().is_none(), "ended before its panel was shown");
-    };
-    let place = |name: &str| {
-        let line = places.lines().find_map(|line| line.strip_prefix(&format!("{name}: ")));
-        let line = line.unwrap_or_else(|| panic!("{name} in {places}"));
-        let all: Vec<i32> = line.split(' ').map(|n| n.parse().unwrap()).collect();
-        <[i32; 4]>::try_from(all).unwrap()
-    };
-    let mut xdotool = Command::new("timeout");
-    xdotool.args(["1200", "xdotool", "search", "--sync", "--name", "hills.asc - ridgelight - "]);
-    xdotool.args(["windowfocus", "--sync"]).args(act(&place).split(' '));
-    let acted = xdotool.env("DISPLAY", &display.name).status();
+    for (n, (part, act)) in acts.iter().enumerate() {
+        let file = folder.0.path().join(format!("places{n}"));
+        let places = loop {
+            if let Ok(text) = std::fs::read_to_string(&file) {
+                break Places(text);
+            }
+            std::thread::sleep(std::time::Duration::from_millis(20));
+            assert!(view.try_wait().unwrap().is_none(), "ended before it showed {part}");
+        };
+        let mut xdotool = Command::new("timeout");
+        let title = "hills.asc - ridgelight - ";
+        xdotool.args(["1200", "xdotool", "search", "--sync", "--name", title]);
+        xdotool.args(["windowfocus", "--sync"]).args(act(&places).split_whitespace());
+        let done = xdotool.env("DISPLAY", &display.name).status();
+        assert!(done.expect("xdotool: run tools/setup --tests").success());
+    }
     folder.write("acted", b"");
     let Output { status, stdout, stderr } = view.wait_with_output().unwrap();
-    assert!(acted.expect("xdotool: run tools/setup --tests").success());
     let [out, said] = [stdout, stderr].map(|text| String::from_utf8(text).unwrap());
     assert!(status.success() && said.is_empty(), "{status}: {said}");
     assert_eq!(super::is_validated(), out.contains("0 validation messages"), "{out}");
@@ -197,15 +210,16 @@ fn acted(size: &str, act: impl Fn(&dyn Fn(&str) -> [i32; 4]) -> String) -> serde
 /// elevation, and at half of the radius atan(1 / 24) of azimuth: the places are rounded to one.
 #[test]
 fn gpu_sun_is_dragged_on_the_compass() {
-    let scene = acted("700x500", |place| {
-        let [x, y, width, _] = place("compass");
+    let drag = |places: &Places| {
+        let [x, y, width, _] = places.of("compass");
         let (from, to) = ([x - width / 4, y - width / 4], [x + width / 4, y]);
         // Faster than frames, and released at once.
         format!(
             "mousemove {} {} mousedown 1 mousemove {} {y} mousemove {} {} mouseup 1",
             from[0], from[1], x, to[0], to[1]
         )
-    });
+    };
+    let scene = acted("700x500", &[("keys (h)", &drag)]);
     let sun = &scene["lights"]["suns"][0];
     let [azimuth, elevation] =
         ["azimuth_deg", "elevation_deg"].map(|name| sun[name].as_f64().unwrap());
@@ -219,21 +233,22 @@ fn gpu_sun_is_dragged_on_the_compass() {
 /// digits are no keys of the window: 2 is the key of a brush, which a press on the field would use.
 #[test]
 fn gpu_settings_are_clicked_and_typed() {
-    let scene = acted("700x500", |place| {
-        let [x, y, _, height] = place("method");
-        let [right, middle, width, _] = place("azimuths");
-        // The value is behind the slider; the second word is in the list's second line.
-        let value = right + width / 2 - 12;
-        format!(
-            "mousemove {x} {y} click 1 sleep 1 mousemove {x} {} sleep 1 click 1 sleep 1 \
-            mousemove {value} {middle} click 1 sleep 1 key ctrl+a key 2 key 4 \
-            sleep 1 key Return sleep 1 mousemove 500 300 mousedown 1 mousemove 520 300 mouseup 1",
-            y + 2 * height + 10
-        )
-        .split_whitespace()
-        .collect::<Vec<_>>()
-        .join(" ")
-    });
+    let click = |places: &Places, name: &str| {
+        let [x, y, ..] = places.of(name);
+        format!("mousemove {x} {y} click 1")
+    };
+    let scene = acted(
+        "700x500",
+        &[
+            ("keys (h)", &|places| click(places, "method")),
+            ("method sweep", &|places| click(places, "method sweep")),
+            ("method = sweep", &|places| click(places, "azimuths value")),
+            ("typing", &|_| "key ctrl+a key 2 key 4 key Return".to_owned()),
+            ("azimuths = 24", &|_| {
+                "mousemove 500 300 mousedown 1 mousemove 520 300 mouseup 1".to_owned()
+            }),
+        ],
+    );
     let quality = &scene["quality"];
     assert_eq!(quality["azimuths"].as_f64(), Some(24.0), "{scene}");
     assert_eq!(quality["method"], "sweep", "{scene}");

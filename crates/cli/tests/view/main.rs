@@ -183,10 +183,18 @@ fn gpu_default_light_is_saved() {
     assert_same(&folder, "map.png", "default.png");
 }
 
-/// RMSE of a picture over its own mean.
-fn error(folder: &Folder, shown: &str, full: &str) -> f64 {
-    let (a, b) = (folder.picture(shown), folder.picture(full));
-    let pairs = || colours(&a).concat().into_iter().zip(colours(&b).concat());
+/// RMSE of a picture in some columns and rows, over its own mean there.
+fn error(folder: &Folder, shown: &str, full: &str, [left, top, cols, rows]: [usize; 4]) -> f64 {
+    let cut = |name: &str| {
+        let picture = folder.picture(name);
+        let within = |plane: &&[f32]| -> Vec<f32> {
+            let rows = plane.chunks_exact(picture.cols).skip(top).take(rows);
+            rows.flat_map(|row| &row[left..left + cols]).copied().collect()
+        };
+        colours(&picture).iter().map(within).collect::<Vec<_>>().concat()
+    };
+    let (a, b) = (cut(shown), cut(full));
+    let pairs = || a.iter().zip(&b);
     let square: f64 = pairs().map(|(a, b)| f64::from(a - b).powi(2)).sum();
     let mean: f64 = pairs().map(|(_, b)| f64::from(b)).sum();
     (square * pairs().count() as f64).sqrt() / mean
@@ -215,7 +223,9 @@ fn gpu_previews_show_the_new_light() {
         screenshot preview.png\npicture saved.png\nscreenshot full.png\nscene full.json\n\
         key v\nframes 1\nscreenshot seen_before.png\nkey shift+left\nkey shift+left\nkey shift+left\nkey shift+left\n\
         screenshot seen.png\nrest\nscreenshot seen_full.png\n\
-        key v\nkey 2\nscreenshot unedited.png\ndrag left 200,200 40,10\nscreenshot edit.png\nrest\nscreenshot edit_full.png\n\
+        key v\nkey 2\nkey 1\nscreenshot unedited.png\nkey 2\ndrag left 200,200 40,10\nkey 1\n\
+        screenshot edit.png\nrest\nscreenshot edit_full.png\nkey 2\nrest\ndrag left 300,300 20,5\n\
+        screenshot again.png\nrest\nscreenshot again_full.png\n\
         key w\nframes 2\nscene moved.json\nkey w\nrest\n\
         key tab\nkey tab\nkey tab\nkey tab\nkey tab\nkey ,\nkey ,\nkey ,\ntext refused.txt\nkey .\nkey .\nframes 1\nrest\n";
     folder.view(&display, "large.asc --size 512x512", script);
@@ -226,36 +236,38 @@ fn gpu_previews_show_the_new_light() {
         let at_rest = apart(&picture(name), &picture("render.png"));
         assert!(at_rest <= 1.0, "{name}: {at_rest} codes");
     }
-    for (shown, full, old) in [
-        ("preview.png", "full.png", "before.png"),
-        ("seen.png", "seen_full.png", "seen_before.png"),
-        ("edit.png", "edit_full.png", "unedited.png"),
+    let whole = [0, 0, 512, 512];
+    for (shown, full, old, at) in [
+        ("preview.png", "full.png", "before.png", whole),
+        ("seen.png", "seen_full.png", "seen_before.png", whole),
+        ("edit.png", "edit_full.png", "unedited.png", [168, 168, 104, 74]),
+        ("again.png", "again_full.png", "unedited.png", [268, 268, 84, 69]),
     ] {
-        let [new, old] = [full, old].map(|other| error(&folder, shown, other));
+        let [new, old] = [full, old].map(|other| error(&folder, shown, other, at));
         assert!(new < 0.05 && old > 2.0 * new, "{shown}: {new}, {old}");
     }
-    // A stroke of radius 160 m from column 200, row 200, 40 right and 10 down. The light far from it is the same.
+    // A stroke of radius 160 m from column 200, row 200, 40 right and 10 down. The light far from it is the same. Key 1 hides
+    // the brush's ring, which is at the pointer.
     let (edit, unedited) = (picture("edit.png"), picture("unedited.png"));
     let reached = |from: usize, to: usize, margin: usize, at: usize| {
         (from - margin..to + margin).contains(&at)
     };
-    let (mut inside, mut outside) = (0.0_f64, 0.0_f64);
+    let (mut inside, mut outside, mut farthest) = (0.0_f64, 0.0_f64, [0, 0]);
     for (a, b) in colours(&edit).iter().zip(colours(&unedited)) {
         for (i, (a, b)) in a.iter().zip(b).enumerate() {
             let off = (code(*a) - code(*b)).abs();
-            let is_in = |margin| {
-                reached(168, 272, margin, i % 512) && reached(168, 242, margin, i / 512)
-            };
-            // The brush's ring was in the upper left corner before.
-            let is_ring = i % 512 < 36 && i / 512 < 36;
+            let is_in =
+                |margin| reached(168, 272, margin, i % 512) && reached(168, 242, margin, i / 512);
             if is_in(0) {
                 inside = inside.max(off);
-            } else if !is_in(96) && !is_ring {
-                outside = outside.max(off);
+            } else if !is_in(96) {
+                if off > outside {
+                    (outside, farthest) = (off, [i % 512, i / 512]);
+                }
             }
         }
     }
-    assert!(inside > 32.0 && outside <= 4.0, "{inside}, {outside} codes");
+    assert!(inside > 32.0 && outside <= 4.0, "{inside}, {outside} codes at {farthest:?}");
     let refused = std::fs::read_to_string(folder.0.path().join("refused.txt")).unwrap();
     assert!(refused.contains("--lines"), "{refused}");
     // Saved heights are those of the same frame without previews.
@@ -275,10 +287,15 @@ fn gpu_previews_have_the_strokes_of_the_comparison() {
             "key h\nkey h\npreview 4,2\nframes 1\nkey c\nframes 1\n{stroke}key c\n\
              key shift+right\nscreenshot {name}\n"
         );
-        folder.view(&display, "large.asc --sun 315,35 --sky 0.3 --azimuths 8 --size 512x512", &script);
+        folder.view(
+            &display,
+            "large.asc --sun 315,35 --sky 0.3 --azimuths 8 --size 512x512",
+            &script,
+        );
         folder.picture(name)
     };
-    let (with, without) = (picture("with.png", stroke), picture("without.png", "key 2\nframes 1\n"));
+    let (with, without) =
+        (picture("with.png", stroke), picture("without.png", "key 2\nframes 1\n"));
     assert!(apart(&with, &without) > 32.0);
 }
 

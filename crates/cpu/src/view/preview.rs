@@ -38,11 +38,7 @@ impl Colours<'_> {
 }
 
 /// Exit radiance of the fine grid.
-pub fn preview(
-    fine: &HeightField,
-    albedo: Colours<'_>,
-    coarse: &Coarse<'_>,
-) -> Vec<[f64; 3]> {
+pub fn preview(fine: &HeightField, albedo: Colours<'_>, coarse: &Coarse<'_>) -> Vec<[f64; 3]> {
     let towards = coarse.sun.map_or([0.0, 0.0, 1.0], |(_, sun)| direction(sun));
     let most = coarse.sun.map_or([0.0; 3], |(_, sun)| sun.irradiance.map(f64::from));
     let most = most.map(|e| e / std::f64::consts::PI);

@@ -415,7 +415,8 @@ impl Level {
         self.blocks.take_lights(&state.scene, &mut self.scene);
         match (state.moving(), &mut self.moving) {
             (Some(full), moving) => {
-                if edited.is_some() || moving.as_ref().is_none_or(|moving| moving.kind != full.kind) {
+                if edited.is_some() || moving.as_ref().is_none_or(|moving| moving.kind != full.kind)
+                {
                     let still = self.blocks.field(full.still())?;
                     *moving = Some(full.over_other(still));
                 }
@@ -546,11 +547,50 @@ fn work(scene: &Scene, quality: &Quality, side: usize) -> f64 {
     texels * (of_sky * f64::from(1 + 2 * quality.bounces.count) + 8.0 * others as f64)
 }
 
-/// The full light in passes of few azimuths, so that input never waits long.
+/// The full light in passes of few azimuths, so that input waits for about [`PART_MS`].
 fn in_parts(state: &State, limits: &Limits, rate: f64) -> Result<Plan> {
     let texels = (state.scene.field.rows() * state.scene.field.cols()) as f64;
     // A sweep and its shading share the time.
     let azimuths = (2.0 * PART_MS * rate / texels).clamp(1.0, 1e6) as u32;
     let image_layers = limits.image_layers.min(azimuths.next_power_of_two());
     state.plan(&Limits { image_layers, ..*limits }).or_else(|_| state.plan(limits))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ridgelight::scene::{HeightField, Lights, SETTINGS, Surface, Values, setting};
+
+    /// With every method: what the full light accepts, previews accept too.
+    #[test]
+    fn every_valid_setting_has_a_preview() {
+        let field = HeightField::new(64, 64, &[0.0; 64 * 64], [1.0; 2], None).unwrap();
+        let lights = Lights { sky: Some([1.0; 3]), ..Lights::default() };
+        let scene = Scene { field, surface: Surface::default(), lights };
+        let limits = Limits::boundless(true, 1 << 40);
+        let words = |values: &Values| -> Vec<String> {
+            match values {
+                Values::Words(words) => words.iter().map(|word| word.name.to_owned()).collect(),
+                Values::OneOf(all) => all.iter().map(u32::to_string).collect(),
+                _ => Vec::new(),
+            }
+        };
+        let method = setting("method").expect("a setting");
+        let mut count = 0;
+        for of_method in words(&method.values) {
+            for other in SETTINGS {
+                for word in words(&other.values) {
+                    let mut quality = Quality::default();
+                    method.set(&mut quality, &of_method).unwrap();
+                    let is_full = other.set(&mut quality, &word).is_ok()
+                        && plan::picture(&scene, &quality, &limits, Picture::default()).is_ok();
+                    let wanted = Picture { light_layers: true, ..Picture::default() };
+                    let small = plan::picture(&scene, &coarser(&quality), &limits, wanted);
+                    assert!(!is_full || small.is_ok(), "{of_method}, {} {word}", other.name);
+                    count += u32::from(is_full);
+                }
+            }
+        }
+        assert!(count > 20, "{count}");
+    }
 }

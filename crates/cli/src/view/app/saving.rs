@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use ridgelight::{Error, Result};
 use ridgelight::scene::Tone;
+use ridgelight::{Error, Result};
 use ridgelight_io as files;
 
 use super::{App, OpenWindow};

@@ -95,6 +95,17 @@ impl App<'_> {
                 let text = self.places();
                 files::write_text(&path, &text).map(|()| None)?
             }
+            Step::Shown(path, name) => {
+                let places = self.shown.as_ref().map_or(&[][..], |shown| &shown.places);
+                let is_there = places.iter().any(|(known, _)| *known == name);
+                let is_due = self.is_due();
+                match (is_due, is_there) {
+                    (true, _) => self.advance()?,
+                    (false, true) => files::write_text(&path, &self.places())?,
+                    (false, false) => std::thread::sleep(Duration::from_millis(5)),
+                }
+                (is_due || !is_there).then_some(Step::Shown(path, name))
+            }
             Step::Paths(count) => {
                 self.check_paths(count)?;
                 let compare = self.shown.as_ref().and_then(|shown| shown.compare.as_ref());
