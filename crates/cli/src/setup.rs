@@ -21,7 +21,7 @@ use crate::args::{
     albedo_colour, flag,
 };
 use crate::lights::{LIGHTS, light};
-pub use settings_used::{as_json, asked, metadata, typed};
+pub use settings_used::{as_json, asked, metadata, of_field, typed};
 use tint::Tint;
 
 /// How a command ended without an error.

@@ -14,7 +14,7 @@ use super::kinds::{self, Kind, Map, Normals, OfDirections, Source, Table};
 use super::map::Wanted;
 use super::stages::{FILES, Stage};
 use super::{MANIFEST, request};
-use crate::horizon;
+use crate::{horizon, maps};
 
 /// The stage that finds the horizons of all kinds that read them.
 pub const HORIZONS: &str = "horizons";
@@ -232,7 +232,7 @@ impl<'a> Job<'a> {
             all.push(horizon::plan_from(field, border, self.quality, limits, batch, false)?);
         }
         if self.has(|kind| matches!(kind.source, Source::SkyView)) {
-            all.push(kinds::sky_view_plan(self, limits)?);
+            all.push(maps::sky_view_plan(self.field(), self.border(), self.quality, limits)?);
         }
         for of in self.of_directions() {
             all.push((of.plan)(self, limits)?);

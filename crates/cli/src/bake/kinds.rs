@@ -17,7 +17,6 @@ use super::job::Job;
 use super::map::{Format, MapFiles, Wanted};
 use super::stages::{Stage, Stages};
 pub use far_field::{diffuse, direct_plan, rays};
-pub use horizons::{SKY_VIEW, sky_view_plan};
 pub use light::paths;
 pub use reflection::{FACTORS, PAIRS, Table};
 
