@@ -177,7 +177,7 @@ fn codes(plane: &[f32], [black, white]: [f32; 2]) -> (usize, Vec<u8>) {
 pub fn hillshade(args: &HillshadeArgs) -> Result<Outcome> {
     let lights = Lights { suns: vec![args.sun], ..Lights::default() };
     lights.check()?;
-    let job = Job::new(&args.input, &args.output.path, &args.surface, &args.global)?;
+    let job = Job::new(&args.input, &args.file.output, &args.surface, &args.global)?;
     let plane = lambert(&job.field, setup::border(&args.surface), args.sun);
     let mut metadata = setup::of_field(&job.field);
     let words = light("sun").words(&lights).concat();
@@ -199,7 +199,7 @@ fn lambert(field: &HeightField, border: Border, sun: Sun) -> Vec<f32> {
 /// `ao` and `svf`.
 pub fn sky_view_map(args: &SkyViewArgs) -> Result<Outcome> {
     let quality = args.quality.quality()?;
-    let job = Job::new(&args.input, &args.output.path, &args.surface, &args.global)?;
+    let job = Job::new(&args.input, &args.file.output, &args.surface, &args.global)?;
     let border = setup::border(&args.surface);
     let plan = |limits: &Limits| sky_view_plan(&job.field, border, &quality, limits);
     setup::check_plan(&args.global, plan)?;
@@ -217,7 +217,7 @@ pub fn openness(args: &OpennessArgs) -> Result<Outcome> {
     let quality = args.quality.quality()?;
     let sign = if args.negative { -1.0 } else { 1.0 };
     let surface = FieldArgs { z_scale: sign * args.surface.z_scale, ..args.surface };
-    let job = Job::new(&args.input, &args.output.path, &surface, &args.global)?;
+    let job = Job::new(&args.input, &args.file.output, &surface, &args.global)?;
     let (field, border) = (&job.field, setup::border(&surface));
     setup::check_plan(&args.global, |limits| {
         let most = horizon::at_once(field, limits);

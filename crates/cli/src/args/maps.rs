@@ -51,7 +51,7 @@ pub struct HillshadeArgs {
     #[command(flatten)]
     pub input: Input,
     #[command(flatten)]
-    pub output: MapOutput,
+    pub file: MapOutput,
     /// Sun: compass azimuth, elevation (degrees)
     ///
     /// Its diameter and irradiance change nothing here.
@@ -75,7 +75,7 @@ pub struct SkyViewArgs {
     #[command(flatten)]
     pub input: Input,
     #[command(flatten)]
-    pub output: MapOutput,
+    pub file: MapOutput,
     #[command(flatten)]
     pub surface: FieldArgs,
     #[command(flatten)]
@@ -93,7 +93,7 @@ pub struct OpennessArgs {
     #[command(flatten)]
     pub input: Input,
     #[command(flatten)]
-    pub output: MapOutput,
+    pub file: MapOutput,
     /// Negative openness: that of the negated heights
     #[arg(long, help_heading = "Output")]
     pub negative: bool,
@@ -111,8 +111,8 @@ pub struct MapOutput {
     ///
     /// A .tif is a GeoTIFF and lies where the input lies. A .png is grey and linear, not sRGB: hillshade has its values, ao and
     /// svf have 0 to 1 as 0 to 255, openness has 60 to 95 degrees as 0 to 255. Voids are NaN, or transparent.
-    #[arg(short, long = "output", value_name = "OUT.{tif,npy,exr,png}", help_heading = "Output")]
-    pub path: PathBuf,
+    #[arg(short, long, value_name = "OUT.{tif,npy,exr,png}", help_heading = "Output")]
+    pub output: PathBuf,
 }
 
 fn sun(words: &str) -> Result<Sun, String> {
