@@ -7,7 +7,9 @@ use glam::DVec3;
 use ridgelight::Result;
 use ridgelight::gpu::{Headless, Timing};
 use ridgelight::plan::{self, Limits, Picture, Plan};
-use ridgelight::scene::{Border, HeightField, Lights, Quality, Scene, Sun, Surface, normal};
+use ridgelight::scene::{
+    Border, Bounces, HeightField, Lights, Quality, Scene, Sun, Surface, normal,
+};
 use ridgelight_io as files;
 use ridgelight_io::{Channels, Georeference, Layer};
 
@@ -198,14 +200,17 @@ fn lambert(field: &HeightField, border: Border, sun: Sun) -> Vec<f32> {
 
 /// `ao` and `svf`.
 pub fn sky_view_map(args: &SkyViewArgs) -> Result<Outcome> {
-    let quality = args.quality.quality()?;
+    let quality = Quality { bounces: Bounces::default(), ..args.quality.quality()? };
     let job = Job::new(&args.input, &args.file.output, &args.surface, &args.global)?;
     let border = setup::border(&args.surface);
     let plan = |limits: &Limits| sky_view_plan(&job.field, border, &quality, limits);
     setup::check_plan(&args.global, plan)?;
     let (mut gpu, limits) = setup::device(&args.global)?;
     let plan = plan(&limits)?;
-    idle::say(args.global.quiet, &args.quality.written, &plan.settings);
+    let mut used = plan.settings.clone();
+    used.retain(|(name, _)| !name.starts_with("bounce"));
+    let why = |name: &str| name.starts_with("bounce").then(|| "for this map".to_owned());
+    idle::say_why(args.global.quiet, &args.quality.written, &used, &why);
     let metadata = setup::metadata(&gpu, &job.field, &plan);
     let bar = setup::terminal::progress(args.global.quiet, "sky view");
     let (plane, times) = sky_view(&mut gpu, &job.field, plan)?;

@@ -12,8 +12,9 @@ const HILLSHADE_HELP: &str = "\
 Values are 1 + 254 max(cos, 0), where cos is that between the normal and the sun: those of `gdaldem hillshade` (Horn), \
 not rounded except in a .png. No shadows are cast; `ridgelight render --sun AZ,EL` casts them.
 
-Differences from gdaldem: heights and cells are both in metres, so degrees need no -s. At the edge and beside voids, \
-slopes come from the cells that exist; gdaldem has no data there, or extrapolates with -compute_edges.
+Differences from gdaldem: heights and cells are both in metres, so files in degrees need no -s. At the edge, slopes come \
+from the cells that exist. Beside voids, they come from filled heights. gdaldem has no data in both places; with \
+-compute_edges it extrapolates.
 
 Examples:
   ridgelight hillshade dem.tif -o hillshade.tif            # gdaldem hillshade -az 315 -alt 45
@@ -21,8 +22,8 @@ Examples:
 
 pub const AO_HELP: &str = "\
 The map `sky-view` of `bake`: the cosine-weighted share of the hemisphere about the normal that no ground occludes, for \
-horizons of any distance. It equals `render --sky 1 --albedo 1 --bounces 0`. `svf` writes the same map. RVT and GDAL \
-have no such map.
+horizons of any distance. It equals `render --sky 1 --albedo 1 --bounces 0`. `svf` writes the same map. gdaldem has no \
+such map.
 
 Example:
   ridgelight ao dem.tif -o ao.png";

@@ -460,6 +460,12 @@ fn help_gives_units_and_defaults() {
         ("--reference", &["Default: brute force"]),
         ("--device", &["Default the first GPU"]),
     ];
+    let hillshade: &[(&str, &[&str])] = &[
+        ("--sun", &["compass azimuth, elevation (degrees)", "[default: 315,45]"]),
+        ("--z-scale", &["[default: 1]"]),
+    ];
+    let openness: &[(&str, &[&str])] =
+        &[("--border", &["[default: open]"]), ("--negative", &["the negated heights"])];
     let reference: &[(&str, &[&str])] = &[
         ("--spp", &["batches of 64", "at least 128", "[default: 1024]"]),
         ("--bounces", &["0 to 64", "[default: 0]"]),
@@ -472,6 +478,9 @@ fn help_gives_units_and_defaults() {
         ("trade", &[lit, trade]),
         ("render", &[shared, lit, render]),
         ("horizon", &[shared, horizon]),
+        ("svf", &[shared]),
+        ("hillshade", &[hillshade]),
+        ("openness", &[openness]),
         ("bake", &[shared, lit, bake]),
         ("plan", &[shared, lit, plan]),
         ("compare", &[compare]),
@@ -521,6 +530,10 @@ fn short_help_fits_one_screen() {
     for command in [
         "render",
         "horizon",
+        "hillshade",
+        "ao",
+        "svf",
+        "openness",
         "plan",
         "bench",
         "compare",
