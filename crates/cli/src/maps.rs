@@ -4,12 +4,12 @@ use std::f64::consts::FRAC_PI_2;
 use std::path::{Path, PathBuf};
 
 use glam::DVec3;
-use ridgelight::Result;
 use ridgelight::gpu::{Headless, Timing};
 use ridgelight::plan::{self, Limits, Picture, Plan};
 use ridgelight::scene::{
     Border, Bounces, HeightField, Lights, Quality, Scene, Sun, Surface, normal,
 };
+use ridgelight::{Error, Result};
 use ridgelight_io as files;
 use ridgelight_io::{Channels, Georeference, Layer};
 
@@ -177,10 +177,13 @@ fn codes(plane: &[f32], [black, white]: [f32; 2]) -> (usize, Vec<u8>) {
 }
 
 pub fn hillshade(args: &HillshadeArgs) -> Result<Outcome> {
-    let lights = Lights { suns: vec![args.sun], ..Lights::default() };
+    let lights = Lights { suns: args.sun.clone(), ..Lights::default() };
     lights.check()?;
+    let [sun] = *lights.suns else {
+        return Err(Error::setting("--sun 2", "another sun", "one sun: a hillshade has no more"));
+    };
     let job = Job::new(&args.input, &args.file.output, &args.surface, &args.global)?;
-    let plane = lambert(&job.field, setup::border(&args.surface), args.sun);
+    let plane = lambert(&job.field, setup::border(&args.surface), sun);
     let mut metadata = setup::of_field(&job.field);
     let words = light("sun").words(&lights).concat();
     metadata.push(("sun1".into(), words.split(',').take(2).collect::<Vec<_>>().join(",")));

@@ -64,7 +64,7 @@ pub struct HillshadeArgs {
         allow_hyphen_values = true,
         help_heading = "Lights"
     )]
-    pub sun: Sun,
+    pub sun: Vec<Sun>,
     #[command(flatten)]
     pub surface: FieldArgs,
     #[command(flatten)]

@@ -91,6 +91,7 @@ fn wrong_maps_are_refused() {
             ("hillshade a.asc -o o.tif --sun 0,91", 2, &["--sun 1: elevation: found 91°"]),
             ("hillshade a.asc -o o.tif --sun 0,-1", 2, &["--sun 1: elevation: found -1°"]),
             ("hillshade a.asc -o o.tif --sun 0", 2, &["--sun", "expected AZ,EL"]),
+            ("hillshade a.asc -o o.tif --sun 0,9 --sun 1,9", 2, &["--sun 2: found another sun"]),
             ("hillshade a.asc -o o.tif --azimuths 8", 2, &["--azimuths", "unexpected"]),
             ("hillshade a.asc -o o.tif --cell 0", 2, &["--cell: found 0"]),
             ("ao a.asc -o o.ktx2", 2, &["-o: found o.ktx2"]),
@@ -130,6 +131,20 @@ fn gpu_flat_ground_is_open() {
     write_field(&folder, 1, |_, _| 7.0);
     done(&folder, "openness field.npy -o o.npy");
     assert!(read(&folder.path("o.npy")).planes[0][0].is_nan());
+}
+
+/// On a slope of angle a, (1 + cos a)/2 of the cosine-weighted hemisphere is above the horizontal and the slope.
+#[test]
+fn gpu_sky_view_of_a_slope_is_its_formula() {
+    let folder = Folder::new();
+    for slope in [0.5_f64, 1.0, 2.0] {
+        write_field(&folder, 65, |_, col| (slope * col as f64) as f32);
+        done(&folder, "svf field.npy -o o.npy --azimuths 64");
+        let found = f64::from(read(&folder.path("o.npy")).planes[0][32 * 65 + 32]);
+        let expected = (1.0 + slope.atan().cos()) / 2.0;
+        // The trapezoidal rule over an integrand with kinks: 1/azimuths².
+        assert!((found - expected).abs() < 1.0 / 4096.0, "{slope}: {found} for {expected}");
+    }
 }
 
 /// On the axis of a V-shaped ditch along north-south, the horizon is atan(tan a |sin azimuth|) at any distance. On the
