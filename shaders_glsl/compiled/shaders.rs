@@ -327,8 +327,19 @@ shader! {
 }
 
 shader! {
+    /// `shaders_glsl/specular/lobe_tables.comp`.
+    LOBE_TABLES: "lobe_tables", push LobeTablesPush, words 112605 4555,
+    0 reads "azimuths" TexelBuffer,
+    1 reads "wedge_rows" StorageBuffer,
+    2 writes "lobe_tables" StorageImage { format: "Rgba32f", uint: false, layered: true },
+    LobeTables {
+        0 has_environment: bool = false,
+    }
+}
+
+shader! {
     /// `shaders_glsl/view/map_draw.comp`.
-    MAP_DRAW: "map_draw", push MapDrawPush, words 112605 3843,
+    MAP_DRAW: "map_draw", push MapDrawPush, words 117160 3843,
     0 reads "radiance" SampledImage { uint: false, layered: false },
     1 reads "tone_steps" SampledImage { uint: false, layered: false },
     2 reads "voids" SampledImage { uint: false, layered: false },
@@ -340,8 +351,17 @@ shader! {
 }
 
 shader! {
+    /// `shaders_glsl/specular/mirror_map.comp`.
+    MIRROR_MAP: "mirror_map", push MirrorMapPush, words 121003 3622,
+    0 reads "azimuths" TexelBuffer,
+    1 reads "lobe_tables" StorageImage { format: "Rgba32f", uint: false, layered: true },
+    2 writes "mirror_map" StorageImage { format: "Rgba32f", uint: false, layered: false },
+    MirrorMap;
+}
+
+shader! {
     /// `shaders_glsl/reference/path_trace.comp`.
-    PATH_TRACE: "path_trace", push PathTracePush, words 116448 22928,
+    PATH_TRACE: "path_trace", push PathTracePush, words 124625 22928,
     0 reads "cells" SampledImage { uint: false, layered: false },
     1 reads "maxima" SampledImage { uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -378,7 +398,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/picture_tone.frag`.
-    PICTURE_TONE_FRAG: "picture_tone_frag", push PictureTonePush, words 139376 565,
+    PICTURE_TONE_FRAG: "picture_tone_frag", push PictureTonePush, words 147553 565,
     0 reads "radiance" SampledImage { uint: false, layered: false },
     PictureToneFrag {
         0 encodes: bool = true,
@@ -387,13 +407,13 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/picture_tone.vert`.
-    PICTURE_TONE_VERT: "picture_tone_vert", push (), words 139941 266,
+    PICTURE_TONE_VERT: "picture_tone_vert", push (), words 148118 266,
     PictureToneVert;
 }
 
 shader! {
     /// `shaders_glsl/view/preview_gather.comp`.
-    PREVIEW_GATHER: "preview_gather", push PreviewGatherPush, words 140207 1649,
+    PREVIEW_GATHER: "preview_gather", push PreviewGatherPush, words 148384 1649,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "coarse_radiance" SampledImage { uint: false, layered: false },
     2 reads "coarse_sun" SampledImage { uint: false, layered: false },
@@ -408,7 +428,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/preview_shade.comp`.
-    PREVIEW_SHADE: "preview_shade", push PreviewShadePush, words 141856 1714,
+    PREVIEW_SHADE: "preview_shade", push PreviewShadePush, words 150033 1714,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "albedo" SampledImage { uint: false, layered: false },
     2 reads "gathered" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -421,7 +441,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/pyramid_march.comp`.
-    PYRAMID_MARCH: "pyramid_march", push PyramidMarchPush, words 143570 9025,
+    PYRAMID_MARCH: "pyramid_march", push PyramidMarchPush, words 151747 9025,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "slopes" StorageImage { format: "Unknown", uint: true, layered: true },
@@ -438,7 +458,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bake/scatter_gather.comp`.
-    SCATTER_GATHER: "scatter_gather", push ScatterGatherPush, words 152595 4664,
+    SCATTER_GATHER: "scatter_gather", push ScatterGatherPush, words 160772 4664,
     0 reads "ground" SampledImage { uint: false, layered: false },
     1 reads "direct" SampledImage { uint: false, layered: false },
     2 reads "visible_points" SampledImage { uint: true, layered: true },
@@ -465,7 +485,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/sh_shade.comp`.
-    SH_SHADE: "sh_shade", push ShShadePush, words 157259 12958,
+    SH_SHADE: "sh_shade", push ShShadePush, words 165436 12958,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "visibility" SampledImage { uint: false, layered: true },
     2 reads "light_matrix" SampledImage { uint: false, layered: false },
@@ -484,7 +504,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/sh_visibility.comp`.
-    SH_VISIBILITY: "sh_visibility", push ShadePush, words 170217 29808,
+    SH_VISIBILITY: "sh_visibility", push ShadePush, words 178394 29844,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rg32ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -509,7 +529,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/sh_wedges.comp`.
-    SH_WEDGES: "sh_wedges", push ShWedgesPush, words 200025 7777,
+    SH_WEDGES: "sh_wedges", push ShWedgesPush, words 208238 7777,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "horizon_angles" SampledImage { uint: false, layered: true },
     2 reads "constants" TexelBuffer,
@@ -526,7 +546,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/shade_expand.comp`.
-    SHADE_EXPAND: "shade_expand", push ShadeExpandPush, words 207802 2397,
+    SHADE_EXPAND: "shade_expand", push ShadeExpandPush, words 216015 2397,
     0 reads "shade_levels" SampledImage { uint: false, layered: false },
     1 reads "shade_table" SampledImage { uint: true, layered: false },
     2 writes "shade_stack" StorageImage { format: "Unknown", uint: false, layered: true },
@@ -537,7 +557,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/shade_reduce.comp`.
-    SHADE_REDUCE: "shade_reduce", push ReducePush, words 210199 2918,
+    SHADE_REDUCE: "shade_reduce", push ReducePush, words 218412 2918,
     0 reads "exit_radiance" SampledImage { uint: false, layered: false },
     1 writes "shade_levels" StorageImage { format: "Rgba32f", uint: false, layered: false },
     2 writes "shade_table" StorageImage { format: "Rgba32ui", uint: true, layered: false },
@@ -550,7 +570,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/sky_draw.frag`.
-    SKY_DRAW_FRAG: "sky_draw_frag", push SkyDrawPush, words 213117 1269,
+    SKY_DRAW_FRAG: "sky_draw_frag", push SkyDrawPush, words 221330 1269,
     0 reads "environment" SampledImage { uint: false, layered: false },
     SkyDrawFrag {
         0 has_environment: bool = false,
@@ -559,13 +579,13 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/sky_draw.vert`.
-    SKY_DRAW_VERT: "sky_draw_vert", push (), words 214386 289,
+    SKY_DRAW_VERT: "sky_draw_vert", push (), words 222599 289,
     SkyDrawVert;
 }
 
 shader! {
     /// `shaders_glsl/direct/sky_shade.comp`.
-    SKY_SHADE: "sky_shade", push ShadePush, words 214675 22806,
+    SKY_SHADE: "sky_shade", push ShadePush, words 222888 26661,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rg32ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -575,6 +595,8 @@ shader! {
     6 reads "dirty_texels" StorageBuffer,
     7 reads "lattice_words" SampledImage { uint: true, layered: true },
     8 reads "edit_list" StorageBuffer,
+    9 reads "lobe_tables" StorageImage { format: "Rgba32f", uint: false, layered: true },
+    10 writes "blocked_sum" StorageImage { format: "Rgba32f", uint: false, layered: false },
     SkyShade {
         0 fuse: u32 = 5,
         1 lattice: u32 = 0,
@@ -584,12 +606,14 @@ shader! {
         5 has_environment: bool = false,
         6 marches_rows: bool = false,
         7 relights: bool = false,
+        8 has_lobe: bool = false,
+        9 lobe_is_shared: bool = false,
     }
 }
 
 shader! {
     /// `shaders_glsl/specular/specular_exit.comp`.
-    SPECULAR_EXIT: "specular_exit", push SpecularExitPush, words 237481 6438,
+    SPECULAR_EXIT: "specular_exit", push SpecularExitPush, words 249549 6438,
     0 reads "arriving" SampledImage { uint: false, layered: true },
     1 reads "ground" SampledImage { uint: false, layered: false },
     2 reads "exit_radiance" SampledImage { uint: false, layered: false },
@@ -612,7 +636,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/specular_gather.comp`.
-    SPECULAR_GATHER: "specular_gather", push GatherPush, words 243919 20112,
+    SPECULAR_GATHER: "specular_gather", push GatherPush, words 255987 20112,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "height_levels" SampledImage { uint: false, layered: false },
     2 reads "level_table" SampledImage { uint: true, layered: false },
@@ -639,8 +663,22 @@ shader! {
 }
 
 shader! {
+    /// `shaders_glsl/specular/specular_light.comp`.
+    SPECULAR_LIGHT: "specular_light", push SpecularLightPush, words 276099 7609,
+    0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
+    1 reads "blocked_sum" SampledImage { uint: false, layered: false },
+    2 reads "unoccluded_map" SampledImage { uint: false, layered: false },
+    3 reads "swept_map" SampledImage { uint: false, layered: false },
+    4 writes "specular_sum" StorageImage { format: "Rgba32f", uint: false, layered: false },
+    SpecularLight {
+        0 border: u32 = 0,
+        1 marches_rows: bool = false,
+    }
+}
+
+shader! {
     /// `shaders_glsl/specular/specular_visibility.comp`.
-    SPECULAR_VISIBILITY: "specular_visibility", push SpecularVisibilityPush, words 264031 1238,
+    SPECULAR_VISIBILITY: "specular_visibility", push SpecularVisibilityPush, words 283708 1238,
     0 reads "visibility" SampledImage { uint: false, layered: true },
     1 reads "light_matrix" SampledImage { uint: false, layered: false },
     2 writes "arriving" StorageImage { format: "Rgba32f", uint: false, layered: true },
@@ -652,7 +690,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/sphere_sh_shade.comp`.
-    SPHERE_SH_SHADE: "sphere_sh_shade", push SphereShShadePush, words 265269 27634,
+    SPHERE_SH_SHADE: "sphere_sh_shade", push SphereShShadePush, words 284946 27634,
     0 reads "cells" SampledImage { uint: false, layered: false },
     1 reads "maxima" SampledImage { uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -678,7 +716,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/sphere_shade.comp`.
-    SPHERE_SHADE: "sphere_shade", push SphereShadePush, words 292903 14335,
+    SPHERE_SHADE: "sphere_shade", push SphereShadePush, words 312580 14335,
     0 reads "cells" SampledImage { uint: false, layered: false },
     1 reads "maxima" SampledImage { uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -693,7 +731,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/sun_shade.comp`.
-    SUN_SHADE: "sun_shade", push ShadePush, words 307238 22088,
+    SUN_SHADE: "sun_shade", push ShadePush, words 326915 22124,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rg32ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -714,7 +752,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/sun_specular.comp`.
-    SUN_SPECULAR: "sun_specular", push SunSpecularPush, words 329326 7945,
+    SUN_SPECULAR: "sun_specular", push SunSpecularPush, words 349039 7945,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "sun_sum" SampledImage { uint: false, layered: false },
     2 writes "specular_sum" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -731,7 +769,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/surface_sweep.comp`.
-    SURFACE_SWEEP: "surface_sweep", push MarchPush, words 337271 6812,
+    SURFACE_SWEEP: "surface_sweep", push MarchPush, words 356984 6812,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "slopes" StorageImage { format: "Unknown", uint: true, layered: true },
@@ -745,7 +783,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/sweep_fuse.comp`.
-    SWEEP_FUSE: "sweep_fuse", push SweepFusePush, words 344083 18089,
+    SWEEP_FUSE: "sweep_fuse", push SweepFusePush, words 363796 18089,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rg32ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -765,7 +803,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/terrain_draw.frag`.
-    TERRAIN_DRAW_FRAG: "terrain_draw_frag", push TerrainDrawPush, words 362172 1129,
+    TERRAIN_DRAW_FRAG: "terrain_draw_frag", push TerrainDrawPush, words 381885 1129,
     1 reads "radiance" SampledImage { uint: false, layered: false },
     2 reads "voids" SampledImage { uint: false, layered: false },
     TerrainDrawFrag {
@@ -776,14 +814,14 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/terrain_draw.vert`.
-    TERRAIN_DRAW_VERT: "terrain_draw_vert", push TerrainDrawPush, words 363301 916,
+    TERRAIN_DRAW_VERT: "terrain_draw_vert", push TerrainDrawPush, words 383014 916,
     0 reads "heights" SampledImage { uint: false, layered: false },
     TerrainDrawVert;
 }
 
 shader! {
     /// `shaders_glsl/bounce/vector_reduce.comp`.
-    VECTOR_REDUCE: "vector_reduce", push ReducePush, words 364217 2964,
+    VECTOR_REDUCE: "vector_reduce", push ReducePush, words 383930 2964,
     0 reads "exit_vectors" SampledImage { uint: false, layered: true },
     1 reads "vector_source" SampledImage { uint: false, layered: true },
     2 writes "vector_levels" StorageImage { format: "Unknown", uint: false, layered: true },
@@ -796,7 +834,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bake/visible_points.comp`.
-    VISIBLE_POINTS: "visible_points", push VisiblePointsPush, words 367181 9687,
+    VISIBLE_POINTS: "visible_points", push VisiblePointsPush, words 386894 9687,
     0 reads "cells" SampledImage { uint: false, layered: false },
     1 reads "maxima" SampledImage { uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -837,7 +875,9 @@ pub static ALL: &[Shader] = &[
     HORIZON_SWEEP,
     LIGHT_MATRIX,
     LIGHT_RESOLVE,
+    LOBE_TABLES,
     MAP_DRAW,
+    MIRROR_MAP,
     PATH_TRACE,
     PREVIEW_GATHER,
     PREVIEW_SHADE,
@@ -851,6 +891,7 @@ pub static ALL: &[Shader] = &[
     SKY_SHADE,
     SPECULAR_EXIT,
     SPECULAR_GATHER,
+    SPECULAR_LIGHT,
     SPECULAR_VISIBILITY,
     SPHERE_SH_SHADE,
     SPHERE_SHADE,
@@ -955,6 +996,11 @@ layouts! {
     push LightResolvePush 32 {
         0 cols: i32, 4 rows: i32, 8 clears: u32, 12 texel: i32, 16 colour: [f32; 4],
     }
+    push LobeTablesPush 56 {
+        0 sky: [f32; 4], 16 height: i32, 20 rows: i32, 24 peaks: i32, 28 nodes: i32, 32 layers: i32,
+        36 bottom_rad: f32, 40 first_rad: f32, 44 step_rad: f32, 48 exponent: f32,
+        52 wedge_rad: f32,
+    }
     push MapDrawPush 44 {
         0 width: i32, 4 height: i32, 8 cols: i32, 12 rows: i32, 16 first_col: f32,
         20 first_row: f32, 24 grid_points_per_pixel: f32, 28 swaps: u32, 32 beyond: u32,
@@ -962,6 +1008,10 @@ layouts! {
     }
     push MarchPush 16 {
         0 lanes: i32, 4 steps: i32, 8 warm_up: i32, 12 first_azimuth: u32,
+    }
+    push MirrorMapPush 32 {
+        0 width: i32, 4 height: i32, 8 azimuth_count: i32, 12 node: i32, 16 first_rad: f32,
+        20 per_rad: f32, 24 exponent: f32, 28 least: f32,
     }
     push PathTracePush 120 {
         0 land: LandPush, 32 highest_m: f32, 36 rotation_turns: f32, 40 exponent: f32,
@@ -1004,9 +1054,10 @@ layouts! {
     push ShadeExpandPush 12 {
         0 cols: i32, 4 rows: i32, 8 width_shift: i32,
     }
-    push ShadePush 32 {
+    push ShadePush 56 {
         0 cols: i32, 4 rows: i32, 8 cell_x_m: f32, 12 cell_y_m: f32, 16 warm_up: i32,
-        20 first_azimuth: u32, 24 azimuth_count: u32, 28 clears: u32,
+        20 first_azimuth: u32, 24 azimuth_count: u32, 28 clears: u32, 32 eye_m: [f32; 4],
+        48 exponent: f32, 52 least_cosine: f32,
     }
     push SkyDrawPush 84 {
         0 forward: [f32; 4], 16 right: [f32; 4], 32 down: [f32; 4], 48 above: [f32; 4],
@@ -1015,6 +1066,10 @@ layouts! {
     push SpecularExitPush 28 {
         0 cols: i32, 4 rows: i32, 8 begins: u32, 12 first_texel: i32, 16 fours: i32,
         20 exponent: f32, 24 scale: f32,
+    }
+    push SpecularLightPush 36 {
+        0 cols: i32, 4 rows: i32, 8 cell_x_m: f32, 12 cell_y_m: f32, 16 eye_m: [f32; 4],
+        32 scale: f32,
     }
     push SpecularVisibilityPush 8 {
         0 cols: i32, 4 rows: i32,
@@ -1068,4 +1123,4 @@ layouts! {
 }
 
 /// Words of all shaders together.
-const WORD_COUNT: usize = 376868;
+const WORD_COUNT: usize = 396581;

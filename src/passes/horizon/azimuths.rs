@@ -142,6 +142,17 @@ pub fn even(count: u32, cell_m: [f64; 2]) -> Vec<Azimuth> {
         .collect()
 }
 
+/// `count` even wedges from `turn_rad` on, each with its direction and no sweep: one for each column of an environment that is
+/// rotated by as much, from east counter-clockwise.
+pub(crate) fn even_wedges(count: u32, turn_rad: f64) -> Vec<Azimuth> {
+    let width = TAU / f64::from(count);
+    let of = |k| {
+        let first = turn_rad + width * f64::from(k);
+        with_wedge(Azimuth::default(), first + 0.5 * width, [first, first + width])
+    };
+    (0..count).map(of).collect()
+}
+
 /// The integer grid vectors that replace `count` even azimuths in exact mode.
 ///
 /// Each even azimuth becomes the vector with the smallest components whose world direction is within a quarter

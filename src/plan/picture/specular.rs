@@ -31,16 +31,24 @@ pub(super) fn quality(
         return refuse(&format!("specular under a {}", light.of.name), alone);
     }
     let quality = bounced(*quality, notes)?;
+    let by_lobe = active.lobe(&quality).is_some();
     match quality.basis {
         _ if !active.has_specular_around() => Ok(quality),
         Basis::Sh => Ok(quality),
+        Basis::Auto | Basis::Table if by_lobe => {
+            notes.push("specular: each azimuth's slice of the lobe, from tables".into());
+            Ok(quality)
+        }
         Basis::Auto => {
-            notes.push("basis sh: specular needs harmonics".into());
+            notes.push(
+                "basis sh: specular of a map or with bounces needs harmonics, which blur the lobe".into(),
+            );
             Ok(Quality { basis: Basis::Sh, ..quality })
         }
-        Basis::Table => {
-            refuse("specular with `basis table`, whose tables are of diffuse ground", "`basis sh`")
-        }
+        Basis::Table => refuse(
+            "a map of specular, or specular with bounces, with `basis table`",
+            "`basis sh`; one exponent and scale, and `bounces` 0",
+        ),
     }
 }
 
@@ -88,6 +96,40 @@ impl Drawing<'_> {
             let ids = [h.constants, light.light_matrix];
             passes::light_matrix::plan(builder, &light.sh, sky, light.env_rotation, ids);
         }
+    }
+
+    /// Tables and maps of a lobe.
+    pub(super) fn fill_lobes(&mut self, count: u32) {
+        let (Some(lobes), Some(sweeping)) = (&self.lobes, &self.sweeping) else { return };
+        let (sky, builder) = (self.active.sky, &mut self.builder);
+        let lit = self.active.environment.zip(self.images.environment);
+        let swept_rows = lit.zip(self.tables.as_ref()).map(|((e, _), t)| (e, t.wedge_rows));
+        let fine_rows = lit.zip(lobes.fine_rows).map(|((e, image), rows)| {
+            let ids = [image, lobes.fine_azimuths, rows];
+            let of = (e, self.scene.surface.border);
+            passes::env_wedges::plan(builder, "fine", of, lobes.fine_count, ids);
+            (e, rows)
+        });
+        lobes.swept.plan(builder, "", sky, swept_rows, (sweeping.azimuths, true));
+        lobes.fine.plan(builder, "fine", sky, fine_rows, (lobes.fine_azimuths, false));
+        let [unoccluded, swept] = lobes.maps;
+        let fine = ("unoccluded", "the reflection without occlusion, by mirror direction");
+        let ids = [lobes.fine_azimuths, unoccluded];
+        lobes.fine.plan_map(builder, fine, lobes.fine_count, (ids, false), lobes.map_size);
+        let of_swept = ("swept", "the same from the swept azimuths, as occlusion is a share of them");
+        let ids = [sweeping.azimuths, swept];
+        lobes.swept.plan_map(builder, of_swept, count, (ids, true), lobes.map_size);
+    }
+
+    /// Specular of sky and environment by tables of the lobe.
+    pub(super) fn lobe_light(&mut self, batch: &Batch, lane_heights: ResourceId) {
+        let (Some(lobes), Some(sum)) = (&self.lobes, self.images.specular_sum) else { return };
+        let field = (batch.axis, self.scene.surface.border, self.scene.field.cell_m());
+        let [unoccluded, swept] = lobes.maps;
+        let ids = [lane_heights, lobes.blocked_sum, unoccluded, swept, sum];
+        let seen = (lobes.scale, lobes.eye_m);
+        passes::specular_light::plan(&mut self.builder, field, seen, ids);
+        self.specular_is_begun = true;
     }
 
     /// Specular of a sun, from its diffuse irradiance.
@@ -235,8 +277,7 @@ mod tests {
         let sphere = SphereLight { position_m: [1.0; 3], radius_m: 1.0, radiance: [1.0; 3] };
         let under_sphere = message(Lights { sphere_lights: vec![sphere], ..sky() }, Basis::Sh);
         assert!(under_sphere.contains("path-traced reference"), "{under_sphere}");
-        let by_table = message(sky(), Basis::Table);
-        assert!(by_table.ends_with("`basis sh`"), "{by_table}");
+
         // Dark lights, or no specular, raise no error.
         let dark = KeyLight { radiance: [0.0; 3], ..key };
         assert!(plan(Lights { keys: vec![dark], ..sky() }, Basis::Sh, 0.5).is_ok());
@@ -244,27 +285,30 @@ mod tests {
         assert!(plan(sun(), Basis::Table, 0.5).is_ok());
     }
 
-    /// The planner uses harmonics if light arrives from all directions. Suns need none, and neither does specular of scale 0.
-    /// No edits: visibility of a sky is not kept per texel.
+    /// Sky and environment use tables of the lobe, without harmonics unless they are requested. Suns need neither, nor does
+    /// specular of scale 0.
     #[test]
-    fn specular_uses_harmonics_for_light_from_all_directions() {
+    fn specular_uses_tables_of_the_lobe() {
         let of_sky = plan(sky(), Basis::Auto, 0.5).unwrap();
-        assert!(of_sky.notes.iter().any(|n| n.starts_with("basis sh")), "{:?}", of_sky.notes);
-        assert!(of_sky.settings.contains(&("basis".into(), "sh".into())));
-        assert!(
-            of_sky.find("env_rotation").is_none() && of_sky.find("specular_rotation").is_none()
-        );
-        assert!(names(&of_sky).contains(&"sh_shade specular".to_owned()), "{:?}", names(&of_sky));
+        assert!(of_sky.notes.iter().any(|n| n.contains("slice of the lobe")), "{:?}", of_sky.notes);
+        let all = names(&of_sky);
+        for name in ["lobe_tables", "lobe_tables fine", "mirror_map swept", "specular_light"] {
+            assert!(all.iter().any(|n| n == name), "{name}: {all:?}");
+        }
+        assert!(of_sky.find("visibility").is_none() && of_sky.find("fine_rows").is_none());
+        let by_sh = plan(sky(), Basis::Sh, 0.5).unwrap();
+        assert!(by_sh.settings.contains(&("basis".into(), "sh".into())));
+        assert!(names(&by_sh).contains(&"sh_shade specular".to_owned()), "{:?}", names(&by_sh));
         let environment = Environment::new(4, 2, vec![[1.0; 3]; 8], 0.0).unwrap();
         let lit = Lights { environment: Some(environment), ..sun() };
         let of_all = plan(lit, Basis::Auto, 0.5).unwrap();
         let all = names(&of_all);
-        for name in ["env_rotation", "env_rotation specular", "sh_shade env", "sun_specular sun1"] {
+        for name in ["env_wedges", "env_wedges fine", "specular_light", "sun_specular sun1"] {
             assert!(all.iter().any(|n| n == name), "{name}: {all:?}");
         }
         assert!(of_all.find("direct.specular").is_some() && of_all.edit_passes.is_empty());
         let of_sun = plan(sun(), Basis::Auto, 0.5).unwrap();
-        assert!(of_sun.find("visibility").is_none() && of_sun.find("specular_sum").is_some());
+        assert!(of_sun.find("lobe_tables").is_none() && of_sun.find("specular_sum").is_some());
         let none = plan(sky(), Basis::Auto, 0.0).unwrap();
         assert!(none.notes.iter().any(|n| n.starts_with("specular dropped")), "{:?}", none.notes);
         assert!(none.find("specular_sum").is_none() && none.find("visibility").is_none());
