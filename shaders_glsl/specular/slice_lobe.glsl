@@ -46,8 +46,11 @@ vec4 cosine_integral(float n, vec4 s, vec4 y2) {
 vec4 lobe_integral(float n, vec4 along, vec4 up, float cos_w, float sin_w) {
     vec4 c = along * cos_w + up * sin_w;
     vec4 s = along * sin_w - up * cos_w;
-    // More than a right angle from the peak: the lobe has ended, or has not begun.
-    vec4 end = mix(vec4(1.0), vec4(-1.0), greaterThanEqual(up, vec4(0.0)));
+    // A right angle or more from the peak: the lobe has not begun where it peaks above horizontal, and has ended where it peaks
+    // below. A lobe that peaks at the horizontal begins straight down and ends straight up.
+    vec4 end = mix(vec4(1.0), vec4(-1.0), greaterThan(up, vec4(0.0)));
+    vec4 level_end = mix(vec4(-1.0), vec4(sin_w < 0.0 ? -1.0 : 1.0), greaterThan(along, vec4(0.0)));
+    end = mix(end, level_end, equal(up, vec4(0.0)));
     s = mix(s, end, lessThanEqual(c, vec4(0.0)));
     vec4 y2 = minus_log(min(s * s, vec4(1.0)));
     vec4 power = exp(-0.5 * (n + 1.0) * y2);
