@@ -5,7 +5,8 @@ use crate::passes::spheres::Spheres;
 use crate::passes::sweep::Sweep;
 use crate::passes::sweeping::circle;
 use crate::scene::{
-    ANY_LIGHT, Albedo, Basis, Border, Environment, KeyLight, Lights, PhongSpecular, Quality, Scene, Specular, Sun,
+    ANY_LIGHT, Albedo, Basis, Border, Environment, KeyLight, Lights, PhongSpecular, Quality, Scene,
+    Specular, Sun,
 };
 use crate::{Error, Result};
 
@@ -164,7 +165,9 @@ impl<'a> ActiveLights<'a> {
     pub(super) fn lobe(&self, quality: &Quality) -> Option<PhongSpecular> {
         let is_direct = quality.basis != Basis::Sh && quality.bounces.count == 0;
         match self.specular {
-            Some(Specular::Constant(phong)) if self.has_specular_around() && is_direct => Some(*phong),
+            Some(Specular::Constant(phong)) if self.has_specular_around() && is_direct => {
+                Some(*phong)
+            }
             _ => None,
         }
     }

@@ -27,7 +27,8 @@ impl Plan {
             // Directions that no sweep follows are constants.
             let is_swept = |id: ResourceId| resources[id.0].name != "constants";
             let reads =
-                binds.filter(|(b, id)| b.name == "azimuths" && id.is_some_and(is_swept)).count() > 0;
+                binds.filter(|(b, id)| b.name == "azimuths" && id.is_some_and(is_swept)).count()
+                    > 0;
             assert!(
                 pass.azimuths.is_empty() != reads && pass.azimuths.end as usize <= azimuths.len(),
                 "{}: azimuths {:?} of {}",

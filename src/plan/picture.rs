@@ -144,9 +144,9 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
         let lit = (environment, surface.border);
         tables = Some(Tables::make(&mut builder, lit, quality));
     }
-    let eye_m = wanted.eye_m.map_or([0.0; 4], |[x, y, z]| {
-        [x as f32, y as f32, (z - field.base_m()) as f32, 1.0]
-    });
+    let eye_m = wanted
+        .eye_m
+        .map_or([0.0; 4], |[x, y, z]| [x as f32, y as f32, (z - field.base_m()) as f32, 1.0]);
     let lobes = lobe.map(|phong| {
         let lit = (active.environment, surface.border);
         Lobes::make(&mut builder, [size[0], size[1]], lit, quality, (phong, eye_m))

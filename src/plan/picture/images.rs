@@ -173,13 +173,12 @@ impl Lobes {
         });
         let layers = |count: u32| if environment.is_some() { count } else { 1 };
         let nodes = if border == Border::Open { 256 } else { 128 };
-        let [swept, fine] = [
-            ("lobe_tables", nodes, quality.azimuths),
-            ("fine_lobe_tables", 1, fine_count),
-        ]
-        .map(|(name, nodes, count)| {
-            LobeTables::make(builder, name, exponent, border, [nodes, layers(count)])
-        });
+        let [swept, fine] =
+            [("lobe_tables", nodes, quality.azimuths), ("fine_lobe_tables", 1, fine_count)].map(
+                |(name, nodes, count)| {
+                    LobeTables::make(builder, name, exponent, border, [nodes, layers(count)])
+                },
+            );
         // Nodes a quarter of the lobe's deviation apart, 1/√n radians.
         let width = (4.0 * TAU * exponent.sqrt()).ceil() as u32;
         let width = width.next_power_of_two().clamp(64, 2048);

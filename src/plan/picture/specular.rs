@@ -41,7 +41,8 @@ pub(super) fn quality(
         }
         Basis::Auto => {
             notes.push(
-                "basis sh: specular of a map or with bounces needs harmonics, which blur the lobe".into(),
+                "basis sh: specular of a map or with bounces needs harmonics, which blur the lobe"
+                    .into(),
             );
             Ok(Quality { basis: Basis::Sh, ..quality })
         }
@@ -116,7 +117,8 @@ impl Drawing<'_> {
         let fine = ("unoccluded", "the reflection without occlusion, by mirror direction");
         let ids = [lobes.fine_azimuths, unoccluded];
         lobes.fine.plan_map(builder, fine, lobes.fine_count, (ids, false), lobes.map_size);
-        let of_swept = ("swept", "the same from the swept azimuths, as occlusion is a share of them");
+        let of_swept =
+            ("swept", "the same from the swept azimuths, as occlusion is a share of them");
         let ids = [sweeping.azimuths, swept];
         lobes.swept.plan_map(builder, of_swept, count, (ids, true), lobes.map_size);
     }
