@@ -149,7 +149,7 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
         .map_or([0.0; 4], |[x, y, z]| [x as f32, y as f32, (z - field.base_m()) as f32, 1.0]);
     let lobes = lobe.map(|phong| {
         let lit = (active.environment, surface.border);
-        Lobes::make(&mut builder, [size[0], size[1]], lit, quality, (phong, eye_m))
+        Lobes::make(&mut builder, [size[0], size[1]], lit, quality, phong)
     });
     if active.environment.is_none() && active.sky.is_some() && lobes.is_none() {
         notes.push("no environment: no table".into());
@@ -208,6 +208,7 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
         tables,
         harmonics,
         lobes,
+        eye_m,
         sweeping,
         blocks,
         bouncing,

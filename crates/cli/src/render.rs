@@ -4,7 +4,7 @@ pub mod auto;
 pub mod camera;
 
 use ridgelight::gpu::{Headless, Pixels};
-use ridgelight::plan::{self, Limits};
+use ridgelight::plan::{self, Limits, Picture};
 use ridgelight::scene::Tone;
 use ridgelight::scene::{HeightField, Quality, Scene};
 use ridgelight::{Error, Result};
@@ -71,7 +71,8 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
         setup::check_diffuse(&scene, "--max-error or --time-budget")?;
     }
     let camera_view = camera::requested(&args.camera, &scene)?;
-    let wanted = setup::wanted(&args.layers);
+    let eye_m = camera_view.as_ref().map(|view| view.eye_m(&scene.field));
+    let wanted = Picture { eye_m, ..setup::wanted(&args.layers) };
     let picture =
         |quality: &Quality, limits: &Limits| plan::picture(&scene, quality, limits, wanted);
     setup::check_plan(&args.global, |limits| {

@@ -21,6 +21,8 @@ pub(super) struct Drawing<'a> {
     pub tables: Option<Tables>,
     pub harmonics: Option<Harmonics>,
     pub lobes: Option<Lobes>,
+    /// The eye over the field's base; the last is 0 for a view from straight above.
+    pub eye_m: [f32; 4],
     /// None if there are only sphere lights, which trace their own occlusion.
     pub sweeping: Option<Sweeping>,
     /// Acceleration structure of rays, to sphere lights and of bounces.
@@ -107,7 +109,7 @@ impl Drawing<'_> {
             let lobe = self.lobes.as_ref().map(|lobes| passes::sky_shade::Lobe {
                 tables: lobes.swept,
                 blocked_sum: lobes.blocked_sum,
-                eye_m: lobes.eye_m,
+                eye_m: self.eye_m,
             });
             if sky_sum.is_some() || self.tables.is_some() {
                 let images = passes::sky_shade::Images {

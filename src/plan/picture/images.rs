@@ -148,8 +148,6 @@ pub(super) struct Lobes {
     pub map_size: [u32; 2],
     pub blocked_sum: ResourceId,
     pub scale: f32,
-    /// The eye over the field's base; the last is 0 for a view from straight above.
-    pub eye_m: [f32; 4],
 }
 
 impl Lobes {
@@ -159,9 +157,8 @@ impl Lobes {
         size: [u32; 2],
         (environment, border): (Option<&Environment>, Border),
         quality: &Quality,
-        (phong, eye_m): (PhongSpecular, [f32; 4]),
+        PhongSpecular { exponent, scale }: PhongSpecular,
     ) -> Self {
-        let PhongSpecular { exponent, scale } = phong;
         // An azimuth for each column of the environment: a lamp stays in its place.
         let fine_count = environment.map_or(512, |e| (e.width() as u32).clamp(512, 2048));
         let turn_rad = environment.map_or(0.0, Environment::rotation_rad);
@@ -199,7 +196,6 @@ impl Lobes {
             map_size,
             blocked_sum,
             scale,
-            eye_m,
         }
     }
 }

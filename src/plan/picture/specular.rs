@@ -129,7 +129,7 @@ impl Drawing<'_> {
         let field = (batch.axis, self.scene.surface.border, self.scene.field.cell_m());
         let [unoccluded, swept] = lobes.maps;
         let ids = [lane_heights, lobes.blocked_sum, unoccluded, swept, sum];
-        let seen = (lobes.scale, lobes.eye_m);
+        let seen = (lobes.scale, self.eye_m);
         passes::specular_light::plan(&mut self.builder, field, seen, ids);
         self.specular_is_begun = true;
     }
@@ -147,7 +147,7 @@ impl Drawing<'_> {
             &mut self.builder,
             field,
             name,
-            (sun, phong),
+            (sun, phong, self.eye_m),
             ids,
             (begins, bounced),
         );

@@ -167,7 +167,8 @@ pub(crate) fn pictures() -> Vec<Case> {
     };
     // Under a sky alone: one table for all azimuths.
     let sky_lobe = |exponent, border| {
-        let lights = Lights { sky: Some([1.0, 0.5, 2.0]), ..Lights::default() };
+        let suns = vec![sun(0.7, 0.1, [1.0, 2.0, 3.0])];
+        let lights = Lights { sky: Some([1.0, 0.5, 2.0]), suns, ..Lights::default() };
         let phong = Some(Specular::Constant(PhongSpecular { exponent, scale: 0.7 }));
         let albedo = Albedo::Constant([0.25; 3]);
         let surface = Surface { border, albedo, specular: phong };

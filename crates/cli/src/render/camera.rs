@@ -16,6 +16,22 @@ pub struct CameraView {
     pub options: ViewOptions,
 }
 
+impl CameraView {
+    /// Where specular is viewed from. The rays of an orthographic lens meet far away.
+    pub fn eye_m(&self, field: &HeightField) -> [f64; 3] {
+        let Camera { target_m, lens, .. } = self.camera;
+        match lens {
+            Lens::Perspective { .. } => self.camera.eye_m().to_array(),
+            Lens::Orthographic { .. } => {
+                let [x, y] = field.cell_m();
+                let largest = (x * field.cols() as f64).max(y * field.rows() as f64);
+                let back = self.camera.axes()[2] * (1e4 * largest);
+                [0, 1, 2].map(|i| target_m[i] + back[i])
+            }
+        }
+    }
+}
+
 /// Refuses layers that the picture does not have.
 pub fn check_layers(args: &RenderArgs) -> Result<()> {
     let is_depth = |layer: &Layer| *layer == Layer::Depth;

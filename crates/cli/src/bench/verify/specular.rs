@@ -103,7 +103,7 @@ fn of_sun(
     let irradiance = DVec3::from_array(sun.irradiance.map(f64::from));
     let brightest = irradiance.max_position();
     let sum = light[brightest] / (0.5 * irradiance[brightest]);
-    let mirrored = irradiance * specular_on(place.normal, sun, phong, sum);
+    let mirrored = irradiance * specular_on((place.normal, DVec3::Z), sun, phong, sum);
     let (field, border) = (&scene.field, scene.surface.border);
     let at = [place.index / field.cols(), place.index % field.cols()];
     let (sin, cos) = sun.elevation_rad.sin_cos();
