@@ -184,10 +184,13 @@ fn blocked_sum(
             });
             sum.tolerance += range.len() as f64 * EPSILON * sum.light;
             let at = [range.len(), i / cols, i % cols];
-            for c in 0..3 {
-                let (want, tolerance) = (sum.light[c], sum.tolerance[c] + 1e-30);
-                pairs.push(Pair { got: got[c].into(), want, tolerance, at });
-            }
+            let tolerance = sum.tolerance + 1e-30;
+            pairs.extend((0..3).map(|c| Pair {
+                got: got[c].into(),
+                want: sum.light[c],
+                tolerance: tolerance[c],
+                at,
+            }));
         }
         pairs
     })
