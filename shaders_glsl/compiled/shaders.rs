@@ -392,8 +392,29 @@ shader! {
 }
 
 shader! {
+    /// `shaders_glsl/view/plinth_draw.frag`.
+    PLINTH_DRAW_FRAG: "plinth_draw_frag", push PlinthDrawPush, words 140207 939,
+    2 reads "voids" SampledImage { uint: false, layered: false },
+    PlinthDrawFrag {
+        1 has_voids: bool = false,
+    }
+}
+
+shader! {
+    /// `shaders_glsl/view/plinth_draw.vert`.
+    PLINTH_DRAW_VERT: "plinth_draw_vert", push PlinthDrawPush, words 141146 2082,
+    0 reads "heights" SampledImage { uint: false, layered: false },
+    1 reads "radiance" SampledImage { uint: false, layered: false },
+    2 reads "voids" SampledImage { uint: false, layered: false },
+    PlinthDrawVert {
+        0 is_grey: bool = false,
+        1 has_voids: bool = false,
+    }
+}
+
+shader! {
     /// `shaders_glsl/view/preview_gather.comp`.
-    PREVIEW_GATHER: "preview_gather", push PreviewGatherPush, words 140207 1649,
+    PREVIEW_GATHER: "preview_gather", push PreviewGatherPush, words 143228 1649,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "coarse_radiance" SampledImage { uint: false, layered: false },
     2 reads "coarse_sun" SampledImage { uint: false, layered: false },
@@ -408,7 +429,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/preview_shade.comp`.
-    PREVIEW_SHADE: "preview_shade", push PreviewShadePush, words 141856 1714,
+    PREVIEW_SHADE: "preview_shade", push PreviewShadePush, words 144877 1714,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "albedo" SampledImage { uint: false, layered: false },
     2 reads "gathered" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -421,7 +442,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/pyramid_march.comp`.
-    PYRAMID_MARCH: "pyramid_march", push PyramidMarchPush, words 143570 9025,
+    PYRAMID_MARCH: "pyramid_march", push PyramidMarchPush, words 146591 9025,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "slopes" StorageImage { format: "Unknown", uint: true, layered: true },
@@ -438,7 +459,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bake/scatter_gather.comp`.
-    SCATTER_GATHER: "scatter_gather", push ScatterGatherPush, words 152595 4664,
+    SCATTER_GATHER: "scatter_gather", push ScatterGatherPush, words 155616 4664,
     0 reads "ground" SampledImage { uint: false, layered: false },
     1 reads "direct" SampledImage { uint: false, layered: false },
     2 reads "visible_points" SampledImage { uint: true, layered: true },
@@ -465,7 +486,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/sh_shade.comp`.
-    SH_SHADE: "sh_shade", push ShShadePush, words 157259 12958,
+    SH_SHADE: "sh_shade", push ShShadePush, words 160280 12958,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "visibility" SampledImage { uint: false, layered: true },
     2 reads "light_matrix" SampledImage { uint: false, layered: false },
@@ -484,7 +505,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/sh_visibility.comp`.
-    SH_VISIBILITY: "sh_visibility", push ShadePush, words 170217 29808,
+    SH_VISIBILITY: "sh_visibility", push ShadePush, words 173238 29808,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rg32ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -509,7 +530,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/sh_wedges.comp`.
-    SH_WEDGES: "sh_wedges", push ShWedgesPush, words 200025 7777,
+    SH_WEDGES: "sh_wedges", push ShWedgesPush, words 203046 7777,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "horizon_angles" SampledImage { uint: false, layered: true },
     2 reads "constants" TexelBuffer,
@@ -526,7 +547,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/shade_expand.comp`.
-    SHADE_EXPAND: "shade_expand", push ShadeExpandPush, words 207802 2397,
+    SHADE_EXPAND: "shade_expand", push ShadeExpandPush, words 210823 2397,
     0 reads "shade_levels" SampledImage { uint: false, layered: false },
     1 reads "shade_table" SampledImage { uint: true, layered: false },
     2 writes "shade_stack" StorageImage { format: "Unknown", uint: false, layered: true },
@@ -537,7 +558,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/shade_reduce.comp`.
-    SHADE_REDUCE: "shade_reduce", push ReducePush, words 210199 2918,
+    SHADE_REDUCE: "shade_reduce", push ReducePush, words 213220 2918,
     0 reads "exit_radiance" SampledImage { uint: false, layered: false },
     1 writes "shade_levels" StorageImage { format: "Rgba32f", uint: false, layered: false },
     2 writes "shade_table" StorageImage { format: "Rgba32ui", uint: true, layered: false },
@@ -550,7 +571,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/sky_draw.frag`.
-    SKY_DRAW_FRAG: "sky_draw_frag", push SkyDrawPush, words 213117 1269,
+    SKY_DRAW_FRAG: "sky_draw_frag", push SkyDrawPush, words 216138 1269,
     0 reads "environment" SampledImage { uint: false, layered: false },
     SkyDrawFrag {
         0 has_environment: bool = false,
@@ -559,13 +580,13 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/sky_draw.vert`.
-    SKY_DRAW_VERT: "sky_draw_vert", push (), words 214386 289,
+    SKY_DRAW_VERT: "sky_draw_vert", push (), words 217407 289,
     SkyDrawVert;
 }
 
 shader! {
     /// `shaders_glsl/direct/sky_shade.comp`.
-    SKY_SHADE: "sky_shade", push ShadePush, words 214675 22806,
+    SKY_SHADE: "sky_shade", push ShadePush, words 217696 22806,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rg32ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -589,7 +610,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/specular_exit.comp`.
-    SPECULAR_EXIT: "specular_exit", push SpecularExitPush, words 237481 6438,
+    SPECULAR_EXIT: "specular_exit", push SpecularExitPush, words 240502 6438,
     0 reads "arriving" SampledImage { uint: false, layered: true },
     1 reads "ground" SampledImage { uint: false, layered: false },
     2 reads "exit_radiance" SampledImage { uint: false, layered: false },
@@ -612,7 +633,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/specular_gather.comp`.
-    SPECULAR_GATHER: "specular_gather", push GatherPush, words 243919 20112,
+    SPECULAR_GATHER: "specular_gather", push GatherPush, words 246940 20112,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "height_levels" SampledImage { uint: false, layered: false },
     2 reads "level_table" SampledImage { uint: true, layered: false },
@@ -640,7 +661,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/specular_visibility.comp`.
-    SPECULAR_VISIBILITY: "specular_visibility", push SpecularVisibilityPush, words 264031 1238,
+    SPECULAR_VISIBILITY: "specular_visibility", push SpecularVisibilityPush, words 267052 1238,
     0 reads "visibility" SampledImage { uint: false, layered: true },
     1 reads "light_matrix" SampledImage { uint: false, layered: false },
     2 writes "arriving" StorageImage { format: "Rgba32f", uint: false, layered: true },
@@ -652,7 +673,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/sphere_sh_shade.comp`.
-    SPHERE_SH_SHADE: "sphere_sh_shade", push SphereShShadePush, words 265269 27634,
+    SPHERE_SH_SHADE: "sphere_sh_shade", push SphereShShadePush, words 268290 27634,
     0 reads "cells" SampledImage { uint: false, layered: false },
     1 reads "maxima" SampledImage { uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -678,7 +699,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/sphere_shade.comp`.
-    SPHERE_SHADE: "sphere_shade", push SphereShadePush, words 292903 14335,
+    SPHERE_SHADE: "sphere_shade", push SphereShadePush, words 295924 14335,
     0 reads "cells" SampledImage { uint: false, layered: false },
     1 reads "maxima" SampledImage { uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -693,7 +714,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/sun_shade.comp`.
-    SUN_SHADE: "sun_shade", push ShadePush, words 307238 22088,
+    SUN_SHADE: "sun_shade", push ShadePush, words 310259 22088,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rg32ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -714,7 +735,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/sun_specular.comp`.
-    SUN_SPECULAR: "sun_specular", push SunSpecularPush, words 329326 7945,
+    SUN_SPECULAR: "sun_specular", push SunSpecularPush, words 332347 7945,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "sun_sum" SampledImage { uint: false, layered: false },
     2 writes "specular_sum" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -731,7 +752,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/surface_sweep.comp`.
-    SURFACE_SWEEP: "surface_sweep", push MarchPush, words 337271 6812,
+    SURFACE_SWEEP: "surface_sweep", push MarchPush, words 340292 6812,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "slopes" StorageImage { format: "Unknown", uint: true, layered: true },
@@ -745,7 +766,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/sweep_fuse.comp`.
-    SWEEP_FUSE: "sweep_fuse", push SweepFusePush, words 344083 18089,
+    SWEEP_FUSE: "sweep_fuse", push SweepFusePush, words 347104 18089,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rg32ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -765,7 +786,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/terrain_draw.frag`.
-    TERRAIN_DRAW_FRAG: "terrain_draw_frag", push TerrainDrawPush, words 362172 1129,
+    TERRAIN_DRAW_FRAG: "terrain_draw_frag", push TerrainDrawPush, words 365193 1129,
     1 reads "radiance" SampledImage { uint: false, layered: false },
     2 reads "voids" SampledImage { uint: false, layered: false },
     TerrainDrawFrag {
@@ -776,14 +797,14 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/terrain_draw.vert`.
-    TERRAIN_DRAW_VERT: "terrain_draw_vert", push TerrainDrawPush, words 363301 916,
+    TERRAIN_DRAW_VERT: "terrain_draw_vert", push TerrainDrawPush, words 366322 994,
     0 reads "heights" SampledImage { uint: false, layered: false },
     TerrainDrawVert;
 }
 
 shader! {
     /// `shaders_glsl/bounce/vector_reduce.comp`.
-    VECTOR_REDUCE: "vector_reduce", push ReducePush, words 364217 2964,
+    VECTOR_REDUCE: "vector_reduce", push ReducePush, words 367316 2964,
     0 reads "exit_vectors" SampledImage { uint: false, layered: true },
     1 reads "vector_source" SampledImage { uint: false, layered: true },
     2 writes "vector_levels" StorageImage { format: "Unknown", uint: false, layered: true },
@@ -796,7 +817,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bake/visible_points.comp`.
-    VISIBLE_POINTS: "visible_points", push VisiblePointsPush, words 367181 9687,
+    VISIBLE_POINTS: "visible_points", push VisiblePointsPush, words 370280 9687,
     0 reads "cells" SampledImage { uint: false, layered: false },
     1 reads "maxima" SampledImage { uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -866,6 +887,8 @@ pub static ALL: &[Shader] = &[
 pub static GRAPHICS: &[Shader] = &[
     PICTURE_TONE_FRAG,
     PICTURE_TONE_VERT,
+    PLINTH_DRAW_FRAG,
+    PLINTH_DRAW_VERT,
     SKY_DRAW_FRAG,
     SKY_DRAW_VERT,
     TERRAIN_DRAW_FRAG,
@@ -972,6 +995,12 @@ layouts! {
     push PictureTonePush 4 {
         0 exposure: f32,
     }
+    push PlinthDrawPush 112 {
+        0 clip_per_col: [f32; 4], 16 clip_per_row: [f32; 4], 32 clip_per_metre: [f32; 4],
+        48 clip_at_origin: [f32; 4], 64 origin_col: i32, 68 origin_row: i32, 72 origin_m: f32,
+        76 cols: i32, 80 rows: i32, 84 mesh_step: i32, 88 base_m: f32, 92 base_tone: f32,
+        96 wall_tones: [f32; 4],
+    }
     push PreviewGatherPush 48 {
         0 sun: [f32; 4], 16 most: [f32; 4], 32 cell_m: [f32; 2], 40 cols: i32, 44 rows: i32,
     }
@@ -1068,4 +1097,4 @@ layouts! {
 }
 
 /// Words of all shaders together.
-const WORD_COUNT: usize = 376868;
+const WORD_COUNT: usize = 379967;

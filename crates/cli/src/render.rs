@@ -70,7 +70,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
     if goal.is_some() {
         setup::check_diffuse(&scene, "--max-error or --time-budget")?;
     }
-    let camera_view = camera::requested(&args.camera, &scene)?;
+    let camera_view = camera::requested(&args.camera, &scene, is_png)?;
     let wanted = setup::wanted(&args.layers);
     let picture =
         |quality: &Quality, limits: &Limits| plan::picture(&scene, quality, limits, wanted);
