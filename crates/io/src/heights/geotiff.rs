@@ -149,7 +149,7 @@ fn wrong(path: &Path, tag: u16, found: impl Into<String>, expected: &str) -> Err
 /// decoder allocates memory.
 fn find(path: &Path, tiff: &mut Tiff, tag: u16, expected: &str) -> Result<Option<Value>> {
     let wrong = |found: String| wrong(path, tag, found, expected);
-    let held = tiff.inner().get_ref().len() as u64;
+    let held = tiff.inner().size() as u64;
     let tag = Tag::from_u16_exhaustive(tag);
     match tiff.image_ifd().directory().get(tag) {
         Some(entry) if entry.count() > held => {
