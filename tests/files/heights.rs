@@ -379,6 +379,29 @@ fn geotiff_places_and_units() {
     assert!((of_code - 1200.0 / 3937.0).abs() < 1e-12 && of_file == 1.0, "{of_code} {of_file}");
     let field = parse("a.tif", &with(&[scale(), tie(), (34735, Tag::Shorts(&vertical))])).unwrap();
     assert!((absolute(&field)[8] - 30.48).abs() < 1e-5);
+    // A vertical system has its own unit; without one the unit of the heights is open.
+    let folder = tempfile::tempdir().unwrap();
+    for (vertical, unit, is_noted) in [
+        (None, 1.0, true),
+        (Some(32767), 1.0, true),
+        (Some(5703), 1.0, false),
+        (Some(5773), 1.0, false),
+        (Some(6360), 1200.0 / 3937.0, false),
+        (Some(8050), 0.3048, false),
+    ] {
+        let mut keys = vec![1, 1, 0, 2, 1024, 0, 1, 1, 3072, 0, 1, 2265];
+        if let Some(code) = vertical {
+            keys[3] = 3;
+            keys.extend([4096, 0, 1, code]);
+        }
+        let path = folder.path().join("a.tif");
+        std::fs::write(&path, with(&[scale(), tie(), (34735, Tag::Shorts(&keys))])).unwrap();
+        let read = read_field(&path, &HeightOptions::default()).unwrap();
+        assert!((absolute(&read.field)[8] - 100.0 * unit).abs() < 1e-4, "{vertical:?}");
+        let notes = read.notes.join("\n");
+        assert!(notes.contains("cells are in units of 0.3048 m"), "{notes}");
+        assert_eq!(notes.contains("z_scale"), is_noted, "{vertical:?}: {notes}");
+    }
     // Without keys, small numbers are degrees: the middle of 3 rows of 0.01° from 60.015° is 60°,
     // where a degree of longitude is 55 800 m.
     let small = [
