@@ -8,8 +8,8 @@ mod surface;
 mod sweep;
 
 use ridgelight::plan::Axis;
-use ridgelight::plan::azimuths::{FLIPS_LANES, FLIPS_MARCH};
 pub(crate) use ridgelight::plan::azimuths::{Azimuth, CELL};
+use ridgelight::plan::azimuths::{FLIPS_LANES, FLIPS_MARCH};
 pub(crate) use ridgelight::scene::{Border, HeightField};
 pub(crate) use ridgelight_cpu::horizon_march::{MarchOptions, horizon_march};
 pub(crate) use ridgelight_cpu::horizon_sweep::{SweepOptions, horizon_sweep};
