@@ -239,12 +239,11 @@ fn entry(bytes: &[u8], tag: u16) -> usize {
 /// Rows a strip, with the default of TIFF 6.0 for one strip of the whole image.
 #[test]
 fn strips_may_be_taller_than_the_image() {
-    let texels = HEIGHTS.map(|h| h as i16);
     for compression in
         [Compression::Uncompressed, Compression::Lzw, Compression::Deflate(DeflateLevel::Fast)]
     {
         let none = Predictor::None;
-        let mut bytes = tiff::<colortype::GrayI16>(4, 3, &texels, compression, none, &[]);
+        let mut bytes = tiff::<colortype::GrayI16>(4, 3, &HEIGHTS, compression, none, &[]);
         let at = entry(&bytes, 278);
         for rows in [4_u32, 70_000, 1 << 31, u32::MAX] {
             let rows = [&4_u16.to_le_bytes()[..], &1_u32.to_le_bytes(), &rows.to_le_bytes()];
@@ -275,7 +274,7 @@ fn values_are_the_stored_ones_where_white_is_zero() {
         Compression::Packbits,
     ] {
         check::<colortype::Gray8>(&HEIGHTS.map(|h| h as u8), compression);
-        check::<colortype::GrayI16>(&HEIGHTS.map(|h| h as i16), compression);
+        check::<colortype::GrayI16>(&HEIGHTS, compression);
         check::<colortype::Gray32>(&HEIGHTS.map(|h| h as u32), compression);
         check::<colortype::Gray32Float>(&HEIGHTS.map(f32::from), compression);
         check::<colortype::Gray64Float>(&HEIGHTS.map(f64::from), compression);
@@ -285,11 +284,10 @@ fn values_are_the_stored_ones_where_white_is_zero() {
 /// The memory for a tile follows from its sides, which only the header states.
 #[test]
 fn huge_tiles_are_refused() {
-    let texels = HEIGHTS.map(|h| h as i16);
     for compression in
         [Compression::Uncompressed, Compression::Lzw, Compression::Deflate(DeflateLevel::Fast)]
     {
-        let plain = tiff::<colortype::GrayI16>(4, 3, &texels, compression, Predictor::None, &[]);
+        let plain = tiff::<colortype::GrayI16>(4, 3, &HEIGHTS, compression, Predictor::None, &[]);
         // The strip as a tile: offsets 273 to 324, rows a strip 278 to a width 322, byte counts 279 to 325. A
         // directory is in ascending order, so the entries move behind the others.
         let count = usize::from(plain[entry(&plain, 256) - 2]);

@@ -112,13 +112,13 @@ fn gpu_blocks_hold_the_stated_error() {
         let places = if kind == "horizon" { vec![1, 0, 3, 2] } else { (0..layers).collect() };
         let count = encoding.bounds.len();
         let (mut worst, mut squares) = (vec![0.0_f64; count], vec![0.0; count]);
-        for layer in 0..layers {
+        for (layer, place) in places.into_iter().enumerate() {
             let mut words = vec![0; TEXELS];
             decode(&of_layer(&levels[0], layer), 22, 13, &mut words).unwrap();
             for (at, word) in words.iter().enumerate() {
                 // Blue, green, red and alpha from the lowest byte on.
                 let [b, g, r, a] = word.to_le_bytes().map(|code| f64::from(code) / 255.0);
-                let plane = |k: usize| places[layer] * encoding.values + k;
+                let plane = |k: usize| place * encoding.values + k;
                 let was: Vec<f64> = (0..encoding.values)
                     .map(|k| f64::from(values[plane(k) * TEXELS + at]))
                     .collect();
