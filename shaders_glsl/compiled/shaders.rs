@@ -412,8 +412,29 @@ shader! {
 }
 
 shader! {
+    /// `shaders_glsl/view/plinth_draw.frag`.
+    PLINTH_DRAW_FRAG: "plinth_draw_frag", push PlinthDrawPush, words 148459 939,
+    2 reads "voids" SampledImage { uint: false, layered: false },
+    PlinthDrawFrag {
+        1 has_voids: bool = false,
+    }
+}
+
+shader! {
+    /// `shaders_glsl/view/plinth_draw.vert`.
+    PLINTH_DRAW_VERT: "plinth_draw_vert", push PlinthDrawPush, words 149398 2082,
+    0 reads "heights" SampledImage { uint: false, layered: false },
+    1 reads "radiance" SampledImage { uint: false, layered: false },
+    2 reads "voids" SampledImage { uint: false, layered: false },
+    PlinthDrawVert {
+        0 is_grey: bool = false,
+        1 has_voids: bool = false,
+    }
+}
+
+shader! {
     /// `shaders_glsl/view/preview_gather.comp`.
-    PREVIEW_GATHER: "preview_gather", push PreviewGatherPush, words 148459 1649,
+    PREVIEW_GATHER: "preview_gather", push PreviewGatherPush, words 151480 1649,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "coarse_radiance" SampledImage { uint: false, layered: false },
     2 reads "coarse_sun" SampledImage { uint: false, layered: false },
@@ -428,7 +449,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/preview_shade.comp`.
-    PREVIEW_SHADE: "preview_shade", push PreviewShadePush, words 150108 1714,
+    PREVIEW_SHADE: "preview_shade", push PreviewShadePush, words 153129 1714,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "albedo" SampledImage { uint: false, layered: false },
     2 reads "gathered" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -441,7 +462,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/pyramid_march.comp`.
-    PYRAMID_MARCH: "pyramid_march", push PyramidMarchPush, words 151822 9025,
+    PYRAMID_MARCH: "pyramid_march", push PyramidMarchPush, words 154843 9025,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "slopes" StorageImage { format: "Unknown", uint: true, layered: true },
@@ -458,7 +479,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bake/scatter_gather.comp`.
-    SCATTER_GATHER: "scatter_gather", push ScatterGatherPush, words 160847 4664,
+    SCATTER_GATHER: "scatter_gather", push ScatterGatherPush, words 163868 4664,
     0 reads "ground" SampledImage { uint: false, layered: false },
     1 reads "direct" SampledImage { uint: false, layered: false },
     2 reads "visible_points" SampledImage { uint: true, layered: true },
@@ -485,7 +506,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/sh_shade.comp`.
-    SH_SHADE: "sh_shade", push ShShadePush, words 165511 12958,
+    SH_SHADE: "sh_shade", push ShShadePush, words 168532 12958,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "visibility" SampledImage { uint: false, layered: true },
     2 reads "light_matrix" SampledImage { uint: false, layered: false },
@@ -504,7 +525,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/sh_visibility.comp`.
-    SH_VISIBILITY: "sh_visibility", push ShadePush, words 178469 29844,
+    SH_VISIBILITY: "sh_visibility", push ShadePush, words 181490 29844,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rg32ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -529,7 +550,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/sh_wedges.comp`.
-    SH_WEDGES: "sh_wedges", push ShWedgesPush, words 208313 7777,
+    SH_WEDGES: "sh_wedges", push ShWedgesPush, words 211334 7777,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "horizon_angles" SampledImage { uint: false, layered: true },
     2 reads "constants" TexelBuffer,
@@ -546,7 +567,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/shade_expand.comp`.
-    SHADE_EXPAND: "shade_expand", push ShadeExpandPush, words 216090 2397,
+    SHADE_EXPAND: "shade_expand", push ShadeExpandPush, words 219111 2397,
     0 reads "shade_levels" SampledImage { uint: false, layered: false },
     1 reads "shade_table" SampledImage { uint: true, layered: false },
     2 writes "shade_stack" StorageImage { format: "Unknown", uint: false, layered: true },
@@ -557,7 +578,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/shade_reduce.comp`.
-    SHADE_REDUCE: "shade_reduce", push ReducePush, words 218487 2918,
+    SHADE_REDUCE: "shade_reduce", push ReducePush, words 221508 2918,
     0 reads "exit_radiance" SampledImage { uint: false, layered: false },
     1 writes "shade_levels" StorageImage { format: "Rgba32f", uint: false, layered: false },
     2 writes "shade_table" StorageImage { format: "Rgba32ui", uint: true, layered: false },
@@ -570,7 +591,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/sky_draw.frag`.
-    SKY_DRAW_FRAG: "sky_draw_frag", push SkyDrawPush, words 221405 1269,
+    SKY_DRAW_FRAG: "sky_draw_frag", push SkyDrawPush, words 224426 1269,
     0 reads "environment" SampledImage { uint: false, layered: false },
     SkyDrawFrag {
         0 has_environment: bool = false,
@@ -579,13 +600,13 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/sky_draw.vert`.
-    SKY_DRAW_VERT: "sky_draw_vert", push (), words 222674 289,
+    SKY_DRAW_VERT: "sky_draw_vert", push (), words 225695 289,
     SkyDrawVert;
 }
 
 shader! {
     /// `shaders_glsl/direct/sky_shade.comp`.
-    SKY_SHADE: "sky_shade", push ShadePush, words 222963 26661,
+    SKY_SHADE: "sky_shade", push ShadePush, words 225984 26661,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rg32ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -613,7 +634,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/specular_exit.comp`.
-    SPECULAR_EXIT: "specular_exit", push SpecularExitPush, words 249624 6438,
+    SPECULAR_EXIT: "specular_exit", push SpecularExitPush, words 252645 6438,
     0 reads "arriving" SampledImage { uint: false, layered: true },
     1 reads "ground" SampledImage { uint: false, layered: false },
     2 reads "exit_radiance" SampledImage { uint: false, layered: false },
@@ -636,7 +657,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/specular_gather.comp`.
-    SPECULAR_GATHER: "specular_gather", push GatherPush, words 256062 20112,
+    SPECULAR_GATHER: "specular_gather", push GatherPush, words 259083 20112,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "height_levels" SampledImage { uint: false, layered: false },
     2 reads "level_table" SampledImage { uint: true, layered: false },
@@ -664,7 +685,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/specular_light.comp`.
-    SPECULAR_LIGHT: "specular_light", push SpecularLightPush, words 276174 7609,
+    SPECULAR_LIGHT: "specular_light", push SpecularLightPush, words 279195 7609,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "blocked_sum" SampledImage { uint: false, layered: false },
     2 reads "unoccluded_map" SampledImage { uint: false, layered: false },
@@ -678,7 +699,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/specular_visibility.comp`.
-    SPECULAR_VISIBILITY: "specular_visibility", push SpecularVisibilityPush, words 283783 1238,
+    SPECULAR_VISIBILITY: "specular_visibility", push SpecularVisibilityPush, words 286804 1238,
     0 reads "visibility" SampledImage { uint: false, layered: true },
     1 reads "light_matrix" SampledImage { uint: false, layered: false },
     2 writes "arriving" StorageImage { format: "Rgba32f", uint: false, layered: true },
@@ -690,7 +711,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/sphere_sh_shade.comp`.
-    SPHERE_SH_SHADE: "sphere_sh_shade", push SphereShShadePush, words 285021 27634,
+    SPHERE_SH_SHADE: "sphere_sh_shade", push SphereShShadePush, words 288042 27634,
     0 reads "cells" SampledImage { uint: false, layered: false },
     1 reads "maxima" SampledImage { uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -716,7 +737,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/sphere_shade.comp`.
-    SPHERE_SHADE: "sphere_shade", push SphereShadePush, words 312655 14335,
+    SPHERE_SHADE: "sphere_shade", push SphereShadePush, words 315676 14335,
     0 reads "cells" SampledImage { uint: false, layered: false },
     1 reads "maxima" SampledImage { uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -731,7 +752,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/sun_shade.comp`.
-    SUN_SHADE: "sun_shade", push ShadePush, words 326990 22124,
+    SUN_SHADE: "sun_shade", push ShadePush, words 330011 22124,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rg32ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -752,7 +773,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/sun_specular.comp`.
-    SUN_SPECULAR: "sun_specular", push SunSpecularPush, words 349114 9004,
+    SUN_SPECULAR: "sun_specular", push SunSpecularPush, words 352135 9004,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "sun_sum" SampledImage { uint: false, layered: false },
     2 writes "specular_sum" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -769,7 +790,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/surface_sweep.comp`.
-    SURFACE_SWEEP: "surface_sweep", push MarchPush, words 358118 6812,
+    SURFACE_SWEEP: "surface_sweep", push MarchPush, words 361139 6812,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "slopes" StorageImage { format: "Unknown", uint: true, layered: true },
@@ -783,7 +804,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/sweep_fuse.comp`.
-    SWEEP_FUSE: "sweep_fuse", push SweepFusePush, words 364930 18089,
+    SWEEP_FUSE: "sweep_fuse", push SweepFusePush, words 367951 18089,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rg32ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -803,7 +824,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/terrain_draw.frag`.
-    TERRAIN_DRAW_FRAG: "terrain_draw_frag", push TerrainDrawPush, words 383019 1129,
+    TERRAIN_DRAW_FRAG: "terrain_draw_frag", push TerrainDrawPush, words 386040 1129,
     1 reads "radiance" SampledImage { uint: false, layered: false },
     2 reads "voids" SampledImage { uint: false, layered: false },
     TerrainDrawFrag {
@@ -814,14 +835,14 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/terrain_draw.vert`.
-    TERRAIN_DRAW_VERT: "terrain_draw_vert", push TerrainDrawPush, words 384148 916,
+    TERRAIN_DRAW_VERT: "terrain_draw_vert", push TerrainDrawPush, words 387169 994,
     0 reads "heights" SampledImage { uint: false, layered: false },
     TerrainDrawVert;
 }
 
 shader! {
     /// `shaders_glsl/bounce/vector_reduce.comp`.
-    VECTOR_REDUCE: "vector_reduce", push ReducePush, words 385064 2964,
+    VECTOR_REDUCE: "vector_reduce", push ReducePush, words 388163 2964,
     0 reads "exit_vectors" SampledImage { uint: false, layered: true },
     1 reads "vector_source" SampledImage { uint: false, layered: true },
     2 writes "vector_levels" StorageImage { format: "Unknown", uint: false, layered: true },
@@ -834,7 +855,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bake/visible_points.comp`.
-    VISIBLE_POINTS: "visible_points", push VisiblePointsPush, words 388028 9687,
+    VISIBLE_POINTS: "visible_points", push VisiblePointsPush, words 391127 9687,
     0 reads "cells" SampledImage { uint: false, layered: false },
     1 reads "maxima" SampledImage { uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -907,6 +928,8 @@ pub static ALL: &[Shader] = &[
 pub static GRAPHICS: &[Shader] = &[
     PICTURE_TONE_FRAG,
     PICTURE_TONE_VERT,
+    PLINTH_DRAW_FRAG,
+    PLINTH_DRAW_VERT,
     SKY_DRAW_FRAG,
     SKY_DRAW_VERT,
     TERRAIN_DRAW_FRAG,
@@ -1022,6 +1045,12 @@ layouts! {
     push PictureTonePush 4 {
         0 exposure: f32,
     }
+    push PlinthDrawPush 112 {
+        0 clip_per_col: [f32; 4], 16 clip_per_row: [f32; 4], 32 clip_per_metre: [f32; 4],
+        48 clip_at_origin: [f32; 4], 64 origin_col: i32, 68 origin_row: i32, 72 origin_m: f32,
+        76 cols: i32, 80 rows: i32, 84 mesh_step: i32, 88 base_m: f32, 92 base_tone: f32,
+        96 wall_tones: [f32; 4],
+    }
     push PreviewGatherPush 48 {
         0 sun: [f32; 4], 16 most: [f32; 4], 32 cell_m: [f32; 2], 40 cols: i32, 44 rows: i32,
     }
@@ -1123,4 +1152,4 @@ layouts! {
 }
 
 /// Words of all shaders together.
-const WORD_COUNT: usize = 397715;
+const WORD_COUNT: usize = 400814;

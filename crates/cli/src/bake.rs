@@ -217,10 +217,13 @@ fn bake(
     let is_light = job.has(Kind::is_light);
     let bar = crate::setup::terminal::progress(args.global.quiet, "estimating the time");
     let is_shown = !args.global.quiet || args.global.json.is_some();
-    let estimate = if is_shown { Estimate::of(gpu, args, &job).ok() } else { None };
+    let estimate = if is_shown { Some(Estimate::of(gpu, args, &job)) } else { None };
+    let estimate = estimate.map(estimate::unless_lost).transpose()?;
     if let Some(estimate) = estimate.as_ref().filter(|_| !args.global.quiet) {
-        bar.suspend(|| setup::note(&estimate.text()));
+        let text = estimate.as_ref().map_or_else(String::clone, Estimate::text);
+        bar.suspend(|| setup::note(&text));
     }
+    let estimate = estimate.and_then(std::result::Result::ok);
     let stages = Stages::new(bar.clone(), job.stages()?);
     let maps = std::mem::take(&mut job.maps);
     let count = maps.len();

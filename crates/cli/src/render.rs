@@ -70,7 +70,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
     if goal.is_some() {
         setup::check_diffuse(&scene, "--max-error or --time-budget")?;
     }
-    let camera_view = camera::requested(&args.camera, &scene)?;
+    let camera_view = camera::requested(&args.camera, &scene, is_png)?;
     let eye_m = camera_view.as_ref().map(|view| view.eye_m(&scene.field));
     let wanted = Picture { eye_m, ..setup::wanted(&args.layers) };
     let picture =

@@ -67,7 +67,7 @@ impl Azimuth {
     }
 
     /// Which of eight octants it lies in; 0..4 march along columns, 4..8 along rows.
-    pub fn octant(&self) -> usize {
+    pub(crate) fn octant(&self) -> usize {
         let flips = (self.flags & (FLIPS_MARCH | FLIPS_LANES)) as usize >> 1;
         flips + if self.marches_rows() { 4 } else { 0 }
     }

@@ -168,9 +168,11 @@ impl<'a> Job<'a> {
             Source::Light(of) => (of.bytes)(self),
         };
         let maps = self.maps.iter();
-        let maps = maps.map(|(w, map)| of_kind(w.kind) + w.held_bytes(map, grid_points));
+        let field = [self.field().cols(), self.field().rows()];
+        let maps = maps.map(|(w, map)| of_kind(w.kind).saturating_add(w.held_bytes(map, field)));
         let azimuths = horizon::at_once(self.field(), limits).min(self.quality.azimuths);
-        maps.sum::<u64>() + (24 + 4 * u64::from(azimuths)) * grid_points as u64
+        let own = (24 + 4 * u64::from(azimuths)) * grid_points as u64;
+        maps.fold(own, u64::saturating_add)
     }
 
     /// Kinds that trace directions.

@@ -31,7 +31,7 @@ pub fn horizon(job: &Job, wanted: &Wanted) -> Result<Map> {
         values: vec![Value {
             name: "elevation",
             about: "horizon elevation above horizontal, in planes by compass degrees; layer k of a \
-                .ktx2, and its picture, along 2π k / azimuths counter-clockwise from east",
+                texture, and picture k, along 2π k / azimuths counter-clockwise from east",
             unit: "rad",
             range: [if is_open { -FRAC_PI_2 } else { 0.0 }, FRAC_PI_2],
         }],
