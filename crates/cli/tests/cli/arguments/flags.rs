@@ -214,7 +214,7 @@ fn specular() {
             ("--specular -1,0.5 --albedo 0.5", 2, &["--specular exponent: found -1"]),
             ("--specular 10,0.5", 2, &["--specular scale", "albedo of 1"]),
             (
-                "--specular 10,0.5 --albedo 0.5 --basis table",
+                "--specular 10,0.5 --albedo 0.5 --basis table --bounces 1",
                 2,
                 &["--specular: found", "--basis sh"],
             ),
