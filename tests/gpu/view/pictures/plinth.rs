@@ -104,7 +104,7 @@ fn another_plinth_is_refused() {
     assert!(check(&with, &without, LIGHT).is_err());
 }
 
-/// Level ground of 16 by 16 cells of 2 m, seen from the south at its own height by an orthographic lens of 24 m: pixels of
+/// Level ground of 16 by 16 cells of 2 m, viewed from the south at its own height by an orthographic lens of 24 m: pixels of
 /// 0.5 m. The southern wall of 32 m fills the picture of 64 pixels across. It begins in the middle and ends 8 m
 /// below, 16 pixels. Radiance is 1 under a sky of 1; without a sun the light comes from 60 degrees left of the
 /// camera, so the wall has 0.35 + 0.15 cos 60°.
