@@ -327,19 +327,8 @@ shader! {
 }
 
 shader! {
-    /// `shaders_glsl/specular/lobe_tables.comp`.
-    LOBE_TABLES: "lobe_tables", push LobeTablesPush, words 112605 4630,
-    0 reads "azimuths" TexelBuffer,
-    1 reads "wedge_rows" StorageBuffer,
-    2 writes "lobe_tables" StorageImage { format: "Rgba32f", uint: false, layered: true },
-    LobeTables {
-        0 has_environment: bool = false,
-    }
-}
-
-shader! {
     /// `shaders_glsl/view/map_draw.comp`.
-    MAP_DRAW: "map_draw", push MapDrawPush, words 117235 3843,
+    MAP_DRAW: "map_draw", push MapDrawPush, words 112605 3843,
     0 reads "radiance" SampledImage { uint: false, layered: false },
     1 reads "tone_steps" SampledImage { uint: false, layered: false },
     2 reads "voids" SampledImage { uint: false, layered: false },
@@ -352,16 +341,16 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/mirror_map.comp`.
-    MIRROR_MAP: "mirror_map", push MirrorMapPush, words 121078 3622,
+    MIRROR_MAP: "mirror_map", push MirrorMapPush, words 116448 3623,
     0 reads "azimuths" TexelBuffer,
-    1 reads "lobe_tables" StorageImage { format: "Rgba32f", uint: false, layered: true },
+    1 reads "specular_tables" StorageImage { format: "Rgba32f", uint: false, layered: true },
     2 writes "mirror_map" StorageImage { format: "Rgba32f", uint: false, layered: false },
     MirrorMap;
 }
 
 shader! {
     /// `shaders_glsl/reference/path_trace.comp`.
-    PATH_TRACE: "path_trace", push PathTracePush, words 124700 22928,
+    PATH_TRACE: "path_trace", push PathTracePush, words 120071 22928,
     0 reads "cells" SampledImage { uint: false, layered: false },
     1 reads "maxima" SampledImage { uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -398,7 +387,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/picture_tone.frag`.
-    PICTURE_TONE_FRAG: "picture_tone_frag", push PictureTonePush, words 147628 565,
+    PICTURE_TONE_FRAG: "picture_tone_frag", push PictureTonePush, words 142999 565,
     0 reads "radiance" SampledImage { uint: false, layered: false },
     PictureToneFrag {
         0 encodes: bool = true,
@@ -407,13 +396,13 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/picture_tone.vert`.
-    PICTURE_TONE_VERT: "picture_tone_vert", push (), words 148193 266,
+    PICTURE_TONE_VERT: "picture_tone_vert", push (), words 143564 266,
     PictureToneVert;
 }
 
 shader! {
     /// `shaders_glsl/view/plinth_draw.frag`.
-    PLINTH_DRAW_FRAG: "plinth_draw_frag", push PlinthDrawPush, words 148459 939,
+    PLINTH_DRAW_FRAG: "plinth_draw_frag", push PlinthDrawPush, words 143830 939,
     2 reads "voids" SampledImage { uint: false, layered: false },
     PlinthDrawFrag {
         1 has_voids: bool = false,
@@ -422,7 +411,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/plinth_draw.vert`.
-    PLINTH_DRAW_VERT: "plinth_draw_vert", push PlinthDrawPush, words 149398 2082,
+    PLINTH_DRAW_VERT: "plinth_draw_vert", push PlinthDrawPush, words 144769 2082,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "radiance" SampledImage { uint: false, layered: false },
     2 reads "voids" SampledImage { uint: false, layered: false },
@@ -434,7 +423,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/preview_gather.comp`.
-    PREVIEW_GATHER: "preview_gather", push PreviewGatherPush, words 151480 1649,
+    PREVIEW_GATHER: "preview_gather", push PreviewGatherPush, words 146851 1649,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "coarse_radiance" SampledImage { uint: false, layered: false },
     2 reads "coarse_sun" SampledImage { uint: false, layered: false },
@@ -449,7 +438,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/preview_shade.comp`.
-    PREVIEW_SHADE: "preview_shade", push PreviewShadePush, words 153129 1714,
+    PREVIEW_SHADE: "preview_shade", push PreviewShadePush, words 148500 1714,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "albedo" SampledImage { uint: false, layered: false },
     2 reads "gathered" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -462,7 +451,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/pyramid_march.comp`.
-    PYRAMID_MARCH: "pyramid_march", push PyramidMarchPush, words 154843 9025,
+    PYRAMID_MARCH: "pyramid_march", push PyramidMarchPush, words 150214 9025,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "slopes" StorageImage { format: "Unknown", uint: true, layered: true },
@@ -479,7 +468,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bake/scatter_gather.comp`.
-    SCATTER_GATHER: "scatter_gather", push ScatterGatherPush, words 163868 4664,
+    SCATTER_GATHER: "scatter_gather", push ScatterGatherPush, words 159239 4664,
     0 reads "ground" SampledImage { uint: false, layered: false },
     1 reads "direct" SampledImage { uint: false, layered: false },
     2 reads "visible_points" SampledImage { uint: true, layered: true },
@@ -506,7 +495,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/sh_shade.comp`.
-    SH_SHADE: "sh_shade", push ShShadePush, words 168532 12958,
+    SH_SHADE: "sh_shade", push ShShadePush, words 163903 12958,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "visibility" SampledImage { uint: false, layered: true },
     2 reads "light_matrix" SampledImage { uint: false, layered: false },
@@ -525,7 +514,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/sh_visibility.comp`.
-    SH_VISIBILITY: "sh_visibility", push ShadePush, words 181490 29844,
+    SH_VISIBILITY: "sh_visibility", push ShadePush, words 176861 29844,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rg32ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -550,7 +539,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/sh_wedges.comp`.
-    SH_WEDGES: "sh_wedges", push ShWedgesPush, words 211334 7777,
+    SH_WEDGES: "sh_wedges", push ShWedgesPush, words 206705 7777,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "horizon_angles" SampledImage { uint: false, layered: true },
     2 reads "constants" TexelBuffer,
@@ -567,7 +556,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/shade_expand.comp`.
-    SHADE_EXPAND: "shade_expand", push ShadeExpandPush, words 219111 2397,
+    SHADE_EXPAND: "shade_expand", push ShadeExpandPush, words 214482 2397,
     0 reads "shade_levels" SampledImage { uint: false, layered: false },
     1 reads "shade_table" SampledImage { uint: true, layered: false },
     2 writes "shade_stack" StorageImage { format: "Unknown", uint: false, layered: true },
@@ -578,7 +567,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/shade_reduce.comp`.
-    SHADE_REDUCE: "shade_reduce", push ReducePush, words 221508 2918,
+    SHADE_REDUCE: "shade_reduce", push ReducePush, words 216879 2918,
     0 reads "exit_radiance" SampledImage { uint: false, layered: false },
     1 writes "shade_levels" StorageImage { format: "Rgba32f", uint: false, layered: false },
     2 writes "shade_table" StorageImage { format: "Rgba32ui", uint: true, layered: false },
@@ -591,7 +580,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/sky_draw.frag`.
-    SKY_DRAW_FRAG: "sky_draw_frag", push SkyDrawPush, words 224426 1269,
+    SKY_DRAW_FRAG: "sky_draw_frag", push SkyDrawPush, words 219797 1269,
     0 reads "environment" SampledImage { uint: false, layered: false },
     SkyDrawFrag {
         0 has_environment: bool = false,
@@ -600,13 +589,13 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/sky_draw.vert`.
-    SKY_DRAW_VERT: "sky_draw_vert", push (), words 225695 289,
+    SKY_DRAW_VERT: "sky_draw_vert", push (), words 221066 289,
     SkyDrawVert;
 }
 
 shader! {
     /// `shaders_glsl/direct/sky_shade.comp`.
-    SKY_SHADE: "sky_shade", push ShadePush, words 225984 26661,
+    SKY_SHADE: "sky_shade", push ShadePush, words 221355 26664,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rg32ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -616,7 +605,7 @@ shader! {
     6 reads "dirty_texels" StorageBuffer,
     7 reads "lattice_words" SampledImage { uint: true, layered: true },
     8 reads "edit_list" StorageBuffer,
-    9 reads "lobe_tables" StorageImage { format: "Rgba32f", uint: false, layered: true },
+    9 reads "specular_tables" StorageImage { format: "Rgba32f", uint: false, layered: true },
     10 writes "blocked_sum" StorageImage { format: "Rgba32f", uint: false, layered: false },
     SkyShade {
         0 fuse: u32 = 5,
@@ -627,14 +616,14 @@ shader! {
         5 has_environment: bool = false,
         6 marches_rows: bool = false,
         7 relights: bool = false,
-        8 has_lobe: bool = false,
-        9 lobe_is_shared: bool = false,
+        8 has_specular: bool = false,
+        9 specular_is_shared: bool = false,
     }
 }
 
 shader! {
     /// `shaders_glsl/specular/specular_exit.comp`.
-    SPECULAR_EXIT: "specular_exit", push SpecularExitPush, words 252645 6438,
+    SPECULAR_EXIT: "specular_exit", push SpecularExitPush, words 248019 6438,
     0 reads "arriving" SampledImage { uint: false, layered: true },
     1 reads "ground" SampledImage { uint: false, layered: false },
     2 reads "exit_radiance" SampledImage { uint: false, layered: false },
@@ -657,7 +646,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/specular_gather.comp`.
-    SPECULAR_GATHER: "specular_gather", push GatherPush, words 259083 20112,
+    SPECULAR_GATHER: "specular_gather", push GatherPush, words 254457 20112,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "height_levels" SampledImage { uint: false, layered: false },
     2 reads "level_table" SampledImage { uint: true, layered: false },
@@ -685,7 +674,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/specular_light.comp`.
-    SPECULAR_LIGHT: "specular_light", push SpecularLightPush, words 279195 7609,
+    SPECULAR_LIGHT: "specular_light", push SpecularLightPush, words 274569 7609,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "blocked_sum" SampledImage { uint: false, layered: false },
     2 reads "unoccluded_map" SampledImage { uint: false, layered: false },
@@ -698,8 +687,19 @@ shader! {
 }
 
 shader! {
+    /// `shaders_glsl/specular/specular_tables.comp`.
+    SPECULAR_TABLES: "specular_tables", push SpecularTablesPush, words 282178 4633,
+    0 reads "azimuths" TexelBuffer,
+    1 reads "wedge_rows" StorageBuffer,
+    2 writes "specular_tables" StorageImage { format: "Rgba32f", uint: false, layered: true },
+    SpecularTables {
+        0 has_environment: bool = false,
+    }
+}
+
+shader! {
     /// `shaders_glsl/specular/specular_visibility.comp`.
-    SPECULAR_VISIBILITY: "specular_visibility", push SpecularVisibilityPush, words 286804 1238,
+    SPECULAR_VISIBILITY: "specular_visibility", push SpecularVisibilityPush, words 286811 1238,
     0 reads "visibility" SampledImage { uint: false, layered: true },
     1 reads "light_matrix" SampledImage { uint: false, layered: false },
     2 writes "arriving" StorageImage { format: "Rgba32f", uint: false, layered: true },
@@ -711,7 +711,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/sphere_sh_shade.comp`.
-    SPHERE_SH_SHADE: "sphere_sh_shade", push SphereShShadePush, words 288042 27634,
+    SPHERE_SH_SHADE: "sphere_sh_shade", push SphereShShadePush, words 288049 27634,
     0 reads "cells" SampledImage { uint: false, layered: false },
     1 reads "maxima" SampledImage { uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -737,7 +737,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/sphere_shade.comp`.
-    SPHERE_SHADE: "sphere_shade", push SphereShadePush, words 315676 14335,
+    SPHERE_SHADE: "sphere_shade", push SphereShadePush, words 315683 14335,
     0 reads "cells" SampledImage { uint: false, layered: false },
     1 reads "maxima" SampledImage { uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -752,7 +752,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/sun_shade.comp`.
-    SUN_SHADE: "sun_shade", push ShadePush, words 330011 22124,
+    SUN_SHADE: "sun_shade", push ShadePush, words 330018 22124,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rg32ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -773,7 +773,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/sun_specular.comp`.
-    SUN_SPECULAR: "sun_specular", push SunSpecularPush, words 352135 9004,
+    SUN_SPECULAR: "sun_specular", push SunSpecularPush, words 352142 9004,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "sun_sum" SampledImage { uint: false, layered: false },
     2 writes "specular_sum" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -790,7 +790,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/surface_sweep.comp`.
-    SURFACE_SWEEP: "surface_sweep", push MarchPush, words 361139 6812,
+    SURFACE_SWEEP: "surface_sweep", push MarchPush, words 361146 6812,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "slopes" StorageImage { format: "Unknown", uint: true, layered: true },
@@ -804,7 +804,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/sweep_fuse.comp`.
-    SWEEP_FUSE: "sweep_fuse", push SweepFusePush, words 367951 18089,
+    SWEEP_FUSE: "sweep_fuse", push SweepFusePush, words 367958 18089,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rg32ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -824,7 +824,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/terrain_draw.frag`.
-    TERRAIN_DRAW_FRAG: "terrain_draw_frag", push TerrainDrawPush, words 386040 1129,
+    TERRAIN_DRAW_FRAG: "terrain_draw_frag", push TerrainDrawPush, words 386047 1129,
     1 reads "radiance" SampledImage { uint: false, layered: false },
     2 reads "voids" SampledImage { uint: false, layered: false },
     TerrainDrawFrag {
@@ -835,14 +835,14 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/terrain_draw.vert`.
-    TERRAIN_DRAW_VERT: "terrain_draw_vert", push TerrainDrawPush, words 387169 994,
+    TERRAIN_DRAW_VERT: "terrain_draw_vert", push TerrainDrawPush, words 387176 994,
     0 reads "heights" SampledImage { uint: false, layered: false },
     TerrainDrawVert;
 }
 
 shader! {
     /// `shaders_glsl/bounce/vector_reduce.comp`.
-    VECTOR_REDUCE: "vector_reduce", push ReducePush, words 388163 2964,
+    VECTOR_REDUCE: "vector_reduce", push ReducePush, words 388170 2964,
     0 reads "exit_vectors" SampledImage { uint: false, layered: true },
     1 reads "vector_source" SampledImage { uint: false, layered: true },
     2 writes "vector_levels" StorageImage { format: "Unknown", uint: false, layered: true },
@@ -855,7 +855,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bake/visible_points.comp`.
-    VISIBLE_POINTS: "visible_points", push VisiblePointsPush, words 391127 9687,
+    VISIBLE_POINTS: "visible_points", push VisiblePointsPush, words 391134 9687,
     0 reads "cells" SampledImage { uint: false, layered: false },
     1 reads "maxima" SampledImage { uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -896,7 +896,6 @@ pub static ALL: &[Shader] = &[
     HORIZON_SWEEP,
     LIGHT_MATRIX,
     LIGHT_RESOLVE,
-    LOBE_TABLES,
     MAP_DRAW,
     MIRROR_MAP,
     PATH_TRACE,
@@ -913,6 +912,7 @@ pub static ALL: &[Shader] = &[
     SPECULAR_EXIT,
     SPECULAR_GATHER,
     SPECULAR_LIGHT,
+    SPECULAR_TABLES,
     SPECULAR_VISIBILITY,
     SPHERE_SH_SHADE,
     SPHERE_SHADE,
@@ -1019,11 +1019,6 @@ layouts! {
     push LightResolvePush 32 {
         0 cols: i32, 4 rows: i32, 8 clears: u32, 12 texel: i32, 16 colour: [f32; 4],
     }
-    push LobeTablesPush 56 {
-        0 sky: [f32; 4], 16 height: i32, 20 rows: i32, 24 peaks: i32, 28 nodes: i32, 32 layers: i32,
-        36 bottom_rad: f32, 40 first_rad: f32, 44 step_rad: f32, 48 exponent: f32,
-        52 wedge_rad: f32,
-    }
     push MapDrawPush 44 {
         0 width: i32, 4 height: i32, 8 cols: i32, 12 rows: i32, 16 first_col: f32,
         20 first_row: f32, 24 grid_points_per_pixel: f32, 28 swaps: u32, 32 beyond: u32,
@@ -1100,6 +1095,11 @@ layouts! {
         0 cols: i32, 4 rows: i32, 8 cell_x_m: f32, 12 cell_y_m: f32, 16 eye_m: [f32; 4],
         32 scale: f32,
     }
+    push SpecularTablesPush 56 {
+        0 sky: [f32; 4], 16 height: i32, 20 rows: i32, 24 peaks: i32, 28 nodes: i32, 32 layers: i32,
+        36 bottom_rad: f32, 40 first_rad: f32, 44 step_rad: f32, 48 exponent: f32,
+        52 wedge_rad: f32,
+    }
     push SpecularVisibilityPush 8 {
         0 cols: i32, 4 rows: i32,
     }
@@ -1152,4 +1152,4 @@ layouts! {
 }
 
 /// Words of all shaders together.
-const WORD_COUNT: usize = 400814;
+const WORD_COUNT: usize = 400821;

@@ -1,6 +1,6 @@
 // Computes: exit radiance under a uniform sky and under an environment, from the horizons in the azimuths of a batch,
 // added to earlier batches; and the light that the horizons hide from a Phong lobe.
-// Reads: lane_heights, azimuths, lattice, env_tables, lobe_tables, dirty_texels, edit_list.
+// Reads: lane_heights, azimuths, lattice, env_tables, specular_tables, dirty_texels, edit_list.
 // Reads and writes: sky_sum (exit radiance for sky radiance 1 and albedo 1), env_sum (exit radiance for albedo 1,
 // RGB), blocked_sum (radiance for scale 1, RGB).
 // One invocation is four grid points side by side along the lane axis, at one march position.
@@ -23,9 +23,9 @@ layout(constant_id = 5) const bool HAS_ENVIRONMENT = false;
 layout(constant_id = 6) const bool MARCHES_ROWS = false;
 // Only the grid points marked in dirty_texels, from the list of their words.
 layout(constant_id = 7) const bool RELIGHTS = false;
-layout(constant_id = 8) const bool HAS_LOBE = false;
+layout(constant_id = 8) const bool HAS_SPECULAR = false;
 // One table of lobes for all azimuths, of a sky alone.
-layout(constant_id = 9) const bool LOBE_IS_SHARED = false;
+layout(constant_id = 9) const bool SPECULAR_IS_SHARED = false;
 
 layout(binding = 0, rgba32f) uniform readonly image2D lane_heights;
 // LATTICE selects one of these.
@@ -40,7 +40,7 @@ layout(binding = 4, rgba32f) uniform image2D env_sum;
 // x: elevation node, y: moment (cos, sin, vertical), layer: azimuth.
 layout(binding = 5, rgba32f) uniform readonly image2DArray env_tables;
 // x: elevation of the lobe's peak, y: elevation, layer: azimuth.
-layout(binding = 9, rgba32f) uniform readonly image2DArray lobe_tables;
+layout(binding = 9, rgba32f) uniform readonly image2DArray specular_tables;
 layout(binding = 10, rgba32f) uniform image2D blocked_sum;
 
 // Sums of the four grid points, and their normals.
@@ -82,7 +82,7 @@ void add_light(uint index, Azimuth azimuth, vec4 lowest) {
             env_blue[k] += sum.b;
         }
     }
-    if (HAS_LOBE) {
+    if (HAS_SPECULAR) {
         add_hidden(index, azimuth, lowest);
     }
 }
@@ -125,7 +125,7 @@ void main() {
     blocked_red = vec4(0.0);
     blocked_green = vec4(0.0);
     blocked_blue = vec4(0.0);
-    if (HAS_LOBE) {
+    if (HAS_SPECULAR) {
         vec4 lane_at = vec4(lane, lane + 1, lane + 2, lane + 3);
         vec4 column = MARCHES_ROWS ? lane_at : vec4(march);
         vec4 row = MARCHES_ROWS ? vec4(march) : lane_at;
@@ -144,7 +144,7 @@ void main() {
                 env_green[k] = sum.g;
                 env_blue[k] = sum.b;
             }
-            if (HAS_LOBE) {
+            if (HAS_SPECULAR) {
                 vec3 sum = imageLoad(blocked_sum, at).rgb;
                 blocked_red[k] = sum.r;
                 blocked_green[k] = sum.g;
@@ -161,7 +161,7 @@ void main() {
         if (HAS_ENVIRONMENT && lit[k]) {
             imageStore(env_sum, at, vec4(env_red[k], env_green[k], env_blue[k], 0.0));
         }
-        if (HAS_LOBE && lit[k]) {
+        if (HAS_SPECULAR && lit[k]) {
             imageStore(blocked_sum, at, vec4(blocked_red[k], blocked_green[k], blocked_blue[k], 0.0));
         }
     }

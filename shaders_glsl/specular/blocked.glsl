@@ -1,7 +1,7 @@
-// Sums the light that horizons hide from a Phong lobe, at four grid points. The including shader declares lobe_tables, the
-// push constants of gather.glsl, and the constants BORDER and LOBE_IS_SHARED.
+// Sums the light that horizons hide from a Phong lobe, at four grid points. The including shader declares specular_tables, the
+// push constants of gather.glsl, and the constants BORDER and SPECULAR_IS_SHARED.
 
-#include "specular/slice_lobe.glsl"
+#include "specular/phong_slice.glsl"
 #include "specular/mirror.glsl"
 
 Mirrored mirror;
@@ -28,8 +28,8 @@ void add_blocked(uint index, Azimuth azimuth, vec4 lowest) {
     if (all(is_dark)) {
         return;
     }
-    ivec3 size = imageSize(lobe_tables);
-    vec4 power = off_slice(exponent, across) * (LOBE_IS_SHARED ? azimuth.wedge_rad : 1.0);
+    ivec3 size = imageSize(specular_tables);
+    vec4 power = off_slice(exponent, across) * (SPECULAR_IS_SHARED ? azimuth.wedge_rad : 1.0);
     vec4 angle = angle_of(along, mirror.up);
     float first = BORDER == BORDER_OPEN ? -PI : -HALF_PI;
     vec4 peak_place = (angle - first) / (PI - first) * float(size.x - 1);
@@ -38,15 +38,15 @@ void add_blocked(uint index, Azimuth azimuth, vec4 lowest) {
     ivec4 node = clamp(ivec4(node_place), 0, size.y - 2);
     vec4 s = clamp(peak_place - vec4(peak), 0.0, 1.0);
     vec4 t = clamp(node_place - vec4(node), 0.0, 1.0);
-    int layer = LOBE_IS_SHARED ? 0 : int(index);
+    int layer = SPECULAR_IS_SHARED ? 0 : int(index);
     for (int k = 0; k < 4; k++) {
         // A lobe that peaks behind and below gives nothing above horizontal.
         if (is_dark[k] || peak_place[k] < 0.0) {
             continue;
         }
         ivec3 at = ivec3(peak[k], node[k], layer);
-        vec3 low = mix(imageLoad(lobe_tables, at).rgb, imageLoad(lobe_tables, at + ivec3(1, 0, 0)).rgb, s[k]);
-        vec3 high = mix(imageLoad(lobe_tables, at + ivec3(0, 1, 0)).rgb, imageLoad(lobe_tables, at + ivec3(1, 1, 0)).rgb, s[k]);
+        vec3 low = mix(imageLoad(specular_tables, at).rgb, imageLoad(specular_tables, at + ivec3(1, 0, 0)).rgb, s[k]);
+        vec3 high = mix(imageLoad(specular_tables, at + ivec3(0, 1, 0)).rgb, imageLoad(specular_tables, at + ivec3(1, 1, 0)).rgb, s[k]);
         vec3 light = power[k] * mix(low, high, t[k]);
         blocked_red[k] += light.r;
         blocked_green[k] += light.g;

@@ -29,7 +29,7 @@ layout(push_constant) uniform SpecularLightPush {
 
 #include "shared/quad.glsl"
 #include "shared/angle.glsl"
-#include "specular/slice_lobe.glsl"
+#include "specular/phong_slice.glsl"
 #include "specular/mirror.glsl"
 
 // Weights of a cubic through four values, between the second and the third (Catmull-Rom).

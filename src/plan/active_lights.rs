@@ -162,7 +162,7 @@ impl<'a> ActiveLights<'a> {
     }
 
     /// The lobe that reflects sky and environment by tables: one for all texels, without bounces.
-    pub(super) fn lobe(&self, quality: &Quality) -> Option<PhongSpecular> {
+    pub(super) fn by_slices(&self, quality: &Quality) -> Option<PhongSpecular> {
         let is_direct = quality.basis != Basis::Sh && quality.bounces.count == 0;
         match self.specular {
             Some(Specular::Constant(phong)) if self.has_specular_around() && is_direct => {

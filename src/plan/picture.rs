@@ -23,7 +23,7 @@ use crate::scene::{
 };
 use crate::{Error, Result};
 use drawing::Drawing;
-use images::{Harmonics, Images, Lobes, Tables};
+use images::{Harmonics, Images, SpecularSlices, Tables};
 
 /// Requested outputs of a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -127,8 +127,8 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
         lists.push(azimuths::even(quality.bounces.azimuths, field.cell_m()));
     }
     let (mut tables, mut harmonics) = (None, None);
-    let lobe = active.lobe(quality);
-    let has_specular = active.has_specular_around() && lobe.is_none();
+    let mirrored = active.by_slices(quality);
+    let has_specular = active.has_specular_around() && mirrored.is_none();
     if has_specular || active.environment.is_some() && quality.basis == Basis::Sh {
         active.environment.map_or(Ok(()), Environment::check_series)?;
         if quality.wedges == Wedges::Table && matches!(sweep, Sweep::Surface { .. }) {
@@ -147,11 +147,11 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     let eye_m = wanted
         .eye_m
         .map_or([0.0; 4], |[x, y, z]| [x as f32, y as f32, (z - field.base_m()) as f32, 1.0]);
-    let lobes = lobe.map(|phong| {
+    let slices = mirrored.map(|phong| {
         let lit = (active.environment, surface.border);
-        Lobes::make(&mut builder, [size[0], size[1]], lit, quality, phong)
+        SpecularSlices::make(&mut builder, [size[0], size[1]], lit, quality, phong)
     });
-    if active.environment.is_none() && active.sky.is_some() && lobes.is_none() {
+    if active.environment.is_none() && active.sky.is_some() && slices.is_none() {
         notes.push("no environment: no table".into());
     }
     let keeps = wanted.keeps_horizons;
@@ -207,7 +207,7 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
         images,
         tables,
         harmonics,
-        lobes,
+        slices,
         eye_m,
         sweeping,
         blocks,

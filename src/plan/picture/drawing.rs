@@ -1,7 +1,7 @@
 //! Plans the passes of a picture, light by light.
 
 use super::super::active_lights::{ActiveLights, Aimed, Colour};
-use super::images::{Harmonics, Images, Lobes, Tables};
+use super::images::{Harmonics, Images, SpecularSlices, Tables};
 use crate::graph::{Builder, ResourceId};
 use crate::passes::blocks::Blocks;
 use crate::passes::bounces::{Bouncing, bounce_name};
@@ -20,7 +20,7 @@ pub(super) struct Drawing<'a> {
     pub images: Images,
     pub tables: Option<Tables>,
     pub harmonics: Option<Harmonics>,
-    pub lobes: Option<Lobes>,
+    pub slices: Option<SpecularSlices>,
     /// The eye over the field's base; the last is 0 for a view from straight above.
     pub eye_m: [f32; 4],
     /// None if there are only sphere lights, which trace their own occlusion.
@@ -46,7 +46,7 @@ impl Drawing<'_> {
     pub(super) fn fill_tables(&mut self, quality: &Quality) {
         self.fill_matrices();
         self.fill_env_tables(quality);
-        self.fill_lobes(quality.azimuths);
+        self.fill_specular(quality.azimuths);
     }
 
     fn fill_env_tables(&mut self, quality: &Quality) {
@@ -106,9 +106,9 @@ impl Drawing<'_> {
             }
             let (lane_heights, lattice) = (sweeping.lane_heights(batch), sweeping.lattice(batch));
             let (azimuths, sweep) = (sweeping.azimuths, &sweeping.sweep);
-            let lobe = self.lobes.as_ref().map(|lobes| passes::sky_shade::Lobe {
-                tables: lobes.swept,
-                blocked_sum: lobes.blocked_sum,
+            let specular = self.slices.as_ref().map(|slices| passes::sky_shade::Specular {
+                tables: slices.swept,
+                blocked_sum: slices.blocked_sum,
                 eye_m: self.eye_m,
             });
             if sky_sum.is_some() || self.tables.is_some() {
@@ -118,7 +118,7 @@ impl Drawing<'_> {
                     azimuths,
                     sky_sum,
                     environment: env_sum.zip(self.tables.as_ref()).map(|(sum, t)| [sum, t.tables]),
-                    lobe,
+                    specular,
                     edited: self.edited,
                 };
                 passes::sky_shade::plan(builder, sweep, border, cell_m, batch, &part, &images);
@@ -179,7 +179,7 @@ impl Drawing<'_> {
             self.specular_around();
         }
         if let Some((batch, lane_heights)) = batches.last().zip(last_lanes) {
-            self.lobe_light(batch, lane_heights);
+            self.slices_light(batch, lane_heights);
         }
         if let (Some(sum), Some(colour)) = (sky_sum, self.active.sky_colour()) {
             self.resolve("sky", sum, Some(colour), sky_layer);

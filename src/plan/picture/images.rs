@@ -5,8 +5,8 @@ use super::Picture;
 use crate::graph::{Builder, Format, Owner, ResourceId};
 use crate::passes::azimuths;
 use crate::passes::azimuths::Azimuth;
-use crate::passes::lobe_tables::LobeTables;
 use crate::passes::sh_layout::{Sh, WedgeTexels};
+use crate::passes::specular_tables::SpecularTables;
 use crate::scene::{Albedo, Border, Environment, PhongSpecular, Quality, Scene, Specular, Wedges};
 use std::f32::consts::TAU;
 
@@ -134,11 +134,11 @@ impl Tables {
 }
 
 /// Specular of sky and environment by tables of a Phong lobe.
-pub(super) struct Lobes {
+pub(super) struct SpecularSlices {
     /// Of the swept azimuths, up to each elevation.
-    pub swept: LobeTables,
+    pub swept: SpecularTables,
     /// Of fine azimuths, the whole slices.
-    pub fine: LobeTables,
+    pub fine: SpecularTables,
     /// The fine azimuths, in the buffer "constants", and their rows of the environment.
     pub fine_azimuths: ResourceId,
     pub fine_count: u32,
@@ -150,7 +150,7 @@ pub(super) struct Lobes {
     pub scale: f32,
 }
 
-impl Lobes {
+impl SpecularSlices {
     /// For a field of `size`.
     pub(super) fn make(
         builder: &mut Builder,
@@ -159,7 +159,7 @@ impl Lobes {
         quality: &Quality,
         PhongSpecular { exponent, scale }: PhongSpecular,
     ) -> Self {
-        // An azimuth for each column of the environment: a lamp stays in its place.
+        // An azimuth for each column of the environment: a bright spot stays in its place.
         let fine_count = environment.map_or(512, |e| (e.width() as u32).clamp(512, 2048));
         let turn_rad = environment.map_or(0.0, Environment::rotation_rad);
         let fine: Vec<Azimuth> = azimuths::even_wedges(fine_count, turn_rad);
@@ -171,11 +171,10 @@ impl Lobes {
         let layers = |count: u32| if environment.is_some() { count } else { 1 };
         let nodes = if border == Border::Open { 256 } else { 128 };
         let [swept, fine] =
-            [("lobe_tables", nodes, quality.azimuths), ("fine_lobe_tables", 1, fine_count)].map(
-                |(name, nodes, count)| {
-                    LobeTables::make(builder, name, exponent, border, [nodes, layers(count)])
-                },
-            );
+            [("specular_tables", nodes, quality.azimuths), ("fine_specular_tables", 1, fine_count)]
+                .map(|(name, nodes, count)| {
+                    SpecularTables::make(builder, name, exponent, border, [nodes, layers(count)])
+                });
         // Nodes a quarter of the lobe's deviation apart, 1/√n radians.
         let width = (4.0 * TAU * exponent.sqrt()).ceil() as u32;
         let width = width.next_power_of_two().clamp(64, 2048);

@@ -31,11 +31,11 @@ pub(super) fn quality(
         return refuse(&format!("specular under a {}", light.of.name), alone);
     }
     let quality = bounced(*quality, notes)?;
-    let by_lobe = active.lobe(&quality).is_some();
+    let by_slices = active.by_slices(&quality).is_some();
     match quality.basis {
         _ if !active.has_specular_around() => Ok(quality),
         Basis::Sh => Ok(quality),
-        Basis::Auto | Basis::Table if by_lobe => {
+        Basis::Auto | Basis::Table if by_slices => {
             notes.push("specular: each azimuth's slice of the lobe, from tables".into());
             Ok(quality)
         }
@@ -100,37 +100,37 @@ impl Drawing<'_> {
     }
 
     /// Tables and maps of a lobe.
-    pub(super) fn fill_lobes(&mut self, count: u32) {
-        let (Some(lobes), Some(sweeping)) = (&self.lobes, &self.sweeping) else { return };
+    pub(super) fn fill_specular(&mut self, count: u32) {
+        let (Some(slices), Some(sweeping)) = (&self.slices, &self.sweeping) else { return };
         let (sky, builder) = (self.active.sky, &mut self.builder);
         let lit = self.active.environment.zip(self.images.environment);
         let swept_rows = lit.zip(self.tables.as_ref()).map(|((e, _), t)| (e, t.wedge_rows));
-        let fine_rows = lit.zip(lobes.fine_rows).map(|((e, image), rows)| {
-            let ids = [image, lobes.fine_azimuths, rows];
+        let fine_rows = lit.zip(slices.fine_rows).map(|((e, image), rows)| {
+            let ids = [image, slices.fine_azimuths, rows];
             let of = (e, self.scene.surface.border);
-            passes::env_wedges::plan(builder, "fine", of, lobes.fine_count, ids);
+            passes::env_wedges::plan(builder, "fine", of, slices.fine_count, ids);
             (e, rows)
         });
-        lobes.swept.plan(builder, "", sky, swept_rows, (sweeping.azimuths, true));
-        lobes.fine.plan(builder, "fine", sky, fine_rows, (lobes.fine_azimuths, false));
-        let [unoccluded, swept] = lobes.maps;
+        slices.swept.plan(builder, "", sky, swept_rows, (sweeping.azimuths, true));
+        slices.fine.plan(builder, "fine", sky, fine_rows, (slices.fine_azimuths, false));
+        let [unoccluded, swept] = slices.maps;
         let fine = ("unoccluded", "the reflection without occlusion, by mirror direction");
-        let ids = [lobes.fine_azimuths, unoccluded];
-        lobes.fine.plan_map(builder, fine, lobes.fine_count, (ids, false), lobes.map_size);
+        let ids = [slices.fine_azimuths, unoccluded];
+        slices.fine.plan_map(builder, fine, slices.fine_count, (ids, false), slices.map_size);
         let of_swept =
             ("swept", "the same from the swept azimuths, as occlusion is a share of them");
         let ids = [sweeping.azimuths, swept];
-        lobes.swept.plan_map(builder, of_swept, count, (ids, true), lobes.map_size);
+        slices.swept.plan_map(builder, of_swept, count, (ids, true), slices.map_size);
     }
 
     /// Specular of sky and environment by tables of the lobe.
-    pub(super) fn lobe_light(&mut self, batch: &Batch, lane_heights: ResourceId) {
-        let (Some(lobes), Some(sum)) = (&self.lobes, self.images.specular_sum) else { return };
+    pub(super) fn slices_light(&mut self, batch: &Batch, lane_heights: ResourceId) {
+        let (Some(slices), Some(sum)) = (&self.slices, self.images.specular_sum) else { return };
         let field = (batch.axis, self.scene.surface.border, self.scene.field.cell_m());
-        let [unoccluded, swept] = lobes.maps;
-        let ids = [lane_heights, lobes.blocked_sum, unoccluded, swept, sum];
-        let seen = (lobes.scale, self.eye_m);
-        passes::specular_light::plan(&mut self.builder, field, seen, ids);
+        let [unoccluded, swept] = slices.maps;
+        let ids = [lane_heights, slices.blocked_sum, unoccluded, swept, sum];
+        let viewed = (slices.scale, self.eye_m);
+        passes::specular_light::plan(&mut self.builder, field, viewed, ids);
         self.specular_is_begun = true;
     }
 
@@ -290,11 +290,13 @@ mod tests {
     /// Sky and environment use tables of the lobe, without harmonics unless they are requested. Suns need neither, nor does
     /// specular of scale 0.
     #[test]
-    fn specular_uses_tables_of_the_lobe() {
+    fn specular_uses_tables_by_azimuth() {
         let of_sky = plan(sky(), Basis::Auto, 0.5).unwrap();
         assert!(of_sky.notes.iter().any(|n| n.contains("slice of the lobe")), "{:?}", of_sky.notes);
         let all = names(&of_sky);
-        for name in ["lobe_tables", "lobe_tables fine", "mirror_map swept", "specular_light"] {
+        for name in
+            ["specular_tables", "specular_tables fine", "mirror_map swept", "specular_light"]
+        {
             assert!(all.iter().any(|n| n == name), "{name}: {all:?}");
         }
         assert!(of_sky.find("visibility").is_none() && of_sky.find("fine_rows").is_none());
@@ -310,7 +312,7 @@ mod tests {
         }
         assert!(of_all.find("direct.specular").is_some() && of_all.edit_passes.is_empty());
         let of_sun = plan(sun(), Basis::Auto, 0.5).unwrap();
-        assert!(of_sun.find("lobe_tables").is_none() && of_sun.find("specular_sum").is_some());
+        assert!(of_sun.find("specular_tables").is_none() && of_sun.find("specular_sum").is_some());
         let none = plan(sky(), Basis::Auto, 0.0).unwrap();
         assert!(none.notes.iter().any(|n| n.starts_with("specular dropped")), "{:?}", none.notes);
         assert!(none.find("specular_sum").is_none() && none.find("visibility").is_none());

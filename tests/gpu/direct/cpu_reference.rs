@@ -166,7 +166,7 @@ pub(crate) fn pictures() -> Vec<Case> {
         Scene { field: rough(9, 14, 43), surface, lights }
     };
     // Under a sky alone: one table for all azimuths.
-    let sky_lobe = |exponent, border| {
+    let shiny_sky = |exponent, border| {
         let suns = vec![sun(0.7, 0.1, [1.0, 2.0, 3.0])];
         let lights = Lights { sky: Some([1.0, 0.5, 2.0]), suns, ..Lights::default() };
         let phong = Some(Specular::Constant(PhongSpecular { exponent, scale: 0.7 }));
@@ -255,7 +255,7 @@ pub(crate) fn pictures() -> Vec<Case> {
             }),
             ..picture(
                 "a lobe by slices, before an eye, open",
-                sky_lobe(2.5, Border::Open),
+                shiny_sky(2.5, Border::Open),
                 quality,
                 false,
                 false,
@@ -263,7 +263,7 @@ pub(crate) fn pictures() -> Vec<Case> {
         },
         picture(
             "a narrow lobe by slices, periodic",
-            sky_lobe(300.0, Border::Periodic),
+            shiny_sky(300.0, Border::Periodic),
             quality,
             false,
             false,

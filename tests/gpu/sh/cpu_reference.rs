@@ -22,7 +22,7 @@ use ridgelight_cpu::tolerance::{
 
 use crate::cpu_reference::{Pair, Reference, Run, constant, fuse_of, pushed};
 use crate::direct::cpu_reference::light::{rgb, so_far, wedge_rows};
-use crate::specular::cpu_reference::lobe::azimuths_of;
+use crate::specular::cpu_reference::slices::azimuths_of;
 
 /// The passes of this room and their CPU references.
 pub(crate) const REFERENCES: &[Reference] = &[

@@ -67,12 +67,11 @@ pub fn direct(mut args: Args) -> Outcome {
         let scene = scene(&ground, 0.0, (exponent, 1.0));
         let [reference, deviation] = traced(&mut gpu, &scene, 0, DIRECT_BATCHES)?;
         let noise = 100.0 * rms_of(&deviation) / mean(&reference);
-        let rmse =
-            |gpu: &mut Headless, quality: &Quality| -> Result<f64> {
-                let light = drawn(gpu, &scene, quality, 0)?.light;
-                let error = error(&light, &reference)?;
-                Ok((error * error - noise * noise).max(0.0).sqrt())
-            };
+        let rmse = |gpu: &mut Headless, quality: &Quality| -> Result<f64> {
+            let light = drawn(gpu, &scene, quality, 0)?.light;
+            let error = error(&light, &reference)?;
+            Ok((error * error - noise * noise).max(0.0).sqrt())
+        };
         for azimuths in [32, 64, 128] {
             let slices = Quality { azimuths, ..Quality::default() };
             let rmse = rmse(&mut gpu, &slices)?;

@@ -1,6 +1,6 @@
 //! Light of all azimuths, weighted by a Phong lobe about each direction of the sphere.
 
-use crate::lobe_tables::{Slices, Tabulated};
+use crate::specular_tables::{Slices, Tabulated};
 use crate::tolerance::{ARC_TANGENT, EPSILON};
 use glam::{DVec2, DVec3};
 use ridgelight::plan::Azimuth;

@@ -1,6 +1,6 @@
 //! Phong specular reflection of sky and environment: the unoccluded reflection times the share that horizons leave free.
 
-use crate::lobe_tables::Tabulated;
+use crate::specular_tables::Tabulated;
 use crate::tolerance::{ARC_TANGENT, EPSILON};
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};

@@ -7,12 +7,12 @@ use ridgelight::scene::{Albedo, Border, Environment, SphereLight};
 use ridgelight_cpu::env_tables as tables_reference;
 use ridgelight_cpu::env_tables::{EnvTables, bottom_rad};
 use ridgelight_cpu::light_resolve as resolve_reference;
-use ridgelight_cpu::lobe_tables::Tabulated;
 use ridgelight_cpu::mirror_map::{Tables, blocked, mirrored};
 use ridgelight_cpu::oracle::Oracle;
 use ridgelight_cpu::shared::gather::Swept;
 use ridgelight_cpu::shared::sweep::Heights;
 use ridgelight_cpu::sky_shade as sky_reference;
+use ridgelight_cpu::specular_tables::Tabulated;
 use ridgelight_cpu::sphere_shade as sphere_reference;
 use ridgelight_cpu::sun_shade as sun_reference;
 use ridgelight_cpu::tolerance::{
@@ -20,7 +20,7 @@ use ridgelight_cpu::tolerance::{
 };
 
 use crate::cpu_reference::{Pair, Run, constant, fuse_of, pushed};
-use crate::specular::cpu_reference::lobe::{slices, view_from};
+use crate::specular::cpu_reference::slices::{slices, view_from};
 
 pub(crate) type Rgb = glam::DVec3;
 
@@ -155,8 +155,8 @@ fn blocked_sum(
     const LEAST_COSINE: usize = offset("ShadePush", "least_cosine");
     let float = |offset: usize| f32::from_bits(pushed(pass, offset));
     let texels: Vec<Rgb> =
-        run.floats(pass, "lobe_tables").expect("read").chunks_exact(4).map(rgb).collect();
-    let [peaks, nodes] = run.extent(pass, "lobe_tables");
+        run.floats(pass, "specular_tables").expect("read").chunks_exact(4).map(rgb).collect();
+    let [peaks, nodes] = run.extent(pass, "specular_tables");
     let slices = slices(run.border(), float(EXPONENT).into(), [peaks, nodes]);
     let tables = Tables { slices, texels: &texels };
     let eye_m = [0, 1, 2, 3].map(|i| f64::from(float(EYE_M + 4 * i)));

@@ -8,7 +8,7 @@ use ridgelight_cpu::sun_specular as specular_reference;
 use ridgelight_cpu::tolerance::{EPSILON, device_sun_arriving, device_sun_specular};
 
 use super::bounced::paired;
-use super::lobe::view_from;
+use super::slices::view_from;
 use crate::cpu_reference::{Pair, Run, constant, pushed};
 use crate::direct::cpu_reference::light::Rgb;
 

@@ -5,7 +5,7 @@ use crate::scene::{Border, Environment};
 
 /// Tables of light below each elevation, weighted by a Phong lobe.
 #[derive(Clone, Copy)]
-pub(crate) struct LobeTables {
+pub(crate) struct SpecularTables {
     pub exponent: f32,
     /// Elevations of the lobe's peak, from `first_rad` to π.
     peaks: u32,
@@ -17,11 +17,11 @@ pub(crate) struct LobeTables {
     pub tables: ResourceId,
 }
 
-impl LobeTables {
+impl SpecularTables {
     /// For an exponent. `nodes`: see the field.
     ///
     /// Peaks lie a quarter of the lobe's deviation apart, 1/√n radians; at least 192 of them resolve the edges of an
-    /// environment's lamps, whatever the lobe is.
+    /// environment's brightest spots, whatever the lobe is.
     pub(crate) fn make(
         builder: &mut Builder,
         name: &str,
@@ -69,19 +69,19 @@ impl LobeTables {
             }
             None => [2, if is_open { 2 } else { 1 }],
         };
-        let mut bound = vec![("lobe_tables", self.tables), ("azimuths", azimuths)];
+        let mut bound = vec![("specular_tables", self.tables), ("azimuths", azimuths)];
         bound.extend(rows.map(|(_, rows)| ("wedge_rows", rows)));
         let values = u64::from(self.layers) * u64::from(self.peaks) * u64::from(self.nodes);
         let read = u64::from(self.layers) * u64::from(kept) * 16;
         let pass = builder.pass(
-            shaders::LobeTables { has_environment: rows.is_some() },
+            shaders::SpecularTables { has_environment: rows.is_some() },
             part,
             format!(
                 "light below each of {} elevations in a lobe of exponent {}",
                 self.nodes, self.exponent
             ),
             [self.peaks.div_ceil(4 * 8), self.layers.div_ceil(8), 1],
-            &shaders::LobeTablesPush {
+            &shaders::SpecularTablesPush {
                 height: height as i32,
                 rows: kept as i32,
                 peaks: self.peaks as i32,
@@ -129,7 +129,7 @@ impl LobeTables {
                 exponent: self.exponent,
                 least: LEAST_SHARE,
             },
-            &[("azimuths", azimuths), ("lobe_tables", self.tables), ("mirror_map", map)],
+            &[("azimuths", azimuths), ("specular_tables", self.tables), ("mirror_map", map)],
             texels * 16 + u64::from(count) * u64::from(self.peaks) * 16,
             texels,
         );

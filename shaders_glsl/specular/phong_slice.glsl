@@ -43,7 +43,7 @@ vec4 cosine_integral(float n, vec4 s, vec4 y2) {
 }
 
 // Antiderivative over elevation w of (n + 1) / (2 pi) max(0, e.m)^n cos w, for A^2 + B^2 = 1.
-vec4 lobe_integral(float n, vec4 along, vec4 up, float cos_w, float sin_w) {
+vec4 phong_integral(float n, vec4 along, vec4 up, float cos_w, float sin_w) {
     vec4 c = along * cos_w + up * sin_w;
     vec4 s = along * sin_w - up * cos_w;
     // A right angle or more from the peak: the lobe has not begun where it peaks above horizontal, and has ended where it peaks

@@ -31,7 +31,7 @@ pub struct Tabulated {
 }
 
 /// ∫ (n + 1) / 2π max(0, cos(ω - `peak_rad`))ⁿ cos ω dω from `low_rad` to `high_rad`, within [-π/2, π/2].
-pub fn lobe_between(n: f64, peak_rad: f64, low_rad: f64, high_rad: f64) -> f64 {
+pub fn phong_between(n: f64, peak_rad: f64, low_rad: f64, high_rad: f64) -> f64 {
     // Twelve deviations from the peak the lobe is below e^-72 of it.
     let reach = (12.0 / n.max(1e-9).sqrt()).min(FRAC_PI_2);
     let mut sum = 0.0;
@@ -51,23 +51,23 @@ pub fn lobe_between(n: f64, peak_rad: f64, low_rad: f64, high_rad: f64) -> f64 {
     (n + 1.0) / TAU * sum
 }
 
-/// Error of the shader's antiderivative of [`lobe_between`].
+/// Error of the shader's antiderivative of [`phong_between`].
 ///
 /// Of (n + 1) / 2π cosⁿ⁺¹ over half its range, at most √(π / 2q) with q = n + 3/2: the expansion ends before q^-3, whose factor
 /// was fitted: 3.5e-3 at n = 0, less above (the test of this function finds no larger one than 4e-3); the error function errs by
 /// 1.5e-7, and the exponential, of which x e^-x ≤ 1/e counts, with quotients and roots by 16 ε. Below n = 5 it is that of n + 4,
 /// and two steps of recursion multiply it by (n + 5) / (n + 4) and (n + 3) / (n + 2), 1.9 at most. Directions err by 6 ε, where the
 /// lobe is (n + 1) / 2π at most.
-pub fn lobe_error(n: f64) -> f64 {
+pub fn phong_error(n: f64) -> f64 {
     let (q, steps) = if n < 5.0 { (n + 5.5, 1.9) } else { (n + 1.5, 1.0) };
     let whole = (FRAC_PI_2 / q).sqrt();
     let share = 4e-3 / (q * q * q) + 2.0 * 1.5e-7 + 16.0 * EPSILON;
     (n + 1.0) / TAU * (steps * whole * share + 6.0 * EPSILON) + 12.0 * EPSILON / TAU
 }
 
-/// `lobe_tables` as `[azimuth][node][peak]`: of a sky's `sky_light`, radiance times width, in each azimuth, and of `wedge_rows`, where
+/// `specular_tables` as `[azimuth][node][peak]`: of a sky's `sky_light`, radiance times width, in each azimuth, and of `wedge_rows`, where
 /// given, of an environment of `height` rows.
-pub fn lobe_tables(
+pub fn specular_tables(
     slices: &Slices,
     sky_light: &[DVec3],
     (height, rows): (usize, usize),
@@ -96,17 +96,17 @@ pub fn lobe_tables(
     let mut all = vec![Tabulated::default(); sky_light.len() * nodes * peaks];
     for peak in 0..peaks {
         let peak_rad = first_rad + step * peak as f64;
-        let lobes: Vec<f64> =
-            pieces.iter().map(|p| lobe_between(exponent, peak_rad, p.2, p.3)).collect();
+        let shares: Vec<f64> =
+            pieces.iter().map(|p| phong_between(exponent, peak_rad, p.2, p.3)).collect();
         for (k, sky) in sky_light.iter().enumerate() {
             let (mut sum, mut off, mut next) = (DVec3::ZERO, DVec3::ZERO, 0);
             for node in 0..nodes {
                 while next < pieces.len() && pieces[next].0 == node {
                     let row = pieces[next].1;
                     let light = *sky + wedge_rows.map_or(DVec3::ZERO, |all| all[k * rows + row][2]);
-                    sum += light * lobes[next];
+                    sum += light * shares[next];
                     // Both ends, and a sum.
-                    off += light * 2.0 * lobe_error(exponent) + 2.0 * EPSILON * sum;
+                    off += light * 2.0 * phong_error(exponent) + 2.0 * EPSILON * sum;
                     next += 1;
                 }
                 let tolerance = off + 4.0 * EPSILON * sum;
@@ -153,9 +153,9 @@ mod tests {
                 let peak = (-89.7 + 4.4 * f64::from(i)).to_radians();
                 let w = (5.0 * f64::from(j)).to_radians();
                 let got = below(n, peak, w) - below(n, peak, 0.0);
-                worst = worst.max((got - lobe_between(n, peak, 0.0, w)).abs());
+                worst = worst.max((got - phong_between(n, peak, 0.0, w)).abs());
             }
-            let bound = 2.0 * lobe_error(n);
+            let bound = 2.0 * phong_error(n);
             println!("{n}: {worst:.2e} of {bound:.2e}");
             assert!(worst <= bound, "{n}: {worst:e} of {bound:e}");
         }
@@ -165,7 +165,7 @@ mod tests {
     #[test]
     fn a_lobe_straight_up_is_whole() {
         for n in [0.0, 1.0, 20.0, 1e4] {
-            let whole = TAU * lobe_between(n, FRAC_PI_2, 0.0, FRAC_PI_2);
+            let whole = TAU * phong_between(n, FRAC_PI_2, 0.0, FRAC_PI_2);
             assert!((whole - 1.0).abs() < 1e-12, "{n}: {whole}");
         }
     }

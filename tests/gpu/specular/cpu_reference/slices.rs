@@ -6,14 +6,14 @@ use glam::DVec3;
 use ridgelight::gpu::shaders::offset;
 use ridgelight::plan::{Azimuth, Pass};
 use ridgelight::scene::Border;
-use ridgelight_cpu::lobe_tables as tables_reference;
-use ridgelight_cpu::lobe_tables::{Slices, Tabulated};
 use ridgelight_cpu::mirror_map as map_reference;
 use ridgelight_cpu::mirror_map::{Tables, mirrored};
 use ridgelight_cpu::shared::field::{field_slope, normal_of};
 use ridgelight_cpu::shared::sweep::Heights;
 use ridgelight_cpu::specular_light as light_reference;
 use ridgelight_cpu::specular_light::Map;
+use ridgelight_cpu::specular_tables as tables_reference;
+use ridgelight_cpu::specular_tables::{Slices, Tabulated};
 use ridgelight_cpu::tolerance::EPSILON;
 
 use crate::cpu_reference::{Pair, Run, constant, pushed};
@@ -72,15 +72,15 @@ fn three(got: &[DVec3], want: &[Tabulated], at: impl Fn(usize) -> [usize; 3]) ->
 }
 
 /// Every layer of the swept azimuths, and each sixteenth of the fine ones.
-pub(crate) fn lobe_tables(run: &mut Run, pass: &Pass) -> Vec<Pair> {
-    const EXPONENT: usize = offset("LobeTablesPush", "exponent");
-    const HEIGHT: usize = offset("LobeTablesPush", "height");
-    const LAYERS: usize = offset("LobeTablesPush", "layers");
-    const ROWS: usize = offset("LobeTablesPush", "rows");
-    const SKY: usize = offset("LobeTablesPush", "sky");
-    const WEDGE_RAD: usize = offset("LobeTablesPush", "wedge_rad");
+pub(crate) fn specular_tables(run: &mut Run, pass: &Pass) -> Vec<Pair> {
+    const EXPONENT: usize = offset("SpecularTablesPush", "exponent");
+    const HEIGHT: usize = offset("SpecularTablesPush", "height");
+    const LAYERS: usize = offset("SpecularTablesPush", "layers");
+    const ROWS: usize = offset("SpecularTablesPush", "rows");
+    const SKY: usize = offset("SpecularTablesPush", "sky");
+    const WEDGE_RAD: usize = offset("SpecularTablesPush", "wedge_rad");
     let [height, rows, layers] = [HEIGHT, ROWS, LAYERS].map(|o| pushed(pass, o) as usize);
-    let [peaks, nodes] = run.extent(pass, "lobe_tables");
+    let [peaks, nodes] = run.extent(pass, "specular_tables");
     let slices = slices(run.border(), float(pass, EXPONENT), [peaks, nodes]);
     let sky = DVec3::from_array([0, 4, 8].map(|c| float(pass, SKY + c)));
     let width = |a: &Azimuth| match float(pass, WEDGE_RAD) {
@@ -91,13 +91,13 @@ pub(crate) fn lobe_tables(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         azimuths_of(run, pass, layers).iter().map(|a| sky * width(a)).collect();
     let has_environment = constant(pass, "has_environment") == 1;
     let lit = has_environment.then(|| wedge_rows(run, pass));
-    let got = texels(run, pass, "lobe_tables");
+    let got = texels(run, pass, "specular_tables");
     let stride = if nodes == 1 { 16 } else { 1 };
     let mut pairs = Vec::new();
     for k in (0..layers).step_by(stride) {
         let own = lit.as_ref().map(|all| &all[k * rows..(k + 1) * rows]);
         let sky = &sky_light[k..=k];
-        let want = tables_reference::lobe_tables(&slices, sky, (height, rows), own);
+        let want = tables_reference::specular_tables(&slices, sky, (height, rows), own);
         let first = k * nodes * peaks;
         let at = |i: usize| [k, i / peaks, i % peaks];
         pairs.extend(three(&got[first..first + nodes * peaks], &want, at));
@@ -111,8 +111,8 @@ pub(crate) fn mirror_map(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     const EXPONENT: usize = offset("MirrorMapPush", "exponent");
     let count = pushed(pass, AZIMUTH_COUNT) as usize;
     let azimuths = azimuths_of(run, pass, count);
-    let all = texels(run, pass, "lobe_tables");
-    let [peaks, nodes] = run.extent(pass, "lobe_tables");
+    let all = texels(run, pass, "specular_tables");
+    let [peaks, nodes] = run.extent(pass, "specular_tables");
     let slices = slices(run.border(), float(pass, EXPONENT), [peaks, nodes]);
     let size = run.extent(pass, "mirror_map");
     let got = texels(run, pass, "mirror_map");

@@ -1,13 +1,13 @@
 // Computes: for each azimuth, light of its wedge from the lowest elevation up to another one, weighted by a Phong lobe
 // that peaks in the azimuth's slice: the part of the reflected light that a horizon can hide.
 // Reads: azimuths, wedge_rows.
-// Writes: lobe_tables at [azimuth][elevation][elevation of the peak].
+// Writes: specular_tables at [azimuth][elevation][elevation of the peak].
 // One invocation is four elevations of the peak in one azimuth, from the lowest row up.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
 
 #include "shared/angle.glsl"
-#include "specular/slice_lobe.glsl"
+#include "specular/phong_slice.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -15,9 +15,9 @@ layout(constant_id = 0) const bool HAS_ENVIRONMENT = false;
 
 layout(binding = 0) uniform textureBuffer azimuths;
 layout(binding = 1) readonly buffer WedgeRows { vec4 wedge_rows[]; };
-layout(binding = 2, rgba32f) uniform writeonly image2DArray lobe_tables;
+layout(binding = 2, rgba32f) uniform writeonly image2DArray specular_tables;
 
-layout(push_constant) uniform LobeTablesPush {
+layout(push_constant) uniform SpecularTablesPush {
     vec4 sky;         // radiance of a uniform sky
     int height;       // rows of the environment from pole to pole
     int rows;         // those with light that can arrive
@@ -57,7 +57,7 @@ void main() {
     vec4 blue = vec4(0.0);
     int row = rows - 1;
     float lower = bottom_rad;
-    vec4 below_lower = lobe_integral(exponent, along, up, cosine(lower), sine(lower));
+    vec4 below_lower = phong_integral(exponent, along, up, cosine(lower), sine(lower));
     for (int node = 0; node < nodes; node++) {
         float part = nodes > 1 ? float(node) / float(nodes - 1) : 1.0;
         float elevation = bottom_rad + (HALF_PI - bottom_rad) * part;
@@ -65,7 +65,7 @@ void main() {
         while (lower < elevation) {
             float row_top = HALF_PI - PI * float(row) / float(height);
             float upper = min(row_top, elevation);
-            vec4 below_upper = lobe_integral(exponent, along, up, cosine(upper), sine(upper));
+            vec4 below_upper = phong_integral(exponent, along, up, cosine(upper), sine(upper));
             vec3 light = sky_light;
             if (HAS_ENVIRONMENT) {
                 light += wedge_rows[(k * rows + row) * 3 + 2].rgb;
@@ -79,7 +79,7 @@ void main() {
             row = max(row - (row_top <= elevation ? 1 : 0), 0);
         }
         for (int i = 0; i < 4 && peak + i < peaks; i++) {
-            imageStore(lobe_tables, ivec3(peak + i, node, k), vec4(red[i], green[i], blue[i], 0.0));
+            imageStore(specular_tables, ivec3(peak + i, node, k), vec4(red[i], green[i], blue[i], 0.0));
         }
     }
 }
