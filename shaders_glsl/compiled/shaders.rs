@@ -340,8 +340,17 @@ shader! {
 }
 
 shader! {
+    /// `shaders_glsl/specular/mirror_map.comp`.
+    MIRROR_MAP: "mirror_map", push MirrorMapPush, words 116417 3623,
+    0 reads "azimuths" TexelBuffer,
+    1 reads "specular_tables" StorageImage { format: "Rgba32f", uint: false, layered: true },
+    2 writes "mirror_map" StorageImage { format: "Rgba32f", uint: false, layered: false },
+    MirrorMap;
+}
+
+shader! {
     /// `shaders_glsl/reference/path_trace.comp`.
-    PATH_TRACE: "path_trace", push PathTracePush, words 116417 22928,
+    PATH_TRACE: "path_trace", push PathTracePush, words 120040 22928,
     0 reads "cells" SampledImage { uint: false, layered: false },
     1 reads "maxima" SampledImage { uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -378,7 +387,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/picture_tone.frag`.
-    PICTURE_TONE_FRAG: "picture_tone_frag", push PictureTonePush, words 139345 565,
+    PICTURE_TONE_FRAG: "picture_tone_frag", push PictureTonePush, words 142968 565,
     0 reads "radiance" SampledImage { uint: false, layered: false },
     PictureToneFrag {
         0 encodes: bool = true,
@@ -387,13 +396,34 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/picture_tone.vert`.
-    PICTURE_TONE_VERT: "picture_tone_vert", push (), words 139910 266,
+    PICTURE_TONE_VERT: "picture_tone_vert", push (), words 143533 266,
     PictureToneVert;
 }
 
 shader! {
+    /// `shaders_glsl/view/plinth_draw.frag`.
+    PLINTH_DRAW_FRAG: "plinth_draw_frag", push PlinthDrawPush, words 143799 939,
+    2 reads "voids" SampledImage { uint: false, layered: false },
+    PlinthDrawFrag {
+        1 has_voids: bool = false,
+    }
+}
+
+shader! {
+    /// `shaders_glsl/view/plinth_draw.vert`.
+    PLINTH_DRAW_VERT: "plinth_draw_vert", push PlinthDrawPush, words 144738 2082,
+    0 reads "heights" SampledImage { uint: false, layered: false },
+    1 reads "radiance" SampledImage { uint: false, layered: false },
+    2 reads "voids" SampledImage { uint: false, layered: false },
+    PlinthDrawVert {
+        0 is_grey: bool = false,
+        1 has_voids: bool = false,
+    }
+}
+
+shader! {
     /// `shaders_glsl/view/preview_gather.comp`.
-    PREVIEW_GATHER: "preview_gather", push PreviewGatherPush, words 140176 1675,
+    PREVIEW_GATHER: "preview_gather", push PreviewGatherPush, words 146820 1675,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "coarse_radiance" SampledImage { uint: false, layered: false },
     2 reads "coarse_sun" SampledImage { uint: false, layered: false },
@@ -408,7 +438,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/preview_shade.comp`.
-    PREVIEW_SHADE: "preview_shade", push PreviewShadePush, words 141851 1764,
+    PREVIEW_SHADE: "preview_shade", push PreviewShadePush, words 148495 1764,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "albedo" SampledImage { uint: false, layered: false },
     2 reads "gathered" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -421,7 +451,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/pyramid_march.comp`.
-    PYRAMID_MARCH: "pyramid_march", push PyramidMarchPush, words 143615 9025,
+    PYRAMID_MARCH: "pyramid_march", push PyramidMarchPush, words 150259 9025,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "slopes" StorageImage { format: "Unknown", uint: true, layered: true },
@@ -438,7 +468,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bake/scatter_gather.comp`.
-    SCATTER_GATHER: "scatter_gather", push ScatterGatherPush, words 152640 4664,
+    SCATTER_GATHER: "scatter_gather", push ScatterGatherPush, words 159284 4664,
     0 reads "ground" SampledImage { uint: false, layered: false },
     1 reads "direct" SampledImage { uint: false, layered: false },
     2 reads "visible_points" SampledImage { uint: true, layered: true },
@@ -465,7 +495,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/sh_shade.comp`.
-    SH_SHADE: "sh_shade", push ShShadePush, words 157304 12958,
+    SH_SHADE: "sh_shade", push ShShadePush, words 163948 12958,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "visibility" SampledImage { uint: false, layered: true },
     2 reads "light_matrix" SampledImage { uint: false, layered: false },
@@ -484,7 +514,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/sh_visibility.comp`.
-    SH_VISIBILITY: "sh_visibility", push ShadePush, words 170262 29808,
+    SH_VISIBILITY: "sh_visibility", push ShadePush, words 176906 29844,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rg32ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -509,7 +539,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/sh_wedges.comp`.
-    SH_WEDGES: "sh_wedges", push ShWedgesPush, words 200070 7777,
+    SH_WEDGES: "sh_wedges", push ShWedgesPush, words 206750 7777,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "horizon_angles" SampledImage { uint: false, layered: true },
     2 reads "constants" TexelBuffer,
@@ -526,7 +556,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/shade_expand.comp`.
-    SHADE_EXPAND: "shade_expand", push ShadeExpandPush, words 207847 2397,
+    SHADE_EXPAND: "shade_expand", push ShadeExpandPush, words 214527 2397,
     0 reads "shade_levels" SampledImage { uint: false, layered: false },
     1 reads "shade_table" SampledImage { uint: true, layered: false },
     2 writes "shade_stack" StorageImage { format: "Unknown", uint: false, layered: true },
@@ -537,7 +567,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/shade_reduce.comp`.
-    SHADE_REDUCE: "shade_reduce", push ReducePush, words 210244 2918,
+    SHADE_REDUCE: "shade_reduce", push ReducePush, words 216924 2918,
     0 reads "exit_radiance" SampledImage { uint: false, layered: false },
     1 writes "shade_levels" StorageImage { format: "Rgba32f", uint: false, layered: false },
     2 writes "shade_table" StorageImage { format: "Rgba32ui", uint: true, layered: false },
@@ -550,7 +580,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/sky_draw.frag`.
-    SKY_DRAW_FRAG: "sky_draw_frag", push SkyDrawPush, words 213162 1269,
+    SKY_DRAW_FRAG: "sky_draw_frag", push SkyDrawPush, words 219842 1269,
     0 reads "environment" SampledImage { uint: false, layered: false },
     SkyDrawFrag {
         0 has_environment: bool = false,
@@ -559,13 +589,13 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/sky_draw.vert`.
-    SKY_DRAW_VERT: "sky_draw_vert", push (), words 214431 289,
+    SKY_DRAW_VERT: "sky_draw_vert", push (), words 221111 289,
     SkyDrawVert;
 }
 
 shader! {
     /// `shaders_glsl/direct/sky_shade.comp`.
-    SKY_SHADE: "sky_shade", push ShadePush, words 214720 22806,
+    SKY_SHADE: "sky_shade", push ShadePush, words 221400 26664,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rg32ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -575,6 +605,8 @@ shader! {
     6 reads "dirty_texels" StorageBuffer,
     7 reads "lattice_words" SampledImage { uint: true, layered: true },
     8 reads "edit_list" StorageBuffer,
+    9 reads "specular_tables" StorageImage { format: "Rgba32f", uint: false, layered: true },
+    10 writes "blocked_sum" StorageImage { format: "Rgba32f", uint: false, layered: false },
     SkyShade {
         0 fuse: u32 = 5,
         1 lattice: u32 = 0,
@@ -584,12 +616,14 @@ shader! {
         5 has_environment: bool = false,
         6 marches_rows: bool = false,
         7 relights: bool = false,
+        8 has_specular: bool = false,
+        9 specular_is_shared: bool = false,
     }
 }
 
 shader! {
     /// `shaders_glsl/specular/specular_exit.comp`.
-    SPECULAR_EXIT: "specular_exit", push SpecularExitPush, words 237526 6438,
+    SPECULAR_EXIT: "specular_exit", push SpecularExitPush, words 248064 6438,
     0 reads "arriving" SampledImage { uint: false, layered: true },
     1 reads "ground" SampledImage { uint: false, layered: false },
     2 reads "exit_radiance" SampledImage { uint: false, layered: false },
@@ -612,7 +646,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/specular_gather.comp`.
-    SPECULAR_GATHER: "specular_gather", push GatherPush, words 243964 20112,
+    SPECULAR_GATHER: "specular_gather", push GatherPush, words 254502 20112,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "height_levels" SampledImage { uint: false, layered: false },
     2 reads "level_table" SampledImage { uint: true, layered: false },
@@ -639,8 +673,33 @@ shader! {
 }
 
 shader! {
+    /// `shaders_glsl/specular/specular_light.comp`.
+    SPECULAR_LIGHT: "specular_light", push SpecularLightPush, words 274614 7609,
+    0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
+    1 reads "blocked_sum" SampledImage { uint: false, layered: false },
+    2 reads "unoccluded_map" SampledImage { uint: false, layered: false },
+    3 reads "swept_map" SampledImage { uint: false, layered: false },
+    4 writes "specular_sum" StorageImage { format: "Rgba32f", uint: false, layered: false },
+    SpecularLight {
+        0 border: u32 = 0,
+        1 marches_rows: bool = false,
+    }
+}
+
+shader! {
+    /// `shaders_glsl/specular/specular_tables.comp`.
+    SPECULAR_TABLES: "specular_tables", push SpecularTablesPush, words 282223 4633,
+    0 reads "azimuths" TexelBuffer,
+    1 reads "wedge_rows" StorageBuffer,
+    2 writes "specular_tables" StorageImage { format: "Rgba32f", uint: false, layered: true },
+    SpecularTables {
+        0 has_environment: bool = false,
+    }
+}
+
+shader! {
     /// `shaders_glsl/specular/specular_visibility.comp`.
-    SPECULAR_VISIBILITY: "specular_visibility", push SpecularVisibilityPush, words 264076 1238,
+    SPECULAR_VISIBILITY: "specular_visibility", push SpecularVisibilityPush, words 286856 1238,
     0 reads "visibility" SampledImage { uint: false, layered: true },
     1 reads "light_matrix" SampledImage { uint: false, layered: false },
     2 writes "arriving" StorageImage { format: "Rgba32f", uint: false, layered: true },
@@ -652,7 +711,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/sphere_sh_shade.comp`.
-    SPHERE_SH_SHADE: "sphere_sh_shade", push SphereShShadePush, words 265314 27634,
+    SPHERE_SH_SHADE: "sphere_sh_shade", push SphereShShadePush, words 288094 27634,
     0 reads "cells" SampledImage { uint: false, layered: false },
     1 reads "maxima" SampledImage { uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -678,7 +737,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/sphere_shade.comp`.
-    SPHERE_SHADE: "sphere_shade", push SphereShadePush, words 292948 14335,
+    SPHERE_SHADE: "sphere_shade", push SphereShadePush, words 315728 14335,
     0 reads "cells" SampledImage { uint: false, layered: false },
     1 reads "maxima" SampledImage { uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -693,7 +752,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/sun_shade.comp`.
-    SUN_SHADE: "sun_shade", push ShadePush, words 307283 22088,
+    SUN_SHADE: "sun_shade", push ShadePush, words 330063 22124,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rg32ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -714,7 +773,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/sun_specular.comp`.
-    SUN_SPECULAR: "sun_specular", push SunSpecularPush, words 329371 7945,
+    SUN_SPECULAR: "sun_specular", push SunSpecularPush, words 352187 9004,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "sun_sum" SampledImage { uint: false, layered: false },
     2 writes "specular_sum" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -731,7 +790,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/surface_sweep.comp`.
-    SURFACE_SWEEP: "surface_sweep", push MarchPush, words 337316 6812,
+    SURFACE_SWEEP: "surface_sweep", push MarchPush, words 361191 6812,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "slopes" StorageImage { format: "Unknown", uint: true, layered: true },
@@ -745,7 +804,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/sweep_fuse.comp`.
-    SWEEP_FUSE: "sweep_fuse", push SweepFusePush, words 344128 18089,
+    SWEEP_FUSE: "sweep_fuse", push SweepFusePush, words 368003 18089,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rg32ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -765,7 +824,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/terrain_draw.frag`.
-    TERRAIN_DRAW_FRAG: "terrain_draw_frag", push TerrainDrawPush, words 362217 1129,
+    TERRAIN_DRAW_FRAG: "terrain_draw_frag", push TerrainDrawPush, words 386092 1129,
     1 reads "radiance" SampledImage { uint: false, layered: false },
     2 reads "voids" SampledImage { uint: false, layered: false },
     TerrainDrawFrag {
@@ -776,14 +835,14 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/terrain_draw.vert`.
-    TERRAIN_DRAW_VERT: "terrain_draw_vert", push TerrainDrawPush, words 363346 916,
+    TERRAIN_DRAW_VERT: "terrain_draw_vert", push TerrainDrawPush, words 387221 994,
     0 reads "heights" SampledImage { uint: false, layered: false },
     TerrainDrawVert;
 }
 
 shader! {
     /// `shaders_glsl/bounce/vector_reduce.comp`.
-    VECTOR_REDUCE: "vector_reduce", push ReducePush, words 364262 2964,
+    VECTOR_REDUCE: "vector_reduce", push ReducePush, words 388215 2964,
     0 reads "exit_vectors" SampledImage { uint: false, layered: true },
     1 reads "vector_source" SampledImage { uint: false, layered: true },
     2 writes "vector_levels" StorageImage { format: "Unknown", uint: false, layered: true },
@@ -796,7 +855,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bake/visible_points.comp`.
-    VISIBLE_POINTS: "visible_points", push VisiblePointsPush, words 367226 9687,
+    VISIBLE_POINTS: "visible_points", push VisiblePointsPush, words 391179 9687,
     0 reads "cells" SampledImage { uint: false, layered: false },
     1 reads "maxima" SampledImage { uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -838,6 +897,7 @@ pub static ALL: &[Shader] = &[
     LIGHT_MATRIX,
     LIGHT_RESOLVE,
     MAP_DRAW,
+    MIRROR_MAP,
     PATH_TRACE,
     PREVIEW_GATHER,
     PREVIEW_SHADE,
@@ -851,6 +911,8 @@ pub static ALL: &[Shader] = &[
     SKY_SHADE,
     SPECULAR_EXIT,
     SPECULAR_GATHER,
+    SPECULAR_LIGHT,
+    SPECULAR_TABLES,
     SPECULAR_VISIBILITY,
     SPHERE_SH_SHADE,
     SPHERE_SHADE,
@@ -866,6 +928,8 @@ pub static ALL: &[Shader] = &[
 pub static GRAPHICS: &[Shader] = &[
     PICTURE_TONE_FRAG,
     PICTURE_TONE_VERT,
+    PLINTH_DRAW_FRAG,
+    PLINTH_DRAW_VERT,
     SKY_DRAW_FRAG,
     SKY_DRAW_VERT,
     TERRAIN_DRAW_FRAG,
@@ -963,6 +1027,10 @@ layouts! {
     push MarchPush 16 {
         0 lanes: i32, 4 steps: i32, 8 warm_up: i32, 12 first_azimuth: u32,
     }
+    push MirrorMapPush 32 {
+        0 width: i32, 4 height: i32, 8 azimuth_count: i32, 12 node: i32, 16 first_rad: f32,
+        20 per_rad: f32, 24 exponent: f32, 28 least: f32,
+    }
     push PathTracePush 120 {
         0 land: LandPush, 32 highest_m: f32, 36 rotation_turns: f32, 40 exponent: f32,
         44 specular_scale: f32, 48 bounces: i32, 52 suns: i32, 56 light_count: i32, 60 seed: u32,
@@ -971,6 +1039,12 @@ layouts! {
     }
     push PictureTonePush 4 {
         0 exposure: f32,
+    }
+    push PlinthDrawPush 112 {
+        0 clip_per_col: [f32; 4], 16 clip_per_row: [f32; 4], 32 clip_per_metre: [f32; 4],
+        48 clip_at_origin: [f32; 4], 64 origin_col: i32, 68 origin_row: i32, 72 origin_m: f32,
+        76 cols: i32, 80 rows: i32, 84 mesh_step: i32, 88 base_m: f32, 92 base_tone: f32,
+        96 wall_tones: [f32; 4],
     }
     push PreviewGatherPush 64 {
         0 sun: [f32; 4], 16 most: [f32; 4], 32 colour: [f32; 4], 48 cell_m: [f32; 2], 56 cols: i32,
@@ -1005,9 +1079,10 @@ layouts! {
     push ShadeExpandPush 12 {
         0 cols: i32, 4 rows: i32, 8 width_shift: i32,
     }
-    push ShadePush 32 {
+    push ShadePush 56 {
         0 cols: i32, 4 rows: i32, 8 cell_x_m: f32, 12 cell_y_m: f32, 16 warm_up: i32,
-        20 first_azimuth: u32, 24 azimuth_count: u32, 28 clears: u32,
+        20 first_azimuth: u32, 24 azimuth_count: u32, 28 clears: u32, 32 eye_m: [f32; 4],
+        48 exponent: f32, 52 least_cosine: f32,
     }
     push SkyDrawPush 84 {
         0 forward: [f32; 4], 16 right: [f32; 4], 32 down: [f32; 4], 48 above: [f32; 4],
@@ -1016,6 +1091,15 @@ layouts! {
     push SpecularExitPush 28 {
         0 cols: i32, 4 rows: i32, 8 begins: u32, 12 first_texel: i32, 16 fours: i32,
         20 exponent: f32, 24 scale: f32,
+    }
+    push SpecularLightPush 36 {
+        0 cols: i32, 4 rows: i32, 8 cell_x_m: f32, 12 cell_y_m: f32, 16 eye_m: [f32; 4],
+        32 scale: f32,
+    }
+    push SpecularTablesPush 56 {
+        0 sky: [f32; 4], 16 height: i32, 20 rows: i32, 24 peaks: i32, 28 nodes: i32, 32 layers: i32,
+        36 bottom_rad: f32, 40 first_rad: f32, 44 step_rad: f32, 48 exponent: f32,
+        52 wedge_rad: f32,
     }
     push SpecularVisibilityPush 8 {
         0 cols: i32, 4 rows: i32,
@@ -1032,9 +1116,9 @@ layouts! {
         60 radius_m: f32, 64 reach_m: f32, 68 slices: i32, 72 slices_around: i32,
         76 first_slice: i32, 80 last_slice: i32, 84 pads: [i32; 3], 96 radiance: [f32; 4],
     }
-    push SunSpecularPush 56 {
+    push SunSpecularPush 72 {
         0 cols: i32, 4 rows: i32, 8 cell_x_m: f32, 12 cell_y_m: f32, 16 towards: [f32; 4],
-        32 colour: [f32; 4], 48 specular: [f32; 2],
+        32 colour: [f32; 4], 48 eye_m: [f32; 4], 64 specular: [f32; 2],
     }
     push SweepFusePush 20 {
         0 cols: i32, 4 rows: i32, 8 warm_up: i32, 12 first_azimuth: u32, 16 first_layer: u32,
@@ -1069,4 +1153,4 @@ layouts! {
 }
 
 /// Words of all shaders together.
-const WORD_COUNT: usize = 376913;
+const WORD_COUNT: usize = 400866;

@@ -17,6 +17,9 @@ layout(push_constant) uniform ShadePush {
     uint first_azimuth;  // of the batch
     uint azimuth_count;
     uint clears;         // 1 in the first batch
+    vec4 eye_m;          // specular: the eye, over the field's base; w: 0 for a view from straight above
+    float exponent;      // of the Phong lobe
+    float least_cosine;  // to the lobe's axis, below which light counts as 0
 };
 
 // First lane and march position of this invocation's four grid points: its place in the field, or after an edit one

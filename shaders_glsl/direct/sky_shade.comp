@@ -1,8 +1,8 @@
 // Computes: exit radiance under a uniform sky and under an environment, from the horizons in the azimuths of a batch,
-// added to earlier batches.
-// Reads: lane_heights, azimuths, lattice, env_tables, dirty_texels, edit_list.
+// added to earlier batches; and the light that the horizons hide from a Phong lobe.
+// Reads: lane_heights, azimuths, lattice, env_tables, specular_tables, dirty_texels, edit_list.
 // Reads and writes: sky_sum (exit radiance for sky radiance 1 and albedo 1), env_sum (exit radiance for albedo 1,
-// RGB).
+// RGB), blocked_sum (radiance for scale 1, RGB).
 // One invocation is four grid points side by side along the lane axis, at one march position.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
@@ -23,6 +23,9 @@ layout(constant_id = 5) const bool HAS_ENVIRONMENT = false;
 layout(constant_id = 6) const bool MARCHES_ROWS = false;
 // Only the grid points marked in dirty_texels, from the list of their words.
 layout(constant_id = 7) const bool RELIGHTS = false;
+layout(constant_id = 8) const bool HAS_SPECULAR = false;
+// One table of lobes for all azimuths, of a sky alone.
+layout(constant_id = 9) const bool SPECULAR_IS_SHARED = false;
 
 layout(binding = 0, rgba32f) uniform readonly image2D lane_heights;
 // LATTICE selects one of these.
@@ -36,6 +39,9 @@ layout(binding = 3, r32f) uniform image2D sky_sum;
 layout(binding = 4, rgba32f) uniform image2D env_sum;
 // x: elevation node, y: moment (cos, sin, vertical), layer: azimuth.
 layout(binding = 5, rgba32f) uniform readonly image2DArray env_tables;
+// x: elevation of the lobe's peak, y: elevation, layer: azimuth.
+layout(binding = 9, rgba32f) uniform readonly image2DArray specular_tables;
+layout(binding = 10, rgba32f) uniform image2D blocked_sum;
 
 // Sums of the four grid points, and their normals.
 vec4 sky;
@@ -45,6 +51,8 @@ vec4 env_blue;
 vec4 normal_east;
 vec4 normal_north;
 vec4 normal_up;
+
+void add_hidden(uint index, Azimuth azimuth, vec4 lowest);
 
 // Adds azimuth `index`: `lowest` is the slope of the lowest direction above both the horizon and the grid point's own
 // plane.
@@ -74,6 +82,9 @@ void add_light(uint index, Azimuth azimuth, vec4 lowest) {
             env_blue[k] += sum.b;
         }
     }
+    if (HAS_SPECULAR) {
+        add_hidden(index, azimuth, lowest);
+    }
 }
 
 float dark_slope(Azimuth azimuth) {
@@ -81,6 +92,11 @@ float dark_slope(Azimuth azimuth) {
 }
 
 #include "direct/gather.glsl"
+#include "specular/blocked.glsl"
+
+void add_hidden(uint index, Azimuth azimuth, vec4 lowest) {
+    add_blocked(index, azimuth, lowest);
+}
 
 void main() {
     int lanes = MARCHES_ROWS ? cols : rows;
@@ -106,6 +122,16 @@ void main() {
     env_red = vec4(0.0);
     env_green = vec4(0.0);
     env_blue = vec4(0.0);
+    blocked_red = vec4(0.0);
+    blocked_green = vec4(0.0);
+    blocked_blue = vec4(0.0);
+    if (HAS_SPECULAR) {
+        vec4 lane_at = vec4(lane, lane + 1, lane + 2, lane + 3);
+        vec4 column = MARCHES_ROWS ? lane_at : vec4(march);
+        vec4 row = MARCHES_ROWS ? vec4(march) : lane_at;
+        mirror = mirrored(normal_east, normal_north, normal_up, column * cell_x_m, (float(rows - 1) - row) * cell_y_m,
+                          q.here.four, eye_m);
+    }
     if (clears == 0u) {
         for (int k = 0; k < 4; k++) {
             ivec2 at = texel_at(min(lane + k, lanes - 1), march);
@@ -118,6 +144,12 @@ void main() {
                 env_green[k] = sum.g;
                 env_blue[k] = sum.b;
             }
+            if (HAS_SPECULAR) {
+                vec3 sum = imageLoad(blocked_sum, at).rgb;
+                blocked_red[k] = sum.r;
+                blocked_green[k] = sum.g;
+                blocked_blue[k] = sum.b;
+            }
         }
     }
     add_all(q, lanes, steps, east, north);
@@ -128,6 +160,9 @@ void main() {
         }
         if (HAS_ENVIRONMENT && lit[k]) {
             imageStore(env_sum, at, vec4(env_red[k], env_green[k], env_blue[k], 0.0));
+        }
+        if (HAS_SPECULAR && lit[k]) {
+            imageStore(blocked_sum, at, vec4(blocked_red[k], blocked_green[k], blocked_blue[k], 0.0));
         }
     }
 }

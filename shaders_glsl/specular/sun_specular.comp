@@ -1,5 +1,5 @@
-// Computes: Phong specular reflection of a sun towards a view from straight above, at every grid point: the lobe
-// towards the sun's centre, times the sun's visible fraction. That fraction is the sun's diffuse light over its
+// Computes: Phong specular reflection of a sun towards the view, at every grid point: the lobe towards the sun's centre,
+// times the sun's visible fraction. That fraction is the sun's diffuse light over its
 // unoccluded diffuse light. Where another bounce follows, also the incident light of the sun as a series, all of it
 // from its centre.
 // Reads: lane_heights, sun_sum, phong_map.
@@ -32,11 +32,13 @@ layout(push_constant) uniform SunSpecularPush {
     float cell_y_m;
     vec4 towards;  // the sun's centre
     vec4 colour;   // irradiance; w: 1 where the sum begins
+    vec4 eye_m;     // over the field's base; w: 0 for a view from straight above
     vec2 specular;  // Phong exponent and scale, where they are constant
 };
 
 #include "shared/quad.glsl"
 #include "specular/phong_lobe.glsl"
+#include "specular/mirror.glsl"
 
 vec4 harmonics[36];
 #include "shared/harmonics.glsl"
@@ -77,10 +79,15 @@ void main() {
         find_harmonics(vec4(towards.x), vec4(towards.y), vec4(towards.z));
     }
     vec4 z = inversesqrt(1.0 + east * east + north * north);
+    vec4 lane_at = vec4(lane, lane + 1, lane + 2, lane + 3);
+    vec4 column = MARCHES_ROWS ? lane_at : vec4(march);
+    vec4 row = MARCHES_ROWS ? vec4(march) : lane_at;
+    Mirrored mirrors = mirrored(-east * z, -north * z, z, column * cell_x_m, (float(rows - 1) - row) * cell_y_m,
+                                q.here.four, eye_m);
     for (int k = 0; k < 4 && lane + k < lanes; k++) {
         ivec2 at = texel_at(lane + k, march);
         vec3 normal = vec3(-east[k], -north[k], 1.0) * z[k];
-        vec3 mirror = 2.0 * normal.z * normal - vec3(0.0, 0.0, 1.0);
+        vec3 mirror = vec3(mirrors.east[k], mirrors.north[k], mirrors.up[k]);
         vec2 of = specular;
         if (SPECULAR_IS_MAP) {
             of = texelFetch(phong_map, at, 0).xy;

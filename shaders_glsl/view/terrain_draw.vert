@@ -8,12 +8,14 @@
 layout(binding = 0) uniform texture2D heights;
 
 #include "view/terrain.glsl"
+#include "view/place.glsl"
 
 // Vertices per side of a tile.
 const int SIDE = 17;
 
 layout(location = 0) centroid out vec2 offset;
 layout(location = 1) flat out ivec2 first;
+invariant gl_Position;
 
 void main() {
     ivec2 tile = ivec2(gl_InstanceIndex % tiles_across, gl_InstanceIndex / tiles_across);
@@ -22,8 +24,5 @@ void main() {
     // The last row and column are vertices at any step; cells beyond them have no area.
     ivec2 place = min(first + corner * mesh_step, ivec2(cols, rows) - 1);
     offset = vec2(place - first);
-    // Positions are integers and heights relative to an origin near the camera: exact close to it.
-    vec2 away = vec2(place - ivec2(origin_col, origin_row));
-    float rise = texelFetch(heights, place, 0).x - origin_m;
-    gl_Position = clip_at_origin + away.x * clip_per_col + away.y * clip_per_row + rise * clip_per_metre;
+    gl_Position = picture_place(place, texelFetch(heights, place, 0).x);
 }

@@ -71,6 +71,7 @@ pub struct ViewRenderer {
     indices: Option<Backed>,
     terrain: Drawing,
     sky: Drawing,
+    plinth: Option<Drawing>,
     tone: Option<Drawing>,
     descriptor_pool: vk::DescriptorPool,
     slots: Vec<Slot>,
@@ -80,8 +81,8 @@ pub struct ViewRenderer {
 
 /// One frame in flight.
 struct Slot {
-    /// Sets of terrain, sky and tone curve.
-    sets: [vk::DescriptorSet; 3],
+    /// By [`LABELS`]; null where there is no such pass.
+    sets: [vk::DescriptorSet; LABELS.len()],
     /// Null where there are no timestamps.
     queries: vk::QueryPool,
     is_recorded: bool,
@@ -121,8 +122,8 @@ impl Curve {
 /// Format of the images before the tone curve.
 const LINEAR: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 
-/// Labels of the GPU times, in order.
-const LABELS: [&str; 3] = ["terrain_draw", "sky_draw", "picture_tone"];
+/// Passes in order, the third and the last where there are such: labels of the GPU times.
+const LABELS: [&str; 4] = ["terrain_draw", "sky_draw", "plinth_draw", "picture_tone"];
 
 impl ViewRenderer {
     /// Makes the resources for views with the shape of `view`, for pictures of a format and `slots` frames in
@@ -164,6 +165,7 @@ impl ViewRenderer {
             indices: None,
             terrain: Drawing::default(),
             sky: Drawing::default(),
+            plinth: None,
             tone: None,
             descriptor_pool: vk::DescriptorPool::null(),
             slots: Vec::new(),
@@ -211,9 +213,10 @@ impl ViewRenderer {
     pub fn timings(&self, slot: usize) -> Option<Vec<Timing>> {
         let slot = self.slots.get(slot).filter(|s| s.is_recorded)?;
         let (tick_ns, mask) = self.timestamps?;
-        let count = if self.tone.is_some() { 3 } else { 2 };
+        let labels: Vec<_> =
+            LABELS.iter().zip(self.drawings()).filter(|(_, d)| d.is_some()).collect();
         // Each is a value and its availability.
-        let mut ticks = vec![[0_u64; 2]; count + 1];
+        let mut ticks = vec![[0_u64; 2]; labels.len() + 1];
         let flags = vk::QueryResultFlags::TYPE_64 | vk::QueryResultFlags::WITH_AVAILABILITY;
         // SAFETY: the pool holds at least this many queries; two words per query are requested and provided.
         let got =
@@ -221,11 +224,16 @@ impl ViewRenderer {
         if got.is_err() || ticks.iter().any(|t| t[1] == 0) {
             return None;
         }
-        let timed = LABELS.iter().zip(ticks.windows(2)).map(|(label, pair)| Timing {
-            label: (*label).to_owned(),
+        let timed = labels.iter().zip(ticks.windows(2)).map(|((label, _), pair)| Timing {
+            label: (**label).to_owned(),
             ns: (pair[1][0].wrapping_sub(pair[0][0]) & mask) as f64 * tick_ns,
         });
         Some(timed.collect())
+    }
+
+    /// By [`LABELS`].
+    fn drawings(&self) -> [Option<Drawing>; LABELS.len()] {
+        [Some(self.terrain), Some(self.sky), self.plinth, self.tone]
     }
 
     /// Frees everything. All recorded commands must have finished.

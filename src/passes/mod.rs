@@ -51,6 +51,9 @@ impl shaders::ShadePush {
             first_azimuth: batch.first,
             azimuth_count: batch.count,
             clears: u32::from(batch.is_first),
+            eye_m: [0.0; 4],
+            exponent: 0.0,
+            least_cosine: 0.0,
         }
     }
 }

@@ -5,7 +5,8 @@ use crate::passes::spheres::Spheres;
 use crate::passes::sweep::Sweep;
 use crate::passes::sweeping::circle;
 use crate::scene::{
-    ANY_LIGHT, Albedo, Basis, Border, Environment, KeyLight, Lights, Quality, Scene, Specular, Sun,
+    ANY_LIGHT, Albedo, Basis, Border, Environment, KeyLight, Lights, PhongSpecular, Quality, Scene,
+    Specular, Sun,
 };
 use crate::{Error, Result};
 
@@ -158,6 +159,17 @@ impl<'a> ActiveLights<'a> {
     /// Whether specular reflects light from all directions.
     pub(super) fn has_specular_around(&self) -> bool {
         self.specular.is_some() && (self.sky.is_some() || self.environment.is_some())
+    }
+
+    /// The lobe that reflects sky and environment by tables: one for all texels, without bounces.
+    pub(super) fn by_slices(&self, quality: &Quality) -> Option<PhongSpecular> {
+        let is_direct = quality.basis != Basis::Sh && quality.bounces.count == 0;
+        match self.specular {
+            Some(Specular::Constant(phong)) if self.has_specular_around() && is_direct => {
+                Some(*phong)
+            }
+            _ => None,
+        }
     }
 
     /// Suns, then key lights: each uses azimuths of its own.

@@ -2,7 +2,7 @@
 
 use super::Plan;
 use crate::graph::Limits;
-use crate::graph::{Builder, Kind, Pass, Resource, bytes_text, place_barriers};
+use crate::graph::{Builder, Kind, Pass, Resource, ResourceId, bytes_text, place_barriers};
 use crate::passes::azimuths::Azimuth;
 use crate::{Error, Result};
 
@@ -24,7 +24,11 @@ impl Plan {
         let all = edit_passes.iter().flatten().chain(&passes);
         for pass in all {
             let binds = pass.shader.bindings.iter().zip(&pass.bindings);
-            let reads = binds.filter(|(b, id)| b.name == "azimuths" && id.is_some()).count() > 0;
+            // Directions that no sweep follows are constants.
+            let is_swept = |id: ResourceId| resources[id.0].name != "constants";
+            let reads =
+                binds.filter(|(b, id)| b.name == "azimuths" && id.is_some_and(is_swept)).count()
+                    > 0;
             assert!(
                 pass.azimuths.is_empty() != reads && pass.azimuths.end as usize <= azimuths.len(),
                 "{}: azimuths {:?} of {}",

@@ -23,10 +23,10 @@ use crate::scene::{
 };
 use crate::{Error, Result};
 use drawing::Drawing;
-use images::{Harmonics, Images, Tables};
+use images::{Harmonics, Images, SpecularSlices, Tables};
 
 /// Requested outputs of a picture.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Picture {
     /// Also an image for each light and each bounce.
     pub light_layers: bool,
@@ -49,6 +49,9 @@ pub struct Picture {
     /// RGB, 0 or more. The scene's colours then do not count, except that the sky's beside an environment affects the
     /// azimuths. Not with sphere lights or specular, whose sums contain the colours.
     pub colours_on_device: bool,
+    /// Where specular is viewed from: x and y in metres from the south-western grid point, z a height of the field. `None` for
+    /// a view from straight above.
+    pub eye_m: Option<[f64; 3]>,
 }
 
 /// Passes that light a scene. [`Picture`] requests outputs besides the radiance.
@@ -58,8 +61,8 @@ pub struct Picture {
 /// which the others then exclude); "sky_view"; one "indirect.*" image per bounce; and "indirect.specular" (specular of all bounces,
 /// which the others then exclude). Images have one channel if every colour is grey, else four.
 ///
-/// Specular is viewed from straight above. Sky and environment use harmonics, whose order limits the lobe as it limits
-/// the light. Suns use the lobe towards their centre and their visible part.
+/// Specular of sky and environment integrates the lobe over each azimuth's slice, by tables; that of a map of specular or with
+/// bounces uses harmonics, whose order limits the lobe. Suns use the lobe towards their centre and their visible part.
 ///
 /// # Errors
 /// Settings or lights out of range; no light; a scene beyond the limits.
@@ -124,7 +127,8 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
         lists.push(azimuths::even(quality.bounces.azimuths, field.cell_m()));
     }
     let (mut tables, mut harmonics) = (None, None);
-    let has_specular = active.has_specular_around();
+    let mirrored = active.by_slices(quality);
+    let has_specular = active.has_specular_around() && mirrored.is_none();
     if has_specular || active.environment.is_some() && quality.basis == Basis::Sh {
         active.environment.map_or(Ok(()), Environment::check_series)?;
         if quality.wedges == Wedges::Table && matches!(sweep, Sweep::Surface { .. }) {
@@ -140,7 +144,14 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
         let lit = (environment, surface.border);
         tables = Some(Tables::make(&mut builder, lit, quality));
     }
-    if active.environment.is_none() && active.sky.is_some() {
+    let eye_m = wanted
+        .eye_m
+        .map_or([0.0; 4], |[x, y, z]| [x as f32, y as f32, (z - field.base_m()) as f32, 1.0]);
+    let slices = mirrored.map(|phong| {
+        let lit = (active.environment, surface.border);
+        SpecularSlices::make(&mut builder, [size[0], size[1]], lit, quality, phong)
+    });
+    if active.environment.is_none() && active.sky.is_some() && slices.is_none() {
         notes.push("no environment: no table".into());
     }
     let keeps = wanted.keeps_horizons;
@@ -196,6 +207,8 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
         images,
         tables,
         harmonics,
+        slices,
+        eye_m,
         sweeping,
         blocks,
         bouncing,
@@ -252,6 +265,11 @@ fn marched_nodes(
     nodes.unwrap_or(Nodes { stride: 1 })
 }
 
+/// Whether specular alone needs harmonics.
+fn harmonics_alone(active: &ActiveLights<'_>, quality: &Quality) -> bool {
+    quality.basis == Basis::Sh && active.has_specular_around()
+}
+
 /// The effective settings.
 fn used(
     quality: &Quality,
@@ -266,7 +284,7 @@ fn used(
         used.push(("azimuths".into(), quality.azimuths.to_string()));
     }
     let mut add = |name: &str, value: &str| used.push((name.into(), value.into()));
-    let is_around = active.environment.is_some() || active.has_specular_around();
+    let is_around = active.environment.is_some() || harmonics_alone(active, quality);
     match quality.basis {
         Basis::Sh if is_around => {
             add("basis", "sh");

@@ -9,8 +9,9 @@ use glam::{DMat4, DVec3, DVec4};
 
 use super::Plan;
 use crate::graph::bytes_text;
-use crate::graph::shaders::{SkyDrawPush, TerrainDrawPush};
+use crate::graph::shaders::{PlinthDrawPush, SkyDrawPush, TerrainDrawPush};
 use crate::graph::{Format, Limits};
+use crate::passes::plinth_draw;
 use crate::passes::terrain_draw::TILE;
 use crate::scene::{Border, Camera, Lens, Scene, corners};
 use crate::{Error, Result};
@@ -32,11 +33,19 @@ pub struct ViewOptions {
     /// environment is added to it. It also replaces a sky whose radiance only the device knows
     /// ([`Picture::colours_on_device`](super::Picture::colours_on_device)).
     pub background: [f32; 3],
+    /// Height of the base of a plinth, absolute like the heights of the file. None draws no plinth.
+    pub plinth_base_m: Option<f64>,
 }
 
 impl Default for ViewOptions {
     fn default() -> Self {
-        Self { size: [1280, 720], samples: 4, mesh_step: 1, background: [0.0; 3] }
+        Self {
+            size: [1280, 720],
+            samples: 4,
+            mesh_step: 1,
+            background: [0.0; 3],
+            plinth_base_m: None,
+        }
     }
 }
 
@@ -48,6 +57,10 @@ impl Default for ViewOptions {
 /// direction, bilinear between the centres of its texels; suns, key lights and sphere lights are not visible. With an
 /// orthographic lens, visible ground reaches above and below the scene's heights by the height of the picture and the
 /// heights' own extent along the view.
+///
+/// A plinth has walls from the field's edges down to a level base, and none where the ground is lower. It hides what is
+/// behind it, but depths are those of the ground. Its light is not computed: a face has a fixed share of the ground's mean
+/// luminance, more towards the brightest sun. A void at an edge leaves a gap in the wall.
 #[derive(Clone, Debug, PartialEq)]
 pub struct View {
     /// Columns and rows of the picture.
@@ -67,6 +80,7 @@ pub struct View {
     pub(crate) terrain: TerrainDrawPush,
     pub(crate) tiles: u32,
     pub(crate) sky: SkyDrawPush,
+    pub(crate) plinth: Option<PlinthDrawPush>,
     depths: Depths,
 }
 
@@ -108,6 +122,8 @@ impl View {
             [field.cols(), field.rows()].map(|n| (n as u32 - 1).div_ceil(options.mesh_step));
         let [across, down] = cells.map(|n| n.div_ceil(TILE));
         let environment = lights.environment.as_ref();
+        let plinth = options.plinth_base_m;
+        let plinth = plinth.map(|base_m| plinth_draw::push(scene, camera, base_m, &terrain));
         let view = Self {
             size: options.size,
             samples: options.samples,
@@ -119,6 +135,7 @@ impl View {
             terrain: TerrainDrawPush { tiles_across: across as i32, ..terrain },
             tiles: across * down,
             sky: sky(scene, camera, options, lit.find("light_colours").is_some()),
+            plinth,
             depths,
         };
         let bytes = view.bytes();
@@ -152,7 +169,8 @@ impl View {
     /// Whether a renderer of `other` can record this view: they may differ only in camera and light.
     pub fn is_shaped_like(&self, other: &Self) -> bool {
         let shape = |v: &Self| {
-            (v.size, v.samples, v.field, v.radiance, v.environment.is_some(), v.has_voids)
+            let parts = [v.environment.is_some(), v.has_voids, v.plinth.is_some()];
+            (v.size, v.samples, v.field, v.radiance, parts)
         };
         shape(self) == shape(other)
     }
@@ -167,7 +185,7 @@ impl ViewOptions {
     /// # Errors
     /// The first value out of range on any device, by name.
     pub fn check(&self) -> Result<()> {
-        let Self { size, samples, mesh_step, background } = self;
+        let Self { size, samples, mesh_step, background, plinth_base_m } = self;
         if size.contains(&0) {
             let found = format!("{} × {}", size[0], size[1]);
             return Err(Error::setting("picture size", found, "1 × 1 or more"));
@@ -181,6 +199,9 @@ impl ViewOptions {
         if !background.iter().all(|v| v.is_finite() && *v >= 0.0) {
             let found = format!("{background:?}");
             return Err(Error::setting("background", found, "finite numbers, 0 or more"));
+        }
+        if let Some(base) = plinth_base_m.filter(|base| !base.is_finite()) {
+            return Err(Error::setting("plinth base", base.to_string(), "a finite height"));
         }
         Ok(())
     }
@@ -309,6 +330,7 @@ fn settings(camera: &Camera, options: &ViewOptions) -> Vec<(String, String)> {
         Lens::Perspective { fov_rad } => format!("perspective {}", degrees(fov_rad)),
         Lens::Orthographic { height_m } => format!("orthographic {height_m}"),
     };
+    let plinth = options.plinth_base_m.map(|base_m| ("plinth_base_m", base_m.to_string()));
     [
         ("camera", format!("{compass},{elevation},{}", camera.distance_m)),
         ("look_at", format!("{x},{y},{z}")),
@@ -317,8 +339,10 @@ fn settings(camera: &Camera, options: &ViewOptions) -> Vec<(String, String)> {
         ("samples", options.samples.to_string()),
         ("mesh_step", options.mesh_step.to_string()),
     ]
+    .into_iter()
+    .chain(plinth)
     .map(|(name, value)| (name.to_owned(), value))
-    .into()
+    .collect()
 }
 
 #[cfg(test)]

@@ -229,6 +229,120 @@ fn tiff_sample_types_compressions_and_predictors() {
     check(tiff::<colortype::GrayI32>(4, 3, &HEIGHTS.map(i32::from), lzw, none, &[]));
 }
 
+/// The place of a tag's entry in the only directory of a little-endian TIFF.
+fn entry(bytes: &[u8], tag: u16) -> usize {
+    let directory = u32::from_le_bytes(bytes[4..8].try_into().unwrap()) as usize;
+    let mut all = (0..).map(|i| directory + 2 + 12 * i);
+    all.find(|at| bytes[*at..at + 2] == tag.to_le_bytes()).unwrap()
+}
+
+/// Rows a strip, with the default of TIFF 6.0 for one strip of the whole image.
+#[test]
+fn strips_may_be_taller_than_the_image() {
+    for compression in
+        [Compression::Uncompressed, Compression::Lzw, Compression::Deflate(DeflateLevel::Fast)]
+    {
+        let none = Predictor::None;
+        let mut bytes = tiff::<colortype::GrayI16>(4, 3, &HEIGHTS, compression, none, &[]);
+        let at = entry(&bytes, 278);
+        for rows in [4_u32, 70_000, 1 << 31, u32::MAX] {
+            let rows = [&4_u16.to_le_bytes()[..], &1_u32.to_le_bytes(), &rows.to_le_bytes()];
+            bytes[at + 2..at + 12].copy_from_slice(&rows.concat());
+            assert_eq!(absolute(&parse("a.tif", &bytes).unwrap()), expected());
+        }
+    }
+}
+
+/// Heights are the stored values, whichever of the least and the greatest a picture shows as white (tag 262).
+#[test]
+fn values_are_the_stored_ones_where_white_is_zero() {
+    fn check<C>(texels: &[C::Inner], compression: Compression)
+    where
+        C: colortype::ColorType,
+        [C::Inner]: tiff::encoder::TiffValue,
+    {
+        let mut bytes = tiff::<C>(4, 3, texels, compression, Predictor::None, &[]);
+        let at = entry(&bytes, 262);
+        assert_eq!(bytes[at + 2..at + 9], [3, 0, 1, 0, 0, 0, 1], "a SHORT, BlackIsZero");
+        bytes[at + 8] = 0;
+        assert_eq!(absolute(&parse("a.tif", &bytes).unwrap()), expected());
+    }
+    for compression in [
+        Compression::Uncompressed,
+        Compression::Lzw,
+        Compression::Deflate(DeflateLevel::Fast),
+        Compression::Packbits,
+    ] {
+        check::<colortype::Gray8>(&HEIGHTS.map(|h| h as u8), compression);
+        check::<colortype::GrayI16>(&HEIGHTS, compression);
+        check::<colortype::Gray32>(&HEIGHTS.map(|h| h as u32), compression);
+        check::<colortype::Gray32Float>(&HEIGHTS.map(f32::from), compression);
+        check::<colortype::Gray64Float>(&HEIGHTS.map(f64::from), compression);
+    }
+}
+
+/// The memory for a tile follows from its sides, which only the header states.
+#[test]
+fn huge_tiles_are_refused() {
+    for compression in
+        [Compression::Uncompressed, Compression::Lzw, Compression::Deflate(DeflateLevel::Fast)]
+    {
+        let plain = tiff::<colortype::GrayI16>(4, 3, &HEIGHTS, compression, Predictor::None, &[]);
+        // The strip as a tile: offsets 273 to 324, rows a strip 278 to a width 322, byte counts 279 to 325. A
+        // directory is in ascending order, so the entries move behind the others.
+        let count = usize::from(plain[entry(&plain, 256) - 2]);
+        let start = entry(&plain, 256);
+        for [width, length] in
+            [[65_520_u32, 16_368], [1 << 31, 16], [16, 1 << 31], [u32::MAX; 2], [0, 16]]
+        {
+            let mut entries: Vec<[u8; 12]> =
+                plain[start..start + 12 * count].as_chunks::<12>().0.to_vec();
+            let mut rest = Vec::new();
+            entries.retain(|e| {
+                let tag = u16::from_le_bytes([e[0], e[1]]);
+                let moved = match tag {
+                    273 => Some(324_u16),
+                    279 => Some(325),
+                    278 => return false,
+                    _ => None,
+                };
+                if let Some(tag) = moved {
+                    let mut own = *e;
+                    own[..2].copy_from_slice(&tag.to_le_bytes());
+                    rest.push(own);
+                }
+                moved.is_none()
+            });
+            for (tag, value) in [(322_u16, width), (323, length)] {
+                let words = [
+                    &tag.to_le_bytes()[..],
+                    &4_u16.to_le_bytes(),
+                    &1_u32.to_le_bytes(),
+                    &value.to_le_bytes(),
+                ];
+                rest.push(words.concat().try_into().unwrap());
+            }
+            entries.extend(rest);
+            entries.sort_by_key(|e| u16::from_le_bytes([e[0], e[1]]));
+            // A new directory behind the file.
+            let mut bytes = plain.clone();
+            let at = bytes.len() as u32;
+            bytes[4..8].copy_from_slice(&at.to_le_bytes());
+            bytes.extend((entries.len() as u16).to_le_bytes());
+            bytes.extend(entries.concat());
+            bytes.extend([0; 4]);
+            let error = parse("a.tif", &bytes).unwrap_err().to_string();
+            one_sentence(&error, "a.tif");
+            let said = match width {
+                0 => "header",
+                65_520 => "a claim of",
+                _ => "tile size",
+            };
+            assert!(error.contains(said), "{error}");
+        }
+    }
+}
+
 #[test]
 fn geotiff_places_and_units() {
     let with = |tags: &[(u16, Tag)]| {
@@ -263,6 +377,29 @@ fn geotiff_places_and_units() {
     assert!((of_code - 1200.0 / 3937.0).abs() < 1e-12 && of_file == 1.0, "{of_code} {of_file}");
     let field = parse("a.tif", &with(&[scale(), tie(), (34735, Tag::Shorts(&vertical))])).unwrap();
     assert!((absolute(&field)[8] - 30.48).abs() < 1e-5);
+    // A vertical system has its own unit; without one the unit of the heights is open.
+    let folder = tempfile::tempdir().unwrap();
+    for (vertical, unit, is_noted) in [
+        (None, 1.0, true),
+        (Some(32767), 1.0, true),
+        (Some(5703), 1.0, false),
+        (Some(5773), 1.0, false),
+        (Some(6360), 1200.0 / 3937.0, false),
+        (Some(8050), 0.3048, false),
+    ] {
+        let mut keys = vec![1, 1, 0, 2, 1024, 0, 1, 1, 3072, 0, 1, 2265];
+        if let Some(code) = vertical {
+            keys[3] = 3;
+            keys.extend([4096, 0, 1, code]);
+        }
+        let path = folder.path().join("a.tif");
+        std::fs::write(&path, with(&[scale(), tie(), (34735, Tag::Shorts(&keys))])).unwrap();
+        let read = read_field(&path, &HeightOptions::default()).unwrap();
+        assert!((absolute(&read.field)[8] - 100.0 * unit).abs() < 1e-4, "{vertical:?}");
+        let notes = read.notes.join("\n");
+        assert!(notes.contains("cells are in units of 0.3048 m"), "{notes}");
+        assert_eq!(notes.contains("z_scale"), is_noted, "{vertical:?}: {notes}");
+    }
     // Without keys, small numbers are degrees: the middle of 3 rows of 0.01° from 60.015° is 60°,
     // where a degree of longitude is 55 800 m.
     let small = [

@@ -75,6 +75,7 @@ unsafe fn camera_view(
         samples: if given.samples == 0 { 4 } else { given.samples },
         mesh_step: given.mesh_step.max(1),
         background: given.background,
+        ..ViewOptions::default()
     };
     options.check()?;
     let lens = match given.ortho_height_m {

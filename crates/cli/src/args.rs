@@ -4,6 +4,7 @@ mod auto;
 mod bake;
 mod camera;
 mod compare;
+mod maps;
 mod quality;
 mod reference;
 mod renamed;
@@ -23,6 +24,7 @@ pub use auto::AutoArgs;
 pub use bake::BakeArgs;
 pub use camera::CameraArgs;
 pub use compare::CompareArgs;
+pub use maps::{HillshadeArgs, OpennessArgs, SkyViewArgs};
 pub use quality::{QualityArgs, flag};
 pub use reference::ReferenceArgs;
 pub use renamed::Renamed;
@@ -123,6 +125,8 @@ impl Cli {
         let quality = match &mut self.command {
             Command::Render(args) => Some(&mut args.quality),
             Command::Horizon(args) => Some(&mut args.quality),
+            Command::Ao(args) | Command::Svf(args) => Some(&mut args.quality),
+            Command::Openness(args) => Some(&mut args.quality),
             Command::Bake(args) => Some(&mut args.quality),
             Command::Plan(args) => Some(&mut args.quality),
             Command::Bench(args) => Some(&mut args.quality),
@@ -148,6 +152,16 @@ pub enum Command {
     Info(InfoArgs),
     /// Write the horizon of every texel: f32 [azimuths, rows, cols], elevation in radians
     Horizon(HorizonArgs),
+    /// Hillshade without shadows, as `gdaldem hillshade`: f32 or 8 bits, 1 to 255
+    Hillshade(HillshadeArgs),
+    /// Ambient occlusion: the light of a uniform sky on white ground, 0 to 1
+    #[command(after_help = maps::AO_HELP)]
+    Ao(SkyViewArgs),
+    /// Sky-view factor, weighted by the cosine to the slope's normal, 0 to 1
+    #[command(after_help = maps::SVF_HELP)]
+    Svf(SkyViewArgs),
+    /// Openness (Yokoyama 2002): mean zenith angle of the horizon, degrees
+    Openness(OpennessArgs),
     /// Print the passes, their reasons, traffic and memory; runs nothing
     Plan(PlanArgs),
     /// Time each pass on the GPU, after a check against the CPU

@@ -22,13 +22,13 @@ use serde_json::{Value, json};
 
 use crate::args::BakeArgs;
 use crate::setup::{self, Outcome};
-use crate::{horizon, idle};
+use crate::{horizon, idle, maps};
 use estimate::Estimate;
 pub use folder::check_new;
 use folder::{check_folder, check_memory, parent, remove_old, take_manifest};
 use job::{HORIZONS, Job, first};
 pub use kinds::{Kind, Normals};
-use kinds::{Map, SKY_VIEW, Source};
+use kinds::{Map, Source};
 pub use map::Format;
 use map::{MapFiles, Wanted};
 pub use request::{help, kind_named, packing};
@@ -157,14 +157,10 @@ fn compute(
             Source::Horizons | Source::Sums(_) => {}
             Source::SkyView => {
                 stages.begin("");
-                let own = kinds::sky_view_plan(job, &limits)?;
+                let own = maps::sky_view_plan(field, border, quality, &limits)?;
                 plan.get_or_insert_with(|| own.clone());
-                let layer = own.outputs().position(|(_, image)| image.name == SKY_VIEW);
-                let layer = layer.expect("a layer that was requested");
-                let texels = gpu.with_frame(own, &[field.heights_m()], |gpu, frame| {
-                    times.extend(gpu.draw(frame)?);
-                    Ok(gpu.pixels(frame, layer)?.values)
-                })?;
+                let (texels, own_times) = maps::sky_view(gpu, field, own)?;
+                times.extend(own_times);
                 files.take(&[&texels])?;
             }
             Source::Directions(of) => {
@@ -221,10 +217,13 @@ fn bake(
     let is_light = job.has(Kind::is_light);
     let bar = crate::setup::terminal::progress(args.global.quiet, "estimating the time");
     let is_shown = !args.global.quiet || args.global.json.is_some();
-    let estimate = if is_shown { Estimate::of(gpu, args, &job).ok() } else { None };
+    let estimate = if is_shown { Some(Estimate::of(gpu, args, &job)) } else { None };
+    let estimate = estimate.map(estimate::unless_lost).transpose()?;
     if let Some(estimate) = estimate.as_ref().filter(|_| !args.global.quiet) {
-        bar.suspend(|| setup::note(&estimate.text()));
+        let text = estimate.as_ref().map_or_else(String::clone, Estimate::text);
+        bar.suspend(|| setup::note(&text));
     }
+    let estimate = estimate.and_then(std::result::Result::ok);
     let stages = Stages::new(bar.clone(), job.stages()?);
     let maps = std::mem::take(&mut job.maps);
     let count = maps.len();

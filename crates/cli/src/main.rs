@@ -30,6 +30,7 @@ mod compare;
 mod horizon;
 mod idle;
 mod lights;
+mod maps;
 mod plan;
 mod reference;
 mod render;
@@ -82,6 +83,9 @@ fn main() -> ExitCode {
         args::Command::Render(args) => render::run(args),
         args::Command::Info(args) => plan::info::run(args),
         args::Command::Horizon(args) => horizon::run(args),
+        args::Command::Hillshade(args) => maps::hillshade(args),
+        args::Command::Ao(args) | args::Command::Svf(args) => maps::sky_view_map(args),
+        args::Command::Openness(args) => maps::openness(args),
         args::Command::Plan(args) => plan::run(args),
         args::Command::Bench(args) => bench::run(args),
         args::Command::Compare(args) => compare::run(args),

@@ -26,7 +26,7 @@ pub fn run(args: &PlanArgs) -> Result<Outcome> {
         setup::Unlit::of(&quality, args.camera.compass_deg()),
         args.global.quiet,
     )?;
-    let camera_view = camera::requested(&args.camera, &scene)?;
+    let camera_view = camera::requested(&args.camera, &scene, false)?;
     let (name, limits) = limits(&args.global)?;
     let plan = plan::picture(&scene, &quality, &limits, setup::wanted(&[]))?;
     let view = match &camera_view {

@@ -4,14 +4,15 @@ pub mod auto;
 pub mod camera;
 
 use ridgelight::gpu::{Headless, Pixels};
-use ridgelight::plan::{self, Limits};
+use ridgelight::plan::{self, Limits, Picture};
 use ridgelight::scene::Tone;
 use ridgelight::scene::{HeightField, Quality, Scene};
 use ridgelight::{Error, Result};
 use ridgelight_io as files;
 use ridgelight_io::{Channels, Georeference, Layer as FileLayer};
+use std::path::Path;
 
-use crate::args::{Layer, RenderArgs};
+use crate::args::{Input, Layer, RenderArgs};
 use crate::idle;
 use crate::setup::sky;
 use crate::setup::tint::Tint;
@@ -69,8 +70,9 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
     if goal.is_some() {
         setup::check_diffuse(&scene, "--max-error or --time-budget")?;
     }
-    let camera_view = camera::requested(&args.camera, &scene)?;
-    let wanted = setup::wanted(&args.layers);
+    let camera_view = camera::requested(&args.camera, &scene, is_png)?;
+    let eye_m = camera_view.as_ref().map(|view| view.eye_m(&scene.field));
+    let wanted = Picture { eye_m, ..setup::wanted(&args.layers) };
     let picture =
         |quality: &Quality, limits: &Limits| plan::picture(&scene, quality, limits, wanted);
     setup::check_plan(&args.global, |limits| {
@@ -179,7 +181,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
         metadata.push(("exposure".to_owned(), exposure.to_string()));
         let tone = Tone::picture(exposure);
         files::write_png(&args.output, rows, cols, &picture, voids, tone, &metadata)?;
-        write_world(args, georeference.as_ref())?;
+        write_world(&args.output, &args.input, georeference.as_ref(), args.global.quiet)?;
     }
     if let Some(json) = &args.global.json {
         let mut report = setup::as_json(&metadata, &times);
@@ -281,16 +283,21 @@ fn mean_horizon(
 
 /// Writes the world file beside a PNG: where its pixels lie, without the coordinate reference
 /// system.
-fn write_world(args: &RenderArgs, georeference: Option<&Georeference>) -> Result<()> {
-    let path = args.output.with_extension("pgw");
+pub fn write_world(
+    picture: &Path,
+    input: &Input,
+    georeference: Option<&Georeference>,
+    quiet: bool,
+) -> Result<()> {
+    let path = picture.with_extension("pgw");
     match georeference {
         Some(georeference) => files::write_text(&path, &georeference.world_file()),
         None => {
-            if path.exists() && !args.global.quiet {
+            if path.exists() && !quiet {
                 setup::note(&format!(
                     "{}: not of this picture, because {} states no position",
                     path.display(),
-                    args.input.first().display()
+                    input.first().display()
                 ));
             }
             Ok(())

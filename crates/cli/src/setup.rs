@@ -21,7 +21,7 @@ use crate::args::{
     albedo_colour, flag,
 };
 use crate::lights::{LIGHTS, light};
-pub use settings_used::{as_json, asked, metadata, typed};
+pub use settings_used::{as_json, asked, metadata, of_field, typed};
 use tint::Tint;
 
 /// How a command ended without an error.
@@ -373,7 +373,7 @@ pub fn check_distinct(outputs: &[(&str, Option<&Path>)], inputs: &[&Path]) -> Re
 }
 
 /// Phrases and settings of library messages whose flag has another name.
-const FLAGS: [(&str, &str); 19] = [
+const FLAGS: [(&str, &str); 20] = [
     ("sky radiance", "--sky"),
     ("specular", "--specular"),
     ("albedo", "--albedo"),
@@ -390,6 +390,7 @@ const FLAGS: [(&str, &str); 19] = [
     ("picture size", "--size"),
     ("mesh step", "--mesh-step"),
     ("background", "--background"),
+    ("plinth", "--plinth"),
     ("directions", "--directions"),
     ("curvatures of ellipses", "--curvature"),
     ("z_scale", "--z-scale"),

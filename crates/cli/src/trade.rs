@@ -64,7 +64,7 @@ pub fn run(args: &TradeArgs) -> Result<Outcome> {
         return Err(Error::setting("--bounces", args.bounces.to_string(), expected));
     }
     let bounces = Bounces { count: args.bounces, ..Bounces::default() };
-    let start = Quality { bounces, ..start_of(&scene) };
+    let start = Quality { bounces, ..start_of(&scene, bounces.count) };
     start.check()?;
     let planned = |limits: &plan::Limits| plan::picture(&scene, &start, limits, Picture::default());
     setup::check_plan(&args.global, planned)?;

@@ -14,7 +14,6 @@ fn dxgi(texels: Texels) -> Option<DxgiFormat> {
     use Component::{F16, F32, Snorm8, Snorm16, Unorm8, Unorm16};
     let TexelFormat { component, count } = match texels {
         Texels::Blocks(Block::Bc4) => return Some(DxgiFormat::BC4_UNorm),
-        Texels::Blocks(Block::Bc5) => return Some(DxgiFormat::BC5_UNorm),
         Texels::Blocks(Block::Bc6h) => return Some(DxgiFormat::BC6H_UF16),
         Texels::Blocks(Block::Bc7) => return Some(DxgiFormat::BC7_UNorm),
         Texels::Plain(format) => format,

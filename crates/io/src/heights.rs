@@ -7,6 +7,7 @@ mod lzw;
 mod mosaic;
 mod projection;
 mod raster;
+mod raw;
 pub mod size;
 pub mod tif;
 mod unpack;

@@ -155,7 +155,6 @@ fn block_descriptor(block: Block) -> Vec<u8> {
     // Colour model, bits of a sample, samples, qualifiers, and the number that stands for 1.
     let (model, bits, samples, qualifiers, one): (u32, u32, u32, u32, u32) = match block {
         Block::Bc4 => (131, 64, 1, 0, u32::MAX),
-        Block::Bc5 => (132, 64, 2, 0, u32::MAX),
         Block::Bc6h => (133, 128, 1, 0x80, 1_f32.to_bits()),
         Block::Bc7 => (134, 128, 1, 0, u32::MAX),
     };

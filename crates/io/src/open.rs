@@ -154,6 +154,13 @@ pub(crate) fn plausible(
     Ok(())
 }
 
+/// The system's refusal of so many bytes at once, before a decoder that cannot report it asks for them.
+pub(crate) fn room(path: &Path, bytes: u64) -> Result<()> {
+    let count = usize::try_from(bytes).unwrap_or(usize::MAX);
+    let refused = |_| Error::io(path, std::io::ErrorKind::OutOfMemory.into());
+    Vec::<u8>::new().try_reserve_exact(count).map_err(refused)
+}
+
 /// Memory for `count` zeros, or the system's refusal.
 pub(crate) fn zeros<T: Copy + Default>(path: &Path, count: usize) -> Result<Vec<T>> {
     let mut values = Vec::new();

@@ -37,10 +37,12 @@ impl Drawing {
     pub(crate) fn make(&mut self, host: &Host, recipe: &Recipe) -> Result<()> {
         let device = &host.device;
         let doing = || format!("making the pipeline of {}", recipe.shaders[1].shader.name);
-        let bindings: Vec<_> = recipe
-            .shaders
+        let mut all: Vec<_> = recipe.shaders.iter().flat_map(|s| s.shader.bindings).collect();
+        all.sort_by_key(|binding| binding.binding);
+        // Both stages may read one.
+        all.dedup_by_key(|binding| binding.binding);
+        let bindings: Vec<_> = all
             .iter()
-            .flat_map(|s| s.shader.bindings)
             .map(|binding| {
                 assert!(matches!(binding.kind, BindingKind::SampledImage { .. }));
                 vk::DescriptorSetLayoutBinding::default()

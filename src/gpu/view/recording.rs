@@ -8,6 +8,7 @@ use super::pipelines::{Drawing, STAGES};
 use super::{LABELS, ViewInputs, ViewOutputs, ViewRenderer};
 use crate::gpu::{ImageArg, ImageState};
 use crate::graph::shaders::PictureTonePush;
+use crate::passes::plinth_draw;
 use crate::passes::terrain_draw::TILE;
 use crate::plan::View;
 
@@ -114,19 +115,30 @@ impl ViewRenderer {
             this.draw_triangle(commands);
         });
         timestamp(2);
+        let mut timed = 2;
+        if let (Some(plinth), Some(push)) = (&self.plinth, &view.plinth) {
+            self.labelled(commands, LABELS[2], |this| {
+                this.bind(commands, plinth, this.slots[slot].sets[2], bytemuck::bytes_of(push));
+                let vertices = plinth_draw::vertices(push);
+                // SAFETY: `commands` is being recorded within rendering, a pipeline bound.
+                unsafe { device.cmd_draw(commands, vertices, plinth_draw::FACES, 0, 0) };
+            });
+            timed += 1;
+            timestamp(timed);
+        }
         // SAFETY: begun above.
         unsafe { device.cmd_end_rendering(commands) };
         if let (Some(tone), Some(linear)) = (&self.tone, &self.linear) {
             barriers(&[transition(linear.image, 1, DRAWN, READ)]);
-            self.labelled(commands, LABELS[2], |this| {
+            self.labelled(commands, LABELS[3], |this| {
                 this.begin_colour(commands, outputs.picture.view);
                 let push = PictureTonePush { exposure };
-                this.bind(commands, tone, this.slots[slot].sets[2], bytemuck::bytes_of(&push));
+                this.bind(commands, tone, this.slots[slot].sets[3], bytemuck::bytes_of(&push));
                 this.draw_triangle(commands);
                 // SAFETY: begun above.
                 unsafe { device.cmd_end_rendering(commands) };
             });
-            timestamp(3);
+            timestamp(timed + 1);
         }
         barriers(&self.exit(&read, outputs));
         self.slots[slot].is_recorded = true;
@@ -279,7 +291,7 @@ impl ViewRenderer {
     }
 
     fn write_sets(&self, slot: usize, inputs: &ViewInputs) {
-        let [terrain, sky, tone] = self.slots[slot].sets;
+        let [terrain, sky, plinth, tone] = self.slots[slot].sets;
         // Absent inputs are not read: any image is bound for them.
         let absent = &inputs.radiance;
         let voids = inputs.voids.as_ref().unwrap_or(absent);
@@ -290,6 +302,10 @@ impl ViewRenderer {
             (terrain, 2, voids.view),
             (sky, 0, environment.view),
         ];
+        if self.plinth.is_some() {
+            let views = [inputs.heights.view, inputs.radiance.view, voids.view];
+            bound.extend((0..).zip(views).map(|(binding, view)| (plinth, binding, view)));
+        }
         bound.extend(self.linear.as_ref().map(|linear| (tone, 0, linear.view)));
         let infos: Vec<_> = bound
             .iter()

@@ -51,6 +51,22 @@ impl ViewRenderer {
                 depth: Some((vk::CompareOp::GREATER_OR_EQUAL, false)),
             },
         )?;
+        if self.shape.plinth.is_some() {
+            let has_voids = self.shape.has_voids;
+            self.plinth.insert(Drawing::default()).make(
+                &self.host,
+                &Recipe {
+                    shaders: [
+                        shaders::PlinthDrawVert { is_grey, has_voids }.into(),
+                        shaders::PlinthDrawFrag { has_voids }.into(),
+                    ],
+                    format: drawn,
+                    samples: self.samples,
+                    // Over everything, without depths.
+                    depth: Some((vk::CompareOp::ALWAYS, false)),
+                },
+            )?;
+        }
         if curve != Curve::None {
             self.tone.insert(Drawing::default()).make(
                 &self.host,
@@ -85,12 +101,12 @@ impl ViewRenderer {
 
     fn make_slots(&mut self, slots: usize) -> Result<()> {
         let device = &self.host.device;
-        let drawings = [Some(self.terrain), Some(self.sky), self.tone];
+        let drawings = self.drawings();
         let layouts: Vec<_> = drawings.iter().flatten().map(|d| d.set_layout).collect();
-        // Heights, radiance, voids; the environment; the input of the tone curve.
+        // Heights, radiance, voids, twice; the environment; the input of the tone curve.
         let sizes = [vk::DescriptorPoolSize {
             ty: vk::DescriptorType::SAMPLED_IMAGE,
-            descriptor_count: 5 * slots as u32,
+            descriptor_count: 8 * slots as u32,
         }];
         let info = vk::DescriptorPoolCreateInfo::default()
             .max_sets((slots * layouts.len()) as u32)
@@ -113,12 +129,15 @@ impl ViewRenderer {
                         Some(_) => device.create_query_pool(&queries_info, None)?,
                         None => vk::QueryPool::null(),
                     };
-                    let sets = std::array::from_fn(|i| all.get(i).copied().unwrap_or_default());
+                    let mut all = all.into_iter();
+                    let sets = drawings
+                        .map(|drawing| drawing.and_then(|_| all.next()).unwrap_or_default());
                     Ok(Slot { sets, queries, is_recorded: false })
                 })
             };
             let slot = slot.map_err(failed("making a frame's descriptors"))?;
-            for (label, set) in LABELS.iter().zip(&slot.sets).take(layouts.len()) {
+            let named = LABELS.iter().zip(&slot.sets);
+            for (label, set) in named.filter(|(_, set)| **set != vk::DescriptorSet::null()) {
                 self.host.name(*set, &format!("{label}, slot {number}"));
             }
             if slot.queries != vk::QueryPool::null() {
@@ -141,8 +160,9 @@ impl ViewRenderer {
         }
         // SAFETY: as above.
         unsafe { self.host.device.destroy_descriptor_pool(self.descriptor_pool, None) };
-        let drawings = [Some(&mut self.terrain), Some(&mut self.sky), self.tone.as_mut()];
-        drawings.into_iter().flatten().for_each(|drawing| drawing.free(&self.host));
+        let optional = [self.plinth.as_mut(), self.tone.as_mut()];
+        let drawings = [Some(&mut self.terrain), Some(&mut self.sky)].into_iter().chain(optional);
+        drawings.flatten().for_each(|drawing| drawing.free(&self.host));
         self.memory.end();
         self.destroyed = true;
     }

@@ -289,6 +289,7 @@ fn walk(
                 azimuths: sweeping.azimuths,
                 sky_sum: Some(at.sky_share),
                 environment: None,
+                specular: None,
                 edited: None,
             };
             let (border, cell_m) = field;

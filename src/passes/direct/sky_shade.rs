@@ -1,6 +1,7 @@
 use crate::graph::{Builder, ResourceId, shaders};
 use crate::passes::batch::Batch;
 use crate::passes::dirty_list;
+use crate::passes::specular_tables::SpecularTables;
 use crate::passes::sweep::Sweep;
 use crate::scene::Border;
 
@@ -12,9 +13,23 @@ pub(crate) struct Images {
     pub sky_sum: Option<ResourceId>,
     /// The sum, and the tables.
     pub environment: Option<[ResourceId; 2]>,
+    /// Phong specular: the light that horizons hide from its specular.
+    pub specular: Option<Specular>,
     /// Texels that an edit changes: their mask and their list. Only these are lit.
     pub edited: Option<[ResourceId; 2]>,
 }
+
+/// What a Phong lobe about the mirror direction needs.
+#[derive(Clone, Copy)]
+pub(crate) struct Specular {
+    pub tables: SpecularTables,
+    pub blocked_sum: ResourceId,
+    /// The eye over the field's base; the last is 0 for a view from straight above.
+    pub eye_m: [f32; 4],
+}
+
+/// Light below this share of a lobe's peak counts as 0.
+const LEAST_SHARE: f32 = 1e-4;
 
 /// Light of a uniform sky and of an environment through the horizons of a batch.
 pub(crate) fn plan(
@@ -33,11 +48,19 @@ pub(crate) fn plan(
     if let Some([sum, tables]) = images.environment {
         bound.extend([("env_sum", sum), ("env_tables", tables)]);
     }
+    let mut push = shaders::ShadePush::of(batch, cell_m);
+    if let Some(Specular { tables, blocked_sum, eye_m }) = images.specular {
+        bound.extend([("specular_tables", tables.tables), ("blocked_sum", blocked_sum)]);
+        push.eye_m = eye_m;
+        push.exponent = tables.exponent;
+        push.least_cosine = LEAST_SHARE.powf(1.0 / tables.exponent.max(1e-3));
+    }
     if let Some([dirty, list]) = images.edited {
         bound.extend([("dirty_texels", dirty), ("edit_list", list)]);
     }
     let sums = if images.sky_sum.is_some() { 8 } else { 0 }
-        + if images.environment.is_some() { 32 } else { 0 };
+        + if images.environment.is_some() { 32 } else { 0 }
+        + if images.specular.is_some() { 32 } else { 0 };
     let pass = builder.pass(
         shaders::SkyShade {
             fuse: sweep.fuse_mode(),
@@ -48,6 +71,8 @@ pub(crate) fn plan(
             has_environment: images.environment.is_some(),
             marches_rows: axis.marches_rows,
             relights: images.edited.is_some(),
+            has_specular: images.specular.is_some(),
+            specular_is_shared: images.specular.is_some_and(|s| s.tables.is_shared()),
         },
         part,
         match (images.sky_sum, images.environment) {
@@ -56,7 +81,7 @@ pub(crate) fn plan(
             _ => "environment from its tables",
         },
         [axis.steps.div_ceil(8), axis.lanes.div_ceil(4 * 16), 1],
-        &shaders::ShadePush::of(batch, cell_m),
+        &push,
         &bound,
         axis.texels() * (4 + sums + u64::from(batch.count) * sweep.lattice_bytes()),
         axis.texels() * u64::from(batch.count),

@@ -67,7 +67,7 @@ impl Azimuth {
     }
 
     /// Which of eight octants it lies in; 0..4 march along columns, 4..8 along rows.
-    pub fn octant(&self) -> usize {
+    pub(crate) fn octant(&self) -> usize {
         let flips = (self.flags & (FLIPS_MARCH | FLIPS_LANES)) as usize >> 1;
         flips + if self.marches_rows() { 4 } else { 0 }
     }
@@ -140,6 +140,17 @@ pub fn even(count: u32, cell_m: [f64; 2]) -> Vec<Azimuth> {
             with_wedge(swept(dcol, drow, cell_m), phi, [phi - width / 2.0, phi + width / 2.0])
         })
         .collect()
+}
+
+/// `count` even wedges from `turn_rad` on, each with its direction and no sweep: one for each column of an environment that is
+/// rotated by as much, from east counter-clockwise.
+pub(crate) fn even_wedges(count: u32, turn_rad: f64) -> Vec<Azimuth> {
+    let width = TAU / f64::from(count);
+    let of = |k| {
+        let first = turn_rad + width * f64::from(k);
+        with_wedge(Azimuth::default(), first + 0.5 * width, [first, first + width])
+    };
+    (0..count).map(of).collect()
 }
 
 /// The integer grid vectors that replace `count` even azimuths in exact mode.

@@ -4,6 +4,7 @@ use crate::scene::{Border, Environment};
 /// The environment summed over each azimuth's wedge, row by row.
 pub(crate) fn plan(
     builder: &mut Builder,
+    part: &str,
     (environment, border): (&Environment, Border),
     azimuths: u32,
     [image, directions, rows]: [ResourceId; 3],
@@ -14,7 +15,7 @@ pub(crate) fn plan(
     let turn = environment.rotation_rad().rem_euclid(std::f64::consts::TAU);
     let pass = builder.pass(
         shaders::EnvWedges {},
-        "",
+        part,
         format!(
             "the environment's light in each azimuth's wedge: {kept} of {} rows can be visible",
             environment.height()
@@ -29,5 +30,8 @@ pub(crate) fn plan(
         texels * 16 + u64::from(azimuths) * u64::from(kept) * 48,
         texels,
     );
-    pass.azimuths = 0..azimuths;
+    // The others are constants.
+    if part.is_empty() {
+        pass.azimuths = 0..azimuths;
+    }
 }

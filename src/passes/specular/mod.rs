@@ -1,9 +1,14 @@
-//! Phong specular reflection of suns and of indirect light.
+//! Phong specular reflection of sky and environment, of suns and of indirect light.
 //! `bounced_specular` holds the images of bounced specular light; the other files are one per pass.
 
 pub(crate) mod bounced_specular;
 /// Specular with bounces: leaving light by direction or straight upwards.
 pub(crate) mod specular_exit;
+/// Specular light of sky and environment.
+pub(crate) mod specular_light;
+/// Light of sky and environment in a Phong lobe, by azimuth and elevation; and its maps over the mirror direction
+/// (pass `mirror_map`).
+pub(crate) mod specular_tables;
 /// Specular with bounces: arriving light as SH.
 pub(crate) mod specular_visibility;
 /// Specular light of suns.

@@ -9,7 +9,7 @@ pub(crate) fn plan(
     builder: &mut Builder,
     (axis, border, cell_m): (Axis, Border, [f64; 2]),
     name: &str,
-    (sun, phong): (&Sun, PhongSource),
+    (sun, phong, eye_m): (&Sun, PhongSource, [f32; 4]),
     [lane_heights, sun_sum, specular_sum]: [ResourceId; 3],
     (begins, outgoing): (bool, Option<BouncedSpecular>),
 ) {
@@ -41,6 +41,7 @@ pub(crate) fn plan(
             cell_y_m: cell_m[1] as f32,
             towards: [east, north, up, 0.0],
             colour: [r, g, b, f32::from(u8::from(begins))],
+            eye_m,
             specular: [phong.constant.exponent, phong.constant.scale],
         },
         &bound,

@@ -3,6 +3,8 @@
 
 /// The field from above, as a map.
 pub mod map_draw;
+/// Walls and base below the field's edges, in pictures only.
+pub(crate) mod plinth_draw;
 /// Light of a coarse grid on a finer one.
 pub(crate) mod preview;
 /// `--camera`: the ground as a mesh without vertex buffers. The background (`sky_draw`) and exposure with sRGB

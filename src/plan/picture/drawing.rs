@@ -1,7 +1,7 @@
 //! Plans the passes of a picture, light by light.
 
 use super::super::active_lights::{ActiveLights, Aimed, Colour};
-use super::images::{Harmonics, Images, Tables};
+use super::images::{Harmonics, Images, SpecularSlices, Tables};
 use crate::graph::{Builder, ResourceId};
 use crate::passes::blocks::Blocks;
 use crate::passes::bounces::{Bouncing, bounce_name};
@@ -20,6 +20,9 @@ pub(super) struct Drawing<'a> {
     pub images: Images,
     pub tables: Option<Tables>,
     pub harmonics: Option<Harmonics>,
+    pub slices: Option<SpecularSlices>,
+    /// The eye over the field's base; the last is 0 for a view from straight above.
+    pub eye_m: [f32; 4],
     /// None if there are only sphere lights, which trace their own occlusion.
     pub sweeping: Option<Sweeping>,
     /// Acceleration structure of rays, to sphere lights and of bounces.
@@ -42,6 +45,11 @@ impl Drawing<'_> {
 
     pub(super) fn fill_tables(&mut self, quality: &Quality) {
         self.fill_matrices();
+        self.fill_env_tables(quality);
+        self.fill_specular(quality.azimuths);
+    }
+
+    fn fill_env_tables(&mut self, quality: &Quality) {
         let (Some(e), Some(image)) = (self.active.environment, self.images.environment) else {
             return;
         };
@@ -51,7 +59,7 @@ impl Drawing<'_> {
         if let Some(Tables { wedge_rows, tables }) = self.tables {
             let of = (e, border);
             let wedges = [image, azimuths, wedge_rows];
-            passes::env_wedges::plan(builder, of, count, wedges);
+            passes::env_wedges::plan(builder, "", of, count, wedges);
             let nodes = quality.table_elevations;
             passes::env_tables::plan(builder, of, nodes, count, [wedge_rows, tables]);
         }
@@ -98,6 +106,11 @@ impl Drawing<'_> {
             }
             let (lane_heights, lattice) = (sweeping.lane_heights(batch), sweeping.lattice(batch));
             let (azimuths, sweep) = (sweeping.azimuths, &sweeping.sweep);
+            let specular = self.slices.as_ref().map(|slices| passes::sky_shade::Specular {
+                tables: slices.swept,
+                blocked_sum: slices.blocked_sum,
+                eye_m: self.eye_m,
+            });
             if sky_sum.is_some() || self.tables.is_some() {
                 let images = passes::sky_shade::Images {
                     lane_heights,
@@ -105,6 +118,7 @@ impl Drawing<'_> {
                     azimuths,
                     sky_sum,
                     environment: env_sum.zip(self.tables.as_ref()).map(|(sum, t)| [sum, t.tables]),
+                    specular,
                     edited: self.edited,
                 };
                 passes::sky_shade::plan(builder, sweep, border, cell_m, batch, &part, &images);
@@ -130,6 +144,7 @@ impl Drawing<'_> {
                 passes::sh_visibility::plan(builder, sweep, field, series, batch, &part, &images);
             }
         }
+        let last_lanes = batches.last().map(|batch| sweeping.lane_heights(batch));
         if let (Some(h), Some(batch)) = (&self.harmonics, batches.last()) {
             let lane_heights = sweeping.lane_heights(batch);
             if let Some((angles, table)) = h.wedge_table {
@@ -162,6 +177,9 @@ impl Drawing<'_> {
             }
             self.specular_is_begun = h.specular.is_some();
             self.specular_around();
+        }
+        if let Some((batch, lane_heights)) = batches.last().zip(last_lanes) {
+            self.slices_light(batch, lane_heights);
         }
         if let (Some(sum), Some(colour)) = (sky_sum, self.active.sky_colour()) {
             self.resolve("sky", sum, Some(colour), sky_layer);

@@ -3,9 +3,12 @@
 use super::super::active_lights::ActiveLights;
 use super::Picture;
 use crate::graph::{Builder, Format, Owner, ResourceId};
+use crate::passes::azimuths;
 use crate::passes::azimuths::Azimuth;
 use crate::passes::sh_layout::{Sh, WedgeTexels};
-use crate::scene::{Albedo, Border, Environment, Quality, Scene, Specular, Wedges};
+use crate::passes::specular_tables::SpecularTables;
+use crate::scene::{Albedo, Border, Environment, PhongSpecular, Quality, Scene, Specular, Wedges};
+use std::f32::consts::TAU;
 
 /// Images of the field's size, and the environment.
 pub(super) struct Images {
@@ -127,6 +130,72 @@ impl Tables {
         let format = Format::Rgba32Float;
         let tables = builder.image("env_tables", Owner::Internal, format, extent, true);
         Self { wedge_rows, tables }
+    }
+}
+
+/// Specular of sky and environment by tables of a Phong lobe.
+pub(super) struct SpecularSlices {
+    /// Of the swept azimuths, up to each elevation.
+    pub swept: SpecularTables,
+    /// Of fine azimuths, the whole slices.
+    pub fine: SpecularTables,
+    /// The fine azimuths, in the buffer "constants", and their rows of the environment.
+    pub fine_azimuths: ResourceId,
+    pub fine_count: u32,
+    pub fine_rows: Option<ResourceId>,
+    /// Maps over the mirror direction: of the fine azimuths, and of the swept ones.
+    pub maps: [ResourceId; 2],
+    pub map_size: [u32; 2],
+    pub blocked_sum: ResourceId,
+    pub scale: f32,
+}
+
+impl SpecularSlices {
+    /// For a field of `size`.
+    pub(super) fn make(
+        builder: &mut Builder,
+        size: [u32; 2],
+        (environment, border): (Option<&Environment>, Border),
+        quality: &Quality,
+        PhongSpecular { exponent, scale }: PhongSpecular,
+    ) -> Self {
+        // An azimuth for each column of the environment: a bright spot stays in its place.
+        let fine_count = environment.map_or(512, |e| (e.width() as u32).clamp(512, 2048));
+        let turn_rad = environment.map_or(0.0, Environment::rotation_rad);
+        let fine: Vec<Azimuth> = azimuths::even_wedges(fine_count, turn_rad);
+        let (fine_azimuths, _) = builder.constants(bytemuck::cast_slice(&fine));
+        let fine_rows = environment.map(|e| {
+            let rows = e.rows_above_ground(border) as u64;
+            builder.buffer("fine_rows", u64::from(fine_count) * rows * 48, false)
+        });
+        let layers = |count: u32| if environment.is_some() { count } else { 1 };
+        let nodes = if border == Border::Open { 256 } else { 128 };
+        let [swept, fine] =
+            [("specular_tables", nodes, quality.azimuths), ("fine_specular_tables", 1, fine_count)]
+                .map(|(name, nodes, count)| {
+                    SpecularTables::make(builder, name, exponent, border, [nodes, layers(count)])
+                });
+        // Nodes a quarter of the lobe's deviation apart, 1/√n radians.
+        let width = (4.0 * TAU * exponent.sqrt()).ceil() as u32;
+        let width = width.next_power_of_two().clamp(64, 2048);
+        let map_size = [width, width / 2 + 1];
+        let format = Format::Rgba32Float;
+        let mut image = |name: &str, [width, height]: [u32; 2]| {
+            builder.image(name, Owner::Internal, format, [width, height, 1], false)
+        };
+        let maps = [image("unoccluded_map", map_size), image("swept_map", map_size)];
+        let blocked_sum = image("blocked_sum", size);
+        Self {
+            swept,
+            fine,
+            fine_azimuths,
+            fine_count,
+            fine_rows,
+            maps,
+            map_size,
+            blocked_sum,
+            scale,
+        }
     }
 }
 

@@ -31,16 +31,25 @@ pub(super) fn quality(
         return refuse(&format!("specular under a {}", light.of.name), alone);
     }
     let quality = bounced(*quality, notes)?;
+    let by_slices = active.by_slices(&quality).is_some();
     match quality.basis {
         _ if !active.has_specular_around() => Ok(quality),
         Basis::Sh => Ok(quality),
+        Basis::Auto | Basis::Table if by_slices => {
+            notes.push("specular: each azimuth's slice of the lobe, from tables".into());
+            Ok(quality)
+        }
         Basis::Auto => {
-            notes.push("basis sh: specular needs harmonics".into());
+            notes.push(
+                "basis sh: specular of a map or with bounces needs harmonics, which blur the lobe"
+                    .into(),
+            );
             Ok(Quality { basis: Basis::Sh, ..quality })
         }
-        Basis::Table => {
-            refuse("specular with `basis table`, whose tables are of diffuse ground", "`basis sh`")
-        }
+        Basis::Table => refuse(
+            "a map of specular, or specular with bounces, with `basis table`",
+            "`basis sh`; one exponent and scale, and `bounces` 0",
+        ),
     }
 }
 
@@ -90,6 +99,41 @@ impl Drawing<'_> {
         }
     }
 
+    /// Tables and maps of a lobe.
+    pub(super) fn fill_specular(&mut self, count: u32) {
+        let (Some(slices), Some(sweeping)) = (&self.slices, &self.sweeping) else { return };
+        let (sky, builder) = (self.active.sky, &mut self.builder);
+        let lit = self.active.environment.zip(self.images.environment);
+        let swept_rows = lit.zip(self.tables.as_ref()).map(|((e, _), t)| (e, t.wedge_rows));
+        let fine_rows = lit.zip(slices.fine_rows).map(|((e, image), rows)| {
+            let ids = [image, slices.fine_azimuths, rows];
+            let of = (e, self.scene.surface.border);
+            passes::env_wedges::plan(builder, "fine", of, slices.fine_count, ids);
+            (e, rows)
+        });
+        slices.swept.plan(builder, "", sky, swept_rows, (sweeping.azimuths, true));
+        slices.fine.plan(builder, "fine", sky, fine_rows, (slices.fine_azimuths, false));
+        let [unoccluded, swept] = slices.maps;
+        let fine = ("unoccluded", "the reflection without occlusion, by mirror direction");
+        let ids = [slices.fine_azimuths, unoccluded];
+        slices.fine.plan_map(builder, fine, slices.fine_count, (ids, false), slices.map_size);
+        let of_swept =
+            ("swept", "the same from the swept azimuths, as occlusion is a share of them");
+        let ids = [sweeping.azimuths, swept];
+        slices.swept.plan_map(builder, of_swept, count, (ids, true), slices.map_size);
+    }
+
+    /// Specular of sky and environment by tables of the lobe.
+    pub(super) fn slices_light(&mut self, batch: &Batch, lane_heights: ResourceId) {
+        let (Some(slices), Some(sum)) = (&self.slices, self.images.specular_sum) else { return };
+        let field = (batch.axis, self.scene.surface.border, self.scene.field.cell_m());
+        let [unoccluded, swept] = slices.maps;
+        let ids = [lane_heights, slices.blocked_sum, unoccluded, swept, sum];
+        let viewed = (slices.scale, self.eye_m);
+        passes::specular_light::plan(&mut self.builder, field, viewed, ids);
+        self.specular_is_begun = true;
+    }
+
     /// Specular of a sun, from its diffuse irradiance.
     pub(super) fn sun_specular(&mut self, name: &str, sun: &Sun, batch: &Batch, sum: ResourceId) {
         let Some((specular, phong)) = self.images.specular_sum.zip(self.phong()) else { return };
@@ -103,7 +147,7 @@ impl Drawing<'_> {
             &mut self.builder,
             field,
             name,
-            (sun, phong),
+            (sun, phong, self.eye_m),
             ids,
             (begins, bounced),
         );
@@ -235,8 +279,7 @@ mod tests {
         let sphere = SphereLight { position_m: [1.0; 3], radius_m: 1.0, radiance: [1.0; 3] };
         let under_sphere = message(Lights { sphere_lights: vec![sphere], ..sky() }, Basis::Sh);
         assert!(under_sphere.contains("path-traced reference"), "{under_sphere}");
-        let by_table = message(sky(), Basis::Table);
-        assert!(by_table.ends_with("`basis sh`"), "{by_table}");
+
         // Dark lights, or no specular, raise no error.
         let dark = KeyLight { radiance: [0.0; 3], ..key };
         assert!(plan(Lights { keys: vec![dark], ..sky() }, Basis::Sh, 0.5).is_ok());
@@ -244,27 +287,32 @@ mod tests {
         assert!(plan(sun(), Basis::Table, 0.5).is_ok());
     }
 
-    /// The planner uses harmonics if light arrives from all directions. Suns need none, and neither does specular of scale 0.
-    /// No edits: visibility of a sky is not kept per texel.
+    /// Sky and environment use tables of the lobe, without harmonics unless they are requested. Suns need neither, nor does
+    /// specular of scale 0.
     #[test]
-    fn specular_uses_harmonics_for_light_from_all_directions() {
+    fn specular_uses_tables_by_azimuth() {
         let of_sky = plan(sky(), Basis::Auto, 0.5).unwrap();
-        assert!(of_sky.notes.iter().any(|n| n.starts_with("basis sh")), "{:?}", of_sky.notes);
-        assert!(of_sky.settings.contains(&("basis".into(), "sh".into())));
-        assert!(
-            of_sky.find("env_rotation").is_none() && of_sky.find("specular_rotation").is_none()
-        );
-        assert!(names(&of_sky).contains(&"sh_shade specular".to_owned()), "{:?}", names(&of_sky));
+        assert!(of_sky.notes.iter().any(|n| n.contains("slice of the lobe")), "{:?}", of_sky.notes);
+        let all = names(&of_sky);
+        for name in
+            ["specular_tables", "specular_tables fine", "mirror_map swept", "specular_light"]
+        {
+            assert!(all.iter().any(|n| n == name), "{name}: {all:?}");
+        }
+        assert!(of_sky.find("visibility").is_none() && of_sky.find("fine_rows").is_none());
+        let by_sh = plan(sky(), Basis::Sh, 0.5).unwrap();
+        assert!(by_sh.settings.contains(&("basis".into(), "sh".into())));
+        assert!(names(&by_sh).contains(&"sh_shade specular".to_owned()), "{:?}", names(&by_sh));
         let environment = Environment::new(4, 2, vec![[1.0; 3]; 8], 0.0).unwrap();
         let lit = Lights { environment: Some(environment), ..sun() };
         let of_all = plan(lit, Basis::Auto, 0.5).unwrap();
         let all = names(&of_all);
-        for name in ["env_rotation", "env_rotation specular", "sh_shade env", "sun_specular sun1"] {
+        for name in ["env_wedges", "env_wedges fine", "specular_light", "sun_specular sun1"] {
             assert!(all.iter().any(|n| n == name), "{name}: {all:?}");
         }
         assert!(of_all.find("direct.specular").is_some() && of_all.edit_passes.is_empty());
         let of_sun = plan(sun(), Basis::Auto, 0.5).unwrap();
-        assert!(of_sun.find("visibility").is_none() && of_sun.find("specular_sum").is_some());
+        assert!(of_sun.find("specular_tables").is_none() && of_sun.find("specular_sum").is_some());
         let none = plan(sky(), Basis::Auto, 0.0).unwrap();
         assert!(none.notes.iter().any(|n| n.starts_with("specular dropped")), "{:?}", none.notes);
         assert!(none.find("specular_sum").is_none() && none.find("visibility").is_none());

@@ -5,6 +5,7 @@ use std::fmt;
 use super::View;
 use crate::graph::Owner;
 use crate::graph::bytes_text;
+use crate::passes::plinth_draw;
 use crate::passes::terrain_draw::{TILE, tile_indices};
 
 /// A graphics pass of a [`View`].
@@ -76,9 +77,21 @@ impl View {
             why: mesh + &why_samples,
             vertices,
             bytes: texels + pixels * samples * (COLOUR_BYTES + DEPTH_BYTES),
-            reads: ground,
+            reads: ground.clone(),
             writes: written.clone(),
         };
+        let colours = written.iter().copied().filter(|name| !name.contains("depth")).collect();
+        let plinth = self.plinth.as_ref().map(|push| {
+            let vertices = u64::from(plinth_draw::FACES * plinth_draw::vertices(push));
+            ViewPass {
+                pass: "plinth_draw",
+                why: "below the field's edges: walls and a base, without depths".to_owned(),
+                vertices,
+                bytes: vertices * 4 + pixels * samples * COLOUR_BYTES,
+                reads: ground,
+                writes: colours,
+            }
+        });
         let [width, height] = self.environment.unwrap_or([0, 0]);
         let sky = ViewPass {
             pass: "sky_draw",
@@ -102,7 +115,7 @@ impl View {
             reads: vec!["picture_radiance"],
             writes: vec!["picture"],
         });
-        [terrain, sky].into_iter().chain(tone).collect()
+        [terrain, sky].into_iter().chain(plinth).chain(tone).collect()
     }
 
     /// Images and buffers besides "heights", "radiance" and "environment", which the plan of the lit field provides.

@@ -9,6 +9,7 @@ mod sweep;
 
 use ridgelight::plan::Axis;
 pub(crate) use ridgelight::plan::azimuths::{Azimuth, CELL};
+use ridgelight::plan::azimuths::{FLIPS_LANES, FLIPS_MARCH};
 pub(crate) use ridgelight::scene::{Border, HeightField};
 pub(crate) use ridgelight_cpu::horizon_march::{MarchOptions, horizon_march};
 pub(crate) use ridgelight_cpu::horizon_sweep::{SweepOptions, horizon_sweep};
@@ -44,9 +45,9 @@ pub(crate) fn grid_vector(azimuth: &Azimuth) -> [f64; 2] {
     } else {
         (CELL, azimuth.shear)
     };
-    let flips = azimuth.octant();
-    let march = f64::from(if flips & 1 != 0 { march } else { -march });
-    let lane = f64::from(if flips & 2 != 0 { lane } else { -lane });
+    let flips = |flag: u32| azimuth.flags & flag != 0;
+    let march = f64::from(if flips(FLIPS_MARCH) { march } else { -march });
+    let lane = f64::from(if flips(FLIPS_LANES) { lane } else { -lane });
     if azimuth.marches_rows() { [lane, march] } else { [march, lane] }
 }
 

@@ -132,8 +132,8 @@ fn is_lower(decoder: &Decoder, number: usize) -> bool {
 }
 
 /// Bakes the middle of the bundled field, 96 × 96 of its 256 × 256 texels, each kind with its encoding of this number
-/// (or its last), beside its values.
-fn baked(folder: &Path, number: usize, border: &str, wanted: &[Decoder]) -> serde_json::Value {
+/// (or its last), beside its values. `more` are further words of the command line.
+fn baked(folder: &Path, number: usize, more: &[&str], wanted: &[Decoder]) -> serde_json::Value {
     let (mut kinds, mut encodings) = (Vec::new(), Vec::new());
     for decoder in wanted {
         kinds.push(decoder.kind);
@@ -156,7 +156,7 @@ fn baked(folder: &Path, number: usize, border: &str, wanted: &[Decoder]) -> serd
         .args(
             wanted.iter().any(|d| d.kind == "curved-ellipse").then_some("--curvature=1e-5,2.5e-6"),
         )
-        .args(["--border", border])
+        .args(more)
         .args(["--azimuths", &AZIMUTHS.to_string(), "--sh-order", &ORDER.to_string()])
         .args(["--what", &kinds.join(","), "--encoding", &encodings.join(",")])
         .arg("-o")
@@ -245,7 +245,7 @@ fn decoders_keep_the_errors_that_manifests_state() {
         let folder = tempfile::tempdir().expect("a folder");
         let wanted: Vec<Decoder> =
             all().into_iter().filter(|d| !is_open || is_lower(d, number)).collect();
-        let manifest = baked(folder.path(), number, border, &wanted);
+        let manifest = baked(folder.path(), number, &["--border", border], &wanted);
         for decoder in wanted.iter().filter(|d| number < d.encodings.len()) {
             let encoding = numbered(decoder, number);
             let stem = decoder.kind.replace('-', "_");
@@ -327,6 +327,40 @@ fn decoders_keep_the_errors_that_manifests_state() {
     }
     // Values that only an open border has are among them.
     assert!(lowest < 0.0 && f64::from(widest) > FRAC_PI_2, "{lowest}, {widest}");
+}
+
+/// Textures whose y points south (DirectX) have the directions of the .npy, whose y points north, by the same decoder with
+/// the other sign; with the sign of OpenGL it fails.
+#[test]
+fn decoders_turn_the_normals_of_directx() {
+    let device = Device::new();
+    let gpu = device.gpu.as_ref().expect("alive");
+    let of_normals = || all().into_iter().filter(|d| d.kind == "bent-normal").collect::<Vec<_>>();
+    for number in 0..bake::BENT_NORMAL.len() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let wanted = of_normals();
+        let manifest = baked(folder.path(), number, &["--normals", "directx"], &wanted);
+        assert_eq!(manifest["maps"][0]["normals"]["convention"], "DirectX, -Y");
+        let (decoder, encoding) = (&wanted[0], numbered(&wanted[0], number));
+        let path = |extension: &str| folder.path().join(format!("bent_normal.{extension}"));
+        let ground_truth = read_planes(&path("npy")).expect("values");
+        let texture = std::fs::read(path("ktx2")).expect("a texture");
+        let promised = promised(&manifest, decoder.kind);
+        let share = |y: f64| {
+            let mut constants = (decoder.constants)(encoding);
+            let own = constants.iter_mut().find(|(name, _)| *name == "BENT_Y").expect("a constant");
+            own.1 = Constant::Float(y);
+            let bits: Vec<u32> = constants.iter().map(|(_, c)| c.bits()).collect();
+            let lines: String = constants.iter().map(|(name, c)| c.line(name)).collect();
+            let written = std::fs::read_to_string(path("glsl")).expect("a decoder");
+            assert_eq!(written == lines + decoder.body, y < 0.0, "bent_normal.glsl");
+            worst(&promised, &decode(gpu, decoder, &bits, &texture, 0.0), &ground_truth, 0.0)
+        };
+        let (found, of) = share(-1.0);
+        assert!(found <= 1.0, "{}: {found} of {of}", encoding.name);
+        let (other, _) = share(1.0);
+        assert!(other > 1.0, "{}: the sign changes nothing", encoding.name);
+    }
 }
 
 /// The last plane is the ellipses' test for a light, except where the stated error of a number (centre up to 4, radii)

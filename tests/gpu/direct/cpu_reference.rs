@@ -165,6 +165,15 @@ pub(crate) fn pictures() -> Vec<Case> {
             Surface { border: Border::Open, albedo: Albedo::Constant([0.0; 3]), specular: phong };
         Scene { field: rough(9, 14, 43), surface, lights }
     };
+    // Under a sky alone: one table for all azimuths.
+    let shiny_sky = |exponent, border| {
+        let suns = vec![sun(0.7, 0.1, [1.0, 2.0, 3.0])];
+        let lights = Lights { sky: Some([1.0, 0.5, 2.0]), suns, ..Lights::default() };
+        let phong = Some(Specular::Constant(PhongSpecular { exponent, scale: 0.7 }));
+        let albedo = Albedo::Constant([0.25; 3]);
+        let surface = Surface { border, albedo, specular: phong };
+        Scene { field: rough(13, 10, 44), surface, lights }
+    };
     // Twelve columns: the last is no multiple of 4 from the first; of a field that repeats.
     let repeated = {
         let lights = Lights { environment: Some(noisy_environment(17)), ..Lights::default() };
@@ -238,6 +247,27 @@ pub(crate) fn pictures() -> Vec<Case> {
         picture("harmonics of marches from nodes", on_a_plane.clone(), marched, false, false),
         picture("harmonics of a pyramid's nodes", repeated, smoothed, false, false),
         picture("harmonics of order 2", on_a_plane, phong_specular, false, false),
+        picture("a lobe by slices", mirrored.clone(), quality, true, false),
+        Case {
+            wanted: Wanted::Picture(Picture {
+                eye_m: Some([30.0, -40.0, 960.0]),
+                ..Picture::default()
+            }),
+            ..picture(
+                "a lobe by slices, before an eye, open",
+                shiny_sky(2.5, Border::Open),
+                quality,
+                false,
+                false,
+            )
+        },
+        picture(
+            "a narrow lobe by slices, periodic",
+            shiny_sky(300.0, Border::Periodic),
+            quality,
+            false,
+            false,
+        ),
         picture("a lobe", mirrored, sh(5), true, false),
         picture("a specular at every second texel", mirrored_sky, subsampled(2, 3), false, false),
     ]

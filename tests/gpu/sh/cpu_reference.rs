@@ -22,6 +22,7 @@ use ridgelight_cpu::tolerance::{
 
 use crate::cpu_reference::{Pair, Reference, Run, constant, fuse_of, pushed};
 use crate::direct::cpu_reference::light::{rgb, so_far, wedge_rows};
+use crate::specular::cpu_reference::slices::azimuths_of;
 
 /// The passes of this room and their CPU references.
 pub(crate) const REFERENCES: &[Reference] = &[
@@ -48,7 +49,7 @@ fn three(got: DVec3, want: DVec3, tolerance: DVec3, at: [usize; 3]) -> [Pair; 3]
 pub(crate) fn env_wedges(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let got = wedge_rows(run, pass);
     let environment = run.scene.lights.environment.as_ref().expect("an environment");
-    let azimuths = &run.plan.azimuths[..pass.groups[1] as usize];
+    let azimuths = &azimuths_of(run, pass, pass.groups[1] as usize);
     let want = env_wedges_reference::env_wedges(environment, run.scene.surface.border, azimuths);
     assert_eq!(got.len(), want.len());
     let rows = got.len() / azimuths.len();

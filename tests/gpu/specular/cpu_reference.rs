@@ -1,6 +1,7 @@
 //! Phong specular: the suns' direct, and that of bounces.
 
 pub(crate) mod bounced;
+pub(crate) mod slices;
 pub(crate) mod sun;
 
 use ridgelight::plan::Picture;
@@ -13,6 +14,9 @@ use crate::cpu_reference::{Case, Reference, Wanted, check_all, noisy_environment
 
 /// The passes of this room and their CPU references.
 pub(crate) const REFERENCES: &[Reference] = &[
+    ("specular_tables", slices::specular_tables),
+    ("mirror_map", slices::mirror_map),
+    ("specular_light", slices::specular_light),
     ("sun_specular", sun::sun_specular),
     ("specular_exit", bounced::specular_exit),
     ("specular_gather", bounced::specular_gather),

@@ -1,5 +1,6 @@
 //! Pictures of a camera against f64 rays that test every triangle, and against closed forms.
 
+mod plinth;
 mod rays;
 
 use std::f64::consts::FRAC_PI_2;

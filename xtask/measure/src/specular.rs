@@ -1,5 +1,5 @@
-//! Errors of Phong specular by SH against the path tracer: direct light by exponent, receiver and
-//! order, and indirect light by direction and as from straight above (NS09, figure 5).
+//! Errors of Phong specular against the path tracer: direct light by exponent, by slices of the lobe
+//! and by SH of receiver and order, and indirect light by direction and as from straight above (NS09, figure 5).
 //!
 //! Both light the middle SIDE² (64) grid points of the bundled mountain by the bundled sky without its
 //! sun. Indirect: three times as steep, two bounces; first specular alone, then with diffuse ground. N
@@ -8,6 +8,7 @@
 //! specular alone, a row for each exponent: path-traced, vector of order 4, scalar, vector of order 6.
 
 use ridgelight::Result;
+use ridgelight::gpu::Headless;
 use ridgelight::plan::REFERENCE_BATCH;
 use ridgelight::scene::{
     Basis, Border, BounceEngine, BounceSpecular, Bounces, Environment, HeightField, PhongSpecular,
@@ -61,19 +62,31 @@ pub fn direct(mut args: Args) -> Outcome {
         DIRECT_BATCHES * REFERENCE_BATCH,
         device(&gpu)
     );
-    head("| exponent | receiver | order | RMSE % | paths' noise % |");
-    for exponent in [1.0, 5.0, 20.0] {
+    head("| exponent | azimuths | receiver | order | RMSE % | paths' noise % |");
+    for exponent in [1.0, 5.0, 20.0, 100.0, 1000.0] {
         let scene = scene(&ground, 0.0, (exponent, 1.0));
         let [reference, deviation] = traced(&mut gpu, &scene, 0, DIRECT_BATCHES)?;
         let noise = 100.0 * rms_of(&deviation) / mean(&reference);
+        let rmse = |gpu: &mut Headless, quality: &Quality| -> Result<f64> {
+            let light = drawn(gpu, &scene, quality, 0)?.light;
+            let error = error(&light, &reference)?;
+            Ok((error * error - noise * noise).max(0.0).sqrt())
+        };
+        for azimuths in [32, 64, 128] {
+            let slices = Quality { azimuths, ..Quality::default() };
+            let rmse = rmse(&mut gpu, &slices)?;
+            println!("| {exponent} | {azimuths} | slices | | {rmse:.2} | {noise:.3} |");
+        }
+        // Harmonics hold no sharper lobe.
+        if exponent > 20.0 {
+            continue;
+        }
         for receiver in [Receiver::Plane, Receiver::Cosine] {
             for sh_order in 2..=6 {
                 let quality =
                     Quality { basis: Basis::Sh, receiver, sh_order, ..Quality::default() };
-                let light = drawn(&mut gpu, &scene, &quality, 0)?.light;
-                let error = error(&light, &reference)?;
-                let rmse = (error * error - noise * noise).max(0.0).sqrt();
-                println!("| {exponent} | {} | {sh_order} | {rmse:.2} | {noise:.3} |", receiver);
+                let rmse = rmse(&mut gpu, &quality)?;
+                println!("| {exponent} | 64 | {receiver} | {sh_order} | {rmse:.2} | {noise:.3} |");
             }
         }
     }

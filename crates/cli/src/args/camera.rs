@@ -74,6 +74,20 @@ pub struct CameraArgs {
         requires = "camera"
     )]
     pub background: [f32; 3],
+    /// Depth of a plinth under the field, as a share of its longer side; 0 draws none [default: 0.04 in a .png]
+    ///
+    /// The plinth has walls from the field's edges down to a level base, SHARE of the longer side below the lowest height.
+    /// Its light is not computed, and it has no depths. By default a .png has one, unless the camera is below the horizontal,
+    /// and an .exr has none. A camera without DISTANCE leaves room for it in both: they have the same ground in the same
+    /// pixels.
+    #[arg(
+        long,
+        value_name = "SHARE",
+        allow_negative_numbers = true,
+        hide_short_help = true,
+        requires = "camera"
+    )]
+    pub plinth: Option<f32>,
 }
 
 impl CameraArgs {

@@ -3,9 +3,9 @@
 use std::cell::OnceCell;
 
 use indicatif::ProgressBar;
-use ridgelight::Result;
 use ridgelight::gpu::Headless;
 use ridgelight::scene::{Quality, Scatter};
+use ridgelight::{Error, Result};
 use ridgelight_bake::Angles;
 use serde_json::{Value, json};
 
@@ -14,7 +14,7 @@ use super::stages::{Stage, Stages, total};
 use super::{compute, finish, open, request};
 use crate::args::BakeArgs;
 use crate::bench::verify;
-use crate::setup::terminal::digits;
+use crate::setup::{self, terminal::digits};
 
 /// A trial has one in so many directions, paths, and pairs of light and view.
 const PART: usize = 16;
@@ -82,6 +82,18 @@ impl Estimate {
     }
 }
 
+/// What a trial found, or a note why there is no estimate: some errors apply to the piece of the field alone.
+///
+/// # Errors
+/// Those of the device, on which the bake would fail, too.
+pub fn unless_lost<T>(found: Result<T>) -> Result<std::result::Result<T, String>> {
+    match found {
+        Ok(found) => Ok(Ok(found)),
+        Err(error @ Error::Device { .. }) => Err(error),
+        Err(error) => Ok(Err(format!("no estimate: {}", setup::in_flags(error)))),
+    }
+}
+
 /// One run of a part of the bake on a piece of the field. Its files never get their names.
 fn trial(gpu: &mut Headless, args: &BakeArgs, job: &Job) -> Result<Vec<Stage>> {
     let piece = verify::piece(job.scene)?;
@@ -122,4 +134,19 @@ fn fewer(job: &Job) -> Angles {
     let wanted = (job.angles.count() / PART).max(job.least_angles());
     let few = Angles { zeniths: 2, azimuths: wanted.div_ceil(2).max(4) };
     if few.count() < job.angles.count() { few } else { job.angles }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_failed_trial_gets_a_note_and_a_lost_device_ends_the_bake() {
+        assert_eq!(unless_lost(Ok(7)).expect("no error"), Ok(7));
+        let refused = Error::setting("cell_m", "0", "`lines exact`");
+        let note = unless_lost::<()>(Err(refused)).expect("no error of the device");
+        assert_eq!(note, Err("no estimate: --cell: found 0, expected --lines exact".to_owned()));
+        let lost = Error::Device { doing: "a submission".into(), reason: "lost".into() };
+        assert!(matches!(unless_lost::<()>(Err(lost)), Err(Error::Device { .. })));
+    }
 }

@@ -14,7 +14,7 @@ use super::kinds::{self, Kind, Map, Normals, OfDirections, Source, Table};
 use super::map::Wanted;
 use super::stages::{FILES, Stage};
 use super::{MANIFEST, request};
-use crate::horizon;
+use crate::{horizon, maps};
 
 /// The stage that finds the horizons of all kinds that read them.
 pub const HORIZONS: &str = "horizons";
@@ -168,9 +168,11 @@ impl<'a> Job<'a> {
             Source::Light(of) => (of.bytes)(self),
         };
         let maps = self.maps.iter();
-        let maps = maps.map(|(w, map)| of_kind(w.kind) + w.held_bytes(map, grid_points));
+        let field = [self.field().cols(), self.field().rows()];
+        let maps = maps.map(|(w, map)| of_kind(w.kind).saturating_add(w.held_bytes(map, field)));
         let azimuths = horizon::at_once(self.field(), limits).min(self.quality.azimuths);
-        maps.sum::<u64>() + (24 + 4 * u64::from(azimuths)) * grid_points as u64
+        let own = (24 + 4 * u64::from(azimuths)) * grid_points as u64;
+        maps.fold(own, u64::saturating_add)
     }
 
     /// Kinds that trace directions.
@@ -232,7 +234,7 @@ impl<'a> Job<'a> {
             all.push(horizon::plan_from(field, border, self.quality, limits, batch, false)?);
         }
         if self.has(|kind| matches!(kind.source, Source::SkyView)) {
-            all.push(kinds::sky_view_plan(self, limits)?);
+            all.push(maps::sky_view_plan(self.field(), self.border(), self.quality, limits)?);
         }
         for of in self.of_directions() {
             all.push((of.plan)(self, limits)?);

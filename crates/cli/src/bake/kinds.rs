@@ -17,7 +17,6 @@ use super::job::Job;
 use super::map::{Format, MapFiles, Wanted};
 use super::stages::{Stage, Stages};
 pub use far_field::{diffuse, direct_plan, rays};
-pub use horizons::{SKY_VIEW, sky_view_plan};
 pub use light::paths;
 pub use reflection::{FACTORS, PAIRS, Table};
 
@@ -64,9 +63,15 @@ impl Normals {
             Normals::Opengl => ("OpenGL, +Y", "north, to the first row"),
             Normals::Directx => ("DirectX, -Y", "south, to the last row"),
         };
+        let packed = Format::value_variants().iter().filter(|format| format.is_packed());
+        let packed: Vec<&str> = packed.map(|format| format.name()).collect();
+        let of = format!(
+            "{}, before the decoder is applied; other formats hold x east, y north, z up",
+            packed.join(", ")
+        );
         serde_json::json!({
             "convention": convention, "x": "east, to the last column", "y": y, "z": "up, out of the ground",
-            "of": "ktx2, dds and png, before the decoder is applied; other formats hold x east, y north, z up",
+            "of": of,
         })
     }
 }

@@ -39,6 +39,11 @@ impl Format {
         matches!(self, Format::Ktx2 | Format::Dds)
     }
 
+    /// Whether it holds the values packed by `--encoding`, not the values themselves.
+    pub fn is_packed(self) -> bool {
+        self.is_texture() || self == Format::Png
+    }
+
     /// Whether it can hold the encoded kind.
     pub fn takes(self, kind: &Kind, encoding: &Encoding) -> bool {
         let is_picture = encoding.component.is_normalised() && encoding.components < 4;
@@ -122,20 +127,27 @@ impl Wanted {
     }
 
     /// Bytes that the files hold before they are written; formats that stream hold one layer.
-    pub fn held_bytes(&self, map: &Map, grid_points: usize) -> u64 {
+    pub fn held_bytes(&self, map: &Map, field: [usize; 2]) -> u64 {
+        let size = map.size.unwrap_or(field);
         let texel = self.texels().bytes();
         let of = |format: &Format| match format {
             Format::Exr => 4 * map.planes.len(),
             // Pixels, and the compressed copy.
             Format::Png => 2 * (texel + 2),
-            Format::Npy => texel,
-            // The values of a layer, coded and compressed, and those of its mip levels.
-            Format::Ktx2 | Format::Dds if self.block.is_some() || self.has_mips => 64 + 2 * texel,
-            Format::Ktx2 | Format::Dds => texel + 4 * self.encoding.values,
+            // A plane without voids.
+            Format::Npy => 4,
+            // Both have the same texels, counted below.
+            Format::Ktx2 | Format::Dds => 0,
             // A plane and its overviews, and their compressed copies.
             Format::Tif => 12,
         };
-        (map.texels(grid_points) * self.formats.iter().map(of).sum::<usize>()) as u64
+        let of_texels = (size[0] * size[1] * self.formats.iter().map(of).sum::<usize>()) as u64;
+        if !self.formats.iter().any(|format| format.is_texture()) {
+            return of_texels;
+        }
+        let images = self.level_sizes(size).into_iter();
+        let images = images.map(|size| self.stored().image_bytes(size).unwrap_or(u64::MAX));
+        images.fold(of_texels + self.coding_bytes(size), u64::saturating_add)
     }
 
     /// GLSL: the constants, then the decoder.
@@ -406,10 +418,12 @@ impl<'a> MapFiles<'a> {
     fn picture(&self, planes: &[&[f32]], scale: f64) -> Vec<u8> {
         let (encoding, voids, component) =
             (self.wanted.encoding, self.voids(), self.picture_component());
-        let mut picture = Vec::new();
         if !self.has(Format::Png) {
-            return picture;
+            return Vec::new();
         }
+        let (channels, bits) = self.picture_form();
+        let pixel = channels * bits as usize / 8;
+        let mut picture = Vec::with_capacity(pixel * self.size().iter().product::<usize>());
         let (mut values, mut parts) = ([0.0; 4], [0.0; 4]);
         let (values, parts) = (&mut values[..encoding.values], &mut parts[..encoding.components]);
         for at in 0..self.size().iter().product() {

@@ -16,6 +16,25 @@ pub struct CameraView {
     pub options: ViewOptions,
 }
 
+impl CameraView {
+    /// Where specular is viewed from. The rays of an orthographic lens meet far away.
+    pub fn eye_m(&self, field: &HeightField) -> [f64; 3] {
+        let Camera { target_m, lens, .. } = self.camera;
+        match lens {
+            Lens::Perspective { .. } => self.camera.eye_m().to_array(),
+            Lens::Orthographic { .. } => {
+                let [x, y] = field.cell_m();
+                let largest = (x * field.cols() as f64).max(y * field.rows() as f64);
+                let back = self.camera.axes()[2] * (1e4 * largest);
+                [0, 1, 2].map(|i| target_m[i] + back[i])
+            }
+        }
+    }
+}
+
+/// Default depth of a plinth, a share of the field's longer side.
+pub const PLINTH: f32 = 0.04;
+
 /// Refuses layers that the picture does not have.
 pub fn check_layers(args: &RenderArgs) -> Result<()> {
     let is_depth = |layer: &Layer| *layer == Layer::Depth;
@@ -32,15 +51,23 @@ pub fn check_layers(args: &RenderArgs) -> Result<()> {
     }
 }
 
-/// The requested camera, checked as far as possible without a device.
-pub fn requested(args: &CameraArgs, scene: &Scene) -> Result<Option<CameraView>> {
+/// The requested camera, checked as far as possible without a device. `for_screen`: a picture of codes, with a plinth.
+pub fn requested(args: &CameraArgs, scene: &Scene, for_screen: bool) -> Result<Option<CameraView>> {
     let Some(at) = args.camera else { return Ok(None) };
     let field = &scene.field;
+    // From below it would hide the ground.
+    let share = args.plinth.unwrap_or(if at.elevation < 0.0 { 0.0 } else { PLINTH });
+    if !(0.0..=1.0).contains(&share) {
+        return Err(Error::setting("plinth", share.to_string(), "0 to 1"));
+    }
+    let on_plinth = plinth(field, share);
+    let is_drawn = for_screen || args.plinth.is_some();
     let options = ViewOptions {
         size: args.size,
         samples: args.samples,
         mesh_step: args.mesh_step,
         background: args.background,
+        plinth_base_m: on_plinth.as_ref().filter(|_| is_drawn).map(|(base_m, _)| *base_m),
     };
     options.check()?;
     let azimuth_rad = (90.0 - at.azimuth).to_radians();
@@ -54,7 +81,9 @@ pub fn requested(args: &CameraArgs, scene: &Scene) -> Result<Option<CameraView>>
         [p.east_m, p.north_m, height]
     });
     let angles = [azimuth_rad, at.elevation.to_radians()];
-    let mut camera = Camera::around(field, target, angles, lens, options.aspect());
+    let fits = on_plinth.as_ref().filter(|_| at.distance_m.is_none());
+    let framed = fits.map_or(field, |(_, framed)| framed);
+    let mut camera = Camera::around(framed, target, angles, lens, options.aspect());
     if let Some(distance_m) = at.distance_m {
         match &mut camera.lens {
             Lens::Perspective { .. } => camera.distance_m = distance_m,
@@ -63,6 +92,19 @@ pub fn requested(args: &CameraArgs, scene: &Scene) -> Result<Option<CameraView>>
     }
     camera.check()?;
     Ok(Some(CameraView { camera, options }))
+}
+
+/// Height of a plinth's base, `share` of the field's longer side below the lowest height, and a field whose box is that of
+/// the field on its plinth. None for a share of 0, and where the box is out of range.
+pub fn plinth(field: &HeightField, share: f32) -> Option<(f64, HeightField)> {
+    let [cell_x, cell_y] = field.cell_m();
+    let sides = [(field.cols() - 1) as f64 * cell_x, (field.rows() - 1) as f64 * cell_y];
+    let heights = field.heights_m().iter().map(|h| field.base_m() + f64::from(*h));
+    let (low, high) =
+        heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), z| (l.min(z), h.max(z)));
+    let base_m = low - f64::from(share) * sides[0].max(sides[1]);
+    let framed = HeightField::new(2, 2, &[base_m, high, high, high], sides, None);
+    framed.ok().filter(|_| share > 0.0).map(|framed| (base_m, framed))
 }
 
 /// Height of the grid point nearest to a place.

@@ -104,7 +104,7 @@ const EYE: [Part; 3] = [
     part("elevation_deg", Numbers::One),
     or(part("distance_m", Numbers::One), ""),
 ];
-const CAMERA: [Key; 8] = [
+const CAMERA: [Key; 9] = [
     key("from", "camera", Kind::Parts(&EYE)),
     key("look_at_m", "look_at", Kind::Numbers(Numbers::TwoOrThree)),
     key("fov_deg", "fov", NUMBER),
@@ -113,6 +113,7 @@ const CAMERA: [Key; 8] = [
     key("samples", "samples", NUMBER),
     key("mesh_step", "mesh_step", NUMBER),
     key("background", "background", Kind::Numbers(Numbers::Colour)),
+    key("plinth", "plinth", NUMBER),
 ];
 
 /// Every group and its keys. Those of quality are the settings, and how to choose them.

@@ -8,20 +8,27 @@ use crate::args::{FieldArgs, Input, LightArgs, SpecularArg, SurfaceArgs};
 use crate::lights::LIGHTS;
 use crate::setup::tint::Tint;
 
-/// Used settings. No times: two runs write the same bytes.
-pub fn metadata(gpu: &Headless, field: &HeightField, plan: &Plan) -> Vec<(String, String)> {
-    let report = gpu.report();
-    let mut all = vec![
+/// The program and the field.
+pub fn of_field(field: &HeightField) -> Vec<(String, String)> {
+    vec![
         ("ridgelight".to_owned(), env!("CARGO_PKG_VERSION").to_owned()),
         ("commit".to_owned(), env!("RIDGELIGHT_COMMIT").to_owned()),
-        ("device".to_owned(), report.name.clone()),
-        ("driver".to_owned(), report.driver.clone()),
         ("rows".to_owned(), field.rows().to_string()),
         ("cols".to_owned(), field.cols().to_string()),
         ("cell_m".to_owned(), format!("{},{}", field.cell_m()[0], field.cell_m()[1])),
         ("base_m".to_owned(), field.base_m().to_string()),
+    ]
+}
+
+/// Used settings. No times: two runs write the same bytes.
+pub fn metadata(gpu: &Headless, field: &HeightField, plan: &Plan) -> Vec<(String, String)> {
+    let report = gpu.report();
+    let mut all = of_field(field);
+    all.extend([
+        ("device".to_owned(), report.name.clone()),
+        ("driver".to_owned(), report.driver.clone()),
         ("device_bytes".to_owned(), plan.bytes().to_string()),
-    ];
+    ]);
     all.extend(plan.settings.iter().cloned());
     all.extend(plan.notes.iter().enumerate().map(|(i, n)| (format!("note{}", i + 1), n.clone())));
     all

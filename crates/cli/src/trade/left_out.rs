@@ -136,7 +136,7 @@ mod tests {
         };
         let ladders = ladders(&scene, 3);
         let bounces = Bounces { count: 3, ..Bounces::default() };
-        let start = Quality { bounces, ..start_of(&scene) };
+        let start = Quality { bounces, ..start_of(&scene, bounces.count) };
         let places = places(&ladders, &start);
         assert!(places.len() > 100_000, "{}", places.len());
         let mut walk = Walk::new(&ladders, &places, &start, 1e-4);

@@ -31,6 +31,8 @@ fn cameras_out_of_range_are_refused() {
         ("--camera 0,45 --samples two", &["--samples", "whole number"]),
         ("--camera 0,45 --mesh-step 0", &["--mesh-step: found 0", "1 to 1024"]),
         ("--camera 0,45 --background -1", &["--background: found [-1.0", "0 or more"]),
+        ("--camera 0,45 --plinth -1", &["--plinth: found -1", "0 to 1"]),
+        ("--camera 0,45 --plinth nan", &["--plinth: found NaN"]),
         ("--camera 0,45 --layers lights", &["--layers: found layers of the map with --camera"]),
         ("--layers depth", &["--layers: found depth without --camera"]),
         ("--look-at 1,2", &["--camera"]),
@@ -40,6 +42,7 @@ fn cameras_out_of_range_are_refused() {
         ("--samples 4", &["--camera"]),
         ("--mesh-step 2", &["--camera"]),
         ("--background 1", &["--camera"]),
+        ("--plinth 0", &["--camera"]),
     ];
     let all: Vec<(String, &[&str])> = cases
         .iter()
@@ -97,6 +100,34 @@ fn gpu_cameras_write_pictures_and_depth() {
     let png = read(&folder.path("v.png"));
     assert_eq!((png.rows, png.cols), (30, 40));
     assert_eq!(json(&folder.path("v.json"))["settings"]["mesh_error_m"], 0);
+}
+
+/// A .png has a plinth by default, an .exr only on request, with the depths of the picture without it.
+#[test]
+fn gpu_plinths_are_in_pictures_of_codes() {
+    let folder = Folder::new();
+    write_field(&folder, 16, |row, col| (row * col % 5) as f32);
+    let drawn = |output: &str, more: &str| {
+        let shape = "--size 40x30 --background 0.2 --quiet --sky 1";
+        done(&folder, &format!("render field.npy -o {output} --json v.json {shape} {more}"));
+        let passes = json(&folder.path("v.json"))["passes"].clone();
+        passes.as_array().unwrap().iter().any(|pass| pass["pass"] == "plinth_draw")
+    };
+    let camera = "--camera 200,20,30";
+    assert!(drawn("v.png", camera));
+    assert!(!drawn("none.png", &format!("{camera} --plinth 0")));
+    assert!(!drawn("below.png", "--camera 200,-20,30"));
+    let layers = &format!("{camera} --layers depth");
+    assert!(!drawn("default.exr", layers));
+    assert!(!drawn("none.exr", &format!("{layers} --plinth 0")));
+    assert!(drawn("plinth.exr", &format!("{layers} --plinth 0.1")));
+    let [default, none, plinth] =
+        ["default", "none", "plinth"].map(|name| read(&folder.path(&format!("{name}.exr"))));
+    assert!(plane(&default, "Z") == plane(&none, "Z") && plane(&none, "Z") == plane(&plinth, "Z"));
+    assert!(plane(&default, "G") == plane(&none, "G") && plane(&none, "G") != plane(&plinth, "G"));
+    let base = attributes(&folder.path("plinth.exr"))["plinth_base_m"].parse::<f64>().unwrap();
+    // A tenth of 15 m.
+    assert!((base + 1.5).abs() < 1e-6, "{base}");
 }
 
 /// Sample counts that the device lacks are refused before rendering; the message lists those it has.

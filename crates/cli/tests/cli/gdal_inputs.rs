@@ -107,6 +107,29 @@ fn gdal_lzw_tiles_beyond_the_edge_are_read() {
     }
 }
 
+/// Files whose least value is white, in each of GDAL's byte orders and in BigTIFF.
+#[test]
+#[ignore = "needs GDAL: Debian's gdal-bin"]
+fn gdal_values_are_the_stored_ones_where_white_is_zero() {
+    let folder = Folder::new();
+    folder.write("a.asc", grid([37, 29], [500_000.0, 4_900_000.0], 30.0, 0).as_bytes());
+    for kind in ["Byte", "UInt16", "Int16", "Float32"] {
+        for packed in ["NONE", "LZW", "DEFLATE"] {
+            for layout in ["ENDIANNESS=LITTLE", "ENDIANNESS=BIG", "BIGTIFF=YES", "TILED=YES"] {
+                let options = format!("-co PHOTOMETRIC=MINISWHITE -co COMPRESS={packed}");
+                tool(
+                    &folder,
+                    &format!("gdal_translate -q -ot {kind} {options} -co {layout} a.asc b.tif"),
+                );
+                let path = folder.path("b.tif");
+                assert_eq!(gdalinfo(&path)["metadata"]["IMAGE_STRUCTURE"]["MINISWHITE"], "YES");
+                let read = heights(&path, &HeightOptions::default());
+                assert!(read == gdal_values(&path), "{kind} {packed} {layout}");
+            }
+        }
+    }
+}
+
 /// Without a choice the first band is read with a note; a picture of colours is refused.
 #[test]
 #[ignore = "needs GDAL: Debian's gdal-bin"]
@@ -363,7 +386,11 @@ fn gdal_agrees_on_grid_north_and_on_feet() {
         let expected = ((east - west) * phi.cos() * radii).atan2(north - south).to_degrees();
         let notes = facts["notes"].to_string();
         let side = if expected > 0.0 { "east" } else { "west" };
-        let note = format!("grid north, {:.2} degrees {side} of true north", expected.abs());
+        let sign = if expected > 0.0 { '+' } else { '-' };
+        let note = format!(
+            "grid north, {0:.2} degrees {side} of true north at the centre: true azimuth = azimuth here {sign} {0:.2} degrees",
+            expected.abs()
+        );
         assert!(notes.contains(&note), "{code}: {note} is not in {notes}");
         assert_eq!(notes.contains("cells are in units of"), unit != 1.0, "{notes}");
         assert_eq!(notes.contains("heights are read as metres"), unit != 1.0, "{notes}");

@@ -27,6 +27,7 @@ mod geotiff;
 mod goals;
 mod library_messages;
 mod light;
+mod maps;
 mod needs_vulkan;
 mod pictures;
 mod plan;

@@ -1,6 +1,9 @@
-//! CPU references of the passes that add Phong specular: incident light as series of spherical
-//! harmonics, and its reflection towards the view and the next bounce.
+//! CPU references of the passes that add Phong specular: of sky and environment by slices of the lobe; incident light as
+//! series of spherical harmonics, and its reflection towards the view and the next bounce.
 
+pub mod mirror_map;
 pub mod specular_exit;
+pub mod specular_light;
+pub mod specular_tables;
 pub mod specular_visibility;
 pub mod sun_specular;

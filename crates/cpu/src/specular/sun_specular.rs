@@ -1,19 +1,25 @@
-//! Phong specular reflection of a sun towards a view from straight above.
+//! Phong specular reflection of a sun towards the view.
 
+use crate::mirror_map::mirrored;
 use glam::DVec3;
 use ridgelight::basis::harmonics::evaluate;
 use ridgelight::scene::{PhongSpecular, Sun};
 use std::f64::consts::{PI, TAU};
 
-/// Exit radiance for irradiance 1 at a normal, from the sun's light on diffuse ground there ([`crate::sun_shade`]).
+/// Exit radiance towards `view` for irradiance 1 at a normal, from the sun's light on diffuse ground there ([`crate::sun_shade`]).
 ///
 /// The Phong lobe is taken as constant over the sun: for a radius a and an exponent n the error is n a²/4 of its
 /// peak, 5 % for the sun's 0.27° and n = 10⁴. Where a grid point's own plane or a horizon cuts a disc, the visible
 /// part is weighted by the cosine.
-pub fn specular_on(normal: DVec3, sun: &Sun, phong: PhongSpecular, sun_sum: f64) -> f64 {
+pub fn specular_on(
+    (normal, view): (DVec3, DVec3),
+    sun: &Sun,
+    phong: PhongSpecular,
+    sun_sum: f64,
+) -> f64 {
     let [exponent, scale] = [phong.exponent, phong.scale].map(f64::from);
     let towards = towards(sun);
-    let mirror = 2.0 * normal.z * normal - DVec3::Z;
+    let mirror = mirrored(normal, view);
     let cosine = mirror.dot(towards);
     // 0 to the power of 0 would be light from behind.
     if cosine <= 0.0 {

@@ -3,6 +3,7 @@
 
 pub mod map_draw;
 pub mod picture_tone;
+pub mod plinth_draw;
 pub mod preview;
 pub mod sky_draw;
 pub mod terrain_draw;

@@ -130,13 +130,17 @@ pub(crate) fn read(
     Ok(Geo { cell, unit_m, scale, nodata, georeference, notes })
 }
 
-/// Metres in the unit of a vertical coordinate reference system of the EPSG registry: those in feet.
+/// Metres in the unit of a vertical coordinate reference system of the EPSG registry (v10.076), `None` for private
+/// systems. All but these are in metres.
 fn vertical_unit(crs: u16) -> Option<f64> {
     match crs {
-        // NAVD88 and NGVD29 heights in US survey feet.
-        6360 | 5702 => Some(1200.0 / 3937.0),
-        // NAVD88 height in feet.
-        8228 => Some(0.3048),
+        // US survey feet: NGVD29, NAVD88 and mean sea level, heights and depths.
+        5702 | 6358 | 6359 | 6360 | 8052 | 8053 => Some(1200.0 / 3937.0),
+        // Feet: the Cayman Islands, mean sea level, NAVD88, and the well datum of Kuwait.
+        6130..=6132 | 8050 | 8051 | 8228 | 5614 => Some(0.3048),
+        // British feet of 1936: Poolbeg.
+        5754 => Some(0.304_800_749_1),
+        1..32767 => Some(1.0),
         _ => None,
     }
 }
@@ -149,7 +153,7 @@ fn wrong(path: &Path, tag: u16, found: impl Into<String>, expected: &str) -> Err
 /// decoder allocates memory.
 fn find(path: &Path, tiff: &mut Tiff, tag: u16, expected: &str) -> Result<Option<Value>> {
     let wrong = |found: String| wrong(path, tag, found, expected);
-    let held = tiff.inner().get_ref().len() as u64;
+    let held = tiff.inner().size() as u64;
     let tag = Tag::from_u16_exhaustive(tag);
     match tiff.image_ifd().directory().get(tag) {
         Some(entry) if entry.count() > held => {

@@ -9,8 +9,8 @@ use weezl::{BitOrder, LzwStatus, decode::Configuration};
 /// The values of a strip or tile.
 #[derive(Clone, Copy)]
 pub struct Layout {
-    /// Columns and rows, padding included.
-    pub size: [usize; 2],
+    /// Columns, padding included.
+    pub width: usize,
     /// Columns and rows inside the image.
     pub inside: [usize; 2],
     /// Interleaved samples per column.
@@ -28,28 +28,31 @@ impl Layout {
         usize::from(self.bits / 8)
     }
 
-    fn row_bytes(&self) -> usize {
-        self.size[0] * self.samples * self.sample_bytes()
+    /// Bytes of the rows inside the image, `None` where they exceed the address space.
+    pub fn needed(&self) -> Option<usize> {
+        self.width
+            .checked_mul(self.samples)?
+            .checked_mul(self.sample_bytes())?
+            .checked_mul(self.inside[1])
     }
 
-    /// The values inside the image.
+    /// The values inside the image, through a buffer of [`needed`](Self::needed) bytes.
     ///
     /// # Errors
     /// What was found instead of them.
-    pub fn decode(&self, compressed: &[u8]) -> Result<DecodingResult, String> {
-        let mut bytes = unpacked(compressed, self.row_bytes() * self.size[1])?;
-        let needed = self.row_bytes() * self.inside[1];
-        if bytes.len() < needed {
-            return Err(format!("{} bytes in a strip or tile of {needed}", bytes.len()));
+    pub fn decode(&self, compressed: &[u8], mut buffer: Vec<u8>) -> Result<DecodingResult, String> {
+        let found = unpack(compressed, &mut buffer)?;
+        if found < buffer.len() {
+            return Err(format!("{found} bytes in a strip or tile of {}", buffer.len()));
         }
-        bytes.truncate(needed);
-        let kept = self.inside[0] * self.samples * self.sample_bytes();
-        let mut inside = Vec::with_capacity(kept * self.inside[1]);
-        for row in bytes.chunks_exact_mut(self.row_bytes().max(1)) {
-            self.restore(row);
-            inside.extend_from_slice(&row[..kept]);
+        let pixel = self.samples * self.sample_bytes();
+        let (pitch, kept) = (self.width * pixel, self.inside[0].min(self.width) * pixel);
+        for row in 0..self.inside[1] {
+            let from = row * pitch;
+            self.restore(&mut buffer[from..from + pitch]);
+            buffer.copy_within(from..from + kept, row * kept);
         }
-        self.values(&inside)
+        self.values(&buffer[..self.inside[1] * kept])
     }
 
     /// Undoes predictor and byte order of a row.
@@ -115,13 +118,12 @@ impl Layout {
     }
 }
 
-/// At most `most` bytes.
-fn unpacked(compressed: &[u8], most: usize) -> Result<Vec<u8>, String> {
+/// Fills a buffer; returns how many bytes there were for it.
+fn unpack(compressed: &[u8], buffer: &mut [u8]) -> Result<usize, String> {
     let mut decoder = Configuration::with_tiff_size_switch(BitOrder::Msb, 8).build();
-    let mut bytes = vec![0; most];
     let (mut read, mut written) = (0, 0);
-    while written < most {
-        let part = decoder.decode_bytes(&compressed[read..], &mut bytes[written..]);
+    while written < buffer.len() {
+        let part = decoder.decode_bytes(&compressed[read..], &mut buffer[written..]);
         read += part.consumed_in;
         written += part.consumed_out;
         match part.status {
@@ -130,14 +132,17 @@ fn unpacked(compressed: &[u8], most: usize) -> Result<Vec<u8>, String> {
             Err(_) => return Err("an invalid LZW code".into()),
         }
     }
-    bytes.truncate(written);
-    Ok(bytes)
+    Ok(written)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use weezl::encode;
+
+    fn decode(layout: &Layout, compressed: &[u8]) -> Result<DecodingResult, String> {
+        layout.decode(compressed, vec![0; layout.needed().unwrap()])
+    }
 
     /// Rows of two samples, with each predictor by its definition (TIFF 6.0 §14; Adobe TIFF technical note 3).
     #[test]
@@ -147,7 +152,7 @@ mod tests {
             encoder.encode(bytes).unwrap()
         };
         let layout = Layout {
-            size: [3, 2],
+            width: 3,
             inside: [2, 2],
             samples: 2,
             bits: 16,
@@ -158,7 +163,7 @@ mod tests {
         // Columns (5, -7), (6, -9), padding; then (300, 0), (0, 300), padding.
         let rows: [i16; 12] = [5, -7, 1, -2, 9, 9, 300, 0, -300, 300, 9, 9];
         let bytes: Vec<u8> = rows.iter().flat_map(|v| v.to_be_bytes()).collect();
-        let values = layout.decode(&compress(&bytes)).unwrap();
+        let values = decode(&layout, &compress(&bytes)).unwrap();
         assert!(matches!(values, DecodingResult::I16(v) if v == [5, -7, 6, -9, 300, 0, 0, 300]));
 
         let floats = [1.5_f32, -2.25, 1e-3, 7.0];
@@ -167,7 +172,7 @@ mod tests {
             apart[i] = apart[i].wrapping_sub(apart[i - 1]);
         }
         let layout = Layout {
-            size: [4, 1],
+            width: 4,
             inside: [4, 1],
             samples: 1,
             bits: 32,
@@ -175,9 +180,9 @@ mod tests {
             predictor: 3,
             is_big_endian: false,
         };
-        let values = layout.decode(&compress(&apart)).unwrap();
+        let values = decode(&layout, &compress(&apart)).unwrap();
         assert!(matches!(values, DecodingResult::F32(v) if v == floats));
-        assert!(layout.decode(&compress(&apart[..9])).is_err());
-        assert!(layout.decode(&[0xff; 40]).is_err());
+        assert!(decode(&layout, &compress(&apart[..9])).is_err());
+        assert!(decode(&layout, &[0xff; 40]).is_err());
     }
 }

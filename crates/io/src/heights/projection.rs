@@ -57,12 +57,12 @@ pub(super) fn north_note(at: &Georeference, rows: usize, cols: usize) -> Option<
     let [west, south, east, north] = at.extent(rows, cols);
     let code = projected_code(&at.keys)?;
     let angle = convergence_deg(code, [(west + east) / 2.0, (south + north) / 2.0])?;
-    let (side, change) = if angle > 0.0 { ("east", "subtract") } else { ("west", "add") };
+    let (side, sign) = if angle > 0.0 { ("east", '+') } else { ("west", '-') };
     let size = angle.abs();
     (size >= NOTED_DEG).then(|| {
         format!(
             "azimuths are from grid north, {size:.2} degrees {side} of true north at the centre: \
-             to enter a true azimuth, {change} {size:.2}"
+             true azimuth = azimuth here {sign} {size:.2} degrees"
         )
     })
 }
@@ -85,6 +85,34 @@ mod tests {
             assert!((unit_m(code).unwrap() / unit - 1.0).abs() < 1e-12, "{code}");
         }
         assert_eq!([unit_m(4326), unit_m(1)], [None, None]);
+    }
+
+    /// Of two points that lie true north of each other, the azimuth from the columns of the grid becomes 0 by the note.
+    #[test]
+    fn the_note_turns_azimuths_into_true_ones() {
+        // East and west of the central meridian of a zone, in both hemispheres.
+        for (code, longitude, latitude) in
+            [(32618, -72.5_f64, 44.2_f64), (32618, -77.5, 44.2), (32718, -72.5, -44.2)]
+        {
+            let [projected, geographic] = systems(code).unwrap();
+            let at = |latitude: f64| {
+                let mut point = (longitude.to_radians(), latitude.to_radians(), 0.0);
+                transform(&geographic, &projected, &mut point).unwrap();
+                [point.0, point.1]
+            };
+            let [south, north] = [at(latitude - 0.001), at(latitude + 0.001)];
+            let here = (north[0] - south[0]).atan2(north[1] - south[1]).to_degrees();
+            let keys = GeoKeys { entries: vec![[3072, 0, 1, code]], ..GeoKeys::default() };
+            let corner = [south[0] - 10.0, (south[1] + north[1]) / 2.0 + 10.0];
+            let place = Georeference { corner, cell: [10.0, 10.0], keys };
+            let note = north_note(&place, 2, 2).unwrap();
+            let (_, change) = note.split_once("true azimuth = azimuth here ").unwrap();
+            let change = change.strip_suffix(" degrees").unwrap().replace(' ', "");
+            let change: f64 = change.parse().unwrap();
+            assert!(change.abs() > 1.0, "{note}");
+            // The note has two digits.
+            assert!((here + change).abs() < 0.0051, "{code}: {here} and {note}");
+        }
     }
 
     /// Lambert's conic: n times the longitude from the central meridian (Snyder 1987, eq. 15-4).

@@ -1,16 +1,17 @@
 //! TIFF heights: one band of any integer or float type; [`geotiff`] reads its position.
 
+use crate::heights::raw::Raw;
 use crate::heights::{Raster, geotiff, lzw};
 use crate::open;
 use half::f16;
 use ridgelight::{Error, Result};
 use std::ops::Range;
-use std::{io::Cursor, path::Path};
+use std::path::Path;
 use tiff::decoder::{ChunkType, Decoder, DecodingResult, Limits};
 use tiff::tags::{ByteOrder, Tag};
 use tiff::{ColorType, TiffError};
 
-pub(crate) type Tiff<'a> = Decoder<Cursor<&'a [u8]>>;
+pub(crate) type Tiff<'a> = Decoder<Raw<'a>>;
 
 /// The first image of a file: strips or tiles, uncompressed, PackBits, LZW, DEFLATE or Zstandard, with
 /// any predictor; bands interleaved or one after the other.
@@ -29,6 +30,10 @@ pub(crate) struct Image<'a> {
     method: u16,
     /// Interleaved in a strip or tile; the decoder of `tiff` leaves out those behind a colour.
     samples: usize,
+    /// Rows and columns of a strip or tile, a strip cut to the image.
+    chunk: [usize; 2],
+    /// Bytes of its samples.
+    chunk_bytes: u64,
     /// Of strips and tiles; tags are read before.
     limits: Limits,
 }
@@ -37,7 +42,7 @@ impl<'a> Image<'a> {
     /// The header, whose claims are checked against the file's size.
     pub fn open(path: &'a Path, bytes: &'a [u8]) -> Result<Self> {
         let header = |e: TiffError| Error::file(path, "header", open::complaint(e), "a whole TIFF");
-        let mut tiff = Decoder::new(Cursor::new(bytes)).map_err(header)?;
+        let mut tiff = Decoder::new(Raw::new(bytes)).map_err(header)?;
         let (width, height) = tiff.dimensions().map_err(header)?;
         let (rows, cols) = open::size(path, "header", height.into(), width.into())?;
         let color = tiff.colortype().map_err(header)?;
@@ -61,15 +66,20 @@ impl<'a> Image<'a> {
         } else {
             bands
         };
-        let mut limits = Limits::default();
-        let (width, height) = match tiff.get_chunk_type() {
-            // Planes from the second on are decoded with the padding of their last tiles.
-            ChunkType::Tile if is_planar => tiff.chunk_dimensions(),
-            _ => (0, 0),
+        let (width, height) = tiff.chunk_dimensions();
+        let chunk = match tiff.get_chunk_type() {
+            // One strip of the whole image may have any number of rows (TIFF 6.0, RowsPerStrip).
+            ChunkType::Strip => [rows.min(height as usize), cols],
+            ChunkType::Tile => {
+                let (rows, cols) = open::size(path, "tile size", height.into(), width.into())?;
+                [rows, cols]
+            }
         };
-        let chunk_bytes =
-            (u64::from(width) * u64::from(height)).saturating_mul(u64::from(bits / 8));
-        open::plausible(path, "header", chunk_bytes, bytes.len(), ratio(method))?;
+        // Each side is at most 2^16, a sample 2^3 bytes and their number below 2^16.
+        let interleaved = if is_planar { 1 } else { u64::from(all) };
+        let chunk_bytes = chunk[0] as u64 * chunk[1] as u64 * u64::from(bits / 8) * interleaved;
+        let mut limits = Limits::default();
+        // Planes from the second on are decoded with the padding of their last tiles.
         let most = image_bytes.max(chunk_bytes);
         limits.decoding_buffer_size = usize::try_from(most).unwrap_or(usize::MAX);
         // A compressed strip or tile is part of the file.
@@ -86,6 +96,8 @@ impl<'a> Image<'a> {
             bytes,
             method,
             samples,
+            chunk,
+            chunk_bytes,
             limits,
         })
     }
@@ -117,8 +129,9 @@ impl<'a> Image<'a> {
         let is_big_endian = tiff.byte_order() == ByteOrder::BigEndian;
         let mut tiff = tiff.with_limits(self.limits);
         let is_empty = |index: u32| lengths.get(index as usize) == Some(&0);
-        let (width, height) = tiff.chunk_dimensions();
-        let (width, height) = (width as usize, height as usize);
+        let [height, width] = self.chunk;
+        // `tiff` and the LZW decoder hold a chunk as packed bytes, as bytes and as samples.
+        open::room(path, self.chunk_bytes.saturating_mul(3))?;
         let across = cols.div_ceil(width);
         let a_plane = across * rows.div_ceil(height);
         let zeros = |_| open::zeros::<T>(path, rows * cols);
@@ -141,19 +154,30 @@ impl<'a> Image<'a> {
                 planes.iter_mut().for_each(|plane| target.fill(plane, of(empty)));
                 continue;
             }
+            // A tile that GDAL leaves out has no bytes, whatever its size.
+            let claimed = self.chunk_bytes / height as u64 * lines as u64;
+            let held = lengths.get(index as usize).map_or(0, |n| *n as usize);
+            open::plausible(path, "a strip or tile", claimed, held, ratio(self.method))?;
             let values = if self.method == LZW {
                 let samples = self.samples;
-                let size = [width, height];
-                let inside = [target.inside, target.lines];
+                let [cols, rows] = [target.inside, target.lines];
                 let bits = self.bits;
-                let layout =
-                    lzw::Layout { size, inside, samples, bits, format, predictor, is_big_endian };
+                let layout = lzw::Layout {
+                    width,
+                    inside: [cols, rows],
+                    samples,
+                    bits,
+                    format,
+                    predictor,
+                    is_big_endian,
+                };
                 let at = |all: &[u64]| usize::try_from(*all.get(index as usize)?).ok();
                 let chunk = at(&offsets).zip(at(&lengths)).and_then(|(offset, length)| {
                     self.bytes.get(offset..offset.checked_add(length)?)
                 });
                 let chunk = chunk.ok_or_else(|| wrong("a strip or tile beyond the file".into()))?;
-                layout.decode(chunk).map_err(wrong)?
+                let needed = layout.needed().ok_or_else(|| wrong("a huge strip or tile".into()))?;
+                layout.decode(chunk, open::zeros(path, needed)?).map_err(wrong)?
             } else {
                 tiff.read_chunk(index).map_err(decoded)?
             };

@@ -4,7 +4,7 @@
 //! Hull storage has no ladder: it costs time and never changes the result.
 
 use ridgelight::scene::{
-    Basis, Fuse, Lights, Lines, Method, Precision, Quality, Scene, Values, setting,
+    Basis, Fuse, Lights, Lines, Method, Precision, Quality, Scene, Specular, Values, setting,
 };
 use std::ops::RangeInclusive;
 
@@ -91,9 +91,17 @@ fn has_specular(scene: &Scene) -> bool {
     scene.surface.specular.as_ref().is_some_and(|specular| specular.largest().scale > 0.0)
 }
 
+/// Whether specular of sky and environment needs harmonics: that of a map, or with bounces.
+fn needs_harmonics(scene: &Scene, bounces: u32) -> bool {
+    let lights = scene.lights.lit();
+    let is_map = matches!(scene.surface.specular, Some(Specular::Map(_)));
+    let is_around = lights.sky.is_some() || lights.environment.is_some();
+    has_specular(scene) && is_around && (is_map || bounces > 0)
+}
+
 /// The ladders that affect a scene with this many bounces: no azimuths without a sky, no table
-/// without an environment. Phong specular is lit by harmonics only; its bounces use pyramids only,
-/// at every texel.
+/// without an environment. A map of Phong specular, and bounces of it, are lit by harmonics only;
+/// its bounces use pyramids only, at every texel.
 pub fn ladders(scene: &Scene, bounces: u32) -> Vec<Ladder> {
     // No setting changes anything about lights of radiance 0.
     let (lights, has_specular) = (&scene.lights.lit(), has_specular(scene));
@@ -138,10 +146,11 @@ pub fn ladders(scene: &Scene, bounces: u32) -> Vec<Ladder> {
     let bright = "more elevations per table: small bright features";
     let elevations = &["table_elevations: 32 64 128 256 512 1024"];
     let table = Ladder::new("table elevations", elevations, bright);
-    add(has_environment && !has_specular, table.idle_if(|q| q.basis == Basis::Sh));
+    let by_harmonics = needs_harmonics(scene, bounces);
+    add(has_environment && !by_harmonics, table.idle_if(|q| q.basis == Basis::Sh));
     let detail = "higher orders of harmonics, then tables: the environment's detail";
     let bases = &["basis sh sh_order: 2 3 4 5 6", "basis: table"];
-    let basis = Ladder::new("basis", &bases[..2 - usize::from(has_specular)], detail);
+    let basis = Ladder::new("basis", &bases[..2 - usize::from(by_harmonics)], detail);
     add(has_environment || (has_sky && has_specular), basis);
     let dense = "visibility and indirect light at more texels: sharp shadows";
     let subsample = Ladder::new("sub-sampling", &["subsample: 4 2 1"], dense);
@@ -159,7 +168,7 @@ pub fn ladders(scene: &Scene, bounces: u32) -> Vec<Ladder> {
     let narrow = "more azimuths of bounces: narrow bright features";
     let azimuths = &["bounce_azimuths: 8 16 32 64"];
     add(bounces > 0, Ladder::new("bounce azimuths", azimuths, narrow));
-    let start = start_of(scene);
+    let start = start_of(scene, bounces);
     for ladder in &mut all {
         let is_default = |step: &usize| {
             let mut quality = start;
@@ -177,11 +186,9 @@ pub fn start() -> Quality {
     Quality { method: Method::Sweep, basis: Basis::Table, ..Quality::default() }
 }
 
-/// The start for a scene: Phong specular is lit by harmonics.
-pub fn start_of(scene: &Scene) -> Quality {
-    let Lights { sky, environment, .. } = scene.lights.lit();
-    let is_specular = has_specular(scene) && (sky.is_some() || environment.is_some());
-    let basis = if is_specular { Basis::Sh } else { Basis::Table };
+/// The start for a scene: a map of Phong specular, and bounces of it, are lit by harmonics.
+pub fn start_of(scene: &Scene, bounces: u32) -> Quality {
+    let basis = if needs_harmonics(scene, bounces) { Basis::Sh } else { Basis::Table };
     Quality { basis, ..start() }
 }
 

@@ -7,10 +7,12 @@ use ridgelight::scene::{Albedo, Border, Environment, SphereLight};
 use ridgelight_cpu::env_tables as tables_reference;
 use ridgelight_cpu::env_tables::{EnvTables, bottom_rad};
 use ridgelight_cpu::light_resolve as resolve_reference;
+use ridgelight_cpu::mirror_map::{Tables, blocked, mirrored};
 use ridgelight_cpu::oracle::Oracle;
 use ridgelight_cpu::shared::gather::Swept;
 use ridgelight_cpu::shared::sweep::Heights;
 use ridgelight_cpu::sky_shade as sky_reference;
+use ridgelight_cpu::specular_tables::Tabulated;
 use ridgelight_cpu::sphere_shade as sphere_reference;
 use ridgelight_cpu::sun_shade as sun_reference;
 use ridgelight_cpu::tolerance::{
@@ -18,6 +20,7 @@ use ridgelight_cpu::tolerance::{
 };
 
 use crate::cpu_reference::{Pair, Run, constant, fuse_of, pushed};
+use crate::specular::cpu_reference::slices::{slices, view_from};
 
 pub(crate) type Rgb = glam::DVec3;
 
@@ -134,7 +137,63 @@ pub(crate) fn sky_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
             pairs.extend(channels(got, want.into(), tolerance, at(i)));
         }
     }
+    if let Some(got) = run.floats(pass, "blocked_sum") {
+        pairs.extend(blocked_sum(run, pass, &got, (range, error)));
+    }
     pairs
+}
+
+/// What horizons hide from a lobe: each azimuth's share, from the device's own tables.
+fn blocked_sum(
+    run: &mut Run,
+    pass: &Pass,
+    got: &[f32],
+    (range, error): (std::ops::Range<usize>, ShadeError),
+) -> Vec<Pair> {
+    const EYE_M: usize = offset("ShadePush", "eye_m");
+    const EXPONENT: usize = offset("ShadePush", "exponent");
+    const LEAST_COSINE: usize = offset("ShadePush", "least_cosine");
+    let float = |offset: usize| f32::from_bits(pushed(pass, offset));
+    let texels: Vec<Rgb> =
+        run.floats(pass, "specular_tables").expect("read").chunks_exact(4).map(rgb).collect();
+    let [peaks, nodes] = run.extent(pass, "specular_tables");
+    let slices = slices(run.border(), float(EXPONENT).into(), [peaks, nodes]);
+    let tables = Tables { slices, texels: &texels };
+    let eye_m = [0, 1, 2, 3].map(|i| f64::from(float(EYE_M + 4 * i)));
+    let [cols, _] = run.size();
+    let turned = 2.0 * error.normal() + 20.0 * EPSILON;
+    let off = [turned, error.lowest_slope()];
+    let least = f64::from(float(LEAST_COSINE));
+    let first = range.start;
+    run.swept(range.clone(), fuse_of(pass), |swept| {
+        let mut pairs = Vec::new();
+        for (i, got) in got.chunks_exact(4).enumerate() {
+            let (col, row) = ((i % cols) as i32, (i / cols) as i32);
+            let view = view_from(&swept.heights, eye_m, i);
+            let mut sum = Tabulated::default();
+            swept.add_all([col, row], true, |k, azimuth, lowest, normal| {
+                let mirror = mirrored(normal, view);
+                let hidden = (mirror, lowest);
+                // Nothing is hidden below the lowest elevation.
+                if slices.bottom_rad == 0.0 && lowest <= 0.0 {
+                    return;
+                }
+                let one = blocked(&tables, (first + k, azimuth), hidden, least, off);
+                sum.light += one.light;
+                sum.tolerance += one.tolerance;
+            });
+            sum.tolerance += range.len() as f64 * EPSILON * sum.light;
+            let at = [range.len(), i / cols, i % cols];
+            let tolerance = sum.tolerance + 1e-30;
+            pairs.extend((0..3).map(|c| Pair {
+                got: got[c].into(),
+                want: sum.light[c],
+                tolerance: tolerance[c],
+                at,
+            }));
+        }
+        pairs
+    })
 }
 
 pub(crate) fn sun_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {

@@ -8,17 +8,20 @@ use ridgelight_cpu::sun_specular as specular_reference;
 use ridgelight_cpu::tolerance::{EPSILON, device_sun_arriving, device_sun_specular};
 
 use super::bounced::paired;
+use super::slices::view_from;
 use crate::cpu_reference::{Pair, Run, constant, pushed};
 use crate::direct::cpu_reference::light::Rgb;
 
 /// From the device's own sun, added to what is there.
 pub(crate) fn sun_specular(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     const COLOUR: usize = offset("SunSpecularPush", "colour");
+    const EYE_M: usize = offset("SunSpecularPush", "eye_m");
     let number: usize =
         pass.part.strip_prefix("sun").and_then(|n| n.parse().ok()).expect("sun and its number");
     let sun = run.scene.lights.suns[number - 1];
     let sums = run.floats(pass, "sun_sum").expect("read");
     let got = run.floats(pass, "specular_sum").expect("written");
+    let eye_m = [0, 4, 8, 12].map(|i| f64::from(f32::from_bits(pushed(pass, EYE_M + i))));
     let (heights, error) = (run.heights(), run.texel_error());
     let [cols, _] = run.size();
     if f32::from_bits(pushed(pass, COLOUR + 12)) > 0.0 {
@@ -33,7 +36,8 @@ pub(crate) fn sun_specular(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     for (i, got) in got.chunks_exact(4).enumerate() {
         let normal = normal_of(field_slope(&heights, (i % cols) as i32, (i / cols) as i32));
         let phong = run.phong_specular(i);
-        let light = specular_reference::specular_on(normal, &sun, phong, sums[i].into());
+        let view = view_from(&heights, eye_m, i);
+        let light = specular_reference::specular_on((normal, view), &sun, phong, sums[i].into());
         let tolerance =
             device_sun_specular(phong.exponent.into(), error.normal(), normal.dot(towards));
         for (c, (got, sum)) in got.iter().zip(&mut run.specular[i]).enumerate() {

@@ -12,7 +12,7 @@ use crate::{Device, random, under_sky};
 
 /// Bits of a picture's place that every device keeps: `subPixelPrecisionBits` is 4 or more. Vertices are moved to the
 /// nearest such place.
-const SNAP: f64 = 0.5 / 16.0;
+pub(super) const SNAP: f64 = 0.5 / 16.0;
 
 /// Error of a vertex before that, as a part of the picture: a few roundings of numbers about as large as the picture.
 pub(super) const ROUNDING: f64 = 1.0 / (1 << 20) as f64;

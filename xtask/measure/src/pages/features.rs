@@ -29,7 +29,7 @@ const MODES: [&str; 17] = [
      noise {Mt Rainier;sky;0.8;3;brute-force@6} %), {Mt Rainier;sky;0.8;3;brute-force@7} % of all light",
     "3 bounces, `pyramid` | approximate | bounce | {Mt Rainier;sky;0.8;3;pyramid@5} % of the indirect light (reference \
      noise {Mt Rainier;sky;0.8;3;pyramid@6} %), {Mt Rainier;sky;0.8;3;pyramid@7} % of all light",
-    "Phong specular, exponent 1, 5, 20 | approximate | lobe | {1;plane;4@3}, {5;plane;4@3}, {20;plane;4@3} %",
+    "Phong specular, exponent 5, 20, 1,000 | approximate | lobe | {5;64;slices@4}, {20;64;slices@4}, {1000;64;slices@4} %",
     "indirect Phong specular, exponent 1, 5, 20 | approximate | gloss | {0;0.9;1;vector;4@5}, {0;0.9;5;vector;4@5}, \
      {0;0.9;20;vector;4@5} %",
     "edit of a rectangle | exact | edits | the same bits as a whole frame",

@@ -2,14 +2,14 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use ridgelight::plan::{self, Limits, Picture, Plan};
-use ridgelight::scene::{Border, Lights, Scene, Surface};
+use ridgelight::scene::Border;
 use ridgelight::{Error, Result};
 use ridgelight_bake::MAX_TRANSFER_ORDER;
 use ridgelight_io::Component;
 
 use super::{Job, Map, Value, Wanted};
 use crate::horizon::Compass;
+use crate::maps;
 
 pub fn horizon(job: &Job, wanted: &Wanted) -> Result<Map> {
     let (encoding, count) = (wanted.encoding, job.quality.azimuths);
@@ -31,7 +31,7 @@ pub fn horizon(job: &Job, wanted: &Wanted) -> Result<Map> {
         values: vec![Value {
             name: "elevation",
             about: "horizon elevation above horizontal, in planes by compass degrees; layer k of a \
-                .ktx2, and its picture, along 2π k / azimuths counter-clockwise from east",
+                texture, and picture k, along 2π k / azimuths counter-clockwise from east",
             unit: "rad",
             range: [if is_open { -FRAC_PI_2 } else { 0.0 }, FRAC_PI_2],
         }],
@@ -50,22 +50,10 @@ pub fn share(name: &'static str, about: &'static str) -> Map {
     Map { planes: vec![name.into()], values, ..Map::default() }
 }
 
-/// The layer of a picture.
-pub const SKY_VIEW: &str = "sky_view";
-
 /// The device adds one f32 term for each azimuth.
 pub fn sky_view(job: &Job, _: &Wanted) -> Result<Map> {
-    let map = share(SKY_VIEW, "1/π ∫ V max(N·e, 0) de");
+    let map = share(maps::SKY_VIEW, "1/π ∫ V max(N·e, 0) de");
     Ok(Map { roundings: job.quality.azimuths, ..map })
-}
-
-/// Plans the sky-view layer of `render`: summed on the device, as reading every horizon back takes longer.
-pub fn sky_view_plan(job: &Job, limits: &Limits) -> Result<Plan> {
-    // Its only input is the heights: no environment, no map of albedo.
-    let surface = Surface { border: job.border(), ..Surface::default() };
-    let scene = Scene { field: job.field().clone(), surface, lights: Lights::default() };
-    let wanted = Picture { sky_view: true, still: true, ..Picture::default() };
-    plan::picture(&scene, job.quality, limits, wanted)
 }
 
 pub fn bent_normal(job: &Job, wanted: &Wanted) -> Result<Map> {

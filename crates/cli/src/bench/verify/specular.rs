@@ -1,22 +1,41 @@
 //! Compares Phong specular with the same sums in f64, within f32 rounding: sky and environment by
-//! their series through the device's horizons, a sun by the device's own diffuse light.
+//! their series through the device's horizons, a sun by the device's own diffuse light. Specular by
+//! slices of the lobe is compared with the oracle.
 
 use glam::DVec3;
 use ridgelight::Result;
 use ridgelight::scene::{
-    Albedo, Basis, Lights, PhongSpecular, Quality, Scene, Specular, Sun, Surface,
+    Albedo, Basis, Environment, Lights, PhongSpecular, Quality, Scene, Specular, Sun, Surface,
 };
 use ridgelight_cpu::harmonics::Harmonics;
+use ridgelight_cpu::light::{Receiver, Site};
+use ridgelight_cpu::oracle::Oracle;
 use ridgelight_cpu::sun_specular::specular_on;
 use ridgelight_cpu::tolerance::{EPSILON, Land, device_resolved, device_sun_specular};
 
 use super::harmonics::{Place, with_nodes};
-use super::{Device, Wanted, colours, sentence};
+use super::{Device, Wanted, colours, rms, sentence, within};
+
+/// Whether sky and environment are reflected by slices of the lobe, as the planner chooses.
+fn by_slices(scene: &Scene, quality: &Quality) -> Option<PhongSpecular> {
+    match scene.surface.specular {
+        Some(Specular::Constant(phong))
+            if quality.basis != Basis::Sh
+                && quality.bounces.count == 0
+                && shines_around(&scene.lights) =>
+        {
+            Some(phong)
+        }
+        _ => None,
+    }
+}
 
 /// Sky and environment that light the specular surface.
 pub(super) fn quality(scene: &Scene, quality: &Quality) -> Quality {
     match quality.basis {
-        Basis::Auto if shines_around(&scene.lights) => Quality { basis: Basis::Sh, ..*quality },
+        Basis::Auto if by_slices(scene, quality).is_none() && shines_around(&scene.lights) => {
+            Quality { basis: Basis::Sh, ..*quality }
+        }
         _ => *quality,
     }
 }
@@ -28,6 +47,16 @@ fn shines_around(lights: &Lights) -> bool {
 /// Phong specular of a scene at some of its texels.
 pub(super) fn check(scene: &Scene, places: &[usize], device: &mut Device) -> Result<String> {
     let scene = &half(scene);
+    if let Some(phong) = by_slices(scene, device.quality) {
+        let around = Lights { suns: Vec::new(), ..scene.lights.clone() };
+        let of_slices = slices(&Scene { lights: around, ..scene.clone() }, phong, places, device)?;
+        if scene.lights.suns.is_empty() {
+            return Ok(of_slices);
+        }
+        let suns = Lights { suns: scene.lights.suns.clone(), ..Lights::default() };
+        let of_suns = check(&Scene { lights: suns, ..scene.clone() }, places, device)?;
+        return Ok(format!("{of_slices}; {of_suns}"));
+    }
     let (_, layers) = device.layers(scene, true)?;
     let layer = |name: &str| Some(colours(layers.iter().find(|p| p.name == name)?, places));
     let Some(found) = layer("direct.specular") else {
@@ -44,6 +73,63 @@ pub(super) fn check(scene: &Scene, places: &[usize], device: &mut Device) -> Res
     let errors = wanted.judge("specular light at one place", &found, device.quality)?;
     Ok(sentence("specular", "f64", errors))
 }
+
+/// Places that the oracle compares: a lobe's integral over each texel of an environment takes long.
+const SLICE_PLACES: usize = 12;
+
+/// Specular of sky and environment by slices of the lobe, against the oracle.
+///
+/// A horizon is known in each azimuth only. The lobe's deviation is 1/√(n + 1) rad to both sides: of
+/// what it covers, a wedge of 2π / azimuths may be visible or hidden whole.
+fn slices(
+    scene: &Scene,
+    phong: PhongSpecular,
+    places: &[usize],
+    device: &mut Device,
+) -> Result<String> {
+    let (_, layers) = device.layers(scene, true)?;
+    let places: Vec<usize> =
+        places.iter().step_by(places.len().div_ceil(SLICE_PLACES)).copied().collect();
+    let Some(layer) = layers.iter().find(|p| p.name == "direct.specular") else {
+        return Ok("the specular scale is 0 everywhere".to_owned());
+    };
+    let found = colours(layer, &places);
+    let wanted = slices_of(scene, phong, &places);
+    let scale = rms(wanted.iter().flat_map(|v| v.to_array())).max(f64::MIN_POSITIVE);
+    let off = found.iter().zip(&wanted).flat_map(|(a, b)| (*a - *b).to_array());
+    let error = rms(off) / scale;
+    let covered = 2.0 / (f64::from(phong.exponent) + 1.0).sqrt();
+    let wedge = std::f64::consts::TAU / f64::from(device.quality.azimuths);
+    let bound = (wedge / covered).min(0.5);
+    let within = within("specular light", "the oracle", error, bound, device.quality)?;
+    Ok(sentence("specular", "the oracle", within))
+}
+
+/// The oracle's specular of sky and environment at some places.
+fn slices_of(scene: &Scene, phong: PhongSpecular, places: &[usize]) -> Vec<DVec3> {
+    let oracle = Oracle::new(&scene.field, scene.surface.border);
+    let cols = scene.field.cols();
+    let Lights { sky, environment, .. } = &scene.lights;
+    let even = Environment::unknown(EVEN_STRIPS, 1, 0.0).expect("an even environment");
+    let at = |p: &usize| {
+        let normal = Place::of(scene, *p).normal;
+        let receivers = [Receiver::specular_from_above(normal, phong.exponent.into())];
+        let site = Site::of(&oracle, [p / cols, p % cols], &receivers);
+        let of = |environment: &Environment| DVec3::from_array(site.environment(environment, 1)[0]);
+        let mut light = DVec3::ZERO;
+        if let Some(sky) = sky {
+            light += DVec3::from_array(sky.map(f64::from)) * of(&even);
+        }
+        if let Some(environment) = environment {
+            light += of(environment);
+        }
+        f64::from(phong.scale) * light
+    };
+    places.iter().map(at).collect()
+}
+
+/// Azimuths of the oracle's sky.
+const EVEN_STRIPS: usize = 720;
 
 /// Half the specular scale on grey ground. Its diffuse light gives each sun's visible share.
 /// Specular is linear in its scale, and at half scale never exceeds the energy left beside any
@@ -103,7 +189,7 @@ fn of_sun(
     let irradiance = DVec3::from_array(sun.irradiance.map(f64::from));
     let brightest = irradiance.max_position();
     let sum = light[brightest] / (0.5 * irradiance[brightest]);
-    let mirrored = irradiance * specular_on(place.normal, sun, phong, sum);
+    let mirrored = irradiance * specular_on((place.normal, DVec3::Z), sun, phong, sum);
     let (field, border) = (&scene.field, scene.surface.border);
     let at = [place.index / field.cols(), place.index % field.cols()];
     let (sin, cos) = sun.elevation_rad.sin_cos();

@@ -6,6 +6,7 @@ use ridgelight::plan::{Limits, Map, Plan, View, ViewOptions};
 use ridgelight::scene::{Camera, HeightField, Lens, Scene};
 
 use super::hundredths;
+use crate::render::camera::{PLINTH, plinth};
 
 /// Vertical field of view of the camera, degrees.
 pub const FOV_DEG: f64 = 40.0;
@@ -31,6 +32,8 @@ pub struct Viewpoint {
     place: Option<Place>,
     /// None: from straight above.
     pub camera: Option<Camera>,
+    /// Of the field as it was when the camera began.
+    plinth_base_m: Option<f64>,
 }
 
 impl Viewpoint {
@@ -106,6 +109,7 @@ impl Viewpoint {
     ) -> Result<Option<View>> {
         let Some(camera) = &self.camera else { return Ok(None) };
         let options = Self::options(&scene.field, size, limits);
+        let options = ViewOptions { plinth_base_m: self.plinth_base_m, ..options };
         View::new(scene, lit, camera, &options, limits).map(Some)
     }
 
@@ -128,13 +132,16 @@ impl Viewpoint {
         }
     }
 
-    /// From the south, with all of the field in the picture. The field has two rows and two
+    /// From the south, with all of the field and its plinth in the picture. The field has two rows and two
     /// columns.
     pub fn begin_camera(&mut self, field: &HeightField, size: [u32; 2]) {
         let aspect = aspect(size);
         let lens = Lens::Perspective { fov_rad: FOV_DEG.to_radians() };
         let angles = [-90_f64, 45.0].map(f64::to_radians);
-        self.camera = Some(Camera::around(field, None, angles, lens, aspect));
+        let on_plinth = plinth(field, PLINTH);
+        let framed = on_plinth.as_ref().map_or(field, |(_, framed)| framed);
+        self.plinth_base_m = on_plinth.as_ref().map(|(base_m, _)| *base_m);
+        self.camera = Some(Camera::around(framed, None, angles, lens, aspect));
     }
 
     /// Moves the view by pixels.

@@ -214,7 +214,7 @@ fn specular() {
             ("--specular -1,0.5 --albedo 0.5", 2, &["--specular exponent: found -1"]),
             ("--specular 10,0.5", 2, &["--specular scale", "albedo of 1"]),
             (
-                "--specular 10,0.5 --albedo 0.5 --basis table",
+                "--specular 10,0.5 --albedo 0.5 --basis table --bounces 1",
                 2,
                 &["--specular: found", "--basis sh"],
             ),
@@ -374,6 +374,7 @@ fn sizes_that_no_machine_holds_are_refused() {
 /// Every flag with a range, a unit or a default gives it.
 #[test]
 fn help_gives_units_and_defaults() {
+    let words = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
     let folder = Folder::new();
     let shared: &[(&str, &[&str])] = &[
         ("--cell", &["metres", "Default the file's"]),
@@ -460,6 +461,12 @@ fn help_gives_units_and_defaults() {
         ("--reference", &["Default: brute force"]),
         ("--device", &["Default the first GPU"]),
     ];
+    let hillshade: &[(&str, &[&str])] = &[
+        ("--sun", &["compass azimuth, elevation (degrees)", "[default: 315,45]"]),
+        ("--z-scale", &["[default: 1]"]),
+    ];
+    let openness: &[(&str, &[&str])] =
+        &[("--border", &["[default: open]"]), ("--negative", &["the negated heights"])];
     let reference: &[(&str, &[&str])] = &[
         ("--spp", &["batches of 64", "at least 128", "[default: 1024]"]),
         ("--bounces", &["0 to 64", "[default: 0]"]),
@@ -472,6 +479,9 @@ fn help_gives_units_and_defaults() {
         ("trade", &[lit, trade]),
         ("render", &[shared, lit, render]),
         ("horizon", &[shared, horizon]),
+        ("svf", &[shared]),
+        ("hillshade", &[hillshade]),
+        ("openness", &[openness]),
         ("bake", &[shared, lit, bake]),
         ("plan", &[shared, lit, plan]),
         ("compare", &[compare]),
@@ -481,7 +491,6 @@ fn help_gives_units_and_defaults() {
         assert_eq!((help.status, help.err.as_str()), (Some(0), ""), "{command}");
         // Each flag's own paragraph: from its line to the next flag's.
         let flags: Vec<&str> = help.out.split("\n      --").skip(1).collect();
-        let words = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
         for (flag, says) in tables.iter().copied().flatten() {
             let own = flags
                 .iter()
@@ -510,7 +519,8 @@ fn help_gives_units_and_defaults() {
     // Every kind is listed with the ways to pack it.
     let help = folder.run_without_driver(&["bake", "--help"]).out;
     for said in ["visible-sky:", "unorm16-sin", "snorm16-xyz", "--method auto is sweep here"] {
-        assert!(help.contains(said), "{said} in\n{help}");
+        // A line may end anywhere in a sentence.
+        assert!(words(&help).contains(said), "{said} in\n{help}");
     }
 }
 
@@ -521,6 +531,10 @@ fn short_help_fits_one_screen() {
     for command in [
         "render",
         "horizon",
+        "hillshade",
+        "ao",
+        "svf",
+        "openness",
         "plan",
         "bench",
         "compare",

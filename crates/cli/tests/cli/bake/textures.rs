@@ -1,6 +1,7 @@
 //! Textures for engines: mip levels, block compression, and the axes of normals.
 
 use ddsfile::{Dds, DxgiFormat};
+use ridgelight_bake::{BENT_NORMAL, Encoding, HORIZON, RADIANCE, SHARE, encoding_named};
 use serde_json::Value;
 
 use super::light::{load, write};
@@ -29,20 +30,56 @@ fn levels(reader: &ktx2::Reader<Vec<u8>>) -> Vec<Vec<u8>> {
 fn gpu_blocks_hold_the_stated_error() {
     let folder = Folder::new();
     field(&folder);
-    let words = "--what horizon,sky-view,bent-normal,scatter --azimuths 4 --paths 8 --directions 8";
+    let words = "--what horizon,sky-view,bent-normal,scatter --albedo 0.5 --azimuths 4 --paths 8 --directions 8";
     let run = succeeded_with_notes(
         &folder,
         &format!("bake field.npy -o out {words} --compress --mips --format ktx2,dds,npy"),
     );
     let manifest = json(&folder.path("out/manifest.json"));
     type Decode = fn(&[u8], usize, usize, &mut [u32]) -> Result<(), &'static str>;
-    let all: [(&str, &str, DxgiFormat, usize, Decode); 4] = [
-        ("horizon", "BC4_UNORM", DxgiFormat::BC4_UNorm, 4, texture2ddecoder::decode_bc4),
-        ("sky-view", "BC4_UNORM", DxgiFormat::BC4_UNorm, 1, texture2ddecoder::decode_bc4),
-        ("bent-normal", "BC7_UNORM", DxgiFormat::BC7_UNorm, 1, texture2ddecoder::decode_bc7),
-        ("scatter", "BC6H_UFLOAT", DxgiFormat::BC6H_UF16, 2, texture2ddecoder::decode_bc6_unsigned),
+    // What the decoder cuts off a component. BC4: a fraction of sevenths of a code; BC6H: a fraction of a code; BC7 has whole
+    // codes.
+    let (sevenths, none, code) = (6.0 / 7.0 / 255.0, 0.0, 1.0 / 255.0);
+    type Row = (&'static str, &'static [Encoding], &'static str, DxgiFormat, usize, Decode, f64);
+    let all: [Row; 4] = [
+        (
+            "horizon",
+            &HORIZON,
+            "BC4_UNORM",
+            DxgiFormat::BC4_UNorm,
+            4,
+            texture2ddecoder::decode_bc4,
+            sevenths,
+        ),
+        (
+            "sky-view",
+            &SHARE,
+            "BC4_UNORM",
+            DxgiFormat::BC4_UNorm,
+            1,
+            texture2ddecoder::decode_bc4,
+            sevenths,
+        ),
+        (
+            "bent-normal",
+            &BENT_NORMAL,
+            "BC7_UNORM",
+            DxgiFormat::BC7_UNorm,
+            1,
+            texture2ddecoder::decode_bc7,
+            none,
+        ),
+        (
+            "scatter",
+            &RADIANCE,
+            "BC6H_UFLOAT",
+            DxgiFormat::BC6H_UF16,
+            2,
+            texture2ddecoder::decode_bc6_unsigned,
+            code,
+        ),
     ];
-    for (kind, format, dxgi, layers, decode) in all {
+    for (kind, encodings, format, dxgi, layers, decode, cut) in all {
         let stem = kind.replace('-', "_");
         let path = |end: &str| folder.path(&format!("out/{stem}.{end}"));
         let reader = ktx2::Reader::new(std::fs::read(path("ktx2")).unwrap()).unwrap();
@@ -68,33 +105,62 @@ fn gpu_blocks_hold_the_stated_error() {
             let own: Vec<u8> = levels.iter().flat_map(|level| of_layer(level, layer)).collect();
             assert!(dds.get_data(layer as u32).unwrap() == own, "{kind}, layer {layer}");
         }
-        // The first value of each texel, and its error.
-        let bound = &entry["error"][0];
-        assert_eq!(bound["is"], "measured over the first mip level of this file");
-        let (most, rms) = (bound["at_most"].as_f64().unwrap(), bound["rms"].as_f64().unwrap());
-        assert!(0.0 < rms && rms <= most, "{bound}");
-        if kind == "bent-normal" || kind == "scatter" {
-            continue;
-        }
-        let scale = if kind == "horizon" { std::f64::consts::FRAC_PI_2 } else { 1.0 };
+        let name = manifest_encoding(&manifest, kind);
+        let encoding = encoding_named(encodings, name).unwrap();
         let (_, values) = load(&path("npy"));
-        let places = if kind == "horizon" { [1, 0, 3, 2] } else { [0; 4] };
-        let mut worst: f64 = 0.0;
-        for layer in 0..layers {
-            let mut words = vec![0; 22 * 13];
+        // Planes of an .npy begin in the north and go clockwise, layers begin in the east.
+        let places = if kind == "horizon" { vec![1, 0, 3, 2] } else { (0..layers).collect() };
+        let count = encoding.bounds.len();
+        let (mut worst, mut squares) = (vec![0.0_f64; count], vec![0.0; count]);
+        for (layer, place) in places.into_iter().enumerate() {
+            let mut words = vec![0; TEXELS];
             decode(&of_layer(&levels[0], layer), 22, 13, &mut words).unwrap();
             for (at, word) in words.iter().enumerate() {
-                let found = scale * f64::from(word.to_le_bytes()[2]) / 255.0;
-                // Planes of an .npy begin in the north and go clockwise, layers begin in the east.
-                let value = f64::from(values[places[layer] * words.len() + at]);
-                worst = worst.max((found - value).abs());
+                // Blue, green, red and alpha from the lowest byte on.
+                let [b, g, r, a] = word.to_le_bytes().map(|code| f64::from(code) / 255.0);
+                let plane = |k: usize| place * encoding.values + k;
+                let was: Vec<f64> = (0..encoding.values)
+                    .map(|k| f64::from(values[plane(k) * TEXELS + at]))
+                    .collect();
+                let mut is = vec![0.0; encoding.values];
+                (encoding.decode)(&[r, g, b, a][..encoding.components], &mut is);
+                if format.starts_with("BC6H") {
+                    // This decoder cuts off above 1.
+                    assert!(was.iter().all(|v| *v < 0.9), "{was:?}");
+                }
+                for (i, bound) in encoding.bounds.iter().enumerate() {
+                    let [error, _] = (bound.error)(&is, &was);
+                    (worst[i], squares[i]) = (worst[i].max(error), squares[i] + error * error);
+                }
             }
         }
-        // This decoder rounds to codes of 8 bits.
-        assert!((worst - most).abs() <= scale * 0.6 / 255.0, "{kind}: {worst}, stated {most}");
-        // BC4: half of a seventh of a block's range, which is 1 at most, and codes of 8 bits.
-        assert!(worst <= scale * (1.0 / 14.0 + 2.0 / 255.0), "{kind}: {worst}");
+        let stated = entry["error"].as_array().unwrap();
+        assert_eq!(stated.len(), count);
+        for (i, stated) in stated.iter().enumerate() {
+            assert_eq!(stated["is"], "measured over the first mip level of this file");
+            let [most, rms] = ["at_most", "rms"].map(|key| stated[key].as_f64().unwrap());
+            let found_rms = (squares[i] / (TEXELS * layers) as f64).sqrt();
+            // What the decoder cuts off a component, times the slope of the value. The RMS changes by no more.
+            let scale = if kind == "horizon" { std::f64::consts::FRAC_PI_2 } else { 1.0 };
+            let slack = scale * cut + 1e-12;
+            assert!(0.0 < rms && rms <= most, "{stated}");
+            assert!((worst[i] - most).abs() <= slack, "{kind}: {} of {stated}", worst[i]);
+            assert!((found_rms - rms).abs() <= slack, "{kind}: {found_rms} of {stated}");
+            if format.starts_with("BC4") {
+                // Half of a seventh of a block's range, which is 1 at most; codes of 8 bits add half a step to the value
+                // and to both ends of the range.
+                assert!(most <= scale * ((1.0 + 1.0 / 255.0) / 14.0 + 0.5 / 255.0), "{stated}");
+            }
+        }
     }
+}
+
+const TEXELS: usize = 22 * 13;
+
+/// The name of the encoding of a kind.
+fn manifest_encoding<'a>(manifest: &'a Value, kind: &str) -> &'a str {
+    let map = manifest["maps"].as_array().unwrap().iter().find(|map| map["kind"] == kind);
+    map.unwrap()["encoding"].as_str().unwrap()
 }
 
 /// Standard error, with notes on errors.
@@ -141,7 +207,10 @@ fn gpu_normals_have_the_axes_of_the_engine() {
             .iter()
             .map(|bytes| i16::from_le_bytes(*bytes))
             .collect();
-        let normals = json(&path("manifest.json"))["maps"][0]["normals"]["convention"].clone();
+        let normals = json(&path("manifest.json"))["maps"][0]["normals"].clone();
+        let of = normals["of"].as_str().unwrap();
+        assert!(of.starts_with("png, ktx2, dds, before the decoder"), "{of}");
+        let normals = normals["convention"].clone();
         let glsl = std::fs::read_to_string(path("bent_normal.glsl")).unwrap();
         (texels, load(&path("bent_normal.npy")).1, normals, glsl)
     };

@@ -69,8 +69,8 @@ fn places_are_distinct_and_complete() {
     assert_eq!(brute[0].steps, [Some(7), None, None, None, None, Some(0)]);
 }
 
-/// Phong specular is lit by sky and environment through harmonics, its bounces use pyramids at
-/// every texel, and it needs neither under a sun alone; a scale of 0 changes nothing.
+/// Phong specular is lit by tables or harmonics, with bounces by harmonics alone and pyramids at every
+/// texel, and it needs neither under a sun alone; a scale of 0 changes nothing.
 #[test]
 fn specular_has_its_own_ladders() {
     let names = |lights: Lights, scale: f32, bounces: u32| {

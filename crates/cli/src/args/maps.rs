@@ -1,0 +1,123 @@
+//! Flags of `hillshade`, `ao`, `svf` and `openness`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use ridgelight::scene::{Lights, Sun};
+
+use super::{FieldArgs, GlobalArgs, Input, QualityArgs};
+use crate::lights::light;
+
+const HILLSHADE_HELP: &str = "\
+Values are 1 + 254 max(cos, 0), where cos is that between the normal and the sun: those of `gdaldem hillshade` (Horn), \
+not rounded except in a .png. No shadows are cast; `ridgelight render --sun AZ,EL` casts them.
+
+Differences from gdaldem: heights and cells are both in metres, so files in degrees need no -s. At the edge, slopes come \
+from the cells that exist. Beside voids, they come from filled heights. gdaldem has no data in both places; with \
+-compute_edges it extrapolates.
+
+Examples:
+  ridgelight hillshade dem.tif -o hillshade.tif            # gdaldem hillshade -az 315 -alt 45
+  ridgelight hillshade dem.tif --sun 300,30 --z-scale 2 -o relief.png    # -az 300 -alt 30 -z 2";
+
+pub const AO_HELP: &str = "\
+The map `sky-view` of `bake`: the cosine-weighted share of the hemisphere about the normal that no ground occludes, for \
+horizons of any distance. It equals `render --sky 1 --albedo 1 --bounces 0`. `svf` writes the same map. gdaldem has no \
+such map.
+
+Example:
+  ridgelight ao dem.tif -o ao.png";
+
+pub const SVF_HELP: &str = "\
+The map `sky-view` of `bake`, as `ao` writes it: flat open ground is 1, a slope of angle a is (1 + cos a)/2. RVT's \
+sky-view factor (Zaksek 2011) weights all directions above the horizontal equally, up to 10 pixels away; \
+`ridgelight bake --what visible-sky --format tif` writes it for horizons of any distance.
+
+Example:
+  ridgelight svf dem.tif -o svf.tif";
+
+const OPENNESS_HELP: &str = "\
+The mean over --azimuths of the zenith angle of the horizon: 90 degrees on flat ground, less in a valley, more on a \
+summit. Azimuths in which a grid point at the edge has no ground are left out.
+
+Differences from RVT: horizons have any distance (RVT: 10 pixels); there are 64 azimuths (RVT: 16).
+
+Examples:
+  ridgelight openness dem.tif -o openness.tif
+  ridgelight openness dem.tif --negative -o negative.tif";
+
+#[derive(Args)]
+#[command(after_help = HILLSHADE_HELP)]
+pub struct HillshadeArgs {
+    #[command(flatten)]
+    pub input: Input,
+    #[command(flatten)]
+    pub file: MapOutput,
+    /// Sun: compass azimuth, elevation (degrees)
+    ///
+    /// Its diameter and irradiance change nothing here.
+    #[arg(
+        long,
+        value_name = "AZ,EL",
+        value_parser = sun,
+        default_value = "315,45",
+        allow_hyphen_values = true,
+        help_heading = "Lights"
+    )]
+    pub sun: Vec<Sun>,
+    #[command(flatten)]
+    pub surface: FieldArgs,
+    #[command(flatten)]
+    pub global: GlobalArgs,
+}
+
+#[derive(Args)]
+pub struct SkyViewArgs {
+    #[command(flatten)]
+    pub input: Input,
+    #[command(flatten)]
+    pub file: MapOutput,
+    #[command(flatten)]
+    pub surface: FieldArgs,
+    #[command(flatten)]
+    pub quality: QualityArgs,
+    #[command(flatten)]
+    pub global: GlobalArgs,
+}
+
+#[derive(Args)]
+#[command(
+    after_help = OPENNESS_HELP,
+    mut_arg("border", |arg| arg.default_value("open"))
+)]
+pub struct OpennessArgs {
+    #[command(flatten)]
+    pub input: Input,
+    #[command(flatten)]
+    pub file: MapOutput,
+    /// Negative openness: that of the negated heights
+    #[arg(long, help_heading = "Output")]
+    pub negative: bool,
+    #[command(flatten)]
+    pub surface: FieldArgs,
+    #[command(flatten)]
+    pub quality: QualityArgs,
+    #[command(flatten)]
+    pub global: GlobalArgs,
+}
+
+#[derive(Args)]
+pub struct MapOutput {
+    /// Output: .tif, .npy or .exr (f32), or .png (8 bits)
+    ///
+    /// A .tif is a GeoTIFF and lies where the input lies. A .png is grey and linear, not sRGB: hillshade has its values, ao and
+    /// svf have 0 to 1 as 0 to 255, openness has 60 to 95 degrees as 0 to 255. Voids are NaN, or transparent.
+    #[arg(short, long, value_name = "OUT.{tif,npy,exr,png}", help_heading = "Output")]
+    pub output: PathBuf,
+}
+
+fn sun(words: &str) -> Result<Sun, String> {
+    let mut lights = Lights::default();
+    light("sun").add(&mut lights, words).map_err(|_| "expected AZ,EL, two numbers".to_owned())?;
+    Ok(lights.suns.remove(0))
+}

@@ -1,0 +1,262 @@
+//! `hillshade`, `ao`, `svf` and `openness`: one map, in one file.
+
+use std::f64::consts::FRAC_PI_2;
+use std::path::{Path, PathBuf};
+
+use glam::DVec3;
+use ridgelight::gpu::{Headless, Timing};
+use ridgelight::plan::{self, Limits, Picture, Plan};
+use ridgelight::scene::{
+    Border, Bounces, HeightField, Lights, Quality, Scene, Sun, Surface, normal,
+};
+use ridgelight::{Error, Result};
+use ridgelight_io as files;
+use ridgelight_io::{Channels, Georeference, Layer};
+
+use crate::args::{FieldArgs, GlobalArgs, HillshadeArgs, Input, OpennessArgs, SkyViewArgs};
+use crate::lights::light;
+use crate::setup::{self, Outcome};
+use crate::{horizon, idle, render};
+
+/// The layer of a picture, and the name of its map.
+pub const SKY_VIEW: &str = "sky_view";
+
+/// Plans the sky-view layer of `render`. Reading every horizon back to sum it here took four times
+/// as long at 1024 × 1024.
+pub fn sky_view_plan(
+    field: &HeightField,
+    border: Border,
+    quality: &Quality,
+    limits: &Limits,
+) -> Result<Plan> {
+    // Its only input is the heights: no environment, no map of albedo.
+    let surface = Surface { border, ..Surface::default() };
+    let scene = Scene { field: field.clone(), surface, lights: Lights::default() };
+    let wanted = Picture { sky_view: true, still: true, ..Picture::default() };
+    plan::picture(&scene, quality, limits, wanted)
+}
+
+/// The sky-view layer of [`sky_view_plan`].
+pub fn sky_view(
+    gpu: &mut Headless,
+    field: &HeightField,
+    plan: Plan,
+) -> Result<(Vec<f32>, Vec<Timing>)> {
+    let layer = plan.outputs().position(|(_, image)| image.name == SKY_VIEW);
+    let layer = layer.expect("a layer that was requested");
+    gpu.with_frame(plan, &[field.heights_m()], |gpu, frame| {
+        let times = gpu.draw(frame)?;
+        Ok((gpu.pixels(frame, layer)?.values, times))
+    })
+}
+
+/// What a map's values are.
+struct Values {
+    /// The channel of an .exr and the band of a .tif.
+    name: &'static str,
+    unit: &'static str,
+    about: &'static str,
+    /// The values that are 0 and 255 in a .png.
+    png: [f32; 2],
+}
+
+/// Linear, not sRGB: a texture of engines, and a layer to multiply by.
+const SKY_VIEW_VALUES: Values = Values {
+    name: SKY_VIEW,
+    unit: "",
+    about: "cosine-weighted share of the hemisphere about the normal that no ground occludes",
+    png: [0.0, 1.0],
+};
+
+/// As `gdaldem hillshade`: 1 to 255, and 0 is no data.
+const HILLSHADE_VALUES: Values = Values {
+    name: "hillshade",
+    unit: "",
+    about: "1 + 254 max(cos, 0), cos between normal and sun; no shadows",
+    png: [0.0, 255.0],
+};
+
+/// The range of a .png is that of RVT's 8-bit openness.
+const OPENNESS_VALUES: Values = Values {
+    name: "openness",
+    unit: "deg",
+    about: "mean zenith angle of the horizon, degrees",
+    png: [60.0, 95.0],
+};
+
+const NEGATIVE_OPENNESS_VALUES: Values = Values {
+    name: "negative_openness",
+    about: "mean zenith angle of the horizon of the negated heights, degrees",
+    ..OPENNESS_VALUES
+};
+
+/// A command's files and field.
+struct Job<'a> {
+    input: &'a Input,
+    output: &'a Path,
+    surface: &'a FieldArgs,
+    global: &'a GlobalArgs,
+    field: HeightField,
+    georeference: Option<Georeference>,
+}
+
+impl<'a> Job<'a> {
+    fn new(
+        input: &'a Input,
+        output: &'a Path,
+        surface: &'a FieldArgs,
+        global: &'a GlobalArgs,
+    ) -> Result<Self> {
+        setup::check_output("-o", output, &["tif", "tiff", "npy", "exr", "png"])?;
+        if let Some(json) = &global.json {
+            setup::check_output("--json", json, &["json"])?;
+        }
+        let outputs = [("-o", Some(output)), ("--json", global.json.as_deref())];
+        let inputs: Vec<&Path> = input.path.iter().map(PathBuf::as_path).collect();
+        setup::check_distinct(&outputs, &inputs)?;
+        let (field, georeference) = setup::georeferenced(&input.path, surface, global)?;
+        Ok(Self { input, output, surface, global, field, georeference })
+    }
+
+    /// Writes the map, and reports it. `metadata` and `times` are those of the device, if it was used.
+    fn write(
+        &self,
+        values: &Values,
+        mut plane: Vec<f32>,
+        mut metadata: Vec<(String, String)>,
+        times: &[Timing],
+    ) -> Result<Outcome> {
+        let size @ [rows, cols] = [self.field.rows(), self.field.cols()];
+        setup::mask_voids(&self.field, &mut plane, 1);
+        metadata.extend(setup::asked(self.input, self.surface, None));
+        metadata.push(("values".into(), values.about.into()));
+        let layers =
+            [Layer { name: String::new(), channels: Channels::Scalar(values.name, &plane) }];
+        let (path, place) = (self.output, self.georeference.as_ref());
+        match setup::extension(path).as_str() {
+            "npy" => files::write_npy_f32(path, &size, [plane.as_slice()])?,
+            "exr" => files::write_exr(path, rows, cols, &layers, &metadata)?,
+            "png" => {
+                let (channels, codes) = codes(&plane, values.png);
+                let [black, white] = values.png;
+                metadata.push(("png_range".into(), format!("{black},{white}")));
+                let form = (channels, 8);
+                files::write_codes_aside(path, [cols, rows], form, &codes, &metadata)?.place()?;
+                render::write_world(path, self.input, place, self.global.quiet)?;
+            }
+            _ => {
+                let units = [(values.name, values.unit)];
+                files::write_geotiff(path, size, &layers, &units, place, &metadata)?;
+            }
+        }
+        if let Some(json) = &self.global.json {
+            files::write_json(json, &setup::as_json(&metadata, times))?;
+        }
+        if !self.global.quiet {
+            let device = metadata.iter().find(|(name, _)| name == "device");
+            let time = device.map_or(String::new(), |(_, device)| {
+                format!(" in {:.1} ms of GPU time on {device}", setup::total_ns(times) / 1e6)
+            });
+            crate::say!("Wrote {} ({cols}x{rows}){time}.", path.display());
+        }
+        Ok(Outcome::Done)
+    }
+}
+
+/// Grey of 8 bits, and alpha where there is NaN.
+fn codes(plane: &[f32], [black, white]: [f32; 2]) -> (usize, Vec<u8>) {
+    // A conversion from f32 saturates, and takes NaN to 0.
+    let code = |v: f32| (255.0 * (v - black) / (white - black)).round() as u8;
+    match plane.iter().any(|v| v.is_nan()) {
+        false => (1, plane.iter().map(|v| code(*v)).collect()),
+        true => {
+            let alpha = |v: f32| if v.is_nan() { 0 } else { 255 };
+            (2, plane.iter().flat_map(|v| [code(*v), alpha(*v)]).collect())
+        }
+    }
+}
+
+pub fn hillshade(args: &HillshadeArgs) -> Result<Outcome> {
+    let lights = Lights { suns: args.sun.clone(), ..Lights::default() };
+    lights.check()?;
+    let [sun] = *lights.suns else {
+        return Err(Error::setting("--sun 2", "another sun", "one sun: a hillshade has no more"));
+    };
+    let job = Job::new(&args.input, &args.file.output, &args.surface, &args.global)?;
+    let plane = lambert(&job.field, setup::border(&args.surface), sun);
+    let mut metadata = setup::of_field(&job.field);
+    let words = light("sun").words(&lights).concat();
+    metadata.push(("sun1".into(), words.split(',').take(2).collect::<Vec<_>>().join(",")));
+    job.write(&HILLSHADE_VALUES, plane, metadata, &[])
+}
+
+/// Lambert's cosine as `gdaldem hillshade` stores it. Inside the field, the mean gradient of the four adjoining cells
+/// is that of Horn (1981).
+fn lambert(field: &HeightField, border: Border, sun: Sun) -> Vec<f32> {
+    let (rows, cols) = (field.rows(), field.cols());
+    let [(sin_az, cos_az), (sin_el, cos_el)] =
+        [sun.azimuth_rad, sun.elevation_rad].map(f64::sin_cos);
+    let sun = DVec3::new(cos_az * cos_el, sin_az * cos_el, sin_el);
+    let cos = |i: usize| normal(field, border, i / cols, i % cols).dot(sun);
+    (0..rows * cols).map(|i| (1.0 + 254.0 * cos(i).max(0.0)) as f32).collect()
+}
+
+/// `ao` and `svf`.
+pub fn sky_view_map(args: &SkyViewArgs) -> Result<Outcome> {
+    let quality = Quality { bounces: Bounces::default(), ..args.quality.quality()? };
+    let job = Job::new(&args.input, &args.file.output, &args.surface, &args.global)?;
+    let border = setup::border(&args.surface);
+    let plan = |limits: &Limits| sky_view_plan(&job.field, border, &quality, limits);
+    setup::check_plan(&args.global, plan)?;
+    let (mut gpu, limits) = setup::device(&args.global)?;
+    let plan = plan(&limits)?;
+    let mut used = plan.settings.clone();
+    used.retain(|(name, _)| !name.starts_with("bounce"));
+    let why = |name: &str| name.starts_with("bounce").then(|| "for this map".to_owned());
+    idle::say_why(args.global.quiet, &args.quality.written, &used, &why);
+    let metadata = setup::metadata(&gpu, &job.field, &plan);
+    let bar = setup::terminal::progress(args.global.quiet, "sky view");
+    let (plane, times) = sky_view(&mut gpu, &job.field, plan)?;
+    bar.finish_and_clear();
+    job.write(&SKY_VIEW_VALUES, plane, metadata, &times)
+}
+
+pub fn openness(args: &OpennessArgs) -> Result<Outcome> {
+    let quality = args.quality.quality()?;
+    let sign = if args.negative { -1.0 } else { 1.0 };
+    let surface = FieldArgs { z_scale: sign * args.surface.z_scale, ..args.surface };
+    let job = Job::new(&args.input, &args.file.output, &surface, &args.global)?;
+    let (field, border) = (&job.field, setup::border(&surface));
+    setup::check_plan(&args.global, |limits| {
+        let most = horizon::at_once(field, limits);
+        horizon::plan_from(field, border, &quality, limits, (0, most), false)
+    })?;
+    let (mut gpu, limits) = setup::device(&args.global)?;
+    let used = horizon::used(field, border, &quality, &limits, false)?;
+    idle::say(args.global.quiet, &args.quality.written, &used);
+    let bar = setup::terminal::progress(args.global.quiet, "horizons");
+    let mut sums = vec![(0.0_f64, 0_u32); field.rows() * field.cols()];
+    let each = &mut |k: u32, elevations: &[f32], _: &[f32]| {
+        bar.set_message(format!("horizons: azimuth {} of {}", k + 1, quality.azimuths));
+        for ((sum, count), elevation) in sums.iter_mut().zip(elevations) {
+            let elevation = f64::from(*elevation);
+            if elevation > NO_GROUND {
+                *sum += FRAC_PI_2 - elevation;
+                *count += 1;
+            }
+        }
+        Ok(())
+    };
+    let (times, plan) = horizon::for_each(&mut gpu, field, border, &quality, &limits, false, each)?;
+    bar.finish_and_clear();
+    let mut metadata = setup::metadata(&gpu, field, &plan);
+    metadata.push(("azimuths".into(), quality.azimuths.to_string()));
+    // Without ground in any azimuth, 0/0 is NaN: no data.
+    let mean = |(sum, count): &(f64, u32)| (sum / f64::from(*count)).to_degrees() as f32;
+    let plane = sums.iter().map(mean).collect();
+    let values = if args.negative { &NEGATIVE_OPENNESS_VALUES } else { &OPENNESS_VALUES };
+    job.write(values, plane, metadata, &times)
+}
+
+/// With an open border, the horizon is -90° in an azimuth without ground. Ground this steep, of slope 1e5, is none.
+const NO_GROUND: f64 = 1e-5 - FRAC_PI_2;

@@ -1,0 +1,260 @@
+//! `hillshade`, `ao`, `svf` and `openness`: derived answers, and gdaldem's.
+
+use std::path::Path;
+
+use serde_json::json;
+
+use crate::gdal_inputs::{grid, tool};
+use crate::geotiff::{gdal_values, gdalinfo};
+use crate::needs_vulkan::{done, plane, write_field};
+use crate::{Folder, read, refused};
+
+const SIDE: usize = 17;
+const SUN: [f64; 2] = [200.0, 30.0];
+
+/// 1 + 254 max(cos, 0) of a plane with gradient `p` to the east and `q` to the north.
+fn lambert([p, q]: [f64; 2]) -> f64 {
+    let [azimuth, elevation] = SUN.map(f64::to_radians);
+    let [x, y] = [azimuth.sin(), azimuth.cos()].map(|part| part * elevation.cos());
+    let cos = (elevation.sin() - p * x - q * y) / (1.0 + p * p + q * q).sqrt();
+    1.0 + 254.0 * cos.max(0.0)
+}
+
+/// Bytes of the pixels of a .png.
+fn codes(path: &Path) -> (png::ColorType, Vec<u8>) {
+    let file = std::io::BufReader::new(std::fs::File::open(path).unwrap());
+    let mut reader = png::Decoder::new(file).read_info().unwrap();
+    let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
+    reader.next_frame(&mut bytes).unwrap();
+    (reader.info().color_type, bytes)
+}
+
+/// Every texel of a plane, the edges too, without a device.
+#[test]
+fn hillshade_of_a_plane_is_its_formula() {
+    let folder = Folder::new();
+    for gradient @ [p, q] in [[0.0, 0.0], [0.5, 0.0], [0.0, -2.0], [-0.25, 0.75]] {
+        write_field(&folder, SIDE, |row, col| (p * col as f64 - q * row as f64) as f32);
+        for (name, scale) in [("o.npy", 1.0), ("o.exr", 1.0), ("o.tif", 2.0), ("o.png", 2.0)] {
+            let sun = format!("{},{}", SUN[0], SUN[1]);
+            let scale_word = scale.to_string();
+            let words =
+                ["hillshade", "field.npy", "-o", name, "--sun", &sun, "--z-scale", &scale_word];
+            let run = folder.run_without_driver(&words);
+            assert_eq!((run.status, run.err.as_str()), (Some(0), ""), "{name}");
+            assert_eq!(run.out, format!("Wrote {name} ({SIDE}x{SIDE}).\n"));
+            let expected = lambert(gradient.map(|part| scale * part));
+            if name == "o.png" {
+                let (kind, codes) = codes(&folder.path(name));
+                assert_eq!(kind, png::ColorType::Grayscale);
+                assert_eq!(codes, [expected.round() as u8; SIDE * SIDE], "{gradient:?}");
+                continue;
+            }
+            for value in read(&folder.path(name)).planes.concat() {
+                // A half step of f32 at 255.
+                assert!((f64::from(value) - expected).abs() < 1e-5, "{name} {gradient:?}: {value}");
+            }
+        }
+    }
+    assert_eq!(lambert([0.0, -2.0]), 1.0, "the slope to the north faces away from the sun");
+}
+
+/// The default is gdaldem's sun. A void is NaN, or transparent.
+#[test]
+fn hillshade_has_voids_and_a_sun_from_the_north_west() {
+    let folder = Folder::new();
+    folder.write("v.asc", b"ncols 3 nrows 2 cellsize 1 nodata_value -9 0 0 0 0 -9 0");
+    let level = 1.0 + 254.0 * 45_f32.to_radians().sin();
+    let words = ["hillshade", "v.asc", "-o", "v.tif", "--json", "v.json"];
+    assert_eq!(folder.run_without_driver(&words).status, Some(0));
+    for (i, value) in read(&folder.path("v.tif")).planes[0].iter().enumerate() {
+        assert!(if i == 4 { value.is_nan() } else { (value - level).abs() < 1e-4 }, "{i}: {value}");
+    }
+    let settings = crate::needs_vulkan::json(&folder.path("v.json"));
+    assert_eq!(settings["settings"]["sun1"], json!([315, 45]));
+    assert_eq!(folder.run_without_driver(&["hillshade", "v.asc", "-o", "v.png"]).status, Some(0));
+    let (kind, codes) = codes(&folder.path("v.png"));
+    let lit = [level.round() as u8, 255];
+    assert_eq!(kind, png::ColorType::GrayscaleAlpha);
+    assert_eq!(codes, [lit, lit, lit, lit, [0, 0], lit].concat());
+}
+
+#[test]
+fn wrong_maps_are_refused() {
+    let folder = Folder::new();
+    refused(
+        &folder,
+        &[
+            ("hillshade a.asc -o o.txt", 2, &["-o: found o.txt", ".npy or .exr or .png"]),
+            ("hillshade a.asc -o a.asc", 2, &["-o"]),
+            ("hillshade a.npy -o a.npy", 2, &["which is the input"]),
+            ("hillshade a.asc -o o.tif --sun 0,91", 2, &["--sun 1: elevation: found 91°"]),
+            ("hillshade a.asc -o o.tif --sun 0,-1", 2, &["--sun 1: elevation: found -1°"]),
+            ("hillshade a.asc -o o.tif --sun 0", 2, &["--sun", "expected AZ,EL"]),
+            ("hillshade a.asc -o o.tif --sun 0,9 --sun 1,9", 2, &["--sun 2: found another sun"]),
+            ("hillshade a.asc -o o.tif --azimuths 8", 2, &["--azimuths", "unexpected"]),
+            ("hillshade a.asc -o o.tif --cell 0", 2, &["--cell: found 0"]),
+            ("ao a.asc -o o.ktx2", 2, &["-o: found o.ktx2"]),
+            ("ao a.asc -o o.png --azimuths 3", 2, &["--azimuths: found 3"]),
+            ("svf a.asc -o o.png --json o.png", 2, &["--json"]),
+            ("svf a.asc -o o.tif", 1, &["driver"]),
+            ("openness a.asc -o o.tif --z-scale 0 --negative", 2, &["--z-scale: found"]),
+            ("openness a.asc -o o.tif --sun 0,45", 2, &["--sun", "unexpected"]),
+            ("openness a.asc -o o.tif", 1, &["driver"]),
+        ],
+    );
+}
+
+/// Flat ground has openness 90° and sky view 1 in every texel, at the edges too.
+#[test]
+fn gpu_flat_ground_is_open() {
+    let folder = Folder::new();
+    write_field(&folder, 9, |_, _| 7.0);
+    for method in ["sweep", "brute-force", "pyramid"] {
+        for negative in ["", " --negative"] {
+            done(&folder, &format!("openness field.npy -o o.npy --method {method}{negative}"));
+            assert_eq!(read(&folder.path("o.npy")).planes[0], [90.0; 81], "{method}");
+        }
+    }
+    for command in ["ao", "svf"] {
+        done(&folder, &format!("{command} field.npy -o o.npy"));
+        for value in read(&folder.path("o.npy")).planes.concat() {
+            assert!((value - 1.0).abs() < 1e-5, "{command}: {value}");
+        }
+        done(&folder, &format!("{command} field.npy -o o.png"));
+        assert_eq!(codes(&folder.path("o.png")).1, [255; 81], "{command}");
+    }
+    // 60 to 95 degrees are 0 to 255.
+    done(&folder, "openness field.npy -o o.png");
+    assert_eq!(codes(&folder.path("o.png")).1, [(255.0 * 30.0_f64 / 35.0).round() as u8; 81]);
+    // One grid point has no ground around it.
+    write_field(&folder, 1, |_, _| 7.0);
+    done(&folder, "openness field.npy -o o.npy");
+    assert!(read(&folder.path("o.npy")).planes[0][0].is_nan());
+}
+
+/// On a slope of angle a, (1 + cos a)/2 of the cosine-weighted hemisphere is above the horizontal and the slope.
+#[test]
+fn gpu_sky_view_of_a_slope_is_its_formula() {
+    let folder = Folder::new();
+    for slope in [0.5_f64, 1.0, 2.0] {
+        write_field(&folder, 65, |_, col| (slope * col as f64) as f32);
+        done(&folder, "svf field.npy -o o.npy --azimuths 64");
+        let found = f64::from(read(&folder.path("o.npy")).planes[0][32 * 65 + 32]);
+        let expected = (1.0 + slope.atan().cos()) / 2.0;
+        // The trapezoidal rule over an integrand with kinks: 1/azimuths².
+        assert!((found - expected).abs() < 1.0 / 4096.0, "{slope}: {found} for {expected}");
+    }
+}
+
+/// On the axis of a V-shaped ditch along north-south, the horizon is atan(tan a |sin azimuth|) at any distance. On the
+/// ridge of the negated heights it is below the horizontal by as much.
+#[test]
+fn gpu_openness_of_a_ditch_is_its_formula() {
+    let folder = Folder::new();
+    const AZIMUTHS: usize = 32;
+    for slope in [0.25_f64, 1.0, 3.0] {
+        write_field(&folder, 33, |_, col| (slope * (col as f64 - 16.0).abs()) as f32);
+        let angle = |k: usize| {
+            let azimuth = std::f64::consts::TAU * k as f64 / AZIMUTHS as f64;
+            (slope * azimuth.sin().abs()).atan()
+        };
+        let mean = ((0..AZIMUTHS).map(angle).sum::<f64>() / AZIMUTHS as f64).to_degrees();
+        for (more, expected) in [("", 90.0 - mean), (" --negative", 90.0 + mean)] {
+            let exact = format!("--azimuths {AZIMUTHS} --method brute-force{more}");
+            done(&folder, &format!("openness field.npy -o o.npy {exact}"));
+            let found = f64::from(read(&folder.path("o.npy")).planes[0][16 * 33 + 16]);
+            // As for `horizon`: 1e-5 rad an azimuth.
+            assert!(
+                (found - expected).abs() < 1e-5_f64.to_degrees(),
+                "{slope}{more}: {found} for {expected}"
+            );
+        }
+    }
+}
+
+#[test]
+fn gpu_negative_openness_is_that_of_the_negated_field() {
+    let folder = Folder::new();
+    let height = |row: usize, col: usize| ((row * 7919 + col * 104_729) % 613) as f32 * 0.01;
+    let bytes = |name: &str| std::fs::read(folder.path(name)).unwrap();
+    write_field(&folder, SIDE, |row, col| -height(row, col));
+    done(&folder, "openness field.npy -o negated.npy");
+    write_field(&folder, SIDE, height);
+    done(&folder, "openness field.npy -o negative.npy --negative");
+    done(&folder, "openness field.npy -o positive.npy");
+    assert!(bytes("negative.npy") == bytes("negated.npy"));
+    assert!(bytes("negative.npy") != bytes("positive.npy"));
+}
+
+/// `ao` and `svf` are the layer `sky_view` of `render`, and its light under a sky of radiance 1.
+#[test]
+fn gpu_ambient_occlusion_is_the_light_of_a_uniform_sky() {
+    let folder = Folder::new();
+    write_field(&folder, SIDE, |row, col| ((row * 7919 + col * 104_729) % 613) as f32 * 0.01);
+    done(&folder, "render field.npy -o r.exr --sky 1 --layers sky-view --azimuths 16");
+    let rendered = read(&folder.path("r.exr"));
+    for command in ["ao", "svf"] {
+        done(&folder, &format!("{command} field.npy -o o.exr --azimuths 16"));
+        let map = read(&folder.path("o.exr"));
+        assert_eq!(map.names, ["sky_view"]);
+        assert_eq!(map.planes[0], plane(&rendered, "sky_view"), "{command}");
+        for (share, light) in map.planes[0].iter().zip(plane(&rendered, "R")) {
+            assert!((share - light).abs() < 1e-5, "{command}: {share}, {light}");
+        }
+    }
+    let run = folder.run_str("svf field.npy -o o.exr --bounces 2");
+    assert!(run.err.contains("note: --bounces 2 changes nothing for this map"), "{}", run.err);
+}
+
+/// Inside the field, gdaldem has the same values, rounded. Maps lie where the input lies.
+#[test]
+#[ignore = "needs GDAL: Debian's gdal-bin"]
+fn gdal_hillshade_has_the_same_values() {
+    let folder = Folder::new();
+    let [cols, rows] = [37, 29];
+    let text = grid([cols, rows], [500_000.0, 4_900_000.0], 30.0, 0);
+    folder.write("a.asc", text.as_bytes());
+    // Cells of 30 m x 60 m.
+    let corners = "500000 4901740 501110 4900000";
+    tool(&folder, &format!("gdal_translate -q -a_srs EPSG:32618 -a_ullr {corners} a.asc a.tif"));
+    let is_inside =
+        |i: usize| (1..rows - 1).contains(&(i / cols)) && (1..cols - 1).contains(&(i % cols));
+    let largest = |ours: &[f32], theirs: &[f32]| {
+        let pairs = ours.iter().zip(theirs).enumerate().filter(|(i, _)| is_inside(*i));
+        pairs.map(|(_, (a, b))| (a - b).abs()).fold(0.0, f32::max)
+    };
+    for (azimuth, elevation, scale) in [(315, 45, 1), (90, 10, 1), (200, 70, 3), (0, 90, 2)] {
+        let theirs = format!("-q -compute_edges -az {azimuth} -alt {elevation} -z {scale}");
+        tool(&folder, &format!("gdaldem hillshade {theirs} a.tif g.tif"));
+        let theirs = gdal_values(&folder.path("g.tif"));
+        let sun = format!("--sun {azimuth},{elevation} --z-scale {scale}");
+        done(&folder, &format!("hillshade a.tif -o o.tif {sun}"));
+        let ours = gdal_values(&folder.path("o.tif"));
+        // gdaldem rounds to whole numbers, from f32.
+        assert!(largest(&ours, &theirs) <= 0.5 + 1e-4, "{sun}: {}", largest(&ours, &theirs));
+        done(&folder, &format!("hillshade a.tif -o o.png {sun}"));
+        let codes: Vec<f32> = codes(&folder.path("o.png")).1.into_iter().map(f32::from).collect();
+        // A value halfway between two may be rounded to either.
+        assert!(largest(&codes, &theirs) <= 1.0, "{sun}");
+        // Another sun differs.
+        done(&folder, "hillshade a.tif -o o.tif --sun 45,30");
+        assert!(largest(&gdal_values(&folder.path("o.tif")), &theirs) > 10.0);
+    }
+    let place = &gdalinfo(&folder.path("a.tif"))["geoTransform"];
+    for (command, name, unit) in [
+        ("hillshade", "hillshade", json!(null)),
+        ("ao", "sky_view", json!(null)),
+        ("openness", "openness", json!("deg")),
+        ("openness --negative", "negative_openness", json!("deg")),
+    ] {
+        done(&folder, &format!("{command} a.tif -o o.tif"));
+        let info = gdalinfo(&folder.path("o.tif"));
+        assert_eq!(&info["geoTransform"], place, "{command}");
+        let band = &info["bands"][0];
+        assert_eq!((&band["description"], &band["unit"]), (&json!(name), &unit), "{command}");
+        done(&folder, &format!("{command} a.tif -o o.png"));
+        let world = std::fs::read_to_string(folder.path("o.pgw")).unwrap();
+        assert_eq!(world, "30\n0\n0\n-60\n500015\n4901710\n", "{command}");
+    }
+}

@@ -1,0 +1,158 @@
+//! Light of all azimuths, weighted by a Phong lobe about each direction of the sphere.
+
+use crate::specular_tables::{Slices, Tabulated};
+use crate::tolerance::{ARC_TANGENT, EPSILON};
+use glam::{DVec2, DVec3};
+use ridgelight::plan::Azimuth;
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+/// Tables of the device, and what their azimuths weigh.
+#[derive(Clone, Copy, Debug)]
+pub struct Tables<'a> {
+    /// Geometry.
+    pub slices: Slices,
+    /// `[azimuth][node][peak]`; of one azimuth where all share it.
+    pub texels: &'a [DVec3],
+}
+
+impl Tables<'_> {
+    fn is_shared(&self) -> bool {
+        self.texels.len() == self.slices.nodes * self.slices.peaks
+    }
+
+    fn at(&self, azimuth: usize, node: usize, peak: usize) -> DVec3 {
+        let layer = if self.is_shared() { 0 } else { azimuth };
+        self.texels[(layer * self.slices.nodes + node) * self.slices.peaks + peak]
+    }
+
+    /// Light of azimuth `k` up to `node`, a place among the nodes, in the lobe about `mirror`. `off` is the error of the direction
+    /// and of the place.
+    ///
+    /// aⁿ: ln(1 - p²) changes by 2 p / (1 - p²) a p, and errs by its series' 1e-7 and 12 roundings; the exponential by (3 + 2 |x|) ulp.
+    /// The peak's angle turns by the direction's error over a, an arc tangent and 4 ε π. Across the place's error, values change
+    /// no faster than between any of the nodes and peaks there.
+    pub fn light(
+        &self,
+        (k, azimuth): (usize, &Azimuth),
+        mirror: DVec3,
+        node: f64,
+        [off_rad, off_node]: [f64; 2],
+    ) -> Tabulated {
+        let Slices { exponent: n, peaks, first_rad, nodes, .. } = self.slices;
+        let (cos, sin) = (f64::from(azimuth.cos_phi), f64::from(azimuth.sin_phi));
+        let along = mirror.x * cos + mirror.y * sin;
+        let across = mirror.x * sin - mirror.y * cos;
+        let short2 = (1.0 - across * across).max(1e-30);
+        let logarithm = -short2.ln();
+        let mut weight = (-0.5 * n * logarithm).exp();
+        if self.is_shared() {
+            weight *= f64::from(azimuth.wedge_rad);
+        }
+        let x = 0.5 * n * logarithm;
+        let power_off = (n * across.abs() * off_rad / short2
+            + x * (1e-7 + 12.0 * EPSILON)
+            + (3.0 + 2.0 * x) * 2.0 * EPSILON)
+            .min(1.0);
+        let per_rad = (peaks - 1) as f64 / (PI - first_rad);
+        let place = (mirror.z.atan2(along) - first_rad) * per_rad;
+        let turned = off_rad / short2.sqrt() + ARC_TANGENT + 4.0 * EPSILON * PI;
+        let off_peak = (turned * per_rad).min(1.0) + 4.0 * EPSILON * peaks as f64;
+        if place < -off_peak {
+            return Tabulated::default();
+        }
+        let cell = |place: f64, count: usize| (place.max(0.0) as usize).min(count.max(2) - 2);
+        let (peak, below) = (cell(place, peaks), cell(node, nodes));
+        let (s, t) = ((place - peak as f64).clamp(0.0, 1.0), (node - below as f64).clamp(0.0, 1.0));
+        let top = |i: usize| (below + i).min(nodes - 1);
+        let row = |node: usize| self.at(k, node, peak).lerp(self.at(k, node, peak + 1), s);
+        let light = row(top(0)).lerp(row(top(1)), t);
+        // The cells that the place may lie in.
+        let peaks_near = cell(place - off_peak, peaks)..=cell(place + off_peak, peaks);
+        let nodes_near = cell(node - off_node, nodes)..=cell(node + off_node, nodes);
+        let mut change = [DVec3::ZERO; 2];
+        for (i, j) in peaks_near.flat_map(|i| nodes_near.clone().map(move |j| (i, j))) {
+            let up = |j: usize| j.min(nodes - 1);
+            for e in 0..2 {
+                let across = (self.at(k, up(j + e), i + 1) - self.at(k, up(j + e), i)).abs();
+                let along = (self.at(k, up(j + 1), i + e) - self.at(k, up(j), i + e)).abs();
+                change = [change[0].max(across), change[1].max(along)];
+            }
+        }
+        let moved = off_peak * change[0] + off_node * change[1];
+        // Behind and below on one of them.
+        let either = if place.abs() <= off_peak && first_rad > -PI { light } else { DVec3::ZERO };
+        let tolerance = weight * (moved + light * (power_off + 10.0 * EPSILON) + either);
+        Tabulated { light: weight * light, tolerance }
+    }
+}
+
+/// Direction of a texel of a map of `width` × `height`.
+pub fn direction(x: usize, y: usize, [width, height]: [usize; 2]) -> DVec3 {
+    let flat = DVec2::from_angle(TAU * x as f64 / width as f64);
+    let elevation = PI * (y as f64 / (height - 1) as f64 - 0.5);
+    (flat * elevation.cos()).extend(elevation.sin())
+}
+
+/// A slice in which the lobe reaches less than this share of its peak counts as dark.
+const LEAST_SHARE: f64 = 1e-7;
+
+/// `mirror_map`, row-major from straight down.
+///
+/// Directions err by 6 ε. Sums round once an azimuth. A slice near the least share may count or not.
+pub fn mirror_map(tables: &Tables, azimuths: &[Azimuth], size: [usize; 2]) -> Vec<Tabulated> {
+    let node = (tables.slices.nodes - 1) as f64;
+    let at = |i: usize| {
+        let mirror = direction(i % size[0], i / size[0], size);
+        let mut sum = Tabulated::default();
+        for (k, azimuth) in azimuths.iter().enumerate() {
+            let across =
+                mirror.x * f64::from(azimuth.sin_phi) - mirror.y * f64::from(azimuth.cos_phi);
+            let power = (1.0 - across * across).max(0.0).powf(0.5 * tables.slices.exponent);
+            let Tabulated { light, tolerance } =
+                tables.light((k, azimuth), mirror, node, [6.0 * EPSILON, 0.0]);
+            if power > 1.01 * LEAST_SHARE {
+                sum.light += light;
+                sum.tolerance += tolerance;
+            } else {
+                sum.tolerance += light;
+            }
+        }
+        sum.tolerance += azimuths.len() as f64 * EPSILON * sum.light;
+        sum
+    };
+    (0..size[0] * size[1]).map(at).collect()
+}
+
+/// The mirror direction of a view about a normal.
+pub fn mirrored(normal: DVec3, view: DVec3) -> DVec3 {
+    2.0 * normal.dot(view) * normal - view
+}
+
+/// Light that a grid point's horizon hides in one azimuth, from the lowest elevation to the slope `lowest`.
+///
+/// The mirror direction errs by `off_rad`, the slope by `off_slope`. Where the lobe is below `least_cosine` on everything that
+/// is hidden, to within an error, the device may leave it out.
+pub fn blocked(
+    tables: &Tables,
+    (k, azimuth): (usize, &Azimuth),
+    (mirror, lowest): (DVec3, f64),
+    least_cosine: f64,
+    [off_rad, off_slope]: [f64; 2],
+) -> Tabulated {
+    let Slices { nodes, bottom_rad, .. } = tables.slices;
+    let per_rad = (nodes - 1) as f64 / (FRAC_PI_2 - bottom_rad);
+    let angle = lowest.atan();
+    let node = (angle - bottom_rad) * per_rad;
+    let off_node = (off_slope + ARC_TANGENT + 10.0 * EPSILON) * per_rad;
+    let mut found = tables.light((k, azimuth), mirror, node, [off_rad, off_node]);
+    let along = mirror.x * f64::from(azimuth.cos_phi) + mirror.y * f64::from(azimuth.sin_phi);
+    let short = along.hypot(mirror.z);
+    let peak = mirror.z.atan2(along);
+    let near = |w: f64| short * (w - peak).cos();
+    let is_within = bottom_rad <= peak && peak <= angle;
+    let largest = if is_within { short } else { near(bottom_rad).max(near(angle)) };
+    if largest <= least_cosine + off_rad + off_slope + 10.0 * EPSILON {
+        found.tolerance += found.light;
+    }
+    found
+}

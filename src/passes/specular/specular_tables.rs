@@ -1,0 +1,143 @@
+use std::f32::consts::{FRAC_PI_2, PI};
+
+use crate::graph::{Builder, Format, Owner, ResourceId, shaders};
+use crate::scene::{Border, Environment};
+
+/// Tables of light below each elevation, weighted by a Phong lobe.
+#[derive(Clone, Copy)]
+pub(crate) struct SpecularTables {
+    pub exponent: f32,
+    /// Elevations of the lobe's peak, from `first_rad` to π.
+    peaks: u32,
+    /// Elevations up to which light is hidden, from the lowest to the zenith; 1 for the zenith alone.
+    nodes: u32,
+    /// One for each azimuth; one for all of them under a sky alone.
+    layers: u32,
+    border: Border,
+    pub tables: ResourceId,
+}
+
+impl SpecularTables {
+    /// For an exponent. `nodes`: see the field.
+    ///
+    /// Peaks lie a quarter of the lobe's deviation apart, 1/√n radians; at least 192 of them resolve the edges of an
+    /// environment's brightest spots, whatever the lobe is.
+    pub(crate) fn make(
+        builder: &mut Builder,
+        name: &str,
+        exponent: f32,
+        border: Border,
+        [nodes, layers]: [u32; 2],
+    ) -> Self {
+        let mut it = Self { exponent, peaks: 0, nodes, layers, border, tables: ResourceId(0) };
+        let wanted = (4.0 * exponent.sqrt() * it.range_rad()).ceil() as u32;
+        let widened = if border == Border::Open { 256 } else { 192 };
+        it.peaks = wanted.clamp(widened, 1024).next_multiple_of(4) + 1;
+        let extent = [it.peaks, nodes, layers];
+        it.tables = builder.image(name, Owner::Internal, Format::Rgba32Float, extent, true);
+        it
+    }
+
+    /// Where light may come from below horizontal, a lobe may peak anywhere in a slice.
+    fn first_rad(&self) -> f32 {
+        if self.border == Border::Open { -PI } else { -FRAC_PI_2 }
+    }
+
+    fn range_rad(&self) -> f32 {
+        PI - self.first_rad()
+    }
+
+    pub(crate) fn is_shared(&self) -> bool {
+        self.layers == 1
+    }
+
+    /// Fills the tables from a sky's radiance and an environment's `wedge_rows`.
+    pub(crate) fn plan(
+        &self,
+        builder: &mut Builder,
+        part: &str,
+        sky: Option<[f32; 3]>,
+        rows: Option<(&Environment, ResourceId)>,
+        (azimuths, is_swept): (ResourceId, bool),
+    ) {
+        let is_open = self.border == Border::Open;
+        let [r, g, b] = sky.unwrap_or_default();
+        // A sky is even: one row above horizontal, and one below.
+        let [height, kept] = match rows {
+            Some((environment, _)) => {
+                [environment.height() as u32, environment.rows_above_ground(self.border) as u32]
+            }
+            None => [2, if is_open { 2 } else { 1 }],
+        };
+        let mut bound = vec![("specular_tables", self.tables), ("azimuths", azimuths)];
+        bound.extend(rows.map(|(_, rows)| ("wedge_rows", rows)));
+        let values = u64::from(self.layers) * u64::from(self.peaks) * u64::from(self.nodes);
+        let read = u64::from(self.layers) * u64::from(kept) * 16;
+        let pass = builder.pass(
+            shaders::SpecularTables { has_environment: rows.is_some() },
+            part,
+            format!(
+                "light below each of {} elevations in a lobe of exponent {}",
+                self.nodes, self.exponent
+            ),
+            [self.peaks.div_ceil(4 * 8), self.layers.div_ceil(8), 1],
+            &shaders::SpecularTablesPush {
+                height: height as i32,
+                rows: kept as i32,
+                peaks: self.peaks as i32,
+                nodes: self.nodes as i32,
+                layers: self.layers as i32,
+                bottom_rad: if is_open { -FRAC_PI_2 } else { 0.0 },
+                first_rad: self.first_rad(),
+                step_rad: self.range_rad() / (self.peaks - 1) as f32,
+                exponent: self.exponent,
+                wedge_rad: if self.is_shared() { 1.0 } else { 0.0 },
+                sky: [r, g, b, 0.0],
+            },
+            &bound,
+            values * 16 + read,
+            values,
+        );
+        // One for all under a sky, or the fine ones, which are constants.
+        if is_swept {
+            pass.azimuths = 0..self.layers;
+        }
+    }
+
+    /// Fills a map from the whole slices of the tables, of `count` azimuths.
+    pub(crate) fn plan_map(
+        &self,
+        builder: &mut Builder,
+        (part, why): (&str, &str),
+        count: u32,
+        ([azimuths, map], is_swept): ([ResourceId; 2], bool),
+        [width, height]: [u32; 2],
+    ) {
+        let texels = u64::from(width) * u64::from(height);
+        let pass = builder.pass(
+            shaders::MirrorMap {},
+            part,
+            why,
+            [width.div_ceil(8), height.div_ceil(8), 1],
+            &shaders::MirrorMapPush {
+                width: width as i32,
+                height: height as i32,
+                azimuth_count: count as i32,
+                node: (self.nodes - 1) as i32,
+                first_rad: self.first_rad(),
+                per_rad: (self.peaks - 1) as f32 / self.range_rad(),
+                exponent: self.exponent,
+                least: LEAST_SHARE,
+            },
+            &[("azimuths", azimuths), ("specular_tables", self.tables), ("mirror_map", map)],
+            texels * 16 + u64::from(count) * u64::from(self.peaks) * 16,
+            texels,
+        );
+        if is_swept {
+            pass.azimuths = 0..count;
+        }
+    }
+}
+
+/// A slice in which the lobe reaches less than this share of its peak counts as dark in maps.
+const LEAST_SHARE: f32 = 1e-7;
