@@ -172,10 +172,10 @@ fn gpu_default_window_equals_render() {
 #[test]
 fn gpu_default_light_is_saved() {
     let (folder, display) = (Folder::new(), Display::new());
-    let script = "key h\nkey h\nframes 2\npicture map.png\nscene map.json\nkey v\nframes 1\npicture seen.png\n\
-        scene seen.json\nkey o\nkey x\nframes 1\nscene deleted.json\npicture deleted.png\n";
+    let script = "key h\nkey h\nframes 2\npicture map.png\nscene map.json\nkey v\nframes 1\npicture camera.png\n\
+        scene camera.json\nkey o\nkey x\nframes 1\nscene deleted.json\npicture deleted.png\n";
     folder.view(&display, "hills.asc --size 96x60", script);
-    for name in ["map", "seen", "deleted"] {
+    for name in ["map", "camera", "deleted"] {
         folder.done(&format!("render --scene {name}.json -o {name}_r.png --quiet"));
         assert_same(&folder, &format!("{name}.png"), &format!("{name}_r.png"));
     }
@@ -221,8 +221,8 @@ fn gpu_previews_show_the_new_light() {
     let script = "key h\nkey h\npreview 3,1\nframes 1\nrest\nframes 1\nscreenshot before.png\n\
         key shift+right\nkey shift+right\nkey shift+right\nkey shift+right\nkey shift+right\nkey shift+right\n\
         screenshot preview.png\npicture saved.png\nscreenshot full.png\nscene full.json\n\
-        key v\nframes 1\nscreenshot seen_before.png\nkey shift+left\nkey shift+left\nkey shift+left\nkey shift+left\n\
-        screenshot seen.png\nrest\nscreenshot seen_full.png\n\
+        key v\nframes 1\nscreenshot turned_before.png\nkey shift+left\nkey shift+left\nkey shift+left\nkey shift+left\n\
+        screenshot turned.png\nrest\nscreenshot turned_full.png\n\
         key v\nkey 2\nkey 1\nscreenshot unedited.png\nkey 2\ndrag left 200,200 40,10\nkey 1\n\
         screenshot edit.png\nrest\nscreenshot edit_full.png\nkey 2\nrest\ndrag left 300,300 20,5\n\
         screenshot again.png\nrest\nscreenshot again_full.png\n\
@@ -239,7 +239,7 @@ fn gpu_previews_show_the_new_light() {
     let whole = [0, 0, 512, 512];
     for (shown, full, old, at) in [
         ("preview.png", "full.png", "before.png", whole),
-        ("seen.png", "seen_full.png", "seen_before.png", whole),
+        ("turned.png", "turned_full.png", "turned_before.png", whole),
         ("edit.png", "edit_full.png", "unedited.png", [168, 168, 104, 74]),
         ("again.png", "again_full.png", "unedited.png", [268, 268, 84, 69]),
     ] {
