@@ -15,6 +15,8 @@ Mirrored mirrored(vec4 normal_east, vec4 normal_north, vec4 normal_up, vec4 east
         view_north = eye.y - north_m;
         view_up = eye.z - heights;
         vec4 largest = max(max(abs(view_east), abs(view_north)), max(abs(view_up), vec4(1e-30)));
+        // An eye at a grid point views it from above.
+        view_up = mix(view_up, vec4(1e-30), lessThanEqual(largest, vec4(1e-30)));
         view_east /= largest;
         view_north /= largest;
         view_up /= largest;

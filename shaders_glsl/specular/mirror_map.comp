@@ -50,8 +50,11 @@ void main() {
         float along = east_north.x * azimuth.cos_phi + east_north.y * azimuth.sin_phi;
         float across = east_north.x * azimuth.sin_phi - east_north.y * azimuth.cos_phi;
         float power = off_slice(exponent, vec4(across)).x;
+        if (power < least) {
+            continue;
+        }
         float place = (angle_of(vec4(along), vec4(up)).x - first_rad) * per_rad;
-        if (power < least || place < 0.0) {
+        if (place < 0.0) {
             continue;
         }
         int peak = clamp(int(place), 0, size.x - 2);

@@ -59,8 +59,8 @@ void main() {
     float lower = bottom_rad;
     vec4 below_lower = phong_integral(exponent, along, up, cosine(lower), sine(lower));
     for (int node = 0; node < nodes; node++) {
-        float part = nodes > 1 ? float(node) / float(nodes - 1) : 1.0;
-        float elevation = bottom_rad + (HALF_PI - bottom_rad) * part;
+        // Of the last node exactly, whatever a quotient rounds to: the loop below ends there.
+        float elevation = node == nodes - 1 ? HALF_PI : bottom_rad + (HALF_PI - bottom_rad) * float(node) / float(nodes - 1);
         // Whole rows below the node, then the part of the row that contains it.
         while (lower < elevation) {
             float row_top = HALF_PI - PI * float(row) / float(height);

@@ -28,7 +28,7 @@ pub(crate) struct Specular {
     pub eye_m: [f32; 4],
 }
 
-/// Light below this share of a lobe's peak counts as 0.
+/// Light below this share of a lobe's largest value in an azimuth counts as 0.
 const LEAST_SHARE: f32 = 1e-4;
 
 /// Light of a uniform sky and of an environment through the horizons of a batch.
@@ -53,7 +53,8 @@ pub(crate) fn plan(
         bound.extend([("specular_tables", tables.tables), ("blocked_sum", blocked_sum)]);
         push.eye_m = eye_m;
         push.exponent = tables.exponent;
-        push.least_cosine = LEAST_SHARE.powf(1.0 / tables.exponent.max(1e-3));
+        let least = LEAST_SHARE * tables.nearest_share;
+        push.least_cosine = least.powf(1.0 / tables.exponent.max(1e-3));
     }
     if let Some([dirty, list]) = images.edited {
         bound.extend([("dirty_texels", dirty), ("edit_list", list)]);

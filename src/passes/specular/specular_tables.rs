@@ -7,6 +7,8 @@ use crate::scene::{Border, Environment};
 #[derive(Clone, Copy)]
 pub(crate) struct SpecularTables {
     pub exponent: f32,
+    /// Share of its peak that a lobe may have in the nearest azimuth: it may point between two.
+    pub nearest_share: f32,
     /// Elevations of the lobe's peak, from `first_rad` to π.
     peaks: u32,
     /// Elevations up to which light is hidden, from the lowest to the zenith; 1 for the zenith alone.
@@ -18,18 +20,27 @@ pub(crate) struct SpecularTables {
 }
 
 impl SpecularTables {
-    /// For an exponent. `nodes`: see the field.
+    /// For an exponent, and azimuths whose neighbours are up to twice `gap_rad` apart. `nodes`: see the field.
     ///
     /// Peaks lie a quarter of the lobe's deviation apart, 1/√n radians; at least 192 of them resolve the edges of an
-    /// environment's brightest spots, whatever the lobe is.
+    /// environment's brightest spots, whatever the lobe is. There are at most 1024: from n = 2,950 on they lie farther apart.
     pub(crate) fn make(
         builder: &mut Builder,
         name: &str,
-        exponent: f32,
+        (exponent, gap_rad): (f32, f32),
         border: Border,
         [nodes, layers]: [u32; 2],
     ) -> Self {
-        let mut it = Self { exponent, peaks: 0, nodes, layers, border, tables: ResourceId(0) };
+        let nearest_share = gap_rad.min(1.5).cos().powf(exponent).max(1e-30);
+        let mut it = Self {
+            exponent,
+            nearest_share,
+            peaks: 0,
+            nodes,
+            layers,
+            border,
+            tables: ResourceId(0),
+        };
         let wanted = (4.0 * exponent.sqrt() * it.range_rad()).ceil() as u32;
         let widened = if border == Border::Open { 256 } else { 192 };
         it.peaks = wanted.clamp(widened, 1024).next_multiple_of(4) + 1;
@@ -127,7 +138,7 @@ impl SpecularTables {
                 first_rad: self.first_rad(),
                 per_rad: (self.peaks - 1) as f32 / self.range_rad(),
                 exponent: self.exponent,
-                least: LEAST_SHARE,
+                least: LEAST_SHARE * self.nearest_share,
             },
             &[("azimuths", azimuths), ("specular_tables", self.tables), ("mirror_map", map)],
             texels * 16 + u64::from(count) * u64::from(self.peaks) * 16,
@@ -139,5 +150,5 @@ impl SpecularTables {
     }
 }
 
-/// A slice in which the lobe reaches less than this share of its peak counts as dark in maps.
+/// A slice in which the lobe reaches less than this share of its largest one counts as dark in maps.
 const LEAST_SHARE: f32 = 1e-7;

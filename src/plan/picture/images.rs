@@ -2,7 +2,7 @@
 
 use super::super::active_lights::ActiveLights;
 use super::Picture;
-use crate::graph::{Builder, Format, Owner, ResourceId};
+use crate::graph::{Builder, Format, Limits, Owner, ResourceId};
 use crate::passes::azimuths;
 use crate::passes::azimuths::Azimuth;
 use crate::passes::sh_layout::{Sh, WedgeTexels};
@@ -156,14 +156,20 @@ impl SpecularSlices {
         builder: &mut Builder,
         size: [u32; 2],
         (environment, border): (Option<&Environment>, Border),
-        quality: &Quality,
+        (quality, limits): (&Quality, &Limits),
         PhongSpecular { exponent, scale }: PhongSpecular,
     ) -> Self {
         // An azimuth for each column of the environment: a bright spot stays in its place.
-        let fine_count = environment.map_or(512, |e| (e.width() as u32).clamp(512, 2048));
+        let fits = environment
+            .map_or(u64::MAX, |e| limits.buffer_bytes / (48 * e.rows_above_ground(border) as u64));
+        let fine_count = environment
+            .map_or(512, |e| (e.width() as u32).clamp(512, 2048))
+            .min(limits.image_layers)
+            .min(fits.min(2048) as u32);
         let turn_rad = environment.map_or(0.0, Environment::rotation_rad);
         let fine: Vec<Azimuth> = azimuths::even_wedges(fine_count, turn_rad);
-        let (fine_azimuths, _) = builder.constants(bytemuck::cast_slice(&fine));
+        let (fine_azimuths, first) = builder.constants(bytemuck::cast_slice(&fine));
+        assert_eq!(first, 0, "azimuths are read from the first constant");
         let fine_rows = environment.map(|e| {
             let rows = e.rows_above_ground(border) as u64;
             builder.buffer("fine_rows", u64::from(fine_count) * rows * 48, false)
@@ -173,7 +179,12 @@ impl SpecularSlices {
         let [swept, fine] =
             [("specular_tables", nodes, quality.azimuths), ("fine_specular_tables", 1, fine_count)]
                 .map(|(name, nodes, count)| {
-                    SpecularTables::make(builder, name, exponent, border, [nodes, layers(count)])
+                    let layers = layers(count);
+                    // Where light decides the azimuths, they may lie four times as far apart as even ones.
+                    let farthest = if layers > 1 { 4.0 } else { 1.0 };
+                    let gap_rad = farthest * std::f32::consts::PI / count as f32;
+                    let lobe = (exponent, gap_rad);
+                    SpecularTables::make(builder, name, lobe, border, [nodes, layers])
                 });
         // Nodes a quarter of the lobe's deviation apart, 1/√n radians.
         let width = (4.0 * TAU * exponent.sqrt()).ceil() as u32;

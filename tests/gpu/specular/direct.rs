@@ -93,6 +93,34 @@ fn a_tilted_plane_reflects_what_it_leaves_free() {
     }
 }
 
+/// In a pit whose walls hide every mirror direction a lobe narrower than the gap between two azimuths reflects next to nothing: of
+/// the walls' tops, more than 9 deviations away, e^-40.
+#[test]
+fn hidden_light_stays_hidden_between_azimuths() {
+    let mut gpu = Device::new();
+    let side = 33;
+    let pit = field(side, side, [1.0, 1.0], |r, c| {
+        let away = [r, c].map(|i| (i as f64 - 16.0).abs()).into_iter().fold(0.0, f64::max);
+        // A floor that is tilted to mirror the zenith to 30 degrees, between azimuths 0 and 1 of 16; walls up to 70 degrees.
+        let tilt = 30.0_f64.to_radians().tan();
+        let (x, y) = (c as f64 - 16.0, 16.0 - r as f64);
+        let turn = PI / 16.0;
+        if away > 4.0 { 45.0 } else { -tilt * (x * turn.cos() + y * turn.sin()) }
+    });
+    let mut scene = shiny(pit, 1000.0, 0.5);
+    for environment in [false, true] {
+        if environment {
+            let even = Environment::unknown(64, 32, 0.0).expect("an environment");
+            scene.lights = Lights { environment: Some(even), ..Lights::default() };
+        }
+        let quality = Quality { azimuths: 16, method: Method::BruteForce, ..Quality::default() };
+        let lit = gpu.picture(&scene, &quality);
+        let found = lit.values[(16 * side + 16) * lit.channels];
+        println!("{environment}: {found:e}");
+        assert!(found.abs() < 1e-3, "{environment}: {found}");
+    }
+}
+
 /// An environment of one colour is the sky of that colour. Azimuths and tables are the same but for the environment's rows, which
 /// sum to the wedge: 1e-5, one rounding a row and piece.
 #[test]

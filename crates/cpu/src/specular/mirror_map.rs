@@ -93,13 +93,15 @@ pub fn direction(x: usize, y: usize, [width, height]: [usize; 2]) -> DVec3 {
     (flat * elevation.cos()).extend(elevation.sin())
 }
 
-/// A slice in which the lobe reaches less than this share of its peak counts as dark.
-const LEAST_SHARE: f64 = 1e-7;
-
-/// `mirror_map`, row-major from straight down.
+/// `mirror_map`, row-major from straight down. A slice in which the lobe is below `least_share` of its peak counts as dark.
 ///
 /// Directions err by 6 ε. Sums round once an azimuth. A slice near the least share may count or not.
-pub fn mirror_map(tables: &Tables, azimuths: &[Azimuth], size: [usize; 2]) -> Vec<Tabulated> {
+pub fn mirror_map(
+    tables: &Tables,
+    azimuths: &[Azimuth],
+    size: [usize; 2],
+    least_share: f64,
+) -> Vec<Tabulated> {
     let node = (tables.slices.nodes - 1) as f64;
     let at = |i: usize| {
         let mirror = direction(i % size[0], i / size[0], size);
@@ -110,7 +112,7 @@ pub fn mirror_map(tables: &Tables, azimuths: &[Azimuth], size: [usize; 2]) -> Ve
             let power = (1.0 - across * across).max(0.0).powf(0.5 * tables.slices.exponent);
             let Tabulated { light, tolerance } =
                 tables.light((k, azimuth), mirror, node, [6.0 * EPSILON, 0.0]);
-            if power > 1.01 * LEAST_SHARE {
+            if power > 1.01 * least_share {
                 sum.light += light;
                 sum.tolerance += tolerance;
             } else {

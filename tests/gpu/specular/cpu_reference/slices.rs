@@ -109,6 +109,7 @@ pub(crate) fn specular_tables(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 pub(crate) fn mirror_map(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     const AZIMUTH_COUNT: usize = offset("MirrorMapPush", "azimuth_count");
     const EXPONENT: usize = offset("MirrorMapPush", "exponent");
+    const LEAST: usize = offset("MirrorMapPush", "least");
     let count = pushed(pass, AZIMUTH_COUNT) as usize;
     let azimuths = azimuths_of(run, pass, count);
     let all = texels(run, pass, "specular_tables");
@@ -116,7 +117,8 @@ pub(crate) fn mirror_map(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let slices = slices(run.border(), float(pass, EXPONENT), [peaks, nodes]);
     let size = run.extent(pass, "mirror_map");
     let got = texels(run, pass, "mirror_map");
-    let want = map_reference::mirror_map(&Tables { slices, texels: &all }, &azimuths, size);
+    let tables = Tables { slices, texels: &all };
+    let want = map_reference::mirror_map(&tables, &azimuths, size, float(pass, LEAST));
     three(&got, &want, |i| [0, i / size[0], i % size[0]])
 }
 
