@@ -183,8 +183,8 @@ impl SpecularSlices {
                     // Where light decides the azimuths, they may lie four times as far apart as even ones.
                     let farthest = if layers > 1 { 4.0 } else { 1.0 };
                     let gap_rad = farthest * std::f32::consts::PI / count as f32;
-                    let lobe = (exponent, gap_rad);
-                    SpecularTables::make(builder, name, lobe, border, [nodes, layers])
+                    let of = (exponent, gap_rad);
+                    SpecularTables::make(builder, name, of, border, [nodes, layers])
                 });
         // Nodes a quarter of the lobe's deviation apart, 1/√n radians.
         let width = (4.0 * TAU * exponent.sqrt()).ceil() as u32;
