@@ -16,7 +16,7 @@ pub struct DeviceReport {
     pub api: String,
     /// "cpu", "discrete gpu" and so on.
     pub kind: &'static str,
-    /// Limits for a plan; the memory budget is half of the largest device-local heap.
+    /// Limits for a plan, as of [`limits`].
     pub limits: Limits,
     /// Subgroup size, in invocations.
     pub subgroup_size: u32,
@@ -62,7 +62,8 @@ pub fn missing(instance: &ash::Instance, physical_device: vk::PhysicalDevice) ->
     report(instance, physical_device).missing
 }
 
-/// Limits for a plan; `memory_budget` is half of the largest device-local heap.
+/// Limits for a plan; `memory_budget` is half of the largest device-local heap, and all of it on a
+/// software driver, whose heap is a number and no memory that others use.
 pub fn limits(instance: &ash::Instance, physical_device: vk::PhysicalDevice) -> Limits {
     report(instance, physical_device).limits
 }
@@ -160,6 +161,7 @@ pub(crate) fn report(
     let heaps = &memory.memory_heaps[..memory.memory_heap_count as usize];
     let local = heaps.iter().filter(|h| h.flags.contains(vk::MemoryHeapFlags::DEVICE_LOCAL));
     let heap = local.map(|h| h.size).max().unwrap_or(0);
+    let is_cpu = core.device_type == vk::PhysicalDeviceType::CPU;
     let text = |bytes: &CStr| bytes.to_string_lossy().into_owned();
     let version = core.api_version;
     DeviceReport {
@@ -190,8 +192,8 @@ pub(crate) fn report(
             groups: core.limits.max_compute_work_group_count.into_iter().min().unwrap_or(0),
             texels: core.limits.max_texel_buffer_elements,
             shared_bytes: core.limits.max_compute_shared_memory_size,
-            is_cpu: core.device_type == vk::PhysicalDeviceType::CPU,
-            memory_budget: heap / 2,
+            is_cpu,
+            memory_budget: if is_cpu { heap } else { heap / 2 },
         },
         subgroup_size: subgroups.subgroup_size,
         timestamp_period_ns: if compute.is_some_and(|f| f.timestamp_valid_bits > 0) {

@@ -502,7 +502,8 @@ enum RidgelightResult ridgelight_check_device(PFN_vkGetInstanceProcAddr get_inst
                                               VkPhysicalDevice physical_device);
 
 // Plans a picture of a scene for a host's device. `quality` may be null; `picture` is flags
-// RIDGELIGHT_PICTURE_; `memory_budget` is bytes of all images and buffers, 0: half of the largest heap.
+// RIDGELIGHT_PICTURE_; `memory_budget` is bytes of all images and buffers, 0: half of the largest heap, all
+// of a software driver's.
 //
 // Returns OK, ARGUMENT, SETTING or LIMIT.
 //

@@ -33,7 +33,8 @@ pub const RIDGELIGHT_PICTURE_KEEPS_HORIZONS: u32 = 4;
 pub const RIDGELIGHT_PICTURE_COLOURS_ON_DEVICE: u32 = 8;
 
 /// Plans a picture of a scene for a host's device. `quality` may be null; `picture` is flags
-/// RIDGELIGHT_PICTURE_; `memory_budget` is bytes of all images and buffers, 0: half of the largest heap.
+/// RIDGELIGHT_PICTURE_; `memory_budget` is bytes of all images and buffers, 0: half of the largest heap, all
+/// of a software driver's.
 ///
 /// Returns OK, ARGUMENT, SETTING or LIMIT.
 ///

@@ -425,7 +425,8 @@ pub struct GlobalArgs {
     /// Default the first GPU that meets the requirements, else a software driver.
     #[arg(long, value_name = "NAME|INDEX")]
     pub device: Option<String>,
-    /// Largest memory of images and buffers, as 512MiB or 2GiB; default half of the device's
+    /// Largest memory of images and buffers, as 512MiB or 2GiB; default half of the device's,
+    /// all of a software driver's
     ///
     /// With less, the planner chooses slower settings or refuses the scene.
     #[arg(long, hide_short_help = true, value_name = "SIZE", value_parser = bytes, allow_negative_numbers = true)]

@@ -13,13 +13,17 @@ use super::job::Job;
 use super::stages::{Stage, Stages, total};
 use super::{compute, finish, open, request};
 use crate::args::BakeArgs;
-use crate::bench::verify;
+use crate::bench::verify::{self, PIECE};
 use crate::setup::{self, terminal::digits};
 
 /// A trial has one in so many directions, paths, and pairs of light and view.
 const PART: usize = 16;
 /// A trial has one in so many azimuths. With fewer, the start of a frame would take more time than they do.
 const AZIMUTHS_PART: u32 = 4;
+/// A trial should take so many seconds: in a few milliseconds the start of each pass counts too much.
+const TRIAL_SECONDS: f64 = 0.5;
+/// The largest piece of a trial.
+const PIECE_AT_MOST: usize = 512;
 
 /// The expected time of a bake.
 pub struct Estimate {
@@ -29,30 +33,37 @@ pub struct Estimate {
     trial: Vec<Stage>,
     /// Seconds that the bake spends once, for example on pipelines, whatever its work.
     once: f64,
-    /// Seconds of the trial itself.
+    /// Seconds of all trials.
     took: f64,
     /// Upper bound of the bytes on disk.
     bytes: u64,
 }
 
 impl Estimate {
-    /// Runs a part of the bake on a piece of the field, twice. Only the first run makes pipelines;
-    /// the times of the second are proportional to the work.
+    /// Runs a part of the bake on a piece of the field, twice: only the first run makes pipelines. Then on a
+    /// larger piece where these runs were short. The times of the last run are proportional to the work.
     ///
     /// # Errors
     /// Those of the bake. Some may apply to the piece alone.
     pub fn of(gpu: &mut Headless, args: &BakeArgs, job: &Job) -> Result<Self> {
-        let cold = total(&trial(gpu, args, job)?);
-        let trial = trial(gpu, args, job)?;
-        let warm = total(&trial);
+        let cold = total(&trial(gpu, args, job, PIECE)?);
+        let mut trials = trial(gpu, args, job, PIECE)?;
+        let warm = total(&trials);
+        let mut took = cold + warm;
+        let side = (PIECE as f64 * (TRIAL_SECONDS / warm).sqrt()) as usize;
+        let longest = job.scene.field.rows().max(job.scene.field.cols());
+        if side > 2 * PIECE && longest > 2 * PIECE {
+            trials = trial(gpu, args, job, side.min(PIECE_AT_MOST))?;
+            took += total(&trials);
+        }
         let mut stages = job.stages()?;
-        for (stage, measured) in stages.iter_mut().zip(&trial) {
+        for (stage, measured) in stages.iter_mut().zip(&trials) {
             if measured.work > 0.0 {
                 stage.seconds = measured.seconds / measured.work * stage.work;
             }
         }
         let bytes = job.files().iter().map(|(_, bytes)| bytes).sum();
-        Ok(Self { stages, trial, once: (cold - warm).max(0.0), took: cold + warm, bytes })
+        Ok(Self { stages, trial: trials, once: (cold - warm).max(0.0), took, bytes })
     }
 
     fn seconds(&self) -> f64 {
@@ -94,9 +105,9 @@ pub fn unless_lost<T>(found: Result<T>) -> Result<std::result::Result<T, String>
     }
 }
 
-/// One run of a part of the bake on a piece of the field. Its files never get their names.
-fn trial(gpu: &mut Headless, args: &BakeArgs, job: &Job) -> Result<Vec<Stage>> {
-    let piece = verify::piece(job.scene)?;
+/// One run of a part of the bake on a piece of the field up to `side` wide. Its files never get their names.
+fn trial(gpu: &mut Headless, args: &BakeArgs, job: &Job, side: usize) -> Result<Vec<Stage>> {
+    let piece = verify::middle(job.scene, side)?;
     let part = |count: u32, part: u32, least: u32| count.div_ceil(part).max(least).min(count);
     let azimuths = part(job.quality.azimuths, AZIMUTHS_PART, 4);
     let quality = Quality { azimuths, ..*job.quality };

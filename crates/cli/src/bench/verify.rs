@@ -24,7 +24,7 @@ use ground_truth::PLACES;
 
 /// The oracle computes whole fields up to this side, and a piece of [`PIECE`]² of larger ones.
 const WHOLE: usize = 128;
-const PIECE: usize = 96;
+pub const PIECE: usize = 96;
 /// Root of the mean square.
 fn rms(values: impl Iterator<Item = f64>) -> f64 {
     let (count, sum) = values.fold((0.0, 0.0), |(n, sum), v| (n + 1.0, sum + v * v));
@@ -250,15 +250,23 @@ fn bounds(scene: &Scene, dark: f64, quality: &Quality) -> [f64; 4] {
     [sky, 2.0 * sky + 0.05, sky + 0.4, sphere_light]
 }
 
-/// The scene, or a piece of its middle with its own heights where it is too large for the oracle.
+/// The scene, or a piece of its middle where it is too large for the oracle.
 pub fn piece(scene: &Scene) -> Result<Scene> {
+    if scene.field.rows() <= WHOLE && scene.field.cols() <= WHOLE {
+        return Ok(scene.clone());
+    }
+    middle(scene, PIECE)
+}
+
+/// The middle of the scene with its own heights, up to `most` grid points wide and high.
+pub fn middle(scene: &Scene, most: usize) -> Result<Scene> {
     let field = &scene.field;
     let (rows, cols) = (field.rows(), field.cols());
-    if rows <= WHOLE && cols <= WHOLE {
+    if rows <= most && cols <= most {
         return Ok(scene.clone());
     }
     let range = |side: usize| {
-        let kept = side.min(PIECE);
+        let kept = side.min(most);
         (side - kept) / 2..(side - kept) / 2 + kept
     };
     let of: Vec<usize> = range(rows).flat_map(|r| range(cols).map(move |c| r * cols + c)).collect();
