@@ -1,12 +1,13 @@
-//! Checks and counts of the repository: `cargo xtask layers | words | size | surface | gallery [--check]`.
+//! Checks and counts of the repository: `cargo xtask layers | words | size | surface | gallery | install`.
 
+mod install;
 mod layers;
 mod size;
 mod source;
 mod surface;
 mod words;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 const USAGE: &str = "usage: cargo xtask COMMAND
@@ -15,7 +16,10 @@ const USAGE: &str = "usage: cargo xtask COMMAND
   words              coined words that tools/words.txt forbids; fails where there is one
   size               lines of Rust and GLSL, files a folder, README, dependencies of an embedder
   surface [--check]  public items of the core, as kept in tools/surface.txt
-  gallery            docs/gallery/index.md and its pictures, by the release program";
+  gallery            docs/gallery/index.md and its pictures, by the release program
+  install --prefix DIR
+                     the release program to DIR/bin, the C library to DIR/lib, its headers to DIR/include,
+                     with files for CMake and pkg-config";
 
 fn main() -> ExitCode {
     let root =
@@ -28,6 +32,7 @@ fn main() -> ExitCode {
         ["words"] => words::check(root),
         ["size"] => size::print(root),
         ["gallery"] => gallery(root),
+        ["install", "--prefix", prefix] => install::install(root, Path::new(prefix)),
         ["surface"] => surface::write(root),
         ["surface", "--check"] => surface::check(root),
         _ => {
@@ -49,26 +54,23 @@ fn main() -> ExitCode {
 
 /// Builds the program and the one that calls it, and runs them.
 fn gallery(root: &Path) -> Result<String, String> {
-    let cargo = |words: &[&str]| {
-        let mut command = std::process::Command::new(env!("CARGO"));
-        command.args(words).current_dir(root);
-        let status = command.status().map_err(|e| format!("cargo {}: {e}", words.join(" ")))?;
-        if status.success() { Ok(()) } else { Err(format!("cargo {} failed", words.join(" "))) }
-    };
-    cargo(&["build", "--release", "--locked", "--package", "ridgelight-cli"])?;
-    let target =
-        std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), Into::into);
-    let program = target.join("release/ridgelight");
+    cargo(root, &["build", "--release", "--locked", "--package", "ridgelight-cli"])?;
+    let program = target(root).join("release/ridgelight");
     let program = program.to_str().ok_or("the target folder is no UTF-8")?;
-    cargo(&[
-        "run",
-        "--release",
-        "--quiet",
-        "--package",
-        "ridgelight-measure",
-        "--",
-        "gallery",
-        program,
-    ])?;
+    let measure = ["run", "--release", "--quiet", "--package", "ridgelight-measure", "--"];
+    cargo(root, &[measure.as_slice(), &["gallery", program]].concat())?;
     Ok("wrote docs/gallery/index.md\n".to_owned())
+}
+
+/// Runs cargo in the repository.
+fn cargo(root: &Path, words: &[&str]) -> Result<(), String> {
+    let mut command = std::process::Command::new(env!("CARGO"));
+    command.args(words).current_dir(root);
+    let status = command.status().map_err(|e| format!("cargo {}: {e}", words.join(" ")))?;
+    if status.success() { Ok(()) } else { Err(format!("cargo {} failed", words.join(" "))) }
+}
+
+/// The folder of builds.
+fn target(root: &Path) -> PathBuf {
+    std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), |set| root.join(set))
 }

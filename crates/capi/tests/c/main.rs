@@ -109,13 +109,24 @@ enum With {
     Sanitizer,
 }
 
-/// Compiles a program against the header and a library.
+/// Compiles a program in C against the header and a library.
 fn compiled(folder: &Path, name: &str, source: &str, with: With) -> PathBuf {
-    let (file, program) = (folder.join(name).with_extension("c"), folder.join(name));
+    compiled_by(["cc", "-std=c11", "c"], folder, name, source, with)
+}
+
+/// By a compiler for a standard, from a file with an ending.
+fn compiled_by(
+    [compiler, standard, ending]: [&str; 3],
+    folder: &Path,
+    name: &str,
+    source: &str,
+    with: With,
+) -> PathBuf {
+    let (file, program) = (folder.join(name).with_extension(ending), folder.join(name));
     std::fs::write(&file, source).expect("a source");
     let shared = library("libridgelight_c.so");
-    let mut cc = Command::new("cc");
-    cc.args(["-std=c11", "-Wall", "-Wextra", "-Werror", "-g", "-I"]);
+    let mut cc = Command::new(compiler);
+    cc.args([standard, "-Wall", "-Wextra", "-Werror", "-g", "-I"]);
     cc.arg(Path::new(ROOT).join("crates/capi/include")).arg(&file).arg("-o").arg(&program);
     if with == With::Sanitizer {
         cc.arg("-fsanitize=address");
@@ -192,6 +203,37 @@ fn a_c_program_gives_the_command_lines_bytes() {
         let program = compiled(folder.path(), "wrong", &wrong, With::Shared);
         let (_, output) = run_validated(&program, &folder.path().join("wrong.texels"));
         assert!(is_complaint(&output), "validation reports nothing: {output}");
+    }
+}
+
+/// The same by C++ with vulkan.hpp and an allocator of its own, under both of its common ways to link.
+#[test]
+fn a_cpp_program_gives_the_command_lines_bytes() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let source = include_str!("host.cpp");
+    assert!(source.lines().count() <= 150, "an integrator's program");
+    let right = by_command_line(folder.path());
+    for (name, with) in [("static", With::Static), ("sane", With::Sanitizer)] {
+        let cpp = ["c++", "-std=c++17", "cpp"];
+        let program = compiled_by(cpp, folder.path(), name, source, with);
+        let out = folder.path().join("texels");
+        let (done, output) = run_validated(&program, &out);
+        assert!(done.status.success() && !is_complaint(&output), "{name}: {output}");
+        assert!(std::fs::read(out).expect("texels") == right, "{name}: other light");
+    }
+    // The header is for older standards too, and refuses an allocator that may throw.
+    let memory = "#include \"ridgelight.hpp\"\nstruct Memory { bool allocate(const RidgelightMemoryRequest &, \
+                  RidgelightAllocation &) NOEXCEPT; void free(const RidgelightAllocation &) noexcept; };\n\
+                  RidgelightAllocator made(Memory &memory) { return ridgelight::allocator(memory); }\n";
+    let file = folder.path().join("allocator.cpp");
+    std::fs::write(&file, memory).expect("a source");
+    for (noexcept, is_taken) in [("noexcept", true), ("", false)] {
+        let mut cpp = Command::new("c++");
+        cpp.args(["-std=c++11", "-fsyntax-only", "-Wall", "-Wextra", "-Werror", "-I"]);
+        cpp.arg(Path::new(ROOT).join("crates/capi/include")).arg(format!("-DNOEXCEPT={noexcept}"));
+        let (done, output) = run(cpp.arg(&file));
+        assert_eq!(done.status.success(), is_taken, "{output}");
+        assert!(is_taken || output.contains("an exception must not leave a callback"), "{output}");
     }
 }
 

@@ -44,12 +44,17 @@ fn camera() -> Result<String> {
 }
 
 /// Programs that an integrator would write, whole.
-const HOSTS: [(&str, &str, &str); 3] = [
+const HOSTS: [(&str, &str, &str); 4] = [
     ("Rust, `ash`", "examples/ash_host.rs", "the code above and an engine around it"),
     (
         "C, plain Vulkan",
         "crates/capi/tests/c/host.c",
         "the shared and the static library, also under the address sanitizer",
+    ),
+    (
+        "C++, `vulkan.hpp`",
+        "crates/capi/tests/c/host.cpp",
+        "the same with `ridgelight.hpp` and an allocator of its own",
     ),
     (
         "Rust, `wgpu`",
