@@ -2,6 +2,7 @@
 
 pub mod auto;
 pub mod camera;
+mod choices;
 
 use ridgelight::gpu::{Headless, Pixels};
 use ridgelight::plan::{self, Limits, Picture};
@@ -11,6 +12,8 @@ use ridgelight::{Error, Result};
 use ridgelight_io as files;
 use ridgelight_io::{Channels, Georeference, Layer as FileLayer};
 use std::path::Path;
+
+use choices::{Choice, Place};
 
 use crate::args::{Input, Layer, RenderArgs};
 use crate::idle;
@@ -84,18 +87,33 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
     })?;
     let (mut gpu, limits) = setup::device(&args.global)?;
     let progress = crate::setup::terminal::progress(args.global.quiet, "lighting");
-    let mut chosen = None;
+    let mut choice = None;
     if let Some(goal) = goal {
-        let found = auto::choose(
-            &mut gpu,
-            &limits,
-            &scene,
-            (goal, args.auto.seed.unwrap_or(0)),
-            (quality.hull, quality.bounces.count, wanted),
-            &progress,
-        )?;
-        quality = found.trial.quality;
-        chosen = Some((goal, found));
+        let goal = (goal, args.auto.seed.unwrap_or(0));
+        let place = Place::of((gpu.report(), &limits), &scene, goal, &quality, wanted);
+        let kept = if args.auto.no_cache { None } else { place.find() };
+        let kept = kept.and_then(|kept| Some((kept.quality().ok()?, kept)));
+        let (found, now) = match kept {
+            Some((found, kept)) => {
+                if !args.global.quiet {
+                    setup::note("choice: that of an earlier run; --no-cache chooses again");
+                }
+                (found, kept)
+            }
+            None => {
+                let own = (quality.hull, quality.bounces.count, wanted);
+                let chosen = auto::choose(&mut gpu, &limits, &scene, goal, own, &progress)?;
+                let now = Choice::of(goal, &chosen, &scene);
+                if !args.auto.no_cache
+                    && let Err(error) = place.keep(&now)
+                    && !args.global.quiet
+                {
+                    setup::note(&format!("choice: not kept: {error}"));
+                }
+                (chosen.trial.quality, now)
+            }
+        };
+        (quality, choice) = (found, Some(now));
         progress.set_message("lighting");
     }
     let plan = picture(&quality, &limits)?;
@@ -141,8 +159,8 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
         metadata.retain(|(name, _)| name != "albedo");
         metadata.push(("tint".to_owned(), tint.name()));
     }
-    if let Some((goal, chosen)) = &chosen {
-        metadata.extend(auto::metadata((*goal, args.auto.seed.unwrap_or(0)), chosen, &scene));
+    if let Some(choice) = &choice {
+        metadata.extend(choice.metadata.iter().cloned());
     }
     if let (Some(camera_view), Some(view)) = (&camera_view, &view) {
         metadata.extend(camera_view.settings(view, &scene.field));
@@ -185,8 +203,8 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
     }
     if let Some(json) = &args.global.json {
         let mut report = setup::as_json(&metadata, &times);
-        if let Some((goal, chosen)) = &chosen {
-            report["settings"]["tried"] = auto::tried(*goal, chosen, &scene, true).into();
+        if let Some(choice) = &choice {
+            report["settings"]["tried"] = choice.tried.as_str().into();
         }
         files::write_json(json, &report)?;
     }
@@ -207,7 +225,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
             let by = if args.exposure.is_none() { "automatic" } else { "given" };
             crate::say!("Picture: --tint {tint} --exposure {exposure} ({by}).");
         }
-        for sentence in chosen.iter().flat_map(|(goal, c)| auto::sentences(*goal, c, &scene)) {
+        for sentence in choice.iter().flat_map(|choice| &choice.sentences) {
             crate::say!("{sentence}");
         }
     }

@@ -77,7 +77,9 @@ fn rows(
     for most in ERRORS {
         counts[2] += 1;
         let head = format!("| {name} | {} |", 100.0 * most);
-        if let Some(why) = run("render", &["--max-error", &most.to_string()], &picture)? {
+        if let Some(why) =
+            run("render", &["--no-cache", "--max-error", &most.to_string()], &picture)?
+        {
             println!("{head} refused: {why} | | | | |");
             continue;
         }

@@ -31,4 +31,9 @@ pub struct AutoArgs {
     /// Another seed measures at other texels. With --max-error or --time-budget.
     #[arg(long, value_name = "S", value_parser = whole, allow_negative_numbers = true, help_heading = "Expert")]
     pub seed: Option<u32>,
+    /// Choose settings again, though an earlier run chose some for the same scene and goal
+    ///
+    /// Choices are kept in $XDG_CACHE_HOME/ridgelight, by device, driver and commit. With --max-error or --time-budget.
+    #[arg(long, help_heading = "Expert")]
+    pub no_cache: bool,
 }

@@ -31,11 +31,17 @@ pub fn goal(max_error: Option<f64>, time_budget: Option<f64>) -> Result<Option<G
     Ok(max_error.map(Goal::MaxError).or(cost))
 }
 
-/// Notes that a seed without a goal changes nothing.
+/// Notes that flags of the choice change nothing without a goal.
 pub fn say_idle(args: &AutoArgs, quiet: bool) {
-    let has_goal = args.max_error.is_some() || args.time_budget.is_some();
-    if let Some(seed) = args.seed.filter(|_| !has_goal && !quiet) {
-        idle::note("seed", &seed.to_string(), "without --max-error or --time-budget");
+    if args.max_error.is_some() || args.time_budget.is_some() || quiet {
+        return;
+    }
+    let without = "without --max-error or --time-budget";
+    if let Some(seed) = args.seed {
+        idle::note("seed", &seed.to_string(), without);
+    }
+    if args.no_cache {
+        setup::note(&format!("--no-cache changes nothing {without}"));
     }
 }
 

@@ -63,6 +63,47 @@ fn wrong_goals_are_refused() {
     );
 }
 
+/// The second run takes the choice of the first; another goal, or a file that cannot be read, takes none.
+#[test]
+fn gpu_a_choice_is_kept() {
+    let folder = Folder::new();
+    write_field(&folder, SIDE, peaks);
+    let args = "render field.npy -o out.exr --sky 1 --json out.json --max-error 0.05";
+    let kept = || {
+        let files = std::fs::read_dir(folder.path("cache/ridgelight/choices"));
+        files.map_or(Vec::new(), |all| all.map(|file| file.unwrap().path()).collect())
+    };
+    let note = "that of an earlier run";
+    let uncached = succeeded(&folder, &format!("{args} --no-cache"));
+    assert!(!uncached.notes.contains(note) && kept().is_empty(), "{}", uncached.notes);
+    let first = succeeded(&folder, args);
+    assert!(!first.notes.contains(note) && kept().len() == 1, "{}", first.notes);
+    let untimed = || {
+        let mut all = settings(&folder);
+        all.as_object_mut().unwrap().remove("gpu_ms");
+        all
+    };
+    let (chosen, lit) = (untimed(), std::fs::read(folder.path("out.exr")).unwrap());
+    let second = succeeded(&folder, args);
+    assert!(second.notes.contains(note), "{}", second.notes);
+    assert_eq!(without_time(&second.out), without_time(&first.out));
+    assert_eq!(untimed(), chosen);
+    assert!(std::fs::read(folder.path("out.exr")).unwrap() == lit, "another picture");
+    let other = succeeded(&folder, &args.replace("0.05", "0.04"));
+    assert!(!other.notes.contains(note) && kept().len() == 2, "{}", other.notes);
+    kept().iter().for_each(|file| std::fs::write(file, "{\"settings\": 3}").unwrap());
+    let third = succeeded(&folder, args);
+    assert!(!third.notes.contains(note), "{}", third.notes);
+    assert!(succeeded(&folder, args).notes.contains(note));
+    let idle = folder.run_str("render field.npy -o out.exr --sky 1 --no-cache");
+    assert!(idle.err.contains("--no-cache changes nothing"), "{}", idle.err);
+}
+
+/// What is printed but the line with the frame's time.
+fn without_time(out: &str) -> String {
+    out.lines().filter(|line| !line.contains("GPU time")).collect::<Vec<_>>().join("\n")
+}
+
 const SIDE: usize = 24;
 
 fn peaks(row: usize, col: usize) -> f32 {

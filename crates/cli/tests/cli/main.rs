@@ -74,6 +74,14 @@ impl Folder {
     fn command(&self, args: &[&str]) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_ridgelight"));
         command.current_dir(self.0.path()).args(args);
+        // Choices of other tests and of the user stay out; Mesa keeps its shaders where they are.
+        let caches = std::env::var_os("XDG_CACHE_HOME").map(PathBuf::from);
+        let caches =
+            caches.or_else(|| Some(PathBuf::from(std::env::var_os("HOME")?).join(".cache")));
+        if let (Some(caches), None) = (caches, std::env::var_os("MESA_SHADER_CACHE_DIR")) {
+            command.env("MESA_SHADER_CACHE_DIR", caches);
+        }
+        command.env("XDG_CACHE_HOME", self.path("cache"));
         command
     }
 
@@ -122,7 +130,8 @@ fn ran(mut command: Command) -> Run {
         let what = line.strip_prefix("note: ").and_then(|rest| rest.split(' ').next());
         let is_of_file = |what: &str| what.ends_with(':') || line.contains(" more: ");
         what.is_some_and(|what| {
-            ["night:", "estimate:"].contains(&what) || is_of_file(what) && what.contains('.')
+            ["night:", "estimate:", "choice:"].contains(&what)
+                || is_of_file(what) && what.contains('.')
         })
     };
     let (notes, err): (Vec<_>, Vec<_>) = text(output.stderr)

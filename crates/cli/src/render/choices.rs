@@ -1,0 +1,133 @@
+//! Choices of earlier runs, in the user's cache: the same question gets the same settings, at once.
+
+use std::fmt::{self, Write};
+use std::hash::{DefaultHasher, Hasher};
+use std::path::PathBuf;
+
+use ridgelight::Result;
+use ridgelight::gpu::DeviceReport;
+use ridgelight::plan::{self, Limits, Picture};
+use ridgelight::scene::{Albedo, Quality, SETTINGS, Scene, Specular};
+use ridgelight_io as files;
+use ridgelight_trade::auto::{Chosen, Goal};
+use serde::{Deserialize, Serialize};
+
+use super::auto;
+
+/// What a run with a goal prints and writes about its choice.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Choice {
+    /// The chosen settings, by name.
+    settings: Vec<(String, String)>,
+    /// Metadata for files and --json.
+    pub metadata: Vec<(String, String)>,
+    /// The settings that were tried, with times.
+    pub tried: String,
+    pub sentences: Vec<String>,
+}
+
+impl Choice {
+    pub fn of((goal, seed): (Goal, u32), chosen: &Chosen, scene: &Scene) -> Self {
+        let quality = &chosen.trial.quality;
+        Self {
+            settings: SETTINGS.iter().map(|s| (s.name.to_owned(), s.get(quality))).collect(),
+            metadata: auto::metadata((goal, seed), chosen, scene),
+            tried: auto::tried(goal, chosen, scene, true),
+            sentences: auto::sentences(goal, chosen, scene),
+        }
+    }
+
+    /// # Errors
+    /// Settings that this program does not have, in a file that another wrote.
+    pub fn quality(&self) -> Result<Quality> {
+        let mut quality = Quality::default();
+        for (name, value) in &self.settings {
+            let Some(setting) = SETTINGS.iter().find(|s| s.name == name) else {
+                return Err(ridgelight::Error::setting(name, value, "a setting"));
+            };
+            setting.set(&mut quality, value)?;
+        }
+        quality.check()?;
+        Ok(quality)
+    }
+}
+
+/// A choice's place in the cache: a file named by everything that it depends on.
+pub struct Place(Option<PathBuf>);
+
+impl Place {
+    /// The place for a scene, a goal and a seed, and the settings that stay the user's. `None` without a folder for
+    /// caches.
+    pub fn of(
+        (device, limits): (&DeviceReport, &Limits),
+        scene: &Scene,
+        (goal, seed): (Goal, u32),
+        quality: &Quality,
+        wanted: Picture,
+    ) -> Self {
+        let var =
+            |name: &str| std::env::var_os(name).map(PathBuf::from).filter(|p| p.is_absolute());
+        let caches = var("XDG_CACHE_HOME").or_else(|| var("HOME").map(|home| home.join(".cache")));
+        let mut hash = Hash(DefaultHasher::new());
+        for text in
+            [env!("CARGO_PKG_VERSION"), env!("RIDGELIGHT_COMMIT"), &device.name, &device.driver]
+        {
+            hash.0.write(text.as_bytes());
+            hash.0.write_u8(0);
+        }
+        // Heights, environment and maps.
+        for image in plan::picture_inputs(scene) {
+            hash.0.write_usize(image.len());
+            image.iter().for_each(|value| hash.0.write_u32(value.to_bits()));
+        }
+        let field = &scene.field;
+        let lights = &scene.lights;
+        let rotation_rad = lights.environment.as_ref().map(|e| e.rotation_rad());
+        let surface = &scene.surface;
+        let albedo =
+            if let Albedo::Constant(colour) = &surface.albedo { Some(colour) } else { None };
+        let specular = surface.specular.as_ref().map(|specular| match specular {
+            Specular::Constant(phong) => Some(phong),
+            Specular::Map(_) => None,
+        });
+        let all = (
+            (field.rows(), field.cols(), field.cell_m(), field.base_m(), field.voids()),
+            (lights.sky, rotation_rad, &lights.suns, &lights.keys, &lights.sphere_lights),
+            (surface.border, albedo, specular),
+            (goal, seed, quality, wanted, limits),
+        );
+        // Hashing cannot fail.
+        let _ = write!(hash, "{all:?}");
+        let name = format!("ridgelight/choices/{:016x}.json", hash.0.finish());
+        Self(caches.map(|folder| folder.join(name)))
+    }
+
+    /// What an earlier run chose. A file that cannot be read is none.
+    pub fn find(&self) -> Option<Choice> {
+        let text = std::fs::read(self.0.as_ref()?).ok()?;
+        serde_json::from_slice(&text).ok()
+    }
+
+    /// Keeps a choice.
+    ///
+    /// # Errors
+    /// A folder that cannot be written to.
+    pub fn keep(&self, choice: &Choice) -> Result<()> {
+        let Some(path) = &self.0 else { return Ok(()) };
+        let folder = path.parent().expect("it was joined");
+        let io = |source| ridgelight::Error::io(folder, source);
+        std::fs::create_dir_all(folder).map_err(io)?;
+        let value = serde_json::to_value(choice).map_err(|e| io(e.into()))?;
+        files::write_json(path, &value)
+    }
+}
+
+/// Hashes text as it is formatted.
+struct Hash(DefaultHasher);
+
+impl fmt::Write for Hash {
+    fn write_str(&mut self, text: &str) -> fmt::Result {
+        self.0.write(text.as_bytes());
+        Ok(())
+    }
+}
