@@ -60,10 +60,10 @@ impl Verifier {
     /// An error above its bound.
     pub fn check(&self, gpu: &mut Headless, quality: &Quality, limits: &Limits) -> Result<String> {
         if self.scene.surface.specular.is_some() {
-            let quality = &specular::quality(&self.scene, quality);
+            let quality = &specular::quality(&self.scene, quality, limits)?;
             let with_specular = &mut Device { gpu, quality, limits };
-            let specular_error =
-                specular::check(&self.scene, &self.ground_truth.places, with_specular)?;
+            let places = (self.ground_truth.places.as_slice(), self.ground_truth.dark());
+            let specular_error = specular::check(&self.scene, places, with_specular)?;
             let surface = Surface { specular: None, ..self.scene.surface.clone() };
             let diffuse = Scene { surface, ..self.scene.clone() };
             let found = Self { scene: diffuse, ground_truth: self.ground_truth.clone() };

@@ -2,8 +2,11 @@
 //! their series through the device's horizons, a sun by the device's own diffuse light. Specular by
 //! slices of the lobe is compared with the oracle.
 
+use std::f64::consts::TAU;
+
 use glam::DVec3;
 use ridgelight::Result;
+use ridgelight::plan::{self, Limits, Picture, Plan};
 use ridgelight::scene::{
     Albedo, Basis, Environment, Lights, PhongSpecular, Quality, Scene, Specular, Sun, Surface,
 };
@@ -14,30 +17,22 @@ use ridgelight_cpu::sun_specular::specular_on;
 use ridgelight_cpu::tolerance::{EPSILON, Land, device_resolved, device_sun_specular};
 
 use super::harmonics::{Place, with_nodes};
-use super::{Device, Wanted, colours, rms, sentence, within};
+use super::{Device, Wanted, bounds, colours, rms, sentence, within};
 
-/// Whether sky and environment are reflected by slices of the lobe, as the planner chooses.
-fn by_slices(scene: &Scene, quality: &Quality) -> Option<PhongSpecular> {
+/// The lobe where the plan reflects sky and environment by its slices.
+fn by_slices(scene: &Scene, plan: &Plan) -> Option<PhongSpecular> {
+    let is_sliced = plan.passes.iter().any(|pass| pass.name() == "specular_light");
     match scene.surface.specular {
-        Some(Specular::Constant(phong))
-            if quality.basis != Basis::Sh
-                && quality.bounces.count == 0
-                && shines_around(&scene.lights) =>
-        {
-            Some(phong)
-        }
+        Some(Specular::Constant(phong)) if is_sliced => Some(phong),
         _ => None,
     }
 }
 
-/// Sky and environment that light the specular surface.
-pub(super) fn quality(scene: &Scene, quality: &Quality) -> Quality {
-    match quality.basis {
-        Basis::Auto if by_slices(scene, quality).is_none() && shines_around(&scene.lights) => {
-            Quality { basis: Basis::Sh, ..*quality }
-        }
-        _ => *quality,
-    }
+/// The settings with the basis that the plan chooses for the specular surface.
+pub(super) fn quality(scene: &Scene, quality: &Quality, limits: &Limits) -> Result<Quality> {
+    let plan = plan::picture(scene, quality, limits, Picture::default())?;
+    let is_series = plan.settings.iter().any(|(name, value)| name == "basis" && value == "sh");
+    Ok(if is_series { Quality { basis: Basis::Sh, ..*quality } } else { *quality })
 }
 
 fn shines_around(lights: &Lights) -> bool {
@@ -45,19 +40,24 @@ fn shines_around(lights: &Lights) -> bool {
 }
 
 /// Phong specular of a scene at some of its texels.
-pub(super) fn check(scene: &Scene, places: &[usize], device: &mut Device) -> Result<String> {
+pub(super) fn check(
+    scene: &Scene,
+    (places, dark): (&[usize], f64),
+    device: &mut Device,
+) -> Result<String> {
     let scene = &half(scene);
-    if let Some(phong) = by_slices(scene, device.quality) {
+    let (plan, layers) = device.layers(scene, true)?;
+    if let Some(phong) = by_slices(scene, &plan) {
         let around = Lights { suns: Vec::new(), ..scene.lights.clone() };
-        let of_slices = slices(&Scene { lights: around, ..scene.clone() }, phong, places, device)?;
+        let around = Scene { lights: around, ..scene.clone() };
+        let of_slices = slices(&around, phong, (places, dark), device)?;
         if scene.lights.suns.is_empty() {
             return Ok(of_slices);
         }
         let suns = Lights { suns: scene.lights.suns.clone(), ..Lights::default() };
-        let of_suns = check(&Scene { lights: suns, ..scene.clone() }, places, device)?;
+        let of_suns = check(&Scene { lights: suns, ..scene.clone() }, (places, dark), device)?;
         return Ok(format!("{of_slices}; {of_suns}"));
     }
-    let (_, layers) = device.layers(scene, true)?;
     let layer = |name: &str| Some(colours(layers.iter().find(|p| p.name == name)?, places));
     let Some(found) = layer("direct.specular") else {
         return Ok("the specular scale is 0 everywhere".to_owned());
@@ -78,13 +78,10 @@ pub(super) fn check(scene: &Scene, places: &[usize], device: &mut Device) -> Res
 const SLICE_PLACES: usize = 12;
 
 /// Specular of sky and environment by slices of the lobe, against the oracle.
-///
-/// A horizon is known in each azimuth only. The lobe's deviation is 1/√(n + 1) rad to both sides: of
-/// what it covers, a wedge of 2π / azimuths may be visible or hidden whole.
 fn slices(
     scene: &Scene,
     phong: PhongSpecular,
-    places: &[usize],
+    (places, dark): (&[usize], f64),
     device: &mut Device,
 ) -> Result<String> {
     let (_, layers) = device.layers(scene, true)?;
@@ -93,16 +90,31 @@ fn slices(
     let Some(layer) = layers.iter().find(|p| p.name == "direct.specular") else {
         return Ok("the specular scale is 0 everywhere".to_owned());
     };
-    let found = colours(layer, &places);
-    let wanted = slices_of(scene, phong, &places);
-    let scale = rms(wanted.iter().flat_map(|v| v.to_array())).max(f64::MIN_POSITIVE);
-    let off = found.iter().zip(&wanted).flat_map(|(a, b)| (*a - *b).to_array());
-    let error = rms(off) / scale;
-    let covered = 2.0 / (f64::from(phong.exponent) + 1.0).sqrt();
-    let wedge = std::f64::consts::TAU / f64::from(device.quality.azimuths);
-    let bound = (wedge / covered).min(0.5);
+    let error = error_of(&colours(layer, &places), &slices_of(scene, phong, &places));
+    let bound = slices_bound(scene, phong, dark, device.quality);
     let within = within("specular light", "the oracle", error, bound, device.quality)?;
     Ok(sentence("specular", "the oracle", within))
+}
+
+/// Bound of the relative RMSE of specular by slices.
+///
+/// A horizon is known in each azimuth only, so an edge of what a lobe covers is misplaced by up to half a wedge:
+/// 1/√12 of it in the root mean square, at two edges √2 times that. The lobe is √(2π / (n + 1)) rad wide, as a
+/// Gaussian of its deviation. Edges are where something is hidden; the light of a hidden share of half the sky has
+/// one in every lobe. Horizons err as for the sky. Tables and maps err by 1 % at most (192 × 128 texels an azimuth;
+/// nodes a quarter of the lobe apart).
+fn slices_bound(scene: &Scene, phong: PhongSpecular, dark: f64, quality: &Quality) -> f64 {
+    let wedge = TAU / f64::from(quality.azimuths);
+    let lobe = (TAU / (f64::from(phong.exponent) + 1.0)).sqrt();
+    let edges = (2.0 / 12.0_f64).sqrt() * wedge / lobe * (2.0 * dark).min(1.0).sqrt();
+    let [of_sky, ..] = bounds(scene, dark, quality);
+    0.01 + edges + of_sky
+}
+
+/// RMSE over the root mean square.
+fn error_of(found: &[DVec3], wanted: &[DVec3]) -> f64 {
+    let scale = rms(wanted.iter().flat_map(|v| v.to_array())).max(f64::MIN_POSITIVE);
+    rms(found.iter().zip(wanted).flat_map(|(a, b)| (*a - *b).to_array())) / scale
 }
 
 /// The oracle's specular of sky and environment at some places.
@@ -206,6 +218,37 @@ fn of_sun(
 mod tests {
     use super::super::harmonics::tests::{places, scene as sunlit};
     use super::*;
+
+    /// Light by slices is refused where it is sharper, duller, of another light, or too bright by a tenth of the bound.
+    #[test]
+    fn wrong_light_by_slices_is_refused() {
+        let quality = Quality::default();
+        for exponent in [5.0, 20.0, 100.0] {
+            let of = |exponent: f32| PhongSpecular { exponent, scale: 0.5 };
+            let scene = sunlit();
+            let cols = scene.field.cols();
+            let places: Vec<usize> = (0..scene.field.heights_m().len()).step_by(cols + 7).collect();
+            let right = slices_of(&scene, of(exponent), &places);
+            let dark = super::super::GroundTruth::of(&scene).dark();
+            let bound = slices_bound(&scene, of(exponent), dark, &quality);
+            assert!(bound > 0.0 && bound < 0.2, "{exponent}: {bound}");
+            assert!(error_of(&right, &right) == 0.0);
+            let mut unlit = scene.clone();
+            unlit.lights.environment = None;
+            unlit.lights.sky = Some([1.0; 3]);
+            let scaled = |factor: f64| right.iter().map(|v| factor * *v).collect::<Vec<_>>();
+            let wrong = [
+                ("sharper", slices_of(&scene, of(2.0 * exponent), &places)),
+                ("duller", slices_of(&scene, of(0.5 * exponent), &places)),
+                ("of another light", slices_of(&unlit, of(exponent), &places)),
+                ("too bright", scaled(1.0 + 1.1 * bound)),
+            ];
+            for (what, wrong) in wrong {
+                let error = error_of(&wrong, &right);
+                assert!(error > bound, "{exponent}, {what}: {error} within {bound}");
+            }
+        }
+    }
 
     /// Wrong light is refused: sharper, without the sun, of the sun alone.
     #[test]
