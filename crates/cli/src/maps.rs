@@ -14,7 +14,7 @@ use ridgelight_io as files;
 use ridgelight_io::{Channels, Georeference, Layer};
 
 use crate::args::{FieldArgs, GlobalArgs, HillshadeArgs, Input, OpennessArgs, SkyViewArgs};
-use crate::lights::light;
+use crate::setup::lights::light;
 use crate::setup::{self, Outcome};
 use crate::{horizon, idle, render};
 

@@ -6,7 +6,7 @@ use clap::Args;
 use ridgelight::scene::{Lights, Sun};
 
 use super::{FieldArgs, GlobalArgs, Input, QualityArgs};
-use crate::lights::light;
+use crate::setup::lights::light;
 
 const HILLSHADE_HELP: &str = "\
 Values are 1 + 254 max(cos, 0), where cos is that between the normal and the sun: those of `gdaldem hillshade` (Horn), \
