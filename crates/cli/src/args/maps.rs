@@ -92,18 +92,10 @@ pub struct SkyViewArgs {
 )]
 pub struct OpennessArgs {
     #[command(flatten)]
-    pub input: Input,
-    #[command(flatten)]
-    pub file: MapOutput,
+    pub map: SkyViewArgs,
     /// Negative openness: that of the negated heights
     #[arg(long, help_heading = "Output")]
     pub negative: bool,
-    #[command(flatten)]
-    pub surface: FieldArgs,
-    #[command(flatten)]
-    pub quality: QualityArgs,
-    #[command(flatten)]
-    pub global: GlobalArgs,
 }
 
 #[derive(Args)]
