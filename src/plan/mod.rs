@@ -35,10 +35,8 @@
 //! After an edit of a rectangle of heights, [`Plan::edit_passes`] suffice.
 
 mod active_lights;
-mod bend;
+mod bake;
 mod change;
-mod ellipses;
-mod facet_mask;
 mod finish;
 mod horizons;
 mod map;
@@ -46,12 +44,12 @@ mod picture;
 mod preview;
 mod print;
 mod reference;
-pub(crate) mod scatter;
 mod view;
-mod visible_points;
 
-pub use ellipses::{curved_ellipses, ellipses};
-pub use facet_mask::facet_mask;
+pub use bake::{
+    curved_ellipses, ellipses, facet_mask, scatter, scatter_inputs, scatter_views, views_at_once,
+    visible_points,
+};
 pub use horizons::horizons;
 pub use map::map;
 pub use picture::{Picture, picture, picture_inputs};
@@ -62,9 +60,7 @@ pub use reference::{
     REFERENCE_BATCH, listed_places, reference, reference_at, reference_in_bands, reference_inputs,
     unsampled_light_error,
 };
-pub use scatter::{scatter, scatter_inputs, scatter_views, views_at_once};
 pub use view::{View, ViewOptions, ViewPass, ViewResource, mesh_error_m};
-pub use visible_points::visible_points;
 
 pub use crate::graph::{
     Axis, Format, Kind, Limits, Owner, Pass, Reach, Rectangle, Resource, ResourceId,

@@ -1,6 +1,7 @@
 use super::Plan;
 use crate::graph::{Builder, Format, Kind, Limits, Owner};
-use crate::passes::preview::{self, Grid};
+use crate::passes::preview::Grid;
+use crate::passes::{preview_gather, preview_shade};
 use crate::scene::{Albedo, HeightField, Scene};
 use crate::{Error, Result};
 
@@ -62,11 +63,11 @@ pub fn preview(fine: &Scene, coarse: &Scene, lit: &Plan, limits: &Limits) -> Res
     let radiance = image("radiance", Owner::Output, four, fine_grid);
     gathered.push(("gathered", gathered_light));
     let coarse_albedo = (&coarse.surface.albedo, grey);
-    preview::plan_gather(&mut builder, coarse_grid, sun, coarse_albedo, &gathered);
+    preview_gather::plan(&mut builder, coarse_grid, sun, coarse_albedo, &gathered);
     let mut shaded = vec![("heights", heights)];
     shaded.extend(albedo.map(|albedo| ("albedo", albedo)));
     shaded.extend([("gathered", gathered_light), ("radiance", radiance)]);
-    preview::plan_shade(&mut builder, grids, sun, &fine.surface.albedo, &shaded);
+    preview_shade::plan(&mut builder, grids, sun, &fine.surface.albedo, &shaded);
     Plan::finish(builder, size, Vec::new(), Vec::new(), Vec::new(), Vec::new(), limits)
 }
 

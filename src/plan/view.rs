@@ -3,17 +3,15 @@
 mod passes;
 mod reduced;
 
-use std::f64::consts::TAU;
-
 use glam::{DMat4, DVec3, DVec4};
 
 use super::Plan;
 use crate::graph::bytes_text;
 use crate::graph::shaders::{PlinthDrawPush, SkyDrawPush, TerrainDrawPush};
 use crate::graph::{Format, Limits};
-use crate::passes::plinth_draw;
 use crate::passes::terrain_draw::TILE;
-use crate::scene::{Border, Camera, Lens, Scene, corners};
+use crate::passes::{plinth_draw, sky_draw};
+use crate::scene::{Camera, Lens, Scene, corners};
 use crate::{Error, Result};
 
 pub use passes::{ViewPass, ViewResource};
@@ -134,7 +132,13 @@ impl View {
             settings: settings(camera, options),
             terrain: TerrainDrawPush { tiles_across: across as i32, ..terrain },
             tiles: across * down,
-            sky: sky(scene, camera, options, lit.find("light_colours").is_some()),
+            sky: sky_draw::push(
+                scene,
+                camera,
+                options.aspect(),
+                options.background,
+                lit.find("light_colours").is_some(),
+            ),
             plinth,
             depths,
         };
@@ -291,33 +295,6 @@ fn projection(scene: &Scene, camera: &Camera, options: &ViewOptions) -> (DMat4, 
             let matrix = DMat4::orthographic_rh(-x, x, -y, y, far_m, near_m);
             (down * matrix, Depths::Even { near_m, far_m })
         }
-    }
-}
-
-/// `is_on_device`: only the device knows the sky's radiance.
-fn sky(scene: &Scene, camera: &Camera, options: &ViewOptions, is_on_device: bool) -> SkyDrawPush {
-    let [right, up, back] = camera.axes();
-    let half_m = match camera.lens {
-        Lens::Perspective { fov_rad } => (fov_rad / 2.0).tan(),
-        Lens::Orthographic { .. } => 0.0,
-    };
-    let four = |v: DVec3| v.extend(0.0).as_vec4().to_array();
-    let colour = |c: [f32; 3]| [c[0], c[1], c[2], 0.0];
-    let above = match (scene.lights.sky, &scene.lights.environment) {
-        (Some(sky), _) if !is_on_device => sky,
-        (None, Some(_)) => [0.0; 3],
-        _ => options.background,
-    };
-    let is_open = scene.surface.border == Border::Open;
-    let below = if is_open { above } else { options.background };
-    let turns = scene.lights.environment.as_ref().map_or(0.0, |e| e.rotation_rad() / TAU);
-    SkyDrawPush {
-        forward: four(-back),
-        right: four(right * half_m * options.aspect()),
-        down: four(-up * half_m),
-        above: colour(above),
-        below: colour(below),
-        rotation_turns: (turns - turns.floor()) as f32,
     }
 }
 

@@ -1,4 +1,4 @@
-//! Every setting, defined once. See [`Setting`] for what follows from a definition, and docs/adding.md for how to add one.
+//! Every setting, defined once. See [`Setting`] for what follows from a definition, and docs/adding/index.md for how to add one.
 
 use super::Surface;
 use super::choices::{

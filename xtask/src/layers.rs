@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
-use crate::source::{Outcome, after, code, files, read};
+use crate::source::{FILES, Outcome, after, code, crowded, files, read};
 
 /// Modules of the core, lowest first: each imports only what stands before it.
 const MODULES: [&str; 7] = ["error", "basis", "scene", "graph", "passes", "plan", "gpu"];
@@ -70,8 +70,12 @@ fn fenced(text: &str) -> String {
     format!("```text\n{text}```\n")
 }
 
-/// Fails on an import or a dependency that points upward, which every circle has.
+/// Fails on an import or a dependency that points upward, which every circle has, and on a folder with many files.
 pub fn check(root: &Path) -> Outcome {
+    let many = crowded(root)?;
+    if !many.is_empty() {
+        return Err(format!("layers: folders with more than {FILES} files: {}", many.join(", ")));
+    }
     let mut wrong = upward(&CRATES, &crates(root)?);
     wrong.extend(upward(&MODULES, &modules(root)?));
     wrong.extend(upward(&ROOMS, &rooms(root)?));
@@ -79,7 +83,9 @@ pub fn check(root: &Path) -> Outcome {
         return Err(format!("layers: {PAGE} is out of date; cargo xtask layers writes it"));
     }
     if wrong.is_empty() {
-        return Ok("layers: no circle, no import that points upward\n".to_owned());
+        return Ok(format!(
+            "layers: no circle, no import that points upward, no folder with more than {FILES} files\n"
+        ));
     }
     Err(format!("layers: imports that point upward:\n  {}", wrong.join("\n  ")))
 }

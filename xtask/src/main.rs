@@ -12,10 +12,11 @@ use std::process::ExitCode;
 
 const USAGE: &str = "usage: cargo xtask COMMAND
   layers [--check]   crates, modules and their imports, also into docs/architecture.md;
-                     --check fails on a circle, an upward import or an old page
+                     --check fails on a circle, an upward import, an old page or a folder of
+                     more than 15 files
   words              coined words that tools/words.txt forbids; fails where there is one
   size               lines of Rust and GLSL, files a folder, README, dependencies of an embedder
-  surface [--check]  public items of the core, as kept in tools/surface.txt
+  surface [--check]  public items of the core, as kept in xtask/surface.txt
   gallery            docs/gallery/index.md and its pictures, by the release program
   install --prefix DIR
                      the release program to DIR/bin, the C library to DIR/lib, its headers to DIR/include,

@@ -1,14 +1,10 @@
 //! Figures of the repository's size.
 
-use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::Path;
 use std::process::Command;
 
-use crate::source::{Outcome, files, read};
-
-/// Files that a folder holds at most.
-const FILES: usize = 15;
+use crate::source::{FILES, Outcome, crowded, files, read};
 
 fn lines(
     root: &Path,
@@ -57,18 +53,7 @@ pub fn print(root: &Path) -> Outcome {
     );
     let readme = read(&root.join("README.md"))?;
     row("README.md", format!("{} bytes, {} lines", readme.len(), readme.lines().count()));
-    let mut folders: BTreeMap<String, usize> = BTreeMap::new();
-    for path in
-        files(root, &["rs", "comp", "vert", "frag", "glsl", "md", "txt", "c", "h", "png", "svg"])
-    {
-        let inside = path.strip_prefix(root).expect("below it");
-        let folder = inside.parent().expect("a file has a folder").to_string_lossy().into_owned();
-        *folders.entry(folder).or_default() += 1;
-    }
-    let many = folders
-        .iter()
-        .filter(|(name, count)| **count > FILES && !name.starts_with("benches/results"));
-    let many: Vec<_> = many.map(|(name, count)| format!("{name} {count}")).collect();
+    let many = crowded(root)?;
     row(
         &format!("folders with more than {FILES} files"),
         format!("{} {}", many.len(), many.join(", ")),

@@ -1,7 +1,9 @@
 //! Files of the repository, and Rust without what readers of its structure skip.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 /// What a command prints, or why it fails.
 pub type Outcome = Result<String, String>;
@@ -32,6 +34,31 @@ pub fn files(folder: &Path, extensions: &[&str]) -> Vec<PathBuf> {
     }
     found.sort();
     found
+}
+
+/// Files that a folder holds at most.
+pub const FILES: usize = 15;
+
+/// Folders with more than [`FILES`] files of git, and their number; results of measurements left out.
+pub fn crowded(root: &Path) -> Result<Vec<String>, String> {
+    let mut git = Command::new("git");
+    git.current_dir(root).args(["ls-files", "--", ".", ":!benches/results"]);
+    let done = git.output().map_err(|e| format!("git: {e}"))?;
+    if !done.status.success() {
+        return Err(format!("git ls-files: {}", String::from_utf8_lossy(&done.stderr)));
+    }
+    Ok(above(&String::from_utf8_lossy(&done.stdout)))
+}
+
+/// The same of a list of paths.
+fn above(paths: &str) -> Vec<String> {
+    let mut folders = BTreeMap::<&str, usize>::new();
+    for path in paths.lines() {
+        let folder = path.rsplit_once('/').map_or(".", |(folder, _)| folder);
+        *folders.entry(folder).or_default() += 1;
+    }
+    let many = folders.into_iter().filter(|(_, count)| *count > FILES);
+    many.map(|(folder, count)| format!("{folder} {count}")).collect()
 }
 
 /// Rust without its line comments and without the unit tests at a file's end.
@@ -85,6 +112,13 @@ mod tests {
         let names = after(text, "crate::");
         assert_eq!(names, ["plan", "Error", "passes", "scene", "gpu"]);
         assert!(after("$crate::graph::x", "crate::").is_empty());
+    }
+
+    #[test]
+    fn a_folder_may_hold_fifteen_files() {
+        let paths = |count: usize| (0..count).map(|i| format!("a/b/{i}.rs\n")).collect::<String>();
+        assert!(above(&(paths(FILES) + "a/x.rs\nx.rs\n")).is_empty());
+        assert_eq!(above(&paths(FILES + 1)), ["a/b 16"]);
     }
 
     #[test]

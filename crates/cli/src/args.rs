@@ -126,7 +126,7 @@ impl Cli {
             Command::Render(args) => Some(&mut args.quality),
             Command::Horizon(args) => Some(&mut args.quality),
             Command::Ao(args) | Command::Svf(args) => Some(&mut args.quality),
-            Command::Openness(args) => Some(&mut args.quality),
+            Command::Openness(args) => Some(&mut args.map.quality),
             Command::Bake(args) => Some(&mut args.quality),
             Command::Plan(args) => Some(&mut args.quality),
             Command::Bench(args) => Some(&mut args.quality),

@@ -29,7 +29,6 @@ mod bench;
 mod compare;
 mod horizon;
 mod idle;
-mod lights;
 mod maps;
 mod plan;
 mod reference;

@@ -14,7 +14,7 @@ use ridgelight_io as files;
 use ridgelight_io::{Channels, Georeference, Layer};
 
 use crate::args::{FieldArgs, GlobalArgs, HillshadeArgs, Input, OpennessArgs, SkyViewArgs};
-use crate::lights::light;
+use crate::setup::lights::light;
 use crate::setup::{self, Outcome};
 use crate::{horizon, idle, render};
 
@@ -221,9 +221,9 @@ pub fn sky_view_map(args: &SkyViewArgs) -> Result<Outcome> {
     job.write(&SKY_VIEW_VALUES, plane, metadata, &times)
 }
 
-pub fn openness(args: &OpennessArgs) -> Result<Outcome> {
+pub fn openness(OpennessArgs { map: args, negative }: &OpennessArgs) -> Result<Outcome> {
     let quality = args.quality.quality()?;
-    let sign = if args.negative { -1.0 } else { 1.0 };
+    let sign = if *negative { -1.0 } else { 1.0 };
     let surface = FieldArgs { z_scale: sign * args.surface.z_scale, ..args.surface };
     let job = Job::new(&args.input, &args.file.output, &surface, &args.global)?;
     let (field, border) = (&job.field, setup::border(&surface));
@@ -254,7 +254,7 @@ pub fn openness(args: &OpennessArgs) -> Result<Outcome> {
     // Without ground in any azimuth, 0/0 is NaN: no data.
     let mean = |(sum, count): &(f64, u32)| (sum / f64::from(*count)).to_degrees() as f32;
     let plane = sums.iter().map(mean).collect();
-    let values = if args.negative { &NEGATIVE_OPENNESS_VALUES } else { &OPENNESS_VALUES };
+    let values = if *negative { &NEGATIVE_OPENNESS_VALUES } else { &OPENNESS_VALUES };
     job.write(values, plane, metadata, &times)
 }
 

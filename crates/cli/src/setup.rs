@@ -1,5 +1,6 @@
 //! From arguments to scenes, qualities and devices; what commands print while they run.
 
+pub mod lights;
 mod settings_used;
 pub mod sky;
 pub mod terminal;
@@ -20,7 +21,7 @@ use crate::args::{
     BorderName, FieldArgs, GlobalArgs, Layer, LightArgs, SkyArg, SpecularArg, SurfaceArgs,
     albedo_colour, flag,
 };
-use crate::lights::{LIGHTS, light};
+use lights::{LIGHTS, light};
 pub use settings_used::{as_json, asked, metadata, of_field, typed};
 use tint::Tint;
 
@@ -180,7 +181,7 @@ fn lights_of(args: &LightArgs, unlit: Unlit) -> Result<Lights> {
         Unlit::Sky => Some(SkyArg::Uniform([1.0; 3])),
         Unlit::Daylight(camera_deg) => {
             let sun = sky::default_sun(camera_deg);
-            crate::lights::light("sun").add(&mut lights, &sun).expect("words of a sun");
+            light("sun").add(&mut lights, &sun).expect("words of a sun");
             Some(SkyArg::Clear)
         }
     };

@@ -3,9 +3,9 @@
 mod cube;
 pub mod hdr;
 
+use crate::arrays::planes::{Planes, read_planes};
 use crate::exr;
 use crate::open::{self, Format};
-use crate::planes::{Planes, read_planes};
 use crate::png;
 use cube::Picture;
 use ridgelight::scene::{Albedo, Environment, PhongSpecular, Specular};

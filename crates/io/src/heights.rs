@@ -12,10 +12,9 @@ pub mod size;
 pub mod tif;
 mod unpack;
 
+use crate::arrays::{npy, npz};
 use crate::exr;
 use crate::georeference::Georeference;
-use crate::npy;
-use crate::npz;
 use crate::open::{self, Format};
 use crate::png;
 pub(crate) use raster::{Cell, Raster, looks_like_degrees};

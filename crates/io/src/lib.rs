@@ -10,37 +10,29 @@
 
 #![deny(clippy::missing_errors_doc)]
 
+mod arrays;
 mod atomic;
-mod blocks;
-mod component;
-mod dds;
 mod environment;
 mod exr;
 mod georeference;
 mod geotiff;
 mod heights;
-mod ktx2;
-mod npy;
-mod npz;
 mod open;
-mod planes;
 mod png;
-mod visible_points;
+mod textures;
 
+pub use arrays::{
+    NpyWriter, Planes, parse_planes, read_planes, read_visible_points, write_npy_f32,
+    write_npy_heights, write_visible_points,
+};
 pub use atomic::{
     ResultFolder, Written, abandon_unfinished, check_room, check_writable, write_json, write_text,
 };
-pub use blocks::Block;
-pub use component::Component;
-pub use dds::DdsWriter;
 pub use environment::{parse_environment, read_albedo, read_environment, read_specular};
 pub use exr::{Channels, Layer, read_metadata, write_exr, write_exr_aside};
 pub use georeference::{GeoKeys, Georeference};
 pub use geotiff::{Band, GeoTiffWriter, write_geotiff};
 pub use heights::size::height_size;
 pub use heights::{FieldFile, HeightOptions, parse_heights, read_field, read_heights, read_mosaic};
-pub use ktx2::{Ktx2Writer, TexelFormat, Texels};
-pub use npy::{NpyWriter, write_npy_f32, write_npy_heights};
-pub use planes::{Planes, parse_planes, read_planes};
 pub use png::{encode_png, write_codes_aside, write_png};
-pub use visible_points::{read_visible_points, write_visible_points};
+pub use textures::{Block, Component, DdsWriter, Ktx2Writer, TexelFormat, Texels};

@@ -2,12 +2,13 @@
 //! `bounced_specular` holds the images of bounced specular light; the other files are one per pass.
 
 pub(crate) mod bounced_specular;
+/// Specular light of sky and environment without occlusion, by mirror direction.
+pub(crate) mod mirror_map;
 /// Specular with bounces: leaving light by direction or straight upwards.
 pub(crate) mod specular_exit;
 /// Specular light of sky and environment.
 pub(crate) mod specular_light;
-/// Light of sky and environment in a Phong lobe, by azimuth and elevation; and its maps over the mirror direction
-/// (pass `mirror_map`).
+/// Light of sky and environment in a Phong lobe, by azimuth and elevation.
 pub(crate) mod specular_tables;
 /// Specular with bounces: arriving light as SH.
 pub(crate) mod specular_visibility;

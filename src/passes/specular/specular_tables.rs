@@ -10,9 +10,9 @@ pub(crate) struct SpecularTables {
     /// Share of its peak that a lobe may have in the nearest azimuth: it may point between two.
     pub nearest_share: f32,
     /// Elevations of the lobe's peak, from `first_rad` to π.
-    peaks: u32,
+    pub(super) peaks: u32,
     /// Elevations up to which light is hidden, from the lowest to the zenith; 1 for the zenith alone.
-    nodes: u32,
+    pub(super) nodes: u32,
     /// One for each azimuth; one for all of them under a sky alone.
     layers: u32,
     border: Border,
@@ -50,11 +50,11 @@ impl SpecularTables {
     }
 
     /// Where light may come from below horizontal, a lobe may peak anywhere in a slice.
-    fn first_rad(&self) -> f32 {
+    pub(super) fn first_rad(&self) -> f32 {
         if self.border == Border::Open { -PI } else { -FRAC_PI_2 }
     }
 
-    fn range_rad(&self) -> f32 {
+    pub(super) fn range_rad(&self) -> f32 {
         PI - self.first_rad()
     }
 
@@ -114,41 +114,4 @@ impl SpecularTables {
             pass.azimuths = 0..self.layers;
         }
     }
-
-    /// Fills a map from the whole slices of the tables, of `count` azimuths.
-    pub(crate) fn plan_map(
-        &self,
-        builder: &mut Builder,
-        (part, why): (&str, &str),
-        count: u32,
-        ([azimuths, map], is_swept): ([ResourceId; 2], bool),
-        [width, height]: [u32; 2],
-    ) {
-        let texels = u64::from(width) * u64::from(height);
-        let pass = builder.pass(
-            shaders::MirrorMap {},
-            part,
-            why,
-            [width.div_ceil(8), height.div_ceil(8), 1],
-            &shaders::MirrorMapPush {
-                width: width as i32,
-                height: height as i32,
-                azimuth_count: count as i32,
-                node: (self.nodes - 1) as i32,
-                first_rad: self.first_rad(),
-                per_rad: (self.peaks - 1) as f32 / self.range_rad(),
-                exponent: self.exponent,
-                least: LEAST_SHARE * self.nearest_share,
-            },
-            &[("azimuths", azimuths), ("specular_tables", self.tables), ("mirror_map", map)],
-            texels * 16 + u64::from(count) * u64::from(self.peaks) * 16,
-            texels,
-        );
-        if is_swept {
-            pass.azimuths = 0..count;
-        }
-    }
 }
-
-/// A slice in which the lobe reaches less than this share of its largest one counts as dark in maps.
-const LEAST_SHARE: f32 = 1e-7;

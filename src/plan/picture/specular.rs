@@ -116,11 +116,25 @@ impl Drawing<'_> {
         let [unoccluded, swept] = slices.maps;
         let fine = ("unoccluded", "the reflection without occlusion, by mirror direction");
         let ids = [slices.fine_azimuths, unoccluded];
-        slices.fine.plan_map(builder, fine, slices.fine_count, (ids, false), slices.map_size);
+        passes::mirror_map::plan(
+            builder,
+            &slices.fine,
+            fine,
+            slices.fine_count,
+            (ids, false),
+            slices.map_size,
+        );
         let of_swept =
             ("swept", "the same from the swept azimuths, as occlusion is a share of them");
         let ids = [sweeping.azimuths, swept];
-        slices.swept.plan_map(builder, of_swept, count, (ids, true), slices.map_size);
+        passes::mirror_map::plan(
+            builder,
+            &slices.swept,
+            of_swept,
+            count,
+            (ids, true),
+            slices.map_size,
+        );
     }
 
     /// Specular of sky and environment by tables of the lobe.

@@ -3,6 +3,8 @@
 use ridgelight::plan::{self, Limits, Picture};
 use ridgelight::scene::{Albedo, HeightField, Lights, Quality, Scene, Sun, Surface};
 use ridgelight_cpu::preview::{self, Coarse, Colours};
+use ridgelight_cpu::preview_gather::preview_gather;
+use ridgelight_cpu::preview_shade::preview_shade;
 use ridgelight_cpu::tolerance::EPSILON;
 
 use crate::{Device, random};
@@ -137,7 +139,8 @@ fn previews_match_the_cpu_reference() {
             };
             let albedo = colours(coarse_albedo.as_slice());
             let coarse = Coarse { field: &coarse, radiance: &radiance, sun, albedo };
-            preview::preview(&fine, colours(fine_albedo.as_slice()), &coarse)
+            let albedo = colours(fine_albedo.as_slice());
+            preview_shade(&fine, albedo, &coarse, &preview_gather(&coarse))
         };
         // No cosine, albedo or light above is more than 1, and the least albedo 0.2.
         let most = 1.0 / 0.2 / least;

@@ -6,7 +6,7 @@ use clap::Args;
 use ridgelight::scene::{Lights, Sun};
 
 use super::{FieldArgs, GlobalArgs, Input, QualityArgs};
-use crate::lights::light;
+use crate::setup::lights::light;
 
 const HILLSHADE_HELP: &str = "\
 Values are 1 + 254 max(cos, 0), where cos is that between the normal and the sun: those of `gdaldem hillshade` (Horn), \
@@ -92,18 +92,10 @@ pub struct SkyViewArgs {
 )]
 pub struct OpennessArgs {
     #[command(flatten)]
-    pub input: Input,
-    #[command(flatten)]
-    pub file: MapOutput,
+    pub map: SkyViewArgs,
     /// Negative openness: that of the negated heights
     #[arg(long, help_heading = "Output")]
     pub negative: bool,
-    #[command(flatten)]
-    pub surface: FieldArgs,
-    #[command(flatten)]
-    pub quality: QualityArgs,
-    #[command(flatten)]
-    pub global: GlobalArgs,
 }
 
 #[derive(Args)]

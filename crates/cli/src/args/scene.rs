@@ -6,7 +6,7 @@ use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches, ValueEnum}
 use ridgelight::scene::Lights;
 
 use super::values::{SkyArg, SpecularArg, bbox, cell, sky, specular, whole};
-use crate::lights::LIGHTS;
+use crate::setup::lights::LIGHTS;
 use crate::setup::tint::Tint;
 
 #[derive(Args)]

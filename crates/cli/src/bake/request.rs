@@ -179,7 +179,7 @@ fn has_angles(kind: &Kind) -> bool {
 
 /// Notes flags of lights and surface that the requested kinds do not use.
 pub fn say_idle_light(args: &BakeArgs, scatters: bool) {
-    let lights: Vec<&str> = crate::lights::LIGHTS.iter().map(|light| light.id).collect();
+    let lights: Vec<&str> = crate::setup::lights::LIGHTS.iter().map(|light| light.id).collect();
     let lights = [&["sky", "env", "env_rotate"][..], &lights].concat();
     let groups: [(&[&str], Is); 2] =
         [(&lights, Kind::is_lit), (&["albedo", "specular"], Kind::is_light)];

@@ -10,6 +10,7 @@ use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
 use crate::args::InfoArgs;
+use crate::setup::lights::light;
 use crate::setup::{self, Outcome};
 
 /// Slopes beyond this are counted.
@@ -76,7 +77,7 @@ fn jobs(field: &HeightField) -> Result<[(&'static str, u64); 3]> {
     };
     let mut daylight = Lights::default();
     let sun = setup::sky::default_sun(None);
-    crate::lights::light("sun").add(&mut daylight, &sun).expect("words of a sun");
+    light("sun").add(&mut daylight, &sun).expect("words of a sun");
     daylight.environment = Some(setup::sky::clear(&daylight.suns[0])?);
     let mut bounced = Quality::default();
     bounced.bounces.count = 1;

@@ -2,7 +2,7 @@
 
 use ridgelight::scene::{SETTINGS, Values};
 
-use crate::lights::LIGHTS;
+use crate::setup::lights::LIGHTS;
 
 /// Stands for the positional argument.
 pub const INPUT: &str = "path";

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use super::keys::{INPUT, Key, Kind, Numbers, Or, Part, groups};
 use crate::args::{Cli, flag};
-use crate::lights::LIGHTS;
+use crate::setup::lights::LIGHTS;
 
 fn list(least: usize, most: usize) -> Value {
     json!({ "type": "array", "items": { "type": "number" }, "minItems": least, "maxItems": most })

@@ -4,8 +4,8 @@ use ridgelight::gpu::{Headless, Timing};
 use ridgelight::plan::Plan;
 use ridgelight::scene::{HeightField, Scene};
 
+use super::lights::LIGHTS;
 use crate::args::{FieldArgs, Input, LightArgs, SpecularArg, SurfaceArgs};
-use crate::lights::LIGHTS;
 use crate::setup::tint::Tint;
 
 /// The program and the field.

@@ -193,7 +193,7 @@ mod tests {
 
     fn sun(words: &str) -> Sun {
         let mut lights = Lights::default();
-        crate::lights::light("sun").add(&mut lights, words).unwrap();
+        crate::setup::lights::light("sun").add(&mut lights, words).unwrap();
         lights.suns[0]
     }
 

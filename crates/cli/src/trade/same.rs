@@ -8,7 +8,7 @@ use ridgelight::{Error, Result};
 use ridgelight_io as files;
 
 use crate::args::albedo_colour;
-use crate::lights::LIGHTS;
+use crate::setup::lights::LIGHTS;
 
 /// Tolerance of numbers that were written and read back as text.
 const NEAR: f64 = 1e-6;

@@ -1,5 +1,7 @@
 //! Comparisons whose figures are derived in comments; each bound is tested from both sides.
 
+mod refused;
+
 use crate::formats::{self, colour, hdr, npy, png};
 use crate::{Folder, Run};
 use serde_json::Value;

@@ -18,12 +18,13 @@ mod bake {
 }
 mod camera;
 mod compare;
-mod compare_refused;
-mod file_table;
+mod files {
+    pub mod gdal_inputs;
+    pub mod geotiff;
+    mod table;
+}
 #[path = "../../../../tests/common/formats.rs"]
 mod formats;
-mod gdal_inputs;
-mod geotiff;
 mod goals;
 mod library_messages;
 mod light;

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use serde_json::json;
 
-use crate::gdal_inputs::{grid, tool};
-use crate::geotiff::{gdal_values, gdalinfo};
+use crate::files::gdal_inputs::{grid, tool};
+use crate::files::geotiff::{gdal_values, gdalinfo};
 use crate::needs_vulkan::{done, plane, write_field};
 use crate::{Folder, read, refused};
 

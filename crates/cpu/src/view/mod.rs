@@ -5,5 +5,7 @@ pub mod map_draw;
 pub mod picture_tone;
 pub mod plinth_draw;
 pub mod preview;
+pub mod preview_gather;
+pub mod preview_shade;
 pub mod sky_draw;
 pub mod terrain_draw;

@@ -1,11 +1,6 @@
-//! The light of a coarse grid on the slopes of a finer one (`preview_gather`, `preview_shade`).
+//! What the references of a preview's passes share: the coarse grid's light, slopes, the sun.
 
 use ridgelight::scene::{HeightField, Sun};
-
-/// As in the shader: the least cosine to the sun to divide by.
-const GRAZING: f64 = 1e-3;
-/// As the shader's: albedo below which light is not divided by it.
-const DARK: f64 = 1e-3;
 
 /// The light of a coarse grid, R, G, B of each grid point: all of it, the sun's, and the albedo.
 pub struct Coarse<'a> {
@@ -29,7 +24,7 @@ pub enum Colours<'a> {
 }
 
 impl Colours<'_> {
-    fn at(&self, i: usize, c: usize) -> f64 {
+    pub(super) fn at(&self, i: usize, c: usize) -> f64 {
         f64::from(match self {
             Self::Constant(colour) => colour[c],
             Self::Map(all) => all[i][c],
@@ -37,59 +32,17 @@ impl Colours<'_> {
     }
 }
 
-/// Exit radiance of the fine grid.
-pub fn preview(fine: &HeightField, albedo: Colours<'_>, coarse: &Coarse<'_>) -> Vec<[f64; 3]> {
-    let towards = coarse.sun.map_or([0.0, 0.0, 1.0], |(_, sun)| direction(sun));
-    let most = coarse.sun.map_or([0.0; 3], |(_, sun)| sun.irradiance.map(f64::from));
-    let most = most.map(|e| e / std::f64::consts::PI);
-    let gathered: Vec<[f64; 4]> = (0..coarse.radiance.len())
-        .map(|i| {
-            let normal = normal(coarse.field, i);
-            let facing = dot(normal, towards).max(GRAZING);
-            let of = |c: usize| {
-                let sun = coarse.sun.map_or(0.0, |(light, _)| f64::from(light[i][c]));
-                let albedo = coarse.albedo.at(i, c).max(DARK);
-                let lit = albedo * most[c] * facing;
-                let share = if lit > 0.0 { sun / lit } else { 0.0 };
-                let sky = (f64::from(coarse.radiance[i][c]) - sun) / (albedo * (1.0 + normal[2]));
-                [sky, share]
-            };
-            let [r, g, b] = [0, 1, 2].map(of);
-            [r[0], g[0], b[0], r[1].max(g[1]).max(b[1]).clamp(0.0, 1.0)]
-        })
-        .collect();
-    let ratio = fine.cell_m()[0] / coarse.field.cell_m()[0];
-    (0..fine.rows() * fine.cols())
-        .map(|i| {
-            let light = between(&gathered, coarse.field, fine, (i, ratio));
-            let normal = normal(fine, i);
-            let facing = dot(normal, towards).max(0.0);
-            std::array::from_fn(|c| {
-                let all = light[c] * (1.0 + normal[2]) + light[3] * most[c] * facing;
-                all * albedo.at(i, c)
-            })
-        })
-        .collect()
-}
+impl Coarse<'_> {
+    /// The direction to its sun; up where there is none.
+    pub(super) fn towards(&self) -> [f64; 3] {
+        self.sun.map_or([0.0, 0.0, 1.0], |(_, sun)| direction(sun))
+    }
 
-/// Bilinear at a fine grid point's centre.
-fn between(
-    gathered: &[[f64; 4]],
-    coarse: &HeightField,
-    fine: &HeightField,
-    (i, ratio): (usize, f64),
-) -> [f64; 4] {
-    let along = |at: usize, count: usize| {
-        let from = ((at as f64 + 0.5) * ratio - 0.5).clamp(0.0, (count - 1) as f64);
-        let first = from.floor() as usize;
-        (first, (first + 1).min(count - 1), from - from.floor())
-    };
-    let (west, east, x) = along(i % fine.cols(), coarse.cols());
-    let (north, south, y) = along(i / fine.cols(), coarse.rows());
-    let at = |row: usize, col: usize| gathered[row * coarse.cols() + col];
-    let corners = [at(north, west), at(north, east), at(south, west), at(south, east)];
-    let weights = [(1.0 - x) * (1.0 - y), x * (1.0 - y), (1.0 - x) * y, x * y];
-    std::array::from_fn(|k| corners.iter().zip(weights).map(|(v, w)| v[k] * w).sum())
+    /// Radiance of a white texel that faces the sun.
+    pub(super) fn most(&self) -> [f64; 3] {
+        let most = self.sun.map_or([0.0; 3], |(_, sun)| sun.irradiance.map(f64::from));
+        most.map(|e| e / std::f64::consts::PI)
+    }
 }
 
 /// Upward normal by central differences, one-sided at the edge.
@@ -111,36 +64,6 @@ pub fn direction(sun: &Sun) -> [f64; 3] {
     [across * sun.azimuth_rad.cos(), across * sun.azimuth_rad.sin(), sun.elevation_rad.sin()]
 }
 
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+pub(super) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// On one grid, where the sun reaches all of it, the light comes back as it was.
-    #[test]
-    fn one_grid_gives_its_light_back() {
-        let heights: Vec<f64> = (0..30).map(|i| 0.1 * f64::from(i * i % 7)).collect();
-        let field = HeightField::new(5, 6, &heights, [1.0, 2.0], None).unwrap();
-        let sun = Sun {
-            azimuth_rad: 0.7,
-            elevation_rad: 1.0,
-            diameter_rad: 0.0,
-            irradiance: [3.0, 2.0, 1.0],
-        };
-        let lit = |i: usize| dot(normal(&field, i), direction(&sun)) / std::f64::consts::PI;
-        let of_sun: Vec<[f32; 3]> =
-            (0..30).map(|i| sun.irradiance.map(|e| (f64::from(e) * lit(i)) as f32)).collect();
-        let radiance: Vec<[f32; 3]> = of_sun.iter().map(|s| s.map(|v| v + 0.25)).collect();
-        let white = Colours::Constant([1.0; 3]);
-        let sun = Some((of_sun.as_slice(), &sun));
-        let coarse = Coarse { field: &field, radiance: &radiance, sun, albedo: white };
-        for (found, want) in preview(&field, white, &coarse).iter().zip(&radiance) {
-            for c in 0..3 {
-                assert!((found[c] - f64::from(want[c])).abs() < 4.0 * f64::from(f32::EPSILON));
-            }
-        }
-    }
 }

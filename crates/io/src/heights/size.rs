@@ -1,6 +1,6 @@
 //! The size of a height field, from its header.
 
-use crate::npy::{tuple, value};
+use crate::arrays::npy::{tuple, value};
 use crate::open::{self, Format};
 use ::exr::meta::MetaData;
 use std::fs::{self, File};

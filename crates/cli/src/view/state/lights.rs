@@ -4,8 +4,8 @@ use ridgelight::scene::{SphereLight, Sun};
 
 use super::viewpoint::height;
 use super::{State, Wish, hundredths};
-use crate::lights::{LIGHTS, light};
 use crate::scene_file::Request;
+use crate::setup::lights::{LIGHTS, light};
 use crate::setup::sky;
 
 /// Colours that a sphere light cycles through; its brightest channel stays.

@@ -1,9 +1,9 @@
-use super::Plan;
 use super::bend::Bends;
 use super::visible_points::{check_field, images, one_image, plan_batch, texels};
 use crate::graph::{Builder, Format, Limits, Owner, ResourceId};
 use crate::passes::blocks::Blocks;
 use crate::passes::ellipse_fit as pass;
+use crate::plan::Plan;
 use crate::scene::{Border, Curvature, Directions, HeightField, OcclusionChange};
 use crate::{Error, Result};
 

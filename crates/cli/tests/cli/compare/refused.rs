@@ -1,6 +1,6 @@
 //! Pairs that cannot be compared.
 
-use crate::compare::{run, write};
+use super::{run, write};
 use crate::formats::{colour, hdr, npy, png};
 use crate::{Folder, refused};
 

@@ -6,13 +6,13 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use super::Plan;
 use super::bend::Bends;
 use super::visible_points::{images, one_image, plan_batch, texels};
 use crate::graph::bytes_text;
 use crate::graph::{Builder, Format, Limits, Owner, ResourceId};
 use crate::passes::blocks::Blocks;
 use crate::passes::scatter_gather::{self as pass, Source, Steps};
+use crate::plan::Plan;
 use crate::scene::{
     Albedo, Curvature, Directions, HeightField, Scatter, Scene, Specular, VisiblePoints, check_view,
 };

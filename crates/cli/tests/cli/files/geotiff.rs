@@ -8,9 +8,9 @@ use std::process::Command;
 
 /// UTM zone 33 north, cells of 10 m x 20 m, the first pixel's corner at 500 km east, 5,100 km north.
 /// Written by GDAL: see tests/files/gdal/write.sh.
-const UTM: &[u8] = include_bytes!("../../../../tests/files/gdal/utm.tif");
+const UTM: &[u8] = include_bytes!("../../../../../tests/files/gdal/utm.tif");
 /// The same, PixelIsPoint, with NAVD88 heights in feet as its vertical reference.
-const POINT: &[u8] = include_bytes!("../../../../tests/files/gdal/utm_point_feet.tif");
+const POINT: &[u8] = include_bytes!("../../../../../tests/files/gdal/utm_point_feet.tif");
 
 fn folder() -> Folder {
     let folder = Folder::new();

@@ -1,7 +1,7 @@
 //! NumPy archives: a ZIP of `.npy` members with heights, and their cell size in scalars.
 
+use super::npy::{self, Array};
 use crate::heights::{Cell, Raster, looks_like_degrees};
-use crate::npy::{self, Array};
 use crate::open;
 use ridgelight::{Error, Result};
 use std::io::{Cursor, Read};

@@ -1,10 +1,10 @@
-use super::Plan;
 use super::visible_points::{check_field, texels};
 use crate::graph::bytes_text;
 use crate::graph::{Builder, Format, Limits, Owner};
 use crate::passes::blocks::Blocks;
 use crate::passes::facet_mask as pass;
 use crate::passes::facet_mask::DIRECTIONS_A_WORD;
+use crate::plan::Plan;
 use crate::scene::{Border, Directions, HeightField};
 use crate::{Error, Result};
 

@@ -1,7 +1,7 @@
 //! Height files written by GDAL: what is read is what GDAL reads.
 
+use super::geotiff::{gdal_values, gdalinfo};
 use crate::Folder;
-use crate::geotiff::{gdal_values, gdalinfo};
 use crate::needs_vulkan::done;
 use ridgelight::scene::HeightField;
 use ridgelight_io::{HeightOptions, read_field};

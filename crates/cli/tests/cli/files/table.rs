@@ -81,7 +81,7 @@ fn table() -> String {
     let names = "file | heights | cell size | position | reference system | no data | unit of height | compared with GDAL";
     let mut table = format!("\n| {names} |\n|{}\n", "---|".repeat(8));
     for row in &ROWS {
-        let utm = include_bytes!("../../../../tests/files/gdal/utm.tif");
+        let utm = include_bytes!("../../../../../tests/files/gdal/utm.tif");
         let found = files.iter().find(|file| file.0 == row.example);
         let bytes = found.map_or(utm.as_slice(), |file| file.1.as_slice());
         let path = folder.path().join(row.example);

@@ -1,9 +1,9 @@
 //! Results read back as plain planes, for comparison.
 
+use super::npy::Array;
 use crate::environment::hdr;
 use crate::exr;
 use crate::heights::{geotiff, tif};
-use crate::npy::Array;
 use crate::open::{self, Format};
 use crate::png;
 use ridgelight::{Error, Result};

@@ -1,8 +1,8 @@
-use super::Plan;
 use crate::graph::bytes_text;
 use crate::graph::{Builder, Format, Limits, Owner, ResourceId};
 use crate::passes::blocks::{Blocks, REACH_CELLS};
 use crate::passes::visible_points as pass;
+use crate::plan::Plan;
 use crate::scene::{Border, Directions, HeightField, VisiblePoints};
 use crate::{Error, Result};
 use std::ops::Range;

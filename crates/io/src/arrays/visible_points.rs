@@ -6,9 +6,9 @@
 //! [N, 3] f8: east, north, up. `lowest_direction_z` f8. `field_hash` [8] u1, little-endian: hash of
 //! the source field.
 
+use super::npy::{self, Array};
+use super::npz;
 use crate::atomic::Temporary;
-use crate::npy::{self, Array};
-use crate::npz;
 use crate::open;
 use glam::DVec3;
 use ridgelight::scene::{Border, Directions, HeightField, VisiblePoint, VisiblePoints};

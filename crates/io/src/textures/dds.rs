@@ -5,8 +5,8 @@ use std::path::Path;
 use ddsfile::{AlphaMode, D3D10ResourceDimension, DxgiFormat, Header, Header10};
 use ridgelight::{Error, Result};
 
+use super::ktx2::{level_size, most_levels};
 use crate::atomic::{Temporary, Written};
-use crate::ktx2::{level_size, most_levels};
 use crate::{Block, Component, TexelFormat, Texels};
 
 /// The DXGI format of texels; none for other counts of components.
