@@ -105,8 +105,8 @@ fn slices(
 /// nodes a quarter of the lobe apart).
 fn slices_bound(scene: &Scene, phong: PhongSpecular, dark: f64, quality: &Quality) -> f64 {
     let wedge = TAU / f64::from(quality.azimuths);
-    let lobe = (TAU / (f64::from(phong.exponent) + 1.0)).sqrt();
-    let edges = (2.0 / 12.0_f64).sqrt() * wedge / lobe * (2.0 * dark).min(1.0).sqrt();
+    let width = (TAU / (f64::from(phong.exponent) + 1.0)).sqrt();
+    let edges = (2.0 / 12.0_f64).sqrt() * wedge / width * (2.0 * dark).min(1.0).sqrt();
     let [of_sky, ..] = bounds(scene, dark, quality);
     0.01 + edges + of_sky
 }
