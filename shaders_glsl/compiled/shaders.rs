@@ -773,7 +773,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/sun_specular.comp`.
-    SUN_SPECULAR: "sun_specular", push SunSpecularPush, words 352233 9026,
+    SUN_SPECULAR: "sun_specular", push SunSpecularPush, words 352233 10572,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "sun_sum" SampledImage { uint: false, layered: false },
     2 writes "specular_sum" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -790,7 +790,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/surface_sweep.comp`.
-    SURFACE_SWEEP: "surface_sweep", push MarchPush, words 361259 6812,
+    SURFACE_SWEEP: "surface_sweep", push MarchPush, words 362805 6812,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "slopes" StorageImage { format: "Unknown", uint: true, layered: true },
@@ -804,7 +804,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/sweep_fuse.comp`.
-    SWEEP_FUSE: "sweep_fuse", push SweepFusePush, words 368071 18089,
+    SWEEP_FUSE: "sweep_fuse", push SweepFusePush, words 369617 18089,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rg32ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -824,7 +824,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/terrain_draw.frag`.
-    TERRAIN_DRAW_FRAG: "terrain_draw_frag", push TerrainDrawPush, words 386160 1129,
+    TERRAIN_DRAW_FRAG: "terrain_draw_frag", push TerrainDrawPush, words 387706 1129,
     1 reads "radiance" SampledImage { uint: false, layered: false },
     2 reads "voids" SampledImage { uint: false, layered: false },
     TerrainDrawFrag {
@@ -835,14 +835,14 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/terrain_draw.vert`.
-    TERRAIN_DRAW_VERT: "terrain_draw_vert", push TerrainDrawPush, words 387289 994,
+    TERRAIN_DRAW_VERT: "terrain_draw_vert", push TerrainDrawPush, words 388835 994,
     0 reads "heights" SampledImage { uint: false, layered: false },
     TerrainDrawVert;
 }
 
 shader! {
     /// `shaders_glsl/bounce/vector_reduce.comp`.
-    VECTOR_REDUCE: "vector_reduce", push ReducePush, words 388283 2964,
+    VECTOR_REDUCE: "vector_reduce", push ReducePush, words 389829 2964,
     0 reads "exit_vectors" SampledImage { uint: false, layered: true },
     1 reads "vector_source" SampledImage { uint: false, layered: true },
     2 writes "vector_levels" StorageImage { format: "Unknown", uint: false, layered: true },
@@ -855,7 +855,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bake/visible_points.comp`.
-    VISIBLE_POINTS: "visible_points", push VisiblePointsPush, words 391247 9687,
+    VISIBLE_POINTS: "visible_points", push VisiblePointsPush, words 392793 9687,
     0 reads "cells" SampledImage { uint: false, layered: false },
     1 reads "maxima" SampledImage { uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -1116,9 +1116,9 @@ layouts! {
         60 radius_m: f32, 64 reach_m: f32, 68 slices: i32, 72 slices_around: i32,
         76 first_slice: i32, 80 last_slice: i32, 84 pads: [i32; 3], 96 radiance: [f32; 4],
     }
-    push SunSpecularPush 72 {
+    push SunSpecularPush 88 {
         0 cols: i32, 4 rows: i32, 8 cell_x_m: f32, 12 cell_y_m: f32, 16 towards: [f32; 4],
-        32 colour: [f32; 4], 48 eye_m: [f32; 4], 64 specular: [f32; 2],
+        32 level: [f32; 4], 48 colour: [f32; 4], 64 eye_m: [f32; 4], 80 specular: [f32; 2],
     }
     push SweepFusePush 20 {
         0 cols: i32, 4 rows: i32, 8 warm_up: i32, 12 first_azimuth: u32, 16 first_layer: u32,
@@ -1153,4 +1153,4 @@ layouts! {
 }
 
 /// Words of all shaders together.
-const WORD_COUNT: usize = 400934;
+const WORD_COUNT: usize = 402480;

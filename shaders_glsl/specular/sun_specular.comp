@@ -1,5 +1,5 @@
-// Computes: Phong specular reflection of a sun towards the view, at every grid point: the lobe towards the sun's centre,
-// times the sun's visible fraction. That fraction is the sun's diffuse light over its
+// Computes: Phong specular reflection of a sun towards the view, at every grid point: the mean of the lobe over the sun's
+// disc, times the sun's visible fraction. That fraction is the sun's diffuse light over its
 // unoccluded diffuse light. Where another bounce follows, also the incident light of the sun as a series, all of it
 // from its centre.
 // Reads: lane_heights, sun_sum, phong_map.
@@ -30,7 +30,8 @@ layout(push_constant) uniform SunSpecularPush {
     int rows;
     float cell_x_m;
     float cell_y_m;
-    vec4 towards;  // the sun's centre
+    vec4 towards;  // the sun's centre; w: its angular radius squared
+    vec4 level;    // horizontal, at a right angle to the centre; w: 1 - cosine of the radius
     vec4 colour;   // irradiance; w: 1 where the sum begins
     vec4 eye_m;     // over the field's base; w: 0 for a view from straight above
     vec2 specular;  // Phong exponent and scale, where they are constant
@@ -39,6 +40,45 @@ layout(push_constant) uniform SunSpecularPush {
 #include "shared/quad.glsl"
 #include "specular/phong_lobe.glsl"
 #include "specular/mirror.glsl"
+#include "shared/angle.glsl"
+
+// Nodes and weights of Gauss and Legendre on [0, 1], for 1, 2, 4 and 8 rings, one after the other.
+const float NODES[15] = float[](0.5, 0.2113248654, 0.7886751346, 0.0694318442, 0.3300094782, 0.6699905218, 0.9305681558,
+                                0.0198550718, 0.1016667613, 0.2372337950, 0.4082826788, 0.5917173212, 0.7627662050,
+                                0.8983332387, 0.9801449282);
+const float WEIGHTS[15] = float[](1.0, 0.5, 0.5, 0.1739274226, 0.3260725774, 0.3260725774, 0.1739274226, 0.0506142681,
+                                  0.1111905172, 0.1568533229, 0.1813418917, 0.1813418917, 0.1568533229, 0.1111905172,
+                                  0.0506142681);
+
+// Integral of the lobe of exponent n over the sun's disc, for irradiance 1. Rings have equal solid angle per width of their
+// weights, and 4 directions each per ring: the error is 3e-4 of the lobe's peak, or n r^2 / 4 for the centre alone. Where
+// n r^2 > 48 the lobe is widened to that: it is then narrower than a seventh of the disc.
+float disc_density(vec3 mirror, float n) {
+    n = min(n, 48.0 / max(towards.w, 1e-30));
+    float wide = n * towards.w;
+    // Radiance times solid angle of a disc of irradiance 1.
+    float full = 2.0 / (2.0 - level.w);
+    if (wide <= 1e-3) {
+        return full * phong_lobe(towards.xyz - mirror, n);
+    }
+    int rings = wide <= 0.15 ? 1 : wide <= 2.0 ? 2 : wide <= 11.0 ? 4 : 8;
+    vec3 up = cross(towards.xyz, level.xyz);
+    float sum = 0.0;
+    for (int i = 0; i < rings; i++) {
+        float h = level.w * NODES[rings - 1 + i];
+        float across = sqrt(h * (2.0 - h));
+        vec3 apart = (towards.xyz - mirror) - h * towards.xyz;
+        float ring = 0.0;
+        for (int j = 0; j < rings; j++) {
+            float angle = (float(j) + 0.5) * (HALF_PI / float(rings));
+            vec3 a = across * (cosine(angle) * level.xyz + sine(angle) * up);
+            vec3 b = across * (cosine(angle) * up - sine(angle) * level.xyz);
+            ring += phong_lobe(apart + a, n) + phong_lobe(apart - a, n) + phong_lobe(apart + b, n) + phong_lobe(apart - b, n);
+        }
+        sum += WEIGHTS[rings - 1 + i] * ring / float(4 * rings);
+    }
+    return full * sum;
+}
 
 vec4 harmonics[36];
 #include "shared/harmonics.glsl"
@@ -95,7 +135,7 @@ void main() {
         float facing = dot(normal, towards.xyz);
         // Where the own plane cuts the disc, the visible fraction can exceed the mean cosine's.
         float visible = min(PI * texelFetch(sun_sum, at, 0).x / max(facing, 1e-30), 1.0);
-        float density = facing > 0.0 ? of.y * phong_lobe(towards.xyz - mirror, of.x) : 0.0;
+        float density = facing > 0.0 ? of.y * disc_density(mirror, of.x) : 0.0;
         // A: written by earlier SH passes.
         vec4 before = imageLoad(specular_sum, at);
         vec4 light = vec4(colour.rgb * (visible * density), 0.0);

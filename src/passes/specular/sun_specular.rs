@@ -17,6 +17,9 @@ pub(crate) fn plan(
     let (sin, cos) = sun.azimuth_rad.sin_cos();
     let (up, along) = sun.elevation_rad.sin_cos();
     let [east, north, up] = [cos * along, sin * along, up].map(|v| v as f32);
+    let radius = if sun.is_point() { 0.0 } else { 0.5 * sun.diameter_rad };
+    // 1 - cos without its cancellation.
+    let depth = 2.0 * (0.5 * radius).sin().powi(2);
     let [r, g, b] = sun.irradiance;
     let mut bound =
         vec![("lane_heights", lane_heights), ("sun_sum", sun_sum), ("specular_sum", specular_sum)];
@@ -32,14 +35,15 @@ pub(crate) fn plan(
             grey: outgoing.is_some_and(|specular| specular.grey),
         },
         name,
-        "the Phong lobe towards the sun, times the sun's visible part",
+        "the mean of the Phong lobe over the sun's disc, times its visible part",
         [axis.steps.div_ceil(8), axis.lanes.div_ceil(4 * 16), 1],
         &shaders::SunSpecularPush {
             cols: cols as i32,
             rows: rows as i32,
             cell_x_m: cell_m[0] as f32,
             cell_y_m: cell_m[1] as f32,
-            towards: [east, north, up, 0.0],
+            towards: [east, north, up, (radius * radius) as f32],
+            level: [-sin as f32, cos as f32, 0.0, depth as f32],
             colour: [r, g, b, f32::from(u8::from(begins))],
             eye_m,
             specular: [phong.constant.exponent, phong.constant.scale],

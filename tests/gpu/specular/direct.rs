@@ -3,6 +3,7 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::path::Path;
 
+use glam::DVec3;
 use ridgelight::basis::quadrature::integral;
 use ridgelight::basis::zonal::phong;
 use ridgelight::plan::{self, Picture};
@@ -12,7 +13,9 @@ use ridgelight::scene::{
 };
 use ridgelight_cpu::basis::cap;
 use ridgelight_cpu::indirect::{Fineness, light};
-use ridgelight_cpu::tolerance::{ShadeError, device_march_slope, device_sun_specular};
+use ridgelight_cpu::tolerance::{
+    EPSILON, ShadeError, device_march_slope, device_sun_specular, disc_rings,
+};
 use ridgelight_io as files;
 use ridgelight_io::HeightOptions;
 
@@ -194,8 +197,65 @@ fn the_narrowest_and_the_widest_lobe_keep_their_digits() {
     }
 }
 
+/// Level ground mirrors a whole disc: the integral of the lobe over it, by a fine grid of azimuths and elevations. The lobe at
+/// the disc's centre alone, which lit wide suns before, is refused where the lobe is narrow.
+#[test]
+fn a_wide_sun_is_mirrored_as_a_disc() {
+    let mut gpu = Device::new();
+    let (mut checked, mut wrong) = (0, 0);
+    for (degrees, elevation_deg) in [(0.53, 88.0), (5.0, 85.0), (5.0, 70.0), (20.0, 75.0)] {
+        // Narrower lobes are widened.
+        let narrowest = 48.0 / f64::to_radians(0.5 * degrees).powi(2);
+        let exponents = [1.0_f32, 20.0, 100.0, 1000.0, 10_000.0];
+        for exponent in exponents.into_iter().filter(|n| f64::from(*n) <= narrowest) {
+            let sun = Sun {
+                azimuth_rad: 0.7,
+                elevation_rad: f64::to_radians(elevation_deg),
+                diameter_rad: f64::to_radians(degrees),
+                irradiance: [3.0; 3],
+            };
+            let mut scene = shiny(field(4, 4, [1.0; 2], |_, _| 0.0), exponent, 0.5);
+            scene.lights = Lights { suns: vec![sun], ..Lights::default() };
+            let found = f64::from(gpu.picture(&scene, &Quality::default()).values[0]);
+            let radius = 0.5 * sun.diameter_rad;
+            let n = f64::from(exponent);
+            let centre = DVec3::new(sun.elevation_rad.cos(), 0.0, sun.elevation_rad.sin());
+            // Cells around the zenith, to which level ground mirrors, out to beyond the disc.
+            let reach = FRAC_PI_2 - sun.elevation_rad + radius;
+            let (rings, around) = (2000, 1000);
+            let mut sum = 0.0;
+            for ring in 0..rings {
+                let zenith = reach * (f64::from(ring) + 0.5) / f64::from(rings);
+                let cell = zenith.sin() * reach / f64::from(rings) * 2.0 * PI / f64::from(around);
+                let density = (n + 1.0) / (2.0 * PI) * zenith.cos().powf(n);
+                let inside = (0..around).filter(|k| {
+                    let (sin, cos) = (2.0 * PI * f64::from(*k) / f64::from(around)).sin_cos();
+                    let e = DVec3::new(zenith.sin() * cos, zenith.sin() * sin, zenith.cos());
+                    e.dot(centre) >= radius.cos()
+                });
+                sum += density * cell * inside.count() as f64;
+            }
+            let radiance = 3.0 / (PI * radius.sin().powi(2));
+            let want = 0.5 * radiance * sum;
+            let facing = sun.elevation_rad.sin();
+            // Cells at the edge are in or out: half a cell on either side, of a few thousand.
+            let tolerance =
+                3.0 * 0.5 * (device_sun_specular(n, 8.0 * EPSILON, facing) + disc_rings(n, &sun))
+                    + 2e-3 * want;
+            assert!(
+                (found - want).abs() <= tolerance,
+                "{degrees} {n}: {found} for {want} ± {tolerance}"
+            );
+            let at_centre = 3.0 * 0.5 * (n + 1.0) / (2.0 * PI) * facing.powf(n);
+            wrong += usize::from((at_centre - want).abs() > tolerance);
+            checked += 1;
+        }
+    }
+    assert!(checked >= 16 && wrong >= 6, "{checked} {wrong}");
+}
+
 /// Suns in a lobe match the quadrature: a point to f32's rounding; a disc by the lobe's change over it, √(n/e) of its
-/// peak a radian and its radius at most, where the horizon or the own plane cuts it, and n a²/4 otherwise.
+/// peak a radian and its diameter at most, where the horizon or the own plane cuts it.
 #[test]
 fn suns_in_a_lobe_are_the_quadratures() {
     let mut gpu = Device::new();
@@ -230,7 +290,9 @@ fn suns_in_a_lobe_are_the_quadratures() {
                     scene.lights.suns.iter().map(|s| f64::from(s.irradiance[c])).sum();
                 // For a sun with a cosine of a tenth or less: ten times f32's share.
                 let rounded = device_sun_specular(n, error.normal(), 0.1);
-                let uneven = peak * (n / std::f64::consts::E).sqrt() * 2.0 * radius;
+                let widest = scene.lights.suns[0];
+                let uneven =
+                    disc_rings(n, &widest) + peak * (n / std::f64::consts::E).sqrt() * 2.0 * radius;
                 let of_sum = 10.0 * PI * error.sun(if radius > 0.0 { PI } else { 1.0 }) * peak;
                 let bound = 0.5 * irradiance * (rounded + uneven + of_sum);
                 let off = (got - want).abs();

@@ -5,7 +5,7 @@ use ridgelight::plan::Pass;
 use ridgelight::scene::Sun;
 use ridgelight_cpu::shared::field::{field_slope, normal_of};
 use ridgelight_cpu::sun_specular as specular_reference;
-use ridgelight_cpu::tolerance::{EPSILON, device_sun_arriving, device_sun_specular};
+use ridgelight_cpu::tolerance::{EPSILON, device_sun_arriving, device_sun_specular, disc_rings};
 
 use super::bounced::paired;
 use super::slices::view_from;
@@ -39,7 +39,8 @@ pub(crate) fn sun_specular(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         let view = view_from(&heights, eye_m, i);
         let light = specular_reference::specular_on((normal, view), &sun, phong, sums[i].into());
         let tolerance =
-            device_sun_specular(phong.exponent.into(), error.normal(), normal.dot(towards));
+            device_sun_specular(phong.exponent.into(), error.normal(), normal.dot(towards))
+                + disc_rings(phong.exponent.into(), &sun);
         for (c, (got, sum)) in got.iter().zip(&mut run.specular[i]).enumerate() {
             let colour = f64::from(sun.irradiance[c]);
             let want = *sum + colour * light;

@@ -14,7 +14,7 @@ use ridgelight_cpu::harmonics::Harmonics;
 use ridgelight_cpu::light::{Receiver, Site};
 use ridgelight_cpu::oracle::Oracle;
 use ridgelight_cpu::sun_specular::specular_on;
-use ridgelight_cpu::tolerance::{EPSILON, Land, device_resolved, device_sun_specular};
+use ridgelight_cpu::tolerance::{EPSILON, Land, device_resolved, device_sun_specular, disc_rings};
 
 use super::harmonics::{Place, with_nodes};
 use super::{Device, Wanted, bounds, colours, rms, sentence, within};
@@ -208,7 +208,8 @@ fn of_sun(
     let towards = DVec3::new(cos * sun.azimuth_rad.cos(), cos * sun.azimuth_rad.sin(), sin);
     let turned = Land::normal_at(field, border, at);
     let facing = place.normal.dot(towards);
-    let off = device_sun_specular(phong.exponent.into(), turned, facing);
+    let exponent = phong.exponent.into();
+    let off = device_sun_specular(exponent, turned, facing) + disc_rings(exponent, sun);
     // A hidden sun has no specular light.
     let off = if sum > 0.0 { f64::from(phong.scale) * off } else { 0.0 };
     [mirrored, irradiance * off + 6.0 * EPSILON * mirrored]
