@@ -1,5 +1,5 @@
 //! Errors of Phong specular against the path tracer: direct light by exponent, by slices of the lobe
-//! and by SH of receiver and order, and indirect light by direction and as from straight above (NS09, figure 5).
+//! and by SH of receiver and order, then of suns; and indirect light by direction and as from straight above (NS09, figure 5).
 //!
 //! Both light the middle SIDE² (64) grid points of the bundled mountain by the bundled sky without its
 //! sun. Indirect: three times as steep, two bounces; first specular alone, then with diffuse ground. N
@@ -11,8 +11,8 @@ use ridgelight::Result;
 use ridgelight::gpu::Headless;
 use ridgelight::plan::REFERENCE_BATCH;
 use ridgelight::scene::{
-    Basis, Border, BounceEngine, BounceSpecular, Bounces, Environment, HeightField, PhongSpecular,
-    Quality, Receiver, Scene, Specular,
+    Basis, Border, BounceEngine, BounceSpecular, Bounces, Environment, HeightField, Lights, Method,
+    PhongSpecular, Quality, Receiver, Scene, Specular, Sun,
 };
 
 use crate::common::args::Args;
@@ -87,6 +87,33 @@ pub fn direct(mut args: Args) -> Outcome {
                     Quality { basis: Basis::Sh, receiver, sh_order, ..Quality::default() };
                 let rmse = rmse(&mut gpu, &quality)?;
                 println!("| {exponent} | 64 | {receiver} | {sh_order} | {rmse:.2} | {noise:.3} |");
+            }
+        }
+    }
+    suns(&mut gpu, &ground)
+}
+
+/// Suns alone; by brute-force horizons what is left is the mean over the disc, and the part of it in half-shadow.
+fn suns(gpu: &mut Headless, ground: &(HeightField, Environment)) -> Outcome {
+    println!();
+    head("| exponent | sun, degrees wide | degrees high | method | RMSE % | paths' noise % |");
+    for (wide, high) in [(0.53, 60.0), (5.0, 60.0), (0.53, 20.0), (5.0, 20.0)] {
+        for exponent in [1.0, 5.0, 20.0, 100.0, 1000.0] {
+            let mut scene = scene(ground, 0.0, (exponent, 1.0));
+            let sun = Sun {
+                azimuth_rad: f64::to_radians(-160.0),
+                elevation_rad: f64::to_radians(high),
+                diameter_rad: f64::to_radians(wide),
+                irradiance: [3.0; 3],
+            };
+            scene.lights = Lights { suns: vec![sun], ..Lights::default() };
+            let [reference, deviation] = traced(gpu, &scene, 0, DIRECT_BATCHES)?;
+            let noise = 100.0 * rms_of(&deviation) / mean(&reference);
+            for method in [Method::Auto, Method::BruteForce] {
+                let light = drawn(gpu, &scene, &Quality { method, ..Quality::default() }, 0)?.light;
+                let error = error(&light, &reference)?;
+                let rmse = (error * error - noise * noise).max(0.0).sqrt();
+                println!("| {exponent} | {wide} | {high} | {method} | {rmse:.2} | {noise:.3} |");
             }
         }
     }
