@@ -41,6 +41,7 @@ pub use heights::size::height_size;
 pub use heights::{FieldFile, HeightOptions, parse_heights, read_field, read_heights, read_mosaic};
 pub use ktx2::{Ktx2Writer, TexelFormat, Texels};
 pub use npy::{NpyWriter, write_npy_f32, write_npy_heights};
+pub use open::bytes_read;
 pub use planes::{Planes, parse_planes, read_planes};
 pub use png::{encode_png, write_codes_aside, write_png};
 pub use visible_points::{read_visible_points, write_visible_points};

@@ -1,7 +1,12 @@
-//! Light of a coarse grid on a finer one.
+//! Light of coarse grids on a finer one.
 
 use crate::graph::{Builder, ResourceId, shaders};
-use crate::scene::{Albedo, Sun};
+use crate::scene::{Albedo, Border, Lights, Sun};
+
+/// Least values of a slope's function that light is divided by: of the sun's cosine, and of the sky's, whose linear
+/// function of the normal is no longer near the truth where it is small.
+const GRAZING: f32 = 1e-3;
+const LEAST_SKY: f32 = 0.05;
 
 /// A grid: columns and rows, and the sides of a cell.
 #[derive(Clone, Copy, Debug)]
@@ -20,49 +25,89 @@ impl Grid {
     }
 }
 
-/// Direction to the sun: east, north, up.
-fn direction(sun: Option<&Sun>) -> [f32; 4] {
-    let Some(sun) = sun else { return [0.0, 0.0, 1.0, 0.0] };
-    let across = sun.elevation_rad.cos();
-    [across * sun.azimuth_rad.cos(), across * sun.azimuth_rad.sin(), sun.elevation_rad.sin(), 0.0]
-        .map(|v| v as f32)
+/// How unoccluded light depends on the normal n: `most` times the fourth of `slope` plus n · its first three.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Slope {
+    slope: [f32; 4],
+    most: [f32; 3],
+    least: f32,
+    /// The largest share of that light.
+    ceiling: f32,
 }
 
-/// Radiance of a white texel that faces the sun.
-fn most(sun: Option<&Sun>) -> [f32; 4] {
-    let most = sun.map_or([0.0; 3], |sun| sun.irradiance.map(|e| e / std::f32::consts::PI));
-    [most[0], most[1], most[2], 1.0]
-}
+impl Slope {
+    /// Of a sun: the cosine to it.
+    pub fn of_sun(sun: &Sun) -> Self {
+        let across = sun.elevation_rad.cos();
+        let [x, y] = [sun.azimuth_rad.cos(), sun.azimuth_rad.sin()].map(|v| (across * v) as f32);
+        let most = sun.irradiance.map(|e| e / std::f32::consts::PI);
+        let slope = [x, y, sun.elevation_rad.sin() as f32, 0.0];
+        Self { slope, most, least: GRAZING, ceiling: 1.0 }
+    }
 
-/// A constant albedo; 1 where it is a map.
-fn colour(albedo: &Albedo) -> [f32; 4] {
-    match albedo {
-        Albedo::Constant([r, g, b]) => [*r, *g, *b, 1.0],
-        Albedo::Map(_) => [1.0; 4],
+    /// Of a sky and an environment: the irradiance's spherical harmonics up to order 1 (Ramamoorthi and Hanrahan 2001,
+    /// equation 8), ¼ ∫ L dω + ½ n · ∫ L ω dω, over the first. It is 1 + the cosine of the slope for a uniform sky. The mean
+    /// of the channels stands for each.
+    pub fn of_sky(lights: &Lights, border: Border) -> Self {
+        let [mut all, mut towards] = [0.0, 0.0].map(|v| [v; 3]);
+        let mean = |c: &[f32; 3]| c.iter().map(|v| f64::from(*v)).sum::<f64>() / 3.0;
+        let mut add = |radiance: f64, direction: [f64; 3]| {
+            all[0] += radiance;
+            (0..3).for_each(|i| towards[i] += radiance * direction[i]);
+        };
+        if let Some(sky) = &lights.sky {
+            // Of the hemisphere: 2π, and π upwards.
+            let radiance = mean(sky) * std::f64::consts::TAU;
+            add(radiance, [0.0, 0.0, 0.5]);
+        }
+        if let Some(environment) = &lights.environment {
+            let [cols, rows] = [environment.width(), environment.height()];
+            let [by_col, by_row] = [std::f64::consts::TAU / cols as f64, std::f64::consts::PI / rows as f64];
+            let lit = environment.rows_above_ground(border) * cols;
+            for (i, texel) in environment.texels()[..lit].iter().enumerate() {
+                let azimuth = std::f64::consts::PI - by_col * ((i % cols) as f64 + 0.5) + environment.rotation_rad();
+                let zenith = by_row * ((i / cols) as f64 + 0.5);
+                let (across, up) = zenith.sin_cos();
+                let direction = [across * azimuth.cos(), across * azimuth.sin(), up];
+                add(mean(texel) * across * by_col * by_row, direction);
+            }
+        }
+        let of_normal = if all[0] > 0.0 { towards.map(|t| 2.0 * t / all[0]) } else { [0.0, 0.0, 1.0] };
+        let [x, y, z] = of_normal.map(|v| v as f32);
+        Self { slope: [x, y, z, 1.0], most: [1.0; 3], least: LEAST_SKY, ceiling: f32::MAX }
     }
 }
 
-/// Takes the slopes out of the coarse grid's light.
+/// A constant albedo; 1 where it is a map.
+fn colour(albedo: &Albedo, least: f32) -> [f32; 4] {
+    match albedo {
+        Albedo::Constant([r, g, b]) => [*r, *g, *b, least],
+        Albedo::Map(_) => [1.0, 1.0, 1.0, least],
+    }
+}
+
+/// Takes the slopes out of a coarse grid's light.
 pub(crate) fn plan_gather(
     builder: &mut Builder,
     coarse: Grid,
-    sun: Option<&Sun>,
-    (albedo, grey): (&Albedo, bool),
+    (of, suffix): (Slope, &str),
+    (albedo, grey, without_sun): (&Albedo, bool, bool),
     bound: &[(&str, ResourceId)],
 ) {
+    let [r, g, b] = of.most;
     builder.pass(
         shaders::PreviewGather {
             grey,
-            has_sun: sun.is_some(),
+            without_sun,
             albedo_is_map: matches!(albedo, Albedo::Map(_)),
         },
-        "",
+        suffix,
         "light without slopes, on the coarse grid",
         coarse.groups(),
         &shaders::PreviewGatherPush {
-            sun: direction(sun),
-            most: most(sun),
-            colour: colour(albedo),
+            slope: of.slope,
+            most: [r, g, b, of.ceiling],
+            colour: colour(albedo, of.least),
             cell_m: coarse.cell_m.map(|c| c as f32),
             cols: coarse.size[0] as i32,
             rows: coarse.size[1] as i32,
@@ -73,35 +118,81 @@ pub(crate) fn plan_gather(
     );
 }
 
-/// Lights the fine grid's slopes.
+/// Lights the fine grid's slopes: by the sky on its grid, and by the sun, if any, on its own.
 pub(crate) fn plan_shade(
     builder: &mut Builder,
-    [fine, coarse]: [Grid; 2],
-    sun: Option<&Sun>,
+    fine: Grid,
+    (sky, sky_grid): (Slope, Grid),
+    sun: Option<(Slope, Grid)>,
     albedo: &Albedo,
     bound: &[(&str, ResourceId)],
 ) {
+    let (of_sun, sun_grid) = sun.unwrap_or((sky, sky_grid));
+    let ratio = |coarse: Grid| (fine.cell_m[0] / coarse.cell_m[0]) as f32;
+    let [r, g, b] = of_sun.most;
     builder.pass(
         shaders::PreviewShade {
             has_sun: sun.is_some(),
             albedo_is_map: matches!(albedo, Albedo::Map(_)),
         },
         "",
-        "light of the coarse grid on the slopes of the fine one",
+        "light of the coarse grids on the slopes of the fine one",
         fine.groups(),
         &shaders::PreviewShadePush {
-            sun: direction(sun),
-            most: most(sun),
-            colour: colour(albedo),
-            cell_m: fine.cell_m.map(|c| c as f32),
+            sky_slope: sky.slope,
+            sun_slope: of_sun.slope,
+            most: [r, g, b, 1.0],
+            colour: colour(albedo, sky.least),
             cols: fine.size[0] as i32,
             rows: fine.size[1] as i32,
-            coarse_cols: coarse.size[0] as i32,
-            coarse_rows: coarse.size[1] as i32,
-            ratio: (fine.cell_m[0] / coarse.cell_m[0]) as f32,
+            sky_cols: sky_grid.size[0] as i32,
+            sky_rows: sky_grid.size[1] as i32,
+            sun_cols: sun_grid.size[0] as i32,
+            sun_rows: sun_grid.size[1] as i32,
+            sky_ratio: ratio(sky_grid),
+            sun_ratio: ratio(sun_grid),
         },
         bound,
-        fine.texels() * 36,
+        fine.texels() * 48,
         fine.texels(),
     );
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Environment;
+
+    fn near(found: [f32; 4], want: [f64; 4], error: f64) -> bool {
+        found.iter().zip(want).all(|(f, w)| (f64::from(*f) - w).abs() <= error)
+    }
+
+    /// A uniform sky gives 1 + n.z, also as an environment: the middles of 64 rows above the ground integrate the sine and
+    /// the cosine of the zenith angle to (π / 128)² / 6 of them.
+    #[test]
+    fn a_uniform_sky_is_that_of_its_hemisphere() {
+        let environment = Environment::new(8, 128, vec![[2.0; 3]; 1024], 0.3).unwrap();
+        let uniform = [0.0, 0.0, 1.0, 1.0];
+        let sky = Lights { sky: Some([0.5; 3]), ..Lights::default() };
+        let env = Lights { environment: Some(environment), ..Lights::default() };
+        assert!(near(Slope::of_sky(&sky, Border::Plane).slope, uniform, 1e-6));
+        let error = (std::f64::consts::PI / 128.0).powi(2) / 3.0;
+        assert!(near(Slope::of_sky(&env, Border::Plane).slope, uniform, error));
+        assert!(near(Slope::of_sky(&Lights::default(), Border::Plane).slope, uniform, 0.0));
+    }
+
+    /// All light from one direction: twice that direction. Column 0 of 4 begins at the west and runs clockwise, so that its
+    /// middle is the north-west, which a rotation by a quarter turns to the south-west.
+    #[test]
+    fn one_bright_texel_is_a_direction() {
+        let mut texels = vec![[0.0; 3]; 16];
+        texels[0] = [3.0, 0.0, 0.0];
+        let quarter = std::f64::consts::FRAC_PI_2;
+        let environment = Environment::new(4, 4, texels, quarter).unwrap();
+        let lights = Lights { environment: Some(environment), ..Lights::default() };
+        let (across, up) = (std::f64::consts::PI / 8.0).sin_cos();
+        let flat = -2.0 * across * 0.5_f64.sqrt();
+        let want = [flat, flat, 2.0 * up, 1.0];
+        assert!(near(Slope::of_sky(&lights, Border::Plane).slope, want, 1e-6));
+    }
 }

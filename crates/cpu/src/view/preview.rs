@@ -1,22 +1,58 @@
-//! The light of a coarse grid on the slopes of a finer one (`preview_gather`, `preview_shade`).
+//! The light of coarse grids on the slopes of a finer one (`preview_gather`, `preview_shade`).
 
-use ridgelight::scene::{HeightField, Sun};
+use ridgelight::scene::{Border, HeightField, Sun, normal};
 
-/// As in the shader: the least cosine to the sun to divide by.
-const GRAZING: f64 = 1e-3;
-/// As the shader's: albedo below which light is not divided by it.
+/// Albedo below which light is not divided by it, as in the shader.
 const DARK: f64 = 1e-3;
 
-/// The light of a coarse grid, R, G, B of each grid point: all of it, the sun's, and the albedo.
+/// How unoccluded light depends on the normal: `most` times a constant plus its product with a vector, and `least` or more.
+#[derive(Clone, Copy)]
+pub struct Slope {
+    /// East, north, up.
+    pub vector: [f64; 3],
+    /// The constant.
+    pub constant: f64,
+    /// R, G, B.
+    pub most: [f64; 3],
+    /// The least value of the sum.
+    pub least: f64,
+    /// The largest share of that light.
+    pub ceiling: f64,
+}
+
+impl Slope {
+    /// A sun's light of a white texel: its irradiance times the cosine, over π.
+    pub fn of_sun(sun: &Sun) -> Self {
+        let across = sun.elevation_rad.cos();
+        let [x, y] = [sun.azimuth_rad.cos(), sun.azimuth_rad.sin()].map(|v| across * v);
+        let vector = [x, y, sun.elevation_rad.sin()];
+        let most = sun.irradiance.map(|e| f64::from(e) / std::f64::consts::PI);
+        Self { vector, constant: 0.0, most, least: 1e-3, ceiling: 1.0 }
+    }
+
+    /// A uniform sky: 1 + the cosine of the slope.
+    pub fn of_sky() -> Self {
+        let (vector, ceiling) = ([0.0, 0.0, 1.0], f64::from(f32::MAX));
+        Self { vector, constant: 1.0, most: [1.0; 3], least: 0.05, ceiling }
+    }
+
+    fn at(&self, normal: [f64; 3]) -> f64 {
+        self.constant + (0..3).map(|i| self.vector[i] * normal[i]).sum::<f64>()
+    }
+}
+
+/// The light of a coarse grid, R, G, B of each grid point.
 pub struct Coarse<'a> {
-    /// The coarse heights; its cells are whole numbers of fine ones.
+    /// The coarse heights.
     pub field: &'a HeightField,
     /// All light.
     pub radiance: &'a [[f32; 3]],
-    /// Of the first sun with irradiance, and that sun.
-    pub sun: Option<(&'a [[f32; 3]], &'a Sun)>,
+    /// The sun's, if it is not part of this one.
+    pub without: Option<&'a [[f32; 3]]>,
     /// Its albedo.
     pub albedo: Colours<'a>,
+    /// What it is divided by.
+    pub slope: Slope,
 }
 
 /// Albedo of a grid.
@@ -37,48 +73,52 @@ impl Colours<'_> {
     }
 }
 
-/// Exit radiance of the fine grid.
-pub fn preview(fine: &HeightField, albedo: Colours<'_>, coarse: &Coarse<'_>) -> Vec<[f64; 3]> {
-    let towards = coarse.sun.map_or([0.0, 0.0, 1.0], |(_, sun)| direction(sun));
-    let most = coarse.sun.map_or([0.0; 3], |(_, sun)| sun.irradiance.map(f64::from));
-    let most = most.map(|e| e / std::f64::consts::PI);
-    let gathered: Vec<[f64; 4]> = (0..coarse.radiance.len())
-        .map(|i| {
-            let normal = normal(coarse.field, i);
-            let facing = dot(normal, towards).max(GRAZING);
-            let of = |c: usize| {
-                let sun = coarse.sun.map_or(0.0, |(light, _)| f64::from(light[i][c]));
-                let albedo = coarse.albedo.at(i, c).max(DARK);
-                let lit = albedo * most[c] * facing;
-                let share = if lit > 0.0 { sun / lit } else { 0.0 };
-                let sky = (f64::from(coarse.radiance[i][c]) - sun) / (albedo * (1.0 + normal[2]));
-                [sky, share]
-            };
-            let [r, g, b] = [0, 1, 2].map(of);
-            [r[0], g[0], b[0], r[1].max(g[1]).max(b[1]).clamp(0.0, 1.0)]
-        })
+impl Coarse<'_> {
+    /// Its light without its slopes and albedo.
+    fn gathered(&self) -> Vec<[f64; 3]> {
+        let Slope { most, least, ceiling, .. } = self.slope;
+        let cols = self.field.cols();
+        let share = |(i, all): (usize, &[f32; 3])| {
+            let normal = normal(self.field, Border::Plane, i / cols, i % cols).to_array();
+            let facing = self.slope.at(normal).max(least);
+            std::array::from_fn(|c| {
+                let sun = self.without.map_or(0.0, |light| f64::from(light[i][c]));
+                let lit = self.albedo.at(i, c).max(DARK) * most[c] * facing;
+                let light = f64::from(all[c]) - sun;
+                if lit > 0.0 { (light / lit).clamp(0.0, ceiling) } else { 0.0 }
+            })
+        };
+        self.radiance.iter().enumerate().map(share).collect()
+    }
+}
+
+/// Exit radiance of the fine grid, which has these mean normals.
+pub fn preview(
+    (fine, normals): (&HeightField, &[[f64; 3]]),
+    albedo: Colours<'_>,
+    sky: &Coarse<'_>,
+    sun: Option<&Coarse<'_>>,
+) -> Vec<[f64; 3]> {
+    let lights: Vec<(&Coarse<'_>, Vec<[f64; 3]>, f64)> = std::iter::once((sky, sky.slope.least))
+        .chain(sun.map(|sun| (sun, 0.0)))
+        .map(|(coarse, least)| (coarse, coarse.gathered(), least))
         .collect();
-    let ratio = fine.cell_m()[0] / coarse.field.cell_m()[0];
     (0..fine.rows() * fine.cols())
         .map(|i| {
-            let light = between(&gathered, coarse.field, fine, (i, ratio));
-            let normal = normal(fine, i);
-            let facing = dot(normal, towards).max(0.0);
-            std::array::from_fn(|c| {
-                let all = light[c] * (1.0 + normal[2]) + light[3] * most[c] * facing;
-                all * albedo.at(i, c)
-            })
+            let of = |(coarse, gathered, least): &(&Coarse<'_>, Vec<[f64; 3]>, f64)| {
+                let share = between(gathered, coarse.field, fine, i);
+                let facing = coarse.slope.at(normals[i]).max(*least);
+                [0, 1, 2].map(|c| share[c] * coarse.slope.most[c] * facing)
+            };
+            let all: Vec<[f64; 3]> = lights.iter().map(of).collect();
+            std::array::from_fn(|c| all.iter().map(|light| light[c]).sum::<f64>() * albedo.at(i, c))
         })
         .collect()
 }
 
 /// Bilinear at a fine grid point's centre.
-fn between(
-    gathered: &[[f64; 4]],
-    coarse: &HeightField,
-    fine: &HeightField,
-    (i, ratio): (usize, f64),
-) -> [f64; 4] {
+fn between(gathered: &[[f64; 3]], coarse: &HeightField, fine: &HeightField, i: usize) -> [f64; 3] {
+    let ratio = fine.cell_m()[0] / coarse.cell_m()[0];
     let along = |at: usize, count: usize| {
         let from = ((at as f64 + 0.5) * ratio - 0.5).clamp(0.0, (count - 1) as f64);
         let first = from.floor() as usize;
@@ -90,29 +130,6 @@ fn between(
     let corners = [at(north, west), at(north, east), at(south, west), at(south, east)];
     let weights = [(1.0 - x) * (1.0 - y), x * (1.0 - y), (1.0 - x) * y, x * y];
     std::array::from_fn(|k| corners.iter().zip(weights).map(|(v, w)| v[k] * w).sum())
-}
-
-/// Upward normal by central differences, one-sided at the edge.
-pub fn normal(field: &HeightField, i: usize) -> [f64; 3] {
-    let (rows, cols, [cell_x, cell_y]) = (field.rows(), field.cols(), field.cell_m());
-    let (row, col) = (i / cols, i % cols);
-    let at = |row: usize, col: usize| f64::from(field.heights_m()[row * cols + col]);
-    let [west, east] = [col.saturating_sub(1), (col + 1).min(cols - 1)];
-    let [north, south] = [row.saturating_sub(1), (row + 1).min(rows - 1)];
-    let x = (at(row, east) - at(row, west)) / ((east - west).max(1) as f64 * cell_x);
-    let y = (at(south, col) - at(north, col)) / ((south - north).max(1) as f64 * cell_y);
-    let length = (x * x + y * y + 1.0).sqrt();
-    [-x / length, y / length, 1.0 / length]
-}
-
-/// Direction to a sun: east, north, up.
-pub fn direction(sun: &Sun) -> [f64; 3] {
-    let across = sun.elevation_rad.cos();
-    [across * sun.azimuth_rad.cos(), across * sun.azimuth_rad.sin(), sun.elevation_rad.sin()]
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 #[cfg(test)]
@@ -130,14 +147,19 @@ mod tests {
             diameter_rad: 0.0,
             irradiance: [3.0, 2.0, 1.0],
         };
-        let lit = |i: usize| dot(normal(&field, i), direction(&sun)) / std::f64::consts::PI;
-        let of_sun: Vec<[f32; 3]> =
-            (0..30).map(|i| sun.irradiance.map(|e| (f64::from(e) * lit(i)) as f32)).collect();
+        let slope = Slope::of_sun(&sun);
+        let normals: Vec<[f64; 3]> =
+            (0..30).map(|i| normal(&field, Border::Plane, i / 6, i % 6).to_array()).collect();
+        let of_sun: Vec<[f32; 3]> = normals
+            .iter()
+            .map(|n| slope.most.map(|most| (most * slope.at(*n)) as f32))
+            .collect();
         let radiance: Vec<[f32; 3]> = of_sun.iter().map(|s| s.map(|v| v + 0.25)).collect();
-        let white = Colours::Constant([1.0; 3]);
-        let sun = Some((of_sun.as_slice(), &sun));
-        let coarse = Coarse { field: &field, radiance: &radiance, sun, albedo: white };
-        for (found, want) in preview(&field, white, &coarse).iter().zip(&radiance) {
+        let albedo = Colours::Constant([1.0; 3]);
+        let of = |radiance, without, slope| Coarse { field: &field, radiance, without, albedo, slope };
+        let sky = of(&radiance, Some(of_sun.as_slice()), Slope::of_sky());
+        let sun = of(&of_sun, None, slope);
+        for (found, want) in preview((&field, &normals), albedo, &sky, Some(&sun)).iter().zip(&radiance) {
             for c in 0..3 {
                 assert!((found[c] - f64::from(want[c])).abs() < 4.0 * f64::from(f32::EPSILON));
             }
