@@ -1,6 +1,6 @@
 // Computes: a coarse grid's light without its slopes and albedo: radiance over albedo, colour and a function of the normal,
 // which is linear: the cosine to the sun, or 1 and a vector of the sky.
-// Reads: heights, coarse_radiance, coarse_sun, coarse_albedo, all of the coarse grid.
+// Reads: normals, coarse_radiance, coarse_sun, coarse_albedo, all of the coarse grid.
 // Writes: gathered.
 // One invocation is one grid point.
 #version 460
@@ -14,7 +14,7 @@ layout(constant_id = 0) const bool GREY = false;
 layout(constant_id = 1) const bool WITHOUT_SUN = false;
 layout(constant_id = 2) const bool ALBEDO_IS_MAP = false;
 
-layout(binding = 0) uniform texture2D heights;
+layout(binding = 0) uniform texture2D normals;
 layout(binding = 1) uniform texture2D coarse_radiance;
 layout(binding = 2) uniform texture2D coarse_sun;
 layout(binding = 3) uniform texture2D coarse_albedo;
@@ -24,7 +24,6 @@ layout(push_constant) uniform PreviewGatherPush {
     vec4 slope;     // east, north, up; and the constant
     vec4 most;      // what it is divided by besides; and the largest result
     vec4 colour;    // albedo where it is no map; and the least value of the function
-    vec2 cell_m;
     int cols;
     int rows;
 };
@@ -32,39 +31,12 @@ layout(push_constant) uniform PreviewGatherPush {
 // Albedo below which light is not divided by it.
 const float DARK = 1e-3;
 
-float height_at(ivec2 at) {
-    return texelFetch(heights, at, 0).x;
-}
-
-// Upward: the mean slope of the adjoining quads. Beyond the edge there are none.
-vec3 normal_at(ivec2 at, ivec2 last) {
-    vec2 before = vec2(greaterThan(at, ivec2(0)));
-    vec2 after = vec2(lessThan(at, last));
-    // How many quads lie across, and what the lines between them weigh.
-    vec2 both = max(before + after, vec2(1.0));
-    vec2 outer[2] = vec2[](before / (2.0 * both), after / (2.0 * both));
-    vec2 middle = vec2(1.0) - outer[0] - outer[1];
-    ivec2 low = max(at - 1, ivec2(0));
-    ivec2 high = min(at + 1, last);
-    ivec3 x = ivec3(low.x, at.x, high.x);
-    ivec3 y = ivec3(low.y, at.y, high.y);
-    vec3 by_row = vec3(outer[0].y, middle.y, outer[1].y);
-    vec3 by_col = vec3(outer[0].x, middle.x, outer[1].x);
-    float east = 0.0;
-    float north = 0.0;
-    for (int i = 0; i < 3; i++) {
-        east += by_row[i] * (height_at(ivec2(high.x, y[i])) - height_at(ivec2(low.x, y[i])));
-        north += by_col[i] * (height_at(ivec2(x[i], low.y)) - height_at(ivec2(x[i], high.y)));
-    }
-    return normalize(vec3(-east / (both.x * cell_m.x), -north / (both.y * cell_m.y), 1.0));
-}
-
 void main() {
     ivec2 at = ivec2(gl_GlobalInvocationID.xy);
     if (at.x >= cols || at.y >= rows) {
         return;
     }
-    vec3 normal = normal_at(at, ivec2(cols, rows) - 1);
+    vec3 normal = texelFetch(normals, at, 0).xyz;
     vec3 light = GREY ? texelFetch(coarse_radiance, at, 0).xxx : texelFetch(coarse_radiance, at, 0).rgb;
     if (WITHOUT_SUN) {
         light -= GREY ? texelFetch(coarse_sun, at, 0).xxx : texelFetch(coarse_sun, at, 0).rgb;

@@ -15,9 +15,9 @@ use crate::{Error, Result};
 /// and the sun alone, and its plan. All grids begin at the north-western corner; their cells have the same shape.
 ///
 /// Inputs, in order: "heights" of the fine grid; "environment" if the scene has one, for [`View`](super::View); "albedo"
-/// of the fine grid if the scene has a map; "normals" of the fine grid, four channels: the means of the unit normals that
-/// each texel covers; then of the sky's grid "sky_heights", "sky_radiance", "sky_sun" if there is a sun, "sky_albedo" if
-/// there is a map; and of the sun's "sun_heights" and "sun_radiance". Output: "radiance", four channels.
+/// of the fine grid if the scene has a map; four channels of unit normals: "normals" of the fine grid, the means of those that
+/// each texel covers, and the coarse grids' own, "sky_normals" and, if there is a sun, "sun_normals"; then "sky_radiance",
+/// "sky_sun" if there is a sun, "sky_albedo" if there is a map, and "sun_radiance". Output: "radiance", four channels.
 ///
 /// # Errors
 /// A plan of the sky without the sun's layer, a sun without its scene, or scenes beyond the limits.
@@ -62,8 +62,13 @@ pub fn preview(
     }
     let albedo = has_albedo.then(|| image("albedo", Owner::Input, four, fine_grid));
     let normals = image("normals", Owner::Input, four, fine_grid);
+    let sky_normals = image("sky_normals", Owner::Input, four, sky_grid);
+    let of_sun = of_sun.map(|(light, (scene, plan))| {
+        let grid = grid(&scene.field);
+        (light, plan, grid, image("sun_normals", Owner::Input, four, grid))
+    });
     let mut in_sky = vec![
-        ("heights", image("sky_heights", Owner::Input, one, sky_grid)),
+        ("normals", sky_normals),
         ("coarse_radiance", image("sky_radiance", Owner::Input, of(sky_plan), sky_grid)),
     ];
     if of_sun.is_some() {
@@ -74,11 +79,10 @@ pub fn preview(
     }
     let sky_light = image("sky", Owner::Internal, four, sky_grid);
     in_sky.push(("gathered", sky_light));
-    let of_sun = of_sun.map(|(light, (scene, plan))| {
-        let grid = grid(&scene.field);
+    let of_sun = of_sun.map(|(light, plan, grid, normals)| {
         let made = image("sun", Owner::Internal, four, grid);
         let bound = vec![
-            ("heights", image("sun_heights", Owner::Input, one, grid)),
+            ("normals", normals),
             ("coarse_radiance", image("sun_radiance", Owner::Input, of(plan), grid)),
             ("gathered", made),
         ];

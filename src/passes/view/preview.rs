@@ -108,12 +108,11 @@ pub(crate) fn plan_gather(
             slope: of.slope,
             most: [r, g, b, of.ceiling],
             colour: colour(albedo, of.least),
-            cell_m: coarse.cell_m.map(|c| c as f32),
             cols: coarse.size[0] as i32,
             rows: coarse.size[1] as i32,
         },
         bound,
-        coarse.texels() * 68,
+        coarse.texels() * 64,
         coarse.texels(),
     );
 }

@@ -67,14 +67,21 @@ impl Blocks {
         HeightField::new(rows, cols, &heights, cell_m, voids)
     }
 
+    /// The blocks that a rectangle of the full field touches.
+    pub fn within_blocks(&self, at: Rectangle) -> Rectangle {
+        let side = self.side as u32;
+        let along = |first: u32, count: u32| {
+            let begin = first / side;
+            (begin, (first + count).div_ceil(side) - begin)
+        };
+        let ((col, cols), (row, rows)) = (along(at.col, at.cols), along(at.row, at.rows));
+        Rectangle { col, row, cols, rows }
+    }
+
     /// Takes edited heights of a rectangle of the full field.
     pub fn edit(&self, field: &HeightField, coarse: &mut HeightField, at: Rectangle) -> Result<()> {
-        let side = self.side as u32;
-        let [(col, cols), (row, rows)] =
-            [(at.col, at.cols), (at.row, at.rows)].map(|(first, n)| {
-                let begin = first / side;
-                (begin as usize, ((first + n).div_ceil(side) - begin) as usize)
-            });
+        let Rectangle { col, row, cols, rows } = self.within_blocks(at);
+        let [col, row, cols, rows] = [col, row, cols, rows].map(|n| n as usize);
         let mean = |block: usize| {
             let ground = |i: &usize| field.voids().is_none_or(|voids| !voids[*i]);
             let (sum, count) = self

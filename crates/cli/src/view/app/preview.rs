@@ -21,9 +21,11 @@ use crate::render;
 use crate::setup::total_ns;
 
 /// Intended GPU times of a preview's grids: with drawing and copies, 15 pictures per second.
-const INTENDED_MS: [f64; GRIDS] = [8.0, 12.0, 20.0];
+const INTENDED_MS: [f64; GRIDS] = [6.0, 12.0, 24.0];
+/// The part of the slopes' time that is left where a camera draws a mesh.
+const WITH_MESH: f64 = 0.4;
 /// The parts of those times that do not grow with the grid: tables of the sky, starts of passes.
-const FIXED_MS: [f64; GRIDS] = [4.0, 1.0, 0.0];
+const FIXED_MS: [f64; GRIDS] = [2.0, 1.0, 0.0];
 /// GPU time of a part of the full light.
 const PART_MS: f64 = 40.0;
 /// Full light that takes no longer needs no preview.
@@ -255,7 +257,8 @@ impl Preview {
         // Shares of the intended time.
         let share = |of: usize, side: usize| {
             let ms = grid_work(&state.scene, &state.quality, of, side) / self.rates.grids[of];
-            (FIXED_MS[of] + ms) / INTENDED_MS[of]
+            let left = if of == SLOPES && state.has_camera() { WITH_MESH } else { 1.0 };
+            (FIXED_MS[of] + ms) / (left * INTENDED_MS[of])
         };
         let least = |of: usize| (1..most).find(|side| share(of, *side) <= 1.0).unwrap_or(most);
         let slopes = least(SLOPES);
@@ -428,23 +431,19 @@ impl Level {
         if of == SUN {
             scene.surface = Surface { border: scene.surface.border, ..Surface::default() };
         }
-        let normals = match of {
-            SLOPES => blocks.normals(&state.scene.field, scene.surface.border),
-            _ => Vec::new(),
-        };
-        let (lit, moving) = (None, None);
-        let (are_normals_new, are_heights_new) = (true, true);
-        Ok(Self {
+        let mut level = Self {
             of,
             blocks,
             scene,
-            lit,
-            normals,
-            are_normals_new,
-            are_heights_new,
-            moving,
+            lit: None,
+            normals: Vec::new(),
+            are_normals_new: true,
+            are_heights_new: true,
+            moving: None,
             runs: 0,
-        })
+        };
+        level.take_normals(Some(&state.scene.field));
+        Ok(level)
     }
 
     /// Whether it has light to show.
@@ -483,21 +482,21 @@ impl Level {
                     self.blocks.edit(field, &mut self.scene.field, at)?;
                     if self.of == SLOPES {
                         self.blocks.edit_normals((field, border), &mut self.normals, at);
-                        self.are_normals_new = true;
+                    } else {
+                        let (own, at) = (&self.scene.field, self.blocks.within_blocks(at));
+                        Blocks::of(own, 1).edit_normals((own, border), &mut self.normals, at);
                     }
+                    self.are_normals_new = true;
                 }
             }
         }
         Ok(())
     }
 
-    /// The normals of the full field, or in movement those of this grid's.
+    /// The normals of this grid's heights; of slopes the means of the full field's, unless that moves.
     fn take_normals(&mut self, full: Option<&HeightField>) {
-        if self.of != SLOPES {
-            return;
-        }
         let border = self.scene.surface.border;
-        self.normals = match full {
+        self.normals = match full.filter(|_| self.of == SLOPES) {
             Some(field) => self.blocks.normals(field, border),
             None => Blocks::of(&self.scene.field, 1).normals(&self.scene.field, border),
         };
@@ -536,15 +535,16 @@ impl Level {
     fn plan_slopes(
         &mut self,
         screen: &mut Screen,
-        [sky, sun]: [&Level; 2],
+        [sky, sun]: [&mut Level; 2],
         has_camera: bool,
         limits: &Limits,
     ) -> Result<Vec<ImageArg>> {
         let plan_of = |level: &Level| level.lit.as_ref().expect("lit before").plan().clone();
         let (of_sky, of_sun) = (plan_of(sky), sun.is_used().then(|| plan_of(sun)));
+        let count_of_normals = 2 + usize::from(sun.is_used());
         let suns = of_sun.as_ref().map(|plan| (&sun.scene, plan));
         let plan = plan::preview(&self.scene, (&sky.scene, &of_sky), suns, limits)?;
-        let mut borrowed = vec![sky.image("heights"), sky.image("radiance")];
+        let mut borrowed = vec![sky.image("radiance")];
         if let Some((n, _)) = first_sun(&sky.scene) {
             borrowed.push(sky.image(&format!("direct.sun{n}")));
         }
@@ -552,7 +552,7 @@ impl Level {
             borrowed.push(sky.image("albedo"));
         }
         if sun.is_used() {
-            borrowed.extend([sun.image("heights"), sun.image("radiance")]);
+            borrowed.push(sun.image("radiance"));
         }
         let borrowed: Vec<ImageArg> = borrowed.into_iter().flatten().collect();
         let fits = self.lit.as_ref().is_some_and(|lit| lit.plan().resources == plan.resources);
@@ -570,20 +570,27 @@ impl Level {
                 }
                 // Borrowed images need no contents.
                 let mut contents = plan::picture_inputs(&self.scene);
-                contents.truncate(plan.inputs().count() - borrowed.len() - 1);
-                contents.push(self.normals.clone());
-                self.are_normals_new = false;
-                let own = plan.inputs().skip(contents.len());
+                contents.truncate(plan.inputs().count() - borrowed.len() - count_of_normals);
+                let rest = plan.inputs().skip(contents.len());
                 let empty: Vec<Vec<f32>> =
-                    own.map(|(_, input)| vec![0.0; (input.bytes() / 4) as usize]).collect();
+                    rest.map(|(_, input)| vec![0.0; (input.bytes() / 4) as usize]).collect();
                 contents.extend(empty);
                 self.lit = Some(screen.frame(plan, &contents)?);
+                [sky.are_normals_new, sun.are_normals_new, self.are_normals_new] = [true; 3];
             }
         }
-        if let (true, Some(lit)) = (self.are_normals_new, &self.lit) {
-            let at = lit.plan().inputs().count() - borrowed.len() - 1;
-            screen.gpu().refill(lit, at, &self.normals)?;
-            self.are_normals_new = false;
+        let lit = self.lit.as_ref().expect("made above");
+        let first = lit.plan().inputs().count() - borrowed.len() - count_of_normals;
+        let all = [
+            (&self.normals, &mut self.are_normals_new),
+            (&sky.normals, &mut sky.are_normals_new),
+            (&sun.normals, &mut sun.are_normals_new),
+        ];
+        for (n, (normals, are_new)) in all.into_iter().take(count_of_normals).enumerate() {
+            if *are_new {
+                screen.gpu().refill(lit, first + n, normals)?;
+                *are_new = false;
+            }
         }
         Ok(borrowed)
     }

@@ -15,7 +15,7 @@ pub const FOV_DEG: f64 = 40.0;
 const MOST_CELLS: u32 = 1024;
 
 /// The same while something moves on a software driver.
-const MOVING_CELLS: u32 = 256;
+const MOVING_CELLS: u32 = 192;
 
 /// Most steps along a ray to the ground.
 const MOST_STEPS: f64 = 4096.0;
