@@ -423,26 +423,27 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/preview_gather.comp`.
-    PREVIEW_GATHER: "preview_gather", push PreviewGatherPush, words 146828 1675,
-    0 reads "heights" SampledImage { uint: false, layered: false },
+    PREVIEW_GATHER: "preview_gather", push PreviewGatherPush, words 146828 1068,
+    0 reads "normals" SampledImage { uint: false, layered: false },
     1 reads "coarse_radiance" SampledImage { uint: false, layered: false },
     2 reads "coarse_sun" SampledImage { uint: false, layered: false },
     3 reads "coarse_albedo" SampledImage { uint: false, layered: false },
     4 writes "gathered" StorageImage { format: "Rgba32f", uint: false, layered: false },
     PreviewGather {
         0 grey: bool = false,
-        1 has_sun: bool = false,
+        1 without_sun: bool = false,
         2 albedo_is_map: bool = false,
     }
 }
 
 shader! {
     /// `shaders_glsl/view/preview_shade.comp`.
-    PREVIEW_SHADE: "preview_shade", push PreviewShadePush, words 148503 1764,
-    0 reads "heights" SampledImage { uint: false, layered: false },
+    PREVIEW_SHADE: "preview_shade", push PreviewShadePush, words 147896 1738,
+    0 reads "normals" SampledImage { uint: false, layered: false },
     1 reads "albedo" SampledImage { uint: false, layered: false },
-    2 reads "gathered" StorageImage { format: "Rgba32f", uint: false, layered: false },
-    3 writes "radiance" StorageImage { format: "Rgba32f", uint: false, layered: false },
+    2 reads "sky" StorageImage { format: "Rgba32f", uint: false, layered: false },
+    3 reads "sun" StorageImage { format: "Rgba32f", uint: false, layered: false },
+    4 writes "radiance" StorageImage { format: "Rgba32f", uint: false, layered: false },
     PreviewShade {
         0 has_sun: bool = false,
         1 albedo_is_map: bool = false,
@@ -451,7 +452,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/pyramid_march.comp`.
-    PYRAMID_MARCH: "pyramid_march", push PyramidMarchPush, words 150267 9025,
+    PYRAMID_MARCH: "pyramid_march", push PyramidMarchPush, words 149634 9025,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "slopes" StorageImage { format: "Unknown", uint: true, layered: true },
@@ -468,7 +469,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bake/scatter_gather.comp`.
-    SCATTER_GATHER: "scatter_gather", push ScatterGatherPush, words 159292 4664,
+    SCATTER_GATHER: "scatter_gather", push ScatterGatherPush, words 158659 4664,
     0 reads "ground" SampledImage { uint: false, layered: false },
     1 reads "direct" SampledImage { uint: false, layered: false },
     2 reads "visible_points" SampledImage { uint: true, layered: true },
@@ -495,7 +496,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/sh_shade.comp`.
-    SH_SHADE: "sh_shade", push ShShadePush, words 163956 12958,
+    SH_SHADE: "sh_shade", push ShShadePush, words 163323 12958,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "visibility" SampledImage { uint: false, layered: true },
     2 reads "light_matrix" SampledImage { uint: false, layered: false },
@@ -514,7 +515,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/sh_visibility.comp`.
-    SH_VISIBILITY: "sh_visibility", push ShadePush, words 176914 29844,
+    SH_VISIBILITY: "sh_visibility", push ShadePush, words 176281 29844,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rg32ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -539,7 +540,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/sh_wedges.comp`.
-    SH_WEDGES: "sh_wedges", push ShWedgesPush, words 206758 7777,
+    SH_WEDGES: "sh_wedges", push ShWedgesPush, words 206125 7777,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "horizon_angles" SampledImage { uint: false, layered: true },
     2 reads "constants" TexelBuffer,
@@ -556,7 +557,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/shade_expand.comp`.
-    SHADE_EXPAND: "shade_expand", push ShadeExpandPush, words 214535 2397,
+    SHADE_EXPAND: "shade_expand", push ShadeExpandPush, words 213902 2397,
     0 reads "shade_levels" SampledImage { uint: false, layered: false },
     1 reads "shade_table" SampledImage { uint: true, layered: false },
     2 writes "shade_stack" StorageImage { format: "Unknown", uint: false, layered: true },
@@ -567,7 +568,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/shade_reduce.comp`.
-    SHADE_REDUCE: "shade_reduce", push ReducePush, words 216932 2918,
+    SHADE_REDUCE: "shade_reduce", push ReducePush, words 216299 2918,
     0 reads "exit_radiance" SampledImage { uint: false, layered: false },
     1 writes "shade_levels" StorageImage { format: "Rgba32f", uint: false, layered: false },
     2 writes "shade_table" StorageImage { format: "Rgba32ui", uint: true, layered: false },
@@ -580,7 +581,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/sky_draw.frag`.
-    SKY_DRAW_FRAG: "sky_draw_frag", push SkyDrawPush, words 219850 1269,
+    SKY_DRAW_FRAG: "sky_draw_frag", push SkyDrawPush, words 219217 1269,
     0 reads "environment" SampledImage { uint: false, layered: false },
     SkyDrawFrag {
         0 has_environment: bool = false,
@@ -589,13 +590,13 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/sky_draw.vert`.
-    SKY_DRAW_VERT: "sky_draw_vert", push (), words 221119 289,
+    SKY_DRAW_VERT: "sky_draw_vert", push (), words 220486 289,
     SkyDrawVert;
 }
 
 shader! {
     /// `shaders_glsl/direct/sky_shade.comp`.
-    SKY_SHADE: "sky_shade", push ShadePush, words 221408 26686,
+    SKY_SHADE: "sky_shade", push ShadePush, words 220775 26686,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rg32ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -623,7 +624,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/specular_exit.comp`.
-    SPECULAR_EXIT: "specular_exit", push SpecularExitPush, words 248094 6438,
+    SPECULAR_EXIT: "specular_exit", push SpecularExitPush, words 247461 6438,
     0 reads "arriving" SampledImage { uint: false, layered: true },
     1 reads "ground" SampledImage { uint: false, layered: false },
     2 reads "exit_radiance" SampledImage { uint: false, layered: false },
@@ -646,7 +647,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/specular_gather.comp`.
-    SPECULAR_GATHER: "specular_gather", push GatherPush, words 254532 20112,
+    SPECULAR_GATHER: "specular_gather", push GatherPush, words 253899 20112,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "height_levels" SampledImage { uint: false, layered: false },
     2 reads "level_table" SampledImage { uint: true, layered: false },
@@ -674,7 +675,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/specular_light.comp`.
-    SPECULAR_LIGHT: "specular_light", push SpecularLightPush, words 274644 7631,
+    SPECULAR_LIGHT: "specular_light", push SpecularLightPush, words 274011 7631,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "blocked_sum" SampledImage { uint: false, layered: false },
     2 reads "unoccluded_map" SampledImage { uint: false, layered: false },
@@ -688,7 +689,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/specular_tables.comp`.
-    SPECULAR_TABLES: "specular_tables", push SpecularTablesPush, words 282275 4627,
+    SPECULAR_TABLES: "specular_tables", push SpecularTablesPush, words 281642 4627,
     0 reads "azimuths" TexelBuffer,
     1 reads "wedge_rows" StorageBuffer,
     2 writes "specular_tables" StorageImage { format: "Rgba32f", uint: false, layered: true },
@@ -699,7 +700,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/specular_visibility.comp`.
-    SPECULAR_VISIBILITY: "specular_visibility", push SpecularVisibilityPush, words 286902 1238,
+    SPECULAR_VISIBILITY: "specular_visibility", push SpecularVisibilityPush, words 286269 1238,
     0 reads "visibility" SampledImage { uint: false, layered: true },
     1 reads "light_matrix" SampledImage { uint: false, layered: false },
     2 writes "arriving" StorageImage { format: "Rgba32f", uint: false, layered: true },
@@ -711,7 +712,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/sphere_sh_shade.comp`.
-    SPHERE_SH_SHADE: "sphere_sh_shade", push SphereShShadePush, words 288140 27634,
+    SPHERE_SH_SHADE: "sphere_sh_shade", push SphereShShadePush, words 287507 27634,
     0 reads "cells" SampledImage { uint: false, layered: false },
     1 reads "maxima" SampledImage { uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -737,7 +738,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/sphere_shade.comp`.
-    SPHERE_SHADE: "sphere_shade", push SphereShadePush, words 315774 14335,
+    SPHERE_SHADE: "sphere_shade", push SphereShadePush, words 315141 14335,
     0 reads "cells" SampledImage { uint: false, layered: false },
     1 reads "maxima" SampledImage { uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -752,7 +753,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/sun_shade.comp`.
-    SUN_SHADE: "sun_shade", push ShadePush, words 330109 22124,
+    SUN_SHADE: "sun_shade", push ShadePush, words 329476 22124,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rg32ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -773,7 +774,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/sun_specular.comp`.
-    SUN_SPECULAR: "sun_specular", push SunSpecularPush, words 352233 10572,
+    SUN_SPECULAR: "sun_specular", push SunSpecularPush, words 351600 10572,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "sun_sum" SampledImage { uint: false, layered: false },
     2 writes "specular_sum" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -790,7 +791,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/surface_sweep.comp`.
-    SURFACE_SWEEP: "surface_sweep", push MarchPush, words 362805 6812,
+    SURFACE_SWEEP: "surface_sweep", push MarchPush, words 362172 6812,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "slopes" StorageImage { format: "Unknown", uint: true, layered: true },
@@ -804,7 +805,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/sweep_fuse.comp`.
-    SWEEP_FUSE: "sweep_fuse", push SweepFusePush, words 369617 18089,
+    SWEEP_FUSE: "sweep_fuse", push SweepFusePush, words 368984 18089,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rg32ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -824,7 +825,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/terrain_draw.frag`.
-    TERRAIN_DRAW_FRAG: "terrain_draw_frag", push TerrainDrawPush, words 387706 1129,
+    TERRAIN_DRAW_FRAG: "terrain_draw_frag", push TerrainDrawPush, words 387073 1129,
     1 reads "radiance" SampledImage { uint: false, layered: false },
     2 reads "voids" SampledImage { uint: false, layered: false },
     TerrainDrawFrag {
@@ -835,14 +836,14 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/terrain_draw.vert`.
-    TERRAIN_DRAW_VERT: "terrain_draw_vert", push TerrainDrawPush, words 388835 994,
+    TERRAIN_DRAW_VERT: "terrain_draw_vert", push TerrainDrawPush, words 388202 994,
     0 reads "heights" SampledImage { uint: false, layered: false },
     TerrainDrawVert;
 }
 
 shader! {
     /// `shaders_glsl/bounce/vector_reduce.comp`.
-    VECTOR_REDUCE: "vector_reduce", push ReducePush, words 389829 2964,
+    VECTOR_REDUCE: "vector_reduce", push ReducePush, words 389196 2964,
     0 reads "exit_vectors" SampledImage { uint: false, layered: true },
     1 reads "vector_source" SampledImage { uint: false, layered: true },
     2 writes "vector_levels" StorageImage { format: "Unknown", uint: false, layered: true },
@@ -855,7 +856,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bake/visible_points.comp`.
-    VISIBLE_POINTS: "visible_points", push VisiblePointsPush, words 392793 9687,
+    VISIBLE_POINTS: "visible_points", push VisiblePointsPush, words 392160 9687,
     0 reads "cells" SampledImage { uint: false, layered: false },
     1 reads "maxima" SampledImage { uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -1046,13 +1047,13 @@ layouts! {
         76 cols: i32, 80 rows: i32, 84 mesh_step: i32, 88 base_m: f32, 92 base_tone: f32,
         96 wall_tones: [f32; 4],
     }
-    push PreviewGatherPush 64 {
-        0 sun: [f32; 4], 16 most: [f32; 4], 32 colour: [f32; 4], 48 cell_m: [f32; 2], 56 cols: i32,
-        60 rows: i32,
+    push PreviewGatherPush 56 {
+        0 slope: [f32; 4], 16 most: [f32; 4], 32 colour: [f32; 4], 48 cols: i32, 52 rows: i32,
     }
-    push PreviewShadePush 76 {
-        0 sun: [f32; 4], 16 most: [f32; 4], 32 colour: [f32; 4], 48 cell_m: [f32; 2], 56 cols: i32,
-        60 rows: i32, 64 coarse_cols: i32, 68 coarse_rows: i32, 72 ratio: f32,
+    push PreviewShadePush 96 {
+        0 sky_slope: [f32; 4], 16 sun_slope: [f32; 4], 32 most: [f32; 4], 48 colour: [f32; 4],
+        64 cols: i32, 68 rows: i32, 72 sky_cols: i32, 76 sky_rows: i32, 80 sun_cols: i32,
+        84 sun_rows: i32, 88 sky_ratio: f32, 92 sun_ratio: f32,
     }
     push PyramidMarchPush 32 {
         0 lanes: i32, 4 steps: i32, 8 warm_up: i32, 12 first_azimuth: u32, 16 azimuth_count: u32,
@@ -1153,4 +1154,4 @@ layouts! {
 }
 
 /// Words of all shaders together.
-const WORD_COUNT: usize = 402480;
+const WORD_COUNT: usize = 401847;

@@ -1,38 +1,53 @@
 use super::Plan;
 use crate::graph::{Builder, Format, Kind, Limits, Owner};
-use crate::passes::preview::Grid;
+use crate::passes::preview::{Grid, Slope};
 use crate::passes::{preview_gather, preview_shade};
-use crate::scene::{Albedo, HeightField, Scene};
+use crate::scene::{Albedo, HeightField, Scene, Sun};
 use crate::{Error, Result};
 
-/// Passes that show the light of a coarse grid on a finer one of the same ground: the sun's light and the rest are
-/// divided by the cosines of the coarse slopes, interpolated, and multiplied by those of the fine slopes and by the fine
-/// albedo. For pictures that must appear at once; exact only where both grids have the same slopes.
+/// Passes that show the light of coarse grids on a finer one of the same ground: the sun's light is divided by the cosine
+/// of the coarse slopes, the rest by its unoccluded irradiance on them; both are interpolated, and multiplied by the same
+/// functions of the fine slopes and by the fine albedo. For pictures that must appear at once; exact only where all grids
+/// have the same slopes.
 ///
-/// `coarse` is the plan of the coarse scene with one image per light ([`Picture::light_layers`](super::Picture)). The
-/// first sun with irradiance, number n, is the sun, whose image is `direct.sun{n}`; other lights count as sky. Cells of the coarse grid are a whole number of fine ones wide, and
-/// both begin at the north-western corner.
+/// `sky` is a scene on a coarse grid with all lights and its plan, with one image per light
+/// ([`Picture::light_layers`](super::Picture)). The first sun with irradiance, number n, is the sun, whose image is
+/// `direct.sun{n}`; all other lights count as sky. If there is a sun, `sun` is a scene on a grid of its own, with albedo 1
+/// and the sun alone, and its plan. All grids begin at the north-western corner; their cells have the same shape.
 ///
 /// Inputs, in order: "heights" of the fine grid; "environment" if the scene has one, for [`View`](super::View); "albedo"
-/// of the fine grid if the scene has a map; then of the coarse grid "coarse_heights", "coarse_radiance", "coarse_sun" if there is
-/// a sun, "coarse_albedo" if there is a map. Output: "radiance", four channels.
+/// of the fine grid if the scene has a map; four channels of unit normals: "normals" of the fine grid, the means of those that
+/// each texel covers, and the coarse grids' own, "sky_normals" and, if there is a sun, "sun_normals"; then "sky_radiance",
+/// "sky_sun" if there is a sun, "sky_albedo" if there is a map, and "sun_radiance". Output: "radiance", four channels.
 ///
 /// # Errors
-/// A coarse plan without the sun's layer, or scenes beyond the limits.
-pub fn preview(fine: &Scene, coarse: &Scene, lit: &Plan, limits: &Limits) -> Result<Plan> {
+/// A plan of the sky without the sun's layer, a sun without its scene, or scenes beyond the limits.
+pub fn preview(
+    fine: &Scene,
+    (sky, sky_plan): (&Scene, &Plan),
+    sun: Option<(&Scene, &Plan)>,
+    limits: &Limits,
+) -> Result<Plan> {
     let size = limits.check_size(fine.field.rows(), fine.field.cols())?;
     let grid = |field: &HeightField| Grid {
         size: [field.cols() as u32, field.rows() as u32],
         cell_m: field.cell_m(),
     };
-    let grids = [grid(&fine.field), grid(&coarse.field)];
-    let mut suns = (1..).zip(&coarse.lights.suns);
-    let sun = suns.find(|(_, sun)| sun.irradiance.iter().any(|e| *e > 0.0));
-    sun.map_or(Ok(()), |(n, _)| check_sun(lit, n))?;
-    let sun = sun.map(|(_, sun)| sun);
+    let [fine_grid, sky_grid] = [grid(&fine.field), grid(&sky.field)];
+    let of_sun = match first(sky) {
+        None => None,
+        Some((n, found)) => {
+            check_sun(sky_plan, n)?;
+            let lacks =
+                || Error::setting("preview: sun", "no scene of it", "one with the sun alone");
+            Some((found, sun.ok_or_else(lacks)?))
+        }
+    };
     let has_albedo = matches!(fine.surface.albedo, Albedo::Map(_));
-    let radiance = lit.find("radiance").map(|id| lit.resources[id.0].kind);
-    let grey = matches!(radiance, Some(Kind::Image { format: Format::R32Float, .. }));
+    let is_grey = |plan: &Plan| {
+        let radiance = plan.find("radiance").map(|id| plan.resources[id.0].kind);
+        matches!(radiance, Some(Kind::Image { format: Format::R32Float, .. }))
+    };
 
     let mut builder = Builder::new();
     let mut image = |name: &str, owner: Owner, format: Format, of: Grid| {
@@ -40,35 +55,65 @@ pub fn preview(fine: &Scene, coarse: &Scene, lit: &Plan, limits: &Limits) -> Res
         builder.image(name, owner, format, [width, height, 1], false)
     };
     let (one, four) = (Format::R32Float, Format::Rgba32Float);
-    let of_coarse = if grey { one } else { four };
-    let [fine_grid, coarse_grid] = grids;
-    let heights = image("heights", Owner::Input, one, fine_grid);
+    let of = |plan: &Plan| if is_grey(plan) { one } else { four };
+    // Of views alone.
+    image("heights", Owner::Input, one, fine_grid);
     if let Some(environment) = &fine.lights.environment {
         let size = [environment.width() as u32, environment.height() as u32];
-        let of = Grid { size, cell_m: [1.0; 2] };
-        image("environment", Owner::Input, four, of);
+        image("environment", Owner::Input, four, Grid { size, cell_m: [1.0; 2] });
     }
     let albedo = has_albedo.then(|| image("albedo", Owner::Input, four, fine_grid));
-    let mut gathered = vec![
-        ("heights", image("coarse_heights", Owner::Input, one, coarse_grid)),
-        ("coarse_radiance", image("coarse_radiance", Owner::Input, of_coarse, coarse_grid)),
+    let normals = image("normals", Owner::Input, four, fine_grid);
+    let sky_normals = image("sky_normals", Owner::Input, four, sky_grid);
+    let of_sun = of_sun.map(|(light, (scene, plan))| {
+        let grid = grid(&scene.field);
+        (light, plan, grid, image("sun_normals", Owner::Input, four, grid))
+    });
+    let mut in_sky = vec![
+        ("normals", sky_normals),
+        ("coarse_radiance", image("sky_radiance", Owner::Input, of(sky_plan), sky_grid)),
     ];
-    if sun.is_some() {
-        gathered.push(("coarse_sun", image("coarse_sun", Owner::Input, of_coarse, coarse_grid)));
+    if of_sun.is_some() {
+        in_sky.push(("coarse_sun", image("sky_sun", Owner::Input, of(sky_plan), sky_grid)));
     }
     if has_albedo {
-        gathered.push(("coarse_albedo", image("coarse_albedo", Owner::Input, four, coarse_grid)));
+        in_sky.push(("coarse_albedo", image("sky_albedo", Owner::Input, four, sky_grid)));
     }
-    let gathered_light = image("gathered", Owner::Internal, four, coarse_grid);
+    let sky_light = image("sky", Owner::Internal, four, sky_grid);
+    in_sky.push(("gathered", sky_light));
+    let of_sun = of_sun.map(|(light, plan, grid, normals)| {
+        let made = image("sun", Owner::Internal, four, grid);
+        let bound = vec![
+            ("normals", normals),
+            ("coarse_radiance", image("sun_radiance", Owner::Input, of(plan), grid)),
+            ("gathered", made),
+        ];
+        (Slope::of_sun(light), grid, is_grey(plan), bound, made)
+    });
     let radiance = image("radiance", Owner::Output, four, fine_grid);
-    gathered.push(("gathered", gathered_light));
-    let coarse_albedo = (&coarse.surface.albedo, grey);
-    preview_gather::plan(&mut builder, coarse_grid, sun, coarse_albedo, &gathered);
-    let mut shaded = vec![("heights", heights)];
+
+    let sky_slope = Slope::of_sky(&sky.lights, sky.surface.border);
+    let surface = (&sky.surface.albedo, is_grey(sky_plan), of_sun.is_some());
+    preview_gather::plan(&mut builder, sky_grid, (sky_slope, "sky"), surface, &in_sky);
+    let mut shaded = vec![("normals", normals)];
     shaded.extend(albedo.map(|albedo| ("albedo", albedo)));
-    shaded.extend([("gathered", gathered_light), ("radiance", radiance)]);
-    preview_shade::plan(&mut builder, grids, sun, &fine.surface.albedo, &shaded);
+    shaded.push(("sky", sky_light));
+    if let Some((slope, grid, grey, bound, made)) = &of_sun {
+        let surface = (&Albedo::Constant([1.0; 3]), *grey, false);
+        preview_gather::plan(&mut builder, *grid, (*slope, "sun"), surface, bound);
+        shaded.push(("sun", *made));
+    }
+    shaded.push(("radiance", radiance));
+    let of_sun = of_sun.map(|(slope, grid, ..)| (slope, grid));
+    let albedo = &fine.surface.albedo;
+    preview_shade::plan(&mut builder, fine_grid, (sky_slope, sky_grid), of_sun, albedo, &shaded);
     Plan::finish(builder, size, Vec::new(), Vec::new(), Vec::new(), Vec::new(), limits)
+}
+
+/// The first sun with irradiance, and its number, from 1.
+fn first(scene: &Scene) -> Option<(usize, &Sun)> {
+    let mut suns = (1..).zip(&scene.lights.suns);
+    suns.find(|(_, sun)| sun.irradiance.iter().any(|e| *e > 0.0))
 }
 
 /// Whether a plan has the image of the sun of this number.

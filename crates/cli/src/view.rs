@@ -5,6 +5,7 @@ mod brush;
 mod gui;
 mod marks;
 mod moving;
+mod opening;
 mod panel;
 mod script;
 mod smaller;
@@ -14,14 +15,15 @@ mod strokes;
 use std::collections::VecDeque;
 
 use ridgelight::plan::{self, Limits};
+use ridgelight::scene::{Quality, Scene};
 use ridgelight::{Error, Result};
 use winit::event_loop::EventLoop;
 
 use crate::args::ViewArgs;
 use crate::idle;
 use crate::setup::{self, Outcome};
-use app::App;
-use state::State;
+use opening::{Opening, Reading};
+use script::Step;
 
 pub fn run(args: &ViewArgs) -> Result<Outcome> {
     if let Some(json) = &args.global.json {
@@ -31,6 +33,15 @@ pub fn run(args: &ViewArgs) -> Result<Outcome> {
     }
     args.exposure.map_or(Ok(()), |e| crate::render::check_positive("--exposure", e))?;
     let quality = args.quality.quality()?;
+    std::thread::scope(|scope| {
+        // The window opens meanwhile.
+        let reading = scope.spawn(|| load(args, quality));
+        show(args, reading)
+    })
+}
+
+/// Reads the field and checks the request.
+fn load(args: &ViewArgs, quality: Quality) -> Result<(Scene, Quality)> {
     let field = setup::field(&args.input.path, &args.surface.field, &args.global)?;
     let unlit = setup::Unlit::of(&quality, None);
     let mut scene = setup::scene(field, &args.surface, &args.lights, unlit, args.global.quiet)?;
@@ -41,19 +52,36 @@ pub fn run(args: &ViewArgs) -> Result<Outcome> {
     let used = picture(&Limits::boundless(true, 1 << 50))
         .or_else(|_| picture(&Limits::boundless(false, 1 << 50)))?;
     idle::say(args.global.quiet, &args.quality.written, &used.settings);
-    let steps = args.script.as_deref().map(script::read).transpose()?.map(VecDeque::from);
-    let no_display = |e: winit::error::EventLoopError| {
-        let text = e.to_string();
-        // The reason follows winit's source position.
-        let why = text.rsplit_once(".rs:").and_then(|(_, rest)| rest.split_once(": "));
-        let why = why.map_or(text.as_str(), |(_, why)| why).trim_end_matches('.');
-        Error::Device { doing: "view".into(), reason: format!("needs a display: {why}") }
+    Ok((scene, quality))
+}
+
+/// Shows the window from now on. An error of the field comes before one of the window.
+fn show(args: &ViewArgs, reading: Reading<'_>) -> Result<Outcome> {
+    let prepared = prepare(args);
+    let (events, steps) = match prepared {
+        Ok(prepared) => prepared,
+        Err(error) => return opening::joined(reading).and(Err(error)),
     };
+    let mut opening = Opening::new(args, steps, reading);
+    let ended = events.run_app(&mut opening).map_err(no_display);
+    opening.end().and(ended).map(|()| Outcome::Done)
+}
+
+/// The steps of a script, if there is one.
+type Steps = Option<VecDeque<Step>>;
+
+fn prepare(args: &ViewArgs) -> Result<(EventLoop<()>, Steps)> {
+    let steps = args.script.as_deref().map(script::read).transpose()?.map(VecDeque::from);
     check_keyboard()?;
-    let events = EventLoop::new().map_err(no_display)?;
-    let mut app = App::new(args, State::new(args, scene, quality), steps);
-    let ended = events.run_app(&mut app).map_err(no_display);
-    app.end().and(ended).map(|()| Outcome::Done)
+    Ok((EventLoop::new().map_err(no_display)?, steps))
+}
+
+fn no_display(error: winit::error::EventLoopError) -> Error {
+    let text = error.to_string();
+    // The reason follows winit's source position.
+    let why = text.rsplit_once(".rs:").and_then(|(_, rest)| rest.split_once(": "));
+    let why = why.map_or(text.as_str(), |(_, why)| why).trim_end_matches('.');
+    Error::Device { doing: "view".into(), reason: format!("needs a display: {why}") }
 }
 
 /// Refuses to start where winit would panic: on X it loads this library when it opens a window.

@@ -1,6 +1,7 @@
 //! Common first steps of all readers: read the bytes, determine the format, check the header.
 
 use ridgelight::{Error, Result};
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::{fs, io::Read, path::Path};
 
 /// The longest side of a field or picture that is read.
@@ -116,9 +117,24 @@ pub(crate) fn read(path: &Path) -> Result<Vec<u8>> {
     bytes
         .try_reserve_exact(usize::try_from(about.len()).unwrap_or(usize::MAX))
         .map_err(|_| io(std::io::ErrorKind::OutOfMemory.into()))?;
-    let file = fs::File::open(path).map_err(io)?;
-    file.take(FILE_LIMIT).read_to_end(&mut bytes).map_err(io)?;
+    let mut file = fs::File::open(path).map_err(io)?.take(FILE_LIMIT);
+    loop {
+        match (&mut file).take(PIECE).read_to_end(&mut bytes).map_err(io)? {
+            0 => break,
+            read => READ.fetch_add(read as u64, Ordering::Relaxed),
+        };
+    }
     Ok(bytes)
+}
+
+/// Bytes of a file that are read between two statements of progress.
+const PIECE: u64 = 1 << 20;
+
+static READ: AtomicU64 = AtomicU64::new(0);
+
+/// Bytes of files that this process has read so far; for progress.
+pub fn bytes_read() -> u64 {
+    READ.load(Ordering::Relaxed)
 }
 
 /// Rows and columns as `usize`, if they are within the limits.

@@ -71,6 +71,10 @@ impl Renderer {
                 device.cmd_pipeline_barrier2(commands, &filled);
             }
             timestamp(0);
+            if queries != vk::QueryPool::null() {
+                // lavapipe writes a timestamp when it next waits, which a lone pass would precede.
+                device.cmd_pipeline_barrier2(commands, &between);
+            }
             for (query, &index) in passes.iter().enumerate() {
                 if query > 0 && self.must_wait(passes[query - 1], index) {
                     device.cmd_pipeline_barrier2(commands, &between);

@@ -1,34 +1,34 @@
-use super::preview::{Grid, colour, direction, most};
+use super::preview::{Grid, Slope, colour};
 use crate::graph::{Builder, ResourceId, shaders};
-use crate::scene::{Albedo, Sun};
+use crate::scene::Albedo;
 
-/// Takes the slopes out of the coarse grid's light.
+/// Takes the slopes out of a coarse grid's light.
 pub(crate) fn plan(
     builder: &mut Builder,
     coarse: Grid,
-    sun: Option<&Sun>,
-    (albedo, grey): (&Albedo, bool),
+    (of, suffix): (Slope, &str),
+    (albedo, grey, without_sun): (&Albedo, bool, bool),
     bound: &[(&str, ResourceId)],
 ) {
+    let [r, g, b] = of.most;
     builder.pass(
         shaders::PreviewGather {
             grey,
-            has_sun: sun.is_some(),
+            without_sun,
             albedo_is_map: matches!(albedo, Albedo::Map(_)),
         },
-        "",
+        suffix,
         "light without slopes, on the coarse grid",
         coarse.groups(),
         &shaders::PreviewGatherPush {
-            sun: direction(sun),
-            most: most(sun),
-            colour: colour(albedo),
-            cell_m: coarse.cell_m.map(|c| c as f32),
+            slope: of.slope,
+            most: [r, g, b, of.ceiling],
+            colour: colour(albedo, of.least),
             cols: coarse.size[0] as i32,
             rows: coarse.size[1] as i32,
         },
         bound,
-        coarse.texels() * 68,
+        coarse.texels() * 64,
         coarse.texels(),
     );
 }

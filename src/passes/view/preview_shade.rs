@@ -1,36 +1,43 @@
-use super::preview::{Grid, colour, direction, most};
+use super::preview::{Grid, Slope, colour};
 use crate::graph::{Builder, ResourceId, shaders};
-use crate::scene::{Albedo, Sun};
+use crate::scene::Albedo;
 
-/// Lights the fine grid's slopes.
+/// Lights the fine grid's slopes: by the sky on its grid, and by the sun, if any, on its own.
 pub(crate) fn plan(
     builder: &mut Builder,
-    [fine, coarse]: [Grid; 2],
-    sun: Option<&Sun>,
+    fine: Grid,
+    (sky, sky_grid): (Slope, Grid),
+    sun: Option<(Slope, Grid)>,
     albedo: &Albedo,
     bound: &[(&str, ResourceId)],
 ) {
+    let (of_sun, sun_grid) = sun.unwrap_or((sky, sky_grid));
+    let ratio = |coarse: Grid| (fine.cell_m[0] / coarse.cell_m[0]) as f32;
+    let [r, g, b] = of_sun.most;
     builder.pass(
         shaders::PreviewShade {
             has_sun: sun.is_some(),
             albedo_is_map: matches!(albedo, Albedo::Map(_)),
         },
         "",
-        "light of the coarse grid on the slopes of the fine one",
+        "light of the coarse grids on the slopes of the fine one",
         fine.groups(),
         &shaders::PreviewShadePush {
-            sun: direction(sun),
-            most: most(sun),
-            colour: colour(albedo),
-            cell_m: fine.cell_m.map(|c| c as f32),
+            sky_slope: sky.slope,
+            sun_slope: of_sun.slope,
+            most: [r, g, b, 1.0],
+            colour: colour(albedo, sky.least),
             cols: fine.size[0] as i32,
             rows: fine.size[1] as i32,
-            coarse_cols: coarse.size[0] as i32,
-            coarse_rows: coarse.size[1] as i32,
-            ratio: (fine.cell_m[0] / coarse.cell_m[0]) as f32,
+            sky_cols: sky_grid.size[0] as i32,
+            sky_rows: sky_grid.size[1] as i32,
+            sun_cols: sun_grid.size[0] as i32,
+            sun_rows: sun_grid.size[1] as i32,
+            sky_ratio: ratio(sky_grid),
+            sun_ratio: ratio(sun_grid),
         },
         bound,
-        fine.texels() * 36,
+        fine.texels() * 48,
         fine.texels(),
     );
 }

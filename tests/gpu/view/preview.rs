@@ -1,16 +1,18 @@
-//! Light of a coarse grid on the slopes of a finer one.
+//! Light of coarse grids on the slopes of a finer one.
 
 use ridgelight::plan::{self, Limits, Picture};
-use ridgelight::scene::{Albedo, HeightField, Lights, Quality, Scene, Sun, Surface};
-use ridgelight_cpu::preview::{self, Coarse, Colours};
-use ridgelight_cpu::preview_gather::preview_gather;
+use ridgelight::scene::{
+    Albedo, Border, HeightField, Lights, Quality, Scene, Sun, Surface, normal,
+};
+use ridgelight_cpu::preview::{Coarse, Colours, Slope};
 use ridgelight_cpu::preview_shade::preview_shade;
 use ridgelight_cpu::tolerance::EPSILON;
 
 use crate::{Device, random};
 
 const FINE: [usize; 2] = [22, 19];
-const SIDE: usize = 4;
+/// Sides of the blocks of the sky and of the sun.
+const SIDES: [usize; 2] = [4, 2];
 
 fn field([cols, rows]: [usize; 2], side: f64) -> HeightField {
     let height = |i: usize| {
@@ -32,27 +34,35 @@ fn colours(count: usize, grey: bool, seed: u64) -> Vec<[f32; 3]> {
         .collect()
 }
 
-/// The cosines err by 16 ε: three differences, quotients and squares, and a normalisation. The light of a coarse texel
+fn normals(field: &HeightField) -> Vec<[f64; 3]> {
+    let (count, cols) = (field.rows() * field.cols(), field.cols());
+    (0..count).map(|i| normal(field, Border::Plane, i / cols, i % cols).to_array()).collect()
+}
+
+/// The cosines err by 16 ε: rounded normals, products and sums. The light of a coarse texel
 /// errs by twice that over the least cosine; its place by ε of the coarse columns, over which it changes by the largest
 /// light at most; mixing and multiplying by 12 ε more.
 #[test]
 fn previews_match_the_cpu_reference() {
     let mut device = Device::new();
-    let coarse_size = FINE.map(|n| n.div_ceil(SIDE));
-    let (fine, coarse) = (field(FINE, 1.0), field(coarse_size, SIDE as f64));
+    let sizes = SIDES.map(|side| FINE.map(|n| n.div_ceil(side)));
+    let fine = field(FINE, 1.0);
+    let [sky_field, sun_field] = [0, 1].map(|n| field(sizes[n], SIDES[n] as f64));
     let sun = Sun {
         azimuth_rad: 2.0,
         elevation_rad: 0.8,
         diameter_rad: 0.02,
         irradiance: [2.0, 2.0, 2.0],
     };
-    let facing = |i: usize| {
-        let cosines = preview::normal(&coarse, i).into_iter().zip(preview::direction(&sun));
-        cosines.map(|(a, b)| a * b).sum::<f64>()
-    };
-    let count = coarse_size[0] * coarse_size[1];
-    let least = (0..count).map(facing).fold(1.0, f64::min);
+    let of_sun = Slope::of_sun(&sun);
+    let facing =
+        |normal: &[f64; 3]| -> f64 { normal.iter().zip(of_sun.vector).map(|(a, b)| a * b).sum() };
+    let [in_sky, in_sun] = [&sky_field, &sun_field].map(normals);
+    let least = in_sky.iter().chain(&in_sun).map(facing).fold(1.0, f64::min);
     assert!(least > 0.1, "{least}");
+    // Means of rough ground are shorter than 1.
+    let means: Vec<[f64; 3]> =
+        normals(&fine).iter().map(|n| n.map(|v| f64::from((0.9 * v) as f32))).collect();
     // The constant colour is none of a grey scene, so that its channels differ.
     let constant = [0.5, 0.3, 0.2];
     for (has_sun, grey, has_map) in [
@@ -68,7 +78,7 @@ fn previews_match_the_cpu_reference() {
         let suns = if has_sun { vec![black, sun] } else { Vec::new() };
         let lights = Lights { sky: Some(colour), suns, ..Lights::default() };
         let albedo = |size: [usize; 2], seed: u64| colours(size[0] * size[1], false, seed);
-        let [fine_albedo, coarse_albedo] = [albedo(FINE, 3), albedo(coarse_size, 4)];
+        let [fine_albedo, sky_albedo] = [albedo(FINE, 3), albedo(sizes[0], 4)];
         let scene = |field: &HeightField, albedo: &[[f32; 3]]| Scene {
             field: field.clone(),
             surface: Surface {
@@ -81,29 +91,42 @@ fn previews_match_the_cpu_reference() {
             },
             lights: lights.clone(),
         };
-        let scenes = [scene(&fine, &fine_albedo), scene(&coarse, &coarse_albedo)];
+        let (fine_scene, sky_scene) = (scene(&fine, &fine_albedo), scene(&sky_field, &sky_albedo));
+        let sun_scene = Scene {
+            field: sun_field.clone(),
+            surface: Surface::default(),
+            lights: Lights { suns: vec![sun], ..Lights::default() },
+        };
         let gpu = device.gpu.as_mut().expect("alive");
         let limits: Limits = gpu.report().limits;
-        let wanted = Picture { light_layers: true, ..Picture::default() };
-        let lit = plan::picture(&scenes[1], &Quality::default(), &limits, wanted).expect("a plan");
-        let plan = plan::preview(&scenes[0], &scenes[1], &lit, &limits).expect("a plan");
+        let planned = |scene: &Scene, light_layers: bool| {
+            let wanted = Picture { light_layers, ..Picture::default() };
+            plan::picture(scene, &Quality::default(), &limits, wanted).expect("a plan")
+        };
+        let plans = [planned(&sky_scene, true), planned(&sun_scene, false)];
+        let suns = has_sun.then_some((&sun_scene, &plans[1]));
+        let plan = plan::preview(&fine_scene, (&sky_scene, &plans[0]), suns, &limits);
+        let plan = plan.expect("a plan");
 
         // A share of the sun at each grid point, as a sun pass gives it, for albedo 0.2 and more.
-        let shares = colours(count, true, 5);
-        let of_sun: Vec<[f32; 3]> = (0..count)
-            .map(|i| {
-                let albedo = match (grey, has_map) {
-                    (true, _) => [1.0; 3],
-                    (_, true) => coarse_albedo[i],
-                    _ => constant,
-                };
-                let lit = sun.irradiance[0] / std::f32::consts::PI * facing(i) as f32;
-                albedo.map(|a| if has_sun { shares[i][0] * a * lit } else { 0.0 })
-            })
-            .collect();
-        let radiance: Vec<[f32; 3]> = colours(count, grey, 6)
+        let lit = |normals: &[[f64; 3]], albedo: &dyn Fn(usize) -> [f32; 3], seed: u64| {
+            let shares = colours(normals.len(), true, seed);
+            let light = |i: usize| {
+                let lit = (of_sun.most[0] * facing(&normals[i])) as f32;
+                albedo(i).map(|a| if has_sun { shares[i][0] * a * lit } else { 0.0 })
+            };
+            (0..normals.len()).map(light).collect::<Vec<[f32; 3]>>()
+        };
+        let of_sky = |i: usize| match (grey, has_map) {
+            (true, _) => [1.0; 3],
+            (_, true) => sky_albedo[i],
+            _ => constant,
+        };
+        let sky_sun = lit(&in_sky, &of_sky, 5);
+        let sun_light = lit(&in_sun, &|_| [1.0; 3], 7);
+        let radiance: Vec<[f32; 3]> = colours(in_sky.len(), grey, 6)
             .iter()
-            .zip(&of_sun)
+            .zip(&sky_sun)
             .map(|(sky, sun)| [0, 1, 2].map(|c| 0.5 * sky[c] + sun[c]))
             .collect();
         let texels = |colours: &[[f32; 3]], grey: bool| -> Vec<f32> {
@@ -114,12 +137,23 @@ fn previews_match_the_cpu_reference() {
         if has_map {
             contents.push(texels(&fine_albedo, false));
         }
-        contents.extend([coarse.heights_m().to_vec(), texels(&radiance, grey)]);
+        let rounded = |normals: &[[f64; 3]]| -> Vec<[f32; 3]> {
+            normals.iter().map(|n| n.map(|v| v as f32)).collect()
+        };
+        contents.extend([&means, &in_sky].map(|normals| texels(&rounded(normals), false)));
         if has_sun {
-            contents.push(texels(&of_sun, grey));
+            contents.push(texels(&rounded(&in_sun), false));
+        }
+        contents.push(texels(&radiance, grey));
+        if has_sun {
+            contents.push(texels(&sky_sun, grey));
         }
         if has_map {
-            contents.push(texels(&coarse_albedo, false));
+            contents.push(texels(&sky_albedo, false));
+        }
+        if has_sun {
+            // One sun of one colour on white ground is grey.
+            contents.push(texels(&sun_light, true));
         }
         let pixels = gpu
             .with_frame(plan, &contents, |gpu, frame| {
@@ -131,20 +165,31 @@ fn previews_match_the_cpu_reference() {
         let light = |blend: f64| {
             let radiance: Vec<[f32; 3]> =
                 radiance.iter().map(|c| c.map(|v| v * (1.0 + blend) as f32)).collect();
-            let sun = has_sun.then_some((of_sun.as_slice(), &sun));
             let colours = |map| match (grey, has_map) {
                 (true, _) => Colours::Constant([1.0; 3]),
                 (_, true) => Colours::Map(map),
                 _ => Colours::Constant(constant),
             };
-            let albedo = colours(coarse_albedo.as_slice());
-            let coarse = Coarse { field: &coarse, radiance: &radiance, sun, albedo };
+            let sky = Coarse {
+                field: &sky_field,
+                radiance: &radiance,
+                without: has_sun.then_some(sky_sun.as_slice()),
+                albedo: colours(sky_albedo.as_slice()),
+                slope: Slope::of_sky(),
+            };
+            let sun = Coarse {
+                field: &sun_field,
+                radiance: &sun_light,
+                without: None,
+                albedo: Colours::Constant([1.0; 3]),
+                slope: of_sun,
+            };
             let albedo = colours(fine_albedo.as_slice());
-            preview_shade(&fine, albedo, &coarse, &preview_gather(&coarse))
+            preview_shade((&fine, &means), albedo, &sky, has_sun.then_some(&sun))
         };
-        // No cosine, albedo or light above is more than 1, and the least albedo 0.2.
-        let most = 1.0 / 0.2 / least;
-        let tolerance = most * EPSILON * (32.0 / least + coarse_size[0] as f64 + 12.0);
+        // No cosine, albedo or light above is more than 1, and the least albedo 0.2; there are two lights.
+        let most = 2.0 / 0.2 / least;
+        let tolerance = most * EPSILON * (32.0 / least + sizes[1][0] as f64 + 12.0);
         let apart = |want: &[[f64; 3]]| {
             let got = pixels.values.chunks_exact(4);
             let texel = |(got, want): (&[f32], &[f64; 3])| {

@@ -7,12 +7,13 @@ use std::process::Command;
 use image::codecs::jpeg::JpegEncoder;
 use image::{Rgb, RgbImage};
 use ridgelight::Result;
-use ridgelight::scene::{HeightField, fractal};
+use ridgelight::scene::{Border, HeightField, fractal};
 use ridgelight_io as files;
 use ridgelight_testing::terrain;
 
 use crate::common::Outcome;
 use crate::common::args::Args;
+use crate::common::inputs::mountain;
 
 const FOLDER: &str = "docs/gallery";
 const PAGE: &str = "docs/gallery/index.md";
@@ -159,14 +160,21 @@ fn terrain_of(name: &str, side: usize, time_s: f64) -> Result<HeightField> {
     }
 }
 
-/// Writes a synthetic field as a file.
+/// Writes a field as a file: a synthetic one, or the bundled mountain with its triangles cut to about a side.
 pub fn field(mut args: Args) -> Outcome {
     let (Some(name), Some(side), Some(path)) = (args.word(), args.word(), args.word()) else {
         return Err("expected NAME SIDE FIELD.npy".into());
     };
-    let made = terrain_of(&name, side.parse()?, 0.0)?;
+    let side: usize = side.parse()?;
+    let made = if name == "mountain" {
+        let coarse = mountain(1.0)?;
+        coarse.finer(Border::Plane, (side / coarse.cols()).max(1))?
+    } else {
+        terrain_of(&name, side, 0.0)?
+    };
     files::write_npy_heights(Path::new(&path), &made)?;
-    println!("--cell {}", made.cell_m()[0]);
+    let [x, y] = made.cell_m();
+    println!("--cell {x},{y}");
     Ok(())
 }
 

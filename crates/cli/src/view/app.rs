@@ -11,8 +11,9 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use ridgelight::gpu::{Frame, HeadlessOptions};
+use ridgelight::gpu::Frame;
 use ridgelight::plan::{Limits, Rectangle};
+use ridgelight::scene::Camera;
 use ridgelight::{Error, Result};
 use ridgelight_viewer::Screen;
 use winit::application::ApplicationHandler;
@@ -23,11 +24,13 @@ use winit::keyboard::{Key, ModifiersState, NamedKey};
 use winit::window::{Window, WindowId};
 
 use super::gui::Gui;
+use super::opening::Opened;
 use super::script::{Button, Step};
 use super::state::{Figures, Light, State, Wish};
 use crate::args::ViewArgs;
 use compare::Compare;
 use preview::Preview;
+pub use saving::save_pixels;
 
 /// Interval between attempts of a window that shows nothing.
 const PAUSE: Duration = Duration::from_millis(50);
@@ -84,6 +87,11 @@ struct OpenWindow {
     /// Places of the panel's parts by name, units of egui.
     places: Vec<(String, egui::Rect)>,
     preview: Preview,
+    /// Whether the last picture has the mesh of moving views.
+    has_coarse_mesh: bool,
+    /// The last picture's camera, and when it last turned.
+    camera: Option<Camera>,
+    turned: Option<Instant>,
     /// The comparison pictures, if shown.
     compare: Option<Compare>,
     figures: Figures,
@@ -98,11 +106,41 @@ struct OpenWindow {
 }
 
 impl<'a> App<'a> {
-    pub fn new(args: &'a ViewArgs, state: State, steps: Option<VecDeque<Step>>) -> Self {
+    pub fn new(
+        args: &'a ViewArgs,
+        state: State,
+        steps: Option<VecDeque<Step>>,
+        Opened { window, mut screen, gui }: Opened,
+    ) -> Self {
+        let mut limits = screen.gpu().report().limits;
+        if let Some(budget) = args.global.memory_budget {
+            limits.memory_budget = budget;
+        }
+        let inner = window.inner_size();
+        let shown = OpenWindow {
+            lit: None,
+            is_stale: true,
+            good: None,
+            has_fallen_back: false,
+            gui,
+            places: Vec::new(),
+            preview: Preview::new(limits.is_cpu),
+            has_coarse_mesh: false,
+            camera: None,
+            turned: None,
+            compare: None,
+            figures: Figures::default(),
+            last_edit: None,
+            limits,
+            screen,
+            window,
+            inner: [inner.width, inner.height],
+            size: args.size,
+        };
         Self {
             args,
             state,
-            shown: None,
+            shown: Some(shown),
             previews: steps.is_none(),
             saves_picture: false,
             clipboard: None,
@@ -115,7 +153,7 @@ impl<'a> App<'a> {
             cursor: [0.0; 2],
             held: None,
             is_hidden: false,
-            due: 0,
+            due: 3,
             frames: 0,
             spent: Vec::new(),
             last: None,
@@ -128,48 +166,6 @@ impl<'a> App<'a> {
     pub fn end(mut self) -> Result<()> {
         self.close();
         self.error.map_or(Ok(()), Err)
-    }
-
-    fn open(&mut self, events: &ActiveEventLoop) -> Result<()> {
-        let [width, height] = self.args.size;
-        let name = self.args.input.first().file_name().unwrap_or_default().to_string_lossy();
-        let attributes = Window::default_attributes()
-            .with_title(format!("{name} - ridgelight"))
-            .with_inner_size(PhysicalSize::new(width, height));
-        let refused = |e: winit::error::OsError| Error::Device {
-            doing: "opening a window".into(),
-            reason: e.to_string(),
-        };
-        let window = Arc::new(events.create_window(attributes).map_err(refused)?);
-        let options = HeadlessOptions {
-            device: self.args.global.device.clone(),
-            validation: self.args.validate,
-        };
-        let inner = window.inner_size();
-        let mut screen = Screen::new(Arc::clone(&window), &options)?;
-        let mut limits = screen.gpu().report().limits;
-        if let Some(budget) = self.args.global.memory_budget {
-            limits.memory_budget = budget;
-        }
-        self.shown = Some(OpenWindow {
-            lit: None,
-            is_stale: true,
-            good: None,
-            has_fallen_back: false,
-            gui: Gui::new(&window),
-            places: Vec::new(),
-            preview: Preview::new(limits.is_cpu),
-            compare: None,
-            figures: Figures::default(),
-            last_edit: None,
-            limits,
-            screen,
-            window,
-            inner: [inner.width, inner.height],
-            size: self.args.size,
-        });
-        self.due = 3;
-        Ok(())
     }
 
     /// Frees the device's resources and reports validation messages.
@@ -244,13 +240,7 @@ fn name(key: &Key, keys: ModifiersState) -> Option<String> {
 }
 
 impl ApplicationHandler for App<'_> {
-    fn resumed(&mut self, events: &ActiveEventLoop) {
-        if self.shown.is_none()
-            && let Err(error) = self.open(events)
-        {
-            self.failed(events, error);
-        }
-    }
+    fn resumed(&mut self, _: &ActiveEventLoop) {}
 
     fn window_event(&mut self, events: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
         match self.heard(event) {
@@ -267,7 +257,8 @@ impl ApplicationHandler for App<'_> {
             Err(error) => return self.failed(events, error),
         }
         let uses_preview = self.uses_preview();
-        let refines = uses_preview && self.shown.as_ref().is_some_and(|s| s.preview.is_busy());
+        let has_more = |shown: &OpenWindow| shown.preview.is_busy() || shown.has_coarse_mesh;
+        let refines = uses_preview && self.shown.as_ref().is_some_and(has_more);
         let is_busy = self.is_due() || self.steps.is_some();
         events.set_control_flow(match (is_busy, self.blank) {
             (true, Some(_)) => ControlFlow::wait_duration(PAUSE),

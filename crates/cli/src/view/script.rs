@@ -34,9 +34,9 @@ pub enum Step {
     Paths(u32),
     /// Prints the frames so far and their milliseconds since the last report, after some words.
     Report(String),
-    /// Previews slow light from here on, as without a script; with two numbers all light, and on grids of blocks of so many
-    /// grid points: coarse light, slopes.
-    Preview(Option<[usize; 2]>),
+    /// Previews slow light from here on, as without a script; with numbers all light, and on grids of blocks of so many
+    /// grid points: sky, sun, slopes.
+    Preview(Option<[usize; 3]>),
     /// Draws until the light is the full one.
     Rest,
     /// Waits for input until this file exists, as without a script.
@@ -45,6 +45,8 @@ pub enum Step {
     Heard,
     /// How many seconds the window may show nothing before the script gives up, 600 at most.
     Patience(f64),
+    /// As the first step: saves the window's pixels while the field is read.
+    Opening(PathBuf),
     /// A requested size, and its deadline.
     Resizing([u32; 2], Instant),
 }
@@ -80,7 +82,7 @@ pub fn read(path: &Path) -> Result<Vec<Step>> {
                 found: line.to_owned(),
                 expected:
                     "key, drag, wheel, frames, size, lose, picture, scene, screenshot, text, \
-                        places, shown, paths, preview, rest, report, wait or patience, with its values"
+                        places, shown, paths, preview, rest, report, wait, opening or patience, with its values"
                         .into(),
             }
         })?);
@@ -109,10 +111,11 @@ fn step(line: &str) -> Option<Step> {
         ["lose"] => Step::Lose,
         ["preview"] => Step::Preview(None),
         ["preview", sides] => {
-            let [coarse, fine] = pair(sides)?.map(|side| side as usize);
-            // A coarse cell is a whole number of fine ones.
-            let is_right = fine > 0 && coarse >= fine && coarse.is_multiple_of(fine);
-            Step::Preview(Some(is_right.then_some([coarse, fine])?))
+            let sides: Vec<usize> =
+                sides.split(',').map(|n| n.parse().ok()).collect::<Option<_>>()?;
+            let &[sky, sun, slopes] = sides.as_slice() else { return None };
+            let is_right = slopes > 0 && sky >= slopes && sun >= slopes;
+            Step::Preview(Some(is_right.then_some([sky, sun, slopes])?))
         }
         ["rest"] => Step::Rest,
         ["picture", file] => Step::Picture(file.into()),
@@ -124,6 +127,7 @@ fn step(line: &str) -> Option<Step> {
         ["paths", count] => Step::Paths(count.parse().ok()?),
         ["report", ..] => Step::Report(words[1..].join(" ")),
         ["wait", file] => Step::Wait(file.into()),
+        ["opening", file] => Step::Opening(file.into()),
         ["patience", seconds] => {
             let seconds = seconds.parse().ok()?;
             Step::Patience((0.0..=600.0).contains(&seconds).then_some(seconds)?)
@@ -150,8 +154,8 @@ mod tests {
         assert_eq!(read(&path).unwrap(), steps);
         std::fs::write(&path, "lose\njump\n").unwrap();
         assert!(read(&path).unwrap_err().to_string().contains("line 2: found jump"));
-        std::fs::write(&path, "preview 3,2\n").unwrap();
-        assert!(read(&path).unwrap_err().to_string().contains("found preview 3,2"));
+        std::fs::write(&path, "preview 4,1,2\n").unwrap();
+        assert!(read(&path).unwrap_err().to_string().contains("found preview 4,1,2"));
         std::fs::write(&path, "patience nan\n").unwrap();
         assert!(read(&path).unwrap_err().to_string().contains("found patience nan"));
     }

@@ -1,8 +1,11 @@
 //! A scene on a coarser grid, for pictures that answer input at once.
 
+use glam::DVec3;
 use ridgelight::Result;
 use ridgelight::plan::{Map, Rectangle};
-use ridgelight::scene::{Albedo, Camera, HeightField, PhongSpecular, Scene, Specular, Surface};
+use ridgelight::scene::{
+    Albedo, Border, Camera, HeightField, PhongSpecular, Scene, Specular, Surface, normal,
+};
 
 /// The means of blocks of grid points.
 #[derive(Clone, Copy)]
@@ -64,14 +67,21 @@ impl Blocks {
         HeightField::new(rows, cols, &heights, cell_m, voids)
     }
 
+    /// The blocks that a rectangle of the full field touches.
+    pub fn within_blocks(&self, at: Rectangle) -> Rectangle {
+        let side = self.side as u32;
+        let along = |first: u32, count: u32| {
+            let begin = first / side;
+            (begin, (first + count).div_ceil(side) - begin)
+        };
+        let ((col, cols), (row, rows)) = (along(at.col, at.cols), along(at.row, at.rows));
+        Rectangle { col, row, cols, rows }
+    }
+
     /// Takes edited heights of a rectangle of the full field.
     pub fn edit(&self, field: &HeightField, coarse: &mut HeightField, at: Rectangle) -> Result<()> {
-        let side = self.side as u32;
-        let [(col, cols), (row, rows)] =
-            [(at.col, at.cols), (at.row, at.rows)].map(|(first, n)| {
-                let begin = first / side;
-                (begin as usize, ((first + n).div_ceil(side) - begin) as usize)
-            });
+        let Rectangle { col, row, cols, rows } = self.within_blocks(at);
+        let [col, row, cols, rows] = [col, row, cols, rows].map(|n| n as usize);
         let mean = |block: usize| {
             let ground = |i: &usize| field.voids().is_none_or(|voids| !voids[*i]);
             let (sum, count) = self
@@ -85,6 +95,44 @@ impl Blocks {
         let heights: Vec<f32> =
             blocks.map(|block| mean(block).unwrap_or(coarse.heights_m()[block])).collect();
         coarse.replace([row, col], cols, &heights)
+    }
+
+    /// The mean unit normal of each block, as texels of four channels. Rough ground that is darker than its mean slope
+    /// has a mean normal shorter than 1.
+    pub fn normals(&self, field: &HeightField, border: Border) -> Vec<f32> {
+        let [cols, rows] = self.size();
+        (0..cols * rows).flat_map(|block| self.normal(field, border, block)).collect()
+    }
+
+    /// Takes the normals of an edited rectangle of the full field, which reach one grid point beyond it.
+    pub fn edit_normals(
+        &self,
+        (field, border): (&HeightField, Border),
+        normals: &mut [f32],
+        at: Rectangle,
+    ) {
+        let [all, rows] = self.size();
+        let blocks = |first: u32, count: u32, most: usize| {
+            let (begin, end) = (first.saturating_sub(1) as usize, (first + count + 1) as usize);
+            begin / self.side..end.div_ceil(self.side).min(most)
+        };
+        for row in blocks(at.row, at.rows, rows) {
+            for block in blocks(at.col, at.cols, all).map(|col| row * all + col) {
+                let texel = self.normal(field, border, block);
+                normals[4 * block..4 * block + 4].copy_from_slice(&texel);
+            }
+        }
+    }
+
+    fn normal(&self, field: &HeightField, border: Border, block: usize) -> [f32; 4] {
+        let cols = field.cols();
+        let mut count = 0.0;
+        let sum = self.within(block).fold(DVec3::ZERO, |sum, i| {
+            count += 1.0;
+            sum + normal(field, border, i / cols, i % cols)
+        });
+        let [x, y, z] = (sum / count).to_array();
+        [x as f32, y as f32, z as f32, 0.0]
     }
 
     fn surface(&self, surface: &Surface) -> Surface {
@@ -212,6 +260,35 @@ mod tests {
         };
         assert!(apart(&coarse, &want) < 16.0 * f64::from(f32::EPSILON));
         assert!(apart(&before, &want) > 0.2);
+    }
+
+    /// Of a plane every block has the plane's normal; of a gable whose sides cancel, its upward part; and an edit gives
+    /// what the whole edited field gives.
+    #[test]
+    fn normals_are_means_of_blocks() {
+        let of = |height: &dyn Fn(usize) -> f64| {
+            let heights: Vec<f64> = (0..48).map(height).collect();
+            HeightField::new(6, 8, &heights, [1.0; 2], None).unwrap()
+        };
+        let is_near = |got: &[f32], want: [f64; 3]| {
+            got.iter().zip(want).all(|(g, w)| (f64::from(*g) - w).abs() < 1e-6)
+        };
+        let plane = of(&|i| 0.75 * (i % 8) as f64);
+        let blocks = Blocks::of(&plane, 2);
+        let texels = blocks.normals(&plane, Border::Plane);
+        // The columns at the edge have one-sided or level slopes by the border.
+        assert!(is_near(&texels[4..7], [-0.6, 0.0, 0.8]), "{texels:?}");
+        // Slopes of 1 up and down meet between columns 3 and 4, where a grid point's own slope is half of that.
+        let gable = of(&|i| 3.5 - ((i % 8) as f64 - 3.5).abs());
+        let whole = Blocks::of(&gable, 6);
+        let mean = whole.normals(&gable, Border::Plane);
+        assert!(mean[2] < 0.95 && mean[2] > 0.5_f32.sqrt(), "{mean:?}");
+        let mut edited = plane.clone();
+        let at = Rectangle { col: 3, row: 2, cols: 2, rows: 1 };
+        edited.replace([2, 3], 2, &[2.0, -1.0]).unwrap();
+        let mut found = texels.clone();
+        blocks.edit_normals((&edited, Border::Plane), &mut found, at);
+        assert!(found == blocks.normals(&edited, Border::Plane) && found != texels);
     }
 
     #[test]

@@ -134,6 +134,16 @@ impl State {
         (self.quality, self.scene.lights.clone(), self.asked.clone())
     }
 
+    /// Whether nothing but suns and the environment differs from an earlier light, with as many suns.
+    pub fn has_only_turned(&self, (quality, lights, _): &Light) -> bool {
+        let now = &self.scene.lights;
+        let rest = |all: &Lights| (all.sky, all.suns.len(), all.environment.is_some());
+        *quality == self.quality
+            && rest(lights) == rest(now)
+            && lights.keys == now.keys
+            && lights.sphere_lights == now.sphere_lights
+    }
+
     /// Returns to the last light that could be drawn, and shows why.
     pub fn go_back(&mut self, light: Light, why: Error) {
         (self.quality, self.scene.lights, self.asked) = light;
@@ -160,6 +170,11 @@ impl State {
 
     pub fn is_moving(&self) -> bool {
         self.moving.is_some()
+    }
+
+    /// The camera, if there is one.
+    pub fn camera(&self) -> Option<Camera> {
+        self.viewpoint.camera
     }
 
     /// Whether there is a camera.
@@ -267,10 +282,11 @@ impl State {
         self.viewpoint.map(&self.scene.field, size, swaps, has_colour)
     }
 
-    /// A camera view of a plan's light, if there is a camera; of the full scene or of one in blocks.
+    /// A camera view of a plan's light, if there is a camera; of the full scene or of one in blocks; on the mesh of a moving
+    /// view or on the full one.
     pub fn view(
         &self,
-        (scene, blocks): (&Scene, Option<Blocks>),
+        (scene, blocks, is_coarse): (&Scene, Option<Blocks>, bool),
         lit: &Plan,
         size: [u32; 2],
         limits: &Limits,
@@ -279,7 +295,7 @@ impl State {
         if let (Some(camera), Some(blocks)) = (&mut viewpoint.camera, blocks) {
             *camera = blocks.camera(&self.scene.field, camera);
         }
-        viewpoint.view(scene, lit, size, limits)
+        viewpoint.view((scene, is_coarse), lit, size, limits)
     }
 
     /// Handles a key by its name: a letter, `left`, `shift+left`, `escape`.

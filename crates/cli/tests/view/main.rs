@@ -218,7 +218,7 @@ fn write_large(folder: &Folder) {
 fn gpu_previews_show_the_new_light() {
     let (folder, display) = (Folder::new(), Display::new());
     write_large(&folder);
-    let script = "key h\nkey h\npreview 3,1\nframes 1\nrest\nframes 1\nscreenshot before.png\n\
+    let script = "key h\nkey h\npreview 3,2,1\nframes 1\nrest\nframes 1\nscreenshot before.png\n\
         key shift+right\nkey shift+right\nkey shift+right\nkey shift+right\nkey shift+right\nkey shift+right\n\
         screenshot preview.png\npicture saved.png\nscreenshot full.png\nscene full.json\n\
         key v\nframes 1\nscreenshot turned_before.png\nkey shift+left\nkey shift+left\nkey shift+left\nkey shift+left\n\
@@ -275,6 +275,32 @@ fn gpu_previews_show_the_new_light() {
     assert!(heights("moved.npy") == heights("plain.npy"));
 }
 
+/// The window shows what is read until it is read, and the picture then. A field that cannot be read gives the error of
+/// `render` on standard error, with its status, whether the window is open by then or not.
+#[test]
+fn gpu_window_opens_before_the_field_is_read() {
+    let (folder, display) = (Folder::new(), Display::new());
+    let script = "opening opening.png\nkey h\nkey h\nframes 2\nscreenshot first.png\n";
+    folder.view(&display, &format!("hills.asc {LIT} --size 300x200"), script);
+    let opening = folder.picture("opening.png");
+    assert_eq!([opening.rows, opening.cols], [200, 300]);
+    let lit = colours(&opening)[0].iter().filter(|light| **light > 0.2).count();
+    // Letters: some of the picture, at most a tenth of it. The field would fill 256 x 192 of it.
+    assert!((50..6000).contains(&lit), "{lit}");
+    assert!(colours(&folder.picture("first.png")) != colours(&opening));
+    folder.write("torn.asc", b"ncols 64 nrows 48 cellsize 1 0 1 2 3");
+    for name in ["torn.asc", "missing.asc"] {
+        let [render, view] = [format!("render {name} -o none.png"), format!("view {name}")];
+        let [want, got] = [render, view].map(|args| {
+            let mut command = folder.command(&args);
+            let Output { status, stderr, .. } =
+                command.env("DISPLAY", &display.name).output().unwrap();
+            (status.code(), String::from_utf8(stderr).unwrap())
+        });
+        assert!(want.0.is_some_and(|code| code != 0) && got == want, "{got:?}, {want:?}");
+    }
+}
+
 /// Strokes of the comparison, which has no previews, are in later previews.
 #[test]
 fn gpu_previews_have_the_strokes_of_the_comparison() {
@@ -283,7 +309,7 @@ fn gpu_previews_have_the_strokes_of_the_comparison() {
     let stroke = "key 2\nframes 1\ndrag left 50,100 30,5\nframes 1\n";
     let picture = |name: &str, stroke: &str| {
         let script = format!(
-            "key h\nkey h\npreview 4,2\nframes 1\nkey c\nframes 1\n{stroke}key c\n\
+            "key h\nkey h\npreview 4,3,2\nframes 1\nkey c\nframes 1\n{stroke}key c\n\
              key shift+right\nscreenshot {name}\n"
         );
         folder.view(

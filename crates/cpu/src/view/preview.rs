@@ -1,17 +1,55 @@
-//! What the references of a preview's passes share: the coarse grid's light, slopes, the sun.
+//! What the references of a preview's passes share: coarse grids, and how light depends on their slopes.
 
 use ridgelight::scene::{HeightField, Sun};
 
-/// The light of a coarse grid, R, G, B of each grid point: all of it, the sun's, and the albedo.
+/// How unoccluded light depends on the normal: `most` times a constant plus its product with a vector, and `least` or more.
+#[derive(Clone, Copy)]
+pub struct Slope {
+    /// East, north, up.
+    pub vector: [f64; 3],
+    /// The constant.
+    pub constant: f64,
+    /// R, G, B.
+    pub most: [f64; 3],
+    /// The least value of the sum.
+    pub least: f64,
+    /// The largest share of that light.
+    pub ceiling: f64,
+}
+
+impl Slope {
+    /// A sun's light of a white texel: its irradiance times the cosine, over π.
+    pub fn of_sun(sun: &Sun) -> Self {
+        let across = sun.elevation_rad.cos();
+        let [x, y] = [sun.azimuth_rad.cos(), sun.azimuth_rad.sin()].map(|v| across * v);
+        let vector = [x, y, sun.elevation_rad.sin()];
+        let most = sun.irradiance.map(|e| f64::from(e) / std::f64::consts::PI);
+        Self { vector, constant: 0.0, most, least: 1e-3, ceiling: 1.0 }
+    }
+
+    /// A uniform sky: 1 + the cosine of the slope.
+    pub fn of_sky() -> Self {
+        let (vector, ceiling) = ([0.0, 0.0, 1.0], f64::from(f32::MAX));
+        Self { vector, constant: 1.0, most: [1.0; 3], least: 0.05, ceiling }
+    }
+
+    pub(super) fn at(&self, normal: [f64; 3]) -> f64 {
+        self.constant + (0..3).map(|i| self.vector[i] * normal[i]).sum::<f64>()
+    }
+}
+
+/// The light of a coarse grid, R, G, B of each grid point.
 pub struct Coarse<'a> {
-    /// The coarse heights; its cells are whole numbers of fine ones.
+    /// The coarse heights.
     pub field: &'a HeightField,
     /// All light.
     pub radiance: &'a [[f32; 3]],
-    /// Of the first sun with irradiance, and that sun.
-    pub sun: Option<(&'a [[f32; 3]], &'a Sun)>,
+    /// The sun's, if it is not part of this one.
+    pub without: Option<&'a [[f32; 3]]>,
     /// Its albedo.
     pub albedo: Colours<'a>,
+    /// What it is divided by.
+    pub slope: Slope,
 }
 
 /// Albedo of a grid.
@@ -30,40 +68,4 @@ impl Colours<'_> {
             Self::Map(all) => all[i][c],
         })
     }
-}
-
-impl Coarse<'_> {
-    /// The direction to its sun; up where there is none.
-    pub(super) fn towards(&self) -> [f64; 3] {
-        self.sun.map_or([0.0, 0.0, 1.0], |(_, sun)| direction(sun))
-    }
-
-    /// Radiance of a white texel that faces the sun.
-    pub(super) fn most(&self) -> [f64; 3] {
-        let most = self.sun.map_or([0.0; 3], |(_, sun)| sun.irradiance.map(f64::from));
-        most.map(|e| e / std::f64::consts::PI)
-    }
-}
-
-/// Upward normal by central differences, one-sided at the edge.
-pub fn normal(field: &HeightField, i: usize) -> [f64; 3] {
-    let (rows, cols, [cell_x, cell_y]) = (field.rows(), field.cols(), field.cell_m());
-    let (row, col) = (i / cols, i % cols);
-    let at = |row: usize, col: usize| f64::from(field.heights_m()[row * cols + col]);
-    let [west, east] = [col.saturating_sub(1), (col + 1).min(cols - 1)];
-    let [north, south] = [row.saturating_sub(1), (row + 1).min(rows - 1)];
-    let x = (at(row, east) - at(row, west)) / ((east - west).max(1) as f64 * cell_x);
-    let y = (at(south, col) - at(north, col)) / ((south - north).max(1) as f64 * cell_y);
-    let length = (x * x + y * y + 1.0).sqrt();
-    [-x / length, y / length, 1.0 / length]
-}
-
-/// Direction to a sun: east, north, up.
-pub fn direction(sun: &Sun) -> [f64; 3] {
-    let across = sun.elevation_rad.cos();
-    [across * sun.azimuth_rad.cos(), across * sun.azimuth_rad.sin(), sun.elevation_rad.sin()]
-}
-
-pub(super) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

@@ -1,29 +1,25 @@
 //! The light of a coarse grid without its slopes.
 
-use super::preview::{Coarse, dot, normal};
+use ridgelight::scene::{Border, normal};
 
-/// As in the shader: the least cosine to the sun to divide by.
-const GRAZING: f64 = 1e-3;
-/// As the shader's: albedo below which light is not divided by it.
+use super::preview::{Coarse, Slope};
+
+/// Albedo below which light is not divided by it, as in the shader.
 const DARK: f64 = 1e-3;
 
-/// Of each grid point: light but for the sun's, per albedo and share of the sky, R, G, B; the share of the sun.
-pub fn preview_gather(coarse: &Coarse<'_>) -> Vec<[f64; 4]> {
-    let (towards, most) = (coarse.towards(), coarse.most());
-    (0..coarse.radiance.len())
-        .map(|i| {
-            let normal = normal(coarse.field, i);
-            let facing = dot(normal, towards).max(GRAZING);
-            let of = |c: usize| {
-                let sun = coarse.sun.map_or(0.0, |(light, _)| f64::from(light[i][c]));
-                let albedo = coarse.albedo.at(i, c).max(DARK);
-                let lit = albedo * most[c] * facing;
-                let share = if lit > 0.0 { sun / lit } else { 0.0 };
-                let sky = (f64::from(coarse.radiance[i][c]) - sun) / (albedo * (1.0 + normal[2]));
-                [sky, share]
-            };
-            let [r, g, b] = [0, 1, 2].map(of);
-            [r[0], g[0], b[0], r[1].max(g[1]).max(b[1]).clamp(0.0, 1.0)]
+/// A coarse grid's light without its slopes and albedo.
+pub fn preview_gather(coarse: &Coarse<'_>) -> Vec<[f64; 3]> {
+    let Slope { most, least, ceiling, .. } = coarse.slope;
+    let cols = coarse.field.cols();
+    let share = |(i, all): (usize, &[f32; 3])| {
+        let normal = normal(coarse.field, Border::Plane, i / cols, i % cols).to_array();
+        let facing = coarse.slope.at(normal).max(least);
+        std::array::from_fn(|c| {
+            let sun = coarse.without.map_or(0.0, |light| f64::from(light[i][c]));
+            let lit = coarse.albedo.at(i, c).max(DARK) * most[c] * facing;
+            let light = f64::from(all[c]) - sun;
+            if lit > 0.0 { (light / lit).clamp(0.0, ceiling) } else { 0.0 }
         })
-        .collect()
+    };
+    coarse.radiance.iter().enumerate().map(share).collect()
 }

@@ -1,38 +1,37 @@
-//! The light of a coarse grid, gathered without slopes, on the slopes of a finer one.
+//! The light of coarse grids, gathered without slopes, on the slopes of a finer one.
 
 use ridgelight::scene::HeightField;
 
-use super::preview::{Coarse, Colours, dot, normal};
+use super::preview::{Coarse, Colours};
+use super::preview_gather::preview_gather;
 
-/// Exit radiance of the fine grid, from the `gathered` light of the coarse one.
+/// Exit radiance of the fine grid, which has these mean normals.
 pub fn preview_shade(
-    fine: &HeightField,
+    (fine, normals): (&HeightField, &[[f64; 3]]),
     albedo: Colours<'_>,
-    coarse: &Coarse<'_>,
-    gathered: &[[f64; 4]],
+    sky: &Coarse<'_>,
+    sun: Option<&Coarse<'_>>,
 ) -> Vec<[f64; 3]> {
-    let (towards, most) = (coarse.towards(), coarse.most());
-    let ratio = fine.cell_m()[0] / coarse.field.cell_m()[0];
+    let lights: Vec<(&Coarse<'_>, Vec<[f64; 3]>, f64)> = std::iter::once((sky, sky.slope.least))
+        .chain(sun.map(|sun| (sun, 0.0)))
+        .map(|(coarse, least)| (coarse, preview_gather(coarse), least))
+        .collect();
     (0..fine.rows() * fine.cols())
         .map(|i| {
-            let light = between(gathered, coarse.field, fine, (i, ratio));
-            let normal = normal(fine, i);
-            let facing = dot(normal, towards).max(0.0);
-            std::array::from_fn(|c| {
-                let all = light[c] * (1.0 + normal[2]) + light[3] * most[c] * facing;
-                all * albedo.at(i, c)
-            })
+            let of = |(coarse, gathered, least): &(&Coarse<'_>, Vec<[f64; 3]>, f64)| {
+                let share = between(gathered, coarse.field, fine, i);
+                let facing = coarse.slope.at(normals[i]).max(*least);
+                [0, 1, 2].map(|c| share[c] * coarse.slope.most[c] * facing)
+            };
+            let all: Vec<[f64; 3]> = lights.iter().map(of).collect();
+            std::array::from_fn(|c| all.iter().map(|light| light[c]).sum::<f64>() * albedo.at(i, c))
         })
         .collect()
 }
 
 /// Bilinear at a fine grid point's centre.
-fn between(
-    gathered: &[[f64; 4]],
-    coarse: &HeightField,
-    fine: &HeightField,
-    (i, ratio): (usize, f64),
-) -> [f64; 4] {
+fn between(gathered: &[[f64; 3]], coarse: &HeightField, fine: &HeightField, i: usize) -> [f64; 3] {
+    let ratio = fine.cell_m()[0] / coarse.cell_m()[0];
     let along = |at: usize, count: usize| {
         let from = ((at as f64 + 0.5) * ratio - 0.5).clamp(0.0, (count - 1) as f64);
         let first = from.floor() as usize;
@@ -48,10 +47,9 @@ fn between(
 
 #[cfg(test)]
 mod tests {
-    use super::super::preview::direction;
-    use super::super::preview_gather::preview_gather;
     use super::*;
-    use ridgelight::scene::Sun;
+    use crate::preview::Slope;
+    use ridgelight::scene::{Border, Sun, normal};
 
     /// On one grid, where the sun reaches all of it, the light comes back as it was.
     #[test]
@@ -64,16 +62,20 @@ mod tests {
             diameter_rad: 0.0,
             irradiance: [3.0, 2.0, 1.0],
         };
-        let lit = |i: usize| dot(normal(&field, i), direction(&sun)) / std::f64::consts::PI;
+        let slope = Slope::of_sun(&sun);
+        let normals: Vec<[f64; 3]> =
+            (0..30).map(|i| normal(&field, Border::Plane, i / 6, i % 6).to_array()).collect();
         let of_sun: Vec<[f32; 3]> =
-            (0..30).map(|i| sun.irradiance.map(|e| (f64::from(e) * lit(i)) as f32)).collect();
+            normals.iter().map(|n| slope.most.map(|most| (most * slope.at(*n)) as f32)).collect();
         let radiance: Vec<[f32; 3]> = of_sun.iter().map(|s| s.map(|v| v + 0.25)).collect();
-        let white = Colours::Constant([1.0; 3]);
-        let sun = Some((of_sun.as_slice(), &sun));
-        let coarse = Coarse { field: &field, radiance: &radiance, sun, albedo: white };
-        let gathered = preview_gather(&coarse);
-        let found = preview_shade(&field, white, &coarse, &gathered);
-        for (found, want) in found.iter().zip(&radiance) {
+        let albedo = Colours::Constant([1.0; 3]);
+        let of =
+            |radiance, without, slope| Coarse { field: &field, radiance, without, albedo, slope };
+        let sky = of(&radiance, Some(of_sun.as_slice()), Slope::of_sky());
+        let sun = of(&of_sun, None, slope);
+        for (found, want) in
+            preview_shade((&field, &normals), albedo, &sky, Some(&sun)).iter().zip(&radiance)
+        {
             for c in 0..3 {
                 assert!((found[c] - f64::from(want[c])).abs() < 4.0 * f64::from(f32::EPSILON));
             }

@@ -4,12 +4,13 @@ use std::time::{Duration, Instant};
 
 use ridgelight::gpu::{Frame, Work};
 use ridgelight::plan::{self, Format, Kind, Map, Plan, Rectangle, View};
-use ridgelight::scene::{HeightField, Scene};
+use ridgelight::scene::{Camera, HeightField, Scene};
 use ridgelight::{Error, Result};
 use ridgelight_viewer::{Pane, PaneTimes, PresentOptions, Presented, Screen, Viewpoint};
 
 use super::super::state::{Light, State, Wish};
 use super::compare::Compare;
+use super::preview::REST;
 use super::{App, OpenWindow};
 use crate::render;
 
@@ -33,9 +34,11 @@ impl App<'_> {
             Wish::Show => self.due = self.due.max(1),
             Wish::Heights => self.due = 3,
             Wish::Light => {
+                let needs_plan = !self.uses_preview() || !self.state.has_only_turned(&before);
                 if let Some(shown) = &mut self.shown {
-                    // Also with previews: their coarse plan accepts settings that the full one refuses.
-                    match self.state.plan(&shown.limits) {
+                    // Also with previews: their coarse plan accepts settings that the full one refuses. On a large field
+                    // it takes 40 ms.
+                    match needs_plan.then(|| self.state.plan(&shown.limits)).transpose() {
                         Ok(_) => (shown.is_stale, shown.has_fallen_back) = (true, false),
                         Err(why) => self.state.go_back(before, why),
                     }
@@ -79,6 +82,9 @@ impl App<'_> {
         }
         if !self.is_ready()? {
             return Ok(());
+        }
+        if self.shown.as_ref().is_some_and(OpenWindow::has_rested) {
+            self.due = self.due.max(1);
         }
         if self.is_due() {
             return self.draw(false).map(|_| ());
@@ -181,7 +187,7 @@ impl App<'_> {
         }
         shown.update_figures(mean(&self.spent));
         let (changes, asks) = shown.run_panel(&self.state);
-        let drawn = match shown.draw(&self.state, edited, keeps) {
+        let drawn = match shown.draw(&self.state, edited, (keeps, uses_preview)) {
             Ok(drawn) => drawn,
             Err(why) => return self.fall_back(why).map(|()| None),
         };
@@ -376,17 +382,35 @@ impl OpenWindow {
         }
     }
 
+    /// Whether the camera has turned lately.
+    fn turns(&mut self, camera: Option<Camera>) -> bool {
+        if camera != self.camera {
+            self.turned = self.camera.and(camera).map(|_| Instant::now());
+            self.camera = camera;
+        }
+        self.turned.is_some_and(|turned| turned.elapsed() < REST)
+    }
+
+    /// Whether the full light is shown on a mesh that can be finer.
+    fn has_rested(&self) -> bool {
+        let is_turning = self.turned.is_some_and(|turned| turned.elapsed() < REST);
+        self.has_coarse_mesh && !self.preview.is_shown() && !is_turning
+    }
+
     /// None where the window was not ready.
     fn draw(
         &mut self,
         state: &State,
         edited: Option<Rectangle>,
-        keeps: bool,
+        (keeps, uses_preview): (bool, bool),
     ) -> Result<Option<Presented>> {
+        let turns = self.turns(state.camera());
         let swaps = self.screen.swaps();
         let (lefts, pane_size) = places(self.size, self.compare.is_some());
         let smaller = self.preview.lit();
         let is_preview = smaller.is_some();
+        // GPUs draw the whole mesh at once.
+        let is_coarse = uses_preview && self.limits.is_cpu && (is_preview || turns);
         let (lit, scene, blocks) = match (smaller, &mut self.lit) {
             (Some((lit, scene, blocks)), _) => (lit, scene, Some(blocks)),
             (None, Some(lit)) => (lit, &state.scene, None),
@@ -421,7 +445,8 @@ impl OpenWindow {
         for (frame, ..) in &frames {
             let map = state.map(pane_size, swaps, has_colour(frame.plan()));
             let map = blocks.map_or(map, |blocks| blocks.map(&map, field));
-            let view = state.view((scene, blocks), frame.plan(), pane_size, &self.limits)?;
+            let of = (scene, blocks, is_coarse);
+            let view = state.view(of, frame.plan(), pane_size, &self.limits)?;
             viewpoints.push((map, view));
         }
         let mut panes: Vec<Pane<'_>> = Vec::new();
@@ -441,6 +466,7 @@ impl OpenWindow {
         if let Some(compare) = compare {
             compare.drawn(done.timings.get(2).map_or(&[], |times| times.light.as_slice()));
         }
+        self.has_coarse_mesh = is_coarse && state.has_camera();
         self.last_edit = edit.or(self.last_edit);
         self.stated(std::mem::take(&mut done.timings[at_ours]));
         if state.is_moving() {

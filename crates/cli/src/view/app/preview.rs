@@ -1,4 +1,4 @@
-//! Answers to input: the light of a coarse grid on the slopes of a finer one; and the full light in parts once input
+//! Answers to input: the light of coarse grids on the slopes of a finer one; and the full light in parts once input
 //! rests.
 
 use std::ops::Range;
@@ -7,7 +7,9 @@ use std::time::{Duration, Instant};
 use ridgelight::Result;
 use ridgelight::gpu::{Frame, ImageArg, Timing, Work};
 use ridgelight::plan::{self, Limits, Picture, Plan, Rectangle};
-use ridgelight::scene::{Albedo, Lines, Method, Quality, Scene};
+use ridgelight::scene::{
+    Albedo, Bounces, HeightField, Lights, Lines, Method, Quality, Scene, Sun, Surface,
+};
 use ridgelight_viewer::Screen;
 
 use super::super::brush::together;
@@ -18,38 +20,43 @@ use super::drawing::{refilled, replan, whole};
 use crate::render;
 use crate::setup::total_ns;
 
-/// Intended GPU times of a preview's coarse light and of its shading on the finer grid: with drawing and copies, 15 pictures
-/// per second.
-const COARSE_MS: f64 = 14.0;
-const FINE_MS: f64 = 28.0;
-/// The part of a coarse light's time that does not grow with its grid: tables of the sky, starts of passes.
-const FIXED_MS: f64 = 5.0;
+/// Intended GPU times of a preview's grids: with drawing and copies, 15 pictures per second.
+const INTENDED_MS: [f64; GRIDS] = [6.0, 12.0, 24.0];
+/// The part of the slopes' time that is left where a camera draws a mesh.
+const WITH_MESH: f64 = 0.4;
+/// The parts of those times that do not grow with the grid: tables of the sky, starts of passes.
+const FIXED_MS: [f64; GRIDS] = [2.0, 1.0, 0.0];
 /// GPU time of a part of the full light.
 const PART_MS: f64 = 40.0;
 /// Full light that takes no longer needs no preview.
 const ANSWER_MS: f64 = 50.0;
-/// Azimuths of a preview. On a smooth field 8 change its light by 0.1 to 0.3 %, a coarser grid by some percent.
+/// Azimuths of a preview's sky. On a smooth field 8 change its light by 0.1 to 0.3 %, a coarser grid by some percent.
 const AZIMUTHS: u32 = 8;
 /// Shortest side of a coarser grid, grid points.
 const LEAST_GRID: usize = 32;
 /// Refinement begins when input has rested for so long.
-const REST: Duration = Duration::from_millis(120);
+pub(super) const REST: Duration = Duration::from_millis(120);
 
 /// Shares of the time aimed at where a preview keeps its grids: while input goes on, and at rest.
 const DRAGGED: Range<f64> = 0.0..3.0;
 const RESTED: Range<f64> = 0.4..1.4;
 
-/// What a device does in a millisecond: texels times azimuths of coarse and of full light, texels of fine slopes.
+/// The grids of a preview: of all light, of which the sky is shown; of the sun alone; of the slopes.
+const GRIDS: usize = 3;
+const SKY: usize = 0;
+const SUN: usize = 1;
+const SLOPES: usize = 2;
+
+/// What a device does in a millisecond: texels times azimuths of the full light; of the grids' light, and texels of slopes.
 #[derive(Clone, Copy)]
 struct Rates {
-    coarse: f64,
     full: f64,
-    fine: f64,
+    grids: [f64; GRIDS],
 }
 
 /// Before anything was measured: lavapipe on two cores; a GPU.
-const CPU_RATES: Rates = Rates { coarse: 1e5, full: 1e5, fine: 5.5e4 };
-const GPU_RATES: Rates = Rates { coarse: 2e7, full: 2e7, fine: 2e7 };
+const CPU_RATES: Rates = Rates { full: 1e5, grids: [1e5, 1e5, 5.5e4] };
+const GPU_RATES: Rates = Rates { full: 2e7, grids: [2e7; GRIDS] };
 
 /// What comes next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -63,9 +70,15 @@ enum Next {
 
 /// A scene on a coarser grid.
 struct Level {
+    /// Which of the grids.
+    of: usize,
     blocks: Blocks,
     scene: Scene,
     lit: Option<Frame>,
+    /// Texels of the normals that are shaded; whether the device has older ones, and older heights.
+    normals: Vec<f32>,
+    are_normals_new: bool,
+    are_heights_new: bool,
     /// The field without movement, in movement.
     moving: Option<Moving>,
     /// How often it was lit. The time of the first run is not measured, as it does not predict later ones.
@@ -75,13 +88,12 @@ struct Level {
 /// Slots whose GPU times are still to be read.
 #[derive(Clone, Copy)]
 enum Running {
-    Preview { coarse: usize, fine: usize },
+    Preview([Option<usize>; GRIDS]),
     Full(usize),
 }
 
 pub struct Preview {
-    /// The coarse light, and the grid that shows it.
-    levels: Option<[Level; 2]>,
+    levels: Option<[Level; GRIDS]>,
     /// Whether the preview is shown.
     is_shown: bool,
     next: Next,
@@ -99,8 +111,8 @@ pub struct Preview {
     /// Edited while no preview was in use: the levels lack it.
     missed: Option<Rectangle>,
     is_full_stale: bool,
-    /// Sides of the levels' blocks where a script gives them: coarse light, slopes. Times then decide nothing.
-    fixed: Option<[usize; 2]>,
+    /// Sides of the grids' blocks where a script gives them. Times then decide nothing.
+    fixed: Option<[usize; GRIDS]>,
     /// Seconds from the last input to the full light.
     pub full_s: Option<f64>,
     /// Error against the full light when both were last computed: RMSE over the mean.
@@ -136,8 +148,8 @@ impl Preview {
         !state.is_split && field.rows().min(field.cols()) >= 2 * LEAST_GRID && is_slow
     }
 
-    /// Fixes the grids by the sides of their blocks: coarse light, slopes.
-    pub fn fix(&mut self, sides: Option<[usize; 2]>) {
+    /// Fixes the grids by the sides of their blocks: sky, sun, slopes.
+    pub fn fix(&mut self, sides: Option<[usize; GRIDS]>) {
         self.fixed = sides;
     }
 
@@ -164,22 +176,31 @@ impl Preview {
         self.next != Next::Nothing
     }
 
+    /// Whether the preview is shown.
+    pub fn is_shown(&self) -> bool {
+        self.is_shown
+    }
+
     /// The preview, where it is shown.
     pub fn lit(&mut self) -> Option<(&mut Frame, &Scene, Blocks)> {
-        let [_, fine] = self.levels.as_mut().filter(|_| self.is_shown)?;
-        let Level { lit, scene, blocks, .. } = fine;
+        let [.., slopes] = self.levels.as_mut().filter(|_| self.is_shown)?;
+        let Level { lit, scene, blocks, .. } = slopes;
         lit.as_mut().map(|lit| (lit, &*scene, *blocks))
     }
 
     /// How the shown light was computed.
     pub fn line(&self) -> Option<String> {
         let levels = self.levels.as_ref().filter(|_| self.is_shown)?;
-        let [coarse, fine] = levels
+        let [sky, sun, slopes] = levels
             .each_ref()
             .map(|level| format!("{} x {}", level.scene.field.cols(), level.scene.field.rows()));
+        let sun = match levels[SUN].scene.lights.suns.is_empty() {
+            true => String::new(),
+            false => format!(", sun of {sun}"),
+        };
         let error =
             self.error.map_or_else(String::new, |e| format!(", RMSE about {:.1} %", 100.0 * e));
-        Some(format!("preview: light of {coarse}, slopes of {fine}{error}"))
+        Some(format!("preview: sky of {sky}{sun}, slopes of {slopes}{error}"))
     }
 
     /// The share of the full light that is done, where it is being computed.
@@ -213,14 +234,17 @@ impl Preview {
         self.changed = Instant::now();
         let missed = self.missed.take();
         let edited = edited.zip(missed).map(|(a, b)| together(a, b)).or(edited).or(missed);
-        let [coarse, fine] = self.levels.as_mut().expect("made by fit");
-        coarse.take(state, edited)?;
-        fine.take(state, edited)?;
-        // Both are planned first: new environments wait for the device.
-        coarse.plan_light(screen, state, limits)?;
-        let borrowed = fine.plan_slopes(screen, coarse, state.has_camera(), limits)?;
-        let slots = [coarse.run(screen, &[])?, fine.run(screen, &borrowed)?];
-        self.running = Some(Running::Preview { coarse: slots[0], fine: slots[1] });
+        let levels = self.levels.as_mut().expect("made by fit");
+        levels.iter_mut().try_for_each(|level| level.take(state, edited))?;
+        let borrowed = plan_levels(levels, screen, state, limits)?;
+        let mut slots = [None; GRIDS];
+        for (level, slot) in levels.iter_mut().zip(&mut slots) {
+            if level.is_used() {
+                let borrowed = if level.of == SLOPES { borrowed.as_slice() } else { &[] };
+                *slot = Some(level.run(screen, borrowed)?);
+            }
+        }
+        self.running = Some(Running::Preview(slots));
         self.is_shown = true;
         self.next = if state.is_moving() { Next::Nothing } else { Next::Begin };
         Ok(())
@@ -229,29 +253,27 @@ impl Preview {
     /// Makes the levels, of a size that fits the time.
     fn fit(&mut self, screen: &mut Screen, state: &State, kept_at: Range<f64>) -> Result<()> {
         let field = &state.scene.field;
-        let quality = coarser(&state.quality);
-        let Rates { coarse, fine, .. } = self.rates;
-        let texels = (field.rows() * field.cols()) as f64;
-        let of_coarse =
-            |side: usize| (FIXED_MS + work(&state.scene, &quality, side) / coarse) / COARSE_MS;
-        let of_fine = |side: usize| texels / (side * side) as f64 / fine / FINE_MS;
         let most = (field.rows().min(field.cols()) / LEAST_GRID).max(1);
-        let least =
-            |share: &dyn Fn(usize) -> f64| (1..most).find(|s| share(*s) <= 1.0).unwrap_or(most);
-        let fine = least(&of_fine);
-        // A coarse cell is a whole number of fine ones.
-        let wanted = [least(&of_coarse).max(fine).next_multiple_of(fine), fine];
-        let wanted = self.fixed.unwrap_or(wanted);
+        // Shares of the intended time.
+        let share = |of: usize, side: usize| {
+            let ms = grid_work(&state.scene, &state.quality, of, side) / self.rates.grids[of];
+            let left = if of == SLOPES && state.has_camera() { WITH_MESH } else { 1.0 };
+            (FIXED_MS[of] + ms) / (left * INTENDED_MS[of])
+        };
+        let least = |of: usize| (1..most).find(|side| share(of, *side) <= 1.0).unwrap_or(most);
+        let slopes = least(SLOPES);
+        let coarse = |of: usize| least(of).max(slopes);
+        let wanted = self.fixed.unwrap_or_else(|| [coarse(SKY), coarse(SUN), slopes]);
         let kept = self.levels.as_ref().map(|levels| levels.each_ref().map(|l| l.blocks.side));
         // Other grids take a third of a second: only where they are worth that, least of all in a drag.
         let is_kept = kept.is_some_and(|kept| {
-            let fits = |share: f64| self.fixed.is_none() && kept_at.contains(&share);
-            kept == wanted || kept[0] <= most && fits(of_coarse(kept[0])) && fits(of_fine(kept[1]))
+            let fits = |of: usize| kept[of] <= most && kept_at.contains(&share(of, kept[of]));
+            kept == wanted || self.fixed.is_none() && (0..GRIDS).all(fits)
         });
         if !is_kept {
             self.end(screen)?;
-            let level = |side: usize| Level::new(state, side);
-            self.levels = Some([level(wanted[0])?, level(wanted[1])?]);
+            let level = |of: usize| Level::new(state, of, wanted[of]);
+            self.levels = Some([level(SKY)?, level(SUN)?, level(SLOPES)?]);
         }
         Ok(())
     }
@@ -331,16 +353,15 @@ impl Preview {
         (self.is_shown, self.next) = (false, Next::Nothing);
         (self.edited, self.is_full_stale) = (None, false);
         self.full_s = Some(self.changed.elapsed().as_secs_f64());
-        if let Some([_, Level { blocks, lit: Some(fine), .. }]) = &self.levels {
+        if let Some([.., Level { blocks, lit: Some(fine), .. }]) = &self.levels {
             let full = render::rgb(&screen.gpu().pixels(lit, 0)?);
             let ours = render::rgb(&screen.gpu().pixels(fine, 0)?);
             self.error = error(blocks, state.scene.field.voids(), &ours, &full);
         }
         // For the next input, while there is time.
         self.fit(screen, state, RESTED)?;
-        let [coarse, fine] = self.levels.as_mut().expect("made by fit");
-        coarse.plan_light(screen, state, limits)?;
-        fine.plan_slopes(screen, coarse, true, limits).map(|_| ())
+        let levels = self.levels.as_mut().expect("made by fit");
+        plan_levels(levels, screen, state, limits).map(|_| ())
     }
 
     /// Takes the times of the last part, and learns from them how fast the device is.
@@ -373,21 +394,20 @@ impl Preview {
                     self.complete_times = Some(std::mem::take(&mut self.times));
                 }
             }
-            Some(Running::Preview { coarse, fine }) => {
-                let levels = self.levels.as_mut().filter(|levels| levels[0].runs > 1);
-                let Some([of_coarse, of_fine]) = levels else { return };
-                let times = |level: &mut Level, slot: usize| {
-                    let lit = level.lit.as_mut();
-                    lit.and_then(|lit| lit.renderer().timings(slot)).unwrap_or_default()
-                };
-                let quality = coarser(&state.quality);
-                let work = work(&of_coarse.scene, &quality, 1);
-                let [coarse, fine] = [times(of_coarse, coarse), times(of_fine, fine)];
-                learn(&mut self.rates.coarse, work, &coarse, FIXED_MS);
-                let field = &of_fine.scene.field;
-                let texels = (field.rows() * field.cols()) as f64;
-                learn(&mut self.rates.fine, texels, &fine, 0.0);
-                self.complete_times = Some([coarse, fine].concat());
+            Some(Running::Preview(slots)) => {
+                let levels = self.levels.as_mut().filter(|levels| levels[SLOPES].runs > 1);
+                let mut all = Vec::new();
+                for (level, slot) in levels.into_iter().flatten().zip(slots) {
+                    let lit = level.lit.as_mut().zip(slot);
+                    let times = lit.and_then(|(lit, slot)| lit.renderer().timings(slot));
+                    let Some(times) = times else { continue };
+                    let work = grid_work(&state.scene, &state.quality, level.of, level.blocks.side);
+                    learn(&mut self.rates.grids[level.of], work, &times, FIXED_MS[level.of]);
+                    all.extend(times);
+                }
+                if !all.is_empty() {
+                    self.complete_times = Some(all);
+                }
             }
         }
     }
@@ -405,14 +425,40 @@ impl Preview {
 }
 
 impl Level {
-    fn new(state: &State, side: usize) -> Result<Self> {
+    fn new(state: &State, of: usize, side: usize) -> Result<Self> {
         let blocks = Blocks::of(&state.scene.field, side);
-        Ok(Self { blocks, scene: blocks.scene(&state.scene)?, lit: None, moving: None, runs: 0 })
+        let mut scene = blocks.scene(&state.scene)?;
+        if of == SUN {
+            scene.surface = Surface { border: scene.surface.border, ..Surface::default() };
+        }
+        let mut level = Self {
+            of,
+            blocks,
+            scene,
+            lit: None,
+            normals: Vec::new(),
+            are_normals_new: true,
+            are_heights_new: true,
+            moving: None,
+            runs: 0,
+        };
+        level.take_normals(Some(&state.scene.field));
+        Ok(level)
+    }
+
+    /// Whether it has light to show.
+    fn is_used(&self) -> bool {
+        self.of != SUN || !self.scene.lights.suns.is_empty()
     }
 
     /// Takes the state's lights and heights.
     fn take(&mut self, state: &State, edited: Option<Rectangle>) -> Result<()> {
         self.blocks.take_lights(&state.scene, &mut self.scene);
+        if self.of == SUN {
+            let suns = first_sun(&self.scene).map(|(_, sun)| *sun).into_iter().collect();
+            self.scene.lights = Lights { suns, ..Lights::default() };
+        }
+        self.are_heights_new |= state.is_moving() || self.moving.is_some() || edited.is_some();
         match (state.moving(), &mut self.moving) {
             (Some(full), moving) => {
                 if edited.is_some() || moving.as_ref().is_none_or(|moving| moving.kind != full.kind)
@@ -423,18 +469,38 @@ impl Level {
                 let moving = moving.as_mut().expect("made above");
                 moving.follow(full);
                 self.scene.field = moving.field()?;
+                self.take_normals(None);
             }
             (None, moving) if moving.is_some() => {
                 *moving = None;
                 self.scene.field = self.blocks.field(&state.scene.field)?;
+                self.take_normals(Some(&state.scene.field));
             }
             (None, _) => {
                 if let Some(at) = edited {
-                    self.blocks.edit(&state.scene.field, &mut self.scene.field, at)?;
+                    let (field, border) = (&state.scene.field, self.scene.surface.border);
+                    self.blocks.edit(field, &mut self.scene.field, at)?;
+                    if self.of == SLOPES {
+                        self.blocks.edit_normals((field, border), &mut self.normals, at);
+                    } else {
+                        let (own, at) = (&self.scene.field, self.blocks.within_blocks(at));
+                        Blocks::of(own, 1).edit_normals((own, border), &mut self.normals, at);
+                    }
+                    self.are_normals_new = true;
                 }
             }
         }
         Ok(())
+    }
+
+    /// The normals of this grid's heights; of slopes the means of the full field's, unless that moves.
+    fn take_normals(&mut self, full: Option<&HeightField>) {
+        let border = self.scene.surface.border;
+        self.normals = match full.filter(|_| self.of == SLOPES) {
+            Some(field) => self.blocks.normals(field, border),
+            None => Blocks::of(&self.scene.field, 1).normals(&self.scene.field, border),
+        };
+        self.are_normals_new = true;
     }
 
     /// Runs all passes. The slot holds their times.
@@ -442,40 +508,53 @@ impl Level {
         self.runs += 1;
         let lit = self.lit.as_mut().expect("planned");
         let all: Vec<usize> = (0..lit.plan().passes.len()).collect();
-        let heights = Some((self.scene.field.heights_m(), whole(&self.scene.field)));
-        screen.light(lit, heights, (Work::Passes(&all), borrowed))
+        let field = &self.scene.field;
+        let heights = self.are_heights_new.then(|| (field.heights_m(), whole(field)));
+        let slot = screen.light(lit, heights, (Work::Passes(&all), borrowed))?;
+        self.are_heights_new = false;
+        Ok(slot)
     }
 
     /// Plans the light of a coarse grid.
     fn plan_light(&mut self, screen: &mut Screen, state: &State, limits: &Limits) -> Result<()> {
-        let wanted = Picture { light_layers: true, ..Picture::default() };
-        let plan = plan::picture(&self.scene, &coarser(&state.quality), limits, wanted)?;
+        let wanted = Picture { light_layers: self.of == SKY, ..Picture::default() };
+        let plan = plan::picture(&self.scene, &coarser(&state.quality, self.of), limits, wanted)?;
         replan(screen, &mut self.lit, plan, &self.scene).map(|_| ())
     }
 
-    /// Plans a coarse grid's light on the slopes of this one. Returns the images that it borrows.
+    /// The image of the plan's input or output of a name.
+    fn image(&self, name: &str) -> Option<ImageArg> {
+        let lit = self.lit.as_ref()?;
+        let input = lit.plan().inputs().position(|(_, input)| input.name == name);
+        let output = lit.plan().outputs().position(|(_, output)| output.name == name);
+        let of_input = input.map(|at| lit.inputs()[at]);
+        of_input.or_else(|| output.map(|at| lit.outputs()[at]))
+    }
+
+    /// Plans the coarse grids' light on the slopes of this one. Returns the images that it borrows.
     fn plan_slopes(
         &mut self,
         screen: &mut Screen,
-        coarse: &Level,
+        [sky, sun]: [&mut Level; 2],
         has_camera: bool,
         limits: &Limits,
     ) -> Result<Vec<ImageArg>> {
-        let of_coarse = coarse.lit.as_ref().expect("lit before");
-        let plan = plan::preview(&self.scene, &coarse.scene, of_coarse.plan(), limits)?;
-        let (inputs, outputs) = (of_coarse.inputs(), of_coarse.outputs());
-        let mut borrowed = vec![inputs[0], outputs[0]];
-        if plan.inputs().any(|(_, input)| input.name == "coarse_sun") {
-            let mut suns = (1..).zip(&coarse.scene.lights.suns);
-            let lit = suns.find(|(_, sun)| sun.irradiance.iter().any(|e| *e > 0.0));
-            let name = lit.map(|(n, _): (usize, _)| format!("direct.sun{n}")).unwrap_or_default();
-            let at = of_coarse.plan().outputs().position(|(_, output)| output.name == name);
-            borrowed.extend(at.map(|at| outputs[at]));
+        let plan_of = |level: &Level| level.lit.as_ref().expect("lit before").plan().clone();
+        let (of_sky, of_sun) = (plan_of(sky), sun.is_used().then(|| plan_of(sun)));
+        let count_of_normals = 2 + usize::from(sun.is_used());
+        let suns = of_sun.as_ref().map(|plan| (&sun.scene, plan));
+        let plan = plan::preview(&self.scene, (&sky.scene, &of_sky), suns, limits)?;
+        let mut borrowed = vec![sky.image("radiance")];
+        if let Some((n, _)) = first_sun(&sky.scene) {
+            borrowed.push(sky.image(&format!("direct.sun{n}")));
         }
-        if matches!(coarse.scene.surface.albedo, Albedo::Map(_)) {
-            let at = of_coarse.plan().inputs().position(|(_, input)| input.name == "albedo");
-            borrowed.extend(at.map(|at| inputs[at]));
+        if matches!(sky.scene.surface.albedo, Albedo::Map(_)) {
+            borrowed.push(sky.image("albedo"));
         }
+        if sun.is_used() {
+            borrowed.push(sun.image("radiance"));
+        }
+        let borrowed: Vec<ImageArg> = borrowed.into_iter().flatten().collect();
         let fits = self.lit.as_ref().is_some_and(|lit| lit.plan().resources == plan.resources);
         match self.lit.as_mut().filter(|_| fits) {
             Some(lit) => {
@@ -491,12 +570,26 @@ impl Level {
                 }
                 // Borrowed images need no contents.
                 let mut contents = plan::picture_inputs(&self.scene);
-                contents.truncate(plan.inputs().count() - borrowed.len());
-                let own = plan.inputs().skip(contents.len());
+                contents.truncate(plan.inputs().count() - borrowed.len() - count_of_normals);
+                let rest = plan.inputs().skip(contents.len());
                 let empty: Vec<Vec<f32>> =
-                    own.map(|(_, input)| vec![0.0; (input.bytes() / 4) as usize]).collect();
+                    rest.map(|(_, input)| vec![0.0; (input.bytes() / 4) as usize]).collect();
                 contents.extend(empty);
                 self.lit = Some(screen.frame(plan, &contents)?);
+                [sky.are_normals_new, sun.are_normals_new, self.are_normals_new] = [true; 3];
+            }
+        }
+        let lit = self.lit.as_ref().expect("made above");
+        let first = lit.plan().inputs().count() - borrowed.len() - count_of_normals;
+        let all = [
+            (&self.normals, &mut self.are_normals_new),
+            (&sky.normals, &mut sky.are_normals_new),
+            (&sun.normals, &mut sun.are_normals_new),
+        ];
+        for (n, (normals, are_new)) in all.into_iter().take(count_of_normals).enumerate() {
+            if *are_new {
+                screen.gpu().refill(lit, first + n, normals)?;
+                *are_new = false;
             }
         }
         Ok(borrowed)
@@ -526,14 +619,49 @@ fn error(
     (mean > 0.0).then(|| (square / count).sqrt() / (mean / count))
 }
 
+/// Plans the light of the coarse grids and the slopes that show it. Returns the images that the slopes borrow.
+fn plan_levels(
+    [sky, sun, slopes]: &mut [Level; GRIDS],
+    screen: &mut Screen,
+    state: &State,
+    limits: &Limits,
+) -> Result<Vec<ImageArg>> {
+    // New environments wait for the device.
+    sky.plan_light(screen, state, limits)?;
+    if sun.is_used() {
+        sun.plan_light(screen, state, limits)?;
+    }
+    slopes.plan_slopes(screen, [sky, sun], state.has_camera(), limits)
+}
+
+/// The first sun with irradiance, and its number, from 1.
+fn first_sun(scene: &Scene) -> Option<(usize, &Sun)> {
+    let mut suns = (1..).zip(&scene.lights.suns);
+    suns.find(|(_, sun)| sun.irradiance.iter().any(|e| *e > 0.0))
+}
+
 /// The user's settings with fewer azimuths and the default method, as the others are slow, and with the default lines,
-/// as some need another method.
-fn coarser(quality: &Quality) -> Quality {
+/// as some need another method. The sun has one azimuth, and bounces only in the sky's light.
+fn coarser(quality: &Quality, of: usize) -> Quality {
+    let count = if of == SUN { 0 } else { quality.bounces.count };
     Quality {
         azimuths: quality.azimuths.min(AZIMUTHS),
+        sun_azimuths: 1,
+        bounces: Bounces { count, ..quality.bounces },
         method: Method::default(),
         lines: Lines::default(),
         ..*quality
+    }
+}
+
+/// The work of a grid of blocks of `side` grid points, as its rate counts it.
+fn grid_work(scene: &Scene, quality: &Quality, of: usize, side: usize) -> f64 {
+    let texels = (scene.field.rows() * scene.field.cols()) as f64 / (side * side) as f64;
+    match of {
+        SKY => work(scene, &coarser(quality, SKY), side),
+        // Heights, a sweep and a sun.
+        SUN => 3.0 * texels,
+        _ => texels,
     }
 }
 
@@ -585,8 +713,11 @@ mod tests {
                     let is_full = other.set(&mut quality, &word).is_ok()
                         && plan::picture(&scene, &quality, &limits, Picture::default()).is_ok();
                     let wanted = Picture { light_layers: true, ..Picture::default() };
-                    let small = plan::picture(&scene, &coarser(&quality), &limits, wanted);
-                    assert!(!is_full || small.is_ok(), "{of_method}, {} {word}", other.name);
+                    let sky = plan::picture(&scene, &coarser(&quality, SKY), &limits, wanted);
+                    let sun = coarser(&quality, SUN);
+                    let sun = plan::picture(&scene, &sun, &limits, Picture::default());
+                    let is_well = sky.is_ok() && sun.is_ok();
+                    assert!(!is_full || is_well, "{of_method}, {} {word}", other.name);
                     count += u32::from(is_full);
                 }
             }

@@ -67,8 +67,12 @@ impl App<'_> {
         shown.screen.wait()?;
         let field = &self.state.scene.field;
         let tone = self.state.tone();
-        let view =
-            self.state.view((&self.state.scene, None), lit.plan(), shown.size, &shown.limits)?;
+        let view = self.state.view(
+            (&self.state.scene, None, false),
+            lit.plan(),
+            shown.size,
+            &shown.limits,
+        )?;
         let gpu = shown.screen.gpu();
         let pixels = gpu.pixels(lit, 0)?;
         if let Some(view) = view {
@@ -128,16 +132,6 @@ impl App<'_> {
         self.state.message = Some(message.to_owned());
     }
 
-    /// Saves the window's pixels.
-    pub(super) fn save_pixels(&mut self, path: &Path, pixels: &[[u8; 4]]) -> Result<()> {
-        let [width, height] = self.size();
-        let steps = Tone::default().steps();
-        let light: Vec<[f32; 3]> =
-            pixels.iter().map(|p| [p[0], p[1], p[2]].map(|c| steps[usize::from(c)])).collect();
-        let (rows, cols) = (height as usize, width as usize);
-        files::write_png(path, rows, cols, &light, None, Tone::default(), &[])
-    }
-
     /// Reports a saved file or an error, on the screen and on standard output. With a script an
     /// error ends the run.
     fn say(&mut self, saved: Result<()>, path: &Path) -> Result<()> {
@@ -161,6 +155,15 @@ impl App<'_> {
         let is_free = |path: &PathBuf| !path.exists() && !path.with_extension("npy").exists();
         (1..).map(name).find(is_free).expect("some number is free")
     }
+}
+
+/// Saves a window's pixels.
+pub fn save_pixels(path: &Path, [width, height]: [u32; 2], pixels: &[[u8; 4]]) -> Result<()> {
+    let steps = Tone::default().steps();
+    let light: Vec<[f32; 3]> =
+        pixels.iter().map(|p| [p[0], p[1], p[2]].map(|c| steps[usize::from(c)])).collect();
+    let (rows, cols) = (height as usize, width as usize);
+    files::write_png(path, rows, cols, &light, None, Tone::default(), &[])
 }
 
 /// A word as a POSIX shell takes it.

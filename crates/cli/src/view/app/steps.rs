@@ -9,6 +9,7 @@ use winit::dpi::PhysicalSize;
 use super::super::script::Step;
 use super::compare::MOST_PATHS;
 use super::drawing::places;
+use super::saving::save_pixels;
 use super::{App, OpenWindow};
 
 /// How long a script's window may show nothing, unless the script sets it.
@@ -77,11 +78,13 @@ impl App<'_> {
             Step::Rest => {
                 self.advance()?;
                 let preview = self.shown.as_ref().is_some_and(|shown| shown.preview.is_busy());
-                let is_busy = self.uses_preview() && preview || self.answering.is_some();
+                let is_coarse = self.shown.as_ref().is_some_and(|shown| shown.has_coarse_mesh);
+                let is_busy =
+                    self.uses_preview() && (preview || is_coarse) || self.answering.is_some();
                 (is_busy || self.is_due()).then_some(Step::Rest)
             }
             Step::Screenshot(path) => match self.picture(true)? {
-                Some(pixels) => self.save_pixels(&path, &pixels).map(|()| None)?,
+                Some(pixels) => save_pixels(&path, self.size(), &pixels).map(|()| None)?,
                 None => {
                     self.check_shown("screenshot")?;
                     Some(Step::Screenshot(path))
@@ -135,6 +138,11 @@ impl App<'_> {
                     self.draw(false)?;
                 }
                 None
+            }
+            // As the first step it was done while the field was read.
+            Step::Opening(path) => {
+                let found = path.display().to_string();
+                return Err(Error::setting("--script: opening", found, "the first step"));
             }
             Step::Patience(seconds) => {
                 self.patience = Duration::from_secs_f64(seconds);

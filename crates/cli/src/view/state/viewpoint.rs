@@ -14,6 +14,9 @@ pub const FOV_DEG: f64 = 40.0;
 /// Most cells of the mesh along a side: larger fields skip grid points.
 const MOST_CELLS: u32 = 1024;
 
+/// The same while something moves on a software driver.
+const MOVING_CELLS: u32 = 192;
+
 /// Most steps along a ray to the ground.
 const MOST_STEPS: f64 = 4096.0;
 
@@ -102,14 +105,18 @@ impl Viewpoint {
     /// The camera's view, if there is a camera.
     pub fn view(
         &self,
-        scene: &Scene,
+        (scene, is_coarse): (&Scene, bool),
         lit: &Plan,
         size: [u32; 2],
         limits: &Limits,
     ) -> Result<Option<View>> {
         let Some(camera) = &self.camera else { return Ok(None) };
-        let options = Self::options(&scene.field, size, limits);
-        let options = ViewOptions { plinth_base_m: self.plinth_base_m, ..options };
+        let mut options = Self::options(&scene.field, size, limits);
+        options.plinth_base_m = self.plinth_base_m;
+        if is_coarse {
+            let longest = scene.field.rows().max(scene.field.cols()) as u32;
+            options.mesh_step = longest.div_ceil(MOVING_CELLS).clamp(options.mesh_step, 1024);
+        }
         View::new(scene, lit, camera, &options, limits).map(Some)
     }
 
