@@ -36,7 +36,7 @@ pub(crate) struct Slope {
 
 impl Slope {
     /// Of a sun: the cosine to it.
-    pub fn of_sun(sun: &Sun) -> Self {
+    pub(crate) fn of_sun(sun: &Sun) -> Self {
         let across = sun.elevation_rad.cos();
         let [x, y] = [sun.azimuth_rad.cos(), sun.azimuth_rad.sin()].map(|v| (across * v) as f32);
         let most = sun.irradiance.map(|e| e / std::f32::consts::PI);
@@ -47,7 +47,7 @@ impl Slope {
     /// Of a sky and an environment: the irradiance's spherical harmonics up to order 1 (Ramamoorthi and Hanrahan 2001,
     /// equation 8), ¼ ∫ L dω + ½ n · ∫ L ω dω, over the first. It is 1 + the cosine of the slope for a uniform sky. The mean
     /// of the channels stands for each.
-    pub fn of_sky(lights: &Lights, border: Border) -> Self {
+    pub(crate) fn of_sky(lights: &Lights, border: Border) -> Self {
         let [mut all, mut towards] = [0.0, 0.0].map(|v| [v; 3]);
         let mean = |c: &[f32; 3]| c.iter().map(|v| f64::from(*v)).sum::<f64>() / 3.0;
         let mut add = |radiance: f64, direction: [f64; 3]| {
