@@ -116,7 +116,8 @@ impl<'a, 'scope> Opening<'a, 'scope> {
             steps.pop_front();
             return Ok(false);
         }
-        let Some(reading) = self.reading.take_if(|reading| reading.is_finished()) else {
+        let is_open = self.opened.is_some();
+        let Some(reading) = self.reading.take_if(|reading| is_open && reading.is_finished()) else {
             if let (None, Some(opened)) = (&self.steps, &mut self.opened)
                 && self.began.elapsed() > PATIENCE
             {
