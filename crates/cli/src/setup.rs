@@ -74,6 +74,9 @@ pub fn georeferenced(
             _ => paths.iter().map(|path| path.display().to_string()).collect(),
         };
         notes.iter().for_each(|text| note(&format!("{name}: {}", flags_in(text))));
+        if surface.bbox.is_some() {
+            note(&format!("{name}: nothing outside --bbox casts a shadow into it"));
+        }
     }
     Ok((field, georeference))
 }
