@@ -2,6 +2,7 @@
 
 mod compare;
 mod drawing;
+mod level;
 mod overlay;
 mod preview;
 mod saving;

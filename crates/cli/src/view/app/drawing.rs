@@ -37,7 +37,7 @@ impl App<'_> {
                 let needs_plan = !self.uses_preview() || !self.state.has_only_turned(&before);
                 if let Some(shown) = &mut self.shown {
                     // Also with previews: their coarse plan accepts settings that the full one refuses. On a large field
-                    // it takes 40 ms.
+                    // it takes long.
                     match needs_plan.then(|| self.state.plan(&shown.limits)).transpose() {
                         Ok(_) => (shown.is_stale, shown.has_fallen_back) = (true, false),
                         Err(why) => self.state.go_back(before, why),

@@ -5,18 +5,16 @@ use std::ops::Range;
 use std::time::{Duration, Instant};
 
 use ridgelight::Result;
-use ridgelight::gpu::{Frame, ImageArg, Timing, Work};
-use ridgelight::plan::{self, Limits, Picture, Plan, Rectangle};
-use ridgelight::scene::{
-    Albedo, Bounces, HeightField, Lights, Lines, Method, Quality, Scene, Sun, Surface,
-};
+use ridgelight::gpu::{Frame, Timing, Work};
+use ridgelight::plan::{Limits, Plan, Rectangle};
+use ridgelight::scene::Scene;
 use ridgelight_viewer::Screen;
 
 use super::super::brush::together;
-use super::super::moving::Moving;
 use super::super::smaller::Blocks;
 use super::super::state::State;
-use super::drawing::{refilled, replan, whole};
+use super::drawing::{replan, whole};
+use super::level::{GRIDS, Level, SKY, SLOPES, SUN, grid_work, plan_levels, work};
 use crate::render;
 use crate::setup::total_ns;
 
@@ -30,8 +28,6 @@ const FIXED_MS: [f64; GRIDS] = [2.0, 1.0, 0.0];
 const PART_MS: f64 = 40.0;
 /// Full light that takes no longer needs no preview.
 const ANSWER_MS: f64 = 50.0;
-/// Azimuths of a preview's sky. On a smooth field 8 change its light by 0.1 to 0.3 %, a coarser grid by some percent.
-const AZIMUTHS: u32 = 8;
 /// Shortest side of a coarser grid, grid points.
 const LEAST_GRID: usize = 32;
 /// Refinement begins when input has rested for so long.
@@ -40,12 +36,6 @@ pub(super) const REST: Duration = Duration::from_millis(120);
 /// Shares of the time aimed at where a preview keeps its grids: while input goes on, and at rest.
 const DRAGGED: Range<f64> = 0.0..3.0;
 const RESTED: Range<f64> = 0.4..1.4;
-
-/// The grids of a preview: of all light, of which the sky is shown; of the sun alone; of the slopes.
-const GRIDS: usize = 3;
-const SKY: usize = 0;
-const SUN: usize = 1;
-const SLOPES: usize = 2;
 
 /// What a device does in a millisecond: texels times azimuths of the full light; of the grids' light, and texels of slopes.
 #[derive(Clone, Copy)]
@@ -66,23 +56,6 @@ enum Next {
     /// Its passes from this one on.
     Passes(usize),
     Nothing,
-}
-
-/// A scene on a coarser grid.
-struct Level {
-    /// Which of the grids.
-    of: usize,
-    blocks: Blocks,
-    scene: Scene,
-    lit: Option<Frame>,
-    /// Texels of the normals that are shaded; whether the device has older ones, and older heights.
-    normals: Vec<f32>,
-    are_normals_new: bool,
-    are_heights_new: bool,
-    /// The field without movement, in movement.
-    moving: Option<Moving>,
-    /// How often it was lit. The time of the first run is not measured, as it does not predict later ones.
-    runs: u32,
 }
 
 /// Slots whose GPU times are still to be read.
@@ -424,178 +397,6 @@ impl Preview {
     }
 }
 
-impl Level {
-    fn new(state: &State, of: usize, side: usize) -> Result<Self> {
-        let blocks = Blocks::of(&state.scene.field, side);
-        let mut scene = blocks.scene(&state.scene)?;
-        if of == SUN {
-            scene.surface = Surface { border: scene.surface.border, ..Surface::default() };
-        }
-        let mut level = Self {
-            of,
-            blocks,
-            scene,
-            lit: None,
-            normals: Vec::new(),
-            are_normals_new: true,
-            are_heights_new: true,
-            moving: None,
-            runs: 0,
-        };
-        level.take_normals(Some(&state.scene.field));
-        Ok(level)
-    }
-
-    /// Whether it has light to show.
-    fn is_used(&self) -> bool {
-        self.of != SUN || !self.scene.lights.suns.is_empty()
-    }
-
-    /// Takes the state's lights and heights.
-    fn take(&mut self, state: &State, edited: Option<Rectangle>) -> Result<()> {
-        self.blocks.take_lights(&state.scene, &mut self.scene);
-        if self.of == SUN {
-            let suns = first_sun(&self.scene).map(|(_, sun)| *sun).into_iter().collect();
-            self.scene.lights = Lights { suns, ..Lights::default() };
-        }
-        self.are_heights_new |= state.is_moving() || self.moving.is_some() || edited.is_some();
-        match (state.moving(), &mut self.moving) {
-            (Some(full), moving) => {
-                if edited.is_some() || moving.as_ref().is_none_or(|moving| moving.kind != full.kind)
-                {
-                    let still = self.blocks.field(full.still())?;
-                    *moving = Some(full.over_other(still));
-                }
-                let moving = moving.as_mut().expect("made above");
-                moving.follow(full);
-                self.scene.field = moving.field()?;
-                self.take_normals(None);
-            }
-            (None, moving) if moving.is_some() => {
-                *moving = None;
-                self.scene.field = self.blocks.field(&state.scene.field)?;
-                self.take_normals(Some(&state.scene.field));
-            }
-            (None, _) => {
-                if let Some(at) = edited {
-                    let (field, border) = (&state.scene.field, self.scene.surface.border);
-                    self.blocks.edit(field, &mut self.scene.field, at)?;
-                    if self.of == SLOPES {
-                        self.blocks.edit_normals((field, border), &mut self.normals, at);
-                    } else {
-                        let (own, at) = (&self.scene.field, self.blocks.within_blocks(at));
-                        Blocks::of(own, 1).edit_normals((own, border), &mut self.normals, at);
-                    }
-                    self.are_normals_new = true;
-                }
-            }
-        }
-        Ok(())
-    }
-
-    /// The normals of this grid's heights; of slopes the means of the full field's, unless that moves.
-    fn take_normals(&mut self, full: Option<&HeightField>) {
-        let border = self.scene.surface.border;
-        self.normals = match full.filter(|_| self.of == SLOPES) {
-            Some(field) => self.blocks.normals(field, border),
-            None => Blocks::of(&self.scene.field, 1).normals(&self.scene.field, border),
-        };
-        self.are_normals_new = true;
-    }
-
-    /// Runs all passes. The slot holds their times.
-    fn run(&mut self, screen: &mut Screen, borrowed: &[ImageArg]) -> Result<usize> {
-        self.runs += 1;
-        let lit = self.lit.as_mut().expect("planned");
-        let all: Vec<usize> = (0..lit.plan().passes.len()).collect();
-        let field = &self.scene.field;
-        let heights = self.are_heights_new.then(|| (field.heights_m(), whole(field)));
-        let slot = screen.light(lit, heights, (Work::Passes(&all), borrowed))?;
-        self.are_heights_new = false;
-        Ok(slot)
-    }
-
-    /// Plans the light of a coarse grid.
-    fn plan_light(&mut self, screen: &mut Screen, state: &State, limits: &Limits) -> Result<()> {
-        let wanted = Picture { light_layers: self.of == SKY, ..Picture::default() };
-        let plan = plan::picture(&self.scene, &coarser(&state.quality, self.of), limits, wanted)?;
-        replan(screen, &mut self.lit, plan, &self.scene).map(|_| ())
-    }
-
-    /// The image of the plan's input or output of a name.
-    fn image(&self, name: &str) -> Option<ImageArg> {
-        let lit = self.lit.as_ref()?;
-        let input = lit.plan().inputs().position(|(_, input)| input.name == name);
-        let output = lit.plan().outputs().position(|(_, output)| output.name == name);
-        let of_input = input.map(|at| lit.inputs()[at]);
-        of_input.or_else(|| output.map(|at| lit.outputs()[at]))
-    }
-
-    /// Plans the coarse grids' light on the slopes of this one. Returns the images that it borrows.
-    fn plan_slopes(
-        &mut self,
-        screen: &mut Screen,
-        [sky, sun]: [&mut Level; 2],
-        has_camera: bool,
-        limits: &Limits,
-    ) -> Result<Vec<ImageArg>> {
-        let plan_of = |level: &Level| level.lit.as_ref().expect("lit before").plan().clone();
-        let (of_sky, of_sun) = (plan_of(sky), sun.is_used().then(|| plan_of(sun)));
-        let count_of_normals = 2 + usize::from(sun.is_used());
-        let suns = of_sun.as_ref().map(|plan| (&sun.scene, plan));
-        let plan = plan::preview(&self.scene, (&sky.scene, &of_sky), suns, limits)?;
-        let mut borrowed = vec![sky.image("radiance")];
-        if let Some((n, _)) = first_sun(&sky.scene) {
-            borrowed.push(sky.image(&format!("direct.sun{n}")));
-        }
-        if matches!(sky.scene.surface.albedo, Albedo::Map(_)) {
-            borrowed.push(sky.image("albedo"));
-        }
-        if sun.is_used() {
-            borrowed.push(sun.image("radiance"));
-        }
-        let borrowed: Vec<ImageArg> = borrowed.into_iter().flatten().collect();
-        let fits = self.lit.as_ref().is_some_and(|lit| lit.plan().resources == plan.resources);
-        match self.lit.as_mut().filter(|_| fits) {
-            Some(lit) => {
-                screen.gpu().replace_plan(lit, plan)?;
-                // Behind the ground; the light comes from the coarse grid.
-                if has_camera {
-                    refilled(screen, lit, &self.scene)?;
-                }
-            }
-            None => {
-                if let Some(old) = self.lit.take() {
-                    screen.end(old)?;
-                }
-                // Borrowed images need no contents.
-                let mut contents = plan::picture_inputs(&self.scene);
-                contents.truncate(plan.inputs().count() - borrowed.len() - count_of_normals);
-                let rest = plan.inputs().skip(contents.len());
-                let empty: Vec<Vec<f32>> =
-                    rest.map(|(_, input)| vec![0.0; (input.bytes() / 4) as usize]).collect();
-                contents.extend(empty);
-                self.lit = Some(screen.frame(plan, &contents)?);
-                [sky.are_normals_new, sun.are_normals_new, self.are_normals_new] = [true; 3];
-            }
-        }
-        let lit = self.lit.as_ref().expect("made above");
-        let first = lit.plan().inputs().count() - borrowed.len() - count_of_normals;
-        let all = [
-            (&self.normals, &mut self.are_normals_new),
-            (&sky.normals, &mut sky.are_normals_new),
-            (&sun.normals, &mut sun.are_normals_new),
-        ];
-        for (n, (normals, are_new)) in all.into_iter().take(count_of_normals).enumerate() {
-            if *are_new {
-                screen.gpu().refill(lit, first + n, normals)?;
-                *are_new = false;
-            }
-        }
-        Ok(borrowed)
-    }
-}
-
 /// RMSE over the mean, R, G, B of the means of blocks.
 fn error(
     blocks: &Blocks,
@@ -619,62 +420,6 @@ fn error(
     (mean > 0.0).then(|| (square / count).sqrt() / (mean / count))
 }
 
-/// Plans the light of the coarse grids and the slopes that show it. Returns the images that the slopes borrow.
-fn plan_levels(
-    [sky, sun, slopes]: &mut [Level; GRIDS],
-    screen: &mut Screen,
-    state: &State,
-    limits: &Limits,
-) -> Result<Vec<ImageArg>> {
-    // New environments wait for the device.
-    sky.plan_light(screen, state, limits)?;
-    if sun.is_used() {
-        sun.plan_light(screen, state, limits)?;
-    }
-    slopes.plan_slopes(screen, [sky, sun], state.has_camera(), limits)
-}
-
-/// The first sun with irradiance, and its number, from 1.
-fn first_sun(scene: &Scene) -> Option<(usize, &Sun)> {
-    let mut suns = (1..).zip(&scene.lights.suns);
-    suns.find(|(_, sun)| sun.irradiance.iter().any(|e| *e > 0.0))
-}
-
-/// The user's settings with fewer azimuths and the default method, as the others are slow, and with the default lines,
-/// as some need another method. The sun has one azimuth, and bounces only in the sky's light.
-fn coarser(quality: &Quality, of: usize) -> Quality {
-    let count = if of == SUN { 0 } else { quality.bounces.count };
-    Quality {
-        azimuths: quality.azimuths.min(AZIMUTHS),
-        sun_azimuths: 1,
-        bounces: Bounces { count, ..quality.bounces },
-        method: Method::default(),
-        lines: Lines::default(),
-        ..*quality
-    }
-}
-
-/// The work of a grid of blocks of `side` grid points, as its rate counts it.
-fn grid_work(scene: &Scene, quality: &Quality, of: usize, side: usize) -> f64 {
-    let texels = (scene.field.rows() * scene.field.cols()) as f64 / (side * side) as f64;
-    match of {
-        SKY => work(scene, &coarser(quality, SKY), side),
-        // Heights, a sweep and a sun.
-        SUN => 3.0 * texels,
-        _ => texels,
-    }
-}
-
-/// Texels times azimuths, with a sun as eight, on blocks of `side` grid points.
-fn work(scene: &Scene, quality: &Quality, side: usize) -> f64 {
-    let texels = (scene.field.rows() * scene.field.cols()) as f64 / (side * side) as f64;
-    let lights = &scene.lights;
-    let has_sky = lights.sky.is_some() || lights.environment.is_some() || quality.bounces.count > 0;
-    let of_sky = if has_sky { f64::from(quality.azimuths) } else { 0.0 };
-    let others = lights.suns.len() + lights.keys.len() + lights.sphere_lights.len() + 1;
-    texels * (of_sky * f64::from(1 + 2 * quality.bounces.count) + 8.0 * others as f64)
-}
-
 /// The full light in passes of few azimuths, so that input waits for about [`PART_MS`].
 fn in_parts(state: &State, limits: &Limits, rate: f64) -> Result<Plan> {
     let texels = (state.scene.field.rows() * state.scene.field.cols()) as f64;
@@ -682,46 +427,4 @@ fn in_parts(state: &State, limits: &Limits, rate: f64) -> Result<Plan> {
     let azimuths = (2.0 * PART_MS * rate / texels).clamp(1.0, 1e6) as u32;
     let image_layers = limits.image_layers.min(azimuths.next_power_of_two());
     state.plan(&Limits { image_layers, ..*limits }).or_else(|_| state.plan(limits))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use ridgelight::scene::{HeightField, Lights, SETTINGS, Surface, Values, setting};
-
-    /// With every method: what the full light accepts, previews accept too.
-    #[test]
-    fn every_valid_setting_has_a_preview() {
-        let field = HeightField::new(64, 64, &[0.0; 64 * 64], [1.0; 2], None).unwrap();
-        let lights = Lights { sky: Some([1.0; 3]), ..Lights::default() };
-        let scene = Scene { field, surface: Surface::default(), lights };
-        let limits = Limits::boundless(true, 1 << 40);
-        let words = |values: &Values| -> Vec<String> {
-            match values {
-                Values::Words(words) => words.iter().map(|word| word.name.to_owned()).collect(),
-                Values::OneOf(all) => all.iter().map(u32::to_string).collect(),
-                _ => Vec::new(),
-            }
-        };
-        let method = setting("method").expect("a setting");
-        let mut count = 0;
-        for of_method in words(&method.values) {
-            for other in SETTINGS {
-                for word in words(&other.values) {
-                    let mut quality = Quality::default();
-                    method.set(&mut quality, &of_method).unwrap();
-                    let is_full = other.set(&mut quality, &word).is_ok()
-                        && plan::picture(&scene, &quality, &limits, Picture::default()).is_ok();
-                    let wanted = Picture { light_layers: true, ..Picture::default() };
-                    let sky = plan::picture(&scene, &coarser(&quality, SKY), &limits, wanted);
-                    let sun = coarser(&quality, SUN);
-                    let sun = plan::picture(&scene, &sun, &limits, Picture::default());
-                    let is_well = sky.is_ok() && sun.is_ok();
-                    assert!(!is_full || is_well, "{of_method}, {} {word}", other.name);
-                    count += u32::from(is_full);
-                }
-            }
-        }
-        assert!(count > 20, "{count}");
-    }
 }
