@@ -58,7 +58,6 @@ unsafe impl Send for Allocation {}
 /// # Safety
 /// `allocate` must return what was requested: one of the memory types, the alignment, at least the size, owned
 /// by nobody else until it is freed, and mapped for as long unless it is for the device only.
-/// large, given to nobody else until it is freed, and mapped as long unless it is for the device alone.
 pub unsafe trait Allocator: Send {
     /// Memory for one image or buffer.
     ///

@@ -1,6 +1,6 @@
 /* Ridgelight for C: lights height fields that change every frame, recorded into your own Vulkan command buffer.
  *
- * Every struct begins with its size, so that a library reads one of an older header as far as it goes; what is 0
+ * Structs with a struct_size begin with it, so that a library reads one of an older header as far as it goes; what is 0
  * is the default. Functions that can fail return a RidgelightResult, and leave a sentence for
  * ridgelight_last_error. Plans are data and may be shared by threads; a renderer is used by one thread at a time.
  *
