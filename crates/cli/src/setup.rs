@@ -75,7 +75,9 @@ pub fn georeferenced(
         };
         notes.iter().for_each(|text| note(&format!("{name}: {}", flags_in(text))));
         if surface.bbox.is_some() {
-            note(&format!("{name}: nothing outside --bbox casts a shadow into it"));
+            note(&format!(
+                "{name}: read without the ground outside --bbox, which casts no shadow into it"
+            ));
         }
     }
     Ok((field, georeference))

@@ -1,7 +1,7 @@
 use crate::graph::{Axis, Builder, ResourceId, shaders};
 use crate::passes::PhongSource;
 use crate::passes::bounced_specular::BouncedSpecular;
-use crate::scene::{Border, Sun};
+use crate::scene::{Border, Specular, Sun};
 
 /// Specular reflection of a sun, scaled by the visible part that diffuse shading found. `begins`: the sum
 /// begins with it.
@@ -52,4 +52,12 @@ pub(crate) fn plan(
         axis.texels() * (4 + 4 + 2 * 16 * (1 + u64::from(layers))),
         axis.texels(),
     );
+}
+
+/// The exponent to which a sun widens the lobes of a surface, where it widens any: 48 over its radius squared, as the
+/// shader's rings need.
+pub(crate) fn widened(specular: &Specular, sun: &Sun) -> Option<f64> {
+    let radius = 0.5 * sun.diameter_rad;
+    let widest = 48.0 / (radius * radius);
+    (!sun.is_point() && f64::from(specular.largest().exponent) > widest).then_some(widest)
 }

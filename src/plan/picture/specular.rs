@@ -6,7 +6,7 @@ use crate::graph::ResourceId;
 use crate::passes::batch::Batch;
 use crate::passes::bounced_specular::{BouncedSpecular, ExitLight};
 use crate::passes::bounces::{Bouncing, bounce_name};
-use crate::passes::{self, PhongSource, light_resolve, specular_exit};
+use crate::passes::{self, PhongSource, light_resolve, specular_exit, sun_specular};
 use crate::scene::{Basis, BounceEngine, PhongSpecular, Quality, Receiver, Specular, Sun};
 use crate::{Error, Result};
 
@@ -29,6 +29,12 @@ pub(super) fn quality(
     }
     if let Some(light) = active.near.active.first() {
         return refuse(&format!("specular under a {}", light.of.name), alone);
+    }
+    for (i, sun) in &active.suns {
+        let narrow = active.specular.and_then(|specular| sun_specular::widened(specular, sun));
+        notes.extend(narrow.map(|n| {
+            format!("specular of sun {}: exponents above {n:.0} become {n:.0}, a lobe a seventh of its radius wide", i + 1)
+        }));
     }
     let quality = bounced(*quality, notes)?;
     let by_slices = active.by_slices(&quality).is_some();
@@ -254,10 +260,14 @@ mod tests {
     };
 
     fn plan(lights: Lights, basis: Basis, scale: f32) -> Result<Plan> {
+        plan_of(lights, basis, PhongSpecular { exponent: 9.0, scale })
+    }
+
+    fn plan_of(lights: Lights, basis: Basis, phong: PhongSpecular) -> Result<Plan> {
         let surface = Surface {
             albedo: Albedo::Constant([0.5; 3]),
             border: Border::Plane,
-            specular: Some(Specular::Constant(PhongSpecular { exponent: 9.0, scale })),
+            specular: Some(Specular::Constant(phong)),
         };
         let scene = Scene { field: fractal(32, 1).unwrap(), surface, lights };
         let quality = Quality { azimuths: 8, basis, ..Quality::default() };
@@ -299,6 +309,21 @@ mod tests {
         assert!(plan(Lights { keys: vec![dark], ..sky() }, Basis::Sh, 0.5).is_ok());
         assert!(plan(Lights { keys: vec![key], ..sky() }, Basis::Table, 0.0).is_ok());
         assert!(plan(sun(), Basis::Table, 0.5).is_ok());
+    }
+
+    /// Lobes that a sun widens are noted: 0.2² n is 40 at exponent 1,000, and 50 at 1,250.
+    #[test]
+    fn a_widened_lobe_is_noted() {
+        let mut lights = sun();
+        lights.suns.push(Sun { diameter_rad: 0.4, ..lights.suns[0] });
+        let widened = |exponent| -> Vec<String> {
+            let phong = PhongSpecular { exponent, scale: 0.5 };
+            let plan = plan_of(lights.clone(), Basis::Auto, phong).unwrap();
+            plan.notes.into_iter().filter(|n| n.starts_with("specular of sun")).collect()
+        };
+        assert_eq!(widened(1_000.0), [""; 0]);
+        let noted = widened(1_250.0);
+        assert!(noted.len() == 1 && noted[0].contains("sun 2: exponents above 1200 "), "{noted:?}");
     }
 
     /// Sky and environment use tables of the lobe, without harmonics unless they are requested. Suns need neither, nor does

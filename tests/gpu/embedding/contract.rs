@@ -1,5 +1,6 @@
 //! The embedding contract: record only, check first, leave the requested states.
 
+use ash::vk;
 use ridgelight::gpu::Renderer;
 use ridgelight::plan::{self, Picture, missing_barriers};
 use ridgelight::scene::{Border, Environment, Fuse, Hull, Lines, Method, Quality, Sun};
@@ -43,6 +44,23 @@ fn a_field_that_changes_gives_what_a_new_field_gives() {
     let again = gpu.pixels(&frame, 0).expect("pixels").values;
     gpu.end(frame);
     assert_eq!(again, fresh);
+}
+
+/// Half of the largest heap of the device's own memory; all of it where a software driver states it.
+#[test]
+fn a_plan_may_take_half_of_a_devices_memory_and_all_of_a_software_drivers() {
+    let device = Device::new();
+    let gpu = device.gpu.as_ref().expect("alive");
+    let host = gpu.host();
+    // SAFETY: the physical device is the instance's.
+    let memory =
+        unsafe { host.instance.get_physical_device_memory_properties(host.physical_device) };
+    let heaps = &memory.memory_heaps[..memory.memory_heap_count as usize];
+    let local = heaps.iter().filter(|h| h.flags.contains(vk::MemoryHeapFlags::DEVICE_LOCAL));
+    let heap = local.map(|h| h.size).max().expect("a heap of its own");
+    let limits = device.limits();
+    let share = if limits.is_cpu { 1 } else { 2 };
+    assert_eq!(limits.memory_budget, heap / share);
 }
 
 /// Silent validation must be able to fail: it reports a plan without its barriers.

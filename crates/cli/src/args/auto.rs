@@ -23,7 +23,8 @@ pub struct AutoArgs {
     pub max_error: Option<f64>,
     /// Choose the most accurate settings within this GPU time per frame on this device
     ///
-    /// Renders the chosen frame again to check the time, and reports its error.
+    /// Renders the chosen frame again to check the time, and reports its error. Settings that an earlier run chose are not
+    /// measured again; --no-cache does.
     #[arg(long, value_name = "MS", allow_negative_numbers = true, hide_short_help = true, conflicts_with_all = chosen())]
     pub time_budget: Option<f64>,
     /// Seed of the texels that measure the error, 0 to 4294967295; 0 by default

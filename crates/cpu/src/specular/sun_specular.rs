@@ -24,8 +24,8 @@ pub fn specular_on(
     scale * visible * disc_density(mirrored(normal, view), sun, exponent)
 }
 
-/// Integral of a lobe about `mirror` over a sun's disc, for irradiance 1. Lobes narrower than a seventh of the disc are
-/// widened to that: n r² is 48 at most.
+/// Integral of a lobe about `mirror` over a sun's disc, for irradiance 1. Lobes narrower than a seventh of the disc's
+/// radius are widened to that: n r² is 48 at most.
 pub fn disc_density(mirror: DVec3, sun: &Sun, exponent: f64) -> f64 {
     let radius = if sun.is_point() { 0.0 } else { 0.5 * sun.diameter_rad };
     let n = exponent.min(WIDEST / (radius * radius));
@@ -78,4 +78,115 @@ fn towards(sun: &Sun) -> DVec3 {
 fn visible(normal: DVec3, towards: DVec3, sun_sum: f64) -> f64 {
     let facing = normal.dot(towards);
     if facing > 0.0 { (PI * sun_sum / facing).min(1.0) } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tolerance::disc_rings;
+    use ridgelight::basis::legendre::{legendre, value};
+
+    /// Nodes and weights of Gauss and Legendre on [0..1].
+    fn gauss(count: usize) -> Vec<[f64; 2]> {
+        if count == 0 {
+            return Vec::new();
+        }
+        let (p, lower) = (legendre(count), legendre(count - 1));
+        let slope = |x: f64| count as f64 * (value(&lower, x) - x * value(&p, x)) / (1.0 - x * x);
+        let node = |i: usize| {
+            let mut x = (PI * (i as f64 + 0.75) / (count as f64 + 0.5)).cos();
+            for _ in 0..20 {
+                x -= value(&p, x) / slope(x);
+            }
+            [0.5 * (1.0 - x), 1.0 / ((1.0 - x * x) * slope(x).powi(2))]
+        };
+        (0..count).map(node).collect()
+    }
+
+    /// Mean of cos^n over a disc, by rings of given weights, the first direction of each half a step from the plane of
+    /// disc and mirror direction, and `turned` by more.
+    fn mean(
+        rings: &[[f64; 2]],
+        around: usize,
+        (radius, n, angle): (f64, f64, f64),
+        turned: f64,
+    ) -> f64 {
+        let depth = 1.0 - radius.cos();
+        let (sin, cos) = angle.sin_cos();
+        let ring = |[node, weight]: &[f64; 2]| {
+            let h = depth * node;
+            let across = (h * (2.0 - h)).sqrt();
+            let at = |k: usize| {
+                let phi = TAU * (k as f64 + 0.5) / around as f64 + turned;
+                let cosine = (1.0 - h) * cos + across * phi.cos() * sin;
+                if cosine > 0.0 { cosine.powf(n) } else { 0.0 }
+            };
+            weight / around as f64 * (0..around).map(at).sum::<f64>()
+        };
+        rings.iter().map(ring).sum()
+    }
+
+    /// The rule of sun_specular.comp, in f64: the number of rings, 0 for the centre alone.
+    fn rings(radius: f64, n: f64, angle: f64) -> usize {
+        let (wide, to_end) = (n * radius * radius, angle.cos().abs());
+        match wide {
+            _ if to_end < 2.0 * radius.sin() => 8,
+            _ if wide <= 1e-3 && to_end >= 10.0 * radius.sin() => 0,
+            _ if wide <= 0.15 => 1,
+            _ if wide <= 2.0 => 2,
+            _ if wide <= 11.0 => 4,
+            _ => 8,
+        }
+    }
+
+    /// Rings of the device and of the reference stay within `disc_rings` of 250 rings of 250 directions, from the
+    /// narrowest to the widest sun, on both sides of each change of their number. A number too few does not.
+    #[test]
+    fn rings_are_as_many_as_a_lobe_needs() {
+        let fine: Vec<_> = (0..250).map(|i| [(f64::from(i) + 0.5) / 250.0, 1.0 / 250.0]).collect();
+        let reference: Vec<_> =
+            (0..RINGS).map(|i| [(i as f64 + 0.5) / RINGS as f64, 1.0 / RINGS as f64]).collect();
+        let rules: Vec<_> = (0..9).map(gauss).collect();
+        let mut too_few = [0; 9];
+        for radius in [0.004, 0.04, 0.17, 0.4, 0.8, 1.5] {
+            let sun = Sun {
+                azimuth_rad: 0.0,
+                elevation_rad: 0.0,
+                diameter_rad: 2.0 * radius,
+                irradiance: [1.0; 3],
+            };
+            let changes = [1e-3, 0.15, 2.0, 11.0, 47.0].map(|wide| wide / (radius * radius));
+            let exponents = changes.iter().flat_map(|n| [0.999 * n, 1.001 * n]);
+            for n in exponents.chain([0.0, 0.1, 0.3, 0.6, 0.9, 1.0, 1.1, 1.5]) {
+                if n > 1e4 || n * radius * radius > 48.0 {
+                    continue;
+                }
+                let lobe = (1.0 / n.max(1.0)).sqrt();
+                let near = (0..8).map(|i| f64::from(i) * 0.5 * (radius + lobe));
+                let at_end = (-5..=24).map(|i| 0.5 * PI - 0.5 * radius * f64::from(i));
+                for angle in near.chain(at_end).filter(|a| (0.0..=0.5 * PI + radius).contains(a)) {
+                    let of = (radius, n, angle);
+                    let want = mean(&fine, 250, of, 0.0);
+                    let by = |count: usize, turned: f64| match count {
+                        0 if angle.cos() > 0.0 => angle.cos().powf(n),
+                        0 => 0.0,
+                        _ => mean(&rules[count], 4 * count, of, turned),
+                    };
+                    let bound = disc_rings(n, &sun, angle.cos()) / ((n + 1.0) / TAU);
+                    // The finest rings' own share, as derived for those of the reference.
+                    let bound = bound * (1.0 + 48.0 / 250.0);
+                    let off = (mean(&reference, AROUND, of, 0.0) - want).abs();
+                    let count = rings(radius, n, angle);
+                    for turned in [0.0, 0.4 / count.max(1) as f64] {
+                        let all = off + (by(count, turned) - want).abs();
+                        assert!(all <= bound, "{of:?}: {count} rings: {all:e} of {bound:e}");
+                    }
+                    let fewer = off + (by(count / 2, 0.0) - want).abs();
+                    too_few[count] += usize::from(fewer > bound);
+                }
+            }
+        }
+        println!("too few rings are refused at {too_few:?} places");
+        assert!([1, 2, 4, 8].iter().all(|count| too_few[*count] > 0), "{too_few:?}");
+    }
 }

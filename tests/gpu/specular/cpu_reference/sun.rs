@@ -3,6 +3,7 @@
 use ridgelight::gpu::shaders::offset;
 use ridgelight::plan::Pass;
 use ridgelight::scene::Sun;
+use ridgelight_cpu::mirror_map::mirrored;
 use ridgelight_cpu::shared::field::{field_slope, normal_of};
 use ridgelight_cpu::sun_specular as specular_reference;
 use ridgelight_cpu::tolerance::{EPSILON, device_sun_arriving, device_sun_specular, disc_rings};
@@ -37,10 +38,11 @@ pub(crate) fn sun_specular(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         let normal = normal_of(field_slope(&heights, (i % cols) as i32, (i / cols) as i32));
         let phong = run.phong_specular(i);
         let view = view_from(&heights, eye_m, i);
+        let to_mirror = mirrored(normal, view).dot(towards);
         let light = specular_reference::specular_on((normal, view), &sun, phong, sums[i].into());
         let tolerance =
             device_sun_specular(phong.exponent.into(), error.normal(), normal.dot(towards))
-                + disc_rings(phong.exponent.into(), &sun);
+                + disc_rings(phong.exponent.into(), &sun, to_mirror);
         for (c, (got, sum)) in got.iter().zip(&mut run.specular[i]).enumerate() {
             let colour = f64::from(sun.irradiance[c]);
             let want = *sum + colour * light;

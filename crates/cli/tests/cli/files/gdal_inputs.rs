@@ -3,6 +3,7 @@
 use super::geotiff::{gdal_values, gdalinfo};
 use crate::Folder;
 use crate::needs_vulkan::done;
+use crate::succeeded;
 use ridgelight::scene::HeightField;
 use ridgelight_io::{HeightOptions, read_field};
 use serde_json::json;
@@ -256,7 +257,9 @@ fn gdal_finds_outputs_of_a_mosaic_in_place() {
     let bbox = "--bbox 500300,4900300,501200,4901200 --azimuths 8";
     done(&folder, &format!("render {names} {bbox} --sky 0.5 -o o.tif"));
     done(&folder, &format!("render {names} {bbox} --sky 0.5 -o o.png"));
-    done(&folder, &format!("horizon {names} {bbox} -o h.tif"));
+    let horizon = succeeded(&folder, &format!("horizon {names} {bbox} -o h.tif"));
+    let said = "read without the ground outside --bbox, which casts no shadow into it";
+    assert!(horizon.notes.contains(said), "{}", horizon.notes);
     done(&folder, &format!("bake {names} {bbox} --what sky-view --format tif -o baked"));
     done(
         &folder,
