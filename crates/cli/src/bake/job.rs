@@ -11,7 +11,7 @@ use ridgelight::{Error, Result};
 use ridgelight_bake::{Angles, HorizonSums};
 
 use super::kinds::{self, Kind, Map, Normals, OfDirections, Source, Table};
-use super::map::Wanted;
+use super::map::{Format, Wanted};
 use super::stages::{FILES, Stage};
 use super::{MANIFEST, request};
 use crate::{horizon, maps};
@@ -146,9 +146,15 @@ impl<'a> Job<'a> {
         let mut all: Vec<_> = maps
             .flat_map(|(wanted, map)| wanted.files(map, [self.field().cols(), self.field().rows()]))
             .collect();
-        // The manifest: each file and its decoding, each plane's name, each direction's three
-        // numbers.
-        let planes: usize = self.maps.iter().map(|(_, map)| map.planes.len()).sum();
+        // The manifest: each file and its decoding, each plane's name (of the map, and of files that name
+        // their own), each direction's three numbers.
+        let names = |(wanted, map): &(Wanted, Map)| {
+            let names_own = |format: &&Format| {
+                **format == Format::Png || format.is_texture() && wanted.kind.is_of_azimuths()
+            };
+            map.planes.len() * (1 + wanted.formats.iter().filter(names_own).count())
+        };
+        let planes: usize = self.maps.iter().map(names).sum();
         let directions = self.around.count() + self.maps.len() * self.angles.count();
         let listed = 2048 * all.len() + 80 * planes + 160 * directions;
         all.push((MANIFEST.into(), 65_536 + listed as u64));

@@ -153,7 +153,17 @@ impl Wanted {
     /// GLSL: the constants, then the decoder.
     fn decoder(&self, map: &Map) -> String {
         let constants: String = map.constants.iter().map(|line| format!("{line}\n")).collect();
-        constants + self.kind.decoder
+        let mut other_files = String::new();
+        if self.formats.iter().any(|f| matches!(f, Format::Exr | Format::Npy | Format::Tif)) {
+            other_files +=
+                "// .exr, .npy and .tif hold the values themselves and need no decoder.\n";
+        }
+        let component = self.encoding.component;
+        if component.is_normalised() && component.is_signed() && self.formats.contains(&Format::Png)
+        {
+            other_files += "// A .png cannot hold values below 0: of its v, 0 to 1, pass 2v - 1.\n";
+        }
+        constants + &other_files + self.kind.decoder
     }
 }
 
@@ -174,6 +184,8 @@ struct Waiting {
     format: Format,
     /// Scale of a picture's values.
     scale: f64,
+    /// The planes that a file of some of them holds.
+    planes: Option<std::ops::Range<usize>>,
 }
 
 /// A map's files, invisible under their final names until [`place`](Self::place).
@@ -333,7 +345,8 @@ impl<'a> MapFiles<'a> {
                     let name = self.wanted.file(&self.map, Format::Png, self.taken);
                     let path = self.folder.join(name);
                     let file = files::write_codes_aside(&path, size, form, &picture, &texts)?;
-                    self.waiting.push(Waiting { file, path, format: Format::Png, scale });
+                    let planes = Some(first..first + planes.len());
+                    self.waiting.push(Waiting { file, path, format: Format::Png, scale, planes });
                 }
             }
         }

@@ -29,7 +29,7 @@ impl MapFiles<'_> {
                     continue;
                 }
             };
-            self.waiting.push(Waiting { file, path, format, scale: 1.0 });
+            self.waiting.push(Waiting { file, path, format, scale: 1.0, planes: None });
         }
         Ok(())
     }
@@ -117,7 +117,7 @@ impl MapFiles<'_> {
 
     /// The entry of one file.
     fn file_entry(&self, waiting: &Waiting, bytes: u64) -> Json {
-        let Waiting { format, ref path, scale, .. } = *waiting;
+        let Waiting { format, ref path, scale, ref planes, .. } = *waiting;
         let (encoding, texels) = (self.wanted.encoding, self.wanted.texels());
         let is_scaled = format == Format::Png && self.is_scaled();
         let holds = match format {
@@ -168,6 +168,13 @@ impl MapFiles<'_> {
         });
         if is_scaled {
             entry["scale"] = json!(scale);
+        }
+        // Which of the map's planes, in this file's own order: textures and pictures of horizons have theirs
+        // counter-clockwise from east.
+        let is_own_order = format.is_texture() && self.wanted.kind.is_of_azimuths();
+        let own = planes.clone().or(is_own_order.then_some(0..self.map.planes.len()));
+        if let Some(own) = own {
+            entry["planes"] = json!(self.map.planes[own]);
         }
         if format.is_texture() {
             entry["mip_levels"] = self.wanted.level_sizes(self.size()).len().into();

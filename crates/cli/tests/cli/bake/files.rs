@@ -207,6 +207,20 @@ fn gpu_every_file_is_there_and_listed() {
         files.filter(|f| f["format"] == "png").count()
     };
     assert_eq!(["horizon", "sky-view", "bent-normal"].map(pictures), [8, 1, 1]);
+    // Pictures and the texture are counter-clockwise from east, the map's planes by compass.
+    let named = map(&manifests[0], "horizon");
+    assert_eq!([&named["planes"][0], &named["planes"][1]], ["azimuth_000.0", "azimuth_045.0"]);
+    let planes = |name: &str| {
+        let mut files = named["files"].as_array().unwrap().iter();
+        files.find(|file| file["file"] == name).unwrap()["planes"].clone()
+    };
+    assert_eq!(planes("horizon_0000.png"), serde_json::json!(["azimuth_090.0"]));
+    assert_eq!(planes("horizon_0002.png"), serde_json::json!(["azimuth_000.0"]));
+    assert_eq!(planes("horizon.ktx2")[7], "azimuth_135.0");
+    // Only a picture of values below 0 is stored otherwise than a texture.
+    let decoder = |name: &str| std::fs::read_to_string(folder.path("out").join(name)).unwrap();
+    assert!(decoder("horizon.glsl").contains("pass 2v - 1"));
+    assert!(!decoder("sky_view.glsl").contains("2v - 1"));
     assert_eq!(manifests[0]["settings"]["azimuths"], 8);
     assert_eq!(manifests[2]["directions"].as_array().unwrap().len(), 9);
     // A closed net of n points all over the sphere has 2 n - 4 triangles (Euler).
