@@ -161,8 +161,8 @@ mod tests {
                 if n > 1e4 || n * radius * radius > 48.0 {
                     continue;
                 }
-                let lobe = (1.0 / n.max(1.0)).sqrt();
-                let near = (0..8).map(|i| f64::from(i) * 0.5 * (radius + lobe));
+                let width = (1.0 / n.max(1.0)).sqrt();
+                let near = (0..8).map(|i| f64::from(i) * 0.5 * (radius + width));
                 let at_end = (-5..=24).map(|i| 0.5 * PI - 0.5 * radius * f64::from(i));
                 for angle in near.chain(at_end).filter(|a| (0.0..=0.5 * PI + radius).contains(a)) {
                     let of = (radius, n, angle);
