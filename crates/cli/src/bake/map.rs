@@ -150,7 +150,7 @@ impl Wanted {
         images.fold(of_texels + self.coding_bytes(size), u64::saturating_add)
     }
 
-    /// GLSL: the constants, then the decoder.
+    /// GLSL: comments on what it does not read, the constants, then the decoder.
     fn decoder(&self, map: &Map) -> String {
         let constants: String = map.constants.iter().map(|line| format!("{line}\n")).collect();
         let mut other_files = String::new();
@@ -163,7 +163,7 @@ impl Wanted {
         {
             other_files += "// A .png cannot hold values below 0: of its v, 0 to 1, pass 2v - 1.\n";
         }
-        constants + &other_files + self.kind.decoder
+        other_files + &constants + self.kind.decoder
     }
 }
 
