@@ -50,10 +50,11 @@ const float WEIGHTS[15] = float[](1.0, 0.5, 0.5, 0.1739274226, 0.3260725774, 0.3
                                   0.1111905172, 0.1568533229, 0.1813418917, 0.1813418917, 0.1568533229, 0.1111905172,
                                   0.0506142681);
 
-// Integral of the lobe of exponent n over the sun's disc, for irradiance 1. Rings have equal solid angle per width of their
-// weights, and 4 directions each per ring: the error is 2.5e-4 of the lobe's peak. Where n r^2 > 48 the lobe is widened to
-// that: it is then narrower than a seventh of the disc's radius. Where the disc, twice as wide, reaches the lobe's end at
-// 90 degrees, the mean is not smooth and has all rings. Exponents below 1 need one ring up to ten times its width.
+// Integral of the lobe of exponent n over the sun's disc, for irradiance 1. Each ring has a share of the solid angle that is
+// its weight, and four directions for each ring. The error that was measured is 2.5e-4 of the lobe's peak. Where
+// n r^2 > 48 the lobe is narrower than a seventh of the disc's radius, and is widened to that. At 90 degrees from the mirror
+// direction the lobe ends, and its slope may jump: where a disc of twice the radius reaches that end, there are all rings.
+// A lobe that hardly changes across the disc is taken at its centre, unless a disc of ten times the radius reaches that end.
 float disc_density(vec3 mirror, float n) {
     n = min(n, 48.0 / max(towards.w, 1e-30));
     float wide = n * towards.w;

@@ -288,10 +288,11 @@ pub fn device_sun_specular(exponent: f64, normal_error: f64, facing: f64) -> f64
 /// Error of the mean of a lobe over a disc by the rings of `sun_specular`, and by those of the CPU reference, for irradiance 1,
 /// where `cosine` is that between the mirror direction and the sun.
 ///
-/// Of the lobe's peak, 2.5e-4 and 6e-5. Where the disc, twice as wide, reaches the lobe's end, a power of 1 or more has a
-/// kink: 8e-4. A lower power is a sum of steps, of which the highest is its largest value on the disc. Across a step a ring of
-/// 32 directions errs by one, and rings by half of the heaviest's weight, 0.18, as the share beyond it grows by one half;
-/// the reference's by one of 48, and half of a 128th.
+/// Of the lobe's peak, 2.5e-4 and 6e-5; where the disc, twice as wide, reaches the lobe's end, a power of 1 or more has a
+/// kink: 8e-4. These three are not derived: they bound what was measured against 250 rings, which the test of
+/// `sun_specular` repeats. A lower power is a sum of steps, of which the highest is its largest value on the disc. Across a
+/// step a ring of 32 directions errs by one, and rings by half of the heaviest's weight, 0.18, as the share beyond it grows
+/// by one half; the reference's by one of 48, and half of a 128th.
 pub fn disc_rings(exponent: f64, sun: &ridgelight::scene::Sun, cosine: f64) -> f64 {
     if sun.is_point() {
         return 0.0;

@@ -11,7 +11,7 @@ use ridgelight::{Error, Result};
 use ridgelight_bake::{Angles, HorizonSums};
 
 use super::kinds::{self, Kind, Map, Normals, OfDirections, Source, Table};
-use super::map::{Format, Wanted};
+use super::map::Wanted;
 use super::stages::{FILES, Stage};
 use super::{MANIFEST, request};
 use crate::{horizon, maps};
@@ -149,10 +149,8 @@ impl<'a> Job<'a> {
         // The manifest: each file and its decoding, each plane's name (of the map, and of files that name
         // their own), each direction's three numbers.
         let names = |(wanted, map): &(Wanted, Map)| {
-            let names_own = |format: &&Format| {
-                **format == Format::Png || format.is_texture() && wanted.kind.is_of_azimuths()
-            };
-            map.planes.len() * (1 + wanted.formats.iter().filter(names_own).count())
+            let own = wanted.formats.iter().filter(|format| wanted.names_planes(**format));
+            map.planes.len() * (1 + own.count())
         };
         let planes: usize = self.maps.iter().map(names).sum();
         let directions = self.around.count() + self.maps.len() * self.angles.count();

@@ -3,6 +3,7 @@
 mod entry;
 mod textures;
 
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
@@ -65,6 +66,12 @@ pub struct Wanted {
 impl Wanted {
     pub fn layers(&self, map: &Map) -> usize {
         map.planes.len().div_ceil(self.encoding.values)
+    }
+
+    /// Whether the manifest's entry of such a file names its planes: a picture holds some of them, and layers of a
+    /// texture of horizons are counter-clockwise from east.
+    pub fn names_planes(&self, format: Format) -> bool {
+        format == Format::Png || format.is_texture() && self.kind.is_of_azimuths()
     }
 
     /// What its textures hold.
@@ -184,8 +191,8 @@ struct Waiting {
     format: Format,
     /// Scale of a picture's values.
     scale: f64,
-    /// The planes that a file of some of them holds.
-    planes: Option<std::ops::Range<usize>>,
+    /// Which of the map's planes it holds.
+    planes: Range<usize>,
 }
 
 /// A map's files, invisible under their final names until [`place`](Self::place).
@@ -345,7 +352,7 @@ impl<'a> MapFiles<'a> {
                     let name = self.wanted.file(&self.map, Format::Png, self.taken);
                     let path = self.folder.join(name);
                     let file = files::write_codes_aside(&path, size, form, &picture, &texts)?;
-                    let planes = Some(first..first + planes.len());
+                    let planes = first..first + planes.len();
                     self.waiting.push(Waiting { file, path, format: Format::Png, scale, planes });
                 }
             }

@@ -29,7 +29,8 @@ impl MapFiles<'_> {
                     continue;
                 }
             };
-            self.waiting.push(Waiting { file, path, format, scale: 1.0, planes: None });
+            let planes = 0..self.map.planes.len();
+            self.waiting.push(Waiting { file, path, format, scale: 1.0, planes });
         }
         Ok(())
     }
@@ -169,12 +170,8 @@ impl MapFiles<'_> {
         if is_scaled {
             entry["scale"] = json!(scale);
         }
-        // Which of the map's planes, in this file's own order: textures and pictures of horizons have theirs
-        // counter-clockwise from east.
-        let is_own_order = format.is_texture() && self.wanted.kind.is_of_azimuths();
-        let own = planes.clone().or(is_own_order.then_some(0..self.map.planes.len()));
-        if let Some(own) = own {
-            entry["planes"] = json!(self.map.planes[own]);
+        if self.wanted.names_planes(format) {
+            entry["planes"] = json!(self.map.planes[planes.clone()]);
         }
         if format.is_texture() {
             entry["mip_levels"] = self.wanted.level_sizes(self.size()).len().into();

@@ -210,13 +210,29 @@ fn gpu_every_file_is_there_and_listed() {
     // Pictures and the texture are counter-clockwise from east, the map's planes by compass.
     let named = map(&manifests[0], "horizon");
     assert_eq!([&named["planes"][0], &named["planes"][1]], ["azimuth_000.0", "azimuth_045.0"]);
-    let planes = |name: &str| {
+    let file = |name: &str| {
         let mut files = named["files"].as_array().unwrap().iter();
-        files.find(|file| file["file"] == name).unwrap()["planes"].clone()
+        files.find(|file| file["file"] == name).unwrap()
     };
-    assert_eq!(planes("horizon_0000.png"), serde_json::json!(["azimuth_090.0"]));
-    assert_eq!(planes("horizon_0002.png"), serde_json::json!(["azimuth_000.0"]));
-    assert_eq!(planes("horizon.ktx2")[7], "azimuth_135.0");
+    assert_eq!(file("horizon_0000.png")["planes"], serde_json::json!(["azimuth_090.0"]));
+    assert_eq!(file("horizon_0002.png")["planes"], serde_json::json!(["azimuth_000.0"]));
+    assert_eq!(file("horizon.ktx2")["planes"][7], "azimuth_135.0");
+    // As the decoder says, 2v - 1 of a pixel is the fraction of a right angle, in the plane that the entry names.
+    let values = read(&folder.path("out/horizon.npy")).planes;
+    for k in 0..8 {
+        let name = format!("horizon_{k:04}.png");
+        let entry = file(&name);
+        let mut names = named["planes"].as_array().unwrap().iter();
+        let plane = &values[names.position(|plane| *plane == entry["planes"][0]).unwrap()];
+        let most = entry["error"][0]["at_most"].as_f64().unwrap();
+        // Not by `read`, which takes codes for sRGB.
+        let picture = image::open(folder.path("out").join(&name)).unwrap().into_luma16();
+        for (code, want) in picture.iter().zip(plane) {
+            let v = f64::from(*code) / 65535.0;
+            let found = (2.0 * v - 1.0) * std::f64::consts::FRAC_PI_2;
+            assert!((found - f64::from(*want)).abs() <= most, "{name}: {found} for {want}");
+        }
+    }
     // Only a picture of values below 0 is stored otherwise than a texture.
     let decoder = |name: &str| std::fs::read_to_string(folder.path("out").join(name)).unwrap();
     assert!(decoder("horizon.glsl").contains("pass 2v - 1"));
