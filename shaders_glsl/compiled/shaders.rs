@@ -185,15 +185,18 @@ shader! {
 
 shader! {
     /// `shaders_glsl/rays/height_bounds.comp`.
-    HEIGHT_BOUNDS: "height_bounds", push HeightBoundsPush, words 75037 1109,
+    HEIGHT_BOUNDS: "height_bounds", push HeightBoundsPush, words 75037 1666,
     0 reads "cells" SampledImage { uint: false, layered: false },
     1 writes "maxima" StorageImage { format: "R32f", uint: false, layered: false },
-    HeightBounds;
+    2 reads "heights" SampledImage { uint: false, layered: false },
+    HeightBounds {
+        0 source: u32 = 0,
+    }
 }
 
 shader! {
     /// `shaders_glsl/rays/height_cells.comp`.
-    HEIGHT_CELLS: "height_cells", push HeightCellsPush, words 76146 2514,
+    HEIGHT_CELLS: "height_cells", push HeightCellsPush, words 76703 2514,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 writes "cells" StorageImage { format: "Rgba32f", uint: false, layered: false },
     2 writes "ground" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -207,7 +210,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/height_expand.comp`.
-    HEIGHT_EXPAND: "height_expand", push HeightExpandPush, words 78660 2496,
+    HEIGHT_EXPAND: "height_expand", push HeightExpandPush, words 79217 2496,
     0 reads "height_levels" SampledImage { uint: false, layered: false },
     1 reads "level_table" SampledImage { uint: true, layered: false },
     2 writes "height_stack" StorageImage { format: "R32f", uint: false, layered: true },
@@ -218,7 +221,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/height_reduce.comp`.
-    HEIGHT_REDUCE: "height_reduce", push ReducePush, words 81156 2858,
+    HEIGHT_REDUCE: "height_reduce", push ReducePush, words 81713 2858,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 writes "height_levels" StorageImage { format: "R32f", uint: false, layered: false },
     2 writes "level_table" StorageImage { format: "Rgba32ui", uint: true, layered: false },
@@ -230,7 +233,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/height_transpose.comp`.
-    HEIGHT_TRANSPOSE: "height_transpose", push HeightTransposePush, words 84014 978,
+    HEIGHT_TRANSPOSE: "height_transpose", push HeightTransposePush, words 84571 978,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 writes "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     HeightTranspose {
@@ -241,7 +244,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/horizon_march.comp`.
-    HORIZON_MARCH: "horizon_march", push MarchPush, words 84992 5456,
+    HORIZON_MARCH: "horizon_march", push MarchPush, words 85549 5456,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "slopes" StorageImage { format: "Unknown", uint: true, layered: true },
@@ -255,7 +258,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/edit/horizon_resweep.comp`.
-    HORIZON_RESWEEP: "horizon_resweep", push HorizonResweepPush, words 90448 8882,
+    HORIZON_RESWEEP: "horizon_resweep", push HorizonResweepPush, words 91005 8882,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "occluders" StorageImage { format: "Rg32ui", uint: true, layered: true },
@@ -269,7 +272,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/horizon_sweep.comp`.
-    HORIZON_SWEEP: "horizon_sweep", push HorizonSweepPush, words 99330 9430,
+    HORIZON_SWEEP: "horizon_sweep", push HorizonSweepPush, words 99887 9430,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "lane_heights" SampledImage { uint: false, layered: false },
     2 reads "azimuths" TexelBuffer,
@@ -295,7 +298,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/light_matrix.comp`.
-    LIGHT_MATRIX: "light_matrix", push LightMatrixPush, words 108760 1854,
+    LIGHT_MATRIX: "light_matrix", push LightMatrixPush, words 109317 1854,
     0 reads "env_rotation" StorageBuffer,
     1 reads "constants" TexelBuffer,
     2 writes "light_matrix" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -304,7 +307,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/light_resolve.comp`.
-    LIGHT_RESOLVE: "light_resolve", push LightResolvePush, words 110614 1991,
+    LIGHT_RESOLVE: "light_resolve", push LightResolvePush, words 111171 1991,
     0 reads "scalar_sum" SampledImage { uint: false, layered: false },
     1 reads "colour_sum" SampledImage { uint: false, layered: false },
     2 reads "albedo_map" SampledImage { uint: false, layered: false },
@@ -328,7 +331,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/map_draw.comp`.
-    MAP_DRAW: "map_draw", push MapDrawPush, words 112605 3812,
+    MAP_DRAW: "map_draw", push MapDrawPush, words 113162 3812,
     0 reads "radiance" SampledImage { uint: false, layered: false },
     1 reads "tone_steps" SampledImage { uint: false, layered: false },
     2 reads "voids" SampledImage { uint: false, layered: false },
@@ -341,7 +344,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/mirror_map.comp`.
-    MIRROR_MAP: "mirror_map", push MirrorMapPush, words 116417 3631,
+    MIRROR_MAP: "mirror_map", push MirrorMapPush, words 116974 3631,
     0 reads "azimuths" TexelBuffer,
     1 reads "specular_tables" StorageImage { format: "Rgba32f", uint: false, layered: true },
     2 writes "mirror_map" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -350,7 +353,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/reference/path_trace.comp`.
-    PATH_TRACE: "path_trace", push PathTracePush, words 120048 22928,
+    PATH_TRACE: "path_trace", push PathTracePush, words 120605 22928,
     0 reads "cells" SampledImage { uint: false, layered: false },
     1 reads "maxima" SampledImage { uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -387,7 +390,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/picture_tone.frag`.
-    PICTURE_TONE_FRAG: "picture_tone_frag", push PictureTonePush, words 142976 565,
+    PICTURE_TONE_FRAG: "picture_tone_frag", push PictureTonePush, words 143533 565,
     0 reads "radiance" SampledImage { uint: false, layered: false },
     PictureToneFrag {
         0 encodes: bool = true,
@@ -396,13 +399,13 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/picture_tone.vert`.
-    PICTURE_TONE_VERT: "picture_tone_vert", push (), words 143541 266,
+    PICTURE_TONE_VERT: "picture_tone_vert", push (), words 144098 266,
     PictureToneVert;
 }
 
 shader! {
     /// `shaders_glsl/view/plinth_draw.frag`.
-    PLINTH_DRAW_FRAG: "plinth_draw_frag", push PlinthDrawPush, words 143807 939,
+    PLINTH_DRAW_FRAG: "plinth_draw_frag", push PlinthDrawPush, words 144364 939,
     2 reads "voids" SampledImage { uint: false, layered: false },
     PlinthDrawFrag {
         1 has_voids: bool = false,
@@ -411,7 +414,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/plinth_draw.vert`.
-    PLINTH_DRAW_VERT: "plinth_draw_vert", push PlinthDrawPush, words 144746 2082,
+    PLINTH_DRAW_VERT: "plinth_draw_vert", push PlinthDrawPush, words 145303 2082,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "radiance" SampledImage { uint: false, layered: false },
     2 reads "voids" SampledImage { uint: false, layered: false },
@@ -423,7 +426,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/preview_gather.comp`.
-    PREVIEW_GATHER: "preview_gather", push PreviewGatherPush, words 146828 1068,
+    PREVIEW_GATHER: "preview_gather", push PreviewGatherPush, words 147385 1068,
     0 reads "normals" SampledImage { uint: false, layered: false },
     1 reads "coarse_radiance" SampledImage { uint: false, layered: false },
     2 reads "coarse_sun" SampledImage { uint: false, layered: false },
@@ -438,7 +441,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/preview_shade.comp`.
-    PREVIEW_SHADE: "preview_shade", push PreviewShadePush, words 147896 1738,
+    PREVIEW_SHADE: "preview_shade", push PreviewShadePush, words 148453 1738,
     0 reads "normals" SampledImage { uint: false, layered: false },
     1 reads "albedo" SampledImage { uint: false, layered: false },
     2 reads "sky" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -452,7 +455,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/pyramid_march.comp`.
-    PYRAMID_MARCH: "pyramid_march", push PyramidMarchPush, words 149634 9025,
+    PYRAMID_MARCH: "pyramid_march", push PyramidMarchPush, words 150191 9025,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "slopes" StorageImage { format: "Unknown", uint: true, layered: true },
@@ -469,7 +472,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bake/scatter_gather.comp`.
-    SCATTER_GATHER: "scatter_gather", push ScatterGatherPush, words 158659 4664,
+    SCATTER_GATHER: "scatter_gather", push ScatterGatherPush, words 159216 4664,
     0 reads "ground" SampledImage { uint: false, layered: false },
     1 reads "direct" SampledImage { uint: false, layered: false },
     2 reads "visible_points" SampledImage { uint: true, layered: true },
@@ -496,7 +499,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/sh_shade.comp`.
-    SH_SHADE: "sh_shade", push ShShadePush, words 163323 12958,
+    SH_SHADE: "sh_shade", push ShShadePush, words 163880 12958,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "visibility" SampledImage { uint: false, layered: true },
     2 reads "light_matrix" SampledImage { uint: false, layered: false },
@@ -515,7 +518,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/sh_visibility.comp`.
-    SH_VISIBILITY: "sh_visibility", push ShadePush, words 176281 29844,
+    SH_VISIBILITY: "sh_visibility", push ShadePush, words 176838 30719,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rg32ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -540,7 +543,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/sh_wedges.comp`.
-    SH_WEDGES: "sh_wedges", push ShWedgesPush, words 206125 7777,
+    SH_WEDGES: "sh_wedges", push ShWedgesPush, words 207557 7777,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "horizon_angles" SampledImage { uint: false, layered: true },
     2 reads "constants" TexelBuffer,
@@ -557,7 +560,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/shade_expand.comp`.
-    SHADE_EXPAND: "shade_expand", push ShadeExpandPush, words 213902 2397,
+    SHADE_EXPAND: "shade_expand", push ShadeExpandPush, words 215334 2397,
     0 reads "shade_levels" SampledImage { uint: false, layered: false },
     1 reads "shade_table" SampledImage { uint: true, layered: false },
     2 writes "shade_stack" StorageImage { format: "Unknown", uint: false, layered: true },
@@ -568,7 +571,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/shade_reduce.comp`.
-    SHADE_REDUCE: "shade_reduce", push ReducePush, words 216299 2918,
+    SHADE_REDUCE: "shade_reduce", push ReducePush, words 217731 2918,
     0 reads "exit_radiance" SampledImage { uint: false, layered: false },
     1 writes "shade_levels" StorageImage { format: "Rgba32f", uint: false, layered: false },
     2 writes "shade_table" StorageImage { format: "Rgba32ui", uint: true, layered: false },
@@ -580,8 +583,52 @@ shader! {
 }
 
 shader! {
+    /// `shaders_glsl/direct/shadow_settle.comp`.
+    SHADOW_SETTLE: "shadow_settle", push ShadowSettlePush, words 220649 17739,
+    0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
+    1 reads "maxima" StorageImage { format: "R32f", uint: false, layered: false },
+    2 reads "azimuths" TexelBuffer,
+    3 reads "doubtful" StorageImage { format: "R32ui", uint: true, layered: false },
+    4 writes "sun_sum" StorageImage { format: "R32f", uint: false, layered: false },
+    5 reads "shadows" StorageImage { format: "Rgba32ui", uint: true, layered: true },
+    ShadowSettle {
+        0 border: u32 = 0,
+        1 marches_rows: bool = false,
+        2 is_point: bool = false,
+        3 most_steps: i32 = 60000,
+    }
+}
+
+shader! {
+    /// `shaders_glsl/direct/shadow_shade.comp`.
+    SHADOW_SHADE: "shadow_shade", push ShadowShadePush, words 238388 11036,
+    0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
+    1 reads "azimuths" TexelBuffer,
+    2 reads "shadows" StorageImage { format: "Rgba32ui", uint: true, layered: true },
+    3 writes "sun_sum" StorageImage { format: "R32f", uint: false, layered: false },
+    4 writes "doubtful" StorageImage { format: "Unknown", uint: true, layered: false },
+    ShadowShade {
+        0 border: u32 = 0,
+        1 marches_rows: bool = false,
+        2 is_point: bool = false,
+    }
+}
+
+shader! {
+    /// `shaders_glsl/direct/shadow_sweep.comp`.
+    SHADOW_SWEEP: "shadow_sweep", push ShadowSweepPush, words 249424 6955,
+    0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
+    1 reads "azimuths" TexelBuffer,
+    2 writes "shadows" StorageImage { format: "Unknown", uint: true, layered: true },
+    ShadowSweep {
+        0 local_size_x: u32 = 1,
+        1 periodic: bool = false,
+    }
+}
+
+shader! {
     /// `shaders_glsl/view/sky_draw.frag`.
-    SKY_DRAW_FRAG: "sky_draw_frag", push SkyDrawPush, words 219217 1269,
+    SKY_DRAW_FRAG: "sky_draw_frag", push SkyDrawPush, words 256379 1269,
     0 reads "environment" SampledImage { uint: false, layered: false },
     SkyDrawFrag {
         0 has_environment: bool = false,
@@ -590,13 +637,13 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/sky_draw.vert`.
-    SKY_DRAW_VERT: "sky_draw_vert", push (), words 220486 289,
+    SKY_DRAW_VERT: "sky_draw_vert", push (), words 257648 289,
     SkyDrawVert;
 }
 
 shader! {
     /// `shaders_glsl/direct/sky_shade.comp`.
-    SKY_SHADE: "sky_shade", push ShadePush, words 220775 26686,
+    SKY_SHADE: "sky_shade", push ShadePush, words 257937 27561,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rg32ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -624,7 +671,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/specular_exit.comp`.
-    SPECULAR_EXIT: "specular_exit", push SpecularExitPush, words 247461 6438,
+    SPECULAR_EXIT: "specular_exit", push SpecularExitPush, words 285498 6438,
     0 reads "arriving" SampledImage { uint: false, layered: true },
     1 reads "ground" SampledImage { uint: false, layered: false },
     2 reads "exit_radiance" SampledImage { uint: false, layered: false },
@@ -647,7 +694,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/specular_gather.comp`.
-    SPECULAR_GATHER: "specular_gather", push GatherPush, words 253899 20112,
+    SPECULAR_GATHER: "specular_gather", push GatherPush, words 291936 20112,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "height_levels" SampledImage { uint: false, layered: false },
     2 reads "level_table" SampledImage { uint: true, layered: false },
@@ -675,7 +722,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/specular_light.comp`.
-    SPECULAR_LIGHT: "specular_light", push SpecularLightPush, words 274011 7631,
+    SPECULAR_LIGHT: "specular_light", push SpecularLightPush, words 312048 7631,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "blocked_sum" SampledImage { uint: false, layered: false },
     2 reads "unoccluded_map" SampledImage { uint: false, layered: false },
@@ -689,7 +736,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/specular_tables.comp`.
-    SPECULAR_TABLES: "specular_tables", push SpecularTablesPush, words 281642 4627,
+    SPECULAR_TABLES: "specular_tables", push SpecularTablesPush, words 319679 4627,
     0 reads "azimuths" TexelBuffer,
     1 reads "wedge_rows" StorageBuffer,
     2 writes "specular_tables" StorageImage { format: "Rgba32f", uint: false, layered: true },
@@ -700,7 +747,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/specular_visibility.comp`.
-    SPECULAR_VISIBILITY: "specular_visibility", push SpecularVisibilityPush, words 286269 1238,
+    SPECULAR_VISIBILITY: "specular_visibility", push SpecularVisibilityPush, words 324306 1238,
     0 reads "visibility" SampledImage { uint: false, layered: true },
     1 reads "light_matrix" SampledImage { uint: false, layered: false },
     2 writes "arriving" StorageImage { format: "Rgba32f", uint: false, layered: true },
@@ -712,7 +759,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/sphere_sh_shade.comp`.
-    SPHERE_SH_SHADE: "sphere_sh_shade", push SphereShShadePush, words 287507 27634,
+    SPHERE_SH_SHADE: "sphere_sh_shade", push SphereShShadePush, words 325544 27634,
     0 reads "cells" SampledImage { uint: false, layered: false },
     1 reads "maxima" SampledImage { uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -738,7 +785,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/sphere_shade.comp`.
-    SPHERE_SHADE: "sphere_shade", push SphereShadePush, words 315141 14335,
+    SPHERE_SHADE: "sphere_shade", push SphereShadePush, words 353178 14335,
     0 reads "cells" SampledImage { uint: false, layered: false },
     1 reads "maxima" SampledImage { uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -753,7 +800,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/sun_shade.comp`.
-    SUN_SHADE: "sun_shade", push ShadePush, words 329476 22124,
+    SUN_SHADE: "sun_shade", push ShadePush, words 367513 23163,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rg32ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -774,7 +821,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/sun_specular.comp`.
-    SUN_SPECULAR: "sun_specular", push SunSpecularPush, words 351600 10753,
+    SUN_SPECULAR: "sun_specular", push SunSpecularPush, words 390676 10753,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "sun_sum" SampledImage { uint: false, layered: false },
     2 writes "specular_sum" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -791,7 +838,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/surface_sweep.comp`.
-    SURFACE_SWEEP: "surface_sweep", push MarchPush, words 362353 6812,
+    SURFACE_SWEEP: "surface_sweep", push MarchPush, words 401429 6812,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "slopes" StorageImage { format: "Unknown", uint: true, layered: true },
@@ -805,7 +852,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/sweep_fuse.comp`.
-    SWEEP_FUSE: "sweep_fuse", push SweepFusePush, words 369165 18089,
+    SWEEP_FUSE: "sweep_fuse", push SweepFusePush, words 408241 18964,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rg32ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -825,7 +872,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/terrain_draw.frag`.
-    TERRAIN_DRAW_FRAG: "terrain_draw_frag", push TerrainDrawPush, words 387254 1129,
+    TERRAIN_DRAW_FRAG: "terrain_draw_frag", push TerrainDrawPush, words 427205 1129,
     1 reads "radiance" SampledImage { uint: false, layered: false },
     2 reads "voids" SampledImage { uint: false, layered: false },
     TerrainDrawFrag {
@@ -836,14 +883,14 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/terrain_draw.vert`.
-    TERRAIN_DRAW_VERT: "terrain_draw_vert", push TerrainDrawPush, words 388383 994,
+    TERRAIN_DRAW_VERT: "terrain_draw_vert", push TerrainDrawPush, words 428334 994,
     0 reads "heights" SampledImage { uint: false, layered: false },
     TerrainDrawVert;
 }
 
 shader! {
     /// `shaders_glsl/bounce/vector_reduce.comp`.
-    VECTOR_REDUCE: "vector_reduce", push ReducePush, words 389377 2964,
+    VECTOR_REDUCE: "vector_reduce", push ReducePush, words 429328 2964,
     0 reads "exit_vectors" SampledImage { uint: false, layered: true },
     1 reads "vector_source" SampledImage { uint: false, layered: true },
     2 writes "vector_levels" StorageImage { format: "Unknown", uint: false, layered: true },
@@ -856,7 +903,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bake/visible_points.comp`.
-    VISIBLE_POINTS: "visible_points", push VisiblePointsPush, words 392341 9687,
+    VISIBLE_POINTS: "visible_points", push VisiblePointsPush, words 432292 9687,
     0 reads "cells" SampledImage { uint: false, layered: false },
     1 reads "maxima" SampledImage { uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -909,6 +956,9 @@ pub static ALL: &[Shader] = &[
     SH_WEDGES,
     SHADE_EXPAND,
     SHADE_REDUCE,
+    SHADOW_SETTLE,
+    SHADOW_SHADE,
+    SHADOW_SWEEP,
     SKY_SHADE,
     SPECULAR_EXIT,
     SPECULAR_GATHER,
@@ -989,8 +1039,8 @@ layouts! {
         36 fine_samples: i32, 40 width_shift: i32, 44 growth: f32, 48 shade_fine: i32,
         52 shade_shift: i32, 56 step_shade: i32, 60 step_height: i32,
     }
-    push HeightBoundsPush 16 {
-        0 cells_x: i32, 4 cells_y: i32, 8 padded_rows: i32, 12 level: i32,
+    push HeightBoundsPush 24 {
+        0 cells_x: i32, 4 cells_y: i32, 8 padded_rows: i32, 12 level: i32, 16 tilt: [f32; 2],
     }
     push HeightCellsPush 16 {
         0 cols: i32, 4 rows: i32, 8 cell_x_m: f32, 12 cell_y_m: f32,
@@ -1085,6 +1135,17 @@ layouts! {
         20 first_azimuth: u32, 24 azimuth_count: u32, 28 clears: u32, 32 eye_m: [f32; 4],
         48 exponent: f32, 52 least_cosine: f32,
     }
+    push ShadowSettlePush 56 {
+        0 land: LandPush, 32 first_azimuth: u32, 36 azimuth_count: u32, 40 clears: u32,
+        44 warm_up: i32, 48 tilt: [f32; 2],
+    }
+    push ShadowShadePush 32 {
+        0 cols: i32, 4 rows: i32, 8 cell_x_m: f32, 12 cell_y_m: f32, 16 warm_up: i32,
+        20 first_azimuth: u32, 24 azimuth_count: u32, 28 clears: u32,
+    }
+    push ShadowSweepPush 16 {
+        0 lanes: i32, 4 steps: i32, 8 warm_up: i32, 12 first_azimuth: u32,
+    }
     push SkyDrawPush 84 {
         0 forward: [f32; 4], 16 right: [f32; 4], 32 down: [f32; 4], 48 above: [f32; 4],
         64 below: [f32; 4], 80 rotation_turns: f32,
@@ -1154,4 +1215,4 @@ layouts! {
 }
 
 /// Words of all shaders together.
-const WORD_COUNT: usize = 402028;
+const WORD_COUNT: usize = 441979;

@@ -31,6 +31,7 @@ layout(binding = 1, rg32ui) uniform readonly uimage2DArray lattice;
 layout(binding = 7) uniform utexture2DArray lattice_words;
 
 #include "shared/angle.glsl"
+#include "direct/sun_light.glsl"
 
 layout(binding = 2) uniform textureBuffer azimuths;
 layout(binding = 3, r32f) uniform image2D sun_sum;
@@ -50,17 +51,7 @@ void add_light(uint index, Azimuth azimuth, vec4 lowest) {
         flat_part = normal_east * azimuth.wedge_cos + normal_north * azimuth.wedge_sin;
         vertical = normal_up * azimuth.wedge_rad;
     }
-    bvec4 lit = lessThan(lowest, vec4(azimuth.high_slope));
-    vec4 light;
-    if (SHAPE == SHAPE_POINT) {
-        float cos_elevation = inversesqrt(1.0 + azimuth.high_slope * azimuth.high_slope);
-        light = max((flat_part + vertical * azimuth.high_slope) * cos_elevation, 0.0);
-    } else {
-        Moments above = elevation_moments(max(lowest, azimuth.low_slope));
-        Moments top = elevation_moments(vec4(azimuth.high_slope));
-        light = flat_part * (above.flat_part - top.flat_part) + vertical * (above.vertical - top.vertical);
-    }
-    sun += mix(vec4(0.0), light * azimuth.weight * (1.0 / PI), lit);
+    sun += sun_light(azimuth, flat_part, vertical, lowest, SHAPE == SHAPE_POINT);
 }
 
 float dark_slope(Azimuth azimuth) {

@@ -1,6 +1,5 @@
-#include "shared/lattice.glsl"
 #include "shared/nodes.glsl"
-#include "shared/quad.glsl"
+#include "horizon/met.glsl"
 #include "horizon/surface.glsl"
 
 // Resamples the lattice of a sweep at the field's grid points, four at a time. The including shader declares
@@ -28,18 +27,6 @@ const uint LATTICE_SLOPES_F16 = 2u;
 
 // Lines a cell apart pass four neighbouring grid points at the same distance and lie in two texels.
 const bool LINES_FOLLOW_LANES = LINE_SHIFT == CELL_SHIFT && BORDER != BORDER_PERIODIC && LANE_STRIDE == 1;
-
-// Horizons of four grid points: slopes, and march steps to them.
-struct Met {
-    vec4 slope;
-    vec4 steps;
-};
-
-// The higher of two horizons.
-Met higher(Met a, Met b) {
-    bvec4 takes = greaterThan(b.slope, a.slope);
-    return Met(mix(a.slope, b.slope, takes), mix(a.steps, b.steps, takes));
-}
 
 // A texel of four u16 or f16; or of one or four f32, whose images have other formats.
 uvec4 lattice_at(ivec3 texel) {
@@ -85,83 +72,6 @@ vec4 slopes_of(uvec4 values) {
                      unpackHalf2x16(values.w).x);
     }
     return mix(slope, vec4(NO_SLOPE), lessThanEqual(slope, vec4(-65504.0)));
-}
-
-// Horizon of the own lines within their first step: the crossing with the next grid line, and with the cell's
-// diagonal where that lies across. Nearly everything that unit steps miss lies here.
-Met first_crossings(Azimuth azimuth, Quad q, int lanes, int steps) {
-    bool wraps = BORDER == BORDER_PERIODIC;
-    bool flips_march = (azimuth.flags & AZIMUTH_FLIPS_MARCH) != 0u;
-    bool flips_lanes = (azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u;
-    ivec4 lane = q.lane;
-    bool is_before_last = q.march < steps - 1;
-    bool is_after_first = q.march > 0;
-    bool marches_on = flips_march ? is_before_last : is_after_first;
-    bool has_ahead = wraps || marches_on;
-    bvec4 has_above = lessThan(lane, ivec4(wraps ? lanes : lanes - 1));
-    bvec4 has_below = greaterThan(lane, ivec4(wraps ? -1 : 0));
-    bvec4 has_side = mix(has_below, has_above, bvec4(flips_lanes));
-    vec4 own = q.here.four;
-    vec4 side = mix(q.here.below, q.here.above, bvec4(flips_lanes));
-    vec4 ahead = mix(q.before.four, q.after.four, bvec4(flips_march));
-    vec4 ahead_above = mix(q.before.above, q.after.above, bvec4(flips_march));
-    vec4 ahead_below = mix(q.before.below, q.after.below, bvec4(flips_march));
-    vec4 ahead_side = mix(ahead_below, ahead_above, bvec4(flips_lanes));
-
-    float shear = float(azimuth.shear) * (1.0 / float(CELL));
-    float per_m = 1.0 / azimuth.step_m;
-    Met next;
-    next.slope = ((ahead - own) + shear * (ahead_side - ahead)) * per_m;
-    next.steps = vec4(1.0);
-    // (1, 0) to (0, 1) is crossed by (u, u * shear) at u = 1 / (1 + shear).
-    float u = 1.0 / (1.0 + shear);
-    Met split;
-    split.slope = ((side - own) + u * (ahead - side)) * ((1.0 + shear) * per_m);
-    split.steps = vec4(u);
-    bool split_crosses = flips_march != flips_lanes;
-    bvec4 none = bvec4(false);
-    split.slope = mix(vec4(NO_SLOPE), split.slope, mix(none, has_side, bvec4(split_crosses)));
-    Met found = higher(next, split);
-    bvec4 inside = mix(bvec4(true), has_side, bvec4(azimuth.shear > 0));
-    inside = mix(none, inside, bvec4(has_ahead));
-    found.slope = mix(vec4(NO_SLOPE), found.slope, inside);
-    return found;
-}
-
-// The surface at proposed distances, `back` steps ahead on lines through the lane positions `y` (not flipped),
-// relative to the grid points. None where `back` is 0 or the line has left the field.
-Met surface_at(Azimuth azimuth, Quad q, ivec4 y, uvec4 back, int lanes, int steps) {
-    bool flips_march = (azimuth.flags & AZIMUTH_FLIPS_MARCH) != 0u;
-    bool flips_lanes = (azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u;
-    int shear = mix(-azimuth.shear, azimuth.shear, flips_lanes);
-    ivec4 place = y + ivec4(back) * shear;
-    bvec4 stands = notEqual(back, uvec4(0));
-    if (BORDER != BORDER_PERIODIC) {
-        bvec4 on_field = lessThanEqual(uvec4(place), uvec4((lanes - 1) * CELL));
-        stands = bvec4(uvec4(stands) & uvec4(on_field));
-        place = mix(y, place, stands);
-    }
-    ivec4 march = q.march + mix(-ivec4(back), ivec4(back), bvec4(flips_march));
-    vec4 height;
-    for (int k = 0; k < 4; k++) {
-        int cell = place[k] >> CELL_SHIFT;
-        int next = cell + 1;
-        int m = march[k];
-        if (BORDER == BORDER_PERIODIC) {
-            cell = wrapped(cell, lanes);
-            next = mix(cell + 1, 0, cell + 1 == lanes);
-            m = wrapped(m, steps);
-        } else {
-            cell = clamp(cell, 0, lanes - 1);
-            next = clamp(next, 0, lanes - 1);
-            m = clamp(m, 0, steps - 1);
-        }
-        float h = height_at(cell, m);
-        height[k] = h + float(place[k] & (CELL - 1)) * (1.0 / float(CELL)) * (height_at(next, m) - h);
-    }
-    vec4 distance = vec4(max(back, uvec4(1)));
-    vec4 slope = (height - q.here.four) * (1.0 / azimuth.step_m) / distance;
-    return Met(mix(vec4(NO_SLOPE), slope, stands), distance);
 }
 
 // Heights of four flipped lanes from one on, at a flipped step. Lanes beyond a field that does not repeat have an
@@ -246,6 +156,58 @@ void look_around_both(Azimuth azimuth, int lane, int step, float own, ivec2 back
     }
 }
 
+// Four grid points in the lattice of an azimuth.
+struct Place {
+    int step;           // warm-up included
+    int first;          // of the lines on the field at that step; none where `last` lies before `first`
+    int last;
+    int lines;          // of the lattice
+    ivec4 from_origin;  // lane positions, from that of line 0
+};
+
+Place place_of(Azimuth azimuth, Quad q, int lanes, int steps, int warm_up) {
+    bool wraps = BORDER == BORDER_PERIODIC;
+    bool flips_lanes = (azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u;
+    ivec4 lane = mix(q.lane, lanes - 1 - q.lane, bvec4(flips_lanes));
+    int spacing = 1 << LINE_SHIFT;
+    int total = warm_up + steps;
+    int lead = lattice_lead(azimuth.shear, total, LINE_SHIFT, wraps);
+    int step = warm_up + march_position(azimuth, q.march, steps);
+    int origin = step * azimuth.shear - lead * spacing;
+    int first = (spacing - 1 - origin) >> LINE_SHIFT;
+    int last = ((lanes - 1) * CELL - origin) >> LINE_SHIFT;
+    return Place(step, first, last, lattice_lines(lanes, lead, LINE_SHIFT, wraps), lane * CELL - origin);
+}
+
+// Lattice values of the lines around four grid points: before each (or through it), and after it. Arbitrary where there
+// is no line.
+struct Around {
+    uvec4 before;
+    uvec4 after;
+    bvec4 has_before;
+    bvec4 has_after;
+};
+
+Around lines_around(Azimuth azimuth, Place at) {
+    bool wraps = BORDER == BORDER_PERIODIC;
+    bool flips_lanes = (azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u;
+    ivec4 before = at.from_origin >> LINE_SHIFT;
+    ivec4 offset = at.from_origin & ((1 << LINE_SHIFT) - 1);
+    Around around;
+    around.has_before = wraps ? bvec4(true) : greaterThanEqual(before, ivec4(at.first));
+    around.has_after = wraps ? bvec4(true) : lessThan(before, ivec4(at.last));
+    around.has_after = bvec4(uvec4(around.has_after) & uvec4(greaterThan(offset, ivec4(0))));
+    int lowest = clamp(mix(before.x, before.w, flips_lanes), at.first, at.last);
+    ivec4 before_line = wraps ? ivec4(wrapped(before.x, at.lines), wrapped(before.y, at.lines),
+                                      wrapped(before.z, at.lines), wrapped(before.w, at.lines))
+                              : clamp(before, at.first, at.last);
+    ivec4 after_line = wraps ? mix(before_line + 1, ivec4(0), equal(before_line, ivec4(at.lines - 1)))
+                             : clamp(before + 1, at.first, at.last);
+    around.before = lattice_values(azimuth, before_line, lowest, at.lines, at.step);
+    around.after = lattice_values(azimuth, after_line, lowest, at.lines, at.step);
+    return around;
+}
+
 // Slopes of the horizons of four grid points and their distance in march steps. Slopes above `enough` need not be
 // exact.
 Met fused(Azimuth azimuth, Quad q, int lanes, int steps, int warm_up, vec4 enough) {
@@ -269,28 +231,20 @@ Met fused(Azimuth azimuth, Quad q, int lanes, int steps, int warm_up, vec4 enoug
     if (FUSE == FUSE_CROSSINGS) {
         return first_crossings(azimuth, q, lanes, steps);
     }
-    // Line 0 here, and the lines that are on the field here: none where `last` lies before `first`.
+    Place at = place_of(azimuth, q, lanes, steps, warm_up);
     int spacing = 1 << LINE_SHIFT;
-    int total = warm_up + steps;
-    int lead = lattice_lead(azimuth.shear, total, LINE_SHIFT, wraps);
-    int lines = lattice_lines(lanes, lead, LINE_SHIFT, wraps);
-    step += warm_up;
-    int origin = step * azimuth.shear - lead * spacing;
-    int first = (spacing - 1 - origin) >> LINE_SHIFT;
-    int last = ((lanes - 1) * CELL - origin) >> LINE_SHIFT;
-    ivec4 from_origin = lane * CELL - origin;
 
     if (FUSE == FUSE_NEAREST || FUSE == FUSE_AIMED_NEAREST) {
         // The nearer one; on a tie, the one before.
-        ivec4 line = (from_origin + (spacing / 2 - 1)) >> LINE_SHIFT;
-        bool takes = wraps || first <= last;
-        int lowest = clamp(mix(line.x, line.w, flips_lanes), first, last);
+        ivec4 line = (at.from_origin + (spacing / 2 - 1)) >> LINE_SHIFT;
+        bool takes = wraps || at.first <= at.last;
+        int lowest = clamp(mix(line.x, line.w, flips_lanes), at.first, at.last);
         if (wraps) {
-            line = ivec4(wrapped(line.x, lines), wrapped(line.y, lines), wrapped(line.z, lines), wrapped(line.w, lines));
+            line = ivec4(wrapped(line.x, at.lines), wrapped(line.y, at.lines), wrapped(line.z, at.lines), wrapped(line.w, at.lines));
         } else {
-            line = clamp(line, first, last);
+            line = clamp(line, at.first, at.last);
         }
-        uvec4 values = lattice_values(azimuth, line, lowest, lines, step);
+        uvec4 values = lattice_values(azimuth, line, lowest, at.lines, at.step);
         if (FUSE == FUSE_NEAREST) {
             return Met(mix(vec4(NO_SLOPE), slopes_of(values), bvec4(takes)), vec4(0.0));
         }
@@ -300,22 +254,10 @@ Met fused(Azimuth azimuth, Quad q, int lanes, int steps, int warm_up, vec4 enoug
         met = first_crossings(azimuth, q, lanes, steps);
         return higher(met, surface_at(azimuth, q, q.lane * CELL, back, lanes, steps));
     }
-    // The lines around each grid point: before it (or through it), and after it.
-    ivec4 before = from_origin >> LINE_SHIFT;
-    ivec4 offset = from_origin & (spacing - 1);
-    vec4 t = vec4(offset) * (1.0 / float(spacing));
-    bvec4 has_before = wraps ? bvec4(true) : greaterThanEqual(before, ivec4(first));
-    bvec4 has_after = wraps ? bvec4(true) : lessThan(before, ivec4(last));
-    has_after = bvec4(uvec4(has_after) & uvec4(greaterThan(offset, ivec4(0))));
-    int lowest = clamp(mix(before.x, before.w, flips_lanes), first, last);
-    ivec4 before_line = wraps ? ivec4(wrapped(before.x, lines), wrapped(before.y, lines), wrapped(before.z, lines),
-                                      wrapped(before.w, lines)) : clamp(before, first, last);
-    ivec4 after_line = wraps ? mix(before_line + 1, ivec4(0), equal(before_line, ivec4(lines - 1)))
-                             : clamp(before + 1, first, last);
-    uvec4 before_values = lattice_values(azimuth, before_line, lowest, lines, step);
-    uvec4 after_values = lattice_values(azimuth, after_line, lowest, lines, step);
-    uvec4 before_back = mix(uvec4(0), before_values, has_before);
-    uvec4 after_back = mix(uvec4(0), after_values, has_after);
+    Around lines = lines_around(azimuth, at);
+    ivec4 offset = at.from_origin & (spacing - 1);
+    uvec4 before_back = mix(uvec4(0), lines.before, lines.has_before);
+    uvec4 after_back = mix(uvec4(0), lines.after, lines.has_after);
     if (FUSE == FUSE_AIMED || FUSE == FUSE_AIMED_AROUND) {
         ivec4 y = q.lane * CELL;
         uvec4 before_far = mix(uvec4(0), before_back, greaterThan(before_back, uvec4(1)));
@@ -328,7 +270,7 @@ Met fused(Azimuth azimuth, Quad q, int lanes, int steps, int warm_up, vec4 enoug
                 if (met.slope[k] < enough[k]) {
                     vec2 best = vec2(met.slope[k], met.steps[k]);
                     ivec2 back = ivec2(before_back[k], after_back[k]);
-                    look_around_both(azimuth, lane[k], step - warm_up, q.here.four[k], back, step, lanes, steps, best);
+                    look_around_both(azimuth, lane[k], step, q.here.four[k], back, at.step, lanes, steps, best);
                     met.slope[k] = best.x;
                     met.steps[k] = best.y;
                 }
@@ -343,11 +285,12 @@ Met fused(Azimuth azimuth, Quad q, int lanes, int steps, int warm_up, vec4 enoug
         b = surface_at(azimuth, q, y + mix(-offset, offset, bvec4(flips_lanes)), before_back, lanes, steps);
         a = surface_at(azimuth, q, y + mix(spacing - offset, offset - spacing, bvec4(flips_lanes)), after_back, lanes, steps);
     } else {
-        b = Met(mix(vec4(NO_SLOPE), slopes_of(before_values), has_before), vec4(0.0));
-        a = Met(mix(vec4(NO_SLOPE), slopes_of(after_values), has_after), vec4(0.0));
+        b = Met(mix(vec4(NO_SLOPE), slopes_of(lines.before), lines.has_before), vec4(0.0));
+        a = Met(mix(vec4(NO_SLOPE), slopes_of(lines.after), lines.has_after), vec4(0.0));
     }
     // Where only one line has an occluder, use it alone.
     bvec4 both = greaterThan(min(a.slope, b.slope), vec4(LOWEST_MET));
+    vec4 t = vec4(offset) * (1.0 / float(spacing));
     bvec4 nearer_after = greaterThan(t, vec4(0.5));
     Met one = higher(a, b);
     return Met(mix(one.slope, mix(b.slope, a.slope, t), both),

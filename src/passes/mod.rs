@@ -26,7 +26,7 @@ pub use view::*;
 
 use crate::graph::{ResourceId, shaders};
 use crate::passes::batch::Batch;
-use crate::passes::blocks::Blocks;
+use crate::passes::blocks::BlockLevels;
 use crate::passes::pyramid::Pyramid;
 use crate::scene::{HeightField, PhongSpecular};
 
@@ -73,7 +73,7 @@ impl shaders::MarchPush {
 
 /// The first ones of the passes whose rays traverse blocks of cells: what `walk.glsl` reads.
 impl shaders::LandPush {
-    pub(crate) fn of(field: &HeightField, blocks: &Blocks) -> Self {
+    pub(crate) fn of(field: &HeightField, blocks: &BlockLevels) -> Self {
         let [cell_x, cell_y] = field.cell_m();
         Self {
             cols: field.cols() as i32,

@@ -221,9 +221,16 @@ mod tests {
         let needed = after.passes_after(&before, &[]);
         assert_eq!(
             names(&after, &needed),
-            ["light_resolve", "horizon_sweep", "sun_shade", "light_resolve"]
+            [
+                "light_resolve",
+                "shadow_sweep",
+                "shadow_shade",
+                "height_bounds",
+                "shadow_settle",
+                "light_resolve"
+            ]
         );
-        for i in needed.iter().map(|i| &after.passes[*i]).filter(|p| p.name() == "horizon_sweep") {
+        for i in needed.iter().map(|i| &after.passes[*i]).filter(|p| p.name() == "shadow_sweep") {
             assert!(i.part.starts_with("sun1"), "{}", i.label());
         }
     }
@@ -242,7 +249,7 @@ mod tests {
         let heights = plan.find("heights").unwrap();
         let needed = names(&plan, &plan.passes_after(&plan, &[heights]));
         assert!(!needed.iter().any(|n| n.starts_with("env_")), "{needed:?}");
-        assert!(needed.contains(&"horizon_sweep") && needed.contains(&"sun_shade"));
+        assert!(needed.contains(&"horizon_sweep") && needed.contains(&"shadow_shade"));
     }
 
     #[test]

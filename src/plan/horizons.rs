@@ -4,7 +4,7 @@ use crate::passes::azimuths::Azimuth;
 use crate::passes::batch;
 use crate::passes::nodes::Nodes;
 use crate::passes::sweep::Sweep;
-use crate::passes::sweeping::{circle, part, prepare, settings};
+use crate::passes::sweeping::{Held, circle, part, prepare, settings};
 use crate::scene::{Border, HeightField, Quality};
 use crate::{Error, Result, passes};
 
@@ -58,7 +58,7 @@ pub fn horizons(
         sweep,
         heights,
         vec![list],
-        (limits, None, Nodes { stride: 1 }),
+        &Held { limits, kept_from: None, nodes: Nodes { stride: 1 }, shadows: 0..0 },
     )?;
     let batches = &lists.batches[0];
     for batch in batches {

@@ -15,9 +15,10 @@ use crate::passes::bounces;
 use crate::passes::bounces::Bouncing;
 use crate::passes::edits::Edits;
 use crate::passes::nodes::Nodes;
+use crate::passes::shadows::Shadows;
 use crate::passes::sphere_sh::SphereSh;
 use crate::passes::sweep::Sweep;
-use crate::passes::sweeping::{Lists, prepare, settings};
+use crate::passes::sweeping::{Held, Lists, prepare, settings};
 use crate::scene::{
     Albedo, Basis, Border, Bounces, Environment, LightBasis, Quality, Scene, Specular, Wedges,
 };
@@ -175,7 +176,20 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     // Harmonics keep the visibility and a sky keeps its sum, so neither needs its lattices.
     let kept_from = keeps.then_some(usize::from(harmonics.is_some()));
     let nodes = marched_nodes(&sweep, harmonics.as_ref(), &active, wanted);
-    let held = (limits, kept_from, nodes);
+    let first_sun = usize::from(images.need_circle());
+    let mut held = Held { limits, kept_from, nodes, shadows: first_sun..first_sun };
+    if !active.suns.is_empty() && !wanted.unshadowed {
+        match Shadows::suit(quality, &sweep, field, surface.border, (limits, builder.bytes())) {
+            Ok(()) => held.shadows.end += active.suns.len(),
+            Err(Some(why)) => notes.push(format!("suns by hull sweeps: {why}")),
+            Err(None) => {}
+        }
+    }
+    let shadows = (!held.shadows.is_empty()).then(|| {
+        let azimuths = lists[held.shadows.clone()].iter().flatten();
+        let of = ([size[0], size[1]], surface.border, active.suns.len());
+        Shadows::make(&mut builder, azimuths, of, limits)
+    });
     let shared = (bounces, images.sky_sum);
     let at_nodes = BounceNodes::make(&mut builder, size, quality, shared, limits, &mut notes);
     let need_blocks =
@@ -185,7 +199,7 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
         (None, Lists::default())
     } else {
         let (sweeping, lists) =
-            prepare(&mut builder, field, surface.border, sweep, images.heights, lists, held)?;
+            prepare(&mut builder, field, surface.border, sweep, images.heights, lists, &held)?;
         (Some(sweeping), lists)
     };
     let levels = sweeping.as_ref().and_then(|s| s.levels);
@@ -220,6 +234,7 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
         slices,
         eye_m,
         sweeping,
+        shadows,
         blocks,
         bouncing,
         soft,

@@ -5,7 +5,9 @@ use super::settings::{Text, Values, Word, words};
 words! {
     /// How horizons are found.
     pub enum Method = Auto {
-        /// The planner's choice: sweep
+        /// The planner's choice: a sweep, and exact shadows of suns
+        ///
+        /// Suns have exact shadows where `lines`, `fuse` and `precision` have their defaults.
         Auto = "auto",
         /// Hull sweeps along lines
         ///

@@ -139,7 +139,7 @@ fn environment_rows_below_any_horizon_are_left_out() {
 fn lights_without_radiance_have_no_pass() {
     let sun = Sun { azimuth_rad: 0.7, elevation_rad: 0.3, diameter_rad: 0.0, irradiance: [0.0; 3] };
     let dark = scene(Lights { suns: vec![sun], ..sky([1.0; 3]) });
-    assert!(!names(&planned(&dark)).contains(&"sun_shade"));
+    assert!(!names(&planned(&dark)).contains(&"shadow_shade"));
     let mut gpu = Device::new();
     let a = gpu.picture(&dark, &quality()).values;
     assert!(a == gpu.picture(&scene(sky([1.0; 3])), &quality()).values);

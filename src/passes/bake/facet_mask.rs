@@ -15,16 +15,16 @@ pub(crate) fn plan(
     (layers, texels): (Range<u32>, Range<usize>),
     [directions, image]: [ResourceId; 2],
 ) {
-    let [cells_x, cells_y] = blocks.cells;
+    let [cells_x, cells_y] = blocks.levels.cells;
     let highest_m = field.heights_m().iter().copied().fold(f32::NEG_INFINITY, f32::max);
     let words = u64::from(cells_x) * u64::from(cells_y) * u64::from(layers.end - layers.start);
     builder.pass(
-        shaders::FacetMask { border: border as u32, most_steps: blocks.most_steps() as i32 },
+        shaders::FacetMask { border: border as u32, most_steps: blocks.levels.most_steps() as i32 },
         &format!("layers {}..{}", layers.start, layers.end),
         "which triangles are visible from each direction",
         [cells_x.div_ceil(8), cells_y.div_ceil(8), layers.end - layers.start],
         &shaders::FacetMaskPush {
-            land: shaders::LandPush::of(field, blocks),
+            land: shaders::LandPush::of(field, &blocks.levels),
             highest_m,
             first_layer: layers.start as i32,
             first_direction: texels.start as i32,

@@ -19,7 +19,7 @@ pub(crate) fn plan(
     let [across, along] = nodes.size([field.cols() as u32, field.rows() as u32]);
     let [thin_rows, thin_cols] = blocks.thin(field);
     let grid_points = u64::from(across) * u64::from(along);
-    let at_once = (MOST_TURNS / (blocks.most_steps() + 1)).max(1);
+    let at_once = (MOST_TURNS / (blocks.levels.most_steps() + 1)).max(1);
     for first in (0..azimuths).step_by(at_once as usize) {
         let last = azimuths.min(first + at_once);
         let count = last - first;
@@ -32,7 +32,7 @@ pub(crate) fn plan(
                 border: scene.surface.border as u32,
                 thin_rows,
                 thin_cols,
-                most_steps: blocks.most_steps() as i32,
+                most_steps: blocks.levels.most_steps() as i32,
                 grey: bounce.grey,
                 node_stride: nodes.stride as i32,
             },
@@ -40,7 +40,7 @@ pub(crate) fn plan(
             format!("{}, every visible interval along {count} azimuths", bounce.why),
             [across.div_ceil(8), along.div_ceil(8), 1],
             &shaders::BounceMarchPush {
-                land: shaders::LandPush::of(field, blocks),
+                land: shaders::LandPush::of(field, &blocks.levels),
                 azimuths: azimuths as i32,
                 first_azimuth: first as i32,
                 last_azimuth: last as i32,

@@ -5,6 +5,13 @@
 pub(crate) mod env_tables;
 /// Sums to a picture and layers.
 pub(crate) mod light_resolve;
+/// Light of suns at the texels that shadow heights leave open, by their exact horizons.
+pub(crate) mod shadow_settle;
+/// Light of suns where shadow heights decide it.
+pub(crate) mod shadow_shade;
+/// How high the ground ahead casts shadows from a sun, along lines.
+pub(crate) mod shadow_sweep;
+pub(crate) mod shadows;
 /// Light of sky and environment through the horizons.
 pub(crate) mod sky_shade;
 pub(crate) mod sphere_sh;

@@ -134,7 +134,7 @@ fn dispatch(
         },
         [cols.div_ceil(8), rows.div_ceil(8), 1],
         &shaders::SphereShShadePush {
-            land: shaders::LandPush::of(field, blocks),
+            land: shaders::LandPush::of(field, &blocks.levels),
             first: [col as i32, row as i32],
             base,
             offset,

@@ -33,7 +33,7 @@ pub(crate) fn plan(
     sum: ResourceId,
 ) {
     let [narrow, around] = light.slices(shading.slices, scene.field.cell_m());
-    let at_once = (MOST_TURNS / (blocks.most_steps() + 1)).max(1);
+    let at_once = (MOST_TURNS / (blocks.levels.most_steps() + 1)).max(1);
     for first in (0..around).step_by(at_once as usize) {
         let range = first..around.min(first + at_once);
         let part = match range.len() as u32 {
@@ -111,13 +111,13 @@ fn dispatch(
             border: scene.surface.border as u32,
             thin_rows,
             thin_cols,
-            most_steps: blocks.most_steps() as i32,
+            most_steps: blocks.levels.most_steps() as i32,
         },
         part,
         shading.why,
         [cols.div_ceil(8), rows.div_ceil(8), 1],
         &shaders::SphereShadePush {
-            land: shaders::LandPush::of(field, blocks),
+            land: shaders::LandPush::of(field, &blocks.levels),
             first: [col as i32, row as i32],
             base,
             offset,

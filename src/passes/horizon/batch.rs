@@ -1,6 +1,6 @@
-use crate::graph::Limits;
-use crate::graph::{Axis, bytes_text};
+use crate::graph::{Axis, Format, Limits, bytes_text};
 use crate::passes::azimuths::Azimuth;
+use crate::passes::nodes::Nodes;
 use crate::passes::sweep;
 use crate::passes::sweep::Sweep;
 use crate::scene::Border;
@@ -116,6 +116,155 @@ pub(crate) fn cut(
         batch.count += 1;
         batch.most_lines = batch.most_lines.max(sweep.lines(azimuth, axis));
         batch.line_texels += sweep.line_texels(azimuth, axis);
+    }
+    Ok(batches)
+}
+
+/// Layers that a sweep writes: formats, width and height. Their number follows from the batches.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) struct LatticeShape {
+    pub occluders: Option<Format>,
+    pub slopes: Option<Format>,
+    pub width: u32,
+    pub height: u32,
+}
+
+impl LatticeShape {
+    pub(crate) fn of(sweep: &Sweep, axis: Axis, nodes: Nodes) -> Self {
+        let [lanes, steps] = nodes.size([axis.lanes, axis.steps]);
+        match sweep {
+            Sweep::Lines(lines) => Self {
+                occluders: lines.writes_occluders.then_some(Format::Rg32Uint),
+                slopes: match lines.slope_format {
+                    1 => Some(Format::Rgba32Uint),
+                    2 => Some(Format::Rg32Uint),
+                    _ => None,
+                },
+                width: 8,
+                height: axis.steps + axis.warm_up,
+            },
+            Sweep::Crossings => Self { occluders: None, slopes: None, width: 1, height: 1 },
+            Sweep::Surface { .. } | Sweep::March { .. } | Sweep::Pyramid(_) => {
+                Self { occluders: None, slopes: Some(Format::R32Uint), width: lanes, height: steps }
+            }
+        }
+    }
+
+    fn layer_bytes(&self) -> u64 {
+        let texels = u64::from(self.width) * u64::from(self.height);
+        [self.occluders, self.slopes].iter().flatten().map(|f| f.bytes() * texels).sum()
+    }
+}
+
+/// Lists with lattices of one kind.
+pub(crate) struct Group<'a> {
+    members: Vec<usize>,
+    sweep: &'a Sweep,
+    /// Shapes of the lattices along each axis: one shape for both, used in turn, where that takes no more than one for each.
+    pub shapes: [Option<LatticeShape>; 2],
+    /// Bytes of the lattice of one azimuth: the largest along each axis.
+    least: [u64; 2],
+    /// Bytes of the lattices of all azimuths.
+    all: u64,
+}
+
+impl<'a> Group<'a> {
+    pub(crate) fn of(
+        lists: &[Vec<Azimuth>],
+        sweep: &'a Sweep,
+        axes: &[Option<Axis>; 2],
+        nodes: Nodes,
+        is_member: impl Fn(usize) -> bool,
+    ) -> Self {
+        let members: Vec<usize> = (0..lists.len()).filter(|l| is_member(*l)).collect();
+        let own = axes.map(|axis| axis.map(|axis| LatticeShape::of(sweep, axis, nodes)));
+        let mut group = Self { members, sweep, shapes: own, least: [0; 2], all: 0 };
+        group.measure(lists, axes);
+        let [Some(a), Some(b)] = own else { return group };
+        let apart = group.least;
+        let both =
+            LatticeShape { width: a.width.max(b.width), height: a.height.max(b.height), ..a };
+        group.shapes = [Some(both); 2];
+        group.measure(lists, axes);
+        if group.least[0].max(group.least[1]) > apart[0] + apart[1] {
+            group.shapes = own;
+            group.measure(lists, axes);
+        }
+        group
+    }
+
+    fn layer_bytes(&self) -> [u64; 2] {
+        self.shapes.map(|shape| shape.map_or(0, |s| s.layer_bytes()))
+    }
+
+    fn measure(&mut self, lists: &[Vec<Azimuth>], axes: &[Option<Axis>; 2]) {
+        let layer_bytes = self.layer_bytes();
+        (self.least, self.all) = ([0; 2], 0);
+        for azimuth in self.members.iter().flat_map(|m| &lists[*m]) {
+            let along = usize::from(azimuth.marches_rows());
+            let axis = axes[along].expect("an axis for every azimuth");
+            let bytes = u64::from(self.sweep.layers(azimuth, axis)) * layer_bytes[along];
+            self.least[along] = self.least[along].max(bytes);
+            self.all += bytes;
+        }
+    }
+
+    /// Whether each axis has a shape, and so a lattice, of its own.
+    fn differ(&self) -> bool {
+        matches!(self.shapes, [Some(a), Some(b)] if a != b)
+    }
+
+    /// Bytes of the lattices with one azimuth each.
+    fn least_bytes(&self) -> u64 {
+        let [a, b] = self.least;
+        if self.differ() { a + b } else { a.max(b) }
+    }
+}
+
+/// Sorts every list and cuts it into batches. `fixed_bytes` are taken in any case.
+pub(crate) fn cut_groups(
+    lists: &mut [Vec<Azimuth>],
+    fixed_bytes: u64,
+    axes: &[Option<Axis>; 2],
+    groups: &[Group<'_>; 2],
+    limits: &Limits,
+) -> Result<Vec<Vec<Batch>>> {
+    let [least, of_suns] = [0, 1].map(|g: usize| groups[g].least_bytes());
+    let all = least + of_suns;
+    if fixed_bytes + all > limits.memory_budget {
+        let [cols, rows] = axes.iter().flatten().next().map_or([0, 0], |axis| axis.size());
+        return Err(Error::Limit {
+            what: format!("horizons of one azimuth of a {cols} × {rows} field"),
+            needs: format!("{} in total", bytes_text(fixed_bytes + all)),
+            limit: format!("{} of `memory_budget`", bytes_text(limits.memory_budget)),
+        });
+    }
+    let budget = limits.memory_budget - fixed_bytes;
+    // Suns take what all of them need, at most their share of it.
+    let share = u128::from(budget) * u128::from(of_suns) / u128::from(all.max(1));
+    let for_suns = (share as u64).min(groups[1].all.max(of_suns));
+    let budgets = [budget - for_suns, for_suns];
+    let mut batches: Vec<Vec<Batch>> = vec![Vec::new(); lists.len()];
+    let mut firsts = Vec::new();
+    for list in lists.iter_mut() {
+        firsts.push(firsts.last().copied().unwrap_or(0) + list.len() as u32);
+        sort(list);
+    }
+    for (group, budget) in groups.iter().zip(budgets) {
+        // Axes of one shape use one lattice in turn; others divide the budget by need.
+        let (differ, least) = (group.differ(), u128::from(group.least_bytes().max(1)));
+        let share = |need: u64| {
+            if differ { u128::from(budget) * u128::from(need) / least } else { budget.into() }
+        };
+        let lattice_bytes = group.least.map(|need| share(need) as u64);
+        let room = Room { lattice_bytes, layer_bytes: group.layer_bytes() };
+        for &l in &group.members {
+            let first = firsts[l] - lists[l].len() as u32;
+            batches[l] = cut(&mut lists[l], first, axes, group.sweep, limits, &room)?;
+        }
+    }
+    for (number, batch) in batches.iter_mut().flatten().enumerate() {
+        batch.number = number as u32;
     }
     Ok(batches)
 }

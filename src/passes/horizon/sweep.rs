@@ -114,6 +114,11 @@ const PRIVATE_DEPTH: u32 = 128;
 const SURFACE_STEPS_LIMIT: u32 = 4096;
 const MARCH_STEPS_LIMIT: u32 = 65_000;
 
+/// Invocations of a workgroup, each of four lines.
+pub(crate) fn group_size(limits: &Limits) -> u32 {
+    if limits.is_cpu { 8 } else { 32 }
+}
+
 impl Sweep {
     /// The form for a quality and a device.
     ///
@@ -191,7 +196,7 @@ impl Sweep {
             Hull::Private => HullStorage::Private,
             Hull::OccluderList => HullStorage::Occluders,
         };
-        let group_size: u32 = if limits.is_cpu { 8 } else { 32 };
+        let group_size = group_size(limits);
         let periodic = border == Border::Periodic;
         let wanted = total.next_power_of_two();
         let hull_depth = match place {
@@ -235,6 +240,22 @@ impl Sweep {
             writes_occluders: !stores_slopes || !holds_line,
             fuse: quality.fuse,
         }))
+    }
+
+    /// A lattice of one word for each step of lines a cell apart.
+    pub(crate) fn of_words(limits: &Limits) -> Self {
+        Sweep::Lines(LineSweep {
+            hull: HullStorage::Private,
+            hull_depth: 1,
+            holds_line: true,
+            packed: false,
+            height_scale: 1.0,
+            line_shift: 15,
+            group_size: group_size(limits),
+            slope_format: 1,
+            writes_occluders: false,
+            fuse: Fuse::Nearest,
+        })
     }
 
     /// Has a sweep along lines store its occluders, for walks over it.

@@ -1,16 +1,16 @@
 use std::f64::consts::TAU;
+use std::ops::Range;
 
-use crate::graph::{Axis, bytes_text};
+use crate::graph::Axis;
 use crate::graph::{Builder, Format, Limits, Owner, ResourceId};
 use crate::passes::azimuths;
 use crate::passes::azimuths::Azimuth;
-use crate::passes::batch;
-use crate::passes::batch::Batch;
+use crate::passes::batch::{Batch, Group, LatticeShape, cut_groups};
 use crate::passes::nodes::Nodes;
 use crate::passes::pyramid_march;
 use crate::passes::sweep::{HullStorage, LineSweep, Sweep};
 use crate::scene::{Border, HeightField, Lines, Method, Quality};
-use crate::{Error, Result, passes};
+use crate::{Result, passes};
 
 /// What all sweeps of a plan share.
 pub(crate) struct Sweeping {
@@ -27,6 +27,8 @@ pub(crate) struct Sweeping {
     pub nodes: Nodes,
     /// The lattice of each batch; several batches may use one in turn.
     lattices: Vec<Lattice>,
+    /// Numbers of the batches of suns by shadow heights.
+    shadows: Range<u32>,
 }
 
 /// Output of sweeps.
@@ -63,6 +65,16 @@ impl Sweeping {
         self.lattice(batch).expect("a sweep stores something")
     }
 
+    /// The field's heights.
+    pub(crate) fn heights(&self) -> ResourceId {
+        self.heights
+    }
+
+    /// Whether a batch is of a sun by shadow heights, whose sweep is not planned here.
+    pub(crate) fn is_shadow(&self, batch: &Batch) -> bool {
+        self.shadows.contains(&batch.number)
+    }
+
     /// Passes that update heights by lanes and lattices after an edit, and mark the texels that change.
     pub(crate) fn plan_edit<'a>(
         &self,
@@ -78,7 +90,7 @@ impl Sweeping {
             }
         }
         let Some(sweep) = self.sweep.editable(border) else { return };
-        for batch in batches {
+        for batch in batches.filter(|batch| !self.is_shadow(batch)) {
             let images = passes::horizon_resweep::Images {
                 heights: self.heights,
                 azimuths: self.azimuths,
@@ -131,44 +143,17 @@ pub(crate) struct Lists {
     pub batches: Vec<Vec<Batch>>,
 }
 
-/// Layers that a sweep writes: formats, width and height. Their number follows from the batches.
-#[derive(Clone, Copy, PartialEq)]
-struct LatticeShape {
-    occluders: Option<Format>,
-    slopes: Option<Format>,
-    width: u32,
-    height: u32,
+/// How lists of azimuths are swept.
+pub(crate) struct Held<'a> {
+    pub limits: &'a Limits,
+    /// Lists from here on have a lattice of their own; the others use lattices in turn.
+    pub kept_from: Option<usize>,
+    pub nodes: Nodes,
+    /// The lists of suns by shadow heights.
+    pub shadows: Range<usize>,
 }
 
-impl LatticeShape {
-    fn of(sweep: &Sweep, axis: Axis, nodes: Nodes) -> Self {
-        let [lanes, steps] = nodes.size([axis.lanes, axis.steps]);
-        match sweep {
-            Sweep::Lines(lines) => Self {
-                occluders: lines.writes_occluders.then_some(Format::Rg32Uint),
-                slopes: match lines.slope_format {
-                    1 => Some(Format::Rgba32Uint),
-                    2 => Some(Format::Rg32Uint),
-                    _ => None,
-                },
-                width: 8,
-                height: axis.steps + axis.warm_up,
-            },
-            Sweep::Crossings => Self { occluders: None, slopes: None, width: 1, height: 1 },
-            Sweep::Surface { .. } | Sweep::March { .. } | Sweep::Pyramid(_) => {
-                Self { occluders: None, slopes: Some(Format::R32Uint), width: lanes, height: steps }
-            }
-        }
-    }
-
-    fn layer_bytes(&self) -> u64 {
-        let texels = u64::from(self.width) * u64::from(self.height);
-        [self.occluders, self.slopes].iter().flatten().map(|f| f.bytes() * texels).sum()
-    }
-}
-
-/// Makes the sweep's images within the remaining budget, and cuts the lists into batches. Lists from
-/// `kept_from` on have a lattice of their own; the others use lattices in turn.
+/// Makes the sweep's images within the remaining budget, and cuts the lists into batches.
 pub(crate) fn prepare(
     builder: &mut Builder,
     field: &HeightField,
@@ -176,8 +161,10 @@ pub(crate) fn prepare(
     sweep: Sweep,
     heights: ResourceId,
     mut lists: Vec<Vec<Azimuth>>,
-    (limits, kept_from, nodes): (&Limits, Option<usize>, Nodes),
+    held: &Held,
 ) -> Result<(Sweeping, Lists)> {
+    let Held { limits, kept_from, nodes, shadows } = held;
+    let nodes = *nodes;
     let size = [field.cols() as u32, field.rows() as u32];
     let count: usize = lists.iter().map(Vec::len).sum();
     let azimuths = builder.buffer("azimuths", (count * size_of::<Azimuth>()) as u64, true);
@@ -190,64 +177,78 @@ pub(crate) fn prepare(
         Sweep::Pyramid(pyramid) => pyramid.images(builder),
         _ => None,
     };
-    let shapes = shapes(&lists, &axes, &sweep, nodes);
-    let batches = cut_lists(&mut lists, builder.bytes(), &axes, &shapes, &sweep, limits)?;
-    let shape_of =
-        |axis: Axis| shapes[usize::from(axis.marches_rows)].expect("a shape for every axis used");
+    let shadow_lattice = Sweep::of_words(limits);
+    let of_light = Group::of(&lists, &sweep, &axes, nodes, |l| !shadows.contains(&l));
+    let of_shadow = Group::of(&lists, &shadow_lattice, &axes, nodes, |l| shadows.contains(&l));
+    let groups = [of_light, of_shadow];
+    let batches = cut_groups(&mut lists, builder.bytes(), &axes, &groups, limits)?;
+    let shape_of = |list: usize, axis: Axis| {
+        let shapes = &groups[usize::from(shadows.contains(&list))].shapes;
+        shapes[usize::from(axis.marches_rows)].expect("a shape for every axis used")
+    };
     let can_lose =
         matches!(&sweep, Sweep::Lines(l) if !l.holds_line && l.hull != HullStorage::Occluders);
-    let mut make = |axis: Axis, layers: u32, suffix: &str| {
-        let shape = shape_of(axis);
+    let mut make = |list: usize, axis: Axis, layers: u32, suffix: &str| {
+        let shape = shape_of(list, axis);
+        let is_shadow = shadows.contains(&list);
         let extent = [shape.width, shape.height, layers];
         let mut image = |name: &str, format: Option<Format>| {
             format
                 .map(|f| builder.image(format!("{name}{suffix}"), Owner::Internal, f, extent, true))
         };
+        let words = if is_shadow { "lattice_shadows" } else { "lattice_slopes" };
         let (occluders, slopes) =
-            (image("lattice_occluders", shape.occluders), image("lattice_slopes", shape.slopes));
+            (image("lattice_occluders", shape.occluders), image(words, shape.slopes));
         let bytes = u64::from(layers) * 32;
-        let lost_lines =
-            can_lose.then(|| builder.buffer(&format!("lost_lines{suffix}"), bytes, false));
+        let lost_lines = (can_lose && !is_shadow)
+            .then(|| builder.buffer(&format!("lost_lines{suffix}"), bytes, false));
         Lattice { occluders, slopes, lost_lines }
     };
     let is_kept = |list: usize| kept_from.is_some_and(|first| list >= first);
-    let in_turn: Vec<Batch> = batches
-        .iter()
-        .enumerate()
-        .filter(|(list, _)| !is_kept(*list))
-        .flat_map(|(_, batches)| batches.iter().copied())
-        .collect();
-    let mut shared: Vec<(LatticeShape, Lattice)> = Vec::new();
+    let all = || batches.iter().enumerate().flat_map(|(l, b)| b.iter().map(move |b| (l, *b)));
+    // Of one shape, and both or neither of suns.
+    let turn = |list: usize, batch: &Batch| (shadows.contains(&list), shape_of(list, batch.axis));
+    let mut shared: Vec<((bool, LatticeShape), Lattice)> = Vec::new();
     let mut lattices = Vec::new();
-    for (list, batch) in batches.iter().enumerate().flat_map(|(l, b)| b.iter().map(move |b| (l, b)))
-    {
-        let shape = shape_of(batch.axis);
+    for (list, batch) in all() {
+        let of = turn(list, &batch);
         if is_kept(list) {
-            lattices.push(make(batch.axis, batch.layers, &format!("_{}", batch.number)));
-        } else if let Some((_, known)) = shared.iter().find(|(of, _)| *of == shape) {
+            lattices.push(make(list, batch.axis, batch.layers, &format!("_{}", batch.number)));
+        } else if let Some((_, known)) = shared.iter().find(|(known, _)| *known == of) {
             lattices.push(*known);
         } else {
-            let alike = in_turn.iter().filter(|b| shape_of(b.axis) == shape);
-            let layers = alike.map(|b| b.layers).max().unwrap_or(1);
-            let suffix = if shared.is_empty() { "" } else { "_across" };
-            let made = make(batch.axis, layers, suffix);
-            shared.push((shape, made));
+            let alike = all().filter(|(l, b)| !is_kept(*l) && turn(*l, b) == of);
+            let layers = alike.map(|(_, b)| b.layers).max().unwrap_or(1);
+            let is_first = shared.iter().all(|((is_shadow, _), _)| *is_shadow != of.0);
+            let suffix = if is_first { "" } else { "_across" };
+            let made = make(list, batch.axis, layers, suffix);
+            shared.push((of, made));
             lattices.push(made);
         }
     }
-    for (axis, lanes) in axes.iter().zip(lane_heights) {
-        if let (Some(axis), Some(lanes)) = (axis, lanes) {
-            passes::height_transpose::plan(builder, *axis, border, heights, lanes);
-        }
+    let lanes = || axes.iter().zip(lane_heights).filter_map(|(axis, lanes)| (*axis).zip(lanes));
+    for (axis, lanes) in lanes() {
+        passes::height_transpose::plan(builder, axis, border, heights, lanes);
     }
+    let count = |lists: &[Vec<Batch>]| lists.iter().map(Vec::len).sum::<usize>() as u32;
+    let first_shadow = count(&batches[..shadows.start]);
     if let (Sweep::Pyramid(pyramid), Some(images)) = (&sweep, &levels) {
         pyramid.plan(builder, heights, images);
     }
     // Lines one cell apart pass four neighbouring lanes alike.
     let quads = matches!(sweep, Sweep::Lines(LineSweep { line_shift: 15, .. }))
         && border != Border::Periodic;
-    let sweeping =
-        Sweeping { sweep, heights, azimuths, lane_heights, quads, levels, nodes, lattices };
+    let sweeping = Sweeping {
+        sweep,
+        heights,
+        azimuths,
+        lane_heights,
+        quads,
+        levels,
+        nodes,
+        lattices,
+        shadows: first_shadow..first_shadow + count(&batches[shadows.clone()]),
+    };
     Ok((sweeping, Lists { lists, batches }))
 }
 
@@ -256,81 +257,6 @@ fn lane_image(builder: &mut Builder, axis: Axis) -> ResourceId {
     let extent = [axis.lanes.div_ceil(4), axis.steps, 1];
     let name = format!("lane_heights_{}", axis.name());
     builder.image(name, Owner::Internal, Format::Rgba32Float, extent, false)
-}
-
-/// Bytes of the lattice of one azimuth: the largest along each axis.
-fn least_bytes(
-    lists: &[Vec<Azimuth>],
-    axes: &[Option<Axis>; 2],
-    sweep: &Sweep,
-    layer_bytes: [u64; 2],
-) -> [u64; 2] {
-    let mut least = [0_u64; 2];
-    for azimuth in lists.iter().flatten() {
-        let along = usize::from(azimuth.marches_rows());
-        let axis = axes[along].expect("an axis for every azimuth");
-        let bytes = u64::from(sweep.layers(azimuth, axis)) * layer_bytes[along];
-        least[along] = least[along].max(bytes);
-    }
-    least
-}
-
-/// Shapes of the lattices along each axis: one shape for both, used in turn, where that takes no more than one
-/// for each.
-fn shapes(
-    lists: &[Vec<Azimuth>],
-    axes: &[Option<Axis>; 2],
-    sweep: &Sweep,
-    nodes: Nodes,
-) -> [Option<LatticeShape>; 2] {
-    let own = axes.map(|axis| axis.map(|axis| LatticeShape::of(sweep, axis, nodes)));
-    let [Some(a), Some(b)] = own else { return own };
-    let both = LatticeShape { width: a.width.max(b.width), height: a.height.max(b.height), ..a };
-    let bytes = |shapes: [LatticeShape; 2]| {
-        least_bytes(lists, axes, sweep, shapes.map(|s| s.layer_bytes()))
-    };
-    let (in_turn, apart) = (bytes([both; 2]), bytes([a, b]));
-    if in_turn[0].max(in_turn[1]) <= apart[0] + apart[1] { [Some(both); 2] } else { own }
-}
-
-/// Sorts every list and cuts it into batches. `fixed_bytes` are taken in any case.
-fn cut_lists(
-    lists: &mut [Vec<Azimuth>],
-    fixed_bytes: u64,
-    axes: &[Option<Axis>; 2],
-    shapes: &[Option<LatticeShape>; 2],
-    sweep: &Sweep,
-    limits: &Limits,
-) -> Result<Vec<Vec<Batch>>> {
-    let layer_bytes = shapes.map(|shape| shape.map_or(0, |s| s.layer_bytes()));
-    // Axes of one shape use one lattice in turn; others divide the remaining budget by need.
-    let least = least_bytes(lists, axes, sweep, layer_bytes);
-    let differ = matches!(shapes, [Some(a), Some(b)] if a != b);
-    let all = if differ { least[0] + least[1] } else { least[0].max(least[1]) };
-    if fixed_bytes + all > limits.memory_budget {
-        let [cols, rows] = axes.iter().flatten().next().map_or([0, 0], |axis| axis.size());
-        return Err(Error::Limit {
-            what: format!("horizons of one azimuth of a {cols} × {rows} field"),
-            needs: format!("{} in total", bytes_text(fixed_bytes + all)),
-            limit: format!("{} of `memory_budget`", bytes_text(limits.memory_budget)),
-        });
-    }
-    let budget = u128::from(limits.memory_budget - fixed_bytes);
-    let share =
-        |need: u64| if differ { budget * u128::from(need) / u128::from(all) } else { budget };
-    let lattice_bytes = least.map(|need| share(need) as u64);
-    let room = batch::Room { lattice_bytes, layer_bytes };
-    let mut all: Vec<Vec<Batch>> = Vec::new();
-    let mut first = 0;
-    for list in lists {
-        batch::sort(list);
-        let mut batches = batch::cut(list, first, axes, sweep, limits, &room)?;
-        let before = all.iter().map(Vec::len).sum::<usize>() as u32;
-        batches.iter_mut().for_each(|b| b.number += before);
-        all.push(batches);
-        first += list.len() as u32;
-    }
-    Ok(all)
 }
 
 /// The part in a pass's label for one of the batches of a light.

@@ -2,8 +2,9 @@ use crate::graph::{Builder, Format, Owner, ResourceId};
 use crate::passes::{height_bounds, height_cells};
 use crate::scene::{Border, HeightField};
 
-/// What rays over the surface read: its cells, and the maximum height of blocks of cells, to skip by.
-pub(crate) struct Blocks {
+/// Blocks of 4 by 4 cells, of 4 by 4 such blocks and so on, over a field.
+#[derive(Clone, Copy)]
+pub(crate) struct BlockLevels {
     /// Columns and rows of cells.
     pub cells: [u32; 2],
     /// Rows from which the places of the levels in their image follow.
@@ -11,6 +12,11 @@ pub(crate) struct Blocks {
     /// The level whose one block holds all cells.
     pub top_level: u32,
     border: Border,
+}
+
+/// What rays over the surface read: its cells, and the maximum height of blocks of cells, to skip by.
+pub(crate) struct Blocks {
+    pub levels: BlockLevels,
     pub images: BlockImages,
 }
 
@@ -22,10 +28,9 @@ pub(crate) struct BlockImages {
     pub maxima: ResourceId,
 }
 
-impl Blocks {
-    /// Levels of 4 by 4 cells up to one block that holds all. A field without cells has one cell that is never
-    /// read.
-    pub(crate) fn make(builder: &mut Builder, size: [u32; 2], border: Border) -> Self {
+impl BlockLevels {
+    /// Levels up to one block that holds all. A field without cells has one cell that is never read.
+    pub(crate) fn of(size: [u32; 2], border: Border) -> Self {
         let cells = size.map(|n| match border {
             Border::Periodic => n,
             Border::Plane | Border::Open => (n - 1).max(1),
@@ -33,42 +38,31 @@ impl Blocks {
         let longest = cells[0].max(cells[1]);
         let top_level = (1..).find(|l| 4_u32.pow(*l) >= longest).expect("up to 4^15");
         let padded_rows = cells[1].next_multiple_of(4_u32.pow(top_level));
-        let mut image = |name: &str, format: Format, [width, height]: [u32; 2]| {
-            builder.image(name, Owner::Internal, format, [width, height, 1], false)
-        };
-        let images = BlockImages {
-            cells: image("cells", Format::Rgba32Float, size),
-            ground: image("ground", Format::Rgba32Float, size),
-            maxima: image("maxima", Format::R32Float, [cells[0].div_ceil(4), padded_rows / 2]),
-        };
-        Self { cells, padded_rows, top_level, border, images }
+        Self { cells, padded_rows, top_level, border }
     }
 
-    /// The passes that fill the images. `paths` are the sums that a path tracer starts from.
+    /// Width and height of the image of all levels' maxima.
+    pub(crate) fn maxima_size(&self) -> [u32; 2] {
+        [self.cells[0].div_ceil(4), self.padded_rows / 2]
+    }
+
+    /// The image of all levels' maxima.
+    pub(crate) fn maxima(&self, builder: &mut Builder, name: &str) -> ResourceId {
+        let [width, height] = self.maxima_size();
+        builder.image(name, Owner::Internal, Format::R32Float, [width, height, 1], false)
+    }
+
+    /// The passes that fill it.
     pub(crate) fn plan(
         &self,
         builder: &mut Builder,
-        field: &HeightField,
-        heights: ResourceId,
-        paths: Option<[ResourceId; 2]>,
+        part: &str,
+        source: Source,
+        maxima: ResourceId,
     ) {
-        self.plan_ground(builder, field, heights, paths);
-        let BlockImages { cells, maxima, .. } = self.images;
         for level in 1..=self.top_level {
-            height_bounds::plan(builder, self.cells, self.padded_rows, level, [cells, maxima]);
+            height_bounds::plan(builder, self, (part, level), source, maxima);
         }
-    }
-
-    /// The same without the levels: for passes that need only the ground.
-    pub(crate) fn plan_ground(
-        &self,
-        builder: &mut Builder,
-        field: &HeightField,
-        heights: ResourceId,
-        paths: Option<[ResourceId; 2]>,
-    ) {
-        let BlockImages { cells, ground, .. } = self.images;
-        height_cells::plan(builder, (field, self.border), [heights, cells, ground], paths);
     }
 
     /// An upper bound of a ray's steps. Over the field's longest side, or as far as a ray is followed over
@@ -85,11 +79,61 @@ impl Blocks {
     pub(crate) fn usual_steps(&self) -> u32 {
         24 * self.top_level
     }
+}
+
+impl Blocks {
+    pub(crate) fn make(builder: &mut Builder, size: [u32; 2], border: Border) -> Self {
+        let levels = BlockLevels::of(size, border);
+        let [width, height] = size;
+        let mut image = |name: &str| {
+            let extent = [width, height, 1];
+            builder.image(name, Owner::Internal, Format::Rgba32Float, extent, false)
+        };
+        let (cells, ground) = (image("cells"), image("ground"));
+        let images = BlockImages { cells, ground, maxima: levels.maxima(builder, "maxima") };
+        Self { levels, images }
+    }
+
+    /// The passes that fill the images. `paths` are the sums that a path tracer starts from.
+    pub(crate) fn plan(
+        &self,
+        builder: &mut Builder,
+        field: &HeightField,
+        heights: ResourceId,
+        paths: Option<[ResourceId; 2]>,
+    ) {
+        self.plan_ground(builder, field, heights, paths);
+        let BlockImages { cells, maxima, .. } = self.images;
+        self.levels.plan(builder, "", Source::Cells(cells), maxima);
+    }
+
+    /// The same without the levels: for passes that need only the ground.
+    pub(crate) fn plan_ground(
+        &self,
+        builder: &mut Builder,
+        field: &HeightField,
+        heights: ResourceId,
+        paths: Option<[ResourceId; 2]>,
+    ) {
+        let BlockImages { cells, ground, .. } = self.images;
+        height_cells::plan(builder, (field, self.levels.border), [heights, cells, ground], paths);
+    }
 
     /// Whether the field is one grid point wide along rows, along columns: only rays along such a line hit it.
     pub(crate) fn thin(&self, field: &HeightField) -> [bool; 2] {
-        [field.rows(), field.cols()].map(|n| self.border != Border::Periodic && n == 1)
+        [field.rows(), field.cols()].map(|n| self.levels.border != Border::Periodic && n == 1)
     }
+}
+
+/// What the lowest level is made from.
+#[derive(Clone, Copy)]
+pub(crate) enum Source {
+    Cells(ResourceId),
+    Heights {
+        heights: ResourceId,
+        /// Added to the heights for each column and each row.
+        tilt: [f32; 2],
+    },
 }
 
 /// As in `walk.glsl`.

@@ -1,28 +1,46 @@
 use crate::graph::{Builder, ResourceId, shaders};
+use crate::passes::blocks::{BlockLevels, Source};
 
 /// The maximum height of each block of 4^level by 4^level cells.
 pub(crate) fn plan(
     builder: &mut Builder,
-    [cells_x, cells_y]: [u32; 2],
-    padded_rows: u32,
-    level: u32,
-    [cells, maxima]: [ResourceId; 2],
+    levels: &BlockLevels,
+    (part, level): (&str, u32),
+    source: Source,
+    maxima: ResourceId,
 ) {
-    let [across, down] = [cells_x, cells_y].map(|n| n.div_ceil(1 << (2 * level)));
+    let [cells_x, cells_y] = levels.cells;
+    let [across, down] = levels.cells.map(|n| n.div_ceil(1 << (2 * level)));
     let blocks = u64::from(across) * u64::from(down);
+    let mut bound = vec![("maxima", maxima)];
+    let (kind, read) = match source {
+        _ if level > 1 => (2, 4 * 16),
+        Source::Heights { heights, .. } => {
+            bound.push(("heights", heights));
+            (0, 4 * 25)
+        }
+        Source::Cells(cells) => {
+            bound.push(("cells", cells));
+            (1, 16 * 16)
+        }
+    };
     builder.pass(
-        shaders::HeightBounds {},
-        &format!("level {level}"),
+        shaders::HeightBounds { source: kind },
+        format!("{part} level {level}").trim(),
         "so that rays above a block skip it",
         [across.div_ceil(8), down.div_ceil(8), 1],
         &shaders::HeightBoundsPush {
             cells_x: cells_x as i32,
             cells_y: cells_y as i32,
-            padded_rows: padded_rows as i32,
+            padded_rows: levels.padded_rows as i32,
             level: level as i32,
+            tilt: match source {
+                Source::Heights { tilt, .. } => tilt,
+                Source::Cells(_) => [0.0; 2],
+            },
         },
-        &[("cells", cells), ("maxima", maxima)],
-        blocks * (4 + 16 * if level == 1 { 16 } else { 4 }),
+        &bound,
+        blocks * (4 + read),
         blocks,
     );
 }

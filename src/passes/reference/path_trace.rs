@@ -30,7 +30,7 @@ pub(crate) fn parts(scene: &Scene, blocks: &Blocks, bounces: u32) -> Vec<Part> {
     let lights = &scene.lights;
     let all = (lights.suns.len() + lights.keys.len() + lights.sphere_lights.len()) as u32;
     let vertices = bounces.min(3) + 1;
-    let of_ray = blocks.usual_steps();
+    let of_ray = blocks.levels.usual_steps();
     let others = 1 + u32::from(lights.environment.is_some());
     // One more iteration per light, and one where the scattered ray searches for a sphere light.
     let most_lights = |paths: u32| {
@@ -90,7 +90,7 @@ pub(crate) fn plan(
         (e.rotation_rad() / std::f64::consts::TAU).rem_euclid(1.0) as f32
     };
     builder.pass(
-        shaders::PathTrace { border: surface.border as u32, thin_rows, thin_cols, set_bits: SET_BITS, albedo_is_map: is_map, has_environment: lights.environment.is_some(), has_specular: surface.specular.is_some(), has_lights: count > 0, has_keys: !lights.keys.is_empty(), has_sphere_lights: !lights.sphere_lights.is_empty(), has_bounces: bounces > 0, most_steps: blocks.most_steps() as i32, in_parts: part.is_some(), specular_is_map: matches!(surface.specular, Some(Specular::Map(_))), at_places: listed.is_some() },
+        shaders::PathTrace { border: surface.border as u32, thin_rows, thin_cols, set_bits: SET_BITS, albedo_is_map: is_map, has_environment: lights.environment.is_some(), has_specular: surface.specular.is_some(), has_lights: count > 0, has_keys: !lights.keys.is_empty(), has_sphere_lights: !lights.sphere_lights.is_empty(), has_bounces: bounces > 0, most_steps: blocks.levels.most_steps() as i32, in_parts: part.is_some(), specular_is_map: matches!(surface.specular, Some(Specular::Map(_))), at_places: listed.is_some() },
         &label.join(" "),
         match listed {
             None => format!("{BATCH_PATHS} more paths per texel, up to {bounces} bounces"),
@@ -100,7 +100,7 @@ pub(crate) fn plan(
         },
         [cols.div_ceil(8), (band.end - band.start).div_ceil(8), 1],
         &shaders::PathTracePush {
-            land: shaders::LandPush::of(field, blocks),
+            land: shaders::LandPush::of(field, &blocks.levels),
             highest_m,
             rotation_turns: lights.environment.as_ref().map_or(0.0, turns),
             exponent: specular.exponent,

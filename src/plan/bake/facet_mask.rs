@@ -33,7 +33,7 @@ pub fn facet_mask(
     let heights =
         builder.image("heights", Owner::Input, Format::R32Float, [size[0], size[1], 1], false);
     let blocks = Blocks::make(&mut builder, size, border);
-    let [cells_x, cells_y] = blocks.cells;
+    let [cells_x, cells_y] = blocks.levels.cells;
     let count = directions.count();
     let layers = count.div_ceil(DIRECTIONS_A_WORD) as u32;
     let layer_bytes = 4 * u64::from(cells_x) * u64::from(cells_y);

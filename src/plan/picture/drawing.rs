@@ -3,9 +3,11 @@
 use super::super::active_lights::{ActiveLights, Aimed, Colour};
 use super::images::{Harmonics, Images, SpecularSlices, Tables};
 use crate::graph::{Builder, ResourceId};
+use crate::passes::azimuths::Shape;
 use crate::passes::blocks::Blocks;
 use crate::passes::bounces::{Bouncing, bounce_name};
 use crate::passes::edits::Edits;
+use crate::passes::shadows::Shadows;
 use crate::passes::sphere_sh::SphereSh;
 use crate::passes::sweeping::{Lists, Sweeping, part};
 use crate::passes::{self, light_resolve};
@@ -25,6 +27,8 @@ pub(super) struct Drawing<'a> {
     pub eye_m: [f32; 4],
     /// None if there are only sphere lights, which trace their own occlusion.
     pub sweeping: Option<Sweeping>,
+    /// Of suns by shadow heights.
+    pub shadows: Option<Shadows>,
     /// Acceleration structure of rays, to sphere lights and of bounces.
     pub blocks: Option<Blocks>,
     pub bouncing: Option<Bouncing>,
@@ -83,12 +87,16 @@ impl Drawing<'_> {
         self.builder.begin_edits();
         let (border, ids) = (self.border(), [dirty, list]);
         self.edited = Some(ids);
-        passes::dirty_mark::plan(&mut self.builder, size, ids);
+        let Some(sweeping) = &self.sweeping else { return };
         let batches = lists.batches.iter().flatten();
-        if let Some(sweeping) = &self.sweeping {
-            sweeping.plan_edit(&mut self.builder, border, batches, ids);
+        let has_others = batches.clone().any(|batch| !sweeping.is_shadow(batch));
+        if has_others {
+            passes::dirty_mark::plan(&mut self.builder, size, ids);
         }
-        passes::dirty_list::plan(&mut self.builder, size, ids);
+        sweeping.plan_edit(&mut self.builder, border, batches, ids);
+        if has_others {
+            passes::dirty_list::plan(&mut self.builder, size, ids);
+        }
     }
 
     fn sky_and_environment(&mut self, lists: &Lists) {
@@ -194,31 +202,40 @@ impl Drawing<'_> {
         let (border, cell_m) = (self.border(), self.scene.field.cell_m());
         let batches_of_each = &lists.batches[usize::from(self.images.need_circle())..];
         let lights: Vec<Aimed> = self.active.aimed().collect();
+        let resolves = self.resolves();
         for (i, (batches, Aimed { name, shape, colour })) in
             batches_of_each.iter().zip(lights).enumerate()
         {
+            let mut walked = None;
             for batch in batches {
                 let part = part(&name, batch, batches);
                 let Some(sweeping) = &self.sweeping else { return };
                 let builder = &mut self.builder;
+                let lanes = sweeping.lane_heights(batch);
+                if let Some(shadows) = self.shadows.as_ref().filter(|_| sweeping.is_shadow(batch)) {
+                    let ids = [lanes, sweeping.azimuths, sweeping.written(batch)];
+                    shadows.plan_sweep(builder, batch, &part, ids);
+                    let field = &self.scene.field;
+                    let of = (part.as_str(), shape == Shape::Point);
+                    let ids = [lanes, sweeping.azimuths, sweeping.written(batch), sum];
+                    passes::shadow_shade::plan(builder, shadows, (border, cell_m), batch, of, ids);
+                    let lit = (field, border);
+                    let walked = *walked.get_or_insert_with(|| {
+                        let (sun, heights) = ((self.active.suns[i].1, cell_m), sweeping.heights());
+                        shadows.plan_maxima(builder, (&name, i), sun, heights)
+                    });
+                    let shadows = (shadows, walked);
+                    passes::shadow_settle::plan(builder, shadows, lit, batch, of, ids);
+                    continue;
+                }
                 if self.edited.is_none() {
                     sweeping.plan(builder, batch, &part);
                 }
-                let lanes = sweeping.lane_heights(batch);
                 let ids = [lanes, sweeping.azimuths, sum];
                 let lattice = sweeping.lattice(batch);
                 let sweep = &sweeping.sweep;
                 passes::sun_shade::plan(
-                    builder,
-                    sweep,
-                    border,
-                    cell_m,
-                    batch,
-                    &part,
-                    shape,
-                    lattice,
-                    ids,
-                    self.edited,
+                    builder, sweep, border, cell_m, batch, &part, shape, lattice, ids, resolves,
                 );
             }
             self.resolve(&name, sum, Some(colour), self.images.aimed_layers[i]);
@@ -306,9 +323,15 @@ impl Drawing<'_> {
             radiance: Some((self.images.radiance, is_first)),
             layer,
             grey: self.active.is_grey,
-            edited: self.edited,
+            edited: self.resolves(),
         };
         self.light_resolve(name, &light);
+    }
+
+    /// The marks that limit what is summed after an edit. Suns by shadow heights are lit again everywhere, and then all
+    /// sums are made again.
+    fn resolves(&self) -> Option<[ResourceId; 2]> {
+        self.edited.filter(|_| self.shadows.is_none())
     }
 
     pub(super) fn light_resolve(&mut self, name: &str, light: &light_resolve::Light) {

@@ -1,6 +1,7 @@
 //! Everything that sums light.
 
 pub(crate) mod light;
+mod shadow;
 pub(crate) mod sphere_sh;
 
 use ridgelight::plan::Picture;
@@ -17,6 +18,9 @@ pub(crate) const REFERENCES: &[Reference] = &[
     ("env_tables", light::env_tables),
     ("sky_shade", light::sky_shade),
     ("sun_shade", light::sun_shade),
+    ("shadow_sweep", shadow::shadow_sweep),
+    ("shadow_shade", shadow::shadow_shade),
+    ("shadow_settle", shadow::shadow_settle),
     ("sphere_shade", light::sphere_shade),
     ("sphere_sh_shade", sphere_sh::sphere_sh_shade),
     ("light_resolve", light::light_resolve),

@@ -40,15 +40,25 @@ pub(crate) fn height_cells(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     pairs
 }
 
-/// The highest is one of the heights.
+/// The highest is one of the heights, over a plane of two terms.
 pub(crate) fn height_bounds(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     const CELLS_X: usize = offset("HeightBoundsPush", "cells_x");
     const CELLS_Y: usize = offset("HeightBoundsPush", "cells_y");
     const LEVEL: usize = offset("HeightBoundsPush", "level");
     const PADDED_ROWS: usize = offset("HeightBoundsPush", "padded_rows");
     let [x, y, level, padded] = [CELLS_X, CELLS_Y, LEVEL, PADDED_ROWS].map(|o| pushed(pass, o));
-    let cells = cells_reference::cells(&run.scene.field, run.border());
-    let [cols, _] = run.size();
+    const TILT: usize = offset("HeightBoundsPush", "tilt");
+    let tilt = [TILT, TILT + 4].map(|o| f32::from_bits(pushed(pass, o)));
+    let mut cells = cells_reference::cells(&run.scene.field, run.border());
+    let [cols, rows] = run.size();
+    for (i, corners) in cells.iter_mut().enumerate() {
+        for (k, corner) in corners.iter_mut().enumerate() {
+            let [c, r] = [i % cols + k % 2, i / cols + k / 2].map(|n| n as f32);
+            *corner += tilt[0] * c + tilt[1] * r;
+        }
+    }
+    let plane = f64::from(tilt[0].abs()) * cols as f64 + f64::from(tilt[1].abs()) * rows as f64;
+    let tolerance = if plane > 0.0 { 4.0 * EPSILON * (run.relief()[0] + plane) } else { 0.0 };
     let want = bounds_reference::height_bounds(&cells, cols, [x as usize, y as usize], level);
     let across = x.div_ceil(4_u32.pow(level)) as usize;
     let top = (padded / 2 - padded / (2 * 4_u32.pow(level - 1))) as usize;
@@ -57,7 +67,7 @@ pub(crate) fn height_bounds(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let pairs = want.iter().enumerate().map(|(i, want)| {
         let at = [level as usize, i / across, i % across];
         let got = got[(top + at[1]) * width + at[2]];
-        Pair { got: got.into(), want: (*want).into(), tolerance: 0.0, at }
+        Pair { got: got.into(), want: (*want).into(), tolerance, at }
     });
     pairs.collect()
 }

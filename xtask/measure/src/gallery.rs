@@ -143,7 +143,7 @@ const ENTRIES: [Entry; 12] = [
 ];
 
 /// A synthetic terrain by its name.
-fn terrain_of(name: &str, side: usize, time_s: f64) -> Result<HeightField> {
+pub fn terrain_of(name: &str, side: usize, time_s: f64) -> Result<HeightField> {
     match name {
         "city" => terrain::city(side),
         "coast" => terrain::coast(side),

@@ -23,6 +23,7 @@ mod soft {
 }
 mod specular;
 mod suites;
+mod suns;
 
 use std::process::ExitCode;
 
@@ -31,7 +32,7 @@ use common::args::Args;
 
 type Program = (&'static str, &'static str, fn(Args) -> Outcome);
 
-const PROGRAMS: [Program; 27] = [
+const PROGRAMS: [Program; 28] = [
     ("accuracy", "FIELD [--cell X,Y] [--env FILE] [--points N] [--pyramids]", accuracy::run),
     ("auto", "FOLDER [--fit] [--side N] [--seconds S] [--json FILE]", auto::run),
     ("bake", "-o PICTURE.png --json FILE", bake::run),
@@ -57,6 +58,7 @@ const PROGRAMS: [Program; 27] = [
     ("shadows", "[FOLDER] [--side N] [-o PICTURE.png]", shadows::run),
     ("soft", "FIELD [--cell X,Y] [--env FILE] [--side N] [-o FILE.svg]", soft::converge::run),
     ("soft-sizes", "[--largest N] [--runs K]", soft::sizes::run),
+    ("suns", "[FOLDER]", suns::run),
     ("terrain", "-o PICTURE.png --json FILE", pictures::terrain),
     ("town", "-o PICTURE.png", pictures::town),
 ];

@@ -316,7 +316,7 @@ fn gpu_settings_really_used_are_written() {
     assert_eq!(json["settings"]["lines"], "1");
     let passes = json["passes"].as_array().unwrap();
     assert!(passes.iter().all(|p| p["ns"].as_f64().is_some_and(|ns| ns >= 0.0)), "{passes:?}");
-    assert!(passes.iter().any(|p| p["pass"] == "sun_shade sun1"), "{passes:?}");
+    assert!(passes.iter().any(|p| p["pass"] == "shadow_shade sun1"), "{passes:?}");
 
     // A .png holds the same without times, and its exposure.
     let exposure = "exposure".to_owned();

@@ -18,7 +18,8 @@ fn planned(folder: &Folder, format: &str) -> String {
 fn text_names_passes_and_memory() {
     let folder = Folder::new();
     let text = planned(&folder, "text");
-    for said in ["lavapipe", "4 × 3", "azimuths 64", "horizon_sweep sky", "sun_shade sun1", "why"]
+    for said in
+        ["lavapipe", "4 × 3", "azimuths 64", "horizon_sweep sky", "shadow_shade sun1", "why"]
     {
         assert!(text.contains(said), "{said:?} in\n{text}");
     }
@@ -41,7 +42,7 @@ fn json_is_whole_and_refers_to_what_is_there() {
         assert!(!pass["writes"].as_array().unwrap().is_empty(), "{pass}");
         assert!(!pass["why"].as_str().unwrap().is_empty(), "{pass}");
     }
-    assert!(passes.iter().any(|p| p["pass"] == "sun_shade"));
+    assert!(passes.iter().any(|p| p["pass"] == "shadow_shade"));
     let bytes = |v: &serde_json::Value| v["bytes"].as_u64().unwrap();
     let sum: u64 = plan["resources"].as_array().unwrap().iter().map(bytes).sum();
     assert_eq!(bytes(&plan), sum);

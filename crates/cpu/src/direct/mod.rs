@@ -3,6 +3,7 @@
 
 pub mod env_tables;
 pub mod light_resolve;
+pub mod shadow_sweep;
 pub mod sky_shade;
 pub mod soft_sphere;
 pub mod sphere_sh_shade;

@@ -31,7 +31,7 @@ fn higher(a: Found, b: Found) -> Found {
 
 /// Horizon of the line of a grid point (lane, step) of height `own` within its first step: its crossing with the next
 /// grid line, and with the cell's diagonal where that lies across. Nearly everything that unit steps miss lies here.
-fn first_crossings(march: &March, (lane, step): (i32, i32), own: f32) -> Found {
+pub fn first_crossings(march: &March, (lane, step): (i32, i32), own: f32) -> Found {
     let azimuth = &march.azimuth;
     if !march.periodic() && (step == 0 || (azimuth.shear > 0 && lane == 0)) {
         return NOTHING;

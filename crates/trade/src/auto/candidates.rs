@@ -36,6 +36,10 @@ pub(super) fn candidates(scene: &Scene, bounces: u32) -> Vec<Quality> {
         if scene.lights.suns.is_empty() && scene.lights.keys.is_empty() {
             all.push(Quality { lines: Lines::Exact, ..plain });
         }
+        if !scene.lights.suns.is_empty() {
+            // Exact shadows of suns.
+            all.push(Quality { method: Method::Auto, ..plain });
+        }
         for lines in LINES {
             all.extend(FUSES.map(|fuse| Quality { lines, fuse, ..plain }));
         }
@@ -106,7 +110,12 @@ pub(super) fn is_finer(fine: &Quality, coarse: &Quality) -> bool {
     let numbers = |q: &Quality| {
         [
             spacing(q) as u32 + u32::from(q.lines == Lines::Exact),
-            if spacing(q) == LINES.len() { FUSES.len() as u32 } else { fuse_row(q.fuse) as u32 },
+            match spacing(q) {
+                exact if exact == LINES.len() => FUSES.len() as u32,
+                // Suns do not depend on the fuse.
+                _ if q.method == Method::Auto => FUSES.len() as u32,
+                _ => fuse_row(q.fuse) as u32,
+            },
             q.azimuths,
             q.table_elevations,
             q.sun_azimuths,

@@ -41,6 +41,10 @@ impl Part {
         let finer = |value: u32, default: u32| (f64::from(value) / f64::from(default)).ln();
         match self {
             Part::Geometry => {
+                if quality.method == Method::Auto {
+                    // Suns have exact shadows, and of all direct light they err most.
+                    return EXACT_FINENESS;
+                }
                 let table = GEOMETRY[fuse_row(quality.fuse)];
                 table.get(spacing(quality)).map_or(EXACT_FINENESS, |ln| -ln)
             }
@@ -291,9 +295,9 @@ impl Costs {
         for (label, ns) in passes {
             let kind = match label.split([' ', '.']).next().unwrap_or_default() {
                 _ if label.contains("bounce") => 6 + engine_kind,
-                "horizon_sweep" | "sweep_fuse" => 0,
+                "horizon_sweep" | "shadow_sweep" | "sweep_fuse" => 0,
                 "surface_sweep" | "horizon_march" => 1,
-                "sky_shade" | "sun_shade" => 2,
+                "sky_shade" | "sun_shade" | "shadow_shade" | "shadow_settle" => 2,
                 "env_tables" => 3,
                 "sphere_shade" => 4,
                 _ => 5,

@@ -3,6 +3,7 @@
 mod bounces;
 
 use super::*;
+use crate::trade::start;
 use ridgelight::scene::{HeightField, Lights, Lines, Method, Quality, Scene, Sun, Surface};
 use ridgelight::{Error, Result};
 use ridgelight_cpu::light;
@@ -282,8 +283,8 @@ fn pictures_of_infinities_are_not_chosen() {
 fn one_inaccurate_frame_leaves_other_expectations() {
     let scene = scene();
     let mut model = Model::of(&scene, &Statistics::of(&scene), 0);
-    let rough = Quality { azimuths: 8, lines: Lines::FourCells, ..Quality::default() };
-    model.learn(&Quality::default(), 0.00075, 0.0);
+    let rough = Quality { azimuths: 8, lines: Lines::FourCells, ..start() };
+    model.learn(&start(), 0.00075, 0.0);
     model.learn(&rough, 0.0133, 0.0);
     assert!((model.expected(&rough).error / 0.0133).ln().abs() < 0.3, "{model:?}");
     let fine = Quality { azimuths: 1024, method: Method::BruteForce, ..Quality::default() };

@@ -76,6 +76,11 @@ pub(crate) fn has_no_lines(quality: &Quality) -> bool {
     matches!(quality.method, Method::BruteForce | Method::Pyramid) || quality.lines == Lines::Exact
 }
 
+/// The same, or whether suns have exact shadows, beside which fuse and precision have their defaults.
+fn has_no_choice_of_lines(quality: &Quality) -> bool {
+    has_no_lines(quality) || quality.method == Method::Auto
+}
+
 fn has_no_levels(quality: &Quality) -> bool {
     quality.method != Method::Pyramid
 }
@@ -111,11 +116,14 @@ pub fn ladders(scene: &Scene, bounces: u32) -> Vec<Ladder> {
     // Sphere lights compute their own visibility.
     let is_aimed = !lights.suns.is_empty() || !lights.keys.is_empty();
     let has_horizons = has_sky || has_environment || is_aimed;
+    let has_suns = !lights.suns.is_empty();
+    let methods =
+        if has_suns { "method: pyramid auto brute-force" } else { "method: pyramid brute-force" };
     let sweep = Ladder::new(
         "sweep",
-        &["lines: 4 2 1 1/2 1/4 exact", "method: pyramid brute-force"],
+        &["lines: 4 2 1 1/2 1/4 exact", methods],
         "closer lines, then every grid point on a line: small occluders; a pyramid of heights, \
-         slower only; brute force",
+         slower only; exact shadows of suns; brute force",
     );
     add(has_horizons, sweep);
     let fuse = Ladder::new(
@@ -124,10 +132,10 @@ pub fn ladders(scene: &Scene, bounces: u32) -> Vec<Ladder> {
         "more of the lines' results, then the surface itself, then all around there: horizons of each \
          grid point",
     );
-    add(has_horizons, fuse.idle_if(has_no_lines));
+    add(has_horizons, fuse.idle_if(has_no_choice_of_lines));
     let stored = "more bits: heights on the hull, stored slopes";
     let precision = Ladder::new("precision", &["precision: packed f16 f32"], stored);
-    add(has_horizons, precision.idle_if(has_no_lines));
+    add(has_horizons, precision.idle_if(has_no_choice_of_lines));
     let between = "more levels of a pyramid: occluders between two grid points";
     let level_step = Ladder::new("level step", &["level_step: 1 2 4 8 16"], between);
     add(has_horizons, level_step.idle_if(has_no_levels));

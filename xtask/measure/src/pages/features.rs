@@ -17,9 +17,9 @@ const MODES: [&str; 17] = [
      {4;2;stack@7} %",
     "environment by tables | approximate | accuracy_N44W072 | {64@1} % with 64 azimuths",
     "environment by SH, order 4 | approximate | soft_converge | {exact horizons@2} %",
-    "sun alone, 0.53° wide, 2 slices, sweep `aimed` | approximate | trade_mountain_sun | \
-     {trade --lines 1 --fuse aimed --precision f32 --sun-azimuths 2} %",
-    "the same sun, brute-force | exact but for its slices | trade_mountain_sun | {trade --method brute --sun-azimuths 2} %",
+    "sun, 0.53° wide, 8 slices: the default | exact but for its slices | suns | at most {max@5} % against brute force in the \
+     same slices",
+    "the same sun, `--method sweep` | approximate | suns | {Mt Washington, 256²;plane;12@3} % at 12° over a mountain",
     "key light, 3 slices | exact but for its slices | shadow_edge | {after 3 slices } of the unshadowed light",
     "sphere light, 8 slices | exact but for its slices | lights | at most {max@4} %",
     "sphere light by SH, order 4 | approximate | lights_cones | {;surface;across;32@6} %",

@@ -172,6 +172,16 @@ fn bounces() -> Result<String> {
     Ok(format!("{table}\n\n*{}*\n", made.trim_start_matches("; ")))
 }
 
+/// Suns by default and by hull sweeps, as `cargo measure suns` printed it.
+fn suns() -> Result<String> {
+    let (body, made) = result("suns.txt")?;
+    let table = body.split("\n\n").find(|part| part.starts_with("| field | border |"));
+    let table = found("suns.txt", table, "the table of cargo measure suns")?;
+    let device = body.lines().next().and_then(|line| line.split_once(": "));
+    let (device, _) = found("suns.txt", device, "a device in its first line")?;
+    Ok(format!("{}\n\n*{device}{made}*\n", table.trim_end()))
+}
+
 /// A table under another first line of as many cells.
 fn with_head(name: &str, table: &str, head: &str) -> Result<String> {
     let parts = table.split_once('\n').filter(|(old, _)| cells(old).len() == cells(head).len());
@@ -329,7 +339,7 @@ const PAGES: [(&str, &[Section]); 7] = [
     ("docs/getting-started.md", &[("camera", camera)]),
     ("docs/embedding.md", &[("hosts", hosts), ("edits", edits)]),
     ("docs/methods.md", &[("forms", forms)]),
-    ("docs/accuracy.md", &[("accuracy", accuracy), ("bounces", bounces)]),
+    ("docs/accuracy.md", &[("accuracy", accuracy), ("suns", suns), ("bounces", bounces)]),
     ("docs/choosing-settings.md", &[("auto", auto), ("goals", goals)]),
     ("docs/baking.md", &[("brdf", brdf), ("bake", bake), ("curved", curved)]),
 ];

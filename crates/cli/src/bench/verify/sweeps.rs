@@ -6,12 +6,13 @@ use ridgelight::Result;
 use ridgelight::plan::azimuths::{Shape, even};
 use ridgelight::plan::{Axis, Azimuth, Pass, Plan};
 use ridgelight::scene::{
-    Albedo, Border, KeyLight, Lights, Lines, Method, Precision, Quality, Scene, Sun, Surface,
+    Albedo, Border, Fuse, KeyLight, Lights, Lines, Method, Precision, Quality, Scene, Sun, Surface,
 };
+use ridgelight_cpu::horizon_march::{MarchOptions, marched};
 use ridgelight_cpu::horizon_sweep::{SweepOptions, horizon_sweep};
-use ridgelight_cpu::lattice::{Lattices, number_layers};
+use ridgelight_cpu::lattice::{Lattice, Lattices, number_layers};
 use ridgelight_cpu::shared::gather::Swept;
-use ridgelight_cpu::shared::sweep::Heights;
+use ridgelight_cpu::shared::sweep::{CELL_SHIFT, Heights, March};
 use ridgelight_cpu::sky_shade::sky_at;
 use ridgelight_cpu::sun_shade::sun_at;
 use ridgelight_cpu::tolerance::{EPSILON, ShadeError, device_fused_slope};
@@ -64,9 +65,43 @@ fn wanted(scene: &Scene, places: &[usize], quality: &Quality, line_shift: u32) -
 /// Light from sweeps along azimuths, and its tolerance.
 pub(super) fn lit<T>(
     scene: &Scene,
-    mut azimuths: Vec<Azimuth>,
+    azimuths: Vec<Azimuth>,
     quality: &Quality,
     line_shift: u32,
+    light: impl FnOnce(&Swept, &ShadeError) -> T,
+) -> T {
+    let sweep = |heights: Heights, azimuth: &Azimuth, warm_up, lattice: &mut Lattice| {
+        let options = SweepOptions { line_shift, warm_up, ..SweepOptions::default() };
+        horizon_sweep(heights, azimuth, &options, lattice);
+    };
+    lit_by(scene, azimuths, (Some(quality.fuse), line_shift), sweep, light)
+}
+
+/// Light from exact horizons at some texels, and its tolerance.
+fn exactly_lit<T>(
+    scene: &Scene,
+    azimuths: Vec<Azimuth>,
+    places: &[usize],
+    light: impl FnOnce(&Swept, &ShadeError) -> T,
+) -> T {
+    let cols = scene.field.cols();
+    let march_to = |heights: Heights, azimuth: &Azimuth, warm_up, lattice: &mut Lattice| {
+        let march = March::new(heights, azimuth);
+        for place in places {
+            let (lane, step) = march.of_grid_point((place % cols) as i32, (place / cols) as i32);
+            let texel = lattice.texel(lane, march.march_position(step), azimuth.layer);
+            let options = MarchOptions { all_crossings: true, warm_up };
+            lattice.slopes[texel] = marched(&march, lane, step, options).slope;
+        }
+    };
+    lit_by(scene, azimuths, (None, CELL_SHIFT), march_to, light)
+}
+
+fn lit_by<T>(
+    scene: &Scene,
+    mut azimuths: Vec<Azimuth>,
+    (fuse, line_shift): (Option<Fuse>, u32),
+    fill: impl Fn(Heights, &Azimuth, i32, &mut Lattice),
     light: impl FnOnce(&Swept, &ShadeError) -> T,
 ) -> T {
     let (field, border) = (&scene.field, scene.surface.border);
@@ -78,10 +113,9 @@ pub(super) fn lit<T>(
     let mut lattices = Lattices::new(&azimuths, [cols, rows], line_shift, border);
     for azimuth in &azimuths {
         let warm_up = warm_up[usize::from(azimuth.marches_rows())];
-        let options = SweepOptions { line_shift, warm_up, ..SweepOptions::default() };
-        horizon_sweep(heights, azimuth, &options, lattices.of_mut(azimuth));
+        fill(heights, azimuth, warm_up, lattices.of_mut(azimuth));
     }
-    let (fuse, lattices) = (Some(quality.fuse), &lattices);
+    let lattices = &lattices;
     let swept = Swept { heights, azimuths: &azimuths, lattices, fuse, line_shift, warm_up };
     let all = || field.heights_m().iter().map(|h| f64::from(*h));
     let (low, high) = (all().fold(f64::MAX, f64::min), all().fold(f64::MIN, f64::max));
@@ -116,8 +150,8 @@ fn check_aimed(
     let (mut found, mut all, mut most) = (Vec::new(), Vec::new(), DVec3::ZERO);
     for layer in &layers {
         let of = layer.name.strip_prefix("direct.").and_then(|light| azimuths_of(&plan, light));
-        let Some((azimuths, shape)) = of else { continue };
-        let wanted = aimed(scene, azimuths, places, device.quality, lines, shape);
+        let Some((azimuths, shaded)) = of else { continue };
+        let wanted = aimed(scene, azimuths, places, device.quality, lines, shaded);
         for (got, wanted) in colours(layer, places).into_iter().zip(wanted) {
             let Some([light, bound]) = wanted else { continue };
             found.push(got);
@@ -131,14 +165,29 @@ fn check_aimed(
     Ok(Some(sentence("sun and key light", "the CPU reference", errors)))
 }
 
-/// Azimuths that contain a light, and its shape there.
-fn azimuths_of(plan: &Plan, light: &str) -> Option<(Vec<Azimuth>, Shape)> {
-    let own = |pass: &&Pass| pass.name() == "sun_shade" && pass.part == light;
+/// How a light is shaded.
+#[derive(Clone, Copy)]
+struct Shaded {
+    shape: Shape,
+    /// By shadow heights, which give the light of exact horizons.
+    is_exact: bool,
+}
+
+/// Azimuths that contain a light, and how it is shaded there.
+fn azimuths_of(plan: &Plan, light: &str) -> Option<(Vec<Azimuth>, Shaded)> {
+    let names = ["sun_shade", "shadow_shade"];
+    let own = |pass: &&Pass| names.contains(&pass.name()) && pass.part == light;
     let passes: Vec<&Pass> = plan.passes.iter().filter(own).collect();
-    let shape = passes.first()?.constant("shape")?;
+    let first = passes.first()?;
+    let is_exact = first.name() == "shadow_shade";
+    let shape = match first.constant("shape") {
+        Some(shape) => shape as usize,
+        None => first.constant("is_point")? as usize,
+    };
+    let shape = [Shape::Disc, Shape::Point, Shape::Patch][shape];
     let ranges = passes.iter().map(|p| p.azimuths.start as usize..p.azimuths.end as usize);
     let azimuths = ranges.flat_map(|range| plan.azimuths[range].iter().copied()).collect();
-    Some((azimuths, [Shape::Disc, Shape::Point, Shape::Patch][shape as usize]))
+    Some((azimuths, Shaded { shape, is_exact }))
 }
 
 /// A sun's light of the CPU reference at each place and its tolerance, none where a point sun may be
@@ -149,10 +198,10 @@ fn aimed(
     places: &[usize],
     quality: &Quality,
     line_shift: u32,
-    shape: Shape,
+    Shaded { shape, is_exact }: Shaded,
 ) -> Vec<Option<[DVec3; 2]>> {
     let cols = scene.field.cols();
-    lit(scene, azimuths, quality, line_shift, |swept, error| {
+    let light = |swept: &Swept, error: &ShadeError| {
         let weight = |a: &Azimuth| match shape {
             Shape::Patch => f64::from(a.wedge_rad),
             Shape::Disc | Shape::Point => f64::from(a.weight),
@@ -169,7 +218,12 @@ fn aimed(
             (!grazes).then(|| [sun_at(swept, shape, col, row), off].map(DVec3::splat))
         };
         places.iter().map(at).collect()
-    })
+    };
+    if is_exact {
+        exactly_lit(scene, azimuths, places, light)
+    } else {
+        lit(scene, azimuths, quality, line_shift, light)
+    }
 }
 
 /// A scene's ground, white, under other lights.
@@ -184,7 +238,6 @@ mod tests {
     use super::*;
     use crate::bench::verify::tests::{places, scene};
     use ridgelight::plan::{self, Limits, Picture};
-    use ridgelight::scene::Fuse;
 
     /// Wrong light is refused: of another fuse, of lines twice as far apart, of one more azimuth.
     #[test]
@@ -212,8 +265,8 @@ mod tests {
             let scene = scene(48, Lights { suns: vec![sun], ..Lights::default() });
             let wanted = Picture { light_layers: true, ..Picture::default() };
             let plan = plan::picture(&scene, &quality, &Limits::lavapipe(), wanted).unwrap();
-            let (azimuths, shape) = azimuths_of(&plan, "sun1").expect("a sun");
-            let all = aimed(&scene, azimuths, &places(), &quality, shift, shape);
+            let (azimuths, shaded) = azimuths_of(&plan, "sun1").expect("a sun");
+            let all = aimed(&scene, azimuths, &places(), &quality, shift, shaded);
             Wanted(all.into_iter().map(|both| both.expect("no point")).collect())
         };
         let wrong = [

@@ -1,0 +1,180 @@
+// Computes: for every step of every line of an azimuth, up to which height the ground ahead shadows it from the lower
+// edge of a sun: a running maximum of the ground over a plane that rises with the sun's light, raised so far that nothing
+// between two lines is above the interpolation of their maxima.
+// Reads: lane_heights, azimuths.
+// Writes: shadows at [azimuth][32 lines][step][line], a lattice (see lattice.glsl). The high half of a word is the shadow's
+// height over the line in metres: the high half of an f32, never too low. The low half is the march steps back to the
+// ground that casts it, 0 for none.
+// One invocation is four neighbouring lines, a cell apart, from the sun's side to the other end.
+//
+// Interpolate bilinearly between the heights at which two lines cross two steps. At a share u of the way from one step to
+// the other the surface is above that by at most
+//   (1 - u) K0 + u K1 + 4 u (1 - u) E.
+// K0, K1: at a step, a grid point between the lines, at f of a cell from one, stands above the chord between them by
+// f (1 - f) of the change of slope at it. E: between the steps the lines move by `shear` across the lanes, where the steps
+// may slope differently: shear / 4 of the difference; and a cell is two triangles: 1/4 of its twist.
+#version 460
+
+#include "shared/lattice.glsl"
+
+layout(local_size_x_id = 0) in;
+
+layout(constant_id = 1) const bool PERIODIC = false;
+
+layout(binding = 0, rgba32f) uniform readonly image2D lane_heights;
+layout(binding = 1) uniform textureBuffer azimuths;
+layout(binding = 2) uniform writeonly uimage2DArray shadows;
+
+layout(push_constant) uniform ShadowSweepPush {
+    int lanes;
+    int steps;
+    int warm_up;  // steps marched before the first that counts: whole periods, or 0
+    uint first_azimuth;
+};
+
+// No ground ahead.
+const float NOTHING = -1e30;
+
+Azimuth azimuth;
+
+// Heights of nine lanes of a step.
+struct Nine {
+    vec4 a;
+    vec4 b;
+    float c;
+};
+
+// Heights from a lane on, in the order of the lines. Beyond the edge of a field that does not repeat they stay the same.
+Nine nine_heights(int lane, int step) {
+    int march = march_position(azimuth, PERIODIC ? step % steps : step, steps);
+    bool flips = (azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u;
+    int base = flips ? lanes - 9 - lane : lane;
+    Nine nine;
+    if (PERIODIC) {
+        float all[9];
+        for (int k = 0; k < 9; k++) {
+            int at = wrapped(base + k, lanes);
+            all[k] = imageLoad(lane_heights, ivec2(at >> 2, march))[at & 3];
+        }
+        nine = Nine(vec4(all[0], all[1], all[2], all[3]), vec4(all[4], all[5], all[6], all[7]), all[8]);
+    } else {
+        int first = base >> 2;
+        int last = (lanes - 1) >> 2;
+        vec4 a = imageLoad(lane_heights, ivec2(clamp(first, 0, last), march));
+        vec4 b = imageLoad(lane_heights, ivec2(clamp(first + 1, 0, last), march));
+        vec4 c = imageLoad(lane_heights, ivec2(clamp(first + 2, 0, last), march));
+        // The lanes past the last of a texel repeat it.
+        a = mix(mix(a, a.xxxx, bvec4(first < 0)), a.wwww, bvec4(first > last));
+        b = mix(mix(b, b.xxxx, bvec4(first < -1)), b.wwww, bvec4(first + 1 > last));
+        c = mix(mix(c, c.xxxx, bvec4(first < -2)), c.wwww, bvec4(first + 2 > last));
+        bvec4 two = bvec4((base & 2) != 0);
+        vec4 a2 = mix(a, vec4(a.zw, b.xy), two);
+        vec4 b2 = mix(b, vec4(b.zw, c.xy), two);
+        vec2 c2 = mix(c.xy, c.zw, two.xy);
+        bvec4 one = bvec4((base & 1) != 0);
+        nine.a = mix(a2, vec4(a2.yzw, b2.x), one);
+        nine.b = mix(b2, vec4(b2.yzw, c2.x), one);
+        nine.c = mix(c2.x, c2.y, one.x);
+    }
+    Nine mirrored = Nine(vec4(nine.c, nine.b.wzy), vec4(nine.b.x, nine.a.wzy), nine.a.x);
+    bvec4 swaps = bvec4(flips);
+    return Nine(mix(nine.a, mirrored.a, swaps), mix(nine.b, mirrored.b, swaps), mix(nine.c, mirrored.c, flips));
+}
+
+void main() {
+    azimuth = azimuth_at(azimuths, first_azimuth + gl_GlobalInvocationID.z);
+    int total = warm_up + steps;
+    int shear = azimuth.shear;
+    int lead = lattice_lead(shear, total, CELL_SHIFT, PERIODIC);
+    int line_count = lattice_lines(lanes, lead, CELL_SHIFT, PERIODIC);
+    int group_lines = int(gl_WorkGroupSize.x) * 4;
+    int first_line = int(gl_WorkGroupID.x) * group_lines;
+    if (first_line >= line_count) {
+        return;
+    }
+    // The steps at which any line of the group is on the field, or less than a cell beside it: rays between it and
+    // the next line are.
+    int begin = 0;
+    int end = total;
+    if (!PERIODIC && shear > 0) {
+        int lowest = (first_line - lead) * CELL;
+        int highest = lowest + (group_lines - 1) * CELL;
+        begin = max(0, (-CELL - highest) / shear);
+        end = clamp((lanes * CELL - lowest) / shear + 1, begin, total);
+    }
+    int line = first_line + int(gl_LocalInvocationID.x) * 4;
+    int y = (line - lead) * CELL + begin * shear;
+    float rise = azimuth.low_slope * azimuth.step_m;
+    float shear_cells = float(shear) * (1.0 / float(CELL));
+    bool splits_along = ((azimuth.flags & AZIMUTH_FLIPS_MARCH) != 0u) == ((azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u);
+    // The highest ground so far, over a plane through the beginning of the march.
+    vec4 top = vec4(NOTHING);
+    ivec4 top_step = ivec4(0);
+    // Of the step before: the lane before line 0; slopes from lane to lane, from one lane before that; and the lines over
+    // the plane, raised by K.
+    int cell = y >> CELL_SHIFT;
+    vec4 slopes_a = vec4(0.0);
+    vec3 slopes_b = vec3(0.0);
+    vec4 raised = vec4(NOTHING);
+    for (int step = begin; step < end; step++) {
+        Nine nine = nine_heights(cell - 1, step);
+        vec4 to_a = vec4(nine.a.yzw, nine.b.x) - nine.a;
+        vec4 to_b = vec4(nine.b.yzw, nine.c) - nine.b;
+        // E. Slopes of the step before against those of the same cells, and of the cells one lane on.
+        vec4 same_a = slopes_a - to_a;
+        vec3 same_b = slopes_b - to_b.xyz;
+        vec4 next_a = slopes_a - vec4(to_a.yzw, to_b.x);
+        vec2 next_b = slopes_b.xy - to_b.yz;
+        vec4 most = max(max(same_a, vec4(same_a.yzw, same_b.x)), max(vec4(same_a.zw, same_b.xy), vec4(same_a.w, same_b)));
+        vec4 least = min(min(same_a, vec4(same_a.yzw, same_b.x)), min(vec4(same_a.zw, same_b.xy), vec4(same_a.w, same_b)));
+        vec4 turn = max(most, max(next_a, max(vec4(next_a.yzw, next_b.x), vec4(next_a.zw, next_b))));
+        vec4 twist = splits_along ? -least : most;
+        vec4 between = 0.25 * (shear_cells * max(turn, 0.0) + max(twist, 0.0));
+        // From here on of this step's own lanes.
+        bool moves = y >> CELL_SHIFT != cell;
+        bvec4 on = bvec4(moves);
+        vec4 h_a = mix(nine.a, vec4(nine.a.yzw, nine.b.x), on);
+        vec4 h_b = mix(nine.b, vec4(nine.b.yzw, nine.c), on);
+        slopes_a = mix(to_a, vec4(to_a.yzw, to_b.x), on);
+        slopes_b = mix(to_b.xyz, to_b.yzw, on.xyz);
+        cell = y >> CELL_SHIFT;
+        float f = float(y & (CELL - 1)) * (1.0 / float(CELL));
+        vec4 h = mix(vec4(h_a.yzw, h_b.x), vec4(h_a.zw, h_b.xy), f);
+        float plane = float(step) * rise;
+        vec4 over_plane = h + plane;
+
+        // Of the sums and of the heights: a few units in the last place.
+        vec4 over = top - over_plane + (abs(top) + abs(h) + abs(plane)) * 1e-6;
+        uvec4 back = uvec4(clamp(step - top_step, 0, 0xffff));
+        back = mix(back, uvec4(0), lessThanEqual(top, vec4(NOTHING)));
+        // Negative ones are cut off towards 0, which is up.
+        uvec4 bits = floatBitsToUint(over) + mix(uvec4(0), uvec4(0xffff), greaterThan(over, vec4(0.0)));
+        uvec4 words = bits & 0xffff0000u | back;
+        imageStore(shadows, lattice_texel(azimuth, line, step), words);
+
+        // K, of the grid points on both sides of each line.
+        vec4 bend = slopes_a - vec4(slopes_a.yzw, slopes_b.x);
+        vec4 next_bend = vec4(slopes_a.yzw, slopes_b.x) - vec4(slopes_a.zw, slopes_b.xy);
+        vec4 now = over_plane + f * (1.0 - f) * max(max(bend, next_bend), 0.0);
+        // The maximum over u.
+        vec4 apart = abs(now - raised);
+        vec4 middle = 0.5 * (now + raised) + between + apart * apart / max(16.0 * between, 1e-30);
+        vec4 found = mix(max(now, raised), middle, lessThan(apart, 4.0 * between));
+        ivec4 place = y + ivec4(0, CELL, 2 * CELL, 3 * CELL);
+        // A line that was not beside the field a step before had no surface there.
+        bvec4 enters = bvec4(step == begin);
+        if (!PERIODIC) {
+            enters = bvec4(uvec4(enters) | uvec4(lessThanEqual(place - shear, ivec4(-CELL))));
+        }
+        found = mix(found, now, enters);
+        raised = now;
+        bvec4 counts = bvec4(true);
+        if (!PERIODIC) {
+            counts = bvec4(uvec4(greaterThan(place, ivec4(-CELL))) & uvec4(lessThan(place, ivec4(lanes * CELL))));
+        }
+        bvec4 higher = bvec4(uvec4(counts) & uvec4(greaterThan(found, top)));
+        top = mix(top, found, higher);
+        top_step = mix(top_step, ivec4(step), higher);
+        y += shear;
+    }
+}

@@ -1,0 +1,64 @@
+use crate::graph::{Builder, ResourceId, shaders};
+use crate::passes::batch::Batch;
+use crate::passes::shadows::{Shadows, Walked};
+use crate::passes::sphere_shade::MOST_TURNS;
+use crate::scene::{Border, HeightField};
+
+/// Texels of a workgroup, and its invocations: each is one azimuth of one texel.
+const TEXELS: u32 = 512;
+const INVOCATIONS: u32 = 64;
+
+/// Light of a sun at the marked texels, in as many dispatches as the walks of its azimuths need.
+pub(crate) fn plan(
+    builder: &mut Builder,
+    (shadows, walked): (&Shadows, Walked),
+    (field, border): (&HeightField, Border),
+    batch: &Batch,
+    (part, is_point): (&str, bool),
+    [lane_heights, azimuths, lattice, sun_sum]: [ResourceId; 4],
+) {
+    let axis = batch.axis;
+    let most_steps = shadows.levels.most_steps();
+    // An invocation walks for every so many texels of the workgroup. One walk may be as long as any; of many, most are short.
+    let walks = MOST_TURNS.saturating_sub(most_steps) / shadows.levels.usual_steps();
+    let at_once = (walks * INVOCATIONS / TEXELS).clamp(1, INVOCATIONS);
+    for first in (0..batch.count).step_by(at_once as usize) {
+        let count = at_once.min(batch.count - first);
+        let part = match count {
+            all if all == batch.count => part.to_owned(),
+            _ => format!("{part} azimuths {first}..{}", first + count),
+        };
+        // About one texel in ten, and twenty blocks of each walk.
+        let settled = axis.texels() / 10 * u64::from(count);
+        let pass = builder.pass(
+            shaders::ShadowSettle {
+                border: border as u32,
+                marches_rows: axis.marches_rows,
+                is_point,
+                most_steps: most_steps as i32,
+            },
+            &part,
+            "exact horizons of the marked texels",
+            [axis.steps.div_ceil(16), axis.lanes.div_ceil(4 * 8), 1],
+            &shaders::ShadowSettlePush {
+                land: shaders::LandPush::of(field, &shadows.levels),
+                first_azimuth: batch.first + first,
+                azimuth_count: count,
+                clears: u32::from(batch.is_first && first == 0),
+                warm_up: axis.warm_up as i32,
+                tilt: walked.tilt,
+            },
+            &[
+                ("lane_heights", lane_heights),
+                ("maxima", walked.maxima),
+                ("azimuths", azimuths),
+                ("doubtful", shadows.doubtful(axis)),
+                ("sun_sum", sun_sum),
+                ("shadows", lattice),
+            ],
+            axis.texels() + settled * 20 * (16 + 4 * 16),
+            settled,
+        );
+        pass.azimuths = batch.first + first..batch.first + first + count;
+    }
+}

@@ -1,0 +1,43 @@
+use crate::graph::{Builder, ResourceId, shaders};
+use crate::passes::batch::Batch;
+use crate::passes::shadows::Shadows;
+use crate::scene::Border;
+
+/// Light of a sun where shadow heights decide it; marks the other texels.
+pub(crate) fn plan(
+    builder: &mut Builder,
+    shadows: &Shadows,
+    (border, cell_m): (Border, [f64; 2]),
+    batch: &Batch,
+    (part, is_point): (&str, bool),
+    [lane_heights, azimuths, lattice, sun_sum]: [ResourceId; 4],
+) {
+    let axis = batch.axis;
+    let [cols, rows] = axis.size();
+    let pass = builder.pass(
+        shaders::ShadowShade { border: border as u32, marches_rows: axis.marches_rows, is_point },
+        part,
+        "texels that see all of a chord of the sun, or none of it",
+        [axis.steps.div_ceil(8), axis.lanes.div_ceil(4 * 16), 1],
+        &shaders::ShadowShadePush {
+            cols: cols as i32,
+            rows: rows as i32,
+            cell_x_m: cell_m[0] as f32,
+            cell_y_m: cell_m[1] as f32,
+            warm_up: axis.warm_up as i32,
+            first_azimuth: batch.first,
+            azimuth_count: batch.count,
+            clears: u32::from(batch.is_first),
+        },
+        &[
+            ("lane_heights", lane_heights),
+            ("azimuths", azimuths),
+            ("shadows", lattice),
+            ("sun_sum", sun_sum),
+            ("doubtful", shadows.doubtful(axis)),
+        ],
+        axis.texels() * (16 + u64::from(batch.count) * (4 + 8)),
+        axis.texels() * u64::from(batch.count),
+    );
+    pass.azimuths = batch.azimuths();
+}

@@ -1,0 +1,117 @@
+//! Suns by shadow heights: a texel that these prove to see all of a sun is lit at once, the others by their exact horizons.
+
+use crate::graph::{Axis, Builder, Format, Limits, Owner, ResourceId};
+use crate::passes::azimuths::Azimuth;
+use crate::passes::blocks::{BlockLevels, Source};
+use crate::passes::shadow_sweep;
+use crate::passes::sweep::{Sweep, group_size};
+use crate::scene::{Border, Fuse, HeightField, Lines, Method, Precision, Quality, Sun};
+
+/// What the passes of suns share, besides the lattices.
+pub(crate) struct Shadows {
+    /// Marks of the texels whose light the shadow heights leave open, along columns and along rows.
+    doubtful: [Option<ResourceId>; 2],
+    group_size: u32,
+    pub levels: BlockLevels,
+    /// For each sun, the maxima of blocks over a plane that rises with its light.
+    maxima: Vec<ResourceId>,
+}
+
+/// Bytes per texel of the images that suns need besides lattices: marks along both axes, and the maxima of blocks.
+const TEXEL_BYTES: u64 = 2 + 1;
+
+impl Shadows {
+    /// Whether suns may use shadow heights; otherwise why not, where the quality leaves it open.
+    pub(crate) fn suit(
+        quality: &Quality,
+        sweep: &Sweep,
+        field: &HeightField,
+        border: Border,
+        (limits, used_bytes): (&Limits, u64),
+    ) -> Result<(), Option<String>> {
+        let is_free = quality.method == Method::Auto
+            && quality.lines == Lines::Cell
+            && quality.fuse == Fuse::AimedNearest
+            && quality.precision == Precision::F32;
+        let size = [field.cols() as u32, field.rows() as u32];
+        if !is_free || !matches!(sweep, Sweep::Lines(_)) || size.contains(&1) {
+            return Err(None);
+        }
+        let maxima = BlockLevels::of(size, border).maxima_size();
+        if maxima.iter().any(|n| *n > limits.image_side) {
+            return Err(Some("an image of the field's blocks exceeds the device's limit".into()));
+        }
+        let bytes = TEXEL_BYTES * u64::from(size[0]) * u64::from(size[1]);
+        if used_bytes + bytes > limits.memory_budget / 2 {
+            return Err(Some(format!(
+                "exact shadows would take {} more memory",
+                crate::graph::bytes_text(bytes)
+            )));
+        }
+        Ok(())
+    }
+
+    /// Makes the images for `suns` suns, along the axes of `azimuths`.
+    pub(crate) fn make<'a>(
+        builder: &mut Builder,
+        azimuths: impl Iterator<Item = &'a Azimuth> + Clone,
+        (size, border, suns): ([u32; 2], Border, usize),
+        limits: &Limits,
+    ) -> Self {
+        let doubtful = [false, true].map(|marches_rows| {
+            azimuths.clone().any(|a| a.marches_rows() == marches_rows).then(|| {
+                let axis = Axis::of(marches_rows, size, border);
+                let extent = [axis.lanes.div_ceil(4), axis.steps, 1];
+                let name = format!("doubtful_{}", axis.name());
+                builder.image(name, Owner::Internal, Format::R32Uint, extent, false)
+            })
+        });
+        let levels = BlockLevels::of(size, border);
+        let maxima = (0..suns).map(|i| levels.maxima(builder, &format!("shadow_maxima_{i}")));
+        let maxima = maxima.collect();
+        Self { doubtful, group_size: group_size(limits), levels, maxima }
+    }
+
+    /// Marks along an axis.
+    pub(crate) fn doubtful(&self, axis: Axis) -> ResourceId {
+        self.doubtful[usize::from(axis.marches_rows)].expect("made for every axis of a sun")
+    }
+
+    /// The sweep of a batch.
+    pub(crate) fn plan_sweep(
+        &self,
+        builder: &mut Builder,
+        batch: &crate::passes::batch::Batch,
+        part: &str,
+        ids: [ResourceId; 3],
+    ) {
+        shadow_sweep::plan(builder, batch, part, self.group_size, ids);
+    }
+
+    /// The maxima of blocks for walks towards the sun at `index`, which skip most of the ground under its light: over a plane
+    /// that rises with its lower edge.
+    pub(crate) fn plan_maxima(
+        &self,
+        builder: &mut Builder,
+        (part, index): (&str, usize),
+        (sun, cell_m): (&Sun, [f64; 2]),
+        heights: ResourceId,
+    ) -> Walked {
+        let slope = (sun.elevation_rad - sun.diameter_rad / 2.0).tan().clamp(-1.0, MOST_TILT);
+        let (sin, cos) = sun.azimuth_rad.sin_cos();
+        let tilt = [-slope * cos * cell_m[0], slope * sin * cell_m[1]].map(|t| t as f32);
+        let maxima = self.maxima[index];
+        self.levels.plan(builder, part, Source::Heights { heights, tilt }, maxima);
+        Walked { maxima, tilt }
+    }
+}
+
+/// Blocks of cells that walks towards one sun skip.
+#[derive(Clone, Copy)]
+pub(crate) struct Walked {
+    pub maxima: ResourceId,
+    pub tilt: [f32; 2],
+}
+
+/// Above it the plane has fewer digits left for the heights.
+const MOST_TILT: f64 = 10.0;

@@ -1,0 +1,254 @@
+//! Suns by shadow heights.
+
+use std::ops::Range;
+
+use ridgelight::gpu::shaders::offset;
+use ridgelight::plan::Pass;
+use ridgelight::plan::azimuths::{Azimuth, CELL, Shape};
+use ridgelight::scene::Border;
+use ridgelight_cpu::horizon_march::{MarchOptions, horizon_march};
+use ridgelight_cpu::lattice::{Lattices, number_layers};
+use ridgelight_cpu::shadow_sweep::shadow_line;
+use ridgelight_cpu::shared::field::field_slope;
+use ridgelight_cpu::shared::fuse::first_crossings;
+use ridgelight_cpu::shared::gather::Swept;
+use ridgelight_cpu::shared::sweep::March;
+use ridgelight_cpu::sun_shade::sun_at;
+use ridgelight_cpu::tolerance::{EPSILON, ShadeError, device_march_slope};
+
+use crate::cpu_reference::{Pair, Run, constant, pushed};
+
+/// Lines of an azimuth: how many, and the lane position of the first at step 0 (`lattice.glsl`).
+fn lines_of(march: &March, total: i32) -> (i32, i32) {
+    if march.periodic() {
+        return (march.lanes, 0);
+    }
+    let lead = ((total - 1) * march.azimuth.shear + CELL - 1) / CELL;
+    (march.lanes + lead, -lead * CELL)
+}
+
+/// Words of the lattice, by azimuth, line and step.
+struct Words {
+    words: Vec<u32>,
+    height: usize,
+}
+
+impl Words {
+    fn of(run: &mut Run, pass: &Pass) -> Self {
+        let [_, height] = run.extent(pass, "shadows");
+        Self { words: run.words(pass, "shadows").expect("bound"), height }
+    }
+
+    fn at(&self, azimuth: &Azimuth, line: i32, step: i32) -> u32 {
+        let (line, step) = (line as usize, step as usize);
+        let layer = azimuth.layer as usize + line / 32;
+        self.words[((layer * self.height + step) * 8 + line % 32 / 4) * 4 + line % 4]
+    }
+}
+
+/// A shadow's height: the high half of an f32.
+fn height_of(word: u32) -> f64 {
+    f32::from_bits(word & 0xffff_0000).into()
+}
+
+/// Heights over the plane are sums of two terms and are raised by four: 10 ε of the largest, of which the shader adds 17. A half
+/// of an f32 has 7 bits. A shadow is never too low.
+pub(crate) fn shadow_sweep(run: &mut Run, pass: &Pass) -> Vec<Pair> {
+    let words = Words::of(run, pass);
+    let [largest, _] = run.relief();
+    let mut pairs = Vec::new();
+    for k in pass.azimuths.clone() {
+        let azimuth = run.plan.azimuths[k as usize];
+        let march = March::new(run.heights(), &azimuth);
+        let warm_up = run.warm_up(azimuth.marches_rows());
+        let total = warm_up + march.steps;
+        let plane = f64::from(azimuth.low_slope) * f64::from(azimuth.step_m) * f64::from(total);
+        let rounded = 10.0 * EPSILON * (largest + plane.abs());
+        let (lines, first) = lines_of(&march, total);
+        for line in 0..lines {
+            let steps = shadow_line(&march, first + line * CELL, (total, warm_up));
+            for (step, at_step) in steps.iter().enumerate() {
+                let Some(at_step) = at_step else { continue };
+                let word = words.at(&azimuth, line, step as i32);
+                let (got, back) = (height_of(word), (word & 0xffff) as usize);
+                let at = [k as usize, line as usize, step];
+                let Some(top) = at_step.top else {
+                    pairs.push(Pair { got: back as f64, want: 0.0, tolerance: 0.0, at });
+                    assert!(got < -1e20, "{at:?}: {got} without ground ahead");
+                    continue;
+                };
+                let want = top - at_step.over_plane;
+                let tolerance = want.abs() / 128.0 + 5.0 * rounded;
+                pairs.push(Pair { got, want, tolerance, at });
+                pairs.push(Pair { got: (want - got).max(0.0), want: 0.0, tolerance: 0.0, at });
+                let cast = steps[step - back].expect("on the line").raised;
+                pairs.push(Pair { got: cast, want: top, tolerance: rounded, at });
+            }
+        }
+    }
+    pairs
+}
+
+/// Azimuths of the light so far, and what errs at a texel.
+fn so_far(run: &mut Run, (first, count, clears): (u32, u32, u32)) -> (Range<usize>, ShadeError) {
+    if clears == 1 {
+        run.light_begins = first as usize;
+    }
+    let range = run.light_begins..(first + count) as usize;
+    let [_, relief] = run.relief();
+    let steps = run.plan.azimuths[range.clone()].iter().map(|a| f64::from(a.step_m));
+    let slope = device_march_slope(relief, steps.fold(f64::MAX, f64::min));
+    let [x, y] = run.scene.field.cell_m();
+    (range.clone(), ShadeError::new(slope, relief, x.min(y), range.len()))
+}
+
+/// Light by exact horizons, at every texel; none where a point sun grazes the ground.
+fn exact(run: &Run, range: Range<usize>, is_point: bool, error: &ShadeError) -> Vec<Option<f64>> {
+    let mut azimuths = run.plan.azimuths[range].to_vec();
+    number_layers(&mut azimuths);
+    let (heights, size) = (run.heights(), run.size());
+    let mut lattices = Lattices::new(&azimuths, size, 15, run.border());
+    for azimuth in &azimuths {
+        let warm_up = run.warm_up(azimuth.marches_rows());
+        let options = MarchOptions { all_crossings: true, warm_up };
+        horizon_march(heights, azimuth, options, lattices.of_mut(azimuth));
+    }
+    let warm_up = [run.warm_up(false), run.warm_up(true)];
+    let swept = Swept {
+        heights,
+        azimuths: &azimuths,
+        lattices: &lattices,
+        fuse: None,
+        line_shift: 15,
+        warm_up,
+    };
+    let shape = if is_point { Shape::Point } else { Shape::Disc };
+    swept.per_grid_point(|col, row| {
+        let mut grazes = false;
+        swept.add_all([col, row], true, |_, azimuth, lowest, _| {
+            let off = lowest - f64::from(azimuth.high_slope);
+            grazes |= is_point && off.abs() <= error.lowest_slope();
+        });
+        (!grazes).then(|| sun_at(&swept, shape, col, row))
+    })
+}
+
+fn weights(azimuths: &[Azimuth]) -> f64 {
+    azimuths.iter().map(|a| f64::from(a.weight)).sum()
+}
+
+/// Whether each texel is marked, where it is certain; and the light of those that are not, by exact horizons.
+pub(crate) fn shadow_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
+    const AZIMUTH_COUNT: usize = offset("ShadowShadePush", "azimuth_count");
+    const CLEARS: usize = offset("ShadowShadePush", "clears");
+    const FIRST_AZIMUTH: usize = offset("ShadowShadePush", "first_azimuth");
+    let [first, count, clears] = [FIRST_AZIMUTH, AZIMUTH_COUNT, CLEARS].map(|o| pushed(pass, o));
+    let (range, error) = so_far(run, (first, count, clears));
+    let is_point = constant(pass, "is_point") == 1;
+    let words = Words::of(run, pass);
+    let marks = run.words(pass, "doubtful").expect("written");
+    let [fours, _] = run.extent(pass, "doubtful");
+    let got = run.floats(pass, "sun_sum").expect("written");
+    let want = exact(run, range.clone(), is_point, &error);
+    let tolerance = error.sun(weights(&run.plan.azimuths[range.clone()]));
+    let [cols, _] = run.size();
+    let mut pairs = Vec::new();
+    let mut decided = 0;
+    for i in 0..got.len() {
+        let (col, row) = (i % cols, i / cols);
+        let by_row = run.plan.azimuths[first as usize].marches_rows();
+        let (lane, march) = if by_row { (col, row) } else { (row, col) };
+        let is_marked = marks[march * fours + lane / 4] >> (lane % 4) & 1 == 1;
+        let at = [range.len(), row, col];
+        let batch = first as usize..(first + count) as usize;
+        let proofs = run.plan.azimuths[batch].iter().map(|azimuth| {
+            sees_all(run, &words, azimuth, [col as i32, row as i32], error.lowest_slope())
+        });
+        let proofs: Option<Vec<bool>> = proofs.collect();
+        if let Some(proofs) = proofs {
+            let wanted = f64::from(u8::from(proofs.contains(&false)));
+            let got = f64::from(u8::from(is_marked));
+            pairs.push(Pair { got, want: wanted, tolerance: 0.0, at });
+            decided += 1;
+        }
+        if let Some(want) = want[i].filter(|_| !is_marked) {
+            pairs.push(Pair { got: got[i].into(), want, tolerance, at });
+        }
+    }
+    assert!(decided * 10 >= got.len() * 9, "{decided} of {} decided", got.len());
+    pairs
+}
+
+/// Whether a grid point provably sees a whole chord, or faces away from it; none where rounding decides.
+fn sees_all(
+    run: &Run,
+    words: &Words,
+    azimuth: &Azimuth,
+    [col, row]: [i32; 2],
+    slope_error: f64,
+) -> Option<bool> {
+    let heights = run.heights();
+    let march = March::new(heights, azimuth);
+    let (lane, step) = march.of_grid_point(col, row);
+    let (low, high) = (f64::from(azimuth.low_slope), f64::from(azimuth.high_slope));
+    let gradient = field_slope(&heights, col, row);
+    let mut own = gradient.x * f64::from(azimuth.cos_phi) + gradient.y * f64::from(azimuth.sin_phi);
+    if run.border() != Border::Open {
+        own = own.max(0.0);
+    }
+    let near = |a: f64, b: f64, error: f64| (a - b).abs() <= error;
+    if near(own, high, slope_error) {
+        return None;
+    }
+    if own >= high {
+        return Some(true);
+    }
+    let height = march.height_at(lane, step);
+    let ahead = f64::from(first_crossings(&march, (lane, step), height).slope);
+    if near(ahead, low, slope_error) {
+        return None;
+    }
+    let warm_up = run.warm_up(azimuth.marches_rows());
+    let total = warm_up + march.steps;
+    let (lines, first) = lines_of(&march, total);
+    let from_origin = lane * CELL - first - (warm_up + step) * azimuth.shear;
+    let (line, t) = (from_origin.div_euclid(CELL), f64::from(from_origin.rem_euclid(CELL)));
+    let t = t / f64::from(CELL);
+    let word = |line: i32| {
+        let line = if march.periodic() { line.rem_euclid(lines) } else { line };
+        (0..lines).contains(&line).then(|| words.at(azimuth, line, warm_up + step))
+    };
+    let (Some(before), after) = (word(line), word(line + 1)) else { return Some(false) };
+    let Some(after) = (if t == 0.0 { Some(before) } else { after }) else { return Some(false) };
+    let shadow = (1.0 - t) * height_of(before) + t * height_of(after);
+    let h = |lane: i32| f64::from(march.height_at(lane, step));
+    let over = t * (1.0 - t) * (2.0 * h(lane) - h(lane - 1) - h(lane + 1));
+    let [largest, _] = run.relief();
+    let rounded = 8.0 * EPSILON * (shadow.abs().min(1e20) + largest);
+    (!near(shadow, over, rounded)).then_some(shadow <= over && ahead <= low)
+}
+
+/// The light of all texels, by exact horizons.
+pub(crate) fn shadow_settle(run: &mut Run, pass: &Pass) -> Vec<Pair> {
+    const AZIMUTH_COUNT: usize = offset("ShadowSettlePush", "azimuth_count");
+    const CLEARS: usize = offset("ShadowSettlePush", "clears");
+    const FIRST_AZIMUTH: usize = offset("ShadowSettlePush", "first_azimuth");
+    let [first, count, clears] = [FIRST_AZIMUTH, AZIMUTH_COUNT, CLEARS].map(|o| pushed(pass, o));
+    let (range, error) = so_far(run, (first, count, clears));
+    let is_point = constant(pass, "is_point") == 1;
+    let got = run.floats(pass, "sun_sum").expect("written");
+    let want = exact(run, range.clone(), is_point, &error);
+    let tolerance = error.sun(weights(&run.plan.azimuths[range.clone()]));
+    let [cols, _] = run.size();
+    let pairs: Vec<Pair> = got
+        .iter()
+        .zip(want)
+        .enumerate()
+        .filter_map(|(i, (got, want))| {
+            let at = [range.len(), i / cols, i % cols];
+            want.map(|want| Pair { got: (*got).into(), want, tolerance, at })
+        })
+        .collect();
+    assert!(pairs.len() * 50 >= got.len() * 49, "{} of {} decided", pairs.len(), got.len());
+    pairs
+}
