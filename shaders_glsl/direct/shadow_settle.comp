@@ -1,4 +1,4 @@
-// Computes: direct light of a sun at the marked grid points, from the exact horizon in every azimuth: the surface where the
+// Computes: direct light of a sun or a narrow key light at the marked grid points, from the exact horizon in every azimuth: the surface where the
 // nearer swept line is shadowed from, then a walk over the grid point's own line that skips blocks of cells below the
 // horizon found so far.
 // Reads: lane_heights, maxima, azimuths, shadows, doubtful (see doubtful.glsl).
@@ -13,7 +13,8 @@ layout(local_size_x = 64) in;
 
 layout(constant_id = 0) const uint BORDER = 0u;
 layout(constant_id = 1) const bool MARCHES_ROWS = false;
-layout(constant_id = 2) const bool IS_POINT = false;
+// See sun_light.glsl.
+layout(constant_id = 2) const uint SHAPE = 0u;
 // More steps than a walk over this field can take; llvmpipe ends all loops together after 65,535 iterations.
 layout(constant_id = 3) const int MOST_STEPS = 60000;
 const int LANE_STRIDE = 1;
@@ -160,15 +161,15 @@ Ground ground_at(int lane, int march) {
     return Ground(texel_at(lane, march), q.here.four[lane & 3], east[lane & 3], north[lane & 3]);
 }
 
-// Rise of the grid point's own plane along an azimuth (TW10 eq. 4), and the lowest slope from which light arrives: of the
-// chord, of that plane and of level ground around the field.
-vec2 own_slopes(Ground ground, Azimuth azimuth) {
+// The lowest slope from which light arrives: of the chord, of the grid point's own plane along the azimuth (TW10 eq. 4) and
+// of level ground around the field.
+float own_slope(Ground ground, Azimuth azimuth) {
     float rise = ground.east * azimuth.cos_phi + ground.north * azimuth.sin_phi;
     float level = BORDER == BORDER_OPEN ? NO_SLOPE : 0.0;
     float high = azimuth.high_slope;
     // The chord of a point is a few units in the last place.
-    float low = IS_POINT ? high - 2.4e-7 * max(abs(high), 1e-6) : azimuth.low_slope;
-    return vec2(rise, max(max(rise, level), low));
+    float low = SHAPE == SHAPE_POINT ? high - 2.4e-7 * max(abs(high), 1e-6) : azimuth.low_slope;
+    return max(max(rise, level), low);
 }
 
 // Marked grid points of the workgroup, as march position and lane.
@@ -237,16 +238,17 @@ void main() {
         int lane = int(place >> 16);
         int march = int(place & 0xffffu);
         Ground ground = ground_at(lane, march);
-        vec2 own = own_slopes(ground, azimuth);
+        float own = own_slope(ground, azimuth);
         float high = azimuth.high_slope;
-        float lowest = max(own.y, proposed_slope(azimuth, lane, march, ground.height));
+        float lowest = max(own, proposed_slope(azimuth, lane, march, ground.height));
         // As far as sweeps march.
         int steps = MARCHES_ROWS ? land.rows : land.cols;
         float t_end = float(warm_up + march_position(azimuth, march, steps));
         Ray ray = Ray(ground.texel, vec2(0.0), ground.height, step_cells(azimuth), 0.0, 1.0 / azimuth.step_m);
         lowest = horizon_slope(ray, azimuth.step_m, t_end, lowest, high, exists && lowest < high);
         float normal_up = inversesqrt(1.0 + ground.east * ground.east + ground.north * ground.north);
-        lights[thread] = sun_light(azimuth, vec4(-own.x * normal_up), vec4(normal_up), vec4(lowest), IS_POINT).x;
+        vec3 normal = vec3(-ground.east, -ground.north, 1.0) * normal_up;
+        lights[thread] = sun_light(azimuth, vec4(normal.x), vec4(normal.y), vec4(normal.z), vec4(lowest), SHAPE).x;
         barrier();
         // In the order of the azimuths.
         if (exists && thread % azimuth_count == 0u) {

@@ -1,4 +1,4 @@
-// Computes: direct light of a sun where the shadow heights around a grid point prove in every azimuth that it sees the whole
+// Computes: direct light of a sun or a narrow key light where the shadow heights around a grid point prove in every azimuth that it sees the whole
 // chord of the sun. The other grid points that face the sun are marked.
 // Reads: lane_heights, azimuths, shadows.
 // Writes: doubtful (see doubtful.glsl).
@@ -15,8 +15,8 @@ layout(local_size_x = 8, local_size_y = 16) in;
 const int LANE_STRIDE = 1;
 layout(constant_id = 0) const uint BORDER = 0u;
 layout(constant_id = 1) const bool MARCHES_ROWS = false;
-// The sun is a point.
-layout(constant_id = 2) const bool IS_POINT = false;
+// See sun_light.glsl.
+layout(constant_id = 2) const uint SHAPE = 0u;
 
 layout(binding = 0, rgba32f) uniform readonly image2D lane_heights;
 layout(binding = 1) uniform textureBuffer azimuths;
@@ -127,8 +127,7 @@ void main() {
         bvec4 ahead_is_low = lessThanEqual(met.slope, vec4(azimuth.low_slope));
         bvec4 sees_all = bvec4(uvec4(known) & uvec4(over_shadow) & uvec4(ahead_is_low));
         doubts = bvec4(uvec4(doubts) | (uvec4(faces) & uvec4(not(sees_all))));
-        vec4 flat_part = normal_east * azimuth.cos_phi + normal_north * azimuth.sin_phi;
-        vec4 light = sun_light(azimuth, flat_part, normal_up, own, IS_POINT);
+        vec4 light = sun_light(azimuth, normal_east, normal_north, normal_up, own, SHAPE);
         sun += mix(vec4(0.0), light, bvec4(uvec4(faces) & uvec4(sees_all)));
     }
     uint marks = 0u;

@@ -1,8 +1,18 @@
-// Light of a sun's chord in one azimuth above `lowest`, the slope of the lowest direction that is not hidden; 0 where all of
-// it is hidden. `flat_part` and `vertical` are the normal's parts along the azimuth and up.
-vec4 sun_light(Azimuth azimuth, vec4 flat_part, vec4 vertical, vec4 lowest, bool is_point) {
+const uint SHAPE_DISC = 0u;   // the part of each chord above the horizon
+const uint SHAPE_POINT = 1u;  // lit or not
+const uint SHAPE_PATCH = 2u;  // the part of its elevations above the horizon, over each wedge
+
+// Light of a sun's chord, or of a key light's wedge, above `lowest`: the slope of the lowest direction that is not hidden. 0
+// where all of it is hidden. `east`, `north` and `up` are the normal.
+vec4 sun_light(Azimuth azimuth, vec4 east, vec4 north, vec4 up, vec4 lowest, uint shape) {
+    vec4 flat_part = east * azimuth.cos_phi + north * azimuth.sin_phi;
+    vec4 vertical = up;
+    if (shape == SHAPE_PATCH) {
+        flat_part = east * azimuth.wedge_cos + north * azimuth.wedge_sin;
+        vertical = up * azimuth.wedge_rad;
+    }
     vec4 light;
-    if (is_point) {
+    if (shape == SHAPE_POINT) {
         float cos_elevation = inversesqrt(1.0 + azimuth.high_slope * azimuth.high_slope);
         light = max((flat_part + vertical * azimuth.high_slope) * cos_elevation, 0.0);
     } else {

@@ -17,9 +17,7 @@ const bool LATTICE_HAS_DISTANCES = false;
 const int LATTICE_STRIDE = 1;
 const int LANE_STRIDE = 1;
 const bool OWN_PLANE_HIDES = true;
-const uint SHAPE_DISC = 0u;   // the part of each chord above the horizon
-const uint SHAPE_POINT = 1u;  // lit or not
-const uint SHAPE_PATCH = 2u;  // the part of its elevations above the horizon, over each wedge
+// See sun_light.glsl.
 layout(constant_id = 4) const uint SHAPE = 0u;
 layout(constant_id = 5) const bool MARCHES_ROWS = false;
 // Only the grid points marked in dirty_texels, from the list of their words.
@@ -45,13 +43,7 @@ vec4 normal_up;
 // Adds azimuth `index`: `lowest` is the slope of the lowest direction above both the horizon and the grid point's own
 // plane.
 void add_light(uint index, Azimuth azimuth, vec4 lowest) {
-    vec4 flat_part = normal_east * azimuth.cos_phi + normal_north * azimuth.sin_phi;
-    vec4 vertical = normal_up;
-    if (SHAPE == SHAPE_PATCH) {
-        flat_part = normal_east * azimuth.wedge_cos + normal_north * azimuth.wedge_sin;
-        vertical = normal_up * azimuth.wedge_rad;
-    }
-    sun += sun_light(azimuth, flat_part, vertical, lowest, SHAPE == SHAPE_POINT);
+    sun += sun_light(azimuth, normal_east, normal_north, normal_up, lowest, SHAPE);
 }
 
 float dark_slope(Azimuth azimuth) {

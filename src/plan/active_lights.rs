@@ -1,6 +1,7 @@
 use super::Picture;
 use crate::passes::azimuths;
 use crate::passes::azimuths::{Azimuth, Shape};
+use crate::passes::shadows::{Aim, Shadows};
 use crate::passes::spheres::Spheres;
 use crate::passes::sweep::Sweep;
 use crate::passes::sweeping::circle;
@@ -189,6 +190,26 @@ impl<'a> ActiveLights<'a> {
             colour: colour(key.radiance, *i, 1),
         });
         suns.chain(keys)
+    }
+
+    /// Positions among the lights that are [aimed](Self::aimed), of suns and of key lights narrow enough for shadow heights.
+    pub(super) fn by_shadow_heights(&self) -> Vec<usize> {
+        let keys = self.keys.iter().enumerate().filter(|(_, (_, key))| Shadows::suits(key));
+        (0..self.suns.len()).chain(keys.map(|(k, _)| self.suns.len() + k)).collect()
+    }
+
+    /// Where one of them is.
+    pub(super) fn aim(&self, index: usize) -> Aim {
+        match self.suns.get(index) {
+            Some((_, sun)) => Aim {
+                azimuth_rad: sun.azimuth_rad,
+                low_rad: sun.elevation_rad - sun.diameter_rad / 2.0,
+            },
+            None => {
+                let key = self.keys[index - self.suns.len()].1;
+                Aim { azimuth_rad: key.azimuth_rad, low_rad: key.elevations_rad[0] }
+            }
+        }
     }
 
     /// Azimuths to sweep: the circle's if a sky or an environment needs it, then those of each light that is

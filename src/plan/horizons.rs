@@ -58,7 +58,7 @@ pub fn horizons(
         sweep,
         heights,
         vec![list],
-        &Held { limits, kept_from: None, nodes: Nodes { stride: 1 }, shadows: 0..0 },
+        &Held { limits, kept_from: None, nodes: Nodes { stride: 1 }, shadows: Vec::new() },
     )?;
     let batches = &lists.batches[0];
     for batch in batches {

@@ -20,7 +20,8 @@ use crate::passes::sphere_sh::SphereSh;
 use crate::passes::sweep::Sweep;
 use crate::passes::sweeping::{Held, Lists, prepare, settings};
 use crate::scene::{
-    Albedo, Basis, Border, Bounces, Environment, LightBasis, Quality, Scene, Specular, Wedges,
+    Albedo, Basis, Border, Bounces, Environment, LightBasis, Method, Quality, Scene, Specular,
+    Wedges,
 };
 use crate::{Error, Result};
 use drawing::Drawing;
@@ -176,19 +177,22 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     // Harmonics keep the visibility and a sky keeps its sum, so neither needs its lattices.
     let kept_from = keeps.then_some(usize::from(harmonics.is_some()));
     let nodes = marched_nodes(&sweep, harmonics.as_ref(), &active, wanted);
-    let first_sun = usize::from(images.need_circle());
-    let mut held = Held { limits, kept_from, nodes, shadows: first_sun..first_sun };
-    if !active.suns.is_empty() && !wanted.unshadowed {
+    let (mut held, mut of_lights) =
+        (Held { limits, kept_from, nodes, shadows: Vec::new() }, Vec::new());
+    let narrow = active.by_shadow_heights();
+    if !narrow.is_empty() && !wanted.unshadowed {
         match Shadows::suit(quality, &sweep, field, surface.border, (limits, builder.bytes())) {
-            Ok(()) => held.shadows.end += active.suns.len(),
-            Err(Some(why)) => notes.push(format!("suns by hull sweeps: {why}")),
+            Ok(()) => of_lights = narrow,
+            Err(Some(why)) => notes.push(format!("suns and key lights by hull sweeps: {why}")),
             Err(None) => {}
         }
     }
-    let shadows = (!held.shadows.is_empty()).then(|| {
-        let azimuths = lists[held.shadows.clone()].iter().flatten();
-        let of = ([size[0], size[1]], surface.border, active.suns.len());
-        Shadows::make(&mut builder, azimuths, of, limits)
+    let first_aimed = usize::from(images.need_circle());
+    held.shadows.extend(of_lights.iter().map(|i| first_aimed + i));
+    let shadows = (!of_lights.is_empty()).then(|| {
+        let azimuths = held.shadows.iter().flat_map(|l| &lists[*l]);
+        let (of, count) = (([size[0], size[1]], surface.border), active.aimed().count());
+        Shadows::make(&mut builder, azimuths, of, (&of_lights, count), limits)
     });
     let shared = (bounces, images.sky_sum);
     let at_nodes = BounceNodes::make(&mut builder, size, quality, shared, limits, &mut notes);
@@ -209,7 +213,9 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
         let found = (bounces, at_nodes, levels);
         Bouncing::make(&mut builder, scene, quality, found, of_light, specular)
     });
-    let sweep = sweeping.as_ref().map(|s| &s.sweep);
+    // Suns by shadow heights alone have no settings of sweeps.
+    let has_others = lists.lists.len() > of_lights.len();
+    let sweep = sweeping.as_ref().filter(|_| has_others).map(|s| &s.sweep);
     let soft = (quality.light_basis == LightBasis::Sh && images.sphere_sum.is_some()).then(|| {
         SphereSh::make(&mut builder, (size, surface.border), quality, images.heights, levels)
     });
@@ -217,6 +223,9 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
         passes::sphere_sh_shade::check(surface.border, field, soft)?;
     }
     let mut used = used(quality, sweep, surface.border, &active, &images, soft.as_ref());
+    if !of_lights.is_empty() && !has_others {
+        used.push(("method".into(), Method::Auto.name().into()));
+    }
     used.push(("bounces".into(), bouncing.as_ref().map_or(0, Bouncing::count).to_string()));
     if bouncing.is_some() {
         used.push(("bounce_cutoff".into(), quality.bounces.cutoff.to_string()));

@@ -7,7 +7,7 @@ words! {
     pub enum Method = Auto {
         /// The planner's choice: a sweep, and exact shadows of suns
         ///
-        /// Suns have exact shadows where `lines`, `fuse` and `precision` have their defaults.
+        /// Suns and key lights up to 5 degrees high have exact shadows where `lines`, `fuse` and `precision` have their defaults.
         Auto = "auto",
         /// Hull sweeps along lines
         ///

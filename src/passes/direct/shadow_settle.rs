@@ -1,4 +1,5 @@
 use crate::graph::{Builder, ResourceId, shaders};
+use crate::passes::azimuths::Shape;
 use crate::passes::batch::Batch;
 use crate::passes::shadows::{Shadows, Walked};
 use crate::passes::sphere_shade::MOST_TURNS;
@@ -14,7 +15,7 @@ pub(crate) fn plan(
     (shadows, walked): (&Shadows, Walked),
     (field, border): (&HeightField, Border),
     batch: &Batch,
-    (part, is_point): (&str, bool),
+    (part, shape): (&str, Shape),
     [lane_heights, azimuths, lattice, sun_sum]: [ResourceId; 4],
 ) {
     let axis = batch.axis;
@@ -34,7 +35,7 @@ pub(crate) fn plan(
             shaders::ShadowSettle {
                 border: border as u32,
                 marches_rows: axis.marches_rows,
-                is_point,
+                shape: shape as u32,
                 most_steps: most_steps as i32,
             },
             &part,

@@ -1,4 +1,5 @@
 use crate::graph::{Builder, ResourceId, shaders};
+use crate::passes::azimuths::Shape;
 use crate::passes::batch::Batch;
 use crate::passes::shadows::Shadows;
 use crate::scene::Border;
@@ -9,13 +10,17 @@ pub(crate) fn plan(
     shadows: &Shadows,
     (border, cell_m): (Border, [f64; 2]),
     batch: &Batch,
-    (part, is_point): (&str, bool),
+    (part, shape): (&str, Shape),
     [lane_heights, azimuths, lattice, sun_sum]: [ResourceId; 4],
 ) {
     let axis = batch.axis;
     let [cols, rows] = axis.size();
     let pass = builder.pass(
-        shaders::ShadowShade { border: border as u32, marches_rows: axis.marches_rows, is_point },
+        shaders::ShadowShade {
+            border: border as u32,
+            marches_rows: axis.marches_rows,
+            shape: shape as u32,
+        },
         part,
         "texels that see all of a chord of the sun, or none of it",
         [axis.steps.div_ceil(8), axis.lanes.div_ceil(4 * 16), 1],

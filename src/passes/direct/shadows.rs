@@ -5,7 +5,7 @@ use crate::passes::azimuths::Azimuth;
 use crate::passes::blocks::{BlockLevels, Source};
 use crate::passes::shadow_sweep;
 use crate::passes::sweep::{Sweep, group_size};
-use crate::scene::{Border, Fuse, HeightField, Lines, Method, Precision, Quality, Sun};
+use crate::scene::{Border, Fuse, HeightField, KeyLight, Lines, Method, Precision, Quality};
 
 /// What the passes of suns share, besides the lattices.
 pub(crate) struct Shadows {
@@ -13,8 +13,8 @@ pub(crate) struct Shadows {
     doubtful: [Option<ResourceId>; 2],
     group_size: u32,
     pub levels: BlockLevels,
-    /// For each sun, the maxima of blocks over a plane that rises with its light.
-    maxima: Vec<ResourceId>,
+    /// For each of the lights, the maxima of blocks over a plane that rises with its light; none for others.
+    maxima: Vec<Option<ResourceId>>,
 }
 
 /// Bytes per texel of the images that suns need besides lattices: marks along both axes, and the maxima of blocks.
@@ -51,11 +51,18 @@ impl Shadows {
         Ok(())
     }
 
-    /// Makes the images for `suns` suns, along the axes of `azimuths`.
+    /// Whether a key light is narrow enough: of a tall one most texels see a part, and each of them walks.
+    pub(crate) fn suits(key: &KeyLight) -> bool {
+        let [low, high] = key.elevations_rad;
+        high - low <= TALLEST.to_radians()
+    }
+
+    /// Makes the images for these of `lights` suns and key lights, along the axes of `azimuths`.
     pub(crate) fn make<'a>(
         builder: &mut Builder,
         azimuths: impl Iterator<Item = &'a Azimuth> + Clone,
-        (size, border, suns): ([u32; 2], Border, usize),
+        (size, border): ([u32; 2], Border),
+        (which, lights): (&[usize], usize),
         limits: &Limits,
     ) -> Self {
         let doubtful = [false, true].map(|marches_rows| {
@@ -67,8 +74,8 @@ impl Shadows {
             })
         });
         let levels = BlockLevels::of(size, border);
-        let maxima = (0..suns).map(|i| levels.maxima(builder, &format!("shadow_maxima_{i}")));
-        let maxima = maxima.collect();
+        let mut made = |i| levels.maxima(builder, &format!("shadow_maxima_{i}"));
+        let maxima = (0..lights).map(|i| which.contains(&i).then(|| made(i))).collect();
         Self { doubtful, group_size: group_size(limits), levels, maxima }
     }
 
@@ -88,22 +95,31 @@ impl Shadows {
         shadow_sweep::plan(builder, batch, part, self.group_size, ids);
     }
 
-    /// The maxima of blocks for walks towards the sun at `index`, which skip most of the ground under its light: over a plane
+    /// The maxima of blocks for walks towards the light at `index`, which skip most of the ground under its light: over a plane
     /// that rises with its lower edge.
     pub(crate) fn plan_maxima(
         &self,
         builder: &mut Builder,
         (part, index): (&str, usize),
-        (sun, cell_m): (&Sun, [f64; 2]),
+        (aim, cell_m): (Aim, [f64; 2]),
         heights: ResourceId,
     ) -> Walked {
-        let slope = (sun.elevation_rad - sun.diameter_rad / 2.0).tan().clamp(-1.0, MOST_TILT);
-        let (sin, cos) = sun.azimuth_rad.sin_cos();
+        let slope = aim.low_rad.tan().clamp(-1.0, MOST_TILT);
+        let (sin, cos) = aim.azimuth_rad.sin_cos();
         let tilt = [-slope * cos * cell_m[0], slope * sin * cell_m[1]].map(|t| t as f32);
-        let maxima = self.maxima[index];
+        let maxima = self.maxima[index].expect("made for every light by shadow heights");
         self.levels.plan(builder, part, Source::Heights { heights, tilt }, maxima);
         Walked { maxima, tilt }
     }
+}
+
+/// Where a sun or a key light is.
+#[derive(Clone, Copy)]
+pub(crate) struct Aim {
+    /// Of its middle, counter-clockwise from east.
+    pub azimuth_rad: f64,
+    /// Elevation of its lower edge.
+    pub low_rad: f64,
 }
 
 /// Blocks of cells that walks towards one sun skip.
@@ -112,6 +128,9 @@ pub(crate) struct Walked {
     pub maxima: ResourceId,
     pub tilt: [f32; 2],
 }
+
+/// Degrees of elevation that a key light may span.
+const TALLEST: f64 = 5.0;
 
 /// Above it the plane has fewer digits left for the heights.
 const MOST_TILT: f64 = 10.0;

@@ -1,5 +1,4 @@
 use std::f64::consts::TAU;
-use std::ops::Range;
 
 use crate::graph::Axis;
 use crate::graph::{Builder, Format, Limits, Owner, ResourceId};
@@ -27,8 +26,8 @@ pub(crate) struct Sweeping {
     pub nodes: Nodes,
     /// The lattice of each batch; several batches may use one in turn.
     lattices: Vec<Lattice>,
-    /// Numbers of the batches of suns by shadow heights.
-    shadows: Range<u32>,
+    /// Numbers of the batches of lights by shadow heights.
+    shadows: Vec<u32>,
 }
 
 /// Output of sweeps.
@@ -70,7 +69,7 @@ impl Sweeping {
         self.heights
     }
 
-    /// Whether a batch is of a sun by shadow heights, whose sweep is not planned here.
+    /// Whether a batch is of a light by shadow heights, whose sweep is not planned here.
     pub(crate) fn is_shadow(&self, batch: &Batch) -> bool {
         self.shadows.contains(&batch.number)
     }
@@ -149,8 +148,8 @@ pub(crate) struct Held<'a> {
     /// Lists from here on have a lattice of their own; the others use lattices in turn.
     pub kept_from: Option<usize>,
     pub nodes: Nodes,
-    /// The lists of suns by shadow heights.
-    pub shadows: Range<usize>,
+    /// The lists of lights by shadow heights.
+    pub shadows: Vec<usize>,
 }
 
 /// Makes the sweep's images within the remaining budget, and cuts the lists into batches.
@@ -230,8 +229,7 @@ pub(crate) fn prepare(
     for (axis, lanes) in lanes() {
         passes::height_transpose::plan(builder, axis, border, heights, lanes);
     }
-    let count = |lists: &[Vec<Batch>]| lists.iter().map(Vec::len).sum::<usize>() as u32;
-    let first_shadow = count(&batches[..shadows.start]);
+    let of_shadows = shadows.iter().flat_map(|l| batches[*l].iter().map(|b| b.number)).collect();
     if let (Sweep::Pyramid(pyramid), Some(images)) = (&sweep, &levels) {
         pyramid.plan(builder, heights, images);
     }
@@ -247,7 +245,7 @@ pub(crate) fn prepare(
         levels,
         nodes,
         lattices,
-        shadows: first_shadow..first_shadow + count(&batches[shadows.clone()]),
+        shadows: of_shadows,
     };
     Ok((sweeping, Lists { lists, batches }))
 }

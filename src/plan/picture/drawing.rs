@@ -3,7 +3,6 @@
 use super::super::active_lights::{ActiveLights, Aimed, Colour};
 use super::images::{Harmonics, Images, SpecularSlices, Tables};
 use crate::graph::{Builder, ResourceId};
-use crate::passes::azimuths::Shape;
 use crate::passes::blocks::Blocks;
 use crate::passes::bounces::{Bouncing, bounce_name};
 use crate::passes::edits::Edits;
@@ -216,13 +215,13 @@ impl Drawing<'_> {
                     let ids = [lanes, sweeping.azimuths, sweeping.written(batch)];
                     shadows.plan_sweep(builder, batch, &part, ids);
                     let field = &self.scene.field;
-                    let of = (part.as_str(), shape == Shape::Point);
+                    let of = (part.as_str(), shape);
                     let ids = [lanes, sweeping.azimuths, sweeping.written(batch), sum];
                     passes::shadow_shade::plan(builder, shadows, (border, cell_m), batch, of, ids);
                     let lit = (field, border);
                     let walked = *walked.get_or_insert_with(|| {
-                        let (sun, heights) = ((self.active.suns[i].1, cell_m), sweeping.heights());
-                        shadows.plan_maxima(builder, (&name, i), sun, heights)
+                        let (aim, heights) = ((self.active.aim(i), cell_m), sweeping.heights());
+                        shadows.plan_maxima(builder, (&name, i), aim, heights)
                     });
                     let shadows = (shadows, walked);
                     passes::shadow_settle::plan(builder, shadows, lit, batch, of, ids);

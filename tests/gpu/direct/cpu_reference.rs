@@ -6,8 +6,8 @@ pub(crate) mod sphere_sh;
 
 use ridgelight::plan::Picture;
 use ridgelight::scene::{
-    Albedo, Basis, Border, Fuse, Levels, LightBasis, Lights, Method, PhongSpecular, Quality,
-    Receiver, Scene, Specular, SphereLight, Sun, Surface, Wedges, Window,
+    Albedo, Basis, Border, Fuse, KeyLight, Levels, LightBasis, Lights, Method, PhongSpecular,
+    Quality, Receiver, Scene, Specular, SphereLight, Sun, Surface, Wedges, Window,
 };
 
 use crate::cpu_reference::{Case, Reference, Wanted, check_all, key, noisy_environment, rough};
@@ -178,6 +178,17 @@ pub(crate) fn pictures() -> Vec<Case> {
         let surface = Surface { border, albedo, specular: phong };
         Scene { field: rough(13, 10, 44), surface, lights }
     };
+    // Low lights by shadow heights: a disc, a point and a narrow key light, in different octants.
+    let low = |border| {
+        let narrow = KeyLight { width_rad: 0.3, ..key(0.12, 0.2, [1.0, 2.0, 3.0]) };
+        let suns = vec![sun(0.4, 0.1, [3.0, 2.5, 2.0]), sun(-1.9, 0.0, [2.0; 3])];
+        let lights = Lights { suns, keys: vec![narrow], ..Lights::default() };
+        Scene {
+            field: rough(21, 18, 46),
+            surface: Surface { border, ..Surface::default() },
+            lights,
+        }
+    };
     // Twelve columns: the last is no multiple of 4 from the first; of a field that repeats.
     let repeated = {
         let lights = Lights { environment: Some(noisy_environment(17)), ..Lights::default() };
@@ -187,6 +198,9 @@ pub(crate) fn pictures() -> Vec<Case> {
     vec![
         picture("colours", colourful.clone(), quality, true, false),
         picture("environment on a plane", on_a_plane.clone(), quality, false, false),
+        picture("low lights", low(Border::Plane), quality, true, false),
+        picture("low lights, open", low(Border::Open), quality, false, false),
+        picture("low lights, periodic", low(Border::Periodic), quality, false, false),
         of_device,
         picture("grey", grey, Quality { fuse: Fuse::Aimed, ..quality }, false, true),
         picture("sphere lights", sphere_lights.clone(), quality, true, false),

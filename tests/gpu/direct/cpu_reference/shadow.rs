@@ -103,7 +103,7 @@ fn so_far(run: &mut Run, (first, count, clears): (u32, u32, u32)) -> (Range<usiz
 }
 
 /// Light by exact horizons, at every texel; none where a point sun grazes the ground.
-fn exact(run: &Run, range: Range<usize>, is_point: bool, error: &ShadeError) -> Vec<Option<f64>> {
+fn exact(run: &Run, range: Range<usize>, shape: Shape, error: &ShadeError) -> Vec<Option<f64>> {
     let mut azimuths = run.plan.azimuths[range].to_vec();
     number_layers(&mut azimuths);
     let (heights, size) = (run.heights(), run.size());
@@ -122,19 +122,23 @@ fn exact(run: &Run, range: Range<usize>, is_point: bool, error: &ShadeError) -> 
         line_shift: 15,
         warm_up,
     };
-    let shape = if is_point { Shape::Point } else { Shape::Disc };
     swept.per_grid_point(|col, row| {
         let mut grazes = false;
         swept.add_all([col, row], true, |_, azimuth, lowest, _| {
             let off = lowest - f64::from(azimuth.high_slope);
-            grazes |= is_point && off.abs() <= error.lowest_slope();
+            grazes |= shape == Shape::Point && off.abs() <= error.lowest_slope();
         });
         (!grazes).then(|| sun_at(&swept, shape, col, row))
     })
 }
 
-fn weights(azimuths: &[Azimuth]) -> f64 {
-    azimuths.iter().map(|a| f64::from(a.weight)).sum()
+fn shape_of(pass: &Pass) -> Shape {
+    [Shape::Disc, Shape::Point, Shape::Patch][constant(pass, "shape") as usize]
+}
+
+fn weights(azimuths: &[Azimuth], shape: Shape) -> f64 {
+    let is_patch = shape == Shape::Patch;
+    azimuths.iter().map(|a| f64::from(if is_patch { a.wedge_rad } else { a.weight })).sum()
 }
 
 /// Whether each texel is marked, where it is certain; and the light of those that are not, by exact horizons.
@@ -144,13 +148,13 @@ pub(crate) fn shadow_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     const FIRST_AZIMUTH: usize = offset("ShadowShadePush", "first_azimuth");
     let [first, count, clears] = [FIRST_AZIMUTH, AZIMUTH_COUNT, CLEARS].map(|o| pushed(pass, o));
     let (range, error) = so_far(run, (first, count, clears));
-    let is_point = constant(pass, "is_point") == 1;
+    let shape = shape_of(pass);
     let words = Words::of(run, pass);
     let marks = run.words(pass, "doubtful").expect("written");
     let [fours, _] = run.extent(pass, "doubtful");
     let got = run.floats(pass, "sun_sum").expect("written");
-    let want = exact(run, range.clone(), is_point, &error);
-    let tolerance = error.sun(weights(&run.plan.azimuths[range.clone()]));
+    let want = exact(run, range.clone(), shape, &error);
+    let tolerance = error.sun(weights(&run.plan.azimuths[range.clone()], shape));
     let [cols, _] = run.size();
     let mut pairs = Vec::new();
     let mut decided = 0;
@@ -235,10 +239,10 @@ pub(crate) fn shadow_settle(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     const FIRST_AZIMUTH: usize = offset("ShadowSettlePush", "first_azimuth");
     let [first, count, clears] = [FIRST_AZIMUTH, AZIMUTH_COUNT, CLEARS].map(|o| pushed(pass, o));
     let (range, error) = so_far(run, (first, count, clears));
-    let is_point = constant(pass, "is_point") == 1;
+    let shape = shape_of(pass);
     let got = run.floats(pass, "sun_sum").expect("written");
-    let want = exact(run, range.clone(), is_point, &error);
-    let tolerance = error.sun(weights(&run.plan.azimuths[range.clone()]));
+    let want = exact(run, range.clone(), shape, &error);
+    let tolerance = error.sun(weights(&run.plan.azimuths[range.clone()], shape));
     let [cols, _] = run.size();
     let pairs: Vec<Pair> = got
         .iter()

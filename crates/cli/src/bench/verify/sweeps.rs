@@ -180,11 +180,7 @@ fn azimuths_of(plan: &Plan, light: &str) -> Option<(Vec<Azimuth>, Shaded)> {
     let passes: Vec<&Pass> = plan.passes.iter().filter(own).collect();
     let first = passes.first()?;
     let is_exact = first.name() == "shadow_shade";
-    let shape = match first.constant("shape") {
-        Some(shape) => shape as usize,
-        None => first.constant("is_point")? as usize,
-    };
-    let shape = [Shape::Disc, Shape::Point, Shape::Patch][shape];
+    let shape = [Shape::Disc, Shape::Point, Shape::Patch][first.constant("shape")? as usize];
     let ranges = passes.iter().map(|p| p.azimuths.start as usize..p.azimuths.end as usize);
     let azimuths = ranges.flat_map(|range| plan.azimuths[range].iter().copied()).collect();
     Some((azimuths, Shaded { shape, is_exact }))
