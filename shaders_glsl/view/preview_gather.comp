@@ -21,7 +21,7 @@ layout(binding = 3) uniform texture2D coarse_albedo;
 layout(binding = 4, rgba32f) uniform writeonly image2D gathered;
 
 layout(push_constant) uniform PreviewGatherPush {
-    vec4 slope;     // east, north, up; and the constant
+    vec4 by_normal;     // east, north, up; and the constant
     vec4 most;      // what it is divided by besides; and the largest result
     vec4 colour;    // albedo where it is no map; and the least value of the function
     int cols;
@@ -43,7 +43,7 @@ void main() {
     }
     vec3 albedo = ALBEDO_IS_MAP ? texelFetch(coarse_albedo, at, 0).rgb : colour.rgb;
     albedo = max(albedo, vec3(DARK));
-    vec3 lit = albedo * most.rgb * max(slope.w + dot(normal, slope.xyz), colour.w);
+    vec3 lit = albedo * most.rgb * max(by_normal.w + dot(normal, by_normal.xyz), colour.w);
     vec3 share = mix(light / lit, vec3(0.0), lessThanEqual(lit, vec3(0.0)));
     imageStore(gathered, at, vec4(clamp(share, vec3(0.0), most.www), 1.0));
 }

@@ -17,8 +17,8 @@ layout(binding = 3, rgba32f) uniform readonly image2D sun;
 layout(binding = 4, rgba32f) uniform writeonly image2D radiance;
 
 layout(push_constant) uniform PreviewShadePush {
-    vec4 sky_slope;    // as in `preview_gather`
-    vec4 sun_slope;
+    vec4 sky_by_normal;    // as in `preview_gather`
+    vec4 sun_by_normal;
     vec4 most;         // radiance of a white texel that faces the sun
     vec4 colour;       // albedo where it is no map; and the least value of the sky's function
     int cols;
@@ -44,7 +44,7 @@ void main() {
     vec2 part = from - vec2(a);
     vec3 north = mix(imageLoad(sky, a).rgb, imageLoad(sky, ivec2(d.x, a.y)).rgb, part.x);
     vec3 south = mix(imageLoad(sky, ivec2(a.x, d.y)).rgb, imageLoad(sky, d).rgb, part.x);
-    vec3 light = mix(north, south, part.y) * max(sky_slope.w + dot(normal, sky_slope.xyz), colour.w);
+    vec3 light = mix(north, south, part.y) * max(sky_by_normal.w + dot(normal, sky_by_normal.xyz), colour.w);
     if (HAS_SUN) {
         last = ivec2(sun_cols, sun_rows) - 1;
         from = clamp((vec2(at) + 0.5) * sun_ratio - 0.5, vec2(0.0), vec2(last));
@@ -53,7 +53,7 @@ void main() {
         part = from - vec2(a);
         north = mix(imageLoad(sun, a).rgb, imageLoad(sun, ivec2(d.x, a.y)).rgb, part.x);
         south = mix(imageLoad(sun, ivec2(a.x, d.y)).rgb, imageLoad(sun, d).rgb, part.x);
-        light += mix(north, south, part.y) * most.rgb * max(dot(normal, sun_slope.xyz), 0.0);
+        light += mix(north, south, part.y) * most.rgb * max(dot(normal, sun_by_normal.xyz), 0.0);
     }
     light *= ALBEDO_IS_MAP ? texelFetch(albedo, at, 0).rgb : colour.rgb;
     imageStore(radiance, at, vec4(light, 1.0));

@@ -1,6 +1,6 @@
 use super::Plan;
 use crate::graph::{Builder, Format, Kind, Limits, Owner};
-use crate::passes::preview::{Grid, Slope};
+use crate::passes::preview::{Grid, Unoccluded};
 use crate::passes::{preview_gather, preview_shade};
 use crate::scene::{Albedo, HeightField, Scene, Sun};
 use crate::{Error, Result};
@@ -88,25 +88,25 @@ pub fn preview(
             ("coarse_radiance", image("sun_radiance", Owner::Input, of(plan), grid)),
             ("gathered", made),
         ];
-        (Slope::of_sun(light), grid, is_grey(plan), bound, made)
+        (Unoccluded::of_sun(light), grid, is_grey(plan), bound, made)
     });
     let radiance = image("radiance", Owner::Output, four, fine_grid);
 
-    let sky_slope = Slope::of_sky(&sky.lights, sky.surface.border);
+    let of_sky = Unoccluded::of_sky(&sky.lights, sky.surface.border);
     let surface = (&sky.surface.albedo, is_grey(sky_plan), of_sun.is_some());
-    preview_gather::plan(&mut builder, sky_grid, (sky_slope, "sky"), surface, &in_sky);
+    preview_gather::plan(&mut builder, sky_grid, (of_sky, "sky"), surface, &in_sky);
     let mut shaded = vec![("normals", normals)];
     shaded.extend(albedo.map(|albedo| ("albedo", albedo)));
     shaded.push(("sky", sky_light));
-    if let Some((slope, grid, grey, bound, made)) = &of_sun {
+    if let Some((unoccluded, grid, grey, bound, made)) = &of_sun {
         let surface = (&Albedo::Constant([1.0; 3]), *grey, false);
-        preview_gather::plan(&mut builder, *grid, (*slope, "sun"), surface, bound);
+        preview_gather::plan(&mut builder, *grid, (*unoccluded, "sun"), surface, bound);
         shaded.push(("sun", *made));
     }
     shaded.push(("radiance", radiance));
-    let of_sun = of_sun.map(|(slope, grid, ..)| (slope, grid));
+    let of_sun = of_sun.map(|(unoccluded, grid, ..)| (unoccluded, grid));
     let albedo = &fine.surface.albedo;
-    preview_shade::plan(&mut builder, fine_grid, (sky_slope, sky_grid), of_sun, albedo, &shaded);
+    preview_shade::plan(&mut builder, fine_grid, (of_sky, sky_grid), of_sun, albedo, &shaded);
     Plan::finish(builder, size, Vec::new(), Vec::new(), Vec::new(), Vec::new(), limits)
 }
 

@@ -3,6 +3,7 @@
 mod bounces;
 mod points;
 mod reference;
+mod shadows;
 mod sizes;
 mod specular;
 mod walks;

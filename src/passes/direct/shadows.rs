@@ -17,8 +17,8 @@ pub(crate) struct Shadows {
     maxima: Vec<Option<ResourceId>>,
 }
 
-/// Bytes per texel of the images that suns need besides lattices: marks along both axes, and the maxima of blocks.
-const TEXEL_BYTES: u64 = 2 + 1;
+/// Bytes per texel that suns need at least: marks along both axes, the maxima of blocks, and the lattice of one azimuth.
+const TEXEL_BYTES: u64 = 2 + 1 + 8;
 
 impl Shadows {
     /// Whether suns may use shadow heights; otherwise why not, where the quality leaves it open.

@@ -24,24 +24,24 @@ impl Grid {
     }
 }
 
-/// How unoccluded light depends on the normal n: `most` times the fourth of `slope` plus n · its first three.
+/// How unoccluded light depends on the normal n: `most` times the fourth of `by_normal` plus n · its first three.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Slope {
-    pub(super) slope: [f32; 4],
+pub(crate) struct Unoccluded {
+    pub(super) by_normal: [f32; 4],
     pub(super) most: [f32; 3],
     pub(super) least: f32,
     /// The largest share of that light.
     pub(super) ceiling: f32,
 }
 
-impl Slope {
+impl Unoccluded {
     /// Of a sun: the cosine to it.
     pub(crate) fn of_sun(sun: &Sun) -> Self {
         let across = sun.elevation_rad.cos();
         let [x, y] = [sun.azimuth_rad.cos(), sun.azimuth_rad.sin()].map(|v| (across * v) as f32);
         let most = sun.irradiance.map(|e| e / std::f32::consts::PI);
-        let slope = [x, y, sun.elevation_rad.sin() as f32, 0.0];
-        Self { slope, most, least: GRAZING, ceiling: 1.0 }
+        let by_normal = [x, y, sun.elevation_rad.sin() as f32, 0.0];
+        Self { by_normal, most, least: GRAZING, ceiling: 1.0 }
     }
 
     /// Of a sky and an environment: the irradiance's spherical harmonics up to order 1 (Ramamoorthi and Hanrahan 2001,
@@ -76,7 +76,7 @@ impl Slope {
         let of_normal =
             if all[0] > 0.0 { towards.map(|t| 2.0 * t / all[0]) } else { [0.0, 0.0, 1.0] };
         let [x, y, z] = of_normal.map(|v| v as f32);
-        Self { slope: [x, y, z, 1.0], most: [1.0; 3], least: LEAST_SKY, ceiling: f32::MAX }
+        Self { by_normal: [x, y, z, 1.0], most: [1.0; 3], least: LEAST_SKY, ceiling: f32::MAX }
     }
 }
 
@@ -105,10 +105,14 @@ mod tests {
         let uniform = [0.0, 0.0, 1.0, 1.0];
         let sky = Lights { sky: Some([0.5; 3]), ..Lights::default() };
         let env = Lights { environment: Some(environment), ..Lights::default() };
-        assert!(near(Slope::of_sky(&sky, Border::Plane).slope, uniform, 1e-6));
+        assert!(near(Unoccluded::of_sky(&sky, Border::Plane).by_normal, uniform, 1e-6));
         let error = (std::f64::consts::PI / 128.0).powi(2) / 3.0;
-        assert!(near(Slope::of_sky(&env, Border::Plane).slope, uniform, error));
-        assert!(near(Slope::of_sky(&Lights::default(), Border::Plane).slope, uniform, 0.0));
+        assert!(near(Unoccluded::of_sky(&env, Border::Plane).by_normal, uniform, error));
+        assert!(near(
+            Unoccluded::of_sky(&Lights::default(), Border::Plane).by_normal,
+            uniform,
+            0.0
+        ));
     }
 
     /// All light from one direction: twice that direction. Column 0 of 4 begins at the west and runs clockwise, so that its
@@ -123,6 +127,6 @@ mod tests {
         let (across, up) = (std::f64::consts::PI / 8.0).sin_cos();
         let flat = -2.0 * across * 0.5_f64.sqrt();
         let want = [flat, flat, 2.0 * up, 1.0];
-        assert!(near(Slope::of_sky(&lights, Border::Plane).slope, want, 1e-6));
+        assert!(near(Unoccluded::of_sky(&lights, Border::Plane).by_normal, want, 1e-6));
     }
 }

@@ -1,4 +1,4 @@
-use super::preview::{Grid, Slope, colour};
+use super::preview::{Grid, Unoccluded, colour};
 use crate::graph::{Builder, ResourceId, shaders};
 use crate::scene::Albedo;
 
@@ -6,7 +6,7 @@ use crate::scene::Albedo;
 pub(crate) fn plan(
     builder: &mut Builder,
     coarse: Grid,
-    (of, suffix): (Slope, &str),
+    (of, suffix): (Unoccluded, &str),
     (albedo, grey, without_sun): (&Albedo, bool, bool),
     bound: &[(&str, ResourceId)],
 ) {
@@ -21,7 +21,7 @@ pub(crate) fn plan(
         "light without slopes, on the coarse grid",
         coarse.groups(),
         &shaders::PreviewGatherPush {
-            slope: of.slope,
+            by_normal: of.by_normal,
             most: [r, g, b, of.ceiling],
             colour: colour(albedo, of.least),
             cols: coarse.size[0] as i32,

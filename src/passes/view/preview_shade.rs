@@ -1,4 +1,4 @@
-use super::preview::{Grid, Slope, colour};
+use super::preview::{Grid, Unoccluded, colour};
 use crate::graph::{Builder, ResourceId, shaders};
 use crate::scene::Albedo;
 
@@ -6,8 +6,8 @@ use crate::scene::Albedo;
 pub(crate) fn plan(
     builder: &mut Builder,
     fine: Grid,
-    (sky, sky_grid): (Slope, Grid),
-    sun: Option<(Slope, Grid)>,
+    (sky, sky_grid): (Unoccluded, Grid),
+    sun: Option<(Unoccluded, Grid)>,
     albedo: &Albedo,
     bound: &[(&str, ResourceId)],
 ) {
@@ -23,8 +23,8 @@ pub(crate) fn plan(
         "light of the coarse grids on the slopes of the fine one",
         fine.groups(),
         &shaders::PreviewShadePush {
-            sky_slope: sky.slope,
-            sun_slope: of_sun.slope,
+            sky_by_normal: sky.by_normal,
+            sun_by_normal: of_sun.by_normal,
             most: [r, g, b, 1.0],
             colour: colour(albedo, sky.least),
             cols: fine.size[0] as i32,

@@ -4,7 +4,7 @@ use ridgelight::plan::{self, Limits, Picture};
 use ridgelight::scene::{
     Albedo, Border, HeightField, Lights, Quality, Scene, Sun, Surface, normal,
 };
-use ridgelight_cpu::preview::{Coarse, Colours, Slope};
+use ridgelight_cpu::preview::{Coarse, Colours, Unoccluded};
 use ridgelight_cpu::preview_shade::preview_shade;
 use ridgelight_cpu::tolerance::EPSILON;
 
@@ -54,7 +54,7 @@ fn previews_match_the_cpu_reference() {
         diameter_rad: 0.02,
         irradiance: [2.0, 2.0, 2.0],
     };
-    let of_sun = Slope::of_sun(&sun);
+    let of_sun = Unoccluded::of_sun(&sun);
     let facing =
         |normal: &[f64; 3]| -> f64 { normal.iter().zip(of_sun.vector).map(|(a, b)| a * b).sum() };
     let [in_sky, in_sun] = [&sky_field, &sun_field].map(normals);
@@ -175,14 +175,14 @@ fn previews_match_the_cpu_reference() {
                 radiance: &radiance,
                 without: has_sun.then_some(sky_sun.as_slice()),
                 albedo: colours(sky_albedo.as_slice()),
-                slope: Slope::of_sky(),
+                unoccluded: Unoccluded::of_sky(),
             };
             let sun = Coarse {
                 field: &sun_field,
                 radiance: &sun_light,
                 without: None,
                 albedo: Colours::Constant([1.0; 3]),
-                slope: of_sun,
+                unoccluded: of_sun,
             };
             let albedo = colours(fine_albedo.as_slice());
             preview_shade((&fine, &means), albedo, &sky, has_sun.then_some(&sun))

@@ -4,7 +4,7 @@ use ridgelight::scene::{HeightField, Sun};
 
 /// How unoccluded light depends on the normal: `most` times a constant plus its product with a vector, and `least` or more.
 #[derive(Clone, Copy)]
-pub struct Slope {
+pub struct Unoccluded {
     /// East, north, up.
     pub vector: [f64; 3],
     /// The constant.
@@ -17,7 +17,7 @@ pub struct Slope {
     pub ceiling: f64,
 }
 
-impl Slope {
+impl Unoccluded {
     /// A sun's light of a white texel: its irradiance times the cosine, over π.
     pub fn of_sun(sun: &Sun) -> Self {
         let across = sun.elevation_rad.cos();
@@ -49,7 +49,7 @@ pub struct Coarse<'a> {
     /// Its albedo.
     pub albedo: Colours<'a>,
     /// What it is divided by.
-    pub slope: Slope,
+    pub unoccluded: Unoccluded,
 }
 
 /// Albedo of a grid.

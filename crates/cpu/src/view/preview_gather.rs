@@ -2,18 +2,18 @@
 
 use ridgelight::scene::{Border, normal};
 
-use super::preview::{Coarse, Slope};
+use super::preview::{Coarse, Unoccluded};
 
 /// Albedo below which light is not divided by it, as in the shader.
 const DARK: f64 = 1e-3;
 
 /// A coarse grid's light without its slopes and albedo.
 pub fn preview_gather(coarse: &Coarse<'_>) -> Vec<[f64; 3]> {
-    let Slope { most, least, ceiling, .. } = coarse.slope;
+    let Unoccluded { most, least, ceiling, .. } = coarse.unoccluded;
     let cols = coarse.field.cols();
     let share = |(i, all): (usize, &[f32; 3])| {
         let normal = normal(coarse.field, Border::Plane, i / cols, i % cols).to_array();
-        let facing = coarse.slope.at(normal).max(least);
+        let facing = coarse.unoccluded.at(normal).max(least);
         std::array::from_fn(|c| {
             let sun = coarse.without.map_or(0.0, |light| f64::from(light[i][c]));
             let lit = coarse.albedo.at(i, c).max(DARK) * most[c] * facing;

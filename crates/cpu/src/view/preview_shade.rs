@@ -12,16 +12,17 @@ pub fn preview_shade(
     sky: &Coarse<'_>,
     sun: Option<&Coarse<'_>>,
 ) -> Vec<[f64; 3]> {
-    let lights: Vec<(&Coarse<'_>, Vec<[f64; 3]>, f64)> = std::iter::once((sky, sky.slope.least))
-        .chain(sun.map(|sun| (sun, 0.0)))
-        .map(|(coarse, least)| (coarse, preview_gather(coarse), least))
-        .collect();
+    let lights: Vec<(&Coarse<'_>, Vec<[f64; 3]>, f64)> =
+        std::iter::once((sky, sky.unoccluded.least))
+            .chain(sun.map(|sun| (sun, 0.0)))
+            .map(|(coarse, least)| (coarse, preview_gather(coarse), least))
+            .collect();
     (0..fine.rows() * fine.cols())
         .map(|i| {
             let of = |(coarse, gathered, least): &(&Coarse<'_>, Vec<[f64; 3]>, f64)| {
                 let share = between(gathered, coarse.field, fine, i);
-                let facing = coarse.slope.at(normals[i]).max(*least);
-                [0, 1, 2].map(|c| share[c] * coarse.slope.most[c] * facing)
+                let facing = coarse.unoccluded.at(normals[i]).max(*least);
+                [0, 1, 2].map(|c| share[c] * coarse.unoccluded.most[c] * facing)
             };
             let all: Vec<[f64; 3]> = lights.iter().map(of).collect();
             std::array::from_fn(|c| all.iter().map(|light| light[c]).sum::<f64>() * albedo.at(i, c))
@@ -48,7 +49,7 @@ fn between(gathered: &[[f64; 3]], coarse: &HeightField, fine: &HeightField, i: u
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::preview::Slope;
+    use crate::preview::Unoccluded;
     use ridgelight::scene::{Border, Sun, normal};
 
     /// On one grid, where the sun reaches all of it, the light comes back as it was.
@@ -62,17 +63,24 @@ mod tests {
             diameter_rad: 0.0,
             irradiance: [3.0, 2.0, 1.0],
         };
-        let slope = Slope::of_sun(&sun);
+        let unoccluded = Unoccluded::of_sun(&sun);
         let normals: Vec<[f64; 3]> =
             (0..30).map(|i| normal(&field, Border::Plane, i / 6, i % 6).to_array()).collect();
-        let of_sun: Vec<[f32; 3]> =
-            normals.iter().map(|n| slope.most.map(|most| (most * slope.at(*n)) as f32)).collect();
+        let of_sun: Vec<[f32; 3]> = normals
+            .iter()
+            .map(|n| unoccluded.most.map(|most| (most * unoccluded.at(*n)) as f32))
+            .collect();
         let radiance: Vec<[f32; 3]> = of_sun.iter().map(|s| s.map(|v| v + 0.25)).collect();
         let albedo = Colours::Constant([1.0; 3]);
-        let of =
-            |radiance, without, slope| Coarse { field: &field, radiance, without, albedo, slope };
-        let sky = of(&radiance, Some(of_sun.as_slice()), Slope::of_sky());
-        let sun = of(&of_sun, None, slope);
+        let of = |radiance, without, unoccluded| Coarse {
+            field: &field,
+            radiance,
+            without,
+            albedo,
+            unoccluded,
+        };
+        let sky = of(&radiance, Some(of_sun.as_slice()), Unoccluded::of_sky());
+        let sun = of(&of_sun, None, unoccluded);
         for (found, want) in
             preview_shade((&field, &normals), albedo, &sky, Some(&sun)).iter().zip(&radiance)
         {

@@ -1,0 +1,82 @@
+//! Which suns and key lights are lit by shadow heights, and which by hull sweeps.
+
+use ridgelight::plan::{self, Limits, Picture, Plan, missing_barriers};
+use ridgelight::scene::{
+    Border, Fuse, KeyLight, Lights, Lines, Method, Quality, Scene, Sun, Surface,
+};
+
+use crate::flat;
+
+/// A sun, a key light of five degrees of elevation and a taller one.
+fn scene(side: usize) -> Scene {
+    let sun =
+        Sun { azimuth_rad: 2.0, elevation_rad: 0.5, diameter_rad: 0.02, irradiance: [1.0; 3] };
+    let key = |degrees: f64| KeyLight {
+        azimuth_rad: 4.0,
+        width_rad: 0.4,
+        elevations_rad: [0.2, 0.2 + degrees.to_radians()],
+        radiance: [2.0; 3],
+    };
+    let lights = Lights { suns: vec![sun], keys: vec![key(5.1), key(4.9)], ..Lights::default() };
+    Scene { field: flat(side, side), surface: Surface::default(), lights }
+}
+
+/// What sweeps for each light.
+fn sweeps(plan: &Plan) -> Vec<String> {
+    assert_eq!(missing_barriers(&plan.passes), []);
+    let swept = plan.passes.iter().filter(|p| p.name().ends_with("_sweep"));
+    let mut labels: Vec<String> =
+        swept.map(|p| format!("{} {}", p.name(), p.part.split(' ').next().unwrap())).collect();
+    labels.dedup();
+    labels
+}
+
+fn picture(scene: &Scene, quality: &Quality, limits: &Limits) -> Plan {
+    plan::picture(scene, quality, limits, Picture::default()).expect("a plan")
+}
+
+#[test]
+fn suns_and_narrow_keys_have_shadow_heights() {
+    let (scene, limits) = (scene(40), Limits::lavapipe());
+    let by_default = ["shadow_sweep sun1", "horizon_sweep key1", "shadow_sweep key2"];
+    assert_eq!(sweeps(&picture(&scene, &Quality::default(), &limits)), by_default);
+    let hulls = ["horizon_sweep sun1", "horizon_sweep key1", "horizon_sweep key2"];
+    let quality = Quality::default();
+    for other in [
+        Quality { method: Method::Sweep, ..quality },
+        Quality { lines: Lines::HalfCell, ..quality },
+        Quality { fuse: Fuse::Aimed, ..quality },
+    ] {
+        let plan = picture(&scene, &other, &limits);
+        assert_eq!(sweeps(&plan), hulls, "{other:?}");
+        assert!(!plan.notes.iter().any(|n| n.contains("hull")), "{:?}", plan.notes);
+    }
+}
+
+/// A field one grid point wide has no cells to walk over, unless it repeats: a line of suns is swept by hulls.
+#[test]
+fn a_line_of_ground_is_swept_by_hulls() {
+    let scene = Scene { field: flat(1, 40), ..scene(40) };
+    for border in [Border::Plane, Border::Open] {
+        let scene = Scene { surface: Surface { border, ..Surface::default() }, ..scene.clone() };
+        let plan = picture(&scene, &Quality::default(), &Limits::lavapipe());
+        assert!(sweeps(&plan).iter().all(|s| s.starts_with("horizon_sweep")));
+    }
+}
+
+/// Where half of the memory does not hold what they need, the plan says so and fits.
+#[test]
+fn short_memory_takes_hull_sweeps_with_a_note() {
+    let scene = scene(256);
+    let limits = |bytes: u64| Limits { memory_budget: 256 * 256 * bytes, ..Limits::lavapipe() };
+    let (short, enough) = (limits(40), limits(80));
+    let plan = picture(&scene, &Quality::default(), &short);
+    assert!(sweeps(&plan).iter().all(|s| s.starts_with("horizon_sweep")));
+    let is_said = |n: &String| n.starts_with("suns and key lights by hull sweeps: ");
+    assert!(plan.notes.iter().any(is_said), "{:?}", plan.notes);
+    let plan = picture(&scene, &Quality::default(), &enough);
+    assert!(sweeps(&plan).iter().any(|s| s.starts_with("shadow_sweep")));
+    assert!(!plan.notes.iter().any(is_said), "{:?}", plan.notes);
+    let bytes: u64 = plan.resources.iter().map(plan::Resource::bytes).sum();
+    assert!(bytes <= enough.memory_budget, "{bytes}");
+}
