@@ -172,14 +172,16 @@ fn bounces() -> Result<String> {
     Ok(format!("{table}\n\n*{}*\n", made.trim_start_matches("; ")))
 }
 
-/// Suns by default and by hull sweeps, as `cargo measure suns` printed it.
+/// Suns by default and by hull sweeps over one border, as `cargo measure suns` printed it.
 fn suns() -> Result<String> {
     let (body, made) = result("suns.txt")?;
     let table = body.split("\n\n").find(|part| part.starts_with("| field | border |"));
     let table = found("suns.txt", table, "the table of cargo measure suns")?;
     let device = body.lines().next().and_then(|line| line.split_once(": "));
     let (device, _) = found("suns.txt", device, "a device in its first line")?;
-    Ok(format!("{}\n\n*{device}{made}*\n", table.trim_end()))
+    let is_shown = |line: &&str| !line.contains("| open |") && !line.contains("| periodic |");
+    let rows: Vec<&str> = table.lines().filter(is_shown).collect();
+    Ok(format!("{}\n\n*{device}{made}*\n", rows.join("\n")))
 }
 
 /// A table under another first line of as many cells.
