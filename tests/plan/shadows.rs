@@ -64,7 +64,7 @@ fn a_line_of_ground_is_swept_by_hulls() {
     }
 }
 
-/// Where half of the memory does not hold what they need, the plan says so and fits.
+/// Where half of the memory does not hold what they need, the plan states it in a note and fits.
 #[test]
 fn short_memory_takes_hull_sweeps_with_a_note() {
     let scene = scene(256);
