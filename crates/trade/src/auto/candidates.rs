@@ -36,12 +36,13 @@ pub(super) fn candidates(scene: &Scene, bounces: u32) -> Vec<Quality> {
         if scene.lights.suns.is_empty() && scene.lights.keys.is_empty() {
             all.push(Quality { lines: Lines::Exact, ..plain });
         }
-        if !scene.lights.suns.is_empty() {
-            // Exact shadows of suns.
-            all.push(Quality { method: Method::Auto, ..plain });
-        }
+        let defaults = defaults(scene);
         for lines in LINES {
-            all.extend(FUSES.map(|fuse| Quality { lines, fuse, ..plain }));
+            all.extend(FUSES.map(|fuse| {
+                let is_default = (lines, fuse) == (defaults.lines, defaults.fuse);
+                let method = if is_default { defaults.method } else { plain.method };
+                Quality { method, lines, fuse, ..plain }
+            }));
         }
     }
     let step = if bounces > 0 { 2 } else { 1 };
@@ -62,6 +63,12 @@ pub(super) fn candidates(scene: &Scene, bounces: u32) -> Vec<Quality> {
     times(Part::Table, &TABLES, |q, v| q.table_elevations = v);
     times(Part::Strips, &STRIPS, |q, v| q.sun_azimuths = v);
     if bounces == 0 { all } else { with_bounces(scene, bounces, &all) }
+}
+
+/// The defaults: suns have exact shadows.
+pub(super) fn defaults(scene: &Scene) -> Quality {
+    let has_suns = !scene.lights.suns.is_empty();
+    Quality { method: if has_suns { Method::Auto } else { Method::Sweep }, ..start() }
 }
 
 /// Each candidate with every combination of bounce settings.

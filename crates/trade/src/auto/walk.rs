@@ -1,5 +1,6 @@
 //! The whole choice, for a caller that can render: render, measure, render again.
 
+use super::candidates::defaults;
 use super::chooser::{Chooser, Trial};
 use super::model::{Expected, PARTS, Part};
 use super::probes::{Probes, Traced, apart, unsampled_bounce_error};
@@ -249,7 +250,7 @@ pub fn choose<'a>(
     let count = bounced.as_ref().map_or(0, |b| b.count);
     let mut chooser = Chooser::new(scene, &Statistics::of(scene), goal, count);
     let (mut pilots, mut refused) = (Vec::new(), None);
-    for mut quality in [start(), coarse()] {
+    for mut quality in [defaults(scene), coarse()] {
         quality.bounces.count = count;
         match draw(&quality) {
             Err(limit @ Error::Limit { .. }) => {
