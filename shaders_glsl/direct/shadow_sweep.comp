@@ -93,13 +93,13 @@ void main() {
         return;
     }
     // The steps at which any line of the group is on the field, or less than a cell beside it: rays between it and
-    // the next line are.
+    // the next line are. And the step before, from which such rays enter the field.
     int begin = 0;
     int end = total;
     if (!PERIODIC && shear > 0) {
         int lowest = (first_line - lead) * CELL;
         int highest = lowest + (group_lines - 1) * CELL;
-        begin = max(0, (-CELL - highest) / shear);
+        begin = max(0, (-2 * CELL - highest) / shear);
         end = clamp((lanes * CELL - lowest) / shear + 1, begin, total);
     }
     int line = first_line + int(gl_LocalInvocationID.x) * 4;
@@ -161,12 +161,7 @@ void main() {
         vec4 middle = 0.5 * (now + raised) + between + apart * apart / max(16.0 * between, 1e-30);
         vec4 found = mix(max(now, raised), middle, lessThan(apart, 4.0 * between));
         ivec4 place = y + ivec4(0, CELL, 2 * CELL, 3 * CELL);
-        // A line that was not beside the field a step before had no surface there.
-        bvec4 enters = bvec4(step == begin);
-        if (!PERIODIC) {
-            enters = bvec4(uvec4(enters) | uvec4(lessThanEqual(place - shear, ivec4(-CELL))));
-        }
-        found = mix(found, now, enters);
+        found = mix(found, now, bvec4(step == begin));
         raised = now;
         bvec4 counts = bvec4(true);
         if (!PERIODIC) {

@@ -3,6 +3,8 @@
 
 pub mod env_tables;
 pub mod light_resolve;
+pub mod shadow_settle;
+pub mod shadow_shade;
 pub mod shadow_sweep;
 pub mod sky_shade;
 pub mod soft_sphere;

@@ -15,6 +15,20 @@ pub struct ShadowStep {
     pub raised: f64,
 }
 
+/// Lines of an azimuth: how many, and the lane position of the first at step 0 (`lattice.glsl`).
+pub fn lines_of(march: &March, total: i32) -> (i32, i32) {
+    if march.periodic() {
+        return (march.lanes, 0);
+    }
+    let lead = ((total - 1) * march.azimuth.shear + CELL - 1) / CELL;
+    (march.lanes + lead, -lead * CELL)
+}
+
+/// A shadow's height: the high half of an f32.
+pub fn height_of(word: u32) -> f64 {
+    f32::from_bits(word & 0xffff_0000).into()
+}
+
 /// Shadow heights of a line, by steps; none where it is a cell or more beside the field. `y` is its lane position at step 0 of
 /// `total`, `warm_up` of them before the field's own.
 pub fn shadow_line(march: &March, y: i32, (total, warm_up): (i32, i32)) -> Vec<Option<ShadowStep>> {
@@ -25,7 +39,8 @@ pub fn shadow_line(march: &March, y: i32, (total, warm_up): (i32, i32)) -> Vec<O
     let mut all = Vec::new();
     for step in 0..total {
         let y = y + step * azimuth.shear;
-        if !(march.periodic() || y > -CELL && y < march.lanes * CELL) {
+        // Beyond the edge the heights stay the same: from there rays enter the field.
+        if !(march.periodic() || y > -2 * CELL && y < march.lanes * CELL) {
             before = None;
             all.push(None);
             continue;
@@ -45,9 +60,13 @@ pub fn shadow_line(march: &March, y: i32, (total, warm_up): (i32, i32)) -> Vec<O
                 now.max(was)
             }
         });
+        before = Some((now, cell));
+        if !(march.periodic() || y > -CELL) {
+            all.push(None);
+            continue;
+        }
         all.push(Some(ShadowStep { over_plane, top, raised }));
         top = Some(top.map_or(raised, |top: f64| top.max(raised)));
-        before = Some((now, cell));
     }
     all
 }

@@ -5,27 +5,13 @@ use std::ops::Range;
 use ridgelight::gpu::shaders::offset;
 use ridgelight::plan::Pass;
 use ridgelight::plan::azimuths::{Azimuth, CELL, Shape};
-use ridgelight::scene::Border;
-use ridgelight_cpu::horizon_march::{MarchOptions, horizon_march};
-use ridgelight_cpu::lattice::{Lattices, number_layers};
-use ridgelight_cpu::shadow_sweep::shadow_line;
-use ridgelight_cpu::shared::field::field_slope;
-use ridgelight_cpu::shared::fuse::first_crossings;
-use ridgelight_cpu::shared::gather::Swept;
+use ridgelight_cpu::shadow_settle::settled;
+use ridgelight_cpu::shadow_shade::sees_all;
+use ridgelight_cpu::shadow_sweep::{height_of, lines_of, shadow_line};
 use ridgelight_cpu::shared::sweep::March;
-use ridgelight_cpu::sun_shade::sun_at;
 use ridgelight_cpu::tolerance::{EPSILON, ShadeError, device_march_slope};
 
 use crate::cpu_reference::{Pair, Run, constant, pushed};
-
-/// Lines of an azimuth: how many, and the lane position of the first at step 0 (`lattice.glsl`).
-fn lines_of(march: &March, total: i32) -> (i32, i32) {
-    if march.periodic() {
-        return (march.lanes, 0);
-    }
-    let lead = ((total - 1) * march.azimuth.shear + CELL - 1) / CELL;
-    (march.lanes + lead, -lead * CELL)
-}
 
 /// Words of the lattice, by azimuth, line and step.
 struct Words {
@@ -44,11 +30,6 @@ impl Words {
         let layer = azimuth.layer as usize + line / 32;
         self.words[((layer * self.height + step) * 8 + line % 32 / 4) * 4 + line % 4]
     }
-}
-
-/// A shadow's height: the high half of an f32.
-fn height_of(word: u32) -> f64 {
-    f32::from_bits(word & 0xffff_0000).into()
 }
 
 /// Heights over the plane are sums of two terms and are raised by four: 10 ε of the largest, of which the shader adds 17. A half
@@ -104,32 +85,9 @@ fn so_far(run: &mut Run, (first, count, clears): (u32, u32, u32)) -> (Range<usiz
 
 /// Light by exact horizons, at every texel; none where a point sun grazes the ground.
 fn exact(run: &Run, range: Range<usize>, shape: Shape, error: &ShadeError) -> Vec<Option<f64>> {
-    let mut azimuths = run.plan.azimuths[range].to_vec();
-    number_layers(&mut azimuths);
-    let (heights, size) = (run.heights(), run.size());
-    let mut lattices = Lattices::new(&azimuths, size, 15, run.border());
-    for azimuth in &azimuths {
-        let warm_up = run.warm_up(azimuth.marches_rows());
-        let options = MarchOptions { all_crossings: true, warm_up };
-        horizon_march(heights, azimuth, options, lattices.of_mut(azimuth));
-    }
     let warm_up = [run.warm_up(false), run.warm_up(true)];
-    let swept = Swept {
-        heights,
-        azimuths: &azimuths,
-        lattices: &lattices,
-        fuse: None,
-        line_shift: 15,
-        warm_up,
-    };
-    swept.per_grid_point(|col, row| {
-        let mut grazes = false;
-        swept.add_all([col, row], true, |_, azimuth, lowest, _| {
-            let off = lowest - f64::from(azimuth.high_slope);
-            grazes |= shape == Shape::Point && off.abs() <= error.lowest_slope();
-        });
-        (!grazes).then(|| sun_at(&swept, shape, col, row))
-    })
+    let azimuths = &run.plan.azimuths[range];
+    settled(run.heights(), azimuths, warm_up, (shape, error.lowest_slope()))
 }
 
 fn shape_of(pass: &Pass) -> Shape {
@@ -166,7 +124,12 @@ pub(crate) fn shadow_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         let at = [range.len(), row, col];
         let batch = first as usize..(first + count) as usize;
         let proofs = run.plan.azimuths[batch].iter().map(|azimuth| {
-            sees_all(run, &words, azimuth, [col as i32, row as i32], error.lowest_slope())
+            let march = March::new(run.heights(), azimuth);
+            let warm_up = run.warm_up(azimuth.marches_rows());
+            let word = |line: i32, step: i32| words.at(azimuth, line, step);
+            let [largest, _] = run.relief();
+            let errors = (error.lowest_slope(), largest);
+            sees_all(&march, warm_up, word, [col as i32, row as i32], errors)
         });
         let proofs: Option<Vec<bool>> = proofs.collect();
         if let Some(proofs) = proofs {
@@ -181,55 +144,6 @@ pub(crate) fn shadow_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     }
     assert!(decided * 10 >= got.len() * 9, "{decided} of {} decided", got.len());
     pairs
-}
-
-/// Whether a grid point provably sees a whole chord, or faces away from it; none where rounding decides.
-fn sees_all(
-    run: &Run,
-    words: &Words,
-    azimuth: &Azimuth,
-    [col, row]: [i32; 2],
-    slope_error: f64,
-) -> Option<bool> {
-    let heights = run.heights();
-    let march = March::new(heights, azimuth);
-    let (lane, step) = march.of_grid_point(col, row);
-    let (low, high) = (f64::from(azimuth.low_slope), f64::from(azimuth.high_slope));
-    let gradient = field_slope(&heights, col, row);
-    let mut own = gradient.x * f64::from(azimuth.cos_phi) + gradient.y * f64::from(azimuth.sin_phi);
-    if run.border() != Border::Open {
-        own = own.max(0.0);
-    }
-    let near = |a: f64, b: f64, error: f64| (a - b).abs() <= error;
-    if near(own, high, slope_error) {
-        return None;
-    }
-    if own >= high {
-        return Some(true);
-    }
-    let height = march.height_at(lane, step);
-    let ahead = f64::from(first_crossings(&march, (lane, step), height).slope);
-    if near(ahead, low, slope_error) {
-        return None;
-    }
-    let warm_up = run.warm_up(azimuth.marches_rows());
-    let total = warm_up + march.steps;
-    let (lines, first) = lines_of(&march, total);
-    let from_origin = lane * CELL - first - (warm_up + step) * azimuth.shear;
-    let (line, t) = (from_origin.div_euclid(CELL), f64::from(from_origin.rem_euclid(CELL)));
-    let t = t / f64::from(CELL);
-    let word = |line: i32| {
-        let line = if march.periodic() { line.rem_euclid(lines) } else { line };
-        (0..lines).contains(&line).then(|| words.at(azimuth, line, warm_up + step))
-    };
-    let (Some(before), after) = (word(line), word(line + 1)) else { return Some(false) };
-    let Some(after) = (if t == 0.0 { Some(before) } else { after }) else { return Some(false) };
-    let shadow = (1.0 - t) * height_of(before) + t * height_of(after);
-    let h = |lane: i32| f64::from(march.height_at(lane, step));
-    let over = t * (1.0 - t) * (2.0 * h(lane) - h(lane - 1) - h(lane + 1));
-    let [largest, _] = run.relief();
-    let rounded = 8.0 * EPSILON * (shadow.abs().min(1e20) + largest);
-    (!near(shadow, over, rounded)).then_some(shadow <= over && ahead <= low)
 }
 
 /// The light of all texels, by exact horizons.
