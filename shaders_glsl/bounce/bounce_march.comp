@@ -9,7 +9,7 @@
 #extension GL_KHR_shader_subgroup_vote : require
 
 #include "shared/angle.glsl"
-#include "bounce/cosine.glsl"
+#include "shared/cosine.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 

@@ -1,8 +1,7 @@
 // Computes: indirect light at every grid point from the azimuths of a batch, added to earlier batches: the visible
-// intervals of the grid point's own lines, nearest first, each with its own radiance and weighted in closed form. The
-// occluders that a swept line stores form a hull tree (Timonen 2012): everything between a grid point and its
-// occluder lies below the straight line between the two.
-// Reads: lane_heights, azimuths, occluders, exit_radiance (or exit_grey).
+// ground along the grid point's own line step by step, and farther away in the blocks of the nearest swept line, up to
+// the occluder that this line has stored; each part with its own radiance, weighted in closed form.
+// Reads: lane_heights, azimuths, occluders, line_blocks, bounce_ground (or grey_ground).
 // Reads and writes: bounce_sum (exit radiance for albedo 1; divided by A, the sum for whole hemispheres, after the
 // last dispatch).
 // Writes: visibility_cache (of every second node).
@@ -32,15 +31,17 @@ const int LANE_STRIDE = 1;
 layout(binding = 0, rgba32f) uniform readonly image2D lane_heights;
 layout(binding = 1) uniform textureBuffer azimuths;
 layout(binding = 2, rg32ui) uniform readonly uimage2DArray occluders;
-layout(binding = 3, rgba32f) uniform readonly image2D exit_radiance;
-layout(binding = 4, r32f) uniform readonly image2D exit_grey;
+layout(binding = 3, rgba32f) uniform readonly image2D bounce_ground;
+layout(binding = 4, rg32ui) uniform readonly uimage2D grey_ground;
 layout(binding = 5, rgba32f) uniform image2D bounce_sum;
 layout(binding = 6, rgba32ui) uniform writeonly uimage2DArray visibility_cache;
+layout(binding = 7, rgba32ui) uniform readonly uimage2DArray line_blocks;
 
 #include "shared/angle.glsl"
 #include "shared/lattice.glsl"
 #include "shared/quad.glsl"
 #include "shared/nodes.glsl"
+#include "bounce/line_blocks.glsl"
 #include "bounce/visibility_cache.glsl"
 
 layout(push_constant) uniform BounceWalkPush {
@@ -54,6 +55,7 @@ layout(push_constant) uniform BounceWalkPush {
     uint clears;  // 1 in the first dispatch of a bounce
     uint is_last; // 1 in the last
     uint begin;   // of the azimuths used for bounces
+    uint block_layers; // of one azimuth in line_blocks
 };
 
 // The grid point, in lanes and steps of the current azimuth.
@@ -68,94 +70,41 @@ ivec2 own_node;      // texel of its sum
 ivec2 own_kept_node; // texel of its visibility cache, if kept
 bool own_is_kept;
 
-// A point of the grid point's own line: two lanes and the fraction between them.
-struct Place {
-    int lane;
-    int next;
-    int march;
-    float t;
+// A point of the grid point's own line.
+vec4 point_at(int back) {
+    return ground_on_line(azimuth, own_lane * CELL - back * azimuth.shear, own_step - back, lanes, steps);
+}
+
+float slope_of(float height, float back) {
+    precise float above = height - own_height;
+    return above / (back * azimuth.step_m);
+}
+
+// The swept line nearest to the grid point, the lines before lane 0 at the first step, and the steps to the line's
+// occluder there; 0 for none.
+struct Nearest {
+    int line;
+    int lead;
+    int back;
 };
 
-// Both ends of each choice are computed: SwiftShader's compiler takes minutes over branches here.
-Place place_at(int back) {
-    int y = own_lane * CELL - back * azimuth.shear;
-    int step = own_step - back;
-    int cell = y >> CELL_SHIFT;
-    int lane_round = wrapped(cell, lanes);
-    int lane_held = clamp(cell, 0, lanes - 1);
-    int lane = BORDER == BORDER_PERIODIC ? lane_round : lane_held;
-    int next_round = wrapped(lane + 1, lanes);
-    int next_held = min(lane + 1, lanes - 1);
-    int next = BORDER == BORDER_PERIODIC ? next_round : next_held;
-    int step_round = wrapped(step, steps);
-    int step_held = max(step, 0);
-    int on = BORDER == BORDER_PERIODIC ? step_round : step_held;
-    float t = float(y & (CELL - 1)) * (1.0 / float(CELL));
-    int first = lane_position(azimuth, lane, lanes);
-    int second = lane_position(azimuth, next, lanes);
-    return Place(first, second, march_position(azimuth, on, steps), t);
-}
-
-// As in quad.glsl, selected without branches.
-float height_of(int lane, int march) {
-    vec4 four = imageLoad(lane_heights, ivec2(lane >> 2, march));
-    vec2 two = mix(four.xy, four.zw, bvec2((lane & 2) != 0));
-    return mix(two.x, two.y, (lane & 1) != 0);
-}
-
-float slope_at(int back) {
-    Place p = place_at(back);
-    float h = height_of(p.lane, p.march);
-    precise float rise = p.t * (height_of(p.next, p.march) - h);
-    precise float above = (h + rise) - own_height;
-    return above / (float(back) * azimuth.step_m);
-}
-
-vec3 leaving(int lane, int march) {
-    ivec2 by_row = ivec2(lane, march);
-    ivec2 by_col = ivec2(march, lane);
-    ivec2 at = MARCHES_ROWS ? by_row : by_col;
-    // No early exit: it makes loops out of functions, for which SwiftShader's compiler takes gigabytes.
-    vec3 colour;
-    if (GREY) {
-        colour = imageLoad(exit_grey, at).xxx;
-    } else {
-        colour = imageLoad(exit_radiance, at).rgb;
-    }
-    return colour;
-}
-
-vec3 light_at(int back) {
-    Place p = place_at(back);
-    return mix(leaving(p.lane, p.march), leaving(p.next, p.march), p.t);
-}
-
-// Steps from a point of the own line to the occluder of the nearest swept line; 0 for none.
-int occluder_at(int back) {
+Nearest nearest_line() {
     bool wraps = BORDER == BORDER_PERIODIC;
     int spacing = 1 << LINE_SHIFT;
     int lead = lattice_lead(azimuth.shear, warm_up + steps, LINE_SHIFT, wraps);
     int lines = lattice_lines(lanes, lead, LINE_SHIFT, wraps);
-    int step = own_step - back;
-    int step_round = wrapped(step, steps);
-    int step_held = max(step, 0);
-    int on = (wraps ? step_round : step_held) + warm_up;
+    int on = own_step + warm_up;
     int origin = on * azimuth.shear - lead * spacing;
-    int from_origin = own_lane * CELL - back * azimuth.shear - origin;
     // The nearer one; on a tie, the one before.
-    int nearest = (from_origin + (spacing / 2 - 1)) >> LINE_SHIFT;
+    int nearest = (own_lane * CELL - origin + (spacing / 2 - 1)) >> LINE_SHIFT;
     int first = (spacing - 1 - origin) >> LINE_SHIFT;
     int last = ((lanes - 1) * CELL - origin) >> LINE_SHIFT;
     bool stands = wraps || first <= last;
     int line_round = wrapped(nearest, lines);
     int line_held = clamp(nearest, max(first, 0), max(last, 0));
     int line = wraps ? line_round : line_held;
-    uvec2 texel = imageLoad(occluders, lattice_texel(azimuth, line, on)).xy;
-    uint word = mix(texel.x, texel.y, (line & 2) != 0);
-    uint low = word & 0xffffu;
-    uint high = word >> 16;
-    int found = int(mix(low, high, (line & 1) != 0));
-    return stands ? found : 0;
+    int found = int(lattice_u16(imageLoad(occluders, lattice_texel(azimuth, line, on)).xy, line));
+    return Nearest(line, lead, stands ? found : 0);
 }
 
 // Whether the own line crosses the diagonal of the grid point's cell within its first step: (1, 0) to (0, 1), by (u,
@@ -213,8 +162,9 @@ vec4 walked(vec3 normal, float plane) {
     if (BORDER != BORDER_PERIODIC && azimuth.shear > 0) {
         reach = min(reach, own_lane * CELL / azimuth.shear);
     }
-    // Nothing rises behind the point where the nearest line has no occluder.
-    int limit = min(max(occluder_at(0), 1), reach);
+    // Nothing rises behind the occluder.
+    Nearest nearest = nearest_line();
+    int limit = min(max(nearest.back, 1), reach);
     bool walking = limit > 0;
 
     faces = vec2(normal.x * azimuth.wedge_cos + normal.y * azimuth.wedge_sin, normal.z * azimuth.wedge_rad);
@@ -229,11 +179,12 @@ vec4 walked(vec3 normal, float plane) {
     bool split = crosses_split();
     ivec4 ends = split_ends();
     float u = 1.0 / (1.0 + float(azimuth.shear) * (1.0 / float(CELL)));
-    float side = height_of(ends.x, ends.y);
-    precise float rise = (side - own_height) + u * (height_of(ends.z, ends.w) - side);
+    vec4 side = ground_at(ends.x, ends.y);
+    vec4 ahead = ground_at(ends.z, ends.w);
+    precise float rise = (side.w - own_height) + u * (ahead.w - side.w);
     precise float split_slope = rise / (u * azimuth.step_m);
-    vec3 own_light = leaving(lane_position(azimuth, own_lane, lanes), ends.y);
-    vec3 split_light = mix(leaving(ends.x, ends.y), leaving(ends.z, ends.w), u);
+    vec3 own_light = ground_at(lane_position(azimuth, own_lane, lanes), ends.y).rgb;
+    vec3 split_light = mix(side.rgb, ahead.rgb, u);
     bool split_rises = walking && split && split_slope > reached;
     vec2 split_moments = moments_above(split_slope);
     vec2 split_opened = mix(vec2(0.0), passed - split_moments, bvec2(split_rises));
@@ -248,25 +199,19 @@ vec4 walked(vec3 normal, float plane) {
     float from = split ? u : 0.0;
     float slope = split ? split_slope : plane;
     vec3 light = mix(own_light, split_light, bvec3(split));
-    // At most one iteration a step, without branch or vote: llvmpipe (Mesa 22.3) runs both sides of a branch and
-    // expands a vote into eight. It also lets a lane that has left the loop keep computing, so a result counts only
-    // while the lane is still walking; the compiler does not know this of `turns_on`.
+    // Step by step, up to where the first block ends; without branch or vote: llvmpipe (Mesa 22.3) runs both sides of a
+    // branch and expands a vote into eight. It also lets a lane that has left the loop keep computing, so a result
+    // counts only while the lane is still walking; the compiler does not know this of `turns_on`.
+    int on = own_step + warm_up;
+    int near_limit = min(limit, NEAR_STEPS + (on & 1));
     int turns_on = int(walking);
     while (turns_on > 0) {
-        int met = occluder_at(at);
-        int back = at == 0 ? 1 : met;
-        walking = walking && back > 0;
-        int next = min(at + 1, max(limit, 1));
-        int to = clamp(at + back, next, max(limit, 1));
-        float to_slope = slope_at(to);
-        // Points in between may rise as well.
-        bool searches = walking && to_slope > reached && to > next;
-        float next_slope = slope_at(next);
-        to = searches ? next : to;
-        to_slope = searches ? next_slope : to_slope;
+        int to = min(at + 1, max(limit, 1));
+        vec4 point = point_at(to);
+        float to_slope = slope_of(point.w, float(to));
+        vec3 there = point.rgb;
         bool rises = walking && to_slope > reached;
         bool is_own = at == 0 && !split;
-        vec3 there = light_at(to);
         vec3 far = mix(there, own_light, bvec3(is_own));
         // Where the piece rises over what is before it; radiance is linear.
         float under = max(reached - slope, 0.0) * from;
@@ -287,7 +232,36 @@ vec4 walked(vec3 normal, float plane) {
         at = walking ? to : at;
         from = walking ? float(to) : from;
         slope = walking ? to_slope : slope;
-        walking = walking && at < limit;
+        walking = walking && at < near_limit;
+        turns_on = int(walking);
+    }
+    // Block by block: nothing rises over the horizon, and the last block reaches it.
+    int end = max(limit, 1);
+    float horizon = slope_of(point_at(end).w, float(end));
+    int padded = padded_steps(warm_up + steps);
+    int layer = int((azimuth_index - first_azimuth) * block_layers);
+    walking = limit > near_limit;
+    turns_on = int(walking);
+    while (turns_on > 0) {
+        int block_end = max(on - at, 2);
+        int level = clamp(min(findLSB(block_end), findMSB(at) - 3), 1, MOST_LEVEL);
+        int among = block_line(nearest.line, nearest.lead, azimuth.shear, block_end);
+        Block block = block_of(imageLoad(line_blocks, block_texel(layer, among, level, block_end, padded)));
+        float to_slope = slope_of(block.top, float(at + block.top_steps));
+        int to = at + (1 << level);
+        bool is_last_block = to >= limit;
+        to_slope = is_last_block ? horizon : min(to_slope, horizon);
+        bool rises = walking && to_slope > reached;
+        vec2 now = moments_above(to_slope);
+        vec2 opened = mix(vec2(0.0), passed - now, bvec2(rises));
+        add_indirect(opened, mix(vec3(0.0), block.light, bvec3(rises)));
+        if (FILLS_CACHE) {
+            add_to_cache(float(at) + 0.5 * float(1 << level), opened, rises);
+        }
+        passed = mix(passed, now, bvec2(rises));
+        reached = rises ? to_slope : reached;
+        at = walking ? to : at;
+        walking = walking && !is_last_block;
         turns_on = int(walking);
     }
     if (FILLS_CACHE) {
@@ -303,8 +277,8 @@ vec4 walked(vec3 normal, float plane) {
 void main() {
     lanes = MARCHES_ROWS ? cols : rows;
     steps = MARCHES_ROWS ? rows : cols;
-    int along = int(gl_GlobalInvocationID.x);
-    int across = int(gl_GlobalInvocationID.y);
+    int across = int(gl_GlobalInvocationID.x);
+    int along = int(gl_GlobalInvocationID.y);
     int nodes_across = node_count(lanes, NODE_STRIDE);
     int nodes_along = node_count(steps, NODE_STRIDE);
     if (FROM == FROM_KEPT) {
@@ -333,7 +307,7 @@ void main() {
     float east = easts[lane & 3];
     float north = norths[lane & 3];
     vec3 normal = vec3(-east, -north, 1.0) * inversesqrt(1.0 + east * east + north * north);
-    own_height = height_of(lane, march);
+    own_height = height_at(lane, march);
     vec4 sum = vec4(0.0);
     if (clears == 0u) {
         sum = imageLoad(bounce_sum, own_node);

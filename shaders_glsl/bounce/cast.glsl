@@ -25,7 +25,7 @@ layout(push_constant) uniform GatherPush {
 };
 
 #include "shared/angle.glsl"
-#include "bounce/cosine.glsl"
+#include "shared/cosine.glsl"
 #include "shared/spline.glsl"
 #include "bounce/shade.glsl"
 

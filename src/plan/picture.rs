@@ -14,6 +14,7 @@ use crate::passes::bounce_nodes::BounceNodes;
 use crate::passes::bounces;
 use crate::passes::bounces::Bouncing;
 use crate::passes::edits::Edits;
+use crate::passes::line_blocks::LineBlocks;
 use crate::passes::nodes::Nodes;
 use crate::passes::shadows::Shadows;
 use crate::passes::sphere_sh::SphereSh;
@@ -194,6 +195,11 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
         let (of, count) = (([size[0], size[1]], surface.border), active.aimed().count());
         Shadows::make(&mut builder, azimuths, of, (&of_lights, count), limits)
     });
+    let walked_azimuths = lists.last().filter(|_| is_walked && bounces > 0);
+    let line_blocks = walked_azimuths.map(|azimuths| {
+        let of = ([size[0], size[1]], surface.border);
+        LineBlocks::make(&mut builder, azimuths, sweep.line_shift(), of, limits)
+    });
     let shared = (bounces, images.sky_sum);
     let at_nodes = BounceNodes::make(&mut builder, size, quality, shared, limits, &mut notes);
     let need_blocks =
@@ -210,8 +216,8 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     let of_light = (active.is_grey, wanted.light_layers);
     let bouncing = (bounces > 0).then(|| {
         let specular = active.specular.is_some().then_some(&mut notes);
-        let found = (bounces, at_nodes, levels);
-        Bouncing::make(&mut builder, scene, quality, found, of_light, specular)
+        let (found, read) = ((bounces, at_nodes), (levels, line_blocks));
+        Bouncing::make(&mut builder, scene, quality, found, read, of_light, specular)
     });
     // Suns by shadow heights alone have no settings of sweeps.
     let has_others = lists.lists.len() > of_lights.len();

@@ -204,9 +204,10 @@ words! {
         ///
         /// In closed form. Time per texel grows with the side of the field.
         BruteForce = "brute-force",
-        /// The visible intervals at every march step, from the stored occluders of a sweep along lines
+        /// The ground up to the horizon of a sweep along lines: near by at every march step, farther away in blocks
         ///
-        /// On the texel's own lines, found in the hull tree (Timonen 2012). Needs such a sweep.
+        /// Blocks of swept lines, at most an eighth of their distance long. Time grows with the logarithm of the
+        /// distance. Needs such a sweep.
         Sweep = "sweep",
         /// One texel per level of pyramids of heights and light: approximate
         ///

@@ -25,7 +25,12 @@ fn labels(plan: &Plan) -> Vec<String> {
 #[test]
 fn sweeps_and_walks() {
     let mut scene = under_sky(flat(9, 14));
-    let once = ["horizon_sweep bounce1 8+4", "bounce_walk bounce1 8+4"];
+    let once = [
+        "bounce_ground bounce1",
+        "horizon_sweep bounce1 8+4",
+        "line_blocks bounce1 8+4",
+        "bounce_walk bounce1 8+4",
+    ];
     let of = |plan: &Plan, name: &str| {
         plan.passes.iter().filter(|p| p.name() == name && p.part.contains("bounce")).count()
     };
@@ -52,17 +57,28 @@ fn sweeps_and_walks() {
     assert!(!names.contains(&"horizon_sweep") && names.contains(&"bounce_walk"), "{names:?}");
 }
 
-/// llvmpipe ends all loops of an invocation after 65,535 turns: lines of 4096 steps are walked in 14 azimuths a
-/// dispatch, at most one turn a step and one an azimuth; the first clears and the last divides.
+/// Blocks of several azimuths are made at once while they take 64 MiB at most: of 1024² heights, 16 bytes a texel, at
+/// most four azimuths; of 2 × 4096 heights those along the columns all, and with an image of their own. The first
+/// walk clears and the last divides.
 #[test]
-fn long_lines_take_more_dispatches() {
-    let scene = under_sky(flat(2, 4096));
-    let plan = drawn(&scene, walked(1, 64), false);
+fn blocks_are_made_of_azimuths_that_fit() {
+    let of = |rows, cols| drawn(&under_sky(flat(rows, cols)), walked(1, 64), false);
+    let counts = |plan: &Plan, name: &str, by_row: bool| -> Vec<usize> {
+        let passes = plan.passes.iter().filter(|p| p.name() == name).map(|p| p.azimuths.clone());
+        let along = passes.filter(|a| plan.azimuths[a.start as usize].marches_rows() == by_row);
+        along.map(|a| a.len()).collect()
+    };
+    let square = of(1024, 1024);
+    assert!(counts(&square, "line_blocks", true).iter().all(|n| (1..=4).contains(n)));
+    let plan = of(2, 4096);
+    for by_row in [false, true] {
+        assert_eq!(counts(&plan, "line_blocks", by_row), counts(&plan, "bounce_walk", by_row));
+    }
+    assert_eq!(counts(&plan, "line_blocks", false), [32]);
     let walks: Vec<_> = plan.passes.iter().filter(|p| p.name() == "bounce_walk").collect();
-    let counts: Vec<usize> = walks.iter().map(|p| p.azimuths.len()).collect();
-    assert_eq!(counts.iter().sum::<usize>(), 64);
-    let along_cols = walks.iter().filter(|p| p.groups[0] == 512).map(|p| p.azimuths.len());
-    assert_eq!(along_cols.collect::<Vec<_>>(), [14, 14, 4]);
+    assert_eq!(walks.iter().map(|p| p.azimuths.len()).sum::<usize>(), 64);
+    let room = |name: &str| plan.resources[plan.find(name).expect(name).0].bytes();
+    assert!(room("line_blocks") <= 64 << 20 && room("line_blocks_across") <= 64 << 20);
     let word = |i: usize, at: usize| {
         let push = &walks[i].push;
         u32::from_ne_bytes(push[4 * at..4 * at + 4].try_into().unwrap())

@@ -16,7 +16,9 @@ mod specular;
 
 use crate::bounce_shade::LEAST_SHARE;
 pub use bend::{bent, fan_weight, over, way};
-pub use bounce::{BounceError, CastError, Gathered, Land, Slices, march_error, walk_error};
+pub use bounce::{
+    BounceError, CastError, Gathered, Land, Slices, block_error, march_error, walk_error,
+};
 pub use light::{ShadeError, SphereGeometry};
 pub use points::{
     MET_SHARE, crossing_elevation, ellipse_moment, ellipse_reach, ellipse_start, facet_elevation,

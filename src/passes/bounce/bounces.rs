@@ -6,8 +6,10 @@
 use crate::graph::{Builder, Format, Owner, ResourceId};
 use crate::passes::batch::Batch;
 use crate::passes::blocks::Blocks;
+use crate::passes::bounce_ground::BounceGround;
 use crate::passes::bounce_nodes::{BounceNodes, NodeSum};
 use crate::passes::bounced_specular::{BouncedSpecular, ExitLight, Vectors};
+use crate::passes::line_blocks::LineBlocks;
 use crate::passes::nodes::Nodes;
 use crate::passes::pyramid::Pyramid;
 use crate::passes::sweep::Sweep;
@@ -57,7 +59,7 @@ pub(crate) struct Bouncing {
 /// How bounced light is found, with the engine's own images.
 enum Engine {
     Brute,
-    Sweep,
+    Sweep(BounceGround, LineBlocks),
     Pyramid(bounce_gather::Pyramids),
 }
 
@@ -100,7 +102,8 @@ impl Bouncing {
         builder: &mut Builder,
         scene: &Scene,
         quality: &Quality,
-        (count, at_nodes, levels): (u32, Option<BounceNodes>, Option<pyramid_march::Images>),
+        (count, at_nodes): (u32, Option<BounceNodes>),
+        (levels, line_blocks): (Option<pyramid_march::Images>, Option<LineBlocks>),
         (grey, layers): (bool, bool),
         specular_notes: Option<&mut Vec<String>>,
     ) -> Self {
@@ -125,7 +128,10 @@ impl Bouncing {
         });
         let engine = match bounces.engine {
             BounceEngine::BruteForce => Engine::Brute,
-            BounceEngine::Sweep => Engine::Sweep,
+            BounceEngine::Sweep => {
+                let ground = BounceGround::make(builder, size, grey);
+                Engine::Sweep(ground, line_blocks.expect("made for walks"))
+            }
             BounceEngine::Auto => unreachable!("settled before"),
             BounceEngine::Pyramid => {
                 let has_numbers =
@@ -153,8 +159,8 @@ impl Bouncing {
         let pyramids = match &self.engine {
             Engine::Brute if is_planned => return,
             Engine::Brute => return blocks.plan(builder, &scene.field, heights, None),
-            Engine::Sweep if self.at_nodes.is_none() => return,
-            Engine::Sweep => None,
+            Engine::Sweep(..) if self.at_nodes.is_none() => return,
+            Engine::Sweep(..) => None,
             Engine::Pyramid(pyramids) => Some(pyramids),
         };
         if !is_planned {
@@ -174,7 +180,7 @@ impl Bouncing {
         &self,
         builder: &mut Builder,
         scene: &Scene,
-        (blocks, swept): (Option<&Blocks>, Option<(&Sweeping, &[Batch])>),
+        (blocks, swept): (Option<&Blocks>, Option<WalkedOver>),
         k: usize,
         [heights, direct]: [ResourceId; 2],
     ) -> (ResourceId, Option<ResourceId>) {
@@ -197,8 +203,9 @@ impl Bouncing {
         let blocks = || blocks.expect("made for engines that read cells and ground");
         match &self.engine {
             Engine::Brute => bounce_march::plan(builder, scene, blocks(), self.azimuths, &bounce),
-            Engine::Sweep => {
-                let (sweeping, batches) = swept.expect("swept for walks");
+            Engine::Sweep(ground, line_blocks) => {
+                let over = swept.expect("swept for walks");
+                let WalkedOver { sweeping, batches } = over;
                 match self.at_nodes.and_then(|at| Some((at.first, at.visibility_cache?))) {
                     Some((walked, visibility_cache)) if k > 1 => {
                         let first = batches[0].first;
@@ -212,7 +219,11 @@ impl Bouncing {
                             &bounce,
                         );
                     }
-                    _ => walk(builder, scene, k, (sweeping, batches), (&bounce, &self.at_nodes)),
+                    _ => {
+                        ground.plan(builder, heights, &bounce);
+                        let made = (ground, line_blocks);
+                        walk(builder, scene, k, (&over, made), (&bounce, &self.at_nodes));
+                    }
                 }
             }
             Engine::Pyramid(of) => {
@@ -244,7 +255,7 @@ impl Bouncing {
         add("subsample", self.at_nodes.map_or(1, |at| at.first.nodes.stride).to_string());
         let engine = match &self.engine {
             Engine::Brute => BounceEngine::BruteForce,
-            Engine::Sweep => BounceEngine::Sweep,
+            Engine::Sweep(..) => BounceEngine::Sweep,
             Engine::Pyramid(of) => {
                 if let Some(specular) = &self.specular {
                     add("bounce_specular", specular.mode().name().to_owned());
@@ -264,15 +275,23 @@ impl Bouncing {
     }
 }
 
+/// What a bounce walks over.
+pub(crate) struct WalkedOver<'a> {
+    pub sweeping: &'a Sweeping,
+    pub batches: &'a [Batch],
+}
+
 /// The sweeps that a bounce walks over, and the walks.
 fn walk(
     builder: &mut Builder,
     scene: &Scene,
     k: usize,
-    (sweeping, batches): (&Sweeping, &[Batch]),
+    (over, (ground, line_blocks)): (&WalkedOver, (&BounceGround, &LineBlocks)),
     (bounce, at_nodes): (&Bounce, &Option<BounceNodes>),
 ) {
-    for (i, batch) in batches.iter().enumerate() {
+    let WalkedOver { sweeping, batches } = *over;
+    let (begin, end) = (batches[0].first, batches[batches.len() - 1].azimuths().end);
+    for batch in batches {
         let part = part(&bounce.name, batch, batches);
         let occluders = sweeping.occluders(batch).expect("kept for walks");
         // A lattice of its own still holds the first bounce's sweep.
@@ -301,12 +320,26 @@ fn walk(
             lane_heights: sweeping.lane_heights(batch),
             azimuths: sweeping.azimuths,
             occluders,
+            line_blocks: *line_blocks,
+            ground: *ground,
             line_shift: sweeping.sweep.line_shift(),
-            begin: batches[0].first,
-            is_last: i + 1 == batches.len(),
+            begin,
+            end,
             visibility_cache: at_nodes.and_then(|at| at.visibility_cache),
         };
-        bounce_walk::plan(builder, field, (batch, &part), &swept, bounce);
+        let groups = line_blocks.groups(batch);
+        for azimuths in &groups {
+            let part = match groups.len() {
+                1 => part.clone(),
+                _ => {
+                    let [from, to] = [azimuths.start, azimuths.end].map(|k| k - batch.first);
+                    format!("{part} azimuths {from}..{to}")
+                }
+            };
+            let of = (batch, azimuths, part.as_str());
+            line_blocks.plan(builder, scene.surface.border, of, &swept, bounce);
+            bounce_walk::plan(builder, field, of, &swept, bounce);
+        }
     }
 }
 

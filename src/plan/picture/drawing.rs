@@ -4,7 +4,7 @@ use super::super::active_lights::{ActiveLights, Aimed, Colour};
 use super::images::{Harmonics, Images, SpecularSlices, Tables};
 use crate::graph::{Builder, ResourceId};
 use crate::passes::blocks::Blocks;
-use crate::passes::bounces::{Bouncing, bounce_name};
+use crate::passes::bounces::{Bouncing, WalkedOver, bounce_name};
 use crate::passes::edits::Edits;
 use crate::passes::shadows::Shadows;
 use crate::passes::sphere_sh::SphereSh;
@@ -287,7 +287,9 @@ impl Drawing<'_> {
         self.plan_specular_exit(&bouncing, 0);
         for k in 1..=bouncing.count() {
             let ids = [heights, radiance];
-            let traced = (self.blocks.as_ref(), self.sweeping.as_ref().zip(batches));
+            let over = self.sweeping.as_ref().zip(batches);
+            let over = over.map(|(sweeping, batches)| WalkedOver { sweeping, batches });
+            let traced = (self.blocks.as_ref(), over);
             let (sum, exit) = bouncing.plan(&mut self.builder, self.scene, traced, k, ids);
             self.resolve(&bounce_name(k), sum, None, exit);
             self.plan_specular_exit(&bouncing, k);

@@ -10,20 +10,23 @@ use ridgelight::scene::{
 };
 
 use crate::cpu_reference::{Case, Reference, Wanted, bowl, check_all, rough};
+use crate::field;
 
 /// The passes of this room and their CPU references.
 pub(crate) const REFERENCES: &[Reference] = &[
     ("bounce_gather", indirect::bounce_gather),
+    ("bounce_ground", indirect::bounce_ground),
     ("bounce_march", indirect::bounce_march),
     ("bounce_shade", nodes::bounce_shade),
     ("bounce_walk", indirect::bounce_walk),
     ("cache_gather", nodes::cache_gather),
+    ("line_blocks", indirect::line_blocks),
     ("shade_expand", indirect::shade_expand),
     ("shade_reduce", indirect::shade_reduce),
 ];
 
 /// `bounce_walk`: colours and grey, every border, lines half a cell and two cells apart, single texels and lines of
-/// them, in batches.
+/// them, in batches; and valleys whose ground lies in blocks of up to 32 steps.
 pub(crate) fn walks() -> Vec<Case> {
     let base = Quality { azimuths: 8, ..Quality::default() };
     let walked = |count, azimuths, lines| {
@@ -41,6 +44,14 @@ pub(crate) fn walks() -> Vec<Case> {
         of(rough(17, 21, 31), Border::Open, Albedo::Map(map))
     };
     let grey = |field, border| of(field, border, Albedo::Constant([0.8; 3]));
+    let valley = |rows, cols, border| {
+        let noise = rough(rows, cols, 38);
+        let rise = |c: usize| 0.4 * (2.0 * c as f64 - cols as f64).abs();
+        let heights =
+            |r: usize, c: usize| rise(c) + 0.2 * f64::from(noise.heights_m()[r * cols + c] - 900.0);
+        let map = (0..rows * cols).map(|i| [(i % 4) as f32 / 4.0, 1.0, (i % 9) as f32 / 8.0]);
+        of(field(rows, cols, [1.0, 1.5], heights), border, Albedo::Map(map.collect()))
+    };
     let case = |name, scene, quality, keeps_horizons| Case {
         name,
         scene,
@@ -77,6 +88,13 @@ pub(crate) fn walks() -> Vec<Case> {
             "walks, a row",
             grey(rough(1, 9, 35), Border::Plane),
             walked(1, 8, Lines::Cell),
+            false,
+        ),
+        case("walks, a valley", valley(4, 420, Border::Plane), walked(1, 6, Lines::Cell), false),
+        case(
+            "walks, valleys",
+            valley(9, 70, Border::Periodic),
+            walked(1, 8, Lines::HalfCell),
             false,
         ),
     ]

@@ -1,16 +1,16 @@
-//! Indirect light at a grid point: the visible intervals of its own lines, nearest first, found through the occluders
-//! of a sweep and weighted in closed form.
+//! Indirect light at a grid point: the visible ground along its own lines step by step, and farther away in the blocks
+//! of the nearest swept line, each part weighted in closed form.
 //!
-//! The occluders of a swept line form its hull tree (Timonen 2012): everything between a grid point and its occluder
-//! lies below the straight line between the two. For a receiver farther along, if something nearer hides both ends,
-//! it hides everything between; where the far end rises above it, the points between are visited.
+//! Ground is visible up to the occluder of that line, whose slope no block exceeds. The last block reaches it, so that
+//! the weight of all ground is that of the horizon.
 
 use crate::Rgb;
+use crate::line_blocks::{Ground, NEAR_STEPS, level_at};
 use crate::shared::bounced::{Along, Cast, NEARLY_RAD, light_and_weight};
 use crate::shared::field::{field_slope, normal_of};
-use crate::shared::fuse::{nearest_texel, split_crossing, surface_on_line};
+use crate::shared::fuse::{nearest_line, split_crossing, surface_on_line};
 use crate::shared::gather::{Swept, elevation_moments};
-use crate::shared::sweep::{CELL_SHIFT, March, NO_SLOPE, PER_CELL, wrapped};
+use crate::shared::sweep::{March, NO_SLOPE};
 use glam::{DVec2, DVec3};
 use ridgelight::plan::azimuths::{Azimuth, CELL};
 
@@ -21,7 +21,7 @@ pub struct Walked {
     pub light: DVec3,
     /// Weight of all directions above the grid point's own plane.
     pub whole: f64,
-    /// Points of the hull tree visited.
+    /// Steps and blocks visited.
     pub turns: u32,
     /// Visible intervals.
     pub visible_intervals: u32,
@@ -44,7 +44,7 @@ pub fn bounce_walk(swept: &Swept, exit: &[[f32; 3]], col: i32, row: i32) -> Walk
     Walked { light: DVec3::from_array(light), whole, turns, visible_intervals }
 }
 
-/// Its visible intervals, azimuth by azimuth, distances in march steps; and the count of points visited.
+/// Its visible intervals, azimuth by azimuth, distances in march steps; and the count of steps and blocks visited.
 pub fn walked_along(swept: &Swept, exit: &[[f32; 3]], col: i32, row: i32) -> (Vec<Along>, u32) {
     let mut turns = 0;
     let along = |azimuth| {
@@ -58,9 +58,8 @@ pub fn walked_along(swept: &Swept, exit: &[[f32; 3]], col: i32, row: i32) -> (Ve
 
 /// A grid point's own line in one azimuth.
 struct Walk<'a> {
-    march: March<'a>,
+    ground: Ground<'a>,
     swept: &'a Swept<'a>,
-    exit: &'a [[f32; 3]],
     lane: i32,
     step: i32,
     own: f32,
@@ -131,9 +130,8 @@ impl<'a> Walk<'a> {
         let gradient = field_slope(&swept.heights, col, row);
         let direction = DVec2::new(azimuth.cos_phi.into(), azimuth.sin_phi.into());
         Self {
-            march,
+            ground: Ground { march, exit },
             swept,
-            exit,
             lane,
             step,
             own: swept.heights.at(col, row),
@@ -144,41 +142,27 @@ impl<'a> Walk<'a> {
 
     /// Lane position and step, that many steps ahead.
     fn place(&self, back: i32) -> (i32, i32) {
-        (self.lane * CELL - back * self.march.azimuth.shear, self.step - back)
+        (self.lane * CELL - back * self.ground.march.azimuth.shear, self.step - back)
     }
 
-    fn slope_at(&self, back: i32) -> f32 {
+    fn slope_of(&self, height: f32, back: i32) -> f32 {
+        (height - self.own) / (back as f32 * self.ground.march.azimuth.step_m)
+    }
+
+    /// A point of the own line.
+    fn at(&self, back: i32) -> Place {
         let (y, step) = self.place(back);
-        surface_on_line(&self.march, y, step)
-            .map_or(NO_SLOPE, |h| (h - self.own) / (back as f32 * self.march.azimuth.step_m))
-    }
-
-    fn leaving(&self, lane: i32, step: i32) -> DVec3 {
-        let [col, row] = self.march.grid_point(lane, step);
-        let texel = self.exit[row as usize * self.march.heights.cols + col as usize];
-        DVec3::from_array(texel.map(f64::from))
-    }
-
-    fn light_at(&self, back: i32) -> DVec3 {
-        let (y, step) = self.place(back);
-        let t = f64::from((y & (CELL - 1)) as f32 * PER_CELL);
-        let cell = y >> CELL_SHIFT;
-        self.leaving(cell, step).lerp(self.leaving(cell + 1, step), t)
-    }
-
-    /// Steps from there to the occluder of the nearest swept line; 0 for none.
-    fn occluder_at(&self, back: i32) -> i32 {
-        let (mut y, mut step) = self.place(back);
-        if self.march.periodic() {
-            (y, step) = (wrapped(y, self.march.lanes * CELL), wrapped(step, self.march.steps));
+        let height = surface_on_line(&self.ground.march, y, step);
+        Place {
+            steps: back as f32,
+            slope: height.map_or(NO_SLOPE, |h| self.slope_of(h, back)),
+            light: self.ground.light_at(y, step),
         }
-        nearest_texel(self.swept, &self.march, y, step).map_or(0, |texel| {
-            i32::from(self.swept.lattices.of(&self.march.azimuth).occluders[texel])
-        })
     }
 
     fn walked(&self) -> Progress {
-        let azimuth = &self.march.azimuth;
+        let march = &self.ground.march;
+        let azimuth = &march.azimuth;
         let flat = DVec2::new(azimuth.wedge_cos.into(), azimuth.wedge_sin.into());
         let faces =
             [self.normal.truncate().dot(flat), self.normal.z * f64::from(azimuth.wedge_rad)];
@@ -192,44 +176,59 @@ impl<'a> Walk<'a> {
         };
         let mut progress = Progress { along, turns: 0, faces, passed, reached: self.plane };
 
-        let mut reach = self.step + self.swept.warm_up(azimuth);
-        if !self.march.periodic() && azimuth.shear > 0 {
+        let on = self.step + self.swept.warm_up(azimuth);
+        let mut reach = on;
+        if !march.periodic() && azimuth.shear > 0 {
             reach = reach.min(self.lane * CELL / azimuth.shear);
         }
-        // Nothing rises behind the point where the nearest line has no occluder.
-        let limit = self.occluder_at(0).max(1).min(reach);
+        // Nothing rises behind the occluder.
+        let nearest = nearest_line(self.swept, march, self.place(0));
+        let occluder = nearest
+            .map_or(0, |(_, texel)| i32::from(self.swept.lattices.of(azimuth).occluders[texel]));
+        let limit = occluder.max(1).min(reach);
         if limit < 1 {
             return progress;
         }
         // The triangle of the grid point: the first surface is met at once.
-        let next = Place { steps: 1.0, slope: self.slope_at(1), light: self.light_at(1) };
-        let own = self.leaving(self.lane, self.step);
-        match split_crossing(&self.march, (self.lane, self.step), self.own) {
+        let next = self.at(1);
+        progress.turns += 1;
+        let own = self.ground.leaving(self.lane, self.step);
+        match split_crossing(march, (self.lane, self.step), self.own) {
             None => progress.add(next.slope, 1.0, [own, DVec3::ZERO]),
             Some(split) => {
                 progress.add(split.slope, split.steps, [own, DVec3::ZERO]);
-                let side = self.leaving(self.lane - 1, self.step);
-                let light = side.lerp(self.leaving(self.lane, self.step - 1), split.steps.into());
+                let side = self.ground.leaving(self.lane - 1, self.step);
+                let ahead = self.ground.leaving(self.lane, self.step - 1);
+                let light = side.lerp(ahead, split.steps.into());
                 progress
                     .add_interval(Place { steps: split.steps, slope: split.slope, light }, next);
             }
         }
-        let (mut at, mut near) = (1, next);
+        // Step by step, up to where the first block ends.
+        let near_limit = limit.min(NEAR_STEPS + (on & 1));
+        let mut near = next;
+        for back in 2..=near_limit {
+            progress.turns += 1;
+            let far = self.at(back);
+            progress.add_interval(near, far);
+            near = far;
+        }
+        // Block by block: nothing rises over the horizon, and the last block reaches it.
+        let horizon = self.at(limit).slope;
+        let (mut at, line) = (near_limit, nearest.map_or(0, |(y, _)| y));
         while at < limit {
             progress.turns += 1;
-            let back = self.occluder_at(at);
-            if back == 0 {
-                break;
-            }
-            let mut to = (at + back).min(limit);
-            let mut slope = self.slope_at(to);
-            if slope > progress.reached && to > at + 1 {
-                to = at + 1;
-                slope = self.slope_at(to);
-            }
-            let far = Place { steps: to as f32, slope, light: self.light_at(to) };
-            progress.add_interval(near, far);
-            (at, near) = (to, far);
+            let level = level_at(at, on - at);
+            let end = (line - at * azimuth.shear, self.step - at);
+            let block = self.ground.line_block(end, level);
+            let to = at + (1 << level);
+            let slope = match to >= limit {
+                true => horizon,
+                false => self.slope_of(block.top_m, at + block.top_steps).min(horizon),
+            };
+            let middle = (at + to) as f32 / 2.0;
+            progress.add(slope, middle, [block.light, block.spread]);
+            at = to;
         }
         progress
     }

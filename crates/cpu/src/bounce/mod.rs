@@ -6,6 +6,7 @@ pub mod bounce_march;
 pub mod bounce_shade;
 pub mod bounce_walk;
 pub mod cache_gather;
+pub mod line_blocks;
 pub mod shade_expand;
 pub mod shade_reduce;
 pub mod specular_gather;

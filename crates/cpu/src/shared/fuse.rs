@@ -100,11 +100,14 @@ fn lines_around(swept: &Swept, march: &March, y: i32, step: i32) -> Around {
     Around { before, after, before_texel, after_texel, t, takes_after }
 }
 
-/// Index of the nearest swept line's value at a lane position and a step of the field; none where no line is on the
-/// field.
-pub fn nearest_texel(swept: &Swept, march: &March, y: i32, step: i32) -> Option<usize> {
+/// The swept line nearest to a lane position at a step of the field: its own lane position, and the index of its
+/// value; none where no line is on the field.
+pub fn nearest_line(swept: &Swept, march: &March, (y, step): (i32, i32)) -> Option<(i32, usize)> {
     let around = lines_around(swept, march, y, step);
-    if around.takes_after { around.after_texel } else { around.before_texel }
+    match around.takes_after {
+        true => around.after_texel.map(|texel| (around.after, texel)),
+        false => around.before_texel.map(|texel| (around.before, texel)),
+    }
 }
 
 /// Slope of the horizon at a grid point (lane, step) and its distance in march steps: 0, unknown, where slopes are

@@ -3,6 +3,7 @@
 
 use super::{ARC_TANGENT, EPSILON, device_level, device_spline};
 use crate::Rgb;
+use crate::line_blocks::{MOST_LEVEL, NEAR_STEPS};
 use crate::shared::bounced::{Along, Cast, NEARLY_RAD, light_and_weight};
 use crate::shared::field::field_slope;
 use crate::shared::sweep::{Heights, inside};
@@ -198,20 +199,35 @@ pub fn march_error(cell_m: [f64; 2], along: &Along, cast: &Cast) -> CastError {
     }
 }
 
-/// What `bounce_walk` errs by where a visible interval ends, given what the device's own sweep has met.
+/// What `bounce_walk` errs by where a visible part ends, given what the device's own sweep has met.
 ///
 /// Rises are sums and products that are not fused, as the CPU reference's. A slope is their quotient by a product: 6 ε and the
 /// CPU reference's own 2 ε. Moments: half an arc tangent and 5 ε, and 4 ε, each times its part of the wedge, which errs
-/// by its cosine, sine and width of f32.
+/// by its cosine, sine and width of f32. Ground farther than the near steps has the radiance of a block.
 pub fn walk_error(wedge_rad: f64, cast: &Cast) -> CastError {
     let slope = cast.high_rad.tan();
     let [brightest, spread] = [cast.radiance, cast.spread].map(largest);
+    let block = match cast.distance > f64::from(NEAR_STEPS) {
+        true => block_error(brightest, spread),
+        false => 0.0,
+    };
     CastError {
         elevation_rad: 8.0 * EPSILON * slope.abs() / (1.0 + slope * slope),
         end: wedge_rad * (0.5 * ARC_TANGENT + 9.0 * EPSILON),
         weight: 0.0,
-        radiance: 12.0 * EPSILON * (brightest + spread),
+        radiance: 12.0 * EPSILON * (brightest + spread) + block,
     }
+}
+
+/// What a block of `line_blocks` errs by in its mean radiance.
+///
+/// A point's radiance is a mix of two, 3 ε, and the mean of two points 2 ε more. Each level mixes two means, 3 ε, by a share
+/// a / (a + b) of weights that are a difference of heights and a product, 4 ε each: that moves the share by 2 ε at most, and
+/// the quotient by 5 ε. The first channel's last eight bits are the place of the top: half of them, 2^-16.
+pub fn block_error(brightest: f64, spread: f64) -> f64 {
+    let levels = f64::from(MOST_LEVEL);
+    let means = EPSILON * ((5.0 + 3.0 * levels) * (brightest + spread) + 7.0 * levels * spread);
+    means + 2.0_f64.powi(-16) * (brightest + spread)
 }
 
 /// How `bounce_gather` samples a field.

@@ -3,17 +3,21 @@
 use ridgelight::gpu::shaders::offset;
 use std::collections::HashSet;
 
+use ridgelight::plan::azimuths::CELL;
 use ridgelight::plan::pyramid::Pyramid;
 use ridgelight::plan::{Nodes, Pass};
 use ridgelight::scene::{Fuse, Levels};
 use ridgelight_cpu::bounce_gather::BounceGather;
 use ridgelight_cpu::bounce_march::visible_intervals_along;
 use ridgelight_cpu::bounce_walk::walked_along;
+use ridgelight_cpu::line_blocks::{Ground, MOST_LEVEL};
 use ridgelight_cpu::oracle::Oracle;
 use ridgelight_cpu::pyramid_march::Stored;
 use ridgelight_cpu::shared::bounced::{light_and_weight, radiance};
+use ridgelight_cpu::shared::sweep::March;
 use ridgelight_cpu::tolerance::{
-    BounceError, Gathered, Land, Slices, device_level, device_spline, march_error, walk_error,
+    BounceError, Gathered, Land, Slices, block_error, device_level, device_spline, march_error,
+    walk_error,
 };
 use ridgelight_cpu::{shade_expand as expand_reference, shade_reduce as reduce_reference};
 
@@ -36,6 +40,17 @@ impl Run<'_> {
         match texels.len() / grid_points {
             1 => texels.iter().map(|v| [(*v).into(); 3]).collect(),
             _ => colours(&texels),
+        }
+    }
+
+    /// The exit radiance of every texel, as a walk reads it.
+    fn walked_exit(&mut self, pass: &Pass) -> Vec<[f32; 3]> {
+        match self.floats(pass, "grey_ground") {
+            Some(grey) => grey.chunks_exact(2).map(|g| [g[0]; 3]).collect(),
+            None => {
+                let texels = self.floats(pass, "bounce_ground").expect("one of both");
+                texels.chunks_exact(4).map(|t| [t[0], t[1], t[2]]).collect()
+            }
         }
     }
 
@@ -185,6 +200,99 @@ pub(crate) fn bounce_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     each(&got, of, [0, across])
 }
 
+/// Copies, to the last bit.
+pub(crate) fn bounce_ground(run: &mut Run, pass: &Pass) -> Vec<Pair> {
+    let is_grey = constant(pass, "grey") == 1;
+    let exit: Vec<[f64; 3]> = match is_grey {
+        true => run
+            .floats(pass, "exit_grey")
+            .expect("bound")
+            .iter()
+            .map(|v| [f64::from(*v); 3])
+            .collect(),
+        false => run.exit(pass),
+    };
+    let (name, width) = if is_grey { ("grey_ground", 2) } else { ("bounce_ground", 4) };
+    let got = run.floats(pass, name).expect("written");
+    let heights = run.scene.field.heights_m();
+    let mut pairs = Vec::new();
+    for (i, got) in got.chunks_exact(width).enumerate() {
+        let want = [exit[i][0], exit[i][1], exit[i][2], f64::from(heights[i])];
+        let want = if is_grey { vec![want[0], want[3]] } else { want.to_vec() };
+        let pair = |(got, want): (&f32, f64)| Pair {
+            got: f64::from(*got),
+            want,
+            tolerance: 0.0,
+            at: [0, 0, i],
+        };
+        pairs.extend(got.iter().zip(want).map(pair));
+    }
+    pairs
+}
+
+/// Every block that a walk may read, of every line that is on the field where it ends. Heights and places are the
+/// same to the last bit.
+pub(crate) fn line_blocks(run: &mut Run, pass: &Pass) -> Vec<Pair> {
+    let texels = run.words(pass, "line_blocks").expect("written");
+    let [width, height] = run.extent(pass, "line_blocks");
+    let exit = run.walked_exit(pass);
+    let shift: u32 = constant(pass, "line_shift");
+    let mut pairs = Vec::new();
+    let layers = pushed(pass, const { offset("LineBlocksPush", "block_layers") }) as usize;
+    for k in pass.azimuths.clone() {
+        let azimuth = run.plan.azimuths[k as usize];
+        let march = March::new(run.heights(), &azimuth);
+        let warm_up = run.warm_up(azimuth.marches_rows());
+        let total = march.steps + warm_up;
+        let padded = (total as usize).next_multiple_of(1 << MOST_LEVEL);
+        let spacing = 1_i32 << shift;
+        let lead = match march.periodic() {
+            true => 0,
+            false => ((total - 1) * azimuth.shear + spacing - 1) >> shift,
+        };
+        let last = (march.lanes - 1) * CELL;
+        let lines = match march.periodic() {
+            true => (march.lanes * CELL) >> shift,
+            false => (last >> shift) + 1 + lead,
+        };
+        let ground = Ground { march, exit: &exit };
+        for (line, level) in (0..lines).flat_map(|line| (1..=MOST_LEVEL).map(move |l| (line, l))) {
+            for end in (1 << level..total).step_by(1 << level) {
+                let y = (line - lead) * spacing + end * azimuth.shear;
+                if !march.periodic() && !(0..=last).contains(&y) {
+                    continue;
+                }
+                let row = padded - (padded >> (level - 1)) + (end as usize >> level) - 1;
+                let among = match march.periodic() {
+                    true => line,
+                    false => line - lead + 1 + ((end * azimuth.shear) >> shift),
+                } as usize;
+                let layer = (k - pass.azimuths.start) as usize * layers + (among >> 5);
+                let at = 4 * ((layer * height + row) * width + (among & 31));
+                let [top, first, green, blue] = [0, 1, 2, 3].map(|i| texels[at + i]);
+                let want = ground.line_block((y, end - warm_up), level);
+                let place = [k as usize, line as usize, row];
+                let exact = |got: f64, want: f64| Pair { got, want, tolerance: 0.0, at: place };
+                pairs.push(exact(f32::from_bits(top).into(), want.top_m.into()));
+                pairs.push(exact(f64::from(first & 255) + 1.0, want.top_steps.into()));
+                let light = [first & !255, green, blue].map(f32::from_bits);
+                let tolerance = block_error(
+                    want.brightest.iter().fold(0.0, |m: f64, v| m.max(*v)),
+                    want.spread.max_element(),
+                );
+                let channels = if constant(pass, "grey") == 1 { 1 } else { 3 };
+                pairs.extend((0..channels).map(|c| Pair {
+                    got: light[c].into(),
+                    want: want.light[c],
+                    tolerance,
+                    at: place,
+                }));
+            }
+        }
+    }
+    pairs
+}
+
 /// The sum so far; after the last azimuths, the bounced light.
 pub(crate) fn bounce_walk(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     const AZIMUTH_COUNT: usize = offset("BounceWalkPush", "azimuth_count");
@@ -197,13 +305,7 @@ pub(crate) fn bounce_walk(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         run.light_begins = first;
     }
     let range = run.light_begins..first + word(AZIMUTH_COUNT);
-    let exit: Vec<[f32; 3]> = match run.floats(pass, "exit_grey") {
-        Some(grey) => grey.iter().map(|v| [*v; 3]).collect(),
-        None => {
-            let texels = run.floats(pass, "exit_radiance").expect("one of both");
-            texels.chunks_exact(4).map(|t| [t[0], t[1], t[2]]).collect()
-        }
-    };
+    let exit = run.walked_exit(pass);
     let got = run.floats(pass, "bounce_sum").expect("written");
     let got = colours(&got);
     let brightest = exit.as_flattened().iter().fold(0.0_f64, |m, v| m.max((*v).into()));

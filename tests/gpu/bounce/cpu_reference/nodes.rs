@@ -12,6 +12,7 @@ use ridgelight_cpu::bounce_walk::walked_along;
 use ridgelight_cpu::cache_gather::{
     Cast, RING_ENDS, cache_gather as gather_reference, cast_of, cast_part,
 };
+use ridgelight_cpu::line_blocks::NEAR_STEPS;
 use ridgelight_cpu::shared::bounced::light_and_weight;
 use ridgelight_cpu::shared::sweep::March;
 use ridgelight_cpu::tolerance::{BounceError, EPSILON, Slices, device_bounce_shade, walk_error};
@@ -58,8 +59,15 @@ pub(crate) fn casts(run: &mut Run, pass: &Pass, azimuths: Range<usize>) -> Vec<P
                 let off = walked[0] + 2.0 * cast_part(wedge);
                 let got = gather_reference(set, &exit64);
                 pairs.push(Pair { got: got[0], want: want[0], tolerance: off, at });
-                let tolerance = want[0] + far * off;
-                let pair = |c: usize| Pair { got: got[c], want: want[c], tolerance, at };
+                let pair = |c: usize| {
+                    // The mean of a block may lie anywhere on it, the ring's in its middle.
+                    let in_blocks: f64 = (along.iter().flat_map(|along| &along.casts))
+                        .filter(|cast| cast.distance > f64::from(NEAR_STEPS))
+                        .map(|cast| cast.weight * cast.spread[c])
+                        .sum();
+                    let tolerance = want[0] + far * off + in_blocks;
+                    Pair { got: got[c], want: want[c], tolerance, at }
+                };
                 pairs.extend([1, 2].into_iter().filter(|_| is_ramp).map(pair));
             }
         });

@@ -1,0 +1,150 @@
+use crate::graph::{Axis, Builder, Format, Limits, Owner, ResourceId, shaders};
+use crate::passes::azimuths::{Azimuth, CELL};
+use crate::passes::batch::Batch;
+use crate::passes::bounce_walk;
+use crate::passes::bounce_walk::Swept;
+use crate::passes::bounces::Bounce;
+use crate::scene::Border;
+use std::ops::Range;
+
+/// Steps of the longest block, 2^MOST_LEVEL of the shaders.
+const LONGEST: u32 = 256;
+/// Blocks of several azimuths are made at once while they take no more than this, and than an eighth of the budget.
+const AT_ONCE_BYTES: u64 = 64 << 20;
+/// Of a block: its largest height, the place of that, and radiance.
+const FORMAT: Format = Format::Rgba32Uint;
+
+/// Blocks along the swept lines of some azimuths at a time, of each axis that is marched: columns, rows. One image
+/// serves both where it takes no more than one for each.
+#[derive(Clone, Copy)]
+pub(crate) struct LineBlocks {
+    of_axes: [Option<Lines>; 2],
+    line_shift: u32,
+}
+
+#[derive(Clone, Copy)]
+struct Lines {
+    image: ResourceId,
+    /// How many azimuths have room, and the layers of one.
+    at_once: u32,
+    layers: u32,
+}
+
+/// Rows and layers of one azimuth.
+#[derive(Clone, Copy, PartialEq)]
+struct Shape {
+    rows: u32,
+    layers: u32,
+}
+
+impl Shape {
+    /// Half as many blocks as steps, a quarter, and so on; by 32, the lines that are on the field at a step, and
+    /// one beside it at each end.
+    fn of(axis: Axis, line_shift: u32) -> Self {
+        let padded = (axis.steps + axis.warm_up).next_multiple_of(LONGEST);
+        let across = u64::from(axis.lanes - 1) * CELL as u64;
+        let layers = ((across >> line_shift) as u32 + 3).div_ceil(32);
+        Self { rows: padded - padded / LONGEST, layers }
+    }
+
+    fn bytes(&self) -> u64 {
+        32 * u64::from(self.rows) * u64::from(self.layers) * FORMAT.bytes()
+    }
+}
+
+impl LineBlocks {
+    /// With room for one azimuth, and for more where blocks are small.
+    pub(crate) fn make(
+        builder: &mut Builder,
+        azimuths: &[Azimuth],
+        line_shift: u32,
+        (size, border): ([u32; 2], Border),
+        limits: &Limits,
+    ) -> Self {
+        let shapes = [false, true].map(|by_row| {
+            let count = azimuths.iter().filter(|a| a.marches_rows() == by_row).count() as u32;
+            let shape = Shape::of(Axis::of(by_row, size, border), line_shift);
+            (count > 0).then_some((shape, count))
+        });
+        let mut image = |shape: Shape, count: u32, suffix: &str| {
+            let room = AT_ONCE_BYTES.min(limits.memory_budget / 8);
+            let at_once = ((room / shape.bytes()) as u32)
+                .min(limits.image_layers / shape.layers)
+                .clamp(1, count);
+            let extent = [32, shape.rows, shape.layers * at_once];
+            let name = format!("line_blocks{suffix}");
+            let image = builder.image(name, Owner::Internal, FORMAT, extent, true);
+            Lines { image, at_once, layers: shape.layers }
+        };
+        let of_axes = match shapes {
+            [Some((a, of_a)), Some((b, of_b))] => {
+                let both = Shape { rows: a.rows.max(b.rows), layers: a.layers.max(b.layers) };
+                if both.bytes() <= a.bytes() + b.bytes() {
+                    [Some(image(both, of_a.max(of_b), "")); 2]
+                } else {
+                    [Some(image(a, of_a, "")), Some(image(b, of_b, "_across"))]
+                }
+            }
+            one => one.map(|of| of.map(|(shape, count)| image(shape, count, ""))),
+        };
+        Self { of_axes, line_shift }
+    }
+
+    fn lines(&self, axis: Axis) -> Lines {
+        self.of_axes[usize::from(axis.marches_rows)].expect("made for every axis used")
+    }
+
+    /// The azimuths of a batch in groups that have room.
+    pub(crate) fn groups(&self, batch: &Batch) -> Vec<Range<u32>> {
+        let most = self.lines(batch.axis).at_once.min(bounce_walk::most_azimuths(batch.axis));
+        let all = batch.azimuths();
+        let group = |first: u32| first..all.end.min(first + most);
+        all.clone().step_by(most as usize).map(group).collect()
+    }
+
+    /// Image of the azimuths along an axis, and the layers of one.
+    pub(crate) fn of(&self, axis: Axis) -> (ResourceId, u32) {
+        let Lines { image, layers, .. } = self.lines(axis);
+        (image, layers)
+    }
+
+    /// Makes the blocks of a group.
+    pub(crate) fn plan(
+        &self,
+        builder: &mut Builder,
+        border: Border,
+        (batch, azimuths, part): (&Batch, &Range<u32>, &str),
+        swept: &Swept,
+        bounce: &Bounce,
+    ) {
+        let axis = batch.axis;
+        let [cols, rows] = axis.size();
+        let count = azimuths.len() as u32;
+        let steps = axis.steps + axis.warm_up;
+        let (image, block_layers) = self.of(axis);
+        let found = u64::from(count) * u64::from(axis.lanes) * u64::from(steps);
+        let pass = builder.pass(
+            shaders::LineBlocks {
+                line_shift: self.line_shift as i32,
+                border: border as u32,
+                marches_rows: axis.marches_rows,
+                grey: bounce.grey,
+            },
+            part,
+            format!("{}, blocks along {count} azimuths", bounce.why),
+            [batch.most_lines.div_ceil(64), steps.div_ceil(LONGEST), count],
+            &shaders::LineBlocksPush {
+                cols: cols as i32,
+                rows: rows as i32,
+                warm_up: axis.warm_up as i32,
+                first_azimuth: azimuths.start,
+                block_layers: block_layers as i32,
+            },
+            &[swept.ground.bound(), ("azimuths", swept.azimuths), ("line_blocks", image)],
+            // Of two lanes; and as many blocks as steps.
+            found * (2 * swept.ground.texel_bytes() + FORMAT.bytes()),
+            found,
+        );
+        pass.azimuths = azimuths.clone();
+    }
+}
