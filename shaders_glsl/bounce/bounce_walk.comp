@@ -238,7 +238,6 @@ vec4 walked(vec3 normal, float plane) {
     // Block by block: nothing rises over the horizon, and the last block reaches it.
     int end = max(limit, 1);
     float horizon = slope_of(point_at(end).w, float(end));
-    int padded = padded_steps(warm_up + steps);
     int layer = int((azimuth_index - first_azimuth) * block_layers);
     walking = limit > near_limit;
     turns_on = int(walking);
@@ -246,7 +245,7 @@ vec4 walked(vec3 normal, float plane) {
         int block_end = max(on - at, 2);
         int level = clamp(min(findLSB(block_end), findMSB(at) - 3), 1, MOST_LEVEL);
         int among = block_line(nearest.line, nearest.lead, azimuth.shear, block_end);
-        Block block = block_of(imageLoad(line_blocks, block_texel(layer, among, level, block_end, padded)));
+        Block block = block_of(imageLoad(line_blocks, block_texel(layer, among, level, block_end)));
         float to_slope = slope_of(block.top, float(at + block.top_steps));
         int to = at + (1 << level);
         bool is_last_block = to >= limit;

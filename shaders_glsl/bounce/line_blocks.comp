@@ -34,7 +34,7 @@ layout(push_constant) uniform LineBlocksPush {
 Azimuth azimuth;
 int lanes;
 int steps;
-int padded;
+int total;
 int line;
 int lead;
 int first_layer;
@@ -71,8 +71,8 @@ Weighed joined(Weighed far, Weighed near, int length) {
 
 void store(int level, int end, Block block) {
     int among = block_line(line, lead, azimuth.shear, end);
-    if (among >= 0 && among < block_lines(lanes)) {
-        imageStore(line_blocks, block_texel(first_layer, among, level, end, padded), block_words(block));
+    if (among >= 0 && among < block_lines(lanes) && end < total) {
+        imageStore(line_blocks, block_texel(first_layer, among, level, end), block_words(block));
     }
 }
 
@@ -101,8 +101,7 @@ void main() {
     azimuth = azimuth_at(azimuths, first_azimuth + gl_WorkGroupID.z);
     first_layer = int(gl_WorkGroupID.z) * block_layers;
     bool wraps = BORDER == BORDER_PERIODIC;
-    int total = warm_up + steps;
-    padded = padded_steps(total);
+    total = warm_up + steps;
     lead = lattice_lead(azimuth.shear, total, LINE_SHIFT, wraps);
     int spacing = 1 << LINE_SHIFT;
     origin = (line - lead) * spacing;

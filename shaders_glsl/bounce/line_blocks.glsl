@@ -55,11 +55,6 @@ struct Block {
     vec3 light;
 };
 
-// Steps of all lines, filled up to whole blocks.
-int padded_steps(int total) {
-    return (total + (1 << MOST_LEVEL) - 1) & ~((1 << MOST_LEVEL) - 1);
-}
-
 // Lines of one azimuth that are on the field at a step, or less than a spacing beside it; all of a field that repeats.
 int block_lines(int lanes) {
     return (((lanes - 1) * CELL) >> LINE_SHIFT) + 3;
@@ -70,9 +65,10 @@ int block_line(int line, int lead, int shear, int end) {
     return BORDER == BORDER_PERIODIC ? line : line - lead + 1 + ((end * shear) >> LINE_SHIFT);
 }
 
-// Where the block of 2^level steps that ends at a step is in the image: shorter blocks first.
-ivec3 block_texel(int first_layer, int among_lines, int level, int end, int padded) {
-    int row = padded - (padded >> (level - 1)) + (end >> level) - 1;
+// Where the block of 2^level steps that ends at a step is in the image: in the row of its middle, which is no other
+// block's, as ends are multiples of the length.
+ivec3 block_texel(int first_layer, int among_lines, int level, int end) {
+    int row = end - (1 << (level - 1));
     return ivec3(among_lines & 31, row, first_layer + (among_lines >> 5));
 }
 

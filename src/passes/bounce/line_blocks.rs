@@ -38,13 +38,12 @@ struct Shape {
 }
 
 impl Shape {
-    /// Half as many blocks as steps, a quarter, and so on; by 32, the lines that are on the field at a step, and
+    /// A block at every step, of one length or another; by 32, the lines that are on the field at a step, and
     /// one beside it at each end.
     fn of(axis: Axis, line_shift: u32) -> Self {
-        let padded = (axis.steps + axis.warm_up).next_multiple_of(LONGEST);
         let across = u64::from(axis.lanes - 1) * CELL as u64;
         let layers = ((across >> line_shift) as u32 + 3).div_ceil(32);
-        Self { rows: padded - padded / LONGEST, layers }
+        Self { rows: axis.steps + axis.warm_up, layers }
     }
 
     fn bytes(&self) -> u64 {

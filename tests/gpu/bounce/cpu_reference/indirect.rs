@@ -244,7 +244,6 @@ pub(crate) fn line_blocks(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         let march = March::new(run.heights(), &azimuth);
         let warm_up = run.warm_up(azimuth.marches_rows());
         let total = march.steps + warm_up;
-        let padded = (total as usize).next_multiple_of(1 << MOST_LEVEL);
         let spacing = 1_i32 << shift;
         let lead = match march.periodic() {
             true => 0,
@@ -262,7 +261,7 @@ pub(crate) fn line_blocks(run: &mut Run, pass: &Pass) -> Vec<Pair> {
                 if !march.periodic() && !(0..=last).contains(&y) {
                     continue;
                 }
-                let row = padded - (padded >> (level - 1)) + (end as usize >> level) - 1;
+                let row = end as usize - (1 << (level - 1));
                 let among = match march.periodic() {
                     true => line,
                     false => line - lead + 1 + ((end * azimuth.shear) >> shift),
