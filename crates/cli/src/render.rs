@@ -181,6 +181,9 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
             metadata.push(("exposure".to_owned(), exposure.to_string()));
         }
         camera::write(args, camera_view, camera_pixels, shown, &metadata)?;
+        if is_png {
+            note_stale_world(&args.output, "it is a camera's", args.global.quiet);
+        }
     } else if !is_png {
         let georeference = georeference.as_ref();
         write_floats(
@@ -311,15 +314,18 @@ pub fn write_world(
     match georeference {
         Some(georeference) => files::write_text(&path, &georeference.world_file()),
         None => {
-            if path.exists() && !quiet {
-                setup::note(&format!(
-                    "{}: not of this picture, because {} states no position",
-                    path.display(),
-                    input.first().display()
-                ));
-            }
+            let why = format!("{} states no position", input.first().display());
+            note_stale_world(picture, &why, quiet);
             Ok(())
         }
+    }
+}
+
+/// A note where a world file of an earlier picture stands beside one that has none.
+fn note_stale_world(picture: &Path, why: &str, quiet: bool) {
+    let path = picture.with_extension("pgw");
+    if path.exists() && !quiet {
+        setup::note(&format!("{}: not of this picture, because {why}", path.display()));
     }
 }
 

@@ -165,6 +165,9 @@ const EARTH_M: f64 = 6_371_000.0;
 /// Fields as wide as this get a note on the curvature: it drops 7.8 m over them.
 const WIDE_M: f64 = 10_000.0;
 
+/// Beyond it the drop is no longer that of a parabola.
+const FLAT_M: f64 = 1_000_000.0;
+
 /// What a reader of results should know about a field: its voids and its width.
 fn about(field: &HeightField) -> Vec<String> {
     let mut notes = Vec::new();
@@ -181,10 +184,13 @@ fn about(field: &HeightField) -> Vec<String> {
     let widest = width.max(height);
     if widest > WIDE_M {
         let drop = widest * widest / (2.0 * EARTH_M);
-        notes.push(format!(
-            "the Earth's curvature drops {drop:.0} m over the {:.0} km of this field; it is not modelled",
-            widest / 1000.0
-        ));
+        let of = match widest < FLAT_M {
+            true => {
+                format!(" drops {drop:.0} m over the {:.0} km of this field; it", widest / 1000.0)
+            }
+            false => ", which this field goes far around,".to_owned(),
+        };
+        notes.push(format!("the Earth's curvature{of} is not modelled"));
     }
     notes
 }

@@ -61,6 +61,11 @@ impl Raster {
                     || value.is_nan() && nodata.is_nan()
                     || single && nodata.is_finite() && *value as f32 == nodata as f32;
             }
+        } else if let Some((mark, count)) = self.likely_voids() {
+            let of = if count == 1 { "1 height is" } else { &format!("{count} heights are") };
+            self.notes.push(format!(
+                "{of} {mark}, which often marks a void, and the file names no such value; `nodata` {mark} makes voids of them"
+            ));
         }
         let (factor, [scale, offset]) = (self.unit_m * options.z_scale, self.scale);
         if factor != 1.0 || self.scale != [1.0, 0.0] {
@@ -74,6 +79,17 @@ impl Raster {
             let note = "heights are whole numbers of 8 bits, as of a picture: slopes have steps";
             self.notes.push(note.to_owned());
         }
+    }
+
+    /// The lowest value and how often it occurs, where it is one of the usual marks of voids.
+    fn likely_voids(&self) -> Option<(f64, usize)> {
+        const MARKS: [f64; 3] = [-9999.0, -32768.0, -99999.0];
+        if self.voids.is_some() {
+            return None;
+        }
+        let lowest = self.values.iter().copied().fold(f64::INFINITY, f64::min);
+        let count = || self.values.iter().filter(|v| **v == lowest).count();
+        MARKS.contains(&lowest).then(|| (lowest, count()))
     }
 
     /// What is assumed of the cells.

@@ -55,6 +55,11 @@ impl<'a> Image<'a> {
         let is_planar = number(Tag::PlanarConfiguration)? == Some(2);
         let method = number(Tag::Compression)?.unwrap_or(1);
         let all = number(Tag::SamplesPerPixel)?.unwrap_or(1);
+        if let Some(name) = unreadable(method) {
+            let found = format!("{name} (compression {method})");
+            let expected = "no compression, PackBits, LZW, DEFLATE or Zstandard; `gdal_translate -co COMPRESS=DEFLATE` writes such a file";
+            return Err(Error::file(path, "header", found, expected));
+        }
         let image_bytes = rows as u64 * cols as u64 * u64::from(bits / 8) * u64::from(all);
         open::plausible(path, "header", image_bytes, bytes.len(), ratio(method))?;
         // The decoder leaves out interleaved samples behind those of a colour.
@@ -232,6 +237,7 @@ pub(crate) fn no_band(path: &Path, band: u32, bands: usize) -> Error {
 pub(crate) fn heights(path: &Path, bytes: &[u8], band: Option<u32>) -> Result<Raster> {
     let mut image = Image::open(path, bytes)?;
     let (band, note) = image.band(band)?;
+    let note = note.into_iter().chain(mask_note(path, bytes));
     let (rows, cols) = (image.rows, image.cols);
     let geo = geotiff::read(path, &mut image.tiff, rows, cols, band)?;
     let empty = geo.nodata.unwrap_or(0.0);
@@ -245,8 +251,47 @@ pub(crate) fn heights(path: &Path, bytes: &[u8], band: Option<u32>) -> Result<Ra
         nodata: geo.nodata,
         is_8_bit,
         georeference: geo.georeference,
-        notes: note.into_iter().chain(geo.notes).collect(),
+        notes: note.chain(geo.notes).collect(),
         ..Raster::bare(rows, cols, planes.swap_remove(0))
+    })
+}
+
+/// A compression that is not read, by its TIFF number.
+fn unreadable(method: u16) -> Option<&'static str> {
+    match method {
+        1 | LZW | 8 | 32946 | 32773 | 50000 => None,
+        6 | 7 => Some("JPEG"),
+        34712 => Some("JPEG 2000"),
+        34887 => Some("LERC"),
+        34925 => Some("LZMA"),
+        50001 => Some("WebP"),
+        50002 => Some("JPEG XL"),
+        _ => Some("an unknown compression"),
+    }
+}
+
+/// A note where the file has a mask of valid texels, which is not read: in a later directory, or in a file
+/// beside it, as GDAL writes them.
+fn mask_note(path: &Path, bytes: &[u8]) -> Option<String> {
+    const IS_MASK: u32 = 4;
+    let mut beside = path.as_os_str().to_owned();
+    beside.push(".msk");
+    let has_mask = || {
+        let mut tiff = Decoder::new(Raw::new(bytes)).ok()?;
+        while tiff.more_images() {
+            tiff.next_image().ok()?;
+            let kind = tiff.find_tag_unsigned::<u32>(Tag::NewSubfileType).ok().flatten();
+            if kind.is_some_and(|kind| kind & IS_MASK != 0) {
+                return Some(());
+            }
+        }
+        None
+    };
+    let is_masked = has_mask().is_some() || Path::new(&beside).exists();
+    is_masked.then(|| {
+        "the mask of this file is not read: all its heights count. `gdalwarp -dstnodata -9999` turns masked \
+         heights into voids"
+            .to_owned()
     })
 }
 

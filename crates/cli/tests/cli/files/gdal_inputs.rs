@@ -166,6 +166,51 @@ fn gdal_several_bands_get_a_note_and_colours_are_refused() {
     );
 }
 
+/// A mask is not read, with a note, inside of the file or beside it; heights that often mark voids get one, too.
+#[test]
+#[ignore = "needs GDAL: Debian's gdal-bin"]
+fn gdal_masks_and_likely_voids_get_a_note() {
+    let folder = Folder::new();
+    let text = grid([9, 7], [500_000.0, 4_900_000.0], 30.0, 0);
+    folder.write("a.asc", text.as_bytes());
+    folder.write("marked.asc", text.replacen("\n1 ", "\n-32768 ", 1).as_bytes());
+    tool(&folder, "gdal_translate -q a.asc plain.tif");
+    let inside = "--config GDAL_TIFF_INTERNAL_MASK YES";
+    tool(&folder, &format!("gdal_translate -q -ot Float32 {inside} -mask 1 a.asc inside.tif"));
+    tool(&folder, "gdal_translate -q -ot Float32 -mask 1 a.asc beside.tif");
+    assert!(folder.path("beside.tif.msk").exists());
+    let notes = |name: &str| folder.run_str(&format!("plan {name}")).notes;
+    for (name, has_note) in [("plain.tif", false), ("inside.tif", true), ("beside.tif", true)] {
+        assert_eq!(notes(name).contains("the mask of this file is not read"), has_note, "{name}");
+    }
+    assert!(!notes("a.asc").contains("often marks a void"));
+    let said = notes("marked.asc");
+    assert!(said.contains("1 height is -32768, which often marks a void"), "{said}");
+    assert!(said.contains("--nodata -32768 makes"), "{said}");
+    assert!(!notes("marked.asc --nodata -32768").contains("often marks a void"));
+}
+
+/// A compression that is not read is named, with a way out.
+#[test]
+#[ignore = "needs GDAL: Debian's gdal-bin"]
+fn gdal_unread_compressions_are_named() {
+    let folder = Folder::new();
+    folder.write("a.asc", grid([9, 7], [500_000.0, 4_900_000.0], 30.0, 0).as_bytes());
+    let mut refused = 0;
+    for (kind, packed, name) in
+        [("Byte", "JPEG", "JPEG"), ("Float32", "LERC", "LERC"), ("Float32", "LZMA", "LZMA")]
+    {
+        let options = format!("-ot {kind} -co COMPRESS={packed}");
+        tool(&folder, &format!("gdal_translate -q {options} a.asc packed.tif"));
+        let run = folder.run_str("plan packed.tif");
+        assert_eq!(run.status, Some(1), "{packed}: {}", run.err);
+        let says = [&format!("found {name} (compression "), "LZW, DEFLATE or Zstandard"];
+        assert!(says.iter().all(|part| run.err.contains(part)), "{packed}: {}", run.err);
+        refused += 1;
+    }
+    assert_eq!(refused, 3);
+}
+
 /// Tiles that GDAL leaves out have the no-data value.
 #[test]
 #[ignore = "needs GDAL: Debian's gdal-bin"]
