@@ -1,6 +1,6 @@
 // Computes: indirect light at every grid point from the azimuths of a batch, added to earlier batches: the visible
 // ground along the grid point's own line step by step, and farther away in the blocks of the nearest swept line, up to
-// the occluder that this line has stored; each part with its own radiance, weighted in closed form.
+// the horizon at the occluder that this line has stored; each part with its own radiance, weighted in closed form.
 // Reads: lane_heights, azimuths, occluders, line_blocks, bounce_ground (or grey_ground).
 // Reads and writes: bounce_sum (exit radiance for albedo 1; divided by A, the sum for whole hemispheres, after the
 // last dispatch).
@@ -9,7 +9,7 @@
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
 
-// Side by side along the march, as the steps of a line are in the lattice.
+// Side by side across the lanes, as lines are in line_blocks.
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(constant_id = 0) const int LINE_SHIFT = 15;
@@ -20,8 +20,7 @@ layout(constant_id = 3) const bool GREY = false;
 // Grid points from node to node: 1, 2, 4 or 8.
 layout(constant_id = 4) const int NODE_STRIDE = 1;
 // Which nodes run: all; or those of every second lane and of the last, where every second along and the last fill the
-// visibility cache for later bounces; or those of the other lanes. Whole lanes, because neighbouring steps walk
-// alike.
+// visibility cache for later bounces; or those of the other lanes.
 layout(constant_id = 5) const uint FROM = 0u;
 const uint FROM_KEPT = 1u;
 const uint FROM_REST = 2u;
@@ -146,7 +145,7 @@ void add_indirect(vec2 opened, vec3 light) {
 vec4 ring_weights;
 vec4 ring_moments;
 
-// A visible interval and its middle.
+// A visible part and its middle.
 void add_to_cache(float middle, vec2 opened, bool on) {
     float weight = mix(0.0, max(dot(faces, opened), 0.0), on);
     vec3 within = vec3(lessThan(vec3(middle), RING_ENDS));
@@ -162,7 +161,7 @@ vec4 walked(vec3 normal, float plane) {
     if (BORDER != BORDER_PERIODIC && azimuth.shear > 0) {
         reach = min(reach, own_lane * CELL / azimuth.shear);
     }
-    // Nothing rises behind the occluder.
+    // The horizon lies at the occluder, or at the edge of the field where the own line leaves it before.
     Nearest nearest = nearest_line();
     int limit = min(max(nearest.back, 1), reach);
     bool walking = limit > 0;
@@ -203,7 +202,7 @@ vec4 walked(vec3 normal, float plane) {
     // branch and expands a vote into eight. It also lets a lane that has left the loop keep computing, so a result
     // counts only while the lane is still walking; the compiler does not know this of `turns_on`.
     int on = own_step + warm_up;
-    int near_limit = min(limit, NEAR_STEPS + (on & 1));
+    int near_limit = min(limit, near_steps() + (on & 1));
     int turns_on = int(walking);
     while (turns_on > 0) {
         int to = min(at + 1, max(limit, 1));
@@ -235,7 +234,7 @@ vec4 walked(vec3 normal, float plane) {
         walking = walking && at < near_limit;
         turns_on = int(walking);
     }
-    // Block by block: nothing rises over the horizon, and the last block reaches it.
+    // Block by block, cut at the horizon, which the last one reaches: the share of ground is that below the horizon.
     int end = max(limit, 1);
     float horizon = slope_of(point_at(end).w, float(end));
     int layer = int((azimuth_index - first_azimuth) * block_layers);
@@ -243,7 +242,8 @@ vec4 walked(vec3 normal, float plane) {
     turns_on = int(walking);
     while (turns_on > 0) {
         int block_end = max(on - at, 2);
-        int level = clamp(min(findLSB(block_end), findMSB(at) - 3), 1, MOST_LEVEL);
+        int longest = min(findMSB(at) - 3, findMSB(max(limit - at, 1)));
+        int level = clamp(min(findLSB(block_end), longest), 1, MOST_LEVEL);
         int among = block_line(nearest.line, nearest.lead, azimuth.shear, block_end);
         Block block = block_of(imageLoad(line_blocks, block_texel(layer, among, level, block_end)));
         float to_slope = slope_of(block.top, float(at + block.top_steps));

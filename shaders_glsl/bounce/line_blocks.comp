@@ -107,7 +107,7 @@ void main() {
     origin = (line - lead) * spacing;
     const int LENGTH = 1 << MOST_LEVEL;
     int begin = int(gl_WorkGroupID.y) * LENGTH;
-    // Ground within half a spacing beside the field is read, and stands for the edge.
+    // Lines are read up to a spacing beside the field, where they have the values of its edge.
     int low = origin + begin * azimuth.shear;
     int high = low + LENGTH * azimuth.shear;
     bool is_beside = !wraps && (high < -spacing || low > (lanes - 1) * CELL + spacing);

@@ -37,16 +37,20 @@ vec4 ground_on_line(Azimuth azimuth, int y, int step, int lanes, int steps) {
     return vec4(mix(a.rgb, b.rgb, t), height);
 }
 
-// Blocks of a swept line: 2, 4, … or 256 steps, each from a multiple of its own length. A grid point sees the ground
-// around it step by step, and farther ground in blocks of at most an eighth of their distance, or 2 steps. A block has
-// its largest height with its place, and the mean radiance of its ground, which counts as it rises, towards the grid
-// point, over all that is nearer in the block.
+// Line blocks: 2, 4, … or 256 steps of a swept line, each from a multiple of its own length. A walk reads its own line
+// step by step at first, and farther ground in blocks of at most an eighth of their distance, or 2 steps. A block has
+// its largest height with its place, and the mean radiance of its ground. The mean weights each piece by its rise
+// above all nearer ground of the block.
 
-// Nearer ground is seen step by step.
-const int NEAR_STEPS = 8;
+// Up to this distance a walk reads every step, with lines one cell apart; to as many times that as they are farther
+// apart, because the nearest line may lie half of that beside.
+int near_steps() {
+    return 8 << max(LINE_SHIFT - CELL_SHIFT, 0);
+}
+
 // log2 of the longest block.
 const int MOST_LEVEL = 8;
-// Ground counts as if it rose by this much more, over world distance.
+// Every piece has this rise in addition, over world distance.
 const float FLAT_RISE = 1e-3;
 
 struct Block {

@@ -84,7 +84,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/bounce_walk.comp`.
-    BOUNCE_WALK: "bounce_walk", push BounceWalkPush, words 35469 14830,
+    BOUNCE_WALK: "bounce_walk", push BounceWalkPush, words 35469 14918,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 reads "occluders" StorageImage { format: "Rg32ui", uint: true, layered: true },
@@ -105,7 +105,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/cache_gather.comp`.
-    CACHE_GATHER: "cache_gather", push CacheGatherPush, words 50299 3639,
+    CACHE_GATHER: "cache_gather", push CacheGatherPush, words 50387 3639,
     0 reads "visibility_cache" StorageImage { format: "Rgba32ui", uint: true, layered: true },
     1 reads "azimuths" TexelBuffer,
     2 reads "exit_radiance" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -121,7 +121,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/edit/dirty_list.comp`.
-    DIRTY_LIST: "dirty_list", push DirtyListPush, words 53938 874,
+    DIRTY_LIST: "dirty_list", push DirtyListPush, words 54026 874,
     0 reads "dirty_texels" StorageBuffer,
     1 writes "edit_list" StorageBuffer,
     DirtyList;
@@ -129,7 +129,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/edit/dirty_mark.comp`.
-    DIRTY_MARK: "dirty_mark", push DirtyMarkPush, words 54812 1323,
+    DIRTY_MARK: "dirty_mark", push DirtyMarkPush, words 54900 1323,
     0 writes "dirty_texels" StorageBuffer,
     1 writes "edit_list" StorageBuffer,
     DirtyMark;
@@ -137,7 +137,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bake/ellipse_fit.comp`.
-    ELLIPSE_FIT: "ellipse_fit", push EllipseFitPush, words 56135 5049,
+    ELLIPSE_FIT: "ellipse_fit", push EllipseFitPush, words 56223 5049,
     0 reads "visible_points" SampledImage { uint: true, layered: true },
     1 reads "directions" TexelBuffer,
     2 writes "ellipse_axes" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -151,7 +151,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/env_rotation.comp`.
-    ENV_ROTATION: "env_rotation", push EnvRotationPush, words 61184 949,
+    ENV_ROTATION: "env_rotation", push EnvRotationPush, words 61272 949,
     0 reads "environment" SampledImage { uint: false, layered: false },
     1 reads "constants" TexelBuffer,
     2 writes "env_rotation" StorageBuffer,
@@ -160,7 +160,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/env_tables.comp`.
-    ENV_TABLES: "env_tables", push EnvTablesPush, words 62133 1463,
+    ENV_TABLES: "env_tables", push EnvTablesPush, words 62221 1463,
     0 reads "wedge_rows" StorageBuffer,
     1 writes "env_tables" StorageImage { format: "Rgba32f", uint: false, layered: true },
     EnvTables;
@@ -168,7 +168,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/env_wedges.comp`.
-    ENV_WEDGES: "env_wedges", push EnvWedgesPush, words 63596 2151,
+    ENV_WEDGES: "env_wedges", push EnvWedgesPush, words 63684 2151,
     0 reads "environment" SampledImage { uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "wedge_rows" StorageBuffer,
@@ -177,7 +177,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bake/facet_mask.comp`.
-    FACET_MASK: "facet_mask", push FacetMaskPush, words 65747 9133,
+    FACET_MASK: "facet_mask", push FacetMaskPush, words 65835 9133,
     0 reads "cells" SampledImage { uint: false, layered: false },
     1 reads "maxima" SampledImage { uint: false, layered: false },
     2 reads "directions" TexelBuffer,
@@ -190,7 +190,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bake/fan_weights.comp`.
-    FAN_WEIGHTS: "fan_weights", push FanWeightsPush, words 74880 1842,
+    FAN_WEIGHTS: "fan_weights", push FanWeightsPush, words 74968 1842,
     0 reads "bent" SampledImage { uint: false, layered: true },
     1 reads "fans" TexelBuffer,
     2 writes "fan_weights" StorageImage { format: "R32f", uint: false, layered: true },
@@ -199,7 +199,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/rays/height_bounds.comp`.
-    HEIGHT_BOUNDS: "height_bounds", push HeightBoundsPush, words 76722 1666,
+    HEIGHT_BOUNDS: "height_bounds", push HeightBoundsPush, words 76810 1666,
     0 reads "cells" SampledImage { uint: false, layered: false },
     1 writes "maxima" StorageImage { format: "R32f", uint: false, layered: false },
     2 reads "heights" SampledImage { uint: false, layered: false },
@@ -210,7 +210,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/rays/height_cells.comp`.
-    HEIGHT_CELLS: "height_cells", push HeightCellsPush, words 78388 2514,
+    HEIGHT_CELLS: "height_cells", push HeightCellsPush, words 78476 2514,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 writes "cells" StorageImage { format: "Rgba32f", uint: false, layered: false },
     2 writes "ground" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -224,7 +224,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/height_expand.comp`.
-    HEIGHT_EXPAND: "height_expand", push HeightExpandPush, words 80902 2496,
+    HEIGHT_EXPAND: "height_expand", push HeightExpandPush, words 80990 2496,
     0 reads "height_levels" SampledImage { uint: false, layered: false },
     1 reads "level_table" SampledImage { uint: true, layered: false },
     2 writes "height_stack" StorageImage { format: "R32f", uint: false, layered: true },
@@ -235,7 +235,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/height_reduce.comp`.
-    HEIGHT_REDUCE: "height_reduce", push ReducePush, words 83398 2858,
+    HEIGHT_REDUCE: "height_reduce", push ReducePush, words 83486 2858,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 writes "height_levels" StorageImage { format: "R32f", uint: false, layered: false },
     2 writes "level_table" StorageImage { format: "Rgba32ui", uint: true, layered: false },
@@ -247,7 +247,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/height_transpose.comp`.
-    HEIGHT_TRANSPOSE: "height_transpose", push HeightTransposePush, words 86256 978,
+    HEIGHT_TRANSPOSE: "height_transpose", push HeightTransposePush, words 86344 978,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 writes "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     HeightTranspose {
@@ -258,7 +258,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/horizon_march.comp`.
-    HORIZON_MARCH: "horizon_march", push MarchPush, words 87234 5456,
+    HORIZON_MARCH: "horizon_march", push MarchPush, words 87322 5456,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "slopes" StorageImage { format: "Unknown", uint: true, layered: true },
@@ -272,7 +272,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/edit/horizon_resweep.comp`.
-    HORIZON_RESWEEP: "horizon_resweep", push HorizonResweepPush, words 92690 8882,
+    HORIZON_RESWEEP: "horizon_resweep", push HorizonResweepPush, words 92778 8882,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "occluders" StorageImage { format: "Rg32ui", uint: true, layered: true },
@@ -286,7 +286,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/horizon_sweep.comp`.
-    HORIZON_SWEEP: "horizon_sweep", push HorizonSweepPush, words 101572 9430,
+    HORIZON_SWEEP: "horizon_sweep", push HorizonSweepPush, words 101660 9430,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "lane_heights" SampledImage { uint: false, layered: false },
     2 reads "azimuths" TexelBuffer,
@@ -312,7 +312,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/light_matrix.comp`.
-    LIGHT_MATRIX: "light_matrix", push LightMatrixPush, words 111002 1854,
+    LIGHT_MATRIX: "light_matrix", push LightMatrixPush, words 111090 1854,
     0 reads "env_rotation" StorageBuffer,
     1 reads "constants" TexelBuffer,
     2 writes "light_matrix" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -321,7 +321,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/light_resolve.comp`.
-    LIGHT_RESOLVE: "light_resolve", push LightResolvePush, words 112856 1991,
+    LIGHT_RESOLVE: "light_resolve", push LightResolvePush, words 112944 1991,
     0 reads "scalar_sum" SampledImage { uint: false, layered: false },
     1 reads "colour_sum" SampledImage { uint: false, layered: false },
     2 reads "albedo_map" SampledImage { uint: false, layered: false },
@@ -345,7 +345,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/line_blocks.comp`.
-    LINE_BLOCKS: "line_blocks", push LineBlocksPush, words 114847 6303,
+    LINE_BLOCKS: "line_blocks", push LineBlocksPush, words 114935 6303,
     0 reads "bounce_ground" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "grey_ground" StorageImage { format: "Rg32ui", uint: true, layered: false },
     2 reads "azimuths" TexelBuffer,
@@ -360,7 +360,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/map_draw.comp`.
-    MAP_DRAW: "map_draw", push MapDrawPush, words 121150 3812,
+    MAP_DRAW: "map_draw", push MapDrawPush, words 121238 3812,
     0 reads "radiance" SampledImage { uint: false, layered: false },
     1 reads "tone_steps" SampledImage { uint: false, layered: false },
     2 reads "voids" SampledImage { uint: false, layered: false },
@@ -373,7 +373,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/mirror_map.comp`.
-    MIRROR_MAP: "mirror_map", push MirrorMapPush, words 124962 3631,
+    MIRROR_MAP: "mirror_map", push MirrorMapPush, words 125050 3631,
     0 reads "azimuths" TexelBuffer,
     1 reads "specular_tables" StorageImage { format: "Rgba32f", uint: false, layered: true },
     2 writes "mirror_map" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -382,7 +382,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/reference/path_trace.comp`.
-    PATH_TRACE: "path_trace", push PathTracePush, words 128593 22928,
+    PATH_TRACE: "path_trace", push PathTracePush, words 128681 22928,
     0 reads "cells" SampledImage { uint: false, layered: false },
     1 reads "maxima" SampledImage { uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -419,7 +419,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/picture_tone.frag`.
-    PICTURE_TONE_FRAG: "picture_tone_frag", push PictureTonePush, words 151521 565,
+    PICTURE_TONE_FRAG: "picture_tone_frag", push PictureTonePush, words 151609 565,
     0 reads "radiance" SampledImage { uint: false, layered: false },
     PictureToneFrag {
         0 encodes: bool = true,
@@ -428,13 +428,13 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/picture_tone.vert`.
-    PICTURE_TONE_VERT: "picture_tone_vert", push (), words 152086 266,
+    PICTURE_TONE_VERT: "picture_tone_vert", push (), words 152174 266,
     PictureToneVert;
 }
 
 shader! {
     /// `shaders_glsl/view/plinth_draw.frag`.
-    PLINTH_DRAW_FRAG: "plinth_draw_frag", push PlinthDrawPush, words 152352 939,
+    PLINTH_DRAW_FRAG: "plinth_draw_frag", push PlinthDrawPush, words 152440 939,
     2 reads "voids" SampledImage { uint: false, layered: false },
     PlinthDrawFrag {
         1 has_voids: bool = false,
@@ -443,7 +443,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/plinth_draw.vert`.
-    PLINTH_DRAW_VERT: "plinth_draw_vert", push PlinthDrawPush, words 153291 2082,
+    PLINTH_DRAW_VERT: "plinth_draw_vert", push PlinthDrawPush, words 153379 2082,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "radiance" SampledImage { uint: false, layered: false },
     2 reads "voids" SampledImage { uint: false, layered: false },
@@ -455,7 +455,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/preview_gather.comp`.
-    PREVIEW_GATHER: "preview_gather", push PreviewGatherPush, words 155373 1069,
+    PREVIEW_GATHER: "preview_gather", push PreviewGatherPush, words 155461 1069,
     0 reads "normals" SampledImage { uint: false, layered: false },
     1 reads "coarse_radiance" SampledImage { uint: false, layered: false },
     2 reads "coarse_sun" SampledImage { uint: false, layered: false },
@@ -470,7 +470,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/preview_shade.comp`.
-    PREVIEW_SHADE: "preview_shade", push PreviewShadePush, words 156442 1740,
+    PREVIEW_SHADE: "preview_shade", push PreviewShadePush, words 156530 1740,
     0 reads "normals" SampledImage { uint: false, layered: false },
     1 reads "albedo" SampledImage { uint: false, layered: false },
     2 reads "sky" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -484,7 +484,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/pyramid_march.comp`.
-    PYRAMID_MARCH: "pyramid_march", push PyramidMarchPush, words 158182 9025,
+    PYRAMID_MARCH: "pyramid_march", push PyramidMarchPush, words 158270 9025,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "slopes" StorageImage { format: "Unknown", uint: true, layered: true },
@@ -501,7 +501,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bake/scatter_gather.comp`.
-    SCATTER_GATHER: "scatter_gather", push ScatterGatherPush, words 167207 4664,
+    SCATTER_GATHER: "scatter_gather", push ScatterGatherPush, words 167295 4664,
     0 reads "ground" SampledImage { uint: false, layered: false },
     1 reads "direct" SampledImage { uint: false, layered: false },
     2 reads "visible_points" SampledImage { uint: true, layered: true },
@@ -528,7 +528,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/sh_shade.comp`.
-    SH_SHADE: "sh_shade", push ShShadePush, words 171871 12958,
+    SH_SHADE: "sh_shade", push ShShadePush, words 171959 12958,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "visibility" SampledImage { uint: false, layered: true },
     2 reads "light_matrix" SampledImage { uint: false, layered: false },
@@ -547,7 +547,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/sh_visibility.comp`.
-    SH_VISIBILITY: "sh_visibility", push ShadePush, words 184829 30719,
+    SH_VISIBILITY: "sh_visibility", push ShadePush, words 184917 30719,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rg32ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -572,7 +572,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/sh_wedges.comp`.
-    SH_WEDGES: "sh_wedges", push ShWedgesPush, words 215548 7777,
+    SH_WEDGES: "sh_wedges", push ShWedgesPush, words 215636 7777,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "horizon_angles" SampledImage { uint: false, layered: true },
     2 reads "constants" TexelBuffer,
@@ -589,7 +589,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/shade_expand.comp`.
-    SHADE_EXPAND: "shade_expand", push ShadeExpandPush, words 223325 2397,
+    SHADE_EXPAND: "shade_expand", push ShadeExpandPush, words 223413 2397,
     0 reads "shade_levels" SampledImage { uint: false, layered: false },
     1 reads "shade_table" SampledImage { uint: true, layered: false },
     2 writes "shade_stack" StorageImage { format: "Unknown", uint: false, layered: true },
@@ -600,7 +600,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/shade_reduce.comp`.
-    SHADE_REDUCE: "shade_reduce", push ReducePush, words 225722 2918,
+    SHADE_REDUCE: "shade_reduce", push ReducePush, words 225810 2918,
     0 reads "exit_radiance" SampledImage { uint: false, layered: false },
     1 writes "shade_levels" StorageImage { format: "Rgba32f", uint: false, layered: false },
     2 writes "shade_table" StorageImage { format: "Rgba32ui", uint: true, layered: false },
@@ -613,7 +613,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/shadow_settle.comp`.
-    SHADOW_SETTLE: "shadow_settle", push ShadowSettlePush, words 228640 17968,
+    SHADOW_SETTLE: "shadow_settle", push ShadowSettlePush, words 228728 17968,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "maxima" StorageImage { format: "R32f", uint: false, layered: false },
     2 reads "azimuths" TexelBuffer,
@@ -630,7 +630,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/shadow_shade.comp`.
-    SHADOW_SHADE: "shadow_shade", push ShadowShadePush, words 246608 11165,
+    SHADOW_SHADE: "shadow_shade", push ShadowShadePush, words 246696 11165,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 reads "shadows" StorageImage { format: "Rgba32ui", uint: true, layered: true },
@@ -645,7 +645,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/shadow_sweep.comp`.
-    SHADOW_SWEEP: "shadow_sweep", push ShadowSweepPush, words 257773 6872,
+    SHADOW_SWEEP: "shadow_sweep", push ShadowSweepPush, words 257861 6872,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "shadows" StorageImage { format: "Unknown", uint: true, layered: true },
@@ -657,7 +657,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/sky_draw.frag`.
-    SKY_DRAW_FRAG: "sky_draw_frag", push SkyDrawPush, words 264645 1269,
+    SKY_DRAW_FRAG: "sky_draw_frag", push SkyDrawPush, words 264733 1269,
     0 reads "environment" SampledImage { uint: false, layered: false },
     SkyDrawFrag {
         0 has_environment: bool = false,
@@ -666,13 +666,13 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/sky_draw.vert`.
-    SKY_DRAW_VERT: "sky_draw_vert", push (), words 265914 289,
+    SKY_DRAW_VERT: "sky_draw_vert", push (), words 266002 289,
     SkyDrawVert;
 }
 
 shader! {
     /// `shaders_glsl/direct/sky_shade.comp`.
-    SKY_SHADE: "sky_shade", push ShadePush, words 266203 27561,
+    SKY_SHADE: "sky_shade", push ShadePush, words 266291 27561,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rg32ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -700,7 +700,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/specular_exit.comp`.
-    SPECULAR_EXIT: "specular_exit", push SpecularExitPush, words 293764 6438,
+    SPECULAR_EXIT: "specular_exit", push SpecularExitPush, words 293852 6438,
     0 reads "arriving" SampledImage { uint: false, layered: true },
     1 reads "ground" SampledImage { uint: false, layered: false },
     2 reads "exit_radiance" SampledImage { uint: false, layered: false },
@@ -723,7 +723,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/specular_gather.comp`.
-    SPECULAR_GATHER: "specular_gather", push GatherPush, words 300202 20112,
+    SPECULAR_GATHER: "specular_gather", push GatherPush, words 300290 20112,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "height_levels" SampledImage { uint: false, layered: false },
     2 reads "level_table" SampledImage { uint: true, layered: false },
@@ -751,7 +751,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/specular_light.comp`.
-    SPECULAR_LIGHT: "specular_light", push SpecularLightPush, words 320314 7631,
+    SPECULAR_LIGHT: "specular_light", push SpecularLightPush, words 320402 7631,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "blocked_sum" SampledImage { uint: false, layered: false },
     2 reads "unoccluded_map" SampledImage { uint: false, layered: false },
@@ -765,7 +765,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/specular_tables.comp`.
-    SPECULAR_TABLES: "specular_tables", push SpecularTablesPush, words 327945 4627,
+    SPECULAR_TABLES: "specular_tables", push SpecularTablesPush, words 328033 4627,
     0 reads "azimuths" TexelBuffer,
     1 reads "wedge_rows" StorageBuffer,
     2 writes "specular_tables" StorageImage { format: "Rgba32f", uint: false, layered: true },
@@ -776,7 +776,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/specular_visibility.comp`.
-    SPECULAR_VISIBILITY: "specular_visibility", push SpecularVisibilityPush, words 332572 1238,
+    SPECULAR_VISIBILITY: "specular_visibility", push SpecularVisibilityPush, words 332660 1238,
     0 reads "visibility" SampledImage { uint: false, layered: true },
     1 reads "light_matrix" SampledImage { uint: false, layered: false },
     2 writes "arriving" StorageImage { format: "Rgba32f", uint: false, layered: true },
@@ -788,7 +788,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/sphere_sh_shade.comp`.
-    SPHERE_SH_SHADE: "sphere_sh_shade", push SphereShShadePush, words 333810 27634,
+    SPHERE_SH_SHADE: "sphere_sh_shade", push SphereShShadePush, words 333898 27634,
     0 reads "cells" SampledImage { uint: false, layered: false },
     1 reads "maxima" SampledImage { uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -814,7 +814,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/sphere_shade.comp`.
-    SPHERE_SHADE: "sphere_shade", push SphereShadePush, words 361444 14335,
+    SPHERE_SHADE: "sphere_shade", push SphereShadePush, words 361532 14335,
     0 reads "cells" SampledImage { uint: false, layered: false },
     1 reads "maxima" SampledImage { uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -829,7 +829,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/sun_shade.comp`.
-    SUN_SHADE: "sun_shade", push ShadePush, words 375779 23186,
+    SUN_SHADE: "sun_shade", push ShadePush, words 375867 23186,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rg32ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -850,7 +850,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/sun_specular.comp`.
-    SUN_SPECULAR: "sun_specular", push SunSpecularPush, words 398965 10753,
+    SUN_SPECULAR: "sun_specular", push SunSpecularPush, words 399053 10753,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "sun_sum" SampledImage { uint: false, layered: false },
     2 writes "specular_sum" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -867,7 +867,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/surface_sweep.comp`.
-    SURFACE_SWEEP: "surface_sweep", push MarchPush, words 409718 6812,
+    SURFACE_SWEEP: "surface_sweep", push MarchPush, words 409806 6812,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "slopes" StorageImage { format: "Unknown", uint: true, layered: true },
@@ -881,7 +881,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/sweep_fuse.comp`.
-    SWEEP_FUSE: "sweep_fuse", push SweepFusePush, words 416530 18964,
+    SWEEP_FUSE: "sweep_fuse", push SweepFusePush, words 416618 18964,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rg32ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -901,7 +901,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/terrain_draw.frag`.
-    TERRAIN_DRAW_FRAG: "terrain_draw_frag", push TerrainDrawPush, words 435494 1129,
+    TERRAIN_DRAW_FRAG: "terrain_draw_frag", push TerrainDrawPush, words 435582 1129,
     1 reads "radiance" SampledImage { uint: false, layered: false },
     2 reads "voids" SampledImage { uint: false, layered: false },
     TerrainDrawFrag {
@@ -912,14 +912,14 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/terrain_draw.vert`.
-    TERRAIN_DRAW_VERT: "terrain_draw_vert", push TerrainDrawPush, words 436623 994,
+    TERRAIN_DRAW_VERT: "terrain_draw_vert", push TerrainDrawPush, words 436711 994,
     0 reads "heights" SampledImage { uint: false, layered: false },
     TerrainDrawVert;
 }
 
 shader! {
     /// `shaders_glsl/bounce/vector_reduce.comp`.
-    VECTOR_REDUCE: "vector_reduce", push ReducePush, words 437617 2964,
+    VECTOR_REDUCE: "vector_reduce", push ReducePush, words 437705 2964,
     0 reads "exit_vectors" SampledImage { uint: false, layered: true },
     1 reads "vector_source" SampledImage { uint: false, layered: true },
     2 writes "vector_levels" StorageImage { format: "Unknown", uint: false, layered: true },
@@ -932,7 +932,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bake/visible_points.comp`.
-    VISIBLE_POINTS: "visible_points", push VisiblePointsPush, words 440581 9687,
+    VISIBLE_POINTS: "visible_points", push VisiblePointsPush, words 440669 9687,
     0 reads "cells" SampledImage { uint: false, layered: false },
     1 reads "maxima" SampledImage { uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -1252,4 +1252,4 @@ layouts! {
 }
 
 /// Words of all shaders together.
-const WORD_COUNT: usize = 450268;
+const WORD_COUNT: usize = 450356;

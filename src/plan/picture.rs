@@ -10,6 +10,7 @@ use crate::passes;
 use crate::passes::azimuths;
 use crate::passes::azimuths::Shape;
 use crate::passes::blocks::Blocks;
+use crate::passes::bounce_ground::BounceGround;
 use crate::passes::bounce_nodes::BounceNodes;
 use crate::passes::bounces;
 use crate::passes::bounces::Bouncing;
@@ -196,9 +197,11 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
         Shadows::make(&mut builder, azimuths, of, (&of_lights, count), limits)
     });
     let walked_azimuths = lists.last().filter(|_| is_walked && bounces > 0);
-    let line_blocks = walked_azimuths.map(|azimuths| {
+    let walked = walked_azimuths.map(|azimuths| {
         let of = ([size[0], size[1]], surface.border);
-        LineBlocks::make(&mut builder, azimuths, sweep.line_shift(), of, limits)
+        let ground = BounceGround::make(&mut builder, of.0, active.is_grey);
+        let line_blocks = LineBlocks::make(&mut builder, azimuths, sweep.line_shift(), of, limits);
+        (ground, line_blocks)
     });
     let shared = (bounces, images.sky_sum);
     let at_nodes = BounceNodes::make(&mut builder, size, quality, shared, limits, &mut notes);
@@ -216,7 +219,7 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     let of_light = (active.is_grey, wanted.light_layers);
     let bouncing = (bounces > 0).then(|| {
         let specular = active.specular.is_some().then_some(&mut notes);
-        let (found, read) = ((bounces, at_nodes), (levels, line_blocks));
+        let (found, read) = ((bounces, at_nodes), (levels, walked));
         Bouncing::make(&mut builder, scene, quality, found, read, of_light, specular)
     });
     // Suns by shadow heights alone have no settings of sweeps.

@@ -17,7 +17,8 @@ mod specular;
 use crate::bounce_shade::LEAST_SHARE;
 pub use bend::{bent, fan_weight, over, way};
 pub use bounce::{
-    BounceError, CastError, Gathered, Land, Slices, block_error, march_error, walk_error,
+    BounceError, CastError, Gathered, Land, Slices, block_error, march_error, place_error,
+    walk_error,
 };
 pub use light::{ShadeError, SphereGeometry};
 pub use points::{

@@ -35,9 +35,10 @@ enum From {
     Rest,
 }
 
-/// Azimuths that a dispatch can walk: steps near by, some five blocks an octave, and the longest ones.
+/// Azimuths that a dispatch can walk: at most 33 steps near by, nine blocks an octave, the longest ones, and eight up
+/// to the occluder.
 pub(crate) fn most_azimuths(axis: Axis) -> u32 {
-    MOST_TURNS / (64 + (axis.steps + axis.warm_up) / 256)
+    MOST_TURNS / (33 + 9 * 10 + 8 + (axis.steps + axis.warm_up) / 256)
 }
 
 /// Gathers bounced light at every grid point, or at every node, along some azimuths of a batch.

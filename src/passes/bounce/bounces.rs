@@ -103,7 +103,7 @@ impl Bouncing {
         scene: &Scene,
         quality: &Quality,
         (count, at_nodes): (u32, Option<BounceNodes>),
-        (levels, line_blocks): (Option<pyramid_march::Images>, Option<LineBlocks>),
+        (levels, walked): (Option<pyramid_march::Images>, Option<(BounceGround, LineBlocks)>),
         (grey, layers): (bool, bool),
         specular_notes: Option<&mut Vec<String>>,
     ) -> Self {
@@ -129,8 +129,8 @@ impl Bouncing {
         let engine = match bounces.engine {
             BounceEngine::BruteForce => Engine::Brute,
             BounceEngine::Sweep => {
-                let ground = BounceGround::make(builder, size, grey);
-                Engine::Sweep(ground, line_blocks.expect("made for walks"))
+                let (ground, line_blocks) = walked.expect("made for walks");
+                Engine::Sweep(ground, line_blocks)
             }
             BounceEngine::Auto => unreachable!("settled before"),
             BounceEngine::Pyramid => {

@@ -9,7 +9,8 @@ use std::ops::Range;
 
 /// Steps of the longest block, 2^MOST_LEVEL of the shaders.
 const LONGEST: u32 = 256;
-/// Blocks of several azimuths are made at once while they take no more than this, and than an eighth of the budget.
+/// Blocks of several azimuths are made at once while an image takes no more than this, and than an eighth of the budget
+/// that is left.
 const AT_ONCE_BYTES: u64 = 64 << 20;
 /// Of a block: its largest height, the place of that, and radiance.
 const FORMAT: Format = Format::Rgba32Uint;
@@ -65,8 +66,9 @@ impl LineBlocks {
             let shape = Shape::of(Axis::of(by_row, size, border), line_shift);
             (count > 0).then_some((shape, count))
         });
+        let left = limits.memory_budget.saturating_sub(builder.bytes());
+        let room = AT_ONCE_BYTES.min(left / 8);
         let mut image = |shape: Shape, count: u32, suffix: &str| {
-            let room = AT_ONCE_BYTES.min(limits.memory_budget / 8);
             let at_once = ((room / shape.bytes()) as u32)
                 .min(limits.image_layers / shape.layers)
                 .clamp(1, count);

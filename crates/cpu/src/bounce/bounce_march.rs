@@ -50,6 +50,7 @@ pub fn visible_intervals_along(
                 distance: interval.end_m(),
                 rise_m,
                 steepest,
+                ..Cast::default()
             }
         };
         Along { azimuth_rad, low_rad: slice.low, whole, casts: casts.map(cast).collect() }

@@ -1,11 +1,12 @@
 //! Indirect light at a grid point: the visible ground along its own lines step by step, and farther away in the blocks
 //! of the nearest swept line, each part weighted in closed form.
 //!
-//! Ground is visible up to the occluder of that line, whose slope no block exceeds. The last block reaches it, so that
-//! the weight of all ground is that of the horizon.
+//! Blocks are cut at the horizon, which the last one reaches: the share of ground is that below the horizon. The horizon is
+//! the slope of the own line where the nearest line has its occluder, or at the edge of the field if it leaves that
+//! before.
 
 use crate::Rgb;
-use crate::line_blocks::{Ground, NEAR_STEPS, level_at};
+use crate::line_blocks::{Ground, level_at, near_steps};
 use crate::shared::bounced::{Along, Cast, NEARLY_RAD, light_and_weight};
 use crate::shared::field::{field_slope, normal_of};
 use crate::shared::fuse::{nearest_line, split_crossing, surface_on_line};
@@ -23,7 +24,7 @@ pub struct Walked {
     pub whole: f64,
     /// Steps and blocks visited.
     pub turns: u32,
-    /// Visible intervals.
+    /// Visible parts.
     pub visible_intervals: u32,
 }
 
@@ -44,7 +45,7 @@ pub fn bounce_walk(swept: &Swept, exit: &[[f32; 3]], col: i32, row: i32) -> Walk
     Walked { light: DVec3::from_array(light), whole, turns, visible_intervals }
 }
 
-/// Its visible intervals, azimuth by azimuth, distances in march steps; and the count of steps and blocks visited.
+/// Its visible parts, azimuth by azimuth, distances in march steps; and the count of steps and blocks visited.
 pub fn walked_along(swept: &Swept, exit: &[[f32; 3]], col: i32, row: i32) -> (Vec<Along>, u32) {
     let mut turns = 0;
     let along = |azimuth| {
@@ -205,7 +206,7 @@ impl<'a> Walk<'a> {
             }
         }
         // Step by step, up to where the first block ends.
-        let near_limit = limit.min(NEAR_STEPS + (on & 1));
+        let near_limit = limit.min(near_steps(self.swept.line_shift) + (on & 1));
         let mut near = next;
         for back in 2..=near_limit {
             progress.turns += 1;
@@ -213,21 +214,21 @@ impl<'a> Walk<'a> {
             progress.add_interval(near, far);
             near = far;
         }
-        // Block by block: nothing rises over the horizon, and the last block reaches it.
+        // Block by block, up to the horizon.
         let horizon = self.at(limit).slope;
         let (mut at, line) = (near_limit, nearest.map_or(0, |(y, _)| y));
         while at < limit {
             progress.turns += 1;
-            let level = level_at(at, on - at);
+            let level = level_at(at, on - at, limit);
             let end = (line - at * azimuth.shear, self.step - at);
             let block = self.ground.line_block(end, level);
             let to = at + (1 << level);
-            let slope = match to >= limit {
-                true => horizon,
-                false => self.slope_of(block.top_m, at + block.top_steps).min(horizon),
-            };
+            let top = self.slope_of(block.top_m, at + block.top_steps);
+            let slope = if to >= limit { horizon } else { top.min(horizon) };
             let middle = (at + to) as f32 / 2.0;
+            let before = progress.along.casts.len();
             progress.add(slope, middle, [block.light, block.spread]);
+            progress.along.casts[before..].iter_mut().for_each(|cast| cast.is_block = true);
             at = to;
         }
         progress

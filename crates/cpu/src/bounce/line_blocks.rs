@@ -5,13 +5,15 @@ use crate::shared::sweep::{CELL_SHIFT, March, PER_CELL};
 use glam::DVec3;
 use ridgelight::plan::azimuths::CELL;
 
-/// Nearer ground is seen step by step.
-pub const NEAR_STEPS: i32 = 8;
+/// Up to this distance a walk reads every step; with lines more than a cell apart, to as many times that.
+pub fn near_steps(line_shift: u32) -> i32 {
+    8 << line_shift.saturating_sub(CELL_SHIFT)
+}
 
 /// log2 of the longest block.
 pub const MOST_LEVEL: u32 = 8;
 
-/// Ground counts as if it rose by this much more, over world distance.
+/// Every piece has this rise in addition, over world distance.
 const FLAT_RISE: f64 = 1e-3;
 
 /// A block of a line.
@@ -21,7 +23,7 @@ pub struct Block {
     pub top_m: f32,
     /// Steps from its end towards the grid point to there, from 1.
     pub top_steps: i32,
-    /// Mean radiance of its ground, which counts as it rises, towards that end, over all that is nearer.
+    /// Mean radiance of its ground, weighted by its rise above all nearer ground of the block.
     pub light: DVec3,
     /// Largest less smallest radiance.
     pub spread: DVec3,
@@ -102,7 +104,9 @@ fn part(points: &[(f32, DVec3)], flat_m: f64) -> Part {
 }
 
 /// The level of the block that begins `at` steps from a grid point, at step `end` of the march, counted from where it
-/// begins: at most an eighth of its distance long, or 2 steps, and from a multiple of its own length.
-pub fn level_at(at: i32, end: i32) -> u32 {
-    end.trailing_zeros().min(at.ilog2() - 3).clamp(1, MOST_LEVEL)
+/// begins: from a multiple of its own length, and at most an eighth of its distance long, and no longer than what is
+/// left up to `limit`, or 2 steps.
+pub fn level_at(at: i32, end: i32, limit: i32) -> u32 {
+    let longest = (at.ilog2() - 3).min((limit - at).ilog2());
+    end.trailing_zeros().min(longest).clamp(1, MOST_LEVEL)
 }

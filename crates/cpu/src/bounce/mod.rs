@@ -1,5 +1,5 @@
 //! CPU references of the passes that compute indirect light of diffuse ground: pyramids of
-//! exit radiance, the visibility cache, and the three gathering methods (pyramid, exact march, hull walk).
+//! exit radiance, the visibility cache, and the three gathering methods (pyramid, exact march, walk over line blocks).
 
 pub mod bounce_gather;
 pub mod bounce_march;

@@ -41,6 +41,8 @@ pub struct Cast {
     pub rise_m: f64,
     /// That slope.
     pub steepest: f64,
+    /// For walks: whether it is a block of a line, with its distance that of its middle.
+    pub is_block: bool,
 }
 
 /// Radiance times weight, and the weight of whole hemispheres.

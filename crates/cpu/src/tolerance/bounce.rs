@@ -3,7 +3,7 @@
 
 use super::{ARC_TANGENT, EPSILON, device_level, device_spline};
 use crate::Rgb;
-use crate::line_blocks::{MOST_LEVEL, NEAR_STEPS};
+use crate::line_blocks::MOST_LEVEL;
 use crate::shared::bounced::{Along, Cast, NEARLY_RAD, light_and_weight};
 use crate::shared::field::field_slope;
 use crate::shared::sweep::{Heights, inside};
@@ -203,12 +203,12 @@ pub fn march_error(cell_m: [f64; 2], along: &Along, cast: &Cast) -> CastError {
 ///
 /// Rises are sums and products that are not fused, as the CPU reference's. A slope is their quotient by a product: 6 ε and the
 /// CPU reference's own 2 ε. Moments: half an arc tangent and 5 ε, and 4 ε, each times its part of the wedge, which errs
-/// by its cosine, sine and width of f32. Ground farther than the near steps has the radiance of a block.
+/// by its cosine, sine and width of f32. A block has an error of its own.
 pub fn walk_error(wedge_rad: f64, cast: &Cast) -> CastError {
     let slope = cast.high_rad.tan();
     let [brightest, spread] = [cast.radiance, cast.spread].map(largest);
-    let block = match cast.distance > f64::from(NEAR_STEPS) {
-        true => block_error(brightest, spread),
+    let block = match cast.is_block {
+        true => block_error(brightest, spread) + place_error(brightest + spread),
         false => 0.0,
     };
     CastError {
@@ -223,11 +223,15 @@ pub fn walk_error(wedge_rad: f64, cast: &Cast) -> CastError {
 ///
 /// A point's radiance is a mix of two, 3 ε, and the mean of two points 2 ε more. Each level mixes two means, 3 ε, by a share
 /// a / (a + b) of weights that are a difference of heights and a product, 4 ε each: that moves the share by 2 ε at most, and
-/// the quotient by 5 ε. The first channel's last eight bits are the place of the top: half of them, 2^-16.
+/// the quotient by 5 ε. [`place_error`] besides.
 pub fn block_error(brightest: f64, spread: f64) -> f64 {
     let levels = f64::from(MOST_LEVEL);
-    let means = EPSILON * ((5.0 + 3.0 * levels) * (brightest + spread) + 7.0 * levels * spread);
-    means + 2.0_f64.powi(-16) * (brightest + spread)
+    EPSILON * ((5.0 + 3.0 * levels) * (brightest + spread) + 7.0 * levels * spread)
+}
+
+/// What the first channel of a block errs by: its last eight bits are the place of the top, and half of them 2^-16.
+pub fn place_error(brightest: f64) -> f64 {
+    2.0_f64.powi(-16) * brightest
 }
 
 /// How `bounce_gather` samples a field.

@@ -17,7 +17,7 @@ use ridgelight_cpu::shared::bounced::{light_and_weight, radiance};
 use ridgelight_cpu::shared::sweep::March;
 use ridgelight_cpu::tolerance::{
     BounceError, Gathered, Land, Slices, block_error, device_level, device_spline, march_error,
-    walk_error,
+    place_error, walk_error,
 };
 use ridgelight_cpu::{shade_expand as expand_reference, shade_reduce as reduce_reference};
 
@@ -230,8 +230,8 @@ pub(crate) fn bounce_ground(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     pairs
 }
 
-/// Every block that a walk may read, of every line that is on the field where it ends. Heights and places are the
-/// same to the last bit.
+/// Every block that a walk may read: of every line that is on the field where it ends, or less than a spacing beside it.
+/// Heights and places are the same to the last bit.
 pub(crate) fn line_blocks(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let texels = run.words(pass, "line_blocks").expect("written");
     let [width, height] = run.extent(pass, "line_blocks");
@@ -258,7 +258,7 @@ pub(crate) fn line_blocks(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         for (line, level) in (0..lines).flat_map(|line| (1..=MOST_LEVEL).map(move |l| (line, l))) {
             for end in (1 << level..total).step_by(1 << level) {
                 let y = (line - lead) * spacing + end * azimuth.shear;
-                if !march.periodic() && !(0..=last).contains(&y) {
+                if !march.periodic() && !(1 - spacing..last + spacing).contains(&y) {
                     continue;
                 }
                 let row = end as usize - (1 << (level - 1));
@@ -275,15 +275,14 @@ pub(crate) fn line_blocks(run: &mut Run, pass: &Pass) -> Vec<Pair> {
                 pairs.push(exact(f32::from_bits(top).into(), want.top_m.into()));
                 pairs.push(exact(f64::from(first & 255) + 1.0, want.top_steps.into()));
                 let light = [first & !255, green, blue].map(f32::from_bits);
-                let tolerance = block_error(
-                    want.brightest.iter().fold(0.0, |m: f64, v| m.max(*v)),
-                    want.spread.max_element(),
-                );
+                let brightest = want.brightest.iter().fold(0.0, |m: f64, v| m.max(*v));
+                let mean = block_error(brightest, want.spread.max_element());
+                let tolerance = [mean + place_error(brightest), mean, mean];
                 let channels = if constant(pass, "grey") == 1 { 1 } else { 3 };
                 pairs.extend((0..channels).map(|c| Pair {
                     got: light[c].into(),
                     want: want.light[c],
-                    tolerance,
+                    tolerance: tolerance[c],
                     at: place,
                 }));
             }

@@ -12,7 +12,6 @@ use ridgelight_cpu::bounce_walk::walked_along;
 use ridgelight_cpu::cache_gather::{
     Cast, RING_ENDS, cache_gather as gather_reference, cast_of, cast_part,
 };
-use ridgelight_cpu::line_blocks::NEAR_STEPS;
 use ridgelight_cpu::shared::bounced::light_and_weight;
 use ridgelight_cpu::shared::sweep::March;
 use ridgelight_cpu::tolerance::{BounceError, EPSILON, Slices, device_bounce_shade, walk_error};
@@ -62,7 +61,7 @@ pub(crate) fn casts(run: &mut Run, pass: &Pass, azimuths: Range<usize>) -> Vec<P
                 let pair = |c: usize| {
                     // The mean of a block may lie anywhere on it, the ring's in its middle.
                     let in_blocks: f64 = (along.iter().flat_map(|along| &along.casts))
-                        .filter(|cast| cast.distance > f64::from(NEAR_STEPS))
+                        .filter(|cast| cast.is_block)
                         .map(|cast| cast.weight * cast.spread[c])
                         .sum();
                     let tolerance = want[0] + far * off + in_blocks;

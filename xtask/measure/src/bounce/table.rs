@@ -46,12 +46,12 @@ pub fn run(mut args: Args) -> Outcome {
 
 fn table(gpu: &mut Headless, side: usize, runs: usize) -> Result<()> {
     let scene = scene(side)?;
-    let fine = Quality { subsample: 1, ..quality(BounceEngine::Sweep, 64, 3) };
+    let fine = Quality { subsample: 1, ..quality(BounceEngine::BruteForce, 64, 3) };
     let reference = drawn_in_layers(gpu, &scene, &fine)?;
     println!(
         "NS09 table 1: a fractal of {side}² under the bundled sky in 32 azimuths and a key light in 3, SH of \
          order 4, 2× sub-sampled; a frame over that without bounces, each drawn in turn, medians of {runs} (of brute force \
-         and pyramid, 2). Error: three bounces, relative RMSE, %, against sweeps of 64 azimuths from every grid point\n"
+         and pyramid, 2). Error: three bounces, relative RMSE, %, against brute force in 64 azimuths at every grid point\n"
     );
     head(
         "| engine | bounce azimuths | MB | without, ms | 1 | 2 | 3 bounces | third over first | bounced error | whole error |",
