@@ -57,8 +57,8 @@ fn sweeps_and_walks() {
     assert!(!names.contains(&"horizon_sweep") && names.contains(&"bounce_walk"), "{names:?}");
 }
 
-/// Blocks of several azimuths are made at once while they take 64 MiB at most: of 1024² heights, 16.5 MiB an azimuth,
-/// three; of 2 × 4096 heights those along the columns all, and with an image of their own. The first
+/// Blocks of at most 8 azimuths are made at once, while they take 64 MiB at most: of 1024² heights, 16.5 MiB an azimuth,
+/// three; of 2 × 4096 heights eight along the columns, with an image of their own. The first
 /// walk clears and the last divides.
 #[test]
 fn blocks_are_made_of_azimuths_that_fit() {
@@ -74,7 +74,7 @@ fn blocks_are_made_of_azimuths_that_fit() {
     for by_row in [false, true] {
         assert_eq!(counts(&plan, "line_blocks", by_row), counts(&plan, "bounce_walk", by_row));
     }
-    assert_eq!(counts(&plan, "line_blocks", false), [32]);
+    assert_eq!(counts(&plan, "line_blocks", false), [8; 4]);
     let walks: Vec<_> = plan.passes.iter().filter(|p| p.name() == "bounce_walk").collect();
     assert_eq!(walks.iter().map(|p| p.azimuths.len()).sum::<usize>(), 64);
     let room = |name: &str| plan.resources[plan.find(name).expect(name).0].bytes();

@@ -10,8 +10,9 @@ use std::ops::Range;
 /// Steps of the longest block, 2^MOST_LEVEL of the shaders.
 const LONGEST: u32 = 256;
 /// Blocks of several azimuths are made at once while an image takes no more than this, and than an eighth of the budget
-/// that is left.
+/// that is left; of more azimuths a dispatch would hardly be faster.
 const AT_ONCE_BYTES: u64 = 64 << 20;
+const MOST_AT_ONCE: u32 = 8;
 /// Of a block: its largest height, the place of that, and radiance.
 const FORMAT: Format = Format::Rgba32Uint;
 
@@ -71,7 +72,7 @@ impl LineBlocks {
         let mut image = |shape: Shape, count: u32, suffix: &str| {
             let at_once = ((room / shape.bytes()) as u32)
                 .min(limits.image_layers / shape.layers)
-                .clamp(1, count);
+                .clamp(1, count.min(MOST_AT_ONCE));
             let extent = [32, shape.rows, shape.layers * at_once];
             let name = format!("line_blocks{suffix}");
             let image = builder.image(name, Owner::Internal, FORMAT, extent, true);
