@@ -72,12 +72,12 @@ pub(super) fn engine(quality: &Quality) -> BounceEngine {
 /// Source: "ms" of one bounce, 1×, of `cargo measure bounce-table`
 /// (`benches/results/bounce_table.txt`, sub-sampled bounces) over 32 · 128² · 10⁻⁶, for brute force
 /// over 128 more. Measured frames correct each.
-const WALK: f64 = 110.0;
+const WALK: f64 = 70.0;
 const MARCH: f64 = 4.8;
 const GATHER: f64 = 330.0;
 /// Time of a later, sub-sampled bounce, which reads the first bounce's visibility cache, over that
-/// of a walk at every texel: sweep, 2×, same file, (three bounces - one) / 2 over one bounce's 1×.
-const CAST: f64 = 0.033;
+/// of a walk at every texel: sweep, 4×, same file, (three bounces - one) / 2 over one bounce's 1×.
+const CAST: f64 = 0.041;
 
 /// Work of walks, marches and gathers; only one of them is above 0.
 pub(super) fn work(scene: &Scene, quality: &Quality) -> [f64; ENGINES.len()] {
@@ -85,14 +85,16 @@ pub(super) fn work(scene: &Scene, quality: &Quality) -> [f64; ENGINES.len()] {
     let azimuths = f64::from(quality.bounces.azimuths);
     let side = scene.field.rows().max(scene.field.cols()) as f64;
     // Nodes are fewer by the square of the stride, but each still needs the sweep or levels of all.
-    // Every second: "over 1×" of one bounce, sweep. Every eighth: halved once more.
+    // "over 1×" of one bounce, pyramid. Every eighth: halved once more.
     let nodes = |stride: u32| match stride {
         1 => 1.0,
-        2 => 0.42,
-        4 => 0.2,
+        2 => 0.38,
+        4 => 0.19,
         _ => 0.1,
     };
     let stride = quality.subsample;
+    // Sweep and line blocks are those of every texel: "over 1×" of one bounce, sweep; every eighth as every fourth.
+    let walked = if stride == 2 { 0.7 } else { 0.42 };
     let later = nodes(if stride == 1 { 1 } else { 2 * stride });
     let found = nodes(stride) + later * (drawn - 1.0);
     let mut all = [0.0; ENGINES.len()];
@@ -103,7 +105,7 @@ pub(super) fn work(scene: &Scene, quality: &Quality) -> [f64; ENGINES.len()] {
         BounceEngine::BruteForce => all[1] = azimuths * found * MARCH * side,
         BounceEngine::Pyramid => all[2] = azimuths * found * GATHER,
         _ if stride == 1 => all[0] = azimuths * found * WALK,
-        _ => all[0] = azimuths * WALK * (nodes(stride) + CAST * (drawn - 1.0)),
+        _ => all[0] = azimuths * WALK * (walked + CAST * (drawn - 1.0)),
     }
     all
 }
