@@ -6,7 +6,9 @@ use ridgelight::plan::azimuths::even;
 use ridgelight::scene::Fuse;
 use ridgelight::scene::fractal;
 use ridgelight_cpu::bounce_march::bounce_march;
-use ridgelight_cpu::bounce_walk::{Walked, bounce_walk};
+use ridgelight_cpu::bounce_walk::{Walked, bounce_walk, walked_along};
+use ridgelight_cpu::line_blocks::Ground;
+use ridgelight_cpu::shared::bounced::light_and_weight;
 use ridgelight_cpu::shared::field::{field_slope, normal_of};
 use ridgelight_cpu::shared::fuse::{split_crossing, surface_on_line};
 use ridgelight_cpu::shared::gather::{Swept, elevation_moments};
@@ -91,6 +93,69 @@ fn walks_match_every_step_along_swept_lines() {
             }
         }
     }
+}
+
+/// A block in closed form: an incline of rise R and radiance 1, and behind its top a pit of radiance 0, n steps each. The
+/// pit has its additional rise f alone, so the mean is (R + n f) / (R + 2 n f), but for the hidden piece down into the pit,
+/// whose radiance is that of both ends. The top lies where the incline ends.
+#[test]
+fn hidden_ground_hardly_counts_in_a_block() {
+    const COLS: usize = 65;
+    let (half, rise) = (8, 5.0);
+    // From west to east: a pit, then an incline down to the grid point in the east.
+    let height = |c: usize| match c {
+        0..=7 => -3.0,
+        _ => rise * (16.0 - (c as f64).min(16.0)) / f64::from(half),
+    };
+    let valley = field(2, COLS, [1.0, 1.0], |_, c| height(c));
+    let exit: Vec<[f32; 3]> =
+        (0..2 * COLS).map(|i| [if i % COLS >= 8 { 1.0 } else { 0.0 }; 3]).collect();
+    let azimuths = even(4, [1.0, 1.0]);
+    let west = azimuths.iter().find(|a| a.cos_phi < -0.9).expect("one of four");
+    let march = March::new(Heights::of(&valley, Border::Plane), west);
+    let ground = Ground { march, exit: &exit };
+    let (_, end) = march.of_grid_point(16, 0);
+    let block = ground.line_block((0, end), 4);
+    let flat = f64::from(half) * 1e-3;
+    let hidden = 0.5 / f64::from(half);
+    let want = (rise + flat + flat * hidden) / (rise + 2.0 * flat);
+    assert!((block.light.x - want).abs() < 1e-9, "{} {want}", block.light.x);
+    assert_eq!((block.top_m + valley.base_m() as f32, block.top_steps), (rise as f32, half));
+}
+
+/// An incline of radiance equal to the height, from flat ground before it: the visible parts of walks fill the
+/// elevations, and each has a mean within its radiances. So the light is that of the integral along the line, here by 4,000 trapezoids, but
+/// for each part's weight times the range of its radiance.
+#[test]
+fn walks_up_an_incline_match_the_integral() {
+    const COLS: usize = 200;
+    let foot = 20.0;
+    let height = |c: f64| 0.5 * (180.0 - foot - c).max(0.0);
+    let slope = field(2, COLS, [1.0, 1.0], |_, c| height(c as f64));
+    let exit: Vec<[f32; 3]> =
+        (0..2 * COLS).map(|i| [height((i % COLS) as f64) as f32; 3]).collect();
+    let mut azimuths = even(4, [1.0, 1.0]);
+    azimuths.retain(|a| a.cos_phi < -0.9);
+    with_swept(&slope, Border::Plane, &mut azimuths, |swept| {
+        let (all, _) = walked_along(swept, &exit, 180, 0);
+        let (light, _) = light_and_weight(&all);
+        let casts = &all[0].casts;
+        let bound: f64 = casts.iter().map(|c| c.weight * c.spread[0]).sum();
+        let azimuth = &swept.azimuths[0];
+        let weight =
+            |x: f64| f64::from(azimuth.wedge_rad) * elevation_moments(height(180.0 - x) / x)[1];
+        const PARTS: usize = 4000;
+        let at = |i: usize| foot + (180.0 - foot) * i as f64 / PARTS as f64;
+        let want: f64 = (1..=PARTS)
+            .map(|i| {
+                let [a, b] = [at(i - 1), at(i)];
+                0.5 * (height(180.0 - a) + height(180.0 - b)) * (weight(a) - weight(b))
+            })
+            .sum();
+        println!("{} {want}, {bound}", light[0]);
+        assert!(casts.iter().any(|c| c.is_block) && bound < 0.2 * want, "{bound} {want}");
+        assert!((light[0] - want).abs() < bound, "{} {want} {bound}", light[0]);
+    });
 }
 
 /// RMSE over the mean of the ground truth.

@@ -2,6 +2,7 @@
 //! exit radiance, the visibility cache, and the three gathering methods (pyramid, exact march, walk over line blocks).
 
 pub mod bounce_gather;
+pub mod bounce_ground;
 pub mod bounce_march;
 pub mod bounce_shade;
 pub mod bounce_walk;

@@ -8,6 +8,7 @@ use ridgelight::plan::pyramid::Pyramid;
 use ridgelight::plan::{Nodes, Pass};
 use ridgelight::scene::{Fuse, Levels};
 use ridgelight_cpu::bounce_gather::BounceGather;
+use ridgelight_cpu::bounce_ground::bounce_ground as ground_reference;
 use ridgelight_cpu::bounce_march::visible_intervals_along;
 use ridgelight_cpu::bounce_walk::walked_along;
 use ridgelight_cpu::line_blocks::{Ground, MOST_LEVEL};
@@ -214,11 +215,10 @@ pub(crate) fn bounce_ground(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     };
     let (name, width) = if is_grey { ("grey_ground", 2) } else { ("bounce_ground", 4) };
     let got = run.floats(pass, name).expect("written");
-    let heights = run.scene.field.heights_m();
+    let all = ground_reference(&exit, run.scene.field.heights_m());
     let mut pairs = Vec::new();
-    for (i, got) in got.chunks_exact(width).enumerate() {
-        let want = [exit[i][0], exit[i][1], exit[i][2], f64::from(heights[i])];
-        let want = if is_grey { vec![want[0], want[3]] } else { want.to_vec() };
+    for (i, (got, [r, g, b, height])) in got.chunks_exact(width).zip(all).enumerate() {
+        let want = if is_grey { vec![r, height] } else { vec![r, g, b, height] };
         let pair = |(got, want): (&f32, f64)| Pair {
             got: f64::from(*got),
             want,
