@@ -38,7 +38,7 @@ layout(constant_id = 11) const int LINE_SHIFT = CELL_SHIFT;
 layout(constant_id = 12) const bool REDOES_LOST = false;
 
 layout(binding = 0) uniform texture2D heights;
-layout(binding = 1) uniform texture2D lane_heights;
+layout(binding = 1, rgba32f) uniform readonly image2D lane_heights;
 layout(binding = 2) uniform textureBuffer azimuths;
 layout(binding = 3, rg32ui) uniform uimage2DArray occluders;
 layout(binding = 4) uniform writeonly uimage2DArray slopes;
@@ -64,8 +64,8 @@ vec4 four_line_heights(int y, int step) {
     bool flipped = (azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u;
     int base = flipped ? lanes - 5 - cell : cell;
     int last = (lanes - 1) >> 2;
-    vec4 a = texelFetch(lane_heights, ivec2(clamp(base >> 2, 0, last), march), 0);
-    vec4 b = texelFetch(lane_heights, ivec2(clamp((base >> 2) + 1, 0, last), march), 0);
+    vec4 a = imageLoad(lane_heights, ivec2(clamp(base >> 2, 0, last), march));
+    vec4 b = imageLoad(lane_heights, ivec2(clamp((base >> 2) + 1, 0, last), march));
     bool odd = (base & 1) != 0;
     bool far = (base & 2) != 0;
     vec4 low = far ? vec4(a.zw, b.xy) : a;
@@ -214,11 +214,11 @@ void main() {
                 precise float newer = (h1[k] - h[k]) * (x - x2[k]);
                 pops[k] = pops[k] && deeper >= newer;
             }
-        } while (subgroupAny(any(pops)));
+        } while (any(pops));
         bvec4 met = greaterThan(h1, vec4(OUTSIDE));
         ivec3 texel = lattice_texel(azimuth, line, step);
         if (WRITES_OCCLUDERS) {
-            uvec4 back = uvec4(mix(vec4(0.0), vec4(x) - x1, met));
+            uvec4 back = uvec4(ivec4(mix(vec4(0.0), vec4(x) - x1, met)));
             imageStore(occluders, texel, uvec4(back.x | back.y << 16, back.z | back.w << 16, 0u, 0u));
         }
         if (SLOPE_FORMAT != 0u) {
