@@ -37,7 +37,8 @@ layout(binding = 7) uniform utexture2DArray lattice_words;
 layout(binding = 2) uniform textureBuffer azimuths;
 layout(binding = 3, r32f) uniform image2D sky_sum;
 layout(binding = 4, rgba32f) uniform image2D env_sum;
-// x: elevation node, y: moment (cos, sin, vertical), layer: azimuth.
+// RGB: moment (y: cos, sin, vertical) of the light above a node (x), by azimuth (layer). Alpha of moments 0, 1 and 2: red,
+// green and blue of the mean radiance up to the next node. Nodes are even in the sine of the elevation.
 layout(binding = 5, rgba32f) uniform readonly image2DArray env_tables;
 // x: elevation of the lobe's peak, y: elevation, layer: azimuth.
 layout(binding = 9, rgba32f) uniform readonly image2DArray specular_tables;
@@ -54,6 +55,37 @@ vec4 normal_up;
 
 void add_hidden(uint index, Azimuth azimuth, vec4 lowest);
 
+// Adds the environment above `lowest`: the moments above the node below it, less the part up to it. That part is taken
+// as even, with the integrals of cos^2 and of sin cos over it: the cosine and the sine at its middle, times its width in
+// the sine. Half the loads of an interpolation between nodes, and no angle.
+void add_environment(uint index, Azimuth azimuth, vec4 lowest) {
+    int nodes = imageSize(env_tables).x;
+    float bottom = BORDER == BORDER_OPEN ? -1.0 : 0.0;
+    float step = (1.0 - bottom) / float(nodes - 1);
+    vec4 cosine = inversesqrt(1.0 + lowest * lowest);
+    vec4 sine = lowest * cosine;
+    ivec4 node = clamp(ivec4((sine - bottom) / step), 0, nodes - 2);
+    vec4 node_sine = bottom + step * vec4(node);
+    vec4 width = clamp(sine - node_sine, 0.0, step);
+    // The cosine falls by the slope times the sine's rise. At the zenith, where the slope has no bound, its mean over a
+    // whole step is 2/3 sqrt(2 step).
+    float most = sqrt(8.0 / 9.0 * step);
+    vec4 middle = cosine + clamp(0.5 * lowest * width, -most, most);
+    vec4 flat_part = normal_east * azimuth.wedge_cos + normal_north * azimuth.wedge_sin;
+    vec4 up_part = normal_up * azimuth.wedge_rad;
+    vec4 hidden = (flat_part * middle + up_part * (node_sine + 0.5 * width)) * (width * (1.0 / PI));
+    for (int k = 0; k < 4; k++) {
+        vec4 east = imageLoad(env_tables, ivec3(node[k], 0, index));
+        vec4 north = imageLoad(env_tables, ivec3(node[k], 1, index));
+        vec4 up = imageLoad(env_tables, ivec3(node[k], 2, index));
+        vec3 sum = normal_east[k] * east.rgb + normal_north[k] * north.rgb + normal_up[k] * up.rgb;
+        sum -= hidden[k] * vec3(east.a, north.a, up.a);
+        env_red[k] += sum.r;
+        env_green[k] += sum.g;
+        env_blue[k] += sum.b;
+    }
+}
+
 // Adds azimuth `index`: `lowest` is the slope of the lowest direction above both the horizon and the grid point's own
 // plane.
 void add_light(uint index, Azimuth azimuth, vec4 lowest) {
@@ -64,23 +96,7 @@ void add_light(uint index, Azimuth azimuth, vec4 lowest) {
         sky += (flat_part * moments.flat_part + normal_up * azimuth.wedge_rad * moments.vertical) * (1.0 / PI);
     }
     if (HAS_ENVIRONMENT) {
-        int nodes = imageSize(env_tables).x;
-        float bottom = BORDER == BORDER_OPEN ? -HALF_PI : 0.0;
-        vec4 place = (arc_tangent(lowest) - bottom) / (HALF_PI - bottom) * float(nodes - 1);
-        ivec4 node = clamp(ivec4(place), 0, nodes - 2);
-        vec4 t = clamp(place - vec4(node), 0.0, 1.0);
-        for (int k = 0; k < 4; k++) {
-            vec3 normal = vec3(normal_east[k], normal_north[k], normal_up[k]);
-            vec3 sum = vec3(0.0);
-            for (int m = 0; m < 3; m++) {
-                vec3 low = imageLoad(env_tables, ivec3(node[k], m, index)).rgb;
-                vec3 high = imageLoad(env_tables, ivec3(node[k] + 1, m, index)).rgb;
-                sum += normal[m] * mix(low, high, t[k]);
-            }
-            env_red[k] += sum.r;
-            env_green[k] += sum.g;
-            env_blue[k] += sum.b;
-        }
+        add_environment(index, azimuth, lowest);
     }
     if (HAS_SPECULAR) {
         add_hidden(index, azimuth, lowest);

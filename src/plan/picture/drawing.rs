@@ -64,7 +64,7 @@ impl Drawing<'_> {
             let wedges = [image, azimuths, wedge_rows];
             passes::env_wedges::plan(builder, "", of, count, wedges);
             let nodes = quality.table_elevations;
-            passes::env_tables::plan(builder, of, nodes, count, [wedge_rows, tables]);
+            passes::env_tables::plan(builder, of, nodes, count, [wedge_rows, azimuths, tables]);
         }
     }
 

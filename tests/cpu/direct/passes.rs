@@ -4,7 +4,7 @@ use crate::horizon::*;
 use glam::DVec3;
 use ridgelight::plan::azimuths::{Shape, across_key, across_sun, along_grid_vectors, even};
 use ridgelight::scene::{Environment, KeyLight, Sun};
-use ridgelight_cpu::env_tables::{EnvTables, bottom_rad, env_tables};
+use ridgelight_cpu::env_tables::{EnvTables, bottom_sine, env_tables};
 use ridgelight_cpu::env_wedges::env_wedges;
 use ridgelight_cpu::height_transpose::{heights_by_col, heights_by_row};
 use ridgelight_cpu::light;
@@ -150,7 +150,7 @@ fn environments() -> Vec<Environment> {
 
 fn tables(env: &Environment, azimuths: &[Azimuth], nodes: usize, border: Border) -> EnvTables {
     let rows = env_wedges(env, border, azimuths);
-    env_tables(&rows, (env.height(), azimuths.len()), nodes, bottom_rad(border))
+    env_tables(&rows, (env.height(), azimuths), nodes, bottom_sine(border))
 }
 
 /// All wedges together are the whole circle, wherever they begin: the tables' sums over azimuths are the
@@ -167,8 +167,7 @@ fn tables_of_all_azimuths_add_up_to_the_environment() {
                 let nodes = 33;
                 let tables = tables(&env, &azimuths, nodes, border);
                 for node in [0, 7, nodes - 1] {
-                    let bottom = bottom_rad(border);
-                    let low = bottom + (FRAC_PI_2 - bottom) * node as f64 / (nodes - 1) as f64;
+                    let low = (tables.bottom_sine + tables.step() * node as f64).asin();
                     let mut ground_truth = [DVec3::ZERO; 3];
                     for (i, texel) in env.texels().iter().enumerate() {
                         let (row, col) = ((i / 16) as f64, (i % 16) as f64);
@@ -198,17 +197,43 @@ fn tables_of_all_azimuths_add_up_to_the_environment() {
     }
 }
 
-/// A constant environment is a sky: tables are interpolated between nodes h apart, off by h²/8 of
-/// their second derivative, 1 at most for either moment, over wedges of 2π in all, over π.
+/// Radiance from a node to the next: times wedges and steps it adds up to the texels' own integral, in any one azimuth
+/// as in the sum over all.
+#[test]
+fn radiances_between_nodes_add_up_to_the_environment() {
+    for env in environments() {
+        for border in [Border::Plane, Border::Open] {
+            let azimuths = even(23, [1.0; 2]);
+            let tables = tables(&env, &azimuths, 33, border);
+            let all = (0..azimuths.len()).flat_map(|k| (0..32).map(move |node| (k, node)));
+            let sum: DVec3 = all
+                .map(|(k, i)| tables.radiances[k * 33 + i] * tables.wedges[k].z * tables.step())
+                .sum();
+            let texel = |(i, texel): (usize, &[f32; 3])| {
+                let top = FRAC_PI_2 - PI * (i / 16) as f64 / 8.0;
+                let height = top.sin().max(tables.bottom_sine)
+                    - (top - PI / 8.0).sin().max(tables.bottom_sine);
+                DVec3::from_array(texel.map(f64::from)) * (height * TAU / 16.0)
+            };
+            let expected: DVec3 = env.texels().iter().enumerate().map(texel).sum();
+            let room = azimuths.len() as f64 * 2.0 * PI * EPSILON * 30.0;
+            assert!((sum - expected).abs().max_element() <= room, "{border:?} {sum} {expected}");
+        }
+    }
+}
+
+/// A constant environment is a sky. Between nodes h apart in the sine, the cosine's mean over the part up to a horizon is taken as
+/// falling evenly: h²/6 of its second derivative 1/cos³ too high, over h; of the horizontal moment alone, over wedges of 2π, over π.
 #[test]
 fn a_constant_environment_is_a_sky() {
     let (rough, env) = (bumps(9, 8), &environments()[0]);
+    let steepest = extent(&rough).1 * (1.0_f64 / 2.0).hypot(1.0 / 3.0);
     for border in BORDERS {
         let mut azimuths = even(24, rough.cell_m());
         lit(&rough, border, &mut azimuths, |swept| {
             let tables = tables(env, swept.azimuths, 65, border);
-            let h = (FRAC_PI_2 - tables.bottom_rad) / 64.0;
-            let tolerance = 2.0_f64.sqrt() * 2.0 * h * h / 8.0 + 100.0 * EPSILON;
+            let per_cos3 = (1.0 + steepest * steepest).powf(1.5);
+            let tolerance = 2.0 * tables.step().powi(3) / 6.0 * per_cos3 + 100.0 * EPSILON;
             for (env, sky) in env_shade(swept, &tables).into_iter().zip(sky_shade(swept)) {
                 for (channel, radiance) in env.into_iter().zip([1.0, 0.5, 2.0]) {
                     assert!((channel / radiance - sky).abs() <= tolerance, "{channel} {sky}");
@@ -220,7 +245,8 @@ fn a_constant_environment_is_a_sky() {
 
 /// Against the reference on planes: m wedges have the lowest slope of their centre, wrong by the
 /// field's gradient g times w/2 at their ends, where N·e is as small: w² g² of the brightest, over
-/// 2π/π. Nodes as above, and a kink between nodes where a row of radiance L ends: L h/2.
+/// 2π/π. Between nodes h apart in the sine radiance is taken as even: up to the lowest direction, the grid point's own plane, from
+/// which light arrives at h/cos at most, so h²/(2 cos) of the brightest over 2π/π.
 #[test]
 fn an_environment_lights_planes_as_the_reference_does() {
     for env in environments() {
@@ -235,10 +261,15 @@ fn an_environment_lights_planes_as_the_reference_does() {
                 });
                 let ground_truth =
                     light::environment_of(&Oracle::one_ray(&tilted, border), 3, 4, &env);
-                let (w, h, g2) = (TAU / 128.0, PI / 128.0, east * east + north * north);
+                let (w, g2) = (TAU / 128.0, east * east + north * north);
+                let h = if border == Border::Open { 2.0 } else { 1.0 } / 128.0;
                 let most = f64::from(brightest);
-                // Flat under either border all rows end at nodes, and wedges do not matter.
-                let room = if g2 == 0.0 { 0.0 } else { 2.0 * (w * w * g2 + h * h / 8.0) };
+                // Level ground is a node's elevation under either border, and wedges do not matter.
+                let room = if g2 == 0.0 {
+                    0.0
+                } else {
+                    2.0 * (w * w * g2 + h * h / 2.0 * (1.0 + g2).sqrt())
+                };
                 let strips = (TAU / light::ENVIRONMENT_STRIPS as f64).powi(2);
                 for (got, ground_truth) in got.into_iter().zip(ground_truth) {
                     let tolerance = most * (room + strips + 128.0 * 4.0 * EPSILON);

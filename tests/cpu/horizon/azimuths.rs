@@ -5,7 +5,7 @@ use std::path::Path;
 use ridgelight::plan::Azimuth;
 use ridgelight::plan::azimuths::{even, towards_light};
 use ridgelight::scene::{Border, Environment, HeightField};
-use ridgelight_cpu::env_tables::{EnvTables, bottom_rad, env_tables};
+use ridgelight_cpu::env_tables::{EnvTables, bottom_sine, env_tables};
 use ridgelight_cpu::env_wedges::env_wedges;
 use ridgelight_cpu::light::{environment_of, normal};
 use ridgelight_cpu::oracle::Oracle;
@@ -22,8 +22,7 @@ fn asset(name: &str) -> std::path::PathBuf {
 
 fn tables(environment: &Environment, azimuths: &[Azimuth]) -> EnvTables {
     let rows = env_wedges(environment, BORDER, azimuths);
-    let sides = (environment.height(), azimuths.len());
-    env_tables(&rows, sides, NODES, bottom_rad(BORDER))
+    env_tables(&rows, (environment.height(), azimuths), NODES, bottom_sine(BORDER))
 }
 
 /// Light of texels by exact horizons in some azimuths alone, mean over channels.

@@ -10,7 +10,7 @@ use glam::DVec3;
 use ridgelight::basis::MAX_ORDER;
 use ridgelight::basis::slice::{Slices, slice_index};
 use ridgelight::scene::{HeightField, SphereLight, Wedges};
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::PI;
 
 /// Errors of a grid point's light through its horizons.
 #[derive(Clone, Copy, Debug)]
@@ -51,12 +51,18 @@ impl ShadeError {
 
     /// `sky_shade`, the environment's sum, from given tables; `brightest` is its largest radiance.
     ///
-    /// As [`sky`](Self::sky), by tables: three components, √3 at most, change by 1 a radian (2 √3 over all
-    /// wedges), are at most π/2 (√3 π), and stand at a place that errs by an arc tangent and 22 ε.
+    /// As [`sky`](Self::sky), by tables: three components, √3 at most, change by 1 a unit of sine (2 √3 over all
+    /// wedges), are at most π/2 (√3 π), and stand at a sine that errs as the slope does. The part up to it, which is of the
+    /// same sizes, is off by as much again.
     pub fn environment(&self, brightest: f64) -> f64 {
-        let place = self.lowest_slope + ARC_TANGENT + 22.0 * EPSILON;
         let rest = (33.0 + 5.5 * self.count) * EPSILON;
-        brightest * (3.5 * place + 5.5 * self.normal + rest)
+        brightest * (3.5 * self.sine() + 5.5 * self.normal + 2.0 * rest)
+    }
+
+    /// Of the sine of a lowest direction: it changes by no more than the slope does; a square, a sum, `inversesqrt` (2 ULP) and a
+    /// product, 8 ε.
+    fn sine(&self) -> f64 {
+        self.lowest_slope + 8.0 * EPSILON
     }
 
     /// The environment's sum of at most `brightest`, from an image of `columns` × `rows` by tables of `nodes`
@@ -73,26 +79,27 @@ impl ShadeError {
     }
 
     /// What an azimuth's wedge of an environment gives a grid point of this normal above a slope, from tables made on the device, of
-    /// which each moment has an error of `table`.
+    /// which each moment has an error of `table` and the part between two nodes, as a moment, of `part`.
     ///
-    /// Each component of the normal times its moment. The place in a table errs as in [`environment`](Self::environment), across
-    /// which a moment changes by no more a node than from any node to the next there; the normal's turn moves it by the moments' length; a
-    /// mix, a product and a sum of each round 8 times, and sums of all azimuths once each.
+    /// Each component of the normal times its moment, at a sine that errs as the slope does; the normal's turn moves it by the
+    /// moments' length. Two products and a sum of each moment round 8 times, those of the part up to the sine 16 times of the
+    /// moment at the node, and sums of all azimuths once each.
     pub fn wedge_looked_up(
         &self,
         tables: &EnvTables,
         (azimuth, lowest, normal): (usize, f64, DVec3),
-        table: &[DVec3; 3],
+        (table, part): &([DVec3; 3], DVec3),
     ) -> DVec3 {
-        let place_rad = self.lowest_slope + ARC_TANGENT + 22.0 * EPSILON;
-        let nodes = (tables.nodes - 1) as f64 / (FRAC_PI_2 - tables.bottom_rad);
-        let moments = tables.looked_up(azimuth, lowest, place_rad);
+        let sine = lowest / lowest.hypot(1.0);
+        let changes = tables.change(azimuth, sine, self.sine());
+        // At the node below, of which the part up to the sine is less.
+        let below = tables.looked_up(azimuth, sine - tables.step());
         let mut off = DVec3::ZERO;
         let mut squared = DVec3::ZERO;
-        for (m, [moment, step]) in moments.into_iter().enumerate() {
-            let across = place_rad * nodes * step;
-            let rounded = (8.0 + self.count) * EPSILON * moment.abs();
-            off += normal[m].abs() * (table[m] + across + rounded);
+        for (m, moment) in tables.looked_up(azimuth, sine).into_iter().enumerate() {
+            let largest = moment.abs().max(below[m].abs());
+            let rounded = (24.0 + self.count) * EPSILON * largest;
+            off += normal[m].abs() * (table[m] + *part + changes[m] + rounded);
             squared += moment * moment;
         }
         off + self.normal * DVec3::new(squared.x.sqrt(), squared.y.sqrt(), squared.z.sqrt())
@@ -238,17 +245,20 @@ impl SphereGeometry {
 mod tests {
     use super::*;
 
-    /// Tables of 257 nodes whose moments rise by 1 a node, looked up by a slope that has an error of 3 nodes: in error by 3 of every
-    /// moment, along a normal of one component.
+    /// Light of radiance 1 in a wedge of 1 rad, above a horizon whose sine has an error of 3 of 256 nodes: (1 - s²) / (2 π) of a level
+    /// normal, which changes by s times the error and half its square.
     #[test]
-    fn a_place_that_is_off_by_nodes_is_off_by_all_of_them() {
+    fn a_sine_that_is_off_by_nodes_is_off_by_all_of_them() {
         let nodes = 257;
-        let rising = (0..3 * nodes).map(|i| DVec3::splat((i % nodes) as f64)).collect();
-        let tables = EnvTables { nodes, bottom_rad: 0.0, texels: rising };
-        let node_rad = FRAC_PI_2 / 256.0;
-        let error = ShadeError { lowest_slope: 3.0 * node_rad, normal: 0.0, count: 1.0 };
-        let off = error.wedge_looked_up(&tables, (0, 0.5, DVec3::Z), &[DVec3::ZERO; 3]);
-        // Besides, an arc tangent and roundings of 100 or so.
-        assert!((3.0..3.01).contains(&off.x), "{off}");
+        let light = |node: usize| DVec3::splat((1.0 - (node as f64 / 256.0).powi(2)) / (2.0 * PI));
+        let moments = (0..3 * nodes).map(|i| light(i % nodes)).collect();
+        let (radiances, wedges) = (vec![DVec3::ONE; nodes], vec![DVec3::ONE]);
+        let tables = EnvTables { nodes, bottom_sine: 0.0, moments, radiances, wedges };
+        let (off, s) = (3.0 / 256.0, 0.5 / 1.25_f64.sqrt());
+        let error = ShadeError { lowest_slope: off, normal: 0.0, count: 1.0 };
+        let found =
+            error.wedge_looked_up(&tables, (0, 0.5, DVec3::Z), &([DVec3::ZERO; 3], DVec3::ZERO));
+        let expected = (s + 0.5 * off) * off / PI;
+        assert!((expected..expected + 100.0 * EPSILON).contains(&found.x), "{found} {expected}");
     }
 }

@@ -1,11 +1,13 @@
 //! The passes that sum light.
 
+use std::f64::consts::PI;
+
 use ridgelight::gpu::shaders::offset;
 use ridgelight::plan::Pass;
 use ridgelight::plan::azimuths::{Azimuth, Shape};
-use ridgelight::scene::{Albedo, Border, Environment, SphereLight};
+use ridgelight::scene::{Albedo, Border, SphereLight};
 use ridgelight_cpu::env_tables as tables_reference;
-use ridgelight_cpu::env_tables::{EnvTables, bottom_rad};
+use ridgelight_cpu::env_tables::{EnvTables, bottom_sine, wedge_of};
 use ridgelight_cpu::light_resolve as resolve_reference;
 use ridgelight_cpu::mirror_map::{Tables, blocked, mirrored};
 use ridgelight_cpu::oracle::Oracle;
@@ -26,10 +28,6 @@ pub(crate) type Rgb = glam::DVec3;
 
 pub(crate) fn rgb(texel: &[f32]) -> Rgb {
     Rgb::new(texel[0].into(), texel[1].into(), texel[2].into())
-}
-
-fn brightest(environment: &Environment) -> f64 {
-    environment.texels().iter().flatten().fold(0.0, |m, v| f64::max(m, (*v).into()))
 }
 
 /// Three channels of a texel.
@@ -53,10 +51,18 @@ pub(crate) fn wedge_rows(run: &mut Run, pass: &Pass) -> Vec<[Rgb; 3]> {
 /// `env_tables` of the device.
 fn device_tables(run: &mut Run, pass: &Pass) -> EnvTables {
     let texels = run.floats(pass, "env_tables").expect("bound");
+    let [nodes, _] = run.extent(pass, "env_tables");
+    let count = texels.len() / (12 * nodes);
+    let alpha = |k: usize, colour: usize, node: usize| {
+        f64::from(texels[((k * 3 + colour) * nodes + node) * 4 + 3])
+    };
+    let radiance = |i: usize| Rgb::from_array([0, 1, 2].map(|c| alpha(i / nodes, c, i % nodes)));
     EnvTables {
-        nodes: run.extent(pass, "env_tables")[0],
-        bottom_rad: bottom_rad(run.border()),
-        texels: texels.chunks_exact(4).map(rgb).collect(),
+        nodes,
+        bottom_sine: bottom_sine(run.border()),
+        moments: texels.chunks_exact(4).map(rgb).collect(),
+        radiances: (0..count * nodes).map(radiance).collect(),
+        wedges: run.plan.azimuths[..count].iter().map(wedge_of).collect(),
     }
 }
 
@@ -64,22 +70,44 @@ pub(crate) fn env_tables(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let rows = wedge_rows(run, pass);
     let got = device_tables(run, pass);
     let height = pushed(pass, const { offset("EnvTablesPush", "height") }) as usize;
-    let azimuths = pushed(pass, const { offset("EnvTablesPush", "azimuth_count") }) as usize;
-    let want = tables_reference::env_tables(&rows, (height, azimuths), got.nodes, got.bottom_rad);
-    assert_eq!(got.texels.len(), want.texels.len());
+    let count = pushed(pass, const { offset("EnvTablesPush", "azimuth_count") }) as usize;
+    let wedges = (height, &run.plan.azimuths[..count]);
+    let want = tables_reference::env_tables(&rows, wedges, got.nodes, got.bottom_sine);
+    assert_eq!(got.moments.len(), want.moments.len());
     let (nodes, pieces) = (got.nodes, (height + got.nodes) as f64);
-    let kept = rows.len() / azimuths;
-    let pairs = got.texels.iter().zip(&want.texels).enumerate().flat_map(|(i, (got, want))| {
-        let (k, moment) = (i / (3 * nodes), i / nodes % 3);
-        let summed = rows[k * kept..(k + 1) * kept].iter().map(|row| row[moment].abs());
+    let kept = rows.len() / count;
+    let off = |k: usize, moment: usize| {
+        let summed = rows[k * kept..(k + 1) * kept].iter().map(move |row| row[moment].abs());
         let sum: Rgb = summed.clone().sum();
         let largest = summed.fold(Rgb::ZERO, Rgb::max);
-        let tolerance = |c| device_table(sum[c], largest[c], pieces);
-        let at = [k, moment, i % nodes];
-        let pair = |c| Pair { got: got[c], want: want[c], tolerance: tolerance(c), at };
-        [pair(0), pair(1), pair(2)]
-    });
-    pairs.collect()
+        Rgb::from_array([0, 1, 2].map(|c| device_table(sum[c], largest[c], pieces)))
+    };
+    let mut pairs = Vec::new();
+    for (i, (got, want)) in got.moments.iter().zip(&want.moments).enumerate() {
+        let (k, moment, node) = (i / (3 * nodes), i / nodes % 3, i % nodes);
+        let (tolerance, at) = (off(k, moment), [k, moment, node]);
+        pairs.extend([0, 1, 2].map(|c| Pair {
+            got: got[c],
+            want: want[c],
+            tolerance: tolerance[c],
+            at,
+        }));
+    }
+    // A mean over a step sums rows times differences of sines, which err as moments do, without the π.
+    let step = want.step();
+    for (i, (got, want)) in got.radiances.iter().zip(&want.radiances).enumerate() {
+        let (k, node) = (i / nodes, i % nodes);
+        let scale = PI / (step * f64::from(wedges.1[k].wedge_rad));
+        let rounded = 4.0 * EPSILON * want.abs();
+        let tolerance = off(k, 2) * scale + rounded;
+        pairs.extend([0, 1, 2].map(|c| Pair {
+            got: got[c],
+            want: want[c],
+            tolerance: tolerance[c],
+            at: [k, 3, node],
+        }));
+    }
+    pairs
 }
 
 /// The azimuths of the light that a shading pass adds to, up to its own, and the error of their horizons: every batch
@@ -129,12 +157,25 @@ pub(crate) fn sky_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     }
     if let Some(got) = run.floats(pass, "env_sum") {
         let tables = device_tables(run, pass);
-        let environment = run.scene.lights.environment.as_ref().expect("an environment");
-        let tolerance = error.environment(brightest(environment));
-        let reference = |swept: &Swept| sky_reference::env_shade(swept, &tables);
-        let want = run.swept(range.clone(), fuse_of(pass), reference);
-        for (i, (got, want)) in got.chunks_exact(4).zip(want).enumerate() {
-            pairs.extend(channels(got, want.into(), tolerance, at(i)));
+        let mut bounds = Vec::new();
+        let want = run.swept(range.clone(), fuse_of(pass), |swept| {
+            bounds = swept.per_grid_point(|col, row| {
+                let mut bound = Rgb::ZERO;
+                let right = ([Rgb::ZERO; 3], Rgb::ZERO);
+                swept.add_all([col, row], true, |k, _, lowest, normal| {
+                    bound += error.wedge_looked_up(&tables, (k, lowest, normal), &right);
+                });
+                bound
+            });
+            sky_reference::env_shade(swept, &tables)
+        });
+        for (i, ((got, want), bound)) in got.chunks_exact(4).zip(want).zip(bounds).enumerate() {
+            pairs.extend([0, 1, 2].map(|c| Pair {
+                got: got[c].into(),
+                want: want[c],
+                tolerance: bound[c],
+                at: at(i),
+            }));
         }
     }
     if let Some(got) = run.floats(pass, "blocked_sum") {

@@ -1,6 +1,6 @@
 //! Light of the whole sky at the extremes: on level ground, on slopes, in a trench.
 
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::f64::consts::{PI, TAU};
 
 use glam::DVec3;
 use ridgelight::plan::Azimuth;
@@ -97,16 +97,20 @@ fn is_open(found: &Found) -> bool {
     found.scene.surface.border == Border::Open
 }
 
-/// A table that is read between nodes Δ apart: Δ²/8 of a second derivative of at most 2, three moments, over 2π / π: 3
-/// Δ² / 2. Nodes stand from the horizon, or under an open border from straight below, up to the zenith.
-fn between_nodes(found: &Found) -> f64 {
-    let range = if is_open(found) { PI } else { FRAC_PI_2 };
-    1.5 * (range / f64::from(found.method.quality.table_elevations - 1)).powi(2)
+/// A table of an even environment that is read between nodes Δ apart in the sine, above directions of at most this slope. The
+/// part between them is right for the vertical moment; for the horizontal one it takes the cosine to fall evenly: off by Δ²/6 of its
+/// second derivative, 1/cos³, but by no more than √(8Δ/9), the cosine's mean in the highest step; over Δ, over 2π / π. Nodes stand
+/// from the horizon, or under an open border from straight below, up to the zenith.
+fn between_nodes(found: &Found, slope: f64) -> f64 {
+    let range = if is_open(found) { 2.0 } else { 1.0 };
+    let step: f64 = range / f64::from(found.method.quality.table_elevations - 1);
+    let falls = step.powi(2) / 6.0 * 1.0_f64.hypot(slope).powi(3);
+    2.0 * step * falls.min((8.0 / 9.0 * step).sqrt())
 }
 
 /// The same where level ground is the lowest visible elevation: a node, but under an open border.
 fn at_level(found: &Found) -> f64 {
-    if is_open(found) { between_nodes(found) } else { 0.0 }
+    if is_open(found) { between_nodes(found, 0.0) } else { 0.0 }
 }
 
 /// Light of the environment by the same series in f64, and the device's bound: on a plane with these slopes to east
@@ -178,7 +182,7 @@ fn albedo(albedo: f32) -> Case {
 fn uniform_environment(value: f32, border: Border) -> Case {
     let name = format!("an environment of {value:e} everywhere");
     let expected = "level: its radiance, and 1 of the sky beside it";
-    let bound = "sky: (8 + 2 m) ε; environment: (3 m + 64 / m + 92) ε of its radiance; open: 80 ε and 3 Δ² / 2 of nodes Δ apart more; harmonics: the series'";
+    let bound = "sky: (8 + 2 m) ε; environment: (3 m + 64 / m + 92) ε of its radiance; open: 80 ε and the table's between two elevations more; harmonics: the series'";
     light(name, (expected, bound), (level(), border, around(uniform(value))), move |found| {
         let value = f64::from(value);
         let [right, bound] = constant(found, value);
@@ -240,7 +244,7 @@ fn slope_under_the_sky(slope: f64, [rows, cols]: [usize; 2], border: Border) -> 
         Border::Open => "all of the sky of 1 and of the environment of 1 above its own plane: 1",
         _ => "(1 + cos tilt) / 2 of the sky of 1 and of the environment of 1",
     };
-    let bound = "(π/m)² sin tilt + 2 δ + the level ground's; environment: + 3 Δ² / 2 besides, harmonics: + (2π/m)² / 24 and the series'; δ: the method's, at one cell";
+    let bound = "(π/m)² sin tilt + 2 δ + the level ground's; environment: + the table's between two elevations besides, harmonics: + (2π/m)² / 24 and the series'; δ: the method's, at one cell";
     let name = match [rows, cols] {
         [SIDE, SIDE] => format!("light on a slope of {slope:e}"),
         _ => format!("light on a slope of {slope:e} of {rows} × {cols}"),
@@ -261,7 +265,7 @@ fn slope_under_the_sky(slope: f64, [rows, cols]: [usize; 2], border: Border) -> 
                 let error = series(found, uphill, angle)[1];
                 [right, sky + (TAU / found.count()).powi(2) / 24.0 + error]
             }
-            false => [right, sky + between_nodes(found) + environment_error(found)],
+            false => [right, sky + between_nodes(found, slope) + environment_error(found)],
         };
         vec![
             probe(found.light("direct.sky", row, col), right, sky, [0, row, col]),
@@ -332,7 +336,7 @@ fn trench(border: Border) -> Case {
             "level beside an edge of height H, D away: as between two, but for azimuths that leave the field before it, which see all"
         }
     };
-    let bound = "2 δ + the level ground's; environment: + 3 Δ² / 2 besides, harmonics: the series'; δ: the method's, at D; pyramid: as the CPU reference's elevations see";
+    let bound = "2 δ + the level ground's; environment: + the table's between two elevations besides, harmonics: the series'; δ: the method's, at D; pyramid: as the CPU reference's elevations see";
     let name = "light in a trench";
     light(name, (expected, bound), (ground, border, around(uniform(1.0))), move |found| {
         let [row, col] = PLACE;
@@ -377,7 +381,9 @@ fn trench(border: Border) -> Case {
                 ([near[0], far[0]], near[1].max(far[1]))
             }
             true => (right, sky + series(AWAY)[1]),
-            false => (right, sky + between_nodes(found) + environment_error(found)),
+            false => {
+                (right, sky + between_nodes(found, HEIGHT / ends[0]) + environment_error(found))
+            }
         };
         let of = |layer: &str, expected, bound, at| Probe {
             found: found.light(layer, row, col),

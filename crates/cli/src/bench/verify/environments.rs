@@ -7,10 +7,12 @@ use glam::DVec3;
 use ridgelight::Result;
 use ridgelight::plan::{Azimuth, Plan};
 use ridgelight::scene::{Border, Environment, Lights, Quality, Scene};
-use ridgelight_cpu::env_tables::{bottom_rad, env_tables};
+use ridgelight_cpu::env_tables::{bottom_sine, env_tables};
 use ridgelight_cpu::env_wedges::env_wedges;
 use ridgelight_cpu::shared::gather::Swept;
-use ridgelight_cpu::tolerance::{ShadeError, device_resolved, device_table, device_wedge_row};
+use ridgelight_cpu::tolerance::{
+    EPSILON, ShadeError, device_resolved, device_table, device_wedge_row,
+};
 
 use super::sweeps::{lit, white};
 use super::{Device, Wanted, colours, sentence};
@@ -49,9 +51,9 @@ fn wanted_of(
     let (cols, border) = (scene.field.cols(), scene.surface.border);
     let all = lit(scene, azimuths, quality, line_shift, |swept, error| {
         let rows = env_wedges(environment, border, swept.azimuths);
-        let counts = (environment.height(), swept.azimuths.len());
-        let tables = env_tables(&rows, counts, nodes, bottom_rad(border));
-        let off: Vec<[DVec3; 3]> = (0..swept.azimuths.len())
+        let wedges = (environment.height(), swept.azimuths);
+        let tables = env_tables(&rows, wedges, nodes, bottom_sine(border));
+        let off: Vec<([DVec3; 3], DVec3)> = (0..swept.azimuths.len())
             .map(|k| tables_off(environment, border, swept, &rows, (k, nodes)))
             .collect();
         let at = |p: &usize| {
@@ -69,14 +71,14 @@ fn wanted_of(
 
 /// Tolerance of one azimuth's tables, per moment: their own ([`device_table`]), and that of the
 /// wedge's rows by the brightest of their texels ([`device_wedge_row`]). A table holds moments of
-/// elevations: at most a row's height of each, over π.
+/// elevations: at most a row's height of each, over π. And of the part between two nodes.
 fn tables_off(
     environment: &Environment,
     border: Border,
     swept: &Swept,
     rows: &[[DVec3; 3]],
     (k, nodes): (usize, usize),
-) -> [DVec3; 3] {
+) -> ([DVec3; 3], DVec3) {
     let azimuth = &swept.azimuths[k];
     let (width, height) = (environment.width(), environment.height());
     let kept = environment.rows_above_ground(border);
@@ -86,17 +88,23 @@ fn tables_off(
         let brightest = texels.map(|x| environment.texels()[row * width + x].map(f64::from));
         brightest.fold(DVec3::ZERO, |m, t| m.max(DVec3::from_array(t)))
     };
-    let of_rows = (0..kept).fold(DVec3::ZERO, |sum, row| {
-        sum + brightest(row).map(|b| device_wedge_row(b, azimuth.wedge_rad.into(), columns))
-    });
+    let of_row =
+        |row| brightest(row).map(|b| device_wedge_row(b, azimuth.wedge_rad.into(), columns));
+    let of_rows: DVec3 = (0..kept).map(of_row).sum();
+    let of_worst = (0..kept).map(of_row).fold(DVec3::ZERO, DVec3::max);
     let own = &rows[k * kept..(k + 1) * kept];
-    [0, 1, 2].map(|moment| {
+    let brightest_row = own.iter().fold(DVec3::ZERO, |most, row| most.max(row[2].abs()));
+    // Rows of one step, at two ends that err by ε each and as much in rounding.
+    let step = (1.0 - bottom_sine(border)) / (nodes - 1) as f64;
+    let part = (of_worst * step + 4.0 * EPSILON * brightest_row) / PI;
+    let moments = [0, 1, 2].map(|moment| {
         let all = own.iter().map(|row| row[moment].abs());
         let largest = all.clone().fold(DVec3::ZERO, DVec3::max);
         let sum: DVec3 = all.sum();
         let table = |c| device_table(sum[c], largest[c], (kept + nodes) as f64);
         DVec3::new(table(0), table(1), table(2)) + of_rows / height as f64
-    })
+    });
+    (moments, part)
 }
 
 /// Columns of texels that overlap a wedge, and one more on either side.
@@ -117,7 +125,7 @@ mod tests {
     use ridgelight::scene::Fuse;
 
     /// Wrong light is refused, with and without a peak in an even environment: of another fuse, of
-    /// half the elevations, rotated by a column.
+    /// 8 elevations, rotated by a column.
     #[test]
     fn wrong_environments_are_refused() {
         for peak in [0.0, 3000.0] {
@@ -137,7 +145,7 @@ mod tests {
             let quality = Quality { azimuths: 16, ..Quality::default() };
             let wrong = [
                 ("fuse", of(0.0, &Quality { fuse: Fuse::Nearest, ..quality }).light()),
-                ("coarse", of(0.0, &Quality { table_elevations: 32, ..quality }).light()),
+                ("coarse", of(0.0, &Quality { table_elevations: 8, ..quality }).light()),
                 ("turned", of(TAU / 64.0, &quality).light()),
             ];
             of(0.0, &quality).refuses(&quality, [0.005, 0.99], &wrong);
