@@ -3,7 +3,6 @@
 // Writes: facet_mask (see bake/facets.glsl).
 // One invocation is one cell and fifteen directions.
 #version 460
-#extension GL_KHR_shader_subgroup_vote : require
 
 #include "shared/conventions.glsl"
 #include "bake/facets.glsl"
@@ -17,8 +16,8 @@ layout(constant_id = 1) const int MOST_STEPS = 60000;
 const bool THIN_ROWS = false;
 const bool THIN_COLS = false;
 
-layout(binding = 0) uniform texture2D cells;
-layout(binding = 1) uniform texture2D maxima;
+layout(binding = 0, rgba32f) uniform readonly image2D cells;
+layout(binding = 1, r32f) uniform readonly image2D maxima;
 layout(binding = 2) uniform textureBuffer directions;
 layout(binding = 3, r32ui) uniform writeonly uimage2DArray facet_mask;
 
@@ -39,7 +38,7 @@ void main() {
     int layer = first_layer + int(gl_WorkGroupID.z);
     bool alive = at.x < land.cells_x && at.y < land.cells_y;
     ivec2 here = min(at, ivec2(land.cells_x, land.cells_y) - 1);
-    vec4 corners = texelFetch(cells, here, 0);
+    vec4 corners = imageLoad(cells, here);
     uint word = 0u;
     for (int bit = 0; bit < 2 * FACET_DIRECTIONS; bit++) {
         int i = first_direction + FACET_DIRECTIONS * layer + (bit >> 1);

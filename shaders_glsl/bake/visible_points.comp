@@ -3,7 +3,6 @@
 // Writes: visible_points (see bake/points.glsl).
 // One invocation is one grid point and one layer: one direction, or two of a small field.
 #version 460
-#extension GL_KHR_shader_subgroup_vote : require
 
 #include "shared/conventions.glsl"
 #include "bake/points.glsl"
@@ -19,8 +18,8 @@ layout(constant_id = 3) const int MOST_STEPS = 60000;
 // Two directions per word.
 layout(constant_id = 4) const bool SMALL = false;
 
-layout(binding = 0) uniform texture2D cells;
-layout(binding = 1) uniform texture2D maxima;
+layout(binding = 0, rgba32f) uniform readonly image2D cells;
+layout(binding = 1, r32f) uniform readonly image2D maxima;
 layout(binding = 2) uniform texture2D ground;
 layout(binding = 3) uniform textureBuffer directions;
 layout(binding = 4, r32ui) uniform writeonly uimage2DArray visible_points;

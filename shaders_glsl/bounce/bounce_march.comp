@@ -6,7 +6,6 @@
 // last azimuths).
 // One invocation is one grid point, or one node: bounce_sum has a texel for each.
 #version 460
-#extension GL_KHR_shader_subgroup_vote : require
 
 #include "shared/angle.glsl"
 #include "shared/cosine.glsl"
@@ -24,8 +23,8 @@ layout(constant_id = 4) const bool GREY = false;
 // Grid points from node to node: 1, 2, 4 or 8.
 layout(constant_id = 5) const int NODE_STRIDE = 1;
 
-layout(binding = 0) uniform texture2D cells;
-layout(binding = 1) uniform texture2D maxima;
+layout(binding = 0, rgba32f) uniform readonly image2D cells;
+layout(binding = 1, r32f) uniform readonly image2D maxima;
 layout(binding = 2) uniform texture2D ground;
 layout(binding = 3) uniform texture2D exit_radiance;
 layout(binding = 4, rgba32f) uniform image2D bounce_sum;
@@ -101,20 +100,19 @@ void add_piece(vec2 begin, vec2 end, vec2 place, vec2 advance) {
 // March over the surface as far as any of it may be visible.
 void march(Ray ray, bool going) {
     ivec2 cells_of = ivec2(land.cells_x, land.cells_y);
-    float highest = texelFetch(maxima, ivec2(0, level_top(land.top_level, land.padded_rows)), 0).x - ray.own;
+    float highest = imageLoad(maxima, ivec2(0, level_top(land.top_level, land.padded_rows))).x - ray.own;
     float step_m = 1.0 / ray.scale;
     Walk walk = walk_from(ray);
     going = going && !walk.leaves;
     for (int turn = 0; turn < MOST_STEPS; turn++) {
-        // All lanes leave together, as in horizon_sweep.
-        if (!subgroupAny(going)) {
+        if (!going) {
             break;
         }
         Block block = block_of(walk, ray);
         ivec2 fetched = clamp(walk.at, ivec2(0), cells_of - 1);
-        vec4 corners = texelFetch(cells, fetched, 0);
+        vec4 corners = imageLoad(cells, fetched);
         int shown = max(walk.level, 1);
-        float top = texelFetch(maxima, (fetched >> (LEVEL_BITS * shown)) + ivec2(0, level_top(shown, land.padded_rows)), 0).x - ray.own;
+        float top = imageLoad(maxima, (fetched >> (LEVEL_BITS * shown)) + ivec2(0, level_top(shown, land.padded_rows))).x - ray.own;
         float rise = reached * step_m;
         bool is_cell = walk.level == 0;
         bool clear = is_cell || min(walk.t * rise, block.ahead * rise) >= top;
@@ -140,7 +138,7 @@ void march(Ray ray, bool going) {
         float split_slope = max(middle_slope, exit_slope);
         float steepest = is_split ? split_slope : exit_slope;
         bool opens = going && is_cell && block.ahead > walk.t && steepest > reached;
-        if (subgroupAny(opens)) {
+        if (opens) {
             ivec2 size = ivec2(land.cols, land.rows);
             ivec2 next = fetched + 1;
             next *= ivec2(lessThan(next, size));

@@ -181,8 +181,7 @@ void march(bool exists) {
     bool on = meets;
     int next = 0;
     float back = 1.0;
-    // All lanes leave together, as in horizon_sweep.
-    while (subgroupAny(on)) {
+    while (on) {
         int whole = int(back + 0.5);
         int at = min(whole, reach);
         vec2 place = place_at(at);

@@ -17,7 +17,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/bounce_gather.comp`.
-    BOUNCE_GATHER: "bounce_gather", push GatherPush, words 8160 11634,
+    BOUNCE_GATHER: "bounce_gather", push GatherPush, words 8160 11629,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "height_levels" SampledImage { uint: false, layered: false },
     2 reads "level_table" SampledImage { uint: true, layered: false },
@@ -41,7 +41,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/bounce_ground.comp`.
-    BOUNCE_GROUND: "bounce_ground", push BounceGroundPush, words 19794 667,
+    BOUNCE_GROUND: "bounce_ground", push BounceGroundPush, words 19789 667,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "exit_radiance" StorageImage { format: "Rgba32f", uint: false, layered: false },
     2 reads "exit_grey" StorageImage { format: "R32f", uint: false, layered: false },
@@ -54,9 +54,9 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/bounce_march.comp`.
-    BOUNCE_MARCH: "bounce_march", push BounceMarchPush, words 20461 12330,
-    0 reads "cells" SampledImage { uint: false, layered: false },
-    1 reads "maxima" SampledImage { uint: false, layered: false },
+    BOUNCE_MARCH: "bounce_march", push BounceMarchPush, words 20456 12312,
+    0 reads "cells" StorageImage { format: "Rgba32f", uint: false, layered: false },
+    1 reads "maxima" StorageImage { format: "R32f", uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
     3 reads "exit_radiance" SampledImage { uint: false, layered: false },
     4 writes "bounce_sum" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -72,7 +72,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/bounce_shade.comp`.
-    BOUNCE_SHADE: "bounce_shade", push BounceShadePush, words 32791 2678,
+    BOUNCE_SHADE: "bounce_shade", push BounceShadePush, words 32768 2678,
     0 reads "ground" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "sky_share" StorageImage { format: "R32f", uint: false, layered: false },
     2 reads "node_sum" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -84,7 +84,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/bounce_walk.comp`.
-    BOUNCE_WALK: "bounce_walk", push BounceWalkPush, words 35469 14918,
+    BOUNCE_WALK: "bounce_walk", push BounceWalkPush, words 35446 14918,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 reads "occluders" StorageImage { format: "Rg32ui", uint: true, layered: true },
@@ -105,7 +105,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/cache_gather.comp`.
-    CACHE_GATHER: "cache_gather", push CacheGatherPush, words 50387 3639,
+    CACHE_GATHER: "cache_gather", push CacheGatherPush, words 50364 3639,
     0 reads "visibility_cache" StorageImage { format: "Rgba32ui", uint: true, layered: true },
     1 reads "azimuths" TexelBuffer,
     2 reads "exit_radiance" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -121,7 +121,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/edit/dirty_list.comp`.
-    DIRTY_LIST: "dirty_list", push DirtyListPush, words 54026 874,
+    DIRTY_LIST: "dirty_list", push DirtyListPush, words 54003 874,
     0 reads "dirty_texels" StorageBuffer,
     1 writes "edit_list" StorageBuffer,
     DirtyList;
@@ -129,7 +129,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/edit/dirty_mark.comp`.
-    DIRTY_MARK: "dirty_mark", push DirtyMarkPush, words 54900 1323,
+    DIRTY_MARK: "dirty_mark", push DirtyMarkPush, words 54877 1323,
     0 writes "dirty_texels" StorageBuffer,
     1 writes "edit_list" StorageBuffer,
     DirtyMark;
@@ -137,7 +137,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bake/ellipse_fit.comp`.
-    ELLIPSE_FIT: "ellipse_fit", push EllipseFitPush, words 56223 5049,
+    ELLIPSE_FIT: "ellipse_fit", push EllipseFitPush, words 56200 5049,
     0 reads "visible_points" SampledImage { uint: true, layered: true },
     1 reads "directions" TexelBuffer,
     2 writes "ellipse_axes" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -151,7 +151,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/env_rotation.comp`.
-    ENV_ROTATION: "env_rotation", push EnvRotationPush, words 61272 949,
+    ENV_ROTATION: "env_rotation", push EnvRotationPush, words 61249 949,
     0 reads "environment" SampledImage { uint: false, layered: false },
     1 reads "constants" TexelBuffer,
     2 writes "env_rotation" StorageBuffer,
@@ -160,7 +160,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/env_tables.comp`.
-    ENV_TABLES: "env_tables", push EnvTablesPush, words 62221 3272,
+    ENV_TABLES: "env_tables", push EnvTablesPush, words 62198 3272,
     0 reads "wedge_rows" StorageBuffer,
     1 writes "env_tables" StorageImage { format: "Rgba32f", uint: false, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -169,7 +169,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/env_wedges.comp`.
-    ENV_WEDGES: "env_wedges", push EnvWedgesPush, words 65493 2151,
+    ENV_WEDGES: "env_wedges", push EnvWedgesPush, words 65470 2151,
     0 reads "environment" SampledImage { uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "wedge_rows" StorageBuffer,
@@ -178,9 +178,9 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bake/facet_mask.comp`.
-    FACET_MASK: "facet_mask", push FacetMaskPush, words 67644 9133,
-    0 reads "cells" SampledImage { uint: false, layered: false },
-    1 reads "maxima" SampledImage { uint: false, layered: false },
+    FACET_MASK: "facet_mask", push FacetMaskPush, words 67621 9118,
+    0 reads "cells" StorageImage { format: "Rgba32f", uint: false, layered: false },
+    1 reads "maxima" StorageImage { format: "R32f", uint: false, layered: false },
     2 reads "directions" TexelBuffer,
     3 writes "facet_mask" StorageImage { format: "R32ui", uint: true, layered: true },
     FacetMask {
@@ -191,7 +191,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bake/fan_weights.comp`.
-    FAN_WEIGHTS: "fan_weights", push FanWeightsPush, words 76777 1842,
+    FAN_WEIGHTS: "fan_weights", push FanWeightsPush, words 76739 1842,
     0 reads "bent" SampledImage { uint: false, layered: true },
     1 reads "fans" TexelBuffer,
     2 writes "fan_weights" StorageImage { format: "R32f", uint: false, layered: true },
@@ -200,8 +200,8 @@ shader! {
 
 shader! {
     /// `shaders_glsl/rays/height_bounds.comp`.
-    HEIGHT_BOUNDS: "height_bounds", push HeightBoundsPush, words 78619 1666,
-    0 reads "cells" SampledImage { uint: false, layered: false },
+    HEIGHT_BOUNDS: "height_bounds", push HeightBoundsPush, words 78581 1680,
+    0 reads "cells" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 writes "maxima" StorageImage { format: "R32f", uint: false, layered: false },
     2 reads "heights" SampledImage { uint: false, layered: false },
     HeightBounds {
@@ -211,7 +211,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/rays/height_cells.comp`.
-    HEIGHT_CELLS: "height_cells", push HeightCellsPush, words 80285 2514,
+    HEIGHT_CELLS: "height_cells", push HeightCellsPush, words 80261 2514,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 writes "cells" StorageImage { format: "Rgba32f", uint: false, layered: false },
     2 writes "ground" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -225,7 +225,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/height_expand.comp`.
-    HEIGHT_EXPAND: "height_expand", push HeightExpandPush, words 82799 2496,
+    HEIGHT_EXPAND: "height_expand", push HeightExpandPush, words 82775 2496,
     0 reads "height_levels" SampledImage { uint: false, layered: false },
     1 reads "level_table" SampledImage { uint: true, layered: false },
     2 writes "height_stack" StorageImage { format: "R32f", uint: false, layered: true },
@@ -236,7 +236,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/height_reduce.comp`.
-    HEIGHT_REDUCE: "height_reduce", push ReducePush, words 85295 2858,
+    HEIGHT_REDUCE: "height_reduce", push ReducePush, words 85271 2858,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 writes "height_levels" StorageImage { format: "R32f", uint: false, layered: false },
     2 writes "level_table" StorageImage { format: "Rgba32ui", uint: true, layered: false },
@@ -248,7 +248,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/height_transpose.comp`.
-    HEIGHT_TRANSPOSE: "height_transpose", push HeightTransposePush, words 88153 978,
+    HEIGHT_TRANSPOSE: "height_transpose", push HeightTransposePush, words 88129 978,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 writes "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     HeightTranspose {
@@ -259,21 +259,20 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/horizon_march.comp`.
-    HORIZON_MARCH: "horizon_march", push MarchPush, words 89131 5456,
-    0 reads "heights" SampledImage { uint: false, layered: false },
+    HORIZON_MARCH: "horizon_march", push MarchPush, words 89107 6752,
+    0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "slopes" StorageImage { format: "Unknown", uint: true, layered: true },
     HorizonMarch {
-        0 all_crossings: bool = true,
-        1 periodic: bool = false,
-        2 writes_distances: bool = false,
-        3 node_stride: i32 = 1,
+        0 periodic: bool = false,
+        1 writes_distances: bool = false,
+        2 node_stride: i32 = 1,
     }
 }
 
 shader! {
     /// `shaders_glsl/edit/horizon_resweep.comp`.
-    HORIZON_RESWEEP: "horizon_resweep", push HorizonResweepPush, words 94587 8882,
+    HORIZON_RESWEEP: "horizon_resweep", push HorizonResweepPush, words 95859 8882,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "occluders" StorageImage { format: "Rg32ui", uint: true, layered: true },
@@ -287,7 +286,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/horizon_sweep.comp`.
-    HORIZON_SWEEP: "horizon_sweep", push HorizonSweepPush, words 103469 9441,
+    HORIZON_SWEEP: "horizon_sweep", push HorizonSweepPush, words 104741 9441,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     2 reads "azimuths" TexelBuffer,
@@ -313,7 +312,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/light_matrix.comp`.
-    LIGHT_MATRIX: "light_matrix", push LightMatrixPush, words 112910 1854,
+    LIGHT_MATRIX: "light_matrix", push LightMatrixPush, words 114182 1854,
     0 reads "env_rotation" StorageBuffer,
     1 reads "constants" TexelBuffer,
     2 writes "light_matrix" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -322,7 +321,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/light_resolve.comp`.
-    LIGHT_RESOLVE: "light_resolve", push LightResolvePush, words 114764 1991,
+    LIGHT_RESOLVE: "light_resolve", push LightResolvePush, words 116036 1991,
     0 reads "scalar_sum" SampledImage { uint: false, layered: false },
     1 reads "colour_sum" SampledImage { uint: false, layered: false },
     2 reads "albedo_map" SampledImage { uint: false, layered: false },
@@ -346,7 +345,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/line_blocks.comp`.
-    LINE_BLOCKS: "line_blocks", push LineBlocksPush, words 116755 6303,
+    LINE_BLOCKS: "line_blocks", push LineBlocksPush, words 118027 6303,
     0 reads "bounce_ground" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "grey_ground" StorageImage { format: "Rg32ui", uint: true, layered: false },
     2 reads "azimuths" TexelBuffer,
@@ -361,7 +360,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/map_draw.comp`.
-    MAP_DRAW: "map_draw", push MapDrawPush, words 123058 3812,
+    MAP_DRAW: "map_draw", push MapDrawPush, words 124330 3812,
     0 reads "radiance" SampledImage { uint: false, layered: false },
     1 reads "tone_steps" SampledImage { uint: false, layered: false },
     2 reads "voids" SampledImage { uint: false, layered: false },
@@ -374,7 +373,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/mirror_map.comp`.
-    MIRROR_MAP: "mirror_map", push MirrorMapPush, words 126870 3631,
+    MIRROR_MAP: "mirror_map", push MirrorMapPush, words 128142 3631,
     0 reads "azimuths" TexelBuffer,
     1 reads "specular_tables" StorageImage { format: "Rgba32f", uint: false, layered: true },
     2 writes "mirror_map" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -383,9 +382,9 @@ shader! {
 
 shader! {
     /// `shaders_glsl/reference/path_trace.comp`.
-    PATH_TRACE: "path_trace", push PathTracePush, words 130501 22928,
-    0 reads "cells" SampledImage { uint: false, layered: false },
-    1 reads "maxima" SampledImage { uint: false, layered: false },
+    PATH_TRACE: "path_trace", push PathTracePush, words 131773 22889,
+    0 reads "cells" StorageImage { format: "Rgba32f", uint: false, layered: false },
+    1 reads "maxima" StorageImage { format: "R32f", uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
     3 reads "lights" SampledImage { uint: false, layered: false },
     4 reads "environment" SampledImage { uint: false, layered: false },
@@ -420,7 +419,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/picture_tone.frag`.
-    PICTURE_TONE_FRAG: "picture_tone_frag", push PictureTonePush, words 153429 565,
+    PICTURE_TONE_FRAG: "picture_tone_frag", push PictureTonePush, words 154662 565,
     0 reads "radiance" SampledImage { uint: false, layered: false },
     PictureToneFrag {
         0 encodes: bool = true,
@@ -429,13 +428,13 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/picture_tone.vert`.
-    PICTURE_TONE_VERT: "picture_tone_vert", push (), words 153994 266,
+    PICTURE_TONE_VERT: "picture_tone_vert", push (), words 155227 266,
     PictureToneVert;
 }
 
 shader! {
     /// `shaders_glsl/view/plinth_draw.frag`.
-    PLINTH_DRAW_FRAG: "plinth_draw_frag", push PlinthDrawPush, words 154260 939,
+    PLINTH_DRAW_FRAG: "plinth_draw_frag", push PlinthDrawPush, words 155493 939,
     2 reads "voids" SampledImage { uint: false, layered: false },
     PlinthDrawFrag {
         1 has_voids: bool = false,
@@ -444,7 +443,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/plinth_draw.vert`.
-    PLINTH_DRAW_VERT: "plinth_draw_vert", push PlinthDrawPush, words 155199 2082,
+    PLINTH_DRAW_VERT: "plinth_draw_vert", push PlinthDrawPush, words 156432 2082,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "radiance" SampledImage { uint: false, layered: false },
     2 reads "voids" SampledImage { uint: false, layered: false },
@@ -456,7 +455,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/preview_gather.comp`.
-    PREVIEW_GATHER: "preview_gather", push PreviewGatherPush, words 157281 1069,
+    PREVIEW_GATHER: "preview_gather", push PreviewGatherPush, words 158514 1069,
     0 reads "normals" SampledImage { uint: false, layered: false },
     1 reads "coarse_radiance" SampledImage { uint: false, layered: false },
     2 reads "coarse_sun" SampledImage { uint: false, layered: false },
@@ -471,7 +470,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/preview_shade.comp`.
-    PREVIEW_SHADE: "preview_shade", push PreviewShadePush, words 158350 1740,
+    PREVIEW_SHADE: "preview_shade", push PreviewShadePush, words 159583 1740,
     0 reads "normals" SampledImage { uint: false, layered: false },
     1 reads "albedo" SampledImage { uint: false, layered: false },
     2 reads "sky" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -485,7 +484,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/pyramid_march.comp`.
-    PYRAMID_MARCH: "pyramid_march", push PyramidMarchPush, words 160090 9025,
+    PYRAMID_MARCH: "pyramid_march", push PyramidMarchPush, words 161323 8964,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "slopes" StorageImage { format: "Unknown", uint: true, layered: true },
@@ -502,7 +501,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bake/scatter_gather.comp`.
-    SCATTER_GATHER: "scatter_gather", push ScatterGatherPush, words 169115 4664,
+    SCATTER_GATHER: "scatter_gather", push ScatterGatherPush, words 170287 4664,
     0 reads "ground" SampledImage { uint: false, layered: false },
     1 reads "direct" SampledImage { uint: false, layered: false },
     2 reads "visible_points" SampledImage { uint: true, layered: true },
@@ -529,7 +528,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/sh_shade.comp`.
-    SH_SHADE: "sh_shade", push ShShadePush, words 173779 12958,
+    SH_SHADE: "sh_shade", push ShShadePush, words 174951 12958,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "visibility" SampledImage { uint: false, layered: true },
     2 reads "light_matrix" SampledImage { uint: false, layered: false },
@@ -548,7 +547,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/sh_visibility.comp`.
-    SH_VISIBILITY: "sh_visibility", push ShadePush, words 186737 30719,
+    SH_VISIBILITY: "sh_visibility", push ShadePush, words 187909 30719,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rg32ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -573,7 +572,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/sh_wedges.comp`.
-    SH_WEDGES: "sh_wedges", push ShWedgesPush, words 217456 7777,
+    SH_WEDGES: "sh_wedges", push ShWedgesPush, words 218628 7777,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "horizon_angles" SampledImage { uint: false, layered: true },
     2 reads "constants" TexelBuffer,
@@ -590,7 +589,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/shade_expand.comp`.
-    SHADE_EXPAND: "shade_expand", push ShadeExpandPush, words 225233 2397,
+    SHADE_EXPAND: "shade_expand", push ShadeExpandPush, words 226405 2397,
     0 reads "shade_levels" SampledImage { uint: false, layered: false },
     1 reads "shade_table" SampledImage { uint: true, layered: false },
     2 writes "shade_stack" StorageImage { format: "Unknown", uint: false, layered: true },
@@ -601,7 +600,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/shade_reduce.comp`.
-    SHADE_REDUCE: "shade_reduce", push ReducePush, words 227630 2918,
+    SHADE_REDUCE: "shade_reduce", push ReducePush, words 228802 2918,
     0 reads "exit_radiance" SampledImage { uint: false, layered: false },
     1 writes "shade_levels" StorageImage { format: "Rgba32f", uint: false, layered: false },
     2 writes "shade_table" StorageImage { format: "Rgba32ui", uint: true, layered: false },
@@ -614,7 +613,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/shadow_settle.comp`.
-    SHADOW_SETTLE: "shadow_settle", push ShadowSettlePush, words 230548 17968,
+    SHADOW_SETTLE: "shadow_settle", push ShadowSettlePush, words 231720 17942,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "maxima" StorageImage { format: "R32f", uint: false, layered: false },
     2 reads "azimuths" TexelBuffer,
@@ -631,7 +630,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/shadow_shade.comp`.
-    SHADOW_SHADE: "shadow_shade", push ShadowShadePush, words 248516 11165,
+    SHADOW_SHADE: "shadow_shade", push ShadowShadePush, words 249662 11165,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 reads "shadows" StorageImage { format: "Rgba32ui", uint: true, layered: true },
@@ -646,7 +645,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/shadow_sweep.comp`.
-    SHADOW_SWEEP: "shadow_sweep", push ShadowSweepPush, words 259681 6872,
+    SHADOW_SWEEP: "shadow_sweep", push ShadowSweepPush, words 260827 6872,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "shadows" StorageImage { format: "Unknown", uint: true, layered: true },
@@ -658,7 +657,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/sky_draw.frag`.
-    SKY_DRAW_FRAG: "sky_draw_frag", push SkyDrawPush, words 266553 1269,
+    SKY_DRAW_FRAG: "sky_draw_frag", push SkyDrawPush, words 267699 1269,
     0 reads "environment" SampledImage { uint: false, layered: false },
     SkyDrawFrag {
         0 has_environment: bool = false,
@@ -667,13 +666,13 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/sky_draw.vert`.
-    SKY_DRAW_VERT: "sky_draw_vert", push (), words 267822 289,
+    SKY_DRAW_VERT: "sky_draw_vert", push (), words 268968 289,
     SkyDrawVert;
 }
 
 shader! {
     /// `shaders_glsl/direct/sky_shade.comp`.
-    SKY_SHADE: "sky_shade", push ShadePush, words 268111 28018,
+    SKY_SHADE: "sky_shade", push ShadePush, words 269257 28018,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rg32ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -701,7 +700,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/specular_exit.comp`.
-    SPECULAR_EXIT: "specular_exit", push SpecularExitPush, words 296129 6438,
+    SPECULAR_EXIT: "specular_exit", push SpecularExitPush, words 297275 6438,
     0 reads "arriving" SampledImage { uint: false, layered: true },
     1 reads "ground" SampledImage { uint: false, layered: false },
     2 reads "exit_radiance" SampledImage { uint: false, layered: false },
@@ -724,7 +723,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/specular_gather.comp`.
-    SPECULAR_GATHER: "specular_gather", push GatherPush, words 302567 20112,
+    SPECULAR_GATHER: "specular_gather", push GatherPush, words 303713 20107,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "height_levels" SampledImage { uint: false, layered: false },
     2 reads "level_table" SampledImage { uint: true, layered: false },
@@ -752,7 +751,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/specular_light.comp`.
-    SPECULAR_LIGHT: "specular_light", push SpecularLightPush, words 322679 7631,
+    SPECULAR_LIGHT: "specular_light", push SpecularLightPush, words 323820 7631,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "blocked_sum" SampledImage { uint: false, layered: false },
     2 reads "unoccluded_map" SampledImage { uint: false, layered: false },
@@ -766,7 +765,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/specular_tables.comp`.
-    SPECULAR_TABLES: "specular_tables", push SpecularTablesPush, words 330310 4627,
+    SPECULAR_TABLES: "specular_tables", push SpecularTablesPush, words 331451 4627,
     0 reads "azimuths" TexelBuffer,
     1 reads "wedge_rows" StorageBuffer,
     2 writes "specular_tables" StorageImage { format: "Rgba32f", uint: false, layered: true },
@@ -777,7 +776,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/specular_visibility.comp`.
-    SPECULAR_VISIBILITY: "specular_visibility", push SpecularVisibilityPush, words 334937 1238,
+    SPECULAR_VISIBILITY: "specular_visibility", push SpecularVisibilityPush, words 336078 1238,
     0 reads "visibility" SampledImage { uint: false, layered: true },
     1 reads "light_matrix" SampledImage { uint: false, layered: false },
     2 writes "arriving" StorageImage { format: "Rgba32f", uint: false, layered: true },
@@ -789,9 +788,9 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/sphere_sh_shade.comp`.
-    SPHERE_SH_SHADE: "sphere_sh_shade", push SphereShShadePush, words 336175 27634,
-    0 reads "cells" SampledImage { uint: false, layered: false },
-    1 reads "maxima" SampledImage { uint: false, layered: false },
+    SPHERE_SH_SHADE: "sphere_sh_shade", push SphereShShadePush, words 337316 27616,
+    0 reads "cells" StorageImage { format: "Rgba32f", uint: false, layered: false },
+    1 reads "maxima" StorageImage { format: "R32f", uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
     3 writes "sphere_sum" StorageImage { format: "Rgba32f", uint: false, layered: false },
     4 reads "constants" TexelBuffer,
@@ -815,9 +814,9 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/sphere_shade.comp`.
-    SPHERE_SHADE: "sphere_shade", push SphereShadePush, words 363809 14335,
-    0 reads "cells" SampledImage { uint: false, layered: false },
-    1 reads "maxima" SampledImage { uint: false, layered: false },
+    SPHERE_SHADE: "sphere_shade", push SphereShadePush, words 364932 14338,
+    0 reads "cells" StorageImage { format: "Rgba32f", uint: false, layered: false },
+    1 reads "maxima" StorageImage { format: "R32f", uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
     3 writes "sphere_sum" StorageImage { format: "Rgba32f", uint: false, layered: false },
     SphereShade {
@@ -830,7 +829,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/sun_shade.comp`.
-    SUN_SHADE: "sun_shade", push ShadePush, words 378144 23186,
+    SUN_SHADE: "sun_shade", push ShadePush, words 379270 23186,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rg32ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -851,7 +850,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/sun_specular.comp`.
-    SUN_SPECULAR: "sun_specular", push SunSpecularPush, words 401330 10753,
+    SUN_SPECULAR: "sun_specular", push SunSpecularPush, words 402456 10753,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "sun_sum" SampledImage { uint: false, layered: false },
     2 writes "specular_sum" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -868,8 +867,8 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/surface_sweep.comp`.
-    SURFACE_SWEEP: "surface_sweep", push MarchPush, words 412083 6812,
-    0 reads "heights" SampledImage { uint: false, layered: false },
+    SURFACE_SWEEP: "surface_sweep", push MarchPush, words 413209 6924,
+    0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "slopes" StorageImage { format: "Unknown", uint: true, layered: true },
     SurfaceSweep {
@@ -882,7 +881,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/sweep_fuse.comp`.
-    SWEEP_FUSE: "sweep_fuse", push SweepFusePush, words 418895 18964,
+    SWEEP_FUSE: "sweep_fuse", push SweepFusePush, words 420133 18964,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rg32ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -902,7 +901,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/terrain_draw.frag`.
-    TERRAIN_DRAW_FRAG: "terrain_draw_frag", push TerrainDrawPush, words 437859 1129,
+    TERRAIN_DRAW_FRAG: "terrain_draw_frag", push TerrainDrawPush, words 439097 1129,
     1 reads "radiance" SampledImage { uint: false, layered: false },
     2 reads "voids" SampledImage { uint: false, layered: false },
     TerrainDrawFrag {
@@ -913,14 +912,14 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/terrain_draw.vert`.
-    TERRAIN_DRAW_VERT: "terrain_draw_vert", push TerrainDrawPush, words 438988 994,
+    TERRAIN_DRAW_VERT: "terrain_draw_vert", push TerrainDrawPush, words 440226 994,
     0 reads "heights" SampledImage { uint: false, layered: false },
     TerrainDrawVert;
 }
 
 shader! {
     /// `shaders_glsl/bounce/vector_reduce.comp`.
-    VECTOR_REDUCE: "vector_reduce", push ReducePush, words 439982 2964,
+    VECTOR_REDUCE: "vector_reduce", push ReducePush, words 441220 2964,
     0 reads "exit_vectors" SampledImage { uint: false, layered: true },
     1 reads "vector_source" SampledImage { uint: false, layered: true },
     2 writes "vector_levels" StorageImage { format: "Unknown", uint: false, layered: true },
@@ -933,9 +932,9 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bake/visible_points.comp`.
-    VISIBLE_POINTS: "visible_points", push VisiblePointsPush, words 442946 9687,
-    0 reads "cells" SampledImage { uint: false, layered: false },
-    1 reads "maxima" SampledImage { uint: false, layered: false },
+    VISIBLE_POINTS: "visible_points", push VisiblePointsPush, words 444184 9687,
+    0 reads "cells" StorageImage { format: "Rgba32f", uint: false, layered: false },
+    1 reads "maxima" StorageImage { format: "R32f", uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
     3 reads "directions" TexelBuffer,
     4 writes "visible_points" StorageImage { format: "R32ui", uint: true, layered: true },
@@ -1253,4 +1252,4 @@ layouts! {
 }
 
 /// Words of all shaders together.
-const WORD_COUNT: usize = 452633;
+const WORD_COUNT: usize = 453871;

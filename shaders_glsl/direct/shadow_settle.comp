@@ -7,7 +7,6 @@
 // invocation is one azimuth of one grid point, so that neighbours walk alike.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
-#extension GL_KHR_shader_subgroup_vote : require
 
 layout(local_size_x = 64) in;
 
@@ -111,8 +110,7 @@ float horizon_slope(Ray ray, float step_m, float t_end, float reached, float hig
     Walk walk = walk_from(ray);
     going = going && !walk.leaves;
     for (int turn = 0; turn < MOST_STEPS; turn++) {
-        // All lanes leave together, as in horizon_sweep.
-        if (!subgroupAny(going)) {
+        if (!going) {
             break;
         }
         Block block = block_of(walk, ray);

@@ -12,7 +12,6 @@
 // the horizons at both ends continue around the rest. Terrain that does not hide the sphere then does not darken it,
 // however few bands blur it.
 #version 460
-#extension GL_KHR_shader_subgroup_vote : require
 
 #include "shared/angle.glsl"
 
@@ -39,8 +38,8 @@ const uint BY_TABLE = 2u;
 // enough for the grid point's own plane, which is a smooth curve.
 const int BEYOND = 32;
 
-layout(binding = 0) uniform texture2D cells;
-layout(binding = 1) uniform texture2D maxima;
+layout(binding = 0, rgba32f) uniform readonly image2D cells;
+layout(binding = 1, r32f) uniform readonly image2D maxima;
 layout(binding = 2) uniform texture2D ground;
 layout(binding = 3, rgba32f) uniform image2D sphere_sum;
 layout(binding = 4) uniform textureBuffer constants;

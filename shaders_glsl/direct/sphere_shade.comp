@@ -21,8 +21,8 @@ layout(constant_id = 2) const bool THIN_COLS = false;
 // More steps than a ray of this field can take; llvmpipe ends all loops together after 65,535 iterations.
 layout(constant_id = 3) const int MOST_STEPS = 60000;
 
-layout(binding = 0) uniform texture2D cells;
-layout(binding = 1) uniform texture2D maxima;
+layout(binding = 0, rgba32f) uniform readonly image2D cells;
+layout(binding = 1, r32f) uniform readonly image2D maxima;
 layout(binding = 2) uniform texture2D ground;
 layout(binding = 3, rgba32f) uniform image2D sphere_sum;
 
@@ -131,7 +131,7 @@ void add_piece(vec2 begin, vec2 end) {
 // March over the surface from the grid point to the disc's far end.
 void march(Ray ray, bool going) {
     ivec2 cells_of = ivec2(land.cells_x, land.cells_y);
-    float highest = texelFetch(maxima, ivec2(0, level_top(land.top_level, land.padded_rows)), 0).x - ray.own;
+    float highest = imageLoad(maxima, ivec2(0, level_top(land.top_level, land.padded_rows))).x - ray.own;
     float step_m = 1.0 / ray.scale;
     float near_m = tangent2 > 0.0 ? disc.x - disc_radius : -1.0;
     float t_end = (disc.x + disc_radius) * ray.scale;
@@ -141,15 +141,14 @@ void march(Ray ray, bool going) {
     Walk walk = walk_from(ray);
     going = going && !walk.leaves && t_end > 0.0;
     for (int turn = 0; turn < MOST_STEPS; turn++) {
-        // All lanes leave together, as in horizon_sweep.
-        if (!subgroupAny(going)) {
+        if (!going) {
             break;
         }
         Block block = block_of(walk, ray);
         ivec2 fetched = clamp(walk.at, ivec2(0), cells_of - 1);
-        vec4 corners = texelFetch(cells, fetched, 0);
+        vec4 corners = imageLoad(cells, fetched);
         int shown = max(walk.level, 1);
-        float top = texelFetch(maxima, (fetched >> (LEVEL_BITS * shown)) + ivec2(0, level_top(shown, land.padded_rows)), 0).x - ray.own;
+        float top = imageLoad(maxima, (fetched >> (LEVEL_BITS * shown)) + ivec2(0, level_top(shown, land.padded_rows))).x - ray.own;
         float rise = reached * step_m;
         bool is_cell = walk.level == 0;
         bool clear = is_cell || min(walk.t * rise, block.ahead * rise) >= top;
@@ -169,7 +168,7 @@ void march(Ray ray, bool going) {
         float exit_slope = exit.y / max(exit.x, 1e-30);
         float steepest = is_split ? max(middle_slope, exit_slope) : exit_slope;
         bool opens = has_piece && exit.x > near_m && steepest > reached && reached < high_slope;
-        if (subgroupAny(opens)) {
+        if (opens) {
             float kept = visible_light;
             float reached_before = reached;
             vec2 entry = vec2(walk.t * step_m, cell_rise(corners, ray.own, clamp(from + walk.t * ray.advance, 0.0, 1.0)));

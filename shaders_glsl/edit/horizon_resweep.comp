@@ -146,7 +146,7 @@ void main() {
             h[k] = line_height(y0 + k * SPACING + step * shear, step);
             pops[k] = is_popped(h[k], x, newer[k], deeper[k]);
         }
-        // All lanes leave together, as in horizon_sweep.
+        // All lanes leave together.
         while (subgroupAny(any(pops))) {
             for (int k = 0; k < 4; k++) {
                 vec2 next = under(deeper[k], y0 + k * SPACING, line, k);

@@ -7,7 +7,6 @@
 // One invocation is one grid point, or node, in all azimuths of a batch.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
-#extension GL_KHR_shader_subgroup_vote : require
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 0) const bool PERIODIC = false;
@@ -143,8 +142,7 @@ float horizon(int lane, int step, bool exists) {
     next = 0;
     back = 1.0;
     blocked = Blocked(vec4(0.0), 0.0);
-    // All lanes leave both loops together, as in horizon_sweep.
-    while (next < fine_samples && subgroupAny(on)) {
+    while (next < fine_samples && on) {
         int whole = int(back + 0.5);
         int at = min(whole, reach);
         int y = lane * CELL - at * azimuth.shear;
@@ -152,7 +150,7 @@ float horizon(int lane, int step, bool exists) {
         take(field_height(y >> CELL_SHIFT, f, step - at) - own_heights[0], at, whole);
         on = on && whole < reach;
     }
-    while (LEVELS > 0 && subgroupAny(on)) {
+    while (LEVELS > 0 && on) {
         int whole = int(back + 0.5);
         int at = min(whole, reach);
         int y = lane * CELL - at * azimuth.shear;

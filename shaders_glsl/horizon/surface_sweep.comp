@@ -1,6 +1,6 @@
 // Computes: exact horizons of the triangulated surface in azimuths along grid vectors (a, b). Every grid point lies
 // on a line, and the hull includes every crossing of a line with grid lines and diagonals.
-// Reads: heights, azimuths.
+// Reads: lane_heights, azimuths.
 // Writes: slopes (f32 bits) at [layer][step][lane] and, if requested, the march steps to the horizon (f32 bits) in
 // the next layer.
 // One invocation is one line, from the horizon's side to the other end.
@@ -8,19 +8,30 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_KHR_shader_subgroup_vote : require
 
-#include "horizon/surface.glsl"
-
 layout(local_size_x_id = 0) in;
 // Every crossing of a line: the largest possible hull depth.
 layout(constant_id = 1) const int HULL_DEPTH = 1;
 layout(constant_id = 2) const bool PERIODIC = false;
 layout(constant_id = 3) const bool WRITES_DISTANCES = false;
 
-layout(binding = 0) uniform texture2D heights;
+
+layout(binding = 0, rgba32f) uniform readonly image2D lane_heights;
 layout(binding = 1) uniform textureBuffer azimuths;
 layout(binding = 2) uniform writeonly uimage2DArray slopes;
 
+#include "shared/conventions.glsl"
+
+const bool MARCHES_ROWS = false;
+const int LANE_STRIDE = 1;
+const uint BORDER = PERIODIC ? BORDER_PERIODIC : BORDER_PLANE;
+
+#include "horizon/crossings.glsl"
 #include "horizon/march.glsl"
+
+// Height of a grid point of the marched frame.
+float marched_height(int lane, int step) {
+    return height_at(lane_position(azimuth, neighbour(lane, lanes), lanes), march_position(azimuth, neighbour(step, steps), steps));
+}
 
 // Rise over `own` of the surface `u` past step `step`, for a line at lane position y (in 1/march
 // of a cell) at that step.
@@ -32,8 +43,8 @@ float rise_over(float own, int y, int step, float u) {
     f -= over ? 1.0 : 0.0;
     cell += over ? 1 : 0;
     bool split_along = splits_along();
-    return surface_rise(height_at(cell, step), height_at(cell, step + 1), height_at(cell + 1, step),
-                        height_at(cell + 1, step + 1), own, u, f, split_along);
+    return surface_rise(marched_height(cell, step), marched_height(cell, step + 1), marched_height(cell + 1, step),
+                        marched_height(cell + 1, step + 1), own, u, f, split_along);
 }
 
 // Hull vertices: height, and position as whole step and fraction, so that differences of near positions stay exact.
@@ -44,7 +55,7 @@ int depth;
 
 // Pops the vertices hidden from a point at height h, `rest` past `step`.
 void pop_under(float h, float step, float rest, bool exists) {
-    // All lanes leave together, as in horizon_sweep.
+    // All lanes leave together: without the vote SwiftShader finds wrong horizons.
     bool pops = exists;
     do {
         int newest = max(depth - 1, 0);
@@ -107,8 +118,8 @@ void main() {
         cross_at(places.z, y0, step - 1, on);
         int cell = (y + march * 65536) / march - 65536;
         float f = float(y - cell * march) / float(march);
-        float h = height_at(cell, step);
-        h += f > 0.0 ? f * (height_at(cell + 1, step) - h) : 0.0;
+        float h = marched_height(cell, step);
+        h += f > 0.0 ? f * (marched_height(cell + 1, step) - h) : 0.0;
         // As the end of its segment: positions within one step differ by their fractions.
         pop_under(h, float(step - 1), 1.0, on);
         if (on && y == cell * march && step >= warm_up) {

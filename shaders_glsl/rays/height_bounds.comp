@@ -17,7 +17,7 @@ const uint FROM_CELLS = 1u;
 const uint FROM_BLOCKS = 2u;
 layout(constant_id = 0) const uint SOURCE = 0u;
 
-layout(binding = 0) uniform texture2D cells;
+layout(binding = 0, rgba32f) uniform readonly image2D cells;
 layout(binding = 1, r32f) uniform image2D maxima;
 layout(binding = 2) uniform texture2D heights;
 
@@ -55,7 +55,7 @@ void main() {
         ivec2 part = (block << LEVEL_BITS) + ivec2(i & ((1 << LEVEL_BITS) - 1), i >> LEVEL_BITS);
         part = min(part, parts - 1);
         if (SOURCE == FROM_CELLS) {
-            vec4 corners = texelFetch(cells, part, 0);
+            vec4 corners = imageLoad(cells, part);
             highest = max(highest, max(max(corners.x, corners.y), max(corners.z, corners.w)));
         } else {
             highest = max(highest, imageLoad(maxima, part + ivec2(0, level_top(level - 1, padded_rows))).x);

@@ -38,9 +38,9 @@ Met trace(Ray ray, float t_end, bool going) {
         float ahead = block.ahead;
         // Clamped: finished lanes keep fetching.
         ivec2 fetched = clamp(walk.at, ivec2(0), cells_of - 1);
-        vec4 corners = texelFetch(cells, fetched, 0);
+        vec4 corners = imageLoad(cells, fetched);
         int shown = max(walk.level, 1);
-        float top = texelFetch(maxima, (fetched >> (LEVEL_BITS * shown)) + ivec2(0, level_top(shown, land.padded_rows)), 0).x - ray.own;
+        float top = imageLoad(maxima, (fetched >> (LEVEL_BITS * shown)) + ivec2(0, level_top(shown, land.padded_rows))).x - ray.own;
         // The cell: its diagonal and its far edge.
         vec2 from = ray.offset + vec2(ray.base - walk.cell);
         vec2 exit = clamp(from + ahead * ray.advance, 0.0, 1.0);
@@ -58,8 +58,8 @@ Met trace(Ray ray, float t_end, bool going) {
         going = going && !hits;
         walk_on(walk, ray, block, going, clear, land.top_level);
         going = going && !walk.leaves && walk.t < t_end;
-        // All lanes leave together, as in horizon_sweep; tested last, as llvmpipe completes an iteration.
-        if (!subgroupAny(going)) {
+        // Tested last, as llvmpipe completes an iteration.
+        if (!going) {
             break;
         }
     }
@@ -68,7 +68,7 @@ Met trace(Ray ray, float t_end, bool going) {
     met.t = t;
     met.cell = clamp(walk.at, ivec2(0), cells_of - 1);
     // Position in its cell: the surface is linear before and behind the diagonal.
-    vec4 corners = texelFetch(cells, met.cell, 0);
+    vec4 corners = imageLoad(cells, met.cell);
     vec2 from = ray.offset + vec2(ray.base - walk.cell);
     float apart = ray.advance.x - ray.advance.y;
     float t_split = abs(apart) < 1e-30 ? -1.0 : (from.y - from.x) / apart;

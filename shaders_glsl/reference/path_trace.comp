@@ -12,7 +12,6 @@
 //
 // Features that a scene lacks are not compiled: llvmpipe runs every branch for all lanes. Only loops exit early.
 #version 460
-#extension GL_KHR_shader_subgroup_vote : require
 
 #include "shared/conventions.glsl"
 #include "reference/random.glsl"
@@ -40,8 +39,8 @@ layout(constant_id = 12) const bool IN_PARTS = false;
 layout(constant_id = 13) const bool SPECULAR_IS_MAP = false;
 layout(constant_id = 14) const bool AT_PLACES = false;
 
-layout(binding = 0) uniform texture2D cells;
-layout(binding = 1) uniform texture2D maxima;
+layout(binding = 0, rgba32f) uniform readonly image2D cells;
+layout(binding = 1, r32f) uniform readonly image2D maxima;
 layout(binding = 2) uniform texture2D ground;
 // One per row: suns, key lights, sphere lights. Sun: direction and 1 - cos of its radius; irradiance facing it,
 // spread over its cone. Key light: start and width in turns; sin² of half the zenith angle of its highest and lowest
@@ -144,7 +143,7 @@ vec3 towards_key(vec4 key, vec2 u) {
 
 // The vertex where a ray along e has hit.
 Place place_of(Met met, vec3 e) {
-    vec4 corners = texelFetch(cells, met.cell, 0);
+    vec4 corners = imageLoad(cells, met.cell);
     float east = met.lower ? corners.w - corners.z : corners.y - corners.x;
     float south = met.lower ? corners.z - corners.x : corners.w - corners.y;
     Place place;
@@ -321,7 +320,7 @@ vec3 path_light(Place place, uint index, uvec3 key, bool alive, inout uvec2 rays
             place = place_of(met, e);
             carried *= of.scattered;
         }
-        if (!HAS_BOUNCES || !subgroupAny(alive)) {
+        if (!HAS_BOUNCES || !alive) {
             break;
         }
     }

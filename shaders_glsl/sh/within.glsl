@@ -9,7 +9,7 @@ const float WITHIN_CELLS = 8192.0;
 // Of the triangulated surface. The grid point's own triangle occludes at any distance.
 float surface_within(Ray ray, float reach_m, bool going) {
     ivec2 cells_of = ivec2(land.cells_x, land.cells_y);
-    float highest = texelFetch(maxima, ivec2(0, level_top(land.top_level, land.padded_rows)), 0).x - ray.own;
+    float highest = imageLoad(maxima, ivec2(0, level_top(land.top_level, land.padded_rows))).x - ray.own;
     float step_m = 1.0 / ray.scale;
     float t_end = reach_m * ray.scale;
     if (BORDER == BORDER_PERIODIC) {
@@ -19,15 +19,14 @@ float surface_within(Ray ray, float reach_m, bool going) {
     Walk walk = walk_from(ray);
     going = going && !walk.leaves;
     for (int turn_ = 0; turn_ < MOST_STEPS; turn_++) {
-        // All lanes leave together, as in horizon_sweep.
-        if (!subgroupAny(going)) {
+        if (!going) {
             break;
         }
         Block block = block_of(walk, ray);
         ivec2 fetched = clamp(walk.at, ivec2(0), cells_of - 1);
-        vec4 corners = texelFetch(cells, fetched, 0);
+        vec4 corners = imageLoad(cells, fetched);
         int shown = max(walk.level, 1);
-        float top = texelFetch(maxima, (fetched >> (LEVEL_BITS * shown)) + ivec2(0, level_top(shown, land.padded_rows)), 0).x - ray.own;
+        float top = imageLoad(maxima, (fetched >> (LEVEL_BITS * shown)) + ivec2(0, level_top(shown, land.padded_rows))).x - ray.own;
         float rise = reached * step_m;
         bool is_cell = walk.level == 0;
         bool clear = is_cell || min(walk.t * rise, block.ahead * rise) >= top;
@@ -148,7 +147,7 @@ float pyramid_within(ivec2 here, Ray ray, float reach_m, bool going) {
     float back = 1.0;
     int before = 0;
     for (int next = 0; next < LEVELS + fine_samples; next++) {
-        if (!subgroupAny(on)) {
+        if (!on) {
             break;
         }
         int whole = int(back + 0.5);

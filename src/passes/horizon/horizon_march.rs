@@ -8,14 +8,13 @@ pub(crate) fn plan(
     batch: &Batch,
     part: &str,
     (distances, nodes): (bool, Nodes),
-    [heights, azimuths, slopes]: [ResourceId; 3],
+    [lane_heights, azimuths, slopes]: [ResourceId; 3],
 ) {
     let axis = batch.axis;
     let [lanes, steps] = nodes.size([axis.lanes, axis.steps]);
     let grid_points = u64::from(lanes) * u64::from(steps) * u64::from(batch.count);
     let pass = builder.pass(
         shaders::HorizonMarch {
-            all_crossings: true,
             periodic: axis.warm_up > 0,
             writes_distances: distances,
             node_stride: nodes.stride as i32,
@@ -24,7 +23,7 @@ pub(crate) fn plan(
         format!("brute-force horizons of {} azimuths along {}", batch.count, axis.name()),
         [lanes.div_ceil(8), steps.div_ceil(8), batch.count],
         &shaders::MarchPush::of(batch),
-        &[("heights", heights), ("azimuths", azimuths), ("slopes", slopes)],
+        &[("lane_heights", lane_heights), ("azimuths", azimuths), ("slopes", slopes)],
         grid_points * 8,
         grid_points,
     );

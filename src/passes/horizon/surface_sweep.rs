@@ -8,7 +8,7 @@ pub(crate) fn plan(
     part: &str,
     hull_depth: u32,
     distances: bool,
-    [heights, azimuths, slopes]: [ResourceId; 3],
+    [lane_heights, azimuths, slopes]: [ResourceId; 3],
 ) {
     let axis = batch.axis;
     let group_size = 8;
@@ -23,7 +23,7 @@ pub(crate) fn plan(
         format!("exact horizons of {} azimuths along {}", batch.count, axis.name()),
         [batch.most_lines.div_ceil(group_size), 1, batch.count],
         &shaders::MarchPush::of(batch),
-        &[("heights", heights), ("azimuths", azimuths), ("slopes", slopes)],
+        &[("lane_heights", lane_heights), ("azimuths", azimuths), ("slopes", slopes)],
         batch.line_texels * 4 + axis.texels() * u64::from(batch.count) * 4,
         batch.line_texels,
     );

@@ -123,11 +123,11 @@ impl Sweeping {
                 pyramid_march::plan(builder, (pyramid, self.nodes), batch, part, ids, levels);
             }
             Sweep::Surface { hull_depth, distances } => {
-                let ids = [self.heights, self.azimuths, self.written(batch)];
+                let ids = [self.lane_heights(batch), self.azimuths, self.written(batch)];
                 passes::surface_sweep::plan(builder, batch, part, *hull_depth, *distances, ids);
             }
             Sweep::March { distances } => {
-                let ids = [self.heights, self.azimuths, self.written(batch)];
+                let ids = [self.lane_heights(batch), self.azimuths, self.written(batch)];
                 let wanted = (*distances, self.nodes);
                 passes::horizon_march::plan(builder, batch, part, wanted, ids);
             }

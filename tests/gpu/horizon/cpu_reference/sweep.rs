@@ -274,7 +274,7 @@ pub(crate) fn horizon_march(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         (constant(pass, "writes_distances") == 1, Nodes { stride: constant(pass, "node_stride") });
     one_a_texel(run, pass, first, stored, |run, azimuth, reference| {
         let warm_up = run.warm_up(azimuth.marches_rows());
-        let options = MarchOptions { all_crossings: constant(pass, "all_crossings") == 1, warm_up };
+        let options = MarchOptions { all_crossings: true, warm_up };
         march_reference::horizon_march(run.heights(), azimuth, options, reference);
         device_march_slope(run.relief()[1], azimuth.step_m.into())
     })
