@@ -164,7 +164,8 @@ impl Wanted {
         for (off, bound) in off.iter().zip(&bounds) {
             within(what, "the CPU reference", off.abs(), bound / scale, quality)?;
         }
-        Ok((rms(off.into_iter()), rms(bounds.iter().map(|bound| bound / scale))))
+        let bound = rms(bounds.iter().map(|bound| bound / scale));
+        within(what, "the CPU reference", rms(off.into_iter()), bound, quality)
     }
 }
 

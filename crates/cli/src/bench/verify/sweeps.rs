@@ -159,6 +159,9 @@ fn check_aimed(
             most = most.max(bound);
         }
     }
+    if found.is_empty() {
+        return Ok(None);
+    }
     // One tolerance for all of them.
     all.iter_mut().for_each(|[_, bound]| *bound = most);
     let errors = Wanted(all).judge("a sun at one place", &found, device.quality)?;
@@ -176,7 +179,11 @@ struct Shaded {
 /// Azimuths that contain a light, and how it is shaded there.
 fn azimuths_of(plan: &Plan, light: &str) -> Option<(Vec<Azimuth>, Shaded)> {
     let names = ["sun_shade", "shadow_shade"];
-    let own = |pass: &&Pass| names.contains(&pass.name()) && pass.part == light;
+    // "sun1", or "sun1 4+4" where one of several batches.
+    let is_of = |part: &str| {
+        part.strip_prefix(light).is_some_and(|rest| rest.is_empty() || rest.starts_with(' '))
+    };
+    let own = |pass: &&Pass| names.contains(&pass.name()) && is_of(&pass.part);
     let passes: Vec<&Pass> = plan.passes.iter().filter(own).collect();
     let first = passes.first()?;
     let is_exact = first.name() == "shadow_shade";
@@ -270,5 +277,23 @@ mod tests {
             ("from above", of(1.0, 0.41).light()),
         ];
         of(1.0, 0.4).refuses(&quality, [0.01, 0.9], &wrong);
+    }
+
+    /// A sun between two axes has a batch of azimuths along each: all are checked. A light of another number is none of them.
+    #[test]
+    fn all_batches_of_a_sun_are_checked() {
+        let [azimuth_rad, elevation_rad] = [45.0_f64, 20.0].map(f64::to_radians);
+        let diameter_rad = 2_f64.to_radians();
+        let sun = Sun { azimuth_rad, elevation_rad, diameter_rad, irradiance: [1.0; 3] };
+        let scene = scene(48, Lights { suns: vec![sun; 10], ..Lights::default() });
+        let quality = Quality { sun_azimuths: 8, ..Quality::default() };
+        let wanted = Picture { light_layers: true, ..Picture::default() };
+        let plan = plan::picture(&scene, &quality, &Limits::lavapipe(), wanted).unwrap();
+        let split = plan.passes.iter().filter(|p| p.part.starts_with("sun1 ")).count();
+        assert!(split > 1, "{split}");
+        for light in ["sun1", "sun10"] {
+            assert_eq!(azimuths_of(&plan, light).expect("a sun").0.len(), 8, "{light}");
+        }
+        assert!(azimuths_of(&plan, "sun11").is_none());
     }
 }
