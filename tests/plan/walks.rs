@@ -58,19 +58,27 @@ fn sweeps_and_walks() {
 }
 
 /// Blocks of at most 8 azimuths are made at once, while they take 64 MiB at most: of 1024² heights, 16.5 MiB an azimuth,
-/// three; of 2 × 4096 heights eight along the columns, with an image of their own. The first
-/// walk clears and the last divides.
+/// three; of 2 × 4096 heights, 2 MiB an azimuth along the columns, eight, with an image of their own. On a processor while they take
+/// 4 MiB. The first walk clears and the last divides.
 #[test]
 fn blocks_are_made_of_azimuths_that_fit() {
-    let of = |rows, cols| drawn(&under_sky(flat(rows, cols)), walked(1, 64), false);
+    let of = |rows, cols, is_cpu| {
+        let limits = Limits { is_cpu, ..Limits::lavapipe() };
+        let scene = under_sky(flat(rows, cols));
+        plan::picture(&scene, &walked(1, 64), &limits, Picture::default()).expect("a plan")
+    };
     let counts = |plan: &Plan, name: &str, by_row: bool| -> Vec<usize> {
         let passes = plan.passes.iter().filter(|p| p.name() == name).map(|p| p.azimuths.clone());
         let along = passes.filter(|a| plan.azimuths[a.start as usize].marches_rows() == by_row);
         along.map(|a| a.len()).collect()
     };
-    let square = of(1024, 1024);
+    for (rows, cols, at_once) in [(1024, 1024, 1), (2, 4096, 2)] {
+        let plan = of(rows, cols, true);
+        assert!(counts(&plan, "line_blocks", false).iter().all(|n| *n == at_once));
+    }
+    let square = of(1024, 1024, false);
     assert!(counts(&square, "line_blocks", true).iter().all(|n| (1..=3).contains(n)));
-    let plan = of(2, 4096);
+    let plan = of(2, 4096, false);
     for by_row in [false, true] {
         assert_eq!(counts(&plan, "line_blocks", by_row), counts(&plan, "bounce_walk", by_row));
     }

@@ -12,6 +12,9 @@ const LONGEST: u32 = 256;
 /// Blocks of several azimuths are made at once while an image takes no more than this, and than an eighth of the budget
 /// that is left; of more azimuths a dispatch would hardly be faster.
 const AT_ONCE_BYTES: u64 = 64 << 20;
+/// The same on a processor, whose cache then holds them: at 512² a frame with a bounce takes 0.96 of the time with 64 MiB, at
+/// 1024² 1.02 (llvmpipe, 2 cores).
+const AT_ONCE_BYTES_CPU: u64 = 4 << 20;
 const MOST_AT_ONCE: u32 = 8;
 /// Of a block: its largest height, the place of that, and radiance.
 const FORMAT: Format = Format::Rgba32Uint;
@@ -68,7 +71,8 @@ impl LineBlocks {
             (count > 0).then_some((shape, count))
         });
         let left = limits.memory_budget.saturating_sub(builder.bytes());
-        let room = AT_ONCE_BYTES.min(left / 8);
+        let at_once = if limits.is_cpu { AT_ONCE_BYTES_CPU } else { AT_ONCE_BYTES };
+        let room = at_once.min(left / 8);
         let mut image = |shape: Shape, count: u32, suffix: &str| {
             let at_once = ((room / shape.bytes()) as u32)
                 .min(limits.image_layers / shape.layers)
