@@ -176,8 +176,8 @@ void main() {
             precise float newer_now = (h1[k] - h[k]) * (x - x2[k]);
             pops[k] = first && deeper_still >= newer_now;
         }
-        // All lanes leave together: in llvmpipe (Mesa 22.3) a lane that leaves a loop early keeps computing values
-        // that are used after it.
+        // Values change only where `pops` holds: in llvmpipe (Mesa 22.3) a lane that leaves a loop early keeps
+        // computing. No vote, which llvmpipe expands into a loop over lanes.
         do {
             for (int k = 0; k < 4; k++) {
                 vec2 under;

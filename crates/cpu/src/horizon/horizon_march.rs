@@ -7,7 +7,7 @@ use crate::shared::surface::met_within;
 use crate::shared::sweep::{Heights, March};
 use ridgelight::plan::azimuths::Azimuth;
 
-/// The settings of a march, as the shader's constants.
+/// The settings of a march. The shader always takes all crossings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MarchOptions {
     /// All crossings with grid lines and diagonals, or only those with grid lines across the march.

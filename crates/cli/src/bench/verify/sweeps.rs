@@ -1,13 +1,15 @@
 //! Compares a sky through swept horizons with the same sweeps and the same near search on the CPU.
 //! They may differ by f32 rounding only.
 
+use std::collections::BTreeSet;
+
 use glam::DVec3;
-use ridgelight::Result;
 use ridgelight::plan::azimuths::{Shape, even};
 use ridgelight::plan::{Axis, Azimuth, Pass, Plan};
 use ridgelight::scene::{
     Albedo, Border, Fuse, KeyLight, Lights, Lines, Method, Precision, Quality, Scene, Sun, Surface,
 };
+use ridgelight::{Error, Result};
 use ridgelight_cpu::horizon_march::{MarchOptions, marched};
 use ridgelight_cpu::horizon_sweep::{SweepOptions, horizon_sweep};
 use ridgelight_cpu::lattice::{Lattice, Lattices, number_layers};
@@ -148,9 +150,11 @@ fn check_aimed(
     let scene = &white(scene, Lights { suns, keys, ..Lights::default() });
     let (plan, layers) = device.layers(scene, true)?;
     let (mut found, mut all, mut most) = (Vec::new(), Vec::new(), DVec3::ZERO);
+    let mut checked = 0;
     for layer in &layers {
         let of = layer.name.strip_prefix("direct.").and_then(|light| azimuths_of(&plan, light));
         let Some((azimuths, shaded)) = of else { continue };
+        checked += 1;
         let wanted = aimed(scene, azimuths, places, device.quality, lines, shaded);
         for (got, wanted) in colours(layer, places).into_iter().zip(wanted) {
             let Some([light, bound]) = wanted else { continue };
@@ -159,6 +163,14 @@ fn check_aimed(
             most = most.max(bound);
         }
     }
+    let shaded = shaded_lights(&plan);
+    if checked != shaded.len() {
+        return Err(Error::Device {
+            doing: "verifying before timing".into(),
+            reason: format!("{checked} of {} suns and key lights were compared", shaded.len()),
+        });
+    }
+    // Point suns that may be visible or not everywhere.
     if found.is_empty() {
         return Ok(None);
     }
@@ -176,14 +188,22 @@ struct Shaded {
     is_exact: bool,
 }
 
+/// Passes that light a sun or a key light.
+const AIMED_PASSES: [&str; 2] = ["sun_shade", "shadow_shade"];
+
+/// Names of the suns and key lights that a plan lights.
+fn shaded_lights(plan: &Plan) -> BTreeSet<&str> {
+    let passes = plan.passes.iter().filter(|p| AIMED_PASSES.contains(&p.name()));
+    passes.filter_map(|p| p.part.split(' ').next()).collect()
+}
+
 /// Azimuths that contain a light, and how it is shaded there.
 fn azimuths_of(plan: &Plan, light: &str) -> Option<(Vec<Azimuth>, Shaded)> {
-    let names = ["sun_shade", "shadow_shade"];
     // "sun1", or "sun1 4+4" where one of several batches.
     let is_of = |part: &str| {
         part.strip_prefix(light).is_some_and(|rest| rest.is_empty() || rest.starts_with(' '))
     };
-    let own = |pass: &&Pass| names.contains(&pass.name()) && is_of(&pass.part);
+    let own = |pass: &&Pass| AIMED_PASSES.contains(&pass.name()) && is_of(&pass.part);
     let passes: Vec<&Pass> = plan.passes.iter().filter(own).collect();
     let first = passes.first()?;
     let is_exact = first.name() == "shadow_shade";
@@ -295,5 +315,7 @@ mod tests {
             assert_eq!(azimuths_of(&plan, light).expect("a sun").0.len(), 8, "{light}");
         }
         assert!(azimuths_of(&plan, "sun11").is_none());
+        let all: BTreeSet<String> = (1..=10).map(|i| format!("sun{i}")).collect();
+        assert!(shaded_lights(&plan).into_iter().eq(all.iter().map(String::as_str)));
     }
 }
