@@ -3,6 +3,7 @@
 mod forms;
 mod rows;
 mod sizes;
+mod verdicts;
 pub mod verify;
 
 use std::time::{Duration, Instant};
@@ -17,17 +18,26 @@ use ridgelight_io as files;
 use crate::args::BenchArgs;
 use crate::idle;
 use crate::setup::{self, Outcome};
+use ridgelight_trade::statistics::{median, median_interval};
 use rows::{Row, sums};
+use verdicts::Earlier;
 use verify::Verifier;
 
-/// Rows that would take longer do fewer runs, as reported, but at least [`FEWEST`].
+/// Rows that would take longer do fewer runs, as reported, but at least [`FEWEST`], which give the median an interval.
 const ROW_TIME: Duration = Duration::from_secs(10);
-const FEWEST: usize = 3;
+const FEWEST: usize = 6;
+/// Rows end after this many runs once the interval of their median is at most [`STABLE`] of it on both sides together.
+const ENOUGH: usize = 10;
+const STABLE: f64 = 0.02;
+/// A frame whose median is known no better says that the machine is too noisy for a published table.
+const NOISY: f64 = 0.1;
 /// Largest side of a fractal field, which needs 8 GiB of heights while it is made.
 const LARGEST_SIZE: usize = 32_768;
 
 pub fn run(args: &BenchArgs) -> Result<Outcome> {
-    for (flag, path) in [("--json", &args.global.json), ("--trace", &args.trace)] {
+    let outputs =
+        [("--json", &args.global.json), ("--trace", &args.trace), ("--bencher", &args.bencher)];
+    for (flag, path) in outputs {
         path.as_ref().map_or(Ok(()), |path| setup::check_output(flag, path, &["json"]))?;
     }
     if !(1..=100_000).contains(&args.runs) {
@@ -41,6 +51,7 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
             return Err(Error::setting(name, size.to_string(), expected));
         }
     }
+    let earlier = Earlier::read_all(&args.against)?;
     let quality = args.quality.quality()?;
     let field = match &args.input {
         Some(path) => setup::field(std::slice::from_ref(path), &args.surface.field, &args.global)?,
@@ -109,10 +120,32 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
         all.extend(table.into_iter().flatten());
     }
     bar.finish_and_clear();
-    if let Some(path) = &args.global.json {
-        files::write_json(path, &rows::file(&device, &driver, &all))?;
+    let noisy = all.iter().find(|row| row.pass == "total" && row.spread() > Some(NOISY));
+    if let Some(row) = noisy.filter(|_| !quiet) {
+        crate::say!(
+            "noisy: the median of {} is known to {:.0} % only, too little for a published table",
+            row.mode.replace('_', " "),
+            100.0 * row.spread().unwrap_or_default()
+        );
     }
-    Ok(Outcome::Done)
+    let changes = earlier.as_ref().map(|earlier| earlier.against(&all));
+    if let Some(changes) = changes.as_ref().filter(|_| !quiet) {
+        changes.print(&device, &driver);
+    }
+    if let Some(path) = &args.bencher {
+        files::write_json(path, &rows::bencher(&all))?;
+    }
+    if let Some(path) = &args.global.json {
+        let argv: Vec<_> =
+            std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned()).collect();
+        let mut report = rows::file(&device, &driver, &all, &argv);
+        if let Some(changes) = &changes {
+            report["against"] = changes.json();
+        }
+        files::write_json(path, &report)?;
+    }
+    let slower = changes.is_some_and(|changes| changes.any_slower());
+    Ok(if slower { Outcome::Beyond } else { Outcome::Done })
 }
 
 /// Refuses specular light where no reference computes it.
@@ -166,8 +199,15 @@ fn check_names(wanted: &[String], plan: &Plan, forms: bool) -> Result<()> {
 }
 
 /// Whether a row has used up its time.
-fn enough(begun: Instant, runs: usize) -> bool {
+fn late(begun: Instant, runs: usize) -> bool {
     runs >= FEWEST && begun.elapsed() > ROW_TIME
+}
+
+/// Whether further runs would hardly move the median.
+fn stable(times_ns: &[f64]) -> bool {
+    let known = median_interval(times_ns).zip(median(times_ns));
+    times_ns.len() >= ENOUGH
+        && known.is_some_and(|([low, high], median)| high - low <= STABLE * median)
 }
 
 /// Runs of these passes, after one to warm up.
@@ -179,9 +219,11 @@ fn repeated(
 ) -> Result<Vec<Vec<Timing>>> {
     gpu.draw_passes(frame, passes)?;
     let begun = Instant::now();
-    let mut runs = Vec::new();
-    while runs.len() < most && !enough(begun, runs.len()) {
-        runs.push(gpu.draw_passes(frame, passes)?);
+    let (mut runs, mut times_ns) = (Vec::new(), Vec::new());
+    while runs.len() < most && !late(begun, runs.len()) && !stable(&times_ns) {
+        let run = gpu.draw_passes(frame, passes)?;
+        times_ns.push(run.iter().map(|timing| timing.ns).sum());
+        runs.push(run);
     }
     Ok(runs)
 }

@@ -9,11 +9,11 @@ use ridgelight::gpu::{Frame, Headless};
 use ridgelight::plan::{self, Limits, Pass, Picture};
 use ridgelight::scene::{Fuse, Hull, Levels, Lines, Method, Precision, Quality, Scene};
 use ridgelight_cpu::scalar_sweep::ScalarSweep;
-use ridgelight_trade::statistics::Summary;
+use ridgelight_trade::statistics::{Summary, median_interval};
 
 use super::rows::{Row, figure, sums};
 use super::verify::Verifier;
-use super::{enough, named};
+use super::{late, named};
 
 /// Azimuths that the scalar sweep runs between two runs of a form.
 const SCALAR_AZIMUTHS: u32 = 8;
@@ -138,7 +138,7 @@ fn in_turn(
             scalar.sweep((f64::from(k) + 0.37) * TAU / f64::from(SCALAR_AZIMUTHS));
         }
         scalar_ns.push(start.elapsed().as_secs_f64() * 1e9);
-        if enough(begun, run + 1) {
+        if late(begun, run + 1) {
             break;
         }
     }
@@ -155,6 +155,7 @@ fn in_turn(
         settings: vec![("threads".into(), scalar.threads().to_string())],
         runs: scalar_ns.len(),
         times: Summary::of(&scalar_ns),
+        interval: median_interval(&scalar_ns),
         bytes: 0,
         work: scalar.points() * u64::from(SCALAR_AZIMUTHS),
     };

@@ -2,7 +2,7 @@
 
 use ridgelight::gpu::Timing;
 use ridgelight::plan::{Pass, Plan};
-use ridgelight_trade::statistics::Summary;
+use ridgelight_trade::statistics::{Summary, median_interval};
 use serde_json::{Value, json};
 
 use crate::setup;
@@ -18,6 +18,8 @@ pub struct Row {
     pub runs: usize,
     /// Nanoseconds; none where the device has no timestamps.
     pub times: Option<Summary>,
+    /// Nanoseconds between which the median lies, at 95 %; none for fewer than 6 runs.
+    pub interval: Option<[f64; 2]>,
     pub bytes: u64,
     /// Texels processed in one run.
     pub work: u64,
@@ -41,6 +43,7 @@ impl Row {
             settings: plan.settings.clone(),
             runs,
             times: Summary::of(times_ns),
+            interval: median_interval(times_ns),
             bytes: passes.iter().map(|p| p.bytes).sum(),
             work: passes.iter().map(|p| p.texels).sum(),
         }
@@ -62,11 +65,24 @@ impl Row {
         Some(self.ms_per_azimuth()? / mega)
     }
 
+    /// The first word of the label, and the rest.
+    pub fn pass_and_part(&self) -> (&str, &str) {
+        self.pass.split_once(' ').unwrap_or((&self.pass, ""))
+    }
+
+    /// Width of the interval of the median over the median.
+    pub fn spread(&self) -> Option<f64> {
+        let [low, high] = self.interval?;
+        Some((high - low) / self.times?.median)
+    }
+
     pub fn json(&self) -> Value {
+        let (pass, part) = self.pass_and_part();
         json!({
-            "pass": self.pass, "mode": self.mode, "cols": self.size[0], "rows": self.size[1],
+            "pass": pass, "part": part, "mode": self.mode, "cols": self.size[0], "rows": self.size[1],
             "azimuths": self.azimuths, "settings": setup::typed(&self.settings), "runs": self.runs,
             "min_ns": self.times.map(|t| t.min), "median_ns": self.times.map(|t| t.median),
+            "low_ns": self.interval.map(|i| i[0]), "high_ns": self.interval.map(|i| i[1]),
             "p10_ns": self.times.map(|t| t.p10), "p90_ns": self.times.map(|t| t.p90),
             "bytes": self.bytes, "gb_per_s": self.rate(self.bytes).map(|r| r * 1e-9),
             "texels_per_s": self.rate(self.work),
@@ -117,12 +133,30 @@ pub fn sums(runs: &[Vec<Timing>], wanted: impl Fn(usize) -> bool) -> Vec<f64> {
     runs.iter().map(sum).collect()
 }
 
-/// The whole report.
-pub fn file(device: &str, driver: &str, rows: &[Row]) -> Value {
+/// The whole report. `argv` are the words after the program's name.
+pub fn file(device: &str, driver: &str, rows: &[Row], argv: &[String]) -> Value {
     json!({
         "device": device, "driver": driver, "ridgelight": env!("CARGO_PKG_VERSION"),
+        "commit": env!("RIDGELIGHT_COMMIT"), "argv": argv,
+        "time": humantime::format_rfc3339_seconds(std::time::SystemTime::now()).to_string(),
         "rows": rows.iter().map(Row::json).collect::<Vec<_>>(),
     })
+}
+
+/// Rows as Bencher Metric Format: by benchmark, the measure `latency` in nanoseconds with the interval of its median.
+/// Rows without times are left out.
+pub fn bencher(rows: &[Row]) -> Value {
+    let metric = |row: &Row| {
+        let mut latency = json!({ "value": row.times?.median });
+        if let Some([low, high]) = row.interval {
+            latency["lower_value"] = low.into();
+            latency["upper_value"] = high.into();
+        }
+        let [cols, rows] = row.size;
+        let name = format!("{} {} {cols}x{rows} {} azimuths", row.pass, row.mode, row.azimuths);
+        Some((name, json!({ "latency": latency })))
+    };
+    Value::Object(rows.iter().filter_map(metric).collect())
 }
 
 /// A frame as Chrome trace events, which Perfetto also reads: microseconds, in the device's order.
@@ -146,27 +180,27 @@ pub fn trace(device: &str, driver: &str, plan: &Plan, frame: &[Timing]) -> Value
 }
 
 #[cfg(test)]
-mod tests {
+pub mod tests {
     use super::*;
     use ridgelight::plan::{self, Limits, Picture};
     use ridgelight::scene::{Lights, Quality};
 
-    fn plan() -> Plan {
+    pub fn plan() -> Plan {
         let lights = Lights { sky: Some([1.0; 3]), ..Lights::default() };
         let scene = crate::bench::verify::tests::scene(32, lights);
         plan::picture(&scene, &Quality::default(), &Limits::lavapipe(), Picture::default()).unwrap()
     }
 
-    /// Runs of 1..=5 ms: median 3, p10 1.4, p90 4.6; 6 MB in 3 ms are 2 GB/s.
+    /// Runs of 0..=6 ms: median 3, p10 0.6, p90 5.4; 6 MB in 3 ms are 2 GB/s. Of 7 values, all are the interval.
     #[test]
     fn runs_become_a_row() {
-        let times: Vec<f64> = (1..=5).map(|ms| f64::from(ms) * 1e6).collect();
+        let times: Vec<f64> = (0..=6).map(|ms| f64::from(ms) * 1e6).collect();
         let plan = plan();
-        let mut row = Row::of("total", "in_flow", &plan, &[], 64, (5, &times));
+        let mut row = Row::of("sky_shade sky 0+32", "in_flow", &plan, &[], 64, (7, &times));
         (row.bytes, row.work) = (6_000_000, 3_000_000);
         let json = row.json();
-        let keys = "pass mode cols rows azimuths settings runs min_ns median_ns p10_ns p90_ns bytes \
-                    gb_per_s texels_per_s";
+        let keys = "pass part mode cols rows azimuths settings runs min_ns median_ns low_ns high_ns p10_ns \
+                    p90_ns bytes gb_per_s texels_per_s";
         assert_eq!(json.as_object().unwrap().len(), keys.split(' ').count());
         assert!(keys.split(' ').all(|k| !json[k].is_null()), "{json}");
         let near = |key: &str, x: f64| {
@@ -174,15 +208,25 @@ mod tests {
             assert!((found / x - 1.0).abs() < 1e-12, "{key}: {found}, expected {x}");
         };
         near("median_ns", 3e6);
-        near("p10_ns", 1.4e6);
-        near("p90_ns", 4.6e6);
+        near("p10_ns", 0.6e6);
+        near("p90_ns", 5.4e6);
+        assert_eq!([&json["low_ns"], &json["high_ns"]], [0.0, 6e6]);
+        assert_eq!(row.spread(), Some(2.0));
         near("gb_per_s", 2.0);
         near("texels_per_s", 1e9);
         let per = row.ms_per_azimuth_and_mega().unwrap();
         assert!((per - 3.0 / 64.0 * 1024.0).abs() < 1e-9, "32² is a 1024th of 2^20: {per}");
-        let whole = file("d", "v", &[row]);
-        assert_eq!(whole["rows"][0]["pass"], "total");
-        assert_eq!([&whole["device"], &whole["driver"]], ["d", "v"]);
+        let bencher = bencher(std::slice::from_ref(&row));
+        let latency = &bencher["sky_shade sky 0+32 in_flow 32x32 64 azimuths"]["latency"];
+        let metric = json!({ "value": 3e6, "lower_value": 0.0, "upper_value": 6e6 });
+        assert_eq!(*latency, metric, "{bencher}");
+        let whole = file("d", "v", &[row], &["--size".to_owned()]);
+        let row = &whole["rows"][0];
+        assert_eq!([&row["pass"], &row["part"]], ["sky_shade", "sky 0+32"]);
+        assert_eq!([&whole["device"], &whole["driver"], &whole["argv"][0]], ["d", "v", "--size"]);
+        let time = whole["time"].as_str().unwrap();
+        let read = humantime::parse_rfc3339(time).unwrap().elapsed().unwrap();
+        assert!(read < std::time::Duration::from_secs(3600), "{time}");
     }
 
     #[test]

@@ -16,6 +16,7 @@ mod bake {
     mod specular;
     mod textures;
 }
+mod bench;
 mod camera;
 mod compare;
 mod files {

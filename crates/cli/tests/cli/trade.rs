@@ -434,12 +434,3 @@ fn gpu_trade_lists_refused_bakes() {
     assert_eq!(report["baked"], serde_json::json!([]));
     assert!(run.out.contains("<- recommended"), "{}", run.out);
 }
-
-/// An unknown pass is reported before the verification.
-#[test]
-fn gpu_an_unknown_pass_is_reported_first() {
-    let folder = Folder::new();
-    let run = folder.run(&["bench", "--size", "32", "--passes", "sky_shade,none"]);
-    assert_eq!((run.status, run.out.as_str()), (Some(2), ""), "{}", run.err);
-    assert!(run.err.contains("--passes: found none, expected"), "{}", run.err);
-}

@@ -124,16 +124,21 @@ fn forms() -> Result<String> {
     let mut out = String::from(
         "| form | azimuths | ms per azimuth | time over a scalar CPU sweep on all cores |\n|---|---|---|---|\n",
     );
+    let label = |row: &Value| -> Result<String> {
+        let (pass, part) = (figures.word(row, "pass")?, row["part"].as_str().unwrap_or_default());
+        Ok(format!("{pass} {part}").trim_end().to_owned())
+    };
     let an_azimuth = |row: &Value| -> Result<f64> {
         Ok(figures.number(row, "median_ns")? * 1e-6 / figures.number(row, "azimuths")?)
     };
     for row in figures.rows() {
         let Some(beside) = row["settings"]["scalar_beside"].as_str() else { continue };
-        let scalar = figures.rows().iter().find(|r| r["pass"] == beside);
+        let is_beside = |row: &&Value| label(row).is_ok_and(|label| label == beside);
+        let scalar = figures.rows().iter().find(is_beside);
         let missing = || wrong(&figures.path, &format!("no row {beside}"), "the scalar's row");
         let scalar = an_azimuth(scalar.ok_or_else(missing)?)?;
         let (ms, azimuths) = (an_azimuth(row)?, figures.number(row, "azimuths")?);
-        let pass = figures.word(row, "pass")?;
+        let pass = label(row)?;
         out += &format!("| {pass} | {azimuths} | {ms:.3} | {:.3} |\n", ms / scalar);
     }
     Ok(format!("{out}\n{}", figures.caption()?))
