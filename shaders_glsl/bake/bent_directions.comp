@@ -96,7 +96,7 @@ float over_at(Ray ray, Around by, float u) {
 
 // Zero crossing of `at`, cells.
 float kink(float at, float pace, float from, float to) {
-    return pace == 0.0 ? to : clamp(-at / pace, from, to);
+    return pace == 0.0 ? to : clamp(-at / pace, from, max(from, to));
 }
 
 // Horizontal distance along e to the grid point `there` (columns, rows), m.

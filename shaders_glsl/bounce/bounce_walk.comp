@@ -100,7 +100,8 @@ Nearest nearest_line() {
     int last = ((lanes - 1) * CELL - origin) >> LINE_SHIFT;
     bool stands = wraps || first <= last;
     int line_round = wrapped(nearest, lines);
-    int line_held = clamp(nearest, max(first, 0), max(last, 0));
+    int first_held = max(first, 0);
+    int line_held = clamp(nearest, first_held, max(first_held, last));
     int line = wraps ? line_round : line_held;
     int found = int(lattice_u16(imageLoad(occluders, lattice_texel(azimuth, line, on)).xy, line));
     return Nearest(line, lead, stands ? found : 0);

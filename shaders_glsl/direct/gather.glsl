@@ -2,7 +2,7 @@
 #include "edit/dirty.glsl"
 
 // Iterates over the azimuths of a batch at four grid points. The including shader declares `azimuths` and the
-// constants RELIGHTS and OWN_PLANE_HIDES. It defines add_light and dark_slope, the horizon slope above which an
+// constants CAN_RELIGHT and OWN_PLANE_HIDES. It defines add_light and dark_slope, the horizon slope above which an
 // azimuth gives no light.
 
 layout(binding = 6) readonly buffer DirtyTexels { uint dirty_texels[]; };
@@ -20,12 +20,18 @@ layout(push_constant) uniform ShadePush {
     vec4 eye_m;          // specular: the eye, over the field's base; w: 0 for a view from straight above
     float exponent;      // of the Phong lobe
     float least_cosine;  // to the lobe's axis, below which light counts as 0
+    uint relights;       // 1 after an edit: only the grid points marked in dirty_texels, from the list of their words
 };
+
+// A branch and no constant: whole frames and edits run the same code, so that no compiler rounds them apart.
+bool is_relighting() {
+    return CAN_RELIGHT && relights != 0u;
+}
 
 // First lane and march position of this invocation's four grid points: its place in the field, or after an edit one
 // of the eight fours of a word of the list. Past the end of the list none is on the field.
 ivec2 place_of_four() {
-    if (!RELIGHTS) {
+    if (!is_relighting()) {
         return ivec2(gl_GlobalInvocationID.yx) * ivec2(4, 1);
     }
     uint group = gl_WorkGroupID.y * GROUPS_ACROSS + gl_WorkGroupID.x;
@@ -39,7 +45,7 @@ ivec2 place_of_four() {
 // Which of the four grid points from a lane on are shaded: after an edit only those that it reaches. The same in
 // every batch, so that sums stay complete.
 bvec4 lit_texels(int lane, int march) {
-    if (!RELIGHTS) {
+    if (!is_relighting()) {
         return bvec4(true);
     }
     uint word = dirty_texels[dirty_word(texel_at(lane, march), cols)];

@@ -55,7 +55,8 @@ void main() {
     if (at.x >= cols || at.y >= rows) {
         return;
     }
-    vec4 light = SUM_HAS_COLOUR ? texelFetch(colour_sum, at, 0) : texelFetch(scalar_sum, at, 0).xxxx;
+    // Rounded step by step: the radiance is the sum of the layers, and an edit's that of a whole frame, to the bit.
+    precise vec4 light = SUM_HAS_COLOUR ? texelFetch(colour_sum, at, 0) : texelFetch(scalar_sum, at, 0).xxxx;
     // Rounding can make an almost hidden light negative. NaN stays NaN.
     light = mix(light, vec4(0.0), lessThan(light, vec4(0.0)));
     // Colour first, in the host's order of multiplication: the same bits.
@@ -71,17 +72,16 @@ void main() {
             imageStore(layer_grey, at, light);
         }
         if (ADDS_TO_RADIANCE) {
-            vec4 before = imageLoad(radiance_grey, at);
-            imageStore(radiance_grey, at, keeps ? before + light : light);
+            precise vec4 sum = imageLoad(radiance_grey, at) + light;
+            imageStore(radiance_grey, at, keeps ? sum : light);
         }
     } else {
         if (WRITES_LAYER) {
             imageStore(layer, at, light);
         }
         if (ADDS_TO_RADIANCE) {
-            vec4 before = imageLoad(radiance, at);
-            vec4 sum = keeps ? before + light : light;
-            imageStore(radiance, at, vec4(sum.rgb, 1.0));
+            precise vec4 sum = imageLoad(radiance, at) + light;
+            imageStore(radiance, at, vec4((keeps ? sum : light).rgb, 1.0));
         }
     }
 }

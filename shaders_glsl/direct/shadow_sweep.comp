@@ -100,7 +100,7 @@ void main() {
         int lowest = (first_line - lead) * CELL;
         int highest = lowest + (group_lines - 1) * CELL;
         begin = max(0, (-2 * CELL - highest) / shear);
-        end = clamp((lanes * CELL - lowest) / shear + 1, begin, total);
+        end = clamp((lanes * CELL - lowest) / shear + 1, begin, max(begin, total));
     }
     int line = first_line + int(gl_LocalInvocationID.x) * 4;
     int y = (line - lead) * CELL + begin * shear;

@@ -18,14 +18,13 @@ const bool LATTICE_HAS_DISTANCES = false;
 const int LATTICE_STRIDE = 1;
 const int LANE_STRIDE = 1;
 const bool OWN_PLANE_HIDES = true;
+const bool CAN_RELIGHT = true;
 layout(constant_id = 4) const bool HAS_SKY = true;
 layout(constant_id = 5) const bool HAS_ENVIRONMENT = false;
 layout(constant_id = 6) const bool MARCHES_ROWS = false;
-// Only the grid points marked in dirty_texels, from the list of their words.
-layout(constant_id = 7) const bool RELIGHTS = false;
-layout(constant_id = 8) const bool HAS_SPECULAR = false;
+layout(constant_id = 7) const bool HAS_SPECULAR = false;
 // One table of lobes for all azimuths, of a sky alone.
-layout(constant_id = 9) const bool SPECULAR_IS_SHARED = false;
+layout(constant_id = 8) const bool SPECULAR_IS_SHARED = false;
 
 layout(binding = 0, rgba32f) uniform readonly image2D lane_heights;
 // LATTICE selects one of these.
@@ -70,7 +69,7 @@ void add_environment(uint index, Azimuth azimuth, vec4 lowest) {
     // The cosine falls by the slope times the sine's rise. At the zenith, where the slope has no bound, its mean over a
     // whole step is 2/3 sqrt(2 step).
     float most = sqrt(8.0 / 9.0 * step);
-    vec4 middle = cosine + clamp(0.5 * lowest * width, -most, most);
+    vec4 middle = cosine + min(max(0.5 * lowest * width, -most), most);
     vec4 flat_part = normal_east * azimuth.wedge_cos + normal_north * azimuth.wedge_sin;
     vec4 up_part = normal_up * azimuth.wedge_rad;
     vec4 hidden = (flat_part * middle + up_part * (node_sine + 0.5 * width)) * (width * (1.0 / PI));

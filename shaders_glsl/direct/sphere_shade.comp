@@ -104,8 +104,9 @@ void add_piece(vec2 begin, vec2 end) {
     float foot = begin.x + (to_middle.x + slope * to_middle.y) / a;
     float half_chord = sqrt(max(chord2, 0.0));
     bool is_met = chord2 > 0.0;
-    float enters = clamp(foot - half_chord, visible_from, visible_to);
-    float leaves = clamp(foot + half_chord, visible_from, visible_to);
+    float last_visible = max(visible_from, visible_to);
+    float enters = clamp(foot - half_chord, visible_from, last_visible);
+    float leaves = clamp(foot + half_chord, visible_from, last_visible);
     enters = is_met ? enters : visible_to;
     leaves = is_met ? leaves : visible_to;
     // Outside the disc, but between its tangents: behind it if beyond the line through the points of tangency.

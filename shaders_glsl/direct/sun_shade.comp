@@ -17,11 +17,10 @@ const bool LATTICE_HAS_DISTANCES = false;
 const int LATTICE_STRIDE = 1;
 const int LANE_STRIDE = 1;
 const bool OWN_PLANE_HIDES = true;
+const bool CAN_RELIGHT = true;
 // See sun_light.glsl.
 layout(constant_id = 4) const uint SHAPE = 0u;
 layout(constant_id = 5) const bool MARCHES_ROWS = false;
-// Only the grid points marked in dirty_texels, from the list of their words.
-layout(constant_id = 6) const bool RELIGHTS = false;
 
 layout(binding = 0, rgba32f) uniform readonly image2D lane_heights;
 // LATTICE selects one of these.

@@ -115,7 +115,7 @@ void main() {
     int end = steps;
     if (shear > 0) {
         start = max(start, (max(low, 0) - highest) / shear);
-        end = clamp(((lanes - 1) * CELL - lowest) / shear + 1, start, steps);
+        end = clamp(((lanes - 1) * CELL - lowest) / shear + 1, start, max(start, steps));
     }
     int line = first_line + int(gl_LocalInvocationID.x) * 4;
     int y0 = (line - lead) * SPACING;

@@ -130,12 +130,15 @@ Around lines_around(Azimuth azimuth, Place at) {
     around.has_before = wraps ? bvec4(true) : greaterThanEqual(before, ivec4(at.first));
     around.has_after = wraps ? bvec4(true) : lessThan(before, ivec4(at.last));
     around.has_after = bvec4(uvec4(around.has_after) & uvec4(greaterThan(offset, ivec4(0))));
-    int lowest = clamp(mix(before.x, before.w, flips_lanes), at.first, at.last);
+    // GLSL's clamp has no result where its bounds are turned about.
+    int first = at.first;
+    int last = max(first, at.last);
+    int lowest = clamp(mix(before.x, before.w, flips_lanes), first, last);
     ivec4 before_line = wraps ? ivec4(wrapped(before.x, at.lines), wrapped(before.y, at.lines),
                                       wrapped(before.z, at.lines), wrapped(before.w, at.lines))
-                              : clamp(before, at.first, at.last);
+                              : clamp(before, first, last);
     ivec4 after_line = wraps ? mix(before_line + 1, ivec4(0), equal(before_line, ivec4(at.lines - 1)))
-                             : clamp(before + 1, at.first, at.last);
+                             : clamp(before + 1, first, last);
     around.before = lattice_values(azimuth, before_line, lowest, at.lines, at.step);
     around.after = lattice_values(azimuth, after_line, lowest, at.lines, at.step);
     return around;
@@ -171,11 +174,13 @@ Met fused(Azimuth azimuth, Quad q, int lanes, int steps, int warm_up, vec4 enoug
         // The nearer one; on a tie, the one before.
         ivec4 line = (at.from_origin + (spacing / 2 - 1)) >> LINE_SHIFT;
         bool takes = wraps || at.first <= at.last;
-        int lowest = clamp(mix(line.x, line.w, flips_lanes), at.first, at.last);
+        int first = at.first;
+        int last = max(first, at.last);
+        int lowest = clamp(mix(line.x, line.w, flips_lanes), first, last);
         if (wraps) {
             line = ivec4(wrapped(line.x, at.lines), wrapped(line.y, at.lines), wrapped(line.z, at.lines), wrapped(line.w, at.lines));
         } else {
-            line = clamp(line, at.first, at.last);
+            line = clamp(line, first, last);
         }
         uvec4 values = lattice_values(azimuth, line, lowest, at.lines, at.step);
         if (FUSE == FUSE_NEAREST) {

@@ -92,7 +92,7 @@ vec2 unpacked_entry(uint word) {
 }
 
 uint packed_entry(vec2 entry) {
-    return packHalf2x16(vec2(entry.x * height_scale, 0.0)) | uint(entry.y) << 16;
+    return packed_f16(vec2(entry.x * height_scale, 0.0)) | uint(entry.y) << 16;
 }
 
 void main() {
@@ -117,7 +117,7 @@ void main() {
         int lowest = (first_line - lead) * spacing;
         int highest = lowest + (group_lines - 1) * spacing;
         begin = max(0, -highest / shear);
-        end = clamp(((lanes - 1) * CELL - lowest) / shear + 1, begin, total);
+        end = clamp(((lanes - 1) * CELL - lowest) / shear + 1, begin, max(begin, total));
     }
     int line = first_line + int(gl_LocalInvocationID.x) * 4;
     int y = (line - lead) * spacing + begin * shear;
@@ -227,7 +227,7 @@ void main() {
                 imageStore(slopes, texel, floatBitsToUint(slope));
             } else {
                 slope = clamp(slope, -65504.0, 65504.0);
-                imageStore(slopes, texel, uvec4(packHalf2x16(slope.xy), packHalf2x16(slope.zw), 0u, 0u));
+                imageStore(slopes, texel, uvec4(packed_f16(slope.xy), packed_f16(slope.zw), 0u, 0u));
             }
         }
         depth += 1;

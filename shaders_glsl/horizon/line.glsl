@@ -1,3 +1,5 @@
+#include "shared/half.glsl"
+
 // Heights along the lines of a sweep. The including shader declares `heights`, `lanes`, `steps`,
 // `height_scale` and the constants PERIODIC and HULL_PACKED, and sets `azimuth`.
 
@@ -31,5 +33,5 @@ float line_height(int y, int step) {
 
 // A height after packing.
 float kept_height(float h) {
-    return HULL_PACKED && h > OUTSIDE ? unpackHalf2x16(packHalf2x16(vec2(h * height_scale, 0.0))).x / height_scale : h;
+    return HULL_PACKED && h > OUTSIDE ? nearest_f16(h * height_scale) / height_scale : h;
 }

@@ -103,7 +103,7 @@ void walk_on(inout Walk walk, Ray ray, Block block, bool going, bool clear, int 
     ivec2 low = block.low - block.wrap;
     ivec2 high = block.high - block.wrap;
     ivec2 other = ivec2(floor(ray.offset + block.ahead * ray.advance)) + ray.base;
-    other = clamp(other, low, high - 1);
+    other = clamp(other, low, max(low, high - 1));
     other = ivec2(onward.x ? max(other.x, walk.cell.x) : min(other.x, walk.cell.x),
                   onward.y ? max(other.y, walk.cell.y) : min(other.y, walk.cell.y));
     ivec2 across = ivec2(onward.x ? high.x : low.x - 1, onward.y ? high.y : low.y - 1);

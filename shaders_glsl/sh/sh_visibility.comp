@@ -18,7 +18,7 @@ layout(constant_id = 4) const int ORDER = 4;
 // Slices of n Legendre coefficients, else exact ones.
 layout(constant_id = 5) const bool BY_NLP = false;
 layout(constant_id = 6) const bool MARCHES_ROWS = false;
-const bool RELIGHTS = false;
+const bool CAN_RELIGHT = false;
 // Whether the grid point's own plane hides directions below it.
 layout(constant_id = 7) const bool OWN_PLANE_HIDES = true;
 // Grid points from node to node; and, where marches stored horizons for nodes alone, the same, else 1.

@@ -54,6 +54,7 @@ impl shaders::ShadePush {
             eye_m: [0.0; 4],
             exponent: 0.0,
             least_cosine: 0.0,
+            relights: 0,
         }
     }
 }

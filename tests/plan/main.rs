@@ -1,6 +1,7 @@
 //! The plan as text, without a device: odd sizes, fields in bands, and the audit of its barriers.
 
 mod bounces;
+mod edits;
 mod points;
 mod reference;
 mod shadows;

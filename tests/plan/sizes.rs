@@ -2,7 +2,7 @@
 
 use ridgelight::plan::{self, Limits, Picture};
 
-use ridgelight::scene::{Hull, Lights, Lines, Method, Quality, Scene, SphereLight};
+use ridgelight::scene::{Border, Hull, Lights, Lines, Method, Quality, Scene, SphereLight};
 
 use super::{flat, is, sky, under_sky};
 
@@ -215,4 +215,25 @@ fn sweeps_along_lines_alone_have_a_hull() {
     let sphere = SphereLight { position_m: [4.0, 4.0, 3.0], radius_m: 1.0, radiance: [1.0; 3] };
     scene.lights = Lights { sphere_lights: vec![sphere], ..Lights::default() };
     assert!(!has_hull(&scene, &base));
+}
+
+/// Lane positions and steps times shears are integers of 32 bits: what would pass them is refused.
+#[test]
+fn positions_beyond_32_bits_are_refused() {
+    let limits = Limits::boundless(true, 1 << 50);
+    let planned = |side: usize, border, quality: Quality| {
+        let mut scene = under_sky(flat(1, side));
+        scene.surface.border = border;
+        plan::picture(&scene, &quality, &limits, Picture::default())
+    };
+    let pyramid = Quality { method: Method::Pyramid, ..Quality::default() };
+    assert!(planned(21_000, Border::Periodic, pyramid).is_ok());
+    let refused = planned(22_000, Border::Periodic, pyramid).expect_err("65,000 steps");
+    assert!(refused.to_string().contains("steps per grid point"), "{refused}");
+    assert!(planned(65_000, Border::Plane, pyramid).is_ok(), "it marches over its field once");
+    let lines = |lines| Quality { lines, ..Quality::default() };
+    assert!(planned(32_767, Border::Plane, lines(Lines::FourCells)).is_ok());
+    assert!(planned(32_768, Border::Plane, lines(Lines::TwoCells)).is_ok());
+    let refused = planned(32_768, Border::Plane, lines(Lines::FourCells)).expect_err("32 bits");
+    assert!(refused.to_string().contains("beyond 32 bits"), "{refused}");
 }

@@ -57,6 +57,7 @@ pub(crate) fn plan(
         push.least_cosine = least.powf(1.0 / tables.exponent.max(1e-3));
     }
     if let Some([dirty, list]) = images.edited {
+        push.relights = 1;
         bound.extend([("dirty_texels", dirty), ("edit_list", list)]);
     }
     let sums = if images.sky_sum.is_some() { 8 } else { 0 }
@@ -71,7 +72,6 @@ pub(crate) fn plan(
             has_sky: images.sky_sum.is_some(),
             has_environment: images.environment.is_some(),
             marches_rows: axis.marches_rows,
-            relights: images.edited.is_some(),
             has_specular: images.specular.is_some(),
             specular_is_shared: images.specular.is_some_and(|s| s.tables.is_shared()),
         },

@@ -23,7 +23,9 @@ pub(crate) fn plan(
     let mut bound =
         vec![("lane_heights", lane_heights), ("azimuths", azimuths), ("sun_sum", sun_sum)];
     bound.extend(lattice.map(|l| (sweep.lattice_binding(), l)));
+    let mut push = shaders::ShadePush::of(batch, cell_m);
     if let Some([dirty, list]) = edited {
+        push.relights = 1;
         bound.extend([("dirty_texels", dirty), ("edit_list", list)]);
     }
     let pass = builder.pass(
@@ -34,7 +36,6 @@ pub(crate) fn plan(
             border: border as u32,
             shape: shape as u32,
             marches_rows: axis.marches_rows,
-            relights: edited.is_some(),
         },
         part,
         match shape {
@@ -43,7 +44,7 @@ pub(crate) fn plan(
             Shape::Patch => "the part of its elevations above the horizon",
         },
         [axis.steps.div_ceil(8), axis.lanes.div_ceil(4 * 16), 1],
-        &shaders::ShadePush::of(batch, cell_m),
+        &push,
         &bound,
         axis.texels() * (12 + u64::from(batch.count) * sweep.lattice_bytes()),
         axis.texels() * u64::from(batch.count),

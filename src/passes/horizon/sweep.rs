@@ -143,7 +143,15 @@ impl Sweep {
                  raise a horizon by atan(relief / d) at most"
             ));
         }
+        // Lane positions and steps times shears are integers of 32 bits.
         if quality.method == Method::Pyramid {
+            if total > MARCH_STEPS_LIMIT {
+                return Err(Error::Limit {
+                    what: "`method pyramid`".into(),
+                    needs: format!("{total} steps per grid point"),
+                    limit: format!("{MARCH_STEPS_LIMIT} steps"),
+                });
+            }
             if distances {
                 return Err(Error::setting(
                     "distances to the horizon",
@@ -218,6 +226,16 @@ impl Sweep {
             });
         }
         let spacing = 1_i64 << shift;
+        let side = sides.into_iter().max().unwrap_or(1);
+        // The farthest lane position from line 0, and half a spacing to round it.
+        let farthest = (2 * i64::from(side) - 1) * i64::from(CELL) + spacing / 2 - 1;
+        if farthest > i64::from(i32::MAX) {
+            return Err(Error::Limit {
+                what: format!("`lines {}`", quality.lines),
+                needs: format!("lane positions of {side} rows or columns beyond 32 bits"),
+                limit: format!("{} rows and columns", side - 1),
+            });
+        }
         let divides = |side: usize| (side as i64 * i64::from(CELL)) % spacing == 0;
         let line_shift = if periodic && !(divides(field.cols()) && divides(field.rows())) {
             notes.push("lines a cell apart: wider ones do not divide this periodic field".into());

@@ -34,9 +34,14 @@ pub fn height_scale(heights: &[f32]) -> f32 {
     if largest > 0.0 { 1.0 / largest } else { 1.0 }
 }
 
+/// The nearest number that f16 holds; 0 below its smallest normal number, which drivers may take for 0.
+fn nearest_f16(x: f32) -> f32 {
+    if x.abs() < f16::MIN_POSITIVE.to_f32() { 0.0 } else { f16::from_f32(x).to_f32() }
+}
+
 /// A height after packing.
 pub(crate) fn stored(h: f32, packed: Option<f32>) -> f32 {
-    packed.map_or(h, |scale| f16::from_f32(h * scale).to_f32() / scale)
+    packed.map_or(h, |scale| nearest_f16(h * scale) / scale)
 }
 
 /// Pops vertices (height, step) while the deeper one subtends at least the slope of the newer one from height `h` at
@@ -88,7 +93,7 @@ pub fn horizon_sweep(
                     });
                     lattice.occluders[texel] = back as u16;
                     lattice.slopes[texel] = if options.slopes_f16 {
-                        f16::from_f32(met.clamp(-65504.0, 65504.0)).to_f32()
+                        nearest_f16(met.clamp(-65504.0, 65504.0))
                     } else {
                         met
                     };

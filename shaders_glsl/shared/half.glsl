@@ -1,0 +1,13 @@
+// f16, rounded here: packHalf2x16 may round in either direction and may take numbers below 2^-14 for 0. What it gets is
+// held by f16 exactly, so that all drivers store the same bits.
+
+// The nearest f16 to x, ties to even, for |x| up to 65504; 0 below 2^-14.
+float nearest_f16(float x) {
+    uint bits = floatBitsToUint(x);
+    uint rounded = (bits + 0xfffu + (bits >> 13 & 1u)) & ~0x1fffu;
+    return (bits & 0x7fffffffu) < 0x38800000u ? 0.0 : uintBitsToFloat(rounded);
+}
+
+uint packed_f16(vec2 both) {
+    return packHalf2x16(vec2(nearest_f16(both.x), nearest_f16(both.y)));
+}
