@@ -50,7 +50,10 @@ pub(super) fn messenger(messages: &Messages) -> vk::DebugUtilsMessengerCreateInf
             vk::DebugUtilsMessageSeverityFlagsEXT::WARNING
                 | vk::DebugUtilsMessageSeverityFlagsEXT::ERROR,
         )
-        .message_type(vk::DebugUtilsMessageTypeFlagsEXT::VALIDATION)
+        .message_type(
+            vk::DebugUtilsMessageTypeFlagsEXT::VALIDATION
+                | vk::DebugUtilsMessageTypeFlagsEXT::PERFORMANCE,
+        )
         .pfn_user_callback(Some(keep_message))
         .user_data(Arc::as_ptr(messages).cast_mut().cast())
 }

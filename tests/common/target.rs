@@ -20,6 +20,9 @@ const MAPPED: vk::MemoryPropertyFlags = vk::MemoryPropertyFlags::from_raw(
         | vk::MemoryPropertyFlags::HOST_COHERENT.as_raw(),
 );
 
+/// Best practices warn of a smaller block that one image fills.
+pub const LEAST_BLOCK: u64 = 1 << 20;
+
 fn memory(
     host: &Host,
     needs: vk::MemoryRequirements,
@@ -32,8 +35,9 @@ fn memory(
         needs.memory_type_bits & (1 << i) != 0 && has
     };
     let index = (0..all.memory_type_count).find(is_fit).expect("memory");
-    let info =
-        vk::MemoryAllocateInfo::default().allocation_size(needs.size).memory_type_index(index);
+    let info = vk::MemoryAllocateInfo::default()
+        .allocation_size(needs.size.max(LEAST_BLOCK))
+        .memory_type_index(index);
     // SAFETY: the device is alive.
     unsafe { host.device.allocate_memory(&info, None) }.expect("memory")
 }

@@ -13,7 +13,7 @@ use ridgelight::plan::{self, Picture, Plan};
 use ridgelight::scene::{Albedo, Border, Environment, HeightField, Quality, Scene, Sun};
 use ridgelight::{Error, Result};
 
-use crate::target::Input;
+use crate::target::{Input, LEAST_BLOCK};
 use crate::{Device, field, under_sky};
 
 const COLS: usize = 20;
@@ -166,8 +166,9 @@ unsafe impl Allocator for Pieces {
             };
             let kind = (0..types.memory_type_count).find(fits);
             let kind = kind.ok_or_else(|| failed("no such memory".into()))?;
-            let info =
-                vk::MemoryAllocateInfo::default().allocation_size(size).memory_type_index(kind);
+            let info = vk::MemoryAllocateInfo::default()
+                .allocation_size(size.max(LEAST_BLOCK))
+                .memory_type_index(kind);
             let memory = device.allocate_memory(&info, None).map_err(|e| failed(e.to_string()))?;
             let mut mapped = None;
             if request.used_by != MemoryUse::Device && self.fault != Some("not mapped") {
