@@ -1,8 +1,8 @@
-// Computes: one level of the pyramid of exit radiance from the level an octave finer (from the grid points themselves
-// for the first octave). As height_reduce, but clamped to the range of its source, so that light stays at or above 0.
-// Reads: exit_radiance, shade_levels.
-// Writes: shade_levels (R, G, B), shade_table (one texel for this level).
-// One invocation is one texel of the level.
+// Computes: the levels of an octave of the pyramid of exit radiance, each from the level an octave finer (from the grid
+// points themselves for the first octave). As height_reduce, but clamped to the range of its source, so that light stays at or above 0.
+// Reads: exit_radiance, shade_levels, constants.
+// Writes: shade_levels (R, G, B), shade_table (one texel a level).
+// One invocation is one texel of one level.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
 
@@ -15,6 +15,7 @@ layout(constant_id = 2) const bool GREY = false;
 layout(binding = 0) uniform texture2D exit_radiance;
 layout(binding = 1, rgba32f) uniform image2D shade_levels;
 layout(binding = 2, rgba32ui) uniform writeonly uimage2D shade_table;
+layout(binding = 3) uniform textureBuffer constants;
 
 const bool HOLDS_ENDS = true;
 #define TEXEL vec4
@@ -29,15 +30,14 @@ vec4 source_at(int x, int y) {
 }
 
 void main() {
-    int x = int(gl_GlobalInvocationID.x);
-    int y = int(gl_GlobalInvocationID.y);
-    if (x >= cols || y >= rows) {
+    ivec2 at;
+    if (!has_texel(at)) {
         return;
     }
-    vec4 mean = reduced(ivec2(x, y), vec2(ratio_x, ratio_y));
-    imageStore(shade_levels, level_texel(first + y * cols + x, width_shift), mean);
-    if (x == 0 && y == 0) {
-        Level made = Level(first, cols, rows, vec2(per_grid_point_x, per_grid_point_y));
-        imageStore(shade_table, ivec2(level - 1, 0), words_of(made));
+    vec4 mean = reduced(at);
+    imageStore(shade_levels, level_texel(first + at.y * cols + at.x, width_shift), mean);
+    if (at == ivec2(0)) {
+        Level made = Level(first, cols, rows, per_grid_point);
+        imageStore(shade_table, ivec2(number - 1, 0), words_of(made));
     }
 }

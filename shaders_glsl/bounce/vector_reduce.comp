@@ -1,8 +1,8 @@
-// Computes: one level of the pyramid of exit radiance as SH series, from the level an octave finer (from the grid
-// points' own for the first octave), as shade_reduce.
-// Reads: exit_vectors, vector_source.
-// Writes: vector_levels (the same image), shade_table (one texel for this level).
-// One invocation is one texel of one layer of the level.
+// Computes: the levels of an octave of the pyramid of exit radiance as SH series, each from the level an octave finer
+// (from the grid points' own for the first octave), as shade_reduce.
+// Reads: exit_vectors, vector_source, constants.
+// Writes: vector_levels (the same image), shade_table (one texel a level).
+// One invocation is one texel of one layer of one level.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
 
@@ -15,6 +15,7 @@ layout(binding = 1) uniform texture2DArray vector_source;
 // f32 or f16.
 layout(binding = 2) uniform writeonly image2DArray vector_levels;
 layout(binding = 3, rgba32ui) uniform writeonly uimage2D shade_table;
+layout(binding = 4) uniform textureBuffer constants;
 
 const bool HOLDS_ENDS = true;
 #define TEXEL vec4
@@ -30,16 +31,15 @@ vec4 source_at(int x, int y) {
 }
 
 void main() {
-    int x = int(gl_GlobalInvocationID.x);
-    int y = int(gl_GlobalInvocationID.y);
     layer = int(gl_GlobalInvocationID.z);
-    if (x >= cols || y >= rows) {
+    ivec2 at;
+    if (!has_texel(at)) {
         return;
     }
-    vec4 mean = reduced(ivec2(x, y), vec2(ratio_x, ratio_y));
-    imageStore(vector_levels, ivec3(level_texel(first + y * cols + x, width_shift), layer), mean);
-    if (x == 0 && y == 0 && layer == 0) {
-        Level made = Level(first, cols, rows, vec2(per_grid_point_x, per_grid_point_y));
-        imageStore(shade_table, ivec2(level - 1, 0), words_of(made));
+    vec4 mean = reduced(at);
+    imageStore(vector_levels, ivec3(level_texel(first + at.y * cols + at.x, width_shift), layer), mean);
+    if (at == ivec2(0) && layer == 0) {
+        Level made = Level(first, cols, rows, per_grid_point);
+        imageStore(shade_table, ivec2(number - 1, 0), words_of(made));
     }
 }

@@ -1,9 +1,9 @@
-// Computes: one level of the height pyramid from the level an octave finer (from the field itself for the first
-// octave). Each texel is the mean of four bilinear samples around its position (Nowrouzezahrai & Snyder 2009, section
+// Computes: the levels of an octave of the height pyramid, each from the level an octave finer (from the field itself for
+// the first octave). Each texel is the mean of four bilinear samples around its position (Nowrouzezahrai & Snyder 2009, section
 // 9: repeated bilinear decimation).
-// Reads: heights, height_levels.
-// Writes: height_levels, level_table (one texel for this level).
-// One invocation is one texel of the level.
+// Reads: heights, height_levels, constants.
+// Writes: height_levels, level_table (one texel a level).
+// One invocation is one texel of one level.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
 
@@ -14,6 +14,7 @@ layout(constant_id = 1) const bool FROM_FIELD = false;
 layout(binding = 0) uniform texture2D heights;
 layout(binding = 1, r32f) uniform image2D height_levels;
 layout(binding = 2, rgba32ui) uniform writeonly uimage2D level_table;
+layout(binding = 3) uniform textureBuffer constants;
 
 const bool HOLDS_ENDS = false;
 #define TEXEL float
@@ -27,15 +28,14 @@ float source_at(int x, int y) {
 }
 
 void main() {
-    int x = int(gl_GlobalInvocationID.x);
-    int y = int(gl_GlobalInvocationID.y);
-    if (x >= cols || y >= rows) {
+    ivec2 at;
+    if (!has_texel(at)) {
         return;
     }
-    float sum = reduced(ivec2(x, y), vec2(ratio_x, ratio_y));
-    imageStore(height_levels, level_texel(first + y * cols + x, width_shift), vec4(sum));
-    if (x == 0 && y == 0) {
-        Level made = Level(first, cols, rows, vec2(per_grid_point_x, per_grid_point_y));
-        imageStore(level_table, ivec2(level - 1, 0), words_of(made));
+    float sum = reduced(at);
+    imageStore(height_levels, level_texel(first + at.y * cols + at.x, width_shift), vec4(sum));
+    if (at == ivec2(0)) {
+        Level made = Level(first, cols, rows, per_grid_point);
+        imageStore(level_table, ivec2(number - 1, 0), words_of(made));
     }
 }

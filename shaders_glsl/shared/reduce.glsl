@@ -1,23 +1,59 @@
 // A level's texel: the mean of four bilinear samples of its source around its position (Nowrouzezahrai & Snyder 2009,
-// section 9: repeated bilinear decimation). The including shader defines TEXEL, declares the constants PERIODIC and
-// HOLDS_ENDS, and has `TEXEL source_at(int x, int y)`.
+// section 9: repeated bilinear decimation). The including shader defines TEXEL, declares `constants` and the constants
+// PERIODIC and HOLDS_ENDS, and has `TEXEL source_at(int x, int y)`.
 
 #include "shared/levels.glsl"
 
 layout(push_constant) uniform ReducePush {
-    int cols;
-    int rows;
-    int first;
-    int source_cols;
-    int source_rows;
-    int source_first;
-    float ratio_x;  // source texels per texel
-    float ratio_y;
-    float per_grid_point_x;
-    float per_grid_point_y;
-    int level;
+    int level;      // the first of the octave's
+    int levels;     // of the octave
+    int levels_at;  // of level 1 in `constants`, three texels a level
     int width_shift;
+    int groups;           // workgroups of all levels
+    int first_group[16];  // of each level
 };
+
+// The level that an invocation makes, and its source.
+int number;
+int cols;
+int rows;
+int first;
+int source_cols;
+int source_rows;
+int source_first;
+vec2 ratio;  // source texels per texel
+vec2 per_grid_point;
+
+// Finds the level of a workgroup and the texel of the invocation, if there is one. Workgroups are counted level by level:
+// a row of them for each level would idle beside the smaller ones. Indices of texels are in two parts, which f32 holds.
+bool has_texel(out ivec2 texel) {
+    int group = int(gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x);
+    int of_octave = 0;
+    for (int k = 1; k < levels; k++) {
+        of_octave += group >= first_group[k] ? 1 : 0;
+    }
+    number = level + of_octave;
+    int at = levels_at + 3 * (number - 1);
+    vec4 made = texelFetch(constants, at);
+    cols = int(made.x);
+    rows = int(made.y);
+    first = int(made.z) << 16 | int(made.w);
+    vec4 source = texelFetch(constants, at + 1);
+    source_cols = int(source.x);
+    source_rows = int(source.y);
+    source_first = int(source.z) << 16 | int(source.w);
+    vec4 scale = texelFetch(constants, at + 2);
+    ratio = scale.xy;
+    per_grid_point = scale.zw;
+    int beside = group - first_group[of_octave];
+    int across = (cols + 7) >> 3;
+    // A division of integers is slow: one of floats, and one step to the exact row.
+    int row = int(float(beside) / float(across));
+    int column = beside - row * across;
+    int off = (column < 0 ? -1 : 0) + (column >= across ? 1 : 0);
+    texel = ivec2(column - off * across, row + off) * 8 + ivec2(gl_LocalInvocationID.xy);
+    return group < groups && texel.x < cols && texel.y < rows;
+}
 
 TEXEL source_at(int x, int y);
 
@@ -51,7 +87,7 @@ TEXEL bilinear(Between x, Between y) {
     return low + y.t * (row_at(x, y.high) - low);
 }
 
-TEXEL reduced(ivec2 at, vec2 ratio) {
+TEXEL reduced(ivec2 at) {
     // At ratio 1 all four are the texel itself, at 2 their weights are 1, 2, 1.
     float beside_x = 0.5 * (ratio.x - 1.0);
     float beside_y = 0.5 * (ratio.y - 1.0);

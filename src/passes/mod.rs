@@ -27,7 +27,6 @@ pub use view::*;
 use crate::graph::{ResourceId, shaders};
 use crate::passes::batch::Batch;
 use crate::passes::blocks::BlockLevels;
-use crate::passes::pyramid::Pyramid;
 use crate::scene::{HeightField, PhongSpecular};
 
 /// Phong specular: constant, or a map.
@@ -85,29 +84,6 @@ impl shaders::LandPush {
             top_level: blocks.top_level as i32,
             cell_x_m: cell_x as f32,
             cell_y_m: cell_y as f32,
-        }
-    }
-}
-
-/// Of the passes that make a pyramid level from a finer one.
-impl shaders::ReducePush {
-    pub(crate) fn of(pyramid: &Pyramid, number: u32) -> Self {
-        let (level, source) = (pyramid.level(number), pyramid.level(pyramid.source(number)));
-        let [ratio_x, ratio_y] = pyramid.ratio(number);
-        let [per_grid_point_x, per_grid_point_y] = level.per_grid_point;
-        Self {
-            cols: level.size[0] as i32,
-            rows: level.size[1] as i32,
-            first: level.first as i32,
-            source_cols: source.size[0] as i32,
-            source_rows: source.size[1] as i32,
-            source_first: source.first as i32,
-            ratio_x,
-            ratio_y,
-            per_grid_point_x,
-            per_grid_point_y,
-            level: number as i32,
-            width_shift: pyramid.width_shift() as i32,
         }
     }
 }

@@ -237,3 +237,19 @@ fn positions_beyond_32_bits_are_refused() {
     let refused = planned(32_768, Border::Plane, lines(Lines::FourCells)).expect_err("32 bits");
     assert!(refused.to_string().contains("beyond 32 bits"), "{refused}");
 }
+
+/// The 28 levels of 512² are made by octaves: seven dispatches, of which each waits for the one before.
+#[test]
+fn a_pyramid_is_made_by_octaves() {
+    let scene = under_sky(flat(512, 512));
+    let quality = Quality { method: Method::Pyramid, ..Quality::default() };
+    let limits = Limits::lavapipe();
+    let plan = plan::picture(&scene, &quality, &limits, Picture::default()).expect("a plan");
+    let made: Vec<_> = plan.passes.iter().filter(|pass| pass.name() == "height_reduce").collect();
+    assert_eq!(made.len(), 7);
+    assert_eq!(
+        made.iter().filter(|pass| pass.barrier_before).count(),
+        6,
+        "the first reads the field"
+    );
+}

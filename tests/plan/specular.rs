@@ -48,8 +48,8 @@ fn each_bounce_is_computed_once() {
             assert!(has(&plan, label), "{label}");
         }
         assert_eq!(has(&plan, "specular_visibility"), is_vector);
-        assert_eq!(has(&plan, "vector_reduce bounce1 level 1"), is_vector);
-        assert_eq!(has(&plan, "shade_reduce bounce2 level 1"), !is_vector);
+        assert_eq!(has(&plan, "vector_reduce bounce1 levels 1 to 4"), is_vector);
+        assert_eq!(has(&plan, "shade_reduce bounce2 levels 1 to 4"), !is_vector);
         assert!(!has(&plan, "bounce_gather bounce1"));
         assert_eq!(missing_barriers(&plan.passes), vec![]);
         assert!(plan.settings.contains(&("bounce_specular".into(), specular.to_string())));

@@ -11,7 +11,7 @@ use crate::passes::bounce_nodes::{BounceNodes, NodeSum};
 use crate::passes::bounced_specular::{BouncedSpecular, ExitLight, Vectors};
 use crate::passes::line_blocks::LineBlocks;
 use crate::passes::nodes::Nodes;
-use crate::passes::pyramid::Pyramid;
+use crate::passes::pyramid::{Octave, Pyramid};
 use crate::passes::sweep::Sweep;
 use crate::passes::sweeping::{Sweeping, part};
 use crate::passes::{
@@ -355,14 +355,18 @@ fn gather(
         && let ExitLight::Vectors(Vectors { exit, levels: Some([levels, table]), .. }) =
             specular.outgoing
     {
-        for level in 1..=of.shade.levels() {
-            let (of, ids) = ((&of.shade, level), [exit, levels, table]);
-            vector_reduce::plan(builder, of, specular, &bounce.name, ids);
+        let constants = builder.constants(&of.shade.reductions());
+        for octave in of.shade.octaves() {
+            let octave = Octave::new(&of.shade, octave, constants);
+            let ids = [exit, levels, table];
+            vector_reduce::plan(builder, &octave, specular, &bounce.name, ids);
         }
     }
     if let Some(bounce_gather::ShadeImages { levels, table, stack }) = of.shade_images {
-        for level in 1..=of.shade.levels() {
-            shade_reduce::plan(builder, &of.shade, level, bounce, [levels, table]);
+        let constants = builder.constants(&of.shade.reductions());
+        for octave in of.shade.octaves() {
+            let octave = Octave::new(&of.shade, octave, constants);
+            shade_reduce::plan(builder, &octave, bounce, [levels, table]);
         }
         if let Some(stack) = stack {
             shade_expand::plan(builder, &of.shade, bounce, [levels, table, stack]);

@@ -1,31 +1,33 @@
 use crate::graph::{Builder, ResourceId, shaders};
 use crate::passes::bounces::Bounce;
-use crate::passes::pyramid::Pyramid;
+use crate::passes::pyramid::Octave;
 
-/// One level of exit radiance from the one an octave finer.
+/// Levels of exit radiance of an octave, each from the one an octave finer.
 pub(crate) fn plan(
     builder: &mut Builder,
-    pyramid: &Pyramid,
-    number: u32,
+    octave: &Octave,
     bounce: &Bounce,
     [levels, table]: [ResourceId; 2],
 ) {
-    let from = pyramid.source(number);
-    let (level, source) = (pyramid.level(number), pyramid.level(from));
-    let [cols, rows] = level.size;
-    let apart = (f64::from(number) / f64::from(pyramid.level_step)).exp2();
+    let [finest, coarsest] = octave.apart();
+    let [made, touched] = octave.texels();
     builder.pass(
         shaders::ShadeReduce {
-            periodic: pyramid.periodic,
-            from_field: from == 0,
+            periodic: octave.pyramid.periodic,
+            from_field: octave.from_field(),
             grey: bounce.grey,
         },
-        &format!("{} level {number}", bounce.name),
-        format!("radiance every {apart:.1} texels"),
-        [cols.div_ceil(8), rows.div_ceil(8), 1],
-        &shaders::ReducePush::of(pyramid, number),
-        &[("exit_radiance", bounce.exit), ("shade_levels", levels), ("shade_table", table)],
-        16 * (level.texels() + source.texels()),
-        level.texels(),
+        &format!("{} {}", bounce.name, octave.part()),
+        format!("radiance every {finest:.1} to {coarsest:.1} texels"),
+        octave.groups(1),
+        &octave.push,
+        &[
+            ("exit_radiance", bounce.exit),
+            ("shade_levels", levels),
+            ("shade_table", table),
+            ("constants", octave.constants),
+        ],
+        16 * touched,
+        made,
     );
 }

@@ -1,33 +1,35 @@
 use crate::graph::{Builder, ResourceId, shaders};
 use crate::passes::bounced_specular::BouncedSpecular;
-use crate::passes::pyramid::Pyramid;
+use crate::passes::pyramid::Octave;
 
-/// One level of exit radiance as SH from the one an octave finer.
+/// Levels of exit radiance as SH of an octave, each from the one an octave finer.
 pub(crate) fn plan(
     builder: &mut Builder,
-    (pyramid, number): (&Pyramid, u32),
+    octave: &Octave,
     specular: &BouncedSpecular,
     name: &str,
     [exit, levels, table]: [ResourceId; 3],
 ) {
-    let from = pyramid.source(number);
-    let (level, source) = (pyramid.level(number), pyramid.level(from));
-    let [cols, rows] = level.size;
-    let apart = (f64::from(number) / f64::from(pyramid.level_step)).exp2();
     let layers = specular.layers();
+    let [finest, coarsest] = octave.apart();
+    let [made, touched] = octave.texels();
     builder.pass(
-        shaders::VectorReduce { periodic: pyramid.periodic, from_field: from == 0 },
-        &format!("{name} level {number}"),
-        format!("radiance by direction every {apart:.1} texels"),
-        [cols.div_ceil(8), rows.div_ceil(8), layers],
-        &shaders::ReducePush::of(pyramid, number),
+        shaders::VectorReduce {
+            periodic: octave.pyramid.periodic,
+            from_field: octave.from_field(),
+        },
+        &format!("{name} {}", octave.part()),
+        format!("radiance by direction every {finest:.1} to {coarsest:.1} texels"),
+        octave.groups(layers),
+        &octave.push,
         &[
             ("exit_vectors", exit),
             ("vector_source", levels),
             ("vector_levels", levels),
             ("shade_table", table),
+            ("constants", octave.constants),
         ],
-        specular.texel_bytes() * u64::from(layers) * (level.texels() + source.texels()),
-        level.texels() * u64::from(layers),
+        specular.texel_bytes() * u64::from(layers) * touched,
+        made * u64::from(layers),
     );
 }

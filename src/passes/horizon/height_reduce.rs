@@ -1,26 +1,31 @@
 use crate::graph::{Builder, ResourceId, shaders};
-use crate::passes::pyramid::Pyramid;
+use crate::passes::pyramid::Octave;
 
-/// One level from the one an octave finer.
+/// The levels of an octave, each from the one an octave finer.
 pub(crate) fn plan(
     builder: &mut Builder,
-    pyramid: &Pyramid,
-    number: u32,
+    octave: &Octave,
     [heights, levels, table]: [ResourceId; 3],
 ) {
-    let from = pyramid.source(number);
-    let (level, source) = (pyramid.level(number), pyramid.level(from));
-    let [cols, rows] = level.size;
-    let apart = (f64::from(number) / f64::from(pyramid.level_step)).exp2();
-    let away = apart * f64::from(1 << pyramid.level_offset);
+    let pyramid = octave.pyramid;
+    let [finest, coarsest] = octave.apart();
+    let away = coarsest * f64::from(1 << pyramid.level_offset);
+    let [made, touched] = octave.texels();
     builder.pass(
-        shaders::HeightReduce { periodic: pyramid.periodic, from_field: from == 0 },
-        &format!("level {number}"),
-        format!("every {apart:.1} texels, for marches {away:.0} steps away"),
-        [cols.div_ceil(8), rows.div_ceil(8), 1],
-        &shaders::ReducePush::of(pyramid, number),
-        &[("heights", heights), ("height_levels", levels), ("level_table", table)],
-        4 * (level.texels() + source.texels()),
-        level.texels(),
+        shaders::HeightReduce { periodic: pyramid.periodic, from_field: octave.from_field() },
+        &octave.part(),
+        format!(
+            "every {finest:.1} to {coarsest:.1} texels, for marches up to {away:.0} steps away"
+        ),
+        octave.groups(1),
+        &octave.push,
+        &[
+            ("heights", heights),
+            ("height_levels", levels),
+            ("level_table", table),
+            ("constants", octave.constants),
+        ],
+        4 * touched,
+        made,
     );
 }

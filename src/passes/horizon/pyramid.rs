@@ -1,6 +1,8 @@
 //! The levels of a height pyramid: how many a scene needs, their sizes and places.
 
-use crate::graph::{Builder, Format, Owner, ResourceId};
+use std::ops::RangeInclusive;
+
+use crate::graph::{Builder, Format, Owner, ResourceId, shaders};
 use crate::passes::sweep;
 use crate::passes::{self, pyramid_march::Images};
 use crate::scene::{Border, Levels, Quality};
@@ -32,6 +34,73 @@ pub struct Level {
     pub size: [u32; 2],
     /// Texels per grid point along columns and along rows: 0 for a single texel.
     pub per_grid_point: [f32; 2],
+}
+
+/// Most workgroups in a row of a dispatch; devices have at least 65,535.
+const GROUPS_ACROSS: u32 = 1024;
+
+/// Levels that one dispatch makes.
+pub(crate) struct Octave<'a> {
+    pub pyramid: &'a Pyramid,
+    numbers: RangeInclusive<u32>,
+    /// The buffer with [`Pyramid::reductions`].
+    pub constants: ResourceId,
+    pub push: shaders::ReducePush,
+}
+
+impl<'a> Octave<'a> {
+    /// `constants` are the buffer and the first texel of [`Pyramid::reductions`].
+    pub(crate) fn new(
+        pyramid: &'a Pyramid,
+        numbers: RangeInclusive<u32>,
+        (constants, first): (ResourceId, usize),
+    ) -> Self {
+        let mut first_group = [0; 16];
+        let mut groups = 0;
+        for (first, number) in first_group.iter_mut().zip(numbers.clone()) {
+            *first = groups;
+            let [cols, rows] = pyramid.level(number).size;
+            groups += (cols.div_ceil(8) * rows.div_ceil(8)) as i32;
+        }
+        let push = shaders::ReducePush {
+            level: *numbers.start() as i32,
+            levels: numbers.clone().count() as i32,
+            levels_at: first as i32,
+            width_shift: pyramid.width_shift() as i32,
+            groups,
+            first_group,
+        };
+        Self { pyramid, numbers, constants, push }
+    }
+
+    pub(crate) fn from_field(&self) -> bool {
+        self.pyramid.source(*self.numbers.start()) == 0
+    }
+
+    /// Grid points from texel to texel, of the finest and of the coarsest level.
+    pub(crate) fn apart(&self) -> [f64; 2] {
+        let octaves = |level: u32| f64::from(level) / f64::from(self.pyramid.level_step);
+        [*self.numbers.start(), *self.numbers.end()].map(|level| octaves(level).exp2())
+    }
+
+    pub(crate) fn part(&self) -> String {
+        format!("levels {} to {}", self.numbers.start(), self.numbers.end())
+    }
+
+    /// Workgroups of all levels, in rows, for each layer.
+    pub(crate) fn groups(&self, layers: u32) -> [u32; 3] {
+        let all = self.push.groups as u32;
+        let across = all.min(GROUPS_ACROSS);
+        [across, all.div_ceil(across), layers]
+    }
+
+    /// Texels of all levels, and with those of their sources.
+    pub(crate) fn texels(&self) -> [u64; 2] {
+        let of = |number: u32| self.pyramid.level(number).texels();
+        let made = self.numbers.clone().map(of).sum();
+        let read: u64 = self.numbers.clone().map(|number| of(self.pyramid.source(number))).sum();
+        [made, made + read]
+    }
 }
 
 impl Level {
@@ -84,6 +153,28 @@ impl Pyramid {
     /// The level that `level` is made from: an octave finer, or the field itself (0).
     pub fn source(&self, level: u32) -> u32 {
         level.saturating_sub(self.level_step)
+    }
+
+    /// Levels that are made together, as each needs only the one an octave finer.
+    pub(crate) fn octaves(&self) -> Vec<RangeInclusive<u32>> {
+        let last = self.levels();
+        let firsts = (1..=last).step_by(self.level_step as usize);
+        firsts.map(|first| first..=last.min(first + self.level_step - 1)).collect()
+    }
+
+    /// What the passes that make levels read: columns, rows and first texel (in 16-bit parts) of each level and of its
+    /// source; ratios; texels per grid point.
+    pub(crate) fn reductions(&self) -> Vec<f32> {
+        let place = |level: &Level| {
+            let [high, low] = [level.first >> 16, level.first & 0xffff].map(|part| part as f32);
+            [level.size[0] as f32, level.size[1] as f32, high, low]
+        };
+        let of = |number: u32| {
+            let (level, source) = (self.level(number), self.level(self.source(number)));
+            let scale = [self.ratio(number), level.per_grid_point].concat();
+            [&place(&level)[..], &place(&source), &scale].concat()
+        };
+        (1..=self.levels()).flat_map(of).collect()
     }
 
     /// Texels of its source per texel of `level`, along columns and along rows.
@@ -160,8 +251,10 @@ impl Pyramid {
     /// Passes that fill them from the heights.
     pub(crate) fn plan(&self, builder: &mut Builder, heights: ResourceId, images: &Images) {
         let Images { levels, table, stack } = *images;
-        for level in 1..=self.levels() {
-            passes::height_reduce::plan(builder, self, level, [heights, levels, table]);
+        let constants = builder.constants(&self.reductions());
+        for octave in self.octaves() {
+            let octave = Octave::new(self, octave, constants);
+            passes::height_reduce::plan(builder, &octave, [heights, levels, table]);
         }
         if let Some(stack) = stack {
             passes::height_expand::plan(builder, self, [levels, table, stack]);

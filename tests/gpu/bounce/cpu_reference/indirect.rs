@@ -24,7 +24,7 @@ use ridgelight_cpu::{shade_expand as expand_reference, shade_reduce as reduce_re
 
 use super::nodes::{casts, places};
 use crate::cpu_reference::{Pair, Run, constant, pushed};
-use crate::horizon::cpu_reference::pyramid::table_pairs;
+use crate::horizon::cpu_reference::pyramid::{numbers, table_pairs};
 
 impl Run<'_> {
     /// The pyramid of exit radiance.
@@ -111,10 +111,13 @@ pub(crate) fn bounce_march(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     each(&got, of, [0, across])
 }
 
-/// A level, and its entry in the table.
+/// The levels of an octave, and their entries in the table.
 pub(crate) fn shade_reduce(run: &mut Run, pass: &Pass) -> Vec<Pair> {
+    numbers(pass).flat_map(|number| shade_level(run, pass, number)).collect()
+}
+
+fn shade_level(run: &mut Run, pass: &Pass, number: u32) -> Vec<Pair> {
     let shade = run.shade();
-    let number = pushed(pass, const { offset("ReducePush", "level") });
     let level = shade.level(number);
     let exit = run.exit(pass);
     let texels = colours(&run.floats(pass, "shade_levels").expect("written"));

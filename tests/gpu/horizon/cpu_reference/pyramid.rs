@@ -19,10 +19,20 @@ impl Run<'_> {
     }
 }
 
-/// A level, and its entry in the table.
+/// Numbers of the levels that a pass makes.
+pub(crate) fn numbers(pass: &Pass) -> std::ops::Range<u32> {
+    let first: u32 = pushed(pass, const { offset("ReducePush", "level") });
+    let count: u32 = pushed(pass, const { offset("ReducePush", "levels") });
+    first..first + count
+}
+
+/// The levels of an octave, and their entries in the table.
 pub(crate) fn height_reduce(run: &mut Run, pass: &Pass) -> Vec<Pair> {
+    numbers(pass).flat_map(|number| height_level(run, pass, number)).collect()
+}
+
+fn height_level(run: &mut Run, pass: &Pass, number: u32) -> Vec<Pair> {
     let pyramid = run.pyramid();
-    let number = pushed(pass, const { offset("ReducePush", "level") });
     let level = pyramid.level(number);
     let texels = run.floats(pass, "height_levels").expect("written");
     let table = run.words(pass, "level_table").expect("written");

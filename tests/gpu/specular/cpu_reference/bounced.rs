@@ -19,6 +19,7 @@ use ridgelight_cpu::{specular_visibility as visible_reference, vector_reduce as 
 
 use crate::bounce::cpu_reference::indirect::{brightest, colours};
 use crate::cpu_reference::{Pair, Run, constant, pushed};
+use crate::horizon::cpu_reference::pyramid::numbers;
 use crate::sh::cpu_reference::device_series;
 
 impl Run<'_> {
@@ -167,9 +168,12 @@ pub(crate) fn specular_exit(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 }
 
 pub(crate) fn vector_reduce(run: &mut Run, pass: &Pass) -> Vec<Pair> {
+    numbers(pass).flat_map(|number| vector_level(run, pass, number)).collect()
+}
+
+fn vector_level(run: &mut Run, pass: &Pass, number: u32) -> Vec<Pair> {
     let order = run.quality.sh_order as usize;
     let shade = run.shade();
-    let number = pushed(pass, const { offset("ReducePush", "level") });
     let level = shade.level(number);
     let exit = run.all_series(pass, "exit_vectors", order);
     let texels = run.all_series(pass, "vector_levels", order);
