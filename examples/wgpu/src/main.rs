@@ -1,5 +1,5 @@
 //! Ridgelight in a wgpu program: the device through wgpu-hal, heights and light in wgpu's textures, light sampled
-//! in a wgpu pass. `ridgelight-wgpu-host OUT.exr` writes what the pass has read. `tools/wgpu` runs it.
+//! in a wgpu pass. `ridgelight-wgpu-host OUT.exr` writes what the pass has read. `examples/wgpu/check` runs it.
 
 use ash::vk;
 use ridgelight_io as files;

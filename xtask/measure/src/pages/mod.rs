@@ -83,7 +83,7 @@ fn hosts() -> Result<String> {
     }
     Ok(out
         + "\nTests run each one and compare its bytes with the command line's, without a validation message \
-           (`tests/gpu/embedding/ash_host.rs`, `crates/capi/tests/c`, `tools/wgpu`).\n")
+           (`tests/gpu/embedding/ash_host.rs`, `crates/capi/tests/c`, `examples/wgpu/check`).\n")
 }
 
 fn sizes() -> Result<String> {
