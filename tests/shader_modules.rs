@@ -85,10 +85,10 @@ impl<'a> Sources<'a> {
 
     /// Everything that can make a value.
     fn makers(&self, value: u32) -> Vec<&'a Instruction> {
-        let (mut open, mut seen, mut found) = (vec![value], Vec::new(), Vec::new());
+        let (mut open, mut visited, mut found) = (vec![value], Vec::new(), Vec::new());
         while let Some(value) = open.pop().map(|value| self.id(value)) {
-            if !seen.contains(&value) {
-                seen.push(value);
+            if !visited.contains(&value) {
+                visited.push(value);
                 found.push(self.by_result[&value]);
                 open.extend(self.stored.get(&value).into_iter().flatten());
             }

@@ -151,14 +151,14 @@ fn compile() {
     let limits = Limits { memory_budget: 4 << 30, ..gpu.report().limits };
     let host = without_images(gpu.host());
     eprintln!("gauge: driver {}", gpu.report().driver);
-    let mut seen = Vec::new();
+    let mut known = Vec::new();
     for (name, scene, quality) in scenes() {
         let plan = plan::picture(&scene, &quality, &limits, Picture::default());
         let plan = plan.unwrap_or_else(|error| panic!("{name}: {error}"));
         eprintln!("{SCENE}{name}");
         for key in pipelines(&plan) {
-            eprintln!("{PASS}{}", if seen.contains(&key) { AGAIN } else { key.0 });
-            seen.push(key);
+            eprintln!("{PASS}{}", if known.contains(&key) { AGAIN } else { key.0 });
+            known.push(key);
         }
         assert!(Renderer::new(&host, plan, 1).is_err(), "{name}: it has no images");
     }
@@ -325,7 +325,7 @@ fn rises(kept: &[Row], now: &[Row]) -> Vec<String> {
     found
 }
 
-/// Needs RADV and a table of its version; tools/test looks for both.
+/// Needs RADV and a table of its version: tools/test runs it where both are there.
 #[test]
 #[ignore = "needs RADV: tools/test --part gauge"]
 fn radv_executes_no_more_than_the_table_says() {

@@ -14,7 +14,7 @@ pub(crate) fn plan(
     builder.pass(
         shaders::ShadeReduce {
             periodic: octave.pyramid.periodic,
-            from_field: octave.from_field(),
+            from_field: octave.reads_field(),
             grey: bounce.grey,
         },
         &format!("{} {}", bounce.name, octave.part()),

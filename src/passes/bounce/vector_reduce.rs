@@ -16,7 +16,7 @@ pub(crate) fn plan(
     builder.pass(
         shaders::VectorReduce {
             periodic: octave.pyramid.periodic,
-            from_field: octave.from_field(),
+            from_field: octave.reads_field(),
         },
         &format!("{name} {}", octave.part()),
         format!("radiance by direction every {finest:.1} to {coarsest:.1} texels"),

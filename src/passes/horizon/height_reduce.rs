@@ -12,7 +12,7 @@ pub(crate) fn plan(
     let away = coarsest * f64::from(1 << pyramid.level_offset);
     let [made, touched] = octave.texels();
     builder.pass(
-        shaders::HeightReduce { periodic: pyramid.periodic, from_field: octave.from_field() },
+        shaders::HeightReduce { periodic: pyramid.periodic, from_field: octave.reads_field() },
         &octave.part(),
         format!(
             "every {finest:.1} to {coarsest:.1} texels, for marches up to {away:.0} steps away"

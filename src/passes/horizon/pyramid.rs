@@ -73,7 +73,7 @@ impl<'a> Octave<'a> {
         Self { pyramid, numbers, constants, push }
     }
 
-    pub(crate) fn from_field(&self) -> bool {
+    pub(crate) fn reads_field(&self) -> bool {
         self.pyramid.source(*self.numbers.start()) == 0
     }
 
