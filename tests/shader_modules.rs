@@ -52,19 +52,46 @@ fn is_glsl(instruction: &Instruction, ops: &[u32]) -> bool {
 /// What makes each value of a module.
 struct Sources<'a> {
     by_result: HashMap<u32, &'a Instruction>,
-    /// All that is stored in each variable.
+    /// All that is stored in each variable, also in parts of it.
     stored: HashMap<u32, Vec<u32>>,
+    /// Arguments of all calls for each parameter, and what each function returns.
+    given: HashMap<u32, Vec<u32>>,
 }
 
 impl<'a> Sources<'a> {
     fn of(module: &'a Module) -> Self {
-        let by_result = instructions(module).filter_map(|i| Some((i.result_id?, i))).collect();
-        let mut stored = HashMap::new();
+        let by_result: HashMap<u32, &Instruction> =
+            instructions(module).filter_map(|i| Some((i.result_id?, i))).collect();
+        let (mut stored, mut given) = (HashMap::new(), HashMap::new());
         for store in instructions(module).filter(|i| i.class.opcode == Op::Store) {
             let [variable, value] = [0, 1].map(|at| id(&store.operands[at]));
-            stored.entry(variable).or_insert_with(Vec::new).push(value);
+            // A part beside others: the variable itself stands for them.
+            let (whole, parts) = match by_result[&variable].class.opcode {
+                Op::AccessChain => {
+                    let whole = id(&by_result[&variable].operands[0]);
+                    (whole, vec![whole, value])
+                }
+                _ => (variable, vec![value]),
+            };
+            stored.entry(whole).or_insert_with(Vec::new).extend(parts);
         }
-        Self { by_result, stored }
+        let mut parameters = HashMap::new();
+        for function in &module.functions {
+            let own = function.def.as_ref().and_then(|def| def.result_id).expect("a function");
+            let all = function.parameters.iter().filter_map(|p| p.result_id);
+            parameters.insert(own, all.collect::<Vec<u32>>());
+            let code = function.blocks.iter().flat_map(|block| &block.instructions);
+            for end in code.filter(|i| i.class.opcode == Op::ReturnValue) {
+                given.entry(own).or_insert_with(Vec::new).push(id(&end.operands[0]));
+            }
+        }
+        for call in instructions(module).filter(|i| i.class.opcode == Op::FunctionCall) {
+            let arguments = call.operands[1..].iter().map(id);
+            for (parameter, argument) in parameters[&id(&call.operands[0])].iter().zip(arguments) {
+                given.entry(*parameter).or_insert_with(Vec::new).push(argument);
+            }
+        }
+        Self { by_result, stored, given }
     }
 
     /// The value behind loads of variables that are stored once, as those of function arguments are; else the variable.
@@ -83,14 +110,34 @@ impl<'a> Sources<'a> {
         self.by_result[&self.id(value)]
     }
 
-    /// Everything that can make a value.
+    /// Everything that can make a value: through variables and parts of them, parameters and results of functions, and
+    /// what only moves values or changes their sign.
     fn makers(&self, value: u32) -> Vec<&'a Instruction> {
         let (mut open, mut visited, mut found) = (vec![value], Vec::new(), Vec::new());
-        while let Some(value) = open.pop().map(|value| self.id(value)) {
+        while let Some(value) = open.pop().filter(|value| self.by_result.contains_key(value)) {
             if !visited.contains(&value) {
                 visited.push(value);
-                found.push(self.by_result[&value]);
+                let made = self.by_result[&value];
+                found.push(made);
                 open.extend(self.stored.get(&value).into_iter().flatten());
+                open.extend(self.given.get(&value).into_iter().flatten());
+                let moves = [
+                    Op::Load,
+                    Op::AccessChain,
+                    Op::FunctionCall,
+                    Op::CompositeExtract,
+                    Op::CompositeConstruct,
+                    Op::CompositeInsert,
+                    Op::VectorShuffle,
+                    Op::VectorExtractDynamic,
+                    Op::CopyObject,
+                    Op::Select,
+                    Op::Phi,
+                    Op::FNegate,
+                ];
+                if moves.contains(&made.class.opcode) {
+                    open.extend(made.operands.iter().filter_map(Operand::id_ref_any));
+                }
             }
         }
         found
@@ -111,7 +158,7 @@ impl<'a> Sources<'a> {
     }
 }
 
-/// Clamps whose bounds may be turned about: the lower one is no constant, and the upper one no maximum of it.
+/// Clamps whose lower bound may exceed the upper: it is not constant, and the upper is not a maximum of it.
 fn loose_clamps(module: &Module) -> usize {
     let sources = Sources::of(module);
     let is_constant =

@@ -1,5 +1,6 @@
 // Computes: the levels of an octave of the pyramid of exit radiance, each from the level an octave finer (from the grid
-// points themselves for the first octave). As height_reduce, but clamped to the range of its source, so that light stays at or above 0.
+// points themselves for the first octave). As height_reduce, but clamped to the range of its source, so that light stays
+// at or above 0.
 // Reads: exit_radiance, shade_levels, constants.
 // Writes: shade_levels (R, G, B), shade_table (one texel a level).
 // One invocation is one texel of one level.

@@ -23,7 +23,7 @@ layout(push_constant) uniform ShadePush {
     uint relights;       // 1 after an edit: only the grid points marked in dirty_texels, from the list of their words
 };
 
-// A branch and no constant: whole frames and edits run the same code, so that no compiler rounds them apart.
+// A branch, not a specialisation constant: frames and edits share a pipeline and therefore round identically.
 bool is_relighting() {
     return CAN_RELIGHT && relights != 0u;
 }

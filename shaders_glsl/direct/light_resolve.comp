@@ -55,7 +55,7 @@ void main() {
     if (at.x >= cols || at.y >= rows) {
         return;
     }
-    // Rounded step by step: the radiance is the sum of the layers, and an edit's that of a whole frame, to the bit.
+    // precise: radiance must equal the sum of the layers, and an edit must equal a whole frame, bit for bit.
     precise vec4 light = SUM_HAS_COLOUR ? texelFetch(colour_sum, at, 0) : texelFetch(scalar_sum, at, 0).xxxx;
     // Rounding can make an almost hidden light negative. NaN stays NaN.
     light = mix(light, vec4(0.0), lessThan(light, vec4(0.0)));

@@ -130,7 +130,7 @@ Around lines_around(Azimuth azimuth, Place at) {
     around.has_before = wraps ? bvec4(true) : greaterThanEqual(before, ivec4(at.first));
     around.has_after = wraps ? bvec4(true) : lessThan(before, ivec4(at.last));
     around.has_after = bvec4(uvec4(around.has_after) & uvec4(greaterThan(offset, ivec4(0))));
-    // GLSL's clamp has no result where its bounds are turned about.
+    // GLSL's clamp is undefined if the lower bound exceeds the upper.
     int first = at.first;
     int last = max(first, at.last);
     int lowest = clamp(mix(before.x, before.w, flips_lanes), first, last);

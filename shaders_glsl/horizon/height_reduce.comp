@@ -1,6 +1,6 @@
 // Computes: the levels of an octave of the height pyramid, each from the level an octave finer (from the field itself for
-// the first octave). Each texel is the mean of four bilinear samples around its position (Nowrouzezahrai & Snyder 2009, section
-// 9: repeated bilinear decimation).
+// the first octave). Each texel is the mean of four bilinear samples around its position (Nowrouzezahrai & Snyder 2009,
+// section 9: repeated bilinear decimation).
 // Reads: heights, height_levels, constants.
 // Writes: height_levels, level_table (one texel a level).
 // One invocation is one texel of one level.

@@ -1,5 +1,5 @@
-// f16, rounded here: packHalf2x16 may round in either direction and may take numbers below 2^-14 for 0. What it gets is
-// held by f16 exactly, so that all drivers store the same bits.
+// Rounds to f16 explicitly: packHalf2x16 may round either way and may flush numbers below 2^-14 to 0. Its inputs here
+// are exact in f16, so all drivers store the same bits.
 
 // The nearest f16 to x, ties to even, for |x| up to 65504; 0 below 2^-14.
 float nearest_f16(float x) {

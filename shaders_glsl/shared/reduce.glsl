@@ -24,8 +24,8 @@ int source_first;
 vec2 ratio;  // source texels per texel
 vec2 per_grid_point;
 
-// Finds the level of a workgroup and the texel of the invocation, if there is one. Workgroups are counted level by level:
-// a row of them for each level would idle beside the smaller ones. Indices of texels are in two parts, which f32 holds.
+// Finds the invocation's level and texel; false if it has none. Workgroups are numbered level by level, since a row per
+// level would idle at small levels. Texel indices are split into two parts that f32 holds exactly.
 bool has_texel(out ivec2 texel) {
     int group = int(gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x);
     int of_octave = 0;
@@ -47,7 +47,7 @@ bool has_texel(out ivec2 texel) {
     per_grid_point = scale.zw;
     int beside = group - first_group[of_octave];
     int across = (cols + 7) >> 3;
-    // A division of integers is slow: one of floats, and one step to the exact row.
+    // Integer division is slow: divide as floats, then correct by at most one row.
     int row = int(float(beside) / float(across));
     int column = beside - row * across;
     int off = (column < 0 ? -1 : 0) + (column >= across ? 1 : 0);

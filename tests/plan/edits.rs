@@ -5,8 +5,8 @@ use ridgelight::scene::{Border, Method, Quality};
 
 use crate::{flat, under_everything};
 
-/// A pass that an edit repeats has the pipeline of the frame's, so that no compiler rounds them apart. Light is resolved
-/// by another one, in which nothing may be contracted (tests/shader_modules.rs).
+/// An edit's pass uses the whole frame's pipeline, so both round identically. The exception is light_resolve, in which
+/// nothing may be contracted (tests/shader_modules.rs).
 #[test]
 fn edits_repeat_passes_with_the_same_pipelines() {
     let scene = under_everything(flat(40, 50), Border::Plane);

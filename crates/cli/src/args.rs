@@ -301,10 +301,10 @@ pub struct BenchArgs {
     /// Time only passes of these names
     #[arg(long, help_heading = "Output", value_delimiter = ',', value_name = "LIST")]
     pub passes: Vec<String>,
-    /// Most timed runs of each pass
+    /// Maximum timed runs of each pass
     ///
-    /// After one to warm up, at least 10 runs are timed, and more until the median is known to 1 % or 10 s have passed;
-    /// passes of seconds run at least 6 times.
+    /// After one warm-up run, timing stops after 10, 20, 40 … runs if the nominal 95 % confidence interval of the median is
+    /// at most 2 % wide, or after 10 s and at least 6 runs. In flow, the whole frame's time decides.
     #[arg(long, default_value_t = 200, value_name = "K", help_heading = "Quality")]
     pub runs: usize,
     /// Also time every form of the sweep, brute force, and a scalar sweep on the CPU
@@ -328,9 +328,9 @@ pub struct BenchArgs {
     pub trace: Option<PathBuf>,
     /// Compare with earlier --json files; exit status 1 if a pass is slower
     ///
-    /// FASTER and SLOWER: the 95 % intervals of both medians are more than 5 % apart, and the fastest tenths of the runs,
-    /// too. SAME: within 5 %. UNSURE: neither.
-    /// Times differ from process to process; several files of one program show by how much, and the interval holds all.
+    /// FASTER or SLOWER: the confidence interval of the ratio of medians and the 10th percentile both lie beyond 5 %.
+    /// SAME: the whole interval lies within 5 %. UNSURE: any other case. Give several files of one build to include the
+    /// variation between processes.
     #[arg(long, help_heading = "Output", value_delimiter = ',', value_name = "FILE,FILE,…")]
     pub against: Vec<PathBuf>,
     /// Write times in Bencher Metric Format

@@ -26,7 +26,8 @@ use verify::Verifier;
 /// Rows that would take longer do fewer runs, as reported, but at least [`FEWEST`], which give the median an interval.
 const ROW_TIME: Duration = Duration::from_secs(10);
 const FEWEST: usize = 6;
-/// Rows end after this many runs once the interval of their median is at most [`STABLE`] of it on both sides together.
+/// Rows end once the interval of their median is at most [`STABLE`] of it on both sides together. That is asked after this
+/// many runs, twice as many and so on: tested after every run, an interval would end rows whenever it happened to be narrow.
 const ENOUGH: usize = 10;
 const STABLE: f64 = 0.02;
 /// A frame whose median is known no better says that the machine is too noisy for a published table.
@@ -123,7 +124,7 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
     let noisy = all.iter().find(|row| row.pass == "total" && row.spread() > Some(NOISY));
     if let Some(row) = noisy.filter(|_| !quiet) {
         crate::say!(
-            "noisy: the median of {} is known to {:.0} % only, too little for a published table",
+            "noisy: the 95 % confidence interval of the {} total spans {:.0} % of its median, expected at most 10 %",
             row.mode.replace('_', " "),
             100.0 * row.spread().unwrap_or_default()
         );
@@ -206,8 +207,9 @@ fn late(begun: Instant, runs: usize) -> bool {
 /// Whether further runs would hardly move the median.
 fn stable(times_ns: &[f64]) -> bool {
     let known = median_interval(times_ns).zip(median(times_ns));
-    times_ns.len() >= ENOUGH
-        && known.is_some_and(|([low, high], median)| high - low <= STABLE * median)
+    let is_asked =
+        times_ns.len().is_multiple_of(ENOUGH) && (times_ns.len() / ENOUGH).is_power_of_two();
+    is_asked && known.is_some_and(|([low, high], median)| high - low <= STABLE * median)
 }
 
 /// Runs of these passes, after one to warm up.

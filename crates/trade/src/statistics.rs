@@ -101,7 +101,7 @@ mod tests {
     /// Of 2,000 sets of 15 draws from a skewed distribution (exponential, median ln 2), at least 95 % less three standard
     /// deviations of that count hold its median, and not all do.
     #[test]
-    fn intervals_hold_the_median_as_often_as_they_say() {
+    fn confidence_intervals_cover_the_median() {
         let mut state = 1_u64;
         let mut draw = || {
             state = state

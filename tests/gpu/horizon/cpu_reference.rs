@@ -141,6 +141,13 @@ pub(crate) fn pyramids() -> Vec<Case> {
         on("levels", rough(23, 41, 33), Border::Open, steps(Pyramid, 4, 1)),
         on("levels, periodic", rough(13, 9, 34), Border::Periodic, steps(Pyramid, 5, 0)),
         on("levels, 16 an octave", rough(17, 31, 35), Border::Plane, steps(Pyramid, 16, 0)),
+        // An octave of more workgroups than a row of its dispatch has.
+        on(
+            "levels, many workgroups",
+            rough(19, 2500, 38),
+            Border::Plane,
+            Quality { azimuths: 4, ..steps(Pyramid, 4, 1) },
+        ),
         on("levels, one texel across", rough(1, 29, 36), Border::Plane, steps(Pyramid, 1, 0)),
         on(
             "stack of a column that repeats",

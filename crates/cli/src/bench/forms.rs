@@ -13,7 +13,7 @@ use ridgelight_trade::statistics::{Summary, median_interval};
 
 use super::rows::{Row, figure, sums};
 use super::verify::Verifier;
-use super::{late, named};
+use super::{FEWEST, late, named, stable};
 
 /// Azimuths that the scalar sweep runs between two runs of a form.
 const SCALAR_AZIMUTHS: u32 = 8;
@@ -22,8 +22,6 @@ const SCALAR_AZIMUTHS: u32 = 8;
 const BRUTE_AZIMUTHS: u32 = 2;
 /// The time of exact lines depends on their grid vectors, which repeat from octant to octant.
 const EXACT_CIRCLE_SHARE: u32 = 8;
-/// Runs of forms that take seconds.
-const SLOW_RUNS: usize = 3;
 
 struct Form {
     /// The pass of the rows.
@@ -107,7 +105,7 @@ pub fn run(
             (0..plan.passes.len()).filter(|i| is_timed(&plan.passes[*i])).collect();
         let contents = plan::picture_inputs(scene);
         let inputs = if form.slow { &contents[..1] } else { &contents[..] };
-        let count = if form.slow { most.min(SLOW_RUNS) } else { most };
+        let count = if form.slow { most.min(FEWEST) } else { most };
         all.push(gpu.with_frame(plan, inputs, |gpu, frame| {
             in_turn(gpu, frame, &mut scalar, &timed, (azimuths, count), &form, bar)
         })?);
@@ -138,7 +136,7 @@ fn in_turn(
             scalar.sweep((f64::from(k) + 0.37) * TAU / f64::from(SCALAR_AZIMUTHS));
         }
         scalar_ns.push(start.elapsed().as_secs_f64() * 1e9);
-        if late(begun, run + 1) {
+        if late(begun, run + 1) || stable(&sums(&runs, |_| true)) {
             break;
         }
     }

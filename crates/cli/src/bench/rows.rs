@@ -82,7 +82,7 @@ impl Row {
             "pass": pass, "part": part, "mode": self.mode, "cols": self.size[0], "rows": self.size[1],
             "azimuths": self.azimuths, "settings": setup::typed(&self.settings), "runs": self.runs,
             "min_ns": self.times.map(|t| t.min), "median_ns": self.times.map(|t| t.median),
-            "low_ns": self.interval.map(|i| i[0]), "high_ns": self.interval.map(|i| i[1]),
+            "median_low_ns": self.interval.map(|i| i[0]), "median_high_ns": self.interval.map(|i| i[1]),
             "p10_ns": self.times.map(|t| t.p10), "p90_ns": self.times.map(|t| t.p90),
             "bytes": self.bytes, "gb_per_s": self.rate(self.bytes).map(|r| r * 1e-9),
             "texels_per_s": self.rate(self.work),
@@ -199,7 +199,7 @@ pub mod tests {
         let mut row = Row::of("sky_shade sky 0+32", "in_flow", &plan, &[], 64, (7, &times));
         (row.bytes, row.work) = (6_000_000, 3_000_000);
         let json = row.json();
-        let keys = "pass part mode cols rows azimuths settings runs min_ns median_ns low_ns high_ns p10_ns \
+        let keys = "pass part mode cols rows azimuths settings runs min_ns median_ns median_low_ns median_high_ns p10_ns \
                     p90_ns bytes gb_per_s texels_per_s";
         assert_eq!(json.as_object().unwrap().len(), keys.split(' ').count());
         assert!(keys.split(' ').all(|k| !json[k].is_null()), "{json}");
@@ -210,7 +210,7 @@ pub mod tests {
         near("median_ns", 3e6);
         near("p10_ns", 0.6e6);
         near("p90_ns", 5.4e6);
-        assert_eq!([&json["low_ns"], &json["high_ns"]], [0.0, 6e6]);
+        assert_eq!([&json["median_low_ns"], &json["median_high_ns"]], [0.0, 6e6]);
         assert_eq!(row.spread(), Some(2.0));
         near("gb_per_s", 2.0);
         near("texels_per_s", 1e9);

@@ -38,8 +38,8 @@ struct EarlierRow {
     median_ns: Option<f64>,
     /// Of several reports, the range of theirs.
     p10_ns: Ends,
-    low_ns: Option<f64>,
-    high_ns: Option<f64>,
+    median_low_ns: Option<f64>,
+    median_high_ns: Option<f64>,
 }
 
 /// One number, or the least and the largest of several.
@@ -114,6 +114,15 @@ impl Earlier {
     pub fn read_all(paths: &[PathBuf]) -> Result<Option<Self>> {
         let mut reports = paths.iter().map(|path| Self::read(path)).collect::<Result<Vec<_>>>()?;
         let Some(mut all) = reports.pop() else { return Ok(None) };
+        if let Some((other, path)) = reports.iter().zip(paths).find(|(r, _)| r.device != all.device)
+        {
+            return Err(Error::file(
+                path,
+                "device",
+                &other.device,
+                format!("{}, as in the last file", all.device),
+            ));
+        }
         for row in &mut all.rows {
             let same: Vec<_> = reports
                 .iter()
@@ -122,9 +131,10 @@ impl Earlier {
             let of = |get: fn(&EarlierRow) -> Option<f64>| {
                 same.iter().map(|r| get(r)).chain([get(row)]).collect::<Option<Vec<f64>>>()
             };
-            let [low, high, medians] = [of(|r| r.low_ns), of(|r| r.high_ns), of(|r| r.median_ns)];
-            row.low_ns = low.map(|all| all.into_iter().fold(f64::INFINITY, f64::min));
-            row.high_ns = high.map(|all| all.into_iter().fold(0.0, f64::max));
+            let [low, high, medians] =
+                [of(|r| r.median_low_ns), of(|r| r.median_high_ns), of(|r| r.median_ns)];
+            row.median_low_ns = low.map(|all| all.into_iter().fold(f64::INFINITY, f64::min));
+            row.median_high_ns = high.map(|all| all.into_iter().fold(0.0, f64::max));
             row.median_ns = medians.and_then(|all| median(&all));
             for other in same {
                 let both = row.p10_ns.0.zip(other.p10_ns.0);
@@ -140,7 +150,7 @@ impl Earlier {
             let key = (row.pass_and_part(), row.mode, row.size, row.azimuths);
             let earlier = self.rows.iter().find(|earlier| earlier.key() == key)?;
             let ratio = row.times.zip(earlier.median_ns).map(|(now, then)| now.median / then);
-            let bounds = match (row.interval, earlier.low_ns, earlier.high_ns) {
+            let bounds = match (row.interval, earlier.median_low_ns, earlier.median_high_ns) {
                 (Some([low, high]), Some(then_low), Some(then_high)) => {
                     Some([low / then_high, high / then_low])
                 }
@@ -164,8 +174,8 @@ impl EarlierRow {
     }
 }
 
-/// What the bounds of the ratios of medians and of fastest tenths say, if they say one thing. Other work on a machine only
-/// adds time: it moves a median more than the fastest tenth, which must have changed as well.
+/// The verdict from the bounds of the ratios of medians and of 10th percentiles. Other work on a machine moves a median
+/// more than the 10th percentile, so both must have changed.
 fn verdict(median: Option<[f64; 2]>, p10: Option<[f64; 2]>) -> Verdict {
     let (Some([low, high]), Some([p10_low, p10_high])) = (median, p10) else {
         return Verdict::Unsure;
@@ -207,12 +217,12 @@ impl Changes<'_> {
     pub fn print(&self, device: &str, driver: &str) {
         let Earlier { commit, .. } = self.earlier;
         let of = if commit.is_empty() { String::new() } else { format!(", commit {commit}") };
-        crate::say!("\nagainst the earlier report{of}");
+        crate::say!("\ncompared with the earlier report{of}");
         for (what, then, now) in
             [("device", &self.earlier.device, device), ("driver", &self.earlier.driver, driver)]
         {
             if then != now {
-                crate::say!("another {what}: {then}");
+                crate::say!("different {what}: earlier {then}, now {now}");
             }
         }
         crate::say!(
@@ -239,10 +249,10 @@ impl Changes<'_> {
         for line in self.differences() {
             crate::say!("{line}");
         }
-        let missing = self.earlier.rows.len() - self.changes.len();
+        let missing = self.earlier.rows.len().saturating_sub(self.changes.len());
         for (count, which) in [(self.new, "this run"), (missing, "the earlier report")] {
             if count > 0 {
-                crate::say!("not compared: {count} rows that only {which} has");
+                crate::say!("not compared: {count} rows found only in {which}");
             }
         }
     }
@@ -259,7 +269,7 @@ impl Changes<'_> {
                     .map(|value| value.map_or("none".to_owned(), Value::to_string));
                 // A result, and a name of a row.
                 let is_setting = !["light_error", "scalar_beside"].contains(&&name[..]);
-                let line = format!("another setting: {name} was {then}, is {now}");
+                let line = format!("different setting: {name}: earlier {then}, now {now}");
                 if then != now && is_setting && !lines.contains(&line) {
                     lines.push(line);
                 }
@@ -343,6 +353,19 @@ mod tests {
     }
 
     #[test]
+    fn reports_of_different_devices_are_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let paths = ["a", "b"].map(|device| {
+            let path = folder.path().join(device);
+            std::fs::write(&path, rows::file(device, "v", &[row("a", 1.0)], &[]).to_string())
+                .unwrap();
+            path
+        });
+        let message = Earlier::read_all(&paths).err().unwrap().to_string();
+        assert!(message.contains("device: found a, expected b"), "{message}");
+    }
+
+    #[test]
     fn too_few_runs_and_no_times_are_unsure() {
         let times = [1e6; 5];
         let few = Row::of("a", "in_flow", &plan(), &[], 64, (5, &times));
@@ -355,7 +378,7 @@ mod tests {
     }
 
     #[test]
-    fn other_settings_are_told_once() {
+    fn differing_settings_are_reported_once() {
         let mut slower = [row("a", 100.0), row("b", 100.0)];
         for row in &mut slower {
             let hull = row.settings.iter_mut().find(|(name, _)| name == "hull").unwrap();
@@ -363,7 +386,7 @@ mod tests {
         }
         let earlier = report(&[row("a", 100.0), row("b", 100.0)]);
         let lines = earlier.against(&slower).differences();
-        assert_eq!(lines, [r#"another setting: hull was "private", is "shared""#]);
+        assert_eq!(lines, [r#"different setting: hull: earlier "private", now "shared""#]);
     }
 
     #[test]

@@ -1,8 +1,8 @@
-//! The gauge: what RADV's compiler makes of every pass for a GPU that is not there.
+//! Shader statistics of the passes of some scenes from RADV's compiler, without an AMD GPU.
 //!
 //! Mesa's RADV compiles for a null device (`RADV_FORCE_FAMILY`) and prints instructions and statistics, those of
-//! VK_KHR_pipeline_executable_properties. The instructions of each block are multiplied by the turns of its loops. A rise
-//! above 5 % over the committed table fails until the table is written again: `RIDGELIGHT_BLESS=1 tools/test --part gauge`.
+//! VK_KHR_pipeline_executable_properties. The instructions of each block are multiplied by the iterations of its loops. A rise
+//! above 5 % over the committed table fails until the table is written again: `RIDGELIGHT_BLESS=1 tools/test --part shader-stats`.
 
 use std::collections::BTreeMap;
 use std::ffi::c_void;
@@ -19,20 +19,23 @@ use ridgelight::scene::{
 };
 
 /// Set in the process that compiles.
-const CHILD: &str = "RIDGELIGHT_GAUGE_CHILD";
+const CHILD: &str = "RIDGELIGHT_SHADER_STATS_CHILD";
 /// Begins the passes of a scene, and names each pass in the order of its compilation.
-const SCENE: &str = "gauge: scene ";
-const PASS: &str = "gauge: pass ";
+const SCENE: &str = "stats: scene ";
+const PASS: &str = "stats: pass ";
 /// In place of the name of a pass whose pipeline an earlier scene has.
 const AGAIN: &str = "again";
 /// A rise above this share fails.
 const RISE: f64 = 0.05;
 
-/// Turns of the loops of a pass, from the outermost on. Deeper loops, and those of other passes, turn [`OTHERS`] times: these
-/// are weights, not measurements.
-fn turns(pass: &str, depth: usize) -> f64 {
-    const OTHERS: [f64; 4] = [32.0, 4.0, 4.0, 4.0];
-    // A sweep marches 1,024 steps, with 1.4 turns of the loop that pops on a digital elevation model; a shading of a batch goes over 32 azimuths.
+/// Iterations of loops without an entry in [`iterations`].
+const OTHERS: [f64; 4] = [32.0, 4.0, 4.0, 4.0];
+
+/// Assumed iterations of a pass's loops, outermost first. Deeper loops and other passes use [`OTHERS`]: weights, not
+/// measurements.
+fn iterations(pass: &str, depth: usize) -> f64 {
+    // A sweep marches 1,024 steps, with about 1.4 iterations of the loop that pops on an elevation model. A shading batch
+    // has 32 azimuths.
     let known: &[f64] = match pass {
         "horizon_sweep" => &[1024.0, 1.4],
         "sky_shade" | "sun_shade" => &[32.0],
@@ -104,17 +107,18 @@ fn scenes() -> Vec<(&'static str, Scene, Quality)> {
 struct Figures {
     /// Instructions by the depth of the loop that they are in.
     by_depth: Vec<u64>,
-    /// Instructions that an invocation executes, as weighted by [`turns`].
+    /// Instructions that an invocation executes, as weighted by [`iterations`].
     executed: f64,
     registers: u64,
-    /// Registers of both kinds that are spilled, and bytes of scratch of a lane.
+    /// Spilled SGPRs and VGPRs.
     spilled: u64,
+    /// Bytes of scratch per subgroup.
     scratch: u64,
     /// Subgroups that fit a SIMD at once.
     occupancy: u64,
 }
 
-/// Stands for the null driver's own, which crashes: a renderer makes its pipelines first, and ends here.
+/// Replaces the null driver's vkCreateImage, which crashes. The renderer has compiled its pipelines by then.
 unsafe extern "system" fn no_image(
     _: vk::Device,
     _: *const vk::ImageCreateInfo<'_>,
@@ -150,7 +154,7 @@ fn compile() {
     // The null device has no memory.
     let limits = Limits { memory_budget: 4 << 30, ..gpu.report().limits };
     let host = without_images(gpu.host());
-    eprintln!("gauge: driver {}", gpu.report().driver);
+    eprintln!("stats: driver {}", gpu.report().driver);
     let mut known = Vec::new();
     for (name, scene, quality) in scenes() {
         let plan = plan::picture(&scene, &quality, &limits, Picture::default());
@@ -162,7 +166,7 @@ fn compile() {
         }
         assert!(Renderer::new(&host, plan, 1).is_err(), "{name}: it has no images");
     }
-    // The null device cannot end what it never ran.
+    // Skips teardown, which the null device does not support.
     std::process::exit(0);
 }
 
@@ -228,7 +232,7 @@ fn read(said: &str) -> Vec<(String, String, Figures)> {
                     .unwrap_or_else(|| panic!("{scene}, {name}: no statistic {name}"))
             };
             let by_depth = by_depth(assembly);
-            let weighted = |(depth, count): (usize, &u64)| *count as f64 * turns(name, depth);
+            let weighted = |(depth, count): (usize, &u64)| *count as f64 * iterations(name, depth);
             let executed = by_depth.iter().enumerate().map(weighted).sum();
             rows.push((
                 scene.to_owned(),
@@ -250,26 +254,25 @@ fn read(said: &str) -> Vec<(String, String, Figures)> {
 /// Instructions of the loop over steps or azimuths for each of its four texels; none for other passes.
 fn per_texel(name: &str, figures: &Figures) -> Option<f64> {
     let inner = figures.by_depth.iter().enumerate().skip(1);
-    let executed: f64 = inner.map(|(depth, count)| *count as f64 * turns(name, depth)).sum();
-    BY_FOUR.contains(&name).then(|| executed / turns(name, 1) / 4.0)
+    let executed: f64 = inner.map(|(depth, count)| *count as f64 * iterations(name, depth)).sum();
+    BY_FOUR.contains(&name).then(|| executed / iterations(name, 1) / 4.0)
 }
 
 type Row = (String, String, Figures);
 
 fn table(driver: &str, rows: &[Row]) -> String {
     let mut out = format!(
-        "{driver}, RADV_FORCE_FAMILY=navi21. Written by RIDGELIGHT_BLESS=1 tools/test --part gauge\n\
-         executed: instructions of an invocation, by weights of loops; each: of the loop over steps or azimuths, per texel \
-         and turn\n\
-         {:<22} | {:<18} | {:>9} | {:>6} | {:>5} | {:>7} | {:>7} | {:>9} | instructions by loop depth\n",
-        "scene", "pass", "executed", "each", "VGPRs", "spilled", "scratch", "occupancy"
+        "{driver}, RADV_FORCE_FAMILY=navi21. Written by RIDGELIGHT_BLESS=1 tools/test --part shader-stats\n\
+         executed: instructions per invocation, weighted by assumed iterations; per texel: of one step or azimuth\n\
+         {:<22} | {:<18} | {:>9} | {:>9} | {:>5} | {:>7} | {:>7} | {:>9} | instructions by loop depth\n",
+        "scene", "pass", "executed", "per texel", "VGPRs", "spilled", "scratch", "occupancy"
     );
     for (scene, name, f) in rows {
         let each = per_texel(name, f).map_or_else(|| "-".to_owned(), |each| format!("{each:.1}"));
         let depths: Vec<String> = f.by_depth.iter().map(u64::to_string).collect();
         writeln!(
             out,
-            "{scene:<22} | {name:<18} | {:>9.0} | {each:>6} | {:>5} | {:>7} | {:>7} | {:>9} | {}",
+            "{scene:<22} | {name:<18} | {:>9.0} | {each:>9} | {:>5} | {:>7} | {:>7} | {:>9} | {}",
             f.executed,
             f.registers,
             f.spilled,
@@ -312,13 +315,13 @@ fn rises(kept: &[Row], now: &[Row]) -> Vec<String> {
             ("executed", then.executed, now.executed),
             ("spilled", then.spilled as f64, now.spilled as f64),
             ("scratch", then.scratch as f64, now.scratch as f64),
-            ("subgroups that do not fit", -(then.occupancy as f64), -(now.occupancy as f64)),
+            ("occupancy", -(then.occupancy as f64), -(now.occupancy as f64)),
         ];
         for (what, then, now) in all {
             // The table rounds what is executed.
             let rounded = if what == "executed" { 0.5 } else { 0.0 };
             if now > then + RISE * then.abs() + rounded {
-                found.push(format!("{scene}, {name}: {what} {then} and now {now}"));
+                found.push(format!("{scene}, {name}: {what} {} and now {}", then.abs(), now.abs()));
             }
         }
     }
@@ -327,30 +330,25 @@ fn rises(kept: &[Row], now: &[Row]) -> Vec<String> {
 
 /// Needs RADV and a table of its version: tools/test runs it where both are there.
 #[test]
-#[ignore = "needs RADV: tools/test --part gauge"]
-fn radv_executes_no_more_than_the_table_says() {
+#[ignore = "needs RADV: tools/test --part shader-stats"]
+fn statistics_stay_within_the_table() {
     if std::env::var_os(CHILD).is_some() {
         compile();
     }
     let mut child = Command::new(std::env::current_exe().expect("this test"));
-    child.args([
-        "--exact",
-        "radv_executes_no_more_than_the_table_says",
-        "--ignored",
-        "--nocapture",
-    ]);
+    child.args(["--exact", "statistics_stay_within_the_table", "--ignored", "--nocapture"]);
     child.env(CHILD, "1").env("RADV_FORCE_FAMILY", "navi21");
     child.env("RADV_DEBUG", "shaders,shaderstats,nocache");
     let run = child.output().expect("this test again");
     let said = String::from_utf8_lossy(&run.stderr);
-    let driver = said.lines().find_map(|line| line.strip_prefix("gauge: driver "));
+    let driver = said.lines().find_map(|line| line.strip_prefix("stats: driver "));
     let driver =
         driver.unwrap_or_else(|| panic!("no RADV: VK_DRIVER_FILES names its manifest\n{said}"));
     assert!(run.status.success(), "{driver}: {}", run.status);
     let rows = read(&said);
     let version = driver.split_once("Mesa ").expect("RADV").1.split(' ').next().unwrap_or_default();
-    let path =
-        PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(format!("tests/gauge/radv-{version}.txt"));
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+        .join(format!("tests/shader_stats/radv-{version}.txt"));
     let text = table(driver, &rows);
     println!("{text}");
     if std::env::var_os("RIDGELIGHT_BLESS").is_some_and(|v| v == "1") {
@@ -358,8 +356,12 @@ fn radv_executes_no_more_than_the_table_says() {
         return;
     }
     let kept = std::fs::read_to_string(&path);
-    let kept =
-        kept.unwrap_or_else(|error| panic!("{}: {error}: RIDGELIGHT_BLESS=1", path.display()));
+    let kept = kept.unwrap_or_else(|error| {
+        panic!(
+            "{}: {error}: write it with RIDGELIGHT_BLESS=1 tools/test --part shader-stats",
+            path.display()
+        )
+    });
     let found = rises(&parsed(&kept), &rows);
     assert!(found.is_empty(), "{}", found.join("\n"));
 }
