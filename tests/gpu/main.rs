@@ -83,6 +83,8 @@ mod specular {
     pub mod cpu_reference;
     mod direct;
 }
+#[path = "../common/intercepted.rs"]
+mod intercepted;
 #[path = "../common/target.rs"]
 mod target;
 mod view {

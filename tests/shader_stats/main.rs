@@ -10,7 +10,11 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::process::Command;
 
+#[path = "../common/intercepted.rs"]
+mod intercepted;
+
 use ash::vk;
+use intercepted::with_function;
 use ridgelight::gpu::{Headless, HeadlessOptions, Host, Renderer};
 use ridgelight::plan::{self, Limits, Picture, Plan};
 use ridgelight::scene::{
@@ -128,32 +132,15 @@ unsafe extern "system" fn no_image(
     vk::Result::ERROR_OUT_OF_DEVICE_MEMORY
 }
 
-/// The host without images.
-fn without_images(host: &Host) -> Host {
-    let (real, handle) = (host.instance.fp_v1_0(), host.device.handle());
-    // SAFETY: all functions are the device's own, except one of its type that only refuses.
-    let device = unsafe {
-        ash::Device::load_with(
-            |name| match name.to_bytes() {
-                b"vkCreateImage" => no_image as *const c_void,
-                _ => {
-                    let function = (real.get_device_proc_addr)(handle, name.as_ptr());
-                    std::mem::transmute::<vk::PFN_vkVoidFunction, *const c_void>(function)
-                }
-            },
-            handle,
-        )
-    };
-    Host { device, ..host.clone() }
-}
-
 /// Compiles all scenes, each pass announced before; the driver prints what it made.
 fn compile() {
     let options = HeadlessOptions { device: None, validation: false };
     let gpu = Headless::new(&options).expect("the null device");
     // The null device has no memory.
     let limits = Limits { memory_budget: 4 << 30, ..gpu.report().limits };
-    let host = without_images(gpu.host());
+    // SAFETY: it has the type of that function, and only refuses.
+    let device = unsafe { with_function(gpu.host(), c"vkCreateImage", no_image as *const c_void) };
+    let host = Host { device, ..gpu.host().clone() };
     eprintln!("stats: driver {}", gpu.report().driver);
     let mut known = Vec::new();
     for (name, scene, quality) in scenes() {

@@ -121,13 +121,8 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
         all.extend(table.into_iter().flatten());
     }
     bar.finish_and_clear();
-    let noisy = all.iter().find(|row| row.pass == "total" && row.spread() > Some(NOISY));
-    if let Some(row) = noisy.filter(|_| !quiet) {
-        crate::say!(
-            "noisy: the 95 % confidence interval of the {} total spans {:.0} % of its median, expected at most 10 %",
-            row.mode.replace('_', " "),
-            100.0 * row.spread().unwrap_or_default()
-        );
+    if let Some(noise) = noise(&all).filter(|_| !quiet) {
+        crate::say!("{noise}");
     }
     let changes = earlier.as_ref().map(|earlier| earlier.against(&all));
     if let Some(changes) = changes.as_ref().filter(|_| !quiet) {
@@ -204,6 +199,16 @@ fn late(begun: Instant, runs: usize) -> bool {
     runs >= FEWEST && begun.elapsed() > ROW_TIME
 }
 
+/// What is said of a frame whose median is known too badly.
+fn noise(rows: &[Row]) -> Option<String> {
+    let row = rows.iter().find(|row| row.pass == "total" && row.spread() > Some(NOISY))?;
+    Some(format!(
+        "noisy: the 95 % confidence interval of the {} total spans {:.0} % of its median, expected at most 10 %",
+        row.mode.replace('_', " "),
+        100.0 * row.spread()?
+    ))
+}
+
 /// Whether further runs would hardly move the median.
 fn stable(times_ns: &[f64]) -> bool {
     let known = median_interval(times_ns).zip(median(times_ns));
@@ -277,4 +282,40 @@ fn time(
         rows.push(row("total".into(), "isolated", &every, fewest, &totals[..fewest]));
     }
     Ok((rows, runs.into_iter().next_back().unwrap_or_default()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// 10 values about 100, whose interval goes from the 2nd to the 9th: `step` apart, it is 7 steps wide.
+    fn spread(count: usize, step: f64) -> Vec<f64> {
+        (0..count).map(|i| 100.0 + step * i as f64).collect()
+    }
+
+    /// A width of 2 % ends a row, after 10, 20 and 40 runs and not in between.
+    #[test]
+    fn rows_end_once_their_median_is_known() {
+        assert!(stable(&spread(10, 0.28)) && !stable(&spread(10, 0.30)));
+        for (count, is_asked) in
+            [(0, false), (9, false), (11, false), (20, true), (30, false), (40, true)]
+        {
+            assert_eq!(stable(&vec![1.0; count]), is_asked, "{count} runs");
+        }
+        assert!(!stable(&[]) && !stable(&[0.0; 10].map(|_: f64| f64::NAN)));
+    }
+
+    #[test]
+    fn a_frame_of_a_noisy_machine_is_named() {
+        let plan = rows::tests::plan();
+        let row = |pass, step| Row::of(pass, "in_flow", &plan, &[], 4, (10, &spread(10, step)));
+        assert_eq!(noise(&[row("total", 1.5), row("sky_shade", 9.0)]), None);
+        let said = noise(&[row("total", 2.0)]).unwrap();
+        assert!(said.contains("in flow total spans 13 %"), "{said}");
+        // Too few runs for an interval say nothing.
+        assert_eq!(
+            noise(&[Row::of("total", "in_flow", &plan, &[], 4, (3, &[1.0, 2.0, 9.0]))]),
+            None
+        );
+    }
 }

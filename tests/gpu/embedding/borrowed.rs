@@ -13,6 +13,7 @@ use ridgelight::plan::{self, Picture, Plan};
 use ridgelight::scene::{Albedo, Border, Environment, HeightField, Quality, Scene, Sun};
 use ridgelight::{Error, Result};
 
+use crate::intercepted::with_function;
 use crate::target::{Input, LEAST_BLOCK};
 use crate::{Device, field, under_sky};
 
@@ -255,20 +256,9 @@ unsafe extern "system" fn keep_cache(
 /// A host whose calls for pipelines this test records.
 fn heard(host: &Host, pipeline_cache: vk::PipelineCache) -> Host {
     CACHES.lock().expect("no panic").0 = Some(host.device.fp_v1_0().create_compute_pipelines);
-    let (real, handle) = (host.instance.fp_v1_0(), host.device.handle());
-    // SAFETY: all functions are the device's own, except one that calls the device's own.
-    let device = unsafe {
-        ash::Device::load_with(
-            |name| match name.to_bytes() {
-                b"vkCreateComputePipelines" => keep_cache as *const c_void,
-                _ => {
-                    let function = (real.get_device_proc_addr)(handle, name.as_ptr());
-                    std::mem::transmute::<vk::PFN_vkVoidFunction, *const c_void>(function)
-                }
-            },
-            handle,
-        )
-    };
+    // SAFETY: it has the type of that function, and calls the device's own.
+    let device =
+        unsafe { with_function(host, c"vkCreateComputePipelines", keep_cache as *const c_void) };
     Host { device, pipeline_cache, ..host.clone() }
 }
 
