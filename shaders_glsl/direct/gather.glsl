@@ -54,10 +54,20 @@ bvec4 lit_texels(int lane, int march) {
     return notEqual(word & bits, uvec4(0));
 }
 
+Azimuth azimuth_of(uint k) {
+#ifdef LANE_BUFFER
+    if (READS_LANE_BUFFER) {
+        return azimuth_from(azimuth_buffer[4u * k], azimuth_buffer[4u * k + 1u], azimuth_buffer[4u * k + 2u],
+                            azimuth_buffer[4u * k + 3u]);
+    }
+#endif
+    return azimuth_at(azimuths, k);
+}
+
 // `east` and `north` are the surface slopes at the grid points.
 void add_all(Quad q, int lanes, int steps, vec4 east, vec4 north) {
     for (uint k = first_azimuth; k < first_azimuth + azimuth_count; k++) {
-        Azimuth azimuth = azimuth_at(azimuths, k);
+        Azimuth azimuth = azimuth_of(k);
         vec4 lowest = vec4(NO_SLOPE);
         if (OWN_PLANE_HIDES) {
             // Rise of the grid point's own tangent plane along the azimuth (TW10 eq. 4).

@@ -20,6 +20,8 @@
 layout(local_size_x_id = 0) in;
 
 layout(constant_id = 1) const bool PERIODIC = false;
+// Heights of four steps are fetched together, before the four steps until then are marched: a GPU needs the time.
+layout(constant_id = 2) const bool FETCHES_AHEAD = false;
 
 layout(binding = 0, rgba32f) uniform readonly image2D lane_heights;
 layout(binding = 1) uniform textureBuffer azimuths;
@@ -44,29 +46,56 @@ struct Nine {
     float c;
 };
 
-// Heights from a lane on, in the order of the lines. Beyond the edge of a field that does not repeat they stay the same.
-Nine nine_heights(int lane, int step) {
-    int march = march_position(azimuth, PERIODIC ? step % steps : step, steps);
+// Three texels of a step, from that of a lane on.
+struct Fetched {
+    vec4 a;
+    vec4 b;
+    vec4 c;
+};
+
+// The first of nine lanes from a flipped one on.
+int first_of_nine(int lane) {
     bool flips = (azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u;
-    int base = flips ? lanes - 9 - lane : lane;
-    Nine nine;
+    int mirrored = lanes - 9 - lane;
+    return flips ? mirrored : lane;
+}
+
+Fetched fetch_nine(int lane, int step) {
+    int march = march_position(azimuth, PERIODIC ? step % steps : step, steps);
+    int base = first_of_nine(lane);
+    Fetched all;
     if (PERIODIC) {
-        float all[9];
+        float nine[9];
         for (int k = 0; k < 9; k++) {
             int at = wrapped(base + k, lanes);
-            all[k] = imageLoad(lane_heights, ivec2(at >> 2, march))[at & 3];
+            nine[k] = imageLoad(lane_heights, ivec2(at >> 2, march))[at & 3];
         }
-        nine = Nine(vec4(all[0], all[1], all[2], all[3]), vec4(all[4], all[5], all[6], all[7]), all[8]);
+        all = Fetched(vec4(nine[0], nine[1], nine[2], nine[3]), vec4(nine[4], nine[5], nine[6], nine[7]),
+                      vec4(nine[8]));
     } else {
         int first = base >> 2;
         int last = (lanes - 1) >> 2;
-        vec4 a = imageLoad(lane_heights, ivec2(clamp(first, 0, last), march));
-        vec4 b = imageLoad(lane_heights, ivec2(clamp(first + 1, 0, last), march));
-        vec4 c = imageLoad(lane_heights, ivec2(clamp(first + 2, 0, last), march));
+        all.a = imageLoad(lane_heights, ivec2(clamp(first, 0, last), march));
+        all.b = imageLoad(lane_heights, ivec2(clamp(first + 1, 0, last), march));
+        all.c = imageLoad(lane_heights, ivec2(clamp(first + 2, 0, last), march));
+    }
+    return all;
+}
+
+// Heights from a lane on, in the order of the lines. Beyond the edge of a field that does not repeat they stay the same.
+Nine nine_heights(Fetched all, int lane) {
+    bool flips = (azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u;
+    int base = first_of_nine(lane);
+    Nine nine;
+    if (PERIODIC) {
+        nine = Nine(all.a, all.b, all.c.x);
+    } else {
+        int first = base >> 2;
+        int last = (lanes - 1) >> 2;
         // The lanes past the last of a texel repeat it.
-        a = mix(mix(a, a.xxxx, bvec4(first < 0)), a.wwww, bvec4(first > last));
-        b = mix(mix(b, b.xxxx, bvec4(first < -1)), b.wwww, bvec4(first + 1 > last));
-        c = mix(mix(c, c.xxxx, bvec4(first < -2)), c.wwww, bvec4(first + 2 > last));
+        vec4 a = mix(mix(all.a, all.a.xxxx, bvec4(first < 0)), all.a.wwww, bvec4(first > last));
+        vec4 b = mix(mix(all.b, all.b.xxxx, bvec4(first < -1)), all.b.wwww, bvec4(first + 1 > last));
+        vec4 c = mix(mix(all.c, all.c.xxxx, bvec4(first < -2)), all.c.wwww, bvec4(first + 2 > last));
         bvec4 two = bvec4((base & 2) != 0);
         vec4 a2 = mix(a, vec4(a.zw, b.xy), two);
         vec4 b2 = mix(b, vec4(b.zw, c.xy), two);
@@ -79,6 +108,85 @@ Nine nine_heights(int lane, int step) {
     Nine mirrored = Nine(vec4(nine.c, nine.b.wzy), vec4(nine.b.x, nine.a.wzy), nine.a.x);
     bvec4 swaps = bvec4(flips);
     return Nine(mix(nine.a, mirrored.a, swaps), mix(nine.b, mirrored.b, swaps), mix(nine.c, mirrored.c, flips));
+}
+
+// March state: lane position of the first line; of its sun's lower edge; and the direction of the cells' diagonals.
+int line;
+int begin;
+int y;
+float rise;
+float shear_cells;
+bool splits_along;
+// The highest ground so far, over a plane through the beginning of the march.
+vec4 top;
+ivec4 top_step;
+// Of the step before: the lane before line 0; slopes from lane to lane, from one lane before that; and the lines over
+// the plane, raised by K.
+int cell;
+vec4 slopes_a;
+vec3 slopes_b;
+vec4 raised;
+
+void march_over(int step, Fetched fetched) {
+    Nine nine = nine_heights(fetched, cell - 1);
+    vec4 to_a = vec4(nine.a.yzw, nine.b.x) - nine.a;
+    vec4 to_b = vec4(nine.b.yzw, nine.c) - nine.b;
+    // E. Slopes of the step before against those of the same cells, and of the cells one lane on.
+    vec4 same_a = slopes_a - to_a;
+    vec3 same_b = slopes_b - to_b.xyz;
+    vec4 next_a = slopes_a - vec4(to_a.yzw, to_b.x);
+    vec2 next_b = slopes_b.xy - to_b.yz;
+    vec4 most = max(max(same_a, vec4(same_a.yzw, same_b.x)), max(vec4(same_a.zw, same_b.xy), vec4(same_a.w, same_b)));
+    vec4 least = min(min(same_a, vec4(same_a.yzw, same_b.x)), min(vec4(same_a.zw, same_b.xy), vec4(same_a.w, same_b)));
+    vec4 turn = max(most, max(next_a, max(vec4(next_a.yzw, next_b.x), vec4(next_a.zw, next_b))));
+    vec4 twist = splits_along ? -least : most;
+    vec4 between = 0.25 * (shear_cells * max(turn, 0.0) + max(twist, 0.0));
+    // From here on of this step's own lanes.
+    bool moves = y >> CELL_SHIFT != cell;
+    bvec4 on = bvec4(moves);
+    vec4 h_a = mix(nine.a, vec4(nine.a.yzw, nine.b.x), on);
+    vec4 h_b = mix(nine.b, vec4(nine.b.yzw, nine.c), on);
+    slopes_a = mix(to_a, vec4(to_a.yzw, to_b.x), on);
+    slopes_b = mix(to_b.xyz, to_b.yzw, on.xyz);
+    cell = y >> CELL_SHIFT;
+    float f = float(y & (CELL - 1)) * (1.0 / float(CELL));
+    vec4 h = mix(vec4(h_a.yzw, h_b.x), vec4(h_a.zw, h_b.xy), f);
+    float plane = float(step) * rise;
+    vec4 over_plane = h + plane;
+
+    // Of the sums and of the heights: a few units in the last place.
+    vec4 over = top - over_plane + (abs(top) + abs(h) + abs(plane)) * 1e-6;
+    uvec4 back = uvec4(clamp(step - top_step, 0, 0xffff));
+    back = mix(back, uvec4(0), lessThanEqual(top, vec4(NOTHING)));
+    // Negative ones are cut off towards 0, which is up.
+    uvec4 bits = floatBitsToUint(over) + mix(uvec4(0), uvec4(0xffff), greaterThan(over, vec4(0.0)));
+    uvec4 words = bits & 0xffff0000u | back;
+    imageStore(shadows, lattice_texel(azimuth, line, step), words);
+
+    // K, of the grid points on both sides of each line.
+    vec4 bend = slopes_a - vec4(slopes_a.yzw, slopes_b.x);
+    vec4 next_bend = vec4(slopes_a.yzw, slopes_b.x) - vec4(slopes_a.zw, slopes_b.xy);
+    vec4 now = over_plane + f * (1.0 - f) * max(max(bend, next_bend), 0.0);
+    // The maximum over u.
+    vec4 apart = abs(now - raised);
+    vec4 middle = 0.5 * (now + raised) + between + apart * apart / max(16.0 * between, 1e-30);
+    vec4 found = mix(max(now, raised), middle, lessThan(apart, 4.0 * between));
+    ivec4 place = y + ivec4(0, CELL, 2 * CELL, 3 * CELL);
+    found = mix(found, now, bvec4(step == begin));
+    raised = now;
+    bvec4 counts = bvec4(true);
+    if (!PERIODIC) {
+        counts = bvec4(uvec4(greaterThan(place, ivec4(-CELL))) & uvec4(lessThan(place, ivec4(lanes * CELL))));
+    }
+    bvec4 higher = bvec4(uvec4(counts) & uvec4(greaterThan(found, top)));
+    top = mix(top, found, higher);
+    top_step = mix(top_step, ivec4(step), higher);
+    y += azimuth.shear;
+}
+
+// Heights for the step some steps on; lanes are those of the step before it.
+Fetched fetch_ahead(int on, int step, int total) {
+    return fetch_nine(((y + (on - 1) * azimuth.shear) >> CELL_SHIFT) - 1, min(step + on, total - 1));
 }
 
 void main() {
@@ -94,7 +202,7 @@ void main() {
     }
     // The steps at which any line of the group is on the field, or less than a cell beside it: rays between it and
     // the next line are. And the step before, from which such rays enter the field.
-    int begin = 0;
+    begin = 0;
     int end = total;
     if (!PERIODIC && shear > 0) {
         int lowest = (first_line - lead) * CELL;
@@ -102,74 +210,46 @@ void main() {
         begin = max(0, (-2 * CELL - highest) / shear);
         end = clamp((lanes * CELL - lowest) / shear + 1, begin, max(begin, total));
     }
-    int line = first_line + int(gl_LocalInvocationID.x) * 4;
-    int y = (line - lead) * CELL + begin * shear;
-    float rise = azimuth.low_slope * azimuth.step_m;
-    float shear_cells = float(shear) * (1.0 / float(CELL));
-    bool splits_along = ((azimuth.flags & AZIMUTH_FLIPS_MARCH) != 0u) == ((azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u);
-    // The highest ground so far, over a plane through the beginning of the march.
-    vec4 top = vec4(NOTHING);
-    ivec4 top_step = ivec4(0);
-    // Of the step before: the lane before line 0; slopes from lane to lane, from one lane before that; and the lines over
-    // the plane, raised by K.
-    int cell = y >> CELL_SHIFT;
-    vec4 slopes_a = vec4(0.0);
-    vec3 slopes_b = vec3(0.0);
-    vec4 raised = vec4(NOTHING);
-    for (int step = begin; step < end; step++) {
-        Nine nine = nine_heights(cell - 1, step);
-        vec4 to_a = vec4(nine.a.yzw, nine.b.x) - nine.a;
-        vec4 to_b = vec4(nine.b.yzw, nine.c) - nine.b;
-        // E. Slopes of the step before against those of the same cells, and of the cells one lane on.
-        vec4 same_a = slopes_a - to_a;
-        vec3 same_b = slopes_b - to_b.xyz;
-        vec4 next_a = slopes_a - vec4(to_a.yzw, to_b.x);
-        vec2 next_b = slopes_b.xy - to_b.yz;
-        vec4 most = max(max(same_a, vec4(same_a.yzw, same_b.x)), max(vec4(same_a.zw, same_b.xy), vec4(same_a.w, same_b)));
-        vec4 least = min(min(same_a, vec4(same_a.yzw, same_b.x)), min(vec4(same_a.zw, same_b.xy), vec4(same_a.w, same_b)));
-        vec4 turn = max(most, max(next_a, max(vec4(next_a.yzw, next_b.x), vec4(next_a.zw, next_b))));
-        vec4 twist = splits_along ? -least : most;
-        vec4 between = 0.25 * (shear_cells * max(turn, 0.0) + max(twist, 0.0));
-        // From here on of this step's own lanes.
-        bool moves = y >> CELL_SHIFT != cell;
-        bvec4 on = bvec4(moves);
-        vec4 h_a = mix(nine.a, vec4(nine.a.yzw, nine.b.x), on);
-        vec4 h_b = mix(nine.b, vec4(nine.b.yzw, nine.c), on);
-        slopes_a = mix(to_a, vec4(to_a.yzw, to_b.x), on);
-        slopes_b = mix(to_b.xyz, to_b.yzw, on.xyz);
-        cell = y >> CELL_SHIFT;
-        float f = float(y & (CELL - 1)) * (1.0 / float(CELL));
-        vec4 h = mix(vec4(h_a.yzw, h_b.x), vec4(h_a.zw, h_b.xy), f);
-        float plane = float(step) * rise;
-        vec4 over_plane = h + plane;
-
-        // Of the sums and of the heights: a few units in the last place.
-        vec4 over = top - over_plane + (abs(top) + abs(h) + abs(plane)) * 1e-6;
-        uvec4 back = uvec4(clamp(step - top_step, 0, 0xffff));
-        back = mix(back, uvec4(0), lessThanEqual(top, vec4(NOTHING)));
-        // Negative ones are cut off towards 0, which is up.
-        uvec4 bits = floatBitsToUint(over) + mix(uvec4(0), uvec4(0xffff), greaterThan(over, vec4(0.0)));
-        uvec4 words = bits & 0xffff0000u | back;
-        imageStore(shadows, lattice_texel(azimuth, line, step), words);
-
-        // K, of the grid points on both sides of each line.
-        vec4 bend = slopes_a - vec4(slopes_a.yzw, slopes_b.x);
-        vec4 next_bend = vec4(slopes_a.yzw, slopes_b.x) - vec4(slopes_a.zw, slopes_b.xy);
-        vec4 now = over_plane + f * (1.0 - f) * max(max(bend, next_bend), 0.0);
-        // The maximum over u.
-        vec4 apart = abs(now - raised);
-        vec4 middle = 0.5 * (now + raised) + between + apart * apart / max(16.0 * between, 1e-30);
-        vec4 found = mix(max(now, raised), middle, lessThan(apart, 4.0 * between));
-        ivec4 place = y + ivec4(0, CELL, 2 * CELL, 3 * CELL);
-        found = mix(found, now, bvec4(step == begin));
-        raised = now;
-        bvec4 counts = bvec4(true);
-        if (!PERIODIC) {
-            counts = bvec4(uvec4(greaterThan(place, ivec4(-CELL))) & uvec4(lessThan(place, ivec4(lanes * CELL))));
+    line = first_line + int(gl_LocalInvocationID.x) * 4;
+    y = (line - lead) * CELL + begin * shear;
+    rise = azimuth.low_slope * azimuth.step_m;
+    shear_cells = float(shear) * (1.0 / float(CELL));
+    splits_along = ((azimuth.flags & AZIMUTH_FLIPS_MARCH) != 0u) == ((azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u);
+    top = vec4(NOTHING);
+    top_step = ivec4(0);
+    cell = y >> CELL_SHIFT;
+    slopes_a = vec4(0.0);
+    slopes_b = vec3(0.0);
+    raised = vec4(NOTHING);
+    if (FETCHES_AHEAD) {
+        Fetched a = fetch_nine(cell - 1, min(begin, total - 1));
+        Fetched b = fetch_ahead(1, begin, total);
+        Fetched c = fetch_ahead(2, begin, total);
+        Fetched d = fetch_ahead(3, begin, total);
+        for (int four = begin; four < end; four += 4) {
+            Fetched a_now = a;
+            Fetched b_now = b;
+            Fetched c_now = c;
+            Fetched d_now = d;
+            a = fetch_ahead(4, four, total);
+            b = fetch_ahead(5, four, total);
+            c = fetch_ahead(6, four, total);
+            d = fetch_ahead(7, four, total);
+            march_over(four, a_now);
+            // Past the end nothing more is read.
+            if (four + 1 < end) {
+                march_over(four + 1, b_now);
+            }
+            if (four + 2 < end) {
+                march_over(four + 2, c_now);
+            }
+            if (four + 3 < end) {
+                march_over(four + 3, d_now);
+            }
         }
-        bvec4 higher = bvec4(uvec4(counts) & uvec4(greaterThan(found, top)));
-        top = mix(top, found, higher);
-        top_step = mix(top_step, ivec4(step), higher);
-        y += shear;
+    } else {
+        for (int step = begin; step < end; step++) {
+            march_over(step, fetch_nine(cell - 1, step));
+        }
     }
 }

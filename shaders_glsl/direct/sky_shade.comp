@@ -1,6 +1,6 @@
 // Computes: exit radiance under a uniform sky and under an environment, from the horizons in the azimuths of a batch,
 // added to earlier batches; and the light that the horizons hide from a Phong lobe.
-// Reads: lane_heights, azimuths, lattice, env_tables, specular_tables, dirty_texels, edit_list.
+// Reads: lane_heights, lane_buffer, azimuths, lattice, env_tables, specular_tables, dirty_texels, edit_list.
 // Reads and writes: sky_sum (exit radiance for sky radiance 1 and albedo 1), env_sum (exit radiance for albedo 1,
 // RGB), blocked_sum (radiance for scale 1, RGB).
 // One invocation is four grid points side by side along the lane axis, at one march position.
@@ -26,7 +26,12 @@ layout(constant_id = 7) const bool HAS_SPECULAR = false;
 // One table of lobes for all azimuths, of a sky alone.
 layout(constant_id = 8) const bool SPECULAR_IS_SHARED = false;
 
+#define LANE_BUFFER
+layout(constant_id = 9) const bool READS_LANE_BUFFER = false;
+
 layout(binding = 0, rgba32f) uniform readonly image2D lane_heights;
+layout(binding = 11) readonly buffer LaneBuffer { float lane_buffer[]; };
+layout(binding = 12) readonly buffer AzimuthBuffer { vec4 azimuth_buffer[]; };
 // LATTICE selects one of these.
 layout(binding = 1, rg32ui) uniform readonly uimage2DArray lattice;
 layout(binding = 7) uniform utexture2DArray lattice_words;

@@ -89,13 +89,21 @@ float turn[11];
 #include "sh/wedge.glsl"
 
 vec2 turned(vec2 a, vec2 b) {
-    return vec2(a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x);
+    // Exactly 0 for a quarter turn from two eighths.
+    precise float x = a.x * b.x - a.y * b.y;
+    return vec2(x, a.x * b.y + a.y * b.x);
 }
 
 // Cosine and sine on [-pi, pi].
 vec2 direction(float angle) {
     vec2 half_ = vec2(cosine(0.5 * angle), sine(0.5 * angle));
     return turned(half_, half_);
+}
+
+// Of twice as many halves as azimuths, from -1 to 1: exactly 0 in the middle, which a device's division may miss.
+float off_middle(int halves) {
+    float off = float(halves) / float(azimuths) - 1.0;
+    return halves == azimuths ? 0.0 : off;
 }
 
 // A cap of half-angle a about an axis of this sine and cosine of elevation. Band l: 2 pi times the integral of P_l
@@ -212,7 +220,7 @@ void add_slices_across(float half_width, float within_m, bool alive) {
     float width = 2.0 * half_width / float(azimuths);
     float beyond = (PI - half_width) / float(BEYOND / 2);
     for (int i = first_azimuth; i < last_azimuth; i++) {
-        vec2 one = direction(half_width * ((2.0 * float(i) + 1.0) / float(azimuths) - 1.0));
+        vec2 one = direction(half_width * off_middle(2 * i + 1));
         float free = free_above(one, within_m, alive);
         add_slice(width, one, lowest_of(free, one));
         float last_too = i == azimuths - 1 ? 1.0 : 0.0;
@@ -230,7 +238,7 @@ void add_slices_across(float half_width, float within_m, bool alive) {
 // Table position of the horizon of an azimuth of the whole circle.
 float place_of(int i, float within_m, bool alive) {
     // From -pi on.
-    vec2 one = direction(PI * (2.0 * float(i) / float(azimuths) - 1.0));
+    vec2 one = direction(PI * off_middle(2 * i));
     float lowest = lowest_of(free_above(one, within_m, alive), one);
     float place = (arc_tangent(vec4(lowest)).x + HALF_PI) * (float(side - 1) / PI);
     return clamp(place, 0.0, float(side - 1));
@@ -241,7 +249,7 @@ void add_wedges_around(float within_m, bool alive) {
     for (int i = first_azimuth; i <= last_azimuth; i++) {
         float far = place_of(i % azimuths, within_m, alive);
         if (i > first_azimuth) {
-            add_wedge(direction(PI * (2.0 * float(i - 1) / float(azimuths) - 1.0)), near, far);
+            add_wedge(direction(PI * off_middle(2 * i - 2)), near, far);
         }
         near = far;
     }

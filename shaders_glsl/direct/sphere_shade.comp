@@ -66,7 +66,9 @@ vec2 from_axis(float slope) {
 }
 
 vec2 turned(vec2 a, vec2 b) {
-    return vec2(a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x);
+    // Exactly 0 for a quarter turn from two eighths.
+    precise float x = a.x * b.x - a.y * b.y;
+    return vec2(x, a.x * b.y + a.y * b.x);
 }
 
 // Integral over elevations between two directions of the slice of (A cos + B sin) cos, with A, B the normal's parts:
@@ -258,7 +260,9 @@ void main() {
             break;
         }
         // From -1 to 1. Even spacing all around, else spaced so that the disc's width is smooth.
-        float centre = (2.0 * float(i) + 1.0) / float(count) - 1.0;
+        // The middle one is exactly 0, which a device's division may miss.
+        float off_middle = (2.0 * float(i) + 1.0) / float(count) - 1.0;
+        float centre = 2 * i + 1 == count ? 0.0 : off_middle;
         float u = HALF_PI * centre;
         float spaced = 0.5 * widest * sine(u);
         float half_turn = around ? u : spaced;

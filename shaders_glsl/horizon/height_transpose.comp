@@ -2,6 +2,7 @@
 // per texel.
 // Reads: heights (one texel per grid point).
 // Writes: lane_heights at [march position][lane / 4]; lanes past the last repeat it, or wrap where the field repeats.
+// And lane_buffer, the same as floats.
 // One invocation is four lanes of one march position.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
@@ -10,9 +11,11 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(constant_id = 0) const bool MARCHES_ROWS = false;
 layout(constant_id = 1) const bool PERIODIC = false;
+layout(constant_id = 2) const bool WRITES_BUFFER = false;
 
 layout(binding = 0) uniform texture2D heights;
 layout(binding = 1, rgba32f) uniform writeonly image2D lane_heights;
+layout(binding = 2) writeonly buffer LaneBuffer { vec4 lane_buffer[]; };
 
 layout(push_constant) uniform HeightTransposePush {
     int lanes;
@@ -37,4 +40,7 @@ void main() {
         four[k] = texelFetch(heights, MARCHES_ROWS ? ivec2(lane, march) : ivec2(march, lane), 0).x;
     }
     imageStore(lane_heights, ivec2(group, march), four);
+    if (WRITES_BUFFER) {
+        lane_buffer[march * ((lanes + 3) >> 2) + group] = four;
+    }
 }

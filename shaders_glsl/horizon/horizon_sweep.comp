@@ -212,7 +212,7 @@ void main() {
                 depth[k] -= pops[k] ? 1 : 0;
                 precise float deeper = (h2[k] - h[k]) * (x - x1[k]);
                 precise float newer = (h1[k] - h[k]) * (x - x2[k]);
-                pops[k] = pops[k] && deeper >= newer;
+                pops[k] = pops[k] && !lost && deeper >= newer;
             }
         } while (any(pops));
         bvec4 met = greaterThan(h1, vec4(OUTSIDE));

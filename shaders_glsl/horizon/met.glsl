@@ -84,8 +84,8 @@ Met surface_at(Azimuth azimuth, Quad q, ivec4 y, uvec4 back, int lanes, int step
             next = clamp(next, 0, lanes - 1);
             m = clamp(m, 0, steps - 1);
         }
-        float h = height_at(cell, m);
-        height[k] = h + float(place[k] & (CELL - 1)) * (1.0 / float(CELL)) * (height_at(next, m) - h);
+        vec2 two = two_heights_at(cell, next, m, lanes);
+        height[k] = two.x + float(place[k] & (CELL - 1)) * (1.0 / float(CELL)) * (two.y - two.x);
     }
     vec4 distance = vec4(max(back, uvec4(1)));
     vec4 slope = (height - q.here.four) * (1.0 / azimuth.step_m) / distance;

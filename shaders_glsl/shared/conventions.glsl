@@ -51,12 +51,13 @@ struct Azimuth {
     int vector_lane;
 };
 
-// Entry k of a list of azimuths: four texels each, in the order above.
-Azimuth azimuth_at(textureBuffer azimuths, uint k) {
-    vec4 a = texelFetch(azimuths, int(4u * k));
-    vec4 b = texelFetch(azimuths, int(4u * k + 1u));
-    vec4 c = texelFetch(azimuths, int(4u * k + 2u));
-    vec4 d = texelFetch(azimuths, int(4u * k + 3u));
+Azimuth azimuth_from(vec4 a, vec4 b, vec4 c, vec4 d) {
     return Azimuth(a.x, a.y, a.z, a.w, b.x, b.y, floatBitsToInt(b.z), floatBitsToUint(b.w), floatBitsToUint(c.x),
                    c.y, c.z, c.w, d.x, floatBitsToInt(d.y), floatBitsToInt(d.z));
+}
+
+// Entry k of a list of azimuths: four texels each, in the order above.
+Azimuth azimuth_at(textureBuffer azimuths, uint k) {
+    return azimuth_from(texelFetch(azimuths, int(4u * k)), texelFetch(azimuths, int(4u * k + 1u)),
+                        texelFetch(azimuths, int(4u * k + 2u)), texelFetch(azimuths, int(4u * k + 3u)));
 }

@@ -86,6 +86,7 @@ impl Memory {
             Kind::Buffer { bytes, texels } => {
                 let usage = if texels {
                     vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER
+                        | vk::BufferUsageFlags::STORAGE_BUFFER
                 } else {
                     vk::BufferUsageFlags::STORAGE_BUFFER | vk::BufferUsageFlags::INDIRECT_BUFFER
                 };

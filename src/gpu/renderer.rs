@@ -72,6 +72,8 @@ pub struct Renderer {
     pending: Vec<bool>,
     /// Nanoseconds per tick and a mask of the valid bits, where the host's queue has timestamps.
     timestamps: Option<(f64, u64)>,
+    /// Whether there is a timestamp after every pass, or only after the last.
+    times_passes: bool,
     /// Formats that inputs may have on this device, besides the plan's.
     readable: Vec<vk::Format>,
     destroyed: bool,
@@ -86,6 +88,8 @@ struct Slot {
     /// Null where there are no timestamps.
     queries: vk::QueryPool,
     recorded: Vec<usize>,
+    /// Whether that has a timestamp after every pass.
+    times_passes: bool,
 }
 
 const fn is_send<T: Send>() {}
@@ -144,6 +148,7 @@ impl Renderer {
             begun: 0,
             pending: vec![true; plan.passes.len()],
             timestamps: timestamps.map(|(ns, bits)| (ns, u64::MAX >> (64 - bits.min(64)))),
+            times_passes: true,
             plan,
             destroyed: false,
         };
@@ -322,7 +327,15 @@ impl Renderer {
         if index < all { &self.plan.passes[index] } else { &self.plan.edit_passes[index - all] }
     }
 
-    /// GPU times of the passes that `slot` recorded last, in order. None while some are not available, and
+    /// Whether later recordings have a timestamp after every pass, as they do at first, or only after the last. Without
+    /// those between, a GPU can run passes side by side that do not depend on each other: on an NVIDIA H200 a timestamp
+    /// waits for all passes before it, and keeps later ones waiting.
+    pub fn time_passes(&mut self, each: bool) {
+        self.times_passes = each;
+    }
+
+    /// GPU times of the passes that `slot` recorded last, in order; one for all, "all passes", where only that was
+    /// [timed](Self::time_passes). None while some are not available, and
     /// where the host's queue family has no timestamps. Never waits.
     pub fn timings(&self, slot: usize) -> Option<Vec<Timing>> {
         let slot = self.slots.get(slot)?;
@@ -331,7 +344,8 @@ impl Renderer {
             return None;
         }
         // Each is a value and its availability.
-        let mut ticks = vec![[0_u64; 2]; slot.recorded.len() + 1];
+        let count = if slot.times_passes { slot.recorded.len() } else { 1 };
+        let mut ticks = vec![[0_u64; 2]; count + 1];
         let flags = vk::QueryResultFlags::TYPE_64 | vk::QueryResultFlags::WITH_AVAILABILITY;
         // SAFETY: the pool holds at least this many queries; two words per query are requested and provided.
         let got =
@@ -339,11 +353,13 @@ impl Renderer {
         if got.is_err() || ticks.iter().any(|t| t[1] == 0) {
             return None;
         }
+        let ns = |pair: &[[u64; 2]]| (pair[1][0].wrapping_sub(pair[0][0]) & mask) as f64 * tick_ns;
+        if !slot.times_passes {
+            return Some(vec![Timing { label: "all passes".into(), ns: ns(&ticks) }]);
+        }
         let passes = slot.recorded.iter().zip(ticks.windows(2));
-        let timings = passes.map(|(&index, pair)| {
-            let elapsed = pair[1][0].wrapping_sub(pair[0][0]) & mask;
-            Timing { label: self.pass(index).label(), ns: elapsed as f64 * tick_ns }
-        });
+        let timings =
+            passes.map(|(&index, pair)| Timing { label: self.pass(index).label(), ns: ns(pair) });
         Some(timings.collect())
     }
 

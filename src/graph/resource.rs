@@ -138,7 +138,7 @@ impl Resource {
     /// Whether a binding of this kind can take this resource.
     pub(crate) fn fits(&self, binding: BindingKind) -> bool {
         match (self.kind, binding) {
-            (Kind::Buffer { texels, .. }, BindingKind::StorageBuffer) => !texels,
+            (Kind::Buffer { .. }, BindingKind::StorageBuffer) => true,
             (Kind::Buffer { texels, .. }, BindingKind::TexelBuffer) => texels,
             (
                 Kind::Image { format, layered, .. },

@@ -63,7 +63,7 @@ pub fn horizons(
     let batches = &lists.batches[0];
     for batch in batches {
         let part = part("", batch, batches);
-        sweeping.plan(&mut builder, batch, &part);
+        sweeping.plan_all(&mut builder, &[(*batch, part.clone())]);
         let written = sweeping.written(batch);
         let ids = [sweeping.lane_heights(batch), sweeping.azimuths, angles];
         passes::sweep_fuse::plan(

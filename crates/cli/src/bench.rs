@@ -241,6 +241,14 @@ fn flow(gpu: &Headless, frame: &mut Frame, most: usize) -> Result<Vec<Vec<Timing
     repeated(gpu, frame, &all, most)
 }
 
+/// Times of whole frames without timestamps between passes, ns: a GPU can overlap passes.
+fn overlapped(gpu: &Headless, frame: &mut Frame, most: usize) -> Result<Vec<f64>> {
+    frame.time_passes(false);
+    let runs = flow(gpu, frame, most);
+    frame.time_passes(true);
+    Ok(sums(&runs?, |_| true))
+}
+
 /// Rows of a frame in both modes, and its last run.
 fn time(
     gpu: &Headless,
@@ -268,6 +276,8 @@ fn time(
         rows.push(row(pass.label(), "in_flow", &[pass], runs.len(), &times));
     }
     rows.push(row("total".into(), "in_flow", &every, runs.len(), &sums(&runs, |_| true)));
+    let whole = overlapped(gpu, frame, args.runs)?;
+    rows.push(row("total".into(), "overlapped", &every, whole.len(), &whole));
     let (mut totals, mut fewest) = (vec![0.0; args.runs], args.runs);
     for &i in &wanted {
         let pass = &plan.passes[i];

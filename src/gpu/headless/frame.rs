@@ -19,6 +19,11 @@ impl Frame {
     pub fn plan(&self) -> &Plan {
         self.renderer.as_ref().expect("alive until ended").plan()
     }
+
+    /// [`Renderer::time_passes`] of its renderer.
+    pub fn time_passes(&mut self, each: bool) {
+        self.renderer.as_mut().expect("alive until ended").time_passes(each);
+    }
 }
 
 /// An image of a frame, in GENERAL layout.
@@ -178,7 +183,7 @@ impl Headless {
         frame.renderer.as_mut().expect("alive until ended").replace_plan(plan)
     }
 
-    /// Runs a frame once and waits. Returns GPU times by pass, where the device has timestamps.
+    /// Runs a frame once and waits. Returns GPU times by pass or of all ([`Frame::time_passes`]), where the device has timestamps.
     ///
     /// # Errors
     /// The device's.

@@ -29,6 +29,7 @@ impl Renderer {
         self.write_sets(slot, &bound);
         let device = self.host.device.clone();
         let queries = self.slots[slot].queries;
+        let times_passes = self.times_passes;
         let entry = self.entry(&bound, holds_nothing);
         let exit = self.exit(&bound);
         let compute = vk::PipelineStageFlags2::COMPUTE_SHADER;
@@ -80,7 +81,12 @@ impl Renderer {
                     device.cmd_pipeline_barrier2(commands, &between);
                 }
                 self.dispatch(commands, slot, index, edited);
-                timestamp(query + 1);
+                if times_passes {
+                    timestamp(query + 1);
+                }
+            }
+            if !times_passes {
+                timestamp(1);
             }
             let last = vk::DependencyInfo::default()
                 .image_memory_barriers(&exit)
@@ -88,6 +94,7 @@ impl Renderer {
             device.cmd_pipeline_barrier2(commands, &last);
         }
         self.slots[slot].recorded = passes.to_vec();
+        self.slots[slot].times_passes = times_passes;
     }
 
     /// Barriers from the images' states to their use by passes. The plan's own images hold nothing from frame

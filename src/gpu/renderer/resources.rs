@@ -126,7 +126,8 @@ impl Renderer {
                         None => vk::QueryPool::null(),
                     };
                     let (tables, recorded) = (Vec::new(), Vec::new());
-                    Ok(Slot { sets, tables, is_current: false, queries, recorded })
+                    let times_passes = true;
+                    Ok(Slot { sets, tables, is_current: false, queries, recorded, times_passes })
                 })
             };
             let slot = slot.map_err(failed("making a frame's descriptors"))?;

@@ -291,19 +291,23 @@ fn walk(
 ) {
     let WalkedOver { sweeping, batches } = *over;
     let (begin, end) = (batches[0].first, batches[batches.len() - 1].azimuths().end);
-    for batch in batches {
-        let part = part(&bounce.name, batch, batches);
+    let first: Vec<_> = batches.iter().map(|b| (*b, part(&bounce.name, b, batches))).collect();
+    if k == 1 && sweeping.are_apart {
+        sweeping.plan_all(builder, &first);
+    }
+    for (batch, part) in &first {
         let occluders = sweeping.occluders(batch).expect("kept for walks");
         // A lattice of its own still holds the first bounce's sweep.
         let is_shared =
             batches.iter().filter(|b| sweeping.occluders(b) == Some(occluders)).count() > 1;
-        if k == 1 || is_shared {
-            sweeping.plan(builder, batch, &part);
+        if k == 1 && !sweeping.are_apart || is_shared {
+            sweeping.plan_all(builder, &[(*batch, part.clone())]);
         }
         let field = (scene.surface.border, scene.field.cell_m());
         if let Some(at) = at_nodes.filter(|at| at.finds_share && k == 1) {
             let images = sky_shade::Images {
                 lane_heights: sweeping.lane_heights(batch),
+                lane_buffer: sweeping.lane_buffer(batch),
                 lattice: sweeping.lattice(batch),
                 azimuths: sweeping.azimuths,
                 sky_sum: Some(at.sky_share),
@@ -314,7 +318,7 @@ fn walk(
             let (border, cell_m) = field;
             // Without relief there is no ground to be visible.
             let border = if border == Border::Plane { Border::Open } else { border };
-            sky_shade::plan(builder, &sweeping.sweep, border, cell_m, batch, &part, &images);
+            sky_shade::plan(builder, &sweeping.sweep, border, cell_m, batch, part, &images);
         }
         let swept = bounce_walk::Swept {
             lane_heights: sweeping.lane_heights(batch),

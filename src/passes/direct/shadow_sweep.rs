@@ -6,12 +6,16 @@ pub(crate) fn plan(
     builder: &mut Builder,
     batch: &Batch,
     part: &str,
-    group_size: u32,
+    (group_size, fetches_ahead): (u32, bool),
     [lane_heights, azimuths, shadows]: [ResourceId; 3],
 ) {
     let axis = batch.axis;
     let pass = builder.pass(
-        shaders::ShadowSweep { local_size_x: group_size, periodic: axis.warm_up > 0 },
+        shaders::ShadowSweep {
+            local_size_x: group_size,
+            periodic: axis.warm_up > 0,
+            fetches_ahead,
+        },
         part,
         format!("shadow heights of {} azimuths along {}", batch.count, axis.name()),
         [batch.most_lines.div_ceil(4 * group_size), 1, batch.count],

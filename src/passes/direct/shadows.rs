@@ -2,9 +2,11 @@
 
 use crate::graph::{Axis, Builder, Format, Limits, Owner, ResourceId};
 use crate::passes::azimuths::Azimuth;
+use crate::passes::batch::Batch;
 use crate::passes::blocks::{BlockLevels, Source};
 use crate::passes::shadow_sweep;
 use crate::passes::sweep::{Sweep, group_size};
+use crate::passes::sweeping::Sweeping;
 use crate::scene::{Border, Fuse, HeightField, KeyLight, Lines, Method, Precision, Quality};
 
 /// What the passes of suns share, besides the lattices.
@@ -12,6 +14,8 @@ pub(crate) struct Shadows {
     /// Marks of the texels whose light the shadow heights leave open, along columns and along rows.
     doubtful: [Option<ResourceId>; 2],
     group_size: u32,
+    /// Whether a sweep fetches the heights of four steps together.
+    fetches_ahead: bool,
     pub levels: BlockLevels,
     /// For each of the lights, the maxima of blocks over a plane that rises with its light; none for others.
     maxima: Vec<Option<ResourceId>>,
@@ -76,7 +80,8 @@ impl Shadows {
         let levels = BlockLevels::of(size, border);
         let mut made = |i| levels.maxima(builder, &format!("shadow_maxima_{i}"));
         let maxima = (0..lights).map(|i| which.contains(&i).then(|| made(i))).collect();
-        Self { doubtful, group_size: group_size(limits), levels, maxima }
+        let fetches_ahead = !limits.is_cpu;
+        Self { doubtful, group_size: group_size(limits), fetches_ahead, levels, maxima }
     }
 
     /// Marks along an axis.
@@ -88,11 +93,12 @@ impl Shadows {
     pub(crate) fn plan_sweep(
         &self,
         builder: &mut Builder,
-        batch: &crate::passes::batch::Batch,
+        sweeping: &Sweeping,
+        batch: &Batch,
         part: &str,
-        ids: [ResourceId; 3],
     ) {
-        shadow_sweep::plan(builder, batch, part, self.group_size, ids);
+        let ids = [sweeping.lane_heights(batch), sweeping.azimuths, sweeping.written(batch)];
+        shadow_sweep::plan(builder, batch, part, (self.group_size, self.fetches_ahead), ids);
     }
 
     /// The maxima of blocks for walks towards the light at `index`, which skip most of the ground under its light: over a plane

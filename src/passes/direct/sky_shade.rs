@@ -8,6 +8,8 @@ use crate::scene::Border;
 /// What the shading of a batch reads and writes.
 pub(crate) struct Images {
     pub lane_heights: ResourceId,
+    /// The same as a buffer, for GPUs.
+    pub lane_buffer: Option<ResourceId>,
     pub lattice: Option<ResourceId>,
     pub azimuths: ResourceId,
     pub sky_sum: Option<ResourceId>,
@@ -43,6 +45,9 @@ pub(crate) fn plan(
 ) {
     let axis = batch.axis;
     let mut bound = vec![("lane_heights", images.lane_heights), ("azimuths", images.azimuths)];
+    if let Some(buffer) = images.lane_buffer {
+        bound.extend([("lane_buffer", buffer), ("azimuth_buffer", images.azimuths)]);
+    }
     bound.extend(images.lattice.map(|l| (sweep.lattice_binding(), l)));
     bound.extend(images.sky_sum.map(|s| ("sky_sum", s)));
     if let Some([sum, tables]) = images.environment {
@@ -73,6 +78,7 @@ pub(crate) fn plan(
             has_environment: images.environment.is_some(),
             marches_rows: axis.marches_rows,
             has_specular: images.specular.is_some(),
+            reads_lane_buffer: images.lane_buffer.is_some(),
             specular_is_shared: images.specular.is_some_and(|s| s.tables.is_shared()),
         },
         part,

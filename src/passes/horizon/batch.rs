@@ -150,7 +150,7 @@ impl LatticeShape {
         }
     }
 
-    fn layer_bytes(&self) -> u64 {
+    pub(crate) fn layer_bytes(&self) -> u64 {
         let texels = u64::from(self.width) * u64::from(self.height);
         [self.occluders, self.slopes].iter().flatten().map(|f| f.bytes() * texels).sum()
     }

@@ -1,11 +1,14 @@
 use crate::graph::{Builder, ResourceId, shaders};
 use crate::passes::batch::Batch;
+use crate::passes::line_sweep;
 use crate::passes::sweep::{HullStorage, LineSweep};
 
 /// What a sweep reads and writes.
 pub(crate) struct Images {
     pub heights: ResourceId,
     pub lane_heights: Option<ResourceId>,
+    /// The same as a buffer, for one line an invocation.
+    pub lane_buffer: Option<ResourceId>,
     pub azimuths: ResourceId,
     pub occluders: Option<ResourceId>,
     pub slopes: Option<ResourceId>,
@@ -13,7 +16,7 @@ pub(crate) struct Images {
     pub lost_lines: Option<ResourceId>,
 }
 
-/// Hull sweeps along all lines of a batch, then again along those whose hull overflowed its storage.
+/// Hull sweeps along all lines of a batch.
 pub(crate) fn plan(
     builder: &mut Builder,
     sweep: &LineSweep,
@@ -21,9 +24,31 @@ pub(crate) fn plan(
     part: &str,
     images: &Images,
 ) {
-    run(builder, sweep, batch, part, images, false);
+    match (images.lane_buffer, images.occluders) {
+        (Some(buffer), Some(occluders)) if sweep.lines_each == 1 => {
+            let ids = [buffer, images.azimuths, occluders];
+            line_sweep::plan(builder, sweep, batch, part, ids, images.lost_lines);
+        }
+        _ => run(builder, sweep, batch, part, images, false),
+    }
+}
+
+/// Sweeps along the lines whose hull overflowed its storage, where any can.
+pub(crate) fn plan_again(
+    builder: &mut Builder,
+    sweep: &LineSweep,
+    batch: &Batch,
+    part: &str,
+    images: &Images,
+) {
     if images.lost_lines.is_some() {
-        let again = LineSweep { hull: HullStorage::Occluders, hull_depth: 1, ..*sweep };
+        let again = LineSweep {
+            hull: HullStorage::Occluders,
+            hull_depth: 1,
+            group_size: sweep.group_lines() / 4,
+            lines_each: 4,
+            ..*sweep
+        };
         run(builder, &again, batch, format!("{part} again").trim(), images, true);
     }
 }

@@ -14,6 +14,8 @@ pub(crate) mod horizon_march;
 /// Hull sweep along lines; the hull is in private memory, in shared memory or in the occluders written so far; never
 /// loses an entry.
 pub(crate) mod horizon_sweep;
+/// The same, one line an invocation, for GPUs.
+pub(crate) mod line_sweep;
 pub mod nodes;
 pub mod pyramid;
 /// One value per level along every azimuth; the largest value of a B-spline over their angles.

@@ -8,7 +8,7 @@ use crate::{Error, Result};
 
 /// Where a line's hull is stored; numbered as in the shader.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum HullStorage {
+pub(crate) enum HullStorage {
     /// Private memory of the invocation.
     Private = 0,
     /// Shared memory of the workgroup.
@@ -30,11 +30,13 @@ impl HullStorage {
 
 /// A hull sweep along lines.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LineSweep {
+pub(crate) struct LineSweep {
     /// Where the hull is stored.
     pub hull: HullStorage,
     /// Entries per line there; a power of two.
     pub hull_depth: u32,
+    /// One line an invocation: entries in private memory, all or those that shared memory does not hold.
+    pub private_depth: u32,
     /// Whether that is enough for every point of the longest line.
     pub holds_line: bool,
     /// Whether entries are packed as f16 height and u16 distance.
@@ -43,8 +45,10 @@ pub struct LineSweep {
     pub height_scale: f32,
     /// Lines are 2^shift / 32768 cells apart.
     pub line_shift: u32,
-    /// Invocations per workgroup; each sweeps four lines.
+    /// Invocations per workgroup.
     pub group_size: u32,
+    /// Lines that an invocation sweeps: four, or one.
+    pub lines_each: u32,
     /// Stored slopes: 0 none, 1 f32, 2 f16.
     pub slope_format: u32,
     /// Whether occluders are stored.
@@ -54,6 +58,11 @@ pub struct LineSweep {
 }
 
 impl LineSweep {
+    /// Lines of a workgroup.
+    pub(crate) fn group_lines(&self) -> u32 {
+        self.lines_each * self.group_size
+    }
+
     /// The line spacing in use; a periodic field may not allow the requested one.
     pub(crate) fn spacing(&self) -> Lines {
         let all = [Lines::QuarterCell, Lines::HalfCell, Lines::TwoCells, Lines::FourCells];
@@ -72,7 +81,7 @@ impl LineSweep {
 
 /// How horizons are found.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Sweep {
+pub(crate) enum Sweep {
     /// Hull sweeps along lines of even azimuths.
     Lines(LineSweep),
     /// Exact hull sweeps along grid vectors.
@@ -110,6 +119,16 @@ const LEAST_WARM_UP: u32 = 512;
 // swept again with the hull in the stored occluders. Measured on lavapipe: 128 compile in 0.1 s, 1024 in up to
 // 3 s, 4096 in over 5 s, and run no faster.
 const PRIVATE_DEPTH: u32 = 128;
+// GPUs keep private memory for all invocations that fit the device at once: on an NVIDIA H200 138 MB of 64 entries.
+// There 32, 64 and 128 take the same time.
+const GPU_PRIVATE_DEPTH: u32 = 64;
+// One tile of the lattice.
+const LINES_TOGETHER: u32 = 32;
+// 4 KiB of shared memory for 32 lines. On an NVIDIA H200 a sweep with 32 entries takes 1.7 times as long: fewer
+// workgroups fit.
+const GPU_SHARED_DEPTH: u32 = 16;
+// Entries of 12 bytes in private memory. An NVIDIA H200 (driver 580) makes no pipeline with 2,048.
+const GPU_SURFACE_DEPTH: u32 = 1024;
 // A step has up to four crossings; llvmpipe ends any loop after 65,535 iterations.
 const SURFACE_STEPS_LIMIT: u32 = 4096;
 const MARCH_STEPS_LIMIT: u32 = 65_000;
@@ -124,7 +143,7 @@ impl Sweep {
     ///
     /// # Errors
     /// Settings that exclude each other, with the reason.
-    pub fn choose(
+    pub(crate) fn choose(
         field: &HeightField,
         border: Border,
         quality: &Quality,
@@ -181,7 +200,20 @@ impl Sweep {
                     limit: format!("{SURFACE_STEPS_LIMIT} steps"),
                 });
             }
-            return Ok(Sweep::Surface { hull_depth: (4 * total).next_power_of_two(), distances });
+            let hull_depth = (4 * total).next_power_of_two();
+            if !limits.is_cpu && hull_depth > GPU_SURFACE_DEPTH {
+                return Err(Error::Limit {
+                    what: "`lines exact` on a GPU".into(),
+                    needs: format!(
+                        "{total} steps per line (a periodic field is marched three times at least)"
+                    ),
+                    limit: format!(
+                        "{} steps; `method brute-force` is exact, too",
+                        GPU_SURFACE_DEPTH / 4
+                    ),
+                });
+            }
+            return Ok(Sweep::Surface { hull_depth, distances });
         };
         let stores_slopes = matches!(quality.fuse, Fuse::Nearest | Fuse::Slopes);
         let slope_format = match (stores_slopes, quality.precision) {
@@ -196,28 +228,50 @@ impl Sweep {
             (true, _) => 1,
         };
         let packed = quality.precision == Precision::Packed;
+        let periodic = border == Border::Periodic;
+        // One line an invocation reads heights from a buffer and stores occluders alone.
+        let buffer_bytes =
+            4 * u64::from(sides[0].next_multiple_of(4)) * u64::from(sides[1].next_multiple_of(4));
+        let one_each = !limits.is_cpu
+            && quality.hull != Hull::OccluderList
+            && slope_format == 0
+            && !packed
+            && buffer_bytes <= limits.buffer_bytes;
         let place = match quality.hull {
-            // Measured: see the table in README. Processors keep private arrays in their cache. Elsewhere the
-            // paper's form, until a device has been measured.
-            Hull::Auto if limits.is_cpu => HullStorage::Private,
-            Hull::Auto | Hull::Shared => HullStorage::Shared,
-            Hull::Private => HullStorage::Private,
+            // Measured on an NVIDIA H200, whose cache hulls in private memory fill; of four lines an invocation few fit
+            // shared memory. Processors keep private arrays in their cache (lavapipe).
+            Hull::Auto if one_each => HullStorage::Shared,
+            Hull::Auto | Hull::Private => HullStorage::Private,
+            Hull::Shared => HullStorage::Shared,
             Hull::OccluderList => HullStorage::Occluders,
         };
-        let group_size = group_size(limits);
-        let periodic = border == Border::Periodic;
+        let (lines_each, group_size) =
+            if one_each { (1, LINES_TOGETHER) } else { (4, group_size(limits)) };
         let wanted = total.next_power_of_two();
         let hull_depth = match place {
-            HullStorage::Private => wanted.min(PRIVATE_DEPTH),
+            HullStorage::Private if limits.is_cpu => wanted.min(PRIVATE_DEPTH),
+            HullStorage::Private => wanted.min(GPU_PRIVATE_DEPTH / lines_each.min(2)),
             HullStorage::Shared => {
-                // Half of the shared memory, so that two workgroups fit.
-                let entries =
-                    limits.shared_bytes / 2 / (4 * group_size * if packed { 4 } else { 8 });
-                wanted.min(1 << entries.max(1).ilog2())
+                // Half of the shared memory, so that two workgroups fit; of one line an invocation less, so that many do.
+                let entries = limits.shared_bytes
+                    / 2
+                    / (lines_each * group_size * if packed { 4 } else { 8 });
+                let most = 1 << entries.max(1).ilog2();
+                wanted.min(if one_each { most.min(GPU_SHARED_DEPTH) } else { most })
             }
             HullStorage::Occluders => 1,
         };
-        let holds_line = place != HullStorage::Occluders && hull_depth >= total;
+        let private_depth = match place {
+            HullStorage::Shared if one_each => wanted.min(GPU_PRIVATE_DEPTH),
+            HullStorage::Private if one_each => hull_depth,
+            _ => 0,
+        };
+        let kept = match place {
+            HullStorage::Private => hull_depth,
+            HullStorage::Shared => hull_depth + private_depth,
+            HullStorage::Occluders => 0,
+        };
+        let holds_line = kept >= total;
         if total > limits.image_side {
             return Err(Error::Limit {
                 what: "`border periodic`".into(),
@@ -249,11 +303,13 @@ impl Sweep {
         Ok(Sweep::Lines(LineSweep {
             hull: place,
             hull_depth,
+            private_depth,
             holds_line,
             packed,
             height_scale: if highest > 0.0 { 1.0 / highest } else { 1.0 },
             line_shift,
             group_size,
+            lines_each,
             slope_format,
             writes_occluders: !stores_slopes || !holds_line,
             fuse: quality.fuse,
@@ -265,11 +321,13 @@ impl Sweep {
         Sweep::Lines(LineSweep {
             hull: HullStorage::Private,
             hull_depth: 1,
+            private_depth: 0,
             holds_line: true,
             packed: false,
             height_scale: 1.0,
             line_shift: 15,
             group_size: group_size(limits),
+            lines_each: 4,
             slope_format: 1,
             writes_occluders: false,
             fuse: Fuse::Nearest,
@@ -413,7 +471,7 @@ impl Sweep {
         match self {
             // Whole workgroups: those of a line beyond the last are swept too.
             Sweep::Lines(lines) => {
-                let group_lines = 4 * lines.group_size;
+                let group_lines = lines.group_lines();
                 self.lines(azimuth, axis).div_ceil(group_lines) * group_lines / 32
             }
             Sweep::Crossings => 0,

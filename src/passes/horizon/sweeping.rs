@@ -18,6 +18,8 @@ pub(crate) struct Sweeping {
     pub azimuths: ResourceId,
     /// Heights by lanes, of each axis that is marched: columns, rows.
     lane_heights: [Option<ResourceId>; 2],
+    /// The same as buffers, where one line an invocation is swept.
+    lane_buffers: [Option<ResourceId>; 2],
     /// Whether the sweep also reads its heights there, four lanes at a time.
     quads: bool,
     /// Levels of a height pyramid, where any are read.
@@ -26,9 +28,14 @@ pub(crate) struct Sweeping {
     pub nodes: Nodes,
     /// The lattice of each batch; several batches may use one in turn.
     lattices: Vec<Lattice>,
+    /// Whether each batch has its own.
+    pub are_apart: bool,
     /// Numbers of the batches of lights by shadow heights.
     shadows: Vec<u32>,
 }
+
+/// Batches have lattices of their own where everything so far and all lattices take at most this share of the budget.
+const APART_SHARE: u64 = 4;
 
 /// Output of sweeps.
 #[derive(Clone, Copy)]
@@ -42,6 +49,11 @@ impl Sweeping {
     /// Heights by lanes along a batch's axis.
     pub(crate) fn lane_heights(&self, batch: &Batch) -> ResourceId {
         self.lane_heights[usize::from(batch.axis.marches_rows)].expect("made for every axis used")
+    }
+
+    /// The same as a buffer, where one line an invocation is swept.
+    pub(crate) fn lane_buffer(&self, batch: &Batch) -> Option<ResourceId> {
+        self.lane_buffers[usize::from(batch.axis.marches_rows)]
     }
 
     fn lattice_of(&self, batch: &Batch) -> Lattice {
@@ -85,7 +97,8 @@ impl Sweeping {
         for (marches_rows, lanes) in [false, true].into_iter().zip(self.lane_heights) {
             let axis = batches.clone().map(|b| b.axis).find(|a| a.marches_rows == marches_rows);
             if let (Some(axis), Some(lanes)) = (axis, lanes) {
-                passes::height_transpose::plan(builder, axis, border, self.heights, lanes);
+                let buffer = self.lane_buffers[usize::from(marches_rows)];
+                passes::height_transpose::plan(builder, axis, border, self.heights, lanes, buffer);
             }
         }
         let Some(sweep) = self.sweep.editable(border) else { return };
@@ -102,19 +115,35 @@ impl Sweeping {
         }
     }
 
-    pub(crate) fn plan(&self, builder: &mut Builder, batch: &Batch, part: &str) {
+    /// The passes that sweep some batches. Those with lattices of their own can run side by side.
+    pub(crate) fn plan_all(&self, builder: &mut Builder, batches: &[(Batch, String)]) {
+        for (batch, part) in batches {
+            self.plan(builder, batch, part);
+        }
+        let Sweep::Lines(lines) = &self.sweep else { return };
+        for (batch, part) in batches {
+            let images = self.images(batch);
+            passes::horizon_sweep::plan_again(builder, lines, batch, part, &images);
+        }
+    }
+
+    fn images(&self, batch: &Batch) -> passes::horizon_sweep::Images {
         let lattice = self.lattice_of(batch);
+        passes::horizon_sweep::Images {
+            heights: self.heights,
+            lane_heights: self.quads.then(|| self.lane_heights(batch)),
+            lane_buffer: self.lane_buffer(batch),
+            azimuths: self.azimuths,
+            occluders: lattice.occluders,
+            slopes: lattice.slopes,
+            lost_lines: lattice.lost_lines,
+        }
+    }
+
+    fn plan(&self, builder: &mut Builder, batch: &Batch, part: &str) {
         match &self.sweep {
             Sweep::Lines(lines) => {
-                let images = passes::horizon_sweep::Images {
-                    heights: self.heights,
-                    lane_heights: self.quads.then(|| self.lane_heights(batch)),
-                    azimuths: self.azimuths,
-                    occluders: lattice.occluders,
-                    slopes: lattice.slopes,
-                    lost_lines: lattice.lost_lines,
-                };
-                passes::horizon_sweep::plan(builder, lines, batch, part, &images);
+                passes::horizon_sweep::plan(builder, lines, batch, part, &self.images(batch));
             }
             Sweep::Crossings => {}
             Sweep::Pyramid(pyramid) => {
@@ -172,6 +201,13 @@ pub(crate) fn prepare(
         used.then(|| Axis::of(marches_rows, size, border))
     });
     let lane_heights = axes.map(|axis| axis.map(|axis| lane_image(builder, axis)));
+    let lines_alone = matches!(&sweep, Sweep::Lines(l) if l.lines_each == 1);
+    let lane_buffers = axes.map(|axis| {
+        axis.filter(|_| lines_alone).map(|axis| {
+            let bytes = 4 * u64::from(axis.lanes.next_multiple_of(4)) * u64::from(axis.steps);
+            builder.buffer(&format!("lane_buffer_{}", axis.name()), bytes, false)
+        })
+    });
     let levels = match &sweep {
         Sweep::Pyramid(pyramid) => pyramid.images(builder),
         _ => None,
@@ -187,6 +223,7 @@ pub(crate) fn prepare(
     };
     let can_lose =
         matches!(&sweep, Sweep::Lines(l) if !l.holds_line && l.hull != HullStorage::Occluders);
+    let so_far = builder.bytes();
     let mut make = |list: usize, axis: Axis, layers: u32, suffix: &str| {
         let shape = shape_of(list, axis);
         let is_shadow = shadows.contains(&list);
@@ -207,11 +244,15 @@ pub(crate) fn prepare(
     let all = || batches.iter().enumerate().flat_map(|(l, b)| b.iter().map(move |b| (l, *b)));
     // Of one shape, and both or neither of suns.
     let turn = |list: usize, batch: &Batch| (shadows.contains(&list), shape_of(list, batch.axis));
+    // GPUs sweep several batches side by side: one alone leaves many of their units idle.
+    let of_all = all().map(|(list, b)| u64::from(b.layers) * shape_of(list, b.axis).layer_bytes());
+    let are_apart =
+        !limits.is_cpu && so_far + of_all.sum::<u64>() <= limits.memory_budget / APART_SHARE;
     let mut shared: Vec<((bool, LatticeShape), Lattice)> = Vec::new();
     let mut lattices = Vec::new();
     for (list, batch) in all() {
         let of = turn(list, &batch);
-        if is_kept(list) {
+        if is_kept(list) || are_apart {
             lattices.push(make(list, batch.axis, batch.layers, &format!("_{}", batch.number)));
         } else if let Some((_, known)) = shared.iter().find(|(known, _)| *known == of) {
             lattices.push(*known);
@@ -225,9 +266,11 @@ pub(crate) fn prepare(
             lattices.push(made);
         }
     }
-    let lanes = || axes.iter().zip(lane_heights).filter_map(|(axis, lanes)| (*axis).zip(lanes));
-    for (axis, lanes) in lanes() {
-        passes::height_transpose::plan(builder, axis, border, heights, lanes);
+    for (i, axis) in axes.iter().enumerate() {
+        if let (Some(axis), Some(lanes)) = (axis, lane_heights[i]) {
+            let buffer = lane_buffers[i];
+            passes::height_transpose::plan(builder, *axis, border, heights, lanes, buffer);
+        }
     }
     let of_shadows = shadows.iter().flat_map(|l| batches[*l].iter().map(|b| b.number)).collect();
     if let (Sweep::Pyramid(pyramid), Some(images)) = (&sweep, &levels) {
@@ -241,10 +284,12 @@ pub(crate) fn prepare(
         heights,
         azimuths,
         lane_heights,
+        lane_buffers,
         quads,
         levels,
         nodes,
         lattices,
+        are_apart,
         shadows: of_shadows,
     };
     Ok((sweeping, Lists { lists, batches }))

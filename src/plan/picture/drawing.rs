@@ -105,11 +105,15 @@ impl Drawing<'_> {
         let (border, cell_m) = (self.border(), self.scene.field.cell_m());
         let Images { sky_sum, env_sum, sky_layer, env_layer, .. } = self.images;
         let batches = &lists.batches[0];
-        for batch in batches {
-            let part = part("sky", batch, batches);
+        let first: Vec<_> = batches.iter().map(|b| (*b, part("sky", b, batches))).collect();
+        if self.edited.is_none() && sweeping.are_apart {
+            sweeping.plan_all(&mut self.builder, &first);
+        }
+        for (i, batch) in batches.iter().enumerate() {
+            let part = first[i].1.clone();
             let builder = &mut self.builder;
-            if self.edited.is_none() {
-                sweeping.plan(builder, batch, &part);
+            if self.edited.is_none() && !sweeping.are_apart {
+                sweeping.plan_all(builder, &first[i..=i]);
             }
             let (lane_heights, lattice) = (sweeping.lane_heights(batch), sweeping.lattice(batch));
             let (azimuths, sweep) = (sweeping.azimuths, &sweeping.sweep);
@@ -121,6 +125,7 @@ impl Drawing<'_> {
             if sky_sum.is_some() || self.tables.is_some() {
                 let images = passes::sky_shade::Images {
                     lane_heights,
+                    lane_buffer: sweeping.lane_buffer(batch),
                     lattice,
                     azimuths,
                     sky_sum,
@@ -206,14 +211,24 @@ impl Drawing<'_> {
             batches_of_each.iter().zip(lights).enumerate()
         {
             let mut walked = None;
+            let shadows_first = self.sweeping.as_ref().is_some_and(|s| s.are_apart);
+            if let (Some(sweeping), Some(shadows), true) =
+                (&self.sweeping, &self.shadows, shadows_first)
+            {
+                for batch in batches.iter().filter(|batch| sweeping.is_shadow(batch)) {
+                    let part = part(&name, batch, batches);
+                    shadows.plan_sweep(&mut self.builder, sweeping, batch, &part);
+                }
+            }
             for batch in batches {
                 let part = part(&name, batch, batches);
                 let Some(sweeping) = &self.sweeping else { return };
                 let builder = &mut self.builder;
                 let lanes = sweeping.lane_heights(batch);
                 if let Some(shadows) = self.shadows.as_ref().filter(|_| sweeping.is_shadow(batch)) {
-                    let ids = [lanes, sweeping.azimuths, sweeping.written(batch)];
-                    shadows.plan_sweep(builder, batch, &part, ids);
+                    if !shadows_first {
+                        shadows.plan_sweep(builder, sweeping, batch, &part);
+                    }
                     let field = &self.scene.field;
                     let of = (part.as_str(), shape);
                     let ids = [lanes, sweeping.azimuths, sweeping.written(batch), sum];
@@ -228,7 +243,7 @@ impl Drawing<'_> {
                     continue;
                 }
                 if self.edited.is_none() {
-                    sweeping.plan(builder, batch, &part);
+                    sweeping.plan_all(builder, &[(*batch, part.clone())]);
                 }
                 let ids = [lanes, sweeping.azimuths, sum];
                 let lattice = sweeping.lattice(batch);

@@ -14,6 +14,8 @@ use crate::{field, random};
 const VIEWS: [glam::DVec3; 2] = [glam::DVec3::Z, glam::DVec3::new(0.6, 0.0, 0.8)];
 
 pub(crate) enum Wanted {
+    /// As a GPU finds them, on any device.
+    GpuHorizons,
     Horizons {
         distances: bool,
     },
@@ -50,6 +52,14 @@ impl Case {
                 limits,
                 (0, self.quality.azimuths),
                 *distances,
+            ),
+            Wanted::GpuHorizons => plan::horizons(
+                &self.scene.field,
+                self.scene.surface.border,
+                &self.quality,
+                &Limits { is_cpu: false, ..*limits },
+                (0, self.quality.azimuths),
+                false,
             ),
             Wanted::Picture(wanted) => plan::picture(&self.scene, &self.quality, limits, *wanted),
             Wanted::Reference(bounces) => plan::reference(&self.scene, *bounces, 1, limits),

@@ -3,6 +3,7 @@
 pub(crate) mod pyramid;
 pub(crate) mod sweep;
 
+use ridgelight::plan;
 use ridgelight::scene::{
     Border, Fuse, HeightField, Hull, Levels, Lights, Lines, Method, Precision, Quality, Scene,
     Surface,
@@ -18,6 +19,7 @@ pub(crate) const REFERENCES: &[Reference] = &[
     ("pyramid_march", pyramid::pyramid_march),
     ("height_transpose", sweep::height_transpose),
     ("horizon_sweep", sweep::horizon_sweep),
+    ("line_sweep", sweep::line_sweep),
     ("surface_sweep", sweep::surface_sweep),
     ("horizon_march", sweep::horizon_march),
     ("sweep_fuse", sweep::sweep_fuse),
@@ -115,6 +117,29 @@ pub(crate) fn sweeps() -> Vec<Case> {
     ]
 }
 
+/// `line_sweep`: both hull storages, lines of both kinds of width, all borders, and lines that lose vertices.
+pub(crate) fn line_sweeps() -> Vec<Case> {
+    let base = Quality { azimuths: 12, ..Quality::default() };
+    let shared = Quality { hull: Hull::Shared, ..base };
+    let wide = Quality { lines: Lines::TwoCells, ..base };
+    let case = |name, field, border, quality| Case {
+        wanted: Wanted::GpuHorizons,
+        ..horizons(name, field, border, quality, false)
+    };
+    vec![
+        case("a line each", rough(37, 23, 41), Border::Plane, base),
+        case("a line each, open", rough(26, 71, 42), Border::Open, shared),
+        case("a line each, periodic", rough(14, 18, 43), Border::Periodic, base),
+        case("a line each, two cells apart", rough(43, 38, 44), Border::Plane, wide),
+        case("a line each, one row", rough(1, 9, 45), Border::Plane, base),
+        Case { loses_lines: true, ..case("a line each, lost", dome(13, 201), Border::Plane, base) },
+        Case {
+            loses_lines: true,
+            ..case("a line each, lost in shared memory", dome(13, 201), Border::Plane, shared)
+        },
+    ]
+}
+
 /// `surface_sweep` and `horizon_march`: one value a texel, with its occluder.
 pub(crate) fn texels() -> Vec<Case> {
     let exact = Quality { azimuths: 12, lines: Lines::Exact, ..Quality::default() };
@@ -163,7 +188,7 @@ pub(crate) fn pyramids() -> Vec<Case> {
 #[test]
 fn sweeps_in_every_form_match() {
     let mut device = Device::new();
-    for case in sweeps() {
+    for case in sweeps().into_iter().chain(line_sweeps()) {
         let lost = check(&mut device, &case);
         assert_eq!(lost > 0, case.loses_lines, "{}: {lost} groups of lines redone", case.name);
     }
@@ -171,7 +196,19 @@ fn sweeps_in_every_form_match() {
 
 #[test]
 fn sweeps_of_one_value_a_sample_match() {
-    check_all(&texels());
+    let mut device = Device::new();
+    let limits = device.limits();
+    for case in texels() {
+        // Three periods and 512 grid points at least: more than a GPU takes.
+        if !limits.is_cpu && case.name == "exact, periodic" {
+            let (field, border) = (&case.scene.field, case.scene.surface.border);
+            let all = (0, case.quality.azimuths);
+            let refused = plan::horizons(field, border, &case.quality, &limits, all, true);
+            assert!(refused.is_err_and(|e| e.to_string().contains("256 steps")));
+            continue;
+        }
+        check(&mut device, &case);
+    }
 }
 
 #[test]

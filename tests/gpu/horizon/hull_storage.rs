@@ -2,7 +2,9 @@
 
 use ridgelight::plan::{self, Limits, Picture};
 use ridgelight::scene::fractal;
-use ridgelight::scene::{Border, Fuse, HeightField, Hull, Lines, Precision, Quality};
+use ridgelight::scene::{
+    Border, Bounces, Fuse, HeightField, Hull, Method, Precision, Quality, Sun,
+};
 
 use crate::{Device, field, random, under_sky};
 
@@ -37,7 +39,8 @@ fn hulls_deeper_than_their_storage_lose_nothing() {
     // The common result is right: along rows, columns and diagonals lines pass through every texel, so slopes are
     // those of the texels themselves.
     let swept = gpu.horizons(&deep, Border::Open, &base);
-    let exact = gpu.horizons(&deep, Border::Open, &Quality { lines: Lines::Exact, ..base });
+    let brute = Quality { method: Method::BruteForce, ..base };
+    let exact = gpu.horizons(&deep, Border::Open, &brute);
     for k in [0, 2, 4, 6] {
         let plane = 300 * 300;
         for i in 0..plane {
@@ -76,7 +79,7 @@ fn batches_and_the_whole_are_the_same_to_the_bit() {
     let mut gpu = Device::new();
     let scene = under_sky(fractal(1024, 3).expect("a field"), Border::Plane);
     let quality = Quality { azimuths: 8, ..Quality::default() };
-    let limits = Limits { memory_budget: 1 << 30, ..gpu.limits() };
+    let limits = Limits { memory_budget: 1 << 30, is_cpu: true, ..gpu.limits() };
     // Three images of 4 MiB, the heights by lanes of each axis, and room for one azimuth's lattice.
     let tight = Limits { memory_budget: 28_000_000, ..limits };
     let count = |l: &Limits| {
@@ -125,5 +128,33 @@ fn wide_groups_and_narrow_ones_are_the_same_to_the_bit() {
         let b = gpu.horizons_within(field, Border::Plane, &quality, &wide);
         let differing = a.iter().zip(&b).filter(|(a, b)| a.to_bits() != b.to_bits()).count();
         assert_eq!(differing, 0, "{hull:?}");
+    }
+}
+
+/// A GPU's plans sweep a line an invocation, fetch heights ahead, shade from buffers and keep lattices apart.
+#[test]
+fn plans_of_gpus_and_of_processors_draw_the_same_to_the_bit() {
+    let mut gpu = Device::new();
+    let limits = gpu.limits();
+    let [processor, discrete] = [true, false].map(|is_cpu| Limits { is_cpu, ..limits });
+    let sun = |elevation: f64, diameter: f64| Sun {
+        azimuth_rad: 0.7,
+        elevation_rad: elevation,
+        diameter_rad: diameter,
+        irradiance: [3.0; 3],
+    };
+    for border in [Border::Plane, Border::Open, Border::Periodic] {
+        let mut scene = under_sky(fractal(96, 4).expect("a field"), border);
+        scene.lights.suns = vec![sun(0.4, 0.0), sun(0.9, 0.02)];
+        let bounces = Bounces { count: 2, azimuths: 8, ..Bounces::default() };
+        let quality = Quality { azimuths: 16, bounces, ..Quality::default() };
+        let [ours, theirs] = [&processor, &discrete].map(|limits| {
+            let plan = plan::picture(&scene, &quality, limits, Picture::default()).expect("a plan");
+            let passes: Vec<_> = plan.passes.iter().map(|p| p.name()).collect();
+            assert_eq!(passes.contains(&"line_sweep"), !limits.is_cpu, "{border:?}");
+            gpu.picture_within(&scene, &quality, limits).values
+        });
+        let differing = ours.iter().zip(&theirs).filter(|(a, b)| a.to_bits() != b.to_bits());
+        assert_eq!(differing.count(), 0, "{border:?}");
     }
 }

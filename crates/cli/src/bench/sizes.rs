@@ -7,8 +7,8 @@ use ridgelight::plan::{self, Limits, Picture};
 use ridgelight::scene::fractal;
 use ridgelight::scene::{Quality, Scene};
 
-use super::flow;
-use super::rows::{Row, figure, sums};
+use super::overlapped;
+use super::rows::{Row, figure};
 use super::verify::GroundTruth;
 
 /// Whole frames of fractal fields under the scene's lights, for each pair of `sizes` and
@@ -31,12 +31,12 @@ pub fn run(
             bar.set_message(format!("{size}², {count} azimuths"));
             let quality = Quality { azimuths: count, ..*quality };
             let plan = plan::picture(&scene, &quality, limits, Picture::default())?;
-            let (runs, pixels) = gpu.with_frame(plan.clone(), &inputs, |gpu, frame| {
-                Ok((flow(gpu, frame, most)?, gpu.pixels(frame, 0)?))
+            let (times, pixels) = gpu.with_frame(plan.clone(), &inputs, |gpu, frame| {
+                Ok((overlapped(gpu, frame, most)?, gpu.pixels(frame, 0)?))
             })?;
             let passes: Vec<_> = plan.passes.iter().collect();
-            let times = sums(&runs, |_| true);
-            let mut row = Row::of("total", "in_flow", &plan, &passes, count, (runs.len(), &times));
+            let measured = (times.len(), &times[..]);
+            let mut row = Row::of("total", "overlapped", &plan, &passes, count, measured);
             row.settings.extend([
                 ("device_bytes".into(), plan.bytes().to_string()),
                 ("light_error".into(), format!("{:.6}", ground_truth.error(&pixels))),

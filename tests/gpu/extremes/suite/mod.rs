@@ -330,10 +330,14 @@ pub fn outcome(probes: Result<Vec<Probe>, String>) -> Outcome {
     Outcome::Measured {
         worst: worst.expect("a case checks something under every method"),
         largest_error: probes.iter().fold(0.0, |m, p| p.error().max(m)),
-        tightest: if largest > 0.0 { tightest / largest } else { tightest },
+        tightest: if largest > DUST { tightest / largest } else { tightest },
         values: probes.len(),
     }
 }
+
+/// What rounding leaves of 1 in a product of two f64 values that should be 0: (2^-53)^2 is 1.2e-32. Up to here the largest
+/// expected value counts as 0.
+const DUST: f64 = 1e-30;
 
 /// A bound that is hardly meaningful: a tenth of the largest expected value.
 const LOOSE: f64 = 0.1;

@@ -33,9 +33,16 @@ pub(crate) fn height_transpose(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     };
     let periodic = run.border() == Border::Periodic;
     let width = lanes.next_multiple_of(4);
-    let got = run.floats(pass, "lane_heights").expect("written");
-    assert_eq!(got.len(), width * want.len() / lanes);
+    let mut got = run.floats(pass, "lane_heights").expect("written");
+    let texels = width * want.len() / lanes;
+    assert_eq!(got.len(), texels);
+    // The buffer holds the same.
+    if constant(pass, "writes_buffer") == 1 {
+        got.extend(run.floats(pass, "lane_buffer").expect("written"));
+        assert_eq!(got.len(), 2 * texels);
+    }
     let pairs = got.iter().enumerate().map(|(i, got)| {
+        let i = i % texels;
         let (march, lane) = (i / width, i % width);
         // Beyond the last lane the last one is repeated, or the first follows.
         let from = if periodic { lane % lanes } else { lane.min(lanes - 1) };
@@ -102,6 +109,30 @@ pub(crate) fn horizon_sweep(run: &mut Run, pass: &Pass) -> Vec<Pair> {
             slopes_f16: slope_format == 2,
         };
         let left = lines_of(run, (k, &azimuth), options, &occluders, &slopes, &mut pairs);
+        run.lattices[k] = Some(left);
+    }
+    pairs
+}
+
+/// The occluders alone.
+pub(crate) fn line_sweep(run: &mut Run, pass: &Pass) -> Vec<Pair> {
+    if constant(pass, "hull_holds_line") == 0 {
+        let lost = run.words(pass, "lost_lines").expect("written");
+        run.lost += lost.iter().filter(|w| **w != 0).count();
+        return Vec::new();
+    }
+    let occluders = stored(run, pass, "occluders", 2);
+    let first = pushed(pass, const { offset("LineSweepPush", "first_azimuth") }) as usize;
+    let mut pairs = Vec::new();
+    for k in first..first + pass.groups[2] as usize {
+        let azimuth = run.plan.azimuths[k];
+        let options = SweepOptions {
+            line_shift: constant(pass, "line_shift"),
+            warm_up: run.warm_up(azimuth.marches_rows()),
+            packed: None,
+            slopes_f16: false,
+        };
+        let left = lines_of(run, (k, &azimuth), options, &occluders, &None, &mut pairs);
         run.lattices[k] = Some(left);
     }
     pairs

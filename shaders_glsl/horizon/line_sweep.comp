@@ -1,0 +1,222 @@
+// Computes: the occluders of horizon_sweep, to the bit, one line an invocation: the form for GPUs, which hide the time
+// of a load behind other lines. Heights come from a buffer, four steps before they are needed.
+// Reads: lane_buffer, azimuths.
+// Writes: occluders, as horizon_sweep: four steps of 32 lines at a time, so that neighbouring invocations write
+// neighbouring texels.
+#version 460
+#extension GL_EXT_samplerless_texture_functions : require
+
+#include "shared/lattice.glsl"
+
+// Whole tiles of 32 lines.
+layout(local_size_x_id = 0) in;
+
+layout(constant_id = 1) const bool HULL_IN_SHARED = false;
+// Entries kept per line, a power of two: the newest.
+layout(constant_id = 2) const int HULL_DEPTH = 1;
+// Beside a hull in shared memory: the oldest entries, where those were overwritten. A line that needs more is marked as
+// lost, and swept again by horizon_sweep.
+layout(constant_id = 3) const int PRIVATE_ENTRIES = 1;
+layout(constant_id = 4) const int SHARED_ENTRIES = 1;
+layout(constant_id = 5) const bool HULL_HOLDS_LINE = true;
+layout(constant_id = 6) const bool PERIODIC = false;
+layout(constant_id = 7) const int LINE_SHIFT = CELL_SHIFT;
+// Twice two words a line and two between them.
+layout(constant_id = 8) const int WRITTEN_WORDS = 1;
+
+// [march position][lane], rows of whole fours.
+layout(binding = 0) readonly buffer LaneBuffer { float lane_buffer[]; };
+layout(binding = 1) uniform textureBuffer azimuths;
+layout(binding = 2, rg32ui) uniform writeonly uimage2DArray occluders;
+layout(binding = 3) buffer LostLines { uint lost_lines[]; };
+
+layout(push_constant) uniform LineSweepPush {
+    int lanes;           // grid points across the march
+    int steps;           // grid points along it
+    int warm_up;         // steps marched before the first that counts: whole periods, or 0
+    uint first_azimuth;
+};
+
+const float OUTSIDE = -1e28;
+const float UNDER_OUTSIDE = -1e34;
+
+shared vec2 shared_hull[SHARED_ENTRIES];
+// Occluders of four steps, two words a line: the first words of all lines, then, two words apart so that no two
+// invocations read one bank, the second. Two halves, in turn.
+shared uint written[WRITTEN_WORDS];
+
+Azimuth azimuth;
+
+// Heights of the lanes on both sides of a line at a step, the line at lane position `from` at step 0. Beyond the field
+// they are arbitrary.
+vec2 heights_beside(int from, int step, int total) {
+    step = min(step, total - 1);
+    int y = from + step * azimuth.shear;
+    int round_ = step % steps;
+    int march = march_position(azimuth, PERIODIC ? round_ : step, steps);
+    int cell = y >> CELL_SHIFT;
+    int here;
+    int next;
+    if (PERIODIC) {
+        here = wrapped(cell, lanes);
+        next = wrapped(cell + 1, lanes);
+    } else {
+        here = clamp(cell, 0, lanes - 1);
+        next = min(here + 1, lanes - 1);
+    }
+    int row = march * ((lanes + 3) & ~3);
+    return vec2(lane_buffer[row + lane_position(azimuth, here, lanes)],
+                lane_buffer[row + lane_position(azimuth, next, lanes)]);
+}
+
+// Whether the deeper of two vertices subtends at least the slope of the newer one.
+bool subtends(float h, float x, vec2 newer, vec2 deeper) {
+    precise float deeper_area = (deeper.x - h) * (x - newer.y);
+    precise float newer_area = (newer.x - h) * (x - deeper.y);
+    return deeper_area >= newer_area;
+}
+
+// The newest three hull vertices, as height and step. Older ones are in the hull storage, `depth` of them; entry `depth`
+// is where the third goes if it is not popped. HULL_DEPTH entries stay in the storage. Those below `kept` have been
+// overwritten: of a hull in shared memory they are in private memory then.
+vec2 v1;
+vec2 v2;
+vec2 v3;
+int depth;
+int kept;
+bool lost;
+vec2 private_hull[PRIVATE_ENTRIES];
+
+// Sweeps one step between these heights. Returns the steps back to its occluder, 0 for none.
+uint occluder(int step, int from, vec2 beside) {
+    int y = from + step * azimuth.shear;
+    float t = float(y & (CELL - 1)) * (1.0 / float(CELL));
+    precise float rise = t * (beside.y - beside.x);
+    precise float sum = beside.x + rise;
+    float h = PERIODIC || on_field(y, lanes) ? sum : OUTSIDE;
+    float x = float(step);
+    int group_lines = int(gl_WorkGroupSize.x);
+    int own = int(gl_LocalInvocationID.x);
+    int oldest = depth - HULL_DEPTH;
+    int slot = depth & (HULL_DEPTH - 1);
+    if (HULL_IN_SHARED) {
+        if (oldest >= kept) {
+            private_hull[min(oldest, PRIVATE_ENTRIES - 1)] = shared_hull[slot * group_lines + own];
+            lost = lost || !HULL_HOLDS_LINE && oldest >= PRIVATE_ENTRIES;
+        }
+        shared_hull[slot * group_lines + own] = v3;
+    } else {
+        private_hull[slot] = v3;
+    }
+    kept = max(kept, oldest + 1);
+    if (subtends(h, x, v1, v2)) {
+        v1 = v2;
+        v2 = v3;
+        depth--;
+        // A lost line is swept again. Overwritten entries could keep it here for ever.
+        while (!lost && subtends(h, x, v1, v2)) {
+            slot = depth & (HULL_DEPTH - 1);
+            v1 = v2;
+            if (HULL_IN_SHARED && depth >= kept) {
+                v2 = shared_hull[slot * group_lines + own];
+            } else if (HULL_IN_SHARED) {
+                v2 = private_hull[clamp(depth, 0, PRIVATE_ENTRIES - 1)];
+            } else {
+                lost = !HULL_HOLDS_LINE && depth < kept;
+                v2 = private_hull[slot];
+            }
+            depth--;
+        }
+    }
+    uint back = v1.x > OUTSIDE ? uint(int(x - v1.y)) : 0u;
+    depth++;
+    kept = min(kept, depth);
+    v3 = v2;
+    v2 = v1;
+    v1 = vec2(h, x);
+    return back;
+}
+
+void main() {
+    azimuth = azimuth_at(azimuths, first_azimuth + gl_GlobalInvocationID.z);
+    int total = warm_up + steps;
+    int shear = azimuth.shear;
+    int spacing = 1 << LINE_SHIFT;
+    int lead = lattice_lead(shear, total, LINE_SHIFT, PERIODIC);
+    int line_count = lattice_lines(lanes, lead, LINE_SHIFT, PERIODIC);
+    int group_lines = int(gl_WorkGroupSize.x);
+    int first_line = int(gl_WorkGroupID.x) * group_lines;
+    if (first_line >= line_count) {
+        return;
+    }
+    int begin = 0;
+    int end = total;
+    if (!PERIODIC && shear > 0) {
+        int lowest = (first_line - lead) * spacing;
+        int highest = lowest + (group_lines - 1) * spacing;
+        begin = max(0, -highest / shear);
+        end = clamp(((lanes - 1) * CELL - lowest) / shear + 1, begin, max(begin, total));
+    }
+    int own = int(gl_LocalInvocationID.x);
+    int line = first_line + own;
+    // Lane position at step 0.
+    int from = (line - lead) * spacing;
+    lost = false;
+    v1 = vec2(OUTSIDE, float(begin - 1));
+    v2 = vec2(UNDER_OUTSIDE, float(begin - 2));
+    v3 = vec2(UNDER_OUTSIDE, float(begin - 3));
+    depth = 0;
+    kept = 0;
+    int turn = 0;
+    vec2 a = heights_beside(from, begin & ~3, total);
+    vec2 b = heights_beside(from, (begin & ~3) + 1, total);
+    vec2 c = heights_beside(from, (begin & ~3) + 2, total);
+    vec2 d = heights_beside(from, (begin & ~3) + 3, total);
+    for (int four = begin & ~3; four < end; four += 4) {
+        vec2 a_now = a;
+        vec2 b_now = b;
+        vec2 c_now = c;
+        vec2 d_now = d;
+        a = heights_beside(from, four + 4, total);
+        b = heights_beside(from, four + 5, total);
+        c = heights_beside(from, four + 6, total);
+        d = heights_beside(from, four + 7, total);
+        uvec4 back = uvec4(0u);
+        if (four >= begin) {
+            back.x = occluder(four, from, a_now);
+        }
+        if (four + 1 >= begin && four + 1 < end) {
+            back.y = occluder(four + 1, from, b_now);
+        }
+        if (four + 2 >= begin && four + 2 < end) {
+            back.z = occluder(four + 2, from, c_now);
+        }
+        if (four + 3 >= begin && four + 3 < end) {
+            back.w = occluder(four + 3, from, d_now);
+        }
+        int first_word = turn * (2 * group_lines + 2);
+        written[first_word + own] = back.x | back.y << 16;
+        written[first_word + group_lines + 2 + own] = back.z | back.w << 16;
+        // One barrier is enough: the other half is written next, and this one again only behind the next barrier.
+        barrier();
+        int of_step = four + (own & 3);
+        int at = first_word + ((own & 2) != 0 ? group_lines + 2 : 0) + (own & ~3);
+        uint shift = (own & 1) != 0 ? 16u : 0u;
+        uvec4 all = (uvec4(written[at], written[at + 1], written[at + 2], written[at + 3]) >> shift) & 0xffffu;
+        if (of_step >= begin && of_step < end) {
+            ivec3 texel = lattice_texel(azimuth, first_line + (own & ~3), of_step);
+            imageStore(occluders, texel, uvec4(all.x | all.y << 16, all.z | all.w << 16, 0u, 0u));
+        }
+        turn = 1 - turn;
+    }
+    if (!HULL_HOLDS_LINE) {
+        int first_word = turn * (2 * group_lines + 2);
+        written[first_word + own] = lost ? 1u : 0u;
+        barrier();
+        int at = first_word + (own & ~3);
+        if ((own & 3) == 0) {
+            int lost_word = (int(azimuth.layer) + (line >> 5)) * 8 + ((line & 31) >> 2);
+            lost_lines[lost_word] = written[at] | written[at + 1] | written[at + 2] | written[at + 3];
+        }
+    }
+}
