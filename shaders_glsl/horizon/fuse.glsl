@@ -64,6 +64,24 @@ uvec4 lattice_values(Azimuth azimuth, ivec4 line, int lowest, int lines, int ste
     return values;
 }
 
+// Lattice values, of 16 bits, of four neighbouring lines at a step; of the nearest line on the field, of `first` to `last`,
+// for one just beside it. Others beyond it are arbitrary.
+uvec4 four_lines(Azimuth azimuth, int lowest, int first, int last, int lines, int step) {
+    int from = min(lowest, last);
+    int texel = from >> 2;
+    uvec2 a = lattice_at(lattice_texel(azimuth, max(texel, 0) << 2, step)).xy;
+    uvec2 b = lattice_at(lattice_texel(azimuth, min(texel + 1, (lines - 1) >> 2) << 2, step)).xy;
+    uvec3 words = mix(uvec3(a, b.x), uvec3(a.y, b), bvec3((from & 2) != 0));
+    bool is_odd = (from & 1) != 0;
+    uint low = mix(words.x, words.x >> 16 | words.y << 16, is_odd);
+    uint high = mix(words.y, words.y >> 16 | words.z << 16, is_odd);
+    uint next = mix(words.z & 0xffffu, words.z >> 16, is_odd);
+    uvec4 four = uvec4(low & 0xffffu, low >> 16, high & 0xffffu, high >> 16);
+    ivec4 line = lowest + ivec4(0, 1, 2, 3);
+    uvec4 inside = mix(four, uvec4(four.yzw, next), lessThan(line, ivec4(first)));
+    return mix(inside, four.xxyz, greaterThan(line, ivec4(last)));
+}
+
 // Values of a lattice of slopes. A value that f16 clamped is "none", too.
 vec4 slopes_of(uvec4 values) {
     vec4 slope = uintBitsToFloat(values);
@@ -176,13 +194,18 @@ Met fused(Azimuth azimuth, Quad q, int lanes, int steps, int warm_up, vec4 enoug
         bool takes = wraps || at.first <= at.last;
         int first = at.first;
         int last = max(first, at.last);
-        int lowest = clamp(mix(line.x, line.w, flips_lanes), first, last);
-        if (wraps) {
+        int lowest = mix(line.x, line.w, flips_lanes);
+        uvec4 values;
+        if (LINES_FOLLOW_LANES && LATTICE != LATTICE_SLOPES_F32) {
+            uvec4 four = four_lines(azimuth, lowest, first, last, at.lines, at.step);
+            values = mix(four, four.wzyx, bvec4(flips_lanes));
+        } else if (wraps) {
             line = ivec4(wrapped(line.x, at.lines), wrapped(line.y, at.lines), wrapped(line.z, at.lines), wrapped(line.w, at.lines));
+            values = lattice_values(azimuth, line, line.x, at.lines, at.step);
         } else {
             line = clamp(line, first, last);
+            values = lattice_values(azimuth, line, clamp(lowest, first, last), at.lines, at.step);
         }
-        uvec4 values = lattice_values(azimuth, line, lowest, at.lines, at.step);
         if (FUSE == FUSE_NEAREST) {
             return Met(mix(vec4(NO_SLOPE), slopes_of(values), bvec4(takes)), vec4(0.0));
         }

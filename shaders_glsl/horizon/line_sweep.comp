@@ -47,26 +47,24 @@ shared uint written[WRITTEN_WORDS];
 
 Azimuth azimuth;
 
-// Heights of the lanes on both sides of a line at a step, the line at lane position `from` at step 0. Beyond the field
-// they are arbitrary.
+// Texels of lane_buffer: of lane position 0 at step 0; from step to step, and from lane to lane; and the last.
+int origin;
+int step_stride;
+int lane_stride;
+int last_texel;
+
+// Heights of the lanes on both sides of a line that starts at lane position `from`, at a step. Beyond the field they are
+// arbitrary, as is the one past the last lane, which has no weight.
 vec2 heights_beside(int from, int step, int total) {
     step = min(step, total - 1);
-    int y = from + step * azimuth.shear;
-    int round_ = step % steps;
-    int march = march_position(azimuth, PERIODIC ? round_ : step, steps);
-    int cell = y >> CELL_SHIFT;
-    int here;
-    int next;
+    int cell = (from + step * azimuth.shear) >> CELL_SHIFT;
     if (PERIODIC) {
-        here = wrapped(cell, lanes);
-        next = wrapped(cell + 1, lanes);
-    } else {
-        here = clamp(cell, 0, lanes - 1);
-        next = min(here + 1, lanes - 1);
+        int row = origin + (step % steps) * step_stride;
+        return vec2(lane_buffer[row + wrapped(cell, lanes) * lane_stride],
+                    lane_buffer[row + wrapped(cell + 1, lanes) * lane_stride]);
     }
-    int row = march * ((lanes + 3) & ~3);
-    return vec2(lane_buffer[row + lane_position(azimuth, here, lanes)],
-                lane_buffer[row + lane_position(azimuth, next, lanes)]);
+    int here = origin + step * step_stride + clamp(cell, 0, lanes - 1) * lane_stride;
+    return vec2(lane_buffer[here], lane_buffer[clamp(here + lane_stride, 0, last_texel)]);
 }
 
 // Whether the deeper of two vertices subtends at least the slope of the newer one.
@@ -157,8 +155,22 @@ void main() {
         begin = max(0, -highest / shear);
         end = clamp(((lanes - 1) * CELL - lowest) / shear + 1, begin, max(begin, total));
     }
+    int row = (lanes + 3) & ~3;
+    bool flips_march = (azimuth.flags & AZIMUTH_FLIPS_MARCH) != 0u;
+    bool flips_lanes = (azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u;
+    int first_row = flips_march ? steps - 1 : 0;
+    int first_lane = flips_lanes ? lanes - 1 : 0;
+    origin = first_row * row + first_lane;
+    step_stride = flips_march ? -row : row;
+    lane_stride = flips_lanes ? -1 : 1;
+    last_texel = steps * row - 1;
     int own = int(gl_LocalInvocationID.x);
     int line = first_line + own;
+    // Of the flush: the invocation's step of four, and the words of four lines at it.
+    int own_step = own & 3;
+    int own_words = ((own & 2) != 0 ? group_lines + 2 : 0) + (own & ~3);
+    uint own_shift = (own & 1) != 0 ? 16u : 0u;
+    ivec3 own_texel = lattice_texel(azimuth, first_line + (own & ~3), own_step);
     // Lane position at step 0.
     int from = (line - lead) * spacing;
     lost = false;
@@ -199,12 +211,10 @@ void main() {
         written[first_word + group_lines + 2 + own] = back.z | back.w << 16;
         // One barrier is enough: the other half is written next, and this one again only behind the next barrier.
         barrier();
-        int of_step = four + (own & 3);
-        int at = first_word + ((own & 2) != 0 ? group_lines + 2 : 0) + (own & ~3);
-        uint shift = (own & 1) != 0 ? 16u : 0u;
-        uvec4 all = (uvec4(written[at], written[at + 1], written[at + 2], written[at + 3]) >> shift) & 0xffffu;
-        if (of_step >= begin && of_step < end) {
-            ivec3 texel = lattice_texel(azimuth, first_line + (own & ~3), of_step);
+        int at = first_word + own_words;
+        uvec4 all = (uvec4(written[at], written[at + 1], written[at + 2], written[at + 3]) >> own_shift) & 0xffffu;
+        if (four + own_step >= begin && four + own_step < end) {
+            ivec3 texel = own_texel + ivec3(0, four, 0);
             imageStore(occluders, texel, uvec4(all.x | all.y << 16, all.z | all.w << 16, 0u, 0u));
         }
         turn = 1 - turn;

@@ -75,16 +75,26 @@ Met surface_at(Azimuth azimuth, Quad q, ivec4 y, uvec4 back, int lanes, int step
         int cell = place[k] >> CELL_SHIFT;
         int next = cell + 1;
         int m = march[k];
+        vec2 two;
+#ifdef LANE_BUFFER
+        if (READS_LANE_BUFFER && BORDER != BORDER_PERIODIC) {
+            // On the last lane the height behind it has no weight.
+            int row = (lanes + 3) & ~3;
+            int at = clamp(m * row + cell, 0, steps * row - 1);
+            two = vec2(lane_buffer[at], lane_buffer[min(at + 1, steps * row - 1)]);
+        } else
+#endif
         if (BORDER == BORDER_PERIODIC) {
             cell = wrapped(cell, lanes);
             next = mix(cell + 1, 0, cell + 1 == lanes);
             m = wrapped(m, steps);
+            two = two_heights_at(cell, next, m, lanes);
         } else {
             cell = clamp(cell, 0, lanes - 1);
             next = clamp(next, 0, lanes - 1);
             m = clamp(m, 0, steps - 1);
+            two = two_heights_at(cell, next, m, lanes);
         }
-        vec2 two = two_heights_at(cell, next, m, lanes);
         height[k] = two.x + float(place[k] & (CELL - 1)) * (1.0 / float(CELL)) * (two.y - two.x);
     }
     vec4 distance = vec4(max(back, uvec4(1)));

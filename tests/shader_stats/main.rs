@@ -100,7 +100,12 @@ fn scenes() -> Vec<(&'static str, Scene, Quality)> {
         ("environment by SH", lit(map), Quality { basis: Basis::Sh, ..base }),
         ("aimed-around", lit(sky.clone()), Quality { fuse: Fuse::AimedAround, ..base }),
         ("packed", lit(sky.clone()), Quality { precision: Precision::Packed, ..base }),
-        ("exact lines", lit(sky.clone()), Quality { lines: Lines::Exact, ..base }),
+        // As long as a GPU takes.
+        (
+            "exact lines",
+            Scene { field: fractal(256, 1).expect("a field"), ..lit(sky.clone()) },
+            Quality { lines: Lines::Exact, ..base },
+        ),
         ("pyramid", lit(sky.clone()), Quality { method: Method::Pyramid, ..base }),
         ("brute force", lit(sky), Quality { method: Method::BruteForce, ..base }),
     ]
