@@ -29,7 +29,7 @@ layout(push_constant) uniform CacheGatherPush {
     uint count;
 };
 
-#include "horizon/sweep.glsl"
+#include "shared/sweep.glsl"
 #include "shared/nodes.glsl"
 #include "bounce/visibility_cache.glsl"
 

@@ -1,4 +1,4 @@
-#include "horizon/sweep.glsl"
+#include "shared/sweep.glsl"
 
 // The frame of one marched azimuth. The including shader sets `azimuth`.
 

@@ -1,4 +1,4 @@
-#include "horizon/sweep.glsl"
+#include "shared/sweep.glsl"
 
 // Result of a sweep: one value per line and step. 32 lines are stored together, step after step, four lines per
 // texel: a tile of 8 texels by `steps`, one layer of an image. A group of lines writes one contiguous range of memory

@@ -1,4 +1,4 @@
-#include "horizon/sweep.glsl"
+#include "shared/sweep.glsl"
 
 // The levels of a height pyramid: B-spline coefficients on grids whose first and last texels coincide with the
 // field's first and last grid points (on a repeating field the texels divide a period). Level 0 is the field itself;

@@ -1,4 +1,4 @@
-#include "horizon/sweep.glsl"
+#include "shared/sweep.glsl"
 
 // Four grid points side by side along the lane axis, and the grid points around them. Lanes and march positions are
 // the field's own here, not flipped, so that all azimuths of an axis share them. Where LANE_STRIDE is not 1 they are

@@ -1,6 +1,5 @@
 use crate::graph::{Builder, ResourceId, shaders};
 use crate::passes::batch::Batch;
-use crate::passes::line_sweep;
 use crate::passes::sweep::{HullStorage, LineSweep};
 
 /// What a sweep reads and writes.
@@ -27,7 +26,7 @@ pub(crate) fn plan(
     match (images.lane_buffer, images.occluders) {
         (Some(buffer), Some(occluders)) if sweep.lines_each == 1 => {
             let ids = [buffer, images.azimuths, occluders];
-            line_sweep::plan(builder, sweep, batch, part, ids, images.lost_lines);
+            one_each(builder, sweep, batch, part, ids, images.lost_lines);
         }
         _ => run(builder, sweep, batch, part, images, false),
     }
@@ -122,6 +121,54 @@ fn run(
         &bound,
         if again { u64::from(batch.layers) * 32 } else { batch.line_texels * (4 + value_bytes) },
         if again { 0 } else { batch.line_texels },
+    );
+    pass.azimuths = batch.azimuths();
+}
+
+/// Hull sweeps along all lines of a batch, one line an invocation. `lane_buffer` holds the heights.
+fn one_each(
+    builder: &mut Builder,
+    sweep: &LineSweep,
+    batch: &Batch,
+    part: &str,
+    [lane_buffer, azimuths, occluders]: [ResourceId; 3],
+    lost_lines: Option<ResourceId>,
+) {
+    let axis = batch.axis;
+    let depth = sweep.hull_depth as i32;
+    let shared = sweep.hull == HullStorage::Shared;
+    let mut bound =
+        vec![("lane_buffer", lane_buffer), ("azimuths", azimuths), ("occluders", occluders)];
+    bound.extend(lost_lines.map(|l| ("lost_lines", l)));
+    let pass = builder.pass(
+        shaders::LineSweep {
+            local_size_x: sweep.group_size,
+            hull_in_shared: shared,
+            hull_depth: depth,
+            private_entries: sweep.private_depth as i32,
+            shared_entries: if shared { depth * sweep.group_size as i32 } else { 1 },
+            hull_holds_line: sweep.holds_line,
+            periodic: axis.warm_up > 0,
+            line_shift: sweep.line_shift as i32,
+            written_words: 2 * (2 * sweep.group_size as i32 + 2),
+        },
+        part,
+        format!(
+            "horizons of {} azimuths along {}, one line an invocation, hull in {} memory",
+            batch.count,
+            axis.name(),
+            sweep.hull.name()
+        ),
+        [batch.most_lines.div_ceil(sweep.group_size), 1, batch.count],
+        &shaders::LineSweepPush {
+            lanes: axis.lanes as i32,
+            steps: axis.steps as i32,
+            warm_up: axis.warm_up as i32,
+            first_azimuth: batch.first,
+        },
+        &bound,
+        batch.line_texels * (8 + 2),
+        batch.line_texels,
     );
     pass.azimuths = batch.azimuths();
 }

@@ -12,10 +12,8 @@ pub(crate) mod height_transpose;
 /// `--method brute-force`: the baseline and the ground truth on the device.
 pub(crate) mod horizon_march;
 /// Hull sweep along lines; the hull is in private memory, in shared memory or in the occluders written so far; never
-/// loses an entry.
+/// loses an entry. On GPUs one line an invocation, by the shader `line_sweep`.
 pub(crate) mod horizon_sweep;
-/// The same, one line an invocation, for GPUs.
-pub(crate) mod line_sweep;
 pub mod nodes;
 pub mod pyramid;
 /// One value per level along every azimuth; the largest value of a B-spline over their angles.
