@@ -20,7 +20,7 @@
 layout(local_size_x_id = 0) in;
 
 layout(constant_id = 1) const bool PERIODIC = false;
-// Heights of four steps are fetched together, before the four steps until then are marched: a GPU needs the time.
+// Fetches the heights of four steps while the previous four are marched, to hide load latency on GPUs.
 layout(constant_id = 2) const bool FETCHES_AHEAD = false;
 
 layout(binding = 0, rgba32f) uniform readonly image2D lane_heights;
@@ -46,14 +46,14 @@ struct Nine {
     float c;
 };
 
-// Three texels of a step, from that of a lane on.
+// Heights at one step: three texels from that of a lane on; nine heights if periodic.
 struct Fetched {
     vec4 a;
     vec4 b;
     vec4 c;
 };
 
-// The first of nine lanes from a flipped one on.
+// In the field's own order, the first of the nine lanes that start at `lane` in march order.
 int first_of_nine(int lane) {
     bool flips = (azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u;
     int mirrored = lanes - 9 - lane;
@@ -110,7 +110,8 @@ Nine nine_heights(Fetched all, int lane) {
     return Nine(mix(nine.a, mirrored.a, swaps), mix(nine.b, mirrored.b, swaps), mix(nine.c, mirrored.c, flips));
 }
 
-// March state: lane position of the first line; of its sun's lower edge; and the direction of the cells' diagonals.
+// March state: number of the first line; first step; lane position of that line; rise of the plane and shear in cells, a step;
+// and whether the cells' diagonals run along the march.
 int line;
 int begin;
 int y;
@@ -184,7 +185,7 @@ void march_over(int step, Fetched fetched) {
     y += azimuth.shear;
 }
 
-// Heights for the step some steps on; lanes are those of the step before it.
+// Heights for step `step + on`, at the lanes of the step before it.
 Fetched fetch_ahead(int on, int step, int total) {
     return fetch_nine(((y + (on - 1) * azimuth.shear) >> CELL_SHIFT) - 1, min(step + on, total - 1));
 }
@@ -236,7 +237,7 @@ void main() {
             c = fetch_ahead(6, four, total);
             d = fetch_ahead(7, four, total);
             march_over(four, a_now);
-            // Past the end nothing more is read.
+            // The last group may have fewer than four steps.
             if (four + 1 < end) {
                 march_over(four + 1, b_now);
             }

@@ -89,7 +89,7 @@ float turn[11];
 #include "sh/wedge.glsl"
 
 vec2 turned(vec2 a, vec2 b) {
-    // Exactly 0 for a quarter turn from two eighths.
+    // `precise`: doubling an eighth turn gives a cosine of exactly 0.
     precise float x = a.x * b.x - a.y * b.y;
     return vec2(x, a.x * b.y + a.y * b.x);
 }
@@ -100,7 +100,7 @@ vec2 direction(float angle) {
     return turned(half_, half_);
 }
 
-// Of twice as many halves as azimuths, from -1 to 1: exactly 0 in the middle, which a device's division may miss.
+// Maps 0 .. 2 azimuths to -1 .. 1. The middle is exactly 0 despite inexact division.
 float off_middle(int halves) {
     float off = float(halves) / float(azimuths) - 1.0;
     return halves == azimuths ? 0.0 : off;

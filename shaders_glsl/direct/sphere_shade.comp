@@ -66,7 +66,7 @@ vec2 from_axis(float slope) {
 }
 
 vec2 turned(vec2 a, vec2 b) {
-    // Exactly 0 for a quarter turn from two eighths.
+    // `precise`: doubling an eighth turn gives a cosine of exactly 0.
     precise float x = a.x * b.x - a.y * b.y;
     return vec2(x, a.x * b.y + a.y * b.x);
 }
@@ -260,7 +260,7 @@ void main() {
             break;
         }
         // From -1 to 1. Even spacing all around, else spaced so that the disc's width is smooth.
-        // The middle one is exactly 0, which a device's division may miss.
+        // The middle is exactly 0 despite inexact division.
         float off_middle = (2.0 * float(i) + 1.0) / float(count) - 1.0;
         float centre = 2 * i + 1 == count ? 0.0 : off_middle;
         float u = HALF_PI * centre;

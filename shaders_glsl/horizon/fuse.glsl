@@ -64,8 +64,8 @@ uvec4 lattice_values(Azimuth azimuth, ivec4 line, int lowest, int lines, int ste
     return values;
 }
 
-// Lattice values, of 16 bits, of four neighbouring lines at a step; of the nearest line on the field, of `first` to `last`,
-// for one just beside it. Others beyond it are arbitrary.
+// 16-bit lattice values of the four lines from `lowest` on, at a step. A line next to `first` .. `last` gets the value of the
+// nearest of these. Values of lines farther out are arbitrary.
 uvec4 four_lines(Azimuth azimuth, int lowest, int first, int last, int lines, int step) {
     int from = min(lowest, last);
     int texel = from >> 2;

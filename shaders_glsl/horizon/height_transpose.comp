@@ -2,7 +2,7 @@
 // per texel.
 // Reads: heights (one texel per grid point).
 // Writes: lane_heights at [march position][lane / 4]; lanes past the last repeat it, or wrap where the field repeats.
-// And lane_buffer, the same as floats.
+// And the same heights to lane_buffer.
 // One invocation is four lanes of one march position.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require

@@ -1,5 +1,5 @@
-// Computes: the occluders of horizon_sweep, to the bit, one line an invocation: the form for GPUs, which hide the time
-// of a load behind other lines. Heights come from a buffer, four steps before they are needed.
+// Computes: the same occluders as horizon_sweep, bit for bit, with one line per invocation. For GPUs, which hide load
+// latency with many invocations. Heights come from a buffer, four steps before they are needed.
 // Reads: lane_buffer, azimuths.
 // Writes: occluders, as horizon_sweep: four steps of 32 lines at a time, so that neighbouring invocations write
 // neighbouring texels.
@@ -14,14 +14,14 @@ layout(local_size_x_id = 0) in;
 layout(constant_id = 1) const bool HULL_IN_SHARED = false;
 // Entries kept per line, a power of two: the newest.
 layout(constant_id = 2) const int HULL_DEPTH = 1;
-// Beside a hull in shared memory: the oldest entries, where those were overwritten. A line that needs more is marked as
-// lost, and swept again by horizon_sweep.
+// Entries per line in private memory. With a shared hull, they hold the oldest entries, which shared memory has overwritten.
+// A line whose hull needs more is marked as lost; horizon_sweep sweeps it again.
 layout(constant_id = 3) const int PRIVATE_ENTRIES = 1;
 layout(constant_id = 4) const int SHARED_ENTRIES = 1;
 layout(constant_id = 5) const bool HULL_HOLDS_LINE = true;
 layout(constant_id = 6) const bool PERIODIC = false;
 layout(constant_id = 7) const int LINE_SHIFT = CELL_SHIFT;
-// Twice two words a line and two between them.
+// Two buffers of two words per line and two words of padding.
 layout(constant_id = 8) const int WRITTEN_WORDS = 1;
 
 // [march position][lane], rows of whole fours.
@@ -41,8 +41,8 @@ const float OUTSIDE = -1e28;
 const float UNDER_OUTSIDE = -1e34;
 
 shared vec2 shared_hull[SHARED_ENTRIES];
-// Occluders of four steps, two words a line: the first words of all lines, then, two words apart so that no two
-// invocations read one bank, the second. Two halves, in turn.
+// Occluders of four steps, as two words per line: all first words, two words of padding against bank conflicts, all second
+// words. Two such buffers alternate.
 shared uint written[WRITTEN_WORDS];
 
 Azimuth azimuth;
@@ -74,9 +74,9 @@ bool subtends(float h, float x, vec2 newer, vec2 deeper) {
     return deeper_area >= newer_area;
 }
 
-// The newest three hull vertices, as height and step. Older ones are in the hull storage, `depth` of them; entry `depth`
-// is where the third goes if it is not popped. HULL_DEPTH entries stay in the storage. Those below `kept` have been
-// overwritten: of a hull in shared memory they are in private memory then.
+// The newest three hull vertices, as height and step. `depth` older ones are in the hull storage, which holds the newest
+// HULL_DEPTH; entry `depth` is where the third goes if it is not popped. Entries below `kept` were overwritten there; a
+// shared hull has copied them to private memory.
 vec2 v1;
 vec2 v2;
 vec2 v3;
@@ -111,7 +111,7 @@ uint occluder(int step, int from, vec2 beside) {
         v1 = v2;
         v2 = v3;
         depth--;
-        // A lost line is swept again. Overwritten entries could keep it here for ever.
+        // Stops for a lost line: overwritten entries could make this loop endless.
         while (!lost && subtends(h, x, v1, v2)) {
             slot = depth & (HULL_DEPTH - 1);
             v1 = v2;

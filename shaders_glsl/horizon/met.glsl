@@ -78,7 +78,7 @@ Met surface_at(Azimuth azimuth, Quad q, ivec4 y, uvec4 back, int lanes, int step
         vec2 two;
 #ifdef LANE_BUFFER
         if (READS_LANE_BUFFER && BORDER != BORDER_PERIODIC) {
-            // On the last lane the height behind it has no weight.
+            // On the last lane the height after it has no weight.
             int row = (lanes + 3) & ~3;
             int at = clamp(m * row + cell, 0, steps * row - 1);
             two = vec2(lane_buffer[at], lane_buffer[min(at + 1, steps * row - 1)]);

@@ -30,6 +30,7 @@ layout(push_constant) uniform PyramidMarchPush {
     int warm_up;  // steps marched beyond the field: whole periods, or 0
     uint first_azimuth;
     uint azimuth_count;
+    int first_row;  // of nodes
     int fine_samples;  // lookups in the field itself
     int width_shift;
     float growth;      // of distances: 2^(1/k)
@@ -166,7 +167,7 @@ float horizon(int lane, int step, bool exists) {
 }
 
 void main() {
-    ivec2 node = ivec2(gl_GlobalInvocationID.xy);
+    ivec2 node = ivec2(gl_GlobalInvocationID.xy) + ivec2(0, first_row);
     bool exists = node.x < node_count(lanes, NODE_STRIDE) && node.y < node_count(steps, NODE_STRIDE);
     int lane_at = node_place(node.x, lanes, NODE_STRIDE);
     int step_at = node_place(node.y, steps, NODE_STRIDE);

@@ -26,7 +26,7 @@ Ray ray_from(ivec2 base, vec2 offset, float own, vec3 e, vec2 cell_m) {
     // A steeper ray is above all heights before it leaves its first cell: 1e-9 m per metre.
     float along = max(max(abs(direction.x), abs(direction.y)), 1e-9 / max(cell_m.x, cell_m.y));
     vec2 advance = direction / along;
-    // Exactly 1 or -1, which a device's division may miss.
+    // Vulkan allows f32 division an error of 2.5 ULP; here the quotient must be exactly 1 or -1.
     advance = mix(advance, sign(direction), equal(abs(direction), vec2(along)));
     // A ray that moves by less than this never leaves its column.
     advance = mix(advance, vec2(0.0), lessThan(abs(advance), vec2(1e-20)));

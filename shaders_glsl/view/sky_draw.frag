@@ -27,9 +27,9 @@ const float PI = 3.14159265358979;
 // radiance is bilinear between texel centres.
 vec3 environment_towards(vec3 e) {
     ivec2 size = textureSize(environment, 0);
-    // Straight up or down any azimuth will do; atan(0, 0) has no value.
-    bool is_level = e.x != 0.0 || e.y != 0.0;
-    float turn = fract(0.5 - atan(e.y, is_level ? e.x : 1.0) / (2.0 * PI) + rotation_turns);
+    // atan(0, 0) is undefined in GLSL. Straight up or down, any azimuth is right.
+    bool has_azimuth = e.x != 0.0 || e.y != 0.0;
+    float turn = fract(0.5 - atan(e.y, has_azimuth ? e.x : 1.0) / (2.0 * PI) + rotation_turns);
     float down = atan(length(e.xy), e.z) / PI;
     vec2 place = vec2(turn, down) * vec2(size) - 0.5;
     vec2 whole = floor(place);

@@ -327,15 +327,14 @@ impl Renderer {
         if index < all { &self.plan.passes[index] } else { &self.plan.edit_passes[index - all] }
     }
 
-    /// Whether later recordings have a timestamp after every pass, as they do at first, or only after the last. Without
-    /// those between, a GPU can run passes side by side that do not depend on each other: on an NVIDIA H200 a timestamp
-    /// waits for all passes before it, and keeps later ones waiting.
+    /// Sets whether later recordings write a timestamp after every pass (the default) or only after the last. On an NVIDIA
+    /// H200 a timestamp waits for all earlier passes and delays later ones, so that passes do not overlap.
     pub fn time_passes(&mut self, each: bool) {
         self.times_passes = each;
     }
 
-    /// GPU times of the passes that `slot` recorded last, in order; one for all, "all passes", where only that was
-    /// [timed](Self::time_passes). None while some are not available, and
+    /// GPU times of the passes that `slot` recorded last, in order; after
+    /// [`time_passes(false)`](Self::time_passes) a single entry labelled "all passes". None while some are not available, and
     /// where the host's queue family has no timestamps. Never waits.
     pub fn timings(&self, slot: usize) -> Option<Vec<Timing>> {
         let slot = self.slots.get(slot)?;

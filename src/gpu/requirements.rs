@@ -3,7 +3,7 @@ use std::ffi::CStr;
 use ash::vk;
 
 use super::shaders::{self, BindingKind, Shader};
-use crate::graph::{Format, Limits};
+use crate::graph::{Format, GPU_LOOKUPS, Limits};
 
 /// Properties of a device.
 #[derive(Clone, Debug)]
@@ -193,6 +193,7 @@ pub(crate) fn report(
             texels: core.limits.max_texel_buffer_elements,
             shared_bytes: core.limits.max_compute_shared_memory_size,
             is_cpu,
+            lookups: if is_cpu { u64::MAX } else { GPU_LOOKUPS },
             memory_budget: if is_cpu { heap } else { heap / 2 },
         },
         subgroup_size: subgroups.subgroup_size,

@@ -19,9 +19,15 @@ pub struct Limits {
     pub shared_bytes: u32,
     /// Whether the device is a CPU: narrow workgroups, hulls in private memory.
     pub is_cpu: bool,
+    /// Largest number of lookups of a dispatch of brute force or a pyramid. A long dispatch blocks a GPU for others, and its
+    /// driver may end it.
+    pub lookups: u64,
     /// Memory budget of all images and buffers of a plan, bytes.
     pub memory_budget: u64,
 }
+
+/// [`Limits::lookups`] of a GPU: 0.1 s where 10^10 take a second, as on a slow one.
+pub(crate) const GPU_LOOKUPS: u64 = 1_000_000_000;
 
 impl Limits {
     /// Lavapipe in Debian 12 (Mesa 22.3.6) with a budget of 2 GiB: for plans without a device.
@@ -35,6 +41,7 @@ impl Limits {
             texels: 1 << 27,
             shared_bytes: 32 << 10,
             is_cpu: true,
+            lookups: u64::MAX,
             memory_budget: 2 << 30,
         }
     }
@@ -50,6 +57,7 @@ impl Limits {
             texels: 1 << 30,
             shared_bytes: 32 << 10,
             is_cpu,
+            lookups: u64::MAX,
             memory_budget,
         }
     }

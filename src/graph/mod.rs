@@ -9,7 +9,7 @@ pub mod shaders;
 
 pub(crate) use builder::Builder;
 pub use limits::Limits;
-pub(crate) use limits::bytes_text;
+pub(crate) use limits::{GPU_LOOKUPS, bytes_text};
 pub(crate) use pass::place_barriers;
 pub use pass::{Pass, ResourceId, missing_barriers};
 pub use reach::{Axis, CELL, Reach, Rectangle};

@@ -97,7 +97,7 @@ words! {
         Auto = "auto",
         /// Private memory of the invocation: fastest on CPU devices
         Private = "private",
-        /// Shared memory of the workgroup; on GPUs older entries in private memory
+        /// Shared memory of the workgroup; where a GPU sweeps one line per invocation, older entries in private memory
         ///
         /// As in TW10; a deeper hull continues in the stored occluders.
         Shared = "shared",

@@ -2,7 +2,7 @@
 
 use ridgelight::plan::{self, Limits, Picture};
 
-use ridgelight::scene::{Border, Hull, Lights, Lines, Method, Quality, Scene, SphereLight};
+use ridgelight::scene::{Border, Hull, Levels, Lights, Lines, Method, Quality, Scene, SphereLight};
 
 use super::{flat, is, sky, under_sky};
 
@@ -252,4 +252,38 @@ fn a_pyramid_is_made_by_octaves() {
         6,
         "the first reads the field"
     );
+}
+
+/// Brute force takes half the field's side of lookups per grid point and azimuth, a pyramid some 60 levels of 16 texels: on a
+/// GPU neither in one dispatch. The parts cover every grid point and azimuth once.
+#[test]
+fn dispatches_of_marches_are_short_on_a_gpu() {
+    const SIDE: u32 = 2048;
+    const MOST: u64 = 1_000_000_000;
+    let limits = Limits { is_cpu: false, lookups: MOST, ..Limits::lavapipe() };
+    let scene = under_sky(flat(SIDE as usize, SIDE as usize));
+    for (method, name) in
+        [(Method::BruteForce, "horizon_march"), (Method::Pyramid, "pyramid_march")]
+    {
+        let quality =
+            Quality { azimuths: 16, method, levels: Levels::Pyramid, ..Quality::default() };
+        let plan = plan::picture(&scene, &quality, &limits, Picture::default()).expect("a plan");
+        let marches: Vec<_> = plan.passes.iter().filter(|p| p.name() == name).collect();
+        let mut covered = vec![0_u64; plan.azimuths.len()];
+        for pass in &marches {
+            let [across, down, _] = pass.groups.map(u64::from);
+            let count = pass.azimuths.len() as u64;
+            // A pyramid has at least a level an octave.
+            let each = if method == Method::BruteForce { u64::from(SIDE) / 2 } else { 16 * 11 };
+            assert!(64 * across * down * count * each <= MOST, "{}", pass.label());
+            for k in pass.azimuths.clone() {
+                covered[k as usize] += 64 * across * down;
+            }
+        }
+        assert!(marches.len() > 16, "{} dispatches of {name}", marches.len());
+        assert!(covered.iter().all(|c| *c == u64::from(SIDE).pow(2)), "{name}: {covered:?}");
+        let whole = Limits { lookups: u64::MAX, ..limits };
+        let whole = plan::picture(&scene, &quality, &whole, Picture::default()).expect("a plan");
+        assert!(whole.passes.iter().filter(|p| p.name() == name).count() < marches.len());
+    }
 }

@@ -42,6 +42,9 @@ fn iterations(pass: &str, depth: usize) -> f64 {
     // has 32 azimuths.
     let known: &[f64] = match pass {
         "horizon_sweep" => &[1024.0, 1.4],
+        // Four steps each.
+        "line_sweep" => &[256.0, 1.4],
+        "shadow_sweep" => &[256.0],
         "sky_shade" | "sun_shade" => &[32.0],
         _ => &[],
     };
@@ -100,7 +103,7 @@ fn scenes() -> Vec<(&'static str, Scene, Quality)> {
         ("environment by SH", lit(map), Quality { basis: Basis::Sh, ..base }),
         ("aimed-around", lit(sky.clone()), Quality { fuse: Fuse::AimedAround, ..base }),
         ("packed", lit(sky.clone()), Quality { precision: Precision::Packed, ..base }),
-        // As long as a GPU takes.
+        // The GPU limit of exact lines is 256 steps.
         (
             "exact lines",
             Scene { field: fractal(256, 1).expect("a field"), ..lit(sky.clone()) },

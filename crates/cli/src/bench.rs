@@ -182,7 +182,7 @@ fn check_names(wanted: &[String], plan: &Plan, forms: bool) -> Result<()> {
     let mut known: Vec<&str> = plan.passes.iter().map(Pass::name).collect();
     known.dedup();
     if forms {
-        known.extend(["horizon_sweep", "sky_shade", "surface_sweep"]);
+        known.extend(["horizon_sweep", "line_sweep", "sky_shade", "surface_sweep"]);
         known.extend(["pyramid_march", "horizon_march"]);
     }
     known.sort_unstable();
@@ -241,15 +241,16 @@ fn flow(gpu: &Headless, frame: &mut Frame, most: usize) -> Result<Vec<Vec<Timing
     repeated(gpu, frame, &all, most)
 }
 
-/// Times of whole frames without timestamps between passes, ns: a GPU can overlap passes.
-fn overlapped(gpu: &Headless, frame: &mut Frame, most: usize) -> Result<Vec<f64>> {
+/// Runs of whole frames without timestamps between passes, and their times, ns: a GPU can overlap passes.
+fn overlapped(gpu: &Headless, frame: &mut Frame, most: usize) -> Result<(usize, Vec<f64>)> {
     frame.time_passes(false);
     let runs = flow(gpu, frame, most);
     frame.time_passes(true);
-    Ok(sums(&runs?, |_| true))
+    let runs = runs?;
+    Ok((runs.len(), sums(&runs, |_| true)))
 }
 
-/// Rows of a frame in both modes, and its last run.
+/// Rows of a frame in flow, overlapped and isolated, and its last run in flow.
 fn time(
     gpu: &Headless,
     frame: &mut Frame,
@@ -276,8 +277,8 @@ fn time(
         rows.push(row(pass.label(), "in_flow", &[pass], runs.len(), &times));
     }
     rows.push(row("total".into(), "in_flow", &every, runs.len(), &sums(&runs, |_| true)));
-    let whole = overlapped(gpu, frame, args.runs)?;
-    rows.push(row("total".into(), "overlapped", &every, whole.len(), &whole));
+    let (count, whole) = overlapped(gpu, frame, args.runs)?;
+    rows.push(row("total".into(), "overlapped", &every, count, &whole));
     let (mut totals, mut fewest) = (vec![0.0; args.runs], args.runs);
     for &i in &wanted {
         let pass = &plan.passes[i];

@@ -20,7 +20,7 @@ impl Frame {
         self.renderer.as_ref().expect("alive until ended").plan()
     }
 
-    /// [`Renderer::time_passes`] of its renderer.
+    /// Calls [`Renderer::time_passes`].
     pub fn time_passes(&mut self, each: bool) {
         self.renderer.as_mut().expect("alive until ended").time_passes(each);
     }
@@ -183,7 +183,7 @@ impl Headless {
         frame.renderer.as_mut().expect("alive until ended").replace_plan(plan)
     }
 
-    /// Runs a frame once and waits. Returns GPU times by pass or of all ([`Frame::time_passes`]), where the device has timestamps.
+    /// Runs a frame once and waits. Returns the GPU time of each pass, or one total after [`Frame::time_passes`]`(false)`, where the device has timestamps.
     ///
     /// # Errors
     /// The device's.

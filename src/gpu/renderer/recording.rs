@@ -60,7 +60,7 @@ impl Renderer {
         // is alive, images are in the stated layouts, sets and queries of this slot are not in use.
         unsafe {
             if queries != vk::QueryPool::null() {
-                let count = passes.len() as u32 + 1;
+                let count = passes.len().max(1) as u32 + 1;
                 // Now, so that earlier times are not mistaken for these; and in the command buffer, in case it
                 // runs again.
                 device.reset_query_pool(queries, 0, count);

@@ -292,7 +292,7 @@ fn walk(
     let WalkedOver { sweeping, batches } = *over;
     let (begin, end) = (batches[0].first, batches[batches.len() - 1].azimuths().end);
     let first: Vec<_> = batches.iter().map(|b| (*b, part(&bounce.name, b, batches))).collect();
-    if k == 1 && sweeping.are_apart {
+    if k == 1 && sweeping.has_own_lattices {
         sweeping.plan_all(builder, &first);
     }
     for (batch, part) in &first {
@@ -300,7 +300,7 @@ fn walk(
         // A lattice of its own still holds the first bounce's sweep.
         let is_shared =
             batches.iter().filter(|b| sweeping.occluders(b) == Some(occluders)).count() > 1;
-        if k == 1 && !sweeping.are_apart || is_shared {
+        if k == 1 && !sweeping.has_own_lattices || is_shared {
             sweeping.plan_all(builder, &[(*batch, part.clone())]);
         }
         let field = (scene.surface.border, scene.field.cell_m());

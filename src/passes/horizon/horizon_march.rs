@@ -1,31 +1,41 @@
 use crate::graph::{Builder, ResourceId, shaders};
-use crate::passes::batch::Batch;
+use crate::passes::batch::{Batch, part_label};
 use crate::passes::nodes::Nodes;
 
-/// Brute force: every crossing of every grid point's own line.
+/// Brute force: every crossing of every grid point's own line. Dispatches take at most `most` lookups, if they can.
 pub(crate) fn plan(
     builder: &mut Builder,
     batch: &Batch,
     part: &str,
-    (distances, nodes): (bool, Nodes),
+    (distances, nodes, most): (bool, Nodes, u64),
     [lane_heights, azimuths, slopes]: [ResourceId; 3],
 ) {
     let axis = batch.axis;
     let [lanes, steps] = nodes.size([axis.lanes, axis.steps]);
-    let grid_points = u64::from(lanes) * u64::from(steps) * u64::from(batch.count);
-    let pass = builder.pass(
-        shaders::HorizonMarch {
-            periodic: axis.warm_up > 0,
-            writes_distances: distances,
-            node_stride: nodes.stride as i32,
-        },
-        part,
-        format!("brute-force horizons of {} azimuths along {}", batch.count, axis.name()),
-        [lanes.div_ceil(8), steps.div_ceil(8), batch.count],
-        &shaders::MarchPush::of(batch),
-        &[("lane_heights", lane_heights), ("azimuths", azimuths), ("slopes", slopes)],
-        grid_points * 8,
-        grid_points,
-    );
-    pass.azimuths = batch.azimuths();
+    // Half the field, on average; and a repeating one's periods.
+    let each = u64::from(axis.steps / 2 + axis.warm_up);
+    for cut in batch.parts([lanes, steps], each, most) {
+        let (few, rows) = &cut;
+        let (count, height) = (few.len() as u32, rows.len() as u32);
+        let grid_points = u64::from(lanes) * u64::from(height) * u64::from(count);
+        let pass = builder.pass(
+            shaders::HorizonMarch {
+                periodic: axis.warm_up > 0,
+                writes_distances: distances,
+                node_stride: nodes.stride as i32,
+            },
+            &part_label(part, batch, &cut, steps),
+            format!("brute-force horizons of {count} azimuths along {}", axis.name()),
+            [lanes.div_ceil(8), height.div_ceil(8), count],
+            &shaders::MarchPush {
+                first_azimuth: few.start,
+                first_row: rows.start as i32,
+                ..shaders::MarchPush::of(batch)
+            },
+            &[("lane_heights", lane_heights), ("azimuths", azimuths), ("slopes", slopes)],
+            grid_points * 8,
+            grid_points,
+        );
+        pass.azimuths = few.clone();
+    }
 }

@@ -6,7 +6,7 @@ use crate::passes::sweep::{HullStorage, LineSweep};
 pub(crate) struct Images {
     pub heights: ResourceId,
     pub lane_heights: Option<ResourceId>,
-    /// The same as a buffer, for one line an invocation.
+    /// The same as a buffer, set if an invocation sweeps one line.
     pub lane_buffer: Option<ResourceId>,
     pub azimuths: ResourceId,
     pub occluders: Option<ResourceId>,
@@ -125,7 +125,7 @@ fn run(
     pass.azimuths = batch.azimuths();
 }
 
-/// Hull sweeps along all lines of a batch, one line an invocation. `lane_buffer` holds the heights.
+/// Hull sweeps along all lines of a batch, one line per invocation. `lane_buffer` holds the heights.
 fn one_each(
     builder: &mut Builder,
     sweep: &LineSweep,
@@ -154,7 +154,7 @@ fn one_each(
         },
         part,
         format!(
-            "horizons of {} azimuths along {}, one line an invocation, hull in {} memory",
+            "horizons of {} azimuths along {}, one line per invocation, hull in {} memory",
             batch.count,
             axis.name(),
             sweep.hull.name()

@@ -1,5 +1,5 @@
 use crate::graph::{Builder, ResourceId, shaders};
-use crate::passes::batch::Batch;
+use crate::passes::batch::{Batch, part_label};
 use crate::passes::nodes::Nodes;
 use crate::passes::pyramid::Pyramid;
 use crate::scene::Levels;
@@ -12,10 +12,10 @@ pub(crate) struct Images {
     pub stack: Option<ResourceId>,
 }
 
-/// Horizons from the levels, one sample per level.
+/// Horizons from the levels, one sample per level. Dispatches take at most `most` lookups, if they can.
 pub(crate) fn plan(
     builder: &mut Builder,
-    (pyramid, nodes): (&Pyramid, Nodes),
+    (pyramid, nodes, most): (&Pyramid, Nodes, u64),
     batch: &Batch,
     part: &str,
     [heights, azimuths, slopes]: [ResourceId; 3],
@@ -37,31 +37,36 @@ pub(crate) fn plan(
     let march_samples = u64::from(2 * fine + far * pyramid.levels());
     let own = u64::from(1 + own * pyramid.levels());
     let [lanes, steps] = nodes.size([axis.lanes, axis.steps]);
-    let places = u64::from(lanes) * u64::from(steps);
-    let horizons = places * u64::from(batch.count);
-    let pass = builder.pass(
-        shaders::PyramidMarch {
-            periodic: pyramid.periodic,
-            stack: is_stack,
-            levels: pyramid.levels() as i32,
-            node_stride: nodes.stride as i32,
-        },
-        part,
-        format!("horizons of {} azimuths, {} samples each", batch.count, pyramid.samples()),
-        [lanes.div_ceil(8), steps.div_ceil(8), 1],
-        &shaders::PyramidMarchPush {
-            lanes: axis.lanes as i32,
-            steps: axis.steps as i32,
-            warm_up: axis.warm_up as i32,
-            first_azimuth: batch.first,
-            azimuth_count: batch.count,
-            fine_samples: pyramid.fine_samples() as i32,
-            width_shift: pyramid.width_shift() as i32,
-            growth: pyramid.growth(),
-        },
-        &bound,
-        4 * (horizons * (1 + march_samples) + places * own),
-        horizons,
-    );
-    pass.azimuths = batch.azimuths();
+    for cut in batch.parts([lanes, steps], march_samples + own / u64::from(batch.count), most) {
+        let (few, rows) = &cut;
+        let (count, height) = (few.len() as u32, rows.len() as u32);
+        let places = u64::from(lanes) * u64::from(height);
+        let horizons = places * u64::from(count);
+        let pass = builder.pass(
+            shaders::PyramidMarch {
+                periodic: pyramid.periodic,
+                stack: is_stack,
+                levels: pyramid.levels() as i32,
+                node_stride: nodes.stride as i32,
+            },
+            &part_label(part, batch, &cut, steps),
+            format!("horizons of {count} azimuths, {} samples each", pyramid.samples()),
+            [lanes.div_ceil(8), height.div_ceil(8), 1],
+            &shaders::PyramidMarchPush {
+                lanes: axis.lanes as i32,
+                steps: axis.steps as i32,
+                warm_up: axis.warm_up as i32,
+                first_azimuth: few.start,
+                azimuth_count: count,
+                first_row: rows.start as i32,
+                fine_samples: pyramid.fine_samples() as i32,
+                width_shift: pyramid.width_shift() as i32,
+                growth: pyramid.growth(),
+            },
+            &bound,
+            4 * (horizons * (1 + march_samples) + places * own),
+            horizons,
+        );
+        pass.azimuths = few.clone();
+    }
 }

@@ -35,9 +35,9 @@ pub(crate) struct LineSweep {
     pub hull: HullStorage,
     /// Entries per line there; a power of two.
     pub hull_depth: u32,
-    /// One line an invocation: entries in private memory, all or those that shared memory does not hold.
+    /// Entries per line in private memory if an invocation sweeps one line: all of them, or those beyond shared memory; else 0.
     pub private_depth: u32,
-    /// Whether that is enough for every point of the longest line.
+    /// Whether the storage holds every point of the longest line.
     pub holds_line: bool,
     /// Whether entries are packed as f16 height and u16 distance.
     pub packed: bool,
@@ -119,13 +119,12 @@ const LEAST_WARM_UP: u32 = 512;
 // swept again with the hull in the stored occluders. Measured on lavapipe: 128 compile in 0.1 s, 1024 in up to
 // 3 s, 4096 in over 5 s, and run no faster.
 const PRIVATE_DEPTH: u32 = 128;
-// GPUs keep private memory for all invocations that fit the device at once: on an NVIDIA H200 138 MB of 64 entries.
-// There 32, 64 and 128 take the same time.
+// A GPU reserves private memory for every invocation that can be resident: 64 entries take 138 MB on an NVIDIA H200, with
+// 132 x 2,048 of them.
 const GPU_PRIVATE_DEPTH: u32 = 64;
 // One tile of the lattice.
 const LINES_TOGETHER: u32 = 32;
-// 2 KiB of shared memory for 32 lines. On an NVIDIA H200 sweeps with 16 entries take 1.1 times as long, with 32 entries
-// 1.6 times: fewer workgroups fit.
+// 2 KiB of shared memory for 32 lines. More entries leave room for fewer workgroups: benches/results/nvidia_h200.md.
 const GPU_SHARED_DEPTH: u32 = 8;
 // Entries of 12 bytes in private memory. An NVIDIA H200 (driver 580) makes no pipeline with 2,048.
 const GPU_SURFACE_DEPTH: u32 = 1024;
@@ -204,13 +203,14 @@ impl Sweep {
             if !limits.is_cpu && hull_depth > GPU_SURFACE_DEPTH {
                 return Err(Error::Limit {
                     what: "`lines exact` on a GPU".into(),
-                    needs: format!(
-                        "{total} steps per line (a periodic field is marched three times at least)"
-                    ),
-                    limit: format!(
-                        "{} steps; `method brute-force` is exact, too",
-                        GPU_SURFACE_DEPTH / 4
-                    ),
+                    needs: if border == Border::Periodic {
+                        format!(
+                            "{total} steps per line, most of them a warm-up of the periodic field"
+                        )
+                    } else {
+                        format!("{total} steps per line")
+                    },
+                    limit: format!("{} steps; use `method brute-force`", GPU_SURFACE_DEPTH / 4),
                 });
             }
             return Ok(Sweep::Surface { hull_depth, distances });
@@ -229,7 +229,7 @@ impl Sweep {
         };
         let packed = quality.precision == Precision::Packed;
         let periodic = border == Border::Periodic;
-        // One line an invocation reads heights from a buffer and stores occluders alone.
+        // One line per invocation reads heights from a buffer and stores occluders alone.
         let buffer_bytes =
             4 * u64::from(sides[0].next_multiple_of(4)) * u64::from(sides[1].next_multiple_of(4));
         let one_each = !limits.is_cpu
@@ -238,8 +238,8 @@ impl Sweep {
             && !packed
             && buffer_bytes <= limits.buffer_bytes;
         let place = match quality.hull {
-            // Measured on an NVIDIA H200, whose cache hulls in private memory fill; of four lines an invocation few fit
-            // shared memory. Processors keep private arrays in their cache (lavapipe).
+            // With one line per invocation, shared hulls are faster than private ones (benches/results/nvidia_h200.md). With
+            // four, few workgroups fit shared memory. CPU devices cache private arrays (lavapipe).
             Hull::Auto if one_each => HullStorage::Shared,
             Hull::Auto | Hull::Private => HullStorage::Private,
             Hull::Shared => HullStorage::Shared,
@@ -250,9 +250,10 @@ impl Sweep {
         let wanted = total.next_power_of_two();
         let hull_depth = match place {
             HullStorage::Private if limits.is_cpu => wanted.min(PRIVATE_DEPTH),
+            // Half as many for each of four lines.
             HullStorage::Private => wanted.min(GPU_PRIVATE_DEPTH / lines_each.min(2)),
             HullStorage::Shared => {
-                // Half of the shared memory, so that two workgroups fit; of one line an invocation less, so that many do.
+                // Half of the shared memory, so that two workgroups fit; with one line per invocation less, so that many do.
                 let entries = limits.shared_bytes
                     / 2
                     / (lines_each * group_size * if packed { 4 } else { 8 });

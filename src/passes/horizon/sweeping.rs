@@ -18,7 +18,7 @@ pub(crate) struct Sweeping {
     pub azimuths: ResourceId,
     /// Heights by lanes, of each axis that is marched: columns, rows.
     lane_heights: [Option<ResourceId>; 2],
-    /// The same as buffers, where one line an invocation is swept.
+    /// The same as buffers, set if an invocation sweeps one line.
     lane_buffers: [Option<ResourceId>; 2],
     /// Whether the sweep also reads its heights there, four lanes at a time.
     quads: bool,
@@ -26,16 +26,20 @@ pub(crate) struct Sweeping {
     pub levels: Option<pyramid_march::Images>,
     /// Nodes at which marches store a value.
     pub nodes: Nodes,
+    /// Most lookups of a dispatch of marches.
+    lookups: u64,
     /// The lattice of each batch; several batches may use one in turn.
     lattices: Vec<Lattice>,
-    /// Whether each batch has its own.
-    pub are_apart: bool,
+    /// Whether each batch of a circle has its own lattice.
+    pub has_own_lattices: bool,
     /// Numbers of the batches of lights by shadow heights.
     shadows: Vec<u32>,
 }
 
-/// Batches have lattices of their own where everything so far and all lattices take at most this share of the budget.
-const APART_SHARE: u64 = 4;
+/// Each batch of a circle gets its own lattice if all images so far and these lattices fit 1/8 of the memory budget.
+const OWN_LATTICES_DIVISOR: u64 = 8;
+/// Of a layer: a word for each four lines.
+const LOST_BYTES: u64 = 32;
 
 /// Output of sweeps.
 #[derive(Clone, Copy)]
@@ -51,7 +55,7 @@ impl Sweeping {
         self.lane_heights[usize::from(batch.axis.marches_rows)].expect("made for every axis used")
     }
 
-    /// The same as a buffer, where one line an invocation is swept.
+    /// The same as a buffer, set if an invocation sweeps one line.
     pub(crate) fn lane_buffer(&self, batch: &Batch) -> Option<ResourceId> {
         self.lane_buffers[usize::from(batch.axis.marches_rows)]
     }
@@ -149,7 +153,14 @@ impl Sweeping {
             Sweep::Pyramid(pyramid) => {
                 let ids = [self.heights, self.azimuths, self.written(batch)];
                 let levels = self.levels.as_ref();
-                pyramid_march::plan(builder, (pyramid, self.nodes), batch, part, ids, levels);
+                pyramid_march::plan(
+                    builder,
+                    (pyramid, self.nodes, self.lookups),
+                    batch,
+                    part,
+                    ids,
+                    levels,
+                );
             }
             Sweep::Surface { hull_depth, distances } => {
                 let ids = [self.lane_heights(batch), self.azimuths, self.written(batch)];
@@ -157,7 +168,7 @@ impl Sweeping {
             }
             Sweep::March { distances } => {
                 let ids = [self.lane_heights(batch), self.azimuths, self.written(batch)];
-                let wanted = (*distances, self.nodes);
+                let wanted = (*distances, self.nodes, self.lookups);
                 passes::horizon_march::plan(builder, batch, part, wanted, ids);
             }
         }
@@ -203,7 +214,10 @@ pub(crate) fn prepare(
     let lane_heights = axes.map(|axis| axis.map(|axis| lane_image(builder, axis)));
     let lines_alone = matches!(&sweep, Sweep::Lines(l) if l.lines_each == 1);
     let lane_buffers = axes.map(|axis| {
-        axis.filter(|_| lines_alone).map(|axis| {
+        let along = |a: &&Azimuth| axis.is_some_and(|axis| a.marches_rows() == axis.marches_rows);
+        let swept = lists.iter().enumerate().filter(|(l, _)| !shadows.contains(l));
+        let is_swept = swept.flat_map(|(_, list)| list).any(|a| along(&a));
+        axis.filter(|_| lines_alone && is_swept).map(|axis| {
             let bytes = 4 * u64::from(axis.lanes.next_multiple_of(4)) * u64::from(axis.steps);
             builder.buffer(&format!("lane_buffer_{}", axis.name()), bytes, false)
         })
@@ -235,7 +249,7 @@ pub(crate) fn prepare(
         let words = if is_shadow { "lattice_shadows" } else { "lattice_slopes" };
         let (occluders, slopes) =
             (image("lattice_occluders", shape.occluders), image(words, shape.slopes));
-        let bytes = u64::from(layers) * 32;
+        let bytes = u64::from(layers) * LOST_BYTES;
         let lost_lines = (can_lose && !is_shadow)
             .then(|| builder.buffer(&format!("lost_lines{suffix}"), bytes, false));
         Lattice { occluders, slopes, lost_lines }
@@ -244,20 +258,25 @@ pub(crate) fn prepare(
     let all = || batches.iter().enumerate().flat_map(|(l, b)| b.iter().map(move |b| (l, *b)));
     // Of one shape, and both or neither of suns.
     let turn = |list: usize, batch: &Batch| (shadows.contains(&list), shape_of(list, batch.axis));
-    // GPUs sweep several batches side by side: one alone leaves many of their units idle.
-    let of_all = all().map(|(list, b)| u64::from(b.layers) * shape_of(list, b.axis).layer_bytes());
-    let are_apart =
-        !limits.is_cpu && so_far + of_all.sum::<u64>() <= limits.memory_budget / APART_SHARE;
+    // One batch alone does not fill a GPU. Lattices of suns keep their size when a sun moves: they are used in turn.
+    let circles: Vec<bool> =
+        lists.iter().map(|list| list.iter().map(|a| a.wedge_rad).sum::<f32>() > 6.0).collect();
+    let of_circles = all()
+        .filter(|(list, _)| circles[*list])
+        .map(|(list, b)| u64::from(b.layers) * (shape_of(list, b.axis).layer_bytes() + LOST_BYTES));
+    let has_own_lattices = !limits.is_cpu
+        && so_far + of_circles.sum::<u64>() <= limits.memory_budget / OWN_LATTICES_DIVISOR;
+    let is_own = |list: usize| is_kept(list) || has_own_lattices && circles[list];
     let mut shared: Vec<((bool, LatticeShape), Lattice)> = Vec::new();
     let mut lattices = Vec::new();
     for (list, batch) in all() {
         let of = turn(list, &batch);
-        if is_kept(list) || are_apart {
+        if is_own(list) {
             lattices.push(make(list, batch.axis, batch.layers, &format!("_{}", batch.number)));
         } else if let Some((_, known)) = shared.iter().find(|(known, _)| *known == of) {
             lattices.push(*known);
         } else {
-            let alike = all().filter(|(l, b)| !is_kept(*l) && turn(*l, b) == of);
+            let alike = all().filter(|(l, b)| !is_own(*l) && turn(*l, b) == of);
             let layers = alike.map(|(_, b)| b.layers).max().unwrap_or(1);
             let is_first = shared.iter().all(|((is_shadow, _), _)| *is_shadow != of.0);
             let suffix = if is_first { "" } else { "_across" };
@@ -288,8 +307,9 @@ pub(crate) fn prepare(
         quads,
         levels,
         nodes,
+        lookups: limits.lookups,
         lattices,
-        are_apart,
+        has_own_lattices,
         shadows: of_shadows,
     };
     Ok((sweeping, Lists { lists, batches }))
@@ -353,6 +373,9 @@ pub(crate) fn settings(
             add("fuse", quality.fuse.name().into());
             add("hull", lines.hull.name().into());
             add("hull_depth", lines.hull_depth.to_string());
+            if lines.private_depth > 0 && lines.hull == HullStorage::Shared {
+                add("hull_private_depth", lines.private_depth.to_string());
+            }
             add("precision", lines.precision().name().into());
         }
         Sweep::Surface { .. } => {

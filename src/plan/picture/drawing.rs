@@ -106,13 +106,13 @@ impl Drawing<'_> {
         let Images { sky_sum, env_sum, sky_layer, env_layer, .. } = self.images;
         let batches = &lists.batches[0];
         let first: Vec<_> = batches.iter().map(|b| (*b, part("sky", b, batches))).collect();
-        if self.edited.is_none() && sweeping.are_apart {
+        if self.edited.is_none() && sweeping.has_own_lattices {
             sweeping.plan_all(&mut self.builder, &first);
         }
         for (i, batch) in batches.iter().enumerate() {
             let part = first[i].1.clone();
             let builder = &mut self.builder;
-            if self.edited.is_none() && !sweeping.are_apart {
+            if self.edited.is_none() && !sweeping.has_own_lattices {
                 sweeping.plan_all(builder, &first[i..=i]);
             }
             let (lane_heights, lattice) = (sweeping.lane_heights(batch), sweeping.lattice(batch));
@@ -211,24 +211,13 @@ impl Drawing<'_> {
             batches_of_each.iter().zip(lights).enumerate()
         {
             let mut walked = None;
-            let shadows_first = self.sweeping.as_ref().is_some_and(|s| s.are_apart);
-            if let (Some(sweeping), Some(shadows), true) =
-                (&self.sweeping, &self.shadows, shadows_first)
-            {
-                for batch in batches.iter().filter(|batch| sweeping.is_shadow(batch)) {
-                    let part = part(&name, batch, batches);
-                    shadows.plan_sweep(&mut self.builder, sweeping, batch, &part);
-                }
-            }
             for batch in batches {
                 let part = part(&name, batch, batches);
                 let Some(sweeping) = &self.sweeping else { return };
                 let builder = &mut self.builder;
                 let lanes = sweeping.lane_heights(batch);
                 if let Some(shadows) = self.shadows.as_ref().filter(|_| sweeping.is_shadow(batch)) {
-                    if !shadows_first {
-                        shadows.plan_sweep(builder, sweeping, batch, &part);
-                    }
+                    shadows.plan_sweep(builder, sweeping, batch, &part);
                     let field = &self.scene.field;
                     let of = (part.as_str(), shape);
                     let ids = [lanes, sweeping.azimuths, sweeping.written(batch), sum];

@@ -14,7 +14,7 @@ use crate::{field, random};
 const VIEWS: [glam::DVec3; 2] = [glam::DVec3::Z, glam::DVec3::new(0.6, 0.0, 0.8)];
 
 pub(crate) enum Wanted {
-    /// As a GPU finds them, on any device.
+    /// Horizons by a GPU's plan, on any device.
     GpuHorizons,
     Horizons {
         distances: bool,

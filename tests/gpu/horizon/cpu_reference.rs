@@ -117,10 +117,11 @@ pub(crate) fn sweeps() -> Vec<Case> {
     ]
 }
 
-/// `line_sweep`: both hull storages, lines of both kinds of width, all borders, and lines that lose vertices.
+/// `line_sweep` with private and shared hulls, lines one and two cells apart, every border, and hulls that overflow their
+/// storage.
 pub(crate) fn line_sweeps() -> Vec<Case> {
     let base = Quality { azimuths: 12, ..Quality::default() };
-    let shared = Quality { hull: Hull::Shared, ..base };
+    let private = Quality { hull: Hull::Private, ..base };
     let wide = Quality { lines: Lines::TwoCells, ..base };
     let case = |name, field, border, quality| Case {
         wanted: Wanted::GpuHorizons,
@@ -128,14 +129,14 @@ pub(crate) fn line_sweeps() -> Vec<Case> {
     };
     vec![
         case("a line each", rough(37, 23, 41), Border::Plane, base),
-        case("a line each, open", rough(26, 71, 42), Border::Open, shared),
+        case("a line each, open", rough(26, 71, 42), Border::Open, private),
         case("a line each, periodic", rough(14, 18, 43), Border::Periodic, base),
         case("a line each, two cells apart", rough(43, 38, 44), Border::Plane, wide),
         case("a line each, one row", rough(1, 9, 45), Border::Plane, base),
         Case { loses_lines: true, ..case("a line each, lost", dome(13, 201), Border::Plane, base) },
         Case {
             loses_lines: true,
-            ..case("a line each, lost in shared memory", dome(13, 201), Border::Plane, shared)
+            ..case("a line each, lost in private memory", dome(13, 201), Border::Plane, private)
         },
     ]
 }
@@ -195,11 +196,11 @@ fn sweeps_in_every_form_match() {
 }
 
 #[test]
-fn sweeps_of_one_value_a_sample_match() {
+fn sweeps_of_one_value_per_texel_match() {
     let mut device = Device::new();
     let limits = device.limits();
     for case in texels() {
-        // Three periods and 512 grid points at least: more than a GPU takes.
+        // A warm-up of at least 512 steps exceeds the GPU limit of 256.
         if !limits.is_cpu && case.name == "exact, periodic" {
             let (field, border) = (&case.scene.field, case.scene.surface.border);
             let all = (0, case.quality.azimuths);

@@ -131,12 +131,13 @@ fn wide_groups_and_narrow_ones_are_the_same_to_the_bit() {
     }
 }
 
-/// A GPU's plans sweep a line an invocation, fetch heights ahead, shade from buffers and keep lattices apart.
+/// GPU plans use line_sweep, prefetched heights, height buffers and one lattice per batch; the picture must equal that of CPU
+/// plans.
 #[test]
-fn plans_of_gpus_and_of_processors_draw_the_same_to_the_bit() {
+fn gpu_and_cpu_plans_render_identical_bits() {
     let mut gpu = Device::new();
     let limits = gpu.limits();
-    let [processor, discrete] = [true, false].map(|is_cpu| Limits { is_cpu, ..limits });
+    let [on_cpu, on_gpu] = [true, false].map(|is_cpu| Limits { is_cpu, ..limits });
     let sun = |elevation: f64, diameter: f64| Sun {
         azimuth_rad: 0.7,
         elevation_rad: elevation,
@@ -148,7 +149,7 @@ fn plans_of_gpus_and_of_processors_draw_the_same_to_the_bit() {
         scene.lights.suns = vec![sun(0.4, 0.0), sun(0.9, 0.02)];
         let bounces = Bounces { count: 2, azimuths: 8, ..Bounces::default() };
         let quality = Quality { azimuths: 16, bounces, ..Quality::default() };
-        let [ours, theirs] = [&processor, &discrete].map(|limits| {
+        let [ours, theirs] = [&on_cpu, &on_gpu].map(|limits| {
             let plan = plan::picture(&scene, &quality, limits, Picture::default()).expect("a plan");
             let passes: Vec<_> = plan.passes.iter().map(|p| p.name()).collect();
             assert_eq!(passes.contains(&"line_sweep"), !limits.is_cpu, "{border:?}");
@@ -156,5 +157,31 @@ fn plans_of_gpus_and_of_processors_draw_the_same_to_the_bit() {
         });
         let differing = ours.iter().zip(&theirs).filter(|(a, b)| a.to_bits() != b.to_bits());
         assert_eq!(differing.count(), 0, "{border:?}");
+    }
+}
+
+/// Brute force and pyramids in parts: azimuth by azimuth, and rows of them.
+#[test]
+fn dispatches_in_parts_and_whole_are_the_same_to_the_bit() {
+    let mut gpu = Device::new();
+    let limits = gpu.limits();
+    let field = fractal(67, 2).expect("a field");
+    for method in [Method::BruteForce, Method::Pyramid] {
+        for border in [Border::Plane, Border::Periodic] {
+            let quality = Quality { azimuths: 8, method, ..Quality::default() };
+            let [whole, by_azimuth, by_rows] = [u64::MAX, 200_000, 20_000].map(|lookups| {
+                let limits = Limits { lookups, ..limits };
+                let all = (0, quality.azimuths);
+                let plan = plan::horizons(&field, border, &quality, &limits, all, false);
+                let count = plan.expect("a plan").passes.len();
+                (gpu.horizons_within(&field, border, &quality, &limits), count)
+            });
+            assert!(by_rows.1 > whole.1 + 16, "{} passes, {}", by_rows.1, whole.1);
+            for (parts, _) in [by_azimuth, by_rows] {
+                let differing =
+                    parts.iter().zip(&whole.0).filter(|(a, b)| a.to_bits() != b.to_bits());
+                assert_eq!(differing.count(), 0, "{method:?}, {border:?}");
+            }
+        }
     }
 }

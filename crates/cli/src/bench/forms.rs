@@ -4,10 +4,10 @@ use std::f64::consts::TAU;
 use std::time::Instant;
 
 use indicatif::ProgressBar;
-use ridgelight::Result;
 use ridgelight::gpu::{Frame, Headless};
 use ridgelight::plan::{self, Limits, Pass, Picture};
 use ridgelight::scene::{Fuse, Hull, Levels, Lines, Method, Precision, Quality, Scene};
+use ridgelight::{Error, Result};
 use ridgelight_cpu::scalar_sweep::ScalarSweep;
 use ridgelight_trade::statistics::{Summary, median_interval};
 
@@ -84,6 +84,12 @@ pub fn run(
         if !only.is_empty() && !only.iter().any(|wanted| named(&form.name, wanted)) {
             continue;
         }
+        if let Err(error @ Error::Limit { .. }) =
+            plan::picture(scene, &form.quality, limits, Picture::default())
+        {
+            crate::say!("{} left out: {error}", form.name);
+            continue;
+        }
         bar.set_message(format!("{}: verifying", form.name));
         verifier.check(gpu, &form.quality, limits)?;
         let all_azimuths = form.quality.azimuths;
@@ -113,8 +119,8 @@ pub fn run(
     Ok(all)
 }
 
-/// Alternates the form and the scalar sweep, so that both run on the machine in the same state. A GPU runs its form first:
-/// while it waits for the scalar sweep, its clocks fall.
+/// On a CPU device, alternates the form and the scalar sweep, so that both meet the same load. On a GPU, runs the form first:
+/// the GPU's clocks fall while it idles.
 fn in_turn(
     gpu: &Headless,
     frame: &mut Frame,
@@ -173,7 +179,7 @@ fn in_turn(
 pub fn print(rows: &[[Row; 2]]) {
     crate::say!(
         "\n{:<34} {:>8} {:>11} {:>13} {:>9} {:>9} {:>9}",
-        "form, in turn with scalar_sweep",
+        "form, beside scalar_sweep",
         "azimuths",
         "ms/azimuth",
         "ms/(az·2^20)",

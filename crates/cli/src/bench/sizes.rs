@@ -31,11 +31,12 @@ pub fn run(
             bar.set_message(format!("{size}², {count} azimuths"));
             let quality = Quality { azimuths: count, ..*quality };
             let plan = plan::picture(&scene, &quality, limits, Picture::default())?;
-            let (times, pixels) = gpu.with_frame(plan.clone(), &inputs, |gpu, frame| {
-                Ok((overlapped(gpu, frame, most)?, gpu.pixels(frame, 0)?))
-            })?;
+            let ((count_of_runs, times), pixels) =
+                gpu.with_frame(plan.clone(), &inputs, |gpu, frame| {
+                    Ok((overlapped(gpu, frame, most)?, gpu.pixels(frame, 0)?))
+                })?;
             let passes: Vec<_> = plan.passes.iter().collect();
-            let measured = (times.len(), &times[..]);
+            let measured = (count_of_runs, &times[..]);
             let mut row = Row::of("total", "overlapped", &plan, &passes, count, measured);
             row.settings.extend([
                 ("device_bytes".into(), plan.bytes().to_string()),

@@ -330,14 +330,13 @@ pub fn outcome(probes: Result<Vec<Probe>, String>) -> Outcome {
     Outcome::Measured {
         worst: worst.expect("a case checks something under every method"),
         largest_error: probes.iter().fold(0.0, |m, p| p.error().max(m)),
-        tightest: if largest > DUST { tightest / largest } else { tightest },
+        tightest: if largest > ROUNDING_RESIDUE { tightest / largest } else { tightest },
         values: probes.len(),
     }
 }
 
-/// What rounding leaves of 1 in a product of two f64 values that should be 0: (2^-53)^2 is 1.2e-32. Up to here the largest
-/// expected value counts as 0.
-const DUST: f64 = 1e-30;
+/// Expected values up to here count as 0: two factors that should be 0 but are 2^-53 multiply to 1.2e-32.
+const ROUNDING_RESIDUE: f64 = 1e-30;
 
 /// A bound that is hardly meaningful: a tenth of the largest expected value.
 const LOOSE: f64 = 0.1;
@@ -363,7 +362,7 @@ pub fn complaint(row: &Row, cases: &[Case], methods: &[Method]) -> Option<String
         }
         (Outcome::Measured { .. }, Some(_)) => "drawn, and should be refused".to_owned(),
         (Outcome::Refused(said), Some(sentence)) if said == sentence => return None,
-        // What a GPU's private memory cannot hold.
+        // Exceeds the private memory of a GPU.
         (Outcome::Refused(said), None) if said.starts_with("`lines exact` on a GPU") => {
             return None;
         }
