@@ -140,6 +140,10 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
         }
         files::write_json(path, &report)?;
     }
+    if changes.as_ref().is_some_and(|changes| changes.is_empty()) {
+        let expected = "a report with a row of the same pass, mode, size and azimuths";
+        return Err(Error::setting("--against", "no row of this run", expected));
+    }
     let slower = changes.is_some_and(|changes| changes.any_slower());
     Ok(if slower { Outcome::Beyond } else { Outcome::Done })
 }

@@ -192,6 +192,11 @@ fn verdict(median: Option<[f64; 2]>, p10: Option<[f64; 2]>) -> Verdict {
 }
 
 impl Changes<'_> {
+    /// Whether no row could be compared.
+    pub fn is_empty(&self) -> bool {
+        self.changes.is_empty()
+    }
+
     /// Whether a row became slower.
     pub fn any_slower(&self) -> bool {
         self.changes.iter().any(|change| change.verdict == Verdict::Slower)
@@ -317,6 +322,7 @@ mod tests {
         let ratio = json["rows"][1]["ratio"].as_f64().unwrap();
         assert!((ratio - 1.07).abs() < 1e-12, "{ratio}");
         assert!(!earlier.against(&now[2..]).any_slower());
+        assert!(earlier.against(&[]).is_empty() && !earlier.against(&now).is_empty());
     }
 
     /// Four of five runs take twice as long, the others as long as before.
