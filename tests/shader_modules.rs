@@ -215,7 +215,7 @@ fn what_edits_repeat_in_other_pipelines_is_not_contracted() {
     let all = modules();
     let of =
         |wanted: &str| contractible(&all.iter().find(|(name, _)| name == wanted).expect("it").1);
-    for name in ["light_resolve", "horizon_sweep", "line_sweep", "horizon_resweep"] {
+    for name in ["light_resolve", "horizon_sweep", "horizon_resweep"] {
         assert_eq!(of(name), 0, "{name}");
     }
     assert!(of("sky_shade") > 0, "the check finds sums that may be contracted");

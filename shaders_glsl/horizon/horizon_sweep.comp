@@ -1,9 +1,9 @@
 // Computes: for every step of every line of an azimuth, the earlier step of that line with the steepest slope
 // (Timonen & Westerholm 2010, algorithm 1): an upper hull kept as a stack, O(1) amortised.
-// Reads: lane_heights or heights, azimuths.
+// Reads: lane_buffer, lane_heights or heights; azimuths.
 // Writes: occluders (march steps back, 0 for none; u16) and / or slopes, at [azimuth][32 lines][step][line]: a
 // lattice, see fuse.glsl.
-// One invocation is four neighbouring lines, from the horizon's side to the other end.
+// One invocation is four neighbouring lines, or one, from the horizon's side to the other end.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_KHR_shader_subgroup_vote : require
@@ -36,6 +36,14 @@ layout(constant_id = 10) const bool PERIODIC = false;
 layout(constant_id = 11) const int LINE_SHIFT = CELL_SHIFT;
 // Sweeps only lines that an earlier run of this pass has marked as lost.
 layout(constant_id = 12) const bool REDOES_LOST = false;
+// An invocation sweeps one line and stores occluders alone, else four.
+layout(constant_id = 13) const bool ONE_LINE = false;
+// Of one line: entries per line in private memory. With a shared hull, they hold the oldest entries, which shared memory has
+// overwritten. A line whose hull needs more is marked as lost.
+layout(constant_id = 14) const int LINE_PRIVATE_ENTRIES = 1;
+layout(constant_id = 15) const int LINE_SHARED_ENTRIES = 1;
+// Of one line: two buffers of two words per line and two words of padding.
+layout(constant_id = 16) const int WRITTEN_WORDS = 1;
 
 layout(binding = 0) uniform texture2D heights;
 layout(binding = 1, rgba32f) uniform readonly image2D lane_heights;
@@ -44,6 +52,8 @@ layout(binding = 3, rg32ui) uniform uimage2DArray occluders;
 layout(binding = 4) uniform writeonly uimage2DArray slopes;
 // One word for four lines, in the lattice's order.
 layout(binding = 5) buffer LostLines { uint lost_lines[]; };
+// Heights of one line's sweep, [march position][lane], rows of whole fours.
+layout(binding = 6) readonly buffer LaneBuffer { float lane_buffer[]; };
 
 layout(push_constant) uniform HorizonSweepPush {
     int lanes;           // grid points across the march
@@ -56,6 +66,7 @@ layout(push_constant) uniform HorizonSweepPush {
 shared uint shared_hull[SHARED_WORDS];
 
 #include "horizon/line.glsl"
+#include "horizon/one_line.glsl"
 
 // `line_height` of four lines a cell apart that begin at y: five neighbouring lanes from two texels.
 vec4 four_line_heights(int y, int step) {
@@ -95,8 +106,7 @@ uint packed_entry(vec2 entry) {
     return packed_f16(vec2(entry.x * height_scale, 0.0)) | uint(entry.y) << 16;
 }
 
-void main() {
-    azimuth = azimuth_at(azimuths, first_azimuth + gl_GlobalInvocationID.z);
+void sweep_four_lines() {
     vec2 private_hull[4 * PRIVATE_ENTRIES];
     uint private_packed[4 * PRIVATE_WORDS];
 
@@ -244,5 +254,14 @@ void main() {
     }
     if (!HULL_HOLDS_LINE && HULL_PLACE != HULL_IN_OCCLUDERS) {
         lost_lines[lost_word] = lost ? 1u : 0u;
+    }
+}
+
+void main() {
+    azimuth = azimuth_at(azimuths, first_azimuth + gl_GlobalInvocationID.z);
+    if (ONE_LINE) {
+        sweep_one_line();
+    } else {
+        sweep_four_lines();
     }
 }

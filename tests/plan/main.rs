@@ -194,8 +194,15 @@ fn an_azimuths_layers_are_whole_groups() {
     let wide = Limits { is_cpu: false, ..Limits::lavapipe() };
     let one_each = sky(256, 256, 64, &wide);
     let size = |p: &plan::Pass| p.constant("local_size_x");
-    let mut lines = one_each.passes.iter().filter(|p| p.name() == "line_sweep");
-    assert!(lines.all(|p| size(p) == Some(32)));
+    let lines: Vec<_> =
+        one_each.passes.iter().filter(|p| p.constant("one_line") == Some(1)).collect();
+    assert!(lines.len() == 2 && lines.iter().all(|p| size(p) == Some(32)));
+    // docs/methods.md states these.
+    let entries = |p: &plan::Pass| [p.constant("hull_depth"), p.constant("line_private_entries")];
+    assert!(lines.iter().all(|p| entries(p) == [Some(8), Some(64)]));
+    // Both batches are swept before either is shaded, and neither sweep waits for the other.
+    assert!(one_each.passes.iter().position(|p| p.name() == "sky_shade") > Some(3));
+    assert!(!lines[1].barrier_before);
     let quality = Quality { azimuths: 64, precision: Precision::Packed, ..Quality::default() };
     let scene = under_sky(flat(256, 256));
     let plan = plan::picture(&scene, &quality, &wide, Picture::default()).expect("a plan");

@@ -29,6 +29,8 @@ const SCENE: &str = "stats: scene ";
 const PASS: &str = "stats: pass ";
 /// In place of the name of a pass whose pipeline an earlier scene has.
 const AGAIN: &str = "again";
+/// The name of horizon_sweep with one line per invocation.
+const ONE_LINE: &str = "horizon_sweep one";
 /// A rise above this share fails.
 const RISE: f64 = 0.05;
 
@@ -43,7 +45,7 @@ fn iterations(pass: &str, depth: usize) -> f64 {
     let known: &[f64] = match pass {
         "horizon_sweep" => &[1024.0, 1.4],
         // Four steps each.
-        "line_sweep" => &[256.0, 1.4],
+        ONE_LINE => &[256.0, 1.4],
         "shadow_sweep" => &[256.0],
         "sky_shade" | "sun_shade" => &[32.0],
         _ => &[],
@@ -169,7 +171,9 @@ fn compile() {
 fn pipelines(plan: &Plan) -> Vec<(&'static str, Vec<u32>)> {
     let mut all = Vec::new();
     for pass in &plan.passes {
-        let key = (pass.name(), pass.constants.clone());
+        let is_one_line = pass.constant("one_line") == Some(1);
+        let name = if is_one_line { ONE_LINE } else { pass.name() };
+        let key = (name, pass.constants.clone());
         if !all.contains(&key) {
             all.push(key);
         }

@@ -186,7 +186,7 @@ fn check_names(wanted: &[String], plan: &Plan, forms: bool) -> Result<()> {
     let mut known: Vec<&str> = plan.passes.iter().map(Pass::name).collect();
     known.dedup();
     if forms {
-        known.extend(["horizon_sweep", "line_sweep", "sky_shade", "surface_sweep"]);
+        known.extend(["horizon_sweep", "sky_shade", "surface_sweep"]);
         known.extend(["pyramid_march", "horizon_march"]);
     }
     known.sort_unstable();

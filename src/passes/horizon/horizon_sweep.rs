@@ -23,13 +23,7 @@ pub(crate) fn plan(
     part: &str,
     images: &Images,
 ) {
-    match (images.lane_buffer, images.occluders) {
-        (Some(buffer), Some(occluders)) if sweep.lines_each == 1 => {
-            let ids = [buffer, images.azimuths, occluders];
-            one_each(builder, sweep, batch, part, ids, images.lost_lines);
-        }
-        _ => run(builder, sweep, batch, part, images, false),
-    }
+    run(builder, sweep, batch, part, images, false);
 }
 
 /// Sweeps along the lines whose hull overflowed its storage, where any can.
@@ -62,13 +56,16 @@ fn run(
 ) {
     let axis = batch.axis;
     let depth = sweep.hull_depth as i32;
-    let private = sweep.hull == HullStorage::Private;
-    let shared_words = 4 * depth * sweep.group_size as i32 * if sweep.packed { 1 } else { 2 };
+    let one_line = sweep.lines_each == 1;
+    let [shared, private] = [HullStorage::Shared, HullStorage::Private].map(|h| h == sweep.hull);
+    let group_entries = depth * sweep.group_size as i32;
+    let shared_words = 4 * group_entries * if sweep.packed { 1 } else { 2 };
     let mut bound = vec![("azimuths", images.azimuths)];
     // Lines one cell apart share texels of four lanes; all others fetch one height at a time.
-    match images.lane_heights {
-        Some(lanes) => bound.push(("lane_heights", lanes)),
-        None => bound.push(("heights", images.heights)),
+    match (images.lane_buffer.filter(|_| one_line), images.lane_heights) {
+        (Some(buffer), _) => bound.push(("lane_buffer", buffer)),
+        (None, Some(lanes)) => bound.push(("lane_heights", lanes)),
+        (None, None) => bound.push(("heights", images.heights)),
     }
     if sweep.hull == HullStorage::Occluders && images.lane_heights.is_some() {
         bound.push(("heights", images.heights));
@@ -79,14 +76,16 @@ fn run(
     let lines = batch.most_lines;
     let value_bytes = if images.occluders.is_some() { 2 } else { 0 }
         + if images.slopes.is_some() { u64::from(sweep.slope_format) * 4 % 6 } else { 0 };
+    // Four lines share the heights between them.
+    let heights = if one_line { 8 } else { 4 };
     let pass = builder.pass(
         shaders::HorizonSweep {
             local_size_x: sweep.group_size,
             hull_place: sweep.hull as u32,
             hull_depth: depth,
-            private_entries: if private && !sweep.packed { depth } else { 1 },
+            private_entries: if private && !sweep.packed && !one_line { depth } else { 1 },
             private_words: if private && sweep.packed { depth } else { 1 },
-            shared_words: if sweep.hull == HullStorage::Shared { shared_words } else { 1 },
+            shared_words: if shared && !one_line { shared_words } else { 1 },
             hull_holds_line: sweep.holds_line,
             hull_packed: sweep.packed,
             writes_occluders: images.occluders.is_some(),
@@ -94,15 +93,20 @@ fn run(
             periodic: axis.warm_up > 0,
             line_shift: sweep.line_shift as i32,
             redoes_lost: again,
+            one_line,
+            line_private_entries: if one_line { sweep.private_depth as i32 } else { 1 },
+            line_shared_entries: if shared && one_line { group_entries } else { 1 },
+            written_words: if one_line { 2 * (2 * sweep.group_size as i32 + 2) } else { 1 },
         },
         part,
         if again {
             "lines whose hull overflowed its storage; ends at once where there are none".to_owned()
         } else {
             format!(
-                "horizons of {} azimuths along {}, hull in {}",
+                "horizons of {} azimuths along {}, {}hull in {}",
                 batch.count,
                 axis.name(),
+                if one_line { "one line per invocation, " } else { "" },
                 match sweep.hull {
                     HullStorage::Private => "private memory",
                     HullStorage::Shared => "shared memory",
@@ -110,7 +114,7 @@ fn run(
                 }
             )
         },
-        [lines.div_ceil(4 * sweep.group_size), 1, batch.count],
+        [lines.div_ceil(sweep.group_lines()), 1, batch.count],
         &shaders::HorizonSweepPush {
             lanes: axis.lanes as i32,
             steps: axis.steps as i32,
@@ -119,56 +123,12 @@ fn run(
             height_scale: sweep.height_scale,
         },
         &bound,
-        if again { u64::from(batch.layers) * 32 } else { batch.line_texels * (4 + value_bytes) },
+        if again {
+            u64::from(batch.layers) * 32
+        } else {
+            batch.line_texels * (heights + value_bytes)
+        },
         if again { 0 } else { batch.line_texels },
-    );
-    pass.azimuths = batch.azimuths();
-}
-
-/// Hull sweeps along all lines of a batch, one line per invocation. `lane_buffer` holds the heights.
-fn one_each(
-    builder: &mut Builder,
-    sweep: &LineSweep,
-    batch: &Batch,
-    part: &str,
-    [lane_buffer, azimuths, occluders]: [ResourceId; 3],
-    lost_lines: Option<ResourceId>,
-) {
-    let axis = batch.axis;
-    let depth = sweep.hull_depth as i32;
-    let shared = sweep.hull == HullStorage::Shared;
-    let mut bound =
-        vec![("lane_buffer", lane_buffer), ("azimuths", azimuths), ("occluders", occluders)];
-    bound.extend(lost_lines.map(|l| ("lost_lines", l)));
-    let pass = builder.pass(
-        shaders::LineSweep {
-            local_size_x: sweep.group_size,
-            hull_in_shared: shared,
-            hull_depth: depth,
-            private_entries: sweep.private_depth as i32,
-            shared_entries: if shared { depth * sweep.group_size as i32 } else { 1 },
-            hull_holds_line: sweep.holds_line,
-            periodic: axis.warm_up > 0,
-            line_shift: sweep.line_shift as i32,
-            written_words: 2 * (2 * sweep.group_size as i32 + 2),
-        },
-        part,
-        format!(
-            "horizons of {} azimuths along {}, one line per invocation, hull in {} memory",
-            batch.count,
-            axis.name(),
-            sweep.hull.name()
-        ),
-        [batch.most_lines.div_ceil(sweep.group_size), 1, batch.count],
-        &shaders::LineSweepPush {
-            lanes: axis.lanes as i32,
-            steps: axis.steps as i32,
-            warm_up: axis.warm_up as i32,
-            first_azimuth: batch.first,
-        },
-        &bound,
-        batch.line_texels * (8 + 2),
-        batch.line_texels,
     );
     pass.azimuths = batch.azimuths();
 }

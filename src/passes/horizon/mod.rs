@@ -12,7 +12,7 @@ pub(crate) mod height_transpose;
 /// `--method brute-force`: the baseline and the ground truth on the device.
 pub(crate) mod horizon_march;
 /// Hull sweep along lines; the hull is in private memory, in shared memory or in the occluders written so far; never
-/// loses an entry. Where an invocation sweeps one line (the default on GPUs), the shader is `line_sweep`.
+/// loses an entry.
 pub(crate) mod horizon_sweep;
 pub mod nodes;
 pub mod pyramid;

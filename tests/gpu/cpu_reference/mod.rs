@@ -137,7 +137,7 @@ pub(crate) fn check_all(cases: &[Case]) {
 fn every_shader_has_a_cpu_reference_and_a_case() {
     let cases: Vec<Case> = [
         horizon::sweeps(),
-        horizon::line_sweeps(),
+        horizon::one_line_sweeps(),
         horizon::texels(),
         horizon::pyramids(),
         direct::pictures(),

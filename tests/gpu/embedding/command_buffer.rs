@@ -350,6 +350,19 @@ fn timings_are_those_of_the_last_recording_or_none() {
     assert_eq!(times.iter().map(|t| &t.label).collect::<Vec<_>>(), [&plan.passes[2].label()]);
     let drawn = outputs(gpu, &frame);
 
+    // One time of all passes, also of none, and the same picture; then each again.
+    let all: Vec<usize> = (0..plan.passes.len()).collect();
+    frame.renderer().time_passes(false);
+    for some in [&all[..], &all[2..3], &[]] {
+        let times = gpu.draw_passes(&mut frame, some).expect("drawn");
+        let labels: Vec<_> = times.iter().map(|t| t.label.as_str()).collect();
+        assert_eq!(labels, if some.is_empty() { vec![] } else { vec!["all passes"] });
+        assert!(times.iter().all(|t| t.ns > 0.0));
+    }
+    assert_eq!(outputs(gpu, &frame), drawn);
+    frame.renderer().time_passes(true);
+    assert_eq!(gpu.draw(&mut frame).expect("drawn").len(), all.len());
+
     // No family of this number: none that has timestamps.
     let host = Host { queue_family: u32::MAX, ..gpu.host().clone() };
     let mut untimed = Renderer::new(&host, plan, 1).expect("a renderer");

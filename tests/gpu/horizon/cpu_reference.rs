@@ -19,7 +19,6 @@ pub(crate) const REFERENCES: &[Reference] = &[
     ("pyramid_march", pyramid::pyramid_march),
     ("height_transpose", sweep::height_transpose),
     ("horizon_sweep", sweep::horizon_sweep),
-    ("line_sweep", sweep::line_sweep),
     ("surface_sweep", sweep::surface_sweep),
     ("horizon_march", sweep::horizon_march),
     ("sweep_fuse", sweep::sweep_fuse),
@@ -117,9 +116,9 @@ pub(crate) fn sweeps() -> Vec<Case> {
     ]
 }
 
-/// `line_sweep` with private and shared hulls, lines one and two cells apart, every border, and hulls that overflow their
+/// `horizon_sweep` with one line per invocation: private and shared hulls, lines one and two cells apart, every border, and hulls that overflow their
 /// storage.
-pub(crate) fn line_sweeps() -> Vec<Case> {
+pub(crate) fn one_line_sweeps() -> Vec<Case> {
     let base = Quality { azimuths: 12, ..Quality::default() };
     let private = Quality { hull: Hull::Private, ..base };
     let wide = Quality { lines: Lines::TwoCells, ..base };
@@ -189,7 +188,7 @@ pub(crate) fn pyramids() -> Vec<Case> {
 #[test]
 fn sweeps_in_every_form_match() {
     let mut device = Device::new();
-    for case in sweeps().into_iter().chain(line_sweeps()) {
+    for case in sweeps().into_iter().chain(one_line_sweeps()) {
         let lost = check(&mut device, &case);
         assert_eq!(lost > 0, case.loses_lines, "{}: {lost} groups of lines redone", case.name);
     }

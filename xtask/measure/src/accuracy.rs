@@ -22,8 +22,6 @@ use crate::common::{Outcome, cells, head, inputs, xorshift};
 
 /// The median of three draws after the first.
 const RUNS: usize = 3;
-/// Passes of hull sweeps along lines.
-const SWEEPS: [&str; 2] = ["horizon_sweep", "line_sweep"];
 /// Grid points, rows and columns.
 type Picks = [[usize; 2]];
 
@@ -188,7 +186,7 @@ fn sweeps(gpu: &mut Headless, ground: &Ground) -> Result<()> {
             "| {names} | {} | {} ({row}, {col}) | {rmse:.4} | {:.2} | {:.2} |",
             cells(5, [e.mean_deg, e.median_deg]),
             cells(4, [e.p99_deg, e.p999_deg, e.worst_deg]),
-            SWEEPS.map(of).iter().sum::<f64>() + of("surface_sweep") + of("horizon_march"),
+            of("horizon_sweep") + of("surface_sweep") + of("horizon_march"),
             of("sky_shade")
         );
     }
@@ -214,8 +212,7 @@ fn environment(gpu: &mut Headless, ground: &Ground, path: &Path, count: usize) -
         let ours: Vec<[f64; 3]> =
             picks.iter().map(|[r, c]| found.light[r * ground.field.cols() + c]).collect();
         let e = ImageError::of(ours.as_flattened(), oracle.as_flattened(), 3)?;
-        let of = |name: &str| ms(found.middle(), name);
-        let times = [of("env_"), SWEEPS.map(of).iter().sum(), of("sky_shade"), of("")];
+        let times = ["env_", "horizon_sweep", "sky_shade", ""].map(|name| ms(found.middle(), name));
         println!(
             "| {azimuths} | {:.3} | {:+.3} | {} |",
             100.0 * e.relative_rmse,

@@ -295,7 +295,7 @@ impl Costs {
         for (label, ns) in passes {
             let kind = match label.split([' ', '.']).next().unwrap_or_default() {
                 _ if label.contains("bounce") => 6 + engine_kind,
-                "horizon_sweep" | "line_sweep" | "shadow_sweep" | "sweep_fuse" => 0,
+                "horizon_sweep" | "shadow_sweep" | "sweep_fuse" => 0,
                 "surface_sweep" | "horizon_march" => 1,
                 "sky_shade" | "sun_shade" | "shadow_shade" | "shadow_settle" => 2,
                 "env_tables" => 3,

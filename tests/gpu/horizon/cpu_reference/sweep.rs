@@ -114,30 +114,6 @@ pub(crate) fn horizon_sweep(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     pairs
 }
 
-/// The occluders alone.
-pub(crate) fn line_sweep(run: &mut Run, pass: &Pass) -> Vec<Pair> {
-    if constant(pass, "hull_holds_line") == 0 {
-        let lost = run.words(pass, "lost_lines").expect("written");
-        run.lost += lost.iter().filter(|w| **w != 0).count();
-        return Vec::new();
-    }
-    let occluders = stored(run, pass, "occluders", 2);
-    let first = pushed(pass, const { offset("LineSweepPush", "first_azimuth") }) as usize;
-    let mut pairs = Vec::new();
-    for k in first..first + pass.groups[2] as usize {
-        let azimuth = run.plan.azimuths[k];
-        let options = SweepOptions {
-            line_shift: constant(pass, "line_shift"),
-            warm_up: run.warm_up(azimuth.marches_rows()),
-            packed: None,
-            slopes_f16: false,
-        };
-        let left = lines_of(run, (k, &azimuth), options, &occluders, &None, &mut pairs);
-        run.lattices[k] = Some(left);
-    }
-    pairs
-}
-
 /// Pairs one azimuth's lines and returns the device's values, stored like the CPU reference's.
 fn lines_of(
     run: &Run,

@@ -119,6 +119,31 @@ fn sizes() -> Result<String> {
     Ok(format!("{out}\n{about}\n{}", figures.caption()?))
 }
 
+/// From the kit's report.
+fn h200() -> Result<String> {
+    let path = Path::new(RESULTS).join("nvidia_h200.md");
+    let report = text(&path)?;
+    let sizes = report.split("## Sizes").nth(1).unwrap_or_default();
+    let frame_ms = |side: &str| {
+        let rows = sizes.lines().map(|line| line.split_whitespace().collect::<Vec<_>>());
+        let found = rows.filter(|words| words.len() == 8).find(|w| w[..2] == [side, "64"]);
+        found.map(|words| words[2].to_owned()).ok_or_else(|| {
+            wrong(
+                &path,
+                &format!("no frame of {side}²"),
+                "one of 64 azimuths, as tools/gpu-kit writes it",
+            )
+        })
+    };
+    Ok(format!(
+        "On an [NVIDIA H200](benches/results/nvidia_h200.md) 64 azimuths take {} ms at 256², {} ms at 1024² and {} ms at \
+         4096².\n",
+        frame_ms("256")?,
+        frame_ms("1024")?,
+        frame_ms("4096")?
+    ))
+}
+
 fn forms() -> Result<String> {
     let figures = Figures::read("forms_1024")?;
     let mut out = String::from(
@@ -342,7 +367,10 @@ type Section = (&'static str, fn() -> Result<String>);
 
 /// Which page holds which sections.
 const PAGES: [(&str, &[Section]); 7] = [
-    ("README.md", &[("picture", picture), ("sizes", sizes), ("features", features::features)]),
+    (
+        "README.md",
+        &[("picture", picture), ("sizes", sizes), ("h200", h200), ("features", features::features)],
+    ),
     ("docs/getting-started.md", &[("camera", camera)]),
     ("docs/embedding.md", &[("hosts", hosts), ("edits", edits)]),
     ("docs/methods.md", &[("forms", forms)]),

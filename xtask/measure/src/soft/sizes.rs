@@ -38,7 +38,7 @@ fn measured(gpu: &mut Headless, scene: &Scene, quality: &Quality, runs: usize) -
         let mut times = [(); 3].map(|()| Vec::new());
         for _ in 0..runs {
             let whole = gpu.draw(frame)?;
-            let horizons = ["height_", "horizon_sweep", "line_sweep", "pyramid_march"];
+            let horizons = ["height_", "horizon_sweep", "pyramid_march"];
             times[0].push(horizons.iter().map(|name| ms(&whole, name)).sum());
             times[1].push(total(&whole));
             times[2].push(total(&gpu.draw_passes(frame, &new_light)?));

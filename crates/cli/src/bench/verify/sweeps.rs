@@ -43,8 +43,7 @@ pub(super) fn check(
     let around = environments::check(scene, places, device, lines)?;
     let scene = white(scene, Lights { sky: Some([1.0; 3]), ..Lights::default() });
     let (plan, layers) = device.layers(&scene, false)?;
-    let sweeps = ["horizon_sweep", "line_sweep"];
-    if !plan.passes.iter().any(|pass| sweeps.contains(&pass.name())) {
+    if !plan.passes.iter().any(|pass| pass.name() == "horizon_sweep") {
         return Ok(None);
     }
     let wanted = wanted(&scene, places, quality, lines);

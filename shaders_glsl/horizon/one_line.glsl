@@ -1,51 +1,13 @@
-// Computes: the same occluders as horizon_sweep, bit for bit, with one line per invocation. For GPUs, which hide load
-// latency with many invocations. Heights come from a buffer, four steps before they are needed.
-// Reads: lane_buffer, azimuths.
-// Writes: occluders, as horizon_sweep: four steps of 32 lines at a time, so that neighbouring invocations write
-// neighbouring texels.
-#version 460
-#extension GL_EXT_samplerless_texture_functions : require
+// One line per invocation: for GPUs, which hide load latency with many invocations. Heights come from `lane_buffer`, four
+// steps before they are needed; whole workgroups are whole tiles of 32 lines. Part of horizon_sweep, which declares all
+// constants, bindings and push constants.
 
-#include "shared/lattice.glsl"
+const bool LINE_HULL_IN_SHARED = HULL_PLACE == HULL_IN_SHARED;
 
-// Whole tiles of 32 lines.
-layout(local_size_x_id = 0) in;
-
-layout(constant_id = 1) const bool HULL_IN_SHARED = false;
-// Entries kept per line, a power of two: the newest.
-layout(constant_id = 2) const int HULL_DEPTH = 1;
-// Entries per line in private memory. With a shared hull, they hold the oldest entries, which shared memory has overwritten.
-// A line whose hull needs more is marked as lost; horizon_sweep sweeps it again.
-layout(constant_id = 3) const int PRIVATE_ENTRIES = 1;
-layout(constant_id = 4) const int SHARED_ENTRIES = 1;
-layout(constant_id = 5) const bool HULL_HOLDS_LINE = true;
-layout(constant_id = 6) const bool PERIODIC = false;
-layout(constant_id = 7) const int LINE_SHIFT = CELL_SHIFT;
-// Two buffers of two words per line and two words of padding.
-layout(constant_id = 8) const int WRITTEN_WORDS = 1;
-
-// [march position][lane], rows of whole fours.
-layout(binding = 0) readonly buffer LaneBuffer { float lane_buffer[]; };
-layout(binding = 1) uniform textureBuffer azimuths;
-layout(binding = 2, rg32ui) uniform writeonly uimage2DArray occluders;
-layout(binding = 3) buffer LostLines { uint lost_lines[]; };
-
-layout(push_constant) uniform LineSweepPush {
-    int lanes;           // grid points across the march
-    int steps;           // grid points along it
-    int warm_up;         // steps marched before the first that counts: whole periods, or 0
-    uint first_azimuth;
-};
-
-const float OUTSIDE = -1e28;
-const float UNDER_OUTSIDE = -1e34;
-
-shared vec2 shared_hull[SHARED_ENTRIES];
+shared vec2 line_hull_shared[LINE_SHARED_ENTRIES];
 // Occluders of four steps, as two words per line: all first words, two words of padding against bank conflicts, all second
 // words. Two such buffers alternate.
 shared uint written[WRITTEN_WORDS];
-
-Azimuth azimuth;
 
 // Texels of lane_buffer: of lane position 0 at step 0; from step to step, and from lane to lane; and the last.
 int origin;
@@ -83,7 +45,7 @@ vec2 v3;
 int depth;
 int kept;
 bool lost;
-vec2 private_hull[PRIVATE_ENTRIES];
+vec2 line_hull_private[LINE_PRIVATE_ENTRIES];
 
 // Sweeps one step between these heights. Returns the steps back to its occluder, 0 for none.
 uint occluder(int step, int from, vec2 beside) {
@@ -97,14 +59,14 @@ uint occluder(int step, int from, vec2 beside) {
     int own = int(gl_LocalInvocationID.x);
     int oldest = depth - HULL_DEPTH;
     int slot = depth & (HULL_DEPTH - 1);
-    if (HULL_IN_SHARED) {
+    if (LINE_HULL_IN_SHARED) {
         if (oldest >= kept) {
-            private_hull[min(oldest, PRIVATE_ENTRIES - 1)] = shared_hull[slot * group_lines + own];
-            lost = lost || !HULL_HOLDS_LINE && oldest >= PRIVATE_ENTRIES;
+            line_hull_private[min(oldest, LINE_PRIVATE_ENTRIES - 1)] = line_hull_shared[slot * group_lines + own];
+            lost = lost || !HULL_HOLDS_LINE && oldest >= LINE_PRIVATE_ENTRIES;
         }
-        shared_hull[slot * group_lines + own] = v3;
+        line_hull_shared[slot * group_lines + own] = v3;
     } else {
-        private_hull[slot] = v3;
+        line_hull_private[slot] = v3;
     }
     kept = max(kept, oldest + 1);
     if (subtends(h, x, v1, v2)) {
@@ -115,13 +77,13 @@ uint occluder(int step, int from, vec2 beside) {
         while (!lost && subtends(h, x, v1, v2)) {
             slot = depth & (HULL_DEPTH - 1);
             v1 = v2;
-            if (HULL_IN_SHARED && depth >= kept) {
-                v2 = shared_hull[slot * group_lines + own];
-            } else if (HULL_IN_SHARED) {
-                v2 = private_hull[clamp(depth, 0, PRIVATE_ENTRIES - 1)];
+            if (LINE_HULL_IN_SHARED && depth >= kept) {
+                v2 = line_hull_shared[slot * group_lines + own];
+            } else if (LINE_HULL_IN_SHARED) {
+                v2 = line_hull_private[clamp(depth, 0, LINE_PRIVATE_ENTRIES - 1)];
             } else {
                 lost = !HULL_HOLDS_LINE && depth < kept;
-                v2 = private_hull[slot];
+                v2 = line_hull_private[slot];
             }
             depth--;
         }
@@ -135,8 +97,9 @@ uint occluder(int step, int from, vec2 beside) {
     return back;
 }
 
-void main() {
-    azimuth = azimuth_at(azimuths, first_azimuth + gl_GlobalInvocationID.z);
+// The same occluders as four lines per invocation, bit for bit: four steps of 32 lines at a time, so that neighbouring
+// invocations write neighbouring texels.
+void sweep_one_line() {
     int total = warm_up + steps;
     int shear = azimuth.shear;
     int spacing = 1 << LINE_SHIFT;
