@@ -4,6 +4,7 @@
 
 pub(crate) mod bake;
 pub(crate) mod bounce;
+pub(crate) mod device;
 pub(crate) mod direct;
 pub(crate) mod edit;
 pub(crate) mod horizon;
@@ -15,6 +16,7 @@ pub(crate) mod view;
 
 pub use bake::*;
 pub(crate) use bounce::*;
+pub(crate) use device::*;
 pub(crate) use direct::*;
 pub(crate) use edit::*;
 pub use horizon::*;

@@ -8,6 +8,7 @@
 //! | [`reference()`] | the path-traced reference, slowly, with its standard error |
 //! | [`map()`] | the lit field from above, tone mapped |
 //! | [`preview()`] | the light of a coarse grid on the slopes of a fine one |
+//! | [`device_peak()`] | peak rates of the device, by their times |
 //! | [`View::new`] | a camera view of the lit field; graphics passes of [`ViewRenderer`](crate::gpu::ViewRenderer) |
 //!
 //! Each takes [`Limits`], of a device ([`gpu::limits`](crate::gpu::limits)) or fixed ones:
@@ -37,6 +38,7 @@
 mod active_lights;
 mod bake;
 mod change;
+mod device_peak;
 mod finish;
 mod horizons;
 mod map;
@@ -50,6 +52,7 @@ pub use bake::{
     curved_ellipses, ellipses, facet_mask, scatter, scatter_inputs, scatter_views, views_at_once,
     visible_points,
 };
+pub use device_peak::device_peak;
 pub use horizons::horizons;
 pub use map::map;
 pub use picture::{Picture, picture, picture_inputs};

@@ -20,6 +20,9 @@ mod bounce {
     mod walks;
 }
 mod cpu_reference;
+mod device {
+    pub mod cpu_reference;
+}
 mod direct {
     pub mod cpu_reference;
     mod keys;

@@ -23,8 +23,19 @@ const CRATES: [&str; 9] = [
 ];
 
 /// Rooms of the core's passes, lowest first.
-const ROOMS: [&str; 10] =
-    ["rays", "horizon", "edit", "sh", "specular", "direct", "bounce", "bake", "reference", "view"];
+const ROOMS: [&str; 11] = [
+    "device",
+    "rays",
+    "horizon",
+    "edit",
+    "sh",
+    "specular",
+    "direct",
+    "bounce",
+    "bake",
+    "reference",
+    "view",
+];
 
 /// What each node imports, and how often.
 type Arrows = BTreeMap<String, BTreeMap<String, usize>>;

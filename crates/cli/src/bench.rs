@@ -1,6 +1,7 @@
 //! GPU times by timestamps: verification first, then each pass alone and all passes in a frame.
 
 mod forms;
+mod peaks;
 mod rows;
 mod sizes;
 mod verdicts;
@@ -32,6 +33,8 @@ const ENOUGH: usize = 10;
 const STABLE: f64 = 0.02;
 /// A frame whose median is known no better says that the machine is too noisy for a published table.
 const NOISY: f64 = 0.1;
+/// Runs of the peak rates at most.
+const PEAK_RUNS: usize = 20;
 /// Largest side of a fractal field, which needs 8 GiB of heights while it is made.
 const LARGEST_SIZE: usize = 32_768;
 
@@ -73,9 +76,16 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
     let verifier = Verifier::new(&scene)?;
     let found = verifier.check(&mut gpu, &quality, &limits)?;
     let quiet = args.global.quiet;
+    let none: [Vec<f32>; 0] = [];
+    let peak_plan = plan::device_peak(&limits)?;
+    let peaks = gpu.with_frame(peak_plan.clone(), &none, |gpu, frame| {
+        bar.set_message("peak rates of the device");
+        peaks::measure(gpu, frame, args.runs.min(PEAK_RUNS))
+    })?;
     if !quiet {
         crate::say!("{device}, {driver}");
         crate::say!("verified: {found}");
+        crate::say!("peak rates: {}", peaks::text(&peaks));
     }
     let mut all = Vec::new();
     if !args.sizes.is_empty() {
@@ -93,9 +103,13 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
         all.extend(table);
     } else {
         let inputs = plan::picture_inputs(&scene);
-        let (table, last) = gpu.with_frame(plan.clone(), &inputs, |gpu, frame| {
-            time(gpu, frame, args, quality.azimuths, &bar)
+        let (mut table, last) = gpu.with_frame(peak_plan, &none, |gpu, flushes| {
+            peaks::fill(gpu, flushes)?;
+            gpu.with_frame(plan.clone(), &inputs, |gpu, frame| {
+                time(gpu, frame, flushes, args, quality.azimuths, &bar)
+            })
         })?;
+        table.iter_mut().for_each(|row| row.copy_rate = peaks::copy_rate(&peaks));
         if let Some(path) = &args.trace {
             files::write_json(path, &rows::trace(&device, &driver, &plan, &last))?;
         }
@@ -134,7 +148,7 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
     if let Some(path) = &args.global.json {
         let argv: Vec<_> =
             std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned()).collect();
-        let mut report = rows::file(&device, &driver, &all, &argv);
+        let mut report = rows::file(&device, &driver, &peaks, &all, &argv);
         if let Some(changes) = &changes {
             report["against"] = changes.json();
         }
@@ -224,12 +238,14 @@ fn stable(times_ns: &[f64]) -> bool {
 /// A GPU's clocks take some tenths of a second to rise.
 const GPU_WARM_UP: Duration = Duration::from_millis(300);
 
-/// Runs of these passes, after one to warm up, or as many as a GPU's clocks need.
+/// Runs of these passes, after one to warm up, or as many as a GPU's clocks need; each after a flush of the caches by the
+/// frame `flushes`, if any.
 fn repeated(
     gpu: &Headless,
     frame: &mut Frame,
     passes: &[usize],
     most: usize,
+    mut flushes: Option<&mut Frame>,
 ) -> Result<Vec<Vec<Timing>>> {
     let begun = Instant::now();
     gpu.draw_passes(frame, passes)?;
@@ -239,6 +255,7 @@ fn repeated(
     let begun = Instant::now();
     let (mut runs, mut times_ns) = (Vec::new(), Vec::new());
     while runs.len() < most && !late(begun, runs.len()) && !stable(&times_ns) {
+        flushes.as_mut().map_or(Ok(()), |flushes| peaks::flush(gpu, flushes))?;
         let run = gpu.draw_passes(frame, passes)?;
         times_ns.push(run.iter().map(|timing| timing.ns).sum());
         runs.push(run);
@@ -249,7 +266,7 @@ fn repeated(
 /// Whole frames.
 fn flow(gpu: &Headless, frame: &mut Frame, most: usize) -> Result<Vec<Vec<Timing>>> {
     let all: Vec<usize> = (0..frame.plan().passes.len()).collect();
-    repeated(gpu, frame, &all, most)
+    repeated(gpu, frame, &all, most, None)
 }
 
 /// Runs of whole frames without timestamps between passes, and their times, ns: a GPU can overlap passes.
@@ -261,10 +278,11 @@ fn overlapped(gpu: &Headless, frame: &mut Frame, most: usize) -> Result<(usize, 
     Ok((runs.len(), sums(&runs, |_| true)))
 }
 
-/// Rows of a frame in flow, overlapped and isolated, and its last run in flow.
+/// Rows of a frame in flow and overlapped, of its passes isolated, warm and cold, and its last run in flow.
 fn time(
     gpu: &Headless,
     frame: &mut Frame,
+    flushes: &mut Frame,
     args: &BenchArgs,
     azimuths: u32,
     bar: &indicatif::ProgressBar,
@@ -290,15 +308,20 @@ fn time(
     rows.push(row("total".into(), "in_flow", &every, runs.len(), &sums(&runs, |_| true)));
     let (count, whole) = overlapped(gpu, frame, args.runs)?;
     rows.push(row("total".into(), "overlapped", &every, count, &whole));
+    let all: Vec<usize> = (0..plan.passes.len()).collect();
+    let cold = repeated(gpu, frame, &all, args.runs, Some(flushes))?;
+    rows.push(row("total".into(), "cold", &every, cold.len(), &sums(&cold, |_| true)));
     let (mut totals, mut fewest) = (vec![0.0; args.runs], args.runs);
     for &i in &wanted {
         let pass = &plan.passes[i];
         bar.set_message(format!("{} alone", pass.label()));
-        let alone = repeated(gpu, frame, &[i], args.runs)?;
+        let alone = repeated(gpu, frame, &[i], args.runs, None)?;
         let times = sums(&alone, |_| true);
         fewest = fewest.min(times.len());
         totals.iter_mut().zip(&times).for_each(|(total, ns)| *total += ns);
         rows.push(row(pass.label(), "isolated", &[pass], alone.len(), &times));
+        let cold = repeated(gpu, frame, &[i], args.runs, Some(flushes))?;
+        rows.push(row(pass.label(), "cold", &[pass], cold.len(), &sums(&cold, |_| true)));
     }
     if wanted.len() == plan.passes.len() {
         rows.push(row("total".into(), "isolated", &every, fewest, &totals[..fewest]));

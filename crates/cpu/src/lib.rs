@@ -16,6 +16,7 @@
 mod bake;
 pub mod basis;
 mod bounce;
+mod device;
 mod direct;
 mod edit;
 mod horizon;
@@ -32,6 +33,7 @@ pub type Rgb = [f64; 3];
 
 pub use bake::*;
 pub use bounce::*;
+pub use device::*;
 pub use direct::*;
 pub use edit::*;
 pub use horizon::*;

@@ -14,6 +14,8 @@ use crate::{field, random};
 const VIEWS: [glam::DVec3; 2] = [glam::DVec3::Z, glam::DVec3::new(0.6, 0.0, 0.8)];
 
 pub(crate) enum Wanted {
+    /// Within this memory budget.
+    DevicePeak(u64),
     /// Horizons by a GPU's plan, on any device.
     GpuHorizons,
     Horizons {
@@ -45,6 +47,9 @@ pub(crate) struct Case {
 impl Case {
     pub fn plan(&self, limits: &Limits) -> Plan {
         match &self.wanted {
+            Wanted::DevicePeak(memory_budget) => {
+                plan::device_peak(&Limits { memory_budget: *memory_budget, ..*limits })
+            }
             Wanted::Horizons { distances } => plan::horizons(
                 &self.scene.field,
                 self.scene.surface.border,
@@ -138,6 +143,9 @@ impl Case {
             let direct: Vec<_> = (0..grid_points).map(|_| [next() as f32, 1.0, 0.2]).collect();
             let (plan, points) = (self.plan(&Limits::lavapipe()), self.points().expect("points"));
             return plan::scatter_inputs(&plan, &self.scene, &points, &direct).expect("inputs");
+        }
+        if let Wanted::DevicePeak(_) = self.wanted {
+            return Vec::new();
         }
         let mut all = vec![self.scene.field.heights_m().to_vec()];
         if let Wanted::Picture(_) = self.wanted {

@@ -14,6 +14,7 @@ use ridgelight::scene::Fuse;
 use crate::Device;
 use crate::bake::cpu_reference as bake;
 use crate::bounce::cpu_reference as bounce;
+use crate::device::cpu_reference as device;
 use crate::direct::cpu_reference as direct;
 use crate::edit::cpu_reference as edit;
 use crate::horizon::cpu_reference as horizon;
@@ -59,7 +60,8 @@ pub(crate) type CpuReference = fn(&mut Run, &Pass) -> Vec<Pair>;
 pub(crate) type Reference = (&'static str, CpuReference);
 
 /// Every room's passes.
-const ROOMS: [&[Reference]; 9] = [
+const ROOMS: [&[Reference]; 10] = [
+    device::REFERENCES,
     horizon::REFERENCES,
     edit::REFERENCES,
     rays::REFERENCES,
@@ -136,6 +138,7 @@ pub(crate) fn check_all(cases: &[Case]) {
 #[test]
 fn every_shader_has_a_cpu_reference_and_a_case() {
     let cases: Vec<Case> = [
+        device::peaks(),
         horizon::sweeps(),
         horizon::one_line_sweeps(),
         horizon::texels(),

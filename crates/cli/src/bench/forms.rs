@@ -172,6 +172,7 @@ fn in_turn(
         interval: median_interval(&scalar_ns),
         bytes: 0,
         work: scalar.points() * u64::from(SCALAR_AZIMUTHS),
+        copy_rate: None,
     };
     Ok([ours, rival])
 }

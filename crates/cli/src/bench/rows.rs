@@ -23,6 +23,8 @@ pub struct Row {
     pub bytes: u64,
     /// Texels processed in one run.
     pub work: u64,
+    /// Bytes per second that a copy reaches on this device; none if it was not measured.
+    pub copy_rate: Option<f64>,
 }
 
 impl Row {
@@ -46,12 +48,28 @@ impl Row {
             interval: median_interval(times_ns),
             bytes: passes.iter().map(|p| p.bytes).sum(),
             work: passes.iter().map(|p| p.texels).sum(),
+            copy_rate: None,
         }
     }
 
     fn rate(&self, amount: u64) -> Option<f64> {
         let median = self.times?.median;
         (amount > 0 && median > 0.0).then(|| amount as f64 / (median * 1e-9))
+    }
+
+    /// Bytes per second.
+    pub fn byte_rate(&self) -> Option<f64> {
+        self.rate(self.bytes)
+    }
+
+    /// Texels per second.
+    pub fn texel_rate(&self) -> Option<f64> {
+        self.rate(self.work)
+    }
+
+    /// Share of the rate of a copy; above 1 from caches.
+    pub fn copy_share(&self) -> Option<f64> {
+        Some(self.byte_rate()? / self.copy_rate?)
     }
 
     /// Milliseconds per azimuth.
@@ -84,15 +102,15 @@ impl Row {
             "min_ns": self.times.map(|t| t.min), "median_ns": self.times.map(|t| t.median),
             "median_low_ns": self.interval.map(|i| i[0]), "median_high_ns": self.interval.map(|i| i[1]),
             "p10_ns": self.times.map(|t| t.p10), "p90_ns": self.times.map(|t| t.p90),
-            "bytes": self.bytes, "gb_per_s": self.rate(self.bytes).map(|r| r * 1e-9),
-            "texels_per_s": self.rate(self.work),
+            "bytes": self.bytes, "gb_per_s": self.byte_rate().map(|r| r * 1e-9),
+            "texels_per_s": self.texel_rate(), "copy_share": self.copy_share(),
         })
     }
 
     pub fn head() -> String {
         format!(
-            "{:<34} {:<9} {:>10} {:>10} {:>10} {:>10} {:>7} {:>11}",
-            "pass", "mode", "median ms", "p10", "p90", "min", "GB/s", "Gtexels/s"
+            "{:<34} {:<10} {:>10} {:>10} {:>10} {:>10} {:>7} {:>7} {:>11}",
+            "pass", "mode", "median ms", "p10", "p90", "min", "GB/s", "of copy", "Gtexels/s"
         )
     }
 
@@ -103,7 +121,7 @@ impl Row {
             _ => figure(self.rate(amount).map(|r| r * 1e-9), digits),
         };
         format!(
-            "{:<34} {:<9} {:>10} {:>10} {:>10} {:>10} {:>7} {:>11}",
+            "{:<34} {:<10} {:>10} {:>10} {:>10} {:>10} {:>7} {:>7} {:>11}",
             self.pass,
             self.mode,
             ms(|t| t.median),
@@ -111,6 +129,7 @@ impl Row {
             ms(|t| t.p90),
             ms(|t| t.min),
             giga(self.bytes, 2),
+            self.copy_share().map_or("-".into(), |share| format!("{:.0} %", 100.0 * share)),
             giga(self.work, 3),
         )
     }
@@ -133,12 +152,13 @@ pub fn sums(runs: &[Vec<Timing>], wanted: impl Fn(usize) -> bool) -> Vec<f64> {
     runs.iter().map(sum).collect()
 }
 
-/// The whole report. `argv` are the words after the program's name.
-pub fn file(device: &str, driver: &str, rows: &[Row], argv: &[String]) -> Value {
+/// The whole report. `argv` are the words after the program's name, `peaks` rows of the device's peak rates.
+pub fn file(device: &str, driver: &str, peaks: &[Row], rows: &[Row], argv: &[String]) -> Value {
     json!({
         "device": device, "driver": driver, "ridgelight": env!("CARGO_PKG_VERSION"),
         "commit": env!("RIDGELIGHT_COMMIT"), "argv": argv,
         "time": humantime::format_rfc3339_seconds(std::time::SystemTime::now()).to_string(),
+        "peaks": peaks.iter().map(Row::json).collect::<Vec<_>>(),
         "rows": rows.iter().map(Row::json).collect::<Vec<_>>(),
     })
 }
@@ -197,10 +217,10 @@ pub mod tests {
         let times: Vec<f64> = (0..=6).map(|ms| f64::from(ms) * 1e6).collect();
         let plan = plan();
         let mut row = Row::of("sky_shade sky 0+32", "in_flow", &plan, &[], 64, (7, &times));
-        (row.bytes, row.work) = (6_000_000, 3_000_000);
+        (row.bytes, row.work, row.copy_rate) = (6_000_000, 3_000_000, Some(8e9));
         let json = row.json();
         let keys = "pass part mode cols rows azimuths settings runs min_ns median_ns median_low_ns median_high_ns p10_ns \
-                    p90_ns bytes gb_per_s texels_per_s";
+                    p90_ns bytes gb_per_s texels_per_s copy_share";
         assert_eq!(json.as_object().unwrap().len(), keys.split(' ').count());
         assert!(keys.split(' ').all(|k| !json[k].is_null()), "{json}");
         let near = |key: &str, x: f64| {
@@ -213,6 +233,7 @@ pub mod tests {
         assert_eq!([&json["median_low_ns"], &json["median_high_ns"]], [0.0, 6e6]);
         assert_eq!(row.spread(), Some(2.0));
         near("gb_per_s", 2.0);
+        near("copy_share", 0.25);
         near("texels_per_s", 1e9);
         let per = row.ms_per_azimuth_and_mega().unwrap();
         assert!((per - 3.0 / 64.0 * 1024.0).abs() < 1e-9, "32² is a 1024th of 2^20: {per}");
@@ -220,7 +241,7 @@ pub mod tests {
         let latency = &bencher["sky_shade sky 0+32 in_flow 32x32 64 azimuths"]["latency"];
         let metric = json!({ "value": 3e6, "lower_value": 0.0, "upper_value": 6e6 });
         assert_eq!(*latency, metric, "{bencher}");
-        let whole = file("d", "v", &[row], &["--size".to_owned()]);
+        let whole = file("d", "v", &[], &[row], &["--size".to_owned()]);
         let row = &whole["rows"][0];
         assert_eq!([&row["pass"], &row["part"]], ["sky_shade", "sky 0+32"]);
         assert_eq!([&whole["device"], &whole["driver"], &whole["argv"][0]], ["d", "v", "--size"]);

@@ -297,7 +297,7 @@ mod tests {
     }
 
     fn report(rows: &[Row]) -> Earlier {
-        serde_json::from_value(rows::file("d", "v", rows, &[])).unwrap()
+        serde_json::from_value(rows::file("d", "v", &[], rows, &[])).unwrap()
     }
 
     /// Intervals from the 2nd to the 9th of ten: ±0.78 %, so that ratios are known to ±1.57 %. 5 % count as the same.
@@ -342,7 +342,8 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let paths = [100.0, 103.0].map(|ms| {
             let path = folder.path().join(format!("{ms}.json"));
-            std::fs::write(&path, rows::file("d", "v", &[row("a", ms)], &[]).to_string()).unwrap();
+            std::fs::write(&path, rows::file("d", "v", &[], &[row("a", ms)], &[]).to_string())
+                .unwrap();
             path
         });
         let now = [row("a", 107.0)];
@@ -363,7 +364,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let paths = ["a", "b"].map(|device| {
             let path = folder.path().join(device);
-            std::fs::write(&path, rows::file(device, "v", &[row("a", 1.0)], &[]).to_string())
+            std::fs::write(&path, rows::file(device, "v", &[], &[row("a", 1.0)], &[]).to_string())
                 .unwrap();
             path
         });

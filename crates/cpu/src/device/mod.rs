@@ -1,0 +1,3 @@
+//! CPU references of the passes that find a device's peak rates.
+
+pub mod device_peak;
