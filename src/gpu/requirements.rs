@@ -3,7 +3,7 @@ use std::ffi::CStr;
 use ash::vk;
 
 use super::shaders::{self, BindingKind, Shader};
-use crate::graph::{Format, GPU_LOOKUPS, Limits};
+use crate::graph::{Format, GPU_LOOKUPS, Limits, SweepForm};
 
 /// Properties of a device.
 #[derive(Clone, Debug)]
@@ -195,6 +195,7 @@ pub(crate) fn report(
             is_cpu,
             lookups: if is_cpu { u64::MAX } else { GPU_LOOKUPS },
             memory_budget: if is_cpu { heap } else { heap / 2 },
+            sweep: SweepForm::of_device(is_cpu),
         },
         subgroup_size: subgroups.subgroup_size,
         timestamp_period_ns: if compute.is_some_and(|f| f.timestamp_valid_bits > 0) {

@@ -24,6 +24,74 @@ pub struct Limits {
     pub lookups: u64,
     /// Memory budget of all images and buffers of a plan, bytes.
     pub memory_budget: u64,
+    /// How a sweep with `hull auto` uses the device.
+    pub sweep: SweepForm,
+}
+
+/// What changes the time of a sweep on a device, and never a bit of its result. `ridgelight tune` searches the fastest.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SweepForm {
+    /// Lines that an invocation sweeps: 1 or 4. Stored slopes and packed hulls always take 4.
+    pub lines_each: u32,
+    /// Invocations of a workgroup, up to 128, whose lines are a multiple of 32.
+    pub group_size: u32,
+    /// Whether hulls are in shared memory, else in private memory.
+    pub shares_hull: bool,
+    /// Entries of the hull of a line there, a power of two up to 1024; fewer where shared memory ends. Lines whose hull is deeper are
+    /// swept again.
+    pub hull_depth: u32,
+    /// Older entries in private memory, likewise, with one line per invocation and hulls in shared memory; else not used.
+    pub private_depth: u32,
+    /// Azimuths that are swept together at most.
+    pub azimuths: u32,
+}
+
+impl SweepForm {
+    pub(crate) fn check(&self) -> Result<()> {
+        let Self { lines_each, group_size, shares_hull: _, hull_depth, private_depth, azimuths } =
+            self;
+        let is_depth = |depth: u32| depth.is_power_of_two() && depth <= 1024;
+        let is_private_depth = *lines_each == 4 || is_depth(*private_depth);
+        let has_whole_tiles = (1..=128).contains(group_size) && lines_each * group_size % 32 == 0;
+        if matches!(lines_each, 1 | 4)
+            && has_whole_tiles
+            && is_depth(*hull_depth)
+            && is_private_depth
+            && *azimuths > 0
+        {
+            return Ok(());
+        }
+        let expected = "1 or 4 lines each, workgroups of whole 32 lines and at most 128 invocations, depths that are powers of \
+                        two up to 1024, and an azimuth";
+        Err(Error::setting("limits.sweep", format!("{self:?}"), expected))
+    }
+
+    /// The form for a device that has not been tuned.
+    pub(crate) fn of_device(is_cpu: bool) -> Self {
+        match is_cpu {
+            // Measured terrain needs about 30 entries, smooth hills a thousand. Measured on lavapipe: 128 compile in 0.1 s,
+            // 1024 in up to 3 s, 4096 in over 5 s, and run no faster.
+            true => Self {
+                lines_each: 4,
+                group_size: 8,
+                shares_hull: false,
+                hull_depth: 128,
+                private_depth: 0,
+                azimuths: u32::MAX,
+            },
+            // 2 KiB of shared memory for 32 lines, one tile of the lattice. More entries leave room for fewer workgroups:
+            // benches/results/nvidia_h200.md. A GPU reserves private memory for every invocation that can be resident: 64
+            // entries take 138 MB on an NVIDIA H200, with 132 x 2,048 of them.
+            false => Self {
+                lines_each: 1,
+                group_size: 32,
+                shares_hull: true,
+                hull_depth: 8,
+                private_depth: 64,
+                azimuths: u32::MAX,
+            },
+        }
+    }
 }
 
 /// [`Limits::lookups`] of a GPU: 0.1 s where 10^10 take a second, as on a slow one.
@@ -43,6 +111,7 @@ impl Limits {
             is_cpu: true,
             lookups: u64::MAX,
             memory_budget: 2 << 30,
+            sweep: SweepForm::of_device(true),
         }
     }
 
@@ -59,6 +128,7 @@ impl Limits {
             is_cpu,
             lookups: u64::MAX,
             memory_budget,
+            sweep: SweepForm::of_device(is_cpu),
         }
     }
 

@@ -8,8 +8,8 @@ mod resource;
 pub mod shaders;
 
 pub(crate) use builder::Builder;
-pub use limits::Limits;
 pub(crate) use limits::{GPU_LOOKUPS, bytes_text};
+pub use limits::{Limits, SweepForm};
 pub(crate) use pass::place_barriers;
 pub use pass::{Pass, ResourceId, missing_barriers};
 pub use reach::{Axis, CELL, Reach, Rectangle};

@@ -66,7 +66,7 @@ pub use reference::{
 pub use view::{View, ViewOptions, ViewPass, ViewResource, mesh_error_m};
 
 pub use crate::graph::{
-    Axis, Format, Kind, Limits, Owner, Pass, Reach, Rectangle, Resource, ResourceId,
+    Axis, Format, Kind, Limits, Owner, Pass, Reach, Rectangle, Resource, ResourceId, SweepForm,
     missing_barriers,
 };
 pub use crate::passes::azimuths::{self, Azimuth};

@@ -9,7 +9,7 @@ mod sizes;
 mod specular;
 mod walks;
 
-use ridgelight::plan::{self, Kind, Limits, Owner, Picture, Plan, missing_barriers};
+use ridgelight::plan::{self, Kind, Limits, Owner, Picture, Plan, SweepForm, missing_barriers};
 use ridgelight::scene::{
     Albedo, Basis, Border, BounceEngine, Bounces, Environment, Fuse, HeightField, Hull, KeyLight,
     Levels, LightBasis, Lights, Lines, Method, Precision, Quality, Receiver, Scene, SphereLight,
@@ -114,7 +114,7 @@ fn plans() -> Vec<Plan> {
         Quality { subsample: 2, basis: Basis::Sh, ..bounced(BounceEngine::Sweep) },
         Quality { subsample: 2, basis: Basis::Sh, ..bounced(BounceEngine::BruteForce) },
     ];
-    let graphics = Limits { is_cpu: false, ..Limits::lavapipe() };
+    let graphics = on_gpu(Limits::lavapipe());
     let mut all = Vec::new();
     for (rows, cols) in [(1, 1), (1, 7), (7, 1), (2, 3), (31, 37), (3, 1021), (1021, 3)] {
         for border in [Border::Plane, Border::Open, Border::Periodic] {
@@ -187,11 +187,16 @@ fn every_plan_has_all_its_barriers_and_needs_each() {
     println!("{audited} lists of passes, {removed} barriers removed, each missed");
 }
 
+/// The same limits on a GPU.
+fn on_gpu(limits: Limits) -> Limits {
+    Limits { is_cpu: false, sweep: Limits::boundless(false, 0).sweep, ..limits }
+}
+
 /// A workgroup with four lines per invocation sweeps 128 lines, so an azimuth needs a multiple of four layers of 32 lines. With
 /// one line per invocation it sweeps one layer.
 #[test]
 fn an_azimuths_layers_are_whole_groups() {
-    let wide = Limits { is_cpu: false, ..Limits::lavapipe() };
+    let wide = on_gpu(Limits::lavapipe());
     let one_each = sky(256, 256, 64, &wide);
     let size = |p: &plan::Pass| p.constant("local_size_x");
     let lines: Vec<_> =
@@ -231,6 +236,11 @@ fn devices_limits_are_kept() {
     let scene = under_sky(flat(40, 50));
     let groups = Limits { groups: 1, ..all };
     assert!(refused(&groups, &scene, &quality).contains("workgroups"));
+    for (lines_each, group_size, hull_depth) in [(2, 32, 8), (1, 8, 8), (1, 256, 8), (4, 8, 48)] {
+        let sweep = SweepForm { lines_each, group_size, hull_depth, ..all.sweep };
+        let said = refused(&Limits { sweep, ..all }, &scene, &quality);
+        assert!(said.contains("whole 32 lines"), "{said}");
+    }
     let texels = Limits { texels: 255, ..all };
     let said = refused(&texels, &scene, &quality);
     assert!(said.contains("azimuths") && said.contains("256 texels"), "{said}");

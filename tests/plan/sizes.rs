@@ -260,7 +260,7 @@ fn a_pyramid_is_made_by_octaves() {
 fn dispatches_of_marches_are_short_on_a_gpu() {
     const SIDE: u32 = 2048;
     const MOST: u64 = 1_000_000_000;
-    let limits = Limits { is_cpu: false, lookups: MOST, ..Limits::lavapipe() };
+    let limits = Limits { lookups: MOST, ..crate::on_gpu(Limits::lavapipe()) };
     let scene = under_sky(flat(SIDE as usize, SIDE as usize));
     for (method, name) in
         [(Method::BruteForce, "horizon_march"), (Method::Pyramid, "pyramid_march")]

@@ -166,6 +166,8 @@ pub enum Command {
     Plan(PlanArgs),
     /// Time each pass on the GPU, after a check against the CPU
     Bench(BenchArgs),
+    /// Search the fastest form of the sweep for this device, which later commands use; same bits
+    Tune(TuneArgs),
     /// Compare two results; exit status 1 beyond a bound
     Compare(CompareArgs),
     /// List Vulkan devices and what each lacks
@@ -280,6 +282,26 @@ pub struct PlanArgs {
     /// Format of the plan
     #[arg(long, default_value = "text", help_heading = "Output")]
     pub format: PlanFormat,
+    #[command(flatten)]
+    pub global: GlobalArgs,
+}
+
+#[derive(Args)]
+pub struct TuneArgs {
+    /// Height field to tune for; without one, a fractal of --size
+    #[arg(value_name = "INPUT", help_heading = "Input")]
+    pub input: Vec<PathBuf>,
+    /// Side of the fractal field, texels
+    #[arg(long, help_heading = "Input", default_value_t = 1024, value_name = "N")]
+    pub size: usize,
+    /// Azimuths of the sky, 4 to 1024
+    #[arg(long, help_heading = "Quality", default_value_t = 64, value_name = "N")]
+    pub azimuths: u32,
+    /// Return to the untuned form
+    #[arg(long, help_heading = "Device")]
+    pub reset: bool,
+    #[command(flatten)]
+    pub surface: FieldArgs,
     #[command(flatten)]
     pub global: GlobalArgs,
 }

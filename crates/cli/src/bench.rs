@@ -4,6 +4,7 @@ mod forms;
 mod peaks;
 mod rows;
 mod sizes;
+pub mod tune;
 mod verdicts;
 pub mod verify;
 
@@ -86,6 +87,10 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
         crate::say!("{device}, {driver}");
         crate::say!("verified: {found}");
         crate::say!("peak rates: {}", peaks::text(&peaks));
+        plan.notes
+            .iter()
+            .filter(|note| note.starts_with("tuned sweep"))
+            .for_each(|note| crate::say!("{note}"));
     }
     let mut all = Vec::new();
     if !args.sizes.is_empty() {

@@ -87,6 +87,7 @@ fn main() -> ExitCode {
         args::Command::Openness(args) => maps::openness(args),
         args::Command::Plan(args) => plan::run(args),
         args::Command::Bench(args) => bench::run(args),
+        args::Command::Tune(args) => bench::tune::run(args),
         args::Command::Compare(args) => compare::run(args),
         args::Command::Devices(args) => plan::devices(args),
         args::Command::Reference(args) => reference::run(args),

@@ -9,7 +9,7 @@ use ridgelight::plan::{self, Limits, Plan, View};
 use crate::args::{DevicesArgs, GlobalArgs, PlanArgs, PlanFormat};
 use crate::idle;
 use crate::render::camera;
-use crate::setup::{self, Outcome};
+use crate::setup::{self, Outcome, tuned};
 
 pub fn run(args: &PlanArgs) -> Result<Outcome> {
     if let Some(json) = &args.global.json {
@@ -126,12 +126,14 @@ pub fn limits(global: &GlobalArgs) -> Result<(String, Limits)> {
             index.and_then(|index| devices.into_iter().nth(index))
         }
     };
-    let mut limits = report.as_ref().map_or_else(Limits::lavapipe, |r| r.limits);
-    if let Some(budget) = global.memory_budget {
-        limits.memory_budget = budget;
-    }
-    let name = report.map_or("lavapipe (no device here)".into(), |r| r.name);
-    Ok((name, limits))
+    let budget = global.memory_budget;
+    let Some(report) = report else {
+        let lavapipe = Limits::lavapipe();
+        let memory_budget = budget.unwrap_or(lavapipe.memory_budget);
+        return Ok(("lavapipe (no device here)".into(), Limits { memory_budget, ..lavapipe }));
+    };
+    let limits = tuned::limits(&report, budget);
+    Ok((report.name, limits))
 }
 
 fn json(plan: &Plan, view: Option<&View>) -> serde_json::Value {

@@ -5,6 +5,7 @@ mod settings_used;
 pub mod sky;
 pub mod terminal;
 pub mod tint;
+pub mod tuned;
 
 use ridgelight::gpu::{self, Headless, HeadlessOptions, Pixels, Timing};
 use ridgelight::plan::{Limits, Picture, Plan};
@@ -260,10 +261,7 @@ pub fn check_plan(global: &GlobalArgs, plan: impl Fn(&Limits) -> Result<Plan>) -
 pub fn device(global: &GlobalArgs) -> Result<(Headless, Limits)> {
     let options = HeadlessOptions { device: global.device.clone(), validation: false };
     let gpu = Headless::new(&options)?;
-    let mut limits = gpu.report().limits;
-    if let Some(budget) = global.memory_budget {
-        limits.memory_budget = budget;
-    }
+    let limits = tuned::limits(gpu.report(), global.memory_budget);
     Ok((gpu, limits))
 }
 

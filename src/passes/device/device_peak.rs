@@ -2,24 +2,26 @@ use crate::graph::{Builder, Format, Limits, Owner, shaders};
 
 /// Texels along each side of the image that is fetched from: 1 MiB.
 pub(crate) const SIDE: u32 = 512;
-/// Larger than the caches of most devices, twice.
-const MOST_BYTES: u64 = 256 << 20;
+/// Larger than the caches of most GPUs, and of most processors.
+const MOST_BYTES: [u64; 2] = [256 << 20, 64 << 20];
 const GROUP_SIZE: u64 = 64;
 /// Copies of 16 bytes of an invocation.
 const COPIES: u64 = 8;
-const INVOCATIONS: u64 = 1 << 20;
+const INVOCATIONS: [u64; 2] = [1 << 20, 1 << 18];
 
 /// A pass that fills the memory, then one for each unit of the device. Of a copy, `bytes` counts; of the others, `texels`
 /// counts fetches, reads of 8 bytes, and floating-point operations.
 pub(crate) fn plan(builder: &mut Builder, limits: &Limits) {
-    let most = MOST_BYTES.min(limits.buffer_bytes).min(limits.allocation_bytes);
+    let most = MOST_BYTES[usize::from(limits.is_cpu)]
+        .min(limits.buffer_bytes)
+        .min(limits.allocation_bytes);
     // Beside another plan.
     let most = most.min(limits.memory_budget / 16);
     let groups = most / (16 * COPIES * GROUP_SIZE);
     let groups = groups.clamp(1, limits.groups.into());
     let copying = groups * GROUP_SIZE;
     let bytes = 16 * COPIES * copying;
-    let invocations = INVOCATIONS.min(copying);
+    let invocations = INVOCATIONS[usize::from(limits.is_cpu)].min(copying);
     let source = builder.buffer("source", bytes, false);
     let result = builder.buffer("result", bytes, false);
     let texels = builder.image("texels", Owner::Internal, Format::R32Float, [SIDE, SIDE, 1], false);

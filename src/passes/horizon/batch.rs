@@ -141,8 +141,10 @@ pub(crate) fn cut(
             };
             return Err(Error::Limit { what, needs, limit });
         }
-        let fits =
-            batches.last().is_some_and(|b| b.axis == axis && b.layers + layers <= most_layers);
+        let fits = batches.last().is_some_and(|b| {
+            let together = b.count < limits.sweep.azimuths;
+            b.axis == axis && b.layers + layers <= most_layers && together
+        });
         if !fits {
             batches.push(Batch {
                 axis,

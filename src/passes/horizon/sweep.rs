@@ -1,6 +1,6 @@
 //! Chooses how horizons are found: the form of the sweep, its storage and its cost.
 
-use crate::graph::{Axis, Limits};
+use crate::graph::{Axis, Limits, SweepForm};
 use crate::passes::azimuths::{Azimuth, CELL};
 use crate::passes::pyramid::Pyramid;
 use crate::scene::{Border, Fuse, HeightField, Hull, Lines, Method, Precision, Quality};
@@ -115,17 +115,8 @@ pub fn warm_up(steps: u32) -> u32 {
 /// 1/2.
 const LEAST_WARM_UP: u32 = 512;
 
-// Entries kept in private memory. Measured terrain needs about 30, smooth hills a thousand. Deeper hulls are
-// swept again with the hull in the stored occluders. Measured on lavapipe: 128 compile in 0.1 s, 1024 in up to
-// 3 s, 4096 in over 5 s, and run no faster.
-const PRIVATE_DEPTH: u32 = 128;
-// A GPU reserves private memory for every invocation that can be resident: 64 entries take 138 MB on an NVIDIA H200, with
-// 132 x 2,048 of them.
-const GPU_PRIVATE_DEPTH: u32 = 64;
-// One tile of the lattice.
-const LINES_TOGETHER: u32 = 32;
-// 2 KiB of shared memory for 32 lines. More entries leave room for fewer workgroups: benches/results/nvidia_h200.md.
-const GPU_SHARED_DEPTH: u32 = 8;
+// Half as many entries of private memory for each of four lines.
+const GPU_PRIVATE_DEPTH: u32 = 32;
 // Entries of 12 bytes in private memory. An NVIDIA H200 (driver 580) makes no pipeline with 2,048.
 const GPU_SURFACE_DEPTH: u32 = 1024;
 // A step has up to four crossings; llvmpipe ends any loop after 65,535 iterations.
@@ -135,6 +126,53 @@ const MARCH_STEPS_LIMIT: u32 = 65_000;
 /// Invocations of a workgroup, each of four lines.
 pub(crate) fn group_size(limits: &Limits) -> u32 {
     if limits.is_cpu { 8 } else { 32 }
+}
+
+/// Where hulls are stored, and the form of a sweep along lines: the device's, or the nearest one that the settings allow.
+fn form_of(
+    quality: &Quality,
+    sides: [u32; 2],
+    stores_slopes: bool,
+    limits: &Limits,
+) -> (HullStorage, SweepForm) {
+    let packed = quality.precision == Precision::Packed;
+    // One line per invocation reads heights from a buffer and stores occluders alone.
+    let [width, height] = sides.map(|side| u64::from(side.next_multiple_of(4)));
+    let is_one = limits.sweep.lines_each == 1
+        && quality.hull != Hull::OccluderList
+        && !stores_slopes
+        && !packed
+        && 4 * width * height <= limits.buffer_bytes;
+    let is_four = limits.sweep.lines_each == 4;
+    let place = match quality.hull {
+        // With four lines, few workgroups fit shared memory. CPU devices cache private arrays (lavapipe).
+        Hull::Auto if limits.sweep.shares_hull && (is_one || is_four) => HullStorage::Shared,
+        Hull::Auto | Hull::Private => HullStorage::Private,
+        Hull::Shared => HullStorage::Shared,
+        Hull::OccluderList => HullStorage::Occluders,
+    };
+    let mut form = limits.sweep;
+    if !is_one && !is_four {
+        (form.lines_each, form.group_size) = (4, group_size(limits));
+    }
+    let of_form = [HullStorage::Private, HullStorage::Shared][usize::from(form.shares_hull)];
+    let own = place == of_form && form.lines_each == limits.sweep.lines_each;
+    let bytes = form.lines_each * form.group_size * if packed { 4 } else { 8 };
+    let entries_in = |shared_bytes: u32| 1 << (shared_bytes / bytes).max(1).ilog2();
+    form.hull_depth = match place {
+        HullStorage::Private if own => form.hull_depth,
+        HullStorage::Private if limits.is_cpu || is_one => form.hull_depth.max(form.private_depth),
+        HullStorage::Private => GPU_PRIVATE_DEPTH,
+        // Beside the results of four steps of one line per invocation.
+        HullStorage::Shared if own => {
+            let written = 32 * (1 + form.group_size);
+            form.hull_depth.min(entries_in(limits.shared_bytes.saturating_sub(written)))
+        }
+        // Half of the shared memory, so that two workgroups fit.
+        HullStorage::Shared => entries_in(limits.shared_bytes / 2),
+        HullStorage::Occluders => 1,
+    };
+    (place, form)
 }
 
 impl Sweep {
@@ -229,44 +267,26 @@ impl Sweep {
         };
         let packed = quality.precision == Precision::Packed;
         let periodic = border == Border::Periodic;
-        // One line per invocation reads heights from a buffer and stores occluders alone.
-        let buffer_bytes =
-            4 * u64::from(sides[0].next_multiple_of(4)) * u64::from(sides[1].next_multiple_of(4));
-        let one_each = !limits.is_cpu
-            && quality.hull != Hull::OccluderList
-            && slope_format == 0
-            && !packed
-            && buffer_bytes <= limits.buffer_bytes;
-        let place = match quality.hull {
-            // With one line per invocation, shared hulls are faster than private ones (benches/results/nvidia_h200.md). With
-            // four, few workgroups fit shared memory. CPU devices cache private arrays (lavapipe).
-            Hull::Auto if one_each => HullStorage::Shared,
-            Hull::Auto | Hull::Private => HullStorage::Private,
-            Hull::Shared => HullStorage::Shared,
-            Hull::OccluderList => HullStorage::Occluders,
-        };
-        let (lines_each, group_size) =
-            if one_each { (1, LINES_TOGETHER) } else { (4, group_size(limits)) };
+        limits.sweep.check()?;
+        let (place, form) = form_of(quality, sides, slope_format > 0, limits);
         let wanted = total.next_power_of_two();
         let hull_depth = match place {
-            HullStorage::Private if limits.is_cpu => wanted.min(PRIVATE_DEPTH),
-            // Half as many for each of four lines.
-            HullStorage::Private => wanted.min(GPU_PRIVATE_DEPTH / lines_each.min(2)),
-            HullStorage::Shared => {
-                // Half of the shared memory, so that two workgroups fit; with one line per invocation less, so that many do.
-                let entries = limits.shared_bytes
-                    / 2
-                    / (lines_each * group_size * if packed { 4 } else { 8 });
-                let most = 1 << entries.max(1).ilog2();
-                wanted.min(if one_each { most.min(GPU_SHARED_DEPTH) } else { most })
-            }
+            HullStorage::Private | HullStorage::Shared => wanted.min(form.hull_depth),
             HullStorage::Occluders => 1,
         };
-        let private_depth = match place {
-            HullStorage::Shared if one_each => wanted.min(GPU_PRIVATE_DEPTH),
-            HullStorage::Private if one_each => hull_depth,
+        let private_depth = match (place, form.lines_each) {
+            (HullStorage::Shared, 1) => wanted.min(form.private_depth),
+            (HullStorage::Private, 1) => hull_depth,
             _ => 0,
         };
+        if place != HullStorage::Occluders && limits.sweep != SweepForm::of_device(limits.is_cpu) {
+            notes.push(format!(
+                "tuned sweep: {} per invocation, {} invocations in a workgroup, {hull_depth} hull entries in {} memory",
+                if form.lines_each == 1 { "one line" } else { "four lines" },
+                form.group_size,
+                place.name(),
+            ));
+        }
         let kept = match place {
             HullStorage::Private => hull_depth,
             HullStorage::Shared => hull_depth + private_depth,
@@ -309,8 +329,8 @@ impl Sweep {
             packed,
             height_scale: if highest > 0.0 { 1.0 / highest } else { 1.0 },
             line_shift,
-            group_size,
-            lines_each,
+            group_size: form.group_size,
+            lines_each: form.lines_each,
             slope_format,
             writes_occluders: !stores_slopes || !holds_line,
             fuse: quality.fuse,

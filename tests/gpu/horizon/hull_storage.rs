@@ -1,6 +1,6 @@
 //! Hull storage and the split of a plan into batches never change a bit of the result.
 
-use ridgelight::plan::{self, Limits, Picture};
+use ridgelight::plan::{self, Limits, Picture, SweepForm};
 use ridgelight::scene::fractal;
 use ridgelight::scene::{
     Border, Bounces, Fuse, HeightField, Hull, Method, Precision, Quality, Sun,
@@ -74,12 +74,17 @@ fn hull_storages_agree_to_the_bit_on_random_fields() {
     }
 }
 
+/// The same limits on a CPU or a GPU.
+fn of_kind(is_cpu: bool, limits: Limits) -> Limits {
+    Limits { is_cpu, sweep: Limits::boundless(is_cpu, 0).sweep, ..limits }
+}
+
 #[test]
 fn batches_and_the_whole_are_the_same_to_the_bit() {
     let mut gpu = Device::new();
     let scene = under_sky(fractal(1024, 3).expect("a field"), Border::Plane);
     let quality = Quality { azimuths: 8, ..Quality::default() };
-    let limits = Limits { memory_budget: 1 << 30, is_cpu: true, ..gpu.limits() };
+    let limits = Limits { memory_budget: 1 << 30, ..of_kind(true, gpu.limits()) };
     // Three images of 4 MiB, the heights by lanes of each axis, and room for one azimuth's lattice.
     let tight = Limits { memory_budget: 28_000_000, ..limits };
     let count = |l: &Limits| {
@@ -118,8 +123,8 @@ fn packed_entries_err_by_their_rounding() {
 fn wide_groups_and_narrow_ones_are_the_same_to_the_bit() {
     let mut gpu = Device::new();
     let limits = gpu.limits();
-    let narrow = Limits { is_cpu: true, ..limits };
-    let wide = Limits { is_cpu: false, ..limits };
+    let narrow = of_kind(true, limits);
+    let wide = of_kind(false, limits);
     let rough = fractal(150, 9).expect("a field");
     let deep = dome_and_wall(150);
     for (field, hull) in [(&rough, Hull::Auto), (&rough, Hull::Private), (&deep, Hull::Shared)] {
@@ -131,13 +136,50 @@ fn wide_groups_and_narrow_ones_are_the_same_to_the_bit() {
     }
 }
 
+/// `ridgelight tune` may choose any of these.
+#[test]
+fn every_form_of_the_sweep_renders_identical_bits() {
+    let mut gpu = Device::new();
+    let limits = gpu.limits();
+    let deep = under_sky(dome_and_wall(150), Border::Plane);
+    let quality = Quality { azimuths: 16, ..Quality::default() };
+    let whole = gpu.picture_within(&deep, &quality, &limits).values;
+    for lines_each in [1, 4] {
+        for (lines, shares_hull, hull_depth) in
+            [(32, false, 32), (64, true, 8), (128, true, 1024), (128, false, 128)]
+        {
+            let group_size = lines / lines_each;
+            let azimuths = if lines == 32 { 3 } else { u32::MAX };
+            let private_depth = 4 * hull_depth.min(16);
+            let sweep = SweepForm {
+                lines_each,
+                group_size,
+                shares_hull,
+                hull_depth,
+                private_depth,
+                azimuths,
+            };
+            let tuned = Limits { sweep, ..limits };
+            let plan = plan::picture(&deep, &quality, &tuned, Picture::default()).expect("a plan");
+            assert!(plan.notes.iter().any(|n| n.starts_with("tuned sweep: ")), "{:?}", plan.notes);
+            let of = |name: &str| plan.passes.iter().find_map(|p| p.constant(name));
+            assert_eq!(of("one_line"), Some(u32::from(lines_each == 1)));
+            assert_eq!(of("local_size_x"), Some(group_size));
+            let sweeps = plan.passes.iter().filter(|p| p.name() == "sky_shade").count();
+            assert_eq!(sweeps, if azimuths == 3 { 6 } else { 2 });
+            let tuned = gpu.picture_within(&deep, &quality, &tuned).values;
+            assert!(whole.iter().zip(&tuned).all(|(a, b)| a.to_bits() == b.to_bits()), "{sweep:?}");
+        }
+    }
+}
+
 /// GPU plans sweep one line per invocation, fetch heights ahead and from buffers, and have one lattice per batch; their picture
 /// must equal that of CPU plans.
 #[test]
 fn gpu_and_cpu_plans_render_identical_bits() {
     let mut gpu = Device::new();
     let limits = gpu.limits();
-    let [on_cpu, on_gpu] = [true, false].map(|is_cpu| Limits { is_cpu, ..limits });
+    let [on_cpu, on_gpu] = [true, false].map(|is_cpu| of_kind(is_cpu, limits));
     let sun = |elevation: f64, diameter: f64| Sun {
         azimuth_rad: 0.7,
         elevation_rad: elevation,

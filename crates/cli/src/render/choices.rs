@@ -13,6 +13,7 @@ use ridgelight_trade::auto::{Chosen, Goal};
 use serde::{Deserialize, Serialize};
 
 use super::auto;
+use crate::setup::tuned;
 
 /// What a run with a goal prints and writes about its choice.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -65,16 +66,7 @@ impl Place {
         quality: &Quality,
         wanted: Picture,
     ) -> Self {
-        let var =
-            |name: &str| std::env::var_os(name).map(PathBuf::from).filter(|p| p.is_absolute());
-        let caches = var("XDG_CACHE_HOME").or_else(|| var("HOME").map(|home| home.join(".cache")));
-        let mut hash = Hash(DefaultHasher::new());
-        for text in
-            [env!("CARGO_PKG_VERSION"), env!("RIDGELIGHT_COMMIT"), &device.name, &device.driver]
-        {
-            hash.0.write(text.as_bytes());
-            hash.0.write_u8(0);
-        }
+        let mut hash = Hash(tuned::hash(device));
         // Heights, environment and maps.
         for image in plan::picture_inputs(scene) {
             hash.0.write_usize(image.len());
@@ -98,8 +90,8 @@ impl Place {
         );
         // Hashing cannot fail.
         let _ = write!(hash, "{all:?}");
-        let name = format!("ridgelight/choices/{:016x}.json", hash.0.finish());
-        Self(caches.map(|folder| folder.join(name)))
+        let name = format!("choices/{:016x}.json", hash.0.finish());
+        Self(tuned::caches().map(|folder| folder.join(name)))
     }
 
     /// What an earlier run chose. A file that cannot be read is none.

@@ -29,6 +29,7 @@ use super::opening::Opened;
 use super::script::{Button, Step};
 use super::state::{Figures, Light, State, Wish};
 use crate::args::ViewArgs;
+use crate::setup::tuned;
 use compare::Compare;
 use preview::Preview;
 pub use saving::save_pixels;
@@ -113,10 +114,7 @@ impl<'a> App<'a> {
         steps: Option<VecDeque<Step>>,
         Opened { window, mut screen, gui }: Opened,
     ) -> Self {
-        let mut limits = screen.gpu().report().limits;
-        if let Some(budget) = args.global.memory_budget {
-            limits.memory_budget = budget;
-        }
+        let limits = tuned::limits(screen.gpu().report(), args.global.memory_budget);
         let inner = window.inner_size();
         let shown = OpenWindow {
             lit: None,

@@ -36,6 +36,7 @@ mod plan;
 mod reference;
 mod signals;
 mod trade;
+mod tune;
 #[path = "../../../../tests/common/v_grooves.rs"]
 mod v_grooves;
 

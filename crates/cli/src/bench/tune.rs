@@ -1,0 +1,311 @@
+//! Searches the form of the sweep that is fastest on a device. Forms change no bit of a picture, which is checked.
+
+use std::time::{Duration, Instant};
+
+use ridgelight::gpu::{Frame, Headless};
+use ridgelight::plan::{self, Limits, Picture, Plan, SweepForm};
+use ridgelight::scene::{Lights, Quality, Scene, Surface, fractal};
+use ridgelight::{Error, Result};
+use ridgelight_io as files;
+use ridgelight_trade::statistics::{median, median_interval};
+use serde_json::{Value, json};
+
+use crate::args::TuneArgs;
+use crate::setup::{self, Outcome, tuned};
+
+/// A pair is one frame of the untuned form and one of another, alternately first.
+const PAIRS: usize = 40;
+/// Pairs end after this time, but not before [`FEWEST`], which give the median an interval.
+const TIME: Duration = Duration::from_secs(2);
+const FEWEST: usize = 6;
+/// The best form is paired again, for this long.
+const LAST_TIME: Duration = Duration::from_secs(20);
+/// A form whose first two pairs are slower than this is not paired again.
+const HOPELESS: f64 = 1.25;
+/// The upper end of the ratio's interval that a form must reach to be kept. Two processes of one build differ by several per
+/// cent, but here both frames are in one.
+const FASTER: f64 = 0.98;
+/// Azimuths swept together, beside all of them.
+const TOGETHER: [u32; 3] = [8, 16, 32];
+/// Largest side of the fractal field.
+const LARGEST_SIZE: usize = 16_384;
+/// A GPU's clocks take some tenths of a second to rise.
+const GPU_WARM_UP: Duration = Duration::from_millis(300);
+
+/// A form and its time over that of the untuned one.
+struct Trial {
+    form: SweepForm,
+    ratio: f64,
+    /// At 95 %; none for fewer than 6 pairs.
+    interval: Option<[f64; 2]>,
+    is_same: bool,
+}
+
+/// What every trial shares.
+struct Search<'a> {
+    scene: &'a Scene,
+    quality: &'a Quality,
+    limits: Limits,
+    inputs: &'a [Vec<f32>],
+    /// Bits of the untuned picture.
+    want: Vec<u32>,
+}
+
+impl Search<'_> {
+    fn plan(&self, form: SweepForm) -> Result<Plan> {
+        let limits = Limits { sweep: form, ..self.limits };
+        plan::picture(self.scene, self.quality, &limits, Picture::default())
+    }
+
+    /// Pairs frames of a form with those of the untuned one, `base`.
+    fn trial(
+        &self,
+        gpu: &mut Headless,
+        base: &mut Frame,
+        form: SweepForm,
+        time: Duration,
+    ) -> Result<Trial> {
+        gpu.with_frame(self.plan(form)?, self.inputs, |gpu, frame| {
+            frame.time_passes(false);
+            gpu.draw(frame)?;
+            let is_same = bits(gpu, frame)? == self.want;
+            let ratios = if is_same { pairs(gpu, base, frame, time)? } else { Vec::new() };
+            let ratio = median(&ratios).unwrap_or(f64::NAN);
+            Ok(Trial { form, ratio, interval: median_interval(&ratios), is_same })
+        })
+    }
+}
+
+pub fn run(args: &TuneArgs) -> Result<Outcome> {
+    let global = &args.global;
+    global.json.as_ref().map_or(Ok(()), |path| setup::check_output("--json", path, &["json"]))?;
+    if !(1..=LARGEST_SIZE).contains(&args.size) {
+        let expected = format!("a whole number from 1 to {LARGEST_SIZE}");
+        return Err(Error::setting("--size", args.size.to_string(), expected));
+    }
+    let quality = Quality { azimuths: args.azimuths, ..Quality::default() };
+    quality.check()?;
+    let (mut gpu, mut limits) = setup::device(global)?;
+    let device = gpu.report().clone();
+    if args.reset {
+        let text = if tuned::forget(&device)? { "no longer tuned" } else { "was not tuned" };
+        crate::say!("{}, {}: {text}", device.name, device.driver);
+        return Ok(Outcome::Done);
+    }
+    if device.timestamp_period_ns == 0.0 {
+        let found = format!("{}, which has none", device.name);
+        return Err(Error::setting("tune", found, "a device with timestamps"));
+    }
+    let untuned = device.limits.sweep;
+    limits.sweep = untuned;
+    let field = match args.input.as_slice() {
+        [] => fractal(args.size, 1)?,
+        paths => setup::field(paths, &args.surface, global)?,
+    };
+    let lights = Lights { sky: Some([1.0; 3]), ..Lights::default() };
+    let scene = Scene { field, surface: Surface::default(), lights };
+    let inputs = plan::picture_inputs(&scene);
+    let (scene, quality, want) = (&scene, &quality, Vec::new());
+    let mut search = Search { scene, quality, limits, inputs: &inputs, want };
+    let bar = setup::terminal::progress(global.quiet, "the untuned sweep");
+    let (trials, last) = gpu.with_frame(search.plan(untuned)?, &inputs, |gpu, base| {
+        base.time_passes(false);
+        gpu.draw(base)?;
+        search.want = bits(gpu, base)?;
+        let forms = forms(untuned);
+        let mut trials = Vec::new();
+        for (i, form) in (1..).zip(&forms) {
+            bar.set_message(format!("{i} of {}: {}", forms.len(), text(form)));
+            trials.push(search.trial(gpu, base, *form, TIME)?);
+        }
+        let best = fastest(&trials).unwrap_or(untuned);
+        for azimuths in TOGETHER.into_iter().filter(|count| *count < args.azimuths) {
+            let form = SweepForm { azimuths, ..best };
+            bar.set_message(text(&form));
+            trials.push(search.trial(gpu, base, form, TIME)?);
+        }
+        bar.set_message("the fastest form again");
+        let last = fastest(&trials).map(|form| search.trial(gpu, base, form, LAST_TIME));
+        Ok((trials, last.transpose()?))
+    })?;
+    bar.finish_and_clear();
+    let kept = last.as_ref().filter(|l| l.interval.is_some_and(|[_, high]| high < FASTER));
+    tuned::keep(&device, &kept.map_or(untuned, |trial| trial.form))?;
+    if !global.quiet {
+        crate::say!("{}, {}", device.name, device.driver);
+        crate::say!("frame of {}, over {}:", size_text(scene, quality), text(&untuned));
+        trials.iter().for_each(|trial| crate::say!("{}", line(trial)));
+        let again = last.as_ref().map(|trial| format!("again:\n{}\n", line(trial)));
+        crate::say!("{}{}", again.unwrap_or_default(), verdict(kept));
+    }
+    if let Some(path) = &global.json {
+        let rows: Vec<Value> = trials.iter().map(row).collect();
+        let report = json!({
+            "device": device.name, "driver": device.driver, "ridgelight": env!("CARGO_PKG_VERSION"),
+            "commit": env!("RIDGELIGHT_COMMIT"), "untuned": tuned::json(&untuned), "trials": rows,
+            "again": last.as_ref().map(row), "kept": kept.map(|trial| tuned::json(&trial.form)),
+        });
+        files::write_json(path, &report)?;
+    }
+    // A form with other bits is a defect, of the driver or of this program.
+    Ok(if trials.iter().all(|trial| trial.is_same) { Outcome::Done } else { Outcome::Beyond })
+}
+
+/// Every form but the untuned one.
+fn forms(untuned: SweepForm) -> Vec<SweepForm> {
+    let of = |lines_each: u32, hulls: &[(bool, u32)]| {
+        let group_sizes = [32, 64, 128].map(|lines| lines / lines_each);
+        let hulls = hulls.to_vec();
+        group_sizes.into_iter().flat_map(move |group_size| {
+            let form = move |(shares_hull, hull_depth)| {
+                let private_depth = if lines_each == 1 && shares_hull { 64 } else { 1 };
+                let azimuths = u32::MAX;
+                SweepForm {
+                    lines_each,
+                    group_size,
+                    shares_hull,
+                    hull_depth,
+                    private_depth,
+                    azimuths,
+                }
+            };
+            hulls.clone().into_iter().map(form)
+        })
+    };
+    let four = of(4, &[(false, 32), (false, 128), (true, 16), (true, 64)]);
+    let one = of(1, &[(true, 8), (true, 16), (true, 32), (false, 64)]);
+    four.chain(one).filter(|form| text(form) != text(&untuned)).collect()
+}
+
+/// The form with the smallest ratio, below 1.
+fn fastest(trials: &[Trial]) -> Option<SweepForm> {
+    let all = trials.iter().filter(|trial| trial.is_same && trial.ratio < 1.0);
+    all.min_by(|a, b| a.ratio.total_cmp(&b.ratio)).map(|trial| trial.form)
+}
+
+/// Times of `frame` over those of `base`, pair by pair.
+fn pairs(gpu: &Headless, base: &mut Frame, frame: &mut Frame, time: Duration) -> Result<Vec<f64>> {
+    let one = |frame: &mut Frame| -> Result<f64> {
+        Ok(gpu.draw(frame)?.iter().map(|timing| timing.ns).sum())
+    };
+    let begun = Instant::now();
+    while !gpu.report().limits.is_cpu && begun.elapsed() < GPU_WARM_UP {
+        one(base)?;
+        one(frame)?;
+    }
+    let begun = Instant::now();
+    let mut ratios = Vec::new();
+    while ratios.len() < PAIRS && (ratios.len() < FEWEST || begun.elapsed() < time) {
+        let (base_ns, ns) = if ratios.len() % 2 == 0 {
+            let first = one(base)?;
+            (first, one(frame)?)
+        } else {
+            let first = one(frame)?;
+            (one(base)?, first)
+        };
+        ratios.push(ns / base_ns);
+        if ratios.len() == 2 && ratios.iter().all(|ratio| *ratio > HOPELESS) {
+            break;
+        }
+    }
+    Ok(ratios)
+}
+
+fn bits(gpu: &mut Headless, frame: &Frame) -> Result<Vec<u32>> {
+    Ok(gpu.pixels(frame, 0)?.values.into_iter().map(f32::to_bits).collect())
+}
+
+fn size_text(scene: &Scene, quality: &Quality) -> String {
+    let (cols, rows) = (scene.field.cols(), scene.field.rows());
+    format!("{cols} × {rows}, {} azimuths", quality.azimuths)
+}
+
+fn text(form: &SweepForm) -> String {
+    let SweepForm { lines_each, group_size, shares_hull, hull_depth, private_depth, azimuths } =
+        form;
+    let lines = if *lines_each == 1 { "one line" } else { "four lines" };
+    let place = if *shares_hull { "shared" } else { "private" };
+    let older = match (shares_hull, lines_each) {
+        (true, 1) => format!(" and {private_depth} in private"),
+        _ => String::new(),
+    };
+    let together = match azimuths {
+        &u32::MAX => String::new(),
+        count => format!(", {count} azimuths together"),
+    };
+    format!(
+        "{lines} each, groups of {group_size}, {hull_depth} hull entries in {place}{older} memory{together}"
+    )
+}
+
+fn line(trial: &Trial) -> String {
+    let found = match trial {
+        Trial { is_same: false, .. } => "other bits: not used".into(),
+        Trial { interval: Some([low, high]), ratio, .. } => {
+            format!("{ratio:.3} ({low:.3} to {high:.3})")
+        }
+        Trial { ratio, .. } => format!("{ratio:.2}"),
+    };
+    format!("  {:<86} {found}", text(&trial.form))
+}
+
+fn verdict(kept: Option<&Trial>) -> String {
+    match kept {
+        Some(trial) => format!(
+            "kept for this device, driver and commit: {:.3} of the untuned time; `ridgelight tune --reset` undoes it",
+            trial.ratio
+        ),
+        None => format!("the untuned form stays: none is surely faster than {FASTER} of its time"),
+    }
+}
+
+fn row(trial: &Trial) -> Value {
+    json!({
+        "form": tuned::json(&trial.form), "ratio": trial.ratio, "low": trial.interval.map(|i| i[0]),
+        "high": trial.interval.map(|i| i[1]), "same_bits": trial.is_same,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Each is another one, the untuned ones are left out, and a plan takes all of them.
+    #[test]
+    fn forms_are_planned() {
+        for is_cpu in [true, false] {
+            let limits = Limits::boundless(is_cpu, 1 << 30);
+            let all = forms(limits.sweep);
+            assert_eq!(all.len(), 23);
+            let mut texts: Vec<String> = all.iter().map(text).collect();
+            texts.sort();
+            texts.dedup();
+            assert_eq!(texts.len(), 23, "{texts:#?}");
+            assert!(!texts.contains(&text(&limits.sweep)));
+            let lights = Lights { sky: Some([1.0; 3]), ..Lights::default() };
+            let field = fractal(64, 1).unwrap();
+            let scene = Scene { field, surface: Surface::default(), lights };
+            for sweep in all {
+                let limits = Limits { sweep, ..limits };
+                let plan = plan::picture(&scene, &Quality::default(), &limits, Picture::default());
+                assert!(plan.unwrap().notes.iter().any(|note| note.starts_with("tuned sweep")));
+            }
+        }
+    }
+
+    /// A form with other bits is never the fastest, nor is one without pairs.
+    #[test]
+    fn the_fastest_form_has_the_same_bits() {
+        let form = |azimuths| SweepForm { azimuths, ..Limits::lavapipe().sweep };
+        let trial = |azimuths, ratio, is_same| Trial {
+            form: form(azimuths),
+            ratio,
+            interval: None,
+            is_same,
+        };
+        let trials = [trial(1, 0.9, true), trial(2, 0.5, false), trial(3, f64::NAN, true)];
+        assert_eq!(fastest(&trials), Some(form(1)));
+        assert_eq!(fastest(&trials[1..]), None);
+        assert!(line(&trials[1]).contains("other bits"));
+    }
+}

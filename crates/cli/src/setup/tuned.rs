@@ -1,0 +1,87 @@
+//! The form of the sweep that `ridgelight tune` found for a device, in the user's cache.
+
+use std::hash::{DefaultHasher, Hasher};
+use std::path::PathBuf;
+
+use ridgelight::gpu::DeviceReport;
+use ridgelight::plan::{Limits, SweepForm};
+use ridgelight::{Error, Result};
+use ridgelight_io as files;
+use serde_json::{Value, json};
+
+/// The folder for caches, as the user's system names it.
+pub fn caches() -> Option<PathBuf> {
+    let var = |name: &str| std::env::var_os(name).map(PathBuf::from).filter(|p| p.is_absolute());
+    let folder = var("XDG_CACHE_HOME").or_else(|| var("HOME").map(|home| home.join(".cache")));
+    Some(folder?.join("ridgelight"))
+}
+
+/// Hashes this program's version and commit, and a device with its driver.
+pub fn hash(device: &DeviceReport) -> DefaultHasher {
+    let mut hash = DefaultHasher::new();
+    for text in [env!("CARGO_PKG_VERSION"), env!("RIDGELIGHT_COMMIT"), &device.name, &device.driver]
+    {
+        hash.write(text.as_bytes());
+        hash.write_u8(0);
+    }
+    hash
+}
+
+fn place(device: &DeviceReport) -> Option<PathBuf> {
+    Some(caches()?.join(format!("tuned/{:016x}.json", hash(device).finish())))
+}
+
+pub fn json(form: &SweepForm) -> Value {
+    json!({
+        "lines_each": form.lines_each, "group_size": form.group_size, "shares_hull": form.shares_hull,
+        "hull_depth": form.hull_depth, "private_depth": form.private_depth, "azimuths": form.azimuths,
+    })
+}
+
+/// A device's limits, with the form of an earlier `tune` and the user's memory budget.
+pub fn limits(device: &DeviceReport, memory_budget: Option<u64>) -> Limits {
+    let sweep = find(device).unwrap_or(device.limits.sweep);
+    let memory_budget = memory_budget.unwrap_or(device.limits.memory_budget);
+    Limits { sweep, memory_budget, ..device.limits }
+}
+
+/// The form of an earlier `tune`. A file that cannot be read is none.
+fn find(device: &DeviceReport) -> Option<SweepForm> {
+    let kept: Value = serde_json::from_slice(&std::fs::read(place(device)?).ok()?).ok()?;
+    let number = |key: &str| kept[key].as_u64().and_then(|n| u32::try_from(n).ok());
+    Some(SweepForm {
+        lines_each: number("lines_each")?,
+        group_size: number("group_size")?,
+        shares_hull: kept["shares_hull"].as_bool()?,
+        hull_depth: number("hull_depth")?,
+        private_depth: number("private_depth")?,
+        azimuths: number("azimuths")?,
+    })
+}
+
+/// Keeps a form for later commands.
+///
+/// # Errors
+/// A folder that cannot be written to, or none for caches.
+pub fn keep(device: &DeviceReport, form: &SweepForm) -> Result<()> {
+    let Some(path) = place(device) else {
+        let expected = "a folder for caches, absolute";
+        return Err(Error::setting("XDG_CACHE_HOME", "none, and no HOME", expected));
+    };
+    let folder = path.parent().expect("it was joined");
+    std::fs::create_dir_all(folder).map_err(|source| Error::io(folder, source))?;
+    files::write_json(&path, &json(form))
+}
+
+/// Forgets the form of an earlier `tune`; whether there was one.
+///
+/// # Errors
+/// A file that cannot be removed.
+pub fn forget(device: &DeviceReport) -> Result<bool> {
+    let Some(path) = place(device) else { return Ok(false) };
+    match std::fs::remove_file(&path) {
+        Ok(()) => Ok(true),
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(false),
+        Err(error) => Err(Error::io(&path, error)),
+    }
+}
