@@ -446,7 +446,7 @@ pub struct GlobalArgs {
     #[arg(long, hide_short_help = true, help_heading = "Output", value_name = "FILE")]
     pub json: Option<PathBuf>,
     /// Print only errors
-    #[arg(long, hide_short_help = true, help_heading = "Output")]
+    #[arg(short, long, hide_short_help = true, help_heading = "Output")]
     pub quiet: bool,
     /// Read field, lights and settings from a JSON file
     ///
