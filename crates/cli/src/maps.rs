@@ -178,6 +178,7 @@ fn codes(plane: &[f32], [black, white]: [f32; 2]) -> (usize, Vec<u8>) {
 
 pub fn hillshade(args: &HillshadeArgs) -> Result<Outcome> {
     let lights = Lights { suns: args.sun.clone(), ..Lights::default() };
+    setup::check_suns(&lights.suns, 0.0)?;
     lights.check()?;
     let [sun] = *lights.suns else {
         return Err(Error::setting("--sun 2", "another sun", "one sun: a hillshade has no more"));

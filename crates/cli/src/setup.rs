@@ -175,12 +175,28 @@ pub fn tinted(scene: &mut Scene, surface: &SurfaceArgs) -> Tint {
     surface.tint.unwrap_or(Tint::None)
 }
 
+/// Refuses suns whose elevation is not from `lowest_deg` to 90 degrees. The message has the order of the flag's numbers:
+/// an elevation that is out of range is often an azimuth.
+pub fn check_suns(suns: &[Sun], lowest_deg: f64) -> Result<()> {
+    for (i, sun) in suns.iter().enumerate() {
+        let found_deg = sun.elevation_rad.to_degrees();
+        if !(lowest_deg..=90.0).contains(&found_deg) {
+            let expected =
+                format!("{lowest_deg}° to 90°, as in --sun AZ,EL: compass azimuth, then elevation");
+            let name = format!("--sun {}: elevation", i + 1);
+            return Err(Error::setting(name, format!("{found_deg}°"), expected));
+        }
+    }
+    Ok(())
+}
+
 /// Radiance of the sky of a scene whose only lights are suns that have set, over their irradiance: no light at all is
 /// refused.
 const NIGHT: f32 = 1e-6;
 
 fn lights_of(args: &LightArgs, unlit: Unlit) -> Result<Lights> {
     let mut lights = args.others.0.clone();
+    check_suns(&lights.suns, -90.0)?;
     let sky = match unlit {
         _ if !args.is_empty() => args.sky,
         Unlit::Sky => Some(SkyArg::Uniform([1.0; 3])),

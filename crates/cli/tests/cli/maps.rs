@@ -89,7 +89,11 @@ fn wrong_maps_are_refused() {
             ("hillshade a.asc -o a.asc", 2, &["-o"]),
             ("hillshade a.npy -o a.npy", 2, &["which is the input"]),
             ("hillshade a.asc -o o.tif --sun 0,91", 2, &["--sun 1: elevation: found 91°"]),
-            ("hillshade a.asc -o o.tif --sun 0,-1", 2, &["--sun 1: elevation: found -1°"]),
+            (
+                "hillshade a.asc -o o.tif --sun 0,-1",
+                2,
+                &["--sun 1: elevation: found -1°", "expected 0° to 90°, as in --sun AZ,EL"],
+            ),
             ("hillshade a.asc -o o.tif --sun 0", 2, &["--sun", "expected AZ,EL"]),
             ("hillshade a.asc -o o.tif --sun 0,9 --sun 1,9", 2, &["--sun 2: found another sun"]),
             ("hillshade a.asc -o o.tif --azimuths 8", 2, &["--azimuths", "unexpected"]),
