@@ -90,6 +90,9 @@ const NEGATIVE_OPENNESS_VALUES: Values = Values {
     ..OPENNESS_VALUES
 };
 
+/// [`setup::georeferenced`] or [`setup::on_cpu`].
+type Read = fn(&[PathBuf], &FieldArgs, &GlobalArgs) -> Result<(HeightField, Option<Georeference>)>;
+
 /// A command's files and field.
 struct Job<'a> {
     input: &'a Input,
@@ -106,6 +109,7 @@ impl<'a> Job<'a> {
         output: &'a Path,
         surface: &'a FieldArgs,
         global: &'a GlobalArgs,
+        read: Read,
     ) -> Result<Self> {
         setup::check_output("-o", output, &["tif", "tiff", "npy", "exr", "png"])?;
         if let Some(json) = &global.json {
@@ -114,7 +118,7 @@ impl<'a> Job<'a> {
         let outputs = [("-o", Some(output)), ("--json", global.json.as_deref())];
         let inputs: Vec<&Path> = input.path.iter().map(PathBuf::as_path).collect();
         setup::check_distinct(&outputs, &inputs)?;
-        let (field, georeference) = setup::georeferenced(&input.path, surface, global)?;
+        let (field, georeference) = read(&input.path, surface, global)?;
         Ok(Self { input, output, surface, global, field, georeference })
     }
 
@@ -183,7 +187,7 @@ pub fn hillshade(args: &HillshadeArgs) -> Result<Outcome> {
     let [sun] = *lights.suns else {
         return Err(Error::setting("--sun 2", "another sun", "one sun: a hillshade has no more"));
     };
-    let job = Job::new(&args.input, &args.file.output, &args.surface, &args.global)?;
+    let job = Job::new(&args.input, &args.file.output, &args.surface, &args.global, setup::on_cpu)?;
     let plane = lambert(&job.field, setup::border(&args.surface), sun);
     let mut metadata = setup::of_field(&job.field);
     let words = light("sun").words(&lights).concat();
@@ -205,7 +209,13 @@ fn lambert(field: &HeightField, border: Border, sun: Sun) -> Vec<f32> {
 /// `ao` and `svf`.
 pub fn sky_view_map(args: &SkyViewArgs) -> Result<Outcome> {
     let quality = Quality { bounces: Bounces::default(), ..args.quality.quality()? };
-    let job = Job::new(&args.input, &args.file.output, &args.surface, &args.global)?;
+    let job = Job::new(
+        &args.input,
+        &args.file.output,
+        &args.surface,
+        &args.global,
+        setup::georeferenced,
+    )?;
     let border = setup::border(&args.surface);
     let plan = |limits: &Limits| sky_view_plan(&job.field, border, &quality, limits);
     setup::check_plan(&args.global, plan)?;
@@ -226,7 +236,8 @@ pub fn openness(OpennessArgs { map: args, negative }: &OpennessArgs) -> Result<O
     let quality = args.quality.quality()?;
     let sign = if *negative { -1.0 } else { 1.0 };
     let surface = FieldArgs { z_scale: sign * args.surface.z_scale, ..args.surface };
-    let job = Job::new(&args.input, &args.file.output, &surface, &args.global)?;
+    let job =
+        Job::new(&args.input, &args.file.output, &surface, &args.global, setup::georeferenced)?;
     let (field, border) = (&job.field, setup::border(&surface));
     setup::check_plan(&args.global, |limits| {
         let most = horizon::at_once(field, limits);

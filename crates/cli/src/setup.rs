@@ -61,13 +61,26 @@ pub fn field(paths: &[PathBuf], surface: &FieldArgs, global: &GlobalArgs) -> Res
     Ok(georeferenced(paths, surface, global)?.0)
 }
 
-/// A field, and its position where the file states it.
+/// A field that the device can hold, and its position where the file states it.
 pub fn georeferenced(
     paths: &[PathBuf],
     surface: &FieldArgs,
     global: &GlobalArgs,
 ) -> Result<(HeightField, Option<Georeference>)> {
-    let files::FieldFile { field, georeference, notes } = read(paths, surface, global)?;
+    // A box cuts a field of any size to one that fits.
+    if surface.bbox.is_none() {
+        paths.iter().try_for_each(|path| check_size(path, global))?;
+    }
+    on_cpu(paths, surface, global)
+}
+
+/// The same, for commands that need no device.
+pub fn on_cpu(
+    paths: &[PathBuf],
+    surface: &FieldArgs,
+    global: &GlobalArgs,
+) -> Result<(HeightField, Option<Georeference>)> {
+    let files::FieldFile { field, georeference, notes } = read(paths, surface)?;
     if !global.quiet {
         let name = match paths {
             [first, _, ..] => format!("{} and {} more", first.display(), paths.len() - 1),
@@ -90,11 +103,7 @@ pub fn note(text: &str) {
 }
 
 /// A field and its notes, unsaid.
-pub fn read(
-    paths: &[PathBuf],
-    surface: &FieldArgs,
-    global: &GlobalArgs,
-) -> Result<files::FieldFile> {
+pub fn read(paths: &[PathBuf], surface: &FieldArgs) -> Result<files::FieldFile> {
     if !surface.z_scale.is_finite() || surface.z_scale == 0.0 {
         let expected = "a finite number other than 0";
         return Err(Error::setting("--z-scale", surface.z_scale.to_string(), expected));
@@ -106,10 +115,6 @@ pub fn read(
         band: surface.band,
         bbox: surface.bbox,
     };
-    // A box cuts a field of any size to one that fits.
-    if surface.bbox.is_none() {
-        paths.iter().try_for_each(|path| check_size(path, global))?;
-    }
     files::read_mosaic(paths, &options)
 }
 

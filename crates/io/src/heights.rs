@@ -68,7 +68,7 @@ impl Default for HeightOptions {
 ///
 /// # Errors
 /// A file that cannot be read ([`Error::Io`]); options out of range ([`Error::Setting`]); an
-/// invalid file ([`Error::File`]): more than 65 536 a side or 2³⁰ grid points, truncation, colour,
+/// invalid file ([`Error::File`]): more than 65 536 a side or 2³⁰ grid points (of a TIFF: in the box), truncation, colour,
 /// rotation, a height that is not finite and not marked as no data.
 pub fn read_heights(path: &Path, options: &HeightOptions) -> Result<HeightField> {
     parse_heights(path, &open::read(path)?, options)
@@ -103,16 +103,25 @@ pub fn read_field(path: &Path, options: &HeightOptions) -> Result<FieldFile> {
 /// a part of a cell; files that are far apart.
 pub fn read_mosaic<P: AsRef<Path>>(paths: &[P], options: &HeightOptions) -> Result<FieldFile> {
     check(options)?;
+    if let [path] = paths {
+        return read_field(path.as_ref(), options);
+    }
     let tile = |path: &P| {
         let path = path.as_ref();
-        Ok((path.to_owned(), decoded(path, &open::read(path)?, options)?))
+        // The box cuts the mosaic: it may lie outside some tiles.
+        let options = HeightOptions { bbox: None, ..*options };
+        Ok((path.to_owned(), decoded(path, &open::read(path)?, &options)?))
     };
     let tiles = paths.iter().map(tile).collect::<Result<Vec<_>>>()?;
     let Some((first, _)) = tiles.first() else {
         return Err(Error::setting("files", "none", "at least one"));
     };
     let first = first.clone();
-    finish(&first, mosaic::joined(tiles)?, options)
+    let mut raster = mosaic::joined(tiles)?;
+    if let Some(bbox) = options.bbox {
+        raster = mosaic::cropped(&first, raster, bbox)?;
+    }
+    finish(&first, raster, options)
 }
 
 /// [`read_heights`] from bytes in memory. `name` sets the format and appears in messages.
@@ -128,7 +137,7 @@ fn parse_field(name: &Path, bytes: &[u8], options: &HeightOptions) -> Result<Fie
     finish(name, decoded(name, bytes, options)?, options)
 }
 
-/// A file's grid, heights in metres.
+/// A file's grid, cut to the box, heights in metres.
 fn decoded(name: &Path, bytes: &[u8], options: &HeightOptions) -> Result<Raster> {
     const ACCEPTED: [Format; 7] = [
         Format::Png,
@@ -144,8 +153,9 @@ fn decoded(name: &Path, bytes: &[u8], options: &HeightOptions) -> Result<Raster>
         Some((name, bytes)) => (name.as_path(), bytes.as_slice()),
         None => (name, bytes),
     };
-    let mut raster = match open::format(name, bytes, &ACCEPTED)? {
-        Format::Tiff => tif::heights(name, bytes, options.band),
+    let format = open::format(name, bytes, &ACCEPTED)?;
+    let mut raster = match format {
+        Format::Tiff => tif::heights(name, bytes, options.band, options.bbox),
         Format::Npy | Format::Hdr => npy::heights(name, bytes, options.band),
         _ if options.band.is_some_and(|band| band != 1) => {
             Err(tif::no_band(name, options.band.unwrap_or_default(), 1))
@@ -156,6 +166,10 @@ fn decoded(name: &Path, bytes: &[u8], options: &HeightOptions) -> Result<Raster>
         Format::Asc => asc::heights(name, bytes),
         Format::Npz => npz::heights(name, bytes),
     }?;
+    // A TIFF is read by its strips or tiles in the box.
+    if let Some(bbox) = options.bbox.filter(|_| format != Format::Tiff) {
+        raster = mosaic::cropped(name, raster, bbox)?;
+    }
     raster.interpret(options);
     Ok(raster)
 }
@@ -219,11 +233,8 @@ fn check(options: &HeightOptions) -> Result<()> {
     Ok(())
 }
 
-/// Cuts the grid to the box, converts cells to metres and makes the field.
+/// Converts cells to metres and makes the field.
 fn finish(path: &Path, mut raster: Raster, options: &HeightOptions) -> Result<FieldFile> {
-    if let Some(bbox) = options.bbox {
-        raster = mosaic::cropped(path, raster, bbox)?;
-    }
     let mut notes = std::mem::take(&mut raster.notes);
     let cell_m = match options.cell_m {
         Some(cell) => cell,

@@ -22,7 +22,7 @@ pub fn run(args: &InfoArgs) -> Result<Outcome> {
         setup::check_distinct(&[("--json", Some(json))], &inputs)?;
     }
     let FieldFile { field, georeference, notes } =
-        setup::read(&args.input.path, &args.surface, &args.global)?;
+        setup::read(&args.input.path, &args.surface)?;
     let facts = facts(&field, georeference.as_ref(), &notes)?;
     if let Some(json) = &args.global.json {
         files::write_json(json, &facts)?;
