@@ -21,7 +21,7 @@ use crate::setup::sky;
 use crate::setup::tint::Tint;
 use crate::setup::{self, Outcome};
 
-/// Where automatic exposure puts the luminance that a share of the pixels does not exceed.
+/// Where automatic exposure puts the luminance that a share of the pixels does not exceed, where the tint is lightest.
 const EXPOSED: f64 = 0.8;
 const EXPOSED_SHARE: f64 = 0.99;
 
@@ -176,7 +176,9 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
             let around: Vec<bool> =
                 camera_pixels.distances_m.iter().map(|d| !d.is_finite()).collect();
             let picture = &camera_pixels.radiance;
-            let exposure = args.exposure.unwrap_or_else(|| exposure(picture, Some(&around)));
+            let exposure = args
+                .exposure
+                .unwrap_or_else(|| exposure(picture, Some(&around), white(&scene.field, tint)));
             shown = Some(exposure);
             metadata.push(("exposure".to_owned(), exposure.to_string()));
         }
@@ -197,7 +199,8 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
     } else {
         let picture = rgb(&pixels[0]);
         let voids = scene.field.voids();
-        let exposure = args.exposure.unwrap_or_else(|| exposure(&picture, voids));
+        let exposure =
+            args.exposure.unwrap_or_else(|| exposure(&picture, voids, white(&scene.field, tint)));
         shown = Some(exposure);
         metadata.push(("exposure".to_owned(), exposure.to_string()));
         let tone = Tone::picture(exposure);
@@ -240,9 +243,15 @@ pub fn check_positive<T: Copy + Into<f64> + ToString>(flag: &str, x: T) -> Resul
     is_positive.then_some(()).ok_or_else(|| Error::setting(flag, x.to_string(), "a number above 0"))
 }
 
-/// The exposure that puts the 99th percentile of luminance at 0.8, of the pixels that are not left out. 1 where that is
-/// dark.
-pub fn exposure(picture: &[[f32; 3]], left_out: Option<&[bool]>) -> f32 {
+/// Where automatic exposure puts the 99th percentile of luminance: 0.8 for the lightest colour of a tint. A field without
+/// that colour stays as dark as its tint.
+pub fn white(field: &HeightField, tint: Tint) -> f64 {
+    EXPOSED * crate::setup::tint::peak(field, tint, EXPOSED_SHARE)
+}
+
+/// The exposure that puts the 99th percentile of luminance at [`white`], of the pixels that are not left out. 1 where that
+/// is dark.
+pub fn exposure(picture: &[[f32; 3]], left_out: Option<&[bool]>, white: f64) -> f32 {
     let texels = picture.iter().enumerate().filter(|(i, _)| !left_out.is_some_and(|v| v[*i]));
     let mut all: Vec<f64> = texels.map(|(_, t)| sky::luminance(t.map(f64::from))).collect();
     if all.is_empty() {
@@ -251,7 +260,7 @@ pub fn exposure(picture: &[[f32; 3]], left_out: Option<&[bool]>) -> f32 {
     let at = (EXPOSED_SHARE * (all.len() - 1) as f64).round() as usize;
     let (_, bright, _) = all.select_nth_unstable_by(at, f64::total_cmp);
     // Four digits: a factor that can be typed.
-    let exposure = format!("{:.3e}", EXPOSED / *bright).parse::<f32>().unwrap_or(1.0);
+    let exposure = format!("{:.3e}", white / *bright).parse::<f32>().unwrap_or(1.0);
     if exposure.is_finite() && exposure > 0.0 { exposure } else { 1.0 }
 }
 

@@ -172,12 +172,19 @@ pub fn scene(
 
 /// Tints a picture whose colours the command line does not give; returns its tint.
 pub fn tinted(scene: &mut Scene, surface: &SurfaceArgs) -> Tint {
-    let is_default = surface.tint.is_none() && surface.albedo.is_none();
-    if is_default && let Some(albedo) = tint::albedo(&scene.field, Tint::Land) {
+    let tint = tint_of(surface);
+    if surface.tint.is_none()
+        && let Some(albedo) = tint::albedo(&scene.field, tint)
+    {
         scene.surface.albedo = albedo;
-        return Tint::Land;
     }
-    surface.tint.unwrap_or(Tint::None)
+    tint
+}
+
+/// The tint of a picture.
+pub fn tint_of(surface: &SurfaceArgs) -> Tint {
+    let default = if surface.albedo.is_none() { Tint::Land } else { Tint::None };
+    surface.tint.unwrap_or(default)
 }
 
 /// Refuses suns whose elevation is not from `lowest_deg` to 90 degrees. The message has the order of the flag's numbers:
