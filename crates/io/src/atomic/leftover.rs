@@ -71,7 +71,7 @@ mod tests {
             format!(".ridgelight-{system}-{parent}-abc"),
             format!(".ridgelight-0123456789abcdef-{ended}-abc"),
             format!(".ridgelight-{system}-0-abc"),
-            format!(".ridgelight-{system}--abc"),
+            format!(".ridgelight-{system}-x-abc"),
             ".ridgelight-abc".to_owned(),
             format!("ridgelight-{system}-{ended}-abc"),
         ];
