@@ -103,9 +103,10 @@ mod tests {
         assert_eq!(started(&poor, true).0, Start::Part(middle));
         // A GPU with less than 1 GiB.
         assert_eq!(started(&Limits { is_cpu: false, ..poor }, false).0, Start::Part(middle));
-        // The sky is an image of 128 x 64.
-        let small = Limits { image_side: 150, ..device };
-        assert_eq!(started(&small, false).0, Start::Part(middle));
+        let small = Limits { image_side: 1024, ..device };
+        let field = HeightField::new(720, 1500, &[5.0; 720 * 1500], [10.0; 2], None).unwrap();
+        let part = start(&field, Some(&at), &small, false).0;
+        assert_eq!(part, Start::Part([4250.0, -4440.0, 11750.0, -840.0]));
         assert_eq!(start(&field, None, &small, false).0, Start::Nothing);
     }
 }
