@@ -2,7 +2,8 @@
 
 use crate::heights::mosaic::Window;
 use crate::heights::raw::Raw;
-use crate::heights::{Raster, geotiff, lzw};
+use crate::heights::sidecar::Sidecar;
+use crate::heights::{HeightOptions, Raster, geotiff, lzw};
 use crate::open;
 use half::f16;
 use ridgelight::{Error, Result};
@@ -260,37 +261,39 @@ pub(crate) fn no_band(path: &Path, band: u32, bands: usize) -> Error {
 }
 
 /// The heights of a band, in a box if there is one; strips and tiles outside it are not decoded.
-pub(crate) fn heights(
+pub(super) fn heights(
     path: &Path,
     bytes: &[u8],
-    band: Option<u32>,
-    bbox: Option<[f64; 4]>,
+    options: &HeightOptions,
+    sidecar: Sidecar,
 ) -> Result<Raster> {
     let mut image = Image::open(path, bytes)?;
-    let (band, note) = image.band(band)?;
+    let (band, note) = image.band(options.band)?;
     let note = note.into_iter().chain(mask_note(path, bytes));
     let (rows, cols) = (image.rows, image.cols);
     let geo = geotiff::read(path, &mut image.tiff, rows, cols, band)?;
     let empty = geo.nodata.unwrap_or(0.0);
     let is_8_bit = image.bits == 8;
-    let at = geo.georeference.as_ref();
-    let window = bbox.map(|bbox| Window::of(path, at, [rows, cols], bbox)).transpose()?;
-    if let Some(window) = &window {
-        image = image.within([window.rows.clone(), window.cols.clone()]);
-    }
-    let (mut planes, single) = image.read(band..band + 1, empty, |value| value)?;
-    let raster = Raster {
-        single,
+    let mut raster = Raster {
         cell: geo.cell,
         unit_m: geo.unit_m,
         scale: geo.scale,
         nodata: geo.nodata,
         is_8_bit,
-        georeference: geo.georeference.clone(),
+        georeference: geo.georeference,
         notes: note.chain(geo.notes).collect(),
-        ..Raster::bare(rows, cols, planes.swap_remove(0))
+        ..Raster::bare(rows, cols, Vec::new())
     };
-    Ok(match (window, &geo.georeference) {
+    sidecar.complete(&mut raster);
+    let at = raster.georeference.clone();
+    let window = |bbox| Window::of(path, at.as_ref(), [rows, cols], bbox);
+    let window = options.bbox.map(window).transpose()?;
+    if let Some(window) = &window {
+        image = image.within([window.rows.clone(), window.cols.clone()]);
+    }
+    let (mut planes, single) = image.read(band..band + 1, empty, |value| value)?;
+    (raster.values, raster.single) = (planes.swap_remove(0), single);
+    Ok(match (window, &at) {
         (Some(window), Some(at)) => window.placed(raster, at),
         _ => raster,
     })
