@@ -14,9 +14,10 @@ use ridgelight_io as files;
 use ridgelight_io::{Channels, Georeference, Layer};
 
 use crate::args::{FieldArgs, GlobalArgs, HillshadeArgs, Input, OpennessArgs, SkyViewArgs};
+use crate::render::world;
 use crate::setup::lights::light;
 use crate::setup::{self, Outcome};
-use crate::{horizon, idle, render};
+use crate::{horizon, idle};
 
 /// The layer of a picture, and the name of its map.
 pub const SKY_VIEW: &str = "sky_view";
@@ -146,7 +147,8 @@ impl<'a> Job<'a> {
                 metadata.push(("png_range".into(), format!("{black},{white}")));
                 let form = (channels, 8);
                 files::write_codes_aside(path, [cols, rows], form, &codes, &metadata)?.place()?;
-                render::write_world(path, self.input, place, self.global.quiet)?;
+                world::write(path, self.input, place, self.global.quiet)?;
+                world::note_shape(path, &self.field, place, self.global.quiet);
             }
             _ => {
                 let units = [(values.name, values.unit)];

@@ -3,6 +3,7 @@
 pub mod auto;
 pub mod camera;
 mod choices;
+pub mod world;
 
 use ridgelight::gpu::{Headless, Pixels};
 use ridgelight::plan::{self, Limits, Picture};
@@ -11,11 +12,10 @@ use ridgelight::scene::{HeightField, Quality, Scene};
 use ridgelight::{Error, Result};
 use ridgelight_io as files;
 use ridgelight_io::{Channels, Georeference, Layer as FileLayer};
-use std::path::Path;
 
 use choices::{Choice, Place};
 
-use crate::args::{Input, Layer, RenderArgs};
+use crate::args::{Layer, RenderArgs};
 use crate::idle;
 use crate::setup::sky;
 use crate::setup::tint::Tint;
@@ -184,7 +184,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
         }
         camera::write(args, camera_view, camera_pixels, shown, &metadata)?;
         if is_png {
-            note_stale_world(&args.output, "it is a camera's", args.global.quiet);
+            world::note_stale(&args.output, "it is a camera's", args.global.quiet);
         }
     } else if !is_png {
         let georeference = georeference.as_ref();
@@ -205,7 +205,9 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
         metadata.push(("exposure".to_owned(), exposure.to_string()));
         let tone = Tone::picture(exposure);
         files::write_png(&args.output, rows, cols, &picture, voids, tone, &metadata)?;
-        write_world(&args.output, &args.input, georeference.as_ref(), args.global.quiet)?;
+        let (at, quiet) = (georeference.as_ref(), args.global.quiet);
+        world::write(&args.output, &args.input, at, quiet)?;
+        world::note_shape(&args.output, &scene.field, at, quiet);
     }
     if let Some(json) = &args.global.json {
         let mut report = setup::as_json(&metadata, &times);
@@ -309,33 +311,6 @@ fn mean_horizon(
         },
     )?;
     Ok(sum.iter().map(|s| (s / f64::from(quality.azimuths)) as f32).collect())
-}
-
-/// Writes the world file beside a PNG: where its pixels lie, without the coordinate reference
-/// system.
-pub fn write_world(
-    picture: &Path,
-    input: &Input,
-    georeference: Option<&Georeference>,
-    quiet: bool,
-) -> Result<()> {
-    let path = picture.with_extension("pgw");
-    match georeference {
-        Some(georeference) => files::write_text(&path, &georeference.world_file()),
-        None => {
-            let why = format!("{} states no position", input.first().display());
-            note_stale_world(picture, &why, quiet);
-            Ok(())
-        }
-    }
-}
-
-/// A note where a world file of an earlier picture stands beside one that has none.
-fn note_stale_world(picture: &Path, why: &str, quiet: bool) {
-    let path = picture.with_extension("pgw");
-    if path.exists() && !quiet {
-        setup::note(&format!("{}: not of this picture, because {why}", path.display()));
-    }
 }
 
 /// Writes an EXR or a GeoTIFF.
