@@ -223,7 +223,8 @@ pub struct RenderArgs {
     pub layers: Vec<Layer>,
     /// Factor on the radiance of a .png. Default: automatic
     ///
-    /// By default the 99th percentile of the picture's luminance becomes 0.8. Then all pictures have the same tone curve:
+    /// By default the 99th percentile of the picture's luminance becomes 0.8, or less where no ground has the lightest colour of
+    /// --tint. Then all pictures have the same tone curve:
     /// linear up to 0.8, compressed towards 1 above, sRGB-encoded. Give a factor to pictures that you compare.
     #[arg(
         long,
@@ -468,7 +469,7 @@ pub struct GlobalArgs {
     #[arg(long, hide_short_help = true, help_heading = "Output", value_name = "FILE")]
     pub json: Option<PathBuf>,
     /// Print only errors
-    #[arg(long, hide_short_help = true, help_heading = "Output")]
+    #[arg(short, long, hide_short_help = true, help_heading = "Output")]
     pub quiet: bool,
     /// Read field, lights and settings from a JSON file
     ///

@@ -14,9 +14,10 @@ use ridgelight_io as files;
 use ridgelight_io::{Channels, Georeference, Layer};
 
 use crate::args::{FieldArgs, GlobalArgs, HillshadeArgs, Input, OpennessArgs, SkyViewArgs};
+use crate::render::world;
 use crate::setup::lights::light;
 use crate::setup::{self, Outcome};
-use crate::{horizon, idle, render};
+use crate::{horizon, idle};
 
 /// The layer of a picture, and the name of its map.
 pub const SKY_VIEW: &str = "sky_view";
@@ -90,6 +91,9 @@ const NEGATIVE_OPENNESS_VALUES: Values = Values {
     ..OPENNESS_VALUES
 };
 
+/// [`setup::georeferenced`] or [`setup::on_cpu`].
+type Read = fn(&[PathBuf], &FieldArgs, &GlobalArgs) -> Result<(HeightField, Option<Georeference>)>;
+
 /// A command's files and field.
 struct Job<'a> {
     input: &'a Input,
@@ -106,6 +110,7 @@ impl<'a> Job<'a> {
         output: &'a Path,
         surface: &'a FieldArgs,
         global: &'a GlobalArgs,
+        read: Read,
     ) -> Result<Self> {
         setup::check_output("-o", output, &["tif", "tiff", "npy", "exr", "png"])?;
         if let Some(json) = &global.json {
@@ -114,7 +119,7 @@ impl<'a> Job<'a> {
         let outputs = [("-o", Some(output)), ("--json", global.json.as_deref())];
         let inputs: Vec<&Path> = input.path.iter().map(PathBuf::as_path).collect();
         setup::check_distinct(&outputs, &inputs)?;
-        let (field, georeference) = setup::georeferenced(&input.path, surface, global)?;
+        let (field, georeference) = read(&input.path, surface, global)?;
         Ok(Self { input, output, surface, global, field, georeference })
     }
 
@@ -142,7 +147,8 @@ impl<'a> Job<'a> {
                 metadata.push(("png_range".into(), format!("{black},{white}")));
                 let form = (channels, 8);
                 files::write_codes_aside(path, [cols, rows], form, &codes, &metadata)?.place()?;
-                render::write_world(path, self.input, place, self.global.quiet)?;
+                world::write(path, self.input, place, self.global.quiet)?;
+                world::note_shape(path, &self.field, place, self.global.quiet);
             }
             _ => {
                 let units = [(values.name, values.unit)];
@@ -178,11 +184,12 @@ fn codes(plane: &[f32], [black, white]: [f32; 2]) -> (usize, Vec<u8>) {
 
 pub fn hillshade(args: &HillshadeArgs) -> Result<Outcome> {
     let lights = Lights { suns: args.sun.clone(), ..Lights::default() };
+    setup::check_suns(&lights.suns, 0.0)?;
     lights.check()?;
     let [sun] = *lights.suns else {
         return Err(Error::setting("--sun 2", "another sun", "one sun: a hillshade has no more"));
     };
-    let job = Job::new(&args.input, &args.file.output, &args.surface, &args.global)?;
+    let job = Job::new(&args.input, &args.file.output, &args.surface, &args.global, setup::on_cpu)?;
     let plane = lambert(&job.field, setup::border(&args.surface), sun);
     let mut metadata = setup::of_field(&job.field);
     let words = light("sun").words(&lights).concat();
@@ -204,7 +211,13 @@ fn lambert(field: &HeightField, border: Border, sun: Sun) -> Vec<f32> {
 /// `ao` and `svf`.
 pub fn sky_view_map(args: &SkyViewArgs) -> Result<Outcome> {
     let quality = Quality { bounces: Bounces::default(), ..args.quality.quality()? };
-    let job = Job::new(&args.input, &args.file.output, &args.surface, &args.global)?;
+    let job = Job::new(
+        &args.input,
+        &args.file.output,
+        &args.surface,
+        &args.global,
+        setup::georeferenced,
+    )?;
     let border = setup::border(&args.surface);
     let plan = |limits: &Limits| sky_view_plan(&job.field, border, &quality, limits);
     setup::check_plan(&args.global, plan)?;
@@ -225,7 +238,8 @@ pub fn openness(OpennessArgs { map: args, negative }: &OpennessArgs) -> Result<O
     let quality = args.quality.quality()?;
     let sign = if *negative { -1.0 } else { 1.0 };
     let surface = FieldArgs { z_scale: sign * args.surface.z_scale, ..args.surface };
-    let job = Job::new(&args.input, &args.file.output, &surface, &args.global)?;
+    let job =
+        Job::new(&args.input, &args.file.output, &surface, &args.global, setup::georeferenced)?;
     let (field, border) = (&job.field, setup::border(&surface));
     setup::check_plan(&args.global, |limits| {
         let most = horizon::at_once(field, limits);

@@ -1,6 +1,7 @@
 //! `plan` and `devices`: what would run, and on which device.
 
 pub mod info;
+mod start;
 
 use ridgelight::Result;
 use ridgelight::gpu;

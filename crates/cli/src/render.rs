@@ -3,6 +3,7 @@
 pub mod auto;
 pub mod camera;
 mod choices;
+pub mod world;
 
 use ridgelight::gpu::{Headless, Pixels};
 use ridgelight::plan::{self, Limits, Picture};
@@ -11,17 +12,16 @@ use ridgelight::scene::{HeightField, Quality, Scene};
 use ridgelight::{Error, Result};
 use ridgelight_io as files;
 use ridgelight_io::{Channels, Georeference, Layer as FileLayer};
-use std::path::Path;
 
 use choices::{Choice, Place};
 
-use crate::args::{Input, Layer, RenderArgs};
+use crate::args::{Layer, RenderArgs};
 use crate::idle;
 use crate::setup::sky;
 use crate::setup::tint::Tint;
 use crate::setup::{self, Outcome};
 
-/// Where automatic exposure puts the luminance that a share of the pixels does not exceed.
+/// Where automatic exposure puts the luminance that a share of the pixels does not exceed, where the tint is lightest.
 const EXPOSED: f64 = 0.8;
 const EXPOSED_SHARE: f64 = 0.99;
 
@@ -176,13 +176,15 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
             let around: Vec<bool> =
                 camera_pixels.distances_m.iter().map(|d| !d.is_finite()).collect();
             let picture = &camera_pixels.radiance;
-            let exposure = args.exposure.unwrap_or_else(|| exposure(picture, Some(&around)));
+            let exposure = args
+                .exposure
+                .unwrap_or_else(|| exposure(picture, Some(&around), white(&scene.field, tint)));
             shown = Some(exposure);
             metadata.push(("exposure".to_owned(), exposure.to_string()));
         }
         camera::write(args, camera_view, camera_pixels, shown, &metadata)?;
         if is_png {
-            note_stale_world(&args.output, "it is a camera's", args.global.quiet);
+            world::note_stale(&args.output, "it is a camera's", args.global.quiet);
         }
     } else if !is_png {
         let georeference = georeference.as_ref();
@@ -197,12 +199,15 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
     } else {
         let picture = rgb(&pixels[0]);
         let voids = scene.field.voids();
-        let exposure = args.exposure.unwrap_or_else(|| exposure(&picture, voids));
+        let exposure =
+            args.exposure.unwrap_or_else(|| exposure(&picture, voids, white(&scene.field, tint)));
         shown = Some(exposure);
         metadata.push(("exposure".to_owned(), exposure.to_string()));
         let tone = Tone::picture(exposure);
         files::write_png(&args.output, rows, cols, &picture, voids, tone, &metadata)?;
-        write_world(&args.output, &args.input, georeference.as_ref(), args.global.quiet)?;
+        let (at, quiet) = (georeference.as_ref(), args.global.quiet);
+        world::write(&args.output, &args.input, at, quiet)?;
+        world::note_shape(&args.output, &scene.field, at, quiet);
     }
     if let Some(json) = &args.global.json {
         let mut report = setup::as_json(&metadata, &times);
@@ -240,9 +245,15 @@ pub fn check_positive<T: Copy + Into<f64> + ToString>(flag: &str, x: T) -> Resul
     is_positive.then_some(()).ok_or_else(|| Error::setting(flag, x.to_string(), "a number above 0"))
 }
 
-/// The exposure that puts the 99th percentile of luminance at 0.8, of the pixels that are not left out. 1 where that is
-/// dark.
-pub fn exposure(picture: &[[f32; 3]], left_out: Option<&[bool]>) -> f32 {
+/// Where automatic exposure puts the 99th percentile of luminance: 0.8 for the lightest colour of a tint. A field without
+/// that colour stays as dark as its tint.
+pub fn white(field: &HeightField, tint: Tint) -> f64 {
+    EXPOSED * crate::setup::tint::peak(field, tint, EXPOSED_SHARE)
+}
+
+/// The exposure that puts the 99th percentile of luminance at [`white`], of the pixels that are not left out. 1 where that
+/// is dark.
+pub fn exposure(picture: &[[f32; 3]], left_out: Option<&[bool]>, white: f64) -> f32 {
     let texels = picture.iter().enumerate().filter(|(i, _)| !left_out.is_some_and(|v| v[*i]));
     let mut all: Vec<f64> = texels.map(|(_, t)| sky::luminance(t.map(f64::from))).collect();
     if all.is_empty() {
@@ -251,7 +262,7 @@ pub fn exposure(picture: &[[f32; 3]], left_out: Option<&[bool]>) -> f32 {
     let at = (EXPOSED_SHARE * (all.len() - 1) as f64).round() as usize;
     let (_, bright, _) = all.select_nth_unstable_by(at, f64::total_cmp);
     // Four digits: a factor that can be typed.
-    let exposure = format!("{:.3e}", EXPOSED / *bright).parse::<f32>().unwrap_or(1.0);
+    let exposure = format!("{:.3e}", white / *bright).parse::<f32>().unwrap_or(1.0);
     if exposure.is_finite() && exposure > 0.0 { exposure } else { 1.0 }
 }
 
@@ -300,33 +311,6 @@ fn mean_horizon(
         },
     )?;
     Ok(sum.iter().map(|s| (s / f64::from(quality.azimuths)) as f32).collect())
-}
-
-/// Writes the world file beside a PNG: where its pixels lie, without the coordinate reference
-/// system.
-pub fn write_world(
-    picture: &Path,
-    input: &Input,
-    georeference: Option<&Georeference>,
-    quiet: bool,
-) -> Result<()> {
-    let path = picture.with_extension("pgw");
-    match georeference {
-        Some(georeference) => files::write_text(&path, &georeference.world_file()),
-        None => {
-            let why = format!("{} states no position", input.first().display());
-            note_stale_world(picture, &why, quiet);
-            Ok(())
-        }
-    }
-}
-
-/// A note where a world file of an earlier picture stands beside one that has none.
-fn note_stale_world(picture: &Path, why: &str, quiet: bool) {
-    let path = picture.with_extension("pgw");
-    if path.exists() && !quiet {
-        setup::note(&format!("{}: not of this picture, because {why}", path.display()));
-    }
 }
 
 /// Writes an EXR or a GeoTIFF.

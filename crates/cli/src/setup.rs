@@ -62,13 +62,26 @@ pub fn field(paths: &[PathBuf], surface: &FieldArgs, global: &GlobalArgs) -> Res
     Ok(georeferenced(paths, surface, global)?.0)
 }
 
-/// A field, and its position where the file states it.
+/// A field that the device can hold, and its position where the file states it.
 pub fn georeferenced(
     paths: &[PathBuf],
     surface: &FieldArgs,
     global: &GlobalArgs,
 ) -> Result<(HeightField, Option<Georeference>)> {
-    let files::FieldFile { field, georeference, notes } = read(paths, surface, global)?;
+    // A box cuts a field of any size to one that fits.
+    if surface.bbox.is_none() {
+        paths.iter().try_for_each(|path| check_size(path, global))?;
+    }
+    on_cpu(paths, surface, global)
+}
+
+/// The same, for commands that need no device.
+pub fn on_cpu(
+    paths: &[PathBuf],
+    surface: &FieldArgs,
+    global: &GlobalArgs,
+) -> Result<(HeightField, Option<Georeference>)> {
+    let files::FieldFile { field, georeference, notes } = read(paths, surface)?;
     if !global.quiet {
         let name = match paths {
             [first, _, ..] => format!("{} and {} more", first.display(), paths.len() - 1),
@@ -91,11 +104,7 @@ pub fn note(text: &str) {
 }
 
 /// A field and its notes, unsaid.
-pub fn read(
-    paths: &[PathBuf],
-    surface: &FieldArgs,
-    global: &GlobalArgs,
-) -> Result<files::FieldFile> {
+pub fn read(paths: &[PathBuf], surface: &FieldArgs) -> Result<files::FieldFile> {
     if !surface.z_scale.is_finite() || surface.z_scale == 0.0 {
         let expected = "a finite number other than 0";
         return Err(Error::setting("--z-scale", surface.z_scale.to_string(), expected));
@@ -107,10 +116,6 @@ pub fn read(
         band: surface.band,
         bbox: surface.bbox,
     };
-    // A box cuts a field of any size to one that fits.
-    if surface.bbox.is_none() {
-        paths.iter().try_for_each(|path| check_size(path, global))?;
-    }
     files::read_mosaic(paths, &options)
 }
 
@@ -168,12 +173,34 @@ pub fn scene(
 
 /// Tints a picture whose colours the command line does not give; returns its tint.
 pub fn tinted(scene: &mut Scene, surface: &SurfaceArgs) -> Tint {
-    let is_default = surface.tint.is_none() && surface.albedo.is_none();
-    if is_default && let Some(albedo) = tint::albedo(&scene.field, Tint::Land) {
+    let tint = tint_of(surface);
+    if surface.tint.is_none()
+        && let Some(albedo) = tint::albedo(&scene.field, tint)
+    {
         scene.surface.albedo = albedo;
-        return Tint::Land;
     }
-    surface.tint.unwrap_or(Tint::None)
+    tint
+}
+
+/// The tint of a picture.
+pub fn tint_of(surface: &SurfaceArgs) -> Tint {
+    let default = if surface.albedo.is_none() { Tint::Land } else { Tint::None };
+    surface.tint.unwrap_or(default)
+}
+
+/// Refuses suns whose elevation is not from `lowest_deg` to 90 degrees. The message has the order of the flag's numbers:
+/// an elevation that is out of range is often an azimuth.
+pub fn check_suns(suns: &[Sun], lowest_deg: f64) -> Result<()> {
+    for (i, sun) in suns.iter().enumerate() {
+        let found_deg = sun.elevation_rad.to_degrees();
+        if !(lowest_deg..=90.0).contains(&found_deg) {
+            let expected =
+                format!("{lowest_deg}° to 90°, as in --sun AZ,EL: compass azimuth, then elevation");
+            let name = format!("--sun {}: elevation", i + 1);
+            return Err(Error::setting(name, format!("{found_deg}°"), expected));
+        }
+    }
+    Ok(())
 }
 
 /// Radiance of the sky of a scene whose only lights are suns that have set, over their irradiance: no light at all is
@@ -182,6 +209,7 @@ const NIGHT: f32 = 1e-6;
 
 fn lights_of(args: &LightArgs, unlit: Unlit) -> Result<Lights> {
     let mut lights = args.others.0.clone();
+    check_suns(&lights.suns, -90.0)?;
     let sky = match unlit {
         _ if !args.is_empty() => args.sky,
         Unlit::Sky => Some(SkyArg::Uniform([1.0; 3])),

@@ -1,7 +1,10 @@
 //! Output files that are complete or absent, and room for them on their disks.
 
+mod leftover;
+
 use crate::open::complaint;
 use ridgelight::{Error, Result};
+use std::collections::BTreeSet;
 use std::fs;
 use std::io::{BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
@@ -11,11 +14,13 @@ use tempfile::TempPath;
 /// Unfinished temporary files and new result folders of this process. Locked while one is made,
 /// renamed or removed.
 static UNFINISHED: Mutex<Unfinished> =
-    Mutex::new(Unfinished { files: Vec::new(), folders: Vec::new() });
+    Mutex::new(Unfinished { files: Vec::new(), folders: Vec::new(), cleaned: BTreeSet::new() });
 
 struct Unfinished {
     files: Vec<PathBuf>,
     folders: Vec<PathBuf>,
+    /// Folders without files of killed processes.
+    cleaned: BTreeSet<PathBuf>,
 }
 
 fn unfinished() -> MutexGuard<'static, Unfinished> {
@@ -137,13 +142,18 @@ impl Temporary {
             }
             Err(_) => path.to_owned(),
         };
+        let prefix = leftover::prefix();
         let mut builder = tempfile::Builder::new();
-        builder.prefix(".ridgelight-");
+        builder.prefix(&prefix);
         // Temporary files are private by default. A result is as readable as any new file.
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+        let folder = folder_of(&destination);
         let mut all = unfinished();
-        let file = builder.tempfile_in(folder_of(&destination)).map_err(|e| {
+        if all.cleaned.insert(folder.to_owned()) {
+            leftover::remove_from(folder);
+        }
+        let file = builder.tempfile_in(folder).map_err(|e| {
             // The system's reason, without the temporary name.
             let reason = e.get_ref().and_then(|e| e.source()).map_or(e.to_string(), complaint);
             let reason = reason.split(" at path ").next().unwrap_or_default().to_owned();

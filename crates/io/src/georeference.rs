@@ -40,6 +40,13 @@ impl GeoKeys {
         Self { entries, ..Self::default() }
     }
 
+    /// A coordinate reference system of the EPSG registry.
+    pub(crate) fn of_code(code: u16, is_geographic: bool) -> Self {
+        let [model, key] = if is_geographic { [2, GEODETIC_CRS] } else { [1, PROJECTED_CRS] };
+        let entries = vec![[MODEL_TYPE, 0, 1, model], [RASTER_TYPE, 0, 1, 1], [key, 0, 1, code]];
+        Self { entries, ..Self::default() }
+    }
+
     /// Whether positions in the file are those of pixel centres (PixelIsPoint).
     pub fn is_point(&self) -> bool {
         self.entries.contains(&[RASTER_TYPE, 0, 1, 2])

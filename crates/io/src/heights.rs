@@ -8,6 +8,7 @@ mod mosaic;
 mod projection;
 mod raster;
 mod raw;
+mod sidecar;
 pub mod size;
 pub mod tif;
 mod unpack;
@@ -20,6 +21,7 @@ use crate::png;
 pub(crate) use raster::{Cell, Raster, looks_like_degrees};
 use ridgelight::scene::HeightField;
 use ridgelight::{Error, Result};
+use sidecar::Sidecar;
 use std::path::Path;
 
 /// Options that override the file.
@@ -60,6 +62,9 @@ impl Default for HeightOptions {
 /// Any of them may be packed: `.gz`, as `dem.tif.gz`, or a `.zip` that holds one of them, as `N44W072.hgt.zip`. A TIFF's
 /// scale and offset (GDAL's metadata) apply to its values.
 ///
+/// A file without a position has that of the world file beside it (`.tfw`, `.pgw`, `.wld`), and one without a coordinate
+/// reference system that of the `.prj` beside it. [`parse_heights`] has neither.
+///
 /// Row 0 is the north. Cells in degrees are converted to metres by the WGS84 ellipsoid at the
 /// latitude of the field's centre (one size for the whole field); so are the metres of Web Mercator, which are too long by 1/cos latitude. A header without a unit (`.asc`,
 /// `.npz`, a TIFF without GeoKeys) is in degrees when its corners are longitudes and latitudes and
@@ -68,10 +73,10 @@ impl Default for HeightOptions {
 ///
 /// # Errors
 /// A file that cannot be read ([`Error::Io`]); options out of range ([`Error::Setting`]); an
-/// invalid file ([`Error::File`]): more than 65 536 a side or 2³⁰ grid points, truncation, colour,
+/// invalid file ([`Error::File`]): more than 65 536 a side or 2³⁰ grid points (of a TIFF: in the box), truncation, colour,
 /// rotation, a height that is not finite and not marked as no data.
 pub fn read_heights(path: &Path, options: &HeightOptions) -> Result<HeightField> {
-    parse_heights(path, &open::read(path)?, options)
+    Ok(read_field(path, options)?.field)
 }
 
 /// A height field and what its file states or lacks.
@@ -79,7 +84,7 @@ pub fn read_heights(path: &Path, options: &HeightOptions) -> Result<HeightField>
 pub struct FieldFile {
     /// The heights.
     pub field: HeightField,
-    /// The position: GeoTIFF, `.hgt` with its corner in its name, `.asc`.
+    /// The position: GeoTIFF, `.hgt` with its corner in its name, `.asc`, a world file.
     pub georeference: Option<Georeference>,
     /// What was assumed or converted, a sentence each.
     pub notes: Vec<String>,
@@ -90,7 +95,8 @@ pub struct FieldFile {
 /// # Errors
 /// As [`read_heights`].
 pub fn read_field(path: &Path, options: &HeightOptions) -> Result<FieldFile> {
-    parse_field(path, &open::read(path)?, options)
+    check(options)?;
+    finish(path, decoded(path, &open::read(path)?, options, Sidecar::beside(path))?, options)
 }
 
 /// Several files as one field, each placed by its position.
@@ -103,16 +109,25 @@ pub fn read_field(path: &Path, options: &HeightOptions) -> Result<FieldFile> {
 /// a part of a cell; files that are far apart.
 pub fn read_mosaic<P: AsRef<Path>>(paths: &[P], options: &HeightOptions) -> Result<FieldFile> {
     check(options)?;
+    if let [path] = paths {
+        return read_field(path.as_ref(), options);
+    }
     let tile = |path: &P| {
         let path = path.as_ref();
-        Ok((path.to_owned(), decoded(path, &open::read(path)?, options)?))
+        // The box cuts the mosaic: it may lie outside some tiles.
+        let options = HeightOptions { bbox: None, ..*options };
+        Ok((path.to_owned(), decoded(path, &open::read(path)?, &options, Sidecar::beside(path))?))
     };
     let tiles = paths.iter().map(tile).collect::<Result<Vec<_>>>()?;
     let Some((first, _)) = tiles.first() else {
         return Err(Error::setting("files", "none", "at least one"));
     };
     let first = first.clone();
-    finish(&first, mosaic::joined(tiles)?, options)
+    let mut raster = mosaic::joined(tiles)?;
+    if let Some(bbox) = options.bbox {
+        raster = mosaic::cropped(&first, raster, bbox)?;
+    }
+    finish(&first, raster, options)
 }
 
 /// [`read_heights`] from bytes in memory. `name` sets the format and appears in messages.
@@ -125,11 +140,11 @@ pub fn parse_heights(name: &Path, bytes: &[u8], options: &HeightOptions) -> Resu
 
 fn parse_field(name: &Path, bytes: &[u8], options: &HeightOptions) -> Result<FieldFile> {
     check(options)?;
-    finish(name, decoded(name, bytes, options)?, options)
+    finish(name, decoded(name, bytes, options, Sidecar::default())?, options)
 }
 
-/// A file's grid, heights in metres.
-fn decoded(name: &Path, bytes: &[u8], options: &HeightOptions) -> Result<Raster> {
+/// A file's grid, cut to the box, heights in metres.
+fn decoded(name: &Path, bytes: &[u8], options: &HeightOptions, sidecar: Sidecar) -> Result<Raster> {
     const ACCEPTED: [Format; 7] = [
         Format::Png,
         Format::Exr,
@@ -144,8 +159,15 @@ fn decoded(name: &Path, bytes: &[u8], options: &HeightOptions) -> Result<Raster>
         Some((name, bytes)) => (name.as_path(), bytes.as_slice()),
         None => (name, bytes),
     };
+    let interpreted = |mut raster: Raster| {
+        raster.interpret(options);
+        raster
+    };
     let mut raster = match open::format(name, bytes, &ACCEPTED)? {
-        Format::Tiff => tif::heights(name, bytes, options.band),
+        // Its strips and tiles outside the box are not read.
+        Format::Tiff => {
+            return tif::heights(name, bytes, options, sidecar).map(interpreted);
+        }
         Format::Npy | Format::Hdr => npy::heights(name, bytes, options.band),
         _ if options.band.is_some_and(|band| band != 1) => {
             Err(tif::no_band(name, options.band.unwrap_or_default(), 1))
@@ -156,8 +178,11 @@ fn decoded(name: &Path, bytes: &[u8], options: &HeightOptions) -> Result<Raster>
         Format::Asc => asc::heights(name, bytes),
         Format::Npz => npz::heights(name, bytes),
     }?;
-    raster.interpret(options);
-    Ok(raster)
+    sidecar.complete(&mut raster);
+    if let Some(bbox) = options.bbox {
+        raster = mosaic::cropped(name, raster, bbox)?;
+    }
+    Ok(interpreted(raster))
 }
 
 /// The Earth's mean radius, metres.
@@ -219,11 +244,8 @@ fn check(options: &HeightOptions) -> Result<()> {
     Ok(())
 }
 
-/// Cuts the grid to the box, converts cells to metres and makes the field.
+/// Converts cells to metres and makes the field.
 fn finish(path: &Path, mut raster: Raster, options: &HeightOptions) -> Result<FieldFile> {
-    if let Some(bbox) = options.bbox {
-        raster = mosaic::cropped(path, raster, bbox)?;
-    }
     let mut notes = std::mem::take(&mut raster.notes);
     let cell_m = match options.cell_m {
         Some(cell) => cell,

@@ -2,11 +2,13 @@
 
 use std::path::Path;
 
+use clap::ValueEnum;
 use ridgelight::{Error, Result};
 use ridgelight_io as files;
 
 use super::MANIFEST;
-use super::map::Wanted;
+use super::map::{Format, Wanted};
+use crate::setup;
 
 /// A kind and its files.
 type FileNotes = (String, Vec<String>);
@@ -63,6 +65,11 @@ pub fn check_folder(path: &Path, wanted: &[Wanted]) -> Result<()> {
             return Err(Error::setting("-o", found, expected));
         }
         return files::check_writable(&path.join(MANIFEST));
+    }
+    // A folder "maps.ktx2" would be taken for a file.
+    if Format::value_variants().iter().any(|format| setup::extension(path) == format.name()) {
+        let expected = "a name of a folder: its files are named after --what and --format";
+        return Err(Error::setting("-o", shown(), expected));
     }
     check_new(path)
 }

@@ -1,16 +1,16 @@
 //! `info`: what a file of heights holds, and what common jobs on it need.
 
+use ridgelight::Result;
 use ridgelight::plan::{self, Limits, Picture};
 use ridgelight::scene::{HeightField, Lights, Quality, Scene, Surface};
-use ridgelight::{Error, Result};
 use ridgelight_io as files;
 use ridgelight_io::{FieldFile, Georeference};
 use serde_json::{Value, json};
 
 use std::path::{Path, PathBuf};
 
-use crate::args::InfoArgs;
-use crate::setup::lights::light;
+use crate::args::{FieldArgs, InfoArgs};
+use crate::plan::start::{self, Start};
 use crate::setup::{self, Outcome};
 
 /// Slopes beyond this are counted.
@@ -21,14 +21,14 @@ pub fn run(args: &InfoArgs) -> Result<Outcome> {
         let inputs: Vec<&Path> = args.input.path.iter().map(PathBuf::as_path).collect();
         setup::check_distinct(&[("--json", Some(json))], &inputs)?;
     }
-    let FieldFile { field, georeference, notes } =
-        setup::read(&args.input.path, &args.surface, &args.global)?;
+    let FieldFile { field, georeference, notes } = setup::read(&args.input.path, &args.surface)?;
     let facts = facts(&field, georeference.as_ref(), &notes)?;
     if let Some(json) = &args.global.json {
         files::write_json(json, &facts)?;
     }
     if !args.global.quiet {
         say(args, &facts);
+        say_start(args, &field, georeference.as_ref())?;
     }
     Ok(Outcome::Done)
 }
@@ -49,7 +49,7 @@ fn facts(field: &HeightField, at: Option<&Georeference>, notes: &[String]) -> Re
         [count + 1, steep + u64::from(is_steep)]
     });
     let voids = (rows * cols) as u64 - count;
-    let memory = jobs(field)?.map(|(name, bytes)| (name.to_owned(), Value::from(bytes)));
+    let memory = jobs(field).map(|(name, bytes)| (name.to_owned(), Value::from(bytes)));
     let extent = at.map(|at| at.extent(rows, cols));
     Ok(json!({
         "rows": rows,
@@ -66,26 +66,22 @@ fn facts(field: &HeightField, at: Option<&Georeference>, notes: &[String]) -> Re
     }))
 }
 
-/// Device memory of common jobs, as the planner counts it for a device without limits.
-fn jobs(field: &HeightField) -> Result<[(&'static str, u64); 3]> {
+/// Device memory of common jobs, as the planner counts it for a device without limits. None of a field that is too large for
+/// any.
+fn jobs(field: &HeightField) -> [(&'static str, Option<u64>); 3] {
     let sky = Lights { sky: Some([1.0; 3]), ..Lights::default() };
-    let mut scene = Scene { field: field.clone(), surface: Surface::default(), lights: sky };
+    let scene = Scene { field: field.clone(), surface: Surface::default(), lights: sky };
     let limits = Limits::boundless(true, 1 << 50);
     let bytes = |scene: &Scene, quality: &Quality, sky_view: bool| {
         let wanted = Picture { sky_view, still: true, ..Picture::default() };
-        Ok::<u64, Error>(plan::picture(scene, quality, &limits, wanted)?.bytes())
+        Some(plan::picture(scene, quality, &limits, wanted).ok()?.bytes())
     };
-    let mut daylight = Lights::default();
-    let sun = setup::sky::default_sun(None);
-    light("sun").add(&mut daylight, &sun).expect("words of a sun");
-    daylight.environment = Some(setup::sky::clear(&daylight.suns[0])?);
     let mut bounced = Quality::default();
     bounced.bounces.count = 1;
-    let sky_view = bytes(&scene, &Quality::default(), true)?;
-    let bounces = bytes(&scene, &bounced, false)?;
-    scene.lights = daylight;
-    let render = bytes(&scene, &Quality::default(), false)?;
-    Ok([("render", render), ("sky_view", sky_view), ("render_bounces_1", bounces)])
+    let sky_view = bytes(&scene, &Quality::default(), true);
+    let bounces = bytes(&scene, &bounced, false);
+    let render = start::bytes(field, &limits).ok();
+    [("render", render), ("sky_view", sky_view), ("render_bounces_1", bounces)]
 }
 
 fn say(args: &InfoArgs, facts: &Value) {
@@ -108,11 +104,14 @@ fn say(args: &InfoArgs, facts: &Value) {
     line("heights", format!("{lowest:.3} to {highest:.3} m"));
     line("voids", format!("{:.3} %", 100.0 * number(&facts["void_share"])));
     line("steep", format!("{:.3} % beyond 45 degrees", 100.0 * number(&facts["steep_share"])));
-    let memory = |name: &str| number(&facts["device_bytes"][name]) / f64::from(1 << 20);
+    let memory = |name: &str| match facts["device_bytes"][name].as_u64() {
+        Some(bytes) => format!("{:.0} MiB", bytes as f64 / f64::from(1 << 20)),
+        None => "beyond every device".to_owned(),
+    };
     line(
         "memory",
         format!(
-            "render {:.0} MiB, sky view {:.0} MiB, render --bounces 1 {:.0} MiB",
+            "render {}, sky view {}, render --bounces 1 {}",
             memory("render"),
             memory("sky_view"),
             memory("render_bounces_1")
@@ -121,18 +120,54 @@ fn say(args: &InfoArgs, facts: &Value) {
     for note in facts["notes"].as_array().into_iter().flatten() {
         crate::say!("  {:<10} {}", "note", note.as_str().unwrap_or_default());
     }
+}
+
+/// Prints a command that the present device can run, and why it is not the plainest one.
+fn say_start(args: &InfoArgs, field: &HeightField, at: Option<&Georeference>) -> Result<()> {
+    let (device, limits) = super::limits(&args.global)?;
+    let is_given = args.global.memory_budget.is_some();
+    let (start, why) = start::start(field, at, &limits, is_given);
+    if let Some(why) = why {
+        let why = setup::in_flags(why);
+        crate::say!("  {:<10} {device} cannot render the whole field by default: {why}", "note");
+    }
+    if start == Start::Nothing {
+        crate::say!(
+            "Start with fewer grid points, as from: gdal_translate -outsize 25% 25% -r average"
+        );
+        return Ok(());
+    }
     let mut command = "Start with: ridgelight render".to_owned();
     for path in &args.input.path {
         command += &format!(" {}", path.display());
     }
-    if let Some([x, y]) = args.surface.cell {
+    let FieldArgs { cell, z_scale, nodata, band, mut bbox, .. } = args.surface;
+    if let Some([x, y]) = cell {
         command += &format!(" --cell {x},{y}");
     }
-    if let Some(band) = args.surface.band {
+    if z_scale != 1.0 {
+        command += &format!(" --z-scale {z_scale}");
+    }
+    if let Some(nodata) = nodata {
+        command += &format!(" --nodata {nodata}");
+    }
+    if let Some(band) = band {
         command += &format!(" --band {band}");
     }
-    if let Some([west, south, east, north]) = args.surface.bbox {
+    if let Start::Part(part) = start {
+        bbox = Some(part);
+    }
+    if let Some([west, south, east, north]) = bbox {
         command += &format!(" --bbox {west},{south},{east},{north}");
     }
+    if let Some(device) = &args.global.device {
+        command += &format!(" --device {device}");
+    }
+    match (start, args.global.memory_budget) {
+        (Start::Budget(gib), _) => command += &format!(" --memory-budget {gib}GiB"),
+        (_, Some(bytes)) => command += &format!(" --memory-budget {bytes}"),
+        _ => {}
+    }
     crate::say!("{command} -o picture.png");
+    Ok(())
 }

@@ -6,6 +6,8 @@
 use clap::ValueEnum;
 use ridgelight::scene::{Albedo, HeightField};
 
+use super::sky;
+
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Tint {
     /// No tint: --albedo
@@ -56,22 +58,48 @@ const TAILS: f64 = 0.02;
 
 /// The albedo of a tint; none for [`Tint::None`].
 pub fn albedo(field: &HeightField, tint: Tint) -> Option<Albedo> {
-    let colours = match tint {
-        Tint::None => return None,
-        Tint::Elevation => of_heights(field, &ELEVATION),
-        Tint::Land => of_heights(field, &LAND),
+    Some(Albedo::Map(colours(field, tint)?))
+}
+
+fn colours(field: &HeightField, tint: Tint) -> Option<Vec<[f32; 3]>> {
+    match tint {
+        Tint::None => None,
+        Tint::Elevation => Some(of_heights(field, &ELEVATION)),
+        Tint::Land => Some(of_heights(field, &LAND)),
         Tint::Slope => {
             let slopes = (0..field.rows() * field.cols()).map(|i| slope_deg(field, i));
-            slopes.map(|slope| SLOPE.at(slope / STEEPEST_DEG)).collect()
+            Some(slopes.map(|slope| SLOPE.at(slope / STEEPEST_DEG)).collect())
         }
-    };
-    Some(Albedo::Map(colours))
+    }
 }
 
 fn of_heights(field: &HeightField, palette: &Palette) -> Vec<[f32; 3]> {
     let [lowest, highest] = range(field);
-    let share = |h: &f32| (f64::from(*h) - lowest) / (highest - lowest).max(1e-9);
+    // Level ground is neither low nor high.
+    let middle = (lowest + highest) / 2.0;
+    let share = |h: &f32| 0.5 + (f64::from(*h) - middle) / (highest - lowest).max(1e-9);
     field.heights_m().iter().map(|h| palette.at(share(h))).collect()
+}
+
+/// The luminance that a share of a tinted field does not exceed, over that of the tint's lightest colour. It is 1 where
+/// heights reach the upper tail; [`Tint::None`] has 1 too.
+pub fn peak(field: &HeightField, tint: Tint, share: f64) -> f64 {
+    let Some(colours) = colours(field, tint) else { return 1.0 };
+    let lightest = match tint {
+        Tint::Elevation => ELEVATION.at(1.0),
+        Tint::Slope => SLOPE.at(0.0),
+        Tint::Land | Tint::None => LAND.at(1.0),
+    };
+    let luminance = |colour: [f32; 3]| sky::luminance(colour.map(f64::from));
+    let is_void = |i: usize| field.voids().is_some_and(|v| v[i]);
+    let known = colours.into_iter().enumerate().filter(|(i, _)| !is_void(*i));
+    let mut all: Vec<f64> = known.map(|(_, colour)| luminance(colour)).collect();
+    if all.is_empty() {
+        return 1.0;
+    }
+    let at = (share * (all.len() - 1) as f64).round() as usize;
+    let (_, bright, _) = all.select_nth_unstable_by(at, f64::total_cmp);
+    *bright / luminance(lightest)
 }
 
 /// The heights where the tails begin; voids do not count.
@@ -179,6 +207,23 @@ mod tests {
         }
         let Some(Albedo::Map(map)) = albedo(&field, Tint::Slope) else { panic!("a map") };
         assert_eq!(map, vec![SLOPE.at(0.75); 12]);
+    }
+
+    /// A ramp reaches the lightest colour. Level ground has the middle of heights, and the lightest colour of slopes.
+    #[test]
+    fn level_ground_is_half_as_light_as_summits() {
+        let ramp: Vec<f64> = (0..100).map(f64::from).collect();
+        let ramp = HeightField::new(10, 10, &ramp, [1.0; 2], None).unwrap();
+        let level = HeightField::new(10, 10, &[7.0; 100], [1.0; 2], None).unwrap();
+        for (tint, palette) in [(Tint::Land, &LAND), (Tint::Elevation, &ELEVATION)] {
+            assert_eq!(peak(&ramp, tint, 0.99), 1.0);
+            let Some(Albedo::Map(map)) = albedo(&level, tint) else { panic!("a map") };
+            assert_eq!(map, vec![palette.at(0.5); 100]);
+            let luminance = |share| sky::luminance(palette.at(share).map(f64::from));
+            assert_eq!(peak(&level, tint, 0.99), luminance(0.5) / luminance(1.0));
+        }
+        assert_eq!(peak(&level, Tint::Slope, 0.99), 1.0);
+        assert_eq!(peak(&level, Tint::None, 0.99), 1.0);
     }
 
     #[test]

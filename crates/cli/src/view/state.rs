@@ -20,8 +20,9 @@ use super::script::Button;
 use super::smaller::Blocks;
 use super::strokes::Strokes;
 use crate::args::ViewArgs;
-use crate::render::exposure;
+use crate::render::{exposure, white};
 use crate::scene_file::Request;
+use crate::setup;
 use settings::{Refused, Settings};
 use viewpoint::{FOV_DEG, Viewpoint};
 
@@ -75,6 +76,8 @@ pub struct State {
     asked: Request,
     moving: Option<Moving>,
     exposure: f32,
+    /// [`crate::render::white`] of the field as it was read.
+    white: f64,
     /// Whether the exposure is to be found from the picture.
     pub needs_exposure: bool,
     /// Whether the exposure is a preview's, to be found again from the full light.
@@ -103,8 +106,10 @@ pub struct State {
 impl State {
     pub fn new(args: &ViewArgs, scene: Scene, quality: Quality) -> Self {
         let has_clear_sky = scene.lights.environment.is_some() && args.lights.env.is_none();
+        let white = white(&scene.field, setup::tint_of(&args.surface));
         let mut state = Self {
             scene,
+            white,
             quality,
             asked: args.asked.clone(),
             moving: None,
@@ -154,7 +159,7 @@ impl State {
 
     /// Takes the exposure that suits a picture, of coarse light or of the full one.
     pub fn expose(&mut self, picture: &[[f32; 3]], voids: Option<&[bool]>, is_coarse: bool) {
-        (self.exposure, self.needs_exposure) = (exposure(picture, voids), false);
+        (self.exposure, self.needs_exposure) = (exposure(picture, voids, self.white), false);
         self.has_coarse_exposure = is_coarse;
     }
 

@@ -79,6 +79,35 @@ fn hillshade_has_voids_and_a_sun_from_the_north_west() {
     assert_eq!(codes, [lit, lit, lit, lit, [0, 0], lit].concat());
 }
 
+/// A degree of longitude is shorter than one of latitude: 76.1 km and 111.2 km at 47 degrees.
+#[test]
+fn pictures_in_degrees_have_a_note_on_their_proportions() {
+    let folder = Folder::new();
+    let rows = "1 2 3\n4 5 6\n7 8 9\n";
+    let grid = |corner: [f64; 2], cell: f64| {
+        format!(
+            "ncols 3\nnrows 3\nxllcorner {}\nyllcorner {}\ncellsize {cell}\n{rows}",
+            corner[0], corner[1]
+        )
+    };
+    folder.write("degrees.asc", grid([8.0, 47.0], 0.001).as_bytes());
+    folder.write("metres.asc", grid([5e5, 5.2e6], 30.0).as_bytes());
+    let said = "a pixel is a cell of 76.1 x 111.2 m, so the picture is 1.46 times too wide";
+    for (name, output, is_noted) in
+        [("degrees", "o.png", true), ("degrees", "o.tif", false), ("metres", "o.png", false)]
+    {
+        let run = folder.run_without_driver(&["hillshade", &format!("{name}.asc"), "-o", output]);
+        assert_eq!(run.notes.contains(said), is_noted, "{name}, {output}: {}", run.notes);
+    }
+    // With a reference system the note has a command.
+    folder.write(
+        "degrees.prj",
+        br#"GEOGCS["GCS_WGS_1984",DATUM["D"],UNIT["Degree",0.0174532925199433]]"#,
+    );
+    let run = folder.run_without_driver(&["hillshade", "degrees.asc", "-o", "o.png"]);
+    assert!(run.notes.contains("`gdalwarp -t_srs EPSG:32632`"), "{}", run.notes);
+}
+
 #[test]
 fn wrong_maps_are_refused() {
     let folder = Folder::new();
@@ -89,7 +118,11 @@ fn wrong_maps_are_refused() {
             ("hillshade a.asc -o a.asc", 2, &["-o"]),
             ("hillshade a.npy -o a.npy", 2, &["which is the input"]),
             ("hillshade a.asc -o o.tif --sun 0,91", 2, &["--sun 1: elevation: found 91°"]),
-            ("hillshade a.asc -o o.tif --sun 0,-1", 2, &["--sun 1: elevation: found -1°"]),
+            (
+                "hillshade a.asc -o o.tif --sun 0,-1",
+                2,
+                &["--sun 1: elevation: found -1°", "expected 0° to 90°, as in --sun AZ,EL"],
+            ),
             ("hillshade a.asc -o o.tif --sun 0", 2, &["--sun", "expected AZ,EL"]),
             ("hillshade a.asc -o o.tif --sun 0,9 --sun 1,9", 2, &["--sun 2: found another sun"]),
             ("hillshade a.asc -o o.tif --azimuths 8", 2, &["--azimuths", "unexpected"]),

@@ -64,6 +64,20 @@ fn gpu_default_pictures_have_contrast() {
     assert!(light - dark < 10.0, "{dark} to {light}");
 }
 
+/// Level ground keeps the lightness of its tint, and the sky behind it its colours.
+#[test]
+fn gpu_level_ground_is_not_white() {
+    let folder = Folder::new();
+    let field = HeightField::new(64, 64, &[500.0; 64 * 64], [30.0; 2], None).unwrap();
+    let input = write(&folder, "level.npy", &field);
+    for camera in ["", " --camera 150,20 --size 320x180"] {
+        succeeded(&folder, &format!("render {input}{camera} -o out.png"));
+        let codes = luminances(&folder, "out.png");
+        let [dark, light] = spread(codes).0;
+        assert!(dark > 60.0 && light < 200.0, "{camera}: {dark} to {light}");
+    }
+}
+
 /// The printed flags give the same picture.
 #[test]
 fn gpu_default_light_is_that_of_its_flags() {

@@ -4,7 +4,8 @@ use std::collections::HashSet;
 use std::io::Write as _;
 use std::process::{Command, Stdio};
 
-use crate::Folder;
+use crate::{Folder, refused, succeeded};
+use ridgelight::scene::HeightField;
 
 const LIT: [&str; 6] = ["plan", "a.asc", "--sky", "1", "--sun", "135,30"];
 
@@ -209,8 +210,45 @@ fn notes_leave_standard_output_to_results() {
         serde_json::from_str::<serde_json::Value>(&run.out).unwrap();
         assert!(run.notes.contains("note: field.npy: the file has no cell size"), "{}", run.notes);
         assert_eq!(run.notes.contains("note: night: "), !sun.is_empty(), "{}", run.notes);
-        let run =
-            folder.run_without_driver(&format!("{args} --quiet").split(' ').collect::<Vec<_>>());
+        let run = folder.run_without_driver(&format!("{args} -q").split(' ').collect::<Vec<_>>());
         assert_eq!(run.notes, "");
     }
+}
+
+/// Wider than an image of any device: what needs no image reads it.
+#[test]
+fn gpu_fields_beyond_the_device_have_hillshades() {
+    let folder = Folder::new();
+    let field = HeightField::new(2, 33_000, &[1.0; 66_000], [1.0; 2], None).unwrap();
+    ridgelight_io::write_npy_heights(&folder.path("wide.npy"), &field).unwrap();
+    succeeded(&folder, "hillshade wide.npy -o shade.npy");
+    let info = succeeded(&folder, "info wide.npy");
+    assert!(info.out.contains("cannot render the whole field by default"), "{}", info.out);
+    assert!(info.out.contains("Start with fewer grid points"), "{}", info.out);
+    refused(&folder, &[("ao wide.npy -o ao.npy", 1, &["33000"])]);
+}
+
+/// With too little memory for the whole field, the command has a box that fits.
+#[test]
+fn gpu_the_recommended_command_runs() {
+    let folder = Folder::new();
+    let head = "ncols 200\nnrows 96\nxllcorner 500\nyllcorner 0\ncellsize 10\n";
+    folder.write("dem.asc", (head.to_owned() + &"5 ".repeat(200 * 96)).as_bytes());
+    succeeded(&folder, "info dem.asc --json info.json");
+    let facts = crate::needs_vulkan::json(&folder.path("info.json"));
+    let needed = facts["device_bytes"]["render"].as_u64().unwrap();
+    succeeded(&folder, &format!("render dem.asc --memory-budget {needed} -o p.png"));
+    let short = needed - 1;
+    let short = format!(" --memory-budget {short}");
+    for (words, has_box) in [("", false), (short.as_str(), true)] {
+        let info = succeeded(&folder, &format!("info dem.asc{words}"));
+        let command =
+            info.out.lines().find_map(|line| line.strip_prefix("Start with: ridgelight "));
+        let command = command.unwrap_or_else(|| panic!("{}", info.out));
+        assert_eq!(command.contains("--bbox 1000,240,2000,720"), has_box, "{command}");
+        assert_eq!(info.out.contains("cannot render the whole field"), has_box, "{}", info.out);
+        succeeded(&folder, command);
+    }
+    let whole = format!("render dem.asc{short} -o p.png");
+    refused(&folder, &[(whole.as_str(), 1, &["of --memory-budget"])]);
 }

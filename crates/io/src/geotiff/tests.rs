@@ -1,5 +1,6 @@
 use super::*;
 use crate::georeference::GeoKeys;
+use crate::{Channels, Georeference, HeightOptions, Layer, read_field, write_geotiff};
 use std::io::Cursor;
 use tiff::decoder::{Decoder, DecodingResult};
 use tiff::tags::Tag;
@@ -179,4 +180,30 @@ fn wrong_use_is_refused_and_leaves_no_file() {
     let error = writer.finish(&[]).unwrap_err().to_string();
     assert!(error.contains("band 0 of a GeoTIFF"), "{error}");
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+}
+
+/// A grid that is wider than any field: its tiles in the box are read, and no others count.
+#[test]
+fn a_box_of_a_huge_file_is_read_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("wide.tif");
+    let (rows, cols) = (3, 70_000);
+    let height = |row: usize, col: usize| (1000 * row + col % 251) as f32;
+    let heights: Vec<f32> = (0..rows * cols).map(|i| height(i / cols, i % cols)).collect();
+    let at = Georeference { corner: [0.0, 30.0], cell: [10.0; 2], keys: GeoKeys::default() };
+    let layers = [Layer { name: String::new(), channels: Channels::Scalar("heights", &heights) }];
+    write_geotiff(&path, [rows, cols], &layers, &[], Some(&at), &[]).unwrap();
+    let read = |bbox| read_field(&path, &HeightOptions { bbox, ..HeightOptions::default() });
+    let refused = read(None).unwrap_err().to_string();
+    assert!(refused.contains("70000 columns") && refused.contains("`bbox` reads"), "{refused}");
+    // Across the edge of a tile, and the last columns.
+    for first in [500, cols - 24] {
+        let west = 10.0 * first as f64;
+        let part = read(Some([west, 0.0, west + 240.0, 20.0])).unwrap();
+        let found = part.field.heights_m().iter().map(|h| part.field.base_m() as f32 + h);
+        let expected = (0..48).map(|i| height(1 + i / 24, first + i % 24));
+        assert!(found.eq(expected), "{first}");
+        assert_eq!((part.field.rows(), part.field.cols()), (2, 24));
+        assert_eq!(part.georeference.unwrap().corner, [west, 20.0]);
+    }
 }

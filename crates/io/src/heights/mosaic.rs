@@ -4,6 +4,7 @@ use super::Raster;
 use crate::georeference::Georeference;
 use crate::open;
 use ridgelight::{Error, Result};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 /// The largest shift from whole cells, in cells: positions and cell sizes are rounded in files.
@@ -157,50 +158,73 @@ impl Sums {
     }
 }
 
-/// The cells of a grid that a box touches: west, south, east and north in its coordinates.
+/// Rows and columns of a grid that a box touches, and a note where the box reaches beyond the grid.
+pub(super) struct Window {
+    pub rows: Range<usize>,
+    pub cols: Range<usize>,
+    pub note: Option<String>,
+}
+
+impl Window {
+    /// `bbox` is west, south, east and north in the coordinates of the grid.
+    pub fn of(
+        path: &Path,
+        at: Option<&Georeference>,
+        [rows, cols]: [usize; 2],
+        bbox: [f64; 4],
+    ) -> Result<Self> {
+        let Some(at) = at else {
+            let expected = "a position, as `bbox` is in the coordinates of the file";
+            return Err(Error::file(path, "georeference", "none", expected));
+        };
+        let [west, south, east, north] = bbox;
+        let [left, top] = at.corner;
+        let x = |x: f64| (x - left) / at.cell[0];
+        let y = |y: f64| (top - y) / at.cell[1];
+        let span = |from: f64, to: f64, count: usize| {
+            let start = (from + SHIFT).floor().clamp(0.0, count as f64) as usize;
+            let end = (to - SHIFT).ceil().clamp(0.0, count as f64) as usize;
+            start..end
+        };
+        let touched = [span(y(north), y(south), rows), span(x(west), x(east), cols)];
+        let extent = at.extent(rows, cols);
+        let text = |all: [f64; 4]| all.map(|x| x.to_string()).join(",");
+        if touched.iter().any(Range::is_empty) {
+            let expected =
+                format!("a box that overlaps the field, whose extent is {}", text(extent));
+            return Err(Error::setting("bbox", text(bbox), expected));
+        }
+        let is_beyond = x(west) < -SHIFT
+            || x(east) > cols as f64 + SHIFT
+            || y(north) < -SHIFT
+            || y(south) > rows as f64 + SHIFT;
+        let note = is_beyond
+            .then(|| format!("`bbox` reaches beyond the field, whose extent is {}", text(extent)));
+        let [rows, cols] = touched;
+        Ok(Self { rows, cols, note })
+    }
+
+    /// A grid of the window's values, at the window's position in `at`.
+    pub fn placed(self, mut raster: Raster, at: &Georeference) -> Raster {
+        raster.notes.extend(self.note);
+        (raster.rows, raster.cols) = (self.rows.len(), self.cols.len());
+        moved(raster, at, [self.rows.start as i64, self.cols.start as i64])
+    }
+}
+
+/// The cells of a grid that a box touches.
 pub(super) fn cropped(path: &Path, mut raster: Raster, bbox: [f64; 4]) -> Result<Raster> {
-    let Some(at) = raster.georeference.take() else {
-        let expected = "a position, as `bbox` is in the coordinates of the file";
-        return Err(Error::file(path, "georeference", "none", expected));
-    };
-    let [west, south, east, north] = bbox;
-    let [left, top] = at.corner;
-    let x = |x: f64| (x - left) / at.cell[0];
-    let y = |y: f64| (top - y) / at.cell[1];
-    let span = |from: f64, to: f64, count: usize| {
-        let start = (from + SHIFT).floor().clamp(0.0, count as f64) as usize;
-        let end = (to - SHIFT).ceil().clamp(0.0, count as f64) as usize;
-        start..end
-    };
-    let cols = span(x(west), x(east), raster.cols);
-    let rows = span(y(north), y(south), raster.rows);
-    let extent = at.extent(raster.rows, raster.cols);
-    let text = |all: [f64; 4]| all.map(|x| x.to_string()).join(",");
-    if cols.is_empty() || rows.is_empty() {
-        let expected = format!("a box that overlaps the field, whose extent is {}", text(extent));
-        return Err(Error::setting("bbox", text(bbox), expected));
+    fn part<T: Copy>(all: &[T], width: usize, window: &Window) -> Vec<T> {
+        let row = |row: usize| &all[row * width..][window.cols.clone()];
+        window.rows.clone().flat_map(row).copied().collect()
     }
-    let is_beyond = x(west) < -SHIFT
-        || x(east) > raster.cols as f64 + SHIFT
-        || y(north) < -SHIFT
-        || y(south) > raster.rows as f64 + SHIFT;
-    if is_beyond {
-        let note = format!("`bbox` reaches beyond the field, whose extent is {}", text(extent));
-        raster.notes.push(note);
-    }
-    fn part<T: Copy>(
-        all: &[T],
-        width: usize,
-        rows: &std::ops::Range<usize>,
-        cols: &std::ops::Range<usize>,
-    ) -> Vec<T> {
-        rows.clone().flat_map(|row| &all[row * width..][cols.clone()]).copied().collect()
-    }
-    let width = raster.cols;
-    raster.values = part(&raster.values, width, &rows, &cols);
-    raster.voids = raster.voids.map(|voids| part(&voids, width, &rows, &cols));
-    (raster.rows, raster.cols) = (rows.len(), cols.len());
-    Ok(moved(raster, &at, [rows.start as i64, cols.start as i64]))
+    let size = [raster.rows, raster.cols];
+    let at = raster.georeference.take();
+    let window = Window::of(path, at.as_ref(), size, bbox)?;
+    let Some(at) = at else { return Ok(raster) };
+    raster.values = part(&raster.values, size[1], &window);
+    raster.voids = raster.voids.map(|voids| part(&voids, size[1], &window));
+    Ok(window.placed(raster, &at))
 }
 
 #[cfg(test)]

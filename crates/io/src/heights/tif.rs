@@ -1,7 +1,9 @@
 //! TIFF heights: one band of any integer or float type; [`geotiff`] reads its position.
 
+use crate::heights::mosaic::Window;
 use crate::heights::raw::Raw;
-use crate::heights::{Raster, geotiff, lzw};
+use crate::heights::sidecar::Sidecar;
+use crate::heights::{HeightOptions, Raster, geotiff, lzw};
 use crate::open;
 use half::f16;
 use ridgelight::{Error, Result};
@@ -34,8 +36,12 @@ pub(crate) struct Image<'a> {
     chunk: [usize; 2],
     /// Bytes of its samples.
     chunk_bytes: u64,
+    /// Bytes of all samples of a texel.
+    texel_bytes: u64,
     /// Of strips and tiles; tags are read before.
     limits: Limits,
+    /// Rows and columns to read.
+    window: [Range<usize>; 2],
 }
 
 impl<'a> Image<'a> {
@@ -44,7 +50,7 @@ impl<'a> Image<'a> {
         let header = |e: TiffError| Error::file(path, "header", open::complaint(e), "a whole TIFF");
         let mut tiff = Decoder::new(Raw::new(bytes)).map_err(header)?;
         let (width, height) = tiff.dimensions().map_err(header)?;
-        let (rows, cols) = open::size(path, "header", height.into(), width.into())?;
+        let (rows, cols) = (height as usize, width as usize);
         let color = tiff.colortype().map_err(header)?;
         let bits = color.bit_depth();
         if ![8, 16, 32, 64].contains(&bits) {
@@ -60,8 +66,7 @@ impl<'a> Image<'a> {
             let expected = "no compression, PackBits, LZW, DEFLATE or Zstandard; `gdal_translate -co COMPRESS=DEFLATE` writes such a file";
             return Err(Error::file(path, "header", found, expected));
         }
-        let image_bytes = rows as u64 * cols as u64 * u64::from(bits / 8) * u64::from(all);
-        open::plausible(path, "header", image_bytes, bytes.len(), ratio(method))?;
+        let texel_bytes = u64::from(bits / 8) * u64::from(all);
         // The decoder leaves out interleaved samples behind those of a colour.
         let bands = usize::from(if is_planar { all } else { color.num_samples() });
         let samples = if is_planar {
@@ -80,13 +85,11 @@ impl<'a> Image<'a> {
                 [rows, cols]
             }
         };
-        // Each side is at most 2^16, a sample 2^3 bytes and their number below 2^16.
         let interleaved = if is_planar { 1 } else { u64::from(all) };
-        let chunk_bytes = chunk[0] as u64 * chunk[1] as u64 * u64::from(bits / 8) * interleaved;
+        let chunk_texels = chunk[0] as u64 * chunk[1] as u64;
+        let chunk_bytes = chunk_texels.saturating_mul(u64::from(bits / 8) * interleaved);
         let mut limits = Limits::default();
-        // Planes from the second on are decoded with the padding of their last tiles.
-        let most = image_bytes.max(chunk_bytes);
-        limits.decoding_buffer_size = usize::try_from(most).unwrap_or(usize::MAX);
+        limits.decoding_buffer_size = usize::try_from(chunk_bytes).unwrap_or(usize::MAX);
         // A compressed strip or tile is part of the file.
         limits.intermediate_buffer_size = bytes.len();
         Ok(Self {
@@ -103,11 +106,18 @@ impl<'a> Image<'a> {
             samples,
             chunk,
             chunk_bytes,
+            texel_bytes,
             limits,
+            window: [0..rows, 0..cols],
         })
     }
 
-    /// The values of some bands, and whether they are 16- or 32-bit floats. Strips and tiles that the
+    /// Reads only some rows and columns.
+    fn within(self, window: [Range<usize>; 2]) -> Self {
+        Self { window, ..self }
+    }
+
+    /// The values of some bands in the window, and whether they are 16- or 32-bit floats. Strips and tiles that the
     /// file leaves out (GDAL's SPARSE_OK) hold `empty`.
     pub fn read<T: Copy + Default>(
         self,
@@ -116,6 +126,15 @@ impl<'a> Image<'a> {
         of: impl Fn(f64) -> T,
     ) -> Result<(Vec<Vec<T>>, bool)> {
         let (path, rows, cols) = (self.path, self.rows, self.cols);
+        let [lines, columns] = [0, 1].map(|axis| self.window[axis].len());
+        open::size(path, "header", lines as u64, columns as u64).map_err(|error| match error {
+            Error::File { path, place, found, expected } => {
+                Error::file(&path, place, found, expected + "; `bbox` reads a part")
+            }
+            other => other,
+        })?;
+        let claimed = (lines * columns) as u64 * self.texel_bytes;
+        open::plausible(path, "header", claimed, self.bytes.len(), ratio(self.method))?;
         let wrong = |found: String| {
             Error::file(path, "image data", found, "values as the header describes")
         };
@@ -139,7 +158,7 @@ impl<'a> Image<'a> {
         open::room(path, self.chunk_bytes.saturating_mul(3))?;
         let across = cols.div_ceil(width);
         let a_plane = across * rows.div_ceil(height);
-        let zeros = |_| open::zeros::<T>(path, rows * cols);
+        let zeros = |_| open::zeros::<T>(path, lines * columns);
         let mut planes = bands.clone().map(zeros).collect::<Result<Vec<_>>>()?;
         let mut single = false;
         let parts = if self.is_planar { bands.clone() } else { 0..1 };
@@ -147,9 +166,16 @@ impl<'a> Image<'a> {
             let index = u32::try_from(part * a_plane + chunk)
                 .map_err(|_| wrong("more than 2^32 strips or tiles".into()))?;
             let corner = [chunk / across * height, chunk % across * width];
+            let is_within = |axis: usize| {
+                let Range { start, end } = self.window[axis];
+                corner[axis] < end && corner[axis] + self.chunk[axis] > start
+            };
+            if !is_within(0) || !is_within(1) {
+                continue;
+            }
             let (inside, lines) = tiff.chunk_data_dimensions(index);
             let lines = (lines as usize).min(rows - corner[0]);
-            let target = Target { corner, inside: inside as usize, lines, cols };
+            let target = Target { corner, inside: inside as usize, lines, window: &self.window };
             let (first, stride) = if self.is_planar { (0, 1) } else { (bands.start, self.samples) };
             let planes = match self.is_planar {
                 true => &mut planes[part - bands.start..][..1],
@@ -234,17 +260,21 @@ pub(crate) fn no_band(path: &Path, band: u32, bands: usize) -> Error {
     Error::file(path, "header", bands, format!("a band {band}, which `band` requests"))
 }
 
-pub(crate) fn heights(path: &Path, bytes: &[u8], band: Option<u32>) -> Result<Raster> {
+/// The heights of a band, in a box if there is one; strips and tiles outside it are not decoded.
+pub(super) fn heights(
+    path: &Path,
+    bytes: &[u8],
+    options: &HeightOptions,
+    sidecar: Sidecar,
+) -> Result<Raster> {
     let mut image = Image::open(path, bytes)?;
-    let (band, note) = image.band(band)?;
+    let (band, note) = image.band(options.band)?;
     let note = note.into_iter().chain(mask_note(path, bytes));
     let (rows, cols) = (image.rows, image.cols);
     let geo = geotiff::read(path, &mut image.tiff, rows, cols, band)?;
     let empty = geo.nodata.unwrap_or(0.0);
     let is_8_bit = image.bits == 8;
-    let (mut planes, single) = image.read(band..band + 1, empty, |value| value)?;
-    Ok(Raster {
-        single,
+    let mut raster = Raster {
         cell: geo.cell,
         unit_m: geo.unit_m,
         scale: geo.scale,
@@ -252,7 +282,20 @@ pub(crate) fn heights(path: &Path, bytes: &[u8], band: Option<u32>) -> Result<Ra
         is_8_bit,
         georeference: geo.georeference,
         notes: note.chain(geo.notes).collect(),
-        ..Raster::bare(rows, cols, planes.swap_remove(0))
+        ..Raster::bare(rows, cols, Vec::new())
+    };
+    sidecar.complete(&mut raster);
+    let at = raster.georeference.clone();
+    let window = |bbox| Window::of(path, at.as_ref(), [rows, cols], bbox);
+    let window = options.bbox.map(window).transpose()?;
+    if let Some(window) = &window {
+        image = image.within([window.rows.clone(), window.cols.clone()]);
+    }
+    let (mut planes, single) = image.read(band..band + 1, empty, |value| value)?;
+    (raster.values, raster.single) = (planes.swap_remove(0), single);
+    Ok(match (window, &at) {
+        (Some(window), Some(at)) => window.placed(raster, at),
+        _ => raster,
     })
 }
 
@@ -296,22 +339,24 @@ fn mask_note(path: &Path, bytes: &[u8]) -> Option<String> {
 }
 
 /// Where the values of a strip or tile belong in a plane.
-struct Target {
+struct Target<'a> {
     /// Row and column of its first value.
     corner: [usize; 2],
     /// Columns and rows of it inside the image.
     inside: usize,
     lines: usize,
-    /// Columns of the plane.
-    cols: usize,
+    /// Rows and columns of the plane.
+    window: &'a [Range<usize>; 2],
 }
 
-impl Target {
-    /// Sets its value number `i`; those below the image are padding.
+impl Target<'_> {
+    /// Sets its value number `i` if the plane has it; those below the image are padding.
     fn set<T>(&self, plane: &mut [T], i: usize, value: T) {
         let (line, col) = (i / self.inside, i % self.inside);
-        if line < self.lines {
-            plane[(self.corner[0] + line) * self.cols + self.corner[1] + col] = value;
+        let [row, col] = [self.corner[0] + line, self.corner[1] + col];
+        let [rows, cols] = self.window;
+        if line < self.lines && rows.contains(&row) && cols.contains(&col) {
+            plane[(row - rows.start) * cols.len() + col - cols.start] = value;
         }
     }
 

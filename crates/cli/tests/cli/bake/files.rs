@@ -103,6 +103,7 @@ fn wrong_requests_are_refused() {
         (horizon("--json out.txt"), 2, &["--json: found out.txt"]),
         ("bake none.asc -o out --what horizon".to_owned(), 1, &["none.asc"]),
         ("bake a.asc -o taken --what horizon".to_owned(), 2, &["-o", "the file taken"]),
+        ("bake a.asc -o o.ktx2 --what horizon --format exr".to_owned(), 2, &["-o", "found o.ktx2"]),
         ("bake a.asc -o link --what horizon".to_owned(), 2, &["-o", "link, a broken link"]),
         ("bake a.asc -o no/out --what horizon".to_owned(), 2, &["-o", "a folder no that exists"]),
         (horizon(""), 1, &["driver"]),

@@ -72,6 +72,12 @@ fn gdal_bands_have_the_values_that_gdal_reads() {
                             HeightOptions { band: Some(band as u32 + 1), ..Default::default() };
                         let plane = &values[band * size..(band + 1) * size];
                         assert!(heights(&path, &options) == plane, "{command}: band {band}");
+                        // 9 of 37 columns from the 20th, 5 of 29 rows from the 13th.
+                        let bbox = [500_600.0, 4_900_330.0, 500_870.0, 4_900_480.0];
+                        let part = HeightOptions { bbox: Some(bbox), ..options };
+                        let row = |row: usize| &plane[row * 37 + 20..][..9];
+                        let expected: Vec<f32> = (13..18).flat_map(row).copied().collect();
+                        assert!(heights(&path, &part) == expected, "{command}: box of {band}");
                         read += 1;
                     }
                     assert_ne!(values[..size], values[size..2 * size]);

@@ -1,0 +1,73 @@
+//! Where the pixels of a PNG map lie: its world file, and notes.
+
+use std::path::Path;
+
+use ridgelight::Result;
+use ridgelight::scene::HeightField;
+use ridgelight_io as files;
+use ridgelight_io::Georeference;
+
+use crate::args::Input;
+use crate::setup;
+
+/// Writes the world file beside a PNG: where its pixels lie, without the coordinate reference
+/// system.
+pub fn write(
+    picture: &Path,
+    input: &Input,
+    georeference: Option<&Georeference>,
+    quiet: bool,
+) -> Result<()> {
+    let path = picture.with_extension("pgw");
+    match georeference {
+        Some(georeference) => files::write_text(&path, &georeference.world_file()),
+        None => {
+            let why = format!("{} states no position", input.first().display());
+            note_stale(picture, &why, quiet);
+            Ok(())
+        }
+    }
+}
+
+/// A note where a world file of an earlier picture stands beside one that has none.
+pub fn note_stale(picture: &Path, why: &str, quiet: bool) {
+    let path = picture.with_extension("pgw");
+    if path.exists() && !quiet {
+        setup::note(&format!("{}: not of this picture, because {why}", path.display()));
+    }
+}
+
+/// Cells whose sides differ by less are square: a hundred pixels are then long by one.
+const SQUARE: f64 = 0.01;
+
+/// A note where a map's pixels have other proportions than the ground.
+pub fn note_shape(
+    picture: &Path,
+    field: &HeightField,
+    georeference: Option<&Georeference>,
+    quiet: bool,
+) {
+    let [width, height] = field.cell_m();
+    if (width / height - 1.0).abs() < SQUARE || quiet {
+        return;
+    }
+    let utm = georeference.and_then(|at| utm_of(at, field)).map_or_else(String::new, |code| {
+        format!("; `gdalwarp -t_srs EPSG:{code}` makes square cells of the input")
+    });
+    setup::note(&format!(
+        "{}: a pixel is a cell of {width:.1} x {height:.1} m, so the picture is {:.2} times too wide for the ground{utm}",
+        picture.display(),
+        height / width
+    ));
+}
+
+/// The UTM zone in the middle of a field in longitude and latitude.
+fn utm_of(at: &Georeference, field: &HeightField) -> Option<u16> {
+    let [west, south, east, north] = at.extent(field.rows(), field.cols());
+    let [longitude, latitude] = [(west + east) / 2.0, (south + north) / 2.0];
+    if at.keys.epsg() != Some(4326) || !(-180.0..180.0).contains(&longitude) {
+        return None;
+    }
+    let zone = ((longitude + 180.0) / 6.0).floor() as u16 + 1;
+    Some(if latitude < 0.0 { 32700 } else { 32600 } + zone)
+}
