@@ -1,4 +1,4 @@
-//! Checks and counts of the repository: `cargo xtask layers | words | size | surface | gallery | install`.
+//! Checks and counts of the repository: `cargo xtask layers | words | size | surface | gallery | performance | install`.
 
 mod install;
 mod layers;
@@ -18,6 +18,7 @@ const USAGE: &str = "usage: cargo xtask COMMAND
   size               lines of Rust and GLSL, files a folder, README, dependencies of an embedder
   surface [--check]  public items of the core, as kept in xtask/surface.txt
   gallery            docs/gallery/index.md and its pictures, by the release program
+  performance        measures this device: docs/measured/performance.md and its plot
   install --prefix DIR
                      the release program to DIR/bin, the C library to DIR/lib, its headers to DIR/include,
                      with files for CMake and pkg-config";
@@ -33,6 +34,7 @@ fn main() -> ExitCode {
         ["words"] => words::check(root),
         ["size"] => size::print(root),
         ["gallery"] => gallery(root),
+        ["performance"] => performance(root),
         ["install", "--prefix", prefix] => install::install(root, Path::new(prefix)),
         ["surface"] => surface::write(root),
         ["surface", "--check"] => surface::check(root),
@@ -53,14 +55,28 @@ fn main() -> ExitCode {
     }
 }
 
-/// Builds the program and the one that calls it, and runs them.
 fn gallery(root: &Path) -> Result<String, String> {
+    measure(root, "gallery", &[])?;
+    Ok("wrote docs/gallery/index.md\n".to_owned())
+}
+
+fn performance(root: &Path) -> Result<String, String> {
+    let json = "benches/results/performance.json";
+    measure(root, "performance", &["-o", "docs/pictures/performance.svg", "--json", json])?;
+    cargo(
+        root,
+        &["run", "--release", "--quiet", "--package", "ridgelight-measure", "--", "pages"],
+    )?;
+    Ok("wrote docs/measured/performance.md\n".to_owned())
+}
+
+/// Builds the program and the one that calls it, and runs them.
+fn measure(root: &Path, name: &str, words: &[&str]) -> Result<(), String> {
     cargo(root, &["build", "--release", "--locked", "--package", "ridgelight-cli"])?;
     let program = target(root).join("release/ridgelight");
     let program = program.to_str().ok_or("the target folder is no UTF-8")?;
     let measure = ["run", "--release", "--quiet", "--package", "ridgelight-measure", "--"];
-    cargo(root, &[measure.as_slice(), &["gallery", program]].concat())?;
-    Ok("wrote docs/gallery/index.md\n".to_owned())
+    cargo(root, &[measure.as_slice(), &[name, program], words].concat())
 }
 
 /// Runs cargo in the repository.

@@ -11,6 +11,7 @@ mod gallery;
 mod goals;
 mod lights;
 mod pages;
+mod performance;
 mod pictures;
 mod scatter;
 mod shadow_edge;
@@ -32,7 +33,7 @@ use common::args::Args;
 
 type Program = (&'static str, &'static str, fn(Args) -> Outcome);
 
-const PROGRAMS: [Program; 28] = [
+const PROGRAMS: [Program; 29] = [
     ("accuracy", "FIELD [--cell X,Y] [--env FILE] [--points N] [--pyramids]", accuracy::run),
     ("auto", "FOLDER [--fit] [--side N] [--seconds S] [--json FILE]", auto::run),
     ("bake", "-o PICTURE.png --json FILE", bake::run),
@@ -50,6 +51,7 @@ const PROGRAMS: [Program; 28] = [
     ("lights", "[SIDE]", lights::run),
     ("lobe", "[SIDE]", specular::direct),
     ("pages", "[--check]", pages::run),
+    ("performance", "PROGRAM -o FILE.svg --json FILE", performance::run),
     ("picture", "-o PICTURE.png --json FILE", pictures::picture),
     ("reference", "DEVICE", suites::reference),
     ("rivals", "FOLDER [--side N] [--runs K] [-o FILE.svg]", soft::rivals::run),

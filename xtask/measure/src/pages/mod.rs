@@ -5,6 +5,7 @@
 mod features;
 mod figures;
 mod links;
+mod performance;
 
 use std::path::Path;
 
@@ -366,7 +367,7 @@ const LIGHT_HEAD: &str = "| radius, cells | scattered once, over flat | error: f
 type Section = (&'static str, fn() -> Result<String>);
 
 /// Which page holds which sections.
-const PAGES: [(&str, &[Section]); 7] = [
+const PAGES: [(&str, &[Section]); 8] = [
     (
         "README.md",
         &[("picture", picture), ("sizes", sizes), ("h200", h200), ("features", features::features)],
@@ -376,6 +377,7 @@ const PAGES: [(&str, &[Section]); 7] = [
     ("docs/methods.md", &[("forms", forms)]),
     ("docs/accuracy.md", &[("accuracy", accuracy), ("suns", suns), ("bounces", bounces)]),
     ("docs/choosing-settings.md", &[("auto", auto), ("goals", goals)]),
+    ("docs/measured/performance.md", &[("performance", performance::performance)]),
     ("docs/baking.md", &[("brdf", brdf), ("bake", bake), ("curved", curved)]),
 ];
 

@@ -1,0 +1,147 @@
+//! The tables of docs/measured/performance.md.
+
+use serde_json::Value;
+
+use super::Result;
+use super::figures::{Figures, wrong};
+
+/// Times of other programs over that of a plain C sweep on the same machine, which was not this one: 1024², one azimuth.
+const OTHERS: [(&str, &str, f64, f64); 5] = [
+    ("HORAYZON, 0.25° accuracy", "2", 0.557, 0.0070),
+    ("topocalc 0.5", "1", 0.463, 0.0070),
+    ("WhiteboxTools HorizonAngle", "2", 1.452, 0.0070),
+    ("SAGA sky view, all cells", "2", 2.009, 0.0070),
+    ("GRASS r.horizon", "1", 2.475, 0.0070),
+];
+
+pub fn performance() -> Result<String> {
+    let figures = Figures::read("performance")?;
+    let forms = &figures.all["reports"]["forms"];
+    let mut out = "## One frame\n\n1024 × 1024 texels, 64 azimuths, uniform sky, a fractal. Each pass alone.\n\n\
+                   | pass | ms, median | 10th to 90th percentile | cold caches | of the copy's rate |\n|---|---|---|---|---|\n"
+        .to_owned();
+    for row in rows(forms).iter().filter(|row| is(row, "isolated") && row["bytes"] != 0) {
+        if !row["settings"]["scalar_beside"].is_null() {
+            continue;
+        }
+        let label = label(row);
+        let cold = rows(forms).iter().find(|r| is(r, "cold") && self::label(r) == label);
+        let cold = cold.map(|r| ms(&figures, r, "median_ns")).transpose()?;
+        out += &format!(
+            "| {label} | {:.2} | {:.2} to {:.2} | {} | {} |\n",
+            ms(&figures, row, "median_ns")?,
+            ms(&figures, row, "p10_ns")?,
+            ms(&figures, row, "p90_ns")?,
+            cold.map_or("-".into(), |cold| format!("{cold:.2}")),
+            row["copy_share"].as_f64().map_or("-".into(), |s| format!("{:.0} %", 100.0 * s)),
+        );
+    }
+    for (mode, what) in [
+        ("overlapped", "whole frame, no timestamps between passes"),
+        ("in_flow", "whole frame, a timestamp after each pass"),
+        ("cold", "whole frame, cold caches"),
+    ] {
+        let total = rows(forms).iter().find(|row| row["pass"] == "total" && is(row, mode));
+        let total = total.ok_or_else(|| missing(&figures, mode))?;
+        out += &format!(
+            "| {what} | {:.2} | {:.2} to {:.2} | | |\n",
+            ms(&figures, total, "median_ns")?,
+            ms(&figures, total, "p10_ns")?,
+            ms(&figures, total, "p90_ns")?
+        );
+    }
+    out += "\nPeak rates of the device, in the same call: ";
+    let peaks = forms["peaks"].as_array().map_or(&[][..], Vec::as_slice);
+    let rate = |part: &str, key: &str, unit: &str, scale: f64| -> Result<String> {
+        let row = peaks.iter().find(|row| row["part"] == part);
+        let row = row.ok_or_else(|| missing(&figures, part))?;
+        Ok(format!("{:.2} {unit}", scale * figures.number(row, key)?))
+    };
+    out += &format!(
+        "copy {}, texel fetches {}, reads of shared memory {}, arithmetic {}.\n",
+        rate("copy", "gb_per_s", "GB/s", 1.0)?,
+        rate("fetch", "texels_per_s", "G/s", 1e-9)?,
+        rate("shared", "texels_per_s", "G/s of 8 bytes", 1e-9)?,
+        rate("fma", "texels_per_s", "GFLOP/s", 1e-9)?
+    );
+    out += "\n## Over a scalar sweep\n\nThe scalar sweep is a hull sweep in Rust on all cores of the processor, one line at a time, in turn \
+            with each row's frames. It takes the time of a plain C sweep within 5 %.\n\n\
+            | work | time over the scalar sweep |\n|---|---|\n";
+    for (what, name) in [
+        ("horizon sweep", "horizon_sweep lines 1"),
+        ("sky shading", "sky_shade aimed-nearest"),
+        ("exact lines", "surface_sweep exact"),
+        ("pyramid", "pyramid_march stack"),
+        ("brute force", "horizon_march brute"),
+    ] {
+        let ours = rows(forms).iter().find(|row| label(row) == name);
+        let ours = ours.ok_or_else(|| missing(&figures, name))?;
+        let beside = ours["settings"]["scalar_beside"].as_str().unwrap_or_default();
+        let scalar = rows(forms).iter().find(|row| label(row) == beside);
+        let scalar = scalar.ok_or_else(|| missing(&figures, beside))?;
+        let each = |row: &Value| -> Result<f64> {
+            Ok(ms(&figures, row, "median_ns")? / figures.number(row, "azimuths")?)
+        };
+        out += &format!("| {what} | {:.2} |\n", each(ours)? / each(scalar)?);
+    }
+    out += "\nOther programs, on two cores of another machine, over a plain C sweep there, which took 7.0 ms: seconds for the horizon of \
+            one azimuth at 1024 × 1024.\n\n| program | threads | s | time over the C sweep |\n|---|---|---|---|\n";
+    for (name, threads, seconds, plain) in OTHERS {
+        out += &format!("| {name} | {threads} | {seconds:.3} | {:.0} |\n", seconds / plain);
+    }
+    out += "\n## Environment\n\n| pass, 64 azimuths | ms, median |\n|---|---|\n";
+    for row in rows(&figures.all["reports"]["environment"]) {
+        if is(row, "isolated") || row["pass"] == "total" && is(row, "overlapped") {
+            let name = if is(row, "overlapped") { "whole frame" } else { &label(row) };
+            if name != "total" {
+                out += &format!("| {name} | {:.2} |\n", ms(&figures, row, "median_ns")?);
+            }
+        }
+    }
+    out += "\n## Time against size, azimuths and bounces\n\n\
+            ![Time of a frame against the side of the field, azimuths and bounces](../pictures/performance.svg)\n\n\
+            | field | azimuths | frame, ms | ms per azimuth and 2^20 texels |\n|---|---|---|---|\n";
+    for row in ["sizes", "azimuths"].iter().flat_map(|name| rows(&figures.all["reports"][*name])) {
+        let [cols, azimuths] = figures.numbers(row, "cols azimuths")?;
+        let ms = ms(&figures, row, "median_ns")?;
+        let each = ms / azimuths / (cols * cols / f64::from(1 << 20));
+        out += &format!("| {cols}² | {azimuths} | {ms:.1} | {each:.2} |\n");
+    }
+    out += "\n| bounces, 512 × 512, 64 azimuths, 32 of the bounces, every 2nd texel | frame, ms |\n|---|---|\n";
+    for count in 0..=4 {
+        let report = &figures.all["reports"][format!("bounces{count}")];
+        let total = rows(report).iter().find(|r| r["pass"] == "total" && is(r, "overlapped"));
+        let total = total.ok_or_else(|| missing(&figures, "total"))?;
+        out += &format!("| {count} | {:.1} |\n", ms(&figures, total, "median_ns")?);
+    }
+    let [device, driver, cpu, load, ended, commit] =
+        ["device", "driver", "cpu", "load", "ended", "commit"]
+            .map(|key| figures.word(&figures.all, key));
+    out += &format!(
+        "\n*{}, {}; {}, load {} at the start; {}; commit {}*\n",
+        device?, driver?, cpu?, load?, ended?, commit?
+    );
+    Ok(out)
+}
+
+fn rows(report: &Value) -> &[Value] {
+    report["rows"].as_array().map_or(&[], Vec::as_slice)
+}
+
+fn is(row: &Value, mode: &str) -> bool {
+    row["mode"] == mode
+}
+
+/// Pass and part.
+fn label(row: &Value) -> String {
+    let word = |key: &str| row[key].as_str().unwrap_or_default();
+    format!("{} {}", word("pass"), word("part")).trim_end().to_owned()
+}
+
+fn ms(figures: &Figures, row: &Value, key: &str) -> Result<f64> {
+    Ok(figures.number(row, key)? * 1e-6)
+}
+
+fn missing(figures: &Figures, name: &str) -> String {
+    wrong(&figures.path, &format!("no row {name}"), "one, as cargo xtask performance writes it")
+}

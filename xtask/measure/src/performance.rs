@@ -1,0 +1,107 @@
+//! What docs/measured/performance.md shows: reports of `ridgelight bench`, one after the other, and a plot.
+//! `cargo xtask performance`.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use ridgelight_io as files;
+use serde_json::{Value, json};
+
+use crate::common::Outcome;
+use crate::common::args::Args;
+use crate::common::plot::{self, Curve, Panel, Style, curve};
+
+/// Name and arguments of each report.
+const REPORTS: [(&str, &str); 9] = [
+    ("forms", "--size 1024 --azimuths 64 --forms"),
+    ("environment", "--size 1024 --azimuths 64 --env assets/sky_512x256.hdr"),
+    ("sizes", "--sizes 256,512,1024,2048,4096,8192 --azimuth-list 64"),
+    ("azimuths", "--sizes 1024 --azimuth-list 8,16,32,64,128,256"),
+    ("bounces0", "--size 512 --azimuths 64 --subsample 2 --bounces 0 --passes light_resolve"),
+    ("bounces1", "--size 512 --azimuths 64 --subsample 2 --bounces 1 --passes light_resolve"),
+    ("bounces2", "--size 512 --azimuths 64 --subsample 2 --bounces 2 --passes light_resolve"),
+    ("bounces3", "--size 512 --azimuths 64 --subsample 2 --bounces 3 --passes light_resolve"),
+    ("bounces4", "--size 512 --azimuths 64 --subsample 2 --bounces 4 --passes light_resolve"),
+];
+
+/// Runs all with the program, and writes the reports as one file.
+pub fn run(mut args: Args) -> Outcome {
+    let (output, json_path) = (args.needed("-o")?, args.needed("--json")?);
+    let program = args.folder().ok_or("expected the program")?;
+    args.end()?;
+    let scratch = PathBuf::from("out");
+    std::fs::create_dir_all(&scratch)?;
+    let mut all = json!({ "cpu": cpu(), "load": load() });
+    for (name, words) in REPORTS {
+        let report = reported(&program, words, &scratch.join("performance.json"))?;
+        for key in ["device", "driver", "commit"] {
+            all[key] = report[key].clone();
+        }
+        all["ended"] = report["time"].clone();
+        println!("{name}: bench {words}");
+        all["reports"][name] = json!({ "rows": report["rows"], "peaks": report["peaks"] });
+    }
+    plot::write(Some(&output), &panels(&all))?;
+    files::write_json(&json_path, &all)?;
+    Ok(())
+}
+
+/// The report of one `bench`.
+fn reported(
+    program: &Path,
+    words: &str,
+    json: &Path,
+) -> std::result::Result<Value, Box<dyn std::error::Error>> {
+    let mut command = Command::new(program);
+    command.arg("bench").args(words.split(' ')).arg("--quiet").arg("--json").arg(json);
+    if !command.status()?.success() {
+        return Err(format!("bench {words} failed").into());
+    }
+    Ok(serde_json::from_slice(&std::fs::read(json)?)?)
+}
+
+/// The processor's name, as times of a software driver depend on it.
+fn cpu() -> String {
+    let text = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let name = text.lines().find(|line| line.starts_with("model name"));
+    let name = name.and_then(|line| line.split_once(": ")).map_or("unknown", |(_, name)| name);
+    let cores = std::thread::available_parallelism().map_or(0, usize::from);
+    format!("{cores} cores of {name}")
+}
+
+/// Of the machine, before the first report.
+fn load() -> String {
+    let text = std::fs::read_to_string("/proc/loadavg").unwrap_or_default();
+    text.split(' ').take(3).collect::<Vec<_>>().join(" ")
+}
+
+/// Time against the field's side, the azimuths and the bounces.
+fn panels(all: &Value) -> Vec<Panel> {
+    let rows = |name: &str| all["reports"][name]["rows"].as_array().cloned().unwrap_or_default();
+    let ms = |row: &Value| row["median_ns"].as_f64().unwrap_or(f64::NAN) * 1e-6;
+    let along = |name: &str, key: &str| -> Vec<Curve> {
+        let rows = rows(name);
+        let points = rows.iter().map(|row| [row[key].as_f64().unwrap_or(0.0), ms(row)]).collect();
+        vec![curve("a frame under a uniform sky", 0, Style::Dotted, points)]
+    };
+    let of_bounces = (0..=4).filter_map(|count| {
+        let rows = rows(&format!("bounces{count}"));
+        let total = rows.iter().find(|r| r["pass"] == "total" && r["mode"] == "overlapped")?;
+        Some([f64::from(count), ms(total)])
+    });
+    let of_bounces: Vec<[f64; 2]> = of_bounces.collect();
+    let most = of_bounces.iter().fold(0.0_f64, |most, [_, ms]| most.max(*ms));
+    let name = "a frame, bounces at every 2nd texel";
+    let bounces = vec![curve(name, 1, Style::Dotted, of_bounces)];
+    vec![
+        Panel::new("64 azimuths", ["side of the field, texels", "ms"], along("sizes", "cols")),
+        Panel::new("1024 × 1024 texels", ["azimuths", "ms"], along("azimuths", "azimuths")),
+        Panel {
+            title: "512 × 512 texels, 64 azimuths".into(),
+            x: "bounces",
+            y: "ms",
+            curves: bounces,
+            linear: Some([5.0, 1.2 * most]),
+        },
+    ]
+}
