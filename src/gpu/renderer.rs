@@ -99,7 +99,8 @@ impl Renderer {
     /// Makes everything that `plan` needs on the host's device, for `slots` frames in flight (1 or more).
     ///
     /// # Errors
-    /// A device that lacks a requirement (named), or is out of memory.
+    /// A device that lacks a requirement (named), or is out of memory; a queue family that the device does not
+    /// have, or that has no compute.
     pub fn new(host: &Host, plan: Plan, slots: usize) -> Result<Self> {
         Self::with_memory(host, plan, slots, Box::new(Blocks::new(host)?))
     }
@@ -134,6 +135,7 @@ impl Renderer {
                 reason: format!("the device lacks {}", report.missing.join(", ")),
             });
         }
+        requirements::family_flags(host, vk::QueueFlags::COMPUTE)?;
         let timestamps = requirements::timestamps(host);
         let mut renderer = Self {
             host: host.clone(),

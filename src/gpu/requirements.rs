@@ -2,8 +2,10 @@ use std::ffi::CStr;
 
 use ash::vk;
 
+use super::Host;
 use super::shaders::{self, BindingKind, Shader};
 use crate::graph::{Format, GPU_LOOKUPS, Limits};
+use crate::{Error, Result};
 
 /// Properties of a device.
 #[derive(Clone, Debug)]
@@ -68,8 +70,33 @@ pub fn limits(instance: &ash::Instance, physical_device: vk::PhysicalDevice) -> 
     report(instance, physical_device).limits
 }
 
+/// Checks that the host's queue family exists and has a capability; returns all its capabilities.
+///
+/// # Errors
+/// A family that the device does not have, or one without the capability, by number.
+pub(super) fn family_flags(host: &Host, needed: vk::QueueFlags) -> Result<vk::QueueFlags> {
+    // SAFETY: the physical device is the instance's.
+    let families =
+        unsafe { host.instance.get_physical_device_queue_family_properties(host.physical_device) };
+    let wrong =
+        |found: String, expected| Err(Error::setting("host: queue_family", found, expected));
+    let index = host.queue_family;
+    let Some(family) = families.get(index as usize) else {
+        let expected = format!("less than {}, the device's number of families", families.len());
+        return wrong(index.to_string(), expected);
+    };
+    if family.queue_flags.contains(needed) {
+        return Ok(family.queue_flags);
+    }
+    let all = families.iter().enumerate().filter(|(_, f)| f.queue_flags.contains(needed));
+    let all: Vec<_> = all.map(|(i, _)| i.to_string()).collect();
+    let others = if all.is_empty() { "the device has none".into() } else { all.join(" or ") };
+    let found = format!("{index}, a family with {:?}", family.queue_flags);
+    wrong(found, format!("a family with {needed:?}: {others}"))
+}
+
 /// Nanoseconds per timestamp tick, and the valid bits; none where the host's queue family has no timestamps.
-pub(crate) fn timestamps(host: &super::Host) -> Option<(f64, u32)> {
+pub(crate) fn timestamps(host: &Host) -> Option<(f64, u32)> {
     // SAFETY: the physical device is the instance's.
     let (families, properties) = unsafe {
         (
@@ -82,7 +109,7 @@ pub(crate) fn timestamps(host: &super::Host) -> Option<(f64, u32)> {
 }
 
 /// The formats for inputs that the device can sample.
-pub(crate) fn readable(host: &super::Host) -> Vec<vk::Format> {
+pub(crate) fn readable(host: &Host) -> Vec<vk::Format> {
     let is_readable = |format: &vk::Format| {
         // SAFETY: the physical device is the instance's.
         let properties = unsafe {

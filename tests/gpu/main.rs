@@ -38,6 +38,7 @@ mod embedding {
     mod command_buffer;
     mod contract;
     mod debugger;
+    mod host_faults;
     mod in_flight;
     mod plan_changes;
 }

@@ -1,0 +1,103 @@
+//! Hosts that a renderer refuses, with the cause that the host can mend.
+
+use ash::vk;
+use ridgelight::Result;
+use ridgelight::gpu::{Host, Renderer, ViewRenderer};
+use ridgelight::plan::{self, Picture, Plan, View, ViewOptions};
+use ridgelight::scene::{Border, Camera, Lens, Quality, Scene};
+
+use crate::{Device, field, under_sky};
+
+fn scene() -> Scene {
+    under_sky(field(8, 8, [1.0, 1.0], |r, c| ((r * 31 + c * 17) % 7) as f64), Border::Plane)
+}
+
+fn planned(device: &Device) -> Plan {
+    let quality = Quality { azimuths: 4, ..Quality::default() };
+    plan::picture(&scene(), &quality, &device.limits(), Picture::default()).expect("a plan")
+}
+
+/// The error of making something on a host; what is made is destroyed.
+fn error<T>(made: Result<T>, destroy: impl FnOnce(T)) -> String {
+    match made {
+        Ok(made) => {
+            destroy(made);
+            "none".to_owned()
+        }
+        Err(error) => error.to_string(),
+    }
+}
+
+/// The host with another list of queue families, as `listed` gives them. The queue stays the device's own.
+pub(super) fn with_families(
+    host: &Host,
+    queue_family: u32,
+    listed: vk::PFN_vkGetPhysicalDeviceQueueFamilyProperties,
+) -> Host {
+    let own = &host.instance;
+    let functions = ash::InstanceFnV1_0 {
+        get_physical_device_queue_family_properties: listed,
+        ..own.fp_v1_0().clone()
+    };
+    let (v1_1, v1_3) = (own.fp_v1_1().clone(), own.fp_v1_3().clone());
+    let instance = ash::Instance::from_parts_1_3(own.handle(), functions, v1_1, v1_3);
+    Host { instance, queue_family, ..host.clone() }
+}
+
+/// Everything; transfers alone; compute without graphics.
+const FAMILIES: [vk::QueueFlags; 3] = [
+    vk::QueueFlags::from_raw(
+        vk::QueueFlags::GRAPHICS.as_raw()
+            | vk::QueueFlags::COMPUTE.as_raw()
+            | vk::QueueFlags::TRANSFER.as_raw(),
+    ),
+    vk::QueueFlags::TRANSFER,
+    vk::QueueFlags::COMPUTE,
+];
+
+unsafe extern "system" fn three_families(
+    _: vk::PhysicalDevice,
+    count: *mut u32,
+    families: *mut vk::QueueFamilyProperties,
+) {
+    // SAFETY: as Vulkan's function: `families` is null, or has room for `count`.
+    unsafe {
+        if families.is_null() {
+            *count = FAMILIES.len() as u32;
+            return;
+        }
+        for (i, queue_flags) in FAMILIES.into_iter().enumerate().take(*count as usize) {
+            *families.add(i) = vk::QueueFamilyProperties { queue_flags, ..Default::default() };
+        }
+    }
+}
+
+#[test]
+fn a_family_that_does_not_exist_or_cannot_compute_is_refused() {
+    let device = Device::new();
+    let plan = planned(&device);
+    let gpu = device.gpu.as_ref().expect("alive");
+    let lens = Lens::Perspective { fov_rad: 0.8 };
+    let camera = Camera::around(&scene().field, None, [0.7, 0.5], lens, 1.0);
+    let options = ViewOptions { size: [4, 4], samples: 1, ..ViewOptions::default() };
+    let view = View::new(&scene(), &plan, &camera, &options, &device.limits()).expect("a view");
+    let make = |host: &Host| error(Renderer::new(host, plan.clone(), 1), Renderer::destroy);
+    let look = |host: &Host| {
+        let format = vk::Format::R32G32B32A32_SFLOAT;
+        error(ViewRenderer::new(host, &view, format, 1), ViewRenderer::destroy)
+    };
+    let own = gpu.host();
+    let beyond = Host { queue_family: u32::MAX, ..own.clone() };
+    for found in [make(&beyond), look(&beyond)] {
+        let (start, end) =
+            ("host: queue_family: found 4294967295, expected less than ", "families");
+        assert!(found.starts_with(start) && found.ends_with(end), "{found}");
+    }
+    let of = |family| with_families(own, family, three_families);
+    assert_eq!([make(&of(0)), make(&of(2)), look(&of(0))], ["none"; 3]);
+    let transfers = "host: queue_family: found 1, a family with TRANSFER, expected a family with ";
+    assert_eq!(make(&of(1)), format!("{transfers}COMPUTE: 0 or 2"));
+    assert_eq!(look(&of(1)), format!("{transfers}GRAPHICS: 0"));
+    let computes = "host: queue_family: found 2, a family with COMPUTE, expected a family with ";
+    assert_eq!(look(&of(2)), format!("{computes}GRAPHICS: 0"));
+}
