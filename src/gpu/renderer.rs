@@ -135,6 +135,7 @@ impl Renderer {
                 reason: format!("the device lacks {}", report.missing.join(", ")),
             });
         }
+        requirements::check_functions(host)?;
         requirements::family_flags(host, vk::QueueFlags::COMPUTE)?;
         let timestamps = requirements::timestamps(host);
         let mut renderer = Self {
