@@ -177,14 +177,13 @@ impl Renderer {
     /// recording. So lights may change each frame.
     ///
     /// # Errors
-    /// A plan that needs a renderer of its own; the old one stays.
+    /// A plan that needs a renderer of its own, by the size, settings, images or passes that differ; the old one
+    /// stays.
     pub fn replace_plan(&mut self, plan: Plan) -> Result<Vec<usize>> {
-        if plan.resources != self.plan.resources || !plan.has_passes_of(&self.plan) {
-            return Err(Error::setting(
-                "plan",
-                "other passes, images or buffers",
-                "those of the plan that the renderer was made for",
-            ));
+        if let Some([found, expected]) = plan.difference(&self.plan) {
+            let expected =
+                format!("{expected}, as in the renderer's plan; make a renderer for the new plan");
+            return Err(Error::setting("plan", found, expected));
         }
         for pass in plan.passes_after(&self.plan, &[]) {
             self.pending[pass] = true;

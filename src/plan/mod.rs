@@ -37,6 +37,7 @@
 mod active_lights;
 mod bake;
 mod change;
+mod difference;
 mod finish;
 mod horizons;
 mod map;
