@@ -5,6 +5,7 @@ mod checks;
 mod images;
 mod recording;
 mod resources;
+mod stages;
 
 use ash::vk;
 
@@ -56,6 +57,8 @@ impl Work<'_> {
 /// on one queue (which a queue does by itself: the recording begins with the barrier).
 pub struct Renderer {
     host: Host,
+    /// Capabilities of the host's queue family.
+    family: vk::QueueFlags,
     plan: Plan,
     memory: Memory,
     resources: Vec<Option<Backed>>,
@@ -136,10 +139,11 @@ impl Renderer {
             });
         }
         requirements::check_functions(host)?;
-        requirements::family_flags(host, vk::QueueFlags::COMPUTE)?;
+        let family = requirements::family_flags(host, vk::QueueFlags::COMPUTE)?;
         let timestamps = requirements::timestamps(host);
         let mut renderer = Self {
             host: host.clone(),
+            family,
             memory: Memory::new(host, allocator),
             readable: requirements::readable(host),
             resources: Vec::new(),

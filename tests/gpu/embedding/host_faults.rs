@@ -2,10 +2,11 @@
 
 use ash::vk;
 use ridgelight::Result;
-use ridgelight::gpu::{self, Host, Renderer, ViewRenderer};
+use ridgelight::gpu::{self, BufferArg, Host, ImageArg, ImageState, Renderer, ViewRenderer};
 use ridgelight::plan::{self, Picture, Plan, View, ViewOptions};
 use ridgelight::scene::{Border, Camera, Lens, Quality, Scene};
 
+use crate::target::Staging;
 use crate::{Device, field, under_sky};
 
 fn scene() -> Scene {
@@ -170,4 +171,56 @@ fn an_instance_without_queries_of_features_is_named_as_the_cause() {
     let (v1_0, v1_3) = (own.fp_v1_0().clone(), own.fp_v1_3().clone());
     let instance = ash::Instance::from_parts_1_3(own.handle(), v1_0, withheld, v1_3);
     assert_eq!(gpu::missing(&instance, gpu.host().physical_device), [NEWER]);
+}
+
+/// Compute without graphics: a barrier on its queue cannot name stages of graphics. All others are accepted.
+#[test]
+fn stages_that_the_family_lacks_are_refused_by_name() {
+    let mut device = Device::new();
+    let plan = planned(&device);
+    let gpu = device.gpu.as_mut().expect("alive");
+    let texels = scene().field.heights_m().to_vec();
+    let mut frame = gpu.frame(plan.clone(), &[&texels]).expect("a frame");
+    let (inputs, outputs) = (frame.inputs(), frame.outputs());
+    gpu.draw(&mut frame).expect("drawn");
+    let right = gpu.pixels(&frame, 0).expect("pixels");
+    let host = with_families(gpu.host(), 2, three_families);
+    let mut renderer = Renderer::new(&host, plan.clone(), 1).expect("a renderer");
+    let fragment = vk::PipelineStageFlags2::FRAGMENT_SHADER;
+    let sampled = vk::AccessFlags2::SHADER_SAMPLED_READ;
+    let drawn = |state: ImageState| ImageState { stage: fragment, access: sampled, ..state };
+    let of_before = ImageArg { before: drawn(inputs[0].before), ..inputs[0] };
+    let of_after = ImageArg { after: drawn(outputs[0].after), ..outputs[0] };
+    let expected = "found FRAGMENT_SHADER, expected stages of the host's queue family, which has \
+                    COMPUTE; or ALL_COMMANDS";
+    gpu.run(|commands| {
+        let mut refused = |inputs: &[ImageArg], outputs: &[ImageArg]| {
+            renderer.record(commands, 0, inputs, outputs).expect_err("no graphics").to_string()
+        };
+        let before = refused(&[of_before], &outputs);
+        assert_eq!(before, format!("heights: stage before: {expected}"));
+        let after = refused(&inputs, &[of_after]);
+        assert_eq!(after, format!("radiance: stage after: {expected}"));
+        renderer.record(commands, 0, &inputs, &outputs)
+    })
+    .expect("recorded and run");
+    assert!(gpu.pixels(&frame, 0).expect("pixels") == right);
+    renderer.destroy();
+    let mut taken = plan;
+    taken.take_buffer("heights", plan::Format::R32Float).expect("heights in a buffer");
+    let mut renderer = Renderer::new(&host, taken, 1).expect("a renderer");
+    let bytes: Vec<u8> = texels.iter().flat_map(|v| v.to_ne_bytes()).collect();
+    let staging = Staging::new(gpu.host(), &bytes);
+    let of_graphics = BufferArg { stage: fragment, access: sampled, ..staging.arg() };
+    gpu.run(|commands| {
+        let refused = renderer.record(commands, 0, &[of_graphics], &outputs);
+        let refused = refused.expect_err("no graphics").to_string();
+        assert_eq!(refused, format!("heights: stage: {expected}"));
+        renderer.record(commands, 0, &[staging.arg()], &outputs)
+    })
+    .expect("recorded and run");
+    assert!(gpu.pixels(&frame, 0).expect("pixels") == right);
+    renderer.destroy();
+    staging.end(gpu.host());
+    gpu.end(frame);
 }
