@@ -40,6 +40,7 @@ mod embedding {
     mod debugger;
     mod host_faults;
     mod in_flight;
+    mod lifetimes;
     mod plan_changes;
 }
 mod extremes;
