@@ -42,6 +42,7 @@ mod embedding {
     mod in_flight;
     mod lifetimes;
     mod plan_changes;
+    mod wrong_heights;
 }
 #[expect(dead_code, reason = "its main, which prints")]
 #[path = "../../examples/edit_rectangle.rs"]
