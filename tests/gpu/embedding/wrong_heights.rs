@@ -21,7 +21,8 @@ fn heights_of_the_host_that_are_not_finite_are_refused_by_place() {
 /// One texel of the image of heights, under a sky and, for NaN, a sun. Nothing reports it: the recording runs, without
 /// a validation message, and the next recording of finite heights has the bits of one before.
 ///
-/// Under a sun an infinite height makes walks take every step that they may take, which is minutes on SwiftShader.
+/// Not under a sun where the height is infinite: `horizon_sweep` then does not end on SwiftShader, because the products
+/// that `subtends` compares are both -inf, so that every vertex of the hull is removed, and then vertices beyond it.
 #[test]
 fn heights_of_the_device_that_are_not_finite_spoil_one_recording() {
     let mut device = Device::new();
