@@ -153,7 +153,8 @@ void main() {
                 newer[k] = pops[k] ? deeper[k] : newer[k];
                 deeper[k] = pops[k] ? next : deeper[k];
                 bool again = is_popped(h[k], x, newer[k], deeper[k]);
-                pops[k] = pops[k] && again;
+                // An infinite height would pop for ever, as in horizon_sweep.
+                pops[k] = pops[k] && again && newer[k].x > OUTSIDE;
             }
         }
         ivec3 texel = lattice_texel(azimuth, line, step);

@@ -222,7 +222,8 @@ void sweep_four_lines() {
                 depth[k] -= pops[k] ? 1 : 0;
                 precise float deeper = (h2[k] - h[k]) * (x - x1[k]);
                 precise float newer = (h1[k] - h[k]) * (x - x2[k]);
-                pops[k] = pops[k] && !lost && deeper >= newer;
+                // An infinite height would pop for ever: both products are infinite.
+                pops[k] = pops[k] && !lost && depth[k] >= 0 && deeper >= newer;
             }
         } while (any(pops));
         bvec4 met = greaterThan(h1, vec4(OUTSIDE));

@@ -73,8 +73,8 @@ uint occluder(int step, int from, vec2 beside) {
         v1 = v2;
         v2 = v3;
         depth--;
-        // Stops for a lost line: overwritten entries could make this loop endless.
-        while (!lost && subtends(h, x, v1, v2)) {
+        // Stops for a lost line and for an empty hull: overwritten entries and infinite heights could make this loop endless.
+        while (!lost && depth > 0 && subtends(h, x, v1, v2)) {
             slot = depth & (HULL_DEPTH - 1);
             v1 = v2;
             if (LINE_HULL_IN_SHARED && depth >= kept) {

@@ -5,6 +5,7 @@ mod checks;
 mod images;
 mod recording;
 mod resources;
+mod stages;
 
 use ash::vk;
 
@@ -56,6 +57,8 @@ impl Work<'_> {
 /// on one queue (which a queue does by itself: the recording begins with the barrier).
 pub struct Renderer {
     host: Host,
+    /// Capabilities of the host's queue family.
+    family: vk::QueueFlags,
     plan: Plan,
     memory: Memory,
     resources: Vec<Option<Backed>>,
@@ -99,7 +102,8 @@ impl Renderer {
     /// Makes everything that `plan` needs on the host's device, for `slots` frames in flight (1 or more).
     ///
     /// # Errors
-    /// A device that lacks a requirement (named), or is out of memory.
+    /// A device that lacks a requirement (named), or is out of memory; a queue family that the device does not
+    /// have, or that has no compute.
     pub fn new(host: &Host, plan: Plan, slots: usize) -> Result<Self> {
         Self::with_memory(host, plan, slots, Box::new(Blocks::new(host)?))
     }
@@ -134,9 +138,12 @@ impl Renderer {
                 reason: format!("the device lacks {}", report.missing.join(", ")),
             });
         }
+        requirements::check_functions(host)?;
+        let family = requirements::family_flags(host, vk::QueueFlags::COMPUTE)?;
         let timestamps = requirements::timestamps(host);
         let mut renderer = Self {
             host: host.clone(),
+            family,
             memory: Memory::new(host, allocator),
             readable: requirements::readable(host),
             resources: Vec::new(),
@@ -174,14 +181,13 @@ impl Renderer {
     /// recording. So lights may change each frame.
     ///
     /// # Errors
-    /// A plan that needs a renderer of its own; the old one stays.
+    /// A plan that needs a renderer of its own, by the size, settings, images or passes that differ; the old one
+    /// stays.
     pub fn replace_plan(&mut self, plan: Plan) -> Result<Vec<usize>> {
-        if plan.resources != self.plan.resources || !plan.has_passes_of(&self.plan) {
-            return Err(Error::setting(
-                "plan",
-                "other passes, images or buffers",
-                "those of the plan that the renderer was made for",
-            ));
+        if let Some([found, expected]) = plan.difference(&self.plan) {
+            let expected =
+                format!("{expected}, as in the renderer's plan; make a renderer for the new plan");
+            return Err(Error::setting("plan", found, expected));
         }
         for pass in plan.passes_after(&self.plan, &[]) {
             self.pending[pass] = true;

@@ -2,8 +2,10 @@ use std::ffi::CStr;
 
 use ash::vk;
 
+use super::Host;
 use super::shaders::{self, BindingKind, Shader};
 use crate::graph::{Format, GPU_LOOKUPS, Limits, SweepForm};
+use crate::{Error, Result};
 
 /// Properties of a device.
 #[derive(Clone, Debug)]
@@ -68,8 +70,66 @@ pub fn limits(instance: &ash::Instance, physical_device: vk::PhysicalDevice) -> 
     report(instance, physical_device).limits
 }
 
+/// What is missing where the host's instance was created for a version below 1.3.
+const NEWER_INSTANCE: &str = "an instance created with VkApplicationInfo::apiVersion 1.3 or higher";
+
+/// Whether the instance has vkGetPhysicalDeviceProperties2 and vkGetPhysicalDeviceFeatures2. A loader may withhold
+/// them from an instance below Vulkan 1.1; ash then has functions of its own in their place, which panic.
+fn has_queries2(instance: &ash::Instance) -> bool {
+    let absent = ash::InstanceFnV1_1::load(|_| std::ptr::null());
+    let own = instance.fp_v1_1();
+    let addresses = |of: &ash::InstanceFnV1_1| {
+        [of.get_physical_device_properties2 as usize, of.get_physical_device_features2 as usize]
+    };
+    addresses(own).iter().zip(addresses(&absent)).all(|(own, absent)| *own != absent)
+}
+
+/// Checks that the host's device has the functions of Vulkan 1.2 and 1.3 that a renderer calls. A driver withholds
+/// them where the instance was created for a lower version, even if the device supports 1.3.
+///
+/// # Errors
+/// The first function that is missing, and the cause.
+pub(super) fn check_functions(host: &Host) -> Result<()> {
+    let names = [c"vkResetQueryPool", c"vkCmdPipelineBarrier2", c"vkCmdWriteTimestamp2"];
+    let is_missing = |name: &&CStr| {
+        let (get, device) = (host.instance.fp_v1_0().get_device_proc_addr, host.device.handle());
+        // SAFETY: the device is the instance's and alive; the name is nul-terminated.
+        unsafe { get(device, name.as_ptr()) }.is_none()
+    };
+    let Some(name) = names.into_iter().find(|name| is_missing(name)) else { return Ok(()) };
+    Err(Error::Device {
+        doing: "making a renderer".into(),
+        reason: format!("the device has no {}: it needs {NEWER_INSTANCE}", name.to_string_lossy()),
+    })
+}
+
+/// Checks that the host's queue family exists and has a capability; returns all its capabilities.
+///
+/// # Errors
+/// A family that the device does not have, or one without the capability, by number.
+pub(super) fn family_flags(host: &Host, needed: vk::QueueFlags) -> Result<vk::QueueFlags> {
+    // SAFETY: the physical device is the instance's.
+    let families =
+        unsafe { host.instance.get_physical_device_queue_family_properties(host.physical_device) };
+    let wrong =
+        |found: String, expected| Err(Error::setting("host: queue_family", found, expected));
+    let index = host.queue_family;
+    let Some(family) = families.get(index as usize) else {
+        let expected = format!("less than {}, the device's number of families", families.len());
+        return wrong(index.to_string(), expected);
+    };
+    if family.queue_flags.contains(needed) {
+        return Ok(family.queue_flags);
+    }
+    let all = families.iter().enumerate().filter(|(_, f)| f.queue_flags.contains(needed));
+    let all: Vec<_> = all.map(|(i, _)| i.to_string()).collect();
+    let others = if all.is_empty() { "the device has none".into() } else { all.join(" or ") };
+    let found = format!("{index}, a family with {:?}", family.queue_flags);
+    wrong(found, format!("a family with {needed:?}: {others}"))
+}
+
 /// Nanoseconds per timestamp tick, and the valid bits; none where the host's queue family has no timestamps.
-pub(crate) fn timestamps(host: &super::Host) -> Option<(f64, u32)> {
+pub(crate) fn timestamps(host: &Host) -> Option<(f64, u32)> {
     // SAFETY: the physical device is the instance's.
     let (families, properties) = unsafe {
         (
@@ -82,7 +142,7 @@ pub(crate) fn timestamps(host: &super::Host) -> Option<(f64, u32)> {
 }
 
 /// The formats for inputs that the device can sample.
-pub(crate) fn readable(host: &super::Host) -> Vec<vk::Format> {
+pub(crate) fn readable(host: &Host) -> Vec<vk::Format> {
     let is_readable = |format: &vk::Format| {
         // SAFETY: the physical device is the instance's.
         let properties = unsafe {
@@ -105,8 +165,14 @@ pub(crate) fn report(
         .push_next(&mut driver)
         .push_next(&mut subgroups)
         .push_next(&mut maintenance);
-    // SAFETY: the physical device is the instance's; the chained structs live across the call.
-    unsafe { instance.get_physical_device_properties2(physical_device, &mut properties) };
+    let has_queries2 = has_queries2(instance);
+    if has_queries2 {
+        // SAFETY: the physical device is the instance's; the chained structs live across the call.
+        unsafe { instance.get_physical_device_properties2(physical_device, &mut properties) };
+    } else {
+        // SAFETY: as above.
+        properties.properties = unsafe { instance.get_physical_device_properties(physical_device) };
+    }
     let core = properties.properties;
     let is_13 = core.api_version >= vk::API_VERSION_1_3;
     let mut features12 = vk::PhysicalDeviceVulkan12Features::default();
@@ -115,8 +181,13 @@ pub(crate) fn report(
     if is_13 {
         features = features.push_next(&mut features12).push_next(&mut features13);
     }
-    // SAFETY: as above; the structs of 1.2 and 1.3 are chained only where the device supports them.
-    unsafe { instance.get_physical_device_features2(physical_device, &mut features) };
+    if has_queries2 {
+        // SAFETY: as above; the structs of 1.2 and 1.3 are chained only where the device supports them.
+        unsafe { instance.get_physical_device_features2(physical_device, &mut features) };
+    } else {
+        // SAFETY: as above.
+        features.features = unsafe { instance.get_physical_device_features(physical_device) };
+    }
     let core_features = features.features;
     // SAFETY: the physical device is the instance's.
     let (memory, families) = unsafe {
@@ -133,8 +204,13 @@ pub(crate) fn report(
         }
     };
     need(is_13, "Vulkan 1.3");
-    need(features13.synchronization2 == vk::TRUE, "synchronization2");
-    need(features12.host_query_reset == vk::TRUE, "hostQueryReset");
+    // Every device of Vulkan 1.3 has both features. Where it reports neither, the instance hides them.
+    let is_hidden = is_13
+        && features13.synchronization2 == vk::FALSE
+        && features12.host_query_reset == vk::FALSE;
+    need(!is_hidden, NEWER_INSTANCE);
+    need(is_hidden || features13.synchronization2 == vk::TRUE, "synchronization2");
+    need(is_hidden || features12.host_query_reset == vk::TRUE, "hostQueryReset");
     need(
         core_features.shader_storage_image_write_without_format == vk::TRUE,
         "shaderStorageImageWriteWithoutFormat",
@@ -144,8 +220,9 @@ pub(crate) fn report(
         "shaderStorageImageExtendedFormats",
     );
     need(
-        subgroups.supported_operations.contains(vk::SubgroupFeatureFlags::VOTE)
-            && subgroups.supported_stages.contains(vk::ShaderStageFlags::COMPUTE),
+        is_hidden
+            || subgroups.supported_operations.contains(vk::SubgroupFeatureFlags::VOTE)
+                && subgroups.supported_stages.contains(vk::ShaderStageFlags::COMPUTE),
         "subgroup votes in compute shaders",
     );
     let storage_images = |shader: &Shader| {
@@ -188,7 +265,8 @@ pub(crate) fn report(
             image_side: core.limits.max_image_dimension2_d,
             image_layers: core.limits.max_image_array_layers,
             buffer_bytes: u64::from(core.limits.max_storage_buffer_range),
-            allocation_bytes: maintenance.max_memory_allocation_size,
+            // An instance below Vulkan 1.1 hides it; 2^30 is the least that Vulkan allows.
+            allocation_bytes: maintenance.max_memory_allocation_size.max(1 << 30),
             groups: core.limits.max_compute_work_group_count.into_iter().min().unwrap_or(0),
             texels: core.limits.max_texel_buffer_elements,
             shared_bytes: core.limits.max_compute_shared_memory_size,

@@ -39,6 +39,7 @@ mod active_lights;
 mod bake;
 mod change;
 mod device_peak;
+mod difference;
 mod finish;
 mod horizons;
 mod map;

@@ -41,9 +41,15 @@ mod embedding {
     mod command_buffer;
     mod contract;
     mod debugger;
+    mod host_faults;
     mod in_flight;
+    mod lifetimes;
     mod plan_changes;
+    mod wrong_heights;
 }
+#[expect(dead_code, reason = "its main, which prints")]
+#[path = "../../examples/edit_rectangle.rs"]
+mod edit_rectangle;
 mod extremes;
 #[path = "../common/fields.rs"]
 mod fields;
@@ -213,6 +219,15 @@ impl Drop for Device {
             }
         }
     }
+}
+
+/// An edit of a rectangle gives the bits of a whole frame, and differs from the frame before.
+#[test]
+fn the_example_of_edits_gives_the_bits_of_a_whole_frame() {
+    let [before, edited, whole] = edit_rectangle::lights().expect("light");
+    assert!(before.values != edited.values);
+    let bits = |pixels: &Pixels| pixels.values.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
+    assert_eq!(bits(&edited), bits(&whole));
 }
 
 /// The documentation's first program. A sky of 0.3 and a sun of irradiance 2 facing a texel, albedo 1: exit radiance

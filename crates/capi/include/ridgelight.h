@@ -205,6 +205,14 @@ typedef struct RidgelightScene {
     // VK_TRUE where the field has voids: camera pictures then take a mask and leave holes. Heights must still
     // be filled there: ridgelight_fill_voids.
     uint32_t has_voids;
+    // Where specular is viewed from, with `has_eye`: x east from the westernmost column, y north from the
+    // southernmost row, z as heights, each within +-1e15. With bounces or basis sh, specular is viewed from
+    // straight above nevertheless. Diffuse light does not depend on it.
+    double eye_m[3];
+    // VK_TRUE where specular is viewed from `eye_m`; 0: from straight above.
+    uint32_t has_eye;
+    // 0.
+    uint32_t reserved;
 } RidgelightScene;
 
 // Speed against accuracy. In every field 0 is the default.
@@ -442,6 +450,13 @@ typedef struct RidgelightCamera {
     float exposure;
     // Radiance, linear RGB, of pixels without ground and sky.
     float background[3];
+    // Height of the base of a plinth, with `has_plinth`: walls go down to it from the field's edges, where the
+    // ground is higher. Finite, as heights.
+    double plinth_base_m;
+    // VK_TRUE draws a plinth. A ridgelight_view draws one with every camera or with none.
+    uint32_t has_plinth;
+    // 0.
+    uint32_t reserved;
 } RidgelightCamera;
 
 // Images of one picture. Those that are read are left as before.
@@ -607,6 +622,29 @@ enum RidgelightResult ridgelight_record(struct RidgelightRenderer *renderer,
                                         const struct RidgelightImage *outputs,
                                         uint32_t output_count);
 
+// Appends only some passes of a plan: `passes` are their indices, 0 to RidgelightPlanInfo.passes - 1, ascending,
+// each once. The images that they read must hold what an earlier recording of this renderer left in them.
+// Outputs that they do not write keep their contents, unless their layout before is UNDEFINED.
+//
+// To light one frame in slices, record the first passes, then the following ones, each slice in a slot of its
+// own or after the slot's last command buffer has run. Until all passes have been recorded once, only the next
+// slice, or one that begins with pass 0, is allowed.
+//
+// Returns OK, ARGUMENT or SETTING, as ridgelight_record; SETTING also for passes that do not exist, are repeated
+// or out of order, or are not the next slice.
+//
+// # Safety
+// As ridgelight_record; `passes` is null or points at `pass_count` numbers.
+enum RidgelightResult ridgelight_record_passes(struct RidgelightRenderer *renderer,
+                                               VkCommandBuffer commands,
+                                               uint32_t slot,
+                                               const struct RidgelightImage *inputs,
+                                               uint32_t input_count,
+                                               const struct RidgelightImage *outputs,
+                                               uint32_t output_count,
+                                               const uint32_t *passes,
+                                               uint32_t pass_count);
+
 // Appends the edit of a rectangle of heights, for a plan with RIDGELIGHT_PICTURE_KEEPS_HORIZONS. Every output
 // gets the same bits as from ridgelight_record. Outputs must hold what the last recording left in them.
 //
@@ -634,8 +672,18 @@ enum RidgelightResult ridgelight_record_edit(struct RidgelightRenderer *renderer
 enum RidgelightResult ridgelight_replace_plan(struct RidgelightRenderer *renderer,
                                               const struct RidgelightPlan *plan);
 
-// GPU times of the passes that `slot` recorded last, in order. Never waits: `count` becomes 0 while some are
-// not available, and where the queue family has no timestamps.
+// Sets whether later recordings write a timestamp after every pass (`each` VK_TRUE, the default) or only one
+// after the last (VK_FALSE). A timestamp after every pass can keep a GPU from overlapping passes.
+//
+// Returns OK, or ARGUMENT.
+//
+// # Safety
+// `renderer` is alive or null, and used only by this thread meanwhile.
+enum RidgelightResult ridgelight_time_passes(struct RidgelightRenderer *renderer, VkBool32 each);
+
+// GPU times of the passes that `slot` recorded last, in order; after ridgelight_time_passes with VK_FALSE one
+// time, labelled "all passes". Never waits: `count` becomes 0 while some are not available, and where the queue
+// family has no timestamps.
 //
 // `count` is the capacity of `timings`, and becomes their number; those beyond the capacity are left out.
 //

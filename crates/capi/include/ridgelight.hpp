@@ -89,6 +89,16 @@ RidgelightResult record(const Renderer &renderer, VkCommandBuffer commands, uint
                              outputs.data(), static_cast<uint32_t>(outputs.size()));
 }
 
+// As ridgelight_record_passes, likewise; `passes` is a container of uint32_t.
+template <class Inputs, class Outputs, class Passes>
+RidgelightResult record_passes(const Renderer &renderer, VkCommandBuffer commands, uint32_t slot,
+                               const Inputs &inputs, const Outputs &outputs, const Passes &passes) noexcept {
+    return ridgelight_record_passes(renderer.get(), commands, slot, inputs.data(),
+                                    static_cast<uint32_t>(inputs.size()), outputs.data(),
+                                    static_cast<uint32_t>(outputs.size()), passes.data(),
+                                    static_cast<uint32_t>(passes.size()));
+}
+
 // As ridgelight_record_edit, likewise.
 template <class Inputs, class Outputs>
 RidgelightResult record_edit(const Renderer &renderer, VkCommandBuffer commands, uint32_t slot, const Inputs &inputs,

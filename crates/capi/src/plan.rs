@@ -5,7 +5,7 @@ use ridgelight::gpu;
 use ridgelight::plan::{self, Format, Kind, Owner, Picture, Plan, Resource};
 
 use crate::errors::{Done, Failure, RidgelightResult, done};
-use crate::read::{SizeFirst, hand_out, handle, handle_mut, write};
+use crate::read::{SizeFirst, hand_out, handle, handle_mut, read, write};
 use crate::scene::{RidgelightQuality, RidgelightScene, quality, scene};
 use crate::types::{RidgelightHost, host};
 
@@ -54,12 +54,15 @@ pub unsafe extern "C" fn ridgelight_plan_create(
     done(|| unsafe {
         hand_out(plan, || {
             let host = self::host(host)?;
+            let given = read(scene, "scene")?;
             let (scene, quality) = (self::scene(scene)?, self::quality(quality)?);
+            let mut picture = wanted(picture)?;
+            picture.eye_m = (given.has_eye != 0).then_some(given.eye_m);
             let mut limits = gpu::limits(&host.instance, host.physical_device);
             if memory_budget != 0 {
                 limits.memory_budget = memory_budget;
             }
-            Ok(RidgelightPlan(plan::picture(&scene, &quality, &limits, wanted(picture)?)?))
+            Ok(RidgelightPlan(plan::picture(&scene, &quality, &limits, picture)?))
         })
     })
 }

@@ -87,6 +87,22 @@ pub(crate) unsafe fn numbers<'a>(from: *const f32, count: usize) -> Option<&'a [
     (!from.is_null()).then(|| unsafe { std::slice::from_raw_parts(from, count) })
 }
 
+/// Copies of `count` indices at a pointer.
+///
+/// # Safety
+/// `from` is null or points to that many of them.
+pub(crate) unsafe fn indices(from: *const u32, count: u32, name: &str) -> Done<Vec<usize>> {
+    if count == 0 {
+        return Ok(Vec::new());
+    }
+    if from.is_null() {
+        return Err(Failure::argument(name, "a null pointer", &format!("{count} indices")));
+    }
+    // SAFETY: as the caller says.
+    let all = unsafe { std::slice::from_raw_parts(from, count as usize) };
+    Ok(all.iter().map(|index| *index as usize).collect())
+}
+
 /// The object of an opaque handle.
 ///
 /// # Safety

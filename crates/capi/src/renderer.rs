@@ -8,7 +8,7 @@ use ridgelight::plan::{Rectangle, Resource};
 use crate::allocator::{Callbacks, RidgelightAllocator};
 use crate::errors::{Done, Failure, RidgelightResult, done};
 use crate::plan::{RidgelightPlan, text};
-use crate::read::{SizeFirst, hand_out, handle, handle_mut, read, read_all, write};
+use crate::read::{SizeFirst, hand_out, handle, handle_mut, indices, read, read_all, write};
 use crate::types::{RidgelightHost, RidgelightImage, host};
 
 /// A plan on a device. Any thread may use it, one at a time.
@@ -124,6 +124,40 @@ pub unsafe extern "C" fn ridgelight_record(
     })
 }
 
+/// Appends only some passes of a plan: `passes` are their indices, 0 to RidgelightPlanInfo.passes - 1, ascending,
+/// each once. The images that they read must hold what an earlier recording of this renderer left in them.
+/// Outputs that they do not write keep their contents, unless their layout before is UNDEFINED.
+///
+/// To light one frame in slices, record the first passes, then the following ones, each slice in a slot of its
+/// own or after the slot's last command buffer has run. Until all passes have been recorded once, only the next
+/// slice, or one that begins with pass 0, is allowed.
+///
+/// Returns OK, ARGUMENT or SETTING, as ridgelight_record; SETTING also for passes that do not exist, are repeated
+/// or out of order, or are not the next slice.
+///
+/// # Safety
+/// As ridgelight_record; `passes` is null or points at `pass_count` numbers.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ridgelight_record_passes(
+    renderer: *mut RidgelightRenderer,
+    commands: vk::CommandBuffer,
+    slot: u32,
+    inputs: *const RidgelightImage,
+    input_count: u32,
+    outputs: *const RidgelightImage,
+    output_count: u32,
+    passes: *const u32,
+    pass_count: u32,
+) -> RidgelightResult {
+    // SAFETY: as the caller says.
+    done(|| unsafe {
+        let renderer = recorder(renderer, commands)?;
+        let passes = indices(passes, pass_count, "passes")?;
+        let (inputs, outputs) = images(renderer, (inputs, input_count), (outputs, output_count))?;
+        Ok(renderer.record_passes(commands, slot as usize, &inputs, &outputs, &passes)?)
+    })
+}
+
 /// Appends the edit of a rectangle of heights, for a plan with RIDGELIGHT_PICTURE_KEEPS_HORIZONS. Every output
 /// gets the same bits as from ridgelight_record. Outputs must hold what the last recording left in them.
 ///
@@ -229,8 +263,28 @@ pub struct RidgelightTiming {
 // SAFETY: numbers; the size is first.
 unsafe impl SizeFirst for RidgelightTiming {}
 
-/// GPU times of the passes that `slot` recorded last, in order. Never waits: `count` becomes 0 while some are
-/// not available, and where the queue family has no timestamps.
+/// Sets whether later recordings write a timestamp after every pass (`each` VK_TRUE, the default) or only one
+/// after the last (VK_FALSE). A timestamp after every pass can keep a GPU from overlapping passes.
+///
+/// Returns OK, or ARGUMENT.
+///
+/// # Safety
+/// `renderer` is alive or null, and used only by this thread meanwhile.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ridgelight_time_passes(
+    renderer: *mut RidgelightRenderer,
+    each: vk::Bool32,
+) -> RidgelightResult {
+    // SAFETY: as the caller says.
+    done(|| unsafe {
+        handle_mut(renderer, "renderer")?.0.time_passes(each != vk::FALSE);
+        Ok(())
+    })
+}
+
+/// GPU times of the passes that `slot` recorded last, in order; after ridgelight_time_passes with VK_FALSE one
+/// time, labelled "all passes". Never waits: `count` becomes 0 while some are not available, and where the queue
+/// family has no timestamps.
 ///
 /// `count` is the capacity of `timings`, and becomes their number; those beyond the capacity are left out.
 ///

@@ -120,6 +120,14 @@ pub struct RidgelightScene {
     /// VK_TRUE where the field has voids: camera pictures then take a mask and leave holes. Heights must still
     /// be filled there: ridgelight_fill_voids.
     pub has_voids: u32,
+    /// Where specular is viewed from, with `has_eye`: x east from the westernmost column, y north from the
+    /// southernmost row, z as heights, each within +-1e15. With bounces or basis sh, specular is viewed from
+    /// straight above nevertheless. Diffuse light does not depend on it.
+    pub eye_m: [f64; 3],
+    /// VK_TRUE where specular is viewed from `eye_m`; 0: from straight above.
+    pub has_eye: u32,
+    /// 0.
+    pub reserved: u32,
 }
 
 // SAFETY: numbers and pointers that may be null; the size is first.

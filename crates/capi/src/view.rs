@@ -42,6 +42,13 @@ pub struct RidgelightCamera {
     pub exposure: f32,
     /// Radiance, linear RGB, of pixels without ground and sky.
     pub background: [f32; 3],
+    /// Height of the base of a plinth, with `has_plinth`: walls go down to it from the field's edges, where the
+    /// ground is higher. Finite, as heights.
+    pub plinth_base_m: f64,
+    /// VK_TRUE draws a plinth. A ridgelight_view draws one with every camera or with none.
+    pub has_plinth: u32,
+    /// 0.
+    pub reserved: u32,
 }
 
 // SAFETY: numbers; the size is first.
@@ -75,7 +82,7 @@ unsafe fn camera_view(
         samples: if given.samples == 0 { 4 } else { given.samples },
         mesh_step: given.mesh_step.max(1),
         background: given.background,
-        ..ViewOptions::default()
+        plinth_base_m: (given.has_plinth != 0).then_some(given.plinth_base_m),
     };
     options.check()?;
     let lens = match given.ortho_height_m {

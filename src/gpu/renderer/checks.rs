@@ -3,6 +3,7 @@
 use ash::vk;
 
 use super::buffers::check_buffer;
+use super::stages::check_supported;
 use super::{ImageArg, ImageState, InputArg, Renderer};
 use crate::graph::{Kind, Owner, Resource, ResourceId};
 use crate::{Error, Result};
@@ -34,10 +35,11 @@ impl Renderer {
         for (arg, (_, resource)) in inputs.iter().zip(self.plan.inputs()) {
             match (arg, resource.owner == Owner::InputBuffer) {
                 (InputArg::Image(image), false) => {
-                    check_image(image, resource, &self.formats(resource))?;
+                    self.check_image(image, resource)?;
                 }
                 (InputArg::Buffer(buffer), true) => {
                     check_buffer(buffer, resource)?;
+                    check_supported(&resource.name, "stage", buffer.stage, self.family)?;
                 }
                 (InputArg::Image(_), true) => {
                     let found = "an image";
@@ -55,9 +57,20 @@ impl Renderer {
         }
         check_count("outputs", outputs.len(), self.plan.outputs().collect())?;
         for (arg, (_, resource)) in outputs.iter().zip(self.plan.outputs()) {
-            check_image(arg, resource, &self.formats(resource))?;
+            self.check_image(arg, resource)?;
         }
         self.check_apart(inputs, outputs)
+    }
+
+    fn check_image(&self, arg: &ImageArg, resource: &Resource) -> Result<()> {
+        check_image(arg, resource, &self.formats(resource))?;
+        check_supported(&resource.name, "stage before", arg.before.stage, self.family)?;
+        match resource.owner {
+            Owner::Output => {
+                check_supported(&resource.name, "stage after", arg.after.stage, self.family)
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Formats that the caller's image may have. Quantities that a [`plan::reference`](crate::plan::reference)

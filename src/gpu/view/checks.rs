@@ -7,6 +7,7 @@ use super::super::memory::DEPTH;
 use super::{Curve, LINEAR, ViewInputs, ViewOutputs, ViewRenderer, wrong};
 use crate::gpu::ImageArg;
 use crate::gpu::renderer::{check_stage, check_state};
+use crate::gpu::requirements::{check_functions, family_flags};
 use crate::graph::Format;
 use crate::plan::View;
 use crate::{Error, Result};
@@ -19,18 +20,13 @@ pub(super) fn check_device(host: &Host, view: &View, format: vk::Format) -> Resu
     };
     let lacks =
         |reason: String| Err(Error::Device { doing: "making a renderer of views".into(), reason });
-    // SAFETY: the physical device is the instance's.
-    let families =
-        unsafe { host.instance.get_physical_device_queue_family_properties(host.physical_device) };
-    let family = families.get(host.queue_family as usize);
-    if !family.is_some_and(|f| f.queue_flags.contains(vk::QueueFlags::GRAPHICS)) {
-        return lacks(format!("queue family {} has no graphics", host.queue_family));
-    }
+    check_functions(host)?;
+    family_flags(host, vk::QueueFlags::GRAPHICS)?;
     let drawn = if curve == Curve::None { format } else { LINEAR };
     let colour = vk::ImageUsageFlags::COLOR_ATTACHMENT;
     let depth = vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT;
     let [of_colour, of_depth] = [(drawn, colour), (DEPTH, depth)].map(|(format, usage)| {
-        // SAFETY: as above.
+        // SAFETY: the physical device is the instance's.
         unsafe {
             host.instance.get_physical_device_image_format_properties(
                 host.physical_device,

@@ -3,10 +3,11 @@
 
 use ash::vk;
 use ridgelight::Error;
-use ridgelight::gpu::{Frame, Headless, Host, ImageArg, ImageState, Renderer};
+use ridgelight::gpu::{Frame, Headless, ImageArg, ImageState, Renderer};
 use ridgelight::plan::{self, Picture, Plan};
 use ridgelight::scene::{Albedo, Border, Environment, Quality, Scene, Sun};
 
+use super::host_faults::with_families;
 use crate::{Device, field, under_sky};
 
 /// A scene with an image of every kind that the table of docs/embedding.md lists.
@@ -329,6 +330,22 @@ fn some_passes_are_refused_until_all_have_been_recorded() {
     gpu.end(frame);
 }
 
+/// One family with compute and no timestamps.
+unsafe extern "system" fn untimed_family(
+    _: vk::PhysicalDevice,
+    count: *mut u32,
+    families: *mut vk::QueueFamilyProperties,
+) {
+    // SAFETY: as Vulkan's function, which the caller asks for the number of families first.
+    unsafe {
+        *count = 1;
+        if let Some(family) = families.as_mut() {
+            let queue_flags = vk::QueueFlags::COMPUTE;
+            *family = vk::QueueFamilyProperties { queue_flags, ..Default::default() };
+        }
+    }
+}
+
 #[test]
 fn timings_are_those_of_the_last_recording_or_none() {
     let mut device = Device::new();
@@ -363,8 +380,7 @@ fn timings_are_those_of_the_last_recording_or_none() {
     frame.renderer().time_passes(true);
     assert_eq!(gpu.draw(&mut frame).expect("drawn").len(), all.len());
 
-    // No family of this number: none that has timestamps.
-    let host = Host { queue_family: u32::MAX, ..gpu.host().clone() };
+    let host = with_families(gpu.host(), 0, untimed_family);
     let mut untimed = Renderer::new(&host, plan, 1).expect("a renderer");
     gpu.run(|commands| untimed.record(commands, 0, &inputs, &written)).expect("recorded and run");
     assert_eq!(untimed.timings(0), None);

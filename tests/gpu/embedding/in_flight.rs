@@ -13,7 +13,7 @@ use crate::{Device, bits, under_sky};
 /// Records into a command buffer.
 type Record<'a> = Box<dyn FnOnce(vk::CommandBuffer) -> Result<()> + 'a>;
 
-fn scene(side: usize, seed: u64) -> Scene {
+pub(super) fn scene(side: usize, seed: u64) -> Scene {
     let mut scene = under_sky(fractal(side, seed).expect("a field"), Border::Plane);
     scene.lights.suns = vec![Sun {
         azimuth_rad: 2.0,
@@ -24,13 +24,13 @@ fn scene(side: usize, seed: u64) -> Scene {
     scene
 }
 
-fn planned(gpu: &Headless, scene: &Scene) -> Plan {
+pub(super) fn planned(gpu: &Headless, scene: &Scene) -> Plan {
     let quality = Quality { azimuths: 8, sun_azimuths: 2, ..Quality::default() };
     let wanted = Picture { light_layers: true, ..Picture::default() };
     plan::picture(scene, &quality, &gpu.report().limits, wanted).expect("a plan")
 }
 
-fn frame(gpu: &mut Headless, scene: &Scene) -> Frame {
+pub(super) fn frame(gpu: &mut Headless, scene: &Scene) -> Frame {
     let plan = planned(gpu, scene);
     gpu.frame(plan, &[scene.field.heights_m()]).expect("a frame")
 }
@@ -155,7 +155,7 @@ fn a_new_size_is_drawn_beside_the_old_one() {
 }
 
 /// A command buffer of its own pool, which another thread may own.
-struct Recorded {
+pub(super) struct Recorded {
     pool: vk::CommandPool,
     commands: vk::CommandBuffer,
     fence: vk::Fence,
@@ -163,7 +163,7 @@ struct Recorded {
 
 impl Recorded {
     /// Records `what` and does not submit it.
-    fn new(host: &Host, what: impl FnOnce(vk::CommandBuffer)) -> Self {
+    pub(super) fn new(host: &Host, what: impl FnOnce(vk::CommandBuffer)) -> Self {
         let device = &host.device;
         let pool_info = vk::CommandPoolCreateInfo::default().queue_family_index(host.queue_family);
         // SAFETY: the device is alive; only this thread uses pool and buffer until they are passed on.
@@ -181,7 +181,7 @@ impl Recorded {
         }
     }
 
-    fn submit(&self, device: &ash::Device, queue: vk::Queue) {
+    pub(super) fn submit(&self, device: &ash::Device, queue: vk::Queue) {
         let buffers = [vk::CommandBufferSubmitInfo::default().command_buffer(self.commands)];
         let submit = [vk::SubmitInfo2::default().command_buffer_infos(&buffers)];
         // SAFETY: recorded above; nobody else uses the queue meanwhile.
@@ -189,7 +189,7 @@ impl Recorded {
     }
 
     /// Waits for it, and frees it.
-    fn end(self, device: &ash::Device) {
+    pub(super) fn end(self, device: &ash::Device) {
         // SAFETY: submitted above, and done after the wait.
         unsafe {
             device.wait_for_fences(&[self.fence], true, u64::MAX).expect("done");

@@ -143,7 +143,9 @@ fn a_plan_of_other_images_is_refused_and_the_old_one_stays() {
     let before = bits(gpu, &frame);
     scene.lights.suns.clear();
     let other = planned(gpu, &scene, (&qualities()[0], true));
-    assert!(gpu.replace_plan(&mut frame, other).is_err());
+    let error = gpu.replace_plan(&mut frame, other).expect_err("no sun").to_string();
+    assert!(error.starts_with("plan: found no "), "{error}");
+    assert!(error.ends_with("as in the renderer's plan; make a renderer for the new plan"));
     gpu.draw(&mut frame).expect("drawn");
     assert!(bits(gpu, &frame) == before);
     gpu.end(frame);

@@ -148,6 +148,9 @@ fn every_field_of_a_scene_arrives() {
         key_count: 3,
         sphere_count: 4,
         has_voids: 0,
+        eye_m: [0.0; 3],
+        has_eye: 0,
+        reserved: 0,
     };
     // SAFETY: arrays of this function, of these sizes, or null.
     let of = |given: &RidgelightScene| unsafe { scene(given) }.ok().expect("a scene");

@@ -1,6 +1,7 @@
 //! The C ABI: its header, its symbols, and programs in C.
 
 mod abi;
+mod counterparts;
 mod inputs;
 #[path = "../../../../tests/common/target.rs"]
 mod target;

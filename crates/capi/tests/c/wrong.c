@@ -50,6 +50,9 @@ int main(void) {
             "host: get_instance_proc_addr");
     refuses(ridgelight_plan_info(NULL, NULL), RIDGELIGHT_RESULT_ARGUMENT, "plan: found a null");
     refuses(ridgelight_record(NULL, NULL, 0, NULL, 0, NULL, 0), RIDGELIGHT_RESULT_ARGUMENT, "commands: found null");
+    refuses(ridgelight_record_passes(NULL, NULL, 0, NULL, 0, NULL, 0, NULL, 0), RIDGELIGHT_RESULT_ARGUMENT,
+            "commands: found null");
+    refuses(ridgelight_time_passes(NULL, VK_TRUE), RIDGELIGHT_RESULT_ARGUMENT, "renderer: found a null");
 #ifdef BEYOND
     RidgelightRequirements *shorter = malloc(8);
     shorter->struct_size = sizeof *shorter;

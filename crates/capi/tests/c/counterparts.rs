@@ -1,0 +1,246 @@
+//! C's counterparts of what Rust has: a frame in slices, one time for all passes, a plinth, an eye. Each gives the
+//! bytes of Rust.
+
+use std::ffi::CStr;
+use std::ptr;
+
+use ash::vk;
+use ridgelight::plan::{self, Picture, View, ViewOptions};
+use ridgelight::scene::{
+    Albedo, HeightField, Lights, PhongSpecular, Quality, Scene, Specular, Sun, Surface,
+};
+use ridgelight_c::*;
+
+use crate::abi::{SIDE, device, good, heights, image, refused, scene, view_by_rust, zeroed};
+use crate::target::{FORMAT, SIZE, Target};
+
+fn field() -> HeightField {
+    let field = HeightField::new(SIDE, SIDE, &heights(), [1.0; 2], None).expect("a field");
+    assert_eq!(field.base_m(), 0.0, "offsets are heights");
+    field
+}
+
+/// One pass in each command buffer, in slots by turns: the light of the whole frame. Then one time for all passes.
+#[test]
+fn a_frame_in_slices_of_c_is_the_whole_one() {
+    let (mut gpu, host) = device();
+    let field = field();
+    let lights = Lights { sky: Some([1.0, 0.5, 0.25]), ..Lights::default() };
+    let of_rust = Scene { field: field.clone(), surface: Surface::default(), lights };
+    let limits = gpu.report().limits;
+    let planned = plan::picture(&of_rust, &Quality::default(), &limits, Picture::default());
+    let planned = planned.expect("a plan");
+    let passes = planned.passes.len() as u32;
+    assert!(passes > 2, "slices");
+    let texels = field.heights_m();
+    let mut frame = gpu.frame(planned, &[texels]).expect("a frame");
+    gpu.draw(&mut frame).expect("drawn");
+    let right = gpu.pixels(&frame, 0).expect("pixels");
+    gpu.refill(&frame, 0, &vec![0.0; texels.len()]).expect("level ground");
+    gpu.draw(&mut frame).expect("drawn");
+    assert!(gpu.pixels(&frame, 0).expect("pixels") != right);
+    gpu.refill(&frame, 0, texels).expect("the heights again");
+
+    let (input, output) = (image(&frame.inputs()[0]), image(&frame.outputs()[0]));
+    let (mut plan, mut renderer) = (ptr::null_mut(), ptr::null_mut());
+    let (argument, setting) = (RidgelightResult::Argument, RidgelightResult::Setting);
+    // SAFETY: structs and handles of this function, alive until its end.
+    unsafe {
+        good(ridgelight_plan_create(&host, &scene(), ptr::null(), 0, 0, &mut plan));
+        good(ridgelight_renderer_create(&host, plan, 2, ptr::null(), &mut renderer));
+        ridgelight_plan_destroy(plan);
+        let record = |commands, slot, passes: &[u32]| {
+            let (at, count) = (passes.as_ptr(), passes.len() as u32);
+            ridgelight_record_passes(renderer, commands, slot, &input, 1, &output, 1, at, count)
+        };
+        for pass in 0..passes {
+            gpu.run(|commands| {
+                let wrong: [(&[u32], &str); 4] = [
+                    (&[passes], "pass: found"),
+                    (&[pass, pass], "passes: found"),
+                    (&[pass + 1], if pass + 1 < passes { "passes: found" } else { "pass: found" }),
+                    (&[], "passes: found"),
+                ];
+                for (passes, named) in wrong {
+                    refused(record(commands, pass % 2, passes), setting, named);
+                }
+                let none = ptr::null();
+                let null =
+                    ridgelight_record_passes(renderer, commands, 0, &input, 1, &output, 1, none, 2);
+                refused(null, argument, "passes: found a null pointer, expected 2 indices");
+                good(record(commands, pass % 2, &[pass]));
+                Ok(())
+            })
+            .expect("run");
+        }
+        assert!(gpu.pixels(&frame, 0).expect("pixels") == right);
+
+        let mut times: Vec<RidgelightTiming> = (0..passes).map(|_| zeroed()).collect();
+        let mut timed = |each, commands: &[u32]| {
+            good(ridgelight_time_passes(renderer, each));
+            gpu.run(|buffer| {
+                good(record(buffer, 1, commands));
+                Ok(())
+            })
+            .expect("run");
+            let mut count = passes;
+            good(ridgelight_timings(renderer, 1, times.as_mut_ptr(), &mut count));
+            let text = |t: &RidgelightTiming| CStr::from_ptr(t.label.as_ptr()).to_owned();
+            times[..count as usize].iter().map(text).collect::<Vec<_>>()
+        };
+        let all: Vec<u32> = (0..passes).collect();
+        if gpu.report().timestamp_period_ns > 0.0 {
+            assert_eq!(timed(vk::FALSE, &all), [c"all passes".to_owned()]);
+            assert_eq!(timed(vk::TRUE, &all).len(), all.len());
+            assert_eq!(timed(vk::TRUE, &all[1..]).len(), all.len() - 1);
+        }
+        refused(ridgelight_time_passes(ptr::null_mut(), 1), argument, "renderer: found a null");
+        ridgelight_renderer_destroy(renderer);
+    }
+    gpu.end(frame);
+    assert_eq!(gpu.take_messages(), [""; 0]);
+}
+
+#[test]
+fn a_plinth_of_c_is_the_one_of_rust() {
+    let (mut gpu, host) = device();
+    let field = field();
+    let (frame, without, at) = view_by_rust(&mut gpu, &field);
+    let lights = Lights { sky: Some([1.0, 0.5, 0.25]), ..Lights::default() };
+    let of_rust = Scene { field, surface: Surface::default(), lights };
+    let limits = gpu.report().limits;
+    let options =
+        ViewOptions { size: SIZE, samples: 1, plinth_base_m: Some(-9.0), ..ViewOptions::default() };
+    let view_of_rust = View::new(&of_rust, frame.plan(), &at, &options, &limits).expect("a view");
+    let right = gpu.look(&frame, &view_of_rust, None).expect("a picture").radiance;
+    let bare = gpu.look(&frame, &without, None).expect("a picture").radiance;
+    assert!(bare != right, "the plinth is visible");
+
+    let of_device = gpu.host().clone();
+    let target = Target::new(&of_device);
+    let [of_heights, of_light, of_picture] =
+        [&frame.inputs()[0], &frame.outputs()[0], &target.arg()].map(image);
+    let camera = RidgelightCamera {
+        samples: 1,
+        size: SIZE,
+        azimuth_rad: at.azimuth_rad,
+        elevation_rad: at.elevation_rad,
+        target_m: at.target_m,
+        distance_m: at.distance_m,
+        fov_rad: 0.8,
+        plinth_base_m: -9.0,
+        has_plinth: 1,
+        ..zeroed()
+    };
+    let images = RidgelightViewImages {
+        heights: &of_heights,
+        radiance: &of_light,
+        picture: &of_picture,
+        ..zeroed()
+    };
+    let (mut plan, mut view) = (ptr::null_mut(), ptr::null_mut());
+    let setting = RidgelightResult::Setting;
+    // SAFETY: structs and handles of this function, alive until its end.
+    unsafe {
+        good(ridgelight_plan_create(&host, &scene(), ptr::null(), 0, 0, &mut plan));
+        let (of_c, none) = (scene(), ptr::null());
+        let make = |camera: &RidgelightCamera, view: &mut *mut RidgelightView| {
+            ridgelight_view_create(&host, &of_c, plan, camera, FORMAT, 1, none, view)
+        };
+        let infinite = RidgelightCamera { plinth_base_m: f64::INFINITY, ..camera };
+        refused(make(&infinite, &mut view), setting, "plinth base: found inf");
+        // Without has_plinth, or in a struct of an older header, the base is not read.
+        let older = RidgelightCamera { struct_size: 104, ..infinite };
+        let not_drawn = RidgelightCamera { has_plinth: 0, ..infinite };
+        for (camera, picture) in [(older, &bare), (not_drawn, &bare), (camera, &right)] {
+            good(make(&camera, &mut view));
+            gpu.run(|commands| {
+                good(ridgelight_view_record(view, commands, 0, &camera, &images));
+                target.copy(&of_device, commands);
+                Ok(())
+            })
+            .expect("run");
+            assert!(target.texels(&of_device) == *picture);
+            ridgelight_view_destroy(view);
+        }
+        ridgelight_plan_destroy(plan);
+    }
+    target.end(&of_device);
+    gpu.end(frame);
+    assert_eq!(gpu.take_messages(), [""; 0]);
+}
+
+/// The highlight of a sun, from an eye and from straight above.
+#[test]
+fn an_eye_of_c_is_the_one_of_rust() {
+    let (mut gpu, host) = device();
+    let sun = Sun { azimuth_rad: 0.0, elevation_rad: 0.8, diameter_rad: 0.0, irradiance: [1.0; 3] };
+    let phong = PhongSpecular { exponent: 20.0, scale: 0.5 };
+    let of_rust = Scene {
+        field: field(),
+        surface: Surface {
+            albedo: Albedo::Constant([0.5; 3]),
+            specular: Some(Specular::Constant(phong)),
+            ..Surface::default()
+        },
+        lights: Lights { suns: vec![sun], ..Lights::default() },
+    };
+    let eye_m = [-6.0, 10.0, 8.0];
+    let limits = gpu.report().limits;
+    let [right, above] = [Some(eye_m), None].map(|eye_m| {
+        let wanted = Picture { eye_m, ..Picture::default() };
+        let plan = plan::picture(&of_rust, &Quality::default(), &limits, wanted).expect("a plan");
+        let mut frame = gpu.frame(plan, &[of_rust.field.heights_m()]).expect("a frame");
+        gpu.draw(&mut frame).expect("drawn");
+        let lit = gpu.pixels(&frame, 0).expect("pixels");
+        gpu.end(frame);
+        lit
+    });
+    assert!(right != above, "the eye moves the highlight");
+
+    let sun = RidgelightSun { irradiance: [1.0; 3], elevation_rad: 0.8, ..zeroed() };
+    let side = SIDE as u32;
+    let of_c = RidgelightScene {
+        rows: side,
+        cols: side,
+        albedo: [0.5; 3],
+        specular_exponent: 20.0,
+        specular_scale: 0.5,
+        suns: &sun,
+        sun_count: 1,
+        eye_m,
+        has_eye: 1,
+        ..zeroed()
+    };
+    let without = RidgelightScene { has_eye: 0, ..of_c };
+    let older = RidgelightScene { struct_size: 144, ..of_c };
+    let mut plan = ptr::null_mut();
+    // SAFETY: structs and handles of this function, alive until its end.
+    unsafe {
+        let far = RidgelightScene { eye_m: [0.0, f64::NAN, 0.0], ..of_c };
+        let made = ridgelight_plan_create(&host, &far, ptr::null(), 0, 0, &mut plan);
+        refused(made, RidgelightResult::Setting, "picture: eye_m: found [0.0, NaN, 0.0]");
+    }
+    for (of_c, light) in [(of_c, &right), (without, &above), (older, &above)] {
+        let wanted = plan::picture(&of_rust, &Quality::default(), &limits, Picture::default());
+        let texels = of_rust.field.heights_m();
+        let frame = gpu.frame(wanted.expect("a plan"), &[texels]).expect("a frame");
+        let (input, output) = (image(&frame.inputs()[0]), image(&frame.outputs()[0]));
+        let mut renderer = ptr::null_mut();
+        // SAFETY: as above.
+        unsafe {
+            good(ridgelight_plan_create(&host, &of_c, ptr::null(), 0, 0, &mut plan));
+            good(ridgelight_renderer_create(&host, plan, 1, ptr::null(), &mut renderer));
+            gpu.run(|commands| {
+                good(ridgelight_record(renderer, commands, 0, &input, 1, &output, 1));
+                Ok(())
+            })
+            .expect("run");
+            assert!(gpu.pixels(&frame, 0).expect("pixels") == *light);
+            ridgelight_renderer_destroy(renderer);
+            ridgelight_plan_destroy(plan);
+        }
+        gpu.end(frame);
+    }
+    assert_eq!(gpu.take_messages(), [""; 0]);
+}
