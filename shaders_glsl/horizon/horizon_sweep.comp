@@ -65,6 +65,8 @@ layout(push_constant) uniform HorizonSweepPush {
 
 shared uint shared_hull[SHARED_WORDS];
 
+const bool CAN_LOSE = !HULL_HOLDS_LINE && HULL_PLACE != HULL_IN_OCCLUDERS;
+
 #include "horizon/line.glsl"
 #include "horizon/one_line.glsl"
 
@@ -222,8 +224,10 @@ void sweep_four_lines() {
                 depth[k] -= pops[k] ? 1 : 0;
                 precise float deeper = (h2[k] - h[k]) * (x - x1[k]);
                 precise float newer = (h1[k] - h[k]) * (x - x2[k]);
-                // An infinite height would pop for ever: both products are infinite.
-                pops[k] = pops[k] && !lost && depth[k] >= 0 && deeper >= newer;
+                // An infinite height would pop for ever, as both products are infinite. Where lines can be lost, one that pops an
+                // empty hull is.
+                bool has_more = CAN_LOSE || depth[k] >= 0;
+                pops[k] = pops[k] && !lost && has_more && deeper >= newer;
             }
         } while (any(pops));
         bvec4 met = greaterThan(h1, vec4(OUTSIDE));

@@ -1,7 +1,7 @@
 //! Heights that are NaN or infinite: refused where the host knows them; on the device they give wrong light until the
 //! next recording, and nothing worse.
 
-use ridgelight::plan::{self, Limits, Picture, Rectangle};
+use ridgelight::plan::{self, Limits, Picture, Rectangle, SweepForm};
 use ridgelight::scene::{Border, HeightField, Method, Quality, Sun};
 
 use crate::{Device, bits, field, under_sky};
@@ -39,13 +39,19 @@ fn heights_of_the_device_that_are_not_finite_spoil_one_recording() {
     let all = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, f32::MIN];
     for (scene, wrong) in [&under_sun, &under_sky].iter().flat_map(|s| all.map(|wrong| (s, wrong)))
     {
-        for (method, is_cpu) in [
-            (Method::Sweep, true),
-            (Method::Sweep, false),
-            (Method::Pyramid, limits.is_cpu),
-            (Method::BruteForce, limits.is_cpu),
+        let [on_cpu, on_gpu] = [true, false].map(|is_cpu| Limits::boundless(is_cpu, 0).sweep);
+        // The shallow ones lose lines, which are swept again.
+        let shallow =
+            [on_cpu, on_gpu].map(|form| SweepForm { hull_depth: 4, private_depth: 4, ..form });
+        for (method, sweep) in [
+            (Method::Sweep, on_cpu),
+            (Method::Sweep, on_gpu),
+            (Method::Sweep, shallow[0]),
+            (Method::Sweep, shallow[1]),
+            (Method::Pyramid, on_cpu),
+            (Method::BruteForce, on_cpu),
         ] {
-            let limits = Limits { sweep: Limits::boundless(is_cpu, 0).sweep, ..limits };
+            let limits = Limits { sweep, ..limits };
             let quality = Quality { method, azimuths: 8, ..Quality::default() };
             let plan = plan::picture(scene, &quality, &limits, Picture::default());
             let mut frame = gpu.frame(plan.expect("a plan"), &[&texels]).expect("a frame");
