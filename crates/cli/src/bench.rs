@@ -69,7 +69,7 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
     let plan = plan::picture(&scene, &quality, &limits, Picture::default())?;
     // Verification is slow.
     if args.sizes.is_empty() {
-        check_names(&args.passes, &plan, args.forms)?;
+        check_names(&args.passes, &plan, args.forms.then_some(&quality))?;
     }
     idle(args, &plan);
     let (device, driver) = (gpu.report().name.clone(), gpu.report().driver.clone());
@@ -201,16 +201,19 @@ fn named(label: &str, wanted: &str) -> bool {
     label == wanted || label.split(' ').next() == Some(wanted)
 }
 
-fn check_names(wanted: &[String], plan: &Plan, forms: bool) -> Result<()> {
+fn check_names(wanted: &[String], plan: &Plan, of_forms: Option<&Quality>) -> Result<()> {
     let mut known: Vec<&str> = plan.passes.iter().map(Pass::name).collect();
     known.dedup();
-    if forms {
+    let forms = of_forms.map(forms::names).unwrap_or_default();
+    if of_forms.is_some() {
         known.extend(["horizon_sweep", "sky_shade", "surface_sweep"]);
         known.extend(["pyramid_march", "horizon_march"]);
     }
     known.sort_unstable();
     known.dedup();
-    let is_label = |w: &str| plan.passes.iter().any(|p| named(&p.label(), w));
+    let is_label = |w: &str| {
+        plan.passes.iter().any(|p| named(&p.label(), w)) || forms.iter().any(|form| form == w)
+    };
     match wanted.iter().find(|w| !known.contains(&w.as_str()) && !is_label(w)) {
         Some(none) => Err(Error::setting("--passes", none.as_str(), known.join(", "))),
         None => Ok(()),

@@ -11,17 +11,27 @@ use crate::common::Outcome;
 use crate::common::args::Args;
 use crate::common::plot::{self, Curve, Panel, Style, curve};
 
-/// Name and arguments of each report.
-const REPORTS: [(&str, &str); 9] = [
-    ("forms", "--size 1024 --azimuths 64 --forms"),
-    ("environment", "--size 1024 --azimuths 64 --env assets/sky_512x256.hdr"),
-    ("sizes", "--sizes 256,512,1024,2048,4096,8192 --azimuth-list 64"),
-    ("azimuths", "--sizes 1024 --azimuth-list 8,16,32,64,128,256"),
-    ("bounces0", "--size 512 --azimuths 64 --subsample 2 --bounces 0 --passes light_resolve"),
-    ("bounces1", "--size 512 --azimuths 64 --subsample 2 --bounces 1 --passes light_resolve"),
-    ("bounces2", "--size 512 --azimuths 64 --subsample 2 --bounces 2 --passes light_resolve"),
-    ("bounces3", "--size 512 --azimuths 64 --subsample 2 --bounces 3 --passes light_resolve"),
-    ("bounces4", "--size 512 --azimuths 64 --subsample 2 --bounces 4 --passes light_resolve"),
+/// Name and arguments of each report. Commas are between flags, semicolons in lists.
+const REPORTS: [(&str, &str); 10] = [
+    ("frame", "--size 1024,--azimuths 64"),
+    ("environment", "--size 1024,--azimuths 64,--env assets/sky_512x256.hdr"),
+    ("forms", "--size 1024,--azimuths 64,--forms,--passes FORMS"),
+    ("sizes", "--sizes 256;512;1024;2048;4096,--azimuth-list 64"),
+    ("azimuths", "--sizes 1024,--azimuth-list 8;16;32;64;128;256"),
+    ("bounces0", "--size 512,--azimuths 64,--subsample 2,--bounces 0,--passes light_resolve"),
+    ("bounces1", "--size 512,--azimuths 64,--subsample 2,--bounces 1,--passes light_resolve"),
+    ("bounces2", "--size 512,--azimuths 64,--subsample 2,--bounces 2,--passes light_resolve"),
+    ("bounces3", "--size 512,--azimuths 64,--subsample 2,--bounces 3,--passes light_resolve"),
+    ("bounces4", "--size 512,--azimuths 64,--subsample 2,--bounces 4,--passes light_resolve"),
+];
+
+/// The forms that are compared with a scalar sweep.
+pub const FORMS: [&str; 5] = [
+    "horizon_sweep lines 1",
+    "sky_shade aimed-nearest",
+    "surface_sweep exact",
+    "pyramid_march stack",
+    "horizon_march brute",
 ];
 
 /// Runs all with the program, and writes the reports as one file.
@@ -53,7 +63,12 @@ fn reported(
     json: &Path,
 ) -> std::result::Result<Value, Box<dyn std::error::Error>> {
     let mut command = Command::new(program);
-    command.arg("bench").args(words.split(' ')).arg("--quiet").arg("--json").arg(json);
+    command.arg("bench").arg("--quiet").arg("--json").arg(json);
+    for flag in words.split(',') {
+        let (flag, value) = flag.split_once(' ').unwrap_or((flag, ""));
+        let value = value.replace(';', ",").replace("FORMS", &FORMS.join(","));
+        command.arg(flag).args(Some(value).filter(|value| !value.is_empty()));
+    }
     if !command.status()?.success() {
         return Err(format!("bench {words} failed").into());
     }

@@ -32,6 +32,11 @@ struct Form {
     slow: bool,
 }
 
+/// Names of the forms.
+pub fn names(quality: &Quality) -> Vec<String> {
+    forms(quality).into_iter().map(|form| form.name).collect()
+}
+
 fn forms(quality: &Quality) -> Vec<Form> {
     let base = Quality {
         method: Method::Sweep,

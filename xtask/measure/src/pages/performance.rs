@@ -4,6 +4,7 @@ use serde_json::Value;
 
 use super::Result;
 use super::figures::{Figures, wrong};
+use crate::performance::FORMS;
 
 /// Times of other programs over that of a plain C sweep on the same machine, which was not this one: 1024², one azimuth.
 const OTHERS: [(&str, &str, f64, f64); 5] = [
@@ -16,16 +17,13 @@ const OTHERS: [(&str, &str, f64, f64); 5] = [
 
 pub fn performance() -> Result<String> {
     let figures = Figures::read("performance")?;
-    let forms = &figures.all["reports"]["forms"];
+    let (frame, forms) = (&figures.all["reports"]["frame"], &figures.all["reports"]["forms"]);
     let mut out = "## One frame\n\n1024 × 1024 texels, 64 azimuths, uniform sky, a fractal. Each pass alone.\n\n\
                    | pass | ms, median | 10th to 90th percentile | cold caches | of the copy's rate |\n|---|---|---|---|---|\n"
         .to_owned();
-    for row in rows(forms).iter().filter(|row| is(row, "isolated") && row["bytes"] != 0) {
-        if !row["settings"]["scalar_beside"].is_null() {
-            continue;
-        }
+    for row in rows(frame).iter().filter(|row| is(row, "isolated") && row["pass"] != "total") {
         let label = label(row);
-        let cold = rows(forms).iter().find(|r| is(r, "cold") && self::label(r) == label);
+        let cold = rows(frame).iter().find(|r| is(r, "cold") && self::label(r) == label);
         let cold = cold.map(|r| ms(&figures, r, "median_ns")).transpose()?;
         out += &format!(
             "| {label} | {:.2} | {:.2} to {:.2} | {} | {} |\n",
@@ -41,7 +39,7 @@ pub fn performance() -> Result<String> {
         ("in_flow", "whole frame, a timestamp after each pass"),
         ("cold", "whole frame, cold caches"),
     ] {
-        let total = rows(forms).iter().find(|row| row["pass"] == "total" && is(row, mode));
+        let total = rows(frame).iter().find(|row| row["pass"] == "total" && is(row, mode));
         let total = total.ok_or_else(|| missing(&figures, mode))?;
         out += &format!(
             "| {what} | {:.2} | {:.2} to {:.2} | | |\n",
@@ -51,7 +49,7 @@ pub fn performance() -> Result<String> {
         );
     }
     out += "\nPeak rates of the device, in the same call: ";
-    let peaks = forms["peaks"].as_array().map_or(&[][..], Vec::as_slice);
+    let peaks = frame["peaks"].as_array().map_or(&[][..], Vec::as_slice);
     let rate = |part: &str, key: &str, unit: &str, scale: f64| -> Result<String> {
         let row = peaks.iter().find(|row| row["part"] == part);
         let row = row.ok_or_else(|| missing(&figures, part))?;
@@ -67,13 +65,8 @@ pub fn performance() -> Result<String> {
     out += "\n## Over a scalar sweep\n\nThe scalar sweep is a hull sweep in Rust on all cores of the processor, one line at a time, in turn \
             with each row's frames. It takes the time of a plain C sweep within 5 %.\n\n\
             | work | time over the scalar sweep |\n|---|---|\n";
-    for (what, name) in [
-        ("horizon sweep", "horizon_sweep lines 1"),
-        ("sky shading", "sky_shade aimed-nearest"),
-        ("exact lines", "surface_sweep exact"),
-        ("pyramid", "pyramid_march stack"),
-        ("brute force", "horizon_march brute"),
-    ] {
+    let what = ["horizon sweep", "sky shading", "exact lines", "pyramid", "brute force"];
+    for (what, name) in what.into_iter().zip(FORMS) {
         let ours = rows(forms).iter().find(|row| label(row) == name);
         let ours = ours.ok_or_else(|| missing(&figures, name))?;
         let beside = ours["settings"]["scalar_beside"].as_str().unwrap_or_default();
