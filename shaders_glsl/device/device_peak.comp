@@ -1,14 +1,14 @@
 // Computes: work that one unit of the device limits, so that its time gives the peak rate of that unit.
 // Reads: source (copy) or texels (fetch).
 // Writes: result; "fill" writes source and filled, the image that texels reads.
-// One invocation does `rounds` of the work of its part. Values are small whole numbers or halves of them, so every order of
-// the operations gives the same bits.
+// One invocation does `rounds` of the work of its part. Sums are of small integers and products by 1/2 are exact, so neither the
+// order of a sum nor fused operations change a bit.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
 
 layout(local_size_x = 64) in;
 
-const int FILL = 0;    // so that no two pages of memory are one
+const int FILL = 0;    // writes every page, so that none share memory
 const int COPY = 1;    // memory
 const int FETCH = 2;   // texel fetches: neighbours in a row, a row a round
 const int SHARED = 3;  // shared memory: 8 bytes a round, neighbours side by side
@@ -38,7 +38,7 @@ void main() {
         for (int k = 0; k < rounds; k++) {
             source[i + k * invocations] = vec4(i & 1023, k, i & 255, 1.0);
         }
-        // Invocations are more than texels, or take several each.
+        // With fewer invocations than texels, each writes several.
         for (int texel = i; texel < side * side; texel += invocations) {
             imageStore(filled, ivec2(texel % side, texel / side), vec4(texel & 7));
         }

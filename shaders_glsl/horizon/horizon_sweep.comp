@@ -224,8 +224,8 @@ void sweep_four_lines() {
                 depth[k] -= pops[k] ? 1 : 0;
                 precise float deeper = (h2[k] - h[k]) * (x - x1[k]);
                 precise float newer = (h1[k] - h[k]) * (x - x2[k]);
-                // An infinite height would pop for ever, as both products are infinite. Where lines can be lost, one that pops an
-                // empty hull is.
+                // An infinite height would pop for ever, as both products are infinite. If lines can be lost, popping an
+                // empty hull marks the line as lost.
                 bool has_more = CAN_LOSE || depth[k] >= 0;
                 pops[k] = pops[k] && !lost && has_more && deeper >= newer;
             }

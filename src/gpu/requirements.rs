@@ -115,7 +115,8 @@ pub(super) fn family_flags(host: &Host, needed: vk::QueueFlags) -> Result<vk::Qu
         |found: String, expected| Err(Error::setting("host: queue_family", found, expected));
     let index = host.queue_family;
     let Some(family) = families.get(index as usize) else {
-        let expected = format!("less than {}, the device's number of families", families.len());
+        let expected =
+            format!("an index below {}, the device's number of queue families", families.len());
         return wrong(index.to_string(), expected);
     };
     if family.queue_flags.contains(needed) {

@@ -28,7 +28,7 @@ pub struct Limits {
     pub sweep: SweepForm,
 }
 
-/// What changes the time of a sweep on a device, and never a bit of its result. `ridgelight tune` searches the fastest.
+/// What changes the time of a sweep on a device, and never a bit of its result. `ridgelight tune` finds the fastest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SweepForm {
     /// Lines that an invocation sweeps: 1 or 4. Stored slopes and packed hulls always take 4.
@@ -61,8 +61,8 @@ impl SweepForm {
         {
             return Ok(());
         }
-        let expected = "1 or 4 lines each, workgroups of whole 32 lines and at most 128 invocations, depths that are powers of \
-                        two up to 1024, and an azimuth";
+        let expected = "lines_each 1 or 4; group_size at most 128, with lines_each × group_size a multiple of 32; \
+                        depths powers of two up to 1024; azimuths at least 1";
         Err(Error::setting("limits.sweep", format!("{self:?}"), expected))
     }
 

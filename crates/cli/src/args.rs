@@ -166,7 +166,7 @@ pub enum Command {
     Plan(PlanArgs),
     /// Time each pass on the GPU, after a check against the CPU
     Bench(BenchArgs),
-    /// Search the fastest form of the sweep for this device, which later commands use; same bits
+    /// Find the fastest form of the sweep on this device; later commands use it; results keep the same bits
     Tune(TuneArgs),
     /// Compare two results; exit status 1 beyond a bound
     Compare(CompareArgs),

@@ -46,7 +46,7 @@ pub(super) fn check_supported(
     Err(Error::setting(
         format!("{name}: {when}"),
         format!("{wrong:?}"),
-        format!("stages of the host's queue family, which has {family:?}; or ALL_COMMANDS"),
+        format!("stages that a queue family with {family:?} supports, or ALL_COMMANDS"),
     ))
 }
 

@@ -34,7 +34,15 @@ pub(crate) fn plan(builder: &mut Builder, limits: &Limits) {
     let writing = 16 * invocations;
     // Part, reason, invocations, rounds, bindings, bytes, operations of a round.
     let parts = [
-        ("fill", "so that no two pages of memory are one", copying, COPIES, filled, filling, 0),
+        (
+            "fill",
+            "writes every page, so that none share memory",
+            copying,
+            COPIES,
+            filled,
+            filling,
+            0,
+        ),
         ("copy", "the peak rate of memory", copying, COPIES, copied, 2 * bytes, 0),
         ("fetch", "the peak rate of texel fetches", invocations, 32, fetched, fetching, 1),
         ("shared", "the peak rate of shared memory", invocations, 128, written, writing, 1),

@@ -191,8 +191,8 @@ fn stages_that_the_family_lacks_are_refused_by_name() {
     let drawn = |state: ImageState| ImageState { stage: fragment, access: sampled, ..state };
     let of_before = ImageArg { before: drawn(inputs[0].before), ..inputs[0] };
     let of_after = ImageArg { after: drawn(outputs[0].after), ..outputs[0] };
-    let expected = "found FRAGMENT_SHADER, expected stages of the host's queue family, which has \
-                    COMPUTE; or ALL_COMMANDS";
+    let expected = "found FRAGMENT_SHADER, expected stages that a queue family with COMPUTE \
+                    supports, or ALL_COMMANDS";
     gpu.run(|commands| {
         let mut refused = |inputs: &[ImageArg], outputs: &[ImageArg]| {
             renderer.record(commands, 0, inputs, outputs).expect_err("no graphics").to_string()

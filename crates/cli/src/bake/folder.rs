@@ -68,7 +68,7 @@ pub fn check_folder(path: &Path, wanted: &[Wanted]) -> Result<()> {
     }
     // A folder "maps.ktx2" would be taken for a file.
     if Format::value_variants().iter().any(|format| setup::extension(path) == format.name()) {
-        let expected = "a name of a folder: its files are named after --what and --format";
+        let expected = "a folder name without a file extension; --what and --format name its files";
         return Err(Error::setting("-o", shown(), expected));
     }
     check_new(path)

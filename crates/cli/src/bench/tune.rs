@@ -1,4 +1,4 @@
-//! Searches the form of the sweep that is fastest on a device. Forms change no bit of a picture, which is checked.
+//! Finds the form of the sweep that is fastest on a device. Forms change no bit of a picture, which is checked.
 
 use std::time::{Duration, Instant};
 
@@ -93,7 +93,7 @@ pub fn run(args: &TuneArgs) -> Result<Outcome> {
         return Ok(Outcome::Done);
     }
     if device.timestamp_period_ns == 0.0 {
-        let found = format!("{}, which has none", device.name);
+        let found = format!("{}, without timestamps", device.name);
         return Err(Error::setting("tune", found, "a device with timestamps"));
     }
     let untuned = device.limits.sweep;
@@ -133,7 +133,8 @@ pub fn run(args: &TuneArgs) -> Result<Outcome> {
     tuned::keep(&device, &kept.map_or(untuned, |trial| trial.form))?;
     if !global.quiet {
         crate::say!("{}, {}", device.name, device.driver);
-        crate::say!("frame of {}, over {}:", size_text(scene, quality), text(&untuned));
+        let (size, base) = (size_text(scene, quality), text(&untuned));
+        crate::say!("time of a frame of {size}, relative to the untuned form ({base}):");
         trials.iter().for_each(|trial| crate::say!("{}", line(trial)));
         let again = last.as_ref().map(|trial| format!("again:\n{}\n", line(trial)));
         crate::say!("{}{}", again.unwrap_or_default(), verdict(kept));
@@ -234,19 +235,19 @@ fn text(form: &SweepForm) -> String {
         count => format!(", {count} azimuths together"),
     };
     format!(
-        "{lines} each, groups of {group_size}, {hull_depth} hull entries in {place}{older} memory{together}"
+        "{lines} per invocation, workgroups of {group_size}, {hull_depth} hull entries in {place}{older} memory{together}"
     )
 }
 
 fn line(trial: &Trial) -> String {
     let found = match trial {
-        Trial { is_same: false, .. } => "other bits: not used".into(),
+        Trial { is_same: false, .. } => "different bits: rejected".into(),
         Trial { interval: Some([low, high]), ratio, .. } => {
             format!("{ratio:.3} ({low:.3} to {high:.3})")
         }
         Trial { ratio, .. } => format!("{ratio:.2}"),
     };
-    format!("  {:<86} {found}", text(&trial.form))
+    format!("  {:<98} {found}", text(&trial.form))
 }
 
 fn verdict(kept: Option<&Trial>) -> String {
@@ -255,7 +256,9 @@ fn verdict(kept: Option<&Trial>) -> String {
             "kept for this device, driver and commit: {:.3} of the untuned time; `ridgelight tune --reset` undoes it",
             trial.ratio
         ),
-        None => format!("the untuned form stays: none is surely faster than {FASTER} of its time"),
+        None => format!(
+            "the untuned form stays: no form takes less than {FASTER} of its time with 95 % confidence"
+        ),
     }
 }
 
@@ -306,6 +309,6 @@ mod tests {
         let trials = [trial(1, 0.9, true), trial(2, 0.5, false), trial(3, f64::NAN, true)];
         assert_eq!(fastest(&trials), Some(form(1)));
         assert_eq!(fastest(&trials[1..]), None);
-        assert!(line(&trials[1]).contains("other bits"));
+        assert!(line(&trials[1]).contains("different bits"));
     }
 }

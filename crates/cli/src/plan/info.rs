@@ -106,7 +106,7 @@ fn say(args: &InfoArgs, facts: &Value) {
     line("steep", format!("{:.3} % beyond 45 degrees", 100.0 * number(&facts["steep_share"])));
     let memory = |name: &str| match facts["device_bytes"][name].as_u64() {
         Some(bytes) => format!("{:.0} MiB", bytes as f64 / f64::from(1 << 20)),
-        None => "beyond every device".to_owned(),
+        None => "too large for any device".to_owned(),
     };
     line(
         "memory",

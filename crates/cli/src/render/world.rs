@@ -51,13 +51,17 @@ pub fn note_shape(
     if (width / height - 1.0).abs() < SQUARE || quiet {
         return;
     }
+    let shape = if height > width {
+        format!("{:.2} times too wide", height / width)
+    } else {
+        format!("{:.2} times too tall", width / height)
+    };
     let utm = georeference.and_then(|at| utm_of(at, field)).map_or_else(String::new, |code| {
-        format!("; `gdalwarp -t_srs EPSG:{code}` makes square cells of the input")
+        format!("; to get square cells, reproject the input with `gdalwarp -t_srs EPSG:{code}`")
     });
     setup::note(&format!(
-        "{}: a pixel is a cell of {width:.1} x {height:.1} m, so the picture is {:.2} times too wide for the ground{utm}",
+        "{}: each pixel covers {width:.1} x {height:.1} m; the picture is {shape}{utm}",
         picture.display(),
-        height / width
     ));
 }
 

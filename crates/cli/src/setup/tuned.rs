@@ -65,7 +65,7 @@ fn find(device: &DeviceReport) -> Option<SweepForm> {
 /// A folder that cannot be written to, or none for caches.
 pub fn keep(device: &DeviceReport, form: &SweepForm) -> Result<()> {
     let Some(path) = place(device) else {
-        let expected = "a folder for caches, absolute";
+        let expected = "an absolute path in XDG_CACHE_HOME or HOME";
         return Err(Error::setting("XDG_CACHE_HOME", "none, and no HOME", expected));
     };
     let folder = path.parent().expect("it was joined");

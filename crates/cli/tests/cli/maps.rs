@@ -92,7 +92,7 @@ fn pictures_in_degrees_have_a_note_on_their_proportions() {
     };
     folder.write("degrees.asc", grid([8.0, 47.0], 0.001).as_bytes());
     folder.write("metres.asc", grid([5e5, 5.2e6], 30.0).as_bytes());
-    let said = "a pixel is a cell of 76.1 x 111.2 m, so the picture is 1.46 times too wide";
+    let said = "each pixel covers 76.1 x 111.2 m; the picture is 1.46 times too wide";
     for (name, output, is_noted) in
         [("degrees", "o.png", true), ("degrees", "o.tif", false), ("metres", "o.png", false)]
     {

@@ -69,7 +69,7 @@ impl Sidecar {
             }
             (None, Some((name, None))) => {
                 notes.push(format!(
-                    "{name} is not read: a world file has six numbers, and no rotation here"
+                    "{name} is not read: expected six numbers: no rotation, positive width, negative height"
                 ));
                 None
             }
@@ -85,13 +85,13 @@ impl Sidecar {
         match crs.filter(|_| at.keys == GeoKeys::default()) {
             None => {}
             Some((name, None)) => notes.push(format!(
-                "{name} is not read: expected WKT of a projected or geographic system in degrees"
+                "{name} is not read: expected WKT of a projected system, or of a geographic system in degrees"
             )),
             Some((name, Some(crs))) => {
                 notes.push(match crs.code {
                     Some(code) => format!("the coordinate reference system of {name} is EPSG:{code}"),
                     None => format!(
-                        "{name} has the unit of the cells, and no EPSG code of {}: outputs do not name it",
+                        "{name} gives the cell unit but no EPSG code for {}; outputs have no coordinate reference system",
                         crs.name
                     ),
                 });

@@ -63,7 +63,7 @@ pub fn performance() -> Result<String> {
         rate("fma", "texels_per_s", "GFLOP/s", 1e-9)?
     );
     out += "\n## Over a scalar sweep\n\nThe scalar sweep is a hull sweep in Rust on all cores of the processor, one line at a time, in turn \
-            with each row's frames. It takes the time of a plain C sweep within 5 %.\n\n\
+            with each row's frames. Its time is within 5 % of that of a plain C sweep.\n\n\
             | work | time over the scalar sweep |\n|---|---|\n";
     let what = ["horizon sweep", "sky shading", "exact lines", "pyramid", "brute force"];
     for (what, name) in what.into_iter().zip(FORMS) {
@@ -100,7 +100,7 @@ pub fn performance() -> Result<String> {
         let each = ms / azimuths / (cols * cols / f64::from(1 << 20));
         out += &format!("| {cols}² | {azimuths} | {ms:.1} | {each:.2} |\n");
     }
-    out += "\n| bounces, 512 × 512, 64 azimuths, 32 of the bounces, every 2nd texel | frame, ms |\n|---|---|\n";
+    out += "\n| bounces, 512 × 512, 64 azimuths, 32 bounce azimuths, every 2nd texel | frame, ms |\n|---|---|\n";
     for count in 0..=4 {
         let report = &figures.all["reports"][format!("bounces{count}")];
         let total = rows(report).iter().find(|r| r["pass"] == "total" && is(r, "overlapped"));
