@@ -52,9 +52,10 @@ impl SweepForm {
             self;
         let is_depth = |depth: u32| depth.is_power_of_two() && depth <= 1024;
         let is_private_depth = *lines_each == 4 || is_depth(*private_depth);
-        let has_whole_tiles = (1..=128).contains(group_size) && lines_each * group_size % 32 == 0;
+        let has_whole_tiles =
+            || (1..=128).contains(group_size) && lines_each * group_size % 32 == 0;
         if matches!(lines_each, 1 | 4)
-            && has_whole_tiles
+            && has_whole_tiles()
             && is_depth(*hull_depth)
             && is_private_depth
             && *azimuths > 0

@@ -26,6 +26,9 @@ impl Plan {
         if !is_only {
             pairs.extend(resource(self, before, described).or_else(|| parts(self, before)));
         }
+        if pairs.is_empty() {
+            pairs.push(["other images, buffers or passes", "the same ones"].map(str::to_owned));
+        }
         Some([0, 1].map(|i| {
             let texts: Vec<&str> = pairs.iter().map(|pair| pair[i].as_str()).collect();
             texts.join(", ")

@@ -205,13 +205,13 @@ typedef struct RidgelightScene {
     // VK_TRUE where the field has voids: camera pictures then take a mask and leave holes. Heights must still
     // be filled there: ridgelight_fill_voids.
     uint32_t has_voids;
-    // Where specular is viewed from, with `has_eye`: x east from the westernmost column, y north from the
+    // Eye position for specular, metres; read if `has_eye` is VK_TRUE: x east from the westernmost column, y north from the
     // southernmost row, z as heights, each within +-1e15. With bounces or basis sh, specular is viewed from
     // straight above nevertheless. Diffuse light does not depend on it.
     double eye_m[3];
     // VK_TRUE where specular is viewed from `eye_m`; 0: from straight above.
     uint32_t has_eye;
-    // 0.
+    // 0; any other value is an error.
     uint32_t reserved;
 } RidgelightScene;
 
@@ -450,12 +450,12 @@ typedef struct RidgelightCamera {
     float exposure;
     // Radiance, linear RGB, of pixels without ground and sky.
     float background[3];
-    // Height of the base of a plinth, with `has_plinth`: walls go down to it from the field's edges, where the
-    // ground is higher. Finite, as heights.
+    // Height of the base of a plinth, metres, with `has_plinth`: walls extend down to it where the edge of the
+    // field is higher. Finite, as heights.
     double plinth_base_m;
     // VK_TRUE draws a plinth. A ridgelight_view draws one with every camera or with none.
     uint32_t has_plinth;
-    // 0.
+    // 0; any other value is an error.
     uint32_t reserved;
 } RidgelightCamera;
 

@@ -120,13 +120,13 @@ pub struct RidgelightScene {
     /// VK_TRUE where the field has voids: camera pictures then take a mask and leave holes. Heights must still
     /// be filled there: ridgelight_fill_voids.
     pub has_voids: u32,
-    /// Where specular is viewed from, with `has_eye`: x east from the westernmost column, y north from the
+    /// Eye position for specular, metres; read if `has_eye` is VK_TRUE: x east from the westernmost column, y north from the
     /// southernmost row, z as heights, each within +-1e15. With bounces or basis sh, specular is viewed from
     /// straight above nevertheless. Diffuse light does not depend on it.
     pub eye_m: [f64; 3],
     /// VK_TRUE where specular is viewed from `eye_m`; 0: from straight above.
     pub has_eye: u32,
-    /// 0.
+    /// 0; any other value is an error.
     pub reserved: u32,
 }
 
@@ -140,6 +140,9 @@ unsafe impl SizeFirst for RidgelightScene {}
 pub(crate) unsafe fn scene(from: *const RidgelightScene) -> Done<Scene> {
     // SAFETY: as the caller says, here and below.
     let scene = unsafe { read(from, "scene") }?;
+    if scene.reserved != 0 {
+        return Err(Failure::argument("scene: reserved", scene.reserved.to_string(), "0"));
+    }
     let (rows, cols) = (scene.rows as usize, scene.cols as usize);
     if !(1..=1 << 30).contains(&(u64::from(scene.rows) * u64::from(scene.cols))) {
         let found = format!("{rows} x {cols}");

@@ -42,12 +42,12 @@ pub struct RidgelightCamera {
     pub exposure: f32,
     /// Radiance, linear RGB, of pixels without ground and sky.
     pub background: [f32; 3],
-    /// Height of the base of a plinth, with `has_plinth`: walls go down to it from the field's edges, where the
-    /// ground is higher. Finite, as heights.
+    /// Height of the base of a plinth, metres, with `has_plinth`: walls extend down to it where the edge of the
+    /// field is higher. Finite, as heights.
     pub plinth_base_m: f64,
     /// VK_TRUE draws a plinth. A ridgelight_view draws one with every camera or with none.
     pub has_plinth: u32,
-    /// 0.
+    /// 0; any other value is an error.
     pub reserved: u32,
 }
 
@@ -76,6 +76,9 @@ unsafe fn camera_view(
 ) -> Done<(View, f32)> {
     // SAFETY: as the caller says.
     let given = unsafe { read(from, "camera") }?;
+    if given.reserved != 0 {
+        return Err(Failure::argument("camera: reserved", given.reserved.to_string(), "0"));
+    }
     let or = |found: f64, default: f64| if found == 0.0 { default } else { found };
     let options = ViewOptions {
         size: given.size,

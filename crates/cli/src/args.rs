@@ -330,7 +330,7 @@ pub struct BenchArgs {
     /// at most 2 % wide, or after 10 s and at least 6 runs. In flow, the whole frame's time decides.
     #[arg(long, default_value_t = 200, value_name = "K", help_heading = "Quality")]
     pub runs: usize,
-    /// Also time every form of the sweep, brute force, and a scalar sweep on the CPU
+    /// Also time sweeps with every setting, brute force, and a scalar sweep on the CPU
     #[arg(long, help_heading = "Output")]
     pub forms: bool,
     /// Time whole frames of fractal fields of these sides instead

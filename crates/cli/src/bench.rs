@@ -19,7 +19,7 @@ use ridgelight_io as files;
 
 use crate::args::BenchArgs;
 use crate::idle;
-use crate::setup::{self, Outcome};
+use crate::setup::{self, Outcome, tuned};
 use ridgelight_trade::statistics::{median, median_interval};
 use rows::{Row, sums};
 use verdicts::Earlier;
@@ -154,6 +154,7 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
         let argv: Vec<_> =
             std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned()).collect();
         let mut report = rows::file(&device, &driver, &peaks, &all, &argv);
+        report["sweep"] = tuned::json(&limits.sweep);
         if let Some(changes) = &changes {
             report["against"] = changes.json();
         }

@@ -7,7 +7,7 @@ use crate::{Error, Result};
 
 /// Stages that a barrier may name only on a queue family with graphics: the table "Supported Pipeline Stage Flags" of
 /// the Vulkan specification. BLIT and RESOLVE are left out, because later extensions allow them elsewhere.
-const GRAPHICS: [Stage; 14] = [
+const GRAPHICS: [Stage; 18] = [
     Stage::VERTEX_INPUT,
     Stage::INDEX_INPUT,
     Stage::VERTEX_ATTRIBUTE_INPUT,
@@ -22,6 +22,10 @@ const GRAPHICS: [Stage; 14] = [
     Stage::COLOR_ATTACHMENT_OUTPUT,
     Stage::ALL_GRAPHICS,
     Stage::TRANSFORM_FEEDBACK_EXT,
+    Stage::TASK_SHADER_EXT,
+    Stage::MESH_SHADER_EXT,
+    Stage::FRAGMENT_SHADING_RATE_ATTACHMENT_KHR,
+    Stage::FRAGMENT_DENSITY_PROCESS_EXT,
 ];
 
 /// Those of `stages` that no barrier on a family of compute may name.

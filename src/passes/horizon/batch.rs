@@ -142,7 +142,7 @@ pub(crate) fn cut(
             return Err(Error::Limit { what, needs, limit });
         }
         let fits = batches.last().is_some_and(|b| {
-            let together = b.count < limits.sweep.azimuths;
+            let together = b.count < sweep.azimuths_together();
             b.axis == axis && b.layers + layers <= most_layers && together
         });
         if !fits {

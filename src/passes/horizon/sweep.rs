@@ -55,6 +55,8 @@ pub(crate) struct LineSweep {
     pub writes_occluders: bool,
     /// How results of lines come back to grid points.
     pub fuse: Fuse,
+    /// Azimuths that are swept together at most.
+    pub azimuths: u32,
 }
 
 impl LineSweep {
@@ -135,28 +137,32 @@ fn form_of(
     stores_slopes: bool,
     limits: &Limits,
 ) -> (HullStorage, SweepForm) {
+    let device = match quality.hull {
+        Hull::Auto => limits.sweep,
+        _ => SweepForm::of_device(limits.is_cpu),
+    };
     let packed = quality.precision == Precision::Packed;
     // One line per invocation reads heights from a buffer and stores occluders alone.
     let [width, height] = sides.map(|side| u64::from(side.next_multiple_of(4)));
-    let is_one = limits.sweep.lines_each == 1
+    let is_one = device.lines_each == 1
         && quality.hull != Hull::OccluderList
         && !stores_slopes
         && !packed
         && 4 * width * height <= limits.buffer_bytes;
-    let is_four = limits.sweep.lines_each == 4;
+    let is_four = device.lines_each == 4;
     let place = match quality.hull {
         // With four lines, few workgroups fit shared memory. CPU devices cache private arrays (lavapipe).
-        Hull::Auto if limits.sweep.shares_hull && (is_one || is_four) => HullStorage::Shared,
+        Hull::Auto if device.shares_hull && (is_one || is_four) => HullStorage::Shared,
         Hull::Auto | Hull::Private => HullStorage::Private,
         Hull::Shared => HullStorage::Shared,
         Hull::OccluderList => HullStorage::Occluders,
     };
-    let mut form = limits.sweep;
+    let mut form = device;
     if !is_one && !is_four {
         (form.lines_each, form.group_size) = (4, group_size(limits));
     }
     let of_form = [HullStorage::Private, HullStorage::Shared][usize::from(form.shares_hull)];
-    let own = place == of_form && form.lines_each == limits.sweep.lines_each;
+    let own = place == of_form && form.lines_each == device.lines_each;
     let bytes = form.lines_each * form.group_size * if packed { 4 } else { 8 };
     let entries_in = |shared_bytes: u32| 1 << (shared_bytes / bytes).max(1).ilog2();
     form.hull_depth = match place {
@@ -279,7 +285,7 @@ impl Sweep {
             (HullStorage::Private, 1) => hull_depth,
             _ => 0,
         };
-        if place != HullStorage::Occluders && limits.sweep != SweepForm::of_device(limits.is_cpu) {
+        if quality.hull == Hull::Auto && limits.sweep != SweepForm::of_device(limits.is_cpu) {
             notes.push(format!(
                 "tuned sweep: {} per invocation, {} invocations in a workgroup, {hull_depth} hull entries in {} memory",
                 if form.lines_each == 1 { "one line" } else { "four lines" },
@@ -334,7 +340,13 @@ impl Sweep {
             slope_format,
             writes_occluders: !stores_slopes || !holds_line,
             fuse: quality.fuse,
+            azimuths: form.azimuths,
         }))
+    }
+
+    /// Azimuths that are swept together at most.
+    pub(crate) fn azimuths_together(&self) -> u32 {
+        if let Sweep::Lines(lines) = self { lines.azimuths } else { u32::MAX }
     }
 
     /// A lattice of one word for each step of lines a cell apart.
@@ -352,6 +364,7 @@ impl Sweep {
             slope_format: 1,
             writes_occluders: false,
             fuse: Fuse::Nearest,
+            azimuths: u32::MAX,
         })
     }
 

@@ -1,4 +1,4 @@
-//! Hosts that a renderer refuses, with the cause that the host can mend.
+//! Hosts that a renderer refuses, with the cause that the host can fix.
 
 use ash::vk;
 use ridgelight::Result;

@@ -14,7 +14,7 @@ use crate::{Device, bits, field, under_sky};
 
 /// Two renderers and one of views on one device, ended in each order. Those that are left draw what they drew before.
 #[test]
-fn renderers_end_in_any_order() {
+fn renderers_are_destroyed_in_any_order() {
     let mut device = Device::new();
     let gpu = device.gpu.as_mut().expect("alive");
     let scene = scene(16, 1);

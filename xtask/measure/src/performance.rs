@@ -63,6 +63,8 @@ fn reported(
     json: &Path,
 ) -> std::result::Result<Value, Box<dyn std::error::Error>> {
     let mut command = Command::new(program);
+    // Untuned: what `ridgelight tune` has kept stays out.
+    command.env("XDG_CACHE_HOME", std::fs::canonicalize("out")?.join("cache"));
     command.arg("bench").arg("--quiet").arg("--json").arg(json);
     for flag in words.split(',') {
         let (flag, value) = flag.split_once(' ').unwrap_or((flag, ""));

@@ -22,7 +22,7 @@ fn field() -> HeightField {
 
 /// One pass in each command buffer, in slots by turns: the light of the whole frame. Then one time for all passes.
 #[test]
-fn a_frame_in_slices_of_c_is_the_whole_one() {
+fn c_slices_match_the_whole_frame() {
     let (mut gpu, host) = device();
     let field = field();
     let lights = Lights { sky: Some([1.0, 0.5, 0.25]), ..Lights::default() };
@@ -102,7 +102,7 @@ fn a_frame_in_slices_of_c_is_the_whole_one() {
 }
 
 #[test]
-fn a_plinth_of_c_is_the_one_of_rust() {
+fn a_c_plinth_matches_rust() {
     let (mut gpu, host) = device();
     let field = field();
     let (frame, without, at) = view_by_rust(&mut gpu, &field);
@@ -172,7 +172,7 @@ fn a_plinth_of_c_is_the_one_of_rust() {
 
 /// The highlight of a sun, from an eye and from straight above.
 #[test]
-fn an_eye_of_c_is_the_one_of_rust() {
+fn a_c_eye_matches_rust() {
     let (mut gpu, host) = device();
     let sun = Sun { azimuth_rad: 0.0, elevation_rad: 0.8, diameter_rad: 0.0, irradiance: [1.0; 3] };
     let phong = PhongSpecular { exponent: 20.0, scale: 0.5 };

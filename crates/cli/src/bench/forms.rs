@@ -1,4 +1,4 @@
-//! Times every form of the sweep, in turn with a scalar sweep on the CPU.
+//! Times every method and setting of sweeps, in turn with a scalar sweep on the CPU.
 
 use std::f64::consts::TAU;
 use std::time::Instant;

@@ -13,13 +13,13 @@ use serde_json::{Value, json};
 use crate::args::TuneArgs;
 use crate::setup::{self, Outcome, tuned};
 
-/// A pair is one frame of the untuned form and one of another, alternately first.
-const PAIRS: usize = 40;
-/// Pairs end after this time, but not before [`FEWEST`], which give the median an interval.
-const TIME: Duration = Duration::from_secs(2);
+/// Pairs of one frame of the untuned form and one of another, alternately first: at most so many, in about this time, but not
+/// fewer than [`FEWEST`], which give the median an interval.
+type Extent = (usize, Duration);
+const EXTENT: Extent = (40, Duration::from_secs(2));
+/// Of the best form, which is paired again.
+const LAST: Extent = (400, Duration::from_secs(20));
 const FEWEST: usize = 6;
-/// The best form is paired again, for this long.
-const LAST_TIME: Duration = Duration::from_secs(20);
 /// A form whose first two pairs are slower than this is not paired again.
 const HOPELESS: f64 = 1.25;
 /// The upper end of the ratio's interval that a form must reach to be kept. Two processes of one build differ by several per
@@ -39,6 +39,8 @@ struct Trial {
     /// At 95 %; none for fewer than 6 pairs.
     interval: Option<[f64; 2]>,
     is_same: bool,
+    /// Why it could not be drawn, if it could not.
+    failed: Option<String>,
 }
 
 /// What every trial shares.
@@ -57,22 +59,27 @@ impl Search<'_> {
         plan::picture(self.scene, self.quality, &limits, Picture::default())
     }
 
-    /// Pairs frames of a form with those of the untuned one, `base`.
+    /// Pairs frames of a form with those of the untuned one, `base`. A form that the device cannot draw is no error.
     fn trial(
         &self,
         gpu: &mut Headless,
         base: &mut Frame,
         form: SweepForm,
-        time: Duration,
-    ) -> Result<Trial> {
-        gpu.with_frame(self.plan(form)?, self.inputs, |gpu, frame| {
-            frame.time_passes(false);
-            gpu.draw(frame)?;
-            let is_same = bits(gpu, frame)? == self.want;
-            let ratios = if is_same { pairs(gpu, base, frame, time)? } else { Vec::new() };
-            let ratio = median(&ratios).unwrap_or(f64::NAN);
-            Ok(Trial { form, ratio, interval: median_interval(&ratios), is_same })
-        })
+        extent: Extent,
+    ) -> Trial {
+        let found = self.plan(form).and_then(|plan| {
+            gpu.with_frame(plan, self.inputs, |gpu, frame| {
+                frame.time_passes(false);
+                gpu.draw(frame)?;
+                let is_same = bits(gpu, frame)? == self.want;
+                let ratios = if is_same { pairs(gpu, base, frame, extent)? } else { Vec::new() };
+                Ok((is_same, ratios))
+            })
+        });
+        let failed = found.as_ref().err().map(Error::to_string);
+        let (is_same, ratios) = found.unwrap_or((true, Vec::new()));
+        let ratio = median(&ratios).unwrap_or(f64::NAN);
+        Trial { form, ratio, interval: median_interval(&ratios), is_same, failed }
     }
 }
 
@@ -98,6 +105,8 @@ pub fn run(args: &TuneArgs) -> Result<Outcome> {
     }
     let untuned = device.limits.sweep;
     limits.sweep = untuned;
+    // Two frames are there at once.
+    limits.memory_budget /= 2;
     let field = match args.input.as_slice() {
         [] => fractal(args.size, 1)?,
         paths => setup::field(paths, &args.surface, global)?,
@@ -116,17 +125,17 @@ pub fn run(args: &TuneArgs) -> Result<Outcome> {
         let mut trials = Vec::new();
         for (i, form) in (1..).zip(&forms) {
             bar.set_message(format!("{i} of {}: {}", forms.len(), text(form)));
-            trials.push(search.trial(gpu, base, *form, TIME)?);
+            trials.push(search.trial(gpu, base, *form, EXTENT));
         }
         let best = fastest(&trials).unwrap_or(untuned);
         for azimuths in TOGETHER.into_iter().filter(|count| *count < args.azimuths) {
             let form = SweepForm { azimuths, ..best };
             bar.set_message(text(&form));
-            trials.push(search.trial(gpu, base, form, TIME)?);
+            trials.push(search.trial(gpu, base, form, EXTENT));
         }
         bar.set_message("the fastest form again");
-        let last = fastest(&trials).map(|form| search.trial(gpu, base, form, LAST_TIME));
-        Ok((trials, last.transpose()?))
+        let last = fastest(&trials).map(|form| search.trial(gpu, base, form, LAST));
+        Ok((trials, last))
     })?;
     bar.finish_and_clear();
     let kept = last.as_ref().filter(|l| l.interval.is_some_and(|[_, high]| high < FASTER));
@@ -149,7 +158,8 @@ pub fn run(args: &TuneArgs) -> Result<Outcome> {
         files::write_json(path, &report)?;
     }
     // A form with other bits is a defect, of the driver or of this program.
-    Ok(if trials.iter().all(|trial| trial.is_same) { Outcome::Done } else { Outcome::Beyond })
+    let is_same = trials.iter().chain(&last).all(|trial| trial.is_same);
+    Ok(if is_same { Outcome::Done } else { Outcome::Beyond })
 }
 
 /// Every form but the untuned one.
@@ -178,6 +188,13 @@ fn forms(untuned: SweepForm) -> Vec<SweepForm> {
     four.chain(one).filter(|form| text(form) != text(&untuned)).collect()
 }
 
+/// Whether a form is one that this program tries, so that a file of another version is not taken.
+pub fn is_tried(form: SweepForm, untuned: SweepForm) -> bool {
+    let is_together = form.azimuths == u32::MAX || TOGETHER.contains(&form.azimuths);
+    let alone = text(&SweepForm { azimuths: u32::MAX, ..form });
+    is_together && forms(untuned).iter().chain([&untuned]).any(|known| text(known) == alone)
+}
+
 /// The form with the smallest ratio, below 1.
 fn fastest(trials: &[Trial]) -> Option<SweepForm> {
     let all = trials.iter().filter(|trial| trial.is_same && trial.ratio < 1.0);
@@ -185,7 +202,12 @@ fn fastest(trials: &[Trial]) -> Option<SweepForm> {
 }
 
 /// Times of `frame` over those of `base`, pair by pair.
-fn pairs(gpu: &Headless, base: &mut Frame, frame: &mut Frame, time: Duration) -> Result<Vec<f64>> {
+fn pairs(
+    gpu: &Headless,
+    base: &mut Frame,
+    frame: &mut Frame,
+    (most, time): Extent,
+) -> Result<Vec<f64>> {
     let one = |frame: &mut Frame| -> Result<f64> {
         Ok(gpu.draw(frame)?.iter().map(|timing| timing.ns).sum())
     };
@@ -196,7 +218,7 @@ fn pairs(gpu: &Headless, base: &mut Frame, frame: &mut Frame, time: Duration) ->
     }
     let begun = Instant::now();
     let mut ratios = Vec::new();
-    while ratios.len() < PAIRS && (ratios.len() < FEWEST || begun.elapsed() < time) {
+    while ratios.len() < most && (ratios.len() < FEWEST || begun.elapsed() < time) {
         let (base_ns, ns) = if ratios.len() % 2 == 0 {
             let first = one(base)?;
             (first, one(frame)?)
@@ -241,6 +263,7 @@ fn text(form: &SweepForm) -> String {
 
 fn line(trial: &Trial) -> String {
     let found = match trial {
+        Trial { failed: Some(why), .. } => format!("failed: {why}"),
         Trial { is_same: false, .. } => "different bits: rejected".into(),
         Trial { interval: Some([low, high]), ratio, .. } => {
             format!("{ratio:.3} ({low:.3} to {high:.3})")
@@ -265,7 +288,7 @@ fn verdict(kept: Option<&Trial>) -> String {
 fn row(trial: &Trial) -> Value {
     json!({
         "form": tuned::json(&trial.form), "ratio": trial.ratio, "low": trial.interval.map(|i| i[0]),
-        "high": trial.interval.map(|i| i[1]), "same_bits": trial.is_same,
+        "high": trial.interval.map(|i| i[1]), "same_bits": trial.is_same, "failed": trial.failed,
     })
 }
 
@@ -288,7 +311,12 @@ mod tests {
             let lights = Lights { sky: Some([1.0; 3]), ..Lights::default() };
             let field = fractal(64, 1).unwrap();
             let scene = Scene { field, surface: Surface::default(), lights };
+            assert!(is_tried(limits.sweep, limits.sweep));
+            let odd = SweepForm { group_size: 48, ..limits.sweep };
+            let seven = SweepForm { azimuths: 7, ..limits.sweep };
+            assert!(!is_tried(odd, limits.sweep) && !is_tried(seven, limits.sweep));
             for sweep in all {
+                assert!(is_tried(sweep, limits.sweep));
                 let limits = Limits { sweep, ..limits };
                 let plan = plan::picture(&scene, &Quality::default(), &limits, Picture::default());
                 assert!(plan.unwrap().notes.iter().any(|note| note.starts_with("tuned sweep")));
@@ -305,10 +333,13 @@ mod tests {
             ratio,
             interval: None,
             is_same,
+            failed: None,
         };
         let trials = [trial(1, 0.9, true), trial(2, 0.5, false), trial(3, f64::NAN, true)];
         assert_eq!(fastest(&trials), Some(form(1)));
         assert_eq!(fastest(&trials[1..]), None);
         assert!(line(&trials[1]).contains("different bits"));
+        let failed = Trial { failed: Some("no memory".into()), ..trial(1, f64::NAN, true) };
+        assert!(line(&failed).contains("failed: no memory") && fastest(&[failed]).is_none());
     }
 }

@@ -80,7 +80,7 @@ fn jobs(field: &HeightField) -> [(&'static str, Option<u64>); 3] {
     bounced.bounces.count = 1;
     let sky_view = bytes(&scene, &Quality::default(), true);
     let bounces = bytes(&scene, &bounced, false);
-    let render = start::bytes(field, &limits).ok();
+    let render = start::bytes_of(field, &limits).ok();
     [("render", render), ("sky_view", sky_view), ("render_bounces_1", bounces)]
 }
 
@@ -133,13 +133,13 @@ fn say_start(args: &InfoArgs, field: &HeightField, at: Option<&Georeference>) ->
     }
     if start == Start::Nothing {
         crate::say!(
-            "Start with fewer grid points, as from: gdal_translate -outsize 25% 25% -r average"
+            "Reduce the grid first: gdal_translate -outsize 25% 25% -r average INPUT OUTPUT.tif"
         );
         return Ok(());
     }
     let mut command = "Start with: ridgelight render".to_owned();
     for path in &args.input.path {
-        command += &format!(" {}", path.display());
+        command += &format!(" {}", setup::terminal::quoted(&path.display().to_string()));
     }
     let FieldArgs { cell, z_scale, nodata, band, mut bbox, .. } = args.surface;
     if let Some([x, y]) = cell {
@@ -161,7 +161,7 @@ fn say_start(args: &InfoArgs, field: &HeightField, at: Option<&Georeference>) ->
         command += &format!(" --bbox {west},{south},{east},{north}");
     }
     if let Some(device) = &args.global.device {
-        command += &format!(" --device {device}");
+        command += &format!(" --device {}", setup::terminal::quoted(device));
     }
     match (start, args.global.memory_budget) {
         (Start::Budget(gib), _) => command += &format!(" --memory-budget {gib}GiB"),

@@ -32,7 +32,11 @@ pub fn start(
     limits: &Limits,
     is_given: bool,
 ) -> (Start, Option<Error>) {
-    let Err(why) = bytes(field, limits) else { return (Start::Whole, None) };
+    let whole = match scene(field) {
+        Ok(scene) => scene,
+        Err(why) => return (Start::Nothing, Some(why)),
+    };
+    let Err(why) = bytes(&whole, limits) else { return (Start::Whole, None) };
     // The budget of a software driver is no memory that exists, that of a GPU half of what exists.
     let most = match limits {
         _ if is_given => 0,
@@ -40,16 +44,16 @@ pub fn start(
         Limits { memory_budget, .. } => memory_budget.saturating_mul(2),
     };
     // None where no device can hold the field.
-    let least = bytes(field, &Limits::boundless(limits.is_cpu, 1 << 50)).ok();
+    let least = bytes(&whole, &Limits::boundless(limits.is_cpu, 1 << 50)).ok();
     let first = least.map(|least| least.max(limits.memory_budget).div_ceil(GIB));
     let all = first.into_iter().flat_map(|first| first..first + TRIES);
-    let fits = |gib: &u64| bytes(field, &Limits { memory_budget: gib * GIB, ..*limits }).is_ok();
+    let fits = |gib: &u64| bytes(&whole, &Limits { memory_budget: gib * GIB, ..*limits }).is_ok();
     if let Some(gib) = all.take_while(|gib| gib * GIB <= most).find(fits) {
         return (Start::Budget(gib), Some(why));
     }
     let part = at.and_then(|at| {
         let all = (1..usize::BITS).map_while(|halvings| middle(field, halvings));
-        let fits = |(part, _): &(HeightField, [usize; 2])| bytes(part, limits).is_ok();
+        let fits = |(part, _): &(HeightField, [usize; 2])| bytes_of(part, limits).is_ok();
         let (part, [top, left]) = all.into_iter().find(fits)?;
         let [west, north] =
             [at.corner[0] + left as f64 * at.cell[0], at.corner[1] - top as f64 * at.cell[1]];
@@ -71,7 +75,11 @@ fn middle(field: &HeightField, halvings: u32) -> Option<(HeightField, [usize; 2]
 }
 
 /// Memory of `render -o picture.png` with its default light, tint and settings.
-pub fn bytes(field: &HeightField, limits: &Limits) -> Result<u64> {
+pub fn bytes_of(field: &HeightField, limits: &Limits) -> Result<u64> {
+    bytes(&scene(field)?, limits)
+}
+
+fn scene(field: &HeightField) -> Result<Scene> {
     let mut lights = Lights::default();
     let sun = setup::sky::default_sun(None);
     light("sun").add(&mut lights, &sun).expect("words of a sun");
@@ -79,9 +87,12 @@ pub fn bytes(field: &HeightField, limits: &Limits) -> Result<u64> {
     // Any colours: those of a tint take as much memory.
     let albedo = Albedo::Map(vec![[0.1, 0.2, 0.3]; field.rows() * field.cols()]);
     let surface = Surface { albedo, ..Surface::default() };
-    let scene = Scene { field: field.clone(), surface, lights };
+    Ok(Scene { field: field.clone(), surface, lights })
+}
+
+fn bytes(scene: &Scene, limits: &Limits) -> Result<u64> {
     let wanted = Picture { still: true, ..Picture::default() };
-    Ok(plan::picture(&scene, &Quality::default(), limits, wanted)?.bytes())
+    Ok(plan::picture(scene, &Quality::default(), limits, wanted)?.bytes())
 }
 
 #[cfg(test)]
@@ -96,7 +107,7 @@ mod tests {
         let device = Limits::lavapipe();
         let started = |limits: &Limits, is_given| start(&field, Some(&at), limits, is_given);
         assert!(matches!(started(&device, false), (Start::Whole, None)));
-        let poor = Limits { memory_budget: bytes(&field, &device).unwrap() - 1, ..device };
+        let poor = Limits { memory_budget: bytes_of(&field, &device).unwrap() - 1, ..device };
         assert!(matches!(started(&poor, false), (Start::Budget(1), Some(_))));
         // Half of 200 columns and of 96 rows, a quarter from each edge.
         let middle = [1000.0, 240.0, 2000.0, 720.0];

@@ -26,9 +26,26 @@ pub fn digits(x: f64) -> String {
     if places > 9 { format!("{x:.2e}") } else { format!("{x:.places$}") }
 }
 
+/// A word as a POSIX shell takes it.
+pub fn quoted(word: &str) -> String {
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_=+,./:@%".contains(c);
+    if !word.is_empty() && word.chars().all(is_plain) {
+        return word.to_owned();
+    }
+    format!("'{}'", word.replace('\'', "'\\''"))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn words_of_a_shell_are_quoted() {
+        assert_eq!(quoted("--sun=315,30"), "--sun=315,30");
+        assert_eq!(quoted("my dem.tif"), "'my dem.tif'");
+        assert_eq!(quoted("it's"), "'it'\\''s'");
+        assert_eq!(quoted(""), "''");
+    }
 
     #[test]
     fn three_digits_are_shown() {

@@ -9,6 +9,8 @@ use ridgelight::{Error, Result};
 use ridgelight_io as files;
 use serde_json::{Value, json};
 
+use crate::bench::tune;
+
 /// The folder for caches, as the user's system names it.
 pub fn caches() -> Option<PathBuf> {
     let var = |name: &str| std::env::var_os(name).map(PathBuf::from).filter(|p| p.is_absolute());
@@ -45,18 +47,19 @@ pub fn limits(device: &DeviceReport, memory_budget: Option<u64>) -> Limits {
     Limits { sweep, memory_budget, ..device.limits }
 }
 
-/// The form of an earlier `tune`. A file that cannot be read is none.
+/// The form of an earlier `tune`. A file that cannot be read, or with a form that `tune` does not try, is none.
 fn find(device: &DeviceReport) -> Option<SweepForm> {
     let kept: Value = serde_json::from_slice(&std::fs::read(place(device)?).ok()?).ok()?;
     let number = |key: &str| kept[key].as_u64().and_then(|n| u32::try_from(n).ok());
-    Some(SweepForm {
+    let form = SweepForm {
         lines_each: number("lines_each")?,
         group_size: number("group_size")?,
         shares_hull: kept["shares_hull"].as_bool()?,
         hull_depth: number("hull_depth")?,
         private_depth: number("private_depth")?,
         azimuths: number("azimuths")?,
-    })
+    };
+    tune::is_tried(form, device.limits.sweep).then_some(form)
 }
 
 /// Keeps a form for later commands.

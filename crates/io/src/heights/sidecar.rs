@@ -165,9 +165,11 @@ impl Crs {
             _ => return None,
         };
         let name = rest.split('"').nth(1)?.to_owned();
-        let code = last_code(text).or_else(|| code_named(&name));
+        let parts = parts(text)?;
+        let code = parts.iter().find_map(|part| code_of(part)).or_else(|| code_named(&name));
         // The unit of a projected system comes after that of its geographic system.
-        let unit = text.rsplit("UNIT[").next()?.split(',').nth(1)?;
+        let with_unit = parts.iter().rev().find(|part| part.contains("UNIT["))?;
+        let unit = with_unit.rsplit("UNIT[").next()?.split(',').nth(1)?;
         let unit = unit.trim().split(']').next()?.trim().parse::<f64>().ok();
         let unit_m = code.filter(|_| !is_geographic).and_then(projection::unit_m).or(unit)?;
         let is_unit = match is_geographic {
@@ -178,11 +180,38 @@ impl Crs {
     }
 }
 
-/// The code behind all else: `AUTHORITY["EPSG","32632"]]`, or `ID["EPSG",32632]]`.
-fn last_code(text: &str) -> Option<u16> {
-    let code = text.rsplit_once("\"EPSG\",")?.1;
-    let code = code.trim_matches(|c: char| c == '"' || c == ']' || c.is_whitespace());
-    code.parse().ok()
+/// What is directly inside the first brackets of a WKT text: `"x"` and `UNIT["m",1]` of `PROJCS["x",UNIT["m",1]]`. What follows
+/// them, as a vertical system, is left out.
+fn parts(text: &str) -> Option<Vec<&str>> {
+    let first = text.find('[')? + 1;
+    let mut begin = first;
+    let (mut depth, mut is_quoted, mut all) = (0, false, Vec::new());
+    for (i, c) in text.char_indices().filter(|(i, _)| *i >= first) {
+        match c {
+            '"' => is_quoted = !is_quoted,
+            _ if is_quoted => {}
+            '[' => depth += 1,
+            ',' | ']' if depth == 0 => {
+                all.push(text[begin..i].trim());
+                begin = i + 1;
+                if c == ']' {
+                    return Some(all);
+                }
+            }
+            ']' => depth -= 1,
+            _ => {}
+        }
+    }
+    None
+}
+
+/// The code of a part that is an identifier: `AUTHORITY["EPSG","32632"]`, or `ID["EPSG",32632]`.
+fn code_of(part: &str) -> Option<u16> {
+    let is_identifier = part.starts_with("AUTHORITY[") || part.starts_with("ID[");
+    let of = parts(part).filter(|_| is_identifier)?;
+    let [authority, code, ..] = of[..] else { return None };
+    let code = code.trim_matches('"').trim();
+    code.parse().ok().filter(|_| authority == "\"EPSG\"")
 }
 
 /// ESRI's names, which its `.prj` has instead of codes.
@@ -223,6 +252,12 @@ mod tests {
         assert_eq!(found(WKT1), Some((Some(2263), false, 3048.0)));
         assert_eq!(found(WKT2), Some((Some(4258), true, 175.0)));
         assert_eq!(found(OWN), Some((None, false, 3048.0)));
+        // A unit's code is not the system's, nor are code and unit of a vertical system.
+        let of_unit = OWN.replace("0.3048]", "0.3048,AUTHORITY[\"EPSG\",\"9002\"]]");
+        assert_eq!(found(&of_unit), Some((None, false, 3048.0)));
+        let vertical = r#",VERTCS["NAVD88",UNIT["Foot_US",0.3],AUTHORITY["EPSG","6360"]]"#;
+        assert_eq!(found(&format!("{OWN}{vertical}")), Some((None, false, 3048.0)));
+        assert_eq!(found(&format!("{UTM}{vertical}")), Some((Some(32632), false, 1e4)));
         for text in
             ["", "[", "PROJCS", "PROJCS[\"x\"]", "LOCAL_CS[\"x\",UNIT[\"m\",1]]", "Projection UTM"]
         {
@@ -266,7 +301,7 @@ mod tests {
         };
         assert_eq!(read_field(&path, &part).unwrap().field.cols(), 1);
         std::fs::write(path.with_extension("prj"), OWN).unwrap();
-        assert!(has("no EPSG code of mine"));
+        assert!(has("no EPSG code for mine"));
         assert!((read().field.cell_m()[0] - 9.144).abs() < 1e-9);
         for text in ["30 1 0 -20 0 0", "30 0 0 -20 0", "30 0 0 20 0 0", "", "30 0 0 -20 x 0"] {
             std::fs::write(path.with_extension("pgw"), text).unwrap();

@@ -157,22 +157,23 @@ impl<'a> Image<'a> {
         // `tiff` and the LZW decoder hold a chunk as packed bytes, as bytes and as samples.
         open::room(path, self.chunk_bytes.saturating_mul(3))?;
         let across = cols.div_ceil(width);
-        let a_plane = across * rows.div_ceil(height);
+        let a_plane = across.saturating_mul(rows.div_ceil(height));
         let zeros = |_| open::zeros::<T>(path, lines * columns);
         let mut planes = bands.clone().map(zeros).collect::<Result<Vec<_>>>()?;
         let mut single = false;
         let parts = if self.is_planar { bands.clone() } else { 0..1 };
-        for (part, chunk) in parts.flat_map(|part| (0..a_plane).map(move |chunk| (part, chunk))) {
-            let index = u32::try_from(part * a_plane + chunk)
-                .map_err(|_| wrong("more than 2^32 strips or tiles".into()))?;
-            let corner = [chunk / across * height, chunk % across * width];
-            let is_within = |axis: usize| {
-                let Range { start, end } = self.window[axis];
-                corner[axis] < end && corner[axis] + self.chunk[axis] > start
-            };
-            if !is_within(0) || !is_within(1) {
-                continue;
-            }
+        // Strips or tiles that meet the window, by their place along an axis.
+        let within = |axis: usize| {
+            let Range { start, end } = self.window[axis];
+            start / self.chunk[axis]..end.div_ceil(self.chunk[axis])
+        };
+        let chunks = within(0).flat_map(|down| within(1).map(move |along| [down, along]));
+        for (part, [down, along]) in parts.flat_map(|p| chunks.clone().map(move |c| (p, c))) {
+            let chunk = down * across + along;
+            let index = part.checked_mul(a_plane).and_then(|first| first.checked_add(chunk));
+            let index = index.and_then(|index| u32::try_from(index).ok());
+            let index = index.ok_or_else(|| wrong("more than 2^32 strips or tiles".into()))?;
+            let corner = [down * height, along * width];
             let (inside, lines) = tiff.chunk_data_dimensions(index);
             let lines = (lines as usize).min(rows - corner[0]);
             let target = Target { corner, inside: inside as usize, lines, window: &self.window };

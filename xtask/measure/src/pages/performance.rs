@@ -93,20 +93,24 @@ pub fn performance() -> Result<String> {
     }
     out += "\n## Time against size, azimuths and bounces\n\n\
             ![Time of a frame against the side of the field, azimuths and bounces](../pictures/performance.svg)\n\n\
-            | field | azimuths | frame, ms | ms per azimuth and 2^20 texels |\n|---|---|---|---|\n";
+            | field | azimuths | frame, ms | 95 % interval of the median | ms per azimuth and 2^20 texels |\n\
+            |---|---|---|---|---|\n";
     for row in ["sizes", "azimuths"].iter().flat_map(|name| rows(&figures.all["reports"][*name])) {
         let [cols, azimuths] = figures.numbers(row, "cols azimuths")?;
         let ms = ms(&figures, row, "median_ns")?;
         let each = ms / azimuths / (cols * cols / f64::from(1 << 20));
-        out += &format!("| {cols}² | {azimuths} | {ms:.1} | {each:.2} |\n");
+        let interval = interval(&figures, row)?;
+        out += &format!("| {cols}² | {azimuths} | {ms:.1} | {interval} | {each:.2} |\n");
     }
-    out += "\n| bounces, 512 × 512, 64 azimuths, 32 bounce azimuths, every 2nd texel | frame, ms |\n|---|---|\n";
+    out += "\n| bounces, 512 × 512, 64 azimuths, 32 bounce azimuths, every 2nd texel | frame, ms | 95 % interval of the median |\n|---|---|---|\n";
     for count in 0..=4 {
         let report = &figures.all["reports"][format!("bounces{count}")];
         let total = rows(report).iter().find(|r| r["pass"] == "total" && is(r, "overlapped"));
         let total = total.ok_or_else(|| missing(&figures, "total"))?;
-        out += &format!("| {count} | {:.1} |\n", ms(&figures, total, "median_ns")?);
+        let interval = interval(&figures, total)?;
+        out += &format!("| {count} | {:.1} | {interval} |\n", ms(&figures, total, "median_ns")?);
     }
+    out += "\nWhere an interval spans more than a tenth of its median, the machine was noisy.\n";
     let [device, driver, cpu, load, ended, commit] =
         ["device", "driver", "cpu", "load", "ended", "commit"]
             .map(|key| figures.word(&figures.all, key));
@@ -133,6 +137,12 @@ fn label(row: &Value) -> String {
 
 fn ms(figures: &Figures, row: &Value, key: &str) -> Result<f64> {
     Ok(figures.number(row, key)? * 1e-6)
+}
+
+/// Ends of the median's interval, ms.
+fn interval(figures: &Figures, row: &Value) -> Result<String> {
+    let [low, high] = figures.numbers::<2>(row, "median_low_ns median_high_ns")?;
+    Ok(format!("{:.1} to {:.1}", low * 1e-6, high * 1e-6))
 }
 
 fn missing(figures: &Figures, name: &str) -> String {

@@ -116,7 +116,8 @@ impl App<'_> {
         words.extend(self.state.asked(shown.size, &shown.limits, None).words());
         words.push(format!("--exposure={}", self.state.exposure()));
         words.extend(["-o".to_owned(), self.free_name("png").display().to_string()]);
-        let line = words.iter().map(|word| quoted(word)).collect::<Vec<_>>().join(" ");
+        let line =
+            words.iter().map(|word| setup::terminal::quoted(word)).collect::<Vec<_>>().join(" ");
         let copied = match &mut self.clipboard {
             Some(clipboard) => clipboard.set_text(&line),
             none => arboard::Clipboard::new()
@@ -164,26 +165,4 @@ pub fn save_pixels(path: &Path, [width, height]: [u32; 2], pixels: &[[u8; 4]]) -
         pixels.iter().map(|p| [p[0], p[1], p[2]].map(|c| steps[usize::from(c)])).collect();
     let (rows, cols) = (height as usize, width as usize);
     files::write_png(path, rows, cols, &light, None, Tone::default(), &[])
-}
-
-/// A word as a POSIX shell takes it.
-fn quoted(word: &str) -> String {
-    let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_=+,./:@%".contains(c);
-    if !word.is_empty() && word.chars().all(is_plain) {
-        return word.to_owned();
-    }
-    format!("'{}'", word.replace('\'', "'\\''"))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::quoted;
-
-    #[test]
-    fn words_of_a_shell_are_quoted() {
-        assert_eq!(quoted("--sun=315,30"), "--sun=315,30");
-        assert_eq!(quoted("my dem.tif"), "'my dem.tif'");
-        assert_eq!(quoted("it's"), "'it'\\''s'");
-        assert_eq!(quoted(""), "''");
-    }
 }
