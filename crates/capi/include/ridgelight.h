@@ -211,7 +211,7 @@ typedef struct RidgelightScene {
     double eye_m[3];
     // VK_TRUE where specular is viewed from `eye_m`; 0: from straight above.
     uint32_t has_eye;
-    // 0; any other value is an error.
+    // 0.
     uint32_t reserved;
 } RidgelightScene;
 

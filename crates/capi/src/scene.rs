@@ -126,7 +126,7 @@ pub struct RidgelightScene {
     pub eye_m: [f64; 3],
     /// VK_TRUE where specular is viewed from `eye_m`; 0: from straight above.
     pub has_eye: u32,
-    /// 0; any other value is an error.
+    /// 0.
     pub reserved: u32,
 }
 
@@ -140,9 +140,6 @@ unsafe impl SizeFirst for RidgelightScene {}
 pub(crate) unsafe fn scene(from: *const RidgelightScene) -> Done<Scene> {
     // SAFETY: as the caller says, here and below.
     let scene = unsafe { read(from, "scene") }?;
-    if scene.reserved != 0 {
-        return Err(Failure::argument("scene: reserved", scene.reserved.to_string(), "0"));
-    }
     let (rows, cols) = (scene.rows as usize, scene.cols as usize);
     if !(1..=1 << 30).contains(&(u64::from(scene.rows) * u64::from(scene.cols))) {
         let found = format!("{rows} x {cols}");
