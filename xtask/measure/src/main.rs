@@ -51,7 +51,7 @@ const PROGRAMS: [Program; 29] = [
     ("lights", "[SIDE]", lights::run),
     ("lobe", "[SIDE]", specular::direct),
     ("pages", "[--check]", pages::run),
-    ("performance", "PROGRAM -o FILE.svg --json FILE", performance::run),
+    ("performance", "PROGRAM|--redraw -o FILE.svg --json FILE", performance::run),
     ("picture", "-o PICTURE.png --json FILE", pictures::picture),
     ("reference", "DEVICE", suites::reference),
     ("rivals", "FOLDER [--side N] [--runs K] [-o FILE.svg]", soft::rivals::run),

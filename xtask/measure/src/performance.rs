@@ -34,9 +34,14 @@ pub const FORMS: [&str; 5] = [
     "horizon_march brute",
 ];
 
-/// Runs all with the program, and writes the reports as one file.
+/// Runs all with the program, and writes the reports as one file; or only draws the plot of such a file again.
 pub fn run(mut args: Args) -> Outcome {
     let (output, json_path) = (args.needed("-o")?, args.needed("--json")?);
+    if args.has("--redraw") {
+        args.end()?;
+        let all: Value = serde_json::from_slice(&std::fs::read(&json_path)?)?;
+        return Ok(plot::write(Some(&output), &panels(&all))?);
+    }
     let program = args.folder().ok_or("expected the program")?;
     args.end()?;
     let scratch = PathBuf::from("out");
@@ -118,7 +123,13 @@ fn panels(all: &Value) -> Vec<Panel> {
             x: "bounces",
             y: "ms",
             curves: bounces,
-            linear: Some([5.0, 1.2 * most]),
+            linear: Some([5.0, round_above(most)]),
         },
     ]
+}
+
+/// The next of 1, 2 and 5 times a power of ten.
+fn round_above(most: f64) -> f64 {
+    let decade = 10_f64.powf(most.max(1e-3).log10().floor());
+    [1.0, 2.0, 5.0, 10.0].map(|m| m * decade).into_iter().find(|end| *end >= most).unwrap_or(most)
 }
