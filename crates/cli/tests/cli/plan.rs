@@ -224,7 +224,7 @@ fn gpu_fields_beyond_the_device_have_hillshades() {
     succeeded(&folder, "hillshade wide.npy -o shade.npy");
     let info = succeeded(&folder, "info wide.npy");
     assert!(info.out.contains("cannot render the whole field by default"), "{}", info.out);
-    assert!(info.out.contains("Start with fewer grid points"), "{}", info.out);
+    assert!(info.out.contains("Reduce the grid first: "), "{}", info.out);
     refused(&folder, &[("ao wide.npy -o ao.npy", 1, &["33000"])]);
 }
 
