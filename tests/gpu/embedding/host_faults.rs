@@ -91,7 +91,7 @@ fn a_family_that_does_not_exist_or_cannot_compute_is_refused() {
     let beyond = Host { queue_family: u32::MAX, ..own.clone() };
     for found in [make(&beyond), look(&beyond)] {
         let (start, end) =
-            ("host: queue_family: found 4294967295, expected less than ", "families");
+            ("host: queue_family: found 4294967295, expected an index below ", "families");
         assert!(found.starts_with(start) && found.ends_with(end), "{found}");
     }
     let of = |family| with_families(own, family, three_families);
