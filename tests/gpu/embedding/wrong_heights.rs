@@ -2,11 +2,16 @@
 //! next recording, and nothing worse.
 
 use ridgelight::plan::{self, Limits, Picture, Rectangle, SweepForm};
-use ridgelight::scene::{Border, HeightField, Method, Quality, Sun};
+use ridgelight::scene::{Border, HeightField, Method, Quality, Scene, Sun};
 
 use crate::{Device, bits, field, under_sky};
 
 const SIDE: usize = 32;
+
+fn rough_under_sky() -> Scene {
+    let heights = field(SIDE, SIDE, [1.0, 1.0], |r, c| ((r * 31 + c * 17) % 7) as f64);
+    under_sky(heights, Border::Plane)
+}
 
 #[test]
 fn heights_of_the_host_that_are_not_finite_are_refused_by_place() {
@@ -25,8 +30,7 @@ fn heights_of_the_host_that_are_not_finite_are_refused_by_place() {
 fn heights_of_the_device_that_are_not_finite_spoil_one_recording() {
     let mut device = Device::new();
     let limits = device.limits();
-    let heights = field(SIDE, SIDE, [1.0, 1.0], |r, c| ((r * 31 + c * 17) % 7) as f64);
-    let under_sky = under_sky(heights, Border::Plane);
+    let under_sky = rough_under_sky();
     let mut under_sun = under_sky.clone();
     under_sun.lights.suns = vec![Sun {
         azimuth_rad: 2.0,
@@ -81,8 +85,7 @@ fn heights_of_the_device_that_are_not_finite_spoil_one_recording() {
 fn kept_horizons_are_right_again_after_a_whole_recording() {
     let mut device = Device::new();
     let limits = device.limits();
-    let heights = field(SIDE, SIDE, [1.0, 1.0], |r, c| ((r * 31 + c * 17) % 7) as f64);
-    let scene = under_sky(heights, Border::Plane);
+    let scene = rough_under_sky();
     let texels = scene.field.heights_m().to_vec();
     let quality = Quality { azimuths: 8, ..Quality::default() };
     let wanted = Picture { keeps_horizons: true, ..Picture::default() };

@@ -342,6 +342,20 @@ pub fn view_by_rust(gpu: &mut Headless, field: &HeightField) -> (Frame, View, Ca
     (frame, view, at)
 }
 
+/// The camera of [`view_by_rust`].
+pub fn camera_of(at: &Camera) -> RidgelightCamera {
+    RidgelightCamera {
+        samples: 1,
+        size: SIZE,
+        azimuth_rad: at.azimuth_rad,
+        elevation_rad: at.elevation_rad,
+        target_m: at.target_m,
+        distance_m: at.distance_m,
+        fov_rad: 0.8,
+        ..zeroed()
+    }
+}
+
 /// A camera picture, heights from a buffer and from an image: the library's own, byte for byte.
 #[test]
 fn a_camera_of_c_draws_the_bytes_of_rust() {
@@ -353,16 +367,7 @@ fn a_camera_of_c_draws_the_bytes_of_rust() {
     let target = Target::new(&lent);
     let bytes: Vec<u8> = field.heights_m().iter().flat_map(|v| v.to_ne_bytes()).collect();
     let buffer = Staging::new(gpu.host(), &bytes);
-    let camera = RidgelightCamera {
-        samples: 1,
-        size: SIZE,
-        azimuth_rad: at.azimuth_rad,
-        elevation_rad: at.elevation_rad,
-        target_m: at.target_m,
-        distance_m: at.distance_m,
-        fov_rad: 0.8,
-        ..zeroed()
-    };
+    let camera = camera_of(&at);
     let [of_heights, of_light, of_picture] =
         [&frame.inputs()[0], &frame.outputs()[0], &target.arg()].map(image);
     let (mut plan, mut view, mut renderer) = (ptr::null_mut(), ptr::null_mut(), ptr::null_mut());

@@ -11,7 +11,9 @@ use ridgelight::scene::{
 };
 use ridgelight_c::*;
 
-use crate::abi::{SIDE, device, good, heights, image, refused, scene, view_by_rust, zeroed};
+use crate::abi::{
+    SIDE, camera_of, device, good, heights, image, refused, scene, view_by_rust, zeroed,
+};
 use crate::target::{FORMAT, SIZE, Target};
 
 fn field() -> HeightField {
@@ -120,18 +122,7 @@ fn a_c_plinth_matches_rust() {
     let target = Target::new(&of_device);
     let [of_heights, of_light, of_picture] =
         [&frame.inputs()[0], &frame.outputs()[0], &target.arg()].map(image);
-    let camera = RidgelightCamera {
-        samples: 1,
-        size: SIZE,
-        azimuth_rad: at.azimuth_rad,
-        elevation_rad: at.elevation_rad,
-        target_m: at.target_m,
-        distance_m: at.distance_m,
-        fov_rad: 0.8,
-        plinth_base_m: -9.0,
-        has_plinth: 1,
-        ..zeroed()
-    };
+    let camera = RidgelightCamera { plinth_base_m: -9.0, has_plinth: 1, ..camera_of(&at) };
     let images = RidgelightViewImages {
         heights: &of_heights,
         radiance: &of_light,

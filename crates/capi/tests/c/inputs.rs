@@ -8,8 +8,10 @@ use ridgelight::plan::{self, Picture};
 use ridgelight::scene::{HeightField, Lights, Quality, Scene, Sun, Surface};
 use ridgelight_c::*;
 
-use crate::abi::{SIDE, device, good, heights, image, refused, scene, view_by_rust, zeroed};
-use crate::target::{FORMAT, Input, SIZE, Target};
+use crate::abi::{
+    SIDE, camera_of, device, good, heights, image, refused, scene, view_by_rust, zeroed,
+};
+use crate::target::{FORMAT, Input, Target};
 
 fn bytes(values: &[f32]) -> Vec<u8> {
     values.iter().flat_map(|v| v.to_ne_bytes()).collect()
@@ -68,16 +70,7 @@ fn voids_of_c_are_filled_and_masked() {
     let target = Target::new(&of_device);
     let [of_heights, of_light, of_picture, of_voids] =
         [&frame.inputs()[0], &frame.outputs()[0], &target.arg(), &lent.arg()].map(image);
-    let camera = RidgelightCamera {
-        samples: 1,
-        size: SIZE,
-        azimuth_rad: at.azimuth_rad,
-        elevation_rad: at.elevation_rad,
-        target_m: at.target_m,
-        distance_m: at.distance_m,
-        fov_rad: 0.8,
-        ..zeroed()
-    };
+    let camera = camera_of(&at);
     let (mut plan, mut view) = (ptr::null_mut(), ptr::null_mut());
     // SAFETY: structs and handles of this function, alive until its end.
     unsafe {
