@@ -3,6 +3,7 @@
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::time::Duration;
 
 use ridgelight_io as files;
 use serde_json::{Value, json};
@@ -10,6 +11,10 @@ use serde_json::{Value, json};
 use crate::common::Outcome;
 use crate::common::args::Args;
 use crate::common::plot::{self, Curve, Panel, Style, curve};
+
+/// The average over a minute below which a machine is quiet, and how often it is asked, 10 s apart.
+const QUIET: f64 = 0.3;
+const WAITS: usize = 60;
 
 /// Name and arguments of each report. Commas are between flags, semicolons in lists.
 const REPORTS: [(&str, &str); 10] = [
@@ -46,7 +51,7 @@ pub fn run(mut args: Args) -> Outcome {
     args.end()?;
     let scratch = PathBuf::from("out");
     std::fs::create_dir_all(&scratch)?;
-    let mut all = json!({ "cpu": cpu(), "load": load() });
+    let mut all = json!({ "cpu": cpu(), "load": quiet_load()? });
     for (name, words) in REPORTS {
         let report = reported(&program, words, &scratch.join("performance.json"))?;
         for key in ["device", "driver", "commit"] {
@@ -91,10 +96,19 @@ fn cpu() -> String {
     format!("{cores} cores of {name}")
 }
 
-/// Of the machine, before the first report.
-fn load() -> String {
-    let text = std::fs::read_to_string("/proc/loadavg").unwrap_or_default();
-    text.split(' ').take(3).collect::<Vec<_>>().join(" ")
+/// The load of the machine, once it is quiet: the build before it has raised it.
+fn quiet_load() -> std::result::Result<String, String> {
+    for _ in 0..WAITS {
+        let text = std::fs::read_to_string("/proc/loadavg").unwrap_or_default();
+        let load: Vec<&str> = text.split(' ').take(3).collect();
+        // Where the system does not state it, it is not known.
+        let now = load.first().and_then(|now| now.parse().ok()).unwrap_or(0.0_f64);
+        if now < QUIET {
+            return Ok(load.join(" "));
+        }
+        std::thread::sleep(Duration::from_secs(10));
+    }
+    Err(format!("the load stays above {QUIET} for 10 minutes: measure on a quiet machine"))
 }
 
 /// Time against the field's side, the azimuths and the bounces.
