@@ -94,14 +94,15 @@ vec4 three_bands() {
 }
 
 void main() {
-    ivec2 at = ivec2(gl_GlobalInvocationID.xy);
+    ivec2 at = ivec2(gl_GlobalInvocationID.xy) + ivec2(0, first_row);
     ivec2 nodes = ivec2(node_count(cols, NODE_STRIDE), node_count(rows, NODE_STRIDE));
     bool exists = at.x < nodes.x && at.y < nodes.y;
     here = min(at * NODE_STRIDE, ivec2(cols, rows) - 1);
     vec4 own = texelFetch(ground, here, 0);
     float up = inversesqrt(1.0 + own.y * own.y + own.z * own.z);
     find_own_heights();
-    vec4 sum = vec4(0.0);
+    vec4 before = imageLoad(bounce_sum, min(at, nodes - 1));
+    vec4 sum = mix(vec4(0.0), before, bvec4(first_azimuth > 0));
     for (int k = first_azimuth; k < last_azimuth; k++) {
         vec2 e = turn_march(k, azimuths, vec2(cell_x_m, cell_y_m));
         // Rise of the grid point's own tangent plane along the azimuth.
@@ -122,9 +123,6 @@ void main() {
         sum += vec4(indirect, whole);
     }
     if (exists) {
-        vec4 before = imageLoad(bounce_sum, at);
-        vec4 both = before + sum;
-        sum = first_azimuth > 0 ? both : sum;
         // Weights over a whole hemisphere sum to 1: uniform incident radiance is preserved.
         vec4 light = vec4(max(sum.rgb, vec3(0.0)) / max(sum.a, 1e-30), 1.0);
         bool is_whole = last_azimuth == azimuths;

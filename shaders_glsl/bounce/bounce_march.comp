@@ -36,6 +36,7 @@ layout(push_constant) uniform BounceMarchPush {
     int azimuths;       // in the circle, at the middles of equal parts
     int first_azimuth;  // of this dispatch
     int last_azimuth;   // exclusive
+    int first_row;      // of this dispatch, in nodes
 };
 
 #include "rays/walk.glsl"
@@ -162,14 +163,15 @@ void march(Ray ray, bool going) {
 }
 
 void main() {
-    ivec2 at = ivec2(gl_GlobalInvocationID.xy);
+    ivec2 at = ivec2(gl_GlobalInvocationID.xy) + ivec2(0, first_row);
     ivec2 nodes = ivec2(node_count(land.cols, NODE_STRIDE), node_count(land.rows, NODE_STRIDE));
     bool exists = at.x < nodes.x && at.y < nodes.y;
     ivec2 here = min(at * NODE_STRIDE, ivec2(land.cols, land.rows) - 1);
     vec4 own = texelFetch(ground, here, 0);
     float up = inversesqrt(1.0 + own.y * own.y + own.z * own.z);
     bool is_line = THIN_ROWS || THIN_COLS;
-    vec4 sum = vec4(0.0);
+    vec4 before = imageLoad(bounce_sum, min(at, nodes - 1));
+    vec4 sum = mix(vec4(0.0), before, bvec4(first_azimuth > 0));
     for (int k = first_azimuth; k < last_azimuth; k++) {
         // Half a turn counted from west, in halves: the sines' range.
         float half_turn = PI * ((float(k) + 0.5) / float(azimuths) - 0.5);
@@ -194,9 +196,6 @@ void main() {
         sum += vec4(indirect, light_between(facing, direction_of(own_slope), vec2(0.0, 1.0)));
     }
     if (exists) {
-        vec4 before = imageLoad(bounce_sum, at);
-        vec4 both = before + sum;
-        sum = first_azimuth > 0 ? both : sum;
         // Weights over a whole hemisphere sum to 1: uniform incident radiance is preserved.
         vec4 light = vec4(sum.rgb / max(sum.a, 1e-30), 1.0);
         bool is_whole = last_azimuth == azimuths;

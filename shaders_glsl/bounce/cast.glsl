@@ -22,6 +22,7 @@ layout(push_constant) uniform GatherPush {
     int shade_shift;
     int step_shade;     // levels per octave of radiance, and of heights
     int step_height;
+    int first_row;      // of this dispatch, in rows of invocations
 };
 
 #include "shared/angle.glsl"

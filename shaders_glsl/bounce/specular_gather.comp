@@ -194,7 +194,7 @@ void add_knots() {
 }
 
 void main() {
-    ivec2 at = ivec2(gl_GlobalInvocationID.xy);
+    ivec2 at = ivec2(gl_GlobalInvocationID.xy) + ivec2(0, first_row);
     bool exists = at.x < cols && at.y < rows;
     here = min(at, ivec2(cols, rows) - 1);
     vec4 own = texelFetch(ground, here, 0);

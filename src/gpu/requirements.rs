@@ -240,6 +240,8 @@ pub(crate) fn report(
     let local = heaps.iter().filter(|h| h.flags.contains(vk::MemoryHeapFlags::DEVICE_LOCAL));
     let heap = local.map(|h| h.size).max().unwrap_or(0);
     let is_cpu = core.device_type == vk::PhysicalDeviceType::CPU;
+    let is_swiftshader = driver.driver_id == vk::DriverId::GOOGLE_SWIFTSHADER;
+    let sweep = SweepForm::of_device(is_cpu, is_swiftshader);
     let text = |bytes: &CStr| bytes.to_string_lossy().into_owned();
     let version = core.api_version;
     DeviceReport {
@@ -274,7 +276,8 @@ pub(crate) fn report(
             is_cpu,
             lookups: if is_cpu { u64::MAX } else { GPU_LOOKUPS },
             memory_budget: if is_cpu { heap } else { heap / 2 },
-            sweep: SweepForm::of_device(is_cpu),
+            sweep,
+            untuned_sweep: sweep,
         },
         subgroup_size: subgroups.subgroup_size,
         timestamp_period_ns: if compute.is_some_and(|f| f.timestamp_valid_bits > 0) {

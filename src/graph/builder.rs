@@ -1,5 +1,32 @@
+use std::ops::Range;
+
 use crate::graph::shaders::{Specialise, Specialised};
-use crate::graph::{Format, Kind, Owner, Pass, Resource, ResourceId};
+use crate::graph::{Format, Kind, Limits, Owner, Pass, Resource, ResourceId};
+
+/// Part of a dispatch.
+#[derive(Clone)]
+pub(crate) struct Part {
+    /// Or other slices.
+    pub azimuths: Range<u32>,
+    /// Of invocations.
+    pub rows: Range<u32>,
+}
+
+impl Part {
+    /// The label of the dispatch, with what this is of all its azimuths, called so, and rows.
+    pub(crate) fn label(&self, of: &str, name: &str, all: &Range<u32>, height: u32) -> String {
+        let mut label = of.to_owned();
+        let Self { azimuths, rows } = self;
+        if azimuths != all {
+            let [from, to] = [azimuths.start, azimuths.end].map(|k| k - all.start);
+            label += &format!(" {name} {from}..{to}");
+        }
+        if *rows != (0..height) {
+            label += &format!(" rows {}..{}", rows.start, rows.end);
+        }
+        label.trim().to_owned()
+    }
+}
 
 /// Collects the resources and passes of a plan.
 pub(crate) struct Builder {
@@ -9,11 +36,47 @@ pub(crate) struct Builder {
     pub(crate) constants: Vec<f32>,
     /// Passes of an edit; `None` before [`begin_edits`](Self::begin_edits).
     pub(crate) edit_passes: Option<Vec<Pass>>,
+    /// [`Limits::lookups`].
+    pub(crate) lookups: u64,
 }
 
 impl Builder {
-    pub(crate) fn new() -> Self {
-        Self { resources: Vec::new(), passes: Vec::new(), constants: Vec::new(), edit_passes: None }
+    pub(crate) fn new(limits: &Limits) -> Self {
+        Self {
+            resources: Vec::new(),
+            passes: Vec::new(),
+            constants: Vec::new(),
+            edit_passes: None,
+            lookups: limits.lookups,
+        }
+    }
+
+    /// Parts of a dispatch, as azimuths (or other slices) and rows of invocations: each of at most `at_once` azimuths and
+    /// of at most [`Limits::lookups`], or of eight rows of one azimuth. Every invocation takes `each` lookups per azimuth.
+    pub(crate) fn parts(
+        &self,
+        azimuths: Range<u32>,
+        [width, height]: [u32; 2],
+        each: u64,
+        at_once: u32,
+    ) -> Vec<Part> {
+        let of_row = (u64::from(width) * each).max(1);
+        let of_azimuth = (of_row * u64::from(height)).max(1);
+        let at_once = u64::from(at_once.min(azimuths.len() as u32)).max(1);
+        let at_once = (self.lookups / of_azimuth).clamp(1, at_once) as u32;
+        // Whole workgroups.
+        let at_once_rows = (self.lookups / of_row) / 8 * 8;
+        let at_once_rows = at_once_rows.clamp(8, u64::from(height.max(8))) as u32;
+        let mut parts = Vec::new();
+        for first in azimuths.clone().step_by(at_once as usize) {
+            for row in (0..height).step_by(at_once_rows as usize) {
+                parts.push(Part {
+                    azimuths: first..azimuths.end.min(first + at_once),
+                    rows: row..height.min(row + at_once_rows),
+                });
+            }
+        }
+        parts
     }
 
     /// Passes added from here on are those of an edit.

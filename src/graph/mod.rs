@@ -7,7 +7,7 @@ mod reach;
 mod resource;
 pub mod shaders;
 
-pub(crate) use builder::Builder;
+pub(crate) use builder::{Builder, Part};
 pub(crate) use limits::{GPU_LOOKUPS, bytes_text};
 pub use limits::{Limits, SweepForm};
 pub(crate) use pass::place_barriers;

@@ -13,7 +13,7 @@ use crate::{Result, passes};
 /// # Errors
 /// A device without room for it.
 pub fn device_peak(limits: &Limits) -> Result<Plan> {
-    let mut builder = Builder::new();
+    let mut builder = Builder::new(limits);
     passes::device_peak::plan(&mut builder, limits);
     let size = [SIDE, SIDE];
     Plan::finish(builder, size, Vec::new(), Vec::new(), Vec::new(), Vec::new(), limits)

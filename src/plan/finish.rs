@@ -20,7 +20,7 @@ impl Plan {
         settings: Vec<(String, String)>,
         limits: &Limits,
     ) -> Result<Plan> {
-        let Builder { resources, mut passes, constants, edit_passes } = builder;
+        let Builder { resources, mut passes, constants, edit_passes, lookups: _ } = builder;
         let all = edit_passes.iter().flatten().chain(&passes);
         for pass in all {
             let binds = pass.shader.bindings.iter().zip(&pass.bindings);

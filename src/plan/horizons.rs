@@ -44,7 +44,7 @@ pub fn horizons(
         ));
     }
     let layer_azimuths = batch::sort(&mut list).iter().map(|k| k + first).collect();
-    let mut builder = Builder::new();
+    let mut builder = Builder::new(limits);
     let [cols, rows] = size;
     let heights = builder.image("heights", Owner::Input, Format::R32Float, [cols, rows, 1], false);
     let extent = [cols, rows, list.len() as u32];

@@ -13,7 +13,7 @@ use crate::{Result, passes};
 /// A value out of range, or a picture beyond the limits.
 pub fn map(map: &Map, limits: &Limits) -> Result<Plan> {
     map.check()?;
-    let mut builder = Builder::new();
+    let mut builder = Builder::new(limits);
     let mut image = |name: &str, owner: Owner, format: Format, [width, height]: [u32; 2]| {
         builder.image(name, owner, format, [width, height, 1], false)
     };

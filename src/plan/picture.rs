@@ -113,7 +113,7 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     if active.is_grey {
         notes.push("one channel: every colour is grey".into());
     }
-    let mut builder = Builder::new();
+    let mut builder = Builder::new(limits);
     let bounces =
         if active.is_dark() { 0 } else { bounces::needed_bounces(scene, quality, &mut notes) };
     // Sub-sampled bounces need the visibility of the sky; walks find it themselves.

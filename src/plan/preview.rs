@@ -49,7 +49,7 @@ pub fn preview(
         matches!(radiance, Some(Kind::Image { format: Format::R32Float, .. }))
     };
 
-    let mut builder = Builder::new();
+    let mut builder = Builder::new(limits);
     let mut image = |name: &str, owner: Owner, format: Format, of: Grid| {
         let [width, height] = of.size;
         builder.image(name, owner, format, [width, height, 1], false)

@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 use super::Plan;
 use crate::graph::{Builder, Format, Limits, Owner, ResourceId};
-use crate::passes::blocks::Blocks;
+use crate::passes::blocks::{BlockLevels, Blocks};
 use crate::passes::path_trace::{self, BATCH_PATHS};
 use crate::plan::reference::choice::{choice_density, environment_cdf, max_path_light};
 use crate::scene::{ANY_LIGHT, Albedo, Border, KeyLight, Lights, PhongSpecular, Scene, Specular};
@@ -32,7 +32,7 @@ const MOST_BOUNCES: u32 = 64;
 /// # Errors
 /// Bounces, surface or lights out of range; no light; a scene beyond the limits.
 pub fn reference(scene: &Scene, bounces: u32, seed: u32, limits: &Limits) -> Result<Plan> {
-    let rows = band_rows(scene.field.cols() as u32, bounces);
+    let rows = band_rows(scene, bounces, limits);
     traced(scene, (bounces, seed), None, rows, limits)
 }
 
@@ -73,7 +73,7 @@ pub fn reference_at(
         let expected = format!("1 to {all}, as the field has");
         return Err(Error::setting("places of a reference", places.to_string(), expected));
     }
-    let rows = band_rows(scene.field.cols() as u32, bounces);
+    let rows = band_rows(scene, bounces, limits);
     traced(scene, (bounces, seed), Some(places as u32), rows, limits)
 }
 
@@ -123,7 +123,7 @@ fn traced(
     }
     let size = limits.check_size(field.rows(), field.cols())?;
 
-    let mut builder = Builder::new();
+    let mut builder = Builder::new(limits);
     let mut image = |name: &str, owner: Owner, format: Format, [width, height]: [u32; 2]| {
         builder.image(name, owner, format, [width, height, 1], false)
     };
@@ -189,13 +189,20 @@ fn traced(
     Plan::finish(builder, size, Vec::new(), Vec::new(), Vec::new(), used, limits)
 }
 
-/// Approximate number of path vertices per dispatch: tenths of a second on a slow device, below its watchdog.
+/// Approximate number of path vertices per dispatch: a batch can be interrupted after each.
 const BAND_VERTICES: u64 = 1 << 24;
 
-/// Rows of a band, a multiple of 8. Few paths go beyond a few bounces.
-fn band_rows(cols: u32, bounces: u32) -> u32 {
-    let row = u64::from(cols) * u64::from(BATCH_PATHS) * u64::from(bounces.min(3) + 1);
-    (BAND_VERTICES / row / 8 * 8).clamp(8, 1 << 24) as u32
+/// Rows of a band, a multiple of 8, within [`Limits::lookups`] if they can be. Few paths go beyond a few bounces.
+fn band_rows(scene: &Scene, bounces: u32, limits: &Limits) -> u32 {
+    let Scene { field, surface, lights } = scene;
+    let size = [field.cols() as u32, field.rows() as u32];
+    let row = u64::from(size[0]) * u64::from(BATCH_PATHS) * u64::from(bounces.min(3) + 1);
+    // A ray on, and one to each light.
+    let rays = 1 + lights.suns.len() + lights.keys.len() + lights.sphere_lights.len();
+    let rays = rays as u64 + u64::from(lights.environment.is_some());
+    let lookups = row * rays * BlockLevels::of(size, surface.border).lookups();
+    let rows = (BAND_VERTICES / row).min(limits.lookups / lookups);
+    (rows / 8 * 8).clamp(8, 1 << 24) as u32
 }
 
 /// Standard error of unsampled light after `paths` paths per texel of a [`reference`](reference()), R, G, B. Add it to

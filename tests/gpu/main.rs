@@ -210,6 +210,12 @@ impl Device {
     }
 }
 
+/// The same limits on a CPU or a GPU.
+fn of_kind(is_cpu: bool, limits: Limits) -> Limits {
+    let Limits { sweep, untuned_sweep, .. } = Limits::boundless(is_cpu, 0);
+    Limits { is_cpu, sweep, untuned_sweep, ..limits }
+}
+
 impl Drop for Device {
     fn drop(&mut self) {
         if let Some(gpu) = self.gpu.take() {

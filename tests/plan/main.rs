@@ -189,7 +189,8 @@ fn every_plan_has_all_its_barriers_and_needs_each() {
 
 /// The same limits on a GPU.
 fn on_gpu(limits: Limits) -> Limits {
-    Limits { is_cpu: false, sweep: Limits::boundless(false, 0).sweep, ..limits }
+    let Limits { sweep, untuned_sweep, .. } = Limits::boundless(false, 0);
+    Limits { is_cpu: false, sweep, untuned_sweep, ..limits }
 }
 
 /// A workgroup with four lines per invocation sweeps 128 lines, so an azimuth needs a multiple of four layers of 32 lines. With

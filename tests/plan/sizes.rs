@@ -2,7 +2,9 @@
 
 use ridgelight::plan::{self, Limits, Picture};
 
-use ridgelight::scene::{Border, Hull, Levels, Lights, Lines, Method, Quality, Scene, SphereLight};
+use ridgelight::scene::{
+    Border, BounceEngine, Bounces, Hull, Levels, Lights, Lines, Method, Quality, Scene, SphereLight,
+};
 
 use super::{flat, is, sky, under_sky};
 
@@ -285,5 +287,37 @@ fn dispatches_of_marches_are_short_on_a_gpu() {
         let whole = Limits { lookups: u64::MAX, ..limits };
         let whole = plan::picture(&scene, &quality, &whole, Picture::default()).expect("a plan");
         assert!(whole.passes.iter().filter(|p| p.name() == name).count() < marches.len());
+    }
+}
+
+/// As many dispatches as bounces, sphere lights and paths take lookups, at two a step and 24 steps a level of blocks, and
+/// no fewer; without a limit at most as many as llvmpipe's loops need.
+#[test]
+fn dispatches_of_rays_are_short_on_a_gpu() {
+    const SIDE: usize = 1024;
+    const MOST: u64 = 1_000_000_000;
+    const LEVELS: u64 = 5;
+    let limits = Limits { lookups: MOST, ..crate::on_gpu(Limits::lavapipe()) };
+    let boundless = Limits { lookups: u64::MAX, ..limits };
+    let grid_points = (SIDE * SIDE) as u64;
+    let mut scene = under_sky(flat(SIDE, SIDE));
+    let light = SphereLight { position_m: [500.0; 3], radius_m: 40.0, radiance: [1.0; 3] };
+    scene.lights.sphere_lights = vec![light];
+    let bounces =
+        Bounces { count: 1, azimuths: 32, engine: BounceEngine::BruteForce, ..Bounces::default() };
+    let quality = Quality { bounces, light_cutoff: 0.0, ..Quality::default() };
+    let counted = |limits: &Limits, name: &str| {
+        let plan = match name {
+            "path_trace" => plan::reference(&scene, 1, 1, limits),
+            _ => plan::picture(&scene, &quality, limits, Picture::default()),
+        };
+        plan.expect("a plan").passes.iter().filter(|p| p.name() == name).count() as u64
+    };
+    // Two vertices a path; from each a ray on and one to the light.
+    let paths = 2 * u64::from(plan::REFERENCE_BATCH) * 2;
+    for (name, rays) in [("bounce_march", 32), ("sphere_shade", 32), ("path_trace", paths)] {
+        let lookups = grid_points * rays * 2 * 24 * LEVELS;
+        let (few, many) = (counted(&boundless, name), counted(&limits, name));
+        assert!(many >= lookups / MOST && few < many, "{name}: {few}, {many}");
     }
 }

@@ -63,8 +63,8 @@ fn sweeps_and_walks() {
 #[test]
 fn blocks_are_made_of_azimuths_that_fit() {
     let of = |rows, cols, is_cpu| {
-        let limits =
-            Limits { is_cpu, sweep: Limits::boundless(is_cpu, 0).sweep, ..Limits::lavapipe() };
+        let limits = Limits::lavapipe();
+        let limits = if is_cpu { limits } else { crate::on_gpu(limits) };
         let scene = under_sky(flat(rows, cols));
         plan::picture(&scene, &walked(1, 64), &limits, Picture::default()).expect("a plan")
     };

@@ -1,6 +1,4 @@
-use std::ops::Range;
-
-use crate::graph::{Builder, ResourceId, shaders};
+use crate::graph::{Builder, Part, ResourceId, shaders};
 use crate::passes::bounce_nodes::NodeSum;
 use crate::passes::bounces::Bounce;
 use crate::passes::pyramid::Pyramid;
@@ -11,8 +9,8 @@ use crate::scene::{HeightField, Levels, Receiver};
 
 /// Of this pass and of `specular_gather`.
 impl shaders::GatherPush {
-    /// Push constants for `range` of `azimuths`.
-    pub(crate) fn of(field: &HeightField, of: &Pyramids, azimuths: u32, range: Range<u32>) -> Self {
+    /// Push constants for a part of `azimuths`.
+    pub(crate) fn of(field: &HeightField, of: &Pyramids, azimuths: u32, part: &Part) -> Self {
         let [cell_x, cell_y] = field.cell_m();
         let [warm_up_cols, warm_up_rows] =
             of.heights.size.map(|n| if of.heights.periodic { warm_up(n) as i32 } else { 0 });
@@ -22,8 +20,9 @@ impl shaders::GatherPush {
             cell_x_m: cell_x as f32,
             cell_y_m: cell_y as f32,
             azimuths: azimuths as i32,
-            first_azimuth: range.start as i32,
-            last_azimuth: range.end as i32,
+            first_azimuth: part.azimuths.start as i32,
+            last_azimuth: part.azimuths.end as i32,
+            first_row: part.rows.start as i32,
             warm_up_cols,
             warm_up_rows,
             fine_samples: of.heights.fine_samples() as i32,
@@ -56,6 +55,12 @@ pub(crate) struct Pyramids {
 }
 
 impl Pyramids {
+    /// Lookups of a grid point per azimuth: a height and a radiance at every sample, of as many texels as its spline has.
+    pub(crate) fn lookups(&self) -> u64 {
+        let texels = if self.heights.stored == Levels::Stack { 2 } else { 16 };
+        2 * texels * u64::from(self.heights.samples())
+    }
+
     /// Bindings of the height levels.
     pub(crate) fn height_bindings(&self) -> Vec<(&'static str, ResourceId)> {
         match self.height_images {
@@ -79,8 +84,7 @@ impl Pyramids {
     }
 }
 
-/// Gathers bounced light at every grid point, or at every node, from pyramids. As many dispatches as its
-/// azimuths need.
+/// Gathers bounced light at every grid point, or at every node, from pyramids.
 pub(crate) fn plan(
     builder: &mut Builder,
     field: &HeightField,
@@ -92,7 +96,6 @@ pub(crate) fn plan(
     let (cols, rows) = (field.cols() as u32, field.rows() as u32);
     let NodeSum { nodes, sum } = bounce.found_at();
     let [across, along] = nodes.size([cols, rows]);
-    let grid_points = u64::from(across) * u64::from(along);
     let is_stack = of.heights.stored == Levels::Stack;
     let mut bound = vec![
         ("heights", heights),
@@ -104,13 +107,9 @@ pub(crate) fn plan(
     bound.extend(of.shade_bindings());
     // The march, and inside it pyramid samples that round to one distance.
     let at_once = (MOST_TURNS / (2 * of.heights.samples() + 3)).max(1);
-    for first in (0..azimuths).step_by(at_once as usize) {
-        let last = azimuths.min(first + at_once);
-        let count = last - first;
-        let part = match count == azimuths {
-            true => bounce.name.clone(),
-            false => format!("{} azimuths {first}..{last}", bounce.name),
-        };
+    for part in builder.parts(0..azimuths, [across, along], of.lookups(), at_once) {
+        let (count, height) = (part.azimuths.len() as u32, part.rows.len() as u32);
+        let grid_points = u64::from(across) * u64::from(height);
         // Per azimuth: the height of every pyramid sample, and at most as many radiances.
         let march_samples = u64::from(of.heights.samples()) * u64::from(count);
         builder.pass(
@@ -123,7 +122,7 @@ pub(crate) fn plan(
                 is_plane: of.receiver == Receiver::Plane,
                 node_stride: nodes.stride as i32,
             },
-            &part,
+            &part.label(&bounce.name, "azimuths", &(0..azimuths), along),
             format!(
                 "{} along {count} azimuths, {} samples each, {}",
                 bounce.why,
@@ -133,8 +132,8 @@ pub(crate) fn plan(
                     Receiver::Cosine => "in Legendre coefficients and three bands of the cosine",
                 }
             ),
-            [across.div_ceil(8), along.div_ceil(8), 1],
-            &shaders::GatherPush::of(field, of, azimuths, first..last),
+            [across.div_ceil(8), height.div_ceil(8), 1],
+            &shaders::GatherPush::of(field, of, azimuths, &part),
             &bound,
             grid_points * (2 * 16 + march_samples * (4 + 16)),
             grid_points * u64::from(count),

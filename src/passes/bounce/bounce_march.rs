@@ -1,12 +1,11 @@
-use crate::graph::{Builder, shaders};
+use crate::graph::{Builder, Part, shaders};
 use crate::passes::blocks::Blocks;
 use crate::passes::bounce_nodes::NodeSum;
 use crate::passes::bounces::Bounce;
 use crate::passes::sphere_shade::MOST_TURNS;
 use crate::scene::Scene;
 
-/// Gathers bounced light at every grid point, or at every node, by brute force. As many dispatches as its
-/// azimuths need.
+/// Gathers bounced light at every grid point, or at every node, by brute force.
 pub(crate) fn plan(
     builder: &mut Builder,
     scene: &Scene,
@@ -18,15 +17,12 @@ pub(crate) fn plan(
     let NodeSum { nodes, sum } = bounce.found_at();
     let [across, along] = nodes.size([field.cols() as u32, field.rows() as u32]);
     let [thin_rows, thin_cols] = blocks.thin(field);
-    let grid_points = u64::from(across) * u64::from(along);
     let at_once = (MOST_TURNS / (blocks.levels.most_steps() + 1)).max(1);
-    for first in (0..azimuths).step_by(at_once as usize) {
-        let last = azimuths.min(first + at_once);
-        let count = last - first;
-        let part = match count == azimuths {
-            true => bounce.name.clone(),
-            false => format!("{} azimuths {first}..{last}", bounce.name),
-        };
+    let each = blocks.levels.lookups();
+    for part in builder.parts(0..azimuths, [across, along], each, at_once) {
+        let Part { azimuths: few, rows } = &part;
+        let (count, height) = (few.len() as u32, rows.len() as u32);
+        let grid_points = u64::from(across) * u64::from(height);
         builder.pass(
             shaders::BounceMarch {
                 border: scene.surface.border as u32,
@@ -36,14 +32,15 @@ pub(crate) fn plan(
                 grey: bounce.grey,
                 node_stride: nodes.stride as i32,
             },
-            &part,
+            &part.label(&bounce.name, "azimuths", &(0..azimuths), along),
             format!("{}, every visible interval along {count} azimuths", bounce.why),
-            [across.div_ceil(8), along.div_ceil(8), 1],
+            [across.div_ceil(8), height.div_ceil(8), 1],
             &shaders::BounceMarchPush {
                 land: shaders::LandPush::of(field, &blocks.levels),
                 azimuths: azimuths as i32,
-                first_azimuth: first as i32,
-                last_azimuth: last as i32,
+                first_azimuth: few.start as i32,
+                last_azimuth: few.end as i32,
+                first_row: rows.start as i32,
             },
             &[
                 ("cells", blocks.images.cells),

@@ -15,7 +15,6 @@ pub(crate) fn plan(
     [heights, ground]: [ResourceId; 2],
 ) {
     let (cols, rows) = (field.cols() as u32, field.rows() as u32);
-    let grid_points = u64::from(cols) * u64::from(rows);
     let mut bound = vec![
         ("heights", heights),
         ("ground", ground),
@@ -45,13 +44,11 @@ pub(crate) fn plan(
     let of_each = specular.order * specular.order + if has_vectors { layers + layers } else { 0 };
     let turns = 3 * knots + 1 + (knots + 1) * of_each;
     let at_once = ((MOST_TURNS - 8 * layers) / turns).max(1);
-    for first in (0..azimuths).step_by(at_once as usize) {
-        let last = azimuths.min(first + at_once);
-        let count = last - first;
-        let part = match count == azimuths {
-            true => bounce.name.clone(),
-            false => format!("{} azimuths {first}..{last}", bounce.name),
-        };
+    // Each has four texels of every layer.
+    let vectors = if has_vectors { u64::from(4 * layers * march_samples) } else { 0 };
+    for part in builder.parts(0..azimuths, [cols, rows], of.lookups() + vectors, at_once) {
+        let (count, height) = (part.azimuths.len() as u32, part.rows.len() as u32);
+        let grid_points = u64::from(cols) * u64::from(height);
         let rays = u64::from(march_samples) * u64::from(count);
         let ray_bytes =
             if has_vectors { 4 * specular.texel_bytes() * u64::from(layers) } else { 16 };
@@ -66,7 +63,7 @@ pub(crate) fn plan(
                 order: specular.order as i32,
                 most_knots: knots as i32,
             },
-            &part,
+            &part.label(&bounce.name, "azimuths", &(0..azimuths), rows),
             format!(
                 "{} along {count} azimuths, {march_samples} samples each, {}; also as a series",
                 bounce.why,
@@ -76,8 +73,8 @@ pub(crate) fn plan(
                     "radiance towards the zenith"
                 }
             ),
-            [cols.div_ceil(8), rows.div_ceil(8), 1],
-            &shaders::GatherPush::of(field, of, azimuths, first..last),
+            [cols.div_ceil(8), height.div_ceil(8), 1],
+            &shaders::GatherPush::of(field, of, azimuths, &part),
             &bound,
             grid_points * (2 * 16 + 2 * 16 * u64::from(layers) + rays * (4 + ray_bytes)),
             grid_points * u64::from(count),

@@ -1,15 +1,17 @@
-use crate::graph::{Builder, Rectangle, ResourceId, shaders};
+use std::ops::Range;
+
+use crate::graph::{Builder, Part, Rectangle, ResourceId, shaders};
 use crate::passes::blocks::Blocks;
 use crate::passes::sphere_sh::SphereSh;
 use crate::scene::{Border, HeightField, Levels, Receiver, Scene, SphereLight, Wedges};
 use crate::{Error, Result};
 
-use crate::passes::sphere_shade::{MOST_TURNS, SphereShading, place_of};
+use crate::passes::sphere_shade::{MOST_TURNS, SphereShading, beyond, place_of, rows_of};
 
 /// As in `within.glsl`.
 const WITHIN_CELLS: u32 = 8192;
 
-/// Light of one sphere light, in as many dispatches as its azimuths need.
+/// Light of one sphere light.
 pub(crate) fn plan(
     builder: &mut Builder,
     (scene, blocks, soft): (&Scene, &Blocks, &SphereSh),
@@ -24,21 +26,31 @@ pub(crate) fn plan(
     let at_once =
         (MOST_TURNS / (most_turns(scene.surface.border, &scene.field, soft) + 1)).max(1 + more);
     let at_once = at_once - more;
-    for first in (0..soft.azimuths).step_by(at_once as usize) {
-        let last = soft.azimuths.min(first + at_once);
-        let part = match last - first {
-            all if all == soft.azimuths => name.to_owned(),
-            _ => format!("{name} azimuths {first}..{last}"),
-        };
+    let size = [scene.field.cols(), scene.field.rows()].map(|n| n as u32);
+    let all = 0..soft.azimuths;
+    // Of the whole field, so that plans of a moving light have the same passes.
+    for part in builder.parts(all.clone(), size, lookups(blocks, soft), at_once) {
+        let label = part.label(name, "azimuths", &all, size[1]);
+        let Part { azimuths, rows } = part;
+        let rectangle = rows_of(shading.rectangle, &rows).unwrap_or(beyond(size));
+        let shading = SphereShading { rectangle, ..*shading };
         dispatch(
             builder,
             (scene, blocks, soft),
             heights,
-            (&part, [first, last]),
+            (&label, &azimuths),
             light,
-            shading,
+            &shading,
             sum,
         );
+    }
+}
+
+/// Lookups of a grid point per azimuth.
+fn lookups(blocks: &Blocks, soft: &SphereSh) -> u64 {
+    match &soft.pyramid {
+        Some((pyramid, _)) => 16 * u64::from(pyramid.samples()),
+        None => blocks.levels.lookups(),
     }
 }
 
@@ -77,7 +89,7 @@ fn dispatch(
     builder: &mut Builder,
     (scene, blocks, soft): (&Scene, &Blocks, &SphereSh),
     heights: ResourceId,
-    (part, [first, last]): (&str, [u32; 2]),
+    (part, azimuths): (&str, &Range<u32>),
     light: &SphereLight,
     shading: &SphereShading,
     sum: ResourceId,
@@ -88,7 +100,7 @@ fn dispatch(
     let grid_points = u64::from(cols) * u64::from(rows);
     let [thin_rows, thin_cols] = blocks.thin(field);
     let [r, g, b] = light.radiance;
-    let begins = shading.begins && first == 0;
+    let begins = shading.begins && azimuths.start == 0;
     let mut bound =
         vec![("ground", blocks.images.ground), ("sphere_sum", sum), ("constants", soft.constants)];
     let levels = match &soft.pyramid {
@@ -142,8 +154,8 @@ fn dispatch(
             radius_m: light.radius_m as f32,
             reach_m: shading.reach_m,
             azimuths: soft.azimuths as i32,
-            first_azimuth: first as i32,
-            last_azimuth: last as i32,
+            first_azimuth: azimuths.start as i32,
+            last_azimuth: azimuths.end as i32,
             entry_first: soft.entry_first as i32,
             entry_count: soft.entry_count as i32,
             table_first: soft.table_first as i32,
@@ -156,6 +168,6 @@ fn dispatch(
         },
         &bound,
         grid_points * (3 * 16),
-        grid_points * u64::from(last - first),
+        grid_points * azimuths.len() as u64,
     );
 }

@@ -1,7 +1,7 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::ops::Range;
 
-use crate::graph::{Builder, Rectangle, ResourceId, shaders};
+use crate::graph::{Builder, Part, Rectangle, ResourceId, shaders};
 use crate::passes::blocks::Blocks;
 use crate::passes::spheres::texels_within;
 use crate::scene::{HeightField, Scene, SphereLight};
@@ -22,7 +22,7 @@ pub(crate) struct SphereShading {
     pub begins: bool,
 }
 
-/// Light of one sphere light, in as many dispatches as its slices need.
+/// Light of one sphere light.
 pub(crate) fn plan(
     builder: &mut Builder,
     scene: &Scene,
@@ -34,47 +34,50 @@ pub(crate) fn plan(
 ) {
     let [narrow, around] = light.slices(shading.slices, scene.field.cell_m());
     let at_once = (MOST_TURNS / (blocks.levels.most_steps() + 1)).max(1);
-    for first in (0..around).step_by(at_once as usize) {
-        let range = first..around.min(first + at_once);
-        let part = match range.len() as u32 {
-            all if all == around => name.to_owned(),
-            _ => format!("{name} slices {}..{}", range.start, range.end),
-        };
-        // Beyond this distance the light subtends fewer slices.
-        let half_width = PI * f64::from(first) / f64::from(around);
-        let rectangle = if first < narrow {
-            shading.rectangle
-        } else {
+    let size = [scene.field.cols(), scene.field.rows()].map(|n| n as u32);
+    // Of the whole field, so that plans of a moving light have the same passes.
+    for part in builder.parts(0..around, size, blocks.levels.lookups(), at_once) {
+        let label = part.label(name, "slices", &(0..around), size[1]);
+        let Part { azimuths: slices, rows } = part;
+        let mut lit = Some(shading.rectangle);
+        if slices.start >= narrow {
+            // Beyond this distance the light subtends fewer slices.
+            let half_width = PI * f64::from(slices.start) / f64::from(around);
             let within = 1.001 * light.radius_m / half_width.min(FRAC_PI_2).sin();
-            common(texels_within(&scene.field, light, within), shading.rectangle)
-        };
-        dispatch(
-            builder,
-            scene,
-            blocks,
-            &part,
-            light,
-            &SphereShading { rectangle, ..*shading },
-            range,
-            sum,
-        );
+            let near = texels_within(&scene.field, light, within);
+            lit = near.and_then(|near| common(near, shading.rectangle));
+        }
+        let rectangle = lit.and_then(|lit| rows_of(lit, &rows)).unwrap_or(beyond(size));
+        let shading = SphereShading { rectangle, ..*shading };
+        dispatch(builder, scene, blocks, &label, light, &shading, slices, sum);
     }
 }
 
-/// The intersection. One grid point where it is empty, so that plans of a moving light have the same passes.
-fn common(near: Option<Rectangle>, all: Rectangle) -> Rectangle {
-    let none = Rectangle { cols: 1, rows: 1, ..all };
-    let Some(near) = near else { return none };
+/// One grid point beyond the field, which passes leave out: a dispatch without work.
+pub(crate) fn beyond([_, rows]: [u32; 2]) -> Rectangle {
+    Rectangle { col: 0, row: rows, cols: 1, rows: 1 }
+}
+
+/// Some rows of a rectangle, counted from its first. Parts of the field would not do: workgroups reach beyond the end of a
+/// rectangle, where the next part would add its light again.
+pub(crate) fn rows_of(lit: Rectangle, rows: &Range<u32>) -> Option<Rectangle> {
+    let end = rows.end.min(lit.rows);
+    (rows.start < end).then(|| Rectangle {
+        row: lit.row + rows.start,
+        rows: end - rows.start,
+        ..lit
+    })
+}
+
+/// The intersection, if there is any.
+fn common(a: Rectangle, b: Rectangle) -> Option<Rectangle> {
     let along = |[a, n]: [u32; 2], [b, m]: [u32; 2]| {
         let [first, end] = [a.max(b), (a + n).min(b + m)];
         (first < end).then(|| [first, end - first])
     };
-    let cols = along([near.col, near.cols], [all.col, all.cols]);
-    let rows = along([near.row, near.rows], [all.row, all.rows]);
-    match (cols, rows) {
-        (Some([col, cols]), Some([row, rows])) => Rectangle { col, row, cols, rows },
-        _ => none,
-    }
+    let [col, cols] = along([a.col, a.cols], [b.col, b.cols])?;
+    let [row, rows] = along([a.row, a.rows], [b.row, b.rows])?;
+    Some(Rectangle { col, row, cols, rows })
 }
 
 /// The light's centre: whole cells east of the first column and south of the first row, and the rest of a cell.

@@ -44,50 +44,6 @@ impl Batch {
     }
 }
 
-impl Batch {
-    /// Parts of the batch, as azimuths and rows of nodes, of at most `most` lookups, or of eight rows of one azimuth. Every
-    /// node takes `each` lookups per azimuth.
-    pub(crate) fn parts(
-        &self,
-        [lanes, steps]: [u32; 2],
-        each: u64,
-        most: u64,
-    ) -> Vec<(Range<u32>, Range<u32>)> {
-        let of_row = (u64::from(lanes) * each).max(1);
-        let of_azimuth = of_row * u64::from(steps);
-        let at_once = (most / of_azimuth.max(1)).clamp(1, u64::from(self.count)) as u32;
-        // Whole workgroups.
-        let rows = ((most / of_row) / 8 * 8).clamp(8, u64::from(steps.max(8))) as u32;
-        let all = self.azimuths();
-        let azimuths = all.clone().step_by(at_once as usize);
-        azimuths
-            .map(|first| first..all.end.min(first + at_once))
-            .flat_map(|azimuths| {
-                let rows = (0..steps).step_by(rows as usize).map(move |y| y..steps.min(y + rows));
-                rows.map(move |rows| (azimuths.clone(), rows))
-            })
-            .collect()
-    }
-}
-
-/// The label of one of a batch's parts.
-pub(crate) fn part_label(
-    part: &str,
-    batch: &Batch,
-    (azimuths, rows): &(Range<u32>, Range<u32>),
-    steps: u32,
-) -> String {
-    let mut label = part.to_owned();
-    if *azimuths != batch.azimuths() {
-        let [from, to] = [azimuths.start, azimuths.end].map(|k| k - batch.first);
-        label += &format!(" azimuths {from}..{to}");
-    }
-    if *rows != (0..steps) {
-        label += &format!(" rows {}..{}", rows.start, rows.end);
-    }
-    label.trim().to_owned()
-}
-
 /// Sorts azimuths by octant, axis by axis, so that directions with shared neighbours are together. Returns the
 /// order as indices into the given list.
 pub(crate) fn sort(azimuths: &mut Vec<Azimuth>) -> Vec<u32> {

@@ -1,21 +1,22 @@
-use crate::graph::{Builder, ResourceId, shaders};
-use crate::passes::batch::{Batch, part_label};
+use crate::graph::{Builder, Part, ResourceId, shaders};
+use crate::passes::batch::Batch;
 use crate::passes::nodes::Nodes;
 
-/// Brute force: every crossing of every grid point's own line. Dispatches take at most `most` lookups, if they can.
+/// Brute force: every crossing of every grid point's own line.
 pub(crate) fn plan(
     builder: &mut Builder,
     batch: &Batch,
     part: &str,
-    (distances, nodes, most): (bool, Nodes, u64),
+    (distances, nodes): (bool, Nodes),
     [lane_heights, azimuths, slopes]: [ResourceId; 3],
 ) {
     let axis = batch.axis;
     let [lanes, steps] = nodes.size([axis.lanes, axis.steps]);
     // Half the field, on average; and a repeating one's periods.
     let each = u64::from(axis.steps / 2 + axis.warm_up);
-    for cut in batch.parts([lanes, steps], each, most) {
-        let (few, rows) = &cut;
+    let all = batch.azimuths();
+    for cut in builder.parts(all.clone(), [lanes, steps], each, u32::MAX) {
+        let Part { azimuths: few, rows } = &cut;
         let (count, height) = (few.len() as u32, rows.len() as u32);
         let grid_points = u64::from(lanes) * u64::from(height) * u64::from(count);
         let pass = builder.pass(
@@ -24,7 +25,7 @@ pub(crate) fn plan(
                 writes_distances: distances,
                 node_stride: nodes.stride as i32,
             },
-            &part_label(part, batch, &cut, steps),
+            &cut.label(part, "azimuths", &all, steps),
             format!("brute-force horizons of {count} azimuths along {}", axis.name()),
             [lanes.div_ceil(8), height.div_ceil(8), count],
             &shaders::MarchPush {

@@ -1,5 +1,5 @@
-use crate::graph::{Builder, ResourceId, shaders};
-use crate::passes::batch::{Batch, part_label};
+use crate::graph::{Builder, Part, ResourceId, shaders};
+use crate::passes::batch::Batch;
 use crate::passes::nodes::Nodes;
 use crate::passes::pyramid::Pyramid;
 use crate::scene::Levels;
@@ -12,10 +12,10 @@ pub(crate) struct Images {
     pub stack: Option<ResourceId>,
 }
 
-/// Horizons from the levels, one sample per level. Dispatches take at most `most` lookups, if they can.
+/// Horizons from the levels, one sample per level.
 pub(crate) fn plan(
     builder: &mut Builder,
-    (pyramid, nodes, most): (&Pyramid, Nodes, u64),
+    (pyramid, nodes): (&Pyramid, Nodes),
     batch: &Batch,
     part: &str,
     [heights, azimuths, slopes]: [ResourceId; 3],
@@ -37,8 +37,10 @@ pub(crate) fn plan(
     let march_samples = u64::from(2 * fine + far * pyramid.levels());
     let own = u64::from(1 + own * pyramid.levels());
     let [lanes, steps] = nodes.size([axis.lanes, axis.steps]);
-    for cut in batch.parts([lanes, steps], march_samples + own / u64::from(batch.count), most) {
-        let (few, rows) = &cut;
+    let all = batch.azimuths();
+    let each = march_samples + own / u64::from(batch.count);
+    for cut in builder.parts(all.clone(), [lanes, steps], each, u32::MAX) {
+        let Part { azimuths: few, rows } = &cut;
         let (count, height) = (few.len() as u32, rows.len() as u32);
         let places = u64::from(lanes) * u64::from(height);
         let horizons = places * u64::from(count);
@@ -49,7 +51,7 @@ pub(crate) fn plan(
                 levels: pyramid.levels() as i32,
                 node_stride: nodes.stride as i32,
             },
-            &part_label(part, batch, &cut, steps),
+            &cut.label(part, "azimuths", &all, steps),
             format!("horizons of {count} azimuths, {} samples each", pyramid.samples()),
             [lanes.div_ceil(8), height.div_ceil(8), 1],
             &shaders::PyramidMarchPush {

@@ -139,7 +139,7 @@ fn form_of(
 ) -> (HullStorage, SweepForm) {
     let device = match quality.hull {
         Hull::Auto => limits.sweep,
-        _ => SweepForm::of_device(limits.is_cpu),
+        _ => limits.untuned_sweep,
     };
     let packed = quality.precision == Precision::Packed;
     // One line per invocation reads heights from a buffer and stores occluders alone.
@@ -285,7 +285,7 @@ impl Sweep {
             (HullStorage::Private, 1) => hull_depth,
             _ => 0,
         };
-        if quality.hull == Hull::Auto && limits.sweep != SweepForm::of_device(limits.is_cpu) {
+        if quality.hull == Hull::Auto && limits.sweep != limits.untuned_sweep {
             notes.push(format!(
                 "tuned sweep: {} per invocation, {} invocations in a workgroup, {hull_depth} hull entries in {} memory",
                 if form.lines_each == 1 { "one line" } else { "four lines" },

@@ -26,8 +26,6 @@ pub(crate) struct Sweeping {
     pub levels: Option<pyramid_march::Images>,
     /// Nodes at which marches store a value.
     pub nodes: Nodes,
-    /// Most lookups of a dispatch of marches.
-    lookups: u64,
     /// The lattice of each batch; several batches may use one in turn.
     lattices: Vec<Lattice>,
     /// Whether each batch of a circle has its own lattice.
@@ -153,14 +151,7 @@ impl Sweeping {
             Sweep::Pyramid(pyramid) => {
                 let ids = [self.heights, self.azimuths, self.written(batch)];
                 let levels = self.levels.as_ref();
-                pyramid_march::plan(
-                    builder,
-                    (pyramid, self.nodes, self.lookups),
-                    batch,
-                    part,
-                    ids,
-                    levels,
-                );
+                pyramid_march::plan(builder, (pyramid, self.nodes), batch, part, ids, levels);
             }
             Sweep::Surface { hull_depth, distances } => {
                 let ids = [self.lane_heights(batch), self.azimuths, self.written(batch)];
@@ -168,7 +159,7 @@ impl Sweeping {
             }
             Sweep::March { distances } => {
                 let ids = [self.lane_heights(batch), self.azimuths, self.written(batch)];
-                let wanted = (*distances, self.nodes, self.lookups);
+                let wanted = (*distances, self.nodes);
                 passes::horizon_march::plan(builder, batch, part, wanted, ids);
             }
         }
@@ -307,7 +298,6 @@ pub(crate) fn prepare(
         quads,
         levels,
         nodes,
-        lookups: limits.lookups,
         lattices,
         has_own_lattices,
         shadows: of_shadows,

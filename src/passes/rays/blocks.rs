@@ -79,6 +79,11 @@ impl BlockLevels {
     pub(crate) fn usual_steps(&self) -> u32 {
         24 * self.top_level
     }
+
+    /// The lookups of as many steps: a cell and the top of a block each.
+    pub(crate) fn lookups(&self) -> u64 {
+        2 * u64::from(self.usual_steps())
+    }
 }
 
 impl Blocks {

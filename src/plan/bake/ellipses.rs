@@ -102,7 +102,7 @@ impl<'a> Begun<'a> {
         if directions.vectors().iter().all(|e| e.z <= 0.0) {
             return Err(Error::setting("directions", "none above horizontal", "one or more"));
         }
-        let mut builder = Builder::new();
+        let mut builder = Builder::new(limits);
         let extent = [size[0], size[1], 1];
         let heights = builder.image("heights", Owner::Input, Format::R32Float, extent, false);
         let all = images(&mut builder, size, directions.count(), Owner::Internal, limits)?;

@@ -29,7 +29,7 @@ pub fn facet_mask(
         let found = format!("a field of {} × {}", size[0], size[1]);
         return Err(Error::setting("triangles", found, "2 × 2 grid points or more"));
     }
-    let mut builder = Builder::new();
+    let mut builder = Builder::new(limits);
     let heights =
         builder.image("heights", Owner::Input, Format::R32Float, [size[0], size[1], 1], false);
     let blocks = Blocks::make(&mut builder, size, border);

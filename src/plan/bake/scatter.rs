@@ -90,7 +90,7 @@ pub fn scatter_views(
     super::visible_points::check_field(field)?;
     let mut notes = Vec::new();
     let wanted = Wanted::of(scene, directions.count(), scatter, &mut notes);
-    let mut builder = Builder::new();
+    let mut builder = Builder::new(limits);
     let rgba = Format::Rgba32Float;
     let extent = [size[0], size[1], views.len() as u32];
     let scattered = builder.image("scattered", Owner::Output, rgba, extent, true);

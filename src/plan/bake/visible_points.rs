@@ -30,7 +30,7 @@ pub fn visible_points(
 ) -> Result<Plan> {
     let size = limits.check_size(field.rows(), field.cols())?;
     check_field(field)?;
-    let mut builder = Builder::new();
+    let mut builder = Builder::new(limits);
     let heights =
         builder.image("heights", Owner::Input, Format::R32Float, [size[0], size[1], 1], false);
     let is_small = VisiblePoints::is_small(field.rows(), field.cols());

@@ -62,7 +62,7 @@ impl Case {
                 &self.scene.field,
                 self.scene.surface.border,
                 &self.quality,
-                &Limits { is_cpu: false, sweep: Limits::boundless(false, 0).sweep, ..*limits },
+                &crate::of_kind(false, *limits),
                 (0, self.quality.azimuths),
                 false,
             ),

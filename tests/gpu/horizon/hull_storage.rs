@@ -3,7 +3,8 @@
 use ridgelight::plan::{self, Limits, Picture, SweepForm};
 use ridgelight::scene::fractal;
 use ridgelight::scene::{
-    Border, Bounces, Fuse, HeightField, Hull, Method, Precision, Quality, Sun,
+    Border, BounceEngine, Bounces, Fuse, HeightField, Hull, LightBasis, Lights, Method, Precision,
+    Quality, Scene, SphereLight, Sun, Surface,
 };
 
 use crate::{Device, field, random, under_sky};
@@ -74,17 +75,12 @@ fn hull_storages_agree_to_the_bit_on_random_fields() {
     }
 }
 
-/// The same limits on a CPU or a GPU.
-fn of_kind(is_cpu: bool, limits: Limits) -> Limits {
-    Limits { is_cpu, sweep: Limits::boundless(is_cpu, 0).sweep, ..limits }
-}
-
 #[test]
 fn batches_and_the_whole_are_the_same_to_the_bit() {
     let mut gpu = Device::new();
     let scene = under_sky(fractal(1024, 3).expect("a field"), Border::Plane);
     let quality = Quality { azimuths: 8, ..Quality::default() };
-    let limits = Limits { memory_budget: 1 << 30, ..of_kind(true, gpu.limits()) };
+    let limits = Limits { memory_budget: 1 << 30, ..crate::of_kind(true, gpu.limits()) };
     // Three images of 4 MiB, the heights by lanes of each axis, and room for one azimuth's lattice.
     let tight = Limits { memory_budget: 28_000_000, ..limits };
     let count = |l: &Limits| {
@@ -123,8 +119,8 @@ fn packed_entries_err_by_their_rounding() {
 fn wide_groups_and_narrow_ones_are_the_same_to_the_bit() {
     let mut gpu = Device::new();
     let limits = gpu.limits();
-    let narrow = of_kind(true, limits);
-    let wide = of_kind(false, limits);
+    let narrow = crate::of_kind(true, limits);
+    let wide = crate::of_kind(false, limits);
     let rough = fractal(150, 9).expect("a field");
     let deep = dome_and_wall(150);
     for (field, hull) in [(&rough, Hull::Auto), (&rough, Hull::Private), (&deep, Hull::Shared)] {
@@ -179,7 +175,7 @@ fn every_form_of_the_sweep_renders_identical_bits() {
 fn gpu_and_cpu_plans_render_identical_bits() {
     let mut gpu = Device::new();
     let limits = gpu.limits();
-    let [on_cpu, on_gpu] = [true, false].map(|is_cpu| of_kind(is_cpu, limits));
+    let [on_cpu, on_gpu] = [true, false].map(|is_cpu| crate::of_kind(is_cpu, limits));
     let sun = |elevation: f64, diameter: f64| Sun {
         azimuth_rad: 0.7,
         elevation_rad: elevation,
@@ -224,6 +220,56 @@ fn dispatches_in_parts_and_whole_are_the_same_to_the_bit() {
                     parts.iter().zip(&whole.0).filter(|(a, b)| a.to_bits() != b.to_bits());
                 assert_eq!(differing.count(), 0, "{method:?}, {border:?}");
             }
+        }
+    }
+}
+
+/// Bounces in parts, too: a part continues the sum of the one before. Sphere lights add up in another order: a texel gets at most
+/// `PARTS` parts, each rounded in its sum and where it is added, and the brightest light is above all sums.
+#[test]
+fn bounces_and_sphere_lights_in_parts_are_those_of_the_whole() {
+    const PARTS: usize = 128;
+    let mut gpu = Device::new();
+    let limits = gpu.limits();
+    let light = |x: f64, y: f64| SphereLight {
+        position_m: [x, y, 14.0],
+        radius_m: 2.5,
+        radiance: [9.0, 7.0, 5.0],
+    };
+    let bounced = |engine| Quality {
+        azimuths: 8,
+        bounces: Bounces { count: 2, azimuths: 8, engine, ..Bounces::default() },
+        ..Quality::default()
+    };
+    let near = |light_basis| Quality { light_basis, azimuths: 8, ..Quality::default() };
+    let sky = Lights { sky: Some([1.0; 3]), ..Lights::default() };
+    // The second reaches only some rows.
+    let spheres =
+        Lights { sphere_lights: vec![light(30.0, 20.0), light(5.0, 90.0)], ..Lights::default() };
+    for (name, lights, quality, is_exact) in [
+        ("bounce_march", &sky, bounced(BounceEngine::BruteForce), true),
+        ("bounce_gather", &sky, bounced(BounceEngine::Pyramid), true),
+        ("sphere_shade", &spheres, near(LightBasis::Exact), false),
+        ("sphere_sh_shade", &spheres, near(LightBasis::Sh), false),
+    ] {
+        let field = fractal(67, 2).expect("a field");
+        let scene = Scene { field, surface: Surface::default(), lights: lights.clone() };
+        let [whole, by_azimuth, by_rows] = [u64::MAX, 2_000_000, 200_000].map(|lookups| {
+            let limits = Limits { lookups, ..limits };
+            let plan = plan::picture(&scene, &quality, &limits, Picture::default());
+            let passes = plan.expect("a plan").passes;
+            let count = passes.iter().filter(|p| p.name() == name).count();
+            (gpu.picture_within(&scene, &quality, &limits).values, count)
+        });
+        assert!(whole.1 < by_azimuth.1 && by_azimuth.1 < by_rows.1, "{name}: {} passes", by_rows.1);
+        // Azimuths alone are cut first, two or more at a time; then each of them by rows.
+        assert!(2 * by_azimuth.1 <= PARTS, "{name}: {} passes", by_azimuth.1);
+        let brightest = whole.0.iter().fold(0.0_f32, |most, value| most.max(*value));
+        let most = if is_exact { 0.0 } else { PARTS as f32 * f32::EPSILON * brightest };
+        for (parts, _) in [by_azimuth, by_rows] {
+            let apart = parts.iter().zip(&whole.0).map(|(a, b)| (a - b).abs());
+            let apart = apart.fold(0.0, f32::max);
+            assert!(apart <= most, "{name}: {apart:e} of {most:e}");
         }
     }
 }

@@ -18,14 +18,13 @@ use ridgelight::scene::Camera;
 use ridgelight::{Error, Result};
 use ridgelight_viewer::Screen;
 use winit::application::ApplicationHandler;
-use winit::dpi::PhysicalSize;
 use winit::event::{ElementState, MouseButton, MouseScrollDelta, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, ControlFlow};
 use winit::keyboard::{Key, ModifiersState, NamedKey};
 use winit::window::{Window, WindowId};
 
 use super::gui::Gui;
-use super::opening::Opened;
+use super::opening::{Opened, destroyed};
 use super::script::{Button, Step};
 use super::state::{Figures, Light, State, Wish};
 use crate::args::ViewArgs;
@@ -112,10 +111,9 @@ impl<'a> App<'a> {
         args: &'a ViewArgs,
         state: State,
         steps: Option<VecDeque<Step>>,
-        Opened { window, mut screen, gui }: Opened,
+        Opened { window, inner, mut screen, gui }: Opened,
     ) -> Self {
         let limits = tuned::limits(screen.gpu().report(), args.global.memory_budget);
-        let inner = window.inner_size();
         let shown = OpenWindow {
             lit: None,
             is_stale: true,
@@ -133,7 +131,7 @@ impl<'a> App<'a> {
             limits,
             screen,
             window,
-            inner: [inner.width, inner.height],
+            inner,
             size: args.size,
         };
         Self {
@@ -281,13 +279,10 @@ impl App<'_> {
         }
         match event {
             WindowEvent::CloseRequested => return Ok(false),
-            WindowEvent::Destroyed => {
-                let reason = "another program has destroyed it".into();
-                return Err(Error::Device { doing: "showing pictures in a window".into(), reason });
-            }
-            WindowEvent::Resized(PhysicalSize { width, height }) => {
+            WindowEvent::Destroyed => return Err(destroyed()),
+            WindowEvent::Resized(size) => {
                 if let Some(shown) = &mut self.shown {
-                    shown.inner = [width, height];
+                    shown.inner = size.into();
                 }
                 self.due = self.due.max(1);
             }

@@ -1,5 +1,7 @@
 //! egui in the window: its input, its style, and the shapes that it draws.
 
+use std::time::Instant;
+
 use egui::epaint::ClippedPrimitive;
 use egui::{Color32, CornerRadius, FontId, Pos2, Rect, Stroke, TextStyle, TexturesDelta, vec2};
 use ridgelight_viewer::Overlay;
@@ -21,6 +23,7 @@ pub const ACCENT: Color32 = Color32::from_rgb(0xe0, 0xb0, 0x50);
 pub struct Gui {
     context: egui::Context,
     input: egui_winit::State,
+    began: Instant,
     shapes: Vec<ClippedPrimitive>,
     pixels_per_point: f32,
     /// Whether a button went down over the panel and is still held.
@@ -39,8 +42,15 @@ impl Gui {
         let scale = Some(window.scale_factor() as f32);
         let input =
             egui_winit::State::new(context.clone(), id, window, scale, None, Some(MOST_TEXELS));
-        let (shapes, pixels_per_point) = (Vec::new(), 1.0);
-        Self { context, input, shapes, pixels_per_point, holds_pointer: false, settling: 0 }
+        Self {
+            context,
+            input,
+            began: Instant::now(),
+            shapes: Vec::new(),
+            pixels_per_point: 1.0,
+            holds_pointer: false,
+            settling: 0,
+        }
     }
 
     /// Whether the panel, or a list that it has opened, is at a pixel.
@@ -87,10 +97,15 @@ impl Gui {
         size: [u32; 2],
         content: impl FnMut(&mut egui::Ui),
     ) -> (TexturesDelta, bool) {
-        let mut input = self.input.take_egui_input(window);
+        // Not `take_egui_input`, which asks winit for the size of a window that may be destroyed: winit panics.
         let per_point = egui_winit::pixels_per_point(&self.context, window);
         let [width, height] = size.map(|n| n as f32 / per_point);
+        let input = self.input.egui_input_mut();
+        input.time = Some(self.began.elapsed().as_secs_f64());
         input.screen_rect = Some(Rect::from_min_size(Pos2::ZERO, vec2(width, height)));
+        let viewport = input.viewports.entry(egui::ViewportId::ROOT).or_default();
+        viewport.native_pixels_per_point = Some(window.scale_factor() as f32);
+        let input = input.take();
         let mut output = self.context.run_ui(input, content);
         self.input.handle_platform_output(window, std::mem::take(&mut output.platform_output));
         self.pixels_per_point = output.pixels_per_point;

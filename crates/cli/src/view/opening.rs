@@ -37,6 +37,8 @@ pub type Reading<'scope> = ScopedJoinHandle<'scope, Result<(Scene, Quality)>>;
 /// A window with its device and its panel.
 pub struct Opened {
     pub window: Arc<Window>,
+    /// The size that the system last reported. winit panics if asked for that of a destroyed window.
+    pub inner: [u32; 2],
     pub screen: Screen,
     pub gui: Gui,
 }
@@ -99,7 +101,7 @@ impl<'a, 'scope> Opening<'a, 'scope> {
         };
         let screen = Screen::new(Arc::clone(&window), &options)?;
         let gui = Gui::new(&window);
-        Ok(Opened { window, screen, gui })
+        Ok(Opened { window, inner: self.args.size, screen, gui })
     }
 
     /// Shows the progress, or the viewer once the field is read. Returns whether that has begun.
@@ -133,6 +135,12 @@ impl<'a, 'scope> Opening<'a, 'scope> {
     }
 }
 
+/// Why a window ends that has been destroyed.
+pub fn destroyed() -> Error {
+    let reason = "another program has destroyed it".into();
+    Error::Device { doing: "showing pictures in a window".into(), reason }
+}
+
 /// The thread's result.
 pub fn joined<T>(reading: ScopedJoinHandle<'_, T>) -> T {
     // Goes on with its panic, which it has reported.
@@ -149,8 +157,7 @@ type Drawn = ([u32; 2], Vec<[u8; 4]>);
 impl Opened {
     /// Draws what has been read; none where the window is not ready.
     fn show(&mut self, paths: &[PathBuf], keeps: bool) -> Result<Option<Drawn>> {
-        let inner = self.window.inner_size();
-        let Some(size) = self.screen.size([inner.width, inner.height])? else { return Ok(None) };
+        let Some(size) = self.screen.size(self.inner)? else { return Ok(None) };
         let all = paths.iter().filter_map(|path| std::fs::metadata(path).ok()).map(|m| m.len());
         let (all, done) = (all.sum::<u64>() as f64, files::bytes_read() as f64);
         let more = match paths.len() {
@@ -197,10 +204,14 @@ impl ApplicationHandler for Opening<'_, '_> {
     }
 
     fn window_event(&mut self, events: &ActiveEventLoop, id: WindowId, event: WindowEvent) {
-        match &mut self.app {
-            Some(app) => app.window_event(events, id, event),
-            None if matches!(event, WindowEvent::CloseRequested) => events.exit(),
-            None => {}
+        if let Some(app) = &mut self.app {
+            return app.window_event(events, id, event);
+        }
+        match (event, &mut self.opened) {
+            (WindowEvent::CloseRequested, _) => events.exit(),
+            (WindowEvent::Destroyed, _) => self.failed(events, destroyed()),
+            (WindowEvent::Resized(size), Some(opened)) => opened.inner = size.into(),
+            _ => {}
         }
     }
 
