@@ -1,7 +1,7 @@
 // Computes: indirect light at every grid point from the azimuths of a batch, added to earlier batches: the visible
 // ground along the grid point's own line step by step, and farther away in the blocks of the nearest swept line, up to
 // the horizon at the occluder that this line has stored; each part with its own radiance, weighted in closed form.
-// Reads: lane_heights, azimuths, occluders, line_blocks, bounce_ground (or grey_ground).
+// Reads: azimuths, occluders, line_blocks and bounce_ground (or grey_blocks and grey_ground).
 // Reads and writes: bounce_sum (exit radiance for albedo 1; divided by A, the sum for whole hemispheres, after the
 // last dispatch).
 // Writes: visibility_cache (of every second node).
@@ -19,15 +19,14 @@ layout(constant_id = 2) const bool MARCHES_ROWS = false;
 layout(constant_id = 3) const bool GREY = false;
 // Grid points from node to node: 1, 2, 4 or 8.
 layout(constant_id = 4) const int NODE_STRIDE = 1;
-// Which nodes run: all; or those of every second lane and of the last, where every second along and the last fill the
-// visibility cache for later bounces; or those of the other lanes.
+// Which nodes run: all; or every second along both axes, with the last ones, which fill the visibility cache for later
+// bounces; or the nodes between them along the same lanes; or those of the other lanes.
 layout(constant_id = 5) const uint FROM = 0u;
 const uint FROM_KEPT = 1u;
-const uint FROM_REST = 2u;
+const uint FROM_BETWEEN = 2u;
+const uint FROM_REST = 3u;
 const bool FILLS_CACHE = FROM == FROM_KEPT;
-const int LANE_STRIDE = 1;
 
-layout(binding = 0, rgba32f) uniform readonly image2D lane_heights;
 layout(binding = 1) uniform textureBuffer azimuths;
 layout(binding = 2, rg32ui) uniform readonly uimage2DArray occluders;
 layout(binding = 3, rgba32f) uniform readonly image2D bounce_ground;
@@ -35,10 +34,11 @@ layout(binding = 4, rg32ui) uniform readonly uimage2D grey_ground;
 layout(binding = 5, rgba32f) uniform image2D bounce_sum;
 layout(binding = 6, rgba32ui) uniform writeonly uimage2DArray visibility_cache;
 layout(binding = 7, rgba32ui) uniform readonly uimage2DArray line_blocks;
+layout(binding = 8, rg32ui) uniform readonly uimage2DArray grey_blocks;
 
 #include "shared/angle.glsl"
 #include "shared/lattice.glsl"
-#include "shared/quad.glsl"
+#include "shared/slopes.glsl"
 #include "shared/nodes.glsl"
 #include "bounce/line_blocks.glsl"
 #include "bounce/visibility_cache.glsl"
@@ -66,8 +66,17 @@ int own_lane;
 int own_step;
 float own_height;
 ivec2 own_node;      // texel of its sum
-ivec2 own_kept_node; // texel of its visibility cache, if kept
-bool own_is_kept;
+ivec2 own_kept_node; // texel of its visibility cache
+
+Block block_at(ivec3 texel) {
+    uvec4 words;
+    if (GREY) {
+        words = imageLoad(grey_blocks, texel);
+    } else {
+        words = imageLoad(line_blocks, texel);
+    }
+    return block_of(words);
+}
 
 // A point of the grid point's own line.
 vec4 point_at(int back) {
@@ -243,10 +252,10 @@ vec4 walked(vec3 normal, float plane) {
     turns_on = int(walking);
     while (turns_on > 0) {
         int block_end = max(on - at, 2);
-        int longest = min(findMSB(at) - 3, findMSB(max(limit - at, 1)));
+        int longest = min(findMSB(at) - SHARE_BITS, findMSB(max(limit - at, 1)));
         int level = clamp(min(findLSB(block_end), longest), 1, MOST_LEVEL);
         int among = block_line(nearest.line, nearest.lead, azimuth.shear, block_end);
-        Block block = block_of(imageLoad(line_blocks, block_texel(layer, among, level, block_end)));
+        Block block = block_at(block_texel(layer, among, level, block_end));
         float to_slope = slope_of(block.top, float(at + block.top_steps));
         int to = at + (1 << level);
         bool is_last_block = to >= limit;
@@ -267,11 +276,16 @@ vec4 walked(vec3 normal, float plane) {
     if (FILLS_CACHE) {
         vec4 steps_to = ring_moments / max(ring_weights, vec4(1e-30));
         uvec4 kept = cache_word(steps_to, ring_weights / azimuth.wedge_rad);
-        if (own_is_kept) {
-            imageStore(visibility_cache, ivec3(own_kept_node, int(azimuth_index - begin)), kept);
-        }
+        imageStore(visibility_cache, ivec3(own_kept_node, int(azimuth_index - begin)), kept);
     }
     return vec4(indirect, whole);
+}
+
+// One lane and those beside it.
+Strip strip_of(int lane, int march) {
+    float below = ground_at(neighbour(lane - 1, lanes), march).w;
+    float above = ground_at(neighbour(lane + 1, lanes), march).w;
+    return Strip(vec4(below), vec4(ground_at(lane, march).w), vec4(above));
 }
 
 void main() {
@@ -281,13 +295,17 @@ void main() {
     int along = int(gl_GlobalInvocationID.y);
     int nodes_across = node_count(lanes, NODE_STRIDE);
     int nodes_along = node_count(steps, NODE_STRIDE);
-    if (FROM == FROM_KEPT) {
-        if (across >= node_count(lanes, 2 * NODE_STRIDE)) {
+    if (FROM == FROM_KEPT || FROM == FROM_BETWEEN) {
+        int kept_along = node_count(steps, 2 * NODE_STRIDE);
+        if (across >= node_count(lanes, 2 * NODE_STRIDE) || FROM == FROM_KEPT && along >= kept_along) {
             return;
         }
-        own_is_kept = is_second(along, nodes_along);
-        own_kept_node = texel_at(across, (along + 1) / 2);
+        own_kept_node = texel_at(across, along);
         across = second_node(across, nodes_across);
+        along = FROM == FROM_KEPT ? second_node(along, nodes_along) : 2 * along + 1;
+        if (FROM == FROM_BETWEEN && is_second(along, nodes_along)) {
+            return;
+        }
     } else if (FROM == FROM_REST) {
         across = 2 * across + 1;
         if (is_second(across, nodes_across)) {
@@ -300,14 +318,19 @@ void main() {
     own_node = texel_at(across, along);
     int lane = node_place(across, lanes, NODE_STRIDE);
     int march = node_place(along, steps, NODE_STRIDE);
-    Quad q = quad_at(lane & ~3, march, lanes, steps);
+    Quad q;
+    q.lane = ivec4(lane);
+    q.march = march;
+    q.before = strip_of(lane, neighbour(march - 1, steps));
+    q.here = strip_of(lane, march);
+    q.after = strip_of(lane, neighbour(march + 1, steps));
     vec4 easts;
     vec4 norths;
     quad_slopes(q, lanes, steps, vec2(cell_x_m, cell_y_m), easts, norths);
-    float east = easts[lane & 3];
-    float north = norths[lane & 3];
+    float east = easts.x;
+    float north = norths.x;
     vec3 normal = vec3(-east, -north, 1.0) * inversesqrt(1.0 + east * east + north * north);
-    own_height = height_at(lane, march);
+    own_height = q.here.four.x;
     vec4 sum = vec4(0.0);
     if (clears == 0u) {
         sum = imageLoad(bounce_sum, own_node);

@@ -1,7 +1,7 @@
 // Computes: blocks of every swept line of some azimuths: the largest height of each, and the mean radiance of its
 // ground.
 // Reads: bounce_ground (or grey_ground), azimuths.
-// Writes: line_blocks.
+// Writes: line_blocks (or grey_blocks).
 // One invocation is 256 steps of a line.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
@@ -19,6 +19,7 @@ layout(binding = 0, rgba32f) uniform readonly image2D bounce_ground;
 layout(binding = 1, rg32ui) uniform readonly uimage2D grey_ground;
 layout(binding = 2) uniform textureBuffer azimuths;
 layout(binding = 3, rgba32ui) uniform writeonly uimage2DArray line_blocks;
+layout(binding = 4, rg32ui) uniform writeonly uimage2DArray grey_blocks;
 
 #include "shared/lattice.glsl"
 #include "bounce/line_blocks.glsl"
@@ -72,7 +73,12 @@ Weighed joined(Weighed far, Weighed near, int length) {
 void store(int level, int end, Block block) {
     int among = block_line(line, lead, azimuth.shear, end);
     if (among >= 0 && among < block_lines(lanes) && end < total) {
-        imageStore(line_blocks, block_texel(first_layer, among, level, end), block_words(block));
+        ivec3 texel = block_texel(first_layer, among, level, end);
+        if (GREY) {
+            imageStore(grey_blocks, texel, block_words(block));
+        } else {
+            imageStore(line_blocks, texel, block_words(block));
+        }
     }
 }
 

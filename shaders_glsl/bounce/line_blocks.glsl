@@ -1,5 +1,5 @@
 // What walks read: points of lines, with height and exit radiance between two lanes, and blocks of them. The including
-// shader declares `bounce_ground`, `grey_ground` and the constants LINE_SHIFT, BORDER, GREY and MARCHES_ROWS.
+// shader declares `bounce_ground`, `grey_ground`, `line_blocks`, `grey_blocks` and the constants LINE_SHIFT, BORDER, GREY and MARCHES_ROWS.
 
 // Exit radiance and height.
 vec4 ground_at(int lane, int march) {
@@ -38,7 +38,7 @@ vec4 ground_on_line(Azimuth azimuth, int y, int step, int lanes, int steps) {
 }
 
 // Line blocks: 2, 4, … or 256 steps of a swept line, each from a multiple of its own length. A walk reads its own line
-// step by step at first, and farther ground in blocks of at most an eighth of their distance, or 2 steps. A block has
+// step by step at first, and farther ground in blocks of at most a quarter of their distance, or 2 steps. A block has
 // its largest height with its place, and the mean radiance of its ground. The mean weights each piece by its rise
 // above all nearer ground of the block.
 
@@ -48,6 +48,8 @@ int near_steps() {
     return 8 << max(LINE_SHIFT - CELL_SHIFT, 0);
 }
 
+// log2 of that quarter.
+const int SHARE_BITS = 2;
 // log2 of the longest block.
 const int MOST_LEVEL = 8;
 // Every piece has this rise in addition, over world distance.
@@ -76,7 +78,7 @@ ivec3 block_texel(int first_layer, int among_lines, int level, int end) {
     return ivec3(among_lines & 31, row, first_layer + (among_lines >> 5));
 }
 
-// The place takes the last eight bits of the first channel, rounded by half of them.
+// The place takes the last eight bits of the first channel, rounded by half of them. Grey radiance has no further channel.
 uvec4 block_words(Block block) {
     uint first = ((floatBitsToUint(block.light.r) + 128u) & ~255u) | uint(block.top_steps - 1);
     return uvec4(floatBitsToUint(block.top), first, floatBitsToUint(block.light.gb));
@@ -84,5 +86,5 @@ uvec4 block_words(Block block) {
 
 Block block_of(uvec4 words) {
     vec3 light = uintBitsToFloat(uvec3(words.y & ~255u, words.zw));
-    return Block(uintBitsToFloat(words.x), int(words.y & 255u) + 1, light);
+    return Block(uintBitsToFloat(words.x), int(words.y & 255u) + 1, GREY ? light.rrr : light);
 }

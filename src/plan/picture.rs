@@ -200,7 +200,8 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     let walked = walked_azimuths.map(|azimuths| {
         let of = ([size[0], size[1]], surface.border);
         let ground = BounceGround::make(&mut builder, of.0, active.is_grey);
-        let line_blocks = LineBlocks::make(&mut builder, azimuths, sweep.line_shift(), of, limits);
+        let form = (sweep.line_shift(), active.is_grey);
+        let line_blocks = LineBlocks::make(&mut builder, azimuths, form, of, limits);
         (ground, line_blocks)
     });
     let shared = (bounces, images.sky_sum);

@@ -206,7 +206,7 @@ words! {
         BruteForce = "brute-force",
         /// The ground up to the horizon of a sweep along lines: near by at every march step, farther away in blocks
         ///
-        /// Blocks of swept lines, at most an eighth of their distance long. Time grows with the logarithm of the
+        /// Blocks of swept lines, at most a quarter of their distance long. Time grows with the logarithm of the
         /// distance. Needs such a sweep.
         Sweep = "sweep",
         /// One texel per level of pyramids of heights and light: approximate

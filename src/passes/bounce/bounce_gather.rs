@@ -55,7 +55,7 @@ pub(crate) struct Pyramids {
 }
 
 impl Pyramids {
-    /// Lookups of a grid point per azimuth: a height and a radiance at every sample, of as many texels as its spline has.
+    /// Lookups per node and azimuth: a height and a radiance for each of its march steps, each from the texels of a spline.
     pub(crate) fn lookups(&self) -> u64 {
         let texels = if self.heights.stored == Levels::Stack { 2 } else { 16 };
         2 * texels * u64::from(self.heights.samples())

@@ -9,9 +9,8 @@ use crate::passes::sphere_shade::MOST_TURNS;
 use crate::scene::Border;
 use std::ops::Range;
 
-/// What a walk reads: heights and the results of a sweep.
+/// What a walk reads: ground and the results of a sweep.
 pub(crate) struct Swept {
-    pub lane_heights: ResourceId,
     pub azimuths: ResourceId,
     pub occluders: ResourceId,
     pub line_blocks: LineBlocks,
@@ -28,9 +27,10 @@ pub(crate) struct Swept {
 #[derive(Clone, Copy, PartialEq)]
 enum From {
     All,
-    /// Nodes of every second lane and of the last one. Every second one along a lane writes the visibility
-    /// cache.
+    /// Every second node along both axes, and the last ones. They write the visibility cache.
     Kept,
+    /// Nodes between them along the same lanes.
+    Between,
     /// Nodes of the other lanes.
     Rest,
 }
@@ -54,28 +54,31 @@ pub(crate) fn plan(
     let count = azimuths.len() as u32;
     let NodeSum { nodes, sum } = bounce.found_at();
     let [along, across] = nodes.size([axis.steps, axis.lanes]);
-    let [_, kept] = Nodes { stride: 2 * nodes.stride }.size([axis.steps, axis.lanes]);
+    let second = Nodes { stride: 2 * nodes.stride };
+    let [kept_along, kept] = second.size([axis.steps, axis.lanes]);
     let dispatches = match swept.visibility_cache {
-        None => vec![(From::All, "", across)],
-        Some(_) => vec![(From::Kept, " kept", kept), (From::Rest, " not kept", across - kept)],
+        None => vec![(From::All, "", [across, along])],
+        Some(_) => vec![
+            (From::Kept, " kept", [kept, kept_along]),
+            (From::Between, " between", [kept, along - kept_along]),
+            (From::Rest, " beside", [across - kept, along]),
+        ],
     };
     let (line_blocks, block_layers) = swept.line_blocks.of(axis);
     let bound = [
-        ("lane_heights", swept.lane_heights),
         ("azimuths", swept.azimuths),
         ("occluders", swept.occluders),
-        ("line_blocks", line_blocks),
+        (LineBlocks::binding(bounce.grey), line_blocks),
         swept.ground.bound(),
         ("bounce_sum", sum),
     ];
-    for (from, which, across) in dispatches.iter().filter(|d| d.2 > 0) {
-        let found = u64::from(along) * u64::from(*across);
+    for (from, which, [across, along]) in dispatches.iter().filter(|d| !d.2.contains(&0)) {
+        let found = u64::from(*along) * u64::from(*across);
         let mut bound = bound.to_vec();
         bound.extend(
             swept.visibility_cache.filter(|_| *from == From::Kept).map(|c| ("visibility_cache", c)),
         );
-        // One of two nodes stores 16 bytes.
-        let bytes_an_azimuth = if *from == From::Kept { 10 } else { 2 };
+        let bytes_an_azimuth = if *from == From::Kept { 18 } else { 2 };
         let pass = builder.pass(
             shaders::BounceWalk {
                 line_shift: swept.line_shift as i32,
@@ -102,7 +105,7 @@ pub(crate) fn plan(
                 block_layers,
             },
             &bound,
-            found * (4 + 32 + u64::from(count) * bytes_an_azimuth),
+            found * (36 + 32 + u64::from(count) * bytes_an_azimuth),
             found * u64::from(count),
         );
         pass.azimuths = azimuths.clone();

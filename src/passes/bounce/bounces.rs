@@ -321,7 +321,6 @@ fn walk(
             sky_shade::plan(builder, &sweeping.sweep, border, cell_m, batch, part, &images);
         }
         let swept = bounce_walk::Swept {
-            lane_heights: sweeping.lane_heights(batch),
             azimuths: sweeping.azimuths,
             occluders,
             line_blocks: *line_blocks,

@@ -17,7 +17,9 @@ const AT_ONCE_BYTES: u64 = 64 << 20;
 const AT_ONCE_BYTES_CPU: u64 = 4 << 20;
 const MOST_AT_ONCE: u32 = 8;
 /// Of a block: its largest height, the place of that, and radiance.
-const FORMAT: Format = Format::Rgba32Uint;
+fn format(grey: bool) -> Format {
+    if grey { Format::Rg32Uint } else { Format::Rgba32Uint }
+}
 
 /// Blocks along the swept lines of some azimuths at a time, of each axis that is marched: columns, rows. One image
 /// serves both where it takes no more than one for each.
@@ -25,6 +27,7 @@ const FORMAT: Format = Format::Rgba32Uint;
 pub(crate) struct LineBlocks {
     of_axes: [Option<Lines>; 2],
     line_shift: u32,
+    grey: bool,
 }
 
 #[derive(Clone, Copy)]
@@ -51,8 +54,8 @@ impl Shape {
         Self { rows: axis.steps + axis.warm_up, layers }
     }
 
-    fn bytes(&self) -> u64 {
-        32 * u64::from(self.rows) * u64::from(self.layers) * FORMAT.bytes()
+    fn blocks(&self) -> u64 {
+        32 * u64::from(self.rows) * u64::from(self.layers)
     }
 }
 
@@ -61,7 +64,7 @@ impl LineBlocks {
     pub(crate) fn make(
         builder: &mut Builder,
         azimuths: &[Azimuth],
-        line_shift: u32,
+        (line_shift, grey): (u32, bool),
         (size, border): ([u32; 2], Border),
         limits: &Limits,
     ) -> Self {
@@ -72,20 +75,21 @@ impl LineBlocks {
         });
         let left = limits.memory_budget.saturating_sub(builder.bytes());
         let at_once = if limits.is_cpu { AT_ONCE_BYTES_CPU } else { AT_ONCE_BYTES };
-        let room = at_once.min(left / 8);
+        // Blocks.
+        let room = at_once.min(left / 8) / format(grey).bytes();
         let mut image = |shape: Shape, count: u32, suffix: &str| {
-            let at_once = ((room / shape.bytes()) as u32)
+            let at_once = ((room / shape.blocks()) as u32)
                 .min(limits.image_layers / shape.layers)
                 .clamp(1, count.min(MOST_AT_ONCE));
             let extent = [32, shape.rows, shape.layers * at_once];
             let name = format!("line_blocks{suffix}");
-            let image = builder.image(name, Owner::Internal, FORMAT, extent, true);
+            let image = builder.image(name, Owner::Internal, format(grey), extent, true);
             Lines { image, at_once, layers: shape.layers }
         };
         let of_axes = match shapes {
             [Some((a, of_a)), Some((b, of_b))] => {
                 let both = Shape { rows: a.rows.max(b.rows), layers: a.layers.max(b.layers) };
-                if both.bytes() <= a.bytes() + b.bytes() {
+                if both.blocks() <= a.blocks() + b.blocks() {
                     [Some(image(both, of_a.max(of_b), "")); 2]
                 } else {
                     [Some(image(a, of_a, "")), Some(image(b, of_b, "_across"))]
@@ -93,7 +97,7 @@ impl LineBlocks {
             }
             one => one.map(|of| of.map(|(shape, count)| image(shape, count, ""))),
         };
-        Self { of_axes, line_shift }
+        Self { of_axes, line_shift, grey }
     }
 
     fn lines(&self, axis: Axis) -> Lines {
@@ -106,6 +110,11 @@ impl LineBlocks {
         let all = batch.azimuths();
         let group = |first: u32| first..all.end.min(first + most);
         all.clone().step_by(most as usize).map(group).collect()
+    }
+
+    /// The name of their binding.
+    pub(crate) fn binding(grey: bool) -> &'static str {
+        if grey { "grey_blocks" } else { "line_blocks" }
     }
 
     /// Image of the azimuths along an axis, and the layers of one.
@@ -134,7 +143,7 @@ impl LineBlocks {
                 line_shift: self.line_shift as i32,
                 border: border as u32,
                 marches_rows: axis.marches_rows,
-                grey: bounce.grey,
+                grey: self.grey,
             },
             part,
             format!("{}, blocks along {count} azimuths", bounce.why),
@@ -146,9 +155,13 @@ impl LineBlocks {
                 first_azimuth: azimuths.start,
                 block_layers: block_layers as i32,
             },
-            &[swept.ground.bound(), ("azimuths", swept.azimuths), ("line_blocks", image)],
+            &[
+                swept.ground.bound(),
+                ("azimuths", swept.azimuths),
+                (Self::binding(self.grey), image),
+            ],
             // Of two lanes; and as many blocks as steps.
-            found * (2 * swept.ground.texel_bytes() + FORMAT.bytes()),
+            found * (2 * swept.ground.texel_bytes() + format(self.grey).bytes()),
             found,
         );
         pass.azimuths = azimuths.clone();

@@ -37,7 +37,7 @@ pub type Reading<'scope> = ScopedJoinHandle<'scope, Result<(Scene, Quality)>>;
 /// A window with its device and its panel.
 pub struct Opened {
     pub window: Arc<Window>,
-    /// The size that the system last reported. winit panics if asked for that of a destroyed window.
+    /// The size that the system last reported. winit panics when it has to find that of a destroyed window.
     pub inner: [u32; 2],
     pub screen: Screen,
     pub gui: Gui,

@@ -236,8 +236,10 @@ pub(crate) fn bounce_ground(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 /// Every block that a walk may read: of every line that is on the field where it ends, or less than a spacing beside it.
 /// Heights and places are the same to the last bit.
 pub(crate) fn line_blocks(run: &mut Run, pass: &Pass) -> Vec<Pair> {
-    let texels = run.words(pass, "line_blocks").expect("written");
-    let [width, height] = run.extent(pass, "line_blocks");
+    let (name, words) =
+        if constant(pass, "grey") == 1 { ("grey_blocks", 2) } else { ("line_blocks", 4) };
+    let texels = run.words(pass, name).expect("written");
+    let [width, height] = run.extent(pass, name);
     let exit = run.walked_exit(pass);
     let shift: u32 = constant(pass, "line_shift");
     let mut pairs = Vec::new();
@@ -270,8 +272,9 @@ pub(crate) fn line_blocks(run: &mut Run, pass: &Pass) -> Vec<Pair> {
                     false => line - lead + 1 + ((end * azimuth.shear) >> shift),
                 } as usize;
                 let layer = (k - pass.azimuths.start) as usize * layers + (among >> 5);
-                let at = 4 * ((layer * height + row) * width + (among & 31));
-                let [top, first, green, blue] = [0, 1, 2, 3].map(|i| texels[at + i]);
+                let at = words * ((layer * height + row) * width + (among & 31));
+                let of = |i: usize| if i < words { texels[at + i] } else { 0 };
+                let [top, first, green, blue] = [0, 1, 2, 3].map(of);
                 let want = ground.line_block((y, end - warm_up), level);
                 let place = [k as usize, line as usize, row];
                 let exact = |got: f64, want: f64| Pair { got, want, tolerance: 0.0, at: place };
@@ -281,7 +284,7 @@ pub(crate) fn line_blocks(run: &mut Run, pass: &Pass) -> Vec<Pair> {
                 let brightest = want.brightest.iter().fold(0.0, |m: f64, v| m.max(*v));
                 let mean = block_error(brightest, want.spread.max_element());
                 let tolerance = [mean + place_error(brightest), mean, mean];
-                let channels = if constant(pass, "grey") == 1 { 1 } else { 3 };
+                let channels = words - 1;
                 pairs.extend((0..channels).map(|c| Pair {
                     got: light[c].into(),
                     want: want.light[c],
@@ -316,11 +319,17 @@ pub(crate) fn bounce_walk(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let kept = self::places(run, Nodes { stride: 2 * nodes.stride });
     let places = places(run, nodes);
     let from = constant(pass, "from");
-    // All of them, those of lanes whose visibility caches are kept, the others.
+    // All of them, those whose visibility caches are kept, others along the same lanes, the others.
     let across_of =
         |[row, col]: [usize; 2]| if constant(pass, "marches_rows") == 1 { col } else { row };
     let lanes: HashSet<usize> = kept.iter().map(|place| across_of(*place)).collect();
-    let is_walked = |i: usize| from == 0 || (from == 1) == lanes.contains(&across_of(places[i]));
+    let kept: HashSet<[usize; 2]> = kept.into_iter().collect();
+    let is_walked = |i: usize| match from {
+        0 => true,
+        1 => kept.contains(&places[i]),
+        2 => lanes.contains(&across_of(places[i])) && !kept.contains(&places[i]),
+        _ => !lanes.contains(&across_of(places[i])),
+    };
     let wedge = std::f64::consts::TAU / f64::from(run.quality.bounces.azimuths);
     let settings = (Some(Fuse::AimedNearest), constant(pass, "line_shift"));
     let walked: Vec<_> = run.swept(range.clone(), settings, |swept| {
