@@ -19,8 +19,8 @@ layout(constant_id = 2) const bool MARCHES_ROWS = false;
 layout(constant_id = 3) const bool GREY = false;
 // Grid points from node to node: 1, 2, 4 or 8.
 layout(constant_id = 4) const int NODE_STRIDE = 1;
-// Which nodes run: all; or every second along both axes, with the last ones, which fill the visibility cache for later
-// bounces; or the nodes between them along the same lanes; or those of the other lanes.
+// Nodes of a dispatch. 0: all. FROM_KEPT: every second one along both axes, and the last ones; they fill the visibility cache
+// for later bounces. FROM_BETWEEN: the others of the same lanes. FROM_REST: those of the other lanes.
 layout(constant_id = 5) const uint FROM = 0u;
 const uint FROM_KEPT = 1u;
 const uint FROM_BETWEEN = 2u;

@@ -48,7 +48,7 @@ int near_steps() {
     return 8 << max(LINE_SHIFT - CELL_SHIFT, 0);
 }
 
-// log2 of that quarter.
+// Blocks are at most 2^-SHARE_BITS of their distance long.
 const int SHARE_BITS = 2;
 // log2 of the longest block.
 const int MOST_LEVEL = 8;
@@ -78,7 +78,8 @@ ivec3 block_texel(int first_layer, int among_lines, int level, int end) {
     return ivec3(among_lines & 31, row, first_layer + (among_lines >> 5));
 }
 
-// The place takes the last eight bits of the first channel, rounded by half of them. Grey radiance has no further channel.
+// The place takes the low eight bits of the first channel, which is rounded to the rest. Grey blocks store no
+// further channel.
 uvec4 block_words(Block block) {
     uint first = ((floatBitsToUint(block.light.r) + 128u) & ~255u) | uint(block.top_steps - 1);
     return uvec4(floatBitsToUint(block.top), first, floatBitsToUint(block.light.gb));

@@ -206,7 +206,19 @@ void main() {
         series[i] = 0.0;
         arrived[i] = vec3(0.0);
     }
-    vec4 sum = vec4(0.0);
+    bool begins = first_azimuth == 0;
+    ivec2 held = min(at, ivec2(cols, rows) - 1);
+    vec4 before = imageLoad(bounce_sum, held);
+    vec4 sum = mix(before, vec4(0.0), bvec4(begins));
+    for (int i = 0; i < FOURS; i++) {
+        for (int c = 0; c < CHANNELS; c++) {
+            vec4 earlier = imageLoad(arriving, ivec3(held, c * FOURS + i));
+            vec4 four = mix(earlier, vec4(0.0), bvec4(begins));
+            for (int k = 0; k < 4 && 4 * i + k < COUNT; k++) {
+                arrived[4 * i + k][c] = four[k];
+            }
+        }
+    }
     for (int k = first_azimuth; k < last_azimuth; k++) {
         azimuth = turn_march(k, azimuths, vec2(cell_x_m, cell_y_m));
         turn_to(2.0 * PI / float(azimuths), azimuth);
@@ -230,10 +242,6 @@ void main() {
     if (!exists) {
         return;
     }
-    vec4 before = imageLoad(bounce_sum, at);
-    vec4 both = before + sum;
-    bool begins = first_azimuth == 0;
-    sum = begins ? sum : both;
     // Weights over a whole hemisphere sum to 1: uniform incident radiance is preserved.
     vec4 light = vec4(max(sum.rgb, vec3(0.0)) / max(sum.a, 1e-30), 1.0);
     bool is_whole = last_azimuth == azimuths;
@@ -245,9 +253,7 @@ void main() {
             for (int k = 0; k < 4 && 4 * i + k < COUNT; k++) {
                 four[k] = arrived[4 * i + k][c];
             }
-            vec4 earlier = imageLoad(arriving, layer);
-            vec4 all = earlier + four;
-            imageStore(arriving, layer, begins ? four : all);
+            imageStore(arriving, layer, four);
         }
     }
 }

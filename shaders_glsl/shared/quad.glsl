@@ -1,7 +1,8 @@
 #include "shared/slopes.glsl"
 
-// Loads four grid points side by side along the lane axis, and those around them. Where LANE_STRIDE is not 1 they are nodes, that
-// many lanes apart. The including shader declares `lane_heights` and the constants LANE_STRIDE, BORDER and MARCHES_ROWS.
+// Loads four grid points side by side along the lane axis, and those around them. Where LANE_STRIDE is not 1 they are
+// nodes, that many lanes apart. The including shader declares `lane_heights` and the constants LANE_STRIDE, BORDER and
+// MARCHES_ROWS.
 
 // Heights are loaded four lanes at a time, as an image rather than a texture: llvmpipe (Mesa 22.3)
 // calls a function to fetch from a texture, but loads from an image in place.

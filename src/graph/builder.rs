@@ -6,14 +6,15 @@ use crate::graph::{Format, Kind, Limits, Owner, Pass, Resource, ResourceId};
 /// Part of a dispatch.
 #[derive(Clone)]
 pub(crate) struct Part {
-    /// Or other slices.
+    /// Azimuths, or slices of a sphere light.
     pub azimuths: Range<u32>,
-    /// Of invocations.
+    /// Rows of invocations.
     pub rows: Range<u32>,
 }
 
 impl Part {
-    /// The label of the dispatch, with what this is of all its azimuths, called so, and rows.
+    /// The label of this part's dispatch: `of`, then its azimuths (called `name`, counted from the first of `all`) and its rows,
+    /// each only if the part lacks some.
     pub(crate) fn label(&self, of: &str, name: &str, all: &Range<u32>, height: u32) -> String {
         let mut label = of.to_owned();
         let Self { azimuths, rows } = self;
@@ -51,8 +52,8 @@ impl Builder {
         }
     }
 
-    /// Parts of a dispatch, as azimuths (or other slices) and rows of invocations: each of at most `at_once` azimuths and
-    /// of at most [`Limits::lookups`], or of eight rows of one azimuth. Every invocation takes `each` lookups per azimuth.
+    /// Cuts a dispatch into parts. Each has at most `at_once` azimuths (or slices) and at most [`Limits::lookups`] lookups; the
+    /// smallest part is eight rows of one azimuth. Every invocation takes `each` lookups per azimuth.
     pub(crate) fn parts(
         &self,
         azimuths: Range<u32>,

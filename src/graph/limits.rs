@@ -19,14 +19,14 @@ pub struct Limits {
     pub shared_bytes: u32,
     /// Whether the device is a CPU: narrow workgroups, hulls in private memory.
     pub is_cpu: bool,
-    /// Largest number of lookups of a dispatch of brute force or a pyramid. A long dispatch blocks a GPU for others, and its
-    /// driver may end it.
+    /// Lookups that a dispatch of brute force, pyramids, sphere lights or paths should not exceed; eight rows of one azimuth, or
+    /// of all paths, may. A long dispatch blocks a GPU for others, and its driver may end it.
     pub lookups: u64,
     /// Memory budget of all images and buffers of a plan, bytes.
     pub memory_budget: u64,
     /// How a sweep with `hull auto` uses the device.
     pub sweep: SweepForm,
-    /// The same before the device was tuned.
+    /// The form of the untuned device, for every hull but `auto`.
     pub untuned_sweep: SweepForm,
 }
 
@@ -49,7 +49,7 @@ pub struct SweepForm {
 }
 
 impl SweepForm {
-    pub(crate) fn check(&self) -> Result<()> {
+    pub(crate) fn check(&self, name: &str) -> Result<()> {
         let Self { lines_each, group_size, shares_hull: _, hull_depth, private_depth, azimuths } =
             self;
         let is_depth = |depth: u32| depth.is_power_of_two() && depth <= 1024;
@@ -66,14 +66,14 @@ impl SweepForm {
         }
         let expected = "lines_each 1 or 4; group_size at most 128, with lines_each × group_size a multiple of 32; \
                         depths powers of two up to 1024; azimuths at least 1";
-        Err(Error::setting("limits.sweep", format!("{self:?}"), expected))
+        Err(Error::setting(name, format!("{self:?}"), expected))
     }
 
-    /// The form for a device that has not been tuned. `is_swiftshader`: on a processor, by SwiftShader.
+    /// The form for a device that has not been tuned. `is_swiftshader`: whether the driver is SwiftShader.
     pub(crate) fn of_device(is_cpu: bool, is_swiftshader: bool) -> Self {
         match is_cpu {
-            // A frame takes 0.51 (0.47 to 0.53) of the time with four lines per invocation: `ridgelight tune`, 512², 32
-            // azimuths, 2 cores. On lavapipe it takes 2.2 times as long.
+            // Frame time with one line per invocation over that with four: 0.51 (0.47 to 0.53) on SwiftShader, 2.2 on lavapipe:
+            // benches/results/tune.txt.
             true if is_swiftshader => Self {
                 lines_each: 1,
                 group_size: 32,

@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 use super::Plan;
 use crate::graph::{Builder, Format, Limits, Owner, ResourceId};
-use crate::passes::blocks::{BlockLevels, Blocks};
+use crate::passes::blocks::Blocks;
 use crate::passes::path_trace::{self, BATCH_PATHS};
 use crate::plan::reference::choice::{choice_density, environment_cdf, max_path_light};
 use crate::scene::{ANY_LIGHT, Albedo, Border, KeyLight, Lights, PhongSpecular, Scene, Specular};
@@ -32,8 +32,7 @@ const MOST_BOUNCES: u32 = 64;
 /// # Errors
 /// Bounces, surface or lights out of range; no light; a scene beyond the limits.
 pub fn reference(scene: &Scene, bounces: u32, seed: u32, limits: &Limits) -> Result<Plan> {
-    let rows = band_rows(scene, bounces, limits);
-    traced(scene, (bounces, seed), None, rows, limits)
+    traced(scene, (bounces, seed), None, None, limits)
 }
 
 /// As [`reference`](reference()), with one dispatch per `band_rows` rows, 1 or more, for hosts that render frames in
@@ -51,7 +50,7 @@ pub fn reference_in_bands(
     if band_rows == 0 {
         return Err(Error::setting("rows of a band", "0", "1 or more"));
     }
-    traced(scene, (bounces, seed), None, band_rows, limits)
+    traced(scene, (bounces, seed), None, Some(band_rows), limits)
 }
 
 /// As [`reference`](reference()), for a list of texels and their indirect light only: light that has been reflected at
@@ -73,8 +72,7 @@ pub fn reference_at(
         let expected = format!("1 to {all}, as the field has");
         return Err(Error::setting("places of a reference", places.to_string(), expected));
     }
-    let rows = band_rows(scene, bounces, limits);
-    traced(scene, (bounces, seed), Some(places as u32), rows, limits)
+    traced(scene, (bounces, seed), Some(places as u32), None, limits)
 }
 
 /// The input list of [`reference_at`]: positions of texels in the field, row-major, in rows as long as the field's. The
@@ -100,7 +98,7 @@ fn traced(
     scene: &Scene,
     (bounces, seed): (u32, u32),
     listed: Option<u32>,
-    band_rows: u32,
+    band_rows: Option<u32>,
     limits: &Limits,
 ) -> Result<Plan> {
     let Scene { field, surface, lights } = scene;
@@ -167,7 +165,13 @@ fn traced(
     ]);
     blocks.plan(&mut builder, field, heights, Some([batch_mean, lost_rays]));
     let rows = summed[1];
-    let parts = path_trace::parts(scene, &blocks, bounces);
+    let (parts, lookups) = path_trace::parts(scene, &blocks, bounces, limits.lookups);
+    let band_rows = band_rows.unwrap_or_else(|| {
+        let vertices = u64::from(BATCH_PATHS) * u64::from(bounces.min(3) + 1);
+        let cols = u64::from(size[0]);
+        let rows = (BAND_VERTICES / (cols * vertices)).min(limits.lookups / (cols * lookups));
+        (rows / 8 * 8).clamp(8, 1 << 24) as u32
+    });
     if parts.len() > 1 {
         let sum = builder.image("part_sum", Owner::Internal, rgba, [size[0], rows, 1], false);
         bound.push(("part_sum", sum));
@@ -189,21 +193,8 @@ fn traced(
     Plan::finish(builder, size, Vec::new(), Vec::new(), Vec::new(), used, limits)
 }
 
-/// Approximate number of path vertices per dispatch: a batch can be interrupted after each.
+/// Approximate number of path vertices per dispatch. A run can be interrupted between dispatches.
 const BAND_VERTICES: u64 = 1 << 24;
-
-/// Rows of a band, a multiple of 8, within [`Limits::lookups`] if they can be. Few paths go beyond a few bounces.
-fn band_rows(scene: &Scene, bounces: u32, limits: &Limits) -> u32 {
-    let Scene { field, surface, lights } = scene;
-    let size = [field.cols() as u32, field.rows() as u32];
-    let row = u64::from(size[0]) * u64::from(BATCH_PATHS) * u64::from(bounces.min(3) + 1);
-    // A ray on, and one to each light.
-    let rays = 1 + lights.suns.len() + lights.keys.len() + lights.sphere_lights.len();
-    let rays = rays as u64 + u64::from(lights.environment.is_some());
-    let lookups = row * rays * BlockLevels::of(size, surface.border).lookups();
-    let rows = (BAND_VERTICES / row).min(limits.lookups / lookups);
-    (rows / 8 * 8).clamp(8, 1 << 24) as u32
-}
 
 /// Standard error of unsampled light after `paths` paths per texel of a [`reference`](reference()), R, G, B. Add it to
 /// the standard error of the batches as the root of the sum of squares.

@@ -57,9 +57,9 @@ fn sweeps_and_walks() {
     assert!(!names.contains(&"horizon_sweep") && names.contains(&"bounce_walk"), "{names:?}");
 }
 
-/// Blocks of at most 8 azimuths are made at once, while they take 64 MiB at most: of 1024² heights with grey light,
-/// 8.25 MiB an azimuth, seven; of 2 × 4096 heights, 1 MiB an azimuth along the columns, eight, with an image of their own. On a
-/// processor while they take 4 MiB. The first walk clears and the last divides.
+/// The blocks of up to 8 azimuths are made at once, if they fit 64 MiB, or 4 MiB on a CPU. With grey light, 1024² heights take
+/// 8.25 MiB an azimuth, so seven fit. 2 × 4096 heights take 1 MiB an azimuth along the columns, so eight fit, in an image of their
+/// own. The first walk clears and the last divides.
 #[test]
 fn blocks_are_made_of_azimuths_that_fit() {
     let of = |rows, cols, is_cpu| {

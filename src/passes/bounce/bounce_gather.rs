@@ -55,7 +55,8 @@ pub(crate) struct Pyramids {
 }
 
 impl Pyramids {
-    /// Lookups per node and azimuth: a height and a radiance for each of its march steps, each from the texels of a spline.
+    /// Lookups per node and azimuth: a height and a radiance at every march step. Each takes the 16 texels of a spline, or two of
+    /// a stack.
     pub(crate) fn lookups(&self) -> u64 {
         let texels = if self.heights.stored == Levels::Stack { 2 } else { 16 };
         2 * texels * u64::from(self.heights.samples())

@@ -29,7 +29,7 @@ enum From {
     All,
     /// Every second node along both axes, and the last ones. They write the visibility cache.
     Kept,
-    /// Nodes between them along the same lanes.
+    /// The other nodes of the same lanes.
     Between,
     /// Nodes of the other lanes.
     Rest,
@@ -61,7 +61,7 @@ pub(crate) fn plan(
         Some(_) => vec![
             (From::Kept, " kept", [kept, kept_along]),
             (From::Between, " between", [kept, along - kept_along]),
-            (From::Rest, " beside", [across - kept, along]),
+            (From::Rest, " rest", [across - kept, along]),
         ],
     };
     let (line_blocks, block_layers) = swept.line_blocks.of(axis);
@@ -105,7 +105,7 @@ pub(crate) fn plan(
                 block_layers,
             },
             &bound,
-            found * (36 + 32 + u64::from(count) * bytes_an_azimuth),
+            found * (swept.ground.texel_bytes() + 32 + u64::from(count) * bytes_an_azimuth),
             found * u64::from(count),
         );
         pass.azimuths = azimuths.clone();

@@ -16,7 +16,7 @@ const AT_ONCE_BYTES: u64 = 64 << 20;
 /// 1024² 1.02 (llvmpipe, 2 cores).
 const AT_ONCE_BYTES_CPU: u64 = 4 << 20;
 const MOST_AT_ONCE: u32 = 8;
-/// Of a block: its largest height, the place of that, and radiance.
+/// Format of a block: largest height, its place, and radiance in one channel if grey, else three.
 fn format(grey: bool) -> Format {
     if grey { Format::Rg32Uint } else { Format::Rgba32Uint }
 }
@@ -75,7 +75,7 @@ impl LineBlocks {
         });
         let left = limits.memory_budget.saturating_sub(builder.bytes());
         let at_once = if limits.is_cpu { AT_ONCE_BYTES_CPU } else { AT_ONCE_BYTES };
-        // Blocks.
+        // In blocks.
         let room = at_once.min(left / 8) / format(grey).bytes();
         let mut image = |shape: Shape, count: u32, suffix: &str| {
             let at_once = ((room / shape.blocks()) as u32)

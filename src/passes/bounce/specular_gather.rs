@@ -44,7 +44,7 @@ pub(crate) fn plan(
     let of_each = specular.order * specular.order + if has_vectors { layers + layers } else { 0 };
     let turns = 3 * knots + 1 + (knots + 1) * of_each;
     let at_once = ((MOST_TURNS - 8 * layers) / turns).max(1);
-    // Each has four texels of every layer.
+    // Four texels of every layer at each march step.
     let vectors = if has_vectors { u64::from(4 * layers * march_samples) } else { 0 };
     for part in builder.parts(0..azimuths, [cols, rows], of.lookups() + vectors, at_once) {
         let (count, height) = (part.azimuths.len() as u32, part.rows.len() as u32);

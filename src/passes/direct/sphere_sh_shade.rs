@@ -28,7 +28,7 @@ pub(crate) fn plan(
     let at_once = at_once - more;
     let size = [scene.field.cols(), scene.field.rows()].map(|n| n as u32);
     let all = 0..soft.azimuths;
-    // Of the whole field, so that plans of a moving light have the same passes.
+    // Cuts the whole field, not the rectangle: then the passes are the same wherever the light is.
     for part in builder.parts(all.clone(), size, lookups(blocks, soft), at_once) {
         let label = part.label(name, "azimuths", &all, size[1]);
         let Part { azimuths, rows } = part;
@@ -46,9 +46,11 @@ pub(crate) fn plan(
     }
 }
 
-/// Lookups of a grid point per azimuth.
+/// Lookups per grid point and azimuth. A wedge of a table has a ray at both of its ends, as a part's last one does.
 fn lookups(blocks: &Blocks, soft: &SphereSh) -> u64 {
-    match &soft.pyramid {
+    let rays = if soft.wedges == Wedges::Table { 2 } else { 1 };
+    rays * match &soft.pyramid {
+        Some((pyramid, _)) if pyramid.stored == Levels::Stack => 2 * u64::from(pyramid.samples()),
         Some((pyramid, _)) => 16 * u64::from(pyramid.samples()),
         None => blocks.levels.lookups(),
     }

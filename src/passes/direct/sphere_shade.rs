@@ -35,16 +35,32 @@ pub(crate) fn plan(
     let [narrow, around] = light.slices(shading.slices, scene.field.cell_m());
     let at_once = (MOST_TURNS / (blocks.levels.most_steps() + 1)).max(1);
     let size = [scene.field.cols(), scene.field.rows()].map(|n| n as u32);
-    // Of the whole field, so that plans of a moving light have the same passes.
-    for part in builder.parts(0..around, size, blocks.levels.lookups(), at_once) {
+    let each = blocks.levels.lookups();
+    // Beyond this distance a light subtends fewer slices.
+    let within = |slice: u32| {
+        let half_width = PI * f64::from(slice) / f64::from(around);
+        1.001 * light.radius_m / half_width.min(FRAC_PI_2).sin()
+    };
+    // Cuts as many texels as there may be, not the rectangle: then the passes are the same wherever the light is.
+    let all = u64::from(size[0]) * u64::from(size[1]) * u64::from(around) * each;
+    let parts = if all <= builder.lookups {
+        builder.parts(0..around, size, each, at_once)
+    } else {
+        let [cell_x, cell_y] = scene.field.cell_m();
+        let side = |cell: f64, count: u32| {
+            (2.0 * within(narrow) / cell).ceil().min(f64::from(count - 1)) as u32 + 1
+        };
+        let near = [side(cell_x, size[0]), side(cell_y, size[1])];
+        let mut parts = builder.parts(0..narrow.min(around), size, each, at_once);
+        parts.extend(builder.parts(narrow.min(around)..around, near, each, at_once));
+        parts
+    };
+    for part in parts {
         let label = part.label(name, "slices", &(0..around), size[1]);
         let Part { azimuths: slices, rows } = part;
         let mut lit = Some(shading.rectangle);
         if slices.start >= narrow {
-            // Beyond this distance the light subtends fewer slices.
-            let half_width = PI * f64::from(slices.start) / f64::from(around);
-            let within = 1.001 * light.radius_m / half_width.min(FRAC_PI_2).sin();
-            let near = texels_within(&scene.field, light, within);
+            let near = texels_within(&scene.field, light, within(slices.start));
             lit = near.and_then(|near| common(near, shading.rectangle));
         }
         let rectangle = lit.and_then(|lit| rows_of(lit, &rows)).unwrap_or(beyond(size));
@@ -53,13 +69,13 @@ pub(crate) fn plan(
     }
 }
 
-/// One grid point beyond the field, which passes leave out: a dispatch without work.
+/// A rectangle south of the field, where shaders write nothing. It keeps a pass that has no work.
 pub(crate) fn beyond([_, rows]: [u32; 2]) -> Rectangle {
     Rectangle { col: 0, row: rows, cols: 1, rows: 1 }
 }
 
-/// Some rows of a rectangle, counted from its first. Parts of the field would not do: workgroups reach beyond the end of a
-/// rectangle, where the next part would add its light again.
+/// Some rows of a rectangle. They count from its first row, so that a part is whole workgroups. Counted from the field's first
+/// row, a workgroup could reach into the next part, and light there would be added twice.
 pub(crate) fn rows_of(lit: Rectangle, rows: &Range<u32>) -> Option<Rectangle> {
     let end = rows.end.min(lit.rows);
     (rows.start < end).then(|| Rectangle {

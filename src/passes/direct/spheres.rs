@@ -198,7 +198,7 @@ mod tests {
     use super::*;
     use crate::graph::Limits;
     use crate::plan;
-    use crate::plan::{Picture, Plan};
+    use crate::plan::{Pass, Picture, Plan};
     use crate::scene::fractal;
     use crate::scene::{Lights, Quality, Surface};
 
@@ -249,6 +249,38 @@ mod tests {
         let run = after.passes_after(&before, &[]);
         let names: Vec<&str> = run.iter().map(|i| after.passes[*i].name()).collect();
         assert_eq!(names, ["sphere_shade", "light_resolve"]);
+    }
+
+    /// Also where its dispatches are cut by rows, and the light leaves the field.
+    #[test]
+    fn a_moving_sphere_light_keeps_its_parts() {
+        let limits = Limits { lookups: 100_000, ..Limits::lavapipe() };
+        // 3 m over the ground, so that they reach little of it.
+        let over = |field: &HeightField, x: f64, y: f64| {
+            let height = field.heights_m()[(63 - y as usize) * 64 + x as usize];
+            let up = field.base_m() + f64::from(height) + 3.0;
+            SphereLight { position_m: [x, y, up], radius_m: 1.0, radiance: [1.0; 3] }
+        };
+        let at = |y: f64| {
+            let field = fractal(64, 1).unwrap();
+            let sphere_lights = vec![over(&field, 30.0, 20.0), over(&field, 40.0, y)];
+            let lights = Lights { sphere_lights, ..Lights::default() };
+            let scene = Scene { field, surface: Surface::default(), lights };
+            let quality = Quality { light_cutoff: 0.3, ..Quality::default() };
+            plan::picture(&scene, &quality, &limits, Picture::default()).unwrap()
+        };
+        let before = at(30.0);
+        let cut = before.passes.iter().filter(|p| p.part.contains("rows"));
+        assert!(cut.clone().count() > 16);
+        // The rows below its rectangle are left out.
+        let second = |p: &&Pass| p.part.starts_with("sphere_light2 slices 0..1 rows 56");
+        assert_eq!(before.passes.iter().find(second).map(|p| p.groups), Some([1; 3]));
+        let pushed = |plan: &Plan| plan.passes.iter().map(|p| p.push.clone()).collect::<Vec<_>>();
+        for y in [3.0, 37.5, 61.0] {
+            let after = at(y);
+            assert!(after.has_passes_of(&before), "{y}");
+            assert_ne!(pushed(&after), pushed(&before), "{y}");
+        }
     }
 
     #[test]

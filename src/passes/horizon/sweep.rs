@@ -160,6 +160,9 @@ fn form_of(
     let mut form = device;
     if !is_one && !is_four {
         (form.lines_each, form.group_size) = (4, group_size(limits));
+        if limits.is_cpu {
+            form.hull_depth = SweepForm::of_device(true, false).hull_depth;
+        }
     }
     let of_form = [HullStorage::Private, HullStorage::Shared][usize::from(form.shares_hull)];
     let own = place == of_form && form.lines_each == device.lines_each;
@@ -273,7 +276,8 @@ impl Sweep {
         };
         let packed = quality.precision == Precision::Packed;
         let periodic = border == Border::Periodic;
-        limits.sweep.check()?;
+        limits.sweep.check("limits.sweep")?;
+        limits.untuned_sweep.check("limits.untuned_sweep")?;
         let (place, form) = form_of(quality, sides, slope_format > 0, limits);
         let wanted = total.next_power_of_two();
         let hull_depth = match place {

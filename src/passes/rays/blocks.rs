@@ -80,7 +80,7 @@ impl BlockLevels {
         24 * self.top_level
     }
 
-    /// The lookups of as many steps: a cell and the top of a block each.
+    /// Lookups of a ray of [`usual_steps`](Self::usual_steps): a cell and the top of a block at each step.
     pub(crate) fn lookups(&self) -> u64 {
         2 * u64::from(self.usual_steps())
     }

@@ -24,9 +24,14 @@ pub(crate) struct Part {
     pub lights: Range<u32>,
 }
 
-/// The parts of a batch; one where all of it is within the device's loop limit. Few paths continue beyond a few
-/// bounces.
-pub(crate) fn parts(scene: &Scene, blocks: &Blocks, bounces: u32) -> Vec<Part> {
+/// The parts of a batch; one where all of it is within the device's loop limit, and eight rows of it within `lookups`, if they can
+/// be; and the lookups per texel of the largest. Few paths continue beyond a few bounces.
+pub(crate) fn parts(
+    scene: &Scene,
+    blocks: &Blocks,
+    bounces: u32,
+    most_lookups: u64,
+) -> (Vec<Part>, u64) {
     let lights = &scene.lights;
     let all = (lights.suns.len() + lights.keys.len() + lights.sphere_lights.len()) as u32;
     let vertices = bounces.min(3) + 1;
@@ -37,17 +42,27 @@ pub(crate) fn parts(scene: &Scene, blocks: &Blocks, bounces: u32) -> Vec<Part> {
         (MOST_TURNS / (paths * vertices)).saturating_sub(others * of_ray) / (of_ray + 2)
     };
     let halves = (0..=SET_BITS).rev().map(|bits| 1 << bits);
-    let enough = |paths: &u32| most_lights(*paths) >= all.min(LIGHTS_OF_A_PART);
+    // A ray on from each vertex, one to an environment, and one to each light of the part.
+    let lookups = |paths: u32| {
+        let rays = u64::from(others + all.min(most_lights(paths).max(1)));
+        u64::from(paths) * u64::from(vertices) * rays * blocks.levels.lookups()
+    };
+    let eight_rows = 8 * scene.field.cols() as u64;
+    let enough = |paths: &u32| {
+        most_lights(*paths) >= all.min(LIGHTS_OF_A_PART)
+            && eight_rows * lookups(*paths) <= most_lookups
+    };
     let paths = halves.into_iter().find(enough).unwrap_or(1);
     let at_once = most_lights(paths).max(1);
     let sets = (0..BATCH_PATHS).step_by(paths as usize).map(|first| first..first + paths);
-    sets.flat_map(|paths| {
+    let each = lookups(paths);
+    let parts = sets.flat_map(|paths| {
         (0..all.max(1)).step_by(at_once as usize).map(move |first| Part {
             paths: paths.clone(),
             lights: first.min(all)..(first + at_once).min(all),
         })
-    })
-    .collect()
+    });
+    (parts.collect(), each)
 }
 
 /// One batch of paths from every texel of some rows, counted in eights; for `listed` texels, only their bounced

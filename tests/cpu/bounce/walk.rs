@@ -153,7 +153,7 @@ fn walks_up_an_incline_match_the_integral() {
             })
             .sum();
         println!("{} {want}, {bound}", light[0]);
-        // A block's radiance ranges over at most a quarter of its distance.
+        // A block is at most a quarter of its distance long. Its radiance, here the height, varies along it.
         assert!(casts.iter().any(|c| c.is_block) && bound < 0.25 * want, "{bound} {want}");
         assert!((light[0] - want).abs() < bound, "{} {want} {bound}", light[0]);
     });

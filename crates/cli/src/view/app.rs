@@ -100,7 +100,7 @@ struct OpenWindow {
     limits: Limits,
     screen: Screen,
     window: Arc<Window>,
-    /// The size that the system last reported, for surfaces without a size of their own.
+    /// The size of the arguments, then that of the last resize event, for surfaces without a size of their own.
     inner: [u32; 2],
     /// Size of each picture.
     size: [u32; 2],

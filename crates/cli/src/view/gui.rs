@@ -97,7 +97,7 @@ impl Gui {
         size: [u32; 2],
         content: impl FnMut(&mut egui::Ui),
     ) -> (TexturesDelta, bool) {
-        // Not `take_egui_input`, which takes the size of the window from winit, where that panics if the window is gone.
+        // Not `take_egui_input`: it asks winit for the size of the window, and winit panics if the window is destroyed.
         let per_point = egui_winit::pixels_per_point(&self.context, window);
         let [width, height] = size.map(|n| n as f32 / per_point);
         let input = self.input.egui_input_mut();

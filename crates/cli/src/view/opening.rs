@@ -37,7 +37,7 @@ pub type Reading<'scope> = ScopedJoinHandle<'scope, Result<(Scene, Quality)>>;
 /// A window with its device and its panel.
 pub struct Opened {
     pub window: Arc<Window>,
-    /// The size that the system last reported. winit panics when it has to find that of a destroyed window.
+    /// The size of the arguments, then that of the last resize event. For a destroyed window winit panics instead of giving a size.
     pub inner: [u32; 2],
     pub screen: Screen,
     pub gui: Gui,
@@ -135,7 +135,7 @@ impl<'a, 'scope> Opening<'a, 'scope> {
     }
 }
 
-/// Why a window ends that has been destroyed.
+/// The error of a window that another program has destroyed.
 pub fn destroyed() -> Error {
     let reason = "another program has destroyed it".into();
     Error::Device { doing: "showing pictures in a window".into(), reason }

@@ -103,9 +103,8 @@ fn part(points: &[(f32, DVec3)], flat_m: f64) -> Part {
     }
 }
 
-/// The level of the block that begins `at` steps from a grid point, at step `end` of the march, counted from where it
-/// begins: from a multiple of its own length, and at most a quarter of its distance long, and no longer than what is
-/// left up to `limit`, or 2 steps.
+/// The level of the block that begins `at` steps from a grid point, at step `end` of the march. Its length divides `end`. It is at
+/// most a quarter of `at` and at most what is left up to `limit`, but at least 2 steps.
 pub fn level_at(at: i32, end: i32, limit: i32) -> u32 {
     let longest = (at.ilog2() - 2).min((limit - at).ilog2());
     end.trailing_zeros().min(longest).clamp(1, MOST_LEVEL)

@@ -319,7 +319,7 @@ pub(crate) fn bounce_walk(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let kept = self::places(run, Nodes { stride: 2 * nodes.stride });
     let places = places(run, nodes);
     let from = constant(pass, "from");
-    // All of them, those whose visibility caches are kept, others along the same lanes, the others.
+    // 0: all nodes; 1: those that fill the visibility cache; 2: the others of their lanes; 3: those of the other lanes.
     let across_of =
         |[row, col]: [usize; 2]| if constant(pass, "marches_rows") == 1 { col } else { row };
     let lanes: HashSet<usize> = kept.iter().map(|place| across_of(*place)).collect();
