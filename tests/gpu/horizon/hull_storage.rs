@@ -169,6 +169,20 @@ fn every_form_of_the_sweep_renders_identical_bits() {
     }
 }
 
+/// No device is tuned before `tune`. SwiftShader sweeps one line per invocation, lavapipe four.
+#[test]
+fn an_untuned_device_has_its_own_form() {
+    let gpu = Device::new();
+    let limits = gpu.limits();
+    let scene = under_sky(fractal(32, 1).expect("a field"), Border::Plane);
+    let plan = plan::picture(&scene, &Quality::default(), &limits, Picture::default());
+    let plan = plan.expect("a plan");
+    assert!(!plan.notes.iter().any(|n| n.starts_with("tuned sweep")), "{:?}", plan.notes);
+    let driver = gpu.report().driver.clone();
+    let is_one = plan.passes.iter().find_map(|p| p.constant("one_line")) == Some(1);
+    assert_eq!(is_one, !driver.contains("llvmpipe"), "{driver}");
+}
+
 /// GPU plans sweep one line per invocation, fetch heights ahead and from buffers, and have one lattice per batch; their picture
 /// must equal that of CPU plans.
 #[test]
