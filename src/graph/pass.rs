@@ -1,3 +1,4 @@
+use std::collections::HashMap;
 use std::ops::Range;
 
 use crate::graph::Reach;
@@ -74,6 +75,31 @@ impl Pass {
         let bound = self.shader.bindings.iter().zip(&self.bindings);
         bound.filter_map(move |(binding, id)| id.filter(|_| binding.written == written))
     }
+}
+
+/// Moves every pass as far forward as its hazards allow, so that passes run side by side between the fewest barriers. One that
+/// sweeps a few thousand lines leaves most of a GPU idle. Passes with hazards between them keep their order.
+pub(crate) fn moved_forward(passes: Vec<Pass>) -> Vec<Pass> {
+    // For each resource, the stages of its last writer and of its last reader so far.
+    let mut written: HashMap<ResourceId, u32> = HashMap::new();
+    let mut read: HashMap<ResourceId, u32> = HashMap::new();
+    let mut staged = Vec::new();
+    for pass in passes {
+        let stage = {
+            let next = |of: &HashMap<ResourceId, u32>, id| of.get(&id).map_or(0, |last| last + 1);
+            let reads = pass.reads().map(|r| next(&written, r));
+            let writes = pass.writes().map(|w| next(&written, w).max(next(&read, w)));
+            reads.chain(writes).max().unwrap_or(0)
+        };
+        for id in pass.reads() {
+            let last = read.entry(id).or_default();
+            *last = stage.max(*last);
+        }
+        written.extend(pass.writes().map(|w| (w, stage)));
+        staged.push((stage, pass));
+    }
+    staged.sort_by_key(|(stage, _)| *stage);
+    staged.into_iter().map(|(_, pass)| pass).collect()
 }
 
 /// Sets [`Pass::barrier_before`] where a pass reads or writes what an earlier one wrote, or writes what an earlier one

@@ -2,7 +2,9 @@
 
 use super::Plan;
 use crate::graph::Limits;
-use crate::graph::{Builder, Kind, Pass, Resource, ResourceId, bytes_text, place_barriers};
+use crate::graph::{
+    Builder, Kind, Pass, Resource, ResourceId, bytes_text, moved_forward, place_barriers,
+};
 use crate::passes::azimuths::Azimuth;
 use crate::{Error, Result};
 
@@ -38,6 +40,9 @@ impl Plan {
             );
         }
         let mut edit_passes = edit_passes.unwrap_or_default();
+        if !limits.is_cpu {
+            (passes, edit_passes) = (moved_forward(passes), moved_forward(edit_passes));
+        }
         place_barriers(&mut passes);
         place_barriers(&mut edit_passes);
         let plan = Plan {

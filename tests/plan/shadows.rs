@@ -1,6 +1,6 @@
 //! Which suns and key lights are lit by shadow heights, and which by hull sweeps.
 
-use ridgelight::plan::{self, Limits, Picture, Plan, missing_barriers};
+use ridgelight::plan::{self, Limits, Pass, Picture, Plan, missing_barriers};
 use ridgelight::scene::{
     Border, Fuse, KeyLight, Lights, Lines, Method, Quality, Scene, Sun, Surface,
 };
@@ -79,4 +79,43 @@ fn short_memory_takes_hull_sweeps_with_a_note() {
     assert!(!plan.notes.iter().any(is_said), "{:?}", plan.notes);
     let bytes: u64 = plan.resources.iter().map(plan::Resource::bytes).sum();
     assert!(bytes <= enough.memory_budget, "{bytes}");
+}
+
+/// A sun's few azimuths do not fill a GPU: the sweeps of the sky and of the first sun along both axes run side by side. On a CPU
+/// each is shaded while its lattice is in a cache.
+#[test]
+fn sweeps_run_side_by_side_on_a_gpu() {
+    let sun = |azimuth_rad| Sun {
+        azimuth_rad,
+        elevation_rad: 0.5,
+        diameter_rad: 0.02,
+        irradiance: [1.0; 3],
+    };
+    // The azimuths of both lie on both sides of a diagonal.
+    let suns = vec![sun(0.75 * std::f64::consts::PI), sun(0.25 * std::f64::consts::PI)];
+    let lights = Lights { sky: Some([1.0; 3]), suns, ..Lights::default() };
+    let scene = Scene { field: flat(256, 256), surface: Surface::default(), lights };
+    // For each pass, the barriers before it, and its label.
+    let staged = |limits: &Limits| -> Vec<(usize, String)> {
+        let plan = picture(&scene, &Quality::default(), limits);
+        assert_eq!(missing_barriers(&plan.passes), []);
+        let mut barriers = 0;
+        let stage = |p: &Pass| {
+            barriers += usize::from(p.barrier_before);
+            (barriers, p.label())
+        };
+        plan.passes.iter().map(stage).collect()
+    };
+    let beside = |staged: &[(usize, String)], name: &str| {
+        let of_name = staged.iter().filter(|(_, label)| label.starts_with(name));
+        of_name.map(|(barriers, _)| *barriers).collect::<Vec<_>>()
+    };
+    let gpu = staged(&crate::on_gpu(Limits::lavapipe()));
+    assert_eq!(beside(&gpu, "horizon_sweep sky 0"), [1, 2], "{gpu:?}");
+    assert_eq!(beside(&gpu, "shadow_sweep sun1"), [1, 1]);
+    let lavapipe = staged(&Limits::lavapipe());
+    let first = beside(&lavapipe, "shadow_sweep sun1");
+    assert!(first[0] < first[1], "{lavapipe:?}");
+    assert_eq!(gpu.len(), lavapipe.len());
+    assert!(gpu.last().unwrap().0 < lavapipe.last().unwrap().0);
 }

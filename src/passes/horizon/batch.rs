@@ -168,7 +168,9 @@ pub(crate) struct Group<'a> {
     /// Bytes of the lattice of one azimuth: the largest along each axis.
     least: [u64; 2],
     /// Bytes of the lattices of all azimuths.
-    all: u64,
+    pub all: u64,
+    /// Whether each axis has a lattice of its own.
+    pub is_apart: bool,
 }
 
 impl<'a> Group<'a> {
@@ -181,7 +183,8 @@ impl<'a> Group<'a> {
     ) -> Self {
         let members: Vec<usize> = (0..lists.len()).filter(|l| is_member(*l)).collect();
         let own = axes.map(|axis| axis.map(|axis| LatticeShape::of(sweep, axis, nodes)));
-        let mut group = Self { members, sweep, shapes: own, least: [0; 2], all: 0 };
+        let mut group =
+            Self { members, sweep, shapes: own, least: [0; 2], all: 0, is_apart: false };
         group.measure(lists, axes);
         let [Some(a), Some(b)] = own else { return group };
         let apart = group.least;
@@ -191,6 +194,7 @@ impl<'a> Group<'a> {
         group.measure(lists, axes);
         if group.least[0].max(group.least[1]) > apart[0] + apart[1] {
             group.shapes = own;
+            group.is_apart = a != b;
             group.measure(lists, axes);
         }
         group
@@ -212,15 +216,10 @@ impl<'a> Group<'a> {
         }
     }
 
-    /// Whether each axis has a shape, and so a lattice, of its own.
-    fn differ(&self) -> bool {
-        matches!(self.shapes, [Some(a), Some(b)] if a != b)
-    }
-
     /// Bytes of the lattices with one azimuth each.
     fn least_bytes(&self) -> u64 {
         let [a, b] = self.least;
-        if self.differ() { a + b } else { a.max(b) }
+        if self.is_apart { a + b } else { a.max(b) }
     }
 }
 
@@ -255,9 +254,9 @@ pub(crate) fn cut_groups(
     }
     for (group, budget) in groups.iter().zip(budgets) {
         // Axes of one shape use one lattice in turn; others divide the budget by need.
-        let (differ, least) = (group.differ(), u128::from(group.least_bytes().max(1)));
+        let (is_apart, least) = (group.is_apart, u128::from(group.least_bytes().max(1)));
         let share = |need: u64| {
-            if differ { u128::from(budget) * u128::from(need) / least } else { budget.into() }
+            if is_apart { u128::from(budget) * u128::from(need) / least } else { budget.into() }
         };
         let lattice_bytes = group.least.map(|need| share(need) as u64);
         let room = Room { lattice_bytes, layer_bytes: group.layer_bytes() };

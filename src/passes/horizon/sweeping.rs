@@ -220,7 +220,11 @@ pub(crate) fn prepare(
     let shadow_lattice = Sweep::of_words(limits);
     let of_light = Group::of(&lists, &sweep, &axes, nodes, |l| !shadows.contains(&l));
     let of_shadow = Group::of(&lists, &shadow_lattice, &axes, nodes, |l| shadows.contains(&l));
-    let groups = [of_light, of_shadow];
+    let mut groups = [of_light, of_shadow];
+    // Sweeps along both axes can then run side by side: those of one sun do not fill a GPU.
+    let can_be_apart = !limits.is_cpu
+        && builder.bytes() + groups[1].all <= limits.memory_budget / OWN_LATTICES_DIVISOR;
+    groups[1].is_apart |= can_be_apart && axes.iter().all(Option::is_some);
     let batches = cut_groups(&mut lists, builder.bytes(), &axes, &groups, limits)?;
     let shape_of = |list: usize, axis: Axis| {
         let shapes = &groups[usize::from(shadows.contains(&list))].shapes;
@@ -248,7 +252,11 @@ pub(crate) fn prepare(
     let is_kept = |list: usize| kept_from.is_some_and(|first| list >= first);
     let all = || batches.iter().enumerate().flat_map(|(l, b)| b.iter().map(move |b| (l, *b)));
     // Of one shape, and both or neither of suns.
-    let turn = |list: usize, batch: &Batch| (shadows.contains(&list), shape_of(list, batch.axis));
+    let turn = |list: usize, batch: &Batch| {
+        let is_shadow = shadows.contains(&list);
+        let own_axis = groups[usize::from(is_shadow)].is_apart.then_some(batch.axis.marches_rows);
+        (is_shadow, shape_of(list, batch.axis), own_axis)
+    };
     // One batch alone does not fill a GPU. Lattices of suns keep their size when a sun moves: they are used in turn.
     let circles: Vec<bool> =
         lists.iter().map(|list| list.iter().map(|a| a.wedge_rad).sum::<f32>() > 6.0).collect();
@@ -258,7 +266,7 @@ pub(crate) fn prepare(
     let has_own_lattices = !limits.is_cpu
         && so_far + of_circles.sum::<u64>() <= limits.memory_budget / OWN_LATTICES_DIVISOR;
     let is_own = |list: usize| is_kept(list) || has_own_lattices && circles[list];
-    let mut shared: Vec<((bool, LatticeShape), Lattice)> = Vec::new();
+    let mut shared: Vec<((bool, LatticeShape, Option<bool>), Lattice)> = Vec::new();
     let mut lattices = Vec::new();
     for (list, batch) in all() {
         let of = turn(list, &batch);
@@ -269,7 +277,7 @@ pub(crate) fn prepare(
         } else {
             let alike = all().filter(|(l, b)| !is_own(*l) && turn(*l, b) == of);
             let layers = alike.map(|(_, b)| b.layers).max().unwrap_or(1);
-            let is_first = shared.iter().all(|((is_shadow, _), _)| *is_shadow != of.0);
+            let is_first = shared.iter().all(|((is_shadow, ..), _)| *is_shadow != of.0);
             let suffix = if is_first { "" } else { "_across" };
             let made = make(list, batch.axis, layers, suffix);
             shared.push((of, made));
