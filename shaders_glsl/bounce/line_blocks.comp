@@ -21,7 +21,7 @@ layout(binding = 2) uniform textureBuffer azimuths;
 layout(binding = 3, rgba32ui) uniform writeonly uimage2DArray line_blocks;
 layout(binding = 4, rg32ui) uniform writeonly uimage2DArray grey_blocks;
 
-#include "shared/lattice.glsl"
+#include "shared/lines.glsl"
 #include "bounce/line_blocks.glsl"
 
 layout(push_constant) uniform LineBlocksPush {

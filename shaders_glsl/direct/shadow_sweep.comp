@@ -2,7 +2,7 @@
 // edge of a sun: a running maximum of the ground over a plane that rises with the sun's light, raised so far that nothing
 // between two lines is above the interpolation of their maxima.
 // Reads: lane_heights, azimuths.
-// Writes: shadows at [azimuth][32 lines][step][line], a lattice (see lattice.glsl). The high half of a word is the shadow's
+// Writes: shadows at [azimuth][lines of a layer][step][line], a lattice (see lattice.glsl). The high half of a word is the shadow's
 // height over the line in metres: the high half of an f32, never too low. The low half is the march steps back to the
 // ground that casts it, 0 for none.
 // One invocation is four neighbouring lines, a cell apart, from the sun's side to the other end.

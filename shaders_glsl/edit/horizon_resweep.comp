@@ -12,7 +12,7 @@
 #include "shared/lattice.glsl"
 #include "edit/dirty.glsl"
 
-// 32 lines, a layer of the lattice. They march together.
+// 32 lines, of one layer of the lattice. They march together.
 layout(local_size_x = 8) in;
 const int GROUP_LINES = 32;
 

@@ -1,7 +1,7 @@
 // Computes: for every step of every line of an azimuth, the earlier step of that line with the steepest slope
 // (Timonen & Westerholm 2010, algorithm 1): an upper hull kept as a stack, O(1) amortised.
 // Reads: lane_buffer, lane_heights or heights; azimuths.
-// Writes: occluders (march steps back, 0 for none; u16) and / or slopes, at [azimuth][32 lines][step][line]: a
+// Writes: occluders (march steps back, 0 for none; u16) and / or slopes, at [azimuth][lines of a layer][step][line]: a
 // lattice, see fuse.glsl.
 // One invocation is four neighbouring lines, or one, from the horizon's side to the other end.
 #version 460
@@ -133,7 +133,7 @@ void sweep_four_lines() {
     }
     int line = first_line + int(gl_LocalInvocationID.x) * 4;
     int y = (line - lead) * spacing + begin * shear;
-    int lost_word = (int(azimuth.layer) + (line >> 5)) * 8 + ((line & 31) >> 2);
+    int lost_word = lattice_four(azimuth, line);
     if (REDOES_LOST && !subgroupAny(lost_lines[lost_word] != 0u)) {
         return;
     }

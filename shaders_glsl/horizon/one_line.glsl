@@ -188,7 +188,7 @@ void sweep_one_line() {
         barrier();
         int at = first_word + (own & ~3);
         if ((own & 3) == 0) {
-            int lost_word = (int(azimuth.layer) + (line >> 5)) * 8 + ((line & 31) >> 2);
+            int lost_word = lattice_four(azimuth, line);
             lost_lines[lost_word] = written[at] | written[at + 1] | written[at + 2] | written[at + 3];
         }
     }

@@ -1,20 +1,17 @@
-#include "shared/sweep.glsl"
+#include "shared/lines.glsl"
 
-// Result of a sweep: one value per line and step. 32 lines are stored together, step after step, four lines per
-// texel: a tile of 8 texels by `steps`, one layer of an image. A group of lines writes one contiguous range of memory
-// in any azimuth.
-
-// Lines before lane 0 at step 0 that the shear brings onto the field later.
-int lattice_lead(int shear, int total_steps, int line_shift, bool periodic) {
-    return periodic ? 0 : ((total_steps - 1) * shear + (1 << line_shift) - 1) >> line_shift;
-}
-
-int lattice_lines(int lanes, int lead, int line_shift, bool periodic) {
-    return periodic ? (lanes * CELL) >> line_shift : (((lanes - 1) * CELL) >> line_shift) + 1 + lead;
-}
+// Result of a sweep: one value per line and step. 2^LAYER_SHIFT lines, 32 or more, are stored together, step after step, four
+// lines per texel: a tile of 8 texels or more by `steps`, one layer of an image.
+layout(constant_id = 40) const int LAYER_SHIFT = 5;
 
 ivec3 lattice_texel(Azimuth azimuth, int line, int step) {
-    return ivec3((line & 31) >> 2, step, int(azimuth.layer) + (line >> 5));
+    int column = line & (1 << LAYER_SHIFT) - 1;
+    return ivec3(column >> 2, step, int(azimuth.layer) + (line >> LAYER_SHIFT));
+}
+
+// Place of a texel's line among all lines of all azimuths, in fours.
+int lattice_four(Azimuth azimuth, int line) {
+    return ((int(azimuth.layer) << LAYER_SHIFT) + line) >> 2;
 }
 
 // Halfword `line` & 3 of a texel of four.

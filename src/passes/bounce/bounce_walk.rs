@@ -81,6 +81,7 @@ pub(crate) fn plan(
         let bytes_an_azimuth = if *from == From::Kept { 18 } else { 2 };
         let pass = builder.pass(
             shaders::BounceWalk {
+                layer_shift: batch.layer_shift as i32,
                 line_shift: swept.line_shift as i32,
                 border: border as u32,
                 marches_rows: axis.marches_rows,

@@ -33,6 +33,7 @@ pub(crate) fn plan(
         let settled = axis.texels() / 10 * u64::from(count);
         let pass = builder.pass(
             shaders::ShadowSettle {
+                layer_shift: batch.layer_shift as i32,
                 border: border as u32,
                 marches_rows: axis.marches_rows,
                 shape: shape as u32,

@@ -17,6 +17,7 @@ pub(crate) fn plan(
     let [cols, rows] = axis.size();
     let pass = builder.pass(
         shaders::ShadowShade {
+            layer_shift: batch.layer_shift as i32,
             border: border as u32,
             marches_rows: axis.marches_rows,
             shape: shape as u32,

@@ -12,6 +12,7 @@ pub(crate) fn plan(
     let axis = batch.axis;
     let pass = builder.pass(
         shaders::ShadowSweep {
+            layer_shift: batch.layer_shift as i32,
             local_size_x: group_size,
             periodic: axis.warm_up > 0,
             fetches_ahead,

@@ -70,6 +70,7 @@ pub(crate) fn plan(
         + if images.specular.is_some() { 32 } else { 0 };
     let pass = builder.pass(
         shaders::SkyShade {
+            layer_shift: batch.layer_shift as i32,
             fuse: sweep.fuse_mode(),
             lattice: sweep.lattice_content(),
             line_shift: sweep.line_shift() as i32,

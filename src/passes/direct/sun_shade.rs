@@ -30,6 +30,7 @@ pub(crate) fn plan(
     }
     let pass = builder.pass(
         shaders::SunShade {
+            layer_shift: batch.layer_shift as i32,
             fuse: sweep.fuse_mode(),
             lattice: sweep.lattice_content(),
             line_shift: sweep.line_shift() as i32,

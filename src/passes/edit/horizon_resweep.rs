@@ -22,7 +22,11 @@ pub(crate) fn plan(
     let axis = batch.axis;
     let [first_col, first_row, last_col, last_row] = Rectangle::whole(axis.size()).words();
     let pass = builder.pass(
-        shaders::HorizonResweep { line_shift: sweep.line_shift as i32, hull_packed: sweep.packed },
+        shaders::HorizonResweep {
+            layer_shift: batch.layer_shift as i32,
+            line_shift: sweep.line_shift as i32,
+            hull_packed: sweep.packed,
+        },
         part,
         "lines that cross the edit, until it has left their hulls",
         [batch.most_lines.div_ceil(32), 1, batch.count],

@@ -33,6 +33,8 @@ pub struct Batch {
     pub line_texels: u64,
     /// Layers of the lattice.
     pub layers: u32,
+    /// A layer holds 2^layer_shift lines.
+    pub layer_shift: u32,
     /// Whether it is the light's first: its sum begins here.
     pub is_first: bool,
 }
@@ -53,16 +55,26 @@ pub(crate) fn sort(azimuths: &mut Vec<Azimuth>) -> Vec<u32> {
     order
 }
 
+/// Layers hold 2^LAYER_SHIFT lines unless a device allows too few layers.
+const LAYER_SHIFT: u32 = 5;
+/// The widest layers: 1024 lines, 256 texels.
+const MOST_LAYER_SHIFT: u32 = 10;
+/// Lattices with wider layers take at most this share of the memory budget.
+pub(crate) const LATTICE_DIVISOR: u64 = 8;
+
 /// Memory for lattices, by axis: marching columns, rows.
 pub(crate) struct Room {
     /// In total; enough for one azimuth.
     pub lattice_bytes: [u64; 2],
     /// Per layer.
     pub layer_bytes: [u64; 2],
+    pub layer_shift: u32,
 }
 
 /// Cuts sorted azimuths, from index `first` of the buffer, into batches whose lattices fit, and assigns each
 /// azimuth its layer.
+///
+/// Also returns whether a batch ended for want of layers alone: with more lines in each, it would have been longer.
 ///
 /// # Errors
 /// A single azimuth does not fit on the device.
@@ -73,15 +85,17 @@ pub(crate) fn cut(
     sweep: &Sweep,
     limits: &Limits,
     room: &Room,
-) -> Result<Vec<Batch>> {
+) -> Result<(Vec<Batch>, bool)> {
     let mut batches: Vec<Batch> = Vec::new();
+    let mut lacks_layers = false;
     for (i, azimuth) in azimuths.iter_mut().enumerate() {
         let marches_rows = usize::from(azimuth.marches_rows());
         let axis = axes[marches_rows].expect("an axis for every azimuth");
         let layer_bytes = room.layer_bytes[marches_rows];
-        let bytes = room.lattice_bytes[marches_rows].min(limits.allocation_bytes);
-        let most_layers = u64::from(limits.image_layers).min(bytes / layer_bytes.max(1)) as u32;
-        let layers = sweep.layers(azimuth, axis);
+        let most_bytes = room.lattice_bytes[marches_rows].min(limits.allocation_bytes);
+        let most_layers = most_bytes / layer_bytes.max(1);
+        let most_layers = u64::from(limits.image_layers).min(most_layers) as u32;
+        let layers = sweep.layers(azimuth, axis, room.layer_shift);
         if layers > most_layers {
             let [cols, rows] = axis.size();
             let what = format!("horizons of one azimuth of a {cols} × {rows} field");
@@ -98,8 +112,13 @@ pub(crate) fn cut(
             return Err(Error::Limit { what, needs, limit });
         }
         let fits = batches.last().is_some_and(|b| {
-            let together = b.count < sweep.azimuths_together();
-            b.axis == axis && b.layers + layers <= most_layers && together
+            let together = b.axis == axis && b.count < sweep.azimuths_together();
+            // More than image layers of 32 lines hold only in a share of the memory.
+            let bytes = u64::from(b.layers + layers) * layer_bytes;
+            let is_small = bytes <= limits.memory_budget / LATTICE_DIVISOR;
+            let fits = b.layers + layers <= most_layers;
+            lacks_layers |= together && !fits && is_small && bytes <= most_bytes;
+            together && fits && (is_small || room.layer_shift == LAYER_SHIFT)
         });
         if !fits {
             batches.push(Batch {
@@ -110,6 +129,7 @@ pub(crate) fn cut(
                 most_lines: 0,
                 line_texels: 0,
                 layers: 0,
+                layer_shift: room.layer_shift,
                 is_first: i == 0,
             });
         }
@@ -120,7 +140,7 @@ pub(crate) fn cut(
         batch.most_lines = batch.most_lines.max(sweep.lines(azimuth, axis));
         batch.line_texels += sweep.line_texels(azimuth, axis);
     }
-    Ok(batches)
+    Ok((batches, lacks_layers))
 }
 
 /// Layers that a sweep writes: formats, width and height. Their number follows from the batches.
@@ -133,7 +153,7 @@ pub(crate) struct LatticeShape {
 }
 
 impl LatticeShape {
-    pub(crate) fn of(sweep: &Sweep, axis: Axis, nodes: Nodes) -> Self {
+    pub(crate) fn of(sweep: &Sweep, axis: Axis, nodes: Nodes, layer_shift: u32) -> Self {
         let [lanes, steps] = nodes.size([axis.lanes, axis.steps]);
         match sweep {
             Sweep::Lines(lines) => Self {
@@ -143,7 +163,7 @@ impl LatticeShape {
                     2 => Some(Format::Rg32Uint),
                     _ => None,
                 },
-                width: 8,
+                width: 1 << layer_shift >> 2,
                 height: axis.steps + axis.warm_up,
             },
             Sweep::Crossings => Self { occluders: None, slopes: None, width: 1, height: 1 },
@@ -151,6 +171,11 @@ impl LatticeShape {
                 Self { occluders: None, slopes: Some(Format::R32Uint), width: lanes, height: steps }
             }
         }
+    }
+
+    /// Of a layer's lost lines: a word for each four lines.
+    pub(crate) fn lost_bytes(&self) -> u64 {
+        4 * u64::from(self.width)
     }
 
     pub(crate) fn layer_bytes(&self) -> u64 {
@@ -167,10 +192,13 @@ pub(crate) struct Group<'a> {
     pub shapes: [Option<LatticeShape>; 2],
     /// Bytes of the lattice of one azimuth: the largest along each axis.
     least: [u64; 2],
+    /// Layers of one azimuth: the most.
+    most_layers: u32,
     /// Bytes of the lattices of all azimuths.
     pub all: u64,
     /// Whether each axis has a lattice of its own.
     pub is_apart: bool,
+    layer_shift: u32,
 }
 
 impl<'a> Group<'a> {
@@ -178,13 +206,22 @@ impl<'a> Group<'a> {
         lists: &[Vec<Azimuth>],
         sweep: &'a Sweep,
         axes: &[Option<Axis>; 2],
-        nodes: Nodes,
+        (nodes, layer_shift): (Nodes, u32),
         is_member: impl Fn(usize) -> bool,
     ) -> Self {
         let members: Vec<usize> = (0..lists.len()).filter(|l| is_member(*l)).collect();
-        let own = axes.map(|axis| axis.map(|axis| LatticeShape::of(sweep, axis, nodes)));
-        let mut group =
-            Self { members, sweep, shapes: own, least: [0; 2], all: 0, is_apart: false };
+        let own =
+            axes.map(|axis| axis.map(|axis| LatticeShape::of(sweep, axis, nodes, layer_shift)));
+        let mut group = Self {
+            members,
+            sweep,
+            shapes: own,
+            least: [0; 2],
+            most_layers: 0,
+            all: 0,
+            is_apart: false,
+            layer_shift,
+        };
         group.measure(lists, axes);
         let [Some(a), Some(b)] = own else { return group };
         let apart = group.least;
@@ -206,11 +243,12 @@ impl<'a> Group<'a> {
 
     fn measure(&mut self, lists: &[Vec<Azimuth>], axes: &[Option<Axis>; 2]) {
         let layer_bytes = self.layer_bytes();
-        (self.least, self.all) = ([0; 2], 0);
+        (self.least, self.all, self.most_layers) = ([0; 2], 0, 0);
         for azimuth in self.members.iter().flat_map(|m| &lists[*m]) {
             let along = usize::from(azimuth.marches_rows());
             let axis = axes[along].expect("an axis for every azimuth");
-            let bytes = u64::from(self.sweep.layers(azimuth, axis)) * layer_bytes[along];
+            let bytes =
+                u64::from(self.sweep.layers(azimuth, axis, self.layer_shift)) * layer_bytes[along];
             self.least[along] = self.least[along].max(bytes);
             self.all += bytes;
         }
@@ -223,14 +261,40 @@ impl<'a> Group<'a> {
     }
 }
 
-/// Sorts every list and cuts it into batches. `fixed_bytes` are taken in any case.
-pub(crate) fn cut_groups(
+/// Groups lists, sorts each and cuts it into batches. A layer holds 32 lines; more where one azimuth has more layers than an image
+/// may have, and on a GPU also where batches would otherwise end for want of layers: a short one takes as long as a long one.
+/// `fixed_bytes` are taken in any case.
+pub(crate) fn cut_groups<'a>(
+    lists: &mut [Vec<Azimuth>],
+    fixed_bytes: u64,
+    axes: &[Option<Axis>; 2],
+    grouped: impl Fn(&[Vec<Azimuth>], u32) -> [Group<'a>; 2],
+    limits: &Limits,
+) -> Result<([Group<'a>; 2], Vec<Vec<Batch>>)> {
+    for list in lists.iter_mut() {
+        sort(list);
+    }
+    for layer_shift in LAYER_SHIFT.. {
+        let groups = grouped(lists, layer_shift);
+        let is_widest = layer_shift == MOST_LAYER_SHIFT;
+        if groups.iter().any(|g| g.most_layers > limits.image_layers) && !is_widest {
+            continue;
+        }
+        let (batches, lacks_layers) = cut_all(lists, fixed_bytes, axes, &groups, limits)?;
+        if limits.is_cpu || !lacks_layers || is_widest {
+            return Ok((groups, batches));
+        }
+    }
+    unreachable!("the widest layers end the search")
+}
+
+fn cut_all(
     lists: &mut [Vec<Azimuth>],
     fixed_bytes: u64,
     axes: &[Option<Axis>; 2],
     groups: &[Group<'_>; 2],
     limits: &Limits,
-) -> Result<Vec<Vec<Batch>>> {
+) -> Result<(Vec<Vec<Batch>>, bool)> {
     let [least, of_suns] = [0, 1].map(|g: usize| groups[g].least_bytes());
     let all = least + of_suns;
     if fixed_bytes + all > limits.memory_budget {
@@ -248,9 +312,9 @@ pub(crate) fn cut_groups(
     let budgets = [budget - for_suns, for_suns];
     let mut batches: Vec<Vec<Batch>> = vec![Vec::new(); lists.len()];
     let mut firsts = Vec::new();
-    for list in lists.iter_mut() {
+    let mut lacks_layers = false;
+    for list in lists.iter() {
         firsts.push(firsts.last().copied().unwrap_or(0) + list.len() as u32);
-        sort(list);
     }
     for (group, budget) in groups.iter().zip(budgets) {
         // Axes of one shape use one lattice in turn; others divide the budget by need.
@@ -259,14 +323,17 @@ pub(crate) fn cut_groups(
             if is_apart { u128::from(budget) * u128::from(need) / least } else { budget.into() }
         };
         let lattice_bytes = group.least.map(|need| share(need) as u64);
-        let room = Room { lattice_bytes, layer_bytes: group.layer_bytes() };
+        let layer_shift = group.layer_shift;
+        let room = Room { lattice_bytes, layer_bytes: group.layer_bytes(), layer_shift };
         for &l in &group.members {
             let first = firsts[l] - lists[l].len() as u32;
-            batches[l] = cut(&mut lists[l], first, axes, group.sweep, limits, &room)?;
+            let (cut, lacks) = cut(&mut lists[l], first, axes, group.sweep, limits, &room)?;
+            batches[l] = cut;
+            lacks_layers |= lacks;
         }
     }
     for (number, batch) in batches.iter_mut().flatten().enumerate() {
         batch.number = number as u32;
     }
-    Ok(batches)
+    Ok((batches, lacks_layers))
 }

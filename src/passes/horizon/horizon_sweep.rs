@@ -80,6 +80,7 @@ fn run(
     let heights = if one_line { 8 } else { 4 };
     let pass = builder.pass(
         shaders::HorizonSweep {
+            layer_shift: batch.layer_shift as i32,
             local_size_x: sweep.group_size,
             hull_place: sweep.hull as u32,
             hull_depth: depth,
@@ -124,7 +125,7 @@ fn run(
         },
         &bound,
         if again {
-            u64::from(batch.layers) * 32
+            u64::from(batch.layers) << batch.layer_shift
         } else {
             batch.line_texels * (heights + value_bytes)
         },

@@ -504,13 +504,13 @@ impl Sweep {
         }
     }
 
-    /// Layers of the lattice for one azimuth.
-    pub(crate) fn layers(&self, azimuth: &Azimuth, axis: Axis) -> u32 {
+    /// Layers of the lattice for one azimuth, of 2^layer_shift lines each where it holds lines.
+    pub(crate) fn layers(&self, azimuth: &Azimuth, axis: Axis, layer_shift: u32) -> u32 {
         match self {
             // Whole workgroups: those of a line beyond the last are swept too.
             Sweep::Lines(lines) => {
-                let group_lines = lines.group_lines();
-                self.lines(azimuth, axis).div_ceil(group_lines) * group_lines / 32
+                let lines = self.lines(azimuth, axis).next_multiple_of(lines.group_lines());
+                lines.div_ceil(1 << layer_shift)
             }
             Sweep::Crossings => 0,
             _ => 1 + u32::from(self.lattice_has_distances()),

@@ -21,6 +21,7 @@ pub(crate) fn plan(
     bound.extend(distances.map(|d| ("horizon_distances", d)));
     let pass = builder.pass(
         shaders::SweepFuse {
+            layer_shift: batch.layer_shift as i32,
             fuse: sweep.fuse_mode(),
             lattice: sweep.lattice_content(),
             line_shift: sweep.line_shift() as i32,

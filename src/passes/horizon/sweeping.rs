@@ -4,7 +4,7 @@ use crate::graph::Axis;
 use crate::graph::{Builder, Format, Limits, Owner, ResourceId};
 use crate::passes::azimuths;
 use crate::passes::azimuths::Azimuth;
-use crate::passes::batch::{Batch, Group, LatticeShape, cut_groups};
+use crate::passes::batch::{Batch, Group, LATTICE_DIVISOR, LatticeShape, cut_groups};
 use crate::passes::nodes::Nodes;
 use crate::passes::pyramid_march;
 use crate::passes::sweep::{HullStorage, LineSweep, Sweep};
@@ -33,11 +33,6 @@ pub(crate) struct Sweeping {
     /// Numbers of the batches of lights by shadow heights.
     shadows: Vec<u32>,
 }
-
-/// Each batch of a circle gets its own lattice if all images so far and these lattices fit 1/8 of the memory budget.
-const OWN_LATTICES_DIVISOR: u64 = 8;
-/// Of a layer: a word for each four lines.
-const LOST_BYTES: u64 = 32;
 
 /// Output of sweeps.
 #[derive(Clone, Copy)]
@@ -218,14 +213,18 @@ pub(crate) fn prepare(
         _ => None,
     };
     let shadow_lattice = Sweep::of_words(limits);
-    let of_light = Group::of(&lists, &sweep, &axes, nodes, |l| !shadows.contains(&l));
-    let of_shadow = Group::of(&lists, &shadow_lattice, &axes, nodes, |l| shadows.contains(&l));
-    let mut groups = [of_light, of_shadow];
-    // Sweeps along both axes can then run side by side: those of one sun do not fill a GPU.
-    let can_be_apart = !limits.is_cpu
-        && builder.bytes() + groups[1].all <= limits.memory_budget / OWN_LATTICES_DIVISOR;
-    groups[1].is_apart |= can_be_apart && axes.iter().all(Option::is_some);
-    let batches = cut_groups(&mut lists, builder.bytes(), &axes, &groups, limits)?;
+    let before_lattices = builder.bytes();
+    let grouped = |lists: &[Vec<Azimuth>], layer_shift| {
+        let each = (nodes, layer_shift);
+        let of_light = Group::of(lists, &sweep, &axes, each, |l| !shadows.contains(&l));
+        let mut of_shadow =
+            Group::of(lists, &shadow_lattice, &axes, each, |l| shadows.contains(&l));
+        // Sweeps along both axes can then run side by side: those of one sun do not fill a GPU.
+        let fits = before_lattices + of_shadow.all <= limits.memory_budget / LATTICE_DIVISOR;
+        of_shadow.is_apart |= !limits.is_cpu && fits && axes.iter().all(Option::is_some);
+        [of_light, of_shadow]
+    };
+    let (groups, batches) = cut_groups(&mut lists, before_lattices, &axes, grouped, limits)?;
     let shape_of = |list: usize, axis: Axis| {
         let shapes = &groups[usize::from(shadows.contains(&list))].shapes;
         shapes[usize::from(axis.marches_rows)].expect("a shape for every axis used")
@@ -244,7 +243,7 @@ pub(crate) fn prepare(
         let words = if is_shadow { "lattice_shadows" } else { "lattice_slopes" };
         let (occluders, slopes) =
             (image("lattice_occluders", shape.occluders), image(words, shape.slopes));
-        let bytes = u64::from(layers) * LOST_BYTES;
+        let bytes = u64::from(layers) * shape.lost_bytes();
         let lost_lines = (can_lose && !is_shadow)
             .then(|| builder.buffer(&format!("lost_lines{suffix}"), bytes, false));
         Lattice { occluders, slopes, lost_lines }
@@ -257,14 +256,15 @@ pub(crate) fn prepare(
         let own_axis = groups[usize::from(is_shadow)].is_apart.then_some(batch.axis.marches_rows);
         (is_shadow, shape_of(list, batch.axis), own_axis)
     };
-    // One batch alone does not fill a GPU. Lattices of suns keep their size when a sun moves: they are used in turn.
+    // One batch alone does not fill a GPU. Suns have many batches, and use lattices in turn.
     let circles: Vec<bool> =
         lists.iter().map(|list| list.iter().map(|a| a.wedge_rad).sum::<f32>() > 6.0).collect();
     let of_circles = all()
         .filter(|(list, _)| circles[*list])
-        .map(|(list, b)| u64::from(b.layers) * (shape_of(list, b.axis).layer_bytes() + LOST_BYTES));
+        .map(|(list, b)| (b, shape_of(list, b.axis)))
+        .map(|(b, shape)| u64::from(b.layers) * (shape.layer_bytes() + shape.lost_bytes()));
     let has_own_lattices = !limits.is_cpu
-        && so_far + of_circles.sum::<u64>() <= limits.memory_budget / OWN_LATTICES_DIVISOR;
+        && so_far + of_circles.sum::<u64>() <= limits.memory_budget / LATTICE_DIVISOR;
     let is_own = |list: usize| is_kept(list) || has_own_lattices && circles[list];
     let mut shared: Vec<((bool, LatticeShape, Option<bool>), Lattice)> = Vec::new();
     let mut lattices = Vec::new();

@@ -37,6 +37,7 @@ pub(crate) fn plan(
     let kept = sh.layers() as u64 * 16 * if batch.is_first { 1 } else { 2 };
     let pass = builder.pass(
         shaders::ShVisibility {
+            layer_shift: batch.layer_shift as i32,
             fuse: sweep.fuse_mode(),
             lattice: sweep.lattice_content(),
             line_shift: sweep.line_shift() as i32,

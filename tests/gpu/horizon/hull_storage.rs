@@ -183,13 +183,15 @@ fn an_untuned_device_has_its_own_form() {
     assert_eq!(is_one, !driver.contains("llvmpipe"), "{driver}");
 }
 
-/// GPU plans sweep one line per invocation, fetch heights ahead and from buffers, and have one lattice per batch; their picture
-/// must equal that of CPU plans.
+/// GPU plans sweep one line per invocation, fetch heights ahead and from buffers, and have one lattice per batch, with wider
+/// layers where images may have few; their picture must equal that of CPU plans.
 #[test]
 fn gpu_and_cpu_plans_render_identical_bits() {
     let mut gpu = Device::new();
     let limits = gpu.limits();
     let [on_cpu, on_gpu] = [true, false].map(|is_cpu| crate::of_kind(is_cpu, limits));
+    // An azimuth needs 6 layers of 32 lines, or 12 of a periodic field.
+    let few = Limits { image_layers: 20, ..on_gpu };
     let sun = |elevation: f64, diameter: f64| Sun {
         azimuth_rad: 0.7,
         elevation_rad: elevation,
@@ -201,14 +203,18 @@ fn gpu_and_cpu_plans_render_identical_bits() {
         scene.lights.suns = vec![sun(0.4, 0.0), sun(0.9, 0.02)];
         let bounces = Bounces { count: 2, azimuths: 8, ..Bounces::default() };
         let quality = Quality { azimuths: 16, bounces, ..Quality::default() };
-        let [ours, theirs] = [&on_cpu, &on_gpu].map(|limits| {
+        let [ours, theirs, wide] = [&on_cpu, &on_gpu, &few].map(|limits| {
             let plan = plan::picture(&scene, &quality, limits, Picture::default()).expect("a plan");
             let one_line = plan.passes.iter().any(|p| p.constant("one_line") == Some(1));
             assert_eq!(one_line, !limits.is_cpu, "{border:?}");
+            let has_wide_layers = plan.passes.iter().any(|p| p.constant("layer_shift") > Some(5));
+            assert_eq!(has_wide_layers, limits.image_layers == 20, "{border:?}");
             gpu.picture_within(&scene, &quality, limits).values
         });
-        let differing = ours.iter().zip(&theirs).filter(|(a, b)| a.to_bits() != b.to_bits());
-        assert_eq!(differing.count(), 0, "{border:?}");
+        for other in [theirs, wide] {
+            let differing = ours.iter().zip(&other).filter(|(a, b)| a.to_bits() != b.to_bits());
+            assert_eq!(differing.count(), 0, "{border:?}");
+        }
     }
 }
 
