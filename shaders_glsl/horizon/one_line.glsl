@@ -47,6 +47,36 @@ int kept;
 bool lost;
 vec2 line_hull_private[LINE_PRIVATE_ENTRIES];
 
+// Entry i, 0 or more, of a shared hull.
+vec2 shared_entry(int i) {
+    vec2 entry;
+    if (i >= kept) {
+        entry = line_hull_shared[(i & (HULL_DEPTH - 1)) * int(gl_WorkGroupSize.x) + int(gl_LocalInvocationID.x)];
+    } else {
+        entry = line_hull_private[min(i, LINE_PRIVATE_ENTRIES - 1)];
+    }
+    return entry;
+}
+
+// Pops vertices hidden from a point. Reads two vertices and tests both at once: on a GPU a turn of the loop takes the latency of
+// one read and of one test, and all lines of a subgroup wait for the one with the most turns.
+void pop_by_twos(float h, float x) {
+    bool pops = subtends(h, x, v1, v2);
+    bool pops_next = pops && subtends(h, x, v2, v3);
+    v1 = pops ? v2 : v1;
+    v2 = pops ? v3 : v2;
+    depth -= pops ? 1 : 0;
+    while (pops_next && !lost && depth > 0) {
+        vec2 third = shared_entry(depth);
+        vec2 fourth = shared_entry(depth - 1);
+        bool pops_third = depth > 1 && subtends(h, x, v2, third);
+        pops_next = pops_third && subtends(h, x, third, fourth);
+        v1 = pops_third ? third : v2;
+        v2 = pops_third ? fourth : third;
+        depth -= pops_third ? 2 : 1;
+    }
+}
+
 // Sweeps one step between these heights. Returns the steps back to its occluder, 0 for none.
 uint occluder(int step, int from, vec2 beside) {
     int y = from + step * azimuth.shear;
@@ -69,22 +99,17 @@ uint occluder(int step, int from, vec2 beside) {
         line_hull_private[slot] = v3;
     }
     kept = max(kept, oldest + 1);
-    if (subtends(h, x, v1, v2)) {
+    // Loops stop for a lost line and for an empty hull: overwritten entries and infinite heights could make them endless.
+    if (LINE_HULL_IN_SHARED) {
+        pop_by_twos(h, x);
+    } else if (subtends(h, x, v1, v2)) {
         v1 = v2;
         v2 = v3;
         depth--;
-        // Stops for a lost line and for an empty hull: overwritten entries and infinite heights could make this loop endless.
         while (!lost && depth > 0 && subtends(h, x, v1, v2)) {
-            slot = depth & (HULL_DEPTH - 1);
+            lost = !HULL_HOLDS_LINE && depth < kept;
             v1 = v2;
-            if (LINE_HULL_IN_SHARED && depth >= kept) {
-                v2 = line_hull_shared[slot * group_lines + own];
-            } else if (LINE_HULL_IN_SHARED) {
-                v2 = line_hull_private[clamp(depth, 0, LINE_PRIVATE_ENTRIES - 1)];
-            } else {
-                lost = !HULL_HOLDS_LINE && depth < kept;
-                v2 = line_hull_private[slot];
-            }
+            v2 = line_hull_private[depth & (HULL_DEPTH - 1)];
             depth--;
         }
     }
