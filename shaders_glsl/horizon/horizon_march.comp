@@ -29,7 +29,7 @@ const uint BORDER = PERIODIC ? BORDER_PERIODIC : BORDER_PLANE;
 
 void main() {
     azimuth = azimuth_at(azimuths, first_azimuth + gl_GlobalInvocationID.z);
-    ivec2 node = ivec2(gl_GlobalInvocationID.xy) + ivec2(0, first_row);
+    ivec2 node = ivec2(gl_GlobalInvocationID.xy) + ivec2(0, first);
     bool exists = node.x < node_count(lanes, NODE_STRIDE) && node.y < node_count(steps, NODE_STRIDE);
     int lane_at = node_place(node.x, lanes, NODE_STRIDE);
     int step_at = node_place(node.y, steps, NODE_STRIDE);

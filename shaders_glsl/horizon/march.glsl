@@ -7,7 +7,7 @@ layout(push_constant) uniform MarchPush {
     int steps;
     int warm_up;  // steps marched beyond the field: whole periods, or 0
     uint first_azimuth;
-    int first_row;  // of nodes
+    int first;  // row of nodes, or line
 };
 
 Azimuth azimuth;

@@ -3,21 +3,23 @@
 // Reads: lane_heights, azimuths.
 // Writes: slopes (f32 bits) at [layer][step][lane] and, if requested, the march steps to the horizon (f32 bits) in
 // the next layer.
+// Reads and writes: hull_buffer, if the hull does not fit private memory, at [entry][height, step, fraction][line].
 // One invocation is one line, from the horizon's side to the other end.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_KHR_shader_subgroup_vote : require
 
 layout(local_size_x_id = 0) in;
-// Every crossing of a line: the largest possible hull depth.
-layout(constant_id = 1) const int HULL_DEPTH = 1;
+// Hull entries in private memory: as many as a line has crossings.
+layout(constant_id = 1) const int PRIVATE_ENTRIES = 1;
 layout(constant_id = 2) const bool PERIODIC = false;
 layout(constant_id = 3) const bool WRITES_DISTANCES = false;
-
+layout(constant_id = 4) const bool HULL_IN_BUFFER = false;
 
 layout(binding = 0, rgba32f) uniform readonly image2D lane_heights;
 layout(binding = 1) uniform textureBuffer azimuths;
 layout(binding = 2) uniform writeonly uimage2DArray slopes;
+layout(binding = 3) buffer HullBuffer { float hull_buffer[]; };
 
 #include "shared/conventions.glsl"
 
@@ -47,35 +49,57 @@ float rise_over(float own, int y, int step, float u) {
                         marched_height(cell + 1, step + 1), own, u, f, split_along);
 }
 
-// Hull vertices: height, and position as whole step and fraction, so that differences of near positions stay exact.
-float hull_h[HULL_DEPTH];
-float hull_step[HULL_DEPTH];
-float hull_rest[HULL_DEPTH];
+// A hull vertex: height, and position as whole step and fraction, so that differences of near positions stay exact.
+struct Vertex {
+    float h;
+    float step;
+    float rest;
+};
+
+float hull_h[PRIVATE_ENTRIES];
+float hull_step[PRIVATE_ENTRIES];
+float hull_rest[PRIVATE_ENTRIES];
 int depth;
+
+int in_buffer(int i, int part) {
+    int lines = int(gl_NumWorkGroups.x * gl_WorkGroupSize.x);
+    return (3 * i + part) * lines + int(gl_GlobalInvocationID.x);
+}
+
+Vertex vertex(int i) {
+    if (HULL_IN_BUFFER) {
+        return Vertex(hull_buffer[in_buffer(i, 0)], hull_buffer[in_buffer(i, 1)], hull_buffer[in_buffer(i, 2)]);
+    }
+    return Vertex(hull_h[i], hull_step[i], hull_rest[i]);
+}
 
 // Pops the vertices hidden from a point at height h, `rest` past `step`.
 void pop_under(float h, float step, float rest, bool exists) {
     // All lanes leave together: without the vote SwiftShader finds wrong horizons.
     bool pops = exists;
     do {
-        int newest = max(depth - 1, 0);
-        int older = max(depth - 2, 0);
-        float to_newest = (step - hull_step[newest]) + (rest - hull_rest[newest]);
-        float to_older = (step - hull_step[older]) + (rest - hull_rest[older]);
-        precise float deeper = (hull_h[older] - h) * to_newest;
-        precise float newer = (hull_h[newest] - h) * to_older;
+        Vertex newest = vertex(max(depth - 1, 0));
+        Vertex older = vertex(max(depth - 2, 0));
+        float to_newest = (step - newest.step) + (rest - newest.rest);
+        float to_older = (step - older.step) + (rest - older.rest);
+        precise float deeper = (older.h - h) * to_newest;
+        precise float newer = (newest.h - h) * to_older;
         pops = pops && depth > 1 && deeper >= newer;
         depth -= pops ? 1 : 0;
     } while (subgroupAny(pops));
 }
 
 void push(float h, float step, float rest, bool exists) {
-    if (exists) {
+    if (exists && HULL_IN_BUFFER) {
+        hull_buffer[in_buffer(depth, 0)] = h;
+        hull_buffer[in_buffer(depth, 1)] = step;
+        hull_buffer[in_buffer(depth, 2)] = rest;
+    } else if (exists) {
         hull_h[depth] = h;
         hull_step[depth] = step;
         hull_rest[depth] = rest;
-        depth++;
     }
+    depth += exists ? 1 : 0;
 }
 
 // Adds a crossing of the line that is at lane position y0 at `step`, where it is on the field.
@@ -95,14 +119,14 @@ void main() {
     int total = warm_up + steps;
     int width = PERIODIC ? lanes * march - 1 : (lanes - 1) * march;
     int lead = PERIODIC ? 0 : (total - 1) * shear;
-    int line = int(gl_GlobalInvocationID.x);
+    int line = first + int(gl_GlobalInvocationID.x);
     bool split_along = splits_along();
     float advance = float(shear) / float(march);
     // All lines of a group march together, over the steps at which any of them is on the field.
-    int first = int(gl_WorkGroupID.x * gl_WorkGroupSize.x) - lead;
-    int last = first + int(gl_WorkGroupSize.x) - 1;
-    int begin = shear > 0 && !PERIODIC ? max(0, (-last + shear - 1) / shear) : 0;
-    int end = shear > 0 && !PERIODIC ? min(total, (width - first) / shear + 1) : total;
+    int lowest = first + int(gl_WorkGroupID.x * gl_WorkGroupSize.x) - lead;
+    int highest = lowest + int(gl_WorkGroupSize.x) - 1;
+    int begin = shear > 0 && !PERIODIC ? max(0, (-highest + shear - 1) / shear) : 0;
+    int end = shear > 0 && !PERIODIC ? min(total, (width - lowest) / shear + 1) : total;
 
     depth = 0;
     for (int step = begin; step < end; step++) {
@@ -126,10 +150,10 @@ void main() {
             float slope = NO_SLOPE;
             float back = 0.0;
             if (depth > 0) {
-                int met_step = int(hull_step[depth - 1]);
-                float met_rest = hull_rest[depth - 1];
-                back = float(step - met_step) - met_rest;
-                slope = rise_over(h, y - (step - met_step) * shear, met_step, met_rest) / (back * azimuth.step_m);
+                Vertex met = vertex(depth - 1);
+                int met_step = int(met.step);
+                back = float(step - met_step) - met.rest;
+                slope = rise_over(h, y - (step - met_step) * shear, met_step, met.rest) / (back * azimuth.step_m);
             }
             ivec2 texel = ivec2(PERIODIC ? wrapped(cell, lanes) : cell, PERIODIC ? step - warm_up : step);
             int layer = int(azimuth.layer);

@@ -69,7 +69,7 @@ impl shaders::MarchPush {
             steps: axis.steps as i32,
             warm_up: axis.warm_up as i32,
             first_azimuth: batch.first,
-            first_row: 0,
+            first: 0,
         }
     }
 }

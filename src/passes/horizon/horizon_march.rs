@@ -30,7 +30,7 @@ pub(crate) fn plan(
             [lanes.div_ceil(8), height.div_ceil(8), count],
             &shaders::MarchPush {
                 first_azimuth: few.start,
-                first_row: rows.start as i32,
+                first: rows.start as i32,
                 ..shaders::MarchPush::of(batch)
             },
             &[("lane_heights", lane_heights), ("azimuths", azimuths), ("slopes", slopes)],

@@ -1,6 +1,6 @@
 //! Chooses how horizons are found: the form of the sweep, its storage and its cost.
 
-use crate::graph::{Axis, Limits, SweepForm};
+use crate::graph::{Axis, Builder, Limits, ResourceId, SweepForm};
 use crate::passes::azimuths::{Azimuth, CELL};
 use crate::passes::pyramid::Pyramid;
 use crate::scene::{Border, Fuse, HeightField, Hull, Lines, Method, Precision, Quality};
@@ -81,6 +81,33 @@ impl LineSweep {
     }
 }
 
+/// The hull of exact sweeps: every crossing of every line, in private memory where that is large enough.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct SurfaceHull {
+    /// Entries per line.
+    pub depth: u32,
+    /// Lines whose entries fit a buffer; set if the hull is there.
+    pub lines_at_once: Option<u32>,
+}
+
+impl SurfaceHull {
+    /// Of lines with so many steps, each with up to four crossings.
+    pub(crate) fn of(steps: u32, limits: &Limits) -> Self {
+        let depth = 4 * steps;
+        let bytes = HULL_BYTES.min(limits.buffer_bytes).min(limits.memory_budget / 16);
+        let fit = (bytes / (VERTEX_BYTES * u64::from(depth))) as u32;
+        let fit = (fit / SURFACE_GROUP_SIZE * SURFACE_GROUP_SIZE).max(SURFACE_GROUP_SIZE);
+        let is_private = limits.is_cpu || depth <= GPU_PRIVATE_ENTRIES;
+        Self { depth, lines_at_once: (!is_private).then_some(fit) }
+    }
+
+    /// Makes its buffer, if it has one.
+    pub(crate) fn buffer(self, builder: &mut Builder) -> Option<ResourceId> {
+        let bytes = VERTEX_BYTES * u64::from(self.depth) * u64::from(self.lines_at_once?);
+        Some(builder.buffer("hull_buffer", bytes, false))
+    }
+}
+
 /// How horizons are found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Sweep {
@@ -88,8 +115,7 @@ pub(crate) enum Sweep {
     Lines(LineSweep),
     /// Exact hull sweeps along grid vectors.
     Surface {
-        /// Hull entries per line.
-        hull_depth: u32,
+        hull: SurfaceHull,
         /// Whether distances are stored beside slopes.
         distances: bool,
     },
@@ -119,8 +145,14 @@ const LEAST_WARM_UP: u32 = 512;
 
 // Half as many entries of private memory for each of four lines.
 const GPU_PRIVATE_DEPTH: u32 = 32;
-// Entries of 12 bytes in private memory. An NVIDIA H200 (driver 580) makes no pipeline with 2,048.
-const GPU_SURFACE_DEPTH: u32 = 1024;
+/// Invocations of a workgroup of exact sweeps, each of one line.
+pub(crate) const SURFACE_GROUP_SIZE: u32 = 8;
+/// A vertex: height, whole step and fraction, f32 each.
+const VERTEX_BYTES: u64 = 12;
+/// Bytes of the vertices of all lines that are swept at once, if the device has them.
+const HULL_BYTES: u64 = 128 << 20;
+/// Vertices in private memory on a GPU: an NVIDIA H200 (driver 580) makes no pipeline with 2,048.
+const GPU_PRIVATE_ENTRIES: u32 = 1024;
 // A step has up to four crossings; llvmpipe ends any loop after 65,535 iterations.
 const SURFACE_STEPS_LIMIT: u32 = 4096;
 const MARCH_STEPS_LIMIT: u32 = 65_000;
@@ -246,21 +278,8 @@ impl Sweep {
                     limit: format!("{SURFACE_STEPS_LIMIT} steps"),
                 });
             }
-            let hull_depth = (4 * total).next_power_of_two();
-            if !limits.is_cpu && hull_depth > GPU_SURFACE_DEPTH {
-                return Err(Error::Limit {
-                    what: "`lines exact` on a GPU".into(),
-                    needs: if border == Border::Periodic {
-                        format!(
-                            "{total} steps per line, most of them a warm-up of the periodic field"
-                        )
-                    } else {
-                        format!("{total} steps per line")
-                    },
-                    limit: format!("{} steps; use `method brute-force`", GPU_SURFACE_DEPTH / 4),
-                });
-            }
-            return Ok(Sweep::Surface { hull_depth, distances });
+            let hull = SurfaceHull::of(total, limits);
+            return Ok(Sweep::Surface { hull, distances });
         };
         let stores_slopes = matches!(quality.fuse, Fuse::Nearest | Fuse::Slopes);
         let slope_format = match (stores_slopes, quality.precision) {

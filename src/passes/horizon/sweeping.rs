@@ -24,6 +24,8 @@ pub(crate) struct Sweeping {
     quads: bool,
     /// Levels of a height pyramid, where any are read.
     pub levels: Option<pyramid_march::Images>,
+    /// The hull of exact lines, if it is in a buffer.
+    hull_buffer: Option<ResourceId>,
     /// Nodes at which marches store a value.
     pub nodes: Nodes,
     /// The lattice of each batch; several batches may use one in turn.
@@ -148,9 +150,10 @@ impl Sweeping {
                 let levels = self.levels.as_ref();
                 pyramid_march::plan(builder, (pyramid, self.nodes), batch, part, ids, levels);
             }
-            Sweep::Surface { hull_depth, distances } => {
+            Sweep::Surface { hull, distances } => {
                 let ids = [self.lane_heights(batch), self.azimuths, self.written(batch)];
-                passes::surface_sweep::plan(builder, batch, part, *hull_depth, *distances, ids);
+                let hull = (*hull, self.hull_buffer);
+                passes::surface_sweep::plan(builder, batch, part, hull, *distances, ids);
             }
             Sweep::March { distances } => {
                 let ids = [self.lane_heights(batch), self.azimuths, self.written(batch)];
@@ -159,6 +162,15 @@ impl Sweeping {
             }
         }
     }
+}
+
+/// Batches that are alike in this use one lattice in turn.
+#[derive(Clone, Copy, PartialEq)]
+struct Turn {
+    is_shadow: bool,
+    shape: LatticeShape,
+    /// Whether it marches rows, where each axis has a lattice of its own.
+    own_axis: Option<bool>,
 }
 
 /// Azimuth lists, one per light, in the order of the buffer; and their batches.
@@ -212,6 +224,10 @@ pub(crate) fn prepare(
         Sweep::Pyramid(pyramid) => pyramid.images(builder),
         _ => None,
     };
+    let hull_buffer = match &sweep {
+        Sweep::Surface { hull, .. } => hull.buffer(builder),
+        _ => None,
+    };
     let shadow_lattice = Sweep::of_words(limits);
     let before_lattices = builder.bytes();
     let grouped = |lists: &[Vec<Azimuth>], layer_shift| {
@@ -250,11 +266,10 @@ pub(crate) fn prepare(
     };
     let is_kept = |list: usize| kept_from.is_some_and(|first| list >= first);
     let all = || batches.iter().enumerate().flat_map(|(l, b)| b.iter().map(move |b| (l, *b)));
-    // Of one shape, and both or neither of suns.
     let turn = |list: usize, batch: &Batch| {
         let is_shadow = shadows.contains(&list);
         let own_axis = groups[usize::from(is_shadow)].is_apart.then_some(batch.axis.marches_rows);
-        (is_shadow, shape_of(list, batch.axis), own_axis)
+        Turn { is_shadow, shape: shape_of(list, batch.axis), own_axis }
     };
     // One batch alone does not fill a GPU. Suns have many batches, and use lattices in turn.
     let circles: Vec<bool> =
@@ -266,7 +281,7 @@ pub(crate) fn prepare(
     let has_own_lattices = !limits.is_cpu
         && so_far + of_circles.sum::<u64>() <= limits.memory_budget / LATTICE_DIVISOR;
     let is_own = |list: usize| is_kept(list) || has_own_lattices && circles[list];
-    let mut shared: Vec<((bool, LatticeShape, Option<bool>), Lattice)> = Vec::new();
+    let mut shared: Vec<(Turn, Lattice)> = Vec::new();
     let mut lattices = Vec::new();
     for (list, batch) in all() {
         let of = turn(list, &batch);
@@ -277,7 +292,7 @@ pub(crate) fn prepare(
         } else {
             let alike = all().filter(|(l, b)| !is_own(*l) && turn(*l, b) == of);
             let layers = alike.map(|(_, b)| b.layers).max().unwrap_or(1);
-            let is_first = shared.iter().all(|((is_shadow, ..), _)| *is_shadow != of.0);
+            let is_first = shared.iter().all(|(known, _)| known.is_shadow != of.is_shadow);
             let suffix = if is_first { "" } else { "_across" };
             let made = make(list, batch.axis, layers, suffix);
             shared.push((of, made));
@@ -305,6 +320,7 @@ pub(crate) fn prepare(
         lane_buffers,
         quads,
         levels,
+        hull_buffer,
         nodes,
         lattices,
         has_own_lattices,

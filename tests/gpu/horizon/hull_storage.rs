@@ -3,8 +3,8 @@
 use ridgelight::plan::{self, Limits, Picture, SweepForm};
 use ridgelight::scene::fractal;
 use ridgelight::scene::{
-    Albedo, Border, BounceEngine, Bounces, Fuse, HeightField, Hull, LightBasis, Lights, Method,
-    PhongSpecular, Precision, Quality, Scene, Specular, SphereLight, Sun, Surface,
+    Albedo, Border, BounceEngine, Bounces, Fuse, HeightField, Hull, LightBasis, Lights, Lines,
+    Method, PhongSpecular, Precision, Quality, Scene, Specular, SphereLight, Sun, Surface,
 };
 
 use crate::{Device, field, random, under_sky};
@@ -213,6 +213,43 @@ fn gpu_and_cpu_plans_render_identical_bits() {
         });
         for other in [theirs, wide] {
             let differing = ours.iter().zip(&other).filter(|(a, b)| a.to_bits() != b.to_bits());
+            assert_eq!(differing.count(), 0, "{border:?}");
+        }
+    }
+}
+
+/// On a GPU the hull of exact lines lies in a buffer where lines have more than 256 steps; a small buffer holds some lines of an
+/// azimuth at once.
+#[test]
+fn exact_lines_with_their_hull_in_a_buffer_have_the_same_bits() {
+    let mut gpu = Device::new();
+    let limits = gpu.limits();
+    let [on_cpu, on_gpu] = [true, false].map(|is_cpu| crate::of_kind(is_cpu, limits));
+    // 12 bytes for each of up to four crossings a step.
+    let lines = 24;
+    let few = Limits { buffer_bytes: 12 * 4 * 300 * lines, ..on_gpu };
+    let quality = Quality { azimuths: 8, lines: Lines::Exact, ..Quality::default() };
+    let rough = fractal(40, 7).expect("a field");
+    for (field, border) in
+        [(&dome_and_wall(300), Border::Plane), (&rough, Border::Periodic), (&rough, Border::Open)]
+    {
+        let scene = under_sky(field.clone(), border);
+        let [private, whole, parts] = [&on_cpu, &on_gpu, &few].map(|limits| {
+            let plan = plan::picture(&scene, &quality, limits, Picture::default()).expect("a plan");
+            let sweeps = plan.passes.iter().filter(|p| p.name() == "surface_sweep");
+            let is_long = border != Border::Open;
+            let expected = u32::from(is_long && !limits.is_cpu);
+            assert!(sweeps.clone().all(|p| p.constant("hull_in_buffer") == Some(expected)));
+            let count = sweeps.count();
+            let horizons = gpu.horizons_within(field, border, &quality, limits);
+            (count, horizons)
+        });
+        if border != Border::Open {
+            assert!(private.0 < whole.0 && whole.0 < parts.0, "{border:?}");
+        }
+        for (_, other) in [whole, parts] {
+            let differing =
+                private.1.iter().zip(&other).filter(|(a, b)| a.to_bits() != b.to_bits());
             assert_eq!(differing.count(), 0, "{border:?}");
         }
     }

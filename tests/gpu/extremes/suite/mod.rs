@@ -341,12 +341,6 @@ const ROUNDING_RESIDUE: f64 = 1e-30;
 /// A bound that is hardly meaningful: a tenth of the largest expected value.
 const LOOSE: f64 = 0.1;
 
-/// Whether exact lines take more than the 256 steps that a GPU's private memory allows.
-fn is_beyond_gpus(case: &Case) -> bool {
-    let field = &case.scene.field;
-    case.scene.surface.border == Border::Periodic || field.rows().max(field.cols()) > 256
-}
-
 /// The complaint about a row, if any: a value beyond its bound, or a bound that nothing can miss.
 pub fn complaint(row: &Row, cases: &[Case], methods: &[Method]) -> Option<String> {
     let (case, method) = (&cases[row.case], &methods[row.method]);
@@ -368,12 +362,6 @@ pub fn complaint(row: &Row, cases: &[Case], methods: &[Method]) -> Option<String
         }
         (Outcome::Measured { .. }, Some(_)) => "drawn, and should be refused".to_owned(),
         (Outcome::Refused(said), Some(sentence)) if said == sentence => return None,
-        // Exceeds the private memory of a GPU.
-        (Outcome::Refused(said), None)
-            if is_beyond_gpus(case) && said.starts_with("`lines exact` on a GPU") =>
-        {
-            return None;
-        }
         (Outcome::Refused(said), _) => format!("refused: {said}"),
     };
     Some(format!("{}, {}: {said}", case.name, method.name))
