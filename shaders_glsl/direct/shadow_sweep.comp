@@ -1,11 +1,11 @@
 // Computes: for every step of every line of an azimuth, up to which height the ground ahead shadows it from the lower
 // edge of a sun: a running maximum of the ground over a plane that rises with the sun's light, raised so far that nothing
 // between two lines is above the interpolation of their maxima.
-// Reads: lane_heights, azimuths.
+// Reads: lane_heights or lane_buffer, azimuths.
 // Writes: shadows at [azimuth][lines of a layer][step][line], a lattice (see lattice.glsl). The high half of a word is the shadow's
 // height over the line in metres: the high half of an f32, never too low. The low half is the march steps back to the
 // ground that casts it, 0 for none.
-// One invocation is four neighbouring lines, a cell apart, from the sun's side to the other end.
+// One invocation is four neighbouring lines, a cell apart, or one, from the sun's side to the other end.
 //
 // Interpolate bilinearly between the heights at which two lines cross two steps. At a share u of the way from one step to
 // the other the surface is above that by at most
@@ -20,12 +20,16 @@
 layout(local_size_x_id = 0) in;
 
 layout(constant_id = 1) const bool PERIODIC = false;
-// Fetches the heights of four steps while the previous four are marched, to hide load latency on GPUs.
-layout(constant_id = 2) const bool FETCHES_AHEAD = false;
+// An invocation marches one line: for GPUs, which hide latency with many invocations.
+layout(constant_id = 2) const bool ONE_LINE = false;
+// Of one line: two buffers of four words per line.
+layout(constant_id = 3) const int WRITTEN_WORDS = 1;
 
 layout(binding = 0, rgba32f) uniform readonly image2D lane_heights;
 layout(binding = 1) uniform textureBuffer azimuths;
 layout(binding = 2) uniform writeonly uimage2DArray shadows;
+// Heights of one line's march, [march position][lane], rows of whole fours.
+layout(binding = 3) readonly buffer LaneBuffer { float lane_buffer[]; };
 
 layout(push_constant) uniform ShadowSweepPush {
     int lanes;
@@ -38,6 +42,16 @@ layout(push_constant) uniform ShadowSweepPush {
 const float NOTHING = -1e30;
 
 Azimuth azimuth;
+
+// March state: first step; lane position of the (first) line; rise of the plane and shear in cells, a step; and whether the
+// cells' diagonals run along the march.
+int begin;
+int y;
+float rise;
+float shear_cells;
+bool splits_along;
+
+#include "direct/shadow_line.glsl"
 
 // Heights of nine lanes of a step.
 struct Nine {
@@ -110,14 +124,8 @@ Nine nine_heights(Fetched all, int lane) {
     return Nine(mix(nine.a, mirrored.a, swaps), mix(nine.b, mirrored.b, swaps), mix(nine.c, mirrored.c, flips));
 }
 
-// March state: number of the first line; first step; lane position of that line; rise of the plane and shear in cells, a step;
-// and whether the cells' diagonals run along the march.
+// Number of the first line.
 int line;
-int begin;
-int y;
-float rise;
-float shear_cells;
-bool splits_along;
 // The highest ground so far, over a plane through the beginning of the march.
 vec4 top;
 ivec4 top_step;
@@ -185,18 +193,13 @@ void march_over(int step, Fetched fetched) {
     y += azimuth.shear;
 }
 
-// Heights for step `step + on`, at the lanes of the step before it.
-Fetched fetch_ahead(int on, int step, int total) {
-    return fetch_nine(((y + (on - 1) * azimuth.shear) >> CELL_SHIFT) - 1, min(step + on, total - 1));
-}
-
 void main() {
     azimuth = azimuth_at(azimuths, first_azimuth + gl_GlobalInvocationID.z);
     int total = warm_up + steps;
     int shear = azimuth.shear;
     int lead = lattice_lead(shear, total, CELL_SHIFT, PERIODIC);
     int line_count = lattice_lines(lanes, lead, CELL_SHIFT, PERIODIC);
-    int group_lines = int(gl_WorkGroupSize.x) * 4;
+    int group_lines = int(gl_WorkGroupSize.x) * (ONE_LINE ? 1 : 4);
     int first_line = int(gl_WorkGroupID.x) * group_lines;
     if (first_line >= line_count) {
         return;
@@ -211,46 +214,22 @@ void main() {
         begin = max(0, (-2 * CELL - highest) / shear);
         end = clamp((lanes * CELL - lowest) / shear + 1, begin, max(begin, total));
     }
-    line = first_line + int(gl_LocalInvocationID.x) * 4;
-    y = (line - lead) * CELL + begin * shear;
     rise = azimuth.low_slope * azimuth.step_m;
     shear_cells = float(shear) * (1.0 / float(CELL));
     splits_along = ((azimuth.flags & AZIMUTH_FLIPS_MARCH) != 0u) == ((azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u);
+    line = first_line + int(gl_LocalInvocationID.x) * (ONE_LINE ? 1 : 4);
+    y = (line - lead) * CELL + begin * shear;
+    if (ONE_LINE) {
+        march_line(line, end, total);
+        return;
+    }
     top = vec4(NOTHING);
     top_step = ivec4(0);
     cell = y >> CELL_SHIFT;
     slopes_a = vec4(0.0);
     slopes_b = vec3(0.0);
     raised = vec4(NOTHING);
-    if (FETCHES_AHEAD) {
-        Fetched a = fetch_nine(cell - 1, min(begin, total - 1));
-        Fetched b = fetch_ahead(1, begin, total);
-        Fetched c = fetch_ahead(2, begin, total);
-        Fetched d = fetch_ahead(3, begin, total);
-        for (int four = begin; four < end; four += 4) {
-            Fetched a_now = a;
-            Fetched b_now = b;
-            Fetched c_now = c;
-            Fetched d_now = d;
-            a = fetch_ahead(4, four, total);
-            b = fetch_ahead(5, four, total);
-            c = fetch_ahead(6, four, total);
-            d = fetch_ahead(7, four, total);
-            march_over(four, a_now);
-            // The last group may have fewer than four steps.
-            if (four + 1 < end) {
-                march_over(four + 1, b_now);
-            }
-            if (four + 2 < end) {
-                march_over(four + 2, c_now);
-            }
-            if (four + 3 < end) {
-                march_over(four + 3, d_now);
-            }
-        }
-    } else {
-        for (int step = begin; step < end; step++) {
-            march_over(step, fetch_nine(cell - 1, step));
-        }
+    for (int step = begin; step < end; step++) {
+        march_over(step, fetch_nine(cell - 1, step));
     }
 }

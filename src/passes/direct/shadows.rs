@@ -14,8 +14,8 @@ pub(crate) struct Shadows {
     /// Marks of the texels whose light the shadow heights leave open, along columns and along rows.
     doubtful: [Option<ResourceId>; 2],
     group_size: u32,
-    /// Whether a sweep fetches the heights of four steps together.
-    fetches_ahead: bool,
+    /// Whether an invocation of the sweep marches one line, else four.
+    one_line: bool,
     pub levels: BlockLevels,
     /// For each of the lights, the maxima of blocks over a plane that rises with its light; none for others.
     maxima: Vec<Option<ResourceId>>,
@@ -80,8 +80,7 @@ impl Shadows {
         let levels = BlockLevels::of(size, border);
         let mut made = |i| levels.maxima(builder, &format!("shadow_maxima_{i}"));
         let maxima = (0..lights).map(|i| which.contains(&i).then(|| made(i))).collect();
-        let fetches_ahead = !limits.is_cpu;
-        Self { doubtful, group_size: group_size(limits), fetches_ahead, levels, maxima }
+        Self { doubtful, group_size: group_size(limits), one_line: !limits.is_cpu, levels, maxima }
     }
 
     /// Marks along an axis.
@@ -97,8 +96,13 @@ impl Shadows {
         batch: &Batch,
         part: &str,
     ) {
-        let ids = [sweeping.lane_heights(batch), sweeping.azimuths, sweeping.written(batch)];
-        shadow_sweep::plan(builder, batch, part, (self.group_size, self.fetches_ahead), ids);
+        let lane_buffer = sweeping.lane_buffer(batch).filter(|_| self.one_line);
+        let heights = match lane_buffer {
+            Some(buffer) => ("lane_buffer", buffer),
+            None => ("lane_heights", sweeping.lane_heights(batch)),
+        };
+        let ids = [sweeping.azimuths, sweeping.written(batch)];
+        shadow_sweep::plan(builder, batch, part, self.group_size, heights, ids);
     }
 
     /// The maxima of blocks for walks towards the light at `index`, which skip most of the ground under its light: over a plane

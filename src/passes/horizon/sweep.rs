@@ -372,7 +372,7 @@ impl Sweep {
         if let Sweep::Lines(lines) = self { lines.azimuths } else { u32::MAX }
     }
 
-    /// A lattice of one word for each step of lines a cell apart.
+    /// A lattice of one word for each step of lines a cell apart: on a GPU, an invocation marches one of them.
     pub(crate) fn of_words(limits: &Limits) -> Self {
         Sweep::Lines(LineSweep {
             hull: HullStorage::Private,
@@ -383,7 +383,7 @@ impl Sweep {
             height_scale: 1.0,
             line_shift: 15,
             group_size: group_size(limits),
-            lines_each: 4,
+            lines_each: if limits.is_cpu { 4 } else { 1 },
             slope_format: 1,
             writes_occluders: false,
             fuse: Fuse::Nearest,

@@ -18,7 +18,7 @@ pub(crate) struct Sweeping {
     pub azimuths: ResourceId,
     /// Heights by lanes, of each axis that is marched: columns, rows.
     lane_heights: [Option<ResourceId>; 2],
-    /// The same as buffers, set if an invocation sweeps one line.
+    /// The same as buffers, set where an invocation sweeps one line.
     lane_buffers: [Option<ResourceId>; 2],
     /// Whether the sweep also reads its heights there, four lanes at a time.
     quads: bool,
@@ -210,12 +210,13 @@ pub(crate) fn prepare(
         used.then(|| Axis::of(marches_rows, size, border))
     });
     let lane_heights = axes.map(|axis| axis.map(|axis| lane_image(builder, axis)));
+    // One line per invocation reads heights from a buffer.
     let lines_alone = matches!(&sweep, Sweep::Lines(l) if l.lines_each == 1);
     let lane_buffers = axes.map(|axis| {
-        let along = |a: &&Azimuth| axis.is_some_and(|axis| a.marches_rows() == axis.marches_rows);
-        let swept = lists.iter().enumerate().filter(|(l, _)| !shadows.contains(l));
-        let is_swept = swept.flat_map(|(_, list)| list).any(|a| along(&a));
-        axis.filter(|_| lines_alone && is_swept).map(|axis| {
+        let reads = |l: usize| if shadows.contains(&l) { !limits.is_cpu } else { lines_alone };
+        let along = |a: &Azimuth| axis.is_some_and(|axis| a.marches_rows() == axis.marches_rows);
+        let is_read = lists.iter().enumerate().any(|(l, list)| reads(l) && list.iter().any(along));
+        axis.filter(|_| is_read).map(|axis| {
             let bytes = 4 * u64::from(axis.lanes.next_multiple_of(4)) * u64::from(axis.steps);
             builder.buffer(&format!("lane_buffer_{}", axis.name()), bytes, false)
         })

@@ -22,6 +22,8 @@ pub(crate) enum Wanted {
         distances: bool,
     },
     Picture(Picture),
+    /// A picture under suns and key lights by a GPU's plan, on any device.
+    GpuPicture,
     /// Bounces.
     Reference(u32),
     /// Bounces; bounced light alone of so many texels.
@@ -67,6 +69,10 @@ impl Case {
                 false,
             ),
             Wanted::Picture(wanted) => plan::picture(&self.scene, &self.quality, limits, *wanted),
+            Wanted::GpuPicture => {
+                let limits = crate::of_kind(false, *limits);
+                plan::picture(&self.scene, &self.quality, &limits, Picture::default())
+            }
             Wanted::Reference(bounces) => plan::reference(&self.scene, *bounces, 1, limits),
             Wanted::ReferenceAt(bounces, count) => {
                 plan::reference_at(&self.scene, *bounces, 1, *count, limits)

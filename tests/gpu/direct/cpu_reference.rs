@@ -189,6 +189,10 @@ pub(crate) fn pictures() -> Vec<Case> {
             lights,
         }
     };
+    let on_a_gpu = |name, border| Case {
+        wanted: Wanted::GpuPicture,
+        ..picture(name, low(border), quality, false, false)
+    };
     // Twelve columns: the last is no multiple of 4 from the first; of a field that repeats.
     let repeated = {
         let lights = Lights { environment: Some(noisy_environment(17)), ..Lights::default() };
@@ -201,6 +205,9 @@ pub(crate) fn pictures() -> Vec<Case> {
         picture("low lights", low(Border::Plane), quality, true, false),
         picture("low lights, open", low(Border::Open), quality, false, false),
         picture("low lights, periodic", low(Border::Periodic), quality, false, false),
+        on_a_gpu("low lights on a GPU", Border::Plane),
+        on_a_gpu("low lights on a GPU, open", Border::Open),
+        on_a_gpu("low lights on a GPU, periodic", Border::Periodic),
         of_device,
         picture("grey", grey, Quality { fuse: Fuse::Aimed, ..quality }, false, true),
         picture("sphere lights", sphere_lights.clone(), quality, true, false),

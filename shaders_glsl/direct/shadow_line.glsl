@@ -1,0 +1,129 @@
+// Part of shadow_sweep, which declares all constants, bindings and push constants: one line per invocation, with the values of four
+// lines per invocation, bit for bit. Heights come from `lane_buffer`, four steps before they are needed.
+
+// Words of four steps of each line. Two such buffers alternate.
+shared uint written[WRITTEN_WORDS];
+
+// Heights of six lanes, from the one before the line's cell at the step before.
+struct Six {
+    vec4 a;
+    vec2 b;
+};
+
+// Texels of lane_buffer: of lane 0 at step 0; from step to step, and from lane to lane.
+int origin;
+int step_stride;
+int lane_stride;
+
+// The highest ground so far, over a plane through the beginning of the march.
+float line_top;
+int line_top_step;
+// Of the step before: the lane before the line; slopes from lane to lane, from one lane before that; and the line over the
+// plane, raised by K.
+int line_cell;
+vec4 line_slopes;
+float line_raised;
+
+float height_on(int row, int lane) {
+    int on = PERIODIC ? wrapped(lane, lanes) : clamp(lane, 0, lanes - 1);
+    return lane_buffer[row + on * lane_stride];
+}
+
+// Heights for a step, of lanes around where the line is a step before it.
+Six six_heights(int step, int total) {
+    int last = min(step, total - 1);
+    int row = origin + (PERIODIC ? last % steps : last) * step_stride;
+    int first = ((y + (max(step - 1, begin) - begin) * azimuth.shear) >> CELL_SHIFT) - 1;
+    return Six(vec4(height_on(row, first), height_on(row, first + 1), height_on(row, first + 2), height_on(row, first + 3)),
+               vec2(height_on(row, first + 4), height_on(row, first + 5)));
+}
+
+uint word_of_step(int step, Six six) {
+    int place = y + (step - begin) * azimuth.shear;
+    vec4 to = vec4(six.a.yzw, six.b.x) - six.a;
+    float last_to = six.b.y - six.b.x;
+    // E. Slopes of the step before against those of the same cells, and of the cells one lane on.
+    vec4 same = line_slopes - to;
+    vec3 next = line_slopes.xyz - to.yzw;
+    float most = max(max(same.x, same.y), max(same.z, same.w));
+    float least = min(min(same.x, same.y), min(same.z, same.w));
+    float turn = max(most, max(next.x, max(next.y, next.z)));
+    float twist = splits_along ? -least : most;
+    float between = 0.25 * (shear_cells * max(turn, 0.0) + max(twist, 0.0));
+    bool moves = place >> CELL_SHIFT != line_cell;
+    line_slopes = mix(to, vec4(to.yzw, last_to), bvec4(moves));
+    line_cell = place >> CELL_SHIFT;
+    float f = float(place & (CELL - 1)) * (1.0 / float(CELL));
+    float h = mix(moves ? six.a.z : six.a.y, moves ? six.a.w : six.a.z, f);
+    float plane = float(step) * rise;
+    float over_plane = h + plane;
+
+    float over = line_top - over_plane + (abs(line_top) + abs(h) + abs(plane)) * 1e-6;
+    uint back = line_top <= NOTHING ? 0u : uint(clamp(step - line_top_step, 0, 0xffff));
+    uint bits = floatBitsToUint(over) + (over > 0.0 ? 0xffffu : 0u);
+    uint word = bits & 0xffff0000u | back;
+
+    float bend = line_slopes.x - line_slopes.y;
+    float next_bend = line_slopes.y - line_slopes.z;
+    float now = over_plane + f * (1.0 - f) * max(max(bend, next_bend), 0.0);
+    float apart = abs(now - line_raised);
+    float middle = 0.5 * (now + line_raised) + between + apart * apart / max(16.0 * between, 1e-30);
+    float found = apart < 4.0 * between ? middle : max(now, line_raised);
+    found = step == begin ? now : found;
+    line_raised = now;
+    bool counts = PERIODIC || place > -CELL && place < lanes * CELL;
+    bool higher = counts && found > line_top;
+    line_top = higher ? found : line_top;
+    line_top_step = higher ? step : line_top_step;
+    return word;
+}
+
+// Marches the line up to step `end`. Four steps of all lines of the workgroup are written together, so that neighbouring
+// invocations write neighbouring texels.
+void march_line(int line, int end, int total) {
+    int row = (lanes + 3) & ~3;
+    bool flips_march = (azimuth.flags & AZIMUTH_FLIPS_MARCH) != 0u;
+    bool flips_lanes = (azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u;
+    origin = (flips_march ? (steps - 1) * row : 0) + (flips_lanes ? lanes - 1 : 0);
+    step_stride = flips_march ? -row : row;
+    lane_stride = flips_lanes ? -1 : 1;
+    int group_lines = int(gl_WorkGroupSize.x);
+    int own = int(gl_LocalInvocationID.x);
+    int own_step = own & 3;
+    int own_words = own_step * group_lines + (own & ~3);
+    ivec3 own_texel = lattice_texel(azimuth, line & ~3, own_step);
+    line_top = NOTHING;
+    line_top_step = 0;
+    line_cell = y >> CELL_SHIFT;
+    line_slopes = vec4(0.0);
+    line_raised = NOTHING;
+    int turn = 0;
+    Six a = six_heights(begin, total);
+    Six b = six_heights(begin + 1, total);
+    Six c = six_heights(begin + 2, total);
+    Six d = six_heights(begin + 3, total);
+    for (int four = begin; four < end; four += 4) {
+        Six a_now = a;
+        Six b_now = b;
+        Six c_now = c;
+        Six d_now = d;
+        a = six_heights(four + 4, total);
+        b = six_heights(four + 5, total);
+        c = six_heights(four + 6, total);
+        d = six_heights(four + 7, total);
+        int at = turn * 4 * group_lines + own;
+        // Steps beyond the end are not stored.
+        written[at] = word_of_step(four, a_now);
+        written[at + group_lines] = word_of_step(four + 1, b_now);
+        written[at + 2 * group_lines] = word_of_step(four + 2, c_now);
+        written[at + 3 * group_lines] = word_of_step(four + 3, d_now);
+        // One barrier is enough: the other half is written next, and this one again only behind the next barrier.
+        barrier();
+        int from = turn * 4 * group_lines + own_words;
+        if (four + own_step < end) {
+            imageStore(shadows, own_texel + ivec3(0, four, 0),
+                       uvec4(written[from], written[from + 1], written[from + 2], written[from + 3]));
+        }
+        turn = 1 - turn;
+    }
+}
