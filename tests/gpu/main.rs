@@ -142,7 +142,7 @@ impl Device {
     }
 
     fn limits(&self) -> Limits {
-        self.report().limits
+        limits_of(self.gpu.as_ref().expect("alive"))
     }
 
     fn report(&self) -> &ridgelight::gpu::DeviceReport {
@@ -208,6 +208,13 @@ impl Device {
         let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
         self.draw(plan, &contents)
     }
+}
+
+/// The limits of a device; with RIDGELIGHT_GPU_PLANS=1 as those of a GPU, so that a software driver runs a GPU's plans.
+fn limits_of(gpu: &Headless) -> Limits {
+    let limits = gpu.report().limits;
+    let is_gpu = std::env::var_os("RIDGELIGHT_GPU_PLANS").is_some_and(|v| v == "1");
+    if is_gpu { of_kind(false, limits) } else { limits }
 }
 
 /// The same limits on a CPU or a GPU.

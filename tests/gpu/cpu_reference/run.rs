@@ -1,5 +1,6 @@
 //! A plan run pass by pass.
 
+use std::collections::BTreeSet;
 use std::ops::Range;
 
 use ridgelight::gpu::{Frame, Headless};
@@ -23,8 +24,8 @@ pub(crate) struct Run<'a> {
     pub quality: Quality,
     /// The device's sweeps by azimuth, as lattices of one layer.
     pub lattices: Vec<Option<Lattice>>,
-    /// Where the azimuths of the light that is being summed begin.
-    pub light_begins: usize,
+    /// Where the azimuths of each light begin that has been summed so far; lights may alternate.
+    light_begins: BTreeSet<usize>,
     /// The sum of the lights so far, by the CPU reference, and how many they are.
     pub radiance: Vec<[f64; 3]>,
     pub lights: usize,
@@ -50,8 +51,16 @@ pub(crate) struct Run<'a> {
 }
 
 impl<'a> Run<'a> {
+    /// Where the azimuths of the light begin to whose sum a pass adds those from `first` on; `clears` where it begins the sum.
+    pub fn begin_of_light(&mut self, first: usize, clears: bool) -> usize {
+        if clears {
+            self.light_begins.insert(first);
+        }
+        *self.light_begins.range(..=first).next_back().expect("a sum that has begun")
+    }
+
     pub fn new(gpu: &'a mut Headless, case: &'a Case) -> Self {
-        let plan = case.plan(&gpu.report().limits);
+        let plan = case.plan(&crate::limits_of(gpu));
         let contents = case.contents();
         let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
         let mut frame = gpu.frame(plan.clone(), &contents).expect("a frame");
@@ -62,7 +71,7 @@ impl<'a> Run<'a> {
             scene: &case.scene,
             quality: case.quality,
             lattices: vec![None; plan.azimuths.len()],
-            light_begins: 0,
+            light_begins: BTreeSet::new(),
             radiance: Vec::new(),
             lights: 0,
             sphere_lights: Vec::new(),

@@ -58,7 +58,7 @@ fn plateaus(rows: usize, cols: usize) -> HeightField {
 fn planned(gpu: &Headless, scene: &Scene, quality: &Quality, keeps_horizons: bool) -> Plan {
     let wanted =
         Picture { keeps_horizons, light_layers: true, sky_view: true, ..Picture::default() };
-    plan::picture(scene, quality, &gpu.report().limits, wanted).expect("a plan")
+    plan::picture(scene, quality, &crate::limits_of(gpu), wanted).expect("a plan")
 }
 
 fn made(gpu: &mut Headless, scene: &Scene, plan: Plan) -> Frame {

@@ -43,7 +43,7 @@ pub(crate) fn scene() -> Scene {
 }
 
 pub(crate) fn planned(gpu: &Headless, scene: &Scene) -> Plan {
-    plan::picture(scene, &quality(), &gpu.report().limits, Picture::default()).expect("a plan")
+    plan::picture(scene, &quality(), &crate::limits_of(gpu), Picture::default()).expect("a plan")
 }
 
 pub(crate) fn framed(gpu: &mut Headless, scene: &Scene) -> Frame {

@@ -209,7 +209,7 @@ fn edits_and_cameras_go_on_from_what_was_copied() {
     let gpu = device.gpu.as_mut().expect("alive");
     let mut scene = under_sky(fractal(40, 3).expect("a field"), Border::Plane);
     let quality = Quality { azimuths: 8, ..Quality::default() };
-    let limits = gpu.report().limits;
+    let limits = crate::limits_of(gpu);
     let wanted = Picture { keeps_horizons: true, ..Picture::default() };
     scene.lights.sky = Some([1.0, 0.5, 0.25]);
     let plan = plan::picture(&scene, &quality, &limits, wanted).expect("a plan");

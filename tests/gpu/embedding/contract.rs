@@ -58,7 +58,7 @@ fn a_plan_may_take_half_of_a_devices_memory_and_all_of_a_software_drivers() {
     let heaps = &memory.memory_heaps[..memory.memory_heap_count as usize];
     let local = heaps.iter().filter(|h| h.flags.contains(vk::MemoryHeapFlags::DEVICE_LOCAL));
     let heap = local.map(|h| h.size).max().expect("a heap of its own");
-    let limits = device.limits();
+    let limits = gpu.report().limits;
     let share = if limits.is_cpu { 1 } else { 2 };
     assert_eq!(limits.memory_budget, heap / share);
 }

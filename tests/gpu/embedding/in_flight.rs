@@ -27,7 +27,7 @@ pub(super) fn scene(side: usize, seed: u64) -> Scene {
 pub(super) fn planned(gpu: &Headless, scene: &Scene) -> Plan {
     let quality = Quality { azimuths: 8, sun_azimuths: 2, ..Quality::default() };
     let wanted = Picture { light_layers: true, ..Picture::default() };
-    plan::picture(scene, &quality, &gpu.report().limits, wanted).expect("a plan")
+    plan::picture(scene, &quality, &crate::limits_of(gpu), wanted).expect("a plan")
 }
 
 pub(super) fn frame(gpu: &mut Headless, scene: &Scene) -> Frame {
@@ -82,7 +82,7 @@ fn lights_change_while_frames_are_in_flight() {
     let mut device = Device::new();
     let gpu = device.gpu.as_mut().expect("alive");
     let quality = Quality { azimuths: 8, sun_azimuths: 2, basis: Basis::Sh, ..Quality::default() };
-    let limits = gpu.report().limits;
+    let limits = crate::limits_of(gpu);
     let mut texels = Vec::new();
     let plans = [0.0, 0.1].map(|turn| {
         let mut scene = scene(24, 1);

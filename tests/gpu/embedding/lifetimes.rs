@@ -26,7 +26,7 @@ fn renderers_are_destroyed_in_any_order() {
     let lens = Lens::Perspective { fov_rad: 0.8 };
     let camera = Camera::around(&scene.field, None, [0.7, 0.5], lens, 1.0);
     let options = ViewOptions { size: [8, 8], samples: 1, ..ViewOptions::default() };
-    let limits = gpu.report().limits;
+    let limits = crate::limits_of(gpu);
     let view = View::new(&scene, &plan, &camera, &options, &limits).expect("a view");
     let format = vk::Format::R32G32B32A32_SFLOAT;
     for order in [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]] {

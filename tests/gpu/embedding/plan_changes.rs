@@ -46,7 +46,7 @@ fn qualities() -> [Quality; 2] {
 
 fn planned(gpu: &Headless, scene: &Scene, (quality, keeps_horizons): Form) -> Plan {
     let wanted = Picture { keeps_horizons, light_layers: true, ..Picture::default() };
-    plan::picture(scene, quality, &gpu.report().limits, wanted).expect("a plan")
+    plan::picture(scene, quality, &crate::limits_of(gpu), wanted).expect("a plan")
 }
 
 /// A quality, and whether horizons are kept.

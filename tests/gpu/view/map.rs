@@ -27,7 +27,7 @@ fn drawn(
     voids: Option<&[bool]>,
 ) -> Vec<[u8; 4]> {
     let gpu = device.gpu.as_mut().expect("alive");
-    let plan = plan::map(map, &gpu.report().limits).expect("a plan");
+    let plan = plan::map(map, &crate::limits_of(gpu)).expect("a plan");
     let picture = plan.find("picture").expect("its output");
     let radiance: Vec<f32> = if map.has_colour {
         light.iter().flat_map(|c| [c[0], c[1], c[2], 1.0]).collect()

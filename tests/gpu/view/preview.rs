@@ -98,7 +98,7 @@ fn previews_match_the_cpu_reference() {
             lights: Lights { suns: vec![sun], ..Lights::default() },
         };
         let gpu = device.gpu.as_mut().expect("alive");
-        let limits: Limits = gpu.report().limits;
+        let limits: Limits = crate::limits_of(gpu);
         let planned = |scene: &Scene, light_layers: bool| {
             let wanted = Picture { light_layers, ..Picture::default() };
             plan::picture(scene, &Quality::default(), &limits, wanted).expect("a plan")

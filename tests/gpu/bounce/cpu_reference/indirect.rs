@@ -305,10 +305,8 @@ pub(crate) fn bounce_walk(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     const IS_LAST: usize = offset("BounceWalkPush", "is_last");
     let word = |offset| pushed(pass, offset) as usize;
     let first = word(FIRST_AZIMUTH);
-    if word(CLEARS) == 1 {
-        run.light_begins = first;
-    }
-    let range = run.light_begins..first + word(AZIMUTH_COUNT);
+    let begin = run.begin_of_light(first, word(CLEARS) == 1);
+    let range = begin..first + word(AZIMUTH_COUNT);
     let exit = run.walked_exit(pass);
     let got = run.floats(pass, "bounce_sum").expect("written");
     let got = colours(&got);

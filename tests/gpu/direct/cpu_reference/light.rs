@@ -119,10 +119,7 @@ pub(crate) fn so_far(
 ) -> (std::ops::Range<usize>, ShadeError) {
     let word = |offset| pushed(pass, offset) as usize;
     let (first, count) = (word(first), word(count));
-    if word(clears) == 1 {
-        run.light_begins = first;
-    }
-    let range = run.light_begins..first + count;
+    let range = run.begin_of_light(first, word(clears) == 1)..first + count;
     let [largest, relief] = run.relief();
     let steps = run.plan.azimuths[range.clone()].iter().map(|a| f64::from(a.step_m));
     let slope_error = device_fused_slope(largest, steps.fold(f64::MAX, f64::min));

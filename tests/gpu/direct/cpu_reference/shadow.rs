@@ -72,10 +72,8 @@ pub(crate) fn shadow_sweep(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 
 /// Azimuths of the light so far, and what errs at a texel.
 fn so_far(run: &mut Run, (first, count, clears): (u32, u32, u32)) -> (Range<usize>, ShadeError) {
-    if clears == 1 {
-        run.light_begins = first as usize;
-    }
-    let range = run.light_begins..(first + count) as usize;
+    let begin = run.begin_of_light(first as usize, clears == 1);
+    let range = begin..(first + count) as usize;
     let [_, relief] = run.relief();
     let steps = run.plan.azimuths[range.clone()].iter().map(|a| f64::from(a.step_m));
     let slope = device_march_slope(relief, steps.fold(f64::MAX, f64::min));

@@ -121,8 +121,8 @@ fn sizes() -> Result<String> {
 }
 
 /// From the kit's report.
-fn h200() -> Result<String> {
-    let path = Path::new(RESULTS).join("nvidia_h200.md");
+fn gpu() -> Result<String> {
+    let path = Path::new(RESULTS).join("nvidia_h100.md");
     let report = text(&path)?;
     let sizes = report.split("## Sizes").nth(1).unwrap_or_default();
     let frame_ms = |side: &str| {
@@ -137,7 +137,7 @@ fn h200() -> Result<String> {
         })
     };
     Ok(format!(
-        "On an [NVIDIA H200](benches/results/nvidia_h200.md) 64 azimuths take {} ms at 256², {} ms at 1024² and {} ms at \
+        "On an [NVIDIA H100](benches/results/nvidia_h100.md) 64 azimuths take {} ms at 256², {} ms at 1024² and {} ms at \
          4096².\n",
         frame_ms("256")?,
         frame_ms("1024")?,
@@ -370,7 +370,7 @@ type Section = (&'static str, fn() -> Result<String>);
 const PAGES: [(&str, &[Section]); 8] = [
     (
         "README.md",
-        &[("picture", picture), ("sizes", sizes), ("h200", h200), ("features", features::features)],
+        &[("picture", picture), ("sizes", sizes), ("gpu", gpu), ("features", features::features)],
     ),
     ("docs/getting-started.md", &[("camera", camera)]),
     ("docs/embedding.md", &[("hosts", hosts), ("edits", edits)]),
