@@ -1,5 +1,5 @@
-// Part of shadow_sweep, which declares all constants, bindings and push constants: one line per invocation, with the values of four
-// lines per invocation, bit for bit. Heights come from `lane_buffer`, four steps before they are needed.
+// Included by shadow_sweep, which declares all constants, bindings and push constants. Sweeps one line per invocation; results are
+// bit-identical to those of four lines per invocation. Heights are fetched from `lane_buffer` four steps ahead.
 
 // Words of four steps of each line. Two such buffers alternate.
 shared uint written[WRITTEN_WORDS];
@@ -29,7 +29,7 @@ float height_on(int row, int lane) {
     return lane_buffer[row + on * lane_stride];
 }
 
-// Heights for a step, of lanes around where the line is a step before it.
+// Heights at `step` for six lanes, starting one lane before the line's cell at the previous step.
 Six six_heights(int step, int total) {
     int last = min(step, total - 1);
     int row = origin + (PERIODIC ? last % steps : last) * step_stride;
@@ -117,7 +117,8 @@ void march_line(int line, int end, int total) {
         written[at + group_lines] = word_of_step(four + 1, b_now);
         written[at + 2 * group_lines] = word_of_step(four + 2, c_now);
         written[at + 3 * group_lines] = word_of_step(four + 3, d_now);
-        // One barrier is enough: the other half is written next, and this one again only behind the next barrier.
+        // One barrier is enough: the next iteration writes the other half, and this half is reused only after that iteration's
+        // barrier.
         barrier();
         int from = turn * 4 * group_lines + own_words;
         if (four + own_step < end) {

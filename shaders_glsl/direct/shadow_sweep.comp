@@ -22,13 +22,13 @@ layout(local_size_x_id = 0) in;
 layout(constant_id = 1) const bool PERIODIC = false;
 // An invocation marches one line: for GPUs, which hide latency with many invocations.
 layout(constant_id = 2) const bool ONE_LINE = false;
-// Of one line: two buffers of four words per line.
+// Size of `written`: if ONE_LINE, two buffers of four steps of each line of the workgroup.
 layout(constant_id = 3) const int WRITTEN_WORDS = 1;
 
 layout(binding = 0, rgba32f) uniform readonly image2D lane_heights;
 layout(binding = 1) uniform textureBuffer azimuths;
 layout(binding = 2) uniform writeonly uimage2DArray shadows;
-// Heights of one line's march, [march position][lane], rows of whole fours.
+// All heights along the axis, [march position][lane], rows padded to a multiple of 4. Read if ONE_LINE.
 layout(binding = 3) readonly buffer LaneBuffer { float lane_buffer[]; };
 
 layout(push_constant) uniform ShadowSweepPush {

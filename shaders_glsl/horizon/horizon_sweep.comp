@@ -52,7 +52,7 @@ layout(binding = 3, rg32ui) uniform uimage2DArray occluders;
 layout(binding = 4) uniform writeonly uimage2DArray slopes;
 // One word for four lines, in the lattice's order.
 layout(binding = 5) buffer LostLines { uint lost_lines[]; };
-// Heights of one line's sweep, [march position][lane], rows of whole fours.
+// All heights along the axis, [march position][lane], rows padded to a multiple of 4. Read if ONE_LINE.
 layout(binding = 6) readonly buffer LaneBuffer { float lane_buffer[]; };
 
 layout(push_constant) uniform HorizonSweepPush {

@@ -7,7 +7,7 @@ layout(push_constant) uniform MarchPush {
     int steps;
     int warm_up;  // steps marched beyond the field: whole periods, or 0
     uint first_azimuth;
-    int first;  // row of nodes, or line
+    int first;  // first row of nodes (horizon_march) or first line (surface_sweep)
 };
 
 Azimuth azimuth;

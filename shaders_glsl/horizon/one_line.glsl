@@ -47,7 +47,7 @@ int kept;
 bool lost;
 vec2 line_hull_private[LINE_PRIVATE_ENTRIES];
 
-// Entry i, 0 or more, of a shared hull.
+// Entry i >= 0 of a hull in shared memory. Overwritten entries come from their copy in private memory.
 vec2 shared_entry(int i) {
     vec2 entry;
     if (i >= kept) {
@@ -58,8 +58,8 @@ vec2 shared_entry(int i) {
     return entry;
 }
 
-// Pops vertices hidden from a point. Reads two vertices and tests both at once: on a GPU a turn of the loop takes the latency of
-// one read and of one test, and all lines of a subgroup wait for the one with the most turns.
+// Pops the vertices hidden from a point, up to two per iteration. Both are read together, so an iteration costs the latency of one
+// read. A subgroup runs as many iterations as its slowest line.
 void pop_by_twos(float h, float x) {
     bool pops = subtends(h, x, v1, v2);
     bool pops_next = pops && subtends(h, x, v2, v3);
@@ -197,7 +197,8 @@ void sweep_one_line() {
         int first_word = turn * (2 * group_lines + 2);
         written[first_word + own] = back.x | back.y << 16;
         written[first_word + group_lines + 2 + own] = back.z | back.w << 16;
-        // One barrier is enough: the other half is written next, and this one again only behind the next barrier.
+        // One barrier is enough: the next iteration writes the other half, and this half is reused only after that iteration's
+        // barrier.
         barrier();
         int at = first_word + own_words;
         uvec4 all = (uvec4(written[at], written[at + 1], written[at + 2], written[at + 3]) >> own_shift) & 0xffffu;

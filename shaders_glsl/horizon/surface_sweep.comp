@@ -10,7 +10,7 @@
 #extension GL_KHR_shader_subgroup_vote : require
 
 layout(local_size_x_id = 0) in;
-// Hull entries in private memory: as many as a line has crossings.
+// Hull entries in private memory: four per step, the most crossings it can have; 1 if HULL_IN_BUFFER.
 layout(constant_id = 1) const int PRIVATE_ENTRIES = 1;
 layout(constant_id = 2) const bool PERIODIC = false;
 layout(constant_id = 3) const bool WRITES_DISTANCES = false;
@@ -120,6 +120,10 @@ void main() {
     int width = PERIODIC ? lanes * march - 1 : (lanes - 1) * march;
     int lead = PERIODIC ? 0 : (total - 1) * shear;
     int line = first + int(gl_GlobalInvocationID.x);
+    // Other azimuths have more lines.
+    if (line - int(gl_LocalInvocationID.x) > lead + width) {
+        return;
+    }
     bool split_along = splits_along();
     float advance = float(shear) / float(march);
     // All lines of a group march together, over the steps at which any of them is on the field.

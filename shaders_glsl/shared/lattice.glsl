@@ -9,7 +9,7 @@ ivec3 lattice_texel(Azimuth azimuth, int line, int step) {
     return ivec3(column >> 2, step, int(azimuth.layer) + (line >> LAYER_SHIFT));
 }
 
-// Place of a texel's line among all lines of all azimuths, in fours.
+// Index, over all layers of the batch, of the group of four lines that contains `line`.
 int lattice_four(Azimuth azimuth, int line) {
     return ((int(azimuth.layer) << LAYER_SHIFT) + line) >> 2;
 }

@@ -11,6 +11,6 @@ pub(crate) use builder::{Builder, Part};
 pub(crate) use limits::{GPU_LOOKUPS, bytes_text};
 pub use limits::{Limits, SweepForm};
 pub use pass::{Pass, ResourceId, missing_barriers};
-pub(crate) use pass::{moved_forward, place_barriers};
+pub(crate) use pass::{moved_earlier, place_barriers};
 pub use reach::{Axis, CELL, Reach, Rectangle};
 pub use resource::{Format, Kind, Owner, Resource};

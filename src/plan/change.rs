@@ -67,6 +67,9 @@ impl Plan {
 
     /// Adds the passes that must run because of those that run.
     pub(crate) fn add_followers(&self, runs: &mut [bool]) {
+        if !runs.contains(&true) {
+            return;
+        }
         while let Some(next) = (0..runs.len()).find(|i| !runs[*i] && self.follows(*i, runs)) {
             runs[next] = true;
         }

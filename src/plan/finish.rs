@@ -3,7 +3,7 @@
 use super::Plan;
 use crate::graph::Limits;
 use crate::graph::{
-    Builder, Kind, Pass, Resource, ResourceId, bytes_text, moved_forward, place_barriers,
+    Builder, Kind, Pass, Resource, ResourceId, bytes_text, moved_earlier, place_barriers,
 };
 use crate::passes::azimuths::Azimuth;
 use crate::{Error, Result};
@@ -41,7 +41,7 @@ impl Plan {
         }
         let mut edit_passes = edit_passes.unwrap_or_default();
         if !limits.is_cpu {
-            (passes, edit_passes) = (moved_forward(passes), moved_forward(edit_passes));
+            (passes, edit_passes) = (moved_earlier(passes), moved_earlier(edit_passes));
         }
         place_barriers(&mut passes);
         place_barriers(&mut edit_passes);
@@ -109,5 +109,56 @@ fn check_groups(pass: &Pass, limits: &Limits) -> Result<()> {
             limit: format!("{} on this device", limits.groups),
         }),
         None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::graph::{Limits, Pass, moved_earlier};
+    use crate::plan::{self, Picture};
+    use crate::scene::{Bounces, Lights, Quality, Scene, Sun, Surface, fractal};
+
+    fn conflict(a: &Pass, b: &Pass) -> bool {
+        let touches = |p: &Pass, id| p.bindings.contains(&Some(id));
+        a.writes().any(|w| touches(b, w)) || b.writes().any(|w| touches(a, w))
+    }
+
+    /// Passes that move keep the order of every pair with a hazard, and need fewer barriers.
+    #[test]
+    fn moved_passes_keep_the_order_of_hazards() {
+        let sun = |azimuth_rad| Sun {
+            azimuth_rad,
+            elevation_rad: 0.4,
+            diameter_rad: 0.02,
+            irradiance: [1.0; 3],
+        };
+        let lights =
+            Lights { sky: Some([1.0; 3]), suns: vec![sun(0.8), sun(2.4)], ..Lights::default() };
+        let field = fractal(64, 1).unwrap();
+        let scene = Scene { field, surface: Surface::default(), lights };
+        let bounces = Bounces { count: 2, azimuths: 8, ..Bounces::default() };
+        let limits = Limits::lavapipe();
+        let kept = Picture { keeps_horizons: true, ..Picture::default() };
+        let base = Quality { azimuths: 16, ..Quality::default() };
+        let mut moved_any = false;
+        for (quality, wanted) in [(Quality { bounces, ..base }, Picture::default()), (base, kept)] {
+            let plan = plan::picture(&scene, &quality, &limits, wanted).unwrap();
+            for passes in [plan.passes, plan.edit_passes] {
+                let moved = moved_earlier(passes.clone());
+                let place = |pass: &Pass| {
+                    moved.iter().position(|m| m.label() == pass.label() && m.push == pass.push)
+                };
+                let places: Vec<usize> = passes.iter().map(|p| place(p).unwrap()).collect();
+                moved_any |= !places.is_sorted();
+                for later in 0..passes.len() {
+                    for earlier in 0..later {
+                        if conflict(&passes[earlier], &passes[later]) {
+                            assert!(places[earlier] < places[later]);
+                        }
+                    }
+                }
+            }
+        }
+        assert!(moved_any);
     }
 }

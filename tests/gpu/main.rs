@@ -214,7 +214,9 @@ impl Device {
 fn limits_of(gpu: &Headless) -> Limits {
     let limits = gpu.report().limits;
     let is_gpu = std::env::var_os("RIDGELIGHT_GPU_PLANS").is_some_and(|v| v == "1");
-    if is_gpu { of_kind(false, limits) } else { limits }
+    // Few layers: lattices have wide ones.
+    let image_layers = limits.image_layers.min(96);
+    if is_gpu { Limits { image_layers, ..of_kind(false, limits) } } else { limits }
 }
 
 /// The same limits on a CPU or a GPU.

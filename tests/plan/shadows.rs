@@ -81,8 +81,37 @@ fn short_memory_takes_hull_sweeps_with_a_note() {
     assert!(bytes <= enough.memory_budget, "{bytes}");
 }
 
-/// A sun's few azimuths do not fill a GPU: the sweeps of the sky and of the first sun along both axes run side by side. On a CPU
-/// each is shaded while its lattice is in a cache.
+/// A storage buffer may be too small for a field's heights, from which one line per invocation reads.
+#[test]
+fn a_large_field_on_a_gpu_of_small_buffers_has_shadows_by_four_lines() {
+    let limits = crate::on_gpu(Limits { memory_budget: 16 << 30, ..Limits::lavapipe() });
+    let one_line = |side| {
+        let plan = picture(&scene(side), &Quality::default(), &limits);
+        plan.passes.iter().find_map(|p| p.constant("written_words")).map(|words| words > 1)
+    };
+    assert_eq!([one_line(4000), one_line(6000)], [Some(true), Some(false)]);
+}
+
+/// Lattices along both axes share the memory by what all azimuths along each need: none is cut for want of it.
+#[test]
+fn suns_have_one_batch_an_axis_on_a_gpu() {
+    let sun = |azimuth_rad, diameter_rad| Sun {
+        azimuth_rad,
+        elevation_rad: 0.5,
+        diameter_rad,
+        irradiance: [1.0; 3],
+    };
+    // A disc along one axis, and a point along the other.
+    let suns = vec![sun(0.1, 0.02), sun(1.5, 0.0)];
+    let lights = Lights { sky: Some([1.0; 3]), suns, ..Lights::default() };
+    let scene = Scene { field: flat(256, 256), surface: Surface::default(), lights };
+    let plan = picture(&scene, &Quality::default(), &crate::on_gpu(Limits::lavapipe()));
+    let sweeps = plan.passes.iter().filter(|p| p.name() == "shadow_sweep");
+    assert_eq!(sweeps.map(|p| p.azimuths.len()).collect::<Vec<_>>(), [8, 1]);
+}
+
+/// In a GPU plan the first sweeps of the sky and both sweeps of the first sun have no barrier between them. In a CPU plan each batch
+/// is shaded right after its sweep, while its lattice is cached.
 #[test]
 fn sweeps_run_side_by_side_on_a_gpu() {
     let sun = |azimuth_rad| Sun {
@@ -91,7 +120,7 @@ fn sweeps_run_side_by_side_on_a_gpu() {
         diameter_rad: 0.02,
         irradiance: [1.0; 3],
     };
-    // The azimuths of both lie on both sides of a diagonal.
+    // Each sun's azimuths straddle a diagonal, so each needs both axes.
     let suns = vec![sun(0.75 * std::f64::consts::PI), sun(0.25 * std::f64::consts::PI)];
     let lights = Lights { sky: Some([1.0; 3]), suns, ..Lights::default() };
     let scene = Scene { field: flat(256, 256), surface: Surface::default(), lights };

@@ -44,7 +44,7 @@ fn iterations(pass: &str, depth: usize) -> f64 {
     // has 32 azimuths.
     let known: &[f64] = match pass {
         "horizon_sweep" => &[1024.0, 1.4],
-        // Four steps each; a turn of the inner loop pops two.
+        // Four steps each; an iteration of the inner loop pops up to two.
         ONE_LINE => &[256.0, 0.8],
         "shadow_sweep" => &[256.0],
         "sky_shade" | "sun_shade" => &[32.0],
@@ -105,7 +105,7 @@ fn scenes() -> Vec<(&'static str, Scene, Quality)> {
         ("environment by SH", lit(map), Quality { basis: Basis::Sh, ..base }),
         ("aimed-around", lit(sky.clone()), Quality { fuse: Fuse::AimedAround, ..base }),
         ("packed", lit(sky.clone()), Quality { precision: Precision::Packed, ..base }),
-        // The GPU limit of exact lines is 256 steps.
+        // With up to 256 steps the hull of exact lines is in private memory.
         (
             "exact lines",
             Scene { field: fractal(256, 1).expect("a field"), ..lit(sky.clone()) },

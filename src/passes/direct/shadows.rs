@@ -5,7 +5,7 @@ use crate::passes::azimuths::Azimuth;
 use crate::passes::batch::Batch;
 use crate::passes::blocks::{BlockLevels, Source};
 use crate::passes::shadow_sweep;
-use crate::passes::sweep::{Sweep, group_size};
+use crate::passes::sweep::{Sweep, group_size, shadows_by_one_line};
 use crate::passes::sweeping::Sweeping;
 use crate::scene::{Border, Fuse, HeightField, KeyLight, Lines, Method, Precision, Quality};
 
@@ -14,15 +14,17 @@ pub(crate) struct Shadows {
     /// Marks of the texels whose light the shadow heights leave open, along columns and along rows.
     doubtful: [Option<ResourceId>; 2],
     group_size: u32,
-    /// Whether an invocation of the sweep marches one line, else four.
+    /// Whether an invocation of the sweep marches one line instead of four.
     one_line: bool,
     pub levels: BlockLevels,
     /// For each of the lights, the maxima of blocks over a plane that rises with its light; none for others.
     maxima: Vec<Option<ResourceId>>,
 }
 
-/// Bytes per texel that suns need at least: marks along both axes, the maxima of blocks, and the lattice of one azimuth.
+/// Bytes per texel that suns need at least: marks along both axes, the maxima of blocks, the lattice of one azimuth; and, where an
+/// invocation marches one line, the heights along both axes in buffers.
 const TEXEL_BYTES: u64 = 2 + 1 + 8;
+const BUFFERS_BYTES: u64 = 8;
 
 impl Shadows {
     /// Whether suns may use shadow heights; otherwise why not, where the quality leaves it open.
@@ -45,7 +47,8 @@ impl Shadows {
         if maxima.iter().any(|n| *n > limits.image_side) {
             return Err(Some("an image of the field's blocks exceeds the device's limit".into()));
         }
-        let bytes = TEXEL_BYTES * u64::from(size[0]) * u64::from(size[1]);
+        let buffers = if shadows_by_one_line(size, limits) { BUFFERS_BYTES } else { 0 };
+        let bytes = (TEXEL_BYTES + buffers) * u64::from(size[0]) * u64::from(size[1]);
         if used_bytes + bytes > limits.memory_budget / 2 {
             return Err(Some(format!(
                 "exact shadows would take {} more memory",
@@ -80,7 +83,13 @@ impl Shadows {
         let levels = BlockLevels::of(size, border);
         let mut made = |i| levels.maxima(builder, &format!("shadow_maxima_{i}"));
         let maxima = (0..lights).map(|i| which.contains(&i).then(|| made(i))).collect();
-        Self { doubtful, group_size: group_size(limits), one_line: !limits.is_cpu, levels, maxima }
+        Self {
+            doubtful,
+            group_size: group_size(limits),
+            one_line: shadows_by_one_line(size, limits),
+            levels,
+            maxima,
+        }
     }
 
     /// Marks along an axis.

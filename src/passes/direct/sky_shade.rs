@@ -8,7 +8,7 @@ use crate::scene::Border;
 /// What the shading of a batch reads and writes.
 pub(crate) struct Images {
     pub lane_heights: ResourceId,
-    /// The same as a buffer, set if an invocation sweeps one line.
+    /// The same as a buffer, set if an invocation of some sweep along this axis sweeps one line.
     pub lane_buffer: Option<ResourceId>,
     pub lattice: Option<ResourceId>,
     pub azimuths: ResourceId,

@@ -6,7 +6,7 @@ use crate::passes::sweep::{HullStorage, LineSweep};
 pub(crate) struct Images {
     pub heights: ResourceId,
     pub lane_heights: Option<ResourceId>,
-    /// The same as a buffer, set if an invocation sweeps one line.
+    /// The same as a buffer, set if an invocation of some sweep along this axis sweeps one line.
     pub lane_buffer: Option<ResourceId>,
     pub azimuths: ResourceId,
     pub occluders: Option<ResourceId>,

@@ -149,15 +149,26 @@ const GPU_PRIVATE_DEPTH: u32 = 32;
 pub(crate) const SURFACE_GROUP_SIZE: u32 = 8;
 /// A vertex: height, whole step and fraction, f32 each.
 const VERTEX_BYTES: u64 = 12;
-/// Bytes of the vertices of all lines that are swept at once, if the device has them.
-const HULL_BYTES: u64 = 128 << 20;
-/// Vertices in private memory on a GPU: an NVIDIA H200 (driver 580) makes no pipeline with 2,048.
+/// Largest hull buffer; a sixteenth of the memory budget and the largest buffer also limit it.
+const HULL_BYTES: u64 = 1 << 30;
+/// Vertices in private memory on a GPU: pipeline creation fails on an NVIDIA H200 (driver 580) with 2,048.
 const GPU_PRIVATE_ENTRIES: u32 = 1024;
 // A step has up to four crossings; llvmpipe ends any loop after 65,535 iterations.
 const SURFACE_STEPS_LIMIT: u32 = 4096;
 const MARCH_STEPS_LIMIT: u32 = 65_000;
 
-/// Invocations of a workgroup, each of four lines.
+/// Whether the heights of a field fit a buffer, from which an invocation sweeps one line.
+pub(crate) fn fit_buffer(sides: [u32; 2], limits: &Limits) -> bool {
+    let [width, height] = sides.map(|side| u64::from(side.next_multiple_of(4)));
+    4 * width * height <= limits.buffer_bytes
+}
+
+/// Whether an invocation of shadow_sweep marches one line instead of four.
+pub(crate) fn shadows_by_one_line(sides: [u32; 2], limits: &Limits) -> bool {
+    !limits.is_cpu && fit_buffer(sides, limits)
+}
+
+/// Invocations of a workgroup that sweep four lines each, or one line of shadow heights.
 pub(crate) fn group_size(limits: &Limits) -> u32 {
     if limits.is_cpu { 8 } else { 32 }
 }
@@ -175,12 +186,11 @@ fn form_of(
     };
     let packed = quality.precision == Precision::Packed;
     // One line per invocation reads heights from a buffer and stores occluders alone.
-    let [width, height] = sides.map(|side| u64::from(side.next_multiple_of(4)));
     let is_one = device.lines_each == 1
         && quality.hull != Hull::OccluderList
         && !stores_slopes
         && !packed
-        && 4 * width * height <= limits.buffer_bytes;
+        && fit_buffer(sides, limits);
     let is_four = device.lines_each == 4;
     let place = match quality.hull {
         // With four lines, few workgroups fit shared memory. CPU devices cache private arrays (lavapipe).
@@ -372,8 +382,8 @@ impl Sweep {
         if let Sweep::Lines(lines) = self { lines.azimuths } else { u32::MAX }
     }
 
-    /// A lattice of one word for each step of lines a cell apart: on a GPU, an invocation marches one of them.
-    pub(crate) fn of_words(limits: &Limits) -> Self {
+    /// A lattice of one word for each step of lines a cell apart, by shadow_sweep.
+    pub(crate) fn of_words(sides: [u32; 2], limits: &Limits) -> Self {
         Sweep::Lines(LineSweep {
             hull: HullStorage::Private,
             hull_depth: 1,
@@ -383,7 +393,7 @@ impl Sweep {
             height_scale: 1.0,
             line_shift: 15,
             group_size: group_size(limits),
-            lines_each: if limits.is_cpu { 4 } else { 1 },
+            lines_each: if shadows_by_one_line(sides, limits) { 1 } else { 4 },
             slope_format: 1,
             writes_occluders: false,
             fuse: Fuse::Nearest,

@@ -7,7 +7,7 @@ use crate::passes::azimuths::Azimuth;
 use crate::passes::batch::{Batch, Group, LATTICE_DIVISOR, LatticeShape, cut_groups};
 use crate::passes::nodes::Nodes;
 use crate::passes::pyramid_march;
-use crate::passes::sweep::{HullStorage, LineSweep, Sweep};
+use crate::passes::sweep::{HullStorage, LineSweep, Sweep, shadows_by_one_line};
 use crate::scene::{Border, HeightField, Lines, Method, Quality};
 use crate::{Result, passes};
 
@@ -50,7 +50,7 @@ impl Sweeping {
         self.lane_heights[usize::from(batch.axis.marches_rows)].expect("made for every axis used")
     }
 
-    /// The same as a buffer, set if an invocation sweeps one line.
+    /// The same as a buffer, set if an invocation of a sweep along this axis sweeps one line.
     pub(crate) fn lane_buffer(&self, batch: &Batch) -> Option<ResourceId> {
         self.lane_buffers[usize::from(batch.axis.marches_rows)]
     }
@@ -164,12 +164,12 @@ impl Sweeping {
     }
 }
 
-/// Batches that are alike in this use one lattice in turn.
+/// Key of a shared lattice: batches with equal keys use the same one, one after the other.
 #[derive(Clone, Copy, PartialEq)]
 struct Turn {
     is_shadow: bool,
     shape: LatticeShape,
-    /// Whether it marches rows, where each axis has a lattice of its own.
+    /// `marches_rows`; set only if each axis has its own lattice.
     own_axis: Option<bool>,
 }
 
@@ -213,7 +213,8 @@ pub(crate) fn prepare(
     // One line per invocation reads heights from a buffer.
     let lines_alone = matches!(&sweep, Sweep::Lines(l) if l.lines_each == 1);
     let lane_buffers = axes.map(|axis| {
-        let reads = |l: usize| if shadows.contains(&l) { !limits.is_cpu } else { lines_alone };
+        let shadows_alone = shadows_by_one_line(size, limits);
+        let reads = |l: usize| if shadows.contains(&l) { shadows_alone } else { lines_alone };
         let along = |a: &Azimuth| axis.is_some_and(|axis| a.marches_rows() == axis.marches_rows);
         let is_read = lists.iter().enumerate().any(|(l, list)| reads(l) && list.iter().any(along));
         axis.filter(|_| is_read).map(|axis| {
@@ -229,15 +230,16 @@ pub(crate) fn prepare(
         Sweep::Surface { hull, .. } => hull.buffer(builder),
         _ => None,
     };
-    let shadow_lattice = Sweep::of_words(limits);
+    let shadow_lattice = Sweep::of_words(size, limits);
     let before_lattices = builder.bytes();
     let grouped = |lists: &[Vec<Azimuth>], layer_shift| {
         let each = (nodes, layer_shift);
         let of_light = Group::of(lists, &sweep, &axes, each, |l| !shadows.contains(&l));
         let mut of_shadow =
             Group::of(lists, &shadow_lattice, &axes, each, |l| shadows.contains(&l));
-        // Sweeps along both axes can then run side by side: those of one sun do not fill a GPU.
-        let fits = before_lattices + of_shadow.all <= limits.memory_budget / LATTICE_DIVISOR;
+        // With one along each axis their sweeps can run side by side: those of one sun do not fill a GPU.
+        let fits =
+            before_lattices + of_shadow.all_bytes() <= limits.memory_budget / LATTICE_DIVISOR;
         of_shadow.is_apart |= !limits.is_cpu && fits && axes.iter().all(Option::is_some);
         [of_light, of_shadow]
     };
@@ -272,7 +274,8 @@ pub(crate) fn prepare(
         let own_axis = groups[usize::from(is_shadow)].is_apart.then_some(batch.axis.marches_rows);
         Turn { is_shadow, shape: shape_of(list, batch.axis), own_axis }
     };
-    // One batch alone does not fill a GPU. Suns have many batches, and use lattices in turn.
+    // One batch alone does not fill a GPU. Those of suns share lattices: with one each, a sun that moves would change their sizes more
+    // often, and a plan of other sizes needs another renderer.
     let circles: Vec<bool> =
         lists.iter().map(|list| list.iter().map(|a| a.wedge_rad).sum::<f32>() > 6.0).collect();
     let of_circles = all()

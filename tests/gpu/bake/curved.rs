@@ -51,7 +51,7 @@ fn walls_scatter_as_far_as_the_base_opens_them() {
         let curvature = Curvature { per_m: [per_m, 0.0] };
         let paths = COUNT as u32;
         let scatter = Scatter { bounces: 1, paths, curvature, ..Scatter::default() };
-        let plan = plan::scatter(&scene, points.directions(), &scatter, &device.limits());
+        let plan = plan::scatter(&scene, points.directions(), &scatter, &device.report().limits);
         let plan = plan.expect("a plan");
         let contents = plan::scatter_inputs(&plan, &scene, &points, &direct).expect("inputs");
         let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
@@ -79,7 +79,7 @@ fn views_between_walls_are_those_of_the_opening() {
     let walls = walls();
     let directions = Directions::fibonacci(COUNT, -1.0, 0).expect("directions");
     let steps = [0.03, 0.015];
-    let plan = plan::curved_ellipses(&walls, BORDER, &directions, steps, &device.limits());
+    let plan = plan::curved_ellipses(&walls, BORDER, &directions, steps, &device.report().limits);
     let images = device.draw(plan.expect("a plan"), &[walls.heights_m()]);
     let texel = |image: usize| <[f32; 4]>::try_from(&images[image].values[4 * HALF..4 * HALF + 4]);
     let five: [Ellipse; 5] = std::array::from_fn(|k| {

@@ -165,12 +165,13 @@ fn on_terrain_shares_are_better_than_light() {
         if stride == 2 {
             // A cache takes at most a quarter of the budget.
             let of = quality(BounceEngine::Sweep, 2, 128, 2);
-            let found = layers(&mut gpu, &scene, &of);
+            let limits = gpu.report().limits;
+            let found = layers_within(&mut gpu, &scene, &of, &limits);
             let wanted = Picture { light_layers: true, ..Picture::default() };
-            let plan = plan::picture(&scene, &of, &gpu.limits(), wanted).expect("a plan");
+            let plan = plan::picture(&scene, &of, &limits, wanted).expect("a plan");
             let bytes = |id: plan::ResourceId| plan.resources[id.0].bytes();
             let sets = bytes(plan.find("visibility_cache").expect("kept"));
-            let limits = Limits { memory_budget: 3 * sets, ..gpu.limits() };
+            let limits = Limits { memory_budget: 3 * sets, ..limits };
             let walked = layers_within(&mut gpu, &scene, &of, &limits);
             let moved = off(&found[2], &walked[2]);
             println!("visibility caches change the second by {:.2} %", 100.0 * moved);

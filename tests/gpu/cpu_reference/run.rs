@@ -24,7 +24,7 @@ pub(crate) struct Run<'a> {
     pub quality: Quality,
     /// The device's sweeps by azimuth, as lattices of one layer.
     pub lattices: Vec<Option<Lattice>>,
-    /// Where the azimuths of each light begin that has been summed so far; lights may alternate.
+    /// First azimuth of each light summed so far. A GPU plan may alternate between lights.
     light_begins: BTreeSet<usize>,
     /// The sum of the lights so far, by the CPU reference, and how many they are.
     pub radiance: Vec<[f64; 3]>,
@@ -51,7 +51,8 @@ pub(crate) struct Run<'a> {
 }
 
 impl<'a> Run<'a> {
-    /// Where the azimuths of the light begin to whose sum a pass adds those from `first` on; `clears` where it begins the sum.
+    /// The first azimuth of the light that a pass adds to. `first` is the first azimuth of the pass; `clears` is set if it starts
+    /// the sum.
     pub fn begin_of_light(&mut self, first: usize, clears: bool) -> usize {
         if clears {
             self.light_begins.insert(first);

@@ -200,14 +200,14 @@ pub(crate) fn pictures() -> Vec<Case> {
         Scene { field: rough(19, 12, 18), surface, lights }
     };
     vec![
+        on_a_gpu("low lights on a GPU", Border::Plane),
+        on_a_gpu("low lights on a GPU, open", Border::Open),
+        on_a_gpu("low lights on a GPU, periodic", Border::Periodic),
         picture("colours", colourful.clone(), quality, true, false),
         picture("environment on a plane", on_a_plane.clone(), quality, false, false),
         picture("low lights", low(Border::Plane), quality, true, false),
         picture("low lights, open", low(Border::Open), quality, false, false),
         picture("low lights, periodic", low(Border::Periodic), quality, false, false),
-        on_a_gpu("low lights on a GPU", Border::Plane),
-        on_a_gpu("low lights on a GPU, open", Border::Open),
-        on_a_gpu("low lights on a GPU, periodic", Border::Periodic),
         of_device,
         picture("grey", grey, Quality { fuse: Fuse::Aimed, ..quality }, false, true),
         picture("sphere lights", sphere_lights.clone(), quality, true, false),

@@ -80,7 +80,7 @@ fn batches_and_the_whole_are_the_same_to_the_bit() {
     let mut gpu = Device::new();
     let scene = under_sky(fractal(1024, 3).expect("a field"), Border::Plane);
     let quality = Quality { azimuths: 8, ..Quality::default() };
-    let limits = Limits { memory_budget: 1 << 30, ..crate::of_kind(true, gpu.limits()) };
+    let limits = Limits { memory_budget: 1 << 30, ..crate::of_kind(true, gpu.report().limits) };
     // Three images of 4 MiB, the heights by lanes of each axis, and room for one azimuth's lattice.
     let tight = Limits { memory_budget: 28_000_000, ..limits };
     let count = |l: &Limits| {
@@ -113,7 +113,7 @@ fn packed_entries_err_by_their_rounding() {
     assert!(worst > 0.0 && worst <= 0.5 * 2.0_f32.powi(-11) * 1.01, "f16 {worst}");
 }
 
-/// A GPU's plans have groups of 32 invocations, 128 lines: on any driver they give the same bits as a processor's, in
+/// A GPU's plans have groups of 32 invocations, of one line or four each: on any driver they give the same bits as a processor's, in
 /// every layer and for lines that are redone.
 #[test]
 fn wide_groups_and_narrow_ones_are_the_same_to_the_bit() {
@@ -218,8 +218,8 @@ fn gpu_and_cpu_plans_render_identical_bits() {
     }
 }
 
-/// On a GPU the hull of exact lines lies in a buffer where lines have more than 256 steps; a small buffer holds some lines of an
-/// azimuth at once. Longer hulls in private memory are for CPU devices.
+/// On a GPU, exact lines of more than 256 steps keep their hull in a buffer. If it is too small for all lines of an azimuth, several
+/// dispatches sweep them. Private hulls of that length are tested only on CPU devices.
 #[test]
 fn exact_lines_with_their_hull_in_a_buffer_have_the_same_bits() {
     let mut gpu = Device::new();

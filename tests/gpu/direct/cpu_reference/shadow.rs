@@ -16,19 +16,21 @@ use crate::cpu_reference::{Pair, Run, constant, pushed};
 /// Words of the lattice, by azimuth, line and step.
 struct Words {
     words: Vec<u32>,
-    height: usize,
+    /// Texels of a step, each of four lines, and steps of a layer.
+    size: [usize; 2],
 }
 
 impl Words {
     fn of(run: &mut Run, pass: &Pass) -> Self {
-        let [_, height] = run.extent(pass, "shadows");
-        Self { words: run.words(pass, "shadows").expect("bound"), height }
+        let size = run.extent(pass, "shadows");
+        Self { words: run.words(pass, "shadows").expect("bound"), size }
     }
 
     fn at(&self, azimuth: &Azimuth, line: i32, step: i32) -> u32 {
         let (line, step) = (line as usize, step as usize);
-        let layer = azimuth.layer as usize + line / 32;
-        self.words[((layer * self.height + step) * 8 + line % 32 / 4) * 4 + line % 4]
+        let [width, height] = self.size;
+        let layer = azimuth.layer as usize + line / (4 * width);
+        self.words[(layer * height + step) * 4 * width + line % (4 * width)]
     }
 }
 

@@ -52,10 +52,11 @@ pub(crate) fn height_transpose(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     pairs.collect()
 }
 
-/// A lattice of lines as the device stores it: [layer][step][line], 32 lines a layer.
+/// A lattice of lines as the device stores it: [layer][step][line].
 pub(crate) struct Stored {
     words: Vec<u32>,
-    height: usize,
+    /// Texels of a step, each of four lines, and steps of a layer.
+    size: [usize; 2],
     /// Words of four lines: 4 of f32, 2 of halves.
     texel: usize,
 }
@@ -63,8 +64,9 @@ pub(crate) struct Stored {
 impl Stored {
     pub(crate) fn bits(&self, layer: u32, line: i32, step: i32) -> u32 {
         let line = line as usize;
-        let layer = layer as usize + line / 32;
-        let texel = (layer * self.height + step as usize) * 8 + line % 32 / 4;
+        let [width, height] = self.size;
+        let layer = layer as usize + line / (4 * width);
+        let texel = (layer * height + step as usize) * width + line / 4 % width;
         if self.texel == 4 {
             return self.words[texel * 4 + line % 4];
         }
@@ -74,7 +76,7 @@ impl Stored {
 
 pub(crate) fn stored(run: &mut Run, pass: &Pass, binding: &str, texel: usize) -> Option<Stored> {
     let words = run.words(pass, binding)?;
-    Some(Stored { words, height: run.extent(pass, binding)[1], texel })
+    Some(Stored { words, size: run.extent(pass, binding), texel })
 }
 
 /// Slope of the texel of a line `back` steps before, in f64; none without an occluder.

@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use ridgelight::gpu::{Frame, Headless, Pixels, Timing};
-use ridgelight::plan::{self, Picture, Plan, Resource};
+use ridgelight::plan::{self, Pass, Picture, Plan, Resource};
 use ridgelight::scene::{Method, Quality, Scene};
 use ridgelight::{Error, Result};
 use ridgelight_trade::error::ImageError;
@@ -65,11 +65,17 @@ impl Drawn {
         runs[runs.len() / 2]
     }
 
-    /// The median of the passes that follow direct light.
+    /// The median of the passes that are not of direct light from a sky or an environment. On a GPU they may come first.
     pub fn bounces_ms(&self) -> f64 {
-        let is_direct = |part: &str| part.starts_with("env") || part.starts_with("sky");
-        let first = self.plan.passes.iter().rposition(|p| is_direct(&p.part)).map_or(0, |i| i + 1);
-        median(self.runs.iter().map(|run| total(&run[first..])).collect())
+        let is_direct = |pass: &Pass| {
+            let of = |text: &str, prefixes: &[&str]| prefixes.iter().any(|p| text.starts_with(p));
+            of(&pass.part, &["env", "sky"]) || of(pass.name(), &["env_", "height_transpose"])
+        };
+        let indirect = |run: &[Timing]| -> f64 {
+            let timed = run.iter().zip(&self.plan.passes);
+            timed.filter(|(_, pass)| !is_direct(pass)).map(|(t, _)| t.ns).sum::<f64>() / 1e6
+        };
+        median(self.runs.iter().map(|run| indirect(run)).collect())
     }
 
     /// Bytes of the resources of these names.
