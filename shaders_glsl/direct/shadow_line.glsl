@@ -1,5 +1,5 @@
-// Included by shadow_sweep, which declares all constants, bindings and push constants. Sweeps one line per invocation; results are
-// bit-identical to those of four lines per invocation. Heights are fetched from `lane_buffer` four steps ahead.
+// Included by shadow_sweep, which declares all constants, bindings and push constants. Sweeps one line per invocation by the
+// operations of four lines per invocation: bit-identical where the compiler contracts both alike. Heights are fetched from `lane_buffer` four steps ahead.
 
 // Words of four steps of each line. Two such buffers alternate.
 shared uint written[WRITTEN_WORDS];

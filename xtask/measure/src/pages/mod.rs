@@ -125,6 +125,9 @@ fn gpu() -> Result<String> {
     let path = Path::new(RESULTS).join("nvidia_h100.md");
     let report = text(&path)?;
     let sizes = report.split("## Sizes").nth(1).unwrap_or_default();
+    let commit = report.split(", commit ").nth(1).and_then(|rest| rest.get(..8));
+    let commit =
+        commit.ok_or_else(|| wrong(&path, "no commit", "one, as tools/gpu-kit writes it"))?;
     let frame_ms = |side: &str| {
         let rows = sizes.lines().map(|line| line.split_whitespace().collect::<Vec<_>>());
         let found = rows.filter(|words| words.len() == 8).find(|w| w[..2] == [side, "64"]);
@@ -138,7 +141,7 @@ fn gpu() -> Result<String> {
     };
     Ok(format!(
         "On an [NVIDIA H100](benches/results/nvidia_h100.md) 64 azimuths take {} ms at 256², {} ms at 1024² and {} ms at \
-         4096².\n",
+         4096² (commit {commit}).\n",
         frame_ms("256")?,
         frame_ms("1024")?,
         frame_ms("4096")?
