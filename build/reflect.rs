@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use rspirv::dr::{Instruction, Module, Operand};
-use rspirv::spirv::{BuiltIn, Decoration, Dim, Op, StorageClass};
+use rspirv::spirv::{BuiltIn, Decoration, Dim, ImageFormat, Op, StorageClass};
 
 use super::fail;
 
@@ -107,6 +107,11 @@ fn variables(
                     let Operand::ImageFormat(format) = pointee.operands[6] else {
                         fail(&format!("{name}: a storage image without a format field"))
                     };
+                    if format == ImageFormat::Unknown {
+                        fail(&format!(
+                            "{name}: binding {binding}: a storage image without a format"
+                        ));
+                    }
                     let kind = format!(
                         "StorageImage {{ format: {:?}, uint: {uint}, layered: {layered} }}",
                         format!("{format:?}")

@@ -79,7 +79,7 @@ pub fn scene() -> ridgelight::Result<Scene> {
 
 /// An instance and a device with what Ridgelight needs, and its queue.
 fn host(entry: &ash::Entry) -> Any<(Host, vk::Queue)> {
-    let mut needs = gpu::requirements();
+    let needs = gpu::requirements();
     let app = vk::ApplicationInfo::default().api_version(needs.api_version);
     let instance_info = vk::InstanceCreateInfo::default().application_info(&app);
     // SAFETY: the loader stays loaded; all structs live across their calls.
@@ -91,11 +91,7 @@ fn host(entry: &ash::Entry) -> Any<(Host, vk::Queue)> {
         let queue_family = family.ok_or("no queue for compute")? as u32;
         let queue = vk::DeviceQueueCreateInfo::default().queue_family_index(queue_family);
         let queues = [queue.queue_priorities(&[1.0])];
-        let device_info = vk::DeviceCreateInfo::default()
-            .queue_create_infos(&queues)
-            .enabled_features(&needs.features)
-            .push_next(&mut needs.features12)
-            .push_next(&mut needs.features13);
+        let device_info = vk::DeviceCreateInfo::default().queue_create_infos(&queues);
         let device = instance.create_device(physical_device, &device_info, None)?;
         let queue = device.get_device_queue(queue_family, 0);
         let pipeline_cache = vk::PipelineCache::null();
@@ -166,17 +162,20 @@ fn frame(host: &Host, queue: vk::Queue, blocks: &mut Blocks, scene: &Scene) -> A
     let buffer_info = vk::BufferCreateInfo::default().size(size).usage(usage);
     let pool_info = vk::CommandPoolCreateInfo::default().queue_family_index(host.queue_family);
     let region = [vk::BufferImageCopy::default().image_subresource(LAYER).image_extent(EXTENT)];
-    let filling = [vk::ImageMemoryBarrier2::default()
+    let filling = [vk::ImageMemoryBarrier::default()
         .image(heights.image)
         .subresource_range(WHOLE)
-        .dst_stage_mask(FILLED.stage)
-        .dst_access_mask(FILLED.access)
+        .dst_access_mask(vk::AccessFlags::TRANSFER_WRITE)
         .new_layout(FILLED.layout)];
-    let reading = [vk::MemoryBarrier2::default()
-        .src_stage_mask(vk::PipelineStageFlags2::COPY)
-        .src_access_mask(vk::AccessFlags2::TRANSFER_WRITE)
-        .dst_stage_mask(vk::PipelineStageFlags2::HOST)
-        .dst_access_mask(vk::AccessFlags2::HOST_READ)];
+    let reading = [vk::MemoryBarrier::default()
+        .src_access_mask(vk::AccessFlags::TRANSFER_WRITE)
+        .dst_access_mask(vk::AccessFlags::HOST_READ)];
+    let [top, transfer, to_host] = [
+        vk::PipelineStageFlags::TOP_OF_PIPE,
+        vk::PipelineStageFlags::TRANSFER,
+        vk::PipelineStageFlags::HOST,
+    ];
+    let none = vk::DependencyFlags::empty();
     // SAFETY: all handles are alive, and are destroyed when the queue has done all its work.
     unsafe {
         let buffer = device.create_buffer(&buffer_info, None)?;
@@ -192,20 +191,18 @@ fn frame(host: &Host, queue: vk::Queue, blocks: &mut Blocks, scene: &Scene) -> A
         let commands_info = vk::CommandBufferAllocateInfo::default().command_pool(pool);
         let commands = device.allocate_command_buffers(&commands_info.command_buffer_count(1))?[0];
         device.begin_command_buffer(commands, &vk::CommandBufferBeginInfo::default())?;
-        let info = vk::DependencyInfo::default().image_memory_barriers(&filling);
-        device.cmd_pipeline_barrier2(commands, &info);
+        device.cmd_pipeline_barrier(commands, top, transfer, none, &[], &[], &filling);
         let copied_to = FILLED.layout;
         device.cmd_copy_buffer_to_image(commands, buffer, heights.image, copied_to, &region);
         let (read, written) = ((heights.image, heights.view), (light.image, light.view));
         record(&mut renderer, commands, 0, read, written)?;
         let copied_from = COPIED.layout;
         device.cmd_copy_image_to_buffer(commands, light.image, copied_from, buffer, &region);
-        let info = vk::DependencyInfo::default().memory_barriers(&reading);
-        device.cmd_pipeline_barrier2(commands, &info);
+        device.cmd_pipeline_barrier(commands, transfer, to_host, none, &reading, &[], &[]);
         device.end_command_buffer(commands)?;
-        let submitted = [vk::CommandBufferSubmitInfo::default().command_buffer(commands)];
-        let submit = [vk::SubmitInfo2::default().command_buffer_infos(&submitted)];
-        device.queue_submit2(queue, &submit, vk::Fence::null())?;
+        let submitted = [commands];
+        let submit = [vk::SubmitInfo::default().command_buffers(&submitted)];
+        device.queue_submit(queue, &submit, vk::Fence::null())?;
         device.queue_wait_idle(queue)?;
         let lit = std::slice::from_raw_parts(texels, ROWS * COLS).to_vec();
 

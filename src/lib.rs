@@ -6,7 +6,7 @@
 //!
 //! # From nothing to a lit texture
 //!
-//! You need a Vulkan 1.3 driver (a software driver such as lavapipe is enough) and, to build, a C++ compiler for the
+//! You need a Vulkan 1.1 driver (a software driver such as lavapipe is enough) and, to build, a C++ compiler for the
 //! shader compiler. In `Cargo.toml`:
 //!
 //! ```toml

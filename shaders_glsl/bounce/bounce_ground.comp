@@ -4,6 +4,7 @@
 // One invocation is one grid point.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
+#include "shared/words.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -14,7 +15,7 @@ layout(binding = 0) uniform texture2D heights;
 layout(binding = 1, rgba32f) uniform readonly image2D exit_radiance;
 layout(binding = 2, r32f) uniform readonly image2D exit_grey;
 layout(binding = 3, rgba32f) uniform writeonly image2D bounce_ground;
-layout(binding = 4, rg32ui) uniform writeonly uimage2D grey_ground;
+layout(binding = 4, rgba16ui) uniform writeonly uimage2D grey_ground;
 
 layout(push_constant) uniform BounceGroundPush {
     int cols;
@@ -29,7 +30,7 @@ void main() {
     float height = texelFetch(heights, at, 0).x;
     if (GREY) {
         vec2 two = vec2(imageLoad(exit_grey, at).x, height);
-        imageStore(grey_ground, at, uvec4(floatBitsToUint(two), 0u, 0u));
+        imageStore(grey_ground, at, four_halves(floatBitsToUint(two)));
     } else {
         imageStore(bounce_ground, at, vec4(imageLoad(exit_radiance, at).rgb, height));
     }

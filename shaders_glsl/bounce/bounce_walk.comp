@@ -28,13 +28,13 @@ const uint FROM_REST = 3u;
 const bool FILLS_CACHE = FROM == FROM_KEPT;
 
 layout(binding = 1) uniform textureBuffer azimuths;
-layout(binding = 2, rg32ui) uniform readonly uimage2DArray occluders;
+layout(binding = 2, rgba16ui) uniform readonly uimage2DArray occluders;
 layout(binding = 3, rgba32f) uniform readonly image2D bounce_ground;
-layout(binding = 4, rg32ui) uniform readonly uimage2D grey_ground;
+layout(binding = 4, rgba16ui) uniform readonly uimage2D grey_ground;
 layout(binding = 5, rgba32f) uniform image2D bounce_sum;
 layout(binding = 6, rgba32ui) uniform writeonly uimage2DArray visibility_cache;
 layout(binding = 7, rgba32ui) uniform readonly uimage2DArray line_blocks;
-layout(binding = 8, rg32ui) uniform readonly uimage2DArray grey_blocks;
+layout(binding = 8, rgba16ui) uniform readonly uimage2DArray grey_blocks;
 
 #include "shared/angle.glsl"
 #include "shared/lattice.glsl"
@@ -71,7 +71,7 @@ ivec2 own_kept_node; // texel of its visibility cache
 Block block_at(ivec3 texel) {
     uvec4 words;
     if (GREY) {
-        words = imageLoad(grey_blocks, texel);
+        words = uvec4(two_words(imageLoad(grey_blocks, texel)), 0u, 0u);
     } else {
         words = imageLoad(line_blocks, texel);
     }
@@ -112,7 +112,7 @@ Nearest nearest_line() {
     int first_held = max(first, 0);
     int line_held = clamp(nearest, first_held, max(first_held, last));
     int line = wraps ? line_round : line_held;
-    int found = int(lattice_u16(imageLoad(occluders, lattice_texel(azimuth, line, on)).xy, line));
+    int found = int(lattice_value(imageLoad(occluders, lattice_texel(azimuth, line, on)), line));
     return Nearest(line, lead, stands ? found : 0);
 }
 

@@ -16,10 +16,10 @@ layout(constant_id = 2) const bool MARCHES_ROWS = false;
 layout(constant_id = 3) const bool GREY = false;
 
 layout(binding = 0, rgba32f) uniform readonly image2D bounce_ground;
-layout(binding = 1, rg32ui) uniform readonly uimage2D grey_ground;
+layout(binding = 1, rgba16ui) uniform readonly uimage2D grey_ground;
 layout(binding = 2) uniform textureBuffer azimuths;
 layout(binding = 3, rgba32ui) uniform writeonly uimage2DArray line_blocks;
-layout(binding = 4, rg32ui) uniform writeonly uimage2DArray grey_blocks;
+layout(binding = 4, rgba16ui) uniform writeonly uimage2DArray grey_blocks;
 
 #include "shared/lines.glsl"
 #include "bounce/line_blocks.glsl"
@@ -75,7 +75,7 @@ void store(int level, int end, Block block) {
     if (among >= 0 && among < block_lines(lanes) && end < total) {
         ivec3 texel = block_texel(first_layer, among, level, end);
         if (GREY) {
-            imageStore(grey_blocks, texel, block_words(block));
+            imageStore(grey_blocks, texel, four_halves(block_words(block).xy));
         } else {
             imageStore(line_blocks, texel, block_words(block));
         }

@@ -1,3 +1,5 @@
+#include "shared/words.glsl"
+
 // What walks read: points of lines, with height and exit radiance between two lanes, and blocks of them. The including
 // shader declares `bounce_ground`, `grey_ground`, `line_blocks`, `grey_blocks` and the constants LINE_SHIFT, BORDER, GREY and MARCHES_ROWS.
 
@@ -9,7 +11,7 @@ vec4 ground_at(int lane, int march) {
     // No early exit: it makes loops out of functions, for which SwiftShader's compiler takes gigabytes.
     vec4 ground;
     if (GREY) {
-        ground = uintBitsToFloat(imageLoad(grey_ground, at).xxxy);
+        ground = uintBitsToFloat(two_words(imageLoad(grey_ground, at)).xxxy);
     } else {
         ground = imageLoad(bounce_ground, at);
     }

@@ -8,11 +8,14 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 0) const bool PERIODIC = false;
+// One channel of radiance.
+layout(constant_id = 1) const bool GREY = false;
 
 layout(binding = 0) uniform texture2D shade_levels;
 layout(binding = 1) uniform utexture2D shade_table;
-// Four channels, or one for grey radiance.
-layout(binding = 2) uniform writeonly image2DArray shade_stack;
+// GREY selects one of these.
+layout(binding = 2, rgba32f) uniform writeonly image2DArray shade_stack;
+layout(binding = 3, r32f) uniform writeonly image2DArray shade_stack_grey;
 
 #include "bounce/shade.glsl"
 
@@ -29,5 +32,10 @@ void main() {
     }
     Level level = level_of(texelFetch(shade_table, ivec2(at.z, 0), 0));
     precise vec2 place = vec2(at.xy) * level.per_grid_point;
-    imageStore(shade_stack, at, vec4(shade_at(level, place, width_shift), 1.0));
+    vec4 light = vec4(shade_at(level, place, width_shift), 1.0);
+    if (GREY) {
+        imageStore(shade_stack_grey, at, light);
+    } else {
+        imageStore(shade_stack, at, light);
+    }
 }

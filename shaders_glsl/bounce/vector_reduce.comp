@@ -9,11 +9,13 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 0) const bool PERIODIC = false;
 layout(constant_id = 1) const bool FROM_FIELD = false;
+layout(constant_id = 2) const bool HALVES = false;
 
 layout(binding = 0) uniform texture2DArray exit_vectors;
 layout(binding = 1) uniform texture2DArray vector_source;
-// f32 or f16.
-layout(binding = 2) uniform writeonly image2DArray vector_levels;
+// HALVES selects one of these.
+layout(binding = 2, rgba32f) uniform writeonly image2DArray vector_levels;
+layout(binding = 5, rgba16f) uniform writeonly image2DArray vector_levels_f16;
 layout(binding = 3, rgba32ui) uniform writeonly uimage2D shade_table;
 layout(binding = 4) uniform textureBuffer constants;
 
@@ -37,7 +39,12 @@ void main() {
         return;
     }
     vec4 mean = reduced(at);
-    imageStore(vector_levels, ivec3(level_texel(first + at.y * cols + at.x, width_shift), layer), mean);
+    ivec3 texel = ivec3(level_texel(first + at.y * cols + at.x, width_shift), layer);
+    if (HALVES) {
+        imageStore(vector_levels_f16, texel, mean);
+    } else {
+        imageStore(vector_levels, texel, mean);
+    }
     if (at == ivec2(0) && layer == 0) {
         Level made = Level(first, cols, rows, per_grid_point);
         imageStore(shade_table, ivec2(number - 1, 0), words_of(made));

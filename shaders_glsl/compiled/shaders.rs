@@ -41,12 +41,12 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/bounce_ground.comp`.
-    BOUNCE_GROUND: "bounce_ground", push BounceGroundPush, words 19821 667,
+    BOUNCE_GROUND: "bounce_ground", push BounceGroundPush, words 19821 768,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "exit_radiance" StorageImage { format: "Rgba32f", uint: false, layered: false },
     2 reads "exit_grey" StorageImage { format: "R32f", uint: false, layered: false },
     3 writes "bounce_ground" StorageImage { format: "Rgba32f", uint: false, layered: false },
-    4 writes "grey_ground" StorageImage { format: "Rg32ui", uint: true, layered: false },
+    4 writes "grey_ground" StorageImage { format: "Rgba16ui", uint: true, layered: false },
     BounceGround {
         0 grey: bool = false,
     }
@@ -54,7 +54,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/bounce_march.comp`.
-    BOUNCE_MARCH: "bounce_march", push BounceMarchPush, words 20488 12391,
+    BOUNCE_MARCH: "bounce_march", push BounceMarchPush, words 20589 12391,
     0 reads "cells" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "maxima" StorageImage { format: "R32f", uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -72,7 +72,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/bounce_shade.comp`.
-    BOUNCE_SHADE: "bounce_shade", push BounceShadePush, words 32879 2678,
+    BOUNCE_SHADE: "bounce_shade", push BounceShadePush, words 32980 2678,
     0 reads "ground" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "sky_share" StorageImage { format: "R32f", uint: false, layered: false },
     2 reads "node_sum" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -84,15 +84,15 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/bounce_walk.comp`.
-    BOUNCE_WALK: "bounce_walk", push BounceWalkPush, words 35557 14457,
+    BOUNCE_WALK: "bounce_walk", push BounceWalkPush, words 35658 14566,
     1 reads "azimuths" TexelBuffer,
-    2 reads "occluders" StorageImage { format: "Rg32ui", uint: true, layered: true },
+    2 reads "occluders" StorageImage { format: "Rgba16ui", uint: true, layered: true },
     3 reads "bounce_ground" StorageImage { format: "Rgba32f", uint: false, layered: false },
-    4 reads "grey_ground" StorageImage { format: "Rg32ui", uint: true, layered: false },
+    4 reads "grey_ground" StorageImage { format: "Rgba16ui", uint: true, layered: false },
     5 writes "bounce_sum" StorageImage { format: "Rgba32f", uint: false, layered: false },
     6 writes "visibility_cache" StorageImage { format: "Rgba32ui", uint: true, layered: true },
     7 reads "line_blocks" StorageImage { format: "Rgba32ui", uint: true, layered: true },
-    8 reads "grey_blocks" StorageImage { format: "Rg32ui", uint: true, layered: true },
+    8 reads "grey_blocks" StorageImage { format: "Rgba16ui", uint: true, layered: true },
     BounceWalk {
         0 line_shift: i32 = 15,
         1 border: u32 = 0,
@@ -106,7 +106,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/cache_gather.comp`.
-    CACHE_GATHER: "cache_gather", push CacheGatherPush, words 50014 3702,
+    CACHE_GATHER: "cache_gather", push CacheGatherPush, words 50224 3702,
     0 reads "visibility_cache" StorageImage { format: "Rgba32ui", uint: true, layered: true },
     1 reads "azimuths" TexelBuffer,
     2 reads "exit_radiance" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -121,8 +121,15 @@ shader! {
 }
 
 shader! {
+    /// `shaders_glsl/view/depth_draw.frag`.
+    DEPTH_DRAW_FRAG: "depth_draw_frag", push (), words 53926 193,
+    0 reads "picture_depth" SampledImage { uint: false, layered: false },
+    DepthDrawFrag;
+}
+
+shader! {
     /// `shaders_glsl/device/device_peak.comp`.
-    DEVICE_PEAK: "device_peak", push DevicePeakPush, words 53716 1812,
+    DEVICE_PEAK: "device_peak", push DevicePeakPush, words 54119 1812,
     0 writes "source" StorageBuffer,
     1 writes "result" StorageBuffer,
     2 writes "filled" StorageImage { format: "R32f", uint: false, layered: false },
@@ -134,7 +141,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/edit/dirty_list.comp`.
-    DIRTY_LIST: "dirty_list", push DirtyListPush, words 55528 874,
+    DIRTY_LIST: "dirty_list", push DirtyListPush, words 55931 874,
     0 reads "dirty_texels" StorageBuffer,
     1 writes "edit_list" StorageBuffer,
     DirtyList;
@@ -142,7 +149,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/edit/dirty_mark.comp`.
-    DIRTY_MARK: "dirty_mark", push DirtyMarkPush, words 56402 1323,
+    DIRTY_MARK: "dirty_mark", push DirtyMarkPush, words 56805 1323,
     0 writes "dirty_texels" StorageBuffer,
     1 writes "edit_list" StorageBuffer,
     DirtyMark;
@@ -150,7 +157,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bake/ellipse_fit.comp`.
-    ELLIPSE_FIT: "ellipse_fit", push EllipseFitPush, words 57725 5049,
+    ELLIPSE_FIT: "ellipse_fit", push EllipseFitPush, words 58128 5049,
     0 reads "visible_points" SampledImage { uint: true, layered: true },
     1 reads "directions" TexelBuffer,
     2 writes "ellipse_axes" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -164,7 +171,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/env_rotation.comp`.
-    ENV_ROTATION: "env_rotation", push EnvRotationPush, words 62774 949,
+    ENV_ROTATION: "env_rotation", push EnvRotationPush, words 63177 949,
     0 reads "environment" SampledImage { uint: false, layered: false },
     1 reads "constants" TexelBuffer,
     2 writes "env_rotation" StorageBuffer,
@@ -173,7 +180,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/env_tables.comp`.
-    ENV_TABLES: "env_tables", push EnvTablesPush, words 63723 3335,
+    ENV_TABLES: "env_tables", push EnvTablesPush, words 64126 3335,
     0 reads "wedge_rows" StorageBuffer,
     1 writes "env_tables" StorageImage { format: "Rgba32f", uint: false, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -182,7 +189,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/env_wedges.comp`.
-    ENV_WEDGES: "env_wedges", push EnvWedgesPush, words 67058 2214,
+    ENV_WEDGES: "env_wedges", push EnvWedgesPush, words 67461 2214,
     0 reads "environment" SampledImage { uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "wedge_rows" StorageBuffer,
@@ -191,7 +198,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bake/facet_mask.comp`.
-    FACET_MASK: "facet_mask", push FacetMaskPush, words 69272 9176,
+    FACET_MASK: "facet_mask", push FacetMaskPush, words 69675 9176,
     0 reads "cells" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "maxima" StorageImage { format: "R32f", uint: false, layered: false },
     2 reads "directions" TexelBuffer,
@@ -204,7 +211,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bake/fan_weights.comp`.
-    FAN_WEIGHTS: "fan_weights", push FanWeightsPush, words 78448 1842,
+    FAN_WEIGHTS: "fan_weights", push FanWeightsPush, words 78851 1842,
     0 reads "bent" SampledImage { uint: false, layered: true },
     1 reads "fans" TexelBuffer,
     2 writes "fan_weights" StorageImage { format: "R32f", uint: false, layered: true },
@@ -213,7 +220,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/rays/height_bounds.comp`.
-    HEIGHT_BOUNDS: "height_bounds", push HeightBoundsPush, words 80290 1680,
+    HEIGHT_BOUNDS: "height_bounds", push HeightBoundsPush, words 80693 1680,
     0 reads "cells" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 writes "maxima" StorageImage { format: "R32f", uint: false, layered: false },
     2 reads "heights" SampledImage { uint: false, layered: false },
@@ -224,7 +231,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/rays/height_cells.comp`.
-    HEIGHT_CELLS: "height_cells", push HeightCellsPush, words 81970 2514,
+    HEIGHT_CELLS: "height_cells", push HeightCellsPush, words 82373 2514,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 writes "cells" StorageImage { format: "Rgba32f", uint: false, layered: false },
     2 writes "ground" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -238,7 +245,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/height_expand.comp`.
-    HEIGHT_EXPAND: "height_expand", push HeightExpandPush, words 84484 2496,
+    HEIGHT_EXPAND: "height_expand", push HeightExpandPush, words 84887 2496,
     0 reads "height_levels" SampledImage { uint: false, layered: false },
     1 reads "level_table" SampledImage { uint: true, layered: false },
     2 writes "height_stack" StorageImage { format: "R32f", uint: false, layered: true },
@@ -249,7 +256,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/height_reduce.comp`.
-    HEIGHT_REDUCE: "height_reduce", push ReducePush, words 86980 3600,
+    HEIGHT_REDUCE: "height_reduce", push ReducePush, words 87383 3600,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 writes "height_levels" StorageImage { format: "R32f", uint: false, layered: false },
     2 writes "level_table" StorageImage { format: "Rgba32ui", uint: true, layered: false },
@@ -262,7 +269,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/height_transpose.comp`.
-    HEIGHT_TRANSPOSE: "height_transpose", push HeightTransposePush, words 90580 1113,
+    HEIGHT_TRANSPOSE: "height_transpose", push HeightTransposePush, words 90983 1113,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 writes "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     2 writes "lane_buffer" StorageBuffer,
@@ -275,10 +282,10 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/horizon_march.comp`.
-    HORIZON_MARCH: "horizon_march", push MarchPush, words 91693 6845,
+    HORIZON_MARCH: "horizon_march", push MarchPush, words 92096 6843,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
-    2 writes "slopes" StorageImage { format: "Unknown", uint: true, layered: true },
+    2 writes "slopes" StorageImage { format: "R32ui", uint: true, layered: true },
     HorizonMarch {
         0 periodic: bool = false,
         1 writes_distances: bool = false,
@@ -288,10 +295,10 @@ shader! {
 
 shader! {
     /// `shaders_glsl/edit/horizon_resweep.comp`.
-    HORIZON_RESWEEP: "horizon_resweep", push HorizonResweepPush, words 98538 9187,
+    HORIZON_RESWEEP: "horizon_resweep", push HorizonResweepPush, words 98939 8999,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
-    2 writes "occluders" StorageImage { format: "Rg32ui", uint: true, layered: true },
+    2 writes "occluders" StorageImage { format: "Rgba16ui", uint: true, layered: true },
     3 writes "dirty_texels" StorageBuffer,
     4 writes "edit_list" StorageBuffer,
     HorizonResweep {
@@ -303,14 +310,15 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/horizon_sweep.comp`.
-    HORIZON_SWEEP: "horizon_sweep", push HorizonSweepPush, words 107725 16105,
+    HORIZON_SWEEP: "horizon_sweep", push HorizonSweepPush, words 107938 16078,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     2 reads "azimuths" TexelBuffer,
-    3 writes "occluders" StorageImage { format: "Rg32ui", uint: true, layered: true },
-    4 writes "slopes" StorageImage { format: "Unknown", uint: true, layered: true },
+    3 writes "occluders" StorageImage { format: "Rgba16ui", uint: true, layered: true },
+    4 writes "slopes" StorageImage { format: "Rgba32ui", uint: true, layered: true },
     5 writes "lost_lines" StorageBuffer,
     6 reads "lane_buffer" StorageBuffer,
+    7 writes "slopes_f16" StorageImage { format: "Rgba16ui", uint: true, layered: true },
     HorizonSweep {
         0 local_size_x: u32 = 1,
         1 hull_place: u32 = 0,
@@ -335,7 +343,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/light_matrix.comp`.
-    LIGHT_MATRIX: "light_matrix", push LightMatrixPush, words 123830 1854,
+    LIGHT_MATRIX: "light_matrix", push LightMatrixPush, words 124016 1854,
     0 reads "env_rotation" StorageBuffer,
     1 reads "constants" TexelBuffer,
     2 writes "light_matrix" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -344,7 +352,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/light_resolve.comp`.
-    LIGHT_RESOLVE: "light_resolve", push LightResolvePush, words 125684 1966,
+    LIGHT_RESOLVE: "light_resolve", push LightResolvePush, words 125870 1966,
     0 reads "scalar_sum" SampledImage { uint: false, layered: false },
     1 reads "colour_sum" SampledImage { uint: false, layered: false },
     2 reads "albedo_map" SampledImage { uint: false, layered: false },
@@ -368,12 +376,12 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/line_blocks.comp`.
-    LINE_BLOCKS: "line_blocks", push LineBlocksPush, words 127650 6467,
+    LINE_BLOCKS: "line_blocks", push LineBlocksPush, words 127836 6676,
     0 reads "bounce_ground" StorageImage { format: "Rgba32f", uint: false, layered: false },
-    1 reads "grey_ground" StorageImage { format: "Rg32ui", uint: true, layered: false },
+    1 reads "grey_ground" StorageImage { format: "Rgba16ui", uint: true, layered: false },
     2 reads "azimuths" TexelBuffer,
     3 writes "line_blocks" StorageImage { format: "Rgba32ui", uint: true, layered: true },
-    4 writes "grey_blocks" StorageImage { format: "Rg32ui", uint: true, layered: true },
+    4 writes "grey_blocks" StorageImage { format: "Rgba16ui", uint: true, layered: true },
     LineBlocks {
         0 line_shift: i32 = 15,
         1 border: u32 = 0,
@@ -384,7 +392,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/map_draw.comp`.
-    MAP_DRAW: "map_draw", push MapDrawPush, words 134117 3812,
+    MAP_DRAW: "map_draw", push MapDrawPush, words 134512 3812,
     0 reads "radiance" SampledImage { uint: false, layered: false },
     1 reads "tone_steps" SampledImage { uint: false, layered: false },
     2 reads "voids" SampledImage { uint: false, layered: false },
@@ -397,7 +405,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/mirror_map.comp`.
-    MIRROR_MAP: "mirror_map", push MirrorMapPush, words 137929 3694,
+    MIRROR_MAP: "mirror_map", push MirrorMapPush, words 138324 3694,
     0 reads "azimuths" TexelBuffer,
     1 reads "specular_tables" StorageImage { format: "Rgba32f", uint: false, layered: true },
     2 writes "mirror_map" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -406,7 +414,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/reference/path_trace.comp`.
-    PATH_TRACE: "path_trace", push PathTracePush, words 141623 22947,
+    PATH_TRACE: "path_trace", push PathTracePush, words 142018 22947,
     0 reads "cells" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "maxima" StorageImage { format: "R32f", uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -443,7 +451,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/picture_tone.frag`.
-    PICTURE_TONE_FRAG: "picture_tone_frag", push PictureTonePush, words 164570 565,
+    PICTURE_TONE_FRAG: "picture_tone_frag", push PictureTonePush, words 164965 565,
     0 reads "radiance" SampledImage { uint: false, layered: false },
     PictureToneFrag {
         0 encodes: bool = true,
@@ -452,13 +460,13 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/picture_tone.vert`.
-    PICTURE_TONE_VERT: "picture_tone_vert", push (), words 165135 266,
+    PICTURE_TONE_VERT: "picture_tone_vert", push (), words 165530 266,
     PictureToneVert;
 }
 
 shader! {
     /// `shaders_glsl/view/plinth_draw.frag`.
-    PLINTH_DRAW_FRAG: "plinth_draw_frag", push PlinthDrawPush, words 165401 939,
+    PLINTH_DRAW_FRAG: "plinth_draw_frag", push PlinthDrawPush, words 165796 939,
     2 reads "voids" SampledImage { uint: false, layered: false },
     PlinthDrawFrag {
         1 has_voids: bool = false,
@@ -467,7 +475,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/plinth_draw.vert`.
-    PLINTH_DRAW_VERT: "plinth_draw_vert", push PlinthDrawPush, words 166340 2082,
+    PLINTH_DRAW_VERT: "plinth_draw_vert", push PlinthDrawPush, words 166735 2082,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "radiance" SampledImage { uint: false, layered: false },
     2 reads "voids" SampledImage { uint: false, layered: false },
@@ -479,7 +487,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/preview_gather.comp`.
-    PREVIEW_GATHER: "preview_gather", push PreviewGatherPush, words 168422 1069,
+    PREVIEW_GATHER: "preview_gather", push PreviewGatherPush, words 168817 1069,
     0 reads "normals" SampledImage { uint: false, layered: false },
     1 reads "coarse_radiance" SampledImage { uint: false, layered: false },
     2 reads "coarse_sun" SampledImage { uint: false, layered: false },
@@ -494,7 +502,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/preview_shade.comp`.
-    PREVIEW_SHADE: "preview_shade", push PreviewShadePush, words 169491 1740,
+    PREVIEW_SHADE: "preview_shade", push PreviewShadePush, words 169886 1740,
     0 reads "normals" SampledImage { uint: false, layered: false },
     1 reads "albedo" SampledImage { uint: false, layered: false },
     2 reads "sky" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -508,10 +516,10 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/pyramid_march.comp`.
-    PYRAMID_MARCH: "pyramid_march", push PyramidMarchPush, words 171231 9058,
+    PYRAMID_MARCH: "pyramid_march", push PyramidMarchPush, words 171626 9056,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
-    2 writes "slopes" StorageImage { format: "Unknown", uint: true, layered: true },
+    2 writes "slopes" StorageImage { format: "R32ui", uint: true, layered: true },
     3 reads "height_levels" SampledImage { uint: false, layered: false },
     4 reads "level_table" SampledImage { uint: true, layered: false },
     5 reads "height_stack" SampledImage { uint: false, layered: true },
@@ -525,7 +533,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bake/scatter_gather.comp`.
-    SCATTER_GATHER: "scatter_gather", push ScatterGatherPush, words 180289 4664,
+    SCATTER_GATHER: "scatter_gather", push ScatterGatherPush, words 180682 4664,
     0 reads "ground" SampledImage { uint: false, layered: false },
     1 reads "direct" SampledImage { uint: false, layered: false },
     2 reads "visible_points" SampledImage { uint: true, layered: true },
@@ -552,7 +560,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/sh_shade.comp`.
-    SH_SHADE: "sh_shade", push ShShadePush, words 184953 12958,
+    SH_SHADE: "sh_shade", push ShShadePush, words 185346 12958,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "visibility" SampledImage { uint: false, layered: true },
     2 reads "light_matrix" SampledImage { uint: false, layered: false },
@@ -571,9 +579,9 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/sh_visibility.comp`.
-    SH_VISIBILITY: "sh_visibility", push ShadePush, words 197911 32344,
+    SH_VISIBILITY: "sh_visibility", push ShadePush, words 198304 32101,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
-    1 reads "lattice" StorageImage { format: "Rg32ui", uint: true, layered: true },
+    1 reads "lattice" StorageImage { format: "Rgba16ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
     3 writes "visibility" StorageImage { format: "Rgba32f", uint: false, layered: true },
     4 writes "nodes" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -597,7 +605,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/sh_wedges.comp`.
-    SH_WEDGES: "sh_wedges", push ShWedgesPush, words 230255 7777,
+    SH_WEDGES: "sh_wedges", push ShWedgesPush, words 230405 7777,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "horizon_angles" SampledImage { uint: false, layered: true },
     2 reads "constants" TexelBuffer,
@@ -614,18 +622,20 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/shade_expand.comp`.
-    SHADE_EXPAND: "shade_expand", push ShadeExpandPush, words 238032 2397,
+    SHADE_EXPAND: "shade_expand", push ShadeExpandPush, words 238182 2489,
     0 reads "shade_levels" SampledImage { uint: false, layered: false },
     1 reads "shade_table" SampledImage { uint: true, layered: false },
-    2 writes "shade_stack" StorageImage { format: "Unknown", uint: false, layered: true },
+    2 writes "shade_stack" StorageImage { format: "Rgba32f", uint: false, layered: true },
+    3 writes "shade_stack_grey" StorageImage { format: "R32f", uint: false, layered: true },
     ShadeExpand {
         0 periodic: bool = false,
+        1 grey: bool = false,
     }
 }
 
 shader! {
     /// `shaders_glsl/bounce/shade_reduce.comp`.
-    SHADE_REDUCE: "shade_reduce", push ReducePush, words 240429 3656,
+    SHADE_REDUCE: "shade_reduce", push ReducePush, words 240671 3656,
     0 reads "exit_radiance" SampledImage { uint: false, layered: false },
     1 writes "shade_levels" StorageImage { format: "Rgba32f", uint: false, layered: false },
     2 writes "shade_table" StorageImage { format: "Rgba32ui", uint: true, layered: false },
@@ -639,7 +649,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/shadow_settle.comp`.
-    SHADOW_SETTLE: "shadow_settle", push ShadowSettlePush, words 244085 18052,
+    SHADOW_SETTLE: "shadow_settle", push ShadowSettlePush, words 244327 18052,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "maxima" StorageImage { format: "R32f", uint: false, layered: false },
     2 reads "azimuths" TexelBuffer,
@@ -657,12 +667,12 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/shadow_shade.comp`.
-    SHADOW_SHADE: "shadow_shade", push ShadowShadePush, words 262137 11264,
+    SHADOW_SHADE: "shadow_shade", push ShadowShadePush, words 262379 11262,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 reads "shadows" StorageImage { format: "Rgba32ui", uint: true, layered: true },
     3 writes "sun_sum" StorageImage { format: "R32f", uint: false, layered: false },
-    4 writes "doubtful" StorageImage { format: "Unknown", uint: true, layered: false },
+    4 writes "doubtful" StorageImage { format: "R32ui", uint: true, layered: false },
     ShadowShade {
         0 border: u32 = 0,
         1 marches_rows: bool = false,
@@ -673,10 +683,10 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/shadow_sweep.comp`.
-    SHADOW_SWEEP: "shadow_sweep", push ShadowSweepPush, words 273401 11527,
+    SHADOW_SWEEP: "shadow_sweep", push ShadowSweepPush, words 273641 11525,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
-    2 writes "shadows" StorageImage { format: "Unknown", uint: true, layered: true },
+    2 writes "shadows" StorageImage { format: "Rgba32ui", uint: true, layered: true },
     3 reads "lane_buffer" StorageBuffer,
     ShadowSweep {
         0 local_size_x: u32 = 1,
@@ -689,7 +699,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/sky_draw.frag`.
-    SKY_DRAW_FRAG: "sky_draw_frag", push SkyDrawPush, words 284928 1372,
+    SKY_DRAW_FRAG: "sky_draw_frag", push SkyDrawPush, words 285166 1372,
     0 reads "environment" SampledImage { uint: false, layered: false },
     SkyDrawFrag {
         0 has_environment: bool = false,
@@ -698,15 +708,15 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/sky_draw.vert`.
-    SKY_DRAW_VERT: "sky_draw_vert", push (), words 286300 289,
+    SKY_DRAW_VERT: "sky_draw_vert", push (), words 286538 289,
     SkyDrawVert;
 }
 
 shader! {
     /// `shaders_glsl/direct/sky_shade.comp`.
-    SKY_SHADE: "sky_shade", push ShadePush, words 286589 30199,
+    SKY_SHADE: "sky_shade", push ShadePush, words 286827 29952,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
-    1 reads "lattice" StorageImage { format: "Rg32ui", uint: true, layered: true },
+    1 reads "lattice" StorageImage { format: "Rgba16ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
     3 writes "sky_sum" StorageImage { format: "R32f", uint: false, layered: false },
     4 writes "env_sum" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -735,7 +745,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/specular_exit.comp`.
-    SPECULAR_EXIT: "specular_exit", push SpecularExitPush, words 316788 6438,
+    SPECULAR_EXIT: "specular_exit", push SpecularExitPush, words 316779 6560,
     0 reads "arriving" SampledImage { uint: false, layered: true },
     1 reads "ground" SampledImage { uint: false, layered: false },
     2 reads "exit_radiance" SampledImage { uint: false, layered: false },
@@ -743,8 +753,10 @@ shader! {
     4 reads "phong_map" SampledImage { uint: false, layered: false },
     5 reads "constants" TexelBuffer,
     6 writes "specular_bounced" StorageImage { format: "Rgba32f", uint: false, layered: false },
-    7 writes "exit_vectors" StorageImage { format: "Unknown", uint: false, layered: true },
-    8 writes "exit_upward" StorageImage { format: "Unknown", uint: false, layered: false },
+    7 writes "exit_vectors" StorageImage { format: "Rgba32f", uint: false, layered: true },
+    8 writes "exit_upward" StorageImage { format: "Rgba32f", uint: false, layered: false },
+    9 writes "exit_vectors_f16" StorageImage { format: "Rgba16f", uint: false, layered: true },
+    10 writes "exit_upward_grey" StorageImage { format: "R32f", uint: false, layered: false },
     SpecularExit {
         0 order: i32 = 4,
         1 grey: bool = false,
@@ -758,7 +770,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/specular_gather.comp`.
-    SPECULAR_GATHER: "specular_gather", push GatherPush, words 323226 20442,
+    SPECULAR_GATHER: "specular_gather", push GatherPush, words 323339 20442,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "height_levels" SampledImage { uint: false, layered: false },
     2 reads "level_table" SampledImage { uint: true, layered: false },
@@ -786,7 +798,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/specular_light.comp`.
-    SPECULAR_LIGHT: "specular_light", push SpecularLightPush, words 343668 7631,
+    SPECULAR_LIGHT: "specular_light", push SpecularLightPush, words 343781 7631,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "blocked_sum" SampledImage { uint: false, layered: false },
     2 reads "unoccluded_map" SampledImage { uint: false, layered: false },
@@ -800,7 +812,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/specular_tables.comp`.
-    SPECULAR_TABLES: "specular_tables", push SpecularTablesPush, words 351299 4690,
+    SPECULAR_TABLES: "specular_tables", push SpecularTablesPush, words 351412 4690,
     0 reads "azimuths" TexelBuffer,
     1 reads "wedge_rows" StorageBuffer,
     2 writes "specular_tables" StorageImage { format: "Rgba32f", uint: false, layered: true },
@@ -811,7 +823,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/specular_visibility.comp`.
-    SPECULAR_VISIBILITY: "specular_visibility", push SpecularVisibilityPush, words 355989 1238,
+    SPECULAR_VISIBILITY: "specular_visibility", push SpecularVisibilityPush, words 356102 1238,
     0 reads "visibility" SampledImage { uint: false, layered: true },
     1 reads "light_matrix" SampledImage { uint: false, layered: false },
     2 writes "arriving" StorageImage { format: "Rgba32f", uint: false, layered: true },
@@ -823,7 +835,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/sphere_sh_shade.comp`.
-    SPHERE_SH_SHADE: "sphere_sh_shade", push SphereShShadePush, words 357227 27760,
+    SPHERE_SH_SHADE: "sphere_sh_shade", push SphereShShadePush, words 357340 27760,
     0 reads "cells" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "maxima" StorageImage { format: "R32f", uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -849,7 +861,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/sphere_shade.comp`.
-    SPHERE_SHADE: "sphere_shade", push SphereShadePush, words 384987 14492,
+    SPHERE_SHADE: "sphere_shade", push SphereShadePush, words 385100 14492,
     0 reads "cells" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "maxima" StorageImage { format: "R32f", uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -864,9 +876,9 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/sun_shade.comp`.
-    SUN_SHADE: "sun_shade", push ShadePush, words 399479 24793,
+    SUN_SHADE: "sun_shade", push ShadePush, words 399592 24546,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
-    1 reads "lattice" StorageImage { format: "Rg32ui", uint: true, layered: true },
+    1 reads "lattice" StorageImage { format: "Rgba16ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
     3 writes "sun_sum" StorageImage { format: "R32f", uint: false, layered: false },
     6 reads "dirty_texels" StorageBuffer,
@@ -885,7 +897,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/sun_specular.comp`.
-    SUN_SPECULAR: "sun_specular", push SunSpecularPush, words 424272 10753,
+    SUN_SPECULAR: "sun_specular", push SunSpecularPush, words 424138 10753,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "sun_sum" SampledImage { uint: false, layered: false },
     2 writes "specular_sum" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -902,10 +914,10 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/surface_sweep.comp`.
-    SURFACE_SWEEP: "surface_sweep", push MarchPush, words 435025 7723,
+    SURFACE_SWEEP: "surface_sweep", push MarchPush, words 434891 7721,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
-    2 writes "slopes" StorageImage { format: "Unknown", uint: true, layered: true },
+    2 writes "slopes" StorageImage { format: "R32ui", uint: true, layered: true },
     3 writes "hull_buffer" StorageBuffer,
     SurfaceSweep {
         0 local_size_x: u32 = 1,
@@ -918,9 +930,9 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/sweep_fuse.comp`.
-    SWEEP_FUSE: "sweep_fuse", push SweepFusePush, words 442748 20466,
+    SWEEP_FUSE: "sweep_fuse", push SweepFusePush, words 442612 20219,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
-    1 reads "lattice" StorageImage { format: "Rg32ui", uint: true, layered: true },
+    1 reads "lattice" StorageImage { format: "Rgba16ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
     3 writes "horizon_angles" StorageImage { format: "R32f", uint: false, layered: true },
     4 writes "horizon_distances" StorageImage { format: "R32f", uint: false, layered: true },
@@ -939,7 +951,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/terrain_draw.frag`.
-    TERRAIN_DRAW_FRAG: "terrain_draw_frag", push TerrainDrawPush, words 463214 1129,
+    TERRAIN_DRAW_FRAG: "terrain_draw_frag", push TerrainDrawPush, words 462831 1129,
     1 reads "radiance" SampledImage { uint: false, layered: false },
     2 reads "voids" SampledImage { uint: false, layered: false },
     TerrainDrawFrag {
@@ -950,28 +962,30 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/terrain_draw.vert`.
-    TERRAIN_DRAW_VERT: "terrain_draw_vert", push TerrainDrawPush, words 464343 994,
+    TERRAIN_DRAW_VERT: "terrain_draw_vert", push TerrainDrawPush, words 463960 994,
     0 reads "heights" SampledImage { uint: false, layered: false },
     TerrainDrawVert;
 }
 
 shader! {
     /// `shaders_glsl/bounce/vector_reduce.comp`.
-    VECTOR_REDUCE: "vector_reduce", push ReducePush, words 465337 3715,
+    VECTOR_REDUCE: "vector_reduce", push ReducePush, words 464954 3811,
     0 reads "exit_vectors" SampledImage { uint: false, layered: true },
     1 reads "vector_source" SampledImage { uint: false, layered: true },
-    2 writes "vector_levels" StorageImage { format: "Unknown", uint: false, layered: true },
+    2 writes "vector_levels" StorageImage { format: "Rgba32f", uint: false, layered: true },
     3 writes "shade_table" StorageImage { format: "Rgba32ui", uint: true, layered: false },
     4 reads "constants" TexelBuffer,
+    5 writes "vector_levels_f16" StorageImage { format: "Rgba16f", uint: false, layered: true },
     VectorReduce {
         0 periodic: bool = false,
         1 from_field: bool = false,
+        2 halves: bool = false,
     }
 }
 
 shader! {
     /// `shaders_glsl/bake/visible_points.comp`.
-    VISIBLE_POINTS: "visible_points", push VisiblePointsPush, words 469052 9745,
+    VISIBLE_POINTS: "visible_points", push VisiblePointsPush, words 468765 9745,
     0 reads "cells" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "maxima" StorageImage { format: "R32f", uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -1048,6 +1062,7 @@ pub static ALL: &[Shader] = &[
 
 /// Every vertex and fragment shader, by name.
 pub static GRAPHICS: &[Shader] = &[
+    DEPTH_DRAW_FRAG,
     PICTURE_TONE_FRAG,
     PICTURE_TONE_VERT,
     PLINTH_DRAW_FRAG,
@@ -1310,4 +1325,4 @@ layouts! {
 }
 
 /// Words of all shaders together.
-const WORD_COUNT: usize = 478797;
+const WORD_COUNT: usize = 478510;

@@ -22,7 +22,7 @@ layout(binding = 0, rgba32f) uniform readonly image2D lane_heights;
 layout(binding = 1) uniform textureBuffer azimuths;
 layout(binding = 2, rgba32ui) uniform readonly uimage2DArray shadows;
 layout(binding = 3, r32f) uniform image2D sun_sum;
-layout(binding = 4) uniform writeonly uimage2D doubtful;
+layout(binding = 4, r32ui) uniform writeonly uimage2D doubtful;
 
 #include "shared/angle.glsl"
 #include "horizon/met.glsl"

@@ -27,7 +27,7 @@ layout(constant_id = 3) const int WRITTEN_WORDS = 1;
 
 layout(binding = 0, rgba32f) uniform readonly image2D lane_heights;
 layout(binding = 1) uniform textureBuffer azimuths;
-layout(binding = 2) uniform writeonly uimage2DArray shadows;
+layout(binding = 2, rgba32ui) uniform writeonly uimage2DArray shadows;
 // All heights along the axis, [march position][lane], rows padded to a multiple of 4. Read if ONE_LINE.
 layout(binding = 3) readonly buffer LaneBuffer { float lane_buffer[]; };
 

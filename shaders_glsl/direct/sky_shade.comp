@@ -33,7 +33,7 @@ layout(binding = 0, rgba32f) uniform readonly image2D lane_heights;
 layout(binding = 11) readonly buffer LaneBuffer { float lane_buffer[]; };
 layout(binding = 12) readonly buffer AzimuthBuffer { vec4 azimuth_buffer[]; };
 // LATTICE selects one of these.
-layout(binding = 1, rg32ui) uniform readonly uimage2DArray lattice;
+layout(binding = 1, rgba16ui) uniform readonly uimage2DArray lattice;
 layout(binding = 7) uniform utexture2DArray lattice_words;
 
 #include "shared/angle.glsl"

@@ -24,7 +24,7 @@ layout(constant_id = 5) const bool MARCHES_ROWS = false;
 
 layout(binding = 0, rgba32f) uniform readonly image2D lane_heights;
 // LATTICE selects one of these.
-layout(binding = 1, rg32ui) uniform readonly uimage2DArray lattice;
+layout(binding = 1, rgba16ui) uniform readonly uimage2DArray lattice;
 layout(binding = 7) uniform utexture2DArray lattice_words;
 
 #include "shared/angle.glsl"

@@ -25,7 +25,7 @@ const bool PERIODIC = false;
 
 layout(binding = 0) uniform texture2D heights;
 layout(binding = 1) uniform textureBuffer azimuths;
-layout(binding = 2, rg32ui) uniform uimage2DArray occluders;
+layout(binding = 2, rgba16ui) uniform uimage2DArray occluders;
 layout(binding = 3) buffer DirtyTexels { uint dirty_texels[]; };
 layout(binding = 4) buffer EditList { uint swept_steps; uint word_count; uint light_groups[3]; uint resolve_groups[3]; uint dirty_words[]; };
 
@@ -45,11 +45,6 @@ layout(push_constant) uniform HorizonResweepPush {
 const int SPACING = 1 << LINE_SHIFT;
 const int NEVER = 0x7fffffff;
 
-// Occluders, in steps back, of the lines of a texel.
-ivec4 steps_back(uvec2 texel) {
-    return ivec4(texel.x & 0xffffu, texel.x >> 16, texel.y & 0xffffu, texel.y >> 16);
-}
-
 // Pops while the deeper vertex subtends at least the slope of the newer one: horizon_sweep's comparison.
 bool is_popped(float h, float x, vec2 newer, vec2 deeper) {
     precise float of_deeper = (deeper.x - h) * (x - newer.y);
@@ -63,7 +58,7 @@ vec2 under(vec2 vertex, int y, int line, int k) {
     int step = int(vertex.y);
     int back = 0;
     if (vertex.x > OUTSIDE) {
-        back = int(lattice_u16(imageLoad(occluders, lattice_texel(azimuth, line, step)).xy, k));
+        back = int(lattice_value(imageLoad(occluders, lattice_texel(azimuth, line, step)), k));
     }
     int place = step - back;
     float h = kept_height(line_height(y + place * azimuth.shear, max(place, 0)));
@@ -158,12 +153,12 @@ void main() {
             }
         }
         ivec3 texel = lattice_texel(azimuth, line, step);
-        ivec4 before = steps_back(imageLoad(occluders, texel).xy);
+        ivec4 before = ivec4(imageLoad(occluders, texel));
         ivec4 back;
         for (int k = 0; k < 4; k++) {
             back[k] = newer[k].x > OUTSIDE ? step - int(newer[k].y) : 0;
         }
-        imageStore(occluders, texel, uvec4(back.x | back.y << 16, back.z | back.w << 16, 0u, 0u));
+        imageStore(occluders, texel, uvec4(back));
         bool stays = false;
         for (int k = 0; k < 4; k++) {
             int y = y0 + k * SPACING + step * shear;

@@ -35,12 +35,7 @@ uvec4 lattice_at(ivec3 texel) {
 
 // Value i of the eight in two texels.
 uint value_of_eight(uvec4 a, uvec4 b, int i) {
-    if (LATTICE == LATTICE_SLOPES_F32) {
-        uvec4 four = mix(a, b, bvec4(i >= 4));
-        uvec2 two = mix(four.xy, four.zw, bvec2((i & 2) != 0));
-        return mix(two.x, two.y, (i & 1) != 0);
-    }
-    return lattice_u16(mix(a.xy, b.xy, bvec2(i >= 4)), i);
+    return lattice_value(mix(a, b, bvec4(i >= 4)), i);
 }
 
 // Lattice values of four lines at a step (occluders: steps back). Where lines follow lanes, all of them lie in lowest
@@ -64,19 +59,19 @@ uvec4 lattice_values(Azimuth azimuth, ivec4 line, int lowest, int lines, int ste
     return values;
 }
 
-// 16-bit lattice values of the four lines from `lowest` on, at a step. A line next to `first` .. `last` gets the value of the
+// Lattice values of the four lines from `lowest` on, at a step. A line next to `first` .. `last` gets the value of the
 // nearest of these. Values of lines farther out are arbitrary.
 uvec4 four_lines(Azimuth azimuth, int lowest, int first, int last, int lines, int step) {
     int from = min(lowest, last);
     int texel = from >> 2;
-    uvec2 a = lattice_at(lattice_texel(azimuth, max(texel, 0) << 2, step)).xy;
-    uvec2 b = lattice_at(lattice_texel(azimuth, min(texel + 1, (lines - 1) >> 2) << 2, step)).xy;
-    uvec3 words = mix(uvec3(a, b.x), uvec3(a.y, b), bvec3((from & 2) != 0));
+    uvec4 a = lattice_at(lattice_texel(azimuth, max(texel, 0) << 2, step));
+    uvec4 b = lattice_at(lattice_texel(azimuth, min(texel + 1, (lines - 1) >> 2) << 2, step));
+    bvec4 by_two = bvec4((from & 2) != 0);
     bool is_odd = (from & 1) != 0;
-    uint low = mix(words.x, words.x >> 16 | words.y << 16, is_odd);
-    uint high = mix(words.y, words.y >> 16 | words.z << 16, is_odd);
-    uint next = mix(words.z & 0xffffu, words.z >> 16, is_odd);
-    uvec4 four = uvec4(low & 0xffffu, low >> 16, high & 0xffffu, high >> 16);
+    uvec4 four = mix(a, uvec4(a.zw, b.xy), by_two);
+    uvec2 beyond = mix(b.xy, b.zw, by_two.xy);
+    four = mix(four, uvec4(four.yzw, beyond.x), bvec4(is_odd));
+    uint next = mix(beyond.x, beyond.y, is_odd);
     ivec4 line = lowest + ivec4(0, 1, 2, 3);
     uvec4 inside = mix(four, uvec4(four.yzw, next), lessThan(line, ivec4(first)));
     return mix(inside, four.xxyz, greaterThan(line, ivec4(last)));

@@ -15,7 +15,7 @@ layout(constant_id = 2) const int NODE_STRIDE = 1;
 
 layout(binding = 0, rgba32f) uniform readonly image2D lane_heights;
 layout(binding = 1) uniform textureBuffer azimuths;
-layout(binding = 2) uniform writeonly uimage2DArray slopes;
+layout(binding = 2, r32ui) uniform writeonly uimage2DArray slopes;
 
 #include "shared/conventions.glsl"
 

@@ -48,8 +48,10 @@ layout(constant_id = 16) const int WRITTEN_WORDS = 1;
 layout(binding = 0) uniform texture2D heights;
 layout(binding = 1, rgba32f) uniform readonly image2D lane_heights;
 layout(binding = 2) uniform textureBuffer azimuths;
-layout(binding = 3, rg32ui) uniform uimage2DArray occluders;
-layout(binding = 4) uniform writeonly uimage2DArray slopes;
+layout(binding = 3, rgba16ui) uniform uimage2DArray occluders;
+// SLOPE_FORMAT selects one of these.
+layout(binding = 4, rgba32ui) uniform writeonly uimage2DArray slopes;
+layout(binding = 7, rgba16ui) uniform writeonly uimage2DArray slopes_f16;
 // One word for four lines, in the lattice's order.
 layout(binding = 5) buffer LostLines { uint lost_lines[]; };
 // All heights along the axis, [march position][lane], rows padded to a multiple of 4. Read if ONE_LINE.
@@ -208,7 +210,7 @@ void sweep_four_lines() {
                     int second = int(x2[k]);
                     int back = 0;
                     if (pops[k] && h2[k] > OUTSIDE) {
-                        back = int(lattice_u16(imageLoad(occluders, lattice_texel(azimuth, line, second)).xy, k));
+                        back = int(lattice_value(imageLoad(occluders, lattice_texel(azimuth, line, second)), k));
                     }
                     int place = second - back;
                     float h_place = kept_height(line_height(y + k * spacing - (step - place) * shear, max(place, 0)));
@@ -234,7 +236,7 @@ void sweep_four_lines() {
         ivec3 texel = lattice_texel(azimuth, line, step);
         if (WRITES_OCCLUDERS) {
             uvec4 back = uvec4(ivec4(mix(vec4(0.0), vec4(x) - x1, met)));
-            imageStore(occluders, texel, uvec4(back.x | back.y << 16, back.z | back.w << 16, 0u, 0u));
+            imageStore(occluders, texel, back);
         }
         if (SLOPE_FORMAT != 0u) {
             vec4 slope = mix(vec4(NO_SLOPE), (h1 - h) / ((vec4(x) - x1) * azimuth.step_m), met);
@@ -242,7 +244,8 @@ void sweep_four_lines() {
                 imageStore(slopes, texel, floatBitsToUint(slope));
             } else {
                 slope = clamp(slope, -65504.0, 65504.0);
-                imageStore(slopes, texel, uvec4(packed_f16(slope.xy), packed_f16(slope.zw), 0u, 0u));
+                uvec2 words = uvec2(packed_f16(slope.xy), packed_f16(slope.zw));
+                imageStore(slopes_f16, texel, uvec4(words & 0xffffu, words >> 16).xzyw);
             }
         }
         depth += 1;

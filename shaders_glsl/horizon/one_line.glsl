@@ -204,7 +204,7 @@ void sweep_one_line() {
         uvec4 all = (uvec4(written[at], written[at + 1], written[at + 2], written[at + 3]) >> own_shift) & 0xffffu;
         if (four + own_step >= begin && four + own_step < end) {
             ivec3 texel = own_texel + ivec3(0, four, 0);
-            imageStore(occluders, texel, uvec4(all.x | all.y << 16, all.z | all.w << 16, 0u, 0u));
+            imageStore(occluders, texel, all);
         }
         turn = 1 - turn;
     }

@@ -19,7 +19,7 @@ layout(constant_id = 3) const int NODE_STRIDE = 1;
 
 layout(binding = 0) uniform texture2D heights;
 layout(binding = 1) uniform textureBuffer azimuths;
-layout(binding = 2) uniform writeonly uimage2DArray slopes;
+layout(binding = 2, r32ui) uniform writeonly uimage2DArray slopes;
 layout(binding = 3) uniform texture2D height_levels;
 layout(binding = 4) uniform utexture2D level_table;
 layout(binding = 5) uniform texture2DArray height_stack;

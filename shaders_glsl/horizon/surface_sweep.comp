@@ -18,7 +18,7 @@ layout(constant_id = 4) const bool HULL_IN_BUFFER = false;
 
 layout(binding = 0, rgba32f) uniform readonly image2D lane_heights;
 layout(binding = 1) uniform textureBuffer azimuths;
-layout(binding = 2) uniform writeonly uimage2DArray slopes;
+layout(binding = 2, r32ui) uniform writeonly uimage2DArray slopes;
 layout(binding = 3) buffer HullBuffer { float hull_buffer[]; };
 
 #include "shared/conventions.glsl"

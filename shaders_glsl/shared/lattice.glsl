@@ -14,8 +14,8 @@ int lattice_four(Azimuth azimuth, int line) {
     return ((int(azimuth.layer) << LAYER_SHIFT) + line) >> 2;
 }
 
-// Halfword `line` & 3 of a texel of four.
-uint lattice_u16(uvec2 texel, int line) {
-    uint word = mix(texel.x, texel.y, (line & 2) != 0);
-    return mix(word & 0xffffu, word >> 16, (line & 1) != 0);
+// Value `line` & 3 of a texel of four.
+uint lattice_value(uvec4 texel, int line) {
+    uvec2 two = mix(texel.xy, texel.zw, bvec2((line & 2) != 0));
+    return mix(two.x, two.y, (line & 1) != 0);
 }

@@ -32,8 +32,12 @@ layout(binding = 3) uniform texture2D specular_direct;
 layout(binding = 4) uniform texture2D phong_map;
 layout(binding = 5) uniform textureBuffer constants;
 layout(binding = 6, rgba32f) uniform image2D specular_bounced;
-layout(binding = 7) uniform writeonly image2DArray exit_vectors;
-layout(binding = 8) uniform writeonly image2D exit_upward;
+// HALVES selects one of the first two.
+layout(binding = 7, rgba32f) uniform writeonly image2DArray exit_vectors;
+layout(binding = 9, rgba16f) uniform writeonly image2DArray exit_vectors_f16;
+// GREY selects one of these.
+layout(binding = 8, rgba32f) uniform writeonly image2D exit_upward;
+layout(binding = 10, r32f) uniform writeonly image2D exit_upward_grey;
 
 layout(push_constant) uniform SpecularExitPush {
     int cols;
@@ -122,8 +126,12 @@ void store_vectors(ivec2 at, vec3 normal, vec3 diffuse) {
         leaving[c * FOURS].x += 3.5449077018110318 * diffuse[c];
         for (int i = 0; i < FOURS; i++) {
             vec4 four = leaving[c * FOURS + i];
-            vec4 held = clamp(four, vec4(-65504.0), vec4(65504.0));
-            imageStore(exit_vectors, ivec3(at, c * FOURS + i), HALVES ? held : four);
+            ivec3 texel = ivec3(at, c * FOURS + i);
+            if (HALVES) {
+                imageStore(exit_vectors_f16, texel, clamp(four, vec4(-65504.0), vec4(65504.0)));
+            } else {
+                imageStore(exit_vectors, texel, four);
+            }
         }
     }
 }
@@ -158,7 +166,12 @@ void main() {
         if (VECTORS) {
             store_vectors(at, normal, diffuse);
         } else {
-            imageStore(exit_upward, at, vec4(diffuse + upward, 1.0));
+            vec4 all = vec4(diffuse + upward, 1.0);
+            if (GREY) {
+                imageStore(exit_upward_grey, at, all);
+            } else {
+                imageStore(exit_upward, at, all);
+            }
         }
     }
 }

@@ -10,7 +10,7 @@ use super::allocator::Blocks;
 use super::instance::{chosen, instance, load};
 use super::memory::Memory;
 use super::pipelines::Pipelines;
-use super::surface::{Surface, SurfaceSource, queue_family};
+use super::surface::{Surface, SurfaceSource, WINDOW_VERSION, queue_family};
 use super::validation::{self, Listener, Messages};
 use super::{DeviceReport, Host, failed, requirements};
 use crate::Result;
@@ -48,7 +48,8 @@ impl Started {
         }
         let messages = Messages::default();
         let mut during = validation::messenger(&messages);
-        let instance = instance(&entry, validation.then_some(&mut during), extensions)?;
+        let version = if window.is_some() { WINDOW_VERSION } else { requirements().api_version };
+        let instance = instance(&entry, version, validation.then_some(&mut during), extensions)?;
         let mut started =
             Self { entry, instance, listener: None, surface: None, _messages: messages.clone() };
         if validation {
@@ -92,7 +93,7 @@ pub struct Headless {
     pub(super) counted: Vec<(String, u32, f64)>,
 }
 
-/// A device with the features that [`missing`](super::missing) requires, and the family of its one queue.
+/// A device, and the family of its one queue.
 fn make_device(
     instance: &ash::Instance,
     physical_device: vk::PhysicalDevice,
@@ -106,16 +107,17 @@ fn make_device(
     let queues = [vk::DeviceQueueCreateInfo::default()
         .queue_family_index(queue_family)
         .queue_priorities(&[1.0])];
-    let mut needed = requirements();
-    // For views; every device of Vulkan 1.3 has it.
-    needed.features13 = needed.features13.dynamic_rendering(true);
-    let info = vk::DeviceCreateInfo::default()
+    // The window's panel needs both.
+    let mut of_window = vk::PhysicalDeviceVulkan13Features::default()
+        .dynamic_rendering(true)
+        .synchronization2(true);
+    let mut info = vk::DeviceCreateInfo::default()
         .queue_create_infos(&queues)
-        .enabled_extension_names(extensions)
-        .enabled_features(&needed.features)
-        .push_next(&mut needed.features12)
-        .push_next(&mut needed.features13);
-    // SAFETY: the features were reported as present, the family as existing.
+        .enabled_extension_names(extensions);
+    if surface.is_some() {
+        info = info.push_next(&mut of_window);
+    }
+    // SAFETY: the family was reported as existing; a device for a window has Vulkan 1.3, whose devices have the features.
     let device = unsafe { instance.create_device(physical_device, &info, None) }
         .map_err(failed(format!("making a device on {name}")))?;
     Ok((device, queue_family))
@@ -231,13 +233,9 @@ impl Headless {
                 device.end_command_buffer(commands).map_err(failed("recording"))
             });
             let done = recorded.and_then(|()| {
-                let commands: Vec<_> = buffers
-                    .iter()
-                    .map(|b| vk::CommandBufferSubmitInfo::default().command_buffer(*b))
-                    .collect();
-                let submit = [vk::SubmitInfo2::default().command_buffer_infos(&commands)];
+                let submit = [vk::SubmitInfo::default().command_buffers(&buffers)];
                 device
-                    .queue_submit2(self.queue, &submit, vk::Fence::null())
+                    .queue_submit(self.queue, &submit, vk::Fence::null())
                     .and_then(|()| device.queue_wait_idle(self.queue))
                     .map_err(failed("running commands"))
             });

@@ -27,12 +27,12 @@ fn no_driver() -> Error {
 /// An instance; with the validation layer where there is a `messenger` for its messages.
 pub(super) fn instance(
     entry: &ash::Entry,
+    api_version: u32,
     messenger: Option<&mut vk::DebugUtilsMessengerCreateInfoEXT<'_>>,
     extensions: &[*const c_char],
 ) -> Result<ash::Instance> {
-    let app = vk::ApplicationInfo::default()
-        .application_name(c"ridgelight")
-        .api_version(requirements().api_version);
+    let app =
+        vk::ApplicationInfo::default().application_name(c"ridgelight").api_version(api_version);
     let settings = validation::settings();
     let mut layer_settings = vk::LayerSettingsCreateInfoEXT::default().settings(&settings);
     let layers = [validation::LAYER.as_ptr()];
@@ -60,7 +60,7 @@ pub(super) fn instance(
 /// No loader, or no working driver.
 pub fn devices() -> Result<Vec<DeviceReport>> {
     let entry = load()?;
-    let instance = instance(&entry, None, &[])?;
+    let instance = instance(&entry, requirements().api_version, None, &[])?;
     // SAFETY: the instance is alive; it is destroyed after its last use.
     unsafe {
         let found = instance.enumerate_physical_devices().map_err(failed("listing devices"));

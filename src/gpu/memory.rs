@@ -34,6 +34,16 @@ impl Backed {
         // memory.
         Some(unsafe { std::slice::from_raw_parts_mut(begin.as_ptr(), self.bytes as usize) })
     }
+
+    /// A word of a mapped buffer, while the device may be writing it.
+    pub(crate) fn word(&self, index: usize) -> Option<u64> {
+        let begin = self.allocation.as_ref()?.mapped?.cast::<u64>();
+        if (index as u64 + 1) * 8 > self.bytes {
+            return None;
+        }
+        // SAFETY: as above; it is within the buffer, whose offset is a multiple of its alignment.
+        Some(unsafe { begin.add(index).read_volatile() })
+    }
 }
 
 /// Makes images and buffers on a host's device, and frees them.

@@ -11,7 +11,7 @@
 //!
 //! # Before there is a device
 //!
-//! [`requirements`] lists what to enable: Vulkan 1.3, four features, no extension, a queue with compute.
+//! [`requirements`] lists what a device needs: Vulkan 1.1 and a queue with compute, no feature and no extension.
 //! [`missing`] names what a physical device lacks. [`devices`] lists all devices. [`limits`] are the limits for
 //! a plan.
 //!
@@ -89,6 +89,7 @@
 //! may still run.
 
 mod allocator;
+mod barriers;
 mod headless;
 mod instance;
 mod memory;
@@ -96,6 +97,7 @@ mod pipelines;
 mod renderer;
 mod requirements;
 mod specialise;
+mod stamps;
 mod surface;
 mod validation;
 mod view;
@@ -133,7 +135,7 @@ pub struct Host {
     pub instance: ash::Instance,
     /// The physical device.
     pub physical_device: vk::PhysicalDevice,
-    /// The device, with the [`requirements`] enabled.
+    /// The device.
     pub device: ash::Device,
     /// The family of the queue that runs the commands; it must support compute. Images of exclusive sharing
     /// belong to it before and after a recording: a renderer transfers none between families.
@@ -167,7 +169,7 @@ impl Format {
             Format::Rgba16Float => vk::Format::R16G16B16A16_SFLOAT,
             Format::Rgba32Float => vk::Format::R32G32B32A32_SFLOAT,
             Format::R32Uint => vk::Format::R32_UINT,
-            Format::Rg32Uint => vk::Format::R32G32_UINT,
+            Format::Rgba16Uint => vk::Format::R16G16B16A16_UINT,
             Format::Rgba32Uint => vk::Format::R32G32B32A32_UINT,
             Format::R16Float => vk::Format::R16_SFLOAT,
             Format::R16Unorm => vk::Format::R16_UNORM,
@@ -191,7 +193,7 @@ impl Format {
             ],
             Format::Rgba16Float => &[vk::Format::R16G16B16A16_SFLOAT],
             Format::R32Uint => &[vk::Format::R32_UINT],
-            Format::Rg32Uint => &[vk::Format::R32G32_UINT],
+            Format::Rgba16Uint => &[vk::Format::R16G16B16A16_UINT],
             Format::Rgba32Uint => &[vk::Format::R32G32B32A32_UINT],
             Format::R16Float => &[vk::Format::R16_SFLOAT],
             Format::R16Unorm => &[vk::Format::R16_UNORM],

@@ -13,6 +13,7 @@ use super::allocator::{Allocator, Blocks};
 use super::memory::{Backed, Memory};
 use super::pipelines::{Pipeline, Pipelines};
 use super::shaders::BindingKind;
+use super::stamps::Stamps;
 use super::{Host, requirements};
 use crate::graph::{Pass, Rectangle, ResourceId};
 use crate::plan::Plan;
@@ -73,8 +74,6 @@ pub struct Renderer {
     /// By pass of a whole recording: whether it must run, because its inputs from the plan changed since its
     /// last recording, or because it follows such a pass.
     pending: Vec<bool>,
-    /// Nanoseconds per tick and a mask of the valid bits, where the host's queue has timestamps.
-    timestamps: Option<(f64, u64)>,
     /// Whether there is a timestamp after every pass, or only after the last.
     times_passes: bool,
     /// Formats that inputs may have on this device, besides the plan's.
@@ -88,8 +87,8 @@ struct Slot {
     tables: Vec<(ResourceId, Backed)>,
     /// Whether they hold the current plan's values.
     is_current: bool,
-    /// Null where there are no timestamps.
-    queries: vk::QueryPool,
+    /// None where the host's queue family has no timestamps.
+    stamps: Option<Stamps>,
     recorded: Vec<usize>,
     /// Whether that has a timestamp after every pass.
     times_passes: bool,
@@ -138,9 +137,7 @@ impl Renderer {
                 reason: format!("the device lacks {}", report.missing.join(", ")),
             });
         }
-        requirements::check_functions(host)?;
         let family = requirements::family_flags(host, vk::QueueFlags::COMPUTE)?;
-        let timestamps = requirements::timestamps(host);
         let mut renderer = Self {
             host: host.clone(),
             family,
@@ -154,7 +151,6 @@ impl Renderer {
             slots: Vec::new(),
             begun: 0,
             pending: vec![true; plan.passes.len()],
-            timestamps: timestamps.map(|(ns, bits)| (ns, u64::MAX >> (64 - bits.min(64)))),
             times_passes: true,
             plan,
             destroyed: false,
@@ -344,27 +340,17 @@ impl Renderer {
     /// where the host's queue family has no timestamps. Never waits.
     pub fn timings(&self, slot: usize) -> Option<Vec<Timing>> {
         let slot = self.slots.get(slot)?;
-        let (tick_ns, mask) = self.timestamps?;
         if slot.recorded.is_empty() {
             return None;
         }
-        // Each is a value and its availability.
-        let count = if slot.times_passes { slot.recorded.len() } else { 1 };
-        let mut ticks = vec![[0_u64; 2]; count + 1];
-        let flags = vk::QueryResultFlags::TYPE_64 | vk::QueryResultFlags::WITH_AVAILABILITY;
-        // SAFETY: the pool holds at least this many queries; two words per query are requested and provided.
-        let got =
-            unsafe { self.host.device.get_query_pool_results(slot.queries, 0, &mut ticks, flags) };
-        if got.is_err() || ticks.iter().any(|t| t[1] == 0) {
-            return None;
-        }
-        let ns = |pair: &[[u64; 2]]| (pair[1][0].wrapping_sub(pair[0][0]) & mask) as f64 * tick_ns;
+        let stamps = slot.stamps.as_ref()?;
         if !slot.times_passes {
-            return Some(vec![Timing { label: "all passes".into(), ns: ns(&ticks) }]);
+            let ns = stamps.ns(2)?[0];
+            return Some(vec![Timing { label: "all passes".into(), ns }]);
         }
-        let passes = slot.recorded.iter().zip(ticks.windows(2));
-        let timings =
-            passes.map(|(&index, pair)| Timing { label: self.pass(index).label(), ns: ns(pair) });
+        let times = stamps.ns(slot.recorded.len() + 1)?;
+        let passes = slot.recorded.iter().zip(times);
+        let timings = passes.map(|(&index, ns)| Timing { label: self.pass(index).label(), ns });
         Some(timings.collect())
     }
 

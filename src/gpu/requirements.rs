@@ -28,34 +28,19 @@ pub struct DeviceReport {
     pub missing: Vec<String>,
 }
 
-/// What to enable when a device is made; known beforehand. No extension, of instance or device.
+/// What an engine's device needs; known beforehand. No extension and no feature, of instance or device.
 #[derive(Clone, Copy, Debug)]
 pub struct Requirements {
-    /// Vulkan version of instance and device; the instance must be created for it.
+    /// Vulkan version of instance and device; the instance must be created for it or a higher one.
     pub api_version: u32,
-    /// Core features to enable.
-    pub features: vk::PhysicalDeviceFeatures,
-    /// Features of Vulkan 1.2 to enable.
-    pub features12: vk::PhysicalDeviceVulkan12Features<'static>,
-    /// Features of Vulkan 1.3 to enable.
-    pub features13: vk::PhysicalDeviceVulkan13Features<'static>,
     /// Capabilities of the queue's family.
     pub queue_flags: vk::QueueFlags,
 }
 
-/// What an engine enables when it makes its device, besides its own needs: Vulkan 1.3 with `synchronization2`
-/// and `hostQueryReset`, `shaderStorageImageWriteWithoutFormat`, `shaderStorageImageExtendedFormats`, and a
-/// queue with compute. [`missing`] reports whether a device has it, and subgroup votes in compute shaders.
+/// What an engine's device needs, besides its own needs: Vulkan 1.1 and a queue with compute. [`missing`] reports
+/// whether a device has it, and subgroup votes in compute shaders, which not every device has.
 pub fn requirements() -> Requirements {
-    Requirements {
-        api_version: vk::API_VERSION_1_3,
-        features: vk::PhysicalDeviceFeatures::default()
-            .shader_storage_image_write_without_format(true)
-            .shader_storage_image_extended_formats(true),
-        features12: vk::PhysicalDeviceVulkan12Features::default().host_query_reset(true),
-        features13: vk::PhysicalDeviceVulkan13Features::default().synchronization2(true),
-        queue_flags: vk::QueueFlags::COMPUTE,
-    }
+    Requirements { api_version: vk::API_VERSION_1_1, queue_flags: vk::QueueFlags::COMPUTE }
 }
 
 /// What a device lacks, by name: of the [`requirements`], subgroup votes in compute shaders, and enough storage
@@ -70,37 +55,15 @@ pub fn limits(instance: &ash::Instance, physical_device: vk::PhysicalDevice) -> 
     report(instance, physical_device).limits
 }
 
-/// What is missing where the host's instance was created for a version below 1.3.
-const NEWER_INSTANCE: &str = "an instance created with VkApplicationInfo::apiVersion 1.3 or higher";
+/// What is missing where the host's instance was created for a version below 1.1.
+const NEWER_INSTANCE: &str = "an instance created with VkApplicationInfo::apiVersion 1.1 or higher";
 
-/// Whether the instance has vkGetPhysicalDeviceProperties2 and vkGetPhysicalDeviceFeatures2. A loader may withhold
-/// them from an instance below Vulkan 1.1; ash then has functions of its own in their place, which panic.
+/// Whether the instance has vkGetPhysicalDeviceProperties2. A loader may withhold it from an instance below Vulkan 1.1;
+/// ash then has a function of its own in its place, which panics.
 fn has_queries2(instance: &ash::Instance) -> bool {
     let absent = ash::InstanceFnV1_1::load(|_| std::ptr::null());
-    let own = instance.fp_v1_1();
-    let addresses = |of: &ash::InstanceFnV1_1| {
-        [of.get_physical_device_properties2 as usize, of.get_physical_device_features2 as usize]
-    };
-    addresses(own).iter().zip(addresses(&absent)).all(|(own, absent)| *own != absent)
-}
-
-/// Checks that the host's device has the functions of Vulkan 1.2 and 1.3 that a renderer calls. A driver withholds
-/// them where the instance was created for a lower version, even if the device supports 1.3.
-///
-/// # Errors
-/// The first function that is missing, and the cause.
-pub(super) fn check_functions(host: &Host) -> Result<()> {
-    let names = [c"vkResetQueryPool", c"vkCmdPipelineBarrier2", c"vkCmdWriteTimestamp2"];
-    let is_missing = |name: &&CStr| {
-        let (get, device) = (host.instance.fp_v1_0().get_device_proc_addr, host.device.handle());
-        // SAFETY: the device is the instance's and alive; the name is nul-terminated.
-        unsafe { get(device, name.as_ptr()) }.is_none()
-    };
-    let Some(name) = names.into_iter().find(|name| is_missing(name)) else { return Ok(()) };
-    Err(Error::Device {
-        doing: "making a renderer".into(),
-        reason: format!("the device has no {}: it needs {NEWER_INSTANCE}", name.to_string_lossy()),
-    })
+    let address = |of: &ash::InstanceFnV1_1| of.get_physical_device_properties2 as usize;
+    address(instance.fp_v1_1()) != address(&absent)
 }
 
 /// Checks that the host's queue family exists and has a capability; returns all its capabilities.
@@ -163,9 +126,15 @@ pub(crate) fn report(
     let mut subgroups = vk::PhysicalDeviceSubgroupProperties::default();
     let mut maintenance = vk::PhysicalDeviceMaintenance3Properties::default();
     let mut properties = vk::PhysicalDeviceProperties2::default()
-        .push_next(&mut driver)
         .push_next(&mut subgroups)
         .push_next(&mut maintenance);
+    // Of Vulkan 1.2, or of an extension that need not be enabled.
+    // SAFETY: the physical device is the instance's.
+    let known = unsafe { instance.enumerate_device_extension_properties(physical_device) };
+    let name = ash::khr::driver_properties::NAME;
+    if known.iter().flatten().any(|e| e.extension_name_as_c_str() == Ok(name)) {
+        properties = properties.push_next(&mut driver);
+    }
     let has_queries2 = has_queries2(instance);
     if has_queries2 {
         // SAFETY: the physical device is the instance's; the chained structs live across the call.
@@ -175,21 +144,6 @@ pub(crate) fn report(
         properties.properties = unsafe { instance.get_physical_device_properties(physical_device) };
     }
     let core = properties.properties;
-    let is_13 = core.api_version >= vk::API_VERSION_1_3;
-    let mut features12 = vk::PhysicalDeviceVulkan12Features::default();
-    let mut features13 = vk::PhysicalDeviceVulkan13Features::default();
-    let mut features = vk::PhysicalDeviceFeatures2::default();
-    if is_13 {
-        features = features.push_next(&mut features12).push_next(&mut features13);
-    }
-    if has_queries2 {
-        // SAFETY: as above; the structs of 1.2 and 1.3 are chained only where the device supports them.
-        unsafe { instance.get_physical_device_features2(physical_device, &mut features) };
-    } else {
-        // SAFETY: as above.
-        features.features = unsafe { instance.get_physical_device_features(physical_device) };
-    }
-    let core_features = features.features;
     // SAFETY: the physical device is the instance's.
     let (memory, families) = unsafe {
         (
@@ -204,22 +158,11 @@ pub(crate) fn report(
             missing.push(what.to_owned());
         }
     };
-    need(is_13, "Vulkan 1.3");
-    // Every device of Vulkan 1.3 has both features. Where it reports neither, the instance hides them.
-    let is_hidden = is_13
-        && features13.synchronization2 == vk::FALSE
-        && features12.host_query_reset == vk::FALSE;
+    let is_11 = core.api_version >= vk::API_VERSION_1_1;
+    need(is_11, "Vulkan 1.1");
+    // An instance below Vulkan 1.1 may hide the properties of subgroups, whose size is never 0.
+    let is_hidden = is_11 && subgroups.subgroup_size == 0;
     need(!is_hidden, NEWER_INSTANCE);
-    need(is_hidden || features13.synchronization2 == vk::TRUE, "synchronization2");
-    need(is_hidden || features12.host_query_reset == vk::TRUE, "hostQueryReset");
-    need(
-        core_features.shader_storage_image_write_without_format == vk::TRUE,
-        "shaderStorageImageWriteWithoutFormat",
-    );
-    need(
-        core_features.shader_storage_image_extended_formats == vk::TRUE,
-        "shaderStorageImageExtendedFormats",
-    );
     need(
         is_hidden
             || subgroups.supported_operations.contains(vk::SubgroupFeatureFlags::VOTE)
@@ -286,5 +229,43 @@ pub(crate) fn report(
             0.0
         },
         missing,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::graph::shaders;
+
+    /// Capabilities that every device of Vulkan 1.1 has, and those of subgroup votes, which [`missing`](super::missing)
+    /// checks: the table "SPIR-V Capabilities" of the Vulkan specification.
+    const ALLOWED: [(u32, &str); 5] = [
+        (1, "Shader"),
+        (46, "SampledBuffer"),
+        (50, "ImageQuery"),
+        (61, "GroupNonUniform"),
+        (62, "GroupNonUniformVote"),
+    ];
+
+    /// No shader needs a feature, such as shaderStorageImageWriteWithoutFormat or
+    /// shaderStorageImageExtendedFormats, and all are of SPIR-V 1.3.
+    #[test]
+    fn shaders_need_no_feature() {
+        let mut found = Vec::new();
+        for shader in shaders::ALL.iter().chain(shaders::GRAPHICS) {
+            assert!(shader.words[1] <= 0x1_0300, "{}: version {:x}", shader.name, shader.words[1]);
+            let mut rest = &shader.words[5..];
+            // OpCapability: first of all instructions.
+            while let [first, capability, ..] = rest
+                && first & 0xffff == 17
+            {
+                let is_allowed = ALLOWED.iter().any(|(number, _)| number == capability);
+                assert!(is_allowed, "{}: capability {capability}", shader.name);
+                found.push(*capability);
+                rest = &rest[2..];
+            }
+        }
+        for (number, name) in ALLOWED {
+            assert!(found.contains(&number), "no shader has {name}");
+        }
     }
 }

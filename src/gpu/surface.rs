@@ -8,6 +8,9 @@ use ash::{khr, vk};
 use super::failed;
 use crate::{Error, Result};
 
+/// Vulkan version for a window, whose panel is drawn by dynamic rendering.
+pub(super) const WINDOW_VERSION: u32 = vk::API_VERSION_1_3;
+
 /// Makes a surface for a window that is alive.
 #[doc(hidden)]
 pub(crate) type CreateSurface =
@@ -80,7 +83,15 @@ impl Surface {
         device: vk::PhysicalDevice,
     ) -> Option<String> {
         // SAFETY: the physical device is the instance's.
-        let known = unsafe { instance.enumerate_device_extension_properties(device) };
+        let (properties, known) = unsafe {
+            (
+                instance.get_physical_device_properties(device),
+                instance.enumerate_device_extension_properties(device),
+            )
+        };
+        if properties.api_version < WINDOW_VERSION {
+            return Some("Vulkan 1.3, for a window".into());
+        }
         let mut known = known.iter().flatten();
         let name = khr::swapchain::NAME;
         if !known.any(|e| e.extension_name_as_c_str() == Ok(name)) {

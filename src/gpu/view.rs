@@ -5,17 +5,20 @@ mod checks;
 mod pipelines;
 mod recording;
 mod resources;
+mod targets;
 
 use ash::vk;
 
 use super::allocator::{Allocator, Blocks};
 use super::memory::{Backed, Memory};
 use super::renderer::{ImageArg, Timing};
+use super::stamps::Stamps;
 use super::{Host, requirements};
 use crate::plan::View;
 use crate::{Error, Result};
 
 use pipelines::Drawing;
+use targets::{Framebuffers, RenderPasses};
 
 /// Images that a [`ViewRenderer`] reads, in any state; they are left as before.
 ///
@@ -46,13 +49,12 @@ pub struct ViewOutputs {
     pub depth: Option<ImageArg>,
 }
 
-/// Records a [`View`] into command buffers of a borrowed device, by dynamic rendering: a mesh without vertex
-/// buffers, the sky behind it, and the tone curve where the picture is for a screen.
+/// Records a [`View`] into command buffers of a borrowed device: a mesh without vertex buffers, the sky behind it, and
+/// the tone curve where the picture is for a screen.
 ///
-/// As [`Renderer`](super::Renderer), it makes every resource when it is made. Recording allocates nothing on
-/// the device, submits nothing and waits for nothing; internal images serve all slots in turn. Besides what
-/// [`missing`](super::missing) checks, the device needs `dynamicRendering` (1.3 features) enabled, and the
-/// host's queue family needs graphics.
+/// As [`Renderer`](super::Renderer), it takes its memory when it is made. Recording makes a framebuffer for the
+/// caller's images, submits nothing and waits for nothing; internal images serve all slots in turn. Besides what
+/// [`missing`](super::missing) checks, the host's queue family needs graphics.
 pub struct ViewRenderer {
     host: Host,
     /// The view that it was made for.
@@ -72,10 +74,12 @@ pub struct ViewRenderer {
     terrain: Drawing,
     sky: Drawing,
     plinth: Option<Drawing>,
+    /// The first sample's depths, with several MSAA samples.
+    first: Option<Drawing>,
     tone: Option<Drawing>,
+    render_passes: RenderPasses,
     descriptor_pool: vk::DescriptorPool,
     slots: Vec<Slot>,
-    timestamps: Option<(f64, u64)>,
     destroyed: bool,
 }
 
@@ -83,9 +87,11 @@ pub struct ViewRenderer {
 struct Slot {
     /// By [`LABELS`]; null where there is no such pass.
     sets: [vk::DescriptorSet; LABELS.len()],
-    /// Null where there are no timestamps.
-    queries: vk::QueryPool,
-    is_recorded: bool,
+    framebuffers: Framebuffers,
+    /// None where the host's queue family has no timestamps.
+    stamps: Option<Stamps>,
+    /// Labels of what was recorded last.
+    recorded: Vec<&'static str>,
 }
 
 const fn is_send<T: Send>() {}
@@ -122,8 +128,8 @@ impl Curve {
 /// Format of the images before the tone curve.
 const LINEAR: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 
-/// Passes in order, the third and the last where there are such: labels of the GPU times.
-const LABELS: [&str; 4] = ["terrain_draw", "sky_draw", "plinth_draw", "picture_tone"];
+/// Passes in order, from the third on where there are such: labels of the GPU times.
+const LABELS: [&str; 5] = ["terrain_draw", "sky_draw", "plinth_draw", "depth_draw", "picture_tone"];
 
 impl ViewRenderer {
     /// Makes the resources for views with the shape of `view`, for pictures of a format and `slots` frames in
@@ -151,7 +157,6 @@ impl ViewRenderer {
         allocator: Box<dyn Allocator>,
     ) -> Result<Self> {
         let curve = checks::check_device(host, view, format)?;
-        let timestamps = requirements::timestamps(host);
         let mut renderer = Self {
             host: host.clone(),
             shape: view.clone(),
@@ -166,10 +171,11 @@ impl ViewRenderer {
             terrain: Drawing::default(),
             sky: Drawing::default(),
             plinth: None,
+            first: None,
             tone: None,
+            render_passes: RenderPasses::default(),
             descriptor_pool: vk::DescriptorPool::null(),
             slots: Vec::new(),
-            timestamps: timestamps.map(|(ns, bits)| (ns, u64::MAX >> (64 - bits.min(64)))),
             destroyed: false,
         };
         match renderer.make(curve, slots.max(1)) {
@@ -186,7 +192,7 @@ impl ViewRenderer {
         self.memory.bytes()
     }
 
-    /// Appends the drawing of `view` to `commands`, which is being recorded outside rendering for the host's
+    /// Appends the drawing of `view` to `commands`, which is being recorded outside a render pass for the host's
     /// family.
     ///
     /// `slot` is the frame in flight (0..slots); its last command buffer must have run. Camera and light may
@@ -194,7 +200,8 @@ impl ViewRenderer {
     /// arguments are checked first: after an error nothing has been recorded.
     ///
     /// # Errors
-    /// An argument that does not match the view, by name; a view of another shape.
+    /// An argument that does not match the view, by name; a view of another shape; a device without memory for a
+    /// framebuffer.
     pub fn record(
         &mut self,
         commands: vk::CommandBuffer,
@@ -204,6 +211,7 @@ impl ViewRenderer {
         outputs: &ViewOutputs,
     ) -> Result<()> {
         self.check(slot, (view, exposure), inputs, outputs)?;
+        self.make_framebuffers(slot, outputs)?;
         self.append(commands, slot, (view, exposure), inputs, outputs);
         Ok(())
     }
@@ -211,29 +219,15 @@ impl ViewRenderer {
     /// GPU times of what `slot` recorded last. None while some are not available, and where the host's queue
     /// family has no timestamps. Never waits.
     pub fn timings(&self, slot: usize) -> Option<Vec<Timing>> {
-        let slot = self.slots.get(slot).filter(|s| s.is_recorded)?;
-        let (tick_ns, mask) = self.timestamps?;
-        let labels: Vec<_> =
-            LABELS.iter().zip(self.drawings()).filter(|(_, d)| d.is_some()).collect();
-        // Each is a value and its availability.
-        let mut ticks = vec![[0_u64; 2]; labels.len() + 1];
-        let flags = vk::QueryResultFlags::TYPE_64 | vk::QueryResultFlags::WITH_AVAILABILITY;
-        // SAFETY: the pool holds at least this many queries; two words per query are requested and provided.
-        let got =
-            unsafe { self.host.device.get_query_pool_results(slot.queries, 0, &mut ticks, flags) };
-        if got.is_err() || ticks.iter().any(|t| t[1] == 0) {
-            return None;
-        }
-        let timed = labels.iter().zip(ticks.windows(2)).map(|((label, _), pair)| Timing {
-            label: (**label).to_owned(),
-            ns: (pair[1][0].wrapping_sub(pair[0][0]) & mask) as f64 * tick_ns,
-        });
-        Some(timed.collect())
+        let slot = self.slots.get(slot).filter(|slot| !slot.recorded.is_empty())?;
+        let times = slot.stamps.as_ref()?.ns(slot.recorded.len() + 1)?;
+        let labelled = slot.recorded.iter().zip(times);
+        Some(labelled.map(|(label, ns)| Timing { label: (*label).to_owned(), ns }).collect())
     }
 
     /// By [`LABELS`].
     fn drawings(&self) -> [Option<Drawing>; LABELS.len()] {
-        [Some(self.terrain), Some(self.sky), self.plinth, self.tone]
+        [Some(self.terrain), Some(self.sky), self.plinth, self.first, self.tone]
     }
 
     /// Frees everything. All recorded commands must have finished.

@@ -11,8 +11,8 @@ pub enum Format {
     Rgba32Float,
     /// One u32.
     R32Uint,
-    /// Two u32: four lines' u16 or f16.
-    Rg32Uint,
+    /// Four u16, or the bits of four f16 or of two f32.
+    Rgba16Uint,
     /// Four u32: four lines' f32 bits.
     Rgba32Uint,
     /// One f16: heights in a buffer of the caller.
@@ -32,14 +32,14 @@ impl Format {
             Format::R16Float | Format::R16Unorm => 2,
             Format::R32Float | Format::R32Uint => 4,
             Format::Rgba8Unorm | Format::Rgba8Srgb => 4,
-            Format::Rg32Uint | Format::Rgba16Float => 8,
+            Format::Rgba16Uint | Format::Rgba16Float => 8,
             Format::Rgba32Float | Format::Rgba32Uint => 16,
         }
     }
 
     /// Whether texels are unsigned integers.
     pub(crate) fn is_uint(self) -> bool {
-        matches!(self, Format::R32Uint | Format::Rg32Uint | Format::Rgba32Uint)
+        matches!(self, Format::R32Uint | Format::Rgba16Uint | Format::Rgba32Uint)
     }
 
     /// Name in SPIR-V; sRGB, which SPIR-V lacks, is named in the same style.
@@ -49,7 +49,7 @@ impl Format {
             Format::Rgba16Float => "Rgba16f",
             Format::Rgba32Float => "Rgba32f",
             Format::R32Uint => "R32ui",
-            Format::Rg32Uint => "Rg32ui",
+            Format::Rgba16Uint => "Rgba16ui",
             Format::Rgba32Uint => "Rgba32ui",
             Format::R16Float => "R16f",
             Format::R16Unorm => "R16",
@@ -147,14 +147,7 @@ impl Resource {
             (
                 Kind::Image { format, layered, .. },
                 BindingKind::StorageImage { format: wanted, uint, layered: wants },
-            ) => {
-                layered == wants
-                    && if wanted == "Unknown" {
-                        format.is_uint() == uint
-                    } else {
-                        format.spirv() == wanted
-                    }
-            }
+            ) => layered == wants && format.is_uint() == uint && format.spirv() == wanted,
             _ => false,
         }
     }

@@ -16,7 +16,7 @@ pub enum BindingKind {
     },
     /// A storage image, written and perhaps read.
     StorageImage {
-        /// Name of the format in SPIR-V; `Unknown` takes any.
+        /// Name of the format in SPIR-V.
         format: &'static str,
         /// Unsigned integers, else floats.
         uint: bool,

@@ -102,12 +102,10 @@ impl Target {
         let region = [vk::BufferImageCopy::default()
             .image_subresource(layers)
             .image_extent(vk::Extent3D { width, height, depth: 1 })];
-        let written = [vk::MemoryBarrier2::default()
-            .src_stage_mask(vk::PipelineStageFlags2::COPY)
-            .src_access_mask(vk::AccessFlags2::TRANSFER_WRITE)
-            .dst_stage_mask(vk::PipelineStageFlags2::HOST)
-            .dst_access_mask(vk::AccessFlags2::HOST_READ)];
-        let written = vk::DependencyInfo::default().memory_barriers(&written);
+        let written = [vk::MemoryBarrier::default()
+            .src_access_mask(vk::AccessFlags::TRANSFER_WRITE)
+            .dst_access_mask(vk::AccessFlags::HOST_READ)];
+        let [copy, to_host] = [vk::PipelineStageFlags::TRANSFER, vk::PipelineStageFlags::HOST];
         let layout = vk::ImageLayout::TRANSFER_SRC_OPTIMAL;
         // SAFETY: `commands` is being recorded, the image is in the layout for copies; the buffer holds its texels.
         unsafe {
@@ -118,7 +116,8 @@ impl Target {
                 self.buffer,
                 &region,
             );
-            host.device.cmd_pipeline_barrier2(commands, &written);
+            let none = vk::DependencyFlags::empty();
+            host.device.cmd_pipeline_barrier(commands, copy, to_host, none, &written, &[], &[]);
         }
     }
 

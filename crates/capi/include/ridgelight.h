@@ -78,7 +78,7 @@ typedef struct RidgelightRenderer RidgelightRenderer;
 // Camera pictures of a lit field, on a device. Any thread may use it, one at a time.
 typedef struct RidgelightView RidgelightView;
 
-// What to enable when a device is made. No extension, of instance or device.
+// What a device needs. No extension and no feature, of instance or device.
 typedef struct RidgelightRequirements {
     // sizeof(RidgelightRequirements).
     uint32_t struct_size;
@@ -86,12 +86,6 @@ typedef struct RidgelightRequirements {
     uint32_t api_version;
     // Capabilities of the queue's family.
     VkQueueFlags queue_flags;
-    // Core features to enable.
-    VkPhysicalDeviceFeatures features;
-    // Features of Vulkan 1.2 to enable: chain it, pNext is null.
-    VkPhysicalDeviceVulkan12Features features12;
-    // Features of Vulkan 1.3 to enable: chain it, pNext is null.
-    VkPhysicalDeviceVulkan13Features features13;
 } RidgelightRequirements;
 
 // A borrowed device, never destroyed by Ridgelight: it must outlive every renderer made on it.
@@ -101,11 +95,11 @@ typedef struct RidgelightHost {
     // The family of the queue that runs the commands; it must support compute. Images of exclusive sharing
     // belong to it before and after a recording.
     uint32_t queue_family;
-    // The instance of the device, for Vulkan 1.3.
+    // The instance of the device, for Vulkan 1.1 or higher.
     VkInstance instance;
     // The physical device.
     VkPhysicalDevice physical_device;
-    // The device, with the features of ridgelight_requirements enabled.
+    // The device.
     VkDevice device;
     // The loader's vkGetInstanceProcAddr, through which all functions are loaded.
     PFN_vkGetInstanceProcAddr get_instance_proc_addr;
@@ -498,7 +492,7 @@ uint32_t ridgelight_version(void);
 // Returns OK, or ARGUMENT.
 enum RidgelightResult ridgelight_check_version(uint32_t header);
 
-// Writes what to enable, besides an engine's own needs. It needs no device.
+// Writes what a device needs, besides an engine's own needs. It needs no device.
 //
 // Returns OK, or ARGUMENT.
 //
@@ -700,8 +694,7 @@ enum RidgelightResult ridgelight_timings(const struct RidgelightRenderer *render
 // `format` is R32G32B32A32 or R16G16B16A16 SFLOAT for linear radiance; or a screen format of 8 or 10 bits per
 // colour, UNORM or SRGB, which gets exposure, tone curve and sRGB. `allocator` may be null.
 //
-// The device needs dynamicRendering of Vulkan 1.3 besides ridgelight_requirements, and the host's family needs
-// graphics.
+// The host's family needs graphics.
 //
 // Returns OK, ARGUMENT, SETTING, LIMIT or DEVICE.
 //

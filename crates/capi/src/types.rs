@@ -15,11 +15,11 @@ pub struct RidgelightHost {
     /// The family of the queue that runs the commands; it must support compute. Images of exclusive sharing
     /// belong to it before and after a recording.
     pub queue_family: u32,
-    /// The instance of the device, for Vulkan 1.3.
+    /// The instance of the device, for Vulkan 1.1 or higher.
     pub instance: vk::Instance,
     /// The physical device.
     pub physical_device: vk::PhysicalDevice,
-    /// The device, with the features of ridgelight_requirements enabled.
+    /// The device.
     pub device: vk::Device,
     /// The loader's vkGetInstanceProcAddr, through which all functions are loaded.
     pub get_instance_proc_addr: PFN_vkGetInstanceProcAddr,
@@ -68,7 +68,7 @@ pub(crate) unsafe fn host(from: *const RidgelightHost) -> Done<Host> {
     }
 }
 
-/// What to enable when a device is made. No extension, of instance or device.
+/// What a device needs. No extension and no feature, of instance or device.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct RidgelightRequirements {
@@ -78,18 +78,12 @@ pub struct RidgelightRequirements {
     pub api_version: u32,
     /// Capabilities of the queue's family.
     pub queue_flags: vk::QueueFlags,
-    /// Core features to enable.
-    pub features: vk::PhysicalDeviceFeatures,
-    /// Features of Vulkan 1.2 to enable: chain it, pNext is null.
-    pub features12: vk::PhysicalDeviceVulkan12Features<'static>,
-    /// Features of Vulkan 1.3 to enable: chain it, pNext is null.
-    pub features13: vk::PhysicalDeviceVulkan13Features<'static>,
 }
 
-// SAFETY: numbers, and pointers that may be null; the size is first.
+// SAFETY: numbers; the size is first.
 unsafe impl SizeFirst for RidgelightRequirements {}
 
-/// Writes what to enable, besides an engine's own needs. It needs no device.
+/// Writes what a device needs, besides an engine's own needs. It needs no device.
 ///
 /// Returns OK, or ARGUMENT.
 ///
@@ -105,9 +99,6 @@ pub unsafe extern "C" fn ridgelight_requirements(
             struct_size: 0,
             api_version: needs.api_version,
             queue_flags: needs.queue_flags,
-            features: needs.features,
-            features12: needs.features12,
-            features13: needs.features13,
         };
         // SAFETY: as the caller says.
         unsafe { write(requirements, &value, "requirements") }

@@ -110,8 +110,7 @@ unsafe fn camera_view(
 /// `format` is R32G32B32A32 or R16G16B16A16 SFLOAT for linear radiance; or a screen format of 8 or 10 bits per
 /// colour, UNORM or SRGB, which gets exposure, tone curve and sRGB. `allocator` may be null.
 ///
-/// The device needs dynamicRendering of Vulkan 1.3 besides ridgelight_requirements, and the host's family needs
-/// graphics.
+/// The host's family needs graphics.
 ///
 /// Returns OK, ARGUMENT, SETTING, LIMIT or DEVICE.
 ///

@@ -1,5 +1,5 @@
-//! Ridgelight in a wgpu program: the device through wgpu-hal, heights and light in wgpu's textures, light sampled
-//! in a wgpu pass. `ridgelight-wgpu-host OUT.exr` writes what the pass has read. `examples/wgpu/check` runs it.
+//! Ridgelight in a wgpu program: on a device of wgpu's, heights and light in wgpu's textures, light sampled in a wgpu
+//! pass. `ridgelight-wgpu-host OUT.exr` writes what the pass has read. `examples/wgpu/check` runs it.
 
 use ash::vk;
 use ridgelight_io as files;
@@ -17,44 +17,18 @@ type Any<T> = Result<T, Box<dyn std::error::Error>>;
 const SIZE: wgpu::Extent3d =
     wgpu::Extent3d { width: COLS as u32, height: ROWS as u32, depth_or_array_layers: 1 };
 
-/// A device of wgpu's with what Ridgelight needs besides.
+/// A device as wgpu makes it: Ridgelight needs nothing besides.
 fn device(adapter: &wgpu::Adapter) -> Any<(wgpu::Device, wgpu::Queue)> {
-    let descriptor = wgpu::DeviceDescriptor::default();
-    let needs = gpu::requirements();
-    // SAFETY: what wgpu asks for stays, what Ridgelight needs is added; hal destroys the device.
-    unsafe {
+    // SAFETY: instance and physical device are alive.
+    let lacks = unsafe {
         let hal = adapter.as_hal::<Vulkan>().ok_or("no Vulkan")?;
-        let instance = hal.shared_instance().raw_instance();
-        let lacks = gpu::missing(instance, hal.raw_physical_device());
-        if !lacks.is_empty() {
-            return Err(format!("the device lacks {}", lacks.join(", ")).into());
-        }
-        let extensions = hal.required_device_extensions(descriptor.required_features);
-        let names: Vec<_> = extensions.iter().map(|name| name.as_ptr()).collect();
-        let queue = vk::DeviceQueueCreateInfo::default().queue_family_index(0);
-        let queues = [queue.queue_priorities(&[1.0])];
-        let info = vk::DeviceCreateInfo::default().queue_create_infos(&queues);
-        let mut features = hal.physical_device_features(&extensions, descriptor.required_features);
-        let mut core = features.get_core();
-        core.shader_storage_image_write_without_format |=
-            needs.features.shader_storage_image_write_without_format;
-        core.shader_storage_image_extended_formats |=
-            needs.features.shader_storage_image_extended_formats;
-        // wgpu names features of 1.2 and 1.3 one by one, beside which Vulkan takes no whole structs.
-        let mut reset = vk::PhysicalDeviceHostQueryResetFeatures::default().host_query_reset(true);
-        let mut barriers =
-            vk::PhysicalDeviceSynchronization2Features::default().synchronization2(true);
-        let info = features
-            .add_to_device_create(info.enabled_extension_names(&names))
-            .enabled_features(&core)
-            .push_next(&mut reset)
-            .push_next(&mut barriers);
-        let raw = instance.create_device(hal.raw_physical_device(), &info, None)?;
-        let (features, hints) = (descriptor.required_features, &descriptor.memory_hints);
-        let open = hal.device_from_raw(raw, None, &extensions, features, hints, 0, 0)?;
-        drop(hal);
-        Ok(adapter.create_device_from_hal::<Vulkan>(open, &descriptor)?)
+        gpu::missing(hal.shared_instance().raw_instance(), hal.raw_physical_device())
+    };
+    if !lacks.is_empty() {
+        return Err(format!("the device lacks {}", lacks.join(", ")).into());
     }
+    let descriptor = wgpu::DeviceDescriptor::default();
+    Ok(pollster::block_on(adapter.request_device(&descriptor))?)
 }
 
 fn texture(device: &wgpu::Device, label: &str, usage: wgpu::TextureUsages) -> wgpu::Texture {

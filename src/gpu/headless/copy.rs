@@ -2,6 +2,7 @@ use ash::vk;
 
 use crate::gpu::Headless;
 use crate::gpu::allocator::MemoryUse;
+use crate::gpu::barriers::Barriers;
 use crate::gpu::headless::frame::Owned;
 use crate::gpu::memory::{Backed, whole};
 use crate::{Error, Result};
@@ -19,9 +20,8 @@ impl Headless {
             .new_layout(vk::ImageLayout::GENERAL)
             .image(image.backed.image)
             .subresource_range(whole(image.extent[2]))];
-        let info = vk::DependencyInfo::default().image_memory_barriers(&barrier);
         // SAFETY: `commands` is being recorded; the image is ours and its contents are not needed.
-        unsafe { self.host().device.cmd_pipeline_barrier2(commands, &info) };
+        unsafe { Barriers::default().images(&barrier).record(&self.host().device, commands) };
     }
 
     /// Copies between an image in GENERAL and host memory, several whole rows at a time.
@@ -99,12 +99,12 @@ impl Headless {
                     | vk::AccessFlags2::MEMORY_WRITE
                     | vk::AccessFlags2::HOST_READ,
             )];
-        let all = vk::DependencyInfo::default().memory_barriers(&barrier);
+        let all = Barriers::default().memory(&barrier);
         self.run(|commands| {
             // SAFETY: the image is in GENERAL, the buffer as large as the region, both ours.
             unsafe {
                 let device = &self.host().device;
-                device.cmd_pipeline_barrier2(commands, &all);
+                all.record(device, commands);
                 if to_image {
                     device.cmd_copy_buffer_to_image(
                         commands,
@@ -122,7 +122,7 @@ impl Headless {
                         &region,
                     );
                 }
-                device.cmd_pipeline_barrier2(commands, &all);
+                all.record(device, commands);
             }
             Ok(())
         })?;

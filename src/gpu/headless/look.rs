@@ -3,6 +3,7 @@
 use ash::vk;
 
 use crate::gpu::allocator::MemoryUse;
+use crate::gpu::barriers::Barriers;
 use crate::gpu::failed;
 use crate::gpu::headless::frame::Owned;
 use crate::gpu::memory::{Backed, DEPTH, whole_attachment};
@@ -189,13 +190,12 @@ impl Headless {
             .src_access_mask(vk::AccessFlags2::TRANSFER_WRITE)
             .dst_stage_mask(vk::PipelineStageFlags2::HOST)
             .dst_access_mask(vk::AccessFlags2::HOST_READ)];
-        let info = vk::DependencyInfo::default().memory_barriers(&written);
         let device = &self.host().device;
         // SAFETY: the image is left for copies by the view's recording; the buffer holds all its texels.
         unsafe {
             let layout = COPIED.layout;
             device.cmd_copy_image_to_buffer(commands, image.image, layout, buffer, &region);
-            device.cmd_pipeline_barrier2(commands, &info);
+            Barriers::default().memory(&written).record(device, commands);
         }
     }
 }

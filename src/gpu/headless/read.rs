@@ -3,6 +3,7 @@
 use ash::vk;
 
 use crate::gpu::allocator::MemoryUse;
+use crate::gpu::barriers::Barriers;
 use crate::gpu::headless::frame::Owned;
 use crate::gpu::{Frame, Headless, ImageArg, ImageState, Renderer, failed, memory};
 use crate::graph::{Kind, Owner, ResourceId};
@@ -69,11 +70,11 @@ impl Headless {
                 .src_access_mask(vk::AccessFlags2::MEMORY_WRITE)
                 .dst_stage_mask(all | vk::PipelineStageFlags2::HOST)
                 .dst_access_mask(vk::AccessFlags2::MEMORY_READ | vk::AccessFlags2::HOST_READ)];
-            let wait = vk::DependencyInfo::default().memory_barriers(&barrier);
+            let wait = Barriers::default().memory(&barrier);
             // SAFETY: the frame's image is in GENERAL and its buffer may be copied from; both are
             // alive while `frame` is, and the staging buffer holds all their bytes.
             unsafe {
-                device.cmd_pipeline_barrier2(commands, &wait);
+                wait.record(device, commands);
                 match kind {
                     Kind::Image { width, height, layers, .. } => {
                         let region = [vk::BufferImageCopy::default()
@@ -92,7 +93,7 @@ impl Headless {
                         device.cmd_copy_buffer(commands, buffer, to, &region);
                     }
                 }
-                device.cmd_pipeline_barrier2(commands, &wait);
+                wait.record(device, commands);
             }
             Ok(())
         });
@@ -141,10 +142,9 @@ impl Headless {
             .new_layout(after.layout)
             .image(image.image)
             .subresource_range(memory::whole(image.extent[2]))];
-        let info = vk::DependencyInfo::default().image_memory_barriers(&barrier);
         // SAFETY: the caller guarantees that `commands` is being recorded and that the image is alive and in
         // its state `before`.
-        unsafe { self.host().device.cmd_pipeline_barrier2(commands, &info) };
+        unsafe { Barriers::default().images(&barrier).record(&self.host().device, commands) };
     }
 }
 

@@ -14,8 +14,8 @@ pub(crate) fn whole_attachment(format: vk::Format) -> vk::ImageSubresourceRange 
 }
 
 impl Memory {
-    /// An attachment with `samples` MSAA samples. With one it can also be copied from and, if of colour,
-    /// sampled.
+    /// An attachment with `samples` MSAA samples. With one it can also be copied from. Colours with one and depths with
+    /// several can be fetched in shaders.
     pub fn attachment(
         &mut self,
         name: &str,
@@ -28,11 +28,12 @@ impl Memory {
         } else {
             vk::ImageUsageFlags::COLOR_ATTACHMENT
         };
-        if samples == vk::SampleCountFlags::TYPE_1 {
+        let is_single = samples == vk::SampleCountFlags::TYPE_1;
+        if is_single {
             usage |= vk::ImageUsageFlags::TRANSFER_SRC;
-            if format != DEPTH {
-                usage |= vk::ImageUsageFlags::SAMPLED;
-            }
+        }
+        if is_single != (format == DEPTH) {
+            usage |= vk::ImageUsageFlags::SAMPLED;
         }
         let info = vk::ImageCreateInfo::default()
             .image_type(vk::ImageType::TYPE_2D)

@@ -2,6 +2,7 @@
 
 use ash::vk;
 
+use super::super::barriers::Barriers;
 use super::super::memory::Backed;
 use super::super::pipelines::descriptor_type;
 use super::super::shaders::BindingKind;
@@ -28,70 +29,64 @@ impl Renderer {
         self.write_tables(slot);
         self.write_sets(slot, &bound);
         let device = self.host.device.clone();
-        let queries = self.slots[slot].queries;
         let times_passes = self.times_passes;
         let entry = self.entry(&bound, holds_nothing);
         let exit = self.exit(&bound);
-        let compute = vk::PipelineStageFlags2::COMPUTE_SHADER;
         // Passes of an edit may read their workgroup counts from a buffer.
-        let stages = compute | vk::PipelineStageFlags2::DRAW_INDIRECT;
+        let compute = vk::PipelineStageFlags::COMPUTE_SHADER;
+        let stages =
+            vk::PipelineStageFlags2::COMPUTE_SHADER | vk::PipelineStageFlags2::DRAW_INDIRECT;
         let memory = [vk::MemoryBarrier2::default()
             .src_stage_mask(stages)
             .src_access_mask(vk::AccessFlags2::SHADER_STORAGE_WRITE)
             .dst_stage_mask(stages)
             .dst_access_mask(ImageState::WRITTEN.access | vk::AccessFlags2::INDIRECT_COMMAND_READ)];
-        let between = vk::DependencyInfo::default().memory_barriers(&memory);
+        let between = Barriers::default().memory(&memory);
         let filled: Vec<_> = taken.iter().map(Taken::filled).collect();
-        let filled = vk::DependencyInfo::default().image_memory_barriers(&filled);
         let [lent, given_back] =
             [Taken::entry, Taken::exit].map(|to| taken.iter().map(to).collect::<Vec<_>>());
-        let first = vk::DependencyInfo::default()
-            .image_memory_barriers(&entry)
-            .buffer_memory_barriers(&lent)
-            .memory_barriers(&memory);
-        let timestamp = |query: usize| {
-            if queries != vk::QueryPool::null() {
-                // SAFETY: `commands` is being recorded for a family with timestamps; the pool has one query
-                // more than the plan has passes, reset at the start of the recording.
-                unsafe { device.cmd_write_timestamp2(commands, compute, queries, query as u32) };
-            }
-        };
+        let first = Barriers::default().images(&entry).buffers(&lent).memory(&memory);
+        let last = Barriers::default().images(&exit).buffers(&given_back);
+        let count = if times_passes { passes.len() } else { 1 } + 1;
         // SAFETY: the caller guarantees that `commands` is being recorded for the host's family; every handle
-        // is alive, images are in the stated layouts, sets and queries of this slot are not in use.
+        // is alive, images are in the stated layouts, sets and timestamps of this slot are not in use. There is one
+        // timestamp more than the plan has passes.
         unsafe {
-            if queries != vk::QueryPool::null() {
-                let count = passes.len().max(1) as u32 + 1;
-                // Now, so that earlier times are not mistaken for these; and in the command buffer, in case it
-                // runs again.
-                device.reset_query_pool(queries, 0, count);
-                device.cmd_reset_query_pool(commands, queries, 0, count);
+            if let Some(stamps) = &mut self.slots[slot].stamps {
+                stamps.begin(&device, commands, count);
             }
-            device.cmd_pipeline_barrier2(commands, &first);
+            let stamps = self.slots[slot].stamps.as_ref();
+            let stamp = |index: usize| {
+                if let Some(stamps) = stamps {
+                    stamps.write(&device, commands, compute, index);
+                }
+            };
+            first.record(&device, commands);
             if !taken.is_empty() {
                 taken.iter().for_each(|taken| taken.copy(&device, commands));
-                device.cmd_pipeline_barrier2(commands, &filled);
+                Barriers::default().images(&filled).record(&device, commands);
             }
-            timestamp(0);
-            if queries != vk::QueryPool::null() {
+            stamp(0);
+            if stamps.is_some() {
                 // lavapipe writes a timestamp when it next waits, which a lone pass would precede.
-                device.cmd_pipeline_barrier2(commands, &between);
+                between.record(&device, commands);
             }
             for (query, &index) in passes.iter().enumerate() {
                 if query > 0 && self.must_wait(passes[query - 1], index) {
-                    device.cmd_pipeline_barrier2(commands, &between);
+                    between.record(&device, commands);
                 }
                 self.dispatch(commands, slot, index, edited);
                 if times_passes {
-                    timestamp(query + 1);
+                    stamp(query + 1);
                 }
             }
             if !times_passes {
-                timestamp(1);
+                stamp(1);
             }
-            let last = vk::DependencyInfo::default()
-                .image_memory_barriers(&exit)
-                .buffer_memory_barriers(&given_back);
-            device.cmd_pipeline_barrier2(commands, &last);
+            last.record(&device, commands);
+            if let Some(stamps) = stamps {
+                stamps.end(&device, commands, count);
+            }
         }
         self.slots[slot].recorded = passes.to_vec();
         self.slots[slot].times_passes = times_passes;

@@ -7,6 +7,7 @@ use super::super::failed;
 use super::super::memory::{Backed, Memory};
 use super::super::pipelines::descriptor_type;
 use super::super::shaders::BindingKind;
+use super::super::stamps::Stamps;
 use super::{Renderer, Slot};
 use crate::graph::{Format, Kind, Owner, Resource, ResourceId};
 use crate::plan::Plan;
@@ -115,29 +116,23 @@ impl Renderer {
             let sets_info = vk::DescriptorSetAllocateInfo::default()
                 .descriptor_pool(self.descriptor_pool)
                 .set_layouts(&layouts);
-            let queries_info = vk::QueryPoolCreateInfo::default()
-                .query_type(vk::QueryType::TIMESTAMP)
-                .query_count(passes as u32 + 1);
             // SAFETY: the pool was sized for exactly these sets; the layouts are alive.
-            let slot = unsafe {
-                device.allocate_descriptor_sets(&sets_info).and_then(|sets| {
-                    let queries = match self.timestamps {
-                        Some(_) => device.create_query_pool(&queries_info, None)?,
-                        None => vk::QueryPool::null(),
-                    };
-                    let (tables, recorded) = (Vec::new(), Vec::new());
-                    let times_passes = true;
-                    Ok(Slot { sets, tables, is_current: false, queries, recorded, times_passes })
-                })
-            };
-            let slot = slot.map_err(failed("making a frame's descriptors"))?;
-            for (pass, set) in self.plan.every_pass().zip(&slot.sets) {
+            let sets = unsafe { device.allocate_descriptor_sets(&sets_info) }
+                .map_err(failed("making a frame's descriptors"))?;
+            for (pass, set) in self.plan.every_pass().zip(&sets) {
                 self.host.name(*set, &format!("{}, slot {number}", pass.label()));
             }
-            if slot.queries != vk::QueryPool::null() {
-                self.host.name(slot.queries, &format!("ridgelight, slot {number}"));
-            }
-            self.slots.push(slot);
+            let name = format!("ridgelight, slot {number}");
+            let stamps = Stamps::new(&self.host, &mut self.memory, &name, passes + 1)?;
+            let (tables, recorded, times_passes) = (Vec::new(), Vec::new(), true);
+            self.slots.push(Slot {
+                sets,
+                tables,
+                is_current: false,
+                stamps,
+                recorded,
+                times_passes,
+            });
             let tables = self.make_tables()?;
             self.slots[number].tables = tables;
         }
@@ -153,11 +148,12 @@ impl Renderer {
         }
         for mut slot in self.slots.drain(..) {
             slot.tables.iter_mut().for_each(|table| self.memory.free(&mut table.1));
-            // SAFETY: made by this device; the caller of `destroy` guarantees that nothing in flight uses it.
-            // Null is allowed.
-            unsafe { self.host.device.destroy_query_pool(slot.queries, None) };
+            if let Some(stamps) = slot.stamps {
+                stamps.free(&self.host, &mut self.memory);
+            }
         }
-        // SAFETY: as above; null is allowed.
+        // SAFETY: made by this device; the caller of `destroy` guarantees that nothing in flight uses it. Null is
+        // allowed.
         unsafe { self.host.device.destroy_descriptor_pool(self.descriptor_pool, None) };
         std::mem::take(&mut self.pipelines).end(&self.host);
         self.memory.end();
@@ -176,9 +172,10 @@ fn smallest(kind: BindingKind) -> Kind {
         BindingKind::StorageImage { format, uint, layered } => {
             let all = [
                 Format::R32Float,
+                Format::Rgba16Float,
                 Format::Rgba32Float,
                 Format::R32Uint,
-                Format::Rg32Uint,
+                Format::Rgba16Uint,
                 Format::Rgba32Uint,
             ];
             let fitting = all.into_iter().find(|f| f.spirv() == format);

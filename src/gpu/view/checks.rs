@@ -7,7 +7,7 @@ use super::super::memory::DEPTH;
 use super::{Curve, LINEAR, ViewInputs, ViewOutputs, ViewRenderer, wrong};
 use crate::gpu::ImageArg;
 use crate::gpu::renderer::{check_stage, check_state};
-use crate::gpu::requirements::{check_functions, family_flags};
+use crate::gpu::requirements::family_flags;
 use crate::graph::Format;
 use crate::plan::View;
 use crate::{Error, Result};
@@ -20,11 +20,13 @@ pub(super) fn check_device(host: &Host, view: &View, format: vk::Format) -> Resu
     };
     let lacks =
         |reason: String| Err(Error::Device { doing: "making a renderer of views".into(), reason });
-    check_functions(host)?;
     family_flags(host, vk::QueueFlags::GRAPHICS)?;
     let drawn = if curve == Curve::None { format } else { LINEAR };
     let colour = vk::ImageUsageFlags::COLOR_ATTACHMENT;
-    let depth = vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT;
+    let mut depth = vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT;
+    if view.samples > 1 {
+        depth |= vk::ImageUsageFlags::SAMPLED;
+    }
     let [of_colour, of_depth] = [(drawn, colour), (DEPTH, depth)].map(|(format, usage)| {
         // SAFETY: the physical device is the instance's.
         unsafe {

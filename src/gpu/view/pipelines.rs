@@ -2,7 +2,6 @@
 
 use ash::vk;
 
-use super::super::memory::DEPTH;
 use super::super::shaders::{BindingKind, Specialised};
 use super::super::specialise::specialised;
 use super::super::{Host, failed};
@@ -21,7 +20,8 @@ pub(super) struct Drawing {
 pub(super) struct Recipe {
     /// Vertex, fragment.
     pub shaders: [Specialised; 2],
-    pub format: vk::Format,
+    pub render_pass: vk::RenderPass,
+    pub has_colour: bool,
     pub samples: vk::SampleCountFlags,
     /// The depth comparison, and whether depths are written.
     pub depth: Option<(vk::CompareOp, bool)>,
@@ -60,9 +60,10 @@ impl Drawing {
         let push =
             [vk::PushConstantRange { stage_flags: STAGES, offset: 0, size: self.push_bytes }];
         let layouts = [self.set_layout];
+        let ranges = if self.push_bytes > 0 { &push[..] } else { &[] };
         let layout_info = vk::PipelineLayoutCreateInfo::default()
             .set_layouts(&layouts)
-            .push_constant_ranges(&push);
+            .push_constant_ranges(ranges);
         // SAFETY: as above.
         self.layout = unsafe { device.create_pipeline_layout(&layout_info, None) }
             .map_err(failed(doing()))?;
@@ -145,15 +146,10 @@ impl Recipe {
             .depth_compare_op(compare);
         let all = [vk::PipelineColorBlendAttachmentState::default()
             .color_write_mask(vk::ColorComponentFlags::RGBA)];
-        let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&all);
+        let all = &all[..usize::from(self.has_colour)];
+        let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(all);
         let dynamic = [vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR];
         let dynamic = vk::PipelineDynamicStateCreateInfo::default().dynamic_states(&dynamic);
-        let formats = [self.format];
-        let mut rendering =
-            vk::PipelineRenderingCreateInfo::default().color_attachment_formats(&formats);
-        if self.depth.is_some() {
-            rendering = rendering.depth_attachment_format(DEPTH);
-        }
         let info = vk::GraphicsPipelineCreateInfo::default()
             .stages(&stages)
             .vertex_input_state(&vertices)
@@ -165,7 +161,7 @@ impl Recipe {
             .color_blend_state(&blend)
             .dynamic_state(&dynamic)
             .layout(layout)
-            .push_next(&mut rendering);
+            .render_pass(self.render_pass);
         // SAFETY: as the caller guarantees; the data that the info points to lives across the call.
         let made =
             unsafe { host.device.create_graphics_pipelines(host.pipeline_cache, &[info], None) };

@@ -2,9 +2,11 @@
 
 use ash::vk;
 
+use super::super::barriers::Barriers;
 use super::super::memory::{Backed, DEPTH, whole_attachment};
 use super::super::renderer::transition;
 use super::pipelines::{Drawing, STAGES};
+use super::targets::CLEARED;
 use super::{LABELS, ViewInputs, ViewOutputs, ViewRenderer};
 use crate::gpu::{ImageArg, ImageState};
 use crate::graph::shaders::PictureTonePush;
@@ -23,7 +25,7 @@ const READ: ImageState = ImageState {
 };
 
 /// Colour attachments.
-const DRAWN: ImageState = ImageState {
+pub(super) const DRAWN: ImageState = ImageState {
     stage: vk::PipelineStageFlags2::COLOR_ATTACHMENT_OUTPUT,
     access: vk::AccessFlags2::from_raw(
         vk::AccessFlags2::COLOR_ATTACHMENT_READ.as_raw()
@@ -32,19 +34,24 @@ const DRAWN: ImageState = ImageState {
     layout: vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL,
 };
 
-/// Depths: tested, and resolved with colours.
-const TESTED: ImageState = ImageState {
+/// Depths: tested and written.
+pub(super) const TESTED: ImageState = ImageState {
     stage: vk::PipelineStageFlags2::from_raw(
         vk::PipelineStageFlags2::EARLY_FRAGMENT_TESTS.as_raw()
-            | vk::PipelineStageFlags2::LATE_FRAGMENT_TESTS.as_raw()
-            | vk::PipelineStageFlags2::COLOR_ATTACHMENT_OUTPUT.as_raw(),
+            | vk::PipelineStageFlags2::LATE_FRAGMENT_TESTS.as_raw(),
     ),
     access: vk::AccessFlags2::from_raw(
         vk::AccessFlags2::DEPTH_STENCIL_ATTACHMENT_READ.as_raw()
-            | vk::AccessFlags2::DEPTH_STENCIL_ATTACHMENT_WRITE.as_raw()
-            | DRAWN.access.as_raw(),
+            | vk::AccessFlags2::DEPTH_STENCIL_ATTACHMENT_WRITE.as_raw(),
     ),
     layout: vk::ImageLayout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL,
+};
+
+/// Depths of several samples, read for the first.
+pub(super) const FETCHED: ImageState = ImageState {
+    stage: vk::PipelineStageFlags2::FRAGMENT_SHADER,
+    access: vk::AccessFlags2::SHADER_SAMPLED_READ,
+    layout: vk::ImageLayout::DEPTH_STENCIL_READ_ONLY_OPTIMAL,
 };
 
 type Barrier = vk::ImageMemoryBarrier2<'static>;
@@ -56,7 +63,7 @@ fn begun(image: vk::Image, from: ImageState, to: ImageState) -> Barrier {
 }
 
 fn of_kind(barrier: Barrier, state: ImageState) -> Barrier {
-    let is_depth = state.layout == TESTED.layout;
+    let is_depth = [TESTED.layout, FETCHED.layout].contains(&state.layout);
     barrier.subresource_range(whole_attachment(if is_depth { DEPTH } else { super::LINEAR }))
 }
 
@@ -76,72 +83,84 @@ impl ViewRenderer {
             .chain(inputs.voids.as_ref().filter(|_| view.has_voids))
             .collect();
         let device = self.host.device.clone();
-        let queries = self.slots[slot].queries;
-        let timestamp = |query: u32| {
-            if queries != vk::QueryPool::null() {
-                let stage = vk::PipelineStageFlags2::ALL_GRAPHICS;
-                // SAFETY: `commands` is being recorded for a family with timestamps; the pool has one query
-                // more than there are draws, reset at the start of the recording.
-                unsafe { device.cmd_write_timestamp2(commands, stage, queries, query) };
-            }
-        };
-        let barriers = |all: &[Barrier]| {
-            let info = vk::DependencyInfo::default().image_memory_barriers(all);
-            // SAFETY: `commands` is being recorded outside rendering; images are in the states that are stated.
-            unsafe { device.cmd_pipeline_barrier2(commands, &info) };
-        };
-        if queries != vk::QueryPool::null() {
-            let count = LABELS.len() as u32 + 1;
-            // SAFETY: the slot's last command buffer has run. Now, so that earlier times are not mistaken for
-            // these; and in the command buffer, in case it runs again.
-            unsafe {
-                device.reset_query_pool(queries, 0, count);
-                device.cmd_reset_query_pool(commands, queries, 0, count);
-            }
+        let first_of = self.first.filter(|_| outputs.depth.is_some());
+        let recorded = [Some(self.terrain), Some(self.sky), self.plinth, first_of, self.tone];
+        let labels: Vec<_> =
+            LABELS.into_iter().zip(recorded).filter_map(|(label, d)| d.map(|_| label)).collect();
+        let count = labels.len() + 1;
+        self.slots[slot].recorded = labels;
+        if let Some(stamps) = &mut self.slots[slot].stamps {
+            // SAFETY: `commands` is being recorded outside a render pass; the slot's last command buffer has run. There
+            // is one timestamp more than there are draws.
+            unsafe { stamps.begin(&device, commands, count) };
         }
-        barriers(&self.entry(&read, outputs));
-        timestamp(0);
-        let target = self.linear.as_ref().map_or(outputs.picture.view, |linear| linear.view);
-        self.begin(commands, target, outputs);
-        let push = bytemuck::bytes_of(&view.terrain);
-        self.labelled(commands, LABELS[0], |this| {
-            this.bind(commands, &this.terrain, this.slots[slot].sets[0], push);
+        let this = &*self;
+        let at = &this.slots[slot];
+        let mut timed = 0;
+        let mut stamp = || {
+            if let Some(stamps) = &at.stamps {
+                let stage = vk::PipelineStageFlags::BOTTOM_OF_PIPE;
+                // SAFETY: as above; begun.
+                unsafe { stamps.write(&device, commands, stage, timed) };
+            }
+            timed += 1;
+        };
+        let wait = |all: &[Barrier]| {
+            // SAFETY: `commands` is being recorded outside a render pass; images are in the states that are stated.
+            unsafe { Barriers::default().images(all).record(&device, commands) };
+        };
+        // SAFETY: `commands` is being recorded within the render pass that was begun before.
+        let end = || unsafe { device.cmd_end_render_pass(commands) };
+        wait(&this.entry(&read, outputs));
+        stamp();
+        let scene = this.render_passes.scene[usize::from(outputs.depth.is_some())];
+        this.begin(commands, scene, at.framebuffers[0]);
+        this.labelled(commands, LABELS[0], || {
+            this.bind(commands, &this.terrain, at.sets[0], bytemuck::bytes_of(&view.terrain));
             this.draw_tiles(commands, view.tiles);
         });
-        timestamp(1);
-        self.labelled(commands, LABELS[1], |this| {
-            let push = bytemuck::bytes_of(&view.sky);
-            this.bind(commands, &this.sky, this.slots[slot].sets[1], push);
+        stamp();
+        this.labelled(commands, LABELS[1], || {
+            this.bind(commands, &this.sky, at.sets[1], bytemuck::bytes_of(&view.sky));
             this.draw_triangle(commands);
         });
-        timestamp(2);
-        let mut timed = 2;
-        if let (Some(plinth), Some(push)) = (&self.plinth, &view.plinth) {
-            self.labelled(commands, LABELS[2], |this| {
-                this.bind(commands, plinth, this.slots[slot].sets[2], bytemuck::bytes_of(push));
+        stamp();
+        if let (Some(plinth), Some(push)) = (&this.plinth, &view.plinth) {
+            this.labelled(commands, LABELS[2], || {
+                this.bind(commands, plinth, at.sets[2], bytemuck::bytes_of(push));
                 let vertices = plinth_draw::vertices(push);
-                // SAFETY: `commands` is being recorded within rendering, a pipeline bound.
+                // SAFETY: `commands` is being recorded within a render pass, a pipeline bound.
                 unsafe { device.cmd_draw(commands, vertices, plinth_draw::FACES, 0, 0) };
             });
-            timed += 1;
-            timestamp(timed);
+            stamp();
         }
-        // SAFETY: begun above.
-        unsafe { device.cmd_end_rendering(commands) };
-        if let (Some(tone), Some(linear)) = (&self.tone, &self.linear) {
-            barriers(&[transition(linear.image, 1, DRAWN, READ)]);
-            self.labelled(commands, LABELS[3], |this| {
-                this.begin_colour(commands, outputs.picture.view);
-                let push = PictureTonePush { exposure };
-                this.bind(commands, tone, this.slots[slot].sets[3], bytemuck::bytes_of(&push));
+        end();
+        if let (Some(first), Some(depth)) = (&first_of, &this.depth) {
+            wait(&[of_kind(transition(depth.image, 1, TESTED, FETCHED), FETCHED)]);
+            this.labelled(commands, LABELS[3], || {
+                this.begin(commands, this.render_passes.depth, at.framebuffers[1]);
+                this.bind(commands, first, at.sets[3], &[]);
                 this.draw_triangle(commands);
-                // SAFETY: begun above.
-                unsafe { device.cmd_end_rendering(commands) };
+                end();
             });
-            timestamp(timed + 1);
+            stamp();
         }
-        barriers(&self.exit(&read, outputs));
-        self.slots[slot].is_recorded = true;
+        if let (Some(tone), Some(linear)) = (&this.tone, &this.linear) {
+            wait(&[transition(linear.image, 1, DRAWN, READ)]);
+            this.labelled(commands, LABELS[4], || {
+                this.begin(commands, this.render_passes.tone, at.framebuffers[2]);
+                let push = PictureTonePush { exposure };
+                this.bind(commands, tone, at.sets[4], bytemuck::bytes_of(&push));
+                this.draw_triangle(commands);
+                end();
+            });
+            stamp();
+        }
+        wait(&this.exit(&read, outputs));
+        if let Some(stamps) = &at.stamps {
+            // SAFETY: as above; all have been written.
+            unsafe { stamps.end(&device, commands, count) };
+        }
     }
 
     fn entry(&self, read: &[&ImageArg], outputs: &ViewOutputs) -> Vec<Barrier> {
@@ -151,7 +170,9 @@ impl ViewRenderer {
             all.extend(backed.as_ref().map(|b| begun(b.image, from, to)));
         };
         own(&self.many, DRAWN, DRAWN);
-        own(&self.depth, TESTED, TESTED);
+        // Its last use is either.
+        let both = ImageState { stage: TESTED.stage | FETCHED.stage, ..TESTED };
+        own(&self.depth, both, TESTED);
         own(&self.linear, READ, DRAWN);
         all.push(begun(outputs.picture.image, outputs.picture.before, DRAWN));
         all.extend(outputs.depth.map(|depth| begun(depth.image, depth.before, TESTED)));
@@ -166,63 +187,15 @@ impl ViewRenderer {
         read.chain(drawn).chain(outputs.depth.map(tested)).collect()
     }
 
-    /// Begins rendering of terrain and sky.
-    fn begin(&self, commands: vk::CommandBuffer, target: vk::ImageView, outputs: &ViewOutputs) {
-        let (resolve, first) = (vk::ResolveModeFlags::AVERAGE, vk::ResolveModeFlags::SAMPLE_ZERO);
-        let mut colour = vk::RenderingAttachmentInfo::default()
-            .image_view(target)
-            .image_layout(DRAWN.layout)
-            .load_op(vk::AttachmentLoadOp::CLEAR)
-            .store_op(vk::AttachmentStoreOp::STORE);
-        let mut depth = vk::RenderingAttachmentInfo::default()
-            .image_view(self.depth.as_ref().map_or_else(Default::default, |d| d.view))
-            .image_layout(TESTED.layout)
-            .load_op(vk::AttachmentLoadOp::CLEAR)
-            .store_op(vk::AttachmentStoreOp::DONT_CARE);
-        if let Some(many) = &self.many {
-            colour = colour
-                .image_view(many.view)
-                .store_op(vk::AttachmentStoreOp::DONT_CARE)
-                .resolve_mode(resolve)
-                .resolve_image_view(target)
-                .resolve_image_layout(DRAWN.layout);
-            if let Some(arg) = &outputs.depth {
-                depth = depth
-                    .resolve_mode(first)
-                    .resolve_image_view(arg.view)
-                    .resolve_image_layout(TESTED.layout);
-            }
-        } else if let Some(arg) = &outputs.depth {
-            depth = depth.image_view(arg.view).store_op(vk::AttachmentStoreOp::STORE);
-        }
-        self.begin_rendering(commands, &[colour], Some(&depth));
-    }
-
-    /// Begins rendering of the tone curve, which writes every pixel.
-    fn begin_colour(&self, commands: vk::CommandBuffer, target: vk::ImageView) {
-        let colour = vk::RenderingAttachmentInfo::default()
-            .image_view(target)
-            .image_layout(DRAWN.layout)
-            .load_op(vk::AttachmentLoadOp::DONT_CARE)
-            .store_op(vk::AttachmentStoreOp::STORE);
-        self.begin_rendering(commands, &[colour], None);
-    }
-
-    fn begin_rendering(
-        &self,
-        commands: vk::CommandBuffer,
-        colours: &[vk::RenderingAttachmentInfo<'_>],
-        depth: Option<&vk::RenderingAttachmentInfo<'_>>,
-    ) {
+    /// Begins a render pass over the whole picture.
+    fn begin(&self, commands: vk::CommandBuffer, pass: vk::RenderPass, into: vk::Framebuffer) {
         let [width, height] = self.shape.size;
         let area = vk::Rect2D { extent: vk::Extent2D { width, height }, ..Default::default() };
-        let mut info = vk::RenderingInfo::default()
+        let info = vk::RenderPassBeginInfo::default()
+            .render_pass(pass)
+            .framebuffer(into)
             .render_area(area)
-            .layer_count(1)
-            .color_attachments(colours);
-        if let Some(depth) = depth {
-            info = info.depth_attachment(depth);
-        }
+            .clear_values(&CLEARED);
         let viewport = [vk::Viewport {
             x: 0.0,
             y: 0.0,
@@ -231,10 +204,11 @@ impl ViewRenderer {
             min_depth: 0.0,
             max_depth: 1.0,
         }];
-        // SAFETY: `commands` is being recorded outside rendering; the attachments have the picture's size and
-        // the stated layouts.
+        // SAFETY: `commands` is being recorded outside a render pass; the attachments have the picture's size and the
+        // pass's layouts.
         unsafe {
-            self.host.device.cmd_begin_rendering(commands, &info);
+            let contents = vk::SubpassContents::INLINE;
+            self.host.device.cmd_begin_render_pass(commands, &info, contents);
             self.host.device.cmd_set_viewport(commands, 0, &viewport);
             self.host.device.cmd_set_scissor(commands, 0, &[area]);
         }
@@ -250,19 +224,21 @@ impl ViewRenderer {
         let point = vk::PipelineBindPoint::GRAPHICS;
         let push = &push[..drawing.push_bytes as usize];
         let device = &self.host.device;
-        // SAFETY: `commands` is being recorded within rendering of the pipeline's formats; set and push
+        // SAFETY: `commands` is being recorded within a render pass of the pipeline's formats; set and push
         // constants match its layout.
         unsafe {
             device.cmd_bind_pipeline(commands, point, drawing.pipeline);
             device.cmd_bind_descriptor_sets(commands, point, drawing.layout, 0, &[set], &[]);
-            device.cmd_push_constants(commands, drawing.layout, STAGES, 0, push);
+            if !push.is_empty() {
+                device.cmd_push_constants(commands, drawing.layout, STAGES, 0, push);
+            }
         }
     }
 
     fn draw_tiles(&self, commands: vk::CommandBuffer, tiles: u32) {
         let Some(indices) = &self.indices else { return };
         let device = &self.host.device;
-        // SAFETY: `commands` is being recorded within rendering, with the terrain's pipeline bound; the buffer
+        // SAFETY: `commands` is being recorded within a render pass, with the terrain's pipeline bound; the buffer
         // holds the indices of a tile.
         unsafe {
             device.cmd_bind_index_buffer(commands, indices.buffer, 0, vk::IndexType::UINT16);
@@ -272,18 +248,18 @@ impl ViewRenderer {
 
     /// A triangle that covers the picture.
     fn draw_triangle(&self, commands: vk::CommandBuffer) {
-        // SAFETY: `commands` is being recorded within rendering, a pipeline bound.
+        // SAFETY: `commands` is being recorded within a render pass, a pipeline bound.
         unsafe { self.host.device.cmd_draw(commands, 3, 1, 0, 0) };
     }
 
-    fn labelled(&self, commands: vk::CommandBuffer, label: &str, record: impl FnOnce(&Self)) {
+    fn labelled(&self, commands: vk::CommandBuffer, label: &str, record: impl FnOnce()) {
         let name = std::ffi::CString::new(label).unwrap_or_default();
         if let Some(debug) = &self.host.debug_utils {
             let info = vk::DebugUtilsLabelEXT::default().label_name(&name);
             // SAFETY: `commands` is being recorded; the name lives across the call.
             unsafe { debug.cmd_begin_debug_utils_label(commands, &info) };
         }
-        record(self);
+        record();
         if let Some(debug) = &self.host.debug_utils {
             // SAFETY: as above; the label is open.
             unsafe { debug.cmd_end_debug_utils_label(commands) };
@@ -291,7 +267,7 @@ impl ViewRenderer {
     }
 
     fn write_sets(&self, slot: usize, inputs: &ViewInputs) {
-        let [terrain, sky, plinth, tone] = self.slots[slot].sets;
+        let [terrain, sky, plinth, first, tone] = self.slots[slot].sets;
         // Absent inputs are not read: any image is bound for them.
         let absent = &inputs.radiance;
         let voids = inputs.voids.as_ref().unwrap_or(absent);
@@ -307,11 +283,13 @@ impl ViewRenderer {
             bound.extend((0..).zip(views).map(|(binding, view)| (plinth, binding, view)));
         }
         bound.extend(self.linear.as_ref().map(|linear| (tone, 0, linear.view)));
+        let depth = self.depth.as_ref().filter(|_| self.first.is_some());
+        bound.extend(depth.map(|depth| (first, 0, depth.view)));
         let infos: Vec<_> = bound
             .iter()
-            .map(|(_, _, view)| {
-                let info = vk::DescriptorImageInfo::default();
-                [info.image_view(*view).image_layout(READ.layout)]
+            .map(|(set, _, view)| {
+                let layout = if *set == first { FETCHED.layout } else { READ.layout };
+                [vk::DescriptorImageInfo::default().image_view(*view).image_layout(layout)]
             })
             .collect();
         let writes: Vec<_> = bound

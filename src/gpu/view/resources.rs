@@ -4,8 +4,10 @@ use ash::vk;
 
 use super::super::allocator::MemoryUse;
 use super::super::memory::DEPTH;
+use super::super::stamps::Stamps;
 use super::super::{failed, shaders};
 use super::pipelines::{Drawing, Recipe};
+use super::targets::Framebuffers;
 use super::{Curve, LABELS, LINEAR, Slot, ViewRenderer};
 use crate::graph::Format;
 use crate::passes::terrain_draw::tile_indices;
@@ -24,6 +26,8 @@ impl ViewRenderer {
             self.linear = Some(self.memory.attachment("picture_radiance", LINEAR, size, one)?);
         }
         self.make_indices()?;
+        self.render_passes.make(&self.host, (drawn, self.samples), self.format)?;
+        let (scene, samples) = (self.render_passes.scene[0], self.samples);
         let is_grey = self.shape.radiance == Format::R32Float;
         self.terrain.make(
             &self.host,
@@ -32,8 +36,9 @@ impl ViewRenderer {
                     shaders::TerrainDrawVert {}.into(),
                     shaders::TerrainDrawFrag { is_grey, has_voids: self.shape.has_voids }.into(),
                 ],
-                format: drawn,
-                samples: self.samples,
+                render_pass: scene,
+                has_colour: true,
+                samples,
                 depth: Some((vk::CompareOp::GREATER, true)),
             },
         )?;
@@ -45,8 +50,9 @@ impl ViewRenderer {
                     shaders::SkyDrawFrag { has_environment: self.shape.environment.is_some() }
                         .into(),
                 ],
-                format: drawn,
-                samples: self.samples,
+                render_pass: scene,
+                has_colour: true,
+                samples,
                 // Background, where nothing is drawn.
                 depth: Some((vk::CompareOp::GREATER_OR_EQUAL, false)),
             },
@@ -60,10 +66,23 @@ impl ViewRenderer {
                         shaders::PlinthDrawVert { is_grey, has_voids }.into(),
                         shaders::PlinthDrawFrag { has_voids }.into(),
                     ],
-                    format: drawn,
-                    samples: self.samples,
+                    render_pass: scene,
+                    has_colour: true,
+                    samples,
                     // Over everything, without depths.
                     depth: Some((vk::CompareOp::ALWAYS, false)),
+                },
+            )?;
+        }
+        if self.samples != one {
+            self.first.insert(Drawing::default()).make(
+                &self.host,
+                &Recipe {
+                    shaders: [shaders::PictureToneVert {}.into(), shaders::DepthDrawFrag {}.into()],
+                    render_pass: self.render_passes.depth,
+                    has_colour: false,
+                    samples: one,
+                    depth: Some((vk::CompareOp::ALWAYS, true)),
                 },
             )?;
         }
@@ -75,7 +94,8 @@ impl ViewRenderer {
                         shaders::PictureToneVert {}.into(),
                         shaders::PictureToneFrag { encodes: curve == Curve::Encode }.into(),
                     ],
-                    format: self.format,
+                    render_pass: self.render_passes.tone,
+                    has_colour: true,
                     samples: one,
                     depth: None,
                 },
@@ -100,13 +120,13 @@ impl ViewRenderer {
     }
 
     fn make_slots(&mut self, slots: usize) -> Result<()> {
-        let device = &self.host.device;
+        let device = self.host.device.clone();
         let drawings = self.drawings();
         let layouts: Vec<_> = drawings.iter().flatten().map(|d| d.set_layout).collect();
-        // Heights, radiance, voids, twice; the environment; the input of the tone curve.
+        // Heights, radiance, voids, twice; the environment; depths; the input of the tone curve.
         let sizes = [vk::DescriptorPoolSize {
             ty: vk::DescriptorType::SAMPLED_IMAGE,
-            descriptor_count: 8 * slots as u32,
+            descriptor_count: 9 * slots as u32,
         }];
         let info = vk::DescriptorPoolCreateInfo::default()
             .max_sets((slots * layouts.len()) as u32)
@@ -119,31 +139,19 @@ impl ViewRenderer {
             let sets_info = vk::DescriptorSetAllocateInfo::default()
                 .descriptor_pool(self.descriptor_pool)
                 .set_layouts(&layouts);
-            let queries_info = vk::QueryPoolCreateInfo::default()
-                .query_type(vk::QueryType::TIMESTAMP)
-                .query_count(LABELS.len() as u32 + 1);
             // SAFETY: the pool was sized for exactly these sets; the layouts are alive.
-            let slot = unsafe {
-                device.allocate_descriptor_sets(&sets_info).and_then(|all| {
-                    let queries = match self.timestamps {
-                        Some(_) => device.create_query_pool(&queries_info, None)?,
-                        None => vk::QueryPool::null(),
-                    };
-                    let mut all = all.into_iter();
-                    let sets = drawings
-                        .map(|drawing| drawing.and_then(|_| all.next()).unwrap_or_default());
-                    Ok(Slot { sets, queries, is_recorded: false })
-                })
-            };
-            let slot = slot.map_err(failed("making a frame's descriptors"))?;
-            let named = LABELS.iter().zip(&slot.sets);
+            let all = unsafe { device.allocate_descriptor_sets(&sets_info) }
+                .map_err(failed("making a frame's descriptors"))?;
+            let mut all = all.into_iter();
+            let sets = drawings.map(|drawing| drawing.and_then(|_| all.next()).unwrap_or_default());
+            let named = LABELS.iter().zip(&sets);
             for (label, set) in named.filter(|(_, set)| **set != vk::DescriptorSet::null()) {
                 self.host.name(*set, &format!("{label}, slot {number}"));
             }
-            if slot.queries != vk::QueryPool::null() {
-                self.host.name(slot.queries, &format!("ridgelight views, slot {number}"));
-            }
-            self.slots.push(slot);
+            let name = format!("ridgelight views, slot {number}");
+            let stamps = Stamps::new(&self.host, &mut self.memory, &name, LABELS.len() + 1)?;
+            let framebuffers = Framebuffers::default();
+            self.slots.push(Slot { sets, framebuffers, stamps, recorded: Vec::new() });
         }
         Ok(())
     }
@@ -153,14 +161,15 @@ impl ViewRenderer {
         for mut backed in own.into_iter().filter_map(Option::take) {
             self.memory.free(&mut backed);
         }
-        for slot in self.slots.drain(..) {
-            // SAFETY: made by this device; the caller of `destroy` guarantees that nothing in flight uses it.
-            // Null is allowed.
-            unsafe { self.host.device.destroy_query_pool(slot.queries, None) };
+        (0..self.slots.len()).for_each(|slot| self.free_framebuffers(slot));
+        for stamps in self.slots.drain(..).filter_map(|slot| slot.stamps) {
+            stamps.free(&self.host, &mut self.memory);
         }
-        // SAFETY: as above.
+        self.render_passes.free(&self.host);
+        // SAFETY: made by this device; the caller of `destroy` guarantees that nothing in flight uses it. Null is
+        // allowed.
         unsafe { self.host.device.destroy_descriptor_pool(self.descriptor_pool, None) };
-        let optional = [self.plinth.as_mut(), self.tone.as_mut()];
+        let optional = [self.plinth.as_mut(), self.first.as_mut(), self.tone.as_mut()];
         let drawings = [Some(&mut self.terrain), Some(&mut self.sky)].into_iter().chain(optional);
         drawings.flatten().for_each(|drawing| drawing.free(&self.host));
         self.memory.end();

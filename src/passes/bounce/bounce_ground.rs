@@ -17,7 +17,7 @@ impl BounceGround {
     }
 
     fn format(grey: bool) -> Format {
-        if grey { Format::Rg32Uint } else { Format::Rgba32Float }
+        if grey { Format::Rgba16Uint } else { Format::Rgba32Float }
     }
 
     /// Name and image of the binding.

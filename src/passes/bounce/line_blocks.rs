@@ -18,7 +18,7 @@ const AT_ONCE_BYTES_CPU: u64 = 4 << 20;
 const MOST_AT_ONCE: u32 = 8;
 /// Format of a block: largest height, its place, and radiance in one channel if grey, else three.
 fn format(grey: bool) -> Format {
-    if grey { Format::Rg32Uint } else { Format::Rgba32Uint }
+    if grey { Format::Rgba16Uint } else { Format::Rgba32Uint }
 }
 
 /// Blocks along the swept lines of some azimuths at a time, of each axis that is marched: columns, rows. One image

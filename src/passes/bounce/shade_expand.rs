@@ -12,7 +12,7 @@ pub(crate) fn plan(
     let [cols, rows] = pyramid.size;
     let texels = u64::from(cols) * u64::from(rows) * u64::from(pyramid.levels());
     builder.pass(
-        shaders::ShadeExpand { periodic: pyramid.periodic },
+        shaders::ShadeExpand { periodic: pyramid.periodic, grey: bounce.grey },
         &bounce.name,
         format!("{} levels of radiance at every texel, by B-splines", pyramid.levels()),
         [cols.div_ceil(8), rows.div_ceil(8), pyramid.levels()],
@@ -21,7 +21,11 @@ pub(crate) fn plan(
             rows: rows as i32,
             width_shift: pyramid.width_shift() as i32,
         },
-        &[("shade_levels", levels), ("shade_table", table), ("shade_stack", stack)],
+        &[
+            ("shade_levels", levels),
+            ("shade_table", table),
+            (if bounce.grey { "shade_stack_grey" } else { "shade_stack" }, stack),
+        ],
         if bounce.grey { 4 } else { 16 } * texels + 16 * pyramid.all_texels(),
         texels,
     );

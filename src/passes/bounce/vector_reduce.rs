@@ -17,6 +17,7 @@ pub(crate) fn plan(
         shaders::VectorReduce {
             periodic: octave.pyramid.periodic,
             from_field: octave.reads_field(),
+            halves: specular.halves(),
         },
         &format!("{name} {}", octave.part()),
         format!("radiance by direction every {finest:.1} to {coarsest:.1} texels"),
@@ -25,7 +26,7 @@ pub(crate) fn plan(
         &[
             ("exit_vectors", exit),
             ("vector_source", levels),
-            ("vector_levels", levels),
+            (if specular.halves() { "vector_levels_f16" } else { "vector_levels" }, levels),
             ("shade_table", table),
             ("constants", octave.constants),
         ],

@@ -159,10 +159,10 @@ impl LatticeShape {
         let [lanes, steps] = nodes.size([axis.lanes, axis.steps]);
         match sweep {
             Sweep::Lines(lines) => Self {
-                occluders: lines.writes_occluders.then_some(Format::Rg32Uint),
+                occluders: lines.writes_occluders.then_some(Format::Rgba16Uint),
                 slopes: match lines.slope_format {
                     1 => Some(Format::Rgba32Uint),
-                    2 => Some(Format::Rg32Uint),
+                    2 => Some(Format::Rgba16Uint),
                     _ => None,
                 },
                 width: 1 << layer_shift >> 2,

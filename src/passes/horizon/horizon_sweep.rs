@@ -71,7 +71,8 @@ fn run(
         bound.push(("heights", images.heights));
     }
     bound.extend(images.occluders.map(|o| ("occluders", o)));
-    bound.extend(images.slopes.map(|s| ("slopes", s)));
+    let slopes = if sweep.slope_format == 2 { "slopes_f16" } else { "slopes" };
+    bound.extend(images.slopes.map(|s| (slopes, s)));
     bound.extend(images.lost_lines.map(|l| ("lost_lines", l)));
     let lines = batch.most_lines;
     let value_bytes = if images.occluders.is_some() { 2 } else { 0 }

@@ -102,12 +102,14 @@ impl BouncedSpecular {
         layers_of(self.order, self.grey)
     }
 
+    /// Whether the series of exit radiance are of f16.
+    pub(crate) fn halves(&self) -> bool {
+        matches!(self.outgoing, ExitLight::Vectors(Vectors { halves: true, .. }))
+    }
+
     /// Bytes per texel of the series of exit radiance.
     pub(crate) fn texel_bytes(&self) -> u64 {
-        match self.outgoing {
-            ExitLight::Vectors(Vectors { halves: true, .. }) => 8,
-            _ => 16,
-        }
+        if self.halves() { 8 } else { 16 }
     }
 
     /// As the command line spells it.

@@ -42,10 +42,13 @@ pub(crate) fn plan(
     bound.extend(outgoing.diffuse.map(|diffuse| ("exit_radiance", diffuse)));
     bound.extend(phong.map.map(|map| ("phong_map", map)));
     match (specular.outgoing, vectors) {
-        (_, Some(Vectors { exit, constants, .. })) => {
-            bound.extend([("constants", constants), ("exit_vectors", exit)]);
+        (_, Some(Vectors { exit, constants, halves, .. })) => {
+            let name = if halves { "exit_vectors_f16" } else { "exit_vectors" };
+            bound.extend([("constants", constants), (name, exit)]);
         }
-        (ExitLight::Upward(exit), _) if is_bounced => bound.push(("exit_upward", exit)),
+        (ExitLight::Upward(exit), _) if is_bounced => {
+            bound.push((if specular.grey { "exit_upward_grey" } else { "exit_upward" }, exit));
+        }
         _ => {}
     }
     let why = match (is_bounced, has_vectors) {

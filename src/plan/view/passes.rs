@@ -68,10 +68,11 @@ impl View {
             texels += field * 4;
         }
         let drawn = if for_screen { "picture_radiance" } else { "picture" };
-        let mut written = vec![drawn, "depth"];
-        if samples > 1 {
-            written.extend(["picture_samples", "picture_depth"]);
-        }
+        let written = if samples > 1 {
+            vec![drawn, "picture_samples", "picture_depth"]
+        } else {
+            vec![drawn, "depth"]
+        };
         let terrain = ViewPass {
             pass: "terrain_draw",
             why: mesh + &why_samples,
@@ -103,10 +104,18 @@ impl View {
             vertices: 3,
             bytes: u64::from(width) * u64::from(height) * COLOUR_BYTES
                 + pixels * samples * (COLOUR_BYTES + DEPTH_BYTES)
-                + if samples > 1 { pixels * (COLOUR_BYTES + DEPTH_BYTES) } else { 0 },
+                + if samples > 1 { pixels * COLOUR_BYTES } else { 0 },
             reads: self.environment.map(|_| "environment").into_iter().collect(),
             writes: written,
         };
+        let depth = (samples > 1).then(|| ViewPass {
+            pass: "depth_draw",
+            why: "the first sample's depth of each pixel, where depth is requested".to_owned(),
+            vertices: 3,
+            bytes: pixels * 2 * DEPTH_BYTES,
+            reads: vec!["picture_depth"],
+            writes: vec!["depth"],
+        });
         let tone = for_screen.then(|| ViewPass {
             pass: "picture_tone",
             why: "the picture is of codes: exposure, tone curve, sRGB".to_owned(),
@@ -115,7 +124,7 @@ impl View {
             reads: vec!["picture_radiance"],
             writes: vec!["picture"],
         });
-        [terrain, sky].into_iter().chain(plinth).chain(tone).collect()
+        [terrain, sky].into_iter().chain(plinth).chain(depth).chain(tone).collect()
     }
 
     /// Images and buffers besides "heights", "radiance" and "environment", which the plan of the lit field provides.

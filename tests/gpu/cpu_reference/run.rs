@@ -109,9 +109,12 @@ impl<'a> Run<'a> {
         all
     }
 
+    /// The resource of a binding, or of its form in f16.
     pub fn bound(pass: &Pass, binding: &str) -> Option<ResourceId> {
-        let place = pass.shader.bindings.iter().position(|b| b.name == binding);
-        pass.bindings[place.unwrap_or_else(|| panic!("{} binds no {binding}", pass.name()))]
+        let at = |name: &str| pass.shader.bindings.iter().position(|b| b.name == name);
+        let place = at(binding).unwrap_or_else(|| panic!("{} binds no {binding}", pass.name()));
+        let half = at(&format!("{binding}_f16"));
+        pass.bindings[place].or_else(|| pass.bindings[half?])
     }
 
     /// Words of the resource that the pass binds under this name, if any.

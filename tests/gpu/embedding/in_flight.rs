@@ -182,10 +182,10 @@ impl Recorded {
     }
 
     pub(super) fn submit(&self, device: &ash::Device, queue: vk::Queue) {
-        let buffers = [vk::CommandBufferSubmitInfo::default().command_buffer(self.commands)];
-        let submit = [vk::SubmitInfo2::default().command_buffer_infos(&buffers)];
+        let buffers = [self.commands];
+        let submit = [vk::SubmitInfo::default().command_buffers(&buffers)];
         // SAFETY: recorded above; nobody else uses the queue meanwhile.
-        unsafe { device.queue_submit2(queue, &submit, self.fence) }.expect("submitted");
+        unsafe { device.queue_submit(queue, &submit, self.fence) }.expect("submitted");
     }
 
     /// Waits for it, and frees it.

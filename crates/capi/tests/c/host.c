@@ -68,9 +68,8 @@ int main(int argc, char **argv) {
     while (family < count && !(families[family].queueFlags & needs.queue_flags)) family++;
     VkDeviceQueueCreateInfo queue_info = {.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
         .queueFamilyIndex = family, .queueCount = 1, .pQueuePriorities = &(float){1}};
-    needs.features13.pNext = &needs.features12;
-    VkDeviceCreateInfo device_info = {.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, .pNext = &needs.features13,
-        .queueCreateInfoCount = 1, .pQueueCreateInfos = &queue_info, .pEnabledFeatures = &needs.features};
+    VkDeviceCreateInfo device_info = {.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
+        .queueCreateInfoCount = 1, .pQueueCreateInfos = &queue_info};
     VK(vkCreateDevice(physical_device, &device_info, NULL, &device));
     VkQueue queue;
     vkGetDeviceQueue(device, family, 0, &queue);

@@ -84,9 +84,7 @@ static void run(const char *out) {
     while (!(VkQueueFlags(families.at(family).queueFlags) & needs.queue_flags)) family++;
     constexpr float priority = 1;
     vk::DeviceQueueCreateInfo queues({}, family, 1, &priority);
-    needs.features13.pNext = &needs.features12;
-    vk::PhysicalDeviceFeatures features = needs.features;
-    vk::raii::Device device(physical_device, {{}, queues, {}, {}, &features, &needs.features13});
+    vk::raii::Device device(physical_device, {{}, queues});
     vk::raii::Queue queue(device, family, 0);
     vk::raii::CommandPool pool(device, {{}, family});
     vk::raii::CommandBuffers all(device, {*pool, vk::CommandBufferLevel::ePrimary, 1});

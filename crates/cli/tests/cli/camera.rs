@@ -92,7 +92,10 @@ fn gpu_cameras_write_pictures_and_depth() {
     is("look_at", "7.5,7.5,3");
     let passes = json(&folder.path("v.json"))["passes"].clone();
     let names: Vec<_> = passes.as_array().unwrap().iter().map(|p| p["pass"].clone()).collect();
-    assert!(names.ends_with(&["terrain_draw".into(), "sky_draw".into()]), "{names:?}");
+    assert!(
+        names.ends_with(&["terrain_draw".into(), "sky_draw".into(), "depth_draw".into()]),
+        "{names:?}"
+    );
 
     // From the side: surface and background, a .png of the requested size, and the height error of a reduced mesh.
     let aside = "--camera 200,20 --size 40x30 --background 0.2 --mesh-step 4 --quiet";

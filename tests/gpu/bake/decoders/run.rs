@@ -168,30 +168,32 @@ pub(super) fn decode(
         let writes = [write(0).image_info(&read), write(1).buffer_info(&written)];
         device.update_descriptor_sets(&writes, &[]);
         gpu.run(|commands| {
-            let barrier = |old, new, from, to| {
-                vk::ImageMemoryBarrier2::default()
+            let barrier = |old, new| {
+                vk::ImageMemoryBarrier::default()
                     .image(map)
                     .subresource_range(WHOLE)
                     .old_layout(old)
                     .new_layout(new)
-                    .src_stage_mask(from)
-                    .dst_stage_mask(to)
+                    .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+                    .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
             };
-            let (copy, compute) =
-                (vk::PipelineStageFlags2::COPY, vk::PipelineStageFlags2::COMPUTE_SHADER);
+            let [start, copy, compute, to_host] = [
+                vk::PipelineStageFlags::TOP_OF_PIPE,
+                vk::PipelineStageFlags::TRANSFER,
+                vk::PipelineStageFlags::COMPUTE_SHADER,
+                vk::PipelineStageFlags::HOST,
+            ];
+            let none = vk::DependencyFlags::empty();
             let filled = vk::ImageLayout::TRANSFER_DST_OPTIMAL;
-            let before =
-                [barrier(vk::ImageLayout::UNDEFINED, filled, vk::PipelineStageFlags2::NONE, copy)
-                    .dst_access_mask(vk::AccessFlags2::TRANSFER_WRITE)];
+            let before = [barrier(vk::ImageLayout::UNDEFINED, filled)
+                .dst_access_mask(vk::AccessFlags::TRANSFER_WRITE)];
             let sampled = vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL;
-            let after = [barrier(filled, sampled, copy, compute)
-                .src_access_mask(vk::AccessFlags2::TRANSFER_WRITE)
-                .dst_access_mask(vk::AccessFlags2::SHADER_SAMPLED_READ)];
-            let host_reads = [vk::MemoryBarrier2::default()
-                .src_stage_mask(compute)
-                .src_access_mask(vk::AccessFlags2::SHADER_STORAGE_WRITE)
-                .dst_stage_mask(vk::PipelineStageFlags2::HOST)
-                .dst_access_mask(vk::AccessFlags2::HOST_READ)];
+            let after = [barrier(filled, sampled)
+                .src_access_mask(vk::AccessFlags::TRANSFER_WRITE)
+                .dst_access_mask(vk::AccessFlags::SHADER_READ)];
+            let host_reads = [vk::MemoryBarrier::default()
+                .src_access_mask(vk::AccessFlags::SHADER_WRITE)
+                .dst_access_mask(vk::AccessFlags::HOST_READ)];
             let region = [vk::BufferImageCopy::default()
                 .image_subresource(vk::ImageSubresourceLayers {
                     aspect_mask: vk::ImageAspectFlags::COLOR,
@@ -200,17 +202,15 @@ pub(super) fn decode(
                     layer_count: header.layer_count.max(1),
                 })
                 .image_extent(vk::Extent3D { width, height, depth: 1 })];
-            let to = |barriers| vk::DependencyInfo::default().image_memory_barriers(barriers);
-            device.cmd_pipeline_barrier2(commands, &to(&before));
+            device.cmd_pipeline_barrier(commands, start, copy, none, &[], &[], &before);
             device.cmd_copy_buffer_to_image(commands, upload.buffer, map, filled, &region);
-            device.cmd_pipeline_barrier2(commands, &to(&after));
+            device.cmd_pipeline_barrier(commands, copy, compute, none, &[], &[], &after);
             let point = vk::PipelineBindPoint::COMPUTE;
             device.cmd_bind_pipeline(commands, point, pipeline);
             device.cmd_bind_descriptor_sets(commands, point, layout, 0, &[set], &[]);
             device.cmd_push_constants(commands, layout, vk::ShaderStageFlags::COMPUTE, 0, &push);
             device.cmd_dispatch(commands, grid_points.div_ceil(64) as u32, 1, depth);
-            let info = vk::DependencyInfo::default().memory_barriers(&host_reads);
-            device.cmd_pipeline_barrier2(commands, &info);
+            device.cmd_pipeline_barrier(commands, compute, to_host, none, &host_reads, &[], &[]);
             Ok(())
         })
         .expect("run");

@@ -133,7 +133,8 @@ fn shade_level(run: &mut Run, pass: &Pass, number: u32) -> Vec<Pair> {
 pub(crate) fn shade_expand(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let shade = run.shade();
     let texels = colours(&run.floats(pass, "shade_levels").expect("written"));
-    let stack = run.floats(pass, "shade_stack").expect("written");
+    let grey = run.floats(pass, "shade_stack_grey");
+    let stack = grey.or_else(|| run.floats(pass, "shade_stack")).expect("written");
     let [cols, rows] = run.size();
     let grid_points = cols * rows;
     let layers = shade.levels() as usize;

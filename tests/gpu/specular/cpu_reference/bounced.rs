@@ -140,7 +140,8 @@ pub(crate) fn specular_exit(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     }
     let diffuse = run.exit(pass);
     if !has_vectors {
-        let got = run.floats(pass, "exit_upward").expect("written");
+        let grey = run.floats(pass, "exit_upward_grey");
+        let got = grey.or_else(|| run.floats(pass, "exit_upward")).expect("written");
         let channels = got.len() / (cols * rows);
         for (i, got) in got.chunks_exact(channels).enumerate() {
             for c in 0..channels.min(3) {

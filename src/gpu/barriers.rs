@@ -1,0 +1,173 @@
+//! Barriers in the terms of Vulkan 1.3, recorded by the command of Vulkan 1.0: no device has to enable
+//! `synchronization2`.
+
+use ash::vk;
+
+/// Bits that both kinds of flags share: Vulkan 1.3 adds only higher ones.
+const SHARED: u64 = u32::MAX as u64;
+
+/// Stages, where Vulkan 1.0 has them; otherwise the smallest that contain them.
+fn stages(all: vk::PipelineStageFlags2) -> vk::PipelineStageFlags {
+    use vk::PipelineStageFlags2 as New;
+    let mut old = vk::PipelineStageFlags::from_raw((all.as_raw() & SHARED) as u32);
+    let mut rest = New::from_raw(all.as_raw() & !SHARED);
+    for (new, containing) in [
+        (New::COPY, vk::PipelineStageFlags::TRANSFER),
+        (New::RESOLVE, vk::PipelineStageFlags::TRANSFER),
+        (New::BLIT, vk::PipelineStageFlags::TRANSFER),
+        (New::CLEAR, vk::PipelineStageFlags::TRANSFER),
+        (New::INDEX_INPUT, vk::PipelineStageFlags::VERTEX_INPUT),
+        (New::VERTEX_ATTRIBUTE_INPUT, vk::PipelineStageFlags::VERTEX_INPUT),
+        (New::PRE_RASTERIZATION_SHADERS, vk::PipelineStageFlags::ALL_GRAPHICS),
+    ] {
+        if rest.contains(new) {
+            old |= containing;
+            rest &= !new;
+        }
+    }
+    // Stages of extensions that Vulkan 1.0 cannot name.
+    if rest.is_empty() { old } else { old | vk::PipelineStageFlags::ALL_COMMANDS }
+}
+
+/// Accesses, in the same way.
+fn accesses(all: vk::AccessFlags2) -> vk::AccessFlags {
+    use vk::AccessFlags2 as New;
+    let mut old = vk::AccessFlags::from_raw((all.as_raw() & SHARED) as u32);
+    let mut rest = New::from_raw(all.as_raw() & !SHARED);
+    for (new, containing) in [
+        (New::SHADER_SAMPLED_READ, vk::AccessFlags::SHADER_READ),
+        (New::SHADER_STORAGE_READ, vk::AccessFlags::SHADER_READ),
+        (New::SHADER_STORAGE_WRITE, vk::AccessFlags::SHADER_WRITE),
+    ] {
+        if rest.contains(new) {
+            old |= containing;
+            rest &= !new;
+        }
+    }
+    let any = vk::AccessFlags::MEMORY_READ | vk::AccessFlags::MEMORY_WRITE;
+    if rest.is_empty() { old } else { old | any }
+}
+
+/// Barriers of one command: each waits for the stages of all before it, and all after it wait.
+#[derive(Default)]
+pub(in crate::gpu) struct Barriers {
+    from: vk::PipelineStageFlags2,
+    to: vk::PipelineStageFlags2,
+    memory: Vec<vk::MemoryBarrier<'static>>,
+    buffers: Vec<vk::BufferMemoryBarrier<'static>>,
+    images: Vec<vk::ImageMemoryBarrier<'static>>,
+}
+
+impl Barriers {
+    /// Adds barriers of memory.
+    pub(in crate::gpu) fn memory(mut self, all: &[vk::MemoryBarrier2<'_>]) -> Self {
+        for new in all {
+            self.from |= new.src_stage_mask;
+            self.to |= new.dst_stage_mask;
+            self.memory.push(
+                vk::MemoryBarrier::default()
+                    .src_access_mask(accesses(new.src_access_mask))
+                    .dst_access_mask(accesses(new.dst_access_mask)),
+            );
+        }
+        self
+    }
+
+    /// Adds barriers of buffers.
+    pub(in crate::gpu) fn buffers(mut self, all: &[vk::BufferMemoryBarrier2<'_>]) -> Self {
+        for new in all {
+            self.from |= new.src_stage_mask;
+            self.to |= new.dst_stage_mask;
+            self.buffers.push(
+                vk::BufferMemoryBarrier::default()
+                    .src_access_mask(accesses(new.src_access_mask))
+                    .dst_access_mask(accesses(new.dst_access_mask))
+                    .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+                    .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+                    .buffer(new.buffer)
+                    .offset(new.offset)
+                    .size(new.size),
+            );
+        }
+        self
+    }
+
+    /// Adds barriers of images.
+    pub(in crate::gpu) fn images(mut self, all: &[vk::ImageMemoryBarrier2<'_>]) -> Self {
+        for new in all {
+            self.from |= new.src_stage_mask;
+            self.to |= new.dst_stage_mask;
+            self.images.push(
+                vk::ImageMemoryBarrier::default()
+                    .src_access_mask(accesses(new.src_access_mask))
+                    .dst_access_mask(accesses(new.dst_access_mask))
+                    .old_layout(new.old_layout)
+                    .new_layout(new.new_layout)
+                    .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+                    .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+                    .image(new.image)
+                    .subresource_range(new.subresource_range),
+            );
+        }
+        self
+    }
+
+    /// Records them; nothing where there are none.
+    ///
+    /// # Safety
+    /// `commands` is being recorded outside a render pass for a family that supports the stages; images and buffers are
+    /// alive and in the stated layouts.
+    pub(in crate::gpu) unsafe fn record(&self, device: &ash::Device, commands: vk::CommandBuffer) {
+        if self.memory.is_empty() && self.buffers.is_empty() && self.images.is_empty() {
+            return;
+        }
+        let or =
+            |stages: vk::PipelineStageFlags, none| if stages.is_empty() { none } else { stages };
+        let from = or(stages(self.from), vk::PipelineStageFlags::TOP_OF_PIPE);
+        let to = or(stages(self.to), vk::PipelineStageFlags::BOTTOM_OF_PIPE);
+        let Self { memory, buffers, images, .. } = self;
+        let flags = vk::DependencyFlags::empty();
+        // SAFETY: as the caller guarantees.
+        unsafe {
+            device.cmd_pipeline_barrier(commands, from, to, flags, memory, buffers, images);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Each new flag becomes one that contains it; unknown ones become all.
+    #[test]
+    fn new_stages_and_accesses_become_old_ones() {
+        use vk::{AccessFlags as OldAccess, AccessFlags2 as Access};
+        use vk::{PipelineStageFlags as OldStage, PipelineStageFlags2 as Stage};
+        for (new, old) in [
+            (Stage::NONE, OldStage::empty()),
+            (Stage::COMPUTE_SHADER, OldStage::COMPUTE_SHADER),
+            (Stage::ALL_COMMANDS | Stage::HOST, OldStage::ALL_COMMANDS | OldStage::HOST),
+            (Stage::COPY | Stage::CLEAR, OldStage::TRANSFER),
+            (Stage::BLIT | Stage::DRAW_INDIRECT, OldStage::TRANSFER | OldStage::DRAW_INDIRECT),
+            (Stage::INDEX_INPUT, OldStage::VERTEX_INPUT),
+            (Stage::PRE_RASTERIZATION_SHADERS, OldStage::ALL_GRAPHICS),
+            (Stage::from_raw(1 << 60), OldStage::ALL_COMMANDS),
+        ] {
+            assert_eq!(stages(new), old, "{new:?}");
+        }
+        let any = OldAccess::MEMORY_READ | OldAccess::MEMORY_WRITE;
+        for (new, old) in [
+            (Access::NONE, OldAccess::empty()),
+            (Access::SHADER_SAMPLED_READ, OldAccess::SHADER_READ),
+            (
+                Access::SHADER_STORAGE_READ | Access::SHADER_STORAGE_WRITE,
+                OldAccess::SHADER_READ | OldAccess::SHADER_WRITE,
+            ),
+            (Access::MEMORY_READ | Access::MEMORY_WRITE, any),
+            (Access::TRANSFER_READ, OldAccess::TRANSFER_READ),
+            (Access::from_raw(1 << 60), any),
+        ] {
+            assert_eq!(accesses(new), old, "{new:?}");
+        }
+    }
+}

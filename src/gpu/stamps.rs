@@ -1,0 +1,139 @@
+//! GPU times of one frame in flight.
+
+use ash::vk;
+
+use super::allocator::MemoryUse;
+use super::barriers::Barriers;
+use super::memory::{Backed, Memory};
+use super::{Host, failed, requirements};
+use crate::Result;
+
+/// Timestamps that a command buffer writes, and a buffer that it copies them to. So the host neither resets nor reads
+/// queries: a device needs no `hostQueryReset`.
+pub(in crate::gpu) struct Stamps {
+    queries: vk::QueryPool,
+    /// By query: the ticks, and 1 if they are there.
+    copied: Backed,
+    tick_ns: f64,
+    /// The valid bits of ticks.
+    mask: u64,
+}
+
+impl Stamps {
+    /// For that many timestamps; none where the host's queue family has no timestamps.
+    pub(in crate::gpu) fn new(
+        host: &Host,
+        memory: &mut Memory,
+        name: &str,
+        count: usize,
+    ) -> Result<Option<Self>> {
+        let Some((tick_ns, bits)) = requirements::timestamps(host) else { return Ok(None) };
+        let mask = u64::MAX >> (64 - bits.min(64));
+        let bytes = count as u64 * 16;
+        let usage = vk::BufferUsageFlags::TRANSFER_DST;
+        let copied = memory.buffer("timestamps", bytes, usage, MemoryUse::Readback)?;
+        let queries = vk::QueryPool::null();
+        let mut stamps = Self { queries, copied, tick_ns, mask };
+        let info = vk::QueryPoolCreateInfo::default()
+            .query_type(vk::QueryType::TIMESTAMP)
+            .query_count(count as u32);
+        // SAFETY: the device is alive.
+        match unsafe { host.device.create_query_pool(&info, None) } {
+            Ok(queries) => {
+                stamps.queries = queries;
+                host.name(queries, name);
+                Ok(Some(stamps))
+            }
+            Err(result) => {
+                stamps.free(host, memory);
+                Err(failed("making a frame's timestamps")(result))
+            }
+        }
+    }
+
+    /// Records that `count` timestamps follow. Until they have been copied, [`ns`](Self::ns) returns none.
+    ///
+    /// # Safety
+    /// `commands` is being recorded outside a render pass; the last recording with these timestamps has run.
+    pub(in crate::gpu) unsafe fn begin(
+        &mut self,
+        device: &ash::Device,
+        commands: vk::CommandBuffer,
+        count: usize,
+    ) {
+        if let Some(bytes) = self.copied.mapped() {
+            bytes.fill(0);
+        }
+        // SAFETY: as the caller guarantees; the pool has at least that many queries.
+        unsafe { device.cmd_reset_query_pool(commands, self.queries, 0, count as u32) };
+    }
+
+    /// Records one timestamp, after earlier commands have finished this stage.
+    ///
+    /// # Safety
+    /// `commands` is being recorded for the host's family, after [`begin`](Self::begin).
+    pub(in crate::gpu) unsafe fn write(
+        &self,
+        device: &ash::Device,
+        commands: vk::CommandBuffer,
+        stage: vk::PipelineStageFlags,
+        index: usize,
+    ) {
+        // SAFETY: as the caller guarantees; the query has been reset.
+        unsafe { device.cmd_write_timestamp(commands, stage, self.queries, index as u32) };
+    }
+
+    /// Records the copy of all `count` timestamps to the host.
+    ///
+    /// # Safety
+    /// As [`begin`](Self::begin), after all of them have been written.
+    pub(in crate::gpu) unsafe fn end(
+        &self,
+        device: &ash::Device,
+        commands: vk::CommandBuffer,
+        count: usize,
+    ) {
+        let flags = vk::QueryResultFlags::TYPE_64
+            | vk::QueryResultFlags::WITH_AVAILABILITY
+            | vk::QueryResultFlags::WAIT;
+        let (buffer, count) = (self.copied.buffer, count as u32);
+        let to_host = [vk::MemoryBarrier2::default()
+            .src_stage_mask(vk::PipelineStageFlags2::COPY)
+            .src_access_mask(vk::AccessFlags2::TRANSFER_WRITE)
+            .dst_stage_mask(vk::PipelineStageFlags2::HOST)
+            .dst_access_mask(vk::AccessFlags2::HOST_READ)];
+        // SAFETY: as the caller guarantees; the buffer holds two words for each query.
+        unsafe {
+            device.cmd_copy_query_pool_results(
+                commands,
+                self.queries,
+                0,
+                count,
+                buffer,
+                0,
+                16,
+                flags,
+            );
+            Barriers::default().memory(&to_host).record(device, commands);
+        }
+    }
+
+    /// Nanoseconds between each timestamp and the next, of `count`. None until all have been copied.
+    pub(in crate::gpu) fn ns(&self, count: usize) -> Option<Vec<f64>> {
+        let ticks: Option<Vec<u64>> = (0..count)
+            .map(|query| {
+                let is_there = self.copied.word(2 * query + 1)? != 0;
+                self.copied.word(2 * query).filter(|_| is_there)
+            })
+            .collect();
+        let ns = |pair: &[u64]| (pair[1].wrapping_sub(pair[0]) & self.mask) as f64 * self.tick_ns;
+        Some(ticks?.windows(2).map(ns).collect())
+    }
+
+    /// Destroys them. The device must be done with them.
+    pub(in crate::gpu) fn free(mut self, host: &Host, memory: &mut Memory) {
+        // SAFETY: made by this device; the caller guarantees that nothing in flight uses it. Null is allowed.
+        unsafe { host.device.destroy_query_pool(self.queries, None) };
+        memory.free(&mut self.copied);
+    }
+}
