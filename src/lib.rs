@@ -55,7 +55,7 @@
 //!
 //! [`gpu::requirements`] lists what the device must be created with. [`gpu`] has a section each on states, formats, queue
 //! families, buffers instead of images, and lights that change from frame to frame. Complete programs:
-//! `examples/ash_host.rs` with ash, `examples/wgpu` with wgpu, and `crates/capi/tests/c/host.c` in C with
+//! `examples/ash_host.rs` with ash, `hosts/ridgelight-wgpu` with wgpu, and `crates/capi/tests/c/host.c` in C with
 //! `crates/capi/include/ridgelight.h`.
 //!
 //! # Modules and crates

@@ -59,8 +59,8 @@ const HOSTS: [(&str, &str, &str); 4] = [
     ),
     (
         "Rust, `wgpu`",
-        "examples/wgpu/src/main.rs",
-        "wgpu's device and textures; a wgpu pass samples the light",
+        "hosts/ridgelight-wgpu/examples/wgpu_light.rs",
+        "wgpu's device and textures, by the crate `ridgelight-wgpu`; a wgpu pass samples the light",
     ),
 ];
 
@@ -84,7 +84,7 @@ fn hosts() -> Result<String> {
     }
     Ok(out
         + "\nTests run each one and compare its bytes with the command line's, without a validation message \
-           (`tests/gpu/embedding/ash_host.rs`, `crates/capi/tests/c`, `examples/wgpu/check`).\n")
+           (`tests/gpu/embedding/ash_host.rs`, `crates/capi/tests/c`, `hosts/ridgelight-wgpu/check`).\n")
 }
 
 fn sizes() -> Result<String> {

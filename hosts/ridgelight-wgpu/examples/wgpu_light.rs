@@ -1,0 +1,135 @@
+//! Light of a height field in a texture of wgpu's, read by a wgpu pass. `wgpu_light OUT.exr` writes what the pass has read.
+//! `hosts/ridgelight-wgpu/check` runs it.
+
+use ridgelight::plan::{self, Picture};
+use ridgelight::scene::Quality;
+use ridgelight_io as files;
+use ridgelight_io::{Channels, Layer};
+use ridgelight_wgpu::{Renderer, limits, texture};
+
+#[expect(dead_code, reason = "of the host by ash only its scene")]
+#[path = "../../../examples/ash_host.rs"]
+mod ash_host;
+use ash_host::{COLS, ROWS};
+
+type Any<T> = Result<T, Box<dyn std::error::Error>>;
+
+const SIZE: wgpu::Extent3d =
+    wgpu::Extent3d { width: COLS as u32, height: ROWS as u32, depth_or_array_layers: 1 };
+
+/// What wgpu does with the light: each texel is fetched by a compute shader and put in a buffer.
+struct Reader {
+    pipeline: wgpu::ComputePipeline,
+    group: wgpu::BindGroup,
+    texels: wgpu::Buffer,
+    mapped: wgpu::Buffer,
+}
+
+const READ: &str = "
+@group(0) @binding(0) var light: texture_2d<f32>;
+@group(0) @binding(1) var<storage, read_write> texels: array<f32>;
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) at: vec3u) {
+    let size = textureDimensions(light);
+    if (all(at.xy < size)) {
+        texels[at.y * size.x + at.x] = textureLoad(light, at.xy, 0).r;
+    }
+}";
+
+impl Reader {
+    fn new(device: &wgpu::Device, light: &wgpu::Texture) -> Self {
+        let buffer = |usage| {
+            let size = 4 * (ROWS * COLS) as u64;
+            let (label, mapped_at_creation) = (Some("texels"), false);
+            device.create_buffer(&wgpu::BufferDescriptor { label, size, usage, mapped_at_creation })
+        };
+        let texels = buffer(wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);
+        let mapped = buffer(wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST);
+        let source = wgpu::ShaderSource::Wgsl(READ.into());
+        let shader = wgpu::ShaderModuleDescriptor { label: None, source };
+        let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: None,
+            layout: None,
+            module: &device.create_shader_module(shader),
+            entry_point: None,
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            cache: None,
+        });
+        let view = light.create_view(&wgpu::TextureViewDescriptor::default());
+        let resources = [wgpu::BindingResource::TextureView(&view), texels.as_entire_binding()];
+        let entries: Vec<_> = (0..)
+            .zip(resources)
+            .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
+            .collect();
+        let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: None,
+            layout: &pipeline.get_bind_group_layout(0),
+            entries: &entries,
+        });
+        Self { pipeline, group, texels, mapped }
+    }
+
+    fn record(&self, device: &wgpu::Device) -> wgpu::CommandBuffer {
+        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, &self.group, &[]);
+        pass.dispatch_workgroups(SIZE.width.div_ceil(8), SIZE.height.div_ceil(8), 1);
+        drop(pass);
+        encoder.copy_buffer_to_buffer(&self.texels, 0, &self.mapped, 0, self.texels.size());
+        encoder.finish()
+    }
+
+    fn values(&self, device: &wgpu::Device) -> Any<Vec<f32>> {
+        self.mapped.map_async(wgpu::MapMode::Read, .., |mapped| mapped.expect("mapped"));
+        device.poll(wgpu::PollType::wait_indefinitely())?;
+        let bytes = self.mapped.get_mapped_range(..);
+        Ok(bytes.as_chunks::<4>().0.iter().map(|b| f32::from_ne_bytes(*b)).collect())
+    }
+}
+
+fn main() -> Any<()> {
+    let out = std::env::args_os().nth(1).ok_or("usage: wgpu_light OUT.exr")?;
+    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
+    descriptor.backends = wgpu::Backends::VULKAN;
+    // The layer, where one listens, is the environment's to choose.
+    descriptor.flags = wgpu::InstanceFlags::empty();
+    let instance = wgpu::Instance::new(descriptor);
+    let adapter =
+        pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default()))?;
+    let (device, queue) =
+        pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default()))?;
+
+    let scene = ash_host::scene()?;
+    let plan = plan::picture(&scene, &Quality::default(), &limits(&device)?, Picture::default())?;
+    let none = wgpu::TextureUsages::empty();
+    let heights = texture(&device, &queue, plan.inputs().next().ok_or("no input")?.1, none)?;
+    let sampled = wgpu::TextureUsages::TEXTURE_BINDING;
+    let light = texture(&device, &queue, plan.outputs().next().ok_or("no output")?.1, sampled)?;
+    let bytes: Vec<u8> = scene.field.heights_m().iter().flat_map(|v| v.to_ne_bytes()).collect();
+    let layout = wgpu::TexelCopyBufferLayout {
+        offset: 0,
+        bytes_per_row: Some(4 * SIZE.width),
+        rows_per_image: None,
+    };
+    queue.write_texture(heights.as_image_copy(), &bytes, layout, SIZE);
+
+    let mut renderer = Renderer::new(&device, &queue, plan)?;
+    // More often than there are frames in flight.
+    for _ in 0..3 {
+        renderer.submit(&[&heights], &[&light])?;
+    }
+    let wrong = renderer.submit(&[&light], &[&heights]);
+    let refused = wrong.err().ok_or("heights were taken for light")?;
+    println!("refused: {refused}");
+
+    let reader = Reader::new(&device, &light);
+    queue.submit([reader.record(&device)]);
+    let grey: Vec<[f32; 3]> = reader.values(&device)?.into_iter().map(|v| [v; 3]).collect();
+    let layer = Layer { name: String::new(), channels: Channels::Rgb(&grey) };
+    files::write_exr(out.as_ref(), ROWS, COLS, &[layer], &[])?;
+    for timing in renderer.timings().ok_or("no times of a submission that has run")? {
+        println!("{} {:.3} ms", timing.label, timing.ns / 1e6);
+    }
+    Ok(())
+}
