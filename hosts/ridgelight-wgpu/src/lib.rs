@@ -1,33 +1,4 @@
-//! Light of height fields in wgpu programs: a [`Plan`] recorded for a device and textures of wgpu's.
-//!
-//! ```no_run
-//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
-//! # let (device, queue): (wgpu::Device, wgpu::Queue) = todo!();
-//! # let scene: ridgelight::scene::Scene = todo!();
-//! use ridgelight::plan::{self, Picture};
-//! use ridgelight::scene::Quality;
-//! use ridgelight_wgpu::{Renderer, limits, texture};
-//!
-//! let plan = plan::picture(&scene, &Quality::default(), &limits(&device)?, Picture::default())?;
-//! let used = wgpu::TextureUsages::TEXTURE_BINDING;
-//! let heights = texture(&device, &queue, plan.inputs().next().unwrap().1, used)?;
-//! let light = texture(&device, &queue, plan.outputs().next().unwrap().1, used)?;
-//! // Write heights here, by wgpu, now or in any frame.
-//! let mut renderer = Renderer::new(&device, &queue, plan)?;
-//! renderer.submit(&[&heights], &[&light])?;
-//! // Any later submission of wgpu's may read `light`.
-//! # Ok(())
-//! # }
-//! ```
-//!
-//! # Synchronisation
-//!
-//! Each submission has two command buffers. In the first, wgpu brings the textures to the uses that the second expects,
-//! sampled inputs and storage outputs, and records that they are in them. The second is recorded by Ridgelight, which
-//! begins with a barrier from these uses and ends with a barrier to them. So wgpu's knowledge of each texture holds
-//! before and after, and its next use of a texture waits for Ridgelight's writes. Nothing is copied through the CPU.
-//!
-//! wgpu does not know which textures the second command buffer uses. A [`Renderer`] keeps them alive until it has run.
+#![doc = include_str!("../../../docs/embedding/wgpu.md")]
 
 use ash::vk;
 use ridgelight::gpu::{self, Host, ImageArg, ImageState, Timing};
@@ -166,7 +137,7 @@ pub struct Renderer {
     device: wgpu::Device,
     queue: wgpu::Queue,
     host: Host,
-    /// None only while it is dropped.
+    /// None only while it is made and dropped.
     recorder: Option<gpu::Renderer>,
     slots: [Slot; SLOTS],
     /// The slot of the last submission.
@@ -179,10 +150,17 @@ impl Renderer {
     /// # Errors
     /// As [`limits`], or a device out of memory.
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, plan: Plan) -> Result<Self> {
-        let host = host(device)?;
-        let recorder = Some(gpu::Renderer::new(&host, plan, SLOTS)?);
+        let mut host = host(device)?;
+        let info = vk::PipelineCacheCreateInfo::default();
+        // SAFETY: the device is alive; `drop` destroys the cache.
+        let cache = unsafe { host.device.create_pipeline_cache(&info, None) };
+        // Without one, pipelines are compiled each time.
+        host.pipeline_cache = cache.unwrap_or_default();
         let (device, queue) = (device.clone(), queue.clone());
-        Ok(Self { device, queue, host, recorder, slots: Default::default(), last: 0 })
+        let slots = Default::default();
+        let mut renderer = Self { device, queue, host, recorder: None, slots, last: 0 };
+        renderer.recorder = Some(gpu::Renderer::new(&renderer.host, plan, SLOTS)?);
+        Ok(renderer)
     }
 
     fn recorder(&mut self) -> &mut gpu::Renderer {
@@ -194,12 +172,27 @@ impl Renderer {
         self.recorder.as_ref().expect("alive until dropped").plan()
     }
 
-    /// [`gpu::Renderer::replace_plan`]: other colours, directions and sizes of lights, without a wait.
+    /// Sets another plan. Returns the passes that must run next if the inputs are unchanged.
+    ///
+    /// Where colours, directions and sizes of lights differ this waits for nothing ([`gpu::Renderer::replace_plan`]).
+    /// Where images or passes differ (a sun in another octant, another number of lights, another size) it waits for
+    /// earlier submissions and makes new resources; pipelines come from a cache.
     ///
     /// # Errors
-    /// A plan that needs a renderer of its own (what differs is named).
-    pub fn replace_plan(&mut self, plan: Plan) -> Result<Vec<usize>> {
-        self.recorder().replace_plan(plan)
+    /// A device out of memory; the old plan stays.
+    pub fn set_plan(&mut self, plan: Plan) -> Result<Vec<usize>> {
+        if let Ok(passes) = self.recorder().replace_plan(plan.clone()) {
+            return Ok(passes);
+        }
+        for slot in 0..SLOTS {
+            self.finish(slot)?;
+        }
+        let all = (0..plan.passes.len()).collect();
+        let made = gpu::Renderer::new(&self.host, plan, SLOTS)?;
+        if let Some(old) = self.recorder.replace(made) {
+            old.destroy();
+        }
+        Ok(all)
     }
 
     /// Submits the whole plan. `inputs` and `outputs` are the plan's, in its order.
@@ -215,7 +208,7 @@ impl Renderer {
         self.submit_passes(inputs, outputs, &all)
     }
 
-    /// Submits only some passes: those that [`replace_plan`](Self::replace_plan) returned, say.
+    /// Submits only some passes: those that [`set_plan`](Self::set_plan) returned, say.
     ///
     /// # Errors
     /// As [`submit`](Self::submit), and those of [`gpu::Renderer::record_passes`].
@@ -334,6 +327,8 @@ impl Drop for Renderer {
         if let Some(recorder) = self.recorder.take() {
             recorder.destroy();
         }
+        // SAFETY: made in `new`, or null; nothing uses it any more.
+        unsafe { self.host.device.destroy_pipeline_cache(self.host.pipeline_cache, None) };
     }
 }
 

@@ -45,7 +45,7 @@ fn camera() -> Result<String> {
 }
 
 /// Programs that an integrator would write, whole.
-const HOSTS: [(&str, &str, &str); 4] = [
+const HOSTS: [(&str, &str, &str); 5] = [
     ("Rust, `ash`", "examples/ash_host.rs", "the code above and an engine around it"),
     (
         "C, plain Vulkan",
@@ -61,6 +61,11 @@ const HOSTS: [(&str, &str, &str); 4] = [
         "Rust, `wgpu`",
         "hosts/ridgelight-wgpu/examples/wgpu_light.rs",
         "wgpu's device and textures, by the crate `ridgelight-wgpu`; a wgpu pass samples the light",
+    ),
+    (
+        "Rust, Bevy",
+        "hosts/bevy_ridgelight/examples/dunes.rs",
+        "a window with travelling dunes, by the crate `bevy_ridgelight`",
     ),
 ];
 
@@ -84,7 +89,8 @@ fn hosts() -> Result<String> {
     }
     Ok(out
         + "\nTests run each one and compare its bytes with the command line's, without a validation message \
-           (`tests/gpu/embedding/ash_host.rs`, `crates/capi/tests/c`, `hosts/ridgelight-wgpu/check`).\n")
+           (`tests/gpu/embedding/ash_host.rs`, `crates/capi/tests/c`, `hosts/ridgelight-wgpu/check`). The tests of \
+           Bevy compare bytes with the core's (`hosts/bevy_ridgelight/check`).\n")
 }
 
 fn sizes() -> Result<String> {

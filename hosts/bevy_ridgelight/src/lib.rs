@@ -1,0 +1,146 @@
+#![doc = include_str!("../../../docs/embedding/bevy.md")]
+
+mod light;
+mod terrain;
+
+use bevy::asset::RenderAssetUsages;
+use bevy::prelude::*;
+use bevy::render::extract_component::{ExtractComponent, ExtractComponentPlugin};
+use bevy::render::render_resource::{Extent3d, TextureDimension, TextureFormat, TextureUsages};
+
+pub use terrain::TerrainMaterial;
+
+/// Lights every [`HeightField`] that has a [`FieldLight`].
+pub struct RidgelightPlugin;
+
+impl Plugin for RidgelightPlugin {
+    fn build(&self, app: &mut App) {
+        app.add_message::<HeightEdit>().add_plugins((
+            ExtractComponentPlugin::<HeightField>::default(),
+            ExtractComponentPlugin::<FieldLight>::default(),
+        ));
+        terrain::build(app);
+        light::build(app);
+    }
+}
+
+/// A height field: heights at grid points, and how to light them.
+#[derive(Component, ExtractComponent, Clone, Debug)]
+#[require(Transform, Visibility)]
+pub struct HeightField {
+    /// One texel per grid point: R32Float, R16Float or R16Unorm, with usage TEXTURE_BINDING ([`heights_image`]). Heights
+    /// in world units.
+    pub heights: Handle<Image>,
+    /// Columns and rows.
+    pub size: UVec2,
+    /// Distance between grid points, world units.
+    pub cell: f32,
+    /// Azimuths of sky and bent normals, 4 to 1024. Time and memory in proportion.
+    pub azimuths: u32,
+    /// Angular diameter of the sun, radians; 0 has hard shadows.
+    pub sun_diameter: f32,
+    /// Whether [`FieldLight::bent`] is computed.
+    pub bent_normals: bool,
+    /// Azimuths of [`FieldLight::horizons`], 4 to 1024; 0 for none.
+    pub horizons: u32,
+    /// Raise it after writing to the image of heights on the GPU.
+    pub revision: u32,
+}
+
+impl HeightField {
+    /// A field with 32 azimuths, a sun of 0.53 degrees, and neither bent normals nor horizons.
+    pub fn new(heights: Handle<Image>, size: UVec2, cell: f32) -> Self {
+        Self {
+            heights,
+            size,
+            cell,
+            azimuths: 32,
+            sun_diameter: 0.53_f32.to_radians(),
+            bent_normals: false,
+            horizons: 0,
+            revision: 0,
+        }
+    }
+
+    /// A level grid with a vertex at each grid point, which [`TerrainMaterial`] raises. The first grid point is at the
+    /// origin.
+    pub fn mesh(&self) -> Mesh {
+        terrain::mesh(self.size, self.cell)
+    }
+
+    /// Texels of its light.
+    fn format(&self) -> TextureFormat {
+        // Light from directions has colours, and then all layers have.
+        if self.bent_normals { TextureFormat::Rgba32Float } else { TextureFormat::R32Float }
+    }
+}
+
+/// The light of a [`HeightField`], in images that the GPU fills. Each has the field's size.
+#[derive(Component, ExtractComponent, Clone, Debug)]
+pub struct FieldLight {
+    /// Light from the sun, in channel R: radiance of white ground under a sun of irradiance 1, [0..1/π]; shadows and the
+    /// cosine included.
+    pub sun: Handle<Image>,
+    /// Sky visibility, in channel R: radiance of white ground under a sky of radiance 1, [0..1]; 1 on open level ground.
+    pub sky: Handle<Image>,
+    /// Where [`HeightField::bent_normals`]: radiance of white ground under a sky whose radiance is (1 + d) / 2 in each
+    /// channel, for direction d in Bevy's axes. The mean unoccluded direction, weighted by the cosine, is that of
+    /// 2 · `bent`.rgb - `sky`.r.
+    pub bent: Option<Handle<Image>>,
+    /// Where [`HeightField::horizons`] is not 0: elevation of the horizon, radians, a layer for each azimuth,
+    /// counter-clockwise from east in even steps.
+    pub horizons: Option<Handle<Image>>,
+}
+
+impl FieldLight {
+    /// Makes the images for a field.
+    pub fn new(field: &HeightField, images: &mut Assets<Image>) -> Self {
+        let mut image = |format: TextureFormat, layers: u32| {
+            let size = Extent3d {
+                width: field.size.x,
+                height: field.size.y,
+                depth_or_array_layers: layers,
+            };
+            let texel = [0; 16];
+            let bytes = if format == TextureFormat::R32Float { 4 } else { 16 };
+            let usages = RenderAssetUsages::RENDER_WORLD;
+            let mut image =
+                Image::new_fill(size, TextureDimension::D2, &texel[..bytes], format, usages);
+            image.texture_descriptor.usage |= TextureUsages::STORAGE_BINDING
+                | TextureUsages::TEXTURE_BINDING
+                | TextureUsages::COPY_SRC;
+            images.add(image)
+        };
+        let format = field.format();
+        Self {
+            sun: image(format, 1),
+            sky: image(format, 1),
+            bent: field.bent_normals.then(|| image(format, 1)),
+            horizons: (field.horizons > 0).then(|| image(TextureFormat::R32Float, field.horizons)),
+        }
+    }
+}
+
+/// New heights in a rectangle of a field. Only lines that can reach it are swept again.
+#[derive(Message, Clone, Debug)]
+pub struct HeightEdit {
+    /// The entity of the field, whose image is of R32Float.
+    pub field: Entity,
+    /// First column and row.
+    pub corner: UVec2,
+    /// Columns and rows.
+    pub size: UVec2,
+    /// Heights, row after row.
+    pub heights: Vec<f32>,
+}
+
+/// An image of heights, row after row from the north.
+///
+/// # Panics
+/// Another number of heights than texels.
+pub fn heights_image(size: UVec2, heights: &[f32]) -> Image {
+    let bytes: Vec<u8> = heights.iter().flat_map(|h| h.to_ne_bytes()).collect();
+    let extent = Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 };
+    let usages = RenderAssetUsages::default();
+    Image::new(extent, TextureDimension::D2, bytes, TextureFormat::R32Float, usages)
+}

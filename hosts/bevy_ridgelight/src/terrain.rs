@@ -1,0 +1,129 @@
+//! The material and mesh of a height field.
+
+use bevy::asset::{RenderAssetUsages, embedded_asset};
+use bevy::camera::visibility::NoFrustumCulling;
+use bevy::mesh::{Indices, PrimitiveTopology};
+use bevy::prelude::*;
+use bevy::render::render_resource::AsBindGroup;
+use bevy::shader::ShaderRef;
+
+use crate::light::Sun;
+use crate::{FieldLight, HeightField};
+
+/// Draws a [`HeightField`] with its [`FieldLight`]: a diffuse surface under the sun and the sky. Bevy's own shadow maps
+/// are not needed.
+#[derive(Asset, TypePath, AsBindGroup, Clone, Debug)]
+pub struct TerrainMaterial {
+    /// Colour of the ground, and that of sun (lux) and sky (cd/m²), which the plugin sets in each frame.
+    #[uniform(0)]
+    base: LinearRgba,
+    #[uniform(0)]
+    sun_colour: LinearRgba,
+    #[uniform(0)]
+    sky_colour: LinearRgba,
+    #[texture(1, sample_type = "float", filterable = false, visibility(vertex, fragment))]
+    heights: Handle<Image>,
+    #[texture(2, sample_type = "float", filterable = false)]
+    sun: Handle<Image>,
+    #[texture(3, sample_type = "float", filterable = false)]
+    sky: Handle<Image>,
+}
+
+impl TerrainMaterial {
+    /// White ground.
+    pub fn new(field: &HeightField, light: &FieldLight) -> Self {
+        Self {
+            base: LinearRgba::WHITE,
+            sun_colour: LinearRgba::BLACK,
+            sky_colour: LinearRgba::BLACK,
+            heights: field.heights.clone(),
+            sun: light.sun.clone(),
+            sky: light.sky.clone(),
+        }
+    }
+
+    /// The same with another colour of the ground.
+    pub fn with_colour(self, colour: Color) -> Self {
+        Self { base: colour.to_linear(), ..self }
+    }
+}
+
+impl Material for TerrainMaterial {
+    fn vertex_shader() -> ShaderRef {
+        "embedded://bevy_ridgelight/terrain.wgsl".into()
+    }
+
+    fn fragment_shader() -> ShaderRef {
+        "embedded://bevy_ridgelight/terrain.wgsl".into()
+    }
+
+    // Both would need the heights, too.
+    fn enable_prepass() -> bool {
+        false
+    }
+
+    fn enable_shadows() -> bool {
+        false
+    }
+}
+
+pub(crate) fn build(app: &mut App) {
+    embedded_asset!(app, "terrain.wgsl");
+    app.add_plugins(MaterialPlugin::<TerrainMaterial>::default())
+        .add_systems(PostUpdate, (set_colours, keep_in_view));
+}
+
+fn set_colours(
+    sun: Res<Sun>,
+    sky: Res<GlobalAmbientLight>,
+    mut materials: ResMut<Assets<TerrainMaterial>>,
+) {
+    let sky = sky.color.to_linear() * sky.brightness;
+    let is_new = |material: &TerrainMaterial| {
+        material.sun_colour != sun.colour || material.sky_colour != sky
+    };
+    let changed: Vec<_> = materials.iter().filter(|(_, m)| is_new(m)).map(|(id, _)| id).collect();
+    for id in changed {
+        if let Some(mut material) = materials.get_mut(id) {
+            material.sun_colour = sun.colour;
+            material.sky_colour = sky;
+        }
+    }
+}
+
+/// The bounds of the level mesh are not those of the ground.
+fn keep_in_view(
+    fields: Query<Entity, (With<HeightField>, Without<NoFrustumCulling>)>,
+    mut commands: Commands,
+) {
+    for field in fields {
+        commands.entity(field).insert(NoFrustumCulling);
+    }
+}
+
+pub(crate) fn mesh(size: UVec2, cell: f32) -> Mesh {
+    let points = (0..size.y).flat_map(|row| (0..size.x).map(move |col| UVec2::new(col, row)));
+    let last = (size - 1).max(UVec2::ONE).as_vec2();
+    let mut positions = Vec::new();
+    let mut uvs = Vec::new();
+    for point in points {
+        let at = point.as_vec2();
+        positions.push([at.x * cell, 0.0, at.y * cell]);
+        uvs.push((at / last).to_array());
+    }
+    let normals = vec![[0.0, 1.0, 0.0]; positions.len()];
+    let mut indices = Vec::new();
+    for row in 1..size.y {
+        for col in 1..size.x {
+            let [b, d] = [row * size.x + col, (row - 1) * size.x + col];
+            let [a, c] = [b - 1, d - 1];
+            // From north-west to south-east, as Ridgelight splits a cell.
+            indices.extend([c, a, b, c, b, d]);
+        }
+    }
+    Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::default())
+        .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, positions)
+        .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, normals)
+        .with_inserted_attribute(Mesh::ATTRIBUTE_UV_0, uvs)
+        .with_inserted_indices(Indices::U32(indices))
+}

@@ -1,0 +1,290 @@
+//! The light in Bevy's images and pictures, without a window, beside that of the core on the same driver.
+
+use std::sync::{Arc, Mutex};
+
+use bevy::asset::RenderAssetUsages;
+use bevy::camera::{Exposure, RenderTarget, ScalingMode};
+use bevy::core_pipeline::tonemapping::Tonemapping;
+use bevy::prelude::*;
+use bevy::render::RenderPlugin;
+use bevy::render::gpu_readback::{Readback, ReadbackComplete};
+use bevy::render::render_resource::{Extent3d, TextureDimension, TextureFormat, TextureUsages};
+use bevy::render::renderer::RenderDevice;
+use bevy::window::ExitCondition;
+use bevy::winit::WinitPlugin;
+use bevy_ridgelight::{
+    FieldLight, HeightEdit, HeightField, RidgelightPlugin, TerrainMaterial, heights_image,
+};
+use ridgelight::gpu::{Headless, HeadlessOptions};
+use ridgelight::plan::{self, Picture};
+use ridgelight::scene::{self, Lights, Quality, Scene, Surface};
+
+/// Rows of a multiple of 256 bytes, which a readback would pad otherwise.
+const SIZE: UVec2 = UVec2::new(128, 80);
+const CELL: f32 = 10.0;
+
+/// Hills of several sizes.
+fn heights() -> Vec<f32> {
+    let at = |i: u32| {
+        let [x, y] = [(i % SIZE.x) as f32, (i / SIZE.x) as f32];
+        let wave =
+            |length: f32, turn: f32| (x * turn.cos() / length + y * turn.sin() / length).sin();
+        60.0 * wave(14.0, 0.4) * wave(11.0, 2.0) + 12.0 * wave(3.1, 1.1) + 90.0
+    };
+    (0..SIZE.x * SIZE.y).map(at).collect()
+}
+
+fn sun_at(azimuth: f32, elevation: f32) -> Transform {
+    let [azimuth, elevation] = [azimuth, elevation].map(f32::to_radians);
+    let to_sun = Vec3::new(
+        elevation.cos() * azimuth.cos(),
+        elevation.sin(),
+        -elevation.cos() * azimuth.sin(),
+    );
+    Transform::default().looking_to(-to_sun, Vec3::Y)
+}
+
+/// The core's light of a scene: the layers of the sun and of the sky.
+fn expected(heights: &[f32], azimuth: f32, elevation: f32) -> [Vec<f32>; 2] {
+    // As Bevy has it after its transforms were propagated.
+    let to_sun = *GlobalTransform::from(sun_at(azimuth, elevation)).back();
+    let sun = scene::Sun {
+        azimuth_rad: f64::from((-to_sun.z).atan2(to_sun.x)),
+        elevation_rad: f64::from(to_sun.y.asin()),
+        diameter_rad: f64::from(0.53_f32.to_radians()),
+        irradiance: [1.0; 3],
+    };
+    let [rows, cols] = [SIZE.y as usize, SIZE.x as usize];
+    let field = scene::HeightField::unknown(rows, cols, [f64::from(CELL); 2]).expect("a field");
+    let lights = Lights { sky: Some([1.0; 3]), suns: vec![sun], ..Lights::default() };
+    let scene = Scene { field, surface: Surface::default(), lights };
+    let quality = Quality { azimuths: 32, ..Quality::default() };
+    let mut gpu = Headless::new(&HeadlessOptions::default()).expect("a device");
+    let wanted = Picture { light_layers: true, keeps_horizons: true, ..Picture::default() };
+    let plan = plan::picture(&scene, &quality, &gpu.report().limits, wanted).expect("a plan");
+    let names: Vec<_> = plan.outputs().map(|(_, output)| output.name.clone()).collect();
+    let mut frame = gpu.frame(plan, &[heights]).expect("a frame");
+    gpu.draw(&mut frame).expect("drawn");
+    let layers = ["direct.sun1", "direct.sky"].map(|name| {
+        let output = names.iter().position(|n| n == name).expect("a layer");
+        gpu.pixels(&frame, output).expect("texels").values
+    });
+    gpu.end(frame);
+    layers
+}
+
+/// Bevy without a window.
+fn app() -> App {
+    let mut app = App::new();
+    let window =
+        WindowPlugin { primary_window: None, exit_condition: ExitCondition::DontExit, ..default() };
+    let render = RenderPlugin { synchronous_pipeline_compilation: true, ..default() };
+    app.add_plugins(DefaultPlugins.set(window).set(render).disable::<WinitPlugin>())
+        .add_plugins(RidgelightPlugin);
+    app.finish();
+    app.cleanup();
+    app
+}
+
+/// Waits for the queue. wgpu waits only seconds when it is dropped, and then panics.
+fn end(app: &App) {
+    let device = app.world().resource::<RenderDevice>().wgpu_device();
+    device.poll(wgpu::PollType::wait_indefinitely()).expect("done");
+}
+
+fn spawn(
+    app: &mut App,
+    heights: &[f32],
+    change: impl FnOnce(&mut HeightField),
+) -> (Entity, FieldLight) {
+    let world = app.world_mut();
+    let image = world.resource_mut::<Assets<Image>>().add(heights_image(SIZE, heights));
+    let mut field = HeightField::new(image, SIZE, CELL);
+    change(&mut field);
+    let light = FieldLight::new(&field, &mut world.resource_mut::<Assets<Image>>());
+    let mesh = world.resource_mut::<Assets<Mesh>>().add(field.mesh());
+    let material = TerrainMaterial::new(&field, &light);
+    let material = world.resource_mut::<Assets<TerrainMaterial>>().add(material);
+    let entity = world.spawn((Mesh3d(mesh), MeshMaterial3d(material), field, light.clone())).id();
+    (entity, light)
+}
+
+/// The bytes of an image after some frames.
+fn bytes(app: &mut App, image: &Handle<Image>) -> Vec<u8> {
+    for _ in 0..3 {
+        app.update();
+    }
+    let found = Arc::new(Mutex::new(None));
+    let into = found.clone();
+    let reader = app
+        .world_mut()
+        .spawn(Readback::texture(image.clone()))
+        .observe(move |read: On<ReadbackComplete>| *into.lock().unwrap() = Some(read.data.clone()))
+        .id();
+    for _ in 0..100 {
+        app.update();
+        if found.lock().unwrap().is_some() {
+            break;
+        }
+    }
+    app.world_mut().despawn(reader);
+    let bytes = found.lock().unwrap().take();
+    bytes.expect("read within 100 frames")
+}
+
+fn floats(app: &mut App, image: &Handle<Image>) -> Vec<f32> {
+    let bytes = bytes(app, image);
+    bytes.as_chunks::<4>().0.iter().map(|word| f32::from_ne_bytes(*word)).collect()
+}
+
+fn same_bits(found: &[f32], expected: &[f32], what: &str) {
+    assert_eq!(found.len(), expected.len(), "{what}");
+    let differ = found.iter().zip(expected).filter(|(a, b)| a.to_bits() != b.to_bits()).count();
+    let worst = found.iter().zip(expected).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+    assert_eq!(differ, 0, "{what}: {differ} of {} texels differ, by {worst}", found.len());
+}
+
+/// Bit for bit the core's: at first, after the sun has moved a little and far, after an edit, and of new heights.
+#[test]
+fn light_is_that_of_the_core() {
+    let mut app = app();
+    let mut heights = heights();
+    let (entity, light) = spawn(&mut app, &heights, |_| {});
+    let sun = app.world_mut().spawn((DirectionalLight::default(), sun_at(140.0, 25.0))).id();
+    for (azimuth, elevation) in [(140.0, 25.0), (141.0, 26.0), (300.0, 40.0)] {
+        *app.world_mut().get_mut::<Transform>(sun).unwrap() = sun_at(azimuth, elevation);
+        let [of_sun, of_sky] = expected(&heights, azimuth, elevation);
+        let moved = format!("sun at {azimuth}");
+        same_bits(&floats(&mut app, &light.sun), &of_sun, &moved);
+        same_bits(&floats(&mut app, &light.sky), &of_sky, &moved);
+    }
+    let [corner, size] = [UVec2::new(40, 30), UVec2::new(7, 5)];
+    for row in 0..size.y {
+        for col in 0..size.x {
+            heights[((corner.y + row) * SIZE.x + corner.x + col) as usize] += 80.0;
+        }
+    }
+    let raised = (0..size.y).flat_map(|row| {
+        let from = ((corner.y + row) * SIZE.x + corner.x) as usize;
+        heights[from..from + size.x as usize].to_vec()
+    });
+    let edit = HeightEdit { field: entity, corner, size, heights: raised.collect() };
+    app.world_mut().write_message(edit);
+    let before = expected(&self::heights(), 300.0, 40.0);
+    let [of_sun, of_sky] = expected(&heights, 300.0, 40.0);
+    assert_ne!(before[0], of_sun);
+    same_bits(&floats(&mut app, &light.sun), &of_sun, "edit");
+    same_bits(&floats(&mut app, &light.sky), &of_sky, "edit");
+
+    heights.iter_mut().for_each(|height| *height *= 0.5);
+    let image = app.world().get::<HeightField>(entity).unwrap().heights.clone();
+    let mut images = app.world_mut().resource_mut::<Assets<Image>>();
+    images.insert(&image, heights_image(SIZE, &heights)).expect("replaced");
+    let [of_sun, of_sky] = expected(&heights, 300.0, 40.0);
+    same_bits(&floats(&mut app, &light.sun), &of_sun, "new heights");
+    same_bits(&floats(&mut app, &light.sky), &of_sky, "new heights");
+    end(&app);
+}
+
+/// Level ground: bent normals up, whose vector is two thirds long, and level horizons. Behind a wall in the south the
+/// bent normal turns north, and the horizon rises there alone.
+#[test]
+fn bent_normals_and_horizons_of_a_wall() {
+    let mut app = app();
+    let wall = |i: u32| if i / SIZE.x >= 60 { 100.0 } else { 0.0 };
+    let heights: Vec<f32> = (0..SIZE.x * SIZE.y).map(wall).collect();
+    let (_, light) = spawn(&mut app, &heights, |field| {
+        field.bent_normals = true;
+        field.horizons = 8;
+    });
+    app.world_mut().spawn((DirectionalLight::default(), sun_at(90.0, 30.0)));
+    let sky = floats(&mut app, &light.sky);
+    let bent = floats(&mut app, light.bent.as_ref().unwrap());
+    let at = |row: u32, channel: usize| {
+        let texel = 4 * (row * SIZE.x + 48) as usize;
+        2.0 * bent[texel + channel] - sky[texel]
+    };
+    let far = [0, 1, 2].map(|channel| at(2, channel));
+    // The wall rises 100 over 580, and covers 1 - cos² of the slices towards it.
+    assert!(far[0].abs() < 0.01 && (0.6..0.68).contains(&far[1]) && far[2] < 0.0, "{far:?}");
+    let near = [0, 1, 2].map(|channel| at(57, channel));
+    assert!(near[0].abs() < 0.01 && near[2] < 2.0 * far[2] && near[1] < far[1], "{near:?}");
+    let horizons = floats(&mut app, light.horizons.as_ref().unwrap());
+    let angle = |layer: usize, row: u32| {
+        horizons[layer * (SIZE.x * SIZE.y) as usize + (row * SIZE.x + 48) as usize]
+    };
+    // Counter-clockwise from east: south is six of eight.
+    let expected = (100.0_f32 / 30.0).atan();
+    assert!((angle(6, 57) - expected).abs() < 1e-5, "{} {expected}", angle(6, 57));
+    assert!(angle(2, 57).abs() < 1e-5, "{}", angle(2, 57));
+    end(&app);
+}
+
+/// sRGB's curve.
+fn encoded(value: f32) -> f32 {
+    let value = value.clamp(0.0, 1.0);
+    if value <= 0.003_130_8 { 12.92 * value } else { 1.055 * value.powf(1.0 / 2.4) - 0.055 }
+}
+
+fn picture_of(app: &mut App, size: UVec2, camera: impl Bundle) -> Vec<u8> {
+    let extent = Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 };
+    let (dimension, format) = (TextureDimension::D2, TextureFormat::Rgba8UnormSrgb);
+    let mut image =
+        Image::new_fill(extent, dimension, &[0; 4], format, RenderAssetUsages::default());
+    image.texture_descriptor.usage |= TextureUsages::RENDER_ATTACHMENT | TextureUsages::COPY_SRC;
+    let image = app.world_mut().resource_mut::<Assets<Image>>().add(image);
+    let target = RenderTarget::Image(image.clone().into());
+    let camera = app.world_mut().spawn((Camera3d::default(), target, camera)).id();
+    let bytes = bytes(app, &image);
+    app.world_mut().despawn(camera);
+    bytes
+}
+
+/// From straight above, a pixel for each grid point: colours of sun and sky times their layers, in sRGB, to a code. And a
+/// picture from the side, which RIDGELIGHT_PICTURE=FILE.png writes.
+#[test]
+fn pictures_have_the_light() {
+    let mut app = app();
+    let heights = heights();
+    spawn(&mut app, &heights, |_| {});
+    let ev100 = 9.0_f32;
+    let exposure = 1.0 / (1.2 * 2_f32.powf(ev100));
+    // So that white ground, lit by both, is a little below white.
+    let (illuminance, brightness) = (0.55 * std::f32::consts::PI / exposure, 0.35 / exposure);
+    let light = DirectionalLight { illuminance, ..default() };
+    app.world_mut().spawn((light, sun_at(140.0, 25.0)));
+    app.world_mut().insert_resource(GlobalAmbientLight { brightness, ..default() });
+    let centre = Vec3::new((SIZE.x - 1) as f32, 0.0, (SIZE.y - 1) as f32) * (0.5 * CELL);
+    let above =
+        Transform::from_translation(centre + 1000.0 * Vec3::Y).looking_to(Vec3::NEG_Y, Vec3::NEG_Z);
+    let [width, height] = [SIZE.x, SIZE.y].map(|n| n as f32 * CELL);
+    let map = Projection::Orthographic(OrthographicProjection {
+        scaling_mode: ScalingMode::Fixed { width, height },
+        far: 2000.0,
+        ..OrthographicProjection::default_3d()
+    });
+    let camera = (above, map, Tonemapping::None, Exposure { ev100 }, Msaa::Off);
+    let codes = picture_of(&mut app, SIZE, camera);
+    let [of_sun, of_sky] = expected(&heights, 140.0, 25.0);
+    let mut worst = 0.0_f32;
+    // Pixels at the edge are half beyond the ground.
+    for row in 1..SIZE.y - 1 {
+        for col in 1..SIZE.x - 1 {
+            let i = (row * SIZE.x + col) as usize;
+            let light = (illuminance * of_sun[i] + brightness * of_sky[i]) * exposure;
+            worst = worst.max((f32::from(codes[4 * i]) - 255.0 * encoded(light)).abs());
+        }
+    }
+    // Half a code of rounding, and as much for the device's curve of sRGB (Vulkan allows 0.6 codes in all) and for
+    // where a pixel's centre is met.
+    assert!(worst < 1.0, "{worst} codes");
+
+    let Some(file) = std::env::var_os("RIDGELIGHT_PICTURE") else { return end(&app) };
+    let size = UVec2::new(1024, 576);
+    let eye = centre + Vec3::new(-500.0, 420.0, 620.0);
+    let side = Transform::from_translation(eye).looking_at(centre + 40.0 * Vec3::Y, Vec3::Y);
+    let codes = picture_of(&mut app, size, (side, Tonemapping::None, Exposure { ev100 }));
+    let picture = image::RgbaImage::from_raw(size.x, size.y, codes).expect("as many bytes");
+    picture.save(file).expect("written");
+    end(&app);
+}
