@@ -53,9 +53,9 @@
 //! }
 //! ```
 //!
-//! [`gpu::requirements`] lists what the device must be created with. [`gpu`] has a section each on states, formats, queue
+//! [`gpu::requirements`] lists what the device needs. [`gpu`] has a section each on states, formats, queue
 //! families, buffers instead of images, and lights that change from frame to frame. Complete programs:
-//! `examples/ash_host.rs` with ash, `hosts/ridgelight-wgpu` with wgpu, and `crates/capi/tests/c/host.c` in C with
+//! `examples/ash_host.rs` with ash, `hosts/ridgelight-wgpu` with wgpu, `hosts/bevy_ridgelight` with Bevy, and `crates/capi/tests/c/host.c` in C with
 //! `crates/capi/include/ridgelight.h`.
 //!
 //! # Modules and crates

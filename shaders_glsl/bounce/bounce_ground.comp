@@ -30,7 +30,7 @@ void main() {
     float height = texelFetch(heights, at, 0).x;
     if (GREY) {
         vec2 two = vec2(imageLoad(exit_grey, at).x, height);
-        imageStore(grey_ground, at, four_halves(floatBitsToUint(two)));
+        imageStore(grey_ground, at, split_u32(floatBitsToUint(two)));
     } else {
         imageStore(bounce_ground, at, vec4(imageLoad(exit_radiance, at).rgb, height));
     }

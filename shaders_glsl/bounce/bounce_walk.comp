@@ -71,7 +71,7 @@ ivec2 own_kept_node; // texel of its visibility cache
 Block block_at(ivec3 texel) {
     uvec4 words;
     if (GREY) {
-        words = uvec4(two_words(imageLoad(grey_blocks, texel)), 0u, 0u);
+        words = uvec4(join_u16(imageLoad(grey_blocks, texel)), 0u, 0u);
     } else {
         words = imageLoad(line_blocks, texel);
     }

@@ -75,7 +75,7 @@ void store(int level, int end, Block block) {
     if (among >= 0 && among < block_lines(lanes) && end < total) {
         ivec3 texel = block_texel(first_layer, among, level, end);
         if (GREY) {
-            imageStore(grey_blocks, texel, four_halves(block_words(block).xy));
+            imageStore(grey_blocks, texel, split_u32(block_words(block).xy));
         } else {
             imageStore(line_blocks, texel, block_words(block));
         }

@@ -11,7 +11,7 @@ vec4 ground_at(int lane, int march) {
     // No early exit: it makes loops out of functions, for which SwiftShader's compiler takes gigabytes.
     vec4 ground;
     if (GREY) {
-        ground = uintBitsToFloat(two_words(imageLoad(grey_ground, at)).xxxy);
+        ground = uintBitsToFloat(join_u16(imageLoad(grey_ground, at)).xxxy);
     } else {
         ground = imageLoad(bounce_ground, at);
     }

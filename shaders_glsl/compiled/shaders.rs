@@ -41,7 +41,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/bounce_ground.comp`.
-    BOUNCE_GROUND: "bounce_ground", push BounceGroundPush, words 19821 768,
+    BOUNCE_GROUND: "bounce_ground", push BounceGroundPush, words 19821 767,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "exit_radiance" StorageImage { format: "Rgba32f", uint: false, layered: false },
     2 reads "exit_grey" StorageImage { format: "R32f", uint: false, layered: false },
@@ -54,7 +54,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/bounce_march.comp`.
-    BOUNCE_MARCH: "bounce_march", push BounceMarchPush, words 20589 12391,
+    BOUNCE_MARCH: "bounce_march", push BounceMarchPush, words 20588 12391,
     0 reads "cells" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "maxima" StorageImage { format: "R32f", uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -72,7 +72,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/bounce_shade.comp`.
-    BOUNCE_SHADE: "bounce_shade", push BounceShadePush, words 32980 2678,
+    BOUNCE_SHADE: "bounce_shade", push BounceShadePush, words 32979 2678,
     0 reads "ground" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "sky_share" StorageImage { format: "R32f", uint: false, layered: false },
     2 reads "node_sum" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -84,7 +84,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/bounce_walk.comp`.
-    BOUNCE_WALK: "bounce_walk", push BounceWalkPush, words 35658 14566,
+    BOUNCE_WALK: "bounce_walk", push BounceWalkPush, words 35657 14566,
     1 reads "azimuths" TexelBuffer,
     2 reads "occluders" StorageImage { format: "Rgba16ui", uint: true, layered: true },
     3 reads "bounce_ground" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -106,7 +106,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/cache_gather.comp`.
-    CACHE_GATHER: "cache_gather", push CacheGatherPush, words 50224 3702,
+    CACHE_GATHER: "cache_gather", push CacheGatherPush, words 50223 3702,
     0 reads "visibility_cache" StorageImage { format: "Rgba32ui", uint: true, layered: true },
     1 reads "azimuths" TexelBuffer,
     2 reads "exit_radiance" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -121,15 +121,15 @@ shader! {
 }
 
 shader! {
-    /// `shaders_glsl/view/depth_draw.frag`.
-    DEPTH_DRAW_FRAG: "depth_draw_frag", push (), words 53926 193,
+    /// `shaders_glsl/view/depth_resolve.frag`.
+    DEPTH_RESOLVE_FRAG: "depth_resolve_frag", push (), words 53925 193,
     0 reads "picture_depth" SampledImage { uint: false, layered: false },
-    DepthDrawFrag;
+    DepthResolveFrag;
 }
 
 shader! {
     /// `shaders_glsl/device/device_peak.comp`.
-    DEVICE_PEAK: "device_peak", push DevicePeakPush, words 54119 1812,
+    DEVICE_PEAK: "device_peak", push DevicePeakPush, words 54118 1812,
     0 writes "source" StorageBuffer,
     1 writes "result" StorageBuffer,
     2 writes "filled" StorageImage { format: "R32f", uint: false, layered: false },
@@ -141,7 +141,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/edit/dirty_list.comp`.
-    DIRTY_LIST: "dirty_list", push DirtyListPush, words 55931 874,
+    DIRTY_LIST: "dirty_list", push DirtyListPush, words 55930 874,
     0 reads "dirty_texels" StorageBuffer,
     1 writes "edit_list" StorageBuffer,
     DirtyList;
@@ -149,7 +149,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/edit/dirty_mark.comp`.
-    DIRTY_MARK: "dirty_mark", push DirtyMarkPush, words 56805 1323,
+    DIRTY_MARK: "dirty_mark", push DirtyMarkPush, words 56804 1323,
     0 writes "dirty_texels" StorageBuffer,
     1 writes "edit_list" StorageBuffer,
     DirtyMark;
@@ -157,7 +157,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bake/ellipse_fit.comp`.
-    ELLIPSE_FIT: "ellipse_fit", push EllipseFitPush, words 58128 5049,
+    ELLIPSE_FIT: "ellipse_fit", push EllipseFitPush, words 58127 5049,
     0 reads "visible_points" SampledImage { uint: true, layered: true },
     1 reads "directions" TexelBuffer,
     2 writes "ellipse_axes" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -171,7 +171,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/env_rotation.comp`.
-    ENV_ROTATION: "env_rotation", push EnvRotationPush, words 63177 949,
+    ENV_ROTATION: "env_rotation", push EnvRotationPush, words 63176 949,
     0 reads "environment" SampledImage { uint: false, layered: false },
     1 reads "constants" TexelBuffer,
     2 writes "env_rotation" StorageBuffer,
@@ -180,7 +180,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/env_tables.comp`.
-    ENV_TABLES: "env_tables", push EnvTablesPush, words 64126 3335,
+    ENV_TABLES: "env_tables", push EnvTablesPush, words 64125 3335,
     0 reads "wedge_rows" StorageBuffer,
     1 writes "env_tables" StorageImage { format: "Rgba32f", uint: false, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -189,7 +189,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/env_wedges.comp`.
-    ENV_WEDGES: "env_wedges", push EnvWedgesPush, words 67461 2214,
+    ENV_WEDGES: "env_wedges", push EnvWedgesPush, words 67460 2214,
     0 reads "environment" SampledImage { uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "wedge_rows" StorageBuffer,
@@ -198,7 +198,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bake/facet_mask.comp`.
-    FACET_MASK: "facet_mask", push FacetMaskPush, words 69675 9176,
+    FACET_MASK: "facet_mask", push FacetMaskPush, words 69674 9176,
     0 reads "cells" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "maxima" StorageImage { format: "R32f", uint: false, layered: false },
     2 reads "directions" TexelBuffer,
@@ -211,7 +211,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bake/fan_weights.comp`.
-    FAN_WEIGHTS: "fan_weights", push FanWeightsPush, words 78851 1842,
+    FAN_WEIGHTS: "fan_weights", push FanWeightsPush, words 78850 1842,
     0 reads "bent" SampledImage { uint: false, layered: true },
     1 reads "fans" TexelBuffer,
     2 writes "fan_weights" StorageImage { format: "R32f", uint: false, layered: true },
@@ -220,7 +220,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/rays/height_bounds.comp`.
-    HEIGHT_BOUNDS: "height_bounds", push HeightBoundsPush, words 80693 1680,
+    HEIGHT_BOUNDS: "height_bounds", push HeightBoundsPush, words 80692 1680,
     0 reads "cells" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 writes "maxima" StorageImage { format: "R32f", uint: false, layered: false },
     2 reads "heights" SampledImage { uint: false, layered: false },
@@ -231,7 +231,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/rays/height_cells.comp`.
-    HEIGHT_CELLS: "height_cells", push HeightCellsPush, words 82373 2514,
+    HEIGHT_CELLS: "height_cells", push HeightCellsPush, words 82372 2514,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 writes "cells" StorageImage { format: "Rgba32f", uint: false, layered: false },
     2 writes "ground" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -245,7 +245,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/height_expand.comp`.
-    HEIGHT_EXPAND: "height_expand", push HeightExpandPush, words 84887 2496,
+    HEIGHT_EXPAND: "height_expand", push HeightExpandPush, words 84886 2496,
     0 reads "height_levels" SampledImage { uint: false, layered: false },
     1 reads "level_table" SampledImage { uint: true, layered: false },
     2 writes "height_stack" StorageImage { format: "R32f", uint: false, layered: true },
@@ -256,7 +256,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/height_reduce.comp`.
-    HEIGHT_REDUCE: "height_reduce", push ReducePush, words 87383 3600,
+    HEIGHT_REDUCE: "height_reduce", push ReducePush, words 87382 3600,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 writes "height_levels" StorageImage { format: "R32f", uint: false, layered: false },
     2 writes "level_table" StorageImage { format: "Rgba32ui", uint: true, layered: false },
@@ -269,7 +269,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/height_transpose.comp`.
-    HEIGHT_TRANSPOSE: "height_transpose", push HeightTransposePush, words 90983 1113,
+    HEIGHT_TRANSPOSE: "height_transpose", push HeightTransposePush, words 90982 1113,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 writes "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     2 writes "lane_buffer" StorageBuffer,
@@ -282,7 +282,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/horizon_march.comp`.
-    HORIZON_MARCH: "horizon_march", push MarchPush, words 92096 6843,
+    HORIZON_MARCH: "horizon_march", push MarchPush, words 92095 6843,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "slopes" StorageImage { format: "R32ui", uint: true, layered: true },
@@ -295,7 +295,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/edit/horizon_resweep.comp`.
-    HORIZON_RESWEEP: "horizon_resweep", push HorizonResweepPush, words 98939 8999,
+    HORIZON_RESWEEP: "horizon_resweep", push HorizonResweepPush, words 98938 8999,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "occluders" StorageImage { format: "Rgba16ui", uint: true, layered: true },
@@ -310,7 +310,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/horizon_sweep.comp`.
-    HORIZON_SWEEP: "horizon_sweep", push HorizonSweepPush, words 107938 16078,
+    HORIZON_SWEEP: "horizon_sweep", push HorizonSweepPush, words 107937 16078,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     2 reads "azimuths" TexelBuffer,
@@ -343,7 +343,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/light_matrix.comp`.
-    LIGHT_MATRIX: "light_matrix", push LightMatrixPush, words 124016 1854,
+    LIGHT_MATRIX: "light_matrix", push LightMatrixPush, words 124015 1854,
     0 reads "env_rotation" StorageBuffer,
     1 reads "constants" TexelBuffer,
     2 writes "light_matrix" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -352,7 +352,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/light_resolve.comp`.
-    LIGHT_RESOLVE: "light_resolve", push LightResolvePush, words 125870 1966,
+    LIGHT_RESOLVE: "light_resolve", push LightResolvePush, words 125869 1966,
     0 reads "scalar_sum" SampledImage { uint: false, layered: false },
     1 reads "colour_sum" SampledImage { uint: false, layered: false },
     2 reads "albedo_map" SampledImage { uint: false, layered: false },
@@ -376,7 +376,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/line_blocks.comp`.
-    LINE_BLOCKS: "line_blocks", push LineBlocksPush, words 127836 6676,
+    LINE_BLOCKS: "line_blocks", push LineBlocksPush, words 127835 6675,
     0 reads "bounce_ground" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "grey_ground" StorageImage { format: "Rgba16ui", uint: true, layered: false },
     2 reads "azimuths" TexelBuffer,
@@ -392,7 +392,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/map_draw.comp`.
-    MAP_DRAW: "map_draw", push MapDrawPush, words 134512 3812,
+    MAP_DRAW: "map_draw", push MapDrawPush, words 134510 3812,
     0 reads "radiance" SampledImage { uint: false, layered: false },
     1 reads "tone_steps" SampledImage { uint: false, layered: false },
     2 reads "voids" SampledImage { uint: false, layered: false },
@@ -405,7 +405,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/mirror_map.comp`.
-    MIRROR_MAP: "mirror_map", push MirrorMapPush, words 138324 3694,
+    MIRROR_MAP: "mirror_map", push MirrorMapPush, words 138322 3694,
     0 reads "azimuths" TexelBuffer,
     1 reads "specular_tables" StorageImage { format: "Rgba32f", uint: false, layered: true },
     2 writes "mirror_map" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -414,7 +414,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/reference/path_trace.comp`.
-    PATH_TRACE: "path_trace", push PathTracePush, words 142018 22947,
+    PATH_TRACE: "path_trace", push PathTracePush, words 142016 22947,
     0 reads "cells" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "maxima" StorageImage { format: "R32f", uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -451,7 +451,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/picture_tone.frag`.
-    PICTURE_TONE_FRAG: "picture_tone_frag", push PictureTonePush, words 164965 565,
+    PICTURE_TONE_FRAG: "picture_tone_frag", push PictureTonePush, words 164963 565,
     0 reads "radiance" SampledImage { uint: false, layered: false },
     PictureToneFrag {
         0 encodes: bool = true,
@@ -460,13 +460,13 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/picture_tone.vert`.
-    PICTURE_TONE_VERT: "picture_tone_vert", push (), words 165530 266,
+    PICTURE_TONE_VERT: "picture_tone_vert", push (), words 165528 266,
     PictureToneVert;
 }
 
 shader! {
     /// `shaders_glsl/view/plinth_draw.frag`.
-    PLINTH_DRAW_FRAG: "plinth_draw_frag", push PlinthDrawPush, words 165796 939,
+    PLINTH_DRAW_FRAG: "plinth_draw_frag", push PlinthDrawPush, words 165794 939,
     2 reads "voids" SampledImage { uint: false, layered: false },
     PlinthDrawFrag {
         1 has_voids: bool = false,
@@ -475,7 +475,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/plinth_draw.vert`.
-    PLINTH_DRAW_VERT: "plinth_draw_vert", push PlinthDrawPush, words 166735 2082,
+    PLINTH_DRAW_VERT: "plinth_draw_vert", push PlinthDrawPush, words 166733 2082,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "radiance" SampledImage { uint: false, layered: false },
     2 reads "voids" SampledImage { uint: false, layered: false },
@@ -487,7 +487,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/preview_gather.comp`.
-    PREVIEW_GATHER: "preview_gather", push PreviewGatherPush, words 168817 1069,
+    PREVIEW_GATHER: "preview_gather", push PreviewGatherPush, words 168815 1069,
     0 reads "normals" SampledImage { uint: false, layered: false },
     1 reads "coarse_radiance" SampledImage { uint: false, layered: false },
     2 reads "coarse_sun" SampledImage { uint: false, layered: false },
@@ -502,7 +502,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/preview_shade.comp`.
-    PREVIEW_SHADE: "preview_shade", push PreviewShadePush, words 169886 1740,
+    PREVIEW_SHADE: "preview_shade", push PreviewShadePush, words 169884 1740,
     0 reads "normals" SampledImage { uint: false, layered: false },
     1 reads "albedo" SampledImage { uint: false, layered: false },
     2 reads "sky" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -516,7 +516,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/pyramid_march.comp`.
-    PYRAMID_MARCH: "pyramid_march", push PyramidMarchPush, words 171626 9056,
+    PYRAMID_MARCH: "pyramid_march", push PyramidMarchPush, words 171624 9056,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "slopes" StorageImage { format: "R32ui", uint: true, layered: true },
@@ -533,7 +533,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bake/scatter_gather.comp`.
-    SCATTER_GATHER: "scatter_gather", push ScatterGatherPush, words 180682 4664,
+    SCATTER_GATHER: "scatter_gather", push ScatterGatherPush, words 180680 4664,
     0 reads "ground" SampledImage { uint: false, layered: false },
     1 reads "direct" SampledImage { uint: false, layered: false },
     2 reads "visible_points" SampledImage { uint: true, layered: true },
@@ -560,7 +560,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/sh_shade.comp`.
-    SH_SHADE: "sh_shade", push ShShadePush, words 185346 12958,
+    SH_SHADE: "sh_shade", push ShShadePush, words 185344 12958,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "visibility" SampledImage { uint: false, layered: true },
     2 reads "light_matrix" SampledImage { uint: false, layered: false },
@@ -579,7 +579,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/sh_visibility.comp`.
-    SH_VISIBILITY: "sh_visibility", push ShadePush, words 198304 32101,
+    SH_VISIBILITY: "sh_visibility", push ShadePush, words 198302 32101,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rgba16ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -605,7 +605,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/sh_wedges.comp`.
-    SH_WEDGES: "sh_wedges", push ShWedgesPush, words 230405 7777,
+    SH_WEDGES: "sh_wedges", push ShWedgesPush, words 230403 7777,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "horizon_angles" SampledImage { uint: false, layered: true },
     2 reads "constants" TexelBuffer,
@@ -622,7 +622,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/shade_expand.comp`.
-    SHADE_EXPAND: "shade_expand", push ShadeExpandPush, words 238182 2489,
+    SHADE_EXPAND: "shade_expand", push ShadeExpandPush, words 238180 2489,
     0 reads "shade_levels" SampledImage { uint: false, layered: false },
     1 reads "shade_table" SampledImage { uint: true, layered: false },
     2 writes "shade_stack" StorageImage { format: "Rgba32f", uint: false, layered: true },
@@ -635,7 +635,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/shade_reduce.comp`.
-    SHADE_REDUCE: "shade_reduce", push ReducePush, words 240671 3656,
+    SHADE_REDUCE: "shade_reduce", push ReducePush, words 240669 3656,
     0 reads "exit_radiance" SampledImage { uint: false, layered: false },
     1 writes "shade_levels" StorageImage { format: "Rgba32f", uint: false, layered: false },
     2 writes "shade_table" StorageImage { format: "Rgba32ui", uint: true, layered: false },
@@ -649,7 +649,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/shadow_settle.comp`.
-    SHADOW_SETTLE: "shadow_settle", push ShadowSettlePush, words 244327 18052,
+    SHADOW_SETTLE: "shadow_settle", push ShadowSettlePush, words 244325 18052,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "maxima" StorageImage { format: "R32f", uint: false, layered: false },
     2 reads "azimuths" TexelBuffer,
@@ -667,7 +667,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/shadow_shade.comp`.
-    SHADOW_SHADE: "shadow_shade", push ShadowShadePush, words 262379 11262,
+    SHADOW_SHADE: "shadow_shade", push ShadowShadePush, words 262377 11262,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 reads "shadows" StorageImage { format: "Rgba32ui", uint: true, layered: true },
@@ -683,7 +683,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/shadow_sweep.comp`.
-    SHADOW_SWEEP: "shadow_sweep", push ShadowSweepPush, words 273641 11525,
+    SHADOW_SWEEP: "shadow_sweep", push ShadowSweepPush, words 273639 11525,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "shadows" StorageImage { format: "Rgba32ui", uint: true, layered: true },
@@ -699,7 +699,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/sky_draw.frag`.
-    SKY_DRAW_FRAG: "sky_draw_frag", push SkyDrawPush, words 285166 1372,
+    SKY_DRAW_FRAG: "sky_draw_frag", push SkyDrawPush, words 285164 1372,
     0 reads "environment" SampledImage { uint: false, layered: false },
     SkyDrawFrag {
         0 has_environment: bool = false,
@@ -708,13 +708,13 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/sky_draw.vert`.
-    SKY_DRAW_VERT: "sky_draw_vert", push (), words 286538 289,
+    SKY_DRAW_VERT: "sky_draw_vert", push (), words 286536 289,
     SkyDrawVert;
 }
 
 shader! {
     /// `shaders_glsl/direct/sky_shade.comp`.
-    SKY_SHADE: "sky_shade", push ShadePush, words 286827 29952,
+    SKY_SHADE: "sky_shade", push ShadePush, words 286825 29952,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rgba16ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -745,7 +745,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/specular_exit.comp`.
-    SPECULAR_EXIT: "specular_exit", push SpecularExitPush, words 316779 6560,
+    SPECULAR_EXIT: "specular_exit", push SpecularExitPush, words 316777 6560,
     0 reads "arriving" SampledImage { uint: false, layered: true },
     1 reads "ground" SampledImage { uint: false, layered: false },
     2 reads "exit_radiance" SampledImage { uint: false, layered: false },
@@ -770,7 +770,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/specular_gather.comp`.
-    SPECULAR_GATHER: "specular_gather", push GatherPush, words 323339 20442,
+    SPECULAR_GATHER: "specular_gather", push GatherPush, words 323337 20442,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "height_levels" SampledImage { uint: false, layered: false },
     2 reads "level_table" SampledImage { uint: true, layered: false },
@@ -798,7 +798,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/specular_light.comp`.
-    SPECULAR_LIGHT: "specular_light", push SpecularLightPush, words 343781 7631,
+    SPECULAR_LIGHT: "specular_light", push SpecularLightPush, words 343779 7631,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "blocked_sum" SampledImage { uint: false, layered: false },
     2 reads "unoccluded_map" SampledImage { uint: false, layered: false },
@@ -812,7 +812,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/specular_tables.comp`.
-    SPECULAR_TABLES: "specular_tables", push SpecularTablesPush, words 351412 4690,
+    SPECULAR_TABLES: "specular_tables", push SpecularTablesPush, words 351410 4690,
     0 reads "azimuths" TexelBuffer,
     1 reads "wedge_rows" StorageBuffer,
     2 writes "specular_tables" StorageImage { format: "Rgba32f", uint: false, layered: true },
@@ -823,7 +823,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/specular_visibility.comp`.
-    SPECULAR_VISIBILITY: "specular_visibility", push SpecularVisibilityPush, words 356102 1238,
+    SPECULAR_VISIBILITY: "specular_visibility", push SpecularVisibilityPush, words 356100 1238,
     0 reads "visibility" SampledImage { uint: false, layered: true },
     1 reads "light_matrix" SampledImage { uint: false, layered: false },
     2 writes "arriving" StorageImage { format: "Rgba32f", uint: false, layered: true },
@@ -835,7 +835,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/sphere_sh_shade.comp`.
-    SPHERE_SH_SHADE: "sphere_sh_shade", push SphereShShadePush, words 357340 27760,
+    SPHERE_SH_SHADE: "sphere_sh_shade", push SphereShShadePush, words 357338 27760,
     0 reads "cells" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "maxima" StorageImage { format: "R32f", uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -861,7 +861,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/sphere_shade.comp`.
-    SPHERE_SHADE: "sphere_shade", push SphereShadePush, words 385100 14492,
+    SPHERE_SHADE: "sphere_shade", push SphereShadePush, words 385098 14492,
     0 reads "cells" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "maxima" StorageImage { format: "R32f", uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -876,7 +876,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/sun_shade.comp`.
-    SUN_SHADE: "sun_shade", push ShadePush, words 399592 24546,
+    SUN_SHADE: "sun_shade", push ShadePush, words 399590 24546,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rgba16ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -897,7 +897,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/sun_specular.comp`.
-    SUN_SPECULAR: "sun_specular", push SunSpecularPush, words 424138 10753,
+    SUN_SPECULAR: "sun_specular", push SunSpecularPush, words 424136 10753,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "sun_sum" SampledImage { uint: false, layered: false },
     2 writes "specular_sum" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -914,7 +914,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/surface_sweep.comp`.
-    SURFACE_SWEEP: "surface_sweep", push MarchPush, words 434891 7721,
+    SURFACE_SWEEP: "surface_sweep", push MarchPush, words 434889 7721,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "slopes" StorageImage { format: "R32ui", uint: true, layered: true },
@@ -930,7 +930,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/sweep_fuse.comp`.
-    SWEEP_FUSE: "sweep_fuse", push SweepFusePush, words 442612 20219,
+    SWEEP_FUSE: "sweep_fuse", push SweepFusePush, words 442610 20219,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rgba16ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -951,7 +951,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/terrain_draw.frag`.
-    TERRAIN_DRAW_FRAG: "terrain_draw_frag", push TerrainDrawPush, words 462831 1129,
+    TERRAIN_DRAW_FRAG: "terrain_draw_frag", push TerrainDrawPush, words 462829 1129,
     1 reads "radiance" SampledImage { uint: false, layered: false },
     2 reads "voids" SampledImage { uint: false, layered: false },
     TerrainDrawFrag {
@@ -962,14 +962,14 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/terrain_draw.vert`.
-    TERRAIN_DRAW_VERT: "terrain_draw_vert", push TerrainDrawPush, words 463960 994,
+    TERRAIN_DRAW_VERT: "terrain_draw_vert", push TerrainDrawPush, words 463958 994,
     0 reads "heights" SampledImage { uint: false, layered: false },
     TerrainDrawVert;
 }
 
 shader! {
     /// `shaders_glsl/bounce/vector_reduce.comp`.
-    VECTOR_REDUCE: "vector_reduce", push ReducePush, words 464954 3811,
+    VECTOR_REDUCE: "vector_reduce", push ReducePush, words 464952 3811,
     0 reads "exit_vectors" SampledImage { uint: false, layered: true },
     1 reads "vector_source" SampledImage { uint: false, layered: true },
     2 writes "vector_levels" StorageImage { format: "Rgba32f", uint: false, layered: true },
@@ -985,7 +985,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bake/visible_points.comp`.
-    VISIBLE_POINTS: "visible_points", push VisiblePointsPush, words 468765 9745,
+    VISIBLE_POINTS: "visible_points", push VisiblePointsPush, words 468763 9745,
     0 reads "cells" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "maxima" StorageImage { format: "R32f", uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -1062,7 +1062,7 @@ pub static ALL: &[Shader] = &[
 
 /// Every vertex and fragment shader, by name.
 pub static GRAPHICS: &[Shader] = &[
-    DEPTH_DRAW_FRAG,
+    DEPTH_RESOLVE_FRAG,
     PICTURE_TONE_FRAG,
     PICTURE_TONE_VERT,
     PLINTH_DRAW_FRAG,
@@ -1325,4 +1325,4 @@ layouts! {
 }
 
 /// Words of all shaders together.
-const WORD_COUNT: usize = 478510;
+const WORD_COUNT: usize = 478508;

@@ -1,8 +1,8 @@
-// Two words in a texel of RGBA16UI: RG32UI needs the feature shaderStorageImageExtendedFormats.
-uvec4 four_halves(uvec2 words) {
+// Two 32-bit words as four 16-bit channels of an RGBA16UI texel. RG32UI would need shaderStorageImageExtendedFormats.
+uvec4 split_u32(uvec2 words) {
     return uvec4(words & 0xffffu, words >> 16).xzyw;
 }
 
-uvec2 two_words(uvec4 halves) {
-    return halves.xz | halves.yw << 16;
+uvec2 join_u16(uvec4 parts) {
+    return parts.xz | parts.yw << 16;
 }

@@ -6,7 +6,8 @@ use ash::vk;
 /// Bits that both kinds of flags share: Vulkan 1.3 adds only higher ones.
 const SHARED: u64 = u32::MAX as u64;
 
-/// Stages, where Vulkan 1.0 has them; otherwise the smallest that contain them.
+/// Converts stages to Vulkan 1.0. A stage that 1.0 lacks becomes a flag that contains it; an unknown one becomes
+/// ALL_COMMANDS.
 fn stages(all: vk::PipelineStageFlags2) -> vk::PipelineStageFlags {
     use vk::PipelineStageFlags2 as New;
     let mut old = vk::PipelineStageFlags::from_raw((all.as_raw() & SHARED) as u32);
@@ -29,7 +30,7 @@ fn stages(all: vk::PipelineStageFlags2) -> vk::PipelineStageFlags {
     if rest.is_empty() { old } else { old | vk::PipelineStageFlags::ALL_COMMANDS }
 }
 
-/// Accesses, in the same way.
+/// Converts accesses in the same way; unknown ones become MEMORY_READ and MEMORY_WRITE.
 fn accesses(all: vk::AccessFlags2) -> vk::AccessFlags {
     use vk::AccessFlags2 as New;
     let mut old = vk::AccessFlags::from_raw((all.as_raw() & SHARED) as u32);
@@ -48,7 +49,7 @@ fn accesses(all: vk::AccessFlags2) -> vk::AccessFlags {
     if rest.is_empty() { old } else { old | any }
 }
 
-/// Barriers of one command: each waits for the stages of all before it, and all after it wait.
+/// The barriers of one vkCmdPipelineBarrier. Its stage masks are the unions of their stage masks.
 #[derive(Default)]
 pub(in crate::gpu) struct Barriers {
     from: vk::PipelineStageFlags2,

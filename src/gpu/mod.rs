@@ -97,8 +97,8 @@ mod pipelines;
 mod renderer;
 mod requirements;
 mod specialise;
-mod stamps;
 mod surface;
+mod timestamps;
 mod validation;
 mod view;
 

@@ -13,7 +13,7 @@ use super::allocator::{Allocator, Blocks};
 use super::memory::{Backed, Memory};
 use super::pipelines::{Pipeline, Pipelines};
 use super::shaders::BindingKind;
-use super::stamps::Stamps;
+use super::timestamps::Timestamps;
 use super::{Host, requirements};
 use crate::graph::{Pass, Rectangle, ResourceId};
 use crate::plan::Plan;
@@ -88,7 +88,7 @@ struct Slot {
     /// Whether they hold the current plan's values.
     is_current: bool,
     /// None where the host's queue family has no timestamps.
-    stamps: Option<Stamps>,
+    timestamps: Option<Timestamps>,
     recorded: Vec<usize>,
     /// Whether that has a timestamp after every pass.
     times_passes: bool,
@@ -343,12 +343,12 @@ impl Renderer {
         if slot.recorded.is_empty() {
             return None;
         }
-        let stamps = slot.stamps.as_ref()?;
+        let timestamps = slot.timestamps.as_ref()?;
         if !slot.times_passes {
-            let ns = stamps.ns(2)?[0];
+            let ns = timestamps.ns(2)?[0];
             return Some(vec![Timing { label: "all passes".into(), ns }]);
         }
-        let times = stamps.ns(slot.recorded.len() + 1)?;
+        let times = timestamps.ns(slot.recorded.len() + 1)?;
         let passes = slot.recorded.iter().zip(times);
         let timings = passes.map(|(&index, ns)| Timing { label: self.pass(index).label(), ns });
         Some(timings.collect())

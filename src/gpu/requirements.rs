@@ -28,7 +28,7 @@ pub struct DeviceReport {
     pub missing: Vec<String>,
 }
 
-/// What an engine's device needs; known beforehand. No extension and no feature, of instance or device.
+/// What a device needs; known beforehand. No extension or feature has to be enabled on the instance or the device.
 #[derive(Clone, Copy, Debug)]
 pub struct Requirements {
     /// Vulkan version of instance and device; the instance must be created for it or a higher one.
@@ -37,8 +37,8 @@ pub struct Requirements {
     pub queue_flags: vk::QueueFlags,
 }
 
-/// What an engine's device needs, besides its own needs: Vulkan 1.1 and a queue with compute. [`missing`] reports
-/// whether a device has it, and subgroup votes in compute shaders, which not every device has.
+/// What Ridgelight needs from a device: Vulkan 1.1 and a queue with compute. [`missing`] also checks subgroup votes in
+/// compute shaders, which not every device has.
 pub fn requirements() -> Requirements {
     Requirements { api_version: vk::API_VERSION_1_1, queue_flags: vk::QueueFlags::COMPUTE }
 }

@@ -12,7 +12,7 @@ use ash::vk;
 use super::allocator::{Allocator, Blocks};
 use super::memory::{Backed, Memory};
 use super::renderer::{ImageArg, Timing};
-use super::stamps::Stamps;
+use super::timestamps::Timestamps;
 use super::{Host, requirements};
 use crate::plan::View;
 use crate::{Error, Result};
@@ -74,8 +74,8 @@ pub struct ViewRenderer {
     terrain: Drawing,
     sky: Drawing,
     plinth: Option<Drawing>,
-    /// The first sample's depths, with several MSAA samples.
-    first: Option<Drawing>,
+    /// Writes the depth of sample 0, if the view uses MSAA.
+    depth_resolve: Option<Drawing>,
     tone: Option<Drawing>,
     render_passes: RenderPasses,
     descriptor_pool: vk::DescriptorPool,
@@ -89,7 +89,7 @@ struct Slot {
     sets: [vk::DescriptorSet; LABELS.len()],
     framebuffers: Framebuffers,
     /// None where the host's queue family has no timestamps.
-    stamps: Option<Stamps>,
+    timestamps: Option<Timestamps>,
     /// Labels of what was recorded last.
     recorded: Vec<&'static str>,
 }
@@ -128,8 +128,9 @@ impl Curve {
 /// Format of the images before the tone curve.
 const LINEAR: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 
-/// Passes in order, from the third on where there are such: labels of the GPU times.
-const LABELS: [&str; 5] = ["terrain_draw", "sky_draw", "plinth_draw", "depth_draw", "picture_tone"];
+/// Labels of the GPU times, in pass order. The last three passes are optional.
+const LABELS: [&str; 5] =
+    ["terrain_draw", "sky_draw", "plinth_draw", "depth_resolve", "picture_tone"];
 
 impl ViewRenderer {
     /// Makes the resources for views with the shape of `view`, for pictures of a format and `slots` frames in
@@ -171,7 +172,7 @@ impl ViewRenderer {
             terrain: Drawing::default(),
             sky: Drawing::default(),
             plinth: None,
-            first: None,
+            depth_resolve: None,
             tone: None,
             render_passes: RenderPasses::default(),
             descriptor_pool: vk::DescriptorPool::null(),
@@ -220,14 +221,14 @@ impl ViewRenderer {
     /// family has no timestamps. Never waits.
     pub fn timings(&self, slot: usize) -> Option<Vec<Timing>> {
         let slot = self.slots.get(slot).filter(|slot| !slot.recorded.is_empty())?;
-        let times = slot.stamps.as_ref()?.ns(slot.recorded.len() + 1)?;
+        let times = slot.timestamps.as_ref()?.ns(slot.recorded.len() + 1)?;
         let labelled = slot.recorded.iter().zip(times);
         Some(labelled.map(|(label, ns)| Timing { label: (*label).to_owned(), ns }).collect())
     }
 
     /// By [`LABELS`].
     fn drawings(&self) -> [Option<Drawing>; LABELS.len()] {
-        [Some(self.terrain), Some(self.sky), self.plinth, self.first, self.tone]
+        [Some(self.terrain), Some(self.sky), self.plinth, self.depth_resolve, self.tone]
     }
 
     /// Frees everything. All recorded commands must have finished.

@@ -78,7 +78,7 @@ typedef struct RidgelightRenderer RidgelightRenderer;
 // Camera pictures of a lit field, on a device. Any thread may use it, one at a time.
 typedef struct RidgelightView RidgelightView;
 
-// What a device needs. No extension and no feature, of instance or device.
+// What a device needs. No extension or feature has to be enabled on the instance or the device.
 typedef struct RidgelightRequirements {
     // sizeof(RidgelightRequirements).
     uint32_t struct_size;
@@ -492,7 +492,7 @@ uint32_t ridgelight_version(void);
 // Returns OK, or ARGUMENT.
 enum RidgelightResult ridgelight_check_version(uint32_t header);
 
-// Writes what a device needs, besides an engine's own needs. It needs no device.
+// Writes what Ridgelight needs from a device. Call it before the device exists.
 //
 // Returns OK, or ARGUMENT.
 //

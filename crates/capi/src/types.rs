@@ -68,7 +68,7 @@ pub(crate) unsafe fn host(from: *const RidgelightHost) -> Done<Host> {
     }
 }
 
-/// What a device needs. No extension and no feature, of instance or device.
+/// What a device needs. No extension or feature has to be enabled on the instance or the device.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct RidgelightRequirements {
@@ -83,7 +83,7 @@ pub struct RidgelightRequirements {
 // SAFETY: numbers; the size is first.
 unsafe impl SizeFirst for RidgelightRequirements {}
 
-/// Writes what a device needs, besides an engine's own needs. It needs no device.
+/// Writes what Ridgelight needs from a device. Call it before the device exists.
 ///
 /// Returns OK, or ARGUMENT.
 ///

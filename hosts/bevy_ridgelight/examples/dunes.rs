@@ -1,4 +1,4 @@
-//! Dunes that travel under a sun that moves, in a window. `dunes N PICTURE.png` draws that many frames, prints their mean
+//! Dunes that travel under a sun that moves, in a window. `dunes FRAMES PICTURE.png` draws that many frames, prints their mean
 //! time, writes the window's picture and ends.
 
 use std::time::Instant;
@@ -45,7 +45,7 @@ fn main() {
             Some(Ending { frames, picture: picture.clone(), drawn: 0, begun: Instant::now() })
         }
         _ => {
-            eprintln!("usage: dunes [N PICTURE.png], for 2 frames or more");
+            eprintln!("usage: dunes [FRAMES PICTURE.png], with FRAMES at least 2");
             std::process::exit(2);
         }
     };
@@ -91,7 +91,7 @@ fn setup(
     ));
 }
 
-/// New heights, written by the host as any image of Bevy's.
+/// New heights, written by the host as any Bevy image.
 fn travel(time: Res<Time>, fields: Query<&HeightField>, mut images: ResMut<Assets<Image>>) {
     for field in &fields {
         let image = heights_image(SIZE, &heights(time.elapsed_secs()));

@@ -28,36 +28,40 @@ impl Plugin for RidgelightPlugin {
 #[derive(Component, ExtractComponent, Clone, Debug)]
 #[require(Transform, Visibility)]
 pub struct HeightField {
-    /// One texel per grid point: R32Float, R16Float or R16Unorm, with usage TEXTURE_BINDING ([`heights_image`]). Heights
-    /// in world units.
+    /// One texel per grid point, in world units: R32Float, R16Float, or R16Unorm (needs `TEXTURE_FORMAT_16BIT_NORM`). Usage
+    /// TEXTURE_BINDING ([`heights_image`]).
     pub heights: Handle<Image>,
     /// Columns and rows.
     pub size: UVec2,
     /// Distance between grid points, world units.
     pub cell: f32,
-    /// Azimuths of sky and bent normals, 4 to 1024. Time and memory in proportion.
+    /// Azimuths of sky and bent normals, 4 to 1024. Time and memory grow in proportion.
     pub azimuths: u32,
     /// Angular diameter of the sun, radians; 0 has hard shadows.
     pub sun_diameter: f32,
-    /// Whether [`FieldLight::bent`] is computed.
-    pub bent_normals: bool,
-    /// Azimuths of [`FieldLight::horizons`], 4 to 1024; 0 for none.
-    pub horizons: u32,
-    /// Raise it after writing to the image of heights on the GPU.
+    /// Whether [`FieldLight::bent_normal`] is computed.
+    pub bent_normal: bool,
+    /// Azimuths of [`FieldLight::horizon`], 4 to 1024; 0 for none.
+    pub horizon_azimuths: u32,
+    /// Increment it after writing to the image of heights on the GPU.
     pub revision: u32,
 }
 
 impl HeightField {
     /// A field with 32 azimuths, a sun of 0.53 degrees, and neither bent normals nor horizons.
+    ///
+    /// # Panics
+    /// If it has no columns or no rows.
     pub fn new(heights: Handle<Image>, size: UVec2, cell: f32) -> Self {
+        assert!(size.min_element() > 0, "a column and a row");
         Self {
             heights,
             size,
             cell,
             azimuths: 32,
             sun_diameter: 0.53_f32.to_radians(),
-            bent_normals: false,
-            horizons: 0,
+            bent_normal: false,
+            horizon_azimuths: 0,
             revision: 0,
         }
     }
@@ -70,8 +74,8 @@ impl HeightField {
 
     /// Texels of its light.
     fn format(&self) -> TextureFormat {
-        // Light from directions has colours, and then all layers have.
-        if self.bent_normals { TextureFormat::Rgba32Float } else { TextureFormat::R32Float }
+        // Bent normals need three channels, and all light layers share one format.
+        if self.bent_normal { TextureFormat::Rgba32Float } else { TextureFormat::R32Float }
     }
 }
 
@@ -81,15 +85,15 @@ pub struct FieldLight {
     /// Light from the sun, in channel R: radiance of white ground under a sun of irradiance 1, [0..1/π]; shadows and the
     /// cosine included.
     pub sun: Handle<Image>,
-    /// Sky visibility, in channel R: radiance of white ground under a sky of radiance 1, [0..1]; 1 on open level ground.
-    pub sky: Handle<Image>,
-    /// Where [`HeightField::bent_normals`]: radiance of white ground under a sky whose radiance is (1 + d) / 2 in each
-    /// channel, for direction d in Bevy's axes. The mean unoccluded direction, weighted by the cosine, is that of
-    /// 2 · `bent`.rgb - `sky`.r.
-    pub bent: Option<Handle<Image>>,
-    /// Where [`HeightField::horizons`] is not 0: elevation of the horizon, radians, a layer for each azimuth,
-    /// counter-clockwise from east in even steps.
-    pub horizons: Option<Handle<Image>>,
+    /// Sky view, in channel R: radiance of white ground under a sky of radiance 1, [0..1]; 1 on open level ground.
+    pub sky_view: Handle<Image>,
+    /// Encoded bent normal; present if [`HeightField::bent_normal`]. Normalise 2 · rgb - `sky_view`.r: the result is the
+    /// cosine-weighted mean unoccluded direction, in Bevy's axes. The texel holds the radiance of white ground under a sky
+    /// of radiance (1 + d) / 2 in direction d.
+    pub bent_normal: Option<Handle<Image>>,
+    /// Elevation of the horizon, in radians; present if [`HeightField::horizon_azimuths`] is not 0. One layer per azimuth,
+    /// counter-clockwise from east in equal steps.
+    pub horizon: Option<Handle<Image>>,
 }
 
 impl FieldLight {
@@ -114,17 +118,19 @@ impl FieldLight {
         let format = field.format();
         Self {
             sun: image(format, 1),
-            sky: image(format, 1),
-            bent: field.bent_normals.then(|| image(format, 1)),
-            horizons: (field.horizons > 0).then(|| image(TextureFormat::R32Float, field.horizons)),
+            sky_view: image(format, 1),
+            bent_normal: field.bent_normal.then(|| image(format, 1)),
+            horizon: (field.horizon_azimuths > 0)
+                .then(|| image(TextureFormat::R32Float, field.horizon_azimuths)),
         }
     }
 }
 
-/// New heights in a rectangle of a field. Only lines that can reach it are swept again.
+/// New heights in a rectangle of a field. Only lines that can reach it are swept again; with
+/// [`HeightField::horizon_azimuths`] everything is recomputed.
 #[derive(Message, Clone, Debug)]
 pub struct HeightEdit {
-    /// The entity of the field, whose image is of R32Float.
+    /// The field's entity. Its image of heights needs format R32Float and usage COPY_DST.
     pub field: Entity,
     /// First column and row.
     pub corner: UVec2,
@@ -137,8 +143,9 @@ pub struct HeightEdit {
 /// An image of heights, row after row from the north.
 ///
 /// # Panics
-/// Another number of heights than texels.
+/// If `heights` does not have one value per texel.
 pub fn heights_image(size: UVec2, heights: &[f32]) -> Image {
+    assert_eq!(heights.len(), size.x as usize * size.y as usize, "a height for each texel");
     let bytes: Vec<u8> = heights.iter().flat_map(|h| h.to_ne_bytes()).collect();
     let extent = Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 };
     let usages = RenderAssetUsages::default();

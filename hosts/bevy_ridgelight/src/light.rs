@@ -11,14 +11,15 @@ use bevy::render::render_asset::RenderAssets;
 use bevy::render::renderer::{RenderDevice, RenderQueue};
 use bevy::render::sync_world::MainEntity;
 use bevy::render::texture::GpuImage;
-use bevy::render::{Extract, ExtractSchedule, Render, RenderApp, RenderSystems};
+use bevy::render::{Extract, ExtractSchedule, GpuResourceAppExt, Render, RenderApp, RenderSystems};
+use bevy::transform::TransformSystems;
 use ridgelight::plan::{self, Picture, Plan, Rectangle};
 use ridgelight::scene::{self, Environment, Lights, Quality, Scene, Surface};
 use ridgelight_wgpu::{Renderer, limits};
 
 use crate::{FieldLight, HeightEdit, HeightField};
 
-/// The scene's first directional light.
+/// The scene's brightest directional light.
 #[derive(Resource, ExtractResource, Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Sun {
     /// Unit vector to it; none where there is no light or it is below the horizon.
@@ -35,25 +36,35 @@ struct Changes {
     images: Vec<AssetId<Image>>,
 }
 
-/// What is lit, by entity of the main world; none after an error, until the settings change.
+/// What is lit, by entity of the main world. Made again with a new device.
 #[derive(Resource, Default)]
-struct Fields(Mutex<HashMap<Entity, (Settings, Option<Lit>)>>);
+struct Fields(Mutex<HashMap<Entity, Field>>);
+
+/// The state that a field was last lit for, and its renderer; none after an error.
+struct Field {
+    state: State,
+    renderer: Option<FieldRenderer>,
+}
 
 pub(crate) fn build(app: &mut App) {
     app.init_resource::<Sun>()
         .add_plugins(ExtractResourcePlugin::<Sun>::default())
-        .add_systems(Last, follow_sun);
+        .add_systems(PostUpdate, follow_sun.after(TransformSystems::Propagate));
     if let Some(render) = app.get_sub_app_mut(RenderApp) {
         render
             .init_resource::<Changes>()
-            .init_resource::<Fields>()
-            .add_systems(ExtractSchedule, take_changes)
+            .init_gpu_resource::<Fields>()
+            .add_systems(ExtractSchedule, extract_changes)
             .add_systems(Render, light_fields.in_set(RenderSystems::PrepareResources));
     }
 }
 
-fn follow_sun(lights: Query<(&DirectionalLight, &GlobalTransform)>, mut sun: ResMut<Sun>) {
-    let found = lights.iter().next().map(|(light, transform)| {
+pub(crate) fn follow_sun(
+    lights: Query<(&DirectionalLight, &GlobalTransform)>,
+    mut sun: ResMut<Sun>,
+) {
+    let brightest = lights.iter().max_by(|a, b| a.0.illuminance.total_cmp(&b.0.illuminance));
+    let found = brightest.map(|(light, transform)| {
         let direction = *transform.back();
         let is_up = direction.y > 1e-4;
         let colour = light.color.to_linear() * light.illuminance;
@@ -63,7 +74,7 @@ fn follow_sun(lights: Query<(&DirectionalLight, &GlobalTransform)>, mut sun: Res
     sun.set_if_neq(found.unwrap_or_default());
 }
 
-fn take_changes(
+fn extract_changes(
     mut edits: Extract<MessageReader<HeightEdit>>,
     mut assets: Extract<MessageReader<AssetEvent<Image>>>,
     mut changes: ResMut<Changes>,
@@ -75,35 +86,54 @@ fn take_changes(
     }));
 }
 
-/// A field's renderers, and what they have lit.
-struct Lit {
+/// The renderers of a field, and their own textures.
+struct FieldRenderer {
     renderer: Renderer,
     horizons: Option<Renderer>,
-    /// The plan's output that nobody else reads.
+    /// The total radiance, which the plugin does not use.
     total: wgpu::Texture,
     /// The sky of directions, where bent normals are computed.
     environment: Option<wgpu::Texture>,
-    /// The image of heights, and the component's revision.
-    heights: (wgpu::Texture, u32),
+}
+
+/// What the light of a field depends on, besides events.
+#[derive(Clone, PartialEq)]
+struct State {
     settings: Settings,
+    images: Images,
+    revision: u32,
+    /// While the sun is below the horizon, the direction before.
     sun: Option<Vec3>,
 }
 
 /// What needs other resources when it changes.
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, Copy)]
 struct Settings {
     size: UVec2,
     cell: f32,
     azimuths: u32,
     sun_diameter: f32,
-    bent_normals: bool,
-    horizons: u32,
+    bent_normal: bool,
+    horizon_azimuths: u32,
+}
+
+impl PartialEq for Settings {
+    /// By bits, so that a NaN is refused once.
+    fn eq(&self, other: &Self) -> bool {
+        let all = |s: &Self| {
+            let floats = [s.cell, s.sun_diameter].map(f32::to_bits);
+            (s.size, s.azimuths, s.bent_normal, s.horizon_azimuths, floats)
+        };
+        all(self) == all(other)
+    }
 }
 
 impl Settings {
     fn of(field: &HeightField) -> Self {
-        let HeightField { size, cell, azimuths, sun_diameter, bent_normals, horizons, .. } = *field;
-        Self { size, cell, azimuths, sun_diameter, bent_normals, horizons }
+        let HeightField {
+            size, cell, azimuths, sun_diameter, bent_normal, horizon_azimuths, ..
+        } = *field;
+        Self { size, cell, azimuths, sun_diameter, bent_normal, horizon_azimuths }
     }
 
     fn field(&self) -> ridgelight::Result<scene::HeightField> {
@@ -121,7 +151,7 @@ impl Settings {
         };
         let lights = Lights {
             sky: Some([1.0; 3]),
-            environment: self.bent_normals.then(directions).transpose()?,
+            environment: self.bent_normal.then(directions).transpose()?,
             suns: vec![sun],
             ..Lights::default()
         };
@@ -132,8 +162,8 @@ impl Settings {
     }
 
     fn horizon_plan(&self, device: &wgpu::Device) -> ridgelight::Result<Plan> {
-        let quality = Quality { azimuths: self.horizons, ..Quality::default() };
-        let all = (0, self.horizons);
+        let quality = Quality { azimuths: self.horizon_azimuths, ..Quality::default() };
+        let all = (0, self.horizon_azimuths);
         let border = Surface::default().border;
         plan::horizons(&self.field()?, border, &quality, &limits(device)?, all, false)
     }
@@ -152,6 +182,7 @@ fn directions() -> ridgelight::Result<Environment> {
 }
 
 /// Images of a field, once all are on the GPU.
+#[derive(Clone, PartialEq)]
 struct Images {
     heights: wgpu::Texture,
     sun: wgpu::Texture,
@@ -170,9 +201,9 @@ impl Images {
         Some(Self {
             heights: image(&field.heights)?,
             sun: image(&light.sun)?,
-            sky: image(&light.sky)?,
-            bent: optional(&light.bent)?,
-            horizons: optional(&light.horizons)?,
+            sky: image(&light.sky_view)?,
+            bent: optional(&light.bent_normal)?,
+            horizons: optional(&light.horizon)?,
         })
     }
 }
@@ -180,23 +211,20 @@ impl Images {
 /// The direction of a sun that has not risen: its layer is computed, but is not added.
 const NOT_RISEN: Vec3 = Vec3::Y;
 
-impl Lit {
+impl FieldRenderer {
     fn new(
         device: &wgpu::Device,
         queue: &wgpu::Queue,
-        settings: Settings,
-        sun: Option<Vec3>,
-        images: &Images,
-        revision: u32,
+        State { settings, images, sun, .. }: &State,
     ) -> ridgelight::Result<Self> {
         let plan = settings.plan(device, sun.unwrap_or(NOT_RISEN))?;
         let (_, total) = plan.outputs().next().expect("the total radiance is the first output");
         let total = ridgelight_wgpu::texture(device, queue, total, wgpu::TextureUsages::empty())?;
-        let horizons = (settings.horizons > 0).then(|| {
+        let horizons = (settings.horizon_azimuths > 0).then(|| {
             let plan = settings.horizon_plan(device)?;
             Renderer::new(device, queue, plan)
         });
-        let environment = settings.bent_normals.then(|| {
+        let environment = settings.bent_normal.then(|| {
             let wanted = plan.inputs().find(|(_, input)| input.name == "environment");
             let (_, input) = wanted.expect("a plan with an environment reads it");
             let none = wgpu::TextureUsages::empty();
@@ -209,16 +237,8 @@ impl Lit {
             Ok(texture)
         });
         let renderer = Renderer::new(device, queue, plan)?;
-        let heights = (images.heights.clone(), revision);
-        let mut lit = Self {
-            renderer,
-            horizons: horizons.transpose()?,
-            total,
-            environment: environment.transpose()?,
-            heights,
-            settings,
-            sun,
-        };
+        let (horizons, environment) = (horizons.transpose()?, environment.transpose()?);
+        let mut lit = Self { renderer, horizons, total, environment };
         lit.submit(images, None)?;
         Ok(lit)
     }
@@ -257,34 +277,31 @@ impl Lit {
         self.renderer.plan().outputs().map(|(_, output)| of(&output.name).clone()).collect()
     }
 
-    /// Brings the light up to date.
+    /// Brings the light from one state to another, whose settings are the same. `is_modified`: heights changed anywhere.
     fn update(
         &mut self,
         device: &wgpu::Device,
         queue: &wgpu::Queue,
-        sun: Option<Vec3>,
-        (images, revision): (&Images, u32),
+        [old, new]: [&State; 2],
+        is_modified: bool,
         edits: &[&HeightEdit],
     ) -> ridgelight::Result<()> {
-        let sun = sun.or(self.sun);
         let mut passes = Vec::new();
-        if sun != self.sun {
-            let plan = self.settings.plan(device, sun.unwrap_or(NOT_RISEN))?;
+        if new.sun != old.sun {
+            let plan = new.settings.plan(device, new.sun.unwrap_or(NOT_RISEN))?;
             passes = self.renderer.set_plan(plan)?;
-            self.sun = sun;
         }
-        let is_new = self.heights != (images.heights.clone(), revision);
-        self.heights = (images.heights.clone(), revision);
-        for edit in edits {
-            write(queue, &images.heights, edit.corner, edit.size, &edit.heights);
-        }
+        let is_other = new.images != old.images || new.revision != old.revision;
         let takes_edits = !self.renderer.plan().edit_passes.is_empty() && self.horizons.is_none();
-        if is_new || !edits.is_empty() && !takes_edits {
-            return self.submit(images, None);
+        if is_modified || is_other || !edits.is_empty() && !takes_edits {
+            edits.iter().for_each(|edit| write_edit(queue, &new.images.heights, edit));
+            return self.submit(&new.images, None);
         }
-        self.submit(images, Some(&passes))?;
-        let (inputs, outputs) = (self.inputs(images), self.outputs(images));
+        self.submit(&new.images, Some(&passes))?;
+        let (inputs, outputs) = (self.inputs(&new.images), self.outputs(&new.images));
+        // One after the other: an edit is of heights that differ in its rectangle alone.
         for edit in edits {
+            write_edit(queue, &new.images.heights, edit);
             let rectangle = Rectangle {
                 col: edit.corner.x,
                 row: edit.corner.y,
@@ -313,6 +330,28 @@ fn write(queue: &wgpu::Queue, texture: &wgpu::Texture, corner: UVec2, size: UVec
     queue.write_texture(to, &bytes, layout, extent);
 }
 
+fn write_edit(queue: &wgpu::Queue, heights: &wgpu::Texture, edit: &HeightEdit) {
+    write(queue, heights, edit.corner, edit.size, &edit.heights);
+}
+
+/// Why an edit cannot be written to an image of heights, if it cannot.
+fn refusal(edit: &HeightEdit, heights: &wgpu::Texture) -> Option<String> {
+    let size = UVec2::new(heights.width(), heights.height());
+    let ends = edit.corner.checked_add(edit.size);
+    let HeightEdit { corner, size: of, heights: values, .. } = edit;
+    if heights.format() != wgpu::TextureFormat::R32Float {
+        Some(format!("the image of heights is of {:?}, expected R32Float", heights.format()))
+    } else if !heights.usage().contains(wgpu::TextureUsages::COPY_DST) {
+        Some("the image of heights lacks the usage COPY_DST".into())
+    } else if of.min_element() == 0 || !ends.is_some_and(|end| end.cmple(size).all()) {
+        Some(format!("{} x {} at {corner} is not within {} x {}", of.x, of.y, size.x, size.y))
+    } else if values.len() != of.x as usize * of.y as usize {
+        Some(format!("{} heights for {} x {} grid points", values.len(), of.x, of.y))
+    } else {
+        None
+    }
+}
+
 fn light_fields(
     fields: Query<(&MainEntity, &HeightField, &FieldLight)>,
     sun: Res<Sun>,
@@ -325,52 +364,53 @@ fn light_fields(
     let (device, queue) = (device.wgpu_device(), &***queue);
     let mut lit = lit.0.lock().unwrap_or_else(PoisonError::into_inner);
     lit.retain(|entity, _| fields.iter().any(|(main, ..)| main.id() == *entity));
-    let changes = std::mem::take(&mut *changes);
+    let mut waiting = Vec::new();
     for (main, field, light) in fields {
-        let Some(own) = Images::of(field, light, &images) else { continue };
-        let of_field = changes.edits.iter().filter(|edit| edit.field == main.id());
-        let (edits, wrong): (Vec<_>, Vec<_>) =
-            of_field.partition(|edit| is_within(edit, field.size));
-        for edit in wrong {
-            error!(
-                "an edit of {} heights at {}, {} by {}, is not of a field of {} by {}",
-                edit.heights.len(),
-                edit.corner,
-                edit.size.x,
-                edit.size.y,
-                field.size.x,
-                field.size.y
-            );
-        }
-        let settings = Settings::of(field);
-        let known = lit.remove(&main.id()).filter(|(of, _)| *of == settings);
-        let is_new = known.is_none();
-        let mut known = known.and_then(|(_, known)| known);
-        let done = if let Some(lit) = &mut known {
-            if changes.images.contains(&field.heights.id()) {
-                lit.heights.1 = field.revision.wrapping_sub(1);
-            }
-            lit.update(device, queue, sun.direction, (&own, field.revision), &edits)
-        } else if is_new {
-            // Before the first submission, which reads them.
-            for edit in &edits {
-                write(queue, &own.heights, edit.corner, edit.size, &edit.heights);
-            }
-            Lit::new(device, queue, settings, sun.direction, &own, field.revision)
-                .map(|new| known = Some(new))
-        } else {
-            Ok(())
+        let entity = main.id();
+        let of_field = changes.edits.iter().filter(|edit| edit.field == entity);
+        let Some(own) = Images::of(field, light, &images) else {
+            waiting.extend(of_field.cloned());
+            continue;
         };
-        lit.insert(main.id(), (settings, known.filter(|_| done.is_ok())));
-        if let Err(error) = done {
-            error!("a height field cannot be lit: {error}");
+        let mut edits = Vec::new();
+        for edit in of_field {
+            match refusal(edit, &own.heights) {
+                None => edits.push(edit),
+                Some(reason) => error!("HeightEdit of {entity}: {reason}"),
+            }
         }
+        let known = lit.remove(&entity);
+        let before = known.as_ref().and_then(|known| known.state.sun);
+        let state = State {
+            settings: Settings::of(field),
+            images: own,
+            revision: field.revision,
+            sun: sun.direction.or(before),
+        };
+        let is_modified = changes.images.contains(&field.heights.id());
+        let done = match known {
+            // After an error until anything changes.
+            Some(Field { state: old, renderer: None })
+                if old == state && !is_modified && edits.is_empty() =>
+            {
+                Ok(None)
+            }
+            Some(Field { state: old, renderer: Some(mut renderer) })
+                if old.settings == state.settings =>
+            {
+                let states = [&old, &state];
+                renderer.update(device, queue, states, is_modified, &edits).map(|()| Some(renderer))
+            }
+            _ => {
+                edits.iter().for_each(|edit| write_edit(queue, &state.images.heights, edit));
+                FieldRenderer::new(device, queue, &state).map(Some)
+            }
+        };
+        let renderer = done.unwrap_or_else(|error| {
+            error!("height field {entity}: {error}. It keeps its last light until it changes");
+            None
+        });
+        lit.insert(entity, Field { state, renderer });
     }
-}
-
-fn is_within(edit: &HeightEdit, size: UVec2) -> bool {
-    let ends = edit.corner.checked_add(edit.size);
-    let is_inside = ends.is_some_and(|end| end.cmple(size).all());
-    let count = edit.size.x as usize * edit.size.y as usize;
-    is_inside && count > 0 && edit.heights.len() == count
+    *changes = Changes { edits: waiting, images: Vec::new() };
 }

@@ -7,7 +7,7 @@ use bevy::prelude::*;
 use bevy::render::render_resource::AsBindGroup;
 use bevy::shader::ShaderRef;
 
-use crate::light::Sun;
+use crate::light::{Sun, follow_sun};
 use crate::{FieldLight, HeightField};
 
 /// Draws a [`HeightField`] with its [`FieldLight`]: a diffuse surface under the sun and the sky. Bevy's own shadow maps
@@ -38,7 +38,7 @@ impl TerrainMaterial {
             sky_colour: LinearRgba::BLACK,
             heights: field.heights.clone(),
             sun: light.sun.clone(),
-            sky: light.sky.clone(),
+            sky: light.sky_view.clone(),
         }
     }
 
@@ -70,7 +70,7 @@ impl Material for TerrainMaterial {
 pub(crate) fn build(app: &mut App) {
     embedded_asset!(app, "terrain.wgsl");
     app.add_plugins(MaterialPlugin::<TerrainMaterial>::default())
-        .add_systems(PostUpdate, (set_colours, keep_in_view));
+        .add_systems(PostUpdate, (set_colours.after(follow_sun), disable_frustum_culling));
 }
 
 fn set_colours(
@@ -91,8 +91,8 @@ fn set_colours(
     }
 }
 
-/// The bounds of the level mesh are not those of the ground.
-fn keep_in_view(
+/// The vertex shader raises the flat mesh, so its bounds would cull visible ground.
+fn disable_frustum_culling(
     fields: Query<Entity, (With<HeightField>, Without<NoFrustumCulling>)>,
     mut commands: Commands,
 ) {
@@ -103,7 +103,7 @@ fn keep_in_view(
 
 pub(crate) fn mesh(size: UVec2, cell: f32) -> Mesh {
     let points = (0..size.y).flat_map(|row| (0..size.x).map(move |col| UVec2::new(col, row)));
-    let last = (size - 1).max(UVec2::ONE).as_vec2();
+    let last = size.saturating_sub(UVec2::ONE).max(UVec2::ONE).as_vec2();
     let mut positions = Vec::new();
     let mut uvs = Vec::new();
     for point in points {

@@ -26,23 +26,23 @@ struct Vertex {
     @location(2) uv: vec2<f32>,
 }
 
-struct Raised {
+struct VertexOutput {
     @builtin(position) clip: vec4<f32>,
     @location(0) at: vec2<f32>,
 }
 
 @vertex
-fn vertex(vertex: Vertex) -> Raised {
+fn vertex(vertex: Vertex) -> VertexOutput {
     let at = vertex.uv * vec2<f32>(textureDimensions(heights) - 1u);
     let height = textureLoad(heights, vec2<i32>(round(at)), 0).r;
     let world_from_local = mesh_functions::get_world_from_local(vertex.instance_index);
     let place = vec4<f32>(vertex.position.x, vertex.position.y + height, vertex.position.z, 1.0);
     let world = mesh_functions::mesh_position_local_to_world(world_from_local, place);
-    return Raised(position_world_to_clip(world.xyz), at);
+    return VertexOutput(position_world_to_clip(world.xyz), at);
 }
 
 // Linear between grid points.
-fn between(image: texture_2d<f32>, at: vec2<f32>) -> f32 {
+fn bilinear(image: texture_2d<f32>, at: vec2<f32>) -> f32 {
     let last = vec2<i32>(textureDimensions(image)) - 1;
     let a = clamp(vec2<i32>(floor(at)), vec2<i32>(0), last);
     let b = min(a + 1, last);
@@ -53,8 +53,8 @@ fn between(image: texture_2d<f32>, at: vec2<f32>) -> f32 {
 }
 
 @fragment
-fn fragment(raised: Raised) -> @location(0) vec4<f32> {
-    let light = terrain.sun.rgb * between(sun, raised.at) + terrain.sky.rgb * between(sky, raised.at);
+fn fragment(in: VertexOutput) -> @location(0) vec4<f32> {
+    let light = terrain.sun.rgb * bilinear(sun, in.at) + terrain.sky.rgb * bilinear(sky, in.at);
     var colour = vec4<f32>(terrain.base.rgb * light * view.exposure, 1.0);
 #ifdef TONEMAP_IN_SHADER
     colour = tone_mapping(colour, view.color_grading);

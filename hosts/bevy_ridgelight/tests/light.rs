@@ -144,7 +144,21 @@ fn same_bits(found: &[f32], expected: &[f32], what: &str) {
     assert_eq!(differ, 0, "{what}: {differ} of {} texels differ, by {worst}", found.len());
 }
 
-/// Bit for bit the core's: at first, after the sun has moved a little and far, after an edit, and of new heights.
+/// Raises a rectangle, as an edit.
+fn raise(heights: &mut [f32], field: Entity, corner: UVec2, size: UVec2) -> HeightEdit {
+    let mut raised = Vec::new();
+    for row in corner.y..corner.y + size.y {
+        for col in corner.x..corner.x + size.x {
+            let height = &mut heights[(row * SIZE.x + col) as usize];
+            *height += 80.0;
+            raised.push(*height);
+        }
+    }
+    HeightEdit { field, corner, size, heights: raised }
+}
+
+/// Bit for bit the core's: at first, after the sun has moved a little and far, after edits, in other images, after a wrong
+/// image, and of new heights.
 #[test]
 fn light_is_that_of_the_core() {
     let mut app = app();
@@ -156,33 +170,53 @@ fn light_is_that_of_the_core() {
         let [of_sun, of_sky] = expected(&heights, azimuth, elevation);
         let moved = format!("sun at {azimuth}");
         same_bits(&floats(&mut app, &light.sun), &of_sun, &moved);
-        same_bits(&floats(&mut app, &light.sky), &of_sky, &moved);
+        same_bits(&floats(&mut app, &light.sky_view), &of_sky, &moved);
     }
-    let [corner, size] = [UVec2::new(40, 30), UVec2::new(7, 5)];
-    for row in 0..size.y {
-        for col in 0..size.x {
-            heights[((corner.y + row) * SIZE.x + corner.x + col) as usize] += 80.0;
-        }
-    }
-    let raised = (0..size.y).flat_map(|row| {
-        let from = ((corner.y + row) * SIZE.x + corner.x) as usize;
-        heights[from..from + size.x as usize].to_vec()
-    });
-    let edit = HeightEdit { field: entity, corner, size, heights: raised.collect() };
+    let before = heights.clone();
+    let edit = raise(&mut heights, entity, UVec2::new(40, 30), UVec2::new(7, 5));
     app.world_mut().write_message(edit);
-    let before = expected(&self::heights(), 300.0, 40.0);
     let [of_sun, of_sky] = expected(&heights, 300.0, 40.0);
-    assert_ne!(before[0], of_sun);
+    assert_ne!(expected(&before, 300.0, 40.0)[0], of_sun);
     same_bits(&floats(&mut app, &light.sun), &of_sun, "edit");
-    same_bits(&floats(&mut app, &light.sky), &of_sky, "edit");
+    same_bits(&floats(&mut app, &light.sky_view), &of_sky, "edit");
+
+    // Two edits, each within reach of the other, in the frame in which the sun moves.
+    for corner in [UVec2::new(50, 34), UVec2::new(46, 40)] {
+        let edit = raise(&mut heights, entity, corner, UVec2::new(6, 4));
+        app.world_mut().write_message(edit);
+    }
+    *app.world_mut().get_mut::<Transform>(sun).unwrap() = sun_at(302.0, 38.0);
+    let [of_sun, of_sky] = expected(&heights, 302.0, 38.0);
+    same_bits(&floats(&mut app, &light.sun), &of_sun, "two edits");
+    same_bits(&floats(&mut app, &light.sky_view), &of_sky, "two edits");
+
+    // Other images, and the same field.
+    let field = app.world().get::<HeightField>(entity).unwrap().clone();
+    let light = FieldLight::new(&field, &mut app.world_mut().resource_mut::<Assets<Image>>());
+    app.world_mut().entity_mut(entity).insert(light.clone());
+    same_bits(&floats(&mut app, &light.sun), &of_sun, "other images");
+    same_bits(&floats(&mut app, &light.sky_view), &of_sky, "other images");
+
+    // Below the horizon: the last shadows stay.
+    *app.world_mut().get_mut::<Transform>(sun).unwrap() = sun_at(302.0, -10.0);
+    same_bits(&floats(&mut app, &light.sun), &of_sun, "night");
+    *app.world_mut().get_mut::<Transform>(sun).unwrap() = sun_at(300.0, 40.0);
+
+    // A wrong image is refused; the right one is lit again.
+    let small = UVec2::new(64, 64);
+    let image = field.heights.clone();
+    let put = |app: &mut App, size: UVec2, heights: &[f32]| {
+        let mut images = app.world_mut().resource_mut::<Assets<Image>>();
+        images.insert(&image, heights_image(size, heights)).expect("replaced");
+    };
+    put(&mut app, small, &[0.0; 64 * 64]);
+    same_bits(&floats(&mut app, &light.sky_view), &of_sky, "a wrong size");
 
     heights.iter_mut().for_each(|height| *height *= 0.5);
-    let image = app.world().get::<HeightField>(entity).unwrap().heights.clone();
-    let mut images = app.world_mut().resource_mut::<Assets<Image>>();
-    images.insert(&image, heights_image(SIZE, &heights)).expect("replaced");
+    put(&mut app, SIZE, &heights);
     let [of_sun, of_sky] = expected(&heights, 300.0, 40.0);
     same_bits(&floats(&mut app, &light.sun), &of_sun, "new heights");
-    same_bits(&floats(&mut app, &light.sky), &of_sky, "new heights");
+    same_bits(&floats(&mut app, &light.sky_view), &of_sky, "new heights");
     end(&app);
 }
 
@@ -194,12 +228,12 @@ fn bent_normals_and_horizons_of_a_wall() {
     let wall = |i: u32| if i / SIZE.x >= 60 { 100.0 } else { 0.0 };
     let heights: Vec<f32> = (0..SIZE.x * SIZE.y).map(wall).collect();
     let (_, light) = spawn(&mut app, &heights, |field| {
-        field.bent_normals = true;
-        field.horizons = 8;
+        field.bent_normal = true;
+        field.horizon_azimuths = 8;
     });
     app.world_mut().spawn((DirectionalLight::default(), sun_at(90.0, 30.0)));
-    let sky = floats(&mut app, &light.sky);
-    let bent = floats(&mut app, light.bent.as_ref().unwrap());
+    let sky = floats(&mut app, &light.sky_view);
+    let bent = floats(&mut app, light.bent_normal.as_ref().unwrap());
     let at = |row: u32, channel: usize| {
         let texel = 4 * (row * SIZE.x + 48) as usize;
         2.0 * bent[texel + channel] - sky[texel]
@@ -209,7 +243,7 @@ fn bent_normals_and_horizons_of_a_wall() {
     assert!(far[0].abs() < 0.01 && (0.6..0.68).contains(&far[1]) && far[2] < 0.0, "{far:?}");
     let near = [0, 1, 2].map(|channel| at(57, channel));
     assert!(near[0].abs() < 0.01 && near[2] < 2.0 * far[2] && near[1] < far[1], "{near:?}");
-    let horizons = floats(&mut app, light.horizons.as_ref().unwrap());
+    let horizons = floats(&mut app, light.horizon.as_ref().unwrap());
     let angle = |layer: usize, row: u32| {
         horizons[layer * (SIZE.x * SIZE.y) as usize + (row * SIZE.x + 48) as usize]
     };

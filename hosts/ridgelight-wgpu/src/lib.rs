@@ -6,12 +6,15 @@ use ridgelight::plan::{Format, Kind, Limits, Owner, Plan, Rectangle, Resource};
 use ridgelight::{Error, Result};
 use wgpu::hal::api::Vulkan;
 
-/// Frames in flight. A further submission waits for the oldest.
+/// Submissions in flight. The next one waits for the oldest.
 const SLOTS: usize = 2;
 
 /// An error for a device of another API.
 fn no_vulkan() -> Error {
-    Error::Device { doing: "using a wgpu device".into(), reason: "it is not of Vulkan".into() }
+    Error::Device {
+        doing: "using a wgpu device".into(),
+        reason: "its backend is not Vulkan: create the instance with Backends::VULKAN".into(),
+    }
 }
 
 /// The device as renderers borrow it.
@@ -40,7 +43,12 @@ fn host(device: &wgpu::Device) -> Result<Host> {
 /// A device that is not of Vulkan, or lacks something (named).
 pub fn limits(device: &wgpu::Device) -> Result<Limits> {
     let host = host(device)?;
-    Ok(gpu::limits(&host.instance, host.physical_device))
+    let mut limits = gpu::limits(&host.instance, host.physical_device);
+    // Inputs and outputs are textures of wgpu's, whose limits may be lower.
+    limits.image_side = limits.image_side.min(device.limits().max_texture_dimension_2d);
+    // `Renderer::set_plan` may hold the resources of two plans for a moment.
+    limits.memory_budget /= 2;
+    Ok(limits)
 }
 
 /// wgpu's name of a format, where it has one.
@@ -73,11 +81,12 @@ fn of_vulkan(format: wgpu::TextureFormat) -> Option<vk::Format> {
 /// A texture for an input or output of a plan, with the usages that a renderer needs and those of `usages`; its texels are
 /// 0.
 ///
-/// For textures of your own: an input needs TEXTURE_BINDING, an output STORAGE_BINDING. When it is first read, wgpu clears a
-/// texture that none of its own commands wrote to, so write something to an output once.
+/// For textures of your own: an input needs TEXTURE_BINDING, an output STORAGE_BINDING. wgpu does not see Ridgelight's
+/// writes. It clears a texture at its first read if none of its own commands wrote to it, and the light is lost. So write
+/// to each output once.
 ///
 /// # Errors
-/// A buffer, or a format that wgpu lacks.
+/// A buffer, a format that wgpu lacks, or a size beyond the device's limits.
 pub fn texture(
     device: &wgpu::Device,
     queue: &wgpu::Queue,
@@ -88,13 +97,24 @@ pub fn texture(
         return Err(Error::setting(&resource.name, "a buffer", "an image"));
     };
     let Some(named) = of_wgpu(format) else {
-        return Err(Error::setting(&resource.name, format!("{format:?}"), "a format of wgpu's"));
+        return Err(Error::setting(
+            &resource.name,
+            format!("{format:?}"),
+            "a format that wgpu has",
+        ));
     };
     let bound = if resource.owner == Owner::Output {
         wgpu::TextureUsages::STORAGE_BINDING
     } else {
         wgpu::TextureUsages::TEXTURE_BINDING
     };
+    let most = device.limits();
+    if width.max(height) > most.max_texture_dimension_2d || layers > most.max_texture_array_layers {
+        let (side, count) = (most.max_texture_dimension_2d, most.max_texture_array_layers);
+        let expected = format!("at most {side} x {side}, {count} layers, the wgpu device's limits");
+        let found = format!("{width} x {height}, {layers} layers");
+        return Err(Error::setting(&resource.name, found, expected));
+    }
     let size = wgpu::Extent3d { width, height, depth_or_array_layers: layers };
     let made = device.create_texture(&wgpu::TextureDescriptor {
         label: Some(&resource.name),
@@ -342,7 +362,9 @@ fn image(
     let name = resource.map_or("a texture", |resource| resource.name.as_str());
     let Some(format) = of_vulkan(texture.format()) else {
         let found = format!("{:?}", texture.format());
-        return Err(Error::setting(format!("{name}: format"), found, "the plan's"));
+        let expected = resource.and_then(Resource::format);
+        let expected = expected.map_or("a format of a plan".to_owned(), |f| format!("{f:?}"));
+        return Err(Error::setting(format!("{name}: format"), found, expected));
     };
     let needed = if layout == vk::ImageLayout::GENERAL {
         wgpu::TextureUsages::STORAGE_BINDING
@@ -353,12 +375,19 @@ fn image(
         let found = format!("{:?}", texture.usage());
         return Err(Error::setting(format!("{name}: usage"), found, format!("{needed:?}")));
     }
+    if texture.dimension() != wgpu::TextureDimension::D2 || texture.sample_count() != 1 {
+        let found = format!("{:?}, {} samples", texture.dimension(), texture.sample_count());
+        return Err(Error::setting(name, found, "a 2D texture without MSAA"));
+    }
     let layers = texture.depth_or_array_layers();
     let is_layered = resource.is_some_and(|r| matches!(r.kind, Kind::Image { layered: true, .. }));
     let view_type =
         if is_layered { vk::ImageViewType::TYPE_2D_ARRAY } else { vk::ImageViewType::TYPE_2D };
     // SAFETY: the texture is alive, and so is its image as long as the caller keeps a clone.
-    let image = unsafe { texture.as_hal::<Vulkan>().ok_or_else(no_vulkan)?.raw_handle() };
+    let image = unsafe { texture.as_hal::<Vulkan>().map(|texture| texture.raw_handle()) };
+    let Some(image) = image else {
+        return Err(Error::setting(name, "a destroyed texture", "one that is alive"));
+    };
     let info = vk::ImageViewCreateInfo::default()
         .image(image)
         .view_type(view_type)

@@ -14,8 +14,8 @@ pub(crate) fn whole_attachment(format: vk::Format) -> vk::ImageSubresourceRange 
 }
 
 impl Memory {
-    /// An attachment with `samples` MSAA samples. With one it can also be copied from. Colours with one and depths with
-    /// several can be fetched in shaders.
+    /// An attachment with `samples` MSAA samples. A single-sample one can be copied from. Shaders can read single-sample
+    /// colour and multisample depth.
     pub fn attachment(
         &mut self,
         name: &str,

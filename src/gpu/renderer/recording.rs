@@ -52,13 +52,13 @@ impl Renderer {
         // is alive, images are in the stated layouts, sets and timestamps of this slot are not in use. There is one
         // timestamp more than the plan has passes.
         unsafe {
-            if let Some(stamps) = &mut self.slots[slot].stamps {
-                stamps.begin(&device, commands, count);
+            if let Some(timestamps) = &mut self.slots[slot].timestamps {
+                timestamps.begin(&device, commands, count);
             }
-            let stamps = self.slots[slot].stamps.as_ref();
-            let stamp = |index: usize| {
-                if let Some(stamps) = stamps {
-                    stamps.write(&device, commands, compute, index);
+            let timestamps = self.slots[slot].timestamps.as_ref();
+            let write_timestamp = |index: usize| {
+                if let Some(timestamps) = timestamps {
+                    timestamps.write(&device, commands, compute, index);
                 }
             };
             first.record(&device, commands);
@@ -66,8 +66,8 @@ impl Renderer {
                 taken.iter().for_each(|taken| taken.copy(&device, commands));
                 Barriers::default().images(&filled).record(&device, commands);
             }
-            stamp(0);
-            if stamps.is_some() {
+            write_timestamp(0);
+            if timestamps.is_some() {
                 // lavapipe writes a timestamp when it next waits, which a lone pass would precede.
                 between.record(&device, commands);
             }
@@ -77,15 +77,15 @@ impl Renderer {
                 }
                 self.dispatch(commands, slot, index, edited);
                 if times_passes {
-                    stamp(query + 1);
+                    write_timestamp(query + 1);
                 }
             }
             if !times_passes {
-                stamp(1);
+                write_timestamp(1);
             }
             last.record(&device, commands);
-            if let Some(stamps) = stamps {
-                stamps.end(&device, commands, count);
+            if let Some(timestamps) = timestamps {
+                timestamps.end(&device, commands, count);
             }
         }
         self.slots[slot].recorded = passes.to_vec();

@@ -7,7 +7,7 @@ use super::super::failed;
 use super::super::memory::{Backed, Memory};
 use super::super::pipelines::descriptor_type;
 use super::super::shaders::BindingKind;
-use super::super::stamps::Stamps;
+use super::super::timestamps::Timestamps;
 use super::{Renderer, Slot};
 use crate::graph::{Format, Kind, Owner, Resource, ResourceId};
 use crate::plan::Plan;
@@ -123,13 +123,13 @@ impl Renderer {
                 self.host.name(*set, &format!("{}, slot {number}", pass.label()));
             }
             let name = format!("ridgelight, slot {number}");
-            let stamps = Stamps::new(&self.host, &mut self.memory, &name, passes + 1)?;
+            let timestamps = Timestamps::new(&self.host, &mut self.memory, &name, passes + 1)?;
             let (tables, recorded, times_passes) = (Vec::new(), Vec::new(), true);
             self.slots.push(Slot {
                 sets,
                 tables,
                 is_current: false,
-                stamps,
+                timestamps,
                 recorded,
                 times_passes,
             });
@@ -148,8 +148,8 @@ impl Renderer {
         }
         for mut slot in self.slots.drain(..) {
             slot.tables.iter_mut().for_each(|table| self.memory.free(&mut table.1));
-            if let Some(stamps) = slot.stamps {
-                stamps.free(&self.host, &mut self.memory);
+            if let Some(timestamps) = slot.timestamps {
+                timestamps.free(&self.host, &mut self.memory);
             }
         }
         // SAFETY: made by this device; the caller of `destroy` guarantees that nothing in flight uses it. Null is

@@ -43,7 +43,13 @@ pub(super) fn check_device(host: &Host, view: &View, format: vk::Format) -> Resu
     let (Ok(of_colour), Ok(of_depth)) = (of_colour, of_depth) else {
         return lacks(format!("the device draws no images of {drawn:?} and {DEPTH:?}"));
     };
-    let samples = of_colour.sample_counts & of_depth.sample_counts;
+    // SAFETY: as above.
+    let limits =
+        unsafe { host.instance.get_physical_device_properties(host.physical_device) }.limits;
+    let samples = of_colour.sample_counts
+        & of_depth.sample_counts
+        & limits.framebuffer_color_sample_counts
+        & limits.framebuffer_depth_sample_counts;
     if !samples.contains(vk::SampleCountFlags::from_raw(view.samples)) {
         let all = [1, 2, 4, 8].map(|n| (n, vk::SampleCountFlags::from_raw(n)));
         let has = all.iter().filter(|(_, flag)| samples.contains(*flag));
@@ -54,9 +60,13 @@ pub(super) fn check_device(host: &Host, view: &View, format: vk::Format) -> Resu
             format!("{}, which this device has", has.join(" or ")),
         );
     }
-    let extents = [of_colour.max_extent, of_depth.max_extent];
     let [width, height] = view.size;
-    if extents.iter().any(|e| width > e.width || height > e.height) {
+    let is_beyond = |e: vk::Extent3D| width > e.width || height > e.height;
+    if is_beyond(of_colour.max_extent)
+        || is_beyond(of_depth.max_extent)
+        || width > limits.max_framebuffer_width
+        || height > limits.max_framebuffer_height
+    {
         return lacks(format!("the device draws no pictures of {width} × {height}"));
     }
     Ok(curve)

@@ -47,7 +47,7 @@ pub(super) const TESTED: ImageState = ImageState {
     layout: vk::ImageLayout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL,
 };
 
-/// Depths of several samples, read for the first.
+/// Multisample depths, read by a shader.
 pub(super) const FETCHED: ImageState = ImageState {
     stage: vk::PipelineStageFlags2::FRAGMENT_SHADER,
     access: vk::AccessFlags2::SHADER_SAMPLED_READ,
@@ -83,25 +83,25 @@ impl ViewRenderer {
             .chain(inputs.voids.as_ref().filter(|_| view.has_voids))
             .collect();
         let device = self.host.device.clone();
-        let first_of = self.first.filter(|_| outputs.depth.is_some());
-        let recorded = [Some(self.terrain), Some(self.sky), self.plinth, first_of, self.tone];
+        let depth_resolve = self.depth_resolve.filter(|_| outputs.depth.is_some());
+        let recorded = [Some(self.terrain), Some(self.sky), self.plinth, depth_resolve, self.tone];
         let labels: Vec<_> =
             LABELS.into_iter().zip(recorded).filter_map(|(label, d)| d.map(|_| label)).collect();
         let count = labels.len() + 1;
         self.slots[slot].recorded = labels;
-        if let Some(stamps) = &mut self.slots[slot].stamps {
+        if let Some(timestamps) = &mut self.slots[slot].timestamps {
             // SAFETY: `commands` is being recorded outside a render pass; the slot's last command buffer has run. There
             // is one timestamp more than there are draws.
-            unsafe { stamps.begin(&device, commands, count) };
+            unsafe { timestamps.begin(&device, commands, count) };
         }
         let this = &*self;
         let at = &this.slots[slot];
         let mut timed = 0;
-        let mut stamp = || {
-            if let Some(stamps) = &at.stamps {
+        let mut write_timestamp = || {
+            if let Some(timestamps) = &at.timestamps {
                 let stage = vk::PipelineStageFlags::BOTTOM_OF_PIPE;
                 // SAFETY: as above; begun.
-                unsafe { stamps.write(&device, commands, stage, timed) };
+                unsafe { timestamps.write(&device, commands, stage, timed) };
             }
             timed += 1;
         };
@@ -112,19 +112,19 @@ impl ViewRenderer {
         // SAFETY: `commands` is being recorded within the render pass that was begun before.
         let end = || unsafe { device.cmd_end_render_pass(commands) };
         wait(&this.entry(&read, outputs));
-        stamp();
+        write_timestamp();
         let scene = this.render_passes.scene[usize::from(outputs.depth.is_some())];
         this.begin(commands, scene, at.framebuffers[0]);
         this.labelled(commands, LABELS[0], || {
             this.bind(commands, &this.terrain, at.sets[0], bytemuck::bytes_of(&view.terrain));
             this.draw_tiles(commands, view.tiles);
         });
-        stamp();
+        write_timestamp();
         this.labelled(commands, LABELS[1], || {
             this.bind(commands, &this.sky, at.sets[1], bytemuck::bytes_of(&view.sky));
             this.draw_triangle(commands);
         });
-        stamp();
+        write_timestamp();
         if let (Some(plinth), Some(push)) = (&this.plinth, &view.plinth) {
             this.labelled(commands, LABELS[2], || {
                 this.bind(commands, plinth, at.sets[2], bytemuck::bytes_of(push));
@@ -132,10 +132,10 @@ impl ViewRenderer {
                 // SAFETY: `commands` is being recorded within a render pass, a pipeline bound.
                 unsafe { device.cmd_draw(commands, vertices, plinth_draw::FACES, 0, 0) };
             });
-            stamp();
+            write_timestamp();
         }
         end();
-        if let (Some(first), Some(depth)) = (&first_of, &this.depth) {
+        if let (Some(first), Some(depth)) = (&depth_resolve, &this.depth) {
             wait(&[of_kind(transition(depth.image, 1, TESTED, FETCHED), FETCHED)]);
             this.labelled(commands, LABELS[3], || {
                 this.begin(commands, this.render_passes.depth, at.framebuffers[1]);
@@ -143,7 +143,7 @@ impl ViewRenderer {
                 this.draw_triangle(commands);
                 end();
             });
-            stamp();
+            write_timestamp();
         }
         if let (Some(tone), Some(linear)) = (&this.tone, &this.linear) {
             wait(&[transition(linear.image, 1, DRAWN, READ)]);
@@ -154,12 +154,12 @@ impl ViewRenderer {
                 this.draw_triangle(commands);
                 end();
             });
-            stamp();
+            write_timestamp();
         }
         wait(&this.exit(&read, outputs));
-        if let Some(stamps) = &at.stamps {
+        if let Some(timestamps) = &at.timestamps {
             // SAFETY: as above; all have been written.
-            unsafe { stamps.end(&device, commands, count) };
+            unsafe { timestamps.end(&device, commands, count) };
         }
     }
 
@@ -283,7 +283,7 @@ impl ViewRenderer {
             bound.extend((0..).zip(views).map(|(binding, view)| (plinth, binding, view)));
         }
         bound.extend(self.linear.as_ref().map(|linear| (tone, 0, linear.view)));
-        let depth = self.depth.as_ref().filter(|_| self.first.is_some());
+        let depth = self.depth.as_ref().filter(|_| self.depth_resolve.is_some());
         bound.extend(depth.map(|depth| (first, 0, depth.view)));
         let infos: Vec<_> = bound
             .iter()

@@ -4,7 +4,7 @@ use ash::vk;
 
 use super::super::allocator::MemoryUse;
 use super::super::memory::DEPTH;
-use super::super::stamps::Stamps;
+use super::super::timestamps::Timestamps;
 use super::super::{failed, shaders};
 use super::pipelines::{Drawing, Recipe};
 use super::targets::Framebuffers;
@@ -75,10 +75,13 @@ impl ViewRenderer {
             )?;
         }
         if self.samples != one {
-            self.first.insert(Drawing::default()).make(
+            self.depth_resolve.insert(Drawing::default()).make(
                 &self.host,
                 &Recipe {
-                    shaders: [shaders::PictureToneVert {}.into(), shaders::DepthDrawFrag {}.into()],
+                    shaders: [
+                        shaders::PictureToneVert {}.into(),
+                        shaders::DepthResolveFrag {}.into(),
+                    ],
                     render_pass: self.render_passes.depth,
                     has_colour: false,
                     samples: one,
@@ -149,9 +152,10 @@ impl ViewRenderer {
                 self.host.name(*set, &format!("{label}, slot {number}"));
             }
             let name = format!("ridgelight views, slot {number}");
-            let stamps = Stamps::new(&self.host, &mut self.memory, &name, LABELS.len() + 1)?;
+            let timestamps =
+                Timestamps::new(&self.host, &mut self.memory, &name, LABELS.len() + 1)?;
             let framebuffers = Framebuffers::default();
-            self.slots.push(Slot { sets, framebuffers, stamps, recorded: Vec::new() });
+            self.slots.push(Slot { sets, framebuffers, timestamps, recorded: Vec::new() });
         }
         Ok(())
     }
@@ -162,14 +166,14 @@ impl ViewRenderer {
             self.memory.free(&mut backed);
         }
         (0..self.slots.len()).for_each(|slot| self.free_framebuffers(slot));
-        for stamps in self.slots.drain(..).filter_map(|slot| slot.stamps) {
-            stamps.free(&self.host, &mut self.memory);
+        for timestamps in self.slots.drain(..).filter_map(|slot| slot.timestamps) {
+            timestamps.free(&self.host, &mut self.memory);
         }
         self.render_passes.free(&self.host);
         // SAFETY: made by this device; the caller of `destroy` guarantees that nothing in flight uses it. Null is
         // allowed.
         unsafe { self.host.device.destroy_descriptor_pool(self.descriptor_pool, None) };
-        let optional = [self.plinth.as_mut(), self.first.as_mut(), self.tone.as_mut()];
+        let optional = [self.plinth.as_mut(), self.depth_resolve.as_mut(), self.tone.as_mut()];
         let drawings = [Some(&mut self.terrain), Some(&mut self.sky)].into_iter().chain(optional);
         drawings.flatten().for_each(|drawing| drawing.free(&self.host));
         self.memory.end();

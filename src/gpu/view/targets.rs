@@ -8,10 +8,10 @@ use super::recording::{DRAWN, TESTED};
 use super::{ViewOutputs, ViewRenderer};
 use crate::Result;
 
-/// Render passes; null until made. Layouts change by barriers outside.
+/// Render passes; null until made. Barriers outside them change the layouts.
 #[derive(Default)]
 pub(super) struct RenderPasses {
-    /// Terrain, sky and plinth: whose depths are lost, and whose depths are kept.
+    /// Terrain, sky and plinth. [0] discards depth, [1] stores it.
     pub scene: [vk::RenderPass; 2],
     /// Depths alone.
     pub depth: vk::RenderPass,

@@ -109,7 +109,7 @@ impl View {
             writes: written,
         };
         let depth = (samples > 1).then(|| ViewPass {
-            pass: "depth_draw",
+            pass: "depth_resolve",
             why: "the first sample's depth of each pixel, where depth is requested".to_owned(),
             vertices: 3,
             bytes: pixels * 2 * DEPTH_BYTES,

@@ -93,7 +93,7 @@ fn gpu_cameras_write_pictures_and_depth() {
     let passes = json(&folder.path("v.json"))["passes"].clone();
     let names: Vec<_> = passes.as_array().unwrap().iter().map(|p| p["pass"].clone()).collect();
     assert!(
-        names.ends_with(&["terrain_draw".into(), "sky_draw".into(), "depth_draw".into()]),
+        names.ends_with(&["terrain_draw".into(), "sky_draw".into(), "depth_resolve".into()]),
         "{names:?}"
     );
 

@@ -81,7 +81,7 @@ fn a_camera_adds_its_passes_and_their_memory() {
     let passes = all("passes");
     let drawn: Vec<_> = passes.iter().filter(|p| p["vertices"].is_u64()).collect();
     let names_drawn: Vec<_> = drawn.iter().map(|p| &p["pass"]).collect();
-    assert_eq!(names_drawn, ["terrain_draw", "sky_draw", "depth_draw"]);
+    assert_eq!(names_drawn, ["terrain_draw", "sky_draw", "depth_resolve"]);
     assert_eq!((&drawn[0]["vertices"], &drawn[1]["vertices"]), (&289.into(), &3.into()));
     for used in drawn.iter().flat_map(|p| [&p["reads"], &p["writes"]]) {
         for name in used.as_array().unwrap() {

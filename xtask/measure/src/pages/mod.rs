@@ -45,7 +45,7 @@ fn camera() -> Result<String> {
 }
 
 /// Programs that an integrator would write, whole.
-const HOSTS: [(&str, &str, &str); 5] = [
+const HOSTS: [(&str, &str, &str); 6] = [
     ("Rust, `ash`", "examples/ash_host.rs", "the code above and an engine around it"),
     (
         "C, plain Vulkan",
@@ -60,12 +60,17 @@ const HOSTS: [(&str, &str, &str); 5] = [
     (
         "Rust, `wgpu`",
         "hosts/ridgelight-wgpu/examples/wgpu_light.rs",
-        "wgpu's device and textures, by the crate `ridgelight-wgpu`; a wgpu pass samples the light",
+        "wgpu's device and textures, through the crate `ridgelight-wgpu`; a wgpu pass samples the light",
+    ),
+    (
+        "Rust, `vulkano`",
+        "hosts/vulkano/src/main.rs",
+        "vulkano's device, images, buffer and command buffer",
     ),
     (
         "Rust, Bevy",
         "hosts/bevy_ridgelight/examples/dunes.rs",
-        "a window with travelling dunes, by the crate `bevy_ridgelight`",
+        "a window with travelling dunes, through the crate `bevy_ridgelight`",
     ),
 ];
 
@@ -88,9 +93,9 @@ fn hosts() -> Result<String> {
         out += &format!("| [{name}](../{path}) | {lines}{own} | {what} |\n");
     }
     Ok(out
-        + "\nTests run each one and compare its bytes with the command line's, without a validation message \
-           (`tests/gpu/embedding/ash_host.rs`, `crates/capi/tests/c`, `hosts/ridgelight-wgpu/check`). The tests of \
-           Bevy compare bytes with the core's (`hosts/bevy_ridgelight/check`).\n")
+        + "\nTests run all but the last and compare their bytes with the command line's, without a validation message \
+           (`tests/gpu/embedding/ash_host.rs`, `crates/capi/tests/c`, `hosts/same_light`). `hosts/bevy_ridgelight/check` \
+           runs the Bevy example, and tests that compare the plugin's bytes with the core's.\n")
 }
 
 fn sizes() -> Result<String> {

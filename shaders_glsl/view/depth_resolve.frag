@@ -1,4 +1,4 @@
-// Computes: the depth of a picture with several samples a pixel: the first sample's.
+// Computes: the depth of sample 0 of each pixel of an MSAA picture.
 // Reads: picture_depth.
 // Writes: depth.
 // One invocation is one pixel.

@@ -8,18 +8,20 @@ use super::memory::{Backed, Memory};
 use super::{Host, failed, requirements};
 use crate::Result;
 
-/// Timestamps that a command buffer writes, and a buffer that it copies them to. So the host neither resets nor reads
-/// queries: a device needs no `hostQueryReset`.
-pub(in crate::gpu) struct Stamps {
+/// Timestamp queries of one frame in flight, and the buffer that their results are copied to. The host neither resets nor
+/// reads queries, so `hostQueryReset` is not needed.
+pub(in crate::gpu) struct Timestamps {
     queries: vk::QueryPool,
-    /// By query: the ticks, and 1 if they are there.
+    /// Ticks of each query, and after them a word that is not 0 once all are there.
     copied: Backed,
+    /// The number of queries.
+    count: usize,
     tick_ns: f64,
     /// The valid bits of ticks.
     mask: u64,
 }
 
-impl Stamps {
+impl Timestamps {
     /// For that many timestamps; none where the host's queue family has no timestamps.
     pub(in crate::gpu) fn new(
         host: &Host,
@@ -29,23 +31,23 @@ impl Stamps {
     ) -> Result<Option<Self>> {
         let Some((tick_ns, bits)) = requirements::timestamps(host) else { return Ok(None) };
         let mask = u64::MAX >> (64 - bits.min(64));
-        let bytes = count as u64 * 16;
+        let bytes = (count as u64 + 1) * 8;
         let usage = vk::BufferUsageFlags::TRANSFER_DST;
         let copied = memory.buffer("timestamps", bytes, usage, MemoryUse::Readback)?;
         let queries = vk::QueryPool::null();
-        let mut stamps = Self { queries, copied, tick_ns, mask };
+        let mut timestamps = Self { queries, copied, count, tick_ns, mask };
         let info = vk::QueryPoolCreateInfo::default()
             .query_type(vk::QueryType::TIMESTAMP)
             .query_count(count as u32);
         // SAFETY: the device is alive.
         match unsafe { host.device.create_query_pool(&info, None) } {
             Ok(queries) => {
-                stamps.queries = queries;
+                timestamps.queries = queries;
                 host.name(queries, name);
-                Ok(Some(stamps))
+                Ok(Some(timestamps))
             }
             Err(result) => {
-                stamps.free(host, memory);
+                timestamps.free(host, memory);
                 Err(failed("making a frame's timestamps")(result))
             }
         }
@@ -93,39 +95,41 @@ impl Stamps {
         commands: vk::CommandBuffer,
         count: usize,
     ) {
-        let flags = vk::QueryResultFlags::TYPE_64
-            | vk::QueryResultFlags::WITH_AVAILABILITY
-            | vk::QueryResultFlags::WAIT;
-        let (buffer, count) = (self.copied.buffer, count as u32);
-        let to_host = [vk::MemoryBarrier2::default()
-            .src_stage_mask(vk::PipelineStageFlags2::COPY)
-            .src_access_mask(vk::AccessFlags2::TRANSFER_WRITE)
-            .dst_stage_mask(vk::PipelineStageFlags2::HOST)
-            .dst_access_mask(vk::AccessFlags2::HOST_READ)];
-        // SAFETY: as the caller guarantees; the buffer holds two words for each query.
+        let flags = vk::QueryResultFlags::TYPE_64 | vk::QueryResultFlags::WAIT;
+        let buffer = self.copied.buffer;
+        let written = |to, access| {
+            [vk::MemoryBarrier2::default()
+                .src_stage_mask(vk::PipelineStageFlags2::ALL_TRANSFER)
+                .src_access_mask(vk::AccessFlags2::TRANSFER_WRITE)
+                .dst_stage_mask(to)
+                .dst_access_mask(access)]
+        };
+        let before_flag =
+            written(vk::PipelineStageFlags2::ALL_TRANSFER, vk::AccessFlags2::TRANSFER_WRITE);
+        let to_host = written(vk::PipelineStageFlags2::HOST, vk::AccessFlags2::HOST_READ);
+        let flag = self.count as u64 * 8;
+        // SAFETY: as the caller guarantees; the buffer holds a word for each query, and the last one.
         unsafe {
             device.cmd_copy_query_pool_results(
                 commands,
                 self.queries,
                 0,
-                count,
+                count as u32,
                 buffer,
                 0,
-                16,
+                8,
                 flags,
             );
+            Barriers::default().memory(&before_flag).record(device, commands);
+            device.cmd_fill_buffer(commands, buffer, flag, 8, 1);
             Barriers::default().memory(&to_host).record(device, commands);
         }
     }
 
     /// Nanoseconds between each timestamp and the next, of `count`. None until all have been copied.
     pub(in crate::gpu) fn ns(&self, count: usize) -> Option<Vec<f64>> {
-        let ticks: Option<Vec<u64>> = (0..count)
-            .map(|query| {
-                let is_there = self.copied.word(2 * query + 1)? != 0;
-                self.copied.word(2 * query).filter(|_| is_there)
-            })
-            .collect();
+        self.copied.word(self.count).filter(|flag| *flag != 0)?;
+        let ticks: Option<Vec<u64>> = (0..count).map(|query| self.copied.word(query)).collect();
         let ns = |pair: &[u64]| (pair[1].wrapping_sub(pair[0]) & self.mask) as f64 * self.tick_ns;
         Some(ticks?.windows(2).map(ns).collect())
     }
