@@ -35,14 +35,15 @@ impl Backed {
         Some(unsafe { std::slice::from_raw_parts_mut(begin.as_ptr(), self.bytes as usize) })
     }
 
-    /// A word of a mapped buffer, while the device may be writing it.
+    /// Eight bytes of a mapped buffer as a number, while the device may be writing them.
     pub(crate) fn word(&self, index: usize) -> Option<u64> {
-        let begin = self.allocation.as_ref()?.mapped?.cast::<u64>();
+        let begin = self.allocation.as_ref()?.mapped?.cast::<u32>();
         if (index as u64 + 1) * 8 > self.bytes {
             return None;
         }
-        // SAFETY: as above; it is within the buffer, whose offset is a multiple of its alignment.
-        Some(unsafe { begin.add(index).read_volatile() })
+        // SAFETY: as above; it is within the buffer. Buffers may be aligned to 4 bytes only.
+        let halves = [0, 1].map(|half| unsafe { begin.add(2 * index + half).read_volatile() });
+        Some(bytemuck::cast(halves))
     }
 }
 

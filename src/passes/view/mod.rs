@@ -1,6 +1,6 @@
 //! Pictures: maps from above, and the mesh of the terrain.
 //! Dispatches and draws are recorded by `gpu::view` and the viewer. Exposure with sRGB (`picture_tone`) has one push
-//! constant, the exposure of a recording, and so no file here.
+//! constant, the exposure of a recording, and the depths of sample 0 (`depth_resolve`) have none: so no files here.
 
 /// The field from above, as a map.
 pub mod map_draw;

@@ -125,9 +125,19 @@ unsafe impl Allocator for Counting {
     }
 }
 
-/// Whole frames, edits and plans with another light in turn: the renderer takes no memory and gives none back.
 #[test]
 fn three_hundred_frames_take_no_more_memory() {
+    take_no_more_memory(300);
+}
+
+#[test]
+#[ignore = "tools/test --all"]
+fn ten_thousand_frames_take_no_more_memory() {
+    take_no_more_memory(10_000);
+}
+
+/// Whole frames, edits and plans with another light in turn: the renderer takes no memory and gives none back.
+fn take_no_more_memory(frames: usize) {
     let mut device = Device::new();
     let scenes = [0.5, 0.7].map(|sky| {
         let heights = field(8, 8, [1.0, 1.0], |r, c| ((r * 31 + c * 17) % 7) as f64);
@@ -153,7 +163,7 @@ fn three_hundred_frames_take_no_more_memory() {
     let (bytes, made) = (renderer.device_bytes(), calls.load(Ordering::Relaxed));
     assert!(bytes > 0 && made > 0);
     let all = Rectangle { col: 2, row: 3, cols: 4, rows: 2 };
-    for number in 0..300 {
+    for number in 0..frames {
         let slot = number % 2;
         gpu.run(|commands| match number % 3 {
             0 => {
