@@ -19,6 +19,7 @@ use clap::{
     Arg, ArgAction, ArgMatches, Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum,
 };
 
+use crate::horizon::Fourier;
 use crate::scene_file::SceneFile;
 pub use auto::AutoArgs;
 pub use bake::BakeArgs;
@@ -29,8 +30,8 @@ pub use quality::{QualityArgs, flag};
 pub use reference::ReferenceArgs;
 pub use renamed::Renamed;
 pub use scene::{BorderName, FieldArgs, LightArgs, SurfaceArgs};
-use values::bytes;
 pub use values::{SkyArg, SpecularArg, albedo_colour, numbers};
+use values::{bytes, fourier};
 pub use view::ViewArgs;
 
 /// Lights height fields on Vulkan by sky, environment, suns, key lights, sphere lights and indirect light, with
@@ -255,8 +256,13 @@ pub struct HorizonArgs {
     /// Output: .tif, .npy or .exr; a layer per azimuth
     ///
     /// A band of a GeoTIFF, a layer of an array [azimuths, rows, cols] or a channel of an EXR, in f32. Elevations are in radians. Azimuths are in compass order: 0 is north, then clockwise. Names are azimuth_000.0 and so on.
-    #[arg(short, long, value_name = "OUT.{tif,npy,exr}", help_heading = "Output")]
+    #[arg(short, long, value_name = "OUT.{tif,npy,exr,ktx2}", help_heading = "Output")]
     pub output: PathBuf,
+    /// A Fourier series for bevy-clipmap instead: coefficients, range of heights in metres
+    ///
+    /// To -o OUT.ktx2: R32F, a layer for the mean and one for each coefficient (an even number of 2 to 256), of the tangent of the elevation over azimuth. The range is that of the heights in bevy-clipmap, its `max - min`.
+    #[arg(long, value_name = "N,RANGE", value_parser = fourier, allow_hyphen_values = true, help_heading = "Output", hide_short_help = true, conflicts_with = "distances")]
+    pub fourier: Option<Fourier>,
     /// Also write the distance to each horizon's occluder, metres, 0 where there is none
     #[arg(long, value_name = "OUT.{tif,npy}", help_heading = "Output")]
     pub distances: Option<PathBuf>,

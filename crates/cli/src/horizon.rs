@@ -1,6 +1,7 @@
 //! `horizon`: writes the horizon of every texel.
 
 mod compass;
+mod fourier;
 
 use ridgelight::gpu::{Headless, Timing};
 use ridgelight::plan::{self, Limits, Plan};
@@ -14,6 +15,7 @@ use crate::args::HorizonArgs;
 use crate::idle;
 use crate::setup::{self, Outcome};
 pub use compass::Compass;
+pub use fourier::Fourier;
 
 /// Limit of the bytes that one batch of azimuths reads back.
 const OUTPUT_BYTES: u64 = 256 << 20;
@@ -153,7 +155,9 @@ impl LayerFile {
 }
 
 pub fn run(args: &HorizonArgs) -> Result<Outcome> {
-    setup::check_output("-o", &args.output, &["npy", "tif", "tiff", "exr"])?;
+    let endings: &[&str] =
+        if args.fourier.is_some() { &["ktx2"] } else { &["npy", "tif", "tiff", "exr"] };
+    setup::check_output("-o", &args.output, endings)?;
     if let Some(path) = &args.distances {
         setup::check_output("--distances", path, &["npy", "tif", "tiff"])?;
     }
@@ -177,6 +181,17 @@ pub fn run(args: &HorizonArgs) -> Result<Outcome> {
             "--json FILE beside it, or a .tif: exact azimuths are uneven, and a .npy cannot name them",
         ));
     }
+    if let Some(fourier) = args.fourier {
+        if is_exact {
+            let expected = "evenly spaced azimuths, for a Fourier series";
+            return Err(Error::setting("--lines", "exact", expected));
+        }
+        if quality.azimuths <= fourier.coefficients {
+            let found = format!("{} coefficients", fourier.coefficients);
+            let expected = format!("fewer than the {} azimuths", quality.azimuths);
+            return Err(Error::setting("--fourier", found, expected));
+        }
+    }
     let (field, georeference) =
         setup::georeferenced(&args.input.path, &args.surface, &args.global)?;
     let border = setup::border(&args.surface);
@@ -198,7 +213,11 @@ pub fn run(args: &HorizonArgs) -> Result<Outcome> {
     let create = |path: &Path, unit: &str| {
         LayerFile::create(path, shape, compass.names(), unit, georeference.as_ref())
     };
-    let mut angles_file = create(&args.output, "rad")?;
+    let mut series = args
+        .fourier
+        .map(|wanted| fourier::Series::new(wanted, azimuths.clone(), [field.rows(), field.cols()]));
+    let has_layers = series.is_none();
+    let mut angles_file = has_layers.then(|| create(&args.output, "rad")).transpose()?;
     let mut distances_file = args.distances.as_ref().map(|path| create(path, "m")).transpose()?;
     let bar = crate::setup::terminal::progress(args.global.quiet, "horizons");
     let (times, plan) = for_each(
@@ -216,7 +235,12 @@ pub fn run(args: &HorizonArgs) -> Result<Outcome> {
                 plane
             };
             let layer = compass.layer_of[k as usize];
-            angles_file.write(layer, masked(angles))?;
+            if let Some(series) = &mut series {
+                series.add(k as usize, angles);
+            }
+            if let Some(file) = &mut angles_file {
+                file.write(layer, masked(angles))?;
+            }
             distances_file.as_mut().map_or(Ok(()), |file| file.write(layer, masked(distances)))
         },
     )?;
@@ -226,8 +250,19 @@ pub fn run(args: &HorizonArgs) -> Result<Outcome> {
     metadata.extend(setup::asked(&args.input, &args.surface, None));
     let named = "compass degrees, clockwise from north, to the horizon";
     metadata.push(("azimuth_names".into(), named.into()));
+    let mut of_series = String::new();
+    if let Some(series) = &series {
+        let left_out = 100.0 * series.error();
+        metadata.push(("fourier_error_percent".into(), format!("{left_out:.3}")));
+        let values =
+            "Fourier series of the tangent of the elevation over azimuth, for bevy-clipmap";
+        let about = [metadata.as_slice(), &[("values".into(), values.into())]].concat();
+        series.write(&args.output, &about)?;
+        of_series =
+            format!(", of which the series leaves out {left_out:.2} % (RMS of the tangents)");
+    }
     for (file, values) in [
-        (Some(angles_file), "elevation of the horizon, rad"),
+        (angles_file, "elevation of the horizon, rad"),
         (distances_file, "distance to the horizon's occluder, m; 0 without one"),
     ] {
         let about = [metadata.as_slice(), &[("values".into(), values.into())]].concat();
@@ -241,7 +276,7 @@ pub fn run(args: &HorizonArgs) -> Result<Outcome> {
     if !args.global.quiet {
         let ms: f64 = times.iter().map(|t| t.ns).sum::<f64>() / 1e6;
         crate::say!(
-            "Wrote {} ({}x{}, {} azimuths) in {ms:.1} ms of GPU time on {}.",
+            "Wrote {} ({}x{}, {} azimuths{of_series}) in {ms:.1} ms of GPU time on {}.",
             args.output.display(),
             field.cols(),
             field.rows(),

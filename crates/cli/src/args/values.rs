@@ -1,5 +1,7 @@
 //! Parses values of the command line. The library checks ranges unless a function here does.
 
+use crate::horizon::Fourier;
+
 pub fn whole(text: &str) -> Result<u32, String> {
     text.parse().map_err(|_| "expected a whole number, 0 or more".to_owned())
 }
@@ -73,6 +75,21 @@ pub fn specular(text: &str) -> Result<SpecularArg, String> {
         Ok(other) => Err(format!("{} numbers, expected EXPONENT,SCALE or a file", other.len())),
         Err(_) => Ok(SpecularArg::File(text.into())),
     }
+}
+
+/// Coefficients and the range of heights, as 16,1200.
+pub fn fourier(text: &str) -> Result<Fourier, String> {
+    let [coefficients, range_m] = numbers(text)?[..] else {
+        return Err("expected two numbers, N,RANGE".into());
+    };
+    let is_count = (2.0..=256.0).contains(&coefficients) && coefficients % 2.0 == 0.0;
+    if !is_count {
+        return Err(format!("{coefficients} coefficients, expected an even number from 2 to 256"));
+    }
+    if !(range_m.is_finite() && range_m > 0.0) {
+        return Err(format!("a range of {range_m}, expected more than 0"));
+    }
+    Ok(Fourier { coefficients: coefficients as u32, range_m })
 }
 
 pub fn pixels(text: &str) -> Result<[u32; 2], String> {

@@ -206,6 +206,87 @@ fn gpu_openness_of_a_ditch_is_its_formula() {
     }
 }
 
+/// The sums of bevy-clipmap's transform in f64, of the horizons that a .npy holds; angles from east over south, as in its
+/// shader. Before a wall in the south its sum is higher towards south than towards north.
+#[test]
+fn gpu_fourier_series_are_the_transform_of_the_horizons() {
+    let folder = Folder::new();
+    const AZIMUTHS: usize = 24;
+    const HALF: usize = 4;
+    const RANGE: f64 = 50.0;
+    write_field(&folder, SIDE, |row, col| {
+        let rough = ((row * 7919 + col * 104_729) % 613) as f32 * 0.005;
+        rough + if row > 12 { 9.0 } else { 0.0 }
+    });
+    done(&folder, "horizon field.npy -o h.npy --azimuths 24");
+    done(&folder, "horizon field.npy -o h.ktx2 --azimuths 24 --fourier 8,50 --json h.json");
+    let tangents: Vec<Vec<f64>> = read(&folder.path("h.npy"))
+        .planes
+        .iter()
+        .map(|plane| plane.iter().map(|angle| f64::from(*angle).max(0.0).tan()).collect())
+        .collect();
+    let bytes = std::fs::read(folder.path("h.ktx2")).unwrap();
+    let reader = ktx2::Reader::new(&bytes).unwrap();
+    let header = reader.header();
+    assert_eq!(header.format, Some(ktx2::Format::R32_SFLOAT));
+    assert_eq!((header.pixel_width, header.layer_count), (SIDE as u32, 2 * HALF as u32 + 1));
+    let level = reader.levels().next().unwrap();
+    let values: Vec<f64> =
+        level.data.as_chunks::<4>().0.iter().map(|b| f32::from_le_bytes(*b).into()).collect();
+    // From compass degrees.
+    let theta = |layer: usize| std::f64::consts::TAU * (layer as f64 / AZIMUTHS as f64 - 0.25);
+    let unit = 360.0 / AZIMUTHS as f64 / RANGE;
+    let mut held = 0.0;
+    for layer in 0..=2 * HALF {
+        let weight = |azimuth: usize| match layer.checked_sub(HALF + 1) {
+            None => (layer as f64 * theta(azimuth)).cos(),
+            Some(before) => -((before + 1) as f64 * theta(azimuth)).sin(),
+        };
+        for texel in 0..SIDE * SIDE {
+            let terms = |azimuth: usize| tangents[azimuth][texel] * unit;
+            let expected: f64 = (0..AZIMUTHS).map(|a| weight(a) * terms(a)).sum();
+            let size: f64 = (0..AZIMUTHS).map(terms).sum();
+            let found = values[layer * SIDE * SIDE + texel];
+            // Each term, its product, weight and sum are rounded.
+            let bound = (AZIMUTHS + 4) as f64 * f64::from(f32::EPSILON) * 0.5 * size;
+            assert!((found - expected).abs() <= bound, "{layer} {texel}: {found} for {expected}");
+            held += (found * RANGE / 360.0).powi(2) * if layer == 0 { 1.0 } else { 2.0 };
+        }
+    }
+    let all: f64 = tangents.iter().flatten().map(|t| t * t).sum::<f64>() / AZIMUTHS as f64;
+    let left_out = 100.0 * (1.0 - held / all).sqrt();
+    let json: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(folder.path("h.json")).unwrap()).unwrap();
+    let said = json["settings"]["fourier_error_percent"].as_f64().unwrap();
+    assert!((said - left_out).abs() < 0.01 && said > 1.0, "{said} for {left_out}");
+
+    // As the shader sums, to the south and to the north of a texel before the wall.
+    let at = 11 * SIDE + 8;
+    let sum = |theta: f64| {
+        let of = |layer: usize| values[layer * SIDE * SIDE + at];
+        let waves = (1..=HALF).map(|k| {
+            let angle = k as f64 * theta;
+            of(k) * angle.cos() - of(k + HALF) * angle.sin()
+        });
+        (of(0) + 2.0 * waves.sum::<f64>()) / 360.0 * RANGE
+    };
+    let south = std::f64::consts::FRAC_PI_2;
+    assert!(sum(south) > 3.0 && sum(-south) < 1.0, "{} {}", sum(south), sum(-south));
+    let start = "horizon field.npy -o x.ktx2 --fourier";
+    let [odd, one, flat, many] =
+        ["7,50", "8", "8,0", "64,50 --azimuths 64"].map(|wrong| format!("{start} {wrong}"));
+    refused(
+        &folder,
+        &[
+            (&odd, 2, &["even number"]),
+            (&one, 2, &["two numbers"]),
+            (&flat, 2, &["more than 0"]),
+            (&many, 2, &["fewer than the 64 azimuths"]),
+            ("horizon field.npy -o x.npy --fourier 8,50", 2, &["ktx2"]),
+        ],
+    );
+}
+
 #[test]
 fn gpu_negative_openness_is_that_of_the_negated_field() {
     let folder = Folder::new();
