@@ -111,9 +111,11 @@ fn spawn(
 
 /// The bytes of an image after some frames.
 fn bytes(app: &mut App, image: &Handle<Image>) -> Vec<u8> {
+    // A frame to take the change, one to draw it.
     for _ in 0..3 {
         app.update();
     }
+    end(app);
     let found = Arc::new(Mutex::new(None));
     let into = found.clone();
     let reader = app
@@ -122,7 +124,9 @@ fn bytes(app: &mut App, image: &Handle<Image>) -> Vec<u8> {
         .observe(move |read: On<ReadbackComplete>| *into.lock().unwrap() = Some(read.data.clone()))
         .id();
     for _ in 0..100 {
+        // The queue is done in each, so that their number does not depend on the machine.
         app.update();
+        end(app);
         if found.lock().unwrap().is_some() {
             break;
         }
