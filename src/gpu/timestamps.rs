@@ -21,6 +21,18 @@ pub(in crate::gpu) struct Timestamps {
     mask: u64,
 }
 
+/// A barrier from copies and fills of the buffer to what uses it next.
+fn copied_before(
+    stage: vk::PipelineStageFlags2,
+    access: vk::AccessFlags2,
+) -> [vk::MemoryBarrier2<'static>; 1] {
+    [vk::MemoryBarrier2::default()
+        .src_stage_mask(vk::PipelineStageFlags2::ALL_TRANSFER)
+        .src_access_mask(vk::AccessFlags2::TRANSFER_WRITE)
+        .dst_stage_mask(stage)
+        .dst_access_mask(access)]
+}
+
 impl Timestamps {
     /// For that many timestamps; none where the host's queue family has no timestamps.
     pub(in crate::gpu) fn new(
@@ -66,8 +78,16 @@ impl Timestamps {
         if let Some(bytes) = self.copied.mapped() {
             bytes.fill(0);
         }
-        // SAFETY: as the caller guarantees; the pool has at least that many queries.
-        unsafe { device.cmd_reset_query_pool(commands, self.queries, 0, count as u32) };
+        // In the command buffer too, in case it runs again.
+        let buffer = self.copied.buffer;
+        let last_run =
+            copied_before(vk::PipelineStageFlags2::ALL_TRANSFER, vk::AccessFlags2::TRANSFER_WRITE);
+        // SAFETY: as the caller guarantees; the pool has at least that many queries, and the buffer one word more.
+        unsafe {
+            Barriers::default().memory(&last_run).record(device, commands);
+            device.cmd_fill_buffer(commands, buffer, self.count as u64 * 8, 8, 0);
+            device.cmd_reset_query_pool(commands, self.queries, 0, count as u32);
+        }
     }
 
     /// Records one timestamp, after earlier commands have finished this stage.
@@ -97,16 +117,9 @@ impl Timestamps {
     ) {
         let flags = vk::QueryResultFlags::TYPE_64 | vk::QueryResultFlags::WAIT;
         let buffer = self.copied.buffer;
-        let written = |to, access| {
-            [vk::MemoryBarrier2::default()
-                .src_stage_mask(vk::PipelineStageFlags2::ALL_TRANSFER)
-                .src_access_mask(vk::AccessFlags2::TRANSFER_WRITE)
-                .dst_stage_mask(to)
-                .dst_access_mask(access)]
-        };
         let before_flag =
-            written(vk::PipelineStageFlags2::ALL_TRANSFER, vk::AccessFlags2::TRANSFER_WRITE);
-        let to_host = written(vk::PipelineStageFlags2::HOST, vk::AccessFlags2::HOST_READ);
+            copied_before(vk::PipelineStageFlags2::ALL_TRANSFER, vk::AccessFlags2::TRANSFER_WRITE);
+        let to_host = copied_before(vk::PipelineStageFlags2::HOST, vk::AccessFlags2::HOST_READ);
         let flag = self.count as u64 * 8;
         // SAFETY: as the caller guarantees; the buffer holds a word for each query, and the last one.
         unsafe {

@@ -13,7 +13,7 @@ use bevy::render::sync_world::MainEntity;
 use bevy::render::texture::GpuImage;
 use bevy::render::{Extract, ExtractSchedule, GpuResourceAppExt, Render, RenderApp, RenderSystems};
 use bevy::transform::TransformSystems;
-use ridgelight::plan::{self, Picture, Plan, Rectangle};
+use ridgelight::plan::{self, Limits, Picture, Plan, Rectangle};
 use ridgelight::scene::{self, Environment, Lights, Quality, Scene, Surface};
 use ridgelight_wgpu::{Renderer, limits};
 
@@ -142,7 +142,7 @@ impl Settings {
     }
 
     /// The passes for light from that direction.
-    fn plan(&self, device: &wgpu::Device, sun: Vec3) -> ridgelight::Result<Plan> {
+    fn plan(&self, limits: &Limits, sun: Vec3) -> ridgelight::Result<Plan> {
         let sun = scene::Sun {
             azimuth_rad: f64::from((-sun.z).atan2(sun.x)),
             elevation_rad: f64::from(sun.y.clamp(-1.0, 1.0).asin()),
@@ -158,7 +158,7 @@ impl Settings {
         let scene = Scene { field: self.field()?, surface: Surface::default(), lights };
         let quality = Quality { azimuths: self.azimuths, ..Quality::default() };
         let wanted = Picture { light_layers: true, keeps_horizons: true, ..Picture::default() };
-        plan::picture(&scene, &quality, &limits(device)?, wanted)
+        plan::picture(&scene, &quality, limits, wanted)
     }
 
     fn horizon_plan(&self, device: &wgpu::Device) -> ridgelight::Result<Plan> {
@@ -217,7 +217,7 @@ impl FieldRenderer {
         queue: &wgpu::Queue,
         State { settings, images, sun, .. }: &State,
     ) -> ridgelight::Result<Self> {
-        let plan = settings.plan(device, sun.unwrap_or(NOT_RISEN))?;
+        let plan = settings.plan(&limits(device)?, sun.unwrap_or(NOT_RISEN))?;
         let (_, total) = plan.outputs().next().expect("the total radiance is the first output");
         let total = ridgelight_wgpu::texture(device, queue, total, wgpu::TextureUsages::empty())?;
         let horizons = (settings.horizon_azimuths > 0).then(|| {
@@ -288,7 +288,7 @@ impl FieldRenderer {
     ) -> ridgelight::Result<()> {
         let mut passes = Vec::new();
         if new.sun != old.sun {
-            let plan = new.settings.plan(device, new.sun.unwrap_or(NOT_RISEN))?;
+            let plan = new.settings.plan(&limits(device)?, new.sun.unwrap_or(NOT_RISEN))?;
             passes = self.renderer.set_plan(plan)?;
         }
         let is_other = new.images != old.images || new.revision != old.revision;
@@ -413,4 +413,29 @@ fn light_fields(
         lit.insert(entity, Field { state, renderer });
     }
     *changes = Changes { edits: waiting, images: Vec::new() };
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Otherwise an edit would light the whole field, with the same bits.
+    #[test]
+    fn every_kind_of_field_takes_edits() {
+        for bent_normal in [false, true] {
+            for sun_diameter in [0.0, 0.01] {
+                let settings = Settings {
+                    size: UVec2::new(48, 32),
+                    cell: 1.0,
+                    azimuths: 16,
+                    sun_diameter,
+                    bent_normal,
+                    horizon_azimuths: 0,
+                };
+                let sun = Vec3::new(0.6, 0.5, 0.2).normalize();
+                let plan = settings.plan(&Limits::lavapipe(), sun).expect("a plan");
+                assert!(!plan.edit_passes.is_empty(), "{bent_normal} {sun_diameter}");
+            }
+        }
+    }
 }

@@ -1,8 +1,8 @@
 //! Light of a height field in a wgpu texture, read by a wgpu pass. `wgpu_light OUT.exr` writes what the pass has read.
 //! `hosts/ridgelight-wgpu/check` runs it.
 
-use ridgelight::plan::{self, Picture};
-use ridgelight::scene::Quality;
+use ridgelight::plan::{self, Picture, Rectangle};
+use ridgelight::scene::{Quality, Scene};
 use ridgelight_io as files;
 use ridgelight_io::{Channels, Layer};
 use ridgelight_wgpu::{Renderer, limits, texture};
@@ -88,6 +88,46 @@ impl Reader {
     }
 }
 
+/// Raises a rectangle of the heights: the edit sweeps again, and has the bits of a whole submission.
+fn edit(device: &wgpu::Device, queue: &wgpu::Queue, scene: &Scene) -> Any<()> {
+    let wanted = Picture { keeps_horizons: true, ..Picture::default() };
+    let plan = plan::picture(scene, &Quality::default(), &limits(device)?, wanted)?;
+    let sampled = wgpu::TextureUsages::TEXTURE_BINDING;
+    let heights = texture(device, queue, plan.inputs().next().ok_or("no input")?.1, sampled)?;
+    let light = texture(device, queue, plan.outputs().next().ok_or("no output")?.1, sampled)?;
+    let mut renderer = Renderer::new(device, queue, plan)?;
+    let reader = Reader::new(device, &light);
+    // Level ground with zeros, before and after.
+    renderer.submit(&[&heights], &[&light])?;
+    queue.submit([reader.record(device)]);
+    let level = reader.values(device)?;
+    reader.mapped.unmap();
+    let raised = Rectangle { col: 20, row: 12, cols: 8, rows: 6 };
+    let bytes: Vec<u8> = [5.0_f32; 8 * 6].iter().flat_map(|v| v.to_ne_bytes()).collect();
+    let layout =
+        wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * 8), rows_per_image: None };
+    let origin = wgpu::Origin3d { x: raised.col, y: raised.row, z: 0 };
+    let to = wgpu::TexelCopyTextureInfo { origin, ..heights.as_image_copy() };
+    let size = wgpu::Extent3d { width: raised.cols, height: raised.rows, depth_or_array_layers: 1 };
+    queue.write_texture(to, &bytes, layout, size);
+    renderer.submit_edit(&[&heights], &[&light], raised)?;
+    queue.submit([reader.record(device)]);
+    let edited = reader.values(device)?;
+    reader.mapped.unmap();
+    let labels = renderer.timings().ok_or("no times of an edit")?;
+    if !labels.iter().any(|timing| timing.label.starts_with("horizon_resweep")) {
+        return Err(format!("an edit that sweeps nothing again: {labels:?}").into());
+    }
+    renderer.submit(&[&heights], &[&light])?;
+    queue.submit([reader.record(device)]);
+    let whole = reader.values(device)?;
+    reader.mapped.unmap();
+    if edited == level || edited != whole {
+        return Err("an edit has other light than a whole submission".into());
+    }
+    Ok(())
+}
+
 fn main() -> Any<()> {
     let out = std::env::args_os().nth(1).ok_or("usage: wgpu_light OUT.exr")?;
     let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
@@ -124,6 +164,8 @@ fn main() -> Any<()> {
     if !refused.contains("usage: found") {
         return Err(refused.into());
     }
+
+    edit(&device, &queue, &scene)?;
 
     let reader = Reader::new(&device, &light);
     queue.submit([reader.record(&device)]);
