@@ -1,3 +1,4 @@
+#include "shared/half.glsl"
 #include "shared/nodes.glsl"
 #include "horizon/met.glsl"
 #include "horizon/crossings.glsl"
@@ -81,8 +82,7 @@ uvec4 four_lines(Azimuth azimuth, int lowest, int first, int last, int lines, in
 vec4 slopes_of(uvec4 values) {
     vec4 slope = uintBitsToFloat(values);
     if (LATTICE == LATTICE_SLOPES_F16) {
-        slope = vec4(unpackHalf2x16(values.x).x, unpackHalf2x16(values.y).x, unpackHalf2x16(values.z).x,
-                     unpackHalf2x16(values.w).x);
+        slope = f16_from_bits(values);
     }
     return mix(slope, vec4(NO_SLOPE), lessThanEqual(slope, vec4(-65504.0)));
 }

@@ -243,9 +243,7 @@ void sweep_four_lines() {
             if (SLOPE_FORMAT == SLOPES_F32) {
                 imageStore(slopes, texel, floatBitsToUint(slope));
             } else {
-                slope = clamp(slope, -65504.0, 65504.0);
-                uvec2 words = uvec2(packed_f16(slope.xy), packed_f16(slope.zw));
-                imageStore(slopes_f16, texel, uvec4(words & 0xffffu, words >> 16).xzyw);
+                imageStore(slopes_f16, texel, f16_bits(clamp(slope, -65504.0, 65504.0)));
             }
         }
         depth += 1;

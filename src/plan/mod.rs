@@ -6,6 +6,7 @@
 //! | [`picture()`] | exit radiance of every texel; optionally a layer for each light and bounce ([`Picture`]) |
 //! | [`horizons()`] | horizon elevations of every texel along every azimuth |
 //! | [`reference()`] | the path-traced reference, slowly, with its standard error |
+//! | [`shadow_heights()`] | up to which height the ground shades each texel from a sun |
 //! | [`map()`] | the lit field from above, tone mapped |
 //! | [`preview()`] | the light of a coarse grid on the slopes of a fine one |
 //! | [`device_peak()`] | peak rates of the device, by their times |
@@ -47,6 +48,7 @@ mod picture;
 mod preview;
 mod print;
 mod reference;
+mod shadow_heights;
 mod view;
 
 pub use bake::{
@@ -64,6 +66,7 @@ pub use reference::{
     REFERENCE_BATCH, listed_places, reference, reference_at, reference_in_bands, reference_inputs,
     unsampled_light_error,
 };
+pub use shadow_heights::shadow_heights;
 pub use view::{View, ViewOptions, ViewPass, ViewResource, mesh_error_m};
 
 pub use crate::graph::{

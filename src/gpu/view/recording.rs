@@ -191,11 +191,12 @@ impl ViewRenderer {
     fn begin(&self, commands: vk::CommandBuffer, pass: vk::RenderPass, into: vk::Framebuffer) {
         let [width, height] = self.shape.size;
         let area = vk::Rect2D { extent: vk::Extent2D { width, height }, ..Default::default() };
+        let clears: &[_] = if self.render_passes.scene.contains(&pass) { &CLEARED } else { &[] };
         let info = vk::RenderPassBeginInfo::default()
             .render_pass(pass)
             .framebuffer(into)
             .render_area(area)
-            .clear_values(&CLEARED);
+            .clear_values(clears);
         let viewport = [vk::Viewport {
             x: 0.0,
             y: 0.0,

@@ -5,6 +5,8 @@
 pub(crate) mod env_tables;
 /// Sums to a picture and layers.
 pub(crate) mod light_resolve;
+/// Up to which height the ground ahead shades each grid point from a sun.
+pub(crate) mod shadow_height;
 /// Light of suns at the texels that shadow heights leave open, by their exact horizons.
 pub(crate) mod shadow_settle;
 /// Light of suns where shadow heights decide it.

@@ -8,6 +8,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use crate::scene::Sun;
 use crate::{Error, Result};
 
+pub(crate) use aimed::slope;
 pub use aimed::{Shape, across_key};
 pub use drawn::towards_light;
 

@@ -24,6 +24,8 @@ pub(crate) enum Wanted {
     Picture(Picture),
     /// A picture under suns and key lights by a GPU's plan, on any device.
     GpuPicture,
+    /// Of the scene's sun, in so many slices; with a coarser field around at a column and a row.
+    ShadowHeights(u32, Option<(HeightField, [f64; 2])>),
     /// Bounces.
     Reference(u32),
     /// Bounces; bounced light alone of so many texels.
@@ -72,6 +74,11 @@ impl Case {
             Wanted::GpuPicture => {
                 let limits = crate::of_kind(false, *limits);
                 plan::picture(&self.scene, &self.quality, &limits, Picture::default())
+            }
+            Wanted::ShadowHeights(slices, outer) => {
+                let (field, sun) = (&self.scene.field, &self.scene.lights.suns[0]);
+                let outer = outer.as_ref().map(|(field, place)| (field, *place));
+                plan::shadow_heights(field, sun, outer, *slices, limits)
             }
             Wanted::Reference(bounces) => plan::reference(&self.scene, *bounces, 1, limits),
             Wanted::ReferenceAt(bounces, count) => {
@@ -154,6 +161,13 @@ impl Case {
             return Vec::new();
         }
         let mut all = vec![self.scene.field.heights_m().to_vec()];
+        if let Wanted::ShadowHeights(_, Some((outer, _))) = &self.wanted {
+            // Shadows of ground that rises and falls over its own base; the second are lower.
+            let mut next = random(74);
+            let lit: Vec<f32> = outer.heights_m().iter().map(|h| h + 9.0 * next() as f32).collect();
+            let dark = lit.iter().map(|h| h - 2.0 * next() as f32).collect();
+            all.extend([lit, dark]);
+        }
         if let Wanted::Picture(_) = self.wanted {
             let four = |texels: &[[f32; 3]]| -> Vec<f32> {
                 texels.iter().flat_map(|t| [t[0], t[1], t[2], 1.0]).collect()

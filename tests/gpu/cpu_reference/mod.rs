@@ -144,6 +144,7 @@ fn every_shader_has_a_cpu_reference_and_a_case() {
         horizon::texels(),
         horizon::pyramids(),
         direct::pictures(),
+        direct::shadow_height::cases(),
         reference::references(),
         reference::paths(),
         bake::point_cases(),

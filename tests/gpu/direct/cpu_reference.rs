@@ -2,6 +2,7 @@
 
 pub(crate) mod light;
 mod shadow;
+pub(crate) mod shadow_height;
 pub(crate) mod sphere_sh;
 
 use ridgelight::plan::Picture;
@@ -18,6 +19,7 @@ pub(crate) const REFERENCES: &[Reference] = &[
     ("env_tables", light::env_tables),
     ("sky_shade", light::sky_shade),
     ("sun_shade", light::sun_shade),
+    ("shadow_height", shadow_height::shadow_height),
     ("shadow_sweep", shadow::shadow_sweep),
     ("shadow_shade", shadow::shadow_shade),
     ("shadow_settle", shadow::shadow_settle),

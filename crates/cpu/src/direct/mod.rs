@@ -3,6 +3,7 @@
 
 pub mod env_tables;
 pub mod light_resolve;
+pub mod shadow_height;
 pub mod shadow_settle;
 pub mod shadow_shade;
 pub mod shadow_sweep;

@@ -93,7 +93,7 @@ pub fn horizon_sweep(
                     });
                     lattice.occluders[texel] = back as u16;
                     lattice.slopes[texel] = if options.slopes_f16 {
-                        nearest_f16(met.clamp(-65504.0, 65504.0))
+                        f16::from_f32(met.clamp(-65504.0, 65504.0)).to_f32()
                     } else {
                         met
                     };

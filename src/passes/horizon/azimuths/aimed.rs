@@ -34,7 +34,7 @@ pub fn across_key(key: &KeyLight, count: u32, cell_m: [f64; 2]) -> Vec<Azimuth> 
 }
 
 /// The slope of an elevation; safe to square in f32.
-fn slope(elevation_rad: f64) -> f32 {
+pub(crate) fn slope(elevation_rad: f64) -> f32 {
     let steepest = f64::from(STEEPEST);
     match elevation_rad {
         e if e >= FRAC_PI_2 => STEEPEST,

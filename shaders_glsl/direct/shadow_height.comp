@@ -1,0 +1,162 @@
+// Computes: for every grid point the height above which a sun is seen whole, the height below which none of it is seen, and
+// the share of its disc that the grid point sees. Each line keeps the ground that shades it highest, for the lower and the upper
+// edge of the sun.
+// Reads: heights; of a coarser field around this one its shadow heights, outer_lit_above and outer_dark_below.
+// Writes: lit_above, dark_below (metres over the field's base), sun_share (0 to 1).
+// One invocation is one line; the last of a workgroup is also the first of the next one. Lines are a cell apart. A grid point
+// takes the interpolation of the lines around it.
+#version 460
+
+layout(local_size_x = 64) in;
+
+layout(constant_id = 0) const bool HAS_OUTER = false;
+
+layout(binding = 0) uniform texture2D heights;
+layout(binding = 1) uniform texture2D outer_lit_above;
+layout(binding = 2) uniform texture2D outer_dark_below;
+layout(binding = 3, r32f) uniform writeonly image2D lit_above;
+layout(binding = 4, r32f) uniform writeonly image2D dark_below;
+layout(binding = 5, r32f) uniform writeonly image2D sun_share;
+
+#include "shared/angle.glsl"
+#include "shared/lines.glsl"
+
+layout(push_constant) uniform ShadowHeightPush {
+    ivec2 size;         // columns and rows
+    ivec2 outer_size;
+    vec2 outer_origin;  // column and row of the outer grid at this field's first grid point
+    vec2 outer_step;    // cells of the outer grid per cell
+    vec2 rise;          // of the light over one step: from the sun's lower edge, from its upper edge
+    float outer_base;   // of the outer field over this one's
+    int shear;
+    uint flags;         // AZIMUTH_*
+    int first_group;
+};
+
+const int AT_ONCE = 4;
+
+// Shadow heights of AT_ONCE steps. Two such buffers alternate.
+shared vec2 of_lines[2 * AT_ONCE * gl_WorkGroupSize.x];
+
+bool has(uint flag) {
+    return (flags & flag) != 0u;
+}
+
+// Column and row, also between grid points.
+vec2 grid_place(float lane, float step, vec2 last) {
+    float lane_at = has(AZIMUTH_FLIPS_LANES) ? last.x - lane : lane;
+    float step_at = has(AZIMUTH_FLIPS_MARCH) ? last.y - step : step;
+    return has(AZIMUTH_MARCHES_ROWS) ? vec2(lane_at, step_at) : vec2(step_at, lane_at);
+}
+
+ivec2 texel_of(int lane, int step, ivec2 last) {
+    int lane_at = has(AZIMUTH_FLIPS_LANES) ? last.x - lane : lane;
+    int step_at = has(AZIMUTH_FLIPS_MARCH) ? last.y - step : step;
+    return has(AZIMUTH_MARCHES_ROWS) ? ivec2(lane_at, step_at) : ivec2(step_at, lane_at);
+}
+
+// Shadow heights of the outer field, between its grid points.
+vec2 outer_at(vec2 place) {
+    vec2 at = clamp(outer_origin + place * outer_step, vec2(0.0), vec2(outer_size - 1));
+    ivec2 a = ivec2(at);
+    ivec2 b = min(a + 1, outer_size - 1);
+    vec2 t = at - vec2(a);
+    vec4 lit = vec4(texelFetch(outer_lit_above, a, 0).x, texelFetch(outer_lit_above, ivec2(b.x, a.y), 0).x,
+                    texelFetch(outer_lit_above, ivec2(a.x, b.y), 0).x, texelFetch(outer_lit_above, b, 0).x);
+    vec4 dark = vec4(texelFetch(outer_dark_below, a, 0).x, texelFetch(outer_dark_below, ivec2(b.x, a.y), 0).x,
+                     texelFetch(outer_dark_below, ivec2(a.x, b.y), 0).x, texelFetch(outer_dark_below, b, 0).x);
+    vec2 lit_rows = mix(lit.xz, lit.yw, t.x);
+    vec2 dark_rows = mix(dark.xz, dark.yw, t.x);
+    return vec2(mix(lit_rows.x, lit_rows.y, t.y), mix(dark_rows.x, dark_rows.y, t.y)) + outer_base;
+}
+
+// Share of a disc above a chord that cuts off `hidden` of its height: a segment. The square roots keep its digits where nearly
+// nothing or nearly all is hidden.
+float share_above(float hidden) {
+    float a = clamp(hidden, 0.0, 1.0);
+    float b = 1.0 - a;
+    vec2 roots = sqrt(vec2(a, b));
+    float angle = arc_tangent(vec4(roots.x / max(roots.y, 1e-20))).x;
+    return 1.0 - (angle - (b - a) * roots.x * roots.y) * (2.0 / PI);
+}
+
+void main() {
+    int lanes = has(AZIMUTH_MARCHES_ROWS) ? size.x : size.y;
+    int steps = has(AZIMUTH_MARCHES_ROWS) ? size.y : size.x;
+    ivec2 last = ivec2(lanes, steps) - 1;
+    int group_lines = int(gl_WorkGroupSize.x) - 1;
+    int first_line = (first_group + int(gl_WorkGroupID.x)) * group_lines;
+    int lead = lattice_lead(shear, steps, CELL_SHIFT, false);
+    // The steps at which any line of the group is less than a cell beside the field.
+    int begin = 0;
+    int end = steps;
+    if (shear > 0) {
+        int lowest = (first_line - lead) * CELL;
+        begin = max(0, (-CELL - (lowest + group_lines * CELL)) / shear);
+        end = clamp((lanes * CELL - lowest) / shear + 1, begin, max(begin, steps));
+    }
+    int own = int(gl_LocalInvocationID.x);
+    int y = (first_line + own - lead) * CELL + begin * shear;
+    // The ground that shades the line from the lower and from the upper edge, and the step at which it is.
+    vec2 top = vec2(0.0);
+    ivec2 top_step = ivec2(0);
+    bool was_on = false;
+    int turn = 0;
+    for (int first = begin; first < end; first += AT_ONCE) {
+        vec2 mine[AT_ONCE];
+        float ground[AT_ONCE];
+        for (int k = 0; k < AT_ONCE; k++) {
+            int step = min(first + k, steps - 1);
+            int at = y + k * shear;
+            int cell = at >> CELL_SHIFT;
+            int fraction = at & (CELL - 1);
+            bool is_on = at > -CELL && at < lanes * CELL;
+            float below = texelFetch(heights, texel_of(clamp(cell, 0, last.x), step, last), 0).x;
+            float above = texelFetch(heights, texel_of(clamp(cell + 1, 0, last.x), step, last), 0).x;
+            float here = mix(below, above, float(fraction) * (1.0 / float(CELL)));
+            if (is_on && !was_on) {
+                // Before the field the ground goes on at the height of its edge.
+                top = vec2(here);
+                top_step = ivec2(step - 1);
+                if (HAS_OUTER) {
+                    float lane = clamp(float(at) * (1.0 / float(CELL)), 0.0, float(last.x));
+                    top = max(top, outer_at(grid_place(lane, float(step), vec2(last))) + rise);
+                }
+            }
+            was_on = is_on;
+            vec2 shade = top - vec2(step - top_step) * rise;
+            mine[k] = shade;
+            ground[k] = fraction == 0 ? below : above;
+            of_lines[(turn * AT_ONCE + k) * int(gl_WorkGroupSize.x) + own] = shade;
+            bvec2 is_higher = greaterThanEqual(vec2(here), shade);
+            top = mix(top, vec2(here), is_higher);
+            top_step = mix(top_step, ivec2(step), is_higher);
+        }
+        // One barrier is enough: the next iteration writes the other half, and this half is written again only after that
+        // iteration's barrier.
+        barrier();
+        for (int k = 0; k < AT_ONCE; k++) {
+            int step = first + k;
+            int at = y + k * shear;
+            int lane = (at + CELL - 1) >> CELL_SHIFT;
+            if (own == group_lines || step >= end || lane < 0 || lane > last.x) {
+                continue;
+            }
+            vec2 shade = mine[k];
+            int ahead = lane * CELL - at;
+            if (ahead > 0) {
+                // A line further on may be beside the field, with nothing to interpolate, where this line is on a lane.
+                vec2 next = of_lines[(turn * AT_ONCE + k) * int(gl_WorkGroupSize.x) + own + 1];
+                shade = mix(shade, next, float(ahead) * (1.0 / float(CELL)));
+            }
+            float penumbra = shade.x - shade.y;
+            float hidden = (shade.x - ground[k]) / max(penumbra, 1e-30);
+            ivec2 texel = texel_of(lane, step, last);
+            imageStore(lit_above, texel, vec4(shade.x));
+            imageStore(dark_below, texel, vec4(shade.y));
+            imageStore(sun_share, texel, vec4(share_above(hidden)));
+        }
+        y += AT_ONCE * shear;
+        turn = 1 - turn;
+    }
+}

@@ -1,0 +1,138 @@
+//! Heights of a sun's shadows.
+
+use ridgelight::gpu::shaders::offset;
+use ridgelight::plan::Pass;
+use ridgelight::plan::azimuths::{CELL, across_sun};
+use ridgelight::scene::{Border, HeightField, Lights, Quality, Scene, Sun, Surface};
+use ridgelight_cpu::shadow_height::shadow_heights;
+use ridgelight_cpu::shadow_sweep::lines_of;
+use ridgelight_cpu::shared::sweep::{Heights, March};
+use ridgelight_cpu::tolerance::{ARC_TANGENT, EPSILON};
+
+use crate::cpu_reference::{Case, Pair, Run, Wanted, check_all, pushed, rough};
+use crate::field;
+
+/// Suns in all octants, on an axis and on a diagonal; wide, narrow and points; high, low and cut by the horizontal. Fields alone,
+/// in slices, and inside a coarser one.
+pub(crate) fn cases() -> Vec<Case> {
+    let case = |name,
+                field: HeightField,
+                (degrees, elevation_rad, diameter_rad): (f64, f64, f64),
+                wanted| {
+        let azimuth_rad = degrees.to_radians();
+        let suns = vec![Sun { azimuth_rad, elevation_rad, diameter_rad, irradiance: [1.0; 3] }];
+        let lights = Lights { suns, ..Lights::default() };
+        let surface = Surface { border: Border::Plane, ..Surface::default() };
+        let scene = Scene { field, surface, lights };
+        Case { name, scene, quality: Quality::default(), wanted, loses_lines: false }
+    };
+    let alone = || Wanted::ShadowHeights(1, None);
+    let inside = |slices| {
+        let outer = field(20, 24, [9.0, 8.0], |r, c| 905.0 + 3.0 * ((r * 7 + c * 5) % 9) as f64);
+        Wanted::ShadowHeights(slices, Some((outer, [1.25, 0.5])))
+    };
+    vec![
+        case("shadow heights, from the east", rough(9, 13, 81), (0.0, 0.3, 0.2), alone()),
+        case("shadow heights, on a diagonal", rough(12, 12, 82), (45.0, 0.5, 0.1), alone()),
+        case("shadow heights of a point", rough(13, 10, 83), (118.0, 0.2, 0.0), alone()),
+        case(
+            "shadow heights, cut by the horizontal",
+            rough(8, 70, 84),
+            (170.0, 0.05, 0.3),
+            alone(),
+        ),
+        case("shadow heights, in the zenith", rough(7, 9, 85), (200.0, 1.5, 0.2), alone()),
+        case(
+            "shadow heights in slices",
+            rough(70, 81, 86),
+            (251.0, 0.1, 0.05),
+            Wanted::ShadowHeights(2, None),
+        ),
+        case("shadow heights inside others", rough(70, 64, 87), (290.0, 0.15, 0.1), inside(2)),
+        case(
+            "shadow heights inside others, from the north",
+            rough(9, 65, 88),
+            (82.0, 0.3, 0.02),
+            inside(1),
+        ),
+        case("shadow heights of a lane", rough(1, 30, 89), (339.0, 0.4, 0.1), alone()),
+    ]
+}
+
+/// A height between two grid points errs by 3 ε of the largest, the light's rise by 2 ε of itself, which is the shadow's height
+/// over its top; the interpolation of two lines by 3 ε of both. Of an outer field, whose place errs by 3 ε of it, also by that of its
+/// slopes.
+pub(crate) fn shadow_height(run: &mut Run, pass: &Pass) -> Vec<Pair> {
+    const RISE: usize = offset("ShadowHeightPush", "rise");
+    const OUTER_SIZE: usize = offset("ShadowHeightPush", "outer_size");
+    const OUTER_ORIGIN: usize = offset("ShadowHeightPush", "outer_origin");
+    const OUTER_STEP: usize = offset("ShadowHeightPush", "outer_step");
+    const OUTER_BASE: usize = offset("ShadowHeightPush", "outer_base");
+    const FIRST_GROUP: usize = offset("ShadowHeightPush", "first_group");
+    let float = |at: usize| f64::from(f32::from_bits(pushed(pass, at)));
+    let two = |at: usize| [float(at), float(at + 4)];
+    let point = Sun { diameter_rad: 0.0, ..run.scene.lights.suns[0] };
+    let azimuth = across_sun(&point, 1, run.scene.field.cell_m())[0];
+    let march = March::new(Heights::of(&run.scene.field, Border::Plane), &azimuth);
+    let [mut largest, _] = run.relief();
+    let [origin, step, base] = [two(OUTER_ORIGIN), two(OUTER_STEP), [float(OUTER_BASE); 2]];
+    let cols = pushed(pass, OUTER_SIZE) as usize;
+    let outer = run.floats(pass, "outer_lit_above").zip(run.floats(pass, "outer_dark_below"));
+    let mut misplaced = 0.0;
+    if let Some((lit, dark)) = &outer {
+        let most = lit.iter().chain(dark).fold(0.0, |m: f64, h| m.max(f64::from(h.abs())));
+        largest = largest.max(most + base[0].abs());
+        misplaced = 3.0 * EPSILON * (lit.len() / cols + cols) as f64 * 4.0 * most;
+    }
+    let at = |place: [f64; 2]| {
+        let (lit, dark) = outer.as_ref().expect("inside another field");
+        let last = [cols - 1, lit.len() / cols - 1].map(|n| n as f64);
+        let [x, y] = [0, 1].map(|i| (origin[i] + place[i] * step[i]).clamp(0.0, last[i]));
+        let between = |all: &[f32]| {
+            let h = |x: f64, y: f64| {
+                f64::from(all[y.min(last[1]) as usize * cols + x.min(last[0]) as usize])
+            };
+            let (a, b) = (x.floor(), y.floor());
+            let row = |y: f64| h(a, y) + (x - a) * (h(a + 1.0, y) - h(a, y));
+            row(b) + (y - b) * (row(b + 1.0) - row(b)) + base[0]
+        };
+        [between(lit), between(dark)]
+    };
+    let wants = shadow_heights(&march, two(RISE), outer.is_some().then_some(&at));
+    let names = ["lit_above", "dark_below", "sun_share"];
+    let got = names.map(|name| run.floats(pass, name).expect("written"));
+    let [width, _] = run.size();
+    let (_, first) = lines_of(&march, march.steps);
+    let groups =
+        pushed(pass, FIRST_GROUP) as i32..pushed(pass, FIRST_GROUP) as i32 + pass.groups[0] as i32;
+    let mut pairs = Vec::new();
+    let mut tight = 0;
+    for (i, want) in wants.iter().enumerate() {
+        let (lane, step) = march.of_grid_point((i % width) as i32, (i / width) as i32);
+        let line = (lane * CELL - first - step * azimuth.shear).div_euclid(CELL);
+        if !groups.contains(&(line / 63)) {
+            continue;
+        }
+        let error = |height: f64| 12.0 * EPSILON * (largest + height.abs()) + misplaced;
+        let heights = [want.lit_above, want.dark_below];
+        for (k, height) in heights.into_iter().enumerate() {
+            let at = [k, i / width, i % width];
+            pairs.push(Pair { got: got[k][i].into(), want: height, tolerance: error(height), at });
+        }
+        let penumbra = want.lit_above - want.dark_below;
+        let hidden = 3.0 * (error(want.lit_above) + error(want.dark_below)) / penumbra.max(1e-30);
+        // The share changes by at most 4/π of what is hidden.
+        let tolerance = (1.3 * hidden).min(1.0) + ARC_TANGENT + 12.0 * EPSILON;
+        tight += usize::from(tolerance < 0.01);
+        let at = [2, i / width, i % width];
+        pairs.push(Pair { got: got[2][i].into(), want: want.share(), tolerance, at });
+    }
+    assert!(point == run.scene.lights.suns[0] || 3 * tight > pairs.len() / 2, "{tight} shares");
+    assert!(!pairs.is_empty(), "{}", pass.label());
+    pairs
+}
+
+#[test]
+fn heights_of_shadows_match() {
+    check_all(&cases());
+}
