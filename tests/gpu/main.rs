@@ -26,6 +26,7 @@ mod device {
 mod direct {
     pub mod cpu_reference;
     mod keys;
+    mod shadow_heights;
     mod sphere_sh;
     mod spheres;
 }

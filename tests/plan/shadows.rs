@@ -148,3 +148,66 @@ fn sweeps_run_side_by_side_on_a_gpu() {
     assert_eq!(gpu.len(), lavapipe.len());
     assert!(gpu.last().unwrap().0 < lavapipe.last().unwrap().0);
 }
+
+#[test]
+fn shadow_heights_have_a_pass_for_each_slice() {
+    let sun = |azimuth_rad, elevation_rad, diameter_rad| Sun {
+        azimuth_rad,
+        elevation_rad,
+        diameter_rad,
+        irradiance: [1.0; 3],
+    };
+    let (inner, outer) = (flat(100, 70), flat(120, 120));
+    let plan = |sun, place| {
+        let outer = Some((&outer, place));
+        plan::shadow_heights(&inner, &sun, outer, 2, &Limits::lavapipe()).expect("a plan")
+    };
+    let first = plan(sun(0.3, 0.5, 0.01), [0.0, 0.0]);
+    assert_eq!(first.passes.len(), 2);
+    assert_eq!(missing_barriers(&first.passes), []);
+    let names =
+        |plan: &Plan| plan.inputs().chain(plan.outputs()).map(|(_, r)| r.name.clone()).collect();
+    let all: Vec<String> = names(&first);
+    assert_eq!(
+        all,
+        ["heights", "outer_lit_above", "outer_dark_below", "lit_above", "dark_below", "sun_share"]
+    );
+    for (other, place) in [
+        (sun(2.0, 0.1, 0.0), [0.0, 0.0]),
+        (sun(-1.0, 1.5, 0.2), [50.0, 19.5]),
+        (sun(4.0, 0.0, 0.1), [3.0, 0.0]),
+    ] {
+        let of = plan(other, place);
+        assert_eq!(of.passes_after(&first, &[]), [0, 1], "{other:?}");
+        // Each group of lines is in one slice.
+        let groups: u32 = of.passes.iter().map(|p| p.groups[0]).sum();
+        assert!(of.passes.iter().all(|p| p.groups[0] > 0) && groups >= 2, "{groups}");
+    }
+}
+
+#[test]
+fn shadow_heights_refuse_what_they_cannot_do() {
+    let good =
+        Sun { azimuth_rad: 1.0, elevation_rad: 0.5, diameter_rad: 0.0, irradiance: [1.0; 3] };
+    let (field, outer) = (flat(64, 200), flat(64, 200));
+    let error = |sun: Sun, place, slices| {
+        let outer = Some((&outer, place));
+        let plan = plan::shadow_heights(&field, &sun, outer, slices, &Limits::lavapipe());
+        plan.expect_err("refused").to_string()
+    };
+    for (place, slices, words) in [
+        ([0.0, 0.0], 0, "1 to 2"),
+        ([0.0, 0.0], 3, "1 to 2"),
+        ([0.5, 0.0], 1, "contains this one"),
+        ([0.0, -0.5], 1, "contains this one"),
+        ([f64::NAN, 0.0], 1, "contains this one"),
+    ] {
+        let found = error(good, place, slices);
+        assert!(found.contains(words), "{found}");
+    }
+    let beyond = error(Sun { elevation_rad: 2.0, ..good }, [0.0, 0.0], 1);
+    assert!(beyond.contains("elevation"), "{beyond}");
+    let same =
+        plan::shadow_heights(&field, &good, Some((&outer, [0.0, 0.0])), 1, &Limits::lavapipe());
+    assert!(same.is_ok());
+}

@@ -278,6 +278,22 @@ typedef struct RidgelightQuality {
     uint32_t bounce_specular;
 } RidgelightQuality;
 
+// A coarser field around another one.
+typedef struct RidgelightOuter {
+    // sizeof(RidgelightOuter).
+    uint32_t struct_size;
+    // Rows of grid points.
+    uint32_t rows;
+    // Columns of grid points.
+    uint32_t cols;
+    // 0.
+    uint32_t reserved;
+    // Spacing of columns and of rows, in the unit of heights; 0, 0: 1, 1.
+    double cell_m[2];
+    // Column and row of its grid at which the other field's first grid point lies.
+    double place[2];
+} RidgelightOuter;
+
 // Sizes of a plan.
 typedef struct RidgelightPlanInfo {
     // sizeof(RidgelightPlanInfo).
@@ -525,6 +541,25 @@ enum RidgelightResult ridgelight_plan_create(const struct RidgelightHost *host,
                                              uint32_t picture,
                                              uint64_t memory_budget,
                                              struct RidgelightPlan **plan);
+
+// Plans the heights of a sun's shadows over a field: the scene's one sun and its field; nothing else of the scene counts.
+//
+// Outputs, R32F: "lit_above" (a point over a grid point sees the whole sun from this height on), "dark_below" (none of it below), and
+// "sun_share" (the share of its disc that the ground there sees, [0..1]). Inputs: "heights"; with `outer`, which may be null, also
+// "outer_lit_above" and "outer_dark_below", which a renderer of the coarser field has written for the same sun.
+//
+// The plan has `slices` passes (0: 1), each for some lines of the field: record them in one frame or in several
+// (ridgelight_record_passes). The plan of any other sun can replace it.
+//
+// Returns OK, ARGUMENT, SETTING or LIMIT.
+//
+// # Safety
+// As ridgelight_plan_create.
+enum RidgelightResult ridgelight_shadow_heights_create(const struct RidgelightHost *host,
+                                                       const struct RidgelightScene *scene,
+                                                       const struct RidgelightOuter *outer,
+                                                       uint32_t slices,
+                                                       struct RidgelightPlan **plan);
 
 // Destroys a plan; renderers made for it keep a copy. Null is allowed.
 //

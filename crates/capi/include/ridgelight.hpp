@@ -61,6 +61,15 @@ inline RidgelightResult create(Plan &plan, const RidgelightHost &host, const Rid
     return result;
 }
 
+// As ridgelight_shadow_heights_create.
+inline RidgelightResult create_shadow_heights(Plan &plan, const RidgelightHost &host, const RidgelightScene &scene,
+                                              const RidgelightOuter *outer = nullptr, uint32_t slices = 1) noexcept {
+    RidgelightPlan *made = nullptr;
+    RidgelightResult result = ridgelight_shadow_heights_create(&host, &scene, outer, slices, &made);
+    plan.reset(made);
+    return result;
+}
+
 // As ridgelight_renderer_create.
 inline RidgelightResult create(Renderer &renderer, const RidgelightHost &host, const Plan &plan, uint32_t slots = 1,
                                const RidgelightAllocator *allocator = nullptr) noexcept {

@@ -6,7 +6,7 @@ use ridgelight::plan::{self, Format, Kind, Owner, Picture, Plan, Resource};
 
 use crate::errors::{Done, Failure, RidgelightResult, done};
 use crate::read::{SizeFirst, hand_out, handle, handle_mut, read, write};
-use crate::scene::{RidgelightQuality, RidgelightScene, quality, scene};
+use crate::scene::{RidgelightQuality, RidgelightScene, outer, quality, scene};
 use crate::types::{RidgelightHost, host};
 
 /// The passes that light one scene, in order, and their resources; plain data. Threads may share it, except
@@ -63,6 +63,67 @@ pub unsafe extern "C" fn ridgelight_plan_create(
                 limits.memory_budget = memory_budget;
             }
             Ok(RidgelightPlan(plan::picture(&scene, &quality, &limits, picture)?))
+        })
+    })
+}
+
+/// A coarser field around another one.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct RidgelightOuter {
+    /// sizeof(RidgelightOuter).
+    pub struct_size: u32,
+    /// Rows of grid points.
+    pub rows: u32,
+    /// Columns of grid points.
+    pub cols: u32,
+    /// 0.
+    pub reserved: u32,
+    /// Spacing of columns and of rows, in the unit of heights; 0, 0: 1, 1.
+    pub cell_m: [f64; 2],
+    /// Column and row of its grid at which the other field's first grid point lies.
+    pub place: [f64; 2],
+}
+
+// SAFETY: numbers; the size is first.
+unsafe impl SizeFirst for RidgelightOuter {}
+
+/// Plans the heights of a sun's shadows over a field: the scene's one sun and its field; nothing else of the scene counts.
+///
+/// Outputs, R32F: "lit_above" (a point over a grid point sees the whole sun from this height on), "dark_below" (none of it below), and
+/// "sun_share" (the share of its disc that the ground there sees, [0..1]). Inputs: "heights"; with `outer`, which may be null, also
+/// "outer_lit_above" and "outer_dark_below", which a renderer of the coarser field has written for the same sun.
+///
+/// The plan has `slices` passes (0: 1), each for some lines of the field: record them in one frame or in several
+/// (ridgelight_record_passes). The plan of any other sun can replace it.
+///
+/// Returns OK, ARGUMENT, SETTING or LIMIT.
+///
+/// # Safety
+/// As ridgelight_plan_create.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ridgelight_shadow_heights_create(
+    host: *const RidgelightHost,
+    scene: *const RidgelightScene,
+    outer: *const RidgelightOuter,
+    slices: u32,
+    plan: *mut *mut RidgelightPlan,
+) -> RidgelightResult {
+    // SAFETY: as the caller says.
+    done(|| unsafe {
+        hand_out(plan, || {
+            let host = self::host(host)?;
+            let scene = self::scene(scene)?;
+            let [sun] = scene.lights.suns[..] else {
+                let found = scene.lights.suns.len().to_string();
+                return Err(Failure::argument("scene: sun_count", found, "1"));
+            };
+            let around = if outer.is_null() { None } else { Some(self::outer(outer)?) };
+            let around = around.as_ref().map(|(field, place)| (field, *place));
+            let limits = gpu::limits(&host.instance, host.physical_device);
+            let slices = slices.max(1);
+            let made = plan::shadow_heights(&scene.field, &sun, around, slices, &limits)?;
+            Ok(RidgelightPlan(made))
         })
     })
 }

@@ -4,6 +4,7 @@ use ridgelight::scene::{
 };
 
 use crate::errors::{Done, Failure};
+use crate::plan::RidgelightOuter;
 use crate::read::{SizeFirst, numbers, pick, read, read_all};
 
 /// A disc of uniform radiance at infinity.
@@ -140,15 +141,8 @@ unsafe impl SizeFirst for RidgelightScene {}
 pub(crate) unsafe fn scene(from: *const RidgelightScene) -> Done<Scene> {
     // SAFETY: as the caller says, here and below.
     let scene = unsafe { read(from, "scene") }?;
-    let (rows, cols) = (scene.rows as usize, scene.cols as usize);
-    if !(1..=1 << 30).contains(&(u64::from(scene.rows) * u64::from(scene.cols))) {
-        let found = format!("{rows} x {cols}");
-        let expected = "at least one sample, at most 2^30";
-        return Err(Failure::argument("scene: rows and cols", found, expected));
-    }
-    let samples = rows * cols;
-    let cell_m = if scene.cell_m == [0.0; 2] { [1.0; 2] } else { scene.cell_m };
-    let field = HeightField::unknown(rows, cols, cell_m)?;
+    let samples = scene.rows as usize * scene.cols as usize;
+    let field = field([scene.rows, scene.cols], scene.cell_m, "scene")?;
     let borders = [Border::Plane, Border::Open, Border::Periodic];
     let surface = Surface {
         // SAFETY: as the caller says.
@@ -163,6 +157,27 @@ pub(crate) unsafe fn scene(from: *const RidgelightScene) -> Done<Scene> {
     };
     // SAFETY: as the caller says.
     Ok(Scene { field, surface, lights: unsafe { lights(&scene) }? })
+}
+
+/// A field whose heights only the device has.
+fn field([rows, cols]: [u32; 2], cell_m: [f64; 2], name: &str) -> Done<HeightField> {
+    if !(1..=1 << 30).contains(&(u64::from(rows) * u64::from(cols))) {
+        let found = format!("{rows} x {cols}");
+        let expected = "at least one sample, at most 2^30";
+        return Err(Failure::argument(&format!("{name}: rows and cols"), found, expected));
+    }
+    let cell_m = if cell_m == [0.0; 2] { [1.0; 2] } else { cell_m };
+    Ok(HeightField::unknown(rows as usize, cols as usize, cell_m)?)
+}
+
+/// The coarser field that a struct describes, and the place of the other in its grid.
+///
+/// # Safety
+/// As [`read`].
+pub(crate) unsafe fn outer(from: *const RidgelightOuter) -> Done<(HeightField, [f64; 2])> {
+    // SAFETY: as the caller says.
+    let outer = unsafe { read(from, "outer") }?;
+    Ok((field([outer.rows, outer.cols], outer.cell_m, "outer")?, outer.place))
 }
 
 fn texels(values: &[f32]) -> Vec<[f32; 3]> {

@@ -1,6 +1,7 @@
 //! The reference for direct light against closed forms.
 
 mod passes;
+mod shadow_heights;
 mod shadows;
 mod suns_and_keys;
 

@@ -9,6 +9,8 @@ mod target;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+use ridgelight::plan;
+use ridgelight::scene::{HeightField, Sun};
 use ridgelight_io as files;
 
 const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
@@ -149,13 +151,16 @@ fn is_validated() -> bool {
 
 /// Runs a program under the validation layer of the tests; returns its output with the layer's.
 fn run_validated(program: &Path, out: &Path) -> (Output, String) {
-    let mut command = Command::new(program);
+    run(validated(Command::new(program).arg(out)))
+}
+
+fn validated(command: &mut Command) -> &mut Command {
     // Drivers keep some allocations: their leaks are not checked.
-    command.arg(out).env("ASAN_OPTIONS", "detect_leaks=0");
+    command.env("ASAN_OPTIONS", "detect_leaks=0");
     if is_validated() {
         command.env("VK_INSTANCE_LAYERS", "VK_LAYER_KHRONOS_validation");
     }
-    run(&mut command)
+    command
 }
 
 /// Without a messenger the layer prints its messages.
@@ -235,6 +240,63 @@ fn a_cpp_program_gives_the_command_lines_bytes() {
         let (done, output) = run(cpp.arg(&file));
         assert_eq!(done.status.success(), is_taken, "{output}");
         assert!(is_taken || output.contains("an exception must not leave a callback"), "{output}");
+    }
+}
+
+/// The finest level of distant.c after its last cycle, by Rust: each level at once, inside the coarser one.
+fn distant_by_rust() -> Vec<u8> {
+    const SIDE: usize = 128;
+    let (mut gpu, _) = abi::device();
+    let limits = gpu.report().limits;
+    let sun = Sun {
+        azimuth_rad: 0.3 + 0.9 * 2.0,
+        elevation_rad: 0.2,
+        diameter_rad: 0.0093,
+        irradiance: [1.0; 3],
+    };
+    let ridge = |at: i32, width: i32| (at.rem_euclid(width) - width / 2).abs();
+    let mut outer: Option<(HeightField, Vec<Vec<f32>>)> = None;
+    for level in [2, 1, 0] {
+        let (step, cell) = (1 << level, f64::from(10 << level));
+        let at = |i: usize| 64 - 64 * step + i as i32 * step;
+        let heights: Vec<f32> = (0..SIDE * SIDE)
+            .map(|i| (at(i % SIDE), at(i / SIDE)))
+            .map(|(x, y)| (4 * ridge(3 * x + y, 100) + 3 * ridge(x - 2 * y, 140)) as f32)
+            .collect();
+        let field = HeightField::unknown(SIDE, SIDE, [cell; 2]).expect("a field");
+        let around = outer.as_ref().map(|(field, _)| (field, [32.0, 32.0]));
+        let plan = plan::shadow_heights(&field, &sun, around, 1, &limits).expect("a plan");
+        let mut inputs = vec![&heights[..]];
+        inputs.extend(outer.iter().flat_map(|(_, maps)| maps[..2].iter().map(Vec::as_slice)));
+        let mut frame = gpu.frame(plan, &inputs).expect("a frame");
+        gpu.draw(&mut frame).expect("drawn");
+        let maps = (0..3).map(|i| gpu.pixels(&frame, i).expect("pixels").values).collect();
+        gpu.end(frame);
+        outer = Some((field, maps));
+    }
+    let share = &outer.expect("three levels").1[2];
+    let lit = share.iter().filter(|share| **share > 0.5).count();
+    assert!((1000..15000).contains(&lit), "{lit} grid points see the sun");
+    share.iter().flat_map(|share| share.to_ne_bytes()).collect()
+}
+
+/// However the slices are spread over frames, the maps have the bits of Rust's. A budget that nothing fits into takes a slice a frame; one that
+/// all fit into, a level a frame, once the time of a slice is known.
+#[test]
+fn a_c_program_lights_levels_of_detail_within_a_budget() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let source = include_str!("distant.c");
+    assert!(source.lines().count() <= 220, "an integrator's program");
+    let right = distant_by_rust();
+    let program = compiled(folder.path(), "distant", source, With::Sanitizer);
+    let out = folder.path().join("texels");
+    for (budget, frames) in [("0.000001", 18), ("100000", 12)] {
+        let mut command = Command::new(&program);
+        command.arg(&out).env("BUDGET_MS", budget);
+        let (done, output) = run(validated(&mut command));
+        assert!(done.status.success() && !is_complaint(&output), "{output}");
+        assert!(output.contains(&format!("3 cycles of 3 levels in {frames} frames")), "{output}");
+        assert!(std::fs::read(&out).expect("texels") == right, "other shadows");
     }
 }
 
