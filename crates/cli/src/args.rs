@@ -255,8 +255,10 @@ pub struct HorizonArgs {
     pub input: Input,
     /// Output: .tif, .npy or .exr; a layer per azimuth
     ///
+    /// A .png, for --azimuths 4, is a horizon map of Stellarium: RGBA are north, east, south and west, each 255 × (0.5 + 0.5 √|s|) with the sign of s, the sine of the elevation; voids are level.
+    ///
     /// A band of a GeoTIFF, a layer of an array [azimuths, rows, cols] or a channel of an EXR, in f32. Elevations are in radians. Azimuths are in compass order: 0 is north, then clockwise. Names are azimuth_000.0 and so on.
-    #[arg(short, long, value_name = "OUT.{tif,npy,exr,ktx2}", help_heading = "Output")]
+    #[arg(short, long, value_name = "OUT.{tif,npy,exr,png,ktx2}", help_heading = "Output")]
     pub output: PathBuf,
     /// A Fourier series for bevy-clipmap instead: coefficients, range of heights in metres
     ///

@@ -105,6 +105,15 @@ enum LayerFile {
     Tif(GeoTiffWriter),
     /// Its path, size and layers, held until the end.
     Exr(PathBuf, [usize; 2], Vec<(String, Vec<f32>)>),
+    /// Its path, size and texels: north, east, south, west.
+    Png(PathBuf, [usize; 2], Vec<[u8; 4]>),
+}
+
+/// An elevation as a channel of Stellarium's horizon maps: the square root of the sine's size with the sine's sign, from -1..1 to 0..255;
+/// a void is level.
+fn channel(elevation_rad: f32) -> u8 {
+    let sine = if elevation_rad.is_nan() { 0.0 } else { elevation_rad.sin() };
+    (255.0 * (0.5 + 0.5 * sine.abs().sqrt().copysign(sine))).round() as u8
 }
 
 impl LayerFile {
@@ -121,6 +130,7 @@ impl LayerFile {
                 let layers = names.into_iter().map(|name| (name, Vec::new())).collect();
                 Ok(Self::Exr(path.to_owned(), [rows, cols], layers))
             }
+            "png" => Ok(Self::Png(path.to_owned(), [rows, cols], vec![[0; 4]; rows * cols])),
             _ => {
                 let bands = names.into_iter().map(|name| Band { name, unit: unit.to_owned() });
                 let georeference = georeference.cloned();
@@ -139,6 +149,10 @@ impl LayerFile {
                 layers[layer].1 = plane;
                 Ok(())
             }
+            Self::Png(_, _, texels) => {
+                texels.iter_mut().zip(plane).for_each(|(to, angle)| to[layer] = channel(angle));
+                Ok(())
+            }
         }
     }
 
@@ -150,13 +164,17 @@ impl LayerFile {
                 let layers = layers.iter().map(|(name, plane)| Layer::scalar(name, plane));
                 files::write_exr(&path, rows, cols, &layers.collect::<Vec<_>>(), metadata)
             }
+            Self::Png(path, [rows, cols], texels) => {
+                let samples = texels.as_flattened();
+                files::write_codes_aside(&path, [cols, rows], (4, 8), samples, metadata)?.place()
+            }
         }
     }
 }
 
 pub fn run(args: &HorizonArgs) -> Result<Outcome> {
     let endings: &[&str] =
-        if args.fourier.is_some() { &["ktx2"] } else { &["npy", "tif", "tiff", "exr"] };
+        if args.fourier.is_some() { &["ktx2"] } else { &["npy", "tif", "tiff", "exr", "png"] };
     setup::check_output("-o", &args.output, endings)?;
     if let Some(path) = &args.distances {
         setup::check_output("--distances", path, &["npy", "tif", "tiff"])?;
@@ -180,6 +198,10 @@ pub fn run(args: &HorizonArgs) -> Result<Outcome> {
             "an .npy output without --json",
             "--json FILE beside it, or a .tif: exact azimuths are uneven, and a .npy cannot name them",
         ));
+    }
+    if setup::extension(&args.output) == "png" && (quality.azimuths != 4 || is_exact) {
+        let found = format!("a .png of {} azimuths", quality.azimuths);
+        return Err(Error::setting("-o", found, "--azimuths 4: north, east, south and west"));
     }
     if let Some(fourier) = args.fourier {
         if is_exact {

@@ -287,6 +287,46 @@ fn gpu_fourier_series_are_the_transform_of_the_horizons() {
     );
 }
 
+/// Stellarium's shader takes the square of c = 2 code / 255 - 1, with its sign, as the sine s of the elevation. Codes are rounded to the
+/// nearest: c errs by 1 / 255, its square by 2 √s / 255 + 1 / 255².
+#[test]
+fn gpu_four_horizons_are_a_map_of_stellarium() {
+    let folder = Folder::new();
+    // Rises towards the east; a wall in the south.
+    write_field(&folder, SIDE, |row, col| {
+        2.0 * col as f32
+            + if row > 12 { 9.0 } else { 0.0 }
+            + ((row * 7919 + col * 104_729) % 613) as f32 * 0.001
+    });
+    done(&folder, "horizon field.npy -o h.npy --azimuths 4 --border open");
+    done(&folder, "horizon field.npy -o h.png --azimuths 4 --border open");
+    let map = image::open(folder.path("h.png")).unwrap();
+    let image::DynamicImage::ImageRgba8(map) = map else { panic!("RGBA of 8 bits") };
+    let horizons = read(&folder.path("h.npy"));
+    let mut worst = 0.0_f64;
+    for (i, texel) in map.pixels().enumerate() {
+        for (layer, code) in texel.0.into_iter().enumerate() {
+            let c = 2.0 * f64::from(code) / 255.0 - 1.0;
+            let sine = f64::from(horizons.planes[layer][i]).sin();
+            let bound = 2.0 * sine.abs().sqrt() / 255.0 + 1.0 / (255.0 * 255.0);
+            worst = worst.max((c * c.abs() - sine).abs() / bound);
+        }
+    }
+    assert!(worst > 0.5 && worst <= 1.0, "{worst} of the bound");
+    let [north, east, south, west] = map.get_pixel(8, 11).0;
+    assert!(
+        east > 200 && west < 60 && south > 230 && north < south,
+        "{north} {east} {south} {west}"
+    );
+    refused(
+        &folder,
+        &[
+            ("horizon field.npy -o h.png", 2, &["--azimuths 4"]),
+            ("horizon field.npy -o h.png --azimuths 4 --fourier 2,5", 2, &["ktx2"]),
+        ],
+    );
+}
+
 #[test]
 fn gpu_negative_openness_is_that_of_the_negated_field() {
     let folder = Folder::new();
