@@ -25,7 +25,7 @@ pub use auto::AutoArgs;
 pub use bake::BakeArgs;
 pub use camera::CameraArgs;
 pub use compare::CompareArgs;
-pub use maps::{HillshadeArgs, OpennessArgs, SkyViewArgs};
+pub use maps::{HillshadeArgs, OpennessArgs, ShadowArgs, SkyViewArgs};
 pub use quality::{QualityArgs, flag};
 pub use reference::ReferenceArgs;
 pub use renamed::Renamed;
@@ -155,6 +155,8 @@ pub enum Command {
     Horizon(HorizonArgs),
     /// Hillshade without shadows, as `gdaldem hillshade`: f32 or 8 bits, 1 to 255
     Hillshade(HillshadeArgs),
+    /// Cast shadow of a sun: the share of its disc seen, 0 to 1, and the heights that the shadow reaches
+    Shadow(ShadowArgs),
     /// Ambient occlusion: the light of a uniform sky on white ground, 0 to 1
     #[command(after_help = maps::AO_HELP)]
     Ao(SkyViewArgs),

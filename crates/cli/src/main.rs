@@ -83,6 +83,7 @@ fn main() -> ExitCode {
         args::Command::Info(args) => plan::info::run(args),
         args::Command::Horizon(args) => horizon::run(args),
         args::Command::Hillshade(args) => maps::hillshade(args),
+        args::Command::Shadow(args) => maps::shadow(args),
         args::Command::Ao(args) | args::Command::Svf(args) => maps::sky_view_map(args),
         args::Command::Openness(args) => maps::openness(args),
         args::Command::Plan(args) => plan::run(args),

@@ -1,4 +1,4 @@
-//! `hillshade`, `ao`, `svf` and `openness`: one map, in one file.
+//! `hillshade`, `shadow`, `ao`, `svf` and `openness`: one map, in one file.
 
 use std::f64::consts::FRAC_PI_2;
 use std::path::{Path, PathBuf};
@@ -13,7 +13,9 @@ use ridgelight::{Error, Result};
 use ridgelight_io as files;
 use ridgelight_io::{Channels, Georeference, Layer};
 
-use crate::args::{FieldArgs, GlobalArgs, HillshadeArgs, Input, OpennessArgs, SkyViewArgs};
+use crate::args::{
+    FieldArgs, GlobalArgs, HillshadeArgs, Input, OpennessArgs, ShadowArgs, SkyViewArgs,
+};
 use crate::render::world;
 use crate::setup::lights::light;
 use crate::setup::{self, Outcome};
@@ -91,6 +93,18 @@ const NEGATIVE_OPENNESS_VALUES: Values = Values {
     ..OPENNESS_VALUES
 };
 
+/// A sun's shadow. The first is that of a .png.
+const SHADOW_VALUES: [Values; 3] = [
+    Values {
+        name: "sun_share",
+        unit: "",
+        about: "share of the sun's disc that the ground sees; heights from which all of it is seen, and below which none is, m",
+        png: [0.0, 1.0],
+    },
+    Values { name: "lit_above", unit: "m", about: "", png: [0.0, 1.0] },
+    Values { name: "dark_below", unit: "m", about: "", png: [0.0, 1.0] },
+];
+
 /// [`setup::georeferenced`] or [`setup::on_cpu`].
 type Read = fn(&[PathBuf], &FieldArgs, &GlobalArgs) -> Result<(HeightField, Option<Georeference>)>;
 
@@ -127,23 +141,41 @@ impl<'a> Job<'a> {
     fn write(
         &self,
         values: &Values,
-        mut plane: Vec<f32>,
+        plane: Vec<f32>,
+        metadata: Vec<(String, String)>,
+        times: &[Timing],
+    ) -> Result<Outcome> {
+        self.write_all(std::slice::from_ref(values), vec![plane], metadata, times)
+    }
+
+    /// The same with several planes: bands, channels, or layers of an array. A .png has the first.
+    fn write_all(
+        &self,
+        values: &[Values],
+        mut planes: Vec<Vec<f32>>,
         mut metadata: Vec<(String, String)>,
         times: &[Timing],
     ) -> Result<Outcome> {
         let size @ [rows, cols] = [self.field.rows(), self.field.cols()];
-        setup::mask_voids(&self.field, &mut plane, 1);
+        planes.iter_mut().for_each(|plane| setup::mask_voids(&self.field, plane, 1));
         metadata.extend(setup::asked(self.input, self.surface, None));
-        metadata.push(("values".into(), values.about.into()));
-        let layers =
-            [Layer { name: String::new(), channels: Channels::Scalar(values.name, &plane) }];
+        metadata.push(("values".into(), values[0].about.into()));
+        let of_values = values.iter().zip(&planes);
+        let layers: Vec<_> = of_values
+            .map(|(v, plane)| (String::new(), Channels::Scalar(v.name, plane)))
+            .map(|(name, channels)| Layer { name, channels })
+            .collect();
         let (path, place) = (self.output, self.georeference.as_ref());
         match setup::extension(path).as_str() {
-            "npy" => files::write_npy_f32(path, &size, [plane.as_slice()])?,
+            "npy" => {
+                let shape = [&[planes.len()], &size[..]].concat();
+                let shape = if planes.len() == 1 { &size[..] } else { &shape };
+                files::write_npy_f32(path, shape, planes.iter().map(Vec::as_slice))?;
+            }
             "exr" => files::write_exr(path, rows, cols, &layers, &metadata)?,
             "png" => {
-                let (channels, codes) = codes(&plane, values.png);
-                let [black, white] = values.png;
+                let (channels, codes) = codes(&planes[0], values[0].png);
+                let [black, white] = values[0].png;
                 metadata.push(("png_range".into(), format!("{black},{white}")));
                 let form = (channels, 8);
                 files::write_codes_aside(path, [cols, rows], form, &codes, &metadata)?.place()?;
@@ -151,7 +183,7 @@ impl<'a> Job<'a> {
                 world::note_shape(path, &self.field, place, self.global.quiet);
             }
             _ => {
-                let units = [(values.name, values.unit)];
+                let units: Vec<_> = values.iter().map(|v| (v.name, v.unit)).collect();
                 files::write_geotiff(path, size, &layers, &units, place, &metadata)?;
             }
         }
@@ -195,6 +227,41 @@ pub fn hillshade(args: &HillshadeArgs) -> Result<Outcome> {
     let words = light("sun").words(&lights).concat();
     metadata.push(("sun1".into(), words.split(',').take(2).collect::<Vec<_>>().join(",")));
     job.write(&HILLSHADE_VALUES, plane, metadata, &[])
+}
+
+pub fn shadow(args: &ShadowArgs) -> Result<Outcome> {
+    let lights = Lights { suns: args.sun.clone(), ..Lights::default() };
+    setup::check_suns(&lights.suns, 0.0)?;
+    let [sun] = *lights.suns else {
+        return Err(Error::setting("--sun 2", "another sun", "one sun: a shadow map has no more"));
+    };
+    if setup::border(&args.surface) == Border::Periodic {
+        let expected = "plane or open: beyond its edge the ground goes on level";
+        return Err(Error::setting("--border", "periodic", expected));
+    }
+    let job = Job::new(
+        &args.input,
+        &args.file.output,
+        &args.surface,
+        &args.global,
+        setup::georeferenced,
+    )?;
+    let field = &job.field;
+    let plan = |limits: &Limits| plan::shadow_heights(field, &sun, None, 1, limits);
+    setup::check_plan(&args.global, plan)?;
+    let (mut gpu, limits) = setup::device(&args.global)?;
+    let plan = plan(&limits)?;
+    let mut metadata = setup::metadata(&gpu, field, &plan);
+    metadata.push(("sun1".into(), light("sun").words(&lights).concat()));
+    let (mut planes, times) = gpu.with_frame(plan, &[field.heights_m()], |gpu, frame| {
+        let times = gpu.draw(frame)?;
+        let of = |output| Ok(gpu.pixels(frame, output)?.values);
+        Ok(([2, 0, 1].map(of).into_iter().collect::<Result<Vec<_>>>()?, times))
+    })?;
+    // Heights of the file.
+    let absolute = |height: &mut f32| *height = (f64::from(*height) + field.base_m()) as f32;
+    planes[1..].iter_mut().flatten().for_each(absolute);
+    job.write_all(&SHADOW_VALUES, planes, metadata, &times)
 }
 
 /// Lambert's cosine as `gdaldem hillshade` stores it. Inside the field, the mean gradient of the four adjoining cells

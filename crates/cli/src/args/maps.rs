@@ -1,4 +1,4 @@
-//! Flags of `hillshade`, `ao`, `svf` and `openness`.
+//! Flags of `hillshade`, `shadow`, `ao`, `svf` and `openness`.
 
 use std::path::PathBuf;
 
@@ -19,6 +19,18 @@ from the cells that exist. Beside voids, they come from filled heights. gdaldem 
 Examples:
   ridgelight hillshade dem.tif -o hillshade.tif            # gdaldem hillshade -az 315 -alt 45
   ridgelight hillshade dem.tif --sun 300,30 --z-scale 2 -o relief.png    # -az 300 -alt 30 -z 2";
+
+const SHADOW_HELP: &str = "\
+Bands: sun_share, the share of the sun's disc that the ground sees, 0 to 1, not weighted by the slope; lit_above, the \
+height in metres from which a point over the texel sees the whole sun; dark_below, the height below which it sees none. \
+A .png has sun_share alone. Between the heights, the share of the disc's height that is hidden is \
+(lit_above - z) / (lit_above - dark_below).
+
+`render --sun` integrates the disc over exact horizons and is the more accurate; this map takes one pass.
+
+Examples:
+  ridgelight shadow dem.tif --sun 250,12 -o shadow.tif
+  ridgelight shadow dem.tif --sun 250,12,0 -o hard.png      # a point sun";
 
 pub const AO_HELP: &str = "\
 The map `sky-view` of `bake`: the cosine-weighted share of the hemisphere about the normal that no ground occludes, for \
@@ -72,6 +84,29 @@ pub struct HillshadeArgs {
 }
 
 #[derive(Args)]
+#[command(after_help = SHADOW_HELP)]
+pub struct ShadowArgs {
+    #[command(flatten)]
+    pub input: Input,
+    #[command(flatten)]
+    pub file: MapOutput,
+    /// Sun: compass azimuth, elevation, diameter (degrees)
+    #[arg(
+        long,
+        value_name = "AZ,EL[,DIAMETER]",
+        value_parser = sun,
+        default_value = "315,45",
+        allow_hyphen_values = true,
+        help_heading = "Lights"
+    )]
+    pub sun: Vec<Sun>,
+    #[command(flatten)]
+    pub surface: FieldArgs,
+    #[command(flatten)]
+    pub global: GlobalArgs,
+}
+
+#[derive(Args)]
 pub struct SkyViewArgs {
     #[command(flatten)]
     pub input: Input,
@@ -102,8 +137,8 @@ pub struct OpennessArgs {
 pub struct MapOutput {
     /// Output: .tif, .npy or .exr (f32), or .png (8 bits)
     ///
-    /// A .tif is a GeoTIFF and lies where the input lies. A .png is grey and linear, not sRGB: hillshade has its values, ao and
-    /// svf have 0 to 1 as 0 to 255, openness has 60 to 95 degrees as 0 to 255. Voids are NaN, or transparent.
+    /// A .tif is a GeoTIFF and lies where the input lies. A .png is grey and linear, not sRGB: hillshade has its values, shadow, ao
+    /// and svf have 0 to 1 as 0 to 255, openness has 60 to 95 degrees as 0 to 255. Voids are NaN, or transparent.
     #[arg(short, long, value_name = "OUT.{tif,npy,exr,png}", help_heading = "Output")]
     pub output: PathBuf,
 }

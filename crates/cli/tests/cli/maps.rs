@@ -1,4 +1,4 @@
-//! `hillshade`, `ao`, `svf` and `openness`: derived answers, and gdaldem's.
+//! `hillshade`, `shadow`, `ao`, `svf` and `openness`: derived answers, and gdaldem's.
 
 use std::path::Path;
 
@@ -283,6 +283,58 @@ fn gpu_fourier_series_are_the_transform_of_the_horizons() {
             (&flat, 2, &["more than 0"]),
             (&many, 2, &["fewer than the 64 azimuths"]),
             ("horizon field.npy -o x.npy --fourier 8,50", 2, &["ktx2"]),
+        ],
+    );
+}
+
+/// Behind a wall of 40 m the shadow reaches 40 m less the light's rise over the distance, in heights of the file; in every format.
+#[test]
+fn gpu_a_shadow_has_its_walls_heights() {
+    let folder = Folder::new();
+    // Columns of 2 m; the wall is the last but one.
+    write_field(&folder, SIDE, |_, col| if col == SIDE - 2 { 940.0 } else { 900.0 });
+    let sun = "--cell 2 --sun 90,30,4";
+    for name in ["o.npy", "o.exr", "o.tif", "o.png"] {
+        done(&folder, &format!("shadow field.npy {sun} -o {name}"));
+    }
+    let [lower, upper] = [28.0_f64, 32.0].map(|degrees| 2.0 * degrees.to_radians().tan());
+    for name in ["o.npy", "o.exr", "o.tif"] {
+        let found = read(&folder.path(name));
+        let order =
+            [("sun_share", 0), ("lit_above", 1), ("dark_below", 2)].map(|(channel, layer)| {
+                let at = found.names.iter().position(|n| n == channel);
+                &found.planes[at.unwrap_or(layer)]
+            });
+        for (col, at) in (SIDE..2 * SIDE).enumerate() {
+            let expected = [lower, upper].map(|rise| {
+                let ahead = (SIDE - 2).checked_sub(col).filter(|steps| *steps > 0);
+                let of_wall = ahead.map_or(f64::MIN, |steps| 940.0 - steps as f64 * rise);
+                of_wall.max(900.0 - rise)
+            });
+            for (plane, expected) in order[1..].iter().zip(expected) {
+                // Offsets of the field and absolute heights are f32.
+                assert!(
+                    (f64::from(plane[at]) - expected).abs() < 2e-4,
+                    "{name} {col}: {}",
+                    plane[at]
+                );
+            }
+            let ground = if col == SIDE - 2 { 940.0 } else { 900.0 };
+            let share = f64::from(order[0][at]);
+            let is_dark = ground < expected[1];
+            assert!(if is_dark { share == 0.0 } else { share > 0.0 }, "{name} {col}: {share}");
+        }
+        let dark = order[0].iter().filter(|share| **share == 0.0).count();
+        assert_eq!(dark, SIDE * (SIDE - 2), "{name}");
+    }
+    let (kind, codes) = codes(&folder.path("o.png"));
+    assert_eq!((kind, codes[0], codes[SIDE - 1]), (png::ColorType::Grayscale, 0, 255));
+    refused(
+        &folder,
+        &[
+            ("shadow field.npy -o o.tif --border periodic", 2, &["--border", "level"]),
+            ("shadow field.npy -o o.tif --sun 1,9 --sun 2,9", 2, &["one sun"]),
+            ("shadow field.npy -o o.tif --sun 1,91", 2, &["elevation"]),
         ],
     );
 }

@@ -308,7 +308,7 @@ fn outputs() {
             ("render a.asc -o out.jpg", 2, &["-o: found out.jpg", ".exr or .tif"]),
             ("render a.asc -o out", 2, &["-o: found out"]),
             ("render a.asc -o out.npy", 2, &["-o: found out.npy"]),
-            ("horizon a.asc -o out.png", 2, &["-o: found out.png", ".npy or .tif"]),
+            ("horizon a.asc -o out.jpg", 2, &["-o: found out.jpg", ".npy or .tif"]),
             ("render a.asc -o no/out.exr", 2, &["-o", "a folder no"]),
             ("render a.asc -o folder.exr", 2, &["-o: found the directory folder.exr"]),
             ("render a.asc -o folder.png", 2, &["-o: found the directory folder.png"]),
@@ -466,6 +466,8 @@ fn help_gives_units_and_defaults() {
         ("--sun", &["compass azimuth, elevation (degrees)", "[default: 315,45]"]),
         ("--z-scale", &["[default: 1]"]),
     ];
+    let shadow: &[(&str, &[&str])] =
+        &[("--sun", &["compass azimuth, elevation, diameter (degrees)", "[default: 315,45]"])];
     let openness: &[(&str, &[&str])] =
         &[("--border", &["[default: open]"]), ("--negative", &["the negated heights"])];
     let reference: &[(&str, &[&str])] = &[
@@ -482,6 +484,7 @@ fn help_gives_units_and_defaults() {
         ("horizon", &[shared, horizon]),
         ("svf", &[shared]),
         ("hillshade", &[hillshade]),
+        ("shadow", &[shadow]),
         ("openness", &[openness]),
         ("bake", &[shared, lit, bake]),
         ("plan", &[shared, lit, plan]),
@@ -533,6 +536,7 @@ fn short_help_fits_one_screen() {
         "render",
         "horizon",
         "hillshade",
+        "shadow",
         "ao",
         "svf",
         "openness",
