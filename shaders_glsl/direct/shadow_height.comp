@@ -1,5 +1,5 @@
-// Computes: for every grid point the height above which a sun is seen whole, the height below which none of it is seen, and
-// the share of its disc that the grid point sees. Each line keeps the ground that shades it highest, for the lower and the upper
+// Computes: for every grid point the height above which a whole sun is visible, the height below which none of it is, and
+// the visible share of its disc. Each line keeps the ground that shades it highest, for the lower and the upper
 // edge of the sun.
 // Reads: heights; of a coarser field around this one its shadow heights, outer_lit_above and outer_dark_below.
 // Writes: lit_above, dark_below (metres over the field's base), sun_share (0 to 1).

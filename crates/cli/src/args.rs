@@ -155,7 +155,7 @@ pub enum Command {
     Horizon(HorizonArgs),
     /// Hillshade without shadows, as `gdaldem hillshade`: f32 or 8 bits, 1 to 255
     Hillshade(HillshadeArgs),
-    /// Cast shadow of a sun: the share of its disc seen, 0 to 1, and the heights that the shadow reaches
+    /// Cast shadow of a sun: the visible share of its disc, 0 to 1, and the heights that the shadow reaches
     Shadow(ShadowArgs),
     /// Ambient occlusion: the light of a uniform sky on white ground, 0 to 1
     #[command(after_help = maps::AO_HELP)]

@@ -165,8 +165,8 @@ impl LayerFile {
                 files::write_exr(&path, rows, cols, &layers.collect::<Vec<_>>(), metadata)
             }
             Self::Png(path, [rows, cols], texels) => {
-                let samples = texels.as_flattened();
-                files::write_codes_aside(&path, [cols, rows], (4, 8), samples, metadata)?.place()
+                let codes = texels.as_flattened();
+                files::write_codes_aside(&path, [cols, rows], (4, 8), codes, metadata)?.place()
             }
         }
     }

@@ -98,7 +98,7 @@ const SHADOW_VALUES: [Values; 3] = [
     Values {
         name: "sun_share",
         unit: "",
-        about: "share of the sun's disc that the ground sees; heights from which all of it is seen, and below which none is, m",
+        about: "visible share of the sun's disc; heights from which all of it is visible, and below which none is, m",
         png: [0.0, 1.0],
     },
     Values { name: "lit_above", unit: "m", about: "", png: [0.0, 1.0] },

@@ -141,7 +141,7 @@ fn shadows_arrive_from_a_coarser_field() {
 }
 
 /// The share of the sun's disc that a grid point sees by the oracle: all chords above its exact horizons.
-fn seen(oracle: &Oracle, [row, col]: [usize; 2], sun: &Sun) -> f64 {
+fn visible_share(oracle: &Oracle, [row, col]: [usize; 2], sun: &Sun) -> f64 {
     let chords = across_sun(sun, 24, oracle.field().cell_m());
     let (mut all, mut above) = (0.0, 0.0);
     for chord in chords {
@@ -180,7 +180,7 @@ fn mean_error(field: &HeightField, sun: &Sun, turned_rad: f64) -> f64 {
     let (found, _) = heights_of(field, &turned, None);
     let cols = field.cols();
     let off = |(i, f): (usize, &ShadowHeight)| {
-        (f.share() - seen(&oracle, [i / cols, i % cols], sun)).abs()
+        (f.share() - visible_share(&oracle, [i / cols, i % cols], sun)).abs()
     };
     found.iter().enumerate().map(off).sum::<f64>() / found.len() as f64
 }

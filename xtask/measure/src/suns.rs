@@ -1,13 +1,14 @@
-//! Suns: errors and times of the default, of hull sweeps and of their slowest fuse, against brute force.
+//! Suns: errors and times of the default, of hull sweeps, of their slowest fuse and of maps of shadow heights, against brute force.
 
 use std::path::Path;
 
 use ridgelight::Result;
+use ridgelight::gpu::Headless;
 use ridgelight::plan::{self, Picture};
 use ridgelight::scene::{Border, Fuse, HeightField, Lights, Method, Quality, Scene, Sun};
 
 use crate::common::args::Args;
-use crate::common::frames::{device, drawn, error_of, in_turn};
+use crate::common::frames::{device, drawn, error_of, in_turn, total, with_picture};
 use crate::common::{Outcome, head, inputs, median};
 use crate::gallery::terrain_of;
 
@@ -50,6 +51,31 @@ fn fields(folder: Option<&Path>) -> Result<Vec<(String, HeightField)>> {
     Ok(all)
 }
 
+/// The light by the share of the sun that shadow heights give, on slopes lit without shadows; and the median time of their pass, ms.
+fn by_shadow_heights(
+    gpu: &mut Headless,
+    scene: &Scene,
+    quality: &Quality,
+) -> Result<(Vec<f64>, f64)> {
+    let unshadowed = Picture { unshadowed: true, ..Picture::default() };
+    let lit = with_picture(gpu, scene, quality, unshadowed, |gpu, frame| {
+        gpu.draw(frame)?;
+        gpu.pixels(frame, 0)
+    })?;
+    let limits = gpu.report().limits;
+    let plan = plan::shadow_heights(&scene.field, &scene.lights.suns[0], None, 1, &limits)?;
+    gpu.with_frame(plan, &[scene.field.heights_m()], |gpu, frame| {
+        gpu.draw(frame)?;
+        let times = (0..TURNS).map(|_| Ok(total(&gpu.draw(frame)?)));
+        let times = times.collect::<Result<Vec<_>>>()?;
+        let share = gpu.pixels(frame, 2)?.values;
+        let channels = lit.values.len() / share.len();
+        let light = lit.values.iter().step_by(channels).zip(share);
+        let light = light.map(|(lit, share)| f64::from(*lit) * f64::from(share)).collect();
+        Ok((light, median(times)))
+    })
+}
+
 pub fn run(mut args: Args) -> Outcome {
     let fields = fields(args.folder().as_deref())?;
     let mut gpu = args.open()?;
@@ -59,7 +85,7 @@ pub fn run(mut args: Args) -> Outcome {
         Quality::default().sun_azimuths
     );
     head(
-        "| field | border | elevation ° | sweep % | aimed-around % | default % | sweep ms | time of aimed-around | time of the default |",
+        "| field | border | elevation ° | sweep % | aimed-around % | default % | shadow heights % | sweep ms | time of aimed-around | time of the default | time of shadow heights |",
     );
     let default = Quality::default();
     let sweep = Quality { method: Method::Sweep, ..default };
@@ -75,15 +101,25 @@ pub fn run(mut args: Args) -> Outcome {
                 let light = drawn(&mut gpu, &scene, quality, 0)?.light;
                 errors.push(format!("{:.3}", error_of(&grey(&light), &grey(&exact))?));
             }
+            // They have no border that repeats.
+            let heights = match border {
+                Border::Periodic => None,
+                _ => Some(by_shadow_heights(&mut gpu, &scene, &default)?),
+            };
+            errors.push(match &heights {
+                Some((light, _)) => format!("{:.3}", error_of(light, &grey(&exact))?),
+                None => "-".to_owned(),
+            });
             let rows = in_turn(&mut gpu, &scene, [&sweep, &around, &default], TURNS)?;
             let ms = median(rows.iter().map(|row| row[0]).collect());
             let ratio = |k: usize| median(rows.iter().map(|row| row[k] / row[0]).collect());
             let border = format!("{border:?}").to_lowercase();
             println!(
-                "| {name} | {border} | {elevation} | {} | {ms:.1} | {:.2} x | {:.2} x |",
+                "| {name} | {border} | {elevation} | {} | {ms:.1} | {:.2} x | {:.2} x | {} |",
                 errors.join(" | "),
                 ratio(1),
-                ratio(2)
+                ratio(2),
+                heights.map_or("-".to_owned(), |(_, alone)| format!("{:.2} x", alone / ms))
             );
         }
     }

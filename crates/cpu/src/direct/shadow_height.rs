@@ -9,7 +9,7 @@ use ridgelight::plan::azimuths::CELL;
 /// What a grid point has of a sun.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ShadowHeight {
-    /// From this height on the whole sun is seen, metres over the field's base.
+    /// From this height on the whole sun is visible, metres over the field's base.
     pub lit_above: f64,
     /// Below it none of the sun is.
     pub dark_below: f64,
