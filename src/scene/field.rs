@@ -200,7 +200,7 @@ impl HeightField {
     ///
     /// An edge and the two vertices across it form a parallelogram on the map. The edge is not a valley if the sum of its
     /// ends is at least the sum of those two, whatever the cell size.
-    pub fn is_concave(&self, border: Border) -> bool {
+    pub(crate) fn is_concave(&self, border: Border) -> bool {
         let (rows, cols) = (self.rows, self.cols);
         let h = |r: usize, c: usize| f64::from(self.heights_m[r * cols + c]);
         if border == Border::Periodic {
@@ -369,5 +369,38 @@ mod tests {
         }
         let field = HeightField::new(5, 5, &heights, [1.0, 1.0], Some(voids)).unwrap();
         assert!(field.heights_m().iter().all(|h| *h == 0.0));
+    }
+
+    fn field(
+        rows: usize,
+        cols: usize,
+        cell_m: [f64; 2],
+        height: impl Fn(usize, usize) -> f64,
+    ) -> HeightField {
+        let heights: Vec<f64> = (0..rows * cols).map(|i| height(i / cols, i % cols)).collect();
+        HeightField::new(rows, cols, &heights, cell_m, None).unwrap()
+    }
+
+    /// A valley along any of the three families of edges is one.
+    #[test]
+    fn valleys_stay_in_the_plan() {
+        let level = |_: usize, _: usize| 0.0;
+        assert!(field(5, 5, [1.0, 3.0], level).is_concave(Border::Plane));
+        // A dent of one texel, and creases along rows, columns and diagonals.
+        let dents: [fn(usize, usize) -> f64; 4] = [
+            |r, c| f64::from(u8::from((r, c) != (2, 2))),
+            |r, _| (r as f64 - 2.0).abs(),
+            |_, c| (c as f64 - 2.0).abs(),
+            |r, c| (r as f64 - c as f64).abs(),
+        ];
+        for (i, dent) in dents.into_iter().enumerate() {
+            assert!(!field(5, 5, [1.0, 3.0], dent).is_concave(Border::Plane), "{i}");
+            assert!(
+                field(5, 5, [1.0, 3.0], |r, c| -dent(r, c)).is_concave(Border::Plane) == (i > 0)
+            );
+        }
+        assert!(field(1, 4, [1.0, 1.0], |_, c| -((c * c) as f64)).is_concave(Border::Open));
+        assert!(!field(4, 1, [1.0, 1.0], |r, _| (r * r) as f64).is_concave(Border::Open));
+        assert!(!field(5, 5, [1.0, 1.0], |r, _| r as f64).is_concave(Border::Periodic));
     }
 }

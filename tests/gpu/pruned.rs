@@ -184,24 +184,3 @@ fn a_concave_field_that_stays_is_not_swept() {
         }
     }
 }
-
-/// A valley along any of the three families of edges is one.
-#[test]
-fn valleys_stay_in_the_plan() {
-    let level = |_: usize, _: usize| 0.0;
-    assert!(field(5, 5, [1.0, 3.0], level).is_concave(Border::Plane));
-    // A dent of one texel, and creases along rows, columns and diagonals.
-    let dents: [fn(usize, usize) -> f64; 4] = [
-        |r, c| f64::from(u8::from((r, c) != (2, 2))),
-        |r, _| (r as f64 - 2.0).abs(),
-        |_, c| (c as f64 - 2.0).abs(),
-        |r, c| (r as f64 - c as f64).abs(),
-    ];
-    for (i, dent) in dents.into_iter().enumerate() {
-        assert!(!field(5, 5, [1.0, 3.0], dent).is_concave(Border::Plane), "{i}");
-        assert!(field(5, 5, [1.0, 3.0], |r, c| -dent(r, c)).is_concave(Border::Plane) == (i > 0));
-    }
-    assert!(field(1, 4, [1.0, 1.0], |_, c| -((c * c) as f64)).is_concave(Border::Open));
-    assert!(!field(4, 1, [1.0, 1.0], |r, _| (r * r) as f64).is_concave(Border::Open));
-    assert!(!field(5, 5, [1.0, 1.0], |r, _| r as f64).is_concave(Border::Periodic));
-}
