@@ -1,6 +1,6 @@
 // Computes: for every grid point the height above which a whole sun is visible, the height below which none of it is, and
-// the visible share of its disc. Each line keeps the ground that shades it highest, for the lower and the upper
-// edge of the sun.
+// the visible share of its disc. Along each line two running maxima of the ground are kept, one for each edge of
+// the sun.
 // Reads: heights; of a coarser field around this one its shadow heights, outer_lit_above and outer_dark_below.
 // Writes: lit_above, dark_below (metres over the field's base), sun_share (0 to 1).
 // One invocation is one line; the last of a workgroup is also the first of the next one. Lines are a cell apart. A grid point
@@ -26,7 +26,7 @@ layout(push_constant) uniform ShadowHeightPush {
     ivec2 outer_size;
     vec2 outer_origin;  // column and row of the outer grid at this field's first grid point
     vec2 outer_step;    // cells of the outer grid per cell
-    vec2 rise;          // of the light over one step: from the sun's lower edge, from its upper edge
+    vec2 rise;          // of the ray per march step, for the sun's lower and upper edge
     float outer_base;   // of the outer field over this one's
     int shear;
     uint flags;         // AZIMUTH_*
@@ -70,8 +70,7 @@ vec2 outer_at(vec2 place) {
     return vec2(mix(lit_rows.x, lit_rows.y, t.y), mix(dark_rows.x, dark_rows.y, t.y)) + outer_base;
 }
 
-// Share of a disc above a chord that cuts off `hidden` of its height: a segment. The square roots keep its digits where nearly
-// nothing or nearly all is hidden.
+// Share of a disc above a chord that cuts off `hidden` of its height: a segment. The square roots keep precision near 0 and 1.
 float share_above(float hidden) {
     float a = clamp(hidden, 0.0, 1.0);
     float b = 1.0 - a;
@@ -87,7 +86,7 @@ void main() {
     int group_lines = int(gl_WorkGroupSize.x) - 1;
     int first_line = (first_group + int(gl_WorkGroupID.x)) * group_lines;
     int lead = lattice_lead(shear, steps, CELL_SHIFT, false);
-    // The steps at which any line of the group is less than a cell beside the field.
+    // The steps at which any line of the group is inside the field or less than a cell outside it.
     int begin = 0;
     int end = steps;
     if (shear > 0) {
@@ -97,7 +96,7 @@ void main() {
     }
     int own = int(gl_LocalInvocationID.x);
     int y = (first_line + own - lead) * CELL + begin * shear;
-    // The ground that shades the line from the lower and from the upper edge, and the step at which it is.
+    // Highest shadowing ground so far, for the lower and upper edge, and its march step.
     vec2 top = vec2(0.0);
     ivec2 top_step = ivec2(0);
     bool was_on = false;
@@ -115,7 +114,7 @@ void main() {
             float above = texelFetch(heights, texel_of(clamp(cell + 1, 0, last.x), step, last), 0).x;
             float here = mix(below, above, float(fraction) * (1.0 / float(CELL)));
             if (is_on && !was_on) {
-                // Before the field the ground goes on at the height of its edge.
+                // Beyond the edge towards the sun, the ground is level at the height of the edge.
                 top = vec2(here);
                 top_step = ivec2(step - 1);
                 if (HAS_OUTER) {
@@ -145,7 +144,7 @@ void main() {
             vec2 shade = mine[k];
             int ahead = lane * CELL - at;
             if (ahead > 0) {
-                // A line further on may be beside the field, with nothing to interpolate, where this line is on a lane.
+                // Where this line lies on a lane, no interpolation is needed, and the next line may be outside the field.
                 vec2 next = of_lines[(turn * AT_ONCE + k) * int(gl_WorkGroupSize.x) + own + 1];
                 shade = mix(shade, next, float(ahead) * (1.0 / float(CELL)));
             }

@@ -12,7 +12,7 @@ uint packed_f16(vec2 both) {
     return packHalf2x16(vec2(nearest_f16(both.x), nearest_f16(both.y)));
 }
 
-// The same as bits, with numbers below 2^-14: multiples of 2^-24, which packing may flush to 0.
+// The nearest f16 to each component, as bits. Includes subnormals (below 2^-14), which packHalf2x16 may flush to 0.
 uvec4 f16_bits(vec4 x) {
     uvec4 bits = floatBitsToUint(x);
     uvec4 rounded = bits + 0xfffu + (bits >> 13 & 1u);

@@ -6,7 +6,7 @@
 //! | [`picture()`] | exit radiance of every texel; optionally a layer for each light and bounce ([`Picture`]) |
 //! | [`horizons()`] | horizon elevations of every texel along every azimuth |
 //! | [`reference()`] | the path-traced reference, slowly, with its standard error |
-//! | [`shadow_heights()`] | up to which height the ground shades each texel from a sun |
+//! | [`shadow_heights()`] | shadow heights of a sun at each grid point |
 //! | [`map()`] | the lit field from above, tone mapped |
 //! | [`preview()`] | the light of a coarse grid on the slopes of a fine one |
 //! | [`device_peak()`] | peak rates of the device, by their times |

@@ -4,39 +4,45 @@ use crate::passes::shadow_height::{self, GROUP_LINES, Outer};
 use crate::scene::{HeightField, Lights, Sun};
 use crate::{Error, Result};
 
-/// Passes that write up to which height the ground shades each grid point of a field from a sun: for objects at any height over a
-/// terrain, and for terrain in the distance.
+/// Plans the shadow heights of a sun over a field, for distant terrain and for objects at any height above it.
 ///
-/// Outputs, all R32F: "lit_above" (a point over the grid point sees the whole sun from this height on), "dark_below" (below it none of
-/// the sun), both in metres over the field's base, and "sun_share" (the share of the disc that the ground there sees, [0..1], not
-/// weighted by the cosine). Between the two heights the hidden part of the disc's height is (lit_above - z) / (lit_above - dark_below).
+/// Outputs, all R32F. Heights are in metres over the field's base.
+/// - "lit_above": the height from which the whole sun is visible.
+/// - "dark_below": the height below which none of the sun is visible.
+/// - "sun_share": the visible share of the sun's disc at the ground, [0..1], without the cosine.
 ///
-/// One line a cell apart passes on each side of a grid point; ridges between the lines' steps count by their height at the steps.
-/// All lines follow the azimuth of the sun's centre. Before the field the ground goes on at the height of its edge.
+/// At a height z between the two, the hidden fraction of the disc's height is (lit_above - z) / (lit_above - dark_below).
 ///
-/// Inputs: "heights"; with `outer`, a coarser field around this one and the column and row of its grid at this field's first grid
-/// point, also its "outer_lit_above" and "outer_dark_below" under the same sun. Record fields from the coarsest to the finest.
+/// Lines are one cell apart and follow the azimuth of the sun's centre. Each grid point interpolates the lines on either side.
+/// Heights are evaluated only at march steps, so a ridge between two steps is lowered. Beyond the edge towards the sun, the ground is
+/// level at the height of the edge.
 ///
-/// The plan has `slices` passes, each for some of the lines: [`record_passes`](crate::gpu::Renderer::record_passes) spreads them over
-/// frames. A plan of another sun, or of an outer field elsewhere, can replace this one.
+/// Inputs: "heights". With `outer`, a coarser field that contains this one, also its "outer_lit_above" and "outer_dark_below" for the
+/// same sun. The two numbers are the column and row, in the grid of the outer field, of this field's first grid point. Record the
+/// coarsest field first.
+///
+/// The plan has `parts` passes. Each covers some of the field's lines, so
+/// [`record_passes`](crate::gpu::Renderer::record_passes) can spread them over frames. A plan of another sun, or of another place
+/// in the outer field, can replace this one.
 ///
 /// # Errors
-/// A sun out of range; an outer field that does not contain this one; more slices than groups of lines; a field beyond the limits.
+/// The sun is out of range, `outer` does not contain the field, `parts` exceeds its maximum (one per 63 grid points of the shorter side,
+/// rounded up), or the field exceeds the limits.
 pub fn shadow_heights(
     field: &HeightField,
     sun: &Sun,
     outer: Option<(&HeightField, [f64; 2])>,
-    slices: u32,
+    parts: u32,
     limits: &Limits,
 ) -> Result<Plan> {
     let size = limits.check_size(field.rows(), field.cols())?;
     Lights { suns: vec![*sun], ..Lights::default() }.check()?;
     let [cols, rows] = size;
     let most = cols.min(rows).div_ceil(GROUP_LINES);
-    if !(1..=most).contains(&slices) {
+    if !(1..=most).contains(&parts) {
         return Err(Error::setting(
-            "slices",
-            slices.to_string(),
+            "parts",
+            parts.to_string(),
             format!("1 to {most} for {cols} × {rows}"),
         ));
     }
@@ -44,7 +50,7 @@ pub fn shadow_heights(
         let points = [around.cols(), around.rows()];
         let contains = |i: usize| {
             let cells = f64::from(size[i] - 1) * field.cell_m()[i] / around.cell_m()[i];
-            // Rounding of a quotient must not push a field of the same edge out.
+            // Tolerates rounding of the quotient where both fields end at the same edge.
             let last = (points[i] - 1) as f64 + 1e-6;
             place[i] >= 0.0 && place[i] + cells <= last
         };
@@ -69,7 +75,7 @@ pub fn shadow_heights(
     });
     let written =
         ["lit_above", "dark_below", "sun_share"].map(|name| image(name, Owner::Output, size));
-    shadow_height::plan(&mut builder, (field, sun), outer.as_ref(), slices, heights, written);
-    let used = vec![("slices".to_owned(), slices.to_string())];
+    shadow_height::plan(&mut builder, (field, sun), outer.as_ref(), parts, heights, written);
+    let used = vec![("parts".to_owned(), parts.to_string())];
     Plan::finish(builder, size, Vec::new(), Vec::new(), Vec::new(), used, limits)
 }

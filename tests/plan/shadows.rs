@@ -150,7 +150,7 @@ fn sweeps_run_side_by_side_on_a_gpu() {
 }
 
 #[test]
-fn shadow_heights_have_a_pass_for_each_slice() {
+fn shadow_heights_have_a_pass_for_each_part() {
     let sun = |azimuth_rad, elevation_rad, diameter_rad| Sun {
         azimuth_rad,
         elevation_rad,
@@ -179,30 +179,30 @@ fn shadow_heights_have_a_pass_for_each_slice() {
     ] {
         let of = plan(other, place);
         assert_eq!(of.passes_after(&first, &[]), [0, 1], "{other:?}");
-        // Each group of lines is in one slice.
+        // Each group of lines is in one part.
         let groups: u32 = of.passes.iter().map(|p| p.groups[0]).sum();
         assert!(of.passes.iter().all(|p| p.groups[0] > 0) && groups >= 2, "{groups}");
     }
 }
 
 #[test]
-fn shadow_heights_refuse_what_they_cannot_do() {
+fn shadow_heights_reject_invalid_arguments() {
     let good =
         Sun { azimuth_rad: 1.0, elevation_rad: 0.5, diameter_rad: 0.0, irradiance: [1.0; 3] };
     let (field, outer) = (flat(64, 200), flat(64, 200));
-    let error = |sun: Sun, place, slices| {
+    let error = |sun: Sun, place, parts| {
         let outer = Some((&outer, place));
-        let plan = plan::shadow_heights(&field, &sun, outer, slices, &Limits::lavapipe());
+        let plan = plan::shadow_heights(&field, &sun, outer, parts, &Limits::lavapipe());
         plan.expect_err("refused").to_string()
     };
-    for (place, slices, words) in [
+    for (place, parts, words) in [
         ([0.0, 0.0], 0, "1 to 2"),
         ([0.0, 0.0], 3, "1 to 2"),
         ([0.5, 0.0], 1, "contains this one"),
         ([0.0, -0.5], 1, "contains this one"),
         ([f64::NAN, 0.0], 1, "contains this one"),
     ] {
-        let found = error(good, place, slices);
+        let found = error(good, place, parts);
         assert!(found.contains(words), "{found}");
     }
     let beyond = error(Sun { elevation_rad: 2.0, ..good }, [0.0, 0.0], 1);

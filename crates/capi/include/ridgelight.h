@@ -278,7 +278,7 @@ typedef struct RidgelightQuality {
     uint32_t bounce_specular;
 } RidgelightQuality;
 
-// A coarser field around another one.
+// An outer field: a coarser field that contains another one.
 typedef struct RidgelightOuter {
     // sizeof(RidgelightOuter).
     uint32_t struct_size;
@@ -290,7 +290,7 @@ typedef struct RidgelightOuter {
     uint32_t reserved;
     // Spacing of columns and of rows, in the unit of heights; 0, 0: 1, 1.
     double cell_m[2];
-    // Column and row of its grid at which the other field's first grid point lies.
+    // Column and row, in the grid of this outer field, of the inner field's first grid point.
     double place[2];
 } RidgelightOuter;
 
@@ -542,13 +542,14 @@ enum RidgelightResult ridgelight_plan_create(const struct RidgelightHost *host,
                                              uint64_t memory_budget,
                                              struct RidgelightPlan **plan);
 
-// Plans the heights of a sun's shadows over a field: the scene's one sun and its field; nothing else of the scene counts.
+// Plans the shadow heights of the scene's one sun over its field. The rest of the scene is ignored.
 //
-// Outputs, R32F: "lit_above" (a point over a grid point sees the whole sun from this height on), "dark_below" (none of it below), and
-// "sun_share" (the share of its disc that the ground there sees, [0..1]). Inputs: "heights"; with `outer`, which may be null, also
-// "outer_lit_above" and "outer_dark_below", which a renderer of the coarser field has written for the same sun.
+// Outputs, R32F, in the unit and from the zero of "heights": "lit_above", the height from which the whole sun is
+// visible; "dark_below", the height below which none of it is. "sun_share" is the visible share of the sun's
+// disc at the ground, [0..1]. Inputs: "heights". With `outer` (may be null) also "outer_lit_above" and
+// "outer_dark_below", the outputs of a renderer of `outer` for the same sun.
 //
-// The plan has `slices` passes (0: 1), each for some lines of the field: record them in one frame or in several
+// The plan has `parts` passes (0 means 1), each for some lines of the field. Record them in one frame or in several
 // (ridgelight_record_passes). The plan of any other sun can replace it.
 //
 // Returns OK, ARGUMENT, SETTING or LIMIT.
@@ -558,7 +559,7 @@ enum RidgelightResult ridgelight_plan_create(const struct RidgelightHost *host,
 enum RidgelightResult ridgelight_shadow_heights_create(const struct RidgelightHost *host,
                                                        const struct RidgelightScene *scene,
                                                        const struct RidgelightOuter *outer,
-                                                       uint32_t slices,
+                                                       uint32_t parts,
                                                        struct RidgelightPlan **plan);
 
 // Destroys a plan; renderers made for it keep a copy. Null is allowed.

@@ -63,9 +63,9 @@ inline RidgelightResult create(Plan &plan, const RidgelightHost &host, const Rid
 
 // As ridgelight_shadow_heights_create.
 inline RidgelightResult create_shadow_heights(Plan &plan, const RidgelightHost &host, const RidgelightScene &scene,
-                                              const RidgelightOuter *outer = nullptr, uint32_t slices = 1) noexcept {
+                                              const RidgelightOuter *outer = nullptr, uint32_t parts = 1) noexcept {
     RidgelightPlan *made = nullptr;
-    RidgelightResult result = ridgelight_shadow_heights_create(&host, &scene, outer, slices, &made);
+    RidgelightResult result = ridgelight_shadow_heights_create(&host, &scene, outer, parts, &made);
     plan.reset(made);
     return result;
 }

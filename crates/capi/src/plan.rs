@@ -67,7 +67,7 @@ pub unsafe extern "C" fn ridgelight_plan_create(
     })
 }
 
-/// A coarser field around another one.
+/// An outer field: a coarser field that contains another one.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct RidgelightOuter {
@@ -81,20 +81,21 @@ pub struct RidgelightOuter {
     pub reserved: u32,
     /// Spacing of columns and of rows, in the unit of heights; 0, 0: 1, 1.
     pub cell_m: [f64; 2],
-    /// Column and row of its grid at which the other field's first grid point lies.
+    /// Column and row, in the grid of this outer field, of the inner field's first grid point.
     pub place: [f64; 2],
 }
 
 // SAFETY: numbers; the size is first.
 unsafe impl SizeFirst for RidgelightOuter {}
 
-/// Plans the heights of a sun's shadows over a field: the scene's one sun and its field; nothing else of the scene counts.
+/// Plans the shadow heights of the scene's one sun over its field. The rest of the scene is ignored.
 ///
-/// Outputs, R32F: "lit_above" (a point over a grid point sees the whole sun from this height on), "dark_below" (none of it below), and
-/// "sun_share" (the share of its disc that the ground there sees, [0..1]). Inputs: "heights"; with `outer`, which may be null, also
-/// "outer_lit_above" and "outer_dark_below", which a renderer of the coarser field has written for the same sun.
+/// Outputs, R32F, in the unit and from the zero of "heights": "lit_above", the height from which the whole sun is
+/// visible; "dark_below", the height below which none of it is. "sun_share" is the visible share of the sun's
+/// disc at the ground, [0..1]. Inputs: "heights". With `outer` (may be null) also "outer_lit_above" and
+/// "outer_dark_below", the outputs of a renderer of `outer` for the same sun.
 ///
-/// The plan has `slices` passes (0: 1), each for some lines of the field: record them in one frame or in several
+/// The plan has `parts` passes (0 means 1), each for some lines of the field. Record them in one frame or in several
 /// (ridgelight_record_passes). The plan of any other sun can replace it.
 ///
 /// Returns OK, ARGUMENT, SETTING or LIMIT.
@@ -106,7 +107,7 @@ pub unsafe extern "C" fn ridgelight_shadow_heights_create(
     host: *const RidgelightHost,
     scene: *const RidgelightScene,
     outer: *const RidgelightOuter,
-    slices: u32,
+    parts: u32,
     plan: *mut *mut RidgelightPlan,
 ) -> RidgelightResult {
     // SAFETY: as the caller says.
@@ -121,8 +122,8 @@ pub unsafe extern "C" fn ridgelight_shadow_heights_create(
             let around = if outer.is_null() { None } else { Some(self::outer(outer)?) };
             let around = around.as_ref().map(|(field, place)| (field, *place));
             let limits = gpu::limits(&host.instance, host.physical_device);
-            let slices = slices.max(1);
-            let made = plan::shadow_heights(&scene.field, &sun, around, slices, &limits)?;
+            let parts = parts.max(1);
+            let made = plan::shadow_heights(&scene.field, &sun, around, parts, &limits)?;
             Ok(RidgelightPlan(made))
         })
     })

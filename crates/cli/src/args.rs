@@ -155,7 +155,7 @@ pub enum Command {
     Horizon(HorizonArgs),
     /// Hillshade without shadows, as `gdaldem hillshade`: f32 or 8 bits, 1 to 255
     Hillshade(HillshadeArgs),
-    /// Cast shadow of a sun: the visible share of its disc, 0 to 1, and the heights that the shadow reaches
+    /// Cast shadow of a sun: the visible share of its disc, 0 to 1, and its shadow heights in metres
     Shadow(ShadowArgs),
     /// Ambient occlusion: the light of a uniform sky on white ground, 0 to 1
     #[command(after_help = maps::AO_HELP)]
@@ -257,7 +257,7 @@ pub struct HorizonArgs {
     pub input: Input,
     /// Output: .tif, .npy or .exr; a layer per azimuth
     ///
-    /// A .png, for --azimuths 4, is a horizon map of Stellarium: RGBA are north, east, south and west, each 255 × (0.5 + 0.5 √|s|) with the sign of s, the sine of the elevation; voids are level.
+    /// With --azimuths 4, a .png is a Stellarium horizon map. R, G, B, A are north, east, south, west. Each is 255 × (0.5 + 0.5 sign(s) √|s|), where s is the sine of the elevation. Voids have elevation 0.
     ///
     /// A band of a GeoTIFF, a layer of an array [azimuths, rows, cols] or a channel of an EXR, in f32. Elevations are in radians. Azimuths are in compass order: 0 is north, then clockwise. Names are azimuth_000.0 and so on.
     #[arg(short, long, value_name = "OUT.{tif,npy,exr,png,ktx2}", help_heading = "Output")]

@@ -109,8 +109,8 @@ enum LayerFile {
     Png(PathBuf, [usize; 2], Vec<[u8; 4]>),
 }
 
-/// An elevation as a channel of Stellarium's horizon maps: the square root of the sine's size with the sine's sign, from -1..1 to 0..255;
-/// a void is level.
+/// An elevation as a channel of Stellarium's horizon maps: sign(s) √|s| of its sine s, mapped from -1..1 to 0..255. A void has elevation
+/// 0.
 fn channel(elevation_rad: f32) -> u8 {
     let sine = if elevation_rad.is_nan() { 0.0 } else { elevation_rad.sin() };
     (255.0 * (0.5 + 0.5 * sine.abs().sqrt().copysign(sine))).round() as u8
@@ -199,9 +199,15 @@ pub fn run(args: &HorizonArgs) -> Result<Outcome> {
             "--json FILE beside it, or a .tif: exact azimuths are uneven, and a .npy cannot name them",
         ));
     }
-    if setup::extension(&args.output) == "png" && (quality.azimuths != 4 || is_exact) {
-        let found = format!("a .png of {} azimuths", quality.azimuths);
-        return Err(Error::setting("-o", found, "--azimuths 4: north, east, south and west"));
+    if setup::extension(&args.output) == "png" {
+        if is_exact {
+            let expected = "evenly spaced azimuths, for a .png";
+            return Err(Error::setting("--lines", "exact", expected));
+        }
+        if quality.azimuths != 4 {
+            let expected = "4, for a .png: north, east, south and west";
+            return Err(Error::setting("--azimuths", quality.azimuths.to_string(), expected));
+        }
     }
     if let Some(fourier) = args.fourier {
         if is_exact {

@@ -1,4 +1,4 @@
-//! `hillshade`, `shadow`, `ao`, `svf` and `openness`: one map, in one file.
+//! `hillshade`, `shadow`, `ao`, `svf` and `openness`: maps, in one file.
 
 use std::f64::consts::FRAC_PI_2;
 use std::path::{Path, PathBuf};
@@ -93,7 +93,7 @@ const NEGATIVE_OPENNESS_VALUES: Values = Values {
     ..OPENNESS_VALUES
 };
 
-/// A sun's shadow. The first is that of a .png.
+/// The maps of `shadow`. A .png holds the first.
 const SHADOW_VALUES: [Values; 3] = [
     Values {
         name: "sun_share",
@@ -233,10 +233,10 @@ pub fn shadow(args: &ShadowArgs) -> Result<Outcome> {
     let lights = Lights { suns: args.sun.clone(), ..Lights::default() };
     setup::check_suns(&lights.suns, 0.0)?;
     let [sun] = *lights.suns else {
-        return Err(Error::setting("--sun 2", "another sun", "one sun: a shadow map has no more"));
+        return Err(Error::setting("--sun 2", "another sun", "one sun: run `shadow` once per sun"));
     };
     if setup::border(&args.surface) == Border::Periodic {
-        let expected = "plane or open: beyond its edge the ground goes on level";
+        let expected = "plane or open: `shadow` does not support a periodic field";
         return Err(Error::setting("--border", "periodic", expected));
     }
     let job = Job::new(
@@ -258,7 +258,7 @@ pub fn shadow(args: &ShadowArgs) -> Result<Outcome> {
         let of = |output| Ok(gpu.pixels(frame, output)?.values);
         Ok(([2, 0, 1].map(of).into_iter().collect::<Result<Vec<_>>>()?, times))
     })?;
-    // Heights of the file.
+    // Absolute, like the heights of the input.
     let absolute = |height: &mut f32| *height = (f64::from(*height) + field.base_m()) as f32;
     planes[1..].iter_mut().flatten().for_each(absolute);
     job.write_all(&SHADOW_VALUES, planes, metadata, &times)

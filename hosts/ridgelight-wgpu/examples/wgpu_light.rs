@@ -128,6 +128,23 @@ fn edit(device: &wgpu::Device, queue: &wgpu::Queue, scene: &Scene) -> Any<()> {
     Ok(())
 }
 
+/// A texture of another device is refused, and the next submission runs.
+fn refuse(
+    adapter: &wgpu::Adapter,
+    renderer: &mut Renderer,
+    [heights, light]: [&wgpu::Texture; 2],
+) -> Any<()> {
+    let other = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default()))?;
+    let of = renderer.plan().inputs().next().ok_or("no input")?.1.clone();
+    let foreign = texture(&other.0, &other.1, &of, wgpu::TextureUsages::empty())?;
+    match renderer.submit(&[&foreign], &[light]) {
+        Err(error) if error.to_string().contains("wgpu queue") => {}
+        other => return Err(format!("a texture of another device: {other:?}").into()),
+    }
+    renderer.submit(&[heights], &[light])?;
+    Ok(())
+}
+
 fn main() -> Any<()> {
     let out = std::env::args_os().nth(1).ok_or("usage: wgpu_light OUT.exr")?;
     let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
@@ -159,6 +176,7 @@ fn main() -> Any<()> {
     for _ in 0..3 {
         renderer.submit(&[&heights], &[&light])?;
     }
+    refuse(&adapter, &mut renderer, [&heights, &light])?;
     let wrong = renderer.submit(&[&light], &[&heights]);
     let refused = wrong.err().ok_or("swapped textures were accepted")?.to_string();
     if !refused.contains("usage: found") {

@@ -1,5 +1,8 @@
 #![doc = include_str!("../../../docs/embedding/wgpu.md")]
 
+use std::future::Future;
+use std::task::{Context, Poll, Waker};
+
 use ash::vk;
 use ridgelight::gpu::{self, Host, ImageArg, ImageState, Timing};
 use ridgelight::plan::{Format, Kind, Limits, Owner, Plan, Rectangle, Resource};
@@ -218,7 +221,7 @@ impl Renderer {
     /// Submits the whole plan. `inputs` and `outputs` are the plan's, in its order.
     ///
     /// # Errors
-    /// A texture that does not match the plan, by name.
+    /// A texture that does not match the plan, by name; a texture of another device.
     pub fn submit(
         &mut self,
         inputs: &[&wgpu::Texture],
@@ -267,6 +270,20 @@ impl Renderer {
     ) -> Result<wgpu::SubmissionIndex> {
         let slot = (self.last + 1) % SLOTS;
         self.finish(slot)?;
+        // First, so that wgpu refuses a texture of another device before its handle is used.
+        let refused = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
+        let used = [
+            (inputs, wgpu::TextureUses::RESOURCE),
+            (outputs, wgpu::TextureUses::STORAGE_WRITE_ONLY),
+        ];
+        let uses = used.iter().flat_map(|(all, state)| all.iter().map(|t| (*t, *state)));
+        let transitions =
+            uses.map(|(texture, state)| wgpu::TextureTransition { texture, selector: None, state });
+        let descriptor = wgpu::CommandEncoderDescriptor::default();
+        let mut before = self.device.create_command_encoder(&descriptor);
+        before.transition_resources(std::iter::empty(), transitions);
+        let before = before.finish();
+        accepted(refused)?;
         let mut read = Vec::new();
         let mut written = Vec::new();
         let resources = |outputs: bool| -> Vec<Resource> {
@@ -286,16 +303,6 @@ impl Renderer {
                 args.push(arg);
             }
         }
-        let used = [
-            (inputs, wgpu::TextureUses::RESOURCE),
-            (outputs, wgpu::TextureUses::STORAGE_WRITE_ONLY),
-        ];
-        let uses = used.iter().flat_map(|(all, state)| all.iter().map(|t| (*t, *state)));
-        let transitions =
-            uses.map(|(texture, state)| wgpu::TextureTransition { texture, selector: None, state });
-        let descriptor = wgpu::CommandEncoderDescriptor::default();
-        let mut before = self.device.create_command_encoder(&descriptor);
-        before.transition_resources(std::iter::empty(), transitions);
         let mut lit = self.device.create_command_encoder(&descriptor);
         let recorder = self.recorder();
         // SAFETY: the command buffer is being recorded, for the queue of the host's family, and is submitted after the
@@ -311,9 +318,14 @@ impl Renderer {
                 }
             })?;
         }
-        let submission = self.queue.submit([before.finish(), lit.finish()]);
+        let refused = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
+        let submission = self.queue.submit([before, lit.finish()]);
         self.slots[slot].submission = Some(submission.clone());
         self.last = slot;
+        if let Err(error) = accepted(refused) {
+            self.recorder().forget();
+            return Err(error);
+        }
         Ok(submission)
     }
 
@@ -349,6 +361,20 @@ impl Drop for Renderer {
         }
         // SAFETY: made in `new`, or null; nothing uses it any more.
         unsafe { self.host.device.destroy_pipeline_cache(self.host.pipeline_cache, None) };
+    }
+}
+
+/// The error that wgpu found since the scope began, if any.
+fn accepted(scope: wgpu::ErrorScopeGuard) -> Result<()> {
+    // Outside of browsers the error is there at once.
+    let mut popped = std::pin::pin!(scope.pop());
+    let mut context = Context::from_waker(Waker::noop());
+    match popped.as_mut().poll(&mut context) {
+        Poll::Ready(Some(error)) => Err(Error::Device {
+            doing: "submitting to a wgpu queue".into(),
+            reason: error.to_string(),
+        }),
+        Poll::Ready(None) | Poll::Pending => Ok(()),
     }
 }
 

@@ -5,7 +5,7 @@
 pub(crate) mod env_tables;
 /// Sums to a picture and layers.
 pub(crate) mod light_resolve;
-/// Up to which height the ground ahead shades each grid point from a sun.
+/// The shadow heights of a sun at each grid point.
 pub(crate) mod shadow_height;
 /// Light of suns at the texels that shadow heights leave open, by their exact horizons.
 pub(crate) mod shadow_settle;

@@ -4,7 +4,7 @@ use crate::graph::{Axis, Builder, CELL, ResourceId, shaders};
 use crate::passes::azimuths::{across_sun, slope};
 use crate::scene::{Border, HeightField, Sun};
 
-/// Lines of a workgroup of which it writes the grid points; one more is shared with the next.
+/// Lines of a workgroup whose grid points it writes. It also sweeps the first line of the next workgroup.
 pub(crate) const GROUP_LINES: u32 = 63;
 
 /// A coarser field, the column and row of its grid at the first grid point of the finer one, and its shadow heights.
@@ -14,12 +14,12 @@ pub(crate) struct Outer<'a> {
     pub images: [ResourceId; 2],
 }
 
-/// Shadow heights of a whole field, in `slices` dispatches of some of its lines.
+/// Shadow heights of a whole field, in `parts` dispatches. Each covers some of its lines.
 pub(crate) fn plan(
     builder: &mut Builder,
     (field, sun): (&HeightField, &Sun),
     outer: Option<&Outer>,
-    slices: u32,
+    parts: u32,
     heights: ResourceId,
     written: [ResourceId; 3],
 ) {
@@ -44,11 +44,11 @@ pub(crate) fn plan(
     let shear_cells = (u64::from(axis.steps) - 1) * azimuth.shear as u64;
     let lines = axis.lanes + shear_cells.div_ceil(CELL as u64) as u32;
     let groups = lines.div_ceil(GROUP_LINES);
-    let texels = axis.texels() / u64::from(slices);
-    for slice in 0..slices {
-        let [first, next] = [slice, slice + 1]
-            .map(|s| (u64::from(groups) * u64::from(s) / u64::from(slices)) as u32);
-        let part = if slices == 1 { String::new() } else { format!("slice {}", slice + 1) };
+    let texels = axis.texels() / u64::from(parts);
+    for number in 0..parts {
+        let [first, next] = [number, number + 1]
+            .map(|s| (u64::from(groups) * u64::from(s) / u64::from(parts)) as u32);
+        let part = if parts == 1 { String::new() } else { format!("part {}", number + 1) };
         let mut bound = vec![("heights", heights)];
         if let Some(outer) = outer {
             let [lit_above, dark_below] = outer.images;
@@ -58,7 +58,7 @@ pub(crate) fn plan(
         builder.pass(
             shaders::ShadowHeight { has_outer: outer.is_some() },
             &part,
-            "how high the ground ahead shades every grid point",
+            "shadow heights of the sun at each grid point",
             [next - first, 1, 1],
             &shaders::ShadowHeightPush { first_group: first as i32, ..push },
             &bound,

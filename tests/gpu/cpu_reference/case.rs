@@ -24,7 +24,7 @@ pub(crate) enum Wanted {
     Picture(Picture),
     /// A picture under suns and key lights by a GPU's plan, on any device.
     GpuPicture,
-    /// Of the scene's sun, in so many slices; with a coarser field around at a column and a row.
+    /// Shadow heights of the scene's sun: number of parts; outer field and the place of this field in it.
     ShadowHeights(u32, Option<(HeightField, [f64; 2])>),
     /// Bounces.
     Reference(u32),
@@ -75,10 +75,10 @@ impl Case {
                 let limits = crate::of_kind(false, *limits);
                 plan::picture(&self.scene, &self.quality, &limits, Picture::default())
             }
-            Wanted::ShadowHeights(slices, outer) => {
+            Wanted::ShadowHeights(parts, outer) => {
                 let (field, sun) = (&self.scene.field, &self.scene.lights.suns[0]);
                 let outer = outer.as_ref().map(|(field, place)| (field, *place));
-                plan::shadow_heights(field, sun, outer, *slices, limits)
+                plan::shadow_heights(field, sun, outer, *parts, limits)
             }
             Wanted::Reference(bounces) => plan::reference(&self.scene, *bounces, 1, limits),
             Wanted::ReferenceAt(bounces, count) => {
@@ -162,7 +162,7 @@ impl Case {
         }
         let mut all = vec![self.scene.field.heights_m().to_vec()];
         if let Wanted::ShadowHeights(_, Some((outer, _))) = &self.wanted {
-            // Shadows of ground that rises and falls over its own base; the second are lower.
+            // Shadows above rough ground; `dark_below` is lower.
             let mut next = random(74);
             let lit: Vec<f32> = outer.heights_m().iter().map(|h| h + 9.0 * next() as f32).collect();
             let dark = lit.iter().map(|h| h - 2.0 * next() as f32).collect();

@@ -1,4 +1,4 @@
-//! Heights of a sun's shadows, as an engine updates them.
+//! Shadow heights, as an engine updates them.
 
 use ridgelight::gpu::Pixels;
 use ridgelight::plan::{self, Plan};
@@ -33,17 +33,17 @@ fn levels() -> [HeightField; 2] {
     [coarse, fine]
 }
 
-/// One renderer a field serves all suns, whatever axis their lines follow, a slice at a time: the bits are those of a new renderer that
-/// draws all at once.
+/// One renderer per field is enough for all suns, along either axis, one part at a time: the bits are those of a new renderer that draws
+/// everything at once.
 #[test]
-fn one_renderer_serves_a_day_in_slices() {
+fn one_renderer_updates_all_suns_in_parts() {
     let mut gpu = Device::new();
     let limits = gpu.limits();
     let [coarse, fine] = levels();
-    let plan_of = |sun: &Sun, slices: u32| -> [Plan; 2] {
+    let plan_of = |sun: &Sun, parts: u32| -> [Plan; 2] {
         let outer = Some((&coarse, [30.0, 40.0]));
         [(&coarse, None), (&fine, outer)].map(|(field, outer)| {
-            plan::shadow_heights(field, sun, outer, slices, &limits).expect("a plan")
+            plan::shadow_heights(field, sun, outer, parts, &limits).expect("a plan")
         })
     };
     let mut kept = None;
@@ -66,11 +66,12 @@ fn one_renderer_serves_a_day_in_slices() {
         for (i, values) in inputs.iter().enumerate() {
             device.refill(frame, i, values).expect("refilled");
         }
-        for slice in [0, 1] {
-            device.draw_passes(frame, &[slice]).expect("drawn");
+        for part in [0, 1] {
+            device.draw_passes(frame, &[part]).expect("drawn");
         }
-        let sliced: Vec<_> = (0..3).map(|i| device.pixels(frame, i).expect("read back")).collect();
-        assert_eq!(bits(&sliced), bits(&whole), "{sun:?}");
+        let of_parts: Vec<_> =
+            (0..3).map(|i| device.pixels(frame, i).expect("read back")).collect();
+        assert_eq!(bits(&of_parts), bits(&whole), "{sun:?}");
     }
     gpu.gpu.as_mut().expect("alive").end(kept.expect("a frame"));
 }

@@ -1,13 +1,14 @@
-/* Shadows of a terrain in levels of detail under a moving sun, a few slices a frame within a budget of milliseconds.
- * Writes the share of the sun that each grid point of the finest level sees, row by row, as floats. */
+/* Updates the shadows of a terrain with several levels of detail under a moving sun, a few parts of a level per frame, within
+ * a budget in milliseconds. Writes `sun_share` of the finest level, row by row, as floats. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "ridgelight.h"
 
-/* Each level has half the cells of the next along a side, in its middle. SETS: an engine shows one, the next is being made. */
-enum { SIDE = 128, TEXELS = SIDE * SIDE, LEVELS = 3, SLICES = 2, MAPS = 3, SETS = 2, CYCLES = 3 };
+/* All levels have the same number of grid points. Each covers the middle half, along each side, of the next coarser level.
+ * SETS: one set of maps is shown while the other is filled. */
+enum { SIDE = 128, TEXELS = SIDE * SIDE, LEVELS = 3, PARTS = 2, MAPS = 3, SETS = 2, CYCLES = 3 };
 
 static void must(int ok, const char *what) {
     if (!ok) {
@@ -83,7 +84,7 @@ static RidgelightPlan *plan_of(const RidgelightHost *host, int level, int cycle)
     RidgelightOuter outer = {.struct_size = sizeof outer, .rows = SIDE, .cols = SIDE, .cell_m = {2 * cell, 2 * cell},
         .place = {SIDE / 4, SIDE / 4}};
     RidgelightPlan *plan;
-    RL(ridgelight_shadow_heights_create(host, &scene, level + 1 < LEVELS ? &outer : NULL, SLICES, &plan));
+    RL(ridgelight_shadow_heights_create(host, &scene, level + 1 < LEVELS ? &outer : NULL, PARTS, &plan));
     return plan;
 }
 
@@ -150,7 +151,7 @@ int main(int argc, char **argv) {
                 .dstAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT, .newLayout = VK_IMAGE_LAYOUT_GENERAL,
                 .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1}};
         }
-        /* Hills that all levels see alike, at every 1, 2 or 4 of the finest cells. */
+        /* The same hills on all levels, at every 1st, 2nd or 4th grid point of the finest spacing. */
         for (int i = 0; i < TEXELS; i++) {
             int step = 1 << level, first = SIDE / 2 - SIDE / 2 * step;
             int x = first + i % SIDE * step, y = first + i / SIDE * step;
@@ -163,44 +164,44 @@ int main(int argc, char **argv) {
         end();
     }
 
-    /* Each frame: as many slices as fit into the budget by the last one's time, at least one. A cycle lights all levels
-     * from the coarsest to the finest; the sun moves between cycles. */
-    int frames = 0, level = LEVELS - 1, slice = 0, cycle = 0;
-    double slice_ms[LEVELS] = {0}, longest_ms = 0;
+    /* Each frame records at least one part, and more while the last measured time predicts that they fit the budget. A cycle
+     * updates all levels from the coarsest to the finest; the sun moves between cycles. */
+    int frames = 0, level = LEVELS - 1, part = 0, cycle = 0;
+    double part_ms[LEVELS] = {0}, longest_ms = 0;
     for (; cycle < CYCLES; frames++) {
         int in_frame = 0;
         double ms = 0;
-        uint32_t passes[SLICES];
+        uint32_t passes[PARTS];
         begin();
-        if (slice == 0 && cycle > 0) {
+        if (part == 0 && cycle > 0) {
             RidgelightPlan *plan = plan_of(&host, level, cycle);
             RL(ridgelight_replace_plan(renderers[level], plan));
             ridgelight_plan_destroy(plan);
         }
         do {
-            passes[in_frame++] = (uint32_t)slice++;
-            ms += slice_ms[level];
-        } while (slice < SLICES && slice_ms[level] > 0 && ms + slice_ms[level] <= budget_ms);
+            passes[in_frame++] = (uint32_t)part++;
+            ms += part_ms[level];
+        } while (part < PARTS && part_ms[level] > 0 && ms + part_ms[level] <= budget_ms);
         RidgelightImage inputs[MAPS] = {heights[level]}, *written = maps[level][cycle % SETS];
         if (level + 1 < LEVELS) memcpy(inputs + 1, maps[level + 1][cycle % SETS], 2 * sizeof *inputs);
         RL(ridgelight_record_passes(renderers[level], commands, 0, inputs, level + 1 < LEVELS ? 3 : 1, written, MAPS, passes,
             (uint32_t)in_frame));
         end();
-        RidgelightTiming times[SLICES];
-        for (int i = 0; i < SLICES; i++) times[i].struct_size = sizeof *times;
-        uint32_t timed = SLICES;
+        RidgelightTiming times[PARTS];
+        for (int i = 0; i < PARTS; i++) times[i].struct_size = sizeof *times;
+        uint32_t timed = PARTS;
         RL(ridgelight_timings(renderers[level], 0, times, &timed));
         ms = 0;
-        for (uint32_t i = 0; i < timed && i < SLICES; i++) ms += times[i].ns / 1e6;
-        slice_ms[level] = ms > 0 ? ms / in_frame : 1e-6;
+        for (uint32_t i = 0; i < timed && i < PARTS; i++) ms += times[i].ns / 1e6;
+        part_ms[level] = ms > 0 ? ms / in_frame : 1e-6;
         if (ms > longest_ms) longest_ms = ms;
-        if (slice == SLICES) {
-            slice = 0;
+        if (part == PARTS) {
+            part = 0;
             level = (level + LEVELS - 1) % LEVELS;
             cycle += level == LEVELS - 1;
         }
     }
-    printf("%d cycles of %d levels in %d frames, the longest of %.3f ms\n", CYCLES, LEVELS, frames, longest_ms);
+    printf("%d cycles of %d levels in %d frames; the longest took %.3f ms\n", CYCLES, LEVELS, frames, longest_ms);
 
     begin();
     VkMemoryBarrier reading = {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,

@@ -243,7 +243,7 @@ fn a_cpp_program_gives_the_command_lines_bytes() {
     }
 }
 
-/// The finest level of distant.c after its last cycle, by Rust: each level at once, inside the coarser one.
+/// The finest level of distant.c after its last cycle, computed from Rust, each level in one pass.
 fn distant_by_rust() -> Vec<u8> {
     const SIDE: usize = 128;
     let (mut gpu, _) = abi::device();
@@ -276,12 +276,12 @@ fn distant_by_rust() -> Vec<u8> {
     }
     let share = &outer.expect("three levels").1[2];
     let lit = share.iter().filter(|share| **share > 0.5).count();
-    assert!((1000..15000).contains(&lit), "{lit} grid points see the sun");
+    assert!((1000..15000).contains(&lit), "{lit} grid points are lit");
     share.iter().flat_map(|share| share.to_ne_bytes()).collect()
 }
 
-/// However the slices are spread over frames, the maps have the bits of Rust's. A budget that nothing fits into takes a slice a frame; one that
-/// all fit into, a level a frame, once the time of a slice is known.
+/// The maps equal Rust's bit for bit, however the parts are spread over frames. With a budget too small for any part, each frame records one.
+/// With a budget large enough for all, each frame records a whole level, once the time of a part is known.
 #[test]
 fn a_c_program_lights_levels_of_detail_within_a_budget() {
     let folder = tempfile::tempdir().expect("a folder");

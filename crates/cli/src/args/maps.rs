@@ -21,12 +21,11 @@ Examples:
   ridgelight hillshade dem.tif --sun 300,30 --z-scale 2 -o relief.png    # -az 300 -alt 30 -z 2";
 
 const SHADOW_HELP: &str = "\
-Bands: sun_share, the share of the sun's disc that the ground sees, 0 to 1, not weighted by the slope; lit_above, the \
-height in metres from which a point over the texel sees the whole sun; dark_below, the height below which it sees none. \
-A .png has sun_share alone. Between the heights, the share of the disc's height that is hidden is \
-(lit_above - z) / (lit_above - dark_below).
+Bands: sun_share, the visible share of the sun's disc at the ground, 0 to 1, without the cosine. lit_above, the height in \
+metres from which the whole sun is visible. dark_below, the height below which none of it is. A .png has only sun_share. \
+At a height z between the two, (lit_above - z) / (lit_above - dark_below) of the disc's height is hidden.
 
-`render --sun` integrates the disc over exact horizons and is the more accurate; this map takes one pass.
+`render --sun` uses exact horizons and is more accurate.
 
 Examples:
   ridgelight shadow dem.tif --sun 250,12 -o shadow.tif

@@ -289,7 +289,7 @@ fn gpu_fourier_series_are_the_transform_of_the_horizons() {
 
 /// Behind a wall of 40 m the shadow reaches 40 m less the light's rise over the distance, in heights of the file; in every format.
 #[test]
-fn gpu_a_shadow_has_its_walls_heights() {
+fn gpu_shadow_heights_behind_a_wall() {
     let folder = Folder::new();
     // Columns of 2 m; the wall is the last but one.
     write_field(&folder, SIDE, |_, col| if col == SIDE - 2 { 940.0 } else { 900.0 });
@@ -332,7 +332,7 @@ fn gpu_a_shadow_has_its_walls_heights() {
     refused(
         &folder,
         &[
-            ("shadow field.npy -o o.tif --border periodic", 2, &["--border", "level"]),
+            ("shadow field.npy -o o.tif --border periodic", 2, &["--border", "periodic field"]),
             ("shadow field.npy -o o.tif --sun 1,9 --sun 2,9", 2, &["one sun"]),
             ("shadow field.npy -o o.tif --sun 1,91", 2, &["elevation"]),
         ],
@@ -342,7 +342,7 @@ fn gpu_a_shadow_has_its_walls_heights() {
 /// Stellarium's shader takes the square of c = 2 code / 255 - 1, with its sign, as the sine s of the elevation. Codes are rounded to the
 /// nearest: c errs by 1 / 255, its square by 2 √s / 255 + 1 / 255².
 #[test]
-fn gpu_four_horizons_are_a_map_of_stellarium() {
+fn gpu_four_azimuths_make_a_stellarium_horizon_map() {
     let folder = Folder::new();
     // Rises towards the east; a wall in the south.
     write_field(&folder, SIDE, |row, col| {
@@ -373,7 +373,8 @@ fn gpu_four_horizons_are_a_map_of_stellarium() {
     refused(
         &folder,
         &[
-            ("horizon field.npy -o h.png", 2, &["--azimuths 4"]),
+            ("horizon field.npy -o h.png", 2, &["--azimuths: found 64", "4, for a .png"]),
+            ("horizon field.npy -o h.png --azimuths 4 --lines exact", 2, &["--lines: found exact"]),
             ("horizon field.npy -o h.png --azimuths 4 --fourier 2,5", 2, &["ktx2"]),
         ],
     );

@@ -1,4 +1,4 @@
-//! Up to which height the ground ahead shades each grid point from a sun.
+//! The shadow heights of a sun at each grid point.
 
 use std::f64::consts::PI;
 
@@ -6,19 +6,19 @@ use super::shadow_sweep::lines_of;
 use crate::shared::sweep::{CELL_SHIFT, March};
 use ridgelight::plan::azimuths::CELL;
 
-/// What a grid point has of a sun.
+/// Shadow heights of a sun at a grid point.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ShadowHeight {
     /// From this height on the whole sun is visible, metres over the field's base.
     pub lit_above: f64,
-    /// Below it none of the sun is.
+    /// Below this height none of the sun is visible.
     pub dark_below: f64,
     /// Height of the ground.
     pub ground: f64,
 }
 
 impl ShadowHeight {
-    /// Share of the disc that the ground sees: the segment above a chord at the hidden part of the disc's height.
+    /// Visible share of the disc at the ground: the segment above a chord at the hidden part of the disc's height.
     pub fn share(&self) -> f64 {
         let penumbra = (self.lit_above - self.dark_below).max(1e-30);
         let hidden = ((self.lit_above - self.ground) / penumbra).clamp(0.0, 1.0);
@@ -27,8 +27,8 @@ impl ShadowHeight {
     }
 }
 
-/// Of every grid point, row-major. `rise` is that of the light over one step, from the sun's lower and from its upper edge; `outer` is
-/// a coarser field's heights of shadows over this field's base at a column and a row of this field, also between grid points.
+/// Shadow heights of all grid points, row-major. `rise` is the increase in height of the ray per march step, for the sun's lower and upper
+/// edge. `outer` gives shadow heights of the outer field, over this field's base, at any column and row of this field.
 pub fn shadow_heights(
     march: &March,
     rise: [f64; 2],
@@ -54,7 +54,7 @@ pub fn shadow_heights(
         .collect()
 }
 
-/// The shadow heights of a line at each step; none a cell or more beside the field.
+/// The shadow heights of a line at each step; none where the line is a cell or more outside the field.
 fn shade_of_line(
     march: &March,
     y: i32,
@@ -90,7 +90,7 @@ fn shade_of_line(
 
 /// Column and row of a lane and a step.
 fn place(march: &March, lane: f64, step: i32) -> [f64; 2] {
-    // Positions are the same flips as of whole lanes.
+    // The flips of whole lanes, for fractions too.
     let low = f64::from(march.lane_position(0));
     let lane = if low > 0.0 { low - lane } else { lane };
     let step = f64::from(march.march_position(step));

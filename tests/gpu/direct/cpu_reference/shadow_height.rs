@@ -1,4 +1,4 @@
-//! Heights of a sun's shadows.
+//! Shadow heights.
 
 use ridgelight::gpu::shaders::offset;
 use ridgelight::plan::Pass;
@@ -13,7 +13,7 @@ use crate::cpu_reference::{Case, Pair, Run, Wanted, check_all, pushed, rough};
 use crate::field;
 
 /// Suns in all octants, on an axis and on a diagonal; wide, narrow and points; high, low and cut by the horizontal. Fields alone,
-/// in slices, and inside a coarser one.
+/// in parts, and inside a coarser one.
 pub(crate) fn cases() -> Vec<Case> {
     let case = |name,
                 field: HeightField,
@@ -27,9 +27,9 @@ pub(crate) fn cases() -> Vec<Case> {
         Case { name, scene, quality: Quality::default(), wanted, loses_lines: false }
     };
     let alone = || Wanted::ShadowHeights(1, None);
-    let inside = |slices| {
+    let inside = |parts| {
         let outer = field(20, 24, [9.0, 8.0], |r, c| 905.0 + 3.0 * ((r * 7 + c * 5) % 9) as f64);
-        Wanted::ShadowHeights(slices, Some((outer, [1.25, 0.5])))
+        Wanted::ShadowHeights(parts, Some((outer, [1.25, 0.5])))
     };
     vec![
         case("shadow heights, from the east", rough(9, 13, 81), (0.0, 0.3, 0.2), alone()),
@@ -41,9 +41,9 @@ pub(crate) fn cases() -> Vec<Case> {
             (170.0, 0.05, 0.3),
             alone(),
         ),
-        case("shadow heights, in the zenith", rough(7, 9, 85), (200.0, 1.5, 0.2), alone()),
+        case("shadow heights, at the zenith", rough(7, 9, 85), (200.0, 1.5, 0.2), alone()),
         case(
-            "shadow heights in slices",
+            "shadow heights in parts",
             rough(70, 81, 86),
             (251.0, 0.1, 0.05),
             Wanted::ShadowHeights(2, None),
@@ -59,9 +59,9 @@ pub(crate) fn cases() -> Vec<Case> {
     ]
 }
 
-/// A height between two grid points errs by 3 ε of the largest, the light's rise by 2 ε of itself, which is the shadow's height
-/// over its top; the interpolation of two lines by 3 ε of both. Of an outer field, whose place errs by 3 ε of it, also by that of its
-/// slopes.
+/// Rounding errors: an interpolated height, 3 ε of the largest height. The rise of the ray, 2 ε of the rise, which is the shadow height over its
+/// top. The interpolation of two lines, 3 ε of both. With an outer field, the position errs by 3 ε, which adds that error times the slope
+/// of its shadow heights.
 pub(crate) fn shadow_height(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     const RISE: usize = offset("ShadowHeightPush", "rise");
     const OUTER_SIZE: usize = offset("ShadowHeightPush", "outer_size");
@@ -133,6 +133,6 @@ pub(crate) fn shadow_height(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 }
 
 #[test]
-fn heights_of_shadows_match() {
+fn shadow_heights_match_the_cpu_reference() {
     check_all(&cases());
 }
