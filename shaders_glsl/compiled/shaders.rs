@@ -649,12 +649,12 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/shadow_height.comp`.
-    SHADOW_HEIGHT: "shadow_height", push ShadowHeightPush, words 244656 5141,
+    SHADOW_HEIGHT: "shadow_height", push ShadowHeightPush, words 244656 6055,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "outer_lit_above" SampledImage { uint: false, layered: false },
-    2 reads "outer_dark_below" SampledImage { uint: false, layered: false },
+    2 reads "outer_penumbra" SampledImage { uint: false, layered: false },
     3 writes "lit_above" StorageImage { format: "R32f", uint: false, layered: false },
-    4 writes "dark_below" StorageImage { format: "R32f", uint: false, layered: false },
+    4 writes "penumbra" StorageImage { format: "R32f", uint: false, layered: false },
     5 writes "sun_share" StorageImage { format: "R32f", uint: false, layered: false },
     ShadowHeight {
         0 has_outer: bool = false,
@@ -663,7 +663,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/shadow_settle.comp`.
-    SHADOW_SETTLE: "shadow_settle", push ShadowSettlePush, words 249797 18052,
+    SHADOW_SETTLE: "shadow_settle", push ShadowSettlePush, words 250711 18052,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "maxima" StorageImage { format: "R32f", uint: false, layered: false },
     2 reads "azimuths" TexelBuffer,
@@ -681,7 +681,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/shadow_shade.comp`.
-    SHADOW_SHADE: "shadow_shade", push ShadowShadePush, words 267849 11262,
+    SHADOW_SHADE: "shadow_shade", push ShadowShadePush, words 268763 11262,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 reads "shadows" StorageImage { format: "Rgba32ui", uint: true, layered: true },
@@ -697,7 +697,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/shadow_sweep.comp`.
-    SHADOW_SWEEP: "shadow_sweep", push ShadowSweepPush, words 279111 11525,
+    SHADOW_SWEEP: "shadow_sweep", push ShadowSweepPush, words 280025 11525,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "shadows" StorageImage { format: "Rgba32ui", uint: true, layered: true },
@@ -713,7 +713,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/sky_draw.frag`.
-    SKY_DRAW_FRAG: "sky_draw_frag", push SkyDrawPush, words 290636 1372,
+    SKY_DRAW_FRAG: "sky_draw_frag", push SkyDrawPush, words 291550 1372,
     0 reads "environment" SampledImage { uint: false, layered: false },
     SkyDrawFrag {
         0 has_environment: bool = false,
@@ -722,13 +722,13 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/sky_draw.vert`.
-    SKY_DRAW_VERT: "sky_draw_vert", push (), words 292008 289,
+    SKY_DRAW_VERT: "sky_draw_vert", push (), words 292922 289,
     SkyDrawVert;
 }
 
 shader! {
     /// `shaders_glsl/direct/sky_shade.comp`.
-    SKY_SHADE: "sky_shade", push ShadePush, words 292297 30113,
+    SKY_SHADE: "sky_shade", push ShadePush, words 293211 30113,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rgba16ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -759,7 +759,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/specular_exit.comp`.
-    SPECULAR_EXIT: "specular_exit", push SpecularExitPush, words 322410 6560,
+    SPECULAR_EXIT: "specular_exit", push SpecularExitPush, words 323324 6560,
     0 reads "arriving" SampledImage { uint: false, layered: true },
     1 reads "ground" SampledImage { uint: false, layered: false },
     2 reads "exit_radiance" SampledImage { uint: false, layered: false },
@@ -784,7 +784,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/specular_gather.comp`.
-    SPECULAR_GATHER: "specular_gather", push GatherPush, words 328970 20442,
+    SPECULAR_GATHER: "specular_gather", push GatherPush, words 329884 20442,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "height_levels" SampledImage { uint: false, layered: false },
     2 reads "level_table" SampledImage { uint: true, layered: false },
@@ -812,7 +812,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/specular_light.comp`.
-    SPECULAR_LIGHT: "specular_light", push SpecularLightPush, words 349412 7631,
+    SPECULAR_LIGHT: "specular_light", push SpecularLightPush, words 350326 7631,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "blocked_sum" SampledImage { uint: false, layered: false },
     2 reads "unoccluded_map" SampledImage { uint: false, layered: false },
@@ -826,7 +826,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/specular_tables.comp`.
-    SPECULAR_TABLES: "specular_tables", push SpecularTablesPush, words 357043 4690,
+    SPECULAR_TABLES: "specular_tables", push SpecularTablesPush, words 357957 4690,
     0 reads "azimuths" TexelBuffer,
     1 reads "wedge_rows" StorageBuffer,
     2 writes "specular_tables" StorageImage { format: "Rgba32f", uint: false, layered: true },
@@ -837,7 +837,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/specular_visibility.comp`.
-    SPECULAR_VISIBILITY: "specular_visibility", push SpecularVisibilityPush, words 361733 1238,
+    SPECULAR_VISIBILITY: "specular_visibility", push SpecularVisibilityPush, words 362647 1238,
     0 reads "visibility" SampledImage { uint: false, layered: true },
     1 reads "light_matrix" SampledImage { uint: false, layered: false },
     2 writes "arriving" StorageImage { format: "Rgba32f", uint: false, layered: true },
@@ -849,7 +849,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/sphere_sh_shade.comp`.
-    SPHERE_SH_SHADE: "sphere_sh_shade", push SphereShShadePush, words 362971 27760,
+    SPHERE_SH_SHADE: "sphere_sh_shade", push SphereShShadePush, words 363885 27760,
     0 reads "cells" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "maxima" StorageImage { format: "R32f", uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -875,7 +875,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/sphere_shade.comp`.
-    SPHERE_SHADE: "sphere_shade", push SphereShadePush, words 390731 14492,
+    SPHERE_SHADE: "sphere_shade", push SphereShadePush, words 391645 14492,
     0 reads "cells" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "maxima" StorageImage { format: "R32f", uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -890,7 +890,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/sun_shade.comp`.
-    SUN_SHADE: "sun_shade", push ShadePush, words 405223 24707,
+    SUN_SHADE: "sun_shade", push ShadePush, words 406137 24707,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rgba16ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -911,7 +911,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/sun_specular.comp`.
-    SUN_SPECULAR: "sun_specular", push SunSpecularPush, words 429930 10753,
+    SUN_SPECULAR: "sun_specular", push SunSpecularPush, words 430844 10753,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "sun_sum" SampledImage { uint: false, layered: false },
     2 writes "specular_sum" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -928,7 +928,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/surface_sweep.comp`.
-    SURFACE_SWEEP: "surface_sweep", push MarchPush, words 440683 7721,
+    SURFACE_SWEEP: "surface_sweep", push MarchPush, words 441597 7721,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "slopes" StorageImage { format: "R32ui", uint: true, layered: true },
@@ -944,7 +944,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/sweep_fuse.comp`.
-    SWEEP_FUSE: "sweep_fuse", push SweepFusePush, words 448404 20380,
+    SWEEP_FUSE: "sweep_fuse", push SweepFusePush, words 449318 20380,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rgba16ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -965,7 +965,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/terrain_draw.frag`.
-    TERRAIN_DRAW_FRAG: "terrain_draw_frag", push TerrainDrawPush, words 468784 1129,
+    TERRAIN_DRAW_FRAG: "terrain_draw_frag", push TerrainDrawPush, words 469698 1129,
     1 reads "radiance" SampledImage { uint: false, layered: false },
     2 reads "voids" SampledImage { uint: false, layered: false },
     TerrainDrawFrag {
@@ -976,14 +976,14 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/terrain_draw.vert`.
-    TERRAIN_DRAW_VERT: "terrain_draw_vert", push TerrainDrawPush, words 469913 994,
+    TERRAIN_DRAW_VERT: "terrain_draw_vert", push TerrainDrawPush, words 470827 994,
     0 reads "heights" SampledImage { uint: false, layered: false },
     TerrainDrawVert;
 }
 
 shader! {
     /// `shaders_glsl/bounce/vector_reduce.comp`.
-    VECTOR_REDUCE: "vector_reduce", push ReducePush, words 470907 3811,
+    VECTOR_REDUCE: "vector_reduce", push ReducePush, words 471821 3811,
     0 reads "exit_vectors" SampledImage { uint: false, layered: true },
     1 reads "vector_source" SampledImage { uint: false, layered: true },
     2 writes "vector_levels" StorageImage { format: "Rgba32f", uint: false, layered: true },
@@ -999,7 +999,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bake/visible_points.comp`.
-    VISIBLE_POINTS: "visible_points", push VisiblePointsPush, words 474718 9745,
+    VISIBLE_POINTS: "visible_points", push VisiblePointsPush, words 475632 9745,
     0 reads "cells" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "maxima" StorageImage { format: "R32f", uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -1245,10 +1245,10 @@ layouts! {
         20 first_azimuth: u32, 24 azimuth_count: u32, 28 clears: u32, 32 eye_m: [f32; 4],
         48 exponent: f32, 52 least_cosine: f32, 56 relights: u32,
     }
-    push ShadowHeightPush 56 {
+    push ShadowHeightPush 64 {
         0 size: [i32; 2], 8 outer_size: [i32; 2], 16 outer_origin: [f32; 2],
-        24 outer_step: [f32; 2], 32 rise: [f32; 2], 40 outer_base: f32, 44 shear: i32,
-        48 flags: u32, 52 first_group: i32,
+        24 outer_step: [f32; 2], 32 edges: [f32; 2], 40 diameter_rad: f32, 44 step_m: f32,
+        48 outer_base: f32, 52 shear: i32, 56 flags: u32, 60 first_group: i32,
     }
     push ShadowSettlePush 56 {
         0 land: LandPush, 32 first_azimuth: u32, 36 azimuth_count: u32, 40 clears: u32,
@@ -1345,4 +1345,4 @@ layouts! {
 }
 
 /// Words of all shaders together.
-const WORD_COUNT: usize = 484463;
+const WORD_COUNT: usize = 485377;

@@ -1,10 +1,10 @@
-// Computes: for every grid point the height above which a whole sun is visible, the height below which none of it is, and
-// the visible share of its disc. Along each line two running maxima of the ground are kept, one for each edge of
+// Computes: for every grid point the height from which a whole sun is visible, the height of the penumbra below it, and
+// the visible share of the sun's disc at the ground. Along each line two running maxima of the ground are kept, one for each edge of
 // the sun.
-// Reads: heights; of a coarser field around this one its shadow heights, outer_lit_above and outer_dark_below.
-// Writes: lit_above, dark_below (metres over the field's base), sun_share (0 to 1).
+// Reads: heights; of an outer field its shadow heights, outer_lit_above and outer_penumbra.
+// Writes: lit_above (metres over the field's base), penumbra (metres), sun_share (0 to 1).
 // One invocation is one line; the last of a workgroup is also the first of the next one. Lines are a cell apart. A grid point
-// takes the interpolation of the lines around it.
+// interpolates the two lines beside it.
 #version 460
 
 layout(local_size_x = 64) in;
@@ -13,9 +13,9 @@ layout(constant_id = 0) const bool HAS_OUTER = false;
 
 layout(binding = 0) uniform texture2D heights;
 layout(binding = 1) uniform texture2D outer_lit_above;
-layout(binding = 2) uniform texture2D outer_dark_below;
+layout(binding = 2) uniform texture2D outer_penumbra;
 layout(binding = 3, r32f) uniform writeonly image2D lit_above;
-layout(binding = 4, r32f) uniform writeonly image2D dark_below;
+layout(binding = 4, r32f) uniform writeonly image2D penumbra;
 layout(binding = 5, r32f) uniform writeonly image2D sun_share;
 
 #include "shared/angle.glsl"
@@ -26,7 +26,9 @@ layout(push_constant) uniform ShadowHeightPush {
     ivec2 outer_size;
     vec2 outer_origin;  // column and row of the outer grid at this field's first grid point
     vec2 outer_step;    // cells of the outer grid per cell
-    vec2 rise;          // of the ray per march step, for the sun's lower and upper edge
+    vec2 edges;         // tangents of the elevations of the sun's lower and upper edge
+    float diameter_rad; // 0 for a point
+    float step_m;       // world length of a march step
     float outer_base;   // of the outer field over this one's
     int shear;
     uint flags;         // AZIMUTH_*
@@ -34,9 +36,12 @@ layout(push_constant) uniform ShadowHeightPush {
 };
 
 const int AT_ONCE = 4;
+// Beyond it the upper edge is in the zenith, and nothing reaches that far.
+const float STEEPEST = 1e8;
 
-// Shadow heights of AT_ONCE steps. Two such buffers alternate.
-shared vec2 of_lines[2 * AT_ONCE * gl_WorkGroupSize.x];
+// Of AT_ONCE steps: shadow heights for the lower and the upper edge, and how many steps away the ground is that shades from each.
+// Two such buffers alternate.
+shared vec4 of_lines[2 * AT_ONCE * gl_WorkGroupSize.x];
 
 bool has(uint flag) {
     return (flags & flag) != 0u;
@@ -55,7 +60,7 @@ ivec2 texel_of(int lane, int step, ivec2 last) {
     return has(AZIMUTH_MARCHES_ROWS) ? ivec2(lane_at, step_at) : ivec2(step_at, lane_at);
 }
 
-// Shadow heights of the outer field, between its grid points.
+// lit_above and penumbra of the outer field, between its grid points.
 vec2 outer_at(vec2 place) {
     vec2 at = clamp(outer_origin + place * outer_step, vec2(0.0), vec2(outer_size - 1));
     ivec2 a = ivec2(at);
@@ -63,20 +68,44 @@ vec2 outer_at(vec2 place) {
     vec2 t = at - vec2(a);
     vec4 lit = vec4(texelFetch(outer_lit_above, a, 0).x, texelFetch(outer_lit_above, ivec2(b.x, a.y), 0).x,
                     texelFetch(outer_lit_above, ivec2(a.x, b.y), 0).x, texelFetch(outer_lit_above, b, 0).x);
-    vec4 dark = vec4(texelFetch(outer_dark_below, a, 0).x, texelFetch(outer_dark_below, ivec2(b.x, a.y), 0).x,
-                     texelFetch(outer_dark_below, ivec2(a.x, b.y), 0).x, texelFetch(outer_dark_below, b, 0).x);
+    vec4 wide = vec4(texelFetch(outer_penumbra, a, 0).x, texelFetch(outer_penumbra, ivec2(b.x, a.y), 0).x,
+                     texelFetch(outer_penumbra, ivec2(a.x, b.y), 0).x, texelFetch(outer_penumbra, b, 0).x);
     vec2 lit_rows = mix(lit.xz, lit.yw, t.x);
-    vec2 dark_rows = mix(dark.xz, dark.yw, t.x);
-    return vec2(mix(lit_rows.x, lit_rows.y, t.y), mix(dark_rows.x, dark_rows.y, t.y)) + outer_base;
+    vec2 wide_rows = mix(wide.xz, wide.yw, t.x);
+    return vec2(mix(lit_rows.x, lit_rows.y, t.y) + outer_base, mix(wide_rows.x, wide_rows.y, t.y));
+}
+
+// Angle between two directions of slopes `from` and from + `rise`, 0 or more; a right angle or more counts as one.
+float angle_over(float from, float rise) {
+    float cosine = 1.0 + from * (from + rise);
+    return cosine > 0.0 ? arc_tangent(vec4(max(rise, 0.0) / cosine)).x : HALF_PI;
 }
 
 // Share of a disc above a chord that cuts off `hidden` of its height: a segment. The square roots keep precision near 0 and 1.
 float share_above(float hidden) {
-    float a = clamp(hidden, 0.0, 1.0);
-    float b = 1.0 - a;
-    vec2 roots = sqrt(vec2(a, b));
-    float angle = arc_tangent(vec4(roots.x / max(roots.y, 1e-20))).x;
-    return 1.0 - (angle - (b - a) * roots.x * roots.y) * (2.0 / PI);
+    if (hidden <= 0.0 || hidden >= 1.0) {
+        return hidden <= 0.0 ? 1.0 : 0.0;
+    }
+    float shown = 1.0 - hidden;
+    vec2 roots = sqrt(vec2(hidden, shown));
+    float angle = arc_tangent(vec4(roots.y / roots.x)).x;
+    return min((angle - (hidden - shown) * roots.x * roots.y) * (2.0 / PI), 1.0);
+}
+
+// Visible share at height z. Neither of the two occluders hides less than the other's part: the larger counts.
+float share_at(float z, vec4 shade) {
+    if (diameter_rad == 0.0) {
+        return z >= shade.x ? 1.0 : 0.0;
+    }
+    float hidden = angle_over(edges.x, (shade.x - z) / (shade.z * step_m)) / diameter_rad;
+    hidden = z >= shade.x ? 0.0 : hidden;
+    if (edges.y < STEEPEST) {
+        // Down from the upper edge to the horizon.
+        float below = (z - shade.y) / (shade.w * step_m);
+        float shown = angle_over(edges.y - below, below) / diameter_rad;
+        hidden = max(hidden, z <= shade.y ? 1.0 : 1.0 - shown);
+    }
+    return share_above(hidden);
 }
 
 void main() {
@@ -94,15 +123,16 @@ void main() {
         begin = max(0, (-CELL - (lowest + group_lines * CELL)) / shear);
         end = clamp((lanes * CELL - lowest) / shear + 1, begin, max(begin, steps));
     }
+    vec2 rise = edges * step_m;
     int own = int(gl_LocalInvocationID.x);
     int y = (first_line + own - lead) * CELL + begin * shear;
     // Highest shadowing ground so far, for the lower and upper edge, and its march step.
     vec2 top = vec2(0.0);
-    ivec2 top_step = ivec2(0);
+    vec2 top_step = vec2(0.0);
     bool was_on = false;
     int turn = 0;
     for (int first = begin; first < end; first += AT_ONCE) {
-        vec2 mine[AT_ONCE];
+        vec4 mine[AT_ONCE];
         float ground[AT_ONCE];
         for (int k = 0; k < AT_ONCE; k++) {
             int step = min(first + k, steps - 1);
@@ -116,20 +146,26 @@ void main() {
             if (is_on && !was_on) {
                 // Beyond the edge towards the sun, the ground is level at the height of the edge.
                 top = vec2(here);
-                top_step = ivec2(step - 1);
+                top_step = vec2(float(step - 1));
                 if (HAS_OUTER) {
-                    float lane = clamp(float(at) * (1.0 / float(CELL)), 0.0, float(last.x));
-                    top = max(top, outer_at(grid_place(lane, float(step), vec2(last))) + rise);
+                    vec2 beyond = outer_at(grid_place(float(at) * (1.0 / float(CELL)), float(step), vec2(last)));
+                    // The outer field's penumbra grows by the same amount with each step.
+                    float ahead = max(beyond.y / max(rise.y - rise.x, 1e-30), 1.0);
+                    vec2 shade = beyond.x - vec2(0.0, beyond.y);
+                    bvec2 is_higher = greaterThan(shade, top - rise);
+                    top = mix(top, shade + ahead * rise, is_higher);
+                    top_step = mix(top_step, vec2(float(step) - ahead), is_higher);
                 }
             }
             was_on = is_on;
-            vec2 shade = top - vec2(step - top_step) * rise;
-            mine[k] = shade;
+            vec2 ahead = float(step) - top_step;
+            vec2 shade = top - ahead * rise;
+            mine[k] = vec4(shade, ahead);
             ground[k] = fraction == 0 ? below : above;
-            of_lines[(turn * AT_ONCE + k) * int(gl_WorkGroupSize.x) + own] = shade;
+            of_lines[(turn * AT_ONCE + k) * int(gl_WorkGroupSize.x) + own] = mine[k];
             bvec2 is_higher = greaterThanEqual(vec2(here), shade);
             top = mix(top, vec2(here), is_higher);
-            top_step = mix(top_step, ivec2(step), is_higher);
+            top_step = mix(top_step, vec2(float(step)), is_higher);
         }
         // One barrier is enough: the next iteration writes the other half, and this half is written again only after that
         // iteration's barrier.
@@ -141,19 +177,17 @@ void main() {
             if (own == group_lines || step >= end || lane < 0 || lane > last.x) {
                 continue;
             }
-            vec2 shade = mine[k];
+            vec4 shade = mine[k];
             int ahead = lane * CELL - at;
             if (ahead > 0) {
                 // Where this line lies on a lane, no interpolation is needed, and the next line may be outside the field.
-                vec2 next = of_lines[(turn * AT_ONCE + k) * int(gl_WorkGroupSize.x) + own + 1];
+                vec4 next = of_lines[(turn * AT_ONCE + k) * int(gl_WorkGroupSize.x) + own + 1];
                 shade = mix(shade, next, float(ahead) * (1.0 / float(CELL)));
             }
-            float penumbra = shade.x - shade.y;
-            float hidden = (shade.x - ground[k]) / max(penumbra, 1e-30);
             ivec2 texel = texel_of(lane, step, last);
             imageStore(lit_above, texel, vec4(shade.x));
-            imageStore(dark_below, texel, vec4(shade.y));
-            imageStore(sun_share, texel, vec4(share_above(hidden)));
+            imageStore(penumbra, texel, vec4(shade.z * (rise.y - rise.x)));
+            imageStore(sun_share, texel, vec4(share_at(ground[k], shade)));
         }
         y += AT_ONCE * shear;
         turn = 1 - turn;

@@ -8,16 +8,15 @@ use crate::{Error, Result};
 ///
 /// Outputs, all R32F. Heights are in metres over the field's base.
 /// - "lit_above": the height from which the whole sun is visible.
-/// - "dark_below": the height below which none of the sun is visible.
+/// - "penumbra": how far below "lit_above" the ground that decides it hides the whole sun. At a height z in between, it hides
+///   (lit_above - z) / penumbra of the disc's height.
 /// - "sun_share": the visible share of the sun's disc at the ground, [0..1], without the cosine.
-///
-/// At a height z between the two, the hidden fraction of the disc's height is (lit_above - z) / (lit_above - dark_below).
 ///
 /// Lines are one cell apart and follow the azimuth of the sun's centre. Each grid point interpolates the lines on either side.
 /// Heights are evaluated only at march steps, so a ridge between two steps is lowered. Beyond the edge towards the sun, the ground is
 /// level at the height of the edge.
 ///
-/// Inputs: "heights". With `outer`, a coarser field that contains this one, also its "outer_lit_above" and "outer_dark_below" for the
+/// Inputs: "heights". With `outer`, a coarser field that contains this one, also its "outer_lit_above" and "outer_penumbra" for the
 /// same sun. The two numbers are the column and row, in the grid of the outer field, of this field's first grid point. Record the
 /// coarsest field first.
 ///
@@ -47,6 +46,7 @@ pub fn shadow_heights(
         ));
     }
     if let Some((around, place)) = outer {
+        limits.check_size(around.rows(), around.cols())?;
         let points = [around.cols(), around.rows()];
         let contains = |i: usize| {
             let cells = f64::from(size[i] - 1) * field.cell_m()[i] / around.cell_m()[i];
@@ -70,11 +70,11 @@ pub fn shadow_heights(
     let outer = outer.map(|(field, place)| {
         let size = [field.cols() as u32, field.rows() as u32];
         let images =
-            ["outer_lit_above", "outer_dark_below"].map(|name| image(name, Owner::Input, size));
+            ["outer_lit_above", "outer_penumbra"].map(|name| image(name, Owner::Input, size));
         Outer { field, place, images }
     });
     let written =
-        ["lit_above", "dark_below", "sun_share"].map(|name| image(name, Owner::Output, size));
+        ["lit_above", "penumbra", "sun_share"].map(|name| image(name, Owner::Output, size));
     shadow_height::plan(&mut builder, (field, sun), outer.as_ref(), parts, heights, written);
     let used = vec![("parts".to_owned(), parts.to_string())];
     Plan::finish(builder, size, Vec::new(), Vec::new(), Vec::new(), used, limits)

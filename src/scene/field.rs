@@ -115,8 +115,13 @@ impl HeightField {
     /// # Errors
     /// As [`new`](Self::new).
     pub fn unknown(rows: usize, cols: usize, cell_m: [f64; 2]) -> Result<Self> {
-        let level = Self::new(rows, cols, &vec![0.0; rows.saturating_mul(cols)], cell_m, None)?;
-        Ok(Self { is_unknown: true, ..level })
+        let corner = Self::new(1, 1, &[0.0], cell_m, None)?;
+        let count = rows.checked_mul(cols).filter(|count| *count > 0);
+        let Some(count) = count else {
+            return Self::new(rows, cols, &[], cell_m, None);
+        };
+        // Zeros cost no time: planning a frame may make such a field.
+        Ok(Self { rows, cols, heights_m: vec![0.0; count], is_unknown: true, ..corner })
     }
 
     /// Whether only the device knows the heights: [`unknown`](Self::unknown).

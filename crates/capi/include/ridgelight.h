@@ -544,10 +544,10 @@ enum RidgelightResult ridgelight_plan_create(const struct RidgelightHost *host,
 
 // Plans the shadow heights of the scene's one sun over its field. The rest of the scene is ignored.
 //
-// Outputs, R32F, in the unit and from the zero of "heights": "lit_above", the height from which the whole sun is
-// visible; "dark_below", the height below which none of it is. "sun_share" is the visible share of the sun's
-// disc at the ground, [0..1]. Inputs: "heights". With `outer` (may be null) also "outer_lit_above" and
-// "outer_dark_below", the outputs of a renderer of `outer` for the same sun.
+// Outputs, R32F: "lit_above", the height from which the whole sun is visible, in the unit and from the zero of
+// "heights". "penumbra", how far below it the ground that decides it hides the whole sun. "sun_share", the
+// visible share of the sun's disc at the ground, [0..1]. Inputs: "heights". With `outer` (may be null) also
+// "outer_lit_above" and "outer_penumbra", the outputs of a renderer of `outer` for the same sun.
 //
 // The plan has `parts` passes (0 means 1), each for some lines of the field. Record them in one frame or in several
 // (ridgelight_record_passes). The plan of any other sun can replace it.
@@ -693,7 +693,7 @@ enum RidgelightResult ridgelight_record_edit(struct RidgelightRenderer *renderer
 
 // Replaces the plan by one with the same passes, images and buffers but other values: another colour of a
 // light, a sun that moved a little. Frames in flight finish with the plan of their recording; do not wait for
-// them. The next recording must be a whole one.
+// them. The next recording must be a whole one, or begin with pass 0 (ridgelight_record_passes).
 //
 // Returns OK, ARGUMENT; SETTING where the plan needs a renderer of its own: the old one stays.
 //

@@ -3,6 +3,7 @@ use std::ffi::c_char;
 use ash::vk;
 use ridgelight::gpu;
 use ridgelight::plan::{self, Format, Kind, Owner, Picture, Plan, Resource};
+use ridgelight::scene::Border;
 
 use crate::errors::{Done, Failure, RidgelightResult, done};
 use crate::read::{SizeFirst, hand_out, handle, handle_mut, read, write};
@@ -90,10 +91,10 @@ unsafe impl SizeFirst for RidgelightOuter {}
 
 /// Plans the shadow heights of the scene's one sun over its field. The rest of the scene is ignored.
 ///
-/// Outputs, R32F, in the unit and from the zero of "heights": "lit_above", the height from which the whole sun is
-/// visible; "dark_below", the height below which none of it is. "sun_share" is the visible share of the sun's
-/// disc at the ground, [0..1]. Inputs: "heights". With `outer` (may be null) also "outer_lit_above" and
-/// "outer_dark_below", the outputs of a renderer of `outer` for the same sun.
+/// Outputs, R32F: "lit_above", the height from which the whole sun is visible, in the unit and from the zero of
+/// "heights". "penumbra", how far below it the ground that decides it hides the whole sun. "sun_share", the
+/// visible share of the sun's disc at the ground, [0..1]. Inputs: "heights". With `outer` (may be null) also
+/// "outer_lit_above" and "outer_penumbra", the outputs of a renderer of `outer` for the same sun.
 ///
 /// The plan has `parts` passes (0 means 1), each for some lines of the field. Record them in one frame or in several
 /// (ridgelight_record_passes). The plan of any other sun can replace it.
@@ -119,6 +120,9 @@ pub unsafe extern "C" fn ridgelight_shadow_heights_create(
                 let found = scene.lights.suns.len().to_string();
                 return Err(Failure::argument("scene: sun_count", found, "1"));
             };
+            if scene.surface.border == Border::Periodic {
+                return Err(Failure::argument("scene: border", "PERIODIC", "PLANE or OPEN"));
+            }
             let around = if outer.is_null() { None } else { Some(self::outer(outer)?) };
             let around = around.as_ref().map(|(field, place)| (field, *place));
             let limits = gpu::limits(&host.instance, host.physical_device);

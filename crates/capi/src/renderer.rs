@@ -229,7 +229,7 @@ unsafe fn args<'a, T>(
 
 /// Replaces the plan by one with the same passes, images and buffers but other values: another colour of a
 /// light, a sun that moved a little. Frames in flight finish with the plan of their recording; do not wait for
-/// them. The next recording must be a whole one.
+/// them. The next recording must be a whole one, or begin with pass 0 (ridgelight_record_passes).
 ///
 /// Returns OK, ARGUMENT; SETTING where the plan needs a renderer of its own: the old one stays.
 ///

@@ -177,6 +177,9 @@ fn field([rows, cols]: [u32; 2], cell_m: [f64; 2], name: &str) -> Done<HeightFie
 pub(crate) unsafe fn outer(from: *const RidgelightOuter) -> Done<(HeightField, [f64; 2])> {
     // SAFETY: as the caller says.
     let outer = unsafe { read(from, "outer") }?;
+    if outer.reserved != 0 {
+        return Err(Failure::argument("outer: reserved", outer.reserved, "0"));
+    }
     Ok((field([outer.rows, outer.cols], outer.cell_m, "outer")?, outer.place))
 }
 

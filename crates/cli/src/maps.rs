@@ -98,11 +98,11 @@ const SHADOW_VALUES: [Values; 3] = [
     Values {
         name: "sun_share",
         unit: "",
-        about: "visible share of the sun's disc; heights from which all of it is visible, and below which none is, m",
+        about: "visible share of the sun's disc; height from which all of it is visible, m; height of the penumbra below, m",
         png: [0.0, 1.0],
     },
     Values { name: "lit_above", unit: "m", about: "", png: [0.0, 1.0] },
-    Values { name: "dark_below", unit: "m", about: "", png: [0.0, 1.0] },
+    Values { name: "penumbra", unit: "m", about: "", png: [0.0, 1.0] },
 ];
 
 /// [`setup::georeferenced`] or [`setup::on_cpu`].
@@ -260,7 +260,7 @@ pub fn shadow(args: &ShadowArgs) -> Result<Outcome> {
     })?;
     // Absolute, like the heights of the input.
     let absolute = |height: &mut f32| *height = (f64::from(*height) + field.base_m()) as f32;
-    planes[1..].iter_mut().flatten().for_each(absolute);
+    planes[1].iter_mut().for_each(absolute);
     job.write_all(&SHADOW_VALUES, planes, metadata, &times)
 }
 

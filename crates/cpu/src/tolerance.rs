@@ -93,7 +93,7 @@ pub fn device_slope(slope: f64) -> f64 {
     6.0 * EPSILON * slope.abs()
 }
 
-/// The same stored as f16: a device may round it either way, the CPU reference rounds to nearest: one step of f16
+/// The same stored as f16: slopes that differ by rounding may have neighbouring f16: one step of f16
 /// apart, 2^-10 of the slope, or of the smallest numbers, 2^-24.
 pub fn device_slope_f16(slope: f64) -> f64 {
     device_slope(slope) + slope.abs() / 1024.0 + 1.0 / (1 << 24) as f64

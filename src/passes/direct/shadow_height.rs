@@ -1,5 +1,3 @@
-use std::f64::consts::FRAC_PI_2;
-
 use crate::graph::{Axis, Builder, CELL, ResourceId, shaders};
 use crate::passes::azimuths::{across_sun, slope};
 use crate::scene::{Border, HeightField, Sun};
@@ -27,43 +25,73 @@ pub(crate) fn plan(
     let cell_m = field.cell_m();
     let azimuth = across_sun(&Sun { diameter_rad: 0.0, ..*sun }, 1, cell_m)[0];
     let axis = Axis::of(azimuth.marches_rows(), size, Border::Plane);
-    let radius = if sun.is_point() { 0.0 } else { sun.diameter_rad / 2.0 };
-    let edges = [sun.elevation_rad - radius, (sun.elevation_rad + radius).min(FRAC_PI_2)];
+    let diameter_rad = if sun.is_point() { 0.0 } else { sun.diameter_rad };
+    let edges = [-0.5, 0.5].map(|half| slope(sun.elevation_rad + half * diameter_rad));
     let push = shaders::ShadowHeightPush {
         size: size.map(|n| n as i32),
         outer_size: outer.map_or([0; 2], |o| [o.field.cols() as i32, o.field.rows() as i32]),
         outer_origin: outer.map_or([0.0; 2], |o| o.place.map(|p| p as f32)),
         outer_step: outer
             .map_or([0.0; 2], |o| [0, 1].map(|i| (cell_m[i] / o.field.cell_m()[i]) as f32)),
-        rise: edges.map(|edge| slope(edge) * azimuth.step_m),
+        edges,
+        diameter_rad: diameter_rad as f32,
+        step_m: azimuth.step_m,
         outer_base: outer.map_or(0.0, |o| (o.field.base_m() - field.base_m()) as f32),
         shear: azimuth.shear,
         flags: azimuth.flags,
         first_group: 0,
     };
-    let shear_cells = (u64::from(axis.steps) - 1) * azimuth.shear as u64;
-    let lines = axis.lanes + shear_cells.div_ceil(CELL as u64) as u32;
-    let groups = lines.div_ceil(GROUP_LINES);
-    let texels = axis.texels() / u64::from(parts);
+    let groups = groups(axis, azimuth.shear);
+    let all: u64 = groups.iter().sum();
+    let mut first = 0;
+    let mut done = 0;
     for number in 0..parts {
-        let [first, next] = [number, number + 1]
-            .map(|s| (u64::from(groups) * u64::from(s) / u64::from(parts)) as u32);
+        // Groups in the corners have fewer steps. Each part, and each that follows, has a group.
+        let most = groups.len() - (parts - 1 - number) as usize;
+        let until = all * u64::from(number + 1) / u64::from(parts);
+        let mut next = first;
+        while next < most
+            && (next == first || number + 1 == parts || done + groups[next] / 2 < until)
+        {
+            done += groups[next];
+            next += 1;
+        }
         let part = if parts == 1 { String::new() } else { format!("part {}", number + 1) };
+        let texels = axis.texels() * groups[first..next].iter().sum::<u64>() / all;
         let mut bound = vec![("heights", heights)];
         if let Some(outer) = outer {
-            let [lit_above, dark_below] = outer.images;
-            bound.extend([("outer_lit_above", lit_above), ("outer_dark_below", dark_below)]);
+            let [lit_above, penumbra] = outer.images;
+            bound.extend([("outer_lit_above", lit_above), ("outer_penumbra", penumbra)]);
         }
-        bound.extend(["lit_above", "dark_below", "sun_share"].into_iter().zip(written));
+        bound.extend(["lit_above", "penumbra", "sun_share"].into_iter().zip(written));
         builder.pass(
             shaders::ShadowHeight { has_outer: outer.is_some() },
             &part,
             "shadow heights of the sun at each grid point",
-            [next - first, 1, 1],
+            [(next - first) as u32, 1, 1],
             &shaders::ShadowHeightPush { first_group: first as i32, ..push },
             &bound,
             texels * (2 * 4 + 3 * 4),
             texels,
         );
+        first = next;
     }
+}
+
+/// Steps of each group of lines, as in the shader, at least one.
+fn groups(axis: Axis, shear: i32) -> Vec<u64> {
+    let (lanes, steps) = (i64::from(axis.lanes), i64::from(axis.steps));
+    let (shear, cell) = (i64::from(shear), i64::from(CELL));
+    let lead = ((steps - 1) * shear + cell - 1) / cell;
+    let group = i64::from(GROUP_LINES);
+    let of = |number: i64| {
+        if shear == 0 {
+            return steps as u64;
+        }
+        let lowest = (number * group - lead) * cell;
+        let begin = ((-cell - lowest - group * cell) / shear).max(0);
+        let end = ((lanes * cell - lowest) / shear + 1).clamp(begin, begin.max(steps));
+        (end - begin).max(1) as u64
+    };
+    (0..(lanes + lead + group - 1) / group).map(of).collect()
 }

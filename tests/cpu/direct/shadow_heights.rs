@@ -3,7 +3,7 @@
 use ridgelight::plan::azimuths::across_sun;
 use ridgelight::scene::{Border, HeightField, Sun};
 use ridgelight_cpu::oracle::Oracle;
-use ridgelight_cpu::shadow_height::{ShadowHeight, shadow_heights};
+use ridgelight_cpu::shadow_height::{Disc, Outer, ShadowHeight, segment, shadow_heights};
 use ridgelight_cpu::shared::sweep::{Heights, March};
 
 use super::plane;
@@ -13,48 +13,78 @@ fn sun(degrees: f64, elevation_rad: f64, diameter_rad: f64) -> Sun {
     Sun { azimuth_rad: degrees.to_radians(), elevation_rad, diameter_rad, irradiance: [1.0; 3] }
 }
 
-/// Of a field alone or inside another, and the light's rise per step.
-fn heights_of(
-    field: &HeightField,
-    sun: &Sun,
-    outer: Option<&dyn Fn([f64; 2]) -> [f64; 2]>,
-) -> (Vec<ShadowHeight>, [f64; 2]) {
+/// Of a field alone or inside another.
+fn heights_of(field: &HeightField, sun: &Sun, outer: Option<Outer>) -> (Vec<ShadowHeight>, Disc) {
     let azimuth = across_sun(&Sun { diameter_rad: 0.0, ..*sun }, 1, field.cell_m())[0];
     let march = March::new(Heights::of(field, Border::Plane), &azimuth);
     let radius = sun.diameter_rad / 2.0;
-    let edges = [sun.elevation_rad - radius, sun.elevation_rad + radius];
-    let rise = edges.map(|edge| edge.tan() * f64::from(azimuth.step_m));
-    (shadow_heights(&march, rise, outer), rise)
+    let edges = [sun.elevation_rad - radius, sun.elevation_rad + radius].map(f64::tan);
+    let disc = Disc { edges, diameter_rad: sun.diameter_rad, step_m: f64::from(azimuth.step_m) };
+    (shadow_heights(&march, &disc, outer), disc)
 }
 
 /// f64 sums of a few terms of heights below 100.
 const ROUNDED: f64 = 1e-11;
 
 /// Behind a wall of height H, the shadow height is H minus the rise of the ray over the distance to the wall. It is at least that of the
-/// ground one step ahead.
+/// ground one step ahead. The disc is cut at the elevation of the wall's top, near the wall and far from it.
 #[test]
 fn a_wall_shades_up_to_its_height_less_the_lights_rise() {
-    // Rays from the rows in the middle reach the wall.
-    let wall = field(31, 30, [2.0, 3.0], |_, c| if c == 25 { 40.0 } else { 0.0 });
-    for degrees in [0.0, 12.0, -25.0] {
-        for (elevation, diameter) in [(0.5, 0.1), (0.2, 0.0), (1.2, 0.3)] {
-            let (all, rise) = heights_of(&wall, &sun(degrees, elevation, diameter), None);
-            for (i, found) in all.iter().enumerate().filter(|(i, _)| (10..21).contains(&(i / 30))) {
-                let col = (i % 30) as f64;
-                let expected = rise.map(|rise| {
-                    let of_wall = if col < 25.0 { 40.0 - (25.0 - col) * rise } else { f64::MIN };
-                    of_wall.max(-rise)
-                });
-                let got = [found.lit_above, found.dark_below];
-                for (got, expected) in got.into_iter().zip(expected) {
-                    assert!((got - expected).abs() < ROUNDED, "{degrees} {i}: {got} {expected}");
+    for (cols, wall_m, rows) in [(30, 40.0, 31), (640, 60.0, 401)] {
+        // Rays from the rows in the middle reach the wall.
+        let top = cols - 5;
+        let wall = field(rows, cols, [2.0, 3.0], |_, c| if c == top { wall_m } else { 0.0 });
+        for degrees in [0.0, 12.0, -25.0] {
+            for (elevation, diameter) in [(0.5, 0.1), (0.2, 0.0), (0.12, 0.0093), (1.2, 0.3)] {
+                let (all, disc) = heights_of(&wall, &sun(degrees, elevation, diameter), None);
+                let [lower, upper] = disc.rise_m();
+                let mut partly = 0;
+                for (i, found) in all.iter().enumerate() {
+                    let (row, col) = (i / cols, i % cols);
+                    if row != rows / 2 || col > top {
+                        continue;
+                    }
+                    let steps = (top - col) as f64;
+                    let of_wall = if col < top { wall_m - steps * lower } else { f64::MIN };
+                    let (expected, ahead) =
+                        if of_wall > -lower { (of_wall, steps) } else { (-lower, 1.0) };
+                    let got = [found.shade_m[0], found.penumbra_m(&disc)];
+                    for (got, expected) in got.into_iter().zip([expected, ahead * (upper - lower)])
+                    {
+                        let close = ROUNDED * (1.0 + expected.abs());
+                        assert!((got - expected).abs() < close, "{degrees} {i}: {got} {expected}");
+                    }
+                    let horizon = match col < top {
+                        true => (wall_m / (steps * disc.step_m)).atan(),
+                        false => 0.0,
+                    };
+                    let hidden = (horizon - (elevation - diameter / 2.0)) / diameter;
+                    let share = match diameter {
+                        0.0 => f64::from(u8::from(found.ground_m >= expected)),
+                        _ => segment(hidden),
+                    };
+                    partly += usize::from(share > 0.01 && share < 0.99);
+                    // Square roots of rounding near the ends of a segment.
+                    assert!(
+                        (found.share(&disc) - share).abs() < 1e-6,
+                        "{elevation} {col}: {share}"
+                    );
                 }
-                let above = |z: f64| f64::from(u8::from(z >= expected[0]));
-                match diameter {
-                    0.0 => assert_eq!(found.share(), above(found.ground)),
-                    _ => assert!((0.0..=1.0).contains(&found.share())),
-                }
+                assert!(cols < 100 || elevation != 0.12 || partly > 10, "{partly} in the penumbra");
             }
+        }
+    }
+}
+
+/// On level ground half of a sun that sets is visible everywhere, and of one cut by the horizontal the segment above it.
+#[test]
+fn level_ground_cuts_a_setting_sun() {
+    let level = field(20, 300, [10.0, 10.0], |_, _| 0.0);
+    for elevation in [0.0, 0.004, -0.002, 0.0046] {
+        let (all, disc) = heights_of(&level, &sun(3.0, elevation, 0.0093), None);
+        let expected = segment((0.0093 / 2.0 - elevation) / 0.0093);
+        for found in all {
+            assert!((found.share(&disc) - expected).abs() < 1e-9, "{elevation}: {expected}");
         }
     }
 }
@@ -62,19 +92,18 @@ fn a_wall_shades_up_to_its_height_less_the_lights_rise() {
 /// Half of a disc is above a chord through its middle; a quarter of its height hides 0.1955 of it: the segment (1/3 - √3/(4π)).
 #[test]
 fn a_chord_hides_its_segment() {
-    let at = |ground| ShadowHeight { lit_above: 8.0, dark_below: 4.0, ground }.share();
-    let segment = 1.0 / 3.0 - 3.0_f64.sqrt() / (4.0 * std::f64::consts::PI);
+    let quarter = 1.0 / 3.0 - 3.0_f64.sqrt() / (4.0 * std::f64::consts::PI);
     let expected = [
-        (9.0, 1.0),
-        (8.0, 1.0),
-        (7.0, 1.0 - segment),
-        (6.0, 0.5),
-        (5.0, segment),
-        (4.0, 0.0),
+        (-1.0, 1.0),
+        (0.0, 1.0),
+        (0.25, 1.0 - quarter),
+        (0.5, 0.5),
+        (0.75, quarter),
         (1.0, 0.0),
+        (2.0, 0.0),
     ];
-    for (ground, share) in expected {
-        assert!((at(ground) - share).abs() < 1e-15, "{ground}: {} {share}", at(ground));
+    for (hidden, share) in expected {
+        assert!((segment(hidden) - share).abs() < 1e-15, "{hidden}: {} {share}", segment(hidden));
     }
 }
 
@@ -83,25 +112,27 @@ fn a_chord_hides_its_segment() {
 fn a_ramp_shades_by_its_slope() {
     let ramp = plane(20, 16, [1.0, 1.0], 0.5, 0.0);
     for (elevation, is_lit) in [(0.6_f64, true), (0.3, false)] {
-        let (all, [rise, _]) = heights_of(&ramp, &sun(0.0, elevation, 0.0), None);
+        let (all, disc) = heights_of(&ramp, &sun(0.0, elevation, 0.0), None);
+        let [rise, _] = disc.rise_m();
         for (i, found) in all.iter().enumerate() {
-            let ahead = 15 - i % 16;
+            let to_edge = 15 - i % 16;
             // At the edge the ground goes on level.
-            let steps = if is_lit || ahead == 0 { 1 } else { ahead };
-            let ground = if ahead == 0 { 0.0 } else { 0.5 * steps as f64 };
-            let beyond = if !is_lit && ahead > 0 {
-                ground - (steps as f64 + 0.0) * rise
-            } else {
-                ground - rise
+            let beyond = match (to_edge, is_lit) {
+                (0, _) => -rise,
+                (_, true) => 0.5 - rise,
+                (steps, false) => steps as f64 * (0.5 - rise),
             };
-            assert!((found.lit_above - found.ground - beyond).abs() < ROUNDED, "{elevation} {i}");
-            assert_eq!(found.share(), if is_lit || ahead == 0 { 1.0 } else { 0.0 });
+            assert!(
+                (found.shade_m[0] - found.ground_m - beyond).abs() < ROUNDED,
+                "{elevation} {i}"
+            );
+            assert_eq!(found.share(&disc), if is_lit || to_edge == 0 { 1.0 } else { 0.0 });
         }
     }
 }
 
 /// Inside a coarser field, shadows of what lies beyond arrive: a wall in the east of the outer field shades the inner one by the same
-/// closed form. Without the outer field they do not.
+/// closed form, share included. Without the outer field they do not.
 #[test]
 fn shadows_arrive_from_a_coarser_field() {
     let wall = |c: usize| if c == 18 { 60.0 } else { 0.0 };
@@ -109,37 +140,41 @@ fn shadows_arrive_from_a_coarser_field() {
     let inner = field(20, 24, [2.0, 2.0], |_, _| 0.0);
     // Grid point (0, 0) of the inner field lies at column 4, row 17 of the outer one.
     for degrees in [0.0, 14.0, -31.0] {
-        let sun = sun(degrees, 0.3, 0.05);
-        let (around, _) = heights_of(&outer, &sun, None);
+        // The wall is in the penumbra.
+        let sun = sun(degrees, (60.0 / 86.0_f64).atan(), 0.3);
+        let (around, of_outer) = heights_of(&outer, &sun, None);
         let at = |[col, row]: [f64; 2]| {
             let (x, y) = (4.0 + col / 4.0, 17.0 + row / 4.0);
             let (a, b) = (x.floor(), y.floor());
             let of = |c: f64, r: f64| {
                 let s = around[r as usize * 20 + c as usize];
-                [s.lit_above, s.dark_below]
+                [s.shade_m[0], s.penumbra_m(&of_outer)]
             };
             [0, 1].map(|i| {
                 let row = |r: f64| of(a, r)[i] + (x - a) * (of(a + 1.0, r)[i] - of(a, r)[i]);
                 row(b) + (y - b) * (row(b + 1.0) - row(b))
             })
         };
-        let (with, rise) = heights_of(&inner, &sun, Some(&at));
+        let (with, disc) = heights_of(&inner, &sun, Some(&at));
         let (without, _) = heights_of(&inner, &sun, None);
+        let [rise, _] = disc.rise_m();
         let mut missed = 0;
         for (i, found) in with.iter().enumerate() {
             // Steps of the inner grid to the wall at column 18: 56 of its columns from its first.
             let steps = (56 - i % 24) as f64;
-            let expected = rise.map(|rise| (60.0 - steps * rise).max(-rise));
-            for (got, expected) in [found.lit_above, found.dark_below].into_iter().zip(expected) {
-                assert!((got - expected).abs() < ROUNDED, "{degrees} {i}: {got} {expected}");
-            }
-            missed += usize::from(without[i].lit_above < expected[0] - 1.0);
+            let expected = (60.0 - steps * rise).max(-rise);
+            let got = found.shade_m[0];
+            assert!((got - expected).abs() < ROUNDED, "{degrees} {i}: {got} {expected}");
+            let horizon = (60.0 / (steps * disc.step_m)).atan();
+            let share = segment((horizon - disc.edges[0].atan()) / 0.3);
+            assert!((found.share(&disc) - share).abs() < 1e-6, "{degrees} {i}: {share}");
+            missed += usize::from(without[i].share(&disc) > share + 0.1);
         }
-        assert!(missed > 200, "{missed} grid points differ");
+        assert!(missed > 100, "{missed} grid points differ");
     }
 }
 
-/// The share of the sun's disc that a grid point sees by the oracle: all chords above its exact horizons.
+/// The visible share of the sun's disc at a grid point by the oracle: all chords above its exact horizons.
 fn visible_share(oracle: &Oracle, [row, col]: [usize; 2], sun: &Sun) -> f64 {
     let chords = across_sun(sun, 24, oracle.field().cell_m());
     let (mut all, mut above) = (0.0, 0.0);
@@ -176,10 +211,10 @@ fn hills(n: usize) -> HeightField {
 fn mean_error(field: &HeightField, sun: &Sun, turned_rad: f64) -> f64 {
     let oracle = Oracle::new(field, Border::Open);
     let turned = Sun { azimuth_rad: sun.azimuth_rad + turned_rad, ..*sun };
-    let (found, _) = heights_of(field, &turned, None);
+    let (found, disc) = heights_of(field, &turned, None);
     let cols = field.cols();
     let off = |(i, f): (usize, &ShadowHeight)| {
-        (f.share() - visible_share(&oracle, [i / cols, i % cols], sun)).abs()
+        (f.share(&disc) - visible_share(&oracle, [i / cols, i % cols], sun)).abs()
     };
     found.iter().enumerate().map(off).sum::<f64>() / found.len() as f64
 }

@@ -162,11 +162,11 @@ impl Case {
         }
         let mut all = vec![self.scene.field.heights_m().to_vec()];
         if let Wanted::ShadowHeights(_, Some((outer, _))) = &self.wanted {
-            // Shadows above rough ground; `dark_below` is lower.
+            // Shadows above rough ground, of ridges at all distances.
             let mut next = random(74);
             let lit: Vec<f32> = outer.heights_m().iter().map(|h| h + 9.0 * next() as f32).collect();
-            let dark = lit.iter().map(|h| h - 2.0 * next() as f32).collect();
-            all.extend([lit, dark]);
+            let wide = lit.iter().map(|_| 4.0 * next() as f32).collect();
+            all.extend([lit, wide]);
         }
         if let Wanted::Picture(_) = self.wanted {
             let four = |texels: &[[f32; 3]]| -> Vec<f32> {

@@ -230,7 +230,9 @@ fn a_cpp_program_gives_the_command_lines_bytes() {
     // The header is for older standards too, and refuses an allocator that may throw.
     let memory = "#include \"ridgelight.hpp\"\nstruct Memory { bool allocate(const RidgelightMemoryRequest &, \
                   RidgelightAllocation &) NOEXCEPT; void free(const RidgelightAllocation &) noexcept; };\n\
-                  RidgelightAllocator made(Memory &memory) { return ridgelight::allocator(memory); }\n";
+                  RidgelightAllocator made(Memory &memory) { return ridgelight::allocator(memory); }\n\
+                  RidgelightResult planned(ridgelight::Plan &plan, const RidgelightHost &host, const RidgelightScene &scene) {\n\
+                  return ridgelight::create_shadow_heights(plan, host, scene); }\n";
     let file = folder.path().join("allocator.cpp");
     std::fs::write(&file, memory).expect("a source");
     for (noexcept, is_taken) in [("noexcept", true), ("", false)] {

@@ -22,8 +22,8 @@ Examples:
 
 const SHADOW_HELP: &str = "\
 Bands: sun_share, the visible share of the sun's disc at the ground, 0 to 1, without the cosine. lit_above, the height in \
-metres from which the whole sun is visible. dark_below, the height below which none of it is. A .png has only sun_share. \
-At a height z between the two, (lit_above - z) / (lit_above - dark_below) of the disc's height is hidden.
+metres from which the whole sun is visible. penumbra, how far below it the ground that decides it hides the whole sun. A .png \
+has only sun_share. At a height z in between, that ground hides (lit_above - z) / penumbra of the disc's height.
 
 `render --sun` uses exact horizons and is more accurate.
 
