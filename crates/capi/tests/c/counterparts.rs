@@ -22,6 +22,46 @@ fn field() -> HeightField {
     field
 }
 
+/// What shadow heights refuse, by code and by a word of the sentence.
+#[test]
+fn c_shadow_heights_refuse_wrong_fields() {
+    let (_gpu, host) = device();
+    let sun = RidgelightSun { elevation_rad: 0.5, irradiance: [1.0; 3], ..zeroed() };
+    let suns = [sun, sun];
+    let with = |suns: &[RidgelightSun]| RidgelightScene {
+        suns: suns.as_ptr(),
+        sun_count: suns.len() as u32,
+        ..scene()
+    };
+    let side = SIDE as u32;
+    let around = RidgelightOuter { rows: side, cols: side, ..zeroed() };
+    let (argument, setting) = (RidgelightResult::Argument, RidgelightResult::Setting);
+    let one = with(&suns[..1]);
+    let periodic = RidgelightScene { border: RIDGELIGHT_BORDER_PERIODIC, ..one };
+    let beside = RidgelightOuter { place: [1.0, 0.0], ..around };
+    let cases: [(RidgelightScene, Option<RidgelightOuter>, u32, RidgelightResult, &str); 7] = [
+        (scene(), None, 1, argument, "scene: sun_count: found 0"),
+        (with(&suns), None, 1, argument, "scene: sun_count: found 2"),
+        (periodic, None, 1, argument, "scene: border"),
+        (one, Some(RidgelightOuter { reserved: 1, ..around }), 1, argument, "outer: reserved"),
+        (one, Some(RidgelightOuter { rows: 0, ..around }), 1, argument, "outer: rows and cols"),
+        (one, Some(beside), 1, setting, "contains this one"),
+        (one, None, 2, setting, "1 to 1"),
+    ];
+    // SAFETY: structs and handles of this function, alive until its end.
+    unsafe {
+        let mut plan = ptr::null_mut();
+        for (scene, outer, parts, code, named) in &cases {
+            let outer = outer.as_ref().map_or(ptr::null(), ptr::from_ref);
+            let found = ridgelight_shadow_heights_create(&host, scene, outer, *parts, &mut plan);
+            refused(found, *code, named);
+            assert!(plan.is_null(), "{named}");
+        }
+        good(ridgelight_shadow_heights_create(&host, &one, &around, 0, &mut plan));
+        ridgelight_plan_destroy(plan);
+    }
+}
+
 /// One pass in each command buffer, in slots by turns: the light of the whole frame. Then one time for all passes.
 #[test]
 fn c_slices_match_the_whole_frame() {
