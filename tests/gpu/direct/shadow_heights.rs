@@ -120,7 +120,13 @@ fn a_wall_of_the_outer_field_is_where_it_is() {
             let hidden = (horizon - low.atan()) / 0.1;
             let share = f64::from(maps[2].values[i]);
             let expected = segment(hidden);
-            assert!((share - expected).abs() < 0.01, "{degrees} {i}: {share} {expected}");
+            // The occluder's slope errs by its height and, by the width of the penumbra, its distance; a share by 4/π of that.
+            let slope = tolerance / distance + 1e-4 * 60.0 / distance;
+            assert!(
+                (share - expected).abs() < 1.3 * slope / 0.1,
+                "{degrees} {i}: {share} {expected}"
+            );
+            // Azimuths turn distances by 3e-5 of them; the outer field's widths are f32 of sums of 40 of its steps.
             let wide = distance * (high - low);
             let found = f64::from(maps[1].values[i]);
             if hidden > 0.0 {
