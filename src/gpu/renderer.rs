@@ -69,10 +69,8 @@ pub struct Renderer {
     pipeline_of_pass: Vec<Pipeline>,
     descriptor_pool: vk::DescriptorPool,
     slots: Vec<Slot>,
-    /// How many of the plan's first passes have been recorded. An edit needs all of them.
-    begun: usize,
-    /// By pass of a whole recording: whether it must run, because its inputs from the plan changed since its
-    /// last recording, or because it follows such a pass.
+    /// By pass of a whole recording: whether it must run before its results count, because it has not been recorded, its
+    /// inputs from the plan have changed since, or it follows such a pass. They are recorded in the plan's order.
     pending: Vec<bool>,
     /// Whether there is a timestamp after every pass, or only after the last.
     times_passes: bool,
@@ -149,7 +147,6 @@ impl Renderer {
             pipeline_of_pass: Vec::new(),
             descriptor_pool: vk::DescriptorPool::null(),
             slots: Vec::new(),
-            begun: 0,
             pending: vec![true; plan.passes.len()],
             times_passes: true,
             plan,
@@ -185,13 +182,11 @@ impl Renderer {
                 format!("{expected}, as in the renderer's plan; make a renderer for the new plan");
             return Err(Error::setting("plan", found, expected));
         }
-        for pass in plan.passes_after(&self.plan, &[]) {
-            self.pending[pass] = true;
-        }
-        // Recording in parts continues from the first pass that is not of this plan.
-        let first = self.pending.iter().position(|p| *p);
-        if let Some(first) = first.filter(|_| self.begun < self.pending.len()) {
-            self.begun = self.begun.min(first);
+        let changed = plan.passes_after(&self.plan, &[]);
+        if !changed.is_empty() {
+            changed.iter().for_each(|pass| self.pending[*pass] = true);
+            // A sum that was half recorded begins again.
+            plan.add_followers(&mut self.pending);
         }
         self.plan = plan;
         self.slots.iter_mut().for_each(|slot| slot.is_current = false);
@@ -242,12 +237,12 @@ impl Renderer {
     /// they read. Outputs that they do not write keep their contents where the caller's state before keeps
     /// them.
     ///
-    /// A renderer that has not yet recorded all passes may record in parts: the plan's first passes, then the
-    /// following ones, or the first ones again.
+    /// All passes of a new renderer, and those that [`replace_plan`](Self::replace_plan) returned, may be recorded in
+    /// parts, over several frames: from the first of them on, none left out.
     ///
     /// # Errors
-    /// As [`record`](Self::record). A pass that does not exist, is repeated, or is out of order; or not the
-    /// next part, where not all have been recorded.
+    /// As [`record`](Self::record). A pass that does not exist, is repeated, or is out of order; or one that comes after
+    /// a pass which must be recorded first.
     pub fn record_passes<I: Copy + Into<InputArg>>(
         &mut self,
         commands: vk::CommandBuffer,
@@ -260,9 +255,13 @@ impl Renderer {
         self.check(slot, &inputs, outputs)?;
         self.check_passes(passes)?;
         self.append(commands, slot, &inputs, outputs, passes, None);
-        self.begun = self.begun.max(passes.last().map_or(0, |last| last + 1));
+        // An earlier part that is recorded again changes what later parts have read.
+        if self.pending.contains(&true) {
+            for pass in self.plan.later_followers(passes) {
+                self.pending[pass] = true;
+            }
+        }
         passes.iter().for_each(|pass| self.pending[*pass] = false);
-        self.plan.add_followers(&mut self.pending);
         Ok(())
     }
 
@@ -288,7 +287,6 @@ impl Renderer {
     /// The last recording did not run: nothing counts as recorded.
     #[doc(hidden)]
     pub fn forget(&mut self) {
-        self.begun = 0;
         self.pending.fill(true);
         self.slots.iter_mut().for_each(|slot| slot.recorded.clear());
     }

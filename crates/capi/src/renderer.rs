@@ -8,7 +8,7 @@ use ridgelight::plan::{Rectangle, Resource};
 use crate::allocator::{Callbacks, RidgelightAllocator};
 use crate::errors::{Done, Failure, RidgelightResult, done};
 use crate::plan::{RidgelightPlan, text};
-use crate::read::{SizeFirst, hand_out, handle, handle_mut, indices, read, read_all, write};
+use crate::read::{SizeFirst, hand_out, handle, handle_mut, indices, read, read_all, room, write};
 use crate::types::{RidgelightHost, RidgelightImage, host};
 
 /// A plan on a device. Any thread may use it, one at a time.
@@ -128,12 +128,11 @@ pub unsafe extern "C" fn ridgelight_record(
 /// each once. The images that they read must hold what an earlier recording of this renderer left in them.
 /// Outputs that they do not write keep their contents, unless their layout before is UNDEFINED.
 ///
-/// To light one frame in slices, record the first passes, then the following ones, each slice in a slot of its
-/// own or after the slot's last command buffer has run. Until all passes have been recorded once, only the next
-/// slice, or one that begins with pass 0, is allowed.
+/// All passes of a new renderer, and those that ridgelight_replace_plan gave, can be recorded in slices: from the
+/// first of them on, none left out, each slice in a slot of its own or after the slot's last command buffer has run.
 ///
 /// Returns OK, ARGUMENT or SETTING, as ridgelight_record; SETTING also for passes that do not exist, are repeated
-/// or out of order, or are not the next slice.
+/// or out of order, or come after one that must be recorded first.
 ///
 /// # Safety
 /// As ridgelight_record; `passes` is null or points at `pass_count` numbers.
@@ -229,21 +228,34 @@ unsafe fn args<'a, T>(
 
 /// Replaces the plan by one with the same passes, images and buffers but other values: another colour of a
 /// light, a sun that moved a little. Frames in flight finish with the plan of their recording; do not wait for
-/// them. The next recording must be a whole one, or begin with pass 0 (ridgelight_record_passes).
+/// them.
 ///
-/// Returns OK, ARGUMENT; SETTING where the plan needs a renderer of its own: the old one stays.
+/// `count` is null, or the capacity of `passes`, and becomes the number of passes that must run next if the inputs
+/// are unchanged: `passes` gets their indices, for ridgelight_record_passes, with those that earlier calls gave and
+/// that have not been recorded since. RidgelightPlanInfo.passes are always enough; those beyond the capacity are left out.
+///
+/// Returns OK; ARGUMENT, before anything is replaced or where `passes` is null and the capacity is not 0; SETTING where the
+/// plan needs a renderer of its own: the old one stays.
 ///
 /// # Safety
-/// Both are alive or null; only this thread uses the renderer meanwhile.
+/// The renderer and the plan are alive or null; only this thread uses the renderer meanwhile. `passes` has `count` numbers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ridgelight_replace_plan(
     renderer: *mut RidgelightRenderer,
     plan: *const RidgelightPlan,
+    passes: *mut u32,
+    count: *mut u32,
 ) -> RidgelightResult {
     // SAFETY: as the caller says.
     done(|| unsafe {
         let plan = handle(plan, "plan")?.0.clone();
-        handle_mut(renderer, "renderer")?.0.replace_plan(plan)?;
+        let renderer = &mut handle_mut(renderer, "renderer")?.0;
+        let room = room(passes, count, "passes")?;
+        let due = renderer.replace_plan(plan)?;
+        room.iter_mut().zip(&due).for_each(|(to, pass)| *to = *pass as u32);
+        if let Some(count) = count.as_mut() {
+            *count = due.len() as u32;
+        }
         Ok(())
     })
 }

@@ -101,8 +101,8 @@ impl Renderer {
         Ok(())
     }
 
-    /// In the plan's order, each once, so that the count suffices to know that all are there. Until all have
-    /// been recorded only the next ones are allowed, since the plan's own images would hold nothing.
+    /// In the plan's order, each once, and none before the last left out that must run: the plan's own images would hold
+    /// nothing, or results of another plan.
     pub(super) fn check_passes(&self, passes: &[usize]) -> Result<()> {
         let count = self.plan.passes.len();
         if let Some(pass) = passes.iter().find(|p| **p >= count) {
@@ -115,33 +115,31 @@ impl Renderer {
                 "each once, in the plan's order",
             ));
         }
-        let is_next = passes.first().is_some_and(|first| {
-            let is_unbroken = first + passes.len() - 1 == passes[passes.len() - 1];
-            is_unbroken && (*first == 0 || *first == self.begun)
-        });
-        if self.begun < count && !is_next {
-            return Err(Error::setting(
+        let Some(first) = self.pending.iter().position(|p| *p) else { return Ok(()) };
+        let last = passes.last().copied();
+        let is_left_out = |pass: &usize| self.pending[*pass] && !passes.contains(pass);
+        match (last, (0..last.unwrap_or(0)).find(is_left_out)) {
+            (Some(_), None) => Ok(()),
+            (last, left_out) => Err(Error::setting(
                 "passes",
-                format!("{} of {count}, {} recorded", passes.len(), self.begun),
-                "a recording of all passes before, or the next of them",
-            ));
+                last.map_or("none".into(), |last| format!("{last}")),
+                format!(
+                    "{} before it, or a recording of all passes: it has not been recorded with this plan",
+                    left_out.unwrap_or(first)
+                ),
+            )),
         }
-        Ok(())
     }
 
     /// Whether an edit can continue from the last recording.
     pub(super) fn check_drawn(&self, outputs: &[ImageArg]) -> Result<()> {
-        let count = self.plan.passes.len();
-        if self.begun < count {
-            let found = format!("{} of {count} passes recorded", self.begun);
-            return Err(Error::setting("an edit", found, "a recording of all passes"));
-        }
         let pending = self.pending.iter().filter(|p| **p).count();
         if pending > 0 {
+            let count = self.plan.passes.len();
             return Err(Error::setting(
                 "an edit",
-                format!("{pending} passes of the new plan not recorded"),
-                "a recording of what replace_plan returned",
+                format!("{pending} of {count} passes not recorded with this plan"),
+                "a recording of all passes, or of those that replace_plan returned",
             ));
         }
         let names = self.plan.outputs().map(|(_, r)| &r.name);

@@ -23,7 +23,7 @@ impl Renderer {
         edited: Option<Rectangle>,
     ) {
         let whole_plan = edited.is_none() && passes.len() == self.plan.passes.len();
-        let holds_nothing = whole_plan || self.begun == 0;
+        let holds_nothing = whole_plan || !self.pending.contains(&false);
         let (bound, buffers) = self.bind(inputs, outputs);
         let taken = self.takes(&buffers, edited);
         self.write_tables(slot);

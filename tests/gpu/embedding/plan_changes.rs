@@ -1,9 +1,9 @@
 //! After a change only the necessary passes run: the same bits as all of them.
 
 use ridgelight::gpu::Headless;
-use ridgelight::plan::{self, Picture, Plan};
+use ridgelight::plan::{self, Picture, Plan, Rectangle};
 use ridgelight::scene::fractal;
-use ridgelight::scene::{Basis, Environment, Lights, Quality, Scene, Sun, Surface};
+use ridgelight::scene::{Basis, Environment, Lights, Method, Quality, Scene, Sun, Surface};
 
 use crate::{Device, bits, random};
 
@@ -176,6 +176,50 @@ fn pieces_of_two_plans_do_not_mix() {
     let pieces = bits(gpu, &frame);
     gpu.draw(&mut frame).expect("drawn");
     assert!(bits(gpu, &frame) == pieces);
+    gpu.end(frame);
+}
+
+/// The changed passes of a frame that was recorded whole, one at a time: none before an earlier one of them. An early one that is
+/// recorded again makes what follows it due again. Afterwards an edit can continue.
+#[test]
+fn changed_passes_are_recorded_in_order_part_by_part() {
+    let mut device = Device::new();
+    let gpu = device.gpu.as_mut().expect("alive");
+    let mut scene = scene();
+    scene.lights.suns.truncate(1);
+    scene.lights.environment = None;
+    let quality = Quality { method: Method::Sweep, ..Quality::default() };
+    let plan = planned(gpu, &scene, (&quality, true));
+    let heights = scene.field.heights_m().to_vec();
+    let mut frame = gpu.frame(plan, &[&heights]).expect("a frame");
+    gpu.draw(&mut frame).expect("drawn");
+    scene.lights.suns[0].azimuth_rad += 0.01;
+    let plan = planned(gpu, &scene, (&quality, true));
+    let due = gpu.replace_plan(&mut frame, plan.clone()).expect("the same passes");
+    assert!(due.len() > 2, "{due:?}");
+    for later in &due[1..] {
+        let error = gpu.draw_passes(&mut frame, &[*later]).expect_err("light of two suns");
+        let expected = format!("passes: found {later}, expected {} before it", due[0]);
+        assert!(error.to_string().starts_with(&expected), "{error}");
+    }
+    let whole = Rectangle { col: 0, row: 0, cols: 4, rows: 4 };
+    gpu.draw_edit(&mut frame, whole).expect_err("not recorded yet");
+    for pass in &due {
+        gpu.draw_passes(&mut frame, &[*pass]).expect("drawn");
+    }
+    let mut other = gpu.frame(plan.clone(), &[&heights]).expect("a frame");
+    let last = plan.passes.len() - 1;
+    gpu.draw_passes(&mut other, &(0..last).collect::<Vec<_>>()).expect("drawn");
+    gpu.draw_passes(&mut other, &[0]).expect("drawn again");
+    gpu.draw_passes(&mut other, &[last]).expect_err("some have read the first before");
+    gpu.draw_passes(&mut other, &(1..=last).collect::<Vec<_>>()).expect("drawn");
+    let nothing = bits(gpu, &other);
+    gpu.end(other);
+    assert!(bits(gpu, &frame) == nothing);
+    let none: [usize; 0] = [];
+    assert_eq!(gpu.replace_plan(&mut frame, plan).expect("the same"), none);
+    gpu.draw_edit(&mut frame, whole).expect("edited");
+    assert!(bits(gpu, &frame) == nothing);
     gpu.end(frame);
 }
 

@@ -5,6 +5,7 @@ use std::ffi::CStr;
 use std::ptr;
 
 use ash::vk;
+use ridgelight::gpu::Headless;
 use ridgelight::plan::{self, Picture, View, ViewOptions};
 use ridgelight::scene::{
     Albedo, HeightField, Lights, PhongSpecular, Quality, Scene, Specular, Sun, Surface,
@@ -116,6 +117,35 @@ fn c_slices_match_the_whole_frame() {
             .expect("run");
         }
         assert!(gpu.pixels(&frame, 0).expect("pixels") == right);
+
+        // Another sky needs some passes alone, which have no room at first.
+        let other = RidgelightScene { sky: [0.5, 2.0, 1.0], ..scene() };
+        good(ridgelight_plan_create(&host, &other, ptr::null(), 0, 0, &mut plan));
+        let mut count = passes;
+        let null = ridgelight_replace_plan(renderer, plan, ptr::null_mut(), &mut count);
+        refused(null, argument, "passes: found a null pointer, expected room for");
+        good(ridgelight_replace_plan(renderer, plan, ptr::null_mut(), ptr::null_mut()));
+        let mut due_room = vec![passes; 1 + passes as usize];
+        let mut none = 0;
+        good(ridgelight_replace_plan(renderer, plan, due_room.as_mut_ptr(), &mut none));
+        good(ridgelight_replace_plan(renderer, plan, due_room.as_mut_ptr(), &mut count));
+        assert!(none == count && (1..passes).contains(&count), "{count} of {passes} passes");
+        let (due, beyond) = due_room.split_at(count as usize);
+        assert!(due.iter().all(|pass| *pass < passes) && beyond.iter().all(|b| *b == passes));
+        let draw = |gpu: &mut Headless, passes: &[u32]| {
+            gpu.run(|commands| {
+                good(record(commands, 0, passes));
+                Ok(())
+            })
+            .expect("run");
+            gpu.pixels(&frame, 0).expect("pixels")
+        };
+        let changed = draw(&mut gpu, due);
+        assert!(changed != right);
+        assert!(draw(&mut gpu, &(0..passes).collect::<Vec<_>>()) == changed);
+        good(ridgelight_replace_plan(renderer, plan, due_room.as_mut_ptr(), &mut none));
+        assert_eq!(none, 0);
+        ridgelight_plan_destroy(plan);
 
         let mut times: Vec<RidgelightTiming> = (0..passes).map(|_| zeroed()).collect();
         let mut timed = |each, commands: &[u32]| {

@@ -176,7 +176,7 @@ int main(int argc, char **argv) {
         begin();
         if (part == 0 && cycle > 0) {
             RidgelightPlan *plan = plan_of(&host, level, cycle);
-            RL(ridgelight_replace_plan(renderers[level], plan));
+            RL(ridgelight_replace_plan(renderers[level], plan, NULL, NULL));
             ridgelight_plan_destroy(plan);
         }
         do {
