@@ -15,11 +15,13 @@ mod intercepted;
 
 use ash::vk;
 use intercepted::with_function;
+use ridgelight::Result;
 use ridgelight::gpu::{Headless, HeadlessOptions, Host, Renderer};
 use ridgelight::plan::{self, Limits, Picture, Plan};
 use ridgelight::scene::{
-    Albedo, Basis, BounceEngine, Bounces, Environment, Fuse, KeyLight, LightBasis, Lights, Lines,
-    Method, PhongSpecular, Precision, Quality, Scene, Specular, SphereLight, Sun, Surface, fractal,
+    Albedo, Basis, BounceEngine, Bounces, Environment, Fuse, HeightField, KeyLight, LightBasis,
+    Lights, Lines, Method, PhongSpecular, Precision, Quality, Scene, Specular, SphereLight, Sun,
+    Surface, fractal,
 };
 
 /// Set in the process that compiles.
@@ -116,6 +118,27 @@ fn scenes() -> Vec<(&'static str, Scene, Quality)> {
     ]
 }
 
+/// The frames of all scenes, and plans of other kinds.
+fn plans(limits: &Limits) -> Vec<(&'static str, Result<Plan>)> {
+    let picture = |(name, scene, quality): (&'static str, Scene, Quality)| {
+        (name, plan::picture(&scene, &quality, limits, Picture::default()))
+    };
+    let mut all: Vec<_> = scenes().into_iter().map(picture).collect();
+    let scene = |wanted: &str| scenes().into_iter().find(|(name, ..)| *name == wanted);
+    let (_, sunny, quality) = scene("sun").expect("listed");
+    let outer = HeightField::new(64, 64, &[0.0; 64 * 64], [32.0; 2], None).expect("a field");
+    let around = Some((&outer, [10.0, 10.0]));
+    let heights = plan::shadow_heights(&sunny.field, &sunny.lights.suns[0], around, 1, limits);
+    all.push(("shadow heights", heights));
+    let (_, clear, _) = scene("sky").expect("listed");
+    let kept = Picture { keeps_horizons: true, ..Picture::default() };
+    all.push(("edits under a sky", plan::picture(&clear, &quality, limits, kept)));
+    let hulls = Quality { method: Method::Sweep, ..quality };
+    all.push(("edits under a sun", plan::picture(&sunny, &hulls, limits, kept)));
+    all.push(("reference", plan::reference(&clear, 1, 1, limits)));
+    all
+}
+
 /// What the driver made of one pass.
 #[derive(Clone, Debug, PartialEq)]
 struct Figures {
@@ -153,8 +176,7 @@ fn compile() {
     let host = Host { device, ..gpu.host().clone() };
     eprintln!("stats: driver {}", gpu.report().driver);
     let mut known = Vec::new();
-    for (name, scene, quality) in scenes() {
-        let plan = plan::picture(&scene, &quality, &limits, Picture::default());
+    for (name, plan) in plans(&limits) {
         let plan = plan.unwrap_or_else(|error| panic!("{name}: {error}"));
         eprintln!("{SCENE}{name}");
         for key in pipelines(&plan) {
@@ -170,7 +192,7 @@ fn compile() {
 /// Shaders and constants, in the order in which a renderer compiles them.
 fn pipelines(plan: &Plan) -> Vec<(&'static str, Vec<u32>)> {
     let mut all = Vec::new();
-    for pass in &plan.passes {
+    for pass in plan.passes.iter().chain(&plan.edit_passes) {
         let is_one_line = pass.name() == "horizon_sweep" && pass.constant("one_line") == Some(1);
         let name = if is_one_line { ONE_LINE } else { pass.name() };
         let key = (name, pass.constants.clone());

@@ -26,7 +26,7 @@ const RUNS: usize = 3;
 type Picks = [[usize; 2]];
 
 /// Elevations at the picked grid points, by azimuth and pick, and metres to the occluders if requested.
-fn horizons(
+pub fn horizons(
     gpu: &mut Headless,
     field: &HeightField,
     quality: &Quality,

@@ -7,6 +7,7 @@ mod bake;
 mod bounce;
 mod common;
 mod curved;
+mod fourier;
 mod gallery;
 mod goals;
 mod lights;
@@ -33,7 +34,7 @@ use common::args::Args;
 
 type Program = (&'static str, &'static str, fn(Args) -> Outcome);
 
-const PROGRAMS: [Program; 29] = [
+const PROGRAMS: [Program; 30] = [
     ("accuracy", "FIELD [--cell X,Y] [--env FILE] [--points N] [--pyramids]", accuracy::run),
     ("auto", "FOLDER [--fit] [--side N] [--seconds S] [--json FILE]", auto::run),
     ("bake", "-o PICTURE.png --json FILE", bake::run),
@@ -45,6 +46,7 @@ const PROGRAMS: [Program; 29] = [
     ("curved", "[-o FILE.svg]", curved::run),
     ("extremes", "DEVICE...", suites::extremes),
     ("field", "NAME SIDE FIELD.npy", gallery::field),
+    ("fourier", "[FOLDER]", fourier::run),
     ("gallery", "PROGRAM", gallery::run),
     ("gloss", "[SIDE] [--spp N] [-o PICTURE.png]", specular::indirect),
     ("goals", "PROGRAM [FOLDER]", goals::run),

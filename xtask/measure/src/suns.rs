@@ -35,7 +35,7 @@ fn scene(field: &HeightField, border: Border, elevation: f64) -> Scene {
 }
 
 /// The bundled mountain, also three times as steep, and synthetic fields; real ones of a folder.
-fn fields(folder: Option<&Path>) -> Result<Vec<(String, HeightField)>> {
+pub fn fields(folder: Option<&Path>) -> Result<Vec<(String, HeightField)>> {
     let mut all = vec![
         ("Mt Washington, 256²".to_owned(), inputs::mountain(1.0)?),
         ("the same, relief x 3".to_owned(), inputs::mountain(3.0)?),

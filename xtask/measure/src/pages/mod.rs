@@ -229,6 +229,16 @@ fn suns() -> Result<String> {
     Ok(format!("{}\n\n*{device}{made}*\n", rows.join("\n")))
 }
 
+/// What Fourier series of horizons leave out, as `cargo measure fourier` printed it.
+fn fourier() -> Result<String> {
+    let (body, made) = result("fourier.txt")?;
+    let (device, _) = found("fourier.txt", body.split_once(": "), "a device in its first line")?;
+    let is_shown =
+        |line: &&str| line.starts_with('|') && !line.contains("| 8 |") && !line.contains("| 32 |");
+    let rows: Vec<&str> = body.lines().filter(is_shown).collect();
+    Ok(format!("{}\n\n*{device}{made}*\n", rows.join("\n")))
+}
+
 /// A table under another first line of as many cells.
 fn with_head(name: &str, table: &str, head: &str) -> Result<String> {
     let parts = table.split_once('\n').filter(|(old, _)| cells(old).len() == cells(head).len());
@@ -381,13 +391,14 @@ const LIGHT_HEAD: &str = "| radius, cells | scattered once, over flat | error: f
 type Section = (&'static str, fn() -> Result<String>);
 
 /// Which page holds which sections.
-const PAGES: [(&str, &[Section]); 8] = [
+const PAGES: [(&str, &[Section]); 9] = [
     (
         "README.md",
         &[("picture", picture), ("sizes", sizes), ("gpu", gpu), ("features", features::features)],
     ),
     ("docs/getting-started.md", &[("camera", camera)]),
     ("docs/embedding.md", &[("hosts", hosts), ("edits", edits)]),
+    ("docs/embedding/bevy.md", &[("fourier", fourier)]),
     ("docs/methods.md", &[("forms", forms)]),
     ("docs/accuracy.md", &[("accuracy", accuracy), ("suns", suns), ("bounces", bounces)]),
     ("docs/choosing-settings.md", &[("auto", auto), ("goals", goals)]),
