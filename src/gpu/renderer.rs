@@ -69,9 +69,8 @@ pub struct Renderer {
     pipeline_of_pass: Vec<Pipeline>,
     descriptor_pool: vk::DescriptorPool,
     slots: Vec<Slot>,
-    /// By pass of a whole recording: whether it must run before its results count, because it has not been recorded, its
-    /// inputs from the plan have changed since, or it follows such a pass. They are recorded in the plan's order.
-    pending: Vec<bool>,
+    /// By pass of a whole recording.
+    progress: Vec<Progress>,
     /// Whether there is a timestamp after every pass, or only after the last.
     times_passes: bool,
     /// Formats that inputs may have on this device, besides the plan's.
@@ -90,6 +89,18 @@ struct Slot {
     recorded: Vec<usize>,
     /// Whether that has a timestamp after every pass.
     times_passes: bool,
+}
+
+/// How far a pass is from what a whole recording would leave.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Progress {
+    /// Recorded with this plan.
+    Current,
+    /// A pass that it depends on, or that adds to the same sum, was recorded alone since. Only edits mind.
+    Stale,
+    /// Not recorded, or its inputs from the plan have changed since, or it depends on such a pass. Pending passes are recorded in
+    /// the plan's order.
+    Pending,
 }
 
 const fn is_send<T: Send>() {}
@@ -147,7 +158,7 @@ impl Renderer {
             pipeline_of_pass: Vec::new(),
             descriptor_pool: vk::DescriptorPool::null(),
             slots: Vec::new(),
-            pending: vec![true; plan.passes.len()],
+            progress: vec![Progress::Pending; plan.passes.len()],
             times_passes: true,
             plan,
             destroyed: false,
@@ -183,14 +194,19 @@ impl Renderer {
             return Err(Error::setting("plan", found, expected));
         }
         let changed = plan.passes_after(&self.plan, &[]);
-        if !changed.is_empty() {
-            changed.iter().for_each(|pass| self.pending[*pass] = true);
-            // A sum that was half recorded begins again.
-            plan.add_followers(&mut self.pending);
+        if !changed.is_empty() || self.progress.contains(&Progress::Stale) {
+            let mut runs: Vec<bool> =
+                self.progress.iter().map(|p| *p != Progress::Current).collect();
+            changed.iter().for_each(|pass| runs[*pass] = true);
+            // All passes that add to a partly recorded sum run again.
+            plan.add_followers(&mut runs);
+            let pending = self.progress.iter_mut().zip(runs).filter(|(_, runs)| *runs);
+            pending.for_each(|(progress, _)| *progress = Progress::Pending);
         }
         self.plan = plan;
         self.slots.iter_mut().for_each(|slot| slot.is_current = false);
-        Ok((0..self.pending.len()).filter(|p| self.pending[*p]).collect())
+        let is_pending = |pass: &usize| self.progress[*pass] == Progress::Pending;
+        Ok((0..self.progress.len()).filter(is_pending).collect())
     }
 
     /// Bytes of device memory in use: [`Plan::internal_bytes`], the few that the host writes for each further
@@ -237,12 +253,14 @@ impl Renderer {
     /// they read. Outputs that they do not write keep their contents where the caller's state before keeps
     /// them.
     ///
-    /// All passes of a new renderer, and those that [`replace_plan`](Self::replace_plan) returned, may be recorded in
-    /// parts, over several frames: from the first of them on, none left out.
+    /// All passes of a new renderer, or those that [`replace_plan`](Self::replace_plan) returned, may be recorded in parts,
+    /// over several frames. Start with the first of them and skip none; until they are recorded, a list without passes is
+    /// refused. Passes recorded alone at other times leave sums and images of the plan that are not those of a whole frame:
+    /// the next edit is refused, and the next `replace_plan` returns what must run.
     ///
     /// # Errors
-    /// As [`record`](Self::record). A pass that does not exist, is repeated, or is out of order; or one that comes after
-    /// a pass which must be recorded first.
+    /// As [`record`](Self::record). A pass that does not exist, is repeated or out of order, or follows a pass that must be
+    /// recorded first.
     pub fn record_passes<I: Copy + Into<InputArg>>(
         &mut self,
         commands: vk::CommandBuffer,
@@ -254,14 +272,14 @@ impl Renderer {
         let inputs: Vec<InputArg> = inputs.iter().map(|input| (*input).into()).collect();
         self.check(slot, &inputs, outputs)?;
         self.check_passes(passes)?;
+        let affected = self.affected(passes);
         self.append(commands, slot, &inputs, outputs, passes, None);
-        // An earlier part that is recorded again changes what later parts have read.
-        if self.pending.contains(&true) {
-            for pass in self.plan.later_followers(passes) {
-                self.pending[pass] = true;
-            }
+        let has_pending = self.progress.contains(&Progress::Pending);
+        let becomes = if has_pending { Progress::Pending } else { Progress::Stale };
+        for progress in self.progress.iter_mut().zip(affected).filter_map(|(p, a)| a.then_some(p)) {
+            *progress = becomes.max(*progress);
         }
-        passes.iter().for_each(|pass| self.pending[*pass] = false);
+        passes.iter().for_each(|pass| self.progress[*pass] = Progress::Current);
         Ok(())
     }
 
@@ -287,7 +305,7 @@ impl Renderer {
     /// The last recording did not run: nothing counts as recorded.
     #[doc(hidden)]
     pub fn forget(&mut self) {
-        self.pending.fill(true);
+        self.progress.fill(Progress::Pending);
         self.slots.iter_mut().for_each(|slot| slot.recorded.clear());
     }
 

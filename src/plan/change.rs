@@ -75,24 +75,6 @@ impl Plan {
         }
     }
 
-    /// Passes after these that read what they write, or contribute to the same sum, and those that follow in turn.
-    pub(crate) fn later_followers(&self, passes: &[usize]) -> Vec<usize> {
-        let writes = |p: usize, id: ResourceId| self.passes[p].writes().any(|w| w == id);
-        let mut runs = passes.to_vec();
-        let mut later = Vec::new();
-        for next in passes.first().map_or(0..0, |first| *first..self.passes.len()) {
-            let pass = &self.passes[next];
-            let mut touched = pass.reads().chain(pass.writes());
-            if !runs.contains(&next)
-                && touched.any(|id| runs.iter().any(|p| *p < next && writes(*p, id)))
-            {
-                runs.push(next);
-                later.push(next);
-            }
-        }
-        later
-    }
-
     /// Whether both plans bind the same resources to the same shaders with the same constants.
     pub(crate) fn has_passes_of(&self, before: &Plan) -> bool {
         let same = |(a, b): (&Pass, &Pass)| {

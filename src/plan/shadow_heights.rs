@@ -21,7 +21,7 @@ use crate::{Error, Result};
 /// coarsest field first.
 ///
 /// The plan has `parts` passes. Each covers some of the field's lines, so
-/// [`record_passes`](crate::gpu::Renderer::record_passes) can spread them over frames. A plan of another sun, or of another place
+/// [`record_passes`](crate::gpu::Renderer::record_passes) can spread them over frames, in order. A plan of another sun, or of another place
 /// in the outer field, can replace this one.
 ///
 /// # Errors

@@ -118,7 +118,7 @@ fn scenes() -> Vec<(&'static str, Scene, Quality)> {
     ]
 }
 
-/// The frames of all scenes, and plans of other kinds.
+/// A picture plan for each scene, and plans for shadow heights, edits and the path tracer.
 fn plans(limits: &Limits) -> Vec<(&'static str, Result<Plan>)> {
     let picture = |(name, scene, quality): (&'static str, Scene, Quality)| {
         (name, plan::picture(&scene, &quality, limits, Picture::default()))

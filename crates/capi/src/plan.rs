@@ -96,8 +96,8 @@ unsafe impl SizeFirst for RidgelightOuter {}
 /// visible share of the sun's disc at the ground, [0..1]. Inputs: "heights". With `outer` (may be null) also
 /// "outer_lit_above" and "outer_penumbra", the outputs of a renderer of `outer` for the same sun.
 ///
-/// The plan has `parts` passes (0 means 1), each for some lines of the field. Record them in one frame or in several
-/// (ridgelight_record_passes). The plan of any other sun can replace it.
+/// The plan has `parts` passes (0 means 1), each for some lines of the field. Record them in order, in one frame or in
+/// several (ridgelight_record_passes). The plan of any other sun can replace it.
 ///
 /// Returns OK, ARGUMENT, SETTING or LIMIT.
 ///

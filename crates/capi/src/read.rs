@@ -103,22 +103,18 @@ pub(crate) unsafe fn indices(from: *const u32, count: u32, name: &str) -> Done<V
     Ok(all.iter().map(|index| *index as usize).collect())
 }
 
-/// Where to write indices: `count` of them, or none where it is null.
+/// How many indices the caller's array holds: 0 if `count` is null.
 ///
 /// # Safety
-/// `count` is null or the number of values in `to`, which nobody else uses meanwhile.
-pub(crate) unsafe fn room<'a>(to: *mut u32, count: *const u32, name: &str) -> Done<&'a mut [u32]> {
+/// `count` is null or points at a number.
+pub(crate) unsafe fn room(to: *mut u32, count: *const u32, name: &str) -> Done<usize> {
     // SAFETY: as the caller says.
     let count = unsafe { count.as_ref() }.map_or(0, |count| *count as usize);
-    if count == 0 {
-        return Ok(&mut []);
-    }
-    if to.is_null() {
+    if count > 0 && to.is_null() {
         let expected = format!("room for {count} indices");
         return Err(Failure::argument(name, "a null pointer", &expected));
     }
-    // SAFETY: as the caller says.
-    Ok(unsafe { std::slice::from_raw_parts_mut(to, count) })
+    Ok(count)
 }
 
 /// The object of an opaque handle.

@@ -128,8 +128,9 @@ pub unsafe extern "C" fn ridgelight_record(
 /// each once. The images that they read must hold what an earlier recording of this renderer left in them.
 /// Outputs that they do not write keep their contents, unless their layout before is UNDEFINED.
 ///
-/// All passes of a new renderer, and those that ridgelight_replace_plan gave, can be recorded in slices: from the
-/// first of them on, none left out, each slice in a slot of its own or after the slot's last command buffer has run.
+/// You can record all passes of a new renderer, or those that ridgelight_replace_plan returned, in parts over several
+/// frames. Start with the first of them and skip none. Each part needs a slot of its own, or one whose last command
+/// buffer has run.
 ///
 /// Returns OK, ARGUMENT or SETTING, as ridgelight_record; SETTING also for passes that do not exist, are repeated
 /// or out of order, or come after one that must be recorded first.
@@ -230,15 +231,18 @@ unsafe fn args<'a, T>(
 /// light, a sun that moved a little. Frames in flight finish with the plan of their recording; do not wait for
 /// them.
 ///
-/// `count` is null, or the capacity of `passes`, and becomes the number of passes that must run next if the inputs
-/// are unchanged: `passes` gets their indices, for ridgelight_record_passes, with those that earlier calls gave and
-/// that have not been recorded since. RidgelightPlanInfo.passes are always enough; those beyond the capacity are left out.
+/// `passes` receives the indices of the passes that must run next if the inputs are unchanged; pass them to
+/// ridgelight_record_passes. They include passes that earlier calls returned and that have not been recorded since.
+/// `count` holds the capacity of `passes` before the call and the number of these passes after it. If `count` is null,
+/// nothing is written. A capacity of RidgelightPlanInfo.passes is always enough; indices beyond the capacity are not
+/// written.
 ///
-/// Returns OK; ARGUMENT, before anything is replaced or where `passes` is null and the capacity is not 0; SETTING where the
-/// plan needs a renderer of its own: the old one stays.
+/// Returns OK; ARGUMENT if a handle is null, or if `passes` is null and the capacity is not 0; SETTING if the plan needs
+/// a renderer of its own. After an error the old plan stays.
 ///
 /// # Safety
-/// The renderer and the plan are alive or null; only this thread uses the renderer meanwhile. `passes` has `count` numbers.
+/// The renderer and the plan are alive or null; only this thread uses the renderer meanwhile. `count` is null or points
+/// at the capacity; `passes` is null or points at that many numbers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ridgelight_replace_plan(
     renderer: *mut RidgelightRenderer,
@@ -252,9 +256,9 @@ pub unsafe extern "C" fn ridgelight_replace_plan(
         let renderer = &mut handle_mut(renderer, "renderer")?.0;
         let room = room(passes, count, "passes")?;
         let due = renderer.replace_plan(plan)?;
-        room.iter_mut().zip(&due).for_each(|(to, pass)| *to = *pass as u32);
-        if let Some(count) = count.as_mut() {
-            *count = due.len() as u32;
+        due.iter().take(room).enumerate().for_each(|(i, pass)| passes.add(i).write(*pass as u32));
+        if !count.is_null() {
+            count.write(due.len() as u32);
         }
         Ok(())
     })

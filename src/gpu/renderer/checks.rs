@@ -4,7 +4,7 @@ use ash::vk;
 
 use super::buffers::check_buffer;
 use super::stages::check_supported;
-use super::{ImageArg, ImageState, InputArg, Renderer};
+use super::{ImageArg, ImageState, InputArg, Progress, Renderer};
 use crate::graph::{Kind, Owner, Resource, ResourceId};
 use crate::{Error, Result};
 
@@ -101,8 +101,8 @@ impl Renderer {
         Ok(())
     }
 
-    /// In the plan's order, each once, and none before the last left out that must run: the plan's own images would hold
-    /// nothing, or results of another plan.
+    /// Requires the plan's order, each pass once, and no pending pass skipped. Otherwise the plan's own images would be empty or
+    /// hold results of another plan.
     pub(super) fn check_passes(&self, passes: &[usize]) -> Result<()> {
         let count = self.plan.passes.len();
         if let Some(pass) = passes.iter().find(|p| **p >= count) {
@@ -115,30 +115,39 @@ impl Renderer {
                 "each once, in the plan's order",
             ));
         }
-        let Some(first) = self.pending.iter().position(|p| *p) else { return Ok(()) };
+        let is_pending = |pass: usize| self.progress[pass] == Progress::Pending;
+        let Some(first) = (0..count).find(|pass| is_pending(*pass)) else { return Ok(()) };
+        let affected = self.affected(passes);
         let last = passes.last().copied();
-        let is_left_out = |pass: &usize| self.pending[*pass] && !passes.contains(pass);
-        match (last, (0..last.unwrap_or(0)).find(is_left_out)) {
-            (Some(_), None) => Ok(()),
-            (last, left_out) => Err(Error::setting(
-                "passes",
-                last.map_or("none".into(), |last| format!("{last}")),
-                format!(
-                    "{} before it, or a recording of all passes: it has not been recorded with this plan",
-                    left_out.unwrap_or(first)
-                ),
-            )),
+        let is_missing =
+            |pass: &usize| (is_pending(*pass) || affected[*pass]) && !passes.contains(pass);
+        let missing = last.map_or(Some(first), |last| (0..last).find(is_missing));
+        let Some(missing) = missing else { return Ok(()) };
+        let found = last.map_or("none".into(), |last| format!("{last} without {missing}"));
+        let expected = format!("pass {missing} first, or a recording of all passes");
+        Err(Error::setting("passes", found, expected))
+    }
+
+    /// Passes that must run because of those of `passes` that are recorded again, these included: they read what those write, add to
+    /// the same sum, or their inputs were overwritten. None for a whole recording.
+    pub(super) fn affected(&self, passes: &[usize]) -> Vec<bool> {
+        let mut runs = vec![false; self.plan.passes.len()];
+        if passes.len() < runs.len() {
+            let again = passes.iter().filter(|pass| self.progress[**pass] != Progress::Pending);
+            again.for_each(|pass| runs[*pass] = true);
+            self.plan.add_followers(&mut runs);
         }
+        runs
     }
 
     /// Whether an edit can continue from the last recording.
     pub(super) fn check_drawn(&self, outputs: &[ImageArg]) -> Result<()> {
-        let pending = self.pending.iter().filter(|p| **p).count();
+        let pending = self.progress.iter().filter(|p| **p != Progress::Current).count();
         if pending > 0 {
             let count = self.plan.passes.len();
             return Err(Error::setting(
                 "an edit",
-                format!("{pending} of {count} passes not recorded with this plan"),
+                format!("{pending} of {count} passes must be recorded first"),
                 "a recording of all passes, or of those that replace_plan returned",
             ));
         }

@@ -8,7 +8,7 @@ use super::super::pipelines::descriptor_type;
 use super::super::shaders::BindingKind;
 use super::buffers::Taken;
 use super::images::transition;
-use super::{BufferArg, ImageArg, ImageState, InputArg, Renderer};
+use super::{BufferArg, ImageArg, ImageState, InputArg, Progress, Renderer};
 use crate::graph::{Owner, Pass, Rectangle, ResourceId};
 
 impl Renderer {
@@ -23,7 +23,7 @@ impl Renderer {
         edited: Option<Rectangle>,
     ) {
         let whole_plan = edited.is_none() && passes.len() == self.plan.passes.len();
-        let holds_nothing = whole_plan || !self.pending.contains(&false);
+        let holds_nothing = whole_plan || self.progress.iter().all(|p| *p == Progress::Pending);
         let (bound, buffers) = self.bind(inputs, outputs);
         let taken = self.takes(&buffers, edited);
         self.write_tables(slot);

@@ -223,7 +223,7 @@ fn edits_that_cannot_be_are_refused() {
     let other = planned(gpu, &brighter, &quality, true);
     let passes = gpu.replace_plan(&mut frame, other).expect("the same passes");
     let error = gpu.draw_edit(&mut frame, all).expect_err("the new sky is nowhere yet");
-    assert!(error.to_string().contains("not recorded"), "{error}");
+    assert!(error.to_string().contains("must be recorded first"), "{error}");
     gpu.draw_passes(&mut frame, &passes).expect("drawn");
     gpu.draw_edit(&mut frame, all).expect("drawn");
 

@@ -179,8 +179,8 @@ fn pieces_of_two_plans_do_not_mix() {
     gpu.end(frame);
 }
 
-/// The changed passes of a frame that was recorded whole, one at a time: none before an earlier one of them. An early one that is
-/// recorded again makes what follows it due again. Afterwards an edit can continue.
+/// After a whole recording, changed passes are recorded one at a time, in order. Recording an early pass again makes its
+/// dependents pending. Once all are recorded, an edit is allowed.
 #[test]
 fn changed_passes_are_recorded_in_order_part_by_part() {
     let mut device = Device::new();
@@ -195,31 +195,101 @@ fn changed_passes_are_recorded_in_order_part_by_part() {
     gpu.draw(&mut frame).expect("drawn");
     scene.lights.suns[0].azimuth_rad += 0.01;
     let plan = planned(gpu, &scene, (&quality, true));
-    let due = gpu.replace_plan(&mut frame, plan.clone()).expect("the same passes");
-    assert!(due.len() > 2, "{due:?}");
-    for later in &due[1..] {
-        let error = gpu.draw_passes(&mut frame, &[*later]).expect_err("light of two suns");
-        let expected = format!("passes: found {later}, expected {} before it", due[0]);
+    let pending = gpu.replace_plan(&mut frame, plan.clone()).expect("the same passes");
+    assert!(pending.len() > 2, "{pending:?}");
+    for later in &pending[1..] {
+        let error =
+            gpu.draw_passes(&mut frame, &[*later]).expect_err("an earlier changed pass is pending");
+        let expected = format!("passes: found {later} without {}, expected", pending[0]);
         assert!(error.to_string().starts_with(&expected), "{error}");
     }
     let whole = Rectangle { col: 0, row: 0, cols: 4, rows: 4 };
     gpu.draw_edit(&mut frame, whole).expect_err("not recorded yet");
-    for pass in &due {
+    for pass in &pending {
         gpu.draw_passes(&mut frame, &[*pass]).expect("drawn");
     }
     let mut other = gpu.frame(plan.clone(), &[&heights]).expect("a frame");
     let last = plan.passes.len() - 1;
     gpu.draw_passes(&mut other, &(0..last).collect::<Vec<_>>()).expect("drawn");
     gpu.draw_passes(&mut other, &[0]).expect("drawn again");
-    gpu.draw_passes(&mut other, &[last]).expect_err("some have read the first before");
+    gpu.draw_passes(&mut other, &[last]).expect_err("passes that read pass 0 are pending");
     gpu.draw_passes(&mut other, &(1..=last).collect::<Vec<_>>()).expect("drawn");
-    let nothing = bits(gpu, &other);
-    gpu.end(other);
-    assert!(bits(gpu, &frame) == nothing);
+    assert!(bits(gpu, &frame) == bits(gpu, &other));
     let none: [usize; 0] = [];
     assert_eq!(gpu.replace_plan(&mut frame, plan).expect("the same"), none);
-    gpu.draw_edit(&mut frame, whole).expect("edited");
-    assert!(bits(gpu, &frame) == nothing);
+    // The edit of either is the whole frame of the new heights.
+    let mut raised = heights;
+    (40..44).for_each(|row| (30..36).for_each(|col| raised[row * 96 + col] += 20.0));
+    let edited = Rectangle { col: 30, row: 40, cols: 6, rows: 4 };
+    let before = bits(gpu, &frame);
+    for part in [&mut frame, &mut other] {
+        gpu.refill(part, 0, &raised).expect("refilled");
+        gpu.draw_edit(part, edited).expect("edited");
+    }
+    let [edited, of_parts] = [&frame, &other].map(|part| bits(gpu, part));
+    gpu.draw(&mut other).expect("drawn");
+    let fresh = bits(gpu, &other);
+    assert!(fresh != before && edited == fresh && of_parts == fresh);
+    gpu.end(other);
+    gpu.end(frame);
+}
+
+/// A frame under a sky and an environment, whose batches of azimuths share a lattice and add to one sum. A part that is recorded
+/// again is refused if it would add twice, or read what a later part has overwritten.
+#[test]
+fn a_part_is_recorded_again_only_with_what_it_needs() {
+    let mut device = Device::new();
+    let gpu = device.gpu.as_mut().expect("alive");
+    let mut scene = scene();
+    scene.lights.suns.clear();
+    let quality = Quality { azimuths: 16, method: Method::Sweep, ..Quality::default() };
+    let mut limits = crate::limits_of(gpu);
+    limits.sweep.azimuths = 4;
+    let plan = plan::picture(&scene, &quality, &limits, Picture::default()).expect("a plan");
+    let labels: Vec<String> = plan.passes.iter().map(|pass| pass.label()).collect();
+    let is_shade = |i: &usize| labels[*i].starts_with("sky_shade");
+    let shades: Vec<usize> = (0..labels.len()).filter(is_shade).collect();
+    assert!(shades.len() > 2, "{labels:?}");
+    let [heights, texels] = contents(&scene);
+    let mut frame = gpu.frame(plan.clone(), &[&heights, &texels]).expect("a frame");
+    gpu.draw(&mut frame).expect("drawn");
+    let fresh = bits(gpu, &frame);
+    gpu.end(frame);
+
+    let mut frame = gpu.frame(plan.clone(), &[&heights, &texels]).expect("a frame");
+    let end = plan.passes.len();
+    let done = shades[shades.len() - 1];
+    gpu.draw_passes(&mut frame, &(0..=done).collect::<Vec<_>>()).expect("drawn");
+    for shade in &shades {
+        let error = gpu.draw_passes(&mut frame, &[*shade]).expect_err("twice in a sum");
+        assert!(
+            error.to_string().starts_with(&format!("passes: found {shade} without ")),
+            "{error}"
+        );
+    }
+    gpu.draw_passes(&mut frame, &(done + 1..end).collect::<Vec<_>>()).expect("drawn");
+    assert!(bits(gpu, &frame) == fresh);
+    // Alone when nothing is pending, to time it: the plan then names all that must run.
+    gpu.draw_passes(&mut frame, &shades[1..2]).expect("timed");
+    let pending = gpu.replace_plan(&mut frame, plan.clone()).expect("the same");
+    assert!(pending.contains(&shades[0]) && pending.contains(&(end - 1)), "{pending:?}");
+    gpu.draw_passes(&mut frame, &pending).expect("drawn");
+    assert!(bits(gpu, &frame) == fresh);
+    gpu.end(frame);
+
+    // The environment's tables again: all batches that read them are pending, with the sweeps that they share a lattice with.
+    let mut frame = gpu.frame(plan.clone(), &[&heights, &texels]).expect("a frame");
+    gpu.draw_passes(&mut frame, &(0..=done).collect::<Vec<_>>()).expect("drawn");
+    let is_table = |i: &usize| labels[*i].starts_with("env_");
+    let tables: Vec<usize> = (0..end).filter(is_table).collect();
+    let other: Vec<f32> = texels.iter().rev().copied().collect();
+    gpu.refill(&frame, 1, &other).expect("refilled");
+    gpu.draw_passes(&mut frame, &tables).expect("drawn again");
+    gpu.refill(&frame, 1, &texels).expect("refilled");
+    gpu.draw_passes(&mut frame, &tables).expect("drawn again");
+    let pending = gpu.replace_plan(&mut frame, plan).expect("the same");
+    gpu.draw_passes(&mut frame, &pending).expect("drawn");
+    assert!(bits(gpu, &frame) == fresh);
     gpu.end(frame);
 }
 

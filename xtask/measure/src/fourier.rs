@@ -1,4 +1,4 @@
-//! Horizons as Fourier series over azimuth, as bevy-clipmap reads them: what they leave out.
+//! Errors of horizons stored as truncated Fourier series over azimuth, as bevy-clipmap reads them.
 
 use ridgelight::Result;
 use ridgelight::gpu::Headless;
@@ -18,8 +18,8 @@ const COEFFICIENTS: [usize; 4] = [8, 16, 32, 64];
 /// Random grid points of each field.
 const PICKS: usize = 4000;
 
-/// For each number of coefficients: the root mean square of what the series leaves out of the tangents, % of theirs, and the
-/// mean, the 99.9th percentile and the maximum of the error in degrees.
+/// For each number of coefficients: the RMS error of the tangents, % of their RMS, and the mean, the 99.9th percentile and the
+/// maximum of the absolute error in elevation, degrees.
 fn errors(gpu: &mut Headless, field: &HeightField) -> Result<Vec<[f64; 4]>> {
     let quality = Quality { azimuths: AZIMUTHS, ..Quality::default() };
     let azimuths = plan::circle_rad(&quality, field.cell_m())?;
@@ -73,7 +73,9 @@ pub fn run(mut args: Args) -> Outcome {
         "{}: horizons at {AZIMUTHS} azimuths of {PICKS} random grid points, by sweeps, and Fourier series of their tangents",
         device(&gpu)
     );
-    head("| field | coefficients | left out % | mean ° | 99.9 % ° | worst ° |");
+    head(
+        "| field | coefficients | tangent error % | mean error ° | 99.9th percentile ° | maximum ° |",
+    );
     for (name, field) in &fields {
         for (coefficients, errors) in COEFFICIENTS.iter().zip(errors(&mut gpu, field)?) {
             println!("| {name} | {coefficients} | {} |", cells(2, errors));

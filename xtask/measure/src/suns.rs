@@ -85,7 +85,7 @@ pub fn run(mut args: Args) -> Outcome {
         Quality::default().sun_azimuths
     );
     head(
-        "| field | border | elevation ° | sweep % | aimed-around % | default % | map % | sweep ms | time of aimed-around | time of the default | time of a map |",
+        "| field | border | elevation ° | sweep % | aimed-around % | default % | shadow-height map % | sweep ms | time of aimed-around | time of the default | time of the shadow-height map |",
     );
     let default = Quality::default();
     let sweep = Quality { method: Method::Sweep, ..default };

@@ -118,12 +118,23 @@ fn c_slices_match_the_whole_frame() {
         }
         assert!(gpu.pixels(&frame, 0).expect("pixels") == right);
 
-        // Another sky needs some passes alone, which have no room at first.
+        // Another sky needs only some passes. The first calls pass no array, then a capacity of 0.
         let other = RidgelightScene { sky: [0.5, 2.0, 1.0], ..scene() };
         good(ridgelight_plan_create(&host, &other, ptr::null(), 0, 0, &mut plan));
         let mut count = passes;
         let null = ridgelight_replace_plan(renderer, plan, ptr::null_mut(), &mut count);
         refused(null, argument, "passes: found a null pointer, expected room for");
+        let none_at_all =
+            ridgelight_replace_plan(ptr::null_mut(), plan, ptr::null_mut(), &mut count);
+        refused(none_at_all, argument, "renderer: found a null pointer");
+        assert_eq!(count, passes, "as it was");
+        // Nothing is pending: the old plan has stayed, and a late pass may run alone.
+        gpu.run(|commands| {
+            good(record(commands, 0, &[passes - 1]));
+            Ok(())
+        })
+        .expect("run");
+        assert!(gpu.pixels(&frame, 0).expect("pixels") == right);
         good(ridgelight_replace_plan(renderer, plan, ptr::null_mut(), ptr::null_mut()));
         let mut due_room = vec![passes; 1 + passes as usize];
         let mut none = 0;

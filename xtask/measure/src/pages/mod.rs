@@ -229,7 +229,7 @@ fn suns() -> Result<String> {
     Ok(format!("{}\n\n*{device}{made}*\n", rows.join("\n")))
 }
 
-/// What Fourier series of horizons leave out, as `cargo measure fourier` printed it.
+/// Errors of Fourier series of horizons, as `cargo measure fourier` printed it.
 fn fourier() -> Result<String> {
     let (body, made) = result("fourier.txt")?;
     let (device, _) = found("fourier.txt", body.split_once(": "), "a device in its first line")?;
