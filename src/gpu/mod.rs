@@ -66,7 +66,7 @@
 //! |---|---|
 //! | texels of an environment, an albedo or a specular map; colours of sky, suns and key lights, where the plan takes them | on the device: they are inputs of each recording |
 //! | colours of sky, suns, key lights and sphere lights; directions, positions, sizes | [`Renderer::replace_plan`] with a plan of the new scene: no pipeline, no memory, no wait, also while frames are in flight |
-//! | number and kind of lights, a sun into another octant, grey to coloured | a second renderer |
+//! | number and kind of lights, a sun across a diagonal of the grid, grey to coloured | a second renderer |
 //!
 //! The page `docs/embedding.md` lists every change of a light that `replace_plan` refuses.
 //!

@@ -109,8 +109,8 @@ mod tests {
     use crate::graph::{Limits, Resource};
     use crate::plan;
     use crate::plan::{Picture, Plan};
-    use crate::scene::fractal;
     use crate::scene::{Basis, Environment, Lights, Method, Quality, Scene, Sun, Surface};
+    use crate::scene::{HeightField, fractal};
 
     fn scene() -> Scene {
         let texels = (0..32 * 16).map(|i| [i as f32, 1.0, 2.0]).collect();
@@ -235,6 +235,34 @@ mod tests {
         );
         for i in needed.iter().map(|i| &after.passes[*i]).filter(|p| p.name() == "shadow_sweep") {
             assert!(i.part.starts_with("sun1"), "{}", i.label());
+        }
+    }
+
+    /// A quarter of the horizon in steps of half a degree. Another axis needs other passes while the slices of the sun cross the grid's
+    /// diagonal.
+    #[test]
+    fn a_sun_that_moves_across_the_sky_keeps_its_renderer() {
+        let mut scene = scene();
+        scene.lights.environment = None;
+        let crossing = 1 + (scene.lights.suns[0].diameter_rad.to_degrees() / 0.5).ceil() as usize;
+        for limits in [Limits::lavapipe(), Limits::boundless(false, 8 << 30)] {
+            for (rows, cols) in [(256, 256), (438, 433)] {
+                scene.field = HeightField::unknown(rows, cols, [10.0; 2]).unwrap();
+                let mut plan = |step: u32| {
+                    scene.lights.suns[0].azimuth_rad = (0.5 * f64::from(step) - 44.0).to_radians();
+                    let wanted = Picture { keeps_horizons: true, ..Picture::default() };
+                    plan::picture(&scene, &Quality::default(), &limits, wanted).unwrap()
+                };
+                let mut before = plan(0);
+                let mut others = 0;
+                for step in 1..180 {
+                    let after = plan(step);
+                    let is_other = after.passes_after(&before, &[]).len() == after.passes.len();
+                    others += usize::from(is_other);
+                    before = after;
+                }
+                assert!((1..=crossing).contains(&others), "{others} of 179, {rows} × {cols}");
+            }
         }
     }
 

@@ -198,7 +198,7 @@ impl Renderer {
     /// Sets another plan. Returns the passes that must run next if the inputs are unchanged.
     ///
     /// Where colours, directions and sizes of lights differ this waits for nothing ([`gpu::Renderer::replace_plan`]).
-    /// Where images or passes differ (a sun in another octant, another number of lights, another size) it waits for
+    /// Where images or passes differ (a sun that crosses a diagonal of the grid, another number of lights, another size) it waits for
     /// earlier submissions and makes new resources; pipelines come from a cache.
     ///
     /// # Errors

@@ -57,6 +57,8 @@ pub(crate) struct LineSweep {
     pub fuse: Fuse,
     /// Azimuths that are swept together at most.
     pub azimuths: u32,
+    /// Whether the lattice has room for the azimuth with the most lines, so that a light that turns keeps its size.
+    pub any_azimuth: bool,
 }
 
 impl LineSweep {
@@ -374,6 +376,7 @@ impl Sweep {
             writes_occluders: !stores_slopes || !holds_line,
             fuse: quality.fuse,
             azimuths: form.azimuths,
+            any_azimuth: false,
         }))
     }
 
@@ -398,6 +401,7 @@ impl Sweep {
             writes_occluders: false,
             fuse: Fuse::Nearest,
             azimuths: u32::MAX,
+            any_azimuth: true,
         })
     }
 
@@ -538,6 +542,8 @@ impl Sweep {
         match self {
             // Whole workgroups: those of a line beyond the last are swept too.
             Sweep::Lines(lines) => {
+                let widest = Azimuth { shear: CELL as i32, ..*azimuth };
+                let azimuth = if lines.any_azimuth { &widest } else { azimuth };
                 let lines = self.lines(azimuth, axis).next_multiple_of(lines.group_lines());
                 lines.div_ceil(1 << layer_shift)
             }
