@@ -92,6 +92,17 @@ pub struct FieldFile {
 
 /// [`read_heights`], with the position and what was assumed.
 ///
+/// ```no_run
+/// # fn main() -> ridgelight::Result<()> {
+/// let field = ridgelight_io::read_field("dem.tif".as_ref(), &Default::default())?.field;
+/// // Heights are relative to a base.
+/// let heights: Vec<f64> =
+///     field.heights_m().iter().map(|height| f64::from(*height) + field.base_m()).collect();
+/// # assert_eq!(heights.len(), field.rows() * field.cols());
+/// # Ok(())
+/// # }
+/// ```
+///
 /// # Errors
 /// As [`read_heights`].
 pub fn read_field(path: &Path, options: &HeightOptions) -> Result<FieldFile> {

@@ -542,7 +542,7 @@ impl Sweep {
         match self {
             // Whole workgroups: those of a line beyond the last are swept too.
             Sweep::Lines(lines) => {
-                let widest = Azimuth { shear: CELL as i32, ..*azimuth };
+                let widest = Azimuth { shear: CELL, ..*azimuth };
                 let azimuth = if lines.any_azimuth { &widest } else { azimuth };
                 let lines = self.lines(azimuth, axis).next_multiple_of(lines.group_lines());
                 lines.div_ceil(1 << layer_shift)
