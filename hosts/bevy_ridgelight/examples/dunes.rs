@@ -7,6 +7,7 @@ use bevy::app::AppExit;
 use bevy::camera::Exposure;
 use bevy::core_pipeline::tonemapping::Tonemapping;
 use bevy::prelude::*;
+use bevy::render::RenderPlugin;
 use bevy::render::view::screenshot::{Screenshot, ScreenshotCaptured};
 use bevy_ridgelight::{FieldLight, HeightField, RidgelightPlugin, TerrainMaterial, heights_image};
 
@@ -49,8 +50,10 @@ fn main() {
             std::process::exit(2);
         }
     };
+    // Otherwise Bevy compiles beside the first frames, and draws without what is not compiled.
+    let render = RenderPlugin { synchronous_pipeline_compilation: ending.is_some(), ..default() };
     let mut app = App::new();
-    app.add_plugins((DefaultPlugins, RidgelightPlugin))
+    app.add_plugins((DefaultPlugins.set(render), RidgelightPlugin))
         .insert_resource(GlobalAmbientLight {
             color: Color::srgb(0.6, 0.75, 1.0),
             brightness: 4000.0,
@@ -72,7 +75,7 @@ fn setup(
     mut materials: ResMut<Assets<TerrainMaterial>>,
 ) {
     let heights = images.add(heights_image(SIZE, &heights(0.0)));
-    let field = HeightField::new(heights, SIZE, CELL);
+    let field = HeightField::new(heights, SIZE, Vec2::splat(CELL));
     let light = FieldLight::new(&field, &mut images);
     let material = TerrainMaterial::new(&field, &light).with_colour(Color::srgb(0.87, 0.72, 0.5));
     let material = MeshMaterial3d(materials.add(material));
@@ -129,6 +132,13 @@ fn end(mut ending: ResMut<Ending>, mut commands: Commands) {
         commands.spawn(Screenshot::primary_window()).observe(
             move |taken: On<ScreenshotCaptured>, mut exit: MessageWriter<AppExit>| {
                 let image = taken.image.clone().try_into_dynamic().map(|image| image.to_rgb8());
+                if let Ok(image) = &image
+                    && image.pixels().all(|pixel| pixel == image.get_pixel(0, 0))
+                {
+                    eprintln!("{picture}: all pixels have one colour");
+                    exit.write(AppExit::error());
+                    return;
+                }
                 match image.map(|image| image.save(&picture)) {
                     Ok(Ok(())) => exit.write(AppExit::Success),
                     Ok(Err(error)) => {

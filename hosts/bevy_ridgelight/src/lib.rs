@@ -28,13 +28,13 @@ impl Plugin for RidgelightPlugin {
 #[derive(Component, ExtractComponent, Clone, Debug)]
 #[require(Transform, Visibility)]
 pub struct HeightField {
-    /// One texel per grid point, in world units: R32Float, R16Float, or R16Unorm (needs `TEXTURE_FORMAT_16BIT_NORM`). Usage
+    /// One texel per grid point, in world units, all finite (fill voids first): R32Float, R16Float, or R16Unorm (needs `TEXTURE_FORMAT_16BIT_NORM`). Usage
     /// TEXTURE_BINDING ([`heights_image`]).
     pub heights: Handle<Image>,
     /// Columns and rows.
     pub size: UVec2,
-    /// Distance between grid points, world units.
-    pub cell: f32,
+    /// Distances between columns and between rows, world units.
+    pub cell: Vec2,
     /// Azimuths of sky and bent normals, 4 to 1024. Time and memory grow in proportion.
     pub azimuths: u32,
     /// Angular diameter of the sun, radians; 0 has hard shadows.
@@ -52,7 +52,7 @@ impl HeightField {
     ///
     /// # Panics
     /// If it has no columns or no rows.
-    pub fn new(heights: Handle<Image>, size: UVec2, cell: f32) -> Self {
+    pub fn new(heights: Handle<Image>, size: UVec2, cell: Vec2) -> Self {
         assert!(size.min_element() > 0, "a column and a row");
         Self {
             heights,
@@ -64,6 +64,15 @@ impl HeightField {
             horizon_azimuths: 0,
             revision: 0,
         }
+    }
+
+    /// The azimuth of each layer of [`FieldLight::horizon`], counted counter-clockwise from east in equal steps. It depends on
+    /// [`cell`](Self::cell) and [`horizon_azimuths`](Self::horizon_azimuths) alone.
+    ///
+    /// # Errors
+    /// A size, cell or number of azimuths out of range.
+    pub fn horizon_order(&self) -> ridgelight::Result<Vec<u32>> {
+        light::horizon_order(self)
     }
 
     /// A level grid with a vertex at each grid point, which [`TerrainMaterial`] raises. The first grid point is at the
@@ -91,8 +100,8 @@ pub struct FieldLight {
     /// cosine-weighted mean unoccluded direction, in Bevy's axes. The texel holds the radiance of white ground under a sky
     /// of radiance (1 + d) / 2 in direction d.
     pub bent_normal: Option<Handle<Image>>,
-    /// Elevation of the horizon, in radians; present if [`HeightField::horizon_azimuths`] is not 0. One layer per azimuth,
-    /// counter-clockwise from east in equal steps.
+    /// Elevation of the horizon, in radians; present if [`HeightField::horizon_azimuths`] is not 0. One layer per azimuth, in the
+    /// order of [`HeightField::horizon_order`].
     pub horizon: Option<Handle<Image>>,
 }
 

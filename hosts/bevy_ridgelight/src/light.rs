@@ -110,7 +110,7 @@ struct State {
 #[derive(Clone, Copy)]
 struct Settings {
     size: UVec2,
-    cell: f32,
+    cell: Vec2,
     azimuths: u32,
     sun_diameter: f32,
     bent_normal: bool,
@@ -121,7 +121,7 @@ impl PartialEq for Settings {
     /// By bits, so that a NaN is refused once.
     fn eq(&self, other: &Self) -> bool {
         let all = |s: &Self| {
-            let floats = [s.cell, s.sun_diameter].map(f32::to_bits);
+            let floats = [s.cell.x, s.cell.y, s.sun_diameter].map(f32::to_bits);
             (s.size, s.azimuths, s.bent_normal, s.horizon_azimuths, floats)
         };
         all(self) == all(other)
@@ -138,7 +138,7 @@ impl Settings {
 
     fn field(&self) -> ridgelight::Result<scene::HeightField> {
         let [rows, cols] = [self.size.y as usize, self.size.x as usize];
-        scene::HeightField::unknown(rows, cols, [f64::from(self.cell); 2])
+        scene::HeightField::unknown(rows, cols, self.cell.to_array().map(f64::from))
     }
 
     /// The passes for light from that direction.
@@ -161,12 +161,19 @@ impl Settings {
         plan::picture(&scene, &quality, limits, wanted)
     }
 
-    fn horizon_plan(&self, device: &wgpu::Device) -> ridgelight::Result<Plan> {
+    fn horizon_plan(&self, limits: &Limits) -> ridgelight::Result<Plan> {
         let quality = Quality { azimuths: self.horizon_azimuths, ..Quality::default() };
         let all = (0, self.horizon_azimuths);
         let border = Surface::default().border;
-        plan::horizons(&self.field()?, border, &quality, &limits(device)?, all, false)
+        plan::horizons(&self.field()?, border, &quality, limits, all, false)
     }
+}
+
+/// The azimuth of each layer of horizons.
+pub(crate) fn horizon_order(field: &HeightField) -> ridgelight::Result<Vec<u32>> {
+    // The order depends on the cells alone.
+    let limits = Limits::boundless(false, u64::MAX);
+    Ok(Settings::of(field).horizon_plan(&limits)?.layer_azimuths)
 }
 
 /// A sky whose radiance in each channel is (1 + d) / 2 for direction d in Bevy's axes.
@@ -221,7 +228,7 @@ impl FieldRenderer {
         let (_, total) = plan.outputs().next().expect("the total radiance is the first output");
         let total = ridgelight_wgpu::texture(device, queue, total, wgpu::TextureUsages::empty())?;
         let horizons = (settings.horizon_azimuths > 0).then(|| {
-            let plan = settings.horizon_plan(device)?;
+            let plan = settings.horizon_plan(&limits(device)?)?;
             Renderer::new(device, queue, plan)
         });
         let environment = settings.bent_normal.then(|| {
@@ -426,7 +433,7 @@ mod tests {
             for sun_diameter in [0.0, 0.01] {
                 let settings = Settings {
                     size: UVec2::new(48, 32),
-                    cell: 1.0,
+                    cell: Vec2::ONE,
                     azimuths: 16,
                     sun_diameter,
                     bent_normal,

@@ -2,6 +2,7 @@
 
 use bevy::asset::{RenderAssetUsages, embedded_asset};
 use bevy::camera::visibility::NoFrustumCulling;
+use bevy::math::Mat3A;
 use bevy::mesh::{Indices, PrimitiveTopology};
 use bevy::prelude::*;
 use bevy::render::render_resource::AsBindGroup;
@@ -70,7 +71,20 @@ impl Material for TerrainMaterial {
 pub(crate) fn build(app: &mut App) {
     embedded_asset!(app, "terrain.wgsl");
     app.add_plugins(MaterialPlugin::<TerrainMaterial>::default())
-        .add_systems(PostUpdate, (set_colours.after(follow_sun), disable_frustum_culling));
+        .add_systems(PostUpdate, (set_colours.after(follow_sun), disable_frustum_culling))
+        .add_systems(Last, warn_of_turns);
+}
+
+/// Light is computed in the field's own axes and units.
+fn warn_of_turns(fields: Query<&GlobalTransform, (With<HeightField>, Changed<GlobalTransform>)>) {
+    for placed in fields {
+        let linear = placed.affine().matrix3;
+        if !linear.abs_diff_eq(Mat3A::IDENTITY, 1e-4) {
+            warn_once!(
+                "a HeightField is turned or scaled: its light is that of the field as it is"
+            );
+        }
+    }
 }
 
 fn set_colours(
@@ -101,14 +115,14 @@ fn disable_frustum_culling(
     }
 }
 
-pub(crate) fn mesh(size: UVec2, cell: f32) -> Mesh {
+pub(crate) fn mesh(size: UVec2, cell: Vec2) -> Mesh {
     let points = (0..size.y).flat_map(|row| (0..size.x).map(move |col| UVec2::new(col, row)));
     let last = size.saturating_sub(UVec2::ONE).max(UVec2::ONE).as_vec2();
     let mut positions = Vec::new();
     let mut uvs = Vec::new();
     for point in points {
         let at = point.as_vec2();
-        positions.push([at.x * cell, 0.0, at.y * cell]);
+        positions.push([at.x * cell.x, 0.0, at.y * cell.y]);
         uvs.push((at / last).to_array());
     }
     let normals = vec![[0.0, 1.0, 0.0]; positions.len()];

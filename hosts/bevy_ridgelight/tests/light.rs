@@ -21,7 +21,7 @@ use ridgelight::scene::{self, Lights, Quality, Scene, Surface};
 
 /// Rows of a multiple of 256 bytes, which a readback would pad otherwise.
 const SIZE: UVec2 = UVec2::new(128, 80);
-const CELL: f32 = 10.0;
+const CELL: Vec2 = Vec2::new(10.0, 8.0);
 
 /// Hills of several sizes.
 fn heights() -> Vec<f32> {
@@ -55,7 +55,8 @@ fn expected(heights: &[f32], azimuth: f32, elevation: f32) -> [Vec<f32>; 2] {
         irradiance: [1.0; 3],
     };
     let [rows, cols] = [SIZE.y as usize, SIZE.x as usize];
-    let field = scene::HeightField::unknown(rows, cols, [f64::from(CELL); 2]).expect("a field");
+    let field =
+        scene::HeightField::unknown(rows, cols, CELL.to_array().map(f64::from)).expect("a field");
     let lights = Lights { sky: Some([1.0; 3]), suns: vec![sun], ..Lights::default() };
     let scene = Scene { field, surface: Surface::default(), lights };
     let quality = Quality { azimuths: 32, ..Quality::default() };
@@ -248,13 +249,23 @@ fn bent_normals_and_horizons_of_a_wall() {
     let near = [0, 1, 2].map(|channel| at(57, channel));
     assert!(near[0].abs() < 0.01 && near[2] < 2.0 * far[2] && near[1] < far[1], "{near:?}");
     let horizons = floats(&mut app, light.horizon.as_ref().unwrap());
-    let angle = |layer: usize, row: u32| {
+    let entity = app.world_mut().query::<&HeightField>().single(app.world()).expect("one field");
+    let order = entity.horizon_order().expect("an order");
+    let mut sorted = order.clone();
+    sorted.sort_unstable();
+    assert!(sorted == [0, 1, 2, 3, 4, 5, 6, 7] && order != sorted, "{order:?}");
+    let angle = |azimuth: u32, row: u32| {
+        let layer = order.iter().position(|k| *k == azimuth).expect("a layer");
         horizons[layer * (SIZE.x * SIZE.y) as usize + (row * SIZE.x + 48) as usize]
     };
     // Counter-clockwise from east: south is six of eight.
-    let expected = (100.0_f32 / 30.0).atan();
+    let expected = (100.0 / (3.0 * CELL.y)).atan();
     assert!((angle(6, 57) - expected).abs() < 1e-5, "{} {expected}", angle(6, 57));
-    assert!(angle(2, 57).abs() < 1e-5, "{}", angle(2, 57));
+    for azimuth in 0..8 {
+        let is_southern = (5..8).contains(&azimuth);
+        let found = angle(azimuth, 57);
+        assert!(if is_southern { found > 0.5 } else { found.abs() < 1e-5 }, "{azimuth}: {found}");
+    }
     end(&app);
 }
 
@@ -292,10 +303,11 @@ fn pictures_have_the_light() {
     let light = DirectionalLight { illuminance, ..default() };
     app.world_mut().spawn((light, sun_at(140.0, 25.0)));
     app.world_mut().insert_resource(GlobalAmbientLight { brightness, ..default() });
-    let centre = Vec3::new((SIZE.x - 1) as f32, 0.0, (SIZE.y - 1) as f32) * (0.5 * CELL);
+    let centre = 0.5 * (SIZE - UVec2::ONE).as_vec2() * CELL;
+    let centre = Vec3::new(centre.x, 0.0, centre.y);
     let above =
         Transform::from_translation(centre + 1000.0 * Vec3::Y).looking_to(Vec3::NEG_Y, Vec3::NEG_Z);
-    let [width, height] = [SIZE.x, SIZE.y].map(|n| n as f32 * CELL);
+    let [width, height] = (SIZE.as_vec2() * CELL).to_array();
     let map = Projection::Orthographic(OrthographicProjection {
         scaling_mode: ScalingMode::Fixed { width, height },
         far: 2000.0,
