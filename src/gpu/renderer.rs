@@ -96,7 +96,8 @@ struct Slot {
 enum Progress {
     /// Recorded with this plan.
     Current,
-    /// A pass that it depends on, or that adds to the same sum, was recorded alone since. Only edits mind.
+    /// A pass that it depends on, or that adds to the same sum, was recorded alone since. Edits are refused, and
+    /// `replace_plan` makes it pending.
     Stale,
     /// Not recorded, or its inputs from the plan have changed since, or it depends on such a pass. Pending passes are recorded in
     /// the plan's order.
