@@ -3,12 +3,12 @@
 use std::path::Path;
 
 use ridgelight::Result;
-use ridgelight::gpu::Headless;
+use ridgelight::gpu::{Frame, Headless};
 use ridgelight::plan::{self, Picture};
 use ridgelight::scene::{Border, Fuse, HeightField, Lights, Method, Quality, Scene, Sun};
 
 use crate::common::args::Args;
-use crate::common::frames::{device, drawn, error_of, in_turn, total, with_picture};
+use crate::common::frames::{device, drawn, error_of, frame, frames_in_turn, with_picture};
 use crate::common::{Outcome, head, inputs, median};
 use crate::gallery::terrain_of;
 
@@ -51,12 +51,12 @@ pub fn fields(folder: Option<&Path>) -> Result<Vec<(String, HeightField)>> {
     Ok(all)
 }
 
-/// The light by the share of the sun that shadow heights give, on slopes lit without shadows; and the median time of their pass, ms.
+/// A frame of the map of shadow heights, and the light by its share of the sun: slopes lit without shadows, times the share.
 fn by_shadow_heights(
     gpu: &mut Headless,
     scene: &Scene,
     quality: &Quality,
-) -> Result<(Vec<f64>, f64)> {
+) -> Result<(Frame, Vec<f64>)> {
     let unshadowed = Picture { unshadowed: true, ..Picture::default() };
     let lit = with_picture(gpu, scene, quality, unshadowed, |gpu, frame| {
         gpu.draw(frame)?;
@@ -64,16 +64,13 @@ fn by_shadow_heights(
     })?;
     let limits = gpu.report().limits;
     let plan = plan::shadow_heights(&scene.field, &scene.lights.suns[0], None, 1, &limits)?;
-    gpu.with_frame(plan, &[scene.field.heights_m()], |gpu, frame| {
-        gpu.draw(frame)?;
-        let times = (0..TURNS).map(|_| Ok(total(&gpu.draw(frame)?)));
-        let times = times.collect::<Result<Vec<_>>>()?;
-        let share = gpu.pixels(frame, 2)?.values;
-        let channels = lit.values.len() / share.len();
-        let light = lit.values.iter().step_by(channels).zip(share);
-        let light = light.map(|(lit, share)| f64::from(*lit) * f64::from(share)).collect();
-        Ok((light, median(times)))
-    })
+    let mut frame = gpu.frame(plan, &[scene.field.heights_m()])?;
+    gpu.draw(&mut frame)?;
+    let share = gpu.pixels(&mut frame, 2)?.values;
+    let channels = lit.values.len() / share.len();
+    let light = lit.values.iter().step_by(channels).zip(share);
+    let light = light.map(|(lit, share)| f64::from(*lit) * f64::from(share)).collect();
+    Ok((frame, light))
 }
 
 pub fn run(mut args: Args) -> Outcome {
@@ -101,25 +98,32 @@ pub fn run(mut args: Args) -> Outcome {
                 let light = drawn(&mut gpu, &scene, quality, 0)?.light;
                 errors.push(format!("{:.3}", error_of(&grey(&light), &grey(&exact))?));
             }
-            // They have no border that repeats.
-            let heights = match border {
-                Border::Periodic => None,
-                _ => Some(by_shadow_heights(&mut gpu, &scene, &default)?),
-            };
-            errors.push(match &heights {
-                Some((light, _)) => format!("{:.3}", error_of(light, &grey(&exact))?),
-                None => "-".to_owned(),
-            });
-            let rows = in_turn(&mut gpu, &scene, [&sweep, &around, &default], TURNS)?;
+            let mut frames = Vec::new();
+            for quality in [&sweep, &around, &default] {
+                frames.push(frame(&mut gpu, &scene, quality)?);
+            }
+            // Ground beyond the edge is level in these maps, as with this border alone.
+            if border == Border::Plane {
+                let (map, light) = by_shadow_heights(&mut gpu, &scene, &default)?;
+                frames.push(map);
+                errors.push(format!("{:.3}", error_of(&light, &grey(&exact))?));
+            } else {
+                errors.push("-".to_owned());
+            }
+            let maps = frames.len() == 4;
+            let rows = frames_in_turn(&mut gpu, frames, TURNS)?;
             let ms = median(rows.iter().map(|row| row[0]).collect());
-            let ratio = |k: usize| median(rows.iter().map(|row| row[k] / row[0]).collect());
+            let ratio = |k: usize| {
+                let ratio = median(rows.iter().map(|row| row[k] / row[0]).collect());
+                format!("{ratio:.2} x")
+            };
             let border = format!("{border:?}").to_lowercase();
             println!(
-                "| {name} | {border} | {elevation} | {} | {ms:.1} | {:.2} x | {:.2} x | {} |",
+                "| {name} | {border} | {elevation} | {} | {ms:.1} | {} | {} | {} |",
                 errors.join(" | "),
                 ratio(1),
                 ratio(2),
-                heights.map_or("-".to_owned(), |(_, alone)| format!("{:.2} x", alone / ms))
+                if maps { ratio(3) } else { "-".to_owned() }
             );
         }
     }

@@ -22,7 +22,7 @@ pub fn slices(all: &[Vec<f32>]) -> Vec<&[f32]> {
     all.iter().map(Vec::as_slice).collect()
 }
 
-fn frame(gpu: &mut Headless, scene: &Scene, quality: &Quality) -> Result<Frame> {
+pub fn frame(gpu: &mut Headless, scene: &Scene, quality: &Quality) -> Result<Frame> {
     let plan = plan::picture(scene, quality, &gpu.report().limits, Picture::default())?;
     gpu.frame(plan, &slices(&plan::picture_inputs(scene)))
 }
@@ -129,13 +129,20 @@ pub fn in_turn<const N: usize>(
     for quality in all {
         frames.push(frame(gpu, scene, quality)?);
     }
+    let rows = frames_in_turn(gpu, frames, turns)?;
+    Ok(rows.into_iter().map(|row| row.try_into().expect("a time of each frame")).collect())
+}
+
+/// The same of frames of any plans, which end here.
+pub fn frames_in_turn(
+    gpu: &mut Headless,
+    mut frames: Vec<Frame>,
+    turns: usize,
+) -> Result<Vec<Vec<f64>>> {
     let mut rows = Vec::new();
     for _ in 0..=turns {
-        let mut row = [0.0; N];
-        for (ms, frame) in row.iter_mut().zip(&mut frames) {
-            *ms = total(&gpu.draw(frame)?);
-        }
-        rows.push(row);
+        let row = frames.iter_mut().map(|frame| Ok(total(&gpu.draw(frame)?)));
+        rows.push(row.collect::<Result<Vec<_>>>()?);
     }
     frames.into_iter().for_each(|frame| gpu.end(frame));
     Ok(rows.split_off(1))
