@@ -1,5 +1,6 @@
 //! Ridgelight in a Vulkan program of its own, by `ash`. docs/embedding.md shows the first half, which is what an
-//! engine writes; the second stands for the engine. A test runs it under validation.
+//! engine writes; the second stands for the engine. `ash_host OUT [FRAMES]` writes the light of every texel in the last
+//! frame, row by row, as floats. A test runs it under validation.
 
 use ash::vk;
 use ridgelight::gpu::{self, Host, ImageArg, ImageState, Renderer};
@@ -150,8 +151,14 @@ const LAYER: vk::ImageSubresourceLayers = vk::ImageSubresourceLayers {
     layer_count: 1,
 };
 
-/// Heights to an image, light from another to the host, and Ridgelight between.
-fn frame(host: &Host, queue: vk::Queue, blocks: &mut Blocks, scene: &Scene) -> Any<Vec<f32>> {
+/// In each frame heights go to an image, light from another to the host, and Ridgelight runs between.
+fn draw(
+    host: &Host,
+    queue: vk::Queue,
+    blocks: &mut Blocks,
+    scene: &Scene,
+    frames: u32,
+) -> Any<Vec<f32>> {
     let device = &host.device;
     let (from, to) = (vk::ImageUsageFlags::TRANSFER_SRC, vk::ImageUsageFlags::TRANSFER_DST);
     let heights = image(host, blocks, vk::ImageUsageFlags::SAMPLED | to)?;
@@ -159,9 +166,10 @@ fn frame(host: &Host, queue: vk::Queue, blocks: &mut Blocks, scene: &Scene) -> A
     let mut renderer = prepare(host, scene)?;
     let size = 4 * (ROWS * COLS) as u64;
     let usage = vk::BufferUsageFlags::TRANSFER_SRC | vk::BufferUsageFlags::TRANSFER_DST;
-    let buffer_info = vk::BufferCreateInfo::default().size(size).usage(usage);
+    let buffer_info = vk::BufferCreateInfo::default().size(2 * size).usage(usage);
     let pool_info = vk::CommandPoolCreateInfo::default().queue_family_index(host.queue_family);
-    let region = [vk::BufferImageCopy::default().image_subresource(LAYER).image_extent(EXTENT)];
+    let texel_copy = vk::BufferImageCopy::default().image_subresource(LAYER).image_extent(EXTENT);
+    let (filled_from, read_to) = ([texel_copy], [texel_copy.buffer_offset(size)]);
     let filling = [vk::ImageMemoryBarrier::default()
         .image(heights.image)
         .subresource_range(WHOLE)
@@ -190,21 +198,23 @@ fn frame(host: &Host, queue: vk::Queue, blocks: &mut Blocks, scene: &Scene) -> A
         let pool = device.create_command_pool(&pool_info, None)?;
         let commands_info = vk::CommandBufferAllocateInfo::default().command_pool(pool);
         let commands = device.allocate_command_buffers(&commands_info.command_buffer_count(1))?[0];
-        device.begin_command_buffer(commands, &vk::CommandBufferBeginInfo::default())?;
-        device.cmd_pipeline_barrier(commands, top, transfer, none, &[], &[], &filling);
-        let copied_to = FILLED.layout;
-        device.cmd_copy_buffer_to_image(commands, buffer, heights.image, copied_to, &region);
-        let (read, written) = ((heights.image, heights.view), (light.image, light.view));
-        record(&mut renderer, commands, 0, read, written)?;
-        let copied_from = COPIED.layout;
-        device.cmd_copy_image_to_buffer(commands, light.image, copied_from, buffer, &region);
-        device.cmd_pipeline_barrier(commands, transfer, to_host, none, &reading, &[], &[]);
-        device.end_command_buffer(commands)?;
-        let submitted = [commands];
-        let submit = [vk::SubmitInfo::default().command_buffers(&submitted)];
-        device.queue_submit(queue, &submit, vk::Fence::null())?;
-        device.queue_wait_idle(queue)?;
-        let lit = std::slice::from_raw_parts(texels, ROWS * COLS).to_vec();
+        for _ in 0..frames {
+            device.reset_command_pool(pool, vk::CommandPoolResetFlags::empty())?;
+            device.begin_command_buffer(commands, &vk::CommandBufferBeginInfo::default())?;
+            device.cmd_pipeline_barrier(commands, top, transfer, none, &[], &[], &filling);
+            let (to, from) = (FILLED.layout, COPIED.layout);
+            device.cmd_copy_buffer_to_image(commands, buffer, heights.image, to, &filled_from);
+            let (read, written) = ((heights.image, heights.view), (light.image, light.view));
+            record(&mut renderer, commands, 0, read, written)?;
+            device.cmd_copy_image_to_buffer(commands, light.image, from, buffer, &read_to);
+            device.cmd_pipeline_barrier(commands, transfer, to_host, none, &reading, &[], &[]);
+            device.end_command_buffer(commands)?;
+            let submitted = [commands];
+            let submit = [vk::SubmitInfo::default().command_buffers(&submitted)];
+            device.queue_submit(queue, &submit, vk::Fence::null())?;
+            device.queue_wait_idle(queue)?;
+        }
+        let lit = std::slice::from_raw_parts(texels.add(ROWS * COLS), ROWS * COLS).to_vec();
 
         renderer.destroy();
         device.destroy_command_pool(pool, None);
@@ -219,13 +229,13 @@ fn frame(host: &Host, queue: vk::Queue, blocks: &mut Blocks, scene: &Scene) -> A
     }
 }
 
-/// Light of every texel, row by row.
-pub fn lit() -> Any<Vec<f32>> {
+/// Light of every texel in the last of some frames, row by row.
+pub fn lit(frames: u32) -> Any<Vec<f32>> {
     // SAFETY: the system's Vulkan loader, whose initialisers are meant to run.
     let entry = unsafe { ash::Entry::load() }?;
     let (host, queue) = host(&entry)?;
     let mut blocks = Blocks::new(&host)?;
-    let lit = frame(&host, queue, &mut blocks, &scene()?);
+    let lit = draw(&host, queue, &mut blocks, &scene()?, frames);
     drop(blocks);
     // SAFETY: nothing is left that was made on them.
     unsafe {
@@ -236,7 +246,9 @@ pub fn lit() -> Any<Vec<f32>> {
 }
 
 fn main() -> Any<()> {
-    let lit = lit()?;
-    println!("{} texels, the first is lit by {}", lit.len(), lit[0]);
-    Ok(())
+    let mut args = std::env::args().skip(1);
+    let out = args.next().ok_or("usage: ash_host OUT [FRAMES]")?;
+    let lit = lit(args.next().map_or(Ok(1), |frames| frames.parse())?)?;
+    let bytes: Vec<u8> = lit.iter().flat_map(|value| value.to_ne_bytes()).collect();
+    Ok(std::fs::write(out, bytes)?)
 }

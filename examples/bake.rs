@@ -21,15 +21,11 @@ pub fn horizons(gpu: &mut Headless, field: &HeightField) -> Result<Vec<Vec<f32>>
     let quality = Quality { azimuths: AZIMUTHS, method: Method::BruteForce, ..Quality::default() };
     let limits = gpu.report().limits;
     let plan = plan::horizons(field, Border::Plane, &quality, &limits, (0, AZIMUTHS), false)?;
-    // Layers are in the order of the device's passes.
-    let order = plan.layer_azimuths.clone();
     let values = gpu.with_frame(plan, &[field.heights_m()], |gpu, frame| {
         gpu.draw(frame)?;
         Ok(gpu.pixels(frame, 0)?.values)
     })?;
-    let layers: Vec<&[f32]> = values.chunks_exact(field.rows() * field.cols()).collect();
-    let layer_of = |k| order.iter().position(|o| *o == k).expect("every azimuth has its layer");
-    Ok((0..AZIMUTHS).map(|k| layers[layer_of(k)].to_vec()).collect())
+    Ok(values.chunks_exact(field.rows() * field.cols()).map(<[f32]>::to_vec).collect())
 }
 
 /// A map's planes, one a channel.

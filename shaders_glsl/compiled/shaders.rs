@@ -84,7 +84,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/bounce_walk.comp`.
-    BOUNCE_WALK: "bounce_walk", push BounceWalkPush, words 35657 14566,
+    BOUNCE_WALK: "bounce_walk", push BounceWalkPush, words 35657 14591,
     1 reads "azimuths" TexelBuffer,
     2 reads "occluders" StorageImage { format: "Rgba16ui", uint: true, layered: true },
     3 reads "bounce_ground" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -106,7 +106,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/cache_gather.comp`.
-    CACHE_GATHER: "cache_gather", push CacheGatherPush, words 50223 3702,
+    CACHE_GATHER: "cache_gather", push CacheGatherPush, words 50248 3727,
     0 reads "visibility_cache" StorageImage { format: "Rgba32ui", uint: true, layered: true },
     1 reads "azimuths" TexelBuffer,
     2 reads "exit_radiance" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -122,14 +122,14 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/depth_resolve.frag`.
-    DEPTH_RESOLVE_FRAG: "depth_resolve_frag", push (), words 53925 193,
+    DEPTH_RESOLVE_FRAG: "depth_resolve_frag", push (), words 53975 193,
     0 reads "picture_depth" SampledImage { uint: false, layered: false },
     DepthResolveFrag;
 }
 
 shader! {
     /// `shaders_glsl/device/device_peak.comp`.
-    DEVICE_PEAK: "device_peak", push DevicePeakPush, words 54118 1812,
+    DEVICE_PEAK: "device_peak", push DevicePeakPush, words 54168 1812,
     0 writes "source" StorageBuffer,
     1 writes "result" StorageBuffer,
     2 writes "filled" StorageImage { format: "R32f", uint: false, layered: false },
@@ -141,7 +141,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/edit/dirty_list.comp`.
-    DIRTY_LIST: "dirty_list", push DirtyListPush, words 55930 874,
+    DIRTY_LIST: "dirty_list", push DirtyListPush, words 55980 874,
     0 reads "dirty_texels" StorageBuffer,
     1 writes "edit_list" StorageBuffer,
     DirtyList;
@@ -149,7 +149,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/edit/dirty_mark.comp`.
-    DIRTY_MARK: "dirty_mark", push DirtyMarkPush, words 56804 1323,
+    DIRTY_MARK: "dirty_mark", push DirtyMarkPush, words 56854 1323,
     0 writes "dirty_texels" StorageBuffer,
     1 writes "edit_list" StorageBuffer,
     DirtyMark;
@@ -157,7 +157,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bake/ellipse_fit.comp`.
-    ELLIPSE_FIT: "ellipse_fit", push EllipseFitPush, words 58127 5049,
+    ELLIPSE_FIT: "ellipse_fit", push EllipseFitPush, words 58177 5049,
     0 reads "visible_points" SampledImage { uint: true, layered: true },
     1 reads "directions" TexelBuffer,
     2 writes "ellipse_axes" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -171,7 +171,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/env_rotation.comp`.
-    ENV_ROTATION: "env_rotation", push EnvRotationPush, words 63176 949,
+    ENV_ROTATION: "env_rotation", push EnvRotationPush, words 63226 949,
     0 reads "environment" SampledImage { uint: false, layered: false },
     1 reads "constants" TexelBuffer,
     2 writes "env_rotation" StorageBuffer,
@@ -180,7 +180,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/env_tables.comp`.
-    ENV_TABLES: "env_tables", push EnvTablesPush, words 64125 3335,
+    ENV_TABLES: "env_tables", push EnvTablesPush, words 64175 3357,
     0 reads "wedge_rows" StorageBuffer,
     1 writes "env_tables" StorageImage { format: "Rgba32f", uint: false, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -189,7 +189,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/env_wedges.comp`.
-    ENV_WEDGES: "env_wedges", push EnvWedgesPush, words 67460 2214,
+    ENV_WEDGES: "env_wedges", push EnvWedgesPush, words 67532 2236,
     0 reads "environment" SampledImage { uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "wedge_rows" StorageBuffer,
@@ -198,7 +198,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bake/facet_mask.comp`.
-    FACET_MASK: "facet_mask", push FacetMaskPush, words 69674 9176,
+    FACET_MASK: "facet_mask", push FacetMaskPush, words 69768 9176,
     0 reads "cells" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "maxima" StorageImage { format: "R32f", uint: false, layered: false },
     2 reads "directions" TexelBuffer,
@@ -211,7 +211,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bake/fan_weights.comp`.
-    FAN_WEIGHTS: "fan_weights", push FanWeightsPush, words 78850 1842,
+    FAN_WEIGHTS: "fan_weights", push FanWeightsPush, words 78944 1842,
     0 reads "bent" SampledImage { uint: false, layered: true },
     1 reads "fans" TexelBuffer,
     2 writes "fan_weights" StorageImage { format: "R32f", uint: false, layered: true },
@@ -220,7 +220,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/rays/height_bounds.comp`.
-    HEIGHT_BOUNDS: "height_bounds", push HeightBoundsPush, words 80692 1680,
+    HEIGHT_BOUNDS: "height_bounds", push HeightBoundsPush, words 80786 1680,
     0 reads "cells" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 writes "maxima" StorageImage { format: "R32f", uint: false, layered: false },
     2 reads "heights" SampledImage { uint: false, layered: false },
@@ -231,7 +231,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/rays/height_cells.comp`.
-    HEIGHT_CELLS: "height_cells", push HeightCellsPush, words 82372 2514,
+    HEIGHT_CELLS: "height_cells", push HeightCellsPush, words 82466 2514,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 writes "cells" StorageImage { format: "Rgba32f", uint: false, layered: false },
     2 writes "ground" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -245,7 +245,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/height_expand.comp`.
-    HEIGHT_EXPAND: "height_expand", push HeightExpandPush, words 84886 2496,
+    HEIGHT_EXPAND: "height_expand", push HeightExpandPush, words 84980 2496,
     0 reads "height_levels" SampledImage { uint: false, layered: false },
     1 reads "level_table" SampledImage { uint: true, layered: false },
     2 writes "height_stack" StorageImage { format: "R32f", uint: false, layered: true },
@@ -256,7 +256,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/height_reduce.comp`.
-    HEIGHT_REDUCE: "height_reduce", push ReducePush, words 87382 3600,
+    HEIGHT_REDUCE: "height_reduce", push ReducePush, words 87476 3600,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 writes "height_levels" StorageImage { format: "R32f", uint: false, layered: false },
     2 writes "level_table" StorageImage { format: "Rgba32ui", uint: true, layered: false },
@@ -269,7 +269,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/height_transpose.comp`.
-    HEIGHT_TRANSPOSE: "height_transpose", push HeightTransposePush, words 90982 1113,
+    HEIGHT_TRANSPOSE: "height_transpose", push HeightTransposePush, words 91076 1113,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 writes "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     2 writes "lane_buffer" StorageBuffer,
@@ -282,7 +282,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/horizon_march.comp`.
-    HORIZON_MARCH: "horizon_march", push MarchPush, words 92095 6843,
+    HORIZON_MARCH: "horizon_march", push MarchPush, words 92189 6867,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "slopes" StorageImage { format: "R32ui", uint: true, layered: true },
@@ -295,7 +295,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/edit/horizon_resweep.comp`.
-    HORIZON_RESWEEP: "horizon_resweep", push HorizonResweepPush, words 98938 8999,
+    HORIZON_RESWEEP: "horizon_resweep", push HorizonResweepPush, words 99056 9024,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "occluders" StorageImage { format: "Rgba16ui", uint: true, layered: true },
@@ -310,7 +310,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/horizon_sweep.comp`.
-    HORIZON_SWEEP: "horizon_sweep", push HorizonSweepPush, words 107937 16252,
+    HORIZON_SWEEP: "horizon_sweep", push HorizonSweepPush, words 108080 16278,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     2 reads "azimuths" TexelBuffer,
@@ -343,7 +343,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/light_matrix.comp`.
-    LIGHT_MATRIX: "light_matrix", push LightMatrixPush, words 124189 1854,
+    LIGHT_MATRIX: "light_matrix", push LightMatrixPush, words 124358 1854,
     0 reads "env_rotation" StorageBuffer,
     1 reads "constants" TexelBuffer,
     2 writes "light_matrix" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -352,7 +352,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/light_resolve.comp`.
-    LIGHT_RESOLVE: "light_resolve", push LightResolvePush, words 126043 1966,
+    LIGHT_RESOLVE: "light_resolve", push LightResolvePush, words 126212 1966,
     0 reads "scalar_sum" SampledImage { uint: false, layered: false },
     1 reads "colour_sum" SampledImage { uint: false, layered: false },
     2 reads "albedo_map" SampledImage { uint: false, layered: false },
@@ -376,7 +376,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/line_blocks.comp`.
-    LINE_BLOCKS: "line_blocks", push LineBlocksPush, words 128009 6675,
+    LINE_BLOCKS: "line_blocks", push LineBlocksPush, words 128178 6699,
     0 reads "bounce_ground" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "grey_ground" StorageImage { format: "Rgba16ui", uint: true, layered: false },
     2 reads "azimuths" TexelBuffer,
@@ -392,7 +392,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/map_draw.comp`.
-    MAP_DRAW: "map_draw", push MapDrawPush, words 134684 3812,
+    MAP_DRAW: "map_draw", push MapDrawPush, words 134877 3812,
     0 reads "radiance" SampledImage { uint: false, layered: false },
     1 reads "tone_steps" SampledImage { uint: false, layered: false },
     2 reads "voids" SampledImage { uint: false, layered: false },
@@ -405,7 +405,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/mirror_map.comp`.
-    MIRROR_MAP: "mirror_map", push MirrorMapPush, words 138496 3694,
+    MIRROR_MAP: "mirror_map", push MirrorMapPush, words 138689 3716,
     0 reads "azimuths" TexelBuffer,
     1 reads "specular_tables" StorageImage { format: "Rgba32f", uint: false, layered: true },
     2 writes "mirror_map" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -414,7 +414,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/reference/path_trace.comp`.
-    PATH_TRACE: "path_trace", push PathTracePush, words 142190 22947,
+    PATH_TRACE: "path_trace", push PathTracePush, words 142405 22947,
     0 reads "cells" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "maxima" StorageImage { format: "R32f", uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -451,7 +451,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/picture_tone.frag`.
-    PICTURE_TONE_FRAG: "picture_tone_frag", push PictureTonePush, words 165137 565,
+    PICTURE_TONE_FRAG: "picture_tone_frag", push PictureTonePush, words 165352 565,
     0 reads "radiance" SampledImage { uint: false, layered: false },
     PictureToneFrag {
         0 encodes: bool = true,
@@ -460,13 +460,13 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/picture_tone.vert`.
-    PICTURE_TONE_VERT: "picture_tone_vert", push (), words 165702 266,
+    PICTURE_TONE_VERT: "picture_tone_vert", push (), words 165917 266,
     PictureToneVert;
 }
 
 shader! {
     /// `shaders_glsl/view/plinth_draw.frag`.
-    PLINTH_DRAW_FRAG: "plinth_draw_frag", push PlinthDrawPush, words 165968 939,
+    PLINTH_DRAW_FRAG: "plinth_draw_frag", push PlinthDrawPush, words 166183 939,
     2 reads "voids" SampledImage { uint: false, layered: false },
     PlinthDrawFrag {
         1 has_voids: bool = false,
@@ -475,7 +475,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/plinth_draw.vert`.
-    PLINTH_DRAW_VERT: "plinth_draw_vert", push PlinthDrawPush, words 166907 2082,
+    PLINTH_DRAW_VERT: "plinth_draw_vert", push PlinthDrawPush, words 167122 2082,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "radiance" SampledImage { uint: false, layered: false },
     2 reads "voids" SampledImage { uint: false, layered: false },
@@ -487,7 +487,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/preview_gather.comp`.
-    PREVIEW_GATHER: "preview_gather", push PreviewGatherPush, words 168989 1069,
+    PREVIEW_GATHER: "preview_gather", push PreviewGatherPush, words 169204 1069,
     0 reads "normals" SampledImage { uint: false, layered: false },
     1 reads "coarse_radiance" SampledImage { uint: false, layered: false },
     2 reads "coarse_sun" SampledImage { uint: false, layered: false },
@@ -502,7 +502,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/preview_shade.comp`.
-    PREVIEW_SHADE: "preview_shade", push PreviewShadePush, words 170058 1740,
+    PREVIEW_SHADE: "preview_shade", push PreviewShadePush, words 170273 1740,
     0 reads "normals" SampledImage { uint: false, layered: false },
     1 reads "albedo" SampledImage { uint: false, layered: false },
     2 reads "sky" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -516,7 +516,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/pyramid_march.comp`.
-    PYRAMID_MARCH: "pyramid_march", push PyramidMarchPush, words 171798 9056,
+    PYRAMID_MARCH: "pyramid_march", push PyramidMarchPush, words 172013 9080,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "slopes" StorageImage { format: "R32ui", uint: true, layered: true },
@@ -533,7 +533,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bake/scatter_gather.comp`.
-    SCATTER_GATHER: "scatter_gather", push ScatterGatherPush, words 180854 4664,
+    SCATTER_GATHER: "scatter_gather", push ScatterGatherPush, words 181093 4664,
     0 reads "ground" SampledImage { uint: false, layered: false },
     1 reads "direct" SampledImage { uint: false, layered: false },
     2 reads "visible_points" SampledImage { uint: true, layered: true },
@@ -560,7 +560,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/sh_shade.comp`.
-    SH_SHADE: "sh_shade", push ShShadePush, words 185518 12958,
+    SH_SHADE: "sh_shade", push ShShadePush, words 185757 12958,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "visibility" SampledImage { uint: false, layered: true },
     2 reads "light_matrix" SampledImage { uint: false, layered: false },
@@ -579,7 +579,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/sh_visibility.comp`.
-    SH_VISIBILITY: "sh_visibility", push ShadePush, words 198476 32258,
+    SH_VISIBILITY: "sh_visibility", push ShadePush, words 198715 32289,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rgba16ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -605,7 +605,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/sh_wedges.comp`.
-    SH_WEDGES: "sh_wedges", push ShWedgesPush, words 230734 7777,
+    SH_WEDGES: "sh_wedges", push ShWedgesPush, words 231004 7826,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "horizon_angles" SampledImage { uint: false, layered: true },
     2 reads "constants" TexelBuffer,
@@ -622,7 +622,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/shade_expand.comp`.
-    SHADE_EXPAND: "shade_expand", push ShadeExpandPush, words 238511 2489,
+    SHADE_EXPAND: "shade_expand", push ShadeExpandPush, words 238830 2489,
     0 reads "shade_levels" SampledImage { uint: false, layered: false },
     1 reads "shade_table" SampledImage { uint: true, layered: false },
     2 writes "shade_stack" StorageImage { format: "Rgba32f", uint: false, layered: true },
@@ -635,7 +635,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/shade_reduce.comp`.
-    SHADE_REDUCE: "shade_reduce", push ReducePush, words 241000 3656,
+    SHADE_REDUCE: "shade_reduce", push ReducePush, words 241319 3656,
     0 reads "exit_radiance" SampledImage { uint: false, layered: false },
     1 writes "shade_levels" StorageImage { format: "Rgba32f", uint: false, layered: false },
     2 writes "shade_table" StorageImage { format: "Rgba32ui", uint: true, layered: false },
@@ -649,7 +649,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/shadow_height.comp`.
-    SHADOW_HEIGHT: "shadow_height", push ShadowHeightPush, words 244656 6055,
+    SHADOW_HEIGHT: "shadow_height", push ShadowHeightPush, words 244975 6055,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "outer_lit_above" SampledImage { uint: false, layered: false },
     2 reads "outer_penumbra" SampledImage { uint: false, layered: false },
@@ -663,7 +663,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/shadow_settle.comp`.
-    SHADOW_SETTLE: "shadow_settle", push ShadowSettlePush, words 250711 18052,
+    SHADOW_SETTLE: "shadow_settle", push ShadowSettlePush, words 251030 18080,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "maxima" StorageImage { format: "R32f", uint: false, layered: false },
     2 reads "azimuths" TexelBuffer,
@@ -681,7 +681,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/shadow_shade.comp`.
-    SHADOW_SHADE: "shadow_shade", push ShadowShadePush, words 268763 11262,
+    SHADOW_SHADE: "shadow_shade", push ShadowShadePush, words 269110 11288,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 reads "shadows" StorageImage { format: "Rgba32ui", uint: true, layered: true },
@@ -697,7 +697,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/shadow_sweep.comp`.
-    SHADOW_SWEEP: "shadow_sweep", push ShadowSweepPush, words 280025 11525,
+    SHADOW_SWEEP: "shadow_sweep", push ShadowSweepPush, words 280398 11549,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "shadows" StorageImage { format: "Rgba32ui", uint: true, layered: true },
@@ -713,7 +713,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/sky_draw.frag`.
-    SKY_DRAW_FRAG: "sky_draw_frag", push SkyDrawPush, words 291550 1372,
+    SKY_DRAW_FRAG: "sky_draw_frag", push SkyDrawPush, words 291947 1372,
     0 reads "environment" SampledImage { uint: false, layered: false },
     SkyDrawFrag {
         0 has_environment: bool = false,
@@ -722,13 +722,13 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/sky_draw.vert`.
-    SKY_DRAW_VERT: "sky_draw_vert", push (), words 292922 289,
+    SKY_DRAW_VERT: "sky_draw_vert", push (), words 293319 289,
     SkyDrawVert;
 }
 
 shader! {
     /// `shaders_glsl/direct/sky_shade.comp`.
-    SKY_SHADE: "sky_shade", push ShadePush, words 293211 30113,
+    SKY_SHADE: "sky_shade", push ShadePush, words 293608 30145,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rgba16ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -759,7 +759,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/specular_exit.comp`.
-    SPECULAR_EXIT: "specular_exit", push SpecularExitPush, words 323324 6560,
+    SPECULAR_EXIT: "specular_exit", push SpecularExitPush, words 323753 6560,
     0 reads "arriving" SampledImage { uint: false, layered: true },
     1 reads "ground" SampledImage { uint: false, layered: false },
     2 reads "exit_radiance" SampledImage { uint: false, layered: false },
@@ -784,7 +784,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/specular_gather.comp`.
-    SPECULAR_GATHER: "specular_gather", push GatherPush, words 329884 20442,
+    SPECULAR_GATHER: "specular_gather", push GatherPush, words 330313 20442,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "height_levels" SampledImage { uint: false, layered: false },
     2 reads "level_table" SampledImage { uint: true, layered: false },
@@ -812,7 +812,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/specular_light.comp`.
-    SPECULAR_LIGHT: "specular_light", push SpecularLightPush, words 350326 7631,
+    SPECULAR_LIGHT: "specular_light", push SpecularLightPush, words 350755 7631,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "blocked_sum" SampledImage { uint: false, layered: false },
     2 reads "unoccluded_map" SampledImage { uint: false, layered: false },
@@ -826,7 +826,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/specular_tables.comp`.
-    SPECULAR_TABLES: "specular_tables", push SpecularTablesPush, words 357957 4690,
+    SPECULAR_TABLES: "specular_tables", push SpecularTablesPush, words 358386 4712,
     0 reads "azimuths" TexelBuffer,
     1 reads "wedge_rows" StorageBuffer,
     2 writes "specular_tables" StorageImage { format: "Rgba32f", uint: false, layered: true },
@@ -837,7 +837,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/specular_visibility.comp`.
-    SPECULAR_VISIBILITY: "specular_visibility", push SpecularVisibilityPush, words 362647 1238,
+    SPECULAR_VISIBILITY: "specular_visibility", push SpecularVisibilityPush, words 363098 1238,
     0 reads "visibility" SampledImage { uint: false, layered: true },
     1 reads "light_matrix" SampledImage { uint: false, layered: false },
     2 writes "arriving" StorageImage { format: "Rgba32f", uint: false, layered: true },
@@ -849,7 +849,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/sphere_sh_shade.comp`.
-    SPHERE_SH_SHADE: "sphere_sh_shade", push SphereShShadePush, words 363885 27760,
+    SPHERE_SH_SHADE: "sphere_sh_shade", push SphereShShadePush, words 364336 27760,
     0 reads "cells" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "maxima" StorageImage { format: "R32f", uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -875,7 +875,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/sphere_shade.comp`.
-    SPHERE_SHADE: "sphere_shade", push SphereShadePush, words 391645 14492,
+    SPHERE_SHADE: "sphere_shade", push SphereShadePush, words 392096 14492,
     0 reads "cells" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "maxima" StorageImage { format: "R32f", uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -890,7 +890,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/sun_shade.comp`.
-    SUN_SHADE: "sun_shade", push ShadePush, words 406137 24707,
+    SUN_SHADE: "sun_shade", push ShadePush, words 406588 24739,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rgba16ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -911,7 +911,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/sun_specular.comp`.
-    SUN_SPECULAR: "sun_specular", push SunSpecularPush, words 430844 10753,
+    SUN_SPECULAR: "sun_specular", push SunSpecularPush, words 431327 10753,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "sun_sum" SampledImage { uint: false, layered: false },
     2 writes "specular_sum" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -928,7 +928,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/surface_sweep.comp`.
-    SURFACE_SWEEP: "surface_sweep", push MarchPush, words 441597 7721,
+    SURFACE_SWEEP: "surface_sweep", push MarchPush, words 442080 7745,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "slopes" StorageImage { format: "R32ui", uint: true, layered: true },
@@ -944,7 +944,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/sweep_fuse.comp`.
-    SWEEP_FUSE: "sweep_fuse", push SweepFusePush, words 449318 20380,
+    SWEEP_FUSE: "sweep_fuse", push SweepFusePush, words 449825 20375,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rgba16ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -965,7 +965,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/terrain_draw.frag`.
-    TERRAIN_DRAW_FRAG: "terrain_draw_frag", push TerrainDrawPush, words 469698 1129,
+    TERRAIN_DRAW_FRAG: "terrain_draw_frag", push TerrainDrawPush, words 470200 1129,
     1 reads "radiance" SampledImage { uint: false, layered: false },
     2 reads "voids" SampledImage { uint: false, layered: false },
     TerrainDrawFrag {
@@ -976,14 +976,14 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/terrain_draw.vert`.
-    TERRAIN_DRAW_VERT: "terrain_draw_vert", push TerrainDrawPush, words 470827 994,
+    TERRAIN_DRAW_VERT: "terrain_draw_vert", push TerrainDrawPush, words 471329 994,
     0 reads "heights" SampledImage { uint: false, layered: false },
     TerrainDrawVert;
 }
 
 shader! {
     /// `shaders_glsl/bounce/vector_reduce.comp`.
-    VECTOR_REDUCE: "vector_reduce", push ReducePush, words 471821 3811,
+    VECTOR_REDUCE: "vector_reduce", push ReducePush, words 472323 3811,
     0 reads "exit_vectors" SampledImage { uint: false, layered: true },
     1 reads "vector_source" SampledImage { uint: false, layered: true },
     2 writes "vector_levels" StorageImage { format: "Rgba32f", uint: false, layered: true },
@@ -999,7 +999,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bake/visible_points.comp`.
-    VISIBLE_POINTS: "visible_points", push VisiblePointsPush, words 475632 9745,
+    VISIBLE_POINTS: "visible_points", push VisiblePointsPush, words 476134 9745,
     0 reads "cells" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "maxima" StorageImage { format: "R32f", uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -1297,8 +1297,8 @@ layouts! {
         0 cols: i32, 4 rows: i32, 8 cell_x_m: f32, 12 cell_y_m: f32, 16 towards: [f32; 4],
         32 level: [f32; 4], 48 colour: [f32; 4], 64 eye_m: [f32; 4], 80 specular: [f32; 2],
     }
-    push SweepFusePush 20 {
-        0 cols: i32, 4 rows: i32, 8 warm_up: i32, 12 first_azimuth: u32, 16 first_layer: u32,
+    push SweepFusePush 16 {
+        0 cols: i32, 4 rows: i32, 8 warm_up: i32, 12 first_azimuth: u32,
     }
     push TerrainDrawPush 92 {
         0 clip_per_col: [f32; 4], 16 clip_per_row: [f32; 4], 32 clip_per_metre: [f32; 4],
@@ -1345,4 +1345,4 @@ layouts! {
 }
 
 /// Words of all shaders together.
-const WORD_COUNT: usize = 485377;
+const WORD_COUNT: usize = 485879;

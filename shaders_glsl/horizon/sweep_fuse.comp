@@ -36,7 +36,6 @@ layout(push_constant) uniform SweepFusePush {
     int rows;
     int warm_up;
     uint first_azimuth;
-    uint first_layer;  // of the images written
 };
 
 void main() {
@@ -47,8 +46,7 @@ void main() {
     if (lane >= lanes || march >= steps) {
         return;
     }
-    uint k = gl_GlobalInvocationID.z;
-    Azimuth azimuth = azimuth_at(azimuths, first_azimuth + k);
+    Azimuth azimuth = azimuth_at(azimuths, first_azimuth + gl_GlobalInvocationID.z);
     Met found = fused(azimuth, quad_at(lane, march, lanes, steps), lanes, steps, warm_up, vec4(-NO_SLOPE));
     bvec4 nothing = lessThanEqual(found.slope, vec4(LOWEST_MET));
     vec4 angle = mix(arc_tangent(found.slope), vec4(-HALF_PI), nothing);
@@ -57,7 +55,7 @@ void main() {
         angle = max(angle, 0.0);
     }
     for (int i = 0; i < 4 && lane + i < lanes; i++) {
-        ivec3 to = ivec3(texel_at(lane + i, march), k + first_layer);
+        ivec3 to = ivec3(texel_at(lane + i, march), azimuth.horizon_layer);
         imageStore(horizon_angles, to, vec4(angle[i]));
         if (WRITES_DISTANCES) {
             bool ground = nothing[i] || (BORDER != BORDER_OPEN && found.slope[i] <= 0.0);

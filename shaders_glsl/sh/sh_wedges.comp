@@ -29,7 +29,7 @@ layout(push_constant) uniform ShWedgesPush {
     float cell_x_m;
     float cell_y_m;
     int azimuth_count;
-    int azimuth_first; // in constants: layer, cosine, sine, in the circle's order
+    int azimuth_first; // in constants: cosine, sine, in the circle's order
     int table_first;   // in constants: [first horizon][last horizon], four coefficients a texel
     int side;          // horizons on either axis of the table
     float lowest_rad;  // of the table, which ends at the zenith
@@ -49,13 +49,13 @@ vec4 wedge[4 * LAYERS];
 #include "sh/wedge.glsl"
 
 // Table position of the four grid points' horizons in an azimuth.
-vec4 places(vec4 of_azimuth, ivec4 lane, int march, vec4 east, vec4 north) {
+vec4 places(int layer, vec2 towards, ivec4 lane, int march, vec4 east, vec4 north) {
     vec4 angle;
     for (int k = 0; k < 4; k++) {
-        angle[k] = texelFetch(horizon_angles, ivec3(texel_at(lane[k], march), int(of_azimuth.x)), 0).x;
+        angle[k] = texelFetch(horizon_angles, ivec3(texel_at(lane[k], march), layer), 0).x;
     }
     if (OWN_PLANE_HIDES) {
-        angle = max(angle, arc_tangent(east * of_azimuth.y + north * of_azimuth.z));
+        angle = max(angle, arc_tangent(east * towards.x + north * towards.y));
     }
     vec4 place = (angle - lowest_rad) * (float(side - 1) / (HALF_PI - lowest_rad));
     return clamp(place, 0.0, float(side - 1));
@@ -102,14 +102,15 @@ void main() {
     for (int i = 0; i < 4 * LAYERS; i++) {
         series[i] = vec4(0.0);
     }
-    vec4 azimuth = texelFetch(constants, azimuth_first);
-    vec4 first = places(azimuth, lane, march, east, north);
+    vec2 towards = texelFetch(constants, azimuth_first).xy;
+    vec4 first = places(0, towards, lane, march, east, north);
     for (int k = 1; k <= azimuth_count; k++) {
-        vec4 next = texelFetch(constants, azimuth_first + k % azimuth_count);
-        vec4 last = places(next, lane, march, east, north);
+        int layer = k % azimuth_count;
+        vec2 next = texelFetch(constants, azimuth_first + layer).xy;
+        vec4 last = places(layer, next, lane, march, east, north);
         look_up(first, last);
-        add_turned(azimuth.yz);
-        azimuth = next;
+        add_turned(towards);
+        towards = next;
         first = last;
     }
     for (int k = 0; k < 4 && across + k < count; k++) {

@@ -49,11 +49,12 @@ struct Azimuth {
     float weight;     // sun: radiance that makes the chords add up to irradiance 1; key light: 1
     int vector_march; // exact azimuths only: the grid vector (march, lane), both 0 or more, coprime
     int vector_lane;
+    uint horizon_layer; // layer of its horizons where they are written as angles
 };
 
 Azimuth azimuth_from(vec4 a, vec4 b, vec4 c, vec4 d) {
     return Azimuth(a.x, a.y, a.z, a.w, b.x, b.y, floatBitsToInt(b.z), floatBitsToUint(b.w), floatBitsToUint(c.x),
-                   c.y, c.z, c.w, d.x, floatBitsToInt(d.y), floatBitsToInt(d.z));
+                   c.y, c.z, c.w, d.x, floatBitsToInt(d.y), floatBitsToInt(d.z), floatBitsToUint(d.w));
 }
 
 // Entry k of a list of azimuths: four texels each, in the order above.

@@ -16,5 +16,5 @@ pub fn device_peak(limits: &Limits) -> Result<Plan> {
     let mut builder = Builder::new(limits);
     passes::device_peak::plan(&mut builder, limits);
     let size = [SIDE, SIDE];
-    Plan::finish(builder, size, Vec::new(), Vec::new(), Vec::new(), Vec::new(), limits)
+    Plan::finish(builder, size, Vec::new(), Vec::new(), Vec::new(), limits)
 }

@@ -17,7 +17,6 @@ impl Plan {
         builder: Builder,
         size: [u32; 2],
         azimuths: Vec<Azimuth>,
-        layer_azimuths: Vec<u32>,
         notes: Vec<String>,
         settings: Vec<(String, String)>,
         limits: &Limits,
@@ -45,17 +44,8 @@ impl Plan {
         }
         place_barriers(&mut passes);
         place_barriers(&mut edit_passes);
-        let plan = Plan {
-            size,
-            resources,
-            passes,
-            edit_passes,
-            azimuths,
-            constants,
-            layer_azimuths,
-            notes,
-            settings,
-        };
+        let plan =
+            Plan { size, resources, passes, edit_passes, azimuths, constants, notes, settings };
         if plan.bytes() > limits.memory_budget {
             return Err(Error::Limit {
                 what: "images and buffers of this picture".into(),

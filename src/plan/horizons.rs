@@ -1,7 +1,6 @@
 use super::Plan;
 use crate::graph::{Builder, Format, Limits, Owner};
 use crate::passes::azimuths::Azimuth;
-use crate::passes::batch;
 use crate::passes::nodes::Nodes;
 use crate::passes::sweep::Sweep;
 use crate::passes::sweeping::{Held, circle, part, prepare, settings};
@@ -9,7 +8,7 @@ use crate::scene::{Border, HeightField, Quality};
 use crate::{Error, Result, passes};
 
 /// Passes that write the horizons of `count` azimuths of the quality's circle, from number `first` on. Outputs:
-/// "horizon_angles" (f32 elevation, radians, one layer per azimuth in the order of [`Plan::layer_azimuths`]) and, if
+/// "horizon_angles" (f32 elevation, radians, one layer per azimuth, in order) and, if
 /// requested, "horizon_distances" (metres, 0 without an occluder).
 ///
 /// # Errors
@@ -43,7 +42,6 @@ pub fn horizons(
             format!("some of 0..{}", quality.azimuths),
         ));
     }
-    let layer_azimuths = batch::sort(&mut list).iter().map(|k| k + first).collect();
     let mut builder = Builder::new(limits);
     let [cols, rows] = size;
     let heights = builder.image("heights", Owner::Input, Format::R32Float, [cols, rows, 1], false);
@@ -77,5 +75,5 @@ pub fn horizons(
         );
     }
     let used = settings(quality, Some(&sweeping.sweep), border);
-    Plan::finish(builder, size, lists.lists.concat(), layer_azimuths, notes, used, limits)
+    Plan::finish(builder, size, lists.lists.concat(), notes, used, limits)
 }

@@ -28,5 +28,5 @@ pub fn map(map: &Map, limits: &Limits) -> Result<Plan> {
     bound.push(("picture", image("picture", Owner::Output, Format::R32Uint, map.size)));
     passes::map_draw::plan(&mut builder, map, &bound);
     let none = Vec::new();
-    Plan::finish(builder, map.field, Vec::new(), Vec::new(), none, Vec::new(), limits)
+    Plan::finish(builder, map.field, Vec::new(), none, Vec::new(), limits)
 }

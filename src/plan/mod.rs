@@ -100,8 +100,6 @@ pub struct Plan {
     pub azimuths: Vec<Azimuth>,
     /// Contents of the buffer "constants", four f32 per texel; empty without spherical harmonics.
     pub constants: Vec<f32>,
-    /// For horizons: the azimuth number k of the circle for each layer of the outputs.
-    pub layer_azimuths: Vec<u32>,
     /// Notes on what the planner dropped or changed, and why.
     pub notes: Vec<String>,
     /// The effective settings, as (name, value).

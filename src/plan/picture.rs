@@ -267,7 +267,7 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
         drawing.edit(size, &lists, edits);
         drawing.light(&lists, quality)?;
     }
-    Plan::finish(drawing.builder, size, lists.lists.concat(), Vec::new(), notes, used, limits)
+    Plan::finish(drawing.builder, size, lists.lists.concat(), notes, used, limits)
 }
 
 fn without_bounces(quality: &Quality) -> Quality {

@@ -107,7 +107,7 @@ pub fn preview(
     let of_sun = of_sun.map(|(unoccluded, grid, ..)| (unoccluded, grid));
     let albedo = &fine.surface.albedo;
     preview_shade::plan(&mut builder, fine_grid, (of_sky, sky_grid), of_sun, albedo, &shaded);
-    Plan::finish(builder, size, Vec::new(), Vec::new(), Vec::new(), Vec::new(), limits)
+    Plan::finish(builder, size, Vec::new(), Vec::new(), Vec::new(), limits)
 }
 
 /// The first sun with irradiance, and its number, from 1.

@@ -190,7 +190,7 @@ fn traced(
         ("seed".to_owned(), seed.to_string()),
         ("paths_of_a_batch".to_owned(), BATCH_PATHS.to_string()),
     ];
-    Plan::finish(builder, size, Vec::new(), Vec::new(), Vec::new(), used, limits)
+    Plan::finish(builder, size, Vec::new(), Vec::new(), used, limits)
 }
 
 /// Approximate number of path vertices per dispatch. A run can be interrupted between dispatches.

@@ -77,5 +77,5 @@ pub fn shadow_heights(
         ["lit_above", "penumbra", "sun_share"].map(|name| image(name, Owner::Output, size));
     shadow_height::plan(&mut builder, (field, sun), outer.as_ref(), parts, heights, written);
     let used = vec![("parts".to_owned(), parts.to_string())];
-    Plan::finish(builder, size, Vec::new(), Vec::new(), Vec::new(), used, limits)
+    Plan::finish(builder, size, Vec::new(), Vec::new(), used, limits)
 }

@@ -176,15 +176,7 @@ impl Device {
     ) -> Vec<f32> {
         let plan = plan::horizons(field, border, quality, limits, (0, quality.azimuths), false)
             .expect("a plan");
-        let order = plan.layer_azimuths.clone();
-        let layers = self.draw(plan, &[field.heights_m()]).remove(0).values;
-        let plane = field.rows() * field.cols();
-        let mut sorted = vec![0.0; layers.len()];
-        for (layer, k) in order.iter().enumerate() {
-            let k = *k as usize * plane;
-            sorted[k..k + plane].copy_from_slice(&layers[layer * plane..(layer + 1) * plane]);
-        }
-        sorted
+        self.draw(plan, &[field.heights_m()]).remove(0).values
     }
 
     /// The picture of a scene without albedo map: its first output.

@@ -10,6 +10,9 @@ use ridgelight::{Error, Result};
 use ridgelight_io as files;
 use ridgelight_io::{Band, GeoTiffWriter, Georeference, Layer, NpyWriter};
 use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use indicatif::HumanDuration;
 
 use crate::args::HorizonArgs;
 use crate::idle;
@@ -77,8 +80,7 @@ pub fn for_each(
     let mut first = 0;
     loop {
         let plan = plan_from(field, border, quality, limits, (first, at_once), distances)?;
-        let order = plan.layer_azimuths.clone();
-        let count = order.len() as u32;
+        let count = plan.azimuths.len() as u32;
         at_once = count;
         let kept = plan.clone();
         let (angles, far) = gpu.with_frame(plan, &[field.heights_m()], |gpu, frame| {
@@ -87,9 +89,7 @@ pub fn for_each(
             let far = if distances { gpu.pixels(frame, 1)?.values } else { Vec::new() };
             Ok((angles, far))
         })?;
-        for k in first..first + count {
-            let layer = order.iter().position(|o| *o == k).expect("every azimuth has its layer");
-            let range = layer * plane..(layer + 1) * plane;
+        for (k, range) in (first..first + count).zip((0..).map(|l| l * plane..(l + 1) * plane)) {
             each(k, &angles[range.clone()], far.get(range).unwrap_or_default())?;
         }
         first += count;
@@ -229,63 +229,95 @@ pub fn run(args: &HorizonArgs) -> Result<Outcome> {
         plan_from(&field, border, &quality, limits, (0, most), distances)
     })?;
     let shape = [quality.azimuths as usize, field.rows(), field.cols()];
+    let azimuths = plan::circle_rad(&quality, field.cell_m())?;
+    let (mut gpu, limits) = setup::device(&args.global)?;
+    let mut series = args.fourier.map(|wanted| {
+        let size = [field.rows(), field.cols()];
+        fourier::Series::new(wanted, azimuths.clone(), size, limits.memory_budget)
+    });
     let outputs = [Some(args.output.as_path()), args.distances.as_deref()];
     let bytes = 4 * shape.iter().product::<usize>() as u64;
-    let outputs = outputs.into_iter().flatten().filter(|path| setup::extension(path) == "npy");
-    files::check_room(&outputs.map(|path| (path, bytes)).collect::<Vec<_>>())?;
-    let (mut gpu, limits) = setup::device(&args.global)?;
+    let of_file = |path| match (setup::extension(path).as_str(), &series) {
+        ("npy", _) => Some((path, bytes)),
+        ("ktx2", Some(series)) => Some((path, series.bytes())),
+        _ => None,
+    };
+    files::check_room(&outputs.into_iter().flatten().filter_map(of_file).collect::<Vec<_>>())?;
     let used = used(&field, border, &quality, &limits, distances)?;
     idle::say(args.global.quiet, &args.quality.written, &used);
-    let azimuths = plan::circle_rad(&quality, field.cell_m())?;
     let compass = Compass::of(&azimuths);
     let create = |path: &Path, unit: &str| {
         LayerFile::create(path, shape, compass.names(), unit, georeference.as_ref())
     };
-    let mut series = args
-        .fourier
-        .map(|wanted| fourier::Series::new(wanted, azimuths.clone(), [field.rows(), field.cols()]));
     let has_layers = series.is_none();
     let mut angles_file = has_layers.then(|| create(&args.output, "rad")).transpose()?;
     let mut distances_file = args.distances.as_ref().map(|path| create(path, "m")).transpose()?;
     let bar = crate::setup::terminal::progress(args.global.quiet, "horizons");
-    let (times, plan) = for_each(
-        &mut gpu,
-        &field,
-        border,
-        &quality,
-        &limits,
-        distances,
-        &mut |k, angles, distances| {
-            bar.set_message(format!("horizons: azimuth {} of {}", k + 1, shape[0]));
-            let masked = |plane: &[f32]| {
-                let mut plane = plane.to_vec();
-                setup::mask_voids(&field, &mut plane, 1);
-                plane
-            };
-            let layer = compass.layer_of[k as usize];
-            if let Some(series) = &mut series {
-                series.add(k as usize, angles);
-            }
-            if let Some(file) = &mut angles_file {
-                file.write(layer, masked(angles))?;
-            }
-            distances_file.as_mut().map_or(Ok(()), |file| file.write(layer, masked(distances)))
-        },
-    )?;
-    bar.finish_and_clear();
-    let mut metadata = setup::metadata(&gpu, &field, &plan);
-    metadata.push(("azimuths".into(), quality.azimuths.to_string()));
-    metadata.extend(setup::asked(&args.input, &args.surface, None));
-    let named = "compass degrees, clockwise from north, to the horizon";
-    metadata.push(("azimuth_names".into(), named.into()));
-    let mut of_series = String::new();
-    if let Some(series) = &series {
-        let left_out = 100.0 * series.error();
-        metadata.push(("fourier_error_percent".into(), format!("{left_out:.3}")));
+    let (begun, mut done) = (Instant::now(), 0);
+    let mut times = Vec::new();
+    let mut metadata = Vec::new();
+    loop {
+        let [rounds, behind] = series.as_ref().map_or([1, 0], fourier::Series::rounds);
+        let distances = distances && behind == 0;
+        let (more, plan) = for_each(
+            &mut gpu,
+            &field,
+            border,
+            &quality,
+            &limits,
+            distances,
+            &mut |k, angles, distances| {
+                let masked = |plane: &[f32]| {
+                    let mut plane = plane.to_vec();
+                    setup::mask_voids(&field, &mut plane, 1);
+                    plane
+                };
+                let layer = compass.layer_of[k as usize];
+                if let Some(series) = &mut series {
+                    series.add(k as usize, angles);
+                }
+                if let Some(file) = &mut angles_file {
+                    file.write(layer, masked(angles))?;
+                }
+                if let Some(file) = distances_file.as_mut().filter(|_| !distances.is_empty()) {
+                    file.write(layer, masked(distances))?;
+                }
+                done += 1;
+                let left = (rounds * shape[0] - done) as u32;
+                let left = HumanDuration(begun.elapsed() * left / done as u32);
+                let round = match rounds {
+                    1 => String::new(),
+                    _ => format!("round {} of {rounds}, ", behind + 1),
+                };
+                let azimuth = k + 1;
+                bar.set_message(format!(
+                    "horizons: {round}azimuth {azimuth} of {}, about {left} left",
+                    shape[0]
+                ));
+                Ok(())
+            },
+        )?;
+        times.extend(more);
+        if behind == 0 {
+            metadata = setup::metadata(&gpu, &field, &plan);
+            metadata.push(("azimuths".into(), quality.azimuths.to_string()));
+            metadata.extend(setup::asked(&args.input, &args.surface, None));
+            let named = "compass degrees, clockwise from north, to the horizon";
+            metadata.push(("azimuth_names".into(), named.into()));
+        }
+        let Some(series) = &mut series else { break };
         let values =
             "Fourier series of the tangent of the elevation over azimuth, for bevy-clipmap";
         let about = [metadata.as_slice(), &[("values".into(), values.into())]].concat();
-        series.write(&args.output, &about)?;
+        if !series.end_round(&args.output, &about)? {
+            break;
+        }
+    }
+    bar.finish_and_clear();
+    let mut of_series = String::new();
+    if let Some(series) = series {
+        let left_out = 100.0 * series.finish()?;
+        metadata.push(("fourier_error_percent".into(), format!("{left_out:.3}")));
         of_series =
             format!(", of which the series leaves out {left_out:.2} % (RMS of the tangents)");
     }

@@ -66,15 +66,6 @@ impl HeightField {
         }
     }
 
-    /// The azimuth of each layer of [`FieldLight::horizon`], counted counter-clockwise from east in equal steps. It depends on
-    /// [`cell`](Self::cell) and [`horizon_azimuths`](Self::horizon_azimuths) alone.
-    ///
-    /// # Errors
-    /// A size, cell or number of azimuths out of range.
-    pub fn horizon_order(&self) -> ridgelight::Result<Vec<u32>> {
-        light::horizon_order(self)
-    }
-
     /// A level grid with a vertex at each grid point, which [`TerrainMaterial`] raises. The first grid point is at the
     /// origin.
     pub fn mesh(&self) -> Mesh {
@@ -100,8 +91,8 @@ pub struct FieldLight {
     /// cosine-weighted mean unoccluded direction, in Bevy's axes. The texel holds the radiance of white ground under a sky
     /// of radiance (1 + d) / 2 in direction d.
     pub bent_normal: Option<Handle<Image>>,
-    /// Elevation of the horizon, in radians; present if [`HeightField::horizon_azimuths`] is not 0. One layer per azimuth, in the
-    /// order of [`HeightField::horizon_order`].
+    /// Elevation of the horizon, in radians; present if [`HeightField::horizon_azimuths`] is not 0. One layer per azimuth,
+    /// counter-clockwise from east.
     pub horizon: Option<Handle<Image>>,
 }
 

@@ -169,13 +169,6 @@ impl Settings {
     }
 }
 
-/// The azimuth of each layer of horizons.
-pub(crate) fn horizon_order(field: &HeightField) -> ridgelight::Result<Vec<u32>> {
-    // The order depends on the cells alone.
-    let limits = Limits::boundless(false, u64::MAX);
-    Ok(Settings::of(field).horizon_plan(&limits)?.layer_azimuths)
-}
-
 /// A sky whose radiance in each channel is (1 + d) / 2 for direction d in Bevy's axes.
 fn directions() -> ridgelight::Result<Environment> {
     let (width, height) = (128, 64);

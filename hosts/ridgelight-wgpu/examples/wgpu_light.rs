@@ -1,5 +1,5 @@
-//! Light of a height field in a wgpu texture, read by a wgpu pass. `wgpu_light OUT.exr` writes what the pass has read.
-//! `hosts/ridgelight-wgpu/check` runs it.
+//! Light of a height field in a wgpu texture, read by a wgpu pass. `wgpu_light OUT.exr [FRAMES]` writes what the pass has read in
+//! the last frame. `hosts/ridgelight-wgpu/check` runs it.
 
 use ridgelight::plan::{self, Picture, Rectangle};
 use ridgelight::scene::{Quality, Scene};
@@ -146,7 +146,9 @@ fn refuse(
 }
 
 fn main() -> Any<()> {
-    let out = std::env::args_os().nth(1).ok_or("usage: wgpu_light OUT.exr")?;
+    let mut args = std::env::args().skip(1);
+    let out = args.next().ok_or("usage: wgpu_light OUT.exr [FRAMES]")?;
+    let frames: u32 = args.next().map_or(Ok(1), |frames| frames.parse())?;
     let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
     descriptor.backends = wgpu::Backends::VULKAN;
     // wgpu enables no layer; VK_INSTANCE_LAYERS can.
@@ -186,8 +188,15 @@ fn main() -> Any<()> {
     edit(&device, &queue, &scene)?;
 
     let reader = Reader::new(&device, &light);
-    queue.submit([reader.record(&device)]);
-    let grey: Vec<[f32; 3]> = reader.values(&device)?.into_iter().map(|v| [v; 3]).collect();
+    let mut values = Vec::new();
+    for _ in 0..frames {
+        queue.write_texture(heights.as_image_copy(), &bytes, layout, SIZE);
+        renderer.submit(&[&heights], &[&light])?;
+        queue.submit([reader.record(&device)]);
+        values = reader.values(&device)?;
+        reader.mapped.unmap();
+    }
+    let grey: Vec<[f32; 3]> = values.into_iter().map(|v| [v; 3]).collect();
     let layer = Layer { name: String::new(), channels: Channels::Rgb(&grey) };
     files::write_exr(out.as_ref(), ROWS, COLS, &[layer], &[])?;
     for timing in renderer.timings().ok_or("no times of a submission that has run")? {

@@ -1,5 +1,5 @@
 //! Ridgelight in a vulkano program: on vulkano's device, with its images, buffers and command buffer.
-//! `ridgelight-vulkano-host OUT.exr` writes the light. `hosts/vulkano/check` runs it.
+//! `ridgelight-vulkano-host OUT.exr [FRAMES]` writes the light of the last frame. `hosts/vulkano/check` runs it.
 
 use std::sync::Arc;
 
@@ -60,7 +60,9 @@ fn texels(memory: &Arc<StandardMemoryAllocator>, values: &[f32]) -> Any<Subbuffe
 }
 
 fn main() -> Any<()> {
-    let out = std::env::args_os().nth(1).ok_or("usage: ridgelight-vulkano-host OUT.exr")?;
+    let mut args = std::env::args().skip(1);
+    let out = args.next().ok_or("usage: ridgelight-vulkano-host OUT.exr [FRAMES]")?;
+    let frames: u32 = args.next().map_or(Ok(1), |frames| frames.parse())?;
     let info = InstanceCreateInfo { max_api_version: Some(Version::V1_1), ..Default::default() };
     let instance = Instance::new(VulkanLibrary::new()?, info)?;
     let physical_device = instance.enumerate_physical_devices()?.next().ok_or("no device")?;
@@ -78,13 +80,10 @@ fn main() -> Any<()> {
     let mut renderer = ash_host::prepare(&host, &scene)?;
     let heights = image(&memory, ImageUsage::SAMPLED | ImageUsage::TRANSFER_DST)?;
     let light = image(&memory, ImageUsage::STORAGE | ImageUsage::TRANSFER_SRC)?;
-    let texels = texels(&memory, scene.field.heights_m())?;
+    let [filled_from, read_to] =
+        [texels(&memory, scene.field.heights_m())?, texels(&memory, &[0.0; ROWS * COLS])?];
 
     let pool = Arc::new(StandardCommandBufferAllocator::new(device.clone(), Default::default()));
-    let begin = CommandBufferBeginInfo::default();
-    let level = CommandBufferLevel::Primary;
-    let recording = RecordingCommandBuffer::new(pool, queue_family_index, level, begin)?;
-    let commands = recording.handle();
     let handles = |view: &Arc<ImageView>| (view.image().handle(), view.handle());
     let layers = vk::ImageSubresourceLayers {
         aspect_mask: vk::ImageAspectFlags::COLOR,
@@ -92,12 +91,16 @@ fn main() -> Any<()> {
         ..Default::default()
     };
     let image_extent = vk::Extent3D { width: COLS as u32, height: ROWS as u32, depth: 1 };
-    let region = [vk::BufferImageCopy {
-        buffer_offset: texels.offset(),
-        image_subresource: layers,
-        image_extent,
-        ..Default::default()
-    }];
+    let region = |texels: &Subbuffer<[f32]>| {
+        let buffer_offset = texels.offset();
+        let image_subresource = layers;
+        [vk::BufferImageCopy {
+            buffer_offset,
+            image_subresource,
+            image_extent,
+            ..Default::default()
+        }]
+    };
     let whole = vk::ImageSubresourceRange {
         aspect_mask: vk::ImageAspectFlags::COLOR,
         level_count: 1,
@@ -119,23 +122,41 @@ fn main() -> Any<()> {
         vk::PipelineStageFlags::HOST,
     ];
     let (ash, none) = (&host.device, vk::DependencyFlags::empty());
-    let buffer = texels.buffer().handle();
-    // SAFETY: all handles are alive until the queue is idle; images are in the layouts that the barriers state.
-    unsafe {
-        ash.cmd_pipeline_barrier(commands, top, copy, none, &[], &[], &filling);
-        ash.cmd_copy_buffer_to_image(commands, buffer, handles(&heights).0, to, &region);
-        ash_host::record(&mut renderer, commands, 0, handles(&heights), handles(&light))?;
-        ash.cmd_copy_image_to_buffer(commands, handles(&light).0, from, buffer, &region);
-        ash.cmd_pipeline_barrier(commands, copy, to_host, none, &reading, &[], &[]);
-        let recorded = recording.end()?;
-        let all = [recorded.handle()];
-        let submit = [vk::SubmitInfo::default().command_buffers(&all)];
-        queue.with(|mut locked| -> Any<()> {
-            ash.queue_submit(queue.handle(), &submit, vk::Fence::null())?;
-            Ok(locked.wait_idle()?)
-        })?;
+    let [read, written] = [&filled_from, &read_to].map(|texels| texels.buffer().handle());
+    for _ in 0..frames {
+        let (begin, level) = (CommandBufferBeginInfo::default(), CommandBufferLevel::Primary);
+        let recording =
+            RecordingCommandBuffer::new(pool.clone(), queue_family_index, level, begin)?;
+        let commands = recording.handle();
+        // SAFETY: all handles are alive until the queue is idle; images are in the layouts that the barriers state.
+        unsafe {
+            ash.cmd_pipeline_barrier(commands, top, copy, none, &[], &[], &filling);
+            ash.cmd_copy_buffer_to_image(
+                commands,
+                read,
+                handles(&heights).0,
+                to,
+                &region(&filled_from),
+            );
+            ash_host::record(&mut renderer, commands, 0, handles(&heights), handles(&light))?;
+            ash.cmd_copy_image_to_buffer(
+                commands,
+                handles(&light).0,
+                from,
+                written,
+                &region(&read_to),
+            );
+            ash.cmd_pipeline_barrier(commands, copy, to_host, none, &reading, &[], &[]);
+            let recorded = recording.end()?;
+            let all = [recorded.handle()];
+            let submit = [vk::SubmitInfo::default().command_buffers(&all)];
+            queue.with(|mut locked| -> Any<()> {
+                ash.queue_submit(queue.handle(), &submit, vk::Fence::null())?;
+                Ok(locked.wait_idle()?)
+            })?;
+        }
     }
-    let grey: Vec<[f32; 3]> = texels.read()?.iter().map(|value| [*value; 3]).collect();
+    let grey: Vec<[f32; 3]> = read_to.read()?.iter().map(|value| [*value; 3]).collect();
     let layer = Layer { name: String::new(), channels: Channels::Rgb(&grey) };
     files::write_exr(out.as_ref(), ROWS, COLS, &[layer], &[])?;
     renderer.destroy();

@@ -57,8 +57,8 @@ pub struct Azimuth {
     pub vector_march: i32,
     /// Exact azimuths only: lane component of the grid vector.
     pub vector_lane: i32,
-    /// Fills the fourth texel.
-    pub pad: u32,
+    /// Layer of its horizons where they are written as angles: its place in the circle.
+    pub horizon_layer: u32,
 }
 
 impl Azimuth {

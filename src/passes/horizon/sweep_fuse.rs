@@ -38,7 +38,6 @@ pub(crate) fn plan(
             rows: rows as i32,
             warm_up: axis.warm_up as i32,
             first_azimuth: batch.first,
-            first_layer: batch.first,
         },
         &bound,
         axis.texels() * u64::from(batch.count) * (8 + sweep.lattice_bytes()),

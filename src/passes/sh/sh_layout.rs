@@ -8,7 +8,6 @@ use crate::basis::slice::{Slices, parts, slice_index};
 use crate::basis::wedge::WedgeTable;
 use crate::basis::{bands, index, window};
 use crate::passes::azimuths::Azimuth;
-use crate::passes::batch;
 use crate::passes::nodes::Nodes;
 use crate::scene::{Border, Environment, Quality, Receiver, Window};
 
@@ -125,20 +124,15 @@ pub(crate) struct WedgeTexels {
 }
 
 impl WedgeTexels {
-    /// Adds them to the constants, for even azimuths in the order of the circle, whose horizons are in layers
-    /// in the order of [`batch::sort`].
+    /// Adds them to the constants, for even azimuths in the order of the circle.
     pub(crate) fn of(
         border: Border,
         quality: &Quality,
         circle: &[Azimuth],
         constants: &mut Vec<f32>,
     ) -> Self {
-        let layers = batch::sort(&mut circle.to_vec());
         let azimuth_first = constants.len() / 4;
-        for (k, azimuth) in circle.iter().enumerate() {
-            let layer = layers.iter().position(|at| *at as usize == k).expect("sorted");
-            constants.extend([layer as f32, azimuth.cos_phi, azimuth.sin_phi, 0.0]);
-        }
+        constants.extend(circle.iter().flat_map(|a| [a.cos_phi, a.sin_phi, 0.0, 0.0]));
         let table_first = constants.len() / 4;
         let order = quality.sh_order as usize;
         let (side, lowest_rad) = (quality.wedge_side as usize, lowest_rad(border));

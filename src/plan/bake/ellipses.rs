@@ -152,6 +152,6 @@ impl<'a> Begun<'a> {
         let curvature = curvature.map(|k| ("curvatures_per_m", format!("{k:?}")));
         let settings = settings.into_iter().chain(curvature);
         let settings = settings.map(|(name, value)| (name.to_owned(), value)).collect();
-        Plan::finish(self.builder, self.size, Vec::new(), Vec::new(), notes, settings, limits)
+        Plan::finish(self.builder, self.size, Vec::new(), notes, settings, limits)
     }
 }

@@ -67,5 +67,5 @@ pub fn facet_mask(
         ("facet_mask", bytes_text(bytes)),
     ];
     let settings = settings.map(|(name, value)| (name.to_owned(), value)).to_vec();
-    Plan::finish(builder, size, Vec::new(), Vec::new(), Vec::new(), settings, limits)
+    Plan::finish(builder, size, Vec::new(), Vec::new(), settings, limits)
 }

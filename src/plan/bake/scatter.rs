@@ -236,7 +236,7 @@ pub fn scatter_views(
             directions.lowest_z()
         ));
     }
-    Plan::finish(builder, size, Vec::new(), Vec::new(), notes, settings, limits)
+    Plan::finish(builder, size, Vec::new(), notes, settings, limits)
 }
 
 /// Number of `views` in one plan: the scattered light towards them takes at most 256 MiB and fits the layers of an image.

@@ -67,7 +67,7 @@ pub fn visible_points(
             "{flat} of {of} directions are so flat that their rays are given up after {REACH_CELLS} cells"
         ));
     }
-    Plan::finish(builder, size, Vec::new(), Vec::new(), notes, settings, limits)
+    Plan::finish(builder, size, Vec::new(), notes, settings, limits)
 }
 
 /// # Errors

@@ -32,7 +32,7 @@ fn by_command_line(folder: &Path) -> Vec<u32> {
 #[test]
 fn the_ash_host_gives_the_command_lines_bytes() {
     if let Some(path) = std::env::var_os(CHILD) {
-        let lit = program::lit().expect("light");
+        let lit = program::lit(2).expect("light");
         std::fs::write(path, bytemuck::cast_slice(&lit)).expect("a file");
         return;
     }

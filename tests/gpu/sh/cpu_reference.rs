@@ -192,7 +192,8 @@ pub(crate) fn sh_wedges(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         let node = [i as u32 % cols, i as u32 / cols];
         let [col, row] = [0, 1].map(|axis| nodes.place(node[axis], size[axis]) as usize);
         let slope = field_slope(&heights, col as i32, row as i32);
-        let lowest = |(k, azimuth): (usize, &Azimuth)| {
+        let lowest = |azimuth: &Azimuth| {
+            let k = azimuth.horizon_layer as usize;
             // π/2 as f32 is more than π/2.
             let angle = f64::from(angles[k * plane + row * size[0] as usize + col]);
             let horizon = angle.clamp(-FRAC_PI_2, FRAC_PI_2).tan();
@@ -201,7 +202,7 @@ pub(crate) fn sh_wedges(run: &mut Run, pass: &Pass) -> Vec<Pair> {
             let own = if hides { slope.dot(towards) } else { f64::NEG_INFINITY };
             (*azimuth, horizon.max(own))
         };
-        let lowest: Vec<_> = azimuths.iter().enumerate().map(lowest).collect();
+        let lowest: Vec<_> = azimuths.iter().map(lowest).collect();
         let want = wedges_reference(&table, &lowest);
         let at = [count, row, col];
         let bands = ridgelight::basis::bands(order);

@@ -39,17 +39,16 @@ pub fn horizons(
         let part = (first, 16.min(quality.azimuths - first));
         let limits = gpu.report().limits;
         let plan = plan::horizons(field, Border::Plane, quality, &limits, part, distances)?;
-        let order = plan.layer_azimuths.clone();
         let outputs = gpu.with_frame(plan, &[field.heights_m()], |gpu, frame| {
             gpu.draw(frame)?;
             let outputs = 0..1 + usize::from(distances);
             outputs.map(|o| gpu.pixels(frame, o)).collect::<Result<Vec<_>>>()
         })?;
         for (output, found) in outputs.iter().zip(&mut found) {
-            for (layer, k) in order.iter().enumerate() {
+            for layer in 0..part.1 as usize {
                 for (i, [r, c]) in picks.iter().enumerate() {
                     let at = layer * plane + r * field.cols() + c;
-                    found[*k as usize * picks.len() + i] = output.values[at];
+                    found[(first as usize + layer) * picks.len() + i] = output.values[at];
                 }
             }
         }

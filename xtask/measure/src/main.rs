@@ -10,6 +10,7 @@ mod curved;
 mod fourier;
 mod gallery;
 mod goals;
+mod hosts;
 mod lights;
 mod pages;
 mod performance;
@@ -34,7 +35,7 @@ use common::args::Args;
 
 type Program = (&'static str, &'static str, fn(Args) -> Outcome);
 
-const PROGRAMS: [Program; 30] = [
+const PROGRAMS: [Program; 31] = [
     ("accuracy", "FIELD [--cell X,Y] [--env FILE] [--points N] [--pyramids]", accuracy::run),
     ("auto", "FOLDER [--fit] [--side N] [--seconds S] [--json FILE]", auto::run),
     ("bake", "-o PICTURE.png --json FILE", bake::run),
@@ -50,6 +51,7 @@ const PROGRAMS: [Program; 30] = [
     ("gallery", "PROGRAM", gallery::run),
     ("gloss", "[SIDE] [--spp N] [-o PICTURE.png]", specular::indirect),
     ("goals", "PROGRAM [FOLDER]", goals::run),
+    ("hosts", "HOST=CRATES=PROGRAM...", hosts::run),
     ("lights", "[SIDE]", lights::run),
     ("lobe", "[SIDE]", specular::direct),
     ("pages", "[--check]", pages::run),

@@ -66,7 +66,7 @@ fn by_shadow_heights(
     let plan = plan::shadow_heights(&scene.field, &scene.lights.suns[0], None, 1, &limits)?;
     let mut frame = gpu.frame(plan, &[scene.field.heights_m()])?;
     gpu.draw(&mut frame)?;
-    let share = gpu.pixels(&mut frame, 2)?.values;
+    let share = gpu.pixels(&frame, 2)?.values;
     let channels = lit.values.len() / share.len();
     let light = lit.values.iter().step_by(channels).zip(share);
     let light = light.map(|(lit, share)| f64::from(*lit) * f64::from(share)).collect();

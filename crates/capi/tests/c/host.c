@@ -49,7 +49,8 @@ static RidgelightImage image(RidgelightImageInfo wanted, VkImageUsageFlags usage
 }
 
 int main(int argc, char **argv) {
-    must(argc == 2, "usage: host OUT");
+    must(argc == 2 || argc == 3, "usage: host OUT [FRAMES]");
+    int frames = argc == 3 ? atoi(argv[2]) : 1;
     RL(ridgelight_check_version(RIDGELIGHT_VERSION));
 
     /* The engine's own: an instance and a device with what Ridgelight needs, a queue, a command buffer. */
@@ -73,14 +74,15 @@ int main(int argc, char **argv) {
     VK(vkCreateDevice(physical_device, &device_info, NULL, &device));
     VkQueue queue;
     vkGetDeviceQueue(device, family, 0, &queue);
-    VkCommandPoolCreateInfo pool_info = {.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO, .queueFamilyIndex = family};
+    VkCommandPoolCreateInfo pool_info = {.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
+        .flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT, .queueFamilyIndex = family};
     VkCommandPool pool;
     VK(vkCreateCommandPool(device, &pool_info, NULL, &pool));
     VkCommandBufferAllocateInfo commands_info = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
         .commandPool = pool, .commandBufferCount = 1};
     VkCommandBuffer commands;
     VK(vkAllocateCommandBuffers(device, &commands_info, &commands));
-    VkBufferCreateInfo buffer_info = {.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = 4 * TEXELS,
+    VkBufferCreateInfo buffer_info = {.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = 8 * TEXELS,
         .usage = VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT};
     VkBuffer buffer;
     VK(vkCreateBuffer(device, &buffer_info, NULL, &buffer));
@@ -120,22 +122,26 @@ int main(int argc, char **argv) {
         .image = heights.image, .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1}};
     VkMemoryBarrier reading = {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
         .srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT, .dstAccessMask = VK_ACCESS_HOST_READ_BIT};
-    VkBufferImageCopy region = {.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1}, .imageExtent = {COLS, ROWS, 1}};
-    VK(vkBeginCommandBuffer(commands, &begin));
-    vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 0, NULL, 0,
-        NULL, 1, &filling);
-    vkCmdCopyBufferToImage(commands, buffer, heights.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
-    RL(ridgelight_record(renderer, commands, 0, &heights, 1, &light, 1));
-    vkCmdCopyImageToBuffer(commands, light.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, buffer, 1, &region);
-    vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_HOST_BIT, 0, 1, &reading, 0, NULL,
-        0, NULL);
-    VK(vkEndCommandBuffer(commands));
+    VkBufferImageCopy from = {.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1}, .imageExtent = {COLS, ROWS, 1}};
+    VkBufferImageCopy to = from;
+    to.bufferOffset = 4 * TEXELS;
     VkSubmitInfo submit = {.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO, .commandBufferCount = 1, .pCommandBuffers = &commands};
-    VK(vkQueueSubmit(queue, 1, &submit, VK_NULL_HANDLE));
-    VK(vkQueueWaitIdle(queue));
+    for (int frame = 0; frame < frames; frame++) {
+        VK(vkBeginCommandBuffer(commands, &begin));
+        vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 0, NULL, 0,
+            NULL, 1, &filling);
+        vkCmdCopyBufferToImage(commands, buffer, heights.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &from);
+        RL(ridgelight_record(renderer, commands, 0, &heights, 1, &light, 1));
+        vkCmdCopyImageToBuffer(commands, light.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, buffer, 1, &to);
+        vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_HOST_BIT, 0, 1, &reading, 0, NULL,
+            0, NULL);
+        VK(vkEndCommandBuffer(commands));
+        VK(vkQueueSubmit(queue, 1, &submit, VK_NULL_HANDLE));
+        VK(vkQueueWaitIdle(queue));
+    }
 
     FILE *out = fopen(argv[1], "wb");
-    must(out && fwrite(texels, 4, TEXELS, out) == TEXELS && !fclose(out), argv[1]);
+    must(out && fwrite(texels + TEXELS, 4, TEXELS, out) == TEXELS && !fclose(out), argv[1]);
     ridgelight_renderer_destroy(renderer);
     ridgelight_plan_destroy(plan);
     return 0;

@@ -69,7 +69,7 @@ struct Image {
     }
 };
 
-static void run(const char *out) {
+static void run(const char *out, int frames) {
     // The engine's own: an instance and a device with what Ridgelight needs, a queue, a command buffer.
     rl(ridgelight_check_version(RIDGELIGHT_VERSION));
     auto needs = ridgelight::sized<RidgelightRequirements>();
@@ -86,11 +86,11 @@ static void run(const char *out) {
     vk::DeviceQueueCreateInfo queues({}, family, 1, &priority);
     vk::raii::Device device(physical_device, {{}, queues});
     vk::raii::Queue queue(device, family, 0);
-    vk::raii::CommandPool pool(device, {{}, family});
+    vk::raii::CommandPool pool(device, {vk::CommandPoolCreateFlagBits::eResetCommandBuffer, family});
     vk::raii::CommandBuffers all(device, {*pool, vk::CommandBufferLevel::ePrimary, 1});
     vk::raii::CommandBuffer &commands = all.front();
     Memory memory{physical_device, device, {}};
-    vk::raii::Buffer buffer(device, {{}, 4 * TEXELS, vk::BufferUsageFlagBits::eTransferSrc | vk::BufferUsageFlagBits::eTransferDst});
+    vk::raii::Buffer buffer(device, {{}, 8 * TEXELS, vk::BufferUsageFlagBits::eTransferSrc | vk::BufferUsageFlagBits::eTransferDst});
     VkDeviceMemory staging = memory.take(buffer.getMemoryRequirements(),
         vk::MemoryPropertyFlagBits::eHostVisible | vk::MemoryPropertyFlagBits::eHostCoherent);
     buffer.bindMemory(staging, 0);
@@ -124,25 +124,27 @@ static void run(const char *out) {
     outputs[0].after = {VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL};
 
     // Each frame: what the engine does before, Ridgelight, what the engine does after.
-    vk::BufferImageCopy region(0, 0, 0, {vk::ImageAspectFlagBits::eColor, 0, 0, 1}, {}, {COLS, ROWS, 1});
+    vk::BufferImageCopy from(0, 0, 0, {vk::ImageAspectFlagBits::eColor, 0, 0, 1}, {}, {COLS, ROWS, 1}), to = from;
+    to.bufferOffset = 4 * TEXELS;
     vk::ImageMemoryBarrier filling({}, vk::AccessFlagBits::eTransferWrite, vk::ImageLayout::eUndefined,
         vk::ImageLayout::eTransferDstOptimal, VK_QUEUE_FAMILY_IGNORED, VK_QUEUE_FAMILY_IGNORED, *heights.image, Image::whole());
     vk::MemoryBarrier reading(vk::AccessFlagBits::eTransferWrite, vk::AccessFlagBits::eHostRead);
-    commands.begin(vk::CommandBufferBeginInfo());
-    commands.pipelineBarrier(vk::PipelineStageFlagBits::eTopOfPipe, vk::PipelineStageFlagBits::eTransfer, {}, {}, {}, filling);
-    commands.copyBufferToImage(*buffer, *heights.image, vk::ImageLayout::eTransferDstOptimal, region);
-    rl(ridgelight::record(renderer, *commands, 0, inputs, outputs));
-    commands.copyImageToBuffer(*light.image, vk::ImageLayout::eTransferSrcOptimal, *buffer, region);
-    commands.pipelineBarrier(vk::PipelineStageFlagBits::eTransfer, vk::PipelineStageFlagBits::eHost, {}, reading, {}, {});
-    commands.end();
-    vk::CommandBuffer recorded = *commands;
-    queue.submit(vk::SubmitInfo({}, {}, recorded));
-    queue.waitIdle();
-    std::ofstream(out, std::ios::binary).write(reinterpret_cast<const char *>(texels), 4 * TEXELS);
+    for (int frame = 0; frame < frames; frame++) {
+        commands.begin(vk::CommandBufferBeginInfo());
+        commands.pipelineBarrier(vk::PipelineStageFlagBits::eTopOfPipe, vk::PipelineStageFlagBits::eTransfer, {}, {}, {}, filling);
+        commands.copyBufferToImage(*buffer, *heights.image, vk::ImageLayout::eTransferDstOptimal, from);
+        rl(ridgelight::record(renderer, *commands, 0, inputs, outputs));
+        commands.copyImageToBuffer(*light.image, vk::ImageLayout::eTransferSrcOptimal, *buffer, to);
+        commands.pipelineBarrier(vk::PipelineStageFlagBits::eTransfer, vk::PipelineStageFlagBits::eHost, {}, reading, {}, {});
+        commands.end();
+        queue.submit(vk::SubmitInfo({}, {}, *commands));
+        queue.waitIdle();
+    }
+    std::ofstream(out, std::ios::binary).write(reinterpret_cast<const char *>(texels + TEXELS), 4 * TEXELS);
 }
 
 int main(int argc, char **argv) try {
-    run(argc == 2 ? argv[1] : throw std::runtime_error("usage: host OUT"));
+    run(argc > 1 ? argv[1] : throw std::runtime_error("usage: host OUT [FRAMES]"), argc > 2 ? std::stoi(argv[2]) : 1);
 } catch (const std::exception &error) {
     return std::cerr << error.what() << '\n', 1;
 }

@@ -149,11 +149,7 @@ fn is_validated() -> bool {
     std::env::var_os("RIDGELIGHT_VALIDATION").is_some_and(|v| v == "1")
 }
 
-/// Runs a program under the validation layer of the tests; returns its output with the layer's.
-fn run_validated(program: &Path, out: &Path) -> (Output, String) {
-    run(validated(Command::new(program).arg(out)))
-}
-
+/// A program under the validation layer of the tests.
 fn validated(command: &mut Command) -> &mut Command {
     // Drivers keep some allocations: their leaks are not checked.
     command.env("ASAN_OPTIONS", "detect_leaks=0");
@@ -196,7 +192,7 @@ fn a_c_program_gives_the_command_lines_bytes() {
     for (name, with) in all {
         let program = compiled(folder.path(), name, source, with);
         let out = folder.path().join("texels");
-        let (done, output) = run_validated(&program, &out);
+        let (done, output) = run(validated(Command::new(program).arg(&out).arg("2")));
         assert!(done.status.success() && !is_complaint(&output), "{name}: {output}");
         assert!(std::fs::read(out).expect("texels") == right, "{name}: other light");
     }
@@ -207,7 +203,8 @@ fn a_c_program_gives_the_command_lines_bytes() {
         assert!(source.contains(from));
         let wrong = source.replace(from, &from.replace("TRANSFER_SRC_OPTIMAL", "GENERAL"));
         let program = compiled(folder.path(), "wrong", &wrong, With::Shared);
-        let (_, output) = run_validated(&program, &folder.path().join("wrong.texels"));
+        let (_, output) =
+            run(validated(Command::new(program).arg(folder.path().join("wrong.texels"))));
         assert!(is_complaint(&output), "validation reports nothing: {output}");
     }
 }
@@ -223,7 +220,7 @@ fn a_cpp_program_gives_the_command_lines_bytes() {
         let cpp = ["c++", "-std=c++17", "cpp"];
         let program = compiled_by(cpp, folder.path(), name, source, with);
         let out = folder.path().join("texels");
-        let (done, output) = run_validated(&program, &out);
+        let (done, output) = run(validated(Command::new(program).arg(&out).arg("2")));
         assert!(done.status.success() && !is_complaint(&output), "{name}: {output}");
         assert!(std::fs::read(out).expect("texels") == right, "{name}: other light");
     }

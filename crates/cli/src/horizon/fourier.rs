@@ -5,7 +5,9 @@
 //! c₀, a₁ … a_K, b₁ … b_K. Its own baker takes the discrete transform of 360 azimuths, so a and b are real and
 //! imaginary parts.
 
+use std::ops::Range;
 use std::path::Path;
+use std::thread::available_parallelism;
 
 use ridgelight::Result;
 use ridgelight_io::{Component, Ktx2Writer, TexelFormat};
@@ -22,62 +24,140 @@ pub struct Fourier {
     pub range_m: f64,
 }
 
-/// Sums over azimuths.
+/// Texels whose sums are together in memory.
+const BLOCK_TEXELS: usize = 1 << 14;
+
+/// Sums over azimuths, of as many layers as fit into memory; further layers take further rounds over all azimuths.
 pub struct Series {
     wanted: Fourier,
     azimuths_rad: Vec<f64>,
+    /// Columns, rows.
     size: [usize; 2],
-    /// A plane for each layer.
-    planes: Vec<Vec<f32>>,
+    /// Layers of this round.
+    layers: Range<usize>,
+    /// For each block of texels the sums of the round's layers, layer after layer.
+    blocks: Vec<Vec<f32>>,
     /// Sum of the squared tangents over texels and azimuths.
     energy: f64,
+    /// The same of the series, from the layers so far.
+    held: f64,
+    file: Option<Ktx2Writer>,
 }
 
 impl Series {
-    pub fn new(wanted: Fourier, azimuths_rad: Vec<f64>, [rows, cols]: [usize; 2]) -> Self {
-        let layers = wanted.coefficients as usize + 1;
-        let planes = vec![vec![0.0; rows * cols]; layers];
-        Self { wanted, azimuths_rad, size: [cols, rows], planes, energy: 0.0 }
+    /// `budget` bytes hold sums.
+    pub fn new(
+        wanted: Fourier,
+        azimuths_rad: Vec<f64>,
+        [rows, cols]: [usize; 2],
+        budget: u64,
+    ) -> Self {
+        let (texels, all) = (rows * cols, wanted.coefficients as usize + 1);
+        let most = usize::try_from(budget / (4 * texels as u64)).unwrap_or(all).clamp(1, all);
+        // Rounds of even length.
+        let layers = 0..all.div_ceil(all.div_ceil(most));
+        let block = |first: usize| BLOCK_TEXELS.min(texels - first) * layers.len();
+        let blocks = (0..texels).step_by(BLOCK_TEXELS).map(|first| vec![0.0; block(first)]);
+        let (blocks, size) = (blocks.collect(), [cols, rows]);
+        let (energy, held, file) = (0.0, 0.0, None);
+        Self { wanted, azimuths_rad, size, layers, blocks, energy, held, file }
+    }
+
+    /// Layers of the file.
+    fn all(&self) -> usize {
+        self.wanted.coefficients as usize + 1
+    }
+
+    /// The number of rounds over all azimuths, and how many are behind.
+    pub fn rounds(&self) -> [usize; 2] {
+        let most = self.blocks[0].len() / BLOCK_TEXELS.min(self.size[0] * self.size[1]);
+        [self.all().div_ceil(most), self.layers.start.div_ceil(most)]
+    }
+
+    /// Bytes of the file's texels.
+    pub fn bytes(&self) -> u64 {
+        4 * (self.size[0] * self.size[1] * self.all()) as u64
     }
 
     /// Adds the elevations of an azimuth, radians. Those below the horizontal count as 0, as in bevy-clipmap's baker.
     pub fn add(&mut self, azimuth: usize, elevations: &[f32]) {
-        let tangents: Vec<f32> = elevations.iter().map(|angle| angle.max(0.0).tan()).collect();
-        self.energy += tangents.iter().map(|t| f64::from(*t).powi(2)).sum::<f64>();
         // Rows run southwards, azimuths counter-clockwise from east.
         let theta = -self.azimuths_rad[azimuth];
         let unit = SHADER_AZIMUTHS / self.azimuths_rad.len() as f64 / self.wanted.range_m;
         let half = self.wanted.coefficients as usize / 2;
-        for (layer, plane) in self.planes.iter_mut().enumerate() {
+        let weight = |layer: usize| {
             let weight = match layer.checked_sub(half + 1) {
                 None => (layer as f64 * theta).cos(),
                 Some(before) => -((before + 1) as f64 * theta).sin(),
             };
-            let weight = (weight * unit) as f32;
-            plane.iter_mut().zip(&tangents).for_each(|(sum, tangent)| *sum += weight * tangent);
+            (weight * unit) as f32
+        };
+        let weights: Vec<f32> = self.layers.clone().map(weight).collect();
+        let of_threads = self.blocks.len().div_ceil(available_parallelism().map_or(1, usize::from));
+        let sums = self.blocks.chunks_mut(of_threads);
+        let parts = sums.zip(elevations.chunks(of_threads * BLOCK_TEXELS));
+        let weights = &weights[..];
+        let energies: Vec<f64> = std::thread::scope(|scope| {
+            let threads: Vec<_> = parts
+                .map(|(blocks, elevations)| scope.spawn(move || added(blocks, elevations, weights)))
+                .collect();
+            threads.into_iter().map(|t| t.join().expect("no panic")).collect()
+        });
+        if self.layers.start == 0 {
+            self.energy += energies.iter().sum::<f64>();
         }
     }
 
-    /// Root mean square of what the series leaves out of the tangents, over that of the tangents: 0 for a series that
-    /// holds all.
-    pub fn error(&self) -> f64 {
+    /// Writes the layers of a round that has all azimuths, and begins the next. False after the last.
+    pub fn end_round(&mut self, path: &Path, texts: &[(String, String)]) -> Result<bool> {
+        let file = match &mut self.file {
+            Some(file) => file,
+            None => {
+                let format = TexelFormat { component: Component::F32, count: 1 };
+                let layers = Some(self.all());
+                self.file.insert(Ktx2Writer::create(path, format, self.size, layers, texts)?)
+            }
+        };
         let scale = self.wanted.range_m / SHADER_AZIMUTHS;
-        let squares =
-            |plane: &Vec<f32>| plane.iter().map(|c| (f64::from(*c) * scale).powi(2)).sum::<f64>();
-        // Parseval's theorem: a frequency and its negative hold the same.
-        let held =
-            squares(&self.planes[0]) + 2.0 * self.planes[1..].iter().map(squares).sum::<f64>();
-        let all = self.energy / self.azimuths_rad.len() as f64;
-        if all > 0.0 { (1.0 - held / all).max(0.0).sqrt() } else { 0.0 }
+        for (i, layer) in self.layers.clone().enumerate() {
+            // Parseval's theorem: a frequency and its negative hold the same.
+            let times = if layer == 0 { 1.0 } else { 2.0 };
+            for block in &self.blocks {
+                let texels = block.len() / self.layers.len();
+                let sums = &block[i * texels..(i + 1) * texels];
+                let squares = sums.iter().map(|c| (f64::from(*c) * scale).powi(2));
+                self.held += times * squares.sum::<f64>();
+                let bytes: Vec<u8> = sums.iter().flat_map(|sum| sum.to_le_bytes()).collect();
+                file.write(&bytes)?;
+            }
+        }
+        let (count, end) = (self.layers.len(), self.layers.end);
+        self.layers = end..(end + count).min(self.all());
+        for block in &mut self.blocks {
+            block.truncate(block.len() / count * self.layers.len());
+            block.fill(0.0);
+        }
+        Ok(!self.layers.is_empty())
     }
 
-    pub fn write(&self, path: &Path, texts: &[(String, String)]) -> Result<()> {
-        let format = TexelFormat { component: Component::F32, count: 1 };
-        let mut file = Ktx2Writer::create(path, format, self.size, Some(self.planes.len()), texts)?;
-        for plane in &self.planes {
-            let bytes: Vec<u8> = plane.iter().flat_map(|value| value.to_le_bytes()).collect();
-            file.write(&bytes)?;
-        }
-        file.finish()
+    /// Ends the file. Returns the root mean square of what the series leaves out of the tangents, over that of the tangents: 0 for
+    /// a series that holds all.
+    pub fn finish(self) -> Result<f64> {
+        self.file.map_or(Ok(()), Ktx2Writer::finish)?;
+        let all = self.energy / self.azimuths_rad.len() as f64;
+        Ok(if all > 0.0 { (1.0 - self.held / all).max(0.0).sqrt() } else { 0.0 })
     }
+}
+
+/// Adds the tangents of elevations, times a weight for each layer. Returns the sum of their squares.
+fn added(blocks: &mut [Vec<f32>], elevations: &[f32], weights: &[f32]) -> f64 {
+    let mut energy = 0.0;
+    for (sums, elevations) in blocks.iter_mut().zip(elevations.chunks(BLOCK_TEXELS)) {
+        let tangents: Vec<f32> = elevations.iter().map(|angle| angle.max(0.0).tan()).collect();
+        energy += tangents.iter().map(|t| f64::from(*t).powi(2)).sum::<f64>();
+        for (sums, weight) in sums.chunks_exact_mut(tangents.len()).zip(weights) {
+            sums.iter_mut().zip(&tangents).for_each(|(sum, tangent)| *sum += weight * tangent);
+        }
+    }
+    energy
 }

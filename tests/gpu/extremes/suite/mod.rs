@@ -24,6 +24,7 @@ use methods::{Method, Traced};
 use reference::CpuReference;
 
 /// The output of a case.
+#[derive(Clone, Copy)]
 pub enum Asks {
     /// `count` azimuths from number `first` on, of a circle of `of`.
     Horizons { of: u32, first: u32, count: u32 },
@@ -116,6 +117,7 @@ pub struct Found<'a> {
     pub azimuths_rad: Vec<f64>,
     /// A pyramid's expected values on ground that is no plane.
     reference: Option<CpuReference<'a>>,
+    asks: Asks,
     plan: Plan,
     outputs: Vec<Pixels>,
 }
@@ -123,7 +125,8 @@ pub struct Found<'a> {
 impl Found<'_> {
     /// Elevation of the horizon, radians; `None` where that azimuth was not requested.
     pub fn horizon(&self, k: usize, row: usize, col: usize) -> Option<f64> {
-        let layer = self.plan.layer_azimuths.iter().position(|l| *l as usize == k)?;
+        let Asks::Horizons { first, count, .. } = self.asks else { return None };
+        let layer = (k as u32).checked_sub(first).filter(|layer| *layer < count)? as usize;
         let (rows, cols) = (self.scene.field.rows(), self.scene.field.cols());
         Some(f64::from(self.outputs[0].values[(layer * rows + row) * cols + col]))
     }
@@ -312,6 +315,7 @@ pub fn probes(gpu: &mut Headless, case: &Case, method: &Method) -> Result<Vec<Pr
         azimuths: method.azimuths(quality.azimuths, field.cell_m()),
         azimuths_rad: plan::circle_rad(&quality, field.cell_m()).expect("azimuths"),
         reference,
+        asks: case.asks,
         plan,
         outputs,
     };

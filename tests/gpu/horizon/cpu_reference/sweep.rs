@@ -294,7 +294,6 @@ pub(crate) fn sweep_fuse(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let angles = run.floats(pass, "horizon_angles").expect("written");
     let distances = run.floats(pass, "horizon_distances");
     let first = pushed(pass, const { offset("SweepFusePush", "first_azimuth") }) as usize;
-    let layer = pushed(pass, const { offset("SweepFusePush", "first_layer") }) as usize;
     let [cols, rows] = run.size();
     let [largest, _] = run.relief();
     let range = first..first + pass.groups[2] as usize;
@@ -310,7 +309,7 @@ pub(crate) fn sweep_fuse(run: &mut Run, pass: &Pass) -> Vec<Pair> {
                 let (row, col) = (i / cols, i % cols);
                 let want = fused_horizon(swept, azimuth, col as i32, row as i32);
                 let slope = want.found.slope;
-                let place = (layer + k) * rows * cols + i;
+                let place = azimuth.horizon_layer as usize * rows * cols + i;
                 let at = [k, row, col];
                 let tolerance = device_angle(slope.into(), slope_error);
                 pairs.push(Pair { got: angles[place].into(), want: want.angle_rad, tolerance, at });

@@ -84,15 +84,27 @@ fn code_lines(text: &str) -> usize {
 }
 
 fn hosts() -> Result<String> {
-    let mut out = String::from("| host | lines of code | what it is |\n|---|---|---|\n");
+    let (body, made) = result("hosts.txt")?;
+    let (about, table) = found("hosts.txt", body.split_once("\n\n"), "a text and a table")?;
+    let mut out = String::from(
+        "| host | lines of code | crates added | ms per frame | what it is |\n|---|---|---|---|---|\n",
+    );
     for (name, path, what) in HOSTS {
         let program = text(Path::new(path))?;
         let own = program.split_once(ENGINE);
         let own = own.map(|(own, _)| format!(", {} without the engine", code_lines(own)));
         let (lines, own) = (code_lines(&program), own.unwrap_or_default());
-        out += &format!("| [{name}](../{path}) | {lines}{own} | {what} |\n");
+        let row = table.lines().map(cells).find(|row| row.first() == Some(&name));
+        let row = row.filter(|row| row.len() == 4);
+        let row = found("hosts.txt", row, &format!("a row of {name}"))?;
+        let [added, ms] = [row[1], row[2]];
+        out += &format!("| [{name}](../{path}) | {lines}{own} | {added} | {ms} | {what} |\n");
     }
     Ok(out
+        + &format!(
+            "\nNo host has to enable a device feature or an extension. {about}\n\n*{}*\n",
+            made.trim_start_matches("; ")
+        )
         + "\nTests run all but the last and compare their bytes with the command line's, without a validation message \
            (`tests/gpu/embedding/ash_host.rs`, `crates/capi/tests/c`, `hosts/same_light`). `hosts/bevy_ridgelight/check` \
            runs the Bevy example, and tests that compare the plugin's bytes with the core's.\n")

@@ -1,0 +1,114 @@
+//! Hosts: milliseconds of a frame in programs of other people's APIs and engines, beside the same light's passes.
+
+use std::process::Command;
+use std::time::Instant;
+
+use ridgelight::plan::{self, Picture};
+use ridgelight::scene::{HeightField, Lights, Quality, Scene, Sun, Surface};
+use ridgelight::{Error, Result};
+
+use crate::common::args::Args;
+use crate::common::frames::{device, total};
+use crate::common::{Outcome, head, median};
+
+/// Frames of a long run. A run of one frame is subtracted.
+const FRAMES: u32 = 1000;
+const RUNS: usize = 5;
+
+/// The scene of `examples/ash_host.rs`.
+fn scene() -> Result<Scene> {
+    let (rows, cols) = (48, 64);
+    let height = |i: usize| ((i / cols * 31 + i % cols * 17) % 7) as f64 - 3.0;
+    let heights: Vec<f64> = (0..rows * cols).map(height).collect();
+    let field = HeightField::new(rows, cols, &heights, [1.0; 2], None)?;
+    let sun = Sun {
+        azimuth_rad: 0.0,
+        elevation_rad: 30_f64.to_radians(),
+        diameter_rad: 0.5_f64.to_radians(),
+        irradiance: [3.0; 3],
+    };
+    let lights = Lights { sky: Some([0.5; 3]), suns: vec![sun], ..Lights::default() };
+    Ok(Scene { field, surface: Surface::default(), lights })
+}
+
+fn failed(program: &str, reason: impl ToString) -> Error {
+    Error::Device { doing: format!("running {program}"), reason: reason.to_string() }
+}
+
+/// What a program prints.
+fn run_of(program: &str, args: &[&str]) -> Result<String> {
+    let done = Command::new(program).args(args).output();
+    let done = done.map_err(|error| failed(program, error))?;
+    if !done.status.success() {
+        return Err(failed(program, String::from_utf8_lossy(&done.stderr)));
+    }
+    Ok(String::from_utf8_lossy(&done.stdout).into_owned())
+}
+
+/// Milliseconds that each further frame of "PROGRAM OUT FRAMES" takes.
+fn frame_ms(program: &str, out: &str) -> Result<f64> {
+    let mut seconds = [0.0; 2];
+    for (seconds, frames) in seconds.iter_mut().zip([1, 1 + FRAMES]) {
+        let begun = Instant::now();
+        run_of(program, &[out, &frames.to_string()])?;
+        *seconds = begun.elapsed().as_secs_f64();
+    }
+    Ok(1e3 * (seconds[1] - seconds[0]) / f64::from(FRAMES))
+}
+
+/// What new heights add to a frame of Bevy, milliseconds: its example prints a frame with and without them.
+fn added_ms(program: &str) -> Result<f64> {
+    let printed = run_of(program, &[&FRAMES.to_string()])?;
+    let ms: Vec<f64> = printed.split_whitespace().filter_map(|word| word.parse().ok()).collect();
+    match ms[..] {
+        [with, without] => Ok(with - without),
+        _ => Err(failed(program, format!("it printed {printed:?}"))),
+    }
+}
+
+/// `HOST=CRATES=PROGRAM`, each; Bevy's program is "frames".
+pub fn run(mut args: Args) -> Outcome {
+    let mut hosts = Vec::new();
+    while let Some(word) = args.word() {
+        let parts: Vec<String> = word.splitn(3, '=').map(str::to_owned).collect();
+        let [name, crates, program] = parts
+            .try_into()
+            .map_err(|_| Error::setting("a host", format!("{word:?}"), "HOST=CRATES=PROGRAM"))?;
+        hosts.push((name, crates, program));
+    }
+    let mut gpu = args.open()?;
+    let (scene, folder) = (scene()?, tempfile::tempdir()?);
+    let out = folder.path().join("light.exr");
+    let out = out.to_str().unwrap_or_default();
+    let limits = gpu.report().limits;
+    let plan = plan::picture(&scene, &Quality::default(), &limits, Picture::default())?;
+    let bytes = plan.bytes();
+    let mut frame = gpu.frame(plan, &[scene.field.heights_m()])?;
+    gpu.draw(&mut frame)?;
+    let mut rows = vec![Vec::new(); hosts.len()];
+    let mut passes = Vec::new();
+    for _ in 0..RUNS {
+        for _ in 0..FRAMES {
+            passes.push(total(&gpu.draw(&mut frame)?));
+        }
+        for (row, (_, _, program)) in rows.iter_mut().zip(&hosts) {
+            let is_bevy = program.ends_with("/frames");
+            row.push(if is_bevy { added_ms(program)? } else { frame_ms(program, out)? });
+        }
+    }
+    gpu.end(frame);
+    let passes = median(passes);
+    println!(
+        "Each frame uploads 48 × 64 heights, lights them by a sky and a sun, reads the light back and waits for the device. Bevy's row is what new \
+         heights add to a frame without a window; nothing is read back. Medians of {RUNS} runs of {FRAMES} frames, in turn, on {}. The \
+         passes take {passes:.3} ms by the device's timestamps. Ridgelight's images and buffers have {:.2} MB in every host.\n",
+        device(&gpu),
+        bytes as f64 * 1e-6
+    );
+    head("| host | crates added | ms per frame | over passes |");
+    for ((name, crates, _), row) in hosts.iter().zip(rows) {
+        let ms = median(row);
+        println!("| {name} | {crates} | {ms:.3} | {:.2} x |", ms / passes);
+    }
+    Ok(())
+}
