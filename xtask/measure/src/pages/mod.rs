@@ -97,8 +97,10 @@ fn hosts() -> Result<String> {
         let row = table.lines().map(cells).find(|row| row.first() == Some(&name));
         let row = row.filter(|row| row.len() == 4);
         let row = found("hosts.txt", row, &format!("a row of {name}"))?;
-        let [added, ms] = [row[1], row[2]];
-        out += &format!("| [{name}](../{path}) | {lines}{own} | {added} | {ms} | {what} |\n");
+        let [added, ms, spread] = [row[1], row[2], row[3]];
+        out += &format!(
+            "| [{name}](../{path}) | {lines}{own} | {added} | {ms} ({spread}) | {what} |\n"
+        );
     }
     Ok(out
         + &format!(
