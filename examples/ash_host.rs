@@ -151,7 +151,7 @@ const LAYER: vk::ImageSubresourceLayers = vk::ImageSubresourceLayers {
     layer_count: 1,
 };
 
-/// In each frame heights go to an image, light from another to the host, and Ridgelight runs between.
+/// Draws `frames` frames. Each copies heights to an image, records Ridgelight, and copies the light back to the host.
 fn draw(
     host: &Host,
     queue: vk::Queue,
@@ -229,7 +229,7 @@ fn draw(
     }
 }
 
-/// Light of every texel in the last of some frames, row by row.
+/// Draws `frames` frames. Returns the light of every texel in the last one, row by row.
 pub fn lit(frames: u32) -> Any<Vec<f32>> {
     // SAFETY: the system's Vulkan loader, whose initialisers are meant to run.
     let entry = unsafe { ash::Entry::load() }?;

@@ -146,9 +146,9 @@ fn summary(asked: &Request, costs: &[[f64; 3]]) -> String {
     let (least, most) = (|all: &[f64]| all[0], |all: &[f64]| all[all.len() - 1]);
     let mean = swept.iter().sum::<f64>() / swept.len() as f64;
     format!(
-        "A {brush}² brush at {edits} random places of a {side}² fractal, {AZIMUTHS} azimuths: 1/{:.0} to 1/{:.0} of \
-         all points of lines swept, in the mean 1/{:.0}; {:.2} to {:.2} % of the texels lit again; {:.0} to {:.0} times \
-         faster than everything, and each time the same bits.",
+        "A {brush}² brush at {edits} random places of a {side}² fractal, {AZIMUTHS} azimuths. An edit sweeps 1/{:.0} to 1/{:.0} of \
+         the points on all lines (mean 1/{:.0}) and shades {:.2} to {:.2} % of the texels again. It is {:.0} to {:.0} times \
+         faster than a whole frame, and the bits are the same.",
         1.0 / most(&swept),
         1.0 / least(&swept),
         1.0 / mean,

@@ -49,7 +49,7 @@ struct Azimuth {
     float weight;     // sun: radiance that makes the chords add up to irradiance 1; key light: 1
     int vector_march; // exact azimuths only: the grid vector (march, lane), both 0 or more, coprime
     int vector_lane;
-    uint horizon_layer; // layer of its horizons where they are written as angles
+    uint horizon_layer; // the layer of horizon_angles that it writes
 };
 
 Azimuth azimuth_from(vec4 a, vec4 b, vec4 c, vec4 d) {

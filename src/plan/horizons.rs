@@ -8,7 +8,7 @@ use crate::scene::{Border, HeightField, Quality};
 use crate::{Error, Result, passes};
 
 /// Passes that write the horizons of `count` azimuths of the quality's circle, from number `first` on. Outputs:
-/// "horizon_angles" (f32 elevation, radians, one layer per azimuth, in order) and, if
+/// "horizon_angles" (f32 elevation, radians, one layer per azimuth, counter-clockwise: layer i is azimuth `first` + i) and, if
 /// requested, "horizon_distances" (metres, 0 without an occluder).
 ///
 /// # Errors

@@ -257,8 +257,8 @@ pub fn run(args: &HorizonArgs) -> Result<Outcome> {
     let mut times = Vec::new();
     let mut metadata = Vec::new();
     loop {
-        let [rounds, behind] = series.as_ref().map_or([1, 0], fourier::Series::rounds);
-        let distances = distances && behind == 0;
+        let [rounds, rounds_done] = series.as_ref().map_or([1, 0], fourier::Series::rounds);
+        let distances = distances && rounds_done == 0;
         let (more, plan) = for_each(
             &mut gpu,
             &field,
@@ -287,7 +287,7 @@ pub fn run(args: &HorizonArgs) -> Result<Outcome> {
                 let left = HumanDuration(begun.elapsed() * left / done as u32);
                 let round = match rounds {
                     1 => String::new(),
-                    _ => format!("round {} of {rounds}, ", behind + 1),
+                    _ => format!("round {} of {rounds}, ", rounds_done + 1),
                 };
                 let azimuth = k + 1;
                 bar.set_message(format!(
@@ -298,7 +298,7 @@ pub fn run(args: &HorizonArgs) -> Result<Outcome> {
             },
         )?;
         times.extend(more);
-        if behind == 0 {
+        if rounds_done == 0 {
             metadata = setup::metadata(&gpu, &field, &plan);
             metadata.push(("azimuths".into(), quality.azimuths.to_string()));
             metadata.extend(setup::asked(&args.input, &args.surface, None));

@@ -1,4 +1,5 @@
-//! Milliseconds of a frame without a window, with new heights in each and with none: `frames COUNT` prints both.
+//! Times Bevy frames without a window. `frames COUNT` prints two means in milliseconds: of COUNT frames with new heights in each, and
+//! of COUNT frames without.
 
 use std::time::Instant;
 
@@ -16,7 +17,7 @@ fn heights() -> Image {
     heights_image(SIZE, &(0..SIZE.x * SIZE.y).map(height).collect::<Vec<_>>())
 }
 
-/// Draws frames, each when the one before is done; the mean.
+/// Draws `count` frames and waits for the device after each. Returns the mean time of a frame in milliseconds.
 fn frame_ms(app: &mut App, count: u32, mut before: impl FnMut(&mut App)) -> f64 {
     let device = app.world().resource::<RenderDevice>().wgpu_device().clone();
     let begun = Instant::now();

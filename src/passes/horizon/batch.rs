@@ -274,7 +274,7 @@ impl<'a> Group<'a> {
 /// Groups of lists, and the batches of each list.
 pub(crate) type Cut<'a> = ([Group<'a>; 2], Vec<Vec<Batch>>);
 
-/// Sorts each list by octant, axis by axis, groups the lists and cuts them into batches. A layer holds 32 lines. It holds more if one azimuth needs more
+/// Numbers the azimuths of each list (`horizon_layer`), sorts them by octant, axis by axis, then groups the lists and cuts them into batches. A layer holds 32 lines. It holds more if one azimuth needs more
 /// layers than an image allows and, on a GPU, if layers alone would end a batch early: at 8192² on an H100 a sweep took 3 ms with
 /// one azimuth and 4 ms with seven. `fixed_bytes` are taken in any case.
 pub(crate) fn cut_groups<'a>(
@@ -288,7 +288,7 @@ pub(crate) fn cut_groups<'a>(
         for (layer, azimuth) in (0..).zip(list.iter_mut()) {
             azimuth.horizon_layer = layer;
         }
-        // Directions with shared neighbours are together.
+        // Azimuths of one octant share neighbours, so they go next to each other.
         list.sort_by_key(Azimuth::octant);
     }
     // The cut so far with the fewest batches, and its lists.

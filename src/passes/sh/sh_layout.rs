@@ -124,7 +124,7 @@ pub(crate) struct WedgeTexels {
 }
 
 impl WedgeTexels {
-    /// Adds them to the constants, for even azimuths in the order of the circle.
+    /// Appends the circle and the table to the constants. The azimuths must be evenly spaced and in the order of the circle.
     pub(crate) fn of(
         border: Border,
         quality: &Quality,

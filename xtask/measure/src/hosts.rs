@@ -1,4 +1,4 @@
-//! Hosts: milliseconds of a frame in programs of other people's APIs and engines, beside the same light's passes.
+//! Hosts: frame times of the example programs, and of the same passes without a host.
 
 use std::process::Command;
 use std::time::Instant;
@@ -11,7 +11,7 @@ use crate::common::args::Args;
 use crate::common::frames::{device, total};
 use crate::common::{Outcome, head, median};
 
-/// Frames of a long run. A run of one frame is subtracted.
+/// Frames that are timed. A run of one frame is timed too, and subtracted with its start-up.
 const FRAMES: u32 = 400;
 const RUNS: usize = 5;
 
@@ -45,7 +45,7 @@ fn run_of(program: &str, args: &[&str]) -> Result<String> {
     Ok(String::from_utf8_lossy(&done.stdout).into_owned())
 }
 
-/// Milliseconds that each further frame of "PROGRAM OUT FRAMES" takes.
+/// Milliseconds per frame after the first, of `PROGRAM OUT FRAMES`.
 fn frame_ms(program: &str, out: &str) -> Result<f64> {
     let mut seconds = [0.0; 2];
     for (seconds, frames) in seconds.iter_mut().zip([1, 1 + FRAMES]) {
@@ -56,13 +56,13 @@ fn frame_ms(program: &str, out: &str) -> Result<f64> {
     Ok(1e3 * (seconds[1] - seconds[0]) / f64::from(FRAMES))
 }
 
-/// What new heights add to a frame of Bevy, milliseconds: its example prints a frame with and without them.
+/// Milliseconds that new heights add to a Bevy frame. The program prints the time of a frame with new heights, then without.
 fn added_ms(program: &str) -> Result<f64> {
     let printed = run_of(program, &[&FRAMES.to_string()])?;
     let ms: Vec<f64> = printed.split_whitespace().filter_map(|word| word.parse().ok()).collect();
     match ms[..] {
         [with, without] => Ok(with - without),
-        _ => Err(failed(program, format!("it printed {printed:?}"))),
+        _ => Err(failed(program, format!("printed {printed:?}, expected two numbers: ms per frame with and without new heights"))),
     }
 }
 
@@ -70,7 +70,7 @@ fn is_bevy(program: &str) -> bool {
     program.ends_with("/frames")
 }
 
-/// `HOST=CRATES=PROGRAM`, each; Bevy's program is "frames".
+/// Takes one `HOST=CRATES=PROGRAM` per host. A program named `frames` is measured as Bevy's.
 pub fn run(mut args: Args) -> Outcome {
     let mut hosts = Vec::new();
     while let Some(word) = args.word() {
@@ -108,11 +108,13 @@ pub fn run(mut args: Args) -> Outcome {
     frames.into_iter().for_each(|frame| gpu.end(frame));
     let passes = passes.map(median);
     println!(
-        "Each frame uploads 48 × 64 heights, lights them by a sky and a sun, reads the light back and waits for the device; its passes take \
-         {:.1} ms by the device's timestamps, its images and buffers have {:.2} MB. Bevy's row is what new heights add to a frame without a \
-         window, beside which the device works in part; its plan keeps horizons for edits ({:.1} ms, {:.2} MB), and nothing is read back. \
-         Medians of {RUNS} runs of {FRAMES} frames, \
-         in turn, on {}.\n",
+        "Each frame uploads 48 × 64 heights, computes the light of a sky and a sun, reads the light back and waits for the device. \
+         Without a host, the same passes take {:.1} ms by device timestamps; the plan's images and buffers take {:.2} MB. For Bevy the \
+         time is a difference: a frame with new heights minus a frame without, in `examples/frames.rs`, without a window and built with \
+         the dev profile (`opt-level = 1`). It reads nothing back. Its plan also keeps horizons for edits: without a host, its passes \
+         take {:.1} ms, and its images and buffers {:.2} MB. The difference can be less than that, because the device works while Bevy's \
+         own code runs. Each time is the median of {RUNS} runs of {FRAMES} frames, without start-up; the hosts run in turn. \
+         Device: {}.\n",
         passes[0],
         bytes[0],
         passes[1],

@@ -1,4 +1,4 @@
-//! Suns: errors and times of the default, of hull sweeps, of their slowest fuse and of maps of shadow heights, against brute force.
+//! Suns: errors and times of the default, of hull sweeps, of their slowest fuse and of shadow-height maps, against brute force.
 
 use std::path::Path;
 
@@ -51,7 +51,7 @@ pub fn fields(folder: Option<&Path>) -> Result<Vec<(String, HeightField)>> {
     Ok(all)
 }
 
-/// A frame of the map of shadow heights, and the light by its share of the sun: slopes lit without shadows, times the share.
+/// The frame of a shadow-height map, and the unshadowed light multiplied by the map's `sun_share`.
 fn by_shadow_heights(
     gpu: &mut Headless,
     scene: &Scene,
@@ -102,7 +102,7 @@ pub fn run(mut args: Args) -> Outcome {
             for quality in [&sweep, &around, &default] {
                 frames.push(frame(&mut gpu, &scene, quality)?);
             }
-            // Ground beyond the edge is level in these maps, as with this border alone.
+            // Shadow-height maps assume level ground beyond the edge, so only this border is comparable.
             if border == Border::Plane {
                 let (map, light) = by_shadow_heights(&mut gpu, &scene, &default)?;
                 frames.push(map);

@@ -149,7 +149,7 @@ fn is_validated() -> bool {
     std::env::var_os("RIDGELIGHT_VALIDATION").is_some_and(|v| v == "1")
 }
 
-/// A program under the validation layer of the tests.
+/// Enables the tests' validation layer for a command.
 fn validated(command: &mut Command) -> &mut Command {
     // Drivers keep some allocations: their leaks are not checked.
     command.env("ASAN_OPTIONS", "detect_leaks=0");

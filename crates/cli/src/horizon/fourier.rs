@@ -24,10 +24,11 @@ pub struct Fourier {
     pub range_m: f64,
 }
 
-/// Texels whose sums are together in memory.
+/// Texels per block. A block holds the sums of all layers of a round.
 const BLOCK_TEXELS: usize = 1 << 14;
 
-/// Sums over azimuths, of as many layers as fit into memory; further layers take further rounds over all azimuths.
+/// The sums over azimuths that are the coefficients. A round computes as many layers as fit into the budget, from all azimuths. The
+/// remaining layers take more rounds.
 pub struct Series {
     wanted: Fourier,
     azimuths_rad: Vec<f64>,
@@ -39,13 +40,13 @@ pub struct Series {
     blocks: Vec<Vec<f32>>,
     /// Sum of the squared tangents over texels and azimuths.
     energy: f64,
-    /// The same of the series, from the layers so far.
-    held: f64,
+    /// Sum over texels of the mean square of the series over azimuth, from the layers written so far (Parseval).
+    series_energy: f64,
     file: Option<Ktx2Writer>,
 }
 
 impl Series {
-    /// `budget` bytes hold sums.
+    /// The sums of a round take at most `budget` bytes, or one layer if that is larger.
     pub fn new(
         wanted: Fourier,
         azimuths_rad: Vec<f64>,
@@ -54,13 +55,13 @@ impl Series {
     ) -> Self {
         let (texels, all) = (rows * cols, wanted.coefficients as usize + 1);
         let most = usize::try_from(budget / (4 * texels as u64)).unwrap_or(all).clamp(1, all);
-        // Rounds of even length.
+        // All rounds have the same number of layers; the last can have fewer.
         let layers = 0..all.div_ceil(all.div_ceil(most));
         let block = |first: usize| BLOCK_TEXELS.min(texels - first) * layers.len();
         let blocks = (0..texels).step_by(BLOCK_TEXELS).map(|first| vec![0.0; block(first)]);
         let (blocks, size) = (blocks.collect(), [cols, rows]);
-        let (energy, held, file) = (0.0, 0.0, None);
-        Self { wanted, azimuths_rad, size, layers, blocks, energy, held, file }
+        let (energy, series_energy, file) = (0.0, 0.0, None);
+        Self { wanted, azimuths_rad, size, layers, blocks, energy, series_energy, file }
     }
 
     /// Layers of the file.
@@ -68,7 +69,7 @@ impl Series {
         self.wanted.coefficients as usize + 1
     }
 
-    /// The number of rounds over all azimuths, and how many are behind.
+    /// The number of rounds, and how many are done.
     pub fn rounds(&self) -> [usize; 2] {
         let most = self.blocks[0].len() / BLOCK_TEXELS.min(self.size[0] * self.size[1]);
         [self.all().div_ceil(most), self.layers.start.div_ceil(most)]
@@ -99,7 +100,7 @@ impl Series {
         let weights = &weights[..];
         let energies: Vec<f64> = std::thread::scope(|scope| {
             let threads: Vec<_> = parts
-                .map(|(blocks, elevations)| scope.spawn(move || added(blocks, elevations, weights)))
+                .map(|(blocks, elevations)| scope.spawn(move || add_to_blocks(blocks, elevations, weights)))
                 .collect();
             threads.into_iter().map(|t| t.join().expect("no panic")).collect()
         });
@@ -108,7 +109,7 @@ impl Series {
         }
     }
 
-    /// Writes the layers of a round that has all azimuths, and begins the next. False after the last.
+    /// Writes the layers of this round and begins the next. Call it when all azimuths are added. Returns false after the last round.
     pub fn end_round(&mut self, path: &Path, texts: &[(String, String)]) -> Result<bool> {
         let file = match &mut self.file {
             Some(file) => file,
@@ -126,7 +127,7 @@ impl Series {
                 let texels = block.len() / self.layers.len();
                 let sums = &block[i * texels..(i + 1) * texels];
                 let squares = sums.iter().map(|c| (f64::from(*c) * scale).powi(2));
-                self.held += times * squares.sum::<f64>();
+                self.series_energy += times * squares.sum::<f64>();
                 let bytes: Vec<u8> = sums.iter().flat_map(|sum| sum.to_le_bytes()).collect();
                 file.write(&bytes)?;
             }
@@ -140,17 +141,17 @@ impl Series {
         Ok(!self.layers.is_empty())
     }
 
-    /// Ends the file. Returns the root mean square of what the series leaves out of the tangents, over that of the tangents: 0 for
-    /// a series that holds all.
+    /// Finishes the file. Returns the RMS error of the tangents relative to their RMS; 0 if the series is exact.
     pub fn finish(self) -> Result<f64> {
         self.file.map_or(Ok(()), Ktx2Writer::finish)?;
         let all = self.energy / self.azimuths_rad.len() as f64;
-        Ok(if all > 0.0 { (1.0 - self.held / all).max(0.0).sqrt() } else { 0.0 })
+        Ok(if all > 0.0 { (1.0 - self.series_energy / all).max(0.0).sqrt() } else { 0.0 })
     }
 }
 
-/// Adds the tangents of elevations, times a weight for each layer. Returns the sum of their squares.
-fn added(blocks: &mut [Vec<f32>], elevations: &[f32], weights: &[f32]) -> f64 {
+/// Adds the tangent of each elevation, multiplied by each layer's weight, to the sums. Returns the sum of the squared tangents,
+/// unweighted.
+fn add_to_blocks(blocks: &mut [Vec<f32>], elevations: &[f32], weights: &[f32]) -> f64 {
     let mut energy = 0.0;
     for (sums, elevations) in blocks.iter_mut().zip(elevations.chunks(BLOCK_TEXELS)) {
         let tangents: Vec<f32> = elevations.iter().map(|angle| angle.max(0.0).tan()).collect();

@@ -214,7 +214,7 @@ fn gpu_fourier_series_are_the_transform_of_the_horizons() {
     const AZIMUTHS: usize = 24;
     const HALF: usize = 8;
     const RANGE: f64 = 50.0;
-    // More than a block of sums.
+    // 140² texels exceed one block of 2^14.
     const SIDE: usize = 140;
     write_field(&folder, SIDE, |row, col| {
         let rough = ((row * 7919 + col * 104_729) % 613) as f32 * 0.005;
@@ -262,7 +262,7 @@ fn gpu_fourier_series_are_the_transform_of_the_horizons() {
     let said = json["settings"]["fourier_error_percent"].as_f64().unwrap();
     assert!((said - left_out).abs() < 0.01 && said > 1.0, "{said} for {left_out}");
 
-    // In three rounds, as a small budget requires: 17 layers have 1.3 MiB.
+    // 17 layers take 1.3 MiB, so a budget of 600 KiB needs three rounds.
     let few = "horizon field.npy -o few.ktx2 --azimuths 24 --fourier 16,50 --memory-budget 600KiB";
     done(&folder, few);
     let bytes = std::fs::read(folder.path("few.ktx2")).unwrap();

@@ -133,7 +133,7 @@ pub fn in_turn<const N: usize>(
     Ok(rows.into_iter().map(|row| row.try_into().expect("a time of each frame")).collect())
 }
 
-/// The same of frames of any plans, which end here.
+/// The same for frames of any plans. Ends the frames.
 pub fn frames_in_turn(
     gpu: &mut Headless,
     mut frames: Vec<Frame>,
