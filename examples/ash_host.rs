@@ -199,6 +199,7 @@ fn draw(
         let commands_info = vk::CommandBufferAllocateInfo::default().command_pool(pool);
         let commands = device.allocate_command_buffers(&commands_info.command_buffer_count(1))?[0];
         for _ in 0..frames {
+            texels.add(ROWS * COLS).write_bytes(0, ROWS * COLS);
             device.reset_command_pool(pool, vk::CommandPoolResetFlags::empty())?;
             device.begin_command_buffer(commands, &vk::CommandBufferBeginInfo::default())?;
             device.cmd_pipeline_barrier(commands, top, transfer, none, &[], &[], &filling);
@@ -229,6 +230,12 @@ fn draw(
     }
 }
 
+/// A number of frames, one by default.
+pub fn frames(word: Option<std::ffi::OsString>) -> Any<u32> {
+    let frames = word.map_or(Ok(1), |word| word.to_string_lossy().parse())?;
+    if frames == 0 { Err("0 frames: expected at least 1".into()) } else { Ok(frames) }
+}
+
 /// Draws `frames` frames. Returns the light of every texel in the last one, row by row.
 pub fn lit(frames: u32) -> Any<Vec<f32>> {
     // SAFETY: the system's Vulkan loader, whose initialisers are meant to run.
@@ -246,9 +253,9 @@ pub fn lit(frames: u32) -> Any<Vec<f32>> {
 }
 
 fn main() -> Any<()> {
-    let mut args = std::env::args().skip(1);
+    let mut args = std::env::args_os().skip(1);
     let out = args.next().ok_or("usage: ash_host OUT [FRAMES]")?;
-    let lit = lit(args.next().map_or(Ok(1), |frames| frames.parse())?)?;
+    let lit = lit(frames(args.next())?)?;
     let bytes: Vec<u8> = lit.iter().flat_map(|value| value.to_ne_bytes()).collect();
     Ok(std::fs::write(out, bytes)?)
 }

@@ -96,7 +96,7 @@ pub struct Plan {
     /// Dispatches, in order, after an edit of a rectangle of heights, with their barriers. Empty where edits need all passes
     /// ([`Picture::keeps_horizons`]).
     pub edit_passes: Vec<Pass>,
-    /// Contents of the buffer "azimuths".
+    /// Contents of the buffer "azimuths", each list sorted by octant.
     pub azimuths: Vec<Azimuth>,
     /// Contents of the buffer "constants", four f32 per texel; empty without spherical harmonics.
     pub constants: Vec<f32>,

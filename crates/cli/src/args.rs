@@ -264,7 +264,7 @@ pub struct HorizonArgs {
     pub output: PathBuf,
     /// A Fourier series for bevy-clipmap instead: coefficients, range of heights in metres
     ///
-    /// To -o OUT.ktx2: R32F, a layer for the mean and one for each coefficient (an even number of 2 to 256), of the tangent of the elevation over azimuth. The range is that of the heights in bevy-clipmap, its `max - min`. Voids have the horizons of the filled ground.
+    /// To -o OUT.ktx2: R32F, a layer for the mean and one for each coefficient (an even number of 2 to 256), of the tangent of the elevation over azimuth. The range is that of the heights in bevy-clipmap, its `max - min`. Voids have the horizons of the filled ground. The sums take at most --memory-budget of main memory; further layers take more rounds over all azimuths.
     #[arg(long, value_name = "N,RANGE", value_parser = fourier, allow_hyphen_values = true, help_heading = "Output", hide_short_help = true, conflicts_with = "distances")]
     pub fourier: Option<Fourier>,
     /// Also write the distance to each horizon's occluder, metres, 0 where there is none

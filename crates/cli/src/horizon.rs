@@ -253,12 +253,15 @@ pub fn run(args: &HorizonArgs) -> Result<Outcome> {
     let mut angles_file = has_layers.then(|| create(&args.output, "rad")).transpose()?;
     let mut distances_file = args.distances.as_ref().map(|path| create(path, "m")).transpose()?;
     let bar = crate::setup::terminal::progress(args.global.quiet, "horizons");
-    let (begun, mut done) = (Instant::now(), 0);
+    // Azimuths that are drawn together.
+    let at_once = at_once(&field, &limits);
+    let at_once = plan_from(&field, border, &quality, &limits, (0, at_once), distances)?;
+    let at_once = at_once.azimuths.len();
+    let (begun, mut done, mut left) = (Instant::now(), 0, String::new());
     let mut times = Vec::new();
     let mut metadata = Vec::new();
     loop {
         let [rounds, rounds_done] = series.as_ref().map_or([1, 0], fourier::Series::rounds);
-        let distances = distances && rounds_done == 0;
         let (more, plan) = for_each(
             &mut gpu,
             &field,
@@ -279,21 +282,21 @@ pub fn run(args: &HorizonArgs) -> Result<Outcome> {
                 if let Some(file) = &mut angles_file {
                     file.write(layer, masked(angles))?;
                 }
-                if let Some(file) = distances_file.as_mut().filter(|_| !distances.is_empty()) {
+                if let Some(file) = &mut distances_file {
                     file.write(layer, masked(distances))?;
                 }
                 done += 1;
-                let left = (rounds * shape[0] - done) as u32;
-                let left = HumanDuration(begun.elapsed() * left / done as u32);
+                if done % at_once == 0 {
+                    let others = (rounds * shape[0] - done) as u32;
+                    let duration = HumanDuration(begun.elapsed() * others / done as u32);
+                    left = format!(", about {duration} left");
+                }
                 let round = match rounds {
                     1 => String::new(),
                     _ => format!("round {} of {rounds}, ", rounds_done + 1),
                 };
                 let azimuth = k + 1;
-                bar.set_message(format!(
-                    "horizons: {round}azimuth {azimuth} of {}, about {left} left",
-                    shape[0]
-                ));
+                bar.set_message(format!("horizons: {round}azimuth {azimuth} of {}{left}", shape[0]));
                 Ok(())
             },
         )?;

@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use bevy::prelude::*;
 use bevy::render::RenderPlugin;
+use bevy::render::pipelined_rendering::PipelinedRenderingPlugin;
 use bevy::render::renderer::RenderDevice;
 use bevy::window::ExitCondition;
 use bevy::winit::WinitPlugin;
@@ -39,8 +40,10 @@ fn main() {
     let window =
         WindowPlugin { primary_window: None, exit_condition: ExitCondition::DontExit, ..default() };
     let render = RenderPlugin { synchronous_pipeline_compilation: true, ..default() };
-    app.add_plugins(DefaultPlugins.set(window).set(render).disable::<WinitPlugin>())
-        .add_plugins(RidgelightPlugin);
+    // Rendered on the same thread: a frame is submitted when its update returns.
+    let plugins = DefaultPlugins.set(window).set(render);
+    let plugins = plugins.disable::<WinitPlugin>().disable::<PipelinedRenderingPlugin>();
+    app.add_plugins((plugins, RidgelightPlugin));
     app.finish();
     app.cleanup();
     let image = app.world_mut().resource_mut::<Assets<Image>>().add(heights());

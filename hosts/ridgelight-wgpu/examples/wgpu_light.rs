@@ -146,9 +146,9 @@ fn refuse(
 }
 
 fn main() -> Any<()> {
-    let mut args = std::env::args().skip(1);
+    let mut args = std::env::args_os().skip(1);
     let out = args.next().ok_or("usage: wgpu_light OUT.exr [FRAMES]")?;
-    let frames: u32 = args.next().map_or(Ok(1), |frames| frames.parse())?;
+    let frames = ash_host::frames(args.next())?;
     let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
     descriptor.backends = wgpu::Backends::VULKAN;
     // wgpu enables no layer; VK_INSTANCE_LAYERS can.

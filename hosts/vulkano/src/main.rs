@@ -60,9 +60,9 @@ fn texels(memory: &Arc<StandardMemoryAllocator>, values: &[f32]) -> Any<Subbuffe
 }
 
 fn main() -> Any<()> {
-    let mut args = std::env::args().skip(1);
+    let mut args = std::env::args_os().skip(1);
     let out = args.next().ok_or("usage: ridgelight-vulkano-host OUT.exr [FRAMES]")?;
-    let frames: u32 = args.next().map_or(Ok(1), |frames| frames.parse())?;
+    let frames = ash_host::frames(args.next())?;
     let info = InstanceCreateInfo { max_api_version: Some(Version::V1_1), ..Default::default() };
     let instance = Instance::new(VulkanLibrary::new()?, info)?;
     let physical_device = instance.enumerate_physical_devices()?.next().ok_or("no device")?;
@@ -124,6 +124,7 @@ fn main() -> Any<()> {
     let (ash, none) = (&host.device, vk::DependencyFlags::empty());
     let [read, written] = [&filled_from, &read_to].map(|texels| texels.buffer().handle());
     for _ in 0..frames {
+        read_to.write()?.fill(0.0);
         let (begin, level) = (CommandBufferBeginInfo::default(), CommandBufferLevel::Primary);
         let recording =
             RecordingCommandBuffer::new(pool.clone(), queue_family_index, level, begin)?;

@@ -57,7 +57,7 @@ pub struct Azimuth {
     pub vector_march: i32,
     /// Exact azimuths only: lane component of the grid vector.
     pub vector_lane: i32,
-    /// The layer of `horizon_angles` that this azimuth writes: its index in the list before the sort by octant.
+    /// The layer of `horizon_angles` that this azimuth writes: its index in its list before the sort by octant.
     pub horizon_layer: u32,
 }
 

@@ -112,8 +112,7 @@ pub fn run(mut args: Args) -> Outcome {
          Without a host, the same passes take {:.1} ms by device timestamps; the plan's images and buffers take {:.2} MB. For Bevy the \
          time is a difference: a frame with new heights minus a frame without, in `examples/frames.rs`, without a window and built with \
          the dev profile (`opt-level = 1`). It reads nothing back. Its plan also keeps horizons for edits: without a host, its passes \
-         take {:.1} ms, and its images and buffers {:.2} MB. The difference can be less than that, because the device works while Bevy's \
-         own code runs. Each time is the median of {RUNS} runs of {FRAMES} frames, without start-up; the hosts run in turn. \
+         take {:.1} ms, and its images and buffers {:.2} MB. Each time is the median of {RUNS} runs of {FRAMES} frames, without start-up; the hosts run in turn. \
          Device: {}.\n",
         passes[0],
         bytes[0],

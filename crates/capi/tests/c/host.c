@@ -49,8 +49,8 @@ static RidgelightImage image(RidgelightImageInfo wanted, VkImageUsageFlags usage
 }
 
 int main(int argc, char **argv) {
-    must(argc == 2 || argc == 3, "usage: host OUT [FRAMES]");
     int frames = argc == 3 ? atoi(argv[2]) : 1;
+    must((argc == 2 || argc == 3) && frames > 0, "usage: host OUT [FRAMES]");
     RL(ridgelight_check_version(RIDGELIGHT_VERSION));
 
     /* The engine's own: an instance and a device with what Ridgelight needs, a queue, a command buffer. */
@@ -127,6 +127,7 @@ int main(int argc, char **argv) {
     to.bufferOffset = 4 * TEXELS;
     VkSubmitInfo submit = {.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO, .commandBufferCount = 1, .pCommandBuffers = &commands};
     for (int frame = 0; frame < frames; frame++) {
+        memset(texels + TEXELS, 0, 4 * TEXELS);
         VK(vkBeginCommandBuffer(commands, &begin));
         vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 0, NULL, 0,
             NULL, 1, &filling);

@@ -1,4 +1,5 @@
 // Ridgelight in a Vulkan program of its own, by C++. Writes the light of every texel, row by row, as floats.
+#include <algorithm>
 #include <array>
 #include <fstream>
 #include <iostream>
@@ -87,28 +88,25 @@ static void run(const char *out, int frames) {
     vk::raii::Device device(physical_device, {{}, queues});
     vk::raii::Queue queue(device, family, 0);
     vk::raii::CommandPool pool(device, {vk::CommandPoolCreateFlagBits::eResetCommandBuffer, family});
-    vk::raii::CommandBuffers all(device, {*pool, vk::CommandBufferLevel::ePrimary, 1});
-    vk::raii::CommandBuffer &commands = all.front();
+    vk::raii::CommandBuffer commands = std::move(vk::raii::CommandBuffers(device, {*pool, {}, 1}).front());
     Memory memory{physical_device, device, {}};
     vk::raii::Buffer buffer(device, {{}, 8 * TEXELS, vk::BufferUsageFlagBits::eTransferSrc | vk::BufferUsageFlagBits::eTransferDst});
-    VkDeviceMemory staging = memory.take(buffer.getMemoryRequirements(),
-        vk::MemoryPropertyFlagBits::eHostVisible | vk::MemoryPropertyFlagBits::eHostCoherent);
+    auto visible = vk::MemoryPropertyFlagBits::eHostVisible | vk::MemoryPropertyFlagBits::eHostCoherent;
+    VkDeviceMemory staging = memory.take(buffer.getMemoryRequirements(), visible);
     buffer.bindMemory(staging, 0);
     auto texels = static_cast<float *>(memory.held.at(staging).mapMemory(0, VK_WHOLE_SIZE));
     for (uint32_t i = 0; i < TEXELS; i++) texels[i] = float((i / COLS * 31 + i % COLS * 17) % 7) - 3;
 
     // Once for a scene: a plan, its renderer, and the engine's images.
     auto host = ridgelight::sized<RidgelightHost>();
-    host.instance = *instance, host.physical_device = *physical_device;
-    host.device = *device, host.queue_family = family;
+    host.instance = *instance, host.physical_device = *physical_device, host.device = *device, host.queue_family = family;
     host.get_instance_proc_addr = vkGetInstanceProcAddr;
     auto sun = ridgelight::sized<RidgelightSun>();
     for (float &channel : sun.irradiance) channel = 3;
     sun.elevation_rad = 30 * DEGREE, sun.diameter_rad = 0.5 * DEGREE;
     auto scene = ridgelight::sized<RidgelightScene>();
-    scene.rows = ROWS, scene.cols = COLS;
+    scene.rows = ROWS, scene.cols = COLS, scene.suns = &sun, scene.sun_count = 1;
     for (float &channel : scene.sky) channel = 0.5f;
-    scene.suns = &sun, scene.sun_count = 1;
     ridgelight::Plan plan;
     rl(ridgelight::create(plan, host, scene));
     RidgelightAllocator allocator = ridgelight::allocator(memory);
@@ -130,6 +128,7 @@ static void run(const char *out, int frames) {
         vk::ImageLayout::eTransferDstOptimal, VK_QUEUE_FAMILY_IGNORED, VK_QUEUE_FAMILY_IGNORED, *heights.image, Image::whole());
     vk::MemoryBarrier reading(vk::AccessFlagBits::eTransferWrite, vk::AccessFlagBits::eHostRead);
     for (int frame = 0; frame < frames; frame++) {
+        std::fill_n(texels + TEXELS, TEXELS, 0.0f);
         commands.begin(vk::CommandBufferBeginInfo());
         commands.pipelineBarrier(vk::PipelineStageFlagBits::eTopOfPipe, vk::PipelineStageFlagBits::eTransfer, {}, {}, {}, filling);
         commands.copyBufferToImage(*buffer, *heights.image, vk::ImageLayout::eTransferDstOptimal, from);
@@ -144,7 +143,8 @@ static void run(const char *out, int frames) {
 }
 
 int main(int argc, char **argv) try {
-    run(argc > 1 ? argv[1] : throw std::runtime_error("usage: host OUT [FRAMES]"), argc > 2 ? std::stoi(argv[2]) : 1);
+    int frames = argc > 2 ? std::stoi(argv[2]) : 1;
+    run(argc > 1 && frames > 0 ? argv[1] : throw std::runtime_error("usage: host OUT [FRAMES]"), frames);
 } catch (const std::exception &error) {
     return std::cerr << error.what() << '\n', 1;
 }

@@ -34,6 +34,8 @@ pub struct Series {
     azimuths_rad: Vec<f64>,
     /// Columns, rows.
     size: [usize; 2],
+    /// Layers per round.
+    per_round: usize,
     /// Layers of this round.
     layers: Range<usize>,
     /// For each block of texels the sums of the round's layers, layer after layer.
@@ -56,12 +58,13 @@ impl Series {
         let (texels, all) = (rows * cols, wanted.coefficients as usize + 1);
         let most = usize::try_from(budget / (4 * texels as u64)).unwrap_or(all).clamp(1, all);
         // All rounds have the same number of layers; the last can have fewer.
-        let layers = 0..all.div_ceil(all.div_ceil(most));
+        let per_round = all.div_ceil(all.div_ceil(most));
+        let layers = 0..per_round;
         let block = |first: usize| BLOCK_TEXELS.min(texels - first) * layers.len();
         let blocks = (0..texels).step_by(BLOCK_TEXELS).map(|first| vec![0.0; block(first)]);
         let (blocks, size) = (blocks.collect(), [cols, rows]);
         let (energy, series_energy, file) = (0.0, 0.0, None);
-        Self { wanted, azimuths_rad, size, layers, blocks, energy, series_energy, file }
+        Self { wanted, azimuths_rad, size, per_round, layers, blocks, energy, series_energy, file }
     }
 
     /// Layers of the file.
@@ -71,8 +74,7 @@ impl Series {
 
     /// The number of rounds, and how many are done.
     pub fn rounds(&self) -> [usize; 2] {
-        let most = self.blocks[0].len() / BLOCK_TEXELS.min(self.size[0] * self.size[1]);
-        [self.all().div_ceil(most), self.layers.start.div_ceil(most)]
+        [self.all(), self.layers.start].map(|layers| layers.div_ceil(self.per_round))
     }
 
     /// Bytes of the file's texels.
@@ -133,7 +135,7 @@ impl Series {
             }
         }
         let (count, end) = (self.layers.len(), self.layers.end);
-        self.layers = end..(end + count).min(self.all());
+        self.layers = end..(end + self.per_round).min(self.all());
         for block in &mut self.blocks {
             block.truncate(block.len() / count * self.layers.len());
             block.fill(0.0);

@@ -263,11 +263,21 @@ fn gpu_fourier_series_are_the_transform_of_the_horizons() {
     assert!((said - left_out).abs() < 0.01 && said > 1.0, "{said} for {left_out}");
 
     // 17 layers take 1.3 MiB, so a budget of 600 KiB needs three rounds.
-    let few = "horizon field.npy -o few.ktx2 --azimuths 24 --fourier 16,50 --memory-budget 600KiB";
+    let few = "horizon field.npy -o few.ktx2 --azimuths 24 --fourier 16,50 --memory-budget 600KiB --json few.json";
     done(&folder, few);
     let bytes = std::fs::read(folder.path("few.ktx2")).unwrap();
     let reader = ktx2::Reader::new(&bytes).unwrap();
     assert!(reader.levels().next().unwrap().data == level.data, "rounds change the texels");
+    let few: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(folder.path("few.json")).unwrap()).unwrap();
+    let error = few["settings"]["fourier_error_percent"].as_f64().unwrap();
+    assert!((error - said).abs() < 0.01, "{error} for {said}");
+    // Each azimuth is fused once per round.
+    let fused = |json: &serde_json::Value| {
+        let passes = json["passes"].as_array().expect("times");
+        passes.iter().filter(|pass| pass["label"].as_str().unwrap().starts_with("sweep_fuse")).count()
+    };
+    assert!(fused(&few) >= 3 * 2, "{} passes in three rounds", fused(&few));
 
     // As the shader sums, to the south and to the north of a texel before the wall.
     let at = 11 * SIDE + 8;
