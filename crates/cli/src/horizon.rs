@@ -296,7 +296,10 @@ pub fn run(args: &HorizonArgs) -> Result<Outcome> {
                     _ => format!("round {} of {rounds}, ", rounds_done + 1),
                 };
                 let azimuth = k + 1;
-                bar.set_message(format!("horizons: {round}azimuth {azimuth} of {}{left}", shape[0]));
+                bar.set_message(format!(
+                    "horizons: {round}azimuth {azimuth} of {}{left}",
+                    shape[0]
+                ));
                 Ok(())
             },
         )?;

@@ -62,7 +62,12 @@ fn added_ms(program: &str) -> Result<f64> {
     let ms: Vec<f64> = printed.split_whitespace().filter_map(|word| word.parse().ok()).collect();
     match ms[..] {
         [with, without] => Ok(with - without),
-        _ => Err(failed(program, format!("printed {printed:?}, expected two numbers: ms per frame with and without new heights"))),
+        _ => Err(failed(
+            program,
+            format!(
+                "printed {printed:?}, expected two numbers: ms per frame with and without new heights"
+            ),
+        )),
     }
 }
 

@@ -102,7 +102,9 @@ impl Series {
         let weights = &weights[..];
         let energies: Vec<f64> = std::thread::scope(|scope| {
             let threads: Vec<_> = parts
-                .map(|(blocks, elevations)| scope.spawn(move || add_to_blocks(blocks, elevations, weights)))
+                .map(|(blocks, elevations)| {
+                    scope.spawn(move || add_to_blocks(blocks, elevations, weights))
+                })
                 .collect();
             threads.into_iter().map(|t| t.join().expect("no panic")).collect()
         });

@@ -275,7 +275,10 @@ fn gpu_fourier_series_are_the_transform_of_the_horizons() {
     // Each azimuth is fused once per round.
     let fused = |json: &serde_json::Value| {
         let passes = json["passes"].as_array().expect("times");
-        passes.iter().filter(|pass| pass["label"].as_str().unwrap().starts_with("sweep_fuse")).count()
+        passes
+            .iter()
+            .filter(|pass| pass["label"].as_str().unwrap().starts_with("sweep_fuse"))
+            .count()
     };
     assert!(fused(&few) >= 3 * 2, "{} passes in three rounds", fused(&few));
 
