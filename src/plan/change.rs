@@ -65,13 +65,27 @@ impl Plan {
         self.azimuths.get(start as usize..end as usize)
     }
 
-    /// Adds the passes that must run because of those that run.
+    /// Adds the passes that must run because of those that run: they read or write data that a running pass writes, or they write what a
+    /// running pass reads and a later pass overwrote. The time is linear in the bindings of all passes.
     pub(crate) fn add_followers(&self, runs: &mut [bool]) {
-        if !runs.contains(&true) {
-            return;
+        let of_resources = || vec![Vec::new(); self.resources.len()];
+        let (mut users, mut writers) = (of_resources(), of_resources());
+        for (p, pass) in self.passes.iter().enumerate() {
+            pass.reads().for_each(|id| users[id.0].push(p));
+            pass.writes().for_each(|id| users[id.0].push(p));
+            pass.writes().for_each(|id| writers[id.0].push(p));
         }
-        while let Some(next) = (0..runs.len()).find(|i| !runs[*i] && self.follows(*i, runs)) {
-            runs[next] = true;
+        let last_writers: Vec<_> = writers.iter().map(|all| all.last().copied()).collect();
+        let mut running: Vec<usize> = (0..runs.len()).filter(|p| runs[*p]).collect();
+        while let Some(p) = running.pop() {
+            let pass = &self.passes[p];
+            // Each list is followed once.
+            let mut followers = Vec::new();
+            pass.writes().for_each(|id| followers.append(&mut users[id.0]));
+            let overwritten = pass.reads().filter(|id| last_writers[id.0] > Some(p));
+            overwritten.for_each(|id| followers.append(&mut writers[id.0]));
+            followers.retain(|follower| !std::mem::replace(&mut runs[*follower], true));
+            running.append(&mut followers);
         }
     }
 
@@ -83,25 +97,6 @@ impl Plan {
         let alike = |a: &[Pass], b: &[Pass]| a.len() == b.len() && a.iter().zip(b).all(same);
         alike(&self.passes, &before.passes) && alike(&self.edit_passes, &before.edit_passes)
     }
-
-    /// Whether pass `i` must run because of those that do.
-    fn follows(&self, i: usize, runs: &[bool]) -> bool {
-        let pass = &self.passes[i];
-        let writes = |p: usize, id: ResourceId| self.passes[p].writes().any(|w| w == id);
-        let touched = (0..runs.len()).filter(|p| runs[*p]);
-        // It reads recomputed data, or contributes to a recomputed sum.
-        let is_recomputed = |id: ResourceId| touched.clone().any(|p| writes(p, id));
-        if pass.reads().any(is_recomputed) || pass.writes().any(is_recomputed) {
-            return true;
-        }
-        // A pass that runs reads its output, which a later pass overwrote.
-        pass.writes().any(|id| {
-            touched.clone().any(|p| {
-                let reads = self.passes[p].reads().any(|r| r == id);
-                reads && (p + 1..runs.len()).any(|later| writes(later, id))
-            })
-        })
-    }
 }
 
 #[cfg(test)]
@@ -109,7 +104,7 @@ mod tests {
     use crate::graph::{Limits, Resource};
     use crate::plan;
     use crate::plan::{Picture, Plan};
-    use crate::scene::{Basis, Environment, Lights, Method, Quality, Scene, Sun, Surface};
+    use crate::scene::{Basis, Bounces, Environment, Lights, Method, Quality, Scene, Sun, Surface};
     use crate::scene::{HeightField, fractal};
 
     fn scene() -> Scene {
@@ -142,6 +137,50 @@ mod tests {
         let mut names: Vec<_> = passes.iter().map(|i| plan.passes[*i].name()).collect();
         names.dedup();
         names
+    }
+
+    /// Whether pass `i` must run because of those that do.
+    fn follows(plan: &Plan, i: usize, runs: &[bool]) -> bool {
+        let pass = &plan.passes[i];
+        let writes = |p: usize, id| plan.passes[p].writes().any(|w| w == id);
+        let running = (0..runs.len()).filter(|p| runs[*p]);
+        let is_recomputed = |id| running.clone().any(|p| writes(p, id));
+        let is_overwritten = |id| {
+            running.clone().any(|p| {
+                let reads = plan.passes[p].reads().any(|r| r == id);
+                reads && (p + 1..runs.len()).any(|later| writes(later, id))
+            })
+        };
+        pass.reads().any(is_recomputed)
+            || pass.writes().any(|id| is_recomputed(id) || is_overwritten(id))
+    }
+
+    /// Of each pass alone, by the rule for one pass until nothing is added.
+    #[test]
+    fn followers_are_those_of_the_rule() {
+        let small = Limits { image_layers: 64, ..Limits::lavapipe() };
+        let mut counts = Vec::new();
+        for (basis, limits) in [(Basis::Table, Limits::lavapipe()), (Basis::Sh, small)] {
+            let bounces = Bounces { count: 2, ..Bounces::default() };
+            let quality = Quality { azimuths: 16, basis, bounces, ..Quality::default() };
+            let plan = plan::picture(&scene(), &quality, &limits, Picture::default()).unwrap();
+            let count = plan.passes.len();
+            for first in 0..count {
+                let mut expected = vec![false; count];
+                expected[first] = true;
+                let mut found = expected.clone();
+                while let Some(next) =
+                    (0..count).find(|i| !expected[*i] && follows(&plan, *i, &expected))
+                {
+                    expected[next] = true;
+                }
+                plan.add_followers(&mut found);
+                assert!(found == expected, "{}", plan.passes[first].label());
+                counts.push(found.iter().filter(|runs| **runs).count());
+            }
+        }
+        // Some have none, others many.
+        assert!(counts.contains(&1) && counts.iter().any(|count| *count > 5), "{counts:?}");
     }
 
     #[test]

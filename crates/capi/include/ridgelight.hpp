@@ -1,7 +1,8 @@
 /* Ridgelight for C++11 and later: owners over ridgelight.h. No exception leaves a function, and none may pass through one.
  *
  * A function that can fail returns a RidgelightResult; ridgelight_last_error() then has its sentence. After an
- * error the owner that it would have filled is empty.
+ * error the owner that it would have filled is empty. `create` destroys what the owner held before. For a renderer or a
+ * view in flight, create into a new owner and keep the old one until its commands have run.
  */
 
 #ifndef RIDGELIGHT_HPP

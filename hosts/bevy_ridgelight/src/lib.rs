@@ -43,7 +43,8 @@ pub struct HeightField {
     pub bent_normal: bool,
     /// Azimuths of [`FieldLight::horizon`], 4 to 1024; 0 for none.
     pub horizon_azimuths: u32,
-    /// Increment it after writing to the image of heights on the GPU.
+    /// Increment it after commands that write the image of heights on the GPU are submitted. The plugin submits in
+    /// `RenderSystems::PrepareResources`, before the render graph.
     pub revision: u32,
 }
 
@@ -126,7 +127,7 @@ impl FieldLight {
     }
 }
 
-/// New heights in a rectangle of a field. Only lines that can reach it are swept again; with
+/// New heights in a rectangle of a field. For the sky, only lines that can reach it are swept again; the sun is lit again everywhere. With
 /// [`HeightField::horizon_azimuths`] everything is recomputed.
 #[derive(Message, Clone, Debug)]
 pub struct HeightEdit {
