@@ -119,8 +119,9 @@ impl Renderer {
         let Some(first) = (0..count).find(|pass| is_pending(*pass)) else { return Ok(()) };
         let affected = self.affected(passes);
         let last = passes.last().copied();
-        let is_missing =
-            |pass: &usize| (is_pending(*pass) || affected[*pass]) && passes.binary_search(pass).is_err();
+        let is_missing = |pass: &usize| {
+            (is_pending(*pass) || affected[*pass]) && passes.binary_search(pass).is_err()
+        };
         let missing = last.map_or(Some(first), |last| (0..last).find(is_missing));
         let Some(missing) = missing else { return Ok(()) };
         let found = last.map_or("none".into(), |last| format!("{last} without {missing}"));
