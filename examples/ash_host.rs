@@ -53,30 +53,14 @@ const COPIED: ImageState = ImageState {
 // What follows an engine has already.
 
 use ridgelight::gpu::{Allocation, Allocator, Blocks, MemoryRequest, MemoryUse};
-use ridgelight::scene::{HeightField, Lights, Sun, Surface};
+
+#[path = "host/scene.rs"]
+mod host_scene;
+pub use host_scene::{COLS, ROWS, frames, scene};
 
 type Any<T> = Result<T, Box<dyn std::error::Error>>;
 
-/// Rows of the scene.
-pub const ROWS: usize = 48;
-/// Its columns.
-pub const COLS: usize = 64;
 const EXTENT: vk::Extent3D = vk::Extent3D { width: COLS as u32, height: ROWS as u32, depth: 1 };
-
-/// Heights of small whole numbers under a sky and a sun in the east.
-pub fn scene() -> ridgelight::Result<Scene> {
-    let height = |i: usize| ((i / COLS * 31 + i % COLS * 17) % 7) as f64 - 3.0;
-    let heights: Vec<f64> = (0..ROWS * COLS).map(height).collect();
-    let field = HeightField::new(ROWS, COLS, &heights, [1.0; 2], None)?;
-    let sun = Sun {
-        azimuth_rad: 0.0,
-        elevation_rad: 30_f64.to_radians(),
-        diameter_rad: 0.5_f64.to_radians(),
-        irradiance: [3.0; 3],
-    };
-    let lights = Lights { sky: Some([0.5; 3]), suns: vec![sun], ..Lights::default() };
-    Ok(Scene { field, surface: Surface::default(), lights })
-}
 
 /// An instance and a device with what Ridgelight needs, and its queue.
 fn host(entry: &ash::Entry) -> Any<(Host, vk::Queue)> {
@@ -228,12 +212,6 @@ fn draw(
         }
         Ok(lit)
     }
-}
-
-/// A number of frames, one by default.
-pub fn frames(word: Option<std::ffi::OsString>) -> Any<u32> {
-    let frames = word.map_or(Ok(1), |word| word.to_string_lossy().parse())?;
-    if frames == 0 { Err("0 frames: expected at least 1".into()) } else { Ok(frames) }
 }
 
 /// Draws `frames` frames. Returns the light of every texel in the last one, row by row.

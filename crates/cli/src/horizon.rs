@@ -286,7 +286,7 @@ pub fn run(args: &HorizonArgs) -> Result<Outcome> {
                     file.write(layer, masked(distances))?;
                 }
                 done += 1;
-                if done % at_once == 0 {
+                if (k as usize + 1) % at_once == 0 || k as usize + 1 == shape[0] {
                     let others = (rounds * shape[0] - done) as u32;
                     let duration = HumanDuration(begun.elapsed() * others / done as u32);
                     left = format!(", about {duration} left");

@@ -7,10 +7,9 @@ use ridgelight_io as files;
 use ridgelight_io::{Channels, Layer};
 use ridgelight_wgpu::{Renderer, limits, texture};
 
-#[expect(dead_code, reason = "of the host by ash only its scene")]
-#[path = "../../../examples/ash_host.rs"]
-mod ash_host;
-use ash_host::{COLS, ROWS};
+#[path = "../../../examples/host/scene.rs"]
+mod host_scene;
+use host_scene::{COLS, ROWS};
 
 type Any<T> = Result<T, Box<dyn std::error::Error>>;
 
@@ -148,7 +147,7 @@ fn refuse(
 fn main() -> Any<()> {
     let mut args = std::env::args_os().skip(1);
     let out = args.next().ok_or("usage: wgpu_light OUT.exr [FRAMES]")?;
-    let frames = ash_host::frames(args.next())?;
+    let frames = host_scene::frames(args.next())?;
     let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
     descriptor.backends = wgpu::Backends::VULKAN;
     // wgpu enables no layer; VK_INSTANCE_LAYERS can.
@@ -159,7 +158,7 @@ fn main() -> Any<()> {
     let (device, queue) =
         pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default()))?;
 
-    let scene = ash_host::scene()?;
+    let scene = host_scene::scene()?;
     let plan = plan::picture(&scene, &Quality::default(), &limits(&device)?, Picture::default())?;
     let none = wgpu::TextureUsages::empty();
     let heights = texture(&device, &queue, plan.inputs().next().ok_or("no input")?.1, none)?;

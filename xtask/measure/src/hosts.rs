@@ -4,32 +4,20 @@ use std::process::Command;
 use std::time::Instant;
 
 use ridgelight::plan::{self, Picture};
-use ridgelight::scene::{HeightField, Lights, Quality, Scene, Sun, Surface};
+use ridgelight::scene::Quality;
 use ridgelight::{Error, Result};
 
 use crate::common::args::Args;
 use crate::common::frames::{device, total};
 use crate::common::{Outcome, head, median};
 
+#[expect(dead_code, reason = "of the host programs only their scene")]
+#[path = "../../../examples/host/scene.rs"]
+mod host_scene;
+
 /// Frames that are timed. A run of one frame is timed too, and subtracted with its start-up.
 const FRAMES: u32 = 400;
 const RUNS: usize = 5;
-
-/// The scene of `examples/ash_host.rs`.
-fn scene() -> Result<Scene> {
-    let (rows, cols) = (48, 64);
-    let height = |i: usize| ((i / cols * 31 + i % cols * 17) % 7) as f64 - 3.0;
-    let heights: Vec<f64> = (0..rows * cols).map(height).collect();
-    let field = HeightField::new(rows, cols, &heights, [1.0; 2], None)?;
-    let sun = Sun {
-        azimuth_rad: 0.0,
-        elevation_rad: 30_f64.to_radians(),
-        diameter_rad: 0.5_f64.to_radians(),
-        irradiance: [3.0; 3],
-    };
-    let lights = Lights { sky: Some([0.5; 3]), suns: vec![sun], ..Lights::default() };
-    Ok(Scene { field, surface: Surface::default(), lights })
-}
 
 fn failed(program: &str, reason: impl ToString) -> Error {
     Error::Device { doing: format!("running {program}"), reason: reason.to_string() }
@@ -86,7 +74,7 @@ pub fn run(mut args: Args) -> Outcome {
         hosts.push((name, crates, program));
     }
     let mut gpu = args.open()?;
-    let (scene, folder) = (scene()?, tempfile::tempdir()?);
+    let (scene, folder) = (host_scene::scene()?, tempfile::tempdir()?);
     let out = folder.path().join("light.exr");
     let out = out.to_str().unwrap_or_default();
     let limits = gpu.report().limits;
