@@ -286,7 +286,8 @@ pub fn run(args: &HorizonArgs) -> Result<Outcome> {
                     file.write(layer, masked(distances))?;
                 }
                 done += 1;
-                if (k as usize + 1) % at_once == 0 || k as usize + 1 == shape[0] {
+                let azimuth = k as usize + 1;
+                if azimuth.is_multiple_of(at_once) || azimuth == shape[0] {
                     let others = (rounds * shape[0] - done) as u32;
                     let duration = HumanDuration(begun.elapsed() * others / done as u32);
                     left = format!(", about {duration} left");
@@ -295,7 +296,6 @@ pub fn run(args: &HorizonArgs) -> Result<Outcome> {
                     1 => String::new(),
                     _ => format!("round {} of {rounds}, ", rounds_done + 1),
                 };
-                let azimuth = k + 1;
                 bar.set_message(format!(
                     "horizons: {round}azimuth {azimuth} of {}{left}",
                     shape[0]
