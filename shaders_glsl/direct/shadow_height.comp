@@ -3,13 +3,18 @@
 // the sun.
 // Reads: heights; of an outer field its shadow heights, outer_lit_above and outer_penumbra.
 // Writes: lit_above (metres over the field's base), penumbra (metres), sun_share (0 to 1).
-// One invocation is one line; the last of a workgroup is also the first of the next one. Lines are a cell apart. A grid point
+// One invocation is one line, or a segment of it that begins with the highest ground of the segments before; the last of a workgroup is also the first of the next one. Lines are a cell apart. A grid point
 // interpolates the two lines beside it.
 #version 460
 
-layout(local_size_x = 64) in;
+layout(local_size_x = 64, local_size_y_id = 1) in;
 
 layout(constant_id = 0) const bool HAS_OUTER = false;
+// Steps between two barriers.
+layout(constant_id = 2) const int AT_ONCE = 4;
+// Size of `of_lines`, and of `segment_top` and `segment_step`: one per invocation.
+layout(constant_id = 3) const int LINE_WORDS = 512;
+layout(constant_id = 4) const int SEGMENT_WORDS = 64;
 
 layout(binding = 0) uniform texture2D heights;
 layout(binding = 1) uniform texture2D outer_lit_above;
@@ -35,13 +40,18 @@ layout(push_constant) uniform ShadowHeightPush {
     int first_group;
 };
 
-const int AT_ONCE = 4;
 // Beyond it the upper edge is in the zenith, and nothing reaches that far.
 const float STEEPEST = 1e8;
 
-// Of AT_ONCE steps: shadow heights for the lower and the upper edge, and how many steps away the ground is that shades from each.
-// Two such buffers alternate.
-shared vec4 of_lines[2 * AT_ONCE * gl_WorkGroupSize.x];
+// No ground.
+const float NOTHING = -1e30;
+
+// Of AT_ONCE steps of each segment: shadow heights for the lower and the upper edge, and how many steps away the ground is that
+// shades from each. Two such buffers alternate.
+shared vec4 of_lines[LINE_WORDS];
+// For each segment of each line, the highest shadowing ground for both edges, and its march steps.
+shared vec2 segment_top[SEGMENT_WORDS];
+shared vec2 segment_step[SEGMENT_WORDS];
 
 bool has(uint flag) {
     return (flags & flag) != 0u;
@@ -108,6 +118,47 @@ float share_at(float z, vec4 shade) {
     return share_above(hidden);
 }
 
+// Along a line, the highest shadowing ground so far, for the lower and upper edge, and its march step.
+struct Highest {
+    vec2 top;
+    vec2 step;
+};
+
+bool is_on_field(int place, int lanes) {
+    return place > -CELL && place < lanes * CELL;
+}
+
+// Shadow heights of a line at `step`, for both edges, and how many steps away the ground is that shades from each. The line is
+// at `place` in cells / CELL across the lanes; `ground` becomes the height of the lane before it, or after it if it lies between. Its own height counts from the next step on.
+vec4 marched(inout Highest highest, int step, int place, ivec2 last, vec2 rise, out float ground) {
+    int cell = place >> CELL_SHIFT;
+    int fraction = place & (CELL - 1);
+    float below = texelFetch(heights, texel_of(clamp(cell, 0, last.x), step, last), 0).x;
+    float above = texelFetch(heights, texel_of(clamp(cell + 1, 0, last.x), step, last), 0).x;
+    float here = mix(below, above, float(fraction) * (1.0 / float(CELL)));
+    bool is_on = is_on_field(place, last.x + 1);
+    if (is_on && (step == 0 || !is_on_field(place - shear, last.x + 1))) {
+        // Beyond the edge towards the sun, the ground is level at the height of the edge.
+        highest = Highest(vec2(here), vec2(float(step - 1)));
+        if (HAS_OUTER) {
+            vec2 beyond = outer_at(grid_place(float(place) * (1.0 / float(CELL)), float(step), vec2(last)));
+            // The outer field's penumbra grows by the same amount with each step.
+            float ahead = max(beyond.y / max(rise.y - rise.x, 1e-30), 1.0);
+            vec2 shade = beyond.x - vec2(0.0, beyond.y);
+            bvec2 is_higher = greaterThan(shade, highest.top - rise);
+            highest.top = mix(highest.top, shade + ahead * rise, is_higher);
+            highest.step = mix(highest.step, vec2(float(step) - ahead), is_higher);
+        }
+    }
+    vec2 ahead = float(step) - highest.step;
+    vec2 shade = highest.top - ahead * rise;
+    bvec2 is_higher = bvec2(uvec2(greaterThanEqual(vec2(here), shade)) & uvec2(is_on));
+    highest.top = mix(highest.top, vec2(here), is_higher);
+    highest.step = mix(highest.step, vec2(float(step)), is_higher);
+    ground = fraction == 0 ? below : above;
+    return vec4(shade, ahead);
+}
+
 void main() {
     int lanes = has(AZIMUTH_MARCHES_ROWS) ? size.x : size.y;
     int steps = has(AZIMUTH_MARCHES_ROWS) ? size.y : size.x;
@@ -125,54 +176,48 @@ void main() {
     }
     vec2 rise = edges * step_m;
     int own = int(gl_LocalInvocationID.x);
-    int y = (first_line + own - lead) * CELL + begin * shear;
-    // Highest shadowing ground so far, for the lower and upper edge, and its march step.
-    vec2 top = vec2(0.0);
-    vec2 top_step = vec2(0.0);
-    bool was_on = false;
-    int turn = 0;
-    for (int first = begin; first < end; first += AT_ONCE) {
+    int y = (first_line + own - lead) * CELL;
+    int segments = int(gl_WorkGroupSize.y);
+    int segment = int(gl_LocalInvocationID.y);
+    int length = ((end - begin + segments - 1) / segments + AT_ONCE - 1) / AT_ONCE * AT_ONCE;
+    int from = begin + segment * length;
+    Highest highest = Highest(vec2(NOTHING), vec2(0.0));
+    if (segments > 1) {
+        for (int first = from; first < min(from + length, end); first += AT_ONCE) {
+            for (int k = 0; k < AT_ONCE; k++) {
+                int step = min(first + k, steps - 1);
+                float ground;
+                marched(highest, step, y + step * shear, last, rise, ground);
+            }
+        }
+        int at = segment * int(gl_WorkGroupSize.x) + own;
+        segment_top[at] = highest.top;
+        segment_step[at] = highest.step;
+        barrier();
+        // In the order of the march.
+        highest = Highest(vec2(NOTHING), vec2(0.0));
+        for (int before = own; before < at; before += int(gl_WorkGroupSize.x)) {
+            vec2 shade = highest.top - (segment_step[before] - highest.step) * rise;
+            bvec2 is_higher = greaterThanEqual(segment_top[before], shade);
+            highest.top = mix(highest.top, segment_top[before], is_higher);
+            highest.step = mix(highest.step, segment_step[before], is_higher);
+        }
+    }
+    int buffers = segment * 2 * AT_ONCE;
+    for (int first = from; first < from + length; first += AT_ONCE) {
         vec4 mine[AT_ONCE];
         float ground[AT_ONCE];
         for (int k = 0; k < AT_ONCE; k++) {
             int step = min(first + k, steps - 1);
-            int at = y + k * shear;
-            int cell = at >> CELL_SHIFT;
-            int fraction = at & (CELL - 1);
-            bool is_on = at > -CELL && at < lanes * CELL;
-            float below = texelFetch(heights, texel_of(clamp(cell, 0, last.x), step, last), 0).x;
-            float above = texelFetch(heights, texel_of(clamp(cell + 1, 0, last.x), step, last), 0).x;
-            float here = mix(below, above, float(fraction) * (1.0 / float(CELL)));
-            if (is_on && !was_on) {
-                // Beyond the edge towards the sun, the ground is level at the height of the edge.
-                top = vec2(here);
-                top_step = vec2(float(step - 1));
-                if (HAS_OUTER) {
-                    vec2 beyond = outer_at(grid_place(float(at) * (1.0 / float(CELL)), float(step), vec2(last)));
-                    // The outer field's penumbra grows by the same amount with each step.
-                    float ahead = max(beyond.y / max(rise.y - rise.x, 1e-30), 1.0);
-                    vec2 shade = beyond.x - vec2(0.0, beyond.y);
-                    bvec2 is_higher = greaterThan(shade, top - rise);
-                    top = mix(top, shade + ahead * rise, is_higher);
-                    top_step = mix(top_step, vec2(float(step) - ahead), is_higher);
-                }
-            }
-            was_on = is_on;
-            vec2 ahead = float(step) - top_step;
-            vec2 shade = top - ahead * rise;
-            mine[k] = vec4(shade, ahead);
-            ground[k] = fraction == 0 ? below : above;
-            of_lines[(turn * AT_ONCE + k) * int(gl_WorkGroupSize.x) + own] = mine[k];
-            bvec2 is_higher = greaterThanEqual(vec2(here), shade);
-            top = mix(top, vec2(here), is_higher);
-            top_step = mix(top_step, vec2(float(step)), is_higher);
+            mine[k] = marched(highest, step, y + step * shear, last, rise, ground[k]);
+            of_lines[(buffers + k) * int(gl_WorkGroupSize.x) + own] = mine[k];
         }
         // One barrier is enough: the next iteration writes the other half, and this half is written again only after that
         // iteration's barrier.
         barrier();
         for (int k = 0; k < AT_ONCE; k++) {
             int step = first + k;
-            int at = y + k * shear;
+            int at = y + step * shear;
             int lane = (at + CELL - 1) >> CELL_SHIFT;
             if (own == group_lines || step >= end || lane < 0 || lane > last.x) {
                 continue;
@@ -181,7 +226,7 @@ void main() {
             int ahead = lane * CELL - at;
             if (ahead > 0) {
                 // Where this line lies on a lane, no interpolation is needed, and the next line may be outside the field.
-                vec4 next = of_lines[(turn * AT_ONCE + k) * int(gl_WorkGroupSize.x) + own + 1];
+                vec4 next = of_lines[(buffers + k) * int(gl_WorkGroupSize.x) + own + 1];
                 shade = mix(shade, next, float(ahead) * (1.0 / float(CELL)));
             }
             ivec2 texel = texel_of(lane, step, last);
@@ -189,7 +234,6 @@ void main() {
             imageStore(penumbra, texel, vec4(shade.z * (rise.y - rise.x)));
             imageStore(sun_share, texel, vec4(share_at(ground[k], shade)));
         }
-        y += AT_ONCE * shear;
-        turn = 1 - turn;
+        buffers ^= AT_ONCE;
     }
 }

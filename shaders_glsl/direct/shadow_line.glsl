@@ -1,8 +1,11 @@
 // Included by shadow_sweep, which declares all constants, bindings and push constants. Sweeps one line per invocation by the
 // operations of four lines per invocation: bit-identical where the compiler contracts both alike. Heights are fetched from `lane_buffer` four steps ahead.
 
-// Words of four steps of each line. Two such buffers alternate.
+// Words of four steps of each line, for each segment. Two such buffers alternate.
 shared uint written[WRITTEN_WORDS];
+// The highest ground of each segment of each line, and its step.
+shared float segment_top[SEGMENT_WORDS];
+shared int segment_step[SEGMENT_WORDS];
 
 // Heights of six lanes, from the one before the line's cell at the step before.
 struct Six {
@@ -38,7 +41,8 @@ Six six_heights(int step, int total) {
                vec2(height_on(row, first + 4), height_on(row, first + 5)));
 }
 
-uint word_of_step(int step, Six six) {
+// Goes on by a step, of which those from `end` on do not count.
+uint word_of_step(int step, int end, Six six) {
     int place = y + (step - begin) * azimuth.shear;
     vec4 to = vec4(six.a.yzw, six.b.x) - six.a;
     float last_to = six.b.y - six.b.x;
@@ -71,38 +75,28 @@ uint word_of_step(int step, Six six) {
     float found = apart < 4.0 * between ? middle : max(now, line_raised);
     found = step == begin ? now : found;
     line_raised = now;
-    bool counts = PERIODIC || place > -CELL && place < lanes * CELL;
+    bool counts = step < end && (PERIODIC || place > -CELL && place < lanes * CELL);
     bool higher = counts && found > line_top;
     line_top = higher ? found : line_top;
     line_top_step = higher ? step : line_top_step;
     return word;
 }
 
-// Marches the line up to step `end`. Four steps of all lines of the workgroup are written together, so that neighbouring
-// invocations write neighbouring texels.
-void march_line(int line, int end, int total) {
-    int row = (lanes + 3) & ~3;
-    bool flips_march = (azimuth.flags & AZIMUTH_FLIPS_MARCH) != 0u;
-    bool flips_lanes = (azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u;
-    origin = (flips_march ? (steps - 1) * row : 0) + (flips_lanes ? lanes - 1 : 0);
-    step_stride = flips_march ? -row : row;
-    lane_stride = flips_lanes ? -1 : 1;
+// Marches steps [from, to) of the line, to - from a multiple of 4, of which those below `end` count. If `writes`, four steps of
+// all lines of the workgroup are written together, so that neighbouring invocations write neighbouring texels.
+void march_steps(int line, int from, int to, int end, int total, bool writes) {
     int group_lines = int(gl_WorkGroupSize.x);
     int own = int(gl_LocalInvocationID.x);
     int own_step = own & 3;
     int own_words = own_step * group_lines + (own & ~3);
+    int segment_words = 2 * 4 * group_lines * int(gl_LocalInvocationID.y);
     ivec3 own_texel = lattice_texel(azimuth, line & ~3, own_step);
-    line_top = NOTHING;
-    line_top_step = 0;
-    line_cell = y >> CELL_SHIFT;
-    line_slopes = vec4(0.0);
-    line_raised = NOTHING;
     int turn = 0;
-    Six a = six_heights(begin, total);
-    Six b = six_heights(begin + 1, total);
-    Six c = six_heights(begin + 2, total);
-    Six d = six_heights(begin + 3, total);
-    for (int four = begin; four < end; four += 4) {
+    Six a = six_heights(from, total);
+    Six b = six_heights(from + 1, total);
+    Six c = six_heights(from + 2, total);
+    Six d = six_heights(from + 3, total);
+    for (int four = from; four < to; four += 4) {
         Six a_now = a;
         Six b_now = b;
         Six c_now = c;
@@ -111,20 +105,75 @@ void march_line(int line, int end, int total) {
         b = six_heights(four + 5, total);
         c = six_heights(four + 6, total);
         d = six_heights(four + 7, total);
-        int at = turn * 4 * group_lines + own;
-        // Steps beyond the end are not stored.
-        written[at] = word_of_step(four, a_now);
-        written[at + group_lines] = word_of_step(four + 1, b_now);
-        written[at + 2 * group_lines] = word_of_step(four + 2, c_now);
-        written[at + 3 * group_lines] = word_of_step(four + 3, d_now);
-        // One barrier is enough: the next iteration writes the other half, and this half is reused only after that iteration's
-        // barrier.
-        barrier();
-        int from = turn * 4 * group_lines + own_words;
-        if (four + own_step < end) {
-            imageStore(shadows, own_texel + ivec3(0, four, 0),
-                       uvec4(written[from], written[from + 1], written[from + 2], written[from + 3]));
+        uvec4 words;
+        words.x = word_of_step(four, end, a_now);
+        words.y = word_of_step(four + 1, end, b_now);
+        words.z = word_of_step(four + 2, end, c_now);
+        words.w = word_of_step(four + 3, end, d_now);
+        if (writes) {
+            int half_words = segment_words + turn * 4 * group_lines;
+            int at = half_words + own;
+            // Steps beyond the end are not stored.
+            written[at] = words.x;
+            written[at + group_lines] = words.y;
+            written[at + 2 * group_lines] = words.z;
+            written[at + 3 * group_lines] = words.w;
+            // One barrier is enough: the next iteration writes the other half, and this half is reused only after that iteration's
+            // barrier.
+            barrier();
+            int first = half_words + own_words;
+            if (four + own_step < end) {
+                imageStore(shadows, own_texel + ivec3(0, four, 0),
+                           uvec4(written[first], written[first + 1], written[first + 2], written[first + 3]));
+            }
+            turn = 1 - turn;
         }
-        turn = 1 - turn;
     }
+}
+
+// Marches the line up to step `end`, in as many segments of equal length as the workgroup has invocations along y. If there are
+// several, each first finds its own highest ground, and then starts again with the highest of the segments before it: the same bits
+// as one segment.
+void march_line(int line, int end, int total) {
+    int row = (lanes + 3) & ~3;
+    bool flips_march = (azimuth.flags & AZIMUTH_FLIPS_MARCH) != 0u;
+    bool flips_lanes = (azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u;
+    origin = (flips_march ? (steps - 1) * row : 0) + (flips_lanes ? lanes - 1 : 0);
+    step_stride = flips_march ? -row : row;
+    lane_stride = flips_lanes ? -1 : 1;
+    int segments = int(gl_WorkGroupSize.y);
+    int segment = int(gl_LocalInvocationID.y);
+    int length = ((end - begin + segments - 1) / segments + 3) & ~3;
+    int from = begin + segment * length;
+    // The state that a march from the beginning has here, apart from the highest ground.
+    line_top = NOTHING;
+    line_top_step = 0;
+    line_slopes = vec4(0.0);
+    line_raised = NOTHING;
+    line_cell = y + max(from - 2 - begin, 0) * azimuth.shear >> CELL_SHIFT;
+    if (segment > 0 && from < end) {
+        word_of_step(from - 1, end, six_heights(from - 1, total));
+    }
+    if (segments > 1) {
+        line_top = NOTHING;
+        int own_cell = line_cell;
+        vec4 own_slopes = line_slopes;
+        float own_raised = line_raised;
+        march_steps(line, from, from + length, end, total, false);
+        int at = segment * int(gl_WorkGroupSize.x) + int(gl_LocalInvocationID.x);
+        segment_top[at] = line_top;
+        segment_step[at] = line_top_step;
+        barrier();
+        line_top = NOTHING;
+        line_top_step = 0;
+        for (int before = int(gl_LocalInvocationID.x); before < at; before += int(gl_WorkGroupSize.x)) {
+            bool higher = segment_top[before] > line_top;
+            line_top = higher ? segment_top[before] : line_top;
+            line_top_step = higher ? segment_step[before] : line_top_step;
+        }
+        line_cell = own_cell;
+        line_slopes = own_slopes;
+        line_raised = own_raised;
+    }
+    march_steps(line, from, from + length, end, total, true);
 }

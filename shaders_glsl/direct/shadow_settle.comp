@@ -3,7 +3,7 @@
 // horizon found so far.
 // Reads: lane_heights, maxima, azimuths, shadows, doubtful (see doubtful.glsl).
 // Reads and writes: sun_sum (exit radiance for albedo 1, irradiance 1).
-// One workgroup is 512 grid points: 16 march positions of 32 lanes. Its invocations share those that are marked: one
+// One workgroup is 16 march positions of 4 TILE_FOURS lanes. Its invocations share the grid points that are marked: one
 // invocation is one azimuth of one grid point, so that neighbours walk alike.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
@@ -16,6 +16,9 @@ layout(constant_id = 1) const bool MARCHES_ROWS = false;
 layout(constant_id = 2) const uint SHAPE = 0u;
 // More steps than a walk over this field can take; llvmpipe ends all loops together after 65,535 iterations.
 layout(constant_id = 3) const int MOST_STEPS = 60000;
+layout(constant_id = 4) const int TILE_FOURS = 8;
+// Reads a cell's corners in cells alone, and maxima in blocks alone: for GPUs. llvmpipe runs both sides of a branch.
+layout(constant_id = 5) const bool BRANCHES = false;
 const int LANE_STRIDE = 1;
 const bool THIN_ROWS = false;
 const bool THIN_COLS = false;
@@ -46,11 +49,11 @@ layout(push_constant) uniform ShadowSettlePush {
 #include "rays/walk.glsl"
 
 shared uint marked_count;
-shared uint marked[512];
+shared uint marked[64 * TILE_FOURS];
 // Bits of those that are not hidden in every azimuth by what hides the lines beside them; and their list.
-shared uint open_bits[16];
+shared uint open_bits[2 * TILE_FOURS];
 shared uint open_count;
-shared uint open[512];
+shared uint open[64 * TILE_FOURS];
 // Light in one azimuth.
 shared float lights[64];
 
@@ -115,13 +118,19 @@ float horizon_slope(Ray ray, float step_m, float t_end, float reached, float hig
         }
         Block block = block_of(walk, ray);
         ivec2 fetched = clamp(walk.at, ivec2(0), cells_of - 1);
+        bool is_cell = walk.level == 0;
         int shown = max(walk.level, 1);
-        float top = imageLoad(maxima, (fetched >> (LEVEL_BITS * shown)) + ivec2(0, level_top(shown, land.padded_rows))).x;
+        float top = 0.0;
+        if (!BRANCHES || !is_cell) {
+            top = imageLoad(maxima, (fetched >> (LEVEL_BITS * shown)) + ivec2(0, level_top(shown, land.padded_rows))).x;
+        }
         // Where the field repeats, the plane goes on.
         float over_own = top + dot(tilt, vec2(walk.cell - walk.at)) - own + rounding;
-        vec4 corners = corners_at(fetched);
+        vec4 corners = vec4(0.0);
+        if (!BRANCHES || is_cell) {
+            corners = corners_at(fetched);
+        }
         float rise = reached * step_m + fall;
-        bool is_cell = walk.level == 0;
         bool clear = is_cell || min(walk.t * rise, block.ahead * rise) >= over_own;
         // The cell: its diagonal, and where the ray leaves it.
         vec2 from = ray.offset + vec2(ray.base - walk.cell);
@@ -174,10 +183,10 @@ float own_slope(Ground ground, Azimuth azimuth) {
 void find_marked(uint thread) {
     int lanes = MARCHES_ROWS ? land.cols : land.rows;
     int steps = MARCHES_ROWS ? land.rows : land.cols;
-    ivec2 first = ivec2(gl_WorkGroupID.xy) * SETTLE_WORDS;
-    for (uint word = thread; word < uint(SETTLE_WORDS.x * SETTLE_WORDS.y); word += 64u) {
-        int march = first.x + int(word) % SETTLE_WORDS.x;
-        int four = first.y + int(word) / SETTLE_WORDS.x;
+    ivec2 first = ivec2(gl_WorkGroupID.xy) * ivec2(16, TILE_FOURS);
+    for (uint word = thread; word < uint(16 * TILE_FOURS); word += 64u) {
+        int march = first.x + int(word) % 16;
+        int four = first.y + int(word) / 16;
         bool exists = march < steps && 4 * four < lanes;
         uint marks = exists ? imageLoad(doubtful, ivec2(four, march)).x : 0u;
         if (marks != 0u) {
@@ -198,12 +207,15 @@ void main() {
         marked_count = 0u;
         open_count = 0u;
     }
-    if (thread < 16u) {
+    if (thread < uint(2 * TILE_FOURS)) {
         open_bits[thread] = 0u;
     }
     barrier();
     find_marked(thread);
     barrier();
+    if (marked_count == 0u) {
+        return;
+    }
     // This invocation's azimuth, and its grid point of those that are done together.
     uint together = 64u / azimuth_count;
     bool works = thread < together * azimuth_count;

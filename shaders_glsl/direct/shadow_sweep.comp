@@ -5,7 +5,7 @@
 // Writes: shadows at [azimuth][lines of a layer][step][line], a lattice (see lattice.glsl). The high half of a word is the shadow's
 // height over the line in metres: the high half of an f32, never too low. The low half is the march steps back to the
 // ground that casts it, 0 for none.
-// One invocation is four neighbouring lines, a cell apart, or one, from the sun's side to the other end.
+// One invocation is four neighbouring lines, a cell apart, from the sun's side to the other end; or a segment of one line.
 //
 // Interpolate bilinearly between the heights at which two lines cross two steps. At a share u of the way from one step to
 // the other the surface is above that by at most
@@ -17,13 +17,15 @@
 
 #include "shared/lattice.glsl"
 
-layout(local_size_x_id = 0) in;
+layout(local_size_x_id = 0, local_size_y_id = 4) in;
 
 layout(constant_id = 1) const bool PERIODIC = false;
 // An invocation marches one line: for GPUs, which hide latency with many invocations.
 layout(constant_id = 2) const bool ONE_LINE = false;
 // Size of `written`: if ONE_LINE, two buffers of four steps of each line of the workgroup.
 layout(constant_id = 3) const int WRITTEN_WORDS = 1;
+// Size of `segment_top` and `segment_step`: if ONE_LINE, one word per invocation.
+layout(constant_id = 5) const int SEGMENT_WORDS = 1;
 
 layout(binding = 0, rgba32f) uniform readonly image2D lane_heights;
 layout(binding = 1) uniform textureBuffer azimuths;

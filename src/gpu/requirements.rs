@@ -216,6 +216,7 @@ pub(crate) fn report(
             groups: core.limits.max_compute_work_group_count.into_iter().min().unwrap_or(0),
             texels: core.limits.max_texel_buffer_elements,
             shared_bytes: core.limits.max_compute_shared_memory_size,
+            group_invocations: core.limits.max_compute_work_group_invocations,
             is_cpu,
             lookups: if is_cpu { u64::MAX } else { GPU_LOOKUPS },
             memory_budget: if is_cpu { heap } else { heap / 2 },

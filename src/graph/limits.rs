@@ -17,6 +17,8 @@ pub struct Limits {
     pub texels: u32,
     /// Shared memory of a workgroup, bytes.
     pub shared_bytes: u32,
+    /// Largest number of invocations of a workgroup.
+    pub group_invocations: u32,
     /// Whether the device is a CPU: narrow workgroups, hulls in private memory.
     pub is_cpu: bool,
     /// Lookups that a dispatch of brute force, pyramids, sphere lights or paths should not exceed; eight rows of one azimuth, or
@@ -121,6 +123,7 @@ impl Limits {
             groups: 65_535,
             texels: 1 << 27,
             shared_bytes: 32 << 10,
+            group_invocations: 1024,
             is_cpu: true,
             lookups: u64::MAX,
             memory_budget: 2 << 30,
@@ -139,6 +142,7 @@ impl Limits {
             groups: 1 << 30,
             texels: 1 << 30,
             shared_bytes: 32 << 10,
+            group_invocations: 1024,
             is_cpu,
             lookups: u64::MAX,
             memory_budget,

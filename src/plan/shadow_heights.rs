@@ -75,7 +75,14 @@ pub fn shadow_heights(
     });
     let written =
         ["lit_above", "penumbra", "sun_share"].map(|name| image(name, Owner::Output, size));
-    shadow_height::plan(&mut builder, (field, sun), outer.as_ref(), parts, heights, written);
+    shadow_height::plan(
+        &mut builder,
+        (field, sun),
+        outer.as_ref(),
+        (parts, limits),
+        heights,
+        written,
+    );
     let used = vec![("parts".to_owned(), parts.to_string())];
     Plan::finish(builder, size, Vec::new(), Vec::new(), used, limits)
 }

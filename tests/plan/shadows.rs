@@ -93,6 +93,43 @@ fn a_large_field_on_a_gpu_of_small_buffers_has_shadows_by_four_lines() {
     assert_eq!([one_line(4000), one_line(6000)], [Some(true), Some(false)]);
 }
 
+/// A GPU cuts the lines of small fields, within its workgroups and half of their shared memory, and settles fewer texels in a workgroup. Where
+/// the sun is does not matter: one that moves keeps its pipelines.
+#[test]
+fn small_fields_have_more_and_smaller_pieces_of_work_on_a_gpu() {
+    let base = crate::on_gpu(Limits { memory_budget: 16 << 30, ..Limits::lavapipe() });
+    let whole = Limits { shared_bytes: 48 << 10, buffer_bytes: 1 << 30, ..base };
+    let of = |side: usize, azimuth_rad: f64, limits: &Limits| {
+        let mut scene = scene(side);
+        scene.lights.keys.clear();
+        scene.lights.suns[0].azimuth_rad = azimuth_rad;
+        let plan = picture(&scene, &Quality::default(), limits);
+        let constants = |pass: &str, name: &str| {
+            let mut found: Vec<_> =
+                plan.passes.iter().filter(|p| p.name() == pass).map(|p| p.constant(name)).collect();
+            found.dedup();
+            assert_eq!(found.len(), 1, "{pass} {found:?}");
+            found[0].expect("a constant")
+        };
+        let shadows = plan::shadow_heights(&scene.field, &scene.lights.suns[0], None, 1, limits);
+        let shadows = shadows.expect("a plan").passes;
+        [
+            constants("shadow_sweep", "local_size_y"),
+            constants("shadow_settle", "tile_fours"),
+            shadows[0].constant("local_size_y").expect("a constant"),
+        ]
+    };
+    for degrees in [3.0_f64, 45.0, 100.0, 200.0] {
+        let of = |side, limits: &Limits| of(side, degrees.to_radians(), limits);
+        assert_eq!(of(256, &whole), [16, 1, 8]);
+        assert_eq!(of(1024, &whole), [16, 2, 8]);
+        assert_eq!(of(4096, &whole), [4, 8, 8]);
+        assert_eq!(of(256, &Limits { shared_bytes: 16 << 10, ..whole }), [4, 1, 2]);
+        assert_eq!(of(256, &Limits { group_invocations: 128, ..whole }), [4, 1, 2]);
+        assert_eq!(of(256, &Limits::lavapipe()), [1, 8, 1]);
+    }
+}
+
 /// Lattices along both axes share the memory by what all azimuths along each need: none is cut for want of it.
 #[test]
 fn suns_have_one_batch_an_axis_on_a_gpu() {

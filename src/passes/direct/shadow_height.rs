@@ -1,9 +1,11 @@
-use crate::graph::{Axis, Builder, CELL, ResourceId, shaders};
+use crate::graph::{Axis, Builder, CELL, Limits, ResourceId, shaders};
 use crate::passes::azimuths::{across_sun, slope};
+use crate::passes::sweep::line_segments;
 use crate::scene::{Border, HeightField, Sun};
 
 /// Lines of a workgroup whose grid points it writes. It also sweeps the first line of the next workgroup.
 pub(crate) const GROUP_LINES: u32 = 63;
+const GROUP_SIZE: u32 = GROUP_LINES + 1;
 
 /// A coarser field, the column and row of its grid at the first grid point of the finer one, and its shadow heights.
 pub(crate) struct Outer<'a> {
@@ -17,7 +19,7 @@ pub(crate) fn plan(
     builder: &mut Builder,
     (field, sun): (&HeightField, &Sun),
     outer: Option<&Outer>,
-    parts: u32,
+    (parts, limits): (u32, &Limits),
     heights: ResourceId,
     written: [ResourceId; 3],
 ) {
@@ -41,6 +43,10 @@ pub(crate) fn plan(
         flags: azimuth.flags,
         first_group: 0,
     };
+    // With one step at once, two buffers of 16 bytes; and 16 bytes of a segment's highest ground.
+    let segments =
+        line_segments(axis.lanes + axis.steps, GROUP_SIZE, (2 + 1) * 16 * GROUP_SIZE, limits);
+    let at_once = if segments > 1 { 1 } else { 4 };
     let groups = groups(axis, azimuth.shear);
     let all: u64 = groups.iter().sum();
     let mut first = 0;
@@ -65,7 +71,13 @@ pub(crate) fn plan(
         }
         bound.extend(["lit_above", "penumbra", "sun_share"].into_iter().zip(written));
         builder.pass(
-            shaders::ShadowHeight { has_outer: outer.is_some() },
+            shaders::ShadowHeight {
+                has_outer: outer.is_some(),
+                local_size_y: segments,
+                at_once: at_once as i32,
+                line_words: (2 * at_once * segments * GROUP_SIZE) as i32,
+                segment_words: (segments * GROUP_SIZE) as i32,
+            },
             &part,
             "shadow heights of the sun at each grid point",
             [(next - first) as u32, 1, 1],

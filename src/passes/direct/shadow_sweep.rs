@@ -1,26 +1,42 @@
-use crate::graph::{Builder, ResourceId, shaders};
+use crate::graph::{Builder, Limits, ResourceId, shaders};
 use crate::passes::batch::Batch;
+use crate::passes::sweep::{group_size, line_segments};
 
-/// Shadow heights along all lines of a batch, a cell apart. Each of `group_size` invocations marches one line over the heights of
-/// lane_buffer, or four lines over those of lane_heights.
+/// Azimuths of a dispatch, if a sun has 8 and they march along both axes. Segments do not depend on the number of a batch, so that a sun that
+/// moves keeps its pipelines.
+const USUAL_AZIMUTHS: u32 = 4;
+
+/// Shadow heights along all lines of a batch, a cell apart. Each invocation marches a segment of one line over the heights of
+/// lane_buffer, or four whole lines over those of lane_heights.
 pub(crate) fn plan(
     builder: &mut Builder,
     batch: &Batch,
     part: &str,
-    group_size: u32,
+    limits: &Limits,
     heights: (&str, ResourceId),
     [azimuths, shadows]: [ResourceId; 2],
 ) {
     let axis = batch.axis;
     let one_line = heights.0 == "lane_buffer";
+    let group_size = group_size(limits);
     let group_lines = if one_line { group_size } else { 4 * group_size };
+    // Two buffers of four steps, and a height with its step.
+    let [written, highest] = [2 * 4 * group_size, 2 * group_size];
+    let segments = if one_line {
+        let lines = USUAL_AZIMUTHS * (axis.lanes + axis.steps);
+        line_segments(lines, group_size, 4 * (written + highest), limits)
+    } else {
+        1
+    };
     let pass = builder.pass(
         shaders::ShadowSweep {
             layer_shift: batch.layer_shift as i32,
             local_size_x: group_size,
+            local_size_y: segments,
             periodic: axis.warm_up > 0,
             one_line,
-            written_words: if one_line { 2 * 4 * group_size as i32 } else { 1 },
+            written_words: if one_line { (written * segments) as i32 } else { 1 },
+            segment_words: if one_line { (group_size * segments) as i32 } else { 1 },
         },
         part,
         format!("shadow heights of {} azimuths along {}", batch.count, axis.name()),

@@ -5,7 +5,7 @@ use crate::passes::azimuths::Azimuth;
 use crate::passes::batch::Batch;
 use crate::passes::blocks::{BlockLevels, Source};
 use crate::passes::shadow_sweep;
-use crate::passes::sweep::{Sweep, group_size, shadows_by_one_line};
+use crate::passes::sweep::{Sweep, shadows_by_one_line};
 use crate::passes::sweeping::Sweeping;
 use crate::scene::{Border, Fuse, HeightField, KeyLight, Lines, Method, Precision, Quality};
 
@@ -13,9 +13,9 @@ use crate::scene::{Border, Fuse, HeightField, KeyLight, Lines, Method, Precision
 pub(crate) struct Shadows {
     /// Marks of the texels whose light the shadow heights leave open, along columns and along rows.
     doubtful: [Option<ResourceId>; 2],
-    group_size: u32,
     /// Whether an invocation of the sweep marches one line instead of four.
     one_line: bool,
+    pub limits: Limits,
     pub levels: BlockLevels,
     /// For each of the lights, the maxima of blocks over a plane that rises with its light; none for others.
     maxima: Vec<Option<ResourceId>>,
@@ -85,8 +85,8 @@ impl Shadows {
         let maxima = (0..lights).map(|i| which.contains(&i).then(|| made(i))).collect();
         Self {
             doubtful,
-            group_size: group_size(limits),
             one_line: shadows_by_one_line(size, limits),
+            limits: *limits,
             levels,
             maxima,
         }
@@ -111,7 +111,7 @@ impl Shadows {
             None => ("lane_heights", sweeping.lane_heights(batch)),
         };
         let ids = [sweeping.azimuths, sweeping.written(batch)];
-        shadow_sweep::plan(builder, batch, part, self.group_size, heights, ids);
+        shadow_sweep::plan(builder, batch, part, &self.limits, heights, ids);
     }
 
     /// The maxima of blocks for walks towards the light at `index`, which skip most of the ground under its light: over a plane

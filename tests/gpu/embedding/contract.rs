@@ -159,8 +159,8 @@ fn every_kind_of_plan_runs_silently_and_has_all_its_barriers() {
     }
 }
 
-/// Small plans share a block of 4 MiB in each kind of memory: the device's and the host's. Larger ones have their own
-/// blocks, and each block wastes less than the size that did not fit: at most half of all memory held.
+/// Small plans share a block of 4 MiB in each type of memory. There may be four: of the device's images and of its buffers, of uploads and of
+/// readbacks. Larger plans have their own blocks, and each block wastes less than the size that did not fit: at most half of all memory held.
 #[test]
 fn memory_taken_is_near_the_planned_bytes() {
     const BLOCK: u64 = 4 << 20;
@@ -176,6 +176,6 @@ fn memory_taken_is_near_the_planned_bytes() {
         let taken = renderer.device_bytes();
         renderer.destroy();
         println!("{side}²: {needed} bytes needed, {taken} taken");
-        assert!(taken >= needed && taken <= 2 * needed + 2 * BLOCK, "{needed} {taken}");
+        assert!(taken >= needed && taken <= 2 * needed + 4 * BLOCK, "{needed} {taken}");
     }
 }

@@ -260,14 +260,23 @@ fn a_part_is_recorded_again_only_with_what_it_needs() {
     let end = plan.passes.len();
     let done = shades[shades.len() - 1];
     gpu.draw_passes(&mut frame, &(0..=done).collect::<Vec<_>>()).expect("drawn");
+    let rest: Vec<usize> = (done + 1..end).collect();
     for shade in &shades {
-        let error = gpu.draw_passes(&mut frame, &[*shade]).expect_err("twice in a sum");
-        assert!(
-            error.to_string().starts_with(&format!("passes: found {shade} without ")),
-            "{error}"
-        );
+        let (error, passes) = match gpu.draw_passes(&mut frame, &[*shade]) {
+            Err(error) => (error, vec![*shade]),
+            // The first one starts the sum again. If its lattice is its own, as on a GPU, it may run alone; the sum then lacks the others.
+            Ok(_) => {
+                assert_eq!(*shade, shades[0], "twice in a sum");
+                let error = gpu.draw_passes(&mut frame, &rest).expect_err("a sum of one batch");
+                gpu.draw_passes(&mut frame, &(*shade..=done).collect::<Vec<_>>()).expect("drawn");
+                (error, rest.clone())
+            }
+        };
+        let error = error.to_string();
+        let is_expected = |pass| error.starts_with(&format!("passes: found {pass} without "));
+        assert!(passes.into_iter().any(is_expected), "{error}");
     }
-    gpu.draw_passes(&mut frame, &(done + 1..end).collect::<Vec<_>>()).expect("drawn");
+    gpu.draw_passes(&mut frame, &rest).expect("drawn");
     assert!(bits(gpu, &frame) == fresh);
     // Alone when nothing is pending, to time it: the plan then names all that must run.
     gpu.draw_passes(&mut frame, &shades[1..2]).expect("timed");

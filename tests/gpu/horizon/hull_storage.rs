@@ -132,6 +132,42 @@ fn wide_groups_and_narrow_ones_are_the_same_to_the_bit() {
     }
 }
 
+/// A GPU marches segments of a line of shadow heights side by side, as many as a workgroup has invocations for, and draws light with them in
+/// tiles of several sizes.
+#[test]
+fn segments_of_a_line_are_the_whole_line_to_the_bit() {
+    let mut gpu = Device::new();
+    let limits = crate::of_kind(false, gpu.limits());
+    let sun = |degrees: f64, diameter_rad| Sun {
+        azimuth_rad: degrees.to_radians(),
+        elevation_rad: 0.12,
+        diameter_rad,
+        irradiance: [1.0; 3],
+    };
+    for (border, suns) in [
+        (Border::Plane, vec![sun(38.0, 0.3), sun(100.0, 0.0)]),
+        (Border::Periodic, vec![sun(215.0, 0.05), sun(300.0, 0.0)]),
+        (Border::Open, vec![sun(0.0, 0.0), sun(180.0, 0.1)]),
+    ] {
+        let mut scene = under_sky(fractal(90, 9).expect("a field"), border);
+        scene.lights = Lights { suns, ..Lights::default() };
+        let mut of = |group_invocations, segments| {
+            let limits = Limits { group_invocations, ..limits };
+            let plan = plan::picture(&scene, &Quality::default(), &limits, Picture::default());
+            let passes = plan.expect("a plan").passes;
+            let sweeps = passes.iter().filter(|p| p.name() == "shadow_sweep");
+            let found: Vec<_> = sweeps.map(|p| p.constant("local_size_y")).collect();
+            assert!(!found.is_empty() && found.iter().all(|n| *n == Some(segments)), "{found:?}");
+            gpu.picture_within(&scene, &Quality::default(), &limits).values
+        };
+        let whole = of(32, 1);
+        for (group_invocations, segments) in [(64, 2), (300, 8)] {
+            let cut = of(group_invocations, segments);
+            assert!(whole.iter().zip(&cut).all(|(a, b)| a.to_bits() == b.to_bits()), "{border:?}");
+        }
+    }
+}
+
 /// `ridgelight tune` may choose any of these.
 #[test]
 fn every_form_of_the_sweep_renders_identical_bits() {

@@ -147,7 +147,7 @@ fn sizes() -> Result<String> {
 
 /// From the kit's report.
 fn gpu() -> Result<String> {
-    let path = Path::new(RESULTS).join("nvidia_h100.md");
+    let path = Path::new(RESULTS).join("nvidia_h200.md");
     let report = text(&path)?;
     let sizes = report.split("## Sizes").nth(1).unwrap_or_default();
     let commit = report.split(", commit ").nth(1).and_then(|rest| rest.get(..8));
@@ -165,7 +165,7 @@ fn gpu() -> Result<String> {
         })
     };
     Ok(format!(
-        "On an [NVIDIA H100](benches/results/nvidia_h100.md) 64 azimuths take {} ms at 256², {} ms at 1024² and {} ms at \
+        "On an [NVIDIA H200](benches/results/nvidia_h200.md) 64 azimuths take {} ms at 256², {} ms at 1024² and {} ms at \
          4096² (commit {commit}).\n",
         frame_ms("256")?,
         frame_ms("1024")?,

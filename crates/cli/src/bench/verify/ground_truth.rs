@@ -1,7 +1,7 @@
 //! The light that the oracle computes at some texels of a scene.
 
 use ridgelight::gpu::Pixels;
-use ridgelight::scene::{Lights, Scene};
+use ridgelight::scene::{Albedo, HeightField, Lights, Scene, Surface};
 use ridgelight_cpu::light;
 use ridgelight_cpu::oracle::Oracle;
 use ridgelight_cpu::sphere::sphere_of;
@@ -25,6 +25,8 @@ pub struct GroundTruth {
     pub expected: Vec<[f64; 4]>,
     /// The unoccluded share of a sky's light.
     pub open: Vec<f64>,
+    /// Light of suns and key lights on level ground without shadows.
+    pub level: f64,
 }
 
 impl GroundTruth {
@@ -37,7 +39,8 @@ impl GroundTruth {
         places.extend([cols - 1, count - cols, count - 1]);
         let oracle = Oracle::new(field, scene.surface.border);
         let (expected, open) = places.iter().map(|p| light_at(scene, &oracle, *p)).unzip();
-        Self { places, expected, open }
+        let level = level(scene, &places);
+        Self { places, expected, open, level }
     }
 
     /// The same of all light but sphere lights'.
@@ -46,10 +49,10 @@ impl GroundTruth {
             .expected
             .iter()
             .map(|[sky, environment, suns, _]| [*sky, *environment, *suns, 0.0]);
-        Self { places: self.places.clone(), expected: rest.collect(), open: self.open.clone() }
+        Self { expected: rest.collect(), ..self.clone() }
     }
 
-    /// RMSE of a picture over the root mean square of the expected light.
+    /// RMSE of a picture over [`scale`](Self::scale).
     pub fn error(&self, pixels: &Pixels) -> f64 {
         self.error_of(&self.means(pixels))
     }
@@ -70,11 +73,16 @@ impl GroundTruth {
         rms(radiance.iter().zip(all).map(|(a, b): (_, f64)| a - b)) / self.scale()
     }
 
-    /// Root mean squares of each kind of light.
+    /// Root mean squares of each kind of light. Of suns and key lights at least half of that on level ground: all places may be in
+    /// their shadows.
     pub fn scales(&self) -> [f64; 4] {
-        [0, 1, 2, 3].map(|light| rms(self.expected.iter().map(|lights| lights[light])))
+        let mut scales =
+            [0, 1, 2, 3].map(|light| rms(self.expected.iter().map(|lights| lights[light])));
+        scales[2] = scales[2].max(0.5 * self.level);
+        scales
     }
 
+    /// Of all light together.
     pub fn scale(&self) -> f64 {
         self.scales().iter().map(|s| s * s).sum::<f64>().sqrt().max(f64::MIN_POSITIVE)
     }
@@ -83,6 +91,24 @@ impl GroundTruth {
     pub fn dark(&self) -> f64 {
         1.0 - self.open.iter().sum::<f64>() / self.open.len() as f64
     }
+}
+
+/// Light of a scene's suns and key lights on a plane, with the mean albedo of these places.
+fn level(scene: &Scene, places: &[usize]) -> f64 {
+    let plane = HeightField::new(2, 2, &[0.0; 4], scene.field.cell_m(), None);
+    let plane = plane.expect("a cell size that a field has");
+    let mut albedo = [0.0_f32; 3];
+    for place in places {
+        let of_place = albedo_of(scene, *place);
+        (0..3).for_each(|c| albedo[c] += of_place[c] as f32 / places.len() as f32);
+    }
+    let Lights { suns, keys, .. } = scene.lights.clone();
+    let scene = Scene {
+        surface: Surface { albedo: Albedo::Constant(albedo), ..Surface::default() },
+        lights: Lights { suns, keys, ..Lights::default() },
+        field: plane,
+    };
+    light_at(&scene, &Oracle::new(&scene.field, scene.surface.border), 0).0[2]
 }
 
 /// Light of sky, environment, suns and key lights, and sphere lights at a place, mean of the
