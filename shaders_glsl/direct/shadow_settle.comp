@@ -1,7 +1,7 @@
 // Computes: direct light of a sun or a narrow key light at the marked grid points, from the exact horizon in every azimuth: the surface where the
 // nearer swept line is shadowed from, then a walk over the grid point's own line that skips blocks of cells below the
 // horizon found so far.
-// Reads: lane_heights, maxima, azimuths, shadows, doubtful (see doubtful.glsl).
+// Reads: lane_heights, maxima, azimuths, shadows, doubtful (see shadow_shade).
 // Reads and writes: sun_sum (exit radiance for albedo 1, irradiance 1).
 // One workgroup is 16 march positions of 4 TILE_FOURS lanes. Its invocations share the grid points that are marked: one
 // invocation is one azimuth of one grid point, so that neighbours walk alike.
@@ -45,7 +45,6 @@ layout(push_constant) uniform ShadowSettlePush {
 #include "shared/lattice.glsl"
 #include "shared/angle.glsl"
 #include "direct/sun_light.glsl"
-#include "direct/doubtful.glsl"
 #include "rays/walk.glsl"
 
 shared uint marked_count;

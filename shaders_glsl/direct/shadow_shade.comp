@@ -1,7 +1,7 @@
 // Computes: direct light of a sun or a narrow key light where the shadow heights around a grid point prove in every azimuth that it sees the whole
 // chord of the sun. The other grid points that face the sun are marked.
 // Reads: lane_heights, azimuths, shadows.
-// Writes: doubtful (see doubtful.glsl).
+// Writes: doubtful, at [march position][lane / 4]: the four lowest bits of a word mark grid points side by side along the lane axis.
 // Reads and writes: sun_sum (exit radiance for albedo 1, irradiance 1).
 // One invocation is four grid points side by side along the lane axis, at one march position.
 //
