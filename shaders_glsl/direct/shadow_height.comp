@@ -3,7 +3,8 @@
 // the sun.
 // Reads: heights; of an outer field its shadow heights, outer_lit_above and outer_penumbra.
 // Writes: lit_above (metres over the field's base), penumbra (metres), sun_share (0 to 1).
-// One invocation is one line, or a segment of it that begins with the highest ground of the segments before; the last of a workgroup is also the first of the next one. Lines are a cell apart. A grid point
+// One invocation is one line, or one segment of it: it first finds the highest ground of its segment, and then starts again from the
+// highest ground of the segments before it. The last line of a workgroup is also the first of the next one. Lines are a cell apart. A grid point
 // interpolates the two lines beside it.
 #version 460
 
@@ -129,7 +130,7 @@ bool is_on_field(int place, int lanes) {
 }
 
 // Shadow heights of a line at `step`, for both edges, and how many steps away the ground is that shades from each. The line is
-// at `place` in cells / CELL across the lanes; `ground` becomes the height of the lane before it, or after it if it lies between. Its own height counts from the next step on.
+// at `place` in cells / CELL across the lanes; `ground` is set to the height at the first lane at or after `place`. The height of this step counts from the next step on.
 vec4 marched(inout Highest highest, int step, int place, ivec2 last, vec2 rise, out float ground) {
     int cell = place >> CELL_SHIFT;
     int fraction = place & (CELL - 1);
@@ -183,7 +184,9 @@ void main() {
     int from = begin + segment * length;
     Highest highest = Highest(vec2(NOTHING), vec2(0.0));
     if (segments > 1) {
-        for (int first = from; first < min(from + length, end); first += AT_ONCE) {
+        // Nothing follows the last segment.
+        int until = segment < segments - 1 ? min(from + length, end) : from;
+        for (int first = from; first < until; first += AT_ONCE) {
             for (int k = 0; k < AT_ONCE; k++) {
                 int step = min(first + k, steps - 1);
                 float ground;

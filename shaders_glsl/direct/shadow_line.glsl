@@ -41,7 +41,7 @@ Six six_heights(int step, int total) {
                vec2(height_on(row, first + 4), height_on(row, first + 5)));
 }
 
-// Goes on by a step, of which those from `end` on do not count.
+// Advances the line by one step and returns its word. Ground from step `end` on is ignored.
 uint word_of_step(int step, int end, Six six) {
     int place = y + (step - begin) * azimuth.shear;
     vec4 to = vec4(six.a.yzw, six.b.x) - six.a;
@@ -82,8 +82,8 @@ uint word_of_step(int step, int end, Six six) {
     return word;
 }
 
-// Marches steps [from, to) of the line, to - from a multiple of 4, of which those below `end` count. If `writes`, four steps of
-// all lines of the workgroup are written together, so that neighbouring invocations write neighbouring texels.
+// Marches steps [from, to) of the line; to - from is a multiple of 4. Steps from `end` on are ignored. If `writes`, four steps of all
+// lines of the workgroup are stored together, so that neighbouring invocations write neighbouring texels.
 void march_steps(int line, int from, int to, int end, int total, bool writes) {
     int group_lines = int(gl_WorkGroupSize.x);
     int own = int(gl_LocalInvocationID.x);
@@ -132,8 +132,8 @@ void march_steps(int line, int from, int to, int end, int total, bool writes) {
 }
 
 // Marches the line up to step `end`, in as many segments of equal length as the workgroup has invocations along y. If there are
-// several, each first finds its own highest ground, and then starts again with the highest of the segments before it: the same bits
-// as one segment.
+// several, an invocation first finds the highest ground of its segment, and then starts again from the highest ground of the segments
+// before it: bit-identical to one segment where the compiler contracts both alike.
 void march_line(int line, int end, int total) {
     int row = (lanes + 3) & ~3;
     bool flips_march = (azimuth.flags & AZIMUTH_FLIPS_MARCH) != 0u;
@@ -145,7 +145,7 @@ void march_line(int line, int end, int total) {
     int segment = int(gl_LocalInvocationID.y);
     int length = ((end - begin + segments - 1) / segments + 3) & ~3;
     int from = begin + segment * length;
-    // The state that a march from the beginning has here, apart from the highest ground.
+    // Rebuilds the state of a march from `begin`, except the highest ground. It depends on the step before only.
     line_top = NOTHING;
     line_top_step = 0;
     line_slopes = vec4(0.0);
@@ -159,7 +159,10 @@ void march_line(int line, int end, int total) {
         int own_cell = line_cell;
         vec4 own_slopes = line_slopes;
         float own_raised = line_raised;
-        march_steps(line, from, from + length, end, total, false);
+        // Nothing follows the last segment.
+        if (segment < segments - 1) {
+            march_steps(line, from, from + length, end, total, false);
+        }
         int at = segment * int(gl_WorkGroupSize.x) + int(gl_LocalInvocationID.x);
         segment_top[at] = line_top;
         segment_step[at] = line_top_step;

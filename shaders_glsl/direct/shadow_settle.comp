@@ -17,7 +17,7 @@ layout(constant_id = 2) const uint SHAPE = 0u;
 // More steps than a walk over this field can take; llvmpipe ends all loops together after 65,535 iterations.
 layout(constant_id = 3) const int MOST_STEPS = 60000;
 layout(constant_id = 4) const int TILE_FOURS = 8;
-// Reads a cell's corners in cells alone, and maxima in blocks alone: for GPUs. llvmpipe runs both sides of a branch.
+// Loads corners only in cells and maxima only in blocks. Off on CPU devices, as llvmpipe runs both sides of a branch.
 layout(constant_id = 5) const bool BRANCHES = false;
 const int LANE_STRIDE = 1;
 const bool THIN_ROWS = false;

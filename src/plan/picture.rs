@@ -194,7 +194,13 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     let shadows = (!of_lights.is_empty()).then(|| {
         let azimuths = held.shadows.iter().flat_map(|l| &lists[*l]);
         let (of, count) = (([size[0], size[1]], surface.border), active.aimed().count());
-        Shadows::make(&mut builder, azimuths, of, (&of_lights, count), limits)
+        Shadows::make(
+            &mut builder,
+            azimuths,
+            of,
+            (&of_lights, count),
+            (quality.sun_azimuths, limits),
+        )
     });
     let walked_azimuths = lists.last().filter(|_| is_walked && bounces > 0);
     let walked = walked_azimuths.map(|azimuths| {

@@ -93,17 +93,18 @@ fn a_large_field_on_a_gpu_of_small_buffers_has_shadows_by_four_lines() {
     assert_eq!([one_line(4000), one_line(6000)], [Some(true), Some(false)]);
 }
 
-/// A GPU cuts the lines of small fields, within its workgroups and half of their shared memory, and settles fewer texels in a workgroup. Where
-/// the sun is does not matter: one that moves keeps its pipelines.
+/// Small fields get more segments per line and fewer texels per workgroup of `shadow_settle` on a GPU. The size of a workgroup and half of its shared
+/// memory limit the segments, as do the slices of a light. The sun's azimuth does not count, so a sun that moves keeps its pipelines.
 #[test]
-fn small_fields_have_more_and_smaller_pieces_of_work_on_a_gpu() {
+fn small_fields_have_more_segments_and_smaller_tiles_on_a_gpu() {
     let base = crate::on_gpu(Limits { memory_budget: 16 << 30, ..Limits::lavapipe() });
     let whole = Limits { shared_bytes: 48 << 10, buffer_bytes: 1 << 30, ..base };
-    let of = |side: usize, azimuth_rad: f64, limits: &Limits| {
+    let of = |side: usize, azimuth_rad: f64, sun_azimuths: u32, limits: &Limits| {
         let mut scene = scene(side);
         scene.lights.keys.clear();
         scene.lights.suns[0].azimuth_rad = azimuth_rad;
-        let plan = picture(&scene, &Quality::default(), limits);
+        let quality = Quality { sun_azimuths, ..Quality::default() };
+        let plan = picture(&scene, &quality, limits);
         let constants = |pass: &str, name: &str| {
             let mut found: Vec<_> =
                 plan.passes.iter().filter(|p| p.name() == pass).map(|p| p.constant(name)).collect();
@@ -120,10 +121,11 @@ fn small_fields_have_more_and_smaller_pieces_of_work_on_a_gpu() {
         ]
     };
     for degrees in [3.0_f64, 45.0, 100.0, 200.0] {
-        let of = |side, limits: &Limits| of(side, degrees.to_radians(), limits);
+        assert_eq!(of(1024, degrees.to_radians(), 64, &whole), [1, 2, 8]);
+        let of = |side, limits: &Limits| of(side, degrees.to_radians(), 8, limits);
         assert_eq!(of(256, &whole), [16, 1, 8]);
         assert_eq!(of(1024, &whole), [16, 2, 8]);
-        assert_eq!(of(4096, &whole), [4, 8, 8]);
+        assert_eq!(of(4096, &whole), [1, 8, 8]);
         assert_eq!(of(256, &Limits { shared_bytes: 16 << 10, ..whole }), [4, 1, 2]);
         assert_eq!(of(256, &Limits { group_invocations: 128, ..whole }), [4, 1, 2]);
         assert_eq!(of(256, &Limits::lavapipe()), [1, 8, 1]);

@@ -48,7 +48,8 @@ fn iterations(pass: &str, depth: usize) -> f64 {
         "horizon_sweep" => &[1024.0, 1.4],
         // Four steps each; an iteration of the inner loop pops up to two.
         ONE_LINE => &[256.0, 0.8],
-        "shadow_sweep" => &[256.0],
+        // In 16 segments, which are marched twice.
+        "shadow_sweep" => &[16.0],
         "sky_shade" | "sun_shade" => &[32.0],
         _ => &[],
     };

@@ -76,11 +76,12 @@ pub fn devices(args: &DevicesArgs) -> Result<Outcome> {
         );
         let limits = &device.limits;
         crate::say!(
-            "   images to {} texels and {} layers, storage buffers to {} MiB, allocations to {} MiB, shared memory {} KiB",
+            "   images to {} texels and {} layers, storage buffers to {} MiB, allocations to {} MiB, workgroups to {} invocations and {} KiB",
             limits.image_side,
             limits.image_layers,
             limits.buffer_bytes >> 20,
             limits.allocation_bytes >> 20,
+            limits.group_invocations,
             limits.shared_bytes >> 10
         );
         let timestamps = match device.timestamp_period_ns {
@@ -102,7 +103,7 @@ pub fn devices(args: &DevicesArgs) -> Result<Outcome> {
                     "subgroup_size": d.subgroup_size, "timestamp_period_ns": d.timestamp_period_ns,
                     "image_side": d.limits.image_side, "image_layers": d.limits.image_layers,
                     "buffer_bytes": d.limits.buffer_bytes, "allocation_bytes": d.limits.allocation_bytes,
-                    "shared_bytes": d.limits.shared_bytes,
+                    "shared_bytes": d.limits.shared_bytes, "group_invocations": d.limits.group_invocations,
                 })
             })
             .collect();

@@ -43,7 +43,7 @@ pub(crate) fn plan(
         flags: azimuth.flags,
         first_group: 0,
     };
-    // With one step at once, two buffers of 16 bytes; and 16 bytes of a segment's highest ground.
+    // Per invocation: two buffers of one step, 16 bytes each, and 16 bytes for the highest ground.
     let segments =
         line_segments(axis.lanes + axis.steps, GROUP_SIZE, (2 + 1) * 16 * GROUP_SIZE, limits);
     let at_once = if segments > 1 { 1 } else { 4 };

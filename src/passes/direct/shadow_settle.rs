@@ -7,10 +7,11 @@ use crate::scene::{Border, HeightField};
 
 /// Invocations of a workgroup: each is one azimuth of one texel.
 const INVOCATIONS: u32 = 64;
-/// Texels of a workgroup, in fours across the lanes.
+/// Texels of a workgroup per four lanes: 16 march positions.
 const FOUR_TEXELS: u32 = 4 * 16;
 const MOST_FOURS: u32 = 8;
-/// Workgroups that keep a GPU busy: with more of them, smaller ones, no workgroup has most of the walks. Measured on an NVIDIA H200 at 1024².
+/// On a GPU a workgroup takes fewer texels until a dispatch has this many, which spreads the walks evenly: at 1024² and 25 degrees 128 texels
+/// were the fastest of three sizes on an NVIDIA H200 (benches/results/nvidia_h200.md).
 const BUSY_GROUPS: u64 = 1 << 13;
 
 /// Light of a sun at the marked texels, in as many dispatches as the walks of its azimuths need.

@@ -2,17 +2,13 @@ use crate::graph::{Builder, Limits, ResourceId, shaders};
 use crate::passes::batch::Batch;
 use crate::passes::sweep::{group_size, line_segments};
 
-/// Azimuths of a dispatch, if a sun has 8 and they march along both axes. Segments do not depend on the number of a batch, so that a sun that
-/// moves keeps its pipelines.
-const USUAL_AZIMUTHS: u32 = 4;
-
-/// Shadow heights along all lines of a batch, a cell apart. Each invocation marches a segment of one line over the heights of
+/// Shadow heights along all lines of a batch, of a light with at most so many slices, a cell apart. Each invocation marches a segment of one line over the heights of
 /// lane_buffer, or four whole lines over those of lane_heights.
 pub(crate) fn plan(
     builder: &mut Builder,
     batch: &Batch,
     part: &str,
-    limits: &Limits,
+    (slices, limits): (u32, &Limits),
     heights: (&str, ResourceId),
     [azimuths, shadows]: [ResourceId; 2],
 ) {
@@ -23,7 +19,9 @@ pub(crate) fn plan(
     // Two buffers of four steps, and a height with its step.
     let [written, highest] = [2 * 4 * group_size, 2 * group_size];
     let segments = if one_line {
-        let lines = USUAL_AZIMUTHS * (axis.lanes + axis.steps);
+        // Half of the slices march along each axis, if both are used. The lines of this batch would change as a sun moves, and with
+        // them its pipelines.
+        let lines = slices.div_ceil(2) * (axis.lanes + axis.steps);
         line_segments(lines, group_size, 4 * (written + highest), limits)
     } else {
         1

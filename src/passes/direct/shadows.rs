@@ -15,6 +15,8 @@ pub(crate) struct Shadows {
     doubtful: [Option<ResourceId>; 2],
     /// Whether an invocation of the sweep marches one line instead of four.
     one_line: bool,
+    /// Slices of a light.
+    slices: u32,
     pub limits: Limits,
     pub levels: BlockLevels,
     /// For each of the lights, the maxima of blocks over a plane that rises with its light; none for others.
@@ -70,7 +72,7 @@ impl Shadows {
         azimuths: impl Iterator<Item = &'a Azimuth> + Clone,
         (size, border): ([u32; 2], Border),
         (which, lights): (&[usize], usize),
-        limits: &Limits,
+        (slices, limits): (u32, &Limits),
     ) -> Self {
         let doubtful = [false, true].map(|marches_rows| {
             azimuths.clone().any(|a| a.marches_rows() == marches_rows).then(|| {
@@ -86,6 +88,7 @@ impl Shadows {
         Self {
             doubtful,
             one_line: shadows_by_one_line(size, limits),
+            slices,
             limits: *limits,
             levels,
             maxima,
@@ -111,7 +114,7 @@ impl Shadows {
             None => ("lane_heights", sweeping.lane_heights(batch)),
         };
         let ids = [sweeping.azimuths, sweeping.written(batch)];
-        shadow_sweep::plan(builder, batch, part, &self.limits, heights, ids);
+        shadow_sweep::plan(builder, batch, part, (self.slices, &self.limits), heights, ids);
     }
 
     /// The maxima of blocks for walks towards the light at `index`, which skip most of the ground under its light: over a plane

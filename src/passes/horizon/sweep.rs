@@ -175,21 +175,24 @@ pub(crate) fn group_size(limits: &Limits) -> u32 {
     if limits.is_cpu { 8 } else { 32 }
 }
 
-/// More invocations than that do not march shadow heights faster on an NVIDIA H200, which holds twice as many: benches/results/nvidia_h200.md.
+/// Invocations that keep a GPU busy: an NVIDIA H200 holds twice as many. See "Changes to suns" in benches/results/nvidia_h200.md, as for
+/// the next two.
 const BUSY_INVOCATIONS: u32 = 1 << 17;
-/// With 32 segments a sweep of 1024² took 1.07 of its time with 16 there.
+/// With 32 segments the sweeps of 1024² took 0.164 ms, with 16 0.153 ms.
 const MOST_SEGMENTS: u32 = 16;
+/// Of so many lines segments are of no use: at 4096² one and eight took the same time.
+const ENOUGH_LINES: u32 = 1 << 15;
 
-/// Segments of a line of shadow heights that are marched side by side: a power of two. A few lines do not fill a GPU, and each is
-/// marched twice if it is cut. `lines`: of a dispatch; `group_lines`: of a workgroup, of which a segment takes so many bytes of
-/// shared memory.
+/// Segments per line of shadow heights, a power of two. More than one only where the lines do not fill a GPU, because a cut line is
+/// marched twice. `lines`: lines per dispatch, at most. `group_lines`: lines per workgroup. `segment_bytes`: shared memory of one segment of
+/// those lines.
 pub(crate) fn line_segments(
     lines: u32,
     group_lines: u32,
     segment_bytes: u32,
     limits: &Limits,
 ) -> u32 {
-    if limits.is_cpu {
+    if limits.is_cpu || lines >= ENOUGH_LINES {
         return 1;
     }
     // Half of the shared memory, so that two workgroups fit.

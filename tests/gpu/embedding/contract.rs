@@ -159,7 +159,7 @@ fn every_kind_of_plan_runs_silently_and_has_all_its_barriers() {
     }
 }
 
-/// Small plans share a block of 4 MiB in each type of memory. There may be four: of the device's images and of its buffers, of uploads and of
+/// Small plans share a block of 4 MiB in each type of memory. At most four of the device's are used: for images, buffers, uploads and
 /// readbacks. Larger plans have their own blocks, and each block wastes less than the size that did not fit: at most half of all memory held.
 #[test]
 fn memory_taken_is_near_the_planned_bytes() {
@@ -172,10 +172,16 @@ fn memory_taken_is_near_the_planned_bytes() {
             .expect("a plan");
         let needed = plan.internal_bytes();
         let gpu = device.gpu.as_mut().expect("alive");
-        let renderer = Renderer::new(gpu.host(), plan, 1).expect("a renderer");
+        let host = gpu.host();
+        // SAFETY: the physical device is the instance's.
+        let memory =
+            unsafe { host.instance.get_physical_device_memory_properties(host.physical_device) };
+        // lavapipe has one type, for the device's blocks and the host's.
+        let blocks = u64::from(memory.memory_type_count.clamp(2, 4));
+        let renderer = Renderer::new(host, plan, 1).expect("a renderer");
         let taken = renderer.device_bytes();
         renderer.destroy();
         println!("{side}²: {needed} bytes needed, {taken} taken");
-        assert!(taken >= needed && taken <= 2 * needed + 4 * BLOCK, "{needed} {taken}");
+        assert!(taken >= needed && taken <= 2 * needed + blocks * BLOCK, "{needed} {taken}");
     }
 }

@@ -234,7 +234,7 @@ fn changed_passes_are_recorded_in_order_part_by_part() {
     gpu.end(frame);
 }
 
-/// A frame under a sky and an environment, whose batches of azimuths share a lattice and add to one sum. A part that is recorded
+/// A frame under a sky and an environment. Its batches of azimuths add to one sum and share a lattice, except on a GPU, where each may have its own. A part that is recorded
 /// again is refused if it would add twice, or read what a later part has overwritten.
 #[test]
 fn a_part_is_recorded_again_only_with_what_it_needs() {

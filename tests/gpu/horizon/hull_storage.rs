@@ -132,8 +132,7 @@ fn wide_groups_and_narrow_ones_are_the_same_to_the_bit() {
     }
 }
 
-/// A GPU marches segments of a line of shadow heights side by side, as many as a workgroup has invocations for, and draws light with them in
-/// tiles of several sizes.
+/// Splitting the lines of a sun gives the same bits of its light. `shadow_sweep` of `direct::cpu_reference` compares the words of each line.
 #[test]
 fn segments_of_a_line_are_the_whole_line_to_the_bit() {
     let mut gpu = Device::new();
@@ -149,23 +148,78 @@ fn segments_of_a_line_are_the_whole_line_to_the_bit() {
         (Border::Periodic, vec![sun(215.0, 0.05), sun(300.0, 0.0)]),
         (Border::Open, vec![sun(0.0, 0.0), sun(180.0, 0.1)]),
     ] {
-        let mut scene = under_sky(fractal(90, 9).expect("a field"), border);
+        let mut scene = under_sky(fractal(96, 9).expect("a field"), border);
         scene.lights = Lights { suns, ..Lights::default() };
-        let mut of = |group_invocations, segments| {
+        let mut of = |most: u32| {
+            let group_invocations = limits.group_invocations.min(most);
             let limits = Limits { group_invocations, ..limits };
             let plan = plan::picture(&scene, &Quality::default(), &limits, Picture::default());
             let passes = plan.expect("a plan").passes;
             let sweeps = passes.iter().filter(|p| p.name() == "shadow_sweep");
-            let found: Vec<_> = sweeps.map(|p| p.constant("local_size_y")).collect();
-            assert!(!found.is_empty() && found.iter().all(|n| *n == Some(segments)), "{found:?}");
-            gpu.picture_within(&scene, &Quality::default(), &limits).values
+            let segments: Vec<u32> = sweeps.filter_map(|p| p.constant("local_size_y")).collect();
+            (segments, gpu.picture_within(&scene, &Quality::default(), &limits).values)
         };
-        let whole = of(32, 1);
-        for (group_invocations, segments) in [(64, 2), (300, 8)] {
-            let cut = of(group_invocations, segments);
+        let (segments, whole) = of(32);
+        assert!(!segments.is_empty() && segments.iter().all(|n| *n == 1), "{segments:?}");
+        for most in [64, u32::MAX] {
+            let (segments, cut) = of(most);
+            assert!(!segments.is_empty() && segments.iter().all(|n| *n > 1), "{segments:?}");
             assert!(whole.iter().zip(&cut).all(|(a, b)| a.to_bits() == b.to_bits()), "{border:?}");
         }
     }
+}
+
+/// Maps of shadow heights, of which a near tie of two occluders may be decided by rounding: 12 ε of the largest height, as in the CPU reference.
+#[test]
+fn segments_of_a_map_are_the_whole_line() {
+    let mut gpu = Device::new();
+    let limits = crate::of_kind(false, gpu.limits());
+    let field = fractal(130, 5).expect("a field");
+    let largest = field.heights_m().iter().fold(0.0_f32, |m, h| m.max(h.abs()));
+    for degrees in [0.0_f64, 38.0, 111.0, 250.0] {
+        let sun = Sun {
+            azimuth_rad: degrees.to_radians(),
+            elevation_rad: 0.15,
+            diameter_rad: 0.02,
+            irradiance: [1.0; 3],
+        };
+        let mut of = |most: u32| {
+            let group_invocations = limits.group_invocations.min(most);
+            let limits = Limits { group_invocations, ..limits };
+            let plan = plan::shadow_heights(&field, &sun, None, 1, &limits).expect("a plan");
+            let segments = plan.passes[0].constant("local_size_y").expect("a constant");
+            (segments, gpu.draw(plan, &[field.heights_m()]))
+        };
+        let (one, whole) = of(64);
+        let (several, cut) = of(u32::MAX);
+        assert!(one == 1 && several > 1, "{several}");
+        let lit_above = whole[0].values.iter().zip(&cut[0].values);
+        let most = lit_above.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+        assert!(most <= 12.0 * f32::EPSILON * 2.0 * largest, "{most} {largest}");
+    }
+}
+
+/// A field so large that a GPU's workgroups settle 128 texels each; a CPU device's settle 512, and read all corners.
+#[test]
+fn tiles_of_a_gpu_give_the_bits_of_a_processors() {
+    let mut gpu = Device::new();
+    let limits = gpu.limits();
+    let rough = field(1024, 1024, [1.0, 1.0], |r, c| ((r / 9 * 31 + c / 7 * 17) % 13) as f64);
+    let mut scene = under_sky(rough, Border::Plane);
+    let sun =
+        Sun { azimuth_rad: 0.7, elevation_rad: 0.4, diameter_rad: 0.02, irradiance: [1.0; 3] };
+    scene.lights = Lights { suns: vec![sun], ..Lights::default() };
+    let quality = Quality { sun_azimuths: 2, ..Quality::default() };
+    let mut of = |is_cpu| {
+        let limits = crate::of_kind(is_cpu, limits);
+        let plan = plan::picture(&scene, &quality, &limits, Picture::default()).expect("a plan");
+        let settles = plan.passes.iter().find(|p| p.name() == "shadow_settle");
+        let fours = settles.and_then(|p| p.constant("tile_fours"));
+        (fours, gpu.picture_within(&scene, &quality, &limits).values)
+    };
+    let ((of_cpu, a), (of_gpu, b)) = (of(true), of(false));
+    assert_eq!([of_cpu, of_gpu], [Some(8), Some(2)]);
+    assert!(a.iter().zip(&b).all(|(a, b)| a.to_bits() == b.to_bits()));
 }
 
 /// `ridgelight tune` may choose any of these.

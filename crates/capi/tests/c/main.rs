@@ -54,6 +54,36 @@ fn the_header_is_what_the_source_says() {
     assert!(done.status.success(), "{output}");
 }
 
+/// The C of the pages compiles, in a function that has its variables.
+#[test]
+fn the_c_of_the_pages_compiles() {
+    const ENGINE: &str = "#include <vulkan/vulkan.h>\n#include <ridgelight.h>\n\
+        void engine(VkInstance instance, VkPhysicalDevice physical_device, VkDevice device, uint32_t family,\n\
+        VkImage heights_image, VkImageView heights_view, VkImage light_image, VkImageView light_view,\n\
+        VkCommandBuffer commands, uint32_t frame_in_flight, RidgelightPlan *plan, RidgelightRenderer *renderer);\n\
+        void engine(VkInstance instance, VkPhysicalDevice physical_device, VkDevice device, uint32_t family,\n\
+        VkImage heights_image, VkImageView heights_view, VkImage light_image, VkImageView light_view,\n\
+        VkCommandBuffer commands, uint32_t frame_in_flight, RidgelightPlan *plan, RidgelightRenderer *renderer)\n{\n";
+    let page = std::fs::read_to_string(Path::new(ROOT).join("docs/embedding.md")).expect("it");
+    let blocks: Vec<&str> =
+        page.split("\n```c\n").skip(1).filter_map(|rest| rest.split("```").next()).collect();
+    assert_eq!(blocks.len(), 1, "docs/embedding.md");
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("page.c");
+    let compiles = |block: &str| {
+        std::fs::write(&file, format!("{ENGINE}{block}}}\n")).expect("written");
+        let mut c = Command::new("cc");
+        c.args(["-std=c11", "-fsyntax-only", "-Wall", "-Wextra", "-Werror", "-I"]);
+        let (done, output) = run(c.arg(Path::new(ROOT).join("crates/capi/include")).arg(&file));
+        (done.status.success(), output)
+    };
+    let (is_right, output) = compiles(blocks[0]);
+    assert!(is_right, "{output}");
+    // A member that the header lacks.
+    let wrong = blocks[0].replace(".queue_family", ".family");
+    assert!(wrong != blocks[0] && !compiles(&wrong).0);
+}
+
 /// Every function of the header is exported, and no other symbol.
 #[test]
 fn the_shared_library_exports_the_header_alone() {

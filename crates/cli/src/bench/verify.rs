@@ -344,6 +344,33 @@ pub mod tests {
         Scene { field: fractal(size, 1).unwrap(), surface: Surface::default(), lights }
     }
 
+    /// A slope that faces away from the sun: the oracle finds no light at any place. The error is then relative to half of the light
+    /// of level ground.
+    #[test]
+    fn a_scene_in_shadow_is_judged_by_the_light_of_level_ground() {
+        let heights: Vec<f64> = (0..24 * 24).map(|i| 2.0 * f64::from(i % 24)).collect();
+        let field = HeightField::new(24, 24, &heights, [1.0; 2], None).unwrap();
+        let sun = ridgelight::scene::Sun {
+            azimuth_rad: 0.0,
+            elevation_rad: 0.5,
+            diameter_rad: 0.01,
+            irradiance: [1.0; 3],
+        };
+        let lights = Lights { suns: vec![sun], ..Lights::default() };
+        let scene = Scene { field, surface: Surface::default(), lights };
+        let verifier = Verifier::new(&scene).unwrap();
+        let ground_truth = &verifier.ground_truth;
+        let level = 0.5_f64.sin() / std::f64::consts::PI;
+        assert!((ground_truth.level / level - 1.0).abs() < 1e-3, "{} {level}", ground_truth.level);
+        let lit = |share: f64| vec![share * level; ground_truth.places.len()];
+        let dark = ground_truth.error_of(&lit(0.0));
+        assert!(verifier.judge(dark, &Quality::default()).is_ok(), "{dark}");
+        let unshadowed = ground_truth.error_of(&lit(1.0));
+        assert!((unshadowed - 2.0).abs() < 0.01, "{unshadowed}");
+        assert!(verifier.judge(unshadowed, &Quality::default()).is_err());
+        assert!(verifier.judge(f64::NAN, &Quality::default()).is_err());
+    }
+
     /// Results of broken passes (no shadows, black, a mirrored field, too dim, NaN) are refused at
     /// the bound of the default settings; the oracle at the settings' number of azimuths is
     /// accepted.

@@ -73,16 +73,18 @@ impl GroundTruth {
         rms(radiance.iter().zip(all).map(|(a, b): (_, f64)| a - b)) / self.scale()
     }
 
-    /// Root mean squares of each kind of light. Of suns and key lights at least half of that on level ground: all places may be in
-    /// their shadows.
+    /// Root mean squares of each kind of light. For suns and key lights, half of the unshadowed light on level ground if less than a
+    /// hundredth of that arrives: all places may be in shadow.
     pub fn scales(&self) -> [f64; 4] {
         let mut scales =
             [0, 1, 2, 3].map(|light| rms(self.expected.iter().map(|lights| lights[light])));
-        scales[2] = scales[2].max(0.5 * self.level);
+        if scales[2] < 0.01 * self.level {
+            scales[2] = 0.5 * self.level;
+        }
         scales
     }
 
-    /// Of all light together.
+    /// Root of the summed squares of [`scales`](Self::scales).
     pub fn scale(&self) -> f64 {
         self.scales().iter().map(|s| s * s).sum::<f64>().sqrt().max(f64::MIN_POSITIVE)
     }
