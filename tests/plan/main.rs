@@ -253,6 +253,30 @@ fn devices_limits_are_kept() {
     assert!(said.contains("env_tables") && said.contains("64 layers"), "{said}");
 }
 
+/// A lattice that batches share is as large as the largest of them; and on a GPU, where each has its own, a batch of one azimuth takes as
+/// long as one of many. An azimuth of 512 lanes has 16 to 32 layers of lines.
+#[test]
+fn batches_along_an_axis_are_of_equal_size() {
+    let scene = under_sky(flat(512, 512));
+    let sizes = |azimuths: u32, image_layers: u32| {
+        let limits = Limits { image_layers, ..Limits::lavapipe() };
+        let quality = Quality { azimuths, ..Quality::default() };
+        let plan = plan::picture(&scene, &quality, &limits, Picture::default()).expect("a plan");
+        let shaded = plan.passes.iter().filter(|p| p.name() == "sky_shade");
+        shaded.map(|p| p.azimuths.len()).collect::<Vec<_>>()
+    };
+    // 16 along each axis.
+    assert_eq!(sizes(32, 2048), [16, 16]);
+    for image_layers in 64..400 {
+        let found = sizes(32, image_layers);
+        assert_eq!(found.iter().sum::<usize>(), 32, "{found:?}");
+        // No more batches than the layers of all azimuths need, if each batch lacks less than one more azimuth.
+        assert!(found.len() as u32 <= 2 * (16 * 32_u32).div_ceil(image_layers - 31), "{found:?}");
+    }
+    assert_eq!(sizes(32, 300), [8, 8, 8, 8]);
+    assert_eq!(sizes(36, 200), [6; 6]);
+}
+
 /// n² numbers a texel, four a GPU texel, beside 3 rows of the light's matrix (9 of a lobe, 4 at order 2); the
 /// sky stays in closed form, and edits recompute everything.
 #[test]

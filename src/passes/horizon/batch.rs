@@ -63,8 +63,9 @@ pub(crate) struct Room {
     pub layer_shift: u32,
 }
 
-/// Cuts sorted azimuths, from index `first` of the buffer, into batches whose lattices fit, and assigns each
-/// azimuth its layer.
+/// Cuts sorted azimuths, from index `first` of the buffer, into as few batches as fit, and assigns each azimuth its layer. The batches
+/// along an axis are of equal size where that takes no more of them: a last batch of one azimuth would hardly use a GPU, and the
+/// largest batch decides how much memory a lattice takes that all share.
 ///
 /// Also returns whether layers alone ended a batch early: with more lines in each, it would have been longer.
 ///
@@ -77,6 +78,30 @@ pub(crate) fn cut(
     sweep: &Sweep,
     limits: &Limits,
     room: &Room,
+) -> Result<(Vec<Batch>, bool)> {
+    let mut cut = |most| cut_at(azimuths, first, axes, sweep, limits, (room, most));
+    let all = [sweep.azimuths_together(); 2];
+    let (fewest, lacks_layers) = cut(all)?;
+    let most = [false, true].map(|marches_rows| {
+        let along = fewest.iter().filter(|b| b.axis.marches_rows == marches_rows);
+        let (count, batches) = along.fold((0, 0), |(n, k), b| (n + b.count, k + 1));
+        if batches > 1 { u32::div_ceil(count, batches) } else { all[0] }
+    });
+    let (even, _) = cut(most)?;
+    if even.len() == fewest.len() {
+        return Ok((even, lacks_layers));
+    }
+    cut(all)
+}
+
+/// The same with at most so many azimuths in a batch, along columns and along rows.
+fn cut_at(
+    azimuths: &mut [Azimuth],
+    first: u32,
+    axes: &[Option<Axis>; 2],
+    sweep: &Sweep,
+    limits: &Limits,
+    (room, most): (&Room, [u32; 2]),
 ) -> Result<(Vec<Batch>, bool)> {
     let mut batches: Vec<Batch> = Vec::new();
     let mut lacks_layers = false;
@@ -104,7 +129,7 @@ pub(crate) fn cut(
             return Err(Error::Limit { what, needs, limit });
         }
         let fits = batches.last().is_some_and(|b| {
-            let together = b.axis == axis && b.count < sweep.azimuths_together();
+            let together = b.axis == axis && b.count < most[marches_rows];
             // What layers of 32 lines hold always fits; more than that only in this share of the memory budget.
             let bytes = u64::from(b.layers + layers) * layer_bytes;
             let is_small = bytes <= limits.memory_budget / LATTICE_DIVISOR;
