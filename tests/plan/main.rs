@@ -253,8 +253,8 @@ fn devices_limits_are_kept() {
     assert!(said.contains("env_tables") && said.contains("64 layers"), "{said}");
 }
 
-/// A lattice that batches share is as large as the largest of them; and on a GPU, where each has its own, a batch of one azimuth takes as
-/// long as one of many. An azimuth of 512 lanes has 16 to 32 layers of lines.
+/// A lattice that batches share is as large as the largest of them. On a GPU each has its own, and at 1024² on an H100 a batch of one azimuth
+/// took 0.31 ms, one of 23 took 0.39. An azimuth of 512 lanes has 16 to 32 layers of lines.
 #[test]
 fn batches_along_an_axis_are_of_equal_size() {
     let scene = under_sky(flat(512, 512));
@@ -275,6 +275,11 @@ fn batches_along_an_axis_are_of_equal_size() {
     }
     assert_eq!(sizes(32, 300), [8, 8, 8, 8]);
     assert_eq!(sizes(36, 200), [6; 6]);
+    // As README says.
+    let scene = under_sky(flat(2048, 2048));
+    let plan = plan::picture(&scene, &Quality::default(), &Limits::lavapipe(), Picture::default());
+    let bytes: u64 = plan.expect("a plan").resources.iter().map(plan::Resource::bytes).sum();
+    assert_eq!((bytes as f64 / 1e6).round(), 287.0);
 }
 
 /// n² numbers a texel, four a GPU texel, beside 3 rows of the light's matrix (9 of a lobe, 4 at order 2); the
