@@ -183,6 +183,8 @@ fn gdal_finds_maps_in_place_with_names_and_units() {
     }
 }
 
+/// GDAL finds the values of the EXR in a file of the layout that docs/command-line.md states: tiles, DEFLATE with predictor 3,
+/// overviews.
 #[test]
 #[ignore = "needs GDAL: Debian's gdal-bin"]
 fn gdal_reads_every_value_and_overviews() {
@@ -211,6 +213,11 @@ fn gdal_reads_every_value_and_overviews() {
             let (path, exr) = (folder.path("o.tif"), read(&folder.path("o.exr")));
             checked_cog(&path).unwrap();
             let (info, values) = (gdalinfo(&path), gdal_values(&path));
+            let packed = &info["metadata"]["IMAGE_STRUCTURE"];
+            let packed = [&packed["COMPRESSION"], &packed["PREDICTOR"]];
+            assert_eq!(packed, [&json!("DEFLATE"), &json!("3")], "{command}");
+            // An image within one tile has a tile of its own size, in multiples of 16.
+            let tile = if overviews > 0 { 512 } else { 16 };
             let bands = info["bands"].as_array().unwrap();
             assert_eq!(bands.len(), exr.names.len());
             let colours = [0, 1, 2].map(|i| &bands[i]["colorInterpretation"]);
@@ -224,6 +231,7 @@ fn gdal_reads_every_value_and_overviews() {
                 assert!(found == bits(&exr.planes[own]), "{command}: {name}");
                 let count = band["overviews"].as_array().map_or(0, Vec::len);
                 assert_eq!(count, overviews, "{command}");
+                assert_eq!(band["block"], json!([tile, tile]), "{command}: {name}");
             }
         }
     }
