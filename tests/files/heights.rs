@@ -399,6 +399,8 @@ fn geotiff_places_and_units() {
         let notes = read.notes.join("\n");
         assert!(notes.contains("cells are in units of 0.3048 m"), "{notes}");
         assert_eq!(notes.contains("z_scale"), is_noted, "{vertical:?}: {notes}");
+        let of_heights = format!("heights are in units of {unit} m and become metres");
+        assert_eq!(notes.contains(&of_heights), unit != 1.0, "{vertical:?}: {notes}");
     }
     // Without keys, small numbers are degrees: the middle of 3 rows of 0.01° from 60.015° is 60°,
     // where a degree of longitude is 55 800 m.

@@ -200,6 +200,30 @@ fn info_states_what_a_file_holds() {
     assert!(run.out.contains("drops 350 m over the 67 km"), "{}", run.out);
 }
 
+/// A note states the share of voids, and from one half on that the field is mostly empty.
+#[test]
+fn a_field_that_is_half_empty_gets_a_note() {
+    let folder = Folder::new();
+    for (voids, share, is_half) in
+        [(9, "45.000 %", false), (10, "50.000 %", true), (12, "60.000 %", true)]
+    {
+        let head = "ncols 5\nnrows 4\ncellsize 10\nNODATA_value -9\n";
+        let cells: String = (0..20).map(|i| if i < voids { "-9 " } else { "7 " }).collect();
+        folder.write("holes.asc", (head.to_owned() + &cells).as_bytes());
+        let info = folder.run_without_driver(&["info", "holes.asc"]);
+        let plan = folder.run_without_driver(&["plan", "holes.asc", "--sky", "1"]);
+        let of_share = format!("{share} of the grid points are voids");
+        for (run, text, start) in
+            [(&info, &info.out, "note       "), (&plan, &plan.notes, "note: holes.asc: ")]
+        {
+            assert_eq!(run.status, Some(0), "{voids}: {}", run.err);
+            assert!(text.contains(&format!("{start}{of_share}")), "{voids}: {text}");
+            let has_half = text.contains("; half of the field or more is empty");
+            assert_eq!(has_half, is_half, "{voids}: {text}");
+        }
+    }
+}
+
 /// Notes go to standard error, so that a program can read standard output.
 #[test]
 fn notes_leave_standard_output_to_results() {

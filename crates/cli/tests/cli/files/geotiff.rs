@@ -46,6 +46,22 @@ fn gpu_maps_lie_where_the_input_lies() {
     }
 }
 
+/// Heights in feet are converted, and a note names their unit.
+#[test]
+fn heights_in_feet_get_a_note() {
+    let folder = folder();
+    for (name, unit) in [("utm", 1.0), ("point", 1200.0 / 3937.0)] {
+        let info = folder.run_without_driver(&["info", &format!("{name}.tif")]);
+        assert_eq!((info.status, info.err.as_str()), (Some(0), ""), "{name}");
+        // tests/files/gdal/write.sh: 100 - 9 (col - 3)² - 7 (row - 2)², from -9 to 100.
+        let heights = format!("heights    {:.3} to {:.3} m", -9.0 * unit, 100.0 * unit);
+        assert!(info.out.contains(&heights), "{heights}: {}", info.out);
+        let note = format!("note       heights are in units of {unit} m and become metres");
+        assert_eq!(info.out.contains(&note), unit != 1.0, "{}", info.out);
+        assert_eq!(info.out.contains("heights are in units of"), unit != 1.0, "{}", info.out);
+    }
+}
+
 /// A GeoTIFF and an EXR of one scene have the same channels; another scene differs.
 #[test]
 fn gpu_geotiffs_are_compared_by_band() {
