@@ -64,6 +64,7 @@ fn all(path: &Path, decoder: impl Read, expected: &str) -> Result<Vec<u8>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::heights::parse_field;
     use crate::{HeightOptions, parse_heights};
     use std::io::Write;
 
@@ -102,6 +103,20 @@ mod tests {
             read("x.zip", &zip_of(&[("N44W072.hgt", &tile)])).unwrap(),
         ];
         assert_eq!(plain.cell_m(), packed.cell_m());
+        // Positions: a GeoTIFF's from its tags, a tile's from its name without ".gz".
+        let utm = include_bytes!("../../../../tests/files/gdal/utm.tif");
+        for (name, bytes, corner) in [
+            ("utm.tif", utm.as_slice(), [500_000.0, 5_100_000.0]),
+            ("N44W072.hgt", tile.as_slice(), [-72.25, 45.25]),
+        ] {
+            let of = |name: &str, bytes: &[u8]| {
+                parse_field(Path::new(name), bytes, &HeightOptions::default()).unwrap()
+            };
+            let [plain, packed] = [of(name, bytes), of(&format!("{name}.gz"), &gz(bytes))];
+            assert_eq!(packed.field, plain.field, "{name}");
+            assert_eq!(packed.georeference, plain.georeference, "{name}");
+            assert_eq!(packed.georeference.unwrap().corner, corner, "{name}");
+        }
     }
 
     #[test]
