@@ -105,6 +105,26 @@ fn gpu_cameras_write_pictures_and_depth() {
     assert_eq!(json(&folder.path("v.json"))["settings"]["mesh_error_m"], 0);
 }
 
+/// Without numbers the camera is that of 180,30, named south, and the picture has 2048 x 1152 pixels.
+#[test]
+fn gpu_a_camera_without_numbers_stands_in_the_south() {
+    let folder = Folder::new();
+    // Without symmetry: each direction has a picture of its own.
+    write_field(&folder, 16, |row, col| (row * col % 5) as f32 + col as f32 / 4.0);
+    let drawn = |camera: &str| {
+        done(&folder, &format!("render field.npy {camera} -o v.png --quiet"));
+        image::open(folder.path("v.png")).unwrap().to_rgb8()
+    };
+    let default = drawn("--camera");
+    assert_eq!(default.dimensions(), (2048, 1152));
+    assert!(default == drawn("--camera 180,30 --size 2048x1152"));
+    let small = |camera: &str| drawn(&format!("--size 64x36 {camera}"));
+    assert!(small("--camera") == small("--camera south"));
+    for other in ["north", "180,31"] {
+        assert!(small("--camera") != small(&format!("--camera {other}")), "{other}");
+    }
+}
+
 /// A .png has a plinth by default, an .exr only on request, with the depths of the picture without it.
 #[test]
 fn gpu_plinths_are_in_pictures_of_codes() {
