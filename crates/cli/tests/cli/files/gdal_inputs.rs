@@ -55,7 +55,18 @@ fn gdal_bands_have_the_values_that_gdal_reads() {
     let all = (0..5).map(|salt| format!(" odd{salt}.tif")).collect::<String>();
     tool(&folder, &format!("gdalbuildvrt -q -separate odd.vrt{all}"));
     let mut read = 0;
-    for kind in ["Byte", "Int16", "Float32", "Float64"] {
+    let kinds = [
+        "Byte",
+        "Int16",
+        // Beyond the signed types, in multiples of 250 and of 16 million, which f32 holds.
+        "UInt16 -scale 0 250 0 62500",
+        "UInt32 -scale 0 250 0 4000000000",
+        // Floats of 16 bits, in quarters.
+        "Float32 -co NBITS=16 -scale 0 250 -31.25 31.25",
+        "Float32",
+        "Float64",
+    ];
+    for kind in kinds {
         for layout in ["PIXEL", "BAND"] {
             for tiles in ["NO", "YES -co BLOCKXSIZE=16 -co BLOCKYSIZE=16"] {
                 for packed in ["NONE", "LZW", "LZW -co PREDICTOR=2", "DEFLATE", "ZSTD"] {
@@ -85,7 +96,59 @@ fn gdal_bands_have_the_values_that_gdal_reads() {
             }
         }
     }
-    assert_eq!(read, 5 * 4 * 20);
+    assert_eq!(read, 5 * kinds.len() * 20);
+}
+
+/// Overviews, which gdaladdo writes into a file or beside it, are not read in place of the heights.
+#[test]
+#[ignore = "needs GDAL: Debian's gdal-bin"]
+fn gdal_overviews_leave_the_heights_as_they_are() {
+    let folder = Folder::new();
+    folder.write("a.asc", grid([333, 277], [500_000.0, 4_900_000.0], 30.0, 0).as_bytes());
+    for (name, place) in [("inside.tif", ""), ("beside.tif", "-ro ")] {
+        let options = "-q -ot Float32 -co TILED=YES -co COMPRESS=DEFLATE";
+        tool(&folder, &format!("gdal_translate {options} a.asc {name}"));
+        let path = folder.path(name);
+        let expected = gdal_values(&path);
+        assert_eq!(expected.len(), 333 * 277);
+        tool(&folder, &format!("gdaladdo -q {place}-r average {name} 2 4"));
+        let overviews = gdalinfo(&path)["bands"][0]["overviews"].clone();
+        assert_eq!(overviews, json!([{ "size": [167, 139] }, { "size": [84, 70] }]), "{name}");
+        assert_eq!(folder.path(&format!("{name}.ovr")).exists(), !place.is_empty());
+        let read = read_field(&path, &HeightOptions::default()).unwrap();
+        assert_eq!((read.field.rows(), read.field.cols()), (277, 333), "{name}");
+        assert!(absolute(&read.field) == expected, "{name}");
+        assert_eq!(read.notes, Vec::<String>::new(), "{name}");
+    }
+}
+
+/// The scale and the offset of a band change no other band.
+#[test]
+#[ignore = "needs GDAL: Debian's gdal-bin"]
+fn gdal_scales_and_offsets_are_those_of_the_band() {
+    let folder = Folder::new();
+    for (name, salt) in [("plain.asc", 0), ("b.asc", 1)] {
+        folder.write(name, grid([37, 29], [500_000.0, 4_900_000.0], 30.0, salt).as_bytes());
+    }
+    tool(&folder, "gdal_translate -q -a_scale 0.5 -a_offset 1000 b.asc scaled.tif");
+    tool(&folder, "gdalbuildvrt -q -separate two.vrt plain.asc scaled.tif");
+    tool(&folder, "gdal_translate -q -ot Int16 two.vrt two.tif");
+    let info = gdalinfo(&folder.path("two.tif"));
+    for (band, scale, offset) in [(0_usize, 1.0, 0.0), (1, 0.5, 1000.0)] {
+        // GDAL states neither where both are those of the stored values.
+        let stated = |name: &str, default| info["bands"][band][name].as_f64().unwrap_or(default);
+        assert_eq!([stated("scale", 1.0), stated("offset", 0.0)], [scale, offset]);
+        let number = band + 1;
+        tool(&folder, &format!("gdal_translate -q -unscale -ot Float32 -b {number} two.tif u.tif"));
+        let expected = gdal_values(&folder.path("u.tif"));
+        let options = HeightOptions { band: Some(number as u32), ..Default::default() };
+        assert!(heights(&folder.path("two.tif"), &options) == expected, "band {number}");
+        // From 1 to 250, as stored.
+        let run = succeeded(&folder, &format!("info two.tif --band {number} --json i.json"));
+        let facts = crate::needs_vulkan::json(&folder.path("i.json"));
+        let ends = json!([offset + scale, offset + 250.0 * scale]);
+        assert_eq!(facts["heights_m"], ends, "band {number}: {}", run.out);
+    }
 }
 
 /// Larger tiles that reach beyond the image, of which `tiff` 0.11 cannot read some (its issue 395).
