@@ -461,6 +461,38 @@ fn a_scene_file_lists_the_files_of_a_field_and_its_box() {
     );
 }
 
+/// A grid in text has the corner of its first cell or its centre in its header, and one cell size or two.
+#[test]
+#[ignore = "needs GDAL: Debian's gdal-bin"]
+fn gdal_places_grids_in_text_where_we_do() {
+    let folder = Folder::new();
+    // Metres and degrees, exact in binary.
+    for ([west, south], cell) in [([500_000.0, 4_900_000.0], 30.0), ([7.5, -46.25], 0.03125)] {
+        let of_corner = grid([5, 4], [west, south], cell, 0);
+        let [x, y] = [west, south].map(|corner| corner + cell / 2.0);
+        let of_centre = of_corner
+            .replace(&format!("xllcorner {west}"), &format!("xllcenter {x}"))
+            .replace(&format!("yllcorner {south}"), &format!("yllcenter {y}"));
+        let sides = format!("dx {cell}\ndy {}", 2.0 * cell);
+        let of_two = of_centre.replace(&format!("cellsize {cell}"), &sides);
+        assert!(of_centre != of_corner && of_two != of_centre);
+        let north = south + 4.0 * cell;
+        // Four rows of twice the height; the southern corner is half a row below the centre.
+        let north_of_two = y - cell + 8.0 * cell;
+        for (text, north) in [(of_corner, north), (of_centre, north), (of_two, north_of_two)] {
+            folder.write("placed.asc", text.as_bytes());
+            let path = folder.path("placed.asc");
+            let read = read_field(&path, &HeightOptions::default()).unwrap();
+            let at = read.georeference.unwrap();
+            assert_eq!(at.corner, [west, north], "{text}");
+            let [width, height] = at.cell;
+            let own = json!([at.corner[0], width, 0.0, at.corner[1], 0.0, -height]);
+            assert_eq!(gdalinfo(&path)["geoTransform"], own, "{text}");
+            assert!(absolute(&read.field) == gdal_values(&path), "{text}");
+        }
+    }
+}
+
 /// The directions of grid north, by GDAL's coordinates of two points, and cells in feet.
 #[test]
 #[ignore = "needs GDAL: Debian's gdal-bin"]

@@ -39,7 +39,7 @@ const ROWS: [Row; 7] = [
         heights: "text",
         nodata: "header",
         unit: "metres",
-        by_gdal: "values",
+        by_gdal: "values, position",
     },
     Row {
         file: "`.npy`",
