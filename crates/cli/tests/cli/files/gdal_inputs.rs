@@ -519,14 +519,7 @@ fn gdal_agrees_on_grid_north_and_on_feet() {
         assert!((cell / (30.0 * unit) - 1.0).abs() < 1e-9, "{code}: {cell}");
         // The geographic system of the same datum, by name: no shift.
         let ellipsoid = geographic(&folder, code);
-        let place = |y: f64| {
-            let command =
-                format!("echo {x} {y} | gdaltransform -s_srs EPSG:{code} -t_srs '{ellipsoid}'");
-            let output = Command::new("sh").args(["-c", &command]).output().unwrap();
-            let text = String::from_utf8(output.stdout).unwrap();
-            let numbers: Vec<f64> = text.split_whitespace().map(|n| n.parse().unwrap()).collect();
-            [numbers[0], numbers[1]]
-        };
+        let place = |y: f64| degrees_of(code, &ellipsoid, [x, y]);
         let ([west, south], [east, north]) = (place(y - 500.0 / unit), place(y + 500.0 / unit));
         // The radii of the ellipsoids of these systems differ by less than 2e-4, their ratio by 1e-5.
         let phi = ((south + north) / 2.0).to_radians();
@@ -544,6 +537,48 @@ fn gdal_agrees_on_grid_north_and_on_feet() {
         assert_eq!(notes.contains("cells are in units of"), unit != 1.0, "{notes}");
         assert_eq!(notes.contains("heights are read as metres"), unit != 1.0, "{notes}");
     }
+}
+
+/// The distance on the ellipsoid between two points that are a cell of Web Mercator apart, by GDAL's coordinates of them.
+#[test]
+#[ignore = "needs GDAL: Debian's gdal-bin"]
+fn gdal_agrees_on_the_metres_of_web_mercator() {
+    let folder = Folder::new();
+    let (equator_m, flattening) = (6_378_137.0, 1.0 / 298.257_223_563);
+    let squared: f64 = flattening * (2.0 - flattening);
+    // North, south and on the equator, and where the projection enlarges by 2.9.
+    for [x, y] in [[1.5e6, 5_621_471.0], [-1.3e7, -4e6], [2e6, 0.0], [-5e5, 1.1e7]] {
+        folder.write("a.asc", grid([4, 4], [x - 60.0, y - 60.0], 30.0, 0).as_bytes());
+        tool(&folder, "gdal_translate -q -a_srs EPSG:3857 a.asc a.tif");
+        succeeded(&folder, "info a.tif --json i.json");
+        let facts = crate::needs_vulkan::json(&folder.path("i.json"));
+        let place = |x: f64, y: f64| degrees_of(3857, "EPSG:4326", [x, y]);
+        let ([west, _], [east, _]) = (place(x - 15.0, y), place(x + 15.0, y));
+        let ([_, south], [_, north]) = (place(x, y - 15.0), place(x, y + 15.0));
+        let phi = place(x, y)[1].to_radians();
+        // The radius of the parallel and of curvature of the meridian, in the middle: their change over a cell cancels.
+        let w = (1.0 - squared * phi.sin().powi(2)).sqrt();
+        let radii = [equator_m * phi.cos() / w, equator_m * (1.0 - squared) / w.powi(3)];
+        for (axis, degrees) in [east - west, north - south].into_iter().enumerate() {
+            let expected = radii[axis] * degrees.to_radians();
+            let found = facts["cell_m"][axis].as_f64().unwrap();
+            // The series for a degree is within 0.1 m of these radii, as heights/raster.rs tests. gdaltransform prints 15
+            // digits: of 180 degrees 1e-12 degrees, or 1e-7 m, for each of two points.
+            let bound = 0.1 * degrees + 2e-7;
+            assert!((found - expected).abs() < bound, "{x}, {y}: {found} for {expected}");
+            // The comparison can fail: metres on a sphere are beyond the bound, but for the equator's.
+            assert!((30.0 * phi.cos() - expected).abs() > 10.0 * bound || axis == 0 && y == 0.0);
+        }
+    }
+}
+
+/// Longitude and latitude by GDAL of a position in a system of the EPSG registry.
+fn degrees_of(code: u32, geographic: &str, [x, y]: [f64; 2]) -> [f64; 2] {
+    let command = format!("echo {x} {y} | gdaltransform -s_srs EPSG:{code} -t_srs '{geographic}'");
+    let output = Command::new("sh").args(["-c", &command]).output().unwrap();
+    let text = String::from_utf8(output.stdout).unwrap();
+    let numbers: Vec<f64> = text.split_whitespace().map(|n| n.parse().unwrap()).collect();
+    [numbers[0], numbers[1]]
 }
 
 /// Longitude and latitude on the ellipsoid of a projected system, as PROJ's text.

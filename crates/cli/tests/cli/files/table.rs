@@ -23,7 +23,7 @@ const ROWS: [Row; 7] = [
                   uncompressed, LZW, DEFLATE, Zstandard or PackBits, any predictor; BigTIFF",
         nodata: "GDAL's tag",
         unit: "vertical unit, or feet by vertical EPSG code",
-        by_gdal: "values, bands, position, feet, grid north",
+        by_gdal: "values, bands, position, feet, Web Mercator, grid north",
     },
     Row {
         file: "`.hgt`",
