@@ -461,6 +461,36 @@ fn a_scene_file_lists_the_files_of_a_field_and_its_box() {
     );
 }
 
+/// Grey of 8 and of 16 bits, without and with a transparent grey, which marks voids.
+#[test]
+#[ignore = "needs GDAL: Debian's gdal-bin"]
+fn gdal_pngs_have_the_values_that_gdal_reads() {
+    let folder = Folder::new();
+    folder.write("a.asc", grid([37, 29], [500_000.0, 4_900_000.0], 30.0, 0).as_bytes());
+    for (kind, most) in [("Byte", 250.0_f32), ("UInt16", 62_500.0)] {
+        for has_voids in [false, true] {
+            let marked = if has_voids { format!("-a_nodata {most}") } else { String::new() };
+            let options = format!("-of PNG -ot {kind} -scale 0 250 0 {most} {marked}");
+            tool(&folder, &format!("gdal_translate -q {options} a.asc grey.png"));
+            let path = folder.path("grey.png");
+            assert_eq!(gdalinfo(&path)["bands"][0]["type"], kind);
+            let expected = gdal_values(&path);
+            let field = read_field(&path, &HeightOptions::default()).unwrap().field;
+            let found = absolute(&field);
+            assert_eq!(found.len(), expected.len(), "{options}");
+            let mut voids = 0;
+            for (i, (height, expected)) in found.iter().zip(&expected).enumerate() {
+                let is_void = field.voids().is_some_and(|voids| voids[i]);
+                assert_eq!(is_void, has_voids && *expected == most, "{options}: {i}");
+                assert!(is_void || height == expected, "{options}: {i}");
+                voids += usize::from(*expected == most);
+            }
+            // The greatest value of the grid occurs.
+            assert!(voids > 0, "{options}");
+        }
+    }
+}
+
 /// A grid in text has the corner of its first cell or its centre in its header, and one cell size or two.
 #[test]
 #[ignore = "needs GDAL: Debian's gdal-bin"]

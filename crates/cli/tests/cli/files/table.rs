@@ -71,7 +71,7 @@ const ROWS: [Row; 7] = [
         heights: "grey of 8 or 16 bits",
         nodata: "alpha 0, or a transparent grey",
         unit: "metres",
-        by_gdal: "no",
+        by_gdal: "values, voids",
     },
 ];
 
