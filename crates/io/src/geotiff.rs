@@ -157,7 +157,7 @@ impl GeoTiffWriter {
             let all = directories.iter().map(|directory| directory.size(big)).sum::<usize>();
             (head as u64, (head + all) as u64)
         };
-        let big = self.always_big || start(false).1 + self.length > u64::from(u32::MAX);
+        let big = self.always_big || needs_64_bits(start(false).1 + self.length);
         let (first, data) = start(big);
         self.set_places(&mut directories, data);
 
@@ -265,6 +265,12 @@ impl GeoTiffWriter {
         }
         tags
     }
+}
+
+/// Whether a file that has so many bytes with offsets of 32 bits must be a BigTIFF. Offsets are below the length, so those of 2^32
+/// bytes would fit; but the last tile ends at the length, which readers may hold in 32 bits, too.
+fn needs_64_bits(bytes: u64) -> bool {
+    bytes > u64::from(u32::MAX)
 }
 
 /// GDAL's metadata (tag 42112): settings of the file, and the name and unit of each band.

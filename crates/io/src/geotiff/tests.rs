@@ -165,6 +165,17 @@ fn a_position_is_read_back() {
     assert_eq!(at.keys, keys.horizontal());
 }
 
+/// A length that 32 bits hold is that of a classic TIFF; from 2^32 on the file is a BigTIFF.
+#[test]
+fn a_file_of_4_gib_is_big() {
+    let limit = 1_u64 << 32;
+    for (bytes, is_big) in
+        [(0, false), (limit - 2, false), (limit - 1, false), (limit, true), (u64::MAX, true)]
+    {
+        assert_eq!(needs_64_bits(bytes), is_big, "{bytes}");
+    }
+}
+
 #[test]
 fn wrong_use_is_refused_and_leaves_no_file() {
     let folder = tempfile::tempdir().unwrap();
