@@ -71,7 +71,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
     };
     let scene = scene;
     if goal.is_some() {
-        setup::check_diffuse(&scene, "--max-error or --time-budget")?;
+        setup::check_choice(&scene, quality.bounces.count, "--max-error or --time-budget")?;
     }
     let camera_view = camera::requested(&args.camera, &scene, is_png)?;
     let eye_m = camera_view.as_ref().map(|view| view.eye_m(&scene.field));

@@ -266,16 +266,16 @@ pub fn border(surface: &FieldArgs) -> Border {
     }
 }
 
-/// Refuses specular where the ground truth is diffuse.
-pub fn check_diffuse(scene: &Scene, what: &str) -> Result<()> {
-    match scene.surface.specular {
-        None => Ok(()),
-        Some(_) => Err(Error::setting(
-            format!("--specular with {what}"),
-            "Phong specular",
-            "none: the ground truth is diffuse; `reference` and `compare` take specular",
-        )),
-    }
+/// Refuses specular that is lit by harmonics, or beside bounces, where settings are compared with exact light.
+pub fn check_choice(scene: &Scene, bounces: u32, what: &str) -> Result<()> {
+    let found = match scene.surface.specular {
+        Some(Specular::Map(_)) => "a map of specular",
+        Some(Specular::Constant(_)) if bounces > 0 => "specular with bounces",
+        _ => return Ok(()),
+    };
+    let expected =
+        "one exponent and scale, without --bounces: the rest is only an approximation by harmonics";
+    Err(Error::setting(format!("--specular with {what}"), found, expected))
 }
 
 /// Reports what no device can plan, before a device is opened.

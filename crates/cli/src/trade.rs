@@ -55,9 +55,8 @@ pub fn run(args: &TradeArgs) -> Result<Outcome> {
         setup::Unlit::Daylight(None),
         args.global.quiet,
     )?;
-    if args.reference.is_none() && scene.surface.specular.is_some() {
-        let expected = "--reference: only a path-traced reference has specular light";
-        return Err(Error::setting("--specular with trade", "Phong specular", expected));
+    if args.reference.is_none() {
+        setup::check_choice(&scene, args.bounces, "trade without --reference")?;
     }
     if args.bounces > 0 && args.reference.is_none() {
         let expected = "--reference with as many bounces: only a path-traced reference has them";

@@ -87,7 +87,7 @@ const ENTRIES: [Entry; 12] = [
     Entry {
         name: "hillshade",
         title: "Hillshade, and Ridgelight",
-        about: "Left: a hillshade, the cosine to the sun, without shadows and sky. Right: the default of Ridgelight, plain ground.",
+        about: "Left: a hillshade by Horn's slopes, the cosine to the sun, without shadows and sky; `cargo xtask gallery` adds it. Right: the default of Ridgelight, plain ground.",
         made: None,
         command: "render FIELD --tint none",
         shown: Shown::BesideHillshade,
@@ -95,7 +95,7 @@ const ENTRIES: [Entry; 12] = [
     Entry {
         name: "horizons",
         title: "Horizon map",
-        about: "The hue is the direction of the highest horizon, the brightness its elevation up to 30 degrees.",
+        about: "The command writes elevations; `cargo xtask gallery` colours them. The hue is the direction of the highest horizon, the brightness its elevation up to 30 degrees.",
         made: None,
         command: "horizon FIELD --azimuths 64",
         shown: Shown::Wheel,
@@ -135,7 +135,7 @@ const ENTRIES: [Entry; 12] = [
     Entry {
         name: "waves",
         title: "Animated waves",
-        about: "Synthetic. Four frames, half a second apart, of heights that change every frame.",
+        about: "Synthetic. Four frames, half a second apart, of heights that change every frame; the command draws the first.",
         made: Some(("waves", 256)),
         command: "render FIELD --albedo 0.1,0.2,0.25 --sun 315,14,0.53,4 --sky 0.5,0.6,0.7 --exposure 1.6",
         shown: Shown::Frames,
@@ -185,8 +185,8 @@ pub fn run(mut args: Args) -> Outcome {
     std::fs::create_dir_all(&scratch)?;
     std::fs::create_dir_all(FOLDER)?;
     let mut page = "# Gallery\\n\\nEach picture is of one command line; `cargo xtask gallery` makes them again. The mountain is \
-        real: Mt Washington,\\n256 x 256 grid points (SRTM). Other terrains are synthetic, and `cargo measure field NAME SIDE \
-        FILE.npy` writes them.\\nTimes are GPU time of all passes.\\n"
+        real: Mt Washington,\\n256 x 256 grid points (SRTM). Other terrains are synthetic; `cargo measure field` writes \
+        them.\\nTimes are GPU time of all passes.\\n"
         .replace("\\n", "\n");
     let mut device = String::new();
     for entry in &ENTRIES {
@@ -217,10 +217,13 @@ pub fn run(mut args: Args) -> Outcome {
         let ending = if matches!(entry.shown, Shown::Wheel) { "npy" } else { "png" };
         let words = command.join(" ").replace("from 150 up 20", "\"from 150 up 20\"");
         let words = words.replace("from 230 up 25", "\"from 230 up 25\"");
-        let Entry { name, title, about, .. } = entry;
+        let Entry { name, title, about, made, .. } = entry;
+        let made = made.map_or_else(String::new, |(of, side)| {
+            format!("cargo measure field {of} {side} out/gallery/{of}.npy\n")
+        });
         page += &format!(
             "\n## {title}\n\n![{title}]({name}.jpg)\n\n{about} {ms:.0} ms.\n\n\
-             ```sh\nridgelight {words} -o {name}.{ending}\n```\n"
+             ```sh\n{made}ridgelight {words} -o {name}.{ending}\n```\n"
         );
         println!("{name}: {ms:.0} ms");
     }

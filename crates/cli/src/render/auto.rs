@@ -7,6 +7,7 @@ use ridgelight::Result;
 use ridgelight::gpu::{Headless, Timing};
 use ridgelight::plan::{self, Limits, Picture};
 use ridgelight::scene::{Hull, Quality, Scene};
+use ridgelight_cpu::lit::Lit;
 use ridgelight_trade::auto;
 use ridgelight_trade::auto::{Bounced, Chosen, Drawn, Goal, Measured, Probes, Traced, Trial};
 
@@ -55,7 +56,8 @@ pub fn choose(
 ) -> Result<Chosen> {
     let contents = plan::picture_inputs(scene);
     let mut drawn = 0;
-    let probes = (Probes::affordable(scene), u64::from(seed));
+    let lit = Lit::of(scene).viewed_from(wanted.eye_m);
+    let probes = (Probes::affordable(&lit), u64::from(seed));
     let gpu = RefCell::new(gpu);
     let mut trace = |places: &[usize], batches: u32, seed: u32| {
         let paths = batches * plan::REFERENCE_BATCH;
@@ -63,7 +65,7 @@ pub fn choose(
         trace(&mut gpu.borrow_mut(), limits, (scene, bounces), places, (batches, seed))
     };
     let bounced = (bounces > 0).then_some(Bounced { count: bounces, trace: &mut trace });
-    let mut chosen = auto::choose(scene, goal, probes, bounced, |quality| {
+    let mut chosen = auto::choose(&lit, goal, probes, bounced, |quality| {
         drawn += 1;
         bar.set_message(format!("choosing settings, {drawn}: {}", flags(quality, scene)));
         let quality = Quality { hull, ..*quality };

@@ -329,7 +329,7 @@ fn gpu_trade_against_a_reference() {
 }
 
 /// Per-texel specular with two bounces, against path tracing: the walk covers SH orders and storage of specular light, and
-/// leaves out settings that specular refuses. Without such a ground truth, specular is refused.
+/// leaves out settings that specular refuses. Without such a ground truth they are refused.
 #[test]
 fn gpu_trade_takes_specular() {
     let folder = Folder::new();
@@ -345,7 +345,7 @@ fn gpu_trade_takes_specular() {
     let run = folder.run_str(&bare);
     assert_eq!(run.status, Some(2), "{}", run.err);
     assert!(
-        run.err.contains("--specular with trade: found Phong specular, expected --reference"),
+        run.err.contains("--specular with trade without --reference: found a map of specular"),
         "{}",
         run.err
     );
@@ -367,6 +367,19 @@ fn gpu_trade_takes_specular() {
     let count = exact.expect("a reason")["count"].as_u64().unwrap();
     // Azimuths, sun slices, bounces, SH order and specular storage: each step is tried with all or none.
     assert!(count > 0 && count % (6 * 6 * 5 * 3 * 4) == 0, "{count}");
+}
+
+/// One exponent and scale without bounces needs no reference: the ground truth that is drawn has lobes, as probes confirm.
+#[test]
+fn gpu_trade_draws_the_ground_truth_of_specular() {
+    let folder = Folder::new();
+    write_peaks(&folder);
+    let scene = "--sky 1 --albedo 0.5 --specular 20,0.4";
+    succeeded(&folder, &format!("trade field.npy -o out --evaluations 3 {scene}"));
+    let report = json(&folder.path("out/trade.json"));
+    let own = report["ground_truth"]["own_relative_rmse"].as_f64().expect("its error");
+    // Without lobes the probes would find 0.4 / 0.9 of all light missing.
+    assert!(0.0 < own && own < 0.02, "{own}");
 }
 
 /// Peaks and their ground truth with two bounces; returns the flags of that scene.

@@ -7,6 +7,7 @@
 //! A cos²ω + B sin ω cos ω: see [`slice()`]. A Phong lobe has its own: see [`Receiver`].
 
 use crate::Rgb;
+use crate::mirror_map::mirrored;
 use crate::oracle::Oracle;
 use glam::DVec3;
 pub use ridgelight::basis::light::slice;
@@ -41,9 +42,14 @@ impl Receiver {
         Self { normal, phong_lobe: None }
     }
 
-    /// A lobe of unit integral about the mirror direction of the zenith, the map view's: r = 2 N_z N - z.
+    /// A lobe of unit integral about the mirror direction of the zenith, the map view's.
     pub fn specular_from_above(normal: DVec3, exponent: f64) -> Self {
-        Self { normal, phong_lobe: Some((2.0 * normal.z * normal - DVec3::Z, exponent)) }
+        Self::specular(normal, DVec3::Z, exponent)
+    }
+
+    /// The same about the mirror direction of a unit `view`, towards the eye.
+    pub fn specular(normal: DVec3, view: DVec3, exponent: f64) -> Self {
+        Self { normal, phong_lobe: Some((mirrored(normal, view), exponent)) }
     }
 
     /// The receiver's share in one azimuth.
@@ -80,7 +86,12 @@ impl Slice {
         if elevation_rad <= self.low {
             return 0.0;
         }
-        let cosine = (self.a * elevation_rad.cos() + self.b * elevation_rad.sin()).max(0.0);
+        self.towards(elevation_rad.cos(), elevation_rad.sin())
+    }
+
+    /// The same of a direction by the cosine and the sine of its elevation, above `low`.
+    pub(crate) fn towards(&self, cos: f64, sin: f64) -> f64 {
+        let cosine = (self.a * cos + self.b * sin).max(0.0);
         match self.exponent {
             // 0 to the power of 0 would be light from behind.
             Some(n) if cosine > 0.0 => 0.5 * (n + 1.0) * cosine.powf(n),
@@ -88,11 +99,22 @@ impl Slice {
         }
     }
 
+    /// Elevations at which the lobe is not negligible. Beyond the cosine c lies cⁿ⁺¹ of it. a cos ω + b sin ω is
+    /// √(a² + b²) cos(ω - ω_0).
+    pub(crate) fn lobe(&self, exponent: f64) -> [f64; 2] {
+        let least = LOBE.powf(1.0 / (exponent + 1.0));
+        let across = (least / self.a.hypot(self.b)).min(1.0).acos();
+        let middle = self.b.atan2(self.a);
+        [middle - across, middle + across]
+    }
+
     /// π times the weights' integral over elevations; the lobe's by Gauss' rule of 4 points in panels
-    /// half as wide as the lobe, 1/√(n + 1).
+    /// half as wide as the lobe, 1/√(n + 1), within [`LOBE`].
     pub(crate) fn light(&self, low: f64, high: f64) -> f64 {
         let low = low.max(self.low);
         let Some(n) = self.exponent else { return slice(self.a, self.b, low, high) };
+        let [least, most] = self.lobe(n);
+        let (low, high) = (low.max(least), high.min(most));
         if high <= low {
             return 0.0;
         }
@@ -104,6 +126,9 @@ impl Slice {
             .sum()
     }
 }
+
+/// Share of a lobe that is left out, about its rim.
+const LOBE: f64 = 1e-10;
 
 /// Nodes and weights of Gauss' rule of 4 points on [-1, 1]: x² = 3/7 ± (2/7)√(6/5), w = (18 ± √30)/36.
 const GAUSS_4: [(f64, f64); 4] = [
@@ -127,9 +152,7 @@ pub(crate) fn lit(
 ///
 /// Azimuths are φ_k = 2πk/m. The sky continues below horizontal where the border is `open`.
 pub fn sky_of(oracle: &Oracle, row: usize, col: usize, azimuths: usize) -> f64 {
-    let m = azimuths.max(1);
-    let all = (0..m).map(|k| (TAU * k as f64 / m as f64, 1.0, [-FRAC_PI_2, FRAC_PI_2]));
-    2.0 / m as f64 * Site::of(oracle, [row, col], &diffuse_at(oracle, row, col)).sums(all)[0]
+    Site::of(oracle, [row, col], &diffuse_at(oracle, row, col)).sky(azimuths)[0]
 }
 
 /// Exit radiance under an environment, linear RGB: [`Site::environment`] with at least [`ENVIRONMENT_STRIPS`] azimuths.
@@ -179,6 +202,13 @@ impl<'a> Site<'a> {
             }
         }
         sums
+    }
+
+    /// Light of a uniform sky of radiance 1: see [`sky_of`].
+    pub fn sky(&self, azimuths: usize) -> Vec<f64> {
+        let m = azimuths.max(1);
+        let all = (0..m).map(|k| (TAU * k as f64 / m as f64, 1.0, [-FRAC_PI_2, FRAC_PI_2]));
+        self.sums(all).iter().map(|sum| 2.0 / m as f64 * sum).collect()
     }
 
     /// Light of a key light of radiance 1: `strips` azimuths in the middles of equal parts of the light.

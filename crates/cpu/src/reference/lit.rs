@@ -1,9 +1,10 @@
 //! All direct light at single grid points of a scene, in f64: the reference for images.
 
 use crate::Rgb;
-use crate::light::{self, ENVIRONMENT_STRIPS};
+use crate::light::{self, ENVIRONMENT_STRIPS, Receiver, Site};
 use crate::oracle::Oracle;
-use crate::sphere::sphere_of;
+use crate::sphere::strips_of;
+use glam::DVec3;
 use ridgelight::scene::{Environment, KeyLight, NearLight, Scene};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -17,6 +18,7 @@ const SHARED: f64 = 1024.0;
 #[derive(Clone, Debug)]
 pub struct Lit<'a> {
     scene: &'a Scene,
+    eye_m: Option<DVec3>,
     oracle: Oracle<'a>,
     columns: Option<Columns<'a>>,
     azimuths: usize,
@@ -29,7 +31,12 @@ impl<'a> Lit<'a> {
         let oracle = Oracle::new(&scene.field, scene.surface.border);
         let rows = |e: &Environment| e.rows_above_ground(scene.surface.border);
         let columns = scene.lights.environment.as_ref().map(|e| Columns::of(e, rows(e)));
-        Self { scene, oracle, columns, azimuths: AZIMUTHS, strips: STRIPS }
+        Self { scene, eye_m: None, oracle, columns, azimuths: AZIMUTHS, strips: STRIPS }
+    }
+
+    /// Specular viewed from [`Picture::eye_m`](ridgelight::plan::Picture::eye_m).
+    pub fn viewed_from(self, eye_m: Option<[f64; 3]>) -> Self {
+        Self { eye_m: eye_m.map(DVec3::from_array), ..self }
     }
 
     /// The same with half of all rays: the difference estimates the error of the rays in between.
@@ -41,36 +48,84 @@ impl<'a> Lit<'a> {
         self
     }
 
+    /// The scene.
+    pub fn scene(&self) -> &'a Scene {
+        self.scene
+    }
+
     /// Rays of one grid point.
     pub fn rays(&self) -> usize {
         let lights = &self.scene.lights;
-        let sky = if lights.sky.is_some() { self.azimuths } else { 0 };
-        let environment = self.columns.as_ref().map_or(0, |c| c.parts.iter().sum());
         let keys: usize = lights.keys.iter().map(|k| self.key_strips(k)).sum();
-        sky + environment + (lights.suns.len() + lights.near().count()) * self.strips + keys
+        let strips = (lights.suns.len() + lights.near().count()) * self.strips + keys;
+        self.sky_rays() + self.environment_rays() + strips
     }
 
-    /// Exit radiance of a grid point including its albedo, linear RGB.
+    /// Directions of one grid point in which a lobe is evaluated, about.
+    pub fn lobe_points(&self) -> usize {
+        let Some(specular) = &self.scene.surface.specular else { return 0 };
+        let exponent = f64::from(specular.largest().exponent);
+        let in_sky = 4.0 * (TAU * (exponent + 1.0).sqrt()).ceil();
+        let rows = self.columns.as_ref().map_or(0, |columns| columns.rows);
+        self.sky_rays() * in_sky as usize + self.environment_rays() * 2 * rows
+    }
+
+    fn sky_rays(&self) -> usize {
+        if self.scene.lights.sky.is_some() { self.azimuths } else { 0 }
+    }
+
+    fn environment_rays(&self) -> usize {
+        self.columns.as_ref().map_or(0, |columns| columns.parts.iter().sum())
+    }
+
+    /// Exit radiance of a grid point including its albedo and specular, linear RGB.
     pub fn at(&self, row: usize, col: usize) -> Rgb {
         let (lights, oracle) = (&self.scene.lights, &self.oracle);
-        let sky = lights.sky.map(|colour| {
-            let share = light::sky_of(oracle, row, col, self.azimuths);
-            colour.map(|c| f64::from(c) * share)
-        });
-        let environment = self.columns.as_ref().map(|c| c.light(oracle, row, col));
-        let suns = lights.suns.iter().map(|s| light::sun_of(oracle, row, col, s, self.strips));
-        let keys =
-            lights.keys.iter().map(|k| light::key_of(oracle, row, col, k, self.key_strips(k)));
-        let near = lights.near().map(|NearLight { sphere, .. }| {
-            let share = sphere_of(oracle, row, col, &sphere, self.strips);
-            sphere.radiance.map(|c| f64::from(c) * share)
-        });
-        let albedo = light::albedo_at(&self.scene.surface, row * self.scene.field.cols() + col);
+        let (place, index) = ([row, col], row * self.scene.field.cols() + col);
+        let [diffuse] = light::diffuse_at(oracle, row, col);
+        let mut receivers = vec![(diffuse, light::albedo_at(&self.scene.surface, index))];
+        let specular = self.scene.surface.specular.as_ref().map(|specular| specular.at(index));
+        if let Some(phong) = specular.filter(|phong| phong.scale > 0.0) {
+            let lobe = Receiver::specular(diffuse.normal, self.view(place), phong.exponent.into());
+            receivers.push((lobe, [f64::from(phong.scale); 3]));
+        }
         let mut all = [0.0; 3];
-        for light in sky.into_iter().chain(environment).chain(suns).chain(keys).chain(near) {
-            (0..3).for_each(|c| all[c] += light[c] * albedo[c]);
+        let (receivers, scales): (Vec<_>, Vec<_>) = receivers.into_iter().unzip();
+        let site = Site::of(oracle, place, &receivers);
+        let mut add = |light: Vec<Rgb>| {
+            for (light, scale) in light.iter().zip(&scales) {
+                (0..3).for_each(|c| all[c] += light[c] * scale[c]);
+            }
+        };
+        let coloured = |shares: Vec<f64>, colour: [f32; 3]| {
+            shares.into_iter().map(|share| colour.map(|c| f64::from(c) * share)).collect()
+        };
+        if let Some(colour) = lights.sky {
+            add(coloured(site.sky(self.azimuths), colour));
+        }
+        if let Some(columns) = &self.columns {
+            add(columns.light(site));
+        }
+        lights.suns.iter().for_each(|sun| add(site.sun(sun, self.strips)));
+        for key in &lights.keys {
+            add(coloured(site.key(key, self.key_strips(key)), key.radiance));
+        }
+        for NearLight { sphere, .. } in lights.near() {
+            let strips = strips_of(oracle.field(), place, &sphere, self.strips);
+            add(coloured(site.sphere(&sphere, strips), sphere.radiance));
         }
         all
+    }
+
+    /// The direction from a grid point towards the eye.
+    fn view(&self, [row, col]: [usize; 2]) -> DVec3 {
+        let field = &self.scene.field;
+        let [cell_x, cell_y] = field.cell_m();
+        let height = f64::from(field.heights_m()[row * field.cols() + col]) + field.base_m();
+        let north = (field.rows() - 1 - row) as f64;
+        let at = DVec3::new(col as f64 * cell_x, north * cell_y, height);
+        // An eye at a grid point views it from above.
+        self.eye_m.map_or(DVec3::Z, |eye| (eye - at).normalize_or(DVec3::Z))
     }
 
     /// Azimuths across a key light.
@@ -92,7 +147,12 @@ struct Columns<'a> {
     sums: Vec<[[f32; 3]; 2]>,
     /// Azimuths of each.
     parts: Vec<usize>,
+    /// Of each row of texels the two points of Gauss' rule: cosine and sine of the elevation, weight times cosine.
+    points: Vec<[[f64; 3]; 2]>,
 }
+
+/// Texels so much of a lobe's width 1/√(n + 1) wide take Gauss' rule of two points, whose error is h⁴ / 4320 of their light.
+const NARROW: f64 = 0.125;
 
 impl<'a> Columns<'a> {
     fn of(environment: &'a Environment, rows: usize) -> Self {
@@ -121,33 +181,62 @@ impl<'a> Columns<'a> {
         let all = given.iter().sum::<f64>().max(f64::MIN_POSITIVE);
         let least = ENVIRONMENT_STRIPS.div_ceil(width);
         let parts = given.iter().map(|g| least.max((SHARED * g / all).round() as usize)).collect();
-        Self { environment, rows, sums, parts }
+        let half = 0.5 * PI / height as f64;
+        let point = |row: usize, x: f64| {
+            let (sin, cos) = (elevation(row) - half * (1.0 + x / 3.0_f64.sqrt())).sin_cos();
+            [cos, sin, half * cos]
+        };
+        let points = (0..rows).map(|row| [-1.0, 1.0].map(|x| point(row, x))).collect();
+        Self { environment, rows, sums, parts, points }
     }
 
-    /// Exit radiance of a white diffuse grid point, linear RGB: in each column's azimuths at the centres of equal
-    /// parts of it, clipped at the horizon exactly.
-    fn light(&self, oracle: &Oracle, row: usize, col: usize) -> Rgb {
+    /// Light of each receiver at a grid point, linear RGB: in each column's azimuths at the centres of equal parts of
+    /// it, clipped at the horizon exactly. A lobe has its own weight in each texel.
+    fn light(&self, site: Site<'_>) -> Vec<Rgb> {
         let (width, height) = (self.environment.width(), self.environment.height());
-        let [receiver] = light::diffuse_at(oracle, row, col);
-        let mut all = [0.0; 3];
+        let [row, col] = site.place;
+        let texels = self.environment.texels();
+        let elevation = |row: usize| FRAC_PI_2 - PI * row as f64 / height as f64;
+        let row_of = |elevation: f64| (FRAC_PI_2 - elevation) / PI * height as f64;
+        let mut all = vec![[0.0; 3]; site.receivers.len()];
         for (column, &parts) in self.parts.iter().enumerate() {
             let weight = 2.0 / (width * parts) as f64;
             for part in 0..parts {
                 let across = column as f64 + (part as f64 + 0.5) / parts as f64;
                 let azimuth = PI - TAU * across / width as f64 + self.environment.rotation_rad();
-                let lit = light::lit(oracle, [row, col], receiver, azimuth);
-                let low = ((FRAC_PI_2 - lit.low) / PI * height as f64).max(0.0);
-                let above = (low as usize).min(self.rows);
-                let [a, b] = self.sums[column * (self.rows + 1) + above];
-                let cut = if above < self.rows {
-                    lit.light(lit.low, FRAC_PI_2 - PI * above as f64 / height as f64)
-                } else {
-                    0.0
-                };
-                let texel = self.environment.texels()[above.min(self.rows - 1) * width + column];
-                for (c, sum) in all.iter_mut().enumerate() {
-                    let whole = lit.a * f64::from(a[c]) + lit.b * f64::from(b[c]);
-                    *sum += weight * (whole + f64::from(texel[c]) * cut);
+                let horizon = site.oracle.elevation_rad(row, col, azimuth);
+                for (receiver, all) in site.receivers.iter().zip(&mut all) {
+                    let lit = receiver.slice(azimuth).above(horizon);
+                    let mut add = |light: f64, texel: [f32; 3]| {
+                        (0..3).for_each(|c| all[c] += weight * light * f64::from(texel[c]));
+                    };
+                    if let Some((_, exponent)) = receiver.phong_lobe {
+                        let [low, high] = lit.lobe(exponent);
+                        let is_narrow = PI / height as f64 * (exponent + 1.0).sqrt() <= NARROW;
+                        let first = row_of(high).max(0.0) as usize;
+                        let end =
+                            (row_of(low.max(lit.low)).max(0.0).ceil() as usize).min(self.rows);
+                        for row in first..end {
+                            let [bottom, top] = [row + 1, row].map(elevation);
+                            let points = self.points[row].iter();
+                            let light = match is_narrow && bottom >= lit.low {
+                                true => {
+                                    points.map(|[cos, sin, w]| w * lit.towards(*cos, *sin)).sum()
+                                }
+                                false => lit.light(bottom, top),
+                            };
+                            add(light, texels[row * width + column]);
+                        }
+                        continue;
+                    }
+                    let above = (row_of(lit.low).max(0.0) as usize).min(self.rows);
+                    let [a, b] = self.sums[column * (self.rows + 1) + above];
+                    add(lit.a, a);
+                    add(lit.b, b);
+                    if above < self.rows {
+                        let cut = lit.light(lit.low, elevation(above));
+                        add(cut, texels[above * width + column]);
+                    }
                 }
             }
         }
@@ -158,8 +247,9 @@ impl<'a> Columns<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::light::Site;
-    use ridgelight::scene::{Border, HeightField, Lights, Surface};
+    use ridgelight::scene::{
+        Albedo, Border, HeightField, Lights, PhongSpecular, Specular, Sun, Surface,
+    };
 
     const SIDE: usize = 9;
 
@@ -176,7 +266,9 @@ mod tests {
     /// is equal but for f32's rounding of the sums. Odd heights cut the row at the horizon.
     #[test]
     fn columns_give_the_light_of_their_texels() {
-        for (border, height) in [(Border::Plane, 7), (Border::Open, 6), (Border::Periodic, 8)] {
+        let narrow = (Border::Open, 128);
+        let wide = [(Border::Plane, 7), (Border::Open, 6), (Border::Periodic, 8)];
+        for (border, height) in wide.into_iter().chain([narrow]) {
             let texel = |i: usize| [(i / 16) as f32 + 0.5, 2.0, (i / 16 % 3) as f32];
             let texels = (0..16 * height).map(texel).collect();
             let environment = Environment::new(16, height, texels, 0.4).unwrap();
@@ -191,7 +283,62 @@ mod tests {
                     assert!((got - want).abs() < 1e-6 * (1.0 + want), "{got} {want}");
                 }
             }
+            // Lobes, too: by the same rule over each texel, or by two points of narrow ones.
+            let scene = specular(scene, PhongSpecular { exponent: 20.0, scale: 0.5 });
+            let [lit, dull] = [&scene, &specular(scene.clone(), DULL)].map(|s| Lit::of(s).at(4, 4));
+            let oracle = Oracle::new(&scene.field, border);
+            let normal = light::normal(&scene.field, border, 4, 4);
+            let lobe = [Receiver::specular_from_above(normal, 20.0)];
+            let all = Site::of(&oracle, [4, 4], &lobe).environment(&environment, 64);
+            for c in 0..3 {
+                let (got, want) = (lit[c] - dull[c], 0.5 * all[0][c]);
+                let most = if height == 128 { NARROW.powi(4) / 4320.0 } else { 1e-9 };
+                assert!((got - want).abs() < most * (1.0 + want), "{got} {want}");
+            }
         }
+    }
+
+    const DULL: PhongSpecular = PhongSpecular { exponent: 20.0, scale: 0.0 };
+
+    fn specular(scene: Scene, phong: PhongSpecular) -> Scene {
+        let specular = Some(Specular::Constant(phong));
+        Scene { surface: Surface { specular, ..scene.surface }, ..scene }
+    }
+
+    /// Level ground under a uniform sky. From above a lobe has all of its light above it. A lobe of exponent 1 about a
+    /// direction θ from the zenith is the weight of a diffuse plane of that slope: (1 + cos θ) / 2 of the sky is above
+    /// ground. A sun in the mirror direction gives (n + 1) / 2π of its irradiance.
+    #[test]
+    fn lobes_over_level_ground_have_their_share_of_the_sky() {
+        let field = HeightField::new(SIDE, SIDE, &[2.0; SIDE * SIDE], [1.0; 2], None).unwrap();
+        let level = |lights: Lights, exponent: f32| {
+            let surface = Surface { albedo: Albedo::Constant([0.5; 3]), ..Surface::default() };
+            let scene = Scene { field: field.clone(), surface, lights };
+            specular(scene, PhongSpecular { exponent, scale: 0.25 })
+        };
+        let sky = || Lights { sky: Some([1.0; 3]), ..Lights::default() };
+        for exponent in [1.0, 20.0, 300.0] {
+            let scene = level(sky(), exponent);
+            let got = Lit::of(&scene).at(4, 4)[0];
+            assert!((got - 0.75).abs() < 1e-6, "{exponent}: {got}");
+        }
+        let scene = level(sky(), 1.0);
+        // From a point to the west of the middle, 60° off the zenith.
+        let away = 3.0_f64.sqrt();
+        let lit = Lit::of(&scene).viewed_from(Some([4.0 - away, 4.0, 2.0 + 1.0]));
+        let got = lit.at(4, 4)[0];
+        assert!((got - (0.5 + 0.25 * 0.75)).abs() < 1e-5, "{got}");
+        // Mirrored to the east, 30° above the horizon.
+        let sun = Sun {
+            azimuth_rad: 0.0,
+            elevation_rad: 30_f64.to_radians(),
+            diameter_rad: 0.0,
+            irradiance: [2.0; 3],
+        };
+        let scene = level(Lights { suns: vec![sun], ..Lights::default() }, 9.0);
+        let lit = Lit::of(&scene).viewed_from(Some([4.0 - away, 4.0, 2.0 + 1.0]));
+        let (got, want) = (lit.at(4, 4)[0], 2.0 * (0.5 * 0.5 / PI + 0.25 * 10.0 / TAU));
+        assert!((got - want).abs() < 1e-6, "{got} {want}");
     }
 
     /// Nearly all light comes of one column of 16: it has nearly all the azimuths that are shared out, and

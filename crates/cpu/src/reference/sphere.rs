@@ -8,7 +8,7 @@ use crate::light::{Site, diffuse_at};
 use crate::oracle::Oracle;
 use crate::profile::VisibleInterval;
 use crate::shared::field::towards_m;
-use ridgelight::scene::SphereLight;
+use ridgelight::scene::{HeightField, SphereLight};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 impl Site<'_> {
@@ -61,10 +61,20 @@ pub fn sphere_of(
     sphere: &SphereLight,
     strips: usize,
 ) -> f64 {
-    let [east, north] = towards_m(oracle.field(), row, col, sphere);
-    let is_narrow = east.hypot(north) > 2.0 * sphere.radius_m;
-    let strips = if is_narrow { strips } else { 4 * strips };
+    let strips = strips_of(oracle.field(), [row, col], sphere, strips);
     Site::of(oracle, [row, col], &diffuse_at(oracle, row, col)).sphere(sphere, strips)[0]
+}
+
+/// Azimuths across a sphere light, or four times as many where it is wide.
+pub(crate) fn strips_of(
+    field: &HeightField,
+    [row, col]: [usize; 2],
+    sphere: &SphereLight,
+    strips: usize,
+) -> usize {
+    let [east, north] = towards_m(field, row, col, sphere);
+    let is_narrow = east.hypot(north) > 2.0 * sphere.radius_m;
+    if is_narrow { strips } else { 4 * strips }
 }
 
 /// The sphere's cut with a vertical plane through the grid point, which is the origin.

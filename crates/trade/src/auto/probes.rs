@@ -10,6 +10,8 @@ const MIN_PROBES: usize = 64;
 const MOST: usize = 1000;
 /// Cells that the oracle's rays may cross: some seconds of one core.
 const CELLS: usize = 1 << 29;
+/// A direction in which a lobe is evaluated takes as long as so many cells.
+const POINT_CELLS: usize = 8;
 /// Probes that measure the oracle's own error.
 const SELF_PROBES: usize = 64;
 /// Radius about a difference of pictures, in texels, within which other settings' errors are
@@ -91,8 +93,8 @@ impl Probes {
     ///
     /// # Errors
     /// A field of voids only.
-    pub fn of(scene: &Scene, wanted: usize, seed: u64, unsure: &[f64]) -> Result<Self> {
-        let field = &scene.field;
+    pub fn of(lit: &Lit<'_>, wanted: usize, seed: u64, unsure: &[f64]) -> Result<Self> {
+        let field = &lit.scene().field;
         let known: Vec<usize> = (0..field.rows() * field.cols())
             .filter(|i| field.voids().is_none_or(|v| !v[*i]))
             .collect();
@@ -103,11 +105,10 @@ impl Probes {
             known.iter().map(|i| unsure.get(*i).copied().unwrap_or(0.0)).collect();
         let (picks, factors) = picks(&weights, wanted, seed);
         let places: Vec<usize> = picks.into_iter().map(|k| known[k]).collect();
-        let lit = Lit::of(scene);
-        let light = lights(&lit, field.cols(), &places);
+        let light = lights(lit, field.cols(), &places);
         let stride = places.len().div_ceil(SELF_PROBES);
         let some: Vec<usize> = places.iter().copied().step_by(stride).collect();
-        let halves = lights(&lit.halved(), field.cols(), &some);
+        let halves = lights(&lit.clone().halved(), field.cols(), &some);
         let squares = halves.iter().enumerate().map(|(i, half)| {
             let whole = light[i * stride];
             let square: f64 = half.iter().zip(whole).map(|(h, w)| (h - w).powi(2) / 3.0).sum();
@@ -180,11 +181,13 @@ impl Probes {
     }
 
     /// Number of probes for some seconds of one core: 64 to 1000, fewer for larger fields.
-    pub fn affordable(scene: &Scene) -> usize {
+    pub fn affordable(lit: &Lit<'_>) -> usize {
+        let scene = lit.scene();
         let side = scene.field.rows().max(scene.field.cols());
         // Rays over a periodic field may continue through that many periods.
         let periods = if scene.surface.border == Border::Periodic { PERIOD_CAP } else { 1 };
-        (CELLS / (Lit::of(scene).rays() * side * periods).max(1)).clamp(MIN_PROBES, MOST)
+        let cells = lit.rays() * side * periods + POINT_CELLS * lit.lobe_points();
+        (CELLS / cells.max(1)).clamp(MIN_PROBES, MOST)
     }
 
     /// The oracle's own error, over the mean radiance.

@@ -47,7 +47,7 @@ fn error(probes: &Probes, picture: &[Vec<f32>], control: Option<&[Vec<f32>]>) ->
 }
 
 fn whole(scene: &Scene) -> Probes {
-    Probes::of(scene, SIDE * SIDE, 7, &[]).unwrap()
+    Probes::of(&Lit::of(scene), SIDE * SIDE, 7, &[]).unwrap()
 }
 
 fn full() -> Error {
@@ -56,7 +56,7 @@ fn full() -> Error {
 
 fn chosen(goal: Goal) -> Result<Chosen> {
     let scene = scene();
-    choose(&scene, goal, WHOLE, None, |quality| draw(&scene, quality))
+    choose(&Lit::of(&scene), goal, WHOLE, None, |quality| draw(&scene, quality))
 }
 
 /// With every texel as a probe nothing is random: the choice reaches the goal, and half of its
@@ -95,7 +95,7 @@ fn unreachable_goals_are_refused() {
         assert!(matches!(chosen(goal).unwrap_err(), Error::Setting { .. }));
     }
     // A device's own refusal is not one of settings.
-    let broken = choose(&scene(), Goal::MaxError(0.1), WHOLE, None, |_| {
+    let broken = choose(&Lit::of(&scene()), Goal::MaxError(0.1), WHOLE, None, |_| {
         Err(Error::Device { doing: "drawing".into(), reason: "lost".into() })
     });
     assert!(broken.unwrap_err().to_string().contains("lost"));
@@ -109,7 +109,7 @@ fn a_time_budget_is_kept() {
     assert!(found.trial.ns <= 20e6);
     assert_eq!(found.trial.quality.azimuths, 16, "{found:?}");
     let scene = scene();
-    let small = choose(&scene, Goal::MaxCost(20e6), WHOLE, None, |quality| {
+    let small = choose(&Lit::of(&scene), Goal::MaxCost(20e6), WHOLE, None, |quality| {
         if quality.azimuths > 12 { Err(full()) } else { draw(&scene, quality) }
     });
     assert_eq!(small.unwrap().trial.quality.azimuths, 12);
@@ -158,7 +158,7 @@ fn costs_have_an_overhead() {
 #[test]
 fn search_limits_and_bounds_are_reported() {
     let scene = scene();
-    let slow = choose(&scene, Goal::MaxError(3e-5), WHOLE, None, |quality| {
+    let slow = choose(&Lit::of(&scene), Goal::MaxError(3e-5), WHOLE, None, |quality| {
         let mut drawn = draw(&scene, quality)?;
         drawn.passes[0].1 *= 1e3;
         Ok(drawn)
@@ -166,7 +166,7 @@ fn search_limits_and_bounds_are_reported() {
     assert!(slow.unwrap_err().to_string().contains("take more than 30 s"));
     for (probes, confidence) in [(40, None), (SIDE * SIDE, Some(Probes::CONFIDENCE))] {
         let mut frames = 0;
-        let found = choose(&scene, Goal::MaxError(0.1), (probes, 7), None, |quality| {
+        let found = choose(&Lit::of(&scene), Goal::MaxError(0.1), (probes, 7), None, |quality| {
             frames += 1;
             if frames == 2 { Err(full()) } else { draw(&scene, quality) }
         });
@@ -207,7 +207,7 @@ fn bounds_hold_at_the_stated_confidence() {
     let most = 0.01;
     let [mut held, mut bare, mut chosen] = [0_u64; 3];
     for seed in 0..SEEDS {
-        let found = choose(&scene, Goal::MaxError(most), (64, seed), None, |quality| {
+        let found = choose(&Lit::of(&scene), Goal::MaxError(most), (64, seed), None, |quality| {
             let ns = 1e6 * f64::from(quality.sun_azimuths);
             let passes = vec![("sun_shade".to_owned(), ns)];
             Ok(Drawn { planes: vec![picture(quality)], passes })
@@ -237,7 +237,7 @@ fn exact_horizons_are_the_last_resort() {
     let scene = scene();
     let is_exact = |q: &Quality| q.method == Method::BruteForce || q.lines == Lines::Exact;
     let mut rendered = Vec::new();
-    let found = choose(&scene, Goal::MaxError(0.02), WHOLE, None, |quality| {
+    let found = choose(&Lit::of(&scene), Goal::MaxError(0.02), WHOLE, None, |quality| {
         let mut drawn = draw(&scene, quality)?;
         // Exact ones are a hundred times slower: only their accuracy is in their favour.
         drawn.passes[0].1 *= if is_exact(quality) { 100.0 } else { 1.0 };
@@ -260,7 +260,7 @@ fn errors_unrelated_to_settings_are_returned() {
         needs: "longer images".into(),
         limit: "8".into(),
     };
-    let refused = choose(&scene(), Goal::MaxError(0.1), WHOLE, None, |_| Err(too_long()));
+    let refused = choose(&Lit::of(&scene()), Goal::MaxError(0.1), WHOLE, None, |_| Err(too_long()));
     assert_eq!(refused.unwrap_err().to_string(), too_long().to_string());
 }
 
@@ -268,7 +268,7 @@ fn errors_unrelated_to_settings_are_returned() {
 #[test]
 fn pictures_of_infinities_are_not_chosen() {
     let scene = scene();
-    let refused = choose(&scene, Goal::MaxCost(1e12), WHOLE, None, |quality| {
+    let refused = choose(&Lit::of(&scene), Goal::MaxCost(1e12), WHOLE, None, |quality| {
         let mut drawn = draw(&scene, quality)?;
         drawn.planes[0][3] = f32::INFINITY;
         Ok(drawn)
@@ -306,7 +306,7 @@ fn probes_measure_errors_and_controls_reduce_noise() {
     let expected = f64::from(0.1 * square.sqrt() / mean);
     let measured = error(&all, std::slice::from_ref(&bright), None);
     assert!((measured.error / expected - 1.0).abs() < 1e-3, "{measured:?} {expected}");
-    let few = Probes::of(&scene, 64, 1, &[]).unwrap();
+    let few = Probes::of(&Lit::of(&scene), 64, 1, &[]).unwrap();
     assert_eq!(few.count(), 64);
     let rough = draw(&scene, &Quality { azimuths: 8, ..Quality::default() }).unwrap().planes;
     let ground_truth = error(&all, &rough, None).error;

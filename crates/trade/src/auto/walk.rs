@@ -9,6 +9,7 @@ use crate::trade::{Goal, start};
 use ridgelight::plan::REFERENCE_BATCH;
 use ridgelight::scene::{Basis, Bounces, Lines, Method, Quality, Scene, setting};
 use ridgelight::{Error, Result};
+use ridgelight_cpu::lit::Lit;
 
 /// A rendered frame.
 #[derive(Clone, Debug)]
@@ -89,7 +90,7 @@ const CONFIRMATIONS: u64 = 4;
 
 /// Probes, and the pictures that may still be needed, in the order of rendering.
 struct Judge<'a> {
-    scene: &'a Scene,
+    lit: &'a Lit<'a>,
     bounced: Option<Bounced<'a>>,
     batches: u32,
     /// Where probes concentrate, how many at a time, and the next seed.
@@ -103,16 +104,17 @@ struct Judge<'a> {
 
 impl<'a> Judge<'a> {
     fn new(
-        scene: &'a Scene,
+        lit: &'a Lit<'a>,
         (step, seed): (usize, u64),
         unsure: Vec<f64>,
         bounced: Option<Bounced<'a>>,
         goal: Goal,
     ) -> Result<Self> {
-        let probes = Probes::of(scene, step, seed, &unsure)?;
+        let scene = lit.scene();
+        let probes = Probes::of(lit, step, seed, &unsure)?;
         let direct = probes.clone();
         let mut judge = Self {
-            scene,
+            lit,
             bounced,
             batches: FIRST_BATCHES,
             unsure,
@@ -166,7 +168,7 @@ impl<'a> Judge<'a> {
     /// Probes of a new seed.
     fn fresh(&mut self, wanted: usize) -> Result<Probes> {
         self.seed = self.seed.wrapping_add(1 << 32);
-        self.traced(Probes::of(self.scene, wanted, self.seed, &self.unsure)?)
+        self.traced(Probes::of(self.lit, wanted, self.seed, &self.unsure)?)
     }
 
     /// Adds bounced light, where there is any, by new paths.
@@ -177,8 +179,12 @@ impl<'a> Judge<'a> {
         let seed = (self.seed ^ (self.seed >> 32)).wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 32;
         let traced = (bounced.trace)(probes.places(), self.batches, seed as u32)?;
         let of = (self.batches * REFERENCE_BATCH, probes.count());
-        let unsampled =
-            unsampled_bounce_error(self.scene, bounced.count, of, Probes::UNSAMPLED_PROBABILITY);
+        let unsampled = unsampled_bounce_error(
+            self.lit.scene(),
+            bounced.count,
+            of,
+            Probes::UNSAMPLED_PROBABILITY,
+        );
         probes.add_bounced(&traced, unsampled);
         Ok(probes)
     }
@@ -223,7 +229,7 @@ impl<'a> Judge<'a> {
 }
 
 /// Chooses settings for a goal: `draw` renders the scene with given settings, this many probes of
-/// exact light measure it, others for another `seed`.
+/// its exact light measure it, others for another `seed`.
 ///
 /// The choice is rendered again: its time is that of this frame, and its bound comes from probes
 /// that had no part in it. With `bounced`, bounced light is measured and its settings are chosen,
@@ -234,7 +240,7 @@ impl<'a> Judge<'a> {
 /// result; errors of `draw`, except [`Error::Limit`], which excludes the settings and all slower
 /// ones, unless all are refused.
 pub fn choose<'a>(
-    scene: &'a Scene,
+    lit: &'a Lit<'a>,
     goal: Goal,
     (probes, seed): (usize, u64),
     bounced: Option<Bounced<'a>>,
@@ -247,6 +253,7 @@ pub fn choose<'a>(
     if !(bound > 0.0 && bound.is_finite()) {
         return Err(Error::setting(name, bound.to_string(), "a number above 0"));
     }
+    let scene = lit.scene();
     let count = bounced.as_ref().map_or(0, |b| b.count);
     let mut chooser = Chooser::new(scene, &Statistics::of(scene), goal, count);
     let (mut pilots, mut refused) = (Vec::new(), None);
@@ -267,7 +274,7 @@ pub fn choose<'a>(
         _ => Vec::new(),
     };
     let is_aimed = !unsure.is_empty();
-    let mut judge = Judge::new(scene, (probes, seed), unsure, bounced, goal)?;
+    let mut judge = Judge::new(lit, (probes, seed), unsure, bounced, goal)?;
     let own = judge.probes.own_error();
     if let Goal::MaxError(most) = goal
         && own >= most

@@ -6,6 +6,7 @@ use std::time::Instant;
 use ridgelight::gpu::Headless;
 use ridgelight::scene::{Fuse, Lines, Method, Quality, Scene};
 use ridgelight::{Error, Result};
+use ridgelight_cpu::lit::Lit;
 use ridgelight_io as files;
 use ridgelight_trade::auto::{Chosen, Drawn, Measured, Probes, apart, choose, flags};
 use ridgelight_trade::statistics::quantiles;
@@ -48,11 +49,11 @@ impl<'a> Measuring<'a> {
         let plain = judged(gpu, scene, &start(), 0)?.planes;
         let control = judged(gpu, scene, &dense, 0)?.planes;
         let unsure = apart(&plain, &control, scene.field.cols());
-        let probes = Probes::of(scene, TRUE_PROBES, TRUE_SEED, &unsure)?;
+        let probes = Probes::of(&Lit::of(scene), TRUE_PROBES, TRUE_SEED, &unsure)?;
         let own = probes.error(&control, None, Probes::ONE_BOUND);
         let mut found = Self { scene, probes, control, own, all: Vec::new() };
         if own.error > GOOD {
-            found.probes = Probes::of(scene, MORE_PROBES, TRUE_SEED, &unsure)?;
+            found.probes = Probes::of(&Lit::of(scene), MORE_PROBES, TRUE_SEED, &unsure)?;
             let exact = if scene.lights.suns.is_empty() {
                 Quality { lines: Lines::Exact, azimuths: 512, ..dense }
             } else {
@@ -109,9 +110,10 @@ impl<'a> Measuring<'a> {
         seed: u64,
         most: f64,
     ) -> Result<std::result::Result<Chosen, String>> {
-        let (scene, probes) = (self.scene, (Probes::affordable(self.scene), seed));
+        let lit = Lit::of(self.scene);
+        let probes = (Probes::affordable(&lit), seed);
         let draw = |quality: &Quality| self.draw(gpu, quality, 3);
-        match choose(scene, Goal::MaxError(most), probes, None, draw) {
+        match choose(&lit, Goal::MaxError(most), probes, None, draw) {
             Ok(chosen) => Ok(Ok(chosen)),
             Err(error @ Error::Limit { .. }) => Ok(Err(error.to_string())),
             Err(error) => Err(error),

@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use ridgelight::scene::{Fuse, Lights, Lines, Method, Quality, Scene};
 use ridgelight::{Error, Result};
+use ridgelight_cpu::lit::Lit;
 use ridgelight_trade::auto::{Probes, apart};
 
 use super::super::rig::Rig;
@@ -68,7 +69,7 @@ impl GroundTruth {
         let mut ground_truth = Self::new(whole, scene.field.cols(), about.join("; "));
         let steps = ground_truth.distance(&halved)?.relative_rmse;
         let unsure = apart(&ground_truth.planes, &halved, ground_truth.cols);
-        let probes = probes(scene, &unsure, rig.share(PROBING))?;
+        let probes = probes(&Lit::of(scene), &unsure, rig.share(PROBING))?;
         let off = probes.error(&ground_truth.planes, None, Probes::ONE_BOUND);
         ground_truth.own_error = Some(steps.max(off.at_most));
         ground_truth.quality_of = format!(
@@ -91,14 +92,14 @@ impl GroundTruth {
 
 /// Exact light at as many grid points as fit into a time, at least the fewest; half of them are
 /// drawn in proportion to the difference of two frames.
-fn probes(scene: &Scene, unsure: &[f64], most_s: f64) -> Result<Probes> {
+fn probes(lit: &Lit<'_>, unsure: &[f64], most_s: f64) -> Result<Probes> {
     let begun = Instant::now();
-    let few = Probes::of(scene, FEWEST_PROBES, SEED, unsure)?;
+    let few = Probes::of(lit, FEWEST_PROBES, SEED, unsure)?;
     let each = begun.elapsed().as_secs_f64() / few.count() as f64;
     let left = (most_s - begun.elapsed().as_secs_f64()).max(0.0);
-    let fit = ((left / each) as usize).min(Probes::affordable(scene));
+    let fit = ((left / each) as usize).min(Probes::affordable(lit));
     let enough = few.is_whole() || fit <= few.count();
-    if enough { Ok(few) } else { Probes::of(scene, fit, SEED, unsure) }
+    if enough { Ok(few) } else { Probes::of(lit, fit, SEED, unsure) }
 }
 
 /// All counts, halved so many times.
@@ -189,7 +190,7 @@ mod tests {
             let field = HeightField::new(side, side, &vec![0.0; side * side], [1.0; 2], None);
             let lights = Lights { sky: Some([1.0; 3]), ..Lights::default() };
             let scene = Scene { field: field.unwrap(), surface: Surface::default(), lights };
-            probes(&scene, &vec![0.0; side * side], most_s).unwrap()
+            probes(&Lit::of(&scene), &vec![0.0; side * side], most_s).unwrap()
         };
         assert_eq!(of(16, 0.0).count(), FEWEST_PROBES);
         assert!(of(12, f64::INFINITY).is_whole() && of(5, 0.0).is_whole());

@@ -247,11 +247,15 @@ fn specular() {
         &folder,
         &[
             (
-                &format!("trade a.asc -o out {both}"),
+                &format!("trade a.asc -o out {both} --bounces 1"),
                 2,
-                &["--specular with trade", "Phong specular"],
+                &["--specular with trade without --reference", "found specular with bounces"],
             ),
-            (&format!("{RENDER} {both} --max-error 1"), 2, &["--specular with --max-error"]),
+            (
+                &format!("{RENDER} {both} --bounces 1 --time-budget 1"),
+                2,
+                &["--specular with --max-error or --time-budget", "found specular with bounces"],
+            ),
             (&format!("bench a.asc {both} --bounces 1"), 2, &["--specular with bench --bounces"]),
             (&format!("bench --sizes 64 {both}"), 2, &["--specular with bench --sizes"]),
             ("horizon a.asc -o out.npy --specular 10,0.5", 2, &["--specular"]),
