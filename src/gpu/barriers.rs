@@ -49,6 +49,19 @@ fn accesses(all: vk::AccessFlags2) -> vk::AccessFlags {
     if rest.is_empty() { old } else { old | any }
 }
 
+/// The stage masks of a barrier, from its unions of stages. A mask of Vulkan 1.0 is never empty: no stage to wait for is the top
+/// of the pipe, and no stage that waits is its bottom.
+fn masks(
+    from: vk::PipelineStageFlags2,
+    to: vk::PipelineStageFlags2,
+) -> [vk::PipelineStageFlags; 2] {
+    let or = |stages: vk::PipelineStageFlags, none| if stages.is_empty() { none } else { stages };
+    [
+        or(stages(from), vk::PipelineStageFlags::TOP_OF_PIPE),
+        or(stages(to), vk::PipelineStageFlags::BOTTOM_OF_PIPE),
+    ]
+}
+
 /// The barriers of one vkCmdPipelineBarrier. Its stage masks are the unions of their stage masks.
 #[derive(Default)]
 pub(in crate::gpu) struct Barriers {
@@ -122,10 +135,7 @@ impl Barriers {
         if self.memory.is_empty() && self.buffers.is_empty() && self.images.is_empty() {
             return;
         }
-        let or =
-            |stages: vk::PipelineStageFlags, none| if stages.is_empty() { none } else { stages };
-        let from = or(stages(self.from), vk::PipelineStageFlags::TOP_OF_PIPE);
-        let to = or(stages(self.to), vk::PipelineStageFlags::BOTTOM_OF_PIPE);
+        let [from, to] = masks(self.from, self.to);
         let Self { memory, buffers, images, .. } = self;
         let flags = vk::DependencyFlags::empty();
         // SAFETY: as the caller guarantees.
@@ -169,6 +179,25 @@ mod tests {
             (Access::from_raw(1 << 60), any),
         ] {
             assert_eq!(accesses(new), old, "{new:?}");
+        }
+    }
+
+    /// Vulkan 1.0 refuses an empty mask. A side without stages becomes an end of the pipe, the source its top and the destination
+    /// its bottom; a side with stages gets nothing more.
+    #[test]
+    fn a_side_without_stages_is_an_end_of_the_pipe() {
+        use vk::{PipelineStageFlags as Old, PipelineStageFlags2 as New};
+        for (from, to, expected) in [
+            (New::NONE, New::NONE, [Old::TOP_OF_PIPE, Old::BOTTOM_OF_PIPE]),
+            (New::NONE, New::COPY, [Old::TOP_OF_PIPE, Old::TRANSFER]),
+            (New::COMPUTE_SHADER, New::NONE, [Old::COMPUTE_SHADER, Old::BOTTOM_OF_PIPE]),
+            (
+                New::COMPUTE_SHADER | New::CLEAR,
+                New::HOST,
+                [Old::COMPUTE_SHADER | Old::TRANSFER, Old::HOST],
+            ),
+        ] {
+            assert_eq!(masks(from, to), expected, "{from:?} to {to:?}");
         }
     }
 }
