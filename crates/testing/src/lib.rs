@@ -179,7 +179,12 @@ fn write_exr(path: &Path, planes: &Planes) -> Result<()> {
 
 #[cfg(test)]
 mod tests {
+    use std::process::Command;
+
     use super::*;
+
+    /// Set in the child process of a test: the golden that it holds a result against.
+    const CHILD: &str = "RIDGELIGHT_TESTING_GOLDEN";
 
     fn two_by_three() -> Planes {
         let values = vec![0.0, 1.0, f32::NAN, 3.0, 4.0, 5.0];
@@ -213,6 +218,87 @@ mod tests {
             files::read_planes(&output.join(format!("lit.exr.{what}.exr"))).unwrap().planes
         };
         assert_eq!((read("got")[0][4], read("want")[0][4], read("diff")[0][4]), (4.5, 4.0, 0.5));
+    }
+
+    /// Of two texels beyond the tolerance the message names the one with the larger error, whichever comes first and in whichever
+    /// plane it is.
+    #[test]
+    fn the_larger_of_two_errors_is_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let golden = folder.path().join("lit.exr");
+        let plane = two_by_three().planes.remove(0);
+        let names = ["R", "G"].map(str::to_owned).to_vec();
+        let want = Planes { names, planes: vec![plane.clone(), plane], ..two_by_three() };
+        write(&golden, &want).unwrap();
+        for (larger, smaller) in
+            [((0, 1), (0, 4)), ((0, 4), (0, 1)), ((1, 3), (0, 3)), ((0, 5), (1, 0))]
+        {
+            let mut got = want.clone();
+            got.planes[larger.0][larger.1] -= 2.0;
+            got.planes[smaller.0][smaller.1] += 1.0;
+            let message = hold(&got, &golden, 1e-6, folder.path()).unwrap_err().to_string();
+            let (name, i) = (&want.names[larger.0], larger.1);
+            let [found, expected] = [&got, &want].map(|planes| planes.planes[larger.0][i]);
+            let place = format!("{name}: row {}, column {}", i / 3, i % 3);
+            let named = format!("{place}: found {found}, expected {expected} within 1e-6");
+            assert!(message.contains(&named), "{named} in {message}");
+        }
+    }
+
+    /// With `RIDGELIGHT_BLESS=1` a result becomes the golden, also over another one. Where `CI` is set too, or for another value,
+    /// the golden stays, and none is made. In a process of its own: other tests must not have the variables.
+    #[test]
+    fn bless_writes_the_golden_except_in_ci() {
+        let got = two_by_three();
+        if let Some(golden) = std::env::var_os(CHILD) {
+            let output = Path::new(&golden).with_extension("output");
+            match hold(&got, Path::new(&golden), 1e-6, &output) {
+                Ok(ratio) => println!("holds by {ratio}"),
+                Err(error) => println!("refused: {error}"),
+            }
+            return;
+        }
+        let folder = tempfile::tempdir().unwrap();
+        let golden = folder.path().join("lit.exr");
+        let mut old = got.clone();
+        old.planes[0][4] = 7.0;
+        // What the child prints, and the value in the golden after it.
+        let held = |has_old: bool, variables: &[(&str, &str)]| {
+            if has_old {
+                write(&golden, &old).unwrap();
+            } else if golden.exists() {
+                std::fs::remove_file(&golden).unwrap();
+            }
+            let mut child = Command::new(std::env::current_exe().unwrap());
+            child.args(["--exact", "tests::bless_writes_the_golden_except_in_ci", "--nocapture"]);
+            child.env_remove("RIDGELIGHT_BLESS").env_remove("CI").env(CHILD, &golden);
+            let run = child.envs(variables.iter().copied()).output().unwrap();
+            let said = [run.stdout, run.stderr].map(|s| String::from_utf8_lossy(&s).into_owned());
+            let said = said.concat();
+            assert!(run.status.success(), "{said}");
+            let value = golden.exists().then(|| files::read_planes(&golden).unwrap().planes[0][4]);
+            (said, value)
+        };
+        let bless = ("RIDGELIGHT_BLESS", "1");
+        for has_old in [false, true] {
+            let (said, value) = held(has_old, &[bless]);
+            assert!(said.contains("holds by 0"), "{said}");
+            assert_eq!(value, Some(4.0), "{said}");
+            for ci in ["true", ""] {
+                let (said, value) = held(has_old, &[bless, ("CI", ci)]);
+                let refused = "refused: RIDGELIGHT_BLESS: found CI set too, expected one of them";
+                assert!(said.contains(refused), "{said}");
+                assert_eq!(value, has_old.then_some(7.0), "{said}");
+            }
+            let others: [&[(&str, &str)]; 3] =
+                [&[], &[("CI", "true")], &[("RIDGELIGHT_BLESS", "0")]];
+            for variables in others {
+                let (said, value) = held(has_old, variables);
+                let found = if has_old { "found 4, expected 7 within" } else { "found no file" };
+                assert!(said.contains("refused: ") && said.contains(found), "{said}");
+                assert_eq!(value, has_old.then_some(7.0), "{said}");
+            }
+        }
     }
 
     #[test]
