@@ -1,7 +1,7 @@
 //! After a change only the necessary passes run: the same bits as all of them.
 
 use ridgelight::gpu::Headless;
-use ridgelight::plan::{self, Picture, Plan, Rectangle};
+use ridgelight::plan::{self, Limits, Picture, Plan, Rectangle};
 use ridgelight::scene::fractal;
 use ridgelight::scene::{Basis, Environment, Lights, Method, Quality, Scene, Sun, Surface};
 
@@ -299,6 +299,55 @@ fn a_part_is_recorded_again_only_with_what_it_needs() {
     let pending = gpu.replace_plan(&mut frame, plan).expect("the same");
     gpu.draw_passes(&mut frame, &pending).expect("drawn");
     assert!(bits(gpu, &frame) == fresh);
+    gpu.end(frame);
+}
+
+/// A result built up over several frames, as docs/embedding/questions.md says: with a lower `Limits::image_layers` each batch of
+/// azimuths, and so each of its passes, covers fewer. One pass per submission, in order, gives the bits of a whole frame of the
+/// same plan: with a new renderer, and then with one whose images hold the light of other heights.
+#[test]
+fn few_layers_split_a_sky_into_passes_for_several_frames() {
+    let mut device = Device::new();
+    let gpu = device.gpu.as_mut().expect("alive");
+    let mut scene = scene();
+    scene.lights.suns.clear();
+    scene.lights.environment = None;
+    let quality = Quality { azimuths: 32, method: Method::Sweep, ..Quality::default() };
+    let limits = crate::limits_of(gpu);
+    // An azimuth of 96 lanes has 3 to 6 layers of 32 lines. Plans of a GPU widen the layers, down to one for an azimuth.
+    let few = Limits { image_layers: 6, ..limits };
+    let [usual, cut] = [limits, few].map(|limits| {
+        plan::picture(&scene, &quality, &limits, Picture::default()).expect("a plan")
+    });
+    let counts = |plan: &Plan, name: &str| -> Vec<usize> {
+        let named = plan.passes.iter().filter(|pass| pass.name() == name);
+        named.map(|pass| pass.azimuths.len()).collect()
+    };
+    for name in ["horizon_sweep", "sky_shade"] {
+        let [usual, cut] = [&usual, &cut].map(|plan| counts(plan, name));
+        let (least, most) = (usual.iter().min(), cut.iter().max());
+        assert!(cut.len() > usual.len() && most < least, "{name}: {cut:?}, {usual:?}");
+    }
+    assert_eq!(counts(&cut, "sky_shade").iter().sum::<usize>(), 32);
+
+    let passes = cut.passes.len();
+    let fields = [1, 2].map(|seed| fractal(96, seed).expect("a field"));
+    let whole = fields.each_ref().map(|field| {
+        let mut frame = gpu.frame(cut.clone(), &[field.heights_m()]).expect("a frame");
+        gpu.draw(&mut frame).expect("drawn");
+        let bits = bits(gpu, &frame);
+        gpu.end(frame);
+        bits
+    });
+    assert!(whole[0] != whole[1]);
+    let mut frame = gpu.frame(cut, &[fields[0].heights_m()]).expect("a frame");
+    for (field, whole) in fields.iter().zip(&whole) {
+        gpu.refill(&frame, 0, field.heights_m()).expect("refilled");
+        for pass in 0..passes {
+            gpu.draw_passes(&mut frame, &[pass]).expect("drawn");
+        }
+        assert!(bits(gpu, &frame) == *whole, "other light than of a whole frame");
+    }
     gpu.end(frame);
 }
 
