@@ -89,6 +89,14 @@ static RidgelightPlan *plan_of(const RidgelightHost *host, int level, int cycle)
     return plan;
 }
 
+/* The parts that the next frame records of those `left`: one at least, and more while the last time of a part predicts that all
+ * fit the budget. Without a time, one. */
+static int parts_within(double budget_ms, double part_ms, int left) {
+    int parts = 1;
+    while (parts < left && part_ms > 0 && (parts + 1) * part_ms <= budget_ms) parts++;
+    return parts;
+}
+
 int main(int argc, char **argv) {
     must(argc == 2, "usage: distant OUT");
     RL(ridgelight_check_version(RIDGELIGHT_VERSION));
@@ -165,24 +173,20 @@ int main(int argc, char **argv) {
         end();
     }
 
-    /* Each frame records at least one part, and more while the last measured time predicts that they fit the budget. A cycle
-     * updates all levels from the coarsest to the finest; the sun moves between cycles. */
+    /* A cycle updates all levels from the coarsest to the finest; the sun moves between cycles. */
     int frames = 0, level = LEVELS - 1, part = 0, cycle = 0;
-    double part_ms[LEVELS] = {0}, longest_ms = 0;
+    double part_ms[LEVELS] = {0}, longest_ms = 0, shortest_part_ms = 0, predicted_ms = 0;
     for (; cycle < CYCLES; frames++) {
-        int in_frame = 0;
-        double ms = 0;
-        uint32_t passes[PARTS];
+        int in_frame = parts_within(budget_ms, part_ms[level], PARTS - part);
+        uint32_t passes[PARTS] = {0};
+        if (in_frame > 1 && in_frame * part_ms[level] > predicted_ms) predicted_ms = in_frame * part_ms[level];
         begin();
         if (part == 0 && cycle > 0) {
             RidgelightPlan *plan = plan_of(&host, level, cycle);
             RL(ridgelight_replace_plan(renderers[level], plan, NULL, NULL));
             ridgelight_plan_destroy(plan);
         }
-        do {
-            passes[in_frame++] = (uint32_t)part++;
-            ms += part_ms[level];
-        } while (part < PARTS && part_ms[level] > 0 && ms + part_ms[level] <= budget_ms);
+        for (int i = 0; i < in_frame; i++) passes[i] = (uint32_t)part++;
         RidgelightImage inputs[MAPS] = {heights[level]}, *written = maps[level][cycle % SETS];
         if (level + 1 < LEVELS) memcpy(inputs + 1, maps[level + 1][cycle % SETS], 2 * sizeof *inputs);
         RL(ridgelight_record_passes(renderers[level], commands, 0, inputs, level + 1 < LEVELS ? 3 : 1, written, MAPS, passes,
@@ -192,11 +196,12 @@ int main(int argc, char **argv) {
         for (int i = 0; i < PARTS; i++) times[i].struct_size = sizeof *times;
         uint32_t timed = PARTS;
         RL(ridgelight_timings(renderers[level], 0, times, &timed));
-        ms = 0;
+        double ms = 0;
         for (uint32_t i = 0; i < timed && i < PARTS; i++) ms += times[i].ns / 1e6;
         /* Without a time the next frame records one part. */
         part_ms[level] = ms / in_frame;
         if (ms > longest_ms) longest_ms = ms;
+        if (shortest_part_ms == 0 || part_ms[level] < shortest_part_ms) shortest_part_ms = part_ms[level];
         if (part == PARTS) {
             part = 0;
             level = (level + LEVELS - 1) % LEVELS;
@@ -204,6 +209,8 @@ int main(int argc, char **argv) {
         }
     }
     printf("%d cycles of %d levels in %d frames; the longest took %.3f ms\n", CYCLES, LEVELS, frames, longest_ms);
+    printf("the shortest part took %.17g ms; several parts were predicted to take at most %.17g ms\n", shortest_part_ms,
+        predicted_ms);
 
     begin();
     VkMemoryBarrier reading = {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
