@@ -1,3 +1,5 @@
+use ash::vk;
+
 use crate::gpu::allocator::Blocks;
 use crate::gpu::memory::Backed;
 use crate::gpu::{Headless, ImageArg, ImageState, Renderer, Timing};
@@ -198,10 +200,9 @@ impl Headless {
     /// # Errors
     /// The device's.
     pub fn draw_passes(&self, frame: &mut Frame, passes: &[usize]) -> Result<Vec<Timing>> {
-        let (inputs, outputs) = (frame.inputs(), frame.outputs());
-        let renderer = frame.renderer.as_mut().expect("alive until ended");
-        self.run(|commands| renderer.record_passes(commands, 0, &inputs, &outputs, passes))?;
-        Ok(renderer.timings(0).unwrap_or_default())
+        self.run_frame(frame, |renderer, commands, inputs, outputs| {
+            renderer.record_passes(commands, 0, inputs, outputs, passes)
+        })
     }
 
     /// Runs the edit of a rectangle of heights, and waits: [`Renderer::record_edit`]. The frame must have been
@@ -210,10 +211,29 @@ impl Headless {
     /// # Errors
     /// As there.
     pub fn draw_edit(&self, frame: &mut Frame, rectangle: Rectangle) -> Result<Vec<Timing>> {
+        self.run_frame(frame, |renderer, commands, inputs, outputs| {
+            renderer.record_edit(commands, 0, inputs, outputs, rectangle)
+        })
+    }
+
+    /// Runs what `record` records of a frame, and waits. Where it was recorded and did not run, nothing counts as recorded.
+    fn run_frame(
+        &self,
+        frame: &mut Frame,
+        record: impl FnOnce(&mut Renderer, vk::CommandBuffer, &[ImageArg], &[ImageArg]) -> Result<()>,
+    ) -> Result<Vec<Timing>> {
         let (inputs, outputs) = (frame.inputs(), frame.outputs());
         let renderer = frame.renderer.as_mut().expect("alive until ended");
-        self.run(|commands| renderer.record_edit(commands, 0, &inputs, &outputs, rectangle))?;
-        Ok(renderer.timings(0).unwrap_or_default())
+        let mut is_recorded = false;
+        let ran = self.run(|commands| {
+            record(renderer, commands, &inputs, &outputs)?;
+            is_recorded = true;
+            Ok(())
+        });
+        if ran.is_err() && is_recorded {
+            renderer.forget();
+        }
+        ran.map(|()| renderer.timings(0).unwrap_or_default())
     }
 
     /// Texels of output `output` of a frame.
