@@ -33,7 +33,7 @@ struct Started {
     /// Surface functions, where pictures are shown in a window.
     surface: Option<Surface>,
     /// Outlives the instance, which may report while it is destroyed.
-    _messages: Messages,
+    messages: Messages,
 }
 
 impl Started {
@@ -51,7 +51,7 @@ impl Started {
         let version = if window.is_some() { WINDOW_VERSION } else { requirements().api_version };
         let instance = instance(&entry, version, validation.then_some(&mut during), extensions)?;
         let mut started =
-            Self { entry, instance, listener: None, surface: None, _messages: messages.clone() };
+            Self { entry, instance, listener: None, surface: None, messages: messages.clone() };
         if validation {
             let listener = Listener::new(&started.entry, &started.instance, messages)?;
             started.listener = Some(listener);
@@ -80,7 +80,9 @@ impl Drop for Started {
 /// A device of our own for offscreen rendering, for programs that have none.
 pub struct Headless {
     started: Started,
-    host: Host,
+    /// Tests replace functions of its device.
+    #[doc(hidden)]
+    pub host: Host,
     queue: vk::Queue,
     pool: vk::CommandPool,
     report: DeviceReport,
@@ -196,6 +198,15 @@ impl Headless {
     /// Validation messages so far, oldest first; the call empties the list.
     pub fn take_messages(&self) -> Vec<String> {
         self.started.listener.as_ref().map(Listener::take).unwrap_or_default()
+    }
+
+    /// Destroys the device, and returns the validation messages since the last [`take_messages`](Self::take_messages): also
+    /// those of the destruction, which name every object that is still alive.
+    #[doc(hidden)]
+    pub fn destroy(self) -> Vec<String> {
+        let messages = self.started.messages.clone();
+        drop(self);
+        messages.lock().map(|mut kept| std::mem::take(&mut *kept)).unwrap_or_default()
     }
 
     /// Runs `record` in a command buffer of its own and waits for it.

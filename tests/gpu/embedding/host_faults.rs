@@ -1,13 +1,20 @@
-//! Hosts that a renderer refuses, with the cause that the host can fix.
+//! Hosts that a renderer refuses, with the cause that the host can fix; and hosts whose device is lost.
+
+use std::ffi::c_void;
+use std::sync::Mutex;
+use std::sync::atomic::Ordering;
 
 use ash::vk;
-use ridgelight::Result;
 use ridgelight::gpu::{self, BufferArg, Host, ImageArg, ImageState, Renderer, ViewRenderer};
-use ridgelight::plan::{self, Picture, Plan, View, ViewOptions};
+use ridgelight::plan::{self, Picture, Plan, Rectangle, View, ViewOptions};
 use ridgelight::scene::{Border, Camera, Lens, Quality, Scene};
+use ridgelight::{Error, Result};
 
+use super::in_flight::Recorded;
+use super::lifetimes::Counting;
+use crate::intercepted::with_function;
 use crate::target::Staging;
-use crate::{Device, field, under_sky};
+use crate::{Device, bits, field, under_sky};
 
 fn scene() -> Scene {
     under_sky(field(8, 8, [1.0, 1.0], |r, c| ((r * 31 + c * 17) % 7) as f64), Border::Plane)
@@ -214,4 +221,243 @@ fn stages_that_the_family_lacks_are_refused_by_name() {
     renderer.destroy();
     staging.end(gpu.host());
     gpu.end(frame);
+}
+
+unsafe extern "system" fn lost_submit(
+    _: vk::Queue,
+    _: u32,
+    _: *const vk::SubmitInfo<'_>,
+    _: vk::Fence,
+) -> vk::Result {
+    vk::Result::ERROR_DEVICE_LOST
+}
+
+/// The host's device, lost at every submission.
+fn lost_at_submission(host: &Host) -> ash::Device {
+    // SAFETY: it has the type of that function, and submits nothing.
+    unsafe { with_function(host, c"vkQueueSubmit", lost_submit as *const c_void) }
+}
+
+/// Holds that something failed because the device is lost, as the driver says it.
+fn assert_lost<T>(what: &str, done: Result<T>) {
+    match done {
+        Err(Error::Device { reason, .. }) => {
+            assert_eq!(reason, vk::Result::ERROR_DEVICE_LOST.to_string(), "{what}");
+        }
+        Err(other) => panic!("{what}: {other}"),
+        Ok(_) => panic!("{what}: no error"),
+    }
+}
+
+/// Destroys the device. Validation has reported nothing, and no object that is still alive.
+fn end_without_objects(device: &mut Device) {
+    let messages = device.gpu.take().expect("alive").destroy();
+    assert!(messages.is_empty(), "validation said:\n{}", messages.join("\n"));
+}
+
+/// The comparison of the tests below can fail: validation names an object that outlives its device.
+#[test]
+fn an_object_that_outlives_its_device_is_reported() {
+    let mut device = Device::new();
+    let gpu = device.gpu.take().expect("alive");
+    // SAFETY: the device is alive. The fence is never used.
+    unsafe { gpu.host().device.create_fence(&vk::FenceCreateInfo::default(), None) }
+        .expect("a fence");
+    let messages = gpu.destroy();
+    let is_reported = messages.iter().any(|message| message.contains("not been destroyed"));
+    assert_eq!(is_reported, device.validates, "{messages:?}");
+}
+
+/// Every call of `Headless` that runs commands returns the loss of the device as an error, and frees what it made. A frame that was
+/// recorded and did not run counts as not drawn, so its next edit is refused; with a device that runs, it draws the same bits.
+#[test]
+fn headless_calls_return_the_loss_of_the_device() {
+    let mut device = Device::new();
+    let limits = device.limits();
+    let scene = scene();
+    let quality = Quality { azimuths: 4, ..Quality::default() };
+    let wanted = Picture { keeps_horizons: true, ..Picture::default() };
+    let plan = plan::picture(&scene, &quality, &limits, wanted).expect("a plan");
+    let lens = Lens::Perspective { fov_rad: 0.8 };
+    let camera = Camera::around(&scene.field, None, [0.7, 0.5], lens, 1.0);
+    let options = ViewOptions { size: [4, 4], samples: 1, ..ViewOptions::default() };
+    let view = View::new(&scene, &plan, &camera, &options, &limits).expect("a view");
+    let gpu = device.gpu.as_mut().expect("alive");
+    let heights = scene.field.heights_m();
+    let edit = Rectangle { col: 2, row: 3, cols: 4, rows: 2 };
+    let mut frame = gpu.frame(plan.clone(), &[heights]).expect("a frame");
+    gpu.draw(&mut frame).expect("drawn");
+    gpu.draw_edit(&mut frame, edit).expect("an edit of a drawn frame");
+    let right = bits(gpu, &frame);
+
+    let alive = gpu.host().device.clone();
+    gpu.host.device = lost_at_submission(gpu.host());
+    assert_lost("an edit", gpu.draw_edit(&mut frame, edit));
+    assert_lost("a frame", gpu.draw(&mut frame));
+    assert_lost("a pass", gpu.draw_passes(&mut frame, &[0]));
+    assert_lost("new heights", gpu.refill(&frame, 0, heights));
+    assert_lost("pixels", gpu.pixels(&frame, 0));
+    let input = plan.find("heights").expect("an input");
+    assert_lost("a resource", gpu.read(&frame, input));
+    assert_lost("a camera picture", gpu.look(&frame, &view, None));
+    assert_lost("another frame", gpu.frame(plan, &[heights]));
+
+    gpu.host.device = alive;
+    let refused = gpu.draw_edit(&mut frame, edit).expect_err("nothing is drawn").to_string();
+    assert!(refused.contains("passes must be recorded first"), "{refused}");
+    gpu.refill(&frame, 0, &[0.0; 64]).expect("level ground");
+    gpu.draw(&mut frame).expect("drawn");
+    assert!(bits(gpu, &frame) != right);
+    gpu.refill(&frame, 0, heights).expect("the heights again");
+    gpu.draw(&mut frame).expect("drawn");
+    assert!(bits(gpu, &frame) == right);
+    gpu.end(frame);
+    end_without_objects(&mut device);
+}
+
+/// A host gets the loss of its device from its own submission. Recording does not fail, before or after: the same slot in another
+/// command buffer, on a device that runs, gives the same bits. Then `destroy` gives back every allocation.
+#[test]
+fn a_renderer_records_and_is_destroyed_after_a_lost_submission() {
+    let mut device = Device::new();
+    let plan = planned(&device);
+    let gpu = device.gpu.as_mut().expect("alive");
+    let texels = scene().field.heights_m().to_vec();
+    let mut frame = gpu.frame(plan.clone(), &[&texels]).expect("a frame");
+    gpu.draw(&mut frame).expect("drawn");
+    let right = bits(gpu, &frame);
+    // Level ground, so that stale contents cannot pass.
+    gpu.refill(&frame, 0, &[0.0; 64]).expect("level ground");
+    gpu.draw(&mut frame).expect("drawn");
+    assert!(bits(gpu, &frame) != right);
+    gpu.refill(&frame, 0, &texels).expect("the heights again");
+
+    let (inputs, outputs) = (frame.inputs(), frame.outputs());
+    let alive = gpu.host().device.clone();
+    let lost = Host { device: lost_at_submission(gpu.host()), ..gpu.host().clone() };
+    let memory = Box::new(Counting::new(&lost));
+    let held = memory.held.clone();
+    let made = Renderer::with_memory(&lost, plan, 1, memory);
+    let mut renderer = made.expect("a renderer");
+    assert!(held.load(Ordering::Relaxed) > 0);
+    let first = Recorded::new(&lost, |commands| {
+        renderer.record(commands, 0, &inputs, &outputs).expect("recorded");
+    });
+    let submitted = first.try_submit(&lost.device, gpu.queue());
+    assert_eq!(submitted, Err(vk::Result::ERROR_DEVICE_LOST));
+    first.free(&lost.device);
+    assert_eq!(renderer.timings(0), None, "nothing has run");
+    let second = Recorded::new(&lost, |commands| {
+        renderer.record(commands, 0, &inputs, &outputs).expect("recorded");
+    });
+    second.submit(&alive, gpu.queue());
+    second.end(&alive);
+    assert!(bits(gpu, &frame) == right);
+    // Recorded, and then destroyed without a submission that succeeded.
+    let last = Recorded::new(&lost, |commands| {
+        renderer.record(commands, 0, &inputs, &outputs).expect("recorded");
+    });
+    assert!(last.try_submit(&lost.device, gpu.queue()).is_err());
+    last.free(&lost.device);
+    renderer.destroy();
+    assert_eq!(held.load(Ordering::Relaxed), 0);
+    gpu.end(frame);
+    end_without_objects(&mut device);
+}
+
+type CreatePipelines = vk::PFN_vkCreateComputePipelines;
+
+/// The driver's own function, and how many pipelines it still makes before the device is lost.
+static PIPELINES: Mutex<(Option<CreatePipelines>, usize)> = Mutex::new((None, 0));
+
+unsafe extern "system" fn lost_after_some(
+    device: vk::Device,
+    cache: vk::PipelineCache,
+    count: u32,
+    infos: *const vk::ComputePipelineCreateInfo<'_>,
+    callbacks: *const vk::AllocationCallbacks<'_>,
+    pipelines: *mut vk::Pipeline,
+) -> vk::Result {
+    let mut state = PIPELINES.lock().expect("no panic");
+    let create = state.0.expect("set before the device is used");
+    if let Some(rest) = state.1.checked_sub(1) {
+        state.1 = rest;
+        // SAFETY: as it was called.
+        return unsafe { create(device, cache, count, infos, callbacks, pipelines) };
+    }
+    for i in 0..count as usize {
+        // SAFETY: there is room for `count`. Vulkan requires null for a pipeline that is not made.
+        unsafe { pipelines.add(i).write(vk::Pipeline::null()) };
+    }
+    vk::Result::ERROR_DEVICE_LOST
+}
+
+/// In place of any function that makes one object of the device.
+unsafe extern "system" fn lost_object(
+    _: vk::Device,
+    _: *const c_void,
+    _: *const vk::AllocationCallbacks<'_>,
+    _: *mut u64,
+) -> vk::Result {
+    vk::Result::ERROR_DEVICE_LOST
+}
+
+/// A device that is lost while a renderer is made, at each of its pipelines in turn, and at its first object of each kind: an error,
+/// and what was made until then is freed.
+#[test]
+fn a_device_lost_while_a_renderer_is_made_keeps_nothing() {
+    let mut device = Device::new();
+    let plan = planned(&device);
+    let has_timestamps = device.report().timestamp_period_ns > 0.0;
+    let own = device.gpu.as_ref().expect("alive").host().clone();
+    // A renderer, calls of its allocator, and allocations that are not freed.
+    let make = |device: ash::Device| {
+        let host = Host { device, ..own.clone() };
+        let memory = Box::new(Counting::new(&host));
+        let counts = [memory.calls.clone(), memory.held.clone()];
+        let made = Renderer::with_memory(&host, plan.clone(), 2, memory);
+        (made, counts.map(|count| count.load(Ordering::Relaxed)))
+    };
+
+    PIPELINES.lock().expect("no panic").0 = Some(own.device.fp_v1_0().create_compute_pipelines);
+    let after = |count: usize| {
+        PIPELINES.lock().expect("no panic").1 = count;
+        let (name, function) = (c"vkCreateComputePipelines", lost_after_some as *const c_void);
+        // SAFETY: it has the type of that function, and calls the device's own or makes nothing.
+        let lost = unsafe { with_function(&own, name, function) };
+        make(lost)
+    };
+    let enough = 1000;
+    after(enough).0.expect("a renderer").destroy();
+    let count = enough - PIPELINES.lock().expect("no panic").1;
+    assert!(count > 2, "{count} pipelines");
+    for lost in 0..count {
+        let (made, [_, held]) = after(lost);
+        assert_lost(&format!("after {lost} of {count} pipelines"), made);
+        assert_eq!(held, 0, "after {lost} of {count} pipelines");
+    }
+
+    let mut calls_of_all = Vec::new();
+    for name in [
+        c"vkCreateShaderModule",
+        c"vkCreateImage",
+        c"vkCreateImageView",
+        c"vkCreateBuffer",
+        c"vkCreateBufferView",
+        c"vkCreateDescriptorPool",
+        c"vkCreateQueryPool",
+    ] {
+        if name == c"vkCreateQueryPool" && !has_timestamps {
+            continue;
+        }
+        // SAFETY: these functions have its type but for what the pointers point to, and it makes nothing.
+        let lost = unsafe { with_function(&own, name, lost_object as *const c_void) };
+        let (made, [calls, held]) = make(lost);
+        assert_lost(&format!("{name:?}"), made);
+        assert_eq!(held, 0, "{name:?}");
+        calls_of_all.push(calls);
+    }
+    // Most are made when others have memory already.
+    assert!(calls_of_all.iter().filter(|calls| **calls > 1).count() > 2, "{calls_of_all:?}");
+    end_without_objects(&mut device);
 }

@@ -1,6 +1,7 @@
 //! Frames in flight: several command buffers submitted at once, one wait. Synchronisation validation checks across
 //! them.
 
+use ash::prelude::VkResult;
 use ash::vk;
 use ridgelight::Result;
 use ridgelight::gpu::{Frame, Headless, Host, Renderer};
@@ -182,17 +183,28 @@ impl Recorded {
     }
 
     pub(super) fn submit(&self, device: &ash::Device, queue: vk::Queue) {
+        self.try_submit(device, queue).expect("submitted");
+    }
+
+    /// The same, where the device may refuse it.
+    pub(super) fn try_submit(&self, device: &ash::Device, queue: vk::Queue) -> VkResult<()> {
         let buffers = [self.commands];
         let submit = [vk::SubmitInfo::default().command_buffers(&buffers)];
         // SAFETY: recorded above; nobody else uses the queue meanwhile.
-        unsafe { device.queue_submit(queue, &submit, self.fence) }.expect("submitted");
+        unsafe { device.queue_submit(queue, &submit, self.fence) }
     }
 
     /// Waits for it, and frees it.
     pub(super) fn end(self, device: &ash::Device) {
-        // SAFETY: submitted above, and done after the wait.
+        // SAFETY: submitted above.
+        unsafe { device.wait_for_fences(&[self.fence], true, u64::MAX) }.expect("done");
+        self.free(device);
+    }
+
+    /// Frees it where it has run, or was refused.
+    pub(super) fn free(self, device: &ash::Device) {
+        // SAFETY: made above; the device does not use it any more.
         unsafe {
-            device.wait_for_fences(&[self.fence], true, u64::MAX).expect("done");
             device.destroy_fence(self.fence, None);
             device.destroy_command_pool(self.pool, None);
         }

@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex};
 
 use ash::vk;
 use ridgelight::Result;
-use ridgelight::gpu::{Allocation, Allocator, Blocks, MemoryRequest, Renderer, ViewRenderer};
+use ridgelight::gpu::{Allocation, Allocator, Blocks, Host, MemoryRequest, Renderer, ViewRenderer};
 use ridgelight::plan::{self, Picture, Rectangle, View, ViewOptions};
 use ridgelight::scene::{Border, Camera, Lens, Quality};
 
@@ -102,21 +102,32 @@ fn two_threads_have_a_renderer_each() {
     frames.into_iter().for_each(|frame| gpu.end(frame));
 }
 
-/// Blocks that count their calls.
-struct Counting {
+/// Blocks that count their calls, and the allocations that are not freed yet.
+pub(super) struct Counting {
     blocks: Blocks,
-    calls: Arc<AtomicUsize>,
+    pub(super) calls: Arc<AtomicUsize>,
+    pub(super) held: Arc<AtomicUsize>,
+}
+
+impl Counting {
+    pub(super) fn new(host: &Host) -> Self {
+        let blocks = Blocks::new(host).expect("blocks");
+        Self { blocks, calls: Arc::default(), held: Arc::default() }
+    }
 }
 
 // SAFETY: what `Blocks` hands out.
 unsafe impl Allocator for Counting {
     fn allocate(&mut self, request: &MemoryRequest<'_>) -> Result<Allocation> {
         self.calls.fetch_add(1, Ordering::Relaxed);
-        self.blocks.allocate(request)
+        let allocation = self.blocks.allocate(request)?;
+        self.held.fetch_add(1, Ordering::Relaxed);
+        Ok(allocation)
     }
 
     fn free(&mut self, allocation: Allocation) {
         self.calls.fetch_add(1, Ordering::Relaxed);
+        self.held.fetch_sub(1, Ordering::Relaxed);
         self.blocks.free(allocation);
     }
 
@@ -155,9 +166,8 @@ fn take_no_more_memory(frames: usize) {
     let texels = scenes[0].field.heights_m();
     let frame = gpu.frame(plans[0].clone(), &[texels]).expect("a frame");
     let (inputs, outputs) = (frame.inputs(), frame.outputs());
-    let calls = Arc::new(AtomicUsize::new(0));
-    let blocks = Blocks::new(gpu.host()).expect("blocks");
-    let memory = Box::new(Counting { blocks, calls: calls.clone() });
+    let memory = Box::new(Counting::new(gpu.host()));
+    let calls = memory.calls.clone();
     let made = Renderer::with_memory(gpu.host(), plans[0].clone(), 2, memory);
     let mut renderer = made.expect("a renderer");
     let (bytes, made) = (renderer.device_bytes(), calls.load(Ordering::Relaxed));
