@@ -193,8 +193,10 @@ fn clipmap(wanted: &Wanted, target: Entity, images: &mut Assets<Image>, is_flat:
     }
     Clipmap {
         half_width: 128,
-        // The coarsest level is 32 km wide. With another `base_scale`, bevy-clipmap 1.0.4 does not draw parts of the coarser levels.
-        levels: 8,
+        // The coarsest level reaches half_width * 2^(levels - 1) * base_scale = 32.8 km from the camera. The far edge of the field
+        // lies 19.4 km from the camera of the view. With another `base_scale`, bevy-clipmap 1.0.4 does not draw parts of the
+        // coarser levels.
+        levels: 9,
         base_scale: 1.0,
         texel_size: wanted.cell,
         target,
