@@ -49,6 +49,8 @@ pub fn limits(device: &wgpu::Device) -> Result<Limits> {
     let mut limits = gpu::limits(&host.instance, host.physical_device);
     // Inputs and outputs are textures of wgpu's, whose limits may be lower.
     limits.image_side = limits.image_side.min(device.limits().max_texture_dimension_2d);
+    // `image_layers` stays that of Vulkan. It also bounds Ridgelight's own images, which wgpu does not make: 256 layers, wgpu's
+    // default, would cut a sweep into more batches. `texture` refuses outputs of too many layers.
     // `Renderer::set_plan` may hold the resources of two plans for a moment.
     limits.memory_budget /= 2;
     Ok(limits)
