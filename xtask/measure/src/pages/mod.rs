@@ -55,7 +55,7 @@ const HOSTS: [(&str, &str, &str); 6] = [
     (
         "C++, `vulkan.hpp`",
         "crates/capi/tests/c/host.cpp",
-        "the same with `ridgelight.hpp` and an allocator of its own",
+        "`ridgelight.hpp` and an allocator of its own; the static library, and the shared one under the address sanitizer; `tools/installed` also links both by CMake",
     ),
     (
         "Rust, `wgpu`",
