@@ -54,7 +54,28 @@ fn the_header_is_what_the_source_says() {
     assert!(done.status.success(), "{output}");
 }
 
-/// The C of the pages compiles, in a function that has its variables.
+/// The one block of a language on a page of docs/.
+fn block(page: &str, language: &str) -> String {
+    let text = std::fs::read_to_string(Path::new(ROOT).join("docs").join(page)).expect(page);
+    let begin = format!("\n```{language}\n");
+    let blocks: Vec<&str> =
+        text.split(begin.as_str()).skip(1).filter_map(|rest| rest.split("```").next()).collect();
+    assert_eq!(blocks.len(), 1, "{page}");
+    blocks[0].to_owned()
+}
+
+/// Whether a compiler for a standard accepts a source, and its messages.
+fn accepted([compiler, standard, ending]: [&str; 3], source: &str) -> (bool, String) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("page").with_extension(ending);
+    std::fs::write(&file, source).expect("written");
+    let mut command = Command::new(compiler);
+    command.args([standard, "-fsyntax-only", "-Wall", "-Wextra", "-Werror", "-I"]);
+    let (done, output) = run(command.arg(Path::new(ROOT).join("crates/capi/include")).arg(&file));
+    (done.status.success(), output)
+}
+
+/// The C of the pages compiles, in a function that has its variables, and the C++ by itself.
 #[test]
 fn the_c_of_the_pages_compiles() {
     const ENGINE: &str = "#include <vulkan/vulkan.h>\n#include <ridgelight.h>\n\
@@ -64,24 +85,15 @@ fn the_c_of_the_pages_compiles() {
         void engine(VkInstance instance, VkPhysicalDevice physical_device, VkDevice device, uint32_t family,\n\
         VkImage heights_image, VkImageView heights_view, VkImage light_image, VkImageView light_view,\n\
         VkCommandBuffer commands, uint32_t frame_in_flight, RidgelightPlan *plan, RidgelightRenderer *renderer)\n{\n";
-    let page = std::fs::read_to_string(Path::new(ROOT).join("docs/embedding.md")).expect("it");
-    let blocks: Vec<&str> =
-        page.split("\n```c\n").skip(1).filter_map(|rest| rest.split("```").next()).collect();
-    assert_eq!(blocks.len(), 1, "docs/embedding.md");
-    let folder = tempfile::tempdir().expect("a folder");
-    let file = folder.path().join("page.c");
-    let compiles = |block: &str| {
-        std::fs::write(&file, format!("{ENGINE}{block}}}\n")).expect("written");
-        let mut c = Command::new("cc");
-        c.args(["-std=c11", "-fsyntax-only", "-Wall", "-Wextra", "-Werror", "-I"]);
-        let (done, output) = run(c.arg(Path::new(ROOT).join("crates/capi/include")).arg(&file));
-        (done.status.success(), output)
-    };
-    let (is_right, output) = compiles(blocks[0]);
-    assert!(is_right, "{output}");
-    // A member that the header lacks.
-    let wrong = blocks[0].replace(".queue_family", ".family");
-    assert!(wrong != blocks[0] && !compiles(&wrong).0);
+    let c = format!("{ENGINE}{}}}\n", block("embedding.md", "c"));
+    let cpp = block("embedding/cpp.md", "cpp");
+    for (by, source) in [(["cc", "-std=c11", "c"], c), (["c++", "-std=c++11", "cpp"], cpp)] {
+        let (is_right, output) = accepted(by, &source);
+        assert!(is_right, "{output}");
+        // A member that the header lacks.
+        let wrong = source.replace(".queue_family", ".family");
+        assert!(wrong != source && !accepted(by, &wrong).0, "{by:?}");
+    }
 }
 
 /// Every function of the header is exported, and no other symbol.
