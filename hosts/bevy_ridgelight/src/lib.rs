@@ -8,6 +8,8 @@ use bevy::prelude::*;
 use bevy::render::extract_component::{ExtractComponent, ExtractComponentPlugin};
 use bevy::render::render_resource::{Extent3d, TextureDimension, TextureFormat, TextureUsages};
 
+#[doc(hidden)]
+pub use light::Submissions;
 pub use terrain::TerrainMaterial;
 
 /// Lights every [`HeightField`] that has a [`FieldLight`].

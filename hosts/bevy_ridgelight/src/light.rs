@@ -2,7 +2,8 @@
 
 use std::collections::HashMap;
 use std::f32::consts::PI;
-use std::sync::{Mutex, PoisonError};
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use bevy::ecs::entity::Entity;
 use bevy::prelude::*;
@@ -36,6 +37,27 @@ struct Changes {
     images: Vec<AssetId<Image>>,
 }
 
+/// Submissions of light since the start, in both worlds. For tests: an edit that lights the whole field has the same bits as one
+/// that does not.
+#[derive(Resource, Clone, Default)]
+pub struct Submissions(Arc<[AtomicU32; 3]>);
+
+// Places of `Submissions`.
+const WHOLE: usize = 0;
+const PASSES: usize = 1;
+const EDIT: usize = 2;
+
+impl Submissions {
+    /// Of all passes, of some passes, and of edits.
+    pub fn counts(&self) -> [u32; 3] {
+        [WHOLE, PASSES, EDIT].map(|kind| self.0[kind].load(Ordering::Relaxed))
+    }
+
+    fn count(&self, kind: usize) {
+        self.0[kind].fetch_add(1, Ordering::Relaxed);
+    }
+}
+
 /// What is lit, by entity of the main world. Made again with a new device.
 #[derive(Resource, Default)]
 struct Fields(Mutex<HashMap<Entity, Field>>);
@@ -47,11 +69,14 @@ struct Field {
 }
 
 pub(crate) fn build(app: &mut App) {
+    let submissions = Submissions::default();
     app.init_resource::<Sun>()
+        .insert_resource(submissions.clone())
         .add_plugins(ExtractResourcePlugin::<Sun>::default())
         .add_systems(PostUpdate, follow_sun.after(TransformSystems::Propagate));
     if let Some(render) = app.get_sub_app_mut(RenderApp) {
         render
+            .insert_resource(submissions)
             .init_resource::<Changes>()
             .init_gpu_resource::<Fields>()
             .add_systems(ExtractSchedule, extract_changes)
@@ -94,6 +119,7 @@ struct FieldRenderer {
     total: wgpu::Texture,
     /// The sky of directions, where bent normals are computed.
     environment: Option<wgpu::Texture>,
+    submissions: Submissions,
 }
 
 /// What the light of a field depends on, besides events.
@@ -216,6 +242,7 @@ impl FieldRenderer {
         device: &wgpu::Device,
         queue: &wgpu::Queue,
         State { settings, images, sun, .. }: &State,
+        submissions: &Submissions,
     ) -> ridgelight::Result<Self> {
         let plan = settings.plan(&limits(device)?, sun.unwrap_or(NOT_RISEN))?;
         let (_, total) = plan.outputs().next().expect("the total radiance is the first output");
@@ -238,7 +265,8 @@ impl FieldRenderer {
         });
         let renderer = Renderer::new(device, queue, plan)?;
         let (horizons, environment) = (horizons.transpose()?, environment.transpose()?);
-        let mut lit = Self { renderer, horizons, total, environment };
+        let submissions = submissions.clone();
+        let mut lit = Self { renderer, horizons, total, environment, submissions };
         lit.submit(images, None)?;
         Ok(lit)
     }
@@ -249,9 +277,11 @@ impl FieldRenderer {
         match passes {
             Some([]) => {}
             Some(passes) => {
+                self.submissions.count(PASSES);
                 self.renderer.submit_passes(&refs(&inputs), &refs(&outputs), passes)?;
             }
             None => {
+                self.submissions.count(WHOLE);
                 self.renderer.submit(&refs(&inputs), &refs(&outputs))?;
                 if let (Some(renderer), Some(angles)) = (&mut self.horizons, &images.horizons) {
                     renderer.submit(&[&images.heights], &[angles])?;
@@ -308,6 +338,7 @@ impl FieldRenderer {
                 cols: edit.size.x,
                 rows: edit.size.y,
             };
+            self.submissions.count(EDIT);
             self.renderer.submit_edit(&refs(&inputs), &refs(&outputs), rectangle)?;
         }
         Ok(())
@@ -356,9 +387,9 @@ fn light_fields(
     fields: Query<(&MainEntity, &HeightField, &FieldLight)>,
     sun: Res<Sun>,
     images: Res<RenderAssets<GpuImage>>,
-    device: Res<RenderDevice>,
-    queue: Res<RenderQueue>,
+    (device, queue): (Res<RenderDevice>, Res<RenderQueue>),
     lit: Res<Fields>,
+    submissions: Res<Submissions>,
     mut changes: ResMut<Changes>,
 ) {
     let (device, queue) = (device.wgpu_device(), &***queue);
@@ -403,7 +434,7 @@ fn light_fields(
             }
             _ => {
                 edits.iter().for_each(|edit| write_edit(queue, &state.images.heights, edit));
-                FieldRenderer::new(device, queue, &state).map(Some)
+                FieldRenderer::new(device, queue, &state, &submissions).map(Some)
             }
         };
         let renderer = done.unwrap_or_else(|error| {

@@ -13,7 +13,8 @@ use bevy::render::renderer::RenderDevice;
 use bevy::window::ExitCondition;
 use bevy::winit::WinitPlugin;
 use bevy_ridgelight::{
-    FieldLight, HeightEdit, HeightField, RidgelightPlugin, TerrainMaterial, heights_image,
+    FieldLight, HeightEdit, HeightField, RidgelightPlugin, Submissions, TerrainMaterial,
+    heights_image,
 };
 use ridgelight::gpu::{Headless, HeadlessOptions};
 use ridgelight::plan::{self, Picture};
@@ -178,12 +179,15 @@ fn light_is_that_of_the_core() {
         same_bits(&floats(&mut app, &light.sky_view), &of_sky, &moved);
     }
     let before = heights.clone();
+    let submissions = app.world().resource::<Submissions>().clone();
+    let [whole, passes, edits] = submissions.counts();
     let edit = raise(&mut heights, entity, UVec2::new(40, 30), UVec2::new(7, 5));
     app.world_mut().write_message(edit);
     let [of_sun, of_sky] = expected(&heights, 300.0, 40.0);
     assert_ne!(expected(&before, 300.0, 40.0)[0], of_sun);
     same_bits(&floats(&mut app, &light.sun), &of_sun, "edit");
     same_bits(&floats(&mut app, &light.sky_view), &of_sky, "edit");
+    assert_eq!(submissions.counts(), [whole, passes, edits + 1], "all passes, some passes, edits");
 
     // Two edits, each within reach of the other, in the frame in which the sun moves.
     for corner in [UVec2::new(50, 34), UVec2::new(46, 40)] {
