@@ -298,9 +298,13 @@ fn pictures_have_the_light() {
     let exposure = 1.0 / (1.2 * 2_f32.powf(ev100));
     // So that white ground, lit by both, is a little below white.
     let (illuminance, brightness) = (0.55 * std::f32::consts::PI / exposure, 0.35 / exposure);
-    let light = DirectionalLight { illuminance, ..default() };
+    // All six differ, so that swapped channels or swapped lights give another picture.
+    let [sun_colour, sky_colour] = [[1.0_f32, 0.8, 0.5], [0.4, 0.6, 0.9]];
+    let colour = |[r, g, b]: [f32; 3]| Color::linear_rgb(r, g, b);
+    let light = DirectionalLight { color: colour(sun_colour), illuminance, ..default() };
     app.world_mut().spawn((light, sun_at(140.0, 25.0)));
-    app.world_mut().insert_resource(GlobalAmbientLight { brightness, ..default() });
+    let ambient = GlobalAmbientLight { color: colour(sky_colour), brightness, ..default() };
+    app.world_mut().insert_resource(ambient);
     let centre = 0.5 * (SIZE - UVec2::ONE).as_vec2() * CELL;
     let centre = Vec3::new(centre.x, 0.0, centre.y);
     let above =
@@ -319,8 +323,12 @@ fn pictures_have_the_light() {
     for row in 1..SIZE.y - 1 {
         for col in 1..SIZE.x - 1 {
             let i = (row * SIZE.x + col) as usize;
-            let light = (illuminance * of_sun[i] + brightness * of_sky[i]) * exposure;
-            worst = worst.max((f32::from(codes[4 * i]) - 255.0 * encoded(light)).abs());
+            for channel in 0..3 {
+                let sun = sun_colour[channel] * illuminance * of_sun[i];
+                let sky = sky_colour[channel] * brightness * of_sky[i];
+                let code = 255.0 * encoded((sun + sky) * exposure);
+                worst = worst.max((f32::from(codes[4 * i + channel]) - code).abs());
+            }
         }
     }
     // Half a code of rounding, and as much for the device's curve of sRGB (Vulkan allows 0.6 codes in all) and for
