@@ -75,15 +75,16 @@ pub(crate) fn build(app: &mut App) {
         .add_systems(Last, warn_of_turns);
 }
 
-/// Light is computed in the field's own axes and units.
+/// What is wrong with the place of a field, if anything: light is computed in the field's own axes and units.
+fn misplaced(placed: &GlobalTransform) -> Option<&'static str> {
+    let is_upright = placed.affine().matrix3.abs_diff_eq(Mat3A::IDENTITY, 1e-4);
+    (!is_upright)
+        .then_some("a HeightField is turned or scaled: its light is that of the field as it is")
+}
+
 fn warn_of_turns(fields: Query<&GlobalTransform, (With<HeightField>, Changed<GlobalTransform>)>) {
-    for placed in fields {
-        let linear = placed.affine().matrix3;
-        if !linear.abs_diff_eq(Mat3A::IDENTITY, 1e-4) {
-            warn_once!(
-                "a HeightField is turned or scaled: its light is that of the field as it is"
-            );
-        }
+    for message in fields.iter().filter_map(misplaced) {
+        warn_once!("{message}");
     }
 }
 
@@ -140,4 +141,23 @@ pub(crate) fn mesh(size: UVec2, cell: Vec2) -> Mesh {
         .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, normals)
         .with_inserted_attribute(Mesh::ATTRIBUTE_UV_0, uvs)
         .with_inserted_indices(Indices::U32(indices))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_turned_or_scaled_field_gets_a_warning_and_a_moved_one_none() {
+        let is_warned = |transform: Transform| misplaced(&transform.into()).is_some();
+        assert!(!is_warned(Transform::from_xyz(-20.0, 3.0, 1e5)));
+        for turn in [Quat::from_rotation_x, Quat::from_rotation_y, Quat::from_rotation_z] {
+            assert!(is_warned(Transform::from_rotation(turn(0.01))));
+        }
+        for scale in [Vec3::splat(2.0), Vec3::new(1.0, 1.1, 1.0), Vec3::new(-1.0, 1.0, 1.0)] {
+            assert!(is_warned(Transform::from_scale(scale)));
+        }
+        let message = misplaced(&Transform::from_scale(Vec3::splat(2.0)).into());
+        assert!(message.is_some_and(|message| message.contains("turned or scaled")));
+    }
 }
