@@ -83,7 +83,9 @@ pub struct Headless {
     /// Tests replace functions of its device.
     #[doc(hidden)]
     pub host: Host,
-    queue: vk::Queue,
+    /// The queue of its own submissions.
+    #[doc(hidden)]
+    pub queue: vk::Queue,
     pool: vk::CommandPool,
     report: DeviceReport,
     #[doc(hidden)]
@@ -177,12 +179,6 @@ impl Headless {
     pub fn surface(&mut self) -> Option<(&ash::Entry, &ash::Instance, &mut Surface)> {
         let Started { entry, instance, surface, .. } = &mut self.started;
         Some((entry, instance, surface.as_mut()?))
-    }
-
-    /// The queue of its commands.
-    #[doc(hidden)]
-    pub fn queue(&self) -> vk::Queue {
-        self.queue
     }
 
     /// The device as renderers borrow it.

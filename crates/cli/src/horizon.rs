@@ -327,14 +327,21 @@ pub fn run(args: &HorizonArgs) -> Result<Outcome> {
         of_series =
             format!(", of which the series leaves out {left_out:.2} % (RMS of the tangents)");
     }
-    for (file, values) in [
-        (angles_file, "elevation of the horizon, rad"),
-        (distances_file, "distance to the horizon's occluder, m; 0 without one"),
-    ] {
+    let of_angles = match angles_file {
+        Some(LayerFile::Png(..)) => {
+            "sign(s) √|s| of the sine s of the horizon's elevation, -1..1 as 0..255; channels: north, east, south, west"
+        }
+        _ => "elevation of the horizon, rad",
+    };
+    let of_distances = "distance to the horizon's occluder, m; 0 without one";
+    for (file, values) in [(angles_file, of_angles), (distances_file, of_distances)] {
         let about = [metadata.as_slice(), &[("values".into(), values.into())]].concat();
         file.map_or(Ok(()), |file| file.finish(&about))?;
     }
     if let Some(json) = &args.global.json {
+        if has_layers {
+            metadata.push(("values".into(), of_angles.into()));
+        }
         let mut value = setup::as_json(&metadata, &times);
         value["azimuths_deg"] = compass.degrees.into();
         files::write_json(json, &value)?;

@@ -109,7 +109,7 @@ impl Painter {
         for (id, texture) in self.textures.iter_mut().filter(|(_, t)| !t.is_uploaded) {
             let all = ImageDelta::full(Arc::clone(&texture.image), texture.options);
             // Waits for the queue, so that no picture in flight uses the texture that this one replaces.
-            renderer.set_texture(gpu.queue(), pool, *id, &all).map_err(refused)?;
+            renderer.set_texture(gpu.queue, pool, *id, &all).map_err(refused)?;
             texture.is_uploaded = true;
         }
         Ok(())

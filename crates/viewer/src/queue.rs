@@ -76,7 +76,7 @@ impl Screen {
         unsafe {
             device
                 .reset_fences(&[slot.done])
-                .and_then(|()| device.queue_submit2(self.gpu.queue(), &submit, slot.done))
+                .and_then(|()| device.queue_submit2(self.gpu.queue, &submit, slot.done))
         }
         .map_err(failed("running a frame"))?;
         slot.is_in_flight = true;
@@ -93,7 +93,7 @@ impl Screen {
             .swapchains(&swapchains)
             .image_indices(&images);
         // SAFETY: the picture was acquired, and this slot's commands leave it for presentation.
-        let shown = unsafe { self.swapchains.queue_present(self.gpu.queue(), &info) };
+        let shown = unsafe { self.swapchains.queue_present(self.gpu.queue, &info) };
         match shown {
             Ok(is_suboptimal) => {
                 chain.is_stale |= is_suboptimal;

@@ -343,21 +343,21 @@ fn a_renderer_records_and_is_destroyed_after_a_lost_submission() {
     let first = Recorded::new(&lost, |commands| {
         renderer.record(commands, 0, &inputs, &outputs).expect("recorded");
     });
-    let submitted = first.try_submit(&lost.device, gpu.queue());
+    let submitted = first.try_submit(&lost.device, gpu.queue);
     assert_eq!(submitted, Err(vk::Result::ERROR_DEVICE_LOST));
     first.free(&lost.device);
     assert_eq!(renderer.timings(0), None, "nothing has run");
     let second = Recorded::new(&lost, |commands| {
         renderer.record(commands, 0, &inputs, &outputs).expect("recorded");
     });
-    second.submit(&alive, gpu.queue());
+    second.submit(&alive, gpu.queue);
     second.end(&alive);
     assert!(bits(gpu, &frame) == right);
     // Recorded, and then destroyed without a submission that succeeded.
     let last = Recorded::new(&lost, |commands| {
         renderer.record(commands, 0, &inputs, &outputs).expect("recorded");
     });
-    assert!(last.try_submit(&lost.device, gpu.queue()).is_err());
+    assert!(last.try_submit(&lost.device, gpu.queue).is_err());
     last.free(&lost.device);
     renderer.destroy();
     assert_eq!(held.load(Ordering::Relaxed), 0);

@@ -30,9 +30,9 @@ pub static LIGHTS: [Light; 3] = [
     Light {
         id: "sun",
         list: "suns",
-        value_name: "AZ,EL[,ANGLE[,IRRADIANCE]]",
+        value_name: "AZ,EL[,DIAMETER[,IRRADIANCE]]",
         help: "Sun: compass azimuth, elevation (degrees)",
-        long_help: "ANGLE is the angular diameter in degrees, default 0.53; 0 casts hard shadows. IRRADIANCE is that of a \
+        long_help: "DIAMETER is angular, in degrees, default 0.53; 0 casts hard shadows. IRRADIANCE is that of a \
                     surface facing the sun, one number or R,G,B, default 1. Repeat the flag for more suns.",
         parts: &[
             part("azimuth_deg", Numbers::One),
@@ -100,8 +100,8 @@ pub static LIGHTS: [Light; 3] = [
         list: "sphere_lights",
         value_name: "X,Y,Z,RADIUS,RADIANCE",
         help: "Sphere light: centre and radius (metres)",
-        long_help: "X is east of the westernmost column, Y north of the southernmost row, Z above height 0. RADIANCE is one \
-                    number or R,G,B. Repeat the flag for more.",
+        long_help: "X is east of the westernmost column, Y north of the southernmost row, Z above height 0. RADIANCE is that \
+                    of its surface, one number or R,G,B. Repeat the flag for more.",
         parts: &[
             part("position_m", Numbers::Three),
             part("radius_m", Numbers::One),

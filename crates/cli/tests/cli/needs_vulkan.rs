@@ -251,8 +251,10 @@ fn gpu_horizons_begin_in_the_north() {
     assert_eq!(at(1, 4, 4), 0.0);
     // k = 3 is the south-east.
     assert!((at(3, 0, 4) - (10_f32 / 128_f32.sqrt()).atan()).abs() < 1e-5, "{}", at(3, 0, 4));
-    let degrees: Vec<f64> =
-        serde_json::from_value(json(&folder.path("h.json"))["azimuths_deg"].take()).unwrap();
+    let mut about = json(&folder.path("h.json"));
+    // An .npy has no place for its unit.
+    assert_eq!(about["settings"]["values"], "elevation of the horizon, rad");
+    let degrees: Vec<f64> = serde_json::from_value(about["azimuths_deg"].take()).unwrap();
     assert_eq!(degrees, [0.0, 45.0, 90.0, 135.0, 180.0, 225.0, 270.0, 315.0]);
 
     done(&folder, "horizon field.npy -o h.exr --azimuths 8");

@@ -101,7 +101,7 @@ impl Slice {
 
     /// Elevations at which the lobe is not negligible. Beyond the cosine c lies cⁿ⁺¹ of it. a cos ω + b sin ω is
     /// √(a² + b²) cos(ω - ω_0).
-    pub(crate) fn lobe(&self, exponent: f64) -> [f64; 2] {
+    pub(crate) fn phong_range(&self, exponent: f64) -> [f64; 2] {
         let least = LOBE.powf(1.0 / (exponent + 1.0));
         let across = (least / self.a.hypot(self.b)).min(1.0).acos();
         let middle = self.b.atan2(self.a);
@@ -113,7 +113,7 @@ impl Slice {
     pub(crate) fn light(&self, low: f64, high: f64) -> f64 {
         let low = low.max(self.low);
         let Some(n) = self.exponent else { return slice(self.a, self.b, low, high) };
-        let [least, most] = self.lobe(n);
+        let [least, most] = self.phong_range(n);
         let (low, high) = (low.max(least), high.min(most));
         if high <= low {
             return 0.0;

@@ -62,7 +62,7 @@ impl<'a> Lit<'a> {
     }
 
     /// Directions of one grid point in which a lobe is evaluated, about.
-    pub fn lobe_points(&self) -> usize {
+    pub fn specular_points(&self) -> usize {
         let Some(specular) = &self.scene.surface.specular else { return 0 };
         let exponent = f64::from(specular.largest().exponent);
         let in_sky = 4.0 * (TAU * (exponent + 1.0).sqrt()).ceil();
@@ -86,8 +86,9 @@ impl<'a> Lit<'a> {
         let mut receivers = vec![(diffuse, light::albedo_at(&self.scene.surface, index))];
         let specular = self.scene.surface.specular.as_ref().map(|specular| specular.at(index));
         if let Some(phong) = specular.filter(|phong| phong.scale > 0.0) {
-            let lobe = Receiver::specular(diffuse.normal, self.view(place), phong.exponent.into());
-            receivers.push((lobe, [f64::from(phong.scale); 3]));
+            let mirrored =
+                Receiver::specular(diffuse.normal, self.view(place), phong.exponent.into());
+            receivers.push((mirrored, [f64::from(phong.scale); 3]));
         }
         let mut all = [0.0; 3];
         let (receivers, scales): (Vec<_>, Vec<_>) = receivers.into_iter().unzip();
@@ -211,7 +212,7 @@ impl<'a> Columns<'a> {
                         (0..3).for_each(|c| all[c] += weight * light * f64::from(texel[c]));
                     };
                     if let Some((_, exponent)) = receiver.phong_lobe {
-                        let [low, high] = lit.lobe(exponent);
+                        let [low, high] = lit.phong_range(exponent);
                         let is_narrow = PI / height as f64 * (exponent + 1.0).sqrt() <= NARROW;
                         let first = row_of(high).max(0.0) as usize;
                         let end =
@@ -288,8 +289,8 @@ mod tests {
             let [lit, dull] = [&scene, &specular(scene.clone(), DULL)].map(|s| Lit::of(s).at(4, 4));
             let oracle = Oracle::new(&scene.field, border);
             let normal = light::normal(&scene.field, border, 4, 4);
-            let lobe = [Receiver::specular_from_above(normal, 20.0)];
-            let all = Site::of(&oracle, [4, 4], &lobe).environment(&environment, 64);
+            let mirrored = [Receiver::specular_from_above(normal, 20.0)];
+            let all = Site::of(&oracle, [4, 4], &mirrored).environment(&environment, 64);
             for c in 0..3 {
                 let (got, want) = (lit[c] - dull[c], 0.5 * all[0][c]);
                 let most = if height == 128 { NARROW.powi(4) / 4320.0 } else { 1e-9 };
@@ -309,7 +310,7 @@ mod tests {
     /// direction θ from the zenith is the weight of a diffuse plane of that slope: (1 + cos θ) / 2 of the sky is above
     /// ground. A sun in the mirror direction gives (n + 1) / 2π of its irradiance.
     #[test]
-    fn lobes_over_level_ground_have_their_share_of_the_sky() {
+    fn specular_of_level_ground_has_its_share_of_the_sky() {
         let field = HeightField::new(SIDE, SIDE, &[2.0; SIDE * SIDE], [1.0; 2], None).unwrap();
         let level = |lights: Lights, exponent: f32| {
             let surface = Surface { albedo: Albedo::Constant([0.5; 3]), ..Surface::default() };

@@ -186,7 +186,7 @@ impl Probes {
         let side = scene.field.rows().max(scene.field.cols());
         // Rays over a periodic field may continue through that many periods.
         let periods = if scene.surface.border == Border::Periodic { PERIOD_CAP } else { 1 };
-        let cells = lit.rays() * side * periods + POINT_CELLS * lit.lobe_points();
+        let cells = lit.rays() * side * periods + POINT_CELLS * lit.specular_points();
         (CELLS / cells.max(1)).clamp(MIN_PROBES, MOST)
     }
 
