@@ -17,7 +17,7 @@ const USAGE: &str = "usage: cargo xtask COMMAND
   words              coined words that tools/words.txt forbids; fails where there is one
   size               lines of Rust and GLSL, files a folder, README, dependencies of an embedder
   surface [--check]  public items of the core, as kept in xtask/surface.txt
-  gallery            docs/gallery/index.md and its pictures, by the release program
+  gallery [FOLDER]   docs/gallery/index.md and its pictures, by the release program, and the contrast of real terrain in FOLDER
   performance        measures this device: docs/measured/performance.md and its plot
   install --prefix DIR
                      the release program to DIR/bin, the C library to DIR/lib, its headers to DIR/include,
@@ -33,7 +33,7 @@ fn main() -> ExitCode {
         ["layers", "--check"] => layers::check(root),
         ["words"] => words::check(root),
         ["size"] => size::print(root),
-        ["gallery"] => gallery(root),
+        ["gallery", data @ ..] => gallery(root, data),
         ["performance"] => performance(root),
         ["install", "--prefix", prefix] => install::install(root, Path::new(prefix)),
         ["surface"] => surface::write(root),
@@ -55,8 +55,8 @@ fn main() -> ExitCode {
     }
 }
 
-fn gallery(root: &Path) -> Result<String, String> {
-    measure(root, "gallery", &[])?;
+fn gallery(root: &Path, data: &[&str]) -> Result<String, String> {
+    measure(root, "gallery", data)?;
     Ok("wrote docs/gallery/index.md\n".to_owned())
 }
 

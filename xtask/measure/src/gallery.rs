@@ -181,6 +181,8 @@ pub fn field(mut args: Args) -> Outcome {
 /// Renders all and writes the page.
 pub fn run(mut args: Args) -> Outcome {
     let program = args.folder().ok_or("expected the program")?;
+    let data = args.folder();
+    args.end()?;
     let scratch = PathBuf::from("out/gallery");
     std::fs::create_dir_all(&scratch)?;
     std::fs::create_dir_all(FOLDER)?;
@@ -227,11 +229,67 @@ pub fn run(mut args: Args) -> Outcome {
         );
         println!("{name}: {ms:.0} ms");
     }
+    page += &contrast(&program, &scratch, data.as_deref())?;
     let commit = Command::new("git").args(["log", "-1", "--format=%h, %cs"]).output()?;
     let commit = String::from_utf8(commit.stdout)?;
     page += &format!("\n*{device}; commit {}*\n", commit.trim());
     std::fs::write(PAGE, page)?;
     Ok(())
+}
+
+/// Shares of the pixels with less light, whose codes the table has.
+const TAILS: [f64; 2] = [0.05, 0.95];
+
+/// A table of the luminance of pictures without flags: of the bundled mountain, of synthetic fields, and of each file in a folder.
+fn contrast(
+    program: &Path,
+    scratch: &Path,
+    data: Option<&Path>,
+) -> std::result::Result<String, Box<dyn std::error::Error>> {
+    const SIDE: usize = 640;
+    let mut fields = vec![("Mt Washington, 256²".to_owned(), MOUNTAINS.to_owned())];
+    for name in ["fractal", "escarpment", "dunes", "coast", "city"] {
+        let path = scratch.join(format!("{name}_{SIDE}.npy"));
+        let made = terrain_of(name, SIDE, 0.0)?;
+        files::write_npy_heights(&path, &made)?;
+        let input = format!("{} --cell {}", path.display(), made.cell_m()[0]);
+        fields.push((format!("synthetic: {name}, {SIDE}²"), input));
+    }
+    let mut real: Vec<_> = data.map_or(Ok(Vec::new()), |folder| {
+        std::fs::read_dir(folder)?.map(|file| Ok(file?.path())).collect::<std::io::Result<_>>()
+    })?;
+    real.sort();
+    // Pictures have no elevations: the bundled mountain is above, and a displacement map has no cell.
+    real.retain(|path| path.extension().is_some_and(|ending| ending != "png"));
+    for path in real {
+        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        fields.push((name, path.display().to_string()));
+    }
+    let mut table = "\n## Contrast of default pictures\n\nLuminance in codes of 0 to 255 of `render FIELD -o out.png`, from \
+        above, at the 5th and the 95th percentile of the pixels.\n\n| field | 5th | 95th | black, % | white, % |\n|---|---|---|---|---|\n"
+        .to_owned();
+    let output = scratch.join("contrast.png");
+    for (name, input) in fields {
+        let words: Vec<String> =
+            format!("render {input}").split_whitespace().map(str::to_owned).collect();
+        drawn(program, &words, &output, scratch)?;
+        let picture = image::open(&output)?.to_rgba8();
+        let visible = picture.pixels().filter(|pixel| pixel.0[3] > 0);
+        let luminance = |pixel: &image::Rgba<u8>| {
+            let weights = [0.2126, 0.7152, 0.0722];
+            (0..3).map(|c| weights[c] * f64::from(pixel.0[c])).sum::<f64>()
+        };
+        let mut codes: Vec<f64> = visible.map(luminance).collect();
+        codes.sort_by(f64::total_cmp);
+        let last = codes.len().saturating_sub(1) as f64;
+        let [dark, light] = TAILS.map(|share| codes[(share * last).round() as usize]);
+        let share = |is: fn(f64) -> bool| {
+            100.0 * codes.iter().filter(|code| is(**code)).count() as f64 / codes.len() as f64
+        };
+        let [black, white] = [share(|code| code < 0.5), share(|code| code > 254.5)];
+        table += &format!("| {name} | {dark:.0} | {light:.0} | {black:.2} | {white:.2} |\n");
+    }
+    Ok(table)
 }
 
 /// The file of the heights, and the command's words with the heights in place.

@@ -48,7 +48,7 @@ const PROGRAMS: [Program; 31] = [
     ("extremes", "DEVICE...", suites::extremes),
     ("field", "NAME SIDE FIELD.npy", gallery::field),
     ("fourier", "[FOLDER]", fourier::run),
-    ("gallery", "PROGRAM", gallery::run),
+    ("gallery", "PROGRAM [FOLDER]", gallery::run),
     ("gloss", "[SIDE] [--spp N] [-o PICTURE.png]", specular::indirect),
     ("goals", "PROGRAM [FOLDER]", goals::run),
     ("hosts", "HOST=CRATES=PROGRAM...", hosts::run),

@@ -7,6 +7,7 @@
 //! uses the other pairs: every field and every light is in both halves, and no pair is. For each
 //! error it prints the choice, its true error, and its time over that of the fastest settings that
 //! truly meet the goal. These are the best of a `trade` walk of S (20) seconds and of all choices.
+//! `--specular N` gives the ground an albedo of 0.5 and specular of exponent N and scale 0.4.
 
 mod fit;
 mod report;
@@ -14,7 +15,7 @@ mod report;
 use std::path::{Path, PathBuf};
 
 use ridgelight::gpu::Headless;
-use ridgelight::scene::{HeightField, Lights, Quality, Scene};
+use ridgelight::scene::{Albedo, HeightField, Lights, PhongSpecular, Quality, Scene, Specular};
 use ridgelight::{Error, Result};
 use ridgelight_io::{HeightOptions, read_environment, read_heights};
 use ridgelight_trade::auto::Drawn;
@@ -78,7 +79,12 @@ fn lights(folder: &Path) -> Result<Vec<(String, Lights)>> {
 }
 
 /// The scenes of one half, by name.
-fn scenes(folder: &Path, side: usize, is_fitted: bool) -> Result<Vec<(String, Scene)>> {
+fn scenes(
+    folder: &Path,
+    side: usize,
+    is_fitted: bool,
+    exponent: Option<f32>,
+) -> Result<Vec<(String, Scene)>> {
     let lights = lights(folder)?;
     let mut all = Vec::new();
     // From the last: the steepest of the data, which takes longest, is the first by name.
@@ -87,7 +93,13 @@ fn scenes(folder: &Path, side: usize, is_fitted: bool) -> Result<Vec<(String, Sc
         for (j, (light, lights)) in lights.iter().enumerate() {
             if ((i + j) % 2 == 0) == is_fitted {
                 let label = format!("{} | {light}", name(path));
-                all.push((label, inputs::lit_by(field.clone(), lights.clone())));
+                let mut scene = inputs::lit_by(field.clone(), lights.clone());
+                if let Some(exponent) = exponent {
+                    let phong = PhongSpecular { exponent, scale: 0.4 };
+                    scene.surface.specular = Some(Specular::Constant(phong));
+                    scene.surface.albedo = Albedo::Constant([0.5; 3]);
+                }
+                all.push((label, scene));
             }
         }
     }
@@ -109,9 +121,10 @@ fn judged(gpu: &mut Headless, scene: &Scene, quality: &Quality, runs: usize) -> 
 pub fn run(mut args: Args) -> Outcome {
     let (is_fitted, side) = (args.has("--fit"), args.number("--side", 256)?);
     let (seconds, json) = (args.number("--seconds", 20.0)?, args.path("--json")?);
+    let exponent = args.value("--specular")?;
     let folder = args.folder().ok_or("expected FOLDER")?;
     let mut gpu = args.open()?;
-    let scenes = scenes(&folder, side, is_fitted)?;
+    let scenes = scenes(&folder, side, is_fitted, exponent)?;
     let of = (side, &scenes[..]);
     match is_fitted {
         true => Ok(fit::fit(&mut gpu, of)?),
