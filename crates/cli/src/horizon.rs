@@ -329,7 +329,7 @@ pub fn run(args: &HorizonArgs) -> Result<Outcome> {
     }
     let of_angles = match angles_file {
         Some(LayerFile::Png(..)) => {
-            "sign(s) √|s| of the sine s of the horizon's elevation, -1..1 as 0..255; channels: north, east, south, west"
+            "sign(s) √|s|, s the sine of the horizon's elevation; -1..1 is mapped to 0..255; channels R, G, B, A: north, east, south, west"
         }
         _ => "elevation of the horizon, rad",
     };

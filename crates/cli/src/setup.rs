@@ -15,6 +15,7 @@ use ridgelight::scene::{
 use ridgelight::{Error, Result};
 use ridgelight_io as files;
 use ridgelight_io::{Georeference, HeightOptions};
+use ridgelight_trade::trade::approximates_specular;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -266,15 +267,13 @@ pub fn border(surface: &FieldArgs) -> Border {
     }
 }
 
-/// Refuses specular that is lit by harmonics, or beside bounces, where settings are compared with exact light.
+/// Refuses specular that `render` only approximates, where settings are compared with exact light.
 pub fn check_choice(scene: &Scene, bounces: u32, what: &str) -> Result<()> {
-    let found = match scene.surface.specular {
-        Some(Specular::Map(_)) => "a map of specular",
-        Some(Specular::Constant(_)) if bounces > 0 => "specular with bounces",
-        _ => return Ok(()),
-    };
-    let expected =
-        "one exponent and scale, without --bounces: the rest is only an approximation by harmonics";
+    if !approximates_specular(scene, bounces) {
+        return Ok(());
+    }
+    let found = if bounces > 0 { "specular with bounces" } else { "a map of specular" };
+    let expected = "one exponent and scale, without --bounces; other specular is only approximated, by SH of --sh-order";
     Err(Error::setting(format!("--specular with {what}"), found, expected))
 }
 

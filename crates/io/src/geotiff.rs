@@ -267,8 +267,8 @@ impl GeoTiffWriter {
     }
 }
 
-/// Whether a file that has so many bytes with offsets of 32 bits must be a BigTIFF. Offsets are below the length, so those of 2^32
-/// bytes would fit; but the last tile ends at the length, which readers may hold in 32 bits, too.
+/// Whether a file must be a BigTIFF; `bytes` is its length as a classic TIFF. All offsets of a file of 2^32 bytes fit in 32 bits, but its
+/// last tile ends at 2^32, and readers may store that end in 32 bits.
 fn needs_64_bits(bytes: u64) -> bool {
     bytes > u64::from(u32::MAX)
 }

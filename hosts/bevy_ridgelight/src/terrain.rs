@@ -79,7 +79,7 @@ pub(crate) fn build(app: &mut App) {
 fn misplaced(placed: &GlobalTransform) -> Option<&'static str> {
     let is_upright = placed.affine().matrix3.abs_diff_eq(Mat3A::IDENTITY, 1e-4);
     (!is_upright)
-        .then_some("a HeightField is turned or scaled: its light is that of the field as it is")
+        .then_some("a HeightField is turned or scaled, but its light is computed without that; use a translation only")
 }
 
 fn warn_of_turns(fields: Query<&GlobalTransform, (With<HeightField>, Changed<GlobalTransform>)>) {

@@ -268,8 +268,8 @@ fn an_object_that_outlives_its_device_is_reported() {
     assert_eq!(is_reported, device.validates, "{messages:?}");
 }
 
-/// Every call of `Headless` that runs commands returns the loss of the device as an error, and frees what it made. A frame that was
-/// recorded and did not run counts as not drawn, so its next edit is refused; with a device that runs, it draws the same bits.
+/// Every call of `Headless` that runs commands returns the loss of the device as an error, and frees what it made. A frame whose
+/// submission failed counts as not drawn, so its next edit is refused. With the working device it gives the same bits again.
 #[test]
 fn headless_calls_return_the_loss_of_the_device() {
     let mut device = Device::new();
@@ -450,14 +450,14 @@ fn a_device_lost_while_a_renderer_is_made_keeps_nothing() {
         if name == c"vkCreateQueryPool" && !has_timestamps {
             continue;
         }
-        // SAFETY: these functions have its type but for what the pointers point to, and it makes nothing.
+        // SAFETY: these functions differ from `lost_object` only in the types behind pointers, and it never uses those.
         let lost = unsafe { with_function(&own, name, lost_object as *const c_void) };
         let (made, [calls, held]) = make(lost);
         assert_lost(&format!("{name:?}"), made);
         assert_eq!(held, 0, "{name:?}");
         calls_of_all.push(calls);
     }
-    // Most are made when others have memory already.
+    // Most of these objects are created after other allocations, so the failure must free them.
     assert!(calls_of_all.iter().filter(|calls| **calls > 1).count() > 2, "{calls_of_all:?}");
     end_without_objects(&mut device);
 }

@@ -172,6 +172,9 @@ pub fn field(mut args: Args) -> Outcome {
     } else {
         terrain_of(&name, side, 0.0)?
     };
+    if let Some(folder) = Path::new(&path).parent() {
+        std::fs::create_dir_all(folder)?;
+    }
     files::write_npy_heights(Path::new(&path), &made)?;
     let [x, y] = made.cell_m();
     println!("--cell {x},{y}");
@@ -237,7 +240,7 @@ pub fn run(mut args: Args) -> Outcome {
     Ok(())
 }
 
-/// Shares of the pixels with less light, whose codes the table has.
+/// Percentiles of luminance in the table.
 const TAILS: [f64; 2] = [0.05, 0.95];
 
 /// A table of the luminance of pictures without flags: of the bundled mountain, of synthetic fields, and of each file in a folder.
@@ -247,32 +250,35 @@ fn contrast(
     data: Option<&Path>,
 ) -> std::result::Result<String, Box<dyn std::error::Error>> {
     const SIDE: usize = 640;
-    let mut fields = vec![("Mt Washington, 256²".to_owned(), MOUNTAINS.to_owned())];
+    let words = |text: &str| text.split_whitespace().map(str::to_owned).collect::<Vec<_>>();
+    let mut fields = vec![("Mt Washington, 256²".to_owned(), words(MOUNTAINS))];
     for name in ["fractal", "escarpment", "dunes", "coast", "city"] {
         let path = scratch.join(format!("{name}_{SIDE}.npy"));
         let made = terrain_of(name, SIDE, 0.0)?;
         files::write_npy_heights(&path, &made)?;
         let input = format!("{} --cell {}", path.display(), made.cell_m()[0]);
-        fields.push((format!("synthetic: {name}, {SIDE}²"), input));
+        fields.push((format!("synthetic: {name}, {SIDE}²"), words(&input)));
     }
     let mut real: Vec<_> = data.map_or(Ok(Vec::new()), |folder| {
         std::fs::read_dir(folder)?.map(|file| Ok(file?.path())).collect::<std::io::Result<_>>()
     })?;
     real.sort();
-    // Pictures have no elevations: the bundled mountain is above, and a displacement map has no cell.
-    real.retain(|path| path.extension().is_some_and(|ending| ending != "png"));
+    // Without PNGs: the bundled mountain is already in the list, and a displacement map has no cell size.
+    real.retain(|path| {
+        let ending = path.extension().unwrap_or_default().to_string_lossy();
+        ["asc", "hgt", "npz", "tif"].contains(&ending.as_ref())
+    });
     for path in real {
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        fields.push((name, path.display().to_string()));
+        fields.push((name, vec![path.display().to_string()]));
     }
     let mut table = "\n## Contrast of default pictures\n\nLuminance in codes of 0 to 255 of `render FIELD -o out.png`, from \
         above, at the 5th and the 95th percentile of the pixels.\n\n| field | 5th | 95th | black, % | white, % |\n|---|---|---|---|---|\n"
         .to_owned();
     let output = scratch.join("contrast.png");
     for (name, input) in fields {
-        let words: Vec<String> =
-            format!("render {input}").split_whitespace().map(str::to_owned).collect();
-        drawn(program, &words, &output, scratch)?;
+        let command = [vec!["render".to_owned()], input].concat();
+        drawn(program, &command, &output, scratch)?;
         let picture = image::open(&output)?.to_rgba8();
         let visible = picture.pixels().filter(|pixel| pixel.0[3] > 0);
         let luminance = |pixel: &image::Rgba<u8>| {
@@ -281,7 +287,7 @@ fn contrast(
         };
         let mut codes: Vec<f64> = visible.map(luminance).collect();
         codes.sort_by(f64::total_cmp);
-        let last = codes.len().saturating_sub(1) as f64;
+        let last = codes.len().checked_sub(1).ok_or("a picture without pixels")? as f64;
         let [dark, light] = TAILS.map(|share| codes[(share * last).round() as usize]);
         let share = |is: fn(f64) -> bool| {
             100.0 * codes.iter().filter(|code| is(**code)).count() as f64 / codes.len() as f64

@@ -89,8 +89,8 @@ static RidgelightPlan *plan_of(const RidgelightHost *host, int level, int cycle)
     return plan;
 }
 
-/* The parts that the next frame records of those `left`: one at least, and more while the last time of a part predicts that all
- * fit the budget. Without a time, one. */
+/* How many of the `left` parts the next frame records: as many as fit the budget at the last measured time per part, but at least
+ * one. One if no time is known. */
 static int parts_within(double budget_ms, double part_ms, int left) {
     int parts = 1;
     while (parts < left && part_ms > 0 && (parts + 1) * part_ms <= budget_ms) parts++;
@@ -209,7 +209,7 @@ int main(int argc, char **argv) {
         }
     }
     printf("%d cycles of %d levels in %d frames; the longest took %.3f ms\n", CYCLES, LEVELS, frames, longest_ms);
-    printf("the shortest part took %.17g ms; several parts were predicted to take at most %.17g ms\n", shortest_part_ms,
+    printf("the shortest part took %.17g ms; frames of several parts were predicted to take at most %.17g ms\n", shortest_part_ms,
         predicted_ms);
 
     begin();

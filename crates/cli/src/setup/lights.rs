@@ -32,7 +32,7 @@ pub static LIGHTS: [Light; 3] = [
         list: "suns",
         value_name: "AZ,EL[,DIAMETER[,IRRADIANCE]]",
         help: "Sun: compass azimuth, elevation (degrees)",
-        long_help: "DIAMETER is angular, in degrees, default 0.53; 0 casts hard shadows. IRRADIANCE is that of a \
+        long_help: "DIAMETER is the angular diameter in degrees, default 0.53; 0 casts hard shadows. IRRADIANCE is that of a \
                     surface facing the sun, one number or R,G,B, default 1. Repeat the flag for more suns.",
         parts: &[
             part("azimuth_deg", Numbers::One),
@@ -101,7 +101,7 @@ pub static LIGHTS: [Light; 3] = [
         value_name: "X,Y,Z,RADIUS,RADIANCE",
         help: "Sphere light: centre and radius (metres)",
         long_help: "X is east of the westernmost column, Y north of the southernmost row, Z above height 0. RADIANCE is that \
-                    of its surface, one number or R,G,B. Repeat the flag for more.",
+                    of the sphere's surface, one number or R,G,B. Repeat the flag for more.",
         parts: &[
             part("position_m", Numbers::Three),
             part("radius_m", Numbers::One),

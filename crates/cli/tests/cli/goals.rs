@@ -7,7 +7,7 @@ use ridgelight_cpu::light::{self, Receiver, Site};
 use ridgelight_cpu::oracle::Oracle;
 use ridgelight_io::HeightOptions;
 
-use crate::needs_vulkan::{attributes, write_field};
+use crate::needs_vulkan::{attributes, plane, write_field};
 use crate::{Folder, read, refused, succeeded};
 
 #[test]
@@ -221,7 +221,8 @@ fn gpu_a_max_error_holds_with_bounces() {
     assert!(off(0) > 0.02, "{}", off(0));
 }
 
-/// The same with specular, against lobes over the oracle's horizons. Its diffuse light alone would miss the goal.
+/// The same with specular, against lobes over the oracle's horizons and against path tracing, which shares nothing with them. Its diffuse
+/// light alone would miss the goal.
 #[test]
 fn gpu_a_max_error_holds_with_specular() {
     let folder = Folder::new();
@@ -256,6 +257,16 @@ fn gpu_a_max_error_holds_with_specular() {
     // Rounding of f32 pictures, and of the oracle's 720 azimuths against 360.
     assert!((off(1.0) - stated).abs() < 0.1 * stated + 1e-4, "{} of {stated}", off(1.0));
     assert!(off(0.0) > 0.3, "{}", off(0.0));
+    let traced = args.replace("--json out.json --max-error 0.01", "--spp 16384 --bounces 0");
+    succeeded(&folder, &format!("{} -o traced.exr", traced.replace("render", "reference")));
+    let path = folder.path("traced.exr");
+    let noise: f64 = attributes(&path)["relative_standard_error"].parse().unwrap();
+    let traced = read(&path);
+    let pairs = plane(&traced, "R").iter().zip(&exr.planes[0]);
+    let squares = pairs.map(|(traced, found)| f64::from(traced - found).powi(2));
+    let off = (squares.sum::<f64>() / all.len() as f64).sqrt() / mean;
+    // The mean square of 576 texels with normal noise is within a quarter of its expectation, at four standard deviations.
+    assert!(noise < 0.01 && off.powi(2) <= at_most.powi(2) + 1.25 * noise.powi(2), "{off} {noise}");
 
     // From a camera the probes have its view: from above, the highlight would be elsewhere.
     let sun = "--sun 135,30,4,3 --camera 315,30 --size 64x36 -o camera.exr";

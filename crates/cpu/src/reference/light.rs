@@ -109,7 +109,7 @@ impl Slice {
     }
 
     /// π times the weights' integral over elevations; the lobe's by Gauss' rule of 4 points in panels
-    /// half as wide as the lobe, 1/√(n + 1), within [`LOBE`].
+    /// ([`panels_a_rad`]), within [`LOBE`].
     pub(crate) fn light(&self, low: f64, high: f64) -> f64 {
         let low = low.max(self.low);
         let Some(n) = self.exponent else { return slice(self.a, self.b, low, high) };
@@ -118,7 +118,7 @@ impl Slice {
         if high <= low {
             return 0.0;
         }
-        let panels = (2.0 * (high - low) * (n + 1.0).sqrt()).ceil();
+        let panels = ((high - low) * panels_a_rad(n)).ceil();
         let half = 0.5 * (high - low) / panels;
         (0..panels as usize)
             .flat_map(|i| GAUSS_4.map(|(x, w)| (low + half * ((2 * i + 1) as f64 + x), w)))
@@ -129,6 +129,18 @@ impl Slice {
 
 /// Share of a lobe that is left out, about its rim.
 const LOBE: f64 = 1e-10;
+
+/// Panels of a lobe: half as wide as it, 1/√(n + 1). Below the exponent 1 the rim is steep, and 24 keep the error of a sky at 1e-4.
+fn panels_a_rad(exponent: f64) -> f64 {
+    let wanted = 2.0 * (exponent + 1.0).sqrt();
+    if exponent > 0.0 && exponent < 1.0 { wanted.max(24.0) } else { wanted }
+}
+
+/// The largest angle to the middle of a lobe at which it is not negligible, and the points of Gauss' rule across twice that.
+pub(crate) fn phong_width(exponent: f64) -> (f64, usize) {
+    let half_rad = LOBE.powf(1.0 / (exponent + 1.0)).acos();
+    (half_rad, 4 * (2.0 * half_rad * panels_a_rad(exponent)).ceil() as usize)
+}
 
 /// Nodes and weights of Gauss' rule of 4 points on [-1, 1]: x² = 3/7 ± (2/7)√(6/5), w = (18 ± √30)/36.
 const GAUSS_4: [(f64, f64); 4] = [

@@ -124,6 +124,8 @@ impl Model {
     pub fn of(scene: &Scene, statistics: &Statistics, bounces: u32) -> Self {
         let features = statistics.features();
         let bounced = (bounces > 0).then(|| BouncedLight::of(scene, statistics));
+        // No scene of the fit has specular: a factor e more.
+        let unfitted = if scene.surface.specular.is_some() { 1.0 } else { 0.0_f64 };
         let mut model = Self { logs: [None; ALL], covariance: [[0.0; ALL]; ALL], bounced };
         for (i, (log, spread)) in bounced.iter().flat_map(BouncedLight::guess).enumerate() {
             model.logs[PARTS.len() + i] = Some(log);
@@ -134,7 +136,7 @@ impl Model {
                 let sum: f64 = fitted.weights.iter().zip(features).map(|(w, x)| w * x).sum();
                 // No part was measured beyond these: a guess outside them extrapolates the fit.
                 model.logs[i] = Some((fitted.bias + sum).clamp(1e-6_f64.ln(), 0.0));
-                model.covariance[i][i] = fitted.spread.powi(2);
+                model.covariance[i][i] = fitted.spread.powi(2) + unfitted.powi(2);
             }
         }
         model

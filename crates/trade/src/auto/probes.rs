@@ -10,7 +10,9 @@ const MIN_PROBES: usize = 64;
 const MOST: usize = 1000;
 /// Cells that the oracle's rays may cross: some seconds of one core.
 const CELLS: usize = 1 << 29;
-/// A direction in which a lobe is evaluated takes as long as so many cells.
+/// Share of the light that counts as unsure beside specular.
+const SPECULAR_DOUBT: f64 = 0.02;
+/// Cost of evaluating Phong specular in one direction, in crossed cells.
 const POINT_CELLS: usize = 8;
 /// Probes that measure the oracle's own error.
 const SELF_PROBES: usize = 64;
@@ -312,6 +314,21 @@ fn lights(lit: &Lit<'_>, cols: usize, places: &[usize]) -> Vec<[f64; 3]> {
         let joined = all.into_iter().map(std::thread::ScopedJoinHandle::join);
         joined.flat_map(|t| t.unwrap_or_else(|panic| std::panic::resume_unwind(panic))).collect()
     })
+}
+
+/// Where errors are expected, from two pictures of a scene, the finer first: [`apart`]; and beside specular in proportion to the light, as
+/// suns' highlights and tables of the lobe have errors that two pictures share.
+pub fn unsure(scene: &Scene, [fine, coarse]: [&[Vec<f32>]; 2]) -> Vec<f64> {
+    let mut unsure = apart(fine, coarse, scene.field.cols());
+    if scene.surface.specular.is_some() {
+        let last = fine.len() - 1;
+        for (i, unsure) in unsure.iter_mut().enumerate() {
+            let light = (0..3).map(|c| f64::from(fine[c.min(last)][i])).sum::<f64>();
+            // Voids are NaN.
+            *unsure += if light.is_finite() { SPECULAR_DOUBT * light.abs() } else { 0.0 };
+        }
+    }
+    unsure
 }
 
 /// Difference of two pictures at each texel, the largest within 2 texels.

@@ -3,7 +3,7 @@
 use super::candidates::defaults;
 use super::chooser::{Chooser, Trial};
 use super::model::{Expected, PARTS, Part};
-use super::probes::{Probes, Traced, apart, unsampled_bounce_error};
+use super::probes::{Probes, Traced, unsampled_bounce_error, unsure};
 use super::statistics::Statistics;
 use crate::trade::{Goal, start};
 use ridgelight::plan::REFERENCE_BATCH;
@@ -228,8 +228,8 @@ impl<'a> Judge<'a> {
     }
 }
 
-/// Chooses settings for a goal: `draw` renders the scene with given settings, this many probes of
-/// its exact light measure it, others for another `seed`.
+/// Chooses settings for a goal. `draw` renders the scene with given settings; this many probes, grid
+/// points of exact light chosen by `seed`, measure its error.
 ///
 /// The choice is rendered again: its time is that of this frame, and its bound comes from probes
 /// that had no part in it. With `bounced`, bounced light is measured and its settings are chosen,
@@ -268,7 +268,7 @@ pub fn choose<'a>(
         }
     }
     let unsure = match (pilots.as_slice(), refused) {
-        ([(_, a), (_, b)], _) => apart(&a.planes, &b.planes, scene.field.cols()),
+        ([(_, a), (_, b)], _) => unsure(scene, [&a.planes, &b.planes]),
         // The coarsest do not fit either: no setting is the cause.
         ([], Some(limit)) => return Err(limit),
         _ => Vec::new(),

@@ -104,6 +104,11 @@ fn needs_harmonics(scene: &Scene, bounces: u32) -> bool {
     has_specular(scene) && is_around && (is_map || bounces > 0)
 }
 
+/// Whether `render` only approximates the scene's specular, by harmonics.
+pub fn approximates_specular(scene: &Scene, bounces: u32) -> bool {
+    has_specular(scene) && bounces > 0 || needs_harmonics(scene, bounces)
+}
+
 /// The ladders that affect a scene with this many bounces: no azimuths without a sky, no table
 /// without an environment. A map of Phong specular, and bounces of it, are lit by harmonics only;
 /// its bounces use pyramids only, at every texel.

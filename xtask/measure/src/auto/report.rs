@@ -8,7 +8,7 @@ use ridgelight::scene::{Fuse, Lines, Method, Quality, Scene};
 use ridgelight::{Error, Result};
 use ridgelight_cpu::lit::Lit;
 use ridgelight_io as files;
-use ridgelight_trade::auto::{Chosen, Drawn, Measured, Probes, apart, choose, flags};
+use ridgelight_trade::auto::{Chosen, Drawn, Measured, Probes, choose, flags, unsure};
 use ridgelight_trade::statistics::quantiles;
 use ridgelight_trade::trade::{Goal, Search, Value as Point, ladders, places, recommend, start};
 use serde_json::{Value, json};
@@ -48,7 +48,7 @@ impl<'a> Measuring<'a> {
         };
         let plain = judged(gpu, scene, &start(), 0)?.planes;
         let control = judged(gpu, scene, &dense, 0)?.planes;
-        let unsure = apart(&plain, &control, scene.field.cols());
+        let unsure = unsure(scene, [&control, &plain]);
         let probes = Probes::of(&Lit::of(scene), TRUE_PROBES, TRUE_SEED, &unsure)?;
         let own = probes.error(&control, None, Probes::ONE_BOUND);
         let mut found = Self { scene, probes, control, own, all: Vec::new() };

@@ -5,7 +5,7 @@ use std::time::Instant;
 use ridgelight::scene::{Fuse, Lights, Lines, Method, Quality, Scene};
 use ridgelight::{Error, Result};
 use ridgelight_cpu::lit::Lit;
-use ridgelight_trade::auto::{Probes, apart};
+use ridgelight_trade::auto::{Probes, unsure};
 
 use super::super::rig::Rig;
 use super::GroundTruth;
@@ -68,14 +68,14 @@ impl GroundTruth {
         }
         let mut ground_truth = Self::new(whole, scene.field.cols(), about.join("; "));
         let steps = ground_truth.distance(&halved)?.relative_rmse;
-        let unsure = apart(&ground_truth.planes, &halved, ground_truth.cols);
+        let unsure = unsure(scene, [&ground_truth.planes, &halved]);
         let probes = probes(&Lit::of(scene), &unsure, rig.share(PROBING))?;
         let off = probes.error(&ground_truth.planes, None, Probes::ONE_BOUND);
         ground_truth.own_error = Some(steps.max(off.at_most));
         ground_truth.quality_of = format!(
             "with half its counts it changes by {} (RMSE), which bounds its own error where \
-                doubling the counts at least halves it; at {} probes, most of them where the two \
-                differ, its error against the f64 oracle is {}, {}; the larger of the two is used",
+                doubling the counts at least halves it; at {} probes, half of them where the two \
+                differ most, its error against the f64 oracle is {}, {}; the larger of the two is used",
             percent(steps),
             probes.count(),
             percent(off.error),
