@@ -89,7 +89,7 @@ impl Probes {
     /// `wanted` texels without void, or all. The same `seed`, count and probabilities give the same
     /// texels. Runs on all cores.
     ///
-    /// `unsure`, the difference of pictures at each texel ([`apart`]), directs half of the probes
+    /// `unsure`, where errors are expected ([`unsure`]), directs half of the probes
     /// to where errors are: few texels at shadow edges have nearly all of the error. Empty:
     /// uniform.
     ///
@@ -316,7 +316,7 @@ fn lights(lit: &Lit<'_>, cols: usize, places: &[usize]) -> Vec<[f64; 3]> {
     })
 }
 
-/// Where errors are expected, from two pictures of a scene, the finer first: [`apart`]; and beside specular in proportion to the light, as
+/// Where errors are expected, from two pictures of a scene, the finer first: the largest difference within 2 texels; and beside specular in proportion to the light, as
 /// suns' highlights and tables of the lobe have errors that two pictures share.
 pub fn unsure(scene: &Scene, [fine, coarse]: [&[Vec<f32>]; 2]) -> Vec<f64> {
     let mut unsure = apart(fine, coarse, scene.field.cols());
