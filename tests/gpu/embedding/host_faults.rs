@@ -405,7 +405,7 @@ unsafe extern "system" fn lost_object(
 /// A device that is lost while a renderer is made, at each of its pipelines in turn, and at its first object of each kind: an error,
 /// and what was made until then is freed.
 #[test]
-fn a_device_lost_while_a_renderer_is_made_keeps_nothing() {
+fn losing_the_device_while_a_renderer_is_made_leaks_nothing() {
     let mut device = Device::new();
     let plan = planned(&device);
     let has_timestamps = device.report().timestamp_period_ns > 0.0;
