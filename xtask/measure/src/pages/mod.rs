@@ -112,6 +112,11 @@ fn hosts() -> Result<String> {
            runs the Bevy example, and tests that compare the plugin's bytes with the core's.\n")
 }
 
+fn package() -> Result<String> {
+    let (body, made) = result("package.txt")?;
+    Ok(format!("{} (`tools/bench --only package`{made}).", body.trim_end()))
+}
+
 fn sizes() -> Result<String> {
     let figures = Figures::read("sizes")?;
     let distinct = |key: &str| {
@@ -415,7 +420,7 @@ const PAGES: [(&str, &[Section]); 9] = [
         &[("picture", picture), ("sizes", sizes), ("gpu", gpu), ("features", features::features)],
     ),
     ("docs/getting-started.md", &[("camera", camera)]),
-    ("docs/embedding.md", &[("hosts", hosts), ("edits", edits)]),
+    ("docs/embedding.md", &[("package", package), ("hosts", hosts), ("edits", edits)]),
     ("docs/embedding/bevy.md", &[("fourier", fourier)]),
     ("docs/methods.md", &[("forms", forms)]),
     ("docs/accuracy.md", &[("accuracy", accuracy), ("suns", suns), ("bounces", bounces)]),
