@@ -210,7 +210,8 @@ const fn is_same(a: &str, b: &str) -> bool {
 static WORDS: [u32; WORD_COUNT] =
     bytemuck::must_cast(*include_bytes!(concat!(env!("OUT_DIR"), "/shaders.spv")));
 
-const _: () = assert!(cfg!(target_endian = "little"), "the file has the lowest byte of a word first");
+const _: () =
+    assert!(cfg!(target_endian = "little"), "the file has the lowest byte of a word first");
 
 const fn words_at(first: usize, count: usize) -> &'static [u32] {
     WORDS.split_at(first).1.split_at(count).0
