@@ -114,7 +114,7 @@ fn hosts() -> Result<String> {
 
 fn package() -> Result<String> {
     let (body, made) = result("package.txt")?;
-    Ok(format!("{} (`tools/bench --only package`{made}).", body.trim_end()))
+    Ok(format!("{} (`tools/bench --only package`{made}).\n", body.trim_end()))
 }
 
 fn sizes() -> Result<String> {
