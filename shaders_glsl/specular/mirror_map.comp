@@ -2,7 +2,8 @@
 // their tables. From fine azimuths it is the unoccluded reflection; from those that are swept, the same sum by which
 // horizons are compared.
 // Reads: azimuths, specular_tables.
-// Writes: mirror_map (equirectangular: column 0 east, counter-clockwise; row 0 straight down, the last straight up).
+// Writes: mirror_map (equirectangular: column 0 east, counter-clockwise; row 0 straight down, the last straight up). Where
+// the azimuths are even and see the same light, the map repeats, and only its first columns are stored.
 // One invocation is one direction.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
@@ -17,38 +18,61 @@ layout(binding = 1, rgba32f) uniform readonly image2DArray specular_tables;
 layout(binding = 2, rgba32f) uniform writeonly image2D mirror_map;
 
 layout(push_constant) uniform MirrorMapPush {
-    int width;
+    int columns;        // of a whole turn, a multiple of 4
     int height;
     int azimuth_count;
-    int node;         // of the zenith
-    float first_rad;  // peak 0
-    float per_rad;    // peaks in a radian
+    int node;           // of the zenith
+    float first_rad;    // peak 0
+    float per_rad;      // peaks in a radian
     float exponent;
-    float least;      // a^n below it counts as 0
+    float least;        // a^n below it counts as 0
+    float farthest;     // |p| beyond which it is below
+    float first_turn;   // azimuth 0, in turns; negative where azimuths are not even and in order
+    float lowest_up;    // directions farther down see no light
 };
 
 void main() {
     ivec2 at = ivec2(gl_GlobalInvocationID.xy);
-    if (at.x >= width || at.y >= height) {
+    if (at.x >= imageSize(mirror_map).x || at.y >= height) {
         return;
     }
     // Sine and cosine of the azimuth from its quarter.
-    int quarter = width / 4;
+    int quarter = columns / 4;
     int turn = at.x / quarter;
     float within = HALF_PI * float(at.x - turn * quarter) / float(quarter);
     vec2 east_north = vec2(cosine(within), sine(within));
     east_north = (turn & 1) != 0 ? vec2(-east_north.y, east_north.x) : east_north;
     east_north = (turn & 2) != 0 ? -east_north : east_north;
     float elevation = PI * (float(at.y) / float(height - 1) - 0.5);
-    east_north *= cosine(elevation);
+    float flat_part = cosine(elevation);
+    east_north *= flat_part;
     float up = sine(elevation);
+    if (up < lowest_up) {
+        imageStore(mirror_map, at, vec4(0.0));
+        return;
+    }
+    // Farther from the zenith than the lobe reaches, only azimuths about its own see it.
+    uint first = 0u;
+    int count = azimuth_count;
+    if (first_turn >= 0.0 && farthest < flat_part) {
+        float reach = farthest / flat_part;
+        float turns = angle_of(vec4(sqrt(1.0 - reach * reach)), vec4(reach)).x / (2.0 * PI);
+        float nearest = (float(at.x) / float(columns) - first_turn) * float(azimuth_count);
+        float half_count = turns * float(azimuth_count) + 1.0;
+        count = min(int(2.0 * half_count) + 1, azimuth_count);
+        first = uint(int(floor(nearest - half_count)) + 2 * azimuth_count);
+    }
     ivec3 size = imageSize(specular_tables);
     bool is_shared = size.z == 1 && azimuth_count > 1;
     vec3 sum = vec3(0.0);
-    for (int k = 0; k < azimuth_count; k++) {
-        Azimuth azimuth = azimuth_at(azimuths, uint(k));
+    for (int i = 0; i < count; i++) {
+        uint k = (first + uint(i)) % uint(azimuth_count);
+        Azimuth azimuth = azimuth_at(azimuths, k);
         float along = east_north.x * azimuth.cos_phi + east_north.y * azimuth.sin_phi;
         float across = east_north.x * azimuth.sin_phi - east_north.y * azimuth.cos_phi;
+        if (abs(across) > farthest || (along < 0.0 && farthest < flat_part)) {
+            continue;
+        }
         float power = off_slice(exponent, vec4(across)).x;
         if (power < least) {
             continue;
@@ -59,7 +83,7 @@ void main() {
         }
         int peak = clamp(int(place), 0, size.x - 2);
         float t = clamp(place - float(peak), 0.0, 1.0);
-        int layer = is_shared ? 0 : k;
+        int layer = is_shared ? 0 : int(k);
         vec3 low = imageLoad(specular_tables, ivec3(peak, node, layer)).rgb;
         vec3 high = imageLoad(specular_tables, ivec3(peak + 1, node, layer)).rgb;
         sum += power * (is_shared ? azimuth.wedge_rad : 1.0) * mix(low, high, t);

@@ -25,6 +25,8 @@ layout(push_constant) uniform SpecularLightPush {
     float cell_y_m;
     vec4 eye_m;
     float scale;
+    int unoccluded_columns;   // of a whole turn
+    int swept_columns;
 };
 
 #include "shared/quad.glsl"
@@ -37,20 +39,26 @@ vec4 cubic(float t) {
     return 0.5 * vec4(t * (t * (2.0 - t) - 1.0), t * t * (3.0 * t - 5.0) + 2.0, t * (t * (4.0 - 3.0 * t) + 1.0), t * t * (t - 1.0));
 }
 
-// A map's texel; past a pole, the one on its other side.
-vec3 map_texel(texture2D map, ivec2 at, ivec2 size) {
+// A map's texel; past a pole, the one on its other side. The stored columns repeat over a turn.
+vec3 map_texel(texture2D map, ivec2 at, ivec2 size, int columns) {
     bool is_past = at.y < 0 || at.y >= size.y;
     int y = at.y < 0 ? -at.y : (is_past ? 2 * (size.y - 1) - at.y : at.y);
-    int x = at.x + (is_past ? size.x / 2 : 0);
-    return texelFetch(map, ivec2((x + 2 * size.x) % size.x, y), 0).rgb;
+    int x = at.x + (is_past ? columns / 2 : 0);
+    return texelFetch(map, ivec2((x + 2 * columns) % size.x, y), 0).rgb;
 }
 
-vec3 map_at(texture2D map, ivec2 first, vec4 across, vec4 up, ivec2 size) {
+// A map's value at a part of the turn and a part of the way from straight down to straight up.
+vec3 map_at(texture2D map, int columns, float turn, float rise) {
+    ivec2 size = textureSize(map, 0);
+    vec2 place = vec2(turn * float(columns), rise * float(size.y - 1));
+    ivec2 texel = ivec2(int(place.x), clamp(int(place.y), 0, size.y - 2));
+    vec4 across = cubic(place.x - float(texel.x));
+    vec4 up = cubic(place.y - float(texel.y));
     vec3 sum = vec3(0.0);
     for (int j = 0; j < 4; j++) {
         vec3 row = vec3(0.0);
         for (int i = 0; i < 4; i++) {
-            row += across[i] * map_texel(map, first + ivec2(i, j), size);
+            row += across[i] * map_texel(map, texel + ivec2(i, j) - 1, size, columns);
         }
         sum += up[j] * row;
     }
@@ -75,18 +83,14 @@ void main() {
     vec4 row = MARCHES_ROWS ? vec4(march) : lane_at;
     Mirrored mirror = mirrored(-east * normal_up, -north * normal_up, normal_up, column * cell_x_m,
                                (float(rows - 1) - row) * cell_y_m, q.here.four, eye_m);
-    ivec2 size = textureSize(unoccluded_map, 0);
     vec4 flat_part = sqrt(mirror.east * mirror.east + mirror.north * mirror.north);
-    vec4 turn = angle_of(mirror.east, mirror.north);
-    vec4 place_x = (turn / (2.0 * PI) + mix(vec4(0.0), vec4(1.0), lessThan(turn, vec4(0.0)))) * float(size.x);
-    vec4 place_y = (angle_of(flat_part, mirror.up) / PI + 0.5) * float(size.y - 1);
+    vec4 azimuth = angle_of(mirror.east, mirror.north);
+    vec4 turn = azimuth / (2.0 * PI) + mix(vec4(0.0), vec4(1.0), lessThan(azimuth, vec4(0.0)));
+    vec4 rise = angle_of(flat_part, mirror.up) / PI + 0.5;
     for (int k = 0; k < 4 && lane + k < lanes; k++) {
         ivec2 at = texel_at(lane + k, march);
-        ivec2 texel = ivec2(int(place_x[k]), clamp(int(place_y[k]), 0, size.y - 2));
-        vec4 across = cubic(place_x[k] - float(texel.x));
-        vec4 up = cubic(place_y[k] - float(texel.y));
-        vec3 whole = max(map_at(unoccluded_map, texel - 1, across, up, size), 0.0);
-        vec3 swept = map_at(swept_map, texel - 1, across, up, size);
+        vec3 whole = max(map_at(unoccluded_map, unoccluded_columns, turn[k], rise[k]), 0.0);
+        vec3 swept = map_at(swept_map, swept_columns, turn[k], rise[k]);
         vec3 blocked = texelFetch(blocked_sum, at, 0).rgb;
         // Where nothing is hidden, nothing is divided: the swept map may be 0 there.
         vec3 hidden = mix(blocked / max(swept, blocked), vec3(0.0), lessThanEqual(blocked, vec3(0.0)));

@@ -29,6 +29,7 @@ layout(push_constant) uniform SpecularTablesPush {
     float step_rad;   // from one peak to the next
     float exponent;
     float wedge_rad;  // of a table that all azimuths share; 0 for the azimuth's own
+    float reach_rad;  // farther from its peak the lobe counts as 0
 };
 
 // Sine and cosine of any angle in [-pi, pi].
@@ -55,14 +56,16 @@ void main() {
     vec4 red = vec4(0.0);
     vec4 green = vec4(0.0);
     vec4 blue = vec4(0.0);
-    int row = rows - 1;
-    float lower = bottom_rad;
+    // From the lowest elevation that a lobe of the four reaches, to the highest.
+    float lower = clamp(first_rad + step_rad * float(peak) - reach_rad, bottom_rad, HALF_PI);
+    float last_reached = first_rad + step_rad * float(peak + 3) + reach_rad;
+    int row = clamp(int((HALF_PI - lower) / PI * float(height)), 0, rows - 1);
     vec4 below_lower = phong_integral(exponent, along, up, cosine(lower), sine(lower));
     for (int node = 0; node < nodes; node++) {
         // Of the last node exactly, whatever a quotient rounds to: the loop below ends there.
         float elevation = node == nodes - 1 ? HALF_PI : bottom_rad + (HALF_PI - bottom_rad) * float(node) / float(nodes - 1);
         // Whole rows below the node, then the part of the row that contains it.
-        while (lower < elevation) {
+        while (lower < min(elevation, last_reached)) {
             float row_top = HALF_PI - PI * float(row) / float(height);
             float upper = min(row_top, elevation);
             vec4 below_upper = phong_integral(exponent, along, up, cosine(upper), sine(upper));

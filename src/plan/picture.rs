@@ -163,7 +163,8 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
         .map_or([0.0; 4], |[x, y, z]| [x as f32, y as f32, (z - field.base_m()) as f32, 1.0]);
     let slices = mirrored.map(|phong| {
         let lit = (active.environment, surface.border);
-        SpecularSlices::make(&mut builder, [size[0], size[1]], lit, (quality, limits), phong)
+        let of = (phong, lists[0].as_slice());
+        SpecularSlices::make(&mut builder, [size[0], size[1]], lit, (quality, limits), of)
     });
     if active.environment.is_none() && active.sky.is_some() && slices.is_none() {
         notes.push("no environment: no table".into());

@@ -1,12 +1,15 @@
 use crate::graph::{Axis, Builder, ResourceId, shaders};
 use crate::scene::Border;
 
+use super::mirror_map::MirrorMap;
+
 /// Specular reflection of sky and environment: the unoccluded reflection times the free share. It begins the sum.
 pub(crate) fn plan(
     builder: &mut Builder,
     (axis, border, cell_m): (Axis, Border, [f64; 2]),
     (scale, eye_m): (f32, [f32; 4]),
-    [lane_heights, blocked_sum, unoccluded_map, swept_map, specular_sum]: [ResourceId; 5],
+    [unoccluded, swept]: [&MirrorMap; 2],
+    [lane_heights, blocked_sum, specular_sum]: [ResourceId; 3],
 ) {
     let [cols, rows] = axis.size();
     builder.pass(
@@ -21,12 +24,14 @@ pub(crate) fn plan(
             cell_y_m: cell_m[1] as f32,
             eye_m,
             scale,
+            unoccluded_columns: unoccluded.columns as i32,
+            swept_columns: swept.columns as i32,
         },
         &[
             ("lane_heights", lane_heights),
             ("blocked_sum", blocked_sum),
-            ("unoccluded_map", unoccluded_map),
-            ("swept_map", swept_map),
+            ("unoccluded_map", unoccluded.image),
+            ("swept_map", swept.image),
             ("specular_sum", specular_sum),
         ],
         axis.texels() * (4 + 2 * 16 + 2 * 16 * 16),

@@ -3,6 +3,9 @@ use std::f32::consts::{FRAC_PI_2, PI};
 use crate::graph::{Builder, Format, Owner, ResourceId, shaders};
 use crate::scene::{Border, Environment};
 
+/// Where a lobe is less than this share of its peak, it counts as dark.
+pub(super) const LEAST_SHARE: f32 = 1e-7;
+
 /// Tables of light below each elevation, weighted by a Phong lobe.
 #[derive(Clone, Copy)]
 pub(crate) struct SpecularTables {
@@ -51,7 +54,12 @@ impl SpecularTables {
 
     /// Where light may come from below horizontal, a lobe may peak anywhere in a slice.
     pub(super) fn first_rad(&self) -> f32 {
-        if self.border == Border::Open { -PI } else { -FRAC_PI_2 }
+        if self.is_open() { -PI } else { -FRAC_PI_2 }
+    }
+
+    /// Whether light may come from below horizontal.
+    pub(super) fn is_open(&self) -> bool {
+        self.border == Border::Open
     }
 
     pub(super) fn range_rad(&self) -> f32 {
@@ -71,7 +79,7 @@ impl SpecularTables {
         rows: Option<(&Environment, ResourceId)>,
         (azimuths, is_swept): (ResourceId, bool),
     ) {
-        let is_open = self.border == Border::Open;
+        let is_open = self.is_open();
         let [r, g, b] = sky.unwrap_or_default();
         // A sky is even: one row above horizontal, and one below.
         let [height, kept] = match rows {
@@ -103,6 +111,7 @@ impl SpecularTables {
                 step_rad: self.range_rad() / (self.peaks - 1) as f32,
                 exponent: self.exponent,
                 wedge_rad: if self.is_shared() { 1.0 } else { 0.0 },
+                reach_rad: 1e-4 + LEAST_SHARE.powf(1.0 / self.exponent).acos(),
                 sky: [r, g, b, 0.0],
             },
             &bound,

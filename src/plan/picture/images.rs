@@ -5,10 +5,10 @@ use super::Picture;
 use crate::graph::{Builder, Format, Limits, Owner, ResourceId};
 use crate::passes::azimuths;
 use crate::passes::azimuths::Azimuth;
+use crate::passes::mirror_map::{self, MirrorMap};
 use crate::passes::sh_layout::{Sh, WedgeTexels};
 use crate::passes::specular_tables::SpecularTables;
 use crate::scene::{Albedo, Border, Environment, PhongSpecular, Quality, Scene, Specular, Wedges};
-use std::f32::consts::TAU;
 
 /// Images of the field's size, and the environment.
 pub(super) struct Images {
@@ -143,9 +143,10 @@ pub(super) struct SpecularSlices {
     pub fine_azimuths: ResourceId,
     pub fine_count: u32,
     pub fine_rows: Option<ResourceId>,
-    /// Maps over the mirror direction: of the fine azimuths, and of the swept ones.
-    pub maps: [ResourceId; 2],
-    pub map_size: [u32; 2],
+    /// Direction of the first fine azimuth.
+    pub fine_first_rad: f64,
+    /// By mirror direction: of the fine azimuths, and of the swept ones.
+    pub maps: [MirrorMap; 2],
     pub blocked_sum: ResourceId,
     pub scale: f32,
 }
@@ -157,7 +158,7 @@ impl SpecularSlices {
         size: [u32; 2],
         (environment, border): (Option<&Environment>, Border),
         (quality, limits): (&Quality, &Limits),
-        PhongSpecular { exponent, scale }: PhongSpecular,
+        (PhongSpecular { exponent, scale }, circle): (PhongSpecular, &[Azimuth]),
     ) -> Self {
         // An azimuth for each column of the environment: a bright spot stays in its place.
         let fits = environment
@@ -186,24 +187,25 @@ impl SpecularSlices {
                     let of = (exponent, gap_rad);
                     SpecularTables::make(builder, name, of, border, [nodes, layers])
                 });
-        // Nodes a quarter of the lobe's deviation apart, 1/√n radians.
-        let width = (4.0 * TAU * exponent.sqrt()).ceil() as u32;
-        let width = width.next_power_of_two().clamp(64, 2048);
-        let map_size = [width, width / 2 + 1];
-        let format = Format::Rgba32Float;
-        let mut image = |name: &str, [width, height]: [u32; 2]| {
-            builder.image(name, Owner::Internal, format, [width, height, 1], false)
+        // A sky alone is the same in every azimuth.
+        let repeats = match environment {
+            Some(_) => [1, 1],
+            None => [fine_count, mirror_map::repeats(circle)],
         };
-        let maps = [image("unoccluded_map", map_size), image("swept_map", map_size)];
-        let blocked_sum = image("blocked_sum", size);
+        let maps = [("unoccluded_map", repeats[0]), ("swept_map", repeats[1])]
+            .map(|(name, repeats)| MirrorMap::make(builder, name, exponent, repeats));
+        let [cols, rows] = size;
+        let extent = [cols, rows, 1];
+        let blocked_sum =
+            builder.image("blocked_sum", Owner::Internal, Format::Rgba32Float, extent, false);
         Self {
             swept,
             fine,
             fine_azimuths,
             fine_count,
             fine_rows,
+            fine_first_rad: turn_rad + std::f64::consts::PI / f64::from(fine_count),
             maps,
-            map_size,
             blocked_sum,
             scale,
         }

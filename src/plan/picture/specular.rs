@@ -119,27 +119,20 @@ impl Drawing<'_> {
         });
         slices.swept.plan(builder, "", sky, swept_rows, (sweeping.azimuths, true));
         slices.fine.plan(builder, "fine", sky, fine_rows, (slices.fine_azimuths, false));
-        let [unoccluded, swept] = slices.maps;
-        let fine = ("unoccluded", "the reflection without occlusion, by mirror direction");
-        let ids = [slices.fine_azimuths, unoccluded];
-        passes::mirror_map::plan(
+        let [unoccluded, swept] = &slices.maps;
+        unoccluded.plan(
             builder,
             &slices.fine,
-            fine,
-            slices.fine_count,
-            (ids, false),
-            slices.map_size,
+            ("unoccluded", "the reflection without occlusion, by mirror direction"),
+            (slices.fine_azimuths, slices.fine_count),
+            Some(slices.fine_first_rad),
         );
-        let of_swept =
-            ("swept", "the same from the swept azimuths, as occlusion is a share of them");
-        let ids = [sweeping.azimuths, swept];
-        passes::mirror_map::plan(
+        swept.plan(
             builder,
             &slices.swept,
-            of_swept,
-            count,
-            (ids, true),
-            slices.map_size,
+            ("swept", "the same from the swept azimuths, as occlusion is a share of them"),
+            (sweeping.azimuths, count),
+            None,
         );
     }
 
@@ -147,10 +140,10 @@ impl Drawing<'_> {
     pub(super) fn slices_light(&mut self, batch: &Batch, lane_heights: ResourceId) {
         let (Some(slices), Some(sum)) = (&self.slices, self.images.specular_sum) else { return };
         let field = (batch.axis, self.scene.surface.border, self.scene.field.cell_m());
-        let [unoccluded, swept] = slices.maps;
-        let ids = [lane_heights, slices.blocked_sum, unoccluded, swept, sum];
+        let ids = [lane_heights, slices.blocked_sum, sum];
         let viewed = (slices.scale, self.eye_m);
-        passes::specular_light::plan(&mut self.builder, field, viewed, ids);
+        let maps = slices.maps.each_ref();
+        passes::specular_light::plan(&mut self.builder, field, viewed, maps, ids);
         self.specular_is_begun = true;
     }
 

@@ -7,8 +7,8 @@ pub(crate) mod sphere_sh;
 
 use ridgelight::plan::Picture;
 use ridgelight::scene::{
-    Albedo, Basis, Border, Fuse, KeyLight, Levels, LightBasis, Lights, Method, PhongSpecular,
-    Quality, Receiver, Scene, Specular, SphereLight, Sun, Surface, Wedges, Window,
+    Albedo, Basis, Border, Fuse, KeyLight, Levels, LightBasis, Lights, Lines, Method,
+    PhongSpecular, Quality, Receiver, Scene, Specular, SphereLight, Sun, Surface, Wedges, Window,
 };
 
 use crate::cpu_reference::{Case, Reference, Wanted, check_all, key, noisy_environment, rough};
@@ -161,6 +161,14 @@ pub(crate) fn pictures() -> Vec<Case> {
         };
         Scene { field: rough(14, 11, 42), surface, lights }
     };
+    // Lobes that reach a part of the directions only.
+    let narrow = |border| {
+        let mut scene = mirrored.clone();
+        scene.surface.border = border;
+        scene.surface.specular =
+            Some(Specular::Constant(PhongSpecular { exponent: 25.0, scale: 0.4 }));
+        scene
+    };
     let mirrored_sky = {
         let lights = Lights { sky: Some([1.0; 3]), ..Lights::default() };
         let mut next = random(45);
@@ -180,6 +188,10 @@ pub(crate) fn pictures() -> Vec<Case> {
         let surface = Surface { border, albedo, specular: phong };
         Scene { field: rough(13, 10, 44), surface, lights }
     };
+    let mut without_suns = shiny_sky(300.0, Border::Plane);
+    without_suns.lights.suns.clear();
+    let along_vectors = Quality { lines: Lines::Exact, ..quality };
+    let nine = Quality { azimuths: 9, ..quality };
     // Low lights by shadow heights: a disc, a point and a narrow key light, in different octants.
     let low = |border| {
         let narrow = KeyLight { width_rad: 0.3, ..key(0.12, 0.2, [1.0, 2.0, 3.0]) };
@@ -295,6 +307,16 @@ pub(crate) fn pictures() -> Vec<Case> {
             false,
             false,
         ),
+        picture(
+            "a narrow lobe by nine slices",
+            shiny_sky(300.0, Border::Plane),
+            nine,
+            false,
+            false,
+        ),
+        picture("a narrow lobe along grid vectors", without_suns, along_vectors, false, false),
+        picture("a lobe of an environment", narrow(Border::Plane), quality, false, false),
+        picture("a lobe of an environment, open", narrow(Border::Open), quality, false, false),
         picture("a lobe", mirrored, sh(5), true, false),
         picture("a specular at every second texel", mirrored_sky, subsampled(2, 3), false, false),
     ]

@@ -86,33 +86,43 @@ impl Tables<'_> {
     }
 }
 
-/// Direction of a texel of a map of `width` × `height`.
-pub fn direction(x: usize, y: usize, [width, height]: [usize; 2]) -> DVec3 {
-    let flat = DVec2::from_angle(TAU * x as f64 / width as f64);
+/// Direction of a texel of a map with `columns` in a turn and `height` rows.
+pub fn direction(x: usize, y: usize, [columns, height]: [usize; 2]) -> DVec3 {
+    let flat = DVec2::from_angle(TAU * x as f64 / columns as f64);
     let elevation = PI * (y as f64 / (height - 1) as f64 - 0.5);
     (flat * elevation.cos()).extend(elevation.sin())
 }
 
-/// `mirror_map`, row-major from straight down. A slice in which the lobe is below `least_share` of its peak counts as dark.
+/// The first `size[0]` columns of `mirror_map`, row-major from straight down, of `columns` in a turn. A slice in which the lobe
+/// is below `least_share` of its peak counts as dark; so does everything for a lobe that is below it above horizontal.
 ///
 /// Directions err by 6 ε. Sums round once an azimuth. A slice near the least share may count or not.
 pub fn mirror_map(
     tables: &Tables,
     azimuths: &[Azimuth],
-    size: [usize; 2],
+    (size, columns): ([usize; 2], usize),
     least_share: f64,
 ) -> Vec<Tabulated> {
-    let node = (tables.slices.nodes - 1) as f64;
+    let Slices { nodes, exponent, bottom_rad, .. } = tables.slices;
+    let node = (nodes - 1) as f64;
+    // The sine of the angle at which the lobe is at the least share.
+    let farthest = (1.0 - least_share.powf(2.0 / exponent)).max(0.0).sqrt();
     let at = |i: usize| {
-        let mirror = direction(i % size[0], i / size[0], size);
+        let mirror = direction(i % size[0], i / size[0], [columns, size[1]]);
+        let flat = mirror.x.hypot(mirror.y);
+        let is_below = bottom_rad == 0.0 && -mirror.z > farthest;
         let mut sum = Tabulated::default();
         for (k, azimuth) in azimuths.iter().enumerate() {
             let across =
                 mirror.x * f64::from(azimuth.sin_phi) - mirror.y * f64::from(azimuth.cos_phi);
-            let power = (1.0 - across * across).max(0.0).powf(0.5 * tables.slices.exponent);
+            let along =
+                mirror.x * f64::from(azimuth.cos_phi) + mirror.y * f64::from(azimuth.sin_phi);
+            let power = (1.0 - across * across).max(0.0).powf(0.5 * exponent);
+            // On the other side of a zenith that the lobe does not reach.
+            let is_behind = along < 0.0 && flat > farthest;
             let Tabulated { light, tolerance } =
                 tables.light((k, azimuth), mirror, node, [6.0 * EPSILON, 0.0]);
-            if power > 1.01 * least_share {
+            if power > 1.01 * least_share && !is_behind && !is_below {
                 sum.light += light;
                 sum.tolerance += tolerance;
             } else {

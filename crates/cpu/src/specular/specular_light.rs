@@ -8,8 +8,10 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 /// A map over the mirror direction, row-major from straight down, column 0 east.
 #[derive(Clone, Copy, Debug)]
 pub struct Map<'a> {
-    /// Columns and rows.
+    /// Stored columns and rows.
     pub size: [usize; 2],
+    /// Columns of a whole turn: the stored ones repeat.
+    pub columns: usize,
     /// Its texels.
     pub texels: &'a [DVec3],
 }
@@ -25,9 +27,10 @@ impl Map<'_> {
     /// A texel; past a pole, the one on its other side.
     fn at(&self, x: i64, y: i64) -> DVec3 {
         let [width, height] = self.size.map(|n| n as i64);
+        let half = self.columns as i64 / 2;
         let (x, y) = match y {
-            y if y < 0 => (x + width / 2, -y),
-            y if y >= height => (x + width / 2, 2 * (height - 1) - y),
+            y if y < 0 => (x + half, -y),
+            y if y >= height => (x + half, 2 * (height - 1) - y),
             y => (x, y),
         };
         self.texels[(y * width + x.rem_euclid(width)) as usize]
@@ -36,9 +39,9 @@ impl Map<'_> {
     /// The value in a direction that errs by `off_rad`.
     ///
     /// A cubic changes by no more than 1.5 of the range of its texels a cell; its weights sum to 1.25 at most by magnitude and err
-    /// by 10 ε. A place errs by the direction over the distance from the axis, an arc tangent and 6 ε of the width.
+    /// by 10 ε. A place errs by the direction over the distance from the axis, an arc tangent and 6 ε of the turn.
     pub fn looked_up(&self, direction: DVec3, off_rad: f64) -> Tabulated {
-        let [width, height] = self.size;
+        let (width, height) = (self.columns, self.size[1]);
         let flat = direction.x.hypot(direction.y);
         let turn = direction.y.atan2(direction.x).rem_euclid(TAU);
         let place_x = turn / TAU * width as f64;

@@ -108,6 +108,7 @@ pub(crate) fn specular_tables(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 /// From the device's own tables.
 pub(crate) fn mirror_map(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     const AZIMUTH_COUNT: usize = offset("MirrorMapPush", "azimuth_count");
+    const COLUMNS: usize = offset("MirrorMapPush", "columns");
     const EXPONENT: usize = offset("MirrorMapPush", "exponent");
     const LEAST: usize = offset("MirrorMapPush", "least");
     let count = pushed(pass, AZIMUTH_COUNT) as usize;
@@ -118,7 +119,8 @@ pub(crate) fn mirror_map(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let size = run.extent(pass, "mirror_map");
     let got = texels(run, pass, "mirror_map");
     let tables = Tables { slices, texels: &all };
-    let want = map_reference::mirror_map(&tables, &azimuths, size, float(pass, LEAST));
+    let of = (size, pushed(pass, COLUMNS) as usize);
+    let want = map_reference::mirror_map(&tables, &azimuths, of, float(pass, LEAST));
     three(&got, &want, |i| [0, i / size[0], i % size[0]])
 }
 
@@ -126,20 +128,27 @@ pub(crate) fn mirror_map(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 pub(crate) fn specular_light(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     const EYE_M: usize = offset("SpecularLightPush", "eye_m");
     const SCALE: usize = offset("SpecularLightPush", "scale");
+    const SWEPT_COLUMNS: usize = offset("SpecularLightPush", "swept_columns");
+    const UNOCCLUDED_COLUMNS: usize = offset("SpecularLightPush", "unoccluded_columns");
     let eye_m = [0, 4, 8, 12].map(|i| float(pass, EYE_M + i));
     let scale = float(pass, SCALE);
     let [cols, _] = run.size();
     let (heights, off) = (run.heights(), 2.0 * run.normal_error() + 20.0 * EPSILON);
-    let size = run.extent(pass, "unoccluded_map");
-    let whole = texels(run, pass, "unoccluded_map");
-    let swept = texels(run, pass, "swept_map");
+    let mut map = |binding: &str, columns: usize| {
+        let texels = texels(run, pass, binding);
+        (run.extent(pass, binding), pushed(pass, columns) as usize, texels)
+    };
+    let whole = map("unoccluded_map", UNOCCLUDED_COLUMNS);
+    let swept = map("swept_map", SWEPT_COLUMNS);
     let blocked = texels(run, pass, "blocked_sum");
     let got = texels(run, pass, "specular_sum");
     let want: Vec<Tabulated> = (0..blocked.len())
         .map(|i| {
             let normal = normal_of(field_slope(&heights, (i % cols) as i32, (i / cols) as i32));
             let mirror = mirrored(normal, view_from(&heights, eye_m, i));
-            let of = |texels| Map { size, texels }.looked_up(mirror, off);
+            let of = |(size, columns, texels): &([usize; 2], usize, Vec<DVec3>)| {
+                Map { size: *size, columns: *columns, texels }.looked_up(mirror, off)
+            };
             let one = light_reference::specular_light(&of(&whole), &of(&swept), blocked[i]);
             Tabulated { light: scale * one.light, tolerance: scale * one.tolerance }
         })
