@@ -12,11 +12,12 @@ use bevy::render::render_resource::{Extent3d, TextureDimension, TextureFormat, T
 pub use light::Submissions;
 pub use terrain::TerrainMaterial;
 
-/// Lights every [`HeightField`] that has a [`FieldLight`].
+/// Lights every [`HeightField`] that has a [`FieldLight`]. Add it after `DefaultPlugins`.
 pub struct RidgelightPlugin;
 
 impl Plugin for RidgelightPlugin {
     fn build(&self, app: &mut App) {
+        assert!(app.is_plugin_added::<AssetPlugin>(), "add RidgelightPlugin after DefaultPlugins");
         app.add_message::<HeightEdit>().add_plugins((
             ExtractComponentPlugin::<HeightField>::default(),
             ExtractComponentPlugin::<FieldLight>::default(),
@@ -56,7 +57,7 @@ impl HeightField {
     /// # Panics
     /// If it has no columns or no rows.
     pub fn new(heights: Handle<Image>, size: UVec2, cell: Vec2) -> Self {
-        assert!(size.min_element() > 0, "a column and a row");
+        assert!(size.min_element() > 0, "a HeightField has a column and a row at least: {size}");
         Self {
             heights,
             size,
@@ -70,7 +71,7 @@ impl HeightField {
     }
 
     /// A level grid with a vertex at each grid point, which [`TerrainMaterial`] raises. The first grid point is at the
-    /// origin.
+    /// origin. A field of one column or one row has no triangles.
     pub fn mesh(&self) -> Mesh {
         terrain::mesh(self.size, self.cell)
     }
@@ -139,16 +140,19 @@ pub struct HeightEdit {
     pub corner: UVec2,
     /// Columns and rows.
     pub size: UVec2,
-    /// Heights, row after row.
+    /// New heights, row after row from the north, in world units, all finite. They replace the old ones.
     pub heights: Vec<f32>,
 }
 
-/// An image of heights, row after row from the north.
+/// An image of heights, row after row from the north. Warns of one that is not finite.
 ///
 /// # Panics
 /// If `heights` does not have one value per texel.
 pub fn heights_image(size: UVec2, heights: &[f32]) -> Image {
     assert_eq!(heights.len(), size.x as usize * size.y as usize, "a height for each texel");
+    if let Some(found) = light::not_finite(heights) {
+        warn!("heights_image: {found}");
+    }
     let bytes: Vec<u8> = heights.iter().flat_map(|h| h.to_ne_bytes()).collect();
     let extent = Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 };
     let usages = RenderAssetUsages::default();

@@ -5,6 +5,7 @@ use std::f32::consts::PI;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
+use bevy::camera::visibility::VisibilitySystems;
 use bevy::ecs::entity::Entity;
 use bevy::prelude::*;
 use bevy::render::extract_resource::{ExtractResource, ExtractResourcePlugin};
@@ -73,7 +74,12 @@ pub(crate) fn build(app: &mut App) {
     app.init_resource::<Sun>()
         .insert_resource(submissions.clone())
         .add_plugins(ExtractResourcePlugin::<Sun>::default())
-        .add_systems(PostUpdate, follow_sun.after(TransformSystems::Propagate));
+        .add_systems(
+            PostUpdate,
+            follow_sun
+                .after(TransformSystems::Propagate)
+                .after(VisibilitySystems::VisibilityPropagate),
+        );
     if let Some(render) = app.get_sub_app_mut(RenderApp) {
         render
             .insert_resource(submissions)
@@ -85,12 +91,14 @@ pub(crate) fn build(app: &mut App) {
 }
 
 pub(crate) fn follow_sun(
-    lights: Query<(&DirectionalLight, &GlobalTransform)>,
+    lights: Query<(&DirectionalLight, &GlobalTransform, &InheritedVisibility)>,
     mut sun: ResMut<Sun>,
 ) {
-    let brightest = lights.iter().max_by(|a, b| a.0.illuminance.total_cmp(&b.0.illuminance));
-    let found = brightest.map(|(light, transform)| {
-        let direction = *transform.back();
+    let visible = lights.iter().filter(|(.., visibility)| visibility.get());
+    let brightest = visible.max_by(|a, b| a.0.illuminance.total_cmp(&b.0.illuminance));
+    let found = brightest.map(|(light, transform, _)| {
+        // `GlobalTransform::back` panics for a rotation that is not a number; here it has not risen.
+        let direction = (transform.affine().matrix3 * Vec3::Z).normalize_or_zero();
         let is_up = direction.y > 1e-4;
         let colour = light.color.to_linear() * light.illuminance;
         let colour = if is_up { colour } else { LinearRgba::BLACK };
@@ -171,7 +179,8 @@ impl Settings {
     fn plan(&self, limits: &Limits, sun: Vec3) -> ridgelight::Result<Plan> {
         let sun = scene::Sun {
             azimuth_rad: f64::from((-sun.z).atan2(sun.x)),
-            elevation_rad: f64::from(sun.y.clamp(-1.0, 1.0).asin()),
+            // The arc sine of 1 in f32 is more than 90 degrees.
+            elevation_rad: f64::from(sun.y.clamp(-1.0, 1.0)).asin(),
             diameter_rad: f64::from(self.sun_diameter),
             irradiance: [1.0; 3],
         };
@@ -231,6 +240,39 @@ impl Images {
             bent: optional(&light.bent_normal)?,
             horizons: optional(&light.horizon)?,
         })
+    }
+
+    /// Why they cannot hold the light of a field, if they cannot.
+    fn mismatch(&self, settings: &Settings) -> Option<String> {
+        let size = settings.size;
+        let of = |name: &str, image: &wgpu::Texture| {
+            let found = UVec2::new(image.width(), image.height());
+            (found != size).then(|| {
+                format!(
+                    "{name} has {} x {} texels, HeightField::size is {} x {}",
+                    found.x, found.y, size.x, size.y
+                )
+            })
+        };
+        let of_light = [
+            ("FieldLight::sun", Some(&self.sun)),
+            ("FieldLight::sky_view", Some(&self.sky)),
+            ("FieldLight::bent_normal", self.bent.as_ref()),
+            ("FieldLight::horizon", self.horizons.as_ref()),
+        ];
+        let found = of_light.iter().find_map(|(name, image)| of(name, (*image)?));
+        let layers = self.horizons.as_ref().map_or(0, wgpu::Texture::depth_or_array_layers);
+        let changed = if found.is_some() {
+            "size"
+        } else if settings.bent_normal != self.bent.is_some() {
+            "bent_normal"
+        } else if settings.horizon_azimuths != 0 && settings.horizon_azimuths != layers {
+            "horizon_azimuths"
+        } else {
+            return of("the image of heights", &self.heights);
+        };
+        let found = found.map(|found| found + ": ").unwrap_or_default();
+        Some(format!("{found}make a new FieldLight after a change of {changed}"))
     }
 }
 
@@ -379,8 +421,14 @@ fn refusal(edit: &HeightEdit, heights: &wgpu::Texture) -> Option<String> {
     } else if values.len() != of.x as usize * of.y as usize {
         Some(format!("{} heights for {} x {} grid points", values.len(), of.x, of.y))
     } else {
-        None
+        not_finite(values)
     }
+}
+
+/// Names the first height that is not a finite number.
+pub(crate) fn not_finite(heights: &[f32]) -> Option<String> {
+    let at = heights.iter().position(|height| !height.is_finite())?;
+    Some(format!("height {at} is {}, expected a finite number: fill voids first", heights[at]))
 }
 
 fn light_fields(
@@ -396,6 +444,11 @@ fn light_fields(
     let mut lit = lit.0.lock().unwrap_or_else(PoisonError::into_inner);
     lit.retain(|entity, _| fields.iter().any(|(main, ..)| main.id() == *entity));
     let mut waiting = Vec::new();
+    for edit in &changes.edits {
+        if !fields.iter().any(|(main, ..)| main.id() == edit.field) {
+            error!("HeightEdit of {}: it has no HeightField with a FieldLight", edit.field);
+        }
+    }
     for (main, field, light) in fields {
         let entity = main.id();
         let of_field = changes.edits.iter().filter(|edit| edit.field == entity);
@@ -419,6 +472,7 @@ fn light_fields(
             sun: sun.direction.or(before),
         };
         let is_modified = changes.images.contains(&field.heights.id());
+        let mismatch = state.images.mismatch(&state.settings);
         let done = match known {
             // After an error until anything changes.
             Some(Field { state: old, renderer: None })
@@ -426,19 +480,22 @@ fn light_fields(
             {
                 Ok(None)
             }
+            _ if mismatch.is_some() => Err(mismatch.unwrap_or_default()),
             Some(Field { state: old, renderer: Some(mut renderer) })
                 if old.settings == state.settings =>
             {
                 let states = [&old, &state];
-                renderer.update(device, queue, states, is_modified, &edits).map(|()| Some(renderer))
+                let updated = renderer.update(device, queue, states, is_modified, &edits);
+                updated.map(|()| Some(renderer)).map_err(|error| error.to_string())
             }
             _ => {
                 edits.iter().for_each(|edit| write_edit(queue, &state.images.heights, edit));
-                FieldRenderer::new(device, queue, &state, &submissions).map(Some)
+                let made = FieldRenderer::new(device, queue, &state, &submissions);
+                made.map(Some).map_err(|error| error.to_string())
             }
         };
         let renderer = done.unwrap_or_else(|error| {
-            error!("height field {entity}: {error}. It keeps its last light until it changes");
+            error!("HeightField of {entity}: {error}. It is not lit again until something of it changes");
             None
         });
         lit.insert(entity, Field { state, renderer });
@@ -449,6 +506,15 @@ fn light_fields(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn heights_that_are_not_finite_are_named() {
+        assert_eq!(not_finite(&[1.0, -2e30, 0.0]), None);
+        for (wrong, name) in [(f32::NAN, "NaN"), (f32::INFINITY, "inf"), (-f32::INFINITY, "-inf")] {
+            let found = not_finite(&[1.0, 2.0, wrong, wrong]).expect("a message");
+            assert!(found.starts_with(&format!("height 2 is {name},")), "{found}");
+        }
+    }
 
     /// Otherwise an edit would light the whole field, with the same bits.
     #[test]

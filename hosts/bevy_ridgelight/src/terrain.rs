@@ -72,7 +72,7 @@ pub(crate) fn build(app: &mut App) {
     embedded_asset!(app, "terrain.wgsl");
     app.add_plugins(MaterialPlugin::<TerrainMaterial>::default())
         .add_systems(PostUpdate, (set_colours.after(follow_sun), disable_frustum_culling))
-        .add_systems(Last, warn_of_turns);
+        .add_systems(Last, (warn_of_turns, warn_of_halves));
 }
 
 /// What is wrong with the place of a field, if anything: light is computed in the field's own axes and units.
@@ -85,6 +85,19 @@ fn misplaced(placed: &GlobalTransform) -> Option<&'static str> {
 fn warn_of_turns(fields: Query<&GlobalTransform, (With<HeightField>, Changed<GlobalTransform>)>) {
     for message in fields.iter().filter_map(misplaced) {
         warn_once!("{message}");
+    }
+}
+
+/// Names entities that will stay without light.
+fn warn_of_halves(
+    fields: Query<Entity, (Added<HeightField>, Without<FieldLight>)>,
+    lights: Query<Entity, (Added<FieldLight>, Without<HeightField>)>,
+) {
+    for entity in fields {
+        warn!("{entity} has a HeightField without a FieldLight: it is not lit");
+    }
+    for entity in lights {
+        warn!("{entity} has a FieldLight without a HeightField: it is not filled");
     }
 }
 

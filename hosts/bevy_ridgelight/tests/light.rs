@@ -51,7 +51,7 @@ fn expected(heights: &[f32], azimuth: f32, elevation: f32) -> [Vec<f32>; 2] {
     let to_sun = *GlobalTransform::from(sun_at(azimuth, elevation)).back();
     let sun = scene::Sun {
         azimuth_rad: f64::from((-to_sun.z).atan2(to_sun.x)),
-        elevation_rad: f64::from(to_sun.y.asin()),
+        elevation_rad: f64::from(to_sun.y).asin(),
         diameter_rad: f64::from(0.53_f32.to_radians()),
         irradiance: [1.0; 3],
     };
@@ -226,6 +226,30 @@ fn light_is_that_of_the_core() {
     let [of_sun, of_sky] = expected(&heights, 300.0, 40.0);
     same_bits(&floats(&mut app, &light.sun), &of_sun, "new heights");
     same_bits(&floats(&mut app, &light.sky_view), &of_sky, "new heights");
+    end(&app);
+}
+
+/// Without a sun, below the horizon from the start, hidden, or with a rotation that is not a number: the sky's light, and a sun of
+/// no colour. A sun at the zenith is the core's.
+#[test]
+fn fields_are_lit_before_a_sun_rises() {
+    let mut app = app();
+    let heights = heights();
+    let [at_zenith, of_sky] = expected(&heights, 0.0, 90.0);
+    let (_, light) = spawn(&mut app, &heights, |_| {});
+    same_bits(&floats(&mut app, &light.sky_view), &of_sky, "no sun");
+    let sun = app.world_mut().spawn((DirectionalLight::default(), sun_at(140.0, -5.0))).id();
+    same_bits(&floats(&mut app, &light.sky_view), &of_sky, "below the horizon");
+    let unknown = Transform::from_rotation(Quat::from_xyzw(f32::NAN, 0.0, 0.0, 1.0));
+    app.world_mut().entity_mut(sun).insert(unknown);
+    same_bits(&floats(&mut app, &light.sky_view), &of_sky, "a direction that is not a number");
+    // The field has a sun at the zenith until one rises.
+    app.world_mut().entity_mut(sun).insert((sun_at(140.0, 25.0), Visibility::Hidden));
+    same_bits(&floats(&mut app, &light.sun), &at_zenith, "hidden");
+    app.world_mut().entity_mut(sun).insert(Visibility::Inherited);
+    same_bits(&floats(&mut app, &light.sun), &expected(&heights, 140.0, 25.0)[0], "risen");
+    app.world_mut().entity_mut(sun).insert(sun_at(0.0, 90.0));
+    same_bits(&floats(&mut app, &light.sun), &at_zenith, "at the zenith");
     end(&app);
 }
 
