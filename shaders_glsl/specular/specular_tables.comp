@@ -57,7 +57,7 @@ void main() {
     vec4 green = vec4(0.0);
     vec4 blue = vec4(0.0);
     // From the lowest elevation that a lobe of the four reaches, to the highest.
-    float lower = clamp(first_rad + step_rad * float(peak) - reach_rad, bottom_rad, HALF_PI);
+    float lower = min(max(first_rad + step_rad * float(peak) - reach_rad, bottom_rad), HALF_PI);
     float last_reached = first_rad + step_rad * float(peak + 3) + reach_rad;
     int row = clamp(int((HALF_PI - lower) / PI * float(height)), 0, rows - 1);
     vec4 below_lower = phong_integral(exponent, along, up, cosine(lower), sine(lower));
