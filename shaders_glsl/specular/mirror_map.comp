@@ -3,7 +3,7 @@
 // horizons are compared.
 // Reads: azimuths, specular_tables.
 // Writes: mirror_map (equirectangular: column 0 east, counter-clockwise; row 0 straight down, the last straight up). Where
-// the azimuths are even and see the same light, the map repeats, and only its first columns are stored.
+// the azimuths are equally spaced and have the same light, the map is periodic, and only its first period is stored.
 // One invocation is one direction.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
@@ -26,9 +26,9 @@ layout(push_constant) uniform MirrorMapPush {
     float per_rad;      // peaks in a radian
     float exponent;
     float least;        // a^n below it counts as 0
-    float farthest;     // |p| beyond which it is below
-    float first_turn;   // azimuth 0, in turns; negative where azimuths are not even and in order
-    float lowest_up;    // directions farther down see no light
+    float farthest;     // |p| beyond which a^n < least
+    float first_turn;   // azimuth 0, in turns; negative unless azimuths are equally spaced and in order
+    float lowest_up;    // sine of the elevation below which a lobe gets no light
 };
 
 void main() {
@@ -51,15 +51,15 @@ void main() {
         imageStore(mirror_map, at, vec4(0.0));
         return;
     }
-    // Farther from the zenith than the lobe reaches, only azimuths about its own see it.
+    // If the lobe does not reach the zenith, only azimuths near its own contribute.
     uint first = 0u;
     int count = azimuth_count;
     if (first_turn >= 0.0 && farthest < flat_part) {
         float reach = farthest / flat_part;
-        float turns = angle_of(vec4(sqrt(1.0 - reach * reach)), vec4(reach)).x / (2.0 * PI);
+        float turns = angle_of(vec4(sqrt(max(1.0 - reach * reach, 0.0))), vec4(reach)).x / (2.0 * PI);
         float nearest = (float(at.x) / float(columns) - first_turn) * float(azimuth_count);
         float half_count = turns * float(azimuth_count) + 1.0;
-        count = min(int(2.0 * half_count) + 1, azimuth_count);
+        count = min(int(2.0 * half_count) + 2, azimuth_count);
         first = uint(int(floor(nearest - half_count)) + 2 * azimuth_count);
     }
     ivec3 size = imageSize(specular_tables);

@@ -47,7 +47,7 @@ vec3 map_texel(texture2D map, ivec2 at, ivec2 size, int columns) {
     return texelFetch(map, ivec2((x + 2 * columns) % size.x, y), 0).rgb;
 }
 
-// A map's value at a part of the turn and a part of the way from straight down to straight up.
+// A map's value at `turn` (0 to 1 from east) and `rise` (0 straight down, 1 straight up).
 vec3 map_at(texture2D map, int columns, float turn, float rise) {
     ivec2 size = textureSize(map, 0);
     vec2 place = vec2(turn * float(columns), rise * float(size.y - 1));

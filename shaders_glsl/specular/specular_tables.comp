@@ -29,7 +29,7 @@ layout(push_constant) uniform SpecularTablesPush {
     float step_rad;   // from one peak to the next
     float exponent;
     float wedge_rad;  // of a table that all azimuths share; 0 for the azimuth's own
-    float reach_rad;  // farther from its peak the lobe counts as 0
+    float reach_rad;  // angle from the peak beyond which the lobe counts as 0
 };
 
 // Sine and cosine of any angle in [-pi, pi].

@@ -206,12 +206,14 @@ const fn is_same(a: &str, b: &str) -> bool {
     i == a.len() && i == b.len()
 }
 
-/// SPIR-V of all shaders, one after the other. A loop over the words instead of the cast took 5 s of the compile time.
+/// SPIR-V of all shaders, one after the other. Cast, as the compiler is slow to evaluate a loop over the words.
 static WORDS: [u32; WORD_COUNT] =
     bytemuck::must_cast(*include_bytes!(concat!(env!("OUT_DIR"), "/shaders.spv")));
 
-const _: () =
-    assert!(cfg!(target_endian = "little"), "the file has the lowest byte of a word first");
+const _: () = assert!(
+    cfg!(target_endian = "little"),
+    "shaders.spv is little-endian: big-endian targets are not supported"
+);
 
 const fn words_at(first: usize, count: usize) -> &'static [u32] {
     WORDS.split_at(first).1.split_at(count).0

@@ -57,7 +57,7 @@ impl HeightField {
     /// # Panics
     /// If it has no columns or no rows.
     pub fn new(heights: Handle<Image>, size: UVec2, cell: Vec2) -> Self {
-        assert!(size.min_element() > 0, "a HeightField has a column and a row at least: {size}");
+        assert!(size.min_element() > 0, "HeightField::size is {size}, expected at least 1 x 1");
         Self {
             heights,
             size,
@@ -144,14 +144,14 @@ pub struct HeightEdit {
     pub heights: Vec<f32>,
 }
 
-/// An image of heights, row after row from the north. Warns of one that is not finite.
+/// An image of heights, row after row from the north. Logs a warning if a height is not finite.
 ///
 /// # Panics
 /// If `heights` does not have one value per texel.
 pub fn heights_image(size: UVec2, heights: &[f32]) -> Image {
     assert_eq!(heights.len(), size.x as usize * size.y as usize, "a height for each texel");
     if let Some(found) = light::not_finite(heights) {
-        warn!("heights_image: {found}");
+        warn_once!("heights_image: {found}");
     }
     let bytes: Vec<u8> = heights.iter().flat_map(|h| h.to_ne_bytes()).collect();
     let extent = Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 };

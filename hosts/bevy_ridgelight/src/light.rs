@@ -21,7 +21,7 @@ use ridgelight_wgpu::{Renderer, limits};
 
 use crate::{FieldLight, HeightEdit, HeightField};
 
-/// The scene's brightest directional light.
+/// The scene's brightest visible directional light above the horizon.
 #[derive(Resource, ExtractResource, Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Sun {
     /// Unit vector to it; none where there is no light or it is below the horizon.
@@ -94,15 +94,15 @@ pub(crate) fn follow_sun(
     lights: Query<(&DirectionalLight, &GlobalTransform, &InheritedVisibility)>,
     mut sun: ResMut<Sun>,
 ) {
-    let visible = lights.iter().filter(|(.., visibility)| visibility.get());
-    let brightest = visible.max_by(|a, b| a.0.illuminance.total_cmp(&b.0.illuminance));
-    let found = brightest.map(|(light, transform, _)| {
-        // `GlobalTransform::back` panics for a rotation that is not a number; here it has not risen.
+    let risen = lights.iter().filter_map(|(light, transform, visibility)| {
+        // `GlobalTransform::back` panics for a NaN rotation. Such a sun counts as not risen.
         let direction = (transform.affine().matrix3 * Vec3::Z).normalize_or_zero();
-        let is_up = direction.y > 1e-4;
+        (visibility.get() && direction.y > 1e-4).then_some((light, direction))
+    });
+    let brightest = risen.max_by(|a, b| a.0.illuminance.total_cmp(&b.0.illuminance));
+    let found = brightest.map(|(light, direction)| {
         let colour = light.color.to_linear() * light.illuminance;
-        let colour = if is_up { colour } else { LinearRgba::BLACK };
-        Sun { direction: is_up.then_some(direction), colour }
+        Sun { direction: Some(direction), colour }
     });
     sun.set_if_neq(found.unwrap_or_default());
 }
@@ -110,9 +110,20 @@ pub(crate) fn follow_sun(
 fn extract_changes(
     mut edits: Extract<MessageReader<HeightEdit>>,
     mut assets: Extract<MessageReader<AssetEvent<Image>>>,
+    entities: Extract<Query<(Has<HeightField>, Has<FieldLight>)>>,
     mut changes: ResMut<Changes>,
 ) {
-    changes.edits.extend(edits.read().cloned());
+    for edit in edits.read() {
+        match entities.get(edit.field) {
+            Ok((true, true)) => changes.edits.push(edit.clone()),
+            Ok(_) => error!(
+                "HeightEdit::field is {}, which lacks a HeightField or a FieldLight: set it to an entity with both",
+                edit.field
+            ),
+            // Despawned since.
+            Err(_) => {}
+        }
+    }
     changes.images.extend(assets.read().filter_map(|event| match event {
         AssetEvent::Modified { id } => Some(*id),
         _ => None,
@@ -179,7 +190,7 @@ impl Settings {
     fn plan(&self, limits: &Limits, sun: Vec3) -> ridgelight::Result<Plan> {
         let sun = scene::Sun {
             azimuth_rad: f64::from((-sun.z).atan2(sun.x)),
-            // The arc sine of 1 in f32 is more than 90 degrees.
+            // In f32, asin(1) rounds to more than 90 degrees.
             elevation_rad: f64::from(sun.y.clamp(-1.0, 1.0)).asin(),
             diameter_rad: f64::from(self.sun_diameter),
             irradiance: [1.0; 3],
@@ -242,14 +253,14 @@ impl Images {
         })
     }
 
-    /// Why they cannot hold the light of a field, if they cannot.
+    /// What does not match the settings, if anything.
     fn mismatch(&self, settings: &Settings) -> Option<String> {
         let size = settings.size;
         let of = |name: &str, image: &wgpu::Texture| {
             let found = UVec2::new(image.width(), image.height());
             (found != size).then(|| {
                 format!(
-                    "{name} has {} x {} texels, HeightField::size is {} x {}",
+                    "{name} has {} x {} texels, expected {} x {} (HeightField::size)",
                     found.x, found.y, size.x, size.y
                 )
             })
@@ -269,10 +280,12 @@ impl Images {
         } else if settings.horizon_azimuths != 0 && settings.horizon_azimuths != layers {
             "horizon_azimuths"
         } else {
-            return of("the image of heights", &self.heights);
+            return of("HeightField::heights", &self.heights);
         };
-        let found = found.map(|found| found + ": ").unwrap_or_default();
-        Some(format!("{found}make a new FieldLight after a change of {changed}"))
+        let found = found.map(|found| found + ". ").unwrap_or_default();
+        Some(format!(
+            "{found}FieldLight does not match HeightField::{changed}: make a new FieldLight and TerrainMaterial"
+        ))
     }
 }
 
@@ -428,7 +441,7 @@ fn refusal(edit: &HeightEdit, heights: &wgpu::Texture) -> Option<String> {
 /// Names the first height that is not a finite number.
 pub(crate) fn not_finite(heights: &[f32]) -> Option<String> {
     let at = heights.iter().position(|height| !height.is_finite())?;
-    Some(format!("height {at} is {}, expected a finite number: fill voids first", heights[at]))
+    Some(format!("heights[{at}] is {}, expected a finite number: fill voids first", heights[at]))
 }
 
 fn light_fields(
@@ -444,11 +457,6 @@ fn light_fields(
     let mut lit = lit.0.lock().unwrap_or_else(PoisonError::into_inner);
     lit.retain(|entity, _| fields.iter().any(|(main, ..)| main.id() == *entity));
     let mut waiting = Vec::new();
-    for edit in &changes.edits {
-        if !fields.iter().any(|(main, ..)| main.id() == edit.field) {
-            error!("HeightEdit of {}: it has no HeightField with a FieldLight", edit.field);
-        }
-    }
     for (main, field, light) in fields {
         let entity = main.id();
         let of_field = changes.edits.iter().filter(|edit| edit.field == entity);
@@ -472,15 +480,19 @@ fn light_fields(
             sun: sun.direction.or(before),
         };
         let is_modified = changes.images.contains(&field.heights.id());
-        let mismatch = state.images.mismatch(&state.settings);
         let done = match known {
-            // After an error until anything changes.
+            // After an error until anything but the sun changes.
             Some(Field { state: old, renderer: None })
-                if old == state && !is_modified && edits.is_empty() =>
+                if (State { sun: state.sun, ..old.clone() }) == state
+                    && !is_modified
+                    && edits.is_empty() =>
             {
                 Ok(None)
             }
-            _ if mismatch.is_some() => Err(mismatch.unwrap_or_default()),
+            _ if state.images.mismatch(&state.settings).is_some() => {
+                edits.iter().for_each(|edit| write_edit(queue, &state.images.heights, edit));
+                Err(state.images.mismatch(&state.settings).unwrap_or_default())
+            }
             Some(Field { state: old, renderer: Some(mut renderer) })
                 if old.settings == state.settings =>
             {
@@ -495,7 +507,7 @@ fn light_fields(
             }
         };
         let renderer = done.unwrap_or_else(|error| {
-            error!("HeightField of {entity}: {error}. It is not lit again until something of it changes");
+            error!("HeightField of {entity}: {error}. The field is not lit again until its settings, images or heights change");
             None
         });
         lit.insert(entity, Field { state, renderer });
@@ -512,7 +524,7 @@ mod tests {
         assert_eq!(not_finite(&[1.0, -2e30, 0.0]), None);
         for (wrong, name) in [(f32::NAN, "NaN"), (f32::INFINITY, "inf"), (-f32::INFINITY, "-inf")] {
             let found = not_finite(&[1.0, 2.0, wrong, wrong]).expect("a message");
-            assert!(found.starts_with(&format!("height 2 is {name},")), "{found}");
+            assert!(found.starts_with(&format!("heights[2] is {name},")), "{found}");
         }
     }
 

@@ -88,16 +88,20 @@ fn warn_of_turns(fields: Query<&GlobalTransform, (With<HeightField>, Changed<Glo
     }
 }
 
-/// Names entities that will stay without light.
+/// Warns of entities with only one of `HeightField` and `FieldLight`.
 fn warn_of_halves(
     fields: Query<Entity, (Added<HeightField>, Without<FieldLight>)>,
     lights: Query<Entity, (Added<FieldLight>, Without<HeightField>)>,
 ) {
     for entity in fields {
-        warn!("{entity} has a HeightField without a FieldLight: it is not lit");
+        warn!(
+            "{entity} has a HeightField but no FieldLight, so it stays unlit until it has: insert FieldLight::new(..)"
+        );
     }
     for entity in lights {
-        warn!("{entity} has a FieldLight without a HeightField: it is not filled");
+        warn!(
+            "{entity} has a FieldLight but no HeightField, so its images stay empty: insert both on one entity"
+        );
     }
 }
 

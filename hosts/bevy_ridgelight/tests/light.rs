@@ -229,8 +229,8 @@ fn light_is_that_of_the_core() {
     end(&app);
 }
 
-/// Without a sun, below the horizon from the start, hidden, or with a rotation that is not a number: the sky's light, and a sun of
-/// no colour. A sun at the zenith is the core's.
+/// Without a sun, with one below the horizon, or with a NaN rotation, the sky view equals the core's. Until a visible sun rises, the
+/// sun image is that of a sun at the zenith. A brighter sun that has set does not hide a moon.
 #[test]
 fn fields_are_lit_before_a_sun_rises() {
     let mut app = app();
@@ -243,13 +243,16 @@ fn fields_are_lit_before_a_sun_rises() {
     let unknown = Transform::from_rotation(Quat::from_xyzw(f32::NAN, 0.0, 0.0, 1.0));
     app.world_mut().entity_mut(sun).insert(unknown);
     same_bits(&floats(&mut app, &light.sky_view), &of_sky, "a direction that is not a number");
-    // The field has a sun at the zenith until one rises.
     app.world_mut().entity_mut(sun).insert((sun_at(140.0, 25.0), Visibility::Hidden));
     same_bits(&floats(&mut app, &light.sun), &at_zenith, "hidden");
     app.world_mut().entity_mut(sun).insert(Visibility::Inherited);
     same_bits(&floats(&mut app, &light.sun), &expected(&heights, 140.0, 25.0)[0], "risen");
     app.world_mut().entity_mut(sun).insert(sun_at(0.0, 90.0));
     same_bits(&floats(&mut app, &light.sun), &at_zenith, "at the zenith");
+    app.world_mut().entity_mut(sun).insert(sun_at(140.0, -5.0));
+    let moon = DirectionalLight { illuminance: 0.2, ..default() };
+    app.world_mut().spawn((moon, sun_at(140.0, 25.0)));
+    same_bits(&floats(&mut app, &light.sun), &expected(&heights, 140.0, 25.0)[0], "a moon");
     end(&app);
 }
 

@@ -111,7 +111,7 @@ impl SpecularTables {
                 step_rad: self.range_rad() / (self.peaks - 1) as f32,
                 exponent: self.exponent,
                 wedge_rad: if self.is_shared() { 1.0 } else { 0.0 },
-                reach_rad: 1e-4 + LEAST_SHARE.powf(1.0 / self.exponent).acos(),
+                reach_rad: 1e-4 + LEAST_SHARE.powf(1.0 / self.exponent.max(1e-3)).acos(),
                 sky: [r, g, b, 0.0],
             },
             &bound,

@@ -7,7 +7,7 @@ pub(crate) mod sphere_sh;
 
 use ridgelight::plan::Picture;
 use ridgelight::scene::{
-    Albedo, Basis, Border, Fuse, KeyLight, Levels, LightBasis, Lights, Lines, Method,
+    Albedo, Basis, Border, Environment, Fuse, KeyLight, Levels, LightBasis, Lights, Lines, Method,
     PhongSpecular, Quality, Receiver, Scene, Specular, SphereLight, Sun, Surface, Wedges, Window,
 };
 
@@ -162,11 +162,13 @@ pub(crate) fn pictures() -> Vec<Case> {
         Scene { field: rough(14, 11, 42), surface, lights }
     };
     // Lobes that reach a part of the directions only.
-    let narrow = |border| {
+    let narrow = |border, exponent, rotation_rad| {
         let mut scene = mirrored.clone();
         scene.surface.border = border;
-        scene.surface.specular =
-            Some(Specular::Constant(PhongSpecular { exponent: 25.0, scale: 0.4 }));
+        scene.surface.specular = Some(Specular::Constant(PhongSpecular { exponent, scale: 0.4 }));
+        let texels = noisy_environment(41).texels().to_vec();
+        scene.lights.environment =
+            Some(Environment::new(18, 9, texels, rotation_rad).expect("an environment"));
         scene
     };
     let mirrored_sky = {
@@ -315,8 +317,20 @@ pub(crate) fn pictures() -> Vec<Case> {
             false,
         ),
         picture("a narrow lobe along grid vectors", without_suns, along_vectors, false, false),
-        picture("a lobe of an environment", narrow(Border::Plane), quality, false, false),
-        picture("a lobe of an environment, open", narrow(Border::Open), quality, false, false),
+        picture(
+            "a lobe of an environment",
+            narrow(Border::Plane, 25.0, 0.7),
+            quality,
+            false,
+            false,
+        ),
+        picture(
+            "a narrow lobe of an environment, open",
+            narrow(Border::Open, 1000.0, -2.0),
+            quality,
+            false,
+            false,
+        ),
         picture("a lobe", mirrored, sh(5), true, false),
         picture("a specular at every second texel", mirrored_sky, subsampled(2, 3), false, false),
     ]

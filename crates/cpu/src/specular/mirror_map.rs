@@ -93,46 +93,44 @@ pub fn direction(x: usize, y: usize, [columns, height]: [usize; 2]) -> DVec3 {
     (flat * elevation.cos()).extend(elevation.sin())
 }
 
-/// The first `size[0]` columns of `mirror_map`, row-major from straight down, of `columns` in a turn. A slice in which the lobe
-/// is below `least_share` of its peak counts as dark; so does everything for a lobe that is below it above horizontal.
+/// Where a lobe is less than this share of its peak, the device may leave it out.
+const LEAST_SHARE: f64 = 1e-7;
+
+/// Texels of `mirror_map`: the first `width` of `columns` columns in a turn, row-major from straight down.
 ///
-/// Directions err by 6 ε. Sums round once an azimuth. A slice near the least share may count or not.
+/// Directions err by 6 ε. Sums round once an azimuth. The light of a slice may be missing where it can be all of
+/// a lobe below the least share: (n + 1) / 2π ∫ L cos ω dω of that slice, which is at most the sum of its lobes over all peaks, as these are
+/// less than a lobe's width apart.
 pub fn mirror_map(
     tables: &Tables,
     azimuths: &[Azimuth],
-    (size, columns): ([usize; 2], usize),
-    least_share: f64,
+    (width, [columns, height]): (usize, [usize; 2]),
+    texels: impl Iterator<Item = usize>,
 ) -> Vec<Tabulated> {
-    let Slices { nodes, exponent, bottom_rad, .. } = tables.slices;
-    let node = (nodes - 1) as f64;
-    // The sine of the angle at which the lobe is at the least share.
-    let farthest = (1.0 - least_share.powf(2.0 / exponent)).max(0.0).sqrt();
+    let Slices { nodes, peaks, .. } = tables.slices;
+    let whole = |k: usize| (0..peaks).map(|peak| tables.at(k, nodes - 1, peak)).sum::<DVec3>();
+    let may_miss: Vec<DVec3> = azimuths
+        .iter()
+        .enumerate()
+        .map(|(k, azimuth)| {
+            let wedge = if tables.is_shared() { f64::from(azimuth.wedge_rad) } else { 1.0 };
+            LEAST_SHARE * wedge * whole(k)
+        })
+        .collect();
     let at = |i: usize| {
-        let mirror = direction(i % size[0], i / size[0], [columns, size[1]]);
-        let flat = mirror.x.hypot(mirror.y);
-        let is_below = bottom_rad == 0.0 && -mirror.z > farthest;
+        let mirror = direction(i % width, i / width, [columns, height]);
         let mut sum = Tabulated::default();
         for (k, azimuth) in azimuths.iter().enumerate() {
-            let across =
-                mirror.x * f64::from(azimuth.sin_phi) - mirror.y * f64::from(azimuth.cos_phi);
-            let along =
-                mirror.x * f64::from(azimuth.cos_phi) + mirror.y * f64::from(azimuth.sin_phi);
-            let power = (1.0 - across * across).max(0.0).powf(0.5 * exponent);
-            // On the other side of a zenith that the lobe does not reach.
-            let is_behind = along < 0.0 && flat > farthest;
             let Tabulated { light, tolerance } =
-                tables.light((k, azimuth), mirror, node, [6.0 * EPSILON, 0.0]);
-            if power > 1.01 * least_share && !is_behind && !is_below {
-                sum.light += light;
-                sum.tolerance += tolerance;
-            } else {
-                sum.tolerance += light;
-            }
+                tables.light((k, azimuth), mirror, (nodes - 1) as f64, [6.0 * EPSILON, 0.0]);
+            sum.light += light;
+            let may_miss = if light.cmple(may_miss[k]).all() { light } else { DVec3::ZERO };
+            sum.tolerance += tolerance + may_miss;
         }
         sum.tolerance += azimuths.len() as f64 * EPSILON * sum.light;
         sum
     };
-    (0..size[0] * size[1]).map(at).collect()
+    texels.map(at).collect()
 }
 
 /// The mirror direction of a view about a normal.
