@@ -211,6 +211,15 @@ fn light_is_that_of_the_core() {
     same_bits(&floats(&mut app, &light.sun), &of_sun, "night");
     *app.world_mut().get_mut::<Transform>(sun).unwrap() = sun_at(300.0, 40.0);
 
+    // An edit is not lost beside a setting that needs other images.
+    let edit = raise(&mut heights, entity, UVec2::new(70, 20), UVec2::new(5, 5));
+    app.world_mut().write_message(edit);
+    app.world_mut().get_mut::<HeightField>(entity).unwrap().bent_normal = true;
+    same_bits(&floats(&mut app, &light.sun), &of_sun, "images of another setting");
+    app.world_mut().get_mut::<HeightField>(entity).unwrap().bent_normal = false;
+    let [of_sun, of_sky] = expected(&heights, 300.0, 40.0);
+    same_bits(&floats(&mut app, &light.sun), &of_sun, "an edit beside an error");
+
     // A wrong image is refused; the right one is lit again.
     let small = UVec2::new(64, 64);
     let image = field.heights.clone();
