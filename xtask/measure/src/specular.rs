@@ -1,5 +1,5 @@
 //! Errors of Phong specular against the path tracer: direct light by exponent, by slices of the lobe
-//! and by SH of receiver and order, then of suns; and indirect light by direction and as from straight above (NS09, figure 5).
+//! and by SH of receiver and order, then of suns, and the times of frames beside diffuse ones; and indirect light by direction and as from straight above (NS09, figure 5).
 //!
 //! Both light the middle SIDE² (64) grid points of the bundled mountain by the bundled sky without its
 //! sun. Indirect: three times as steep, two bounces; first specular alone, then with diffuse ground. N
@@ -17,9 +17,10 @@ use ridgelight::scene::{
 
 use crate::common::args::Args;
 use crate::common::frames::{
-    Colours, device, drawn, drawn_in_layers, error, mean, minus, rms_of, to_f32, traced,
+    Colours, device, drawn, drawn_in_layers, error, frame, frames_in_turn, mean, minus, rms_of,
+    to_f32, traced,
 };
-use crate::common::{Outcome, head, inputs, plot};
+use crate::common::{Outcome, head, inputs, median, plot};
 
 const EXPONENTS: [f32; 4] = [1.0, 5.0, 20.0, 80.0];
 const BOUNCES: u32 = 2;
@@ -34,6 +35,8 @@ const FORMS: [(BounceSpecular, u32); 6] = [
 ];
 const IN_PICTURE: usize = 3;
 const DIRECT_BATCHES: u32 = 48;
+/// Pairs of frames.
+const RUNS: usize = 15;
 
 fn scene(
     (field, sky): &(HeightField, Environment),
@@ -90,7 +93,42 @@ pub fn direct(mut args: Args) -> Outcome {
             }
         }
     }
-    suns(&mut gpu, &ground)
+    suns(&mut gpu, &ground)?;
+    times(&mut gpu)
+}
+
+/// Frames of the whole bundled mountain, of the default settings for its light: diffuse with an albedo of 0.5, and the
+/// same with specular of scale 0.4.
+fn times(gpu: &mut Headless) -> Outcome {
+    let ground = (inputs::mountain(1.0)?, inputs::sky_without_sun()?);
+    println!();
+    head("| light | exponent | diffuse ms | with specular ms | ratio |");
+    let sun = Sun {
+        azimuth_rad: f64::to_radians(-160.0),
+        elevation_rad: f64::to_radians(40.0),
+        diameter_rad: f64::to_radians(0.53),
+        irradiance: [3.0; 3],
+    };
+    let lights = [
+        ("sky", Lights { sky: Some([1.0; 3]), ..Lights::default() }),
+        ("environment", scene(&ground, 0.5, (1.0, 0.4)).lights),
+        ("sun", Lights { suns: vec![sun], ..Lights::default() }),
+    ];
+    for (name, lights) in lights {
+        for exponent in [1.0, 5.0, 20.0, 100.0, 1000.0, 10_000.0] {
+            let mut scene = scene(&ground, 0.5, (exponent, 0.4));
+            scene.lights = lights.clone();
+            let mut diffuse = scene.clone();
+            diffuse.surface.specular = None;
+            let quality = Quality::default();
+            let both = [frame(gpu, &diffuse, &quality)?, frame(gpu, &scene, &quality)?];
+            let rows = frames_in_turn(gpu, both.into(), RUNS)?;
+            let [without, with] = [0, 1].map(|i| median(rows.iter().map(|row| row[i]).collect()));
+            let ratio = median(rows.iter().map(|row| row[1] / row[0]).collect());
+            println!("| {name} | {exponent} | {without:.2} | {with:.2} | {ratio:.2} |");
+        }
+    }
+    Ok(())
 }
 
 /// Suns alone; by brute-force horizons what is left is the mean over the disc, and the part of it in half-shadow.
