@@ -38,6 +38,7 @@ layout(constant_id = 10) const int MOST_STEPS = 60000;
 layout(constant_id = 12) const bool IN_PARTS = false;
 layout(constant_id = 13) const bool SPECULAR_IS_MAP = false;
 layout(constant_id = 14) const bool AT_PLACES = false;
+layout(constant_id = 15) const bool SMOOTH_NORMALS = false;
 
 layout(binding = 0, rgba32f) uniform readonly image2D cells;
 layout(binding = 1, r32f) uniform readonly image2D maxima;
@@ -141,8 +142,40 @@ vec3 towards_key(vec4 key, vec2 u) {
     return vec3(round, 1.0 - below);
 }
 
-// The vertex where a ray along e has hit.
-Place place_of(Met met, vec3 e) {
+Place grid_point(ivec2 at) {
+    vec4 own = texelFetch(ground, at, 0);
+    Place place;
+    place.base = at;
+    place.offset = vec2(0.0);
+    place.own = own.x;
+    place.normal = normalize(vec3(-own.y, -own.z, 1.0));
+    place.albedo = albedo.rgb;
+    place.specular = vec2(exponent, specular_scale);
+    if (ALBEDO_IS_MAP) {
+        place.albedo = texelFetch(albedo_map, at, 0).rgb;
+    }
+    if (SPECULAR_IS_MAP) {
+        place.specular = texelFetch(phong_map, at, 0).xy;
+    }
+    // Viewed from straight above.
+    place.mirror = 2.0 * place.normal.z * place.normal - vec3(0.0, 0.0, 1.0);
+    return place;
+}
+
+// The vertex where a ray along e has hit. With smooth normals one of the triangle's corners, drawn by its weight: the
+// radiance towards the ray is linear between grid points, as in pictures.
+Place place_of(Met met, vec3 e, float drawn) {
+    // Cells of a repeating field connect its last grid points to its first.
+    ivec2 next = ivec2((met.cell.x + 1) % land.cols, (met.cell.y + 1) % land.rows);
+    ivec2 third = met.lower ? ivec2(met.cell.x, next.y) : ivec2(next.x, met.cell.y);
+    float far = met.lower ? met.offset.x : met.offset.y;
+    float near = 1.0 - (met.lower ? met.offset.y : met.offset.x);
+    float rest = 1.0 - near - far;
+    if (SMOOTH_NORMALS) {
+        Place corner = grid_point(drawn < near ? met.cell : drawn < near + far ? next : third);
+        corner.mirror = e - 2.0 * dot(e, corner.normal) * corner.normal;
+        return corner;
+    }
     vec4 corners = imageLoad(cells, met.cell);
     float east = met.lower ? corners.w - corners.z : corners.y - corners.x;
     float south = met.lower ? corners.z - corners.x : corners.w - corners.y;
@@ -154,12 +187,6 @@ Place place_of(Met met, vec3 e) {
     place.albedo = albedo.rgb;
     place.specular = vec2(exponent, specular_scale);
     place.mirror = e - 2.0 * dot(e, place.normal) * place.normal;
-    // Cells of a repeating field connect its last grid points to its first.
-    ivec2 next = ivec2((met.cell.x + 1) % land.cols, (met.cell.y + 1) % land.rows);
-    ivec2 third = met.lower ? ivec2(met.cell.x, next.y) : ivec2(next.x, met.cell.y);
-    float far = met.lower ? met.offset.x : met.offset.y;
-    float near = 1.0 - (met.lower ? met.offset.y : met.offset.x);
-    float rest = 1.0 - near - far;
     if (ALBEDO_IS_MAP) {
         vec3 nw = texelFetch(albedo_map, met.cell, 0).rgb;
         vec3 se = texelFetch(albedo_map, next, 0).rgb;
@@ -317,7 +344,7 @@ vec3 path_light(Place place, uint index, uvec3 key, bool alive, inout uvec2 rays
         light += going && counts ? carried * of.scattered * arriving : vec3(0.0);
         if (HAS_BOUNCES) {
             alive = going && met.what == RAY_HIT;
-            place = place_of(met, e);
+            place = place_of(met, e, v.y);
             carried *= of.scattered;
         }
         if (!HAS_BOUNCES || !alive) {
@@ -339,22 +366,7 @@ void main() {
         alive = alive && listed.x >= 0;
         here = max(listed, ivec2(0));
     }
-    vec4 own = texelFetch(ground, here, 0);
-    Place place;
-    place.base = here;
-    place.offset = vec2(0.0);
-    place.own = own.x;
-    place.normal = normalize(vec3(-own.y, -own.z, 1.0));
-    place.albedo = albedo.rgb;
-    place.specular = vec2(exponent, specular_scale);
-    if (ALBEDO_IS_MAP) {
-        place.albedo = texelFetch(albedo_map, here, 0).rgb;
-    }
-    if (SPECULAR_IS_MAP) {
-        place.specular = texelFetch(phong_map, here, 0).xy;
-    }
-    // Viewed from straight above.
-    place.mirror = 2.0 * place.normal.z * place.normal - vec3(0.0, 0.0, 1.0);
+    Place place = grid_point(here);
     vec4 before = imageLoad(batch_mean, slot);
     // A grid point listed twice gets different paths each time.
     uvec3 key = uvec3(uint(slot.y * land.cols + slot.x), uint(before.w), seed);

@@ -7,7 +7,9 @@ use crate::graph::{Builder, Format, Limits, Owner, ResourceId};
 use crate::passes::blocks::Blocks;
 use crate::passes::path_trace::{self, BATCH_PATHS};
 use crate::plan::reference::choice::{choice_density, environment_cdf, max_path_light};
-use crate::scene::{ANY_LIGHT, Albedo, Border, KeyLight, Lights, PhongSpecular, Scene, Specular};
+use crate::scene::{
+    ANY_LIGHT, Albedo, Border, KeyLight, Lights, Normals, PhongSpecular, Scene, Specular,
+};
 use crate::{Error, Result};
 
 /// Paths per texel in one batch of a [`reference`](reference()).
@@ -18,6 +20,7 @@ const MOST_BOUNCES: u32 = 64;
 
 /// Passes that trace one batch of [`REFERENCE_BATCH`] light paths from every texel, as `cpu::bounce` defines them, with
 /// all bounces up to `bounces`. Phong specular reflects at every vertex, about the mirror direction of the incoming path.
+/// By smooth [`Normals`], a path that hits a triangle goes on from one of its corners, drawn by its weight.
 ///
 /// Inputs: those of [`reference_inputs`]. Outputs, four channels each: "radiance", the mean of all batches so far, and
 /// "standard_error", that of the mean, infinite after the first batch; its fourth channel counts the traced rays.
@@ -31,8 +34,14 @@ const MOST_BOUNCES: u32 = 64;
 ///
 /// # Errors
 /// Bounces, surface or lights out of range; no light; a scene beyond the limits.
-pub fn reference(scene: &Scene, bounces: u32, seed: u32, limits: &Limits) -> Result<Plan> {
-    traced(scene, (bounces, seed), None, None, limits)
+pub fn reference(
+    scene: &Scene,
+    bounces: u32,
+    normals: Normals,
+    seed: u32,
+    limits: &Limits,
+) -> Result<Plan> {
+    traced(scene, (bounces, normals, seed), None, None, limits)
 }
 
 /// As [`reference`](reference()), with one dispatch per `band_rows` rows, 1 or more, for hosts that render frames in
@@ -43,6 +52,7 @@ pub fn reference(scene: &Scene, bounces: u32, seed: u32, limits: &Limits) -> Res
 pub fn reference_in_bands(
     scene: &Scene,
     bounces: u32,
+    normals: Normals,
     seed: u32,
     limits: &Limits,
     band_rows: u32,
@@ -50,7 +60,7 @@ pub fn reference_in_bands(
     if band_rows == 0 {
         return Err(Error::setting("rows of a band", "0", "1 or more"));
     }
-    traced(scene, (bounces, seed), None, Some(band_rows), limits)
+    traced(scene, (bounces, normals, seed), None, Some(band_rows), limits)
 }
 
 /// As [`reference`](reference()), for a list of texels and their indirect light only: light that has been reflected at
@@ -63,6 +73,7 @@ pub fn reference_in_bands(
 pub fn reference_at(
     scene: &Scene,
     bounces: u32,
+    normals: Normals,
     seed: u32,
     places: usize,
     limits: &Limits,
@@ -72,7 +83,7 @@ pub fn reference_at(
         let expected = format!("1 to {all}, as the field has");
         return Err(Error::setting("places of a reference", places.to_string(), expected));
     }
-    traced(scene, (bounces, seed), Some(places as u32), None, limits)
+    traced(scene, (bounces, normals, seed), Some(places as u32), None, limits)
 }
 
 /// The input list of [`reference_at`]: positions of texels in the field, row-major, in rows as long as the field's. The
@@ -96,7 +107,7 @@ pub fn listed_places(scene: &Scene, places: &[usize]) -> Result<Vec<f32>> {
 
 fn traced(
     scene: &Scene,
-    (bounces, seed): (u32, u32),
+    (bounces, normals, seed): (u32, Normals, u32),
     listed: Option<u32>,
     band_rows: Option<u32>,
     limits: &Limits,
@@ -180,13 +191,21 @@ fn traced(
         let band = first..rows.min(first + band_rows);
         for part in &parts {
             let dispatch = (band.clone(), (parts.len() > 1).then_some(part), listed);
-            path_trace::plan(&mut builder, scene, &blocks, (bounces, seed), dispatch, &bound);
+            path_trace::plan(
+                &mut builder,
+                scene,
+                &blocks,
+                (bounces, normals, seed),
+                dispatch,
+                &bound,
+            );
         }
     }
     let used = vec![
         ("method".to_owned(), "path tracing".to_owned()),
         ("border".to_owned(), format!("{:?}", surface.border).to_lowercase()),
         ("bounces".to_owned(), bounces.to_string()),
+        ("normals".to_owned(), format!("{normals:?}").to_lowercase()),
         ("seed".to_owned(), seed.to_string()),
         ("paths_of_a_batch".to_owned(), BATCH_PATHS.to_string()),
     ];

@@ -63,7 +63,7 @@ pub use quality::{Bounces, Quality, SETTINGS, setting};
 pub use scatter::Scatter;
 pub(crate) use scatter::check_view;
 pub use settings::{Audience, Setting, Values, Word};
-pub use surface::{Albedo, Border, PhongSpecular, Specular, Surface};
+pub use surface::{Albedo, Border, Normals, PhongSpecular, Specular, Surface};
 pub use tone::Tone;
 pub use visible::{LOST_RAY, VisiblePoint, VisiblePoints};
 

@@ -203,6 +203,18 @@ pub enum Border {
     Periodic,
 }
 
+/// How ground reflects between its grid points in a path-traced reference.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Normals {
+    /// As in pictures: the radiance of a triangle is linear between those of its corners, which have the mean normal of
+    /// their four quads.
+    #[default]
+    Smooth,
+    /// About the normal of the flat triangle, as a path tracer of triangles does. Bounces in pictures differ from that on
+    /// steep, coarse ground.
+    Flat,
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -12,8 +12,8 @@ mod walks;
 use ridgelight::plan::{self, Kind, Limits, Owner, Picture, Plan, SweepForm, missing_barriers};
 use ridgelight::scene::{
     Albedo, Basis, Border, BounceEngine, Bounces, Environment, Fuse, HeightField, Hull, KeyLight,
-    Levels, LightBasis, Lights, Lines, Method, Precision, Quality, Receiver, Scene, SphereLight,
-    Sun, Surface, Wedges,
+    Levels, LightBasis, Lights, Lines, Method, Normals, Precision, Quality, Receiver, Scene,
+    SphereLight, Sun, Surface, Wedges,
 };
 
 fn flat(rows: usize, cols: usize) -> HeightField {
@@ -119,8 +119,14 @@ fn plans() -> Vec<Plan> {
     for (rows, cols) in [(1, 1), (1, 7), (7, 1), (2, 3), (31, 37), (3, 1021), (1021, 3)] {
         for border in [Border::Plane, Border::Open, Border::Periodic] {
             let scene = under_everything(flat(rows, cols), border);
-            all.push(plan::reference(&scene, 1, 0, &Limits::lavapipe()).expect("a plan"));
-            all.push(plan::reference_at(&scene, 1, 0, 1, &Limits::lavapipe()).expect("a plan"));
+            all.push(
+                plan::reference(&scene, 1, Normals::Smooth, 0, &Limits::lavapipe())
+                    .expect("a plan"),
+            );
+            all.push(
+                plan::reference_at(&scene, 1, Normals::Smooth, 0, 1, &Limits::lavapipe())
+                    .expect("a plan"),
+            );
             for quality in &qualities {
                 let mut scene = under_everything(flat(rows, cols), border);
                 // Sphere lights do not support edits; other lights do.

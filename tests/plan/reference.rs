@@ -1,7 +1,7 @@
 //! Plans of the path-traced reference, and its importance sampling.
 
 use ridgelight::plan::{self, Limits, Plan};
-use ridgelight::scene::{Border, Environment, Lights, Scene};
+use ridgelight::scene::{Border, Environment, Lights, Normals, Scene};
 
 use super::{flat, under_sky};
 
@@ -10,7 +10,8 @@ use super::{flat, under_sky};
 fn a_reference() {
     let of = |rows, cols, bounces, seed| {
         let scene = under_sky(flat(rows, cols));
-        plan::reference(&scene, bounces, seed, &Limits::lavapipe()).expect("a plan")
+        plan::reference(&scene, bounces, Normals::Smooth, seed, &Limits::lavapipe())
+            .expect("a plan")
     };
     let labels = |plan: &Plan| plan.passes.iter().map(plan::Pass::label).collect::<Vec<_>>();
     let [cells, trace] = ["height_cells", "path_trace"];
@@ -29,7 +30,8 @@ fn a_reference() {
         ["rows 0..256", "rows 256..512", "rows 512..515"].map(|p| format!("path_trace {p}"));
     assert_eq!(labels(&bands)[labels(&bands).len() - 3..], parts);
     let dark = Scene { lights: Lights::default(), ..under_sky(flat(2, 2)) };
-    let refused = plan::reference(&dark, 0, 0, &Limits::lavapipe()).unwrap_err().to_string();
+    let refused =
+        plan::reference(&dark, 0, Normals::Smooth, 0, &Limits::lavapipe()).unwrap_err().to_string();
     assert!(refused.contains("lights: found none"), "{refused}");
 }
 
@@ -60,7 +62,9 @@ fn environments_are_importance_sampled() {
 #[test]
 fn a_reference_at_some_texels() {
     let scene = under_sky(flat(515, 512));
-    let of = |grid_points| plan::reference_at(&scene, 1, 0, grid_points, &Limits::lavapipe());
+    let of = |grid_points| {
+        plan::reference_at(&scene, 1, Normals::Smooth, 0, grid_points, &Limits::lavapipe())
+    };
     let plan = of(600).expect("a plan");
     let size = |name: &str| match plan.resources[plan.find(name).expect("there").0].kind {
         plan::Kind::Image { width, height, .. } => [width, height],
@@ -81,7 +85,7 @@ fn a_reference_at_some_texels() {
     }
     let refused = plan::listed_places(&scene, &[263_679, 263_680]).unwrap_err().to_string();
     assert!(refused.contains("position 1: found 263680, expected less than 263680"), "{refused}");
-    let bands = plan::reference_in_bands(&scene, 1, 0, &Limits::lavapipe(), 0);
+    let bands = plan::reference_in_bands(&scene, 1, Normals::Smooth, 0, &Limits::lavapipe(), 0);
     let refused = bands.unwrap_err().to_string();
     assert!(refused.contains("rows of a band: found 0, expected 1 or more"), "{refused}");
 }

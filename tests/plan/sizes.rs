@@ -3,7 +3,8 @@
 use ridgelight::plan::{self, Limits, Picture};
 
 use ridgelight::scene::{
-    Border, BounceEngine, Bounces, Hull, Levels, Lights, Lines, Method, Quality, Scene, SphereLight,
+    Border, BounceEngine, Bounces, Hull, Levels, Lights, Lines, Method, Normals, Quality, Scene,
+    SphereLight,
 };
 
 use super::{flat, is, sky, under_sky};
@@ -308,7 +309,7 @@ fn dispatches_of_rays_are_short_on_a_gpu() {
     let quality = Quality { bounces, light_cutoff: 0.0, ..Quality::default() };
     let planned = |limits: &Limits, name: &str| {
         let plan = match name {
-            "path_trace" => plan::reference(&scene, 1, 1, limits),
+            "path_trace" => plan::reference(&scene, 1, Normals::Flat, 1, limits),
             _ => plan::picture(&scene, &quality, limits, Picture::default()),
         };
         plan.expect("a plan").passes.into_iter().filter(|p| p.name() == name).collect::<Vec<_>>()

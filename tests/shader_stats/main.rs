@@ -20,8 +20,8 @@ use ridgelight::gpu::{Headless, HeadlessOptions, Host, Renderer};
 use ridgelight::plan::{self, Limits, Picture, Plan};
 use ridgelight::scene::{
     Albedo, Basis, BounceEngine, Bounces, Environment, Fuse, HeightField, KeyLight, LightBasis,
-    Lights, Lines, Method, PhongSpecular, Precision, Quality, Scene, Specular, SphereLight, Sun,
-    Surface, fractal,
+    Lights, Lines, Method, Normals, PhongSpecular, Precision, Quality, Scene, Specular,
+    SphereLight, Sun, Surface, fractal,
 };
 
 /// Set in the process that compiles.
@@ -136,7 +136,7 @@ fn plans(limits: &Limits) -> Vec<(&'static str, Result<Plan>)> {
     all.push(("edits under a sky", plan::picture(&clear, &quality, limits, kept)));
     let hulls = Quality { method: Method::Sweep, ..quality };
     all.push(("edits under a sun", plan::picture(&sunny, &hulls, limits, kept)));
-    all.push(("reference", plan::reference(&clear, 1, 1, limits)));
+    all.push(("reference", plan::reference(&clear, 1, Normals::Smooth, 1, limits)));
     all
 }
 

@@ -40,7 +40,9 @@ pub fn run(args: &ReferenceArgs) -> Result<Outcome> {
         setup::Unlit::Daylight(None),
         args.global.quiet,
     )?;
-    let plan = |limits: &Limits| plan::reference(&scene, args.bounces, args.seed, limits);
+    let plan = |limits: &Limits| {
+        plan::reference(&scene, args.bounces, args.normals.into(), args.seed, limits)
+    };
     setup::check_plan(&args.global, plan)?;
     // From here on a signal ends the tracing only.
     IS_TRACING.store(true, Ordering::SeqCst);

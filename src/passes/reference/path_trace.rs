@@ -2,7 +2,7 @@ use std::ops::Range;
 
 use crate::graph::{Builder, ResourceId, shaders};
 use crate::passes::blocks::Blocks;
-use crate::scene::{Albedo, PhongSpecular, Scene, Specular};
+use crate::scene::{Albedo, Normals, PhongSpecular, Scene, Specular};
 
 /// log2 of the paths per texel and batch, 8 at most. Fewer: more dispatches. More: a net fills its square more
 /// evenly, but fewer batches estimate the standard error.
@@ -71,7 +71,7 @@ pub(crate) fn plan(
     builder: &mut Builder,
     scene: &Scene,
     blocks: &Blocks,
-    (bounces, seed): (u32, u32),
+    (bounces, normals, seed): (u32, Normals, u32),
     (band, part, listed): (Range<u32>, Option<&Part>, Option<u32>),
     bound: &[(&str, ResourceId)],
 ) {
@@ -105,7 +105,7 @@ pub(crate) fn plan(
         (e.rotation_rad() / std::f64::consts::TAU).rem_euclid(1.0) as f32
     };
     builder.pass(
-        shaders::PathTrace { border: surface.border as u32, thin_rows, thin_cols, set_bits: SET_BITS, albedo_is_map: is_map, has_environment: lights.environment.is_some(), has_specular: surface.specular.is_some(), has_lights: count > 0, has_keys: !lights.keys.is_empty(), has_sphere_lights: !lights.sphere_lights.is_empty(), has_bounces: bounces > 0, most_steps: blocks.levels.most_steps() as i32, in_parts: part.is_some(), specular_is_map: matches!(surface.specular, Some(Specular::Map(_))), at_places: listed.is_some() },
+        shaders::PathTrace { border: surface.border as u32, thin_rows, thin_cols, set_bits: SET_BITS, albedo_is_map: is_map, has_environment: lights.environment.is_some(), has_specular: surface.specular.is_some(), has_lights: count > 0, has_keys: !lights.keys.is_empty(), has_sphere_lights: !lights.sphere_lights.is_empty(), has_bounces: bounces > 0, most_steps: blocks.levels.most_steps() as i32, in_parts: part.is_some(), specular_is_map: matches!(surface.specular, Some(Specular::Map(_))), at_places: listed.is_some(), smooth_normals: normals == Normals::Smooth },
         &label.join(" "),
         match listed {
             None => format!("{BATCH_PATHS} more paths per texel, up to {bounces} bounces"),

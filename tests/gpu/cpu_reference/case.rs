@@ -2,8 +2,8 @@
 
 use ridgelight::plan::{self, Limits, Picture, Plan};
 use ridgelight::scene::{
-    Albedo, Directions, Environment, HeightField, KeyLight, Lights, Quality, Scatter, Scene,
-    Specular, VisiblePoints,
+    Albedo, Directions, Environment, HeightField, KeyLight, Lights, Normals, Quality, Scatter,
+    Scene, Specular, VisiblePoints,
 };
 use ridgelight_cpu::visible_points::visible_points;
 
@@ -27,9 +27,9 @@ pub(crate) enum Wanted {
     /// Shadow heights of the scene's sun: number of parts; outer field and the place of this field in it.
     ShadowHeights(u32, Option<(HeightField, [f64; 2])>),
     /// Bounces.
-    Reference(u32),
+    Reference(u32, Normals),
     /// Bounces; bounced light alone of so many texels.
-    ReferenceAt(u32, usize),
+    ReferenceAt(u32, Normals, usize),
     Points(Directions),
     Ellipses(Directions),
     Facets(Directions),
@@ -80,9 +80,11 @@ impl Case {
                 let outer = outer.as_ref().map(|(field, place)| (field, *place));
                 plan::shadow_heights(field, sun, outer, *parts, limits)
             }
-            Wanted::Reference(bounces) => plan::reference(&self.scene, *bounces, 1, limits),
-            Wanted::ReferenceAt(bounces, count) => {
-                plan::reference_at(&self.scene, *bounces, 1, *count, limits)
+            Wanted::Reference(bounces, normals) => {
+                plan::reference(&self.scene, *bounces, *normals, 1, limits)
+            }
+            Wanted::ReferenceAt(bounces, normals, count) => {
+                plan::reference_at(&self.scene, *bounces, *normals, 1, *count, limits)
             }
             Wanted::Points(directions) => plan::visible_points(
                 &self.scene.field,
@@ -128,7 +130,7 @@ impl Case {
 
     /// Texels of a list: every third from the last on, some twice.
     pub fn listed(&self) -> Option<Vec<usize>> {
-        let Wanted::ReferenceAt(_, count) = self.wanted else { return None };
+        let Wanted::ReferenceAt(_, _, count) = self.wanted else { return None };
         let all = self.scene.field.heights_m().len();
         Some((1..=count).map(|i| (3 * all - 3 * i) % all).collect())
     }
@@ -144,7 +146,7 @@ impl Case {
 
     /// Texels of the plan's inputs, in its order.
     pub fn contents(&self) -> Vec<Vec<f32>> {
-        if let Wanted::Reference(_) | Wanted::ReferenceAt(..) = self.wanted {
+        if let Wanted::Reference(..) | Wanted::ReferenceAt(..) = self.wanted {
             let list = self.listed().map(|list| plan::listed_places(&self.scene, &list));
             let mut all = plan::reference_inputs(&self.scene);
             all.extend(list.map(|texels| texels.expect("of the field")));

@@ -3,15 +3,17 @@
 use ridgelight::gpu::shaders::offset;
 use ridgelight::plan::{Pass, REFERENCE_BATCH, unsampled_light_error};
 use ridgelight::scene::{
-    Albedo, Border, Lights, PhongSpecular, Quality, Scene, Specular, SphereLight, Sun, Surface,
+    Albedo, Border, Lights, Normals, PhongSpecular, Quality, Scene, Specular, SphereLight, Sun,
+    Surface,
 };
-use ridgelight_cpu::indirect::{Fineness, ground_truth as expected_light};
+use ridgelight_cpu::indirect::{Fineness, ground_truth as expected_light, smooth_ground_truth};
 use ridgelight_cpu::path_trace::{Traced, Tracer};
 use ridgelight_cpu::tolerance::EPSILON;
 use ridgelight_cpu::tolerance::near::Near;
 
 use crate::cpu_reference::{
-    Case, Pair, Reference, Run, Wanted, check_all, key, noisy_environment, pushed, rough, worst,
+    Case, Pair, Reference, Run, Wanted, check_all, constant, key, noisy_environment, pushed, rough,
+    worst,
 };
 use crate::{Device, random};
 
@@ -38,6 +40,10 @@ pub(crate) fn path_trace(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     pairs
 }
 
+fn normals_of(pass: &Pass) -> Normals {
+    if constant(pass, "smooth_normals") == 1 { Normals::Smooth } else { Normals::Flat }
+}
+
 /// The sums added by one dispatch, given those before the batch.
 fn one_part(run: &mut Run, pass: &Pass, before: &[f32], spread: &[f32], pairs: &mut Vec<Pair>) {
     let [bounces, seed, first_path, last_path, first_light, last_light, lights] = [
@@ -56,7 +62,7 @@ fn one_part(run: &mut Run, pass: &Pass, before: &[f32], spread: &[f32], pairs: &
     let is_listed = run.listed.is_some();
     let listed = run.listed.clone().unwrap_or_else(|| (0..cols * rows).collect());
     let scene = run.scene;
-    let tracer = Tracer::of(scene, ground, (bounces, seed), !is_listed);
+    let tracer = Tracer::of(scene, ground, (bounces, normals_of(pass), seed), !is_listed);
     let is_begun = first_path == 0 && first_light == 0;
     if is_begun {
         run.batches = vec![Traced::default(); listed.len()];
@@ -164,7 +170,14 @@ pub(crate) fn quadrature(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     }
     let bounces = pushed(pass, const { offset("PathTracePush", "bounces") }) as usize;
     let fineness = Fineness { azimuths: 24, divisions: 1, strips: 8 };
-    let expected_light = expected_light(run.scene, bounces, fineness).expect("a ground truth");
+    let expected_light = match normals_of(pass) {
+        Normals::Flat => expected_light(run.scene, bounces, fineness),
+        Normals::Smooth => {
+            let Fineness { azimuths, strips, .. } = fineness;
+            smooth_ground_truth(run.scene, bounces, azimuths, strips)
+        }
+    };
+    let expected_light = expected_light.expect("a ground truth");
     let (want, stated) = (&expected_light.radiance[bounces], &expected_light.error[bounces]);
     let light = run.floats(pass, "radiance").expect("written");
     let error = run.floats(pass, "standard_error").expect("written");
@@ -238,9 +251,11 @@ pub(crate) fn references() -> Vec<Case> {
     // The quadrature does not model specular at hit points.
     let phong_maps = with_specular_maps(all.clone());
     vec![
-        reference("all lights", all, Wanted::Reference(1)),
-        reference("lobes in all lights", phong_maps, Wanted::Reference(0)),
-        reference("periodic", repeated, Wanted::Reference(2)),
+        reference("all lights", all.clone(), Wanted::Reference(1, Normals::Flat)),
+        reference("lobes in all lights", phong_maps, Wanted::Reference(0, Normals::Flat)),
+        reference("periodic", repeated.clone(), Wanted::Reference(2, Normals::Flat)),
+        reference("periodic, smooth", repeated, Wanted::Reference(2, Normals::Smooth)),
+        reference("all lights, smooth", all, Wanted::Reference(1, Normals::Smooth)),
     ]
 }
 
@@ -271,18 +286,19 @@ pub(crate) fn paths() -> Vec<Case> {
         reference(
             "specular maps that are met",
             with_specular_maps(all.clone()),
-            Wanted::Reference(1),
+            Wanted::Reference(1, Normals::Flat),
         ),
         reference(
             "a specular map that repeats",
             with_specular_maps(repeated.clone()),
-            Wanted::Reference(1),
+            Wanted::Reference(1, Normals::Flat),
         ),
-        reference("sharp specular on a plane", shiny, Wanted::Reference(1)),
-        reference("bounced light of a list", all, Wanted::ReferenceAt(1, 40)),
-        reference("many suns", many, Wanted::Reference(1)),
-        reference("on a plane", level, Wanted::Reference(2)),
-        reference("a line", line, Wanted::Reference(1)),
+        reference("sharp specular on a plane", shiny.clone(), Wanted::Reference(1, Normals::Flat)),
+        reference("by smooth normals", shiny, Wanted::Reference(1, Normals::Smooth)),
+        reference("bounced light of a list", all, Wanted::ReferenceAt(1, Normals::Smooth, 40)),
+        reference("many suns", many, Wanted::Reference(1, Normals::Smooth)),
+        reference("on a plane", level, Wanted::Reference(2, Normals::Flat)),
+        reference("a line", line, Wanted::Reference(1, Normals::Smooth)),
     ]
 }
 

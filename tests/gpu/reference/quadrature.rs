@@ -1,8 +1,8 @@
 //! The path tracer against the f64 quadrature and closed forms.
 
 use ridgelight::plan::{self, Plan};
-use ridgelight::scene::{Albedo, Border, Environment, Lights, Scene, Sun, Surface};
-use ridgelight_cpu::indirect::{Fineness, ground_truth as expected_light};
+use ridgelight::scene::{Albedo, Border, Environment, Lights, Normals, Scene, Sun, Surface};
+use ridgelight_cpu::indirect::{Fineness, ground_truth as expected_light, smooth_ground_truth};
 
 use crate::scenes::{Agreement, scenes};
 use crate::{Device, field, under_sky};
@@ -10,7 +10,7 @@ use crate::{Device, field, under_sky};
 /// Radiance and its standard error.
 pub(crate) type Traced = [Vec<[f64; 3]>; 2];
 
-/// `batches` of a scene with up to these bounces.
+/// `batches` of a scene of flat triangles with up to these bounces.
 pub(crate) fn traced(
     device: &mut Device,
     scene: &Scene,
@@ -18,7 +18,17 @@ pub(crate) fn traced(
     seed: u32,
     batches: usize,
 ) -> Traced {
-    let plan = plan::reference(scene, bounces, seed, &device.limits()).expect("a plan");
+    traced_on(device, scene, Normals::Flat, (bounces, seed), batches)
+}
+
+pub(crate) fn traced_on(
+    device: &mut Device,
+    scene: &Scene,
+    normals: Normals,
+    (bounces, seed): (u32, u32),
+    batches: usize,
+) -> Traced {
+    let plan = plan::reference(scene, bounces, normals, seed, &device.limits()).expect("a plan");
     let (light, lost) = traced_by(device, scene, plan, batches, &[]);
     assert_eq!(lost, 0, "rays were lost");
     light
@@ -55,8 +65,10 @@ pub(crate) fn traced_by(
 
 /// Bounced light alone of some texels, some of them twice.
 fn traced_at(device: &mut Device, scene: &Scene, bounces: u32, grid_points: &[usize]) -> Traced {
+    let normals = Normals::Smooth;
     let limits = device.limits();
-    let plan = plan::reference_at(scene, bounces, 1, grid_points.len(), &limits).expect("a plan");
+    let plan =
+        plan::reference_at(scene, bounces, normals, 1, grid_points.len(), &limits).expect("a plan");
     let list = plan::listed_places(scene, grid_points).expect("of the field");
     let ([light, error], lost) = traced_by(device, scene, plan, BATCHES, &[list]);
     assert_eq!(lost, 0, "rays were lost");
@@ -69,8 +81,7 @@ fn traced_at(device: &mut Device, scene: &Scene, bounces: u32, grid_points: &[us
 fn paths_from_listed_samples_bring_indirect_light() {
     let mut device = Device::new();
     for (name, scene) in scenes() {
-        let fineness = Fineness { azimuths: 24, divisions: 1, strips: 12 };
-        let expected_light = expected_light(&scene, 2, fineness).expect("a ground truth");
+        let expected_light = smooth_ground_truth(&scene, 2, 24, 12).expect("a ground truth");
         let count = expected_light.radiance[0].len();
         // From the last texel, then others; some are in both lists.
         let first: Vec<usize> = (1..count).rev().step_by(2).collect();
@@ -114,16 +125,19 @@ fn paths_agree_with_the_quadrature_on_every_scene() {
     let mut device = Device::new();
     for (name, scene) in scenes() {
         let fineness = Fineness { azimuths: 24, divisions: 1, strips: 12 };
-        let expected_light = expected_light(&scene, 2, fineness).expect("a ground truth");
-        let agreement = |[light, error]: &Traced, b: usize| {
-            let right = [&expected_light.radiance[b][..], &expected_light.error[b]];
-            Agreement::of([light, error], right, PATHS, 1e-5)
-        };
-        for b in [0, 2] {
-            let both = &traced(&mut device, &scene, b as u32, 1, BATCHES);
+        let flat = expected_light(&scene, 2, fineness).expect("a ground truth");
+        let smooth = smooth_ground_truth(&scene, 2, 24, 12).expect("a ground truth");
+        let cases = [(0, Normals::Flat), (2, Normals::Flat), (2, Normals::Smooth)];
+        for (b, normals) in cases {
+            let expected_light = if normals == Normals::Flat { &flat } else { &smooth };
+            let agreement = |[light, error]: &Traced, b: usize| {
+                let right = [&expected_light.radiance[b][..], &expected_light.error[b]];
+                Agreement::of([light, error], right, PATHS, 1e-5)
+            };
+            let both = &traced_on(&mut device, &scene, normals, (b as u32, 1), BATCHES);
             let of = agreement(both, b);
             println!(
-                "{name}, {b} bounces: rms {:.3}, worst {:.2}, mean {:.2} of {}",
+                "{name}, {b} bounces, {normals:?}: rms {:.3}, worst {:.2}, mean {:.2} of {}",
                 of.rms, of.worst, of.mean, of.count
             );
             assert!(of.holds(), "{name}, {b} bounces: {of:?}");

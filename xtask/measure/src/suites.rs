@@ -20,7 +20,7 @@ use extreme::page::{self, Column};
 use extreme::{inputs, methods};
 use reference_page::{Closed, FINENESS, MOST_BOUNCES, closed_forms, head, light_names};
 use ridgelight::gpu::{Headless, HeadlessOptions};
-use ridgelight::scene::Scene;
+use ridgelight::scene::{Normals, Scene};
 use ridgelight::{Result, plan};
 use ridgelight_cpu::indirect::{self, GroundTruth};
 use ridgelight_io as files;
@@ -113,7 +113,8 @@ pub fn reference(mut args: Args) -> Outcome {
     // Each row has a seed of its own: no row shares its paths with another of its scene.
     let mut traced = |scene: &Scene, bounces: usize| -> Result<[Colours; 2]> {
         let seed = 1 + bounces as u32;
-        Ok(frames::traced_at(&mut gpu, scene, (bounces as u32, seed), &[BATCHES])?.remove(0))
+        Ok(frames::traced_at(&mut gpu, scene, (bounces as u32, Normals::Flat, seed), &[BATCHES])?
+            .remove(0))
     };
     let mut rows = SCENES.to_owned();
     for (name, scene) in scenes() {

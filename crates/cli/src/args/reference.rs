@@ -1,6 +1,6 @@
 use std::path::PathBuf;
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 
 use super::values::whole;
 use super::{GlobalArgs, Input, LightArgs, SurfaceArgs};
@@ -24,6 +24,11 @@ pub struct ReferenceArgs {
     /// Fewer leave hollows darker; more take time in proportion.
     #[arg(long, value_name = "B", default_value_t = 0, value_parser = whole, allow_negative_numbers = true, help_heading = "Quality")]
     pub bounces: u32,
+    /// How ground reflects between its grid points
+    ///
+    /// It matters for bounces only: at grid points light is always about their mean normal.
+    #[arg(long, value_name = "N", default_value = "smooth", help_heading = "Quality")]
+    pub normals: NormalsName,
     /// Stop at this standard error relative to the mean (0.01 is 1 %)
     ///
     /// The bound includes unsampled light. Stops after 512 paths at the earliest. If --spp ends the run first, the command
@@ -39,4 +44,21 @@ pub struct ReferenceArgs {
     pub surface: SurfaceArgs,
     #[command(flatten)]
     pub global: GlobalArgs,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub enum NormalsName {
+    /// As in pictures: radiance is linear between grid points
+    Smooth,
+    /// About the normal of each flat triangle
+    Flat,
+}
+
+impl From<NormalsName> for ridgelight::scene::Normals {
+    fn from(name: NormalsName) -> Self {
+        match name {
+            NormalsName::Smooth => Self::Smooth,
+            NormalsName::Flat => Self::Flat,
+        }
+    }
 }

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use ridgelight::Result;
 use ridgelight::gpu::{Headless, Timing};
 use ridgelight::plan::{self, Limits, Picture};
-use ridgelight::scene::{Hull, Quality, Scene};
+use ridgelight::scene::{Hull, Normals, Quality, Scene};
 use ridgelight_cpu::lit::Lit;
 use ridgelight_trade::auto;
 use ridgelight_trade::auto::{Bounced, Chosen, Drawn, Goal, Measured, Probes, Traced, Trial};
@@ -116,7 +116,7 @@ fn trace(
     places: &[usize],
     (batches, seed): (u32, u32),
 ) -> Result<Vec<Traced>> {
-    let plan = plan::reference_at(scene, bounces, seed, places.len(), limits)?;
+    let plan = plan::reference_at(scene, bounces, Normals::Smooth, seed, places.len(), limits)?;
     let is_traced = |i: &usize| plan.passes[*i].name() == "path_trace";
     let passes: Vec<usize> = (0..plan.passes.len()).filter(is_traced).collect();
     let mut contents = plan::reference_inputs(scene);

@@ -25,7 +25,7 @@ use crate::light::{Receiver, Site, Slice, albedo_at, normal};
 use crate::oracle::Oracle;
 use crate::profile::VisibleInterval;
 use glam::DVec3;
-use ridgelight::scene::{Border, HeightField, Lights, NearLight, Scene, Specular};
+use ridgelight::scene::{Border, HeightField, Lights, NearLight, Normals, Scene, Specular};
 use ridgelight::{Error, Result};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -70,11 +70,30 @@ pub struct GroundTruth {
 pub fn ground_truth(scene: &Scene, bounces: usize, fineness: Fineness) -> Result<GroundTruth> {
     let coarse = light(scene, bounces, fineness)?;
     let radiance = light(scene, bounces, fineness.doubled())?;
+    Ok(between(coarse, radiance))
+}
+
+/// As [`ground_truth`], of [`smooth_light`].
+///
+/// # Errors
+/// As [`light`].
+pub fn smooth_ground_truth(
+    scene: &Scene,
+    bounces: usize,
+    azimuths: usize,
+    strips: usize,
+) -> Result<GroundTruth> {
+    let coarse = smooth_light(scene, bounces, azimuths, strips)?;
+    let radiance = smooth_light(scene, bounces, 2 * azimuths, 2 * strips)?;
+    Ok(between(coarse, radiance))
+}
+
+fn between(coarse: Vec<Picture>, radiance: Vec<Picture>) -> GroundTruth {
     let difference = |(a, b): (&Picture, &Picture)| -> Picture {
         a.iter().zip(b).map(|(a, b)| [0, 1, 2].map(|i| (a[i] - b[i]).abs())).collect()
     };
     let error = radiance.iter().zip(&coarse).map(difference).collect();
-    Ok(GroundTruth { radiance, error })
+    GroundTruth { radiance, error }
 }
 
 /// Exit radiance of every grid point with all bounces up to 0, 1, … `bounces`.
@@ -85,6 +104,29 @@ pub fn ground_truth(scene: &Scene, bounces: usize, fineness: Fineness) -> Result
 /// # Errors
 /// A scene or a fineness out of range.
 pub fn light(scene: &Scene, bounces: usize, fineness: Fineness) -> Result<Vec<Picture>> {
+    light_of(scene, Normals::Flat, bounces, fineness)
+}
+
+/// As [`light`], by smooth normals: ground reflects at its grid points alone, about their [`normal`], and the radiance
+/// is linear between them. So there is no error of the triangles' size, and nothing to divide.
+///
+/// # Errors
+/// As [`light`].
+pub fn smooth_light(
+    scene: &Scene,
+    bounces: usize,
+    azimuths: usize,
+    strips: usize,
+) -> Result<Vec<Picture>> {
+    light_of(scene, Normals::Smooth, bounces, Fineness { azimuths, divisions: 1, strips })
+}
+
+fn light_of(
+    scene: &Scene,
+    normals: Normals,
+    bounces: usize,
+    fineness: Fineness,
+) -> Result<Vec<Picture>> {
     let Scene { field, surface, lights } = scene;
     let grid_points = field.rows() * field.cols();
     surface.check(grid_points)?;
@@ -97,7 +139,7 @@ pub fn light(scene: &Scene, bounces: usize, fineness: Fineness) -> Result<Vec<Pi
     }
     let fine = divided_field(field, surface.border, divisions)?;
     let oracle = Oracle::new(&fine, surface.border);
-    let places = places(&oracle, field, divisions, surface.specular.as_ref());
+    let places = places(&oracle, field, normals, divisions, surface.specular.as_ref());
     let corners = corner_count(&oracle);
     let lights = moved_lights(lights, field, surface.border, divisions);
 
@@ -164,6 +206,7 @@ fn corner_count(oracle: &Oracle) -> usize {
 fn places(
     oracle: &Oracle,
     field: &HeightField,
+    normals: Normals,
     divisions: usize,
     specular: Option<&Specular>,
 ) -> Vec<Vec<(usize, Receiver)>> {
@@ -171,9 +214,12 @@ fn places(
     let mut places = vec![Vec::new(); fine.rows() * fine.cols()];
     let corners = corner_count(oracle);
     for triangle in 0..corners / 3 {
-        let receiver = Receiver::diffuse(triangle_normal(oracle, triangle));
         for (k, [r, c]) in oracle.corners(triangle).into_iter().enumerate() {
-            places[r * fine.cols() + c].push((3 * triangle + k, receiver));
+            let normal = match normals {
+                Normals::Flat => triangle_normal(oracle, triangle),
+                Normals::Smooth => normal(field, oracle.border(), r, c),
+            };
+            places[r * fine.cols() + c].push((3 * triangle + k, Receiver::diffuse(normal)));
         }
     }
     let grid_points = field.rows() * field.cols();

@@ -16,7 +16,7 @@ use crate::tolerance::near::{Near, Near3, all, any, dot, minus, plus, product};
 use lights::Environment;
 use place::Place;
 use ridgelight::plan::{REFERENCE_BATCH, max_path_light, reference_inputs};
-use ridgelight::scene::{Albedo, Scene, Specular};
+use ridgelight::scene::{Albedo, Normals, Scene, Specular};
 use std::ops::Range;
 
 const BITS: u32 = REFERENCE_BATCH.ilog2();
@@ -35,6 +35,7 @@ pub struct Tracer<'a> {
     albedo: Vec<[f32; 3]>,
     specular: Vec<[f32; 2]>,
     bounces: u32,
+    normals: Normals,
     seed: u32,
     /// Whether direct light counts.
     counts_direct: bool,
@@ -80,7 +81,7 @@ impl<'a> Tracer<'a> {
     pub fn of(
         scene: &'a Scene,
         grid_points: Vec<[f32; 3]>,
-        (bounces, seed): (u32, u32),
+        (bounces, normals, seed): (u32, Normals, u32),
         counts_direct: bool,
     ) -> Self {
         let Scene { field, surface, lights } = scene;
@@ -123,6 +124,7 @@ impl<'a> Tracer<'a> {
             scene,
             grid_points,
             bounces,
+            normals,
             seed,
             counts_direct,
         }
@@ -292,8 +294,9 @@ impl<'a> Tracer<'a> {
                 return;
             }
             carried = scattered;
-            let Some(is_lower) = met.lower else { return parts(sum, carried, left - 1) };
-            place = self.place_of(&met, is_lower, e);
+            let next = met.lower.and_then(|is_lower| self.place_of(&met, is_lower, e, v[1]));
+            let Some(next) = next else { return parts(sum, carried, left - 1) };
+            place = next;
         }
     }
 }

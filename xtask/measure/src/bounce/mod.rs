@@ -14,7 +14,9 @@ use std::path::Path;
 use ridgelight::Result;
 use ridgelight::gpu::Headless;
 use ridgelight::plan::{self, Picture, REFERENCE_BATCH};
-use ridgelight::scene::{Albedo, BounceEngine, Bounces, Environment, HeightField, Quality, Scene};
+use ridgelight::scene::{
+    Albedo, BounceEngine, Bounces, Environment, HeightField, Normals, Quality, Scene,
+};
 
 use crate::common::args::Args;
 use crate::common::frames::{
@@ -67,7 +69,8 @@ impl Reference {
     /// Paths with more bounces begin alike, so what they do not share is the last bounce's own.
     fn of(gpu: &mut Headless, scene: &Scene, paths: u32) -> Result<Self> {
         let half = paths.div_ceil(2 * REFERENCE_BATCH).max(1);
-        let all = (0..=MOST).map(|count| traced_at(gpu, scene, (count, 1), &[half, 2 * half]));
+        let all = (0..=MOST)
+            .map(|count| traced_at(gpu, scene, (count, Normals::Smooth, 1), &[half, 2 * half]));
         let all = all.collect::<Result<Vec<_>>>()?;
         let layers = |which: usize| {
             let light = |k: usize| &all[k][which][0];

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use ridgelight::gpu::{Frame, Headless, Pixels, Timing};
 use ridgelight::plan::{self, Pass, Picture, Plan, Resource};
-use ridgelight::scene::{Method, Quality, Scene};
+use ridgelight::scene::{Method, Normals, Quality, Scene};
 use ridgelight::{Error, Result};
 use ridgelight_trade::error::ImageError;
 
@@ -189,10 +189,10 @@ pub fn bytes(plan: &Plan, names: &[&str]) -> u64 {
 pub fn traced_at(
     gpu: &mut Headless,
     scene: &Scene,
-    (bounces, seed): (u32, u32),
+    (bounces, normals, seed): (u32, Normals, u32),
     stops: &[u32],
 ) -> Result<Vec<[Colours; 2]>> {
-    let plan = plan::reference(scene, bounces, seed, &gpu.report().limits)?;
+    let plan = plan::reference(scene, bounces, normals, seed, &gpu.report().limits)?;
     let is_path = |p: &usize| plan.passes[*p].name() == "path_trace";
     let paths: Vec<usize> = (0..plan.passes.len()).filter(is_path).collect();
     let lost = plan.find("lost_rays");
@@ -221,7 +221,7 @@ pub fn traced(
     bounces: u32,
     batches: u32,
 ) -> Result<[Colours; 2]> {
-    Ok(traced_at(gpu, scene, (bounces, 1), &[batches])?.remove(0))
+    Ok(traced_at(gpu, scene, (bounces, Normals::Smooth, 1), &[batches])?.remove(0))
 }
 
 pub fn minus(a: &Colours, b: &Colours) -> Colours {

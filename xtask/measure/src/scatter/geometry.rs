@@ -3,7 +3,7 @@
 use glam::DVec3;
 use ridgelight::gpu::{Frame, Headless, ViewPixels};
 use ridgelight::plan::{self, View, ViewOptions};
-use ridgelight::scene::{Albedo, Border, Camera, HeightField, Lens, Lights, Scene, Sun};
+use ridgelight::scene::{Albedo, Border, Camera, HeightField, Lens, Lights, Normals, Scene, Sun};
 use ridgelight::{Error, Result};
 
 use crate::common::frames::slices;
@@ -66,7 +66,7 @@ impl Geometry {
         let field = HeightField::new(rows * repeats[1], wide, &all, field.cell_m(), None)?;
         let lights = Lights { suns: vec![sun(light)], ..Lights::default() };
         let scene = Scene { field, surface, lights };
-        let plan = plan::reference(&scene, bounces, 1, &gpu.report().limits)?;
+        let plan = plan::reference(&scene, bounces, Normals::Flat, 1, &gpu.report().limits)?;
         let contents = plan::reference_inputs(&scene);
         let mut frame = gpu.frame(plan, &slices(&contents))?;
         gpu.draw(&mut frame)?;

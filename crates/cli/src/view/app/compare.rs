@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 
 use ridgelight::gpu::{Frame, Timing};
 use ridgelight::plan::{self, Limits, REFERENCE_BATCH};
+use ridgelight::scene::Normals;
 use ridgelight::{Error, Result};
 use ridgelight_viewer::Screen;
 
@@ -80,7 +81,8 @@ impl Compare {
                 screen.end(old.frame)?;
             }
             let (scene, bounces) = (&state.scene, state.quality.bounces.count);
-            let plan = plan::reference_in_bands(scene, bounces, 0, limits, BAND_ROWS)?;
+            let plan =
+                plan::reference_in_bands(scene, bounces, Normals::Smooth, 0, limits, BAND_ROWS)?;
             let is_band = |pass: &plan::Pass| pass.name() == "path_trace";
             let first_band = plan.passes.iter().position(is_band).unwrap_or(0);
             let contents = plan::reference_inputs(scene);

@@ -5,7 +5,7 @@ use crate::shared::phong_lobe::phong_lobe;
 use crate::shared::random::{direction_about, on_circle};
 use crate::shared::trace::Met;
 use crate::tolerance::near::{Near, Near3, dot, minus, normalize, plus, times};
-use ridgelight::scene::{Albedo, Border, Specular};
+use ridgelight::scene::{Albedo, Border, Normals, Specular};
 use std::f64::consts::PI;
 
 /// A path vertex.
@@ -45,8 +45,15 @@ impl Tracer<'_> {
         }
     }
 
-    /// At the hit of a ray along e.
-    pub(super) fn place_of(&self, met: &Met, is_lower: bool, e: Near3) -> Place {
+    /// At the hit of a ray along e. With smooth normals at a corner of the triangle, where a `drawn` number falls; none
+    /// where rounding decides at which.
+    pub(super) fn place_of(
+        &self,
+        met: &Met,
+        is_lower: bool,
+        e: Near3,
+        drawn: Near,
+    ) -> Option<Place> {
         let [nw, ne, sw, se] = self.ground.corners(met.cell);
         let [east, south] = if is_lower { [se - sw, sw - nw] } else { [ne - nw, se - ne] };
         let [x, y] = self.ground.cell_m;
@@ -60,6 +67,20 @@ impl Tracer<'_> {
         let rest = one() - near - far;
         let grid_points =
             [(near, at), (far, next), (rest, third)].map(|(w, [c, r])| (w, r * cols + c));
+        let mirror = |normal| minus(e, times(Near::of(2.0) * dot(e, normal), normal));
+        if self.normals == Normals::Smooth {
+            let is_near = near.above(drawn)?;
+            let corner = if is_near {
+                0
+            } else if (near + far).above(drawn)? {
+                1
+            } else {
+                2
+            };
+            let mut place = self.first(grid_points[corner].1);
+            place.mirror = mirror(place.normal);
+            return Some(place);
+        }
         let between = |of: &dyn Fn(usize) -> Near| {
             let [a, b, c] = grid_points.map(|(weight, grid_point)| weight * of(grid_point));
             a + b + c
@@ -72,15 +93,15 @@ impl Tracer<'_> {
             (false, Some(pair)) => Near::given(pair[c]),
             (false, None) => Near::ZERO,
         };
-        Place {
+        Some(Place {
             base: met.cell,
             offset: met.offset,
             own: nw + met.offset[0] * east + met.offset[1] * south,
             normal,
             albedo: if is_map { [0, 1, 2].map(channel) } else { given(self.albedo[0]) },
             specular: [0, 1].map(specular),
-            mirror: minus(e, times(Near::of(2.0) * dot(e, normal), normal)),
-        }
+            mirror: mirror(normal),
+        })
     }
 
     /// Fraction of scattered rays drawn from the Phong lobe.

@@ -1,5 +1,5 @@
 use super::*;
-use ridgelight::scene::{Environment as Image, HeightField, Lights, SphereLight, Surface};
+use ridgelight::scene::{Environment as Image, HeightField, Lights, Normals, SphereLight, Surface};
 
 /// A level field of 3² grid points in this light.
 fn scene(albedo: [f32; 3], lights: Lights) -> Scene {
@@ -18,7 +18,7 @@ fn a_ray_sees_the_ball_that_it_leaves_and_what_is_behind_it() {
     let sphere = SphereLight { position_m: [1.0, 1.0, 0.0], radius_m: 9.0, radiance: [1.0; 3] };
     let lights = Lights { sky: Some([0.2; 3]), sphere_lights: vec![sphere], ..Lights::default() };
     let scene = scene([0.3; 3], lights);
-    let tracer = Tracer::of(&scene, vec![[0.0; 3]; 9], (1, 0), true);
+    let tracer = Tracer::of(&scene, vec![[0.0; 3]; 9], (1, Normals::Flat, 0), true);
     assert!(tracer.most_arriving(1)[1] >= 1.3, "{:?}", tracer.most_arriving(1));
     // The last ray's ground is black.
     assert!((tracer.most_arriving(0)[1] - 1.2).abs() < 1e-6, "{:?}", tracer.most_arriving(0));
@@ -40,7 +40,7 @@ fn straight_above_every_column_is_in_doubt() {
         };
         let image = Image::new(8, 4, (0..32).map(texel).collect(), 0.3).unwrap();
         let scene = scene([0.5; 3], Lights { environment: Some(image), ..Lights::default() });
-        let tracer = Tracer::of(&scene, vec![[0.0; 3]; 9], (0, 0), true);
+        let tracer = Tracer::of(&scene, vec![[0.0; 3]; 9], (0, Normals::Flat, 0), true);
         let mut environment = tracer.environment.unwrap();
         // Without importance sampling.
         environment.texels.iter_mut().for_each(|t| t[3] = 0.0);
