@@ -27,9 +27,9 @@ pub struct Pass {
     pub bindings: Vec<Option<ResourceId>>,
     /// The range of [`Plan::azimuths`](crate::plan::Plan::azimuths) that it reads; empty where it binds none.
     pub azimuths: Range<u32>,
-    /// Minimal bytes read and written.
+    /// Minimal bytes read and written; 0 where they depend on the heights.
     pub bytes: u64,
-    /// Texels processed, for rates.
+    /// Texels processed, for rates; 0 where they depend on the heights.
     pub texels: u64,
     /// The part that an edit needs, where the push constants hold the edited rectangle.
     pub reach: Option<Reach>,

@@ -18,13 +18,8 @@ impl fmt::Display for Plan {
             }
             let groups = format!("{} × {} × {}", pass.groups[0], pass.groups[1], pass.groups[2]);
             let mark = if pass.barrier_before { "| " } else { "  " };
-            writeln!(
-                f,
-                "{mark}{:<32} {groups:>18} {:>11}  {}",
-                pass.label(),
-                bytes_text(pass.bytes),
-                pass.why
-            )?;
+            let traffic = if pass.bytes == 0 { "-".to_owned() } else { bytes_text(pass.bytes) };
+            writeln!(f, "{mark}{:<32} {groups:>18} {traffic:>11}  {}", pass.label(), pass.why)?;
         }
         writeln!(f, "(| a barrier stands before the pass)\n")?;
         writeln!(f, "{:<24} {:>9} {:>26} {:>12}", "image or buffer", "whose", "extent", "memory")?;

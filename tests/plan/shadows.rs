@@ -65,6 +65,21 @@ fn a_line_of_ground_is_swept_by_hulls() {
     }
 }
 
+/// The heights decide how many texels `shadow_settle` walks from, and how far. Every other pass counts its traffic.
+#[test]
+fn traffic_that_depends_on_the_heights_is_not_counted() {
+    let plan = picture(&scene(40), &Quality::default(), &Limits::lavapipe());
+    let is_uncounted = |p: &Pass| p.name() == "shadow_settle";
+    assert!(plan.passes.iter().any(is_uncounted));
+    for pass in &plan.passes {
+        assert_eq!(pass.bytes == 0, is_uncounted(pass), "{}", pass.label());
+        assert!(!is_uncounted(pass) || pass.texels == 0, "{}", pass.label());
+    }
+    let printed = plan.to_string();
+    let mut rows = printed.lines().filter(|line| line.contains("shadow_settle "));
+    assert!(rows.all(|row| row.contains("  -  ")), "{printed}");
+}
+
 /// Where half of the memory does not hold what they need, the plan states it in a note and fits.
 #[test]
 fn short_memory_takes_hull_sweeps_with_a_note() {

@@ -37,8 +37,6 @@ pub(crate) fn plan(
             all if all == batch.count => part.to_owned(),
             _ => format!("{part} azimuths {first}..{}", first + count),
         };
-        // About one texel in ten, and twenty blocks of each walk.
-        let settled = axis.texels() / 10 * u64::from(count);
         let pass = builder.pass(
             shaders::ShadowSettle {
                 layer_shift: batch.layer_shift as i32,
@@ -68,8 +66,9 @@ pub(crate) fn plan(
                 ("sun_sum", sun_sum),
                 ("shadows", lattice),
             ],
-            axis.texels() + settled * 20 * (16 + 4 * 16),
-            settled,
+            // The heights decide how many texels are marked and how far their walks go.
+            0,
+            0,
         );
         pass.azimuths = batch.first + first..batch.first + first + count;
     }
