@@ -75,6 +75,15 @@ pub fn run(args: &CompareArgs) -> Result<Outcome> {
 
 /// Checks arguments before a file is read.
 fn check(args: &CompareArgs) -> Result<()> {
+    for path in [&args.result, &args.reference] {
+        if setup::extension(path) == "json" {
+            let expected = format!(
+                "an .exr, .tif, .png, .hdr or .npy; for times of `bench --json` run `ridgelight bench --against {}`",
+                path.display()
+            );
+            return Err(Error::file(path, "name", "the extension .json", expected));
+        }
+    }
     let outputs = [("--diff", args.diff.as_deref()), ("--json", args.json.as_deref())];
     for ((flag, path), kinds) in outputs.into_iter().zip([&["exr", "npy"][..], &["json"]]) {
         path.map_or(Ok(()), |path| setup::check_output(flag, path, kinds))?;

@@ -76,6 +76,7 @@ fn unlike_files_are_refused() {
         ("text.npy one.npy", 1, &["text.npy", "first bytes"]),
         ("a.hdr a.hdr", 1, &["a.hdr: image data"]),
         ("a.asc one.npy", 1, &["a.asc", "the extension .asc"]),
+        ("old.json new.json", 1, &["old.json: name", "`ridgelight bench --against old.json`"]),
         ("one.npy .", 1, &["a directory"]),
         ("one.npy two.npy --diff d.png", 2, &["--diff: found d.png", ".exr or .npy"]),
         ("one.npy two.npy --diff no/d.exr", 2, &["--diff", "a folder no"]),
