@@ -143,7 +143,9 @@ pub fn run(args: &TuneArgs) -> Result<Outcome> {
     if !global.quiet {
         crate::say!("{}, {}", device.name, device.driver);
         let (size, base) = (size_text(scene, quality), text(&untuned));
-        crate::say!("time of a frame of {size}, relative to the untuned form ({base}):");
+        crate::say!(
+            "time of a frame of {size}, relative to the untuned form ({base}), with the 95 % interval:"
+        );
         trials.iter().for_each(|trial| crate::say!("{}", line(trial)));
         let again = last.as_ref().map(|trial| format!("again:\n{}\n", line(trial)));
         crate::say!("{}{}", again.unwrap_or_default(), verdict(kept));
@@ -265,19 +267,22 @@ fn line(trial: &Trial) -> String {
     let found = match trial {
         Trial { failed: Some(why), .. } => format!("failed: {why}"),
         Trial { is_same: false, .. } => "different bits: rejected".into(),
-        Trial { interval: Some([low, high]), ratio, .. } => {
-            format!("{ratio:.3} ({low:.3} to {high:.3})")
-        }
-        Trial { ratio, .. } => format!("{ratio:.2}"),
+        Trial { interval: Some(_), .. } => ratio_text(trial),
+        Trial { ratio, .. } => format!("{ratio:.2} (too few pairs for an interval)"),
     };
     format!("  {:<98} {found}", text(&trial.form))
+}
+
+fn ratio_text(trial: &Trial) -> String {
+    let [low, high] = trial.interval.unwrap_or([f64::NAN; 2]);
+    format!("{:.3} ({low:.3} to {high:.3})", trial.ratio)
 }
 
 fn verdict(kept: Option<&Trial>) -> String {
     match kept {
         Some(trial) => format!(
-            "kept for this device, driver and commit: {:.3} of the untuned time; `ridgelight tune --reset` undoes it",
-            trial.ratio
+            "kept for this device, driver and commit: {} of the untuned time; `ridgelight tune --reset` undoes it",
+            ratio_text(trial)
         ),
         None => format!(
             "the untuned form stays: no form takes less than {FASTER} of its time with 95 % confidence"
@@ -341,5 +346,9 @@ mod tests {
         assert!(line(&trials[1]).contains("different bits"));
         let failed = Trial { failed: Some("no memory".into()), ..trial(1, f64::NAN, true) };
         assert!(line(&failed).contains("failed: no memory") && fastest(&[failed]).is_none());
+        let timed = Trial { interval: Some([0.8, 0.95]), ..trial(1, 0.9, true) };
+        assert!(line(&timed).ends_with("0.900 (0.800 to 0.950)"));
+        assert!(verdict(Some(&timed)).contains("commit: 0.900 (0.800 to 0.950) of the untuned"));
+        assert!(line(&trials[0]).ends_with("0.90 (too few pairs for an interval)"));
     }
 }
