@@ -233,7 +233,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
             let by = if args.exposure.is_none() { "automatic" } else { "given" };
             crate::say!("Picture: --tint {tint} --exposure {exposure} ({by}).");
         }
-        for sentence in choice.iter().flat_map(|choice| &choice.sentences) {
+        for sentence in choice.iter().flat_map(Choice::sentences) {
             crate::say!("{sentence}");
         }
     }

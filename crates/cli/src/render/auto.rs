@@ -196,13 +196,12 @@ pub fn sentences(goal: Goal, chosen: &Chosen, scene: &Scene) -> Vec<String> {
     );
     let mut all = vec![format!(
         "{}: expected error {} (one standard deviation: a factor of {}), measured {}, at most {} \
-            {confidence} ({probes} probes{by_paths}); {} settings tried",
+            {confidence} ({probes} probes{by_paths})",
         flags(&trial.quality, scene),
         percent(expected.error),
         digits(expected.factor),
         percent(trial.measured.error),
         percent(trial.measured.at_most),
-        trials.len()
     )];
     let missed: Vec<_> = trials.iter().filter(|t| !goal.is_reached(t)).collect();
     if let Some(last) = missed.last() {

@@ -24,7 +24,12 @@ pub struct Choice {
     pub metadata: Vec<(String, String)>,
     /// The settings that were tried, with times.
     pub tried: String,
-    pub sentences: Vec<String>,
+    /// Their number.
+    count: usize,
+    sentences: Vec<String>,
+    /// Whether an earlier run made the choice.
+    #[serde(skip)]
+    is_remembered: bool,
 }
 
 impl Choice {
@@ -34,8 +39,20 @@ impl Choice {
             settings: SETTINGS.iter().map(|s| (s.name.to_owned(), s.get(quality))).collect(),
             metadata: auto::metadata((goal, seed), chosen, scene),
             tried: auto::tried(goal, chosen, scene, true),
+            count: chosen.trials.len(),
             sentences: auto::sentences(goal, chosen, scene),
+            is_remembered: false,
         }
+    }
+
+    /// The choice in words.
+    pub fn sentences(&self) -> Vec<String> {
+        let by = if self.is_remembered { "remembered from an earlier run: " } else { "" };
+        let mut all = self.sentences.clone();
+        if let Some(first) = all.first_mut() {
+            *first += &format!("; {by}{} settings tried", self.count);
+        }
+        all
     }
 
     /// # Errors
@@ -97,7 +114,8 @@ impl Place {
     /// What an earlier run chose. A file that cannot be read is none.
     pub fn find(&self) -> Option<Choice> {
         let text = std::fs::read(self.0.as_ref()?).ok()?;
-        serde_json::from_slice(&text).ok()
+        let choice: Choice = serde_json::from_slice(&text).ok()?;
+        Some(Choice { is_remembered: true, ..choice })
     }
 
     /// Keeps a choice.
