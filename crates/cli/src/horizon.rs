@@ -58,9 +58,13 @@ pub fn used(
     limits: &Limits,
     distances: bool,
 ) -> Result<Vec<(String, String)>> {
-    let mut used = plan_from(field, border, quality, limits, (0, 1), distances)?.settings;
+    Ok(used_by(&plan_from(field, border, quality, limits, (0, 1), distances)?, quality))
+}
+
+fn used_by(plan: &Plan, quality: &Quality) -> Vec<(String, String)> {
+    let mut used = plan.settings.clone();
     used.push(("azimuths".into(), quality.azimuths.to_string()));
-    Ok(used)
+    used
 }
 
 /// Calls `each` for every azimuth k in order: (k, elevations, distances or nothing). Returns the
@@ -243,8 +247,11 @@ pub fn run(args: &HorizonArgs) -> Result<Outcome> {
         _ => None,
     };
     files::check_room(&outputs.into_iter().flatten().filter_map(of_file).collect::<Vec<_>>())?;
-    let used = used(&field, border, &quality, &limits, distances)?;
-    idle::say(args.global.quiet, &args.quality.written, &used);
+    let most = at_once(&field, &limits);
+    let first = plan_from(&field, border, &quality, &limits, (0, most), distances)?;
+    idle::say(args.global.quiet, &args.quality.written, &used_by(&first, &quality));
+    // Azimuths that are drawn together.
+    let at_once = first.azimuths.len();
     let compass = Compass::of(&azimuths);
     let create = |path: &Path, unit: &str| {
         LayerFile::create(path, shape, compass.names(), unit, georeference.as_ref())
@@ -253,10 +260,6 @@ pub fn run(args: &HorizonArgs) -> Result<Outcome> {
     let mut angles_file = has_layers.then(|| create(&args.output, "rad")).transpose()?;
     let mut distances_file = args.distances.as_ref().map(|path| create(path, "m")).transpose()?;
     let bar = crate::setup::terminal::progress(args.global.quiet, "horizons");
-    // Azimuths that are drawn together.
-    let at_once = at_once(&field, &limits);
-    let at_once = plan_from(&field, border, &quality, &limits, (0, at_once), distances)?;
-    let at_once = at_once.azimuths.len();
     let (begun, mut done, mut left) = (Instant::now(), 0, String::new());
     let mut times = Vec::new();
     let mut metadata = Vec::new();
