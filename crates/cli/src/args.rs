@@ -9,12 +9,14 @@ mod quality;
 mod reference;
 mod renamed;
 mod scene;
+mod trade;
 mod values;
 mod view;
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
+use clap::error::{ContextKind, ContextValue};
 use clap::{
     Arg, ArgAction, ArgMatches, Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum,
 };
@@ -30,8 +32,9 @@ pub use quality::{QualityArgs, flag};
 pub use reference::ReferenceArgs;
 pub use renamed::Renamed;
 pub use scene::{BorderName, FieldArgs, LightArgs, SurfaceArgs};
+pub use trade::TradeArgs;
+use values::{AZIMUTHS, FACTOR, SIDE, bytes, fourier, number};
 pub use values::{SkyArg, SpecularArg, albedo_colour, numbers};
-use values::{bytes, fourier};
 pub use view::ViewArgs;
 
 /// Lights height fields on Vulkan by sky, environment, suns, key lights, sphere lights and indirect light, with
@@ -50,8 +53,8 @@ pub struct Cli {
 pub enum Refused {
     /// By the parser. Help and version come this way too.
     Parser(clap::Error),
-    /// By a scene file.
-    Scene(ridgelight::Error),
+    /// A value, by its flag or by its line and key in a scene file.
+    Value(ridgelight::Error),
 }
 
 /// Help headings, in the order of `--help`. Others stand before "Output".
@@ -90,6 +93,18 @@ fn arranged(command: clap::Command) -> clap::Command {
     command.after_help(last).after_long_help(long)
 }
 
+/// The error of a value that its parser refuses, as the library writes errors of settings.
+fn of_value(error: &clap::Error) -> Option<ridgelight::Error> {
+    let text = |kind| match error.get(kind)? {
+        ContextValue::String(text) => Some(text.as_str()),
+        _ => None,
+    };
+    let expected = std::error::Error::source(error)?.to_string();
+    let flag = text(ContextKind::InvalidArg)?.split(' ').next()?;
+    let value = Some(text(ContextKind::InvalidValue)?).filter(|value| !value.is_empty());
+    Some(ridgelight::Error::setting(flag, value.unwrap_or("an empty value"), expected))
+}
+
 impl Cli {
     /// Reads the command line and the scene file that it names.
     ///
@@ -101,7 +116,7 @@ impl Cli {
         let mut renamed = Renamed::default();
         // Before, so that the command line's flags override the file's; after, as the file may have old values.
         renamed.replace(&parser, &mut words);
-        let scene = SceneFile::add_to(&parser, &mut words, &mut renamed).map_err(Refused::Scene)?;
+        let scene = SceneFile::add_to(&parser, &mut words, &mut renamed).map_err(Refused::Value)?;
         renamed.replace(&parser, &mut words);
         let parsed = parser.try_get_matches_from_mut(words);
         let cli = parsed.and_then(|matches| {
@@ -115,8 +130,8 @@ impl Cli {
         });
         match cli {
             Ok(cli) => Ok(Self { scene, ..cli }),
-            Err(error) => Err(match scene.explain(&error) {
-                Some(error) => Refused::Scene(error),
+            Err(error) => Err(match scene.explain(&error).or_else(|| of_value(&error)) {
+                Some(error) => Refused::Value(error),
                 None => Refused::Parser(error),
             }),
         }
@@ -234,6 +249,7 @@ pub struct RenderArgs {
         hide_short_help = true,
         help_heading = "Output",
         value_name = "FACTOR",
+        value_parser = number::<f32>(FACTOR),
         allow_negative_numbers = true
     )]
     pub exposure: Option<f32>,
@@ -303,10 +319,10 @@ pub struct TuneArgs {
     #[arg(value_name = "INPUT", help_heading = "Input")]
     pub input: Vec<PathBuf>,
     /// Side of the fractal field, texels
-    #[arg(long, help_heading = "Input", default_value_t = 1024, value_name = "N")]
+    #[arg(long, help_heading = "Input", default_value_t = 1024, value_name = "N", value_parser = number::<usize>("a whole number from 1 to 16384"), allow_negative_numbers = true)]
     pub size: usize,
     /// Azimuths of the sky, 4 to 1024
-    #[arg(long, help_heading = "Quality", default_value_t = 64, value_name = "N")]
+    #[arg(long, help_heading = "Quality", default_value_t = 64, value_name = "N", value_parser = number::<u32>(AZIMUTHS), allow_negative_numbers = true)]
     pub azimuths: u32,
     /// Return to the untuned form
     #[arg(long, help_heading = "Device")]
@@ -323,7 +339,7 @@ pub struct BenchArgs {
     #[arg(value_name = "INPUT", help_heading = "Input")]
     pub input: Option<PathBuf>,
     /// Side of the fractal field, texels
-    #[arg(long, help_heading = "Input", default_value_t = 1024, value_name = "N")]
+    #[arg(long, help_heading = "Input", default_value_t = 1024, value_name = "N", value_parser = number::<usize>(SIDE), allow_negative_numbers = true)]
     pub size: usize,
     #[command(flatten)]
     pub lights: LightArgs,
@@ -338,13 +354,13 @@ pub struct BenchArgs {
     ///
     /// After one warm-up run, timing stops after 10, 20, 40 … runs if the nominal 95 % confidence interval of the median is
     /// at most 2 % wide, or after 10 s and at least 6 runs. In flow, the whole frame's time decides.
-    #[arg(long, default_value_t = 200, value_name = "K", help_heading = "Quality")]
+    #[arg(long, default_value_t = 200, value_name = "K", value_parser = number::<usize>("a whole number from 1 to 100000"), allow_negative_numbers = true, help_heading = "Quality")]
     pub runs: usize,
     /// Also time sweeps with every setting, brute force, and a scalar sweep on the CPU
     #[arg(long, help_heading = "Output")]
     pub forms: bool,
     /// Time whole frames of fractal fields of these sides instead
-    #[arg(long, help_heading = "Input", value_delimiter = ',', value_name = "N,N,…", conflicts_with_all = ["input", "forms", "trace", "passes"])]
+    #[arg(long, help_heading = "Input", value_delimiter = ',', value_name = "N,N,…", value_parser = number::<usize>(SIDE), allow_negative_numbers = true, conflicts_with_all = ["input", "forms", "trace", "passes"])]
     pub sizes: Vec<usize>,
     /// Time each of --sizes with these numbers of azimuths
     #[arg(
@@ -353,6 +369,8 @@ pub struct BenchArgs {
         hide_short_help = true,
         value_delimiter = ',',
         value_name = "M,M,…",
+        value_parser = number::<u32>(AZIMUTHS),
+        allow_negative_numbers = true,
         requires = "sizes"
     )]
     pub azimuth_list: Vec<u32>,
@@ -369,64 +387,6 @@ pub struct BenchArgs {
     /// Write times in Bencher Metric Format
     #[arg(long, help_heading = "Output", hide_short_help = true, value_name = "FILE")]
     pub bencher: Option<PathBuf>,
-    #[command(flatten)]
-    pub global: GlobalArgs,
-}
-
-#[derive(Args)]
-pub struct TradeArgs {
-    #[command(flatten)]
-    pub input: Input,
-    /// Output folder for trade.html, trade.json and trade.csv
-    ///
-    /// Created if it is missing; refused if it contains anything else.
-    #[arg(short, long, value_name = "DIR", help_heading = "Output")]
-    pub output: PathBuf,
-    #[command(flatten)]
-    pub lights: LightArgs,
-    #[command(flatten)]
-    pub surface: SurfaceArgs,
-    /// Ground truth of this scene, .exr
-    ///
-    /// The layer "standard_error" is subtracted from the errors. A header of another scene is refused. Default: brute force in
-    /// many azimuths, or dense sweeps where brute force is too slow.
-    #[arg(long, help_heading = "Quality", value_name = "FILE")]
-    pub reference: Option<PathBuf>,
-    /// Bounces of indirect light, 0 to 64; above 0 only with --reference
-    #[arg(long, help_heading = "Quality", value_name = "B", default_value_t = 0, value_parser = values::whole, allow_negative_numbers = true)]
-    pub bounces: u32,
-    /// Seconds after which no further settings are measured
-    ///
-    /// Fewer find worse settings.
-    #[arg(
-        long,
-        help_heading = "Quality",
-        value_name = "SECONDS",
-        default_value_t = 120.0,
-        allow_negative_numbers = true
-    )]
-    pub budget: f64,
-    /// Stop after this many measured settings instead of --budget
-    ///
-    /// Does the same work on every machine.
-    #[arg(long, help_heading = "Quality", value_name = "N", conflicts_with = "budget", value_parser = clap::value_parser!(u32).range(1..), allow_negative_numbers = true)]
-    pub evaluations: Option<u32>,
-    /// Recommend the fastest settings within this relative RMSE (0.01 is 1 %)
-    ///
-    /// Exit status 1 if no settings reach it.
-    #[arg(
-        long,
-        help_heading = "Quality",
-        value_name = "E",
-        allow_negative_numbers = true,
-        conflicts_with = "time_budget"
-    )]
-    pub max_error: Option<f64>,
-    /// Recommend the most accurate settings within this GPU time per frame, milliseconds
-    ///
-    /// Exit status 1 if no settings reach it.
-    #[arg(long, help_heading = "Quality", value_name = "MS", allow_negative_numbers = true)]
-    pub time_budget: Option<f64>,
     #[command(flatten)]
     pub global: GlobalArgs,
 }

@@ -70,7 +70,7 @@ fn end_cleanly_on_signals() {
 fn main() -> ExitCode {
     let (command, scene) = match args::Cli::read() {
         Ok(cli) => (cli.command, cli.scene),
-        Err(args::Refused::Scene(error)) => return fail(&error),
+        Err(args::Refused::Value(error)) => return fail(&error),
         Err(args::Refused::Parser(error)) => {
             // Help and version are not errors. clap's status for wrong usage is 2.
             let _ = error.print();

@@ -108,10 +108,7 @@ impl SceneFile {
         let given = of_flag().find(is_it).or_else(|| of_flag().next())?;
         let expected = text(ContextKind::ValidValue)
             .map(|all| format!("one of {all}"))
-            .or_else(|| {
-                let why = std::error::Error::source(error)?.to_string();
-                Some(why.strip_prefix("expected ").unwrap_or(&why).to_owned())
-            })
+            .or_else(|| Some(std::error::Error::source(error)?.to_string()))
             .or_else(|| Some(format!("none beside {}", text(ContextKind::PriorArg)?)));
         Some(self.wrong(given, "", value.unwrap_or_default(), expected?))
     }

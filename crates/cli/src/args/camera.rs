@@ -2,7 +2,7 @@
 
 use clap::Args;
 
-use super::values::{colour, numbers, whole};
+use super::values::{colour, number, numbers};
 
 #[derive(Args)]
 #[command(next_help_heading = "Camera")]
@@ -13,7 +13,7 @@ pub struct CameraArgs {
     /// "from 45 up 30", or AZ,EL[,DISTANCE]: the compass azimuth and the elevation of the camera from the look-at point,
     /// degrees, and the distance in metres; by default the whole field fits. With --ortho, DISTANCE is the height of the
     /// picture in metres.
-    #[arg(long, value_name = "FROM", value_parser = camera, num_args = 0..=1, default_missing_value = "south")]
+    #[arg(long, value_name = "FROM", value_parser = camera, allow_negative_numbers = true, num_args = 0..=1, default_missing_value = "south")]
     pub camera: Option<CameraAt>,
     /// Look-at point, metres. Default the middle of the field
     ///
@@ -26,6 +26,7 @@ pub struct CameraArgs {
         long,
         value_name = "DEG",
         default_value_t = 40.0,
+        value_parser = number::<f64>("an angle, degrees"),
         allow_negative_numbers = true,
         hide_short_help = true,
         requires = "camera"
@@ -35,7 +36,7 @@ pub struct CameraArgs {
     #[arg(long, hide_short_help = true, requires = "camera", conflicts_with = "fov")]
     pub ortho: bool,
     /// Width and height of the picture, pixels
-    #[arg(long, value_name = "WxH", default_value = "2048x1152", value_parser = size, requires = "camera")]
+    #[arg(long, value_name = "WxH", default_value = "2048x1152", value_parser = size, allow_hyphen_values = true, requires = "camera")]
     pub size: Size,
     /// MSAA samples per pixel: 1, 2, 4 or 8
     ///
@@ -44,7 +45,7 @@ pub struct CameraArgs {
         long,
         value_name = "N",
         default_value_t = 4,
-        value_parser = whole,
+        value_parser = number::<u32>("a whole number: 1, 2, 4 or 8"),
         allow_negative_numbers = true,
         hide_short_help = true,
         requires = "camera"
@@ -57,7 +58,7 @@ pub struct CameraArgs {
         long,
         value_name = "N",
         default_value_t = 1,
-        value_parser = whole,
+        value_parser = number::<u32>("a whole number from 1 to 1024"),
         allow_negative_numbers = true,
         requires = "camera",
         help_heading = "Expert"
@@ -83,6 +84,7 @@ pub struct CameraArgs {
     #[arg(
         long,
         value_name = "SHARE",
+        value_parser = number::<f32>("a share from 0 to 1"),
         allow_negative_numbers = true,
         hide_short_help = true,
         requires = "camera"
@@ -128,29 +130,27 @@ fn camera(text: &str) -> Result<CameraAt, String> {
     if let Some(eighth) = DIRECTIONS.iter().position(|name| *name == named) {
         return Ok(at(45.0 * eighth as f64, ELEVATION));
     }
-    let wrong = |error: &str| {
-        format!("{error}; expected south, \"from 45 up 30\", AZ,EL or AZ,EL,DISTANCE")
-    };
-    let number = |word: &str| word.parse().map_err(|_| wrong(&format!("{word:?} is no number")));
+    let wrong = || "south, \"from 45 up 30\", or AZ,EL[,DISTANCE], degrees and metres".to_owned();
+    let number = |word: &str| word.parse().map_err(|_| wrong());
     match named.split_whitespace().collect::<Vec<_>>().as_slice() {
         ["from", azimuth] => return Ok(at(number(azimuth)?, ELEVATION)),
         ["from", azimuth, "up", elevation] => return Ok(at(number(azimuth)?, number(elevation)?)),
         _ => {}
     }
-    match *numbers(text).map_err(|error| wrong(&error))?.as_slice() {
-        [azimuth, elevation] => Ok(at(azimuth, elevation)),
-        [azimuth, elevation, distance] => {
+    match numbers(text).as_deref() {
+        Some(&[azimuth, elevation]) => Ok(at(azimuth, elevation)),
+        Some(&[azimuth, elevation, distance]) => {
             Ok(CameraAt { distance_m: Some(distance), ..at(azimuth, elevation) })
         }
-        _ => Err(wrong("wrong count of numbers")),
+        _ => Err(wrong()),
     }
 }
 
 fn place(text: &str) -> Result<LookAt, String> {
-    match *numbers(text)?.as_slice() {
-        [east_m, north_m] => Ok(LookAt { east_m, north_m, height_m: None }),
-        [east_m, north_m, height] => Ok(LookAt { east_m, north_m, height_m: Some(height) }),
-        _ => Err("expected X,Y or X,Y,Z".into()),
+    match numbers(text).as_deref() {
+        Some(&[east_m, north_m]) => Ok(LookAt { east_m, north_m, height_m: None }),
+        Some(&[east_m, north_m, height]) => Ok(LookAt { east_m, north_m, height_m: Some(height) }),
+        _ => Err("X,Y or X,Y,Z, numbers, metres".into()),
     }
 }
 
@@ -158,7 +158,7 @@ fn size(text: &str) -> Result<Size, String> {
     let sides: Vec<u32> = text.split(['x', 'X', '×']).filter_map(|s| s.parse().ok()).collect();
     match (sides.as_slice(), text.split(['x', 'X', '×']).count()) {
         (&[width, height], 2) => Ok([width, height]),
-        _ => Err("expected WIDTHxHEIGHT, as 1280x720".into()),
+        _ => Err("WIDTHxHEIGHT, two whole numbers, as 1280x720".into()),
     }
 }
 
@@ -183,7 +183,7 @@ mod tests {
         for text in ["", "up", "from", "from x", "from 1 up", "dem.tif", "1", "1,2,3,4", "southish"]
         {
             let error = camera(text).err().unwrap();
-            assert!(error.contains("expected south"), "{text}: {error}");
+            assert!(error.starts_with("south, "), "{text}: {error}");
         }
     }
 }

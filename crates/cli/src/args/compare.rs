@@ -2,6 +2,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::values::{FACTOR, number};
+
 const AFTER_HELP: &str = "\
 Channels that both files have are compared by name, in linear light; a .png is decoded from sRGB. Channels of only one \
 file are listed. A channel that A lacks fails the command, except an alpha of 1 everywhere and a reference's \
@@ -37,6 +39,7 @@ pub struct CompareArgs {
         help_heading = "Output",
         default_value_t = 1.0,
         value_name = "FACTOR",
+        value_parser = number::<f32>(FACTOR),
         allow_negative_numbers = true,
         conflicts_with = "horizons"
     )]
@@ -47,6 +50,7 @@ pub struct CompareArgs {
     #[arg(
         long,
         value_name = "N",
+        value_parser = number::<f64>("a number from 1 to 1000"),
         allow_negative_numbers = true,
         conflicts_with = "horizons",
         help_heading = "Output"
@@ -68,32 +72,35 @@ pub struct CompareArgs {
     pub bounds: Bounds,
 }
 
+/// Expected of a bound relative to the mean.
+const SHARE: &str = "a number, 0 or more, without %: 0.01 is 1 %";
+
 #[derive(Args)]
 #[command(next_help_heading = "Bounds on every channel, each 0 or more")]
 pub struct Bounds {
     /// Largest RMSE relative to the mean of B (0.01 is 1 %)
-    #[arg(long, value_name = "X", allow_negative_numbers = true, conflicts_with = "horizons")]
+    #[arg(long, value_name = "X", value_parser = number::<f64>(SHARE), allow_negative_numbers = true, conflicts_with = "horizons")]
     pub max_rmse: Option<f64>,
     /// Largest |mean of A - B| relative to the mean of B
-    #[arg(long, value_name = "X", allow_negative_numbers = true, conflicts_with = "horizons")]
+    #[arg(long, value_name = "X", value_parser = number::<f64>(SHARE), allow_negative_numbers = true, conflicts_with = "horizons")]
     pub max_mean_shift: Option<f64>,
     /// Largest 99th percentile of |A - B| relative to the mean of B
-    #[arg(long, value_name = "X", allow_negative_numbers = true, conflicts_with = "horizons")]
+    #[arg(long, value_name = "X", value_parser = number::<f64>(SHARE), allow_negative_numbers = true, conflicts_with = "horizons")]
     pub max_p99: Option<f64>,
     /// Largest |A - B| of any texel relative to the mean of B
-    #[arg(long, value_name = "X", allow_negative_numbers = true, conflicts_with = "horizons")]
+    #[arg(long, value_name = "X", value_parser = number::<f64>(SHARE), allow_negative_numbers = true, conflicts_with = "horizons")]
     pub max_worst: Option<f64>,
     /// Largest mean FLIP of a picture (R, G and B, or Y), 0 (same look) to 1
-    #[arg(long, value_name = "X", allow_negative_numbers = true, conflicts_with = "horizons")]
+    #[arg(long, value_name = "X", value_parser = number::<f64>("a number from 0 to 1"), allow_negative_numbers = true, conflicts_with = "horizons")]
     pub max_flip: Option<f64>,
     /// With --horizons: largest median of |A - B|, degrees
-    #[arg(long, value_name = "DEG", allow_negative_numbers = true, requires = "horizons")]
+    #[arg(long, value_name = "DEG", value_parser = number::<f64>("degrees, 0 or more"), allow_negative_numbers = true, requires = "horizons")]
     pub max_median_deg: Option<f64>,
     /// With --horizons: largest 99.9th percentile of |A - B|, degrees
-    #[arg(long, value_name = "DEG", allow_negative_numbers = true, requires = "horizons")]
+    #[arg(long, value_name = "DEG", value_parser = number::<f64>("degrees, 0 or more"), allow_negative_numbers = true, requires = "horizons")]
     pub max_p999_deg: Option<f64>,
     /// With --horizons: largest |A - B| of any horizon, degrees
-    #[arg(long, value_name = "DEG", allow_negative_numbers = true, requires = "horizons")]
+    #[arg(long, value_name = "DEG", value_parser = number::<f64>("degrees, 0 or more"), allow_negative_numbers = true, requires = "horizons")]
     pub max_worst_deg: Option<f64>,
 }
 

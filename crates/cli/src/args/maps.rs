@@ -144,6 +144,8 @@ pub struct MapOutput {
 
 fn sun(words: &str) -> Result<Sun, String> {
     let mut lights = Lights::default();
-    light("sun").add(&mut lights, words).map_err(|_| "expected AZ,EL, two numbers".to_owned())?;
+    light("sun")
+        .add(&mut lights, words)
+        .map_err(|_| "AZ,EL or AZ,EL,DIAMETER, numbers, degrees".to_owned())?;
     Ok(lights.suns.remove(0))
 }

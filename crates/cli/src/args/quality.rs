@@ -6,7 +6,6 @@ use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
 use ridgelight::Result;
 use ridgelight::scene::{Audience, Quality, SETTINGS, Setting, Values};
 
-use super::values::whole;
 use crate::scene_file::SceneFile;
 use crate::setup::flags_in;
 
@@ -54,6 +53,7 @@ fn arg(setting: &'static Setting) -> Arg {
     let arg = Arg::new(setting.name)
         .long(setting.name.replace('_', "-"))
         .default_value(setting.get(&Quality::default()))
+        .allow_negative_numbers(true)
         .help_heading(if setting.audience == Audience::Expert { "Expert" } else { "Quality" })
         .hide_short_help(setting.audience != Audience::Everyone);
     // Without a second paragraph, the short help is the long one.
@@ -63,16 +63,16 @@ fn arg(setting: &'static Setting) -> Arg {
     };
     let arg = arg.help(summary);
     // Ranges are checked by the library.
+    let expected = move || setting.values.expected();
     match &setting.values {
-        Values::Whole(_) => arg
-            .value_name("N")
-            .allow_negative_numbers(true)
-            .value_parser(|text: &str| whole(text).map(|_| text.to_owned())),
-        Values::Share => arg
-            .value_name("SHARE")
-            .allow_negative_numbers(true)
-            .hide_default_value(true)
-            .value_parser(|text: &str| text.parse::<f64>().map(|share| share.to_string())),
+        Values::Whole(_) => arg.value_name("N").value_parser(move |text: &str| {
+            text.parse::<u32>().map(|_| text.to_owned()).map_err(|_| expected())
+        }),
+        Values::Share => {
+            arg.value_name("SHARE").hide_default_value(true).value_parser(move |text: &str| {
+                text.parse::<f64>().map(|share| share.to_string()).map_err(|_| expected())
+            })
+        }
         Values::OneOf(all) => arg
             .value_name(value_name)
             .value_parser(PossibleValuesParser::new(all.iter().map(u32::to_string))),

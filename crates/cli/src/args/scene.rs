@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches, ValueEnum};
 use ridgelight::scene::Lights;
 
-use super::values::{SkyArg, SpecularArg, bbox, cell, sky, specular, whole};
+use super::values::{SkyArg, SpecularArg, bbox, cell, number, sky, specular};
 use crate::setup::lights::LIGHTS;
 use crate::setup::tint::Tint;
 
@@ -31,6 +31,7 @@ pub struct LightArgs {
         long,
         value_name = "DEG",
         default_value_t = 0.0,
+        value_parser = number::<f64>("an angle, degrees"),
         allow_negative_numbers = true,
         hide_short_help = true,
         requires = "env"
@@ -153,6 +154,7 @@ pub struct FieldArgs {
         long,
         value_name = "S",
         default_value_t = 1.0,
+        value_parser = number::<f64>("a finite number other than 0"),
         allow_negative_numbers = true,
         hide_short_help = true,
         help_heading = "Input"
@@ -162,6 +164,7 @@ pub struct FieldArgs {
     #[arg(
         long,
         value_name = "VALUE",
+        value_parser = number::<f64>("a height, or nan"),
         allow_negative_numbers = true,
         hide_short_help = true,
         help_heading = "Input"
@@ -173,7 +176,7 @@ pub struct FieldArgs {
     #[arg(
         long,
         value_name = "N",
-        value_parser = whole,
+        value_parser = number::<u32>("a whole number, 1 or more"),
         allow_negative_numbers = true,
         hide_short_help = true,
         help_heading = "Input"

@@ -1,9 +1,30 @@
-//! Parses values of the command line. The library checks ranges unless a function here does.
+//! Parses values of the command line. An error is what was expected; [`Cli::read`](super::Cli::read) adds the flag and the
+//! value. The library checks ranges unless a function here does.
+
+use std::str::FromStr;
 
 use crate::horizon::Fourier;
 
-pub fn whole(text: &str) -> Result<u32, String> {
-    text.parse().map_err(|_| "expected a whole number, 0 or more".to_owned())
+/// Expected of an error relative to the mean.
+pub const ERROR: &str = "a number above 0, without %: 0.01 is 1 %";
+pub const MILLISECONDS: &str = "milliseconds, a number above 0";
+pub const FACTOR: &str = "a number above 0";
+pub const SEED: &str = "a whole number from 0 to 4294967295";
+pub const BOUNCES: &str = "a whole number from 0 to 64";
+pub const AZIMUTHS: &str = "a whole number from 4 to 1024";
+/// Expected of the side of the fractal field of `bench`.
+pub const SIDE: &str = "a whole number from 1 to 32768";
+
+/// A parser of one number.
+pub fn number<T: FromStr + 'static>(
+    expected: &'static str,
+) -> impl Fn(&str) -> Result<T, String> + Clone + Send + Sync + 'static {
+    move |text| text.parse().map_err(|_| expected.to_owned())
+}
+
+/// A number of things, at least one.
+pub fn count(text: &str) -> Result<u32, String> {
+    text.parse().ok().filter(|n| *n > 0).ok_or_else(|| "a whole number, 1 or more".to_owned())
 }
 
 /// Two counts, as 8x16.
@@ -11,22 +32,25 @@ pub fn grid(text: &str) -> Result<[usize; 2], String> {
     let parts: Option<Vec<usize>> = text.split('x').map(|part| part.parse().ok()).collect();
     match parts.unwrap_or_default().as_slice() {
         [first, second] => Ok([*first, *second]),
-        _ => Err("expected two whole numbers, as 8x16".into()),
+        _ => Err("two whole numbers, as 8x16".into()),
     }
 }
 
-pub fn numbers(text: &str) -> Result<Vec<f64>, String> {
-    text.split(',')
-        .map(|part| part.trim().parse::<f64>().map_err(|_| format!("{part:?} is no number")))
-        .collect()
+/// Numbers between commas; none where one of them is no number.
+pub fn numbers(text: &str) -> Option<Vec<f64>> {
+    text.split(',').map(|part| part.trim().parse().ok()).collect()
+}
+
+fn grey_or_colour(text: &str) -> Option<[f32; 3]> {
+    match numbers(text)?.as_slice() {
+        [grey] => Some([*grey as f32; 3]),
+        [r, g, b] => Some([*r as f32, *g as f32, *b as f32]),
+        _ => None,
+    }
 }
 
 pub fn colour(text: &str) -> Result<[f32; 3], String> {
-    match numbers(text)?.as_slice() {
-        [grey] => Ok([*grey as f32; 3]),
-        [r, g, b] => Ok([*r as f32, *g as f32, *b as f32]),
-        other => Err(format!("{} numbers, expected one or R,G,B", other.len())),
-    }
+    grey_or_colour(text).ok_or_else(|| "one number or R,G,B".to_owned())
 }
 
 /// A sky of one radiance, or the clear sky around the first sun.
@@ -39,22 +63,22 @@ pub enum SkyArg {
 pub fn sky(text: &str) -> Result<SkyArg, String> {
     match text {
         "clear" => Ok(SkyArg::Clear),
-        numbers => colour(numbers)
+        numbers => grey_or_colour(numbers)
             .map(SkyArg::Uniform)
-            .map_err(|error| format!("{error}; the word is clear")),
+            .ok_or_else(|| "clear, or a radiance: one number or R,G,B".to_owned()),
     }
 }
 
 pub fn albedo_colour(text: &str) -> Option<[f32; 3]> {
-    colour(text).ok()
+    grey_or_colour(text)
 }
 
 /// Curvatures outwards and inwards; one number is both.
 pub fn curvatures(text: &str) -> Result<[f64; 2], String> {
-    match numbers(text)?.as_slice() {
-        [both] => Ok([*both; 2]),
-        [outwards, inwards] => Ok([*outwards, *inwards]),
-        other => Err(format!("{} numbers, expected OUT or OUT,IN", other.len())),
+    match numbers(text).as_deref() {
+        Some([both]) => Ok([*both; 2]),
+        Some([outwards, inwards]) => Ok([*outwards, *inwards]),
+        _ => Err("OUT or OUT,IN, numbers above 0, 1/m".into()),
     }
 }
 
@@ -68,28 +92,24 @@ pub enum SpecularArg {
 /// Anything but a list of numbers is a file.
 pub fn specular(text: &str) -> Result<SpecularArg, String> {
     match numbers(text).as_deref() {
-        Ok([exponent, scale]) => Ok(SpecularArg::Constant(ridgelight::scene::PhongSpecular {
+        Some([exponent, scale]) => Ok(SpecularArg::Constant(ridgelight::scene::PhongSpecular {
             exponent: *exponent as f32,
             scale: *scale as f32,
         })),
-        Ok(other) => Err(format!("{} numbers, expected EXPONENT,SCALE or a file", other.len())),
-        Err(_) => Ok(SpecularArg::File(text.into())),
+        Some(_) => Err("EXPONENT,SCALE, two numbers, or a file".into()),
+        None => Ok(SpecularArg::File(text.into())),
     }
 }
 
 /// Coefficients and the range of heights, as 16,1200.
 pub fn fourier(text: &str) -> Result<Fourier, String> {
-    let [coefficients, range_m] = numbers(text)?[..] else {
-        return Err("expected two numbers, N,RANGE".into());
-    };
-    let is_count = (2.0..=256.0).contains(&coefficients) && coefficients % 2.0 == 0.0;
-    if !is_count {
-        return Err(format!("{coefficients} coefficients, expected an even number from 2 to 256"));
+    let is_count = |n: f64| (2.0..=256.0).contains(&n) && n % 2.0 == 0.0;
+    match numbers(text).as_deref() {
+        Some(&[n, range_m]) if is_count(n) && range_m.is_finite() && range_m > 0.0 => {
+            Ok(Fourier { coefficients: n as u32, range_m })
+        }
+        _ => Err("N,RANGE: an even number from 2 to 256, and metres above 0".into()),
     }
-    if !(range_m.is_finite() && range_m > 0.0) {
-        return Err(format!("a range of {range_m}, expected more than 0"));
-    }
-    Ok(Fourier { coefficients: coefficients as u32, range_m })
 }
 
 pub fn pixels(text: &str) -> Result<[u32; 2], String> {
@@ -98,29 +118,30 @@ pub fn pixels(text: &str) -> Result<[u32; 2], String> {
         [width, height] if (1..=16384).contains(width) && (1..=16384).contains(height) => {
             Ok([*width, *height])
         }
-        _ => Err("expected WxH, two whole numbers from 1 to 16384".into()),
+        _ => Err("WxH, two whole numbers from 1 to 16384".into()),
     }
 }
 
 pub fn cell(text: &str) -> Result<[f64; 2], String> {
-    match numbers(text)?.as_slice() {
-        [both] => Ok([*both; 2]),
-        [x, y] => Ok([*x, *y]),
-        other => Err(format!("{} numbers, expected X or X,Y", other.len())),
+    match numbers(text).as_deref() {
+        Some([both]) => Ok([*both; 2]),
+        Some([x, y]) => Ok([*x, *y]),
+        _ => Err("X or X,Y, numbers, metres".into()),
     }
 }
 
 /// A box: west, south, east, north.
 pub fn bbox(text: &str) -> Result<[f64; 4], String> {
-    let all = numbers(text)?;
-    let count = all.len();
-    all.try_into().map_err(|_| format!("{count} numbers, expected XMIN,YMIN,XMAX,YMAX"))
+    let all = numbers(text).and_then(|all| all.try_into().ok());
+    all.ok_or_else(|| "XMIN,YMIN,XMAX,YMAX, four numbers".to_owned())
 }
 
+/// A size in bytes, as 512MiB.
 pub fn bytes(text: &str) -> Result<u64, String> {
     let digits = text.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(text.len());
     let (number, unit) = text.split_at(digits);
-    let number: f64 = number.parse().map_err(|_| format!("{text:?} is no size"))?;
+    let expected = || "a size, as 512MiB or 2GiB, in B, kB, MB, GB, KiB, MiB or GiB".to_owned();
+    let number: f64 = number.parse().map_err(|_| expected())?;
     let factor = match unit.trim().to_lowercase().as_str() {
         "" | "b" => 1.0,
         "k" | "kib" => 1024.0,
@@ -129,7 +150,43 @@ pub fn bytes(text: &str) -> Result<u64, String> {
         "kb" => 1e3,
         "mb" => 1e6,
         "gb" => 1e9,
-        _ => return Err(format!("{unit:?} is no unit: KiB, MiB, GiB, kB, MB, GB")),
+        _ => return Err(expected()),
     };
     Ok((number * factor) as u64)
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::Arg;
+    use clap::error::ErrorKind;
+
+    use crate::args::{of_value, parser};
+
+    /// Each flag of numbers explains what it expects instead of `1%`, and takes `-5` for its value.
+    #[test]
+    fn wrong_numbers_are_explained() {
+        let words = ["--what", "--encoding"];
+        let mut count = 0;
+        for command in parser().get_subcommands() {
+            let name = command.get_name();
+            for flag in command.get_arguments().filter_map(Arg::get_long) {
+                let flag = format!("--{flag}");
+                let refused = |value: &str| {
+                    let words = ["ridgelight", name, &flag, value];
+                    parser().try_get_matches_from(words).err()
+                };
+                let is_value = |e: &clap::Error| e.kind() == ErrorKind::ValueValidation;
+                let Some(error) = refused("1%").filter(is_value) else { continue };
+                let message = of_value(&error).expect("a value").to_string();
+                let start = format!("{flag}: found 1%, expected ");
+                assert!(message.starts_with(&start), "{name}: {message}");
+                assert!(!message.contains("invalid"), "{name}: {message}");
+                let is_unknown = |e: clap::Error| e.kind() == ErrorKind::UnknownArgument;
+                let is_flag = refused("-5").is_some_and(is_unknown);
+                assert!(!is_flag || words.contains(&&*flag), "{name} {flag} -5");
+                count += 1;
+            }
+        }
+        assert!(count > 100, "{count} flags");
+    }
 }

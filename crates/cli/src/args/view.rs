@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{ArgMatches, Args};
 
-use super::values::pixels;
+use super::values::{FACTOR, number, pixels};
 use super::{GlobalArgs, Input, LightArgs, QualityArgs, SurfaceArgs};
 use crate::scene_file::Request;
 
@@ -27,11 +27,12 @@ pub struct ViewArgs {
         hide_short_help = true,
         help_heading = "Output",
         value_name = "FACTOR",
+        value_parser = number::<f32>(FACTOR),
         allow_negative_numbers = true
     )]
     pub exposure: Option<f32>,
     /// Width and height of the window, pixels
-    #[arg(long, help_heading = "Output", default_value = "1024x768", value_name = "WxH", value_parser = pixels)]
+    #[arg(long, help_heading = "Output", default_value = "1024x768", value_name = "WxH", value_parser = pixels, allow_hyphen_values = true)]
     pub size: Pixels,
     /// Keys, drags and frames from a file, for tests
     #[arg(long, value_name = "FILE", hide = true)]

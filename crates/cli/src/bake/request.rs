@@ -18,17 +18,17 @@ pub const DIRECTIONS: u32 = 256;
 pub fn kind_named(name: &str) -> std::result::Result<&'static Kind, String> {
     KINDS.iter().find(|kind| kind.name == name).ok_or_else(|| {
         let all: Vec<&str> = KINDS.iter().map(|kind| kind.name).collect();
-        format!("expected one of {}", all.join(", "))
+        format!("one of {}", all.join(", "))
     })
 }
 
 /// Parses `--encoding`: `KIND=ENCODING`.
 pub fn packing(text: &str) -> std::result::Result<Packing, String> {
-    let (kind, name) = text.split_once('=').ok_or("expected KIND=ENCODING")?;
+    let (kind, name) = text.split_once('=').ok_or("KIND=ENCODING")?;
     let kind = kind_named(kind)?;
     let encoding = encoding_named(kind.encodings, name).ok_or_else(|| {
         let all: Vec<&str> = kind.encodings.iter().map(|e| e.name).collect();
-        format!("{} is packed as {}", kind.name, all.join(", "))
+        format!("{} with one of {}", kind.name, all.join(", "))
     })?;
     Ok(Packing { kind, encoding })
 }

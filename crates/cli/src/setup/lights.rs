@@ -127,12 +127,15 @@ pub fn light(id: &str) -> &'static Light {
 }
 
 impl Light {
-    /// Adds the light that a flag's words describe.
+    /// Adds the light that a flag's words describe; an error is what was expected.
     pub fn add(&self, lights: &mut Lights, words: &str) -> Result<(), String> {
-        let found = numbers_in(words)?;
+        let wrong = || {
+            let colour = self.parts.last().map_or("colour", |part| part.name).to_uppercase();
+            format!("{}, numbers; {colour} is one number or R,G,B", self.value_name)
+        };
+        let found = numbers_in(words).ok_or_else(wrong)?;
         let mut left = found.as_slice();
         let (mut place, mut colour) = (Vec::new(), [1.0; 3]);
-        let wrong = || format!("expected {}; a colour is one number or R,G,B", self.value_name);
         for part in self.parts {
             let default = part.default.map(|text| text.parse().expect("a number of ours"));
             let default: Option<f64> = default.filter(|_| left.is_empty());

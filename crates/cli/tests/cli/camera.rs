@@ -10,7 +10,7 @@ fn cameras_out_of_range_are_refused() {
     let cases = [
         ("--camera 90", &["--camera", "expected south"][..]),
         ("--camera 1,2,3,4", &["--camera", "expected south"]),
-        ("--camera x,45", &["--camera", "no number"]),
+        ("--camera x,45", &["--camera: found x,45, expected south", "degrees and metres"]),
         ("--camera nan,45", &["--camera: azimuth: found NaN"]),
         ("--camera 0,91", &["--camera: elevation: found 91°", "-90° to 90°"]),
         ("--camera 0,nan", &["--camera: elevation: found NaN"]),
@@ -28,7 +28,7 @@ fn cameras_out_of_range_are_refused() {
         ("--camera 0,45 --size 4x-4", &["--size", "expected WIDTHxHEIGHT"]),
         ("--camera 0,45 --samples 3", &["--samples: found 3", "1, 2, 4 or 8"]),
         ("--camera 0,45 --samples 16", &["--samples: found 16"]),
-        ("--camera 0,45 --samples two", &["--samples", "whole number"]),
+        ("--camera 0,45 --samples two", &["--samples: found two", "1, 2, 4 or 8"]),
         ("--camera 0,45 --mesh-step 0", &["--mesh-step: found 0", "1 to 1024"]),
         ("--camera 0,45 --background -1", &["--background: found [-1.0", "0 or more"]),
         ("--camera 0,45 --plinth -1", &["--plinth: found -1", "0 to 1"]),

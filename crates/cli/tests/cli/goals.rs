@@ -20,7 +20,12 @@ fn wrong_goals_are_refused() {
             ("render a.asc -o out.exr --max-error 0", 2, &["--max-error: found 0", "above 0"]),
             ("render a.asc -o out.exr --max-error -1", 2, &["--max-error: found -1"]),
             ("render a.asc -o out.exr --max-error nan", 2, &["--max-error: found NaN"]),
-            ("render a.asc -o out.exr --max-error some", 2, &["--max-error", "'some'"]),
+            ("render a.asc -o out.exr --max-error some", 2, &["--max-error: found some"]),
+            (
+                "render a.asc -o out.exr --max-error 1%",
+                2,
+                &["--max-error: found 1%, expected a number above 0, without %: 0.01 is 1 %"],
+            ),
             ("render a.asc -o out.exr --time-budget 0", 2, &["--time-budget: found 0"]),
             ("render a.asc -o out.exr --time-budget inf", 2, &["--time-budget: found inf"]),
             (

@@ -301,8 +301,8 @@ fn gpu_fourier_series_are_the_transform_of_the_horizons() {
         &folder,
         &[
             (&odd, 2, &["even number"]),
-            (&one, 2, &["two numbers"]),
-            (&flat, 2, &["more than 0"]),
+            (&one, 2, &["--fourier: found 8, expected N,RANGE"]),
+            (&flat, 2, &["metres above 0"]),
             (&many, 2, &["fewer than the 64 azimuths"]),
             ("horizon field.npy -o x.npy --fourier 8,50", 2, &["ktx2"]),
         ],

@@ -21,7 +21,12 @@ fn wrong_trades_are_refused() {
             ("trade a.asc -o out --budget 0", 2, &["--budget: found 0", "1 to 1000000"]),
             ("trade a.asc -o out --budget -5", 2, &["--budget: found -5"]),
             ("trade a.asc -o out --budget nan", 2, &["--budget: found NaN"]),
-            ("trade a.asc -o out --budget soon", 2, &["--budget", "'soon'"]),
+            (
+                "trade a.asc -o out --budget soon",
+                2,
+                &["--budget: found soon", "1 to 1000000 seconds"],
+            ),
+            ("trade a.asc -o out --evaluations 0", 2, &["--evaluations: found 0", "1 or more"]),
             ("trade a.asc -o out --max-error 0", 2, &["--max-error: found 0", "above 0"]),
             ("trade a.asc -o out --max-error inf", 2, &["--max-error: found inf"]),
             ("trade a.asc -o out --time-budget -1", 2, &["--time-budget: found -1"]),

@@ -455,7 +455,7 @@ fn a_scene_file_lists_the_files_of_a_field_and_its_box() {
                 &["--bbox", "extent is 500000,4900000,500150,4900120"],
             ),
             ("plan t0.asc --bbox 1,0,0,1", 2, &["--bbox", "each minimum below its maximum"]),
-            ("plan t0.asc --bbox 1,2,3", 2, &["3 numbers"]),
+            ("plan t0.asc --bbox 1,2,3", 2, &["--bbox: found 1,2,3, expected XMIN"]),
             ("render t0.asc t1.asc -o t1.asc.png --json t1.asc", 2, &["--json"]),
         ],
     );
