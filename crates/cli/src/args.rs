@@ -40,13 +40,22 @@ pub use view::ViewArgs;
 /// Lights height fields on Vulkan by sky, environment, suns, key lights, sphere lights and indirect light, with
 /// shadows from horizons.
 #[derive(Parser)]
-#[command(version, max_term_width = 100)]
+#[command(version = version(), max_term_width = 100)]
 pub struct Cli {
     #[command(subcommand)]
     pub command: Command,
     /// The file of `--scene`.
     #[arg(skip)]
     pub scene: SceneFile,
+}
+
+/// With the commit, where the source was a repository.
+fn version() -> String {
+    let version = env!("CARGO_PKG_VERSION");
+    match env!("RIDGELIGHT_COMMIT") {
+        "unknown" => version.to_owned(),
+        commit => format!("{version} ({commit})"),
+    }
 }
 
 /// Why a command line is refused.

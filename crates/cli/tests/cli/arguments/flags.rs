@@ -545,6 +545,12 @@ fn help_gives_units_and_defaults() {
         let run = folder.run_without_driver(args);
         assert!(run.status == Some(0) && run.err.is_empty() && !run.out.is_empty(), "{args:?}");
     }
+    let commit = match env!("RIDGELIGHT_COMMIT") {
+        "unknown" => String::new(),
+        commit => format!(" ({commit})"),
+    };
+    let version = format!("ridgelight {}{commit}\n", env!("CARGO_PKG_VERSION"));
+    assert_eq!(folder.run_without_driver(&["--version"]).out, version);
     // Every kind is listed with the ways to pack it.
     let help = folder.run_without_driver(&["bake", "--help"]).out;
     for said in ["visible-sky:", "unorm16-sin", "snorm16-xyz", "--method auto is sweep here"] {
