@@ -17,7 +17,7 @@ const QUIET: f64 = 0.3;
 const WAITS: usize = 60;
 
 /// Name and arguments of each report. Commas are between flags, semicolons in lists.
-const REPORTS: [(&str, &str); 10] = [
+pub const REPORTS: [(&str, &str); 10] = [
     ("frame", "--size 1024,--azimuths 64"),
     ("environment", "--size 1024,--azimuths 64,--env assets/sky_512x256.hdr"),
     ("forms", "--size 1024,--azimuths 64,--forms,--passes FORMS"),

@@ -145,7 +145,7 @@ fn sizes() -> Result<String> {
         }
         out.push('\n');
     }
-    let about = "A whole frame under a uniform sky; memory of all images and buffers; RMSE of the light relative to its mean, \
+    let about = "Whole frames of a fractal under a uniform sky; memory of all images and buffers; RMSE relative to the mean light, \
                  against the f64 oracle.";
     Ok(format!("{out}\n{about}\n{}", figures.caption()?))
 }
@@ -170,8 +170,8 @@ fn gpu() -> Result<String> {
         })
     };
     Ok(format!(
-        "On an [NVIDIA H200](benches/results/nvidia_h200.md) 64 azimuths take {} ms at 256², {} ms at 1024² and {} ms at \
-         4096² (commit {commit}).\n",
+        "On an [NVIDIA H200](benches/results/nvidia_h200.md) 64 azimuths take {} ms at 256², {} ms at 1024² and \
+         {} ms at 4096² (commit {commit}).\n",
         frame_ms("256")?,
         frame_ms("1024")?,
         frame_ms("4096")?

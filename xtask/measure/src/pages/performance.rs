@@ -6,7 +6,7 @@ use serde_json::Value;
 
 use super::Result;
 use super::figures::{Figures, RESULTS, wrong};
-use crate::performance::FORMS;
+use crate::performance::{FORMS, REPORTS};
 
 /// Times of other programs over that of a plain C sweep on the same machine, which was not this one: 1024², one azimuth.
 const OTHERS: [(&str, &str, f64, f64); 5] = [
@@ -23,9 +23,11 @@ pub fn performance() -> Result<String> {
     }
     let figures = Figures::read("performance")?;
     let (frame, forms) = (&figures.all["reports"]["frame"], &figures.all["reports"]["forms"]);
-    let mut out = "## One frame\n\n1024 × 1024 texels, 64 azimuths, uniform sky, a fractal. Each pass alone.\n\n\
-                   | pass | ms, median | 10th to 90th percentile | cold caches | of the copy's rate |\n|---|---|---|---|---|\n"
-        .to_owned();
+    let mut out = format!(
+        "## One frame\n\n1024 × 1024 texels, 64 azimuths, uniform sky, a fractal. Each pass alone; {}.\n\n\
+         | pass | ms, median | 10th to 90th percentile | cold caches | of the copy's rate |\n|---|---|---|---|---|\n",
+        command("frame")
+    );
     for row in rows(frame).iter().filter(|row| is(row, "isolated") && row["pass"] != "total") {
         let label = label(row);
         let cold = rows(frame).iter().find(|r| is(r, "cold") && self::label(r) == label);
@@ -44,8 +46,7 @@ pub fn performance() -> Result<String> {
         ("in_flow", "whole frame, a timestamp after each pass"),
         ("cold", "whole frame, cold caches"),
     ] {
-        let total = rows(frame).iter().find(|row| row["pass"] == "total" && is(row, mode));
-        let total = total.ok_or_else(|| missing(&figures, mode))?;
+        let total = whole(frame, mode, &figures)?;
         out += &format!(
             "| {what} | {:.2} | {:.2} to {:.2} | | |\n",
             ms(&figures, total, "median_ns")?,
@@ -98,20 +99,35 @@ pub fn performance() -> Result<String> {
     }
     out += "\n## Time against size, azimuths and bounces\n\n\
             ![Time of a frame against the side of the field, azimuths and bounces](../pictures/performance.svg)\n\n\
-            | field | azimuths | frame, ms | 95 % interval of the median | ms per azimuth and 2^20 texels |\n\
-            |---|---|---|---|---|\n";
-    for row in ["sizes", "azimuths"].iter().flat_map(|name| rows(&figures.all["reports"][*name])) {
-        let [cols, azimuths] = figures.numbers(row, "cols azimuths")?;
-        let ms = ms(&figures, row, "median_ns")?;
-        let each = ms / azimuths / (cols * cols / f64::from(1 << 20));
-        let interval = interval(&figures, row)?;
-        out += &format!("| {cols}² | {azimuths} | {ms:.1} | {interval} | {each:.2} |\n");
+            Whole frames of a fractal under a uniform sky, no timestamps between passes.\n";
+    let mut shared = vec![ms(&figures, whole(frame, "overlapped", &figures)?, "median_ns")?];
+    for name in ["sizes", "azimuths"] {
+        out += &format!(
+            "\n{}:\n\n| field | azimuths | frame, ms | 95 % interval of the median | ms per azimuth and 2^20 texels |\n\
+             |---|---|---|---|---|\n",
+            command(name)
+        );
+        for row in rows(&figures.all["reports"][name]) {
+            let [cols, azimuths] = figures.numbers(row, "cols azimuths")?;
+            let ms = ms(&figures, row, "median_ns")?;
+            let each = ms / azimuths / (cols * cols / f64::from(1 << 20));
+            let interval = interval(&figures, row)?;
+            out += &format!("| {cols}² | {azimuths} | {ms:.1} | {interval} | {each:.2} |\n");
+            if [cols, azimuths] == [1024.0, 64.0] {
+                shared.push(ms);
+            }
+        }
     }
+    let text: Vec<String> = shared.iter().map(|ms| format!("{ms:.1}")).collect();
+    out += &format!(
+        "\nThree calls time the frame of 1024² and 64 azimuths: {} ms. They ran one after the other on the same machine, so they \
+         show how much processes differ.\n",
+        text.join(", ")
+    );
     out += "\n| bounces, 512 × 512, 64 azimuths, 32 bounce azimuths, every 2nd texel | frame, ms | 95 % interval of the median |\n|---|---|---|\n";
     for count in 0..=4 {
         let report = &figures.all["reports"][format!("bounces{count}")];
-        let total = rows(report).iter().find(|r| r["pass"] == "total" && is(r, "overlapped"));
-        let total = total.ok_or_else(|| missing(&figures, "total"))?;
+        let total = whole(report, "overlapped", &figures)?;
         let interval = interval(&figures, total)?;
         out += &format!("| {count} | {:.1} | {interval} |\n", ms(&figures, total, "median_ns")?);
     }
@@ -128,6 +144,18 @@ pub fn performance() -> Result<String> {
 
 fn rows(report: &Value) -> &[Value] {
     report["rows"].as_array().map_or(&[], Vec::as_slice)
+}
+
+/// The row of a whole frame.
+fn whole<'a>(report: &'a Value, mode: &str, figures: &Figures) -> Result<&'a Value> {
+    let total = rows(report).iter().find(|row| row["pass"] == "total" && is(row, mode));
+    total.ok_or_else(|| missing(figures, mode))
+}
+
+/// The command of a report, as a user writes it.
+fn command(report: &str) -> String {
+    let words = REPORTS.iter().find(|(name, _)| *name == report).map_or("", |(_, words)| *words);
+    format!("`bench {}`", words.replace(',', " ").replace(';', ","))
 }
 
 fn is(row: &Value, mode: &str) -> bool {
