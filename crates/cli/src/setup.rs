@@ -1,6 +1,7 @@
 //! From arguments to scenes, qualities and devices; what commands print while they run.
 
 pub mod lights;
+pub mod scene_hash;
 mod settings_used;
 pub mod sky;
 pub mod terminal;

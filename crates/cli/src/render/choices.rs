@@ -6,14 +6,14 @@ use std::path::PathBuf;
 
 use ridgelight::Result;
 use ridgelight::gpu::DeviceReport;
-use ridgelight::plan::{self, Limits, Picture};
-use ridgelight::scene::{Albedo, Quality, SETTINGS, Scene, Specular};
+use ridgelight::plan::{Limits, Picture};
+use ridgelight::scene::{Quality, SETTINGS, Scene};
 use ridgelight_io as files;
 use ridgelight_trade::auto::{Chosen, Goal};
 use serde::{Deserialize, Serialize};
 
 use super::auto;
-use crate::setup::tuned;
+use crate::setup::{scene_hash, tuned};
 
 /// What a run with a goal prints and writes about its choice.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -84,27 +84,9 @@ impl Place {
         wanted: Picture,
     ) -> Self {
         let mut hash = Hash(tuned::hash(device));
-        // Heights, environment and maps.
-        for image in plan::picture_inputs(scene) {
-            hash.0.write_usize(image.len());
-            image.iter().for_each(|value| hash.0.write_u32(value.to_bits()));
-        }
-        let field = &scene.field;
-        let lights = &scene.lights;
-        let rotation_rad = lights.environment.as_ref().map(|e| e.rotation_rad());
-        let surface = &scene.surface;
-        let albedo =
-            if let Albedo::Constant(colour) = &surface.albedo { Some(colour) } else { None };
-        let specular = surface.specular.as_ref().map(|specular| match specular {
-            Specular::Constant(phong) => Some(phong),
-            Specular::Map(_) => None,
-        });
-        let all = (
-            (field.rows(), field.cols(), field.cell_m(), field.base_m(), field.voids()),
-            (lights.sky, rotation_rad, &lights.suns, &lights.keys, &lights.sphere_lights),
-            (surface.border, albedo, specular),
-            (goal, seed, quality, wanted, limits),
-        );
+        let of_scene =
+            [scene_hash::field(scene), scene_hash::lights(scene), scene_hash::surface(scene)];
+        let all = (of_scene, goal, seed, quality, wanted, limits);
         // Hashing cannot fail.
         let _ = write!(hash, "{all:?}");
         let name = format!("choices/{:016x}.json", hash.0.finish());
