@@ -2,6 +2,7 @@
 
 use ridgelight::Result;
 use ridgelight::gpu::{Frame, Headless};
+use serde_json::Value;
 
 use super::repeated;
 use super::rows::{Row, sums};
@@ -51,4 +52,43 @@ pub fn text(peaks: &[Row]) -> String {
         rate("fma", "GFLOP/s", Row::texel_rate),
     ]
     .join(", ")
+}
+
+/// Rows for JSON. What the plan counts as texels are reads and operations in two of them, which name them.
+pub fn json(peaks: &[Row]) -> Vec<Value> {
+    let one = |row: &Row| {
+        let mut json = row.json();
+        let key = match row.pass_and_part().1 {
+            "shared" => "reads_per_s",
+            "fma" => "flop_per_s",
+            _ => return json,
+        };
+        json[key] = json["texels_per_s"].take();
+        json.as_object_mut().expect("a row").remove("texels_per_s");
+        json
+    };
+    peaks.iter().map(one).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ridgelight::plan::{self, Limits, Pass};
+
+    /// Copy, fetch, shared, fma: each has its own rate, and no rate of another unit.
+    #[test]
+    fn each_peak_has_the_key_of_its_rate() {
+        let plan = plan::device_peak(&Limits::lavapipe()).unwrap();
+        let row =
+            |pass: &Pass| Row::of(pass.label(), "isolated", &plan, &[pass], 1, (6, &[1e6; 6]));
+        let rows: Vec<Row> = plan.passes[COPY..].iter().map(row).collect();
+        let keys = ["texels_per_s", "reads_per_s", "flop_per_s"];
+        let found = json(&rows);
+        for (row, own) in found.iter().zip([None, Some(keys[0]), Some(keys[1]), Some(keys[2])]) {
+            for key in keys {
+                assert_eq!(row[key].as_f64() > Some(0.0), own == Some(key), "{key} of {row}");
+            }
+        }
+        assert_eq!(found.len(), 4);
+    }
 }

@@ -5,6 +5,7 @@ use ridgelight::plan::{Pass, Plan};
 use ridgelight_trade::statistics::{Summary, median_interval};
 use serde_json::{Value, json};
 
+use super::{FEWEST, peaks};
 use crate::setup;
 
 /// One pass in one mode.
@@ -21,7 +22,7 @@ pub struct Row {
     /// Nanoseconds between which the median lies, at 95 %; none for fewer than 6 runs.
     pub interval: Option<[f64; 2]>,
     pub bytes: u64,
-    /// Texels processed in one run.
+    /// Texels processed in one run by one pass; 0 for several passes, whose texels are unlike.
     pub work: u64,
     /// Bytes per second that a copy reaches on this device; none if it was not measured.
     pub copy_rate: Option<f64>,
@@ -47,7 +48,7 @@ impl Row {
             times: Summary::of(times_ns),
             interval: median_interval(times_ns),
             bytes: passes.iter().map(|p| p.bytes).sum(),
-            work: passes.iter().map(|p| p.texels).sum(),
+            work: if let [one] = passes { one.texels } else { 0 },
             copy_rate: None,
         }
     }
@@ -88,6 +89,11 @@ impl Row {
         self.pass.split_once(' ').unwrap_or((&self.pass, ""))
     }
 
+    /// Nanoseconds, 10th and 90th percentile; none for fewer than [`FEWEST`] runs, which also give the median no interval.
+    pub fn percentiles(&self) -> Option<[f64; 2]> {
+        self.times.filter(|_| self.runs >= FEWEST).map(|times| [times.p10, times.p90])
+    }
+
     /// Width of the interval of the median over the median.
     pub fn spread(&self) -> Option<f64> {
         let [low, high] = self.interval?;
@@ -101,7 +107,7 @@ impl Row {
             "azimuths": self.azimuths, "settings": setup::typed(&self.settings), "runs": self.runs,
             "min_ns": self.times.map(|t| t.min), "median_ns": self.times.map(|t| t.median),
             "median_low_ns": self.interval.map(|i| i[0]), "median_high_ns": self.interval.map(|i| i[1]),
-            "p10_ns": self.times.map(|t| t.p10), "p90_ns": self.times.map(|t| t.p90),
+            "p10_ns": self.percentiles().map(|p| p[0]), "p90_ns": self.percentiles().map(|p| p[1]),
             "bytes": self.bytes, "gb_per_s": self.byte_rate().map(|r| r * 1e-9),
             "texels_per_s": self.texel_rate(), "copy_share": self.copy_share(),
         })
@@ -116,6 +122,9 @@ impl Row {
 
     pub fn text(&self) -> String {
         let ms = |ns: fn(&Summary) -> f64| figure(self.times.map(|t| ns(&t) * 1e-6), 3);
+        let percentile = |ns: fn(&Summary) -> f64| {
+            if self.runs < FEWEST { "-".into() } else { ms(ns) }
+        };
         let giga = |amount: u64, digits| match amount {
             0 => "-".into(),
             _ => figure(self.rate(amount).map(|r| r * 1e-9), digits),
@@ -125,8 +134,8 @@ impl Row {
             self.pass,
             self.mode,
             ms(|t| t.median),
-            ms(|t| t.p10),
-            ms(|t| t.p90),
+            percentile(|t| t.p10),
+            percentile(|t| t.p90),
             ms(|t| t.min),
             giga(self.bytes, 2),
             self.copy_share().map_or("-".into(), |share| format!("{:.0} %", 100.0 * share)),
@@ -152,13 +161,13 @@ pub fn sums(runs: &[Vec<Timing>], wanted: impl Fn(usize) -> bool) -> Vec<f64> {
     runs.iter().map(sum).collect()
 }
 
-/// The whole report. `argv` are the words after the program's name, `peaks` rows of the device's peak rates.
+/// The report of these rows. `argv` are the words after the program's name, `peaks` rows of the device's peak rates.
 pub fn file(device: &str, driver: &str, peaks: &[Row], rows: &[Row], argv: &[String]) -> Value {
     json!({
         "device": device, "driver": driver, "ridgelight": env!("CARGO_PKG_VERSION"),
         "commit": env!("RIDGELIGHT_COMMIT"), "argv": argv,
         "time": humantime::format_rfc3339_seconds(std::time::SystemTime::now()).to_string(),
-        "peaks": peaks.iter().map(Row::json).collect::<Vec<_>>(),
+        "peaks": peaks::json(peaks),
         "rows": rows.iter().map(Row::json).collect::<Vec<_>>(),
     })
 }
@@ -258,6 +267,35 @@ pub mod tests {
         let row = Row::of("total", "in_flow", &plan, &[&plan.passes[0]], 4, (2, &none));
         assert!(row.text().contains("unavailable") && !row.text().contains("0.000"));
         assert!(row.json()["median_ns"].is_null() && row.json()["gb_per_s"].is_null());
+    }
+
+    /// Five runs have a median and a minimum, six also percentiles.
+    #[test]
+    fn few_runs_have_no_percentiles() {
+        let plan = plan();
+        let row = |count: usize| {
+            let times: Vec<f64> = (1..=count).map(|ms| ms as f64 * 1e6).collect();
+            Row::of("total", "in_flow", &plan, &[], 4, (count, &times))
+        };
+        let [five, six] = [row(5), row(6)].map(|row| row.json());
+        assert!(five["p10_ns"].is_null() && five["p90_ns"].is_null(), "{five}");
+        assert_eq!([&five["median_ns"], &six["p10_ns"]], [3e6, 1.5e6]);
+        let columns = |row: Row| -> Vec<String> {
+            row.text().split_whitespace().map(str::to_owned).collect()
+        };
+        assert_eq!(columns(row(5))[2..6], ["3.000", "-", "-", "1.000"]);
+        assert_eq!(columns(row(6))[2..6], ["3.500", "1.500", "5.500", "1.000"]);
+    }
+
+    /// Texels of a sweep and of a resolve are unlike: only a row of one pass has a rate of them.
+    #[test]
+    fn a_row_of_several_passes_has_no_texel_rate() {
+        let plan = plan();
+        let every: Vec<&Pass> = plan.passes.iter().collect();
+        let row = |passes: &[&Pass]| Row::of("total", "in_flow", &plan, passes, 4, (6, &[1e6; 6]));
+        assert!(every.len() > 1 && row(&every).json()["texels_per_s"].is_null());
+        assert!(row(&every).text().ends_with(" -"), "{}", row(&every).text());
+        assert!(row(&every[..1]).json()["texels_per_s"].as_f64() > Some(0.0));
     }
 
     /// Complete events follow each other, and the text parses as JSON.

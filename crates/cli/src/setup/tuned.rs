@@ -33,10 +33,25 @@ fn place(device: &DeviceReport) -> Option<PathBuf> {
     Some(caches()?.join(format!("tuned/{:016x}.json", hash(device).finish())))
 }
 
+/// A form; `azimuths` is null where all azimuths are swept together.
 pub fn json(form: &SweepForm) -> Value {
     json!({
         "lines_each": form.lines_each, "group_size": form.group_size, "shares_hull": form.shares_hull,
-        "hull_depth": form.hull_depth, "private_depth": form.private_depth, "azimuths": form.azimuths,
+        "hull_depth": form.hull_depth, "private_depth": form.private_depth,
+        "azimuths": (form.azimuths != u32::MAX).then_some(form.azimuths),
+    })
+}
+
+/// The form that [`json`] wrote; none for other JSON.
+fn read(kept: &Value) -> Option<SweepForm> {
+    let number = |key: &str| kept[key].as_u64().and_then(|n| u32::try_from(n).ok());
+    Some(SweepForm {
+        lines_each: number("lines_each")?,
+        group_size: number("group_size")?,
+        shares_hull: kept["shares_hull"].as_bool()?,
+        hull_depth: number("hull_depth")?,
+        private_depth: number("private_depth")?,
+        azimuths: if kept["azimuths"].is_null() { u32::MAX } else { number("azimuths")? },
     })
 }
 
@@ -50,15 +65,7 @@ pub fn limits(device: &DeviceReport, memory_budget: Option<u64>) -> Limits {
 /// The form of an earlier `tune`. A file that cannot be read, or with a form that `tune` does not try, is none.
 fn find(device: &DeviceReport) -> Option<SweepForm> {
     let kept: Value = serde_json::from_slice(&std::fs::read(place(device)?).ok()?).ok()?;
-    let number = |key: &str| kept[key].as_u64().and_then(|n| u32::try_from(n).ok());
-    let form = SweepForm {
-        lines_each: number("lines_each")?,
-        group_size: number("group_size")?,
-        shares_hull: kept["shares_hull"].as_bool()?,
-        hull_depth: number("hull_depth")?,
-        private_depth: number("private_depth")?,
-        azimuths: number("azimuths")?,
-    };
+    let form = read(&kept)?;
     tune::is_tried(form, device.limits.sweep).then_some(form)
 }
 
@@ -86,5 +93,23 @@ pub fn forget(device: &DeviceReport) -> Result<bool> {
         Ok(()) => Ok(true),
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(false),
         Err(error) => Err(Error::io(&path, error)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// All azimuths together are null and no number; both are read back.
+    #[test]
+    fn a_form_is_read_back() {
+        let untuned = Limits::lavapipe().sweep;
+        for azimuths in [u32::MAX, 16] {
+            let form = SweepForm { azimuths, ..untuned };
+            let json = json(&form);
+            assert_eq!(json["azimuths"].as_u64(), (azimuths == 16).then_some(16), "{json}");
+            assert_eq!(read(&json).map(|form| form.azimuths), Some(azimuths));
+            assert!(json.get("azimuths").is_some() && read(&json!({})).is_none());
+        }
     }
 }

@@ -65,8 +65,8 @@ pub fn performance() -> Result<String> {
         "copy {}, texel fetches {}, reads of shared memory {}, arithmetic {}.\n",
         rate("copy", "gb_per_s", "GB/s", 1.0)?,
         rate("fetch", "texels_per_s", "G/s", 1e-9)?,
-        rate("shared", "texels_per_s", "G/s of 8 bytes", 1e-9)?,
-        rate("fma", "texels_per_s", "GFLOP/s", 1e-9)?
+        rate("shared", "reads_per_s", "G/s of 8 bytes", 1e-9)?,
+        rate("fma", "flop_per_s", "GFLOP/s", 1e-9)?
     );
     out += "\n## Over a scalar sweep\n\nThe scalar sweep is a hull sweep in Rust on all cores of the processor, one line at a time, in turn \
             with each row's frames.\n\n\
