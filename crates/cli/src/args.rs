@@ -369,6 +369,8 @@ pub struct BenchArgs {
     #[arg(long, help_heading = "Output")]
     pub forms: bool,
     /// Time whole frames of fractal fields of these sides instead
+    ///
+    /// Rows are printed as they are measured. --json is written after the last one.
     #[arg(long, help_heading = "Input", value_delimiter = ',', value_name = "N,N,…", value_parser = number::<usize>(SIDE), allow_negative_numbers = true, conflicts_with_all = ["input", "forms", "trace", "passes"])]
     pub sizes: Vec<usize>,
     /// Time each of --sizes with these numbers of azimuths

@@ -58,6 +58,9 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
     }
     let earlier = Earlier::read_all(&args.against)?;
     let quality = args.quality.quality()?;
+    let counts =
+        if args.azimuth_list.is_empty() { &[quality.azimuths][..] } else { &args.azimuth_list };
+    check_azimuths(&args.azimuth_list)?;
     let field = match &args.input {
         Some(path) => setup::field(std::slice::from_ref(path), &args.surface.field, &args.global)?,
         None => fractal(*args.sizes.first().unwrap_or(&args.size), 1)?,
@@ -85,6 +88,7 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
     })?;
     if !quiet {
         crate::say!("{device}, {driver}");
+        setup::say_light(&args.lights, &scene);
         crate::say!("verified: {found}");
         crate::say!("peak rates: {}", peaks::text(&peaks));
         plan.notes
@@ -94,17 +98,11 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
     }
     let mut all = Vec::new();
     if !args.sizes.is_empty() {
-        let counts =
-            if args.azimuth_list.is_empty() { &[quality.azimuths][..] } else { &args.azimuth_list };
         for &azimuths in counts {
             verifier.check(&mut gpu, &Quality { azimuths, ..quality }, &limits)?;
         }
-        let lists = (&args.sizes[..], counts);
-        let table = sizes::run(&mut gpu, &scene, &quality, &limits, lists, args.runs, &bar)?;
-        bar.finish_and_clear();
-        if !quiet {
-            sizes::print(&table);
-        }
+        let mut table = sizes::run(&mut gpu, &scene, &quality, &limits, (args, counts), &bar)?;
+        table.iter_mut().for_each(|row| row.copy_rate = peaks::copy_rate(&peaks));
         all.extend(table);
     } else {
         let inputs = plan::picture_inputs(&scene);
@@ -166,6 +164,18 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
     }
     let slower = changes.is_some_and(|changes| changes.any_slower());
     Ok(if slower { Outcome::Beyond } else { Outcome::Done })
+}
+
+/// Refuses `--azimuth-list` before any device work.
+fn check_azimuths(list: &[u32]) -> Result<()> {
+    list.iter().try_for_each(|&azimuths| {
+        Quality { azimuths, ..Quality::default() }.check().map_err(|error| match error {
+            Error::Setting { found, expected, .. } => {
+                Error::setting("--azimuth-list", found, expected)
+            }
+            other => other,
+        })
+    })
 }
 
 /// Refuses specular light where no reference computes it.
@@ -321,9 +331,9 @@ fn time(
     let cold = repeated(gpu, frame, &all, args.runs, Some(flushes))?;
     rows.push(row("total".into(), "cold", &every, cold.len(), &sums(&cold, |_| true)));
     let (mut totals, mut fewest) = (vec![0.0; args.runs], args.runs);
-    for &i in &wanted {
+    for (n, &i) in (1..).zip(&wanted) {
         let pass = &plan.passes[i];
-        bar.set_message(format!("{} alone", pass.label()));
+        bar.set_message(format!("pass {n} of {}: {} alone", wanted.len(), pass.label()));
         let alone = repeated(gpu, frame, &[i], args.runs, None)?;
         let times = sums(&alone, |_| true);
         fewest = fewest.min(times.len());
@@ -357,6 +367,13 @@ mod tests {
             assert_eq!(stable(&vec![1.0; count]), is_asked, "{count} runs");
         }
         assert!(!stable(&[]) && !stable(&[0.0; 10].map(|_: f64| f64::NAN)));
+    }
+
+    #[test]
+    fn an_azimuth_list_is_refused_by_its_own_name() {
+        assert!(check_azimuths(&[]).is_ok() && check_azimuths(&[4, 1024]).is_ok());
+        let message = check_azimuths(&[8, 3]).unwrap_err().to_string();
+        assert!(message.contains("--azimuth-list: found 3, expected"), "{message}");
     }
 
     #[test]

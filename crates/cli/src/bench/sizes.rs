@@ -10,20 +10,26 @@ use ridgelight::scene::{Quality, Scene};
 use super::overlapped;
 use super::rows::{Row, figure};
 use super::verify::GroundTruth;
+use crate::args::BenchArgs;
 
-/// Whole frames of fractal fields under the scene's lights, for each pair of `sizes` and
-/// `azimuths`, with the relative RMSE against the oracle.
+/// Whole frames of fractal fields under the scene's lights, for each pair of `--sizes` and `azimuths`, with the relative
+/// RMSE against the oracle. Prints each row at once: a later size may exceed the device's memory.
 pub fn run(
     gpu: &mut Headless,
     scene: &Scene,
     quality: &Quality,
     limits: &Limits,
-    (sizes, azimuths): (&[usize], &[u32]),
-    most: usize,
+    (args, azimuths): (&BenchArgs, &[u32]),
     bar: &ProgressBar,
 ) -> Result<Vec<Row>> {
+    let say = |line: String| {
+        if !args.global.quiet {
+            bar.suspend(|| crate::say!("{line}"));
+        }
+    };
     let mut rows = Vec::new();
-    for &size in sizes {
+    say(head());
+    for &size in &args.sizes {
         let scene = Scene { field: fractal(size, 1)?, ..scene.clone() };
         let ground_truth = GroundTruth::of(&scene);
         let inputs = plan::picture_inputs(&scene);
@@ -33,7 +39,7 @@ pub fn run(
             let plan = plan::picture(&scene, &quality, limits, Picture::default())?;
             let ((count_of_runs, times), pixels) =
                 gpu.with_frame(plan.clone(), &inputs, |gpu, frame| {
-                    Ok((overlapped(gpu, frame, most)?, gpu.pixels(frame, 0)?))
+                    Ok((overlapped(gpu, frame, args.runs)?, gpu.pixels(frame, 0)?))
                 })?;
             let passes: Vec<_> = plan.passes.iter().collect();
             let measured = (count_of_runs, &times[..]);
@@ -43,14 +49,15 @@ pub fn run(
                 ("light_error".into(), format!("{:.6}", ground_truth.error(&pixels))),
                 ("passes".into(), plan.passes.len().to_string()),
             ]);
+            say(text(&row));
             rows.push(row);
         }
     }
     Ok(rows)
 }
 
-pub fn print(rows: &[Row]) {
-    crate::say!(
+fn head() -> String {
+    format!(
         "{:>6} {:>9} {:>12} {:>15} {:>10} {:>11} {:>13} {:>8}",
         "side",
         "azimuths",
@@ -60,23 +67,23 @@ pub fn print(rows: &[Row]) {
         "MB/2^20",
         "light error %",
         "runs"
-    );
-    for row in rows {
-        let setting = |name: &str| -> Option<f64> {
-            row.settings.iter().find(|s| s.0 == name)?.1.parse().ok()
-        };
-        let mb = setting("device_bytes").map(|b| b * 1e-6);
-        let mega = f64::from(row.size[0]) * f64::from(row.size[1]) / f64::from(1 << 20);
-        crate::say!(
-            "{:>6} {:>9} {:>12} {:>15} {:>10} {:>11} {:>13} {:>8}",
-            row.size[0],
-            row.azimuths,
-            figure(row.times.map(|t| t.median * 1e-6), 2),
-            figure(row.ms_per_azimuth_and_mega(), 3),
-            figure(mb, 1),
-            figure(mb.map(|b| b / mega), 1),
-            figure(setting("light_error").map(|e| 100.0 * e), 3),
-            row.runs
-        );
-    }
+    )
+}
+
+fn text(row: &Row) -> String {
+    let setting =
+        |name: &str| -> Option<f64> { row.settings.iter().find(|s| s.0 == name)?.1.parse().ok() };
+    let mb = setting("device_bytes").map(|b| b * 1e-6);
+    let mega = f64::from(row.size[0]) * f64::from(row.size[1]) / f64::from(1 << 20);
+    format!(
+        "{:>6} {:>9} {:>12} {:>15} {:>10} {:>11} {:>13} {:>8}",
+        row.size[0],
+        row.azimuths,
+        figure(row.times.map(|t| t.median * 1e-6), 2),
+        figure(row.ms_per_azimuth_and_mega(), 3),
+        figure(mb, 1),
+        figure(mb.map(|b| b / mega), 1),
+        figure(setting("light_error").map(|e| 100.0 * e), 3),
+        row.runs
+    )
 }
