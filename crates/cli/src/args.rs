@@ -390,9 +390,11 @@ pub struct BenchArgs {
     pub trace: Option<PathBuf>,
     /// Compare with earlier --json files; exit status 1 if a pass is slower
     ///
-    /// FASTER or SLOWER: the confidence interval of the ratio of medians and the 10th percentile both lie beyond 5 %.
-    /// SAME: the whole interval lies within 5 %. UNSURE: any other case. Give several files of one build to include the
-    /// variation between processes.
+    /// FASTER or SLOWER: the interval of the ratio of medians and that of the 10th percentiles both lie beyond 5 %.
+    /// SAME: the whole interval lies within 5 %. UNSURE: any other case. The interval holds the 95 % confidence intervals of
+    /// both medians. It is wider if the peak rates of the device differ by more than 5 %, or if times of a row differ by
+    /// more than 20 %. Give three files of one build: one file cannot show how processes differ. A file of another scene
+    /// is refused.
     #[arg(long, help_heading = "Output", value_delimiter = ',', value_name = "FILE,FILE,…")]
     pub against: Vec<PathBuf>,
     /// Write times in Bencher Metric Format

@@ -16,10 +16,11 @@ use ridgelight::scene::fractal;
 use ridgelight::scene::{Quality, Scene};
 use ridgelight::{Error, Result};
 use ridgelight_io as files;
+use serde_json::{Value, json};
 
 use crate::args::BenchArgs;
 use crate::idle;
-use crate::setup::{self, Outcome, tuned};
+use crate::setup::{self, Outcome, scene_hash, tuned};
 use ridgelight_trade::statistics::{median, median_interval};
 use rows::{Row, sums};
 use verdicts::Earlier;
@@ -56,7 +57,6 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
             return Err(Error::setting(name, size.to_string(), expected));
         }
     }
-    let earlier = Earlier::read_all(&args.against)?;
     let quality = args.quality.quality()?;
     let counts =
         if args.azimuth_list.is_empty() { &[quality.azimuths][..] } else { &args.azimuth_list };
@@ -68,6 +68,8 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
     let scene =
         setup::scene(field, &args.surface, &args.lights, setup::Unlit::Sky, args.global.quiet)?;
     check_specular(&scene, &quality, args)?;
+    let identity = identity(&scene, args.input.is_some());
+    let earlier = Earlier::read_all(&args.against, &identity)?;
     let (mut gpu, limits) = setup::device(&args.global)?;
     let plan = plan::picture(&scene, &quality, &limits, Picture::default())?;
     // Verification is slow.
@@ -96,7 +98,7 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
             .filter(|note| note.starts_with("tuned sweep"))
             .for_each(|note| crate::say!("{note}"));
     }
-    let mut all = Vec::new();
+    let (mut all, mut warnings) = (Vec::new(), Vec::new());
     if !args.sizes.is_empty() {
         for &azimuths in counts {
             verifier.check(&mut gpu, &Quality { azimuths, ..quality }, &limits)?;
@@ -130,7 +132,9 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
         let scene = Scene { lights: sky, surface, ..scene };
         let verifier = Verifier::new(&scene)?;
         let wanted = (args.runs, &args.passes[..]);
-        let table = forms::run(&mut gpu, &scene, &quality, &limits, &verifier, wanted, &bar)?;
+        let (table, left_out) =
+            forms::run(&mut gpu, &scene, &quality, &limits, &verifier, wanted, &bar)?;
+        warnings.extend(left_out);
         bar.finish_and_clear();
         if !quiet {
             forms::print(&table);
@@ -138,12 +142,14 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
         all.extend(table.into_iter().flatten());
     }
     bar.finish_and_clear();
-    if let Some(noise) = noise(&all).filter(|_| !quiet) {
-        crate::say!("{noise}");
+    warnings.extend(noise(&all));
+    let changes = earlier.as_ref().map(|earlier| earlier.against(&all, &peaks));
+    if let Some(changes) = &changes {
+        warnings.extend(changes.warnings(&device, &driver));
     }
-    let changes = earlier.as_ref().map(|earlier| earlier.against(&all));
-    if let Some(changes) = changes.as_ref().filter(|_| !quiet) {
-        changes.print(&device, &driver);
+    if !quiet {
+        changes.iter().for_each(|changes| changes.print());
+        warnings.iter().for_each(|warning| crate::say!("{warning}"));
     }
     if let Some(path) = &args.bencher {
         files::write_json(path, &rows::bencher(&all))?;
@@ -153,6 +159,8 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
             std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned()).collect();
         let mut report = rows::file(&device, &driver, &peaks, &all, &argv);
         report["sweep"] = tuned::json(&limits.sweep);
+        report["scene"] = identity;
+        report["warnings"] = warnings.into();
         if let Some(changes) = &changes {
             report["against"] = changes.json();
         }
@@ -160,10 +168,20 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
     }
     if changes.as_ref().is_some_and(|changes| changes.is_empty()) {
         let expected = "a report with a row of the same pass, mode, size and azimuths";
-        return Err(Error::setting("--against", "no row of this run", expected));
+        let files: Vec<_> = args.against.iter().map(|path| path.display().to_string()).collect();
+        let found = format!("no row of this run in {}", files.join(", "));
+        return Err(Error::setting("--against", found, expected));
     }
     let slower = changes.is_some_and(|changes| changes.any_slower());
     Ok(if slower { Outcome::Beyond } else { Outcome::Done })
+}
+
+/// Hashes of what `--against` compares; `--size` and `--sizes` are in the rows.
+fn identity(scene: &Scene, is_input: bool) -> Value {
+    let text = |hash: u64| format!("{hash:016x}");
+    let field = if is_input { text(scene_hash::field(scene)) } else { "fractal".to_owned() };
+    let [lights, surface] = [scene_hash::lights(scene), scene_hash::surface(scene)].map(text);
+    json!({ "field": field, "lights": lights, "surface": surface })
 }
 
 /// Refuses `--azimuth-list` before any device work.
@@ -236,7 +254,7 @@ fn late(begun: Instant, runs: usize) -> bool {
     runs >= FEWEST && begun.elapsed() > ROW_TIME
 }
 
-/// What is said of a frame whose median is known too badly.
+/// The warning of a frame whose median is known too badly.
 fn noise(rows: &[Row]) -> Option<String> {
     let row = rows.iter().find(|row| row.pass == "total" && row.spread() > Some(NOISY))?;
     Some(format!(

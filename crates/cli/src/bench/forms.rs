@@ -73,7 +73,7 @@ fn forms(quality: &Quality) -> Vec<Form> {
     all
 }
 
-/// Times all forms. Returns rows of each and of the scalar sweep paired with it.
+/// Times all forms. Returns rows of each and of the scalar sweep paired with it, and a warning for each form left out.
 pub fn run(
     gpu: &mut Headless,
     scene: &Scene,
@@ -82,8 +82,8 @@ pub fn run(
     verifier: &Verifier,
     (most, only): (usize, &[String]),
     bar: &ProgressBar,
-) -> Result<Vec<[Row; 2]>> {
-    let mut all = Vec::new();
+) -> Result<(Vec<[Row; 2]>, Vec<String>)> {
+    let (mut all, mut left_out) = (Vec::new(), Vec::new());
     let mut scalar = ScalarSweep::new(&scene.field);
     for form in forms(quality) {
         if !only.is_empty() && !only.iter().any(|wanted| named(&form.name, wanted)) {
@@ -92,7 +92,7 @@ pub fn run(
         if let Err(error @ Error::Limit { .. }) =
             plan::picture(scene, &form.quality, limits, Picture::default())
         {
-            crate::say!("{} left out: {error}", form.name);
+            left_out.push(format!("{} left out: {error}", form.name));
             continue;
         }
         bar.set_message(format!("{}: verifying", form.name));
@@ -121,7 +121,7 @@ pub fn run(
             in_turn(gpu, frame, &mut scalar, &timed, (azimuths, count), &form, bar)
         })?);
     }
-    Ok(all)
+    Ok((all, left_out))
 }
 
 /// On a CPU device, alternates the form and the scalar sweep, so that both meet the same load. On a GPU, runs the form first:

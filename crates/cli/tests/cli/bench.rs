@@ -26,6 +26,10 @@ fn gpu_an_earlier_report_gives_verdicts() {
         serde_json::from_slice(&std::fs::read(folder.path("now.json")).unwrap()).unwrap();
     let rows = report["rows"].as_array().unwrap();
     assert_eq!(report["argv"][2], "32");
+    assert_eq!(report["scene"]["field"], "fractal");
+    assert!(report["sweep"]["azimuths"].is_null(), "{}", report["sweep"]);
+    assert!(report["peaks"][2]["reads_per_s"].as_f64() > Some(0.0), "{}", report["peaks"]);
+    assert!(run.out.contains("Light: --sky 1 (default)."), "{}", run.out);
     let metrics: Value =
         serde_json::from_slice(&std::fs::read(folder.path("metrics.json")).unwrap()).unwrap();
     assert_eq!(metrics.as_object().unwrap().len(), rows.len());
@@ -47,7 +51,14 @@ fn gpu_an_earlier_report_gives_verdicts() {
         let found: Value =
             serde_json::from_slice(&std::fs::read(folder.path("verdicts.json")).unwrap()).unwrap();
         assert_eq!(found["against"]["rows"][0]["verdict"], word);
+        let warnings = found["warnings"].to_string();
+        assert!(warnings.contains("one earlier report cannot show"), "{warnings}");
+        assert!(run.out.contains("one earlier report cannot show"), "{}", run.out);
     }
+    let other = ["bench", "--size", "48", "--azimuths", "8", "--runs", "1"];
+    let run = folder.run(&[&other[..], &["--against", "now.json,slow.json"]].concat());
+    assert_eq!(run.status, Some(2), "{}", run.err);
+    assert!(run.err.contains("no row of this run in now.json, slow.json"), "{}", run.err);
     std::fs::write(folder.path("field.json"), "[]").unwrap();
     let run = folder.run(&[&base[..], &["--against", "field.json"]].concat());
     assert_eq!((run.status, run.out.as_str()), (Some(1), ""), "{}", run.err);
@@ -56,4 +67,37 @@ fn gpu_an_earlier_report_gives_verdicts() {
         "{}",
         run.err
     );
+}
+
+/// Before a device is opened.
+#[test]
+fn reports_of_another_scene_and_wrong_lists_are_refused_first() {
+    let folder = Folder::new();
+    let report = r#"{ "device": "d", "driver": "v", "rows": [],
+        "scene": { "field": "fractal", "lights": "0", "surface": "0" } }"#;
+    std::fs::write(folder.path("other.json"), report).unwrap();
+    let run = folder.run_without_driver(&["bench", "--size", "32", "--against", "other.json"]);
+    assert_eq!((run.status, run.out.as_str()), (Some(1), ""), "{}", run.err);
+    let expected = "other.json: scene: found another scene, with different lights and surface";
+    assert!(run.err.contains(expected), "{}", run.err);
+    let words = ["bench", "--sizes", "16", "--azimuth-list", "8,3"];
+    let run = folder.run_without_driver(&words);
+    assert_eq!((run.status, run.out.as_str()), (Some(2), ""), "{}", run.err);
+    assert!(
+        run.err.contains("--azimuth-list: found 3, expected a whole number from 4 to 1024"),
+        "{}",
+        run.err
+    );
+}
+
+/// The heights of 1024 x 1024 alone take 4 MiB.
+#[test]
+fn gpu_rows_of_sizes_are_printed_before_a_later_error() {
+    let folder = Folder::new();
+    let words = "bench --sizes 16,1024 --azimuths 4 --runs 1 --memory-budget 4MiB";
+    let run = folder.run_str(words);
+    assert_eq!(run.status, Some(1), "{}{}", run.out, run.err);
+    assert!(run.err.contains("--memory-budget"), "{}", run.err);
+    let rows: Vec<&str> = run.out.lines().filter(|line| line.ends_with(" 1")).collect();
+    assert!(rows.len() == 1 && rows[0].trim_start().starts_with("16 "), "{}", run.out);
 }
