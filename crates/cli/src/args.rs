@@ -97,8 +97,10 @@ fn arranged(command: clap::Command) -> clap::Command {
     if !command.get_arguments().any(Arg::is_hide_short_help_set) {
         return command;
     }
-    let last = format!("`ridgelight {} --help` lists all flags and examples.", command.get_name());
     let long = command.get_after_help().cloned().unwrap_or_default();
+    let has_examples = long.to_string().contains("\n  ridgelight ");
+    let what = if has_examples { "all flags and examples" } else { "all flags" };
+    let last = format!("`ridgelight {} --help` lists {what}.", command.get_name());
     command.after_help(last).after_long_help(long)
 }
 
@@ -343,6 +345,8 @@ pub struct TuneArgs {
 }
 
 #[derive(Args)]
+// --against reads what --json writes.
+#[command(mut_arg("json", |arg| arg.hide_short_help(false)))]
 pub struct BenchArgs {
     /// Height field; without one, a fractal of --size
     #[arg(value_name = "INPUT", help_heading = "Input")]

@@ -601,6 +601,21 @@ fn short_help_fits_one_screen() {
     }
 }
 
+/// The last line of `-h` promises examples where `--help` has some.
+#[test]
+fn short_help_promises_what_the_long_help_has() {
+    let folder = Folder::new();
+    for (command, has_examples) in [("bench", false), ("render", true), ("hillshade", true)] {
+        let [short, long] =
+            ["-h", "--help"].map(|flag| folder.run_without_driver(&[command, flag]).out);
+        assert_eq!(long.contains("\n  ridgelight "), has_examples, "{long}");
+        assert_eq!(short.contains("all flags and examples"), has_examples, "{short}");
+    }
+    // What --against reads.
+    let help = folder.run_without_driver(&["bench", "-h"]).out;
+    assert!(help.contains("--json <FILE>"), "{help}");
+}
+
 /// Headings of `--help` in their order; expert settings come last.
 #[test]
 fn help_is_grouped() {
