@@ -15,10 +15,10 @@ use crate::{Error, Result};
 pub(super) struct ActiveLights<'a> {
     pub sky: Option<[f32; 3]>,
     pub environment: Option<&'a Environment>,
-    /// With their positions in the scene.
-    pub suns: Vec<(usize, &'a Sun)>,
-    /// With their positions in the scene.
-    pub keys: Vec<(usize, &'a KeyLight)>,
+    /// With their positions in the scene, [clamped](Sun::clamped).
+    pub suns: Vec<(usize, Sun)>,
+    /// With their positions in the scene, [clamped](KeyLight::clamped).
+    pub keys: Vec<(usize, KeyLight)>,
     pub near: Spheres,
     /// The surface's Phong specular, where its scale is above 0.
     pub specular: Option<&'a Specular>,
@@ -55,8 +55,8 @@ impl<'a> ActiveLights<'a> {
         let lit = |c: &[f32; 3]| has_texels || c.iter().any(|v| *v > 0.0);
         let sky = lights.sky.filter(lit);
         let environment = lights.environment.as_ref();
-        let (suns, dark): (Vec<_>, Vec<_>) =
-            lights.suns.iter().enumerate().partition(|(_, s)| lit(&s.irradiance));
+        let suns = lights.suns.iter().map(Sun::clamped).enumerate();
+        let (suns, dark): (Vec<_>, Vec<_>) = suns.partition(|(_, s)| lit(&s.irradiance));
         if lights.sky.is_none()
             && environment.is_none()
             && lights.suns.is_empty()
@@ -136,11 +136,7 @@ impl<'a> ActiveLights<'a> {
     }
 
     /// The key lights that can be visible.
-    fn keys(
-        scene: &'a Scene,
-        has_texels: bool,
-        notes: &mut Vec<String>,
-    ) -> Vec<(usize, &'a KeyLight)> {
+    fn keys(scene: &Scene, has_texels: bool, notes: &mut Vec<String>) -> Vec<(usize, KeyLight)> {
         let has_ground = scene.surface.border != Border::Open;
         let why_dark = |key: &KeyLight| match key {
             k if k.radiance == [0.0; 3] && !has_texels => Some("its radiance is 0"),
@@ -151,7 +147,7 @@ impl<'a> ActiveLights<'a> {
         for (i, key) in scene.lights.keys.iter().enumerate() {
             match why_dark(key) {
                 Some(why) => notes.push(format!("key {} dropped: {why}", i + 1)),
-                None => keys.push((i, key)),
+                None => keys.push((i, key.clamped())),
             }
         }
         keys

@@ -8,7 +8,7 @@ use crate::passes::blocks::Blocks;
 use crate::passes::path_trace::{self, BATCH_PATHS};
 use crate::plan::reference::choice::{choice_density, environment_cdf, max_path_light};
 use crate::scene::{
-    ANY_LIGHT, Albedo, Border, KeyLight, Lights, Normals, PhongSpecular, Scene, Specular,
+    ANY_LIGHT, Albedo, Border, KeyLight, Lights, Normals, PhongSpecular, Scene, Specular, Sun,
 };
 use crate::{Error, Result};
 
@@ -258,7 +258,7 @@ pub(super) fn specular_texels(map: &[PhongSpecular]) -> Vec<f32> {
 /// Two texels per light: suns, key lights, sphere lights. See `path_trace.comp`.
 fn light_texels(lights: &Lights, border: Border, base_m: f64) -> Vec<f32> {
     let mut all = Vec::new();
-    for sun in &lights.suns {
+    for sun in lights.suns.iter().map(Sun::clamped) {
         // The rounding error of π is not a direction: along a line of grid points its sign would decide the result.
         let level = |v: f64| if v.abs() < 1e-15 { 0.0 } else { v };
         let (sin, cos) = sun.azimuth_rad.sin_cos();
@@ -272,8 +272,8 @@ fn light_texels(lights: &Lights, border: Border, base_m: f64) -> Vec<f32> {
         all.extend(sun.irradiance.map(|e| (spread * f64::from(e)) as f32));
         all.push(1.0);
     }
-    for key in &lights.keys {
-        let [top, bottom] = visible_part(key, border);
+    for key in lights.keys.iter().map(KeyLight::clamped) {
+        let [top, bottom] = visible_part(&key, border);
         let first = (key.azimuth_rad - 0.5 * key.width_rad) / TAU;
         all.extend([first.rem_euclid(1.0), key.width_rad / TAU, top, bottom].map(|v| v as f32));
         let solid_angle = key.width_rad * 2.0 * (bottom - top);

@@ -77,7 +77,7 @@ pub fn shadow_heights(
         ["lit_above", "penumbra", "sun_share"].map(|name| image(name, Owner::Output, size));
     shadow_height::plan(
         &mut builder,
-        (field, sun),
+        (field, &sun.clamped()),
         outer.as_ref(),
         (parts, limits),
         heights,

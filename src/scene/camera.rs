@@ -3,6 +3,7 @@ use std::f64::consts::FRAC_PI_2;
 use glam::DVec3;
 
 use super::HeightField;
+use super::lights::within;
 use crate::{Error, Result};
 
 /// A camera on a sphere around its target. Up in the image is up in the scene.
@@ -15,7 +16,7 @@ pub struct Camera {
     pub target_m: [f64; 3],
     /// Azimuth of the eye from the target, radians counter-clockwise from east.
     pub azimuth_rad: f64,
-    /// Elevation of the eye from the target, radians, [-π/2..π/2]. At π/2 the image is a map whose upper edge lies
+    /// Elevation of the eye from the target, radians, [-π/2..π/2]; f32's ±π/2 count as ±π/2. At π/2 the image is a map whose upper edge lies
     /// opposite the azimuth: north for an eye in the south.
     pub elevation_rad: f64,
     /// Distance from the target to the eye, [1e-9..1e15].
@@ -129,7 +130,7 @@ impl Camera {
     /// Unit vectors right, up and back (out of the image): right-handed.
     pub fn axes(&self) -> [DVec3; 3] {
         let (sin_phi, cos_phi) = self.azimuth_rad.sin_cos();
-        let (sin, cos) = self.elevation_rad.sin_cos();
+        let (sin, cos) = within(self.elevation_rad, FRAC_PI_2).sin_cos();
         let back = DVec3::new(cos_phi * cos, sin_phi * cos, sin);
         let up = DVec3::new(-cos_phi * sin, -sin_phi * sin, cos);
         [up.cross(back), up, back]
@@ -152,7 +153,7 @@ impl Camera {
         if !self.azimuth_rad.is_finite() {
             return bad("azimuth", self.azimuth_rad.to_string(), "a finite angle");
         }
-        if !(-FRAC_PI_2..=FRAC_PI_2).contains(&self.elevation_rad) {
+        if !(-FRAC_PI_2..=FRAC_PI_2).contains(&within(self.elevation_rad, FRAC_PI_2)) {
             let found = format!("{}°", self.elevation_rad.to_degrees());
             return bad("elevation", found, "-90° to 90°");
         }
@@ -189,6 +190,27 @@ pub(crate) fn corners(field: &HeightField) -> [DVec3; 8] {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Up to f32's ±π/2, with the axes of ±π/2; not the next f32.
+    #[test]
+    fn a_right_angle_of_a_camera_may_be_rounded_to_f32() {
+        let lens = Lens::Orthographic { height_m: 1.0 };
+        let at = |elevation_rad| Camera {
+            target_m: [0.0; 3],
+            azimuth_rad: 0.3,
+            elevation_rad,
+            distance_m: 1.0,
+            lens,
+        };
+        let rounded = std::f32::consts::FRAC_PI_2;
+        for sign in [1.0, -1.0] {
+            let camera = at(sign * f64::from(rounded));
+            camera.check().expect("in range");
+            assert_eq!(camera.axes(), at(sign * FRAC_PI_2).axes());
+            let message = at(sign * f64::from(rounded.next_up())).check().unwrap_err().to_string();
+            assert!(message.starts_with("camera: elevation: "), "{message}");
+        }
+    }
 
     /// From the south, 90° up: north is up and east is right.
     #[test]

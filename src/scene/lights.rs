@@ -1,4 +1,6 @@
 pub(super) mod key;
+use std::f64::consts::FRAC_PI_2;
+
 pub(super) use super::{Environment, KeyLight};
 use crate::{Error, Result};
 
@@ -26,9 +28,9 @@ pub struct Lights {
 pub struct Sun {
     /// Direction of the centre in the plane, radians counter-clockwise from east.
     pub azimuth_rad: f64,
-    /// Elevation of the centre above horizontal, radians, [0..π/2].
+    /// Elevation of the centre above horizontal, radians, [0..π/2]; f32's π/2 [counts as π/2](Sun::clamped).
     pub elevation_rad: f64,
-    /// Angular diameter, radians, [0..π/2]; below 0.01° (1.75e-4) a point with hard shadows.
+    /// Angular diameter, radians, [0..π/2] like the elevation; below 0.01° (1.75e-4) a point with hard shadows.
     pub diameter_rad: f64,
     /// Irradiance on a surface that faces it, unoccluded, linear RGB.
     pub irradiance: [f32; 3],
@@ -153,7 +155,21 @@ pub(super) fn is_angle(rad: f64) -> bool {
     rad.abs() <= 1e6
 }
 
+/// The angle; ±`limit` where it exceeds that by no more than the rounding of `limit` to f32. f32's π/2, which `asin(1.0)`
+/// returns, is 4.4e-8 above π/2.
+pub(super) fn within(rad: f64, limit: f64) -> f64 {
+    let is_rounded = rad.abs() > limit && rad.abs() <= f64::from(limit as f32);
+    if is_rounded { limit.copysign(rad) } else { rad }
+}
+
 impl Sun {
+    /// This sun with π/2 for each angle above π/2 that is at most f32's π/2: such an angle is in range and counts as π/2.
+    pub fn clamped(&self) -> Self {
+        let [elevation_rad, diameter_rad] =
+            [self.elevation_rad, self.diameter_rad].map(|rad| within(rad, FRAC_PI_2));
+        Self { elevation_rad, diameter_rad, ..*self }
+    }
+
     /// Whether it is treated as a point: visible or not, without a penumbra.
     pub fn is_point(&self) -> bool {
         self.diameter_rad < POINT_DIAMETER_RAD
@@ -216,18 +232,18 @@ impl Lights {
             let bad = |what: &str, found: String, expected: &str| {
                 Err(Error::setting(format!("sun {}: {what}", i + 1), found, expected))
             };
-            let half_turn = std::f64::consts::FRAC_PI_2;
+            let sun = sun.clamped();
             if !is_angle(sun.azimuth_rad) {
                 return bad("azimuth", sun.azimuth_rad.to_string(), ANGLE);
             }
-            if !(0.0..=half_turn).contains(&sun.elevation_rad) {
+            if !(0.0..=FRAC_PI_2).contains(&sun.elevation_rad) {
                 return bad(
                     "elevation",
                     format!("{}°", sun.elevation_rad.to_degrees()),
                     "0° to 90°",
                 );
             }
-            if !(0.0..=half_turn).contains(&sun.diameter_rad) {
+            if !(0.0..=FRAC_PI_2).contains(&sun.diameter_rad) {
                 return bad(
                     "angular diameter",
                     format!("{}°", sun.diameter_rad.to_degrees()),
@@ -263,6 +279,31 @@ impl Lights {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Up to f32's π/2, but not the next f32.
+    #[test]
+    fn a_right_angle_of_a_sun_may_be_rounded_to_f32() {
+        let rounded = std::f32::consts::FRAC_PI_2;
+        assert_eq!(1_f32.asin(), rounded);
+        let of = |elevation_rad, diameter_rad| {
+            let sun = Sun { azimuth_rad: 0.0, elevation_rad, diameter_rad, irradiance: [1.0; 3] };
+            let message = Lights { suns: vec![sun], ..Lights::default() }.check();
+            (message.err().map(|e| e.to_string()), sun.clamped())
+        };
+        let [rounded, above] = [rounded, rounded.next_up()].map(f64::from);
+        let exact = of(FRAC_PI_2, FRAC_PI_2);
+        assert_eq!(exact.0, None);
+        assert_eq!(of(rounded, rounded), exact);
+        for (angles, what) in [([above, 0.0], "elevation"), ([0.0, above], "angular diameter")] {
+            let message = of(angles[0], angles[1]).0.expect("an error");
+            assert!(message.starts_with(&format!("sun 1: {what}: ")), "{message}");
+        }
+        // `check` must find the angles that are out of range unchanged.
+        for angle in [-0.5, 0.0, FRAC_PI_2.next_down(), above, f64::INFINITY] {
+            assert_eq!(of(angle, 0.0).1.elevation_rad, angle);
+        }
+        assert!(of(f64::NAN, 0.0).1.elevation_rad.is_nan());
+    }
 
     #[test]
     fn an_error_names_the_light_that_is_out_of_range() {

@@ -29,6 +29,7 @@ mod direct {
     mod shadow_heights;
     mod sphere_sh;
     mod spheres;
+    mod zenith;
 }
 mod edit {
     pub mod cpu_reference;

@@ -1,7 +1,7 @@
 //! Plans of the path-traced reference, and its importance sampling.
 
 use ridgelight::plan::{self, Limits, Plan};
-use ridgelight::scene::{Border, Environment, Lights, Normals, Scene};
+use ridgelight::scene::{Border, Environment, KeyLight, Lights, Normals, Scene, Sun};
 
 use super::{flat, under_sky};
 
@@ -88,4 +88,30 @@ fn a_reference_at_some_texels() {
     let bands = plan::reference_in_bands(&scene, 1, Normals::Smooth, 0, &Limits::lavapipe(), 0);
     let refused = bands.unwrap_err().to_string();
     assert!(refused.contains("rows of a band: found 0, expected 1 or more"), "{refused}");
+}
+
+/// f32's π/2 and 2π, which are above π/2 and 2π, aim and weigh paths like the exact angles.
+#[test]
+fn f32_right_angles_are_traced_like_exact_ones() {
+    use std::f64::consts::{FRAC_PI_2, TAU};
+    let rounded = [std::f32::consts::FRAC_PI_2, std::f32::consts::TAU].map(f64::from);
+    for border in [Border::Open, Border::Plane] {
+        let of = |[right, turn]: [f64; 2]| {
+            let suns = [0.0, right].map(|diameter_rad| Sun {
+                azimuth_rad: 0.4,
+                elevation_rad: right,
+                diameter_rad,
+                irradiance: [1.0; 3],
+            });
+            let elevations_rad = [-right, right];
+            let key =
+                KeyLight { azimuth_rad: 0.4, width_rad: turn, elevations_rad, radiance: [1.0; 3] };
+            let mut scene = under_sky(flat(2, 2));
+            scene.surface.border = border;
+            scene.lights = Lights { suns: suns.to_vec(), keys: vec![key], ..Lights::default() };
+            plan::reference(&scene, 1, 0, &Limits::lavapipe()).expect("a plan");
+            (plan::reference_inputs(&scene), plan::unsampled_light_error(&scene, 1, 64))
+        };
+        assert_eq!(of(rounded), of([FRAC_PI_2, TAU]), "{border:?}");
+    }
 }

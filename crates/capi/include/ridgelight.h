@@ -117,9 +117,9 @@ typedef struct RidgelightSun {
     float irradiance[3];
     // Direction of the centre in the plane, radians counter-clockwise from east.
     double azimuth_rad;
-    // Elevation of the centre, radians, [0..pi/2].
+    // Elevation of the centre, radians, [0..pi/2]; the limit may be rounded to float.
     double elevation_rad;
-    // Angular diameter, radians, [0..pi/2]; below 0.01 degrees a point with hard shadows.
+    // Angular diameter, radians, [0..pi/2] like the elevation; below 0.01 degrees a point with hard shadows.
     double diameter_rad;
 } RidgelightSun;
 
@@ -131,9 +131,9 @@ typedef struct RidgelightKeyLight {
     float radiance[3];
     // Direction of its middle in the plane, radians counter-clockwise from east.
     double azimuth_rad;
-    // Extent in azimuth, radians, above 0 up to 2 pi.
+    // Extent in azimuth, radians, above 0 up to 2 pi; the limit may be rounded to float.
     double width_rad;
-    // Its lowest and its highest elevation, radians, [-pi/2..pi/2].
+    // Its lowest and its highest elevation, radians, [-pi/2..pi/2]; the limits may be rounded to float.
     double elevations_rad[2];
 } RidgelightKeyLight;
 
@@ -441,7 +441,8 @@ typedef struct RidgelightCamera {
     uint32_t size[2];
     // Azimuth of the eye from the target, in the plane, radians counter-clockwise from east.
     double azimuth_rad;
-    // Elevation of the eye from the target above horizontal, radians, [-pi/2..pi/2].
+    // Elevation of the eye from the target above horizontal, radians, [-pi/2..pi/2]; the limits may be rounded to
+    // float.
     double elevation_rad;
     // The target in the middle of the picture: x east of the westernmost column, y north of the southernmost
     // row, z as heights.

@@ -245,6 +245,7 @@ pub fn across_sun(sun: &Sun, count: u32, cell_m: [f64; 2]) -> Vec<Azimuth> {
             ..with_wedge(swept(dcol, drow, cell_m), phi, wedge)
         }
     };
+    let sun = &sun.clamped();
     let radius = sun.diameter_rad / 2.0;
     let (azimuth, elevation) = (sun.azimuth_rad, sun.elevation_rad);
     if sun.is_point() {

@@ -37,6 +37,7 @@ pub(crate) struct Unoccluded {
 impl Unoccluded {
     /// Of a sun: the cosine to it.
     pub(crate) fn of_sun(sun: &Sun) -> Self {
+        let sun = sun.clamped();
         let across = sun.elevation_rad.cos();
         let [x, y] = [sun.azimuth_rad.cos(), sun.azimuth_rad.sin()].map(|v| (across * v) as f32);
         let most = sun.irradiance.map(|e| e / std::f32::consts::PI);

@@ -242,8 +242,8 @@ impl Drawing<'_> {
                 );
             }
             self.resolve(&name, sum, Some(colour), self.images.aimed_layers[i]);
-            if let (Some((_, sun)), Some(batch)) = (self.active.suns.get(i), batches.last()) {
-                self.sun_specular(&name, sun, batch, sum);
+            if let (Some(&(_, sun)), Some(batch)) = (self.active.suns.get(i), batches.last()) {
+                self.sun_specular(&name, &sun, batch, sum);
             }
         }
     }

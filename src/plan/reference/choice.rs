@@ -115,11 +115,12 @@ pub fn max_path_light(scene: &Scene, bounces: u32) -> [f64; 3] {
 
 /// Irradiance facing a sun, spread over its whole cone: see [`crate::plan::reference_inputs`].
 fn sun_facing(sun: &Sun, channel: usize) -> f64 {
-    2.0 / (1.0 + (0.5 * sun.diameter_rad).cos()) * f64::from(sun.irradiance[channel])
+    2.0 / (1.0 + (0.5 * sun.clamped().diameter_rad).cos()) * f64::from(sun.irradiance[channel])
 }
 
 /// Radiance of a key light times its solid angle.
 fn key_facing(key: &KeyLight, border: Border, channel: usize) -> f64 {
+    let key = &key.clamped();
     let [top, bottom] = visible_part(key, border);
     key.width_rad * 2.0 * (bottom - top) * f64::from(key.radiance[channel])
 }

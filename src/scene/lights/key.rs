@@ -1,6 +1,6 @@
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-use crate::scene::lights::{ANGLE, RADIANCES, is_angle, is_valid_radiance};
+use crate::scene::lights::{ANGLE, RADIANCES, is_angle, is_valid_radiance, within};
 use crate::{Error, Result};
 
 /// A patch of uniform radiance at infinity between two azimuths and two elevations: a window, or a bright part of the
@@ -11,9 +11,9 @@ use crate::{Error, Result};
 pub struct KeyLight {
     /// Direction of its centre in the plane, radians counter-clockwise from east.
     pub azimuth_rad: f64,
-    /// Extent in azimuth, radians, above 0 up to 2π.
+    /// Extent in azimuth, radians, above 0 up to 2π; f32's 2π [counts as 2π](KeyLight::clamped).
     pub width_rad: f64,
-    /// Its lowest and its highest elevation, radians, [-π/2..π/2].
+    /// Its lowest and its highest elevation, radians, [-π/2..π/2]; f32's ±π/2 count as ±π/2.
     pub elevations_rad: [f64; 2],
     /// Radiance, linear RGB.
     pub radiance: [f32; 3],
@@ -23,6 +23,16 @@ pub struct KeyLight {
 const LOWEST_RAD: f64 = 1e-5;
 
 impl KeyLight {
+    /// This light with the exact limit for each angle that exceeds its limit by no more than the rounding to f32: such an
+    /// angle is in range and counts as the limit.
+    pub fn clamped(&self) -> Self {
+        Self {
+            width_rad: within(self.width_rad, TAU),
+            elevations_rad: self.elevations_rad.map(|rad| within(rad, FRAC_PI_2)),
+            ..*self
+        }
+    }
+
     /// Checks every range; `number` counts from 1.
     pub(in crate::scene) fn check(&self, number: usize) -> Result<()> {
         let bad = |what: &str, found: String, expected: &str| {
@@ -30,7 +40,7 @@ impl KeyLight {
         };
         // Without the rounding of degrees to radians and back.
         let degrees = |rad: f64| format!("{}°", (rad.to_degrees() * 1e9).round() / 1e9);
-        let Self { azimuth_rad, width_rad, elevations_rad: [low, high], radiance } = *self;
+        let Self { azimuth_rad, width_rad, elevations_rad: [low, high], radiance } = self.clamped();
         if !is_angle(azimuth_rad) {
             return bad("azimuth", azimuth_rad.to_string(), ANGLE);
         }
@@ -54,15 +64,36 @@ impl KeyLight {
     /// Irradiance of unoccluded level ground at radiance 1: ∫∫ sin ω cos ω dω dφ = width (sin²high - sin²low) / 2, of the
     /// part above horizontal.
     pub fn level_irradiance(&self) -> f64 {
-        let [low, high] = self.elevations_rad.map(|e| e.max(0.0).sin().powi(2));
-        self.width_rad * (high - low) / 2.0
+        let Self { width_rad, elevations_rad, .. } = self.clamped();
+        let [low, high] = elevations_rad.map(|e| e.max(0.0).sin().powi(2));
+        width_rad * (high - low) / 2.0
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use std::f32;
+
     use super::*;
     use crate::scene::Lights;
+
+    /// Up to f32's π/2 and 2π.
+    #[test]
+    fn limits_of_a_key_light_may_be_rounded_to_f32() {
+        let [right, turn] = [f32::consts::FRAC_PI_2, f32::consts::TAU].map(f64::from);
+        let of = |right: f64, width_rad: f64| KeyLight {
+            azimuth_rad: 0.3,
+            width_rad,
+            elevations_rad: [-right, right],
+            radiance: [1.0; 3],
+        };
+        let (rounded, exact) = (of(right, turn), of(FRAC_PI_2, TAU));
+        assert_ne!(rounded, exact);
+        rounded.check(1).expect("in range");
+        assert_eq!(rounded.clamped(), exact);
+        assert_eq!(rounded.level_irradiance(), exact.level_irradiance());
+        assert_eq!(exact.clamped(), exact);
+    }
 
     #[test]
     fn an_error_names_the_key_light_that_is_out_of_range() {
@@ -79,8 +110,10 @@ mod tests {
             (KeyLight { width_rad: 6.3, ..good }, "width"),
             (between(0.5, 0.5), "elevations"),
             (between(0.5, 0.2), "elevations"),
+            (KeyLight { width_rad: f64::from(f32::consts::TAU.next_up()), ..good }, "width"),
             (between(-1.6, 0.2), "elevations"),
             (between(0.2, 1.6), "elevations"),
+            (between(0.2, f64::from(f32::consts::FRAC_PI_2.next_up())), "elevations"),
             (between(f64::NAN, 0.2), "elevations"),
             (between(0.2, f64::NAN), "elevations"),
             (KeyLight { radiance: [1.0, -1.0, 0.0], ..good }, "radiance"),

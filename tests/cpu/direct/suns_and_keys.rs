@@ -4,7 +4,7 @@ use glam::DVec3;
 use ridgelight::scene::{Border, KeyLight};
 use ridgelight_cpu::light::{key_of, sky_of, sun_of};
 use ridgelight_cpu::oracle::Oracle;
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use super::{plane, sun_at};
 use crate::{BORDERS, field};
@@ -38,6 +38,31 @@ fn a_free_sun_lights_by_the_cosine_of_its_centre() {
             assert!((r - e * n.dot(s)).abs() < 1e-9, "{disc:?} {r} {}", e * n.dot(s));
             assert_eq!(g, 0.0);
         }
+    }
+}
+
+/// f32's π/2, `asin(1.0)`, is above π/2. It gives the bits of π/2, beside a wall too.
+#[test]
+fn f32_right_angles_light_like_exact_ones() {
+    let exact = [FRAC_PI_2, TAU];
+    let rounded = [std::f32::consts::FRAC_PI_2, std::f32::consts::TAU].map(f64::from);
+    assert!(rounded[0] > exact[0] && rounded[1] > exact[1]);
+    let wall = field(9, 8, [1.0, 1.0], |r, c| if c == 5 { 5.0 } else { 0.3 * (r % 3) as f64 });
+    for border in BORDERS {
+        let oracle = Oracle::one_ray(&wall, border);
+        let of = |[right, turn]: [f64; 2]| {
+            let suns = [0.0, 0.01, right].map(|diameter| sun_at(0.3, right, diameter));
+            let key = |width_rad, low| KeyLight {
+                azimuth_rad: 0.3,
+                width_rad,
+                elevations_rad: [low, right],
+                radiance: [1.0; 3],
+            };
+            let suns = suns.map(|sun| sun_of(&oracle, 4, 4, &sun, 32));
+            let keys = [key(turn, -right), key(1.0, 1.54)].map(|k| key_of(&oracle, 4, 4, &k, 32));
+            suns.into_iter().chain(keys).flatten().map(f64::to_bits).collect::<Vec<_>>()
+        };
+        assert_eq!(of(rounded), of(exact), "{border:?}");
     }
 }
 

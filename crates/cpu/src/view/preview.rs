@@ -20,6 +20,7 @@ pub struct Unoccluded {
 impl Unoccluded {
     /// A sun's light of a white texel: its irradiance times the cosine, over π.
     pub fn of_sun(sun: &Sun) -> Self {
+        let sun = sun.clamped();
         let across = sun.elevation_rad.cos();
         let [x, y] = [sun.azimuth_rad.cos(), sun.azimuth_rad.sin()].map(|v| across * v);
         let vector = [x, y, sun.elevation_rad.sin()];

@@ -19,6 +19,7 @@ pub enum Shape {
 /// Each wedge is lit evenly between the two elevations. The irradiance of an unoccluded surface is exact for
 /// any number of wedges.
 pub fn across_key(key: &KeyLight, count: u32, cell_m: [f64; 2]) -> Vec<Azimuth> {
+    let key = key.clamped();
     let [low_slope, high_slope] = key.elevations_rad.map(slope);
     let width = key.width_rad / f64::from(count);
     let first = key.azimuth_rad - key.width_rad / 2.0;

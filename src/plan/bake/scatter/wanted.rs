@@ -37,7 +37,9 @@ impl<'a> Wanted<'a> {
         let mirrors_sky = specular.is_some()
             && (lights.sky.is_some_and(|c| lit(&c)) || lights.environment.is_some());
         let suns = match specular {
-            Some(_) => lights.suns.iter().filter(|sun| lit(&sun.irradiance)).copied().collect(),
+            Some(_) => {
+                lights.suns.iter().filter(|sun| lit(&sun.irradiance)).map(Sun::clamped).collect()
+            }
             None => Vec::new(),
         };
         let requested =
