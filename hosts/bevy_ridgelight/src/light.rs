@@ -190,8 +190,8 @@ impl Settings {
     fn plan(&self, limits: &Limits, sun: Vec3) -> ridgelight::Result<Plan> {
         let sun = scene::Sun {
             azimuth_rad: f64::from((-sun.z).atan2(sun.x)),
-            // In f32, asin(1) rounds to more than 90 degrees.
-            elevation_rad: f64::from(sun.y.clamp(-1.0, 1.0)).asin(),
+            // The length of a unit vector can exceed 1 by a rounding.
+            elevation_rad: f64::from(sun.y.min(1.0)).asin(),
             diameter_rad: f64::from(self.sun_diameter),
             irradiance: [1.0; 3],
         };
