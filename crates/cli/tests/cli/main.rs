@@ -21,6 +21,7 @@ mod camera;
 mod compare;
 mod files {
     pub mod gdal_inputs;
+    mod gdal_positions;
     pub mod geotiff;
     mod table;
 }

@@ -11,7 +11,7 @@ struct Row {
     heights: &'static str,
     nodata: &'static str,
     unit: &'static str,
-    /// What tests compare with GDAL's reading: functions `gdal_...` of gdal_inputs.rs.
+    /// What tests compare with GDAL's reading: functions `gdal_...` of gdal_inputs.rs and gdal_positions.rs.
     by_gdal: &'static str,
 }
 

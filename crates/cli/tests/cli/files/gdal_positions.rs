@@ -1,0 +1,300 @@
+//! Height files written by GDAL: they lie where GDAL finds them, alone and joined.
+
+use super::gdal_inputs::{absolute, grid, tool};
+use super::geotiff::{gdal_values, gdalinfo};
+use crate::Folder;
+use crate::needs_vulkan::done;
+use crate::succeeded;
+use ridgelight_io::{HeightOptions, read_field};
+use serde_json::json;
+use std::process::Command;
+
+/// Cuts a field into tiles, some of which overlap, and leaves out one corner.
+fn tiles_of(folder: &Folder, extra: &str) -> [&'static str; 4] {
+    let text = grid([60, 50], [500_000.0, 4_900_000.0], 30.0, 1);
+    folder.write("whole.asc", text.as_bytes());
+    let srs = "-q -ot Int16 -a_srs EPSG:32618";
+    tool(folder, &format!("gdal_translate {srs} {extra} whole.asc whole.tif"));
+    let windows = ["0 0 30 25", "28 0 32 25", "0 25 30 20", "30 25 20 20"];
+    let names = ["t0.tif", "t1.tif", "t2.tif", "t3.tif"];
+    for (window, name) in windows.iter().zip(names) {
+        tool(folder, &format!("gdal_translate -q -srcwin {window} whole.tif {name}"));
+    }
+    names
+}
+
+/// GDAL's mosaic of the same files, and of a box of it: same values, voids and positions.
+#[test]
+#[ignore = "needs GDAL: Debian's gdal-bin"]
+fn gdal_mosaics_and_boxes_have_the_same_values_and_positions() {
+    let boxes = [
+        None,
+        // On edges of cells; across a gap; one cell.
+        Some([500_300.0, 4_900_300.0, 501_200.0, 4_901_200.0]),
+        Some([500_900.0, 4_900_150.0, 501_800.0, 4_900_600.0]),
+        Some([501_170.0, 4_900_900.0, 501_200.0, 4_900_930.0]),
+    ];
+    for extra in ["", "-mo AREA_OR_POINT=Point"] {
+        let folder = Folder::new();
+        let names = tiles_of(&folder, extra);
+        tool(&folder, &format!("gdalbuildvrt -q -vrtnodata -9999 all.vrt {}", names.join(" ")));
+        for bbox in boxes {
+            let window = match bbox {
+                Some([west, south, east, north]) => {
+                    format!(" -projwin {west} {north} {east} {south}")
+                }
+                None => String::new(),
+            };
+            tool(&folder, &format!("gdal_translate -q{window} all.vrt expected.tif"));
+            let expected = gdal_values(&folder.path("expected.tif"));
+            let options = HeightOptions { bbox, ..Default::default() };
+            let paths = names.map(|name| folder.path(name));
+            let read = ridgelight_io::read_mosaic(&paths, &options).unwrap();
+            let heights = absolute(&read.field);
+            let voids = read.field.voids();
+            assert_eq!(heights.len(), expected.len(), "{bbox:?}");
+            for (i, (height, expected)) in heights.iter().zip(&expected).enumerate() {
+                let is_void = voids.is_some_and(|voids| voids[i]);
+                assert_eq!(is_void, *expected == -9999.0, "{bbox:?}: {i}");
+                assert!(is_void || height == expected, "{bbox:?}: {i}");
+            }
+            let at = read.georeference.unwrap();
+            let info = gdalinfo(&folder.path("expected.tif"));
+            assert_eq!(
+                info["geoTransform"],
+                json!([at.corner[0], 30.0, 0.0, at.corner[1], 0.0, -30.0])
+            );
+        }
+    }
+}
+
+/// Outputs of commands lie where GDAL's part of the mosaic lies.
+#[test]
+#[ignore = "needs GDAL: Debian's gdal-bin"]
+fn gdal_finds_outputs_of_a_mosaic_in_place() {
+    let folder = Folder::new();
+    let names = tiles_of(&folder, "").join(" ");
+    tool(&folder, "gdal_translate -q -projwin 500300 4901200 501200 4900300 whole.tif part.tif");
+    let part = gdalinfo(&folder.path("part.tif"));
+    let bbox = "--bbox 500300,4900300,501200,4901200 --azimuths 8";
+    done(&folder, &format!("render {names} {bbox} --sky 0.5 -o o.tif"));
+    done(&folder, &format!("render {names} {bbox} --sky 0.5 -o o.png"));
+    let horizon = succeeded(&folder, &format!("horizon {names} {bbox} -o h.tif"));
+    let said = "read without the ground outside --bbox, which casts no shadow into it";
+    assert!(horizon.notes.contains(said), "{}", horizon.notes);
+    done(&folder, &format!("bake {names} {bbox} --what sky-view --format tif -o baked"));
+    done(
+        &folder,
+        &format!("reference {names} --bbox 500300,4900300,501200,4901200 --spp 128 -o r.tif"),
+    );
+    for name in ["o.tif", "h.tif", "baked/sky_view.tif", "r.tif", "o.png"] {
+        let info = gdalinfo(&folder.path(name));
+        assert_eq!(info["geoTransform"], part["geoTransform"], "{name}");
+        assert_eq!(info["size"], part["size"], "{name}");
+    }
+    // Nothing of the field outside the box is left: the same picture as of GDAL's part.
+    done(&folder, "render part.tif --azimuths 8 --sky 0.5 -o p.tif");
+    assert_eq!(gdal_values(&folder.path("o.tif")), gdal_values(&folder.path("p.tif")));
+}
+
+/// Tiles of SRTM share the grid points of their edges.
+#[test]
+#[ignore = "needs GDAL: Debian's gdal-bin"]
+fn gdal_joins_srtm_tiles_as_we_do() {
+    let folder = Folder::new();
+    let names = ["N44W072.hgt", "N44W071.hgt", "N45W072.hgt"];
+    // Of 1201 x 1201 points, and the height of a point follows from its place on Earth.
+    for (name, [south, west]) in names.iter().zip([[0_u64, 0], [0, 1], [1, 0]]) {
+        let place = |i: u64| [south * 1200 + 1200 - i / 1201, west * 1200 + i % 1201];
+        let height = |[y, x]: [u64; 2]| ((7 * y + 3 * x) % 2000) as u16;
+        let bytes: Vec<u8> =
+            (0..1201 * 1201).flat_map(|i| height(place(i)).to_be_bytes()).collect();
+        folder.write(name, &bytes);
+    }
+    tool(&folder, &format!("gdalbuildvrt -q -vrtnodata -32768 all.vrt {}", names.join(" ")));
+    let expected = gdal_values(&folder.path("all.vrt"));
+    let paths = names.map(|name| folder.path(name));
+    let read = ridgelight_io::read_mosaic(&paths, &HeightOptions::default()).unwrap();
+    assert_eq!((read.field.rows(), read.field.cols()), (2401, 2401));
+    let voids = read.field.voids().unwrap();
+    let heights = absolute(&read.field);
+    for (i, expected) in expected.iter().enumerate() {
+        assert!(
+            voids[i] == (*expected == -32768.0) && (voids[i] || heights[i] == *expected),
+            "{i}"
+        );
+    }
+    let transform = gdalinfo(&folder.path("all.vrt"))["geoTransform"].clone();
+    let at = read.georeference.unwrap();
+    for (k, own) in [(0, at.corner[0]), (3, at.corner[1]), (1, at.cell[0])] {
+        assert!((transform[k].as_f64().unwrap() - own).abs() < 1e-9, "{transform}");
+    }
+    assert!(!read.notes.iter().any(|note| note.contains("differ")), "{:?}", read.notes);
+    assert!(read.notes.iter().any(|note| note.contains("24.9")), "{:?}", read.notes);
+}
+
+#[test]
+fn a_scene_file_lists_the_files_of_a_field_and_its_box() {
+    let folder = Folder::new();
+    for (name, west) in [("t0.asc", 0.0), ("t1.asc", 150.0)] {
+        folder.write(name, grid([5, 4], [5e5 + west, 4.9e6], 30.0, 0).as_bytes());
+    }
+    let scene = r#"{ "field": { "file": ["t0.asc", "t1.asc"], "bbox": [500030, 4900000, 500300, 4900060] } }"#;
+    folder.write("scene.json", scene.as_bytes());
+    let [own, of_scene] =
+        ["t0.asc t1.asc --bbox 500030,4900000,500300,4900060", "--scene scene.json"].map(|args| {
+            let run = folder.run_str(&format!("info {args} --json i.json"));
+            assert_eq!((run.status, run.err.as_str()), (Some(0), ""), "{args}");
+            std::fs::read_to_string(folder.path("i.json")).unwrap()
+        });
+    assert_eq!(own, of_scene);
+    let facts: serde_json::Value = serde_json::from_str(&own).unwrap();
+    assert_eq!((&facts["cols"], &facts["rows"]), (&json!(9), &json!(2)));
+    assert_eq!(facts["extent"], json!([500_030.0, 4_900_000.0, 500_300.0, 4_900_060.0]));
+    std::fs::remove_file(folder.path("i.json")).unwrap();
+    crate::refused(
+        &folder,
+        &[
+            ("plan t0.asc a.npy", 1, &["a.npy", "georeference"]),
+            ("plan a.npy --bbox 0,0,1,1", 1, &["a.npy", "georeference", "--bbox"]),
+            (
+                "plan t0.asc --bbox 0,0,1,1",
+                2,
+                &["--bbox", "extent is 500000,4900000,500150,4900120"],
+            ),
+            ("plan t0.asc --bbox 1,0,0,1", 2, &["--bbox", "each minimum below its maximum"]),
+            ("plan t0.asc --bbox 1,2,3", 2, &["--bbox: found 1,2,3, expected XMIN"]),
+            ("render t0.asc t1.asc -o t1.asc.png --json t1.asc", 2, &["--json"]),
+        ],
+    );
+}
+
+/// A grid in text has the corner of its first cell or its centre in its header, and one cell size or two.
+#[test]
+#[ignore = "needs GDAL: Debian's gdal-bin"]
+fn gdal_places_grids_in_text_where_we_do() {
+    let folder = Folder::new();
+    // Metres and degrees, exact in binary.
+    for ([west, south], cell) in [([500_000.0, 4_900_000.0], 30.0), ([7.5, -46.25], 0.03125)] {
+        let of_corner = grid([5, 4], [west, south], cell, 0);
+        let [x, y] = [west, south].map(|corner| corner + cell / 2.0);
+        let of_centre = of_corner
+            .replace(&format!("xllcorner {west}"), &format!("xllcenter {x}"))
+            .replace(&format!("yllcorner {south}"), &format!("yllcenter {y}"));
+        let sides = format!("dx {cell}\ndy {}", 2.0 * cell);
+        let of_two = of_centre.replace(&format!("cellsize {cell}"), &sides);
+        assert!(of_centre != of_corner && of_two != of_centre);
+        let north = south + 4.0 * cell;
+        // Four rows of twice the height; the southern corner is half a row below the centre.
+        let north_of_two = y - cell + 8.0 * cell;
+        for (text, north) in [(of_corner, north), (of_centre, north), (of_two, north_of_two)] {
+            folder.write("placed.asc", text.as_bytes());
+            let path = folder.path("placed.asc");
+            let read = read_field(&path, &HeightOptions::default()).unwrap();
+            let at = read.georeference.unwrap();
+            assert_eq!(at.corner, [west, north], "{text}");
+            let [width, height] = at.cell;
+            let own = json!([at.corner[0], width, 0.0, at.corner[1], 0.0, -height]);
+            assert_eq!(gdalinfo(&path)["geoTransform"], own, "{text}");
+            assert!(absolute(&read.field) == gdal_values(&path), "{text}");
+        }
+    }
+}
+
+/// The directions of grid north, by GDAL's coordinates of two points, and cells in feet.
+#[test]
+#[ignore = "needs GDAL: Debian's gdal-bin"]
+fn gdal_agrees_on_grid_north_and_on_feet() {
+    let folder = Folder::new();
+    // UTM in both hemispheres, two Lambert conics, the British grid, a polar stereographic.
+    let places = [
+        (32618, [700_000.0, 4_900_000.0], 1.0),
+        (32718, [300_000.0, 6_900_000.0], 1.0),
+        (2263, [1_200_000.0, 200_000.0], 1200.0 / 3937.0),
+        (2265, [1_500_000.0, 400_000.0], 0.3048),
+        (2154, [900_000.0, 6_500_000.0], 1.0),
+        (27700, [300_000.0, 200_000.0], 1.0),
+        (3413, [-600_000.0, -1_500_000.0], 1.0),
+    ];
+    for (code, [x, y], unit) in places {
+        folder.write("a.asc", grid([4, 4], [x - 60.0, y - 60.0], 30.0, 0).as_bytes());
+        tool(&folder, &format!("gdal_translate -q -a_srs EPSG:{code} a.asc a.tif"));
+        let run = folder.run_str("info a.tif --json i.json");
+        assert_eq!(run.status, Some(0), "{}", run.err);
+        let facts = std::fs::read_to_string(folder.path("i.json")).unwrap();
+        let facts: serde_json::Value = serde_json::from_str(&facts).unwrap();
+        let cell = facts["cell_m"][0].as_f64().unwrap();
+        assert!((cell / (30.0 * unit) - 1.0).abs() < 1e-9, "{code}: {cell}");
+        // The geographic system of the same datum, by name: no shift.
+        let ellipsoid = geographic(&folder, code);
+        let place = |y: f64| degrees_of(code, &ellipsoid, [x, y]);
+        let ([west, south], [east, north]) = (place(y - 500.0 / unit), place(y + 500.0 / unit));
+        // The radii of the ellipsoids of these systems differ by less than 2e-4, their ratio by 1e-5.
+        let phi = ((south + north) / 2.0).to_radians();
+        let squared = 1.0 - 0.006_694_38 * phi.sin().powi(2);
+        let radii = squared / (1.0 - 0.006_694_38);
+        let expected = ((east - west) * phi.cos() * radii).atan2(north - south).to_degrees();
+        let notes = facts["notes"].to_string();
+        let side = if expected > 0.0 { "east" } else { "west" };
+        let sign = if expected > 0.0 { '+' } else { '-' };
+        let note = format!(
+            "grid north, {0:.2} degrees {side} of true north at the centre: true azimuth = azimuth here {sign} {0:.2} degrees",
+            expected.abs()
+        );
+        assert!(notes.contains(&note), "{code}: {note} is not in {notes}");
+        assert_eq!(notes.contains("cells are in units of"), unit != 1.0, "{notes}");
+        assert_eq!(notes.contains("heights are read as metres"), unit != 1.0, "{notes}");
+    }
+}
+
+/// The distance on the ellipsoid between two points that are a cell of Web Mercator apart, by GDAL's coordinates of them.
+#[test]
+#[ignore = "needs GDAL: Debian's gdal-bin"]
+fn gdal_agrees_on_the_metres_of_web_mercator() {
+    let folder = Folder::new();
+    let (equator_m, flattening) = (6_378_137.0, 1.0 / 298.257_223_563);
+    let squared: f64 = flattening * (2.0 - flattening);
+    // North, south and on the equator, and where the projection enlarges by 2.9.
+    for [x, y] in [[1.5e6, 5_621_471.0], [-1.3e7, -4e6], [2e6, 0.0], [-5e5, 1.1e7]] {
+        folder.write("a.asc", grid([4, 4], [x - 60.0, y - 60.0], 30.0, 0).as_bytes());
+        tool(&folder, "gdal_translate -q -a_srs EPSG:3857 a.asc a.tif");
+        succeeded(&folder, "info a.tif --json i.json");
+        let facts = crate::needs_vulkan::json(&folder.path("i.json"));
+        let place = |x: f64, y: f64| degrees_of(3857, "EPSG:4326", [x, y]);
+        let ([west, _], [east, _]) = (place(x - 15.0, y), place(x + 15.0, y));
+        let ([_, south], [_, north]) = (place(x, y - 15.0), place(x, y + 15.0));
+        let phi = place(x, y)[1].to_radians();
+        // The radius of the parallel and of curvature of the meridian, in the middle: their change over a cell cancels.
+        let w = (1.0 - squared * phi.sin().powi(2)).sqrt();
+        let radii = [equator_m * phi.cos() / w, equator_m * (1.0 - squared) / w.powi(3)];
+        for (axis, degrees) in [east - west, north - south].into_iter().enumerate() {
+            let expected = radii[axis] * degrees.to_radians();
+            let found = facts["cell_m"][axis].as_f64().unwrap();
+            // The series for a degree is within 0.1 m of these radii, as heights/raster.rs tests. gdaltransform prints 15
+            // digits: of 180 degrees 1e-12 degrees, or 1e-7 m, for each of two points.
+            let bound = 0.1 * degrees + 2e-7;
+            assert!((found - expected).abs() < bound, "{x}, {y}: {found} for {expected}");
+            // The comparison can fail: metres on a sphere are beyond the bound, but for the equator's.
+            assert!((30.0 * phi.cos() - expected).abs() > 10.0 * bound || axis == 0 && y == 0.0);
+        }
+    }
+}
+
+/// Longitude and latitude by GDAL of a position in a system of the EPSG registry.
+fn degrees_of(code: u32, geographic: &str, [x, y]: [f64; 2]) -> [f64; 2] {
+    let command = format!("echo {x} {y} | gdaltransform -s_srs EPSG:{code} -t_srs '{geographic}'");
+    let output = Command::new("sh").args(["-c", &command]).output().unwrap();
+    let text = String::from_utf8(output.stdout).unwrap();
+    let numbers: Vec<f64> = text.split_whitespace().map(|n| n.parse().unwrap()).collect();
+    [numbers[0], numbers[1]]
+}
+
+/// Longitude and latitude on the ellipsoid of a projected system, as PROJ's text.
+fn geographic(folder: &Folder, code: u32) -> String {
+    let mut command = Command::new("gdalsrsinfo");
+    command.current_dir(folder.path("")).args(["-o", "proj4", &format!("EPSG:{code}")]);
+    let text = String::from_utf8(command.output().unwrap().stdout).unwrap();
+    let is_figure = |term: &&str| term.starts_with("+datum") || term.starts_with("+ellps");
+    let figure: Vec<&str> = text.split_whitespace().filter(is_figure).collect();
+    format!("+proj=longlat {} +no_defs", figure.join(" "))
+}
