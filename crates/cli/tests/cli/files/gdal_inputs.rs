@@ -279,6 +279,34 @@ fn gdal_unread_compressions_are_named() {
     assert_eq!(refused, 3);
 }
 
+/// The no-data value of a GeoTIFF or of a grid in text marks the grid points that have it in GDAL's reading.
+#[test]
+#[ignore = "needs GDAL: Debian's gdal-bin"]
+fn gdal_no_data_values_are_voids() {
+    let folder = Folder::new();
+    folder.write("a.asc", grid([37, 29], [500_000.0, 4_900_000.0], 30.0, 0).as_bytes());
+    for (name, options) in [
+        ("int.tif", "-ot Int16"),
+        ("float.tif", "-ot Float32"),
+        ("double.tif", "-ot Float64"),
+        ("text.asc", "-ot Int16 -of AAIGrid"),
+    ] {
+        tool(&folder, &format!("gdal_translate -q {options} -a_nodata 7 a.asc {name}"));
+        let path = folder.path(name);
+        assert_eq!(gdalinfo(&path)["bands"][0]["noDataValue"].as_f64(), Some(7.0), "{name}");
+        let expected = gdal_values(&path);
+        let field = read_field(&path, &HeightOptions::default()).unwrap().field;
+        let (heights, voids) = (absolute(&field), field.voids().expect("voids"));
+        assert_eq!(heights.len(), expected.len(), "{name}");
+        for (i, (height, expected)) in heights.iter().zip(&expected).enumerate() {
+            assert_eq!(voids[i], *expected == 7.0, "{name}: {i}");
+            assert!(voids[i] || height == expected, "{name}: {i}");
+        }
+        // The value occurs.
+        assert!(voids.contains(&true), "{name}");
+    }
+}
+
 /// Tiles that GDAL leaves out have the no-data value.
 #[test]
 #[ignore = "needs GDAL: Debian's gdal-bin"]

@@ -23,7 +23,7 @@ const ROWS: [Row; 7] = [
                   uncompressed, LZW, DEFLATE, Zstandard or PackBits, any predictor; BigTIFF",
         nodata: "GDAL's tag",
         unit: "vertical unit, or feet by vertical EPSG code",
-        by_gdal: "values, bands, position, feet, Web Mercator, grid north",
+        by_gdal: "values, bands, no data, position, feet, Web Mercator, grid north",
     },
     Row {
         file: "`.hgt`",
@@ -39,7 +39,7 @@ const ROWS: [Row; 7] = [
         heights: "text",
         nodata: "header",
         unit: "metres",
-        by_gdal: "values, position",
+        by_gdal: "values, no data, position",
     },
     Row {
         file: "`.npy`",
