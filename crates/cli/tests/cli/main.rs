@@ -24,6 +24,7 @@ mod files {
     mod gdal_positions;
     pub mod geotiff;
     mod table;
+    mod two_runs;
 }
 #[path = "../../../../tests/common/formats.rs"]
 mod formats;

@@ -68,6 +68,21 @@ fn gpu_lights_are_placed_dragged_coloured_and_deleted() {
     assert!(shown[0] == 255.0 && shown[1] < 255.0 && shown[2] < shown[1], "{shown:?}");
 }
 
+/// Of the same input, flags and script, in two folders.
+#[test]
+fn gpu_two_windows_save_the_same_bytes() {
+    let display = Display::new();
+    let saved = [0, 1].map(|_| {
+        let folder = Folder::new();
+        let script = "frames 2\npicture saved.png\nscene saved.json\n";
+        folder.view(&display, &format!("hills.asc {LIT} --size 64x48"), script);
+        ["saved.png", "saved.json"].map(|name| std::fs::read(folder.0.path().join(name)).unwrap())
+    });
+    for (k, name) in ["picture", "scene"].into_iter().enumerate() {
+        assert!(saved[0][k] == saved[1][k], "{name}");
+    }
+}
+
 /// A wrong setting is refused with the command line's message and leaves the picture; a right one
 /// gives `render`'s picture.
 #[test]

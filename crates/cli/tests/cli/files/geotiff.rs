@@ -101,43 +101,6 @@ fn gpu_a_picture_has_a_world_file() {
     assert!(!folder.path("p.pgw").exists());
 }
 
-#[test]
-fn gpu_two_runs_write_the_same_bytes() {
-    let folder = folder();
-    let bytes = |name: &str| std::fs::read(folder.path(name)).unwrap();
-    for name in ["o.tif", "o.exr", "o.png", "h.tif", "h.exr", "h.npy", "r.tif", "r.exr"] {
-        let command = match &name[..1] {
-            "o" => "render utm.tif --sky 0.5 --sun 200,30 --azimuths 8",
-            "h" => "horizon utm.tif --azimuths 8",
-            _ => "reference utm.tif --spp 128",
-        };
-        let runs = [0, 1].map(|_| {
-            done(&folder, &format!("{command} -o {name}"));
-            bytes(name)
-        });
-        assert!(runs[0] == runs[1], "{name}");
-    }
-    let bakes = [0, 1].map(|_| {
-        let kinds = "--what horizon,bent-normal,ellipse,scatter --directions 16 --azimuths 8";
-        let formats = "--format exr,npy,ktx2,tif --paths 8";
-        done(&folder, &format!("bake utm.tif -o baked {kinds} {formats} --method sweep"));
-        let files = std::fs::read_dir(folder.path("baked")).unwrap();
-        let mut files: Vec<_> = files
-            .map(|file| {
-                let path = file.unwrap().path();
-                (path.file_name().unwrap().to_owned(), std::fs::read(path).unwrap())
-            })
-            .collect();
-        files.sort();
-        files
-    });
-    // Four formats and a decoder of each kind, and the manifest.
-    assert_eq!(bakes[0].len(), 4 * 5 + 1);
-    for (first, second) in bakes[0].iter().zip(&bakes[1]) {
-        assert!(first == second, "{:?}", first.0);
-    }
-}
-
 pub fn gdalinfo(path: &Path) -> Value {
     let output = Command::new("gdalinfo").arg("-json").arg(path).output();
     let output = output.expect("gdalinfo: run tools/setup --tests");
