@@ -115,7 +115,11 @@ fn percent(share: f64) -> String {
     format!("{:.3} %", 100.0 * share)
 }
 
+/// The error of a light, or that the reference lights no place: [`Wanted::judge`] then has an infinite bound.
 fn sentence(light: &str, against: &str, (error, bound): (f64, f64)) -> String {
+    if bound == f64::INFINITY {
+        return format!("{light}: no lit place, by {against}");
+    }
     let [error, bound] = [error, bound].map(percent);
     format!("{light} error {error} against {against} (RMSE; bound {bound})")
 }
@@ -154,12 +158,27 @@ struct Wanted(Vec<[DVec3; 2]>);
 
 impl Wanted {
     /// RMSE of `found` and RMS of its tolerance, both over the root mean square, if every value is
-    /// within its tolerance.
+    /// within its tolerance. Both are infinite where the CPU reference is dark at every place.
     fn judge(&self, what: &str, found: &[DVec3], quality: &Quality) -> Result<(f64, f64)> {
         let [light, bounds] =
             [0, 1].map(|i| self.0.iter().flat_map(|both| both[i].to_array()).collect::<Vec<f64>>());
-        let scale = rms(light.iter().copied()).max(f64::MIN_POSITIVE);
         let found = found.iter().flat_map(|v| v.to_array());
+        if light.iter().all(|v| *v == 0.0) {
+            for (found, bound) in found.zip(&bounds) {
+                // NaN is above every bound.
+                if found.abs() <= *bound {
+                    continue;
+                }
+                let beyond = format!("above the bound of {bound:e}");
+                let dark = "where the CPU reference is dark";
+                return Err(refused(
+                    &format!("{what} has light {found:e} {dark}, {beyond}"),
+                    quality,
+                ));
+            }
+            return Ok((f64::INFINITY, f64::INFINITY));
+        }
+        let scale = rms(light.iter().copied()).max(f64::MIN_POSITIVE);
         let off: Vec<f64> = found.zip(light).map(|(a, b)| (a - b) / scale).collect();
         for (off, bound) in off.iter().zip(&bounds) {
             within(what, "the CPU reference", off.abs(), bound / scale, quality)?;
@@ -189,12 +208,17 @@ fn within(
         return Ok((error, bound));
     }
     let [error, bound] = [error, bound].map(|share| format!("{:.2} %", 100.0 * share));
+    Err(refused(
+        &format!(
+            "{what} has an error of {error} against {ground_truth}, above the bound of {bound}"
+        ),
+        quality,
+    ))
+}
+
+fn refused(found: &str, quality: &Quality) -> Error {
     let doing = format!("verifying before timing (fuse {})", quality.fuse);
-    let reason = format!(
-        "{what} has an error of {error} against {ground_truth}, above the bound of {bound}: times \
-            would be meaningless"
-    );
-    Err(Error::Device { doing, reason })
+    Error::Device { doing, reason: format!("{found}: times would be meaningless") }
 }
 
 /// Bounds of the relative RMSE of sky, environment, suns and key lights, and sphere lights.
@@ -342,6 +366,32 @@ pub mod tests {
     /// A fractal field of this size.
     pub fn scene(size: usize, lights: Lights) -> Scene {
         Scene { field: fractal(size, 1).unwrap(), surface: Surface::default(), lights }
+    }
+
+    /// Relative to a dark reference all figures would be infinite. Up to the tolerance light is taken, and the sentence has no
+    /// figure; more light and NaN are refused.
+    #[test]
+    fn a_dark_reference_has_no_lit_place() {
+        let dark = Wanted(vec![[DVec3::ZERO, DVec3::splat(1e-6)]; 5]);
+        let judged = |light: f64| {
+            let mut found = [DVec3::ZERO; 5];
+            found[3].y = light;
+            dark.judge("a sun at one place", &found, &Quality::default())
+        };
+        for light in [0.0, 1e-9, 1e-6] {
+            let said = sentence("sun", "the CPU reference", judged(light).unwrap());
+            assert_eq!(said, "sun: no lit place, by the CPU reference");
+        }
+        for light in [1.01e-6, -1.01e-6, f64::INFINITY, f64::NAN] {
+            let error = judged(light).unwrap_err().to_string();
+            assert!(error.contains("a sun at one place has light"), "{error}");
+            assert!(!error.contains('%'), "{error}");
+        }
+        // A lit place has figures.
+        let lit = Wanted(vec![[DVec3::ONE, DVec3::splat(1e-6)]; 5]);
+        let errors = lit.judge("a sun", &[DVec3::ONE; 5], &Quality::default()).unwrap();
+        let said = sentence("sun", "the CPU reference", errors);
+        assert_eq!(said, "sun error 0.000 % against the CPU reference (RMSE; bound 0.000 %)");
     }
 
     /// A slope that faces away from the sun: the oracle finds no light at any place. The error is then relative to half of the light

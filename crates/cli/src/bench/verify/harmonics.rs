@@ -18,7 +18,7 @@ use ridgelight_cpu::tolerance::{
     ARC_TANGENT, ShadeError, device_fused_slope, device_resolved, two_devices,
 };
 
-use super::{Device, Verifier, Wanted, albedo_of, bounds, colours, percent, rms, within};
+use super::{Device, Verifier, Wanted, albedo_of, bounds, colours, percent, rms, sentence, within};
 
 /// A place before it is lit.
 pub(super) struct Place {
@@ -74,8 +74,7 @@ pub(super) fn check(verifier: &Verifier, device: &mut Device) -> Result<String> 
     let own = layers.iter().find(|p| p.name == "direct.env").expect("an environment");
     let wanted = Wanted::of(scene, quality, places, nodes);
     let what = format!("light of order {} at one place", quality.sh_order);
-    let (series, series_bound) =
-        wanted.judge(&what, &colours(own, &ground_truth.places), quality)?;
+    let series = wanted.judge(&what, &colours(own, &ground_truth.places), quality)?;
 
     let [whole_means, own_means] = [&layers[0], own].map(|p| ground_truth.means(p));
     let rest = whole_means.iter().zip(&own_means).zip(&ground_truth.expected);
@@ -87,13 +86,9 @@ pub(super) fn check(verifier: &Verifier, device: &mut Device) -> Result<String> 
     let bound = (scales[0] * of_sky + aimed) / ground_truth.scale();
     within("other light", "the oracle", rest / ground_truth.scale(), bound, quality)?;
     Ok(format!(
-        "sky error through the horizons {} against the oracle (RMSE; bound {}), harmonics {} \
-            against f64 (bound {}); including truncation at order {}, the light's error is {} \
-            against the oracle",
-        percent(sky),
-        percent(sky_bound),
-        percent(series),
-        percent(series_bound),
+        "{}, {}; including truncation at order {}, the light's error is {} against the oracle",
+        sentence("sky through the horizons", "the oracle", (sky, sky_bound)),
+        sentence("harmonics", "f64", series),
         quality.sh_order,
         percent(ground_truth.error(&layers[0])),
     ))

@@ -92,19 +92,20 @@ pub(super) fn check(
     let places = &ground_truth.places;
     let (wanted, negative) = series(scene, quality, &levels, places);
     let what = format!("sphere light of order {} at one place", quality.sh_order);
-    let (error, bound) = wanted.judge(&what, &colours(&picture, places), quality)?;
+    let errors = wanted.judge(&what, &colours(&picture, places), quality)?;
     let means = ground_truth.means(&picture);
     let sphere_lights = ground_truth.expected.iter().map(|[.., sphere_lights]| *sphere_lights);
     let missed = rms(means.iter().zip(sphere_lights.clone()).map(|(a, b)| a - b));
-    let scale = rms(sphere_lights).max(f64::MIN_POSITIVE);
+    let scale = rms(sphere_lights);
+    let with_truncation = match scale > 0.0 {
+        true => format!("their light's error is {} against the oracle", percent(missed / scale)),
+        false => "no lit place, by the oracle".to_owned(),
+    };
     Ok(format!(
-        "sphere light harmonics {} against f64 (RMSE; bound {}), below 0 at {negative} of {} \
-            places; including truncation at order {}, their light's error is {} against the oracle",
-        percent(error),
-        percent(bound),
+        "{}, below 0 at {negative} of {} places; including truncation at order {}, {with_truncation}",
+        sentence("sphere light harmonics", "f64", errors),
         places.len(),
         quality.sh_order,
-        percent(missed / scale),
     ))
 }
 
