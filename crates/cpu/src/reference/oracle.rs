@@ -7,7 +7,6 @@
 //! candidate, and visiting all of them is exact. Nothing is shared with the sweep that this judges.
 
 use ridgelight::scene::{Border, HeightField};
-use std::f64::consts::FRAC_PI_2;
 
 /// Periods of the longer side of a periodic field after which a ray stops, where they are a thousand cells or more
 /// ([`cap_m`]).
@@ -96,11 +95,26 @@ impl<'a> Oracle<'a> {
     ///
     /// `None` when the ray leaves the field at once, or has no direction (0, infinite, NaN).
     pub fn horizon_along(&self, row: usize, col: usize, direction: [f64; 2]) -> Option<Horizon> {
-        let [cols_per_t, rows_per_t] = direction;
+        let mut best = Best::NONE;
+        self.walk([row, col], direction, |slope, at| {
+            best.offer(slope, at);
+            best.runner_up
+        });
+        best.horizon()
+    }
+
+    /// Offers every vertex of the profile along (columns, rows) of any length: its slope, and its distance, row and
+    /// column. `offer` returns the slope below which no further vertex matters.
+    fn walk(
+        &self,
+        [row, col]: [usize; 2],
+        [cols_per_t, rows_per_t]: [f64; 2],
+        mut offer: impl FnMut(f64, [f64; 3]) -> f64,
+    ) {
         let [cell_x, cell_y] = self.field.cell_m();
         let metres_per_t = (cols_per_t * cell_x).hypot(rows_per_t * cell_y);
         if !(metres_per_t > 0.0 && metres_per_t.is_finite()) {
-            return None;
+            return;
         }
         assert!(
             row < self.field.rows() && col < self.field.cols(),
@@ -111,7 +125,8 @@ impl<'a> Oracle<'a> {
         let (row, col) = (row as f64, col as f64);
         let own_m = self.vertex(row, col);
         let cap_m = cap_m(self.field);
-        let mut best = Best::NONE;
+        let (last_r, last_c) = self.last();
+        let mut least = f64::NEG_INFINITY;
         // Columns, rows, diagonals: crossing j of a family lies at t = j / |its lines per t|.
         // Multiplying before dividing keeps crossings of integer directions on their vertices.
         for (family, lines_per_t) in
@@ -122,8 +137,9 @@ impl<'a> Oracle<'a> {
             }
             let per_t = lines_per_t.abs();
             let metres_per_line = metres_per_t / per_t;
-            for j in 1_u64.. {
-                let j = j as f64;
+            let mut j = 0.0;
+            loop {
+                j += 1.0;
                 let signed = j * lines_per_t.signum();
                 // A diagonal is the line row = column + k, k whole: its rows follow from its columns.
                 let k = row - col + signed;
@@ -140,10 +156,9 @@ impl<'a> Oracle<'a> {
                 } else if !self.inside(r, c) {
                     break;
                 }
-                if (self.highest_m - own_m) / distance_m < best.runner_up {
+                if (self.highest_m - own_m) / distance_m < least {
                     break;
                 }
-                let (last_r, last_c) = self.last();
                 let h = match family {
                     0 => self.between(r, 0.0, last_r, |r| self.vertex(r, c)),
                     1 => self.between(c, 0.0, last_c, |c| self.vertex(r, c)),
@@ -151,10 +166,9 @@ impl<'a> Oracle<'a> {
                         self.vertex(c + k, c)
                     }),
                 };
-                best.offer((h - own_m) / distance_m, [distance_m, r, c]);
+                least = offer((h - own_m) / distance_m, [distance_m, r, c]);
             }
         }
-        best.horizon()
     }
 
     /// The elevation above which the sky is visible along an azimuth, radians in [-π/2, π/2].
@@ -163,7 +177,15 @@ impl<'a> Oracle<'a> {
     /// least 0, because the repetitions' slopes (h - own height) / D reach 0 in the limit D → ∞ whatever their
     /// heights.
     pub fn elevation_rad(&self, row: usize, col: usize, azimuth_rad: f64) -> f64 {
-        elevation_of(self.border, self.horizon(row, col, azimuth_rad))
+        // The inner loop of every quadrature, which needs neither the occluder's place nor its uniqueness.
+        let mut steepest = f64::NEG_INFINITY;
+        self.walk([row, col], grid_direction(self.field, azimuth_rad), |slope, _| {
+            if slope > steepest {
+                steepest = slope;
+            }
+            steepest
+        });
+        elevation_of_slope(self.border, steepest)
     }
 
     /// The last row and column as coordinates.
@@ -175,6 +197,7 @@ impl<'a> Oracle<'a> {
     ///
     /// A crossing is computed with two roundings of its coordinate; four units in the last place of the field's size
     /// keep a ray aimed exactly at a corner or along the edge inside.
+    #[inline]
     fn inside(&self, row: f64, col: f64) -> bool {
         let (last_r, last_c) = self.last();
         let hair = 4.0 * f64::EPSILON * (last_r + last_c);
@@ -182,6 +205,7 @@ impl<'a> Oracle<'a> {
     }
 
     /// Height at integer coordinates, repeated under `periodic`.
+    #[inline]
     pub(crate) fn vertex(&self, row: f64, col: f64) -> f64 {
         let (rows, cols) = (self.field.rows(), self.field.cols());
         let at = |x: f64, count: usize| match self.border {
@@ -193,9 +217,16 @@ impl<'a> Oracle<'a> {
 
     /// Linear interpolation at `x` between its neighbouring integers; exact at an integer. At the field's ends `x` is
     /// clamped to [first, last], against the tolerance of [`Self::inside`].
+    #[inline]
     fn between(&self, x: f64, first: f64, last: f64, height: impl Fn(f64) -> f64) -> f64 {
-        let x = if self.border == Border::Periodic { x } else { x.min(last).max(first) };
-        let whole = x.floor();
+        let (x, whole) = match self.border {
+            Border::Periodic => (x, x.floor()),
+            Border::Plane | Border::Open => {
+                let x = x.min(last).max(first);
+                // 0 or more. `floor` is a call on x86-64 without SSE4.1, a conversion is not.
+                (x, f64::from(x as u32))
+            }
+        };
         let share = x - whole;
         let here = height(whole);
         if share == 0.0 { here } else { here + share * (height(whole + 1.0) - here) }
@@ -258,9 +289,45 @@ pub fn grid_direction(field: &HeightField, azimuth_rad: f64) -> [f64; 2] {
 
 /// The elevation of an oracle's result under a border; see [`Oracle::elevation_rad`].
 pub fn elevation_of(border: Border, horizon: Option<Horizon>) -> f64 {
-    let met = horizon.map_or(-FRAC_PI_2, |h| h.slope.atan());
+    elevation_of_slope(border, horizon.map_or(f64::NEG_INFINITY, |h| h.slope))
+}
+
+/// The same of a slope, -∞ where nothing is hit: its arc tangent is -π/2.
+fn elevation_of_slope(border: Border, slope: f64) -> f64 {
+    let met = slope.atan();
     match border {
         Border::Open => met,
         Border::Plane | Border::Periodic => met.max(0.0),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::{FRAC_PI_2, TAU};
+
+    /// The slope alone is that of the occluder: both are the maximum over the same vertices, of which the walk leaves
+    /// out only those that cannot exceed it, but for the rounding of an interpolated height.
+    #[test]
+    fn elevations_are_those_of_the_occluders() {
+        let (rows, cols) = (7, 9);
+        let heights: Vec<f64> = (0..rows * cols).map(|i| ((i * i) % 13) as f64 * 0.7).collect();
+        let field = HeightField::new(rows, cols, &heights, [1.0, 1.5], None).unwrap();
+        for border in [Border::Plane, Border::Open, Border::Periodic] {
+            let oracle = Oracle::new(&field, border);
+            for (place, k) in (0..rows * cols).flat_map(|p| (0..40).map(move |k| (p, k))) {
+                // Every tenth is along a row or a column.
+                let azimuth = TAU * f64::from(k) / 40.0;
+                let (row, col) = (place / cols, place % cols);
+                let wanted = elevation_of(border, oracle.horizon(row, col, azimuth));
+                let found = oracle.elevation_rad(row, col, azimuth);
+                assert!(
+                    (found - wanted).abs() <= 1e-15,
+                    "{border:?} {place} {k}: {found} {wanted}"
+                );
+            }
+        }
+        let nothing = elevation_of(Border::Open, None);
+        assert_eq!([nothing, elevation_of(Border::Plane, None)], [-FRAC_PI_2, 0.0]);
     }
 }
