@@ -9,6 +9,7 @@
 use crate::Rgb;
 use crate::mirror_map::mirrored;
 use crate::oracle::Oracle;
+use crate::phong_integral::PhongIntegral;
 use glam::DVec3;
 pub use ridgelight::basis::light::slice;
 pub use ridgelight::scene::normal;
@@ -86,11 +87,7 @@ impl Slice {
         if elevation_rad <= self.low {
             return 0.0;
         }
-        self.towards(elevation_rad.cos(), elevation_rad.sin())
-    }
-
-    /// The same of a direction by the cosine and the sine of its elevation, above `low`.
-    pub(crate) fn towards(&self, cos: f64, sin: f64) -> f64 {
+        let (sin, cos) = elevation_rad.sin_cos();
         let cosine = (self.a * cos + self.b * sin).max(0.0);
         match self.exponent {
             // 0 to the power of 0 would be light from behind.
@@ -101,7 +98,7 @@ impl Slice {
 
     /// Elevations at which the lobe is not negligible. Beyond the cosine c lies cⁿ⁺¹ of it. a cos ω + b sin ω is
     /// √(a² + b²) cos(ω - ω_0).
-    pub(crate) fn phong_range(&self, exponent: f64) -> [f64; 2] {
+    fn phong_range(&self, exponent: f64) -> [f64; 2] {
         let least = LOBE.powf(1.0 / (exponent + 1.0));
         let across = (least / self.a.hypot(self.b)).min(1.0).acos();
         let middle = self.b.atan2(self.a);
@@ -128,7 +125,7 @@ impl Slice {
 }
 
 /// Share of a lobe that is left out, about its rim.
-const LOBE: f64 = 1e-10;
+pub(crate) const LOBE: f64 = 1e-10;
 
 /// Panels of a lobe: half as wide as it, 1/√(n + 1). Below the exponent 1 the rim is steep, and 24 keep the error of a sky at 1e-4.
 fn panels_a_rad(exponent: f64) -> f64 {
@@ -136,10 +133,9 @@ fn panels_a_rad(exponent: f64) -> f64 {
     if exponent > 0.0 && exponent < 1.0 { wanted.max(24.0) } else { wanted }
 }
 
-/// The largest angle to the middle of a lobe at which it is not negligible, and the points of Gauss' rule across twice that.
-pub(crate) fn phong_width(exponent: f64) -> (f64, usize) {
-    let half_rad = LOBE.powf(1.0 / (exponent + 1.0)).acos();
-    (half_rad, 4 * (2.0 * half_rad * panels_a_rad(exponent)).ceil() as usize)
+/// The largest angle to the middle of a lobe at which it is not negligible.
+pub(crate) fn phong_half_rad(exponent: f64) -> f64 {
+    LOBE.powf(1.0 / (exponent + 1.0)).acos()
 }
 
 /// Nodes and weights of Gauss' rule of 4 points on [-1, 1]: x² = 3/7 ± (2/7)√(6/5), w = (18 ± √30)/36.
@@ -206,21 +202,41 @@ impl<'a> Site<'a> {
     /// π times each receiver's light of radiance 1, of azimuths with their weights and the light's elevations there:
     /// these are clipped at the horizon exactly.
     fn sums(&self, strips: impl Iterator<Item = (f64, f64, [f64; 2])>) -> Vec<f64> {
+        self.sums_by(strips, |_, slice, [low, high]| slice.light(low, high))
+    }
+
+    /// The same by another integral over elevations, of the receiver's index, its slice and the elevations.
+    fn sums_by(
+        &self,
+        strips: impl Iterator<Item = (f64, f64, [f64; 2])>,
+        light: impl Fn(usize, &Slice, [f64; 2]) -> f64,
+    ) -> Vec<f64> {
         let mut sums = vec![0.0; self.receivers.len()];
-        for (azimuth, weight, [low, high]) in strips {
+        for (azimuth, weight, elevations) in strips {
             let horizon = self.oracle.elevation_rad(self.place[0], self.place[1], azimuth);
-            for (receiver, sum) in self.receivers.iter().zip(&mut sums) {
-                *sum += weight * receiver.slice(azimuth).above(horizon).light(low, high);
+            for (i, (receiver, sum)) in self.receivers.iter().zip(&mut sums).enumerate() {
+                *sum += weight * light(i, &receiver.slice(azimuth).above(horizon), elevations);
             }
         }
         sums
+    }
+
+    /// Tables of the receivers' lobes, `None` for diffuse ones.
+    pub(crate) fn phong_integrals(&self) -> Vec<Option<PhongIntegral>> {
+        let of = |receiver: &Receiver| receiver.phong_lobe.map(|(_, n)| PhongIntegral::of(n));
+        self.receivers.iter().map(of).collect()
     }
 
     /// Light of a uniform sky of radiance 1: see [`sky_of`].
     pub fn sky(&self, azimuths: usize) -> Vec<f64> {
         let m = azimuths.max(1);
         let all = (0..m).map(|k| (TAU * k as f64 / m as f64, 1.0, [-FRAC_PI_2, FRAC_PI_2]));
-        self.sums(all).iter().map(|sum| 2.0 / m as f64 * sum).collect()
+        let integrals = self.phong_integrals();
+        let sums = self.sums_by(all, |i, slice, elevations| match &integrals[i] {
+            Some(integral) => integral.light(slice, elevations),
+            None => slice.light(elevations[0], elevations[1]),
+        });
+        sums.iter().map(|sum| 2.0 / m as f64 * sum).collect()
     }
 
     /// Light of a key light of radiance 1: `strips` azimuths in the middles of equal parts of the light.

@@ -11,6 +11,8 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 /// Azimuths of a sky, strips across a sun or a sphere light; the same across a key light, or the sky's density.
 const AZIMUTHS: usize = 720;
 const STRIPS: usize = 128;
+/// Time of a lobe's own terms in an azimuth, powers and arc tangents, in reads from its table.
+const SLICE_POINTS: usize = 16;
 /// Azimuths distributed among an environment's columns by their light, besides the fixed number of each.
 const SHARED: f64 = 1024.0;
 
@@ -61,17 +63,17 @@ impl<'a> Lit<'a> {
         self.sky_rays() + self.environment_rays() + strips
     }
 
-    /// Directions of one grid point in which a lobe is evaluated, about.
+    /// Reads from the table of a Phong lobe at one grid point, about.
     pub fn specular_points(&self) -> usize {
         let largest = self.scene.surface.specular.as_ref().map(Specular::largest);
         let Some(phong) = largest.filter(|phong| phong.scale > 0.0) else { return 0 };
-        let (half_rad, in_sky) = light::phong_width(phong.exponent.into());
         let in_column = self.columns.as_ref().map_or(0, |columns| {
+            let half_rad = light::phong_half_rad(phong.exponent.into());
             let across = 2.0 * half_rad / PI * columns.environment.height() as f64;
-            // Two of a texel, or those of a lobe.
-            columns.rows.min(across.ceil() as usize).saturating_mul(2).max(in_sky)
+            columns.rows.min(across.ceil() as usize)
         });
-        self.sky_rays() * in_sky + self.environment_rays() * in_column
+        let rays = self.sky_rays() + self.environment_rays();
+        rays * SLICE_POINTS + self.environment_rays() * in_column
     }
 
     fn sky_rays(&self) -> usize {
@@ -152,13 +154,9 @@ struct Columns<'a> {
     sums: Vec<[[f32; 3]; 2]>,
     /// Azimuths of each.
     parts: Vec<usize>,
-    /// Of each row of texels the two points of Gauss' rule: cosine and sine of the elevation, weight times cosine.
-    points: Vec<[[f64; 3]; 2]>,
+    /// Texels, column after column.
+    texels: Vec<[f32; 3]>,
 }
-
-/// A texel at most this fraction h of the lobe's width 1/√(n + 1) is integrated by Gauss' rule of two points. At the peak its relative
-/// error is 3 h⁴ / 4320.
-const NARROW: f64 = 0.125;
 
 impl<'a> Columns<'a> {
     fn of(environment: &'a Environment, rows: usize) -> Self {
@@ -172,11 +170,13 @@ impl<'a> Columns<'a> {
             .collect();
         let mut sums = Vec::with_capacity(width * (rows + 1));
         let mut given = Vec::with_capacity(width);
+        let mut texels = Vec::with_capacity(width * rows);
         for col in 0..width {
             let mut sum = [[0.0_f64; 3]; 2];
             sums.push([[0.0_f32; 3]; 2]);
             for (row, band) in bands.iter().enumerate() {
                 let texel = environment.texels()[row * width + col];
+                texels.push(texel);
                 for (sum, band) in sum.iter_mut().zip(band) {
                     sum.iter_mut().zip(texel).for_each(|(s, t)| *s += f64::from(t) * band);
                 }
@@ -188,13 +188,7 @@ impl<'a> Columns<'a> {
         // Two at least, so that half of them is fewer.
         let least = ENVIRONMENT_STRIPS.div_ceil(width).max(2);
         let parts = given.iter().map(|g| least.max((SHARED * g / all).round() as usize)).collect();
-        let half = 0.5 * PI / height as f64;
-        let point = |row: usize, x: f64| {
-            let (sin, cos) = (elevation(row) - half * (1.0 + x / 3.0_f64.sqrt())).sin_cos();
-            [cos, sin, half * cos]
-        };
-        let points = (0..rows).map(|row| [-1.0, 1.0].map(|x| point(row, x))).collect();
-        Self { environment, rows, sums, parts, points }
+        Self { environment, rows, sums, parts, texels }
     }
 
     /// Light of each receiver at a grid point, linear RGB: in each column's azimuths at the centres of equal parts of
@@ -202,37 +196,34 @@ impl<'a> Columns<'a> {
     fn light(&self, site: Site<'_>) -> Vec<Rgb> {
         let (width, height) = (self.environment.width(), self.environment.height());
         let [row, col] = site.place;
-        let texels = self.environment.texels();
+        let integrals = site.phong_integrals();
         let elevation = |row: usize| FRAC_PI_2 - PI * row as f64 / height as f64;
         let row_of = |elevation: f64| (FRAC_PI_2 - elevation) / PI * height as f64;
         let mut all = vec![[0.0; 3]; site.receivers.len()];
         for (column, &parts) in self.parts.iter().enumerate() {
+            let texels = &self.texels[column * self.rows..][..self.rows];
             let weight = 2.0 / (width * parts) as f64;
             for part in 0..parts {
                 let across = column as f64 + (part as f64 + 0.5) / parts as f64;
                 let azimuth = PI - TAU * across / width as f64 + self.environment.rotation_rad();
                 let horizon = site.oracle.elevation_rad(row, col, azimuth);
-                for (receiver, all) in site.receivers.iter().zip(&mut all) {
+                let receivers = site.receivers.iter().zip(&integrals);
+                for ((receiver, integral), all) in receivers.zip(&mut all) {
                     let lit = receiver.slice(azimuth).above(horizon);
                     let mut add = |light: f64, texel: [f32; 3]| {
                         (0..3).for_each(|c| all[c] += weight * light * f64::from(texel[c]));
                     };
-                    if let Some((_, exponent)) = receiver.phong_lobe {
-                        let [low, high] = lit.phong_range(exponent);
-                        let is_narrow = PI / height as f64 * (exponent + 1.0).sqrt() <= NARROW;
+                    if let Some(integral) = integral {
+                        let arc = integral.along(&lit);
+                        let [low, high] = arc.range();
                         let first = row_of(high).max(0.0) as usize;
                         let end =
                             (row_of(low.max(lit.low)).max(0.0).ceil() as usize).min(self.rows);
-                        for row in first..end {
-                            let [bottom, top] = [row + 1, row].map(elevation);
-                            let points = self.points[row].iter();
-                            let light = match is_narrow && bottom >= lit.low {
-                                true => {
-                                    points.map(|[cos, sin, w]| w * lit.towards(*cos, *sin)).sum()
-                                }
-                                false => lit.light(bottom, top),
-                            };
-                            add(light, texels[row * width + column]);
+                        let mut above = arc.up_to(elevation(first).max(lit.low));
+                        for (row, texel) in texels.iter().enumerate().take(end).skip(first) {
+                            let below = arc.up_to(elevation(row + 1).max(lit.low));
+                            add(above - below, *texel);
+                            above = below;
                         }
                         continue;
                     }
@@ -242,7 +233,7 @@ impl<'a> Columns<'a> {
                     add(lit.b, b);
                     if above < self.rows {
                         let cut = lit.light(lit.low, elevation(above));
-                        add(cut, texels[above * width + column]);
+                        add(cut, texels[above]);
                     }
                 }
             }
@@ -291,7 +282,7 @@ mod tests {
                     assert!((got - want).abs() < 1e-6 * (1.0 + want), "{got} {want}");
                 }
             }
-            // Lobes, too: by the same rule over each texel, or by two points of narrow ones.
+            // Lobes, too: from their table, against Gauss' rule over each texel.
             let scene = specular(scene, PhongSpecular { exponent: 20.0, scale: 0.5 });
             let [lit, dull] = [&scene, &specular(scene.clone(), DULL)].map(|s| Lit::of(s).at(4, 4));
             let oracle = Oracle::new(&scene.field, border);
@@ -300,8 +291,8 @@ mod tests {
             let all = Site::of(&oracle, [4, 4], &mirrored).environment(&environment, 64);
             for c in 0..3 {
                 let (got, want) = (lit[c] - dull[c], 0.5 * all[0][c]);
-                let most = if height == 128 { 3.0 * NARROW.powi(4) / 4320.0 } else { 1e-9 };
-                assert!((got - want).abs() < most * (1.0 + want), "{got} {want}");
+                // The table errs by 1e-8 of a slice, times the difference of a texel to the next.
+                assert!((got - want).abs() < 1e-7 * (1.0 + want), "{got} {want}");
             }
         }
     }
@@ -349,6 +340,22 @@ mod tests {
         let lit = Lit::of(&scene).viewed_from(Some([4.0 - away, 4.0, 2.0 + 1.0]));
         let (got, want) = (lit.at(4, 4)[0], 2.0 * (0.5 * 0.5 / PI + 0.25 * 10.0 / TAU));
         assert!((got - want).abs() < 1e-6, "{got} {want}");
+    }
+
+    /// 720 azimuths of a sky, 1024 of 16 columns of an environment, which has 64 rows above ground, all in the lobe: it
+    /// is 2 acos(10^(-10/21)), 141°, wide.
+    #[test]
+    fn specular_points_count_slices_and_rows() {
+        let environment = Environment::new(16, 128, vec![[1.0; 3]; 16 * 128], 0.0).unwrap();
+        let both = |phong: PhongSpecular| {
+            let mut scene = specular(scene(Border::Plane, environment.clone()), phong);
+            let of_environment = Lit::of(&scene).specular_points();
+            scene.lights = Lights { sky: Some([1.0; 3]), ..Lights::default() };
+            [Lit::of(&scene).specular_points(), of_environment]
+        };
+        let slices = [720, 1024].map(|rays| rays * SLICE_POINTS);
+        assert_eq!(both(PhongSpecular { scale: 0.5, ..DULL }), [slices[0], slices[1] + 1024 * 64]);
+        assert_eq!(both(DULL), [0, 0]);
     }
 
     /// Nearly all light comes of one column of 16: it has nearly all the azimuths that are shared out, and

@@ -6,5 +6,6 @@ pub mod light;
 pub mod lit;
 pub mod oracle;
 pub mod path_trace;
+pub(crate) mod phong_integral;
 pub mod profile;
 pub mod sphere;
