@@ -10,6 +10,7 @@ mod candidates;
 mod chooser;
 mod fitted;
 mod model;
+mod oracle_light;
 mod probes;
 mod statistics;
 #[cfg(test)]

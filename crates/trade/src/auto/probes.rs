@@ -1,3 +1,4 @@
+use super::oracle_light::OracleLight;
 use ridgelight::basis::random::{STEP, mixed, unit};
 use ridgelight::plan::max_path_light;
 use ridgelight::scene::{Border, Scene};
@@ -97,7 +98,17 @@ impl Probes {
     /// # Errors
     /// A field of voids only.
     pub fn of(lit: &Lit<'_>, wanted: usize, seed: u64, unsure: &[f64]) -> Result<Self> {
-        let field = &lit.scene().field;
+        Self::by(&mut OracleLight::of(lit), wanted, seed, unsure)
+    }
+
+    /// The same, with the light of texels that earlier probes of this oracle share.
+    pub(super) fn by(
+        oracle: &mut OracleLight<'_>,
+        wanted: usize,
+        seed: u64,
+        unsure: &[f64],
+    ) -> Result<Self> {
+        let field = &oracle.scene().field;
         let known: Vec<usize> = (0..field.rows() * field.cols())
             .filter(|i| field.voids().is_none_or(|v| !v[*i]))
             .collect();
@@ -108,10 +119,10 @@ impl Probes {
             known.iter().map(|i| unsure.get(*i).copied().unwrap_or(0.0)).collect();
         let (picks, factors) = picks(&weights, wanted, seed);
         let places: Vec<usize> = picks.into_iter().map(|k| known[k]).collect();
-        let light = lights(lit, field.cols(), &places);
+        let light = oracle.whole(&places);
         let stride = places.len().div_ceil(SELF_PROBES);
         let some: Vec<usize> = places.iter().copied().step_by(stride).collect();
-        let halves = lights(&lit.clone().halved(), field.cols(), &some);
+        let halves = oracle.half(&some);
         let squares = halves.iter().enumerate().map(|(i, half)| {
             let whole = light[i * stride];
             let square: f64 = half.iter().zip(whole).map(|(h, w)| (h - w).powi(2) / 3.0).sum();
@@ -301,20 +312,6 @@ fn noise_variance(square: f64, noise: f64) -> f64 {
 fn quantile(z: f64, skew: f64, count: f64) -> f64 {
     let a = skew.max(0.0) / (6.0 * count.sqrt());
     z + a * (1.0 + 2.0 * z * z) + 4.0 * a * a * (z + 2.0 * z.powi(3))
-}
-
-/// Radiance of texels, on all cores.
-fn lights(lit: &Lit<'_>, cols: usize, places: &[usize]) -> Vec<[f64; 3]> {
-    let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    std::thread::scope(|scope| {
-        let at = |i: &usize| lit.at(i / cols, i % cols);
-        let parts = places.chunks(places.len().div_ceil(threads).max(1));
-        let all: Vec<_> = parts
-            .map(|part| scope.spawn(move || part.iter().map(at).collect::<Vec<_>>()))
-            .collect();
-        let joined = all.into_iter().map(std::thread::ScopedJoinHandle::join);
-        joined.flat_map(|t| t.unwrap_or_else(|panic| std::panic::resume_unwind(panic))).collect()
-    })
 }
 
 /// Where errors are expected, from two pictures of a scene, the finer first: the largest difference within 2 texels; and beside specular in proportion to the light, as

@@ -3,6 +3,7 @@
 use super::candidates::defaults;
 use super::chooser::{Chooser, Trial};
 use super::model::{Expected, PARTS, Part};
+use super::oracle_light::OracleLight;
 use super::probes::{Probes, Traced, unsampled_bounce_error, unsure};
 use super::statistics::Statistics;
 use crate::trade::{Goal, start};
@@ -90,7 +91,7 @@ const CONFIRMATIONS: u64 = 4;
 
 /// Probes, and the pictures that may still be needed, in the order of rendering.
 struct Judge<'a> {
-    lit: &'a Lit<'a>,
+    oracle: OracleLight<'a>,
     bounced: Option<Bounced<'a>>,
     batches: u32,
     /// Where probes concentrate, how many at a time, and the next seed.
@@ -111,10 +112,11 @@ impl<'a> Judge<'a> {
         goal: Goal,
     ) -> Result<Self> {
         let scene = lit.scene();
-        let probes = Probes::of(lit, step, seed, &unsure)?;
+        let mut oracle = OracleLight::of(lit);
+        let probes = Probes::by(&mut oracle, step, seed, &unsure)?;
         let direct = probes.clone();
         let mut judge = Self {
-            lit,
+            oracle,
             bounced,
             batches: FIRST_BATCHES,
             unsure,
@@ -168,7 +170,8 @@ impl<'a> Judge<'a> {
     /// Probes of a new seed.
     fn fresh(&mut self, wanted: usize) -> Result<Probes> {
         self.seed = self.seed.wrapping_add(1 << 32);
-        self.traced(Probes::of(self.lit, wanted, self.seed, &self.unsure)?)
+        let probes = Probes::by(&mut self.oracle, wanted, self.seed, &self.unsure)?;
+        self.traced(probes)
     }
 
     /// Adds bounced light, where there is any, by new paths.
@@ -180,7 +183,7 @@ impl<'a> Judge<'a> {
         let traced = (bounced.trace)(probes.places(), self.batches, seed as u32)?;
         let of = (self.batches * REFERENCE_BATCH, probes.count());
         let unsampled = unsampled_bounce_error(
-            self.lit.scene(),
+            self.oracle.scene(),
             bounced.count,
             of,
             Probes::UNSAMPLED_PROBABILITY,
