@@ -68,7 +68,8 @@
 //! | colours of sky, suns, key lights and sphere lights; directions, positions, sizes | [`Renderer::replace_plan`] with a plan of the new scene: no pipeline, no memory, no wait, also while frames are in flight |
 //! | number and kind of lights, a sun across a diagonal of the grid, grey to coloured | a second renderer |
 //!
-//! The page `docs/embedding.md` lists every change of a light that `replace_plan` refuses.
+//! The page `docs/embedding.md` lists every change of a light that `replace_plan` refuses. [`Renderer::passes_after`] returns
+//! the passes that a change of some inputs needs.
 //!
 //! Directions decide which lines a sweep follows, and how many. The position of a sphere light decides which
 //! texels it reaches. Both change workgroups, memory and constants of a plan, so the host must know them.

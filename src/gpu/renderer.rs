@@ -210,6 +210,19 @@ impl Renderer {
         Ok((0..self.progress.len()).filter(is_pending).collect())
     }
 
+    /// The passes that must run next, for [`record_passes`](Self::record_passes), if only the inputs `changed` have other texels than
+    /// in the last recording. They are those that `changed` reaches ([`Plan::passes_after`]), and those that have not been
+    /// recorded since the renderer was made or [`replace_plan`](Self::replace_plan) changed them.
+    ///
+    /// Of many frames of new heights, only the first computes the tables of an environment: the renderer's images keep their
+    /// contents between recordings, and serve all slots.
+    pub fn passes_after(&self, changed: &[ResourceId]) -> Vec<usize> {
+        let mut runs: Vec<bool> = self.progress.iter().map(|p| *p != Progress::Current).collect();
+        self.plan.passes_after(&self.plan, changed).iter().for_each(|pass| runs[*pass] = true);
+        self.plan.add_followers(&mut runs);
+        (0..runs.len()).filter(|pass| runs[*pass]).collect()
+    }
+
     /// Bytes of device memory in use: [`Plan::internal_bytes`], the few that the host writes for each further
     /// slot, and what drivers and blocks of 4 MiB round up to.
     pub fn device_bytes(&self) -> u64 {
@@ -228,7 +241,8 @@ impl Renderer {
         table.or(self.resources.get(id.0)?.as_ref())
     }
 
-    /// Appends the plan to `commands`.
+    /// Appends all passes to `commands`, as all inputs may have new texels. [`passes_after`](Self::passes_after) returns the
+    /// passes that a change of some inputs needs.
     ///
     /// `slot` is the frame in flight (0..slots); its last command buffer must have run. `inputs` and `outputs`
     /// are the plan's, in its order. Inputs are [images](ImageArg), or [buffers](BufferArg) where
@@ -250,14 +264,14 @@ impl Renderer {
     }
 
     /// Appends only some passes, by position in the plan and in its order: to time them alone, or because no
-    /// others are needed ([`Plan::passes_after`]). An earlier recording of this renderer must have left what
+    /// others are needed ([`passes_after`](Self::passes_after)). An earlier recording of this renderer must have left what
     /// they read. Outputs that they do not write keep their contents where the caller's state before keeps
     /// them.
     ///
     /// All passes of a new renderer, or those that [`replace_plan`](Self::replace_plan) returned, may be recorded in parts,
     /// over several frames. Start with the first of them and skip none; until they are recorded, a list without passes is
     /// refused. Passes recorded alone at other times leave sums and images of the plan that are not those of a whole frame:
-    /// the next edit is refused, and the next `replace_plan` returns what must run.
+    /// the next edit is refused, and the next `replace_plan` and `passes_after` return what must run.
     ///
     /// # Errors
     /// As [`record`](Self::record). A pass that does not exist, is repeated or out of order, or follows a pass that must be

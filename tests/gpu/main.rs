@@ -93,6 +93,7 @@ mod specular {
     mod bounced;
     pub mod cpu_reference;
     mod direct;
+    mod kept_tables;
 }
 #[path = "../common/intercepted.rs"]
 mod intercepted;

@@ -1,10 +1,10 @@
-//! Passes and memory of bounced Phong specular.
+//! Passes and memory of bounced Phong specular; passes of its tables.
 
 use ridgelight::plan::{self, Limits, Picture, Plan, missing_barriers};
 use ridgelight::scene::fractal;
 use ridgelight::scene::{
-    Albedo, Basis, Border, BounceEngine, BounceSpecular, Bounces, Lights, PhongSpecular, Quality,
-    Scene, Specular, Surface,
+    Albedo, Basis, Border, BounceEngine, BounceSpecular, Bounces, Environment, Lights,
+    PhongSpecular, Quality, Scene, Specular, Surface,
 };
 
 const SIDE: usize = 128;
@@ -84,4 +84,39 @@ fn vectors_take_the_planned_memory() {
     assert!(here <= of_images + 0.1 && here > 0.98 * of_images, "{note}: {of_images}");
     let scalar = bytes(&planned(BounceSpecular::Scalar, 4), &["exit_upward", "shade_levels"]);
     assert!(scalar < vectors(&half) / 2, "{scalar}");
+}
+
+/// New heights leave the tables of lights and lobes as they are, and rewrite every output.
+#[test]
+fn new_heights_need_no_tables() {
+    let environment = Environment::new(16, 8, vec![[0.5, 0.4, 0.3]; 128], 0.3);
+    let environment = environment.expect("an environment");
+    let phong = PhongSpecular { exponent: 1000.0, scale: 0.5 };
+    let mut scene = crate::under_sky(fractal(SIDE, 1).expect("a field"));
+    scene.surface.specular = Some(Specular::Constant(phong));
+    let wanted = Picture { light_layers: true, sky_view: true, ..Picture::default() };
+    let cases: [(_, _, &[&str]); 4] = [
+        (Basis::Auto, true, &["env_tables", "env_wedges", "mirror_map", "specular_tables"]),
+        (Basis::Auto, false, &["mirror_map", "specular_tables"]),
+        (Basis::Sh, true, &["env_rotation", "light_matrix"]),
+        (Basis::Sh, false, &["light_matrix"]),
+    ];
+    for limits in [Limits::lavapipe(), Limits::boundless(false, 8 << 30)] {
+        for (basis, has_environment, tables) in cases {
+            scene.lights.environment = has_environment.then(|| environment.clone());
+            let quality = Quality { basis, ..Quality::default() };
+            let plan = plan::picture(&scene, &quality, &limits, wanted).expect("a plan");
+            let heights = plan.find("heights").expect("an input");
+            let needed = plan.passes_after(&plan, &[heights]);
+            let others = plan.passes.iter().enumerate().filter(|(i, _)| !needed.contains(i));
+            let others: Vec<_> = others.map(|(_, pass)| pass).collect();
+            let mut names: Vec<&str> = others.iter().map(|pass| pass.name()).collect();
+            names.sort_unstable();
+            names.dedup();
+            assert_eq!(names, tables, "{basis:?}");
+            let outputs: Vec<_> = plan.outputs().map(|(id, _)| id).collect();
+            let written = others.iter().flat_map(|pass| pass.writes());
+            assert_eq!(written.filter(|id| outputs.contains(id)).count(), 0, "{basis:?}");
+        }
+    }
 }

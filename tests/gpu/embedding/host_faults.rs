@@ -305,6 +305,8 @@ fn headless_calls_return_the_loss_of_the_device() {
     gpu.host.device = alive;
     let refused = gpu.draw_edit(&mut frame, edit).expect_err("nothing is drawn").to_string();
     assert!(refused.contains("passes must be recorded first"), "{refused}");
+    let all: Vec<usize> = (0..frame.plan().passes.len()).collect();
+    assert_eq!(frame.renderer().passes_after(&[]), all);
     gpu.refill(&frame, 0, &[0.0; 64]).expect("level ground");
     gpu.draw(&mut frame).expect("drawn");
     assert!(bits(gpu, &frame) != right);
