@@ -713,6 +713,26 @@ enum RidgelightResult ridgelight_replace_plan(struct RidgelightRenderer *rendere
                                               uint32_t *passes,
                                               uint32_t *count);
 
+// Returns in `passes` the indices of the passes that must run next, for ridgelight_record_passes, if only the inputs
+// `changed` have other contents than in the last recording. `changed` are indices in the order of the plan's inputs. The
+// passes include those that have not been recorded since the renderer was created or ridgelight_replace_plan changed them.
+//
+// Of many frames of new heights, only the first computes the tables of an environment. ridgelight_record computes them
+// each time.
+//
+// `count` is as in ridgelight_replace_plan.
+//
+// Returns OK, or ARGUMENT.
+//
+// # Safety
+// `renderer` is alive or null, and used only by this thread meanwhile. `changed` is null or points at `changed_count`
+// numbers. `count` is null or points at the capacity; `passes` is null or points at that many numbers.
+enum RidgelightResult ridgelight_passes_after(const struct RidgelightRenderer *renderer,
+                                              const uint32_t *changed,
+                                              uint32_t changed_count,
+                                              uint32_t *passes,
+                                              uint32_t *count);
+
 // Sets whether later recordings write a timestamp after every pass (`each` VK_TRUE, the default) or only one
 // after the last (VK_FALSE). A timestamp after every pass can keep a GPU from overlapping passes.
 //

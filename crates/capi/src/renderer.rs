@@ -255,13 +255,60 @@ pub unsafe extern "C" fn ridgelight_replace_plan(
         let plan = handle(plan, "plan")?.0.clone();
         let renderer = &mut handle_mut(renderer, "renderer")?.0;
         let room = room(passes, count, "passes")?;
-        let due = renderer.replace_plan(plan)?;
-        due.iter().take(room).enumerate().for_each(|(i, pass)| passes.add(i).write(*pass as u32));
-        if !count.is_null() {
-            count.write(due.len() as u32);
-        }
+        write_indices(&renderer.replace_plan(plan)?, (passes, room), count);
         Ok(())
     })
+}
+
+/// Returns in `passes` the indices of the passes that must run next, for ridgelight_record_passes, if only the inputs
+/// `changed` have other contents than in the last recording. `changed` are indices in the order of the plan's inputs. The
+/// passes include those that have not been recorded since the renderer was created or ridgelight_replace_plan changed them.
+///
+/// Of many frames of new heights, only the first computes the tables of an environment. ridgelight_record computes them
+/// each time.
+///
+/// `count` is as in ridgelight_replace_plan.
+///
+/// Returns OK, or ARGUMENT.
+///
+/// # Safety
+/// `renderer` is alive or null, and used only by this thread meanwhile. `changed` is null or points at `changed_count`
+/// numbers. `count` is null or points at the capacity; `passes` is null or points at that many numbers.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ridgelight_passes_after(
+    renderer: *const RidgelightRenderer,
+    changed: *const u32,
+    changed_count: u32,
+    passes: *mut u32,
+    count: *mut u32,
+) -> RidgelightResult {
+    // SAFETY: as the caller says.
+    done(|| unsafe {
+        let renderer = handle(renderer, "renderer")?.get();
+        let inputs: Vec<_> = renderer.plan().inputs().map(|(id, _)| id).collect();
+        let expected = format!("less than {}, the number of inputs", inputs.len());
+        let input = |index: usize| {
+            let id = inputs.get(index).copied();
+            id.ok_or_else(|| Failure::argument("changed", index, &expected))
+        };
+        let changed = indices(changed, changed_count, "changed")?;
+        let changed = changed.into_iter().map(input).collect::<Done<Vec<_>>>()?;
+        let room = room(passes, count, "passes")?;
+        write_indices(&renderer.passes_after(&changed), (passes, room), count);
+        Ok(())
+    })
+}
+
+/// # Safety
+/// `passes` has room for that many numbers; `count` is null or may be written to.
+unsafe fn write_indices(all: &[usize], (passes, room): (*mut u32, usize), count: *mut u32) {
+    // SAFETY: as the caller says.
+    unsafe {
+        all.iter().take(room).enumerate().for_each(|(i, pass)| passes.add(i).write(*pass as u32));
+        if !count.is_null() {
+            count.write(all.len() as u32);
+        }
+    }
 }
 
 /// GPU time of one pass.

@@ -158,6 +158,24 @@ fn c_slices_match_the_whole_frame() {
         assert_eq!(none, 0);
         ridgelight_plan_destroy(plan);
 
+        // New heights need all passes of a sky, no change needs none; the plan has one input.
+        let mut after = |changed: &[u32], capacity| {
+            let (at, number) = (changed.as_ptr(), changed.len() as u32);
+            let (passes, mut count) = (due_room.as_mut_ptr(), capacity);
+            good(ridgelight_passes_after(renderer, at, number, passes, &mut count));
+            due_room[..count.min(capacity) as usize].to_vec()
+        };
+        assert_eq!(after(&[0], passes), (0..passes).collect::<Vec<_>>());
+        assert_eq!(after(&[0], 1), [0]);
+        assert_eq!(after(&[], passes), [0_u32; 0]);
+        let (none, no_count) = (ptr::null_mut(), ptr::null_mut());
+        let beyond = ridgelight_passes_after(renderer, &1, 1, none, no_count);
+        refused(beyond, argument, "changed: found 1, expected less than 1");
+        let null = ridgelight_passes_after(renderer, ptr::null(), 1, none, no_count);
+        refused(null, argument, "changed: found a null pointer, expected 1 indices");
+        let no_renderer = ridgelight_passes_after(ptr::null(), ptr::null(), 0, none, no_count);
+        refused(no_renderer, argument, "renderer: found a null pointer");
+
         let mut times: Vec<RidgelightTiming> = (0..passes).map(|_| zeroed()).collect();
         let mut timed = |each, commands: &[u32]| {
             good(ridgelight_time_passes(renderer, each));
