@@ -28,7 +28,7 @@ pub struct Lights {
 pub struct Sun {
     /// Direction of the centre in the plane, radians counter-clockwise from east.
     pub azimuth_rad: f64,
-    /// Elevation of the centre above horizontal, radians, [0..π/2]; f32's π/2 [counts as π/2](Sun::clamped).
+    /// Elevation of the centre above horizontal, radians, [0..π/2]; f32's π/2 counts as π/2.
     pub elevation_rad: f64,
     /// Angular diameter, radians, [0..π/2] like the elevation; below 0.01° (1.75e-4) a point with hard shadows.
     pub diameter_rad: f64,
@@ -164,7 +164,7 @@ pub(super) fn within(rad: f64, limit: f64) -> f64 {
 
 impl Sun {
     /// This sun with π/2 for each angle above π/2 that is at most f32's π/2: such an angle is in range and counts as π/2.
-    pub fn clamped(&self) -> Self {
+    pub(crate) fn clamped(&self) -> Self {
         let [elevation_rad, diameter_rad] =
             [self.elevation_rad, self.diameter_rad].map(|rad| within(rad, FRAC_PI_2));
         Self { elevation_rad, diameter_rad, ..*self }
@@ -185,16 +185,6 @@ impl Lights {
             sphere: *sphere,
         };
         self.sphere_lights.iter().enumerate().map(sphere)
-    }
-
-    /// Only the lights near the field.
-    pub fn near_alone(&self) -> Self {
-        Self { sphere_lights: self.sphere_lights.clone(), ..Self::default() }
-    }
-
-    /// All but the lights near the field.
-    pub fn without_near(&self) -> Self {
-        Self { sphere_lights: Vec::new(), ..self.clone() }
     }
 
     /// The lights near the field moved by so much, east and north.

@@ -11,7 +11,7 @@ use crate::{Error, Result};
 pub struct KeyLight {
     /// Direction of its centre in the plane, radians counter-clockwise from east.
     pub azimuth_rad: f64,
-    /// Extent in azimuth, radians, above 0 up to 2π; f32's 2π [counts as 2π](KeyLight::clamped).
+    /// Extent in azimuth, radians, above 0 up to 2π; f32's 2π counts as 2π.
     pub width_rad: f64,
     /// Its lowest and its highest elevation, radians, [-π/2..π/2]; f32's ±π/2 count as ±π/2.
     pub elevations_rad: [f64; 2],
@@ -25,7 +25,7 @@ const LOWEST_RAD: f64 = 1e-5;
 impl KeyLight {
     /// This light with the exact limit for each angle that exceeds its limit by no more than the rounding to f32: such an
     /// angle is in range and counts as the limit.
-    pub fn clamped(&self) -> Self {
+    pub(crate) fn clamped(&self) -> Self {
         Self {
             width_rad: within(self.width_rad, TAU),
             elevations_rad: self.elevations_rad.map(|rad| within(rad, FRAC_PI_2)),

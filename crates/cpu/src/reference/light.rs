@@ -244,10 +244,12 @@ impl<'a> Site<'a> {
     /// Without occlusion, the rule over azimuths has an error of (width / strips)² / 24 of the contribution of the
     /// normal's horizontal part, and none for its vertical one.
     pub fn key(&self, key: &KeyLight, strips: usize) -> Vec<f64> {
-        let key = key.clamped();
-        let width = key.width_rad / strips as f64;
-        let azimuth = |i| key.azimuth_rad + width * (i as f64 + 0.5) - key.width_rad / 2.0;
-        let sums = self.sums((0..strips).map(|i| (azimuth(i), width, key.elevations_rad)));
+        // f32 rounds 2π and π/2 up.
+        let across = key.width_rad.min(TAU);
+        let elevations = key.elevations_rad.map(|rad| rad.clamp(-FRAC_PI_2, FRAC_PI_2));
+        let width = across / strips as f64;
+        let azimuth = |i| key.azimuth_rad + width * (i as f64 + 0.5) - across / 2.0;
+        let sums = self.sums((0..strips).map(|i| (azimuth(i), width, elevations)));
         sums.iter().map(|s| s / PI).collect()
     }
 
@@ -286,7 +288,10 @@ impl<'a> Site<'a> {
     /// sin²a). `strips` azimuths across the disc. Diameter 0: a point, dark where its elevation is not above the
     /// horizon.
     pub fn sun(&self, sun: &Sun, strips: usize) -> Vec<Rgb> {
-        let sun = &sun.clamped();
+        // f32 rounds π/2 up.
+        let [elevation_rad, diameter_rad] =
+            [sun.elevation_rad, sun.diameter_rad].map(|rad| rad.min(FRAC_PI_2));
+        let sun = &Sun { elevation_rad, diameter_rad, ..*sun };
         let radius = 0.5 * sun.diameter_rad;
         let shares = if radius > 0.0 {
             let mut disc = self.disc(sun, strips.max(1));

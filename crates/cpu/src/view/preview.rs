@@ -20,10 +20,11 @@ pub struct Unoccluded {
 impl Unoccluded {
     /// A sun's light of a white texel: its irradiance times the cosine, over π.
     pub fn of_sun(sun: &Sun) -> Self {
-        let sun = sun.clamped();
-        let across = sun.elevation_rad.cos();
+        // f32 rounds π/2 up.
+        let elevation_rad = sun.elevation_rad.min(std::f64::consts::FRAC_PI_2);
+        let across = elevation_rad.cos();
         let [x, y] = [sun.azimuth_rad.cos(), sun.azimuth_rad.sin()].map(|v| across * v);
-        let vector = [x, y, sun.elevation_rad.sin()];
+        let vector = [x, y, elevation_rad.sin()];
         let most = sun.irradiance.map(|e| f64::from(e) / std::f64::consts::PI);
         Self { vector, constant: 0.0, most, least: 1e-3, ceiling: 1.0 }
     }
