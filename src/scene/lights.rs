@@ -187,6 +187,16 @@ impl Lights {
         self.sphere_lights.iter().enumerate().map(sphere)
     }
 
+    /// Only the lights near the field.
+    pub fn near_alone(&self) -> Self {
+        Self { sphere_lights: self.sphere_lights.clone(), ..Self::default() }
+    }
+
+    /// All but the lights near the field.
+    pub fn without_near(&self) -> Self {
+        Self { sphere_lights: Vec::new(), ..self.clone() }
+    }
+
     /// The lights near the field moved by so much, east and north.
     pub fn moved(&self, [east_m, north_m]: [f64; 2]) -> Self {
         let mut moved = self.clone();

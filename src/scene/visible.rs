@@ -40,10 +40,10 @@ impl VisiblePoints {
     /// Largest side of a field with one byte per axis; 255 itself is a mark.
     const SMALL_SIDE: usize = 255;
     /// Largest side of any field: a larger row in 16 bits would equal a mark.
-    pub const LARGEST_SIDE: usize = 65_533;
+    pub(crate) const LARGEST_SIDE: usize = 65_533;
 
     /// Whether two directions share a word.
-    pub fn is_small(rows: usize, cols: usize) -> bool {
+    pub(crate) fn is_small(rows: usize, cols: usize) -> bool {
         rows.max(cols) <= Self::SMALL_SIDE
     }
 

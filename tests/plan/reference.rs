@@ -109,7 +109,7 @@ fn f32_right_angles_are_traced_like_exact_ones() {
             let mut scene = under_sky(flat(2, 2));
             scene.surface.border = border;
             scene.lights = Lights { suns: suns.to_vec(), keys: vec![key], ..Lights::default() };
-            plan::reference(&scene, 1, 0, &Limits::lavapipe()).expect("a plan");
+            plan::reference(&scene, 1, Normals::Smooth, 0, &Limits::lavapipe()).expect("a plan");
             (plan::reference_inputs(&scene), plan::unsampled_light_error(&scene, 1, 64))
         };
         assert_eq!(of(rounded), of([FRAC_PI_2, TAU]), "{border:?}");

@@ -19,6 +19,11 @@ use zip::write::{SimpleFileOptions, ZipWriter};
 
 const MEMBERS: [&str; 4] = ["visible_points", "directions", "lowest_direction_z", "field_hash"];
 
+/// Bytes of a row or a column: one holds those of 255 grid points and a mark.
+fn bytes_each(rows: usize, cols: usize) -> usize {
+    if rows.max(cols) <= 255 { 1 } else { 2 }
+}
+
 /// Writes visible points as `.npz`, stored without compression.
 ///
 /// # Errors
@@ -26,7 +31,7 @@ const MEMBERS: [&str; 4] = ["visible_points", "directions", "lowest_direction_z"
 pub fn write_visible_points(path: &Path, points: &VisiblePoints) -> Result<()> {
     let directions = points.directions();
     let [rows, cols] = points.size();
-    let is_small = VisiblePoints::is_small(rows, cols);
+    let bytes_each = bytes_each(rows, cols);
     let vectors: Vec<u8> =
         directions.vectors().iter().flat_map(|v| v.to_array()).flat_map(f64::to_le_bytes).collect();
     let mut file = Temporary::create(path)?;
@@ -42,7 +47,7 @@ pub fn write_visible_points(path: &Path, points: &VisiblePoints) -> Result<()> {
         archive.write_all(&npy::header(descr, shape)?).map_err(io)
     };
     let shape = [directions.count(), rows, cols, 2];
-    begin(&mut archive, 0, if is_small { "|u1" } else { "<u2" }, &shape)?;
+    begin(&mut archive, 0, if bytes_each == 1 { "|u1" } else { "<u2" }, &shape)?;
     let mut row_bytes = Vec::with_capacity(4 * cols);
     for direction in 0..directions.count() {
         for row in 0..rows {
@@ -55,7 +60,7 @@ pub fn write_visible_points(path: &Path, points: &VisiblePoints) -> Result<()> {
                 };
                 for number in pair {
                     let bytes = number.to_le_bytes();
-                    row_bytes.extend(&bytes[..if is_small { 1 } else { 2 }]);
+                    row_bytes.extend(&bytes[..bytes_each]);
                 }
             }
             archive.write_all(&row_bytes).map_err(io)?;
@@ -121,7 +126,7 @@ pub fn read_visible_points(
     let array = Array::parse(path, &inside, &kept)?;
     let (rows, cols) = (field.rows(), field.cols());
     expect_shape(path, &inside, &array, &[count, rows, cols, 2])?;
-    let bytes_each = if VisiblePoints::is_small(rows, cols) { 1 } else { 2 };
+    let bytes_each = bytes_each(rows, cols);
     if array.unsigned() != Some(bytes_each) {
         let expected = format!("unsigned integers of {bytes_each} bytes for {cols} × {rows}");
         return Err(Error::file(path, format!("{inside}descr"), "another type", expected));

@@ -126,7 +126,8 @@ pub fn visible_points(job: &Job, _: &Wanted) -> Result<Map> {
         about: "of the grid point nearest to the hit, from the north-west; -1 for the sky, -2 \
             for the ground beyond; layer k is directions[k] of this manifest",
         unit: "grid points",
-        range: [-2.0, VisiblePoints::LARGEST_SIDE as f64 - 1.0],
+        // 16 bits; two of their values are marks.
+        range: [-2.0, f64::from(u16::MAX) - 3.0],
     };
     let name = |k: usize| ["row", "column"].map(|part| format!("visible_points.{k:04}.{part}"));
     Ok(Map {

@@ -26,8 +26,7 @@ pub(super) fn check_slices(
     places: &[usize],
     device: &mut Device,
 ) -> Result<Option<String>> {
-    let lights =
-        Lights { sphere_lights: scene.lights.sphere_lights.clone(), ..Lights::default() }.lit();
+    let lights = scene.lights.near_alone().lit();
     if lights.near().next().is_none() {
         return Ok(None);
     }
@@ -75,7 +74,7 @@ pub(super) fn check(
     ground_truth: &GroundTruth,
     device: &mut Device,
 ) -> Result<String> {
-    let lights = Lights { sphere_lights: scene.lights.sphere_lights.clone(), ..Lights::default() };
+    let lights = scene.lights.near_alone();
     let (scene, quality) = (&Scene { lights, ..scene.clone() }, device.quality);
     // The plan bounds the light of culled sphere lights.
     let all = Quality { light_cutoff: 0.0, ..*quality };
@@ -155,7 +154,7 @@ fn slope_error(geometry: &SphereGeometry, quality: &Quality, largest: f64) -> f6
 
 /// A scene without its lights near the field; none without other lights.
 pub(super) fn without(scene: &Scene) -> Option<Scene> {
-    let lights = Lights { sphere_lights: Vec::new(), ..scene.lights.clone() };
+    let lights = scene.lights.without_near();
     let Lights { sky, environment, suns, keys, .. } = &lights;
     let shines = sky.is_some() || environment.is_some() || !suns.is_empty() || !keys.is_empty();
     shines.then(|| Scene { lights, ..scene.clone() })

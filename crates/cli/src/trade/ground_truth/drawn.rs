@@ -31,8 +31,7 @@ impl GroundTruth {
     /// use as many slices as fit.
     pub fn draw(rig: &mut Rig) -> Result<Self> {
         let scene = rig.scene;
-        let near =
-            Lights { sphere_lights: scene.lights.sphere_lights.clone(), ..Lights::default() };
+        let near = scene.lights.near_alone();
         let is_near = near.near().next().is_some();
         let Lights { sky, environment, suns, keys, .. } = scene.lights.clone();
         let aimed = match (suns.is_empty(), keys.is_empty()) {
