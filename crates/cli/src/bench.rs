@@ -315,6 +315,12 @@ fn overlapped(gpu: &Headless, frame: &mut Frame, most: usize) -> Result<(usize, 
     Ok((runs.len(), sums(&runs, |_| true)))
 }
 
+/// The passes that a frame of new heights needs. The tables of the other passes depend on lights and settings alone.
+fn after_new_heights(plan: &Plan) -> Vec<usize> {
+    let heights = plan.find("heights");
+    plan.passes_after(plan, &heights.into_iter().collect::<Vec<_>>())
+}
+
 /// Rows of a frame in flow and overlapped, of its passes isolated, warm and cold, and its last run in flow.
 fn time(
     gpu: &Headless,
@@ -345,6 +351,13 @@ fn time(
     rows.push(row("total".into(), "in_flow", &every, runs.len(), &sums(&runs, |_| true)));
     let (count, whole) = overlapped(gpu, frame, args.runs)?;
     rows.push(row("total".into(), "overlapped", &every, count, &whole));
+    let needed = after_new_heights(&plan);
+    if needed.len() < plan.passes.len() {
+        let runs = repeated(gpu, frame, &needed, args.runs, None)?;
+        let passes: Vec<&Pass> = needed.iter().map(|i| &plan.passes[*i]).collect();
+        let times = sums(&runs, |_| true);
+        rows.push(row("total".into(), "new_heights", &passes, runs.len(), &times));
+    }
     let all: Vec<usize> = (0..plan.passes.len()).collect();
     let cold = repeated(gpu, frame, &all, args.runs, Some(flushes))?;
     rows.push(row("total".into(), "cold", &every, cold.len(), &sums(&cold, |_| true)));
@@ -373,6 +386,26 @@ mod tests {
     /// 10 values about 100, whose interval goes from the 2nd to the 9th: `step` apart, it is 7 steps wide.
     fn spread(count: usize, step: f64) -> Vec<f64> {
         (0..count).map(|i| 100.0 + step * i as f64).collect()
+    }
+
+    /// Tables of an environment do not depend on the heights; a sky has none.
+    #[test]
+    fn frames_of_new_heights_compute_no_tables_again() {
+        use ridgelight::plan::Limits;
+        use ridgelight::scene::{Environment, Lights};
+        let of = |lights| {
+            let scene = verify::tests::scene(32, lights);
+            let quality = Quality::default();
+            let limits = Limits::lavapipe();
+            let plan = plan::picture(&scene, &quality, &limits, Picture::default()).unwrap();
+            let needed = after_new_heights(&plan);
+            let left = (0..plan.passes.len()).filter(|i| !needed.contains(i));
+            left.map(|i| plan.passes[i].name().to_owned()).collect::<Vec<_>>()
+        };
+        let white = Environment::new(4, 2, vec![[1.0; 3]; 8], 0.0).unwrap();
+        let left = of(Lights { environment: Some(white), ..Lights::default() });
+        assert!(!left.is_empty() && left.iter().all(|name| name.starts_with("env_")), "{left:?}");
+        assert_eq!(of(Lights { sky: Some([1.0; 3]), ..Lights::default() }), [""; 0]);
     }
 
     /// A width of 2 % ends a row, after 10, 20 and 40 runs and not in between.
