@@ -215,7 +215,8 @@ impl Renderer {
     /// recorded since the renderer was made or [`replace_plan`](Self::replace_plan) changed them.
     ///
     /// Of many frames of new heights, only the first computes the tables of an environment: the renderer's images keep their
-    /// contents between recordings, and serve all slots.
+    /// contents between recordings, and serve all slots. What is recorded counts as run: after a command buffer that was not
+    /// submitted, call [`record`](Self::record).
     pub fn passes_after(&self, changed: &[ResourceId]) -> Vec<usize> {
         let mut runs: Vec<bool> = self.progress.iter().map(|p| *p != Progress::Current).collect();
         self.plan.passes_after(&self.plan, changed).iter().for_each(|pass| runs[*pass] = true);

@@ -55,7 +55,7 @@ impl VisiblePoints {
     /// From the words that [`plan::visible_points`](crate::plan::visible_points) writes, layer after layer.
     ///
     /// # Errors
-    /// A side beyond [`LARGEST_SIDE`](Self::LARGEST_SIDE), a wrong number of words, a point outside the field, a ray lost on
+    /// A side beyond 65,533 grid points, a wrong number of words, a point outside the field, a ray lost on
     /// the device.
     pub fn new(
         field: &HeightField,

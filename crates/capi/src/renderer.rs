@@ -265,7 +265,7 @@ pub unsafe extern "C" fn ridgelight_replace_plan(
 /// passes include those that have not been recorded since the renderer was created or ridgelight_replace_plan changed them.
 ///
 /// Of many frames of new heights, only the first computes the tables of an environment. ridgelight_record computes them
-/// each time.
+/// each time. What is recorded counts as run: after a command buffer that was not submitted, call ridgelight_record.
 ///
 /// `count` is as in ridgelight_replace_plan.
 ///

@@ -168,8 +168,10 @@ fn white_ground_in_white_light_is_white() {
     let mut device = Device::new();
     let rough = field(12, 11, [1.0, 1.0], |r, c| ((r * 31 + c * 17) % 7) as f64 / 3.0);
     let mut scene = under_sky(rough, Border::Open);
-    let [light, _] = traced(&mut device, &scene, 64, 3, 2);
-    assert!(light.iter().flatten().all(|v| *v == 1.0), "{light:?}");
+    for normals in [Normals::Smooth, Normals::Flat] {
+        let [light, _] = traced_on(&mut device, &scene, normals, (64, 3), 2);
+        assert!(light.iter().flatten().all(|v| *v == 1.0), "{normals:?}: {light:?}");
+    }
     // The same light as an environment, sampled or hit: each path's share is right in the mean alone.
     let white = Environment::new(6, 5, vec![[1.0; 3]; 30], 0.5).expect("an environment");
     scene.lights = Lights { environment: Some(white), ..Lights::default() };

@@ -18,6 +18,7 @@ fn wrong_requests_are_refused() {
             ("reference a.asc -o out.exr --bounces 65", 2, &["--bounces", "0 to 64"]),
             ("reference a.asc -o out.exr --until-error 0", 2, &["--until-error", "above 0"]),
             ("reference a.asc -o out.exr --until-error nan", 2, &["--until-error", "above 0"]),
+            ("reference a.asc -o out.exr --normals round", 2, &["--normals", "smooth, flat"]),
             ("reference a.asc -o out.exr --seed -1", 2, &["--seed", "whole number"]),
             (
                 "reference a.asc -o out.exr --sphere-light 1,2,3,4",
@@ -92,6 +93,28 @@ fn gpu_reference_writes_light_and_its_error() {
     // Without a light the sun and the sky are the default.
     done(&folder, "reference a.asc -o sky.exr --spp 1");
     assert_eq!(attributes(&folder.path("sky.exr"))["sky"], "clear");
+}
+
+/// A valley of two slopes: the paths from its bottom meet ground whose mean normals differ from those of its triangles. The
+/// flag changes the bounced light alone, and the file names it.
+#[test]
+fn gpu_normals_are_smooth_unless_flat_ones_are_asked_for() {
+    let folder = Folder::new();
+    write_field(&folder, 9, |_, c| 2.0 * (c as f32 - 4.0).abs());
+    let light = |name: &str, flags: &str| {
+        done(&folder, &format!("reference field.npy -o {name}.exr --sky 1 --spp 128 {flags}"));
+        let normals = attributes(&folder.path(&format!("{name}.exr")))["normals"].clone();
+        (normals, plane(&read(&folder.path(&format!("{name}.exr"))), "R"))
+    };
+    let usual = light("usual", "--bounces 1");
+    let [smooth, flat] =
+        ["smooth", "flat"].map(|n| light(n, &format!("--bounces 1 --normals {n}")));
+    assert_eq!([&usual.0, &smooth.0, &flat.0], ["smooth", "smooth", "flat"]);
+    assert_eq!(usual.1, smooth.1);
+    assert_ne!(smooth.1, flat.1);
+    let [smooth, flat] =
+        ["smooth", "flat"].map(|n| light(n, &format!("--bounces 0 --normals {n}")));
+    assert_eq!(smooth.1, flat.1);
 }
 
 #[test]
