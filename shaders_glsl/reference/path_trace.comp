@@ -162,8 +162,8 @@ Place grid_point(ivec2 at) {
     return place;
 }
 
-// The vertex where a ray along e has hit. With smooth normals one of the triangle's corners, drawn by its weight: the
-// radiance towards the ray is linear between grid points, as in pictures.
+// The vertex where a ray along e has hit. With smooth normals, one of the triangle's corners, with its barycentric weight as
+// the probability: the mean radiance towards the ray is linear between grid points, as in pictures.
 Place place_of(Met met, vec3 e, float drawn) {
     // Cells of a repeating field connect its last grid points to its first.
     ivec2 next = ivec2((met.cell.x + 1) % land.cols, (met.cell.y + 1) % land.rows);

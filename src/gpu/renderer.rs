@@ -210,13 +210,13 @@ impl Renderer {
         Ok((0..self.progress.len()).filter(is_pending).collect())
     }
 
-    /// The passes that must run next, for [`record_passes`](Self::record_passes), if only the inputs `changed` have other texels than
-    /// in the last recording. They are those that `changed` reaches ([`Plan::passes_after`]), and those that have not been
-    /// recorded since the renderer was made or [`replace_plan`](Self::replace_plan) changed them.
+    /// The passes to record next with [`record_passes`](Self::record_passes), if only the inputs `changed` have new texels
+    /// since the last recording. They are the passes that depend on `changed` ([`Plan::passes_after`]), and those that have
+    /// not been recorded since the renderer was created or [`replace_plan`](Self::replace_plan) changed them.
     ///
-    /// Of many frames of new heights, only the first computes the tables of an environment: the renderer's images keep their
-    /// contents between recordings, and serve all slots. What is recorded counts as run: after a command buffer that was not
-    /// submitted, call [`record`](Self::record).
+    /// In a series of frames with new heights, only the first frame then computes the tables of an environment. The
+    /// renderer's images keep their contents between recordings, and all slots share them. What is recorded
+    /// counts as run: after a command buffer that was not submitted, call [`record`](Self::record).
     pub fn passes_after(&self, changed: &[ResourceId]) -> Vec<usize> {
         let mut runs: Vec<bool> = self.progress.iter().map(|p| *p != Progress::Current).collect();
         self.plan.passes_after(&self.plan, changed).iter().for_each(|pass| runs[*pass] = true);
@@ -242,7 +242,7 @@ impl Renderer {
         table.or(self.resources.get(id.0)?.as_ref())
     }
 
-    /// Appends all passes to `commands`, as all inputs may have new texels. [`passes_after`](Self::passes_after) returns the
+    /// Appends all passes to `commands`, because any input may have new texels. [`passes_after`](Self::passes_after) returns the
     /// passes that a change of some inputs needs.
     ///
     /// `slot` is the frame in flight (0..slots); its last command buffer must have run. `inputs` and `outputs`

@@ -20,7 +20,7 @@ const MOST_BOUNCES: u32 = 64;
 
 /// Passes that trace one batch of [`REFERENCE_BATCH`] light paths from every texel, as `cpu::bounce` defines them, with
 /// all bounces up to `bounces`. Phong specular reflects at every vertex, about the mirror direction of the incoming path.
-/// By smooth [`Normals`], a path that hits a triangle goes on from one of its corners, drawn by its weight.
+/// With smooth [`Normals`], a path that hits a triangle continues from a corner, drawn by barycentric weight.
 ///
 /// Inputs: those of [`reference_inputs`]. Outputs, four channels each: "radiance", the mean of all batches so far, and
 /// "standard_error", that of the mean, infinite after the first batch; its fourth channel counts the traced rays.

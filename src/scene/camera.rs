@@ -16,8 +16,8 @@ pub struct Camera {
     pub target_m: [f64; 3],
     /// Azimuth of the eye from the target, radians counter-clockwise from east.
     pub azimuth_rad: f64,
-    /// Elevation of the eye from the target, radians, [-π/2..π/2]; f32's ±π/2 count as ±π/2. At π/2 the image is a map whose upper edge lies
-    /// opposite the azimuth: north for an eye in the south.
+    /// Elevation of the eye from the target, radians, [-π/2..π/2]; ±π/2 rounded to f32 count as ±π/2. At π/2 the image is a
+    /// map whose upper edge lies opposite the azimuth: north for an eye in the south.
     pub elevation_rad: f64,
     /// Distance from the target to the eye, [1e-9..1e15].
     pub distance_m: f64,

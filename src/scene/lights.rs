@@ -28,7 +28,7 @@ pub struct Lights {
 pub struct Sun {
     /// Direction of the centre in the plane, radians counter-clockwise from east.
     pub azimuth_rad: f64,
-    /// Elevation of the centre above horizontal, radians, [0..π/2]; f32's π/2 counts as π/2.
+    /// Elevation of the centre above horizontal, radians, [0..π/2]; π/2 rounded to f32 counts as π/2.
     pub elevation_rad: f64,
     /// Angular diameter, radians, [0..π/2] like the elevation; below 0.01° (1.75e-4) a point with hard shadows.
     pub diameter_rad: f64,
@@ -155,15 +155,15 @@ pub(super) fn is_angle(rad: f64) -> bool {
     rad.abs() <= 1e6
 }
 
-/// The angle; ±`limit` where it exceeds that by no more than the rounding of `limit` to f32. f32's π/2, which `asin(1.0)`
-/// returns, is 4.4e-8 above π/2.
+/// Returns ±`limit` for an angle that exceeds it by no more than the rounding of `limit` to f32, else the angle. In f32,
+/// `asin(1.0)` is 4.4e-8 above π/2.
 pub(super) fn within(rad: f64, limit: f64) -> f64 {
     let is_rounded = rad.abs() > limit && rad.abs() <= f64::from(limit as f32);
     if is_rounded { limit.copysign(rad) } else { rad }
 }
 
 impl Sun {
-    /// This sun with π/2 for each angle above π/2 that is at most f32's π/2: such an angle is in range and counts as π/2.
+    /// This sun, with π/2 in place of π/2 rounded to f32, which is in range and counts as π/2.
     pub(crate) fn clamped(&self) -> Self {
         let [elevation_rad, diameter_rad] =
             [self.elevation_rad, self.diameter_rad].map(|rad| within(rad, FRAC_PI_2));

@@ -203,14 +203,13 @@ pub enum Border {
     Periodic,
 }
 
-/// How ground reflects between its grid points in a path-traced reference.
+/// Normals of the ground between grid points, in a path-traced reference.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Normals {
-    /// As in pictures: the radiance of a triangle is linear between those of its corners, which have the mean normal of
-    /// their four quads.
+    /// As in pictures: a grid point has the mean normal of its four cells, and radiance is linear between grid points.
     #[default]
     Smooth,
-    /// About the normal of the flat triangle, as a path tracer of triangles does. Bounces in pictures differ from that on
+    /// Each triangle is flat and has its own normal, as in most path tracers. Bounces in pictures differ from this on
     /// steep, coarse ground.
     Flat,
 }

@@ -93,6 +93,7 @@ fn new_heights_need_no_tables() {
     let environment = environment.expect("an environment");
     let phong = PhongSpecular { exponent: 1000.0, scale: 0.5 };
     let mut scene = crate::under_sky(fractal(SIDE, 1).expect("a field"));
+    scene.surface.albedo = Albedo::Constant([0.5; 3]);
     scene.surface.specular = Some(Specular::Constant(phong));
     let wanted = Picture { light_layers: true, sky_view: true, ..Picture::default() };
     let cases: [(_, _, &[&str]); 4] = [

@@ -117,7 +117,7 @@ typedef struct RidgelightSun {
     float irradiance[3];
     // Direction of the centre in the plane, radians counter-clockwise from east.
     double azimuth_rad;
-    // Elevation of the centre, radians, [0..pi/2]; the limit may be rounded to float.
+    // Elevation of the centre, radians, [0..pi/2]; pi/2 rounded to float counts as pi/2.
     double elevation_rad;
     // Angular diameter, radians, [0..pi/2] like the elevation; below 0.01 degrees a point with hard shadows.
     double diameter_rad;
@@ -131,9 +131,9 @@ typedef struct RidgelightKeyLight {
     float radiance[3];
     // Direction of its middle in the plane, radians counter-clockwise from east.
     double azimuth_rad;
-    // Extent in azimuth, radians, above 0 up to 2 pi; the limit may be rounded to float.
+    // Extent in azimuth, radians, above 0 up to 2 pi; 2 pi rounded to float counts as 2 pi.
     double width_rad;
-    // Its lowest and its highest elevation, radians, [-pi/2..pi/2]; the limits may be rounded to float.
+    // Its lowest and its highest elevation, radians, [-pi/2..pi/2]; pi/2 rounded to float counts as pi/2.
     double elevations_rad[2];
 } RidgelightKeyLight;
 
@@ -441,8 +441,8 @@ typedef struct RidgelightCamera {
     uint32_t size[2];
     // Azimuth of the eye from the target, in the plane, radians counter-clockwise from east.
     double azimuth_rad;
-    // Elevation of the eye from the target above horizontal, radians, [-pi/2..pi/2]; the limits may be rounded to
-    // float.
+    // Elevation of the eye from the target above horizontal, radians, [-pi/2..pi/2]; pi/2 rounded to float counts
+    // as pi/2.
     double elevation_rad;
     // The target in the middle of the picture: x east of the westernmost column, y north of the southernmost
     // row, z as heights.
@@ -713,12 +713,12 @@ enum RidgelightResult ridgelight_replace_plan(struct RidgelightRenderer *rendere
                                               uint32_t *passes,
                                               uint32_t *count);
 
-// Returns in `passes` the indices of the passes that must run next, for ridgelight_record_passes, if only the inputs
-// `changed` have other contents than in the last recording. `changed` are indices in the order of the plan's inputs. The
-// passes include those that have not been recorded since the renderer was created or ridgelight_replace_plan changed them.
+// Writes to `passes` the indices of the passes to record next with ridgelight_record_passes, if only the inputs `changed`
+// have new contents since the last recording. `changed` holds positions in the plan's list of inputs. The result includes
+// passes that have not been recorded since the renderer was created or ridgelight_replace_plan changed them.
 //
-// Of many frames of new heights, only the first computes the tables of an environment. ridgelight_record computes them
-// each time.
+// In a series of frames with new heights, only the first frame then computes the tables of an environment.
+// ridgelight_record computes them in every frame.
 //
 // `count` is as in ridgelight_replace_plan.
 //

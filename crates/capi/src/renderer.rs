@@ -260,12 +260,13 @@ pub unsafe extern "C" fn ridgelight_replace_plan(
     })
 }
 
-/// Returns in `passes` the indices of the passes that must run next, for ridgelight_record_passes, if only the inputs
-/// `changed` have other contents than in the last recording. `changed` are indices in the order of the plan's inputs. The
-/// passes include those that have not been recorded since the renderer was created or ridgelight_replace_plan changed them.
+/// Writes to `passes` the indices of the passes to record next with ridgelight_record_passes, if only the inputs `changed`
+/// have new contents since the last recording. `changed` holds positions in the plan's list of inputs. The result includes
+/// passes that have not been recorded since the renderer was created or ridgelight_replace_plan changed them.
 ///
-/// Of many frames of new heights, only the first computes the tables of an environment. ridgelight_record computes them
-/// each time. What is recorded counts as run: after a command buffer that was not submitted, call ridgelight_record.
+/// In a series of frames with new heights, only the first frame then computes the tables of an environment.
+/// ridgelight_record computes them in every frame. What is recorded counts as run: after a command buffer that
+/// was not submitted, call ridgelight_record.
 ///
 /// `count` is as in ridgelight_replace_plan.
 ///

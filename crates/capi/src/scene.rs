@@ -17,7 +17,7 @@ pub struct RidgelightSun {
     pub irradiance: [f32; 3],
     /// Direction of the centre in the plane, radians counter-clockwise from east.
     pub azimuth_rad: f64,
-    /// Elevation of the centre, radians, [0..pi/2]; the limit may be rounded to float.
+    /// Elevation of the centre, radians, [0..pi/2]; pi/2 rounded to float counts as pi/2.
     pub elevation_rad: f64,
     /// Angular diameter, radians, [0..pi/2] like the elevation; below 0.01 degrees a point with hard shadows.
     pub diameter_rad: f64,
@@ -36,9 +36,9 @@ pub struct RidgelightKeyLight {
     pub radiance: [f32; 3],
     /// Direction of its middle in the plane, radians counter-clockwise from east.
     pub azimuth_rad: f64,
-    /// Extent in azimuth, radians, above 0 up to 2 pi; the limit may be rounded to float.
+    /// Extent in azimuth, radians, above 0 up to 2 pi; 2 pi rounded to float counts as 2 pi.
     pub width_rad: f64,
-    /// Its lowest and its highest elevation, radians, [-pi/2..pi/2]; the limits may be rounded to float.
+    /// Its lowest and its highest elevation, radians, [-pi/2..pi/2]; pi/2 rounded to float counts as pi/2.
     pub elevations_rad: [f64; 2],
 }
 

@@ -23,8 +23,8 @@ pub struct RidgelightCamera {
     pub size: [u32; 2],
     /// Azimuth of the eye from the target, in the plane, radians counter-clockwise from east.
     pub azimuth_rad: f64,
-    /// Elevation of the eye from the target above horizontal, radians, [-pi/2..pi/2]; the limits may be rounded to
-    /// float.
+    /// Elevation of the eye from the target above horizontal, radians, [-pi/2..pi/2]; pi/2 rounded to float counts
+    /// as pi/2.
     pub elevation_rad: f64,
     /// The target in the middle of the picture: x east of the westernmost column, y north of the southernmost
     /// row, z as heights.

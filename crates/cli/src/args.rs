@@ -40,7 +40,7 @@ pub use view::ViewArgs;
 /// Lights height fields on Vulkan by sky, environment, suns, key lights, sphere lights and indirect light, with
 /// shadows from horizons.
 #[derive(Parser)]
-#[command(version = version(), max_term_width = 100)]
+#[command(name = "ridgelight", version = version(), max_term_width = 100)]
 pub struct Cli {
     #[command(subcommand)]
     pub command: Command,
@@ -49,7 +49,7 @@ pub struct Cli {
     pub scene: SceneFile,
 }
 
-/// With the commit, where the source was a repository.
+/// The version, and the commit if the source was a Git repository.
 fn version() -> String {
     let version = env!("CARGO_PKG_VERSION");
     match env!("RIDGELIGHT_COMMIT") {
@@ -394,11 +394,11 @@ pub struct BenchArgs {
     pub trace: Option<PathBuf>,
     /// Compare with earlier --json files; exit status 1 if a pass is slower
     ///
-    /// FASTER or SLOWER: the interval of the ratio of medians and that of the 10th percentiles both lie beyond 5 %.
-    /// SAME: the whole interval lies within 5 %. UNSURE: any other case. The interval holds the 95 % confidence intervals of
-    /// both medians. It is wider if the peak rates of the device differ by more than 5 %, or if times of a row differ by
-    /// more than 20 %. Give three files of one build: one file cannot show how processes differ. A file of another scene
-    /// is refused.
+    /// FASTER or SLOWER: the intervals of the ratio of medians and of the ratio of 10th percentiles lie entirely beyond 5 %.
+    /// SAME: the interval of the ratio of medians lies entirely within 5 %. UNSURE: any other case. The interval comes from
+    /// the 95 % confidence intervals of both medians. It is wider if the peak rates of the device changed by more than 5 %,
+    /// or if the times of a row spread by more than 20 %. Give three files of one build: one file cannot show how much
+    /// processes differ. A file of another scene is refused.
     #[arg(long, help_heading = "Output", value_delimiter = ',', value_name = "FILE,FILE,…")]
     pub against: Vec<PathBuf>,
     /// Write times in Bencher Metric Format

@@ -254,7 +254,7 @@ fn late(begun: Instant, runs: usize) -> bool {
     runs >= FEWEST && begun.elapsed() > ROW_TIME
 }
 
-/// The warning of a frame whose median is known too badly.
+/// A warning if the median of a frame is too uncertain.
 fn noise(rows: &[Row]) -> Option<String> {
     let row = rows.iter().find(|row| row.pass == "total" && row.spread() > Some(NOISY))?;
     Some(format!(

@@ -78,7 +78,7 @@ fn check(args: &CompareArgs) -> Result<()> {
     for path in [&args.result, &args.reference] {
         if setup::extension(path) == "json" {
             let expected = format!(
-                "an .exr, .tif, .png, .hdr or .npy; for times of `bench --json` run `ridgelight bench --against {}`",
+                "an .exr, .tif, .png, .hdr or .npy; to compare times of `bench --json`, run `ridgelight bench --against {}`",
                 path.display()
             );
             return Err(Error::file(path, "name", "the extension .json", expected));

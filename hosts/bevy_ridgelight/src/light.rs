@@ -190,7 +190,7 @@ impl Settings {
     fn plan(&self, limits: &Limits, sun: Vec3) -> ridgelight::Result<Plan> {
         let sun = scene::Sun {
             azimuth_rad: f64::from((-sun.z).atan2(sun.x)),
-            // The length of a unit vector can exceed 1 by a rounding.
+            // Rounding can make a component of a unit vector exceed 1.
             elevation_rad: f64::from(sun.y.min(1.0)).asin(),
             diameter_rad: f64::from(self.sun_diameter),
             irradiance: [1.0; 3],

@@ -11,9 +11,9 @@ use crate::{Error, Result};
 pub struct KeyLight {
     /// Direction of its centre in the plane, radians counter-clockwise from east.
     pub azimuth_rad: f64,
-    /// Extent in azimuth, radians, above 0 up to 2π; f32's 2π counts as 2π.
+    /// Extent in azimuth, radians, above 0 up to 2π; 2π rounded to f32 counts as 2π.
     pub width_rad: f64,
-    /// Its lowest and its highest elevation, radians, [-π/2..π/2]; f32's ±π/2 count as ±π/2.
+    /// Its lowest and its highest elevation, radians, [-π/2..π/2]; ±π/2 rounded to f32 count as ±π/2.
     pub elevations_rad: [f64; 2],
     /// Radiance, linear RGB.
     pub radiance: [f32; 3],
@@ -23,8 +23,8 @@ pub struct KeyLight {
 const LOWEST_RAD: f64 = 1e-5;
 
 impl KeyLight {
-    /// This light with the exact limit for each angle that exceeds its limit by no more than the rounding to f32: such an
-    /// angle is in range and counts as the limit.
+    /// This light, with the exact limit in place of each limit rounded to f32: such an angle is in range and counts as the
+    /// limit.
     pub(crate) fn clamped(&self) -> Self {
         Self {
             width_rad: within(self.width_rad, TAU),

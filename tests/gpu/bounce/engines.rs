@@ -339,9 +339,9 @@ fn rms(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
     (squares / a.len() as f64).sqrt()
 }
 
-/// A piece of the bundled mountain, three times as steep, against the path-traced reference with as many bounces. By
-/// smooth normals both have the same surface, so they differ by the Monte Carlo noise, twice its standard error at most,
-/// and by the azimuths: at most twice the change from doubling them, as an error that falls with their number. The
+/// A piece of the bundled mountain, three times as steep, against the path-traced reference with as many bounces. With
+/// smooth normals both have the same surface. They differ by Monte Carlo noise, at most twice its standard error, and by the
+/// error of the azimuths. That error falls with their number, so it is at most twice the change from doubling them. The
 /// reference of flat triangles and light without bounces differ more.
 #[test]
 fn a_mountain_matches_the_path_traced_reference() {

@@ -138,7 +138,7 @@ fn frames_in_flight_share_tables() {
     frames.into_iter().for_each(|frame| gpu.end(frame));
 }
 
-/// Each change computes what depends on it again, and the next frame of new heights no tables.
+/// After each change, what depends on it is recomputed. The next frame of new heights computes no tables.
 #[test]
 fn tables_follow_the_environment_and_the_exponent() {
     let mut device = Device::new();

@@ -130,7 +130,7 @@ fn camera(text: &str) -> Result<CameraAt, String> {
     if let Some(eighth) = DIRECTIONS.iter().position(|name| *name == named) {
         return Ok(at(45.0 * eighth as f64, ELEVATION));
     }
-    let wrong = || "south, \"from 45 up 30\", or AZ,EL[,DISTANCE], degrees and metres".to_owned();
+    let wrong = || "south, \"from 45 up 30\" or AZ,EL[,DISTANCE] in degrees and metres".to_owned();
     let number = |word: &str| word.parse().map_err(|_| wrong());
     match named.split_whitespace().collect::<Vec<_>>().as_slice() {
         ["from", azimuth] => return Ok(at(number(azimuth)?, ELEVATION)),
@@ -150,7 +150,7 @@ fn place(text: &str) -> Result<LookAt, String> {
     match numbers(text).as_deref() {
         Some(&[east_m, north_m]) => Ok(LookAt { east_m, north_m, height_m: None }),
         Some(&[east_m, north_m, height]) => Ok(LookAt { east_m, north_m, height_m: Some(height) }),
-        _ => Err("X,Y or X,Y,Z, numbers, metres".into()),
+        _ => Err("X,Y or X,Y,Z in metres".into()),
     }
 }
 

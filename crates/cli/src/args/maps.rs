@@ -146,6 +146,6 @@ fn sun(words: &str) -> Result<Sun, String> {
     let mut lights = Lights::default();
     light("sun")
         .add(&mut lights, words)
-        .map_err(|_| "AZ,EL or AZ,EL,DIAMETER, numbers, degrees".to_owned())?;
+        .map_err(|_| "AZ,EL or AZ,EL,DIAMETER in degrees".to_owned())?;
     Ok(lights.suns.remove(0))
 }

@@ -24,9 +24,9 @@ pub struct ReferenceArgs {
     /// Fewer leave hollows darker; more take time in proportion.
     #[arg(long, value_name = "B", default_value_t = 0, value_parser = number::<u32>(BOUNCES), allow_negative_numbers = true, help_heading = "Quality")]
     pub bounces: u32,
-    /// How ground reflects between its grid points
+    /// Normals of the ground between grid points
     ///
-    /// It matters for bounces only: at grid points light is always about their mean normal.
+    /// Affects bounces only: paths start at grid points, which always have smooth normals.
     #[arg(long, value_name = "N", default_value = "smooth", help_heading = "Quality")]
     pub normals: NormalsName,
     /// Stop at this standard error relative to the mean (0.01 is 1 %)
@@ -48,9 +48,9 @@ pub struct ReferenceArgs {
 
 #[derive(Clone, Copy, ValueEnum)]
 pub enum NormalsName {
-    /// As in pictures: radiance is linear between grid points
+    /// As in pictures: normals of grid points, and radiance linear between them
     Smooth,
-    /// About the normal of each flat triangle
+    /// The normal of each flat triangle
     Flat,
 }
 

@@ -1,5 +1,5 @@
-//! Parses values of the command line. An error is what was expected; [`Cli::read`](super::Cli::read) adds the flag and the
-//! value. The library checks ranges unless a function here does.
+//! Parses values of the command line. An error holds only what was expected; [`Cli::read`](super::Cli::read) adds the flag
+//! and the value. The library checks ranges unless a function here does.
 
 use std::str::FromStr;
 
@@ -7,7 +7,7 @@ use crate::horizon::Fourier;
 
 /// Expected of an error relative to the mean.
 pub const ERROR: &str = "a number above 0, without %: 0.01 is 1 %";
-pub const MILLISECONDS: &str = "milliseconds, a number above 0";
+pub const MILLISECONDS: &str = "a number of milliseconds above 0";
 pub const FACTOR: &str = "a number above 0";
 pub const SEED: &str = "a whole number from 0 to 4294967295";
 pub const BOUNCES: &str = "a whole number from 0 to 64";
@@ -36,7 +36,7 @@ pub fn grid(text: &str) -> Result<[usize; 2], String> {
     }
 }
 
-/// Numbers between commas; none where one of them is no number.
+/// Numbers separated by commas; none if a part is not a number.
 pub fn numbers(text: &str) -> Option<Vec<f64>> {
     text.split(',').map(|part| part.trim().parse().ok()).collect()
 }
@@ -78,7 +78,7 @@ pub fn curvatures(text: &str) -> Result<[f64; 2], String> {
     match numbers(text).as_deref() {
         Some([both]) => Ok([*both; 2]),
         Some([outwards, inwards]) => Ok([*outwards, *inwards]),
-        _ => Err("OUT or OUT,IN, numbers above 0, 1/m".into()),
+        _ => Err("OUT or OUT,IN, numbers above 0 in 1/m".into()),
     }
 }
 
@@ -126,7 +126,7 @@ pub fn cell(text: &str) -> Result<[f64; 2], String> {
     match numbers(text).as_deref() {
         Some([both]) => Ok([*both; 2]),
         Some([x, y]) => Ok([*x, *y]),
-        _ => Err("X or X,Y, numbers, metres".into()),
+        _ => Err("X or X,Y in metres".into()),
     }
 }
 
@@ -140,7 +140,8 @@ pub fn bbox(text: &str) -> Result<[f64; 4], String> {
 pub fn bytes(text: &str) -> Result<u64, String> {
     let digits = text.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(text.len());
     let (number, unit) = text.split_at(digits);
-    let expected = || "a size, as 512MiB or 2GiB, in B, kB, MB, GB, KiB, MiB or GiB".to_owned();
+    let expected =
+        || "a size, as 512MiB or 2GiB; units are B, kB, MB, GB, KiB, MiB, GiB".to_owned();
     let number: f64 = number.parse().map_err(|_| expected())?;
     let factor = match unit.trim().to_lowercase().as_str() {
         "" | "b" => 1.0,

@@ -28,7 +28,7 @@ pub fn packing(text: &str) -> std::result::Result<Packing, String> {
     let kind = kind_named(kind)?;
     let encoding = encoding_named(kind.encodings, name).ok_or_else(|| {
         let all: Vec<&str> = kind.encodings.iter().map(|e| e.name).collect();
-        format!("{} with one of {}", kind.name, all.join(", "))
+        format!("{}=ENCODING, ENCODING one of {}", kind.name, all.join(", "))
     })?;
     Ok(Packing { kind, encoding })
 }

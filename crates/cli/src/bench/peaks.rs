@@ -54,7 +54,7 @@ pub fn text(peaks: &[Row]) -> String {
     .join(", ")
 }
 
-/// Rows for JSON. What the plan counts as texels are reads and operations in two of them, which name them.
+/// Rows for JSON. In two of them the plan's texels are reads or operations, and the key of the rate names these.
 pub fn json(peaks: &[Row]) -> Vec<Value> {
     let one = |row: &Row| {
         let mut json = row.json();

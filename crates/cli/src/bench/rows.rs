@@ -22,7 +22,7 @@ pub struct Row {
     /// Nanoseconds between which the median lies, at 95 %; none for fewer than 6 runs.
     pub interval: Option<[f64; 2]>,
     pub bytes: u64,
-    /// Texels processed in one run by one pass; 0 for several passes, whose texels are unlike.
+    /// Texels processed in one run by one pass; 0 for several passes, whose texels are not comparable.
     pub work: u64,
     /// Bytes per second that a copy reaches on this device; none if it was not measured.
     pub copy_rate: Option<f64>,
@@ -287,7 +287,7 @@ pub mod tests {
         assert_eq!(columns(row(6))[2..6], ["3.500", "1.500", "5.500", "1.000"]);
     }
 
-    /// Texels of a sweep and of a resolve are unlike: only a row of one pass has a rate of them.
+    /// Texels of a sweep and of a resolve are not comparable, so only a row of one pass has a rate.
     #[test]
     fn a_row_of_several_passes_has_no_texel_rate() {
         let plan = plan();

@@ -13,7 +13,7 @@ use super::verify::GroundTruth;
 use crate::args::BenchArgs;
 
 /// Whole frames of fractal fields under the scene's lights, for each pair of `--sizes` and `azimuths`, with the relative
-/// RMSE against the oracle. Prints each row at once: a later size may exceed the device's memory.
+/// RMSE against the oracle. Prints each row as soon as it is measured, because a later size may exceed the device's memory.
 pub fn run(
     gpu: &mut Headless,
     scene: &Scene,

@@ -17,7 +17,7 @@ use earlier::{EarlierRow, Key, range};
 /// 6 % of each other for passes of 1 ms and more (llvmpipe), which the runs inside a process do not show; passes of
 /// 0.2 ms 14 %. Several earlier reports widen the interval to what processes differ by.
 const SAME: f64 = 0.05;
-/// Load has moved the times of a row whose 10th and 90th percentiles are farther apart than this share of the median.
+/// A row counts as disturbed by load if its 10th and 90th percentiles differ by more than this share of the median.
 const UNSTEADY: f64 = 0.2;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,9 +48,9 @@ struct Change<'a> {
     earlier_ns: Option<f64>,
     /// New over earlier median.
     ratio: Option<f64>,
-    /// Bounds of the ratio that the program causes.
+    /// Bounds of the part of the ratio that the program causes.
     bounds: Option<[f64; 2]>,
-    /// What load moved times by, 1 or more.
+    /// Factor by which load may have changed times, 1 or more.
     swing: f64,
     verdict: Verdict,
 }
@@ -59,7 +59,7 @@ struct Change<'a> {
 pub struct Changes<'a> {
     changes: Vec<Change<'a>>,
     earlier: &'a Earlier,
-    /// What the machine changed times by, at least and at most.
+    /// Least and largest factor by which the machine changed times.
     machine: [f64; 2],
     /// Rows of this run alone.
     new: usize,
@@ -80,12 +80,12 @@ impl Earlier {
     }
 }
 
-/// What the machine's state, as clock or load, changed times by since the earlier reports: at least and at most.
+/// Least and largest factor by which the state of the machine, such as clock or load, changed times since the earlier
+/// reports.
 ///
-/// A peak pass does the same work in every version. With t its 10th percentile now, and t' the nearest of its earlier
-/// ones, its time changed by t / t'; up to 5 % count as no change. Which unit limits a pass is not known, nor how
-/// far, so its time may have changed by any factor between 1 and those of the peaks: from min(1, t / t') to
-/// max(1, t / t').
+/// A peak pass does the same work in every version. Let t be its 10th percentile now and t' the nearest of its earlier
+/// ones: its time changed by t / t'. Up to 5 % counts as no change. It is unknown which unit of the device limits another
+/// pass, and how much. That pass may have changed by any factor from min(1, t / t') to max(1, t / t') over all peaks.
 fn machine(earlier: &Earlier, peaks: &[Row]) -> [f64; 2] {
     let mut factors = [1.0_f64; 2];
     for peak in peaks {
@@ -99,8 +99,8 @@ fn machine(earlier: &Earlier, peaks: &[Row]) -> [f64; 2] {
     factors
 }
 
-/// What load moved the times of a row by: p90 / p10 where they are more than [`UNSTEADY`] of the median apart, else 1.
-/// Another process may meet the load of either.
+/// Factor by which load may have changed the times of a row: p90 / p10 if they differ by more than [`UNSTEADY`] of the
+/// median, else 1. Another process may run under the load of either percentile.
 fn swing(p10: f64, p90: f64, median: f64) -> f64 {
     if p90 - p10 > UNSTEADY * median { p90 / p10 } else { 1.0 }
 }
@@ -109,8 +109,8 @@ impl<'a> Change<'a> {
     /// Compares a row with the same one of earlier reports; none without any.
     ///
     /// The ratio of medians lies between the ends of both 95 % confidence intervals, low / high' and high / low'. These
-    /// bounds are divided by what the machine changed times by at most and at least, and widened by the largest
-    /// [`swing`] of both: both can change a median without a change of the program.
+    /// bounds are divided by the largest and the least factor of the [`machine`], and widened by the largest [`swing`] of
+    /// all reports: both can change a median without a change of the program.
     fn of(row: &'a Row, same: &[&'a EarlierRow], [least, most]: [f64; 2]) -> Option<Self> {
         let earlier = *same.last()?;
         let medians: Option<Vec<f64>> = same.iter().map(|row| row.median_ns).collect();
@@ -224,18 +224,18 @@ impl Changes<'_> {
         if self.machine != [1.0; 2] {
             let [least, most] = self.machine;
             lines.push(format!(
-                "different peak rates: the same work takes {least:.2} to {most:.2} times the earlier time; the intervals include this"
+                "different peak rates: the same work takes {least:.2} to {most:.2} times as long as before; the intervals are wider because of this"
             ));
         }
         let unsteady = self.changes.iter().filter(|change| change.swing > 1.0).count();
         if unsteady > 0 {
             lines.push(format!(
-                "unsteady rows: {unsteady}, whose 10th and 90th percentile differ by more than 20 % of the median; their intervals include this"
+                "unsteady rows: {unsteady}, whose 10th and 90th percentiles differ by more than 20 % of the median; their intervals are wider because of this"
             ));
         }
         if self.earlier.0.len() == 1 {
             lines.push(
-                "one earlier report cannot show how processes differ: give --against three"
+                "one earlier report cannot show how much processes differ: give --against three files"
                     .to_owned(),
             );
         }
@@ -243,7 +243,7 @@ impl Changes<'_> {
         let missing = last.rows.iter().filter(|row| !is_compared(row)).count();
         for (count, which) in [(self.new, "this run"), (missing, "the earlier report")] {
             if count > 0 {
-                lines.push(format!("not compared: {count} rows found only in {which}"));
+                lines.push(format!("rows not compared, found only in {which}: {count}"));
             }
         }
         lines

@@ -118,7 +118,7 @@ fn percent(share: f64) -> String {
 /// The error of a light, or that the reference lights no place: [`Wanted::judge`] then has an infinite bound.
 fn sentence(light: &str, against: &str, (error, bound): (f64, f64)) -> String {
     if bound == f64::INFINITY {
-        return format!("{light}: no lit place, by {against}");
+        return format!("{light}: none of the compared places is lit, according to {against}");
     }
     let [error, bound] = [error, bound].map(percent);
     format!("{light} error {error} against {against} (RMSE; bound {bound})")
@@ -368,8 +368,8 @@ pub mod tests {
         Scene { field: fractal(size, 1).unwrap(), surface: Surface::default(), lights }
     }
 
-    /// Relative to a dark reference all figures would be infinite. Up to the tolerance light is taken, and the sentence has no
-    /// figure; more light and NaN are refused.
+    /// Relative to a dark reference, all errors would be infinite. Light up to the tolerance passes, and the sentence has no
+    /// error; more light and NaN are refused.
     #[test]
     fn a_dark_reference_has_no_lit_place() {
         let dark = Wanted(vec![[DVec3::ZERO, DVec3::splat(1e-6)]; 5]);
@@ -380,7 +380,10 @@ pub mod tests {
         };
         for light in [0.0, 1e-9, 1e-6] {
             let said = sentence("sun", "the CPU reference", judged(light).unwrap());
-            assert_eq!(said, "sun: no lit place, by the CPU reference");
+            assert_eq!(
+                said,
+                "sun: none of the compared places is lit, according to the CPU reference"
+            );
         }
         for light in [1.01e-6, -1.01e-6, f64::INFINITY, f64::NAN] {
             let error = judged(light).unwrap_err().to_string();

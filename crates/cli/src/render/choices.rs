@@ -24,7 +24,7 @@ pub struct Choice {
     pub metadata: Vec<(String, String)>,
     /// The settings that were tried, with times.
     pub tried: String,
-    /// Their number.
+    /// How many settings were tried.
     count: usize,
     sentences: Vec<String>,
     /// Whether an earlier run made the choice.
@@ -47,10 +47,11 @@ impl Choice {
 
     /// The choice in words.
     pub fn sentences(&self) -> Vec<String> {
-        let by = if self.is_remembered { "remembered from an earlier run: " } else { "" };
+        let when =
+            if self.is_remembered { " in an earlier run, which made this choice" } else { "" };
         let mut all = self.sentences.clone();
         if let Some(first) = all.first_mut() {
-            *first += &format!("; {by}{} settings tried", self.count);
+            *first += &format!("; {} settings tried{when}", self.count);
         }
         all
     }

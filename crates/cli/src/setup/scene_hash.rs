@@ -23,7 +23,7 @@ impl Fnv {
     }
 }
 
-/// Of heights with cells, voids and border: the hash of `manifest.json`.
+/// Of heights, cells, voids and border, as in `manifest.json`.
 pub fn field(scene: &Scene) -> u64 {
     scene.field.hash(scene.surface.border)
 }
@@ -45,7 +45,7 @@ pub fn lights(scene: &Scene) -> u64 {
             hash.take(format!("{} {words}\n", light.id).as_bytes());
         }
     }
-    // Their heights count from 0, as the base does.
+    // Their positions are absolute; the field's heights, which are hashed, are relative to the base.
     if !lights.sphere_lights.is_empty() {
         hash.take(&scene.field.base_m().to_le_bytes());
     }

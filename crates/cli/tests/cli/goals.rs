@@ -91,9 +91,12 @@ fn gpu_a_choice_is_kept() {
     let (chosen, lit) = (untimed(), std::fs::read(folder.path("out.exr")).unwrap());
     let second = succeeded(&folder, args);
     assert!(second.notes.contains(note), "{}", second.notes);
-    let remembered = "; remembered from an earlier run: ";
+    let remembered = " settings tried in an earlier run, which made this choice";
     assert!(second.out.contains(remembered) && !first.out.contains(remembered), "{}", second.out);
-    assert_eq!(without_time(&second.out.replace(remembered, "; ")), without_time(&first.out));
+    assert_eq!(
+        without_time(&second.out.replace(remembered, " settings tried")),
+        without_time(&first.out)
+    );
     assert_eq!(untimed(), chosen);
     assert!(std::fs::read(folder.path("out.exr")).unwrap() == lit, "another picture");
     let other = succeeded(&folder, &args.replace("0.05", "0.04"));

@@ -107,8 +107,8 @@ pub fn light(scene: &Scene, bounces: usize, fineness: Fineness) -> Result<Vec<Pi
     light_of(scene, Normals::Flat, bounces, fineness)
 }
 
-/// As [`light`], by smooth normals: ground reflects at its grid points alone, about their [`normal`], and the radiance
-/// is linear between them. So there is no error of the triangles' size, and nothing to divide.
+/// As [`light`], with smooth normals: ground reflects only at grid points, about their [`normal`], and radiance is linear
+/// between them. The size of the triangles causes no error, so they are not divided.
 ///
 /// # Errors
 /// As [`light`].

@@ -11,7 +11,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 /// Azimuths of a sky, strips across a sun or a sphere light; the same across a key light, or the sky's density.
 const AZIMUTHS: usize = 720;
 const STRIPS: usize = 128;
-/// Time of a lobe's own terms in an azimuth, powers and arc tangents, in reads from its table.
+/// Time of the powers and arc tangents of a lobe in one azimuth, in reads from its table.
 const SLICE_POINTS: usize = 16;
 /// Azimuths distributed among an environment's columns by their light, besides the fixed number of each.
 const SHARED: f64 = 1024.0;
@@ -63,7 +63,7 @@ impl<'a> Lit<'a> {
         self.sky_rays() + self.environment_rays() + strips
     }
 
-    /// Reads from the table of a Phong lobe at one grid point, about.
+    /// Approximate number of reads from the table of a Phong lobe at one grid point.
     pub fn specular_points(&self) -> usize {
         let largest = self.scene.surface.specular.as_ref().map(Specular::largest);
         let Some(phong) = largest.filter(|phong| phong.scale > 0.0) else { return 0 };
@@ -291,7 +291,7 @@ mod tests {
             let all = Site::of(&oracle, [4, 4], &mirrored).environment(&environment, 64);
             for c in 0..3 {
                 let (got, want) = (lit[c] - dull[c], 0.5 * all[0][c]);
-                // The table errs by 1e-8 of a slice, times the difference of a texel to the next.
+                // The table has an error of 1e-8 of a slice, times the difference between adjacent texels.
                 assert!((got - want).abs() < 1e-7 * (1.0 + want), "{got} {want}");
             }
         }

@@ -103,8 +103,8 @@ impl<'a> Oracle<'a> {
         best.horizon()
     }
 
-    /// Offers every vertex of the profile along (columns, rows) of any length: its slope, and its distance, row and
-    /// column. `offer` returns the slope below which no further vertex matters.
+    /// Calls `offer` for every vertex of the profile along (columns, rows), a vector of any length, with its slope, and its
+    /// distance, row and column. `offer` returns the slope below which no further vertex matters.
     fn walk(
         &self,
         [row, col]: [usize; 2],
@@ -177,7 +177,7 @@ impl<'a> Oracle<'a> {
     /// least 0, because the repetitions' slopes (h - own height) / D reach 0 in the limit D → ∞ whatever their
     /// heights.
     pub fn elevation_rad(&self, row: usize, col: usize, azimuth_rad: f64) -> f64 {
-        // The inner loop of every quadrature, which needs neither the occluder's place nor its uniqueness.
+        // The inner loop of every quadrature, which needs the slope but not the occluder.
         let mut steepest = f64::NEG_INFINITY;
         self.walk([row, col], grid_direction(self.field, azimuth_rad), |slope, _| {
             if slope > steepest {
@@ -223,7 +223,7 @@ impl<'a> Oracle<'a> {
             Border::Periodic => (x, x.floor()),
             Border::Plane | Border::Open => {
                 let x = x.min(last).max(first);
-                // 0 or more. `floor` is a call on x86-64 without SSE4.1, a conversion is not.
+                // x is 0 or more, so the conversion equals `floor`, which is a call on x86-64 without SSE4.1.
                 (x, f64::from(x as u32))
             }
         };
@@ -306,8 +306,8 @@ mod tests {
     use super::*;
     use std::f64::consts::{FRAC_PI_2, TAU};
 
-    /// The slope alone is that of the occluder: both are the maximum over the same vertices, of which the walk leaves
-    /// out only those that cannot exceed it, but for the rounding of an interpolated height.
+    /// The slope alone equals that of the occluder: both are the maximum over the same vertices. The walk leaves out only
+    /// vertices that cannot exceed it, except by the rounding of an interpolated height.
     #[test]
     fn elevations_are_those_of_the_occluders() {
         let (rows, cols) = (7, 9);

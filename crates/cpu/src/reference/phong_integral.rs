@@ -6,11 +6,11 @@
 
 use crate::light::{LOBE, Slice};
 
-/// Steps of the table in the lobe's width 1/√(n + 1).
+/// Steps of the table per width of the lobe, 1/√(n + 1).
 ///
-/// Cubic interpolation from values and slopes errs by h⁴/384 of the fourth derivative: for exponents from 1, 8e-9 of the
-/// peak for cosⁿ⁺¹, and 4e-9 of the width times the peak for its integral. Below 1 the rim is a power below 2, and a
-/// horizon in its last step errs by 1e-3.
+/// Cubic interpolation from values and slopes has an error of h⁴/384 times the fourth derivative. For exponents of 1 or
+/// more that is 8e-9 of the peak for cosⁿ⁺¹, and 4e-9 of the width times the peak for its integral. Below 1, cosⁿ⁺¹
+/// reaches 0 at the rim with a power below 2: for a horizon in the last step the error is 1e-3.
 const STEPS: f64 = 32.0;
 
 /// The table of an exponent.
@@ -38,7 +38,7 @@ impl PhongIntegral {
             let shared = cos.powf(exponent);
             let (value, slope) = (cos * shared, -power * sin * shared);
             let integral = nodes.last().map_or(0.0, |[integral, last, last_slope]| {
-                // The trapezoidal rule with the slopes of its ends (Euler and Maclaurin).
+                // The trapezoidal rule, corrected by the slopes at its ends (Euler-Maclaurin).
                 let curved = step_rad / 12.0 * (last_slope - slope);
                 integral + step_rad * (0.5 * (last + value) + curved)
             });

@@ -5,8 +5,8 @@ use std::collections::HashMap;
 use ridgelight::scene::Scene;
 use ridgelight_cpu::lit::Lit;
 
-/// Radiance of texels by the f64 oracle and by half of its rays. Each texel is computed once: probes of other seeds share
-/// texels, most of them on small fields.
+/// Radiance of texels by the f64 oracle and by half of its rays. Each texel is computed once. Probes of different seeds have
+/// texels in common: on small fields, most of them.
 #[derive(Clone, Debug)]
 pub(super) struct OracleLight<'a> {
     lit: Lit<'a>,
@@ -37,7 +37,7 @@ impl<'a> OracleLight<'a> {
     }
 }
 
-/// Light of texels, which is added to the `known` where it is not among them.
+/// Light of texels, in their order. Computes those that are not in `known`, and adds them there.
 fn lights(lit: &Lit<'_>, known: &mut HashMap<usize, [f64; 3]>, places: &[usize]) -> Vec<[f64; 3]> {
     let cols = lit.scene().field.cols();
     let mut new: Vec<usize> = places.iter().copied().filter(|i| !known.contains_key(i)).collect();

@@ -13,8 +13,8 @@ const MOST: usize = 1000;
 const CELLS: usize = 1 << 29;
 /// Share of the light that counts as unsure beside specular.
 const SPECULAR_DOUBT: f64 = 0.02;
-/// Crossed cells that a read from the table of Phong specular counts as. It takes less time, but under an environment
-/// every texel of a lobe is such a read: this leaves fewer probes, and the choice stays within seconds.
+/// Cost of one read from the table of Phong specular, in crossed cells. A read takes less time than this. Under an
+/// environment every texel of a lobe is a read: the higher cost leaves fewer probes, so the choice takes seconds.
 const POINT_CELLS: usize = 8;
 /// Probes that measure the oracle's own error.
 const SELF_PROBES: usize = 64;
@@ -101,7 +101,7 @@ impl Probes {
         Self::by(&mut OracleLight::of(lit), wanted, seed, unsure)
     }
 
-    /// The same, with the light of texels that earlier probes of this oracle share.
+    /// The same, with an oracle that keeps the light of earlier probes.
     pub(super) fn by(
         oracle: &mut OracleLight<'_>,
         wanted: usize,

@@ -59,7 +59,7 @@ impl Report {
         })
     }
 
-    /// The parts of a scene that this report does not share; none where it does not state its scene.
+    /// The parts of the scene that differ in this report; none if it does not state its scene.
     fn other_parts(&self, scene: &Value) -> Vec<&'static str> {
         let mut parts = vec!["field", "lights", "surface"];
         parts.retain(|part| self.scene.as_ref().is_some_and(|then| then[*part] != scene[*part]));
@@ -68,7 +68,7 @@ impl Report {
 }
 
 impl Earlier {
-    /// Reads the reports before anything is timed; none for no paths.
+    /// Reads the reports, before anything is timed. Returns none without paths.
     ///
     /// # Errors
     /// A file that cannot be read, or is no report of `bench --json`; one of another device than the last file, or of
@@ -107,7 +107,7 @@ impl Earlier {
     }
 }
 
-/// The least and the largest of a number of these rows; none where one of them lacks it.
+/// The least and the largest value of `number` over these rows; none if a row lacks it.
 pub fn range(rows: &[&EarlierRow], number: fn(&EarlierRow) -> Option<f64>) -> Option<[f64; 2]> {
     let all: Vec<f64> = rows.iter().map(|row| number(row)).collect::<Option<_>>()?;
     let [least, most] = [f64::min, f64::max].map(|end| all.iter().copied().reduce(end));

@@ -116,8 +116,8 @@ fn unsteady_times_widen_the_interval() {
     assert!(warnings.contains("unsteady rows: 1,"), "{warnings}");
 }
 
-/// 107 beside 100 is slower, and beside 100 and 103 unsure: their interval ends at 103.8. One report alone is warned
-/// of.
+/// 107 beside 100 is slower, and beside 100 and 103 unsure: their interval ends at 103.8. One report
+/// alone gives a warning.
 #[test]
 fn several_reports_widen_the_interval() {
     let earlier = [row("a", 100.0), row("a", 103.0)];
@@ -142,8 +142,8 @@ fn what_differs_is_a_warning() {
     for expected in [
         "different driver: earlier v, now w",
         "unknown scene: an earlier report does not state its scene",
-        "not compared: 2 rows found only in this run",
-        "not compared: 1 rows found only in the earlier report",
+        "rows not compared, found only in this run: 2",
+        "rows not compared, found only in the earlier report: 1",
     ] {
         assert!(warnings.iter().any(|line| line == expected), "{expected}: {warnings:#?}");
     }

@@ -99,7 +99,7 @@ pub(super) fn check(
     let scale = rms(sphere_lights);
     let with_truncation = match scale > 0.0 {
         true => format!("their light's error is {} against the oracle", percent(missed / scale)),
-        false => "no lit place, by the oracle".to_owned(),
+        false => "none of the compared places is lit, according to the oracle".to_owned(),
     };
     Ok(format!(
         "{}, below 0 at {negative} of {} places; including truncation at order {}, {with_truncation}",

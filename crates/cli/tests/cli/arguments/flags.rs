@@ -78,7 +78,7 @@ fn surface() {
             ("--cell nan", 2, &["--cell: found NaN"]),
             ("--cell inf", 2, &["--cell: found inf"]),
             ("--cell 1,0", 2, &["--cell: found 1.0 × 0.0"]),
-            ("--cell 1,2,3", 2, &["--cell: found 1,2,3, expected X or X,Y, numbers, metres"]),
+            ("--cell 1,2,3", 2, &["--cell: found 1,2,3, expected X or X,Y in metres"]),
             ("--cell x", 2, &["--cell: found x, expected X or X,Y"]),
             ("--cell 1,", 2, &["--cell: found 1,, expected X or X,Y"]),
             ("--z-scale nan", 2, &["--z-scale: found NaN"]),

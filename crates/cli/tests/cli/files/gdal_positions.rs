@@ -1,4 +1,4 @@
-//! Height files written by GDAL: they lie where GDAL finds them, alone and joined.
+//! Height files written by GDAL: their positions are those that GDAL reads, for single files and for mosaics.
 
 use super::gdal_inputs::{absolute, grid, tool};
 use super::geotiff::{gdal_values, gdalinfo};

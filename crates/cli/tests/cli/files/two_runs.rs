@@ -8,8 +8,8 @@ use crate::Folder;
 /// 7 columns and 5 rows in UTM zone 33 north: see tests/files/gdal/write.sh.
 const UTM: &[u8] = include_bytes!("../../../../../tests/files/gdal/utm.tif");
 
-/// A command up to its output, and outputs. Each command that writes files, each type of file and each format of `bake` is
-/// among them, but for `bench`, `trade` and `tune` and the `--json` of runs: those files have times.
+/// A command without its output, and outputs. They cover each command that writes files, each type of file and each format
+/// of `bake`. `bench`, `trade`, `tune` and the `--json` of runs are left out: their files contain times.
 const COMMANDS: &[(&str, &[&str])] = &[
     (
         "render utm.tif --sky 0.5 --sun 200,30 --azimuths 8 --layers lights,sky-view,horizon -o",
@@ -66,7 +66,7 @@ fn written() -> BTreeMap<PathBuf, Vec<u8>> {
     let mut files = BTreeMap::new();
     for (path, bytes) in folder.contents() {
         let name = path.strip_prefix(&root).unwrap();
-        // XDG_CACHE_HOME has no outputs.
+        // The folder of XDG_CACHE_HOME holds no outputs.
         let is_output = !before.contains_key(&path) && !name.starts_with("cache");
         if let Some(bytes) = bytes.filter(|_| is_output) {
             files.insert(name.to_owned(), bytes);

@@ -45,8 +45,8 @@ impl Tracer<'_> {
         }
     }
 
-    /// At the hit of a ray along e. With smooth normals at a corner of the triangle, where a `drawn` number falls; none
-    /// where rounding decides at which.
+    /// At the hit of a ray along e. With smooth normals, at the corner of the triangle that the random number `drawn`
+    /// selects; none where rounding decides which one.
     pub(super) fn place_of(
         &self,
         met: &Met,
