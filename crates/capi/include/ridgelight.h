@@ -718,7 +718,8 @@ enum RidgelightResult ridgelight_replace_plan(struct RidgelightRenderer *rendere
 // passes that have not been recorded since the renderer was created or ridgelight_replace_plan changed them.
 //
 // In a series of frames with new heights, only the first frame then computes the tables of an environment.
-// ridgelight_record computes them in every frame.
+// ridgelight_record computes them in every frame. What is recorded counts as run: after a command buffer that
+// was not submitted, call ridgelight_record.
 //
 // `count` is as in ridgelight_replace_plan.
 //

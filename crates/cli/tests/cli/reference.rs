@@ -104,7 +104,7 @@ fn gpu_normals_are_smooth_unless_flat_ones_are_asked_for() {
     let light = |name: &str, flags: &str| {
         done(&folder, &format!("reference field.npy -o {name}.exr --sky 1 --spp 128 {flags}"));
         let normals = attributes(&folder.path(&format!("{name}.exr")))["normals"].clone();
-        (normals, plane(&read(&folder.path(&format!("{name}.exr"))), "R"))
+        (normals, plane(&read(&folder.path(&format!("{name}.exr"))), "R").to_vec())
     };
     let usual = light("usual", "--bounces 1");
     let [smooth, flat] =
