@@ -361,7 +361,7 @@ fn a_mountain_matches_the_path_traced_reference() {
     let [ours, finer, direct] = [brute(2, 64), brute(2, 128), brute(0, 64)]
         .map(|quality| drawn(&mut gpu, &scene, &quality).swap_remove(0));
     let [smooth, flat] = [Normals::Smooth, Normals::Flat]
-        .map(|normals| traced_on(&mut gpu, &scene, normals, (2, 1), 64));
+        .map(|normals| traced_on(&mut gpu, &scene, normals, (2, 1), 256));
     let [light, error] = smooth;
     let noise = rms(&error, &vec![[0.0; 3]; error.len()]);
     let bound = 2.0 * rms(&ours, &finer) + 2.0 * noise;

@@ -6,8 +6,8 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 use ridgelight::gpu::Pixels;
 use ridgelight::plan;
 use ridgelight::scene::{
-    Border, KeyLight, Lights, Method, PhongSpecular, Quality, Scene, Specular, Sun, Surface,
-    fractal,
+    Albedo, Border, KeyLight, Lights, Method, PhongSpecular, Quality, Scene, Specular, Sun,
+    Surface, fractal,
 };
 
 use crate::Device;
@@ -54,7 +54,8 @@ fn f32_right_angles_light_like_exact_ones() {
             let specular = is_specular.then(|| phong.clone());
             let keys = if is_specular { Vec::new() } else { keys(angles).to_vec() };
             let lights = Lights { suns: suns(angles[0]).to_vec(), keys, ..Lights::default() };
-            let surface = Surface { border: Border::Open, specular, ..Surface::default() };
+            let albedo = Albedo::Constant([0.7; 3]);
+            let surface = Surface { border: Border::Open, albedo, specular };
             Scene { field: fractal(40, 3).expect("a field"), surface, lights }
         };
         for method in [Method::Auto, Method::Sweep, Method::Pyramid, Method::BruteForce] {

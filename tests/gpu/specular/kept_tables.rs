@@ -5,7 +5,9 @@ use std::cell::RefCell;
 
 use ridgelight::gpu::{Headless, Renderer};
 use ridgelight::plan::{self, Picture, Plan, Rectangle};
-use ridgelight::scene::{Border, Lights, PhongSpecular, Quality, Scene, Specular, Sun, fractal};
+use ridgelight::scene::{
+    Albedo, Border, Lights, PhongSpecular, Quality, Scene, Specular, Sun, fractal,
+};
 
 use crate::cpu_reference::noisy_environment;
 use crate::{Device, bits, under_sky};
@@ -32,6 +34,7 @@ fn scene(exponent: f32) -> Scene {
     };
     let environment = Some(noisy_environment(3));
     let mut scene = under_sky(fractal(SIDE, 1).expect("a field"), Border::Plane);
+    scene.surface.albedo = Albedo::Constant([0.5; 3]);
     scene.surface.specular = Some(Specular::Constant(PhongSpecular { exponent, scale: 0.5 }));
     scene.lights = Lights { environment, suns: vec![sun], ..Lights::default() };
     scene
