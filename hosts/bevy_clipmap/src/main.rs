@@ -13,6 +13,7 @@ use bevy::core_pipeline::tonemapping::{DebandDither, Tonemapping};
 use bevy::image::{CompressedImageFormats, ImageSampler, ImageType};
 use bevy::prelude::*;
 use bevy::render::RenderPlugin;
+use bevy::render::pipelined_rendering::PipelinedRenderingPlugin;
 use bevy::render::render_resource::{Extent3d, TextureDimension, TextureFormat};
 use bevy::render::view::screenshot::{Screenshot, ScreenshotCaptured};
 use bevy::window::WindowResolution;
@@ -75,6 +76,8 @@ fn main() -> ExitCode {
     let render = RenderPlugin { synchronous_pipeline_compilation: true, ..default() };
     let window = WindowPlugin { primary_window: Some(window), ..default() };
     let plugins = DefaultPlugins.set(window).set(render);
+    // Nor may a thread still render when it ends.
+    let plugins = plugins.disable::<PipelinedRenderingPlugin>();
     let exit = App::new()
         .add_plugins((plugins, ClipmapPlugin))
         .insert_resource(GlobalAmbientLight { brightness: 0.0, ..default() })
