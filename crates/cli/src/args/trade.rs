@@ -20,8 +20,8 @@ pub struct TradeArgs {
     pub surface: SurfaceArgs,
     /// Ground truth of this scene, .exr
     ///
-    /// The layer "standard_error" is subtracted from the errors. A header of another scene is refused. Default: brute force in
-    /// many azimuths, or dense sweeps where brute force is too slow.
+    /// The layer "standard_error" is subtracted from the errors. A header of another scene is refused, and
+    /// so are bounces about flat normals. Default: brute force in many azimuths, or dense sweeps where brute force is too slow.
     #[arg(long, help_heading = "Quality", value_name = "FILE")]
     pub reference: Option<PathBuf>,
     /// Bounces of indirect light, 0 to 64; above 0 only with --reference

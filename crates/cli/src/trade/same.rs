@@ -14,7 +14,8 @@ use crate::setup::lights::LIGHTS;
 const NEAR: f64 = 1e-6;
 
 /// Refuses a file whose metadata states another surface, border or light, or light that no settings
-/// here compute. `metadata` is this scene's. A file without metadata is accepted.
+/// here compute, as bounces about flat normals. `metadata` is this scene's. A file without metadata is
+/// accepted.
 pub fn check(path: &Path, scene: &Scene, metadata: &[(String, String)]) -> Result<()> {
     let stated = files::read_metadata(path)?;
     let stated: BTreeMap<String, String> =
@@ -45,7 +46,21 @@ pub fn check(path: &Path, scene: &Scene, metadata: &[(String, String)]) -> Resul
             });
         }
     }
+    if has_flat_bounces(&stated) {
+        let found = stated.get("normals").map_or("none, which is flat", String::as_str);
+        let expected = "smooth, as --bounces here: trace the file again without --normals flat";
+        return Err(Error::file(path, "header: normals", found, expected));
+    }
     Ok(())
+}
+
+/// Whether the file is of `reference` with bounces about flat normals. Files of earlier versions do not state their
+/// normals, which were flat. Direct light does not depend on them, and pictures have smooth ones only.
+fn has_flat_bounces(stated: &BTreeMap<String, String>) -> bool {
+    let of = |name: &str| stated.get(name).map(String::as_str);
+    of("method") == Some("path tracing")
+        && !matches!(of("bounces"), None | Some("0"))
+        && of("normals") != Some("smooth")
 }
 
 /// The key that replaces one of an earlier release.
@@ -116,6 +131,46 @@ fn is_same(name: &str, found: Option<&str>, expected: Option<&str>) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use ridgelight::scene::{HeightField, Lights, Surface};
+    use ridgelight_io::{Channels, Layer};
+
+    /// Only bounces of `reference` depend on normals; a file that does not state them has flat ones.
+    #[test]
+    fn bounces_about_flat_normals_are_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let field = HeightField::new(1, 2, &[0.0; 2], [1.0; 2], None).unwrap();
+        let scene = Scene { field, surface: Surface::default(), lights: Lights::default() };
+        let text = |(name, value): (&str, &str)| (name.to_owned(), value.to_owned());
+        let checked = |method, bounces, normals: Option<&str>| {
+            let path = folder.path().join("file.exr");
+            let stated = [
+                ("ridgelight", "1"),
+                ("cell_m", "1,1"),
+                ("base_m", "0"),
+                ("border", "plane"),
+                ("method", method),
+                ("bounces", bounces),
+            ];
+            let stated: Vec<_> =
+                stated.into_iter().chain(normals.map(|n| ("normals", n))).map(text).collect();
+            let layer = Layer { name: String::new(), channels: Channels::Rgb(&[[1.0; 3]; 2]) };
+            files::write_exr(&path, 1, 2, &[layer], &stated).unwrap();
+            check(&path, &scene, &[text(("bounces", bounces))])
+        };
+        for (method, bounces, normals) in [
+            ("path tracing", "2", Some("smooth")),
+            ("path tracing", "0", Some("flat")),
+            ("path tracing", "0", None),
+            ("brute force", "2", None),
+        ] {
+            checked(method, bounces, normals).unwrap();
+        }
+        for (normals, found) in [(Some("flat"), "flat"), (None, "none, which is flat")] {
+            let message = checked("path tracing", "2", normals).unwrap_err().to_string();
+            let expected = format!("header: normals: found {found}, expected smooth");
+            assert!(message.contains(&expected), "{message}");
+        }
+    }
 
     #[test]
     fn spellings_of_one_value_are_the_same() {

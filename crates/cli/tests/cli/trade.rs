@@ -285,6 +285,8 @@ fn gpu_trade_against_a_reference() {
     let trace =
         "reference field.npy -o traced.exr --spp 1 --sky 0.5 --sun 90,20 --bounces 2 --quiet";
     succeeded(&folder, trace);
+    let flat = trace.replace("traced.exr", "flat.exr") + " --normals flat";
+    succeeded(&folder, &flat);
     let before = folder.contents();
     for (args, said) in [
         (
@@ -315,6 +317,10 @@ fn gpu_trade_against_a_reference() {
         (
             "traced.exr --sky 0.5 --sun 90,20 --bounces 1",
             "traced.exr: header: bounces: found 2, expected 1",
+        ),
+        (
+            "flat.exr --sky 0.5 --sun 90,20 --bounces 2",
+            "flat.exr: header: normals: found flat, expected smooth",
         ),
     ] {
         let args = format!("trade field.npy -o other --evaluations 1 --reference {args}");
