@@ -32,7 +32,8 @@ pub(crate) fn plan(builder: &mut Builder, limits: &Limits) {
     let written: &[_] = &[("result", result)];
     let [filling, fetching] = [bytes + image_bytes, 16 * invocations + image_bytes];
     let writing = 16 * invocations;
-    // Part, reason, invocations, rounds, bindings, bytes, operations of a round.
+    // Part, reason, invocations, rounds, bindings, bytes, operations of a round. Of fetch, shared and fma, rounds and
+    // operations stay the same in every version: `bench --against` compares times of equal bytes.
     let parts = [
         (
             "fill",

@@ -61,6 +61,8 @@ pub struct Changes<'a> {
     earlier: &'a Earlier,
     /// Least and largest factor by which the machine changed times.
     machine: [f64; 2],
+    /// Peak passes that did other work in an earlier report.
+    other_peaks: usize,
     /// Rows of this run alone.
     new: usize,
 }
@@ -72,31 +74,38 @@ fn key(row: &Row) -> Key<'_> {
 impl Earlier {
     /// The rows that both have; `peaks` are the peak rates of this run.
     pub fn against<'a>(&'a self, rows: &'a [Row], peaks: &[Row]) -> Changes<'a> {
-        let machine = machine(self, peaks);
+        let (machine, other_peaks) = machine(self, peaks);
         let of = |row| Change::of(row, &self.same(key(row), |report| &report.rows), machine);
         let changes: Vec<_> = rows.iter().filter_map(of).collect();
         let new = rows.len() - changes.len();
-        Changes { changes, earlier: self, machine, new }
+        Changes { changes, earlier: self, machine, other_peaks, new }
     }
 }
 
 /// Least and largest factor by which the state of the machine, such as clock or load, changed times since the earlier
-/// reports.
+/// reports. Also the number of peak passes that did other work in an earlier report.
 ///
-/// A peak pass does the same work in every version. Let t be its 10th percentile now and t' the nearest of its earlier
-/// ones: its time changed by t / t'. Up to 5 % counts as no change. It is unknown which unit of the device limits another
-/// pass, and how much. That pass may have changed by any factor from min(1, t / t') to max(1, t / t') over all peaks.
-fn machine(earlier: &Earlier, peaks: &[Row]) -> [f64; 2] {
-    let mut factors = [1.0_f64; 2];
+/// 10th percentiles of peak passes of equal `bytes` are compared: the memory budget sets their invocations and with
+/// them their bytes, and an invocation does the same work in every version. Rates of unequal work are not compared,
+/// because a smaller copy is faster if it fits into a cache. Let t be the percentile now and t' the nearest of the
+/// earlier ones: the time changed by t / t'. Up to 5 % counts as no change. It is unknown which unit of the device limits
+/// another pass, and how much. That pass may have changed by any factor from min(1, t / t') to max(1, t / t') over all
+/// peaks.
+fn machine(earlier: &Earlier, peaks: &[Row]) -> ([f64; 2], usize) {
+    let (mut factors, mut other) = ([1.0_f64; 2], 0);
     for peak in peaks {
-        let then = range(&earlier.same(key(peak), |report| &report.peaks), |row| row.p10_ns);
+        let mut then = earlier.same(key(peak), |report| &report.peaks);
+        let count = then.len();
+        then.retain(|row| row.bytes == peak.bytes);
+        other += usize::from(then.len() < count);
+        let then = range(&then, |row| row.p10_ns);
         let Some(([p10, _], [least, most])) = peak.percentiles().zip(then) else { continue };
         let factor = p10 / p10.clamp(least, most);
         if (factor - 1.0).abs() > SAME {
             factors = [factors[0].min(factor), factors[1].max(factor)];
         }
     }
-    factors
+    (factors, other)
 }
 
 /// Factor by which load may have changed the times of a row: p90 / p10 if they differ by more than [`UNSTEADY`] of the
@@ -225,6 +234,12 @@ impl Changes<'_> {
             let [least, most] = self.machine;
             lines.push(format!(
                 "different peak rates: the same work takes {least:.2} to {most:.2} times as long as before; the intervals are wider because of this"
+            ));
+        }
+        if self.other_peaks > 0 {
+            lines.push(format!(
+                "not compared: {} peak rates, measured with other work in an earlier report; use its --memory-budget",
+                self.other_peaks
             ));
         }
         let unsteady = self.changes.iter().filter(|change| change.swing > 1.0).count();

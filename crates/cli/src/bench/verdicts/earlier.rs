@@ -37,6 +37,8 @@ pub struct EarlierRow {
     pub p90_ns: Option<f64>,
     pub median_low_ns: Option<f64>,
     pub median_high_ns: Option<f64>,
+    #[serde(default)]
+    pub bytes: u64,
 }
 
 /// Pass and part, mode, columns and rows, azimuths.

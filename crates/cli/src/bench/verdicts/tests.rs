@@ -93,6 +93,27 @@ fn another_state_of_the_machine_widens_the_interval() {
     assert!(!warnings(10.4).contains("peak rates"), "{}", warnings(10.4));
 }
 
+/// With another memory budget the peak pass takes 1.3 times as long for more work, so 125 ms are slower than 100. Of two
+/// reports, the one of the same work counts: the other's 20 ms would hide the change from 10 to 13 ms.
+#[test]
+fn peaks_of_other_work_are_not_compared() {
+    let slow = [row("a", 125.0)];
+    let judged = |earlier: &Earlier, bytes: u64| {
+        let changes = earlier.against(&slow, &[Row { bytes, ..row(PEAK, 13.0) }]);
+        let warnings = changes.warnings("d", "v").concat();
+        let of = |text: &str| warnings.contains(text);
+        let warned = [of("not compared: 1 peak rates"), of("different peak rates")];
+        (changes.changes[0].verdict, warned)
+    };
+    let rows = [row("a", 100.0)];
+    let mut earlier = reports(10.0, &[&rows[..], &rows[..]]);
+    assert_eq!(judged(&earlier, 0), (Verdict::Unsure, [false, true]));
+    assert_eq!(judged(&earlier, 1 << 20), (Verdict::Slower, [true, false]));
+    let other = &mut earlier.0[0].peaks[0];
+    (other.bytes, other.p10_ns) = (1 << 20, Some(20e6));
+    assert_eq!(judged(&earlier, 0), (Verdict::Unsure, [true, true]));
+}
+
 /// 110 to 150 ms spread by 25 % of their median: their interval of 120 to 140 could be that of 100 ms under load.
 #[test]
 fn unsteady_times_widen_the_interval() {
