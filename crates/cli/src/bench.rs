@@ -179,9 +179,11 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
 /// Hashes of what `--against` compares; `--size` and `--sizes` are in the rows.
 fn identity(scene: &Scene, is_input: bool) -> Value {
     let text = |hash: u64| format!("{hash:016x}");
-    let field = if is_input { text(scene_hash::field(scene)) } else { "fractal".to_owned() };
-    let [lights, surface] = [scene_hash::lights(scene), scene_hash::surface(scene)].map(text);
-    json!({ "field": field, "lights": lights, "surface": surface })
+    let Scene { field, surface, lights } = scene;
+    // A fractal is known by its size; its base depends on that.
+    let lights = text(scene_hash::lights(lights, is_input.then_some(field.base_m())));
+    let field = if is_input { text(scene_hash::field(field)) } else { "fractal".to_owned() };
+    json!({ "field": field, "lights": lights, "surface": text(scene_hash::surface(surface)) })
 }
 
 /// Refuses `--azimuth-list` before any device work.
@@ -386,6 +388,26 @@ mod tests {
     /// 10 values about 100, whose interval goes from the 2nd to the 9th: `step` apart, it is 7 steps wide.
     fn spread(count: usize, step: f64) -> Vec<f64> {
         (0..count).map(|i| 100.0 + step * i as f64).collect()
+    }
+
+    /// Reports of fractals of two sizes are of one scene, also with a sphere light, whose height is absolute. The border
+    /// differs in one part.
+    #[test]
+    fn the_size_of_a_fractal_is_no_part_of_its_identity() {
+        use ridgelight::scene::{Border, Lights, SphereLight, Surface};
+        let sphere =
+            SphereLight { position_m: [4.0, 4.0, 99.0], radius_m: 1.0, radiance: [1.0; 3] };
+        let lights = Lights { sphere_lights: vec![sphere], ..Lights::default() };
+        let [small, large] = [16, 48].map(|size| verify::tests::scene(size, lights.clone()));
+        assert_ne!(small.field.base_m(), large.field.base_m());
+        assert_eq!(identity(&small, false), identity(&large, false));
+        assert_ne!(identity(&small, true)["lights"], identity(&large, true)["lights"]);
+        let surface = Surface { border: Border::Open, ..Surface::default() };
+        let open = Scene { surface, ..small.clone() };
+        for (part, is_same) in [("field", true), ("lights", true), ("surface", false)] {
+            let [a, b] = [&small, &open].map(|scene| identity(scene, true)[part].clone());
+            assert_eq!(a == b, is_same, "{part}");
+        }
     }
 
     /// Tables of an environment do not depend on the heights; a sky has none.

@@ -85,8 +85,13 @@ impl Place {
         wanted: Picture,
     ) -> Self {
         let mut hash = Hash(tuned::hash(device));
-        let of_scene =
-            [scene_hash::field(scene), scene_hash::lights(scene), scene_hash::surface(scene)];
+        let Scene { field, surface, lights } = scene;
+        // The hash of the surface includes the border.
+        let of_scene = [
+            scene_hash::field(field),
+            scene_hash::lights(lights, Some(field.base_m())),
+            scene_hash::surface(surface),
+        ];
         let all = (of_scene, goal, seed, quality, wanted, limits);
         // Hashing cannot fail.
         let _ = write!(hash, "{all:?}");
