@@ -1,8 +1,9 @@
 //! Suns and key lights.
 
 use glam::DVec3;
-use ridgelight::scene::{Border, KeyLight};
+use ridgelight::scene::{Border, KeyLight, Lights, Scene, Sun, Surface};
 use ridgelight_cpu::light::{key_of, sky_of, sun_of};
+use ridgelight_cpu::lit::Lit;
 use ridgelight_cpu::oracle::Oracle;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -41,7 +42,8 @@ fn a_free_sun_lights_by_the_cosine_of_its_centre() {
     }
 }
 
-/// f32's π/2, `asin(1.0)`, is above π/2. It gives the bits of π/2, beside a wall too.
+/// f32's π/2, `asin(1.0)`, is above π/2. It gives the bits of π/2, beside a wall too. f32's 2π is above 2π: a key light
+/// of that width has the azimuths of a sky, 720, and not one more.
 #[test]
 fn f32_right_angles_light_like_exact_ones() {
     let exact = [FRAC_PI_2, TAU];
@@ -51,16 +53,25 @@ fn f32_right_angles_light_like_exact_ones() {
     for border in BORDERS {
         let oracle = Oracle::one_ray(&wall, border);
         let of = |[right, turn]: [f64; 2]| {
-            let suns = [0.0, 0.01, right].map(|diameter| sun_at(0.3, right, diameter));
+            let lit_suns = [0.0, 0.01, right].map(|diameter| sun_at(0.3, right, diameter));
             let key = |width_rad, low| KeyLight {
                 azimuth_rad: 0.3,
                 width_rad,
                 elevations_rad: [low, right],
                 radiance: [1.0; 3],
             };
-            let suns = suns.map(|sun| sun_of(&oracle, 4, 4, &sun, 32));
-            let keys = [key(turn, -right), key(1.0, 1.54)].map(|k| key_of(&oracle, 4, 4, &k, 32));
-            suns.into_iter().chain(keys).flatten().map(f64::to_bits).collect::<Vec<_>>()
+            let suns = lit_suns.map(|sun| sun_of(&oracle, 4, 4, &sun, 32));
+            let keys = [key(turn, -right), key(1.0, 1.54)];
+            let scene = |suns: &[Sun], keys: &[KeyLight]| Scene {
+                field: wall.clone(),
+                surface: Surface { border, ..Surface::default() },
+                lights: Lights { suns: suns.to_vec(), keys: keys.to_vec(), ..Lights::default() },
+            };
+            assert_eq!(Lit::of(&scene(&[], &keys[..1])).rays(), 720);
+            let together = Lit::of(&scene(&lit_suns, &keys)).at(4, 4);
+            let keys = keys.map(|k| key_of(&oracle, 4, 4, &k, 32));
+            let all = suns.into_iter().chain(keys).chain([together]);
+            all.flatten().map(f64::to_bits).collect::<Vec<_>>()
         };
         assert_eq!(of(rounded), of(exact), "{border:?}");
     }

@@ -137,7 +137,9 @@ impl<'a> Lit<'a> {
 
     /// Azimuths across a key light.
     fn key_strips(&self, key: &KeyLight) -> usize {
-        ((self.azimuths as f64 * key.width_rad / TAU).ceil() as usize).max(self.strips)
+        // f32 rounds 2π up. A whole turn divided by 2π is exactly 1.
+        let turns = key.width_rad.min(TAU) / TAU;
+        ((self.azimuths as f64 * turns).ceil() as usize).max(self.strips)
     }
 }
 
