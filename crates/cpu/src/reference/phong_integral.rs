@@ -114,7 +114,7 @@ mod tests {
     use super::*;
     use crate::light::Receiver;
     use glam::DVec3;
-    use std::f64::consts::FRAC_PI_2;
+    use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2, FRAC_PI_4, PI};
 
     /// Gauss' rule over the lobe itself shares nothing with the table but the rim that both leave out. The table errs as
     /// [`STEPS`] states, times (n + 1) / 2 for the integral of a width of 1/√(n + 1): 4e-9 √(n + 1). Beside a rim of a low
@@ -157,6 +157,58 @@ mod tests {
             let slice = lobe.slice(0.7);
             let light = PhongIntegral::of(exponent).light(&slice, [-FRAC_PI_2, FRAC_PI_2]);
             assert!((light - 0.5).abs() < 1e-8, "{exponent}: {light}");
+        }
+    }
+
+    /// A wall that faces east has N = r = (1, 0, 0). In azimuth 0 this gives a = 1, b = 0, low = atan2(-1, 0) = -π/2,
+    /// so every elevation counts: the light is (n + 1)/2 · ∫cosⁿ⁺¹ω dω. The antiderivatives of cos, cos² and cos³ are
+    /// sin ω, ω/2 + sin 2ω/4 and sin ω - sin³ω/3. The light of the elevations is:
+    ///
+    /// - -π/2 to π/2: ½ · 2 = 1, 1 · π/2, 3/2 · 4/3 = 2;
+    /// - 0 to π/2: half of these, as cosⁿ⁺¹ is even;
+    /// - -π/2 to π/6: ½ (½ + 1) = 3/4, π/12 + √3/8 + π/4 = π/3 + √3/8, 3/2 (½ - 1/24 + 2/3) = 27/16.
+    ///
+    /// Tolerance: [`STEPS`], with steps of 1/(32 √(n + 1)).
+    #[test]
+    fn a_level_lobe_has_the_integrals_of_powers_of_the_cosine() {
+        let lobe = |exponent| Receiver { normal: DVec3::X, phong_lobe: Some((DVec3::X, exponent)) };
+        let cut = PI / 3.0 + 3_f64.sqrt() / 8.0;
+        for (exponent, whole, cut) in [(0.0, 1.0, 0.75), (1.0, FRAC_PI_2, cut), (2.0, 2.0, 1.6875)]
+        {
+            let slice = lobe(exponent).slice(0.0);
+            assert_eq!([slice.a, slice.b, slice.low], [1.0, 0.0, -FRAC_PI_2]);
+            let table = PhongIntegral::of(exponent);
+            for (low, high, wanted) in [
+                (-FRAC_PI_2, FRAC_PI_2, whole),
+                (0.0, FRAC_PI_2, 0.5 * whole),
+                (-FRAC_PI_2, PI / 6.0, cut),
+            ] {
+                let light = table.light(&slice, [low, high]);
+                let above = table.light(&slice.above(low), [-FRAC_PI_2, high]);
+                assert!((light - wanted).abs() < 1e-8, "{exponent} {low} {high}: {light}");
+                assert_eq!(above, light, "{exponent} {low} {high}");
+            }
+        }
+    }
+
+    /// A slope of 45° to the east has N = r = (1, 0, 1)/√2. In azimuth 0 this gives a = b = 1/√2 and low = -π/4; both
+    /// parts of the integral count. (n + 1)/2 · ∫(a cos ω + b sin ω)ⁿ cos ω dω from -π/4 to π/2, by elementary
+    /// antiderivatives in ω:
+    ///
+    /// - n = 0: ½ [sin ω] = ½ (1 + 1/√2);
+    /// - n = 1: 1/√2 [ω/2 + sin 2ω/4 + sin²ω/2] = 1/√2 (3π/8 + ½);
+    /// - n = 2: ¾ [sin ω - ⅔ cos³ω] = ¾ (1 + 4/(3√2)) = ¾ + 1/√2.
+    #[test]
+    fn a_tilted_lobe_has_its_closed_form() {
+        let along = DVec3::new(FRAC_1_SQRT_2, 0.0, FRAC_1_SQRT_2);
+        let expected =
+            [0.5 * (1.0 + FRAC_1_SQRT_2), FRAC_1_SQRT_2 * (0.375 * PI + 0.5), 0.75 + FRAC_1_SQRT_2];
+        for (exponent, expected) in [0.0, 1.0, 2.0].into_iter().zip(expected) {
+            let lobe = Receiver { normal: along, phong_lobe: Some((along, exponent)) };
+            let slice = lobe.slice(0.0);
+            assert!((slice.low + FRAC_PI_4).abs() < 1e-15);
+            let light = PhongIntegral::of(exponent).light(&slice, [-FRAC_PI_2, FRAC_PI_2]);
+            assert!((light - expected).abs() < 1e-8, "{exponent}: {light} {expected}");
         }
     }
 }
