@@ -40,6 +40,17 @@ impl VisibleInterval {
         if distance.is_finite() { distance.clamp(near, far) } else { near }
     }
 
+    /// What lies above an elevation, in parts of equal elevation. One part ends at exactly `high_rad`. Where nothing lies
+    /// above, the parts are empty: their upper ends are not above the elevation.
+    pub(crate) fn parts(self, above_rad: f64, count: usize) -> impl Iterator<Item = Self> {
+        let low_rad = self.low_rad.max(above_rad);
+        let end = move |i: usize| {
+            let t = i as f64 / count as f64;
+            (1.0 - t) * low_rad + t * self.high_rad
+        };
+        (0..count).map(move |i| Self { low_rad: end(i), high_rad: end(i + 1), ..self })
+    }
+
     /// Horizontal distance at which the piece ends, metres.
     pub fn end_m(&self) -> f64 {
         self.span_m[1]
