@@ -1,11 +1,11 @@
 //! Conservation of energy, linearity and symmetry of indirect light.
 
 use ridgelight::scene::{Albedo, Border, Environment, Lights};
-use ridgelight_cpu::indirect::Fineness;
+use ridgelight_cpu::indirect::{Fineness, smooth_light};
 use ridgelight_cpu::light::sky_of;
 use ridgelight_cpu::oracle::Oracle;
 
-use super::{COARSE, reds, rough, under_sky};
+use super::{COARSE, red, reds, rough, under_sky};
 use crate::{BORDERS, field};
 
 /// White ground under a white sky, flat: 1, whatever border, size and bounces.
@@ -61,6 +61,22 @@ fn a_rough_furnace_tends_to_one() {
     }
 }
 
+/// The same with smooth normals. The least share of sky is that of the grid points' normals, which
+/// `pictures[0]` holds.
+#[test]
+fn a_smooth_furnace_tends_to_one() {
+    for border in [Border::Open, Border::Periodic] {
+        let scene = under_sky(rough(6, 5, [1.0, 1.5], 1.5), border, 1.0);
+        let pictures = smooth_light(&scene, 200, COARSE.azimuths, COARSE.strips).unwrap();
+        let pictures: Vec<_> = pictures.iter().map(red).collect();
+        for pair in pictures.windows(2) {
+            assert!(pair[0].iter().zip(&pair[1]).all(|(a, b)| a <= b && *b <= 1.0 + 1e-12));
+        }
+        assert!(pictures[0].iter().all(|v| *v > 0.1));
+        assert!(pictures[200].iter().all(|v| *v > 1.0 - 1e-9), "{border:?}");
+    }
+}
+
 /// Under `plane` directions below horizontal are black at every bounce: a tilted plane has (1 + cos tilt)/2 and
 /// no indirect light. Rule over azimuths: half a squared step, as the slice's slope is continuous.
 #[test]
@@ -97,6 +113,30 @@ fn half_a_turn_and_a_flip_change_nothing() {
                 assert!((here - there).abs() < 1e-5, "{border:?} {b} {r} {c}: {here} {there}");
                 assert!((here - flipped[b][c * n + r]).abs() < 1e-5, "{border:?} {b} {r} {c}");
             }
+        }
+    }
+}
+
+/// Half a turn keeps smooth light, too, on a field that is not square and under an albedo map: each corner has the
+/// radiance of its own grid point. Only rounding is left.
+#[test]
+fn half_a_turn_keeps_smooth_light() {
+    let (rows, cols) = (4, 6);
+    let original = rough(rows, cols, [1.0, 1.0], 4.0);
+    let last = rows * cols - 1;
+    let of = |turned: bool| {
+        let from = |i: usize| if turned { last - i } else { i };
+        let heights = |r: usize, c: usize| f64::from(original.heights_m()[from(r * cols + c)]);
+        let mut scene = under_sky(field(rows, cols, [1.0, 1.0], heights), Border::Open, 1.0);
+        let albedo = (0..=last).map(|i| [(from(i) * 7 % 11) as f32 / 10.0; 3]).collect();
+        scene.surface.albedo = Albedo::Map(albedo);
+        smooth_light(&scene, 2, 16, 1).unwrap()
+    };
+    let (straight, turned) = (of(false), of(true));
+    for (straight, turned) in straight.iter().zip(&turned) {
+        for (i, here) in straight.iter().enumerate() {
+            let there = turned[last - i];
+            assert!((here[0] - there[0]).abs() < 1e-9, "{i}: {here:?} {there:?}");
         }
     }
 }

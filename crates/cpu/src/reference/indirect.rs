@@ -16,7 +16,8 @@
 //!   point. Results hold all bounces up to b.
 //!
 //! The unknowns are the radiances at the corners of every triangle; radiance is linear between them. Flat triangles have
-//! three each, as a shared corner has another normal on each. All receivers at a grid point share the same profiles
+//! three each, as a shared corner has another normal on each. With smooth normals, all corners at a grid point share
+//! one. All receivers at a grid point share the same profiles
 //! ([`profile`](crate::profile)). Every visible interval, or panel of it, adds its cosine weight in closed form; its
 //! radiance is taken at the two-point Gauss mean of its distance.
 //!
@@ -151,32 +152,33 @@ fn light_of(
     }
     let fine = divided_field(field, surface.border, divisions)?;
     let oracle = Oracle::new(&fine, surface.border);
-    let places = places(&oracle, field, normals, divisions, surface.specular.as_ref());
-    let corners = corner_count(&oracle);
+    let unknowns = Unknowns { normals, oracle: &oracle };
+    let places = places(unknowns, field, divisions, surface.specular.as_ref());
+    let diffuse = unknowns.first_grid_point();
     let lights = moved_lights(lights, field, surface.border, divisions);
 
-    let (rows, mut arrived) = at_all(&oracle, &places, &lights, (fineness, panels));
+    let (rows, mut arrived) = at_all(unknowns, &places, &lights, (fineness, panels));
     let albedo = |at: usize| albedo_at(surface, at);
     let channels = [0, 1, 2].map(|i| divide(field, surface.border, divisions, |at| albedo(at)[i]));
-    let corner_albedo: Vec<Rgb> = (0..corners)
-        .map(|corner| {
-            let [r, c] = oracle.corners(corner / 3)[corner % 3];
-            [0, 1, 2].map(|i| channels[i][r * fine.cols() + c])
+    let unknown_albedo: Vec<Rgb> = (0..unknowns.count())
+        .map(|unknown| {
+            let at = unknowns.grid_point(unknown);
+            [0, 1, 2].map(|i| channels[i][at])
         })
         .collect();
     let towards_above = |arrived: &[Rgb], at: usize| {
         let scale =
             surface.specular.as_ref().map_or(0.0, |specular| f64::from(specular.at(at).scale));
-        let diffuse = product(albedo(at), arrived[corners + at]);
-        let mirrored = arrived.get(corners + grid_points + at).copied().unwrap_or_default();
-        [0, 1, 2].map(|i| diffuse[i] + scale * mirrored[i])
+        let reflected = product(albedo(at), arrived[diffuse + at]);
+        let mirrored = arrived.get(diffuse + grid_points + at).copied().unwrap_or_default();
+        [0, 1, 2].map(|i| reflected[i] + scale * mirrored[i])
     };
 
     let mut picture: Picture = (0..grid_points).map(|at| towards_above(&arrived, at)).collect();
     let mut pictures = vec![picture.clone()];
     for _ in 0..bounces {
         let leaving: Vec<Rgb> =
-            corner_albedo.iter().zip(&arrived).map(|(a, b)| product(*a, *b)).collect();
+            unknown_albedo.iter().zip(&arrived).map(|(a, b)| product(*a, *b)).collect();
         arrived = rows.iter().map(|row| row.of(&leaving)).collect();
         for (at, sum) in picture.iter_mut().enumerate() {
             let more = towards_above(&arrived, at);
@@ -191,58 +193,101 @@ fn product(a: Rgb, b: Rgb) -> Rgb {
     [0, 1, 2].map(|i| a[i] * b[i])
 }
 
-/// Visibility of one receiver: weights of the corners' radiances and of a sky of radiance 1.
+/// Visibility of one receiver: weights of the unknown radiances and of a sky of radiance 1.
 #[derive(Clone, Debug, Default)]
 struct Visibility {
-    corners: Vec<u32>,
+    unknowns: Vec<u32>,
     weights: Vec<f64>,
     sky: f64,
 }
 
 impl Visibility {
     fn of(&self, radiance: &[Rgb]) -> Rgb {
-        self.corners.iter().zip(&self.weights).fold([0.0; 3], |sum, (corner, weight)| {
-            [0, 1, 2].map(|c| sum[c] + weight * radiance[*corner as usize][c])
+        self.unknowns.iter().zip(&self.weights).fold([0.0; 3], |sum, (unknown, weight)| {
+            [0, 1, 2].map(|c| sum[c] + weight * radiance[*unknown as usize][c])
         })
     }
 }
 
-/// Three per triangle.
-fn corner_count(oracle: &Oracle) -> usize {
-    let [down, across] = oracle.cells();
-    3 * 2 * down * across
+/// Radiances that the ground reflects by, on the divided field: of flat triangles one per corner, three per triangle;
+/// with smooth normals one per grid point.
+#[derive(Clone, Copy)]
+struct Unknowns<'a> {
+    normals: Normals,
+    oracle: &'a Oracle<'a>,
 }
 
-/// For every grid point of the divided field, the receivers there and the index of their light: first all triangles'
-/// corners, then the undivided field's grid points, then their specular.
+impl Unknowns<'_> {
+    fn count(self) -> usize {
+        match self.normals {
+            Normals::Flat => 3 * self.triangles(),
+            Normals::Smooth => self.oracle.field().rows() * self.oracle.field().cols(),
+        }
+    }
+
+    fn triangles(self) -> usize {
+        let [down, across] = self.oracle.cells();
+        2 * down * across
+    }
+
+    /// The index at a triangle's corner.
+    fn at(self, triangle: usize, corner: usize) -> usize {
+        match self.normals {
+            Normals::Flat => 3 * triangle + corner,
+            Normals::Smooth => self.corner(triangle, corner),
+        }
+    }
+
+    /// Row-major index of the grid point of an unknown.
+    fn grid_point(self, unknown: usize) -> usize {
+        match self.normals {
+            Normals::Flat => self.corner(unknown / 3, unknown % 3),
+            Normals::Smooth => unknown,
+        }
+    }
+
+    fn corner(self, triangle: usize, corner: usize) -> usize {
+        let [r, c] = self.oracle.corners(triangle)[corner];
+        r * self.oracle.field().cols() + c
+    }
+
+    /// The index of the first grid point's light. With smooth normals, which have no divisions, the grid points are the
+    /// unknowns.
+    fn first_grid_point(self) -> usize {
+        match self.normals {
+            Normals::Flat => self.count(),
+            Normals::Smooth => 0,
+        }
+    }
+}
+
+/// For every grid point of the divided field, the receivers there and the index of their light: first the unknowns, then
+/// the undivided field's grid points where these are not the unknowns, then their specular.
 fn places(
-    oracle: &Oracle,
+    unknowns: Unknowns,
     field: &HeightField,
-    normals: Normals,
     divisions: usize,
     specular: Option<&Specular>,
 ) -> Vec<Vec<(usize, Receiver)>> {
+    let oracle = unknowns.oracle;
     let fine = oracle.field();
     let mut places = vec![Vec::new(); fine.rows() * fine.cols()];
-    let corners = corner_count(oracle);
-    for triangle in 0..corners / 3 {
-        for (k, [r, c]) in oracle.corners(triangle).into_iter().enumerate() {
-            let normal = match normals {
-                Normals::Flat => triangle_normal(oracle, triangle),
-                Normals::Smooth => normal(field, oracle.border(), r, c),
-            };
-            places[r * fine.cols() + c].push((3 * triangle + k, Receiver::diffuse(normal)));
+    if unknowns.normals == Normals::Flat {
+        for unknown in 0..unknowns.count() {
+            let receiver = Receiver::diffuse(triangle_normal(oracle, unknown / 3));
+            places[unknowns.grid_point(unknown)].push((unknown, receiver));
         }
     }
+    let diffuse = unknowns.first_grid_point();
     let grid_points = field.rows() * field.cols();
     for at in 0..grid_points {
         let (r, c) = (at / field.cols(), at % field.cols());
         let normal = normal(field, oracle.border(), r, c);
         let place = &mut places[divisions * (r * fine.cols() + c)];
-        place.push((corners + at, Receiver::diffuse(normal)));
+        place.push((diffuse + at, Receiver::diffuse(normal)));
         if let Some(specular) = specular {
             let n = f64::from(specular.at(at).exponent);
-            place.push((corners + grid_points + at, Receiver::specular_from_above(normal, n)));
+            place.push((diffuse + grid_points + at, Receiver::specular_from_above(normal, n)));
         }
     }
     places
@@ -250,18 +295,19 @@ fn places(
 
 /// Visibility of every receiver, and its light straight from the sources, each at its index.
 fn at_all(
-    oracle: &Oracle,
+    unknowns: Unknowns,
     places: &[Vec<(usize, Receiver)>],
     lights: &Lights,
     (fineness, panels): (Fineness, usize),
 ) -> (Vec<Visibility>, Vec<Rgb>) {
+    let oracle = unknowns.oracle;
     let count = places.iter().map(Vec::len).sum();
     let (mut rows, mut direct) = (vec![Visibility::default(); count], vec![[0.0; 3]; count]);
     for (at, place) in places.iter().enumerate() {
         let here = [at / oracle.field().cols(), at % oracle.field().cols()];
         let receivers: Vec<Receiver> = place.iter().map(|(_, receiver)| *receiver).collect();
         let site = Site::of(oracle, here, &receivers);
-        let visibility = gather(site, fineness.azimuths, panels);
+        let visibility = gather(site, unknowns, fineness.azimuths, panels);
         let arriving = arriving(site, &visibility, lights, fineness.strips);
         for (((target, _), visibility), light) in place.iter().zip(visibility).zip(arriving) {
             (rows[*target], direct[*target]) = (visibility, light);
@@ -289,10 +335,9 @@ fn triangle_normal(oracle: &Oracle, triangle: usize) -> DVec3 {
 /// Weights of a diffuse receiver are scaled so that those of its whole hemisphere sum to 1. The rule over azimuths
 /// alone misses this by less the more azimuths and the gentler the slope. Uniform incident radiance is preserved, and
 /// energy is not gained.
-fn gather(site: Site, azimuths: usize, panels: usize) -> Vec<Visibility> {
+fn gather(site: Site, unknowns: Unknowns, azimuths: usize, panels: usize) -> Vec<Visibility> {
     let Site { oracle, place: [row, col], receivers } = site;
-    let corners = corner_count(oracle);
-    let mut dense = vec![vec![0.0; corners]; receivers.len()];
+    let mut dense = vec![vec![0.0; unknowns.count()]; receivers.len()];
     let mut all = vec![Visibility::default(); receivers.len()];
     let mut totals = vec![0.0; receivers.len()];
     for k in 0..azimuths {
@@ -309,11 +354,11 @@ fn gather(site: Site, azimuths: usize, panels: usize) -> Vec<Visibility> {
                 if weight > 0.0 {
                     let shares = panel.corner_weights(mean_distance_m(&slice, &panel));
                     for (j, share) in shares.into_iter().enumerate().filter(|(_, s)| *s > 0.0) {
-                        let corner = 3 * panel.triangle + j;
-                        if dense[i][corner] == 0.0 {
-                            all[i].corners.push(corner as u32);
+                        let unknown = unknowns.at(panel.triangle, j);
+                        if dense[i][unknown] == 0.0 {
+                            all[i].unknowns.push(unknown as u32);
                         }
-                        dense[i][corner] += weight * share;
+                        dense[i][unknown] += weight * share;
                     }
                 }
             }
@@ -323,7 +368,7 @@ fn gather(site: Site, azimuths: usize, panels: usize) -> Vec<Visibility> {
         let is_specular = receivers[i].phong_lobe.is_some();
         let scale = if is_specular { 2.0 / azimuths as f64 } else { 1.0 / totals[i] };
         visibility.weights =
-            visibility.corners.iter().map(|c| scale * dense[i][*c as usize]).collect();
+            visibility.unknowns.iter().map(|u| scale * dense[i][*u as usize]).collect();
         visibility.sky *= scale;
     }
     all
@@ -417,7 +462,7 @@ fn moved_lights(lights: &Lights, field: &HeightField, border: Border, divisions:
 #[cfg(test)]
 mod tests {
     use super::*;
-    use ridgelight::scene::{Albedo, Surface};
+    use ridgelight::scene::{Albedo, PhongSpecular, Surface};
 
     fn rough() -> Scene {
         let heights: Vec<f64> =
@@ -466,6 +511,36 @@ mod tests {
         let coarse = smooth_light(&rough(), 1, 8, 1).unwrap();
         for (i, error) in expected_light.error[1].iter().enumerate() {
             assert_eq!(error[0], (coarse[1][i][0] - expected_light.radiance[1][i][0]).abs());
+        }
+    }
+
+    /// Flat triangles: a receiver at each corner of 2 · 4 · 5 triangles and one at each of 30 grid points. Smooth
+    /// normals: one at each grid point, with and without specular's. Indices are complete and without repetition.
+    #[test]
+    fn smooth_corners_share_a_receiver() {
+        let scene = rough();
+        let oracle = Oracle::new(&scene.field, Border::Open);
+        let specular = Specular::Constant(PhongSpecular { exponent: 5.0, scale: 0.5 });
+        for (normals, specular, count) in [
+            (Normals::Flat, None, 3 * 40 + 30),
+            (Normals::Flat, Some(&specular), 3 * 40 + 2 * 30),
+            (Normals::Smooth, None, 30),
+            (Normals::Smooth, Some(&specular), 2 * 30),
+        ] {
+            let unknowns = Unknowns { normals, oracle: &oracle };
+            let places = places(unknowns, &scene.field, 1, specular);
+            let mut indices: Vec<usize> =
+                places.iter().flatten().map(|(index, _)| *index).collect();
+            indices.sort_unstable();
+            assert!(indices.into_iter().eq(0..count), "{normals:?}");
+            for unknown in 0..unknowns.count() {
+                let place = &places[unknowns.grid_point(unknown)];
+                assert!(place.iter().any(|(index, _)| *index == unknown), "{normals:?} {unknown}");
+            }
+            for (triangle, k) in (0..40).flat_map(|t| [(t, 0), (t, 1), (t, 2)]) {
+                let [r, c] = oracle.corners(triangle)[k];
+                assert_eq!(unknowns.grid_point(unknowns.at(triangle, k)), r * 6 + c);
+            }
         }
     }
 
