@@ -25,8 +25,16 @@ const LIGHTS: [(&str, &[&str]); 2] = [
 ];
 
 /// The settings that matter most, of a picture's metadata.
-const STATED: [&str; 7] =
-    ["lines", "fuse", "azimuths", "bounces", "bounce_engine", "bounce_azimuths", "subsample"];
+const STATED: [&str; 8] = [
+    "method",
+    "lines",
+    "fuse",
+    "azimuths",
+    "bounces",
+    "bounce_engine",
+    "bounce_azimuths",
+    "subsample",
+];
 
 /// R, G and B, one after the other.
 fn light(path: &Path) -> Result<Vec<f64>> {
@@ -91,10 +99,13 @@ fn rows(
             let found = stated.iter().find(|(name, _)| name == key);
             found.map_or("", |(_, value)| value.as_str())
         };
+        let of_picture = STATED.map(|key| (key, of(key)));
+        let settings = of_picture.iter().filter(|(_, value)| !value.is_empty());
+        let settings: Vec<_> = settings.map(|(key, value)| format!("{key} {value}")).collect();
         let percent = |key: &str| of(key).parse().map(|v: f64| format!("{:.3}", 100.0 * v));
         println!(
             "{head} {} | {} | {} | {:.3} ± {:.3} | {} |",
-            STATED.map(|key| format!("{key} {}", of(key))).join(", "),
+            settings.join(", "),
             percent("error_measured")?,
             percent("error_at_most")?,
             100.0 * rmse,
