@@ -54,6 +54,7 @@ const PROGRAMS: [Program; 31] = [
     ("hosts", "HOST=CRATES=PROGRAM...", hosts::run),
     ("lights", "[SIDE]", lights::run),
     ("lobe", "[SIDE]", specular::direct),
+    ("specular-times", "", specular::times),
     ("pages", "[--check]", pages::run),
     ("performance", "PROGRAM|--redraw -o FILE.svg --json FILE", performance::run),
     ("picture", "-o PICTURE.png --json FILE", pictures::picture),

@@ -148,6 +148,32 @@ pub fn frames_in_turn(
     Ok(rows.split_off(1))
 }
 
+/// Milliseconds of frames of new heights, drawn in turn: without the passes whose tables depend on lights and settings
+/// alone. Ends the frames.
+pub fn new_heights_in_turn<const N: usize>(
+    gpu: &mut Headless,
+    mut frames: [Frame; N],
+    turns: usize,
+) -> Result<Vec<[f64; N]>> {
+    let needed = frames.each_ref().map(|frame| {
+        let plan = frame.plan();
+        plan.passes_after(plan, &plan.find("heights").into_iter().collect::<Vec<_>>())
+    });
+    for frame in &mut frames {
+        gpu.draw(frame)?;
+    }
+    let mut rows = Vec::new();
+    for _ in 0..turns {
+        let mut row = [0.0; N];
+        for ((ms, frame), passes) in row.iter_mut().zip(&mut frames).zip(&needed) {
+            *ms = total(&gpu.draw_passes(frame, passes)?);
+        }
+        rows.push(row);
+    }
+    frames.into_iter().for_each(|frame| gpu.end(frame));
+    Ok(rows)
+}
+
 /// The light of exact horizons: every crossing in 256 azimuths, by tables of 1024 elevations.
 pub fn exact_light(gpu: &mut Headless, scene: &Scene) -> Result<Colours> {
     let method = Method::BruteForce;
