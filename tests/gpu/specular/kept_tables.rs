@@ -173,8 +173,8 @@ fn tables_follow_the_environment_and_the_exponent() {
     let plan = planned(gpu, &scene);
     let due = gpu.replace_plan(&mut frame, plan.clone()).expect("the same passes");
     let kept = left_out(&plan, &due);
-    let is_of_lobe = |table: &&str| !table.starts_with("env_");
-    assert!(TABLES.iter().all(|table| kept.iter().any(|k| k == table) != is_of_lobe(table)));
+    let is_specular = |table: &&str| !table.starts_with("env_");
+    assert!(TABLES.iter().all(|table| kept.iter().any(|k| k == table) != is_specular(table)));
     contents[0] = fractal(SIDE, 2).expect("a field").heights_m().to_vec();
     gpu.refill(&frame, 0, &contents[0]).expect("refilled");
     let passes = frame.renderer().passes_after(&[heights]);
