@@ -3,6 +3,7 @@
 
 mod arguments {
     mod flags;
+    mod help;
     mod inputs;
     mod renamed;
     mod scene_file;
