@@ -1,5 +1,6 @@
-//! All tests that need a Vulkan device; a module is a room of the passes. `tools/test` runs them on lavapipe and on
-//! SwiftShader under validation with synchronisation validation; alone, they run on the first driver.
+//! All tests that need a Vulkan device; a module is a room of the passes. `tools/test` runs them on lavapipe, and those that
+//! depend on the driver on SwiftShader, under validation with synchronisation validation; `--all` runs all of them on both.
+//! Alone, they run on the first driver.
 
 mod bake {
     pub mod cpu_reference;
