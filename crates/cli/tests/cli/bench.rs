@@ -13,12 +13,15 @@ fn gpu_an_unknown_pass_is_reported_first() {
     assert!(run.err.contains("--passes: found none, expected"), "{}", run.err);
 }
 
+/// The work of the peak rates follows from the memory budget. By default it takes most of a run.
+const SMALL: [&str; 2] = ["--memory-budget", "16MiB"];
+
 /// Reports with a thousandth of the times make a run SLOWER, with status 1; with a thousand times the times FASTER.
 #[test]
 fn gpu_an_earlier_report_gives_verdicts() {
     let folder = Folder::new();
     let base = ["bench", "--size", "32", "--azimuths", "8", "--runs", "10"];
-    let base = [&base[..], &["--passes", "sky_shade"]].concat();
+    let base = [&base[..], &["--passes", "sky_shade"], &SMALL].concat();
     let run =
         folder.run(&[&base[..], &["--json", "now.json", "--bencher", "metrics.json"]].concat());
     assert_eq!(run.status, Some(0), "{}", run.err);
@@ -56,7 +59,7 @@ fn gpu_an_earlier_report_gives_verdicts() {
         assert!(run.out.contains("one earlier report cannot show"), "{}", run.out);
     }
     let other = ["bench", "--size", "48", "--azimuths", "8", "--runs", "1"];
-    let run = folder.run(&[&other[..], &["--against", "now.json,slow.json"]].concat());
+    let run = folder.run(&[&other[..], &SMALL, &["--against", "now.json,slow.json"]].concat());
     assert_eq!(run.status, Some(2), "{}", run.err);
     assert!(run.err.contains("no row of this run in now.json, slow.json"), "{}", run.err);
     std::fs::write(folder.path("field.json"), "[]").unwrap();

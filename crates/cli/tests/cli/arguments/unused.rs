@@ -144,7 +144,8 @@ fn gpu_results_are_those_without_the_flag() {
     for (flags, reason) in
         [("a.asc --size 8", "with an INPUT"), ("--size 8 --sizes 4", "with --sizes")]
     {
-        let args = format!("bench {flags} --runs 1");
+        // A small budget: little work for the peak rates.
+        let args = format!("bench {flags} --runs 1 --memory-budget 16MiB");
         let run = folder.run_str(&args);
         let said = format!("note: --size 8 changes nothing {reason}\n");
         assert_eq!((run.status, run.err), (Some(0), said), "{args}");
