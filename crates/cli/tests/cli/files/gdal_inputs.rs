@@ -41,7 +41,8 @@ fn heights(path: &Path, options: &HeightOptions) -> Vec<f32> {
     absolute(&read.field)
 }
 
-/// Every band of files of several bands, interleaved or one after the other, in strips and in tiles.
+/// Every band of files of several bands, interleaved or one after the other, in strips and in tiles. Each type by each
+/// compression has two of these four layouts, in turn: both orders of bands, strips and tiles.
 #[test]
 #[ignore = "needs GDAL: Debian's gdal-bin"]
 fn gdal_bands_have_the_values_that_gdal_reads() {
@@ -65,10 +66,15 @@ fn gdal_bands_have_the_values_that_gdal_reads() {
         "Float32",
         "Float64",
     ];
-    for kind in kinds {
-        for layout in ["PIXEL", "BAND"] {
-            for tiles in ["NO", "YES -co BLOCKXSIZE=16 -co BLOCKYSIZE=16"] {
-                for packed in ["NONE", "LZW", "LZW -co PREDICTOR=2", "DEFLATE", "ZSTD"] {
+    let tilings = ["NO", "YES -co BLOCKXSIZE=16 -co BLOCKYSIZE=16"];
+    let compressions = ["NONE", "LZW", "LZW -co PREDICTOR=2", "DEFLATE", "ZSTD"];
+    for (k, kind) in kinds.into_iter().enumerate() {
+        for (l, layout) in ["PIXEL", "BAND"].into_iter().enumerate() {
+            for (t, tiles) in tilings.into_iter().enumerate() {
+                for (p, packed) in compressions.into_iter().enumerate() {
+                    if !(k + l + t + p).is_multiple_of(2) {
+                        continue;
+                    }
                     let options = format!("-co INTERLEAVE={layout} -co TILED={tiles}");
                     let command = format!(
                         "gdal_translate -q -ot {kind} {options} -co COMPRESS={packed} odd.vrt b.tif"
@@ -95,7 +101,7 @@ fn gdal_bands_have_the_values_that_gdal_reads() {
             }
         }
     }
-    assert_eq!(read, 5 * kinds.len() * 20);
+    assert_eq!(read, 5 * kinds.len() * 10);
 }
 
 /// Overviews, which gdaladdo writes into a file or beside it, are not read in place of the heights.
@@ -176,15 +182,18 @@ fn gdal_lzw_tiles_beyond_the_edge_are_read() {
     }
 }
 
-/// Files whose least value is white, in each of GDAL's byte orders and in BigTIFF.
+/// Files whose least value is white, in each of GDAL's byte orders and in BigTIFF. Each type by each compression has two of
+/// the four forms, in turn.
 #[test]
 #[ignore = "needs GDAL: Debian's gdal-bin"]
 fn gdal_values_are_the_stored_ones_where_white_is_zero() {
     let folder = Folder::new();
     folder.write("a.asc", grid([37, 29], [500_000.0, 4_900_000.0], 30.0, 0).as_bytes());
-    for kind in ["Byte", "UInt16", "Int16", "Float32"] {
-        for packed in ["NONE", "LZW", "DEFLATE"] {
-            for layout in ["ENDIANNESS=LITTLE", "ENDIANNESS=BIG", "BIGTIFF=YES", "TILED=YES"] {
+    let forms = ["ENDIANNESS=LITTLE", "ENDIANNESS=BIG", "BIGTIFF=YES", "TILED=YES"];
+    for (k, kind) in ["Byte", "UInt16", "Int16", "Float32"].into_iter().enumerate() {
+        for (p, packed) in ["NONE", "LZW", "DEFLATE"].into_iter().enumerate() {
+            let in_turn = forms.into_iter().skip((k + p) % 2).step_by(2);
+            for layout in in_turn {
                 let options = format!("-co PHOTOMETRIC=MINISWHITE -co COMPRESS={packed}");
                 tool(
                     &folder,
