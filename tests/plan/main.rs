@@ -9,7 +9,11 @@ mod sizes;
 mod specular;
 mod walks;
 
-use ridgelight::plan::{self, Kind, Limits, Owner, Picture, Plan, SweepForm, missing_barriers};
+use std::collections::HashSet;
+
+use ridgelight::plan::{
+    self, Kind, Limits, Owner, Pass, Picture, Plan, SweepForm, missing_barriers,
+};
 use ridgelight::scene::{
     Albedo, Basis, Border, BounceEngine, Bounces, Environment, Fuse, HeightField, Hull, KeyLight,
     Levels, LightBasis, Lights, Lines, Method, Normals, Precision, Quality, Receiver, Scene,
@@ -172,9 +176,15 @@ fn every_plan_has_all_its_barriers_and_needs_each() {
     let (mut audited, mut removed) = (0, 0);
     assert!(plans.iter().any(|p| !p.edit_passes.is_empty()), "some plan takes edits");
     let lists = plans.iter().flat_map(|p| [(p, &p.passes), (p, &p.edit_passes)]);
+    // The audit reads shaders, bindings and barriers alone, so that plans of other sizes are often the same to it.
+    let mut known = HashSet::new();
     for (plan, list) in lists {
         assert_eq!(missing_barriers(list), [], "{plan}");
         audited += 1;
+        let read = |p: &Pass| (p.shader.name, p.bindings.clone(), p.barrier_before);
+        if !known.insert(list.iter().map(read).collect::<Vec<_>>()) {
+            continue;
+        }
         for i in 0..list.len() {
             let mut passes = list.clone();
             if std::mem::take(&mut passes[i].barrier_before) {
