@@ -114,9 +114,13 @@ fn a_large_field_on_a_gpu_of_small_buffers_has_shadows_by_four_lines() {
 fn small_fields_have_more_segments_and_smaller_tiles_on_a_gpu() {
     let base = crate::on_gpu(Limits { memory_budget: 16 << 30, ..Limits::lavapipe() });
     let whole = Limits { shared_bytes: 48 << 10, buffer_bytes: 1 << 30, ..base };
-    let of = |side: usize, azimuth_rad: f64, sun_azimuths: u32, limits: &Limits| {
+    let scenes = [256, 1024, 4096].map(|side| {
         let mut scene = scene(side);
         scene.lights.keys.clear();
+        scene
+    });
+    let of = |side: usize, azimuth_rad: f64, sun_azimuths: u32, limits: &Limits| {
+        let mut scene = scenes.iter().find(|s| s.field.cols() == side).expect("made").clone();
         scene.lights.suns[0].azimuth_rad = azimuth_rad;
         let quality = Quality { sun_azimuths, ..Quality::default() };
         let plan = picture(&scene, &quality, limits);
