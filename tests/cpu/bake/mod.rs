@@ -23,7 +23,7 @@ use ridgelight_cpu::sh_visibility::{Series, visibility_along};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Azimuths of a circle.
-const COUNT: usize = 2048;
+const COUNT: usize = 512;
 
 /// The values of one texel whose horizon is a function of azimuth.
 fn of(what: Box<dyn HorizonMap>, normal: DVec3, horizon: impl Fn(f64) -> f64) -> Vec<f64> {
