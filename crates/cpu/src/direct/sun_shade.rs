@@ -1,6 +1,8 @@
 //! Direct light of a sun or a key light, from a grid point's horizons in the azimuths that it covers.
 
 use crate::shared::gather::{Swept, elevation_moments};
+use glam::DVec3;
+use ridgelight::plan::Azimuth;
 use ridgelight::plan::azimuths::Shape;
 use std::f64::consts::PI;
 
@@ -8,29 +10,33 @@ use std::f64::consts::PI;
 pub fn sun_at(swept: &Swept, shape: Shape, col: i32, row: i32) -> f64 {
     let mut sun = 0.0;
     swept.add_all([col, row], true, |_, azimuth, lowest, normal| {
-        let along = |cos: f32, sin: f32| normal.x * f64::from(cos) + normal.y * f64::from(sin);
-        let [flat_part, vertical] = match shape {
-            Shape::Patch => [
-                along(azimuth.wedge_cos, azimuth.wedge_sin),
-                normal.z * f64::from(azimuth.wedge_rad),
-            ],
-            Shape::Disc | Shape::Point => [along(azimuth.cos_phi, azimuth.sin_phi), normal.z],
-        };
-        let (low, high) = (f64::from(azimuth.low_slope), f64::from(azimuth.high_slope));
-        let weight = f64::from(azimuth.weight) / PI;
-        if lowest >= high {
-            return;
-        }
-        if shape == Shape::Point {
-            let cos_elevation = 1.0 / (1.0 + high * high).sqrt();
-            let facing = (flat_part + vertical * high) * cos_elevation;
-            sun += facing.max(0.0) * weight;
-        } else {
-            let [from, to] = [elevation_moments(lowest.max(low)), elevation_moments(high)];
-            sun += (flat_part * (from[0] - to[0]) + vertical * (from[1] - to[1])) * weight;
-        }
+        sun += sun_slice(azimuth, shape, lowest, normal);
     });
     sun
+}
+
+/// The part of one azimuth, above a slope.
+pub fn sun_slice(azimuth: &Azimuth, shape: Shape, lowest: f64, normal: DVec3) -> f64 {
+    let along = |cos: f32, sin: f32| normal.x * f64::from(cos) + normal.y * f64::from(sin);
+    let [flat_part, vertical] = match shape {
+        Shape::Patch => {
+            [along(azimuth.wedge_cos, azimuth.wedge_sin), normal.z * f64::from(azimuth.wedge_rad)]
+        }
+        Shape::Disc | Shape::Point => [along(azimuth.cos_phi, azimuth.sin_phi), normal.z],
+    };
+    let (low, high) = (f64::from(azimuth.low_slope), f64::from(azimuth.high_slope));
+    let weight = f64::from(azimuth.weight) / PI;
+    if lowest >= high {
+        return 0.0;
+    }
+    if shape == Shape::Point {
+        let cos_elevation = 1.0 / (1.0 + high * high).sqrt();
+        let facing = (flat_part + vertical * high) * cos_elevation;
+        facing.max(0.0) * weight
+    } else {
+        let [from, to] = [elevation_moments(lowest.max(low)), elevation_moments(high)];
+        (flat_part * (from[0] - to[0]) + vertical * (from[1] - to[1])) * weight
+    }
 }
 
 /// `sun_sum` of all azimuths: [`sun_at`] for every grid point, row-major.

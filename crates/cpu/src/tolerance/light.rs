@@ -113,6 +113,14 @@ impl ShadeError {
         weights / PI * slice + self.count * EPSILON
     }
 
+    /// The same where no slice's end moves, of a light that gives at most `irradiance` to a surface that faces it.
+    ///
+    /// The normal turns against the light's vector irradiance, not against the moments of all elevations.
+    pub fn unmoved_sun(&self, weights: f64, irradiance: f64) -> f64 {
+        let slice = ARC_TANGENT + 33.0 * EPSILON;
+        (weights * slice + irradiance * self.normal) / PI + self.count * EPSILON
+    }
+
     /// A coefficient of band `l` of `sh_visibility`.
     ///
     /// Azimuths' weights sum to 2 √π at most and err by 26 ε: five complex products of 4 ε from the cosine
