@@ -52,6 +52,12 @@ impl GroundTruth {
         Self { expected: rest.collect(), ..self.clone() }
     }
 
+    /// The same of all light but that of suns and key lights.
+    pub fn without_aimed(&self) -> Self {
+        let rest = self.expected.iter().map(|lights| [lights[0], lights[1], 0.0, lights[3]]);
+        Self { expected: rest.collect(), level: 0.0, ..self.clone() }
+    }
+
     /// RMSE of a picture over [`scale`](Self::scale).
     pub fn error(&self, pixels: &Pixels) -> f64 {
         self.error_of(&self.means(pixels))

@@ -138,16 +138,7 @@ fn check_aimed(
     device: &mut Device,
     lines: u32,
 ) -> Result<Option<String>> {
-    let Lights { suns, keys, .. } = &scene.lights;
-    let lit_by = |c: &[f32; 3]| c.iter().any(|v| *v > 0.0);
-    let suns = suns.iter().filter(|s| lit_by(&s.irradiance));
-    let suns: Vec<_> = suns.map(|sun| Sun { irradiance: [1.0; 3], ..*sun }).collect();
-    let keys = keys.iter().filter(|k| lit_by(&k.radiance));
-    let keys: Vec<_> = keys.map(|key| KeyLight { radiance: [1.0; 3], ..*key }).collect();
-    if suns.is_empty() && keys.is_empty() {
-        return Ok(None);
-    }
-    let scene = &white(scene, Lights { suns, keys, ..Lights::default() });
+    let Some(scene) = &aimed_alone(scene) else { return Ok(None) };
     let (plan, layers) = device.layers(scene, true)?;
     let (mut found, mut all, mut most) = (Vec::new(), Vec::new(), DVec3::ZERO);
     let mut checked = 0;
@@ -180,12 +171,24 @@ fn check_aimed(
     Ok(Some(sentence("sun and key light", "the CPU reference", errors)))
 }
 
+/// Suns and key lights of a scene, each with irradiance or radiance 1 on white ground; none where all are dark.
+pub(super) fn aimed_alone(scene: &Scene) -> Option<Scene> {
+    let Lights { suns, keys, .. } = &scene.lights;
+    let lit_by = |c: &[f32; 3]| c.iter().any(|v| *v > 0.0);
+    let suns = suns.iter().filter(|s| lit_by(&s.irradiance));
+    let suns: Vec<_> = suns.map(|sun| Sun { irradiance: [1.0; 3], ..*sun }).collect();
+    let keys = keys.iter().filter(|k| lit_by(&k.radiance));
+    let keys: Vec<_> = keys.map(|key| KeyLight { radiance: [1.0; 3], ..*key }).collect();
+    let is_dark = suns.is_empty() && keys.is_empty();
+    (!is_dark).then(|| white(scene, Lights { suns, keys, ..Lights::default() }))
+}
+
 /// How a light is shaded.
 #[derive(Clone, Copy)]
-struct Shaded {
-    shape: Shape,
+pub(super) struct Shaded {
+    pub shape: Shape,
     /// By shadow heights, which give the light of exact horizons.
-    is_exact: bool,
+    pub is_exact: bool,
 }
 
 /// Passes that light a sun or a key light.
@@ -198,7 +201,7 @@ fn shaded_lights(plan: &Plan) -> BTreeSet<&str> {
 }
 
 /// Azimuths that contain a light, and how it is shaded there.
-fn azimuths_of(plan: &Plan, light: &str) -> Option<(Vec<Azimuth>, Shaded)> {
+pub(super) fn azimuths_of(plan: &Plan, light: &str) -> Option<(Vec<Azimuth>, Shaded)> {
     // "sun1", or "sun1 4+4" where one of several batches.
     let is_of = |part: &str| {
         part.strip_prefix(light).is_some_and(|rest| rest.is_empty() || rest.starts_with(' '))

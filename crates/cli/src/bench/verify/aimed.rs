@@ -1,0 +1,334 @@
+//! Compares suns and key lights with the light of the same slices through the oracle's horizons, at each place alone.
+//!
+//! A horizon with an error moves a shadow's edge, and the places that the edge passes may differ by all of their light. So
+//! every place has a range, from the light through the highest horizon that the method may find to that through the lowest.
+//! Within the range, places that differ by more than rounding are counted apart.
+
+use glam::{DVec2, DVec3};
+use ridgelight::Result;
+use ridgelight::plan::Azimuth;
+use ridgelight::plan::azimuths::Shape;
+use ridgelight::scene::{Border, Fuse, Method, Precision, Quality, Scene};
+use ridgelight_cpu::oracle::Oracle;
+use ridgelight_cpu::shared::field::{field_slope, normal_of};
+use ridgelight_cpu::shared::sweep::Heights;
+use ridgelight_cpu::sun_shade::sun_slice;
+use ridgelight_cpu::tolerance::{EPSILON, ShadeError, aimed_slope, device_fused_slope};
+
+use super::sweeps::{Shaded, aimed_alone, azimuths_of};
+use super::{Device, colours, percent, refused, sentence};
+
+/// Light of suns and key lights at some texels; none without them.
+pub(super) fn check(
+    scene: &Scene,
+    places: &[usize],
+    device: &mut Device,
+) -> Result<Option<String>> {
+    let Some(scene) = &aimed_alone(scene) else { return Ok(None) };
+    let (plan, layers) = device.layers(scene, true)?;
+    let (mut found, mut all) = (Vec::new(), Vec::new());
+    for layer in &layers {
+        let of = layer.name.strip_prefix("direct.").and_then(|light| azimuths_of(&plan, light));
+        let Some((azimuths, shaded)) = of else { continue };
+        found.extend(colours(layer, places));
+        all.extend(allowed(scene, &azimuths, shaded, places, device.quality));
+    }
+    if all.is_empty() {
+        return Ok(None);
+    }
+    Ok(Some(judge(&found, &all, device.quality)?.text()))
+}
+
+/// What horizons a method finds, besides rounding.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Horizons {
+    /// Those of the surface.
+    Exact,
+    /// Of points on the surface, perhaps not the highest: the test `aimed_modes_are_lower_bounds`.
+    NeverAbove,
+    /// With errors on both sides.
+    Near,
+}
+
+fn horizons(quality: &Quality, shaded: Shaded) -> Horizons {
+    let is_aimed = matches!(quality.fuse, Fuse::AimedNearest | Fuse::Aimed | Fuse::AimedAround);
+    let is_swept = matches!(quality.method, Method::Auto | Method::Sweep)
+        && quality.lines.shift().is_some()
+        && quality.precision == Precision::F32;
+    match shaded.is_exact {
+        true => Horizons::Exact,
+        false if is_swept && is_aimed => Horizons::NeverAbove,
+        false => Horizons::Near,
+    }
+}
+
+/// Light of one sun or key light at one place.
+struct Allowed {
+    /// Through the oracle's horizons.
+    light: f64,
+    /// Least and most, by the method's horizons.
+    range: [f64; 2],
+    /// Of rounding.
+    tolerance: f64,
+}
+
+/// What each place may have of a light of irradiance or radiance 1 on white ground, in the plan's slices.
+fn allowed(
+    scene: &Scene,
+    azimuths: &[Azimuth],
+    shaded: Shaded,
+    places: &[usize],
+    quality: &Quality,
+) -> Vec<Allowed> {
+    let (field, border, shape) = (&scene.field, scene.surface.border, shaded.shape);
+    let oracle = Oracle::new(field, border);
+    let heights = Heights::of(field, border);
+    let all = || field.heights_m().iter().map(|h| f64::from(*h));
+    let (low, high) = (all().fold(f64::MAX, f64::min), all().fold(f64::MIN, f64::max));
+    let largest = low.abs().max(high.abs());
+    let step = azimuths.iter().map(|a| f64::from(a.step_m)).fold(f64::MAX, f64::min);
+    // The CPU reference's horizon against the oracle's, and a device's against the CPU reference's.
+    let rounding = aimed_slope(largest, step) + device_fused_slope(largest, step) + 3.0 * EPSILON;
+    let [x, y] = field.cell_m();
+    // As in `bounds`: two periods are marched.
+    let side = (field.cols() as f64 * x).min(field.rows() as f64 * y);
+    let beyond = if border == Border::Periodic { largest / side } else { 0.0 };
+    let tolerance = tolerance(azimuths, shape, high - low, x.min(y));
+    let ground = if border == Border::Open { f64::NEG_INFINITY } else { 0.0 };
+    let at = |place: &usize| {
+        let (row, col) = (place / field.cols(), place % field.cols());
+        let gradient = field_slope(&heights, col as i32, row as i32);
+        let normal = normal_of(gradient);
+        // Slopes of the lowest directions without other ground, and above the horizon.
+        let lowest = |azimuth: &Azimuth| {
+            let towards = DVec2::new(azimuth.cos_phi.into(), azimuth.sin_phi.into());
+            let own = gradient.dot(towards).max(ground);
+            let horizon = oracle.elevation_rad(row, col, azimuth.swept_rad([x, y])).tan();
+            [own, own.max(horizon)]
+        };
+        let lowest: Vec<[f64; 2]> = azimuths.iter().map(lowest).collect();
+        let light = |which: usize, off: f64| -> f64 {
+            let slices = azimuths.iter().zip(&lowest);
+            slices.map(|(a, slopes)| sun_slice(a, shape, slopes[which] + off, normal)).sum()
+        };
+        let (own, other) = (0, 1);
+        let right = light(other, 0.0);
+        let [least, most] = match horizons(quality, shaded) {
+            Horizons::Exact => [light(other, rounding), light(other, -rounding - beyond)],
+            Horizons::NeverAbove => [light(other, rounding), light(own, -rounding)],
+            Horizons::Near => [0.0, light(own, -rounding)],
+        };
+        Allowed { light: right, range: [least.min(right), most.max(right)], tolerance }
+    };
+    places.iter().map(at).collect()
+}
+
+/// Of a light in slices, where no slice's end moves.
+fn tolerance(azimuths: &[Azimuth], shape: Shape, relief_m: f64, cell_m: f64) -> f64 {
+    let weight = |a: &Azimuth| match shape {
+        Shape::Patch => f64::from(a.wedge_rad),
+        Shape::Disc | Shape::Point => f64::from(a.weight),
+    };
+    let weights: f64 = azimuths.iter().map(weight).sum();
+    // A wedge of radiance 1 gives at most its width times the difference of two sines.
+    let irradiance = if shape == Shape::Patch { 2.0 * weights } else { 1.0 };
+    let error = ShadeError::new(0.0, relief_m, cell_m, azimuths.len());
+    // Two products and a sum make a layer of a sum.
+    error.unmoved_sun(weights, irradiance) + 4.0 * EPSILON
+}
+
+/// What was found at all places, where each is within its range.
+#[derive(Debug)]
+struct Judged {
+    places: usize,
+    /// Places that differ by more than rounding.
+    others: usize,
+    /// The largest error of the rest, and its tolerance.
+    error: f64,
+    bound: f64,
+    /// The most light that any place may have.
+    brightest: f64,
+}
+
+fn judge(found: &[DVec3], all: &[Allowed], quality: &Quality) -> Result<Judged> {
+    let mut judged =
+        Judged { places: all.len(), others: 0, error: 0.0, bound: 0.0, brightest: 0.0 };
+    for (found, Allowed { light, range: [least, most], tolerance }) in found.iter().zip(all) {
+        let range = least - tolerance..=most + tolerance;
+        // NaN is in no range.
+        if let Some(wrong) = found.to_array().into_iter().find(|v| !range.contains(v)) {
+            let [start, end] = [range.start(), range.end()];
+            let what = format!(
+                "a sun or key light at one place has light {wrong:e}, expected {start:e} to {end:e}"
+            );
+            return Err(refused(&what, quality));
+        }
+        let error = (*found - DVec3::splat(*light)).abs().max_element();
+        if error > *tolerance {
+            judged.others += 1;
+        } else {
+            judged.error = judged.error.max(error);
+        }
+        judged.bound = judged.bound.max(*tolerance);
+        judged.brightest = judged.brightest.max(*most);
+    }
+    Ok(judged)
+}
+
+impl Judged {
+    fn text(&self) -> String {
+        let Self { places, others, error, bound, brightest } = *self;
+        if brightest <= 0.0 {
+            return sentence("sun and key light", "the oracle", (f64::INFINITY, f64::INFINITY));
+        }
+        let [error, bound] = [error, bound].map(|light| percent(light / brightest));
+        let alike = places - others;
+        format!(
+            "sun and key light error {error} against the oracle at {alike} of {places} places (largest; bound {bound} of the \
+             brightest place's light), other shadow edges at {others}"
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bench::verify::tests::scene;
+    use ridgelight::plan::{self, Limits, Picture};
+    use ridgelight::scene::{Lights, Sun};
+
+    fn sun(diameter_rad: f64) -> Sun {
+        let [azimuth_rad, elevation_rad] = [1.0, 6.0_f64.to_radians()];
+        Sun { azimuth_rad, elevation_rad, diameter_rad, irradiance: [1.0; 3] }
+    }
+
+    /// What a low sun may give to every 5th texel of a fractal. The plan that gives the slices has exact shadows; `is_exact`
+    /// may claim others.
+    fn of(quality: &Quality, is_exact: bool) -> Vec<Allowed> {
+        let sun = sun(2_f64.to_radians());
+        let scene = scene(48, Lights { suns: vec![sun], ..Lights::default() });
+        let wanted = Picture { light_layers: true, ..Picture::default() };
+        let plan = plan::picture(&scene, quality, &Limits::lavapipe(), wanted).unwrap();
+        let (azimuths, shaded) = azimuths_of(&plan, "sun1").expect("a sun");
+        let places: Vec<usize> = (0..48 * 48).step_by(5).collect();
+        allowed(&scene, &azimuths, Shaded { is_exact, ..shaded }, &places, quality)
+    }
+
+    fn light(all: &[Allowed]) -> Vec<DVec3> {
+        all.iter().map(|place| DVec3::splat(place.light)).collect()
+    }
+
+    /// Light of exact shadows has a tight bound also under a low sun, in the open, in shadow and where the disc is partly
+    /// hidden. A wrong value of a hundredth of the brightest light is refused at each kind of place, on either side.
+    #[test]
+    fn wrong_light_is_refused_away_from_edges_and_at_them() {
+        let quality = Quality { sun_azimuths: 8, ..Quality::default() };
+        let all = of(&quality, true);
+        let right = light(&all);
+        let judged = judge(&right, &all, &quality).unwrap();
+        assert_eq!((judged.others, judged.error), (0, 0.0));
+        assert!(judged.bound < 0.01 * judged.brightest, "{judged:?}");
+        let open = of(&Quality { method: Method::Sweep, ..quality }, false);
+        let brightest = judged.brightest;
+        // Dark, partly hidden, unshadowed.
+        let kind = |i: usize| -> usize {
+            match (all[i].light, open[i].range[1]) {
+                (light, _) if light == 0.0 => 0,
+                (light, most) if light < 0.95 * most => 1,
+                _ => 2,
+            }
+        };
+        let mut kinds = [0; 3];
+        for (i, place) in all.iter().enumerate() {
+            kinds[kind(i)] += 1;
+            let [least, most] = place.range;
+            for wrong in [least - 0.01 * brightest, most + 0.01 * brightest, f64::NAN] {
+                let mut found = right.clone();
+                found[i].y = wrong;
+                let error = judge(&found, &all, &quality).unwrap_err().to_string();
+                assert!(error.contains("a sun or key light at one place has light"), "{error}");
+            }
+            // All of the light, or none, where a part of the disc is visible.
+            if kind(i) == 1 && open[i].range[1] - most > 0.01 * brightest {
+                let mut found = right.clone();
+                found[i] = DVec3::splat(open[i].range[1]);
+                assert!(judge(&found, &all, &quality).is_err(), "{i} without a shadow");
+            }
+        }
+        assert!(kinds.iter().all(|count| *count > 0), "{kinds:?}");
+        let dim: Vec<DVec3> = right.iter().map(|v| 0.97 * *v).collect();
+        assert!(judge(&dim, &all, &quality).is_err());
+        let mut turned = right.clone();
+        turned.rotate_left(1);
+        assert!(judge(&turned, &all, &quality).is_err());
+    }
+
+    /// Sweeps may miss an occluder, so a place may be brighter up to its unshadowed light, but not darker. Without an aimed
+    /// mode it may be dark. The places that differ are counted.
+    #[test]
+    fn other_shadows_of_sweeps_are_counted_apart() {
+        let swept = Quality { method: Method::Sweep, sun_azimuths: 8, ..Quality::default() };
+        let near = Quality { fuse: Fuse::Nearest, ..swept };
+        for (quality, may_be_dark) in [(swept, false), (near, true)] {
+            let all = of(&quality, false);
+            let right = light(&all);
+            let hidden: Vec<usize> = (0..all.len())
+                .filter(|i| all[*i].range[1] > all[*i].light + all[*i].tolerance)
+                .collect();
+            assert!(!hidden.is_empty());
+            let mut found = right.clone();
+            hidden.iter().for_each(|i| found[*i] = DVec3::splat(all[*i].range[1]));
+            let judged = judge(&found, &all, &quality).unwrap();
+            assert_eq!(judged.others, hidden.len());
+            assert_eq!((judged.places, judged.error), (all.len(), 0.0));
+            let text = judged.text();
+            assert!(text.ends_with(&format!("other shadow edges at {}", hidden.len())), "{text}");
+            found[hidden[0]] += DVec3::splat(2.0 * all[hidden[0]].tolerance);
+            assert!(judge(&found, &all, &quality).is_err(), "more than unshadowed");
+            let lit = (0..all.len()).max_by(|a, b| all[*a].light.total_cmp(&all[*b].light));
+            let mut dark = right.clone();
+            dark[lit.expect("a place")] = DVec3::ZERO;
+            assert_eq!(judge(&dark, &all, &quality).is_ok(), may_be_dark, "{quality:?}");
+        }
+    }
+
+    /// A point sun on the horizon may be visible or not: values from dark to lit are accepted there, and no others.
+    #[test]
+    fn only_a_place_at_an_edge_may_differ_by_all_of_its_light() {
+        let quality = Quality::default();
+        let place = |range| Allowed { light: 1.0, range, tolerance: 1e-3 };
+        let judged = |range, light: f64| judge(&[DVec3::splat(light)], &[place(range)], &quality);
+        for light in [0.0, 0.5, 1.0] {
+            let others = judged([0.0, 1.0], light).unwrap().others;
+            assert_eq!(others, usize::from(light < 1.0), "{light}");
+        }
+        assert!(judged([1.0, 1.0], 0.9995).is_ok() && judged([1.0, 1.0], 1.0005).is_ok());
+        for (range, light) in [
+            ([1.0, 1.0], 0.998),
+            ([1.0, 1.0], 1.002),
+            ([0.0, 1.0], -0.002),
+            ([0.0, 1.0], 1.002),
+            ([0.0, 1.0], f64::NAN),
+            ([0.0, 1.0], f64::INFINITY),
+        ] {
+            assert!(judged(range, light).is_err(), "{light} in {range:?}");
+        }
+    }
+
+    /// Only shadow heights are exact, and only aimed modes of f32 sweeps return points of the surface.
+    #[test]
+    fn horizons_are_as_the_method_finds_them() {
+        let [by_heights, by_sweeps] =
+            [true, false].map(|is_exact| Shaded { shape: Shape::Disc, is_exact });
+        let base = Quality::default();
+        assert_eq!(horizons(&base, by_heights), Horizons::Exact);
+        assert_eq!(horizons(&base, by_sweeps), Horizons::NeverAbove);
+        for quality in [
+            Quality { fuse: Fuse::Slopes, ..base },
+            Quality { precision: Precision::Packed, ..base },
+            Quality { method: Method::Pyramid, ..base },
+        ] {
+            assert_eq!(horizons(&quality, by_sweeps), Horizons::Near, "{quality:?}");
+        }
+    }
+}
