@@ -2,6 +2,7 @@
 
 mod forms;
 mod peaks;
+mod progress;
 mod rows;
 mod sizes;
 pub mod tune;
@@ -21,6 +22,7 @@ use serde_json::{Value, json};
 use crate::args::BenchArgs;
 use crate::idle;
 use crate::setup::{self, Outcome, scene_hash, tuned};
+use progress::Progress;
 use ridgelight_trade::statistics::{median, median_interval};
 use rows::{Row, sums};
 use verdicts::Earlier;
@@ -99,19 +101,22 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
             .for_each(|note| crate::say!("{note}"));
     }
     let (mut all, mut warnings) = (Vec::new(), Vec::new());
+    let later = if args.forms { forms::count(&quality, &args.passes) } else { 0 };
     if !args.sizes.is_empty() {
         for &azimuths in counts {
             verifier.check(&mut gpu, &Quality { azimuths, ..quality }, &limits)?;
         }
-        let mut table = sizes::run(&mut gpu, &scene, &quality, &limits, (args, counts), &bar)?;
+        let shown = (&bar, later);
+        let mut table = sizes::run(&mut gpu, &scene, &quality, &limits, (args, counts), shown)?;
         table.iter_mut().for_each(|row| row.copy_rate = peaks::copy_rate(&peaks));
         all.extend(table);
     } else {
         let inputs = plan::picture_inputs(&scene);
+        let flush_s = peaks::copy_s(&peaks);
         let (mut table, last) = gpu.with_frame(peak_plan, &none, |gpu, flushes| {
             peaks::fill(gpu, flushes)?;
             gpu.with_frame(plan.clone(), &inputs, |gpu, frame| {
-                time(gpu, frame, flushes, args, quality.azimuths, &bar)
+                time(gpu, frame, (&mut *flushes, flush_s), args, quality.azimuths, (&bar, later))
             })
         })?;
         table.iter_mut().for_each(|row| row.copy_rate = peaks::copy_rate(&peaks));
@@ -323,14 +328,15 @@ fn after_new_heights(plan: &Plan) -> Vec<usize> {
     plan.passes_after(plan, &heights.into_iter().collect::<Vec<_>>())
 }
 
-/// Rows of a frame in flow and overlapped, of its passes isolated, warm and cold, and its last run in flow.
+/// Rows of a frame in flow and overlapped, of its passes isolated, warm and cold, and its last run in flow. A flush takes
+/// `flush_s`; `later` rows of other tables follow.
 fn time(
     gpu: &Headless,
     frame: &mut Frame,
-    flushes: &mut Frame,
+    (flushes, flush_s): (&mut Frame, f64),
     args: &BenchArgs,
     azimuths: u32,
-    bar: &indicatif::ProgressBar,
+    (bar, later): (&indicatif::ProgressBar, usize),
 ) -> Result<(Vec<Row>, Vec<Timing>)> {
     let plan = frame.plan().clone();
     let is_wanted = |i: &usize| {
@@ -339,9 +345,17 @@ fn time(
     };
     let wanted: Vec<usize> = (0..plan.passes.len()).filter(is_wanted).collect();
     let every: Vec<&Pass> = plan.passes.iter().collect();
+    let needed = after_new_heights(&plan);
+    let has_tables = needed.len() < plan.passes.len();
+    let mut progress = Progress::new(bar, names(&plan, &wanted, has_tables), args.runs, later);
     let mut rows = Vec::new();
-    bar.set_message("frames in flow");
+    progress.begin_next();
+    let begun = Instant::now();
     let runs = flow(gpu, frame, args.runs)?;
+    // One run warms up.
+    let frame_s = begun.elapsed().as_secs_f64() / (runs.len() + 1) as f64;
+    let of_passes = runs.last().map_or(&[][..], Vec::as_slice);
+    progress.runs_take(run_seconds(of_passes, &wanted, has_tables, [frame_s, flush_s]));
     let row = |pass: String, mode, passes: &[&Pass], runs: usize, times: &[f64]| {
         Row::of(pass, mode, &plan, passes, azimuths, (runs, times))
     };
@@ -351,34 +365,70 @@ fn time(
         rows.push(row(pass.label(), "in_flow", &[pass], runs.len(), &times));
     }
     rows.push(row("total".into(), "in_flow", &every, runs.len(), &sums(&runs, |_| true)));
+    progress.begin_next();
     let (count, whole) = overlapped(gpu, frame, args.runs)?;
     rows.push(row("total".into(), "overlapped", &every, count, &whole));
-    let needed = after_new_heights(&plan);
-    if needed.len() < plan.passes.len() {
+    if has_tables {
+        progress.begin_next();
         let runs = repeated(gpu, frame, &needed, args.runs, None)?;
         let passes: Vec<&Pass> = needed.iter().map(|i| &plan.passes[*i]).collect();
         let times = sums(&runs, |_| true);
         rows.push(row("total".into(), "new_heights", &passes, runs.len(), &times));
     }
+    progress.begin_next();
     let all: Vec<usize> = (0..plan.passes.len()).collect();
-    let cold = repeated(gpu, frame, &all, args.runs, Some(flushes))?;
+    let cold = repeated(gpu, frame, &all, args.runs, Some(&mut *flushes))?;
     rows.push(row("total".into(), "cold", &every, cold.len(), &sums(&cold, |_| true)));
     let (mut totals, mut fewest) = (vec![0.0; args.runs], args.runs);
-    for (n, &i) in (1..).zip(&wanted) {
+    for &i in &wanted {
         let pass = &plan.passes[i];
-        bar.set_message(format!("pass {n} of {}: {} alone", wanted.len(), pass.label()));
+        progress.begin_next();
         let alone = repeated(gpu, frame, &[i], args.runs, None)?;
         let times = sums(&alone, |_| true);
         fewest = fewest.min(times.len());
         totals.iter_mut().zip(&times).for_each(|(total, ns)| *total += ns);
         rows.push(row(pass.label(), "isolated", &[pass], alone.len(), &times));
-        let cold = repeated(gpu, frame, &[i], args.runs, Some(flushes))?;
+        progress.begin_next();
+        let cold = repeated(gpu, frame, &[i], args.runs, Some(&mut *flushes))?;
         rows.push(row(pass.label(), "cold", &[pass], cold.len(), &sums(&cold, |_| true)));
     }
     if wanted.len() == plan.passes.len() {
         rows.push(row("total".into(), "isolated", &every, fewest, &totals[..fewest]));
     }
     Ok((rows, runs.into_iter().next_back().unwrap_or_default()))
+}
+
+/// Names of what [`time`] measures, in its order.
+fn names(plan: &Plan, wanted: &[usize], has_tables: bool) -> Vec<String> {
+    let frames = [
+        Some("frames in flow"),
+        Some("frames without timestamps between passes"),
+        has_tables.then_some("frames of new heights"),
+        Some("frames with cold caches"),
+    ];
+    let of_pass = |i: &usize| {
+        let label = plan.passes[*i].label();
+        ["alone", "with cold caches"].map(|how| format!("{label} {how}"))
+    };
+    let frames = frames.into_iter().flatten().map(str::to_owned);
+    frames.chain(wanted.iter().flat_map(of_pass)).collect()
+}
+
+/// Seconds of one run of each of these, from a frame's time, a flush's, and those of the passes in flow: none without
+/// timestamps, where a pass takes a whole frame at most.
+fn run_seconds(
+    of_passes: &[Timing],
+    wanted: &[usize],
+    has_tables: bool,
+    [frame_s, flush_s]: [f64; 2],
+) -> Vec<f64> {
+    let frames =
+        [Some(frame_s), Some(frame_s), has_tables.then_some(frame_s), Some(frame_s + flush_s)];
+    let of_pass = |i: &usize| {
+        let pass_s = of_passes.get(*i).map_or(frame_s, |timing| timing.ns / 1e9);
+        [pass_s, pass_s + flush_s]
+    };
+    frames.into_iter().flatten().chain(wanted.iter().flat_map(of_pass)).collect()
 }
 
 #[cfg(test)]
@@ -428,6 +478,28 @@ mod tests {
         let left = of(Lights { environment: Some(white), ..Lights::default() });
         assert!(!left.is_empty() && left.iter().all(|name| name.starts_with("env_")), "{left:?}");
         assert_eq!(of(Lights { sky: Some([1.0; 3]), ..Lights::default() }), [""; 0]);
+    }
+
+    /// Each measured thing has a name and a time, in the same order. A cold run also takes a flush.
+    #[test]
+    fn every_row_has_a_name_and_a_time() {
+        let plan = rows::tests::plan();
+        let timing = |i: usize| Timing { label: String::new(), ns: 1e9 * (1 + i) as f64 };
+        let of_passes: Vec<Timing> = (0..plan.passes.len()).map(timing).collect();
+        for has_tables in [false, true] {
+            let names = names(&plan, &[0, 2], has_tables);
+            let run_s = run_seconds(&of_passes, &[0, 2], has_tables, [50.0, 0.5]);
+            assert_eq!(names.len(), run_s.len());
+            assert_eq!(names.len(), 7 + usize::from(has_tables));
+            for (name, run_s) in names.iter().zip(&run_s) {
+                let is_cold = name.ends_with("with cold caches");
+                assert_eq!(run_s.fract() == 0.5, is_cold, "{name}: {run_s}");
+                assert_eq!(*run_s >= 50.0, name.starts_with("frames "), "{name}: {run_s}");
+            }
+            assert_eq!(run_s[run_s.len() - 2..], [3.0, 3.5]);
+        }
+        let untimed = run_seconds(&[], &[0], false, [50.0, 0.5]);
+        assert_eq!(untimed, [50.0, 50.0, 50.5, 50.0, 50.5]);
     }
 
     /// A width of 2 % ends a row, after 10, 20 and 40 runs and not in between.

@@ -11,6 +11,7 @@ use ridgelight::{Error, Result};
 use ridgelight_cpu::scalar_sweep::ScalarSweep;
 use ridgelight_trade::statistics::{Summary, median_interval};
 
+use super::progress::Progress;
 use super::rows::{Row, figure, sums};
 use super::verify::Verifier;
 use super::{FEWEST, late, named, stable};
@@ -35,6 +36,18 @@ struct Form {
 /// Names of the forms.
 pub fn names(quality: &Quality) -> Vec<String> {
     forms(quality).into_iter().map(|form| form.name).collect()
+}
+
+/// Number of the forms that [`run`] times.
+pub fn count(quality: &Quality, only: &[String]) -> usize {
+    wanted(quality, only).len()
+}
+
+/// The forms with these names, or all.
+fn wanted(quality: &Quality, only: &[String]) -> Vec<Form> {
+    let is_wanted =
+        |form: &Form| only.is_empty() || only.iter().any(|name| named(&form.name, name));
+    forms(quality).into_iter().filter(is_wanted).collect()
 }
 
 fn forms(quality: &Quality) -> Vec<Form> {
@@ -85,17 +98,17 @@ pub fn run(
 ) -> Result<(Vec<[Row; 2]>, Vec<String>)> {
     let (mut all, mut left_out) = (Vec::new(), Vec::new());
     let mut scalar = ScalarSweep::new(&scene.field);
-    for form in forms(quality) {
-        if !only.is_empty() && !only.iter().any(|wanted| named(&form.name, wanted)) {
-            continue;
-        }
+    let forms = wanted(quality, only);
+    let mut progress = Progress::new(bar, forms.iter().map(|form| form.name.clone()), most, 0);
+    for form in &forms {
+        progress.begin_next();
         if let Err(error @ Error::Limit { .. }) =
             plan::picture(scene, &form.quality, limits, Picture::default())
         {
             left_out.push(format!("{} left out: {error}", form.name));
             continue;
         }
-        bar.set_message(format!("{}: verifying", form.name));
+        progress.show("verifying");
         verifier.check(gpu, &form.quality, limits)?;
         let all_azimuths = form.quality.azimuths;
         let (plan, azimuths) = if form.slow {
@@ -118,7 +131,7 @@ pub fn run(
         let inputs = if form.slow { &contents[..1] } else { &contents[..] };
         let count = if form.slow { most.min(FEWEST) } else { most };
         all.push(gpu.with_frame(plan, inputs, |gpu, frame| {
-            in_turn(gpu, frame, &mut scalar, &timed, (azimuths, count), &form, bar)
+            in_turn(gpu, frame, &mut scalar, &timed, (azimuths, count), form, &progress)
         })?);
     }
     Ok((all, left_out))
@@ -133,7 +146,7 @@ fn in_turn(
     timed: &[usize],
     (azimuths, most): (u32, usize),
     form: &Form,
-    bar: &ProgressBar,
+    progress: &Progress,
 ) -> Result<[Row; 2]> {
     let (mut runs, mut scalar_ns) = (Vec::new(), Vec::new());
     // Runs all passes once: the timed ones need the others' results and warm pipelines.
@@ -149,7 +162,7 @@ fn in_turn(
     let alternates = gpu.report().limits.is_cpu;
     let begun = Instant::now();
     for run in 0..most {
-        bar.set_message(format!("{}: {} of {most}", form.name, run + 1));
+        progress.show(&format!("run {} of {most}", run + 1));
         runs.push(gpu.draw_passes(frame, timed)?);
         if alternates {
             scalar_ns.push(one_scalar());

@@ -38,6 +38,12 @@ pub fn copy_rate(peaks: &[Row]) -> Option<f64> {
     peaks.iter().find(|row| row.pass == "device_peak copy")?.byte_rate()
 }
 
+/// Seconds of the copy, which a flush is; 0 without timestamps.
+pub fn copy_s(peaks: &[Row]) -> f64 {
+    let copy = peaks.iter().find(|row| row.pass == "device_peak copy");
+    copy.and_then(|row| row.times).map_or(0.0, |times| times.median * 1e-9)
+}
+
 /// One line.
 pub fn text(peaks: &[Row]) -> String {
     let rate = |part: &str, unit: &str, of: fn(&Row) -> Option<f64>| {

@@ -9,6 +9,7 @@ use super::{FEWEST, peaks};
 use crate::setup;
 
 /// One pass in one mode.
+#[derive(Clone)]
 pub struct Row {
     pub pass: String,
     pub mode: &'static str,

@@ -10,6 +10,7 @@ use ridgelight_io as files;
 use ridgelight_trade::statistics::{median, median_interval};
 use serde_json::{Value, json};
 
+use super::progress::at_most_s;
 use crate::args::TuneArgs;
 use crate::setup::{self, Outcome, tuned};
 
@@ -121,19 +122,32 @@ pub fn run(args: &TuneArgs) -> Result<Outcome> {
         base.time_passes(false);
         gpu.draw(base)?;
         search.want = bits(gpu, base)?;
+        let begun = Instant::now();
+        gpu.draw(base)?;
+        // Of a pair, where the other frame takes as long.
+        let pair_s = 2.0 * begun.elapsed().as_secs_f64();
         let forms = forms(untuned);
+        let together: Vec<u32> =
+            TOGETHER.into_iter().filter(|count| *count < args.azimuths).collect();
+        let all = forms.len() + together.len();
+        let show = |done: usize, form: &SweepForm| {
+            let left_s = left_s(pair_s, all - done);
+            let (at, form) = (done + 1, text(form));
+            bar.set_message(format!("{at} of {all}: {form}; up to {left_s:.0} s left"));
+        };
         let mut trials = Vec::new();
-        for (i, form) in (1..).zip(&forms) {
-            bar.set_message(format!("{i} of {}: {}", forms.len(), text(form)));
+        for form in &forms {
+            show(trials.len(), form);
             trials.push(search.trial(gpu, base, *form, EXTENT));
         }
         let best = fastest(&trials).unwrap_or(untuned);
-        for azimuths in TOGETHER.into_iter().filter(|count| *count < args.azimuths) {
+        for azimuths in together {
             let form = SweepForm { azimuths, ..best };
-            bar.set_message(text(&form));
+            show(trials.len(), &form);
             trials.push(search.trial(gpu, base, form, EXTENT));
         }
-        bar.set_message("the fastest form again");
+        let left_s = left_s(pair_s, 0);
+        bar.set_message(format!("the fastest form again; up to {left_s:.0} s left"));
         let last = fastest(&trials).map(|form| search.trial(gpu, base, form, LAST));
         Ok((trials, last))
     })?;
@@ -162,6 +176,12 @@ pub fn run(args: &TuneArgs) -> Result<Outcome> {
     // A form with other bits is a defect, of the driver or of this program.
     let is_same = trials.iter().chain(&last).all(|trial| trial.is_same);
     Ok(if is_same { Outcome::Done } else { Outcome::Beyond })
+}
+
+/// Seconds that so many forms, and the best of them again, take at most.
+fn left_s(pair_s: f64, forms: usize) -> f64 {
+    let of = |(most, time): Extent| at_most_s(pair_s, (most, FEWEST), time);
+    forms as f64 * of(EXTENT) + of(LAST)
 }
 
 /// Every form but the untuned one.
@@ -327,6 +347,14 @@ mod tests {
                 assert!(plan.unwrap().notes.iter().any(|note| note.starts_with("tuned sweep")));
             }
         }
+    }
+
+    /// Fast frames: 40 pairs and one to warm up of each form, 400 and one of the last. Slow ones: 6 pairs and one of each.
+    #[test]
+    fn the_time_left_is_that_of_all_pairs() {
+        let near = |found: f64, expected: f64| assert!((found / expected - 1.0).abs() < 1e-12);
+        near(left_s(0.01, 3), 3.0 * 0.41 + 4.01);
+        near(left_s(10.0, 2), 2.0 * 70.0 + 70.0);
     }
 
     /// A form with other bits is never the fastest, nor is one without pairs.
