@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use indicatif::ProgressBar;
 use ridgelight::gpu::{Frame, Headless};
-use ridgelight::plan::{self, Limits, Pass, Picture};
+use ridgelight::plan::{self, Limits, Pass, Picture, Plan};
 use ridgelight::scene::{Fuse, Hull, Levels, Lines, Method, Precision, Quality, Scene};
 use ridgelight::{Error, Result};
 use ridgelight_cpu::scalar_sweep::ScalarSweep;
@@ -86,7 +86,8 @@ fn forms(quality: &Quality) -> Vec<Form> {
     all
 }
 
-/// Times all forms. Returns rows of each and of the scalar sweep paired with it, and a warning for each form left out.
+/// Times all forms. Returns rows of each and of the scalar sweep paired with it, and a warning for each form left out. Forms
+/// that do the same are timed once.
 pub fn run(
     gpu: &mut Headless,
     scene: &Scene,
@@ -96,21 +97,53 @@ pub fn run(
     (most, only): (usize, &[String]),
     bar: &ProgressBar,
 ) -> Result<(Vec<[Row; 2]>, Vec<String>)> {
-    let (mut all, mut left_out) = (Vec::new(), Vec::new());
+    let (mut all, mut left_out): (Vec<[Row; 2]>, _) = (Vec::new(), Vec::new());
     let mut scalar = ScalarSweep::new(&scene.field);
     let forms = wanted(quality, only);
+    // Of the rows in `all`.
+    let mut works: Vec<Work> = Vec::new();
     let mut progress = Progress::new(bar, forms.iter().map(|form| form.name.clone()), most, 0);
     for form in &forms {
         progress.begin_next();
-        if let Err(error @ Error::Limit { .. }) =
-            plan::picture(scene, &form.quality, limits, Picture::default())
-        {
-            left_out.push(format!("{} left out: {error}", form.name));
+        let work = match Work::of(scene, form, limits) {
+            Err(error @ Error::Limit { .. }) => {
+                left_out.push(format!("{} left out: {error}", form.name));
+                continue;
+            }
+            planned => planned?,
+        };
+        if let Some(i) = works.iter().position(|earlier| earlier.is_same(&work)) {
+            let rows = again(&all[i], &form.name);
+            all.push(rows);
+            works.push(work);
             continue;
         }
         progress.show("verifying");
         verifier.check(gpu, &form.quality, limits)?;
+        let contents = plan::picture_inputs(scene);
+        let inputs = if form.slow { &contents[..1] } else { &contents[..] };
+        let count = if form.slow { most.min(FEWEST) } else { most };
+        all.push(gpu.with_frame(work.plan.clone(), inputs, |gpu, frame| {
+            let timed = (&work.timed[..], work.azimuths, count);
+            in_turn(gpu, frame, &mut scalar, timed, form, &progress)
+        })?);
+        works.push(work);
+    }
+    Ok((all, left_out))
+}
+
+/// What a form times.
+struct Work {
+    plan: Plan,
+    /// Positions of the timed passes.
+    timed: Vec<usize>,
+    azimuths: u32,
+}
+
+impl Work {
+    fn of(scene: &Scene, form: &Form, limits: &Limits) -> Result<Self> {
         let all_azimuths = form.quality.azimuths;
+        let whole = plan::picture(scene, &form.quality, limits, Picture::default())?;
         let (plan, azimuths) = if form.slow {
             let some = match form.quality.method {
                 Method::BruteForce => (all_azimuths / 16, BRUTE_AZIMUTHS),
@@ -119,22 +152,29 @@ pub fn run(
             let border = scene.surface.border;
             (plan::horizons(&scene.field, border, &form.quality, limits, some, false)?, some.1)
         } else {
-            let whole = plan::picture(scene, &form.quality, limits, Picture::default())?;
             (whole, all_azimuths)
         };
         let shade = |p: &Pass| p.name() == "sky_shade";
         let after = |p: &Pass| ["sky_shade", "sweep_fuse", "light_resolve"].contains(&p.name());
         let is_timed = |p: &Pass| if form.shades { shade(p) } else { !after(p) };
-        let timed: Vec<usize> =
-            (0..plan.passes.len()).filter(|i| is_timed(&plan.passes[*i])).collect();
-        let contents = plan::picture_inputs(scene);
-        let inputs = if form.slow { &contents[..1] } else { &contents[..] };
-        let count = if form.slow { most.min(FEWEST) } else { most };
-        all.push(gpu.with_frame(plan, inputs, |gpu, frame| {
-            in_turn(gpu, frame, &mut scalar, &timed, (azimuths, count), form, &progress)
-        })?);
+        let timed = (0..plan.passes.len()).filter(|i| is_timed(&plan.passes[*i])).collect();
+        Ok(Self { plan, timed, azimuths })
     }
-    Ok((all, left_out))
+
+    /// Whether the same dispatches are timed, of the same resources.
+    fn is_same(&self, other: &Self) -> bool {
+        let timed = |work: &Self| -> Vec<_> {
+            let of = |i: &usize| {
+                let pass = &work.plan.passes[*i];
+                let (constants, push) = (pass.constants.clone(), pass.push.clone());
+                (pass.name(), pass.groups, constants, push, pass.bindings.clone())
+            };
+            work.timed.iter().map(of).collect()
+        };
+        self.plan.resources == other.plan.resources
+            && self.plan.azimuths == other.plan.azimuths
+            && timed(self) == timed(other)
+    }
 }
 
 /// On a CPU device, alternates the form and the scalar sweep, so that both meet the same load. On a GPU, runs the form first:
@@ -143,8 +183,7 @@ fn in_turn(
     gpu: &Headless,
     frame: &mut Frame,
     scalar: &mut ScalarSweep<'_>,
-    timed: &[usize],
-    (azimuths, most): (u32, usize),
+    (timed, azimuths, most): (&[usize], u32, usize),
     form: &Form,
     progress: &Progress,
 ) -> Result<[Row; 2]> {
@@ -178,9 +217,10 @@ fn in_turn(
     let passes: Vec<&Pass> = timed.iter().map(|i| &plan.passes[*i]).collect();
     let times = (runs.len(), &sums(&runs, |_| true)[..]);
     let mut ours = Row::of(&form.name, "isolated", plan, &passes, azimuths, times);
-    ours.settings.push(("scalar_beside".into(), format!("scalar_sweep with {}", form.name)));
+    let scalar_name = scalar_name(&form.name);
+    ours.settings.push((SCALAR_BESIDE.into(), scalar_name.clone()));
     let rival = Row {
-        pass: format!("scalar_sweep with {}", form.name),
+        pass: scalar_name,
         mode: "isolated",
         size: plan.size,
         azimuths: SCALAR_AZIMUTHS,
@@ -193,6 +233,26 @@ fn in_turn(
         copy_rate: None,
     };
     Ok([ours, rival])
+}
+
+/// The setting of a form's row that names the scalar sweep's row.
+const SCALAR_BESIDE: &str = "scalar_beside";
+/// The setting of both rows that names the form whose times they have.
+const TIMES_OF: &str = "times_of";
+
+fn scalar_name(form: &str) -> String {
+    format!("scalar_sweep with {form}")
+}
+
+/// The rows of an earlier form for another one that does the same.
+fn again(rows: &[Row; 2], name: &str) -> [Row; 2] {
+    let [mut ours, mut rival] = rows.clone();
+    let times_of = (TIMES_OF.to_owned(), ours.pass.clone());
+    ours.settings.retain(|(key, _)| key != SCALAR_BESIDE);
+    ours.settings.extend([(SCALAR_BESIDE.to_owned(), scalar_name(name)), times_of.clone()]);
+    rival.settings.push(times_of);
+    (ours.pass, rival.pass) = (name.to_owned(), scalar_name(name));
+    [ours, rival]
 }
 
 pub fn print(rows: &[[Row; 2]]) {
@@ -220,8 +280,70 @@ pub fn print(rows: &[[Row; 2]]) {
             figure(least(ours).zip(least(rival)).map(|(a, b)| a / b), 3)
         );
     }
+    for [ours, _] in rows {
+        if let Some((_, of)) = ours.settings.iter().find(|(key, _)| key == TIMES_OF) {
+            crate::say!("({} does the same as {of}: timed once.)", ours.pass);
+        }
+    }
     crate::say!(
         "(× scalar: ratio of medians. If it differs much from the ratio of minima, the machine \
             was busy.)"
     );
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bench::rows::tests::plan;
+    use crate::bench::verify::tests::scene;
+    use ridgelight::scene::Lights;
+
+    /// Lines one cell apart are also those of a row of hulls: the private ones on lavapipe, or those of `--hull`. No other
+    /// forms do the same.
+    #[test]
+    fn only_one_form_does_the_same_as_another() {
+        let lights = Lights { sky: Some([1.0; 3]), ..Lights::default() };
+        let scene = scene(32, lights);
+        let limits = Limits::lavapipe();
+        for (hull, same) in [
+            (Hull::Auto, "horizon_sweep private f32"),
+            (Hull::Private, "horizon_sweep private f32"),
+            (Hull::Shared, "horizon_sweep shared f32"),
+            (Hull::OccluderList, "horizon_sweep occluder-list f32"),
+        ] {
+            let forms = wanted(&Quality { hull, azimuths: 16, ..Quality::default() }, &[]);
+            let works: Vec<Work> =
+                forms.iter().map(|form| Work::of(&scene, form, &limits).unwrap()).collect();
+            let mut pairs = Vec::new();
+            for (i, work) in works.iter().enumerate() {
+                let earlier = works[..i].iter().position(|earlier| earlier.is_same(work));
+                pairs.extend(earlier.map(|at| [at, i].map(|i| forms[i].name.as_str())));
+            }
+            assert_eq!(pairs, [[same, "horizon_sweep lines 1"]]);
+        }
+        let only = ["horizon_sweep lines 1", "pyramid_march"].map(str::to_owned);
+        assert_eq!(count(&Quality::default(), &only), 3);
+    }
+
+    /// The second row has the first one's times under its own name, names its own scalar row, and states whose times it has.
+    #[test]
+    fn times_of_an_earlier_form_are_taken_under_another_name() {
+        let plan = plan();
+        let row = |name: &str| Row::of(name, "isolated", &plan, &[], 64, (6, &[2e6; 6]));
+        let mut ours = row("horizon_sweep a");
+        ours.settings.push((SCALAR_BESIDE.into(), scalar_name("horizon_sweep a")));
+        let rows = [ours, row(&scalar_name("horizon_sweep a"))];
+        let [ours, rival] = again(&rows, "horizon_sweep b");
+        assert_eq!(ours.pass, "horizon_sweep b");
+        assert_eq!((ours.times, rival.times), (rows[0].times, rows[1].times));
+        let setting = |row: &Row, key: &str| {
+            let of: Vec<_> = row.settings.iter().filter(|(k, _)| k == key).collect();
+            assert!(of.len() < 2, "{key} twice");
+            of.first().map(|(_, value)| value.clone())
+        };
+        assert_eq!(setting(&ours, SCALAR_BESIDE).as_ref(), Some(&rival.pass));
+        for row in [&ours, &rival] {
+            assert_eq!(setting(row, TIMES_OF).as_deref(), Some("horizon_sweep a"));
+        }
+    }
 }
