@@ -296,11 +296,21 @@ fn repeated(
     while !gpu.report().limits.is_cpu && begun.elapsed() < GPU_WARM_UP {
         gpu.draw_passes(frame, passes)?;
     }
+    let flush = || flushes.as_mut().map_or(Ok(()), |flushes| peaks::flush(gpu, flushes));
+    timed(most, flush, || gpu.draw_passes(frame, passes))
+}
+
+/// Runs until their median is known, each after a flush, which is not in its times.
+fn timed(
+    most: usize,
+    mut flush: impl FnMut() -> Result<()>,
+    mut run: impl FnMut() -> Result<Vec<Timing>>,
+) -> Result<Vec<Vec<Timing>>> {
     let begun = Instant::now();
     let (mut runs, mut times_ns) = (Vec::new(), Vec::new());
     while runs.len() < most && !late(begun, runs.len()) && !stable(&times_ns) {
-        flushes.as_mut().map_or(Ok(()), |flushes| peaks::flush(gpu, flushes))?;
-        let run = gpu.draw_passes(frame, passes)?;
+        flush()?;
+        let run = run()?;
         times_ns.push(run.iter().map(|timing| timing.ns).sum());
         runs.push(run);
     }
@@ -500,6 +510,24 @@ mod tests {
         }
         let untimed = run_seconds(&[], &[0], false, [50.0, 0.5]);
         assert_eq!(untimed, [50.0, 50.0, 50.5, 50.0, 50.5]);
+    }
+
+    /// Caches are flushed before every run, also before the first, and the times are the run's own.
+    #[test]
+    fn every_cold_run_follows_a_flush() {
+        let log = std::cell::RefCell::new(Vec::new());
+        let flush = || {
+            log.borrow_mut().push("flush");
+            Ok(())
+        };
+        let run = || {
+            log.borrow_mut().push("run");
+            Ok(vec![Timing { label: "sky_shade".into(), ns: 7.0 }])
+        };
+        // Fewer runs than end by time.
+        let runs = timed(3, flush, run).unwrap();
+        assert_eq!(*log.borrow(), ["flush", "run", "flush", "run", "flush", "run"]);
+        assert_eq!(sums(&runs, |_| true), [7.0; 3]);
     }
 
     /// A width of 2 % ends a row, after 10, 20 and 40 runs and not in between.

@@ -97,4 +97,34 @@ mod tests {
         }
         assert_eq!(found.len(), 4);
     }
+
+    /// A flush reads all of one buffer and writes all of another: 64 MiB each on a processor, 256 MiB on a GPU, as
+    /// docs/choosing-settings.md states. A smaller memory budget makes them smaller, but the copy still covers them.
+    #[test]
+    fn a_flush_covers_more_than_caches_hold() {
+        let of = |limits: &Limits| {
+            let plan = plan::device_peak(limits).unwrap();
+            let copy = &plan.passes[COPY];
+            assert_eq!(copy.label(), "device_peak copy");
+            let words: Vec<u64> = copy.push[..8]
+                .chunks(4)
+                .map(|word| u32::from_le_bytes(word.try_into().unwrap()).into())
+                .collect();
+            let (invocations, rounds) = (words[0], words[1]);
+            assert_eq!(u64::from(copy.groups[0]) * 64, invocations);
+            let buffers = ["source", "result"].map(|name| plan.find(name).expect(name));
+            for (buffer, bound) in buffers.iter().zip(copy.bindings.iter().flatten()) {
+                assert_eq!(buffer, bound);
+                // A vec4 in each round.
+                assert_eq!(plan.resources[buffer.0].bytes(), 16 * invocations * rounds);
+            }
+            assert_eq!(copy.bytes, 2 * 16 * invocations * rounds);
+            16 * invocations * rounds
+        };
+        assert_eq!(of(&Limits::lavapipe()), 64 << 20);
+        assert_eq!(of(&Limits::boundless(true, 1 << 40)), 64 << 20);
+        assert_eq!(of(&Limits::boundless(false, 1 << 40)), 256 << 20);
+        let small = Limits { memory_budget: 64 << 20, ..Limits::lavapipe() };
+        assert_eq!(of(&small), 4 << 20);
+    }
 }
