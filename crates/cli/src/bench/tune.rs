@@ -44,6 +44,19 @@ struct Trial {
     failed: Option<String>,
 }
 
+impl Trial {
+    /// From its times over those of the untuned form, pair by pair.
+    fn of(form: SweepForm, is_same: bool, ratios: &[f64]) -> Self {
+        let ratio = median(ratios).unwrap_or(f64::NAN);
+        Self { form, ratio, interval: median_interval(ratios), is_same, failed: None }
+    }
+
+    /// Whether it is faster with 95 % confidence.
+    fn is_faster(&self) -> bool {
+        self.is_same && self.interval.is_some_and(|[_, high]| high < FASTER)
+    }
+}
+
 /// What every trial shares.
 struct Search<'a> {
     scene: &'a Scene,
@@ -79,8 +92,7 @@ impl Search<'_> {
         });
         let failed = found.as_ref().err().map(Error::to_string);
         let (is_same, ratios) = found.unwrap_or((true, Vec::new()));
-        let ratio = median(&ratios).unwrap_or(f64::NAN);
-        Trial { form, ratio, interval: median_interval(&ratios), is_same, failed }
+        Trial { failed, ..Trial::of(form, is_same, &ratios) }
     }
 }
 
@@ -152,7 +164,7 @@ pub fn run(args: &TuneArgs) -> Result<Outcome> {
         Ok((trials, last))
     })?;
     bar.finish_and_clear();
-    let kept = last.as_ref().filter(|l| l.interval.is_some_and(|[_, high]| high < FASTER));
+    let kept = last.as_ref().filter(|trial| trial.is_faster());
     tuned::keep(&device, &kept.map_or(untuned, |trial| trial.form))?;
     if !global.quiet {
         crate::say!("{}, {}", device.name, device.driver);
@@ -347,6 +359,27 @@ mod tests {
                 assert!(plan.unwrap().notes.iter().any(|note| note.starts_with("tuned sweep")));
             }
         }
+    }
+
+    /// A form is kept if the upper end of the interval of its ratio is below 0.98, whatever the median. Of 20 pairs, the 95 %
+    /// interval of the median goes from the 6th to the 15th.
+    #[test]
+    fn a_form_is_kept_only_if_its_interval_is_faster() {
+        let form = Limits::lavapipe().sweep;
+        let is_kept = |ratios: &[f64]| Trial::of(form, true, ratios).is_faster();
+        let of = |fast: usize, slow: usize, slowest: f64| {
+            let ratios = [vec![0.9; fast], vec![slowest; slow]].concat();
+            let trial = Trial::of(form, true, &ratios);
+            assert_eq!((ratios.len(), trial.ratio), (20, 0.9), "{ratios:?}");
+            is_kept(&ratios)
+        };
+        assert!(of(20, 0, 0.0) && of(15, 5, 1.3), "the 15th is fast");
+        assert!(!of(14, 6, 1.3) && !of(14, 6, 0.98), "the 15th is slow");
+        assert!(of(14, 6, 0.979));
+        assert!(!is_kept(&[0.97; 5]), "too few pairs for an interval");
+        assert!(is_kept(&[0.97; 6]) && !is_kept(&[0.98; 6]) && !is_kept(&[1.0; 20]));
+        assert!(!is_kept(&[0.9, 0.9, f64::NAN, 0.9, 0.9, 0.9, 0.9]) && !is_kept(&[]));
+        assert!(!Trial::of(form, false, &[0.5; 20]).is_faster(), "other bits");
     }
 
     /// Fast frames: 40 pairs and one to warm up of each form, 400 and one of the last. Slow ones: 6 pairs and one of each.
