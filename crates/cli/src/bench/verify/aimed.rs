@@ -233,7 +233,7 @@ mod tests {
         // Dark, partly hidden, unshadowed.
         let kind = |i: usize| -> usize {
             match (all[i].light, open[i].range[1]) {
-                (light, _) if light == 0.0 => 0,
+                (0.0, _) => 0,
                 (light, most) if light < 0.95 * most => 1,
                 _ => 2,
             }
