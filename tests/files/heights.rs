@@ -396,9 +396,9 @@ fn geotiff_places_and_units() {
         std::fs::write(&path, with(&[scale(), tie(), (34735, Tag::Shorts(&keys))])).unwrap();
         let read = read_field(&path, &HeightOptions::default()).unwrap();
         assert!((absolute(&read.field)[8] - 100.0 * unit).abs() < 1e-4, "{vertical:?}");
-        let notes = read.notes.join("\n");
+        let [notes, warnings] = [read.notes, read.warnings].map(|all| all.join("\n"));
         assert!(notes.contains("cells are in units of 0.3048 m"), "{notes}");
-        assert_eq!(notes.contains("z_scale"), is_noted, "{vertical:?}: {notes}");
+        assert_eq!(warnings.contains("z_scale"), is_noted, "{vertical:?}: {warnings}");
         let of_heights = format!("heights are in units of {unit} m and become metres");
         assert_eq!(notes.contains(&of_heights), unit != 1.0, "{vertical:?}: {notes}");
     }

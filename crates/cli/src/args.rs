@@ -133,10 +133,7 @@ impl Cli {
         let cli = parsed.and_then(|matches| {
             let mut cli = Self::from_arg_matches(&matches).map_err(|e| e.format(&mut parser))?;
             cli.remember(&matches, &scene);
-            let quiet = matches.subcommand().and_then(|(_, m)| m.try_get_one("quiet").ok()?);
-            if quiet != Some(&true) {
-                renamed.warn();
-            }
+            renamed.warn();
             Ok(cli)
         });
         match cli {
@@ -455,7 +452,7 @@ pub struct GlobalArgs {
     /// Write the settings used, times and figures as JSON
     #[arg(long, hide_short_help = true, help_heading = "Output", value_name = "FILE")]
     pub json: Option<PathBuf>,
-    /// Print only errors
+    /// Print only errors and warnings
     #[arg(short, long, hide_short_help = true, help_heading = "Output")]
     pub quiet: bool,
     /// Read field, lights and settings from a JSON file

@@ -83,12 +83,13 @@ pub fn on_cpu(
     surface: &FieldArgs,
     global: &GlobalArgs,
 ) -> Result<(HeightField, Option<Georeference>)> {
-    let files::FieldFile { field, georeference, notes } = read(paths, surface)?;
+    let files::FieldFile { field, georeference, notes, warnings } = read(paths, surface)?;
+    let name = match paths {
+        [first, _, ..] => format!("{} and {} more", first.display(), paths.len() - 1),
+        _ => paths.iter().map(|path| path.display().to_string()).collect(),
+    };
+    warnings.iter().for_each(|text| warning(&format!("{name}: {}", flags_in(text))));
     if !global.quiet {
-        let name = match paths {
-            [first, _, ..] => format!("{} and {} more", first.display(), paths.len() - 1),
-            _ => paths.iter().map(|path| path.display().to_string()).collect(),
-        };
         notes.iter().for_each(|text| note(&format!("{name}: {}", flags_in(text))));
         if surface.bbox.is_some() {
             note(&format!(
@@ -99,13 +100,18 @@ pub fn on_cpu(
     Ok((field, georeference))
 }
 
-/// A note on standard error: standard output is for results, which programs read.
+/// A note on standard error: standard output is for results, which programs read. `--quiet` leaves notes out.
 pub fn note(text: &str) {
     // A closed standard error is no reason to end.
     let _ = writeln!(std::io::stderr(), "note: {text}");
 }
 
-/// A field and its notes, unsaid.
+/// A warning on standard error, with `--quiet` too: the result may be another than the user expects.
+pub fn warning(text: &str) {
+    let _ = writeln!(std::io::stderr(), "warning: {text}");
+}
+
+/// A field, its notes and its warnings, unsaid.
 pub fn read(paths: &[PathBuf], surface: &FieldArgs) -> Result<files::FieldFile> {
     if !surface.z_scale.is_finite() || surface.z_scale == 0.0 {
         let expected = "a finite number other than 0";

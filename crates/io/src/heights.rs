@@ -80,14 +80,18 @@ pub fn read_heights(path: &Path, options: &HeightOptions) -> Result<HeightField>
 }
 
 /// A height field and what its file states or lacks.
+///
+/// A program can leave out the notes. Its user should get the warnings.
 #[derive(Clone, Debug)]
 pub struct FieldFile {
     /// The heights.
     pub field: HeightField,
     /// The position: GeoTIFF, `.hgt` with its corner in its name, `.asc`, a world file.
     pub georeference: Option<Georeference>,
-    /// What was assumed or converted, a sentence each.
+    /// What was chosen or converted, a sentence each.
     pub notes: Vec<String>,
+    /// What may be wrong, a sentence each: guesses, and what of the file is not read.
+    pub warnings: Vec<String>,
 }
 
 /// [`read_heights`], with the position and what was assumed.
@@ -204,16 +208,20 @@ const WIDE_M: f64 = 10_000.0;
 /// Beyond it the drop is no longer that of a parabola.
 const FLAT_M: f64 = 1_000_000.0;
 
-/// What a reader of results should know about a field: its voids and its width.
-fn about(field: &HeightField) -> Vec<String> {
-    let mut notes = Vec::new();
+/// What a reader of results should know about a field: notes and warnings on its voids and its width.
+fn about(field: &HeightField) -> [Vec<String>; 2] {
+    let (mut notes, mut warnings) = (Vec::new(), Vec::new());
     if let Some(voids) = field.voids() {
         let share = voids.iter().filter(|v| **v).count() as f64 / voids.len() as f64;
-        let half = if share >= 0.5 { "; half of the field or more is empty" } else { "" };
-        notes.push(format!(
-            "{:.3} % of the grid points are voids; their heights are filled from neighbours, their results left out{half}",
+        let text = format!(
+            "{:.3} % of the grid points are voids; their heights are filled from neighbours, their results left out",
             100.0 * share
-        ));
+        );
+        if share >= 0.5 {
+            warnings.push(text + "; half of the field or more is empty");
+        } else {
+            notes.push(text);
+        }
     }
     let [cell_x, cell_y] = field.cell_m();
     let [width, height] = [cell_x * (field.cols() - 1) as f64, cell_y * (field.rows() - 1) as f64];
@@ -228,7 +236,7 @@ fn about(field: &HeightField) -> Vec<String> {
         };
         notes.push(format!("the Earth's curvature{of} is not modelled"));
     }
-    notes
+    [notes, warnings]
 }
 
 fn check(options: &HeightOptions) -> Result<()> {
@@ -258,10 +266,12 @@ fn check(options: &HeightOptions) -> Result<()> {
 /// Converts cells to metres and makes the field.
 fn finish(path: &Path, mut raster: Raster, options: &HeightOptions) -> Result<FieldFile> {
     let mut notes = std::mem::take(&mut raster.notes);
+    let mut warnings = std::mem::take(&mut raster.warnings);
     let cell_m = match options.cell_m {
         Some(cell) => cell,
         None => {
             notes.extend(raster.cell_note());
+            warnings.extend(raster.cell_warning());
             raster.cell.metres(path)?
         }
     };
@@ -272,6 +282,8 @@ fn finish(path: &Path, mut raster: Raster, options: &HeightOptions) -> Result<Fi
         Error::Setting { name, found, expected } => Error::file(path, name, found, expected),
         other => other,
     })?;
-    notes.extend(about(&field));
-    Ok(FieldFile { field, georeference, notes })
+    let [more_notes, more_warnings] = about(&field);
+    notes.extend(more_notes);
+    warnings.extend(more_warnings);
+    Ok(FieldFile { field, georeference, notes, warnings })
 }

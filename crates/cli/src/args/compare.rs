@@ -65,7 +65,7 @@ pub struct CompareArgs {
     /// Write the figures as JSON; null is infinite
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub json: Option<PathBuf>,
-    /// Print only errors
+    /// Print only errors and warnings
     #[arg(long, help_heading = "Output")]
     pub quiet: bool,
     #[command(flatten)]

@@ -21,19 +21,27 @@ pub fn run(args: &InfoArgs) -> Result<Outcome> {
         let inputs: Vec<&Path> = args.input.path.iter().map(PathBuf::as_path).collect();
         setup::check_distinct(&[("--json", Some(json))], &inputs)?;
     }
-    let FieldFile { field, georeference, notes } = setup::read(&args.input.path, &args.surface)?;
-    let facts = facts(&field, georeference.as_ref(), &notes)?;
+    let read = setup::read(&args.input.path, &args.surface)?;
+    let facts = facts(&read)?;
     if let Some(json) = &args.global.json {
         files::write_json(json, &facts)?;
     }
     if !args.global.quiet {
         say(args, &facts);
-        say_start(args, &field, georeference.as_ref())?;
+        say_start(args, &read.field, read.georeference.as_ref())?;
+    } else {
+        let path = args.input.names();
+        read.warnings
+            .iter()
+            .for_each(|text| setup::warning(&format!("{path}: {}", setup::flags_in(text))));
     }
     Ok(Outcome::Done)
 }
 
-fn facts(field: &HeightField, at: Option<&Georeference>, notes: &[String]) -> Result<Value> {
+fn facts(FieldFile { field, georeference, notes, warnings }: &FieldFile) -> Result<Value> {
+    let at = georeference.as_ref();
+    let in_flags =
+        |all: &[String]| all.iter().map(|text| setup::flags_in(text)).collect::<Vec<_>>();
     let (rows, cols) = (field.rows(), field.cols());
     let [cell_x, cell_y] = field.cell_m();
     let is_void = |i: usize| field.voids().is_some_and(|v| v[i]);
@@ -62,7 +70,8 @@ fn facts(field: &HeightField, at: Option<&Georeference>, notes: &[String]) -> Re
         "void_share": voids as f64 / (rows * cols) as f64,
         "steep_share": steep as f64 / count.max(1) as f64,
         "device_bytes": serde_json::Map::from_iter(memory),
-        "notes": notes.iter().map(|note| setup::flags_in(note)).collect::<Vec<_>>(),
+        "warnings": in_flags(warnings),
+        "notes": in_flags(notes),
     }))
 }
 
@@ -117,8 +126,10 @@ fn say(args: &InfoArgs, facts: &Value) {
             memory("render_bounces_1")
         ),
     );
-    for note in facts["notes"].as_array().into_iter().flatten() {
-        crate::say!("  {:<10} {}", "note", note.as_str().unwrap_or_default());
+    for (name, key) in [("warning", "warnings"), ("note", "notes")] {
+        for text in facts[key].as_array().into_iter().flatten() {
+            line(name, text.as_str().unwrap_or_default().to_owned());
+        }
     }
 }
 

@@ -53,6 +53,7 @@ struct Run {
     out: String,
     /// Standard error without `notes`.
     err: String,
+    /// Notes and warnings on files, notes on set suns and on time.
     notes: String,
 }
 
@@ -131,9 +132,11 @@ impl Folder {
 fn ran(mut command: Command) -> Run {
     let output = command.output().unwrap();
     let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("UTF-8");
-    // Notes on a file, on set suns or on time: "note: dem.tif: ...", "note: night: ...". Those on flags and maps stay.
+    // Notes and warnings on a file, notes on set suns or on time: "note: dem.tif: ...", "note: night: ...". Those on flags and
+    // maps stay.
     let is_note = |line: &&str| {
-        let what = line.strip_prefix("note: ").and_then(|rest| rest.split(' ').next());
+        let rest = line.strip_prefix("note: ").or_else(|| line.strip_prefix("warning: "));
+        let what = rest.and_then(|rest| rest.split(' ').next());
         let is_of_file = |what: &str| what.ends_with(':') || line.contains(" more: ");
         what.is_some_and(|what| {
             ["night:", "estimate:", "choice:"].contains(&what)

@@ -191,7 +191,7 @@ fn info_states_what_a_file_holds() {
     assert!(run.out.contains("whole numbers of 8 bits"), "{}", run.out);
     let run = folder.run_without_driver(&["info", "steep.png"]);
     assert!(
-        run.out.contains("note       the file has no cell size: --cell 1 is assumed"),
+        run.out.contains("warning    the file has no cell size: --cell 1 is assumed"),
         "{}",
         run.out
     );
@@ -200,9 +200,9 @@ fn info_states_what_a_file_holds() {
     assert!(run.out.contains("drops 350 m over the 67 km"), "{}", run.out);
 }
 
-/// A note states the share of voids, and from one half on that the field is mostly empty.
+/// A note states the share of voids; from one half on it is a warning that the field is mostly empty.
 #[test]
-fn a_field_that_is_half_empty_gets_a_note() {
+fn a_field_that_is_half_empty_gets_a_warning() {
     let folder = Folder::new();
     for (voids, share, is_half) in
         [(9, "45.000 %", false), (10, "50.000 %", true), (12, "60.000 %", true)]
@@ -213,9 +213,11 @@ fn a_field_that_is_half_empty_gets_a_note() {
         let info = folder.run_without_driver(&["info", "holes.asc"]);
         let plan = folder.run_without_driver(&["plan", "holes.asc", "--sky", "1"]);
         let of_share = format!("{share} of the grid points are voids");
-        for (run, text, start) in
-            [(&info, &info.out, "note       "), (&plan, &plan.notes, "note: holes.asc: ")]
-        {
+        let word = if is_half { "warning" } else { "note" };
+        for (run, text, start) in [
+            (&info, &info.out, format!("{word:<10} ")),
+            (&plan, &plan.notes, format!("{word}: holes.asc: ")),
+        ] {
             assert_eq!(run.status, Some(0), "{voids}: {}", run.err);
             assert!(text.contains(&format!("{start}{of_share}")), "{voids}: {text}");
             let has_half = text.contains("; half of the field or more is empty");
@@ -233,11 +235,38 @@ fn notes_leave_standard_output_to_results() {
         let args = format!("plan field.npy --format json --sky 1{sun}");
         let run = folder.run_without_driver(&args.split(' ').collect::<Vec<_>>());
         serde_json::from_str::<serde_json::Value>(&run.out).unwrap();
-        assert!(run.notes.contains("note: field.npy: the file has no cell size"), "{}", run.notes);
+        let warning = "warning: field.npy: the file has no cell size: --cell 1 is assumed\n";
+        assert!(run.notes.contains(warning), "{}", run.notes);
         assert_eq!(run.notes.contains("note: night: "), !sun.is_empty(), "{}", run.notes);
-        let run = folder.run_without_driver(&format!("{args} -q").split(' ').collect::<Vec<_>>());
-        assert_eq!(run.notes, "");
     }
+}
+
+/// `--quiet` leaves out results and notes. Warnings stay, on standard error; without a reason for one there is no output.
+#[test]
+fn quiet_commands_print_warnings() {
+    let folder = Folder::new();
+    crate::needs_vulkan::write_field(&folder, 4, |_, _| 1.0);
+    // Degrees become metres, with a note and without a warning.
+    let head = "ncols 4\nnrows 4\nxllcorner 10\nyllcorner 50\ncellsize 0.01\n";
+    folder.write("level.asc", (head.to_owned() + &"7 ".repeat(16)).as_bytes());
+    let warning = "warning: field.npy: the file has no cell size: --cell 1 is assumed\n";
+    for (file, expected) in [("field.npy", warning), ("field.npy --cell 5", ""), ("level.asc", "")]
+    {
+        for command in [
+            format!("plan {file} --sky 1 --sun 10,-5 -q"),
+            format!("info {file} --quiet"),
+            format!("hillshade {file} -o h.tif -q"),
+        ] {
+            let run = folder.run_without_driver(&command.split(' ').collect::<Vec<_>>());
+            assert_eq!(run.status, Some(0), "{command}: {}", run.err);
+            let all = [run.out.as_str(), run.err.as_str(), run.notes.as_str()];
+            assert_eq!(all, ["", "", expected], "{command}");
+        }
+    }
+    // Without the flag the same commands print notes.
+    let loud = folder.run_without_driver(&["plan", "level.asc", "--sky", "1"]);
+    assert!(loud.notes.contains("note: level.asc: cells of "), "{}", loud.notes);
+    assert!(!loud.out.is_empty());
 }
 
 /// Wider than an image of any device: what needs no image reads it.

@@ -38,8 +38,10 @@ pub(crate) struct Geo {
     pub scale: [f64; 2],
     pub nodata: Option<f64>,
     pub georeference: Option<Georeference>,
-    /// What is converted or assumed.
+    /// What is converted.
     pub notes: Vec<String>,
+    /// What is assumed.
+    pub warnings: Vec<String>,
 }
 
 /// Grid coordinates of a north-up raster.
@@ -63,9 +65,10 @@ pub(crate) fn read(
     let of_crs = keys.short(VERTICAL_CRS).and_then(vertical_unit);
     let of_heights = keys.length(path, VERTICAL_UNIT)?.or(of_crs);
     let unit_m = of_heights.unwrap_or(1.0);
-    let mut notes = Vec::new();
+    let (mut notes, mut warnings) = (Vec::new(), Vec::new());
     let Some(grid) = grid(path, tiff)? else {
-        return Ok(Geo { cell: Cell::Unknown, unit_m, scale, nodata, georeference: None, notes });
+        let cell = Cell::Unknown;
+        return Ok(Geo { cell, unit_m, scale, nodata, georeference: None, notes, warnings });
     };
     // Raster position (0, 0) is the corner of the first pixel, or its centre (RasterType 2).
     let last = |n: usize| if keys.short(RASTER_TYPE) == Some(2) { n - 1 } else { n } as f64;
@@ -99,7 +102,7 @@ pub(crate) fn read(
             if unit != 1.0 {
                 notes.push(format!("cells are in units of {unit} m and become metres"));
                 if of_heights.is_none() {
-                    notes.push(format!(
+                    warnings.push(format!(
                         "heights are read as metres, as the file states no unit; for the unit of its cells use `z_scale {unit}`"
                     ));
                 }
@@ -127,7 +130,7 @@ pub(crate) fn read(
     let georeference = grid
         .origin
         .map(|origin| Georeference::at_origin(origin, grid.cell, keys.copied(path, tiff)));
-    Ok(Geo { cell, unit_m, scale, nodata, georeference, notes })
+    Ok(Geo { cell, unit_m, scale, nodata, georeference, notes, warnings })
 }
 
 /// Metres in the unit of a vertical coordinate reference system of the EPSG registry (v10.076), `None` for private

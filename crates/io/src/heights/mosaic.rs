@@ -72,9 +72,11 @@ pub(super) fn joined(mut tiles: Vec<Tile>) -> Result<Raster> {
                 sums.overlap(whole.values[to] - value);
             }
         }
-        for note in tile.notes {
-            if !whole.notes.contains(&note) {
-                whole.notes.push(note);
+        for (all, own) in [(&mut whole.notes, tile.notes), (&mut whole.warnings, tile.warnings)] {
+            for text in own {
+                if !all.contains(&text) {
+                    all.push(text);
+                }
             }
         }
     }

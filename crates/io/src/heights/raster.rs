@@ -26,8 +26,10 @@ pub(crate) struct Raster {
     pub georeference: Option<Georeference>,
     /// Whether the values are whole numbers of 8 bits.
     pub is_8_bit: bool,
-    /// What the reader chose.
+    /// What the reader chose or converted.
     pub notes: Vec<String>,
+    /// What may be wrong: guesses, and parts of the file that are not read.
+    pub warnings: Vec<String>,
 }
 
 impl Raster {
@@ -46,12 +48,13 @@ impl Raster {
             georeference: None,
             is_8_bit: false,
             notes: Vec::new(),
+            warnings: Vec::new(),
         }
     }
 }
 
 impl Raster {
-    /// Marks voids and converts heights to metres, with notes on what was converted.
+    /// Marks voids and converts heights to metres, with notes on what was converted and warnings of what may be wrong.
     pub fn interpret(&mut self, options: &HeightOptions) {
         if let Some(nodata) = options.nodata.or(self.nodata.take()) {
             let single = self.single;
@@ -63,7 +66,7 @@ impl Raster {
             }
         } else if let Some((mark, count)) = self.likely_voids() {
             let of = if count == 1 { "1 height is" } else { &format!("{count} heights are") };
-            self.notes.push(format!(
+            self.warnings.push(format!(
                 "{of} {mark}, which often marks a void, and the file names no such value; `nodata` {mark} makes voids of them"
             ));
         }
@@ -76,8 +79,8 @@ impl Raster {
             self.notes.push(format!("heights are in units of {unit_m} m and become metres"));
         }
         if self.is_8_bit {
-            let note = "heights are whole numbers of 8 bits, as of a picture: slopes have steps";
-            self.notes.push(note.to_owned());
+            let text = "heights are whole numbers of 8 bits, as of a picture: slopes have steps";
+            self.warnings.push(text.to_owned());
         }
     }
 
@@ -92,22 +95,21 @@ impl Raster {
         MARKS.contains(&lowest).then(|| (lowest, count()))
     }
 
-    /// What is assumed of the cells.
+    /// How cells become metres.
     pub fn cell_note(&self) -> Option<String> {
-        match (self.cell, self.cell.degrees()) {
-            (Cell::Unknown, _) => {
-                Some("the file has no cell size: `cell_m` 1 is assumed".to_owned())
-            }
-            (_, Some((latitude, cell))) => {
-                let [east, north] = metres_a_degree(latitude);
-                Some(format!(
-                    "cells of {:.1} x {:.1} m, from degrees or Mercator metres at latitude {latitude:.2}",
-                    cell[0] * east,
-                    cell[1] * north
-                ))
-            }
-            _ => None,
-        }
+        let (latitude, cell) = self.cell.degrees()?;
+        let [east, north] = metres_a_degree(latitude);
+        Some(format!(
+            "cells of {:.1} x {:.1} m, from degrees or Mercator metres at latitude {latitude:.2}",
+            cell[0] * east,
+            cell[1] * north
+        ))
+    }
+
+    /// What is assumed of cells of unknown size.
+    pub fn cell_warning(&self) -> Option<String> {
+        let text = "the file has no cell size: `cell_m` 1 is assumed";
+        (self.cell == Cell::Unknown).then(|| text.to_owned())
     }
 }
 

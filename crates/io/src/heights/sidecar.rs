@@ -52,10 +52,10 @@ impl Sidecar {
     /// Completes a raster: what its own file states comes first.
     pub fn complete(self, raster: &mut Raster) {
         let Self { world, crs, scale } = self;
-        let notes = &mut raster.notes;
+        let (notes, warnings) = (&mut raster.notes, &mut raster.warnings);
         if let Some(name) = scale {
-            notes
-                .push(format!("scale and offset in {name} are not read; `z_scale` scales heights"));
+            let text = format!("scale and offset in {name} are not read; `z_scale` scales heights");
+            warnings.push(text);
         }
         let own = raster.georeference.take();
         let mut has_changed = false;
@@ -68,7 +68,7 @@ impl Sidecar {
                 Some(Georeference { corner, cell, keys: GeoKeys::default() })
             }
             (None, Some((name, None))) => {
-                notes.push(format!(
+                warnings.push(format!(
                     "{name} is not read: expected six numbers: no rotation, positive width, negative height"
                 ));
                 None
@@ -76,7 +76,7 @@ impl Sidecar {
             (None, None) => None,
         };
         let Some(mut at) = at else {
-            notes.extend(
+            warnings.extend(
                 crs.map(|(name, _)| format!("{name} is not read: the field has no position")),
             );
             return;
@@ -84,17 +84,19 @@ impl Sidecar {
         let mut unit = None;
         match crs.filter(|_| at.keys == GeoKeys::default()) {
             None => {}
-            Some((name, None)) => notes.push(format!(
+            Some((name, None)) => warnings.push(format!(
                 "{name} is not read: expected WKT of a projected system, or of a geographic system in degrees"
             )),
             Some((name, Some(crs))) => {
-                notes.push(match crs.code {
-                    Some(code) => format!("the coordinate reference system of {name} is EPSG:{code}"),
-                    None => format!(
+                match crs.code {
+                    Some(code) => {
+                        notes.push(format!("the coordinate reference system of {name} is EPSG:{code}"));
+                    }
+                    None => warnings.push(format!(
                         "{name} gives the cell unit but no EPSG code for {}; outputs have no coordinate reference system",
                         crs.name
-                    ),
-                });
+                    )),
+                }
                 has_changed = true;
                 at.keys = crs.code.map_or_else(GeoKeys::default, |code| {
                     GeoKeys::of_code(code, crs.is_geographic)
@@ -287,7 +289,10 @@ mod tests {
         let read = || read_field(&path, &HeightOptions::default()).unwrap();
         assert_eq!(read().georeference, None);
         std::fs::write(path.with_extension("prj"), UTM).unwrap();
-        let has = |said: &str| read().notes.iter().any(|note| note.contains(said));
+        let has = |said: &str| {
+            let read = read();
+            read.notes.iter().chain(&read.warnings).any(|text| text.contains(said))
+        };
         assert!(has("dem.prj is not read: the field has no position"));
         std::fs::write(path.with_extension("pgw"), "30\n0\n0\n-20\n500015\n5199990\n").unwrap();
         let placed = read();

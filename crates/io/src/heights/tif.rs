@@ -270,7 +270,6 @@ pub(super) fn heights(
 ) -> Result<Raster> {
     let mut image = Image::open(path, bytes)?;
     let (band, note) = image.band(options.band)?;
-    let note = note.into_iter().chain(mask_note(path, bytes));
     let (rows, cols) = (image.rows, image.cols);
     let geo = geotiff::read(path, &mut image.tiff, rows, cols, band)?;
     let empty = geo.nodata.unwrap_or(0.0);
@@ -282,7 +281,8 @@ pub(super) fn heights(
         nodata: geo.nodata,
         is_8_bit,
         georeference: geo.georeference,
-        notes: note.chain(geo.notes).collect(),
+        notes: note.into_iter().chain(geo.notes).collect(),
+        warnings: mask_warning(path, bytes).into_iter().chain(geo.warnings).collect(),
         ..Raster::bare(rows, cols, Vec::new())
     };
     sidecar.complete(&mut raster);
@@ -314,9 +314,9 @@ fn unreadable(method: u16) -> Option<&'static str> {
     }
 }
 
-/// A note where the file has a mask of valid texels, which is not read: in a later directory, or in a file
+/// A warning where the file has a mask of valid texels, which is not read: in a later directory, or in a file
 /// beside it, as GDAL writes them.
-fn mask_note(path: &Path, bytes: &[u8]) -> Option<String> {
+fn mask_warning(path: &Path, bytes: &[u8]) -> Option<String> {
     const IS_MASK: u32 = 4;
     let mut beside = path.as_os_str().to_owned();
     beside.push(".msk");

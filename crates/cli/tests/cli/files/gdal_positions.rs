@@ -234,7 +234,7 @@ fn gdal_agrees_on_grid_north_and_on_feet() {
         let squared = 1.0 - 0.006_694_38 * phi.sin().powi(2);
         let radii = squared / (1.0 - 0.006_694_38);
         let expected = ((east - west) * phi.cos() * radii).atan2(north - south).to_degrees();
-        let notes = facts["notes"].to_string();
+        let notes = format!("{} {}", facts["notes"], facts["warnings"]);
         let side = if expected > 0.0 { "east" } else { "west" };
         let sign = if expected > 0.0 { '+' } else { '-' };
         let note = format!(
