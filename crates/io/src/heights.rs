@@ -18,6 +18,7 @@ use crate::exr;
 use crate::georeference::Georeference;
 use crate::open::{self, Format};
 use crate::png;
+use mosaic::{Choose, Tile, Window};
 pub(crate) use raster::{Cell, Raster, looks_like_degrees};
 use ridgelight::scene::HeightField;
 use ridgelight::{Error, Result};
@@ -117,32 +118,34 @@ pub fn read_field(path: &Path, options: &HeightOptions) -> Result<FieldFile> {
 /// Several files as one field, each placed by its position.
 ///
 /// The files have the same coordinate reference system and the same cells, and lie apart by whole
-/// cells. Where they overlap, the first that has a height gives it. Grid points in no file are voids.
+/// cells. Where they overlap, the first that has a height gives it. Grid points in no file are voids. TIFFs outside a box
+/// are not decoded.
 ///
 /// # Errors
 /// As [`read_heights`]; a file without a position, of another system or of other cells, or shifted by
 /// a part of a cell; files that are far apart.
 pub fn read_mosaic<P: AsRef<Path>>(paths: &[P], options: &HeightOptions) -> Result<FieldFile> {
     check(options)?;
-    if let [path] = paths {
-        return read_field(path.as_ref(), options);
-    }
-    let tile = |path: &P| {
-        let path = path.as_ref();
-        // The box cuts the mosaic: it may lie outside some tiles.
-        let options = HeightOptions { bbox: None, ..*options };
-        Ok((path.to_owned(), decoded(path, &open::read(path)?, &options, Sidecar::beside(path))?))
+    let first: &Path = match paths {
+        [] => return Err(Error::setting("files", "none", "at least one")),
+        [path] => return read_field(path.as_ref(), options),
+        [first, ..] => first.as_ref(),
     };
-    let tiles = paths.iter().map(tile).collect::<Result<Vec<_>>>()?;
-    let Some((first, _)) = tiles.first() else {
-        return Err(Error::setting("files", "none", "at least one"));
+    let tiles =
+        paths.iter().map(|path| tile(path.as_ref(), options)).collect::<Result<Vec<_>>>()?;
+    finish(first, mosaic::joined(tiles, options.bbox)?, options)
+}
+
+/// A file of a mosaic, without the values that are not near the box: it may lie outside some files.
+fn tile(path: &Path, options: &HeightOptions) -> Result<Tile> {
+    let choose = |at: Option<&Georeference>, size: [usize; 2]| -> Result<Window> {
+        Ok(match (at, options.bbox) {
+            (Some(at), Some(bbox)) => Window::near(at, size, bbox),
+            _ => Window::whole(size),
+        })
     };
-    let first = first.clone();
-    let mut raster = mosaic::joined(tiles)?;
-    if let Some(bbox) = options.bbox {
-        raster = mosaic::cropped(&first, raster, bbox)?;
-    }
-    finish(&first, raster, options)
+    let (raster, window) = part(path, &open::read(path)?, options, Sidecar::beside(path), &choose)?;
+    Ok(Tile { path: path.to_owned(), raster, window })
 }
 
 /// [`read_heights`] from bytes in memory. `name` sets the format and appears in messages.
@@ -160,6 +163,22 @@ fn parse_field(name: &Path, bytes: &[u8], options: &HeightOptions) -> Result<Fie
 
 /// A file's grid, cut to the box, heights in metres.
 fn decoded(name: &Path, bytes: &[u8], options: &HeightOptions, sidecar: Sidecar) -> Result<Raster> {
+    let choose = |at: Option<&Georeference>, size: [usize; 2]| match options.bbox {
+        Some(bbox) => Window::of(name, at, size, bbox),
+        None => Ok(Window::whole(size)),
+    };
+    let (raster, window) = part(name, bytes, options, sidecar, &choose)?;
+    Ok(if options.bbox.is_some() { window.placed(raster) } else { raster })
+}
+
+/// A file's grid with the values of a window, heights in metres. Its size and position are those of the file.
+fn part(
+    name: &Path,
+    bytes: &[u8],
+    options: &HeightOptions,
+    sidecar: Sidecar,
+    choose: Choose,
+) -> Result<(Raster, Window)> {
     const ACCEPTED: [Format; 7] = [
         Format::Png,
         Format::Exr,
@@ -174,14 +193,12 @@ fn decoded(name: &Path, bytes: &[u8], options: &HeightOptions, sidecar: Sidecar)
         Some((name, bytes)) => (name.as_path(), bytes.as_slice()),
         None => (name, bytes),
     };
-    let interpreted = |mut raster: Raster| {
-        raster.interpret(options);
-        raster
-    };
     let mut raster = match open::format(name, bytes, &ACCEPTED)? {
-        // Its strips and tiles outside the box are not read.
+        // Its strips and tiles outside the window are not read.
         Format::Tiff => {
-            return tif::heights(name, bytes, options, sidecar).map(interpreted);
+            let (mut raster, window) = tif::heights(name, bytes, options.band, sidecar, choose)?;
+            raster.interpret(options);
+            return Ok((raster, window));
         }
         Format::Npy | Format::Hdr => npy::heights(name, bytes, options.band),
         _ if options.band.is_some_and(|band| band != 1) => {
@@ -194,10 +211,10 @@ fn decoded(name: &Path, bytes: &[u8], options: &HeightOptions, sidecar: Sidecar)
         Format::Npz => npz::heights(name, bytes),
     }?;
     sidecar.complete(&mut raster);
-    if let Some(bbox) = options.bbox {
-        raster = mosaic::cropped(name, raster, bbox)?;
-    }
-    Ok(interpreted(raster))
+    let window = choose(raster.georeference.as_ref(), [raster.rows, raster.cols])?;
+    window.cut(&mut raster);
+    raster.interpret(options);
+    Ok((raster, window))
 }
 
 /// The Earth's mean radius, metres.

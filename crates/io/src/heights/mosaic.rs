@@ -1,4 +1,4 @@
-//! Several grids as one, and a part of a grid, by their positions.
+//! Several grids as one, and parts of grids, by their positions.
 
 use super::Raster;
 use crate::georeference::Georeference;
@@ -12,17 +12,19 @@ const SHIFT: f64 = 0.01;
 /// The most grid points of a mosaic, for each grid point in its files.
 const SPREAD: u64 = 64;
 
-type Tile = (PathBuf, Raster);
+/// A file of a mosaic. Size and position are those of the file, values and voids those of the window.
+pub(super) struct Tile {
+    pub path: PathBuf,
+    pub raster: Raster,
+    pub window: Window,
+}
 
-/// A grid that holds all tiles. Its heights are those of the first tile that has one there.
-pub(super) fn joined(mut tiles: Vec<Tile>) -> Result<Raster> {
-    if tiles.len() == 1 {
-        return Ok(tiles.remove(0).1);
-    }
-    let (first, grid) = &tiles[0];
+/// A grid that holds all tiles, or their part in a box. Its heights are those of the first tile that has one there.
+pub(super) fn joined(tiles: Vec<Tile>, bbox: Option<[f64; 4]>) -> Result<Raster> {
+    let Tile { path: first, raster: grid, .. } = &tiles[0];
     let (first, at, cell) = (first.clone(), placed(first, grid)?.clone(), grid.cell);
     let mut corners = Vec::with_capacity(tiles.len());
-    for (path, raster) in &tiles {
+    for Tile { path, raster, .. } in &tiles {
         let own = placed(path, raster)?;
         if std::mem::discriminant(&raster.cell) != std::mem::discriminant(&cell)
             || !own.keys.is_same_crs(&at.keys)
@@ -33,37 +35,49 @@ pub(super) fn joined(mut tiles: Vec<Tile>) -> Result<Raster> {
         }
         corners.push(whole_cells(path, raster, own, (&first, &at))?);
     }
-    let ends = tiles
-        .iter()
-        .zip(&corners)
-        .map(|((_, tile), corner)| [corner[0] + tile.rows as i64, corner[1] + tile.cols as i64]);
+    let ends = tiles.iter().zip(&corners).map(|(Tile { raster, .. }, corner)| {
+        [corner[0] + raster.rows as i64, corner[1] + raster.cols as i64]
+    });
     let [top, left] = [0, 1].map(|axis| corners.iter().map(|c| c[axis]).min().unwrap_or(0));
     let [bottom, right] = ends.fold([i64::MIN; 2], |[b, r], [y, x]| [b.max(y), r.max(x)]);
-    let place = "mosaic";
-    let size = |end: i64, start: i64| end.abs_diff(start);
-    let (rows, cols) = open::size(&first, place, size(bottom, top), size(right, left))?;
-    let held: usize = tiles.iter().map(|(_, tile)| tile.values.len()).sum();
+    let size = [bottom.abs_diff(top) as usize, right.abs_diff(left) as usize];
+    let window = match bbox {
+        Some(bbox) => Window::of(&first, Some(&shifted(&at, [top, left])), size, bbox)?,
+        None => Window::whole(size),
+    };
+    let (rows, cols) = size_of_part(&first, "mosaic", [window.rows.len(), window.cols.len()])?;
+    let held: usize = tiles.iter().map(|tile| tile.raster.rows * tile.raster.cols).sum();
     if (rows * cols) as u64 > SPREAD * held as u64 {
         let found = format!("{cols} x {rows} grid points, {held} of them in files");
         let expected = format!("at most {SPREAD} times as many grid points as the files hold");
-        return Err(Error::file(&first, place, found, expected));
+        return Err(Error::file(&first, "mosaic", found, expected));
     }
+    // The grid's first row and column from those of the first tile.
+    let [top, left] = [top + window.rows.start as i64, left + window.cols.start as i64];
     let mut whole = Raster::bare(rows, cols, open::zeros(&first, rows * cols)?);
     let mut sums = Sums::default();
     // Whether a file holds the grid point, and whether none has its height.
     let mut is_held = vec![false; rows * cols];
     let mut voids = vec![true; rows * cols];
-    for ((path, tile), [row, col]) in tiles.into_iter().zip(corners) {
-        let [row, col] = [row.abs_diff(top) as usize, col.abs_diff(left) as usize];
-        for (i, value) in tile.values.iter().enumerate() {
-            let to = (row + i / tile.cols) * cols + col + i % tile.cols;
-            is_held[to] = true;
-            if tile.voids.as_ref().is_some_and(|voids| voids[i]) {
+    for (Tile { path, raster, window }, [row, col]) in tiles.into_iter().zip(corners) {
+        let [row, col] =
+            [row + window.rows.start as i64 - top, col + window.cols.start as i64 - left];
+        let width = window.cols.len();
+        let mut is_used = false;
+        for (i, value) in raster.values.iter().enumerate() {
+            let [y, x] = [row + (i / width) as i64, col + (i % width) as i64];
+            if !(0..rows as i64).contains(&y) || !(0..cols as i64).contains(&x) {
+                continue;
+            }
+            let to = y as usize * cols + x as usize;
+            (is_held[to], is_used) = (true, true);
+            if raster.voids.as_ref().is_some_and(|voids| voids[i]) {
                 continue;
             }
             if !value.is_finite() {
-                let place = format!("height at row {}, column {}", i / tile.cols, i % tile.cols);
+                let [y, x] = [window.rows.start + i / width, window.cols.start + i % width];
                 let expected = "a finite number, or one marked as no-data (`nodata`)";
+                let place = format!("height at row {y}, column {x}");
                 return Err(Error::file(&path, place, format!("{value:?}"), expected));
             }
             if voids[to] {
@@ -72,7 +86,11 @@ pub(super) fn joined(mut tiles: Vec<Tile>) -> Result<Raster> {
                 sums.overlap(whole.values[to] - value);
             }
         }
-        for (all, own) in [(&mut whole.notes, tile.notes), (&mut whole.warnings, tile.warnings)] {
+        if !is_used {
+            continue;
+        }
+        for (all, own) in [(&mut whole.notes, raster.notes), (&mut whole.warnings, raster.warnings)]
+        {
             for text in own {
                 if !all.contains(&text) {
                     all.push(text);
@@ -84,8 +102,10 @@ pub(super) fn joined(mut tiles: Vec<Tile>) -> Result<Raster> {
     whole.notes.extend(sums.note());
     if gaps > 0 {
         let share = 100.0 * gaps as f64 / is_held.len() as f64;
-        whole.notes.push(format!("{share:.3} % of the joined extent is in no file: voids there"));
+        let of = if bbox.is_some() { "box" } else { "joined extent" };
+        whole.notes.push(format!("{share:.3} % of the {of} is in no file: voids there"));
     }
+    whole.notes.extend(window.note);
     whole.voids = Some(voids);
     whole.cell = cell;
     Ok(moved(whole, &at, [top, left]))
@@ -125,13 +145,33 @@ fn whole_cells(
     Ok(shift.map(|cells| cells.round() as i64))
 }
 
-/// A grid whose north-west corner lies some rows and columns from that of `at`.
-fn moved(mut raster: Raster, at: &Georeference, [row, col]: [i64; 2]) -> Raster {
+/// The position some rows and columns from `at`.
+fn shifted(at: &Georeference, [row, col]: [i64; 2]) -> Georeference {
     let [width, height] = at.cell;
     let corner = [at.corner[0] + col as f64 * width, at.corner[1] - row as f64 * height];
-    raster.cell = raster.cell.about(corner[1] - raster.rows as f64 * height / 2.0);
-    raster.georeference = Some(Georeference { corner, ..at.clone() });
+    Georeference { corner, ..at.clone() }
+}
+
+/// A grid whose north-west corner lies some rows and columns from that of `at`.
+fn moved(mut raster: Raster, at: &Georeference, by: [i64; 2]) -> Raster {
+    let at = shifted(at, by);
+    raster.cell = raster.cell.about(at.corner[1] - raster.rows as f64 * at.cell[1] / 2.0);
+    raster.georeference = Some(at);
     raster
+}
+
+/// Rows and columns to read, within the limits of a field.
+pub(super) fn size_of_part(
+    path: &Path,
+    place: &str,
+    [rows, cols]: [usize; 2],
+) -> Result<(usize, usize)> {
+    open::size(path, place, rows as u64, cols as u64).map_err(|error| match error {
+        Error::File { path, place, found, expected } => {
+            Error::file(&path, place, found, expected + "; `bbox` reads a part")
+        }
+        other => other,
+    })
 }
 
 /// Overlaps of tiles.
@@ -160,15 +200,41 @@ impl Sums {
     }
 }
 
-/// Rows and columns of a grid that a box touches, and a note where the box reaches beyond the grid.
+/// Rows and columns of a grid, and a note on them.
 pub(super) struct Window {
     pub rows: Range<usize>,
     pub cols: Range<usize>,
     pub note: Option<String>,
 }
 
+/// Finds the window to read from the position, if there is one, and the numbers of rows and columns.
+pub(super) type Choose<'a> = &'a dyn Fn(Option<&Georeference>, [usize; 2]) -> Result<Window>;
+
 impl Window {
-    /// `bbox` is west, south, east and north in the coordinates of the grid.
+    /// All rows and columns.
+    pub fn whole([rows, cols]: [usize; 2]) -> Self {
+        Self { rows: 0..rows, cols: 0..cols, note: None }
+    }
+
+    /// What a box touches of a tile, and a cell more on each side: tiles lie up to a part of a cell from the grid of the
+    /// first. Empty where the box is elsewhere.
+    pub fn near(at: &Georeference, [rows, cols]: [usize; 2], bbox: [f64; 4]) -> Self {
+        let [west, south, east, north] = bbox;
+        let [left, top] = at.corner;
+        let span = |from: f64, to: f64, count: usize| {
+            let [start, end] = [(from - 1.0).floor(), (to + 1.0).ceil()];
+            start.clamp(0.0, count as f64) as usize..end.clamp(0.0, count as f64) as usize
+        };
+        let [width, height] = at.cell;
+        Self {
+            rows: span((top - north) / height, (top - south) / height, rows),
+            cols: span((west - left) / width, (east - left) / width, cols),
+            note: None,
+        }
+    }
+
+    /// What a box touches, with a note where it reaches beyond the grid. `bbox` is west, south, east and north in the
+    /// coordinates of the grid.
     pub fn of(
         path: &Path,
         at: Option<&Georeference>,
@@ -206,27 +272,31 @@ impl Window {
         Ok(Self { rows, cols, note })
     }
 
-    /// A grid of the window's values, at the window's position in `at`.
-    pub fn placed(self, mut raster: Raster, at: &Georeference) -> Raster {
+    pub fn is_empty(&self) -> bool {
+        self.rows.is_empty() || self.cols.is_empty()
+    }
+
+    /// Drops the values of a whole grid that lie outside.
+    pub fn cut(&self, raster: &mut Raster) {
+        fn part<T: Copy>(all: &[T], width: usize, window: &Window) -> Vec<T> {
+            let row = |row: usize| &all[row * width..][window.cols.clone()];
+            window.rows.clone().flat_map(row).copied().collect()
+        }
+        if [self.rows.len(), self.cols.len()] != [raster.rows, raster.cols] {
+            raster.values = part(&raster.values, raster.cols, self);
+            raster.voids = raster.voids.take().map(|voids| part(&voids, raster.cols, self));
+        }
+    }
+
+    /// The grid of the window alone; `raster` has the window's values and the size and position of the whole.
+    pub fn placed(self, mut raster: Raster) -> Raster {
         raster.notes.extend(self.note);
         (raster.rows, raster.cols) = (self.rows.len(), self.cols.len());
-        moved(raster, at, [self.rows.start as i64, self.cols.start as i64])
+        match raster.georeference.take() {
+            Some(at) => moved(raster, &at, [self.rows.start as i64, self.cols.start as i64]),
+            None => raster,
+        }
     }
-}
-
-/// The cells of a grid that a box touches.
-pub(super) fn cropped(path: &Path, mut raster: Raster, bbox: [f64; 4]) -> Result<Raster> {
-    fn part<T: Copy>(all: &[T], width: usize, window: &Window) -> Vec<T> {
-        let row = |row: usize| &all[row * width..][window.cols.clone()];
-        window.rows.clone().flat_map(row).copied().collect()
-    }
-    let size = [raster.rows, raster.cols];
-    let at = raster.georeference.take();
-    let window = Window::of(path, at.as_ref(), size, bbox)?;
-    let Some(at) = at else { return Ok(raster) };
-    raster.values = part(&raster.values, size[1], &window);
-    raster.voids = raster.voids.map(|voids| part(&voids, size[1], &window));
-    Ok(window.placed(raster, &at))
 }
 
 #[cfg(test)]

@@ -1,9 +1,9 @@
 //! TIFF heights: one band of any integer or float type; [`geotiff`] reads its position.
 
-use crate::heights::mosaic::Window;
+use crate::heights::mosaic::{Choose, Window, size_of_part};
 use crate::heights::raw::Raw;
 use crate::heights::sidecar::Sidecar;
-use crate::heights::{HeightOptions, Raster, geotiff, lzw};
+use crate::heights::{Raster, geotiff, lzw};
 use crate::open;
 use half::f16;
 use ridgelight::{Error, Result};
@@ -127,12 +127,7 @@ impl<'a> Image<'a> {
     ) -> Result<(Vec<Vec<T>>, bool)> {
         let (path, rows, cols) = (self.path, self.rows, self.cols);
         let [lines, columns] = [0, 1].map(|axis| self.window[axis].len());
-        open::size(path, "header", lines as u64, columns as u64).map_err(|error| match error {
-            Error::File { path, place, found, expected } => {
-                Error::file(&path, place, found, expected + "; `bbox` reads a part")
-            }
-            other => other,
-        })?;
+        size_of_part(path, "header", [lines, columns])?;
         let claimed = (lines * columns) as u64 * self.texel_bytes;
         open::plausible(path, "header", claimed, self.bytes.len(), ratio(self.method))?;
         let wrong = |found: String| {
@@ -261,15 +256,16 @@ pub(crate) fn no_band(path: &Path, band: u32, bands: usize) -> Error {
     Error::file(path, "header", bands, format!("a band {band}, which `band` requests"))
 }
 
-/// The heights of a band, in a box if there is one; strips and tiles outside it are not decoded.
+/// The heights of a band in a window; strips and tiles outside it are not decoded. The position is that of the file.
 pub(super) fn heights(
     path: &Path,
     bytes: &[u8],
-    options: &HeightOptions,
+    wanted: Option<u32>,
     sidecar: Sidecar,
-) -> Result<Raster> {
+    choose: Choose,
+) -> Result<(Raster, Window)> {
     let mut image = Image::open(path, bytes)?;
-    let (band, note) = image.band(options.band)?;
+    let (band, note) = image.band(wanted)?;
     let (rows, cols) = (image.rows, image.cols);
     let geo = geotiff::read(path, &mut image.tiff, rows, cols, band)?;
     let empty = geo.nodata.unwrap_or(0.0);
@@ -286,18 +282,13 @@ pub(super) fn heights(
         ..Raster::bare(rows, cols, Vec::new())
     };
     sidecar.complete(&mut raster);
-    let at = raster.georeference.clone();
-    let window = |bbox| Window::of(path, at.as_ref(), [rows, cols], bbox);
-    let window = options.bbox.map(window).transpose()?;
-    if let Some(window) = &window {
-        image = image.within([window.rows.clone(), window.cols.clone()]);
+    let window = choose(raster.georeference.as_ref(), [rows, cols])?;
+    if !window.is_empty() {
+        let image = image.within([window.rows.clone(), window.cols.clone()]);
+        let (mut planes, single) = image.read(band..band + 1, empty, |value| value)?;
+        (raster.values, raster.single) = (planes.swap_remove(0), single);
     }
-    let (mut planes, single) = image.read(band..band + 1, empty, |value| value)?;
-    (raster.values, raster.single) = (planes.swap_remove(0), single);
-    Ok(match (window, &at) {
-        (Some(window), Some(at)) => window.placed(raster, at),
-        _ => raster,
-    })
+    Ok((raster, window))
 }
 
 /// A compression that is not read, by its TIFF number.

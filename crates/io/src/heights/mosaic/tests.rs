@@ -1,6 +1,35 @@
 use super::*;
 use crate::georeference::GeoKeys;
 use crate::heights::Cell;
+use crate::{Channels, HeightOptions, Layer, read_mosaic, write_geotiff};
+
+type Tile = (PathBuf, Raster);
+
+/// Joins tiles, each cut to what is near the box.
+fn joined_in(tiles: Vec<Tile>, bbox: Option<[f64; 4]>) -> Result<Raster> {
+    let cut = |(path, mut raster): Tile| {
+        let size = [raster.rows, raster.cols];
+        let window = match (&raster.georeference, bbox) {
+            (Some(at), Some(bbox)) => Window::near(at, size, bbox),
+            _ => Window::whole(size),
+        };
+        window.cut(&mut raster);
+        super::Tile { path, raster, window }
+    };
+    super::joined(tiles.into_iter().map(cut).collect(), bbox)
+}
+
+fn joined(tiles: Vec<Tile>) -> Result<Raster> {
+    joined_in(tiles, None)
+}
+
+/// The cells of a grid that a box touches.
+fn cropped(path: &Path, mut raster: Raster, bbox: [f64; 4]) -> Result<Raster> {
+    let size = [raster.rows, raster.cols];
+    let window = Window::of(path, raster.georeference.as_ref(), size, bbox)?;
+    window.cut(&mut raster);
+    Ok(window.placed(raster))
+}
 
 /// A projected system of this code.
 fn crs(code: u16) -> GeoKeys {
@@ -168,4 +197,81 @@ fn degrees_follow_the_part() {
     whole.cell = Cell::Degrees { cell: [0.1, 0.1], latitude: 55.0 };
     let part = cropped(Path::new("a"), whole, [7.0, 50.0, 8.0, 51.0]).unwrap();
     assert!(matches!(part.cell, Cell::Degrees { latitude, .. } if (latitude - 50.5).abs() < 1e-9));
+}
+
+/// Every box of cells of tiles that overlap and leave gaps is that box of the whole.
+#[test]
+fn a_box_of_tiles_is_that_of_the_whole() {
+    // Together 7 x 9 grid points, whose corner is at 4980 m east and 9060 m north.
+    let tiles = || {
+        vec![
+            tile("a", [0, 0], [4, 3]),
+            tile("b", [-3, -2], [3, 9]),
+            tile("c", [1, 3], [3, 4]),
+            tile("d", [-1, -1], [2, 3]),
+        ]
+    };
+    let mut boxes = 0;
+    for (top, bottom) in (0..7).flat_map(|top| (top + 1..8).map(move |bottom| (top, bottom))) {
+        for (left, right) in (0..9).flat_map(|left| (left + 1..10).map(move |right| (left, right)))
+        {
+            let [west, east] = [(left, 2.0), (right, -2.0)]
+                .map(|(col, inwards)| 4980.0 + 10.0 * f64::from(col) + inwards);
+            let [north, south] = [(top, -3.0), (bottom, 3.0)]
+                .map(|(row, inwards)| 9060.0 - 20.0 * f64::from(row) + inwards);
+            let bbox = [west, south, east, north];
+            let found = joined_in(tiles(), Some(bbox)).unwrap();
+            let expected = cropped(Path::new("all"), joined(tiles()).unwrap(), bbox).unwrap();
+            assert_eq!([found.rows, found.cols], [bottom - top, right - left].map(|n| n as usize));
+            assert_eq!([found.rows, found.cols], [expected.rows, expected.cols]);
+            assert_eq!((found.values, found.voids), (expected.values, expected.voids), "{bbox:?}");
+            assert_eq!(found.georeference, expected.georeference, "{bbox:?}");
+            boxes += 1;
+        }
+    }
+    assert_eq!(boxes, 28 * 45);
+    let beyond = joined_in(tiles(), Some([0.0, 8930.0, 4985.0, 9e5])).unwrap();
+    assert!(beyond.notes.iter().any(|note| note.contains("reaches beyond")), "{:?}", beyond.notes);
+    let gap = "57.143 % of the box is in no file: voids there";
+    assert!(beyond.notes.iter().any(|note| note == gap), "{:?}", beyond.notes);
+    let error = joined_in(tiles(), Some([0.0, 0.0, 1.0, 1.0])).err().unwrap().to_string();
+    assert!(error.contains("extent is 4980,8920,5070,9060"), "{error}");
+}
+
+/// A TIFF outside the box may be damaged behind its header, and the whole may be wider than any field.
+#[test]
+fn files_outside_the_box_are_not_decoded() {
+    let folder = tempfile::tempdir().unwrap();
+    let heights: Vec<f32> = (0..400).map(|i| ((i * 7919) % 613) as f32).collect();
+    let paths = [("a.tif", 0.0), ("b.tif", 200.0), ("far.tif", 700_000.0)].map(|(name, west)| {
+        let path = folder.path().join(name);
+        let at = Georeference { corner: [west, 200.0], cell: [10.0; 2], keys: crs(32618) };
+        let channels = Channels::Scalar("heights", &heights);
+        let layers = [Layer { name: String::new(), channels }];
+        write_geotiff(&path, [20, 20], &layers, &[], Some(&at), &[]).unwrap();
+        path
+    });
+    let read = |count: usize, bbox| {
+        read_mosaic(&paths[..count], &HeightOptions { bbox, ..HeightOptions::default() })
+    };
+    let of_a = Some([0.0, 0.0, 150.0, 200.0]);
+    let whole = read(2, of_a).unwrap();
+    assert_eq!([whole.field.rows(), whole.field.cols()], [20, 15]);
+    let refused = read(3, None).unwrap_err().to_string();
+    assert!(refused.contains("70020 columns") && refused.contains("`bbox` reads"), "{refused}");
+
+    // 400 heights of many values have more than 200 bytes.
+    let bytes = std::fs::read(&paths[1]).unwrap();
+    std::fs::write(&paths[1], &bytes[..bytes.len() - 200]).unwrap();
+    for count in [2, 3] {
+        let part = read(count, of_a).unwrap();
+        assert_eq!(part.field.heights_m(), whole.field.heights_m());
+        assert_eq!(part.georeference, whole.georeference);
+    }
+    let far = read(3, Some([700_000.0, 0.0, 700_200.0, 200.0])).unwrap();
+    assert_eq!(far.georeference.unwrap().corner, [700_000.0, 200.0]);
+    for bbox in [None, Some([0.0, 0.0, 250.0, 200.0])] {
+        let error = read(2, bbox).unwrap_err().to_string();
+        assert!(error.contains("b.tif"), "{error}");
+    }
 }
