@@ -93,3 +93,18 @@ swiftshader_manifest() {
 }
 JSON
 }
+
+# Debian's own Python has a module.
+python_has() { # MODULE
+    /usr/bin/python3 -c "import $1" 2>/dev/null
+}
+
+# GDAL's tools and its validator of Cloud Optimized GeoTIFFs.
+has_gdal() {
+    command -v gdalinfo >/dev/null && python_has osgeo_utils.samples.validate_cloud_optimized_geotiff
+}
+
+# NumPy, whose arrays are compared with what GDAL reads.
+has_numpy() {
+    has_gdal && python_has numpy
+}

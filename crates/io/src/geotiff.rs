@@ -1,7 +1,9 @@
 //! Writes GeoTIFF: f32 bands in tiles with overviews, laid out as a Cloud Optimized GeoTIFF.
 //!
-//! The `tiff` crate writes neither tiles nor the floating-point predictor; `geotiff-writer` 0.10
-//! writes both, but not GDAL's metadata, which holds the names and units of bands.
+//! Why a writer of its own, as of November 2026:
+//! - `tiff` 0.11 reads tiles and the floating-point predictor. Its encoder writes strips only, and refuses that predictor.
+//! - `geotiff-writer` 0.10 writes both, in COG order, but not GDAL's metadata, which holds the names and units of bands.
+//! - `gdal` binds GDAL's C library, which users would have to install.
 
 mod directory;
 mod layers;

@@ -24,6 +24,7 @@ mod files {
     pub mod gdal_inputs;
     mod gdal_positions;
     pub mod geotiff;
+    mod python;
     mod table;
     mod two_runs;
 }

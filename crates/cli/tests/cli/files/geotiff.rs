@@ -1,5 +1,6 @@
 //! GeoTIFF and world files of maps: read back by this project's reader, and by GDAL.
 
+use super::gdal_inputs::tool;
 use crate::needs_vulkan::done;
 use crate::{Folder, formats, read};
 use serde_json::{Value, json};
@@ -175,6 +176,21 @@ fn gdal_reads_every_value_and_overviews() {
         .flat_map(f32::to_le_bytes)
         .collect();
     folder.write("big.npy", &formats::npy("<f4", false, &format!("({rows}, {cols})"), &heights));
+    // The validator refuses the same values in strips, in tiles without overviews, and with overviews behind the image.
+    done(&folder, "render big.npy --nodata nan --azimuths 4 -o o.tif");
+    for (name, layout, has_overviews, says) in [
+        ("strips.tif", "", false, "not tiled"),
+        ("alone.tif", "-co TILED=YES", false, "internal overviews"),
+        ("behind.tif", "-co TILED=YES", true, "image should be after the one of the overview"),
+    ] {
+        tool(&folder, &format!("gdal_translate -q {layout} o.tif {name}"));
+        if has_overviews {
+            tool(&folder, &format!("gdaladdo -q -r average {name} 2 4"));
+        }
+        let error = checked_cog(&folder.path(name)).unwrap_err();
+        assert!(error.contains(says), "{name}: {error}");
+    }
+
     let (none, all) = ("", " --layers lights,sky-view,horizon");
     // The large field once, with every band.
     for (input, overviews, layers) in [

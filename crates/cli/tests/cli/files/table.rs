@@ -11,8 +11,9 @@ struct Row {
     heights: &'static str,
     nodata: &'static str,
     unit: &'static str,
-    /// What tests compare with GDAL's reading: functions `gdal_...` of gdal_inputs.rs and gdal_positions.rs.
-    by_gdal: &'static str,
+    /// What tests compare with GDAL's reading, functions `gdal_...` of gdal_inputs.rs and gdal_positions.rs, or with the arrays
+    /// that NumPy wrote, functions `numpy_...` of python.rs.
+    compared: &'static str,
 }
 
 const ROWS: [Row; 7] = [
@@ -23,7 +24,7 @@ const ROWS: [Row; 7] = [
                   uncompressed, LZW, DEFLATE, Zstandard or PackBits, any predictor; BigTIFF",
         nodata: "GDAL's tag",
         unit: "vertical unit, or feet by vertical EPSG code",
-        by_gdal: "values, bands, no data, position, feet, Web Mercator, grid north",
+        compared: "values, bands, no data, position, feet, Web Mercator, grid north",
     },
     Row {
         file: "`.hgt`",
@@ -31,7 +32,7 @@ const ROWS: [Row; 7] = [
         heights: "16-bit integers; the name gives the corner",
         nodata: "-32768",
         unit: "metres",
-        by_gdal: "values, position",
+        compared: "values, position",
     },
     Row {
         file: "`.asc`",
@@ -39,7 +40,7 @@ const ROWS: [Row; 7] = [
         heights: "text",
         nodata: "header",
         unit: "metres",
-        by_gdal: "values, no data, position",
+        compared: "values, no data, position",
     },
     Row {
         file: "`.npy`",
@@ -47,7 +48,7 @@ const ROWS: [Row; 7] = [
         heights: "2-D, or a plane of 3-D; integers or floats of any size",
         nodata: "no",
         unit: "metres",
-        by_gdal: "no",
+        compared: "values",
     },
     Row {
         file: "`.npz`",
@@ -55,7 +56,7 @@ const ROWS: [Row; 7] = [
         heights: "the array `elevation`, `heights`, `height`, `z`, or the only one; `dx` and `dy`",
         nodata: "no",
         unit: "metres",
-        by_gdal: "no",
+        compared: "values, cell size",
     },
     Row {
         file: "`.exr`",
@@ -63,7 +64,7 @@ const ROWS: [Row; 7] = [
         heights: "the channel `height`, `elevation`, `Z`, `Y` or `R`, or the only one",
         nodata: "no",
         unit: "metres",
-        by_gdal: "no",
+        compared: "no",
     },
     Row {
         file: "`.png`",
@@ -71,14 +72,14 @@ const ROWS: [Row; 7] = [
         heights: "grey of 8 or 16 bits",
         nodata: "alpha 0, or a transparent grey",
         unit: "metres",
-        by_gdal: "values, voids",
+        compared: "values, voids",
     },
 ];
 
 fn table() -> String {
     let files = formats::height_files();
     let folder = tempfile::tempdir().unwrap();
-    let names = "file | heights | cell size | position | reference system | no data | unit of height | compared with GDAL";
+    let names = "file | heights | cell size | position | reference system | no data | unit of height | compared with GDAL or NumPy";
     let mut table = format!("\n| {names} |\n|{}\n", "---|".repeat(8));
     for row in &ROWS {
         let utm = include_bytes!("../../../../../tests/files/gdal/utm.tif");
@@ -97,7 +98,7 @@ fn table() -> String {
             yes_or_no(at.is_some_and(|at| at.keys.crs().is_some())),
             row.nodata,
             row.unit,
-            row.by_gdal,
+            row.compared,
         ];
         table += &format!("| {} |\n", cells.join(" | "));
     }
