@@ -138,7 +138,7 @@ impl Map {
 pub struct Value {
     pub name: &'static str,
     pub about: &'static str,
-    /// "rad", or empty.
+    /// "rad", "radiance", "grid points", or empty.
     pub unit: &'static str,
     /// Its least and largest possible value.
     pub range: [f64; 2],
