@@ -74,8 +74,7 @@ pub fn orders([i, j, k]: [usize; 3]) -> Vec<[usize; 3]> {
 ///
 /// M V is light times visibility. Its first rows are its first bands: a diffuse receiver needs 9 coefficients at order 4.
 /// M is the same at every texel, so a shader needs no Γ: at order 4, 144 products per colour where visibility is known,
-/// and 9 per colour at each receiver. The generated product (`ridgelight_cpu::basis::glsl`) costs some 300 and 16 per colour, all at each
-/// receiver.
+/// and 9 per colour at each receiver.
 ///
 /// # Panics
 /// If `triples` have a higher order than `light`.

@@ -1,16 +1,11 @@
 //! A small reader of GLSL's sums and products evaluates the generated texts in f64.
 
-use crate::{ORDERS, noise, within};
+use crate::{ORDERS, within};
 use glam::DVec3;
 use ridgelight::basis::harmonics::evaluate;
-use ridgelight::basis::product::triples;
 use ridgelight::basis::slice::Slices;
-use ridgelight_cpu::basis::glsl::{
-    Factor, glsl_harmonics, glsl_product, glsl_slice, glsl_visibility_nlp, glsl_visible,
-};
+use ridgelight_cpu::basis::glsl::{glsl_harmonics, glsl_slice, glsl_visibility_nlp, glsl_visible};
 use ridgelight_cpu::basis::occlusion;
-use ridgelight_cpu::basis::product;
-use ridgelight_cpu::basis::turned;
 use std::collections::HashMap;
 use std::f64::consts::{FRAC_PI_2, SQRT_2};
 
@@ -22,18 +17,6 @@ pub struct Machine {
 }
 
 impl Machine {
-    fn given(name: &str, values: &[f64]) -> Self {
-        let mut machine = Self::default();
-        machine.array(name, values);
-        machine
-    }
-
-    fn array(&mut self, name: &str, values: &[f64]) {
-        for (i, v) in values.iter().enumerate() {
-            self.values.insert(format!("{name}[{i}]"), *v);
-        }
-    }
-
     pub fn set(&mut self, name: &str, value: f64) {
         self.values.insert(name.to_owned(), value);
     }
@@ -42,7 +25,7 @@ impl Machine {
     pub fn run(&mut self, text: &str) {
         let body = text.split_once('{').expect("a body").1;
         for line in body.lines().map(|l| l.split("//").next().unwrap().trim()) {
-            if line.is_empty() || line == "}" || line == "float t;" {
+            if line.is_empty() || line == "}" {
                 continue;
             }
             let line = line.strip_suffix(';').unwrap_or_else(|| panic!("{line}"));
@@ -102,53 +85,6 @@ impl Machine {
 /// Tokens apart: names with their index, numbers with sign and exponent, operators between blanks, brackets.
 fn tokens(text: &str) -> Vec<String> {
     text.replace('(', " ( ").replace(')', " ) ").split_whitespace().map(str::to_owned).collect()
-}
-
-/// n² products of at most n⁴ terms of constants that are f32, each with an error of 2^-24 of itself; |a b| ≤ 1 and
-/// Σ|Γ| over a row below 3 n².
-fn tolerance(order: usize) -> f64 {
-    3.0 * (order * order) as f64 / f64::from(1 << 24)
-}
-
-#[test]
-fn products_are_products() {
-    for order in ORDERS {
-        let (a, b) = (noise(11, order * order), noise(12, order * order));
-        let expected = product(&triples(order), &a, &b);
-        for receiver in 1..=order {
-            let mut machine = Machine::given("a", &a);
-            machine.array("b", &b);
-            let text = glsl_product("sh_product", order, receiver, Factor::Any);
-            assert!(text.starts_with(&format!("void sh_product(in float a[{}]", order * order)));
-            machine.run(&text);
-            let outer = receiver * receiver;
-            within(&machine.read("c", outer), &expected[..outer], tolerance(order));
-            println!("any {order} {receiver}: {} * {} +", machine.products, machine.sums);
-        }
-    }
-}
-
-/// About an axis of azimuth 0 a zonal function needs m ≥ 0 only: the rest may have any value.
-#[test]
-fn aligned_products_are_products_with_what_is_even_in_azimuth() {
-    let axis = glam::DVec3::new(0.6, 0.0, 0.8);
-    for order in ORDERS {
-        let (a, b) = (noise(13, order * order), turned(&noise(14, order), axis));
-        let expected = product(&triples(order), &a, &b);
-        for receiver in 1..=order {
-            let mut machine = Machine::given("a", &a);
-            for (i, (l, m)) in ridgelight::basis::bands(order).enumerate() {
-                assert_eq!(i, ridgelight::basis::index(l, m));
-                if m >= 0 {
-                    machine.values.insert(format!("b[{i}]"), b[i]);
-                }
-            }
-            machine.run(&glsl_product("p", order, receiver, Factor::Aligned));
-            let outer = receiver * receiver;
-            within(&machine.read("c", outer), &expected[..outer], 10.0 * tolerance(order));
-            println!("aligned {order} {receiver}: {} * {} +", machine.products, machine.sums);
-        }
-    }
 }
 
 #[test]

@@ -1,65 +1,12 @@
-//! Generated GLSL: products of two varying series, the numbers of a slice, and sums of slices.
+//! Generated GLSL: the numbers of a slice, and sums of slices.
 
 use super::{from_nlp, occlusion_polynomials};
 use ridgelight::basis::legendre::associated;
-use ridgelight::basis::product::{orders, triples};
 use ridgelight::basis::slice::{Above, Slices, parts};
-use ridgelight::basis::{MAX_ORDER, bands, index};
-use std::collections::{BTreeMap, BTreeSet};
+use ridgelight::basis::{MAX_ORDER, index};
+use std::collections::BTreeSet;
 use std::f64::consts::FRAC_1_PI;
 use std::fmt::Write as _;
-
-/// The second factor of a [`glsl_product`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Factor {
-    /// Any series.
-    Any,
-    /// A zonal function about an axis of azimuth 0, even in azimuth: only m ≥ 0 is read. Half of the products vanish, as even
-    /// and odd parts in azimuth do not mix.
-    Aligned,
-}
-
-/// `void sh_product(in float a[n²], in float b[n²], out float c[r²])`: the product of two series of
-/// `order`, its bands below `receiver` only, `name` in place of `sh_product`.
-///
-/// The product with b is a symmetric matrix whose entries are sums over b. Each entry is computed once and used in two
-/// rows. The code has no branches.
-///
-/// # Panics
-/// When `receiver` is above `order`.
-pub fn glsl_product(name: &str, order: usize, receiver: usize, factor: Factor) -> String {
-    assert!((1..=order).contains(&receiver), "receiver {receiver} of order {order}");
-    let (inner, outer) = (order * order, receiver * receiver);
-    let known = bands(order).map(|(_, m)| factor == Factor::Any || m >= 0).collect::<Vec<_>>();
-    // Entry (i, j), i ≤ j, of the matrix: Σ Γ_ijk b_k, wanted where row i or row j is.
-    let mut entries: BTreeMap<(usize, usize), BTreeSet<(usize, u64)>> = BTreeMap::new();
-    for triple in triples(order) {
-        for [i, j, k] in orders(triple.places) {
-            if i <= j && i < outer && known[k] {
-                entries.entry((i, j)).or_default().insert((k, triple.value.to_bits()));
-            }
-        }
-    }
-    let mut text = format!(
-        "void {name}(in float a[{inner}], in float b[{inner}], out float c[{outer}])\n{{\n    float t;\n"
-    );
-    let mut begun = vec![false; outer];
-    for ((i, j), terms) in &entries {
-        let sum: Vec<String> =
-            terms.iter().map(|(k, g)| format!("{} * b[{k}]", number(f64::from_bits(*g)))).collect();
-        writeln!(text, "    t = {};", sum.join(" + ")).unwrap();
-        let mut row = |row: usize, column: usize| {
-            let sign = if begun[row] { "+=" } else { "=" };
-            begun[row] = true;
-            writeln!(text, "    c[{row}] {sign} t * a[{column}];").unwrap();
-        };
-        row(*i, *j);
-        if i != j && *j < outer {
-            row(*j, *i);
-        }
-    }
-    text + "}\n"
-}
 
 /// `void name(in float rise, in float sin_, in float cos_, out float slice[n(n+1)/2])`: [`Slices::above`]
 /// an elevation ω of sine and cosine `sin_` and `cos_`, with `rise` = π/2 - ω, [0..π].
