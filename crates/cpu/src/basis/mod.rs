@@ -15,7 +15,6 @@ pub mod azimuth;
 pub mod glsl;
 pub mod key;
 pub mod wedge;
-pub mod window;
 
 /// P̂_l = √((2l+1)/2) P_l at `z`, for l < `order`: orthonormal on [-1, 1] (NS09 §4).
 pub fn nlp(order: usize, z: f64) -> Vec<f64> {
@@ -47,24 +46,6 @@ pub fn rotate_z(coefficients: &[f64], angle_rad: f64) -> Vec<f64> {
             // cos m(φ - a) = cos mφ cos ma + sin mφ sin ma; sin m(φ - a) = sin mφ cos ma - cos mφ sin ma.
             let (sin, cos) = (m as f64 * angle_rad).sin_cos();
             coefficients[index(l, m)] * cos - coefficients[index(l, -m)] * sin
-        })
-        .collect()
-}
-
-/// Half the azimuthal extent of a sphere light, radians, from its radius and the horizontal distance of its centre. `None`
-/// if it is above, below or around the point: all azimuths.
-pub fn sphere_half_azimuth(radius: f64, distance_in_plane: f64) -> Option<f64> {
-    (distance_in_plane > radius).then(|| (radius / distance_in_plane).asin())
-}
-
-/// The paper's Phong lobe: band l keeps e^(-l²/2S) (NS09 §7, Ramamoorthi & Hanrahan 2002), S > 0.
-///
-/// Times √((2l+1)/4π), which the paper omits, for a lobe of unit integral. Approaches [`phong`](ridgelight::basis::zonal::phong) for large S, which keeps
-/// e^(-l(l+1)/2S): a relative error of l/(2S) in band l.
-pub fn phong_gaussian(order: usize, exponent: f64) -> Vec<f64> {
-    (0..order)
-        .map(|l| {
-            (-((l * l) as f64) / (2.0 * exponent)).exp() * ((2 * l + 1) as f64 / (4.0 * PI)).sqrt()
         })
         .collect()
 }
@@ -219,6 +200,11 @@ pub fn sphere(order: usize, radius: f64, distance: f64) -> Vec<f64> {
 /// A sky of radiance 1 above horizontal.
 pub fn sky(order: usize) -> Vec<f64> {
     cap(order, FRAC_PI_2)
+}
+
+/// Coefficients times the factors of their bands.
+pub fn apply_window(factors: &[f64], coefficients: &[f64]) -> Vec<f64> {
+    bands(order_of(coefficients)).zip(coefficients).map(|((l, _), c)| factors[l] * c).collect()
 }
 
 /// The order n of n² coefficients.

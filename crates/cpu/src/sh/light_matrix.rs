@@ -83,7 +83,7 @@ fn matrix(
     };
     let channel = |c: usize| {
         let light: Vec<f64> = series.iter().map(|s| s[c]).collect();
-        of(&triples, order, &crate::basis::window::apply(&factors, &light))
+        of(&triples, order, &crate::basis::apply_window(&factors, &light))
     };
     let [red, green, blue] = [channel(0), channel(1), channel(2)];
     let rows = red.iter().zip(&green).zip(&blue);
