@@ -27,7 +27,7 @@ pub use auto::AutoArgs;
 pub use bake::BakeArgs;
 pub use camera::CameraArgs;
 pub use compare::CompareArgs;
-pub use maps::{HillshadeArgs, OpennessArgs, ShadowArgs, SkyViewArgs};
+pub use maps::{HillshadeArgs, MapArgs, OpennessArgs, ShadowArgs, SkyViewArgs};
 pub use quality::{QualityArgs, flag};
 pub use reference::ReferenceArgs;
 pub use renamed::Renamed;
@@ -150,7 +150,7 @@ impl Cli {
             Command::Render(args) => Some(&mut args.quality),
             Command::Horizon(args) => Some(&mut args.quality),
             Command::Ao(args) | Command::Svf(args) => Some(&mut args.quality),
-            Command::Openness(args) => Some(&mut args.map.quality),
+            Command::Openness(args) => Some(&mut args.of.quality),
             Command::Bake(args) => Some(&mut args.quality),
             Command::Plan(args) => Some(&mut args.quality),
             Command::Bench(args) => Some(&mut args.quality),

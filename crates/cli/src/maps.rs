@@ -14,7 +14,7 @@ use ridgelight_io as files;
 use ridgelight_io::{Channels, Georeference, Layer};
 
 use crate::args::{
-    FieldArgs, GlobalArgs, HillshadeArgs, Input, OpennessArgs, ShadowArgs, SkyViewArgs,
+    FieldArgs, GlobalArgs, HillshadeArgs, MapArgs, OpennessArgs, ShadowArgs, SkyViewArgs,
 };
 use crate::render::world;
 use crate::setup::lights::light;
@@ -108,33 +108,26 @@ const SHADOW_VALUES: [Values; 3] = [
 /// [`setup::georeferenced`] or [`setup::on_cpu`].
 type Read = fn(&[PathBuf], &FieldArgs, &GlobalArgs) -> Result<(HeightField, Option<Georeference>)>;
 
-/// A command's files and field.
+/// A command's arguments and field.
 struct Job<'a> {
-    input: &'a Input,
-    output: &'a Path,
+    args: &'a MapArgs,
     surface: &'a FieldArgs,
-    global: &'a GlobalArgs,
     field: HeightField,
     georeference: Option<Georeference>,
 }
 
 impl<'a> Job<'a> {
-    fn new(
-        input: &'a Input,
-        output: &'a Path,
-        surface: &'a FieldArgs,
-        global: &'a GlobalArgs,
-        read: Read,
-    ) -> Result<Self> {
+    fn new(args: &'a MapArgs, surface: &'a FieldArgs, read: Read) -> Result<Self> {
+        let MapArgs { input, output, global, .. } = args;
         setup::check_output("-o", output, &["tif", "tiff", "npy", "exr", "png"])?;
         if let Some(json) = &global.json {
             setup::check_output("--json", json, &["json"])?;
         }
-        let outputs = [("-o", Some(output)), ("--json", global.json.as_deref())];
+        let outputs = [("-o", Some(output.as_path())), ("--json", global.json.as_deref())];
         let inputs: Vec<&Path> = input.path.iter().map(PathBuf::as_path).collect();
         setup::check_distinct(&outputs, &inputs)?;
         let (field, georeference) = read(&input.path, surface, global)?;
-        Ok(Self { input, output, surface, global, field, georeference })
+        Ok(Self { args, surface, field, georeference })
     }
 
     /// Writes the map, and reports it. `metadata` and `times` are those of the device, if it was used.
@@ -156,16 +149,17 @@ impl<'a> Job<'a> {
         mut metadata: Vec<(String, String)>,
         times: &[Timing],
     ) -> Result<Outcome> {
+        let MapArgs { input, output: path, global, .. } = self.args;
         let size @ [rows, cols] = [self.field.rows(), self.field.cols()];
         planes.iter_mut().for_each(|plane| setup::mask_voids(&self.field, plane, 1));
-        metadata.extend(setup::asked(self.input, self.surface, None));
+        metadata.extend(setup::asked(input, self.surface, None));
         metadata.push(("values".into(), values[0].about.into()));
         let of_values = values.iter().zip(&planes);
         let layers: Vec<_> = of_values
             .map(|(v, plane)| (String::new(), Channels::Scalar(v.name, plane)))
             .map(|(name, channels)| Layer { name, channels })
             .collect();
-        let (path, place) = (self.output, self.georeference.as_ref());
+        let place = self.georeference.as_ref();
         match setup::extension(path).as_str() {
             "npy" => {
                 let shape = [&[planes.len()], &size[..]].concat();
@@ -179,18 +173,18 @@ impl<'a> Job<'a> {
                 metadata.push(("png_range".into(), format!("{black},{white}")));
                 let form = (channels, 8);
                 files::write_codes_aside(path, [cols, rows], form, &codes, &metadata)?.place()?;
-                world::write(path, self.input, place, self.global.quiet)?;
-                world::note_shape(path, &self.field, place, self.global.quiet);
+                world::write(path, input, place, global.quiet)?;
+                world::note_shape(path, &self.field, place, global.quiet);
             }
             _ => {
                 let units: Vec<_> = values.iter().map(|v| (v.name, v.unit)).collect();
                 files::write_geotiff(path, size, &layers, &units, place, &metadata)?;
             }
         }
-        if let Some(json) = &self.global.json {
+        if let Some(json) = &global.json {
             files::write_json(json, &setup::as_json(&metadata, times))?;
         }
-        if !self.global.quiet {
+        if !global.quiet {
             let device = metadata.iter().find(|(name, _)| name == "device");
             let time = device.map_or(String::new(), |(_, device)| {
                 format!(" in {:.1} ms of GPU time on {device}", setup::total_ns(times) / 1e6)
@@ -221,8 +215,8 @@ pub fn hillshade(args: &HillshadeArgs) -> Result<Outcome> {
     let [sun] = *lights.suns else {
         return Err(Error::setting("--sun 2", "another sun", "one sun: a hillshade has no more"));
     };
-    let job = Job::new(&args.input, &args.file.output, &args.surface, &args.global, setup::on_cpu)?;
-    let plane = lambert(&job.field, setup::border(&args.surface), sun);
+    let job = Job::new(&args.map, &args.map.surface, setup::on_cpu)?;
+    let plane = lambert(&job.field, setup::border(job.surface), sun);
     let mut metadata = setup::of_field(&job.field);
     let words = light("sun").words(&lights).concat();
     metadata.push(("sun1".into(), words.split(',').take(2).collect::<Vec<_>>().join(",")));
@@ -235,21 +229,15 @@ pub fn shadow(args: &ShadowArgs) -> Result<Outcome> {
     let [sun] = *lights.suns else {
         return Err(Error::setting("--sun 2", "another sun", "one sun: run `shadow` once per sun"));
     };
-    if setup::border(&args.surface) == Border::Periodic {
+    if setup::border(&args.map.surface) == Border::Periodic {
         let expected = "plane or open: `shadow` does not support a periodic field";
         return Err(Error::setting("--border", "periodic", expected));
     }
-    let job = Job::new(
-        &args.input,
-        &args.file.output,
-        &args.surface,
-        &args.global,
-        setup::georeferenced,
-    )?;
+    let job = Job::new(&args.map, &args.map.surface, setup::georeferenced)?;
     let field = &job.field;
     let plan = |limits: &Limits| plan::shadow_heights(field, &sun, None, 1, limits);
-    setup::check_plan(&args.global, plan)?;
-    let (mut gpu, limits) = setup::device(&args.global)?;
+    setup::check_plan(&args.map.global, plan)?;
+    let (mut gpu, limits) = setup::device(&args.map.global)?;
     let plan = plan(&limits)?;
     let mut metadata = setup::metadata(&gpu, field, &plan);
     metadata.push(("sun1".into(), light("sun").words(&lights).concat()));
@@ -278,44 +266,38 @@ fn lambert(field: &HeightField, border: Border, sun: Sun) -> Vec<f32> {
 /// `ao` and `svf`.
 pub fn sky_view_map(args: &SkyViewArgs) -> Result<Outcome> {
     let quality = Quality { bounces: Bounces::default(), ..args.quality.quality()? };
-    let job = Job::new(
-        &args.input,
-        &args.file.output,
-        &args.surface,
-        &args.global,
-        setup::georeferenced,
-    )?;
-    let border = setup::border(&args.surface);
+    let job = Job::new(&args.map, &args.map.surface, setup::georeferenced)?;
+    let border = setup::border(job.surface);
     let plan = |limits: &Limits| sky_view_plan(&job.field, border, &quality, limits);
-    setup::check_plan(&args.global, plan)?;
-    let (mut gpu, limits) = setup::device(&args.global)?;
+    setup::check_plan(&args.map.global, plan)?;
+    let (mut gpu, limits) = setup::device(&args.map.global)?;
     let plan = plan(&limits)?;
     let mut used = plan.settings.clone();
     used.retain(|(name, _)| !name.starts_with("bounce"));
     let why = |name: &str| name.starts_with("bounce").then(|| "for this map".to_owned());
-    idle::say_why(args.global.quiet, &args.quality.written, &used, &why);
+    idle::say_why(args.map.global.quiet, &args.quality.written, &used, &why);
     let metadata = setup::metadata(&gpu, &job.field, &plan);
-    let bar = setup::terminal::progress(args.global.quiet, "sky view");
+    let bar = setup::terminal::progress(args.map.global.quiet, "sky view");
     let (plane, times) = sky_view(&mut gpu, &job.field, plan)?;
     bar.finish_and_clear();
     job.write(&SKY_VIEW_VALUES, plane, metadata, &times)
 }
 
-pub fn openness(OpennessArgs { map: args, negative }: &OpennessArgs) -> Result<Outcome> {
+pub fn openness(OpennessArgs { of: args, negative }: &OpennessArgs) -> Result<Outcome> {
     let quality = args.quality.quality()?;
     let sign = if *negative { -1.0 } else { 1.0 };
-    let surface = FieldArgs { z_scale: sign * args.surface.z_scale, ..args.surface };
-    let job =
-        Job::new(&args.input, &args.file.output, &surface, &args.global, setup::georeferenced)?;
+    let MapArgs { surface, global, .. } = &args.map;
+    let surface = FieldArgs { z_scale: sign * surface.z_scale, ..*surface };
+    let job = Job::new(&args.map, &surface, setup::georeferenced)?;
     let (field, border) = (&job.field, setup::border(&surface));
-    setup::check_plan(&args.global, |limits| {
+    setup::check_plan(global, |limits| {
         let most = horizon::at_once(field, limits);
         horizon::plan_from(field, border, &quality, limits, (0, most), false)
     })?;
-    let (mut gpu, limits) = setup::device(&args.global)?;
+    let (mut gpu, limits) = setup::device(global)?;
     let used = horizon::used(field, border, &quality, &limits, false)?;
-    idle::say(args.global.quiet, &args.quality.written, &used);
-    let bar = setup::terminal::progress(args.global.quiet, "horizons");
+    idle::say(global.quiet, &args.quality.written, &used);
+    let bar = setup::terminal::progress(global.quiet, "horizons");
     let mut sums = vec![(0.0_f64, 0_u32); field.rows() * field.cols()];
     let each = &mut |k: u32, elevations: &[f32], _: &[f32]| {
         bar.set_message(format!("horizons: azimuth {} of {}", k + 1, quality.azimuths));

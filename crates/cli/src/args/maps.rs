@@ -58,12 +58,26 @@ Examples:
   ridgelight openness dem.tif --negative -o negative.tif";
 
 #[derive(Args)]
+pub struct MapArgs {
+    #[command(flatten)]
+    pub input: Input,
+    /// Output: .tif, .npy or .exr (f32), or .png (8 bits)
+    ///
+    /// A .tif is a GeoTIFF and lies where the input lies. A .png is grey and linear, not sRGB: hillshade has its values, shadow, ao
+    /// and svf have 0 to 1 as 0 to 255, openness has 60 to 95 degrees as 0 to 255. Voids are NaN, or transparent.
+    #[arg(short, long, value_name = "OUT.{tif,npy,exr,png}", help_heading = "Output")]
+    pub output: PathBuf,
+    #[command(flatten)]
+    pub surface: FieldArgs,
+    #[command(flatten)]
+    pub global: GlobalArgs,
+}
+
+#[derive(Args)]
 #[command(after_help = HILLSHADE_HELP)]
 pub struct HillshadeArgs {
     #[command(flatten)]
-    pub input: Input,
-    #[command(flatten)]
-    pub file: MapOutput,
+    pub map: MapArgs,
     /// Sun: compass azimuth, elevation (degrees)
     ///
     /// Its diameter and irradiance change nothing here.
@@ -76,19 +90,13 @@ pub struct HillshadeArgs {
         help_heading = "Lights"
     )]
     pub sun: Vec<Sun>,
-    #[command(flatten)]
-    pub surface: FieldArgs,
-    #[command(flatten)]
-    pub global: GlobalArgs,
 }
 
 #[derive(Args)]
 #[command(after_help = SHADOW_HELP)]
 pub struct ShadowArgs {
     #[command(flatten)]
-    pub input: Input,
-    #[command(flatten)]
-    pub file: MapOutput,
+    pub map: MapArgs,
     /// Sun: compass azimuth, elevation, diameter (degrees)
     #[arg(
         long,
@@ -99,24 +107,14 @@ pub struct ShadowArgs {
         help_heading = "Lights"
     )]
     pub sun: Vec<Sun>,
-    #[command(flatten)]
-    pub surface: FieldArgs,
-    #[command(flatten)]
-    pub global: GlobalArgs,
 }
 
 #[derive(Args)]
 pub struct SkyViewArgs {
     #[command(flatten)]
-    pub input: Input,
-    #[command(flatten)]
-    pub file: MapOutput,
-    #[command(flatten)]
-    pub surface: FieldArgs,
+    pub map: MapArgs,
     #[command(flatten)]
     pub quality: QualityArgs,
-    #[command(flatten)]
-    pub global: GlobalArgs,
 }
 
 #[derive(Args)]
@@ -126,20 +124,10 @@ pub struct SkyViewArgs {
 )]
 pub struct OpennessArgs {
     #[command(flatten)]
-    pub map: SkyViewArgs,
+    pub of: SkyViewArgs,
     /// Negative openness: that of the negated heights
     #[arg(long, help_heading = "Output")]
     pub negative: bool,
-}
-
-#[derive(Args)]
-pub struct MapOutput {
-    /// Output: .tif, .npy or .exr (f32), or .png (8 bits)
-    ///
-    /// A .tif is a GeoTIFF and lies where the input lies. A .png is grey and linear, not sRGB: hillshade has its values, shadow, ao
-    /// and svf have 0 to 1 as 0 to 255, openness has 60 to 95 degrees as 0 to 255. Voids are NaN, or transparent.
-    #[arg(short, long, value_name = "OUT.{tif,npy,exr,png}", help_heading = "Output")]
-    pub output: PathBuf,
 }
 
 fn sun(words: &str) -> Result<Sun, String> {
