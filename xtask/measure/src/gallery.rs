@@ -1,4 +1,5 @@
-//! docs/gallery/index.md: twelve pictures, each of one command line. `cargo xtask gallery`.
+//! docs/gallery/index.md: pictures of the command lines that the page shows. `cargo xtask gallery` runs the commands and
+//! writes the pictures and their times; to change a picture, edit its command on the page.
 
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
@@ -20,127 +21,44 @@ const PAGE: &str = "docs/gallery/index.md";
 const QUALITY: u8 = 88;
 const MOUNTAINS: &str = "assets/mt_washington_256.png --cell 66,92.6";
 
-/// What becomes of the command's output.
-#[derive(Clone, Copy)]
-enum Shown {
-    Picture,
-    /// A hillshade without shadows to the left of it.
-    BesideHillshade,
-    /// Horizons: the direction of the highest is a hue, its elevation the brightness.
-    Wheel,
-    /// Four frames of moving heights in a row.
-    Frames,
+type Fallible<T> = std::result::Result<T, Box<dyn std::error::Error>>;
+
+/// A section of the page.
+struct Entry<'a> {
+    name: &'a str,
+    /// The extension of the command's output.
+    ending: &'a str,
+    /// Synthetic terrain, its side and its file.
+    made: Option<[&'a str; 3]>,
+    /// The words of the command, without its output.
+    command: Vec<String>,
 }
 
-struct Entry {
-    name: &'static str,
-    title: &'static str,
-    about: &'static str,
-    /// Synthetic terrain and its side, written as out/gallery/NAME.npy.
-    made: Option<(&'static str, usize)>,
-    /// With FIELD for the heights and their cell size.
-    command: &'static str,
-    shown: Shown,
-}
+impl<'a> Entry<'a> {
+    /// None without a command.
+    fn of(section: &'a str) -> Option<Self> {
+        let shell = section.split_once("```sh\n")?.1.split_once("```")?.0;
+        let made = shell.lines().find_map(|line| line.strip_prefix("cargo measure field "));
+        let made = made.map(|words| words.split(' ').collect::<Vec<_>>());
+        let made: Option<[&str; 3]> = made.and_then(|words| words.try_into().ok());
+        let command = shell.lines().find_map(|line| line.strip_prefix("ridgelight "))?;
+        let (command, output) = command.rsplit_once(" -o ")?;
+        let (name, ending) = output.split_once('.')?;
+        // Every second part stands in quotes.
+        let parts = command.split('"').enumerate().flat_map(|(i, part)| match i % 2 {
+            0 => part.split_whitespace().map(str::to_owned).collect(),
+            _ => vec![part.to_owned()],
+        });
+        Some(Self { name, ending, made, command: parts.collect() })
+    }
 
-const ENTRIES: [Entry; 12] = [
-    Entry {
-        name: "dawn",
-        title: "Mountains at dawn",
-        about: "Mt Washington (SRTM). The sun is 6 degrees high; the sky is the clear sky around it.",
-        made: None,
-        command: "render FIELD --sun 80,6,0.53,3,2,1 --sky clear --camera \"from 150 up 20\" --size 1024x576",
-        shown: Shown::Picture,
-    },
-    Entry {
-        name: "craters",
-        title: "Craters",
-        about: "Synthetic. A point-like sun 12 degrees high and no sky: shadows are black.",
-        made: Some(("craters", 640)),
-        command: "render FIELD --sun 100,12,0.53 --tint none",
-        shown: Shown::Picture,
-    },
-    Entry {
-        name: "city",
-        title: "City roofs, sky view",
-        about: "Synthetic. A uniform sky: each roof and street has the share of the sky that is visible from it.",
-        made: Some(("city", 640)),
-        command: "render FIELD --sky 1 --tint none",
-        shown: Shown::Picture,
-    },
-    Entry {
-        name: "moss",
-        title: "Moss with bounces",
-        about: "A displacement map of moss (ambientCG), each pixel half a millimetre. Two bounces light the gaps.",
-        made: None,
-        command: "render assets/moss_384.png --cell 0.0005 --z-scale 6e-7 --sun 315,25,4,2.2,2,1.6 --sky 0.35,0.4,0.5 --albedo 0.16,0.22,0.06 --bounces 2 --exposure 3.4",
-        shown: Shown::Picture,
-    },
-    Entry {
-        name: "dunes",
-        title: "Dunes",
-        about: "Synthetic. The default sun and sky on sand.",
-        made: Some(("dunes", 640)),
-        command: "render FIELD --albedo 0.75,0.55,0.35",
-        shown: Shown::Picture,
-    },
-    Entry {
-        name: "hillshade",
-        title: "Hillshade, and Ridgelight",
-        about: "Left: a hillshade by Horn's slopes, the cosine to the sun, without shadows and sky; `cargo xtask gallery` adds it. Right: the default of Ridgelight, plain ground.",
-        made: None,
-        command: "render FIELD --tint none",
-        shown: Shown::BesideHillshade,
-    },
-    Entry {
-        name: "horizons",
-        title: "Horizon map",
-        about: "The command writes elevations; `cargo xtask gallery` colours them. The hue is the direction of the highest horizon, the brightness its elevation up to 30 degrees.",
-        made: None,
-        command: "horizon FIELD --azimuths 64",
-        shown: Shown::Wheel,
-    },
-    Entry {
-        name: "sky-view",
-        title: "Sky-view factor",
-        about: "Synthetic dunes. Exit radiance under a uniform sky is the factor.",
-        made: Some(("dunes", 640)),
-        command: "render FIELD --sky 1 --tint none --exposure 0.8",
-        shown: Shown::Picture,
-    },
-    Entry {
-        name: "soft-sun",
-        title: "A soft sun",
-        about: "Synthetic city. A sun 12 degrees wide: shadows blur with distance.",
-        made: Some(("city", 384)),
-        command: "render FIELD --sun 300,30,12,3 --sky 0.25 --tint none --sun-azimuths 24",
-        shown: Shown::Picture,
-    },
-    Entry {
-        name: "environment",
-        title: "Light of an environment",
-        about: "A photographed sky with a veiled sun lights the mountain (assets/sky_512x256.hdr).",
-        made: None,
-        command: "render FIELD --env assets/sky_512x256.hdr --camera \"from 230 up 25\" --size 1024x576",
-        shown: Shown::Picture,
-    },
-    Entry {
-        name: "specular",
-        title: "Specular ground",
-        about: "Synthetic waves with Phong specular of exponent 12, viewed from above.",
-        made: Some(("waves", 512)),
-        command: "render FIELD --albedo 0.03,0.07,0.09 --specular 12,0.35 --sun 315,60,8,3 --sky 0.4,0.55,0.8",
-        shown: Shown::Picture,
-    },
-    Entry {
-        name: "waves",
-        title: "Animated waves",
-        about: "Synthetic. Four frames, half a second apart, of heights that change every frame; the command draws the first.",
-        made: Some(("waves", 256)),
-        command: "render FIELD --albedo 0.1,0.2,0.25 --sun 315,14,0.53,4 --sky 0.5,0.6,0.7 --exposure 1.6",
-        shown: Shown::Frames,
-    },
-];
+    /// Writes its synthetic terrain.
+    fn make(&self, time_s: f64) -> Fallible<()> {
+        let Some([name, side, path]) = self.made else { return Ok(()) };
+        let field = terrain_of(name, side.parse()?, time_s)?;
+        Ok(files::write_npy_heights(Path::new(path), &field)?)
+    }
+}
 
 /// A synthetic terrain by its name.
 pub fn terrain_of(name: &str, side: usize, time_s: f64) -> Result<HeightField> {
@@ -181,57 +99,50 @@ pub fn field(mut args: Args) -> Outcome {
     Ok(())
 }
 
-/// Renders all and writes the page.
+/// Runs the page's commands, and writes the pictures and the page with the new times.
 pub fn run(mut args: Args) -> Outcome {
     let program = args.folder().ok_or("expected the program")?;
     let data = args.folder();
     args.end()?;
     let scratch = PathBuf::from("out/gallery");
     std::fs::create_dir_all(&scratch)?;
-    std::fs::create_dir_all(FOLDER)?;
-    let mut page = "# Gallery\\n\\nEach picture is of one command line; `cargo xtask gallery` makes them again. The mountain is \
-        real: Mt Washington,\\n256 x 256 grid points (SRTM). Other terrains are synthetic; `cargo measure field` writes \
-        them.\\nTimes are GPU time of all passes.\\n"
-        .replace("\\n", "\n");
+    let page = std::fs::read_to_string(PAGE)?;
+    let (pictures, _) = page.split_once(CONTRAST).ok_or("no section of contrast")?;
+    let mut sections: Vec<String> = pictures.split("\n## ").map(str::to_owned).collect();
     let mut device = String::new();
-    for entry in &ENTRIES {
-        let (input, command) = prepared(entry, &scratch, 0.0)?;
-        let output = scratch.join(entry.name).with_extension(match entry.shown {
-            Shown::Wheel => "npy",
-            _ => "png",
-        });
-        let (ms, name) = drawn(&program, &command, &output, &scratch)?;
+    for section in sections.iter_mut().skip(1) {
+        let entry =
+            Entry::of(section.as_str()).ok_or_else(|| format!("no command in: {section}"))?;
+        entry.make(0.0)?;
+        let output = scratch.join(entry.name).with_extension(entry.ending);
+        let (ms, name) = drawn(&program, &entry.command, &output, &scratch)?;
         device = name;
-        let picture = match entry.shown {
-            Shown::Picture => image::open(&output)?.to_rgb8(),
-            Shown::BesideHillshade => beside(&hillshade(&input)?, &image::open(&output)?.to_rgb8()),
-            Shown::Wheel => wheel(&output)?,
-            Shown::Frames => {
+        let picture = match entry.name {
+            // A hillshade without shadows to the left of it.
+            "hillshade" => beside(&hillshade(&entry.command)?, &image::open(&output)?.to_rgb8()),
+            // The direction of the highest horizon is a hue, its elevation the brightness.
+            "horizons" => wheel(&output)?,
+            // Four frames of moving heights in a row.
+            "waves" => {
                 let mut strip = image::open(&output)?.to_rgb8();
                 for frame in 1..4 {
-                    let (_, command) = prepared(entry, &scratch, 0.5 * f64::from(frame))?;
-                    drawn(&program, &command, &output, &scratch)?;
+                    entry.make(0.5 * f64::from(frame))?;
+                    drawn(&program, &entry.command, &output, &scratch)?;
                     strip = beside(&strip, &image::open(&output)?.to_rgb8());
                 }
                 strip
             }
+            _ => image::open(&output)?.to_rgb8(),
         };
         let path = Path::new(FOLDER).join(entry.name).with_extension("jpg");
         let file = std::io::BufWriter::new(std::fs::File::create(&path)?);
         picture.write_with_encoder(JpegEncoder::new_with_quality(file, QUALITY))?;
-        let ending = if matches!(entry.shown, Shown::Wheel) { "npy" } else { "png" };
-        let words = command.join(" ").replace("from 150 up 20", "\"from 150 up 20\"");
-        let words = words.replace("from 230 up 25", "\"from 230 up 25\"");
-        let Entry { name, title, about, made, .. } = entry;
-        let made = made.map_or_else(String::new, |(of, side)| {
-            format!("cargo measure field {of} {side} out/gallery/{of}.npy\n")
-        });
-        page += &format!(
-            "\n## {title}\n\n![{title}]({name}.jpg)\n\n{about} {ms:.0} ms.\n\n\
-             ```sh\n{made}ridgelight {words} -o {name}.{ending}\n```\n"
-        );
-        println!("{name}: {ms:.0} ms");
+        println!("{}: {ms:.0} ms", entry.name);
+        let (before, after) = section.split_once(" ms.\n").ok_or("a section without a time")?;
+        let (about, _) = before.rsplit_once(' ').ok_or("a section without a time")?;
+        *section = format!("{about} {ms:.0} ms.\n{after}");
     }
+    let mut page = sections.join("\n## ") + CONTRAST;
     page += &contrast(&program, &scratch, data.as_deref())?;
     let commit = Command::new("git").args(["log", "-1", "--format=%h, %cs"]).output()?;
     let commit = String::from_utf8(commit.stdout)?;
@@ -240,15 +151,14 @@ pub fn run(mut args: Args) -> Outcome {
     Ok(())
 }
 
+/// The head of the table that stands after the pictures.
+const CONTRAST: &str = "\n## Contrast of default pictures\n";
+
 /// Percentiles of luminance in the table.
 const TAILS: [f64; 2] = [0.05, 0.95];
 
 /// A table of the luminance of pictures without flags: of the bundled mountain, of synthetic fields, and of each file in a folder.
-fn contrast(
-    program: &Path,
-    scratch: &Path,
-    data: Option<&Path>,
-) -> std::result::Result<String, Box<dyn std::error::Error>> {
+fn contrast(program: &Path, scratch: &Path, data: Option<&Path>) -> Fallible<String> {
     const SIDE: usize = 640;
     let words = |text: &str| text.split_whitespace().map(str::to_owned).collect::<Vec<_>>();
     let mut fields = vec![("Mt Washington, 256²".to_owned(), words(MOUNTAINS))];
@@ -272,7 +182,7 @@ fn contrast(
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         fields.push((name, vec![path.display().to_string()]));
     }
-    let mut table = "\n## Contrast of default pictures\n\nLuminance in codes of 0 to 255 of `render FIELD -o out.png`, from \
+    let mut table = "\nLuminance in codes of 0 to 255 of `render FIELD -o out.png`, from \
         above, at the 5th and the 95th percentile of the pixels.\n\n| field | 5th | 95th | black, % | white, % |\n|---|---|---|---|---|\n"
         .to_owned();
     let output = scratch.join("contrast.png");
@@ -298,38 +208,13 @@ fn contrast(
     Ok(table)
 }
 
-/// The file of the heights, and the command's words with the heights in place.
-fn prepared(
-    entry: &Entry,
-    scratch: &Path,
-    time_s: f64,
-) -> std::result::Result<(String, Vec<String>), Box<dyn std::error::Error>> {
-    let input = match entry.made {
-        None => MOUNTAINS.to_owned(),
-        Some((name, side)) => {
-            let path = scratch.join(format!("{name}.npy"));
-            let made = terrain_of(name, side, time_s)?;
-            files::write_npy_heights(&path, &made)?;
-            format!("{} --cell {}", path.display(), made.cell_m()[0])
-        }
-    };
-    let command = entry.command.replace("FIELD", &input);
-    // Every second part stands in quotes.
-    let parts = command.split('"').enumerate().flat_map(|(i, part)| match i % 2 {
-        0 => part.split_whitespace().map(str::to_owned).collect(),
-        _ => vec![part.to_owned()],
-    });
-    let words = parts.collect();
-    Ok((input, words))
-}
-
 /// Runs the program; returns its GPU milliseconds and the device.
 fn drawn(
     program: &Path,
     command: &[String],
     output: &Path,
     scratch: &Path,
-) -> std::result::Result<(f64, String), Box<dyn std::error::Error>> {
+) -> Fallible<(f64, String)> {
     let json = scratch.join("settings.json");
     let [to, report] = [output, &json].map(Path::as_os_str);
     let mut ran = Command::new(program);
@@ -359,18 +244,14 @@ fn beside(left: &RgbImage, right: &RgbImage) -> RgbImage {
 
 /// The usual hillshade: sun at azimuth 315, elevation 45; slopes by Horn's weights (B. K. P. Horn, Hill shading and the
 /// reflectance map, 1981).
-fn hillshade(input: &str) -> std::result::Result<RgbImage, Box<dyn std::error::Error>> {
-    let mut words = input.split_whitespace();
-    let path = PathBuf::from(words.next().ok_or("a field")?);
-    let cell: Vec<f64> = words
-        .nth(1)
-        .ok_or("a cell")?
-        .split(',')
-        .map(str::parse)
-        .collect::<std::result::Result<_, _>>()?;
+fn hillshade(command: &[String]) -> Fallible<RgbImage> {
+    let [_, path, _, cell, ..] = command else {
+        return Err("expected a field and its cell".into());
+    };
+    let cell: Vec<f64> = cell.split(',').map(str::parse).collect::<std::result::Result<_, _>>()?;
     let cell_m = [cell[0], *cell.last().ok_or("a cell")?];
     let options = files::HeightOptions { cell_m: Some(cell_m), ..Default::default() };
-    let field = files::read_heights(&path, &options)?;
+    let field = files::read_heights(Path::new(path), &options)?;
     let (rows, cols) = (field.rows(), field.cols());
     let at = |row: i64, col: i64| {
         let (row, col) = (row.clamp(0, rows as i64 - 1), col.clamp(0, cols as i64 - 1));
@@ -392,7 +273,7 @@ fn hillshade(input: &str) -> std::result::Result<RgbImage, Box<dyn std::error::E
 }
 
 /// Hues of the highest horizons.
-fn wheel(path: &Path) -> std::result::Result<RgbImage, Box<dyn std::error::Error>> {
+fn wheel(path: &Path) -> Fallible<RgbImage> {
     const BRIGHTEST_DEG: f64 = 30.0;
     let all = files::read_planes(path)?;
     let count = all.planes.len();
