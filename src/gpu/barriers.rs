@@ -6,47 +6,39 @@ use ash::vk;
 /// Bits that both kinds of flags share: Vulkan 1.3 adds only higher ones.
 const SHARED: u64 = u32::MAX as u64;
 
-/// Converts stages to Vulkan 1.0. A stage that 1.0 lacks becomes a flag that contains it; an unknown one becomes
-/// ALL_COMMANDS.
-fn stages(all: vk::PipelineStageFlags2) -> vk::PipelineStageFlags {
-    use vk::PipelineStageFlags2 as New;
-    let mut old = vk::PipelineStageFlags::from_raw((all.as_raw() & SHARED) as u32);
-    let mut rest = New::from_raw(all.as_raw() & !SHARED);
-    for (new, containing) in [
-        (New::COPY, vk::PipelineStageFlags::TRANSFER),
-        (New::RESOLVE, vk::PipelineStageFlags::TRANSFER),
-        (New::BLIT, vk::PipelineStageFlags::TRANSFER),
-        (New::CLEAR, vk::PipelineStageFlags::TRANSFER),
-        (New::INDEX_INPUT, vk::PipelineStageFlags::VERTEX_INPUT),
-        (New::VERTEX_ATTRIBUTE_INPUT, vk::PipelineStageFlags::VERTEX_INPUT),
-        (New::PRE_RASTERIZATION_SHADERS, vk::PipelineStageFlags::ALL_GRAPHICS),
-    ] {
-        if rest.contains(new) {
-            old |= containing;
+/// Flags of Vulkan 1.0 for those of Vulkan 1.3: the shared ones, for the others the flags that contain them, and `any`
+/// where one is unknown, such as a stage of an extension.
+fn converted(all: u64, containing: &[(u64, u32)], any: u32) -> u32 {
+    let (mut old, mut rest) = ((all & SHARED) as u32, all & !SHARED);
+    for (new, flags) in containing {
+        if rest & new != 0 {
+            old |= flags;
             rest &= !new;
         }
     }
-    // Stages of extensions that Vulkan 1.0 cannot name.
-    if rest.is_empty() { old } else { old | vk::PipelineStageFlags::ALL_COMMANDS }
+    if rest == 0 { old } else { old | any }
 }
 
-/// Converts accesses in the same way; unknown ones become MEMORY_READ and MEMORY_WRITE.
+fn stages(all: vk::PipelineStageFlags2) -> vk::PipelineStageFlags {
+    use vk::{PipelineStageFlags as Old, PipelineStageFlags2 as New};
+    let containing = [
+        (New::COPY | New::RESOLVE | New::BLIT | New::CLEAR, Old::TRANSFER),
+        (New::INDEX_INPUT | New::VERTEX_ATTRIBUTE_INPUT, Old::VERTEX_INPUT),
+        (New::PRE_RASTERIZATION_SHADERS, Old::ALL_GRAPHICS),
+    ]
+    .map(|(new, old)| (new.as_raw(), old.as_raw()));
+    Old::from_raw(converted(all.as_raw(), &containing, Old::ALL_COMMANDS.as_raw()))
+}
+
 fn accesses(all: vk::AccessFlags2) -> vk::AccessFlags {
-    use vk::AccessFlags2 as New;
-    let mut old = vk::AccessFlags::from_raw((all.as_raw() & SHARED) as u32);
-    let mut rest = New::from_raw(all.as_raw() & !SHARED);
-    for (new, containing) in [
-        (New::SHADER_SAMPLED_READ, vk::AccessFlags::SHADER_READ),
-        (New::SHADER_STORAGE_READ, vk::AccessFlags::SHADER_READ),
-        (New::SHADER_STORAGE_WRITE, vk::AccessFlags::SHADER_WRITE),
-    ] {
-        if rest.contains(new) {
-            old |= containing;
-            rest &= !new;
-        }
-    }
-    let any = vk::AccessFlags::MEMORY_READ | vk::AccessFlags::MEMORY_WRITE;
-    if rest.is_empty() { old } else { old | any }
+    use vk::{AccessFlags as Old, AccessFlags2 as New};
+    let containing = [
+        (New::SHADER_SAMPLED_READ | New::SHADER_STORAGE_READ, Old::SHADER_READ),
+        (New::SHADER_STORAGE_WRITE, Old::SHADER_WRITE),
+    ]
+    .map(|(new, old)| (new.as_raw(), old.as_raw()));
+    let any = Old::MEMORY_READ | Old::MEMORY_WRITE;
+    Old::from_raw(converted(all.as_raw(), &containing, any.as_raw()))
 }
 
 /// The stage masks of a barrier, from its unions of stages. A mask of Vulkan 1.0 is never empty: no stage to wait for is the top
