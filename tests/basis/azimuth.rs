@@ -1,30 +1,11 @@
-use crate::{ORDERS, noise, number, numbers, project, project_whole, reference, same, within};
+use crate::{ORDERS, noise, project, project_whole, within};
 use ridgelight::basis::slice::Slices;
 use ridgelight::basis::{bands, index};
-use ridgelight_cpu::basis::azimuth::{Blend, assemble, assemble_nlp, blend_matrix, circle, swath};
-use ridgelight_cpu::basis::from_nlp;
-use ridgelight_cpu::basis::nlp_value;
-use ridgelight_cpu::basis::rotate_z;
+use ridgelight_cpu::basis::azimuth::{Blend, assemble, assemble_nlp, circle, swath};
+use ridgelight_cpu::basis::{from_nlp, nlp_value, rotate_z};
 use std::f64::consts::{PI, TAU};
 
 const BLENDS: [Blend; 2] = [Blend::Linear, Blend::BSpline];
-
-#[test]
-fn blend_matrices_are_the_reference() {
-    for entry in reference("nlp_to_sh").as_array().unwrap() {
-        let width = number(&entry["delta_phi"]);
-        for (blend, name, columns) in
-            [(Blend::Linear, "linear_16x8", 8), (Blend::BSpline, "bspline_16x16", 16)]
-        {
-            let matrix = blend_matrix(4, blend, width);
-            assert_eq!(matrix.len(), 16);
-            for (row, expected) in matrix.iter().zip(entry[name].as_array().unwrap()) {
-                assert_eq!(row.len(), columns);
-                same(row, &numbers(expected));
-            }
-        }
-    }
-}
 
 /// Weights of a blend sum to 1 everywhere, and those of a B-spline are 1/6, 2/3, 1/6 at a knot.
 #[test]
@@ -39,38 +20,6 @@ fn blends_share_out_the_whole() {
     within(&Blend::BSpline.weights(0.5), &[a, b, b, a], 1e-15);
 }
 
-/// As in the paper: each wedge's matrix, its turn about z, and the sum of m wedges, the last one from azimuth m - 1
-/// back to 0. With one wedge less the result differs.
-#[test]
-fn weights_all_around_are_wedges_turned_and_summed() {
-    for (order, count) in [(1, 3), (2, 5), (4, 8), (4, 32), (6, 7)] {
-        let nlps: Vec<Vec<f64>> = (0..count).map(|k| noise(k as u64, order)).collect();
-        let width = TAU / count as f64;
-        for blend in BLENDS {
-            let matrix = blend_matrix(order, blend, width);
-            let reach: &[usize] =
-                if blend == Blend::Linear { &[0, 1] } else { &[count - 1, 0, 1, 2] };
-            let mut sums = [vec![0.0; order * order], vec![0.0; order * order]];
-            for j in 0..count {
-                let stacked: Vec<f64> =
-                    reach.iter().flat_map(|i| nlps[(j + i) % count].clone()).collect();
-                let wedge: Vec<f64> = matrix
-                    .iter()
-                    .map(|row| row.iter().zip(&stacked).map(|(a, b)| a * b).sum())
-                    .collect();
-                for (i, v) in rotate_z(&wedge, width * j as f64).iter().enumerate() {
-                    sums[0][i] += v;
-                    sums[1][i] += if j + 1 < count { *v } else { 0.0 };
-                }
-            }
-            let at_once = assemble_nlp(order, &circle(order, Some(blend), count), &nlps);
-            within(&at_once, &sums[0], 1e-13);
-            let missing: f64 = at_once.iter().zip(&sums[1]).map(|(a, b)| (a - b).abs()).sum();
-            assert!(missing > 1e-3, "{missing}");
-        }
-    }
-}
-
 /// A level horizon is a cap about z: every zonal coefficient the cap's, all others 0, for any number of wedges.
 #[test]
 fn a_level_horizon_is_a_cap() {
@@ -80,13 +29,7 @@ fn a_level_horizon_is_a_cap() {
             let cap = ridgelight_cpu::basis::cap(order, PI / 2.0 - elevation);
             let mut expected = vec![0.0; order * order];
             (0..order).for_each(|l| expected[index(l, 0)] = cap[l]);
-            for blend in BLENDS {
-                within(
-                    &assemble(order, &circle(order, Some(blend), count), &visible),
-                    &expected,
-                    1e-13,
-                );
-            }
+            within(&assemble(order, &circle(order, count), &visible), &expected, 1e-13);
         }
     }
 }
@@ -102,14 +45,12 @@ fn slices_turn_with_their_azimuths() {
         .iter()
         .map(|v| matrix.iter().map(|row| row.iter().zip(v).map(|(e, c)| e * c).sum()).collect())
         .collect();
-    for blend in BLENDS {
-        let weights = circle(order, Some(blend), count);
-        let sum = assemble(order, &weights, &slices);
-        within(&assemble_nlp(order, &weights, &nlps), &sum, 1e-13);
-        let mut moved = slices.clone();
-        moved.rotate_right(1);
-        within(&assemble(order, &weights, &moved), &rotate_z(&sum, TAU / count as f64), 1e-13);
-    }
+    let weights = circle(order, count);
+    let sum = assemble(order, &weights, &slices);
+    within(&assemble_nlp(order, &weights, &nlps), &sum, 1e-13);
+    let mut moved = slices.clone();
+    moved.rotate_right(1);
+    within(&assemble(order, &weights, &moved), &rotate_z(&sum, TAU / count as f64), 1e-13);
 }
 
 /// A swath against quadrature wedge by wedge; a B-spline repeats the slices at its ends.
@@ -140,49 +81,39 @@ fn a_swath_is_its_wedges() {
     }
 }
 
-/// A swath once around, closed by the slice it began with, is the circle (linear: a B-spline stops at its ends).
+/// A swath once around, closed by the slice it began with, is the circle with each turn m damped by sinc²(mΔφ/2), the
+/// Fourier transform of a linear blend.
 #[test]
-fn a_swath_once_around_is_the_circle() {
+fn a_swath_once_around_damps_each_turn() {
     let (order, count) = (6, 12);
     let mut slices: Vec<Vec<f64>> = (0..count).map(|k| noise(90 + k as u64, 21)).collect();
-    let all = assemble(order, &circle(order, Some(Blend::Linear), count), &slices);
+    let all = assemble(order, &circle(order, count), &slices);
     slices.push(slices[0].clone());
     let weights = swath(order, Blend::Linear, 0.0, TAU, count + 1);
-    within(&assemble(order, &weights, &slices), &all, 1e-13);
+    let damped = bands(order).zip(&all).map(|((_, m), c)| {
+        let x = 0.5 * m as f64 * TAU / count as f64;
+        if m == 0 { *c } else { c * (x.sin() / x).powi(2) }
+    });
+    within(&assemble(order, &weights, &slices), &damped.collect::<Vec<_>>(), 1e-13);
 }
 
-/// Sizes for every order: n² rows; n columns for each azimuth.
+/// 2n - 1 weights of each azimuth.
 #[test]
 fn sizes_follow_the_order() {
     for order in ORDERS {
-        for (blend, reach) in [(Blend::Linear, 2), (Blend::BSpline, 4)] {
-            let matrix = blend_matrix(order, blend, 0.3);
-            assert_eq!(matrix.len(), bands(order).count());
-            assert!(matrix.iter().all(|row| row.len() == reach * order));
-        }
-        assert!(circle(order, Some(Blend::Linear), 5).iter().all(|w| w.len() == 2 * order - 1));
+        assert!(circle(order, 5).iter().all(|w| w.len() == 2 * order - 1));
     }
 }
 
-/// Slices that turn slower than count - |m| are summed exactly without a blend; with one, m is damped by sinc(mΔφ/2)
-/// to the power 2 or 4, as in one wedge's matrix.
+/// Slices that turn slower than count - |m| are summed exactly.
 #[test]
-fn a_blend_all_around_damps_each_turn() {
+fn slices_that_turn_slowly_are_summed_exactly() {
     let (order, count) = (4, 9);
     // f = (1 + cos 3φ) P̂_0 + sin 2φ P̂_1: turns of 3 at most, 9 - 3 > 3.
     let part = |phi: f64| vec![1.0 + (3.0 * phi).cos(), (2.0 * phi).sin(), 0.0, 0.0];
-    let width = TAU / count as f64;
-    let nlps: Vec<_> = (0..count).map(|k| part(width * k as f64)).collect();
+    let nlps: Vec<_> = (0..count).map(|k| part(TAU * k as f64 / count as f64)).collect();
     let exact = project_whole(order, |theta, phi| nlp_value(&part(phi), theta.cos()));
-    within(&assemble_nlp(order, &circle(order, None, count), &nlps), &exact, 1e-13);
-    for (blend, power) in [(Blend::Linear, 2), (Blend::BSpline, 4)] {
-        let blended = assemble_nlp(order, &circle(order, Some(blend), count), &nlps);
-        for ((l, m), got) in bands(order).zip(blended) {
-            let x = 0.5 * m as f64 * width;
-            let damped = if m == 0 { 1.0 } else { (x.sin() / x).powi(power) };
-            within(&[got], &[damped * exact[index(l, m)]], 1e-13);
-        }
-    }
+    within(&assemble_nlp(order, &circle(order, count), &nlps), &exact, 1e-13);
 }
 
 /// With more azimuths a smooth horizon's harmonics converge faster than any power without a blend, and with the square
@@ -191,20 +122,23 @@ fn a_blend_all_around_damps_each_turn() {
 fn a_smooth_horizon_converges_fastest_without_a_blend() {
     let order = 4;
     let slices = Slices::new(order);
-    let visible = |count: usize, blend| {
-        let above = |k| slices.above(0.6 + 0.4 * (TAU * k as f64 / count as f64).cos());
-        assemble(order, &circle(order, blend, count), &(0..count).map(above).collect::<Vec<_>>())
+    let above =
+        |count: usize, k: usize| slices.above(0.6 + 0.4 * (TAU * k as f64 / count as f64).cos());
+    let plain = |count: usize| {
+        let all: Vec<_> = (0..count).map(|k| above(count, k)).collect();
+        assemble(order, &circle(order, count), &all)
     };
-    let ground_truth = visible(512, None);
-    let apart = |count, blend| -> f64 {
-        visible(count, blend)
-            .iter()
-            .zip(&ground_truth)
-            .map(|(a, b)| (a - b).abs())
-            .fold(0.0, f64::max)
+    let blended = |count: usize| {
+        let all: Vec<_> = (0..=count).map(|k| above(count, k)).collect();
+        assemble(order, &swath(order, Blend::Linear, 0.0, TAU, count + 1), &all)
     };
-    assert!(apart(32, None) < 1e-13, "{:e}", apart(32, None));
-    let linear = Some(Blend::Linear);
-    assert!((3.5..4.5).contains(&(apart(32, linear) / apart(64, linear))));
-    assert!(apart(32, linear) > 1e-4);
+    let ground_truth = plain(512);
+    let apart = |found: Vec<f64>| -> f64 {
+        found.iter().zip(&ground_truth).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+    };
+    let exact = apart(plain(32));
+    assert!(exact < 1e-13, "{exact:e}");
+    let [coarse, fine] = [32, 64].map(|count| apart(blended(count)));
+    assert!((3.5..4.5).contains(&(coarse / fine)), "{coarse:e} {fine:e}");
+    assert!(coarse > 1e-4);
 }

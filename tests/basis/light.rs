@@ -31,7 +31,7 @@ fn lowest(normal: DVec3) -> Vec<f64> {
 fn visible(order: usize, lowest: &[f64]) -> Vec<f64> {
     let slices = Slices::new(order);
     let all: Vec<Vec<f64>> = lowest.iter().map(|w| slices.above(*w)).collect();
-    assemble(order, &circle(order, None, AZIMUTHS), &all)
+    assemble(order, &circle(order, AZIMUTHS), &all)
 }
 
 /// Σ over the same azimuths of 1/π ∫ L N·e cos ω dω, by Simpson's rule in 2000 parts: 1e-12.

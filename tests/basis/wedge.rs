@@ -2,7 +2,7 @@ use crate::{number, numbers, project, reference, same, within};
 use ridgelight::basis::slice::Slices;
 use ridgelight::basis::wedge::{WedgeTable, wedge};
 use ridgelight::basis::{bands, index};
-use ridgelight_cpu::basis::azimuth::{Blend, assemble, circle};
+use ridgelight_cpu::basis::azimuth::{Blend, assemble, swath};
 use ridgelight_cpu::basis::rotate_z;
 use ridgelight_cpu::basis::wedge::{look_up, look_up_error};
 use std::f64::consts::{FRAC_PI_2, TAU};
@@ -119,8 +119,9 @@ fn wedges_and_slices_meet_as_azimuths_grow() {
     let horizon = |phi: f64| 0.5 + 0.3 * (2.0 * phi).cos();
     let apart = |count: usize| {
         let width = TAU / count as f64;
-        let visible: Vec<_> = (0..count).map(|k| slices.above(horizon(width * k as f64))).collect();
-        let blended = assemble(order, &circle(order, Some(Blend::Linear), count), &visible);
+        let visible: Vec<_> =
+            (0..=count).map(|k| slices.above(horizon(width * k as f64))).collect();
+        let blended = assemble(order, &swath(order, Blend::Linear, 0.0, TAU, count + 1), &visible);
         let mut summed = [0.0; 16];
         for k in 0..count {
             let phi = width * k as f64;

@@ -75,7 +75,7 @@ fn in_f64(
     let matrix = light_matrix(quality, &series(&turns, height, light_order, fitted));
     let slices = Slices::new(order);
     let along: Vec<Vec<f64>> = lowest.iter().map(|w| slices.above(*w)).collect();
-    let visible = assemble(order, &circle(order, None, lowest.len()), &along);
+    let visible = assemble(order, &circle(order, lowest.len()), &along);
     let all = polynomials(normal.to_array());
     let rows = if is_plane { &all[1..4] } else { &all[..matrix.len()] };
     let share = |row: &[DVec3]| row.iter().zip(&visible).map(|(m, v)| *v * *m).sum::<DVec3>();

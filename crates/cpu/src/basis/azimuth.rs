@@ -3,7 +3,7 @@
 //! A wedge lies between two azimuths Δφ apart; across it the slices are blended with weights β_i(φ/Δφ),
 //! and the result is projected. Every Y_lm is a product, so the projection of the sum over all wedges is
 //! Σ_k slice_k(l, |m|) w_k(m), w_k(m) = ∫ Φ_m times the bump that belongs to azimuth k. The 2n - 1
-//! weights of an azimuth take the place of a blend matrix, a rotation about z and a sum.
+//! weights of an azimuth take the place of NS09's blend matrix, a rotation about z and a sum.
 
 use super::from_nlp;
 use ridgelight::basis::azimuth::around;
@@ -55,55 +55,16 @@ fn wedge(order: usize, blend: Blend, start_rad: f64, width_rad: f64) -> [Vec<f64
     moments.map(|moment| moment.into_iter().map(|sum| width_rad * sum).collect())
 }
 
-/// Blend matrix of a wedge from azimuth 0 to `width_rad`, (0..2π]: n² rows; columns are the NLP
-/// coefficients of the two (linear) or four (B-spline) azimuths in turn (NS09 eq. 20, appendix A).
-///
-/// 16 × 8 and 16 × 16 at order 4. Rotate by each wedge's azimuth with [`super::rotate_z`], then sum.
-pub fn blend_matrix(order: usize, blend: Blend, width_rad: f64) -> Vec<Vec<f64>> {
-    let moments = wedge(order, blend, 0.0, width_rad);
-    let elevations = from_nlp(order);
-    bands(order)
-        .map(|(l, m)| {
-            let row = &elevations[slice_index(l, m.unsigned_abs())];
-            let turn = place(order, m);
-            moments[blend.taking_part()]
-                .iter()
-                .flat_map(|moment| row.iter().map(move |e| moment[turn] * e))
-                .collect()
-        })
-        .collect()
-}
-
 fn place(order: usize, m: isize) -> usize {
     (order - 1).wrapping_add_signed(m)
 }
 
-/// Weights `[k][m + n - 1]` of azimuths φ_k = 2πk/count, all around: count wedges, the last back to φ_0.
-///
-/// The bump of a B-spline of degree d is the box of one wedge, convolved d times with itself and divided by the width as
-/// often: its Fourier transform is Δφ sinc(mΔφ/2)^(d+1). Over the full circle a blend therefore only damps each m, signal
-/// and alias alike: by 6 % at m = 3 with B-splines over 32 azimuths. Without a blend every azimuth has weight only at
-/// itself: exact for slices with frequencies below count - |m|, and with a smaller error wherever horizons are smooth.
-pub fn circle(order: usize, blend: Option<Blend>, count: usize) -> Vec<Vec<f64>> {
+/// Weights `[k][m + n - 1]` of azimuths φ_k = 2πk/count, all around, without a blend: exact for slices with frequencies below
+/// count - |m|, and with a smaller error than a blend wherever horizons are smooth.
+pub fn circle(order: usize, count: usize) -> Vec<Vec<f64>> {
     let width = TAU / count as f64;
-    let power = match blend {
-        None => 0,
-        Some(Blend::Linear) => 2,
-        Some(Blend::BSpline) => 4,
-    };
-    (0..count)
-        .map(|k| {
-            let weights = around(order, width * k as f64);
-            (1 - order as isize..order as isize)
-                .zip(weights)
-                .map(|(m, w)| w * width * sinc(0.5 * m as f64 * width).powi(power))
-                .collect()
-        })
-        .collect()
-}
-
-fn sinc(x: f64) -> f64 {
-    if x == 0.0 { 1.0 } else { x.sin() / x }
+    let weights = |k: usize| around(order, width * k as f64).into_iter().map(move |w| w * width);
+    (0..count).map(|k| weights(k).collect()).collect()
 }
 
 /// Weights `[k][m + n - 1]` of azimuths φ_k = start + k · width/(count - 1): count - 1 wedges, nothing beyond the two ends
