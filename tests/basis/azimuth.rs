@@ -1,8 +1,8 @@
-use crate::{ORDERS, noise, project, project_whole, within};
+use crate::{ORDERS, nlp_value, noise, project, project_whole, within};
 use ridgelight::basis::slice::Slices;
 use ridgelight::basis::{bands, index};
 use ridgelight_cpu::basis::azimuth::{Blend, assemble, assemble_nlp, circle, swath};
-use ridgelight_cpu::basis::{from_nlp, nlp_value, rotate_z};
+use ridgelight_cpu::basis::{from_nlp, rotate_z};
 use std::f64::consts::{PI, TAU};
 
 const BLENDS: [Blend; 2] = [Blend::Linear, Blend::BSpline];

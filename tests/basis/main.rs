@@ -17,6 +17,7 @@ mod zonal;
 use glam::DVec3;
 use ridgelight::basis::harmonics::evaluate;
 use ridgelight::basis::quadrature::points;
+use ridgelight_cpu::basis::nlp;
 use std::f64::consts::{PI, TAU};
 
 pub(crate) const ORDERS: std::ops::RangeInclusive<usize> = 1..=6;
@@ -83,6 +84,11 @@ pub(crate) fn project(
         }
     }
     sums
+}
+
+/// The NLP reconstruction of a function of elevation at z (NS09 eq. 13).
+pub(crate) fn nlp_value(coefficients: &[f64], z: f64) -> f64 {
+    coefficients.iter().zip(nlp(coefficients.len(), z)).map(|(c, p)| c * p).sum()
 }
 
 /// [`project`] over the whole sphere, in two halves of azimuth.

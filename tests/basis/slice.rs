@@ -1,16 +1,25 @@
-use crate::{ORDERS, within};
+use crate::{ORDERS, nlp_value, within};
 use ridgelight::basis::legendre::{associated, value};
 use ridgelight::basis::quadrature::integral;
 use ridgelight::basis::slice::{Slices, parts, slice_index};
-use ridgelight_cpu::basis::from_nlp;
-use ridgelight_cpu::basis::nlp;
-use ridgelight_cpu::basis::occlusion;
-use ridgelight_cpu::basis::{nlp_value, project};
+use ridgelight_cpu::basis::{from_nlp, nlp, occlusion};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 fn direct(l: usize, m: usize, low: f64, high: f64) -> f64 {
     let q = associated(l, m);
     integral(low, high, |w| value(q, w.sin()) * w.cos().powi(m as i32 + 1))
+}
+
+/// The slice of a function of elevation, smooth in θ, from its values at z.
+fn project(order: usize, f: impl Fn(f64) -> f64) -> Vec<f64> {
+    let part = |(l, m): (usize, usize)| {
+        let q = associated(l, m);
+        integral(0.0, PI, |theta| {
+            let (sin, cos) = theta.sin_cos();
+            f(cos) * value(q, cos) * sin.powi(m as i32 + 1)
+        })
+    };
+    parts(order).map(part).collect()
 }
 
 #[test]

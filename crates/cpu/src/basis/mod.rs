@@ -21,24 +21,6 @@ pub fn nlp(order: usize, z: f64) -> Vec<f64> {
     (0..order).map(|l| value(associated(l, 0), z)).collect()
 }
 
-/// The slice of a function of elevation, smooth in θ, from its values at z.
-pub fn project(order: usize, f: impl Fn(f64) -> f64) -> Vec<f64> {
-    parts(order)
-        .map(|(l, m)| {
-            let q = associated(l, m);
-            integral(0.0, PI, |theta| {
-                let (sin, cos) = theta.sin_cos();
-                f(cos) * value(q, cos) * sin.powi(m as i32 + 1)
-            })
-        })
-        .collect()
-}
-
-/// The NLP reconstruction of a function of elevation at z (NS09 eq. 13).
-pub fn nlp_value(coefficients: &[f64], z: f64) -> f64 {
-    coefficients.iter().zip(nlp(coefficients.len(), z)).map(|(c, p)| c * p).sum()
-}
-
 /// The function rotated counter-clockwise about z: f'(φ) = f(φ - angle).
 pub fn rotate_z(coefficients: &[f64], angle_rad: f64) -> Vec<f64> {
     bands(order_of(coefficients))
