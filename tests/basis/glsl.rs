@@ -1,19 +1,18 @@
 //! A small reader of GLSL's sums and products evaluates the generated texts in f64.
 
-use crate::{ORDERS, within};
+use crate::{ORDERS, noise, within};
 use glam::DVec3;
+use ridgelight::basis::bands;
 use ridgelight::basis::harmonics::evaluate;
-use ridgelight::basis::slice::Slices;
-use ridgelight_cpu::basis::glsl::{glsl_harmonics, glsl_slice, glsl_visibility_nlp, glsl_visible};
-use ridgelight_cpu::basis::occlusion;
+use ridgelight::basis::slice::{Slices, slice_index};
+use ridgelight_cpu::basis::glsl::{glsl_harmonics, glsl_visible};
+use ridgelight_cpu::basis::{from_nlp, occlusion};
 use std::collections::HashMap;
 use std::f64::consts::{FRAC_PI_2, SQRT_2};
 
 #[derive(Default)]
 pub struct Machine {
     values: HashMap<String, f64>,
-    products: usize,
-    sums: usize,
 }
 
 impl Machine {
@@ -37,7 +36,6 @@ impl Machine {
             let mut value = self.sum(&mut tokens);
             assert!(tokens.is_empty(), "{line}");
             if added {
-                self.sums += 1;
                 value += self.values[&to];
             }
             self.values.insert(to, value);
@@ -49,7 +47,6 @@ impl Machine {
         while tokens.last().is_some_and(|t| t == "+" || t == "-") {
             let sign = tokens.pop().unwrap();
             let next = self.term(tokens);
-            self.sums += 1;
             value += if sign == "+" { next } else { -next };
         }
         value
@@ -60,7 +57,6 @@ impl Machine {
         while tokens.last().is_some_and(|t| t == "*") {
             tokens.pop();
             value *= self.factor(tokens);
-            self.products += 1;
         }
         value
     }
@@ -87,43 +83,78 @@ fn tokens(text: &str) -> Vec<String> {
     text.replace('(', " ( ").replace(')', " ) ").split_whitespace().map(str::to_owned).collect()
 }
 
+/// The statements of a function of `visible.glsl` for one order.
+fn statements(function: &str, order: usize) -> String {
+    let text = glsl_visible();
+    let body = text.split_once(&format!("void {function}(")).expect("the function").1;
+    let body = body.split("\n}\n").next().expect("its body");
+    let (mut statements, mut is_in) = (String::from("{\n"), true);
+    for line in body.lines().skip(1).map(str::trim) {
+        if let Some(rest) = line.strip_prefix("if (ORDER > ") {
+            is_in = order > rest.split(')').next().unwrap().parse::<usize>().expect("a band");
+        } else if line == "}" {
+            is_in = true;
+        } else if is_in && line != "VALUE t;" {
+            let mut line = line.replace("VALUE ", "");
+            for l in 2..6 {
+                let factor = if order > l { "1.0" } else { "0.0" };
+                line = line.replace(&format!("(ORDER > {l} ? 1.0 : 0.0)"), factor);
+            }
+            statements += &(line + "\n");
+        }
+    }
+    statements
+}
+
+/// The series that a function of `visible.glsl` adds to 0, for weights of the azimuth from -1 to 1.
+fn added(function: &str, order: usize, turn: &[f64], elevation: f64) -> Vec<f64> {
+    let (sin, cos) = elevation.sin_cos();
+    let mut machine = Machine::default();
+    for (name, value) in [("rise", FRAC_PI_2 - elevation), ("sin_", sin), ("cos_", cos)] {
+        machine.set(name, value);
+    }
+    turn.iter().enumerate().for_each(|(i, turn)| machine.set(&format!("turn[{i}]"), *turn));
+    (0..36).for_each(|i| machine.set(&format!("series[{i}]"), 0.0));
+    machine.run(&statements(function, order));
+    machine.read("series", order * order)
+}
+
+/// The weighted slice as a series.
+fn weighted(order: usize, turn: &[f64], slice: &[f64]) -> Vec<f64> {
+    let of = |(l, m): (usize, isize)| {
+        turn[5_usize.wrapping_add_signed(m)] * slice[slice_index(l, m.unsigned_abs())]
+    };
+    bands(order).map(of).collect()
+}
+
 #[test]
 fn slices_are_slices() {
+    let turn = noise(11, 11);
     for order in ORDERS {
-        let text = glsl_slice("slice_above", order);
         for elevation in [-FRAC_PI_2, -0.4, 0.0, 0.9, FRAC_PI_2] {
-            let mut machine = Machine::default();
-            let (sin, cos) = f64::sin_cos(elevation);
-            for (name, value) in [("rise", FRAC_PI_2 - elevation), ("sin_", sin), ("cos_", cos)] {
-                machine.values.insert(name.to_owned(), value);
-            }
-            machine.run(&text);
-            let expected = Slices::new(order).above(elevation);
+            let expected = weighted(order, &turn, &Slices::new(order).above(elevation));
             // Coefficients of at most 60 in size, each with an error of 2^-24, eight of them.
-            within(&machine.read("slice", expected.len()), &expected, 500.0 / f64::from(1 << 24));
-            if elevation == 0.0 {
-                println!("slice {order}: {} * {} +", machine.products, machine.sums);
-            }
+            let tolerance = 500.0 / f64::from(1 << 24);
+            within(&added("add_slices", order, &turn, elevation), &expected, tolerance);
         }
     }
 }
 
 #[test]
 fn visibility_is_what_is_not_occluded() {
+    let turn = noise(12, 11);
     for order in ORDERS {
-        let text = glsl_visibility_nlp("nlp_above", order);
         for elevation in [-1.2_f64, 0.0, 0.3, 1.5] {
             let (sin, cos) = elevation.sin_cos();
-            let mut machine = Machine::default();
-            machine.values.insert("sin_".to_owned(), sin);
-            machine.values.insert("cos2".to_owned(), cos * cos);
-            machine.run(&text);
-            let mut expected: Vec<f64> = occlusion(order, sin, cos).iter().map(|b| -b).collect();
-            expected[0] += SQRT_2;
-            within(&machine.read("nlp", order), &expected, 20.0 / f64::from(1 << 24));
-            if elevation == 0.0 {
-                println!("nlp {order}: {} * {} +", machine.products, machine.sums);
-            }
+            let mut visible: Vec<f64> = occlusion(order, sin, cos).iter().map(|b| -b).collect();
+            visible[0] += SQRT_2;
+            let rows = from_nlp(order);
+            let slice =
+                rows.iter().map(|row| row.iter().zip(&visible).map(|(e, v)| e * v).sum::<f64>());
+            let expected = weighted(order, &turn, &slice.collect::<Vec<f64>>());
+            // Six numbers of at most √2 with an error of 20 × 2^-24 each, times factors of at most 1, themselves as f32.
+            let tolerance = 6.0 * 22.0 / f64::from(1 << 24);
+            within(&added("add_nlps", order, &turn, elevation), &expected, tolerance);
         }
     }
 }

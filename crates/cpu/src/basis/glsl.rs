@@ -1,4 +1,4 @@
-//! Generated GLSL: the numbers of a slice, and sums of slices.
+//! Generated GLSL: visibility along an azimuth, and spherical harmonics of a direction.
 
 use super::{from_nlp, occlusion_polynomials};
 use ridgelight::basis::legendre::associated;
@@ -8,31 +8,7 @@ use std::collections::BTreeSet;
 use std::f64::consts::FRAC_1_PI;
 use std::fmt::Write as _;
 
-/// `void name(in float rise, in float sin_, in float cos_, out float slice[n(n+1)/2])`: [`Slices::above`]
-/// an elevation ω of sine and cosine `sin_` and `cos_`, with `rise` = π/2 - ω, [0..π].
-pub fn glsl_slice(name: &str, order: usize) -> String {
-    let slices = Slices::new(order);
-    let count = slices.parts().len();
-    let mut text = format!(
-        "void {name}(in float rise, in float sin_, in float cos_, out float slice[{count}])\n{{\n"
-    );
-    for (i, ((l, m), part)) in parts(order).zip(slices.parts()).enumerate() {
-        writeln!(text, "    slice[{i}] = {}; // l {l}, m {m}", above(part)).unwrap();
-    }
-    text + "}\n"
-}
-
-/// `void name(in float sin_, in float cos2, out float nlp[n])`: NLP coefficients of visibility above an elevation of sine
-/// `sin_` and squared cosine `cos2` (NS09 eq. 11).
-pub fn glsl_visibility_nlp(name: &str, order: usize) -> String {
-    let mut text =
-        format!("void {name}(in float sin_, in float cos2, out float nlp[{order}])\n{{\n");
-    for (l, line) in visibility_nlp(order).iter().enumerate() {
-        writeln!(text, "    nlp[{l}] = {line};").unwrap();
-    }
-    text + "}\n"
-}
-
+/// NLP coefficients of visibility above an elevation of sine `sin_` and squared cosine `cos2` (NS09 eq. 11).
 fn visibility_nlp(order: usize) -> Vec<String> {
     let half = number(std::f64::consts::FRAC_1_SQRT_2);
     let rest = occlusion_polynomials(order);
