@@ -7,5 +7,6 @@ pub mod plinth_draw;
 pub mod preview;
 pub mod preview_gather;
 pub mod preview_shade;
+pub mod preview_shadow;
 pub mod sky_draw;
 pub mod terrain_draw;

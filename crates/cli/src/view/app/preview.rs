@@ -1,5 +1,5 @@
-//! Answers to input: the light of coarse grids on the slopes of a finer one; and the full light in parts once input
-//! rests.
+//! Answers to input: the light of a coarse grid and the sun on the slopes of a finer one; and the full light in parts once
+//! input rests.
 
 use std::ops::Range;
 use std::time::{Duration, Instant};
@@ -14,16 +14,16 @@ use super::super::brush::together;
 use super::super::smaller::Blocks;
 use super::super::state::State;
 use super::drawing::{replan, whole};
-use super::level::{GRIDS, Level, SKY, SLOPES, SUN, grid_work, plan_levels, work};
+use super::level::{GRIDS, Level, SKY, SLOPES, grid_work, plan_levels, work};
 use crate::render;
 use crate::setup::total_ns;
 
 /// Intended GPU times of a preview's grids: with drawing and copies, 15 pictures per second.
-const INTENDED_MS: [f64; GRIDS] = [6.0, 12.0, 24.0];
+const INTENDED_MS: [f64; GRIDS] = [6.0, 36.0];
 /// The part of the slopes' time that is left where a camera draws a mesh.
 const WITH_MESH: f64 = 0.4;
 /// The parts of those times that do not grow with the grid: tables of the sky, starts of passes.
-const FIXED_MS: [f64; GRIDS] = [2.0, 1.0, 0.0];
+const FIXED_MS: [f64; GRIDS] = [2.0, 1.0];
 /// GPU time of a part of the full light.
 const PART_MS: f64 = 40.0;
 /// Full light that takes no longer needs no preview.
@@ -45,7 +45,7 @@ struct Rates {
 }
 
 /// Before anything was measured: lavapipe on two cores; a GPU.
-const CPU_RATES: Rates = Rates { full: 1e5, grids: [1e5, 1e5, 5.5e4] };
+const CPU_RATES: Rates = Rates { full: 1e5, grids: [1e5, 4e4] };
 const GPU_RATES: Rates = Rates { full: 2e7, grids: [2e7; GRIDS] };
 
 /// What comes next.
@@ -121,7 +121,7 @@ impl Preview {
         !state.is_split && field.rows().min(field.cols()) >= 2 * LEAST_GRID && is_slow
     }
 
-    /// Fixes the grids by the sides of their blocks: sky, sun, slopes.
+    /// Fixes the grids by the sides of their blocks: sky, slopes.
     pub fn fix(&mut self, sides: Option<[usize; GRIDS]>) {
         self.fixed = sides;
     }
@@ -164,16 +164,13 @@ impl Preview {
     /// How the shown light was computed.
     pub fn line(&self) -> Option<String> {
         let levels = self.levels.as_ref().filter(|_| self.is_shown)?;
-        let [sky, sun, slopes] = levels
+        let [sky, slopes] = levels
             .each_ref()
             .map(|level| format!("{} x {}", level.scene.field.cols(), level.scene.field.rows()));
-        let sun = match levels[SUN].scene.lights.suns.is_empty() {
-            true => String::new(),
-            false => format!(", sun of {sun}"),
-        };
+        let sun = if levels[SLOPES].scene.lights.suns.is_empty() { "" } else { "sun and " };
         let error =
             self.error.map_or_else(String::new, |e| format!(", RMSE about {:.1} %", 100.0 * e));
-        Some(format!("preview: sky of {sky}{sun}, slopes of {slopes}{error}"))
+        Some(format!("preview: sky of {sky}, {sun}slopes of {slopes}{error}"))
     }
 
     /// The share of the full light that is done, where it is being computed.
@@ -212,10 +209,8 @@ impl Preview {
         let borrowed = plan_levels(levels, screen, state, limits)?;
         let mut slots = [None; GRIDS];
         for (level, slot) in levels.iter_mut().zip(&mut slots) {
-            if level.is_used() {
-                let borrowed = if level.of == SLOPES { borrowed.as_slice() } else { &[] };
-                *slot = Some(level.run(screen, borrowed)?);
-            }
+            let borrowed = if level.of == SLOPES { borrowed.as_slice() } else { &[] };
+            *slot = Some(level.run(screen, borrowed)?);
         }
         self.running = Some(Running::Preview(slots));
         self.is_shown = true;
@@ -235,8 +230,7 @@ impl Preview {
         };
         let least = |of: usize| (1..most).find(|side| share(of, *side) <= 1.0).unwrap_or(most);
         let slopes = least(SLOPES);
-        let coarse = |of: usize| least(of).max(slopes);
-        let wanted = self.fixed.unwrap_or_else(|| [coarse(SKY), coarse(SUN), slopes]);
+        let wanted = self.fixed.unwrap_or_else(|| [least(SKY).max(slopes), slopes]);
         let kept = self.levels.as_ref().map(|levels| levels.each_ref().map(|l| l.blocks.side));
         // Other grids take a third of a second: only where they are worth that, least of all in a drag.
         let is_kept = kept.is_some_and(|kept| {
@@ -246,7 +240,7 @@ impl Preview {
         if !is_kept {
             self.end(screen)?;
             let level = |of: usize| Level::new(state, of, wanted[of]);
-            self.levels = Some([level(SKY)?, level(SUN)?, level(SLOPES)?]);
+            self.levels = Some([level(SKY)?, level(SLOPES)?]);
         }
         Ok(())
     }
