@@ -254,7 +254,9 @@ impl ApplicationHandler for App<'_> {
             Err(error) => return self.failed(events, error),
         }
         let uses_preview = self.uses_preview();
-        let has_more = |shown: &OpenWindow| shown.preview.is_busy() || shown.has_coarse_mesh;
+        let has_more = |OpenWindow { preview, has_coarse_mesh, .. }: &OpenWindow| {
+            preview.is_busy() || preview.changes_grids() || *has_coarse_mesh
+        };
         let refines = uses_preview && self.shown.as_ref().is_some_and(has_more);
         let is_busy = self.is_due() || self.steps.is_some();
         events.set_control_flow(match (is_busy, self.blank) {

@@ -7,6 +7,8 @@ use ridgelight::scene::{
     Albedo, Border, Camera, HeightField, PhongSpecular, Scene, Specular, Surface, normal,
 };
 
+use super::opening::joined;
+
 /// The means of blocks of grid points.
 #[derive(Clone, Copy)]
 pub struct Blocks {
@@ -36,7 +38,7 @@ impl Blocks {
     }
 
     /// The mean of some values over each block.
-    pub fn means<const N: usize>(&self, value: impl Fn(usize) -> [f64; N]) -> Vec<[f64; N]> {
+    pub fn means<const N: usize>(&self, value: impl Fn(usize) -> [f64; N] + Sync) -> Vec<[f64; N]> {
         let [cols, rows] = self.size();
         let mean = |block: usize| {
             let mut count = 0.0_f64;
@@ -47,7 +49,7 @@ impl Blocks {
             });
             sum.map(|s| s / count)
         };
-        (0..cols * rows).map(mean).collect()
+        by_cores(cols * rows, mean)
     }
 
     /// The field on the coarser grid; a block of voids alone is one.
@@ -101,7 +103,7 @@ impl Blocks {
     /// has a mean normal shorter than 1.
     pub fn normals(&self, field: &HeightField, border: Border) -> Vec<f32> {
         let [cols, rows] = self.size();
-        (0..cols * rows).flat_map(|block| self.normal(field, border, block)).collect()
+        by_cores(cols * rows, |block| self.normal(field, border, block)).concat()
     }
 
     /// Takes the normals of an edited rectangle of the full field, which reach one grid point beyond it.
@@ -209,6 +211,21 @@ impl Blocks {
         let last_row = (rows - 1) as f64 * side + to_centre;
         [to_centre * cell_x, ((field.rows() - 1) as f64 - last_row) * cell_y]
     }
+}
+
+/// The value of each block, by all cores of the host.
+fn by_cores<T: Send>(blocks: usize, of: impl Fn(usize) -> T + Sync) -> Vec<T> {
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let part = blocks.div_ceil(cores).max(1);
+    let of = &of;
+    std::thread::scope(|scope| {
+        let begin = |first: usize| {
+            let part = first..blocks.min(first + part);
+            scope.spawn(move || part.map(of).collect::<Vec<T>>())
+        };
+        let begun: Vec<_> = (0..blocks).step_by(part).map(begin).collect();
+        begun.into_iter().flat_map(joined).collect()
+    })
 }
 
 #[cfg(test)]

@@ -20,6 +20,31 @@ pub const SLOPES: usize = 1;
 /// Inputs of normals: of the slopes and of the sky's grid.
 const NORMALS: usize = 2;
 
+/// What a grid needs of the heights, without a device.
+pub struct Ground {
+    blocks: Blocks,
+    scene: Scene,
+    normals: Vec<f32>,
+}
+
+impl Ground {
+    pub fn new(scene: &Scene, of: usize, side: usize) -> Result<Self> {
+        let blocks = Blocks::of(&scene.field, side);
+        let coarse = blocks.scene(scene)?;
+        let normals = normals((of, &blocks), &coarse, Some(&scene.field));
+        Ok(Self { blocks, scene: coarse, normals })
+    }
+}
+
+/// The normals of a grid's heights; of slopes the means of the full field's, unless that moves.
+fn normals((of, blocks): (usize, &Blocks), own: &Scene, full: Option<&HeightField>) -> Vec<f32> {
+    let border = own.surface.border;
+    match full.filter(|_| of == SLOPES) {
+        Some(field) => blocks.normals(field, border),
+        None => Blocks::of(&own.field, 1).normals(&own.field, border),
+    }
+}
+
 /// A scene on a coarser grid.
 pub struct Level {
     /// Which of the grids.
@@ -38,22 +63,18 @@ pub struct Level {
 }
 
 impl Level {
-    pub fn new(state: &State, of: usize, side: usize) -> Result<Self> {
-        let blocks = Blocks::of(&state.scene.field, side);
-        let scene = blocks.scene(&state.scene)?;
-        let mut level = Self {
+    pub fn new(of: usize, Ground { blocks, scene, normals }: Ground) -> Self {
+        Self {
             of,
             blocks,
             scene,
             lit: None,
-            normals: Vec::new(),
+            normals,
             are_normals_new: true,
             are_heights_new: true,
             moving: None,
             runs: 0,
-        };
-        level.take_normals(Some(&state.scene.field));
-        Ok(level)
+        }
     }
 
     /// Takes the state's lights and heights.
@@ -94,13 +115,8 @@ impl Level {
         Ok(())
     }
 
-    /// The normals of this grid's heights; of slopes the means of the full field's, unless that moves.
     fn take_normals(&mut self, full: Option<&HeightField>) {
-        let border = self.scene.surface.border;
-        self.normals = match full.filter(|_| self.of == SLOPES) {
-            Some(field) => self.blocks.normals(field, border),
-            None => Blocks::of(&self.scene.field, 1).normals(&self.scene.field, border),
-        };
+        self.normals = normals((self.of, &self.blocks), &self.scene, full);
         self.are_normals_new = true;
     }
 
@@ -198,6 +214,24 @@ pub fn plan_levels(
     // New environments wait for the device.
     sky.plan_light(screen, state, limits)?;
     slopes.plan_slopes(screen, sky, state.has_camera(), limits)
+}
+
+/// Plans the first of the grids that has no frame, so that input waits for one of them at most. Returns whether there was
+/// one.
+pub fn plan_next(
+    [sky, slopes]: &mut [Level; GRIDS],
+    screen: &mut Screen,
+    state: &State,
+    limits: &Limits,
+) -> Result<bool> {
+    if sky.lit.is_none() {
+        return sky.plan_light(screen, state, limits).map(|()| true);
+    }
+    let lacks_slopes = slopes.lit.is_none();
+    if lacks_slopes {
+        slopes.plan_slopes(screen, sky, state.has_camera(), limits)?;
+    }
+    Ok(lacks_slopes)
 }
 
 /// The first sun with irradiance, and its number, from 1.

@@ -2,6 +2,8 @@
 //! input rests.
 
 use std::ops::Range;
+use std::panic::resume_unwind;
+use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use ridgelight::Result;
@@ -14,7 +16,7 @@ use super::super::brush::together;
 use super::super::smaller::Blocks;
 use super::super::state::State;
 use super::drawing::{replan, whole};
-use super::level::{GRIDS, Level, SKY, SLOPES, grid_work, plan_levels, work};
+use super::level::{GRIDS, Ground, Level, SKY, SLOPES, grid_work, plan_levels, plan_next, work};
 use crate::render;
 use crate::setup::total_ns;
 
@@ -61,12 +63,14 @@ enum Next {
 /// Slots whose GPU times are still to be read.
 #[derive(Clone, Copy)]
 enum Running {
-    Preview([Option<usize>; GRIDS]),
+    Preview([usize; GRIDS]),
     Full(usize),
 }
 
 pub struct Preview {
     levels: Option<[Level; GRIDS]>,
+    /// Other grids, made while input rests.
+    next_grids: Option<JoinHandle<Result<[Ground; GRIDS]>>>,
     /// Whether the preview is shown.
     is_shown: bool,
     next: Next,
@@ -96,6 +100,7 @@ impl Preview {
     pub fn new(is_cpu: bool) -> Self {
         Self {
             levels: None,
+            next_grids: None,
             is_shown: false,
             next: Next::Nothing,
             changed: Instant::now(),
@@ -129,6 +134,7 @@ impl Preview {
     /// An edit that no preview shows.
     pub fn miss(&mut self, at: Rectangle) {
         self.missed = Some(self.missed.map_or(at, |all| together(all, at)));
+        self.next_grids = None;
     }
 
     /// Shows the full light from now on. Returns whether it must be computed.
@@ -147,6 +153,16 @@ impl Preview {
     /// Whether work is left for a picture at rest.
     pub fn is_busy(&self) -> bool {
         self.next != Next::Nothing
+    }
+
+    /// Whether work is left for the next input.
+    pub fn changes_grids(&self) -> bool {
+        self.next_grids.is_some() || self.has_new_grids()
+    }
+
+    /// Whether grids were made that have not been lit yet.
+    fn has_new_grids(&self) -> bool {
+        self.levels.iter().flatten().any(|level| level.runs == 0)
     }
 
     /// Whether the preview is shown.
@@ -200,26 +216,33 @@ impl Preview {
         self.is_full_stale |= relights;
         self.times.clear();
         self.lacks_times = false;
-        self.fit(screen, state, DRAGGED)?;
+        if edited.is_some() || state.is_moving() {
+            self.next_grids = None;
+        }
+        self.fit(screen, state)?;
         self.changed = Instant::now();
         let missed = self.missed.take();
         let edited = edited.zip(missed).map(|(a, b)| together(a, b)).or(edited).or(missed);
         let levels = self.levels.as_mut().expect("made by fit");
         levels.iter_mut().try_for_each(|level| level.take(state, edited))?;
-        let borrowed = plan_levels(levels, screen, state, limits)?;
-        let mut slots = [None; GRIDS];
-        for (level, slot) in levels.iter_mut().zip(&mut slots) {
-            let borrowed = if level.of == SLOPES { borrowed.as_slice() } else { &[] };
-            *slot = Some(level.run(screen, borrowed)?);
-        }
-        self.running = Some(Running::Preview(slots));
+        self.running = Some(Running::Preview(run_levels(levels, screen, state, limits)?));
         self.is_shown = true;
         self.next = if state.is_moving() { Next::Nothing } else { Next::Begin };
         Ok(())
     }
 
-    /// Makes the levels, of a size that fits the time.
-    fn fit(&mut self, screen: &mut Screen, state: &State, kept_at: Range<f64>) -> Result<()> {
+    /// Makes the levels where there are none that fit the time of a drag.
+    fn fit(&mut self, screen: &mut Screen, state: &State) -> Result<()> {
+        if let Some(sides) = self.other_grids(state, DRAGGED) {
+            self.end(screen)?;
+            self.next_grids = None;
+            self.levels = Some(levels_of(grounds(&state.scene, sides)?));
+        }
+        Ok(())
+    }
+
+    /// Sides of the blocks of grids that fit the time, unless those in use are kept.
+    fn other_grids(&self, state: &State, kept_at: Range<f64>) -> Option<[usize; GRIDS]> {
         let field = &state.scene.field;
         let most = (field.rows().min(field.cols()) / LEAST_GRID).max(1);
         // Shares of the intended time.
@@ -232,15 +255,29 @@ impl Preview {
         let slopes = least(SLOPES);
         let wanted = self.fixed.unwrap_or_else(|| [least(SKY).max(slopes), slopes]);
         let kept = self.levels.as_ref().map(|levels| levels.each_ref().map(|l| l.blocks.side));
-        // Other grids take a third of a second: only where they are worth that, least of all in a drag.
+        // Other grids take a third of a second of the host: only where they are worth that, least of all in a drag.
         let is_kept = kept.is_some_and(|kept| {
             let fits = |of: usize| kept[of] <= most && kept_at.contains(&share(of, kept[of]));
             kept == wanted || self.fixed.is_none() && (0..GRIDS).all(fits)
         });
-        if !is_kept {
+        (!is_kept).then_some(wanted)
+    }
+
+    /// Goes on with other grids: takes them once they are made, then plans one at a time, and lights them once, as a driver
+    /// may compile their shaders only then.
+    fn change_grids(&mut self, screen: &mut Screen, state: &State, limits: &Limits) -> Result<()> {
+        if let Some(made) = self.next_grids.take_if(|made| made.is_finished()) {
+            // Goes on with its panic, which it has reported.
+            let grounds = made.join().unwrap_or_else(|panic| resume_unwind(panic))?;
             self.end(screen)?;
-            let level = |of: usize| Level::new(state, of, wanted[of]);
-            self.levels = Some([level(SKY)?, level(SLOPES)?]);
+            let levels = self.levels.insert(levels_of(grounds));
+            return levels.iter_mut().try_for_each(|level| level.take(state, None));
+        }
+        let is_new = self.has_new_grids();
+        if let Some(levels) = self.levels.as_mut().filter(|_| is_new)
+            && !plan_next(levels, screen, state, limits)?
+        {
+            run_levels(levels, screen, state, limits)?;
         }
         Ok(())
     }
@@ -255,7 +292,7 @@ impl Preview {
     ) -> Result<bool> {
         self.read_times(state, full);
         match self.next {
-            Next::Nothing => Ok(false),
+            Next::Nothing => self.change_grids(screen, state, limits).map(|()| false),
             Next::Begin if self.changed.elapsed() < REST => Ok(false),
             Next::Begin => self.begin_full(screen, state, (full, limits)).map(|()| false),
             Next::Passes(done) => {
@@ -263,7 +300,7 @@ impl Preview {
                 if done < lit.plan().passes.len() {
                     return self.run_part(screen, state, (lit, done)).map(|()| false);
                 }
-                self.complete(screen, state, (lit, limits)).map(|()| true)
+                self.complete(screen, state, lit).map(|()| true)
             }
         }
     }
@@ -311,12 +348,7 @@ impl Preview {
     }
 
     /// Shows the full light, and measures the preview against it.
-    fn complete(
-        &mut self,
-        screen: &mut Screen,
-        state: &State,
-        (lit, limits): (&Frame, &Limits),
-    ) -> Result<()> {
+    fn complete(&mut self, screen: &mut Screen, state: &State, lit: &Frame) -> Result<()> {
         (self.is_shown, self.next) = (false, Next::Nothing);
         (self.edited, self.is_full_stale) = (None, false);
         self.full_s = Some(self.changed.elapsed().as_secs_f64());
@@ -326,9 +358,13 @@ impl Preview {
             self.error = error(blocks, state.scene.field.voids(), &ours, &full);
         }
         // For the next input, while there is time.
-        self.fit(screen, state, RESTED)?;
-        let levels = self.levels.as_mut().expect("made by fit");
-        plan_levels(levels, screen, state, limits).map(|_| ())
+        if self.next_grids.is_none()
+            && let Some(sides) = self.other_grids(state, RESTED)
+        {
+            let scene = state.scene.clone();
+            self.next_grids = Some(std::thread::spawn(move || grounds(&scene, sides)));
+        }
+        Ok(())
     }
 
     /// Takes the times of the last part, and learns from them how fast the device is.
@@ -365,8 +401,7 @@ impl Preview {
                 let levels = self.levels.as_mut().filter(|levels| levels[SLOPES].runs > 1);
                 let mut all = Vec::new();
                 for (level, slot) in levels.into_iter().flatten().zip(slots) {
-                    let lit = level.lit.as_mut().zip(slot);
-                    let times = lit.and_then(|(lit, slot)| lit.renderer().timings(slot));
+                    let times = level.lit.as_mut().and_then(|lit| lit.renderer().timings(slot));
                     let Some(times) = times else { continue };
                     let work = grid_work(&state.scene, &state.quality, level.of, level.blocks.side);
                     learn(&mut self.rates.grids[level.of], work, &times, FIXED_MS[level.of]);
@@ -389,6 +424,28 @@ impl Preview {
         let frames = self.levels.take().into_iter().flatten().filter_map(|level| level.lit);
         frames.map(|lit| screen.end(lit)).fold(Ok(()), Result::and)
     }
+}
+
+/// The grids of blocks of these sides.
+fn grounds(scene: &Scene, sides: [usize; GRIDS]) -> Result<[Ground; GRIDS]> {
+    let ground = |of: usize| Ground::new(scene, of, sides[of]);
+    Ok([ground(SKY)?, ground(SLOPES)?])
+}
+
+/// Lights both grids. Returns the slots that hold their times.
+fn run_levels(
+    levels: &mut [Level; GRIDS],
+    screen: &mut Screen,
+    state: &State,
+    limits: &Limits,
+) -> Result<[usize; GRIDS]> {
+    let borrowed = plan_levels(levels, screen, state, limits)?;
+    let [sky, slopes] = levels;
+    Ok([sky.run(screen, &[])?, slopes.run(screen, &borrowed)?])
+}
+
+fn levels_of([sky, slopes]: [Ground; GRIDS]) -> [Level; GRIDS] {
+    [Level::new(SKY, sky), Level::new(SLOPES, slopes)]
 }
 
 /// RMSE over the mean, R, G, B of the means of blocks.

@@ -9,6 +9,7 @@ use winit::dpi::PhysicalSize;
 use super::super::script::Step;
 use super::compare::MOST_PATHS;
 use super::drawing::places;
+use super::preview::Preview;
 use super::saving::save_pixels;
 use super::{App, OpenWindow};
 
@@ -77,7 +78,8 @@ impl App<'_> {
             }
             Step::Rest => {
                 self.advance()?;
-                let preview = self.shown.as_ref().is_some_and(|shown| shown.preview.is_busy());
+                let has_more = |preview: &Preview| preview.is_busy() || preview.changes_grids();
+                let preview = self.shown.as_ref().is_some_and(|shown| has_more(&shown.preview));
                 let is_coarse = self.shown.as_ref().is_some_and(|shown| shown.has_coarse_mesh);
                 let is_busy =
                     self.uses_preview() && (preview || is_coarse) || self.answering.is_some();
