@@ -26,6 +26,8 @@ pub enum Step {
     Screenshot(PathBuf),
     /// Saves the panel's text.
     Text(PathBuf),
+    /// Saves the command line that the panel copies.
+    Command(PathBuf),
     /// Saves the places of the panel's parts.
     Places(PathBuf),
     /// Draws and waits for input until the panel has a part of a name and is settled; then saves the places.
@@ -82,7 +84,7 @@ pub fn read(path: &Path) -> Result<Vec<Step>> {
                 found: line.to_owned(),
                 expected:
                     "key, drag, wheel, frames, size, lose, picture, scene, screenshot, text, \
-                        places, shown, paths, preview, rest, report, wait, opening or patience, with its values"
+                        command, places, shown, paths, preview, rest, report, wait, opening or patience, with its values"
                         .into(),
             }
         })?);
@@ -122,6 +124,7 @@ fn step(line: &str) -> Option<Step> {
         ["scene", file] => Step::Scene(file.into()),
         ["screenshot", file] => Step::Screenshot(file.into()),
         ["text", file] => Step::Text(file.into()),
+        ["command", file] => Step::Command(file.into()),
         ["places", file] => Step::Places(file.into()),
         ["shown", file, _, ..] => Step::Shown(file.into(), words[2..].join(" ")),
         ["paths", count] => Step::Paths(count.parse().ok()?),

@@ -2,7 +2,7 @@
 
 use std::process::{Command, Output, Stdio};
 
-use super::{Display, Folder, LIT, apart, assert_same, code, colours};
+use super::{Display, Folder, LIT, apart, assert_same, code, colours, succeed};
 
 /// Strokes are drawn as edits and undone and redone bit for bit. `render` draws the saved field, whose heights are
 /// relative to another median and rounded to f32 once more, which may change a code by one.
@@ -134,6 +134,33 @@ fn gpu_brushes_have_size_limits() {
         let text = std::fs::read_to_string(folder.0.path().join(name)).unwrap();
         assert!(text.contains(says), "{text}");
     }
+}
+
+/// A shell runs the command line that the panel copies: `render` draws the window's picture, from above and from a camera, of
+/// a file whose name must be quoted.
+#[test]
+fn gpu_copied_commands_draw_the_picture() {
+    let (folder, display) = (Folder::new(), Display::new());
+    let rename = |from: &str, to: &str| {
+        std::fs::rename(folder.0.path().join(from), folder.0.path().join(to)).unwrap();
+    };
+    rename("hills.asc", "hill's.asc");
+    let script = "frames 2\npicture first.png\nkey shift+right\nkey e\nkey .\nframes 2\npicture map.png\n\
+        command map.txt\nkey v\nframes 2\npicture camera.png\ncommand camera.txt\n";
+    folder.view(&display, &format!("hill's.asc {LIT} --size 96x60"), script);
+    for of in ["map", "camera"] {
+        let line = std::fs::read_to_string(folder.0.path().join(format!("{of}.txt"))).unwrap();
+        let words = line.strip_prefix("ridgelight ").expect("the program's name");
+        let mut shell = Command::new("sh");
+        let run = format!("\"$0\" {words} --quiet");
+        shell.current_dir(folder.0.path()).args(["-c", &run, env!("CARGO_BIN_EXE_ridgelight")]);
+        succeed(shell);
+        // A free name in that folder.
+        rename("hill's-view-1.png", &format!("{of}_r.png"));
+        assert_same(&folder, &format!("{of}.png"), &format!("{of}_r.png"));
+    }
+    // The comparison can fail.
+    assert!(colours(&folder.picture("first.png")) != colours(&folder.picture("map.png")));
 }
 
 /// Real events from another client of the display.

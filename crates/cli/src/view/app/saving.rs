@@ -112,12 +112,7 @@ impl App<'_> {
             self.state.message = Some(message.to_owned());
             return;
         }
-        let mut words = vec!["ridgelight".to_owned(), "render".to_owned()];
-        words.extend(self.state.asked(shown.size, &shown.limits, None).words());
-        words.push(format!("--exposure={}", self.state.exposure()));
-        words.extend(["-o".to_owned(), self.free_name("png").display().to_string()]);
-        let line =
-            words.iter().map(|word| setup::terminal::quoted(word)).collect::<Vec<_>>().join(" ");
+        let line = self.command_line(shown);
         let copied = match &mut self.clipboard {
             Some(clipboard) => clipboard.set_text(&line),
             none => arboard::Clipboard::new()
@@ -131,6 +126,15 @@ impl App<'_> {
             }
         };
         self.state.message = Some(message.to_owned());
+    }
+
+    /// The command line of `render` for the picture, for a shell.
+    pub(super) fn command_line(&self, shown: &OpenWindow) -> String {
+        let mut words = vec!["ridgelight".to_owned(), "render".to_owned()];
+        words.extend(self.state.asked(shown.size, &shown.limits, None).words());
+        words.push(format!("--exposure={}", self.state.exposure()));
+        words.extend(["-o".to_owned(), self.free_name("png").display().to_string()]);
+        words.iter().map(|word| setup::terminal::quoted(word)).collect::<Vec<_>>().join(" ")
     }
 
     /// Reports a saved file or an error, on the screen and on standard output. With a script an

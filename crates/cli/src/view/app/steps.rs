@@ -96,6 +96,11 @@ impl App<'_> {
                 let text = self.text();
                 files::write_text(&path, &text).map(|()| None)?
             }
+            Step::Command(path) => {
+                let shown = self.shown.as_ref();
+                let line = shown.map_or_else(String::new, |shown| self.command_line(shown));
+                files::write_text(&path, &line).map(|()| None)?
+            }
             Step::Places(path) => {
                 let text = self.places();
                 files::write_text(&path, &text).map(|()| None)?
