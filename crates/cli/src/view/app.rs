@@ -255,7 +255,7 @@ impl ApplicationHandler for App<'_> {
         }
         let uses_preview = self.uses_preview();
         let has_more = |OpenWindow { preview, has_coarse_mesh, .. }: &OpenWindow| {
-            preview.is_busy() || preview.changes_grids() || *has_coarse_mesh
+            preview.is_busy() || preview.has_more() || *has_coarse_mesh
         };
         let refines = uses_preview && self.shown.as_ref().is_some_and(has_more);
         let is_busy = self.is_due() || self.steps.is_some();

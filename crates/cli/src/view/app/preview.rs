@@ -71,6 +71,8 @@ pub struct Preview {
     levels: Option<[Level; GRIDS]>,
     /// Other grids, made while input rests.
     next_grids: Option<JoinHandle<Result<[Ground; GRIDS]>>>,
+    /// The error of the last preview, while it is found.
+    next_error: Option<JoinHandle<Option<f64>>>,
     /// Whether the preview is shown.
     is_shown: bool,
     next: Next,
@@ -101,6 +103,7 @@ impl Preview {
         Self {
             levels: None,
             next_grids: None,
+            next_error: None,
             is_shown: false,
             next: Next::Nothing,
             changed: Instant::now(),
@@ -155,9 +158,9 @@ impl Preview {
         self.next != Next::Nothing
     }
 
-    /// Whether work is left for the next input.
-    pub fn changes_grids(&self) -> bool {
-        self.next_grids.is_some() || self.has_new_grids()
+    /// Whether work is left for the panel or for the next input.
+    pub fn has_more(&self) -> bool {
+        self.next_error.is_some() || self.next_grids.is_some() || self.has_new_grids()
     }
 
     /// Whether grids were made that have not been lit yet.
@@ -266,9 +269,8 @@ impl Preview {
     /// Goes on with other grids: takes them once they are made, then plans one at a time, and lights them once, as a driver
     /// may compile their shaders only then.
     fn change_grids(&mut self, screen: &mut Screen, state: &State, limits: &Limits) -> Result<()> {
-        if let Some(made) = self.next_grids.take_if(|made| made.is_finished()) {
-            // Goes on with its panic, which it has reported.
-            let grounds = made.join().unwrap_or_else(|panic| resume_unwind(panic))?;
+        if let Some(grounds) = finished(&mut self.next_grids) {
+            let grounds = grounds?;
             self.end(screen)?;
             let levels = self.levels.insert(levels_of(grounds));
             return levels.iter_mut().try_for_each(|level| level.take(state, None));
@@ -291,6 +293,7 @@ impl Preview {
         (full, limits): (&mut Option<Frame>, &Limits),
     ) -> Result<bool> {
         self.read_times(state, full);
+        self.error = finished(&mut self.next_error).unwrap_or(self.error);
         match self.next {
             Next::Nothing => self.change_grids(screen, state, limits).map(|()| false),
             Next::Begin if self.changed.elapsed() < REST => Ok(false),
@@ -347,15 +350,18 @@ impl Preview {
         Ok(())
     }
 
-    /// Shows the full light, and measures the preview against it.
+    /// Shows the full light. Threads measure the preview against it and make other grids.
     fn complete(&mut self, screen: &mut Screen, state: &State, lit: &Frame) -> Result<()> {
         (self.is_shown, self.next) = (false, Next::Nothing);
         (self.edited, self.is_full_stale) = (None, false);
         self.full_s = Some(self.changed.elapsed().as_secs_f64());
         if let Some([.., Level { blocks, lit: Some(fine), .. }]) = &self.levels {
-            let full = render::rgb(&screen.gpu().pixels(lit, 0)?);
-            let ours = render::rgb(&screen.gpu().pixels(fine, 0)?);
-            self.error = error(blocks, state.scene.field.voids(), &ours, &full);
+            let full = screen.gpu().pixels(lit, 0)?;
+            let ours = screen.gpu().pixels(fine, 0)?;
+            let (blocks, voids) = (*blocks, state.scene.field.voids().map(<[bool]>::to_vec));
+            self.next_error = Some(std::thread::spawn(move || {
+                error(&blocks, voids.as_deref(), &render::rgb(&ours), &render::rgb(&full))
+            }));
         }
         // For the next input, while there is time.
         if self.next_grids.is_none()
@@ -424,6 +430,13 @@ impl Preview {
         let frames = self.levels.take().into_iter().flatten().filter_map(|level| level.lit);
         frames.map(|lit| screen.end(lit)).fold(Ok(()), Result::and)
     }
+}
+
+/// The result of a thread, once it has one.
+fn finished<T>(thread: &mut Option<JoinHandle<T>>) -> Option<T> {
+    let ended = thread.take_if(|thread| thread.is_finished())?;
+    // Goes on with its panic, which it has reported.
+    Some(ended.join().unwrap_or_else(|panic| resume_unwind(panic)))
 }
 
 /// The grids of blocks of these sides.

@@ -78,7 +78,7 @@ impl App<'_> {
             }
             Step::Rest => {
                 self.advance()?;
-                let has_more = |preview: &Preview| preview.is_busy() || preview.changes_grids();
+                let has_more = |preview: &Preview| preview.is_busy() || preview.has_more();
                 let preview = self.shown.as_ref().is_some_and(|shown| has_more(&shown.preview));
                 let is_coarse = self.shown.as_ref().is_some_and(|shown| shown.has_coarse_mesh);
                 let is_busy =
