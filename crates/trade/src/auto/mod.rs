@@ -11,6 +11,7 @@ mod chooser;
 mod fitted;
 mod model;
 mod oracle_light;
+mod picks;
 mod probes;
 mod statistics;
 #[cfg(test)]

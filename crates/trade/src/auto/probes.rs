@@ -1,5 +1,5 @@
 use super::oracle_light::OracleLight;
-use ridgelight::basis::random::{STEP, mixed, unit};
+use super::picks::picks;
 use ridgelight::plan::max_path_light;
 use ridgelight::scene::{Border, Scene};
 use ridgelight::{Error, Result};
@@ -345,34 +345,6 @@ pub fn apart(a: &[Vec<f32>], b: &[Vec<f32>], cols: usize) -> Vec<f64> {
     let along: Vec<f64> =
         (0..count).map(|i| farthest(&differences, i, i % cols, cols, 1)).collect();
     (0..count).map(|i| farthest(&along, i, i / cols, count / cols, cols)).collect()
-}
-
-/// `wanted` of the weights' indices: half of the probability by weight and half uniform, stratified
-/// into `wanted` equal parts in reading order; and 1 / (count · probability) of each. All once
-/// where all are wanted.
-fn picks(weights: &[f64], wanted: usize, seed: u64) -> (Vec<usize>, Vec<f64>) {
-    let count = weights.len();
-    if wanted >= count {
-        return ((0..count).collect(), vec![1.0; count]);
-    }
-    let random = |k: u64| unit(mixed(seed.wrapping_add((k + 1).wrapping_mul(STEP))));
-    let sum: f64 = weights.iter().sum();
-    // In units of the mean probability.
-    let of = |i: usize| {
-        if sum > 0.0 { 0.5 + 0.5 * weights[i] / sum * count as f64 } else { 1.0 }
-    };
-    let (mut all, mut factors) = (Vec::with_capacity(wanted), Vec::with_capacity(wanted));
-    let (mut i, mut until) = (0, of(0));
-    for k in 0..wanted {
-        let place = (k as f64 + random(k as u64)) / wanted as f64 * count as f64;
-        while until < place && i + 1 < count {
-            i += 1;
-            until += of(i);
-        }
-        all.push(i);
-        factors.push(1.0 / of(i));
-    }
-    (all, factors)
 }
 
 /// As [`unsampled_light_error`](ridgelight::plan::unsampled_light_error), for the indirect light of all texels of a

@@ -1,4 +1,6 @@
 use super::*;
+use crate::auto::picks::even_picks;
+use ridgelight::basis::random::{STEP, mixed, unit};
 
 const SIDE: usize = 64;
 const SEEDS: u64 = 200;
@@ -123,6 +125,28 @@ fn probes_are_spread() {
     assert!((109..=111).contains(&heavy), "{heavy}");
     let mean = factors.iter().sum::<f64>() / 200.0;
     assert!((mean - 1.0).abs() < 0.02, "{mean}");
+}
+
+/// The first half does not depend on the weights, so its light can be computed before two pictures exist. The other half
+/// does. Of 101 picks the first 51 are uniform: an index that has all of the weight of 1000 has the probability
+/// (51 + 50 · 1000) / 101 of the mean.
+#[test]
+fn half_of_the_picks_need_no_weights() {
+    let heavy =
+        |at: usize| -> Vec<f64> { (0..1000).map(|i| f64::from(u8::from(i == at))).collect() };
+    for wanted in [1, 2, 100, 101, 999] {
+        let even = even_picks(1000, wanted, 3);
+        assert_eq!(even.len(), wanted.div_ceil(2));
+        for at in [0, 400, 999] {
+            let (places, factors) = picks(&heavy(at), wanted, 3);
+            assert_eq!((places.len(), factors.len()), (wanted, wanted));
+            assert_eq!(places[..even.len()], even);
+            assert!(places[even.len()..].iter().all(|place| *place == at), "{wanted} {at}");
+        }
+    }
+    let factors = picks(&heavy(400), 101, 3).1;
+    assert!((factors[100] - 101.0 / (51.0 + 50_000.0)).abs() < 1e-12, "{}", factors[100]);
+    assert_eq!(even_picks(10, 10, 3), picks(&[1.0; 10], 10, 3).0);
 }
 
 /// A random number of mean 0 and variance 1, near to normal: the sum of twelve uniform ones.
