@@ -9,7 +9,9 @@ use ridgelight::plan::{self, Limits, Picture};
 use ridgelight::scene::{Hull, Normals, Quality, Scene};
 use ridgelight_cpu::lit::Lit;
 use ridgelight_trade::auto;
-use ridgelight_trade::auto::{Bounced, Chosen, Drawn, Goal, Measured, Probes, Traced, Trial};
+use ridgelight_trade::auto::{
+    Bounced, Chosen, Drawn, Goal, Measured, OracleThreads, Probes, Traced, Trial,
+};
 
 use crate::args::AutoArgs;
 use crate::idle;
@@ -65,11 +67,11 @@ pub fn choose(
         trace(&mut gpu.borrow_mut(), limits, (scene, bounces), places, (batches, seed))
     };
     let bounced = (bounces > 0).then_some(Bounced { count: bounces, trace: &mut trace });
-    let mut chosen = auto::choose(&lit, goal, probes, bounced, |quality| {
+    let mut chosen = auto::choose(&lit, goal, probes, bounced, |quality, threads| {
         drawn += 1;
         bar.set_message(format!("choosing settings, {drawn}: {}", flags(quality, scene)));
-        let quality = Quality { hull, ..*quality };
-        draw(&mut gpu.borrow_mut(), limits, (scene, wanted), &quality, &contents)
+        let quality = (&Quality { hull, ..*quality }, threads);
+        draw(&mut gpu.borrow_mut(), limits, (scene, wanted), quality, &contents)
     })?;
     chosen.trial.quality.hull = hull;
     Ok(chosen)
@@ -79,21 +81,28 @@ fn draw(
     gpu: &mut Headless,
     limits: &Limits,
     (scene, wanted): (&Scene, Picture),
-    quality: &Quality,
+    (quality, threads): (&Quality, &OracleThreads),
     contents: &[Vec<f32>],
 ) -> Result<Drawn> {
     let plan = plan::picture(scene, quality, limits, wanted)?;
-    let (times, pixels) = gpu
-        .with_frame(plan, contents, |gpu, frame| Ok((timed(gpu, frame)?, gpu.pixels(frame, 0)?)))?;
+    let (times, pixels) = gpu.with_frame(plan, contents, |gpu, frame| {
+        Ok((timed(gpu, frame, threads)?, gpu.pixels(frame, 0)?))
+    })?;
     let planes = setup::planes(&pixels, &scene.field);
     Ok(Drawn { planes, passes: times.into_iter().map(|t| (t.label, t.ns)).collect() })
 }
 
-/// Times of the median of some draws.
-fn timed(gpu: &Headless, frame: &mut ridgelight::gpu::Frame) -> Result<Vec<Timing>> {
+/// Times of the median of some draws. Exact light is computed only while the passes compile: a software driver draws on
+/// the same cores.
+fn timed(
+    gpu: &Headless,
+    frame: &mut ridgelight::gpu::Frame,
+    threads: &OracleThreads,
+) -> Result<Vec<Timing>> {
     let begun = Instant::now();
     let mut runs = vec![gpu.draw(frame)?];
     if begun.elapsed() < LONG {
+        let _pause = threads.pause();
         let begun = Instant::now();
         runs = vec![gpu.draw(frame)?];
         while runs.len() < DRAWS && begun.elapsed() < TIMING {

@@ -21,6 +21,7 @@ mod walk;
 pub use crate::trade::Goal;
 pub use chooser::{Chooser, Trial};
 pub use model::{Costs, Expected, FEATURES, Model, PARTS, Part};
+pub use oracle_light::{OracleThreads, Pause};
 pub use probes::{Measured, Probes, Traced, unsampled_bounce_error, unsure};
 pub use statistics::Statistics;
 pub use walk::{Bounced, Chosen, Drawn, Trace, choose, flags};

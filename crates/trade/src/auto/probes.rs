@@ -1,5 +1,5 @@
-use super::oracle_light::OracleLight;
-use super::picks::picks;
+use super::oracle_light::{OracleLight, Rays};
+use super::picks::{even_picks, picks};
 use ridgelight::plan::max_path_light;
 use ridgelight::scene::{Border, Scene};
 use ridgelight::{Error, Result};
@@ -59,6 +59,17 @@ impl Measured {
     pub(super) const UNKNOWN: Self = Self { error: f64::INFINITY, at_most: f64::INFINITY };
 }
 
+/// Texels without void, by row-major index.
+fn known(scene: &Scene) -> Result<Vec<usize>> {
+    let field = &scene.field;
+    let known: Vec<usize> =
+        (0..field.rows() * field.cols()).filter(|i| field.voids().is_none_or(|v| !v[*i])).collect();
+    if known.is_empty() {
+        return Err(Error::setting("field", "voids only", "at least one height"));
+    }
+    Ok(known)
+}
+
 /// A mean square with its bound, and the mean of the ground truth.
 #[derive(Clone, Copy)]
 struct Square {
@@ -98,31 +109,25 @@ impl Probes {
     /// # Errors
     /// A field of voids only.
     pub fn of(lit: &Lit<'_>, wanted: usize, seed: u64, unsure: &[f64]) -> Result<Self> {
-        Self::by(&mut OracleLight::of(lit), wanted, seed, unsure)
+        OracleLight::with(lit, |oracle| Self::by(oracle, wanted, seed, unsure))
     }
 
     /// The same, with an oracle that keeps the light of earlier probes.
     pub(super) fn by(
-        oracle: &mut OracleLight<'_>,
+        oracle: &OracleLight<'_>,
         wanted: usize,
         seed: u64,
         unsure: &[f64],
     ) -> Result<Self> {
-        let field = &oracle.scene().field;
-        let known: Vec<usize> = (0..field.rows() * field.cols())
-            .filter(|i| field.voids().is_none_or(|v| !v[*i]))
-            .collect();
-        if known.is_empty() {
-            return Err(Error::setting("field", "voids only", "at least one height"));
-        }
+        let known = known(oracle.scene())?;
         let weights: Vec<f64> =
             known.iter().map(|i| unsure.get(*i).copied().unwrap_or(0.0)).collect();
         let (picks, factors) = picks(&weights, wanted, seed);
         let places: Vec<usize> = picks.into_iter().map(|k| known[k]).collect();
-        let light = oracle.whole(&places);
+        let light = oracle.light(&places, Rays::All);
         let stride = places.len().div_ceil(SELF_PROBES);
         let some: Vec<usize> = places.iter().copied().step_by(stride).collect();
-        let halves = oracle.half(&some);
+        let halves = oracle.light(&some, Rays::Half);
         let squares = halves.iter().enumerate().map(|(i, half)| {
             let whole = light[i * stride];
             let square: f64 = half.iter().zip(whole).map(|(h, w)| (h - w).powi(2) / 3.0).sum();
@@ -131,6 +136,34 @@ impl Probes {
         let own_rms = (squares.sum::<f64>() / some.len() as f64).sqrt();
         let noise = vec![0.0; places.len()];
         Ok(Self { is_whole: places.len() == known.len(), places, factors, light, noise, own_rms })
+    }
+
+    /// Starts to compute the light of [`by`](Self::by). `None` for `unsure`, which is not known before two pictures: only
+    /// the texels that do not depend on it.
+    ///
+    /// # Errors
+    /// As there.
+    pub(super) fn request(
+        oracle: &OracleLight<'_>,
+        wanted: usize,
+        seed: u64,
+        unsure: Option<&[f64]>,
+    ) -> Result<()> {
+        let known = known(oracle.scene())?;
+        let picks = match unsure {
+            Some(unsure) => {
+                let weight = |i: &usize| unsure.get(*i).copied().unwrap_or(0.0);
+                picks(&known.iter().map(weight).collect::<Vec<_>>(), wanted, seed).0
+            }
+            None => even_picks(known.len(), wanted, seed),
+        };
+        let places: Vec<usize> = picks.into_iter().map(|k| known[k]).collect();
+        oracle.request(&places, Rays::All);
+        // The first texels are the same, so every `stride`-th is, too.
+        let stride = wanted.min(known.len()).div_ceil(SELF_PROBES).max(1);
+        let some: Vec<usize> = places.into_iter().step_by(stride).collect();
+        oracle.request(&some, Rays::Half);
+        Ok(())
     }
 
     /// Row-major indices of the texels; some may occur twice.

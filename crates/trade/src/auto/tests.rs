@@ -56,7 +56,7 @@ fn full() -> Error {
 
 fn chosen(goal: Goal) -> Result<Chosen> {
     let scene = scene();
-    choose(&Lit::of(&scene), goal, WHOLE, None, |quality| draw(&scene, quality))
+    choose(&Lit::of(&scene), goal, WHOLE, None, |quality, _| draw(&scene, quality))
 }
 
 /// With every texel as a probe nothing is random: the choice reaches the goal, and half of its
@@ -95,7 +95,7 @@ fn unreachable_goals_are_refused() {
         assert!(matches!(chosen(goal).unwrap_err(), Error::Setting { .. }));
     }
     // A device's own refusal is not one of settings.
-    let broken = choose(&Lit::of(&scene()), Goal::MaxError(0.1), WHOLE, None, |_| {
+    let broken = choose(&Lit::of(&scene()), Goal::MaxError(0.1), WHOLE, None, |_, _| {
         Err(Error::Device { doing: "drawing".into(), reason: "lost".into() })
     });
     assert!(broken.unwrap_err().to_string().contains("lost"));
@@ -109,7 +109,7 @@ fn a_time_budget_is_kept() {
     assert!(found.trial.ns <= 20e6);
     assert_eq!(found.trial.quality.azimuths, 16, "{found:?}");
     let scene = scene();
-    let small = choose(&Lit::of(&scene), Goal::MaxCost(20e6), WHOLE, None, |quality| {
+    let small = choose(&Lit::of(&scene), Goal::MaxCost(20e6), WHOLE, None, |quality, _| {
         if quality.azimuths > 12 { Err(full()) } else { draw(&scene, quality) }
     });
     assert_eq!(small.unwrap().trial.quality.azimuths, 12);
@@ -158,7 +158,7 @@ fn costs_have_an_overhead() {
 #[test]
 fn search_limits_and_bounds_are_reported() {
     let scene = scene();
-    let slow = choose(&Lit::of(&scene), Goal::MaxError(3e-5), WHOLE, None, |quality| {
+    let slow = choose(&Lit::of(&scene), Goal::MaxError(3e-5), WHOLE, None, |quality, _| {
         let mut drawn = draw(&scene, quality)?;
         drawn.passes[0].1 *= 1e3;
         Ok(drawn)
@@ -166,10 +166,11 @@ fn search_limits_and_bounds_are_reported() {
     assert!(slow.unwrap_err().to_string().contains("take more than 30 s"));
     for (probes, confidence) in [(40, None), (SIDE * SIDE, Some(Probes::CONFIDENCE))] {
         let mut frames = 0;
-        let found = choose(&Lit::of(&scene), Goal::MaxError(0.1), (probes, 7), None, |quality| {
-            frames += 1;
-            if frames == 2 { Err(full()) } else { draw(&scene, quality) }
-        });
+        let found =
+            choose(&Lit::of(&scene), Goal::MaxError(0.1), (probes, 7), None, |quality, _| {
+                frames += 1;
+                if frames == 2 { Err(full()) } else { draw(&scene, quality) }
+            });
         assert_eq!(found.unwrap().confidence, confidence);
     }
 }
@@ -207,11 +208,12 @@ fn bounds_hold_at_the_stated_confidence() {
     let most = 0.01;
     let [mut held, mut bare, mut chosen] = [0_u64; 3];
     for seed in 0..SEEDS {
-        let found = choose(&Lit::of(&scene), Goal::MaxError(most), (64, seed), None, |quality| {
-            let ns = 1e6 * f64::from(quality.sun_azimuths);
-            let passes = vec![("sun_shade".to_owned(), ns)];
-            Ok(Drawn { planes: vec![picture(quality)], passes })
-        });
+        let found =
+            choose(&Lit::of(&scene), Goal::MaxError(most), (64, seed), None, |quality, _| {
+                let ns = 1e6 * f64::from(quality.sun_azimuths);
+                let passes = vec![("sun_shade".to_owned(), ns)];
+                Ok(Drawn { planes: vec![picture(quality)], passes })
+            });
         let Ok(found) = found else { continue };
         let drawn = picture(&found.trial.quality);
         let squares = drawn.iter().zip(&ground_truth).map(|(d, t)| (f64::from(*d) - t).powi(2));
@@ -237,7 +239,7 @@ fn exact_horizons_are_the_last_resort() {
     let scene = scene();
     let is_exact = |q: &Quality| q.method == Method::BruteForce || q.lines == Lines::Exact;
     let mut rendered = Vec::new();
-    let found = choose(&Lit::of(&scene), Goal::MaxError(0.02), WHOLE, None, |quality| {
+    let found = choose(&Lit::of(&scene), Goal::MaxError(0.02), WHOLE, None, |quality, _| {
         let mut drawn = draw(&scene, quality)?;
         // Exact ones are a hundred times slower: only their accuracy is in their favour.
         drawn.passes[0].1 *= if is_exact(quality) { 100.0 } else { 1.0 };
@@ -252,6 +254,30 @@ fn exact_horizons_are_the_last_resort() {
     assert!(found.trial.measured.at_most <= 0.02, "{found:?}");
 }
 
+/// Threads compute exact light while frames are drawn. Whether or not they pause during each frame, probes, errors and
+/// trials are the same.
+#[test]
+fn choices_do_not_depend_on_threads() {
+    let scene = scene();
+    let found = |is_paused: bool, seed: u64, goal: Goal| {
+        let chosen = choose(&Lit::of(&scene), goal, (40, seed), None, |quality, threads| {
+            let _pause = is_paused.then(|| threads.pause());
+            draw(&scene, quality)
+        });
+        format!("{:?}", chosen.map_err(|error| error.to_string()))
+    };
+    for goal in [Goal::MaxError(0.05), Goal::MaxError(0.005), Goal::MaxCost(20e6)] {
+        let first = found(true, 3, goal);
+        for is_paused in [true, false, false] {
+            assert_eq!(found(is_paused, 3, goal), first);
+        }
+    }
+    // Not because all are refused, or because every texel is a probe.
+    let [first, other] = [3, 4].map(|seed| found(false, seed, Goal::MaxError(0.05)));
+    assert!(first.starts_with("Ok"), "{first}");
+    assert_ne!(first, other);
+}
+
 /// Device errors unrelated to settings are returned.
 #[test]
 fn errors_unrelated_to_settings_are_returned() {
@@ -260,7 +286,8 @@ fn errors_unrelated_to_settings_are_returned() {
         needs: "longer images".into(),
         limit: "8".into(),
     };
-    let refused = choose(&Lit::of(&scene()), Goal::MaxError(0.1), WHOLE, None, |_| Err(too_long()));
+    let refused =
+        choose(&Lit::of(&scene()), Goal::MaxError(0.1), WHOLE, None, |_, _| Err(too_long()));
     assert_eq!(refused.unwrap_err().to_string(), too_long().to_string());
 }
 
@@ -268,7 +295,7 @@ fn errors_unrelated_to_settings_are_returned() {
 #[test]
 fn pictures_of_infinities_are_not_chosen() {
     let scene = scene();
-    let refused = choose(&Lit::of(&scene), Goal::MaxCost(1e12), WHOLE, None, |quality| {
+    let refused = choose(&Lit::of(&scene), Goal::MaxCost(1e12), WHOLE, None, |quality, _| {
         let mut drawn = draw(&scene, quality)?;
         drawn.planes[0][3] = f32::INFINITY;
         Ok(drawn)

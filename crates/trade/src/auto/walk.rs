@@ -3,7 +3,7 @@
 use super::candidates::defaults;
 use super::chooser::{Chooser, Trial};
 use super::model::{Expected, PARTS, Part};
-use super::oracle_light::OracleLight;
+use super::oracle_light::{OracleLight, OracleThreads};
 use super::probes::{Probes, Traced, unsampled_bounce_error, unsure};
 use super::statistics::Statistics;
 use crate::trade::{Goal, start};
@@ -90,30 +90,37 @@ const CONFIRMING_PROBES: usize = 3;
 const CONFIRMATIONS: u64 = 4;
 
 /// Probes, and the pictures that may still be needed, in the order of rendering.
-struct Judge<'a> {
-    oracle: OracleLight<'a>,
-    bounced: Option<Bounced<'a>>,
+struct Judge<'a, 't> {
+    oracle: &'a OracleLight<'a>,
+    bounced: Option<Bounced<'t>>,
     batches: u32,
     /// Where probes concentrate, how many at a time, and the next seed.
     unsure: Vec<f64>,
     step: usize,
     seed: u64,
+    /// Of all probes.
+    first_seed: u64,
     probes: Probes,
     pictures: Vec<Option<Vec<Vec<f32>>>>,
     control: usize,
 }
 
-impl<'a> Judge<'a> {
+/// The seed of the probes that measure the choice of an attempt, from 1. It does not depend on the probes before them, so
+/// their light can be computed while frames are drawn. Other probes and paths count in bits 32 to 47.
+fn confirming_seed(first_seed: u64, attempt: u64) -> u64 {
+    first_seed.wrapping_add(attempt << 48)
+}
+
+impl<'a, 't> Judge<'a, 't> {
     fn new(
-        lit: &'a Lit<'a>,
+        oracle: &'a OracleLight<'a>,
         (step, seed): (usize, u64),
         unsure: Vec<f64>,
-        bounced: Option<Bounced<'a>>,
+        bounced: Option<Bounced<'t>>,
         goal: Goal,
     ) -> Result<Self> {
-        let scene = lit.scene();
-        let mut oracle = OracleLight::of(lit);
-        let probes = Probes::by(&mut oracle, step, seed, &unsure)?;
+        let scene = oracle.scene();
+        let probes = Probes::by(oracle, step, seed, &unsure)?;
         let direct = probes.clone();
         let mut judge = Self {
             oracle,
@@ -122,10 +129,12 @@ impl<'a> Judge<'a> {
             unsure,
             step,
             seed,
+            first_seed: seed,
             probes,
             pictures: vec![],
             control: 0,
         };
+        judge.request_confirming(1)?;
         judge.probes = judge.traced(direct.clone())?;
         let (wanted, error) = match goal {
             Goal::MaxError(most) => (NOISE_TARGET * most, most),
@@ -170,8 +179,21 @@ impl<'a> Judge<'a> {
     /// Probes of a new seed.
     fn fresh(&mut self, wanted: usize) -> Result<Probes> {
         self.seed = self.seed.wrapping_add(1 << 32);
-        let probes = Probes::by(&mut self.oracle, wanted, self.seed, &self.unsure)?;
+        let probes = Probes::by(self.oracle, wanted, self.seed, &self.unsure)?;
         self.traced(probes)
+    }
+
+    /// Probes that measure the choice of an attempt.
+    fn confirming(&mut self, attempt: u64) -> Result<Probes> {
+        let seed = confirming_seed(self.first_seed, attempt);
+        let probes = Probes::by(self.oracle, CONFIRMING_PROBES * self.step, seed, &self.unsure)?;
+        self.traced(probes)
+    }
+
+    /// Starts to compute their light.
+    fn request_confirming(&self, attempt: u64) -> Result<()> {
+        let seed = confirming_seed(self.first_seed, attempt);
+        Probes::request(self.oracle, CONFIRMING_PROBES * self.step, seed, Some(&self.unsure))
     }
 
     /// Adds bounced light, where there is any, by new paths.
@@ -238,16 +260,19 @@ impl<'a> Judge<'a> {
 /// that had no part in it. With `bounced`, bounced light is measured and its settings are chosen,
 /// too.
 ///
+/// Other threads compute exact light while `draw` runs. It times frames during
+/// [`OracleThreads::pause`]. The choice depends on the times that it returns, on no others.
+///
 /// # Errors
 /// A goal out of range, or finer than paths can measure; one that nothing reaches, with the nearest
 /// result; errors of `draw`, except [`Error::Limit`], which excludes the settings and all slower
 /// ones, unless all are refused.
-pub fn choose<'a>(
-    lit: &'a Lit<'a>,
+pub fn choose(
+    lit: &Lit<'_>,
     goal: Goal,
-    (probes, seed): (usize, u64),
-    bounced: Option<Bounced<'a>>,
-    mut draw: impl FnMut(&Quality) -> Result<Drawn>,
+    probes: (usize, u64),
+    bounced: Option<Bounced<'_>>,
+    draw: impl FnMut(&Quality, &OracleThreads) -> Result<Drawn>,
 ) -> Result<Chosen> {
     let (name, bound) = match goal {
         Goal::MaxError(most) => ("max_error", most),
@@ -256,7 +281,21 @@ pub fn choose<'a>(
     if !(bound > 0.0 && bound.is_finite()) {
         return Err(Error::setting(name, bound.to_string(), "a number above 0"));
     }
-    let scene = lit.scene();
+    OracleLight::with(lit, |oracle| choose_by(oracle, goal, probes, bounced, draw))
+}
+
+fn choose_by(
+    oracle: &OracleLight<'_>,
+    goal: Goal,
+    (probes, seed): (usize, u64),
+    bounced: Option<Bounced<'_>>,
+    mut draw: impl FnMut(&Quality, &OracleThreads) -> Result<Drawn>,
+) -> Result<Chosen> {
+    // Half of the probes do not depend on the pictures.
+    Probes::request(oracle, probes, seed, None)?;
+    Probes::request(oracle, CONFIRMING_PROBES * probes, confirming_seed(seed, 1), None)?;
+    let mut draw = |quality: &Quality| draw(quality, oracle.threads());
+    let scene = oracle.scene();
     let count = bounced.as_ref().map_or(0, |b| b.count);
     let mut chooser = Chooser::new(scene, &Statistics::of(scene), goal, count);
     let (mut pilots, mut refused) = (Vec::new(), None);
@@ -277,7 +316,7 @@ pub fn choose<'a>(
         _ => Vec::new(),
     };
     let is_aimed = !unsure.is_empty();
-    let mut judge = Judge::new(lit, (probes, seed), unsure, bounced, goal)?;
+    let mut judge = Judge::new(oracle, (probes, seed), unsure, bounced, goal)?;
     let own = judge.probes.own_error();
     if let Goal::MaxError(most) = goal
         && own >= most
@@ -311,7 +350,7 @@ pub fn choose<'a>(
         let Some(best) = best else { break };
         let quality = best.quality;
         let Drawn { planes, passes } = draw(&quality)?;
-        let fresh = judge.fresh(CONFIRMING_PROBES * probes)?;
+        let fresh = judge.confirming(attempt)?;
         let deviations = if count > 0 { Probes::EIGHT_BOUNDS } else { Probes::FOUR_BOUNDS };
         let ns = passes.iter().map(|p| p.1).sum();
         let measured = fresh.error(&planes, judge.control(), deviations);
@@ -325,6 +364,9 @@ pub fn choose<'a>(
                 confidence: (is_aimed || fresh.is_whole()).then_some(Probes::CONFIDENCE),
                 trials: chooser.trials().to_vec(),
             });
+        }
+        if !is_last {
+            judge.request_confirming(attempt + 1)?;
         }
         judge.probes.extend(&fresh);
         judge.judge(&mut chooser);

@@ -21,7 +21,7 @@ use ridgelight_io::{HeightOptions, read_environment, read_heights};
 use ridgelight_trade::auto::Drawn;
 
 use crate::common::args::Args;
-use crate::common::frames::drawn;
+use crate::common::frames::drawn_while;
 use crate::common::{Outcome, inputs};
 
 /// A file without a cell size gets one that makes its relief this share of its side.
@@ -108,7 +108,18 @@ fn scenes(
 
 /// A picture as `trade` judges it: planes, NaN at voids, and the passes of the median of `runs`.
 fn judged(gpu: &mut Headless, scene: &Scene, quality: &Quality, runs: usize) -> Result<Drawn> {
-    let found = drawn(gpu, scene, quality, runs)?;
+    judged_while(gpu, scene, quality, runs, || ())
+}
+
+/// The same with what `pause` returns kept from the end of the first run on.
+fn judged_while<P>(
+    gpu: &mut Headless,
+    scene: &Scene,
+    quality: &Quality,
+    runs: usize,
+    pause: impl FnOnce() -> P,
+) -> Result<Drawn> {
+    let found = drawn_while(gpu, scene, quality, runs, pause)?;
     let is_void = |i: usize| scene.field.voids().is_some_and(|v| v[i]);
     let plane = |c: usize| {
         let texels = found.light.iter().enumerate();

@@ -8,12 +8,14 @@ use ridgelight::scene::{Fuse, Lines, Method, Quality, Scene};
 use ridgelight::{Error, Result};
 use ridgelight_cpu::lit::Lit;
 use ridgelight_io as files;
-use ridgelight_trade::auto::{Chosen, Drawn, Measured, Probes, choose, flags, unsure};
+use ridgelight_trade::auto::{
+    Chosen, Drawn, Measured, OracleThreads, Probes, choose, flags, unsure,
+};
 use ridgelight_trade::statistics::quantiles;
 use ridgelight_trade::trade::{Goal, Search, Value as Point, ladders, places, recommend, start};
 use serde_json::{Value, json};
 
-use super::judged;
+use super::{judged, judged_while};
 use crate::common::frames::in_turn;
 use crate::common::{head, median};
 
@@ -73,8 +75,15 @@ impl<'a> Measuring<'a> {
         self.probes.error(planes, Some(&self.control), Probes::ONE_BOUND)
     }
 
-    fn draw(&mut self, gpu: &mut Headless, quality: &Quality, runs: usize) -> Result<Drawn> {
-        let drawn = judged(gpu, self.scene, quality, runs)?;
+    /// Draws `runs` frames after one that compiles, with what `pause` returns kept meanwhile.
+    fn draw<P>(
+        &mut self,
+        gpu: &mut Headless,
+        quality: &Quality,
+        runs: usize,
+        pause: impl FnOnce() -> P,
+    ) -> Result<Drawn> {
+        let drawn = judged_while(gpu, self.scene, quality, runs, pause)?;
         let cost = drawn.passes.iter().map(|p| p.1).sum();
         let error = self.error(&drawn.planes).error;
         self.all.push((*quality, Point { cost, error }));
@@ -92,7 +101,7 @@ impl<'a> Measuring<'a> {
         let steps = places.iter().map(|p| p.steps.clone()).collect();
         let (mut search, begun) = (Search::new(steps, first, 0.0), Instant::now());
         while let Some(place) = search.next().filter(|_| begun.elapsed().as_secs_f64() < seconds) {
-            match self.draw(gpu, &places[place].quality, 1) {
+            match self.draw(gpu, &places[place].quality, 1, || ()) {
                 Err(Error::Limit { .. } | Error::Setting { .. }) => search.give_up(place, false),
                 drawn => {
                     drawn?;
@@ -112,7 +121,9 @@ impl<'a> Measuring<'a> {
     ) -> Result<std::result::Result<Chosen, String>> {
         let lit = Lit::of(self.scene);
         let probes = (Probes::affordable(&lit), seed);
-        let draw = |quality: &Quality| self.draw(gpu, quality, 3);
+        let draw = |quality: &Quality, threads: &OracleThreads| {
+            self.draw(gpu, quality, 3, || threads.pause())
+        };
         match choose(&lit, Goal::MaxError(most), probes, None, draw) {
             Ok(chosen) => Ok(Ok(chosen)),
             Err(error @ Error::Limit { .. }) => Ok(Err(error.to_string())),

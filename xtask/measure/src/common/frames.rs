@@ -84,15 +84,16 @@ impl Drawn {
     }
 }
 
-fn drawn_as(
+fn drawn_as<P>(
     gpu: &mut Headless,
     scene: &Scene,
-    quality: &Quality,
-    runs: usize,
+    (quality, runs): (&Quality, usize),
     wanted: Picture,
+    pause: impl FnOnce() -> P,
 ) -> Result<Drawn> {
     with_picture(gpu, scene, quality, wanted, |gpu, frame| {
         let first = gpu.draw(frame)?;
+        let _pause = pause();
         let (begun, mut all) = (Instant::now(), Vec::new());
         while all.len() < runs && begun.elapsed() < LONGEST {
             all.push(gpu.draw(frame)?);
@@ -110,12 +111,24 @@ fn drawn_as(
 }
 
 pub fn drawn(gpu: &mut Headless, scene: &Scene, quality: &Quality, runs: usize) -> Result<Drawn> {
-    drawn_as(gpu, scene, quality, runs, Picture::default())
+    drawn_while(gpu, scene, quality, runs, || ())
+}
+
+/// The same with what `pause` returns kept from the end of the first run on.
+pub fn drawn_while<P>(
+    gpu: &mut Headless,
+    scene: &Scene,
+    quality: &Quality,
+    runs: usize,
+    pause: impl FnOnce() -> P,
+) -> Result<Drawn> {
+    drawn_as(gpu, scene, (quality, runs), Picture::default(), pause)
 }
 
 /// A picture of five runs with its indirect light.
 pub fn drawn_in_layers(gpu: &mut Headless, scene: &Scene, quality: &Quality) -> Result<Drawn> {
-    drawn_as(gpu, scene, quality, 5, Picture { light_layers: true, ..Picture::default() })
+    let wanted = Picture { light_layers: true, ..Picture::default() };
+    drawn_as(gpu, scene, (quality, 5), wanted, || ())
 }
 
 /// Milliseconds of frames of these settings, drawn in turn: a row for each turn after the first.

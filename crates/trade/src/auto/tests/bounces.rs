@@ -54,7 +54,7 @@ fn choices_of_bounces_reach_the_goal() {
             Ok(places.iter().enumerate().map(of).collect())
         };
         let bounced = Some(Bounced { count: 2, trace: &mut trace });
-        let found = choose(&Lit::of(&scene), Goal::MaxError(most), WHOLE, bounced, |quality| {
+        let found = choose(&Lit::of(&scene), Goal::MaxError(most), WHOLE, bounced, |quality, _| {
             let mut ns = vec![("sky_shade".to_owned(), 1e6 * f64::from(quality.azimuths))];
             ns.push(("bounce_walk bounce1".to_owned(), cost(quality) - ns[0].1));
             Ok(Drawn { planes: vec![picture(quality)], passes: ns })
