@@ -19,9 +19,10 @@ use crate::reference;
 use crate::setup::terminal::{digits, percent};
 use crate::setup::{self, total_ns};
 
-/// Draws of each setting after one that compiles; the median counts. Slow settings get fewer.
+/// Draws of each setting after one that compiles; the median counts. None begins after this time, so slow settings get
+/// fewer.
 const DRAWS: usize = 3;
-const TIMING: Duration = Duration::from_secs(2);
+const TIMING: Duration = Duration::from_millis(500);
 /// A first draw this long is mostly work, not compilation, and counts itself.
 const LONG: Duration = Duration::from_secs(10);
 
@@ -57,7 +58,7 @@ pub fn choose(
     bar: &indicatif::ProgressBar,
 ) -> Result<Chosen> {
     let contents = plan::picture_inputs(scene);
-    let mut drawn = 0;
+    let mut known: Vec<Quality> = Vec::new();
     let lit = Lit::of(scene).viewed_from(wanted.eye_m);
     let probes = (Probes::affordable(&lit), u64::from(seed));
     let gpu = RefCell::new(gpu);
@@ -68,52 +69,63 @@ pub fn choose(
     };
     let bounced = (bounces > 0).then_some(Bounced { count: bounces, trace: &mut trace });
     let mut chosen = auto::choose(&lit, goal, probes, bounced, |quality, threads| {
-        drawn += 1;
-        bar.set_message(format!("choosing settings, {drawn}: {}", flags(quality, scene)));
-        let quality = (&Quality { hull, ..*quality }, threads);
-        draw(&mut gpu.borrow_mut(), limits, (scene, wanted), quality, &contents)
+        // Pipelines are kept: the second frame of the same settings compiles nothing.
+        let timing = Timed { is_compiled: known.contains(quality), threads };
+        known.push(*quality);
+        bar.set_message(format!("choosing settings, {}: {}", known.len(), flags(quality, scene)));
+        let quality = Quality { hull, ..*quality };
+        draw(&mut gpu.borrow_mut(), limits, (scene, wanted), (&quality, timing), &contents)
     })?;
     chosen.trial.quality.hull = hull;
     Ok(chosen)
+}
+
+/// How to time a frame.
+struct Timed<'a> {
+    /// Whether an earlier frame has compiled its passes.
+    is_compiled: bool,
+    /// What else runs.
+    threads: &'a OracleThreads,
 }
 
 fn draw(
     gpu: &mut Headless,
     limits: &Limits,
     (scene, wanted): (&Scene, Picture),
-    (quality, threads): (&Quality, &OracleThreads),
+    (quality, timing): (&Quality, Timed<'_>),
     contents: &[Vec<f32>],
 ) -> Result<Drawn> {
     let plan = plan::picture(scene, quality, limits, wanted)?;
     let (times, pixels) = gpu.with_frame(plan, contents, |gpu, frame| {
-        Ok((timed(gpu, frame, threads)?, gpu.pixels(frame, 0)?))
+        Ok((timing.of(gpu, frame)?, gpu.pixels(frame, 0)?))
     })?;
     let planes = setup::planes(&pixels, &scene.field);
     Ok(Drawn { planes, passes: times.into_iter().map(|t| (t.label, t.ns)).collect() })
 }
 
-/// Times of the median of some draws. Exact light is computed only while the passes compile: a software driver draws on
-/// the same cores.
-fn timed(
-    gpu: &Headless,
-    frame: &mut ridgelight::gpu::Frame,
-    threads: &OracleThreads,
-) -> Result<Vec<Timing>> {
-    let begun = Instant::now();
-    let mut runs = vec![gpu.draw(frame)?];
-    if begun.elapsed() < LONG {
-        let _pause = threads.pause();
+impl Timed<'_> {
+    /// Times of the median of some draws. Exact light is computed only while the passes compile: a software driver draws
+    /// on the same cores.
+    fn of(&self, gpu: &Headless, frame: &mut ridgelight::gpu::Frame) -> Result<Vec<Timing>> {
         let begun = Instant::now();
-        runs = vec![gpu.draw(frame)?];
-        while runs.len() < DRAWS && begun.elapsed() < TIMING {
+        let mut runs = Vec::new();
+        if !self.is_compiled {
             runs.push(gpu.draw(frame)?);
         }
-    }
-    runs.sort_by(|a, b| total_ns(a).total_cmp(&total_ns(b)));
-    let middle = runs.swap_remove(runs.len() / 2);
-    match total_ns(&middle) > 0.0 {
-        true => Ok(middle),
-        false => Err(setup::no_timestamps()),
+        if self.is_compiled || begun.elapsed() < LONG {
+            let _pause = self.threads.pause();
+            let begun = Instant::now();
+            runs = vec![gpu.draw(frame)?];
+            while runs.len() < DRAWS && begun.elapsed() < TIMING {
+                runs.push(gpu.draw(frame)?);
+            }
+        }
+        runs.sort_by(|a, b| total_ns(a).total_cmp(&total_ns(b)));
+        let middle = runs.swap_remove(runs.len() / 2);
+        match total_ns(&middle) > 0.0 {
+            true => Ok(middle),
+            false => Err(setup::no_timestamps()),
+        }
     }
 }
 
