@@ -229,9 +229,13 @@ impl<'a> Site<'a> {
 
     /// Light of a uniform sky of radiance 1: see [`sky_of`].
     pub fn sky(&self, azimuths: usize) -> Vec<f64> {
+        self.sky_by(azimuths, &self.phong_integrals())
+    }
+
+    /// The same with the receivers' [`phong_integrals`](Self::phong_integrals).
+    pub(crate) fn sky_by(&self, azimuths: usize, integrals: &[Option<PhongIntegral>]) -> Vec<f64> {
         let m = azimuths.max(1);
         let all = (0..m).map(|k| (TAU * k as f64 / m as f64, 1.0, [-FRAC_PI_2, FRAC_PI_2]));
-        let integrals = self.phong_integrals();
         let sums = self.sums_by(all, |i, slice, elevations| match &integrals[i] {
             Some(integral) => integral.light(slice, elevations),
             None => slice.light(elevations[0], elevations[1]),

@@ -3,6 +3,7 @@
 use crate::Rgb;
 use crate::light::{self, ENVIRONMENT_STRIPS, Receiver, Site};
 use crate::oracle::Oracle;
+use crate::phong_integral::PhongIntegral;
 use crate::sphere::strips_of;
 use glam::DVec3;
 use ridgelight::scene::{Environment, KeyLight, NearLight, Scene, Specular};
@@ -24,6 +25,8 @@ pub struct Lit<'a> {
     eye_m: Option<DVec3>,
     oracle: Oracle<'a>,
     columns: Option<Columns<'a>>,
+    /// The table of the Phong lobe, where all grid points have the same.
+    phong: Option<PhongIntegral>,
     azimuths: usize,
     strips: usize,
 }
@@ -34,7 +37,11 @@ impl<'a> Lit<'a> {
         let oracle = Oracle::new(&scene.field, scene.surface.border);
         let rows = |e: &Environment| e.rows_above_ground(scene.surface.border);
         let columns = scene.lights.environment.as_ref().map(|e| Columns::of(e, rows(e)));
-        Self { scene, eye_m: None, oracle, columns, azimuths: AZIMUTHS, strips: STRIPS }
+        let phong = match &scene.surface.specular {
+            Some(Specular::Constant(phong)) => Some(PhongIntegral::of(phong.exponent.into())),
+            Some(Specular::Map(_)) | None => None,
+        };
+        Self { scene, eye_m: None, oracle, columns, phong, azimuths: AZIMUTHS, strips: STRIPS }
     }
 
     /// Specular viewed from [`Picture::eye_m`](ridgelight::plan::Picture::eye_m).
@@ -109,11 +116,14 @@ impl<'a> Lit<'a> {
         let coloured = |shares: Vec<f64>, colour: [f32; 3]| {
             shares.into_iter().map(|share| colour.map(|c| f64::from(c) * share)).collect()
         };
-        if let Some(colour) = lights.sky {
-            add(coloured(site.sky(self.azimuths), colour));
-        }
-        if let Some(columns) = &self.columns {
-            add(columns.light(site));
+        if lights.sky.is_some() || self.columns.is_some() {
+            let integrals = self.phong_integrals(site);
+            if let Some(colour) = lights.sky {
+                add(coloured(site.sky_by(self.azimuths, &integrals), colour));
+            }
+            if let Some(columns) = &self.columns {
+                add(columns.light(site, &integrals));
+            }
         }
         lights.suns.iter().for_each(|sun| add(site.sun(sun, self.strips)));
         for key in &lights.keys {
@@ -124,6 +134,13 @@ impl<'a> Lit<'a> {
             add(coloured(site.sphere(&sphere, strips), sphere.radiance));
         }
         all
+    }
+
+    /// [`Site::phong_integrals`], with a shared table where there is one.
+    fn phong_integrals(&self, site: Site<'_>) -> Vec<Option<PhongIntegral>> {
+        let Some(phong) = &self.phong else { return site.phong_integrals() };
+        let of = |receiver: &Receiver| receiver.phong_lobe.map(|_| phong.clone());
+        site.receivers.iter().map(of).collect()
     }
 
     /// The direction from a grid point towards the eye.
@@ -204,11 +221,12 @@ impl<'a> Columns<'a> {
 
     /// Light of each receiver at a grid point, linear RGB: in each column's azimuths at the centres of equal parts of
     /// it, clipped at the horizon exactly. A lobe has its own weight in each texel.
-    fn light(&self, site: Site<'_>) -> Vec<Rgb> {
+    fn light(&self, site: Site<'_>, integrals: &[Option<PhongIntegral>]) -> Vec<Rgb> {
         let (width, height) = (self.environment.width(), self.environment.height());
         let [row, col] = site.place;
-        let integrals = site.phong_integrals();
-        let elevation = |row: usize| FRAC_PI_2 - PI * row as f64 / height as f64;
+        // Upper ends of the rows, and the lower end of the last.
+        let elevations: Vec<f64> =
+            (0..=self.rows).map(|row| FRAC_PI_2 - PI * row as f64 / height as f64).collect();
         let row_of = |elevation: f64| (FRAC_PI_2 - elevation) / PI * height as f64;
         let ColumnTable { sums, texels } = &*self.table;
         let mut all = vec![[0.0; 3]; site.receivers.len()];
@@ -219,7 +237,7 @@ impl<'a> Columns<'a> {
                 let across = column as f64 + (part as f64 + 0.5) / parts as f64;
                 let azimuth = PI - TAU * across / width as f64 + self.environment.rotation_rad();
                 let horizon = site.oracle.elevation_rad(row, col, azimuth);
-                let receivers = site.receivers.iter().zip(&integrals);
+                let receivers = site.receivers.iter().zip(integrals);
                 for ((receiver, integral), all) in receivers.zip(&mut all) {
                     let lit = receiver.slice(azimuth).above(horizon);
                     let mut add = |light: f64, texel: [f32; 3]| {
@@ -231,9 +249,9 @@ impl<'a> Columns<'a> {
                         let first = row_of(high).max(0.0) as usize;
                         let end =
                             (row_of(low.max(lit.low)).max(0.0).ceil() as usize).min(self.rows);
-                        let mut above = arc.up_to(elevation(first).max(lit.low));
+                        let mut above = arc.up_to(elevations[first.min(self.rows)].max(lit.low));
                         for (row, texel) in texels.iter().enumerate().take(end).skip(first) {
-                            let below = arc.up_to(elevation(row + 1).max(lit.low));
+                            let below = arc.up_to(elevations[row + 1].max(lit.low));
                             add(above - below, *texel);
                             above = below;
                         }
@@ -244,7 +262,7 @@ impl<'a> Columns<'a> {
                     add(lit.a, a);
                     add(lit.b, b);
                     if above < self.rows {
-                        let cut = lit.light(lit.low, elevation(above));
+                        let cut = lit.light(lit.low, elevations[above]);
                         add(cut, texels[above]);
                     }
                 }

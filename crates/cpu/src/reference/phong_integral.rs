@@ -5,6 +5,7 @@
 //! where Gauss' rule ([`Slice::light`]) evaluates powers at each of some hundred points.
 
 use crate::light::{LOBE, Slice};
+use std::sync::Arc;
 
 /// Steps of the table per width of the lobe, 1/√(n + 1).
 ///
@@ -13,7 +14,7 @@ use crate::light::{LOBE, Slice};
 /// reaches 0 at the rim with a power below 2: for a horizon in the last step the error is 1e-3.
 const STEPS: f64 = 32.0;
 
-/// The table of an exponent.
+/// The table of an exponent. Clones share it.
 #[derive(Clone, Debug)]
 pub(crate) struct PhongIntegral {
     exponent: f64,
@@ -22,7 +23,7 @@ pub(crate) struct PhongIntegral {
     end_rad: f64,
     step_rad: f64,
     /// At equal steps from -`end_rad` to `end_rad`: ∫cosⁿ⁺¹ from the first, cosⁿ⁺¹ and its slope.
-    nodes: Vec<[f64; 3]>,
+    nodes: Arc<[[f64; 3]]>,
 }
 
 impl PhongIntegral {
@@ -44,7 +45,7 @@ impl PhongIntegral {
             });
             nodes.push([integral, value, slope]);
         }
-        Self { exponent, least, end_rad, step_rad, nodes }
+        Self { exponent, least, end_rad, step_rad, nodes: nodes.into() }
     }
 
     /// The lobe in the azimuth of a slice, which must have this exponent.
