@@ -333,7 +333,7 @@ fn overlapped(gpu: &Headless, frame: &mut Frame, most: usize) -> Result<(usize, 
 }
 
 /// The passes that a frame of new heights needs. The tables of the other passes depend on lights and settings alone.
-fn after_new_heights(plan: &Plan) -> Vec<usize> {
+pub fn after_new_heights(plan: &Plan) -> Vec<usize> {
     let heights = plan.find("heights");
     plan.passes_after(plan, &heights.into_iter().collect::<Vec<_>>())
 }
