@@ -1,6 +1,6 @@
 //! The fastest settings within an error, or the most accurate within a time.
 //!
-//! Pure except for the oracle on the CPU. The caller renders and traces bounced light, [`Probes`]
+//! Pure except for the oracle, which computes on threads of its own. The caller renders and traces bounced light, [`Probes`]
 //! measure errors, [`Chooser`] selects what to render next; [`choose`] combines all three.
 //! [`Statistics`] of the scene give a first guess of each part of the error ([`Model`]); every
 //! measured frame corrects it, and the costs.
