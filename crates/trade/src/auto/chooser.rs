@@ -331,9 +331,9 @@ mod tests {
     use crate::trade::start;
     use ridgelight::scene::{HeightField, Lights, Method, Surface};
 
-    /// The model expects 0.9 % of brute force in 1024 azimuths and 1.7 % in 512. The frame of 1024 has no error above the
-    /// noise, and of at most 0.6 %: 512 have at most 1.1 %, so they are rendered for a goal of 2 %, which leaves 1.3 % to
-    /// estimates. With a bound of 0.9 % they are not.
+    /// The model expects an error of 0.9 % in 1024 azimuths and of 1.7 % in 512. The frame of 1024 has no error above the
+    /// noise and a bound of 0.6 %, so 512 are expected to have 1.1 %. They are rendered for a goal of 2 %, of which doubt
+    /// leaves 1.3 %. With a bound of 0.9 % they are not.
     #[test]
     fn a_bound_far_below_the_goal_steps_back() {
         let heights: Vec<f64> = (0..144).map(|i| f64::from(i * i % 11)).collect();
