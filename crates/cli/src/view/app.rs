@@ -80,6 +80,8 @@ struct OpenWindow {
     lit: Option<Frame>,
     /// Whether the light must be recomputed.
     is_stale: bool,
+    /// Whether all heights are new and nothing else is.
+    has_moved: bool,
     /// The last light that could be drawn.
     good: Option<Light>,
     /// Whether that light is being recomputed after a refusal.
@@ -117,6 +119,7 @@ impl<'a> App<'a> {
         let shown = OpenWindow {
             lit: None,
             is_stale: true,
+            has_moved: false,
             good: None,
             has_fallen_back: false,
             gui,

@@ -7,7 +7,7 @@ use super::{Display, Folder, LIT, assert_same, silent};
 
 /// Vulkan result codes.
 const OUT_OF_HOST_MEMORY: i32 = -1;
-const OUT_OF_DEVICE_MEMORY: i32 = -2;
+pub(super) const OUT_OF_DEVICE_MEMORY: i32 = -2;
 const SURFACE_LOST: i32 = -1_000_000_000;
 const OUT_OF_DATE: i32 = -1_000_001_004;
 /// As many calls as there are.
@@ -38,10 +38,10 @@ fn layer(folder: &Folder) -> PathBuf {
 }
 
 /// A fault: a function, the number of the first call that fails, how many do, and the result.
-type Fault = (&'static str, u32, u32, i32);
+pub(super) type Fault = (&'static str, u32, u32, i32);
 
 /// Adds a fault to a window's command.
-fn beset(folder: &Folder, command: &mut Command, (name, first, count, result): Fault) {
+pub(super) fn beset(folder: &Folder, command: &mut Command, (name, first, count, result): Fault) {
     let layers = folder.0.path().join("layers");
     let layers = if layers.exists() { layers } else { layer(folder) };
     // Without a layer below ours, loaders lead its calls back to it.

@@ -4,6 +4,7 @@
 
 mod hands;
 mod lost;
+mod moving;
 
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};

@@ -10,7 +10,7 @@ use ridgelight::{Error, Result};
 use ridgelight_viewer::Screen;
 
 use super::super::state::State;
-use super::drawing::replan;
+use super::drawing::{after_new_heights, replan};
 use crate::render;
 
 /// Paths restart when nothing has changed for so long.
@@ -32,6 +32,8 @@ pub(super) const MOST_PATHS: u32 = MOST_BATCHES * REFERENCE_BATCH;
 pub struct Compare {
     off: Option<Frame>,
     is_off_stale: bool,
+    /// Whether its light or settings have changed since it was drawn, too.
+    has_new_light: bool,
     path_traced: Option<PathTraced>,
     is_reference_stale: bool,
     /// When the scene changed last.
@@ -57,6 +59,7 @@ impl Compare {
         Self {
             off: None,
             is_off_stale: true,
+            has_new_light: true,
             path_traced: None,
             is_reference_stale: true,
             changed: Instant::now(),
@@ -64,9 +67,10 @@ impl Compare {
         }
     }
 
-    /// After a change of light or field.
-    pub fn scene_changed(&mut self) {
+    /// After a change of the field, or of light or settings too.
+    pub fn scene_changed(&mut self, has_new_light: bool) {
         (self.is_off_stale, self.is_reference_stale) = (true, true);
+        self.has_new_light |= has_new_light;
         self.changed = Instant::now();
         self.error = None;
     }
@@ -74,7 +78,8 @@ impl Compare {
     /// Makes the frames to show.
     pub fn prepare(&mut self, screen: &mut Screen, state: &State, limits: &Limits) -> Result<()> {
         if self.is_off_stale {
-            replan(screen, &mut self.off, state.plan_off(limits)?, &state.scene)?;
+            let is_other = replan(screen, &mut self.off, state.plan_off(limits)?, &state.scene)?;
+            self.has_new_light |= is_other;
         }
         if self.is_reference_stale && !state.is_moving() && self.changed.elapsed() > REST {
             if let Some(old) = self.path_traced.take() {
@@ -97,10 +102,14 @@ impl Compare {
 
     /// The frames, without shadows and the reference, and the passes that they run next.
     pub fn frames(&mut self) -> [Option<(&mut Frame, Vec<usize>)>; 2] {
-        let is_off_stale = self.is_off_stale;
+        let (is_off_stale, has_new_light) = (self.is_off_stale, self.has_new_light);
         let off = self.off.as_mut().map(|frame| {
-            let count = if is_off_stale { frame.plan().passes.len() } else { 0 };
-            (frame, (0..count).collect())
+            let passes = match is_off_stale {
+                false => Vec::new(),
+                true if has_new_light => (0..frame.plan().passes.len()).collect(),
+                true => after_new_heights(frame),
+            };
+            (frame, passes)
         });
         let path_traced = self.path_traced.as_mut().map(|path_traced| {
             let passes = (path_traced.next..path_traced.end()).collect();
@@ -111,7 +120,7 @@ impl Compare {
 
     /// [`frames`](Self::frames) has been recorded; takes times of earlier path passes.
     pub fn drawn(&mut self, times: &[Timing]) {
-        self.is_off_stale = false;
+        (self.is_off_stale, self.has_new_light) = (false, false);
         let Some(path_traced) = &mut self.path_traced else { return };
         let end = path_traced.end();
         if end == path_traced.frame.plan().passes.len() {

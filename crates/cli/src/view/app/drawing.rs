@@ -154,16 +154,15 @@ impl App<'_> {
         self.state.step(!uses_preview)?;
         let mut edited = self.state.take_edited();
         if uses_preview {
-            let relights = shown.is_stale || moves;
-            if relights || edited.is_some() {
-                let OpenWindow { screen, preview, limits, .. } = shown;
-                let change = (edited.take(), relights);
+            if shown.is_stale || moves || edited.is_some() {
+                let OpenWindow { screen, preview, limits, is_stale, .. } = shown;
+                let change = (edited.take(), *is_stale);
                 if let Err(why) = preview.restart(screen, &self.state, limits, change) {
                     return self.fall_back(why).map(|()| None);
                 }
                 // The full light of later settings may be refused before any has been complete.
                 shown.good.get_or_insert_with(|| self.state.light());
-                shown.is_stale = false;
+                (shown.is_stale, shown.has_moved) = (false, false);
             }
         } else {
             shown.is_stale |= shown.preview.leave();
@@ -173,8 +172,9 @@ impl App<'_> {
             if let Err(why) = shown.light(&self.state) {
                 return self.fall_back(why).map(|()| None);
             }
-            shown.is_stale |= moves;
-            shown.compare.iter_mut().for_each(Compare::scene_changed);
+            shown.has_moved |= moves;
+            let has_new_light = shown.is_stale;
+            shown.compare.iter_mut().for_each(|compare| compare.scene_changed(has_new_light));
         }
         if self.state.needs_exposure
             && let Err(why) = shown.expose(&mut self.state, edited.is_some())
@@ -263,6 +263,13 @@ pub(super) fn whole(field: &HeightField) -> Rectangle {
     Rectangle { col: 0, row: 0, cols: field.cols() as u32, rows: field.rows() as u32 }
 }
 
+/// The passes that a frame of new heights needs where lights and settings are those of the last one, or all passes where
+/// that was not recorded or did not run.
+pub(super) fn after_new_heights(lit: &mut Frame) -> Vec<usize> {
+    let heights = lit.plan().find("heights");
+    lit.renderer().passes_after(heights.as_slice())
+}
+
 fn has_colour(plan: &Plan) -> bool {
     let radiance = plan.find("radiance").map(|id| plan.resources[id.0].kind);
     matches!(radiance, Some(Kind::Image { format: Format::Rgba32Float, .. }))
@@ -335,7 +342,7 @@ impl OpenWindow {
         }
         let Some(lit) = lit else { return Ok(()) };
         let field = &state.scene.field;
-        if self.is_stale || is_edited {
+        if self.is_stale || self.has_moved || is_edited {
             let all: Vec<usize> = (0..lit.plan().passes.len()).collect();
             let heights = Some((field.heights_m(), whole(field)));
             let slot = screen.light(lit, heights, (Work::Passes(&all), &[]))?;
@@ -347,6 +354,7 @@ impl OpenWindow {
         let picture = render::rgb(&screen.gpu().pixels(lit, 0)?);
         let voids = field.voids().map(<[bool]>::to_vec);
         state.expose(&picture, voids.as_deref(), false);
+        self.has_moved = false;
         if std::mem::take(&mut self.is_stale) {
             self.has_complete(state);
         }
@@ -420,15 +428,17 @@ impl OpenWindow {
         // If only one picture fits, it is the main one.
         let mut compare = self.compare.as_mut().filter(|_| lefts.len() > 1);
         let all_of_it = whole(field);
-        let has_edits = !self.is_stale && !lit.plan().edit_passes.is_empty();
+        let is_all_new = self.is_stale || self.has_moved;
+        let has_edits = !is_all_new && !lit.plan().edit_passes.is_empty();
         let edit = edited.filter(|_| has_edits);
-        let all: Vec<usize> = (0..lit.plan().passes.len()).collect();
-        let work = match edit {
-            Some(at) => Work::Edit(at),
-            None if !is_preview && (self.is_stale || edited.is_some()) => Work::Passes(&all),
-            None => Work::Passes(&[]),
+        let passes = match self.is_stale {
+            _ if is_preview => Vec::new(),
+            true => (0..lit.plan().passes.len()).collect(),
+            false if is_all_new || edited.is_some() => after_new_heights(lit),
+            false => Vec::new(),
         };
-        let new = if self.is_stale { Some(all_of_it) } else { edited }.filter(|_| !is_preview);
+        let work = edit.map_or(Work::Passes(&passes), Work::Edit);
+        let new = if is_all_new { Some(all_of_it) } else { edited }.filter(|_| !is_preview);
         let heights = new.map(|at| (field.heights_m(), at));
 
         // From left to right: each with its heights and its passes.
@@ -472,8 +482,11 @@ impl OpenWindow {
         if state.is_moving() {
             self.has_fallen_back = false;
         }
-        if !is_preview && std::mem::take(&mut self.is_stale) {
-            self.has_complete(state);
+        if !is_preview {
+            self.has_moved = false;
+            if std::mem::take(&mut self.is_stale) {
+                self.has_complete(state);
+            }
         }
         Ok(Some(done))
     }

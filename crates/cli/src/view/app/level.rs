@@ -9,7 +9,7 @@ use ridgelight_viewer::Screen;
 use super::super::moving::Moving;
 use super::super::smaller::Blocks;
 use super::super::state::State;
-use super::drawing::{refilled, replan, whole};
+use super::drawing::{after_new_heights, refilled, replan, whole};
 
 /// Azimuths of a preview's sky. On a smooth field 8 change its light by 0.1 to 0.3 %, a coarser grid by some percent.
 const AZIMUTHS: u32 = 8;
@@ -56,6 +56,10 @@ pub struct Level {
     normals: Vec<f32>,
     are_normals_new: bool,
     are_heights_new: bool,
+    /// Whether the device's light is of other lights or settings.
+    is_light_new: bool,
+    /// Whether the last run had all passes.
+    pub ran_all: bool,
     /// The field without movement, in movement.
     moving: Option<Moving>,
     /// How often it was lit. The time of the first run is not measured, as it does not predict later ones.
@@ -72,13 +76,20 @@ impl Level {
             normals,
             are_normals_new: true,
             are_heights_new: true,
+            is_light_new: true,
+            ran_all: true,
             moving: None,
             runs: 0,
         }
     }
 
     /// Takes the state's lights and heights.
-    pub fn take(&mut self, state: &State, edited: Option<Rectangle>) -> Result<()> {
+    pub fn take(
+        &mut self,
+        state: &State,
+        (edited, has_new_light): (Option<Rectangle>, bool),
+    ) -> Result<()> {
+        self.is_light_new |= has_new_light;
         self.blocks.take_lights(&state.scene, &mut self.scene);
         self.are_heights_new |= state.is_moving() || self.moving.is_some() || edited.is_some();
         match (state.moving(), &mut self.moving) {
@@ -120,15 +131,21 @@ impl Level {
         self.are_normals_new = true;
     }
 
-    /// Runs all passes. The slot holds their times.
+    /// Runs all passes, or those that new heights alone need. The slot holds their times.
     pub fn run(&mut self, screen: &mut Screen, borrowed: &[ImageArg]) -> Result<usize> {
         self.runs += 1;
         let lit = self.lit.as_mut().expect("planned");
-        let all: Vec<usize> = (0..lit.plan().passes.len()).collect();
+        let count = lit.plan().passes.len();
+        // Slopes show light that is new each time.
+        let has_new_heights_alone =
+            self.are_heights_new && !self.is_light_new && borrowed.is_empty();
+        let passes =
+            if has_new_heights_alone { after_new_heights(lit) } else { (0..count).collect() };
         let field = &self.scene.field;
         let heights = self.are_heights_new.then(|| (field.heights_m(), whole(field)));
-        let slot = screen.light(lit, heights, (Work::Passes(&all), borrowed))?;
-        self.are_heights_new = false;
+        let slot = screen.light(lit, heights, (Work::Passes(&passes), borrowed))?;
+        self.ran_all = passes.len() == count;
+        (self.are_heights_new, self.is_light_new) = (false, false);
         Ok(slot)
     }
 
@@ -136,7 +153,8 @@ impl Level {
     fn plan_light(&mut self, screen: &mut Screen, state: &State, limits: &Limits) -> Result<()> {
         let wanted = Picture { light_layers: true, ..Picture::default() };
         let plan = plan::picture(&self.scene, &coarser(&state.quality), limits, wanted)?;
-        replan(screen, &mut self.lit, plan, &self.scene).map(|_| ())
+        self.is_light_new |= replan(screen, &mut self.lit, plan, &self.scene)?;
+        Ok(())
     }
 
     /// The image of the plan's input or output of a name.

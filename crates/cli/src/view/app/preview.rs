@@ -209,14 +209,14 @@ impl Preview {
         screen: &mut Screen,
         state: &State,
         limits: &Limits,
-        (edited, relights): (Option<Rectangle>, bool),
+        (edited, has_new_light): (Option<Rectangle>, bool),
     ) -> Result<()> {
         self.read_times(state, &mut None);
         self.edited = match (edited, self.edited) {
             (Some(a), Some(b)) => Some(together(a, b)),
             (a, b) => a.or(b),
         };
-        self.is_full_stale |= relights;
+        self.is_full_stale |= has_new_light || state.is_moving();
         self.times.clear();
         self.lacks_times = false;
         if edited.is_some() || state.is_moving() {
@@ -227,7 +227,7 @@ impl Preview {
         let missed = self.missed.take();
         let edited = edited.zip(missed).map(|(a, b)| together(a, b)).or(edited).or(missed);
         let levels = self.levels.as_mut().expect("made by fit");
-        levels.iter_mut().try_for_each(|level| level.take(state, edited))?;
+        levels.iter_mut().try_for_each(|level| level.take(state, (edited, has_new_light)))?;
         self.running = Some(Running::Preview(run_levels(levels, screen, state, limits)?));
         self.is_shown = true;
         self.next = if state.is_moving() { Next::Nothing } else { Next::Begin };
@@ -410,7 +410,9 @@ impl Preview {
                     let times = level.lit.as_mut().and_then(|lit| lit.renderer().timings(slot));
                     let Some(times) = times else { continue };
                     let work = grid_work(&state.scene, &state.quality, level.of, level.blocks.side);
-                    learn(&mut self.rates.grids[level.of], work, &times, FIXED_MS[level.of]);
+                    // Without tables, all counts as growing with the grid.
+                    let fixed_ms = if level.ran_all { FIXED_MS[level.of] } else { 0.0 };
+                    learn(&mut self.rates.grids[level.of], work, &times, fixed_ms);
                     all.extend(times);
                 }
                 if !all.is_empty() {
