@@ -1,8 +1,8 @@
 //! Light of a height field in a wgpu texture, read by a wgpu pass. `wgpu_light OUT.exr [FRAMES]` writes what the pass has read in
 //! the last frame. `hosts/ridgelight-wgpu/check` runs it.
 
-use ridgelight::plan::{self, Picture, Rectangle};
-use ridgelight::scene::{Quality, Scene};
+use ridgelight::plan::{self, Picture, Plan, Rectangle};
+use ridgelight::scene::{Environment, Quality, Scene};
 use ridgelight_io as files;
 use ridgelight_io::{Channels, Layer};
 use ridgelight_wgpu::{Renderer, limits, texture};
@@ -127,6 +127,92 @@ fn edit(device: &wgpu::Device, queue: &wgpu::Queue, scene: &Scene) -> Any<()> {
     Ok(())
 }
 
+/// Writes all texels of a texture.
+fn write(queue: &wgpu::Queue, texture: &wgpu::Texture, values: &[f32]) {
+    let bytes: Vec<u8> = values.iter().flat_map(|v| v.to_ne_bytes()).collect();
+    let row = bytes.len() as u32 / texture.height();
+    let layout =
+        wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row), rows_per_image: None };
+    queue.write_texture(texture.as_image_copy(), &bytes, layout, texture.size());
+}
+
+/// An environment with other light for another `seed`.
+fn environment(seed: usize) -> ridgelight::Result<Environment> {
+    let texels = (0..32 * 16).map(|i| [((i * 7 + seed) % 5) as f32, 1.0, ((i + seed) % 3) as f32]);
+    Environment::new(32, 16, texels.collect(), 0.0)
+}
+
+/// Frames of new heights compute no tables of an environment. Every frame has the light of a new renderer: also where a sun moves
+/// in it, where the environment changes, and after a refused submission.
+fn new_heights(device: &wgpu::Device, queue: &wgpu::Queue) -> Any<()> {
+    let mut scene = host_scene::scene()?;
+    scene.lights.environment = Some(environment(0)?);
+    let planned = |scene: &Scene| -> Any<Plan> {
+        let quality = Quality { azimuths: 16, ..Quality::default() };
+        Ok(plan::picture(scene, &quality, &limits(device)?, Picture::default())?)
+    };
+    let plan = planned(&scene)?;
+    let sampled = wgpu::TextureUsages::TEXTURE_BINDING;
+    let made = |resource| texture(device, queue, resource, sampled);
+    let inputs: Vec<_> =
+        plan.inputs().map(|(_, input)| made(input)).collect::<ridgelight::Result<_>>()?;
+    let [heights, sky] = &inputs[..] else { return Err("two inputs were expected".into()) };
+    let output = plan.outputs().next().ok_or("no output")?.1;
+    let [light, fresh] = [made(output)?, made(output)?];
+    let readers = [&light, &fresh].map(|light| Reader::new(device, light));
+    let read = |reader: &Reader| -> Any<Vec<f32>> {
+        queue.submit([reader.record(device)]);
+        let values = reader.values(device)?;
+        reader.mapped.unmap();
+        Ok(values)
+    };
+    let write_sky = |environment: &Environment| {
+        let texels = environment.texels().iter().flat_map(|[r, g, b]| [*r, *g, *b, 1.0]);
+        write(queue, sky, &texels.collect::<Vec<f32>>());
+    };
+    write_sky(&environment(0)?);
+    let still = scene.field.heights_m().to_vec();
+    let mut renderer = Renderer::new(device, queue, plan)?;
+    let (mut counts, mut last) = (Vec::new(), Vec::new());
+    for n in 0..7 {
+        let mut changed = vec!["heights"];
+        if n == 2 {
+            let sun = &mut scene.lights.suns[0];
+            (sun.azimuth_rad, sun.irradiance) = (0.05, [1.0, 2.0, 3.0]);
+            renderer.set_plan(planned(&scene)?)?;
+        }
+        if n == 4 {
+            let other = environment(1)?;
+            write_sky(&other);
+            scene.lights.environment = Some(other);
+            renderer.set_plan(planned(&scene)?)?;
+            changed.push("environment");
+        }
+        if n == 6 && renderer.submit(&[&light, sky], &[heights]).is_ok() {
+            return Err("swapped textures were accepted".into());
+        }
+        let moved = |(i, height): (usize, &f32)| height + (i * n % 5) as f32;
+        let moved: Vec<f32> = still.iter().enumerate().map(moved).collect();
+        write(queue, heights, &moved);
+        let changed = changed.iter().filter_map(|name| renderer.plan().find(name));
+        let passes = renderer.passes_after(&changed.collect::<Vec<_>>());
+        renderer.submit_passes(&[heights, sky], &[&light], &passes)?;
+        let found = read(&readers[0])?;
+        let mut new = Renderer::new(device, queue, planned(&scene)?)?;
+        new.submit(&[heights, sky], &[&fresh])?;
+        if found != read(&readers[1])? || found == last {
+            return Err(format!("frame {n} of new heights has other light than a new one").into());
+        }
+        counts.push(passes.len());
+        last = found;
+    }
+    let all = renderer.plan().passes.len();
+    if counts[0] != all || [1, 3, 5, 6].iter().any(|n| counts[*n] >= all) {
+        return Err(format!("{counts:?} of {all} passes ran in frames of new heights").into());
+    }
+    Ok(())
+}
+
 /// A texture of another device is refused, and the next submission runs.
 fn refuse(
     adapter: &wgpu::Adapter,
@@ -185,6 +271,7 @@ fn main() -> Any<()> {
     }
 
     edit(&device, &queue, &scene)?;
+    new_heights(&device, &queue)?;
 
     let reader = Reader::new(&device, &light);
     let mut values = Vec::new();

@@ -5,7 +5,7 @@ use std::task::{Context, Poll, Waker};
 
 use ash::vk;
 use ridgelight::gpu::{self, Host, ImageArg, ImageState, Timing};
-use ridgelight::plan::{Format, Kind, Limits, Owner, Plan, Rectangle, Resource};
+use ridgelight::plan::{Format, Kind, Limits, Owner, Plan, Rectangle, Resource, ResourceId};
 use ridgelight::{Error, Result};
 use wgpu::hal::api::Vulkan;
 
@@ -220,6 +220,12 @@ impl Renderer {
         Ok(all)
     }
 
+    /// The passes to submit next with [`submit_passes`](Self::submit_passes), if only the inputs `changed` have new texels since the last
+    /// submission, and the textures are the same: [`gpu::Renderer::passes_after`]. All passes after a submission that failed.
+    pub fn passes_after(&self, changed: &[ResourceId]) -> Vec<usize> {
+        self.recorder.as_ref().expect("alive until dropped").passes_after(changed)
+    }
+
     /// Submits the whole plan. `inputs` and `outputs` are the plan's, in its order.
     ///
     /// # Errors
@@ -233,7 +239,7 @@ impl Renderer {
         self.submit_passes(inputs, outputs, &all)
     }
 
-    /// Submits only some passes: those that [`set_plan`](Self::set_plan) returned, say.
+    /// Submits only some passes: those that [`set_plan`](Self::set_plan) or [`passes_after`](Self::passes_after) returned, say.
     ///
     /// # Errors
     /// As [`submit`](Self::submit), and those of [`gpu::Renderer::record_passes`].
