@@ -141,6 +141,16 @@ struct FieldRenderer {
     submissions: Submissions,
 }
 
+/// What to submit.
+#[derive(Clone, Copy)]
+enum Work<'a> {
+    All,
+    /// What new heights need, and what a new plan needs that has not been submitted yet. Tables of the sky of directions are left out.
+    Heights,
+    /// Passes of a new plan, over the same heights.
+    Light(&'a [usize]),
+}
+
 /// What the light of a field depends on, besides events.
 #[derive(Clone, PartialEq)]
 struct State {
@@ -322,26 +332,30 @@ impl FieldRenderer {
         let (horizons, environment) = (horizons.transpose()?, environment.transpose()?);
         let submissions = submissions.clone();
         let mut lit = Self { renderer, horizons, total, environment, submissions };
-        lit.submit(images, None)?;
+        lit.submit(images, Work::All)?;
         Ok(lit)
     }
 
-    /// Submits all passes, or some of the light's.
-    fn submit(&mut self, images: &Images, passes: Option<&[usize]>) -> ridgelight::Result<()> {
+    /// Submits passes of the light, and those of the horizons unless the heights are the same.
+    fn submit(&mut self, images: &Images, work: Work<'_>) -> ridgelight::Result<()> {
         let (inputs, outputs) = (self.inputs(images), self.outputs(images));
-        match passes {
-            Some([]) => {}
-            Some(passes) => {
-                self.submissions.count(PASSES);
-                self.renderer.submit_passes(&refs(&inputs), &refs(&outputs), passes)?;
+        let all = self.renderer.plan().passes.len();
+        let passes = match work {
+            Work::All => (0..all).collect(),
+            Work::Heights => {
+                let heights = self.renderer.plan().find("heights");
+                self.renderer.passes_after(heights.as_slice())
             }
-            None => {
-                self.submissions.count(WHOLE);
-                self.renderer.submit(&refs(&inputs), &refs(&outputs))?;
-                if let (Some(renderer), Some(angles)) = (&mut self.horizons, &images.horizons) {
-                    renderer.submit(&[&images.heights], &[angles])?;
-                }
-            }
+            Work::Light(passes) => passes.to_vec(),
+        };
+        if !passes.is_empty() {
+            self.submissions.count(if passes.len() == all { WHOLE } else { PASSES });
+            self.renderer.submit_passes(&refs(&inputs), &refs(&outputs), &passes)?;
+        }
+        if !matches!(work, Work::Light(_))
+            && let (Some(renderer), Some(angles)) = (&mut self.horizons, &images.horizons)
+        {
+            renderer.submit(&[&images.heights], &[angles])?;
         }
         Ok(())
     }
@@ -376,13 +390,19 @@ impl FieldRenderer {
             let plan = new.settings.plan(&limits(device)?, new.sun.unwrap_or(NOT_RISEN))?;
             passes = self.renderer.set_plan(plan)?;
         }
-        let is_other = new.images != old.images || new.revision != old.revision;
+        let with_old_heights = Images { heights: old.images.heights.clone(), ..new.images.clone() };
+        let has_other_light_images = with_old_heights != old.images;
+        let has_other_heights =
+            new.images.heights != old.images.heights || new.revision != old.revision;
         let takes_edits = !self.renderer.plan().edit_passes.is_empty() && self.horizons.is_none();
-        if is_modified || is_other || !edits.is_empty() && !takes_edits {
+        let is_all_new = is_modified || has_other_heights || !edits.is_empty() && !takes_edits;
+        if has_other_light_images || is_all_new {
             edits.iter().for_each(|edit| write_edit(queue, &new.images.heights, edit));
-            return self.submit(&new.images, None);
+            // Other images have no light yet.
+            let work = if has_other_light_images { Work::All } else { Work::Heights };
+            return self.submit(&new.images, work);
         }
-        self.submit(&new.images, Some(&passes))?;
+        self.submit(&new.images, Work::Light(&passes))?;
         let (inputs, outputs) = (self.inputs(&new.images), self.outputs(&new.images));
         // One after the other: an edit is of heights that differ in its rectangle alone.
         for edit in edits {

@@ -244,6 +244,46 @@ fn light_is_that_of_the_core() {
     end(&app);
 }
 
+/// Frames of new heights compute no tables of the sky of bent normals. They have the bits of a new field's first frame, also where
+/// the sun moves in the same frame, a little or far, and after that.
+#[test]
+fn new_heights_have_the_light_of_a_new_field() {
+    let mut app = app();
+    let with_bent = |field: &mut HeightField| field.bent_normal = true;
+    let (entity, light) = spawn(&mut app, &heights(), with_bent);
+    let sun = app.world_mut().spawn((DirectionalLight::default(), sun_at(140.0, 25.0))).id();
+    let image = app.world().get::<HeightField>(entity).unwrap().heights.clone();
+    let texels = |app: &mut App, light: &FieldLight| -> Vec<f32> {
+        let bent = light.bent_normal.as_ref().unwrap();
+        [&light.sun, &light.sky_view, bent].map(|image| floats(app, image)).concat()
+    };
+    let mut last = texels(&mut app, &light);
+    let submissions = app.world().resource::<Submissions>().clone();
+    for (n, azimuth) in [140.0, 141.0, 141.0, 300.0, 300.0].into_iter().enumerate() {
+        let [whole, passes, edits] = submissions.counts();
+        let raised: Vec<f32> = heights().iter().map(|h| h * (0.9 - 0.15 * n as f32)).collect();
+        *app.world_mut().get_mut::<Transform>(sun).unwrap() = sun_at(azimuth, 25.0);
+        {
+            let mut images = app.world_mut().resource_mut::<Assets<Image>>();
+            images.insert(&image, heights_image(SIZE, &raised)).expect("replaced");
+        }
+        let found = texels(&mut app, &light);
+        assert!(found != last, "{n}: the light of the frame before");
+        if n % 2 == 0 {
+            let after = submissions.counts();
+            assert!(after[1] > passes, "{n}: {after:?}");
+            assert_eq!([after[0], after[2]], [whole, edits], "{n}: only some passes");
+        }
+        let (other, fresh) = spawn(&mut app, &raised, with_bent);
+        let expected = texels(&mut app, &fresh);
+        assert!(submissions.counts()[0] > whole, "{n}: a new field has all passes");
+        same_bits(&found, &expected, &format!("heights {n}, sun at {azimuth}"));
+        app.world_mut().despawn(other);
+        last = found;
+    }
+    end(&app);
+}
+
 /// Without a sun, with one below the horizon, or with a NaN rotation, the sky view equals the core's. Until a visible sun rises, the
 /// sun image is that of a sun at the zenith. A brighter sun that has set does not hide a moon.
 #[test]
