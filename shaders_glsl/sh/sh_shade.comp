@@ -14,7 +14,7 @@ layout(constant_id = 1) const bool MARCHES_ROWS = false;
 layout(constant_id = 2) const int ORDER = 4;
 const uint RECEIVER_COSINE = 0u; // polynomials of N, bands 0 to 2 (band 1 at order 2)
 const uint RECEIVER_PLANE = 1u;  // N_y, N_z, N_x only
-const uint RECEIVER_SPECULAR = 2u;  // Y_lm of the mirror direction of the view from straight above
+const uint RECEIVER_SPECULAR = 2u;  // Y_lm of the mirror direction of the view
 layout(constant_id = 3) const uint RECEIVER = 1u;
 // Grid points from node to node: 1, 2 or 4.
 layout(constant_id = 4) const int NODE_STRIDE = 1;
@@ -35,6 +35,7 @@ layout(push_constant) uniform ShShadePush {
     int rows;
     float cell_x_m;
     float cell_y_m;
+    vec4 eye_m;     // specular: the eye, over the field's base; w: 0 for a view from straight above
     vec2 specular;  // exponent and scale, where they are constant
 };
 
@@ -46,6 +47,7 @@ vec4 harmonics[36];
 
 #include "shared/harmonics.glsl"
 #include "specular/phong_bands.glsl"
+#include "specular/mirror.glsl"
 
 // The nodes on both sides across the lanes of four grid points, at two march positions: their texels, and their
 // weights for each of the four.
@@ -187,7 +189,11 @@ void main() {
     vec4 x = -east * z;
     vec4 y = -north * z;
     if (RECEIVER == RECEIVER_SPECULAR) {
-        find_harmonics(2.0 * z * x, 2.0 * z * y, 2.0 * z * z - 1.0);
+        vec4 lane_at = vec4(q.lane);
+        vec4 column = MARCHES_ROWS ? lane_at : vec4(march);
+        vec4 row = MARCHES_ROWS ? vec4(march) : lane_at;
+        Mirrored mirror = mirrored(x, y, z, column * cell_x_m, (float(rows - 1) - row) * cell_y_m, q.here.four, eye_m);
+        find_harmonics(mirror.east, mirror.north, mirror.up);
         vec4 exponents = vec4(specular.x);
         vec4 scales = vec4(specular.y);
         for (int k = 0; k < 4 && SPECULAR_IS_MAP; k++) {

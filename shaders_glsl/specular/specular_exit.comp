@@ -1,6 +1,6 @@
-// Computes: exit radiance of every grid point from its incident light: the Phong specular straight upwards, and for
+// Computes: exit radiance of every grid point from its incident light: the Phong specular towards the view, and for
 // the next bounce specular plus diffuse light, as a series of spherical harmonics or as one number towards straight
-// above.
+// above. With one number the view is from straight above, too.
 // Reads: arriving, ground, exit_radiance (diffuse), specular_direct, phong_map, constants.
 // Reads and writes: specular_bounced (RGB, of all bounces so far).
 // Writes: exit_vectors or exit_upward.
@@ -42,6 +42,9 @@ layout(binding = 10, r32f) uniform writeonly image2D exit_upward_grey;
 layout(push_constant) uniform SpecularExitPush {
     int cols;
     int rows;
+    float cell_x_m;
+    float cell_y_m;
+    vec4 eye_m;       // over the field's base; w: 0 for a view from straight above
     uint begins;      // 1 for the first bounce
     int first_texel;  // in constants: x, y and z of four directions, then each one's Y_lm times its weight
     int fours;        // of directions
@@ -56,6 +59,7 @@ const int CHANNELS = GREY ? 1 : 3;
 vec4 harmonics[36];
 #include "shared/harmonics.glsl"
 #include "specular/phong_bands.glsl"
+#include "specular/mirror.glsl"
 
 // Incident light, smoothed by the Phong lobe and scaled.
 vec3 smoothed[36];
@@ -78,9 +82,11 @@ void find_smoothed(ivec2 at, vec2 specular) {
     }
 }
 
-vec3 mirrored(vec3 normal) {
-    vec3 mirror = 2.0 * normal.z * normal - vec3(0.0, 0.0, 1.0);
-    find_harmonics(vec4(mirror.x), vec4(mirror.y), vec4(mirror.z));
+// Smoothed light at the mirror direction of the view.
+vec3 reflected(ivec2 at, float height, vec3 normal) {
+    vec2 place = vec2(float(at.x) * cell_x_m, float(rows - 1 - at.y) * cell_y_m);
+    Mirrored mirror = mirrored(vec4(normal.x), vec4(normal.y), vec4(normal.z), vec4(place.x), vec4(place.y), vec4(height), eye_m);
+    find_harmonics(mirror.east, mirror.north, mirror.up);
     vec3 sum = vec3(0.0);
     for (int i = 0; i < COUNT; i++) {
         sum += harmonics[i].x * smoothed[i];
@@ -147,17 +153,17 @@ void main() {
     if (SPECULAR_IS_MAP) {
         specular = texelFetch(phong_map, at, 0).xy;
     }
-    vec3 upward = vec3(0.0);
+    vec3 visible = vec3(0.0);
     if (VECTORS || !IS_DIRECT) {
         find_smoothed(at, specular);
     }
     if (IS_DIRECT) {
-        upward = texelFetch(specular_direct, at, 0).rgb;
+        visible = texelFetch(specular_direct, at, 0).rgb;
     } else {
-        upward = mirrored(normal);
+        visible = reflected(at, own.x, normal);
         vec4 before = imageLoad(specular_bounced, at);
-        vec4 own_light = vec4(upward, 1.0);
-        vec4 both = vec4(before.rgb + upward, 1.0);
+        vec4 own_light = vec4(visible, 1.0);
+        vec4 both = vec4(before.rgb + visible, 1.0);
         imageStore(specular_bounced, at, begins > 0u ? own_light : both);
     }
     if (IS_BOUNCED) {
@@ -166,7 +172,7 @@ void main() {
         if (VECTORS) {
             store_vectors(at, normal, diffuse);
         } else {
-            vec4 all = vec4(diffuse + upward, 1.0);
+            vec4 all = vec4(diffuse + visible, 1.0);
             if (GREY) {
                 imageStore(exit_upward_grey, at, all);
             } else {

@@ -54,7 +54,7 @@ pub struct Picture {
     /// azimuths. Not with sphere lights or specular, whose sums contain the colours.
     pub colours_on_device: bool,
     /// Where specular is viewed from: x and y in metres from the south-western grid point, z a height of the field. `None` for
-    /// a view from straight above, which specular by harmonics or with bounces always has.
+    /// a view from straight above. Diffuse light does not depend on it.
     pub eye_m: Option<[f64; 3]>,
 }
 
@@ -153,13 +153,11 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     {
         return Err(Error::setting("picture: eye_m", format!("{eye:?}"), "numbers within ±1e15"));
     }
-    let is_upward = bounces > 0 || has_specular;
-    if wanted.eye_m.is_some() && active.specular.is_some() && is_upward {
-        notes.push("specular by harmonics or with bounces is viewed from straight above".into());
+    if wanted.eye_m.is_some() && active.specular.is_some() && bounces > 0 {
+        specular::check_viewed(quality)?;
     }
     let eye_m = wanted
         .eye_m
-        .filter(|_| !is_upward)
         .map_or([0.0; 4], |[x, y, z]| [x as f32, y as f32, (z - field.base_m()) as f32, 1.0]);
     let slices = mirrored.map(|phong| {
         let lit = (active.environment, surface.border);

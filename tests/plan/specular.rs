@@ -26,6 +26,40 @@ fn planned(specular: BounceSpecular, sh_order: u32) -> Plan {
     plan::picture(&scene, &quality, &Limits::lavapipe(), wanted).expect("a plan")
 }
 
+/// One number a texel holds light towards the zenith only: with an eye it is refused. Series by direction are accepted, and one number
+/// without an eye, without bounces or without specular.
+#[test]
+fn light_towards_the_zenith_is_no_view_from_an_eye() {
+    let surface = Surface {
+        albedo: Albedo::Constant([0.3; 3]),
+        border: Border::Plane,
+        specular: Some(Specular::Constant(PhongSpecular { exponent: 5.0, scale: 0.5 })),
+    };
+    let lights = Lights { sky: Some([1.0; 3]), ..Lights::default() };
+    let scene = Scene { field: fractal(SIDE, 1).expect("a field"), surface, lights };
+    let mut diffuse = scene.clone();
+    diffuse.surface.specular = None;
+    let planned = |scene: &Scene, specular, count, eye_m| {
+        let bounces = Bounces { count, specular, ..Bounces::default() };
+        let quality = Quality { azimuths: 8, bounces, ..Quality::default() };
+        let wanted = Picture { eye_m, ..Picture::default() };
+        plan::picture(scene, &quality, &Limits::lavapipe(), wanted)
+    };
+    let eye_m = Some([1.0, 2.0, 1e3]);
+    use BounceSpecular::{Scalar, Vector, VectorF16};
+    let refused = planned(&scene, Scalar, 1, eye_m).expect_err("towards the zenith").to_string();
+    assert!(refused.contains("`bounce_specular`") && refused.contains("vector-f16"), "{refused}");
+    for (scene, specular, count, eye_m) in [
+        (&scene, Vector, 1, eye_m),
+        (&scene, VectorF16, 1, eye_m),
+        (&scene, Scalar, 1, None),
+        (&scene, Scalar, 0, eye_m),
+        (&diffuse, Scalar, 1, eye_m),
+    ] {
+        planned(scene, specular, count, eye_m).expect("a plan");
+    }
+}
+
 fn bytes(plan: &Plan, names: &[&str]) -> u64 {
     let all = plan.resources.iter().filter(|r| names.contains(&r.name.as_str()));
     all.map(plan::Resource::bytes).sum()

@@ -200,8 +200,8 @@ typedef struct RidgelightScene {
     // be filled there: ridgelight_fill_voids.
     uint32_t has_voids;
     // Eye position for specular, metres; read if `has_eye` is VK_TRUE: x east from the westernmost column, y north from the
-    // southernmost row, z as heights, each within +-1e15. With bounces or basis sh, specular is viewed from
-    // straight above nevertheless. Diffuse light does not depend on it.
+    // southernmost row, z as heights, each within +-1e15. With bounces it needs a `bounce_specular` other than scalar.
+    // Diffuse light does not depend on it.
     double eye_m[3];
     // VK_TRUE where specular is viewed from `eye_m`; 0: from straight above.
     uint32_t has_eye;

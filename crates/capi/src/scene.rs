@@ -122,8 +122,8 @@ pub struct RidgelightScene {
     /// be filled there: ridgelight_fill_voids.
     pub has_voids: u32,
     /// Eye position for specular, metres; read if `has_eye` is VK_TRUE: x east from the westernmost column, y north from the
-    /// southernmost row, z as heights, each within +-1e15. With bounces or basis sh, specular is viewed from
-    /// straight above nevertheless. Diffuse light does not depend on it.
+    /// southernmost row, z as heights, each within +-1e15. With bounces it needs a `bounce_specular` other than scalar.
+    /// Diffuse light does not depend on it.
     pub eye_m: [f64; 3],
     /// VK_TRUE where specular is viewed from `eye_m`; 0: from straight above.
     pub has_eye: u32,

@@ -3,14 +3,15 @@ use crate::passes::PhongSource;
 use crate::passes::sh_layout::{Lit, Sh};
 use crate::scene::Border;
 
-/// Light from visibility and the light's matrix, with normals of full resolution.
+/// Light from visibility and the light's matrix, with normals of full resolution. `specular` is reflected towards an eye over the
+/// field's base; its last number is 0 for a view from straight above.
 pub(crate) fn plan(
     builder: &mut Builder,
     (axis, border, cell_m): (Axis, Border, [f64; 2]),
     sh: &Sh,
     [lane_heights, visibility, light_matrix, env_sum]: [ResourceId; 4],
     nodes: Option<ResourceId>,
-    phong: Option<PhongSource>,
+    specular: Option<(PhongSource, [f32; 4])>,
 ) {
     let [cols, rows] = axis.size();
     let mut bound = vec![
@@ -20,7 +21,7 @@ pub(crate) fn plan(
         ("env_sum", env_sum),
     ];
     bound.extend(nodes.map(|n| ("nodes", n)));
-    let map = phong.and_then(|phong| phong.map);
+    let map = specular.and_then(|(phong, _)| phong.map);
     bound.extend(map.map(|map| ("phong_map", map)));
     let [across, along] = sh.nodes.size([cols, rows]).map(u64::from);
     let visibility = across * along * 16 * (sh.layers() as u64 + u64::from(nodes.is_some()));
@@ -48,7 +49,8 @@ pub(crate) fn plan(
             rows: rows as i32,
             cell_x_m: cell_m[0] as f32,
             cell_y_m: cell_m[1] as f32,
-            specular: phong.map_or([0.0; 2], |l| [l.constant.exponent, l.constant.scale]),
+            eye_m: specular.map_or([0.0; 4], |(_, eye_m)| eye_m),
+            specular: specular.map_or([0.0; 2], |(l, _)| [l.constant.exponent, l.constant.scale]),
         },
         &bound,
         axis.texels() * (4 + 16) + visibility,

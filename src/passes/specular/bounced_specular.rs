@@ -20,7 +20,7 @@ pub(crate) struct BouncedSpecular {
     pub grey: bool,
     /// Four coefficients per layer, channel after channel.
     pub arriving: ResourceId,
-    /// Specular reflection of all bounces towards the zenith.
+    /// Specular reflection of all bounces towards the view.
     pub bounced: ResourceId,
     pub layer: Option<ResourceId>,
     pub outgoing: ExitLight,

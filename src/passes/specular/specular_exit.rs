@@ -12,12 +12,14 @@ pub(crate) struct ExitRadiance {
     pub diffuse: Option<ResourceId>,
     /// Specular reflection of direct light.
     pub specular_direct: ResourceId,
+    /// The eye over the field's base; the last is 0 for a view from straight above.
+    pub eye_m: [f32; 4],
 }
 
 /// Specular reflection of incoming light.
 pub(crate) fn plan(
     builder: &mut Builder,
-    [cols, rows]: [u32; 2],
+    ([cols, rows], cell_m): ([u32; 2], [f64; 2]),
     (specular, phong): (&BouncedSpecular, PhongSource),
     ground: ResourceId,
     outgoing: &ExitRadiance,
@@ -54,7 +56,7 @@ pub(crate) fn plan(
     let why = match (is_bounced, has_vectors) {
         (true, true) => "exit radiance by direction: diffuse, and specular about the normal",
         (true, false) => "exit radiance towards the zenith: diffuse and specular",
-        (false, _) => "specular reflection towards the zenith",
+        (false, _) => "specular reflection towards the view",
     };
     let layers = u64::from(specular.layers());
     let written = vectors.map_or(16, |_| specular.texel_bytes() * layers);
@@ -74,6 +76,9 @@ pub(crate) fn plan(
         &shaders::SpecularExitPush {
             cols: cols as i32,
             rows: rows as i32,
+            cell_x_m: cell_m[0] as f32,
+            cell_y_m: cell_m[1] as f32,
+            eye_m: outgoing.eye_m,
             begins: u32::from(outgoing.bounce == 1),
             first_texel: vectors.map_or(0, |v| v.first_texel as i32),
             fours: vectors.map_or(0, |v| v.fours as i32),

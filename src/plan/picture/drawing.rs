@@ -172,9 +172,10 @@ impl Drawing<'_> {
                 passes::sh_wedges::plan(&mut self.builder, field, h.sh(), &table, &images);
             }
             let field = (batch.axis, border, cell_m);
-            let phong = self.phong();
-            let lit = [(&h.diffuse, env_sum, None), (&h.specular, self.images.specular_sum, phong)];
-            for (light, sum, phong) in lit {
+            let specular = self.phong().map(|phong| (phong, self.eye_m));
+            let lit =
+                [(&h.diffuse, env_sum, None), (&h.specular, self.images.specular_sum, specular)];
+            for (light, sum, specular) in lit {
                 if let (Some(light), Some(sum)) = (light, sum) {
                     let ids = [lane_heights, h.visibility, light.light_matrix, sum];
                     passes::sh_shade::plan(
@@ -183,7 +184,7 @@ impl Drawing<'_> {
                         &light.sh,
                         ids,
                         h.nodes,
-                        phong,
+                        specular,
                     );
                 }
             }

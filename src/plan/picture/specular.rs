@@ -7,7 +7,9 @@ use crate::passes::batch::Batch;
 use crate::passes::bounced_specular::{BouncedSpecular, ExitLight};
 use crate::passes::bounces::{Bouncing, bounce_name};
 use crate::passes::{self, PhongSource, light_resolve, specular_exit, sun_specular};
-use crate::scene::{Basis, BounceEngine, PhongSpecular, Quality, Receiver, Specular, Sun};
+use crate::scene::{
+    Basis, BounceEngine, BounceSpecular, PhongSpecular, Quality, Receiver, Specular, Sun,
+};
 use crate::{Error, Result};
 
 /// Adapts the quality to a scene with specular.
@@ -86,6 +88,21 @@ fn bounced(mut quality: Quality, notes: &mut Vec<String>) -> Result<Quality> {
         return refuse("subsample", &found, "1: arriving light is a series at every texel");
     }
     Ok(quality)
+}
+
+/// Checks that bounced specular can be viewed from an eye.
+///
+/// # Errors
+/// One number a texel, which holds light towards the zenith only.
+pub(super) fn check_viewed(quality: &Quality) -> Result<()> {
+    if quality.bounces.specular != BounceSpecular::Scalar {
+        return Ok(());
+    }
+    Err(Error::setting(
+        "`bounce_specular` with `bounces`, specular and an eye",
+        "scalar, the radiance towards the zenith",
+        "vector or vector-f16, or a view from straight above, without a camera",
+    ))
 }
 
 impl Drawing<'_> {
@@ -195,9 +212,11 @@ impl Drawing<'_> {
             bounce: k,
             diffuse: bouncing.diffuse(k, self.images.radiance),
             specular_direct,
+            eye_m: self.eye_m,
         };
+        let field = (size, self.scene.field.cell_m());
         let ground = blocks.images.ground;
-        specular_exit::plan(&mut self.builder, size, (&specular, phong), ground, &exit);
+        specular_exit::plan(&mut self.builder, field, (&specular, phong), ground, &exit);
     }
 
     /// Adds the specular of all bounces.

@@ -171,6 +171,17 @@ pub(crate) fn pictures() -> Vec<Case> {
             Some(Environment::new(18, 9, texels, rotation_rad).expect("an environment"));
         scene
     };
+    let many_lobes = {
+        let phong = |i: usize| PhongSpecular { exponent: (7 * i % 50) as f32, scale: 0.4 };
+        let mut scene = mirrored.clone();
+        scene.surface.specular = Some(Specular::Map((0..14 * 11).map(phong).collect()));
+        scene
+    };
+    let eye_m = Some([30.0, -40.0, 960.0]);
+    let before_an_eye = |case: Case| Case {
+        wanted: Wanted::Picture(Picture { eye_m, ..Picture::default() }),
+        ..case
+    };
     let mirrored_sky = {
         let lights = Lights { sky: Some([1.0; 3]), ..Lights::default() };
         let mut next = random(45);
@@ -289,19 +300,13 @@ pub(crate) fn pictures() -> Vec<Case> {
         picture("harmonics of a pyramid's nodes", repeated, smoothed, false, false),
         picture("harmonics of order 2", on_a_plane, phong_specular, false, false),
         picture("a lobe by slices", mirrored.clone(), quality, true, false),
-        Case {
-            wanted: Wanted::Picture(Picture {
-                eye_m: Some([30.0, -40.0, 960.0]),
-                ..Picture::default()
-            }),
-            ..picture(
-                "a lobe by slices, before an eye, open",
-                shiny_sky(2.5, Border::Open),
-                quality,
-                false,
-                false,
-            )
-        },
+        before_an_eye(picture(
+            "a lobe by slices, before an eye, open",
+            shiny_sky(2.5, Border::Open),
+            quality,
+            false,
+            false,
+        )),
         picture(
             "a narrow lobe by slices, periodic",
             shiny_sky(300.0, Border::Periodic),
@@ -332,7 +337,21 @@ pub(crate) fn pictures() -> Vec<Case> {
             false,
         ),
         picture("a lobe", mirrored, sh(5), true, false),
-        picture("a specular at every second texel", mirrored_sky, subsampled(2, 3), false, false),
+        picture(
+            "a specular at every second texel",
+            mirrored_sky.clone(),
+            subsampled(2, 3),
+            false,
+            false,
+        ),
+        before_an_eye(picture(
+            "a specular at every second texel, before an eye",
+            mirrored_sky,
+            subsampled(2, 3),
+            false,
+            false,
+        )),
+        before_an_eye(picture("a map of lobes before an eye", many_lobes, quality, false, false)),
     ]
 }
 

@@ -22,7 +22,7 @@ use ridgelight_cpu::tolerance::{
 
 use crate::cpu_reference::{Pair, Reference, Run, constant, fuse_of, pushed};
 use crate::direct::cpu_reference::light::{rgb, so_far, wedge_rows};
-use crate::specular::cpu_reference::slices::azimuths_of;
+use crate::specular::cpu_reference::slices::{VIEW_ERROR, azimuths_of, view_from};
 
 /// The passes of this room and their CPU references.
 pub(crate) const REFERENCES: &[Reference] = &[
@@ -237,6 +237,7 @@ fn node_surfaces(run: &mut Run, pass: &Pass, nodes: Nodes) -> Vec<Pair> {
 }
 
 pub(crate) fn sh_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
+    const EYE_M: usize = offset("ShShadePush", "eye_m");
     let order = constant(pass, "order") as usize;
     let visible = device_series(run, pass, order);
     let matrix = texels(run, pass, "light_matrix");
@@ -248,6 +249,8 @@ pub(crate) fn sh_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let [cols, _] = run.size();
     let heights = run.heights();
     let error = run.texel_error();
+    let eye_m = [0, 4, 8, 12].map(|i| f64::from(f32::from_bits(pushed(pass, EYE_M + i))));
+    let view_error = if eye_m[3] > 0.0 { VIEW_ERROR } else { 0.0 };
     let nodes = Nodes { stride: constant(pass, "node_stride") };
     let across = nodes.size(run.plan.size)[0];
     let none = vec![0.0; order * order];
@@ -269,7 +272,8 @@ pub(crate) fn sh_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         let is_specular = constant(pass, "receiver") == 2;
         let want = if is_specular {
             let normal = normal_of(field_slope(&heights, place[0], place[1]));
-            specular_on(normal, run.phong_specular(i), &visible.values, &matrix)
+            let view = view_from(&heights, eye_m, i);
+            specular_on((normal, view), run.phong_specular(i), &visible.values, &matrix)
         } else {
             light_at(&heights, &visible.values, &matrix, place)
         };
@@ -284,7 +288,7 @@ pub(crate) fn sh_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
             .flat_map(|row| row.iter().zip(&visible.errors).map(|(m, e)| 2.0 * m.abs() * *e))
             .sum();
         let of_sum = if is_specular { device_sh_specular } else { device_sh_shade };
-        let tolerance = of_sum(order, error.normal()) * summed + counted;
+        let tolerance = of_sum(order, error.normal() + view_error) * summed + counted;
         pairs.extend(three(rgb(got), want.max(DVec3::ZERO), tolerance, at));
         let is_decided = (0..3).all(|c| want[c].abs() > tolerance[c]);
         let below = f64::from(u8::from(want.min_element() < 0.0));

@@ -87,6 +87,38 @@ fn paths_reflect_by_phong_specular_at_every_hit() {
     assert!(apart[1] > 8.0, "cannot fail: {apart:?}");
 }
 
+/// An eye changes specular light alone: diffuse bounces use exit radiance by direction, which does not depend on the view. From far
+/// above, all light is that of the view from straight above, as views differ by 1e-6 radians.
+#[test]
+fn only_specular_light_depends_on_the_eye() {
+    let mut gpu = Device::new();
+    let (scene, quality) = (lobed(), bounce_quality(2, BounceSpecular::Vector, 4));
+    let limits = gpu.limits();
+    let mut viewed = |eye_m| {
+        let wanted = Picture { light_layers: true, eye_m, ..Picture::default() };
+        gpu.outputs(&scene, &quality, &limits, wanted)
+    };
+    let [above, far, near] =
+        [None, Some([2.0, 2.5, 4e6]), Some([12.0, -7.0, 3.0])].map(&mut viewed);
+    let specular = ["radiance", "direct.specular", "indirect.specular"];
+    for (i, from_above) in above.iter().enumerate() {
+        let (name, values) = (&from_above.name, &from_above.values);
+        let brightest = values.iter().fold(0.0_f32, |m, v| m.max(*v));
+        assert!(brightest > 0.0, "{name}");
+        let apart = |other: &[f32]| -> f32 {
+            values.iter().zip(other).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max)
+        };
+        let [far, near] = [&far[i], &near[i]].map(|lit| apart(&lit.values));
+        println!("{name}: {far:e} from far above, {near:e} from near, of {brightest}");
+        if specular.contains(&name.as_str()) {
+            // Series of order 4 change by a few times their brightest value a radian.
+            assert!(far <= 1e-4 * brightest && near > 0.01 * brightest, "{name}: {far} {near}");
+        } else {
+            assert_eq!([far, near], [0.0; 2], "{name}");
+        }
+    }
+}
+
 /// A surface that reflects all light, half diffusely and half by Phong specular, in light of 1 from everywhere: no
 /// texel is brighter than 1, as lobes cut by the own plane reflect less; level ground is not cut.
 #[test]

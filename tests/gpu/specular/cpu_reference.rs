@@ -80,6 +80,11 @@ pub(crate) fn cases() -> Vec<Case> {
         ..sky()
     };
     let alone = Lights { suns: vec![sun(0.4, 0.0, [2.0; 3])], ..Lights::default() };
+    let eye_m = Some([30.0, -40.0, 960.0]);
+    let before_an_eye = |case: Case| Case {
+        wanted: Wanted::Picture(Picture { light_layers: true, eye_m, ..Picture::default() }),
+        ..case
+    };
     use BounceSpecular::{Scalar, Vector, VectorF16};
     let (stack, levels) = (Levels::Stack, Levels::Pyramid);
     vec![
@@ -93,6 +98,24 @@ pub(crate) fn cases() -> Vec<Case> {
             levels,
             sky(),
         ),
+        before_an_eye(case(
+            "by direction, before an eye",
+            rough(9, 11, 56),
+            Border::Open,
+            Vector,
+            4,
+            levels,
+            all.clone(),
+        )),
+        before_an_eye(case(
+            "by direction, f16, grey, before an eye",
+            rough(8, 9, 57),
+            Border::Plane,
+            VectorF16,
+            3,
+            stack,
+            alone.clone(),
+        )),
         case("as visible from above", rough(10, 9, 54), Border::Open, Scalar, 2, levels, all),
         case(
             "as visible from above, grey",

@@ -4,6 +4,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use std::path::Path;
 
 use glam::DVec3;
+use ridgelight::basis::legendre::{legendre, value};
 use ridgelight::basis::quadrature::integral;
 use ridgelight::basis::zonal::phong;
 use ridgelight::plan::{self, Picture};
@@ -52,6 +53,44 @@ fn level_ground_reflects_its_hemisphere() {
         for pixels in [&all[0], own] {
             let off = (f64::from(pixels.values[7 * pixels.channels]) - want).abs();
             assert!(off <= 1e-6 * want, "{exponent}: {off:e} of {want}");
+        }
+    }
+}
+
+/// Before an eye far away, level ground mirrors a direction as far from the zenith as the eye: of a sky of radiance 1 it
+/// reflects the sum over bands of lobe times cap times Legendre polynomial of that angle's cosine. Of one lobe, and of a map.
+#[test]
+fn level_ground_mirrors_the_eye_by_harmonics() {
+    let mut gpu = Device::new();
+    let order = 4;
+    for exponent in [1.0, 5.0, 20.0] {
+        let of_texel = PhongSpecular { exponent, scale: 0.25 };
+        let constant = shiny(field(3, 5, [1.0, 2.0], |_, _| 4.0), exponent, 0.25);
+        let mut map = constant.clone();
+        map.surface.specular = Some(Specular::Map(vec![of_texel; 15]));
+        let by_map = Quality { sh_order: order, ..Quality::default() };
+        for (scene, quality) in [(constant, sh(order)), (map, by_map)] {
+            let n = order as usize;
+            let bands = phong(n, exponent.into()).into_iter().zip(cap(n, FRAC_PI_2));
+            let bands: Vec<f64> = bands.map(|(l, c)| 0.25 * l * c).collect();
+            let mut all = Vec::new();
+            for (zenith_rad, azimuth) in [(0.0_f64, 0.0_f64), (0.6, 2.0), (1.2, -0.7), (1.5, 4.0)] {
+                // From column 2, row 1. Positions of f32 at this distance turn the direction by 1e-7.
+                let (sin, cos) = zenith_rad.sin_cos();
+                let to_eye = [sin * azimuth.cos(), sin * azimuth.sin(), cos];
+                let [x, y, z] = to_eye.map(|v| 1e5 * v);
+                let eye_m = Some([2.0 + x, 2.0 + y, 4.0 + z]);
+                let wanted = Picture { eye_m, ..Picture::default() };
+                let lit = gpu.outputs(&scene, &quality, &gpu.limits(), wanted).remove(0);
+                let found = f64::from(lit.values[7 * lit.channels]);
+                let want: f64 =
+                    bands.iter().enumerate().map(|(l, b)| b * value(&legendre(l), cos)).sum();
+                let off = (found - want.max(0.0)).abs();
+                assert!(off <= 1e-5, "{exponent} {zenith_rad}: {off:e} of {want}");
+                all.push(want);
+            }
+            // From above they would all be the first.
+            assert!(all[1..].iter().all(|want| (want - all[0]).abs() > 1e-3), "{all:?}");
         }
     }
 }

@@ -117,10 +117,9 @@ pub struct SurfaceArgs {
     pub tint: Option<Tint>,
     /// Phong specular: exponent 0 to 10000, scale 0 to 1
     ///
-    /// The Phong lobe is centred on the mirror direction of a view from straight above or, for EXPONENT,SCALE without
-    /// --bounces and --basis sh, from --camera. SCALE plus --albedo is at most 1. A file has the size of the field and holds
-    /// both: .exr R and G, or .npy [2, rows, cols]. `render` reflects sky, environment and suns; `reference` reflects all
-    /// lights.
+    /// The Phong lobe is centred on the mirror direction of the view: of --camera or, without it, from straight above. SCALE plus
+    /// --albedo is at most 1. A file has the size of the field and holds both: .exr R and G, or .npy [2, rows, cols].
+    /// `render` reflects sky, environment and suns; `reference` reflects all lights.
     #[arg(
         long,
         value_name = "EXPONENT,SCALE|FILE",

@@ -152,7 +152,7 @@ impl Harmonics {
         let rows = bands(order).zip(&mirrored).map(|((l, _), y)| [(kept[l] * y).abs(), kept[l]]);
         let [off, summed] = self.sums(visibility, rows);
         let tolerance = off + device_sh_specular(order, error.normal()) * summed;
-        let light = specular_on(normal, phong, &visibility.values, &self.matrix);
+        let light = specular_on((normal, DVec3::Z), phong, &visibility.values, &self.matrix);
         [light.max(DVec3::ZERO), f64::from(phong.scale) * tolerance]
     }
 }

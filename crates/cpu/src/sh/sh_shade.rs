@@ -1,6 +1,7 @@
 //! Exit radiance under an environment from a visibility series.
 
 use crate::basis::receiver;
+use crate::mirror_map::mirrored;
 use crate::shared::field::{field_slope, normal_of};
 use crate::shared::sweep::Heights;
 use crate::specular_visibility::specular_visibility;
@@ -57,15 +58,15 @@ pub fn light_on(normal: DVec3, visibility: &[f64], matrix: &[Vec<DVec3>]) -> DVe
     times(rows, visibility, matrix)
 }
 
-/// What a lobe on a surface of this normal mirrors straight upwards; `matrix` is
+/// What a lobe on a surface of this normal mirrors towards a unit `view`; `matrix` is
 /// [`crate::light_matrix::specular_matrix`]'s.
 pub fn specular_on(
-    normal: DVec3,
+    (normal, view): (DVec3, DVec3),
     phong: PhongSpecular,
     visibility: &[f64],
     matrix: &[Vec<DVec3>],
 ) -> DVec3 {
-    let mirror = 2.0 * normal.z * normal - DVec3::Z;
+    let mirror = mirrored(normal, view);
     let order = matrix.len().isqrt();
     let kept = phong_bands(order, phong.exponent.into());
     let rows = bands(order).zip(evaluate(order, mirror)).map(|((l, _), y)| kept[l] * y);

@@ -2,6 +2,7 @@
 
 use crate::Rgb;
 use crate::basis::{half_turn, reconstruct};
+use crate::mirror_map::mirrored;
 use crate::specular_gather::Series;
 use glam::DVec3;
 use ridgelight::basis::bands;
@@ -17,9 +18,9 @@ fn smoothed(arriving: &Series, phong: PhongSpecular, channel: usize) -> Vec<f64>
     all.map(|((l, _), u)| f64::from(phong.scale) * kept[l] * u[channel]).collect()
 }
 
-/// Phong specular straight upwards, clamped at 0.
-pub fn mirrored(arriving: &Series, normal: DVec3, phong: PhongSpecular) -> Rgb {
-    let mirror = 2.0 * normal.z * normal - DVec3::Z;
+/// Phong specular towards a unit `view`, clamped at 0.
+pub fn reflected(arriving: &Series, (normal, view): (DVec3, DVec3), phong: PhongSpecular) -> Rgb {
+    let mirror = mirrored(normal, view);
     [0, 1, 2].map(|c| reconstruct(&smoothed(arriving, phong, c), mirror).max(0.0))
 }
 
@@ -32,4 +33,37 @@ pub fn exit_series(arriving: &Series, normal: DVec3, phong: PhongSpecular, diffu
         turned
     });
     (0..arriving.len()).map(|i| [0, 1, 2].map(|c| channels[c][i])).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Exit radiance by direction, in the direction of a view, is what is reflected towards it, where that is not clamped.
+    #[test]
+    fn series_of_exit_radiance_hold_every_view() {
+        let normal = DVec3::new(0.3, -0.4, 0.8).normalize();
+        let phong = PhongSpecular { exponent: 4.0, scale: 0.6 };
+        let mut apart = 0.0_f64;
+        for order in 2..=6 {
+            // Brighter than the other bands can darken it anywhere.
+            let arriving: Series = (0..order * order)
+                .map(|i| {
+                    [0, 1, 2].map(|c| if i == 0 { 40.0 } else { ((i * 5 + c) % 7) as f64 - 3.0 })
+                })
+                .collect();
+            let exit = exit_series(&arriving, normal, phong, [0.0; 3]);
+            let upward = reflected(&arriving, (normal, DVec3::Z), phong);
+            for view in [DVec3::Z, DVec3::X, DVec3::new(-0.5, 0.7, 0.2).normalize(), -DVec3::Y] {
+                let found = reflected(&arriving, (normal, view), phong);
+                for c in 0..3 {
+                    let channel: Vec<f64> = exit.iter().map(|s| s[c]).collect();
+                    let want = reconstruct(&channel, view);
+                    assert!(want > 0.0 && (found[c] - want).abs() < 1e-9, "{order} {view}: {want}");
+                    apart = apart.max((found[c] - upward[c]).abs());
+                }
+            }
+        }
+        assert!(apart > 0.1, "views differ by {apart} only");
+    }
 }

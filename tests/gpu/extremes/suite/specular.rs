@@ -17,7 +17,7 @@ use ridgelight_cpu::pyramid_march::Stored;
 use ridgelight_cpu::shared::bounced::Cast;
 use ridgelight_cpu::shared::field::{field_slope, normal_of};
 use ridgelight_cpu::shared::sweep::Heights;
-use ridgelight_cpu::specular_exit::{exit_series, mirrored};
+use ridgelight_cpu::specular_exit::{exit_series, reflected};
 use ridgelight_cpu::specular_gather::{Series, SpecularGather};
 use ridgelight_cpu::sun_specular::specular_on;
 use ridgelight_cpu::tolerance::{
@@ -273,7 +273,8 @@ fn both(found: &Found) -> Vec<Probe> {
             let of_series = device_arriving(&all, of_exit, order, &slices);
             let of_light = BounceError::of(&all, |_, cast| turned(cast), &slices).light[0];
             let phong = phong_specular.at(i);
-            let mirror = mirrored(&want.series, exit.normals[i], phong)[0];
+            let of_view = (exit.normals[i], DVec3::Z);
+            let mirror = reflected(&want.series, of_view, phong)[0];
             let coefficients = in_a_direction * of_series;
             let of_specular = coefficients + device_sh_specular(order, normal) * sum(&want.series);
             let albedo = f64::from(*albedo);

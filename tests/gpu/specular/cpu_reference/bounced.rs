@@ -9,7 +9,7 @@ use ridgelight_cpu::bounce_gather::BounceGather;
 use ridgelight_cpu::pyramid_march::Stored;
 use ridgelight_cpu::shared::bounced::Cast;
 use ridgelight_cpu::shared::field::{field_slope, normal_of};
-use ridgelight_cpu::specular_exit::{exit_series, mirrored};
+use ridgelight_cpu::specular_exit::{exit_series, reflected};
 use ridgelight_cpu::specular_gather::{Series, SpecularGather};
 use ridgelight_cpu::tolerance::{
     BounceError, CastError, EPSILON, Gathered, device_arriving, device_level, device_sh_specular,
@@ -21,6 +21,7 @@ use crate::bounce::cpu_reference::indirect::{brightest, colours};
 use crate::cpu_reference::{Pair, Run, constant, pushed};
 use crate::horizon::cpu_reference::pyramid::numbers;
 use crate::sh::cpu_reference::device_series;
+use crate::specular::cpu_reference::slices::{VIEW_ERROR, view_from};
 
 impl Run<'_> {
     fn is_half(&self, pass: &Pass, binding: &str) -> bool {
@@ -103,6 +104,7 @@ pub(crate) fn specular_visibility(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 
 pub(crate) fn specular_exit(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     const BEGINS: usize = offset("SpecularExitPush", "begins");
+    const EYE_M: usize = offset("SpecularExitPush", "eye_m");
     let [order, direct, has_bounces, vectors, halves] =
         ["order", "is_direct", "is_bounced", "vectors", "halves"]
             .map(|name| constant(pass, name) as usize);
@@ -113,6 +115,7 @@ pub(crate) fn specular_exit(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let normals: Vec<_> = (0..cols * rows)
         .map(|i| normal_of(field_slope(&heights, (i % cols) as i32, (i / cols) as i32)))
         .collect();
+    let eye_m = [0, 4, 8, 12].map(|i| f64::from(f32::from_bits(pushed(pass, EYE_M + i))));
     let mut pairs = Vec::new();
     let mut visible = Vec::new();
     if is_direct {
@@ -123,8 +126,10 @@ pub(crate) fn specular_exit(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         }
         let got = colours(&run.floats(pass, "specular_bounced").expect("written"));
         for (i, got) in got.iter().enumerate() {
-            let own = mirrored(&arriving[i], normals[i], run.phong_specular(i));
-            let off = f64::from(run.phong_specular(i).scale) * device_sh_specular(order, error);
+            let view = view_from(&heights, eye_m, i);
+            let own = reflected(&arriving[i], (normals[i], view), run.phong_specular(i));
+            let turned = error + if eye_m[3] > 0.0 { VIEW_ERROR } else { 0.0 };
+            let off = f64::from(run.phong_specular(i).scale) * device_sh_specular(order, turned);
             let tolerance = off * magnitude(&arriving[i]) + 2.0 * EPSILON * run.specular[i][0];
             pairs.extend([0, 1, 2].map(|c| {
                 let want = run.specular[i][c] + own[c];

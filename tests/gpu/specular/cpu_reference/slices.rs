@@ -31,6 +31,10 @@ pub(crate) fn slices(border: Border, exponent: f64, [peaks, nodes]: [usize; 2]) 
     }
 }
 
+/// Half the error of a direction to an eye that is no nearer than the field is wide: a mirror direction turns by twice the normal's
+/// error and once by the view's.
+pub(crate) const VIEW_ERROR: f64 = 10.0 * EPSILON;
+
 /// Direction from a grid point to the eye, or straight up.
 pub(crate) fn view_from(heights: &Heights, eye_m: [f64; 4], grid_point: usize) -> DVec3 {
     if eye_m[3] == 0.0 {
@@ -135,7 +139,7 @@ pub(crate) fn specular_light(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let eye_m = [0, 4, 8, 12].map(|i| float(pass, EYE_M + i));
     let scale = float(pass, SCALE);
     let [cols, _] = run.size();
-    let (heights, off) = (run.heights(), 2.0 * run.normal_error() + 20.0 * EPSILON);
+    let (heights, off) = (run.heights(), 2.0 * (run.normal_error() + VIEW_ERROR));
     let mut map = |binding: &str, columns: usize| {
         let texels = texels(run, pass, binding);
         (run.extent(pass, binding), pushed(pass, columns) as usize, texels)
