@@ -82,6 +82,8 @@ struct OpenWindow {
     is_stale: bool,
     /// Whether all heights are new and nothing else is.
     has_moved: bool,
+    /// Where the specular of the light is viewed from; none from straight above.
+    eye_m: Option<[f64; 3]>,
     /// The last light that could be drawn.
     good: Option<Light>,
     /// Whether that light is being recomputed after a refusal.
@@ -120,6 +122,7 @@ impl<'a> App<'a> {
             lit: None,
             is_stale: true,
             has_moved: false,
+            eye_m: None,
             good: None,
             has_fallen_back: false,
             gui,

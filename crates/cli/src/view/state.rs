@@ -11,7 +11,7 @@ use std::borrow::Cow;
 
 use ridgelight::plan::{self, Limits, Map, Picture, Plan, Rectangle, View};
 use ridgelight::scene::Tone;
-use ridgelight::scene::{Camera, HeightField, Lights, Quality, Scene};
+use ridgelight::scene::{BounceSpecular, Camera, HeightField, Lights, Quality, Scene};
 use ridgelight::{Error, Result};
 
 use super::brush::{Action, Brush};
@@ -187,6 +187,21 @@ impl State {
         self.viewpoint.camera.is_some()
     }
 
+    /// Where specular is viewed from: the camera's eye, if there is a camera and the ground has specular.
+    pub fn eye_m(&self) -> Option<[f64; 3]> {
+        self.camera().filter(|_| self.has_specular()).map(|camera| camera.eye_m().to_array())
+    }
+
+    /// The same over a grid of blocks.
+    pub fn eye_over(&self, blocks: &Blocks) -> Option<[f64; 3]> {
+        let camera = self.camera().filter(|_| self.has_specular())?;
+        Some(blocks.camera(&self.scene.field, &camera).eye_m().to_array())
+    }
+
+    fn has_specular(&self) -> bool {
+        self.scene.surface.specular.is_some()
+    }
+
     /// The movement, if there is one.
     pub fn moving(&self) -> Option<&Moving> {
         self.moving.as_ref()
@@ -243,7 +258,8 @@ impl State {
     /// edits continue from.
     pub fn plan(&self, limits: &Limits) -> Result<Plan> {
         let has_brush = matches!(self.tool, Tool::Brush(_));
-        let wanted = Picture { still: !self.is_moving() && !has_brush, ..Picture::default() };
+        let still = !self.is_moving() && !has_brush;
+        let wanted = Picture { still, eye_m: self.eye_m(), ..Picture::default() };
         let plan = |wanted| plan::picture(&self.scene, &self.quality, limits, wanted);
         if has_brush && !self.is_moving() {
             let kept = plan(Picture { keeps_horizons: true, ..wanted });
@@ -258,7 +274,7 @@ impl State {
 
     /// The same light without shadows and bounces.
     pub fn plan_off(&self, limits: &Limits) -> Result<Plan> {
-        let wanted = Picture { unshadowed: true, ..Picture::default() };
+        let wanted = Picture { unshadowed: true, eye_m: self.eye_m(), ..Picture::default() };
         plan::picture(&self.scene, &self.quality, limits, wanted)
     }
 
@@ -324,6 +340,12 @@ impl State {
             "v" if self.viewpoint.camera.is_some() => self.viewpoint.camera = None,
             "v" if field.rows().min(field.cols()) < 2 => {
                 return self.say("a camera needs two rows and two columns");
+            }
+            "v" if self.has_specular()
+                && self.quality.bounces.count > 0
+                && self.quality.bounces.specular == BounceSpecular::Scalar =>
+            {
+                return self.say("a camera needs bounce_specular vector or vector-f16");
             }
             "v" => self.viewpoint.begin_camera(field, size),
             "e" | "d" if self.needs_exposure => {}

@@ -346,6 +346,28 @@ fn gpu_camera_view_equals_render() {
     assert!(apart(&other, &saved) > 16.0);
 }
 
+/// Specular of a camera view is viewed from the camera, as `render --camera` does, and after it again from above.
+#[test]
+fn gpu_camera_view_reflects_towards_the_camera() {
+    let (folder, display) = (Folder::new(), Display::new());
+    for bounces in ["", " --bounces 1"] {
+        let lit = format!("hills.asc {LIT} --albedo 0.4 --specular 20,0.5{bounces}");
+        let script = "key h\nkey h\nframes 2\npicture above.png\nkey v\npicture saved.png\n\
+            key left\nkey up\nkey +\nframes 1\npicture other.png\nscene other.json\nkey v\npicture again.png\n";
+        folder.view(&display, &format!("{lit} --size 96x60"), script);
+        let camera = "--camera 180,45 --fov 40 --samples 1 --size 96x60";
+        folder.done(&format!("render {lit} {camera} -o camera.png --quiet"));
+        assert_same(&folder, "saved.png", "camera.png");
+        folder.done("render --scene other.json -o other_r.png --quiet");
+        // The file has the camera in decimals.
+        let [other, rendered] = ["other.png", "other_r.png"].map(|name| folder.picture(name));
+        assert!(apart(&other, &rendered) <= 1.0, "{} codes", apart(&other, &rendered));
+        folder.done(&format!("render {lit} -o map.png --quiet"));
+        assert_same(&folder, "above.png", "map.png");
+        assert_same(&folder, "again.png", "map.png");
+    }
+}
+
 /// The 8-bit code that a plane's linear light was read from (IEC 61966-2-1).
 fn code(light: f32) -> f64 {
     let l = f64::from(light);

@@ -36,6 +36,8 @@ pub struct Compare {
     has_new_light: bool,
     path_traced: Option<PathTraced>,
     is_reference_stale: bool,
+    /// Whether the other pictures have specular that is viewed from a camera; the reference's is viewed from straight above.
+    has_eye: bool,
     /// When the scene changed last.
     changed: Instant,
     /// The measured error, once requested.
@@ -62,6 +64,7 @@ impl Compare {
             has_new_light: true,
             path_traced: None,
             is_reference_stale: true,
+            has_eye: false,
             changed: Instant::now(),
             error: None,
         }
@@ -81,6 +84,7 @@ impl Compare {
             let is_other = replan(screen, &mut self.off, state.plan_off(limits)?, &state.scene)?;
             self.has_new_light |= is_other;
         }
+        self.has_eye = state.eye_m().is_some();
         if self.is_reference_stale && !state.is_moving() && self.changed.elapsed() > REST {
             if let Some(old) = self.path_traced.take() {
                 screen.end(old.frame)?;
@@ -152,6 +156,7 @@ impl Compare {
     pub fn labels(&self) -> [String; 3] {
         let reference = match self.paths() {
             _ if self.is_reference_stale => "reference: waits".to_owned(),
+            paths if self.has_eye => format!("reference: {paths} paths, specular from above"),
             paths => format!("reference: {paths} paths"),
         };
         ["no shadows".to_owned(), "ours".to_owned(), reference]
@@ -171,6 +176,10 @@ impl Compare {
             let expected = format!("{} or more: wait a moment", 2 * REFERENCE_BATCH);
             return Err(Error::setting("reference", found, expected));
         };
+        if self.has_eye {
+            let expected = "none, as the reference's specular is viewed from straight above: key v";
+            return Err(Error::setting("error with specular", "a camera", expected));
+        }
         screen.wait()?;
         let gpu = screen.gpu();
         let ours = render::rgb(&gpu.pixels(lit, 0)?);

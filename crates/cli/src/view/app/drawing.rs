@@ -153,6 +153,8 @@ impl App<'_> {
         let moves = self.state.is_moving();
         self.state.step(!uses_preview)?;
         let mut edited = self.state.take_edited();
+        let eye_m = self.state.eye_m();
+        shown.is_stale |= std::mem::replace(&mut shown.eye_m, eye_m) != eye_m;
         if uses_preview {
             if shown.is_stale || moves || edited.is_some() {
                 let OpenWindow { screen, preview, limits, is_stale, .. } = shown;

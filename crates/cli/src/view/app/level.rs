@@ -151,7 +151,8 @@ impl Level {
 
     /// Plans the light of the coarse grid.
     fn plan_light(&mut self, screen: &mut Screen, state: &State, limits: &Limits) -> Result<()> {
-        let wanted = Picture { light_layers: true, ..Picture::default() };
+        let eye_m = state.eye_over(&self.blocks);
+        let wanted = Picture { light_layers: true, eye_m, ..Picture::default() };
         let plan = plan::picture(&self.scene, &coarser(&state.quality), limits, wanted)?;
         self.is_light_new |= replan(screen, &mut self.lit, plan, &self.scene)?;
         Ok(())

@@ -53,6 +53,7 @@ impl App<'_> {
         let shown = self.shown.as_ref();
         let is_old = |shown: &OpenWindow| {
             let is_old = shown.is_stale || shown.lit.is_none() || self.state.is_edited();
+            let is_old = is_old || shown.eye_m != self.state.eye_m();
             is_old || shown.preview.is_busy() || !previews && shown.preview.is_old()
         };
         Ok(!shown.is_some_and(is_old) || self.state.is_moving())
