@@ -2,8 +2,9 @@
 
 use std::f64::consts::{SQRT_2, TAU};
 
-use ridgelight::scene::{Border, Environment, HeightField, Lights, Scene};
-use ridgelight_cpu::indirect::{Fineness, GroundTruth};
+use ridgelight::Result;
+use ridgelight::scene::{Border, Environment, HeightField, Lights, Normals, Scene};
+use ridgelight_cpu::indirect::{Fineness, GroundTruth, ground_truth, smooth_ground_truth};
 
 use super::fields::under_sky;
 
@@ -12,6 +13,16 @@ pub const FINENESS: Fineness = Fineness { azimuths: 24, divisions: 1, strips: 12
 
 /// Bounces of the page's scenes: none, one, two.
 pub const MOST_BOUNCES: usize = 2;
+
+/// The quadrature of a scene of the page's first two tables.
+pub fn quadrature(scene: &Scene, normals: Normals) -> Result<GroundTruth> {
+    match normals {
+        Normals::Smooth => {
+            smooth_ground_truth(scene, MOST_BOUNCES, FINENESS.azimuths, FINENESS.strips)
+        }
+        Normals::Flat => ground_truth(scene, MOST_BOUNCES, FINENESS),
+    }
+}
 
 /// The light of each of a scene's three channels.
 pub fn light_names(scene: &Scene) -> [&'static str; 3] {
@@ -42,6 +53,8 @@ pub struct Closed {
     pub name: String,
     pub scene: Scene,
     pub bounces: usize,
+    /// By which its formula holds.
+    pub normals: Normals,
     /// Texels, the radiance of each, and the largest error of the grid against the formula.
     pub known: Vec<(usize, f64, f64)>,
 }
@@ -59,7 +72,11 @@ impl Closed {
     pub fn head(&self) -> String {
         let [value, grid] = self.means();
         let Self { name, bounces, known, .. } = self;
-        format!("| {name} | {bounces} | {} | {value:.6} | {grid:.6} | ", known.len())
+        let normals = match self.normals {
+            Normals::Smooth => "smooth",
+            Normals::Flat => "flat",
+        };
+        format!("| {name} | {bounces} | {normals} | {} | {value:.6} | {grid:.6} | ", known.len())
     }
 }
 
@@ -67,7 +84,7 @@ fn field(rows: usize, cols: usize, h: impl Fn(usize, usize) -> f64) -> HeightFie
     super::fields::field(rows, cols, [1.0, 1.0], h)
 }
 
-/// Every scene of the page's second table.
+/// Every scene of the page's last table.
 pub fn closed_forms() -> Vec<Closed> {
     let mut all = furnaces();
     all.push(tilted_plane());
@@ -76,7 +93,7 @@ pub fn closed_forms() -> Vec<Closed> {
     all
 }
 
-/// White ground in light of radiance 1 from all other directions: 1. After 64 bounces on the rough one no path
+/// White ground in light of radiance 1 from all other directions: 1, whatever its normals. After 64 bounces on the rough one no path
 /// is left: each ends with a probability above a third.
 fn furnaces() -> Vec<Closed> {
     let whole = |name: &str, scene: Scene, bounces| Closed {
@@ -84,6 +101,7 @@ fn furnaces() -> Vec<Closed> {
         known: (0..scene.field.heights_m().len()).map(|i| (i, 1.0, 0.0)).collect(),
         scene,
         bounces,
+        normals: Normals::Smooth,
     };
     let level = under_sky(field(5, 7, |_, _| 8.0), Border::Plane, 1.0);
     let rough = field(12, 11, |r, c| ((r * 31 + c * 17) % 7) as f64 / 3.0);
@@ -108,6 +126,7 @@ fn tilted_plane() -> Closed {
         known: (0..36).map(|i| (i, 0.5 * (1.0 + cos), 0.0)).collect(),
         scene: under_sky(tilted, Border::Plane, 1.0),
         bounces: 0,
+        normals: Normals::Smooth,
     }
 }
 
@@ -168,6 +187,7 @@ fn grooves_lit(bounces: usize) -> Closed {
         name: "V-shaped grooves, walls at right angles".to_owned(),
         scene: under_sky(grooves(rows), Border::Periodic, 0.5),
         bounces,
+        normals: Normals::Flat,
         known,
     }
 }
@@ -258,6 +278,7 @@ fn pit_lit(alpha: f64, albedo: f32, bounces: usize) -> Closed {
         name: format!("spherical pit, half-angle {alpha}, albedo {albedo}"),
         scene: under_sky(pit(rim, alpha), Border::Plane, albedo),
         bounces,
+        normals: Normals::Flat,
         known: bounds.into_iter().map(|(i, bound)| (i, value, bound)).collect(),
     }
 }

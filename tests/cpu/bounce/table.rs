@@ -1,8 +1,9 @@
 //! The quadrature of the scenes that the path tracer is compared on.
 
+use ridgelight::scene::Normals;
 use ridgelight_cpu::indirect::{Fineness, ground_truth as expected_light};
 
-use crate::reference_page::{FINENESS, MOST_BOUNCES, closed_forms, head, light_names};
+use crate::reference_page::{MOST_BOUNCES, closed_forms, head, light_names, quadrature};
 use crate::scenes::{Agreement, scenes};
 
 /// Figures after a row's head on the published page; none where the row is missing, or a figure is no number,
@@ -14,50 +15,62 @@ fn figures<const N: usize>(page: &str, head: &str) -> Option<[f64; N]> {
     all?.try_into().ok()
 }
 
-/// The text of docs/measured/reference.md.
-fn page() -> String {
+/// A part of docs/measured/reference.md, between its marks.
+fn part(name: &str) -> String {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/measured/reference.md");
-    std::fs::read_to_string(path).expect("docs/measured/reference.md")
+    let page = std::fs::read_to_string(path).expect("docs/measured/reference.md");
+    let [begin, end] = ["begin", "end"].map(|mark| format!("<!-- {mark} {name} -->"));
+    let part = page.split_once(&begin).and_then(|(_, rest)| rest.split_once(&end));
+    part.unwrap_or_else(|| panic!("docs/measured/reference.md lacks {begin} or {end}")).0.to_owned()
 }
 
-/// Prints mean radiance and stated error of every scene, and requires an RMS of the stated errors below 1 % of
-/// the mean. The published page has the same means, and its z are small enough.
+/// Prints mean radiance and stated error of every scene, by smooth normals and by flat ones, and requires an RMS of the stated
+/// errors below 1 % of the mean. The published tables have the same means, and their z are small enough. The table by smooth
+/// normals has every number of bounces; without bounces, flat ones are the same.
 #[test]
 fn stated_errors_are_small_on_every_scene() {
     println!("{:34} bounces  mean radiance (sky, sun, sphere)    rms of stated error", "scene");
-    let page = page();
-    for (name, scene) in scenes() {
-        let expected_light = expected_light(&scene, MOST_BOUNCES, FINENESS).unwrap();
-        for b in 0..=MOST_BOUNCES {
-            for (channel, light) in light_names(&scene).into_iter().enumerate() {
-                let head = head(name, b, light, &expected_light, channel);
-                let Some([_, _, mean, rms, worst]) = figures(&page, &head) else {
-                    panic!("run tools/reference: docs/measured/reference.md lacks {head}");
-                };
-                let count = expected_light.radiance[b].len();
-                let published = Agreement { rms, worst, mean, count };
-                assert!(published.holds(), "{head}: {published:?}");
+    for (normals, table, fewest) in
+        [(Normals::Smooth, part("scenes"), 0), (Normals::Flat, part("flat scenes"), 1)]
+    {
+        let mut heads = 0;
+        for (name, scene) in scenes() {
+            let expected_light = quadrature(&scene, normals).unwrap();
+            for b in fewest..=MOST_BOUNCES {
+                for (channel, light) in light_names(&scene).into_iter().enumerate() {
+                    let head = head(name, b, light, &expected_light, channel);
+                    let Some([_, _, mean, rms, worst]) = figures(&table, &head) else {
+                        panic!("run tools/reference: docs/measured/reference.md lacks {head}");
+                    };
+                    let count = expected_light.radiance[b].len();
+                    let published = Agreement { rms, worst, mean, count };
+                    assert!(published.holds(), "{head}: {published:?}");
+                    heads += 1;
+                }
+            }
+            for (b, (picture, error)) in
+                expected_light.radiance.iter().zip(&expected_light.error).enumerate()
+            {
+                let n = picture.len() as f64;
+                let mean = [0, 1, 2].map(|i| picture.iter().map(|v| v[i]).sum::<f64>() / n);
+                let rms =
+                    [0, 1, 2].map(|i| (error.iter().map(|v| v[i] * v[i]).sum::<f64>() / n).sqrt());
+                println!("{name:34} {b} {normals:?}        {mean:.5?}  {rms:.5?}");
+                for i in 0..3 {
+                    assert!(rms[i] < 0.01 * mean[i] || rms[i] == 0.0, "{name} {b} {i} {normals:?}");
+                }
             }
         }
-        for (b, (picture, error)) in
-            expected_light.radiance.iter().zip(&expected_light.error).enumerate()
-        {
-            let n = picture.len() as f64;
-            let mean = [0, 1, 2].map(|i| picture.iter().map(|v| v[i]).sum::<f64>() / n);
-            let rms =
-                [0, 1, 2].map(|i| (error.iter().map(|v| v[i] * v[i]).sum::<f64>() / n).sqrt());
-            println!("{name:34} {b}        {mean:.5?}  {rms:.5?}");
-            for i in 0..3 {
-                assert!(rms[i] < 0.01 * mean[i] || rms[i] == 0.0, "{name} {b} {i}");
-            }
-        }
+        // No row of another table or of a scene that is gone.
+        let rows = table.lines().filter(|line| line.starts_with("| ")).count();
+        assert_eq!(rows, 1 + heads, "{normals:?}: a head line, and a row for each");
     }
 }
 
 /// Each closed form stands on the published page, and its z is below 4.
 #[test]
 fn closed_forms_are_published() {
-    let page = page();
+    let page = part("closed forms");
     for closed in closed_forms() {
         let head = closed.head();
         let texels = closed.scene.field.heights_m().len();

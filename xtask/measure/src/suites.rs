@@ -18,11 +18,11 @@ use std::path::Path;
 
 use extreme::page::{self, Column};
 use extreme::{inputs, methods};
-use reference_page::{Closed, FINENESS, MOST_BOUNCES, closed_forms, head, light_names};
+use reference_page::{Closed, FINENESS, MOST_BOUNCES, closed_forms, head, light_names, quadrature};
 use ridgelight::gpu::{Headless, HeadlessOptions};
 use ridgelight::scene::{Normals, Scene};
 use ridgelight::{Result, plan};
-use ridgelight_cpu::indirect::{self, GroundTruth};
+use ridgelight_cpu::indirect::{GroundTruth, light, smooth_light};
 use ridgelight_io as files;
 use scenes::{Agreement, scenes};
 
@@ -44,8 +44,8 @@ const SCENES: &str = "\
 |---|---|---|---|---|---|---|---|---|---|---|
 ";
 const CLOSED: &str = "\
-| scene | bounces | n | value | grid | quadrature | paths | ± | z |
-|---|---|---|---|---|---|---|---|---|
+| scene | bounces | normals | n | value | grid | quadrature | paths | ± | z |
+|---|---|---|---|---|---|---|---|---|---|
 ";
 
 fn open(name: &str) -> Result<Headless> {
@@ -111,26 +111,35 @@ pub fn reference(mut args: Args) -> Outcome {
         }
     };
     // Each row has a seed of its own: no row shares its paths with another of its scene.
-    let mut traced = |scene: &Scene, bounces: usize| -> Result<[Colours; 2]> {
-        let seed = 1 + bounces as u32;
-        Ok(frames::traced_at(&mut gpu, scene, (bounces as u32, Normals::Flat, seed), &[BATCHES])?
-            .remove(0))
+    let mut traced = |scene: &Scene, normals: Normals, bounces: usize| -> Result<[Colours; 2]> {
+        let (bounces, is_flat) = (bounces as u32, normals == Normals::Flat);
+        let of = (bounces, normals, 1 + 2 * bounces + u32::from(is_flat));
+        Ok(frames::traced_at(&mut gpu, scene, of, &[BATCHES])?.remove(0))
     };
-    let mut rows = SCENES.to_owned();
+    let [mut rows, mut flat_rows] = [SCENES.to_owned(), SCENES.to_owned()];
     for (name, scene) in scenes() {
-        let quadrature = indirect::ground_truth(&scene, MOST_BOUNCES, FINENESS)?;
-        for bounces in 0..=MOST_BOUNCES {
-            let found = traced(&scene, bounces)?;
-            for (channel, light) in light_names(&scene).into_iter().enumerate() {
-                let head = head(name, bounces, light, &quadrature, channel);
-                add(&mut rows, row(&head, channel, &found, &quadrature, bounces));
+        // Without bounces, all normals are those of grid points.
+        for (rows, normals, fewest) in
+            [(&mut rows, Normals::Smooth, 0), (&mut flat_rows, Normals::Flat, 1)]
+        {
+            let quadrature = quadrature(&scene, normals)?;
+            for bounces in fewest..=MOST_BOUNCES {
+                let found = traced(&scene, normals, bounces)?;
+                for (channel, light) in light_names(&scene).into_iter().enumerate() {
+                    let head = head(name, bounces, light, &quadrature, channel);
+                    add(rows, row(&head, channel, &found, &quadrature, bounces));
+                }
             }
         }
     }
     let mut closed_rows = CLOSED.to_owned();
     for closed in closed_forms() {
-        let found = traced(&closed.scene, closed.bounces)?;
-        let bounces = indirect::light(&closed.scene, closed.bounces, FINENESS)?;
+        let Closed { scene, bounces, normals, .. } = &closed;
+        let found = traced(scene, *normals, *bounces)?;
+        let bounces = match normals {
+            Normals::Smooth => smooth_light(scene, *bounces, FINENESS.azimuths, FINENESS.strips)?,
+            Normals::Flat => light(scene, *bounces, FINENESS)?,
+        };
         add(
             &mut closed_rows,
             closed_row(&closed, &found, bounces.last().map_or(&[][..], Vec::as_slice)),
@@ -140,7 +149,13 @@ pub fn reference(mut args: Args) -> Outcome {
     let path = Path::new(PAGE);
     let device = format!("{PATHS} paths per grid point on *{device}*.\n");
     let mut page = std::fs::read_to_string(path)?;
-    for (name, part) in [("device", device), ("scenes", rows), ("closed forms", closed_rows)] {
+    let parts = [
+        ("device", device),
+        ("scenes", rows),
+        ("flat scenes", flat_rows),
+        ("closed forms", closed_rows),
+    ];
+    for (name, part) in parts {
         page = with(path, &page, name, &part)?;
     }
     write(PAGE, &page, complaints)
