@@ -51,10 +51,10 @@ impl Default for ViewOptions {
 ///
 /// The surface is the mesh of two triangles per cell, split from (r, c) to (r+1, c+1), visible from both sides. A triangle
 /// with a void corner is a hole. A periodic field appears once. Exit radiance is bilinear between texels; its specular is
-/// that of the view from straight above, as in the lit field. Behind the ground are the uniform sky and the environment by
-/// direction, bilinear between the centres of its texels; suns, key lights and sphere lights are not visible. With an
-/// orthographic lens, visible ground reaches above and below the scene's heights by the height of the picture and the
-/// heights' own extent along the view.
+/// that of the lit field, viewed from its own eye ([`Picture::eye_m`](super::Picture)). Behind the ground are the uniform
+/// sky and the environment by direction, bilinear between the centres of its texels; suns, key lights and sphere lights are
+/// not visible. With an orthographic lens, visible ground reaches above and below the scene's heights by the height of the
+/// picture and the heights' own extent along the view.
 ///
 /// A plinth has walls from the field's edges down to a level base, and none where the ground is lower. It hides what is
 /// behind it, but depths are those of the ground. Its light is not computed: a face has a fixed share of the ground's mean
