@@ -171,7 +171,7 @@ pub(crate) fn pictures() -> Vec<Case> {
             Some(Environment::new(18, 9, texels, rotation_rad).expect("an environment"));
         scene
     };
-    let many_lobes = {
+    let mapped = {
         let phong = |i: usize| PhongSpecular { exponent: (7 * i % 50) as f32, scale: 0.4 };
         let mut scene = mirrored.clone();
         scene.surface.specular = Some(Specular::Map((0..14 * 11).map(phong).collect()));
@@ -351,7 +351,7 @@ pub(crate) fn pictures() -> Vec<Case> {
             false,
             false,
         )),
-        before_an_eye(picture("a map of lobes before an eye", many_lobes, quality, false, false)),
+        before_an_eye(picture("a map of lobes before an eye", mapped, quality, false, false)),
     ]
 }
 
