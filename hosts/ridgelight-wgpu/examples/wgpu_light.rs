@@ -194,8 +194,9 @@ fn new_heights(device: &wgpu::Device, queue: &wgpu::Queue) -> Any<()> {
         let moved = |(i, height): (usize, &f32)| height + (i * n % 5) as f32;
         let moved: Vec<f32> = still.iter().enumerate().map(moved).collect();
         write(queue, heights, &moved);
-        let changed = changed.iter().filter_map(|name| renderer.plan().find(name));
-        let passes = renderer.passes_after(&changed.collect::<Vec<_>>());
+        let changed: Vec<_> =
+            changed.iter().filter_map(|name| renderer.plan().find(name)).collect();
+        let passes = renderer.passes_after(&changed);
         renderer.submit_passes(&[heights, sky], &[&light], &passes)?;
         let found = read(&readers[0])?;
         let mut new = Renderer::new(device, queue, planned(&scene)?)?;
@@ -277,7 +278,8 @@ fn main() -> Any<()> {
     let mut values = Vec::new();
     for _ in 0..frames {
         queue.write_texture(heights.as_image_copy(), &bytes, layout, SIZE);
-        renderer.submit(&[&heights], &[&light])?;
+        let passes = renderer.passes_after(renderer.plan().find("heights").as_slice());
+        renderer.submit_passes(&[&heights], &[&light], &passes)?;
         queue.submit([reader.record(&device)]);
         values = reader.values(&device)?;
         reader.mapped.unmap();
