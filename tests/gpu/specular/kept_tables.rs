@@ -6,7 +6,7 @@ use std::cell::RefCell;
 use ridgelight::gpu::{Headless, Renderer};
 use ridgelight::plan::{self, Picture, Plan, Rectangle};
 use ridgelight::scene::{
-    Albedo, Border, Lights, PhongSpecular, Quality, Scene, Specular, Sun, fractal,
+    Albedo, Basis, Border, Lights, PhongSpecular, Quality, Scene, Specular, Sun, fractal,
 };
 
 use crate::cpu_reference::noisy_environment;
@@ -228,4 +228,41 @@ fn moved_suns_and_edited_heights_need_no_tables() {
     let raised = bits(gpu, &frame);
     assert!(raised != moved && raised == from_nothing(gpu, &plan, &contents));
     gpu.end(frame);
+}
+
+/// Another eye needs neither a sweep nor tables, by slices of the lobe and by harmonics. The pictures have the bits of new
+/// renderers.
+#[test]
+fn another_eye_needs_no_tables() {
+    let mut device = Device::new();
+    let gpu = device.gpu.as_mut().expect("alive");
+    let (scene, limits) = (scene(5.0), crate::limits_of(gpu));
+    let contents = contents(&scene, 1);
+    for basis in [Basis::Auto, Basis::Sh] {
+        let planned = |eye_m| {
+            let quality =
+                Quality { azimuths: 12, table_elevations: 32, basis, ..Quality::default() };
+            let (keeps_horizons, light_layers) = (true, true);
+            let wanted = Picture { keeps_horizons, light_layers, eye_m, ..Picture::default() };
+            plan::picture(&scene, &quality, &limits, wanted).expect("a plan")
+        };
+        let mut frame = gpu.frame(planned(None), &contents).expect("a frame");
+        gpu.draw(&mut frame).expect("drawn");
+        let mut last = bits(gpu, &frame);
+        for eye_m in [[-5.0, 8.0, 60.0], [30.0, 8.0, 60.0]].map(Some) {
+            let plan = planned(eye_m);
+            let due = gpu.replace_plan(&mut frame, plan.clone()).expect("the same passes");
+            let kept = left_out(&plan, &due);
+            let is_there = |label: &str| plan.passes.iter().any(|pass| pass.label() == label);
+            let mut tables = TABLES.iter().filter(|table| is_there(table));
+            assert!(tables.all(|table| kept.iter().any(|k| k == table)), "{basis:?}: {kept:?}");
+            assert!(kept.iter().any(|label| label.starts_with("horizon_sweep")), "{kept:?}");
+            gpu.draw_passes(&mut frame, &due).expect("drawn");
+            let found = bits(gpu, &frame);
+            assert!(found != last, "{basis:?}: the view of the eye before");
+            assert!(found == from_nothing(gpu, &plan, &contents), "{basis:?} {eye_m:?}");
+            last = found;
+        }
+        gpu.end(frame);
+    }
 }
