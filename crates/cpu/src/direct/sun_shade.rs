@@ -1,4 +1,5 @@
-//! Direct light of a sun or a key light, from a grid point's horizons in the azimuths that it covers.
+//! Direct light of a sun or a key light, from a grid point's horizons in the azimuths that it covers. Specular of key lights:
+//! [`crate::key_specular`].
 
 use crate::shared::gather::{Swept, elevation_moments};
 use glam::DVec3;
