@@ -18,6 +18,7 @@ layout(push_constant) uniform ShadePush {
     uint azimuth_count;
     uint clears;         // 1 in the first batch
     vec4 eye_m;          // specular: the eye, over the field's base; w: 0 for a view from straight above
+    vec4 colour;         // specular of a key light: its radiance, times a constant scale; w: 1 where the sum begins
     float exponent;      // of the Phong lobe
     float least_cosine;  // to the lobe's axis, below which light counts as 0
     uint relights;       // 1 after an edit: only the grid points marked in dirty_texels, from the list of their words

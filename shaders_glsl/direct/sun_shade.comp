@@ -1,7 +1,8 @@
 // Computes: direct light of a sun or a key light from the horizons in the azimuths that it covers, added to earlier
-// batches.
-// Reads: lane_heights, azimuths, lattice, dirty_texels, edit_list.
-// Reads and writes: sun_sum (exit radiance for albedo 1, and irradiance 1 of a sun or radiance 1 of a key light).
+// batches; and the Phong specular of a key light.
+// Reads: lane_heights, azimuths, lattice, phong_map, dirty_texels, edit_list.
+// Reads and writes: sun_sum (exit radiance for albedo 1, and irradiance 1 of a sun or radiance 1 of a key light),
+// specular_sum (exit radiance, RGB).
 // One invocation is four grid points side by side along the lane axis, at one march position.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
@@ -21,6 +22,9 @@ const bool CAN_RELIGHT = true;
 // See sun_light.glsl.
 layout(constant_id = 4) const uint SHAPE = 0u;
 layout(constant_id = 5) const bool MARCHES_ROWS = false;
+// For SHAPE_PATCH.
+layout(constant_id = 6) const bool HAS_SPECULAR = false;
+layout(constant_id = 7) const bool SPECULAR_IS_MAP = false;
 
 layout(binding = 0, rgba32f) uniform readonly image2D lane_heights;
 // LATTICE selects one of these.
@@ -32,6 +36,9 @@ layout(binding = 7) uniform utexture2DArray lattice_words;
 
 layout(binding = 2) uniform textureBuffer azimuths;
 layout(binding = 3, r32f) uniform image2D sun_sum;
+layout(binding = 4, rgba32f) uniform image2D specular_sum;
+// Phong exponent and scale.
+layout(binding = 5) uniform texture2D phong_map;
 
 // Sums of the four grid points, and their normals.
 vec4 sun;
@@ -39,10 +46,15 @@ vec4 normal_east;
 vec4 normal_north;
 vec4 normal_up;
 
+void add_specular(Azimuth azimuth, vec4 lowest);
+
 // Adds azimuth `index`: `lowest` is the slope of the lowest direction above both the horizon and the grid point's own
 // plane.
 void add_light(uint index, Azimuth azimuth, vec4 lowest) {
     sun += sun_light(azimuth, normal_east, normal_north, normal_up, lowest, SHAPE);
+    if (HAS_SPECULAR) {
+        add_specular(azimuth, lowest);
+    }
 }
 
 float dark_slope(Azimuth azimuth) {
@@ -50,6 +62,23 @@ float dark_slope(Azimuth azimuth) {
 }
 
 #include "direct/gather.glsl"
+#include "specular/key_specular.glsl"
+
+// Of a key light of radiance 1, for scale 1; and the exponents of a map.
+vec4 mirrored_light;
+vec4 exponents;
+Mirrored mirror;
+
+void add_specular(Azimuth azimuth, vec4 lowest) {
+    if (!SPECULAR_IS_MAP) {
+        mirrored_light += key_specular(exponent, azimuth, mirror, lowest);
+        return;
+    }
+    for (int k = 0; k < 4; k++) {
+        vec4 light = key_specular(exponents[k], azimuth, mirror, lowest);
+        mirrored_light[k] += light[k];
+    }
+}
 
 void main() {
     int lanes = MARCHES_ROWS ? cols : rows;
@@ -77,10 +106,33 @@ void main() {
             sun[k] = imageLoad(sun_sum, texel_at(min(lane + k, lanes - 1), march)).x;
         }
     }
+    vec4 scales = vec4(1.0);
+    if (HAS_SPECULAR) {
+        mirrored_light = vec4(0.0);
+        vec4 lane_at = vec4(lane, lane + 1, lane + 2, lane + 3);
+        vec4 column = MARCHES_ROWS ? lane_at : vec4(march);
+        vec4 row = MARCHES_ROWS ? vec4(march) : lane_at;
+        mirror = mirrored(normal_east, normal_north, normal_up, column * cell_x_m, (float(rows - 1) - row) * cell_y_m,
+                          q.here.four, eye_m);
+        if (SPECULAR_IS_MAP) {
+            for (int k = 0; k < 4; k++) {
+                vec2 of = texelFetch(phong_map, texel_at(min(lane + k, lanes - 1), march), 0).xy;
+                exponents[k] = of.x;
+                scales[k] = of.y;
+            }
+        }
+    }
     add_all(q, lanes, steps, east, north);
     for (int k = 0; k < 4 && lane + k < lanes; k++) {
+        ivec2 at = texel_at(lane + k, march);
         if (lit[k]) {
-            imageStore(sun_sum, texel_at(lane + k, march), vec4(sun[k]));
+            imageStore(sun_sum, at, vec4(sun[k]));
+        }
+        if (HAS_SPECULAR) {
+            vec4 before = imageLoad(specular_sum, at);
+            vec4 light = vec4(colour.rgb * (scales[k] * mirrored_light[k]), 0.0);
+            vec4 sum = before + light;
+            imageStore(specular_sum, at, colour.w > 0.0 ? light : sum);
         }
     }
 }

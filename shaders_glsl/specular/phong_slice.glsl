@@ -43,13 +43,14 @@ vec4 cosine_integral(float n, vec4 s, vec4 y2) {
 }
 
 // Antiderivative over elevation w of (n + 1) / (2 pi) max(0, e.m)^n cos w, for A^2 + B^2 = 1.
-vec4 phong_integral(float n, vec4 along, vec4 up, float cos_w, float sin_w) {
+vec4 phong_integral(float n, vec4 along, vec4 up, vec4 cos_w, vec4 sin_w) {
     vec4 c = along * cos_w + up * sin_w;
     vec4 s = along * sin_w - up * cos_w;
     // A right angle or more from the peak: the lobe has not begun where it peaks above horizontal, and has ended where it peaks
     // below. A lobe that peaks at the horizontal begins straight down and ends straight up.
     vec4 end = mix(vec4(1.0), vec4(-1.0), greaterThan(up, vec4(0.0)));
-    vec4 level_end = mix(vec4(-1.0), vec4(sin_w < 0.0 ? -1.0 : 1.0), greaterThan(along, vec4(0.0)));
+    vec4 level_end = mix(vec4(1.0), vec4(-1.0), lessThan(sin_w, vec4(0.0)));
+    level_end = mix(vec4(-1.0), level_end, greaterThan(along, vec4(0.0)));
     end = mix(end, level_end, equal(up, vec4(0.0)));
     s = mix(s, end, lessThanEqual(c, vec4(0.0)));
     vec4 y2 = minus_log(min(s * s, vec4(1.0)));

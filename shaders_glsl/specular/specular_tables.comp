@@ -60,7 +60,7 @@ void main() {
     float lower = min(max(first_rad + step_rad * float(peak) - reach_rad, bottom_rad), HALF_PI);
     float last_reached = first_rad + step_rad * float(peak + 3) + reach_rad;
     int row = clamp(int((HALF_PI - lower) / PI * float(height)), 0, rows - 1);
-    vec4 below_lower = phong_integral(exponent, along, up, cosine(lower), sine(lower));
+    vec4 below_lower = phong_integral(exponent, along, up, vec4(cosine(lower)), vec4(sine(lower)));
     for (int node = 0; node < nodes; node++) {
         // Of the last node exactly, whatever a quotient rounds to: the loop below ends there.
         float elevation = node == nodes - 1 ? HALF_PI : bottom_rad + (HALF_PI - bottom_rad) * float(node) / float(nodes - 1);
@@ -68,7 +68,7 @@ void main() {
         while (lower < min(elevation, last_reached)) {
             float row_top = HALF_PI - PI * float(row) / float(height);
             float upper = min(row_top, elevation);
-            vec4 below_upper = phong_integral(exponent, along, up, cosine(upper), sine(upper));
+            vec4 below_upper = phong_integral(exponent, along, up, vec4(cosine(upper)), vec4(sine(upper)));
             vec3 light = sky_light;
             if (HAS_ENVIRONMENT) {
                 light += wedge_rows[(k * rows + row) * 3 + 2].rgb;

@@ -53,6 +53,7 @@ impl shaders::ShadePush {
             azimuth_count: batch.count,
             clears: u32::from(batch.is_first),
             eye_m: [0.0; 4],
+            colour: [0.0; 4],
             exponent: 0.0,
             least_cosine: 0.0,
             relights: 0,

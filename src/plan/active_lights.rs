@@ -11,6 +11,9 @@ use crate::scene::{
 };
 use crate::{Error, Result};
 
+/// The most azimuths across a key light, as of the setting `sun_azimuths`.
+const MOST_AZIMUTHS: u32 = 256;
+
 /// The lights that are not dark.
 pub(super) struct ActiveLights<'a> {
     pub sky: Option<[f32; 3]>,
@@ -189,8 +192,10 @@ impl<'a> ActiveLights<'a> {
     }
 
     /// Positions among the lights that are [aimed](Self::aimed), of suns and of key lights narrow enough for shadow heights.
+    /// Specular of a key light needs the horizon in each azimuth instead.
     pub(super) fn by_shadow_heights(&self) -> Vec<usize> {
-        let keys = self.keys.iter().enumerate().filter(|(_, (_, key))| Shadows::suits(key));
+        let suits = |key: &KeyLight| self.specular.is_none() && Shadows::suits(key);
+        let keys = self.keys.iter().enumerate().filter(|(_, (_, key))| suits(key));
         (0..self.suns.len()).chain(keys.map(|(k, _)| self.suns.len() + k)).collect()
     }
 
@@ -239,9 +244,47 @@ impl<'a> ActiveLights<'a> {
         }
         let across = |sun| azimuths::across_sun(sun, quality.sun_azimuths, cell_m);
         lists.extend(self.suns.iter().map(|(_, sun)| across(sun)));
-        let across = |key| azimuths::across_key(key, quality.sun_azimuths, cell_m);
+        let across =
+            |key| azimuths::across_key(key, self.key_azimuths(key, quality.sun_azimuths), cell_m);
         lists.extend(self.keys.iter().map(|(_, key)| across(key)));
         Ok(lists)
+    }
+
+    /// Azimuths across a key light for a setting of `sun_azimuths`, which specular may raise up to [`MOST_AZIMUTHS`].
+    fn key_azimuths(&self, key: &KeyLight, setting: u32) -> u32 {
+        setting.max(self.specular_azimuths(key).min(MOST_AZIMUTHS))
+    }
+
+    /// Azimuths across a key light that are at most half as wide as the surface's narrowest lobe, whose deviation is 1/√(n + 1)
+    /// radians: the lobe's slice in the middle of a wedge then stands for the wedge. 0 without specular.
+    fn specular_azimuths(&self, key: &KeyLight) -> u32 {
+        let narrowest = self.specular.map(|specular| f64::from(specular.largest().exponent));
+        narrowest.map_or(0, |n| (2.0 * key.width_rad * (n + 1.0).sqrt()).ceil() as u32)
+    }
+
+    /// What specular changes about key lights.
+    pub(super) fn key_notes(&self, quality: &Quality) -> Vec<String> {
+        let mut notes = Vec::new();
+        if self.keys.iter().any(|(_, key)| Shadows::suits(key)) {
+            notes.push(
+                "key lights without shadow heights: their specular needs the horizon in each azimuth"
+                    .into(),
+            );
+        }
+        for (i, key) in &self.keys {
+            let (number, count) = (i + 1, self.key_azimuths(key, quality.sun_azimuths));
+            if count < self.specular_azimuths(key) {
+                let n = (f64::from(count) / (2.0 * key.width_rad)).powi(2) - 1.0;
+                notes.push(format!(
+                    "key {number}: {count} azimuths, the most; specular of exponents above {n:.0} needs more"
+                ));
+            } else if count > quality.sun_azimuths {
+                notes.push(format!(
+                    "key {number}: {count} azimuths, each at most half as wide as the lobe"
+                ));
+            }
+        }
+        notes
     }
 
     /// Radiance of the sky, mean over channels. If the sky-view factor is requested beside an environment, that of a sky as

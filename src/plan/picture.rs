@@ -66,7 +66,8 @@ pub struct Picture {
 /// which the others then exclude). Images have one channel if every colour is grey, else four.
 ///
 /// Specular of sky and environment integrates the lobe over each azimuth's slice, by tables; that of a map of specular or with
-/// bounces uses harmonics, whose order limits the lobe. Suns use the lobe towards their centre and their visible part.
+/// bounces uses harmonics, whose order limits the lobe. Suns use the mean of the lobe over their disc and their visible part, key
+/// lights the lobe over each azimuth's slice of them.
 ///
 /// # Errors
 /// Settings or lights out of range; no light; a scene beyond the limits.

@@ -95,6 +95,7 @@ mod specular {
     pub mod cpu_reference;
     mod direct;
     mod kept_tables;
+    mod keys;
 }
 #[path = "../common/intercepted.rs"]
 mod intercepted;

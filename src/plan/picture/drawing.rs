@@ -214,6 +214,7 @@ impl Drawing<'_> {
             let mut walked = None;
             for batch in batches {
                 let part = part(&name, batch, batches);
+                let specular = self.key_specular(i);
                 let Some(sweeping) = &self.sweeping else { return };
                 let builder = &mut self.builder;
                 let lanes = sweeping.lane_heights(batch);
@@ -239,7 +240,8 @@ impl Drawing<'_> {
                 let lattice = sweeping.lattice(batch);
                 let sweep = &sweeping.sweep;
                 passes::sun_shade::plan(
-                    builder, sweep, border, cell_m, batch, &part, shape, lattice, ids, resolves,
+                    builder, sweep, border, cell_m, batch, &part, shape, lattice, ids, specular,
+                    resolves,
                 );
             }
             self.resolve(&name, sum, Some(colour), self.images.aimed_layers[i]);

@@ -6,6 +6,7 @@ use crate::graph::ResourceId;
 use crate::passes::batch::Batch;
 use crate::passes::bounced_specular::{BouncedSpecular, ExitLight};
 use crate::passes::bounces::{Bouncing, bounce_name};
+use crate::passes::sun_shade::KeySpecular;
 use crate::passes::{self, PhongSource, light_resolve, specular_exit, sun_specular};
 use crate::scene::{
     Basis, BounceEngine, BounceSpecular, PhongSpecular, Quality, Receiver, Specular, Sun,
@@ -25,10 +26,7 @@ pub(super) fn quality(
         return Ok(*quality);
     }
     let refuse = |found: &str, expected: &str| Err(Error::setting("specular", found, expected));
-    let alone = "sky, environment and suns only; the path-traced reference supports others";
-    if !active.keys.is_empty() {
-        return refuse("specular under a key light", alone);
-    }
+    let alone = "no sphere lights; the path-traced reference supports them";
     if let Some(light) = active.near.active.first() {
         return refuse(&format!("specular under a {}", light.of.name), alone);
     }
@@ -39,6 +37,13 @@ pub(super) fn quality(
         }));
     }
     let quality = bounced(*quality, notes)?;
+    if !active.keys.is_empty() {
+        if quality.bounces.count > 0 {
+            let alone = "no `bounces`; the path-traced reference supports both";
+            return refuse("specular with bounces under a key light", alone);
+        }
+        notes.extend(active.key_notes(&quality));
+    }
     let by_slices = active.by_slices(&quality).is_some();
     match quality.basis {
         _ if !active.has_specular_around() => Ok(quality),
@@ -183,6 +188,15 @@ impl Drawing<'_> {
         );
     }
 
+    /// Specular of the light at this position among the [aimed](ActiveLights::aimed) ones, if it is a key light.
+    pub(super) fn key_specular(&mut self, index: usize) -> Option<KeySpecular> {
+        let (_, key) = self.active.keys.get(index.checked_sub(self.active.suns.len())?)?;
+        let (specular_sum, phong) = self.images.specular_sum.zip(self.phong())?;
+        let (radiance, eye_m) = (key.radiance, self.eye_m);
+        let begins = !std::mem::replace(&mut self.specular_is_begun, true);
+        Some(KeySpecular { phong, radiance, eye_m, specular_sum, begins })
+    }
+
     /// Light that arrives from sky and environment, if specular bounces keep directions.
     pub(super) fn specular_around(&mut self) {
         let Some((specular, h)) = self.bounced_by_direction().zip(self.harmonics.as_ref()) else {
@@ -267,8 +281,8 @@ mod tests {
     use crate::plan::{Picture, Plan};
     use crate::scene::fractal;
     use crate::scene::{
-        Albedo, Basis, Border, Environment, KeyLight, Lights, PhongSpecular, Quality, Scene,
-        Specular, SphereLight, Sun, Surface,
+        Albedo, Basis, Border, Bounces, Environment, KeyLight, Lights, PhongSpecular, Quality,
+        Scene, Specular, SphereLight, Sun, Surface,
     };
 
     fn plan(lights: Lights, basis: Basis, scale: f32) -> Result<Plan> {
@@ -297,6 +311,15 @@ mod tests {
         Lights { suns: vec![sun], ..Lights::default() }
     }
 
+    fn key() -> KeyLight {
+        KeyLight {
+            azimuth_rad: 0.0,
+            width_rad: 1.0,
+            elevations_rad: [0.1, 0.5],
+            radiance: [1.0; 3],
+        }
+    }
+
     fn names(plan: &Plan) -> Vec<String> {
         plan.passes.iter().map(crate::graph::Pass::label).collect()
     }
@@ -304,23 +327,16 @@ mod tests {
     #[test]
     fn specular_names_the_lights_and_bases_it_rejects() {
         let message = |lights, basis| plan(lights, basis, 0.5).unwrap_err().to_string();
-        let key = KeyLight {
-            azimuth_rad: 0.0,
-            width_rad: 1.0,
-            elevations_rad: [0.1, 0.5],
-            radiance: [1.0; 3],
-        };
-        let under_key = message(Lights { keys: vec![key], ..sky() }, Basis::Sh);
-        assert!(under_key.contains("specular under a key light"), "{under_key}");
         let sphere = SphereLight { position_m: [1.0; 3], radius_m: 1.0, radiance: [1.0; 3] };
         let under_sphere = message(Lights { sphere_lights: vec![sphere], ..sky() }, Basis::Sh);
         assert!(under_sphere.contains("path-traced reference"), "{under_sphere}");
 
         // Dark lights, or no specular, raise no error.
-        let dark = KeyLight { radiance: [0.0; 3], ..key };
-        assert!(plan(Lights { keys: vec![dark], ..sky() }, Basis::Sh, 0.5).is_ok());
-        assert!(plan(Lights { keys: vec![key], ..sky() }, Basis::Table, 0.0).is_ok());
+        let dark = SphereLight { radiance: [0.0; 3], ..sphere };
+        assert!(plan(Lights { sphere_lights: vec![dark], ..sky() }, Basis::Sh, 0.5).is_ok());
+        assert!(plan(Lights { sphere_lights: vec![sphere], ..sky() }, Basis::Table, 0.0).is_ok());
         assert!(plan(sun(), Basis::Table, 0.5).is_ok());
+        assert!(plan(Lights { keys: vec![key()], ..sky() }, Basis::Sh, 0.5).is_ok());
     }
 
     /// Lobes that a sun widens are noted: 0.2² n is 40 at exponent 1,000, and 50 at 1,250.
@@ -336,6 +352,55 @@ mod tests {
         assert_eq!(widened(1_000.0), [""; 0]);
         let noted = widened(1_250.0);
         assert!(noted.len() == 1 && noted[0].contains("sun 2: exponents above 1200 "), "{noted:?}");
+    }
+
+    /// Key lights have as many azimuths as the lobe needs: of a width of 1 radian 2 √(99 + 1) = 20 at exponent 99; at 9 fewer than the
+    /// 8 of the setting; and never more than 256. They are cut by horizons and not by shadow heights.
+    #[test]
+    fn key_lights_have_the_azimuths_that_a_lobe_needs() {
+        let planned = |exponent, scale, elevations_rad| {
+            let keys = vec![KeyLight { elevations_rad, ..key() }];
+            let phong = PhongSpecular { exponent, scale };
+            plan_of(Lights { keys, ..Lights::default() }, Basis::Auto, phong).unwrap()
+        };
+        let tall = [0.1, 0.5];
+        for (exponent, scale, count) in [(99.0, 0.5, 20), (9.0, 0.5, 8), (99.0, 0.0, 8)] {
+            let plan = planned(exponent, scale, tall);
+            assert_eq!(plan.azimuths.len(), count, "{exponent} {scale}");
+            let noted = plan.notes.iter().any(|n| n.starts_with("key 1: 20 azimuths"));
+            assert_eq!(noted, count == 20, "{:?}", plan.notes);
+        }
+        let low = planned(99.0, 0.5, [0.1, 0.15]);
+        assert!(low.passes.iter().all(|pass| pass.name() != "shadow_shade"));
+        assert!(low.notes.iter().any(|n| n.contains("without shadow heights")), "{:?}", low.notes);
+        let wide = KeyLight { width_rad: 3.0, ..key() };
+        let lights = Lights { keys: vec![wide], ..Lights::default() };
+        let phong = PhongSpecular { exponent: 10_000.0, scale: 0.5 };
+        let most = plan_of(lights, Basis::Auto, phong).unwrap();
+        assert_eq!(most.azimuths.len(), 256);
+        // (256 / 6)² - 1 = 1819.
+        assert!(most.notes.iter().any(|n| n.contains("above 1819 ")), "{:?}", most.notes);
+    }
+
+    /// Specular of key lights is no part of the light that bounces.
+    #[test]
+    fn bounces_of_specular_refuse_key_lights() {
+        let lights = Lights { keys: vec![key()], ..Lights::default() };
+        let phong = PhongSpecular { exponent: 9.0, scale: 0.5 };
+        let surface = Surface {
+            albedo: Albedo::Constant([0.5; 3]),
+            specular: Some(Specular::Constant(phong)),
+            ..Surface::default()
+        };
+        let scene = Scene { field: fractal(32, 1).unwrap(), surface, lights };
+        let planned = |count| {
+            let bounces = Bounces { count, ..Bounces::default() };
+            let quality = Quality { azimuths: 8, bounces, ..Quality::default() };
+            plan::picture(&scene, &quality, &Limits::lavapipe(), Picture::default())
+        };
+        let refused = planned(1).unwrap_err().to_string();
+        assert!(refused.contains("specular with bounces under a key light"), "{refused}");
+        assert!(planned(0).is_ok());
     }
 
     /// Sky and environment use tables of the lobe, without harmonics unless they are requested. Suns need neither, nor does

@@ -203,6 +203,25 @@ pub(crate) fn pictures() -> Vec<Case> {
     };
     let mut without_suns = shiny_sky(300.0, Border::Plane);
     without_suns.lights.suns.clear();
+    // Key lights from below horizontal up, and a narrow one, beside a sun.
+    let under_keys = |border, specular| {
+        let narrow = KeyLight { width_rad: 0.2, ..key(0.3, 0.36, [3.0, 0.0, 1.0]) };
+        let keys = vec![key(-0.4, 0.9, [1.0, 2.0, 0.5]), narrow];
+        let suns = vec![sun(0.7, 0.1, [1.0, 2.0, 3.0])];
+        let surface =
+            Surface { border, albedo: Albedo::Constant([0.25; 3]), specular: Some(specular) };
+        let lights = Lights { suns, keys, ..Lights::default() };
+        Scene { field: rough(11, 14, 47), surface, lights }
+    };
+    let one_phong = |exponent| Specular::Constant(PhongSpecular { exponent, scale: 0.6 });
+    let phong_at =
+        |i: usize| PhongSpecular { exponent: (3 * i) as f32, scale: (i % 7) as f32 * 0.1 };
+    let phongs = Specular::Map((0..11 * 14).map(phong_at).collect());
+    let with_keys = {
+        let mut scene = mirrored.clone();
+        scene.lights.keys = vec![key(0.1, 1.5, [2.0, 1.0, 1.0])];
+        scene
+    };
     let along_vectors = Quality { lines: Lines::Exact, ..quality };
     let nine = Quality { azimuths: 9, ..quality };
     // Low lights by shadow heights: a disc, a point and a narrow key light, in different octants.
@@ -332,6 +351,34 @@ pub(crate) fn pictures() -> Vec<Case> {
         picture(
             "a narrow lobe of an environment, open",
             narrow(Border::Open, 1000.0, -2.0),
+            quality,
+            false,
+            false,
+        ),
+        picture("a lobe under all lights at infinity", with_keys, quality, true, false),
+        picture(
+            "a wide lobe under key lights, open",
+            under_keys(Border::Open, one_phong(1.0)),
+            quality,
+            true,
+            false,
+        ),
+        Case {
+            wanted: Wanted::Picture(Picture {
+                eye_m: Some([30.0, -40.0, 960.0]),
+                ..Picture::default()
+            }),
+            ..picture(
+                "a narrow lobe under key lights, before an eye",
+                under_keys(Border::Plane, one_phong(1000.0)),
+                quality,
+                false,
+                false,
+            )
+        },
+        picture(
+            "lobes of a map under key lights, periodic",
+            under_keys(Border::Periodic, phongs),
             quality,
             false,
             false,

@@ -1,6 +1,7 @@
 //! Phong specular: the suns' direct, and that of bounces.
 
 pub(crate) mod bounced;
+pub(crate) mod key;
 pub(crate) mod slices;
 pub(crate) mod sun;
 

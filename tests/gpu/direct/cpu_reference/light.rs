@@ -22,6 +22,7 @@ use ridgelight_cpu::tolerance::{
 };
 
 use crate::cpu_reference::{Pair, Run, constant, fuse_of, pushed};
+use crate::specular::cpu_reference::key::key_specular;
 use crate::specular::cpu_reference::slices::{slices, view_from};
 
 pub(crate) type Rgb = glam::DVec3;
@@ -243,7 +244,8 @@ pub(crate) fn sun_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let is_point = shape == Shape::Point;
     let got = run.floats(pass, "sun_sum").expect("written");
     let [cols, _] = run.size();
-    run.swept(range.clone(), fuse_of(pass), |swept| {
+    let mirrored = key_specular(run, pass, &error);
+    let mut pairs = run.swept(range.clone(), fuse_of(pass), |swept| {
         let weight = |a: &Azimuth| match shape {
             Shape::Patch => f64::from(a.wedge_rad),
             Shape::Disc | Shape::Point => f64::from(a.weight),
@@ -270,7 +272,9 @@ pub(crate) fn sun_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         }
         assert!(pairs.len() * 50 >= got.len() * 49, "{} of {} decided", pairs.len(), got.len());
         pairs
-    })
+    });
+    pairs.extend(mirrored);
+    pairs
 }
 
 pub(crate) fn sphere_light_of(run: &Run, pass: &Pass) -> SphereLight {

@@ -230,9 +230,9 @@ fn specular() {
                 &["--specular: found", "--basis sh"],
             ),
             (
-                "--specular 10,0.5 --albedo 0.5 --key 0,30,9,9,1",
+                "--specular 10,0.5 --albedo 0.5 --key 0,30,9,9,1 --bounces 1",
                 2,
-                &["--specular: found", "key light"],
+                &["--specular: found", "bounces under a key light"],
             ),
             (
                 "--specular 10,0.5 --albedo 0.5 --bounces 1 --bounce-engine sweep",
@@ -268,6 +268,7 @@ fn specular() {
             ),
             (&format!("bench a.asc {both} --bounces 1"), 2, &["--specular with bench --bounces"]),
             (&format!("bench --sizes 64 {both}"), 2, &["--specular with bench --sizes"]),
+            (&format!("bench a.asc {both} --key 0,30,9,9,1"), 2, &["--specular with bench --key"]),
             ("horizon a.asc -o out.npy --specular 10,0.5", 2, &["--specular"]),
         ],
     );

@@ -1,0 +1,60 @@
+//! Phong specular of key lights, which `sun_shade` adds.
+
+use ridgelight::gpu::shaders::offset;
+use ridgelight::plan::Pass;
+use ridgelight::scene::PhongSpecular;
+use ridgelight_cpu::key_specular as key_reference;
+use ridgelight_cpu::mirror_map::mirrored;
+use ridgelight_cpu::tolerance::{EPSILON, ShadeError};
+
+use super::slices::view_from;
+use crate::cpu_reference::{Pair, Run, fuse_of, pushed};
+
+/// What a batch of azimuths adds of a key light to the device's own sum before; none where there is no specular.
+pub(crate) fn key_specular(run: &mut Run, pass: &Pass, error: &ShadeError) -> Vec<Pair> {
+    const AZIMUTH_COUNT: usize = offset("ShadePush", "azimuth_count");
+    const COLOUR: usize = offset("ShadePush", "colour");
+    const EYE_M: usize = offset("ShadePush", "eye_m");
+    const FIRST_AZIMUTH: usize = offset("ShadePush", "first_azimuth");
+    let Some(got) = run.floats(pass, "specular_sum") else { return Vec::new() };
+    let number = pass.part.split(' ').next().and_then(|part| part.strip_prefix("key"));
+    let number: usize = number.and_then(|n| n.parse().ok()).expect("key and its number");
+    let radiance = run.scene.lights.keys[number - 1].radiance.map(f64::from);
+    let float = |offset: usize| f64::from(f32::from_bits(pushed(pass, offset)));
+    let eye_m = [0, 4, 8, 12].map(|i| float(EYE_M + i));
+    let texels = got.len() / 4;
+    if float(COLOUR + 12) > 0.0 {
+        run.specular = vec![[0.0; 3]; texels];
+    }
+    let phongs: Vec<PhongSpecular> = (0..texels).map(|i| run.phong_specular(i)).collect();
+    let [cols, _] = run.size();
+    let off = [2.0 * error.normal() + 20.0 * EPSILON, error.lowest_slope()];
+    let [first, count] = [FIRST_AZIMUTH, AZIMUTH_COUNT].map(|o| pushed(pass, o) as usize);
+    let added = run.swept(first..first + count, fuse_of(pass), |swept| {
+        let at = |i: usize| {
+            let view = view_from(&swept.heights, eye_m, i);
+            let n = f64::from(phongs[i].exponent);
+            let mut sum = [0.0; 2];
+            let place = [(i % cols) as i32, (i / cols) as i32];
+            swept.add_all(place, true, |_, azimuth, lowest, normal| {
+                let of = (mirrored(normal, view), lowest);
+                let one = key_reference::key_specular(n, azimuth, of, off);
+                sum = [sum[0] + one[0], sum[1] + one[1]];
+            });
+            [sum[0], sum[1] + count as f64 * EPSILON * sum[0]]
+        };
+        (0..texels).map(at).collect::<Vec<[f64; 2]>>()
+    });
+    let mut pairs = Vec::new();
+    for (i, (got, [light, tolerance])) in got.chunks_exact(4).zip(added).enumerate() {
+        let scale = f64::from(phongs[i].scale);
+        for (c, (got, sum)) in got.iter().zip(&mut run.specular[i]).enumerate() {
+            let want = *sum + radiance[c] * scale * light;
+            *sum = f64::from(*got);
+            // Products with radiance and scale, and a sum.
+            let tolerance = radiance[c] * scale * tolerance + 4.0 * EPSILON * want + 1e-30;
+            pairs.push(Pair { got: *sum, want, tolerance, at: [c, i / cols, i % cols] });
+        }
+    }
+    pairs
+}
