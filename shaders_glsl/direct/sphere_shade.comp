@@ -1,7 +1,7 @@
 // Computes: direct light of a sphere light: some of its vertical slices, each in closed form over the visible
-// intervals, added to other slices and sphere lights.
-// Reads: cells, maxima, ground.
-// Reads and writes: sphere_sum (exit radiance for albedo 1).
+// intervals, added to other slices and sphere lights; and its Phong specular.
+// Reads: cells, maxima, ground, phong_map.
+// Reads and writes: sphere_sum (exit radiance for albedo 1), specular_sum (exit radiance).
 // One invocation is one grid point.
 //
 // In a slice the sphere is a disc. An elevation is lit where the ray enters the disc (from inside: leaves it) before
@@ -21,10 +21,16 @@ layout(constant_id = 2) const bool THIN_COLS = false;
 // More steps than a ray of this field can take; llvmpipe ends all loops together after 65,535 iterations.
 layout(constant_id = 3) const int MOST_STEPS = 60000;
 
+layout(constant_id = 4) const bool HAS_SPECULAR = false;
+layout(constant_id = 5) const bool SPECULAR_IS_MAP = false;
+
 layout(binding = 0, rgba32f) uniform readonly image2D cells;
 layout(binding = 1, r32f) uniform readonly image2D maxima;
 layout(binding = 2) uniform texture2D ground;
 layout(binding = 3, rgba32f) uniform image2D sphere_sum;
+layout(binding = 4, rgba32f) uniform image2D specular_sum;
+// Phong exponent and scale.
+layout(binding = 5) uniform texture2D phong_map;
 
 #include "rays/land.glsl"
 
@@ -40,11 +46,16 @@ layout(push_constant) uniform SphereShadePush {
     int slices_around; // for one that surrounds it; wide ones use the same count per radian
     int first_slice;
     int last_slice;    // exclusive
-    int pads[3];
+    float exponent;    // of the Phong lobe, where it is constant, and its scale
+    float scale;
+    float specular_begins; // 1 where the specular sum begins
     vec4 radiance;     // w: 1 where the sum begins
+    vec4 eye_m;        // over the field's base; w: 0 for a view from straight above
 };
 
 #include "rays/walk.glsl"
+#include "specular/phong_slice.glsl"
+#include "specular/mirror.glsl"
 
 // The slice: its distance axis is horizontal, the grid point is its origin; metres.
 vec2 disc;           // centre
@@ -55,9 +66,15 @@ float high_slope;    // of the disc's upper end
 // The normal within the slice.
 float flat_part;
 float normal_up;
+// The lobe about the mirror direction within the slice: the mirror direction's part, of unit length, and a^n.
+float phong_n;
+float phong_along;
+float phong_up;
+float phong_power;
 // State of the slice: the slope below which the surface hides it, and the light of the visible interval below.
 float reached;
 float visible_light;
+float visible_specular;
 
 // A direction of the slice, counted from the axis: cosine and sine.
 vec2 from_axis(float slope) {
@@ -82,6 +99,28 @@ float light_between(vec2 low, vec2 high) {
     float sine_of = low.x * high.y - low.y * high.x;
     vec2 twice = turned(turned(axis, axis), turned(low, high));
     return 0.5 * (flat_part * (width + twice.x * sine_of) + normal_up * twice.y * sine_of);
+}
+
+// Integral over elevations between two directions of the slice of the lobe times cos, without a^n. Of a narrow interval the lobe in its
+// middle, as the antiderivatives at its ends are nearly equal.
+float specular_between(vec2 low, vec2 high) {
+    vec2 sum = low + high;
+    vec2 difference = high - low;
+    float sum2 = max(dot(sum, sum), 1e-20);
+    float width = 2.0 * arc_tangent(vec4(sqrt(dot(difference, difference) / sum2))).x;
+    if (width * width * (phong_n + 1.0) < 2.5e-3) {
+        vec2 middle = turned(axis, sum * inversesqrt(sum2));
+        float c = phong_along * middle.x + phong_up * middle.y;
+        float s = phong_along * middle.y - phong_up * middle.x;
+        float power = exp(-0.5 * phong_n * minus_log(vec4(min(s * s, 1.0))).x);
+        return c > 0.0 ? (phong_n + 1.0) / (2.0 * PI) * power * middle.x * width : 0.0;
+    }
+    vec2 from = turned(axis, low);
+    vec2 to = turned(axis, high);
+    vec4 along = vec4(phong_along);
+    vec4 up = vec4(phong_up);
+    float above = phong_integral(phong_n, along, up, vec4(to.x), vec4(to.y)).x;
+    return max(above - phong_integral(phong_n, along, up, vec4(from.x), vec4(from.y)).x, 0.0);
 }
 
 // Adds a surface piece, from a distance and height to a farther one: the visible interval of the disc in front of it,
@@ -129,6 +168,9 @@ void add_piece(vec2 begin, vec2 end) {
     float light = light_between(from_axis(low), from_axis(high));
     bool counts = begin.x > 0.0 && end.x > begin.x && end_slope > reached && reached < high_slope && to > from && high > low;
     visible_light += counts ? light : 0.0;
+    if (HAS_SPECULAR && counts) {
+        visible_specular += specular_between(from_axis(low), from_axis(high));
+    }
 }
 
 // March over the surface from the grid point to the disc's far end.
@@ -189,8 +231,9 @@ void march(Ray ray, bool going) {
     }
 }
 
-// Light of the slice at azimuth `turn` from the sphere's centre (half of it: cosine, sine), per radian.
-float slice_light(ivec2 here, vec4 own, vec2 towards, float away, float up, vec2 half_turn, bool alive) {
+// Light of the slice at azimuth `turn` from the sphere's centre (half of it: cosine, sine), per radian: diffuse, and specular of
+// scale 1.
+vec2 slice_light(ivec2 here, vec4 own, vec3 mirror, vec2 towards, float away, float up, vec2 half_turn, bool alive) {
     vec2 turn = turned(half_turn, half_turn);
     vec2 e = turned(towards, turn);
     float across = away * turn.y;
@@ -223,12 +266,25 @@ float slice_light(ivec2 here, vec4 own, vec2 towards, float away, float up, vec2
     flat_part = -own_slope * normal_up;
     reached = max(low_slope, own_slope);
     visible_light = 0.0;
+    visible_specular = 0.0;
+    if (HAS_SPECULAR) {
+        float along = dot(mirror.xy, e);
+        float shorten = inversesqrt(max(along * along + mirror.z * mirror.z, 1e-30));
+        phong_along = along * shorten;
+        phong_up = mirror.z * shorten;
+        phong_power = off_slice(phong_n, vec4(mirror.x * e.y - mirror.y * e.x)).x;
+    }
     march(ray_from(here, vec2(0.0), own.x, vec3(e, 0.0), vec2(land.cell_x_m, land.cell_y_m)), alive && reached < high_slope);
     vec2 visible_from = from_axis(reached);
     vec2 lowest = reached > low_slope ? visible_from : low;
     float rest = light_between(lowest, high);
     float light = max(visible_light + (reached < high_slope ? rest : 0.0), 0.0);
-    return alive ? light : 0.0;
+    float specular = 0.0;
+    if (HAS_SPECULAR) {
+        float of_rest = reached < high_slope ? specular_between(lowest, high) : 0.0;
+        specular = phong_power * (visible_specular + of_rest);
+    }
+    return alive ? vec2(light, specular) : vec2(0.0);
 }
 
 void main() {
@@ -253,7 +309,21 @@ void main() {
     // Slightly less, so that rounding decides nothing at widths that divide the circle.
     int wide = max(int(ceil(float(slices_around) * widest / PI - 0.001)), slices);
     int count = around ? slices_around : wide;
-    float light = 0.0;
+    vec3 mirror = vec3(0.0);
+    float of_scale = scale;
+    if (HAS_SPECULAR) {
+        phong_n = exponent;
+        if (SPECULAR_IS_MAP) {
+            vec2 of = texelFetch(phong_map, here, 0).xy;
+            phong_n = of.x;
+            of_scale = of.y;
+        }
+        vec4 z = vec4(inversesqrt(1.0 + own.y * own.y + own.z * own.z));
+        vec2 place = vec2(here.x, land.rows - 1 - here.y) * vec2(land.cell_x_m, land.cell_y_m);
+        Mirrored about = mirrored(-own.y * z, -own.z * z, z, vec4(place.x), vec4(place.y), vec4(own.x), eye_m);
+        mirror = vec3(about.east.x, about.north.x, about.up.x);
+    }
+    vec2 light = vec2(0.0);
     for (int i = first_slice; i < last_slice; i++) {
         bool has_slice = alive && i < count;
         if (!subgroupAny(has_slice)) {
@@ -271,13 +341,19 @@ void main() {
         float alone = count > 1 ? 1.0 : 0.5;
         float weight_ahead = alone * widest * cosine(u) * PI / float(count);
         float weight = around ? weight_around : weight_ahead;
-        float slice = slice_light(here, own, towards, away, up, vec2(cosine(half_turn), sine(half_turn)), has_slice);
-        light += has_slice ? weight * slice : 0.0;
+        vec2 slice = slice_light(here, own, mirror, towards, away, up, vec2(cosine(half_turn), sine(half_turn)), has_slice);
+        light += has_slice ? weight * slice : vec2(0.0);
     }
     if (exists) {
         vec4 before = imageLoad(sphere_sum, at);
         bool begins = radiance.w > 0.0;
         vec4 sum = vec4(begins ? vec3(0.0) : before.rgb, 1.0);
-        imageStore(sphere_sum, at, sum + vec4(radiance.rgb * (light / PI), 0.0));
+        imageStore(sphere_sum, at, sum + vec4(radiance.rgb * (light.x / PI), 0.0));
+        if (HAS_SPECULAR) {
+            vec4 already = imageLoad(specular_sum, at);
+            vec4 more = vec4(radiance.rgb * (of_scale * light.y), 0.0);
+            vec4 together = already + more;
+            imageStore(specular_sum, at, specular_begins > 0.0 ? more : together);
+        }
     }
 }

@@ -1,3 +1,5 @@
+use std::f64::consts::TAU;
+
 use super::Picture;
 use crate::passes::azimuths;
 use crate::passes::azimuths::{Azimuth, Shape};
@@ -13,6 +15,8 @@ use crate::{Error, Result};
 
 /// The most azimuths across a key light, as of the setting `sun_azimuths`.
 const MOST_AZIMUTHS: u32 = 256;
+/// The most slices around a sphere light, as by the largest setting.
+const MOST_AROUND: u32 = 8 * MOST_AZIMUTHS;
 
 /// The lights that are not dark.
 pub(super) struct ActiveLights<'a> {
@@ -84,10 +88,15 @@ impl<'a> ActiveLights<'a> {
         for light in dark {
             notes.push(format!("{} dropped: its radiance is 0", light.name()));
         }
-        let near = Spheres::of(field, lit_near, quality.light_cutoff, notes)?;
         let specular = surface.specular.as_ref().filter(|specular| specular.largest().scale > 0.0);
         if surface.specular.is_some() && specular.is_none() {
             notes.push("specular dropped: its scale is 0".into());
+        }
+        // How far diffuse light reaches does not bound specular.
+        let cutoff = if specular.is_some() { 0.0 } else { quality.light_cutoff };
+        let near = Spheres::of(field, lit_near, cutoff, notes)?;
+        if specular.is_some() && !near.active.is_empty() {
+            notes.push("sphere lights: at all texels, as specular reaches farther".into());
         }
         let grey = |c: &[f32; 3]| c[0] == c[1] && c[1] == c[2];
         let is_grey = environment.is_none()
@@ -258,8 +267,18 @@ impl<'a> ActiveLights<'a> {
     /// Azimuths across a key light that are at most half as wide as the surface's narrowest lobe, whose deviation is 1/√(n + 1)
     /// radians: the lobe's slice in the middle of a wedge then stands for the wedge. 0 without specular.
     fn specular_azimuths(&self, key: &KeyLight) -> u32 {
+        self.half_deviations(key.width_rad)
+    }
+
+    /// The same of a sphere light around a texel within it, [`MOST_AROUND`] at most.
+    pub(super) fn specular_slices_around(&self) -> u32 {
+        self.half_deviations(TAU).min(MOST_AROUND)
+    }
+
+    /// How many halves of the deviation of the surface's narrowest lobe, 1/√(n + 1) radians, a width has.
+    fn half_deviations(&self, width_rad: f64) -> u32 {
         let narrowest = self.specular.map(|specular| f64::from(specular.largest().exponent));
-        narrowest.map_or(0, |n| (2.0 * key.width_rad * (n + 1.0).sqrt()).ceil() as u32)
+        narrowest.map_or(0, |n| (2.0 * width_rad * (n + 1.0).sqrt()).ceil() as u32)
     }
 
     /// What specular changes about key lights.

@@ -67,7 +67,7 @@ pub struct Picture {
 ///
 /// Specular of sky and environment integrates the lobe over each azimuth's slice, by tables; that of a map of specular or with
 /// bounces uses harmonics, whose order limits the lobe. Suns use the mean of the lobe over their disc and their visible part, key
-/// lights the lobe over each azimuth's slice of them.
+/// lights and sphere lights the lobe over each azimuth's slice of them.
 ///
 /// # Errors
 /// Settings or lights out of range; no light; a scene beyond the limits.

@@ -96,6 +96,7 @@ mod specular {
     mod direct;
     mod kept_tables;
     mod keys;
+    mod spheres;
 }
 #[path = "../common/intercepted.rs"]
 mod intercepted;

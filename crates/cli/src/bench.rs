@@ -214,6 +214,8 @@ fn check_specular(scene: &Scene, quality: &Quality, args: &BenchArgs) -> Result<
         ("--sizes", "none: its errors cover diffuse light only")
     } else if !scene.lights.keys.is_empty() {
         ("--key", "none: check specular of key lights with `reference` and `compare`")
+    } else if !scene.lights.sphere_lights.is_empty() {
+        ("--sphere-light", "none: check specular of sphere lights with `reference` and `compare`")
     } else {
         return Ok(());
     };

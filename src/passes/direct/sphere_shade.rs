@@ -2,6 +2,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use std::ops::Range;
 
 use crate::graph::{Builder, Part, Rectangle, ResourceId, shaders};
+use crate::passes::PhongSource;
 use crate::passes::blocks::Blocks;
 use crate::passes::spheres::texels_within;
 use crate::scene::{HeightField, Scene, SphereLight};
@@ -20,6 +21,28 @@ pub(crate) struct SphereShading {
     pub reach_m: f32,
     /// Whether the sum begins with it.
     pub begins: bool,
+    pub specular: Option<SphereSpecular>,
+}
+
+/// Phong specular of a sphere light.
+#[derive(Clone, Copy)]
+pub(crate) struct SphereSpecular {
+    pub phong: PhongSource,
+    /// Slices around a texel within the sphere, at least, as the narrowest lobe needs.
+    pub slices_around: u32,
+    /// The eye over the field's base; the last is 0 for a view from straight above.
+    pub eye_m: [f32; 4],
+    pub specular_sum: ResourceId,
+    /// Whether the sum begins with it.
+    pub begins: bool,
+}
+
+impl SphereShading {
+    /// Slices where the sphere is narrow from a texel, and where it surrounds the texel.
+    fn counts(&self, light: &SphereLight, field: &HeightField) -> [u32; 2] {
+        let [narrow, around] = light.slices(self.slices, field.cell_m());
+        [narrow, self.specular.map_or(around, |specular| around.max(specular.slices_around))]
+    }
 }
 
 /// Light of one sphere light.
@@ -32,7 +55,7 @@ pub(crate) fn plan(
     shading: &SphereShading,
     sum: ResourceId,
 ) {
-    let [narrow, around] = light.slices(shading.slices, scene.field.cell_m());
+    let [narrow, around] = shading.counts(light, &scene.field);
     let at_once = (MOST_TURNS / (blocks.levels.most_steps() + 1)).max(1);
     let size = [scene.field.cols(), scene.field.rows()].map(|n| n as u32);
     let each = blocks.levels.lookups();
@@ -118,19 +141,32 @@ fn dispatch(
     sum: ResourceId,
 ) {
     let field = &scene.field;
-    let [narrow, around] = light.slices(shading.slices, field.cell_m());
+    let [narrow, around] = shading.counts(light, field);
     let (base, offset) = place_of(field, light);
     let Rectangle { col, row, cols, rows } = shading.rectangle;
     let grid_points = u64::from(cols) * u64::from(rows);
     let [thin_rows, thin_cols] = blocks.thin(field);
     let [r, g, b] = light.radiance;
     let begins = shading.begins && slices.start == 0;
+    let specular = shading.specular;
+    let specular_begins = specular.is_some_and(|s| s.begins) && slices.start == 0;
+    let phong = specular.map(|s| s.phong.constant);
+    let mut bound = vec![
+        ("cells", blocks.images.cells),
+        ("maxima", blocks.images.maxima),
+        ("ground", blocks.images.ground),
+        ("sphere_sum", sum),
+    ];
+    bound.extend(specular.map(|s| ("specular_sum", s.specular_sum)));
+    bound.extend(specular.and_then(|s| s.phong.map).map(|map| ("phong_map", map)));
     builder.pass(
         shaders::SphereShade {
             border: scene.surface.border as u32,
             thin_rows,
             thin_cols,
             most_steps: blocks.levels.most_steps() as i32,
+            has_specular: specular.is_some(),
+            specular_is_map: specular.is_some_and(|s| s.phong.map.is_some()),
         },
         part,
         shading.why,
@@ -147,16 +183,14 @@ fn dispatch(
             slices_around: around as i32,
             first_slice: slices.start as i32,
             last_slice: slices.end as i32,
-            pads: [0; 3],
+            exponent: phong.map_or(0.0, |phong| phong.exponent),
+            scale: phong.map_or(0.0, |phong| phong.scale),
+            specular_begins: f32::from(u8::from(specular_begins)),
             radiance: [r, g, b, f32::from(u8::from(begins))],
+            eye_m: specular.map_or([0.0; 4], |s| s.eye_m),
         },
-        &[
-            ("cells", blocks.images.cells),
-            ("maxima", blocks.images.maxima),
-            ("ground", blocks.images.ground),
-            ("sphere_sum", sum),
-        ],
-        grid_points * (3 * 16),
+        &bound,
+        grid_points * 16 * if specular.is_some() { 5 } else { 3 },
         grid_points * slices.len() as u64,
     );
 }

@@ -4,7 +4,7 @@ use crate::graph::{Builder, Rectangle, ResourceId};
 use crate::passes::blocks::Blocks;
 use crate::passes::sphere_sh::SphereSh;
 use crate::passes::sphere_sh_shade;
-use crate::passes::sphere_shade::{self, SphereShading};
+use crate::passes::sphere_shade::{self, SphereShading, SphereSpecular};
 use crate::scene::{HeightField, NearLight, Scene, SphereLight};
 use crate::{Error, Result};
 
@@ -86,35 +86,36 @@ impl Spheres {
         sum: ResourceId,
     ) {
         let light = &self.active[index];
-        let shading = self.shading(&lit.0.field, index, lit.2.azimuths, begins);
+        let shading = self.shading(&lit.0.field, (index, lit.2.azimuths), begins, None);
         sphere_sh_shade::plan(builder, lit, heights, &light.label(), &light.sphere, &shading, sum);
     }
 
-    /// The passes of the active light at `index`; `begins`: the sum begins with it.
+    /// The passes of an active light, by its index and its slices; `begins`: the sum begins with it.
     pub(crate) fn plan(
         &self,
         builder: &mut Builder,
         (scene, blocks): (&Scene, &Blocks),
-        (index, slices): (usize, u32),
-        begins: bool,
+        of: (usize, u32),
+        (begins, specular): (bool, Option<SphereSpecular>),
         sum: ResourceId,
     ) {
-        let light = &self.active[index];
-        let shading = self.shading(&scene.field, index, slices, begins);
+        let light = &self.active[of.0];
+        let shading = self.shading(&scene.field, of, begins, specular);
         sphere_shade::plan(builder, scene, blocks, &light.label(), &light.sphere, &shading, sum);
     }
 
     fn shading(
         &self,
         field: &HeightField,
-        index: usize,
-        slices: u32,
+        (index, slices): (usize, u32),
         begins: bool,
+        specular: Option<SphereSpecular>,
     ) -> SphereShading {
         let (rectangle, reach_m) = self.regions[index];
         // The first light writes all of the sum.
         let rectangle = if begins { whole(field) } else { rectangle };
-        SphereShading { why: self.active[index].of.shaded_by, slices, rectangle, reach_m, begins }
+        let why = self.active[index].of.shaded_by;
+        SphereShading { why, slices, rectangle, reach_m, begins, specular }
     }
 }
 

@@ -263,15 +263,16 @@ impl Drawing<'_> {
         let names: Vec<String> = self.active.near.active.iter().map(NearLight::label).collect();
         for (index, name) in names.iter().enumerate() {
             let layer = self.images.sphere_layers[index];
-            let Some(blocks) = &self.blocks else { return };
             let begins = index == 0 || layer.is_some();
+            let specular = self.sphere_specular();
+            let Some(blocks) = &self.blocks else { return };
             let (spheres, builder) = (&self.active.near, &mut self.builder);
             if let Some(soft) = &self.soft {
                 let lit = (self.scene, blocks, soft);
                 spheres.plan_soft(builder, lit, heights, (index, begins), sum);
             } else {
                 let (lit, of) = ((self.scene, blocks), (index, quality.sun_azimuths));
-                spheres.plan(builder, lit, of, begins, sum);
+                spheres.plan(builder, lit, of, (begins, specular), sum);
             }
             if layer.is_some() {
                 self.resolve(name, sum, None, layer);

@@ -6,10 +6,12 @@ use crate::graph::ResourceId;
 use crate::passes::batch::Batch;
 use crate::passes::bounced_specular::{BouncedSpecular, ExitLight};
 use crate::passes::bounces::{Bouncing, bounce_name};
+use crate::passes::sphere_shade::SphereSpecular;
 use crate::passes::sun_shade::KeySpecular;
 use crate::passes::{self, PhongSource, light_resolve, specular_exit, sun_specular};
 use crate::scene::{
-    Basis, BounceEngine, BounceSpecular, PhongSpecular, Quality, Receiver, Specular, Sun,
+    Basis, BounceEngine, BounceSpecular, LightBasis, PhongSpecular, Quality, Receiver, Specular,
+    Sun,
 };
 use crate::{Error, Result};
 
@@ -26,9 +28,12 @@ pub(super) fn quality(
         return Ok(*quality);
     }
     let refuse = |found: &str, expected: &str| Err(Error::setting("specular", found, expected));
-    let alone = "no sphere lights; the path-traced reference supports them";
-    if let Some(light) = active.near.active.first() {
-        return refuse(&format!("specular under a {}", light.of.name), alone);
+    let sphere = active.near.active.first().map(|light| light.of.name);
+    if let Some(name) = sphere.filter(|_| quality.light_basis == LightBasis::Sh) {
+        return refuse(
+            &format!("specular under a {name} by `light_basis sh`"),
+            "`light_basis exact`",
+        );
     }
     for (i, sun) in &active.suns {
         let narrow = active.specular.and_then(|specular| sun_specular::widened(specular, sun));
@@ -37,13 +42,12 @@ pub(super) fn quality(
         }));
     }
     let quality = bounced(*quality, notes)?;
-    if !active.keys.is_empty() {
-        if quality.bounces.count > 0 {
-            let alone = "no `bounces`; the path-traced reference supports both";
-            return refuse("specular with bounces under a key light", alone);
-        }
-        notes.extend(active.key_notes(&quality));
+    let key = (!active.keys.is_empty()).then_some("key light");
+    if let Some(name) = key.or(sphere).filter(|_| quality.bounces.count > 0) {
+        let alone = "no `bounces`; the path-traced reference supports both";
+        return refuse(&format!("specular with bounces under a {name}"), alone);
     }
+    notes.extend(active.key_notes(&quality));
     let by_slices = active.by_slices(&quality).is_some();
     match quality.basis {
         _ if !active.has_specular_around() => Ok(quality),
@@ -197,6 +201,14 @@ impl Drawing<'_> {
         Some(KeySpecular { phong, radiance, eye_m, specular_sum, begins })
     }
 
+    /// Specular of the next sphere light.
+    pub(super) fn sphere_specular(&mut self) -> Option<SphereSpecular> {
+        let (specular_sum, phong) = self.images.specular_sum.zip(self.phong())?;
+        let (slices_around, eye_m) = (self.active.specular_slices_around(), self.eye_m);
+        let begins = !std::mem::replace(&mut self.specular_is_begun, true);
+        Some(SphereSpecular { phong, slices_around, eye_m, specular_sum, begins })
+    }
+
     /// Light that arrives from sky and environment, if specular bounces keep directions.
     pub(super) fn specular_around(&mut self) {
         let Some((specular, h)) = self.bounced_by_direction().zip(self.harmonics.as_ref()) else {
@@ -277,12 +289,13 @@ impl Drawing<'_> {
 mod tests {
     use crate::Result;
     use crate::graph::Limits;
+    use crate::graph::shaders::offset;
     use crate::plan;
     use crate::plan::{Picture, Plan};
     use crate::scene::fractal;
     use crate::scene::{
-        Albedo, Basis, Border, Bounces, Environment, KeyLight, Lights, PhongSpecular, Quality,
-        Scene, Specular, SphereLight, Sun, Surface,
+        Albedo, Basis, Border, Bounces, Environment, KeyLight, LightBasis, Lights, PhongSpecular,
+        Quality, Scene, Specular, SphereLight, Sun, Surface,
     };
 
     fn plan(lights: Lights, basis: Basis, scale: f32) -> Result<Plan> {
@@ -324,19 +337,72 @@ mod tests {
         plan.passes.iter().map(crate::graph::Pass::label).collect()
     }
 
-    #[test]
-    fn specular_names_the_lights_and_bases_it_rejects() {
-        let message = |lights, basis| plan(lights, basis, 0.5).unwrap_err().to_string();
-        let sphere = SphereLight { position_m: [1.0; 3], radius_m: 1.0, radiance: [1.0; 3] };
-        let under_sphere = message(Lights { sphere_lights: vec![sphere], ..sky() }, Basis::Sh);
-        assert!(under_sphere.contains("path-traced reference"), "{under_sphere}");
+    fn sphere() -> SphereLight {
+        SphereLight { position_m: [1.0; 3], radius_m: 1.0, radiance: [1.0; 3] }
+    }
 
-        // Dark lights, or no specular, raise no error.
-        let dark = SphereLight { radiance: [0.0; 3], ..sphere };
-        assert!(plan(Lights { sphere_lights: vec![dark], ..sky() }, Basis::Sh, 0.5).is_ok());
-        assert!(plan(Lights { sphere_lights: vec![sphere], ..sky() }, Basis::Table, 0.0).is_ok());
+    /// What a scene with specular of this scale gives with a setting.
+    fn planned(lights: Lights, scale: f32, quality: Quality) -> Result<Plan> {
+        let surface = Surface {
+            albedo: Albedo::Constant([0.5; 3]),
+            specular: Some(Specular::Constant(PhongSpecular { exponent: 9.0, scale })),
+            ..Surface::default()
+        };
+        let scene = Scene { field: fractal(32, 1).unwrap(), surface, lights };
+        plan::picture(&scene, &quality, &Limits::lavapipe(), Picture::default())
+    }
+
+    /// Specular of key lights and sphere lights is no part of the light that bounces, and that of sphere lights has no harmonics. Dark
+    /// lights, or no specular, raise no error.
+    #[test]
+    fn specular_names_the_lights_and_settings_it_rejects() {
+        let base = Quality { azimuths: 8, ..Quality::default() };
+        let soft = Quality { light_basis: LightBasis::Sh, ..base };
+        let bounced = Quality { bounces: Bounces { count: 1, ..base.bounces }, ..base };
+        let of_key = |radiance| Lights { keys: vec![KeyLight { radiance, ..key() }], ..sky() };
+        let of_sphere = |radiance| Lights {
+            sphere_lights: vec![SphereLight { radiance, ..sphere() }],
+            ..sky()
+        };
+        for (lights, quality, said) in [
+            (of_key([1.0; 3]), bounced, "specular with bounces under a key light"),
+            (of_sphere([1.0; 3]), bounced, "specular with bounces under a sphere light"),
+            (of_sphere([1.0; 3]), soft, "specular under a sphere light by `light_basis sh`"),
+        ] {
+            let message = planned(lights.clone(), 0.5, quality).unwrap_err().to_string();
+            assert!(message.contains(said), "{message}");
+            assert!(planned(lights.clone(), 0.5, base).is_ok(), "{said}");
+            assert!(planned(lights, 0.0, quality).is_ok(), "{said}");
+        }
+        assert!(planned(of_key([0.0; 3]), 0.5, bounced).is_ok());
+        assert!(planned(of_sphere([0.0; 3]), 0.5, bounced).is_ok());
         assert!(plan(sun(), Basis::Table, 0.5).is_ok());
-        assert!(plan(Lights { keys: vec![key()], ..sky() }, Basis::Sh, 0.5).is_ok());
+    }
+
+    /// Sphere lights are reflected where they are lit, at all texels; the first begins the sum. Narrow lobes take more slices around:
+    /// 4π √(99 + 1) = 126 instead of 64.
+    #[test]
+    fn sphere_lights_are_reflected_by_their_slices() {
+        let lights = Lights { sphere_lights: vec![sphere(); 2], ..Lights::default() };
+        let around = |exponent, scale| {
+            let phong = PhongSpecular { exponent, scale };
+            let plan = plan_of(lights.clone(), Basis::Auto, phong).unwrap();
+            let shading = plan.passes.iter().filter(|pass| pass.name() == "sphere_shade");
+            let pushed = |pass: &crate::graph::Pass, at: usize| {
+                u32::from_ne_bytes(pass.push[at..at + 4].try_into().unwrap())
+            };
+            let begun = offset("SphereShadePush", "specular_begins");
+            let count = shading.clone().filter(|&p| f32::from_bits(pushed(p, begun)) > 0.0).count();
+            assert_eq!(count > 0, scale > 0.0);
+            let has_specular =
+                |pass: &&crate::graph::Pass| pass.constant("has_specular") == Some(1);
+            let expected = if scale > 0.0 { shading.clone().count() } else { 0 };
+            assert_eq!(shading.clone().filter(has_specular).count(), expected);
+            let last = shading.clone().next_back().unwrap();
+            assert_eq!(f32::from_bits(pushed(last, begun)), 0.0);
+            pushed(last, offset("SphereShadePush", "slices_around"))
+        };
+        assert_eq!([around(99.0, 0.0), around(9.0, 0.5), around(99.0, 0.5)], [64, 64, 126]);
     }
 
     /// Lobes that a sun widens are noted: 0.2² n is 40 at exponent 1,000, and 50 at 1,250.
@@ -380,27 +446,6 @@ mod tests {
         assert_eq!(most.azimuths.len(), 256);
         // (256 / 6)² - 1 = 1819.
         assert!(most.notes.iter().any(|n| n.contains("above 1819 ")), "{:?}", most.notes);
-    }
-
-    /// Specular of key lights is no part of the light that bounces.
-    #[test]
-    fn bounces_of_specular_refuse_key_lights() {
-        let lights = Lights { keys: vec![key()], ..Lights::default() };
-        let phong = PhongSpecular { exponent: 9.0, scale: 0.5 };
-        let surface = Surface {
-            albedo: Albedo::Constant([0.5; 3]),
-            specular: Some(Specular::Constant(phong)),
-            ..Surface::default()
-        };
-        let scene = Scene { field: fractal(32, 1).unwrap(), surface, lights };
-        let planned = |count| {
-            let bounces = Bounces { count, ..Bounces::default() };
-            let quality = Quality { azimuths: 8, bounces, ..Quality::default() };
-            plan::picture(&scene, &quality, &Limits::lavapipe(), Picture::default())
-        };
-        let refused = planned(1).unwrap_err().to_string();
-        assert!(refused.contains("specular with bounces under a key light"), "{refused}");
-        assert!(planned(0).is_ok());
     }
 
     /// Sky and environment use tables of the lobe, without harmonics unless they are requested. Suns need neither, nor does

@@ -213,10 +213,31 @@ pub(crate) fn pictures() -> Vec<Case> {
         let lights = Lights { suns, keys, ..Lights::default() };
         Scene { field: rough(11, 14, 47), surface, lights }
     };
+    // Over the ground, and cut by it; and over a field that repeats.
+    let spheres = sphere_lights.lights.sphere_lights.clone();
+    let under_spheres = |specular| {
+        let lights = Lights { sphere_lights: spheres.clone(), ..Lights::default() };
+        let surface = Surface {
+            border: Border::Open,
+            albedo: Albedo::Constant([0.25; 3]),
+            specular: Some(specular),
+        };
+        Scene { field: rough(23, 30, 11), surface, lights }
+    };
+    let repeated_spheres = {
+        let mut scene = sphere_lights_alone.clone();
+        scene.surface.albedo = Albedo::Constant([0.25; 3]);
+        scene.surface.specular =
+            Some(Specular::Constant(PhongSpecular { exponent: 300.0, scale: 0.6 }));
+        scene
+    };
     let one_phong = |exponent| Specular::Constant(PhongSpecular { exponent, scale: 0.6 });
     let phong_at =
         |i: usize| PhongSpecular { exponent: (3 * i) as f32, scale: (i % 7) as f32 * 0.1 };
     let phongs = Specular::Map((0..11 * 14).map(phong_at).collect());
+    let phong_of_23 =
+        |i: usize| PhongSpecular { exponent: (i % 90) as f32, scale: (i % 7) as f32 * 0.1 };
+    let map_of_23 = Specular::Map((0..23 * 30).map(phong_of_23).collect());
     let with_keys = {
         let mut scene = mirrored.clone();
         scene.lights.keys = vec![key(0.1, 1.5, [2.0, 1.0, 1.0])];
@@ -379,6 +400,33 @@ pub(crate) fn pictures() -> Vec<Case> {
         picture(
             "lobes of a map under key lights, periodic",
             under_keys(Border::Periodic, phongs),
+            quality,
+            false,
+            false,
+        ),
+        Case {
+            wanted: Wanted::Picture(Picture {
+                eye_m: Some([30.0, -40.0, 960.0]),
+                ..Picture::default()
+            }),
+            ..picture(
+                "a lobe under sphere lights, before an eye",
+                under_spheres(one_phong(20.0)),
+                quality,
+                false,
+                false,
+            )
+        },
+        picture(
+            "lobes of a map under sphere lights",
+            under_spheres(map_of_23),
+            quality,
+            true,
+            false,
+        ),
+        picture(
+            "a narrow lobe under sphere lights, periodic",
+            repeated_spheres,
             quality,
             false,
             false,

@@ -3,6 +3,7 @@
 pub(crate) mod bounced;
 pub(crate) mod key;
 pub(crate) mod slices;
+pub(crate) mod sphere;
 pub(crate) mod sun;
 
 use ridgelight::plan::Picture;

@@ -235,6 +235,13 @@ impl SphereGeometry {
     /// 16 ε r²: 4 √ε r where they just touch, from d - r or from within. Slices' weights sum to
     /// π asin(r / away) at most, or to 2 π; two ends a slice, a normal that turns both its parts, over π.
     pub fn tolerance(&self) -> f64 {
+        let [weights, angle, touch] = self.of_slices();
+        let normal = ShadeError::new(0.0, self.relief_m, self.cell_m, 1).normal();
+        weights / PI * (2.0 * angle + 2.0 * normal + touch)
+    }
+
+    /// Sum of the slices' weights, the error of an elevation, and that of an end where the sphere's circle touches the surface.
+    pub(crate) fn of_slices(&self) -> [f64; 3] {
         let Self { distance_m: d, away_m, radius_m: r, .. } = *self;
         let steepness = self.relief_m / self.cell_m;
         let place = 4.0 * EPSILON * (1.0 + self.largest_m / d.max(1e-3 * r));
@@ -244,8 +251,16 @@ impl SphereGeometry {
         let from = (d - r).abs().max(1e-3 * r);
         let touch = if self.is_cut { 4.0 * EPSILON.sqrt() * (r / from).min(1.0) } else { 0.0 };
         let weights = if away_m > r { PI * (r / away_m).asin() } else { 2.0 * PI };
-        let normal = ShadeError::new(0.0, self.relief_m, self.cell_m, 1).normal();
-        weights / PI * (2.0 * angle + 2.0 * normal + touch)
+        [weights, angle, touch]
+    }
+
+    /// The largest extent of a slice of the sphere in elevation.
+    pub(crate) fn height_rad(&self) -> f64 {
+        if self.distance_m > self.radius_m {
+            2.0 * (self.radius_m / self.distance_m).asin()
+        } else {
+            PI
+        }
     }
 }
 

@@ -155,7 +155,7 @@ pub fn ladders(scene: &Scene, bounces: u32) -> Vec<Ladder> {
     add(have_slices(lights), slices);
     let exact = "each slice of a sphere light exact: sharp shadows";
     let light_basis = Ladder::new("light basis", &["light_basis: sh exact"], exact);
-    add(lights.near().next().is_some(), light_basis);
+    add(lights.near().next().is_some() && !has_specular, light_basis);
     let bright = "more elevations per table: small bright features";
     let elevations = &["table_elevations: 32 64 128 256 512 1024"];
     let table = Ladder::new("table elevations", elevations, bright);

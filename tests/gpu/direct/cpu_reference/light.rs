@@ -5,9 +5,10 @@ use std::f64::consts::PI;
 use ridgelight::gpu::shaders::offset;
 use ridgelight::plan::Pass;
 use ridgelight::plan::azimuths::{Azimuth, Shape};
-use ridgelight::scene::{Albedo, Border, SphereLight};
+use ridgelight::scene::{Albedo, Border, SphereLight, normal};
 use ridgelight_cpu::env_tables as tables_reference;
 use ridgelight_cpu::env_tables::{EnvTables, bottom_sine, wedge_of};
+use ridgelight_cpu::light::Receiver;
 use ridgelight_cpu::light_resolve as resolve_reference;
 use ridgelight_cpu::mirror_map::{Tables, blocked, mirrored};
 use ridgelight_cpu::oracle::Oracle;
@@ -24,6 +25,7 @@ use ridgelight_cpu::tolerance::{
 use crate::cpu_reference::{Pair, Run, constant, fuse_of, pushed};
 use crate::specular::cpu_reference::key::key_specular;
 use crate::specular::cpu_reference::slices::{slices, view_from};
+use crate::specular::cpu_reference::sphere;
 
 pub(crate) type Rgb = glam::DVec3;
 
@@ -288,8 +290,9 @@ pub(crate) fn sphere_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     const LAST_SLICE: usize = offset("SphereShadePush", "last_slice");
     const RADIANCE: usize = offset("SphereShadePush", "radiance");
     const REACH_M: usize = offset("SphereShadePush", "reach_m");
+    const SLICES: usize = offset("SphereShadePush", "slices");
     const SLICES_AROUND: usize = offset("SphereShadePush", "slices_around");
-    let slices = run.quality.sun_azimuths;
+    sphere::begin(run, pass);
     if f32::from_bits(pushed(pass, RADIANCE + 12)) > 0.0 {
         run.sphere_lights = vec![([0.0; 3], 0.0); run.scene.field.heights_m().len()];
     }
@@ -299,6 +302,7 @@ pub(crate) fn sphere_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let sphere_light = sphere_light_of(run, pass);
     let reach = f64::from(f32::from_bits(pushed(pass, REACH_M)));
     let oracle = Oracle::new(&run.scene.field, run.border());
+    let counts = [SLICES, SLICES_AROUND].map(|o| pushed(pass, o));
     let [cols, _] = run.size();
     let mut sphere_lights = std::mem::take(&mut run.sphere_lights);
     for (i, (sum, tolerance)) in sphere_lights.iter_mut().enumerate() {
@@ -306,19 +310,24 @@ pub(crate) fn sphere_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         if visible.distance_m > reach {
             continue;
         }
-        let light = sphere_reference::sphere_at(&oracle, &sphere_light, slices, i / cols, i % cols);
+        let place = [i / cols, i % cols];
+        let receivers =
+            [Receiver::diffuse(normal(&run.scene.field, run.border(), place[0], place[1]))];
+        let light =
+            sphere_reference::sphere_with(&oracle, &sphere_light, counts, place, &receivers)[0];
         let brightest = sphere_light.radiance.iter().fold(0.0, |m: f32, v| m.max(*v));
         sum.iter_mut().zip(sphere_light.radiance).for_each(|(s, r)| *s += light * f64::from(r));
         *tolerance += f64::from(brightest) * (visible.tolerance() + 4.0 * EPSILON);
     }
     let got = run.floats(pass, "sphere_sum").expect("written");
     let texels = got.chunks_exact(4).zip(&sphere_lights).enumerate();
-    let pairs = texels
+    let mut pairs: Vec<Pair> = texels
         .flat_map(|(i, (got, (want, tolerance)))| {
             channels(got, Rgb::from(*want), *tolerance, [0, i / cols, i % cols])
         })
         .collect();
     run.sphere_lights = sphere_lights;
+    pairs.extend(sphere::specular(run, pass, &sphere_light, counts));
     pairs
 }
 

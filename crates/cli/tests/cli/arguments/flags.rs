@@ -235,6 +235,11 @@ fn specular() {
                 &["--specular: found", "bounces under a key light"],
             ),
             (
+                "--specular 10,0.5 --albedo 0.5 --sphere-light 1,2,3,1,5 --light-basis sh",
+                2,
+                &["--specular: found", "under a sphere light", "exact"],
+            ),
+            (
                 "--specular 10,0.5 --albedo 0.5 --bounces 1 --bounce-engine sweep",
                 2,
                 &["--bounce-engine", "found sweep, expected pyramid"],
@@ -269,6 +274,11 @@ fn specular() {
             (&format!("bench a.asc {both} --bounces 1"), 2, &["--specular with bench --bounces"]),
             (&format!("bench --sizes 64 {both}"), 2, &["--specular with bench --sizes"]),
             (&format!("bench a.asc {both} --key 0,30,9,9,1"), 2, &["--specular with bench --key"]),
+            (
+                &format!("bench a.asc {both} --sphere-light 1,2,3,1,5"),
+                2,
+                &["--specular with bench --sphere-light"],
+            ),
             ("horizon a.asc -o out.npy --specular 10,0.5", 2, &["--specular"]),
         ],
     );

@@ -83,6 +83,11 @@ fn specular_has_its_own_ladders() {
     assert_eq!(names(sky(), 0.0, 0), with(&["azimuths"]));
     assert_eq!(names(sky(), 0.2, 0), with(&["azimuths", "basis"]));
     assert_eq!(names(sun(0.0), 0.2, 0), with(&[]));
+    // Specular of sphere lights has no harmonics.
+    let sphere = SphereLight { position_m: [1.0; 3], radius_m: 1.0, radiance: [1.0; 3] };
+    let near = || Lights { sphere_lights: vec![sphere], ..Lights::default() };
+    assert!(names(near(), 0.0, 0).contains(&"light basis"));
+    assert!(!names(near(), 0.2, 0).contains(&"light basis"));
     let with_bounces = ["azimuths", "basis", "bounce specular", "bounce azimuths"];
     assert_eq!(names(sky(), 0.2, 2), with(&with_bounces));
     let mut scene = scene(sky());
