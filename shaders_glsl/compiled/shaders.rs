@@ -575,7 +575,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/sh_shade.comp`.
-    SH_SHADE: "sh_shade", push ShShadePush, words 190530 12958,
+    SH_SHADE: "sh_shade", push ShShadePush, words 190530 13927,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "visibility" SampledImage { uint: false, layered: true },
     2 reads "light_matrix" SampledImage { uint: false, layered: false },
@@ -594,7 +594,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/sh_visibility.comp`.
-    SH_VISIBILITY: "sh_visibility", push ShadePush, words 203488 32289,
+    SH_VISIBILITY: "sh_visibility", push ShadePush, words 204457 32300,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rgba16ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -620,7 +620,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/sh_wedges.comp`.
-    SH_WEDGES: "sh_wedges", push ShWedgesPush, words 235777 7826,
+    SH_WEDGES: "sh_wedges", push ShWedgesPush, words 236757 7826,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "horizon_angles" SampledImage { uint: false, layered: true },
     2 reads "constants" TexelBuffer,
@@ -637,7 +637,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/shade_expand.comp`.
-    SHADE_EXPAND: "shade_expand", push ShadeExpandPush, words 243603 2489,
+    SHADE_EXPAND: "shade_expand", push ShadeExpandPush, words 244583 2489,
     0 reads "shade_levels" SampledImage { uint: false, layered: false },
     1 reads "shade_table" SampledImage { uint: true, layered: false },
     2 writes "shade_stack" StorageImage { format: "Rgba32f", uint: false, layered: true },
@@ -650,7 +650,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/shade_reduce.comp`.
-    SHADE_REDUCE: "shade_reduce", push ReducePush, words 246092 3656,
+    SHADE_REDUCE: "shade_reduce", push ReducePush, words 247072 3656,
     0 reads "exit_radiance" SampledImage { uint: false, layered: false },
     1 writes "shade_levels" StorageImage { format: "Rgba32f", uint: false, layered: false },
     2 writes "shade_table" StorageImage { format: "Rgba32ui", uint: true, layered: false },
@@ -664,7 +664,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/shadow_height.comp`.
-    SHADOW_HEIGHT: "shadow_height", push ShadowHeightPush, words 249748 7491,
+    SHADOW_HEIGHT: "shadow_height", push ShadowHeightPush, words 250728 7491,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "outer_lit_above" SampledImage { uint: false, layered: false },
     2 reads "outer_penumbra" SampledImage { uint: false, layered: false },
@@ -682,7 +682,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/shadow_settle.comp`.
-    SHADOW_SETTLE: "shadow_settle", push ShadowSettlePush, words 257239 18232,
+    SHADOW_SETTLE: "shadow_settle", push ShadowSettlePush, words 258219 18232,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "maxima" StorageImage { format: "R32f", uint: false, layered: false },
     2 reads "azimuths" TexelBuffer,
@@ -702,7 +702,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/shadow_shade.comp`.
-    SHADOW_SHADE: "shadow_shade", push ShadowShadePush, words 275471 11288,
+    SHADOW_SHADE: "shadow_shade", push ShadowShadePush, words 276451 11288,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 reads "shadows" StorageImage { format: "Rgba32ui", uint: true, layered: true },
@@ -718,7 +718,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/shadow_sweep.comp`.
-    SHADOW_SWEEP: "shadow_sweep", push ShadowSweepPush, words 286759 12905,
+    SHADOW_SWEEP: "shadow_sweep", push ShadowSweepPush, words 287739 12905,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "shadows" StorageImage { format: "Rgba32ui", uint: true, layered: true },
@@ -736,7 +736,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/sky_draw.frag`.
-    SKY_DRAW_FRAG: "sky_draw_frag", push SkyDrawPush, words 299664 1372,
+    SKY_DRAW_FRAG: "sky_draw_frag", push SkyDrawPush, words 300644 1372,
     0 reads "environment" SampledImage { uint: false, layered: false },
     SkyDrawFrag {
         0 has_environment: bool = false,
@@ -745,13 +745,13 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/sky_draw.vert`.
-    SKY_DRAW_VERT: "sky_draw_vert", push (), words 301036 289,
+    SKY_DRAW_VERT: "sky_draw_vert", push (), words 302016 289,
     SkyDrawVert;
 }
 
 shader! {
     /// `shaders_glsl/direct/sky_shade.comp`.
-    SKY_SHADE: "sky_shade", push ShadePush, words 301325 30145,
+    SKY_SHADE: "sky_shade", push ShadePush, words 302305 30156,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rgba16ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -782,7 +782,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/specular_exit.comp`.
-    SPECULAR_EXIT: "specular_exit", push SpecularExitPush, words 331470 6560,
+    SPECULAR_EXIT: "specular_exit", push SpecularExitPush, words 332461 7531,
     0 reads "arriving" SampledImage { uint: false, layered: true },
     1 reads "ground" SampledImage { uint: false, layered: false },
     2 reads "exit_radiance" SampledImage { uint: false, layered: false },
@@ -807,7 +807,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/specular_gather.comp`.
-    SPECULAR_GATHER: "specular_gather", push GatherPush, words 338030 20442,
+    SPECULAR_GATHER: "specular_gather", push GatherPush, words 339992 20442,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "height_levels" SampledImage { uint: false, layered: false },
     2 reads "level_table" SampledImage { uint: true, layered: false },
@@ -835,7 +835,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/specular_light.comp`.
-    SPECULAR_LIGHT: "specular_light", push SpecularLightPush, words 358472 7680,
+    SPECULAR_LIGHT: "specular_light", push SpecularLightPush, words 360434 7680,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "blocked_sum" SampledImage { uint: false, layered: false },
     2 reads "unoccluded_map" SampledImage { uint: false, layered: false },
@@ -849,7 +849,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/specular_tables.comp`.
-    SPECULAR_TABLES: "specular_tables", push SpecularTablesPush, words 366152 4915,
+    SPECULAR_TABLES: "specular_tables", push SpecularTablesPush, words 368114 4943,
     0 reads "azimuths" TexelBuffer,
     1 reads "wedge_rows" StorageBuffer,
     2 writes "specular_tables" StorageImage { format: "Rgba32f", uint: false, layered: true },
@@ -860,7 +860,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/specular_visibility.comp`.
-    SPECULAR_VISIBILITY: "specular_visibility", push SpecularVisibilityPush, words 371067 1238,
+    SPECULAR_VISIBILITY: "specular_visibility", push SpecularVisibilityPush, words 373057 1238,
     0 reads "visibility" SampledImage { uint: false, layered: true },
     1 reads "light_matrix" SampledImage { uint: false, layered: false },
     2 writes "arriving" StorageImage { format: "Rgba32f", uint: false, layered: true },
@@ -872,7 +872,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/sphere_sh_shade.comp`.
-    SPHERE_SH_SHADE: "sphere_sh_shade", push SphereShShadePush, words 372305 27760,
+    SPHERE_SH_SHADE: "sphere_sh_shade", push SphereShShadePush, words 374295 27760,
     0 reads "cells" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "maxima" StorageImage { format: "R32f", uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -898,26 +898,32 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/sphere_shade.comp`.
-    SPHERE_SHADE: "sphere_shade", push SphereShadePush, words 400065 14492,
+    SPHERE_SHADE: "sphere_shade", push SphereShadePush, words 402055 19174,
     0 reads "cells" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "maxima" StorageImage { format: "R32f", uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
     3 writes "sphere_sum" StorageImage { format: "Rgba32f", uint: false, layered: false },
+    4 writes "specular_sum" StorageImage { format: "Rgba32f", uint: false, layered: false },
+    5 reads "phong_map" SampledImage { uint: false, layered: false },
     SphereShade {
         0 border: u32 = 0,
         1 thin_rows: bool = false,
         2 thin_cols: bool = false,
         3 most_steps: i32 = 60000,
+        4 has_specular: bool = false,
+        5 specular_is_map: bool = false,
     }
 }
 
 shader! {
     /// `shaders_glsl/direct/sun_shade.comp`.
-    SUN_SHADE: "sun_shade", push ShadePush, words 414557 24739,
+    SUN_SHADE: "sun_shade", push ShadePush, words 421229 29168,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rgba16ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
     3 writes "sun_sum" StorageImage { format: "R32f", uint: false, layered: false },
+    4 writes "specular_sum" StorageImage { format: "Rgba32f", uint: false, layered: false },
+    5 reads "phong_map" SampledImage { uint: false, layered: false },
     6 reads "dirty_texels" StorageBuffer,
     7 reads "lattice_words" SampledImage { uint: true, layered: true },
     8 reads "edit_list" StorageBuffer,
@@ -928,13 +934,15 @@ shader! {
         3 border: u32 = 0,
         4 shape: u32 = 0,
         5 marches_rows: bool = false,
+        6 has_specular: bool = false,
+        7 specular_is_map: bool = false,
         40 layer_shift: i32 = 5,
     }
 }
 
 shader! {
     /// `shaders_glsl/specular/sun_specular.comp`.
-    SUN_SPECULAR: "sun_specular", push SunSpecularPush, words 439296 10753,
+    SUN_SPECULAR: "sun_specular", push SunSpecularPush, words 450397 10753,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "sun_sum" SampledImage { uint: false, layered: false },
     2 writes "specular_sum" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -951,7 +959,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/surface_sweep.comp`.
-    SURFACE_SWEEP: "surface_sweep", push MarchPush, words 450049 7745,
+    SURFACE_SWEEP: "surface_sweep", push MarchPush, words 461150 7745,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "slopes" StorageImage { format: "R32ui", uint: true, layered: true },
@@ -967,7 +975,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/sweep_fuse.comp`.
-    SWEEP_FUSE: "sweep_fuse", push SweepFusePush, words 457794 20375,
+    SWEEP_FUSE: "sweep_fuse", push SweepFusePush, words 468895 20375,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rgba16ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -988,7 +996,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/terrain_draw.frag`.
-    TERRAIN_DRAW_FRAG: "terrain_draw_frag", push TerrainDrawPush, words 478169 1129,
+    TERRAIN_DRAW_FRAG: "terrain_draw_frag", push TerrainDrawPush, words 489270 1129,
     1 reads "radiance" SampledImage { uint: false, layered: false },
     2 reads "voids" SampledImage { uint: false, layered: false },
     TerrainDrawFrag {
@@ -999,14 +1007,14 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/terrain_draw.vert`.
-    TERRAIN_DRAW_VERT: "terrain_draw_vert", push TerrainDrawPush, words 479298 994,
+    TERRAIN_DRAW_VERT: "terrain_draw_vert", push TerrainDrawPush, words 490399 994,
     0 reads "heights" SampledImage { uint: false, layered: false },
     TerrainDrawVert;
 }
 
 shader! {
     /// `shaders_glsl/bounce/vector_reduce.comp`.
-    VECTOR_REDUCE: "vector_reduce", push ReducePush, words 480292 3811,
+    VECTOR_REDUCE: "vector_reduce", push ReducePush, words 491393 3811,
     0 reads "exit_vectors" SampledImage { uint: false, layered: true },
     1 reads "vector_source" SampledImage { uint: false, layered: true },
     2 writes "vector_levels" StorageImage { format: "Rgba32f", uint: false, layered: true },
@@ -1022,7 +1030,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bake/visible_points.comp`.
-    VISIBLE_POINTS: "visible_points", push VisiblePointsPush, words 484103 9745,
+    VISIBLE_POINTS: "visible_points", push VisiblePointsPush, words 495204 9745,
     0 reads "cells" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "maxima" StorageImage { format: "R32f", uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -1258,8 +1266,9 @@ layouts! {
         40 weight_sr: f32, 44 exponent: f32, 48 specular_scale: f32, 52 first_view: i32,
         56 curvature_x: f32, 60 curvature_y: f32, 64 albedo: [f32; 4],
     }
-    push ShShadePush 24 {
-        0 cols: i32, 4 rows: i32, 8 cell_x_m: f32, 12 cell_y_m: f32, 16 specular: [f32; 2],
+    push ShShadePush 40 {
+        0 cols: i32, 4 rows: i32, 8 cell_x_m: f32, 12 cell_y_m: f32, 16 eye_m: [f32; 4],
+        32 specular: [f32; 2],
     }
     push ShWedgesPush 36 {
         0 cols: i32, 4 rows: i32, 8 cell_x_m: f32, 12 cell_y_m: f32, 16 azimuth_count: i32,
@@ -1268,10 +1277,10 @@ layouts! {
     push ShadeExpandPush 12 {
         0 cols: i32, 4 rows: i32, 8 width_shift: i32,
     }
-    push ShadePush 60 {
+    push ShadePush 76 {
         0 cols: i32, 4 rows: i32, 8 cell_x_m: f32, 12 cell_y_m: f32, 16 warm_up: i32,
         20 first_azimuth: u32, 24 azimuth_count: u32, 28 clears: u32, 32 eye_m: [f32; 4],
-        48 exponent: f32, 52 least_cosine: f32, 56 relights: u32,
+        48 colour: [f32; 4], 64 exponent: f32, 68 least_cosine: f32, 72 relights: u32,
     }
     push ShadowHeightPush 64 {
         0 size: [i32; 2], 8 outer_size: [i32; 2], 16 outer_origin: [f32; 2],
@@ -1293,9 +1302,9 @@ layouts! {
         0 forward: [f32; 4], 16 right: [f32; 4], 32 down: [f32; 4], 48 above: [f32; 4],
         64 below: [f32; 4], 80 rotation_turns: f32,
     }
-    push SpecularExitPush 28 {
-        0 cols: i32, 4 rows: i32, 8 begins: u32, 12 first_texel: i32, 16 fours: i32,
-        20 exponent: f32, 24 scale: f32,
+    push SpecularExitPush 52 {
+        0 cols: i32, 4 rows: i32, 8 cell_x_m: f32, 12 cell_y_m: f32, 16 eye_m: [f32; 4],
+        32 begins: u32, 36 first_texel: i32, 40 fours: i32, 44 exponent: f32, 48 scale: f32,
     }
     push SpecularLightPush 44 {
         0 cols: i32, 4 rows: i32, 8 cell_x_m: f32, 12 cell_y_m: f32, 16 eye_m: [f32; 4],
@@ -1316,10 +1325,11 @@ layouts! {
         92 side: i32, 96 fine_samples: i32, 100 width_shift: i32, 104 growth: f32,
         108 level_step: f32, 112 radiance: [f32; 4],
     }
-    push SphereShadePush 112 {
+    push SphereShadePush 128 {
         0 land: LandPush, 32 first: [i32; 2], 40 base: [i32; 2], 48 offset: [f32; 2], 56 up_m: f32,
         60 radius_m: f32, 64 reach_m: f32, 68 slices: i32, 72 slices_around: i32,
-        76 first_slice: i32, 80 last_slice: i32, 84 pads: [i32; 3], 96 radiance: [f32; 4],
+        76 first_slice: i32, 80 last_slice: i32, 84 exponent: f32, 88 scale: f32,
+        92 specular_begins: f32, 96 radiance: [f32; 4], 112 eye_m: [f32; 4],
     }
     push SunSpecularPush 88 {
         0 cols: i32, 4 rows: i32, 8 cell_x_m: f32, 12 cell_y_m: f32, 16 towards: [f32; 4],
@@ -1373,4 +1383,4 @@ layouts! {
 }
 
 /// Words of all shaders together.
-const WORD_COUNT: usize = 493848;
+const WORD_COUNT: usize = 504949;

@@ -273,7 +273,7 @@ impl Preview {
             let grounds = grounds?;
             self.end(screen)?;
             let levels = self.levels.insert(levels_of(grounds));
-            return levels.iter_mut().try_for_each(|level| level.take(state, None));
+            return levels.iter_mut().try_for_each(|level| level.take(state, (None, true)));
         }
         let is_new = self.has_new_grids();
         if let Some(levels) = self.levels.as_mut().filter(|_| is_new)
