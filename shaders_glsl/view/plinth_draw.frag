@@ -10,7 +10,8 @@ layout(constant_id = 1) const bool HAS_VOIDS = false;
 // 0 where there is ground.
 layout(binding = 2) uniform texture2D voids;
 
-#include "view/plinth.glsl"
+#define PLINTH
+#include "view/ground.glsl"
 
 layout(location = 0) flat in float light;
 layout(location = 1) flat in int face;

@@ -16,8 +16,8 @@ layout(binding = 1) uniform texture2D radiance;
 // 0 where there is ground.
 layout(binding = 2) uniform texture2D voids;
 
-#include "view/plinth.glsl"
-#include "view/place.glsl"
+#define PLINTH
+#include "view/ground.glsl"
 
 // The mean is of POINTS x POINTS texels.
 const int POINTS = 8;

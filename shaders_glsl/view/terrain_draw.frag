@@ -12,7 +12,7 @@ layout(binding = 1) uniform texture2D radiance;
 // 0 where there is ground.
 layout(binding = 2) uniform texture2D voids;
 
-#include "view/terrain.glsl"
+#include "view/ground.glsl"
 
 layout(location = 0) centroid in vec2 offset;
 layout(location = 1) flat in ivec2 first;

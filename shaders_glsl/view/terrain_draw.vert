@@ -7,8 +7,7 @@
 
 layout(binding = 0) uniform texture2D heights;
 
-#include "view/terrain.glsl"
-#include "view/place.glsl"
+#include "view/ground.glsl"
 
 // Vertices per side of a tile.
 const int SIDE = 17;
