@@ -138,25 +138,13 @@ impl Probes {
         Ok(Self { is_whole: places.len() == known.len(), places, factors, light, noise, own_rms })
     }
 
-    /// Starts to compute the light of [`by`](Self::by). `None` for `unsure`, which is not known before two pictures: only
-    /// the texels that do not depend on it.
+    /// Starts to compute the light of those texels of [`by`](Self::by) that do not depend on `unsure`.
     ///
     /// # Errors
     /// As there.
-    pub(super) fn request(
-        oracle: &OracleLight<'_>,
-        wanted: usize,
-        seed: u64,
-        unsure: Option<&[f64]>,
-    ) -> Result<()> {
+    pub(super) fn request(oracle: &OracleLight<'_>, wanted: usize, seed: u64) -> Result<()> {
         let known = known(oracle.scene())?;
-        let picks = match unsure {
-            Some(unsure) => {
-                let weight = |i: &usize| unsure.get(*i).copied().unwrap_or(0.0);
-                picks(&known.iter().map(weight).collect::<Vec<_>>(), wanted, seed).0
-            }
-            None => even_picks(known.len(), wanted, seed),
-        };
+        let picks = even_picks(known.len(), wanted, seed);
         let places: Vec<usize> = picks.into_iter().map(|k| known[k]).collect();
         oracle.request(&places, Rays::All);
         // The first texels are the same, so every `stride`-th is, too.

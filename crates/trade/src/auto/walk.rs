@@ -4,7 +4,7 @@ use super::candidates::defaults;
 use super::chooser::{Chooser, Trial};
 use super::model::{Expected, PARTS, Part};
 use super::oracle_light::{OracleLight, OracleThreads};
-use super::probes::{Probes, Traced, unsampled_bounce_error, unsure};
+use super::probes::{Measured, Probes, Traced, unsampled_bounce_error, unsure};
 use super::statistics::Statistics;
 use crate::trade::{Goal, start};
 use ridgelight::plan::REFERENCE_BATCH;
@@ -80,61 +80,85 @@ const UNSAMPLED_SHARE: f64 = 0.25;
 /// The target where the goal is a time.
 const TIMED_NOISE_TARGET: f64 = 0.002;
 
-/// Where only bounds decide, probes are added up to this many times the first.
+/// Probes of the first estimates of direct light. Where only bounds decide, probes are added up to [`MOST_PROBES`] times the
+/// affordable number.
+const FIRST_PROBES: usize = 200;
 const MOST_PROBES: usize = 4;
 
-/// The choice is measured once more by probes that had no part in it, this many times the first;
-/// its bound is theirs. If it misses the goal, others are chosen, this many times in all: twice the
-/// fastest, then settings with a margin, then exact horizons.
+/// The choice is measured once more by probes that had no part in it, at most this many times the affordable number; its
+/// bound is theirs. If it misses the goal, others are chosen, this many times in all: twice the fastest, then settings
+/// with a margin, then exact horizons.
 const CONFIRMING_PROBES: usize = 3;
 const CONFIRMATIONS: u64 = 4;
+
+/// Where the goal is a time: how far the bound of the choice is expected to lie above its error.
+const TIMED_BOUND: f64 = 1.1;
+
+/// Probes that measure a choice again: its bound at these `deviations` is then expected to lie halfway between its error and
+/// the goal. [`FIRST_PROBES`] or more, and `most` at most.
+///
+/// The bound of a mean square lies above it in proportion to the deviations and to 1/√n. The number depends on earlier
+/// probes alone, so that the bound by fresh ones holds.
+fn confirming_count(
+    Measured { error, at_most }: Measured,
+    count: usize,
+    goal: Goal,
+    deviations: f64,
+    most: usize,
+) -> usize {
+    let wanted = match goal {
+        Goal::MaxError(goal) => 0.5 * (error + goal),
+        Goal::MaxCost(_) => TIMED_BOUND * error,
+    };
+    let ratio = (at_most.powi(2) - error.powi(2)) / (wanted.powi(2) - error.powi(2));
+    let count = count as f64 * (deviations / Probes::ONE_BOUND * ratio).powi(2);
+    // An error of 0 gives NaN, or infinity.
+    let count = if count.is_finite() { count.ceil() as usize } else { most };
+    count.clamp(FIRST_PROBES.min(most), most)
+}
 
 /// Probes, and the pictures that may still be needed, in the order of rendering.
 struct Judge<'a, 't> {
     oracle: &'a OracleLight<'a>,
     bounced: Option<Bounced<'t>>,
     batches: u32,
-    /// Where probes concentrate, how many at a time, and the next seed.
+    /// Where probes concentrate, the affordable number, and the next seed.
     unsure: Vec<f64>,
-    step: usize,
+    affordable: usize,
     seed: u64,
-    /// Of all probes.
-    first_seed: u64,
     probes: Probes,
     pictures: Vec<Option<Vec<Vec<f32>>>>,
     control: usize,
 }
 
-/// The seed of the probes that measure the choice of an attempt, from 1. It does not depend on the probes before them, so
-/// their light can be computed while frames are drawn. Other probes and paths count in bits 32 to 47.
-fn confirming_seed(first_seed: u64, attempt: u64) -> u64 {
-    first_seed.wrapping_add(attempt << 48)
+/// Bounced light has a number of paths for a fixed number of probes.
+fn first_count(affordable: usize, has_bounced: bool) -> usize {
+    if has_bounced { affordable } else { affordable.min(FIRST_PROBES) }
 }
 
 impl<'a, 't> Judge<'a, 't> {
     fn new(
         oracle: &'a OracleLight<'a>,
-        (step, seed): (usize, u64),
+        (affordable, seed): (usize, u64),
         unsure: Vec<f64>,
         bounced: Option<Bounced<'t>>,
         goal: Goal,
     ) -> Result<Self> {
         let scene = oracle.scene();
-        let probes = Probes::by(oracle, step, seed, &unsure)?;
+        let first = first_count(affordable, bounced.is_some());
+        let probes = Probes::by(oracle, first, seed, &unsure)?;
         let direct = probes.clone();
         let mut judge = Self {
             oracle,
             bounced,
             batches: FIRST_BATCHES,
             unsure,
-            step,
+            affordable,
             seed,
-            first_seed: seed,
             probes,
             pictures: vec![],
             control: 0,
         };
-        judge.request_confirming(1)?;
         judge.probes = judge.traced(direct.clone())?;
         let (wanted, error) = match goal {
             Goal::MaxError(most) => (NOISE_TARGET * most, most),
@@ -183,19 +207,6 @@ impl<'a, 't> Judge<'a, 't> {
         self.traced(probes)
     }
 
-    /// Probes that measure the choice of an attempt.
-    fn confirming(&mut self, attempt: u64) -> Result<Probes> {
-        let seed = confirming_seed(self.first_seed, attempt);
-        let probes = Probes::by(self.oracle, CONFIRMING_PROBES * self.step, seed, &self.unsure)?;
-        self.traced(probes)
-    }
-
-    /// Starts to compute their light.
-    fn request_confirming(&self, attempt: u64) -> Result<()> {
-        let seed = confirming_seed(self.first_seed, attempt);
-        Probes::request(self.oracle, CONFIRMING_PROBES * self.step, seed, Some(&self.unsure))
-    }
-
     /// Adds bounced light, where there is any, by new paths.
     fn traced(&mut self, mut probes: Probes) -> Result<Probes> {
         let Some(bounced) = &mut self.bounced else { return Ok(probes) };
@@ -222,7 +233,7 @@ impl<'a, 't> Judge<'a, 't> {
         self.judge(chooser);
         while chooser.is_undecided()
             && !self.probes.is_whole()
-            && self.probes.count() < MOST_PROBES * self.step
+            && self.probes.count() < MOST_PROBES * self.affordable
         {
             let more = self.fresh(self.probes.count())?;
             self.probes.extend(&more);
@@ -292,8 +303,7 @@ fn choose_by(
     mut draw: impl FnMut(&Quality, &OracleThreads) -> Result<Drawn>,
 ) -> Result<Chosen> {
     // Half of the probes do not depend on the pictures.
-    Probes::request(oracle, probes, seed, None)?;
-    Probes::request(oracle, CONFIRMING_PROBES * probes, confirming_seed(seed, 1), None)?;
+    Probes::request(oracle, first_count(probes, bounced.is_some()), seed)?;
     let mut draw = |quality: &Quality| draw(quality, oracle.threads());
     let scene = oracle.scene();
     let count = bounced.as_ref().map_or(0, |b| b.count);
@@ -348,10 +358,17 @@ fn choose_by(
             _ => chooser.best(),
         };
         let Some(best) = best else { break };
-        let quality = best.quality;
+        let (quality, measured) = (best.quality, best.measured);
         let Drawn { planes, passes } = draw(&quality)?;
-        let fresh = judge.confirming(attempt)?;
-        let deviations = if count > 0 { Probes::EIGHT_BOUNDS } else { Probes::FOUR_BOUNDS };
+        let most = CONFIRMING_PROBES * probes;
+        let (deviations, wanted) = match count {
+            0 => {
+                let (deviations, known) = (Probes::FOUR_BOUNDS, judge.probes.count());
+                (deviations, confirming_count(measured, known, goal, deviations, most))
+            }
+            _ => (Probes::EIGHT_BOUNDS, most),
+        };
+        let fresh = judge.fresh(wanted)?;
         let ns = passes.iter().map(|p| p.1).sum();
         let measured = fresh.error(&planes, judge.control(), deviations);
         let trial = chooser.confirmed(&quality, measured, ns).copied();
@@ -364,9 +381,6 @@ fn choose_by(
                 confidence: (is_aimed || fresh.is_whole()).then_some(Probes::CONFIDENCE),
                 trials: chooser.trials().to_vec(),
             });
-        }
-        if !is_last {
-            judge.request_confirming(attempt + 1)?;
         }
         judge.probes.extend(&fresh);
         judge.judge(&mut chooser);
@@ -437,4 +451,32 @@ pub fn flags(quality: &Quality, scene: &Scene) -> String {
     let all = names.iter().filter_map(|name| setting(name));
     let all: Vec<_> = all.map(|s| format!("`{} {}`", s.name, s.get(quality))).collect();
     all.join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// With 300 probes the bound's square lies 3e-4 above the error's, and so does the square of 2 %, halfway to a goal of 3 %.
+    /// The square of half the way to the second goal lies half as far above: four times the probes. A goal far away takes
+    /// the fewest, one as near as the bound all.
+    #[test]
+    fn the_distance_to_the_goal_decides_how_many_probes_confirm() {
+        let measured = Measured { error: 0.01, at_most: 0.02 };
+        let count = |measured: Measured, goal: Goal| {
+            confirming_count(measured, 300, goal, Probes::ONE_BOUND, 3000)
+        };
+        assert_eq!(count(measured, Goal::MaxError(0.03)), 300);
+        let nearer = count(measured, Goal::MaxError(2.0 * 2.5e-4_f64.sqrt() - 0.01));
+        // Rounded up.
+        assert!((1200..=1201).contains(&nearer), "{nearer}");
+        assert_eq!(count(measured, Goal::MaxError(0.5)), FIRST_PROBES);
+        assert_eq!(count(measured, Goal::MaxError(0.0101)), 3000);
+        assert_eq!(count(measured, Goal::MaxCost(1.0)), 3000);
+        let sure = Measured { error: 0.01, at_most: 0.0101 };
+        assert_eq!(count(sure, Goal::MaxCost(1.0)), FIRST_PROBES);
+        // Where nothing differs, or nothing is known.
+        assert_eq!(count(Measured { error: 0.0, at_most: 0.0 }, Goal::MaxCost(1.0)), 3000);
+        assert_eq!(count(Measured::UNKNOWN, Goal::MaxError(0.1)), 3000);
+    }
 }
