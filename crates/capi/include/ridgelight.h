@@ -180,7 +180,7 @@ typedef struct RidgelightScene {
     uint32_t environment_height;
     // Counter-clockwise rotation of the environment, radians.
     double environment_rotation_rad;
-    // Phong specular: exponent of the lobe about the mirror direction of a vertical view, [0..1e4].
+    // Phong specular: exponent of the lobe about the mirror direction of the view (`eye_m`), [0..1e4].
     float specular_exponent;
     // Phong specular: share of light that it reflects, [0..1]; 0: none.
     float specular_scale;

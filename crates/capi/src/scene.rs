@@ -102,7 +102,7 @@ pub struct RidgelightScene {
     pub environment_height: u32,
     /// Counter-clockwise rotation of the environment, radians.
     pub environment_rotation_rad: f64,
-    /// Phong specular: exponent of the lobe about the mirror direction of a vertical view, [0..1e4].
+    /// Phong specular: exponent of the lobe about the mirror direction of the view (`eye_m`), [0..1e4].
     pub specular_exponent: f32,
     /// Phong specular: share of light that it reflects, [0..1]; 0: none.
     pub specular_scale: f32,
