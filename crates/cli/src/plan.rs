@@ -5,7 +5,7 @@ mod start;
 
 use ridgelight::Result;
 use ridgelight::gpu;
-use ridgelight::plan::{self, Limits, Plan, View};
+use ridgelight::plan::{self, Limits, Picture, Plan, View};
 
 use crate::args::{DevicesArgs, GlobalArgs, PlanArgs, PlanFormat};
 use crate::idle;
@@ -29,7 +29,9 @@ pub fn run(args: &PlanArgs) -> Result<Outcome> {
     )?;
     let camera_view = camera::requested(&args.camera, &scene, false)?;
     let (name, limits) = limits(&args.global)?;
-    let plan = plan::picture(&scene, &quality, &limits, setup::wanted(&[]))?;
+    let eye_m = camera_view.as_ref().map(|view| view.eye_m(&scene.field));
+    let wanted = Picture { eye_m, ..setup::wanted(&[]) };
+    let plan = plan::picture(&scene, &quality, &limits, wanted)?;
     let view = match &camera_view {
         Some(camera_view) => {
             let mut view = camera_view.view(&scene, &plan, &limits)?;

@@ -255,6 +255,11 @@ fn specular() {
                 &["--subsample", "found 2"],
             ),
             ("--bounces 1 --bounce-specular half", 2, &["--bounce-specular", "vector-f16"]),
+            (
+                "--specular 10,0.5 --albedo 0.5 --bounces 1 --bounce-specular scalar --camera 180,30",
+                2,
+                &["--bounce-specular", "found scalar", "vector-f16", "without a camera"],
+            ),
         ],
     );
     let both = "--specular 10,0.5 --albedo 0.5";
