@@ -50,6 +50,9 @@ impl Surface {
     }
 }
 
+/// Largest exponent of a lobe.
+const LARGEST_EXPONENT: f32 = 1e4;
+
 /// Phong specular of the whole field.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Specular {
@@ -62,8 +65,11 @@ pub enum Specular {
 impl Specular {
     /// A map of `grid_points` texels that only the device knows. The plan assumes `scale` everywhere; no texel may exceed it.
     /// With [`Albedo::unknown`], which the plan takes as fully reflecting, use `f32::EPSILON`.
+    ///
+    /// The plan also assumes the largest exponent everywhere, for which key lights and sphere lights take the most azimuths. If
+    /// yours are smaller, a [`Map`](Self::Map) that holds their largest one at every texel takes fewer.
     pub fn unknown(grid_points: usize, scale: f32) -> Self {
-        Specular::Map(vec![PhongSpecular { exponent: 0.0, scale }; grid_points])
+        Specular::Map(vec![PhongSpecular { exponent: LARGEST_EXPONENT, scale }; grid_points])
     }
 
     /// The value at a grid point.
@@ -104,7 +110,7 @@ pub struct PhongSpecular {
 impl PhongSpecular {
     /// The first field out of range: its name, its value, the expected range.
     pub fn out_of_range(&self) -> Option<(&'static str, f32, &'static str)> {
-        if !(0.0..=1e4).contains(&self.exponent) {
+        if !(0.0..=LARGEST_EXPONENT).contains(&self.exponent) {
             return Some(("exponent", self.exponent, "a number from 0 to 10000"));
         }
         let is_share = (0.0..=1.0).contains(&self.scale);

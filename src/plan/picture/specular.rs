@@ -448,6 +448,33 @@ mod tests {
         assert!(most.notes.iter().any(|n| n.contains("above 1819 ")), "{:?}", most.notes);
     }
 
+    /// A map that only the device knows may have any exponent: 2 √(10,000 + 1) = 201 azimuths of a width of 1 radian, and
+    /// 4π √(10,000 + 1) = 1,257 slices around a sphere light. A map of a smaller exponent takes as many as its lobe needs.
+    #[test]
+    fn unknown_maps_have_the_most_azimuths() {
+        let field = fractal(32, 1).unwrap();
+        let known = Specular::Map(vec![PhongSpecular { exponent: 99.0, scale: 0.5 }; 32 * 32]);
+        for (specular, counts) in
+            [(Specular::unknown(32 * 32, 0.5), [201, 1257]), (known, [20, 126])]
+        {
+            let surface = Surface {
+                albedo: Albedo::Constant([0.5; 3]),
+                specular: Some(specular),
+                ..Surface::default()
+            };
+            let lights =
+                Lights { keys: vec![key()], sphere_lights: vec![sphere()], ..Lights::default() };
+            let scene = Scene { field: field.clone(), surface, lights };
+            let quality = Quality { azimuths: 8, ..Quality::default() };
+            let limits = Limits::lavapipe();
+            let plan = plan::picture(&scene, &quality, &limits, Picture::default()).unwrap();
+            let shaded = plan.passes.iter().find(|pass| pass.name() == "sphere_shade").unwrap();
+            let at = offset("SphereShadePush", "slices_around");
+            let around = i32::from_ne_bytes(shaded.push[at..at + 4].try_into().unwrap());
+            assert_eq!([plan.azimuths.len() as i32, around], counts);
+        }
+    }
+
     /// Sky and environment use tables of the lobe, without harmonics unless they are requested. Suns need neither, nor does
     /// specular of scale 0.
     #[test]
