@@ -358,7 +358,10 @@ fn used(
         used.push(("sun_azimuths".into(), quality.sun_azimuths.to_string()));
     }
     if has_spheres {
-        used.push(("light_cutoff".into(), quality.light_cutoff.to_string()));
+        // Specular light has no cutoff.
+        if active.specular.is_none() {
+            used.push(("light_cutoff".into(), quality.light_cutoff.to_string()));
+        }
         used.push(("light_basis".into(), quality.light_basis.name().into()));
     }
     for setting in soft.map(|soft| soft.settings(quality)).into_iter().flatten() {

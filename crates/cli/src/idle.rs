@@ -66,6 +66,7 @@ fn reason(setting: &str, used: &[(String, String)]) -> String {
         ("sun_azimuths", ..) => {
             "without a sun wider than 0.01°, a key light or a sphere light".into()
         }
+        ("light_cutoff", ..) if of("light_basis").is_some() => "with --specular".into(),
         ("light_cutoff" | "light_basis", ..) => "without a sphere light".into(),
         (
             "lines" | "fuse" | "precision" | "hull" | "level_step" | "level_offset" | "levels",

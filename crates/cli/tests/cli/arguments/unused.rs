@@ -69,6 +69,11 @@ fn flags_that_change_nothing_are_noted() {
         ("--sun-azimuths 4", &["--sun-azimuths 4 changes nothing without a sun wider"]),
         ("--sun 90,30,0 --sun-azimuths 4 --sky 1", &["--sun-azimuths 4 changes nothing without"]),
         ("--sun 90,30 --azimuths 16", &["--azimuths 16 changes nothing without a sky"]),
+        ("--light-cutoff 0.1", &["--light-cutoff 0.1 changes nothing without a sphere light"]),
+        (
+            "--sphere-light 4,4,9,1,5 --albedo 0.5 --specular 9,0.5 --light-cutoff 0.1",
+            &["--light-cutoff 0.1 changes nothing with --specular"],
+        ),
         // Lines 2 apart do not divide 9 cells.
         ("--border periodic --lines 2", &["--lines 2 changes nothing with --border periodic"]),
     ] {
