@@ -421,7 +421,7 @@ mod tests {
     }
 
     /// Key lights have as many azimuths as the lobe needs: of a width of 1 radian 2 √(99 + 1) = 20 at exponent 99; at 9 fewer than the
-    /// 8 of the setting; and never more than 256. They are cut by horizons and not by shadow heights.
+    /// 8 of the setting; and never more than 256. They are cut by horizons and not by shadow heights, and take no edits.
     #[test]
     fn key_lights_have_the_azimuths_that_a_lobe_needs() {
         let planned = |exponent, scale, elevations_rad| {
@@ -433,6 +433,7 @@ mod tests {
         for (exponent, scale, count) in [(99.0, 0.5, 20), (9.0, 0.5, 8), (99.0, 0.0, 8)] {
             let plan = planned(exponent, scale, tall);
             assert_eq!(plan.azimuths.len(), count, "{exponent} {scale}");
+            assert_eq!(plan.edit_passes.is_empty(), scale > 0.0, "{exponent} {scale}");
             let noted = plan.notes.iter().any(|n| n.starts_with("key 1: 20 azimuths"));
             assert_eq!(noted, count == 20, "{:?}", plan.notes);
         }
