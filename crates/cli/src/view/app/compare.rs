@@ -78,6 +78,12 @@ impl Compare {
         self.error = None;
     }
 
+    /// After a change of the eye of specular alone. The reference's specular does not depend on it.
+    pub fn eye_changed(&mut self) {
+        (self.is_off_stale, self.has_new_light) = (true, true);
+        self.error = None;
+    }
+
     /// Makes the frames to show.
     pub fn prepare(&mut self, screen: &mut Screen, state: &State, limits: &Limits) -> Result<()> {
         if self.is_off_stale {
@@ -255,6 +261,24 @@ fn distance(estimates: &[[[f64; 3]; 3]], batches: f64, unsampled: [f64; 3]) -> [
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Another eye changes the picture without shadows and keeps the paths; another scene restarts them.
+    #[test]
+    fn another_eye_keeps_the_paths() {
+        let drawn = || {
+            let mut compare = Compare::new();
+            compare.drawn(&[]);
+            compare.is_reference_stale = false;
+            compare
+        };
+        let stale = |compare: &Compare| [compare.is_off_stale, compare.is_reference_stale];
+        assert_eq!(stale(&drawn()), [false, false]);
+        let [mut of_eye, mut of_scene] = [drawn(), drawn()];
+        of_eye.eye_changed();
+        assert_eq!(stale(&of_eye), [true, false]);
+        of_scene.scene_changed(false);
+        assert_eq!(stale(&of_scene), [true, true]);
+    }
 
     /// Of variance 1: a sum of twelve uniform numbers.
     fn noises() -> impl FnMut() -> f64 {
