@@ -13,9 +13,9 @@ use crate::scene::{
 };
 use crate::{Error, Result};
 
-/// The most azimuths across a key light, as of the setting `sun_azimuths`.
+/// The most azimuths across a key light: the maximum of the setting `sun_azimuths`.
 const MOST_AZIMUTHS: u32 = 256;
-/// The most slices around a sphere light, as by the largest setting.
+/// The most slices around a sphere light: those of the largest setting.
 const MOST_AROUND: u32 = 8 * MOST_AZIMUTHS;
 
 /// The lights that are not dark.
@@ -92,11 +92,11 @@ impl<'a> ActiveLights<'a> {
         if surface.specular.is_some() && specular.is_none() {
             notes.push("specular dropped: its scale is 0".into());
         }
-        // How far diffuse light reaches does not bound specular.
+        // The reach of diffuse light does not bound specular.
         let cutoff = if specular.is_some() { 0.0 } else { quality.light_cutoff };
         let near = Spheres::of(field, lit_near, cutoff, notes)?;
         if specular.is_some() && !near.active.is_empty() {
-            notes.push("sphere lights: at all texels, as specular reaches farther".into());
+            notes.push("sphere lights: computed at all texels, as specular reaches farther".into());
         }
         let grey = |c: &[f32; 3]| c[0] == c[1] && c[1] == c[2];
         let is_grey = environment.is_none()
@@ -264,24 +264,24 @@ impl<'a> ActiveLights<'a> {
         setting.max(self.specular_azimuths(key).min(MOST_AZIMUTHS))
     }
 
-    /// Azimuths across a key light that are at most half as wide as the surface's narrowest lobe, whose deviation is 1/√(n + 1)
-    /// radians: the lobe's slice in the middle of a wedge then stands for the wedge. 0 without specular.
+    /// Azimuths across a key light, each at most half as wide as the surface's narrowest lobe, whose standard deviation is
+    /// 1/√(n + 1) radians. The lobe's slice in the middle of a wedge then represents the wedge. 0 without specular.
     fn specular_azimuths(&self, key: &KeyLight) -> u32 {
         self.half_deviations(key.width_rad)
     }
 
-    /// The same of a sphere light around a texel within it, [`MOST_AROUND`] at most.
+    /// The same for a sphere light around a texel within it, [`MOST_AROUND`] at most.
     pub(super) fn specular_slices_around(&self) -> u32 {
         self.half_deviations(TAU).min(MOST_AROUND)
     }
 
-    /// How many halves of the deviation of the surface's narrowest lobe, 1/√(n + 1) radians, a width has.
+    /// A width in halves of the standard deviation of the surface's narrowest lobe, 1/√(n + 1) radians, rounded up.
     fn half_deviations(&self, width_rad: f64) -> u32 {
         let narrowest = self.specular.map(|specular| f64::from(specular.largest().exponent));
         narrowest.map_or(0, |n| (2.0 * width_rad * (n + 1.0).sqrt()).ceil() as u32)
     }
 
-    /// What specular changes about key lights.
+    /// Notes on what specular changes for key lights.
     pub(super) fn key_notes(&self, quality: &Quality) -> Vec<String> {
         let mut notes = Vec::new();
         if self.keys.iter().any(|(_, key)| Shadows::suits(key)) {
@@ -295,7 +295,7 @@ impl<'a> ActiveLights<'a> {
             if count < self.specular_azimuths(key) {
                 let n = (f64::from(count) / (2.0 * key.width_rad)).powi(2) - 1.0;
                 notes.push(format!(
-                    "key {number}: {count} azimuths, the most; specular of exponents above {n:.0} needs more"
+                    "key {number}: {count} azimuths, the maximum; specular of exponents above {n:.0} needs more"
                 ));
             } else if count > quality.sun_azimuths {
                 notes.push(format!(

@@ -119,7 +119,7 @@ pub struct SurfaceArgs {
     ///
     /// The Phong lobe is centred on the mirror direction of the view: of --camera or, without it, from straight above. SCALE plus
     /// --albedo is at most 1. A file has the size of the field and holds both: .exr R and G, or .npy [2, rows, cols].
-    /// With --bounces, only `reference` reflects key lights and sphere lights; `render` refuses them.
+    /// `render` refuses key lights and sphere lights with --bounces; `reference` reflects all lights.
     #[arg(
         long,
         value_name = "EXPONENT,SCALE|FILE",

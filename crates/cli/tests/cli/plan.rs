@@ -188,7 +188,7 @@ fn info_states_what_a_file_holds() {
     image::GrayImage::from_raw(5, 5, steep).unwrap().save(folder.path("steep.png")).unwrap();
     let run = folder.run_without_driver(&["info", "steep.png", "--cell", "5"]);
     assert!(run.out.contains("100.000 % beyond 45 degrees"), "{}", run.out);
-    assert!(run.out.contains("whole numbers of 8 bits"), "{}", run.out);
+    assert!(run.out.contains("8-bit integers"), "{}", run.out);
     let run = folder.run_without_driver(&["info", "steep.png"]);
     assert!(
         run.out.contains("warning    the file has no cell size: --cell 1 is assumed"),

@@ -24,7 +24,7 @@ pub(crate) struct Raster {
     pub voids: Option<Vec<bool>>,
     /// Where the grid lies, if the file states it.
     pub georeference: Option<Georeference>,
-    /// Whether the values are whole numbers of 8 bits.
+    /// Whether the values are 8-bit integers.
     pub is_8_bit: bool,
     /// What the reader chose or converted.
     pub notes: Vec<String>,
@@ -79,7 +79,7 @@ impl Raster {
             self.notes.push(format!("heights are in units of {unit_m} m and become metres"));
         }
         if self.is_8_bit {
-            let text = "heights are whole numbers of 8 bits, as of a picture: slopes have steps";
+            let text = "heights are 8-bit integers, as in a picture: slopes have steps";
             self.warnings.push(text.to_owned());
         }
     }

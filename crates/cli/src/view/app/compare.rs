@@ -32,11 +32,11 @@ pub(super) const MOST_PATHS: u32 = MOST_BATCHES * REFERENCE_BATCH;
 pub struct Compare {
     off: Option<Frame>,
     is_off_stale: bool,
-    /// Whether its light or settings have changed since it was drawn, too.
+    /// Whether light or settings have also changed since `off` was drawn.
     has_new_light: bool,
     path_traced: Option<PathTraced>,
     is_reference_stale: bool,
-    /// Whether the other pictures have specular that is viewed from a camera; the reference's is viewed from straight above.
+    /// Whether a camera views the specular of the other pictures. The reference views it from straight above.
     has_eye: bool,
     /// When the scene changed last.
     changed: Instant,
@@ -70,7 +70,7 @@ impl Compare {
         }
     }
 
-    /// After a change of the field, or of light or settings too.
+    /// Call it after a change of the field, or also of light or settings (`has_new_light`).
     pub fn scene_changed(&mut self, has_new_light: bool) {
         (self.is_off_stale, self.is_reference_stale) = (true, true);
         self.has_new_light |= has_new_light;
@@ -183,7 +183,7 @@ impl Compare {
             return Err(Error::setting("reference", found, expected));
         };
         if self.has_eye {
-            let expected = "none, as the reference's specular is viewed from straight above: key v";
+            let expected = "none, as the reference views specular from straight above: press v";
             return Err(Error::setting("error with specular", "a camera", expected));
         }
         screen.wait()?;
