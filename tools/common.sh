@@ -94,17 +94,17 @@ swiftshader_manifest() {
 JSON
 }
 
-# Debian's own Python has a module.
+# Whether Debian's own Python has a module.
 python_has() { # MODULE
     /usr/bin/python3 -c "import $1" 2>/dev/null
 }
 
-# GDAL's tools and its validator of Cloud Optimized GeoTIFFs.
+# Whether GDAL's tools are there, with its validator of Cloud Optimized GeoTIFFs.
 has_gdal() {
     command -v gdalinfo >/dev/null && python_has osgeo_utils.samples.validate_cloud_optimized_geotiff
 }
 
-# NumPy, whose arrays are compared with what GDAL reads.
+# Whether NumPy is there, and GDAL, whose values its arrays are compared with.
 has_numpy() {
     has_gdal && python_has numpy
 }
