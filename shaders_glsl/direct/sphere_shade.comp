@@ -66,7 +66,7 @@ float high_slope;    // of the disc's upper end
 // The normal within the slice.
 float flat_part;
 float normal_up;
-// The lobe about the mirror direction within the slice: the mirror direction's part, of unit length, and a^n.
+// The lobe about the mirror direction within the slice: the mirror direction's part in the slice, scaled to unit length, and a^n.
 float phong_n;
 float phong_along;
 float phong_up;
@@ -101,8 +101,8 @@ float light_between(vec2 low, vec2 high) {
     return 0.5 * (flat_part * (width + twice.x * sine_of) + normal_up * twice.y * sine_of);
 }
 
-// Integral over elevations between two directions of the slice of the lobe times cos, without a^n. Of a narrow interval the lobe in its
-// middle, as the antiderivatives at its ends are nearly equal.
+// Integral of the lobe times cos over elevations between two directions of the slice, without a^n. A narrow interval uses the lobe
+// in its middle, as the antiderivatives at its ends are nearly equal.
 float specular_between(vec2 low, vec2 high) {
     vec2 sum = low + high;
     vec2 difference = high - low;

@@ -64,7 +64,7 @@ float dark_slope(Azimuth azimuth) {
 #include "direct/gather.glsl"
 #include "specular/key_specular.glsl"
 
-// Of a key light of radiance 1, for scale 1; and the exponents of a map.
+// Specular of a key light of radiance 1, for scale 1; and the exponents of a map.
 vec4 mirrored_light;
 vec4 exponents;
 Mirrored mirror;

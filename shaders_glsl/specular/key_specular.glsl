@@ -2,7 +2,7 @@
 #include "specular/mirror.glsl"
 
 // Light of a key light's wedge of radiance 1 in Phong lobes about the mirror directions of four grid points, above `lowest`: the
-// slope of the lowest direction that is not hidden. The lobe's slice in the middle of the wedge stands for all of the wedge.
+// slope of the lowest direction that is not hidden. The lobe's slice in the middle of the wedge represents the whole wedge.
 vec4 key_specular(float n, Azimuth azimuth, Mirrored mirror, vec4 lowest) {
     vec4 along = mirror.east * azimuth.cos_phi + mirror.north * azimuth.sin_phi;
     vec4 across = mirror.east * azimuth.sin_phi - mirror.north * azimuth.cos_phi;

@@ -1,6 +1,6 @@
 // Computes: exit radiance of every grid point from its incident light: the Phong specular towards the view, and for
 // the next bounce specular plus diffuse light, as a series of spherical harmonics or as one number towards straight
-// above. With one number the view is from straight above, too.
+// above. With one number the view is also from straight above.
 // Reads: arriving, ground, exit_radiance (diffuse), specular_direct, phong_map, constants.
 // Reads and writes: specular_bounced (RGB, of all bounces so far).
 // Writes: exit_vectors or exit_upward.

@@ -1,5 +1,5 @@
-// Push constants of a field's mesh (src/passes/view/terrain_draw.rs), or with PLINTH of its plinth (plinth_draw.rs), and where
-// both place grid points in the picture.
+// Push constants of a field's mesh (src/passes/view/terrain_draw.rs) or, with PLINTH, of its plinth (plinth_draw.rs); and the
+// picture positions of grid points, for both.
 
 #ifdef PLINTH
 layout(push_constant) uniform PlinthDrawPush {

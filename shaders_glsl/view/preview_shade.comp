@@ -1,5 +1,5 @@
-// Computes: exit radiance of a fine grid: light of a coarse grid, and the sun's by its shadow heights, on the fine grid's own
-// slopes and albedo.
+// Computes: exit radiance of a fine grid, on its own slopes and albedo: by the light of a coarse grid, and by the sun with its
+// shadow heights.
 // Reads: normals (means over what a texel covers), albedo, sky (what `preview_gather` writes), heights, lit_above and
 // dark_below (what `preview_shadow` writes).
 // Writes: radiance.
@@ -27,7 +27,7 @@ layout(push_constant) uniform PreviewShadePush {
     vec4 sky_by_normal;  // as in `preview_gather`
     vec4 sun_by_normal;
     vec4 most;           // radiance of a white texel that faces the sun
-    vec4 colour;         // albedo where it is no map; and the least value of the sky's function
+    vec4 colour;         // albedo where it is not a map; w: least value of the sky's function
     vec2 along_m;        // a cell's width towards the sun, east and north
     float rise_m;        // of a ray to the sun's lower edge over that width
     int cols;
@@ -42,15 +42,15 @@ layout(push_constant) uniform PreviewShadePush {
 // Least height over which a texel goes from dark to lit, metres.
 const float LEAST_EDGE_M = 1e-6;
 
-// The visible share of the sun at a texel: by its height between those below which none and from which all of the sun is
-// visible. They are moved apart by what the texel's ground rises and falls towards the sun, relative to the ray.
+// The visible share of the sun at a texel: where its height lies between the height below which none of the sun is visible
+// and that from which all of it is. The slope of the texel's ground towards the sun, relative to the ray, moves the two apart.
 float sun_share(ivec2 at, vec3 normal) {
     bool marches_rows = (flags & AZIMUTH_MARCHES_ROWS) != 0u;
     int lanes = marches_rows ? cols : rows;
     int steps = marches_rows ? rows : cols;
     int march = marches_rows ? at.y : at.x;
     int step = (flags & AZIMUTH_FLIPS_MARCH) != 0u ? steps - 1 - march : march;
-    // The next line is a cell on, at the next lane.
+    // The next line is one cell farther, at the next lane.
     float part = float((-step * shear) & (CELL - 1)) * (1.0 / float(CELL));
     int lane = marches_rows ? at.x : at.y;
     int beside = (flags & AZIMUTH_FLIPS_LANES) != 0u ? lane - 1 : lane + 1;

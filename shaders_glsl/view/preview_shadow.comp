@@ -2,7 +2,7 @@
 // height below which none of it is.
 // Reads: heights.
 // Writes: lit_above, dark_below (metres over the field's base; NOTHING where no ground is ahead): at each grid point those
-// of the line that passes through it or the last one before it, in the order of the lanes.
+// of the line that passes through it or of the last line before it, in the order of the lanes.
 // One invocation is one line. Lines are a cell apart and run away from the sun's centre. `preview_shade` interpolates them.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require

@@ -6,8 +6,8 @@ use ash::vk;
 /// Bits that both kinds of flags share: Vulkan 1.3 adds only higher ones.
 const SHARED: u64 = u32::MAX as u64;
 
-/// Flags of Vulkan 1.0 for those of Vulkan 1.3: the shared ones, for the others the flags that contain them, and `any`
-/// where one is unknown, such as a stage of an extension.
+/// Flags of Vulkan 1.0 for those of Vulkan 1.3. Shared flags stay; others become the flags that contain them. `any` replaces
+/// an unknown flag, such as a stage of an extension.
 fn converted(all: u64, containing: &[(u64, u32)], any: u32) -> u32 {
     let (mut old, mut rest) = ((all & SHARED) as u32, all & !SHARED);
     for (new, flags) in containing {

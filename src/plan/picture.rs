@@ -66,8 +66,8 @@ pub struct Picture {
 /// which the others then exclude). Images have one channel if every colour is grey, else four.
 ///
 /// Specular of sky and environment integrates the lobe over each azimuth's slice, by tables; that of a map of specular or with
-/// bounces uses harmonics, whose order limits the lobe. Suns use the mean of the lobe over their disc and their visible part, key
-/// lights and sphere lights the lobe over each azimuth's slice of them.
+/// bounces uses harmonics, whose order limits the lobe. Suns use the mean of the lobe over their disc and their visible part; key
+/// lights and sphere lights use the lobe over their slice in each azimuth.
 ///
 /// # Errors
 /// Settings or lights out of range; no light; a scene beyond the limits.

@@ -6,14 +6,14 @@ use crate::passes::{preview_gather, preview_shade, preview_shadow};
 use crate::scene::{Albedo, HeightField, Scene, Sun};
 use crate::{Error, Result};
 
-/// Passes that show the light of a coarse grid on a finer one of the same ground, and the sun's by shadow heights of the fine
+/// Passes that light a fine grid: by the light of a coarse grid of the same ground, and by a sun with shadow heights of the fine
 /// grid. The coarse light is divided by its unoccluded irradiance on the coarse slopes, interpolated, and multiplied by the same
-/// function of the fine slopes and by the fine albedo. For pictures that must appear at once; exact only where both grids
-/// have the same slopes and the whole sun is visible everywhere.
+/// function of the fine slopes and by the fine albedo. Use it for pictures that must appear at once. It is exact only where both
+/// grids have the same slopes and the whole sun is visible everywhere.
 ///
 /// `sky` is a scene on a coarse grid with all lights and its plan, with one image per light
-/// ([`Picture::light_layers`](super::Picture)). The first sun with irradiance, number n, is the sun, whose image is
-/// `direct.sun{n}`; all other lights count as sky. Both grids begin at the north-western corner; their cells have the same
+/// ([`Picture::light_layers`](super::Picture)). The sun is the first one with irradiance. Its number is n, and its image
+/// `direct.sun{n}`. All other lights count as sky. Both grids begin at the north-western corner; their cells have the same
 /// shape.
 ///
 /// Inputs, in order: "heights" of the fine grid; "environment" if the scene has one, for [`View`](super::View); "albedo"
@@ -22,7 +22,7 @@ use crate::{Error, Result};
 /// "sky_albedo" if there is a map. Output: "radiance", four channels.
 ///
 /// # Errors
-/// A plan of the sky without the sun's layer, or scenes beyond the limits.
+/// `sky_plan` has no layer of the sun, or a scene exceeds the limits.
 pub fn preview(fine: &Scene, (sky, sky_plan): (&Scene, &Plan), limits: &Limits) -> Result<Plan> {
     let size = limits.check_size(fine.field.rows(), fine.field.cols())?;
     let grid = |field: &HeightField| Grid {

@@ -28,9 +28,9 @@ pub(crate) struct SphereShading {
 #[derive(Clone, Copy)]
 pub(crate) struct SphereSpecular {
     pub phong: PhongSource,
-    /// Slices around a texel within the sphere, at least, as the narrowest lobe needs.
+    /// Least number of slices around a texel within the sphere, from the narrowest lobe.
     pub slices_around: u32,
-    /// The eye over the field's base; the last is 0 for a view from straight above.
+    /// The eye over the field's base; the last number is 0 for a view from straight above.
     pub eye_m: [f32; 4],
     pub specular_sum: ResourceId,
     /// Whether the sum begins with it.

@@ -11,7 +11,7 @@ use crate::scene::Border;
 pub(crate) struct KeySpecular {
     pub phong: PhongSource,
     pub radiance: [f32; 3],
-    /// The eye over the field's base; the last is 0 for a view from straight above.
+    /// The eye over the field's base; the last number is 0 for a view from straight above.
     pub eye_m: [f32; 4],
     pub specular_sum: ResourceId,
     /// Whether the sum begins with it.

@@ -1,5 +1,5 @@
 //! Phong specular reflection of sky and environment, of suns and of indirect light.
-//! Key lights and sphere lights are reflected where they are lit, in `sun_shade` and `sphere_shade`.
+//! The passes of their diffuse light, `sun_shade` and `sphere_shade`, also reflect key lights and sphere lights.
 //! `bounced_specular` holds the images of bounced specular light; the other files are one per pass.
 
 pub(crate) mod bounced_specular;

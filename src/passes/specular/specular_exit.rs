@@ -12,7 +12,7 @@ pub(crate) struct ExitRadiance {
     pub diffuse: Option<ResourceId>,
     /// Specular reflection of direct light.
     pub specular_direct: ResourceId,
-    /// The eye over the field's base; the last is 0 for a view from straight above.
+    /// The eye over the field's base; the last number is 0 for a view from straight above.
     pub eye_m: [f32; 4],
 }
 

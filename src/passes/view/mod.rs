@@ -6,11 +6,11 @@
 pub mod map_draw;
 /// Walls and base below the field's edges, in pictures only.
 pub(crate) mod plinth_draw;
-/// Grids of a preview: the sky's light of a coarse one, and the sun, on the slopes of a finer one.
+/// Grids of a preview: a coarse one for the sky's light, and a fine one for the sun and the slopes.
 pub(crate) mod preview;
 /// Light of the coarse grid, without its slopes.
 pub(crate) mod preview_gather;
-/// That light and the sun's on the slopes of the fine grid.
+/// Light of the coarse grid and of the sun on the slopes of the fine grid.
 pub(crate) mod preview_shade;
 /// Shadow heights of the sun on the fine grid.
 pub(crate) mod preview_shadow;

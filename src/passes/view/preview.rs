@@ -2,8 +2,8 @@
 
 use crate::scene::{Albedo, Border, Lights, Sun};
 
-/// Least value of the sky's function that light is divided by: where the linear function of the normal is small, it is no
-/// longer near the right one.
+/// Least value of the sky's function by which light is divided. Where the linear function of the normal is smaller, it no longer
+/// approximates the irradiance.
 const LEAST_SKY: f32 = 0.05;
 
 /// A grid: columns and rows, and the sides of a cell.
@@ -34,7 +34,7 @@ pub(crate) struct Unoccluded {
 }
 
 impl Unoccluded {
-    /// Of a sun: the cosine to it. Below the horizontal it lights fields with an open border alone.
+    /// Of a sun: the cosine to it. A sun below the horizontal lights only fields with an open border.
     pub(crate) fn of_sun(sun: &Sun, border: Border) -> Self {
         let sun = sun.clamped();
         let is_set = border != Border::Open && sun.elevation_rad + 0.5 * sun.diameter_rad <= 0.0;

@@ -2,7 +2,7 @@ use super::preview::{Grid, Unoccluded, colour};
 use crate::graph::{Builder, ResourceId, shaders};
 use crate::scene::Albedo;
 
-/// Takes the slopes out of the coarse grid's light.
+/// Removes the effect of the slopes from the coarse grid's light.
 pub(crate) fn plan(
     builder: &mut Builder,
     coarse: Grid,

@@ -3,7 +3,7 @@ use super::preview_shadow::SunLines;
 use crate::graph::{Builder, ResourceId, shaders};
 use crate::scene::Albedo;
 
-/// Lights the fine grid's slopes: by the sky on its grid, and by the sun, if any, by its shadow heights.
+/// Lights the fine grid's slopes by the sky's light on the coarse grid and, if there is a sun, by its shadow heights.
 pub(crate) fn plan(
     builder: &mut Builder,
     fine: Grid,

@@ -102,7 +102,7 @@ fn bounced(mut quality: Quality, notes: &mut Vec<String>) -> Result<Quality> {
 /// Checks that bounced specular can be viewed from an eye.
 ///
 /// # Errors
-/// One number a texel, which holds light towards the zenith only.
+/// One number per texel, which holds light towards the zenith only.
 pub(super) fn check_viewed(quality: &Quality) -> Result<()> {
     if quality.bounces.specular != BounceSpecular::Scalar {
         return Ok(());
@@ -352,8 +352,8 @@ mod tests {
         plan::picture(&scene, &quality, &Limits::lavapipe(), Picture::default())
     }
 
-    /// Specular of key lights and sphere lights is no part of the light that bounces, and that of sphere lights has no harmonics. Dark
-    /// lights, or no specular, raise no error.
+    /// Specular of key lights and sphere lights is not part of the light that bounces, and that of sphere lights has no harmonics.
+    /// Dark lights, or a surface without specular, raise no error.
     #[test]
     fn specular_names_the_lights_and_settings_it_rejects() {
         let base = Quality { azimuths: 8, ..Quality::default() };
@@ -379,8 +379,8 @@ mod tests {
         assert!(plan(sun(), Basis::Table, 0.5).is_ok());
     }
 
-    /// Sphere lights are reflected where they are lit, at all texels; the first begins the sum. Narrow lobes take more slices around:
-    /// 4π √(99 + 1) = 126 instead of 64.
+    /// The pass that computes a sphere light's diffuse light also reflects it, at all texels; the first one begins the sum. Narrow
+    /// lobes need more slices around a texel: 4π √(99 + 1) = 126 instead of 64.
     #[test]
     fn sphere_lights_are_reflected_by_their_slices() {
         let lights = Lights { sphere_lights: vec![sphere(); 2], ..Lights::default() };
@@ -420,8 +420,8 @@ mod tests {
         assert!(noted.len() == 1 && noted[0].contains("sun 2: exponents above 1200 "), "{noted:?}");
     }
 
-    /// Key lights have as many azimuths as the lobe needs: of a width of 1 radian 2 √(99 + 1) = 20 at exponent 99; at 9 fewer than the
-    /// 8 of the setting; and never more than 256. They are cut by horizons and not by shadow heights, and take no edits.
+    /// Key lights have as many azimuths as the lobe needs, never more than 256. At a width of 1 radian these are 2 √(99 + 1) = 20 for
+    /// exponent 99, and for 9 fewer than the setting's 8. Horizons cut the light, not shadow heights. There are no edits.
     #[test]
     fn key_lights_have_the_azimuths_that_a_lobe_needs() {
         let planned = |exponent, scale, elevations_rad| {

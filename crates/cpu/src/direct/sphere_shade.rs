@@ -15,8 +15,8 @@ pub fn sphere_at(oracle: &Oracle, light: &SphereLight, slices: u32, row: usize, 
     sphere_with(oracle, light, counts, [row, col], &diffuse_at(oracle, row, col))[0]
 }
 
-/// Exit radiance of receivers at a grid point, diffuse of albedo 1 or specular of scale 1, by slices where the sphere is narrow from
-/// there, and where it surrounds the grid point.
+/// Exit radiance of receivers at a grid point, diffuse of albedo 1 or specular of scale 1. The two counts are the slices where the
+/// sphere is narrow as viewed from there, and where it surrounds the grid point.
 pub fn sphere_with(
     oracle: &Oracle,
     light: &SphereLight,
@@ -37,10 +37,10 @@ pub fn sphere_with(
 
 /// Tolerance of the specular of `sphere_shade`, for radiance and scale 1 and a mirror direction that errs by `off_rad`.
 ///
-/// Ends of slices err as those of diffuse light, where the lobe is (n + 1) / 2π at most, and its antiderivative errs at both; where
-/// the surface cuts the sphere, at those of four pieces. Elsewhere the lobe changes by √(n/e) of that a radian, and errs by 20 ε and
-/// x e^-x ≤ 1/e of a series' 1e-7, over the sphere's solid angle. A narrow interval is taken in its middle, 1/20 of the lobe's
-/// deviation wide at most: by 1/24 of the square, 1.1e-4.
+/// Ends of slices have the errors of diffuse light, where the lobe is (n + 1) / 2π at most. Its antiderivative errs at both ends;
+/// where the surface cuts the sphere, at those of four pieces. Elsewhere the lobe changes by √(n/e) of that per radian. Over the
+/// sphere's solid angle it errs by 20 ε and by x e^-x ≤ 1/e of a series' 1e-7. A narrow interval, at most 1/20 of the lobe's
+/// standard deviation wide, uses the lobe in its middle: an error of 1/24 of the square, 1.1e-4.
 pub fn device_sphere_specular(geometry: &SphereGeometry, exponent: f64, off_rad: f64) -> f64 {
     let n = exponent;
     let peak = (n + 1.0) / TAU;

@@ -16,7 +16,7 @@ pub fn sun_at(swept: &Swept, shape: Shape, col: i32, row: i32) -> f64 {
     sun
 }
 
-/// The part of one azimuth, above a slope.
+/// The light of one azimuth, above a slope.
 pub fn sun_slice(azimuth: &Azimuth, shape: Shape, lowest: f64, normal: DVec3) -> f64 {
     let along = |cos: f32, sin: f32| normal.x * f64::from(cos) + normal.y * f64::from(sin);
     let [flat_part, vertical] = match shape {

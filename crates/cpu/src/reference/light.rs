@@ -232,7 +232,7 @@ impl<'a> Site<'a> {
         self.sky_by(azimuths, &self.phong_integrals())
     }
 
-    /// The same with the receivers' [`phong_integrals`](Self::phong_integrals).
+    /// The same with given [`phong_integrals`](Self::phong_integrals) of the receivers.
     pub(crate) fn sky_by(&self, azimuths: usize, integrals: &[Option<PhongIntegral>]) -> Vec<f64> {
         let m = azimuths.max(1);
         let all = (0..m).map(|k| (TAU * k as f64 / m as f64, 1.0, [-FRAC_PI_2, FRAC_PI_2]));

@@ -25,7 +25,7 @@ pub struct Lit<'a> {
     eye_m: Option<DVec3>,
     oracle: Oracle<'a>,
     columns: Option<Columns<'a>>,
-    /// The table of the Phong lobe, where all grid points have the same.
+    /// The table of the Phong lobe, where all grid points share one lobe.
     phong: Option<PhongIntegral>,
     azimuths: usize,
     strips: usize,

@@ -1,4 +1,4 @@
-//! `key_specular.glsl`: Phong specular reflection of a key light's wedge. By Gauss' rule, where the shader has a closed form.
+//! `key_specular.glsl`: Phong specular reflection of a key light's wedge, by Gauss' rule. The shader has a closed form.
 
 use crate::specular_tables::{phong_between, phong_error};
 use crate::tolerance::EPSILON;
@@ -6,17 +6,17 @@ use glam::DVec3;
 use ridgelight::plan::Azimuth;
 use std::f64::consts::{PI, TAU};
 
-/// Where a lobe is less than this share of its peak, the device may leave it out.
+/// The device may leave out a lobe where it is below this share of its peak.
 const LEAST_SHARE: f64 = 1e-7;
 
 /// Light of a wedge of radiance 1 in a Phong lobe about `mirror`, above the slope `lowest`, and its tolerance.
 ///
 /// The mirror direction errs by `off_rad`, the slope by `off_slope`.
 ///
-/// aⁿ: as in [`Tables::light`](crate::mirror_map::Tables::light). The peak's angle turns by the direction's error over a, and by
-/// products and `inversesqrt`, 12 ε; an end by the slope's error, and by 8 ε. The lobe is (n + 1) / 2π at most, at two ends, and twice
-/// more over all elevations, whose cosine changes by 2 in all. Both ends have the error of the antiderivative. Where the lobe ends, the cosine to the
-/// peak is a root of a difference from 1 of 8 ε, to the power of n + 1.
+/// aⁿ errs as in [`Tables::light`](crate::mirror_map::Tables::light). The peak's angle turns by the direction's error over a, and by
+/// 12 ε from products and `inversesqrt`; an end turns by the slope's error and by 8 ε. The lobe is (n + 1) / 2π at most: at two
+/// ends, and twice more over all elevations, whose cosine changes by 2 in all. Both ends have the error of the antiderivative.
+/// Where the lobe ends, the cosine to the peak is the root of a difference from 1 of 8 ε, to the power of n + 1.
 pub fn key_specular(
     exponent: f64,
     azimuth: &Azimuth,
@@ -67,8 +67,8 @@ mod tests {
         azimuths.iter().map(|a| key_specular(n, a, (mirror, lowest), [0.0; 2])[0]).sum()
     }
 
-    /// A key light of the whole upper hemisphere is a sky of radiance 1: it gives the part of a lobe above horizontal. For an axis that
-    /// rises to 30 degrees that is 3/4 at exponent 1. Even azimuths err by less than the digits given, wedges and slopes by f32.
+    /// A key light of the whole upper hemisphere is a sky of radiance 1: it gives the part of a lobe above horizontal. For an axis at
+    /// an elevation of 30 degrees that is 3/4 at exponent 1. Even azimuths err by less than the digits given; wedges and slopes are f32.
     #[test]
     fn a_key_of_the_whole_sky_leaves_the_part_above_horizontal() {
         let all: Vec<Azimuth> = even(512, [1.0; 2])

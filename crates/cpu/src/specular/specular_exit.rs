@@ -39,14 +39,14 @@ pub fn exit_series(arriving: &Series, normal: DVec3, phong: PhongSpecular, diffu
 mod tests {
     use super::*;
 
-    /// Exit radiance by direction, in the direction of a view, is what is reflected towards it, where that is not clamped.
+    /// In the direction of a view, exit radiance by direction equals the light reflected towards it, where that is not clamped.
     #[test]
     fn series_of_exit_radiance_hold_every_view() {
         let normal = DVec3::new(0.3, -0.4, 0.8).normalize();
         let phong = PhongSpecular { exponent: 4.0, scale: 0.6 };
         let mut apart = 0.0_f64;
         for order in 2..=6 {
-            // Brighter than the other bands can darken it anywhere.
+            // Band 0 is so bright that the other bands darken no direction below 0.
             let arriving: Series = (0..order * order)
                 .map(|i| {
                     [0, 1, 2].map(|c| if i == 0 { 40.0 } else { ((i * 5 + c) % 7) as f64 - 3.0 })

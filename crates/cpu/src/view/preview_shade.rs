@@ -1,4 +1,4 @@
-//! The light of a coarse grid, gathered without slopes, and the sun's by shadow heights, on the slopes of a finer grid.
+//! The slopes of a fine grid, lit by the light of a coarse grid, gathered without slopes, and by the sun with its shadow heights.
 
 use ridgelight::scene::{HeightField, Sun};
 
@@ -46,9 +46,10 @@ pub fn preview_shade(
         .collect()
 }
 
-/// The visible share of the sun at each texel, and the height over which a texel goes from dark to lit, metres: by the
-/// texel's height between those below which none and from which all of the sun is visible. They are moved apart by what the
-/// texel's ground rises and falls towards the sun, relative to the ray.
+/// The visible share of the sun at each texel, and the height over which a texel goes from dark to lit, metres.
+///
+/// The share is where the texel's height lies between the height below which none of the sun is visible and that from which all
+/// of it is. The slope of the texel's ground towards the sun, relative to the ray, moves the two apart.
 pub fn sun_shares(
     (fine, normals): (&HeightField, &[[f64; 3]]),
     FineSun { sun, march, edges }: &FineSun<'_>,

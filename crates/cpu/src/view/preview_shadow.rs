@@ -7,8 +7,8 @@ use ridgelight::plan::azimuths::CELL;
 /// The height of a shadow where no ground is ahead, as in the shader.
 pub const NOTHING: f64 = -1e30;
 
-/// Heights from which the whole sun is visible, and below which none of it is, metres over the field's base: at each grid
-/// point, row-major, of the line that passes through it or the last one before it. `rise_m` is the rise of a march step to the
+/// Heights from which the whole sun is visible, and below which none of it is, metres over the field's base. They are row-major,
+/// at each grid point those of the line that passes through it or of the last line before it. `rise_m` is the rise of a march step to the
 /// sun's lower and upper edge.
 pub fn preview_shadow(march: &March, rise_m: [f64; 2]) -> Vec<[f64; 2]> {
     let cols = march.heights.cols;
@@ -44,8 +44,8 @@ mod tests {
     use ridgelight::plan::azimuths::across_sun;
     use ridgelight::scene::{Border, HeightField, Sun};
 
-    /// Of a wall 6 m high across the sun's azimuth, heights fall by the rise of a step; before it there is level ground. A
-    /// periodic field has the wall ahead again.
+    /// Behind a wall 6 m high across the sun's azimuth, shadow heights fall by the rise of a step per step. In front of it, on level
+    /// ground, there is no shadow, except in a periodic field, where the wall repeats.
     #[test]
     fn a_wall_shades_the_ground_behind_it() {
         let cols = 6;
