@@ -304,7 +304,7 @@ fn repeated(
     timed(most, flush, || gpu.draw_passes(frame, passes))
 }
 
-/// Runs until their median is known, each after a flush, which is not in its times.
+/// Runs until the median is known. A flush precedes each run, and the times exclude it.
 fn timed(
     most: usize,
     mut flush: impl FnMut() -> Result<()>,
@@ -342,7 +342,7 @@ pub fn after_new_heights(plan: &Plan) -> Vec<usize> {
     plan.passes_after(plan, &heights.into_iter().collect::<Vec<_>>())
 }
 
-/// Rows of a frame in flow and overlapped, of its passes isolated, warm and cold, and its last run in flow. A flush takes
+/// Rows of a frame in flow and overlapped, and of its passes isolated, warm and cold; also its last run in flow. A flush takes
 /// `flush_s`; `later` rows of other tables follow.
 fn time(
     gpu: &Headless,
@@ -428,8 +428,8 @@ fn names(plan: &Plan, wanted: &[usize], has_tables: bool) -> Vec<String> {
     frames.chain(wanted.iter().flat_map(of_pass)).collect()
 }
 
-/// Seconds of one run of each of these, from a frame's time, a flush's, and those of the passes in flow: none without
-/// timestamps, where a pass takes a whole frame at most.
+/// Seconds of one run of each of these, from the times of a frame, of a flush, and of the passes in flow. Without timestamps
+/// `of_passes` is empty, and a pass counts as a whole frame.
 fn run_seconds(
     of_passes: &[Timing],
     wanted: &[usize],
@@ -528,7 +528,7 @@ mod tests {
             log.borrow_mut().push("run");
             Ok(vec![Timing { label: "sky_shade".into(), ns: 7.0 }])
         };
-        // Fewer runs than end by time.
+        // So few runs that neither the time limit nor the median's interval ends them.
         let runs = timed(3, flush, run).unwrap();
         assert_eq!(*log.borrow(), ["flush", "run", "flush", "run", "flush", "run"]);
         assert_eq!(sums(&runs, |_| true), [7.0; 3]);

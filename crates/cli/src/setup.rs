@@ -100,18 +100,18 @@ pub fn on_cpu(
     Ok((field, georeference))
 }
 
-/// A note on standard error: standard output is for results, which programs read. `--quiet` leaves notes out.
+/// A note on standard error, as programs read standard output. `--quiet` leaves notes out.
 pub fn note(text: &str) {
     // A closed standard error is no reason to end.
     let _ = writeln!(std::io::stderr(), "note: {text}");
 }
 
-/// A warning on standard error, with `--quiet` too: the result may be another than the user expects.
+/// A warning on standard error, also with `--quiet`: the result may differ from what the user expects.
 pub fn warning(text: &str) {
     let _ = writeln!(std::io::stderr(), "warning: {text}");
 }
 
-/// A field, its notes and its warnings, unsaid.
+/// A field, with its notes and warnings, which are not printed yet.
 pub fn read(paths: &[PathBuf], surface: &FieldArgs) -> Result<files::FieldFile> {
     if !surface.z_scale.is_finite() || surface.z_scale == 0.0 {
         let expected = "a finite number other than 0";

@@ -82,7 +82,7 @@ pub fn read_heights(path: &Path, options: &HeightOptions) -> Result<HeightField>
 
 /// A height field and what its file states or lacks.
 ///
-/// A program can leave out the notes. Its user should get the warnings.
+/// A program may hide the notes, but should show the warnings to its user.
 #[derive(Clone, Debug)]
 pub struct FieldFile {
     /// The heights.

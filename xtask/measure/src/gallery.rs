@@ -1,4 +1,4 @@
-//! docs/gallery/index.md: pictures of the command lines that the page shows. `cargo xtask gallery` runs the commands and
+//! docs/gallery/index.md: pictures made by the command lines on the page. `cargo xtask gallery` runs the commands and
 //! writes the pictures and their times; to change a picture, edit its command on the page.
 
 use std::f64::consts::TAU;
@@ -44,7 +44,7 @@ impl<'a> Entry<'a> {
         let command = shell.lines().find_map(|line| line.strip_prefix("ridgelight "))?;
         let (command, output) = command.rsplit_once(" -o ")?;
         let (name, ending) = output.split_once('.')?;
-        // Every second part stands in quotes.
+        // Every second part is quoted.
         let parts = command.split('"').enumerate().flat_map(|(i, part)| match i % 2 {
             0 => part.split_whitespace().map(str::to_owned).collect(),
             _ => vec![part.to_owned()],
@@ -151,7 +151,7 @@ pub fn run(mut args: Args) -> Outcome {
     Ok(())
 }
 
-/// The head of the table that stands after the pictures.
+/// The heading of the table after the pictures.
 const CONTRAST: &str = "\n## Contrast of default pictures\n";
 
 /// Percentiles of luminance in the table.

@@ -118,7 +118,7 @@ pub fn reference(mut args: Args) -> Outcome {
     };
     let [mut rows, mut flat_rows] = [SCENES.to_owned(), SCENES.to_owned()];
     for (name, scene) in scenes() {
-        // Without bounces, all normals are those of grid points.
+        // Without bounces, both use the normals of grid points.
         for (rows, normals, fewest) in
             [(&mut rows, Normals::Smooth, 0), (&mut flat_rows, Normals::Flat, 1)]
         {

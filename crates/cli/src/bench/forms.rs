@@ -86,8 +86,8 @@ fn forms(quality: &Quality) -> Vec<Form> {
     all
 }
 
-/// Times all forms. Returns rows of each and of the scalar sweep paired with it, and a warning for each form left out. Forms
-/// that do the same are timed once.
+/// Times all forms. Returns the rows of each and of the scalar sweep paired with it, and a warning for each form left out. Forms
+/// with the same dispatches are timed once.
 pub fn run(
     gpu: &mut Headless,
     scene: &Scene,
@@ -132,7 +132,7 @@ pub fn run(
     Ok((all, left_out))
 }
 
-/// What a form times.
+/// The dispatches that a form times.
 struct Work {
     plan: Plan,
     /// Positions of the timed passes.
@@ -244,7 +244,7 @@ fn scalar_name(form: &str) -> String {
     format!("scalar_sweep with {form}")
 }
 
-/// The rows of an earlier form for another one that does the same.
+/// The rows of an earlier form, for another form with the same dispatches.
 fn again(rows: &[Row; 2], name: &str) -> [Row; 2] {
     let [mut ours, mut rival] = rows.clone();
     let times_of = (TIMES_OF.to_owned(), ours.pass.clone());
@@ -298,8 +298,8 @@ mod tests {
     use crate::bench::verify::tests::scene;
     use ridgelight::scene::Lights;
 
-    /// Lines one cell apart are also those of a row of hulls: the private ones on lavapipe, or those of `--hull`. No other
-    /// forms do the same.
+    /// `lines 1` has the same dispatches as the form of one hull storage: private on lavapipe, or that of `--hull`. No other two forms
+    /// have the same dispatches.
     #[test]
     fn only_one_form_does_the_same_as_another() {
         let lights = Lights { sky: Some([1.0; 3]), ..Lights::default() };

@@ -38,7 +38,7 @@ pub fn copy_rate(peaks: &[Row]) -> Option<f64> {
     peaks.iter().find(|row| row.pass == "device_peak copy")?.byte_rate()
 }
 
-/// Seconds of the copy, which a flush is; 0 without timestamps.
+/// Seconds of the peak-rate copy; a flush is the same copy. 0 without timestamps.
 pub fn copy_s(peaks: &[Row]) -> f64 {
     let copy = peaks.iter().find(|row| row.pass == "device_peak copy");
     copy.and_then(|row| row.times).map_or(0.0, |times| times.median * 1e-9)

@@ -45,7 +45,7 @@ struct Trial {
 }
 
 impl Trial {
-    /// From its times over those of the untuned form, pair by pair.
+    /// From the ratios of its times to those of the untuned form, pair by pair.
     fn of(form: SweepForm, is_same: bool, ratios: &[f64]) -> Self {
         let ratio = median(ratios).unwrap_or(f64::NAN);
         Self { form, ratio, interval: median_interval(ratios), is_same, failed: None }
@@ -136,7 +136,7 @@ pub fn run(args: &TuneArgs) -> Result<Outcome> {
         search.want = bits(gpu, base)?;
         let begun = Instant::now();
         gpu.draw(base)?;
-        // Of a pair, where the other frame takes as long.
+        // A pair also draws the untuned frame, which takes about as long.
         let pair_s = 2.0 * begun.elapsed().as_secs_f64();
         let forms = forms(untuned);
         let together: Vec<u32> =

@@ -105,7 +105,7 @@ impl Verifier {
             let rest = self.without_aimed();
             let rest = rest.map(|rest| rest.whole(&mut device.with(&all))).transpose()?;
             found.extend([rest.map(|errors| sentence("other light", "the oracle", errors)), aimed]);
-            // Its bound allows for wrong shadows at some places. `aimed` judges each place.
+            // No bound: that of the RMSE allows for wrong shadows at some places. `aimed` judges each place.
             found.push(Some(format!(
                 "RMSE of all light, also at shadow edges: {}",
                 percent(errors.0)
@@ -116,13 +116,13 @@ impl Verifier {
         Ok(found.into_iter().flatten().collect::<Vec<_>>().join("; "))
     }
 
-    /// The error of the whole picture and its bound, where it is within.
+    /// The error of the whole picture and its bound; an error where it exceeds that.
     fn whole(&self, device: &mut Device) -> Result<(f64, f64)> {
         let picture = device.picture(&self.scene)?;
         self.judge(self.ground_truth.error(&picture), device.quality)
     }
 
-    /// The same scene without suns and key lights; none without other lights.
+    /// The same scene without suns and key lights; `None` if it has no other lights.
     fn without_aimed(&self) -> Option<Self> {
         let lights = Lights { suns: Vec::new(), keys: Vec::new(), ..self.scene.lights.clone() };
         let is_lit =

@@ -20,7 +20,7 @@ use crate::reference;
 use crate::setup::terminal::{digits, percent};
 use crate::setup::{self, total_ns};
 
-/// Draws of each setting after one that compiles; the median counts. None begins after this time, so slow settings get
+/// Draws of each setting after one that compiles; the median counts. No draw begins after [`TIMING`], so slow settings get
 /// fewer.
 const DRAWS: usize = 3;
 const TIMING: Duration = Duration::from_millis(500);
@@ -85,7 +85,7 @@ pub fn choose(
 struct Timed<'a> {
     /// Whether an earlier frame has compiled its passes.
     is_compiled: bool,
-    /// What else runs.
+    /// The oracle's threads, which pause while the frame is timed.
     threads: &'a OracleThreads,
 }
 
@@ -119,8 +119,8 @@ impl Timed<'_> {
         }
     }
 
-    /// The same of compiled passes: those that new heights need from the median of some draws, tables of lights from one.
-    /// Exact light is not computed meanwhile: a software driver draws on the same cores.
+    /// The same for compiled passes. Those that new heights need are timed by the median of some draws, tables of lights by one
+    /// draw. Exact light is not computed meanwhile, as a software driver draws on the same cores.
     fn repeated(&self, gpu: &Headless, frame: &mut Frame) -> Result<Vec<Timing>> {
         let _pause = self.threads.pause();
         let begun = Instant::now();

@@ -80,9 +80,9 @@ struct OpenWindow {
     lit: Option<Frame>,
     /// Whether the light must be recomputed.
     is_stale: bool,
-    /// Whether all heights are new and nothing else is.
+    /// Whether all heights are new and nothing else has changed.
     has_moved: bool,
-    /// Where the specular of the light is viewed from; none from straight above.
+    /// Where specular is viewed from; `None` for a view from straight above.
     eye_m: Option<[f64; 3]>,
     /// The last light that could be drawn.
     good: Option<Light>,

@@ -349,8 +349,8 @@ mod tests {
     use super::*;
     use ridgelight::gpu::Timing;
 
-    /// The longest time fills the width, others take their share of it. The parts of a pass count together: 3 ms, 1.5 ms
-    /// and 0.75 ms. To what f32 leaves of a width.
+    /// The longest time fills the width; the others fill their share of it. The parts of a pass are added: 3 ms, 1.5 ms and
+    /// 0.75 ms. Widths are compared to within rounding of f32.
     #[test]
     fn bars_have_the_lengths_of_the_times() {
         let timing = |label: &str, ns: f64| Timing { label: label.to_owned(), ns };
@@ -363,7 +363,7 @@ mod tests {
             Figures { light, drawing: vec![timing("map_draw", 7.5e5)], ..Figures::default() };
         let context = egui::Context::default();
         let mut output = context.run_ui(egui::RawInput::default(), |ui| bars(ui, &figures));
-        // Nothing draws the fonts.
+        // No renderer takes the font textures.
         output.textures_delta.clear();
         let length = |shape: &egui::Shape| match shape {
             egui::Shape::Rect(bar) if bar.fill == BAR => Some(bar.rect.width()),

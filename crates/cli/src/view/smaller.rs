@@ -213,7 +213,7 @@ impl Blocks {
     }
 }
 
-/// The value of each block, by all cores of the host.
+/// The value of each block, computed on all cores of the host.
 fn by_cores<T: Send>(blocks: usize, of: impl Fn(usize) -> T + Sync) -> Vec<T> {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let part = blocks.div_ceil(cores).max(1);

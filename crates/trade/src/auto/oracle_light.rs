@@ -10,7 +10,7 @@ use std::thread;
 use ridgelight::scene::Scene;
 use ridgelight_cpu::lit::Lit;
 
-/// How many of the oracle's rays.
+/// Which share of the oracle's rays to use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Rays {
     All,
@@ -41,7 +41,7 @@ pub struct OracleThreads {
 struct State {
     /// Texels to compute, in this order.
     waiting: VecDeque<Key>,
-    /// Every texel that was requested; none while it waits or is computed.
+    /// Every requested texel; `None` while it waits or is being computed.
     light: HashMap<Key, Option<[f64; 3]>>,
     /// Number of texels that are being computed.
     running: usize,
@@ -49,15 +49,15 @@ struct State {
     pauses: usize,
     /// Whether the threads must end.
     is_over: bool,
-    /// Of a thread that has panicked.
+    /// The panic of a thread.
     panic: Option<Box<dyn Any + Send>>,
 }
 
-/// While it exists, the threads of [`OracleThreads`] compute nothing.
+/// While it exists, [`OracleThreads`] compute nothing.
 #[must_use = "the threads go on when it is dropped"]
 pub struct Pause<'a>(&'a OracleThreads);
 
-/// Ends the threads when it is dropped, also by a panic.
+/// Ends the threads when it is dropped, also during a panic.
 struct End<'a>(&'a OracleThreads);
 
 impl OracleThreads {
@@ -96,8 +96,8 @@ impl Drop for End<'_> {
 }
 
 impl<'a> OracleLight<'a> {
-    /// `work` with the light of texels by all cores: one thread fewer than there are cores, and the caller's while it waits
-    /// for light.
+    /// Runs `work` with the light of texels, which all cores compute: one thread fewer than there are cores, and the caller's
+    /// thread while it waits for light.
     pub fn with<T>(lit: &Lit<'a>, work: impl FnOnce(&Self) -> T) -> T {
         let halved = lit.clone().halved();
         let own = Self { lit: lit.clone(), halved, threads: OracleThreads::default() };
@@ -160,7 +160,7 @@ impl<'a> OracleLight<'a> {
         }
     }
 
-    /// What a thread does.
+    /// The loop of a thread.
     fn run(&self) {
         let mut state = self.threads.lock();
         while !state.is_over {
@@ -213,8 +213,8 @@ mod tests {
         }
     }
 
-    /// The light of texels is the oracle's, whichever are known, in the order of the request. A known texel is not computed
-    /// again: one with another value keeps it.
+    /// The light of texels is the oracle's, in the order of the request, whichever texels are known. A known texel is not computed
+    /// again: a different stored value is kept.
     #[test]
     fn each_texel_is_computed_once() {
         let scene = scene();

@@ -141,7 +141,7 @@ impl Probes {
     /// Starts to compute the light of those texels of [`by`](Self::by) that do not depend on `unsure`.
     ///
     /// # Errors
-    /// As there.
+    /// Those of [`by`](Self::by).
     pub(super) fn request(oracle: &OracleLight<'_>, wanted: usize, seed: u64) -> Result<()> {
         let known = known(oracle.scene())?;
         let picks = even_picks(known.len(), wanted, seed);

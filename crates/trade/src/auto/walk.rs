@@ -272,7 +272,7 @@ impl<'a, 't> Judge<'a, 't> {
 /// too.
 ///
 /// Other threads compute exact light while `draw` runs. It times frames during
-/// [`OracleThreads::pause`]. The choice depends on the times that it returns, on no others.
+/// [`OracleThreads::pause`]. The choice depends on no other times than those that `draw` returns.
 ///
 /// # Errors
 /// A goal out of range, or finer than paths can measure; one that nothing reaches, with the nearest

@@ -111,7 +111,7 @@ fn judged(gpu: &mut Headless, scene: &Scene, quality: &Quality, runs: usize) -> 
     judged_while(gpu, scene, quality, runs, || ())
 }
 
-/// The same with what `pause` returns kept from the end of the first run on.
+/// The same, but keeps what `pause` returns from the end of the first run on.
 fn judged_while<P>(
     gpu: &mut Headless,
     scene: &Scene,

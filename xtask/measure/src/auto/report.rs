@@ -75,7 +75,7 @@ impl<'a> Measuring<'a> {
         self.probes.error(planes, Some(&self.control), Probes::ONE_BOUND)
     }
 
-    /// Draws `runs` frames after one that compiles, with what `pause` returns kept meanwhile.
+    /// Draws `runs` frames after one that compiles, and keeps what `pause` returns meanwhile.
     fn draw<P>(
         &mut self,
         gpu: &mut Headless,

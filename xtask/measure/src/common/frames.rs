@@ -114,7 +114,7 @@ pub fn drawn(gpu: &mut Headless, scene: &Scene, quality: &Quality, runs: usize) 
     drawn_while(gpu, scene, quality, runs, || ())
 }
 
-/// The same with what `pause` returns kept from the end of the first run on.
+/// The same, but keeps what `pause` returns from the end of the first run on.
 pub fn drawn_while<P>(
     gpu: &mut Headless,
     scene: &Scene,

@@ -1,8 +1,8 @@
-//! Compares suns and key lights with the light of the same slices through the oracle's horizons, at each place alone.
+//! Compares suns and key lights with the light of the same slices through the oracle's horizons, place by place.
 //!
 //! A horizon with an error moves a shadow's edge, and the places that the edge passes may differ by all of their light. So
 //! every place has a range, from the light through the highest horizon that the method may find to that through the lowest.
-//! Within the range, places that differ by more than rounding are counted apart.
+//! Places within their range that differ by more than rounding are counted separately.
 
 use glam::{DVec2, DVec3};
 use ridgelight::Result;
@@ -18,7 +18,7 @@ use ridgelight_cpu::tolerance::{EPSILON, ShadeError, aimed_slope, device_fused_s
 use super::sweeps::{Shaded, aimed_alone, azimuths_of};
 use super::{Device, colours, percent, refused, sentence};
 
-/// Light of suns and key lights at some texels; none without them.
+/// Checks the light of suns and key lights at some texels; `None` without such lights.
 pub(super) fn check(
     scene: &Scene,
     places: &[usize],
@@ -39,14 +39,14 @@ pub(super) fn check(
     Ok(Some(judge(&found, &all, device.quality)?.text()))
 }
 
-/// What horizons a method finds, besides rounding.
+/// The horizons that a method finds, apart from rounding.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Horizons {
     /// Those of the surface.
     Exact,
-    /// Of points on the surface, perhaps not the highest: the test `aimed_modes_are_lower_bounds`.
+    /// Those of points on the surface, perhaps not the highest: see the test `aimed_modes_are_lower_bounds`.
     NeverAbove,
-    /// With errors on both sides.
+    /// Too high or too low.
     Near,
 }
 
@@ -72,7 +72,7 @@ struct Allowed {
     tolerance: f64,
 }
 
-/// What each place may have of a light of irradiance or radiance 1 on white ground, in the plan's slices.
+/// The allowed light at each place, of a sun of irradiance 1 or a key light of radiance 1 on white ground, in the plan's slices.
 fn allowed(
     scene: &Scene,
     azimuths: &[Azimuth],
@@ -123,7 +123,7 @@ fn allowed(
     places.iter().map(at).collect()
 }
 
-/// Of a light in slices, where no slice's end moves.
+/// Tolerance of a light in slices, where no slice's end moves.
 fn tolerance(azimuths: &[Azimuth], shape: Shape, relief_m: f64, cell_m: f64) -> f64 {
     let weight = |a: &Azimuth| match shape {
         Shape::Patch => f64::from(a.wedge_rad),
@@ -202,8 +202,8 @@ mod tests {
         Sun { azimuth_rad, elevation_rad, diameter_rad, irradiance: [1.0; 3] }
     }
 
-    /// What a low sun may give to every 5th texel of a fractal. The plan that gives the slices has exact shadows; `is_exact`
-    /// may claim others.
+    /// The allowed light of a low sun at every 5th texel of a fractal. The slices come from a plan with exact shadows, whatever
+    /// `is_exact` is.
     fn of(quality: &Quality, is_exact: bool) -> Vec<Allowed> {
         let sun = sun(2_f64.to_radians());
         let scene = scene(48, Lights { suns: vec![sun], ..Lights::default() });
@@ -218,8 +218,8 @@ mod tests {
         all.iter().map(|place| DVec3::splat(place.light)).collect()
     }
 
-    /// Light of exact shadows has a tight bound also under a low sun, in the open, in shadow and where the disc is partly
-    /// hidden. A wrong value of a hundredth of the brightest light is refused at each kind of place, on either side.
+    /// Light with exact shadows has a tight bound even under a low sun, in the open, in shadow and where the disc is partly hidden.
+    /// An error of a hundredth of the brightest light, up or down, is refused at each kind of place.
     #[test]
     fn wrong_light_is_refused_away_from_edges_and_at_them() {
         let quality = Quality { sun_azimuths: 8, ..Quality::default() };

@@ -52,7 +52,7 @@ impl GroundTruth {
         Self { expected: rest.collect(), ..self.clone() }
     }
 
-    /// The same of all light but that of suns and key lights.
+    /// The same without the light of suns and key lights.
     pub fn without_aimed(&self) -> Self {
         let rest = self.expected.iter().map(|lights| [lights[0], lights[1], 0.0, lights[3]]);
         Self { expected: rest.collect(), level: 0.0, ..self.clone() }

@@ -271,8 +271,8 @@ pub(super) fn whole(field: &HeightField) -> Rectangle {
     Rectangle { col: 0, row: 0, cols: field.cols() as u32, rows: field.rows() as u32 }
 }
 
-/// The passes that a frame of new heights needs where lights and settings are those of the last one, or all passes where
-/// that was not recorded or did not run.
+/// The passes that a frame of new heights needs if lights and settings are those of the last frame. All passes if the last frame
+/// was not recorded or did not run.
 pub(super) fn after_new_heights(lit: &mut Frame) -> Vec<usize> {
     let heights = lit.plan().find("heights");
     lit.renderer().passes_after(heights.as_slice())

@@ -1,4 +1,4 @@
-//! The grids of a preview: the light of a coarse one, and the slopes that show it and the sun.
+//! The grids of a preview: a coarse one for the sky's light, and a fine one of slopes, which shows that light and the sun's.
 
 use ridgelight::Result;
 use ridgelight::gpu::{Frame, ImageArg, Work};
@@ -13,7 +13,7 @@ use super::drawing::{after_new_heights, refilled, replan, whole};
 
 /// Azimuths of a preview's sky. On a smooth field 8 change its light by 0.1 to 0.3 %, a coarser grid by some percent.
 const AZIMUTHS: u32 = 8;
-/// The grids of a preview: of all light, of which the sky is shown; of the slopes and the sun.
+/// The grids of a preview. The first has all light, but only that of the sky is shown; the second has slopes and sun.
 pub const GRIDS: usize = 2;
 pub const SKY: usize = 0;
 pub const SLOPES: usize = 1;
@@ -36,7 +36,7 @@ impl Ground {
     }
 }
 
-/// The normals of a grid's heights; of slopes the means of the full field's, unless that moves.
+/// The normals of a grid. Slopes have the means of the full field's normals, unless that field moves.
 fn normals((of, blocks): (usize, &Blocks), own: &Scene, full: Option<&HeightField>) -> Vec<f32> {
     let border = own.surface.border;
     match full.filter(|_| of == SLOPES) {
@@ -56,7 +56,7 @@ pub struct Level {
     normals: Vec<f32>,
     are_normals_new: bool,
     are_heights_new: bool,
-    /// Whether the device's light is of other lights or settings.
+    /// Whether lights or settings have changed since the device's light was computed.
     is_light_new: bool,
     /// Whether the last run had all passes.
     pub ran_all: bool,
@@ -136,7 +136,7 @@ impl Level {
         self.runs += 1;
         let lit = self.lit.as_mut().expect("planned");
         let count = lit.plan().passes.len();
-        // Slopes show light that is new each time.
+        // The light that slopes borrow is new in each frame.
         let has_new_heights_alone =
             self.are_heights_new && !self.is_light_new && borrowed.is_empty();
         let passes =
@@ -189,7 +189,7 @@ impl Level {
         match self.lit.as_mut().filter(|_| fits) {
             Some(lit) => {
                 screen.gpu().replace_plan(lit, plan)?;
-                // Behind the ground; its light comes from the coarse grid.
+                // Only for what is behind the ground: the ground's light comes from the coarse grid.
                 if has_camera {
                     refilled(screen, lit, &self.scene)?;
                 }

@@ -1,5 +1,5 @@
-//! Answers to input: the light of a coarse grid and the sun on the slopes of a finer one; and the full light in parts once
-//! input rests.
+//! Responses to input: first the slopes of a fine grid, lit by a coarse grid's light and by the sun; then, once input rests,
+//! the full light in parts.
 
 use std::ops::Range;
 use std::panic::resume_unwind;
@@ -71,7 +71,7 @@ pub struct Preview {
     levels: Option<[Level; GRIDS]>,
     /// Other grids, made while input rests.
     next_grids: Option<JoinHandle<Result<[Ground; GRIDS]>>>,
-    /// The error of the last preview, while it is found.
+    /// The thread that computes the error of the last preview.
     next_error: Option<JoinHandle<Option<f64>>>,
     /// Whether the preview is shown.
     is_shown: bool,
@@ -234,7 +234,7 @@ impl Preview {
         Ok(())
     }
 
-    /// Makes the levels where there are none that fit the time of a drag.
+    /// Makes the levels if there are none that fit the time of a drag.
     fn fit(&mut self, screen: &mut Screen, state: &State) -> Result<()> {
         if let Some(sides) = self.other_grids(state, DRAGGED) {
             self.end(screen)?;
@@ -258,7 +258,7 @@ impl Preview {
         let slopes = least(SLOPES);
         let wanted = self.fixed.unwrap_or_else(|| [least(SKY).max(slopes), slopes]);
         let kept = self.levels.as_ref().map(|levels| levels.each_ref().map(|l| l.blocks.side));
-        // Other grids take a third of a second of the host: only where they are worth that, least of all in a drag.
+        // Other grids take a third of a second of the host, so the present ones are kept while they roughly fit, longest in a drag.
         let is_kept = kept.is_some_and(|kept| {
             let fits = |of: usize| kept[of] <= most && kept_at.contains(&share(of, kept[of]));
             kept == wanted || self.fixed.is_none() && (0..GRIDS).all(fits)
@@ -266,8 +266,8 @@ impl Preview {
         (!is_kept).then_some(wanted)
     }
 
-    /// Goes on with other grids: takes them once they are made, then plans one at a time, and lights them once, as a driver
-    /// may compile their shaders only then.
+    /// Continues the change to other grids: takes them once they are made, then plans one at a time and lights each once, as a
+    /// driver may compile the shaders only then.
     fn change_grids(&mut self, screen: &mut Screen, state: &State, limits: &Limits) -> Result<()> {
         if let Some(grounds) = finished(&mut self.next_grids) {
             let grounds = grounds?;
@@ -410,7 +410,7 @@ impl Preview {
                     let times = level.lit.as_mut().and_then(|lit| lit.renderer().timings(slot));
                     let Some(times) = times else { continue };
                     let work = grid_work(&state.scene, &state.quality, level.of, level.blocks.side);
-                    // Without tables, all counts as growing with the grid.
+                    // Without tables, all of the time is taken to grow with the grid.
                     let fixed_ms = if level.ran_all { FIXED_MS[level.of] } else { 0.0 };
                     learn(&mut self.rates.grids[level.of], work, &times, fixed_ms);
                     all.extend(times);
@@ -437,7 +437,7 @@ impl Preview {
 /// The result of a thread, once it has one.
 fn finished<T>(thread: &mut Option<JoinHandle<T>>) -> Option<T> {
     let ended = thread.take_if(|thread| thread.is_finished())?;
-    // Goes on with its panic, which it has reported.
+    // Resumes the thread's panic, which has already been reported.
     Some(ended.join().unwrap_or_else(|panic| resume_unwind(panic)))
 }
 

@@ -129,7 +129,7 @@ impl App<'_> {
         self.state.message = Some(message.to_owned());
     }
 
-    /// The command line of `render` for the picture, for a shell.
+    /// The command line of `render` that draws the picture, quoted for a shell.
     pub(super) fn command_line(&self, shown: &OpenWindow) -> String {
         let mut words = vec!["ridgelight".to_owned(), "render".to_owned()];
         words.extend(self.state.asked(shown.size, &shown.limits, None).words());
