@@ -145,7 +145,8 @@ struct FieldRenderer {
 #[derive(Clone, Copy)]
 enum Work<'a> {
     All,
-    /// What new heights need, and what a new plan needs that has not been submitted yet. Tables of the sky of directions are left out.
+    /// The passes that new heights need, and those of a new plan that have not been submitted yet. The tables of bent normals are
+    /// left out.
     Heights,
     /// Passes of a new plan, over the same heights.
     Light(&'a [usize]),
@@ -336,7 +337,7 @@ impl FieldRenderer {
         Ok(lit)
     }
 
-    /// Submits passes of the light, and those of the horizons unless the heights are the same.
+    /// Submits passes of the light. Unless the heights are the same, also submits the passes of the horizons.
     fn submit(&mut self, images: &Images, work: Work<'_>) -> ridgelight::Result<()> {
         let (inputs, outputs) = (self.inputs(images), self.outputs(images));
         let all = self.renderer.plan().passes.len();

@@ -244,8 +244,8 @@ fn light_is_that_of_the_core() {
     end(&app);
 }
 
-/// Frames of new heights compute no tables of the sky of bent normals. They have the bits of a new field's first frame, also where
-/// the sun moves in the same frame, a little or far, and after that.
+/// Frames of new heights compute no tables of bent normals. They equal a new field's first frame bit for bit, also where the sun
+/// moves a little or far in the same frame, and after that.
 #[test]
 fn new_heights_have_the_light_of_a_new_field() {
     let mut app = app();

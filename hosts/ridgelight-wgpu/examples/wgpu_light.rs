@@ -136,14 +136,14 @@ fn write(queue: &wgpu::Queue, texture: &wgpu::Texture, values: &[f32]) {
     queue.write_texture(texture.as_image_copy(), &bytes, layout, texture.size());
 }
 
-/// An environment with other light for another `seed`.
+/// An environment whose light depends on `seed`.
 fn environment(seed: usize) -> ridgelight::Result<Environment> {
     let texels = (0..32 * 16).map(|i| [((i * 7 + seed) % 5) as f32, 1.0, ((i + seed) % 3) as f32]);
     Environment::new(32, 16, texels.collect(), 0.0)
 }
 
-/// Frames of new heights compute no tables of an environment. Every frame has the light of a new renderer: also where a sun moves
-/// in it, where the environment changes, and after a refused submission.
+/// Frames of new heights compute no tables of an environment. Every frame has the light of a new renderer, also where the sun moves
+/// or the environment changes in the same frame, and after a refused submission.
 fn new_heights(device: &wgpu::Device, queue: &wgpu::Queue) -> Any<()> {
     let mut scene = host_scene::scene()?;
     scene.lights.environment = Some(environment(0)?);
@@ -202,7 +202,7 @@ fn new_heights(device: &wgpu::Device, queue: &wgpu::Queue) -> Any<()> {
         let mut new = Renderer::new(device, queue, planned(&scene)?)?;
         new.submit(&[heights, sky], &[&fresh])?;
         if found != read(&readers[1])? || found == last {
-            return Err(format!("frame {n} of new heights has other light than a new one").into());
+            return Err(format!("frame {n} of new heights differs from a new renderer's").into());
         }
         counts.push(passes.len());
         last = found;

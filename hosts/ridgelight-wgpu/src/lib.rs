@@ -220,8 +220,8 @@ impl Renderer {
         Ok(all)
     }
 
-    /// The passes to submit next with [`submit_passes`](Self::submit_passes), if only the inputs `changed` have new texels since the last
-    /// submission, and the textures are the same: [`gpu::Renderer::passes_after`]. All passes after a submission that failed.
+    /// The passes to submit next with [`submit_passes`](Self::submit_passes) if only the inputs `changed` have new texels since the last
+    /// submission, and all textures are the same: see [`gpu::Renderer::passes_after`]. After a failed submission, these are all passes.
     pub fn passes_after(&self, changed: &[ResourceId]) -> Vec<usize> {
         self.recorder.as_ref().expect("alive until dropped").passes_after(changed)
     }
