@@ -81,7 +81,7 @@ fn a_swath_is_its_wedges() {
     }
 }
 
-/// A swath once around, closed by the slice it began with, is the circle with each turn m damped by sinc²(mΔφ/2), the
+/// A swath once around, closed by the slice that it began with, is the circle with each turn m damped by sinc²(mΔφ/2), the
 /// Fourier transform of a linear blend.
 #[test]
 fn a_swath_once_around_damps_each_turn() {

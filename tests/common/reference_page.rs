@@ -53,7 +53,7 @@ pub struct Closed {
     pub name: String,
     pub scene: Scene,
     pub bounces: usize,
-    /// By which its formula holds.
+    /// The normals for which its formula holds.
     pub normals: Normals,
     /// Texels, the radiance of each, and the largest error of the grid against the formula.
     pub known: Vec<(usize, f64, f64)>,
@@ -93,8 +93,8 @@ pub fn closed_forms() -> Vec<Closed> {
     all
 }
 
-/// White ground in light of radiance 1 from all other directions: 1, whatever its normals. After 64 bounces on the rough one no path
-/// is left: each ends with a probability above a third.
+/// White ground in light of radiance 1 from all other directions has radiance 1, whatever its normals. After 64 bounces on the rough
+/// field no path is left: at each bounce it ends with a probability above a third.
 fn furnaces() -> Vec<Closed> {
     let whole = |name: &str, scene: Scene, bounces| Closed {
         name: name.to_owned(),

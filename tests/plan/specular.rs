@@ -26,8 +26,8 @@ fn planned(specular: BounceSpecular, sh_order: u32) -> Plan {
     plan::picture(&scene, &quality, &Limits::lavapipe(), wanted).expect("a plan")
 }
 
-/// One number a texel holds light towards the zenith only: with an eye it is refused. Series by direction are accepted, and one number
-/// without an eye, without bounces or without specular.
+/// One number per texel holds light towards the zenith only, so it is refused with an eye. Accepted are series by direction, and one
+/// number without an eye, without bounces or without specular.
 #[test]
 fn light_towards_the_zenith_is_no_view_from_an_eye() {
     let surface = Surface {

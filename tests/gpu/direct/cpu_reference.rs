@@ -178,7 +178,7 @@ pub(crate) fn pictures() -> Vec<Case> {
         scene
     };
     let eye_m = Some([30.0, -40.0, 960.0]);
-    let before_an_eye = |case: Case| Case {
+    let with_an_eye = |case: Case| Case {
         wanted: Wanted::Picture(Picture { eye_m, ..Picture::default() }),
         ..case
     };
@@ -340,8 +340,8 @@ pub(crate) fn pictures() -> Vec<Case> {
         picture("harmonics of a pyramid's nodes", repeated, smoothed, false, false),
         picture("harmonics of order 2", on_a_plane, phong_specular, false, false),
         picture("a lobe by slices", mirrored.clone(), quality, true, false),
-        before_an_eye(picture(
-            "a lobe by slices, before an eye, open",
+        with_an_eye(picture(
+            "a lobe by slices, with an eye, open",
             shiny_sky(2.5, Border::Open),
             quality,
             false,
@@ -390,7 +390,7 @@ pub(crate) fn pictures() -> Vec<Case> {
                 ..Picture::default()
             }),
             ..picture(
-                "a narrow lobe under key lights, before an eye",
+                "a narrow lobe under key lights, with an eye",
                 under_keys(Border::Plane, one_phong(1000.0)),
                 quality,
                 false,
@@ -410,7 +410,7 @@ pub(crate) fn pictures() -> Vec<Case> {
                 ..Picture::default()
             }),
             ..picture(
-                "a lobe under sphere lights, before an eye",
+                "a lobe under sphere lights, with an eye",
                 under_spheres(one_phong(20.0)),
                 quality,
                 false,
@@ -439,14 +439,14 @@ pub(crate) fn pictures() -> Vec<Case> {
             false,
             false,
         ),
-        before_an_eye(picture(
-            "a specular at every second texel, before an eye",
+        with_an_eye(picture(
+            "a specular at every second texel, with an eye",
             mirrored_sky,
             subsampled(2, 3),
             false,
             false,
         )),
-        before_an_eye(picture("a map of lobes before an eye", mapped, quality, false, false)),
+        with_an_eye(picture("a map of lobes, with an eye", mapped, quality, false, false)),
     ]
 }
 
@@ -456,7 +456,7 @@ fn pictures_match_pass_by_pass() {
     check_all(&all[..all.len() / 2]);
 }
 
-/// The other half, which runs beside the first.
+/// The other half of the pictures, which runs in parallel with the first.
 #[test]
 fn more_pictures_match_pass_by_pass() {
     let all = pictures();

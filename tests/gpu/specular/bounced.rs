@@ -87,8 +87,8 @@ fn paths_reflect_by_phong_specular_at_every_hit() {
     assert!(apart[1] > 8.0, "cannot fail: {apart:?}");
 }
 
-/// An eye changes specular light alone: diffuse bounces use exit radiance by direction, which does not depend on the view. From far
-/// above, all light is that of the view from straight above, as views differ by 1e-6 radians.
+/// An eye changes only specular light: diffuse bounces use exit radiance by direction, which does not depend on the view. For an eye
+/// far above, all light is that of a view from straight above, as the view directions differ by 1e-6 radians.
 #[test]
 fn only_specular_light_depends_on_the_eye() {
     let mut gpu = Device::new();
@@ -111,7 +111,7 @@ fn only_specular_light_depends_on_the_eye() {
         let [far, near] = [&far[i], &near[i]].map(|lit| apart(&lit.values));
         println!("{name}: {far:e} from far above, {near:e} from near, of {brightest}");
         if specular.contains(&name.as_str()) {
-            // Series of order 4 change by a few times their brightest value a radian.
+            // Series of order 4 change by a few times their brightest value per radian.
             assert!(far <= 1e-4 * brightest && near > 0.01 * brightest, "{name}: {far} {near}");
         } else {
             assert_eq!([far, near], [0.0; 2], "{name}");

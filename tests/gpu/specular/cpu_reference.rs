@@ -83,7 +83,7 @@ pub(crate) fn cases() -> Vec<Case> {
     };
     let alone = Lights { suns: vec![sun(0.4, 0.0, [2.0; 3])], ..Lights::default() };
     let eye_m = Some([30.0, -40.0, 960.0]);
-    let before_an_eye = |case: Case| Case {
+    let with_an_eye = |case: Case| Case {
         wanted: Wanted::Picture(Picture { light_layers: true, eye_m, ..Picture::default() }),
         ..case
     };
@@ -100,8 +100,8 @@ pub(crate) fn cases() -> Vec<Case> {
             levels,
             sky(),
         ),
-        before_an_eye(case(
-            "by direction, before an eye",
+        with_an_eye(case(
+            "by direction, with an eye",
             rough(9, 11, 56),
             Border::Open,
             Vector,
@@ -109,8 +109,8 @@ pub(crate) fn cases() -> Vec<Case> {
             levels,
             all.clone(),
         )),
-        before_an_eye(case(
-            "by direction, f16, grey, before an eye",
+        with_an_eye(case(
+            "by direction, f16, grey, with an eye",
             rough(8, 9, 57),
             Border::Plane,
             VectorF16,

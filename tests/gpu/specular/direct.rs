@@ -57,8 +57,8 @@ fn level_ground_reflects_its_hemisphere() {
     }
 }
 
-/// Before an eye far away, level ground mirrors a direction as far from the zenith as the eye: of a sky of radiance 1 it
-/// reflects the sum over bands of lobe times cap times Legendre polynomial of that angle's cosine. Of one lobe, and of a map.
+/// For an eye far away, level ground mirrors a direction as far from the zenith as the eye. Under a sky of radiance 1 it reflects
+/// the sum over bands of lobe times cap times the Legendre polynomial of that angle's cosine. With one lobe, and with a map.
 #[test]
 fn level_ground_mirrors_the_eye_by_harmonics() {
     let mut gpu = Device::new();

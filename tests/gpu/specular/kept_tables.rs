@@ -230,8 +230,8 @@ fn moved_suns_and_edited_heights_need_no_tables() {
     gpu.end(frame);
 }
 
-/// Another eye needs neither a sweep nor tables, by slices of the lobe and by harmonics. The pictures have the bits of new
-/// renderers.
+/// Another eye needs neither a sweep nor tables, both by slices of the lobe and by harmonics. The pictures equal those of new
+/// renderers bit for bit.
 #[test]
 fn another_eye_needs_no_tables() {
     let mut device = Device::new();

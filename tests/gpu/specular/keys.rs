@@ -31,7 +31,7 @@ fn shiny(field: HeightField, border: Border, key: KeyLight, exponent: f32) -> Sc
     Scene { field, surface, lights: Lights { keys: vec![key], ..Lights::default() } }
 }
 
-/// By marches, which find all crossings: exit radiance of each grid point.
+/// Exit radiance of each grid point, by marches, which find all crossings.
 fn drawn(gpu: &mut Device, scene: &Scene, sun_azimuths: u32, eye_m: Option<[f64; 3]>) -> Vec<f64> {
     let quality = Quality { method: Method::BruteForce, sun_azimuths, ..Quality::default() };
     let wanted = Picture { eye_m, ..Picture::default() };
@@ -55,8 +55,8 @@ fn mirror_at(
     [mirrored(normal, view), normal]
 }
 
-/// Light of radiance 1 for scale 1 at a grid point: the lobe over equal parts of the patch, each above the oracle's horizon in its
-/// middle and above the grid point's own plane, by Gauss' rule over elevations.
+/// Specular of scale 1 under a key light of radiance 1 at a grid point. The lobe is integrated over equal parts of the patch, each
+/// above the oracle's horizon in its middle and above the grid point's own plane, by Gauss' rule over elevations.
 fn by_oracle(
     oracle: &Oracle,
     place: [usize; 2],
@@ -71,7 +71,7 @@ fn by_oracle(
         let phi = key.azimuth_rad - key.width_rad / 2.0 + width * (f64::from(k) + 0.5);
         let (sin, cos) = phi.sin_cos();
         let across = mirror.x * sin - mirror.y * cos;
-        // Without light in this azimuth.
+        // The lobe has no light in this azimuth.
         if (1.0 - across * across).max(0.0).powf(0.5 * n) < 1e-9 {
             continue;
         }
@@ -85,7 +85,7 @@ fn by_oracle(
             let e = DVec3::new(w.cos() * cos, w.cos() * sin, w.sin());
             e.dot(mirror).max(0.0).powf(n) * w.cos()
         };
-        // Of 32 points each.
+        // Each panel has 32 points.
         let panels = ((high - low) * (n + 1.0).sqrt() / 4.0).ceil();
         let panel = (high - low) / panels;
         for i in 0..panels as u32 {
@@ -96,8 +96,8 @@ fn by_oracle(
     (n + 1.0) / TAU * sum
 }
 
-/// Level ground mirrors the zenith to the zenith: of a patch that covers a share of the circle it reflects that share of
-/// sin^(n + 1) between its elevations, by any number of slices.
+/// Level ground mirrors the zenith to the zenith. A patch that covers a share of the circle gives that share of sin^(n + 1) between
+/// its elevations, for any number of slices.
 #[test]
 fn level_ground_has_its_closed_form() {
     let mut gpu = Device::new();
@@ -121,7 +121,7 @@ fn level_ground_has_its_closed_form() {
             let want = 2.0 * f64::from(SCALE) * key.width_rad / TAU * share;
             let of = |azimuth| key_specular(n, azimuth, (DVec3::Z, lowest), [20.0 * EPSILON, 0.0]);
             let slices = across_key(&key, sun_azimuths.max(8), [1.0, 2.0]);
-            // Of more slices, as a narrow lobe has, the sum of all tolerances is the same.
+            // A narrow lobe has more slices, but the sum of their tolerances is the same.
             let off: f64 = slices.iter().map(|azimuth| of(azimuth)[1]).sum();
             let tolerance = 2.0 * f64::from(SCALE) * off + 300.0 * EPSILON * want;
             for found in drawn(&mut gpu, &scene, sun_azimuths, None) {
@@ -131,24 +131,24 @@ fn level_ground_has_its_closed_form() {
             checked += usize::from(want > 10.0 * tolerance);
         }
     }
-    // Others reflect nearly nothing.
+    // The other cases reflect nearly nothing.
     assert!(checked >= 8, "{checked}");
 }
 
-/// Share of a patch in a lobe of exponent n, at most: all of it, or its height at the lobe's largest value, in which a slice is √2π / √(n + 1)
-/// wide.
+/// The largest share of a lobe of exponent n that a patch can contain: all of it, or the patch's height over √2π / √(n + 1), the
+/// ratio of a slice's integral to its peak.
 fn largest_share(n: f64, key: &KeyLight) -> f64 {
     let [low, high] = key.elevations_rad;
     ((high - low) * ((n + 1.0) / TAU).sqrt()).min(1.0)
 }
 
-/// Error of a lobe's integral by slices of a width: h² / 24 times the variation of the slope, 2.43 σ^-2 of the integral over √2π at
-/// most, σ = 1 / √(n + 1). Where a patch ends within the lobe, of a part of it: twice that.
+/// Error of a lobe's integral by slices of width h: h² / 24 times the variation of the slope, which is at most 2.43 σ^-2 of the
+/// integral over √2π, σ = 1 / √(n + 1). Twice that where a patch ends within the lobe.
 fn slices_error(n: f64, wedge_rad: f64) -> f64 {
     wedge_rad * wedge_rad * (n + 1.0) / 12.0
 }
 
-/// Level ground before an eye that views the reflection of a patch, or of a place beside it: against the same integral by 1,024
+/// On level ground an eye views the reflection of a patch, or of a place beside it: compared with the same integral by 1,024
 /// azimuths. The eye is far enough away that all grid points reflect nearly the same direction.
 #[test]
 fn level_ground_reflects_a_patch_to_the_eye() {
@@ -173,7 +173,7 @@ fn level_ground_reflects_a_patch_to_the_eye() {
         let brightness = 2.0 * f64::from(SCALE);
         let wedge = key.width_rad / 128.0;
         let share = largest_share(n, key);
-        // Directions of f32, at which a lobe changes by √(n / e) of its peak a radian.
+        // Directions of f32, at which a lobe changes by √(n / e) of its peak per radian.
         let rounded = key.width_rad * (2.0 * phong_error(n) + (n + 1.0) / TAU * 100.0 * EPSILON)
             + (n / std::f64::consts::E).sqrt() * 100.0 * EPSILON * share;
         let bound = brightness * (share * slices_error(n, wedge) + rounded);
@@ -184,7 +184,7 @@ fn level_ground_reflects_a_patch_to_the_eye() {
             checked += usize::from(want > 5.0 * bound);
         }
     }
-    // Most of them could fail.
+    // Most comparisons could fail.
     assert!(checked > 200, "{checked}");
 }
 

@@ -10,7 +10,7 @@ use ridgelight_cpu::tolerance::{EPSILON, SphereGeometry};
 use crate::{Device, field};
 
 /// Where the mirror direction points to the centre of a sphere of angular radius a, the lobe over the sphere is 1 - cos^(n + 1) a,
-/// whatever the direction. Of slices h wide in the middle that has an error of h² (n + 1) / 12 of it: see `keys`.
+/// whatever the direction. By slices that are h wide in the middle, its error is h² (n + 1) / 12 of it: see `keys`.
 #[test]
 fn a_mirrored_sphere_has_its_closed_form() {
     const MIDDLE: usize = 4;
@@ -30,7 +30,7 @@ fn a_mirrored_sphere_has_its_closed_form() {
         let distance_m = 15.0;
         let sphere =
             SphereLight { position_m: along(distance_m, 1.0), radius_m, radiance: [2.0, 1.0, 0.5] };
-        // Straight above the texel the sphere is in front of the eye, which matters to no light.
+        // Straight above the texel the sphere is in front of the eye. Light does not depend on that.
         let eye_m = Some(along(20.0, -1.0));
         for exponent in [1.0_f32, 20.0, 100.0, 1000.0] {
             let n = f64::from(exponent);
@@ -45,7 +45,7 @@ fn a_mirrored_sphere_has_its_closed_form() {
             let lit = gpu.draw(plan, &[scene.field.heights_m()]).remove(0);
             let texel = MIDDLE * 9 + MIDDLE;
             let share = 1.0 - (1.0 - (radius_m / distance_m).powi(2)).powf(0.5 * (n + 1.0));
-            // At least 48 slices, eight per cell of the sphere's width, of its width as visible from the texel; all around 512.
+            // At least 48 slices over the angular width, eight per cell of the sphere's width; 512 where it surrounds the texel.
             let away_m = distance_m * flat;
             let wedge_rad = if away_m > radius_m {
                 std::f64::consts::PI * (radius_m / away_m).asin() / 48.0
@@ -69,6 +69,6 @@ fn a_mirrored_sphere_has_its_closed_form() {
             }
         }
     }
-    // Most of them could fail.
+    // Most comparisons could fail.
     assert!(checked >= 30, "{checked}");
 }

@@ -1,4 +1,4 @@
-//! Light of a coarse grid, and a sun by shadow heights, on the slopes of a finer grid.
+//! The slopes of a fine grid, lit by the light of a coarse grid and by a sun with shadow heights.
 
 use ridgelight::plan::azimuths::across_sun;
 use ridgelight::plan::{self, Limits, Picture};
@@ -41,7 +41,7 @@ fn normals(field: &HeightField) -> Vec<[f64; 3]> {
     (0..count).map(|i| normal(field, Border::Plane, i / cols, i % cols).to_array()).collect()
 }
 
-/// What a plan of a preview is given, and what it must show.
+/// A preview's inputs and the light that it must show.
 struct Case {
     has_sun: bool,
     grey: bool,
@@ -51,12 +51,12 @@ struct Case {
 }
 
 /// The cosines err by 16 ε: rounded normals, products and sums. The light of a coarse texel errs by twice that over the
-/// sky's function, which is 1 or more on these slopes; its place by ε of the coarse columns, over which it changes by the largest
-/// light at most; mixing and multiplying by 12 ε more.
+/// sky's function, which is 1 or more on these slopes. Its place errs by ε of the coarse columns, over which it changes by at most
+/// the largest light; mixing and multiplying add 12 ε.
 ///
-/// A shadow's height errs in every march step by the roundings of its rise and of their difference, 4 ε of the largest height,
-/// which is the relief and the rise of a step; a periodic field has twice the steps. The share of the sun changes by at most 1.5
-/// of that over the height in which a texel goes from dark to lit, by 16 ε for the terms of that height, and by 1 at most.
+/// In every march step a shadow height errs by the rounding of its rise and of the difference: 4 ε of the largest height, which is
+/// the relief plus the rise of a step. A periodic field has twice the steps. The share of the sun changes by at most 1.5 times that
+/// over the height in which a texel goes from dark to lit, by 16 ε for the terms of that height, and by at most 1.
 #[test]
 fn previews_match_the_cpu_reference() {
     let mut device = Device::new();

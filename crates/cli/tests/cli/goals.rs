@@ -114,7 +114,7 @@ fn without_time(out: &str) -> String {
     out.lines().filter(|line| !line.contains("GPU time")).collect::<Vec<_>>().join("\n")
 }
 
-/// Texels a side; half of it holds one of the two peaks, enough where the light is not compared.
+/// Texels per side. Half of that holds one of the two peaks, enough for tests that do not compare light.
 const SIDE: usize = 24;
 
 fn peaks(row: usize, col: usize) -> f32 {

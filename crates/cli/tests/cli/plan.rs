@@ -200,7 +200,7 @@ fn info_states_what_a_file_holds() {
     assert!(run.out.contains("drops 350 m over the 67 km"), "{}", run.out);
 }
 
-/// A note states the share of voids; from one half on it is a warning that the field is mostly empty.
+/// A note states the share of voids. From one half on it is a warning, which adds that half of the field or more is empty.
 #[test]
 fn a_field_that_is_half_empty_gets_a_warning() {
     let folder = Folder::new();
@@ -241,7 +241,7 @@ fn notes_leave_standard_output_to_results() {
     }
 }
 
-/// `--quiet` leaves out results and notes. Warnings stay, on standard error; without a reason for one there is no output.
+/// `--quiet` leaves out results and notes. Warnings stay, on standard error; without a warning there is no output.
 #[test]
 fn quiet_commands_print_warnings() {
     let folder = Folder::new();

@@ -155,7 +155,7 @@ fn gpu_copied_commands_draw_the_picture() {
         let run = format!("\"$0\" {words} --quiet");
         shell.current_dir(folder.0.path()).args(["-c", &run, env!("CARGO_BIN_EXE_ridgelight")]);
         succeed(shell);
-        // A free name in that folder.
+        // The command saves under a free name in that folder.
         rename("hill's-view-1.png", &format!("{of}_r.png"));
         assert_same(&folder, &format!("{of}.png"), &format!("{of}_r.png"));
     }

@@ -346,7 +346,7 @@ fn gpu_camera_view_equals_render() {
     assert!(apart(&other, &saved) > 16.0);
 }
 
-/// Specular of a camera view is viewed from the camera, as `render --camera` does, and after it again from above.
+/// Specular in a camera view is viewed from the camera, as in `render --camera`. After the camera view it is again viewed from above.
 #[test]
 fn gpu_camera_view_reflects_towards_the_camera() {
     let (folder, display) = (Folder::new(), Display::new());
@@ -359,7 +359,7 @@ fn gpu_camera_view_reflects_towards_the_camera() {
         folder.done(&format!("render {lit} {camera} -o camera.png --quiet"));
         assert_same(&folder, "saved.png", "camera.png");
         folder.done("render --scene other.json -o other_r.png --quiet");
-        // The file has the camera in decimals.
+        // The file stores the camera in rounded decimals.
         let [other, rendered] = ["other.png", "other_r.png"].map(|name| folder.picture(name));
         assert!(apart(&other, &rendered) <= 1.0, "{} codes", apart(&other, &rendered));
         folder.done(&format!("render {lit} -o map.png --quiet"));

@@ -1,4 +1,4 @@
-//! Waves and a ridge: frames of new heights leave out tables of the light, and have the light of all passes.
+//! Waves and a ridge: frames of new heights leave out tables of the light, but have the same light as with all passes.
 
 use super::lost::{OUT_OF_DEVICE_MEMORY, beset};
 use super::{Display, Folder, apart, assert_same, colours, crop, silent};
@@ -6,9 +6,9 @@ use super::{Display, Folder, apart, assert_same, colours, crop, silent};
 /// An environment that turns with the sun.
 const CLEAR: &str = "hills.asc --sun 315,30 --sky clear --azimuths 8 --tint none --size 64x48";
 
-/// Eight steps of a shape, of which the last is shown and saved. In `late` the sun moves before the last, whose frame then
-/// computes everything. In `early` it moves before the second, and the frames after that compute no tables. The second of three
-/// pictures side by side shows the same light as one alone, and the first has no shadows.
+/// Eight steps of a shape, of which the last is shown and saved. In `late` the sun moves before the last step, whose frame then
+/// computes everything. In `early` it moves before the second, and the frames after that compute no tables. Of three pictures side
+/// by side, the second shows the same light as a single picture, and the first has no shadows.
 #[test]
 fn gpu_moving_frames_have_the_light_of_all_passes() {
     let (folder, display) = (Folder::new(), Display::new());
@@ -54,7 +54,7 @@ fn gpu_failed_moving_frame_is_recomputed() {
     folder.view(&display, CLEAR, &script(4, "whole"));
     folder.view(&display, CLEAR, &script(3, "before"));
     for failed in [3, 4] {
-        // The shape moves on in a frame that fails.
+        // The shape also moves in a frame that fails.
         let mut window = folder.window(&display, CLEAR, &script(3, "again"));
         beset(&folder, &mut window, ("vkQueueSubmit2", failed, 1, OUT_OF_DEVICE_MEMORY));
         silent(window);

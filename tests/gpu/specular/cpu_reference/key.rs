@@ -10,7 +10,7 @@ use ridgelight_cpu::tolerance::{EPSILON, ShadeError};
 use super::slices::view_from;
 use crate::cpu_reference::{Pair, Run, fuse_of, pushed};
 
-/// What a batch of azimuths adds of a key light to the device's own sum before; none where there is no specular.
+/// The device's own earlier sum, plus what a batch of a key light's azimuths adds to it; empty without specular.
 pub(crate) fn key_specular(run: &mut Run, pass: &Pass, error: &ShadeError) -> Vec<Pair> {
     const AZIMUTH_COUNT: usize = offset("ShadePush", "azimuth_count");
     const COLOUR: usize = offset("ShadePush", "colour");

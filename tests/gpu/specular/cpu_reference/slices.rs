@@ -31,8 +31,8 @@ pub(crate) fn slices(border: Border, exponent: f64, [peaks, nodes]: [usize; 2]) 
     }
 }
 
-/// Half the error of a direction to an eye that is no nearer than the field is wide: a mirror direction turns by twice the normal's
-/// error and once by the view's.
+/// Half the error of a direction to an eye that is at least as far away as the field is wide. A mirror direction turns by twice the
+/// normal's error and by the view's.
 pub(crate) const VIEW_ERROR: f64 = 10.0 * EPSILON;
 
 /// Direction from a grid point to the eye, or straight up.

@@ -19,7 +19,7 @@ pub(crate) fn begin(run: &mut Run, pass: &Pass) {
     }
 }
 
-/// What all slices of a sphere light have added to the device's own sum before; none where there is no specular.
+/// The device's own earlier sum, plus what all slices of a sphere light add to it; empty without specular.
 pub(crate) fn specular(
     run: &mut Run,
     pass: &Pass,

@@ -41,7 +41,7 @@ fn heights(path: &Path, options: &HeightOptions) -> Vec<f32> {
     absolute(&read.field)
 }
 
-/// Every band of files of several bands, interleaved or one after the other, in strips and in tiles. Each type by each
+/// Every band of files of several bands, interleaved or one after the other, in strips and in tiles. Each pair of type and
 /// compression has two of these four layouts, in turn: both orders of bands, strips and tiles.
 #[test]
 #[ignore = "needs GDAL: Debian's gdal-bin"]
@@ -182,8 +182,8 @@ fn gdal_lzw_tiles_beyond_the_edge_are_read() {
     }
 }
 
-/// Files whose least value is white, in each of GDAL's byte orders and in BigTIFF. Each type by each compression has two of
-/// the four forms, in turn.
+/// Files whose least value is white, in each of GDAL's byte orders and in BigTIFF. Each pair of type and compression has
+/// two of the four forms, in turn.
 #[test]
 #[ignore = "needs GDAL: Debian's gdal-bin"]
 fn gdal_values_are_the_stored_ones_where_white_is_zero() {

@@ -232,7 +232,7 @@ fn gdal_reads_every_value_and_overviews() {
     }
 }
 
-/// The comparator fails where it should: strips, and no overviews.
+/// The validator rejects strips.
 fn strips_are_refused(folder: &Folder, path: &Path) {
     let strips = folder.path("strips.tif");
     let mut command = Command::new("gdal_translate");

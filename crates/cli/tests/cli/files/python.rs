@@ -1,4 +1,4 @@
-//! Files that programs in Python read and wrote: arrays by NumPy, textures by Pillow.
+//! Files that Python libraries write and read: arrays by NumPy, textures by Pillow.
 
 use std::process::Command;
 
@@ -75,7 +75,7 @@ fn numpy_reads_the_values_of_geotiffs() {
     assert!(all[1][..8] != all[2][..8] && all[0][..8] != all[4][..8]);
 }
 
-/// Arrays of every number that heights can have, in both byte orders and both orders of axes; a plane of several; archives.
+/// Arrays of every number type that heights can have, in both byte orders and both orders of axes; one plane of several; archives.
 #[test]
 #[ignore = "needs NumPy: Debian's gdal-bin"]
 fn numpy_arrays_are_read() {
