@@ -225,7 +225,7 @@ fn bounds_hold_at_the_stated_confidence() {
             chosen += 1;
             held += u64::from(actual <= at_most);
             bare += u64::from(actual <= error);
-            fewer += u64::from(found.probes < 3 * affordable);
+            fewer += u64::from(found.probes < 2 * affordable);
         }
         let promised = Probes::CONFIDENCE
             - 3.0 * (Probes::CONFIDENCE * (1.0 - Probes::CONFIDENCE) / SEEDS as f64).sqrt();

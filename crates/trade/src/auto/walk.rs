@@ -80,15 +80,16 @@ const UNSAMPLED_SHARE: f64 = 0.25;
 /// The target where the goal is a time.
 const TIMED_NOISE_TARGET: f64 = 0.002;
 
-/// Probes of the first estimates of direct light. Where only bounds decide, probes are added up to [`MOST_PROBES`] times the
-/// affordable number.
+/// Probes of the first estimates of direct light. Where only bounds decide, probes are added up to the affordable number;
+/// with bounced light, which begins with that number, up to [`MOST_BOUNCED`] times it.
 const FIRST_PROBES: usize = 200;
-const MOST_PROBES: usize = 4;
+const MOST_BOUNCED: usize = 4;
 
 /// The choice is measured once more by probes that had no part in it, at most this many times the affordable number; its
 /// bound is theirs. If it misses the goal, others are chosen, this many times in all: twice the fastest, then settings
 /// with a margin, then exact horizons.
-const CONFIRMING_PROBES: usize = 3;
+const CONFIRMING_PROBES: usize = 2;
+const BOUNCED_CONFIRMING: usize = 3;
 const CONFIRMATIONS: u64 = 4;
 
 /// Where the goal is a time: how far the bound of the choice is expected to lie above its error.
@@ -166,7 +167,7 @@ impl<'a, 't> Judge<'a, 't> {
         };
         let known = scene.field.rows() * scene.field.cols()
             - scene.field.voids().map_or(0, |v| v.iter().filter(|v| **v).count());
-        let judging = known.min(CONFIRMING_PROBES * judge.probes.count());
+        let judging = known.min(BOUNCED_CONFIRMING * judge.probes.count());
         let noise = |batches: u32, error: f64| {
             let share = f64::from(FIRST_BATCHES) / f64::from(batches);
             judge.probes.path_noise(error, share, judging, Probes::EIGHT_BOUNDS)
@@ -225,6 +226,10 @@ impl<'a, 't> Judge<'a, 't> {
         Ok(probes)
     }
 
+    fn most_probes(&self) -> usize {
+        self.affordable * if self.bounced.is_some() { MOST_BOUNCED } else { 1 }
+    }
+
     /// Measures a frame and, where it is the best control or probes were added, all others again.
     /// Takes more probes where they would decide.
     fn take(&mut self, chooser: &mut Chooser<'_>, quality: &Quality, drawn: Drawn) -> Result<()> {
@@ -233,7 +238,7 @@ impl<'a, 't> Judge<'a, 't> {
         self.judge(chooser);
         while chooser.is_undecided()
             && !self.probes.is_whole()
-            && self.probes.count() < MOST_PROBES * self.affordable
+            && self.probes.count() < self.most_probes()
         {
             let more = self.fresh(self.probes.count())?;
             self.probes.extend(&more);
@@ -360,13 +365,13 @@ fn choose_by(
         let Some(best) = best else { break };
         let (quality, measured) = (best.quality, best.measured);
         let Drawn { planes, passes } = draw(&quality)?;
-        let most = CONFIRMING_PROBES * probes;
         let (deviations, wanted) = match count {
             0 => {
                 let (deviations, known) = (Probes::FOUR_BOUNDS, judge.probes.count());
+                let most = CONFIRMING_PROBES * probes;
                 (deviations, confirming_count(measured, known, goal, deviations, most))
             }
-            _ => (Probes::EIGHT_BOUNDS, most),
+            _ => (Probes::EIGHT_BOUNDS, BOUNCED_CONFIRMING * probes),
         };
         let fresh = judge.fresh(wanted)?;
         let ns = passes.iter().map(|p| p.1).sum();
