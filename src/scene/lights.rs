@@ -70,7 +70,7 @@ pub(crate) const SPHERE_LIGHT: NearType =
     NearType { name: "sphere light", shaded_by: "slices of the sphere light above the horizon" };
 
 /// A light near the field, as all passes and checks take it.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NearLight {
     /// Its type.
     pub(crate) of: &'static NearType,

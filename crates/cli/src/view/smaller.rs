@@ -172,12 +172,7 @@ impl Blocks {
 
     /// Gives a coarser scene the lights of the full one, at their places.
     pub fn take_lights(&self, scene: &Scene, smaller: &mut Scene) {
-        smaller.lights = scene.lights.clone();
-        let [x, y] = self.origin_m(&scene.field);
-        for light in &mut smaller.lights.sphere_lights {
-            light.position_m[0] -= x;
-            light.position_m[1] -= y;
-        }
+        smaller.lights = scene.lights.moved(self.origin_m(&scene.field).map(|v| -v));
     }
 
     /// The same camera over the coarser grid.

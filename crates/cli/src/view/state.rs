@@ -146,7 +146,7 @@ impl State {
         *quality == self.quality
             && rest(lights) == rest(now)
             && lights.keys == now.keys
-            && lights.sphere_lights == now.sphere_lights
+            && lights.near().eq(now.near())
     }
 
     /// Returns to the last light that could be drawn, and shows why.

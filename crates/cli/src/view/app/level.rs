@@ -283,7 +283,7 @@ pub fn work(scene: &Scene, quality: &Quality, side: usize) -> f64 {
     let lights = &scene.lights;
     let has_sky = lights.sky.is_some() || lights.environment.is_some() || quality.bounces.count > 0;
     let of_sky = if has_sky { f64::from(quality.azimuths) } else { 0.0 };
-    let others = lights.suns.len() + lights.keys.len() + lights.sphere_lights.len() + 1;
+    let others = lights.suns.len() + lights.keys.len() + lights.near().count() + 1;
     texels * (of_sky * f64::from(1 + 2 * quality.bounces.count) + 8.0 * others as f64)
 }
 
