@@ -8,8 +8,8 @@ use crate::passes::spheres::Spheres;
 use crate::passes::sweep::Sweep;
 use crate::passes::sweeping::circle;
 use crate::scene::{
-    ANY_LIGHT, Albedo, Basis, Border, Environment, KeyLight, Lights, PhongSpecular, Quality, Scene,
-    Specular, Sun,
+    ANY_LIGHT, Albedo, Basis, Border, Environment, KeyLight, LightBasis, Lights, PhongSpecular,
+    Quality, Scene, Specular, Sun,
 };
 use crate::{Error, Result};
 
@@ -145,6 +145,18 @@ impl<'a> ActiveLights<'a> {
     pub(super) fn is_dark(&self) -> bool {
         let has_sky = self.sky.is_some() || self.environment.is_some();
         !has_sky && self.aimed().next().is_none() && self.near.active.is_empty()
+    }
+
+    /// The settings with exact light near the field, if some of it has no series.
+    pub(super) fn light_basis(&self, quality: &Quality, notes: &mut Vec<String>) -> Quality {
+        let by_series = quality.light_basis == LightBasis::Sh;
+        match self.near.active.iter().find(|light| by_series && !light.of.has_series) {
+            Some(light) => {
+                notes.push(format!("light_basis exact: a {} has no series", light.of.name));
+                Quality { light_basis: LightBasis::Exact, ..*quality }
+            }
+            None => *quality,
+        }
     }
 
     /// The key lights that can be visible.

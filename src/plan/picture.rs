@@ -79,6 +79,7 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     let size = limits.check_size(field.rows(), field.cols())?;
     let mut notes = Vec::new();
     let active = ActiveLights::of(scene, quality, wanted, &mut notes)?;
+    let quality = &active.light_basis(quality, &mut notes);
     let quality = &if wanted.unshadowed { without_bounces(quality) } else { *quality };
     let quality = &specular::quality(quality, &active, &mut notes)?;
     let mut sweep = Sweep::choose(field, surface.border, quality, limits, false, &mut notes)?;

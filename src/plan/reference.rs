@@ -119,6 +119,10 @@ fn traced(
         let expected = format!("a whole number from 0 to {MOST_BOUNCES}");
         return Err(Error::setting("bounces", bounces.to_string(), expected));
     }
+    if let Some(light) = lights.near().find(|light| !light.of.has_paths) {
+        let expected = format!("no {}s: the path-traced reference would omit them", light.of.name);
+        return Err(Error::setting("lights", light.name(), expected));
+    }
     let count = lights.suns.len() + lights.keys.len() + lights.sphere_lights.len();
     if count == 0 && lights.sky.is_none() && lights.environment.is_none() {
         return Err(Error::setting("lights", "none", ANY_LIGHT));

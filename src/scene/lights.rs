@@ -52,13 +52,20 @@ pub struct SphereLight {
     pub radiance: [f32; 3],
 }
 
-/// A type of light near the field: its name and how it is shaded. The planner's messages, labels and checks follow.
+/// A type of light near the field: its name, how it is shaded and what supports it. The planner's messages, labels, checks
+/// and refusals follow.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct NearType {
     /// In messages, before its number.
     pub(crate) name: &'static str,
     /// What `sphere_shade` does for it, as plans print it.
     pub(crate) shaded_by: &'static str,
+    /// Whether Phong specular reflects it. The planner refuses it with specular otherwise.
+    pub(crate) has_specular: bool,
+    /// Whether its light has a series. `light_basis sh` becomes `exact` otherwise.
+    pub(crate) has_series: bool,
+    /// Whether the path-traced reference includes it. The reference refuses it otherwise.
+    pub(crate) has_paths: bool,
 }
 
 /// What a scene without lights lacks.
@@ -66,8 +73,13 @@ pub(crate) const ANY_LIGHT: &str =
     "at least one of sky, environment, sun, key light and sphere light";
 
 /// Sphere lights.
-pub(crate) const SPHERE_LIGHT: NearType =
-    NearType { name: "sphere light", shaded_by: "slices of the sphere light above the horizon" };
+pub(crate) const SPHERE_LIGHT: NearType = NearType {
+    name: "sphere light",
+    shaded_by: "slices of the sphere light above the horizon",
+    has_specular: true,
+    has_series: true,
+    has_paths: true,
+};
 
 /// A light near the field, as all passes and checks take it.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -28,6 +28,10 @@ pub(super) fn quality(
         return Ok(*quality);
     }
     let refuse = |found: &str, expected: &str| Err(Error::setting("specular", found, expected));
+    if let Some(light) = active.near.active.iter().find(|light| !light.of.has_specular) {
+        let name = light.of.name;
+        return refuse(&format!("specular under a {name}"), &format!("no specular, or no {name}s"));
+    }
     let sphere = active.near.active.first().map(|light| light.of.name);
     if let Some(name) = sphere.filter(|_| quality.light_basis == LightBasis::Sh) {
         return refuse(
@@ -287,6 +291,7 @@ impl Drawing<'_> {
 
 #[cfg(test)]
 mod tests {
+    use super::ActiveLights;
     use crate::Result;
     use crate::graph::Limits;
     use crate::graph::shaders::offset;
@@ -294,8 +299,8 @@ mod tests {
     use crate::plan::{Picture, Plan};
     use crate::scene::fractal;
     use crate::scene::{
-        Albedo, Basis, Border, Bounces, Environment, KeyLight, LightBasis, Lights, PhongSpecular,
-        Quality, Scene, Specular, SphereLight, Sun, Surface,
+        Albedo, Basis, Border, Bounces, Environment, KeyLight, LightBasis, Lights, NearType,
+        PhongSpecular, Quality, SPHERE_LIGHT, Scene, Specular, SphereLight, Sun, Surface,
     };
 
     fn plan(lights: Lights, basis: Basis, scale: f32) -> Result<Plan> {
@@ -377,6 +382,40 @@ mod tests {
         assert!(planned(of_key([0.0; 3]), 0.5, bounced).is_ok());
         assert!(planned(of_sphere([0.0; 3]), 0.5, bounced).is_ok());
         assert!(plan(sun(), Basis::Table, 0.5).is_ok());
+    }
+
+    /// A light type without specular is refused by name, and one without series is exact.
+    #[test]
+    fn a_light_type_says_what_supports_it() {
+        static PLAIN: NearType = NearType {
+            name: "plain light",
+            has_specular: false,
+            has_series: false,
+            ..SPHERE_LIGHT
+        };
+        let quality = Quality { light_basis: LightBasis::Sh, ..Quality::default() };
+        let settled = |of: &'static NearType, scale| {
+            let phong = PhongSpecular { exponent: 9.0, scale };
+            let surface =
+                Surface { specular: Some(Specular::Constant(phong)), ..Surface::default() };
+            let lights = Lights { sphere_lights: vec![sphere()], ..Lights::default() };
+            let scene = Scene { field: fractal(32, 1).unwrap(), surface, lights };
+            let mut notes = Vec::new();
+            let mut active =
+                ActiveLights::of(&scene, &quality, Picture::default(), &mut notes).unwrap();
+            active.near.active[0].of = of;
+            let settled = active.light_basis(&quality, &mut notes);
+            let checked = super::quality(&settled, &active, &mut notes);
+            (settled.light_basis, checked.map_err(|e| e.to_string()).err(), notes)
+        };
+        let (basis, refused, notes) = settled(&PLAIN, 0.5);
+        assert_eq!(basis, LightBasis::Exact);
+        assert!(refused.is_some_and(|said| said.contains("specular under a plain light")));
+        assert!(notes.iter().any(|n| n == "light_basis exact: a plain light has no series"));
+        assert_eq!(settled(&PLAIN, 0.0).1, None);
+        let (basis, refused, notes) = settled(&SPHERE_LIGHT, 0.0);
+        assert_eq!((basis, refused), (LightBasis::Sh, None));
+        assert!(notes.iter().all(|n| !n.starts_with("light_basis")), "{notes:?}");
     }
 
     /// The pass that computes a sphere light's diffuse light also reflects it, at all texels; the first one begins the sum. Narrow

@@ -15,8 +15,8 @@ use glam::Vec3Swizzles as _;
 use ridgelight::gpu::{Headless, Pixels};
 use ridgelight::plan::{self, Limits, Picture, Plan};
 use ridgelight::scene::{
-    Albedo, Basis, Border, Bounces, Fuse, HeightField, LightBasis, Lights, Method, Precision,
-    Quality, Scene, Specular, Surface,
+    Albedo, Basis, Border, Bounces, Fuse, HeightField, Lights, Method, Precision, Quality, Scene,
+    Specular, Surface,
 };
 use ridgelight::{Error, Result};
 
@@ -83,7 +83,11 @@ impl Verifier {
 
     fn check_direct(&self, device: &mut Device) -> Result<String> {
         let (scene, quality) = (&self.scene, device.quality);
-        if quality.light_basis == LightBasis::Sh && scene.lights.near().next().is_some() {
+        // The plan bounds the light of culled sphere lights.
+        let all = Quality { light_cutoff: 0.0, ..*quality };
+        // The plan has the light basis where a light near the field is lit.
+        let plan = plan::picture(scene, &all, device.limits, Picture::default())?;
+        if plan.settings.contains(&("light_basis".to_owned(), "sh".to_owned())) {
             let found = sphere_lights::check(scene, &self.ground_truth, device)?;
             let Some(scene) = sphere_lights::without(scene) else { return Ok(found) };
             let rest = Self { scene, ground_truth: self.ground_truth.without_sphere_lights() };
@@ -94,8 +98,6 @@ impl Verifier {
             let found = [Some(harmonics::check(self, device)?), aimed];
             return Ok(found.into_iter().flatten().collect::<Vec<_>>().join("; "));
         }
-        // The plan bounds the light of culled sphere lights.
-        let all = Quality { light_cutoff: 0.0, ..*quality };
         let errors = self.whole(&mut device.with(&all))?;
         let places = &self.ground_truth.places;
         let swept = sweeps::check(scene, places, device)?;
