@@ -245,7 +245,7 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     }
     used.push(("bounces".into(), bouncing.as_ref().map_or(0, Bouncing::count).to_string()));
     if bouncing.is_some() {
-        used.push(("bounce_cutoff".into(), quality.bounces.cutoff.to_string()));
+        used.extend(quality.bounces.used());
     }
     let of_bounces = bouncing.iter().flat_map(Bouncing::used);
     let more: Vec<_> = of_bounces.filter(|(name, _)| used.iter().all(|u| u.0 != *name)).collect();

@@ -214,6 +214,11 @@ impl Bounces {
         };
         (1..=self.count).rev().find(is_worth).unwrap_or(0)
     }
+
+    /// The settings on which [`needed_bounces`](Self::needed_bounces) depends, besides the count, as plans print them.
+    pub(crate) fn used(&self) -> Vec<(String, String)> {
+        vec![("bounce_cutoff".to_owned(), self.cutoff.to_string())]
+    }
 }
 
 #[cfg(test)]
