@@ -46,8 +46,11 @@ pub(super) fn joined(tiles: Vec<Tile>, bbox: Option<[f64; 4]>) -> Result<Raster>
         None => Window::whole(size),
     };
     let (rows, cols) = size_of_part(&first, "mosaic", [window.rows.len(), window.cols.len()])?;
-    let held: usize = tiles.iter().map(|tile| tile.raster.rows * tile.raster.cols).sum();
-    if (rows * cols) as u64 > SPREAD * held as u64 {
+    // Headers of files outside the box may state any size.
+    let held = tiles.iter().fold(0_u64, |held, Tile { raster, .. }| {
+        held.saturating_add((raster.rows as u64).saturating_mul(raster.cols as u64))
+    });
+    if (rows * cols) as u64 > SPREAD.saturating_mul(held) {
         let found = format!("{cols} x {rows} grid points, {held} of them in files");
         let expected = format!("at most {SPREAD} times as many grid points as the files hold");
         return Err(Error::file(&first, "mosaic", found, expected));

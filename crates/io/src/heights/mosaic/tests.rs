@@ -238,6 +238,22 @@ fn a_box_of_tiles_is_that_of_the_whole() {
     assert!(error.contains("extent is 4980,8920,5070,9060"), "{error}");
 }
 
+/// Files outside the box may state any size: only the box must fit the limits.
+#[test]
+fn headers_outside_the_box_may_state_any_size() {
+    let huge = |name: &str| {
+        let (path, mut raster) = tile(name, [10, 10], [1, 1]);
+        raster.values.clear();
+        (raster.rows, raster.cols) = (u32::MAX as usize, u32::MAX as usize);
+        (path, raster)
+    };
+    let bbox = Some([5000.0, 8960.0, 5020.0, 9000.0]);
+    let tiles = vec![tile("a", [0, 0], [2, 2]), huge("b"), huge("c")];
+    let part = joined_in(tiles, bbox).unwrap();
+    assert_eq!((part.rows, part.cols), (2, 2));
+    assert_eq!(part.values, tile("a", [0, 0], [2, 2]).1.values);
+}
+
 /// A TIFF outside the box may be damaged behind its header, and the whole may be wider than any field.
 #[test]
 fn files_outside_the_box_are_not_decoded() {
