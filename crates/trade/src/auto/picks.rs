@@ -6,7 +6,7 @@ use ridgelight::basis::random::{STEP, mixed, unit};
 
 /// `wanted` of the weights' indices, and 1 / (count · probability) of each. The first half, which [`even_picks`] returns
 /// too, is uniform; the rest is by weight. Each half is stratified into equal parts in reading order. All once where all
-/// are wanted; all uniform where all weights are 0.
+/// are wanted; all uniform where all weights are 0 or one is not finite.
 ///
 /// The probability is that of both halves together (the balance heuristic, Veach & Guibas 1995), so a mean over all
 /// picks, each times its factor, is unbiased. Its variance over all picks includes the difference between the means of
@@ -17,8 +17,8 @@ pub(super) fn picks(weights: &[f64], wanted: usize, seed: u64) -> (Vec<usize>, V
         return ((0..count).collect(), vec![1.0; count]);
     }
     let sum: f64 = weights.iter().sum();
-    // Also where it is NaN.
-    if sum <= 0.0 || sum.is_nan() {
+    // Two pictures with values beyond f32 differ by infinity.
+    if sum <= 0.0 || !sum.is_finite() {
         return (parts(count, 0..wanted, seed, |_| 1.0), vec![1.0; wanted]);
     }
     // In units of the mean probability.

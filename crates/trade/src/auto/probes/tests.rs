@@ -149,6 +149,17 @@ fn half_of_the_picks_need_no_weights() {
     assert_eq!(even_picks(10, 10, 3), picks(&[1.0; 10], 10, 3).0);
 }
 
+/// Weights that are not finite give uniform picks, whose factors are finite.
+#[test]
+fn infinite_weights_are_uniform() {
+    let even = picks(&[0.0; 1000], 100, 3);
+    for weight in [f64::INFINITY, f64::NAN] {
+        let mut weights = [1.0; 1000];
+        weights[400] = weight;
+        assert_eq!(picks(&weights, 100, 3), even, "{weight}");
+    }
+}
+
 /// A random number of mean 0 and variance 1, near to normal: the sum of twelve uniform ones.
 fn normal(k: u64) -> f64 {
     let even = |j: u64| unit(mixed((12 * k + j + 1).wrapping_mul(STEP))) - 0.5;
