@@ -24,7 +24,8 @@ use crate::setup::{self, total_ns};
 /// fewer.
 const DRAWS: usize = 3;
 const TIMING: Duration = Duration::from_millis(500);
-/// A first draw this long is mostly work, not compilation, and counts itself.
+/// A first draw this long is mostly work, not compilation, and counts itself. On a software driver exact light may take cores
+/// from it, so its time can be too long; the choice is timed again during a pause.
 const LONG: Duration = Duration::from_secs(10);
 
 /// The requested goal, if any.
