@@ -225,7 +225,7 @@ fn bounds_hold_at_the_stated_confidence() {
             chosen += 1;
             held += u64::from(actual <= at_most);
             bare += u64::from(actual <= error);
-            fewer += u64::from(found.probes < 2 * affordable);
+            fewer += u64::from(found.probes < 3 * affordable);
         }
         let promised = Probes::CONFIDENCE
             - 3.0 * (Probes::CONFIDENCE * (1.0 - Probes::CONFIDENCE) / SEEDS as f64).sqrt();
@@ -235,8 +235,8 @@ fn bounds_hold_at_the_stated_confidence() {
         assert!(chosen as f64 >= 0.9 * SEEDS as f64, "{text}");
         assert!(held as f64 >= promised * chosen as f64, "{text}");
         assert!((bare as f64) < promised * chosen as f64, "{text}");
-        // Some need no more than the first.
-        assert!((affordable > 200) == (fewer > 0), "{text}");
+        // Some need fewer than all.
+        assert!((affordable > 334) == (fewer > 0), "{text}");
     }
 }
 

@@ -88,34 +88,38 @@ const MOST_BOUNCED: usize = 4;
 /// The choice is measured once more by probes that had no part in it, at most this many times the affordable number; its
 /// bound is theirs. If it misses the goal, others are chosen, this many times in all: twice the fastest, then settings
 /// with a margin, then exact horizons.
-const CONFIRMING_PROBES: usize = 2;
-const BOUNCED_CONFIRMING: usize = 3;
+const CONFIRMING_PROBES: usize = 3;
+const FEWEST_CONFIRMING: usize = 1000;
 const CONFIRMATIONS: u64 = 4;
 
 /// Where the goal is a time: how far the bound of the choice is expected to lie above its error.
 const TIMED_BOUND: f64 = 1.1;
 
-/// Probes that measure a choice again: its bound at these `deviations` is then expected to lie halfway between its error and
-/// the goal. [`FIRST_PROBES`] or more, and `most` at most.
+/// Probes that measure a choice again, `most` at most. Where even the upper end of the expectation lies below the goal, as many as
+/// are expected to bring the bound, at these `deviations`, halfway from the error to the goal, but [`FEWEST_CONFIRMING`] or more.
+/// Elsewhere all: a few texels may then have nearly all of the error, and fewer probes can miss all of them.
 ///
 /// The bound of a mean square lies above it in proportion to the deviations and to 1/√n. The number depends on earlier
 /// probes alone, so that the bound by fresh ones holds.
 fn confirming_count(
     Measured { error, at_most }: Measured,
     count: usize,
-    goal: Goal,
+    (goal, expected): (Goal, Expected),
     deviations: f64,
     most: usize,
 ) -> usize {
-    let wanted = match goal {
-        Goal::MaxError(goal) => 0.5 * (error + goal),
-        Goal::MaxCost(_) => TIMED_BOUND * error,
+    let (wanted, highest) = match goal {
+        Goal::MaxError(goal) => (0.5 * (error + goal), goal),
+        Goal::MaxCost(_) => (TIMED_BOUND * error, at_most),
     };
+    if expected.error * expected.factor > highest {
+        return most;
+    }
     let ratio = (at_most.powi(2) - error.powi(2)) / (wanted.powi(2) - error.powi(2));
     let count = count as f64 * (deviations / Probes::ONE_BOUND * ratio).powi(2);
     // An error of 0 gives NaN, or infinity.
     let count = if count.is_finite() { count.ceil() as usize } else { most };
-    count.clamp(FIRST_PROBES.min(most), most)
+    count.clamp(FEWEST_CONFIRMING.min(most), most)
 }
 
 /// Probes, and the pictures that may still be needed, in the order of rendering.
@@ -167,7 +171,7 @@ impl<'a, 't> Judge<'a, 't> {
         };
         let known = scene.field.rows() * scene.field.cols()
             - scene.field.voids().map_or(0, |v| v.iter().filter(|v| **v).count());
-        let judging = known.min(BOUNCED_CONFIRMING * judge.probes.count());
+        let judging = known.min(CONFIRMING_PROBES * judge.probes.count());
         let noise = |batches: u32, error: f64| {
             let share = f64::from(FIRST_BATCHES) / f64::from(batches);
             judge.probes.path_noise(error, share, judging, Probes::EIGHT_BOUNDS)
@@ -365,13 +369,14 @@ fn choose_by(
         let Some(best) = best else { break };
         let (quality, measured) = (best.quality, best.measured);
         let Drawn { planes, passes } = draw(&quality)?;
+        let most = CONFIRMING_PROBES * probes;
         let (deviations, wanted) = match count {
             0 => {
                 let (deviations, known) = (Probes::FOUR_BOUNDS, judge.probes.count());
-                let most = CONFIRMING_PROBES * probes;
-                (deviations, confirming_count(measured, known, goal, deviations, most))
+                let of = (goal, chooser.expected(&quality));
+                (deviations, confirming_count(measured, known, of, deviations, most))
             }
-            _ => (Probes::EIGHT_BOUNDS, BOUNCED_CONFIRMING * probes),
+            _ => (Probes::EIGHT_BOUNDS, most),
         };
         let fresh = judge.fresh(wanted)?;
         let ns = passes.iter().map(|p| p.1).sum();
@@ -462,26 +467,34 @@ pub fn flags(quality: &Quality, scene: &Scene) -> String {
 mod tests {
     use super::*;
 
-    /// With 300 probes the bound's square lies 3e-4 above the error's, and so does the square of 2 %, halfway to a goal of 3 %.
+    /// With 3000 probes the bound's square lies 3e-4 above the error's, and so does the square of 2 %, halfway to a goal of 3 %.
     /// The square of half the way to the second goal lies half as far above: four times the probes. A goal far away takes
     /// the fewest, one as near as the bound all.
     #[test]
     fn the_distance_to_the_goal_decides_how_many_probes_confirm() {
         let measured = Measured { error: 0.01, at_most: 0.02 };
+        let expected = Expected { error: 0.005, factor: 1.9 };
+        let most = 30_000;
         let count = |measured: Measured, goal: Goal| {
-            confirming_count(measured, 300, goal, Probes::ONE_BOUND, 3000)
+            confirming_count(measured, 3000, (goal, expected), Probes::ONE_BOUND, most)
         };
-        assert_eq!(count(measured, Goal::MaxError(0.03)), 300);
+        assert_eq!(count(measured, Goal::MaxError(0.03)), 3000);
         let nearer = count(measured, Goal::MaxError(2.0 * 2.5e-4_f64.sqrt() - 0.01));
         // Rounded up.
-        assert!((1200..=1201).contains(&nearer), "{nearer}");
-        assert_eq!(count(measured, Goal::MaxError(0.5)), FIRST_PROBES);
-        assert_eq!(count(measured, Goal::MaxError(0.0101)), 3000);
-        assert_eq!(count(measured, Goal::MaxCost(1.0)), 3000);
+        assert!((12_000..=12_001).contains(&nearer), "{nearer}");
+        assert_eq!(count(measured, Goal::MaxError(0.5)), FEWEST_CONFIRMING);
+        assert_eq!(count(measured, Goal::MaxError(0.0101)), most);
+        assert_eq!(count(measured, Goal::MaxCost(1.0)), most);
         let sure = Measured { error: 0.01, at_most: 0.0101 };
-        assert_eq!(count(sure, Goal::MaxCost(1.0)), FIRST_PROBES);
+        assert_eq!(count(sure, Goal::MaxCost(1.0)), FEWEST_CONFIRMING);
+        // More was expected: the earlier probes may have missed texels.
+        let more = Expected { factor: 2.1, ..expected };
+        let all = |goal| confirming_count(sure, 3000, (goal, more), Probes::ONE_BOUND, most);
+        assert_eq!(all(Goal::MaxCost(1.0)), most);
+        assert_eq!(all(Goal::MaxError(0.0104)), most);
+        assert_eq!(all(Goal::MaxError(0.5)), FEWEST_CONFIRMING);
         // Where nothing differs, or nothing is known.
-        assert_eq!(count(Measured { error: 0.0, at_most: 0.0 }, Goal::MaxCost(1.0)), 3000);
-        assert_eq!(count(Measured::UNKNOWN, Goal::MaxError(0.1)), 3000);
+        assert_eq!(count(Measured { error: 0.0, at_most: 0.0 }, Goal::MaxCost(1.0)), most);
+        assert_eq!(count(Measured::UNKNOWN, Goal::MaxError(0.1)), most);
     }
 }
