@@ -503,35 +503,21 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/preview_shade.comp`.
-    PREVIEW_SHADE: "preview_shade", push PreviewShadePush, words 171278 2834,
+    PREVIEW_SHADE: "preview_shade", push PreviewShadePush, words 171278 1740,
     0 reads "normals" SampledImage { uint: false, layered: false },
     1 reads "albedo" SampledImage { uint: false, layered: false },
     2 reads "sky" StorageImage { format: "Rgba32f", uint: false, layered: false },
-    3 reads "heights" SampledImage { uint: false, layered: false },
-    4 reads "lit_above" SampledImage { uint: false, layered: false },
-    5 reads "dark_below" SampledImage { uint: false, layered: false },
-    6 writes "radiance" StorageImage { format: "Rgba32f", uint: false, layered: false },
+    3 reads "sun" StorageImage { format: "Rgba32f", uint: false, layered: false },
+    4 writes "radiance" StorageImage { format: "Rgba32f", uint: false, layered: false },
     PreviewShade {
         0 has_sun: bool = false,
         1 albedo_is_map: bool = false,
-        2 periodic: bool = false,
-    }
-}
-
-shader! {
-    /// `shaders_glsl/view/preview_shadow.comp`.
-    PREVIEW_SHADOW: "preview_shadow", push PreviewShadowPush, words 174112 2674,
-    0 reads "heights" SampledImage { uint: false, layered: false },
-    1 writes "lit_above" StorageImage { format: "R32f", uint: false, layered: false },
-    2 writes "dark_below" StorageImage { format: "R32f", uint: false, layered: false },
-    PreviewShadow {
-        0 periodic: bool = false,
     }
 }
 
 shader! {
     /// `shaders_glsl/horizon/pyramid_march.comp`.
-    PYRAMID_MARCH: "pyramid_march", push PyramidMarchPush, words 176786 9080,
+    PYRAMID_MARCH: "pyramid_march", push PyramidMarchPush, words 173018 9080,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "slopes" StorageImage { format: "R32ui", uint: true, layered: true },
@@ -548,7 +534,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bake/scatter_gather.comp`.
-    SCATTER_GATHER: "scatter_gather", push ScatterGatherPush, words 185866 4664,
+    SCATTER_GATHER: "scatter_gather", push ScatterGatherPush, words 182098 4664,
     0 reads "ground" SampledImage { uint: false, layered: false },
     1 reads "direct" SampledImage { uint: false, layered: false },
     2 reads "visible_points" SampledImage { uint: true, layered: true },
@@ -575,7 +561,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/sh_shade.comp`.
-    SH_SHADE: "sh_shade", push ShShadePush, words 190530 13927,
+    SH_SHADE: "sh_shade", push ShShadePush, words 186762 13927,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "visibility" SampledImage { uint: false, layered: true },
     2 reads "light_matrix" SampledImage { uint: false, layered: false },
@@ -594,7 +580,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/sh_visibility.comp`.
-    SH_VISIBILITY: "sh_visibility", push ShadePush, words 204457 32300,
+    SH_VISIBILITY: "sh_visibility", push ShadePush, words 200689 32300,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rgba16ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -620,7 +606,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/sh/sh_wedges.comp`.
-    SH_WEDGES: "sh_wedges", push ShWedgesPush, words 236757 7826,
+    SH_WEDGES: "sh_wedges", push ShWedgesPush, words 232989 7826,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "horizon_angles" SampledImage { uint: false, layered: true },
     2 reads "constants" TexelBuffer,
@@ -637,7 +623,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/shade_expand.comp`.
-    SHADE_EXPAND: "shade_expand", push ShadeExpandPush, words 244583 2489,
+    SHADE_EXPAND: "shade_expand", push ShadeExpandPush, words 240815 2489,
     0 reads "shade_levels" SampledImage { uint: false, layered: false },
     1 reads "shade_table" SampledImage { uint: true, layered: false },
     2 writes "shade_stack" StorageImage { format: "Rgba32f", uint: false, layered: true },
@@ -650,7 +636,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/shade_reduce.comp`.
-    SHADE_REDUCE: "shade_reduce", push ReducePush, words 247072 3656,
+    SHADE_REDUCE: "shade_reduce", push ReducePush, words 243304 3656,
     0 reads "exit_radiance" SampledImage { uint: false, layered: false },
     1 writes "shade_levels" StorageImage { format: "Rgba32f", uint: false, layered: false },
     2 writes "shade_table" StorageImage { format: "Rgba32ui", uint: true, layered: false },
@@ -664,7 +650,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/shadow_height.comp`.
-    SHADOW_HEIGHT: "shadow_height", push ShadowHeightPush, words 250728 7491,
+    SHADOW_HEIGHT: "shadow_height", push ShadowHeightPush, words 246960 7491,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "outer_lit_above" SampledImage { uint: false, layered: false },
     2 reads "outer_penumbra" SampledImage { uint: false, layered: false },
@@ -682,7 +668,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/shadow_settle.comp`.
-    SHADOW_SETTLE: "shadow_settle", push ShadowSettlePush, words 258219 18232,
+    SHADOW_SETTLE: "shadow_settle", push ShadowSettlePush, words 254451 18232,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "maxima" StorageImage { format: "R32f", uint: false, layered: false },
     2 reads "azimuths" TexelBuffer,
@@ -702,7 +688,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/shadow_shade.comp`.
-    SHADOW_SHADE: "shadow_shade", push ShadowShadePush, words 276451 11288,
+    SHADOW_SHADE: "shadow_shade", push ShadowShadePush, words 272683 11288,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 reads "shadows" StorageImage { format: "Rgba32ui", uint: true, layered: true },
@@ -718,7 +704,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/shadow_sweep.comp`.
-    SHADOW_SWEEP: "shadow_sweep", push ShadowSweepPush, words 287739 12905,
+    SHADOW_SWEEP: "shadow_sweep", push ShadowSweepPush, words 283971 12905,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "shadows" StorageImage { format: "Rgba32ui", uint: true, layered: true },
@@ -736,7 +722,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/sky_draw.frag`.
-    SKY_DRAW_FRAG: "sky_draw_frag", push SkyDrawPush, words 300644 1372,
+    SKY_DRAW_FRAG: "sky_draw_frag", push SkyDrawPush, words 296876 1372,
     0 reads "environment" SampledImage { uint: false, layered: false },
     SkyDrawFrag {
         0 has_environment: bool = false,
@@ -745,13 +731,13 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/sky_draw.vert`.
-    SKY_DRAW_VERT: "sky_draw_vert", push (), words 302016 289,
+    SKY_DRAW_VERT: "sky_draw_vert", push (), words 298248 289,
     SkyDrawVert;
 }
 
 shader! {
     /// `shaders_glsl/direct/sky_shade.comp`.
-    SKY_SHADE: "sky_shade", push ShadePush, words 302305 30156,
+    SKY_SHADE: "sky_shade", push ShadePush, words 298537 30156,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rgba16ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -782,7 +768,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/specular_exit.comp`.
-    SPECULAR_EXIT: "specular_exit", push SpecularExitPush, words 332461 7531,
+    SPECULAR_EXIT: "specular_exit", push SpecularExitPush, words 328693 7531,
     0 reads "arriving" SampledImage { uint: false, layered: true },
     1 reads "ground" SampledImage { uint: false, layered: false },
     2 reads "exit_radiance" SampledImage { uint: false, layered: false },
@@ -807,7 +793,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bounce/specular_gather.comp`.
-    SPECULAR_GATHER: "specular_gather", push GatherPush, words 339992 20442,
+    SPECULAR_GATHER: "specular_gather", push GatherPush, words 336224 20442,
     0 reads "heights" SampledImage { uint: false, layered: false },
     1 reads "height_levels" SampledImage { uint: false, layered: false },
     2 reads "level_table" SampledImage { uint: true, layered: false },
@@ -835,7 +821,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/specular_light.comp`.
-    SPECULAR_LIGHT: "specular_light", push SpecularLightPush, words 360434 7680,
+    SPECULAR_LIGHT: "specular_light", push SpecularLightPush, words 356666 7680,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "blocked_sum" SampledImage { uint: false, layered: false },
     2 reads "unoccluded_map" SampledImage { uint: false, layered: false },
@@ -849,7 +835,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/specular_tables.comp`.
-    SPECULAR_TABLES: "specular_tables", push SpecularTablesPush, words 368114 4943,
+    SPECULAR_TABLES: "specular_tables", push SpecularTablesPush, words 364346 4943,
     0 reads "azimuths" TexelBuffer,
     1 reads "wedge_rows" StorageBuffer,
     2 writes "specular_tables" StorageImage { format: "Rgba32f", uint: false, layered: true },
@@ -860,7 +846,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/specular_visibility.comp`.
-    SPECULAR_VISIBILITY: "specular_visibility", push SpecularVisibilityPush, words 373057 1238,
+    SPECULAR_VISIBILITY: "specular_visibility", push SpecularVisibilityPush, words 369289 1238,
     0 reads "visibility" SampledImage { uint: false, layered: true },
     1 reads "light_matrix" SampledImage { uint: false, layered: false },
     2 writes "arriving" StorageImage { format: "Rgba32f", uint: false, layered: true },
@@ -872,7 +858,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/sphere_sh_shade.comp`.
-    SPHERE_SH_SHADE: "sphere_sh_shade", push SphereShShadePush, words 374295 27760,
+    SPHERE_SH_SHADE: "sphere_sh_shade", push SphereShShadePush, words 370527 27760,
     0 reads "cells" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "maxima" StorageImage { format: "R32f", uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -898,7 +884,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/sphere_shade.comp`.
-    SPHERE_SHADE: "sphere_shade", push SphereShadePush, words 402055 19174,
+    SPHERE_SHADE: "sphere_shade", push SphereShadePush, words 398287 19174,
     0 reads "cells" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "maxima" StorageImage { format: "R32f", uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -917,7 +903,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/direct/sun_shade.comp`.
-    SUN_SHADE: "sun_shade", push ShadePush, words 421229 29168,
+    SUN_SHADE: "sun_shade", push ShadePush, words 417461 29168,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rgba16ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -942,7 +928,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/specular/sun_specular.comp`.
-    SUN_SPECULAR: "sun_specular", push SunSpecularPush, words 450397 10753,
+    SUN_SPECULAR: "sun_specular", push SunSpecularPush, words 446629 10753,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "sun_sum" SampledImage { uint: false, layered: false },
     2 writes "specular_sum" StorageImage { format: "Rgba32f", uint: false, layered: false },
@@ -959,7 +945,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/surface_sweep.comp`.
-    SURFACE_SWEEP: "surface_sweep", push MarchPush, words 461150 7745,
+    SURFACE_SWEEP: "surface_sweep", push MarchPush, words 457382 7745,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "azimuths" TexelBuffer,
     2 writes "slopes" StorageImage { format: "R32ui", uint: true, layered: true },
@@ -975,7 +961,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/horizon/sweep_fuse.comp`.
-    SWEEP_FUSE: "sweep_fuse", push SweepFusePush, words 468895 20375,
+    SWEEP_FUSE: "sweep_fuse", push SweepFusePush, words 465127 20375,
     0 reads "lane_heights" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "lattice" StorageImage { format: "Rgba16ui", uint: true, layered: true },
     2 reads "azimuths" TexelBuffer,
@@ -996,7 +982,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/terrain_draw.frag`.
-    TERRAIN_DRAW_FRAG: "terrain_draw_frag", push TerrainDrawPush, words 489270 1129,
+    TERRAIN_DRAW_FRAG: "terrain_draw_frag", push TerrainDrawPush, words 485502 1129,
     1 reads "radiance" SampledImage { uint: false, layered: false },
     2 reads "voids" SampledImage { uint: false, layered: false },
     TerrainDrawFrag {
@@ -1007,14 +993,14 @@ shader! {
 
 shader! {
     /// `shaders_glsl/view/terrain_draw.vert`.
-    TERRAIN_DRAW_VERT: "terrain_draw_vert", push TerrainDrawPush, words 490399 994,
+    TERRAIN_DRAW_VERT: "terrain_draw_vert", push TerrainDrawPush, words 486631 994,
     0 reads "heights" SampledImage { uint: false, layered: false },
     TerrainDrawVert;
 }
 
 shader! {
     /// `shaders_glsl/bounce/vector_reduce.comp`.
-    VECTOR_REDUCE: "vector_reduce", push ReducePush, words 491393 3811,
+    VECTOR_REDUCE: "vector_reduce", push ReducePush, words 487625 3811,
     0 reads "exit_vectors" SampledImage { uint: false, layered: true },
     1 reads "vector_source" SampledImage { uint: false, layered: true },
     2 writes "vector_levels" StorageImage { format: "Rgba32f", uint: false, layered: true },
@@ -1030,7 +1016,7 @@ shader! {
 
 shader! {
     /// `shaders_glsl/bake/visible_points.comp`.
-    VISIBLE_POINTS: "visible_points", push VisiblePointsPush, words 495204 9745,
+    VISIBLE_POINTS: "visible_points", push VisiblePointsPush, words 491436 9745,
     0 reads "cells" StorageImage { format: "Rgba32f", uint: false, layered: false },
     1 reads "maxima" StorageImage { format: "R32f", uint: false, layered: false },
     2 reads "ground" SampledImage { uint: false, layered: false },
@@ -1079,7 +1065,6 @@ pub static ALL: &[Shader] = &[
     PATH_TRACE,
     PREVIEW_GATHER,
     PREVIEW_SHADE,
-    PREVIEW_SHADOW,
     PYRAMID_MARCH,
     SCATTER_GATHER,
     SH_SHADE,
@@ -1244,13 +1229,10 @@ layouts! {
     push PreviewGatherPush 56 {
         0 by_normal: [f32; 4], 16 most: [f32; 4], 32 colour: [f32; 4], 48 cols: i32, 52 rows: i32,
     }
-    push PreviewShadePush 104 {
+    push PreviewShadePush 96 {
         0 sky_by_normal: [f32; 4], 16 sun_by_normal: [f32; 4], 32 most: [f32; 4],
-        48 colour: [f32; 4], 64 along_m: [f32; 2], 72 rise_m: f32, 76 cols: i32, 80 rows: i32,
-        84 sky_cols: i32, 88 sky_rows: i32, 92 sky_ratio: f32, 96 shear: i32, 100 flags: u32,
-    }
-    push PreviewShadowPush 24 {
-        0 rise_m: [f32; 2], 8 cols: i32, 12 rows: i32, 16 shear: i32, 20 flags: u32,
+        48 colour: [f32; 4], 64 cols: i32, 68 rows: i32, 72 sky_cols: i32, 76 sky_rows: i32,
+        80 sun_cols: i32, 84 sun_rows: i32, 88 sky_ratio: f32, 92 sun_ratio: f32,
     }
     push PyramidMarchPush 36 {
         0 lanes: i32, 4 steps: i32, 8 warm_up: i32, 12 first_azimuth: u32, 16 azimuth_count: u32,
@@ -1383,4 +1365,4 @@ layouts! {
 }
 
 /// Words of all shaders together.
-const WORD_COUNT: usize = 504949;
+const WORD_COUNT: usize = 501181;

@@ -6,14 +6,12 @@
 pub mod map_draw;
 /// Walls and base below the field's edges, in pictures only.
 pub(crate) mod plinth_draw;
-/// Grids of a preview: a coarse one for the sky's light, and a fine one for the sun and the slopes.
+/// Grids of a preview: the light of a coarse one on the slopes of a finer one.
 pub(crate) mod preview;
 /// Light of the coarse grid, without its slopes.
 pub(crate) mod preview_gather;
-/// Light of the coarse grid and of the sun on the slopes of the fine grid.
+/// That light on the slopes of the fine grid.
 pub(crate) mod preview_shade;
-/// Shadow heights of the sun on the fine grid.
-pub(crate) mod preview_shadow;
 /// What is behind the ground of a camera's picture: sky and environment.
 pub(crate) mod sky_draw;
 /// `--camera`: the ground as a mesh without vertex buffers.

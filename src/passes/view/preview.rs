@@ -2,8 +2,9 @@
 
 use crate::scene::{Albedo, Border, Lights, Sun};
 
-/// Least value of the sky's function by which light is divided. Where the linear function of the normal is smaller, it no longer
-/// approximates the irradiance.
+/// Least values of a slope's function that light is divided by: of the sun's cosine, and of the sky's, whose linear
+/// function of the normal is no longer near the right one where it is small.
+const GRAZING: f32 = 1e-3;
 const LEAST_SKY: f32 = 0.05;
 
 /// A grid: columns and rows, and the sides of a cell.
@@ -34,15 +35,14 @@ pub(crate) struct Unoccluded {
 }
 
 impl Unoccluded {
-    /// Of a sun: the cosine to it. A sun below the horizontal lights only fields with an open border.
-    pub(crate) fn of_sun(sun: &Sun, border: Border) -> Self {
+    /// Of a sun: the cosine to it.
+    pub(crate) fn of_sun(sun: &Sun) -> Self {
         let sun = sun.clamped();
-        let is_set = border != Border::Open && sun.elevation_rad + 0.5 * sun.diameter_rad <= 0.0;
         let across = sun.elevation_rad.cos();
         let [x, y] = [sun.azimuth_rad.cos(), sun.azimuth_rad.sin()].map(|v| (across * v) as f32);
-        let most = sun.irradiance.map(|e| if is_set { 0.0 } else { e / std::f32::consts::PI });
+        let most = sun.irradiance.map(|e| e / std::f32::consts::PI);
         let by_normal = [x, y, sun.elevation_rad.sin() as f32, 0.0];
-        Self { by_normal, most, least: 0.0, ceiling: 1.0 }
+        Self { by_normal, most, least: GRAZING, ceiling: 1.0 }
     }
 
     /// Of a sky and an environment: the irradiance's spherical harmonics up to order 1 (Ramamoorthi and Hanrahan 2001,

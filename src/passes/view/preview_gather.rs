@@ -2,11 +2,11 @@ use super::preview::{Grid, Unoccluded, colour};
 use crate::graph::{Builder, ResourceId, shaders};
 use crate::scene::Albedo;
 
-/// Removes the effect of the slopes from the coarse grid's light.
+/// Takes the slopes out of a coarse grid's light.
 pub(crate) fn plan(
     builder: &mut Builder,
     coarse: Grid,
-    of: Unoccluded,
+    (of, suffix): (Unoccluded, &str),
     (albedo, grey, without_sun): (&Albedo, bool, bool),
     bound: &[(&str, ResourceId)],
 ) {
@@ -17,7 +17,7 @@ pub(crate) fn plan(
             without_sun,
             albedo_is_map: matches!(albedo, Albedo::Map(_)),
         },
-        "",
+        suffix,
         "light without slopes, on the coarse grid",
         coarse.groups(),
         &shaders::PreviewGatherPush {

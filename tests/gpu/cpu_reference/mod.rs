@@ -78,7 +78,7 @@ fn references() -> impl Iterator<Item = &'static Reference> {
 }
 
 /// Compared with their CPU references over whole pictures: [`crate::view`].
-const ELSEWHERE: [&str; 4] = ["map_draw", "preview_gather", "preview_shade", "preview_shadow"];
+const ELSEWHERE: [&str; 3] = ["map_draw", "preview_gather", "preview_shade"];
 
 fn reference_of(pass: &Pass) -> CpuReference {
     let reference = references().find(|t| t.0 == pass.name());

@@ -37,8 +37,8 @@ pub enum Step {
     /// Prints the frames so far and their milliseconds since the last report, after some words.
     Report(String),
     /// Previews slow light from here on, as without a script; with numbers all light, and on grids of blocks of so many
-    /// grid points: sky, slopes.
-    Preview(Option<[usize; 2]>),
+    /// grid points: sky, sun, slopes.
+    Preview(Option<[usize; 3]>),
     /// Draws until the light is the full one.
     Rest,
     /// Waits for input until this file exists, as without a script.
@@ -115,9 +115,9 @@ fn step(line: &str) -> Option<Step> {
         ["preview", sides] => {
             let sides: Vec<usize> =
                 sides.split(',').map(|n| n.parse().ok()).collect::<Option<_>>()?;
-            let &[sky, slopes] = sides.as_slice() else { return None };
-            let is_right = slopes > 0 && sky >= slopes;
-            Step::Preview(Some(is_right.then_some([sky, slopes])?))
+            let &[sky, sun, slopes] = sides.as_slice() else { return None };
+            let is_right = slopes > 0 && sky >= slopes && sun >= slopes;
+            Step::Preview(Some(is_right.then_some([sky, sun, slopes])?))
         }
         ["rest"] => Step::Rest,
         ["picture", file] => Step::Picture(file.into()),
@@ -157,8 +157,8 @@ mod tests {
         assert_eq!(read(&path).unwrap(), steps);
         std::fs::write(&path, "lose\njump\n").unwrap();
         assert!(read(&path).unwrap_err().to_string().contains("line 2: found jump"));
-        std::fs::write(&path, "preview 1,2\n").unwrap();
-        assert!(read(&path).unwrap_err().to_string().contains("found preview 1,2"));
+        std::fs::write(&path, "preview 4,1,2\n").unwrap();
+        assert!(read(&path).unwrap_err().to_string().contains("found preview 4,1,2"));
         std::fs::write(&path, "patience nan\n").unwrap();
         assert!(read(&path).unwrap_err().to_string().contains("found patience nan"));
     }

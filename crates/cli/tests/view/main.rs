@@ -219,7 +219,7 @@ fn write_large(folder: &Folder) {
 fn gpu_previews_show_the_new_light() {
     let (folder, display) = (Folder::new(), Display::new());
     write_large(&folder);
-    let script = "key h\nkey h\npreview 3,1\nframes 1\nrest\nframes 1\nscreenshot before.png\n\
+    let script = "key h\nkey h\npreview 3,2,1\nframes 1\nrest\nframes 1\nscreenshot before.png\n\
         key shift+right\nkey shift+right\nkey shift+right\nkey shift+right\nkey shift+right\nkey shift+right\n\
         screenshot preview.png\npicture saved.png\nscreenshot full.png\nscene full.json\n\
         key v\nframes 1\nscreenshot turned_before.png\nkey shift+left\nkey shift+left\nkey shift+left\nkey shift+left\n\
@@ -310,7 +310,7 @@ fn gpu_previews_have_the_strokes_of_the_comparison() {
     let stroke = "key 2\nframes 1\ndrag left 50,100 30,5\nframes 1\n";
     let picture = |name: &str, stroke: &str| {
         let script = format!(
-            "key h\nkey h\npreview 4,2\nframes 1\nkey c\nframes 1\n{stroke}key c\n\
+            "key h\nkey h\npreview 4,3,2\nframes 1\nkey c\nframes 1\n{stroke}key c\n\
              key shift+right\nscreenshot {name}\n"
         );
         folder.view(

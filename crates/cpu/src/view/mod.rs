@@ -7,6 +7,5 @@ pub mod plinth_draw;
 pub mod preview;
 pub mod preview_gather;
 pub mod preview_shade;
-pub mod preview_shadow;
 pub mod sky_draw;
 pub mod terrain_draw;

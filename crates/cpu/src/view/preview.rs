@@ -26,7 +26,7 @@ impl Unoccluded {
         let [x, y] = [sun.azimuth_rad.cos(), sun.azimuth_rad.sin()].map(|v| across * v);
         let vector = [x, y, elevation_rad.sin()];
         let most = sun.irradiance.map(|e| f64::from(e) / std::f64::consts::PI);
-        Self { vector, constant: 0.0, most, least: 0.0, ceiling: 1.0 }
+        Self { vector, constant: 0.0, most, least: 1e-3, ceiling: 1.0 }
     }
 
     /// A uniform sky: 1 + the cosine of the slope.

@@ -1,9 +1,11 @@
-//! The grids of a preview: a coarse one for the sky's light, and a fine one of slopes, which shows that light and the sun's.
+//! The grids of a preview: the light of coarse ones, and the slopes that show it.
 
 use ridgelight::Result;
 use ridgelight::gpu::{Frame, ImageArg, Work};
 use ridgelight::plan::{self, Limits, Picture, Rectangle};
-use ridgelight::scene::{Albedo, HeightField, Lines, Method, Quality, Scene, Sun};
+use ridgelight::scene::{
+    Albedo, Bounces, HeightField, Lights, Lines, Method, Quality, Scene, Sun, Surface,
+};
 use ridgelight_viewer::Screen;
 
 use super::super::moving::Moving;
@@ -13,12 +15,11 @@ use super::drawing::{after_new_heights, refilled, replan, whole};
 
 /// Azimuths of a preview's sky. On a smooth field 8 change its light by 0.1 to 0.3 %, a coarser grid by some percent.
 const AZIMUTHS: u32 = 8;
-/// The grids of a preview. The first has all light, but only that of the sky is shown; the second has slopes and sun.
-pub const GRIDS: usize = 2;
+/// The grids of a preview: of all light, of which the sky is shown; of the sun alone; of the slopes.
+pub const GRIDS: usize = 3;
 pub const SKY: usize = 0;
-pub const SLOPES: usize = 1;
-/// Inputs of normals: of the slopes and of the sky's grid.
-const NORMALS: usize = 2;
+pub const SUN: usize = 1;
+pub const SLOPES: usize = 2;
 
 /// What a grid needs of the heights, without a device.
 pub struct Ground {
@@ -30,7 +31,10 @@ pub struct Ground {
 impl Ground {
     pub fn new(scene: &Scene, of: usize, side: usize) -> Result<Self> {
         let blocks = Blocks::of(&scene.field, side);
-        let coarse = blocks.scene(scene)?;
+        let mut coarse = blocks.scene(scene)?;
+        if of == SUN {
+            coarse.surface = Surface { border: coarse.surface.border, ..Surface::default() };
+        }
         let normals = normals((of, &blocks), &coarse, Some(&scene.field));
         Ok(Self { blocks, scene: coarse, normals })
     }
@@ -83,6 +87,11 @@ impl Level {
         }
     }
 
+    /// Whether it has light to show.
+    pub fn is_used(&self) -> bool {
+        self.of != SUN || !self.scene.lights.suns.is_empty()
+    }
+
     /// Takes the state's lights and heights.
     pub fn take(
         &mut self,
@@ -91,6 +100,10 @@ impl Level {
     ) -> Result<()> {
         self.is_light_new |= has_new_light;
         self.blocks.take_lights(&state.scene, &mut self.scene);
+        if self.of == SUN {
+            let suns = first_sun(&self.scene).map(|(_, sun)| *sun).into_iter().collect();
+            self.scene.lights = Lights { suns, ..Lights::default() };
+        }
         self.are_heights_new |= state.is_moving() || self.moving.is_some() || edited.is_some();
         match (state.moving(), &mut self.moving) {
             (Some(full), moving) => {
@@ -149,11 +162,11 @@ impl Level {
         Ok(slot)
     }
 
-    /// Plans the light of the coarse grid.
+    /// Plans the light of a coarse grid.
     fn plan_light(&mut self, screen: &mut Screen, state: &State, limits: &Limits) -> Result<()> {
         let eye_m = state.eye_over(&self.blocks);
-        let wanted = Picture { light_layers: true, eye_m, ..Picture::default() };
-        let plan = plan::picture(&self.scene, &coarser(&state.quality), limits, wanted)?;
+        let wanted = Picture { light_layers: self.of == SKY, eye_m, ..Picture::default() };
+        let plan = plan::picture(&self.scene, &coarser(&state.quality, self.of), limits, wanted)?;
         self.is_light_new |= replan(screen, &mut self.lit, plan, &self.scene)?;
         Ok(())
     }
@@ -167,22 +180,28 @@ impl Level {
         of_input.or_else(|| output.map(|at| lit.outputs()[at]))
     }
 
-    /// Plans the coarse grid's light and the sun on the slopes of this one. Returns the images that it borrows.
+    /// Plans the coarse grids' light on the slopes of this one. Returns the images that it borrows.
     fn plan_slopes(
         &mut self,
         screen: &mut Screen,
-        sky: &mut Level,
+        [sky, sun]: [&mut Level; 2],
         has_camera: bool,
         limits: &Limits,
     ) -> Result<Vec<ImageArg>> {
-        let of_sky = sky.lit.as_ref().expect("planned before").plan();
-        let plan = plan::preview(&self.scene, (&sky.scene, of_sky), limits)?;
+        let plan_of = |level: &Level| level.lit.as_ref().expect("lit before").plan().clone();
+        let (of_sky, of_sun) = (plan_of(sky), sun.is_used().then(|| plan_of(sun)));
+        let count_of_normals = 2 + usize::from(sun.is_used());
+        let suns = of_sun.as_ref().map(|plan| (&sun.scene, plan));
+        let plan = plan::preview(&self.scene, (&sky.scene, &of_sky), suns, limits)?;
         let mut borrowed = vec![sky.image("radiance")];
         if let Some((n, _)) = first_sun(&sky.scene) {
             borrowed.push(sky.image(&format!("direct.sun{n}")));
         }
         if matches!(sky.scene.surface.albedo, Albedo::Map(_)) {
             borrowed.push(sky.image("albedo"));
+        }
+        if sun.is_used() {
+            borrowed.push(sun.image("radiance"));
         }
         let borrowed: Vec<ImageArg> = borrowed.into_iter().flatten().collect();
         let fits = self.lit.as_ref().is_some_and(|lit| lit.plan().resources == plan.resources);
@@ -200,20 +219,23 @@ impl Level {
                 }
                 // Borrowed images need no contents.
                 let mut contents = plan::picture_inputs(&self.scene);
-                contents.truncate(plan.inputs().count() - borrowed.len() - NORMALS);
+                contents.truncate(plan.inputs().count() - borrowed.len() - count_of_normals);
                 let rest = plan.inputs().skip(contents.len());
                 let empty: Vec<Vec<f32>> =
                     rest.map(|(_, input)| vec![0.0; (input.bytes() / 4) as usize]).collect();
                 contents.extend(empty);
                 self.lit = Some(screen.frame(plan, &contents)?);
-                [sky.are_normals_new, self.are_normals_new] = [true; 2];
+                [sky.are_normals_new, sun.are_normals_new, self.are_normals_new] = [true; 3];
             }
         }
         let lit = self.lit.as_ref().expect("made above");
-        let first = lit.plan().inputs().count() - borrowed.len() - NORMALS;
-        let all: [_; NORMALS] =
-            [(&self.normals, &mut self.are_normals_new), (&sky.normals, &mut sky.are_normals_new)];
-        for (n, (normals, are_new)) in all.into_iter().enumerate() {
+        let first = lit.plan().inputs().count() - borrowed.len() - count_of_normals;
+        let all = [
+            (&self.normals, &mut self.are_normals_new),
+            (&sky.normals, &mut sky.are_normals_new),
+            (&sun.normals, &mut sun.are_normals_new),
+        ];
+        for (n, (normals, are_new)) in all.into_iter().take(count_of_normals).enumerate() {
             if *are_new {
                 screen.gpu().refill(lit, first + n, normals)?;
                 *are_new = false;
@@ -223,32 +245,37 @@ impl Level {
     }
 }
 
-/// Plans the light of the coarse grid and the slopes that show it. Returns the images that the slopes borrow.
+/// Plans the light of the coarse grids and the slopes that show it. Returns the images that the slopes borrow.
 pub fn plan_levels(
-    [sky, slopes]: &mut [Level; GRIDS],
+    [sky, sun, slopes]: &mut [Level; GRIDS],
     screen: &mut Screen,
     state: &State,
     limits: &Limits,
 ) -> Result<Vec<ImageArg>> {
     // New environments wait for the device.
     sky.plan_light(screen, state, limits)?;
-    slopes.plan_slopes(screen, sky, state.has_camera(), limits)
+    if sun.is_used() {
+        sun.plan_light(screen, state, limits)?;
+    }
+    slopes.plan_slopes(screen, [sky, sun], state.has_camera(), limits)
 }
 
 /// Plans the first of the grids that has no frame, so that input waits for one of them at most. Returns whether there was
 /// one.
 pub fn plan_next(
-    [sky, slopes]: &mut [Level; GRIDS],
+    [sky, sun, slopes]: &mut [Level; GRIDS],
     screen: &mut Screen,
     state: &State,
     limits: &Limits,
 ) -> Result<bool> {
-    if sky.lit.is_none() {
-        return sky.plan_light(screen, state, limits).map(|()| true);
+    for coarse in [&mut *sky, &mut *sun] {
+        if coarse.is_used() && coarse.lit.is_none() {
+            return coarse.plan_light(screen, state, limits).map(|()| true);
+        }
     }
     let lacks_slopes = slopes.lit.is_none();
     if lacks_slopes {
-        slopes.plan_slopes(screen, sky, state.has_camera(), limits)?;
+        slopes.plan_slopes(screen, [sky, sun], state.has_camera(), limits)?;
     }
     Ok(lacks_slopes)
 }
@@ -260,11 +287,13 @@ fn first_sun(scene: &Scene) -> Option<(usize, &Sun)> {
 }
 
 /// The user's settings with fewer azimuths and the default method, as the others are slow, and with the default lines,
-/// as some need another method. A sun has one azimuth.
-fn coarser(quality: &Quality) -> Quality {
+/// as some need another method. The sun has one azimuth, and bounces only in the sky's light.
+fn coarser(quality: &Quality, of: usize) -> Quality {
+    let count = if of == SUN { 0 } else { quality.bounces.count };
     Quality {
         azimuths: quality.azimuths.min(AZIMUTHS),
         sun_azimuths: 1,
+        bounces: Bounces { count, ..quality.bounces },
         method: Method::default(),
         lines: Lines::default(),
         ..*quality
@@ -274,7 +303,12 @@ fn coarser(quality: &Quality) -> Quality {
 /// The work of a grid of blocks of `side` grid points, as its rate counts it.
 pub fn grid_work(scene: &Scene, quality: &Quality, of: usize, side: usize) -> f64 {
     let texels = (scene.field.rows() * scene.field.cols()) as f64 / (side * side) as f64;
-    if of == SKY { work(scene, &coarser(quality), side) } else { texels }
+    match of {
+        SKY => work(scene, &coarser(quality, SKY), side),
+        // Heights, a sweep and a sun.
+        SUN => 3.0 * texels,
+        _ => texels,
+    }
 }
 
 /// Texels times azimuths, with a sun as eight, on blocks of `side` grid points.
@@ -316,8 +350,11 @@ mod tests {
                     let is_full = other.set(&mut quality, &word).is_ok()
                         && plan::picture(&scene, &quality, &limits, Picture::default()).is_ok();
                     let wanted = Picture { light_layers: true, ..Picture::default() };
-                    let sky = plan::picture(&scene, &coarser(&quality), &limits, wanted);
-                    assert!(!is_full || sky.is_ok(), "{of_method}, {} {word}", other.name);
+                    let sky = plan::picture(&scene, &coarser(&quality, SKY), &limits, wanted);
+                    let sun = coarser(&quality, SUN);
+                    let sun = plan::picture(&scene, &sun, &limits, Picture::default());
+                    let is_well = sky.is_ok() && sun.is_ok();
+                    assert!(!is_full || is_well, "{of_method}, {} {word}", other.name);
                     count += u32::from(is_full);
                 }
             }

@@ -1,5 +1,5 @@
-//! Responses to input: first the slopes of a fine grid, lit by a coarse grid's light and by the sun; then, once input rests,
-//! the full light in parts.
+//! Answers to input: the light of coarse grids on the slopes of a finer one; and the full light in parts once input
+//! rests.
 
 use std::ops::Range;
 use std::panic::resume_unwind;
@@ -16,16 +16,18 @@ use super::super::brush::together;
 use super::super::smaller::Blocks;
 use super::super::state::State;
 use super::drawing::{replan, whole};
-use super::level::{GRIDS, Ground, Level, SKY, SLOPES, grid_work, plan_levels, plan_next, work};
+use super::level::{
+    GRIDS, Ground, Level, SKY, SLOPES, SUN, grid_work, plan_levels, plan_next, work,
+};
 use crate::render;
 use crate::setup::total_ns;
 
 /// Intended GPU times of a preview's grids: with drawing and copies, 15 pictures per second.
-const INTENDED_MS: [f64; GRIDS] = [6.0, 36.0];
+const INTENDED_MS: [f64; GRIDS] = [6.0, 12.0, 24.0];
 /// The part of the slopes' time that is left where a camera draws a mesh.
 const WITH_MESH: f64 = 0.4;
 /// The parts of those times that do not grow with the grid: tables of the sky, starts of passes.
-const FIXED_MS: [f64; GRIDS] = [2.0, 1.0];
+const FIXED_MS: [f64; GRIDS] = [2.0, 1.0, 0.0];
 /// GPU time of a part of the full light.
 const PART_MS: f64 = 40.0;
 /// Full light that takes no longer needs no preview.
@@ -47,7 +49,7 @@ struct Rates {
 }
 
 /// Before anything was measured: lavapipe on two cores; a GPU.
-const CPU_RATES: Rates = Rates { full: 1e5, grids: [1e5, 4e4] };
+const CPU_RATES: Rates = Rates { full: 1e5, grids: [1e5, 1e5, 5.5e4] };
 const GPU_RATES: Rates = Rates { full: 2e7, grids: [2e7; GRIDS] };
 
 /// What comes next.
@@ -63,7 +65,7 @@ enum Next {
 /// Slots whose GPU times are still to be read.
 #[derive(Clone, Copy)]
 enum Running {
-    Preview([usize; GRIDS]),
+    Preview([Option<usize>; GRIDS]),
     Full(usize),
 }
 
@@ -129,7 +131,7 @@ impl Preview {
         !state.is_split && field.rows().min(field.cols()) >= 2 * LEAST_GRID && is_slow
     }
 
-    /// Fixes the grids by the sides of their blocks: sky, slopes.
+    /// Fixes the grids by the sides of their blocks: sky, sun, slopes.
     pub fn fix(&mut self, sides: Option<[usize; GRIDS]>) {
         self.fixed = sides;
     }
@@ -165,7 +167,7 @@ impl Preview {
 
     /// Whether grids were made that have not been lit yet.
     fn has_new_grids(&self) -> bool {
-        self.levels.iter().flatten().any(|level| level.runs == 0)
+        self.levels.iter().flatten().any(|level| level.is_used() && level.runs == 0)
     }
 
     /// Whether the preview is shown.
@@ -183,13 +185,16 @@ impl Preview {
     /// How the shown light was computed.
     pub fn line(&self) -> Option<String> {
         let levels = self.levels.as_ref().filter(|_| self.is_shown)?;
-        let [sky, slopes] = levels
+        let [sky, sun, slopes] = levels
             .each_ref()
             .map(|level| format!("{} x {}", level.scene.field.cols(), level.scene.field.rows()));
-        let sun = if levels[SLOPES].scene.lights.suns.is_empty() { "" } else { "sun and " };
+        let sun = match levels[SUN].scene.lights.suns.is_empty() {
+            true => String::new(),
+            false => format!(", sun of {sun}"),
+        };
         let error =
             self.error.map_or_else(String::new, |e| format!(", RMSE about {:.1} %", 100.0 * e));
-        Some(format!("preview: sky of {sky}, {sun}slopes of {slopes}{error}"))
+        Some(format!("preview: sky of {sky}{sun}, slopes of {slopes}{error}"))
     }
 
     /// The share of the full light that is done, where it is being computed.
@@ -256,7 +261,8 @@ impl Preview {
         };
         let least = |of: usize| (1..most).find(|side| share(of, *side) <= 1.0).unwrap_or(most);
         let slopes = least(SLOPES);
-        let wanted = self.fixed.unwrap_or_else(|| [least(SKY).max(slopes), slopes]);
+        let coarse = |of: usize| least(of).max(slopes);
+        let wanted = self.fixed.unwrap_or_else(|| [coarse(SKY), coarse(SUN), slopes]);
         let kept = self.levels.as_ref().map(|levels| levels.each_ref().map(|l| l.blocks.side));
         // Other grids take a third of a second of the host, so the present ones are kept while they roughly fit, longest in a drag.
         let is_kept = kept.is_some_and(|kept| {
@@ -407,7 +413,8 @@ impl Preview {
                 let levels = self.levels.as_mut().filter(|levels| levels[SLOPES].runs > 1);
                 let mut all = Vec::new();
                 for (level, slot) in levels.into_iter().flatten().zip(slots) {
-                    let times = level.lit.as_mut().and_then(|lit| lit.renderer().timings(slot));
+                    let lit = level.lit.as_mut().zip(slot);
+                    let times = lit.and_then(|(lit, slot)| lit.renderer().timings(slot));
                     let Some(times) = times else { continue };
                     let work = grid_work(&state.scene, &state.quality, level.of, level.blocks.side);
                     // Without tables, all of the time is taken to grow with the grid.
@@ -444,23 +451,29 @@ fn finished<T>(thread: &mut Option<JoinHandle<T>>) -> Option<T> {
 /// The grids of blocks of these sides.
 fn grounds(scene: &Scene, sides: [usize; GRIDS]) -> Result<[Ground; GRIDS]> {
     let ground = |of: usize| Ground::new(scene, of, sides[of]);
-    Ok([ground(SKY)?, ground(SLOPES)?])
+    Ok([ground(SKY)?, ground(SUN)?, ground(SLOPES)?])
 }
 
-/// Lights both grids. Returns the slots that hold their times.
+/// Lights the grids. Returns the slots that hold their times.
 fn run_levels(
     levels: &mut [Level; GRIDS],
     screen: &mut Screen,
     state: &State,
     limits: &Limits,
-) -> Result<[usize; GRIDS]> {
+) -> Result<[Option<usize>; GRIDS]> {
     let borrowed = plan_levels(levels, screen, state, limits)?;
-    let [sky, slopes] = levels;
-    Ok([sky.run(screen, &[])?, slopes.run(screen, &borrowed)?])
+    let mut slots = [None; GRIDS];
+    for (level, slot) in levels.iter_mut().zip(&mut slots) {
+        if level.is_used() {
+            let borrowed = if level.of == SLOPES { borrowed.as_slice() } else { &[] };
+            *slot = Some(level.run(screen, borrowed)?);
+        }
+    }
+    Ok(slots)
 }
 
-fn levels_of([sky, slopes]: [Ground; GRIDS]) -> [Level; GRIDS] {
-    [Level::new(SKY, sky), Level::new(SLOPES, slopes)]
+fn levels_of([sky, sun, slopes]: [Ground; GRIDS]) -> [Level; GRIDS] {
+    [Level::new(SKY, sky), Level::new(SUN, sun), Level::new(SLOPES, slopes)]
 }
 
 /// RMSE over the mean, R, G, B of the means of blocks.
