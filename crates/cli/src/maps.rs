@@ -105,7 +105,7 @@ const SHADOW_VALUES: [Values; 3] = [
     Values { name: "penumbra", unit: "m", about: "", png: [0.0, 1.0] },
 ];
 
-/// [`setup::georeferenced`] or [`setup::on_cpu`].
+/// [`setup::georeferenced`] or [`setup::of_neighbours`].
 type Read = fn(&[PathBuf], &FieldArgs, &GlobalArgs) -> Result<(HeightField, Option<Georeference>)>;
 
 /// A command's arguments and field.
@@ -215,7 +215,7 @@ pub fn hillshade(args: &HillshadeArgs) -> Result<Outcome> {
     let [sun] = *lights.suns else {
         return Err(Error::setting("--sun 2", "another sun", "one sun: a hillshade has no more"));
     };
-    let job = Job::new(&args.map, &args.map.surface, setup::on_cpu)?;
+    let job = Job::new(&args.map, &args.map.surface, setup::of_neighbours)?;
     let plane = lambert(&job.field, setup::border(job.surface), sun);
     let mut metadata = setup::of_field(&job.field);
     let words = light("sun").words(&lights).concat();

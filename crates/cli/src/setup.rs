@@ -74,16 +74,26 @@ pub fn georeferenced(
     if surface.bbox.is_none() {
         paths.iter().try_for_each(|path| check_size(path, global))?;
     }
-    on_cpu(paths, surface, global)
+    reported(paths, read(paths, surface)?, surface, global)
 }
 
-/// The same, for commands that need no device.
-pub fn on_cpu(
+/// The same, for commands that need no device and no distant ground.
+pub fn of_neighbours(
     paths: &[PathBuf],
     surface: &FieldArgs,
     global: &GlobalArgs,
 ) -> Result<(HeightField, Option<Georeference>)> {
-    let files::FieldFile { field, georeference, notes, warnings } = read(paths, surface)?;
+    reported(paths, read_file(paths, surface)?, surface, global)
+}
+
+/// Prints a file's warnings and notes.
+fn reported(
+    paths: &[PathBuf],
+    read: files::FieldFile,
+    surface: &FieldArgs,
+    global: &GlobalArgs,
+) -> Result<(HeightField, Option<Georeference>)> {
+    let files::FieldFile { field, georeference, notes, warnings } = read;
     let name = match paths {
         [first, _, ..] => format!("{} and {} more", first.display(), paths.len() - 1),
         _ => paths.iter().map(|path| path.display().to_string()).collect(),
@@ -113,6 +123,13 @@ pub fn warning(text: &str) {
 
 /// A field, with its notes and warnings, which are not printed yet.
 pub fn read(paths: &[PathBuf], surface: &FieldArgs) -> Result<files::FieldFile> {
+    let mut read = read_file(paths, surface)?;
+    read.notes.extend(read.curvature_note());
+    Ok(read)
+}
+
+/// The same, without the note for commands that depend on distant ground.
+fn read_file(paths: &[PathBuf], surface: &FieldArgs) -> Result<files::FieldFile> {
     if !surface.z_scale.is_finite() || surface.z_scale == 0.0 {
         let expected = "a finite number other than 0";
         return Err(Error::setting("--z-scale", surface.z_scale.to_string(), expected));

@@ -95,6 +95,27 @@ pub struct FieldFile {
     pub warnings: Vec<String>,
 }
 
+impl FieldFile {
+    /// A note on a field that is more than 10 km wide, for what depends on distant ground: the Earth's curvature is not modelled.
+    pub fn curvature_note(&self) -> Option<String> {
+        let [cell_x, cell_y] = self.field.cell_m();
+        let [width, height] =
+            [cell_x * (self.field.cols() - 1) as f64, cell_y * (self.field.rows() - 1) as f64];
+        let widest = width.max(height);
+        if widest <= WIDE_M {
+            return None;
+        }
+        let drop = widest * widest / (2.0 * EARTH_M);
+        let of = match widest < FLAT_M {
+            true => {
+                format!(" drops {drop:.0} m over the {:.0} km of this field; it", widest / 1000.0)
+            }
+            false => ", which this field goes far around,".to_owned(),
+        };
+        Some(format!("the Earth's curvature{of} is not modelled"))
+    }
+}
+
 /// [`read_heights`], with the position and what was assumed.
 ///
 /// ```no_run
@@ -225,7 +246,7 @@ const WIDE_M: f64 = 10_000.0;
 /// Beyond it the drop is no longer that of a parabola.
 const FLAT_M: f64 = 1_000_000.0;
 
-/// What a reader of results should know about a field: notes and warnings on its voids and its width.
+/// What a reader of results should know about a field's voids: notes and warnings.
 fn about(field: &HeightField) -> [Vec<String>; 2] {
     let (mut notes, mut warnings) = (Vec::new(), Vec::new());
     if let Some(voids) = field.voids() {
@@ -239,19 +260,6 @@ fn about(field: &HeightField) -> [Vec<String>; 2] {
         } else {
             notes.push(text);
         }
-    }
-    let [cell_x, cell_y] = field.cell_m();
-    let [width, height] = [cell_x * (field.cols() - 1) as f64, cell_y * (field.rows() - 1) as f64];
-    let widest = width.max(height);
-    if widest > WIDE_M {
-        let drop = widest * widest / (2.0 * EARTH_M);
-        let of = match widest < FLAT_M {
-            true => {
-                format!(" drops {drop:.0} m over the {:.0} km of this field; it", widest / 1000.0)
-            }
-            false => ", which this field goes far around,".to_owned(),
-        };
-        notes.push(format!("the Earth's curvature{of} is not modelled"));
     }
     [notes, warnings]
 }

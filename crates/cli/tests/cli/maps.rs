@@ -108,6 +108,31 @@ fn pictures_in_degrees_have_a_note_on_their_proportions() {
     assert!(run.notes.contains("`gdalwarp -t_srs EPSG:32632`"), "{}", run.notes);
 }
 
+/// A hillshade needs no distant ground, so its field gets no note on the Earth's curvature. Light and horizons do.
+#[test]
+fn hillshade_has_no_note_on_the_curvature() {
+    let folder = Folder::new();
+    write_field(&folder, SIDE, |row, _| row as f32);
+    let said = "the Earth's curvature";
+    // All read the field before they open a device. Only `plan` and `hillshade` need none.
+    for (command, cell, status, is_noted) in [
+        ("plan", "1000", 0, true),
+        ("render", "1000", 1, true),
+        ("svf", "1000", 1, true),
+        ("hillshade", "1000", 0, false),
+        // 16 cells of 625 m are 10 km, which is not wide.
+        ("plan", "625", 0, false),
+    ] {
+        let mut words = vec![command, "field.npy", "--cell", cell];
+        if command != "plan" {
+            words.extend(["-o", "o.tif"]);
+        }
+        let run = folder.run_without_driver(&words);
+        assert_eq!(run.status, Some(status), "{words:?}: {}", run.err);
+        assert_eq!(run.notes.contains(said), is_noted, "{words:?}: {}", run.notes);
+    }
+}
+
 #[test]
 fn wrong_maps_are_refused() {
     let folder = Folder::new();
