@@ -101,9 +101,10 @@ fn reported(
     warnings.iter().for_each(|text| warning(&format!("{name}: {}", flags_in(text))));
     if !global.quiet {
         notes.iter().for_each(|text| note(&format!("{name}: {}", flags_in(text))));
-        if surface.bbox.is_some() {
+        if let Some([west, south, east, north]) = surface.bbox {
             note(&format!(
-                "{name}: read without the ground outside --bbox, which casts no shadow into it"
+                "{name}: read without the ground outside --bbox, which casts no shadow into it; for its shadows, use a wider \
+                box and cut the result: `gdal_translate -projwin {west} {north} {east} {south} wide.tif out.tif`"
             ));
         }
     }

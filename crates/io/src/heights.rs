@@ -258,7 +258,9 @@ fn about(field: &HeightField) -> [Vec<String>; 2] {
         if share >= 0.5 {
             warnings.push(text + "; half of the field or more is empty");
         } else {
-            notes.push(text);
+            notes.push(
+                text + "; for results there, fill them first: `gdal_fillnodata.py in.tif out.tif`",
+            );
         }
     }
     [notes, warnings]

@@ -222,6 +222,8 @@ fn a_field_that_is_half_empty_gets_a_warning() {
             assert!(text.contains(&format!("{start}{of_share}")), "{voids}: {text}");
             let has_half = text.contains("; half of the field or more is empty");
             assert_eq!(has_half, is_half, "{voids}: {text}");
+            let has_cure = text.contains("`gdal_fillnodata.py in.tif out.tif`");
+            assert_eq!(has_cure, !is_half, "{voids}: {text}");
         }
     }
 }

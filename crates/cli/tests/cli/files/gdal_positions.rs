@@ -82,6 +82,8 @@ fn gdal_finds_outputs_of_a_mosaic_in_place() {
     let horizon = succeeded(&folder, &format!("horizon {names} {bbox} -o h.tif"));
     let said = "read without the ground outside --bbox, which casts no shadow into it";
     assert!(horizon.notes.contains(said), "{}", horizon.notes);
+    let cut = "`gdal_translate -projwin 500300 4901200 501200 4900300 wide.tif out.tif`";
+    assert!(horizon.notes.contains(cut), "{}", horizon.notes);
     done(&folder, &format!("bake {names} {bbox} --what sky-view --format tif -o baked"));
     done(
         &folder,
