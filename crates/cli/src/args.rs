@@ -266,6 +266,10 @@ pub struct RenderArgs {
 }
 
 #[derive(Args)]
+#[command(mut_arg("json", |arg| {
+    arg.help("Write the description as JSON; `--json -` prints it instead of the text")
+        .hide_short_help(false)
+}))]
 pub struct InfoArgs {
     #[command(flatten)]
     pub input: Input,

@@ -15,18 +15,28 @@ use crate::setup::{self, Outcome};
 
 /// Slopes beyond this are counted.
 const STEEP_DEG: f64 = 45.0;
+
+/// The name of `--json` that stands for standard output.
+const STANDARD_OUTPUT: &str = "-";
+
 pub fn run(args: &InfoArgs) -> Result<Outcome> {
-    if let Some(json) = &args.global.json {
-        setup::check_output("--json", json, &["json"])?;
+    let json = args.global.json.as_deref();
+    let is_printed = json == Some(Path::new(STANDARD_OUTPUT));
+    let file = json.filter(|_| !is_printed);
+    if let Some(file) = file {
+        setup::check_output("--json", file, &["json"])?;
         let inputs: Vec<&Path> = args.input.path.iter().map(PathBuf::as_path).collect();
-        setup::check_distinct(&[("--json", Some(json))], &inputs)?;
+        setup::check_distinct(&[("--json", Some(file))], &inputs)?;
     }
     let read = setup::read(&args.input.path, &args.surface)?;
     let facts = facts(&read)?;
-    if let Some(json) = &args.global.json {
-        files::write_json(json, &facts)?;
+    if let Some(file) = file {
+        files::write_json(file, &facts)?;
     }
-    if !args.global.quiet {
+    if is_printed {
+        crate::say!("{facts:#}");
+    }
+    if !args.global.quiet && !is_printed {
         say(args, &facts);
         say_start(args, &read.field, read.georeference.as_ref())?;
     } else {

@@ -200,6 +200,26 @@ fn info_states_what_a_file_holds() {
     assert!(run.out.contains("drops 350 m over the 67 km"), "{}", run.out);
 }
 
+/// `info --json -` prints what it would write to a file, and nothing else. Warnings also go to standard error, as with --quiet.
+#[test]
+fn info_prints_its_json() {
+    let folder = Folder::new();
+    crate::needs_vulkan::write_field(&folder, 4, |_, _| 1.0);
+    let [file, printed, quiet] = ["--json i.json", "--json -", "--json - --quiet"].map(|json| {
+        let args = format!("info field.npy {json}");
+        let run = folder.run_without_driver(&args.split(' ').collect::<Vec<_>>());
+        assert_eq!((run.status, run.err.as_str()), (Some(0), ""), "{args}");
+        run
+    });
+    assert_eq!(printed.out, std::fs::read_to_string(folder.path("i.json")).unwrap());
+    assert_eq!(quiet.out, printed.out);
+    assert!(file.out.contains("4 x 4 grid points"), "{}", file.out);
+    let warning = "warning: field.npy: the file has no cell size: --cell 1 is assumed\n";
+    assert!(printed.notes.contains(warning), "{}", printed.notes);
+    assert_eq!(quiet.notes, printed.notes);
+    assert!(!folder.path("-").exists());
+}
+
 /// A note states the share of voids. From one half on it is a warning, which adds that half of the field or more is empty.
 #[test]
 fn a_field_that_is_half_empty_gets_a_warning() {
