@@ -9,6 +9,7 @@ mod quality;
 mod reference;
 mod renamed;
 mod scene;
+mod tips;
 mod trade;
 mod values;
 mod view;
@@ -129,7 +130,7 @@ impl Cli {
         renamed.replace(&parser, &mut words);
         let scene = SceneFile::add_to(&parser, &mut words, &mut renamed).map_err(Refused::Value)?;
         renamed.replace(&parser, &mut words);
-        let parsed = parser.try_get_matches_from_mut(words);
+        let parsed = parser.try_get_matches_from_mut(&words);
         let cli = parsed.and_then(|matches| {
             let mut cli = Self::from_arg_matches(&matches).map_err(|e| e.format(&mut parser))?;
             cli.remember(&matches, &scene);
@@ -140,7 +141,7 @@ impl Cli {
             Ok(cli) => Ok(Self { scene, ..cli }),
             Err(error) => Err(match scene.explain(&error).or_else(|| of_value(&error)) {
                 Some(error) => Refused::Value(error),
-                None => Refused::Parser(error),
+                None => Refused::Parser(tips::add(error, &parser, &words)),
             }),
         }
     }

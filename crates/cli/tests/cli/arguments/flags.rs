@@ -412,3 +412,32 @@ fn sizes_that_no_machine_holds_are_refused() {
         ],
     );
 }
+
+/// Flags of gdaldem get our flag as a tip, where the command has it.
+#[test]
+fn flags_of_gdaldem_have_tips() {
+    let folder = Folder::new();
+    let sun = "tip: write the sun as --sun AZ,EL; gdaldem's -az 315 -alt 45 are --sun 315,45";
+    refused(
+        &folder,
+        &[
+            ("hillshade a.asc -o o.tif --az 315", 2, &["'--az'", sun]),
+            ("hillshade a.asc -o o.tif --azimuth 315", 2, &[sun]),
+            ("hillshade a.asc -o o.tif -az 315 -alt 45", 2, &["'-a'", sun]),
+            ("shadow a.asc -o o.tif --alt 45", 2, &[sun]),
+            ("render a.asc -o o.tif --altitude=45", 2, &[sun]),
+            ("hillshade a.asc -o o.tif -z 2", 2, &["tip: gdaldem's -z is --z-scale"]),
+            ("hillshade a.asc -o o.tif -s 111120", 2, &["tip: leave out gdaldem's -s"]),
+            (
+                "info --json dem.tif",
+                2,
+                &["<INPUT>", "tip: --json takes the file to write, here dem.tif"],
+            ),
+        ],
+    );
+    for (args, word) in [("svf a.asc -o o.tif --az 3", "--sun"), ("info --json i.json", "tip:")] {
+        let run = folder.run_without_driver(&args.split(' ').collect::<Vec<_>>());
+        assert_eq!(run.status, Some(2), "{args}");
+        assert!(!run.err.contains(word), "{args}: {}", run.err);
+    }
+}
