@@ -142,7 +142,24 @@ fn read_file(paths: &[PathBuf], surface: &FieldArgs) -> Result<files::FieldFile>
         band: surface.band,
         bbox: surface.bbox,
     };
-    files::read_mosaic(paths, &options)
+    files::read_mosaic(paths, &options).map_err(convertible)
+}
+
+/// Extensions of rasters that GDAL reads and we do not.
+const OTHER_RASTERS: [&str; 9] = ["vrt", "img", "jp2", "bil", "flt", "dem", "adf", "gpkg", "nc"];
+
+/// Names the command that converts a file of another format.
+fn convertible(error: Error) -> Error {
+    match error {
+        Error::File { path, place, found, expected }
+            if place == "name" && OTHER_RASTERS.contains(&extension(&path).as_str()) =>
+        {
+            let file = terminal::quoted(&path.display().to_string());
+            let expected = format!("{expected}; `gdal_translate {file} out.tif` converts it");
+            Error::File { path, place, found, expected }
+        }
+        other => other,
+    }
 }
 
 /// The light of a scene without lights.

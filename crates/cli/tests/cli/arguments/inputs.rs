@@ -101,6 +101,8 @@ fn what_is_no_file_or_has_no_format() {
     std::fs::create_dir(folder.path("folder.png")).unwrap();
     folder.write("a.xyz", b"1 2 3");
     folder.write("plain", b"1 2 3");
+    folder.write("a.vrt", b"<VRTDataset/>");
+    folder.write("a.img", b"EHFA_HEADER_TAG");
     let missing = |name: &str| (name.to_owned(), 1, vec!["ridgelight: "]);
     refused_by_all(
         &folder,
@@ -110,11 +112,23 @@ fn what_is_no_file_or_has_no_format() {
             ("no/folder.png".into(), 1, vec!["no/folder.png"]),
             ("a.xyz".into(), 1, vec!["a.xyz", ".xyz", ".npy", "packed as .gz or .zip"]),
             ("plain".into(), 1, vec!["plain", "no extension"]),
+            (
+                "a.vrt".into(),
+                1,
+                vec!["the extension .vrt", "`gdal_translate a.vrt out.tif` converts it"],
+            ),
+            (
+                "a.img".into(),
+                1,
+                vec!["the extension .img", "`gdal_translate a.img out.tif` converts it"],
+            ),
             // A file name of two lines still gives one line of error.
             missing("two\nlines.png"),
             missing("two\nlines"),
         ],
     );
+    let run = folder.run_without_driver(&["plan", "a.xyz"]);
+    assert!(!run.err.contains("gdal_translate"), "{}", run.err);
 }
 
 #[test]
