@@ -182,9 +182,14 @@ pub enum Command {
     /// Cast shadow of a sun: the visible share of its disc, 0 to 1, and its shadow heights in metres
     Shadow(ShadowArgs),
     /// Ambient occlusion: the light of a uniform sky on white ground, 0 to 1
+    ///
+    /// `svf` writes the same map under another name.
     #[command(after_help = maps::AO_HELP)]
     Ao(SkyViewArgs),
     /// Sky-view factor, weighted by the cosine to the slope's normal, 0 to 1
+    ///
+    /// The sky-view factor of the Relief Visualization Toolbox (RVT) is another map: `ridgelight bake --what visible-sky`.
+    /// `ao` writes the same map as `svf` under another name.
     #[command(after_help = maps::SVF_HELP)]
     Svf(SkyViewArgs),
     /// Openness (Yokoyama 2002): mean zenith angle of the horizon, degrees

@@ -12,7 +12,8 @@ const HILLSHADE_HELP: &str = "\
 Values are 1 + 254 max(cos, 0), where cos is that between the normal and the sun: those of `gdaldem hillshade` (Horn), \
 not rounded except in a .png. No shadows are cast; `ridgelight render --sun AZ,EL` casts them.
 
-Differences from gdaldem: heights and cells are both in metres, so files in degrees need no -s. At the edge, slopes come \
+Differences from gdaldem: heights and cells are both in metres, so files in degrees need no -s. Values then differ from \
+those of `gdaldem hillshade -s 111120`, which takes cells in degrees as square on the ground. At the edge, slopes come \
 from the cells that exist. Beside voids, they come from filled heights. gdaldem has no data in both places; with \
 -compute_edges it extrapolates.
 
@@ -33,19 +34,27 @@ Examples:
 
 pub const AO_HELP: &str = "\
 The map `sky-view` of `bake`: the cosine-weighted share of the hemisphere about the normal that no ground occludes, for \
-horizons of any distance. It equals `render --sky 1 --albedo 1 --bounces 0`. `svf` writes the same map. gdaldem has no \
-such map.
+horizons of any distance. It equals `render --sky 1 --albedo 1 --bounces 0`. gdaldem has no such map.
 
-Example:
-  ridgelight ao dem.tif -o ao.png";
+A .png has 0 to 1 as 0 to 255, not stretched, so mountains are nearly white. For full contrast write a .tif, which QGIS \
+draws so, or convert it as in the example.
+
+Examples:
+  ridgelight ao dem.tif -o ao.tif
+  gdal_translate -of PNG -ot Byte -scale ao.tif ao.png      # from the lowest to the highest value";
 
 pub const SVF_HELP: &str = "\
-The map `sky-view` of `bake`, as `ao` writes it: flat open ground is 1, a slope of angle a is (1 + cos a)/2. RVT's \
-sky-view factor (Zaksek 2011) weights all directions above the horizontal equally, up to 10 pixels away; \
-`ridgelight bake --what visible-sky --format tif` writes it for horizons of any distance.
+The map `sky-view` of `bake`: flat open ground is 1, a slope of angle a is (1 + cos a)/2. RVT's sky-view factor (Zaksek \
+2011) weights all directions above the horizontal equally, up to 10 pixels away; `visible-sky` of `bake` is the same for \
+horizons of any distance.
 
-Example:
-  ridgelight svf dem.tif -o svf.tif";
+A .png has 0 to 1 as 0 to 255, not stretched, so mountains are nearly white. For full contrast write a .tif, which QGIS \
+draws so, or convert it as in the example.
+
+Examples:
+  ridgelight svf dem.tif -o svf.tif
+  gdal_translate -of PNG -ot Byte -scale svf.tif svf.png    # from the lowest to the highest value
+  ridgelight bake dem.tif --what visible-sky --format tif -o rvt    # RVT's sky-view factor";
 
 const OPENNESS_HELP: &str = "\
 The mean over --azimuths of the zenith angle of the horizon: 90 degrees on flat ground, less in a valley, more on a \

@@ -236,3 +236,19 @@ fn help_is_grouped() {
     ];
     assert_eq!(headings, groups);
 }
+
+/// The first lines of `svf --help` name RVT's map, so that nobody takes one for the other.
+#[test]
+fn help_of_svf_begins_with_the_map_of_rvt() {
+    let folder = Folder::new();
+    let start = |command: &str| {
+        let help = folder.run_without_driver(&[command, "--help"]).out;
+        let text = help.split("Usage:").next().unwrap_or_default().to_owned();
+        text.split_whitespace().collect::<Vec<_>>().join(" ")
+    };
+    let svf = start("svf");
+    for said in ["RVT", "`ridgelight bake --what visible-sky`", "`ao` writes the same map"] {
+        assert!(svf.contains(said), "{said}: {svf}");
+    }
+    assert!(start("ao").contains("`svf` writes the same map"), "{}", start("ao"));
+}
