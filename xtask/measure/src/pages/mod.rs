@@ -279,11 +279,6 @@ fn auto() -> Result<String> {
     choices("auto")
 }
 
-/// What `cargo measure auto --specular` found of `render --max-error` with specular.
-fn auto_specular() -> Result<String> {
-    choices("auto_specular")
-}
-
 fn choices(result: &str) -> Result<String> {
     let figures = Figures::read(result)?;
     let mut of = figures.all.clone();
@@ -429,10 +424,7 @@ const PAGES: [(&str, &[Section]); 9] = [
     ("docs/embedding/bevy.md", &[("fourier", fourier)]),
     ("docs/methods.md", &[("forms", forms)]),
     ("docs/accuracy.md", &[("accuracy", accuracy), ("suns", suns), ("bounces", bounces)]),
-    (
-        "docs/choosing-settings.md",
-        &[("auto", auto), ("auto_specular", auto_specular), ("goals", goals)],
-    ),
+    ("docs/choosing-settings.md", &[("auto", auto), ("goals", goals)]),
     ("docs/measured/performance.md", &[("performance", performance::performance)]),
     ("docs/baking.md", &[("brdf", brdf), ("bake", bake), ("curved", curved)]),
 ];
