@@ -6,6 +6,7 @@ mod heights;
 mod ktx2;
 mod light;
 mod malformed;
+mod notes;
 mod real;
 mod visible;
 mod write;

@@ -11,6 +11,7 @@ mod raw;
 mod sidecar;
 pub mod size;
 pub mod tif;
+mod unit;
 mod unpack;
 
 use crate::arrays::{npy, npz};
@@ -70,7 +71,8 @@ impl Default for HeightOptions {
 /// latitude of the field's centre (one size for the whole field); so are the metres of Web Mercator, which are too long by 1/cos latitude. A header without a unit (`.asc`,
 /// `.npz`, a TIFF without GeoKeys) is in degrees when its corners are longitudes and latitudes and
 /// its cell is below 0.1, else in metres. A TIFF in feet is converted to
-/// metres: its cells by its unit of length or its projected system, its heights by its vertical unit or system.
+/// metres: its cells by its unit of length or its projected system, its heights by the unit of the band (GDAL's metadata)
+/// or by its vertical unit or system.
 ///
 /// # Errors
 /// A file that cannot be read ([`Error::Io`]); options out of range ([`Error::Setting`]); an

@@ -2,7 +2,7 @@
 
 use crate::georeference::{GeoKeys, Georeference};
 use crate::heights::tif::Tiff;
-use crate::heights::{Cell, looks_like_degrees, projection};
+use crate::heights::{Cell, looks_like_degrees, projection, unit};
 use crate::open;
 use ridgelight::{Error, Result};
 use std::path::Path;
@@ -51,7 +51,7 @@ struct Grid {
     origin: Option<[f64; 2]>,
 }
 
-/// The tags of a file, with scale and offset of a band; bands count from 0.
+/// The tags of a file, with scale, offset and unit of a band; bands count from 0.
 pub(crate) fn read(
     path: &Path,
     tiff: &mut Tiff,
@@ -63,9 +63,13 @@ pub(crate) fn read(
     let scale = scale(path, tiff, band)?;
     let keys = Keys::read(path, tiff)?;
     let of_crs = keys.short(VERTICAL_CRS).and_then(vertical_unit);
-    let of_heights = keys.length(path, VERTICAL_UNIT)?.or(of_crs);
+    let of_system = keys.length(path, VERTICAL_UNIT)?.or(of_crs);
+    let name = unit_name(path, tiff, band)?;
+    let of_band = name.as_deref().and_then(unit::metres);
+    let of_heights = of_band.or(of_system);
     let unit_m = of_heights.unwrap_or(1.0);
     let (mut notes, mut warnings) = (Vec::new(), Vec::new());
+    warnings.extend(name.and_then(|name| unit::warning(&name, of_band, of_system)));
     let Some(grid) = grid(path, tiff)? else {
         let cell = Cell::Unknown;
         return Ok(Geo { cell, unit_m, scale, nodata, georeference: None, notes, warnings });
@@ -138,9 +142,9 @@ pub(crate) fn read(
 fn vertical_unit(crs: u16) -> Option<f64> {
     match crs {
         // US survey feet: NGVD29, NAVD88 and mean sea level, heights and depths.
-        5702 | 6358 | 6359 | 6360 | 8052 | 8053 => Some(1200.0 / 3937.0),
+        5702 | 6358 | 6359 | 6360 | 8052 | 8053 => Some(unit::US_SURVEY_FOOT_M),
         // Feet: the Cayman Islands, mean sea level, NAVD88, and the well datum of Kuwait.
-        6130..=6132 | 8050 | 8051 | 8228 | 5614 => Some(0.3048),
+        6130..=6132 | 8050 | 8051 | 8228 | 5614 => Some(unit::FOOT_M),
         // British feet of 1936: Poolbeg.
         5754 => Some(0.304_800_749_1),
         1..32767 => Some(1.0),
@@ -216,7 +220,7 @@ fn metadata(path: &Path, tiff: &mut Tiff) -> Result<String> {
     Ok(value.and_then(|value| value.into_string().ok()).unwrap_or_default())
 }
 
-/// What the metadata states of a band in a role: "scale", "offset", "description".
+/// What the metadata states of a band in a role: "scale", "offset", "unittype", "description".
 fn item(metadata: &str, band: usize, role: &str) -> Option<String> {
     let [role, sample] = [format!("role=\"{role}\""), format!("sample=\"{band}\"")];
     let is_it = |item: &&str| {
@@ -234,13 +238,18 @@ fn item(metadata: &str, band: usize, role: &str) -> Option<String> {
     Some(text)
 }
 
+/// A text of a file, shortened for messages.
+fn shortened(text: &str) -> String {
+    text.chars().filter(|c| !c.is_control()).take(24).collect()
+}
+
 /// Scale and offset of a band.
 pub(crate) fn scale(path: &Path, tiff: &mut Tiff, band: usize) -> Result<[f64; 2]> {
     let text = metadata(path, tiff)?;
     let number = |role: &str, default: f64| {
         let Some(body) = item(&text, band, role) else { return Ok(default) };
         let number = body.parse().ok().filter(|n: &f64| n.is_finite());
-        let short: String = body.chars().filter(|c| !c.is_control()).take(24).collect();
+        let short = shortened(&body);
         let expected = "numbers for scale and offset";
         number.ok_or_else(|| wrong(path, GDAL_METADATA, format!("{role} {short:?}"), expected))
     };
@@ -252,13 +261,19 @@ pub(crate) fn band_name(path: &Path, tiff: &mut Tiff, band: usize) -> Result<Opt
     Ok(item(&metadata(path, tiff)?, band, "description").filter(|name| !name.is_empty()))
 }
 
+/// The name of a band's unit, `None` where the file states none.
+fn unit_name(path: &Path, tiff: &mut Tiff, band: usize) -> Result<Option<String>> {
+    let name = item(&metadata(path, tiff)?, band, "unittype");
+    Ok(name.map(|name| shortened(&name)).filter(|name| !name.is_empty()))
+}
+
 pub(crate) fn nodata(path: &Path, tiff: &mut Tiff) -> Result<Option<f64>> {
     let expected = "a number, or nan";
     let wrong = |found: String| wrong(path, GDAL_NODATA, found, expected);
     let Some(value) = find(path, tiff, GDAL_NODATA, expected)? else { return Ok(None) };
     let text = value.into_string().map_err(|e| wrong(open::complaint(e)))?;
     let text = text.trim_matches(|c: char| c.is_whitespace() || c == '\0');
-    let short: String = text.chars().filter(|c| !c.is_control()).take(24).collect();
+    let short = shortened(text);
     text.parse().map(Some).map_err(|_| wrong(format!("{short:?}")))
 }
 
@@ -319,8 +334,8 @@ impl Keys {
         let metres = match self.short(key) {
             None => return Ok(None),
             Some(9001) => Some(1.0),
-            Some(9002) => Some(0.3048),
-            Some(9003) => Some(1200.0 / 3937.0),
+            Some(9002) => Some(unit::FOOT_M),
+            Some(9003) => Some(unit::US_SURVEY_FOOT_M),
             Some(9036) => Some(1000.0),
             Some(32767) if key == LINEAR_UNIT => user_size(),
             // Undefined.

@@ -156,6 +156,54 @@ fn gdal_scales_and_offsets_are_those_of_the_band() {
     }
 }
 
+/// The unit of a band changes no other band, and comes before that of the vertical system.
+#[test]
+#[ignore = "needs GDAL: Debian's gdal-bin"]
+fn gdal_units_are_those_of_the_band() {
+    let folder = Folder::new();
+    for (name, salt) in [("1.asc", 0), ("2.asc", 1)] {
+        folder.write(name, grid([9, 7], [500_000.0, 4_900_000.0], 30.0, salt).as_bytes());
+    }
+    tool(&folder, "gdalbuildvrt -q -separate plain.vrt 1.asc 2.asc");
+    let plain = std::fs::read_to_string(folder.path("plain.vrt")).unwrap();
+    let differs = "the band's unit is ft, but that of the vertical system is 1 m";
+    for (unit, system, unit_m, said) in [
+        ("ft", "EPSG:32618", 0.3048, ""),
+        ("US survey foot", "EPSG:32618", 1200.0 / 3937.0, ""),
+        ("metre", "EPSG:32618", 1.0, ""),
+        ("degrees", "EPSG:32618", 1.0, "the band's unit \"degrees\" is not known"),
+        ("ft", "EPSG:32618+5703", 0.3048, differs),
+    ] {
+        let mut text = String::new();
+        for line in plain.lines() {
+            text += line;
+            if line.contains("<VRTRasterBand") && line.contains("band=\"2\"") {
+                text += &format!("<UnitType>{unit}</UnitType>");
+            }
+            text.push('\n');
+        }
+        folder.write("two.vrt", text.as_bytes());
+        tool(&folder, &format!("gdal_translate -q -ot Float32 -a_srs {system} two.vrt two.tif"));
+        let path = folder.path("two.tif");
+        assert_eq!(gdalinfo(&path)["bands"][1]["unit"], unit, "{system}");
+        for band in [1, 2] {
+            let unit_m = if band == 2 { unit_m } else { 1.0 };
+            let options = HeightOptions { band: Some(band), ..Default::default() };
+            let read = read_field(&path, &options).unwrap();
+            let expected = gdal_values(&folder.path(&format!("{band}.asc")));
+            for (height, stored) in absolute(&read.field).iter().zip(&expected) {
+                let error = f64::from(*height) - f64::from(*stored) * unit_m;
+                // An offset from the median and a sum, each rounded to f32, of up to 250.
+                assert!(error.abs() < 250.0 * f64::from(f32::EPSILON), "{unit} {band}: {height}");
+            }
+            let said = if band == 2 { said } else { "" };
+            let warnings = read.warnings.join("\n");
+            assert_eq!(warnings.is_empty(), said.is_empty(), "{unit} {band}: {warnings}");
+            assert!(warnings.contains(said), "{unit} {band}: {warnings}");
+        }
+    }
+}
+
 /// Larger tiles that reach beyond the image, of which `tiff` 0.11 cannot read some (its issue 395).
 #[test]
 #[ignore = "needs GDAL: Debian's gdal-bin"]

@@ -23,8 +23,8 @@ const ROWS: [Row; 7] = [
         heights: "a band of 8- to 64-bit integers or 16- to 64-bit floats, with GDAL's scale and offset; strips or tiles; \
                   uncompressed, LZW, DEFLATE, Zstandard or PackBits, any predictor; BigTIFF",
         nodata: "GDAL's tag",
-        unit: "vertical unit, or feet by vertical EPSG code",
-        compared: "values, bands, no data, position, feet, Web Mercator, grid north",
+        unit: "unit of the band, vertical unit, or feet by vertical EPSG code",
+        compared: "values, bands and their units, no data, position, feet, Web Mercator, grid north",
     },
     Row {
         file: "`.hgt`",

@@ -1,0 +1,79 @@
+//! What readers note and warn of, and the units by which they convert heights.
+
+use crate::absolute;
+use crate::formats::*;
+use ridgelight_io::{FieldFile, HeightOptions, read_field};
+use tiff::encoder::{Compression, colortype};
+use tiff::tags::Predictor;
+
+/// A north-up grid with cells of 30 x 20 units.
+const SCALE: (u16, Tag) = (33550, Tag::Doubles(&[30.0, 20.0, 0.0]));
+const TIE: (u16, Tag) = (33922, Tag::Doubles(&[0.0, 0.0, 0.0, 500_000.0, 4_900_000.0, 0.0]));
+/// The directory of GeoKeys.
+const KEYS: u16 = 34735;
+/// GDAL's metadata.
+const METADATA: u16 = 42112;
+
+/// A TIFF of the heights with tags.
+fn with(tags: &[(u16, Tag)]) -> Vec<u8> {
+    let (none, plain) = (Predictor::None, Compression::Uncompressed);
+    tiff::<colortype::Gray32Float>(4, 3, &HEIGHTS.map(f32::from), plain, none, tags)
+}
+
+fn item(name: &str, text: &str) -> String {
+    let role = name.to_lowercase();
+    format!(
+        "<GDALMetadata><Item name=\"{name}\" sample=\"0\" role=\"{role}\">{text}</Item></GDALMetadata>"
+    )
+}
+
+fn read_bytes(bytes: &[u8], name: &str, options: &HeightOptions) -> FieldFile {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join(name);
+    std::fs::write(&path, bytes).unwrap();
+    read_field(&path, options).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn read(bytes: &[u8]) -> FieldFile {
+    read_bytes(bytes, "a.tif", &HeightOptions::default())
+}
+
+/// The unit of the band comes before that of the vertical system; a name that is not known is in a warning.
+#[test]
+fn the_unit_of_the_band_converts_heights() {
+    const UTM: [u16; 12] = [1, 1, 0, 2, 1024, 0, 1, 1, 3072, 0, 1, 32618];
+    let survey = 1200.0 / 3937.0;
+    let differs =
+        "the band's unit is ft, but that of the vertical system is 1 m: heights are read in ft";
+    let no_unit = "the band's unit \"degrees\" is not known: heights are read as metres";
+    let of_system = format!("heights are read in units of {survey} m, that of the vertical system");
+    for (name, vertical, unit, said) in [
+        ("ft", None, 0.3048, ""),
+        ("US survey foot", None, survey, ""),
+        ("m", None, 1.0, ""),
+        ("", None, 1.0, ""),
+        ("", Some(6360), survey, ""),
+        ("degrees", None, 1.0, no_unit),
+        ("ft", Some(5703), 0.3048, differs),
+        ("ft", Some(8050), 0.3048, ""),
+        ("degrees", Some(6360), survey, of_system.as_str()),
+    ] {
+        let mut keys = UTM.to_vec();
+        if let Some(code) = vertical {
+            keys[3] = 3;
+            keys.extend([4096, 0, 1, code]);
+        }
+        let text = item("UNITTYPE", name);
+        let read =
+            read(&with(&[SCALE, TIE, (KEYS, Tag::Shorts(&keys)), (METADATA, Tag::Text(&text))]));
+        // A height of 100, whose offset from the median is rounded to f32.
+        let height = absolute(&read.field)[8];
+        let error = (height - 100.0 * unit).abs();
+        assert!(error < 100.0 * f64::from(f32::EPSILON), "{name} {vertical:?}: {height}");
+        let [notes, warnings] = [read.notes, read.warnings].map(|all| all.join("\n"));
+        let note = format!("heights are in units of {unit} m and become metres");
+        assert_eq!(notes.contains(&note), unit != 1.0, "{name} {vertical:?}: {notes}");
+        assert_eq!(warnings.is_empty(), said.is_empty(), "{name} {vertical:?}: {warnings}");
+        assert!(warnings.contains(said), "{name} {vertical:?}: {warnings}");
+    }
+}
