@@ -77,3 +77,28 @@ fn the_unit_of_the_band_converts_heights() {
         assert!(warnings.contains(said), "{name} {vertical:?}: {warnings}");
     }
 }
+
+/// Heights without a unit over cells in feet: the warning names both units, unless the caller knows that of the heights.
+#[test]
+fn a_known_unit_of_heights_needs_no_warning() {
+    let us = "heights are read as metres; the cells are in US survey feet. If the heights are too, use \
+              `z_scale 0.3048006096012192`; if they are metres, `z_scale 1`";
+    let feet = "heights are read as metres; the cells are in feet. If the heights are too, use \
+                `z_scale 0.3048`; if they are metres, `z_scale 1`";
+    for (unit, said) in [(9003, us), (9002, feet)] {
+        let keys = [1, 1, 0, 2, 1024, 0, 1, 1, 3076, 0, 1, unit];
+        let bytes = with(&[SCALE, TIE, (KEYS, Tag::Shorts(&keys))]);
+        assert_eq!(read(&bytes).warnings, [said]);
+        let known = HeightOptions { is_unit_known: true, ..HeightOptions::default() };
+        assert_eq!(read_bytes(&bytes, "a.tif", &known).warnings, Vec::<String>::new());
+        // A band in feet states its unit; one in degrees gets the warning of its name alone.
+        let [ft, other] = ["ft", "degrees"].map(|name| {
+            let text = item("UNITTYPE", name);
+            let tags = [SCALE, TIE, (KEYS, Tag::Shorts(&keys)), (METADATA, Tag::Text(&text))];
+            let bytes = with(&tags);
+            (read(&bytes).warnings, read_bytes(&bytes, "a.tif", &known).warnings)
+        });
+        assert_eq!([ft.0.len(), ft.1.len(), other.0.len(), other.1.len()], [0, 0, 1, 0]);
+        assert!(other.0[0].contains("\"degrees\" is not known"), "{:?}", other.0);
+    }
+}

@@ -285,9 +285,8 @@ pub fn sky_view_map(args: &SkyViewArgs) -> Result<Outcome> {
 
 pub fn openness(OpennessArgs { of: args, negative }: &OpennessArgs) -> Result<Outcome> {
     let quality = args.quality.quality()?;
-    let sign = if *negative { -1.0 } else { 1.0 };
     let MapArgs { surface, global, .. } = &args.map;
-    let surface = FieldArgs { z_scale: sign * surface.z_scale, ..*surface };
+    let surface = FieldArgs { is_negated: *negative, ..*surface };
     let job = Job::new(&args.map, &surface, setup::georeferenced)?;
     let (field, border) = (&job.field, setup::border(&surface));
     setup::check_plan(global, |limits| {

@@ -131,13 +131,14 @@ pub fn read(paths: &[PathBuf], surface: &FieldArgs) -> Result<files::FieldFile> 
 
 /// The same, without the note for commands that depend on distant ground.
 fn read_file(paths: &[PathBuf], surface: &FieldArgs) -> Result<files::FieldFile> {
-    if !surface.z_scale.is_finite() || surface.z_scale == 0.0 {
+    if let Some(factor) = surface.z_scale.filter(|factor| !factor.is_finite() || *factor == 0.0) {
         let expected = "a finite number other than 0";
-        return Err(Error::setting("--z-scale", surface.z_scale.to_string(), expected));
+        return Err(Error::setting("--z-scale", factor.to_string(), expected));
     }
     let options = HeightOptions {
         cell_m: surface.cell,
-        z_scale: surface.z_scale,
+        z_scale: surface.factor(),
+        is_unit_known: surface.z_scale.is_some(),
         nodata: surface.nodata,
         band: surface.band,
         bbox: surface.bbox,

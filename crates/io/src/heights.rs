@@ -33,6 +33,9 @@ pub struct HeightOptions {
     pub cell_m: Option<[f64; 2]>,
     /// Factor on every height; any finite number, 1 by default.
     pub z_scale: f64,
+    /// Whether `z_scale` was chosen for the unit of the heights: leaves out warnings that the file states no unit, or one that is
+    /// not known.
+    pub is_unit_known: bool,
     /// The file's "no data" value, before `z_scale`; NaN is allowed. Overrides the file's own.
     pub nodata: Option<f64>,
     /// The band of a TIFF or the plane of an NPY with three dimensions that holds the heights, from 1
@@ -45,7 +48,14 @@ pub struct HeightOptions {
 
 impl Default for HeightOptions {
     fn default() -> Self {
-        Self { cell_m: None, z_scale: 1.0, nodata: None, band: None, bbox: None }
+        Self {
+            cell_m: None,
+            z_scale: 1.0,
+            is_unit_known: false,
+            nodata: None,
+            band: None,
+            bbox: None,
+        }
     }
 }
 

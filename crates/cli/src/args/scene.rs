@@ -146,19 +146,21 @@ pub struct FieldArgs {
     /// Spacing of columns, and of rows where it differs, in the unit of the heights. Overrides the file's.
     #[arg(long, value_name = "X[,Y]", value_parser = cell, allow_negative_numbers = true, help_heading = "Input")]
     pub cell: Option<[f64; 2]>,
-    /// Multiply heights by this factor; not 0
+    /// Multiply heights by this factor; not 0. Default 1
     ///
     /// PNG values are metres. For a 16-bit PNG that spans a height range R, use R/65535.
     #[arg(
         long,
         value_name = "S",
-        default_value_t = 1.0,
         value_parser = number::<f64>("a finite number other than 0"),
         allow_negative_numbers = true,
         hide_short_help = true,
         help_heading = "Input"
     )]
-    pub z_scale: f64,
+    pub z_scale: Option<f64>,
+    /// Whether heights become depths.
+    #[arg(skip)]
+    pub is_negated: bool,
     /// Height that marks no data, or nan. Default the file's
     #[arg(
         long,
@@ -196,6 +198,14 @@ pub struct FieldArgs {
     /// Surface beyond the edge of the field
     #[arg(long, default_value = "plane", hide_short_help = true)]
     pub border: BorderName,
+}
+
+impl FieldArgs {
+    /// The factor on heights: --z-scale, or its default.
+    pub fn factor(&self) -> f64 {
+        let sign = if self.is_negated { -1.0 } else { 1.0 };
+        sign * self.z_scale.unwrap_or(1.0)
+    }
 }
 
 #[derive(Clone, Copy, ValueEnum)]

@@ -166,7 +166,7 @@ fn say_start(args: &InfoArgs, field: &HeightField, at: Option<&Georeference>) ->
     if let Some([x, y]) = cell {
         command += &format!(" --cell {x},{y}");
     }
-    if z_scale != 1.0 {
+    if let Some(z_scale) = z_scale {
         command += &format!(" --z-scale {z_scale}");
     }
     if let Some(nodata) = nodata {

@@ -43,7 +43,7 @@ pub fn asked(
     let numbers = |c: &[f32; 3]| format!("{},{},{}", c[0], c[1], c[2]);
     let mut all = vec![
         ("input".to_owned(), input.names()),
-        ("z_scale".to_owned(), surface.z_scale.to_string()),
+        ("z_scale".to_owned(), surface.factor().to_string()),
     ];
     if let Some(nodata) = surface.nodata {
         all.push(("nodata".to_owned(), nodata.to_string()));

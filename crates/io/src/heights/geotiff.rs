@@ -34,6 +34,8 @@ pub(crate) struct Geo {
     pub cell: Cell,
     /// Metres in a unit of height.
     pub unit_m: f64,
+    /// What is assumed of a unit that is not stated or not known.
+    pub unit_warning: Option<String>,
     /// A height is the value times the first, plus the second.
     pub scale: [f64; 2],
     pub nodata: Option<f64>,
@@ -69,10 +71,23 @@ pub(crate) fn read(
     let of_heights = of_band.or(of_system);
     let unit_m = of_heights.unwrap_or(1.0);
     let (mut notes, mut warnings) = (Vec::new(), Vec::new());
-    warnings.extend(name.and_then(|name| unit::warning(&name, of_band, of_system)));
+    let about_name = name.and_then(|name| unit::warning(&name, of_band, of_system));
+    let mut unit_warning = None;
+    match of_heights {
+        Some(_) => warnings.extend(about_name),
+        None => unit_warning = about_name,
+    }
     let Some(grid) = grid(path, tiff)? else {
-        let cell = Cell::Unknown;
-        return Ok(Geo { cell, unit_m, scale, nodata, georeference: None, notes, warnings });
+        return Ok(Geo {
+            cell: Cell::Unknown,
+            unit_m,
+            unit_warning,
+            scale,
+            nodata,
+            georeference: None,
+            notes,
+            warnings,
+        });
     };
     // Raster position (0, 0) is the corner of the first pixel, or its centre (RasterType 2).
     let last = |n: usize| if keys.short(RASTER_TYPE) == Some(2) { n - 1 } else { n } as f64;
@@ -106,9 +121,7 @@ pub(crate) fn read(
             if unit != 1.0 {
                 notes.push(format!("cells are in units of {unit} m and become metres"));
                 if of_heights.is_none() {
-                    warnings.push(format!(
-                        "heights are read as metres, as the file states no unit; for the unit of its cells use `z_scale {unit}`"
-                    ));
+                    unit_warning.get_or_insert_with(|| unit::of_cells(unit));
                 }
             }
             Cell::Metres(grid.cell.map(|c| c * unit))
@@ -134,7 +147,7 @@ pub(crate) fn read(
     let georeference = grid
         .origin
         .map(|origin| Georeference::at_origin(origin, grid.cell, keys.copied(path, tiff)));
-    Ok(Geo { cell, unit_m, scale, nodata, georeference, notes, warnings })
+    Ok(Geo { cell, unit_m, unit_warning, scale, nodata, georeference, notes, warnings })
 }
 
 /// Metres in the unit of a vertical coordinate reference system of the EPSG registry (v10.076), `None` for private

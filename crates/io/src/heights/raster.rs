@@ -17,6 +17,8 @@ pub(crate) struct Raster {
     pub cell: Cell,
     /// Metres in the file's unit of height.
     pub unit_m: f64,
+    /// What is assumed of that unit, where the file does not state one that is known.
+    pub unit_warning: Option<String>,
     /// A height is the value times the first, plus the second.
     pub scale: [f64; 2],
     pub nodata: Option<f64>,
@@ -42,6 +44,7 @@ impl Raster {
             single: false,
             cell: Cell::Unknown,
             unit_m: 1.0,
+            unit_warning: None,
             scale: [1.0, 0.0],
             nodata: None,
             voids: None,
@@ -78,6 +81,8 @@ impl Raster {
             let unit_m = self.unit_m;
             self.notes.push(format!("heights are in units of {unit_m} m and become metres"));
         }
+        let unit_warning = self.unit_warning.take();
+        self.warnings.extend(unit_warning.filter(|_| !options.is_unit_known));
         if self.is_8_bit {
             let text = "heights are 8-bit integers, as in a picture: slopes have steps";
             self.warnings.push(text.to_owned());

@@ -273,6 +273,7 @@ pub(super) fn heights(
     let mut raster = Raster {
         cell: geo.cell,
         unit_m: geo.unit_m,
+        unit_warning: geo.unit_warning,
         scale: geo.scale,
         nodata: geo.nodata,
         is_8_bit,

@@ -32,6 +32,21 @@ pub(super) fn warning(name: &str, of_band: Option<f64>, of_system: Option<f64>) 
     }
 }
 
+/// The warning of heights without a unit over cells in another unit than metres.
+pub(super) fn of_cells(cell_m: f64) -> String {
+    let is_unit = |unit_m: f64| (cell_m / unit_m - 1.0).abs() < 1e-9;
+    let cells = if is_unit(FOOT_M) {
+        "feet".to_owned()
+    } else if is_unit(US_SURVEY_FOOT_M) {
+        "US survey feet".to_owned()
+    } else {
+        format!("units of {cell_m} m")
+    };
+    format!(
+        "heights are read as metres; the cells are in {cells}. If the heights are too, use `z_scale {cell_m}`; if they are metres, `z_scale 1`"
+    )
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -9,7 +9,7 @@ fn help_gives_units_and_defaults() {
     let folder = Folder::new();
     let shared: &[(&str, &[&str])] = &[
         ("--cell", &["metres", "Default the file's"]),
-        ("--z-scale", &["[default: 1]"]),
+        ("--z-scale", &["Default 1"]),
         ("--border", &["[default: plane]"]),
         ("--nodata", &["Default the file's"]),
         ("--method", &["[default: auto]", "pyramid"]),
@@ -94,7 +94,7 @@ fn help_gives_units_and_defaults() {
     ];
     let hillshade: &[(&str, &[&str])] = &[
         ("--sun", &["compass azimuth, elevation (degrees)", "[default: 315,45]"]),
-        ("--z-scale", &["[default: 1]"]),
+        ("--z-scale", &["Default 1"]),
     ];
     let shadow: &[(&str, &[&str])] =
         &[("--sun", &["compass azimuth, elevation, diameter (degrees)", "[default: 315,45]"])];

@@ -245,7 +245,13 @@ fn gdal_agrees_on_grid_north_and_on_feet() {
         );
         assert!(notes.contains(&note), "{code}: {note} is not in {notes}");
         assert_eq!(notes.contains("cells are in units of"), unit != 1.0, "{notes}");
-        assert_eq!(notes.contains("heights are read as metres"), unit != 1.0, "{notes}");
+        let cells = if code == 2263 { "US survey feet" } else { "feet" };
+        let unknown = format!(
+            "heights are read as metres; the cells are in {cells}. If the heights are too, use --z-scale {unit}; if they are metres, --z-scale 1"
+        );
+        assert_eq!(notes.contains(&unknown), unit != 1.0, "{notes}");
+        let known = succeeded(&folder, "info a.tif --z-scale 1").out;
+        assert!(!known.contains("heights are read as metres"), "{known}");
     }
 }
 
