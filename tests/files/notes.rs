@@ -2,7 +2,7 @@
 
 use crate::absolute;
 use crate::formats::*;
-use ridgelight_io::{FieldFile, HeightOptions, read_field};
+use ridgelight_io::{FieldFile, HeightOptions, read_field, read_mosaic};
 use tiff::encoder::{Compression, colortype};
 use tiff::tags::Predictor;
 
@@ -101,4 +101,36 @@ fn a_known_unit_of_heights_needs_no_warning() {
         assert_eq!([ft.0.len(), ft.1.len(), other.0.len(), other.1.len()], [0, 0, 1, 0]);
         assert!(other.0[0].contains("\"degrees\" is not known"), "{:?}", other.0);
     }
+}
+
+/// The no-data value of the file stays in the heights where another replaces it: the warning counts them.
+#[test]
+fn a_replaced_no_data_value_is_counted() {
+    let grid = |west: u32, heights: &str| {
+        format!(
+            "ncols 4\nnrows 1\nxllcorner {west}\nyllcorner 0\ncellsize 30\nnodata_value -32768\n{heights}"
+        )
+    };
+    let [one, two] = [(1000, "-32768 2 -9999 4"), (1120, "-32768 2 3 -32768")]
+        .map(|(west, heights)| grid(west, heights));
+    let of = |nodata| HeightOptions { nodata, ..HeightOptions::default() };
+    let warnings = |nodata| read_bytes(one.as_bytes(), "a.asc", &of(nodata)).warnings;
+    let once = "`nodata -9999` replaces the file's -32768, which 1 height has";
+    assert_eq!(warnings(Some(-9999.0)), [once]);
+    for nodata in [None, Some(-32768.0)] {
+        assert_eq!(warnings(nodata), Vec::<String>::new(), "{nodata:?}");
+    }
+    // Files of a mosaic count together.
+    let folder = tempfile::tempdir().unwrap();
+    let paths = [("one.asc", &one), ("two.asc", &two)].map(|(name, text)| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, text).unwrap();
+        path
+    });
+    let all = "`nodata -9999` replaces the file's -32768, which 3 heights have";
+    assert_eq!(read_mosaic(&paths, &of(Some(-9999.0))).unwrap().warnings, [all]);
+    assert_eq!(read_mosaic(&paths, &of(None)).unwrap().warnings, Vec::<String>::new());
+    // A file whose heights do not have its value.
+    let none = read_bytes(grid(1000, "1 2 3 -9999").as_bytes(), "a.asc", &of(Some(-9999.0)));
+    assert_eq!(none.warnings, Vec::<String>::new());
 }

@@ -36,7 +36,8 @@ pub struct HeightOptions {
     /// Whether `z_scale` was chosen for the unit of the heights: leaves out warnings that the file states no unit, or one that is
     /// not known.
     pub is_unit_known: bool,
-    /// The file's "no data" value, before `z_scale`; NaN is allowed. Overrides the file's own.
+    /// The file's "no data" value, before `z_scale`; NaN is allowed. Overrides the file's own, with a warning where heights
+    /// have that.
     pub nodata: Option<f64>,
     /// The band of a TIFF or the plane of an NPY with three dimensions that holds the heights, from 1
     /// on. By default the first band of a TIFF, with a note where there are more.
@@ -306,6 +307,7 @@ fn check(options: &HeightOptions) -> Result<()> {
 fn finish(path: &Path, mut raster: Raster, options: &HeightOptions) -> Result<FieldFile> {
     let mut notes = std::mem::take(&mut raster.notes);
     let mut warnings = std::mem::take(&mut raster.warnings);
+    warnings.extend(raster.nodata_warnings(options.nodata));
     let cell_m = match options.cell_m {
         Some(cell) => cell,
         None => {

@@ -92,6 +92,12 @@ pub(super) fn joined(tiles: Vec<Tile>, bbox: Option<[f64; 4]>) -> Result<Raster>
         if !is_used {
             continue;
         }
+        for (own, count) in raster.replaced {
+            match whole.replaced.iter_mut().find(|(mark, _)| mark.to_bits() == own.to_bits()) {
+                Some((_, sum)) => *sum += count,
+                None => whole.replaced.push((own, count)),
+            }
+        }
         for (all, own) in [(&mut whole.notes, raster.notes), (&mut whole.warnings, raster.warnings)]
         {
             for text in own {

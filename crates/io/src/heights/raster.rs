@@ -22,6 +22,8 @@ pub(crate) struct Raster {
     /// A height is the value times the first, plus the second.
     pub scale: [f64; 2],
     pub nodata: Option<f64>,
+    /// No-data values of the file that another one replaces, and how many heights have them.
+    pub replaced: Vec<(f64, usize)>,
     /// The file's own mask of voids, if any.
     pub voids: Option<Vec<bool>>,
     /// Where the grid lies, if the file states it.
@@ -47,6 +49,7 @@ impl Raster {
             unit_warning: None,
             scale: [1.0, 0.0],
             nodata: None,
+            replaced: Vec::new(),
             voids: None,
             georeference: None,
             is_8_bit: false,
@@ -59,14 +62,22 @@ impl Raster {
 impl Raster {
     /// Marks voids and converts heights to metres, with notes on what was converted and warnings of what may be wrong.
     pub fn interpret(&mut self, options: &HeightOptions) {
-        if let Some(nodata) = options.nodata.or(self.nodata.take()) {
+        let own = self.nodata.take();
+        if let Some(nodata) = options.nodata.or(own) {
             let single = self.single;
+            let is_marked = |value: f64, nodata: f64| {
+                value == nodata
+                    || value.is_nan() && nodata.is_nan()
+                    || single && nodata.is_finite() && value as f32 == nodata as f32
+            };
             let marks = self.voids.get_or_insert_with(|| vec![false; self.values.len()]);
             for (mark, value) in marks.iter_mut().zip(&self.values) {
-                *mark |= *value == nodata
-                    || value.is_nan() && nodata.is_nan()
-                    || single && nodata.is_finite() && *value as f32 == nodata as f32;
+                *mark |= is_marked(*value, nodata);
             }
+            let is_lost = |value: f64, own: f64| is_marked(value, own) && !is_marked(value, nodata);
+            let count = |own| self.values.iter().filter(|value| is_lost(**value, own)).count();
+            let lost = own.map(|own| (own, count(own)));
+            self.replaced.extend(lost.filter(|(_, count)| *count > 0));
         } else if let Some((mark, count)) = self.likely_voids() {
             let of = if count == 1 { "1 height is" } else { &format!("{count} heights are") };
             self.warnings.push(format!(
@@ -87,6 +98,23 @@ impl Raster {
             let text = "heights are 8-bit integers, as in a picture: slopes have steps";
             self.warnings.push(text.to_owned());
         }
+    }
+
+    /// Warnings of heights with a no-data value of the file that `nodata` replaces.
+    pub fn nodata_warnings(&self, nodata: Option<f64>) -> Vec<String> {
+        // All digits of the largest floats are no help.
+        let short = |value: f64| {
+            let is_long = value.is_finite() && value.abs() >= 1e15;
+            if is_long { format!("{value:e}") } else { value.to_string() }
+        };
+        let warning = |nodata: f64, own: f64, count: usize| {
+            let have = if count == 1 { "1 height has" } else { &format!("{count} heights have") };
+            format!("`nodata {}` replaces the file's {}, which {have}", short(nodata), short(own))
+        };
+        let all = nodata.into_iter().flat_map(|nodata| {
+            self.replaced.iter().map(move |(own, count)| (nodata, *own, *count))
+        });
+        all.map(|(nodata, own, count)| warning(nodata, own, count)).collect()
     }
 
     /// The lowest value and how often it occurs, where it is one of the usual marks of voids.

@@ -361,6 +361,12 @@ fn gdal_no_data_values_are_voids() {
         }
         // The value occurs.
         assert!(voids.contains(&true), "{name}");
+        // Another value makes heights of them, with a warning.
+        let count = voids.iter().filter(|is_void| **is_void).count();
+        let run = succeeded(&folder, &format!("info {name} --nodata 9"));
+        let said = format!("--nodata 9 replaces the file's 7, which {count} heights have");
+        assert!(run.out.contains(&said), "{name}: {}", run.out);
+        assert!(!succeeded(&folder, &format!("info {name} --nodata 7")).out.contains("replaces"));
     }
 }
 
