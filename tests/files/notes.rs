@@ -134,3 +134,24 @@ fn a_replaced_no_data_value_is_counted() {
     let none = read_bytes(grid(1000, "1 2 3 -9999").as_bytes(), "a.asc", &of(Some(-9999.0)));
     assert_eq!(none.warnings, Vec::<String>::new());
 }
+
+/// The note on cells names the unit that they come from, and whether the file states it.
+#[test]
+fn the_note_on_cells_names_their_unit() {
+    const SMALL: (u16, Tag) = (33550, Tag::Doubles(&[0.01, 0.01, 0.0]));
+    const NORTH: (u16, Tag) = (33922, Tag::Doubles(&[0.0, 0.0, 0.0, 10.0, 60.015, 0.0]));
+    let wgs84 = [1, 1, 0, 2, 1024, 0, 1, 2, 2048, 0, 1, 4326];
+    let mercator = [1, 1, 0, 2, 1024, 0, 1, 1, 3072, 0, 1, 3857];
+    let guess = "no reference system: read as degrees, as its numbers fit; otherwise use `cell_m`";
+    let degrees = "m, from degrees at latitude 60.00";
+    let metres = "m, from Web Mercator metres at latitude 40.";
+    for (bytes, said, is_guess) in [
+        (with(&[SMALL, NORTH]), degrees, true),
+        (with(&[SMALL, NORTH, (KEYS, Tag::Shorts(&wgs84))]), degrees, false),
+        (with(&[SCALE, TIE, (KEYS, Tag::Shorts(&mercator))]), metres, false),
+    ] {
+        let notes = read(&bytes).notes;
+        assert_eq!(notes.iter().filter(|note| note.contains(said)).count(), 1, "{notes:?}");
+        assert_eq!(notes.iter().any(|note| note == guess), is_guess, "{said}: {notes:?}");
+    }
+}

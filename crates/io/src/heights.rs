@@ -311,7 +311,7 @@ fn finish(path: &Path, mut raster: Raster, options: &HeightOptions) -> Result<Fi
     let cell_m = match options.cell_m {
         Some(cell) => cell,
         None => {
-            notes.extend(raster.cell_note());
+            notes.extend(raster.cell_notes());
             warnings.extend(raster.cell_warning());
             raster.cell.metres(path)?
         }

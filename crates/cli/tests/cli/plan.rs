@@ -170,7 +170,8 @@ fn info_states_what_a_file_holds() {
         "extent     10 to 10.06 east, -0.02 to 0.02 north",
         "heights    7.000 to 7.000 m",
         "voids      4.167 %",
-        "at latitude 0.00",
+        "m, from degrees at latitude 0.00",
+        "note       no reference system: read as degrees, as its numbers fit; otherwise use --cell",
         "note       4.167 % of the grid points are voids",
         "Start with: ridgelight render level.asc -o picture.png",
     ] {

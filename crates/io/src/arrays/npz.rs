@@ -76,7 +76,7 @@ pub(crate) fn heights(path: &Path, bytes: &[u8]) -> Result<Raster> {
     }
     let [x0, x1, y0, y1] = edges;
     raster.cell = if all && looks_like_degrees([x0, x1], [y0, y1], cell) {
-        Cell::Degrees { cell, latitude: (y0 + y1) / 2.0 }
+        Cell::Degrees { cell, latitude: (y0 + y1) / 2.0, is_guess: true }
     } else {
         Cell::Metres(cell)
     };

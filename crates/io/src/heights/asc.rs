@@ -64,7 +64,8 @@ impl Header {
         let Some([west, south]) = self.corner(cell) else { return Ok(Cell::Metres(cell)) };
         let (width, height) = (cols as f64 * cell[0], rows as f64 * cell[1]);
         if looks_like_degrees([west, west + width], [south, south + height], cell) {
-            return Ok(Cell::Degrees { cell, latitude: south + height / 2.0 });
+            let latitude = south + height / 2.0;
+            return Ok(Cell::Degrees { cell, latitude, is_guess: true });
         }
         Ok(Cell::Metres(cell))
     }
@@ -156,7 +157,8 @@ mod tests {
                     nodata_value nan 1 2 3 4 5 6 7 nan";
         let raster = parse(grid).unwrap();
         // Centre of the south row at 44, four rows of 1/16 degree: the middle is 1.5 rows up.
-        let expected = Cell::Degrees { cell: [0.03125, 0.0625], latitude: 44.09375 };
+        let cell = [0.03125, 0.0625];
+        let expected = Cell::Degrees { cell, latitude: 44.09375, is_guess: true };
         assert_eq!(raster.cell, expected);
         assert!(raster.nodata.unwrap().is_nan() && raster.values[7].is_nan());
 

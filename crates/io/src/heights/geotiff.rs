@@ -92,17 +92,17 @@ pub(crate) fn read(
     // Raster position (0, 0) is the corner of the first pixel, or its centre (RasterType 2).
     let last = |n: usize| if keys.short(RASTER_TYPE) == Some(2) { n - 1 } else { n } as f64;
     let span = [last(cols) * grid.cell[0], last(rows) * grid.cell[1]];
-    let degrees = || -> Result<Cell> {
+    let degrees = |is_guess: bool| -> Result<Cell> {
         let Some([_, north]) = grid.origin else {
             let expected = "the latitude of a grid in degrees";
             return Err(wrong(path, TIEPOINT, "nothing", expected));
         };
-        Ok(Cell::Degrees { cell: grid.cell, latitude: north - span[1] / 2.0 })
+        Ok(Cell::Degrees { cell: grid.cell, latitude: north - span[1] / 2.0, is_guess })
     };
     let cell = match keys.short(MODEL_TYPE) {
         Some(2) => match keys.short(ANGULAR_UNIT) {
             // EPSG: degree, degree (supplier to define representation).
-            None | Some(9102 | 9122) => degrees()?,
+            None | Some(9102 | 9122) => degrees(false)?,
             Some(unit) => {
                 let place = format!("GeoKey {ANGULAR_UNIT}");
                 return Err(Error::file(path, place, format!("unit {unit}"), "9102 (degree)"));
@@ -134,7 +134,7 @@ pub(crate) fn read(
                     grid.cell,
                 ) =>
             {
-                degrees()?
+                degrees(true)?
             }
             _ => Cell::Metres(grid.cell),
         },

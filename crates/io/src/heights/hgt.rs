@@ -29,7 +29,7 @@ pub(crate) fn heights(path: &Path, bytes: &[u8], cell_known: bool) -> Result<Ras
             let north_west = [west, south + 1.0];
             let keys = GeoKeys::wgs84_points();
             let at = Georeference::at_origin(north_west, cell, keys);
-            (Cell::Degrees { cell, latitude: south + 0.5 }, Some(at))
+            (Cell::Degrees { cell, latitude: south + 0.5, is_guess: false }, Some(at))
         }
         None if cell_known => (Cell::Unknown, None),
         None => {
@@ -87,7 +87,8 @@ mod tests {
             [1_i16, 2, 3, 4, -32768, 6, 7, 8, 9].iter().flat_map(|h| h.to_be_bytes()).collect();
         let raster = heights(Path::new("N44W072.hgt"), &bytes, false).unwrap();
         assert_eq!((raster.rows, raster.cols, raster.values[5]), (3, 3, 6.0));
-        assert_eq!(raster.cell, Cell::Degrees { cell: [0.5, 0.5], latitude: 44.5 });
+        let cell = Cell::Degrees { cell: [0.5, 0.5], latitude: 44.5, is_guess: false };
+        assert_eq!(raster.cell, cell);
         // The outermost grid points lie on the tile's edges, so pixels reach half a cell beyond.
         assert_eq!(raster.georeference.unwrap().corner, [-72.25, 45.25]);
         assert!(heights(Path::new("a.hgt"), &bytes, false).is_err());

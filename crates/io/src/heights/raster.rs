@@ -129,14 +129,25 @@ impl Raster {
     }
 
     /// How cells become metres.
-    pub fn cell_note(&self) -> Option<String> {
-        let (latitude, cell) = self.cell.degrees()?;
+    pub fn cell_notes(&self) -> Vec<String> {
+        let Some((latitude, cell)) = self.cell.degrees() else { return Vec::new() };
         let [east, north] = metres_a_degree(latitude);
-        Some(format!(
-            "cells of {:.1} x {:.1} m, from degrees or Mercator metres at latitude {latitude:.2}",
+        let (unit, is_guess) = match self.cell {
+            Cell::Mercator { .. } => ("Web Mercator metres", false),
+            Cell::Degrees { is_guess, .. } => ("degrees", is_guess),
+            Cell::Unknown | Cell::Metres(_) => return Vec::new(),
+        };
+        let mut notes = vec![format!(
+            "cells of {:.1} x {:.1} m, from {unit} at latitude {latitude:.2}",
             cell[0] * east,
             cell[1] * north
-        ))
+        )];
+        if is_guess {
+            let text =
+                "no reference system: read as degrees, as its numbers fit; otherwise use `cell_m`";
+            notes.push(text.to_owned());
+        }
+        notes
     }
 
     /// What is assumed of cells of unknown size.
@@ -153,8 +164,9 @@ pub(crate) enum Cell {
     Unknown,
     /// Columns and rows, metres.
     Metres([f64; 2]),
-    /// Columns and rows, degrees, on a field whose centre is at this latitude (degrees).
-    Degrees { cell: [f64; 2], latitude: f64 },
+    /// Columns and rows, degrees, on a field whose centre is at this latitude (degrees). A guess where the file has no
+    /// reference system.
+    Degrees { cell: [f64; 2], latitude: f64, is_guess: bool },
     /// Columns and rows in the metres of Web Mercator, on a field whose centre has this northing.
     Mercator { cell: [f64; 2], northing_m: f64 },
 }
@@ -166,7 +178,9 @@ impl Cell {
     /// The same cells in a field whose centre has this northing, in the file's unit.
     pub fn about(self, northing: f64) -> Self {
         match self {
-            Self::Degrees { cell, .. } => Self::Degrees { cell, latitude: northing },
+            Self::Degrees { cell, is_guess, .. } => {
+                Self::Degrees { cell, latitude: northing, is_guess }
+            }
             Self::Mercator { cell, .. } => Self::Mercator { cell, northing_m: northing },
             other => other,
         }
@@ -175,7 +189,7 @@ impl Cell {
     /// The latitude of the centre in degrees, and the cells in degrees.
     fn degrees(self) -> Option<(f64, [f64; 2])> {
         match self {
-            Self::Degrees { cell, latitude } => Some((latitude, cell)),
+            Self::Degrees { cell, latitude, .. } => Some((latitude, cell)),
             // y is R asinh(tan φ), so a step of y is one of φ times R / cos φ.
             Self::Mercator { cell, northing_m } => {
                 let latitude = (northing_m / EQUATOR_M).sinh().atan();

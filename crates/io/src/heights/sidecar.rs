@@ -115,13 +115,12 @@ impl Sidecar {
 fn cell(at: &Georeference, crs: Option<&Crs>, [rows, cols]: [usize; 2]) -> Cell {
     let [west, south, east, north] = at.extent(rows, cols);
     let middle = (south + north) / 2.0;
+    let degrees = |is_guess| Cell::Degrees { cell: at.cell, latitude: middle, is_guess };
     match crs {
-        Some(Crs { is_geographic: true, .. }) => Cell::Degrees { cell: at.cell, latitude: middle },
+        Some(Crs { is_geographic: true, .. }) => degrees(false),
         Some(Crs { code: Some(3857), .. }) => Cell::Mercator { cell: at.cell, northing_m: middle },
         Some(crs) => Cell::Metres(at.cell.map(|c| c * crs.unit_m)),
-        None if looks_like_degrees([west, east], [south, north], at.cell) => {
-            Cell::Degrees { cell: at.cell, latitude: middle }
-        }
+        None if looks_like_degrees([west, east], [south, north], at.cell) => degrees(true),
         None => Cell::Metres(at.cell),
     }
 }

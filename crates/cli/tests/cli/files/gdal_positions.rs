@@ -268,6 +268,8 @@ fn gdal_agrees_on_the_metres_of_web_mercator() {
         tool(&folder, "gdal_translate -q -a_srs EPSG:3857 a.asc a.tif");
         succeeded(&folder, "info a.tif --json i.json");
         let facts = crate::needs_vulkan::json(&folder.path("i.json"));
+        let notes = facts["notes"].to_string();
+        assert!(notes.contains("m, from Web Mercator metres at latitude "), "{notes}");
         let place = |x: f64, y: f64| degrees_of(3857, "EPSG:4326", [x, y]);
         let ([west, _], [east, _]) = (place(x - 15.0, y), place(x + 15.0, y));
         let ([_, south], [_, north]) = (place(x, y - 15.0), place(x, y + 15.0));

@@ -194,7 +194,7 @@ fn degrees_follow_the_part() {
     let mut whole = tile("a", [0, 0], [100, 2]).1;
     let at = whole.georeference.as_mut().unwrap();
     (at.corner, at.cell) = ([7.0, 60.0], [0.1, 0.1]);
-    whole.cell = Cell::Degrees { cell: [0.1, 0.1], latitude: 55.0 };
+    whole.cell = Cell::Degrees { cell: [0.1, 0.1], latitude: 55.0, is_guess: false };
     let part = cropped(Path::new("a"), whole, [7.0, 50.0, 8.0, 51.0]).unwrap();
     assert!(matches!(part.cell, Cell::Degrees { latitude, .. } if (latitude - 50.5).abs() < 1e-9));
 }
