@@ -155,3 +155,23 @@ fn the_note_on_cells_names_their_unit() {
         assert_eq!(notes.iter().any(|note| note == guess), is_guess, "{said}: {notes:?}");
     }
 }
+
+#[test]
+fn a_scale_and_an_offset_get_a_note() {
+    let of = |name, text| {
+        let text = item(name, text);
+        let read = read(&with(&[SCALE, TIE, (METADATA, Tag::Text(&text))]));
+        (absolute(&read.field)[8], read.notes)
+    };
+    let (height, notes) = of("OFFSET", "100");
+    assert_eq!(
+        (height, notes),
+        (200.0, vec!["scale 1 and offset 100 of the file are applied".to_owned()])
+    );
+    let (height, notes) = of("SCALE", "0.5");
+    assert_eq!(
+        (height, notes),
+        (50.0, vec!["scale 0.5 and offset 0 of the file are applied".to_owned()])
+    );
+    assert_eq!(of("OFFSET", "0").1, Vec::<String>::new());
+}

@@ -88,6 +88,10 @@ impl Raster {
         if factor != 1.0 || self.scale != [1.0, 0.0] {
             self.values.iter_mut().for_each(|v| *v = factor * (*v * scale + offset));
         }
+        if self.scale != [1.0, 0.0] {
+            let text = format!("scale {scale} and offset {offset} of the file are applied");
+            self.notes.push(text);
+        }
         if self.unit_m != 1.0 {
             let unit_m = self.unit_m;
             self.notes.push(format!("heights are in units of {unit_m} m and become metres"));

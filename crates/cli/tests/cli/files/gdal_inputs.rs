@@ -153,6 +153,8 @@ fn gdal_scales_and_offsets_are_those_of_the_band() {
         let facts = crate::needs_vulkan::json(&folder.path("i.json"));
         let ends = json!([offset + scale, offset + 250.0 * scale]);
         assert_eq!(facts["heights_m"], ends, "band {number}: {}", run.out);
+        let note = format!("scale {scale} and offset {offset} of the file are applied");
+        assert_eq!(run.out.contains(&note), scale != 1.0, "band {number}: {}", run.out);
     }
 }
 
