@@ -1,7 +1,7 @@
 //! What readers note and warn of, and the units by which they convert heights.
 
-use crate::absolute;
 use crate::formats::*;
+use crate::{absolute, one_sentence, parse};
 use ridgelight_io::{FieldFile, HeightOptions, read_field, read_mosaic};
 use tiff::encoder::{Compression, colortype};
 use tiff::tags::Predictor;
@@ -174,4 +174,24 @@ fn a_scale_and_an_offset_get_a_note() {
         (50.0, vec!["scale 0.5 and offset 0 of the file are applied".to_owned()])
     );
     assert_eq!(of("OFFSET", "0").1, Vec::<String>::new());
+}
+
+/// A file that is shorter than its uncompressed values is called cut off, with both sizes.
+#[test]
+fn the_sizes_of_a_file_that_is_cut_off_are_named() {
+    let mut bytes = with(&[]);
+    let directory = u32::from_le_bytes(bytes[4..8].try_into().unwrap()) as usize;
+    // 300 rows in one strip: ImageLength and RowsPerStrip, each a long.
+    for tag in [257_u16, 278] {
+        let mut all = (0..).map(|i| directory + 2 + 12 * i);
+        let at = all.find(|at| bytes[*at..at + 2] == tag.to_le_bytes()).unwrap();
+        let value = [&4_u16.to_le_bytes()[..], &1_u32.to_le_bytes(), &300_u32.to_le_bytes()];
+        bytes[at + 2..at + 12].copy_from_slice(&value.concat());
+    }
+    let error = parse("a.tif", &bytes).unwrap_err().to_string();
+    one_sentence(&error, "a.tif");
+    let held = bytes.len();
+    let said =
+        format!("found a file that is cut off: 4800 bytes of values in a file of {held} bytes");
+    assert!(error.contains(&said), "{error}");
 }

@@ -129,7 +129,8 @@ impl<'a> Image<'a> {
         let [lines, columns] = [0, 1].map(|axis| self.window[axis].len());
         size_of_part(path, "header", [lines, columns])?;
         let claimed = (lines * columns) as u64 * self.texel_bytes;
-        open::plausible(path, "header", claimed, self.bytes.len(), ratio(self.method))?;
+        let held = self.bytes.len();
+        let fits = open::plausible(path, "header", claimed, held, ratio(self.method));
         let wrong = |found: String| {
             Error::file(path, "image data", found, "values as the header describes")
         };
@@ -142,6 +143,17 @@ impl<'a> Image<'a> {
         let mut words = |tag: Tag| -> Result<Vec<u64>> {
             Ok(tiff.find_tag_unsigned_vec(tag).map_err(decoded)?.unwrap_or_default())
         };
+        // A whole file may be short where GDAL left out tiles, which have no bytes.
+        let is_cut = fits.is_err()
+            && self.method == 1
+            && words(lengths).is_ok_and(|lengths| !lengths.contains(&0));
+        if is_cut {
+            let found = format!(
+                "a file that is cut off: {claimed} bytes of values in a file of {held} bytes"
+            );
+            return Err(Error::file(path, "file size", found, "a whole TIFF"));
+        }
+        fits?;
         let (lengths, offsets) = (words(lengths)?, words(offsets)?);
         let format = words(Tag::SampleFormat)?.first().map_or(1, |f| *f as u16);
         let predictor = words(Tag::Predictor)?.first().map_or(1, |p| *p as u16);

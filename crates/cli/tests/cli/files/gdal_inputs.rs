@@ -338,6 +338,32 @@ fn gdal_unread_compressions_are_named() {
     assert_eq!(refused, 3);
 }
 
+/// A file that is cut off is called so, one without some of its tiles is not.
+#[test]
+#[ignore = "needs GDAL: Debian's gdal-bin"]
+fn gdal_files_that_are_cut_off_are_called_so() {
+    let folder = Folder::new();
+    folder.write("a.asc", grid([100, 60], [500_000.0, 4_900_000.0], 30.0, 0).as_bytes());
+    tool(&folder, "gdal_translate -q -ot Float32 a.asc whole.tif");
+    let whole = std::fs::read(folder.path("whole.tif")).unwrap();
+    folder.write("cut.tif", &whole[..10_000]);
+    // 100 x 60 values of 4 bytes.
+    let says =
+        ["file size: found a file that is cut off: 24000 bytes of values in a file of 10000"];
+    crate::refused(&folder, &[("plan cut.tif", 1, &says)]);
+    let mut text = "ncols 320\nnrows 320\ncellsize 30\nnodata_value -9\n".to_owned();
+    for i in 0..320 * 320 {
+        text += if i % 320 < 20 { "7 " } else { "-9 " };
+    }
+    folder.write("half.asc", text.as_bytes());
+    let tiles = "-co TILED=YES -co BLOCKXSIZE=16 -co BLOCKYSIZE=16 -co SPARSE_OK=TRUE";
+    tool(&folder, &format!("gdal_translate -q -ot Float32 {tiles} half.asc sparse.tif"));
+    let length = std::fs::metadata(folder.path("sparse.tif")).unwrap().len();
+    assert!(length < 4 * 320 * 320, "GDAL left out no tile");
+    let run = folder.run_str("plan sparse.tif");
+    assert!(!run.err.contains("cut off"), "{}", run.err);
+}
+
 /// The no-data value of a GeoTIFF or of a grid in text marks the grid points that have it in GDAL's reading.
 #[test]
 #[ignore = "needs GDAL: Debian's gdal-bin"]
