@@ -1,4 +1,4 @@
-//! Arrays that NumPy writes and reads.
+//! Files that Python libraries write and read: arrays by NumPy, textures by Pillow.
 
 use std::process::Command;
 
@@ -6,7 +6,7 @@ use ridgelight_io::{HeightOptions, read_field};
 
 use super::gdal_inputs::absolute;
 use super::geotiff::gdal_values;
-use crate::Folder;
+use crate::{Folder, formats};
 
 /// Runs a program in Debian's own Python, in the folder; returns what it prints.
 fn python(folder: &Folder, program: &str) -> String {
@@ -117,5 +117,62 @@ fn numpy_arrays_are_read() {
     read("planes.npy", Some(2));
     for name in ["stored.npz", "packed.npz"] {
         assert_eq!(read(name, None), [30.0, 20.0], "{name}");
+    }
+}
+
+/// Pillow finds the sides of a DDS, and in its first image the texels of the KTX2: plain, and in blocks that another decoder
+/// decodes. Behind the header are the images of all mip levels.
+#[test]
+#[ignore = "needs Pillow: Debian's python3-pil"]
+fn pillow_reads_the_texels_of_textures() {
+    const COLS: usize = 22;
+    const ROWS: usize = 13;
+    let folder = Folder::new();
+    let height = |row: usize, col: usize| ((row * row + 3 * col) % 11) as f32 * 0.4;
+    let heights: Vec<u8> =
+        (0..ROWS * COLS).flat_map(|i| height(i / COLS, i % COLS).to_le_bytes()).collect();
+    folder.write("field.npy", &formats::npy("<f4", false, &format!("({ROWS}, {COLS})"), &heights));
+    let words = "--what bent-normal --azimuths 4 --mips --format ktx2,dds";
+    // The numbers of DXGI_FORMAT_R8G8B8A8_UNORM and DXGI_FORMAT_BC7_UNORM.
+    for (name, more, format) in
+        [("plain", "--encoding bent-normal=unorm8-octahedral", 28), ("blocks", "--compress", 98)]
+    {
+        let run = folder.run_str(&format!("bake field.npy -o {name} {words} {more}"));
+        assert_eq!(run.status, Some(0), "{name}: {}", run.err);
+        let program = format!(
+            "from PIL import Image\n\
+            image = Image.open('{name}/bent_normal.dds')\n\
+            open('texels', 'wb').write(image.tobytes())\n\
+            print(image.format, image.mode, *image.size)\n"
+        );
+        assert_eq!(python(&folder, &program), format!("DDS RGBA {COLS} {ROWS}\n"), "{name}");
+        let found = std::fs::read(folder.path("texels")).unwrap();
+        let read =
+            |end: &str| std::fs::read(folder.path(&format!("{name}/bent_normal.{end}"))).unwrap();
+        let reader = ktx2::Reader::new(read("ktx2")).unwrap();
+        let levels: Vec<Vec<u8>> = reader.levels().map(|level| level.data.to_vec()).collect();
+        let texels = if name == "plain" {
+            levels[0].clone()
+        } else {
+            let mut words = vec![0_u32; ROWS * COLS];
+            texture2ddecoder::decode_bc7(&levels[0], COLS, ROWS, &mut words).unwrap();
+            // Blue, green, red and alpha from the lowest byte on.
+            let rgba = |word: &u32| {
+                let [b, g, r, a] = word.to_le_bytes();
+                [r, g, b, a]
+            };
+            words.iter().flat_map(rgba).collect()
+        };
+        assert!(found == texels, "{name}");
+        assert!(found.chunks_exact(4).any(|texel| texel != &found[..4]), "{name}: texels differ");
+
+        // DDS_HEADER and DDS_HEADER_DXT10 in Microsoft's documentation: bytes of the header, height, width, mip levels;
+        // format, a texture of two dimensions (3), layers.
+        let dds = read("dds");
+        let word = |at: usize| u32::from_le_bytes(dds[at..at + 4].try_into().unwrap());
+        let header = [4, 12, 16, 28, 128, 132, 140].map(word);
+        assert_eq!(header, [124, ROWS as u32, COLS as u32, 5, format, 3, 1], "{name}");
+        assert_eq!((&dds[..4], &dds[84..88]), (&b"DDS "[..], &b"DX10"[..]), "{name}");
+        assert!(dds[148..] == levels.concat(), "{name}");
     }
 }
