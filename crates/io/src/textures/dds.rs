@@ -2,7 +2,10 @@
 
 use std::path::Path;
 
-use ddsfile::{AlphaMode, D3D10ResourceDimension, DxgiFormat, Header, Header10};
+use ddsfile::{
+    AlphaMode, D3D10ResourceDimension, DxgiFormat, FourCC, Header, Header10, PixelFormat,
+    PixelFormatFlags,
+};
 use ridgelight::{Error, Result};
 
 use super::ktx2::{level_size, most_levels};
@@ -84,10 +87,17 @@ impl DdsWriter {
         let images = (0..levels).map(|level| texels.image_bytes(level_size(size, level)));
         let left = images.sum::<Option<u64>>().and_then(|n| n.checked_mul(layers.into()));
         let left = left.ok_or_else(too_large)?;
-        let header =
-            Header::new_dxgi(rows, cols, None, format, Some(levels as u32), Some(layers), None);
         let unexpected =
             |error: ddsfile::Error| Error::setting("texels", error.to_string(), "a DXGI format");
+        let levels = Some(levels as u32);
+        let mut header = Header::new_dxgi(rows, cols, None, format, levels, Some(layers), None)
+            .map_err(unexpected)?;
+        // The crate also marks masks of red, green and blue as valid, which are 0. Beside DX10 only its code is valid.
+        header.spf = PixelFormat {
+            flags: PixelFormatFlags::FOURCC,
+            fourcc: Some(FourCC(FourCC::DX10)),
+            ..PixelFormat::default()
+        };
         let header10 = Header10::new(
             format,
             false,
@@ -96,7 +106,7 @@ impl DdsWriter {
             AlphaMode::Custom,
         );
         let mut head = b"DDS ".to_vec();
-        header.map_err(unexpected)?.write(&mut head).map_err(unexpected)?;
+        header.write(&mut head).map_err(unexpected)?;
         header10.write(&mut head).map_err(unexpected)?;
         let mut file = Temporary::create(path)?;
         file.write(&head)?;
