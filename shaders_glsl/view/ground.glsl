@@ -3,6 +3,9 @@
 
 #ifdef PLINTH
 layout(push_constant) uniform PlinthDrawPush {
+#else
+layout(push_constant) uniform TerrainDrawPush {
+#endif
     // Columns of the matrix from (columns, rows, metres) relative to the origin to clip coordinates.
     vec4 clip_per_col;
     vec4 clip_per_row;
@@ -14,27 +17,15 @@ layout(push_constant) uniform PlinthDrawPush {
     int cols;
     int rows;
     int mesh_step;
+#ifdef PLINTH
     float base_m;
     float base_tone;
     // North, east, south, west. Tones are shares of the ground's mean luminance, negative on faces turned away.
     vec4 wall_tones;
-};
 #else
-layout(push_constant) uniform TerrainDrawPush {
-    // Columns of the matrix from (columns, rows, metres) relative to the origin to clip coordinates.
-    vec4 clip_per_col;
-    vec4 clip_per_row;
-    vec4 clip_per_metre;
-    vec4 clip_at_origin;
-    int origin_col;
-    int origin_row;
-    float origin_m;
-    int cols;
-    int rows;
-    int mesh_step;
     int tiles_across;
-};
 #endif
+};
 
 // The picture position of a grid point at a height.
 //
