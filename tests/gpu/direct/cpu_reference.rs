@@ -384,19 +384,13 @@ pub(crate) fn pictures() -> Vec<Case> {
             true,
             false,
         ),
-        Case {
-            wanted: Wanted::Picture(Picture {
-                eye_m: Some([30.0, -40.0, 960.0]),
-                ..Picture::default()
-            }),
-            ..picture(
-                "a narrow lobe under key lights, with an eye",
-                under_keys(Border::Plane, one_phong(1000.0)),
-                quality,
-                false,
-                false,
-            )
-        },
+        with_an_eye(picture(
+            "a narrow lobe under key lights, with an eye",
+            under_keys(Border::Plane, one_phong(1000.0)),
+            quality,
+            false,
+            false,
+        )),
         picture(
             "lobes of a map under key lights, periodic",
             under_keys(Border::Periodic, phongs),
@@ -404,19 +398,13 @@ pub(crate) fn pictures() -> Vec<Case> {
             false,
             false,
         ),
-        Case {
-            wanted: Wanted::Picture(Picture {
-                eye_m: Some([30.0, -40.0, 960.0]),
-                ..Picture::default()
-            }),
-            ..picture(
-                "a lobe under sphere lights, with an eye",
-                under_spheres(one_phong(20.0)),
-                quality,
-                false,
-                false,
-            )
-        },
+        with_an_eye(picture(
+            "a lobe under sphere lights, with an eye",
+            under_spheres(one_phong(20.0)),
+            quality,
+            false,
+            false,
+        )),
         picture(
             "lobes of a map under sphere lights",
             under_spheres(map_of_23),
