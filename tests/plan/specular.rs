@@ -9,15 +9,20 @@ use ridgelight::scene::{
 
 const SIDE: usize = 128;
 
-/// Two bounces of a grey surface under a sky.
-fn planned(specular: BounceSpecular, sh_order: u32) -> Plan {
+/// A grey surface with specular under a sky.
+fn grey() -> Scene {
     let surface = Surface {
         albedo: Albedo::Constant([0.3; 3]),
         border: Border::Plane,
         specular: Some(Specular::Constant(PhongSpecular { exponent: 5.0, scale: 0.5 })),
     };
     let lights = Lights { sky: Some([1.0; 3]), ..Lights::default() };
-    let scene = Scene { field: fractal(SIDE, 1).expect("a field"), surface, lights };
+    Scene { field: fractal(SIDE, 1).expect("a field"), surface, lights }
+}
+
+/// Two bounces on that surface.
+fn planned(specular: BounceSpecular, sh_order: u32) -> Plan {
+    let scene = grey();
     let engine = BounceEngine::Pyramid;
     let bounces = Bounces { count: 2, engine, cutoff: 0.0, specular, ..Bounces::default() };
     let quality =
@@ -30,13 +35,7 @@ fn planned(specular: BounceSpecular, sh_order: u32) -> Plan {
 /// number without an eye, without bounces or without specular.
 #[test]
 fn light_towards_the_zenith_is_no_view_from_an_eye() {
-    let surface = Surface {
-        albedo: Albedo::Constant([0.3; 3]),
-        border: Border::Plane,
-        specular: Some(Specular::Constant(PhongSpecular { exponent: 5.0, scale: 0.5 })),
-    };
-    let lights = Lights { sky: Some([1.0; 3]), ..Lights::default() };
-    let scene = Scene { field: fractal(SIDE, 1).expect("a field"), surface, lights };
+    let scene = grey();
     let mut diffuse = scene.clone();
     diffuse.surface.specular = None;
     let planned = |scene: &Scene, specular, count, eye_m| {
