@@ -50,9 +50,9 @@ fn settings(part: Part) -> (Vec<Quality>, Quality) {
 /// Relative RMSE of each setting against the part's reference.
 fn measure(gpu: &mut Headless, scene: &Scene, part: Part) -> Result<Vec<(Quality, f64)>> {
     let (all, reference) = settings(part);
-    let reference = judged(gpu, scene, &reference, 0)?.planes.concat();
+    let reference = judged(gpu, scene, &reference)?.planes.concat();
     let of = |quality| {
-        let planes = judged(gpu, scene, &quality, 0)?.planes.concat();
+        let planes = judged(gpu, scene, &quality)?.planes.concat();
         let error = ImageError::of(&planes, &reference, scene.field.cols())?;
         Ok((quality, error.relative_rmse))
     };

@@ -15,13 +15,14 @@ mod report;
 use std::path::{Path, PathBuf};
 
 use ridgelight::gpu::Headless;
+use ridgelight::plan::Picture;
 use ridgelight::scene::{Albedo, HeightField, Lights, PhongSpecular, Quality, Scene, Specular};
 use ridgelight::{Error, Result};
 use ridgelight_io::{HeightOptions, read_environment, read_heights};
 use ridgelight_trade::auto::Drawn;
 
 use crate::common::args::Args;
-use crate::common::frames::drawn_while;
+use crate::common::frames::drawn_as;
 use crate::common::{Outcome, inputs};
 
 /// A file without a cell size gets one that makes its relief this share of its side.
@@ -106,12 +107,12 @@ fn scenes(
     Ok(all)
 }
 
-/// A picture as `trade` judges it: planes, NaN at voids, and the passes of the median of `runs`.
-fn judged(gpu: &mut Headless, scene: &Scene, quality: &Quality, runs: usize) -> Result<Drawn> {
-    judged_while(gpu, scene, quality, runs, || ())
+/// A picture as `trade` judges it, drawn once.
+fn judged(gpu: &mut Headless, scene: &Scene, quality: &Quality) -> Result<Drawn> {
+    judged_while(gpu, scene, quality, 0, || ())
 }
 
-/// The same, but keeps what `pause` returns from the end of the first run on.
+/// A picture as `trade` judges it: planes, NaN at voids, and the passes of the median of `runs`, as [`drawn_as`] draws them.
 fn judged_while<P>(
     gpu: &mut Headless,
     scene: &Scene,
@@ -119,7 +120,7 @@ fn judged_while<P>(
     runs: usize,
     pause: impl FnOnce() -> P,
 ) -> Result<Drawn> {
-    let found = drawn_while(gpu, scene, quality, runs, pause)?;
+    let found = drawn_as(gpu, scene, (quality, runs), Picture::default(), pause)?;
     let is_void = |i: usize| scene.field.voids().is_some_and(|v| v[i]);
     let plane = |c: usize| {
         let texels = found.light.iter().enumerate();

@@ -48,8 +48,8 @@ impl<'a> Measuring<'a> {
             table_elevations: 4096,
             ..start()
         };
-        let plain = judged(gpu, scene, &start(), 0)?.planes;
-        let control = judged(gpu, scene, &dense, 0)?.planes;
+        let plain = judged(gpu, scene, &start())?.planes;
+        let control = judged(gpu, scene, &dense)?.planes;
         let unsure = unsure(scene, [&control, &plain]);
         let probes = Probes::of(&Lit::of(scene), TRUE_PROBES, TRUE_SEED, &unsure)?;
         let own = probes.error(&control, None, Probes::ONE_BOUND);
@@ -61,7 +61,7 @@ impl<'a> Measuring<'a> {
             } else {
                 Quality { method: Method::BruteForce, azimuths: 128, sun_azimuths: 64, ..dense }
             };
-            let control = judged(gpu, scene, &exact, 0)?.planes;
+            let control = judged(gpu, scene, &exact)?.planes;
             found.own = found.probes.error(&found.control, None, Probes::ONE_BOUND);
             let own = found.probes.error(&control, None, Probes::ONE_BOUND);
             if own.error < found.own.error {
@@ -148,7 +148,7 @@ impl<'a> Measuring<'a> {
             Err(why) => return Ok(json!({ "asked": most, "best": best_flags, "refused": why })),
         };
         let quality = found.trial.quality;
-        let error = self.error(&judged(gpu, scene, &quality, 0)?.planes);
+        let error = self.error(&judged(gpu, scene, &quality)?.planes);
         let ratio = match best {
             Some(best) if best != quality => {
                 let turns = in_turn(gpu, scene, [&quality, &best], 7)?;

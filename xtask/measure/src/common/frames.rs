@@ -84,7 +84,8 @@ impl Drawn {
     }
 }
 
-fn drawn_as<P>(
+/// Draws a picture once and then `runs` times. Keeps what `pause` returns from the end of the first run on.
+pub fn drawn_as<P>(
     gpu: &mut Headless,
     scene: &Scene,
     (quality, runs): (&Quality, usize),
@@ -111,18 +112,7 @@ fn drawn_as<P>(
 }
 
 pub fn drawn(gpu: &mut Headless, scene: &Scene, quality: &Quality, runs: usize) -> Result<Drawn> {
-    drawn_while(gpu, scene, quality, runs, || ())
-}
-
-/// The same, but keeps what `pause` returns from the end of the first run on.
-pub fn drawn_while<P>(
-    gpu: &mut Headless,
-    scene: &Scene,
-    quality: &Quality,
-    runs: usize,
-    pause: impl FnOnce() -> P,
-) -> Result<Drawn> {
-    drawn_as(gpu, scene, (quality, runs), Picture::default(), pause)
+    drawn_as(gpu, scene, (quality, runs), Picture::default(), || ())
 }
 
 /// A picture of five runs with its indirect light.
