@@ -40,6 +40,15 @@ pub fn sun_slice(azimuth: &Azimuth, shape: Shape, lowest: f64, normal: DVec3) ->
     }
 }
 
+/// Sum of the weights of a light's slices, as [`ShadeError::sun`](crate::tolerance::ShadeError::sun) takes it.
+pub fn weights(azimuths: &[Azimuth], shape: Shape) -> f64 {
+    let weight = |a: &Azimuth| match shape {
+        Shape::Patch => f64::from(a.wedge_rad),
+        Shape::Disc | Shape::Point => f64::from(a.weight),
+    };
+    azimuths.iter().map(weight).sum()
+}
+
 /// `sun_sum` of all azimuths: [`sun_at`] for every grid point, row-major.
 pub fn sun_shade(swept: &Swept, shape: Shape) -> Vec<f64> {
     swept.per_grid_point(|col, row| sun_at(swept, shape, col, row))

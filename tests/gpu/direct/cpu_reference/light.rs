@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use ridgelight::gpu::shaders::offset;
 use ridgelight::plan::Pass;
-use ridgelight::plan::azimuths::{Azimuth, Shape};
+use ridgelight::plan::azimuths::Shape;
 use ridgelight::scene::{Albedo, Border, SphereLight, normal};
 use ridgelight_cpu::env_tables as tables_reference;
 use ridgelight_cpu::env_tables::{EnvTables, bottom_sine, wedge_of};
@@ -248,12 +248,7 @@ pub(crate) fn sun_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let [cols, _] = run.size();
     let mirrored = key_specular(run, pass, &error);
     let mut pairs = run.swept(range.clone(), fuse_of(pass), |swept| {
-        let weight = |a: &Azimuth| match shape {
-            Shape::Patch => f64::from(a.wedge_rad),
-            Shape::Disc | Shape::Point => f64::from(a.weight),
-        };
-        let weights = swept.azimuths.iter().map(weight).sum();
-        let tolerance = error.sun(weights);
+        let tolerance = error.sun(sun_reference::weights(swept.azimuths, shape));
         // A point sun within the horizon's error may be hidden or not.
         let grazes = |col: i32, row: i32| {
             let mut any = false;

@@ -9,6 +9,7 @@ use ridgelight_cpu::shadow_settle::settled;
 use ridgelight_cpu::shadow_shade::sees_all;
 use ridgelight_cpu::shadow_sweep::{height_of, lines_of, shadow_line};
 use ridgelight_cpu::shared::sweep::March;
+use ridgelight_cpu::sun_shade::weights;
 use ridgelight_cpu::tolerance::{EPSILON, ShadeError, device_march_slope};
 
 use crate::cpu_reference::{Pair, Run, constant, pushed};
@@ -92,11 +93,6 @@ fn exact(run: &Run, range: Range<usize>, shape: Shape, error: &ShadeError) -> Ve
 
 fn shape_of(pass: &Pass) -> Shape {
     [Shape::Disc, Shape::Point, Shape::Patch][constant(pass, "shape") as usize]
-}
-
-fn weights(azimuths: &[Azimuth], shape: Shape) -> f64 {
-    let is_patch = shape == Shape::Patch;
-    azimuths.iter().map(|a| f64::from(if is_patch { a.wedge_rad } else { a.weight })).sum()
 }
 
 /// Whether each texel is marked, where it is certain; and the light of those that are not, by exact horizons.

@@ -12,7 +12,7 @@ use ridgelight::scene::{Border, Fuse, Method, Precision, Quality, Scene};
 use ridgelight_cpu::oracle::Oracle;
 use ridgelight_cpu::shared::field::{field_slope, normal_of};
 use ridgelight_cpu::shared::sweep::Heights;
-use ridgelight_cpu::sun_shade::sun_slice;
+use ridgelight_cpu::sun_shade::{sun_slice, weights};
 use ridgelight_cpu::tolerance::{EPSILON, ShadeError, aimed_slope, device_fused_slope};
 
 use super::sweeps::{Shaded, aimed_alone, azimuths_of};
@@ -125,11 +125,7 @@ fn allowed(
 
 /// Tolerance of a light in slices, where no slice's end moves.
 fn tolerance(azimuths: &[Azimuth], shape: Shape, relief_m: f64, cell_m: f64) -> f64 {
-    let weight = |a: &Azimuth| match shape {
-        Shape::Patch => f64::from(a.wedge_rad),
-        Shape::Disc | Shape::Point => f64::from(a.weight),
-    };
-    let weights: f64 = azimuths.iter().map(weight).sum();
+    let weights = weights(azimuths, shape);
     // A wedge of radiance 1 gives at most its width times the difference of two sines.
     let irradiance = if shape == Shape::Patch { 2.0 * weights } else { 1.0 };
     let error = ShadeError::new(0.0, relief_m, cell_m, azimuths.len());

@@ -16,7 +16,7 @@ use ridgelight_cpu::lattice::{Lattice, Lattices, number_layers};
 use ridgelight_cpu::shared::gather::Swept;
 use ridgelight_cpu::shared::sweep::{CELL_SHIFT, Heights, March};
 use ridgelight_cpu::sky_shade::sky_at;
-use ridgelight_cpu::sun_shade::sun_at;
+use ridgelight_cpu::sun_shade::{sun_at, weights};
 use ridgelight_cpu::tolerance::{EPSILON, ShadeError, device_fused_slope};
 
 use super::{Device, Wanted, colours, environments, sentence};
@@ -228,12 +228,8 @@ fn aimed(
 ) -> Vec<Option<[DVec3; 2]>> {
     let cols = scene.field.cols();
     let light = |swept: &Swept, error: &ShadeError| {
-        let weight = |a: &Azimuth| match shape {
-            Shape::Patch => f64::from(a.wedge_rad),
-            Shape::Disc | Shape::Point => f64::from(a.weight),
-        };
         // Two products and a sum make a layer of a sum.
-        let off = error.sun(swept.azimuths.iter().map(weight).sum()) + 4.0 * EPSILON;
+        let off = error.sun(weights(swept.azimuths, shape)) + 4.0 * EPSILON;
         let at = |p: &usize| {
             let (col, row) = ((p % cols) as i32, (p / cols) as i32);
             let mut grazes = false;
