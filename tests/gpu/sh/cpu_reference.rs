@@ -22,7 +22,7 @@ use ridgelight_cpu::tolerance::{
 
 use crate::cpu_reference::{Pair, Reference, Run, constant, fuse_of, pushed};
 use crate::direct::cpu_reference::light::{rgb, so_far, wedge_rows};
-use crate::specular::cpu_reference::slices::{VIEW_ERROR, azimuths_of, view_from};
+use crate::specular::cpu_reference::slices::{VIEW_ERROR, azimuths_of, eye_of, view_from};
 
 /// The passes of this room and their CPU references.
 pub(crate) const REFERENCES: &[Reference] = &[
@@ -249,7 +249,7 @@ pub(crate) fn sh_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let [cols, _] = run.size();
     let heights = run.heights();
     let error = run.texel_error();
-    let eye_m = [0, 4, 8, 12].map(|i| f64::from(f32::from_bits(pushed(pass, EYE_M + i))));
+    let eye_m = eye_of(pass, EYE_M);
     let view_error = if eye_m[3] > 0.0 { VIEW_ERROR } else { 0.0 };
     let nodes = Nodes { stride: constant(pass, "node_stride") };
     let across = nodes.size(run.plan.size)[0];

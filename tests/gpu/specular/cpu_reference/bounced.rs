@@ -21,7 +21,7 @@ use crate::bounce::cpu_reference::indirect::{brightest, colours};
 use crate::cpu_reference::{Pair, Run, constant, pushed};
 use crate::horizon::cpu_reference::pyramid::numbers;
 use crate::sh::cpu_reference::device_series;
-use crate::specular::cpu_reference::slices::{VIEW_ERROR, view_from};
+use crate::specular::cpu_reference::slices::{VIEW_ERROR, eye_of, view_from};
 
 impl Run<'_> {
     fn is_half(&self, pass: &Pass, binding: &str) -> bool {
@@ -115,7 +115,7 @@ pub(crate) fn specular_exit(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let normals: Vec<_> = (0..cols * rows)
         .map(|i| normal_of(field_slope(&heights, (i % cols) as i32, (i / cols) as i32)))
         .collect();
-    let eye_m = [0, 4, 8, 12].map(|i| f64::from(f32::from_bits(pushed(pass, EYE_M + i))));
+    let eye_m = eye_of(pass, EYE_M);
     let mut pairs = Vec::new();
     let mut visible = Vec::new();
     if is_direct {

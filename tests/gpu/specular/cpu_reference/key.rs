@@ -7,7 +7,7 @@ use ridgelight_cpu::key_specular as key_reference;
 use ridgelight_cpu::mirror_map::mirrored;
 use ridgelight_cpu::tolerance::{EPSILON, ShadeError};
 
-use super::slices::view_from;
+use super::slices::{VIEW_ERROR, eye_of, view_from};
 use crate::cpu_reference::{Pair, Run, fuse_of, pushed};
 
 /// The device's own earlier sum, plus what a batch of a key light's azimuths adds to it; empty without specular.
@@ -20,15 +20,14 @@ pub(crate) fn key_specular(run: &mut Run, pass: &Pass, error: &ShadeError) -> Ve
     let number = pass.part.split(' ').next().and_then(|part| part.strip_prefix("key"));
     let number: usize = number.and_then(|n| n.parse().ok()).expect("key and its number");
     let radiance = run.scene.lights.keys[number - 1].radiance.map(f64::from);
-    let float = |offset: usize| f64::from(f32::from_bits(pushed(pass, offset)));
-    let eye_m = [0, 4, 8, 12].map(|i| float(EYE_M + i));
+    let eye_m = eye_of(pass, EYE_M);
     let texels = got.len() / 4;
-    if float(COLOUR + 12) > 0.0 {
+    if f32::from_bits(pushed(pass, COLOUR + 12)) > 0.0 {
         run.specular = vec![[0.0; 3]; texels];
     }
     let phongs: Vec<PhongSpecular> = (0..texels).map(|i| run.phong_specular(i)).collect();
     let [cols, _] = run.size();
-    let off = [2.0 * error.normal() + 20.0 * EPSILON, error.lowest_slope()];
+    let off = [2.0 * (error.normal() + VIEW_ERROR), error.lowest_slope()];
     let [first, count] = [FIRST_AZIMUTH, AZIMUTH_COUNT].map(|o| pushed(pass, o) as usize);
     let added = run.swept(first..first + count, fuse_of(pass), |swept| {
         let at = |i: usize| {

@@ -31,6 +31,11 @@ pub(crate) fn slices(border: Border, exponent: f64, [peaks, nodes]: [usize; 2]) 
     }
 }
 
+/// The eye among a pass's push constants, from this offset: its position, and 0 for a view from straight above.
+pub(crate) fn eye_of(pass: &Pass, at: usize) -> [f64; 4] {
+    [0, 4, 8, 12].map(|i| float(pass, at + i))
+}
+
 /// Half the error of a direction to an eye that is at least as far away as the field is wide. A mirror direction turns by twice the
 /// normal's error and by the view's.
 pub(crate) const VIEW_ERROR: f64 = 10.0 * EPSILON;
@@ -136,7 +141,7 @@ pub(crate) fn specular_light(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     const SCALE: usize = offset("SpecularLightPush", "scale");
     const SWEPT_COLUMNS: usize = offset("SpecularLightPush", "swept_columns");
     const UNOCCLUDED_COLUMNS: usize = offset("SpecularLightPush", "unoccluded_columns");
-    let eye_m = [0, 4, 8, 12].map(|i| float(pass, EYE_M + i));
+    let eye_m = eye_of(pass, EYE_M);
     let scale = float(pass, SCALE);
     let [cols, _] = run.size();
     let (heights, off) = (run.heights(), 2.0 * (run.normal_error() + VIEW_ERROR));

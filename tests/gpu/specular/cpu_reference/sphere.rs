@@ -8,7 +8,7 @@ use ridgelight_cpu::oracle::Oracle;
 use ridgelight_cpu::sphere_shade::{device_sphere_specular, sphere_with};
 use ridgelight_cpu::tolerance::{EPSILON, SphereGeometry};
 
-use super::slices::view_from;
+use super::slices::{VIEW_ERROR, eye_of, view_from};
 use crate::cpu_reference::{Pair, Run, pushed};
 
 /// Empties the sum where the first light begins it.
@@ -28,10 +28,10 @@ pub(crate) fn specular(
 ) -> Vec<Pair> {
     const EYE_M: usize = offset("SphereShadePush", "eye_m");
     let Some(got) = run.floats(pass, "specular_sum") else { return Vec::new() };
-    let eye_m = [0, 4, 8, 12].map(|i| f64::from(f32::from_bits(pushed(pass, EYE_M + i))));
+    let eye_m = eye_of(pass, EYE_M);
     let (field, border) = (&run.scene.field, run.border());
     let (oracle, heights) = (Oracle::new(field, border), run.heights());
-    let off_rad = 2.0 * run.normal_error() + 20.0 * EPSILON;
+    let off_rad = 2.0 * (run.normal_error() + VIEW_ERROR);
     let [cols, _] = run.size();
     let mut pairs = Vec::new();
     for (i, got) in got.chunks_exact(4).enumerate() {

@@ -9,7 +9,7 @@ use ridgelight_cpu::sun_specular as specular_reference;
 use ridgelight_cpu::tolerance::{EPSILON, device_sun_arriving, device_sun_specular, disc_rings};
 
 use super::bounced::paired;
-use super::slices::view_from;
+use super::slices::{eye_of, view_from};
 use crate::cpu_reference::{Pair, Run, constant, pushed};
 use crate::direct::cpu_reference::light::Rgb;
 
@@ -22,7 +22,7 @@ pub(crate) fn sun_specular(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let sun = run.scene.lights.suns[number - 1];
     let sums = run.floats(pass, "sun_sum").expect("read");
     let got = run.floats(pass, "specular_sum").expect("written");
-    let eye_m = [0, 4, 8, 12].map(|i| f64::from(f32::from_bits(pushed(pass, EYE_M + i))));
+    let eye_m = eye_of(pass, EYE_M);
     let (heights, error) = (run.heights(), run.texel_error());
     let [cols, _] = run.size();
     if f32::from_bits(pushed(pass, COLOUR + 12)) > 0.0 {
