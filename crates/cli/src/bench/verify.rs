@@ -85,7 +85,7 @@ impl Verifier {
         let (scene, quality) = (&self.scene, device.quality);
         // The plan bounds the light of culled sphere lights.
         let all = Quality { light_cutoff: 0.0, ..*quality };
-        // The plan has the light basis where a light near the field is lit.
+        // The plan states `light_basis` only where a light near the field is lit, and `exact` where that light has no series.
         let plan = plan::picture(scene, &all, device.limits, Picture::default())?;
         if plan.settings.contains(&("light_basis".to_owned(), "sh".to_owned())) {
             let found = sphere_lights::check(scene, &self.ground_truth, device)?;

@@ -85,11 +85,13 @@ const TIMED_NOISE_TARGET: f64 = 0.002;
 const FIRST_PROBES: usize = 200;
 const MOST_BOUNCED: usize = 4;
 
-/// The choice is measured once more by probes that had no part in it, at most this many times the affordable number; its
-/// bound is theirs. If it misses the goal, others are chosen, this many times in all: twice the fastest, then settings
-/// with a margin, then exact horizons.
+/// The choice is measured once more by probes that had no part in it; its bound is theirs. They are at most this many times
+/// the affordable number.
 const CONFIRMING_PROBES: usize = 3;
+/// The fewest of them, unless that limit is lower.
 const FEWEST_CONFIRMING: usize = 1000;
+/// Choices that are measured so, as long as they miss the goal: twice the fastest settings, then some with a margin, then
+/// exact horizons.
 const CONFIRMATIONS: u64 = 4;
 
 /// Where the goal is a time: how far the bound of the choice is expected to lie above its error.
@@ -136,7 +138,7 @@ struct Judge<'a, 't> {
     control: usize,
 }
 
-/// Bounced light has a number of paths for a fixed number of probes.
+/// Number of the first probes. Bounced light begins with all that are affordable, as its number of paths is chosen for them.
 fn first_count(affordable: usize, has_bounced: bool) -> usize {
     if has_bounced { affordable } else { affordable.min(FIRST_PROBES) }
 }
