@@ -21,7 +21,7 @@ use serde_json::{Value, json};
 
 use crate::args::BenchArgs;
 use crate::idle;
-use crate::setup::{self, Outcome, scene_hash, tuned};
+use crate::setup::{self, Outcome, after_new_heights, scene_hash, tuned};
 use progress::Progress;
 use ridgelight_trade::statistics::{median, median_interval};
 use rows::{Row, sums};
@@ -334,12 +334,6 @@ fn overlapped(gpu: &Headless, frame: &mut Frame, most: usize) -> Result<(usize, 
     frame.time_passes(true);
     let runs = runs?;
     Ok((runs.len(), sums(&runs, |_| true)))
-}
-
-/// The passes that a frame of new heights needs. The tables of the other passes depend on lights and settings alone.
-pub fn after_new_heights(plan: &Plan) -> Vec<usize> {
-    let heights = plan.find("heights");
-    plan.passes_after(plan, &heights.into_iter().collect::<Vec<_>>())
 }
 
 /// Rows of a frame in flow and overlapped, and of its passes isolated, warm and cold; also its last run in flow. A flush takes

@@ -387,6 +387,11 @@ pub fn total_ns(times: &[Timing]) -> f64 {
     times.iter().map(|t| t.ns).sum()
 }
 
+/// The passes that a frame of new heights needs. The tables of the other passes depend on lights and settings alone.
+pub fn after_new_heights(plan: &Plan) -> Vec<usize> {
+    plan.passes_after(plan, plan.find("heights").as_slice())
+}
+
 pub fn no_timestamps() -> Error {
     Error::Device { doing: "timing a frame".into(), reason: "the device has no timestamps".into() }
 }

@@ -14,11 +14,10 @@ use ridgelight_trade::auto::{
 };
 
 use crate::args::AutoArgs;
-use crate::bench::after_new_heights;
 use crate::idle;
 use crate::reference;
 use crate::setup::terminal::{digits, percent};
-use crate::setup::{self, total_ns};
+use crate::setup::{self, after_new_heights, total_ns};
 
 /// Draws of each setting after one that compiles; the median counts. No draw begins after [`TIMING`], so slow settings get
 /// fewer.
