@@ -260,10 +260,7 @@ impl ApplicationHandler for App<'_> {
             Err(error) => return self.failed(events, error),
         }
         let uses_preview = self.uses_preview();
-        let has_more = |OpenWindow { preview, has_coarse_mesh, .. }: &OpenWindow| {
-            preview.is_busy() || preview.has_more() || *has_coarse_mesh
-        };
-        let refines = uses_preview && self.shown.as_ref().is_some_and(has_more);
+        let refines = self.refines();
         let is_busy = self.is_due() || self.steps.is_some();
         events.set_control_flow(match (is_busy, self.blank) {
             (true, Some(_)) => ControlFlow::wait_duration(PAUSE),
@@ -280,6 +277,14 @@ impl ApplicationHandler for App<'_> {
 }
 
 impl App<'_> {
+    /// Whether a preview leaves work for a picture at rest, for the panel or for the next input.
+    fn refines(&self) -> bool {
+        let has_more = |OpenWindow { preview, has_coarse_mesh, .. }: &OpenWindow| {
+            preview.is_busy() || preview.has_more() || *has_coarse_mesh
+        };
+        self.uses_preview() && self.shown.as_ref().is_some_and(has_more)
+    }
+
     /// Whether to go on.
     fn heard(&mut self, event: WindowEvent) -> Result<bool> {
         if self.is_for_panel(&event)? {

@@ -9,7 +9,6 @@ use winit::dpi::PhysicalSize;
 use super::super::script::Step;
 use super::compare::MOST_PATHS;
 use super::drawing::places;
-use super::preview::Preview;
 use super::saving::save_pixels;
 use super::{App, OpenWindow};
 
@@ -78,11 +77,7 @@ impl App<'_> {
             }
             Step::Rest => {
                 self.advance()?;
-                let has_more = |preview: &Preview| preview.is_busy() || preview.has_more();
-                let preview = self.shown.as_ref().is_some_and(|shown| has_more(&shown.preview));
-                let is_coarse = self.shown.as_ref().is_some_and(|shown| shown.has_coarse_mesh);
-                let is_busy =
-                    self.uses_preview() && (preview || is_coarse) || self.answering.is_some();
+                let is_busy = self.refines() || self.answering.is_some();
                 (is_busy || self.is_due()).then_some(Step::Rest)
             }
             Step::Screenshot(path) => match self.picture(true)? {
