@@ -307,13 +307,14 @@ mod tests {
         plan_of(lights, basis, PhongSpecular { exponent: 9.0, scale })
     }
 
+    fn scene(lights: Lights, specular: Specular) -> Scene {
+        let (albedo, border) = (Albedo::Constant([0.5; 3]), Border::Plane);
+        let surface = Surface { albedo, border, specular: Some(specular) };
+        Scene { field: fractal(32, 1).unwrap(), surface, lights }
+    }
+
     fn plan_of(lights: Lights, basis: Basis, phong: PhongSpecular) -> Result<Plan> {
-        let surface = Surface {
-            albedo: Albedo::Constant([0.5; 3]),
-            border: Border::Plane,
-            specular: Some(Specular::Constant(phong)),
-        };
-        let scene = Scene { field: fractal(32, 1).unwrap(), surface, lights };
+        let scene = scene(lights, Specular::Constant(phong));
         let quality = Quality { azimuths: 8, basis, ..Quality::default() };
         let wanted = Picture { light_layers: true, keeps_horizons: true, ..Picture::default() };
         plan::picture(&scene, &quality, &Limits::lavapipe(), wanted)
@@ -348,12 +349,7 @@ mod tests {
 
     /// What a scene with specular of this scale gives with a setting.
     fn planned(lights: Lights, scale: f32, quality: Quality) -> Result<Plan> {
-        let surface = Surface {
-            albedo: Albedo::Constant([0.5; 3]),
-            specular: Some(Specular::Constant(PhongSpecular { exponent: 9.0, scale })),
-            ..Surface::default()
-        };
-        let scene = Scene { field: fractal(32, 1).unwrap(), surface, lights };
+        let scene = scene(lights, Specular::Constant(PhongSpecular { exponent: 9.0, scale }));
         plan::picture(&scene, &quality, &Limits::lavapipe(), Picture::default())
     }
 
@@ -395,11 +391,8 @@ mod tests {
         };
         let quality = Quality { light_basis: LightBasis::Sh, ..Quality::default() };
         let settled = |of: &'static NearType, scale| {
-            let phong = PhongSpecular { exponent: 9.0, scale };
-            let surface =
-                Surface { specular: Some(Specular::Constant(phong)), ..Surface::default() };
             let lights = Lights { sphere_lights: vec![sphere()], ..Lights::default() };
-            let scene = Scene { field: fractal(32, 1).unwrap(), surface, lights };
+            let scene = scene(lights, Specular::Constant(PhongSpecular { exponent: 9.0, scale }));
             let mut notes = Vec::new();
             let mut active =
                 ActiveLights::of(&scene, &quality, Picture::default(), &mut notes).unwrap();
@@ -492,19 +485,13 @@ mod tests {
     /// 4π √(10,000 + 1) = 1,257 slices around a sphere light. A map of a smaller exponent takes as many as its lobe needs.
     #[test]
     fn unknown_maps_have_the_most_azimuths() {
-        let field = fractal(32, 1).unwrap();
         let known = Specular::Map(vec![PhongSpecular { exponent: 99.0, scale: 0.5 }; 32 * 32]);
         for (specular, counts) in
             [(Specular::unknown(32 * 32, 0.5), [201, 1257]), (known, [20, 126])]
         {
-            let surface = Surface {
-                albedo: Albedo::Constant([0.5; 3]),
-                specular: Some(specular),
-                ..Surface::default()
-            };
             let lights =
                 Lights { keys: vec![key()], sphere_lights: vec![sphere()], ..Lights::default() };
-            let scene = Scene { field: field.clone(), surface, lights };
+            let scene = scene(lights, specular);
             let quality = Quality { azimuths: 8, ..Quality::default() };
             let limits = Limits::lavapipe();
             let plan = plan::picture(&scene, &quality, &limits, Picture::default()).unwrap();
