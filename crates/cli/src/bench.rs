@@ -152,7 +152,9 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
     if let Some(changes) = &changes {
         warnings.extend(changes.warnings(&device, &driver));
     }
-    if !quiet {
+    if quiet {
+        warnings.iter().for_each(|text| setup::warning(text));
+    } else {
         changes.iter().for_each(|changes| changes.print());
         warnings.iter().for_each(|warning| crate::say!("{warning}"));
     }

@@ -58,6 +58,11 @@ fn gpu_an_earlier_report_gives_verdicts() {
         assert!(warnings.contains("one earlier report cannot show"), "{warnings}");
         assert!(run.out.contains("one earlier report cannot show"), "{}", run.out);
     }
+    // With -q, warnings are all that is printed.
+    let run = folder.run(&[&base[..], &["--against", "slow.json", "-q"]].concat());
+    assert_eq!((run.status, run.out.as_str()), (Some(0), ""), "{}", run.err);
+    assert!(run.err.contains("warning: one earlier report cannot show"), "{}", run.err);
+    assert!(run.err.lines().all(|line| line.starts_with("warning: ")), "{}", run.err);
     let other = ["bench", "--size", "48", "--azimuths", "8", "--runs", "1"];
     let run = folder.run(&[&other[..], &SMALL, &["--against", "now.json,slow.json"]].concat());
     assert_eq!(run.status, Some(2), "{}", run.err);
