@@ -175,6 +175,34 @@ fn search_limits_and_bounds_are_reported() {
     }
 }
 
+/// All frames have the same error at every texel, so that it has no sampling noise. The goal lies between it and its bound, which the
+/// oracle's own error lifts. The first 200 probes are then doubled, but not beyond the 300 that the oracle affords.
+#[test]
+fn probes_are_added_up_to_the_affordable_number() {
+    const COLS: usize = 20;
+    let heights: Vec<f64> = (0..COLS * COLS).map(|i| (i * i % 11) as f64).collect();
+    let scene = Scene {
+        field: HeightField::new(COLS, COLS, &heights, [1.0; 2], None).unwrap(),
+        surface: Surface::default(),
+        lights: Lights { sky: Some([1.0; 3]), ..Lights::default() },
+    };
+    let lit = Lit::of(&scene);
+    let own = Probes::of(&lit, COLS * COLS, 7, &[]).unwrap().own_error();
+    // Well above the rounding of pictures.
+    assert!(own > 1e-6, "{own}");
+    let ground_truth: Vec<f64> = (0..COLS * COLS).map(|i| lit.at(i / COLS, i % COLS)[0]).collect();
+    let mean = ground_truth.iter().sum::<f64>() / ground_truth.len() as f64;
+    let picture: Vec<f32> = ground_truth.iter().map(|t| (t + 10.0 * own * mean) as f32).collect();
+    // The oracle's own error at a part of the texels is more than a quarter of that at all of them.
+    let goal = Goal::MaxError(10.25 * own);
+    let refused = choose(&lit, goal, (300, 7), None, |quality, _| {
+        let passes = vec![("sky_shade".to_owned(), 1e6 * f64::from(quality.azimuths))];
+        Ok(Drawn { planes: vec![picture.clone()], passes })
+    });
+    let text = refused.unwrap_err().to_string();
+    assert!(text.contains("by 300 probes"), "{text}");
+}
+
 /// Large enough that probes are few of its texels.
 const LARGE: usize = 40;
 const SEEDS: u64 = 40;

@@ -246,7 +246,8 @@ impl<'a, 't> Judge<'a, 't> {
             && !self.probes.is_whole()
             && self.probes.count() < self.most_probes()
         {
-            let more = self.fresh(self.probes.count())?;
+            let known = self.probes.count();
+            let more = self.fresh(known.min(self.most_probes() - known))?;
             self.probes.extend(&more);
             self.judge(chooser);
         }
