@@ -16,11 +16,9 @@ pub(super) fn picks(weights: &[f64], wanted: usize, seed: u64) -> (Vec<usize>, V
     if wanted >= count {
         return ((0..count).collect(), vec![1.0; count]);
     }
-    let sum: f64 = weights.iter().sum();
-    // Two pictures with values beyond f32 differ by infinity.
-    if sum <= 0.0 || !sum.is_finite() {
+    let Some(sum) = usable_sum(weights) else {
         return (parts(count, 0..wanted, seed, |_| 1.0), vec![1.0; wanted]);
-    }
+    };
     // In units of the mean probability.
     let of = |i: usize| weights[i] / sum * count as f64;
     let mut all = even_picks(count, wanted, seed);
@@ -29,6 +27,13 @@ pub(super) fn picks(weights: &[f64], wanted: usize, seed: u64) -> (Vec<usize>, V
     let share = even as f64 / wanted as f64;
     let factors = all.iter().map(|i| 1.0 / (share + (1.0 - share) * of(*i))).collect();
     (all, factors)
+}
+
+/// The sum of weights by which [`picks`] can pick. None where all weights are 0 or one is not finite: two pictures with values
+/// beyond f32 differ by infinity.
+pub(super) fn usable_sum(weights: &[f64]) -> Option<f64> {
+    let sum: f64 = weights.iter().sum();
+    (sum > 0.0 && sum.is_finite()).then_some(sum)
 }
 
 /// The first picks of [`picks`] for any weights that are not all 0.

@@ -153,8 +153,8 @@ fn costs_have_an_overhead() {
     assert!((last / ns(128) - 1.0).abs() < 0.01, "{last}");
 }
 
-/// A device that takes a second per azimuth ends the search early, which is reported. Pilots that
-/// do not fit leave no confidence.
+/// A device that takes a second per azimuth ends the search early, which is reported. Without a finite difference of the first two
+/// frames, probes of a part of the texels leave no confidence.
 #[test]
 fn search_limits_and_bounds_are_reported() {
     let scene = scene();
@@ -164,14 +164,29 @@ fn search_limits_and_bounds_are_reported() {
         Ok(drawn)
     });
     assert!(slow.unwrap_err().to_string().contains("take more than 30 s"));
-    for (probes, confidence) in [(40, None), (SIDE * SIDE, Some(Probes::CONFIDENCE))] {
-        let mut frames = 0;
+    let sure = Some(Probes::CONFIDENCE);
+    for (second, probes, confidence) in [
+        ("as drawn", 40, sure),
+        ("refused", 40, None),
+        ("equal", 40, None),
+        ("infinite", 40, None),
+        ("refused", SIDE * SIDE, sure),
+        ("equal", SIDE * SIDE, sure),
+    ] {
+        let mut frames: Vec<Vec<Vec<f32>>> = Vec::new();
         let found =
             choose(&Lit::of(&scene), Goal::MaxError(0.1), (probes, 7), None, |quality, _| {
-                frames += 1;
-                if frames == 2 { Err(full()) } else { draw(&scene, quality) }
+                let mut drawn = draw(&scene, quality)?;
+                let kind = if frames.len() == 1 { second } else { "as drawn" };
+                match kind {
+                    "equal" => drawn.planes = frames[0].clone(),
+                    "infinite" => drawn.planes[0][3] = f32::INFINITY,
+                    _ => {}
+                }
+                frames.push(drawn.planes.clone());
+                if kind == "refused" { Err(full()) } else { Ok(drawn) }
             });
-        assert_eq!(found.unwrap().confidence, confidence);
+        assert_eq!(found.unwrap().confidence, confidence, "{second}, {probes} probes");
     }
 }
 

@@ -4,6 +4,7 @@ use super::candidates::defaults;
 use super::chooser::{Chooser, Trial};
 use super::model::{Expected, PARTS, Part};
 use super::oracle_light::{OracleLight, OracleThreads};
+use super::picks::usable_sum;
 use super::probes::{Measured, Probes, Traced, unsampled_bounce_error, unsure};
 use super::statistics::Statistics;
 use crate::trade::{Goal, start};
@@ -33,8 +34,8 @@ pub struct Chosen {
     pub probes: usize,
     /// Paths from each probe, for bounced light; 0 without.
     pub paths: u32,
-    /// Of the bound. None where the first frames did not fit the device: probes are then uniform
-    /// and may miss shadow edges.
+    /// Of the bound. None where only some texels are probes, and these are uniform, so that they may miss shadow edges: the
+    /// first two frames did not both fit the device, are equal, or have values beyond f32.
     pub confidence: Option<f64>,
     /// All trials, in order, including the chosen one.
     pub trials: Vec<Trial>,
@@ -337,7 +338,7 @@ fn choose_by(
         ([], Some(limit)) => return Err(limit),
         _ => Vec::new(),
     };
-    let is_aimed = !unsure.is_empty();
+    let is_aimed = usable_sum(&unsure).is_some();
     let mut judge = Judge::new(oracle, (probes, seed), unsure, bounced, goal)?;
     let own = judge.probes.own_error();
     if let Goal::MaxError(most) = goal
