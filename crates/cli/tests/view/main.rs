@@ -325,6 +325,26 @@ fn gpu_previews_have_the_strokes_of_the_comparison() {
     assert!(apart(&with, &without) > 32.0);
 }
 
+/// Grids that a thread has made since the full light was complete show the same preview as grids that are made at the input, and
+/// another one than the grids before.
+#[test]
+fn gpu_grids_made_at_rest_show_the_same_preview() {
+    let (folder, display) = (Folder::new(), Display::new());
+    write_large(&folder);
+    let (other, turn) = ("preview 6,4,2\n", "key shift+right\nkey shift+right\n");
+    for (name, at_input, at_rest) in
+        [("made_at_rest.png", "", other), ("made_at_input.png", other, ""), ("kept.png", "", "")]
+    {
+        let script = format!(
+            "key h\nkey h\npreview 3,2,1\nframes 1\nrest\n{turn}frames 1\n{at_rest}rest\n{at_input}{turn}screenshot {name}\n"
+        );
+        folder.view(&display, &format!("large.asc {LIT} --size 512x512"), &script);
+    }
+    assert_same(&folder, "made_at_rest.png", "made_at_input.png");
+    let [other, kept] = ["made_at_rest.png", "kept.png"].map(|name| folder.picture(name));
+    assert!(apart(&other, &kept) > 4.0, "{} codes", apart(&other, &kept));
+}
+
 /// The window and `render --camera` use the same passes. Codes are rounded here by the device after
 /// its own power function, there by the host.
 #[test]
