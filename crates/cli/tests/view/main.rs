@@ -386,6 +386,16 @@ fn gpu_camera_view_reflects_towards_the_camera() {
         assert_same(&folder, "above.png", "map.png");
         assert_same(&folder, "again.png", "map.png");
     }
+    // The reference views specular from above, so it is compared only there.
+    let script = "key c\nkey v\nframes 1\npaths 128\nkey r\nframes 1\ntext camera.txt\n\
+        key v\nframes 1\npaths 128\nkey r\nframes 1\ntext above.txt\n";
+    let lit = format!("hills.asc {LIT} --albedo 0.4 --specular 20,0.5 --size 196x60");
+    folder.view(&display, &lit, script);
+    let is_refused = |name: &str| {
+        let text = std::fs::read_to_string(folder.0.path().join(name)).unwrap();
+        text.contains("the reference views specular from straight above: press v")
+    };
+    assert_eq!(["camera.txt", "above.txt"].map(is_refused), [true, false]);
 }
 
 /// The 8-bit code that a plane's linear light was read from (IEC 61966-2-1).
