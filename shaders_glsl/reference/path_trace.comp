@@ -15,6 +15,7 @@
 
 #include "shared/conventions.glsl"
 #include "reference/random.glsl"
+#include "specular/mirror.glsl"
 #include "specular/phong_lobe.glsl"
 #include "shared/angle.glsl"
 
@@ -69,16 +70,16 @@ layout(push_constant) uniform PathTracePush {
     LandPush land;
     float highest_m;
     float rotation_turns;  // of the environment
-    float exponent;        // Phong exponent, where it is constant
-    float specular_scale;  // Phong scale, where it is constant
     int bounces;
     int suns;
     int light_count;
     uint seed;
-    vec4 albedo;           // where it is constant
-    vec4 sky;
     int first_row;
     int keys;              // after the suns
+    // Devices guarantee 128 bytes, and this struct has 128: the Phong constants use the fourth numbers of the colours.
+    vec4 albedo_exponent;  // albedo where it is constant; w: Phong exponent where it is constant
+    vec4 sky_scale;        // radiance of the sky; w: Phong scale where it is constant
+    vec4 eye_m;            // over the field's base; w: 0 for a view from straight above
     int first_path;        // of the part; the ends of the path and light ranges are constants
     int last_path;
     int first_light;
@@ -142,6 +143,7 @@ vec3 towards_key(vec4 key, vec2 u) {
     return vec3(round, 1.0 - below);
 }
 
+// At a grid point, without its mirror direction.
 Place grid_point(ivec2 at) {
     vec4 own = texelFetch(ground, at, 0);
     Place place;
@@ -149,17 +151,24 @@ Place grid_point(ivec2 at) {
     place.offset = vec2(0.0);
     place.own = own.x;
     place.normal = normalize(vec3(-own.y, -own.z, 1.0));
-    place.albedo = albedo.rgb;
-    place.specular = vec2(exponent, specular_scale);
+    place.albedo = albedo_exponent.rgb;
+    place.specular = vec2(albedo_exponent.w, sky_scale.w);
+    place.mirror = vec3(0.0);
     if (ALBEDO_IS_MAP) {
         place.albedo = texelFetch(albedo_map, at, 0).rgb;
     }
     if (SPECULAR_IS_MAP) {
         place.specular = texelFetch(phong_map, at, 0).xy;
     }
-    // Viewed from straight above.
-    place.mirror = 2.0 * place.normal.z * place.normal - vec3(0.0, 0.0, 1.0);
     return place;
+}
+
+// Mirror direction of the view at a grid point, as pictures have it.
+vec3 mirror_of_view(Place place) {
+    vec2 at_m = vec2(float(place.base.x) * land.cell_x_m, float(land.rows - 1 - place.base.y) * land.cell_y_m);
+    vec3 normal = place.normal;
+    Mirrored mirror = mirrored(vec4(normal.x), vec4(normal.y), vec4(normal.z), vec4(at_m.x), vec4(at_m.y), vec4(place.own), eye_m);
+    return vec3(mirror.east.x, mirror.north.x, mirror.up.x);
 }
 
 // The vertex where a ray along e has hit. With smooth normals, one of the triangle's corners, with its barycentric weight as
@@ -184,8 +193,8 @@ Place place_of(Met met, vec3 e, float drawn) {
     place.offset = met.offset;
     place.own = corners.x + met.offset.x * east + met.offset.y * south;
     place.normal = normalize(vec3(-east / land.cell_x_m, south / land.cell_y_m, 1.0));
-    place.albedo = albedo.rgb;
-    place.specular = vec2(exponent, specular_scale);
+    place.albedo = albedo_exponent.rgb;
+    place.specular = vec2(albedo_exponent.w, sky_scale.w);
     place.mirror = e - 2.0 * dot(e, place.normal) * place.normal;
     if (ALBEDO_IS_MAP) {
         vec3 nw = texelFetch(albedo_map, met.cell, 0).rgb;
@@ -322,7 +331,7 @@ vec3 path_light(Place place, uint index, uvec3 key, bool alive, inout uvec2 rays
         Ray ray = ray_from(place.base, place.offset, place.own, e, cell_m);
         Met met = trace(ray, 1e30, going);
         rays += uvec2(going ? 1u : 0u, going && met.what == RAY_LOST ? 1u : 0u);
-        vec3 arriving = has_sky ? sky.rgb : vec3(0.0);
+        vec3 arriving = has_sky ? sky_scale.rgb : vec3(0.0);
         if (HAS_ENVIRONMENT && has_sky) {
             vec4 from_there = texelFetch(environment, texel_towards(e, env_size), 0);
             arriving += from_there.rgb * (of.density / max(of.density + from_there.w, 1e-30));
@@ -367,6 +376,10 @@ void main() {
         here = max(listed, ivec2(0));
     }
     Place place = grid_point(here);
+    if (HAS_SPECULAR) {
+        // Only the first vertex is viewed by the eye; later ones by the path before.
+        place.mirror = mirror_of_view(place);
+    }
     vec4 before = imageLoad(batch_mean, slot);
     // A grid point listed twice gets different paths each time.
     uvec3 key = uvec3(uint(slot.y * land.cols + slot.x), uint(before.w), seed);

@@ -4,7 +4,7 @@ mod specular;
 
 use super::Plan;
 use super::active_lights::ActiveLights;
-use super::reference::specular_texels;
+use super::reference::{eye_over_base, specular_texels};
 use crate::graph::{Builder, Limits};
 use crate::passes;
 use crate::passes::azimuths;
@@ -150,17 +150,10 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
         let lit = (environment, surface.border);
         tables = Some(Tables::make(&mut builder, lit, quality));
     }
-    if let Some(eye) = wanted.eye_m
-        && !eye.iter().all(|v| v.abs() <= 1e15)
-    {
-        return Err(Error::setting("picture: eye_m", format!("{eye:?}"), "numbers within ±1e15"));
-    }
+    let eye_m = eye_over_base(field, wanted.eye_m, "picture: eye_m")?;
     if wanted.eye_m.is_some() && active.specular.is_some() && bounces > 0 {
         specular::check_viewed(quality)?;
     }
-    let eye_m = wanted
-        .eye_m
-        .map_or([0.0; 4], |[x, y, z]| [x as f32, y as f32, (z - field.base_m()) as f32, 1.0]);
     let slices = mirrored.map(|phong| {
         let lit = (active.environment, surface.border);
         let of = (phong, lists[0].as_slice());

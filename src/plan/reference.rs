@@ -8,7 +8,8 @@ use crate::passes::blocks::Blocks;
 use crate::passes::path_trace::{self, BATCH_PATHS};
 use crate::plan::reference::choice::{choice_density, environment_cdf, max_path_light};
 use crate::scene::{
-    ANY_LIGHT, Albedo, Border, KeyLight, Lights, Normals, PhongSpecular, Scene, Specular, Sun,
+    ANY_LIGHT, Albedo, Border, HeightField, KeyLight, Lights, Normals, PhongSpecular, Scene,
+    Specular, Sun,
 };
 use crate::{Error, Result};
 
@@ -22,6 +23,9 @@ const MOST_BOUNCES: u32 = 64;
 /// all bounces up to `bounces`. Phong specular reflects at every vertex, about the mirror direction of the incoming path.
 /// With smooth [`Normals`], a path that hits a triangle continues from a corner, drawn by barycentric weight.
 ///
+/// The specular of texels is viewed from `eye_m`, as in [`Picture::eye_m`](super::Picture::eye_m). The plan's setting
+/// "eye_m" states it where the surface has specular; nothing else depends on it.
+///
 /// Inputs: those of [`reference_inputs`]. Outputs, four channels each: "radiance", the mean of all batches so far, and
 /// "standard_error", that of the mean, infinite after the first batch; its fourth channel counts the traced rays.
 ///
@@ -33,15 +37,16 @@ const MOST_BOUNCES: u32 = 64;
 /// between them. It does not include unsampled light: see [`unsampled_light_error`].
 ///
 /// # Errors
-/// Bounces, surface or lights out of range; no light; a scene beyond the limits.
+/// Bounces, eye, surface or lights out of range; no light; a scene beyond the limits.
 pub fn reference(
     scene: &Scene,
     bounces: u32,
     normals: Normals,
+    eye_m: Option<[f64; 3]>,
     seed: u32,
     limits: &Limits,
 ) -> Result<Plan> {
-    traced(scene, (bounces, normals, seed), None, None, limits)
+    traced(scene, (bounces, normals, eye_m, seed), None, None, limits)
 }
 
 /// As [`reference`](reference()), with one dispatch per `band_rows` rows, 1 or more, for hosts that render frames in
@@ -53,6 +58,7 @@ pub fn reference_in_bands(
     scene: &Scene,
     bounces: u32,
     normals: Normals,
+    eye_m: Option<[f64; 3]>,
     seed: u32,
     limits: &Limits,
     band_rows: u32,
@@ -60,7 +66,7 @@ pub fn reference_in_bands(
     if band_rows == 0 {
         return Err(Error::setting("rows of a band", "0", "1 or more"));
     }
-    traced(scene, (bounces, normals, seed), None, Some(band_rows), limits)
+    traced(scene, (bounces, normals, eye_m, seed), None, Some(band_rows), limits)
 }
 
 /// As [`reference`](reference()), for a list of texels and their indirect light only: light that has been reflected at
@@ -74,6 +80,7 @@ pub fn reference_at(
     scene: &Scene,
     bounces: u32,
     normals: Normals,
+    eye_m: Option<[f64; 3]>,
     seed: u32,
     places: usize,
     limits: &Limits,
@@ -83,7 +90,7 @@ pub fn reference_at(
         let expected = format!("1 to {all}, as the field has");
         return Err(Error::setting("places of a reference", places.to_string(), expected));
     }
-    traced(scene, (bounces, normals, seed), Some(places as u32), None, limits)
+    traced(scene, (bounces, normals, eye_m, seed), Some(places as u32), None, limits)
 }
 
 /// The input list of [`reference_at`]: positions of texels in the field, row-major, in rows as long as the field's. The
@@ -107,7 +114,7 @@ pub fn listed_places(scene: &Scene, places: &[usize]) -> Result<Vec<f32>> {
 
 fn traced(
     scene: &Scene,
-    (bounces, normals, seed): (u32, Normals, u32),
+    (bounces, normals, eye_m, seed): (u32, Normals, Option<[f64; 3]>, u32),
     listed: Option<u32>,
     band_rows: Option<u32>,
     limits: &Limits,
@@ -119,6 +126,8 @@ fn traced(
         let expected = format!("a whole number from 0 to {MOST_BOUNCES}");
         return Err(Error::setting("bounces", bounces.to_string(), expected));
     }
+    let eye_m = eye_m.filter(|_| surface.specular.is_some());
+    let eye_over_base_m = eye_over_base(field, eye_m, "eye_m")?;
     if let Some(light) = lights.near().find(|light| !light.of.has_paths) {
         let expected = format!("no {}s: the path-traced reference would omit them", light.of.name);
         return Err(Error::setting("lights", light.name(), expected));
@@ -199,13 +208,13 @@ fn traced(
                 &mut builder,
                 scene,
                 &blocks,
-                (bounces, normals, seed),
+                (bounces, normals, eye_over_base_m, seed),
                 dispatch,
                 &bound,
             );
         }
     }
-    let used = vec![
+    let mut used = vec![
         ("method".to_owned(), "path tracing".to_owned()),
         ("border".to_owned(), format!("{:?}", surface.border).to_lowercase()),
         ("bounces".to_owned(), bounces.to_string()),
@@ -213,7 +222,25 @@ fn traced(
         ("seed".to_owned(), seed.to_string()),
         ("paths_of_a_batch".to_owned(), BATCH_PATHS.to_string()),
     ];
+    used.extend(eye_m.map(|[x, y, z]| ("eye_m".to_owned(), format!("{x},{y},{z}"))));
     Plan::finish(builder, size, Vec::new(), Vec::new(), used, limits)
+}
+
+/// An eye over the field's base, as passes read it; the last number is 0 for a view from straight above.
+///
+/// # Errors
+/// An eye out of range, as the setting `name`.
+pub(super) fn eye_over_base(
+    field: &HeightField,
+    eye_m: Option<[f64; 3]>,
+    name: &str,
+) -> Result<[f32; 4]> {
+    let Some(eye) = eye_m else { return Ok([0.0; 4]) };
+    if !eye.iter().all(|v| v.abs() <= 1e15) {
+        return Err(Error::setting(name, format!("{eye:?}"), "numbers within ±1e15"));
+    }
+    let [x, y, z] = eye;
+    Ok([x as f32, y as f32, (z - field.base_m()) as f32, 1.0])
 }
 
 /// Approximate number of path vertices per dispatch. A run can be interrupted between dispatches.

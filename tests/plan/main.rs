@@ -124,11 +124,11 @@ fn plans() -> Vec<Plan> {
         for border in [Border::Plane, Border::Open, Border::Periodic] {
             let scene = under_everything(flat(rows, cols), border);
             all.push(
-                plan::reference(&scene, 1, Normals::Smooth, 0, &Limits::lavapipe())
+                plan::reference(&scene, 1, Normals::Smooth, None, 0, &Limits::lavapipe())
                     .expect("a plan"),
             );
             all.push(
-                plan::reference_at(&scene, 1, Normals::Smooth, 0, 1, &Limits::lavapipe())
+                plan::reference_at(&scene, 1, Normals::Smooth, None, 0, 1, &Limits::lavapipe())
                     .expect("a plan"),
             );
             for quality in &qualities {

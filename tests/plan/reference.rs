@@ -1,7 +1,9 @@
 //! Plans of the path-traced reference, and its importance sampling.
 
 use ridgelight::plan::{self, Limits, Plan};
-use ridgelight::scene::{Border, Environment, KeyLight, Lights, Normals, Scene, Sun};
+use ridgelight::scene::{
+    Albedo, Border, Environment, KeyLight, Lights, Normals, PhongSpecular, Scene, Specular, Sun,
+};
 
 use super::{flat, under_sky};
 
@@ -10,7 +12,7 @@ use super::{flat, under_sky};
 fn a_reference() {
     let of = |rows, cols, bounces, seed| {
         let scene = under_sky(flat(rows, cols));
-        plan::reference(&scene, bounces, Normals::Smooth, seed, &Limits::lavapipe())
+        plan::reference(&scene, bounces, Normals::Smooth, None, seed, &Limits::lavapipe())
             .expect("a plan")
     };
     let labels = |plan: &Plan| plan.passes.iter().map(plan::Pass::label).collect::<Vec<_>>();
@@ -30,9 +32,42 @@ fn a_reference() {
         ["rows 0..256", "rows 256..512", "rows 512..515"].map(|p| format!("path_trace {p}"));
     assert_eq!(labels(&bands)[labels(&bands).len() - 3..], parts);
     let dark = Scene { lights: Lights::default(), ..under_sky(flat(2, 2)) };
-    let refused =
-        plan::reference(&dark, 0, Normals::Smooth, 0, &Limits::lavapipe()).unwrap_err().to_string();
+    let refused = plan::reference(&dark, 0, Normals::Smooth, None, 0, &Limits::lavapipe())
+        .unwrap_err()
+        .to_string();
     assert!(refused.contains("lights: found none"), "{refused}");
+}
+
+/// Only specular depends on the eye: without it the plan is that of a view from straight above. Another eye restarts the
+/// paths.
+#[test]
+fn an_eye_changes_the_plan_where_there_is_specular() {
+    let dull = under_sky(flat(5, 5));
+    let mut shiny = dull.clone();
+    shiny.surface.albedo = Albedo::Constant([0.5; 3]);
+    shiny.surface.specular = Some(Specular::Constant(PhongSpecular { exponent: 9.0, scale: 0.25 }));
+    let of = |scene: &Scene, eye_m| {
+        plan::reference(scene, 0, Normals::Smooth, eye_m, 0, &Limits::lavapipe())
+    };
+    let stated = |plan: &Plan| {
+        plan.settings.iter().find(|(name, _)| name == "eye_m").map(|(_, value)| value.clone())
+    };
+    let (eye, other) = (Some([1.0, -2.5, 9.0]), Some([1.0, -2.5, 8.0]));
+    let [above, near] = [None, eye].map(|eye_m| of(&dull, eye_m).expect("a plan"));
+    assert_eq!(near.passes_after(&above, &[]), [0_usize; 0]);
+    assert_eq!([stated(&above), stated(&near)], [None, None]);
+    let [above, near, lower] = [None, eye, other].map(|eye_m| of(&shiny, eye_m).expect("a plan"));
+    assert_eq!(near.passes_after(&near, &[]), [0_usize; 0]);
+    let trace = near.passes.len() - 1;
+    assert!(near.passes_after(&above, &[]).contains(&trace));
+    assert!(lower.passes_after(&near, &[]).contains(&trace));
+    assert_eq!(stated(&above), None);
+    assert_eq!(stated(&near).as_deref(), Some("1,-2.5,9"));
+    for wrong in [f64::NAN, 2e15] {
+        let refused = of(&shiny, Some([0.0, wrong, 0.0])).unwrap_err().to_string();
+        assert!(refused.contains("eye_m: found"), "{refused}");
+        assert!(of(&dull, Some([0.0, wrong, 0.0])).is_ok());
+    }
 }
 
 /// Three columns and rows of an environment: the shares of its light, by hand.
@@ -63,7 +98,7 @@ fn environments_are_importance_sampled() {
 fn a_reference_at_some_texels() {
     let scene = under_sky(flat(515, 512));
     let of = |grid_points| {
-        plan::reference_at(&scene, 1, Normals::Smooth, 0, grid_points, &Limits::lavapipe())
+        plan::reference_at(&scene, 1, Normals::Smooth, None, 0, grid_points, &Limits::lavapipe())
     };
     let plan = of(600).expect("a plan");
     let size = |name: &str| match plan.resources[plan.find(name).expect("there").0].kind {
@@ -85,7 +120,8 @@ fn a_reference_at_some_texels() {
     }
     let refused = plan::listed_places(&scene, &[263_679, 263_680]).unwrap_err().to_string();
     assert!(refused.contains("position 1: found 263680, expected less than 263680"), "{refused}");
-    let bands = plan::reference_in_bands(&scene, 1, Normals::Smooth, 0, &Limits::lavapipe(), 0);
+    let bands =
+        plan::reference_in_bands(&scene, 1, Normals::Smooth, None, 0, &Limits::lavapipe(), 0);
     let refused = bands.unwrap_err().to_string();
     assert!(refused.contains("rows of a band: found 0, expected 1 or more"), "{refused}");
 }
@@ -109,7 +145,8 @@ fn f32_right_angles_are_traced_like_exact_ones() {
             let mut scene = under_sky(flat(2, 2));
             scene.surface.border = border;
             scene.lights = Lights { suns: suns.to_vec(), keys: vec![key], ..Lights::default() };
-            plan::reference(&scene, 1, Normals::Smooth, 0, &Limits::lavapipe()).expect("a plan");
+            plan::reference(&scene, 1, Normals::Smooth, None, 0, &Limits::lavapipe())
+                .expect("a plan");
             (plan::reference_inputs(&scene), plan::unsampled_light_error(&scene, 1, 64))
         };
         assert_eq!(of(rounded), of([FRAC_PI_2, TAU]), "{border:?}");

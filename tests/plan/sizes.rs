@@ -309,7 +309,7 @@ fn dispatches_of_rays_are_short_on_a_gpu() {
     let quality = Quality { bounces, light_cutoff: 0.0, ..Quality::default() };
     let planned = |limits: &Limits, name: &str| {
         let plan = match name {
-            "path_trace" => plan::reference(&scene, 1, Normals::Flat, 1, limits),
+            "path_trace" => plan::reference(&scene, 1, Normals::Flat, None, 1, limits),
             _ => plan::picture(&scene, &quality, limits, Picture::default()),
         };
         plan.expect("a plan").passes.into_iter().filter(|p| p.name() == name).collect::<Vec<_>>()

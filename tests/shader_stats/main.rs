@@ -136,7 +136,7 @@ fn plans(limits: &Limits) -> Vec<(&'static str, Result<Plan>)> {
     all.push(("edits under a sky", plan::picture(&clear, &quality, limits, kept)));
     let hulls = Quality { method: Method::Sweep, ..quality };
     all.push(("edits under a sun", plan::picture(&sunny, &hulls, limits, kept)));
-    all.push(("reference", plan::reference(&clear, 1, Normals::Smooth, 1, limits)));
+    all.push(("reference", plan::reference(&clear, 1, Normals::Smooth, None, 1, limits)));
     all
 }
 

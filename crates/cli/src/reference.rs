@@ -41,7 +41,7 @@ pub fn run(args: &ReferenceArgs) -> Result<Outcome> {
         args.global.quiet,
     )?;
     let plan = |limits: &Limits| {
-        plan::reference(&scene, args.bounces, args.normals.into(), args.seed, limits)
+        plan::reference(&scene, args.bounces, args.normals.into(), None, args.seed, limits)
     };
     setup::check_plan(&args.global, plan)?;
     // From here on a signal ends the tracing only.

@@ -66,12 +66,13 @@ pub(crate) fn parts(
 }
 
 /// One batch of paths from every texel of some rows, counted in eights; for `listed` texels, only their bounced
-/// light, from some rows of the list.
+/// light, from some rows of the list. `eye_m` is over the field's base; its last number is 0 for a view from straight
+/// above.
 pub(crate) fn plan(
     builder: &mut Builder,
     scene: &Scene,
     blocks: &Blocks,
-    (bounces, normals, seed): (u32, Normals, u32),
+    (bounces, normals, eye_m, seed): (u32, Normals, [f32; 4], u32),
     (band, part, listed): (Range<u32>, Option<&Part>, Option<u32>),
     bound: &[(&str, ResourceId)],
 ) {
@@ -92,7 +93,7 @@ pub(crate) fn plan(
     let whole = Part { paths: 0..BATCH_PATHS, lights: 0..count as u32 };
     let Part { paths, lights: light_range } = part.unwrap_or(&whole);
     let [thin_rows, thin_cols] = blocks.thin(field);
-    let four = |[r, g, b]: [f32; 3]| [r, g, b, 1.0];
+    let four = |[r, g, b]: [f32; 3], w: f32| [r, g, b, w];
     let (albedo, is_map) = match surface.albedo {
         Albedo::Constant(colour) => (colour, false),
         Albedo::Map(_) => ([0.0; 3], true),
@@ -118,16 +119,15 @@ pub(crate) fn plan(
             land: shaders::LandPush::of(field, &blocks.levels),
             highest_m,
             rotation_turns: lights.environment.as_ref().map_or(0.0, turns),
-            exponent: specular.exponent,
-            specular_scale: specular.scale,
             bounces: bounces as i32,
             suns: lights.suns.len() as i32,
             light_count: count as i32,
             seed,
-            albedo: four(albedo),
-            sky: four(lights.sky.unwrap_or_default()),
             first_row: band.start as i32,
             keys: lights.keys.len() as i32,
+            albedo_exponent: four(albedo, specular.exponent),
+            sky_scale: four(lights.sky.unwrap_or_default(), specular.scale),
+            eye_m,
             first_path: paths.start as i32,
             last_path: paths.end as i32,
             first_light: light_range.start as i32,

@@ -28,6 +28,8 @@ pub(crate) enum Wanted {
     ShadowHeights(u32, Option<(HeightField, [f64; 2])>),
     /// Bounces.
     Reference(u32, Normals),
+    /// Bounces; where specular is viewed from.
+    ReferenceFrom(u32, Normals, [f64; 3]),
     /// Bounces; bounced light alone of so many texels.
     ReferenceAt(u32, Normals, usize),
     Points(Directions),
@@ -81,10 +83,13 @@ impl Case {
                 plan::shadow_heights(field, sun, outer, *parts, limits)
             }
             Wanted::Reference(bounces, normals) => {
-                plan::reference(&self.scene, *bounces, *normals, 1, limits)
+                plan::reference(&self.scene, *bounces, *normals, None, 1, limits)
+            }
+            Wanted::ReferenceFrom(bounces, normals, eye_m) => {
+                plan::reference(&self.scene, *bounces, *normals, Some(*eye_m), 1, limits)
             }
             Wanted::ReferenceAt(bounces, normals, count) => {
-                plan::reference_at(&self.scene, *bounces, *normals, 1, *count, limits)
+                plan::reference_at(&self.scene, *bounces, *normals, None, 1, *count, limits)
             }
             Wanted::Points(directions) => plan::visible_points(
                 &self.scene.field,
@@ -146,7 +151,9 @@ impl Case {
 
     /// Texels of the plan's inputs, in its order.
     pub fn contents(&self) -> Vec<Vec<f32>> {
-        if let Wanted::Reference(..) | Wanted::ReferenceAt(..) = self.wanted {
+        if let Wanted::Reference(..) | Wanted::ReferenceFrom(..) | Wanted::ReferenceAt(..) =
+            self.wanted
+        {
             let list = self.listed().map(|list| plan::listed_places(&self.scene, &list));
             let mut all = plan::reference_inputs(&self.scene);
             all.extend(list.map(|texels| texels.expect("of the field")));

@@ -15,6 +15,7 @@ use crate::cpu_reference::{
     Case, Pair, Reference, Run, Wanted, check_all, constant, key, noisy_environment, pushed, rough,
     worst,
 };
+use crate::specular::cpu_reference::slices::eye_of;
 use crate::{Device, random};
 
 /// The passes of this room and their CPU references.
@@ -62,7 +63,10 @@ fn one_part(run: &mut Run, pass: &Pass, before: &[f32], spread: &[f32], pairs: &
     let is_listed = run.listed.is_some();
     let listed = run.listed.clone().unwrap_or_else(|| (0..cols * rows).collect());
     let scene = run.scene;
-    let tracer = Tracer::of(scene, ground, (bounces, normals_of(pass), seed), !is_listed);
+    let eye = eye_of(pass, const { offset("PathTracePush", "eye_m") });
+    let eye_m = (eye[3] > 0.0).then(|| [0, 1, 2].map(|i| eye[i] as f32));
+    let tracer =
+        Tracer::of(scene, ground, (bounces, normals_of(pass), seed), !is_listed).viewed_from(eye_m);
     let is_begun = first_path == 0 && first_light == 0;
     if is_begun {
         run.batches = vec![Traced::default(); listed.len()];
@@ -259,8 +263,9 @@ pub(crate) fn references() -> Vec<Case> {
     ]
 }
 
-/// Paths whose light nothing else computes: specular at hit points; batches in parts, by paths and by lights; a list
-/// of texels; ground that continues level; a line.
+/// Paths whose light nothing else computes: specular at hit points; specular viewed from an eye beside the field, so low
+/// that facets turn away from it; batches in parts, by paths and by lights; a list of texels; ground that continues
+/// level; a line.
 pub(crate) fn paths() -> Vec<Case> {
     let [all, repeated] = of_all_lights();
     let on = |field, border, lights: &Lights| Scene {
@@ -294,7 +299,17 @@ pub(crate) fn paths() -> Vec<Case> {
             Wanted::Reference(1, Normals::Flat),
         ),
         reference("sharp specular on a plane", shiny.clone(), Wanted::Reference(1, Normals::Flat)),
-        reference("by smooth normals", shiny, Wanted::Reference(1, Normals::Smooth)),
+        reference("by smooth normals", shiny.clone(), Wanted::Reference(1, Normals::Smooth)),
+        reference(
+            "specular maps viewed from an eye",
+            with_specular_maps(all.clone()),
+            Wanted::ReferenceFrom(1, Normals::Flat, [40.0, -20.0, 903.0]),
+        ),
+        reference(
+            "sharp specular viewed from an eye",
+            shiny,
+            Wanted::ReferenceFrom(1, Normals::Smooth, [80.0, -60.0, 910.0]),
+        ),
         reference("bounced light of a list", all, Wanted::ReferenceAt(1, Normals::Smooth, 40)),
         reference("many suns", many, Wanted::Reference(1, Normals::Smooth)),
         reference("on a plane", level, Wanted::Reference(2, Normals::Flat)),

@@ -82,7 +82,7 @@ fn lost_rays_are_counted() {
     let ridge = field(40, 40, [1.0, 1.0], |_, c| 9.0 - (c as f64 - 20.0).abs().min(9.0));
     let scene = under_sky(ridge, Border::Plane);
     let mut plan =
-        plan::reference(&scene, 0, Normals::Smooth, 1, &device.limits()).expect("a plan");
+        plan::reference(&scene, 0, Normals::Smooth, None, 1, &device.limits()).expect("a plan");
     assert_eq!(traced_by(&mut device, &scene, plan.clone(), 1, &[]).1, 0);
     let pass = plan.passes.last_mut().expect("path_trace");
     let bound = pass.shader.constants.iter().position(|c| c.name == "most_steps");
@@ -102,7 +102,7 @@ fn pieces_of_a_batch_are_the_batch() {
     let contents = plan::reference_inputs(&scene);
     let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
     let gpu = device.gpu.as_mut().expect("alive");
-    let whole = plan::reference(&scene, 1, Normals::Smooth, 3, &limits).expect("a plan");
+    let whole = plan::reference(&scene, 1, Normals::Smooth, None, 3, &limits).expect("a plan");
     let want = gpu
         .with_frame(whole, &contents, |gpu, frame| {
             gpu.draw(frame)?;
@@ -110,7 +110,7 @@ fn pieces_of_a_batch_are_the_batch() {
         })
         .expect("drawn");
     let banded =
-        plan::reference_in_bands(&scene, 1, Normals::Smooth, 3, &limits, 8).expect("a plan");
+        plan::reference_in_bands(&scene, 1, Normals::Smooth, None, 3, &limits, 8).expect("a plan");
     let count = banded.passes.len();
     let first = banded.passes.iter().position(|p| p.name() == "path_trace").expect("traces");
     assert_eq!(count - first, 5);

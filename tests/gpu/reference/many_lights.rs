@@ -38,7 +38,8 @@ fn many_sphere_lights_are_their_sum() {
     let mut scene = under_sphere_lights(120);
     let oracle = Oracle::new(&scene.field, Border::Plane);
     scene.lights.sky = Some([0.0, 0.0, 1.0]);
-    let plan = plan::reference(&scene, 0, Normals::Flat, 1, &device.limits()).expect("a plan");
+    let plan =
+        plan::reference(&scene, 0, Normals::Flat, None, 1, &device.limits()).expect("a plan");
     let parts = plan.passes.iter().filter(|p| p.name() == "path_trace").count();
     assert!(parts > 1, "{parts} parts");
     let [light, error] = traced(&mut device, &scene, 0, 1, BATCHES);
@@ -91,7 +92,8 @@ fn parts_of_a_batch_are_the_batch() {
     const SPHERE_LIGHTS: usize = 30;
     let mut device = Device::new();
     let scene = under_sphere_lights(SPHERE_LIGHTS);
-    let plan = plan::reference(&scene, 1, Normals::Flat, 1, &device.limits()).expect("a plan");
+    let plan =
+        plan::reference(&scene, 1, Normals::Flat, None, 1, &device.limits()).expect("a plan");
     let parts = || plan.passes.iter().filter(|p| p.name() == "path_trace");
     let cuts = |at: usize, last: u32| parts().any(|p| p.push[at..at + 4] != last.to_ne_bytes());
     let lasts = [(LAST_LIGHT, SPHERE_LIGHTS as u32), (LAST_PATH, plan::REFERENCE_BATCH)];

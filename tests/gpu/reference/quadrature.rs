@@ -28,7 +28,8 @@ pub(crate) fn traced_on(
     (bounces, seed): (u32, u32),
     batches: usize,
 ) -> Traced {
-    let plan = plan::reference(scene, bounces, normals, seed, &device.limits()).expect("a plan");
+    let plan =
+        plan::reference(scene, bounces, normals, None, seed, &device.limits()).expect("a plan");
     let (light, lost) = traced_by(device, scene, plan, batches, &[]);
     assert_eq!(lost, 0, "rays were lost");
     light
@@ -67,8 +68,8 @@ pub(crate) fn traced_by(
 fn traced_at(device: &mut Device, scene: &Scene, bounces: u32, grid_points: &[usize]) -> Traced {
     let normals = Normals::Smooth;
     let limits = device.limits();
-    let plan =
-        plan::reference_at(scene, bounces, normals, 1, grid_points.len(), &limits).expect("a plan");
+    let plan = plan::reference_at(scene, bounces, normals, None, 1, grid_points.len(), &limits)
+        .expect("a plan");
     let list = plan::listed_places(scene, grid_points).expect("of the field");
     let ([light, error], lost) = traced_by(device, scene, plan, BATCHES, &[list]);
     assert_eq!(lost, 0, "rays were lost");

@@ -66,7 +66,8 @@ pub fn choose(
     let mut trace = |places: &[usize], batches: u32, seed: u32| {
         let paths = batches * plan::REFERENCE_BATCH;
         bar.set_message(format!("tracing {paths} paths from each of {} probes", places.len()));
-        trace(&mut gpu.borrow_mut(), limits, (scene, bounces), places, (batches, seed))
+        let of = (scene, bounces, wanted.eye_m);
+        trace(&mut gpu.borrow_mut(), limits, of, places, (batches, seed))
     };
     let bounced = (bounces > 0).then_some(Bounced { count: bounces, trace: &mut trace });
     let mut chosen = auto::choose(&lit, goal, probes, bounced, |quality, threads| {
@@ -142,11 +143,12 @@ impl Timed<'_> {
 fn trace(
     gpu: &mut Headless,
     limits: &Limits,
-    (scene, bounces): (&Scene, u32),
+    (scene, bounces, eye_m): (&Scene, u32, Option<[f64; 3]>),
     places: &[usize],
     (batches, seed): (u32, u32),
 ) -> Result<Vec<Traced>> {
-    let plan = plan::reference_at(scene, bounces, Normals::Smooth, seed, places.len(), limits)?;
+    let (normals, count) = (Normals::Smooth, places.len());
+    let plan = plan::reference_at(scene, bounces, normals, eye_m, seed, count, limits)?;
     let is_traced = |i: &usize| plan.passes[*i].name() == "path_trace";
     let passes: Vec<usize> = (0..plan.passes.len()).filter(is_traced).collect();
     let mut contents = plan::reference_inputs(scene);

@@ -37,6 +37,8 @@ pub struct Tracer<'a> {
     bounces: u32,
     normals: Normals,
     seed: u32,
+    /// Where specular is viewed from, over the field's base; none for a view from straight above.
+    eye_m: Option<Near3>,
     /// Whether direct light counts.
     counts_direct: bool,
     /// The largest contribution of a path after that many reflections.
@@ -126,8 +128,14 @@ impl<'a> Tracer<'a> {
             bounces,
             normals,
             seed,
+            eye_m: None,
             counts_direct,
         }
+    }
+
+    /// The same viewed from an eye as the device has it, over the field's base.
+    pub fn viewed_from(self, eye_m: Option<[f32; 3]>) -> Self {
+        Self { eye_m: eye_m.map(given), ..self }
     }
 
     /// Bounds on the radiance along a scattered ray with that many more bounces: sphere lights that it leaves, then

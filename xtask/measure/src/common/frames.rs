@@ -221,7 +221,7 @@ pub fn traced_at(
     (bounces, normals, seed): (u32, Normals, u32),
     stops: &[u32],
 ) -> Result<Vec<[Colours; 2]>> {
-    let plan = plan::reference(scene, bounces, normals, seed, &gpu.report().limits)?;
+    let plan = plan::reference(scene, bounces, normals, None, seed, &gpu.report().limits)?;
     let is_path = |p: &usize| plan.passes[*p].name() == "path_trace";
     let paths: Vec<usize> = (0..plan.passes.len()).filter(is_path).collect();
     let lost = plan.find("lost_rays");

@@ -66,7 +66,7 @@ impl Geometry {
         let field = HeightField::new(rows * repeats[1], wide, &all, field.cell_m(), None)?;
         let lights = Lights { suns: vec![sun(light)], ..Lights::default() };
         let scene = Scene { field, surface, lights };
-        let plan = plan::reference(&scene, bounces, Normals::Flat, 1, &gpu.report().limits)?;
+        let plan = plan::reference(&scene, bounces, Normals::Flat, None, 1, &gpu.report().limits)?;
         let contents = plan::reference_inputs(&scene);
         let mut frame = gpu.frame(plan, &slices(&contents))?;
         gpu.draw(&mut frame)?;

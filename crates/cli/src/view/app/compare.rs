@@ -96,8 +96,9 @@ impl Compare {
                 screen.end(old.frame)?;
             }
             let (scene, bounces) = (&state.scene, state.quality.bounces.count);
+            let normals = Normals::Smooth;
             let plan =
-                plan::reference_in_bands(scene, bounces, Normals::Smooth, 0, limits, BAND_ROWS)?;
+                plan::reference_in_bands(scene, bounces, normals, None, 0, limits, BAND_ROWS)?;
             let is_band = |pass: &plan::Pass| pass.name() == "path_trace";
             let first_band = plan.passes.iter().position(is_band).unwrap_or(0);
             let contents = plan::reference_inputs(scene);

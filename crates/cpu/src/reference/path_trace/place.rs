@@ -33,7 +33,8 @@ impl Tracer<'_> {
         let cols = self.scene.field.cols();
         let [own, east, north] = given(self.grid_points[grid_point]);
         let normal = normalize([-east, -north, one()]);
-        let mirror = times(Near::of(2.0) * normal[2], normal);
+        let view = self.view([grid_point % cols, grid_point / cols], own);
+        let twice = Near::of(2.0) * dot(normal, view);
         Place {
             base: [(grid_point % cols) as i32, (grid_point / cols) as i32],
             offset: [Near::ZERO; 2],
@@ -41,8 +42,24 @@ impl Tracer<'_> {
             normal,
             albedo: given(self.albedo[grid_point]),
             specular: self.specular.get(grid_point).map_or([Near::ZERO; 2], |l| given(*l)),
-            mirror: minus(mirror, [Near::ZERO, Near::ZERO, one()]),
+            mirror: minus(times(twice, normal), view),
         }
+    }
+
+    /// Direction from a grid point to the eye, by `specular/mirror.glsl`.
+    fn view(&self, [col, row]: [usize; 2], own: Near) -> Near3 {
+        let above = [Near::ZERO, Near::ZERO, one()];
+        let Some(eye) = self.eye_m else { return above };
+        let [x, y] = self.ground.cell_m;
+        let north = self.scene.field.rows() - 1 - row;
+        let at = [Near::given(col as f32) * x, Near::given(north as f32) * y, own];
+        let to_eye = minus(eye, at);
+        let largest = largest(to_eye.map(Near::abs));
+        // An eye at a grid point views it from above.
+        if largest.above(Near::of(1e-30)) == Some(false) {
+            return above;
+        }
+        normalize(to_eye.map(|v| v / largest))
     }
 
     /// At the hit of a ray along e. With smooth normals, at the corner of the triangle that the random number `drawn`
