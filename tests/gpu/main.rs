@@ -97,6 +97,7 @@ mod specular {
     mod kept_tables;
     mod keys;
     mod spheres;
+    mod viewed_paths;
 }
 #[path = "../common/intercepted.rs"]
 mod intercepted;

@@ -35,6 +35,20 @@ pub(crate) fn traced_on(
     light
 }
 
+/// `batches` of direct light whose specular is viewed from an eye.
+pub(crate) fn traced_from(
+    device: &mut Device,
+    scene: &Scene,
+    eye_m: [f64; 3],
+    batches: usize,
+) -> Traced {
+    let limits = device.limits();
+    let plan = plan::reference(scene, 0, Normals::Smooth, Some(eye_m), 1, &limits).expect("a plan");
+    let (light, lost) = traced_by(device, scene, plan, batches, &[]);
+    assert_eq!(lost, 0, "rays were lost");
+    light
+}
+
 /// `batches` by this plan, which may have `more` inputs, and how many rays were lost.
 pub(crate) fn traced_by(
     device: &mut Device,
