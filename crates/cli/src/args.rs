@@ -26,7 +26,7 @@ use crate::horizon::Fourier;
 use crate::scene_file::SceneFile;
 pub use auto::AutoArgs;
 pub use bake::BakeArgs;
-pub use camera::CameraArgs;
+pub use camera::{CameraArgs, CameraAt, EyeArgs};
 pub use compare::CompareArgs;
 pub use maps::{HillshadeArgs, MapArgs, OpennessArgs, ShadowArgs, SkyViewArgs};
 pub use quality::{QualityArgs, flag};

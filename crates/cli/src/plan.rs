@@ -24,7 +24,7 @@ pub fn run(args: &PlanArgs) -> Result<Outcome> {
         field,
         &args.surface,
         &args.lights,
-        setup::Unlit::of(&quality, args.camera.compass_deg()),
+        setup::Unlit::of(&quality, args.camera.eye.compass_deg()),
         args.global.quiet,
     )?;
     let camera_view = camera::requested(&args.camera, &scene, false)?;

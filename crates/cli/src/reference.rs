@@ -11,6 +11,7 @@ use ridgelight_io as files;
 use ridgelight_io::{Channels, Georeference, Layer};
 
 use crate::args::ReferenceArgs;
+use crate::render::camera;
 use crate::setup::{self, Outcome};
 
 /// Fewest batches for a reliable error: its relative standard error is 1/√(2·7).
@@ -37,11 +38,16 @@ pub fn run(args: &ReferenceArgs) -> Result<Outcome> {
         field,
         &args.surface,
         &args.lights,
-        setup::Unlit::Daylight(None),
+        setup::Unlit::Daylight(args.camera.compass_deg()),
         args.global.quiet,
     )?;
+    let eye_m = camera::eye_m(&args.camera, &scene.field)?;
+    let is_idle = eye_m.is_some() && scene.surface.specular.is_none() && !args.lights.is_empty();
+    if is_idle && !args.global.quiet {
+        setup::note("--camera changes nothing without --specular");
+    }
     let plan = |limits: &Limits| {
-        plan::reference(&scene, args.bounces, args.normals.into(), None, args.seed, limits)
+        plan::reference(&scene, args.bounces, args.normals.into(), eye_m, args.seed, limits)
     };
     setup::check_plan(&args.global, plan)?;
     // From here on a signal ends the tracing only.

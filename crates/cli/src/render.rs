@@ -50,7 +50,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
             format!("a .png output: {kind} keeps linear radiance"),
         ));
     }
-    if is_tif && args.camera.camera.is_some() {
+    if is_tif && args.camera.eye.camera.is_some() {
         return Err(Error::setting(
             "--camera",
             "a .tif output",
@@ -63,7 +63,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
     let mut quality = args.quality.quality()?;
     let (field, georeference) =
         setup::georeferenced(&args.input.path, &args.surface.field, &args.global)?;
-    let unlit = setup::Unlit::of(&quality, args.camera.compass_deg());
+    let unlit = setup::Unlit::of(&quality, args.camera.eye.compass_deg());
     let mut scene = setup::scene(field, &args.surface, &args.lights, unlit, args.global.quiet)?;
     let tint = match is_png {
         true => setup::tinted(&mut scene, &args.surface),

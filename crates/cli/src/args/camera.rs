@@ -4,9 +4,10 @@ use clap::Args;
 
 use super::values::{colour, number, numbers};
 
+// Doc comments of these two would replace the descriptions of the commands.
 #[derive(Args)]
 #[command(next_help_heading = "Camera")]
-pub struct CameraArgs {
+pub struct EyeArgs {
     /// View from a camera instead of the map
     ///
     /// Without a value the camera stands in the south, 30 degrees above the horizontal. FROM is south, north-east and so on,
@@ -38,6 +39,27 @@ pub struct CameraArgs {
     /// Width and height of the picture, pixels
     #[arg(long, value_name = "WxH", default_value = "2048x1152", value_parser = size, allow_hyphen_values = true, requires = "camera")]
     pub size: Size,
+    /// Depth of a plinth under the field, as a share of its longer side; 0 draws none [default: 0.04 in a .png]
+    ///
+    /// The plinth has walls from the field's edges down to a level base, SHARE of the longer side below the lowest height.
+    /// Its light is not computed, and it has no depths. By default a .png has one, unless the camera is below the horizontal,
+    /// and an .exr has none. A camera without DISTANCE leaves room for it in both: they have the same ground in the same
+    /// pixels.
+    #[arg(
+        long,
+        value_name = "SHARE",
+        value_parser = number::<f32>("a share from 0 to 1"),
+        allow_negative_numbers = true,
+        hide_short_help = true,
+        requires = "camera"
+    )]
+    pub plinth: Option<f32>,
+}
+
+#[derive(Args)]
+pub struct CameraArgs {
+    #[command(flatten)]
+    pub eye: EyeArgs,
     /// MSAA samples per pixel: 1, 2, 4 or 8
     ///
     /// Fewer are faster and leave jagged edges. The device must support the number.
@@ -48,7 +70,8 @@ pub struct CameraArgs {
         value_parser = number::<u32>("a whole number: 1, 2, 4 or 8"),
         allow_negative_numbers = true,
         hide_short_help = true,
-        requires = "camera"
+        requires = "camera",
+        help_heading = "Camera"
     )]
     pub samples: u32,
     /// Draw the surface through every Nth grid point of every Nth row
@@ -72,27 +95,13 @@ pub struct CameraArgs {
         value_parser = colour,
         allow_negative_numbers = true,
         hide_short_help = true,
-        requires = "camera"
+        requires = "camera",
+        help_heading = "Camera"
     )]
     pub background: [f32; 3],
-    /// Depth of a plinth under the field, as a share of its longer side; 0 draws none [default: 0.04 in a .png]
-    ///
-    /// The plinth has walls from the field's edges down to a level base, SHARE of the longer side below the lowest height.
-    /// Its light is not computed, and it has no depths. By default a .png has one, unless the camera is below the horizontal,
-    /// and an .exr has none. A camera without DISTANCE leaves room for it in both: they have the same ground in the same
-    /// pixels.
-    #[arg(
-        long,
-        value_name = "SHARE",
-        value_parser = number::<f32>("a share from 0 to 1"),
-        allow_negative_numbers = true,
-        hide_short_help = true,
-        requires = "camera"
-    )]
-    pub plinth: Option<f32>,
 }
 
-impl CameraArgs {
+impl EyeArgs {
     /// The camera's compass azimuth, if there is a camera; others are refused later.
     pub fn compass_deg(&self) -> Option<f64> {
         self.camera.map(|at| at.azimuth).filter(|azimuth| azimuth.is_finite())

@@ -3,9 +3,26 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 
 use super::values::{BOUNCES, ERROR, SEED, number};
-use super::{GlobalArgs, Input, LightArgs, SurfaceArgs};
+use super::{EyeArgs, GlobalArgs, Input, LightArgs, SurfaceArgs};
 
+// Its camera draws no picture.
 #[derive(Args)]
+#[command(
+    mut_arg("camera", |arg| {
+        arg.help("View --specular from a camera, as `render --camera` does").long_help(
+            "View --specular from a camera, as `render --camera` does\n\nThe result still has one pixel per texel. FROM, --look-at, \
+            --fov, --ortho, --size and --plinth place the camera as in `render`, and the default sun stands as there. Light \
+            without specular does not depend on it.",
+        )
+    }),
+    mut_arg("size", |arg| {
+        arg.help("Width and height of the picture that the camera would draw, pixels").hide_short_help(true)
+    }),
+    mut_arg("plinth", |arg| {
+        arg.help("Plinth for which a camera without DISTANCE leaves room, as in `render` [default: 0.04]")
+            .long_help("Plinth for which a camera without DISTANCE leaves room, as in `render` [default: 0.04]")
+    })
+)]
 pub struct ReferenceArgs {
     #[command(flatten)]
     pub input: Input,
@@ -42,6 +59,8 @@ pub struct ReferenceArgs {
     pub lights: LightArgs,
     #[command(flatten)]
     pub surface: SurfaceArgs,
+    #[command(flatten)]
+    pub camera: EyeArgs,
     #[command(flatten)]
     pub global: GlobalArgs,
 }

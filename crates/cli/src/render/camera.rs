@@ -8,7 +8,7 @@ use ridgelight::{Error, Result};
 use ridgelight_io as files;
 use ridgelight_io::{Channels, Layer as FileLayer};
 
-use crate::args::{CameraArgs, Layer, RenderArgs};
+use crate::args::{CameraArgs, CameraAt, EyeArgs, Layer, RenderArgs};
 
 /// A camera and the options of its view.
 pub struct CameraView {
@@ -17,17 +17,21 @@ pub struct CameraView {
 }
 
 impl CameraView {
-    /// Where specular is viewed from. The rays of an orthographic lens meet far away.
+    /// Where specular is viewed from.
     pub fn eye_m(&self, field: &HeightField) -> [f64; 3] {
-        let Camera { target_m, lens, .. } = self.camera;
-        match lens {
-            Lens::Perspective { .. } => self.camera.eye_m().to_array(),
-            Lens::Orthographic { .. } => {
-                let [x, y] = field.cell_m();
-                let largest = (x * field.cols() as f64).max(y * field.rows() as f64);
-                let back = self.camera.axes()[2] * (1e4 * largest);
-                [0, 1, 2].map(|i| target_m[i] + back[i])
-            }
+        eye_of(&self.camera, field)
+    }
+}
+
+/// Where a camera views specular from. The rays of an orthographic lens meet far away.
+fn eye_of(camera: &Camera, field: &HeightField) -> [f64; 3] {
+    match camera.lens {
+        Lens::Perspective { .. } => camera.eye_m().to_array(),
+        Lens::Orthographic { .. } => {
+            let [x, y] = field.cell_m();
+            let largest = (x * field.cols() as f64).max(y * field.rows() as f64);
+            let back = camera.axes()[2] * (1e4 * largest);
+            [0, 1, 2].map(|i| camera.target_m[i] + back[i])
         }
     }
 }
@@ -38,7 +42,7 @@ pub const PLINTH: f32 = 0.04;
 /// Refuses layers that the picture does not have.
 pub fn check_layers(args: &RenderArgs) -> Result<()> {
     let is_depth = |layer: &Layer| *layer == Layer::Depth;
-    match &args.camera.camera {
+    match &args.camera.eye.camera {
         None if args.layers.iter().any(is_depth) => {
             Err(Error::setting("--layers", "depth without --camera", "a camera"))
         }
@@ -53,23 +57,54 @@ pub fn check_layers(args: &RenderArgs) -> Result<()> {
 
 /// The requested camera, checked as far as possible without a device. `for_screen`: a picture of codes, with a plinth.
 pub fn requested(args: &CameraArgs, scene: &Scene, for_screen: bool) -> Result<Option<CameraView>> {
-    let Some(at) = args.camera else { return Ok(None) };
-    let field = &scene.field;
-    // From below it would hide the ground.
-    let share = args.plinth.unwrap_or(if at.elevation < 0.0 { 0.0 } else { PLINTH });
-    if !(0.0..=1.0).contains(&share) {
-        return Err(Error::setting("plinth", share.to_string(), "0 to 1"));
-    }
-    let on_plinth = plinth(field, share);
-    let is_drawn = for_screen || args.plinth.is_some();
+    let Some(at) = args.eye.camera else { return Ok(None) };
+    let on_plinth = on_plinth(&args.eye, at, &scene.field)?;
+    let is_drawn = for_screen || args.eye.plinth.is_some();
     let options = ViewOptions {
-        size: args.size,
+        size: args.eye.size,
         samples: args.samples,
         mesh_step: args.mesh_step,
         background: args.background,
         plinth_base_m: on_plinth.as_ref().filter(|_| is_drawn).map(|(base_m, _)| *base_m),
     };
     options.check()?;
+    let framed = on_plinth.as_ref().map(|(_, framed)| framed);
+    let camera = placed(&args.eye, at, (&scene.field, framed), options.aspect())?;
+    Ok(Some(CameraView { camera, options }))
+}
+
+/// Where the requested camera views specular from, without its picture.
+pub fn eye_m(args: &EyeArgs, field: &HeightField) -> Result<Option<[f64; 3]>> {
+    let Some(at) = args.camera else { return Ok(None) };
+    let on_plinth = on_plinth(args, at, field)?;
+    let options = ViewOptions { size: args.size, ..ViewOptions::default() };
+    options.check()?;
+    let framed = on_plinth.as_ref().map(|(_, framed)| framed);
+    let camera = placed(args, at, (field, framed), options.aspect())?;
+    Ok(Some(eye_of(&camera, field)))
+}
+
+/// The plinth of a camera at `at`: see [`plinth`].
+fn on_plinth(
+    args: &EyeArgs,
+    at: CameraAt,
+    field: &HeightField,
+) -> Result<Option<(f64, HeightField)>> {
+    // From below it would hide the ground.
+    let share = args.plinth.unwrap_or(if at.elevation < 0.0 { 0.0 } else { PLINTH });
+    if !(0.0..=1.0).contains(&share) {
+        return Err(Error::setting("plinth", share.to_string(), "0 to 1"));
+    }
+    Ok(plinth(field, share))
+}
+
+/// The camera at `at` before a field. Without a distance the field fits into the picture, with its plinth if it is `framed`.
+fn placed(
+    args: &EyeArgs,
+    at: CameraAt,
+    (field, framed): (&HeightField, Option<&HeightField>),
+    aspect: f64,
+) -> Result<Camera> {
     let azimuth_rad = (90.0 - at.azimuth).to_radians();
     let lens = if args.ortho {
         Lens::Orthographic { height_m: at.distance_m.unwrap_or(1.0) }
@@ -81,9 +116,8 @@ pub fn requested(args: &CameraArgs, scene: &Scene, for_screen: bool) -> Result<O
         [p.east_m, p.north_m, height]
     });
     let angles = [azimuth_rad, at.elevation.to_radians()];
-    let fits = on_plinth.as_ref().filter(|_| at.distance_m.is_none());
-    let framed = fits.map_or(field, |(_, framed)| framed);
-    let mut camera = Camera::around(framed, target, angles, lens, options.aspect());
+    let framed = framed.filter(|_| at.distance_m.is_none()).unwrap_or(field);
+    let mut camera = Camera::around(framed, target, angles, lens, aspect);
     if let Some(distance_m) = at.distance_m {
         match &mut camera.lens {
             Lens::Perspective { .. } => camera.distance_m = distance_m,
@@ -91,7 +125,7 @@ pub fn requested(args: &CameraArgs, scene: &Scene, for_screen: bool) -> Result<O
         }
     }
     camera.check()?;
-    Ok(Some(CameraView { camera, options }))
+    Ok(camera)
 }
 
 /// Height of a plinth's base, `share` of the field's longer side below the lowest height, and a field whose box is that of

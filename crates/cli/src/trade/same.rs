@@ -13,7 +13,7 @@ use crate::setup::lights::LIGHTS;
 /// Tolerance of numbers that were written and read back as text.
 const NEAR: f64 = 1e-6;
 
-/// Refuses a file whose metadata states another surface, border or light, or light that no settings
+/// Refuses a file whose metadata states another surface, border, eye or light, or light that no settings
 /// here compute, as bounces about flat normals. `metadata` is this scene's. A file without metadata is
 /// accepted.
 pub fn check(path: &Path, scene: &Scene, metadata: &[(String, String)]) -> Result<()> {
@@ -35,6 +35,7 @@ pub fn check(path: &Path, scene: &Scene, metadata: &[(String, String)]) -> Resul
         if !is_same(name, found, expected) {
             let expected = match name.as_str() {
                 "bounces" => format!("{} (--bounces here)", expected.unwrap_or("0")),
+                "eye_m" => "none: specular is viewed from straight above here".to_owned(),
                 name if gives_none(name) => format!("none: {NO_SETTINGS}"),
                 _ => format!("{} (in this scene)", expected.unwrap_or("none")),
             };
@@ -81,8 +82,18 @@ fn gives_none(name: &str) -> bool {
 }
 
 fn is_scene(name: &str) -> bool {
-    const NAMES: [&str; 9] =
-        ["cell_m", "base_m", "z_scale", "border", "albedo", "tint", "sky", "env", "env_rotate_deg"];
+    const NAMES: [&str; 10] = [
+        "cell_m",
+        "base_m",
+        "z_scale",
+        "border",
+        "albedo",
+        "tint",
+        "sky",
+        "env",
+        "env_rotate_deg",
+        "eye_m",
+    ];
     NAMES.contains(&name) || is_aimed(name) || gives_none(name)
 }
 
@@ -183,6 +194,7 @@ mod tests {
             ("env", Some("a/sky.hdr"), Some("sky.hdr")),
             ("bounces", Some("0"), None),
             ("specular", None, None),
+            ("eye_m", None, None),
         ] {
             assert!(is_same(name, a, b) && is_same(name, a, a), "{name}: {a:?} {b:?}");
         }
@@ -199,11 +211,13 @@ mod tests {
             ("specular", Some("9,0.25"), None),
             ("sphere_light1", Some("4,4,9,1,2,3,4"), None),
             ("border", Some("open"), Some("plane")),
+            ("eye_m", Some("1,-2.5,9"), None),
+            ("eye_m", Some("1,-2.5,9"), Some("1,-2.5,8")),
         ] {
             assert!(!is_same(name, a, b), "{name}: {a:?} {b:?}");
         }
         assert!(
-            ["key1", "sun12", "light3", "phong", "bounces"]
+            ["key1", "sun12", "light3", "phong", "bounces", "eye_m"]
                 .iter()
                 .all(|name| is_scene(&new_key((*name).to_owned())))
         );

@@ -43,6 +43,12 @@ fn wrong_requests_are_refused() {
             ),
             ("reference a.asc -o out.exr --specular -1,0", 2, &["--specular exponent"]),
             ("reference a.asc -o out.exr --sun 0,91", 2, &["--sun 1: elevation"]),
+            ("reference a.asc -o out.exr --camera 90", 2, &["--camera", "expected south"]),
+            ("reference a.asc -o out.exr --camera 0,91", 2, &["--camera: elevation: found 91°"]),
+            ("reference a.asc -o out.exr --look-at 1,2", 2, &["--camera"]),
+            ("reference a.asc -o out.exr --camera 0,45 --size 0x9", 2, &["--size: found 0 × 9"]),
+            ("reference a.asc -o out.exr --camera 0,45 --plinth -1", 2, &["--plinth: found -1"]),
+            ("reference a.asc -o out.exr --camera 0,45 --mesh-step 2", 2, &["--mesh-step"]),
             ("reference none.asc -o out.exr", 1, &["none.asc"]),
             ("reference a.asc -o out.exr", 1, &["driver"]),
         ],
@@ -93,6 +99,52 @@ fn gpu_reference_writes_light_and_its_error() {
     // Without a light the sun and the sky are the default.
     done(&folder, "reference a.asc -o sky.exr --spp 1");
     assert_eq!(attributes(&folder.path("sky.exr"))["sky"], "clear");
+}
+
+/// A point sun in the east on level ground, 35 degrees high, and a camera in the west that views the middle texel from the same
+/// elevation: that texel mirrors the sun. From straight above all texels are alike. Only specular depends on the camera.
+#[test]
+fn gpu_reference_views_specular_from_a_camera() {
+    const CAMERA: &str = "--camera 270,35,10 --look-at 4,4,2";
+    let folder = Folder::new();
+    write_field(&folder, 9, |_, _| 2.0);
+    let light = |name: &str, flags: &str| {
+        let args = format!(
+            "reference field.npy -o {name}.exr --spp 1 --sun 90,35,0 --albedo 0.4 --quiet {flags}"
+        );
+        done(&folder, args.trim_end());
+        let path = folder.path(&format!("{name}.exr"));
+        (plane(&read(&path), "R").to_vec(), attributes(&path).get("eye_m").cloned())
+    };
+    let brightest = |light: &[f32]| {
+        let texels = light.iter().enumerate();
+        texels.max_by(|a, b| a.1.total_cmp(b.1)).map(|(i, v)| (i, *v)).unwrap()
+    };
+    let (viewed, eye) = light("viewed", &format!("--specular 200,0.5 {CAMERA}"));
+    let (above, no_eye) = light("above", "--specular 200,0.5");
+    let (dull, dull_eye) = light("dull", CAMERA);
+    let (plain, _) = light("plain", "");
+    assert_eq!(brightest(&viewed).0, 4 * 9 + 4);
+    // cos^200 of the 55 degrees from the sun to the zenith is 0.
+    assert!(brightest(&viewed).1 > 2.0 * brightest(&above).1);
+    assert_eq!(dull, plain);
+    assert_eq!((no_eye, dull_eye), (None, None));
+    let eye: Vec<f64> = eye.unwrap().split(',').map(|v| v.parse().unwrap()).collect();
+    let (sin, cos) = 35_f64.to_radians().sin_cos();
+    for (got, want) in eye.iter().zip([4.0 - 10.0 * cos, 4.0, 2.0 + 10.0 * sin]) {
+        assert!((got - want).abs() < 1e-9, "{eye:?}");
+    }
+    let run = folder.run_str("reference field.npy -o noted.exr --spp 1 --sun 90,35 --camera");
+    let said = "note: --camera changes nothing without --specular\n";
+    assert!(run.status == Some(0) && run.err.contains(said), "{}", run.err);
+    // The default sun stands before the camera, as in `render`.
+    let camera = "--camera 0,30 --size 9x7 --quiet";
+    done(&folder, &format!("reference field.npy -o a.exr --spp 1 {camera}"));
+    done(&folder, &format!("render field.npy -o b.exr --samples 1 {camera}"));
+    done(&folder, "reference field.npy -o c.exr --spp 1 --quiet");
+    let sun = |name: &str| attributes(&folder.path(name))["sun1"].clone();
+    assert_eq!(sun("a.exr"), sun("b.exr"));
+    assert_ne!(sun("a.exr"), sun("c.exr"));
 }
 
 /// A valley of two slopes: the paths from its bottom meet ground whose mean normals differ from those of its triangles. The

@@ -287,6 +287,9 @@ fn gpu_trade_against_a_reference() {
     succeeded(&folder, trace);
     let flat = trace.replace("traced.exr", "flat.exr") + " --normals flat";
     succeeded(&folder, &flat);
+    let viewed = "reference field.npy -o viewed.exr --spp 1 --sky 1 --albedo 0.5 --specular 9,0.25 --camera 180,30,9 \
+        --look-at 1,1,0 --quiet";
+    succeeded(&folder, viewed);
     let before = folder.contents();
     for (args, said) in [
         (
@@ -321,6 +324,10 @@ fn gpu_trade_against_a_reference() {
         (
             "flat.exr --sky 0.5 --sun 90,20 --bounces 2",
             "flat.exr: header: normals: found flat, expected smooth",
+        ),
+        (
+            "viewed.exr --sky 1 --albedo 0.5 --specular 9,0.25",
+            "expected none: specular is viewed from straight above here",
         ),
     ] {
         let args = format!("trade field.npy -o other --evaluations 1 --reference {args}");

@@ -104,6 +104,8 @@ fn help_gives_units_and_defaults() {
         ("--spp", &["batches of 64", "at least 128", "[default: 1024]"]),
         ("--bounces", &["0 to 64", "[default: 0]"]),
         ("--until-error", &["0.01 is 1 %", "512 paths"]),
+        ("--camera", &["View --specular from a camera", "one pixel per texel"]),
+        ("--plinth", &["[default: 0.04]"]),
         ("--seed", &["[default: 0]"]),
         ("--device", &["Default the first GPU"]),
     ];
