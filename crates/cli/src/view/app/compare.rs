@@ -36,8 +36,6 @@ pub struct Compare {
     has_new_light: bool,
     path_traced: Option<PathTraced>,
     is_reference_stale: bool,
-    /// Whether a camera views the specular of the other pictures. The reference views it from straight above.
-    has_eye: bool,
     /// When the scene changed last.
     changed: Instant,
     /// The measured error, once requested.
@@ -64,23 +62,16 @@ impl Compare {
             has_new_light: true,
             path_traced: None,
             is_reference_stale: true,
-            has_eye: false,
             changed: Instant::now(),
             error: None,
         }
     }
 
-    /// Call it after a change of the field, or also of light or settings (`has_new_light`).
+    /// Call it after a change of the field, or also of light, settings or the eye of specular (`has_new_light`).
     pub fn scene_changed(&mut self, has_new_light: bool) {
         (self.is_off_stale, self.is_reference_stale) = (true, true);
         self.has_new_light |= has_new_light;
         self.changed = Instant::now();
-        self.error = None;
-    }
-
-    /// After a change of the eye of specular alone. The reference's specular does not depend on it.
-    pub fn eye_changed(&mut self) {
-        (self.is_off_stale, self.has_new_light) = (true, true);
         self.error = None;
     }
 
@@ -90,15 +81,14 @@ impl Compare {
             let is_other = replan(screen, &mut self.off, state.plan_off(limits)?, &state.scene)?;
             self.has_new_light |= is_other;
         }
-        self.has_eye = state.eye_m().is_some();
         if self.is_reference_stale && !state.is_moving() && self.changed.elapsed() > REST {
             if let Some(old) = self.path_traced.take() {
                 screen.end(old.frame)?;
             }
             let (scene, bounces) = (&state.scene, state.quality.bounces.count);
-            let normals = Normals::Smooth;
+            let (normals, eye_m) = (Normals::Smooth, state.eye_m());
             let plan =
-                plan::reference_in_bands(scene, bounces, normals, None, 0, limits, BAND_ROWS)?;
+                plan::reference_in_bands(scene, bounces, normals, eye_m, 0, limits, BAND_ROWS)?;
             let is_band = |pass: &plan::Pass| pass.name() == "path_trace";
             let first_band = plan.passes.iter().position(is_band).unwrap_or(0);
             let contents = plan::reference_inputs(scene);
@@ -163,7 +153,6 @@ impl Compare {
     pub fn labels(&self) -> [String; 3] {
         let reference = match self.paths() {
             _ if self.is_reference_stale => "reference: waits".to_owned(),
-            paths if self.has_eye => format!("reference: {paths} paths, specular from above"),
             paths => format!("reference: {paths} paths"),
         };
         ["no shadows".to_owned(), "ours".to_owned(), reference]
@@ -183,10 +172,6 @@ impl Compare {
             let expected = format!("{} or more: wait a moment", 2 * REFERENCE_BATCH);
             return Err(Error::setting("reference", found, expected));
         };
-        if self.has_eye {
-            let expected = "none, as the reference views specular from straight above: press v";
-            return Err(Error::setting("error with specular", "a camera", expected));
-        }
         screen.wait()?;
         let gpu = screen.gpu();
         let ours = render::rgb(&gpu.pixels(lit, 0)?);
@@ -262,24 +247,6 @@ fn distance(estimates: &[[[f64; 3]; 3]], batches: f64, unsampled: [f64; 3]) -> [
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// Another eye changes the picture without shadows and keeps the paths; another scene restarts them.
-    #[test]
-    fn another_eye_keeps_the_paths() {
-        let drawn = || {
-            let mut compare = Compare::new();
-            compare.drawn(&[]);
-            compare.is_reference_stale = false;
-            compare
-        };
-        let stale = |compare: &Compare| [compare.is_off_stale, compare.is_reference_stale];
-        assert_eq!(stale(&drawn()), [false, false]);
-        let [mut of_eye, mut of_scene] = [drawn(), drawn()];
-        of_eye.eye_changed();
-        assert_eq!(stale(&of_eye), [true, false]);
-        of_scene.scene_changed(false);
-        assert_eq!(stale(&of_scene), [true, true]);
-    }
 
     /// Of variance 1: a sum of twelve uniform numbers.
     fn noises() -> impl FnMut() -> f64 {

@@ -154,7 +154,6 @@ impl App<'_> {
         self.state.step(!uses_preview)?;
         let mut edited = self.state.take_edited();
         let eye_m = self.state.eye_m();
-        let mut is_other_scene = shown.is_stale || moves || edited.is_some();
         shown.is_stale |= std::mem::replace(&mut shown.eye_m, eye_m) != eye_m;
         if uses_preview {
             if shown.is_stale || moves || edited.is_some() {
@@ -169,7 +168,6 @@ impl App<'_> {
             }
         } else {
             let was_preview = shown.preview.leave();
-            is_other_scene |= was_preview;
             shown.is_stale |= was_preview;
             edited.into_iter().for_each(|at| shown.preview.miss(at));
         }
@@ -179,10 +177,7 @@ impl App<'_> {
             }
             shown.has_moved |= moves;
             let has_new_light = shown.is_stale;
-            shown.compare.iter_mut().for_each(|compare| match is_other_scene {
-                true => compare.scene_changed(has_new_light),
-                false => compare.eye_changed(),
-            });
+            shown.compare.iter_mut().for_each(|compare| compare.scene_changed(has_new_light));
         }
         if self.state.needs_exposure
             && let Err(why) = shown.expose(&mut self.state, edited.is_some())
