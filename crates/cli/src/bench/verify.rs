@@ -22,6 +22,7 @@ use ridgelight::{Error, Result};
 
 pub use ground_truth::GroundTruth;
 use ground_truth::PLACES;
+use sweeps::AimedLayers;
 
 /// The oracle computes whole fields up to this side, and a piece of [`PIECE`]² of larger ones.
 const WHOLE: usize = 128;
@@ -93,14 +94,16 @@ impl Verifier {
             let rest = Self { scene, ground_truth: self.ground_truth.without_sphere_lights() };
             return Ok(format!("{}; {found}", rest.check_direct(device)?));
         }
-        let aimed = aimed::check(scene, &self.ground_truth.places, device)?;
+        let places = &self.ground_truth.places;
+        let drawn = AimedLayers::of(scene, device)?;
+        let aimed = drawn.as_ref().map(|drawn| aimed::check(drawn, places, quality));
+        let aimed = aimed.transpose()?.flatten();
         if quality.basis == Basis::Sh && scene.lights.environment.is_some() {
             let found = [Some(harmonics::check(self, device)?), aimed];
             return Ok(found.into_iter().flatten().collect::<Vec<_>>().join("; "));
         }
         let errors = self.whole(&mut device.with(&all))?;
-        let places = &self.ground_truth.places;
-        let swept = sweeps::check(scene, places, device)?;
+        let swept = sweeps::check(scene, places, device, drawn.as_ref())?;
         let sphere_lights = sphere_lights::check_slices(scene, places, &mut device.with(&all))?;
         let mut found = vec![swept, sphere_lights];
         if aimed.is_some() {

@@ -15,28 +15,26 @@ use ridgelight_cpu::shared::sweep::Heights;
 use ridgelight_cpu::sun_shade::{sun_slice, weights};
 use ridgelight_cpu::tolerance::{EPSILON, ShadeError, aimed_slope, device_fused_slope};
 
-use super::sweeps::{Shaded, aimed_alone, azimuths_of};
-use super::{Device, colours, percent, refused, sentence};
+use super::sweeps::{AimedLayers, Shaded, azimuths_of};
+use super::{colours, percent, refused, sentence};
 
 /// Checks the light of suns and key lights at some texels; `None` without such lights.
 pub(super) fn check(
-    scene: &Scene,
+    AimedLayers { scene, plan, layers }: &AimedLayers,
     places: &[usize],
-    device: &mut Device,
+    quality: &Quality,
 ) -> Result<Option<String>> {
-    let Some(scene) = &aimed_alone(scene) else { return Ok(None) };
-    let (plan, layers) = device.layers(scene, true)?;
     let (mut found, mut all) = (Vec::new(), Vec::new());
-    for layer in &layers {
-        let of = layer.name.strip_prefix("direct.").and_then(|light| azimuths_of(&plan, light));
+    for layer in layers {
+        let of = layer.name.strip_prefix("direct.").and_then(|light| azimuths_of(plan, light));
         let Some((azimuths, shaded)) = of else { continue };
         found.extend(colours(layer, places));
-        all.extend(allowed(scene, &azimuths, shaded, places, device.quality));
+        all.extend(allowed(scene, &azimuths, shaded, places, quality));
     }
     if all.is_empty() {
         return Ok(None);
     }
-    Ok(Some(judge(&found, &all, device.quality)?.text()))
+    Ok(Some(judge(&found, &all, quality)?.text()))
 }
 
 /// The horizons that a method finds, apart from rounding.

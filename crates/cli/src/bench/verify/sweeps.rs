@@ -4,6 +4,7 @@
 use std::collections::BTreeSet;
 
 use glam::DVec3;
+use ridgelight::gpu::Pixels;
 use ridgelight::plan::azimuths::{Shape, even};
 use ridgelight::plan::{Axis, Azimuth, Pass, Plan};
 use ridgelight::scene::{
@@ -22,24 +23,17 @@ use ridgelight_cpu::tolerance::{EPSILON, ShadeError, device_fused_slope};
 use super::{Device, Wanted, colours, environments, sentence};
 
 /// A sky of radiance 1 and the scene's suns and key lights on white ground, at some texels. None
-/// where the CPU reference does not follow the sweeps: packed horizons are rounded, and lines of a
-/// periodic field may be denser than requested.
+/// where the CPU reference does not [follow](followed) the sweeps.
 pub(super) fn check(
     scene: &Scene,
     places: &[usize],
     device: &mut Device,
+    aimed: Option<&AimedLayers>,
 ) -> Result<Option<String>> {
     let quality = device.quality;
-    let lines = match quality.lines.shift() {
-        Some(shift) if shift <= Lines::Cell.shift().unwrap_or(0) => shift,
-        Some(shift) if scene.surface.border != Border::Periodic => shift,
-        _ => return Ok(None),
-    };
-    let is_followed = matches!(quality.method, Method::Auto | Method::Sweep);
-    if !is_followed || quality.precision != Precision::F32 {
-        return Ok(None);
-    }
-    let aimed = check_aimed(scene, places, device, lines)?;
+    let Some(lines) = followed(scene, quality) else { return Ok(None) };
+    let aimed =
+        aimed.map(|aimed| check_aimed(aimed, places, quality, lines)).transpose()?.flatten();
     let around = environments::check(scene, places, device, lines)?;
     let scene = white(scene, Lights { sky: Some([1.0; 3]), ..Lights::default() });
     let (plan, layers) = device.layers(&scene, false)?;
@@ -51,6 +45,20 @@ pub(super) fn check(
     let of_sky = Some(sentence("sky", "the CPU reference", errors));
     let all: Vec<String> = [of_sky, around, aimed].into_iter().flatten().collect();
     Ok(Some(all.join("; ")))
+}
+
+/// The spacing of lines where the CPU reference follows the sweeps. It does not where packed horizons
+/// are rounded or where lines of a periodic field may be denser than requested.
+pub(super) fn followed(scene: &Scene, quality: &Quality) -> Option<u32> {
+    let is_swept = matches!(quality.method, Method::Auto | Method::Sweep);
+    if !is_swept || quality.precision != Precision::F32 {
+        return None;
+    }
+    match quality.lines.shift() {
+        Some(shift) if shift <= Lines::Cell.shift().unwrap_or(0) => Some(shift),
+        Some(shift) if scene.surface.border != Border::Periodic => Some(shift),
+        _ => None,
+    }
 }
 
 /// Light of the CPU reference.
@@ -130,23 +138,37 @@ fn lit_by<T>(
     light(&swept, &error)
 }
 
-/// Suns and key lights of a scene, each with irradiance or radiance 1 on white ground, by the same
-/// sweeps; none where there are none or where they are not swept like the sky.
-fn check_aimed(
-    scene: &Scene,
+/// Layers of suns and key lights, each with irradiance or radiance 1 on white ground, and the plan of
+/// the frame that drew them.
+pub(super) struct AimedLayers {
+    pub scene: Scene,
+    pub plan: Plan,
+    pub layers: Vec<Pixels>,
+}
+
+impl AimedLayers {
+    /// Draws the suns and key lights of a scene; none where all are dark.
+    pub(super) fn of(scene: &Scene, device: &mut Device) -> Result<Option<Self>> {
+        let Some(scene) = aimed_alone(scene) else { return Ok(None) };
+        let (plan, layers) = device.layers(&scene, true)?;
+        Ok(Some(Self { scene, plan, layers }))
+    }
+}
+
+/// Suns and key lights by the same sweeps; none where no place can be compared.
+pub(super) fn check_aimed(
+    AimedLayers { scene, plan, layers }: &AimedLayers,
     places: &[usize],
-    device: &mut Device,
+    quality: &Quality,
     lines: u32,
 ) -> Result<Option<String>> {
-    let Some(scene) = &aimed_alone(scene) else { return Ok(None) };
-    let (plan, layers) = device.layers(scene, true)?;
     let (mut found, mut all, mut most) = (Vec::new(), Vec::new(), DVec3::ZERO);
     let mut checked = 0;
-    for layer in &layers {
-        let of = layer.name.strip_prefix("direct.").and_then(|light| azimuths_of(&plan, light));
+    for layer in layers {
+        let of = layer.name.strip_prefix("direct.").and_then(|light| azimuths_of(plan, light));
         let Some((azimuths, shaded)) = of else { continue };
         checked += 1;
-        let wanted = aimed(scene, azimuths, places, device.quality, lines, shaded);
+        let wanted = aimed(scene, azimuths, places, quality, lines, shaded);
         for (got, wanted) in colours(layer, places).into_iter().zip(wanted) {
             let Some([light, bound]) = wanted else { continue };
             found.push(got);
@@ -154,7 +176,7 @@ fn check_aimed(
             most = most.max(bound);
         }
     }
-    let shaded = shaded_lights(&plan);
+    let shaded = shaded_lights(plan);
     if checked != shaded.len() {
         return Err(Error::Device {
             doing: "verifying before timing".into(),
@@ -167,12 +189,12 @@ fn check_aimed(
     }
     // One tolerance for all of them.
     all.iter_mut().for_each(|[_, bound]| *bound = most);
-    let errors = Wanted(all).judge("a sun at one place", &found, device.quality)?;
+    let errors = Wanted(all).judge("a sun at one place", &found, quality)?;
     Ok(Some(sentence("sun and key light", "the CPU reference", errors)))
 }
 
 /// Suns and key lights of a scene, each with irradiance or radiance 1 on white ground; none where all are dark.
-pub(super) fn aimed_alone(scene: &Scene) -> Option<Scene> {
+fn aimed_alone(scene: &Scene) -> Option<Scene> {
     let Lights { suns, keys, .. } = &scene.lights;
     let lit_by = |c: &[f32; 3]| c.iter().any(|v| *v > 0.0);
     let suns = suns.iter().filter(|s| lit_by(&s.irradiance));
