@@ -34,12 +34,12 @@ pub(super) fn check(
     if all.is_empty() {
         return Ok(None);
     }
-    Ok(Some(judge(&found, &all, quality)?.text()))
+    Ok(Some(judge(&found, &all, quality)?.text("sun and key light")))
 }
 
 /// The horizons that a method finds, apart from rounding.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Horizons {
+pub(super) enum Horizons {
     /// Those of the surface.
     Exact,
     /// Those of points on the surface, perhaps not the highest: see the test `aimed_modes_are_lower_bounds`.
@@ -48,7 +48,7 @@ enum Horizons {
     Near,
 }
 
-fn horizons(quality: &Quality, shaded: Shaded) -> Horizons {
+pub(super) fn horizons(quality: &Quality, shaded: Shaded) -> Horizons {
     let is_aimed = matches!(quality.fuse, Fuse::AimedNearest | Fuse::Aimed | Fuse::AimedAround);
     let is_swept = matches!(quality.method, Method::Auto | Method::Sweep)
         && quality.lines.shift().is_some()
@@ -61,13 +61,13 @@ fn horizons(quality: &Quality, shaded: Shaded) -> Horizons {
 }
 
 /// Light of one sun or key light at one place.
-struct Allowed {
+pub(super) struct Allowed {
     /// Through the oracle's horizons.
-    light: f64,
+    pub light: f64,
     /// Least and most, by the method's horizons.
-    range: [f64; 2],
+    pub range: [f64; 2],
     /// Of rounding.
-    tolerance: f64,
+    pub tolerance: f64,
 }
 
 /// The allowed light at each place, of a sun of irradiance 1 or a key light of radiance 1 on white ground, in the plan's slices.
@@ -78,11 +78,36 @@ fn allowed(
     places: &[usize],
     quality: &Quality,
 ) -> Vec<Allowed> {
-    let (field, border, shape) = (&scene.field, scene.surface.border, shaded.shape);
+    let [low, high] = heights_m(scene);
+    let [x, y] = scene.field.cell_m();
+    let tolerance = tolerance(azimuths, shaded.shape, high - low, x.min(y));
+    let slice = |_, azimuth: &Azimuth, lowest: f64, normal: DVec3| {
+        [sun_slice(azimuth, shaded.shape, lowest, normal), 0.0]
+    };
+    let all = allowed_by(scene, azimuths, shaded, places, quality, slice);
+    all.into_iter().map(|place| Allowed { tolerance, ..place }).collect()
+}
+
+/// The lowest and the highest height over the base.
+fn heights_m(scene: &Scene) -> [f64; 2] {
+    let all = || scene.field.heights_m().iter().map(|h| f64::from(*h));
+    [all().fold(f64::MAX, f64::min), all().fold(f64::MIN, f64::max)]
+}
+
+/// The allowed light at each place, as a sum over azimuths. `slice` returns light and tolerance of one azimuth at a place, above a
+/// slope, for a normal. Neither may grow with the slope.
+pub(super) fn allowed_by(
+    scene: &Scene,
+    azimuths: &[Azimuth],
+    shaded: Shaded,
+    places: &[usize],
+    quality: &Quality,
+    slice: impl Fn(usize, &Azimuth, f64, DVec3) -> [f64; 2],
+) -> Vec<Allowed> {
+    let (field, border) = (&scene.field, scene.surface.border);
     let oracle = Oracle::new(field, border);
     let heights = Heights::of(field, border);
-    let all = || field.heights_m().iter().map(|h| f64::from(*h));
-    let (low, high) = (all().fold(f64::MAX, f64::min), all().fold(f64::MIN, f64::max));
+    let [low, high] = heights_m(scene);
     let largest = low.abs().max(high.abs());
     let step = azimuths.iter().map(|a| f64::from(a.step_m)).fold(f64::MAX, f64::min);
     // The CPU reference's horizon against the oracle's, and a device's against the CPU reference's.
@@ -91,7 +116,6 @@ fn allowed(
     // As in `bounds`: two periods are marched.
     let side = (field.cols() as f64 * x).min(field.rows() as f64 * y);
     let beyond = if border == Border::Periodic { largest / side } else { 0.0 };
-    let tolerance = tolerance(azimuths, shape, high - low, x.min(y));
     let ground = if border == Border::Open { f64::NEG_INFINITY } else { 0.0 };
     let at = |place: &usize| {
         let (row, col) = (place / field.cols(), place % field.cols());
@@ -105,16 +129,19 @@ fn allowed(
             [own, own.max(horizon)]
         };
         let lowest: Vec<[f64; 2]> = azimuths.iter().map(lowest).collect();
-        let light = |which: usize, off: f64| -> f64 {
+        let sums = |which: usize, off: f64| {
             let slices = azimuths.iter().zip(&lowest);
-            slices.map(|(a, slopes)| sun_slice(a, shape, slopes[which] + off, normal)).sum()
+            let all = slices.map(|(a, slopes)| slice(*place, a, slopes[which] + off, normal));
+            all.fold([0.0; 2], |sum, one| [sum[0] + one[0], sum[1] + one[1]])
         };
+        let light = |which: usize, off: f64| -> f64 { sums(which, off)[0] };
         let (own, other) = (0, 1);
         let right = light(other, 0.0);
+        let [open, tolerance] = sums(own, -rounding);
         let [least, most] = match horizons(quality, shaded) {
             Horizons::Exact => [light(other, rounding), light(other, -rounding - beyond)],
-            Horizons::NeverAbove => [light(other, rounding), light(own, -rounding)],
-            Horizons::Near => [0.0, light(own, -rounding)],
+            Horizons::NeverAbove => [light(other, rounding), open],
+            Horizons::Near => [0.0, open],
         };
         Allowed { light: right, range: [least.min(right), most.max(right)], tolerance }
     };
@@ -132,21 +159,20 @@ fn tolerance(azimuths: &[Azimuth], shape: Shape, relief_m: f64, cell_m: f64) -> 
 }
 
 /// What was found at all places, where each is within its range.
-#[derive(Debug)]
-struct Judged {
-    places: usize,
+#[derive(Debug, Default)]
+pub(super) struct Judged {
+    pub places: usize,
     /// Places that differ by more than rounding.
-    others: usize,
+    pub others: usize,
     /// The largest error of the rest, and its tolerance.
-    error: f64,
-    bound: f64,
+    pub error: f64,
+    pub bound: f64,
     /// The most light that any place may have.
-    brightest: f64,
+    pub brightest: f64,
 }
 
 fn judge(found: &[DVec3], all: &[Allowed], quality: &Quality) -> Result<Judged> {
-    let mut judged =
-        Judged { places: all.len(), others: 0, error: 0.0, bound: 0.0, brightest: 0.0 };
+    let mut judged = Judged { places: all.len(), ..Judged::default() };
     for (found, Allowed { light, range: [least, most], tolerance }) in found.iter().zip(all) {
         let range = least - tolerance..=most + tolerance;
         // NaN is in no range.
@@ -170,15 +196,15 @@ fn judge(found: &[DVec3], all: &[Allowed], quality: &Quality) -> Result<Judged> 
 }
 
 impl Judged {
-    fn text(&self) -> String {
+    pub fn text(&self, light: &str) -> String {
         let Self { places, others, error, bound, brightest } = *self;
         if brightest <= 0.0 {
-            return sentence("sun and key light", "the oracle", (f64::INFINITY, f64::INFINITY));
+            return sentence(light, "the oracle", (f64::INFINITY, f64::INFINITY));
         }
-        let [error, bound] = [error, bound].map(|light| percent(light / brightest));
+        let [error, bound] = [error, bound].map(|value| percent(value / brightest));
         let alike = places - others;
         format!(
-            "sun and key light error {error} against the oracle at {alike} of {places} places (largest; bound {bound} of the \
+            "{light} error {error} against the oracle at {alike} of {places} places (largest; bound {bound} of the \
              brightest place's light), other shadow edges at {others}"
         )
     }
@@ -275,7 +301,7 @@ mod tests {
             let judged = judge(&found, &all, &quality).unwrap();
             assert_eq!(judged.others, hidden.len());
             assert_eq!((judged.places, judged.error), (all.len(), 0.0));
-            let text = judged.text();
+            let text = judged.text("sun");
             assert!(text.ends_with(&format!("other shadow edges at {}", hidden.len())), "{text}");
             found[hidden[0]] += DVec3::splat(2.0 * all[hidden[0]].tolerance);
             assert!(judge(&found, &all, &quality).is_err(), "more than unshadowed");
