@@ -214,10 +214,6 @@ fn check_specular(scene: &Scene, quality: &Quality, args: &BenchArgs) -> Result<
         ("--bounces", "none: check bounces of specular light with `reference` and `compare`")
     } else if !args.sizes.is_empty() {
         ("--sizes", "none: its errors cover diffuse light only")
-    } else if !scene.lights.keys.is_empty() {
-        ("--key", "none: check specular of key lights with `reference` and `compare`")
-    } else if !scene.lights.sphere_lights.is_empty() {
-        ("--sphere-light", "none: check specular of sphere lights with `reference` and `compare`")
     } else {
         return Ok(());
     };

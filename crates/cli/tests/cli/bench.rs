@@ -109,3 +109,28 @@ fn gpu_rows_of_sizes_are_printed_before_a_later_error() {
     let rows: Vec<&str> = run.out.lines().filter(|line| line.ends_with(" 1")).collect();
     assert!(rows.len() == 1 && rows[0].trim_start().starts_with("16 "), "{}", run.out);
 }
+
+/// Every light of a scene with specular is compared, and so is the diffuse light in the slices that specular needs.
+#[test]
+fn gpu_specular_of_each_light_is_verified() {
+    let folder = Folder::new();
+    let lights = "--sky 1 --sun 40,50,2,3 --key 200,50,60,40,5 --sphere-light 16,16,60,8,4";
+    let words = format!(
+        "bench --size 32 --azimuths 32 --runs 1 --memory-budget 16MiB --albedo 0.5 --specular 20,0.4 {lights}"
+    );
+    let run = folder.run_str(&words);
+    assert_eq!(run.status, Some(0), "{}", run.err);
+    let verified = run.out.lines().find(|line| line.starts_with("verified: ")).expect("a line");
+    let count = |start: &str| verified.split("; ").filter(|part| part.starts_with(start)).count();
+    for (start, expected) in [
+        // Of the sky, by the oracle, and of the sun, by its diffuse light.
+        ("specular error", 2),
+        // By the oracle's horizons, and by the same sweep.
+        ("key specular error", 2),
+        ("beside specular, sun and key light error", 2),
+        ("sphere light specular error", 1),
+        ("beside specular, sphere light 1 error", 1),
+    ] {
+        assert_eq!(count(start), expected, "{start}: {verified}");
+    }
+}

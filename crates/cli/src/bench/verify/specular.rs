@@ -1,6 +1,10 @@
 //! Compares Phong specular with the same sums in f64, within f32 rounding: sky and environment by
-//! their series through the device's horizons, a sun by the device's own diffuse light. Specular by
-//! slices of the lobe is compared with the oracle.
+//! their series through the device's horizons, a sun by the device's own diffuse light, key lights and
+//! sphere lights by the plan's slices. Sky and environment by slices of the lobe are compared with the
+//! oracle, and so are key lights.
+
+mod keys;
+mod spheres;
 
 use std::f64::consts::TAU;
 
@@ -8,14 +12,17 @@ use glam::DVec3;
 use ridgelight::Result;
 use ridgelight::plan::{self, Limits, Picture, Plan};
 use ridgelight::scene::{
-    Albedo, Basis, Environment, Lights, PhongSpecular, Quality, Scene, Specular, Sun, Surface,
+    Albedo, Basis, Environment, HeightField, Lights, PhongSpecular, Quality, Scene, Specular, Sun,
+    Surface,
 };
 use ridgelight_cpu::harmonics::Harmonics;
 use ridgelight_cpu::light::{Receiver, Site};
 use ridgelight_cpu::mirror_map::mirrored;
 use ridgelight_cpu::oracle::Oracle;
 use ridgelight_cpu::sun_specular::specular_on;
-use ridgelight_cpu::tolerance::{EPSILON, Land, device_resolved, device_sun_specular, disc_rings};
+use ridgelight_cpu::tolerance::{
+    EPSILON, Land, ShadeError, device_resolved, device_sun_specular, disc_rings,
+};
 
 use super::harmonics::{Place, with_nodes};
 use super::{Device, Wanted, bounds, colours, rms, sentence, within};
@@ -40,29 +47,52 @@ fn shines_around(lights: &Lights) -> bool {
     lights.sky.is_some_and(|c| c.iter().any(|v| *v > 0.0)) || lights.environment.is_some()
 }
 
-/// Phong specular of a scene at some of its texels.
+/// Phong specular of a scene at some of its texels: of sky and environment, suns, key lights and sphere lights.
 pub(super) fn check(
     scene: &Scene,
     (places, dark): (&[usize], f64),
     device: &mut Device,
 ) -> Result<String> {
-    let scene = &half(scene);
-    let (plan, layers) = device.layers(scene, true)?;
-    if let Some(phong) = by_slices(scene, &plan) {
-        let around = Lights { suns: Vec::new(), ..scene.lights.clone() };
-        let around = Scene { lights: around, ..scene.clone() };
-        let of_slices = slices(&around, phong, (places, dark), device)?;
-        if scene.lights.suns.is_empty() {
-            return Ok(of_slices);
-        }
-        let suns = Lights { suns: scene.lights.suns.clone(), ..Lights::default() };
-        let of_suns = check(&Scene { lights: suns, ..scene.clone() }, (places, dark), device)?;
-        return Ok(format!("{of_slices}; {of_suns}"));
-    }
-    let layer = |name: &str| Some(colours(layers.iter().find(|p| p.name == name)?, places));
-    let Some(found) = layer("direct.specular") else {
+    if scene.surface.specular.as_ref().is_none_or(|specular| specular.largest().scale <= 0.0) {
         return Ok("the specular scale is 0 everywhere".to_owned());
-    };
+    }
+    let (scene, all) = (half(scene), scene.lights.lit());
+    let under = |lights: Lights| Scene { lights, ..scene.clone() };
+    let suns = Lights { suns: all.suns.clone(), ..Lights::default() };
+    let sunlit = Lights { sky: all.sky, environment: all.environment.clone(), ..suns.clone() };
+    let around = Lights { suns: Vec::new(), ..sunlit.clone() };
+    let keys = Lights { keys: all.keys.clone(), ..Lights::default() };
+    // One layer has the specular of all lights. Each frame has those that one reference computes.
+    let mut found = Vec::new();
+    let mut by_series = suns;
+    if shines_around(&around) {
+        let around = under(around);
+        let plan = plan::picture(&around, device.quality, device.limits, Picture::default())?;
+        match by_slices(&around, &plan) {
+            Some(phong) => found.extend(slices(&around, phong, (places, dark), device)?),
+            None => by_series = sunlit,
+        }
+    }
+    if shines_around(&by_series) || !by_series.suns.is_empty() {
+        found.extend(series(&under(by_series), places, device)?);
+    }
+    if !keys.keys.is_empty() {
+        found.extend(keys::check(&under(keys), (places, dark), device)?);
+    }
+    if all.near().next().is_some() {
+        found.push(spheres::check(&under(all.near_alone()), places, device)?);
+    }
+    match found.is_empty() {
+        true => Ok("specular: no light is reflected".to_owned()),
+        false => Ok(found.join("; ")),
+    }
+}
+
+/// Specular of sky and environment by their series, and of suns; `None` where nothing is lit.
+fn series(scene: &Scene, places: &[usize], device: &mut Device) -> Result<Option<String>> {
+    let (_, layers) = device.layers(scene, true)?;
+    let layer = |name: &str| Some(colours(layers.iter().find(|p| p.name == name)?, places));
+    let Some(found) = layer("direct.specular") else { return Ok(None) };
     let suns: Vec<_> =
         (1..=scene.lights.suns.len()).map(|n| layer(&format!("direct.sun{n}"))).collect();
     let all = match shines_around(&scene.lights) {
@@ -72,7 +102,7 @@ pub(super) fn check(
     let (seeing, nodes) = all.split_at(places.len());
     let wanted = wanted_of(scene, device.quality, [seeing, nodes], &suns);
     let errors = wanted.judge("specular light at one place", &found, device.quality)?;
-    Ok(sentence("specular", "f64", errors))
+    Ok(Some(sentence("specular", "f64", errors)))
 }
 
 /// Places that the oracle compares: a lobe's integral over each texel of an environment takes long.
@@ -84,17 +114,17 @@ fn slices(
     phong: PhongSpecular,
     (places, dark): (&[usize], f64),
     device: &mut Device,
-) -> Result<String> {
+) -> Result<Option<String>> {
     let (_, layers) = device.layers(scene, true)?;
     let places: Vec<usize> =
         places.iter().step_by(places.len().div_ceil(SLICE_PLACES)).copied().collect();
     let Some(layer) = layers.iter().find(|p| p.name == "direct.specular") else {
-        return Ok("the specular scale is 0 everywhere".to_owned());
+        return Ok(None);
     };
     let error = error_of(&colours(layer, &places), &slices_of(scene, phong, &places));
     let bound = slices_bound(scene, phong, dark, device.quality);
     let within = within("specular light", "the oracle", error, bound, device.quality)?;
-    Ok(sentence("specular", "the oracle", within))
+    Ok(Some(sentence("specular", "the oracle", within)))
 }
 
 /// Bound of the relative RMSE of specular by slices.
@@ -141,8 +171,22 @@ fn slices_of(scene: &Scene, phong: PhongSpecular, places: &[usize]) -> Vec<DVec3
     places.iter().map(at).collect()
 }
 
+/// Half the error of the mirror direction of the zenith, besides the normal's: two products and a difference.
+const VIEW_ERROR: f64 = 10.0 * EPSILON;
+
+/// Error of a field's normals, radians.
+fn normal_error(field: &HeightField) -> f64 {
+    let all = || field.heights_m().iter().map(|h| f64::from(*h));
+    let relief_m = all().fold(f64::MIN, f64::max) - all().fold(f64::MAX, f64::min);
+    let [x, y] = field.cell_m();
+    ShadeError::new(0.0, relief_m, x.min(y), 1).normal()
+}
+
 /// Azimuths of the oracle's sky.
 const EVEN_STRIPS: usize = 720;
+
+/// Albedo of the ground of a [`half`] scene.
+const GREY: f32 = 0.5;
 
 /// Half the specular scale on grey ground. Its diffuse light gives each sun's visible share.
 /// Specular is linear in its scale, and at half scale never exceeds the energy left beside any
@@ -153,7 +197,7 @@ fn half(scene: &Scene) -> Scene {
         Specular::Constant(phong) => Specular::Constant(halved(phong)),
         Specular::Map(map) => Specular::Map(map.iter().map(halved).collect()),
     });
-    let surface = Surface { albedo: Albedo::Constant([0.5; 3]), specular: phong, ..scene.surface };
+    let surface = Surface { albedo: Albedo::Constant([GREY; 3]), specular: phong, ..scene.surface };
     Scene { surface, ..scene.clone() }
 }
 

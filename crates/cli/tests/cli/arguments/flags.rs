@@ -278,12 +278,6 @@ fn specular() {
             ),
             (&format!("bench a.asc {both} --bounces 1"), 2, &["--specular with bench --bounces"]),
             (&format!("bench --sizes 64 {both}"), 2, &["--specular with bench --sizes"]),
-            (&format!("bench a.asc {both} --key 0,30,9,9,1"), 2, &["--specular with bench --key"]),
-            (
-                &format!("bench a.asc {both} --sphere-light 1,2,3,1,5"),
-                2,
-                &["--specular with bench --sphere-light"],
-            ),
             ("horizon a.asc -o out.npy --specular 10,0.5", 2, &["--specular"]),
         ],
     );
