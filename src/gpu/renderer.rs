@@ -3,7 +3,7 @@
 mod buffers;
 mod checks;
 mod images;
-mod recording;
+mod record_plan;
 mod resources;
 mod stages;
 

@@ -3,7 +3,7 @@
 
 mod checks;
 mod pipelines;
-mod recording;
+mod record_view;
 mod resources;
 mod targets;
 

@@ -6,7 +6,7 @@ mod chain;
 mod drawer;
 mod painter;
 mod queue;
-mod recording;
+mod record_frame;
 mod slot;
 
 use std::any::Any;

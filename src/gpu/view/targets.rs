@@ -4,7 +4,7 @@ use ash::vk;
 
 use super::super::memory::DEPTH;
 use super::super::{Host, failed};
-use super::recording::{DRAWN, TESTED};
+use super::record_view::{DRAWN, TESTED};
 use super::{ViewOutputs, ViewRenderer};
 use crate::Result;
 

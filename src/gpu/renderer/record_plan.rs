@@ -1,4 +1,4 @@
-//! Records passes into a command buffer.
+//! Records every pass of a plan into a command buffer, in one loop.
 
 use ash::vk;
 
