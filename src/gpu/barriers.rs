@@ -1,5 +1,5 @@
 //! Barriers in the terms of Vulkan 1.3, recorded by the command of Vulkan 1.0: no device has to enable
-//! `synchronization2`.
+//! `synchronization2`. `src/graph/place_barriers.rs` decides where barriers between passes are.
 
 use ash::vk;
 
