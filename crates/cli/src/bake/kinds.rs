@@ -1,10 +1,10 @@
 //! The kinds of map: names, help, encodings, file formats, decoders and where values come from.
 
+mod brdf;
 mod directions;
 mod far_field;
 mod horizons;
 mod light;
-mod reflection;
 
 use clap::ValueEnum;
 use ridgelight::Result;
@@ -16,9 +16,9 @@ use ridgelight_io::Band;
 use super::job::Job;
 use super::map::{Format, MapFiles, Wanted};
 use super::stages::{Stage, Stages};
+pub use brdf::{FACTORS, PAIRS, Table};
 pub use far_field::{diffuse, direct_plan, rays};
 pub use light::paths;
-pub use reflection::{FACTORS, PAIRS, Table};
 
 /// A kind of map.
 pub struct Kind {
@@ -257,9 +257,9 @@ macro_rules! decoder {
 const TABLE: OfLight = OfLight {
     is_lit: false,
     plans: far_field::plans,
-    bytes: reflection::bytes,
-    stages: reflection::table_stages,
-    make: reflection::make_table,
+    bytes: brdf::bytes,
+    stages: brdf::table_stages,
+    make: brdf::make_table,
 };
 
 /// All kinds, in the order of --help.
@@ -370,7 +370,7 @@ pub static KINDS: [Kind; 15] = [
         encodings: &bake::REFLECTED,
         formats: &[Format::Ktx2, Format::Npy],
         decoder: decoder!("brdf"),
-        map: reflection::brdf,
+        map: brdf::brdf,
         source: Source::Light(TABLE),
     },
     Kind {
@@ -381,10 +381,10 @@ pub static KINDS: [Kind; 15] = [
         encodings: &bake::REFLECTED,
         formats: &[Format::Ktx2, Format::Npy],
         decoder: decoder!("brdf_factors"),
-        map: reflection::factors,
+        map: brdf::factors,
         source: Source::Light(OfLight {
-            stages: reflection::factors_stages,
-            make: reflection::make_factors,
+            stages: brdf::factors_stages,
+            make: brdf::make_factors,
             ..TABLE
         }),
     },
@@ -395,10 +395,10 @@ pub static KINDS: [Kind; 15] = [
         encodings: &bake::HARMONIC_WEIGHTS,
         formats: &[Format::Ktx2, Format::Npy],
         decoder: decoder!("brdf_harmonics"),
-        map: reflection::harmonics,
+        map: brdf::harmonics,
         source: Source::Light(OfLight {
-            stages: reflection::harmonics_stages,
-            make: reflection::make_harmonics,
+            stages: brdf::harmonics_stages,
+            make: brdf::make_harmonics,
             ..TABLE
         }),
     },
@@ -410,11 +410,11 @@ pub static KINDS: [Kind; 15] = [
         encodings: &bake::TEXELS,
         formats: &[Format::Ktx2],
         decoder: decoder!("btf"),
-        map: reflection::btf,
+        map: brdf::btf,
         source: Source::Light(OfLight {
             bytes: far_field::bytes_of_views,
-            stages: reflection::btf_stages,
-            make: reflection::make_btf,
+            stages: brdf::btf_stages,
+            make: brdf::make_btf,
             ..TABLE
         }),
     },

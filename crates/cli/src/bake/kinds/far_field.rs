@@ -15,9 +15,7 @@ use ridgelight_bake::{Angles, ExitRadiance, Facets};
 use ridgelight_io::Component;
 use serde_json::json;
 
-use super::{
-    Job, Kind, Map, MapFiles, Stage, Stages, Value, Wanted, light, number, reflection, stage,
-};
+use super::{Job, Kind, Map, MapFiles, Stage, Stages, Value, Wanted, brdf, light, number, stage};
 
 /// The largest value that the files hold: of f32, or less in a .ktx2.
 pub fn largest(wanted: &Wanted) -> f64 {
@@ -179,7 +177,7 @@ pub fn rays(job: &Job, kind: &Kind, limits: &Limits) -> Option<(u128, String)> {
     let (scatter, lights, pairs) = match name {
         "light-field" => (light::view_paths(job), 1, 0),
         "btf" => (job.scatter?, views, 0),
-        _ if kind.is_table() => (job.scatter?, views, reflection::PAIRS),
+        _ if kind.is_table() => (job.scatter?, views, brdf::PAIRS),
         _ => return None,
     };
     let field = job.field();
