@@ -1,4 +1,4 @@
-//! The whole choice, for a caller that can render: render, measure, render again.
+//! The search of `--max-error` and `--time-budget`, for a caller that can render: render, measure, render again.
 
 use super::candidates::defaults;
 use super::chooser::{Chooser, Trial};
