@@ -2,9 +2,11 @@ pub(super) mod finer;
 pub(super) mod fractal;
 pub(super) mod hash;
 pub(super) mod normal;
+pub(super) mod voids;
 
 use super::Border;
 use crate::{Error, Result};
+use voids::fill;
 
 /// Largest magnitude of a height, in the field's length unit: products of a height difference and a distance stay far
 /// below the largest f32.
@@ -239,72 +241,6 @@ impl HeightField {
     }
 }
 
-/// Fills voids as [`HeightField::new`] does, for a caller that writes heights to the device itself
-/// ([`HeightField::unknown`]). `heights_m` are row after row from the north-west, `voids` one mark per grid point. Heights
-/// of voids may have any value; all others keep their bits.
-///
-/// # Errors
-/// Sizes that do not match; a height outside voids that is not finite or beyond ±1e15; voids only.
-pub fn fill_voids([rows, cols]: [usize; 2], heights_m: &mut [f32], voids: &[bool]) -> Result<()> {
-    let count = rows.checked_mul(cols).filter(|count| *count == heights_m.len());
-    if count != Some(voids.len()) {
-        let found = format!(
-            "{} and {} voids for {rows} × {cols} grid points",
-            heights_m.len(),
-            voids.len()
-        );
-        return Err(Error::setting("heights", found, "rows × columns of both"));
-    }
-    let is_wrong =
-        |(h, void): (&f32, &bool)| !void && (h.is_nan() || f64::from(h.abs()) > HEIGHT_LIMIT);
-    if let Some(i) = heights_m.iter().zip(voids).position(is_wrong) {
-        return Err(Error::setting(
-            format!("height at row {}, column {}", i / cols, i % cols),
-            format!("{:?}", heights_m[i]),
-            "a finite number within ±1e15, or a void",
-        ));
-    }
-    if !voids.contains(&false) {
-        return Err(Error::setting("heights", "nothing but voids", "at least one height"));
-    }
-    fill(rows, cols, heights_m, voids);
-    Ok(())
-}
-
-/// Fills voids layer by layer from their rim: each takes the mean of its known neighbours (of eight). The result is
-/// continuous at the rim and independent of scan order.
-fn fill(rows: usize, cols: usize, heights: &mut [f32], voids: &[bool]) {
-    let mut known: Vec<bool> = voids.iter().map(|v| !v).collect();
-    let neighbours = |i: usize| {
-        let (r, c) = (i / cols, i % cols);
-        let (r0, r1) = (r.saturating_sub(1), (r + 1).min(rows - 1));
-        let (c0, c1) = (c.saturating_sub(1), (c + 1).min(cols - 1));
-        (r0..=r1).flat_map(move |r| (c0..=c1).map(move |c| r * cols + c))
-    };
-    let mut rim: Vec<usize> =
-        (0..heights.len()).filter(|&i| !known[i] && neighbours(i).any(|n| known[n])).collect();
-    while !rim.is_empty() {
-        let layer: Vec<f32> = rim
-            .iter()
-            .map(|&i| {
-                let (sum, count) = neighbours(i)
-                    .filter(|&n| known[n])
-                    .fold((0.0_f64, 0_u32), |(s, k), n| (s + f64::from(heights[n]), k + 1));
-                (sum / f64::from(count)) as f32
-            })
-            .collect();
-        for (&i, &h) in rim.iter().zip(&layer) {
-            heights[i] = h;
-            known[i] = true;
-        }
-        let mut next: Vec<usize> =
-            rim.iter().flat_map(|&i| neighbours(i)).filter(|&n| !known[n]).collect();
-        next.sort_unstable();
-        next.dedup();
-        rim = next;
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -340,40 +276,6 @@ mod tests {
             assert!(field.replace(at, cols, &vec![0.0; count]).is_err(), "{at:?} {cols} {count}");
         }
         assert_eq!(field.heights_m()[8], 4.0);
-    }
-
-    /// The filled heights equal those of the field, whose base is 0. Each error names its cause.
-    #[test]
-    fn fill_voids_equals_the_filling_of_a_field() {
-        let heights: Vec<f32> = (0..30).map(|i| ((i * 7) % 5) as f32 - 2.0).collect();
-        let voids: Vec<bool> = (0..30).map(|i| i % 4 == 1 || (10..15).contains(&i)).collect();
-        let of_field: Vec<f64> = heights.iter().map(|h| f64::from(*h)).collect();
-        let field = HeightField::new(5, 6, &of_field, [1.0, 1.0], Some(voids.clone())).unwrap();
-        assert_eq!(field.base_m(), 0.0);
-        let mut filled = heights.clone();
-        voids.iter().zip(&mut filled).filter(|v| *v.0).for_each(|(_, h)| *h = f32::NAN);
-        fill_voids([5, 6], &mut filled, &voids).unwrap();
-        assert_eq!(filled, field.heights_m());
-        let refuse = |heights: &mut [f32], voids: &[bool], expected: &str| {
-            let message = fill_voids([5, 6], heights, voids).unwrap_err().to_string();
-            assert!(message.contains(expected), "{message}");
-        };
-        refuse(&mut filled[1..], &voids, "29 and 30 voids for 5 × 6 grid points");
-        refuse(&mut filled, &[true; 30], "nothing but voids");
-        filled[8] = f32::INFINITY;
-        refuse(&mut filled, &[false; 30], "height at row 1, column 2: found inf");
-    }
-
-    #[test]
-    fn fills_a_void_between_equal_neighbours_with_their_height() {
-        let mut heights = [5.0; 25];
-        let mut voids = vec![false; 25];
-        for i in [6, 7, 8, 11, 12, 13, 16, 17, 18] {
-            heights[i] = f64::INFINITY;
-            voids[i] = true;
-        }
-        let field = HeightField::new(5, 5, &heights, [1.0, 1.0], Some(voids)).unwrap();
-        assert!(field.heights_m().iter().all(|h| *h == 0.0));
     }
 
     fn field(

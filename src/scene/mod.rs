@@ -54,9 +54,10 @@ pub use choices::{
 pub use curvature::{Curvature, OcclusionChange};
 pub use directions::{Directions, least_radius};
 pub use environment::Environment;
+pub use field::HeightField;
 pub use field::fractal::fractal;
 pub use field::normal::normal;
-pub use field::{HeightField, fill_voids};
+pub use field::voids::fill_voids;
 pub use lights::key::KeyLight;
 pub use lights::*;
 pub use quality::{Bounces, Quality, SETTINGS, setting};

@@ -7,6 +7,7 @@ pub mod sky;
 pub mod terminal;
 pub mod tint;
 pub mod tuned;
+mod voids;
 
 use ridgelight::gpu::{self, Headless, HeadlessOptions, Pixels, Timing};
 use ridgelight::plan::{Limits, Picture, Plan};
@@ -27,6 +28,7 @@ use crate::args::{
 use lights::{LIGHTS, light};
 pub use settings_used::{as_json, asked, metadata, of_field, typed};
 use tint::Tint;
+pub use voids::mask_voids;
 
 /// How a command ended without an error.
 pub enum Outcome {
@@ -358,17 +360,6 @@ pub fn inputs<'a>(
     };
     let others = [lights.env.as_deref(), albedo, specular];
     field.iter().map(PathBuf::as_path).chain(others.into_iter().flatten()).collect()
-}
-
-/// Sets void texels to NaN in every plane.
-pub fn mask_voids(field: &HeightField, planes: &mut [f32], channels: usize) {
-    if let Some(voids) = field.voids() {
-        for (i, texel) in planes.chunks_mut(channels).enumerate() {
-            if voids[i % voids.len()] {
-                texel.fill(f32::NAN);
-            }
-        }
-    }
 }
 
 /// Radiance of a picture: one plane where all is grey, else three; voids are NaN.
