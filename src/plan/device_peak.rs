@@ -3,10 +3,10 @@ use crate::graph::{Builder, Limits};
 use crate::passes::device_peak::SIDE;
 use crate::{Result, passes};
 
-/// Passes whose times give the peak rates of a device, for a roofline: "fill", which must run first, then "copy" (its
-/// `bytes` are traffic), "fetch", "shared" and "fma" (their `texels` are fetches of one f32, reads of 8 bytes from shared
-/// memory, and floating-point operations). "copy" also clears caches of their contents: it
-/// copies up to 256 MiB, 64 MiB on a processor.
+/// Passes whose times give the peak rates of a device, which `bench` prints: "fill", which must run first, then "copy"
+/// (its `bytes` are traffic), "fetch", "shared" and "fma" (their `texels` are fetches of one f32, reads of 8 bytes from
+/// shared memory, and floating-point operations). "copy" also clears caches of their contents: it copies up to 256 MiB,
+/// 64 MiB on a processor.
 ///
 /// No inputs, no outputs.
 ///
